@@ -1,0 +1,23 @@
+// One operation of a job: what the planners need to know, feeds in mm/min, lengths in mm.
+#pragma once
+
+namespace toothpath {
+
+enum class OperationType { roughing, semi_finishing, finishing, finger_roughing, finger_finishing };
+[[nodiscard]] const char* to_string(OperationType type);  ///< as in the job file
+
+struct MillingOperation {
+  OperationType type = OperationType::finishing;
+  int tool = 0;                       ///< index into the list of tools
+  double speed_rpm = 0;
+  double feed_mm_min = 0;             ///< of the contact point (ball mill) or cutter centre on the pitch cone (finger mill)
+  double step_down_mm = 0;            ///< roughing: between layers
+  double step_over_mm = 0;            ///< roughing: between passes of a layer
+  double allowance_mm = 0;            ///< stock left, along the normal of the finished surface
+  double scallop_mm = 0;              ///< semi-finishing and finishing: cusp height between passes
+  double chord_tolerance_mm = 0.005;  ///< sag of a block against the exact path; not asked for: 0.005
+  bool climb = true;
+  double ridge_mm = 0;                ///< finger roughing: highest ridge left on the root
+};
+
+}  // namespace toothpath
