@@ -1,0 +1,61 @@
+// One job: everything that a job file says, checked and in mm and rad. A plain value; made by app/job_file.h.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "cam/cutter.h"
+#include "cam/operation.h"
+#include "geometry/base/diagnostic.h"
+#include "geometry/bevel_gear_parameters.h"
+#include "geometry/face_gear_parameters.h"
+#include "postproc/setup.h"
+#include "postproc/shaping.h"
+
+namespace toothpath {
+
+/// The [machine] table.
+struct MachineChoice {
+  std::string file;             ///< as written: looked up beside the job first, then among the installed machines
+  bool accept_assumed = false;  ///< the user knows that values of this machine are assumed
+};
+
+/// The [verify] table.
+struct VerifySettings {
+  double gouge_tolerance_mm = 2e-3;     ///< deepest cut into the finished surface that counts as verified
+  bool all_teeth = false;               ///< false: one space is proven, the others are turned copies
+  std::optional<double> clearance_mm;   ///< least gap of neck, shank and holder; none: the program's default
+};
+
+/// The [coolant] table.
+enum class Coolant { off, mist, flood };
+[[nodiscard]] const char* to_string(Coolant coolant);  ///< as in the job file
+
+/// Where a key was written: "gear.module", "gear.zone[0].inner_radius", "tool[1].diameter", "operation[2].scallop",
+/// "machine.file"; a table itself as "gear", "tool[1]". Later stages ask it to locate what they refuse.
+using KeyPositions = std::map<std::string, SourcePosition, std::less<>>;
+
+struct Job {
+  std::string file;  ///< path as given on the command line
+  std::string name;
+  std::variant<FaceGearParameters, BevelGearParameters> gear;
+  MachineChoice machine;
+  std::optional<Setup> setup;            ///< present in every milling job
+  std::vector<ToolAssembly> tools;
+  std::vector<MillingOperation> operations;  ///< `tool` is an index into `tools`
+  Coolant coolant = Coolant::off;
+  VerifySettings verify;
+  std::optional<Shaping> shaping;
+  KeyPositions positions;
+
+  /// Position of a key, of the nearest table above it where the key was not written, or of the file.
+  [[nodiscard]] SourcePosition where(std::string_view key) const;
+  [[nodiscard]] const FaceGearParameters* face_gear() const { return std::get_if<FaceGearParameters>(&gear); }
+  [[nodiscard]] const BevelGearParameters* bevel_gear() const { return std::get_if<BevelGearParameters>(&gear); }
+};
+
+}  // namespace toothpath
