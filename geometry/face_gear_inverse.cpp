@@ -1,0 +1,180 @@
+#include "geometry/face_gear_inverse.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/math/tools/roots.hpp>
+
+#include "geometry/base/angle.h"
+
+namespace toothpath {
+namespace {
+
+constexpr double kMaxB = radians(80.0);
+constexpr int kNewtonLimit = 60;
+
+struct Meridian {
+  double r = 0, z = 0;
+};
+
+Meridian meridian(const FaceGearSurface<double>& f, int s, double theta, double B) {
+  const Vec3 P = f.flank_housing(s, theta, B);
+  return {std::hypot(P.x(), P.y()), P.z()};
+}
+
+/// Newton for (theta, B) at (r, z) with short steps; false if it does not arrive.
+bool newton(const FaceGearSurface<double>& f, int s, double r, double z, double& theta, double& B) {
+  const double goal = 4e-16 * std::max(r, 1.0);
+  double best = INFINITY;
+  int stalled = 0;
+  for (int k = 0; k < kNewtonLimit; ++k) {
+    const Vec3 P = f.flank_housing(s, theta, B);
+    const double r_now = std::hypot(P.x(), P.y());
+    const double er = r - r_now, ez = z - P.z(), error = std::hypot(er, ez);
+    if (!(error < INFINITY)) return false;
+    if (error <= goal) return true;
+    if (error >= 0.5 * best) {
+      if (++stalled > 3 && best < 1e-13 * std::max(r, 1.0)) return true;  // at the floor of rounding
+      if (stalled > 12) return false;
+    }
+    best = std::min(best, error);
+    const double w = s * f.shaper.r_b * theta;
+    const Vec3 n = (f.t(B) * f.shaper.cos_bb - f.a() * f.shaper.sin_bb) * double(s);
+    const Vec3 Pt = n * (-f.shaper.r_b / f.shaper.cos_bb);
+    const Vec3 PB = f.a() * f.flank_Z_B(B) + f.t(B) * f.shaper.r_b + f.e(B) * w;
+    const double rt = (P.x() * Pt.x() + P.y() * Pt.y()) / r_now, rB = (P.x() * PB.x() + P.y() * PB.y()) / r_now;
+    const double det = rt * PB.z() - rB * Pt.z();
+    if (det == 0) return false;
+    double dt = (er * PB.z() - rB * ez) / det, dB = (rt * ez - er * Pt.z()) / det;
+    const double size = std::max(std::abs(dt), std::abs(dB));
+    if (size > 0.1) {
+      dt *= 0.1 / size;
+      dB *= 0.1 / size;
+    }
+    theta += dt;
+    B += dB;
+    if (std::abs(B) > kMaxB) return false;
+    if (size < 1e-15) return error < 1e-12 * std::max(r, 1.0);
+  }
+  return best < 1e-12 * std::max(r, 1.0);
+}
+
+/// For a given B the height alone gives theta; then the radius is a function of B only.
+std::optional<FlankCoordinates> by_bracketing(const FaceGearSurface<double>& f, int s, double r, double z) {
+  const auto theta_of = [&](double B) {
+    const double nz = s * (f.shaper.sin_bb * f.Cg + std::sin(B) * f.shaper.cos_bb * f.Sg);
+    const double Qz = f.flank_housing(s, 0.0, B).z();
+    return nz > 1e-9 ? -(z - Qz) / nz * f.shaper.cos_bb / f.shaper.r_b : NAN;
+  };
+  const auto residual = [&](double B) {
+    const double theta = theta_of(B);
+    return std::isnan(theta) ? NAN : meridian(f, s, theta, B).r - r;
+  };
+  constexpr int kSamples = 400;
+  std::optional<FlankCoordinates> found;
+  double B0 = NAN, f0 = NAN;
+  for (int k = 0; k <= kSamples; ++k) {
+    const double B1 = s * (kMaxB - (kMaxB + 0.6) * k / kSamples);
+    const double f1 = residual(B1);
+    const bool regular = !std::isnan(f1) && f.flank_J(s, theta_of(B1), B1) > 0;
+    if (regular && !std::isnan(f0) && f0 * f1 <= 0) {
+      std::uintmax_t steps = 200;
+      const auto bracket = boost::math::tools::toms748_solve(residual, std::min(B0, B1), std::max(B0, B1),
+                                                             B0 < B1 ? f0 : f1, B0 < B1 ? f1 : f0,
+                                                             boost::math::tools::eps_tolerance<double>(52), steps);
+      const double B = 0.5 * (bracket.first + bracket.second), theta = theta_of(B);
+      const double J = f.flank_J(s, theta, B);
+      if (J > 0) found = FlankCoordinates{theta, B, J};
+      if (found) return found;
+    }
+    B0 = B1;
+    f0 = regular ? f1 : NAN;
+  }
+  return found;
+}
+
+}  // namespace
+
+std::optional<FlankCoordinates> invert_flank(const FaceGearSurface<double>& f, int side, double r, double z,
+                                             const std::optional<FlankCoordinates>& start) {
+  if (!(r > f.M2)) return {};
+  double theta = start ? start->theta : std::tan(f.shaper.alpha_t), B = start ? start->B : side * f.shaper.alpha_t;
+  const Meridian from = meridian(f, side, theta, B);
+  const double distance = std::hypot(r - from.r, z - from.z), step = 0.5 * f.shaper.m_t;
+  const int steps = std::clamp(int(std::ceil(distance / step)), 1, 400);
+  bool ok = true;
+  for (int k = 1; k <= steps && ok; ++k) {
+    const double t = double(k) / steps;
+    ok = newton(f, side, k == steps ? r : from.r + t * (r - from.r), k == steps ? z : from.z + t * (z - from.z), theta, B);
+  }
+  if (ok) {
+    const double J = f.flank_J(side, theta, B);
+    if (J > 0) return FlankCoordinates{theta, B, J};
+  }
+  return by_bracketing(f, side, r, z);
+}
+
+double flank_azimuth(const FaceGearSurface<double>& f, int side, const FlankCoordinates& at) {
+  const Vec3 P = f.flank_housing(side, at.theta, at.B);
+  return std::atan2(P.y(), P.x()) - f.i * f.flank_phi(side, at.theta, at.B);
+}
+
+std::optional<FlankDistance> flank_distance(const FaceGearSurface<double>& f, int side, const Vec3& point,
+                                            const std::optional<FlankCoordinates>& start) {
+  const auto at = invert_flank(f, side, std::hypot(point.x(), point.y()), point.z(), start);
+  if (!at) return {};
+  const double turn = std::remainder(std::atan2(point.y(), point.x()) - flank_azimuth(f, side, *at), 2 * kPi);
+  FlankDistance d;
+  d.distance = side * f.M2 * turn;
+  d.foot = {at->theta + d.distance * f.shaper.cos_bb / f.shaper.r_b, at->B, 0};
+  d.foot.J = f.flank_J(side, d.foot.theta, d.foot.B);
+  return d;
+}
+
+std::optional<double> flank_B_at_radius(const FaceGearSurface<double>& f, int side, double theta, double r,
+                                        double start_B) {
+  double B = start_B;
+  for (int k = 0; k < kNewtonLimit; ++k) {
+    const Vec3 P = f.flank_housing(side, theta, B);
+    const double r_now = std::hypot(P.x(), P.y()), w = side * f.shaper.r_b * theta;
+    const Vec3 PB = f.a() * f.flank_Z_B(B) + f.t(B) * f.shaper.r_b + f.e(B) * w;
+    const double rB = (P.x() * PB.x() + P.y() * PB.y()) / r_now;
+    double dB = (r - r_now) / rB;
+    if (!(std::abs(dB) < INFINITY)) return {};
+    dB = std::clamp(dB, -0.1, 0.1);
+    B += dB;
+    if (std::abs(B) > kMaxB) return {};
+    if (std::abs(dB) < 1e-14) {
+      if (std::abs(meridian(f, side, theta, B).r - r) > 1e-11 * r || !(f.flank_J(side, theta, B) > 0)) return {};
+      return B;
+    }
+  }
+  const double error = std::abs(meridian(f, side, theta, B).r - r);
+  if (error > 1e-12 * r || !(f.flank_J(side, theta, B) > 0)) return {};
+  return B;
+}
+
+std::optional<double> fillet_Z_at_radius(const FaceGearSurface<double>& f, int side, double A, double r,
+                                         double start_Z) {
+  const auto radius = [&](double Z) {
+    const auto p = f.fillet(side, A, Z);
+    return p.defined ? std::hypot(p.p.x(), p.p.y()) : NAN;
+  };
+  double Z0 = start_Z, e0 = radius(Z0) - r;
+  if (std::isnan(e0)) return {};
+  double Z1 = Z0 - e0, e1 = radius(Z1) - r;
+  for (int k = 0; k < kNewtonLimit; ++k) {
+    if (std::isnan(e1)) return {};
+    if (std::abs(e1) <= 4e-16 * r || Z1 == Z0) return Z1;
+    if (e1 == e0) return std::abs(e1) < 1e-12 * r ? std::optional(Z1) : std::nullopt;
+    const double slope = (e1 - e0) / (Z1 - Z0);
+    const double Z2 = Z1 - e1 / slope;
+    Z0 = Z1;
+    e0 = e1;
+    Z1 = Z2;
+    e1 = radius(Z1) - r;
+    if (k > 8 && std::abs(e1) < 1e-13 * r) return Z1;
+  }
+  return std::abs(e1) < 1e-12 * r ? std::optional(Z1) : std::nullopt;
+}
+
+}  // namespace toothpath
