@@ -1,0 +1,62 @@
+// A milling machine as its file describes it: kinematic chain, limits, control and what of it is assumed.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/base/angle.h"
+#include "machines/kinematic_chain.h"
+
+namespace toothpath {
+
+enum class MachineKind { five_axis, gear_shaper };
+
+/// What the control does with the tool tip during a block.
+enum class TcpMode {
+  none,     ///< nothing: the five joints move linearly
+  angles,   ///< keeps the tip on the chord, rotary words are angles (G43.4, TRAORI + ORIAXES, TCPM ... AXIS)
+  vectors,  ///< keeps the tip on the chord, tool axis as a vector (G43.5, TRAORI + ORIVECT, TCPM ... VECTOR)
+};
+
+/// What tool length and programmed point refer to (ball tools).
+enum class LengthReference { tip, centre };
+
+/// What the post does where the tool axis comes parallel to the first rotary axis.
+enum class PoleOption { error, tilt, hold, through, slow, retract };
+
+/// Preferences of this machine; what is empty is left to the dialect.
+struct PostSettings {
+  std::optional<int> linear_decimals;  ///< digits after the point of X Y Z, 0..9
+  std::optional<int> rotary_decimals;  ///< of A B C in degrees, 0..9
+  std::optional<bool> index_loop;      ///< tooth indexing as a loop or sub-program (true) or written out (false)
+  std::vector<std::string> tcp_on;     ///< blocks that switch TCP on, e.g. {"M428"}
+  std::vector<std::string> tcp_off;    ///< and off
+  LengthReference length_reference = LengthReference::tip;
+  PoleOption pole = PoleOption::error;
+};
+
+struct Machine {
+  std::string name;
+  std::string file;  ///< path as it was opened, for messages
+  MachineKind kind = MachineKind::five_axis;
+  std::string dialect;  ///< "linuxcnc", "fanuc", ...: lower case; which ones exist is the post's business
+  TcpMode tcp = TcpMode::none;
+  bool assumed = false;                    ///< true: at least one value is assumed
+  std::vector<std::string> assumed_keys;   ///< dotted names, `axes.A.point`; of `assumed = true`, every value of the file
+  int max_simultaneous_axes = 5;           ///< axes that the control interpolates in one block
+
+  double max_spindle_speed = 0.0;                 ///< 1/min
+  double max_cutting_feed = 0.0;                  ///< mm/min
+  double table_diameter_mm = 0.0;                 ///< largest circle that fits on the table
+  std::optional<double> part_diameter_mm;         ///< largest part that turns on the rotary table, when stated
+  std::optional<double> part_swing_mm;            ///< largest radius about the tilt axis, when stated
+  std::optional<double> max_part_mass_kg;         ///< when stated
+  double min_block_ms = 1.0;                      ///< shortest block that the control keeps up with
+  LimitMargin limit_margin;
+
+  KinematicChain chain;
+  PostSettings post;
+};
+
+}  // namespace toothpath
