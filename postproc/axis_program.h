@@ -1,0 +1,130 @@
+// From proven cutter location data to the words of the machine's axes: solution choice, safe sequences, subdivision
+// of the non-linear error, block times, the index loop over the teeth, travel check. Still free of any dialect.
+//
+// CL records are tooth space 0 in the gear frame W; space k is the same turned by 2 pi k / z about gear z. Where the
+// gear axis is the axis of the rotary that carries the work, space k is the same blocks with that rotary k * 360 / z
+// further on, and the program holds one tooth and the loop. Everywhere else all teeth are written out.
+//
+// Words are kept as integers (multiples of the last printed digit), so that what is checked here is what is printed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cam/checked_cl_path.h"
+#include "cam/cutter.h"
+#include "geometry/base/result.h"
+#include "machines/machine.h"
+#include "postproc/setup.h"
+
+namespace toothpath {
+
+/// Decimals of the printed words: mm and degrees. A property of the dialect.
+struct WordFormat {
+  int linear_decimals = 4, rotary_decimals = 5;
+};
+
+/// Part and fixture as a cylinder about the gear axis, W, mm. Rapids in X and Y stay above it; rotaries turn above
+/// everything that it sweeps.
+struct ClearanceBody {
+  double radius_mm = 0, z_min_mm = 0, z_max_mm = 0;
+};
+
+struct AxisOptions {
+  WordFormat format;
+  double chord_mm = 5e-4;         ///< greatest distance of the tip from the CL chord inside a block (spec section 3)
+  double axis_rad = 1e-3;         ///< greatest deviation of the tool axis inside a block
+  double nc_step_mm = 2e-3;       ///< greatest error of the tip that rounding the words may cause; else refused
+  double clearance_margin_mm = 5; ///< between the clearance body and the tool tip on rapids
+  bool expand_teeth = false;      ///< write every tooth out even where the loop would do
+};
+
+enum class BlockKind : std::uint8_t {
+  feed,           ///< G1, all axes, inverse time
+  rapid_z,        ///< G0, Z alone
+  rapid_xy,       ///< G0, X and Y
+  rapid_rotary,   ///< G0, both rotaries, no linear word
+};
+
+/// One block. Words: X Y Z [10^-linear_decimals mm, work coordinates with tool length compensation on], then the two
+/// rotaries in the order of the machine's axes [10^-rotary_decimals deg]. In a loop the index rotary is that of tooth 0.
+struct AxisBlock {
+  std::array<std::int64_t, 5> words{};
+  double minutes = 0;        ///< that the machine needs or is told, from the rounded words
+  std::int32_t record = -1;  ///< index of the CL record that the block goes to; -1: a link
+  std::int32_t line = 0;     ///< reserved for the writer: line in the text, 0 before
+  BlockKind kind = BlockKind::feed;
+  bool forced = false;       ///< print every word of the kind: first block after a break
+};
+
+/// The blocks of one tooth of one operation. Starts and ends at a height where the rotaries may turn.
+struct ToothBlocks {
+  int tooth = 0;  ///< space index; in a loop 0
+  std::vector<AxisBlock> blocks;
+};
+
+struct AxisOperation {
+  int operation = 0;  ///< index in the job
+  std::string type;
+  int tool_number = 0;
+  double tool_length_mm = 0;
+  std::string tool_name;  ///< for the header comment
+  double spindle_rpm = 0;
+  std::vector<ToothBlocks> teeth;  ///< one entry in a loop, else z entries in order
+  double feed_minutes = 0, rapid_minutes = 0;  ///< over all teeth
+};
+
+/// Least and greatest position of one axis over all teeth, against its limits [mm or rad, machine coordinates].
+struct AxisRange {
+  char letter = '?';
+  bool rotary = false;
+  double min = 0, max = 0, lower_limit = 0, upper_limit = 0;
+};
+
+struct AxisProgram {
+  WordFormat format;
+  std::array<char, 5> letters{};            ///< X Y Z and the two rotaries; 0: no such axis
+  int teeth = 1;
+  bool loop = false;                        ///< one tooth is held; the index rotary turns it
+  int index_axis = -1;                      ///< 3 or 4: which word is shifted by the index
+  int index_sign = 1;                       ///< word of tooth k = word + index_sign * k * 360 / z
+  double retract_z_mm = 0;                  ///< G53 Z, machine coordinates of the gauge line
+  std::string work_offset = "G54";
+  Vec3 work_offset_at_mm = Vec3::Zero();
+  std::vector<AxisOperation> operations;
+  std::vector<AxisRange> ranges;            ///< over all teeth and operations, G53 retract included
+  std::vector<std::string> time_rulers;     ///< names of the terms of the block time
+  std::vector<std::size_t> time_ruled;      ///< how many feed blocks each of them decided (one tooth in a loop)
+  std::vector<std::string> assumed;         ///< machine data that nobody measured
+  double minutes = 0, feed_minutes = 0;     ///< over all teeth, tool changes left out
+  double rounding_bound_mm = 0;             ///< proven: rounding the words moves the tip by no more (section 4)
+  double chord_bound_mm = 0;                ///< proven: the tip leaves the CL chord inside a block by no more (section 3)
+  double axis_bound_rad = 0;                ///< the same for the tool axis
+  std::size_t inserted_blocks = 0;          ///< by the subdivision
+  std::size_t dropped_blocks = 0;           ///< all words equal to those before
+};
+
+/// Builds the program for one set-up. `tools` are indexed by ClPath::tool; `teeth` = z >= 1.
+///
+/// Errors (kind verification for travel, refused_input for the rest): pose that the machine cannot reach, travel
+/// exceeded (record, tooth, axis, value, limit, and the shift of the set-up that would fit, if there is one), rotary
+/// reposition with no safe height, no continuous solution inside a pass, rounding coarser than nc_step_mm.
+[[nodiscard]] Result<AxisProgram> build_axis_program(std::span<const CheckedClPath> paths,
+                                                     std::span<const ToolAssembly> tools, const Setup& setup,
+                                                     const Machine& machine, int teeth, const ClearanceBody& body,
+                                                     const AxisOptions& options = {});
+
+/// Does a part of this diameter [mm] fit on the machine (table and part limits)? Names the limit if not.
+[[nodiscard]] Status check_part_fits(const Machine& machine, double part_diameter_mm);
+
+/// For tests of this folder alone: the same from paths that no check has passed.
+struct AxisProgramTestAccess {
+  static Result<AxisProgram> build(std::span<const ClPath> paths, std::span<const ToolAssembly> tools,
+                                   const Setup& setup, const Machine& machine, int teeth, const ClearanceBody& body,
+                                   const AxisOptions& options = {});
+};
+
+}  // namespace toothpath

@@ -1,0 +1,118 @@
+// Reads an NC program back: an interpreter of the two dialects that we write, the machine's forward kinematics, and
+// the comparison with the path that was asked for. It shares no code with the writer.
+//
+// The interpreter executes every tooth of an index loop; what is kept is the first tooth of each operation when the
+// others are proven to be turned copies (same linear words bit for bit, the index rotary further by k * 360 / z).
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cam/cl_path.h"
+#include "cam/cutter.h"
+#include "cam/tool_motion.h"
+#include "geometry/base/result.h"
+#include "machines/machine.h"
+#include "postproc/setup.h"
+
+namespace toothpath {
+
+/// What the control knows beside the text.
+struct NcControl {
+  std::string dialect = "linuxcnc";           ///< or "fanuc"
+  std::array<char, 5> letters{};              ///< X Y Z and the rotaries in the machine's order; 0: none
+  std::array<double, 5> rapid_speed{};        ///< mm/min and deg/min
+  std::map<int, double> tool_length_mm;       ///< by T and H number
+  std::map<std::string, Vec3> work_offsets;   ///< "G54" -> origin, machine coordinates, mm
+  std::size_t max_steps = 400'000'000;        ///< executed blocks before the program is refused as endless
+};
+
+/// Control of a machine with the job's tools and its one work offset.
+[[nodiscard]] Result<NcControl> control_of(const Machine& machine, const Setup& setup,
+                                           std::span<const ToolAssembly> tools);
+
+/// End of one executed move: joints in machine coordinates, gauge line (mm) and rotaries as words (deg).
+struct ExecutedMove {
+  std::array<double, 5> joints{};
+  double minutes = 0;
+  std::int32_t line = 0;        ///< of the text, from 1
+  std::int16_t operation = -1;  ///< from the (OP n type) comment; -1 before the first
+  std::int16_t tool = 0;        ///< T in the spindle
+  bool rapid = false;
+  bool machine = false;         ///< G53
+  bool known = false;           ///< all joints were known before and after
+};
+
+/// Executes `text` and hands every move to `sink`, in order. Stops with a located error (line and column of `file`) at
+/// anything that is not in the subset, at an undefined tool, offset, label or parameter, at a feed move without F or
+/// without spindle, at G1 in G94 with rotary and linear words whose time is not exact, and beyond max_steps.
+[[nodiscard]] Status execute_nc(std::string_view text, const std::string& file, const NcControl& control,
+                                const std::function<void(const ExecutedMove&)>& sink);
+
+/// Are the teeth of every operation turned copies of its first one?
+struct TurnedCopies {
+  bool copies = false;
+  int line = 0;            ///< first place that differs, of the text; 0 when copies
+  std::string difference;  ///< what differs there
+  struct Operation {
+    int operation = 0;
+    std::size_t moves_per_tooth = 0;  ///< G53 retracts before and after left out
+    std::vector<int> turns;           ///< copy number -> tooth space
+  };
+  std::vector<Operation> operations;
+};
+
+/// Moves kept of one operation.
+struct OperationTrace {
+  int operation = 0;
+  int tool = 0;            ///< T
+  std::size_t kept_teeth = 0;  ///< 1 when the others are proven copies, else all
+  std::vector<ExecutedMove> moves;  ///< with the retract before the first tooth
+};
+
+struct ReadBack {
+  TurnedCopies copies;
+  std::vector<OperationTrace> operations;
+  std::array<double, 5> least{}, greatest{};  ///< joints over all executed moves, mm and deg
+  std::size_t executed = 0;
+  double minutes = 0, feed_minutes = 0;
+};
+
+struct ReadBackOptions {
+  int teeth = 1;
+  bool keep_all = false;  ///< keep every tooth although they are copies
+};
+
+/// Executes the program (twice: to count, then to compare and keep).
+[[nodiscard]] Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control,
+                                         const Machine& machine, const Setup& setup, const ReadBackOptions& options);
+
+/// Moves of a trace as straight motions of the tip in W. Moves that turn the axes are cut until the proven distance
+/// from the straight motion is at most `tolerance_mm` (tip) and `axis_tolerance_rad`; the bound stands in each motion.
+/// `tool_length_mm` by T number. Moves whose start is not known (before the machine was positioned) are left out.
+[[nodiscard]] Result<std::vector<ToolMotion>> tool_motions(const OperationTrace& trace, const TurnedCopies& copies,
+                                                           const NcControl& control, const Machine& machine,
+                                                           const Setup& setup, int teeth, double tolerance_mm,
+                                                           double axis_tolerance_rad);
+
+/// Every CL record of tooth space 0 met in order by the motions of tooth 0 of the same operation.
+struct ClComparison {
+  bool complete = false;        ///< every record was met
+  double worst_mm = 0;          ///< greatest distance of a record from the motion that meets it
+  double worst_axis_rad = 0;    ///< the same for the axis
+  double worst_extra_mm = 0;    ///< greatest distance of a feed motion from the CL polyline (blocks that nobody asked for)
+  int missed_operation = -1;    ///< first record that is not met
+  std::size_t missed_record = 0;
+  int line = 0;                 ///< near it
+  std::string message;
+};
+[[nodiscard]] ClComparison compare_with_cl(std::span<const ToolMotion> motions, std::span<const ClPath* const> paths,
+                                           double tolerance_mm, double axis_tolerance_rad);
+
+}  // namespace toothpath
