@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/base/angle.h"
 #include "geometry/base/result.h"
 #include "geometry/base/vec.h"
 
@@ -67,6 +68,7 @@ struct LimitViolation {
   bool rotary = false;
   double value = 0.0;   ///< mm or rad
   double limit = 0.0;   ///< the limit that is exceeded, margin already subtracted; mm or rad
+  bool above = true;    ///< value lies above the limit; else below it
   /// "Y = 212.4183 mm exceeds 200.0000" or "A = 131.2000 deg is below -120.0000".
   [[nodiscard]] std::string text() const;
 };
@@ -74,11 +76,11 @@ struct LimitViolation {
 /// How close to a limit a command may come.
 struct LimitMargin {
   double linear_mm = 0.1;
-  double rotary_rad = 0.01 * 3.14159265358979323846 / 180.0;
+  double rotary_rad = radians(0.01);
 };
 
 struct KinematicChain {
-  std::array<LinearAxis, 3> linear;  ///< X, Y, Z
+  std::array<LinearAxis, 3> linear{};  ///< X, Y, Z
   std::vector<RotaryAxis> table;     ///< from the work outwards: T1, T2
   std::vector<RotaryAxis> head;      ///< from the ram outwards: H1, H2
 
@@ -131,6 +133,10 @@ struct KinematicChain {
 
   /// Every joint outside its range minus margin, in the order of `letters()`.
   [[nodiscard]] std::vector<LimitViolation> violations(const Joints& joints, const LimitMargin& margin = {}) const;
+
+ private:
+  Vec3 gauge_shift(const std::array<double, 2>& rotary_rad) const;  ///< h of the head angles: gauge point minus J
+  Result<std::vector<JointSolution>> one_rotary(const Vec3& axis) const;
 };
 
 /// command_rad + k * 360 deg for every whole k that lies in the limits minus margin, ascending; empty when there is none.
