@@ -20,7 +20,7 @@ namespace toothpath {
 /// A surface point with its unit normal out of the material, both 3 x 1 in the gear frame.
 template <typename S>
 struct SurfacePointT {
-  Vec3T<S> p, n;
+  Vec3T<S> p = Vec3T<S>::Zero(), n = Vec3T<S>::Zero();
 };
 
 /// One ring of teeth of a face gear, endless in radius: the kernels of its surfaces.
@@ -162,11 +162,12 @@ struct FaceGearSurface {
   [[nodiscard]] ShapeOperator fillet_shape(int s, const S& A, const S& Z) const;
   [[nodiscard]] TangentBasis fillet_basis(int s, const S& A, const S& Z) const;
 
-  /// Root surface of revolution (plane z = -r_a for a shaft angle of 90 deg) at section Z, turned to azimuth `turn`
-  /// of its own meridian point. Normal out of the material.
+  /// Root surface of revolution (plane z = -r_a for a shaft angle of 90 deg): the point of the shaper's tip cylinder at
+  /// section Z that touches it, in the housing frame; turn it about z for any other azimuth. Normal out of the material.
   [[nodiscard]] SurfacePointT<S> root_meridian(const S& Z) const;
 
   /// Azimuth at which the root land of the tooth space 0 | 1 begins (side +1) or ends (side -1), at section Z.
+  /// Unwrapped: continuous in Z, not reduced to one turn.
   [[nodiscard]] S root_edge_azimuth(int side, const S& Z) const;
 
   /// Height of the tip surface at radius r; r > |E|.
@@ -296,7 +297,9 @@ template <typename S>
 S FaceGearSurface<S>::root_edge_azimuth(int side, const S& Z) const {
   using std::atan2;
   const auto f = fillet(side, shaper.A_e, Z);
-  const S azimuth = atan2(f.p[1], f.p[0]);
+  const S turn = -i * (f.B - S(side) * shaper.A_e - shaper.kappa * (Z - L0));
+  const Vec3T<S> in_housing = turned(f.p, S(-turn));
+  const S azimuth = atan2(in_housing[1], in_housing[0]) + turn;
   return side > 0 ? azimuth : S(azimuth + pitch);
 }
 

@@ -73,6 +73,13 @@ InvoluteShaper<S> make_shaper(const FaceGearParameters& gear, double helix_angle
 [[nodiscard]] Status check_shaper(const FaceGearParameters& gear, double helix_angle_rad);
 
 /// The largest tip rounding that the shaper can carry (full round tip), mm.
+/// 0 when the sharp tooth is pointed already.
 [[nodiscard]] double largest_tip_radius(const FaceGearParameters& gear, double helix_angle_rad);
+
+/// Roll parameter theta_act at which the active flank ends: tip circle of a pinion equal to the shaper, rad.
+[[nodiscard]] double active_roll_parameter(const FaceGearParameters& gear, double helix_angle_rad);
+
+/// The largest tip rounding that still leaves the whole active flank, theta_t >= theta_act, mm.
+[[nodiscard]] double largest_active_tip_radius(const FaceGearParameters& gear, double helix_angle_rad);
 
 }  // namespace toothpath
