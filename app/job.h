@@ -51,6 +51,7 @@ struct Job {
   VerifySettings verify;
   std::optional<Shaping> shaping;
   KeyPositions positions;
+  std::vector<std::string> warnings;  ///< located remarks that do not stop a run, e.g. an angle that looks like radians
 
   /// Position of a key, of the nearest table above it where the key was not written, or of the file.
   [[nodiscard]] SourcePosition where(std::string_view key) const;

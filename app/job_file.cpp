@@ -1,0 +1,103 @@
+#include "app/job_file.h"
+
+#include <algorithm>
+
+#include "app/job_tables.h"
+
+namespace toothpath {
+namespace {
+
+void read_gear(TableReader& root, Job& job) {
+  auto gear = root.table("gear");
+  auto stock = root.table("stock");
+  if (!gear) {
+    if (!root.has("gear")) root.refuse("gear", "the job lacks the table [gear]");
+    return;
+  }
+  const auto type = gear->word("type", {"face_gear", "equal_base_circle_bevel_gear"});
+  if (!type) return;  // which keys belong here is unknown
+  if (*type == "face_gear") {
+    job.gear = read_face_gear(*gear, stock ? &*stock : nullptr, job.warnings);
+  } else {
+    job.gear = read_bevel_gear(*gear);
+    if (stock) root.refuse("stock", "[stock] belongs to face gears; this gear is {}", *type);
+  }
+}
+
+void read_tools(TableReader& root, Job& job) {
+  for (auto& table : root.tables("tool")) {
+    ToolAssembly tool = read_tool(table, job.bevel_gear());
+    const auto same = [&](const ToolAssembly& other) { return other.number == tool.number && tool.number > 0; };
+    if (std::any_of(job.tools.begin(), job.tools.end(), same)) table.refuse("number", "number = {} is used by two tools", tool.number);
+    job.tools.push_back(std::move(tool));
+  }
+}
+
+/// The tables that milling needs when there is something to mill.
+void check_milling(TableReader& root, const Job& job) {
+  if (job.operations.empty()) return;
+  for (const auto& [key, title] : {std::pair("machine", "[machine]"), {"setup", "[setup]"}, {"tool", "[[tool]]"}})
+    if (!root.has(key)) root.refuse(key, "the job has operations but lacks the table {}", title);
+}
+
+}  // namespace
+
+const char* to_string(Coolant coolant) {
+  switch (coolant) {
+    case Coolant::off: return "off";
+    case Coolant::mist: return "mist";
+    case Coolant::flood: return "flood";
+  }
+  return "";
+}
+
+SourcePosition Job::where(std::string_view key) const {
+  std::string path(key);
+  while (true) {
+    if (const auto found = positions.find(path); found != positions.end()) return found->second;
+    const auto cut = path.find_last_of(".[");
+    if (cut == std::string::npos) return {file, 0, 0};
+    path.resize(cut);
+  }
+}
+
+JobOrErrors parse_job(std::string_view text, const std::string& file) {
+  const auto document = parse_toml(text, file, kMaxJobNesting);
+  if (!document) return std::vector<Diagnostic>{document.error()};
+
+  Job job;
+  job.file = file;
+  ReaderFindings findings;
+  TableReader root(*document->table(), document->position, "", findings);
+  (void)root.integer("schema", {1, 1});
+  job.name = root.text("name").value_or("");
+  read_gear(root, job);
+  if (auto table = root.table("machine")) job.machine = read_machine_choice(*table);
+  if (auto table = root.table("setup")) job.setup = read_setup(*table);
+  if (auto table = root.table("shaping")) job.shaping = read_shaping(*table);
+  if (auto table = root.table("coolant")) job.coolant = read_coolant(*table);
+  if (auto table = root.table("verify")) job.verify = read_verify(*table);
+  read_tools(root, job);
+  auto operations = root.tables("operation");
+  if (operations.size() > 100) root.refuse("operation", "{} operations exceed the limit 100", operations.size());
+  for (auto& table : operations) job.operations.push_back(read_operation(table, job.tools, job.bevel_gear() != nullptr));
+  check_milling(root, job);
+  root.finish();
+
+  if (!findings.errors.empty()) {
+    std::stable_sort(findings.errors.begin(), findings.errors.end(), [](const Diagnostic& a, const Diagnostic& b) {
+      return std::pair(a.position.line, a.position.column) < std::pair(b.position.line, b.position.column);
+    });
+    return std::move(findings.errors);
+  }
+  job.positions = std::move(findings.positions);
+  return job;
+}
+
+JobOrErrors read_job_file(const std::string& path) {
+  const auto text = read_text_file(path, kMaxJobBytes);
+  if (!text) return std::vector<Diagnostic>{text.error()};
+  return parse_job(*text, path);
+}
+
+}  // namespace toothpath
