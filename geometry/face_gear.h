@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "geometry/face_gear_limits.h"
@@ -18,7 +19,7 @@ struct FaceGearRing {
 
 /// A refused parameter: which key of the job it belongs to, so that the reader can add file, line and column.
 struct FaceGearRefusal {
-  std::string key;  ///< as in the job file: "module", "zone[0].inner_radius", ...
+  std::string key;  ///< within [gear] as in the job file: "module", "zone[0].inner_radius"; of [stock]: "stock.groove_depth"
   Diagnostic diagnostic;
 };
 
@@ -34,7 +35,8 @@ class FaceGear {
   [[nodiscard]] double outer_radius() const { return rings_.back().zone.outer_radius_mm; }
   /// Highest point of the blank (tip surface plus stock), mm in z.
   [[nodiscard]] double blank_top() const;
-  /// Height of the relief groove's floor; only with two zones.
+  /// Height z of the relief groove's floor; only with two zones. `groove_depth_mm` is measured from the tip surface of the
+  /// inner ring at mid-groove; without it the floor lies 0.25 m below the lowest root between the two rings.
   [[nodiscard]] double groove_floor() const;
   /// Lowest point of the tooth spaces (root surface), over all rings.
   [[nodiscard]] double lowest_root() const;

@@ -39,4 +39,7 @@ struct ZoneLimits {
 /// Height of the fillet line (theta = theta_t) of a side at radius r on the regular sheet; none inside the undercut.
 [[nodiscard]] std::optional<double> fillet_line_height(const FaceGearSurface<double>& surface, int side, double r);
 
+/// Height z of the root surface at radius r (z = -r_a for a shaft angle of 90 deg); none for r <= |E|.
+[[nodiscard]] std::optional<double> root_height(const FaceGearSurface<double>& surface, double r);
+
 }  // namespace toothpath
