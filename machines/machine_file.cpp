@@ -1,0 +1,287 @@
+#include "machines/machine_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "machines/toml_tree.h"
+
+namespace toothpath {
+namespace {
+
+// Plausible ranges; a value outside them is a typing error or another unit.
+constexpr double kLargestLength = 1e5;       // mm
+constexpr double kLargestSpeed = 1e6;        // mm/min, deg/min, 1/min
+constexpr double kLargestAngle = 1e7;        // deg: 27000 turns
+constexpr double kLeastTravel = 10.0;        // mm; less means metres
+constexpr double kLeastDirection = 1e-3;     // length of a direction as written
+constexpr double kLeastPositive = 1e-6;      // what "above zero" means for speeds and diameters
+constexpr std::size_t kMostRotaries = 2;
+
+std::string letter_name(char letter) { return std::string(1, letter); }
+
+/// Letters of one list of [chain], each with the place where it is named.
+struct NamedAxis {
+  char letter;
+  SourcePosition position;
+};
+
+std::vector<NamedAxis> read_letters(TomlTableReader& chain, std::string_view key) {
+  const TomlValue* list = chain.value(key);
+  std::vector<NamedAxis> letters;
+  if (!list) return letters;
+  if (list->type != TomlValue::Type::array) {
+    chain.refuse(list->position, "{} must be a list of axis letters", chain.name(key));
+    return letters;
+  }
+  for (const TomlValue& item : list->items) {
+    if (item.type == TomlValue::Type::text && (item.text == "A" || item.text == "B" || item.text == "C"))
+      letters.push_back({item.text[0], item.position});
+    else
+      chain.refuse(item.position, "{} lists rotary axes: \"A\", \"B\" or \"C\"", chain.name(key));
+  }
+  return letters;
+}
+
+/// `min` and `max` of an axis in the units of the file, reversed limits refused.
+std::optional<std::pair<double, double>> read_range(TomlTableReader& axis, double largest, const char* unit) {
+  const auto lo = axis.number("min", {-largest, largest, unit});
+  const auto hi = axis.number("max", {-largest, largest, unit});
+  if (!lo || !hi) return std::nullopt;
+  if (!(*hi > *lo)) {
+    axis.refuse(axis.at("max"), "{} = {} must exceed {} = {}", axis.name("max"), *hi, axis.name("min"), *lo);
+    return std::nullopt;
+  }
+  return std::pair(*lo, *hi);
+}
+
+double read_speed(TomlTableReader& axis, const char* unit) {
+  return axis.number("max_speed", {kLeastPositive, kLargestSpeed, unit}).value_or(0.0);
+}
+
+LinearAxis read_linear(TomlTableReader axis, const LimitMargin& margin) {
+  LinearAxis out;
+  if (const auto range = read_range(axis, kLargestLength, "mm")) {
+    out.min_mm = range->first;
+    out.max_mm = range->second;
+    const double least = std::max(kLeastTravel, 2 * margin.linear_mm);
+    if (out.max_mm - out.min_mm < least)
+      axis.refuse(axis.at("max"), "{} - {} = {} mm of travel is below {} mm; lengths are in mm, not metres",
+                  axis.name("max"), axis.name("min"), out.max_mm - out.min_mm, least);
+  }
+  out.max_speed = read_speed(axis, "mm/min");
+  axis.refuse_unknown_keys();
+  return out;
+}
+
+Vec3 read_direction(TomlTableReader& axis) {
+  const auto direction = axis.vector("direction", kLargestLength);
+  if (!direction) return Vec3::UnitZ();
+  const double length = direction->norm();
+  if (length < kLeastDirection) {
+    axis.refuse(axis.at("direction"), "{} = [{}, {}, {}] has length {}, must be at least {}", axis.name("direction"),
+                direction->x(), direction->y(), direction->z(), length, kLeastDirection);
+    return Vec3::UnitZ();
+  }
+  return *direction / length;
+}
+
+/// Where a head axis lies, seen from the gauge point: lateral offset in `point`, height in `pivot_length`.
+Vec3 read_head_point(TomlTableReader& axis, const Vec3& direction) {
+  Vec3 point = Vec3::Zero();
+  if (axis.has("point")) {
+    point = axis.vector("point", kLargestLength).value_or(Vec3::Zero());
+    if (point.z() != 0.0)
+      axis.refuse(axis.at("point"), "{}[2] = {} must be 0: the height of a head axis is its pivot_length",
+                  axis.name("point"), point.z());
+  }
+  const bool along_spindle = direction.head<2>().norm() == 0.0;  // then its height has no effect
+  if (along_spindle && !axis.has("pivot_length")) return point;
+  if (const auto pivot = axis.number("pivot_length", {0.0, kLargestLength, "mm"})) {
+    if (*pivot > 0.0 && *pivot < 1.0)
+      axis.refuse(axis.at("pivot_length"), "{} = {} mm is below 1 mm; lengths are in mm, not metres",
+                  axis.name("pivot_length"), *pivot);
+    point.z() = *pivot;
+  }
+  return point;
+}
+
+RotaryAxis read_rotary(TomlTableReader axis, char letter, bool in_table, const LimitMargin& margin) {
+  RotaryAxis out;
+  out.letter = letter;
+  out.direction = read_direction(axis);
+  out.point_mm = in_table ? axis.vector("point", kLargestLength).value_or(Vec3::Zero())
+                          : read_head_point(axis, out.direction);
+  if (in_table && axis.has("pivot_length")) {
+    (void)axis.value("pivot_length");
+    axis.refuse(axis.at("pivot_length"), "{} belongs to head axes; {} is in the table", axis.name("pivot_length"), letter);
+  }
+  if (const auto sign = axis.whole_number("sign", -1, 1)) {
+    out.sign = *sign;
+    if (*sign == 0) axis.refuse(axis.at("sign"), "{} = 0 must be 1 or -1", axis.name("sign"));
+  }
+  if (axis.has("zero")) out.zero_rad = radians(axis.number("zero", {-360.0, 360.0, "deg"}).value_or(0.0));
+  if (const auto range = read_range(axis, kLargestAngle, "deg")) {
+    out.min_rad = radians(range->first);
+    out.max_rad = radians(range->second);
+    const double least = 2 * degrees(margin.rotary_rad);
+    if (range->second - range->first <= least)
+      axis.refuse(axis.at("max"), "{} - {} = {} deg leaves nothing between the margins of {} deg", axis.name("max"),
+                  axis.name("min"), range->second - range->first, degrees(margin.rotary_rad));
+  }
+  out.max_speed = radians(read_speed(axis, "deg/min"));
+  axis.refuse_unknown_keys();
+  return out;
+}
+
+/// One axis of the chain: its table is missing, or read.
+void read_chain(TomlTableReader& root, Machine& machine) {
+  auto chain = root.table("chain");
+  auto axes = root.table("axes");
+  if (!chain || !axes) return;
+  const std::vector<NamedAxis> table = read_letters(*chain, "table");
+  const std::vector<NamedAxis> head = read_letters(*chain, "head");
+  chain->refuse_unknown_keys();
+
+  for (std::size_t i = 0; i < 3; ++i)
+    if (auto axis = axes->table(letter_name("XYZ"[i])))
+      machine.chain.linear[i] = read_linear(*axis, machine.limit_margin);
+
+  std::vector<NamedAxis> all = table;
+  all.insert(all.end(), head.begin(), head.end());
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const auto same = [&all, k](const NamedAxis& a) { return a.letter == all[k].letter; };
+    if (std::any_of(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(k), same)) {
+      root.refuse(all[k].position, "axis {} is in the chain twice", all[k].letter);
+      continue;
+    }
+    if (k >= kMostRotaries) {
+      root.refuse(all[k].position, "axis {} is rotary axis number {}, a chain has at most {}", all[k].letter, k + 1,
+                  kMostRotaries);
+      continue;
+    }
+    const std::string key = letter_name(all[k].letter);
+    if (!axes->has(key)) {
+      (void)axes->value(key);
+      continue;
+    }
+    const bool in_table = k < table.size();
+    if (auto axis = axes->table(key))
+      (in_table ? machine.chain.table : machine.chain.head)
+          .push_back(read_rotary(*axis, all[k].letter, in_table, machine.limit_margin));
+  }
+  for (const TomlEntry& entry : axes->entries())
+    if (entry.key == "A" || entry.key == "B" || entry.key == "C") {
+      if (std::none_of(all.begin(), all.end(), [&entry](const NamedAxis& a) { return a.letter == entry.key[0]; }))
+        root.refuse(entry.key_position, "axes.{} is named in neither chain.table nor chain.head", entry.key);
+    } else if (entry.key != "X" && entry.key != "Y" && entry.key != "Z") {
+      root.refuse(entry.key_position, "unknown key axes.{}", entry.key);
+    }
+}
+
+void read_limits(TomlTableReader limits, Machine& machine) {
+  const auto diameter = [&limits](std::string_view key) {
+    return limits.number(key, {kLeastPositive, kLargestLength, "mm"});
+  };
+  machine.max_cutting_feed = limits.number("cutting_feed", {kLeastPositive, kLargestSpeed, "mm/min"}).value_or(0.0);
+  machine.table_diameter_mm = diameter("table_diameter").value_or(0.0);
+  machine.min_block_ms = limits.number("min_block_ms", {0.0, 1e4, "ms"}).value_or(0.0);
+  if (limits.has("part_diameter")) machine.part_diameter_mm = diameter("part_diameter");
+  if (limits.has("part_swing")) machine.part_swing_mm = diameter("part_swing");
+  if (limits.has("part_mass")) machine.max_part_mass_kg = limits.number("part_mass", {kLeastPositive, 1e6, "kg"});
+  if (limits.has("limit_margin"))
+    machine.limit_margin.linear_mm = limits.number("limit_margin", {0.0, 100.0, "mm"}).value_or(0.0);
+  if (limits.has("limit_margin_angle"))
+    machine.limit_margin.rotary_rad = radians(limits.number("limit_margin_angle", {0.0, 10.0, "deg"}).value_or(0.0));
+  limits.refuse_unknown_keys();
+}
+
+void read_post(TomlTableReader post, PostSettings& settings) {
+  if (post.has("linear_decimals")) settings.linear_decimals = post.whole_number("linear_decimals", 0, 9);
+  if (post.has("rotary_decimals")) settings.rotary_decimals = post.whole_number("rotary_decimals", 0, 9);
+  if (post.has("index_loop")) settings.index_loop = post.boolean("index_loop");
+  if (post.has("tcp_on")) settings.tcp_on = post.texts("tcp_on").value_or(std::vector<std::string>{});
+  if (post.has("tcp_off")) settings.tcp_off = post.texts("tcp_off").value_or(std::vector<std::string>{});
+  if (post.has("length_reference"))
+    if (const auto word = post.word("length_reference", {"tip", "centre"}))
+      settings.length_reference = *word == "tip" ? LengthReference::tip : LengthReference::centre;
+  if (post.has("pole")) {
+    const std::vector<std::string> words = {"error", "tilt", "hold", "through", "slow", "retract"};
+    if (const auto word = post.word("pole", words))
+      settings.pole = static_cast<PoleOption>(std::find(words.begin(), words.end(), *word) - words.begin());
+  }
+  post.refuse_unknown_keys();
+}
+
+void check_control(TomlTableReader& root, const Machine& machine) {
+  if (machine.dialect == "linuxcnc" && machine.tcp != TcpMode::none &&
+      (machine.post.tcp_on.empty() || machine.post.tcp_off.empty()))
+    root.refuse(root.at("tcp"), "tcp with dialect \"linuxcnc\" needs post.tcp_on and post.tcp_off: its codes are site data");
+}
+
+Machine read_tree(const TomlValue& tree, const std::string& file, std::vector<Diagnostic>& errors) {
+  TomlTableReader root(tree, "", errors);
+  Machine machine;
+  machine.file = file;
+  (void)root.whole_number("schema", 1, 1);
+  machine.name = root.text("name").value_or("");
+  if (const auto kind = root.word("kind", {"five_axis", "gear_shaper"}); kind && *kind != "five_axis")
+    root.refuse(root.at("kind"), "kind = \"{}\" is no milling machine; \"five_axis\" is needed here", *kind);
+  machine.dialect = root.word("dialect", {"linuxcnc", "fanuc", "siemens", "heidenhain", "apt"}).value_or("");
+  const std::vector<std::string> modes = {"none", "angles", "vectors"};
+  if (const auto tcp = root.word("tcp", modes))
+    machine.tcp = static_cast<TcpMode>(std::find(modes.begin(), modes.end(), *tcp) - modes.begin());
+  machine.assumed_keys = read_assumed(root, tree);
+  machine.assumed = !machine.assumed_keys.empty();
+  machine.max_simultaneous_axes = root.whole_number("max_simultaneous_axes", 3, 9).value_or(0);
+  if (auto spindle = root.table("spindle")) {
+    machine.max_spindle_speed = spindle->number("max_speed", {kLeastPositive, kLargestSpeed, "1/min"}).value_or(0.0);
+    spindle->refuse_unknown_keys();
+  }
+  if (const auto limits = root.table("limits")) read_limits(*limits, machine);
+  if (root.has("post"))
+    if (const auto post = root.table("post")) read_post(*post, machine.post);
+  read_chain(root, machine);
+  check_control(root, machine);
+  root.refuse_unknown_keys();
+  if (errors.empty())
+    if (const Status chain = check_chain(machine.chain); !chain)
+      root.refuse(root.at("chain"), "{}", chain.error().message);
+  return machine;
+}
+
+}  // namespace
+
+MachineReading read_machine_text(std::string_view text, const std::string& file) {
+  MachineReading reading;
+  const auto tree = parse_toml(text, file);
+  if (!tree) {
+    reading.errors.push_back(tree.error());
+    return reading;
+  }
+  Machine machine = read_tree(*tree, file, reading.errors);
+  if (reading.errors.empty()) reading.machine = std::move(machine);
+  return reading;
+}
+
+MachineReading read_machine_file(const std::string& path) {
+  const auto text = read_text_file(path);
+  if (text) return read_machine_text(*text, path);
+  MachineReading reading;
+  reading.errors.push_back(text.error());
+  return reading;
+}
+
+Result<MachineKind> machine_kind_of(const std::string& path) {
+  const auto text = read_text_file(path);
+  if (!text) return text.error();
+  const auto tree = parse_toml(*text, path);
+  if (!tree) return tree.error();
+  std::vector<Diagnostic> errors;
+  TomlTableReader root(*tree, "", errors);
+  const auto kind = root.word("kind", {"five_axis", "gear_shaper"});
+  if (!kind) return errors.front();
+  return *kind == "five_axis" ? MachineKind::five_axis : MachineKind::gear_shaper;
+}
+
+}  // namespace toothpath

@@ -1,0 +1,40 @@
+// Reads a milling machine from its TOML file, and finds the file that a job names.
+//
+// Keys: docs/machine_files.md lists them; the files in machines/data are commented examples. Lengths mm, angles deg, speeds
+// mm/min, deg/min and 1/min. Every key that is not known is refused, so a typing error cannot pass as a default.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "machines/machine.h"
+
+namespace toothpath {
+
+/// A machine, or everything that is wrong with its file. `machine` is empty if and only if `errors` is not.
+struct MachineReading {
+  std::optional<Machine> machine;
+  std::vector<Diagnostic> errors;  ///< in the order of the reader, each `file:line:column: error: ...`
+};
+
+/// Reads the file at `path`. Errors: see the header of this file; unreadable files have kind file_access.
+[[nodiscard]] MachineReading read_machine_file(const std::string& path);
+
+/// The same from text; `file` is the name in the messages.
+[[nodiscard]] MachineReading read_machine_text(std::string_view text, const std::string& file);
+
+/// Kind of machine that a file describes, without reading the rest. Errors: unreadable, not TOML, `kind` missing or unknown.
+[[nodiscard]] Result<MachineKind> machine_kind_of(const std::string& path);
+
+/// Directories that hold installed machine files, best first: `share/toothpath/machines` beside the executable's folder, then
+/// the data folder of the source tree this was built from. Only those that exist.
+[[nodiscard]] std::vector<std::string> machine_directories();
+
+/// Path of the machine file that a job calls `name`: `job_directory/name` if it exists, else `name` among the installed
+/// machines (a leading "machines/" is dropped there). An absolute name is taken as it is.
+/// Errors (file_access): found nowhere; the message lists the installed machines.
+[[nodiscard]] Result<std::string> find_machine_file(const std::string& name, const std::string& job_directory);
+
+}  // namespace toothpath

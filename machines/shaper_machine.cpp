@@ -1,0 +1,123 @@
+#include "machines/shaper_machine.h"
+
+#include <algorithm>
+
+#include "geometry/base/angle.h"
+#include "machines/toml_tree.h"
+
+namespace toothpath {
+namespace {
+
+constexpr double kLargestLength = 1e5;   // mm
+constexpr double kLargestSpeed = 1e6;    // mm/min, deg/min
+constexpr double kLargestAngle = 1e7;    // deg
+constexpr double kLeastPositive = 1e-6;
+constexpr int kMostTeeth = 1000;         // of a change gear
+constexpr int kLargestConstant = 1000000;
+
+Ratio read_ratio(TomlTableReader table) {
+  Ratio ratio;
+  if (const auto pair = table.whole_numbers("constant", 1, kLargestConstant)) {
+    if (pair->size() == 2)
+      ratio = {(*pair)[0], (*pair)[1]};
+    else
+      table.refuse(table.at("constant"), "{} has {} numbers, must have 2", table.name("constant"), pair->size());
+  }
+  table.refuse_unknown_keys();
+  return ratio;
+}
+
+void read_stroke(TomlTableReader stroke, ShaperMachine& machine) {
+  if (const auto steps = stroke.numbers("steps", {kLeastPositive, 1e5, "1/min"})) {
+    machine.stroke_steps = *steps;
+    if (steps->empty()) stroke.refuse(stroke.at("steps"), "{} is empty, must have at least 1 step", stroke.name("steps"));
+    for (std::size_t i = 1; i < steps->size(); ++i)
+      if (!((*steps)[i] > (*steps)[i - 1]))
+        stroke.refuse(stroke.at("steps"), "{}[{}] = {} must exceed the step before it, {}", stroke.name("steps"), i,
+                      (*steps)[i], (*steps)[i - 1]);
+  }
+  machine.max_stroke_mm = stroke.number("max_length", {kLeastPositive, kLargestLength, "mm"}).value_or(0.0);
+  machine.relief_mm = stroke.number("relief", {kLeastPositive, 100.0, "mm"}).value_or(0.0);
+  stroke.refuse_unknown_keys();
+}
+
+void read_gears(TomlTableReader gears, ShaperMachine& machine) {
+  if (const auto teeth = gears.whole_numbers("teeth", 5, kMostTeeth)) {
+    machine.gears = *teeth;
+    if (teeth->size() < 2)
+      gears.refuse(gears.at("teeth"), "{} lists {} gears, must list at least 2", gears.name("teeth"), teeth->size());
+  }
+  machine.mesh_margin = gears.whole_number("mesh_margin", 0, kMostTeeth).value_or(0);
+  gears.refuse_unknown_keys();
+}
+
+ShaperAxis read_axis(TomlTableReader axis, bool rotary) {
+  const double scale = rotary ? radians(1.0) : 1.0;
+  const double largest = rotary ? kLargestAngle : kLargestLength;
+  const char* unit = rotary ? "deg" : "mm";
+  ShaperAxis out;
+  const auto lo = axis.number("min", {-largest, largest, unit});
+  const auto hi = axis.number("max", {-largest, largest, unit});
+  if (lo && hi && !(*hi > *lo))
+    axis.refuse(axis.at("max"), "{} = {} must exceed {} = {}", axis.name("max"), *hi, axis.name("min"), *lo);
+  out.min = lo.value_or(0.0) * scale;
+  out.max = hi.value_or(0.0) * scale;
+  out.max_speed =
+      axis.number("max_speed", {kLeastPositive, kLargestSpeed, rotary ? "deg/min" : "mm/min"}).value_or(0.0) * scale;
+  if (rotary && axis.has("sign"))
+    if (const auto sign = axis.whole_number("sign", -1, 1)) {
+      out.sign = *sign;
+      if (*sign == 0) axis.refuse(axis.at("sign"), "{} = 0 must be 1 or -1", axis.name("sign"));
+    }
+  axis.refuse_unknown_keys();
+  return out;
+}
+
+ShaperMachine read_tree(const TomlValue& tree, const std::string& file, std::vector<Diagnostic>& errors) {
+  TomlTableReader root(tree, "", errors);
+  ShaperMachine machine;
+  machine.file = file;
+  (void)root.whole_number("schema", 1, 1);
+  machine.name = root.text("name").value_or("");
+  if (const auto kind = root.word("kind", {"five_axis", "gear_shaper"}); kind && *kind != "gear_shaper")
+    root.refuse(root.at("kind"), "kind = \"{}\" is no gear shaper; \"gear_shaper\" is needed here", *kind);
+  machine.dialect = root.word("dialect", {"linuxcnc"}).value_or("");
+  machine.assumed_keys = read_assumed(root, tree);
+  machine.assumed = !machine.assumed_keys.empty();
+  if (const auto stroke = root.table("stroke")) read_stroke(*stroke, machine);
+  if (const auto index = root.table("index")) machine.index_constant = read_ratio(*index);
+  if (const auto feed = root.table("feed")) machine.feed_constant = read_ratio(*feed);
+  if (const auto gears = root.table("gears")) read_gears(*gears, machine);
+  if (auto axes = root.table("axes")) {
+    for (const char letter : {'X', 'Y', 'Z', 'A', 'C'})
+      if (const auto axis = axes->table(std::string(1, letter)))
+        machine.axes[letter] = read_axis(*axis, letter == 'A' || letter == 'C');
+    axes->refuse_unknown_keys();
+  }
+  root.refuse_unknown_keys();
+  return machine;
+}
+
+}  // namespace
+
+ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file) {
+  ShaperMachineReading reading;
+  const auto tree = parse_toml(text, file);
+  if (!tree) {
+    reading.errors.push_back(tree.error());
+    return reading;
+  }
+  ShaperMachine machine = read_tree(*tree, file, reading.errors);
+  if (reading.errors.empty()) reading.machine = std::move(machine);
+  return reading;
+}
+
+ShaperMachineReading read_shaper_machine_file(const std::string& path) {
+  const auto text = read_text_file(path);
+  if (text) return read_shaper_machine_text(*text, path);
+  ShaperMachineReading reading;
+  reading.errors.push_back(text.error());
+  return reading;
+}
+
+}  // namespace toothpath

@@ -1,0 +1,59 @@
+// A gear shaper as its file describes it: stroke, index and feed trains, change gears, axis ranges.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geometry/base/diagnostic.h"
+
+namespace toothpath {
+
+/// A ratio of whole numbers, both > 0, as written (not reduced).
+struct Ratio {
+  std::int64_t numerator = 1;
+  std::int64_t denominator = 1;
+  [[nodiscard]] double value() const { return static_cast<double>(numerator) / static_cast<double>(denominator); }
+};
+
+/// Range of one shaper axis. X infeed, Y offset slide, Z stroke [mm, mm/min]; A cutter, C work [rad, rad/min].
+struct ShaperAxis {
+  double min = 0.0;
+  double max = 0.0;
+  double max_speed = 0.0;
+  int sign = 1;  ///< A and C: +1 turns about the axes of the gear frame, -1 reverses the words
+};
+
+struct ShaperMachine {
+  std::string name;
+  std::string file;     ///< path as it was opened
+  std::string dialect;  ///< "linuxcnc"
+  bool assumed = false;
+  std::vector<std::string> assumed_keys;  ///< dotted names; of `assumed = true`, every value of the file
+
+  std::vector<double> stroke_steps;       ///< double strokes per minute, ascending
+  double max_stroke_mm = 0.0;
+  double relief_mm = 0.0;                 ///< back-off of the cutter on the return stroke
+  Ratio index_constant;                   ///< a/b * c/d = index_constant * N_s/N_2
+  Ratio feed_constant;                    ///< feed gears = feed_constant * s_c/d_s
+  std::vector<int> gears;                 ///< teeth of the change gears; each is there once
+  int mesh_margin = 15;                   ///< a + b >= c + mesh_margin and c + d >= b + mesh_margin
+  std::map<char, ShaperAxis> axes;        ///< X Y Z A C, all present
+};
+
+/// A shaper, or everything that is wrong with its file. `machine` is empty if and only if `errors` is not.
+struct ShaperMachineReading {
+  std::optional<ShaperMachine> machine;
+  std::vector<Diagnostic> errors;
+};
+
+/// Reads the file at `path`. Errors: every refusal with its place, unreadable files with kind file_access.
+[[nodiscard]] ShaperMachineReading read_shaper_machine_file(const std::string& path);
+
+/// The same from text; `file` is the name in the messages.
+[[nodiscard]] ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file);
+
+}  // namespace toothpath
