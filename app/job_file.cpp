@@ -62,7 +62,7 @@ SourcePosition Job::where(std::string_view key) const {
 }
 
 JobOrErrors parse_job(std::string_view text, const std::string& file) {
-  const auto document = parse_toml(text, file, kMaxJobNesting);
+  const auto document = parse_document(text, file, kMaxJobNesting);
   if (!document) return std::vector<Diagnostic>{document.error()};
 
   Job job;
@@ -95,7 +95,7 @@ JobOrErrors parse_job(std::string_view text, const std::string& file) {
 }
 
 JobOrErrors read_job_file(const std::string& path) {
-  const auto text = read_text_file(path, kMaxJobBytes);
+  const auto text = read_regular_file(path, kMaxJobBytes);
   if (!text) return std::vector<Diagnostic>{text.error()};
   return parse_job(*text, path);
 }

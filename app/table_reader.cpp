@@ -33,7 +33,7 @@ std::string shown(std::string_view key) {
 
 }  // namespace
 
-TableReader::TableReader(const TomlTable& table, SourcePosition position, std::string path, ReaderFindings& findings)
+TableReader::TableReader(const DocumentTable& table, SourcePosition position, std::string path, ReaderFindings& findings)
     : table_(table), position_(std::move(position)), path_(std::move(path)), findings_(&findings) {
   findings.positions[path_] = position_;
   for (const auto& member : table.members) findings.positions[join(member.key)] = member.value.position;
@@ -46,18 +46,18 @@ std::string TableReader::join(std::string_view key) const {
 std::string TableReader::title() const { return path_.empty() ? "the job" : "[" + path_ + "]"; }
 
 SourcePosition TableReader::where(std::string_view key) const {
-  const TomlMember* member = table_.find(key);
+  const DocumentMember* member = table_.find(key);
   return member ? member->value.position : position_;
 }
 
-const TomlMember* TableReader::require(std::string_view key) {
+const DocumentMember* TableReader::require(std::string_view key) {
   known_.emplace(key);
-  const TomlMember* member = table_.find(key);
+  const DocumentMember* member = table_.find(key);
   if (!member) findings_->add(fail_at(position_, "{} lacks the key \"{}\"", title(), key));
   return member;
 }
 
-std::optional<double> TableReader::to_number(const TomlValue& value, const std::string& name, const Range& range) {
+std::optional<double> TableReader::to_number(const DocumentValue& value, const std::string& name, const Range& range) {
   double number = 0;
   if (const auto* real = std::get_if<double>(&value.data)) number = *real;
   else if (const auto* whole = std::get_if<std::int64_t>(&value.data)) number = static_cast<double>(*whole);
@@ -82,12 +82,12 @@ std::optional<double> TableReader::to_number(const TomlValue& value, const std::
 }
 
 std::optional<double> TableReader::number(std::string_view key, const Range& range) {
-  const TomlMember* member = require(key);
+  const DocumentMember* member = require(key);
   return member ? to_number(member->value, member->key, range) : std::nullopt;
 }
 
 std::optional<int> TableReader::integer(std::string_view key, const Range& range) {
-  const TomlMember* member = require(key);
+  const DocumentMember* member = require(key);
   if (!member) return std::nullopt;
   if (!std::holds_alternative<std::int64_t>(member->value.data)) {
     refuse(key, "{} must be a whole number, not {}", key, member->value.type_name());
@@ -98,7 +98,7 @@ std::optional<int> TableReader::integer(std::string_view key, const Range& range
 }
 
 std::optional<std::string> TableReader::text(std::string_view key) {
-  const TomlMember* member = require(key);
+  const DocumentMember* member = require(key);
   if (!member) return std::nullopt;
   const auto* text = std::get_if<std::string>(&member->value.data);
   if (!text) {
@@ -123,7 +123,7 @@ std::optional<std::string> TableReader::word(std::string_view key, std::initiali
 }
 
 std::optional<bool> TableReader::boolean(std::string_view key) {
-  const TomlMember* member = require(key);
+  const DocumentMember* member = require(key);
   if (!member) return std::nullopt;
   if (const auto* value = std::get_if<bool>(&member->value.data)) return *value;
   refuse(key, "{} must be true or false, not {}", key, member->value.type_name());
@@ -131,9 +131,9 @@ std::optional<bool> TableReader::boolean(std::string_view key) {
 }
 
 std::optional<std::vector<double>> TableReader::numbers(std::string_view key, std::size_t count, const Range& range) {
-  const TomlMember* member = require(key);
+  const DocumentMember* member = require(key);
   if (!member) return std::nullopt;
-  const TomlArray* array = member->value.array();
+  const DocumentArray* array = member->value.array();
   if (!array || array->values.size() != count) {
     refuse(key, "{} must be an array of {} numbers", key, count);
     return std::nullopt;
@@ -144,33 +144,33 @@ std::optional<std::vector<double>> TableReader::numbers(std::string_view key, st
   return result.size() == count ? std::optional(result) : std::nullopt;
 }
 
-const TomlValue* TableReader::value(std::string_view key) {
+const DocumentValue* TableReader::value(std::string_view key) {
   known_.emplace(key);
-  const TomlMember* member = table_.find(key);
+  const DocumentMember* member = table_.find(key);
   return member ? &member->value : nullptr;
 }
 
 std::optional<TableReader> TableReader::table(std::string_view key) {
-  const TomlValue* found = value(key);
+  const DocumentValue* found = value(key);
   if (!found) return std::nullopt;
-  if (const TomlTable* table = found->table()) return TableReader(*table, found->position, join(key), *findings_);
+  if (const DocumentTable* table = found->table()) return TableReader(*table, found->position, join(key), *findings_);
   refuse(key, "{} must be one table [{}], not {}", key, join(key), found->type_name());
   return std::nullopt;
 }
 
 std::vector<TableReader> TableReader::tables(std::string_view key) {
   std::vector<TableReader> result;
-  const TomlValue* found = value(key);
+  const DocumentValue* found = value(key);
   if (!found) return result;
-  const TomlArray* array = found->array();
+  const DocumentArray* array = found->array();
   if (!array) {
     refuse(key, "{} must be a list of tables [[{}]], not {}", key, join(key), found->type_name());
     return result;
   }
   for (std::size_t i = 0; i < array->values.size(); ++i) {
-    const TomlValue& element = array->values[i];
+    const DocumentValue& element = array->values[i];
     const std::string path = fmt::format("{}[{}]", join(key), i);
-    if (const TomlTable* table = element.table()) result.emplace_back(*table, element.position, path, *findings_);
+    if (const DocumentTable* table = element.table()) result.emplace_back(*table, element.position, path, *findings_);
     else findings_->add(fail_at(element.position, "{} must be a table, not {}", path, element.type_name()));
   }
   return result;

@@ -31,7 +31,7 @@ struct ReaderFindings {
 class TableReader {
  public:
   /// @param path  key path of the table: "gear", "gear.zone[0]"; empty for the file itself
-  TableReader(const TomlTable& table, SourcePosition position, std::string path, ReaderFindings& findings);
+  TableReader(const DocumentTable& table, SourcePosition position, std::string path, ReaderFindings& findings);
 
   [[nodiscard]] bool has(std::string_view key) const { return table_.find(key) != nullptr; }
   /// Place of the key, or of the table where the key is absent.
@@ -55,7 +55,7 @@ class TableReader {
   }
 
   /// A raw value whose structure the caller reads itself; nothing when absent.
-  const TomlValue* value(std::string_view key);
+  const DocumentValue* value(std::string_view key);
   /// A table; recorded when it is something else. Nothing when absent.
   std::optional<TableReader> table(std::string_view key);
   /// An array of tables ([[key]]); recorded when it is something else. Empty when absent.
@@ -72,12 +72,12 @@ class TableReader {
   [[nodiscard]] const std::string& path() const { return path_; }
 
  private:
-  const TomlMember* require(std::string_view key);
-  std::optional<double> to_number(const TomlValue& value, const std::string& name, const Range& range);
+  const DocumentMember* require(std::string_view key);
+  std::optional<double> to_number(const DocumentValue& value, const std::string& name, const Range& range);
   [[nodiscard]] std::string join(std::string_view key) const;
   [[nodiscard]] std::string title() const;  ///< "[gear]" or "the job"
 
-  const TomlTable& table_;
+  const DocumentTable& table_;
   SourcePosition position_;
   std::string path_;
   ReaderFindings* findings_;

@@ -68,26 +68,26 @@ SourcePosition position_of(const toml::source_region& region, const std::string&
   return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
-TomlValue convert(const toml::node& node, const std::string& file);
+DocumentValue convert(const toml::node& node, const std::string& file);
 
-TomlTable convert_table(const toml::table& table, const std::string& file) {
-  TomlTable result;
+DocumentTable convert_table(const toml::table& table, const std::string& file) {
+  DocumentTable result;
   for (const auto& [key, value] : table)
     result.members.push_back({std::string(key.str()), position_of(key.source(), file), convert(value, file)});
-  const auto before = [](const TomlMember& a, const TomlMember& b) {
+  const auto before = [](const DocumentMember& a, const DocumentMember& b) {
     return std::pair(a.key_position.line, a.key_position.column) < std::pair(b.key_position.line, b.key_position.column);
   };
   std::stable_sort(result.members.begin(), result.members.end(), before);
   return result;
 }
 
-TomlValue convert(const toml::node& node, const std::string& file) {
-  TomlValue result;
+DocumentValue convert(const toml::node& node, const std::string& file) {
+  DocumentValue result;
   result.position = position_of(node.source(), file);
   if (const auto* table = node.as_table()) {
     result.data = convert_table(*table, file);
   } else if (const auto* array = node.as_array()) {
-    TomlArray values;
+    DocumentArray values;
     for (const auto& element : *array) values.values.push_back(convert(element, file));
     result.data = std::move(values);
   } else if (const auto* text = node.as_string()) {
@@ -99,7 +99,7 @@ TomlValue convert(const toml::node& node, const std::string& file) {
   } else if (const auto* boolean = node.as_boolean()) {
     result.data = boolean->get();
   } else {
-    result.data = TomlDate{};
+    result.data = DocumentDate{};
   }
   return result;
 }
@@ -117,23 +117,23 @@ std::string printable(std::string_view text) {
 
 }  // namespace
 
-const TomlMember* TomlTable::find(std::string_view key) const {
+const DocumentMember* DocumentTable::find(std::string_view key) const {
   for (const auto& member : members)
     if (member.key == key) return &member;
   return nullptr;
 }
 
-const char* TomlValue::type_name() const {
+const char* DocumentValue::type_name() const {
   static constexpr const char* kNames[] = {"a boolean", "a whole number", "a number", "a string",
                                            "a date or time", "an array", "a table"};
   return kNames[data.index()];
 }
 
-Result<TomlValue> parse_toml(std::string_view text, const std::string& file, int max_nesting) {
+Result<DocumentValue> parse_document(std::string_view text, const std::string& file, int max_nesting) {
   if (const auto checked = check_nesting(text, file, max_nesting); !checked) return checked.error();
   try {
     const toml::table table = toml::parse(text, std::string_view{file});
-    TomlValue root;
+    DocumentValue root;
     root.position = {file, 1, 1};
     root.data = convert_table(table, file);
     return root;
@@ -142,7 +142,7 @@ Result<TomlValue> parse_toml(std::string_view text, const std::string& file, int
   }
 }
 
-Result<std::string> read_text_file(const std::string& path, std::size_t max_bytes) {
+Result<std::string> read_regular_file(const std::string& path, std::size_t max_bytes) {
   const auto cannot = [&](const char* what) {
     return Diagnostic{DiagnosticKind::file_access, {path, 0, 0}, fmt::format("cannot {}: {}", what, std::strerror(errno))};
   };

@@ -1,0 +1,26 @@
+// SIGINT and SIGTERM: leave at once with 130, and leave nothing half-written behind.
+#pragma once
+
+#include <string>
+
+namespace toothpath {
+
+/// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files registered below, then the registered directories that are
+/// empty, and end the process with exit code 130. SIGPIPE and SIGXFSZ are ignored: writing returns an error instead.
+void handle_signals();
+
+/// A temporary file or a directory made by this run, removed when a signal ends it. At most 64 of each; more are refused
+/// (false), as are paths beyond 4095 bytes.
+[[nodiscard]] bool register_temporary(const std::string& path, bool is_directory);
+void forget_temporary(const std::string& path);
+
+/// While one of these lives the signals wait: renaming must not be cut in two.
+class SignalsBlocked {
+ public:
+  SignalsBlocked();
+  ~SignalsBlocked();
+  SignalsBlocked(const SignalsBlocked&) = delete;
+  SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+};
+
+}  // namespace toothpath
