@@ -1,0 +1,112 @@
+#include "geometry/bevel_surface.h"
+
+#include <Eigen/Dense>
+
+namespace toothpath {
+
+BevelCurvature bevel_curvature(const BevelWall<double>& w, double beta, double p) {
+  const auto& t = w.trace;
+  const double sd = t.sin_delta, cd = t.cos_delta, s = w.sigma;
+  const auto q = w.cutter.at(p);
+  const auto f = w.point(beta, p);
+  const double sg = std::sin(f.gamma), cg = std::cos(f.gamma);
+  const auto& c = f.centre;
+  const bool straight = t.straight(w.sigma, beta);
+  const double F = straight ? 1.0 : t.speed_ratio(w.sigma, beta), kappa = straight ? 0.0 : t.kappa(beta), R_c = c.R_c, sb = std::sin(c.beta_c), cb = std::cos(c.beta_c);
+  const double R_p = F * cb, e_p = F * sb / (R_c * sd), beta_p = kappa - F * sb / R_c;
+  const double x_N = q.x + q.rho * q.sin_psi / q.cos_psi, tn = sb / cb;
+  const double qq = 1 + x_N * cd / (R_c * sd), q_p = -x_N * R_p * cd / (R_c * R_c * sd);
+  const double x_Np = q.dS / q.cos_psi + q.rho * q.dpsi / (q.cos_psi * q.cos_psi);
+  const double den = 1 + tn * tn * qq * qq;
+  const double g_s = ((1 + tn * tn) * qq * beta_p + tn * q_p) / den;
+  const double g_p = tn * x_Np * cd / (R_c * sd) / den;
+
+  const Vec3 a(-sd, 0, cd), k(0, 0, 1);
+  const Vec3 e1(q.cos_psi, -s * q.sin_psi * cg, s * q.sin_psi * sg), e2(0, s * sg, s * cg);
+  const Vec3 n(-q.sin_psi, -s * q.cos_psi * cg, s * q.cos_psi * sg);
+  const Vec3 v = R_p * k + e_p * a.cross(Vec3(f.contact + R_c * k));
+  Eigen::Matrix2d M, D;
+  M << q.dS, v.dot(e1), q.rho * g_p, v.dot(e2) + q.rho * g_s;
+  const Vec3 turn = e_p * a.cross(n);
+  D << -q.dpsi, turn.dot(e1), q.cos_psi * g_p, turn.dot(e2) + q.cos_psi * g_s;
+  const Eigen::Matrix2d W = D * M.inverse();
+  BevelCurvature out;
+  out.regularity = s * M.determinant() / q.dS;
+  out.asymmetry = std::abs(W(0, 1) - W(1, 0));
+  const double mean = 0.5 * (W(0, 0) + W(1, 1)), off = 0.5 * (W(0, 1) + W(1, 0));
+  const double half = std::hypot(0.5 * (W(0, 0) - W(1, 1)), off);
+  out.kappa_1 = mean + half;
+  out.kappa_2 = mean - half;
+  return out;
+}
+
+std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell, double height,
+                                          const BevelInverse& start) {
+  using D2 = Dual<double, 2>;
+  BevelWall<D2> dual;
+  dual.sigma = w.sigma;
+  auto& t = dual.trace;
+  t.R_0 = w.trace.R_0, t.sin_delta = w.trace.sin_delta, t.cos_delta = w.trace.cos_delta;
+  t.beta_ref = w.trace.beta_ref, t.r_0 = w.trace.r_0, t.e_h = w.trace.e_h, t.h = w.trace.h;
+  t.beta_end = w.trace.beta_end;
+  const auto& c = w.cutter;
+  FingerProfile<D2>& k = dual.cutter;
+  k.sin_a = c.sin_a, k.cos_a = c.cos_a, k.alpha_n = c.alpha_n, k.kappa_v = c.kappa_v, k.r_0 = c.r_0, k.h_f = c.h_f;
+  k.r_t = c.r_t, k.p_C = c.p_C, k.p_B = c.p_B, k.p_A = c.p_A, k.p_D = c.p_D, k.phi = c.phi, k.sin_phi = c.sin_phi;
+  k.cos_phi = c.cos_phi, k.x_C = c.x_C, k.rho_C = c.rho_C, k.x_B = c.x_B, k.rho_B = c.rho_B, k.x_o = c.x_o;
+  k.rho_o = c.rho_o, k.x_D = c.x_D, k.rho_D = c.rho_D;
+
+  const double scale = w.trace.R_0, half_pi = std::asin(1.0);
+  // Steps are cut back: beta stays inside the trace, p inside the profile (a little beyond D on the involute).
+  const double p_low = c.p_A, p_high = c.p_D + 0.25 * (c.p_D - c.p_A);
+  const double lowest = w.eps() > 0 && w.trace.beta_end > 0 ? -1.0 : 0.0;
+  double beta = start.beta, p = std::clamp(start.p, p_low + 1e-9 * (p_high - p_low), p_high);
+  for (int n = 0; n < 60; ++n) {
+    const Vec2T<D2> g = dual.generatrix(D2::variable(beta, 0), D2::variable(p, 1));
+    const double f0 = g[0].v - ell, f1 = g[1].v - height;
+    const double a = g[0].d[0], b = g[0].d[1], e = g[1].d[0], d = g[1].d[1];
+    const double det = a * d - b * e;
+    if (!(std::abs(det) > 0) || !std::isfinite(det)) return std::nullopt;
+    double db = -(d * f0 - b * f1) / det, dp = -(a * f1 - e * f0) / det;
+    const double next_beta = std::clamp(beta + std::clamp(db, -0.2, 0.2), lowest, half_pi - 0.5 * (half_pi - beta));
+    const double widest = 0.3 * (p_high - p_low);
+    const double next_p = std::clamp(p + std::clamp(dp, -widest, widest), p_low, p_high);
+    const bool clipped = next_beta != beta + db || next_p != p + dp;
+    const double moved = std::abs(a * (next_beta - beta)) + std::abs(d * (next_p - p));
+    beta = next_beta;
+    p = next_p;
+    if (moved <= 1e-13 * scale) {
+      const Vec2 at = w.generatrix(beta, p);
+      if ((clipped || n > 50) && std::hypot(at[0] - ell, at[1] - height) > 1e-9 * scale) return std::nullopt;
+      if (std::hypot(at[0] - ell, at[1] - height) > 1e-10 * scale) return std::nullopt;
+      const Vec3 q = w.point(beta, p).contact;
+      const auto centre = w.trace.centre(w.sigma, beta);
+      const double azimuth = centre.e + std::atan2(q.y(), q.x() * w.trace.cos_delta + (q.z() + centre.R_c) * w.trace.sin_delta);
+      return BevelInverse{beta, p, azimuth, n + 1};
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell, double height) {
+  BevelInverse start;
+  start.beta = std::max({w.trace.beta(std::min(ell, w.trace.R_0)), 1e-3, w.eps() > 0 ? w.trace.beta_end : 0.0});
+  // p of the profile point at this height: exact on arc and straight, Newton on the involute.
+  const auto& c = w.cutter;
+  if (height >= c.x_C) {
+    start.p = std::max(c.p_C, height / (c.sin_a * c.cos_a));
+    for (int k = 0; k < 8; ++k) {
+      const auto q = c.involute(start.p);
+      if (!(q.dS > 0)) break;
+      start.p = std::max(c.p_C, start.p - (q.x - height) / (q.dS * q.cos_psi));
+    }
+  } else if (height >= c.x_B) {
+    start.p = c.p_C + (height - c.x_C) / c.cos_phi;
+  } else {
+    const double s = std::clamp((c.x_o - height) / c.r_t, -1.0, 1.0);
+    start.p = c.p_B - c.r_t * (std::asin(s) - c.phi);
+  }
+  return bevel_inverse(w, ell, height, start);
+}
+
+}  // namespace toothpath

@@ -1,0 +1,84 @@
+// The gears of the worked values W1..W4 and helpers for the bevel gear tests.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "geometry/base/angle.h"
+#include "geometry/bevel_gear.h"
+
+namespace toothpath::bevel_test {
+
+inline BevelGearParameters w1() {
+  BevelGearParameters p;
+  p.teeth = 18;
+  p.mate_teeth = 37;
+  p.shaft_angle_rad = kPi / 2;
+  p.outer_transverse_module_mm = 6;
+  p.pressure_angle_rad = radians(20);
+  p.outer_spiral_angle_rad = radians(30);
+  p.face_width_mm = 36;
+  p.form = BevelForm::single;
+  p.hand = 1;
+  p.addendum_mm = 4.1;
+  p.dedendum_mm = 5.1;
+  return p;
+}
+inline BevelGearParameters w2() {
+  BevelGearParameters p = w1();
+  p.teeth = 37;
+  p.mate_teeth = 18;
+  p.hand = -1;
+  return p;
+}
+inline BevelGearParameters w3() {
+  BevelGearParameters p = w1();
+  p.form = BevelForm::herringbone;
+  p.apex_cone_distance_mm = 104;
+  p.relief_half_width_mm = 3.2;
+  return p;
+}
+inline BevelGearParameters w4() {
+  BevelGearParameters p = w3();
+  p.teeth = 37;
+  p.mate_teeth = 18;
+  p.hand = -1;
+  return p;
+}
+inline FingerCutterData pinion_mill() { return {3.0, 0.9, 4.1, 4.8}; }
+inline FingerCutterData wheel_mill() { return {3.0, 0.6, 4.1, 4.8}; }
+
+inline BevelGear made(const BevelGearParameters& p, const FingerCutterData& c) {
+  auto g = BevelGear::make(p, c);
+  if (const auto* bad = std::get_if<1>(&g)) {
+    for (const auto& r : *bad) ADD_FAILURE() << r.key << ": " << r.diagnostic.message;
+  }
+  return std::get<0>(g);
+}
+
+/// Brute force, knowing no meshing equation: smallest signed distance of a blank point to the solid cutter over all
+/// instants of one pass, by sampling and golden section. The cutter is known only as a solid of revolution, the pass only as
+/// positions (R_c, e) over its parameter.
+inline double clearance_of_pass(const Vec3& point, const BevelTrace<double>& t, int sigma, double beta_from, double beta_to,
+                                const FingerSolid& solid, int samples = 400) {
+  const auto distance = [&](double beta) {
+    const auto c = t.centre(sigma, beta);
+    return solid.signed_distance(cutter_from_blank<double>(point, c.R_c, c.e, t.sin_delta, t.cos_delta));
+  };
+  double best = std::numeric_limits<double>::infinity();
+  int at = 0;
+  for (int i = 0; i <= samples; ++i) {
+    const double d = distance(beta_from + (beta_to - beta_from) * i / samples);
+    if (d < best) best = d, at = i;
+  }
+  double a = beta_from + (beta_to - beta_from) * std::max(0, at - 1) / samples;
+  double b = beta_from + (beta_to - beta_from) * std::min(samples, at + 1) / samples;
+  const double g = 0.5 * (std::sqrt(5.0) - 1);
+  double x1 = b - g * (b - a), x2 = a + g * (b - a), f1 = distance(x1), f2 = distance(x2);
+  for (int k = 0; k < 70; ++k) {
+    if (f1 < f2) b = x2, x2 = x1, f2 = f1, x1 = b - g * (b - a), f1 = distance(x1);
+    else a = x1, x1 = x2, f1 = f2, x2 = a + g * (b - a), f2 = distance(x2);
+  }
+  return std::min({best, f1, f2});
+}
+
+}  // namespace toothpath::bevel_test
