@@ -39,6 +39,8 @@ struct AxisOptions {
   double axis_rad = 1e-3;         ///< greatest deviation of the tool axis inside a block
   double nc_step_mm = 2e-3;       ///< greatest error of the tip that rounding the words may cause; else refused
   double clearance_margin_mm = 5; ///< between the clearance body and the tool tip on rapids
+  double max_inverse_time = 0;    ///< greatest F in G93 that the control takes, 1/min; 0: no limit. Faster blocks are slowed
+  bool loop_needs_constant_index = false;  ///< the dialect cannot shift a word in a sub-program: loop only where it stands still
   bool expand_teeth = false;      ///< write every tooth out even where the loop would do
 };
 
@@ -55,7 +57,6 @@ struct AxisBlock {
   std::array<std::int64_t, 5> words{};
   double minutes = 0;        ///< that the machine needs or is told, from the rounded words
   std::int32_t record = -1;  ///< index of the CL record that the block goes to; -1: a link
-  std::int32_t line = 0;     ///< reserved for the writer: line in the text, 0 before
   BlockKind kind = BlockKind::feed;
   bool forced = false;       ///< print every word of the kind: first block after a break
 };

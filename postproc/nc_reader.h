@@ -19,6 +19,7 @@
 #include "cam/tool_motion.h"
 #include "geometry/base/result.h"
 #include "machines/machine.h"
+#include "postproc/axis_program.h"
 #include "postproc/setup.h"
 
 namespace toothpath {
@@ -95,7 +96,7 @@ struct ReadBackOptions {
 
 /// Moves of a trace as straight motions of the tip in W. Moves that turn the axes are cut until the proven distance
 /// from the straight motion is at most `tolerance_mm` (tip) and `axis_tolerance_rad`; the bound stands in each motion.
-/// `tool_length_mm` by T number. Moves whose start is not known (before the machine was positioned) are left out.
+/// Rapids are cut to 50 times these tolerances. `tool_length_mm` by T number. Moves whose start is not known (before the machine was positioned) are left out.
 [[nodiscard]] Result<std::vector<ToolMotion>> tool_motions(const OperationTrace& trace, const TurnedCopies& copies,
                                                            const NcControl& control, const Machine& machine,
                                                            const Setup& setup, int teeth, double tolerance_mm,
@@ -107,6 +108,7 @@ struct ClComparison {
   double worst_mm = 0;          ///< greatest distance of a record from the motion that meets it
   double worst_axis_rad = 0;    ///< the same for the axis
   double worst_extra_mm = 0;    ///< greatest distance of a feed motion from the CL polyline (blocks that nobody asked for)
+  double fastest_ratio = 0;     ///< greatest mean tip speed between two records, as a multiple of the record's feed
   int missed_operation = -1;    ///< first record that is not met
   std::size_t missed_record = 0;
   int line = 0;                 ///< near it
@@ -114,5 +116,10 @@ struct ClComparison {
 };
 [[nodiscard]] ClComparison compare_with_cl(std::span<const ToolMotion> motions, std::span<const ClPath* const> paths,
                                            double tolerance_mm, double axis_tolerance_rad);
+
+/// Rapids of a trace: one group of axes a move (Z, or XY, or rotaries), rotaries only while the tip is outside `body`
+/// (cylinder about the gear axis in W), the tip outside `body` altogether.
+[[nodiscard]] Status check_rapids(const OperationTrace& trace, const NcControl& control, const Machine& machine,
+                                  const Setup& setup, const ClearanceBody& body);
 
 }  // namespace toothpath

@@ -24,7 +24,8 @@ struct NcDialect {
   double min_feed_product = 0;     ///< G93 blocks with F * path below it are printed in G94 (mm/min); 0: none
   std::size_t max_line = 252;      ///< characters
   std::vector<std::string> safe_start;  ///< modal groups reset before anything moves
-  std::vector<std::string> smoothing_on, smoothing_off;
+  bool blend = false;              ///< G64 P Q0 at the start, G61 at the end
+  bool compensation_with_z = false;  ///< G43 H stands in a block with Z
   std::string program_end;         ///< "M2", "M30"
 };
 
@@ -33,6 +34,11 @@ struct NcDialect {
 [[nodiscard]] NcDialect linuxcnc_dialect();
 [[nodiscard]] NcDialect fanuc_dialect();
 
+/// The dialect that a machine file names, with the machine's own digits.
+[[nodiscard]] Result<NcDialect> dialect_of(const Machine& machine);
+/// Options of the axis program that follow from the dialect and the machine; the tolerances keep their defaults.
+[[nodiscard]] AxisOptions axis_options(const NcDialect& dialect, const Machine& machine);
+
 /// What stands in the comments at the top.
 struct NcHeader {
   std::string job_name;      ///< made ASCII upper case; parentheses become brackets
@@ -40,6 +46,7 @@ struct NcHeader {
   std::string machine_name;
   std::vector<std::string> assumed;  ///< non-empty: a warning with each of them
   int program_number = 1001; ///< O word
+  double blend_mm = 0.002;   ///< P of G64
   bool coolant = false;      ///< M8 with every operation
 };
 

@@ -1,0 +1,44 @@
+// Travel of every axis over all teeth against the machine's limits, and the shift of the set-up that would fit.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/base/result.h"
+#include "machines/machine.h"
+#include "postproc/axis_program.h"
+#include "postproc/setup.h"
+
+namespace toothpath {
+
+/// Collects positions; joint moves are straight in the joints, so that ends are enough.
+class TravelRecord {
+ public:
+  /// One end of a block.
+  void note(const Joints& joints, int operation, int record, int tooth, const KinematicChain& chain,
+            const LimitMargin& margin);
+
+  [[nodiscard]] const std::array<double, 5>& least() const { return least_; }
+  [[nodiscard]] const std::array<double, 5>& greatest() const { return greatest_; }
+  [[nodiscard]] std::size_t violation_count() const { return count_; }
+  [[nodiscard]] const std::vector<std::string>& first_violations() const { return first_; }
+  /// Shift of the gear's origin along machine axis m with which all linear joints fit; empty: none does.
+  [[nodiscard]] std::optional<double> shift_that_fits(int m) const;
+
+ private:
+  static constexpr double kFar = std::numeric_limits<double>::infinity();
+  std::array<double, 5> least_{kFar, kFar, kFar, kFar, kFar}, greatest_{-kFar, -kFar, -kFar, -kFar, -kFar};
+  std::array<double, 3> shift_low_{-kFar, -kFar, -kFar}, shift_high_{kFar, kFar, kFar};
+  std::size_t count_ = 0;
+  bool rotary_outside_ = false;
+  std::vector<std::string> first_;
+};
+
+/// Fills `program.ranges`; the error lists the first 20 violations, their number and the shift that would fit.
+[[nodiscard]] std::optional<Diagnostic> check_travel(AxisProgram& program, const Machine& machine, const TravelRecord& record);
+
+}  // namespace toothpath
