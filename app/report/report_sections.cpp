@@ -1,0 +1,233 @@
+#include "app/report/report_sections.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "app/report/html_text.h"
+#include "app/report/report_data.h"
+#include "app/report/svg_plot.h"
+
+namespace toothpath {
+namespace {
+
+constexpr double kUm = 1e3;
+constexpr double kDegree = std::numbers::pi / 180;
+
+std::string section(std::string_view id, std::string_view title, std::string_view body) {
+  if (body.empty()) return {};
+  return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", id, title, body);
+}
+
+std::string figure(std::string_view title, std::string_view svg, std::string_view note = {}) {
+  if (svg.empty()) return {};
+  std::string out = fmt::format("<figure><figcaption>{}</figcaption>{}", html_escape(title), svg);
+  if (!note.empty()) out += fmt::format("<p class=\"note\">{}</p>", html_escape(note));
+  return out + "</figure>\n";
+}
+
+std::string figures(std::string_view inside) { return inside.empty() ? "" : fmt::format("<div class=\"plots\">\n{}</div>\n", inside); }
+
+/// Digits with the usual signs around them, or a dash: set right-aligned.
+bool reads_as_number(std::string_view cell) {
+  return !cell.empty() && cell.find_first_of("0123456789") != std::string_view::npos &&
+         cell.find_first_not_of("0123456789+-.,eE%/ \xE2\x88\x92\x93\xC2\xB0") == std::string_view::npos;
+}
+
+std::string table(const PageTable& t) {
+  std::vector<bool> numeric(t.columns.size(), !t.rows.empty());
+  for (const auto& row : t.rows)
+    for (std::size_t c = 0; c < std::min(row.size(), numeric.size()); ++c)
+      if (!row[c].empty() && !reads_as_number(row[c])) numeric[c] = false;
+  std::string out = "<div class=\"table\"><table>";
+  if (!t.title.empty()) out += fmt::format("<caption>{}</caption>", html_escape(t.title));
+  out += "<thead><tr>";
+  for (std::size_t c = 0; c < t.columns.size(); ++c)
+    out += fmt::format("<th{}>{}</th>", numeric[c] ? " class=\"n\"" : "", html_escape(t.columns[c]));
+  out += "</tr></thead><tbody>\n";
+  for (const auto& row : t.rows) {
+    out += "<tr>";
+    for (std::size_t c = 0; c < row.size(); ++c)
+      out += fmt::format("<td{}>{}</td>", c < numeric.size() && numeric[c] ? " class=\"n\"" : "", html_escape(row[c]));
+    out += "</tr>\n";
+  }
+  out += "</tbody></table></div>\n";
+  if (!t.note.empty()) out += fmt::format("<p class=\"note\">{}</p>\n", html_escape(t.note));
+  return out;
+}
+
+std::string list(std::string_view title, const std::vector<std::string>& items, std::string_view css_class) {
+  if (items.empty()) return {};
+  std::string out = fmt::format("<div class=\"{}\"><h3>{}</h3><ul>", css_class, title);
+  for (const std::string& item : items) out += fmt::format("<li>{}</li>", html_escape(item));
+  return out + "</ul></div>\n";
+}
+
+std::string um(double mm) { return fmt::format("{:.2f}", mm * kUm == 0 ? 0.0 : mm * kUm); }
+
+std::string worst_row(const WorstPlace& place, std::size_t k, const ReportPage& page) {
+  const bool listed = std::any_of(page.listing.begin(), page.listing.end(), [&](const NcExcerpt& e) {
+    return place.line >= e.first_line && place.line < e.first_line + static_cast<int>(e.lines.size());
+  });
+  const std::string line = place.line <= 0 ? "\u2013"
+                           : listed        ? fmt::format("<a href=\"#L{0}\" data-gouge=\"{1}\">{0}</a>", place.line, k)
+                                           : fmt::format("<a href=\"#space\" data-gouge=\"{}\">{}</a>", k, place.line);
+  return fmt::format("<tr data-row=\"{0}\"><td><a class=\"pin\" href=\"#space\" data-gouge=\"{0}\">{1}</a></td><td class=\"n\">{2}</td><td>{3}</td>"
+                     "<td>{4}</td><td>{5}</td><td class=\"n\">{6}</td><td class=\"n\">{7}</td><td class=\"n\">{8:.3f}</td><td class=\"n\">{9:.3f}</td>"
+                     "<td class=\"n\">{10}</td></tr>\n",
+                     k, k + 1, um(place.depth_mm), html_escape(place.body), html_escape(place.patch),
+                     html_escape(operation_name(page, place.operation)), place.tooth, place.zone, place.radius_mm, place.height_mm, line);
+}
+
+std::string listing(const ReportPage& page) {
+  if (page.listing.empty()) return {};
+  std::string out = fmt::format("<figure class=\"listing-box\"><figcaption>{}</figcaption><div class=\"listing\" tabindex=\"0\">",
+                                html_escape(page.nc_file.empty() ? "NC program" : page.nc_file));
+  bool first = true;
+  for (const NcExcerpt& excerpt : page.listing) {
+    if (!first) out += "<div class=\"gap\">\u22ee</div>";
+    first = false;
+    int number = excerpt.first_line;
+    for (const std::string& line : excerpt.lines) {
+      out += fmt::format("<div id=\"L{0}\"><a href=\"#L{0}\" data-line=\"{0}\">{0}</a><code>{1}</code></div>", number, html_escape(line));
+      ++number;
+    }
+  }
+  return out + "</div></figure>\n";
+}
+
+std::string key_figures(const ReportPage& page) {
+  if (page.figures.empty()) return {};
+  std::string out = "<dl class=\"figures\">\n";
+  for (const KeyFigure& f : page.figures) {
+    const char* state = f.state == KeyFigure::State::good ? " class=\"good\"" : f.state == KeyFigure::State::bad ? " class=\"bad\"" : "";
+    out += fmt::format("<div{}><dt>{}</dt><dd>{}{}</dd>{}</div>\n", state, html_escape(f.name), html_escape(f.value),
+                       f.unit.empty() ? "" : fmt::format(" <span>{}</span>", html_escape(f.unit)),
+                       f.note.empty() ? "" : fmt::format("<dd class=\"sub\">{}</dd>", html_escape(f.note)));
+  }
+  return out + "</dl>\n";
+}
+
+}  // namespace
+
+std::string page_header(const ReportPage& page) {
+  std::string out = fmt::format("<header>\n<div class=\"name\"><h1>{}</h1>{}</div>\n<p class=\"verdict {}\">{}</p>\n</header>\n",
+                                html_escape(page.title), page.subtitle.empty() ? "" : fmt::format("<p>{}</p>", html_escape(page.subtitle)),
+                                page.verified ? "good" : "bad", page.verified ? "Verified" : "Not verified");
+  if (!page.reasons.empty()) out += list(page.verified ? "Verdict" : "Why it is not verified", page.reasons, page.verified ? "reasons" : "reasons bad");
+  return out;
+}
+
+std::string overview_section(const ReportPage& page) {
+  std::string out = key_figures(page);
+  out += list("Warnings", page.warnings, "reasons warn");
+  std::string columns;
+  if (!page.summary.empty()) {
+    columns += "<div><h3>Job</h3><table class=\"pairs\"><tbody>\n";
+    for (const auto& [name, value] : page.summary)
+      columns += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", html_escape(name), html_escape(value));
+    columns += "</tbody></table></div>\n";
+  }
+  columns += list("Assumed values", page.assumed, "assumed");
+  if (!columns.empty()) out += fmt::format("<details class=\"job\" open><summary>Job and assumed values</summary><div class=\"columns\">{}</div></details>\n", columns);
+  return out.empty() ? out : fmt::format("<section id=\"overview\">\n{}</section>\n", out);
+}
+
+std::string gouge_section(const ReportPage& page) {
+  if (!page.gouge) return {};
+  const GougeResult& g = *page.gouge;
+  const WorstPlace& d = g.deepest;
+  const std::string where = d.patch.empty() ? std::string() : fmt::format(" ({}, {}, tooth {}{})", d.body, d.patch, d.tooth,
+                                                                         d.line > 0 ? fmt::format(", NC line {}", d.line) : "");
+  std::string out = "<p>";
+  out += html_escape(g.measured_mm >= 0
+                         ? fmt::format("Deepest penetration into the finished surface {} \u00b5m{}, proven bound {} \u00b5m, tolerance {} \u00b5m.",
+                                       um(g.measured_mm), where, um(g.bound_mm), um(page.gouge_tolerance_mm))
+                         : fmt::format("The cutter stays at least {} \u00b5m away from the finished surface{}; proven bound {} \u00b5m, tolerance {} \u00b5m.",
+                                       um(-g.measured_mm), where, um(g.bound_mm), um(page.gouge_tolerance_mm)));
+  out += html_escape(fmt::format(" Shank and holder keep {:.3f} mm, {:.3f} mm asked for. Rapids {} the blank.", g.clearance_mm, g.required_clearance_mm,
+                                 g.rapids_clear ? "stay outside" : "enter"));
+  out += fmt::format(" {} motions checked.</p>\n", g.motions);
+  if (g.worst.empty()) {
+    out += "<p class=\"none\">No place is beyond the tolerance or the clearance.</p>\n";
+  } else {
+    out += "<div class=\"table\"><table class=\"worst\"><caption>Worst places, deepest first</caption><thead><tr><th>Place</th><th class=\"n\">Depth [\u00b5m]</th>"
+           "<th>Body</th><th>Patch</th><th>Operation</th><th class=\"n\">Tooth</th><th class=\"n\">Zone</th><th class=\"n\">r [mm]</th><th class=\"n\">z [mm]</th>"
+           "<th class=\"n\">NC line</th></tr></thead><tbody>\n";
+    for (std::size_t k = 0; k < g.worst.size(); ++k) out += worst_row(g.worst[k], k, page);
+    out += "</tbody></table></div>\n";
+  }
+  return section("gouge", "Gouge and clearance", out + listing(page));
+}
+
+std::string deviation_section(const ReportPage& page) {
+  std::string plots;
+  PageTable t{"Material left (+) or missing (\u2212) along the normal",
+              {"Operation", "Max [\u00b5m]", "Min [\u00b5m]", "RMS [\u00b5m]", "Bound [\u00b5m]", "Points"}, {}, {}};
+  for (const ExcessResult& e : page.excess) {
+    const std::string name = operation_name(page, e.operation);
+    t.rows.push_back({name, um(e.max_mm), um(e.min_mm), um(e.rms_mm), um(e.bound_mm), std::to_string(e.points)});
+    HistogramChart chart{"After " + name, "deviation [\u00b5m]", e.histogram_from_mm * kUm, e.histogram_step_mm * kUm, e.histogram, {}};
+    plots += figure(chart.title, svg_histogram(chart));
+  }
+  if (page.excess.empty()) return {};
+  return section("deviation", "Deviation of the cut surface", figures(plots) + table(t));
+}
+
+std::string ledger_section(const ReportPage& page) {
+  if (page.ledger.empty()) return {};
+  PairedBarChart chart;
+  chart.title = "Predicted bound and measured value";
+  chart.x_label = "error [\u00b5m], logarithmic";
+  PageTable t{"", {"Source", "Predicted [\u00b5m]", "Measured [\u00b5m]", "Measured / predicted"}, {}, {}};
+  double predicted = 0, measured = 0;
+  const auto share = [](double m, double p) { return p > 0 ? fmt::format("{:.2f}", m / p) : std::string("\u2013"); };
+  for (const LedgerEntry& e : page.ledger) {
+    chart.rows.push_back({e.source, e.predicted_um, e.measured_um});
+    t.rows.push_back({e.source, short_number(e.predicted_um), short_number(e.measured_um), share(e.measured_um, e.predicted_um)});
+    predicted += e.predicted_um;
+    measured += e.measured_um;
+  }
+  t.rows.push_back({"sum", short_number(predicted), short_number(measured), share(measured, predicted)});
+  return section("ledger", "Error ledger", fmt::format("<div class=\"plots\">\n{}<div>{}</div></div>\n", figure(chart.title, svg_paired_bars(chart)), table(t)));
+}
+
+std::string direction_section(const ReportPage& page) {
+  if (page.directions.empty()) return {};
+  std::string plots;
+  PageTable t{"", {"Operation", "Zone", "Tilt", "Lean [\u00b0]", "Least gap [mm]", "Why"}, {}, {}};
+  for (const DirectionChoice& c : page.directions) {
+    t.rows.push_back({operation_name(page, c.operation), std::to_string(c.zone), c.fixed ? "fixed" : "simultaneous",
+                      fmt::format("{:.2f}", c.lean_rad / kDegree), fmt::format("{:.3f}", c.clearance_mm), c.explanation});
+    plots += figure(fmt::format("Operation {}, zone {}", operation_name(page, c.operation), c.zone), svg_direction_map(c));
+  }
+  std::string out = table(t) + figures(plots);
+  if (!plots.empty()) out += "<p class=\"note\">Maps: lean of the tool axis against the gear axis outwards, azimuth about the gear axis around.</p>\n";
+  return section("direction", "Tool direction", out);
+}
+
+std::string motion_section(const ReportPage& page) {
+  std::string plots;
+  for (const LineChart& chart : page.motion) plots += figure(chart.title, svg_line_chart(chart), chart.note);
+  return section("motion", "Axes over time", figures(plots));
+}
+
+std::string work_precision_section(const ReportPage& page) {
+  std::string plots;
+  for (const LineChart& chart : page.work_precision) plots += figure(chart.title, svg_line_chart(chart), chart.note);
+  return section("work-precision", "Error against run time", figures(plots));
+}
+
+std::string stages_section(const ReportPage& page) {
+  if (page.stage_seconds.empty()) return {};
+  double total = 0;
+  for (const auto& [name, seconds] : page.stage_seconds) total += seconds;
+  return section("stages", "Run time", figures(figure(fmt::format("Stages, {} s together", short_number(total, 3)), svg_bars(page.stage_seconds, "time [s]"))));
+}
+
+std::string tables_section(const ReportPage& page) {
+  std::string out;
+  for (const PageTable& t : page.tables) out += table(t);
+  return section("tables", "Tables", out);
+}
+
+}  // namespace toothpath
