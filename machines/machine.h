@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geometry/base/angle.h"
@@ -50,13 +51,22 @@ struct Machine {
   double max_cutting_feed = 0.0;                  ///< mm/min
   double table_diameter_mm = 0.0;                 ///< largest circle that fits on the table
   std::optional<double> part_diameter_mm;         ///< largest part that turns on the rotary table, when stated
-  std::optional<double> part_swing_mm;            ///< largest radius about the tilt axis, when stated
   std::optional<double> max_part_mass_kg;         ///< when stated
   double min_block_ms = 1.0;                      ///< shortest block that the control keeps up with
   LimitMargin limit_margin;
 
   KinematicChain chain;
   PostSettings post;
+
+  /// Largest part that turns on the table: `part_diameter_mm` if stated, else `table_diameter_mm`.
+  [[nodiscard]] double largest_part_mm() const { return part_diameter_mm.value_or(table_diameter_mm); }
 };
+
+/// Refuses a program that moves more axes in one block than the control interpolates.
+/// @param moving letters of the axes that move together, e.g. "XYZAC"
+[[nodiscard]] Status check_simultaneous_axes(const Machine& machine, std::string_view moving);
+
+/// Refuses a part whose outside diameter [mm] does not fit the machine.
+[[nodiscard]] Status check_part_fits(const Machine& machine, double part_diameter_mm);
 
 }  // namespace toothpath

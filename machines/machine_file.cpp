@@ -15,7 +15,6 @@ constexpr double kLargestSpeed = 1e6;        // mm/min, deg/min, 1/min
 constexpr double kLargestAngle = 1e7;        // deg: 27000 turns
 constexpr double kLeastTravel = 10.0;        // mm; less means metres
 constexpr double kLeastDirection = 1e-3;     // length of a direction as written
-constexpr double kLeastPositive = 1e-6;      // what "above zero" means for speeds and diameters
 constexpr std::size_t kMostRotaries = 2;
 
 std::string letter_name(char letter) { return std::string(1, letter); }
@@ -56,7 +55,7 @@ std::optional<std::pair<double, double>> read_range(TomlTableReader& axis, doubl
 }
 
 double read_speed(TomlTableReader& axis, const char* unit) {
-  return axis.number("max_speed", {kLeastPositive, kLargestSpeed, unit}).value_or(0.0);
+  return axis.number("max_speed", TomlTableReader::positive(kLargestSpeed, unit)).value_or(0.0);
 }
 
 LinearAxis read_linear(TomlTableReader axis, const LimitMargin& margin) {
@@ -66,7 +65,7 @@ LinearAxis read_linear(TomlTableReader axis, const LimitMargin& margin) {
     out.max_mm = range->second;
     const double least = std::max(kLeastTravel, 2 * margin.linear_mm);
     if (out.max_mm - out.min_mm < least)
-      axis.refuse(axis.at("max"), "{} - {} = {} mm of travel is below {} mm; lengths are in mm, not metres",
+      axis.refuse(axis.at("max"), "{} - {} = {:.6g} mm of travel is below {} mm; lengths are in mm, not metres",
                   axis.name("max"), axis.name("min"), out.max_mm - out.min_mm, least);
   }
   out.max_speed = read_speed(axis, "mm/min");
@@ -116,17 +115,14 @@ RotaryAxis read_rotary(TomlTableReader axis, char letter, bool in_table, const L
     (void)axis.value("pivot_length");
     axis.refuse(axis.at("pivot_length"), "{} belongs to head axes; {} is in the table", axis.name("pivot_length"), letter);
   }
-  if (const auto sign = axis.whole_number("sign", -1, 1)) {
-    out.sign = *sign;
-    if (*sign == 0) axis.refuse(axis.at("sign"), "{} = 0 must be 1 or -1", axis.name("sign"));
-  }
+  out.sign = axis.sense("sign");
   if (axis.has("zero")) out.zero_rad = radians(axis.number("zero", {-360.0, 360.0, "deg"}).value_or(0.0));
   if (const auto range = read_range(axis, kLargestAngle, "deg")) {
     out.min_rad = radians(range->first);
     out.max_rad = radians(range->second);
     const double least = 2 * degrees(margin.rotary_rad);
     if (range->second - range->first <= least)
-      axis.refuse(axis.at("max"), "{} - {} = {} deg leaves nothing between the margins of {} deg", axis.name("max"),
+      axis.refuse(axis.at("max"), "{} - {} = {:.6g} deg leaves nothing between the margins of {:.6g} deg", axis.name("max"),
                   axis.name("min"), range->second - range->first, degrees(margin.rotary_rad));
   }
   out.max_speed = radians(read_speed(axis, "deg/min"));
@@ -181,14 +177,13 @@ void read_chain(TomlTableReader& root, Machine& machine) {
 
 void read_limits(TomlTableReader limits, Machine& machine) {
   const auto diameter = [&limits](std::string_view key) {
-    return limits.number(key, {kLeastPositive, kLargestLength, "mm"});
+    return limits.number(key, TomlTableReader::positive(kLargestLength, "mm"));
   };
-  machine.max_cutting_feed = limits.number("cutting_feed", {kLeastPositive, kLargestSpeed, "mm/min"}).value_or(0.0);
+  machine.max_cutting_feed = limits.number("cutting_feed", TomlTableReader::positive(kLargestSpeed, "mm/min")).value_or(0.0);
   machine.table_diameter_mm = diameter("table_diameter").value_or(0.0);
   machine.min_block_ms = limits.number("min_block_ms", {0.0, 1e4, "ms"}).value_or(0.0);
   if (limits.has("part_diameter")) machine.part_diameter_mm = diameter("part_diameter");
-  if (limits.has("part_swing")) machine.part_swing_mm = diameter("part_swing");
-  if (limits.has("part_mass")) machine.max_part_mass_kg = limits.number("part_mass", {kLeastPositive, 1e6, "kg"});
+  if (limits.has("part_mass")) machine.max_part_mass_kg = limits.number("part_mass", TomlTableReader::positive(1e6, "kg"));
   if (limits.has("limit_margin"))
     machine.limit_margin.linear_mm = limits.number("limit_margin", {0.0, 100.0, "mm"}).value_or(0.0);
   if (limits.has("limit_margin_angle"))
@@ -213,6 +208,15 @@ void read_post(TomlTableReader post, PostSettings& settings) {
   post.refuse_unknown_keys();
 }
 
+/// Where the direction of the last rotary axis stands: that of a pair that cannot work together.
+SourcePosition direction_position(const TomlValue& tree, const KinematicChain& chain) {
+  const TomlEntry* axes = tree.find("axes");
+  const char letter = chain.rotary(chain.rotary_count() - 1).letter;
+  const TomlEntry* axis = axes ? axes->value.find(letter_name(letter)) : nullptr;
+  const TomlEntry* direction = axis ? axis->value.find("direction") : nullptr;
+  return direction ? direction->value.position : tree.position;
+}
+
 void check_control(TomlTableReader& root, const Machine& machine) {
   if (machine.dialect == "linuxcnc" && machine.tcp != TcpMode::none &&
       (machine.post.tcp_on.empty() || machine.post.tcp_off.empty()))
@@ -225,8 +229,10 @@ Machine read_tree(const TomlValue& tree, const std::string& file, std::vector<Di
   machine.file = file;
   (void)root.whole_number("schema", 1, 1);
   machine.name = root.text("name").value_or("");
-  if (const auto kind = root.word("kind", {"five_axis", "gear_shaper"}); kind && *kind != "five_axis")
+  if (const auto kind = root.word("kind", {"five_axis", "gear_shaper"}); kind && *kind != "five_axis") {
     root.refuse(root.at("kind"), "kind = \"{}\" is no milling machine; \"five_axis\" is needed here", *kind);
+    return machine;
+  }
   machine.dialect = root.word("dialect", {"linuxcnc", "fanuc", "siemens", "heidenhain", "apt"}).value_or("");
   const std::vector<std::string> modes = {"none", "angles", "vectors"};
   if (const auto tcp = root.word("tcp", modes))
@@ -235,7 +241,7 @@ Machine read_tree(const TomlValue& tree, const std::string& file, std::vector<Di
   machine.assumed = !machine.assumed_keys.empty();
   machine.max_simultaneous_axes = root.whole_number("max_simultaneous_axes", 3, 9).value_or(0);
   if (auto spindle = root.table("spindle")) {
-    machine.max_spindle_speed = spindle->number("max_speed", {kLeastPositive, kLargestSpeed, "1/min"}).value_or(0.0);
+    machine.max_spindle_speed = spindle->number("max_speed", TomlTableReader::positive(kLargestSpeed, "1/min")).value_or(0.0);
     spindle->refuse_unknown_keys();
   }
   if (const auto limits = root.table("limits")) read_limits(*limits, machine);
@@ -246,7 +252,7 @@ Machine read_tree(const TomlValue& tree, const std::string& file, std::vector<Di
   root.refuse_unknown_keys();
   if (errors.empty())
     if (const Status chain = check_chain(machine.chain); !chain)
-      root.refuse(root.at("chain"), "{}", chain.error().message);
+      root.refuse(direction_position(tree, machine.chain), "{}", chain.error().message);
   return machine;
 }
 
@@ -260,6 +266,7 @@ MachineReading read_machine_text(std::string_view text, const std::string& file)
     return reading;
   }
   Machine machine = read_tree(*tree, file, reading.errors);
+  sort_by_position(reading.errors);
   if (reading.errors.empty()) reading.machine = std::move(machine);
   return reading;
 }

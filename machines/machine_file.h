@@ -1,6 +1,6 @@
 // Reads a milling machine from its TOML file, and finds the file that a job names.
 //
-// Keys: docs/machine_files.md lists them; the files in machines/data are commented examples. Lengths mm, angles deg, speeds
+// Keys: README.md of this folder lists them; the files in machines/data are commented examples. Lengths mm, angles deg, speeds
 // mm/min, deg/min and 1/min. Every key that is not known is refused, so a typing error cannot pass as a default.
 #pragma once
 
@@ -16,7 +16,7 @@ namespace toothpath {
 /// A machine, or everything that is wrong with its file. `machine` is empty if and only if `errors` is not.
 struct MachineReading {
   std::optional<Machine> machine;
-  std::vector<Diagnostic> errors;  ///< in the order of the reader, each `file:line:column: error: ...`
+  std::vector<Diagnostic> errors;  ///< in the order of the file, each `file:line:column: error: ...`
 };
 
 /// Reads the file at `path`. Errors: see the header of this file; unreadable files have kind file_access.

@@ -11,7 +11,6 @@ namespace {
 constexpr double kLargestLength = 1e5;   // mm
 constexpr double kLargestSpeed = 1e6;    // mm/min, deg/min
 constexpr double kLargestAngle = 1e7;    // deg
-constexpr double kLeastPositive = 1e-6;
 constexpr int kMostTeeth = 1000;         // of a change gear
 constexpr int kLargestConstant = 1000000;
 
@@ -28,7 +27,7 @@ Ratio read_ratio(TomlTableReader table) {
 }
 
 void read_stroke(TomlTableReader stroke, ShaperMachine& machine) {
-  if (const auto steps = stroke.numbers("steps", {kLeastPositive, 1e5, "1/min"})) {
+  if (const auto steps = stroke.numbers("steps", TomlTableReader::positive(1e5, "1/min"))) {
     machine.stroke_steps = *steps;
     if (steps->empty()) stroke.refuse(stroke.at("steps"), "{} is empty, must have at least 1 step", stroke.name("steps"));
     for (std::size_t i = 1; i < steps->size(); ++i)
@@ -36,8 +35,8 @@ void read_stroke(TomlTableReader stroke, ShaperMachine& machine) {
         stroke.refuse(stroke.at("steps"), "{}[{}] = {} must exceed the step before it, {}", stroke.name("steps"), i,
                       (*steps)[i], (*steps)[i - 1]);
   }
-  machine.max_stroke_mm = stroke.number("max_length", {kLeastPositive, kLargestLength, "mm"}).value_or(0.0);
-  machine.relief_mm = stroke.number("relief", {kLeastPositive, 100.0, "mm"}).value_or(0.0);
+  machine.max_stroke_mm = stroke.number("max_length", TomlTableReader::positive(kLargestLength, "mm")).value_or(0.0);
+  machine.relief_mm = stroke.number("relief", TomlTableReader::positive(100.0, "mm")).value_or(0.0);
   stroke.refuse_unknown_keys();
 }
 
@@ -46,6 +45,12 @@ void read_gears(TomlTableReader gears, ShaperMachine& machine) {
     machine.gears = *teeth;
     if (teeth->size() < 2)
       gears.refuse(gears.at("teeth"), "{} lists {} gears, must list at least 2", gears.name("teeth"), teeth->size());
+    for (std::size_t i = 0; i < teeth->size(); ++i) {
+      const auto first = std::find(teeth->begin(), teeth->end(), (*teeth)[i]) - teeth->begin();
+      if (first != static_cast<std::ptrdiff_t>(i))
+        gears.refuse(gears.value("teeth")->items[i].position, "{} lists {} twice; each wheel is there once",
+                     gears.name("teeth"), (*teeth)[i]);
+    }
   }
   machine.mesh_margin = gears.whole_number("mesh_margin", 0, kMostTeeth).value_or(0);
   gears.refuse_unknown_keys();
@@ -63,12 +68,8 @@ ShaperAxis read_axis(TomlTableReader axis, bool rotary) {
   out.min = lo.value_or(0.0) * scale;
   out.max = hi.value_or(0.0) * scale;
   out.max_speed =
-      axis.number("max_speed", {kLeastPositive, kLargestSpeed, rotary ? "deg/min" : "mm/min"}).value_or(0.0) * scale;
-  if (rotary && axis.has("sign"))
-    if (const auto sign = axis.whole_number("sign", -1, 1)) {
-      out.sign = *sign;
-      if (*sign == 0) axis.refuse(axis.at("sign"), "{} = 0 must be 1 or -1", axis.name("sign"));
-    }
+      axis.number("max_speed", TomlTableReader::positive(kLargestSpeed, rotary ? "deg/min" : "mm/min")).value_or(0.0) * scale;
+  if (rotary && axis.has("sign")) out.sign = axis.sense("sign");
   axis.refuse_unknown_keys();
   return out;
 }
@@ -79,8 +80,10 @@ ShaperMachine read_tree(const TomlValue& tree, const std::string& file, std::vec
   machine.file = file;
   (void)root.whole_number("schema", 1, 1);
   machine.name = root.text("name").value_or("");
-  if (const auto kind = root.word("kind", {"five_axis", "gear_shaper"}); kind && *kind != "gear_shaper")
+  if (const auto kind = root.word("kind", {"five_axis", "gear_shaper"}); kind && *kind != "gear_shaper") {
     root.refuse(root.at("kind"), "kind = \"{}\" is no gear shaper; \"gear_shaper\" is needed here", *kind);
+    return machine;
+  }
   machine.dialect = root.word("dialect", {"linuxcnc"}).value_or("");
   machine.assumed_keys = read_assumed(root, tree);
   machine.assumed = !machine.assumed_keys.empty();
@@ -108,6 +111,7 @@ ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::
     return reading;
   }
   ShaperMachine machine = read_tree(*tree, file, reading.errors);
+  sort_by_position(reading.errors);
   if (reading.errors.empty()) reading.machine = std::move(machine);
   return reading;
 }

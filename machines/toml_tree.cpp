@@ -176,8 +176,9 @@ std::optional<double> TomlTableReader::number_in(const TomlValue& v, const std::
     return std::nullopt;
   }
   const char* space = *range.unit ? " " : "";
-  if (v.real < range.low) {
-    refuse(v.position, "{} = {} is below {}{}{}", label, v.real, range.low, space, range.unit);
+  if (v.real < range.low || (range.above_low && v.real == range.low)) {
+    refuse(v.position, "{} = {} {} {}{}{}", label, v.real, range.above_low ? "must be above" : "is below", range.low, space,
+           range.unit);
     return std::nullopt;
   }
   if (v.real > range.high) {
@@ -193,7 +194,8 @@ std::optional<int> TomlTableReader::whole_in(const TomlValue& v, const std::stri
     return std::nullopt;
   }
   if (v.integer < low || v.integer > high) {
-    refuse(v.position, "{} = {} is outside {} to {}", label, v.integer, low, high);
+    if (low == high) refuse(v.position, "{} = {} must be {}", label, v.integer, low);
+    else refuse(v.position, "{} = {} is outside {} to {}", label, v.integer, low, high);
     return std::nullopt;
   }
   return static_cast<int>(v.integer);
@@ -227,6 +229,15 @@ std::optional<double> TomlTableReader::number(std::string_view key, const Range&
 std::optional<int> TomlTableReader::whole_number(std::string_view key, int low, int high) {
   const TomlValue* v = value(key);
   return v ? whole_in(*v, name(key), low, high) : std::nullopt;
+}
+
+int TomlTableReader::sense(std::string_view key) {
+  const TomlValue* v = value(key);
+  if (!v) return 1;
+  if (v->type == TomlValue::Type::integer && (v->integer == 1 || v->integer == -1)) return static_cast<int>(v->integer);
+  if (v->type == TomlValue::Type::integer) refuse(v->position, "{} = {} must be 1 or -1", name(key), v->integer);
+  else refuse(v->position, "{} must be 1 or -1, is {}", name(key), type_name(*v));
+  return 1;
 }
 
 std::optional<bool> TomlTableReader::boolean(std::string_view key) {
@@ -318,6 +329,12 @@ void TomlTableReader::refuse_unknown_keys() {
   for (const TomlEntry& entry : table_.entries)
     if (std::find(known_.begin(), known_.end(), entry.key) == known_.end())
       refuse(entry.key_position, "unknown key {}", name(entry.key));
+}
+
+void sort_by_position(std::vector<Diagnostic>& errors) {
+  std::stable_sort(errors.begin(), errors.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return std::pair(a.position.line, a.position.column) < std::pair(b.position.line, b.position.column);
+  });
 }
 
 std::vector<std::string> value_names(const TomlValue& root) {

@@ -55,7 +55,11 @@ class TomlTableReader {
   struct Range {
     double low, high;          ///< both ends allowed
     const char* unit = "";     ///< printed after the limit
+    bool above_low = false;    ///< the low end itself is refused
   };
+
+  /// Above 0, up to `high`.
+  [[nodiscard]] static Range positive(double high, const char* unit) { return {0.0, high, unit, true}; }
 
   [[nodiscard]] bool has(std::string_view key) const { return table_.find(key) != nullptr; }
   /// Dotted name of a key of this table.
@@ -65,6 +69,8 @@ class TomlTableReader {
 
   std::optional<double> number(std::string_view key, const Range& range);
   std::optional<int> whole_number(std::string_view key, int low, int high);
+  /// 1 or -1; 1 after an error.
+  int sense(std::string_view key);
   std::optional<bool> boolean(std::string_view key);
   /// 1 to 120 printable ASCII characters when `ascii`, else any text without control characters.
   std::optional<std::string> text(std::string_view key, bool ascii = false);
@@ -98,6 +104,9 @@ class TomlTableReader {
   std::vector<Diagnostic>& errors_;
   std::vector<std::string> known_;
 };
+
+/// Into the order of the file.
+void sort_by_position(std::vector<Diagnostic>& errors);
 
 /// Dotted names of all values below a table, `schema`, `name`, `kind` and `assumed` of the root left out.
 [[nodiscard]] std::vector<std::string> value_names(const TomlValue& root);

@@ -1,0 +1,278 @@
+// Machine files: those that ship, the one of a job, and every way in which one can be wrong, with its exact message.
+#include "machines/machine_file.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "machines/shaper_machine.h"
+#include "tests/machines/bad_machine_files.h"
+#include "tests/machines/example_files.h"
+
+namespace toothpath {
+namespace {
+
+namespace fs = std::filesystem;
+using test::edited, test::kMachine, test::kMaxBytesForTest, test::TemporaryDirectory;
+
+std::vector<std::string> shipped(MachineKind kind) {
+  std::vector<std::string> files;
+  for (const auto& entry : fs::directory_iterator(fs::path(TOOTHPATH_SOURCE_DIR) / "machines" / "data")) {
+    const auto found = machine_kind_of(entry.path().string());
+    EXPECT_TRUE(found) << entry.path();
+    if (found && *found == kind) files.push_back(entry.path().string());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+Machine load(const std::string& path) {
+  MachineReading reading = read_machine_file(path);
+  EXPECT_TRUE(reading.machine) << to_text(reading.errors);
+  return reading.machine.value_or(Machine{});
+}
+
+TEST(ShippedMachines, EveryFileLoadsAndRoundTrips) {
+  const auto files = shipped(MachineKind::five_axis);
+  ASSERT_GE(files.size(), 7u);
+  std::mt19937_64 rng(11);
+  for (const std::string& file : files) {
+    const Machine machine = load(file);
+    const KinematicChain& chain = machine.chain;
+    EXPECT_EQ(chain.rotary_count(), 2u) << file;
+    int reached = 0;
+    for (int i = 0; i < 300; ++i) {
+      // A pose inside the limits, then every solution for it.
+      Joints joints;
+      std::uniform_real_distribution<double> unit(0.01, 0.99);
+      for (std::size_t k = 0; k < 3; ++k)
+        joints.linear_mm[static_cast<Eigen::Index>(k)] =
+            chain.linear[k].min_mm + unit(rng) * (chain.linear[k].max_mm - chain.linear[k].min_mm);
+      for (std::size_t k = 0; k < 2; ++k)
+        joints.rotary_rad[k] = chain.rotary(k).min_rad + unit(rng) * (chain.rotary(k).max_rad - chain.rotary(k).min_rad);
+      const TablePose pose = chain.forward(joints, 110);
+      const auto found = chain.candidates(pose, 110, machine.limit_margin);
+      ASSERT_TRUE(found) << file << ": " << found.error().message;
+      bool same = false;
+      for (const JointSolution& s : *found) {
+        const TablePose back = chain.forward(s.joints, 110);
+        ASSERT_LE((back.axis - pose.axis).norm(), 1e-12);
+        ASSERT_LE((back.tip_mm - pose.tip_mm).norm(), 1e-9);
+        same = same || (std::abs(s.joints.rotary_rad[0] - joints.rotary_rad[0]) < 1e-7 &&
+                        std::abs(s.joints.rotary_rad[1] - joints.rotary_rad[1]) < 1e-7);
+      }
+      reached += same;
+    }
+    EXPECT_GE(reached, 299) << file;  // within 1e-7 rad of a pole the angles themselves are not unique
+  }
+}
+
+TEST(ShippedMachines, LargeTrunnionIsWhatItsFileSays) {
+  const Machine m = load(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml");
+  EXPECT_EQ(m.name, "XYZAC trunnion, large");
+  EXPECT_EQ(m.dialect, "linuxcnc");
+  EXPECT_EQ(m.tcp, TcpMode::none);
+  EXPECT_FALSE(m.assumed);
+  EXPECT_EQ(m.max_simultaneous_axes, 5);
+  EXPECT_EQ(m.max_spindle_speed, 24000);
+  EXPECT_EQ(m.max_cutting_feed, 10000);
+  EXPECT_EQ(m.table_diameter_mm, 1200);
+  EXPECT_EQ(m.min_block_ms, 1.0);
+  EXPECT_EQ(m.chain.letters(), "XYZCA");
+  EXPECT_EQ(m.chain.linear[2].min_mm, -900);
+  EXPECT_EQ(m.chain.linear[2].max_mm, 600);
+  ASSERT_EQ(m.chain.table.size(), 2u);
+  EXPECT_EQ(m.chain.table[1].point_mm, Vec3(0, 12.5, -31.25));
+  EXPECT_EQ(m.chain.table[1].sign, -1);
+  EXPECT_NEAR(degrees(m.chain.table[1].min_rad), -110, 1e-12);
+  EXPECT_NEAR(degrees(m.chain.table[1].max_speed), 6000, 1e-9);
+  EXPECT_EQ(m.chain.table[0].point_mm, Vec3(3, -2, 0));
+  EXPECT_NEAR(m.limit_margin.linear_mm, 0.1, 0);
+  EXPECT_NEAR(degrees(m.limit_margin.rotary_rad), 0.01, 1e-15);
+}
+
+// Every value of the T-600S is a guess, and its report must be able to name each of them.
+TEST(ShippedMachines, T600sNamesEveryValueAsAssumed) {
+  const Machine m = load(TOOTHPATH_SOURCE_DIR "/machines/data/t600s.toml");
+  EXPECT_TRUE(m.assumed);
+  for (const char* key : {"dialect", "tcp", "max_simultaneous_axes", "spindle.max_speed", "limits.part_diameter",
+                          "chain.table", "axes.X.min", "axes.A.point", "axes.C.point", "axes.A.sign"})
+    EXPECT_EQ(std::count(m.assumed_keys.begin(), m.assumed_keys.end(), key), 1) << key;
+  EXPECT_EQ(check_part_fits(m, 900).error().message,
+            "part diameter = 900.0000 mm exceeds 250.0000 mm, the largest that turns on T-600S");
+  EXPECT_TRUE(check_part_fits(m, 248));
+}
+
+// Trunnion with ISO signs and its plate on top: a gear of 248 mm is reached all round with a vertical tool.
+TEST(ShippedMachines, T600sReachesAGearOf248mmAllRound) {
+  const Machine m = load(TOOTHPATH_SOURCE_DIR "/machines/data/t600s.toml");
+  const Vec3 origin(0, 0, -240);  // gear frame on the C axis
+  for (const double L : {100.0, 125.0, 150.0})
+    for (const double z : {-21.0, -17.0, 40.0})
+      for (int k = 0; k < 360; ++k) {
+        const double t = 2 * kPi * k / 360;
+        const TablePose pose{origin + Vec3(126 * std::cos(t), 126 * std::sin(t), z), Vec3::UnitZ()};
+        for (const double c : {0.0, t}) {  // C at rest, or turning the place to the front
+          const auto found = m.chain.candidates(pose, L, m.limit_margin, c);
+          ASSERT_TRUE(found) << found.error().message;
+          EXPECT_EQ(found->front().joints.rotary_rad[1], 0.0);
+        }
+      }
+}
+
+std::string messages(const std::string& text) {
+  const MachineReading reading = read_machine_text(text, "m.toml");
+  EXPECT_EQ(reading.machine.has_value(), reading.errors.empty());
+  return to_text(reading.errors);
+}
+
+TEST(MachineFile, TheExampleItselfIsGood) { EXPECT_EQ(messages(kMachine), ""); }
+
+class BadMachineFile : public testing::TestWithParam<test::BadFile> {};
+
+TEST_P(BadMachineFile, IsRefusedWithItsPlace) {
+  EXPECT_EQ(messages(edited(kMachine, GetParam().from, GetParam().to)), std::string(GetParam().messages));
+}
+
+INSTANTIATE_TEST_SUITE_P(Checklist, BadMachineFile, testing::ValuesIn(test::kBadMachineFiles),
+                         [](const auto& place) {
+                           std::string name = "_";
+                           for (const char* c = place.param.what; *c; ++c) name += std::isalnum(static_cast<unsigned char>(*c)) ? *c : '_';
+                           return name;
+                         });
+
+TEST(MachineFile, NulByteIsNoText) {
+  std::string text = kMachine;
+  text[text.find("five_axis")] = '\0';
+  EXPECT_EQ(messages(text), "m.toml:3:9: error: NUL byte; this is not a text file\n");
+}
+
+TEST(MachineFile, EmptyFileLacksEveryRequiredKey) {
+  const auto reading = read_machine_text("", "m.toml");
+  ASSERT_EQ(reading.errors.size(), 11u) << to_text(reading.errors);
+  EXPECT_EQ(reading.errors.front().text(), "m.toml:1:1: error: schema is missing");
+}
+
+// 78: a head axis 0.25 above the nose is one given in metres.
+TEST(MachineFile, PivotInMetres) {
+  std::string text = edited(kMachine, "table = [\"C\", \"A\"]\nhead = []", "table = [\"C\"]\nhead = [\"A\"]");
+  text = edited(text, "point = [0.0, 0.0, -285.0]", "pivot_length = 0.25");
+  EXPECT_EQ(messages(text),
+            "m.toml:38:16: error: axes.A.pivot_length = 0.25 mm is below 1 mm; lengths are in mm, not metres\n");
+  const auto good = read_machine_text(edited(text, "0.25", "250"), "m.toml");
+  ASSERT_TRUE(good.machine);
+  EXPECT_EQ(good.machine->chain.head.at(0).pivot_length_mm(), 250);
+}
+
+// The file of a shaper is refused as such, not for the keys that it cannot have.
+TEST(MachineFile, KindDecidesBeforeTheKeys) {
+  const std::string data = TOOTHPATH_SOURCE_DIR "/machines/data/";
+  const auto shaper = read_machine_file(data + "y514.toml");
+  ASSERT_EQ(shaper.errors.size(), 1u);
+  EXPECT_EQ(shaper.errors[0].message, "kind = \"gear_shaper\" is no milling machine; \"five_axis\" is needed here");
+  const auto mill = read_shaper_machine_file(data + "t600s.toml");
+  ASSERT_EQ(mill.errors.size(), 1u);
+  EXPECT_EQ(mill.errors[0].message, "kind = \"five_axis\" is no gear shaper; \"gear_shaper\" is needed here");
+}
+
+TEST(MachineFile, EveryComplaintIsCollected) {
+  std::string text = edited(kMachine, "sign = 1\nmin = -110.0", "sign = 0\nmin = nan");
+  text = edited(text, "max_speed = 24000", "max_sped = 24000");
+  EXPECT_EQ(messages(text),
+            "m.toml:9:1: error: spindle.max_speed is missing\n"
+            "m.toml:10:1: error: unknown key spindle.max_sped\n"
+            "m.toml:39:8: error: axes.A.sign = 0 must be 1 or -1\n"
+            "m.toml:40:7: error: axes.A.min = nan must be finite\n");
+}
+
+TEST(MachineFile, AssumedMayBeAListOfKeysOrTables) {
+  const auto reading = read_machine_text(edited(kMachine, "assumed = false", "assumed = [\"axes.A.point\", \"limits\"]"), "m");
+  ASSERT_TRUE(reading.machine) << to_text(reading.errors);
+  EXPECT_TRUE(reading.machine->assumed);
+  EXPECT_EQ(reading.machine->assumed_keys, (std::vector<std::string>{"axes.A.point", "limits"}));
+  const auto none = read_machine_text(edited(kMachine, "assumed = false", "assumed = []"), "m");
+  EXPECT_FALSE(none.machine->assumed);
+}
+
+TEST(MachineFile, DirectionsAreNormalised) {
+  const auto reading = read_machine_text(edited(kMachine, "direction = [1.0, 0.0, 0.0]", "direction = [0, 3, 3]"), "m");
+  ASSERT_TRUE(reading.machine) << to_text(reading.errors);
+  EXPECT_LE((reading.machine->chain.table[1].direction - Vec3(0, 1, 1).normalized()).norm(), 1e-15);
+}
+
+// 77: the control interpolates fewer axes than the program moves.
+TEST(Machine, TooManyAxesAtOnce) {
+  Machine m;
+  m.name = "small control";
+  m.max_simultaneous_axes = 4;
+  EXPECT_TRUE(check_simultaneous_axes(m, "XYZC"));
+  EXPECT_EQ(check_simultaneous_axes(m, "XYZAC").error().message,
+            "5 axes move at once (XYZAC), the control of small control interpolates 4: fix the tilt in each pass and index C "
+            "(3+2)");
+}
+
+TEST(MachineFile, FilesThatCannotBeRead) {
+  const TemporaryDirectory dir;
+  const auto error_of = [](const std::string& path) {
+    const auto reading = read_machine_file(path);
+    EXPECT_EQ(reading.errors.size(), 1u);
+    EXPECT_EQ(reading.errors[0].kind, DiagnosticKind::file_access);
+    return reading.errors[0].message;
+  };
+  EXPECT_EQ(error_of(dir.path("none.toml")), "file does not exist");
+  EXPECT_EQ(error_of(dir.path("")), "is a directory, not a file");
+  EXPECT_EQ(error_of("/dev/zero"), "is not a regular file");
+  fs::create_symlink(dir.path("loop.toml"), dir.path("loop.toml"));
+  EXPECT_EQ(error_of(dir.path("loop.toml")).substr(0, 17), "cannot be opened:");
+  std::ofstream(dir.path("big.toml")) << std::string(kMaxBytesForTest + 1, '#');
+  EXPECT_EQ(error_of(dir.path("big.toml")), "has more than 1048576 bytes, the largest machine file allowed");
+}
+
+// Any bytes give a machine or complaints: damaged copies of the example, one to six random bytes each.
+TEST(MachineFile, DamagedFilesNeverCrash) {
+  std::mt19937_64 rng(12);
+  const std::string good = kMachine;
+  int refused = 0;
+  for (int i = 0; i < 4000; ++i) {
+    std::string text = good;
+    const auto edits = 1 + rng() % 6;
+    for (std::uint64_t k = 0; k < edits; ++k) {
+      const std::size_t at = rng() % text.size();
+      if (rng() % 4 == 0) text.erase(at, rng() % 20);
+      else text[at] = static_cast<char>(rng() % 256);
+    }
+    const auto reading = read_machine_text(text, "m.toml");
+    ASSERT_EQ(reading.machine.has_value(), reading.errors.empty());
+    for (const Diagnostic& d : reading.errors) ASSERT_FALSE(d.message.empty());
+    refused += !reading.errors.empty();
+    (void)read_shaper_machine_text(text, "m.toml");
+  }
+  EXPECT_GT(refused, 2000);
+}
+
+TEST(FindMachineFile, BesideTheJobFirstThenInstalled) {
+  const TemporaryDirectory dir;
+  const auto installed = find_machine_file("t600s.toml", dir.path(""));
+  ASSERT_TRUE(installed) << installed.error().message;
+  EXPECT_TRUE(fs::equivalent(*installed, TOOTHPATH_SOURCE_DIR "/machines/data/t600s.toml"));
+  const auto in_folder = find_machine_file("machines/xyzac_large.toml", dir.path(""));
+  ASSERT_TRUE(in_folder);
+  EXPECT_TRUE(fs::equivalent(*in_folder, TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml"));
+  std::ofstream(dir.path("t600s.toml")) << "schema = 1\n";
+  const auto beside = find_machine_file("t600s.toml", dir.path(""));
+  ASSERT_TRUE(beside);
+  EXPECT_TRUE(fs::equivalent(*beside, dir.path("t600s.toml")));
+  const auto none = find_machine_file("no_such.toml", dir.path(""));
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().kind, DiagnosticKind::file_access);
+  EXPECT_EQ(none.error().message,
+            "machine file \"no_such.toml\" is neither beside the job nor installed; installed are: fanuc_ac.toml, "
+            "head_head_ca.toml, head_table_bc.toml, heidenhain_ac.toml, siemens_ac.toml, t600s.toml, xyzac_large.toml, "
+            "xyzac_trt.toml, xyzbc_trt.toml, y514.toml");
+  EXPECT_FALSE(find_machine_file("../data/t600s.toml", dir.path("")));  // installed files have plain names
+}
+
+}  // namespace
+}  // namespace toothpath
