@@ -12,6 +12,8 @@ constexpr double kPoleAngle = 1e-13;  // rad
 /// A wanted axis that misses the reachable directions by no more than this is served by the nearest one. Covers tool
 /// axes that went through text; 1e-10 rad moves a tip at 1 m by 1e-7 mm.
 constexpr double kReachTolerance = 1e-10;  // rad
+/// How far the length of a tool axis may be from 1.
+constexpr double kUnitTolerance = 1e-9;
 /// Two axes are parallel when the sine between them is below this.
 constexpr double kParallelSine = 1e-6;
 
@@ -94,9 +96,11 @@ Joints KinematicChain::linear_for(const Vec3& tip_mm, const std::array<double, 2
 
 Result<std::vector<JointSolution>> KinematicChain::rotary_solutions(const Vec3& axis) const {
   const Vec3 p = Vec3::UnitZ();
+  if (const double length = axis.norm(); !(std::abs(length - 1.0) <= kUnitTolerance))
+    return fail("tool axis ({:.6f}, {:.6f}, {:.6f}) has length {:.9f}, must be 1", axis.x(), axis.y(), axis.z(), length);
   if (rotary_count() == 0) {
     const double gap = angle_between(axis, p);
-    if (gap > kReachTolerance)
+    if (!(gap <= kReachTolerance))
       return fail("tool axis ({:.6f}, {:.6f}, {:.6f}) leans {:.6f} deg; this machine has no rotary axis", axis.x(),
                   axis.y(), axis.z(), degrees(gap));
     return std::vector<JointSolution>{JointSolution{}};
@@ -122,7 +126,7 @@ Result<std::vector<JointSolution>> KinematicChain::rotary_solutions(const Vec3& 
   const double cone = angle_between(p, d2);
   const double most = std::min(between + cone, 2 * kPi - between - cone);
   const double gap = std::max(std::abs(between - cone) - to_first, to_first - most);
-  if (gap > kReachTolerance) return out_of_reach(axis, second.letter, gap);
+  if (!(gap <= kReachTolerance)) return out_of_reach(axis, second.letter, gap);
 
   const double t = std::sqrt(std::max(0.0, (h - k) * (h + k)));
   // Sign of t in pair 1: the spindle's own side of the plane (d1, d2); in that plane: positive tilt.
@@ -154,12 +158,12 @@ Result<std::vector<JointSolution>> KinematicChain::one_rotary(const Vec3& axis) 
   s.joints.rotary_rad[0] = only.zero_rad;
   if (p_across.norm() <= kParallelSine) {  // a turntable: it cannot tilt the tool, every angle serves
     const double gap = angle_between(axis, p);
-    if (gap > kReachTolerance) return out_of_reach(axis, only.letter, gap);
+    if (!(gap <= kReachTolerance)) return out_of_reach(axis, only.letter, gap);
     s.free_rotary = 0;
     return std::vector<JointSolution>{s};
   }
   const double gap = cone_gap(p, axis, d);
-  if (gap > kReachTolerance) return out_of_reach(axis, only.letter, gap);
+  if (!(gap <= kReachTolerance)) return out_of_reach(axis, only.letter, gap);
   s.joints.rotary_rad[0] = command_for(only, turn_angle(p_across, across(axis, d), d));
   return std::vector<JointSolution>{s};
 }

@@ -113,7 +113,7 @@ struct KinematicChain {
   /// and AB; no digits are lost at the pole. At a pole (axis within 1e-13 rad of the first rotary axis) one
   /// solution per tilt, `free_rotary` set. `joints.linear_mm` is not filled in.
   /// @param axis unit vector, table frame
-  /// Errors: no angle reaches the axis; the message names the rotary axis and the angle by which it is missed.
+  /// Errors: the axis is no unit vector (to 1e-9); no angle reaches it; the message names the rotary axis and the angle by which it is missed.
   [[nodiscard]] Result<std::vector<JointSolution>> rotary_solutions(const Vec3& axis) const;
 
   /// Joints for a tip position, the rotary angles given (any winding, any branch).

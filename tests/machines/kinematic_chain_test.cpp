@@ -140,6 +140,17 @@ TEST(RotarySolutions, NutatingAxisEndsAtItsCone) {
             "tool axis (0.999574, 0.000000, -0.029200) is out of reach of axis B by 1.673247 deg");
 }
 
+// 79, 80: an axis without direction or of another length is no axis, on any chain.
+TEST(RotarySolutions, AxisMustBeAUnitVector) {
+  for (const KinematicChain& chain : {ac_table(), test::with_linear(), test::head_head('B')}) {
+    EXPECT_EQ(chain.rotary_solutions(Vec3::Zero()).error().message,
+              "tool axis (0.000000, 0.000000, 0.000000) has length 0.000000000, must be 1");
+    EXPECT_EQ(chain.rotary_solutions({0, 0, 1.5}).error().message,
+              "tool axis (0.000000, 0.000000, 1.500000) has length 1.500000000, must be 1");
+    EXPECT_FALSE(chain.rotary_solutions({std::nan(""), 0, 1}));
+  }
+}
+
 // forward(inverse) is the identity: every class, random directions, points, signs and zeros; also next to the pole.
 TEST(Inverse, RoundTripOverRandomChains) {
   std::mt19937_64 rng(3);
