@@ -69,27 +69,33 @@ std::optional<FlankCoordinates> by_bracketing(const FaceGearSurface<double>& f, 
     const double theta = theta_of(B);
     return std::isnan(theta) ? NAN : meridian(f, s, theta, B).r - r;
   };
+  const auto regularity = [&](double B) { return f.flank_J(s, theta_of(B), B); };
+  const auto root_of = [](const auto& g, double x0, double g0, double x1, double g1) {
+    std::uintmax_t steps = 200;
+    const boost::math::tools::eps_tolerance<double> tolerance(52);
+    const auto bracket = x0 < x1 ? boost::math::tools::toms748_solve(g, x0, x1, g0, g1, tolerance, steps)
+                                 : boost::math::tools::toms748_solve(g, x1, x0, g1, g0, tolerance, steps);
+    return 0.5 * (bracket.first + bracket.second);
+  };
   constexpr int kSamples = 400;
-  std::optional<FlankCoordinates> found;
-  double B0 = NAN, f0 = NAN;
+  double B0 = NAN, f0 = NAN, J0 = NAN;
   for (int k = 0; k <= kSamples; ++k) {
-    const double B1 = s * (kMaxB - (kMaxB + 0.6) * k / kSamples);
-    const double f1 = residual(B1);
-    const bool regular = !std::isnan(f1) && f.flank_J(s, theta_of(B1), B1) > 0;
-    if (regular && !std::isnan(f0) && f0 * f1 <= 0) {
-      std::uintmax_t steps = 200;
-      const auto bracket = boost::math::tools::toms748_solve(residual, std::min(B0, B1), std::max(B0, B1),
-                                                             B0 < B1 ? f0 : f1, B0 < B1 ? f1 : f0,
-                                                             boost::math::tools::eps_tolerance<double>(52), steps);
-      const double B = 0.5 * (bracket.first + bracket.second), theta = theta_of(B);
-      const double J = f.flank_J(s, theta, B);
-      if (J > 0) found = FlankCoordinates{theta, B, J};
-      if (found) return found;
+    double B1 = s * (kMaxB - (kMaxB + 0.6) * k / kSamples), f1 = residual(B1);
+    const double J1 = std::isnan(f1) ? NAN : regularity(B1);
+    const bool edge = !std::isnan(f0) && J1 <= 0;
+    if (edge) {  // the sheet ends between the two samples: go up to its edge, where r has its extreme
+      B1 = root_of(regularity, B0, J0, B1, J1);
+      f1 = residual(B1);
+    }
+    if (!std::isnan(f0) && (J1 > 0 || edge) && f0 * f1 <= 0) {
+      const double B = root_of(residual, B0, f0, B1, f1), theta = theta_of(B), J = f.flank_J(s, theta, B);
+      if (J > 0) return FlankCoordinates{theta, B, J};
     }
     B0 = B1;
-    f0 = regular ? f1 : NAN;
+    f0 = J1 > 0 ? f1 : NAN;
+    J0 = J1;
   }
-  return found;
+  return {};
 }
 
 }  // namespace

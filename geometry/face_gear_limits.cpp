@@ -107,9 +107,9 @@ class TipThickness {
 /// The thickness falls with the radius, so the walk goes outwards where it starts thicker, else inwards.
 std::optional<double> radius_of_thickness(const FaceGearSurface<double>& f, double land) {
   TipThickness thickness(f);
-  const double step = 0.25 * f.shaper.m_t;
-  const double inner = std::max(f.M2, std::abs(f.E)), outer = 4 * std::max(inner, f.shaper.m_t / f.i * f.shaper.teeth);
   double r0 = radius_of(f.flank_housing(1, std::tan(f.shaper.alpha_t), f.shaper.alpha_t));
+  const double step = std::max(0.25 * f.shaper.m_t, 0.005 * r0);  // the band is some 0.15 r0 wide
+  const double inner = std::max(f.M2, std::abs(f.E)), outer = 3 * std::max(inner, r0);
   auto S0 = thickness(r0);
   while (!S0 && r0 < outer) S0 = thickness(r0 += step);
   if (!S0) return {};
