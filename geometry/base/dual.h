@@ -2,6 +2,7 @@
 // Enough arithmetic for the flank kernels; derivatives are exact to rounding.
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 
@@ -88,3 +89,12 @@ struct Dual {
 };
 
 }  // namespace toothpath
+
+template <typename S, int N>
+struct Eigen::NumTraits<toothpath::Dual<S, N>> : Eigen::NumTraits<S> {
+  using Real = toothpath::Dual<S, N>;
+  using NonInteger = toothpath::Dual<S, N>;
+  using Nested = toothpath::Dual<S, N>;
+  using Literal = toothpath::Dual<S, N>;
+  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1, ReadCost = 1, AddCost = N, MulCost = 2 * N };
+};

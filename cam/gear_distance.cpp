@@ -1,0 +1,353 @@
+#include "cam/gear_distance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cam/swept_path.h"
+#include "geometry/face_gear_inverse.h"
+
+namespace toothpath {
+namespace {
+
+constexpr double kTwoPi = 6.283185307179586476925286766559;
+constexpr double kCellLength = 0.45;     // mm along the tooth
+constexpr double kBorder = 1e-9;         // a foot this far beyond the border of a piece (in its parameter) still counts
+constexpr int kBands = 4;                // a fillet may be touched at both of its ends: seeds from several bands
+
+double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
+Vec3 turned(const Vec3& p, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
+}
+
+struct EdgeSegment {
+  Vec3 a, b;
+  const char* patch;
+};
+
+}  // namespace
+
+double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return ap.norm();
+  const Vec3 bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return bp.norm();
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return (ap - ab * (d1 / (d1 - d3))).norm();
+  const Vec3 cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return cp.norm();
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - ac * (d2 / (d2 - d6))).norm();
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+    return (bp - (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)))).norm();
+  const Vec3 n = ab.cross(ac);
+  return std::abs(ap.dot(n)) / n.norm();
+}
+
+struct GearDistance::Ring {
+  SpaceSheet space;
+  double r_in = 0, r_out = 0;
+  std::vector<Cell> cells;
+  std::unique_ptr<SpatialIndex> index;
+  std::vector<EdgeSegment> edges;
+  std::unique_ptr<SpatialIndex> edge_index;
+  double sag = 0, edge_sag = 0;
+  std::vector<double> table_r, mid, tip_plus, tip_minus;  // azimuths over r
+  std::vector<Vec2> end_in, end_out;                      // (azimuth, z) of the sheet at the ends, tip to tip
+  OffsetSheet sheet;
+
+  Ring(const SpaceSheet& s, OffsetSheet o) : space(s), sheet(std::move(o)) {}
+
+  [[nodiscard]] double lookup(const std::vector<double>& y, double r) const {
+    const double t = std::clamp((r - table_r.front()) / (table_r.back() - table_r.front()), 0.0, 1.0) * double(y.size() - 1);
+    const auto k = std::min(std::size_t(t), y.size() - 2);
+    return y[k] + (t - double(k)) * (y[k + 1] - y[k]);
+  }
+  /// Is (azimuth, z) at this profile inside the material? The profile runs from tip to tip.
+  static bool in_material(const std::vector<Vec2>& profile, double azimuth, double z, double z_tip) {
+    if (z >= z_tip) return false;
+    if (azimuth <= profile.front().x() || azimuth >= profile.back().x()) return true;
+    // The space is star-shaped seen from above: the profile is a function of the azimuth up to steep flanks.
+    const auto it = std::lower_bound(profile.begin(), profile.end(), azimuth,
+                                     [](const Vec2& q, double az) { return q.x() < az; });
+    if (it == profile.begin() || it == profile.end()) return true;
+    const Vec2 &a = *(it - 1), &b = *it;
+    const double t = b.x() > a.x() ? (azimuth - a.x()) / (b.x() - a.x()) : 0;
+    return z < a.y() + t * (b.y() - a.y());
+  }
+};
+
+struct GearDistance::Impl {
+  FaceGear gear;
+  std::vector<Ring> rings;
+  double pitch = 0;
+  double sag = 0;
+  explicit Impl(const FaceGear& g) : gear(g) {}
+};
+
+GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::make_unique<Impl>(gear)) {
+  impl_->pitch = gear.pitch();
+  int zone = 0;
+  for (const auto& ring : gear.rings()) {
+    const SpaceSheet space(gear.parameters(), ring);
+    const double r_in = ring.zone.inner_radius_mm, r_out = ring.zone.outer_radius_mm;
+    const double beyond = std::min(reach_mm, 0.25 * (r_out - r_in) + 1.0);
+    const int stations = std::clamp(int((r_out - r_in + 2 * beyond) / kCellLength) + 2, 9, 400);
+    Ring R(space, OffsetSheet(space, 0.0, r_in - beyond, r_out + beyond, stations));
+    R.r_in = r_in;
+    R.r_out = r_out;
+    const auto& st = R.sheet.stations();
+    std::vector<Box> boxes;
+    for (std::size_t j = 0; j + 1 < st.size(); ++j) {
+      for (std::size_t k = 0; k + 1 < st[j].nodes.size(); ++k) {
+        const auto &n00 = st[j].nodes[k], &n01 = st[j].nodes[k + 1], &n10 = st[j + 1].nodes[k], &n11 = st[j + 1].nodes[k + 1];
+        if (n00.at.piece != n01.at.piece) continue;
+        Cell cell;
+        cell.corner = {n00.at.contact.p, n01.at.contact.p, n10.at.contact.p, n11.at.contact.p};
+        cell.zone = zone;
+        cell.piece = n00.at.piece;
+        cell.band = std::clamp(int((0.5 * (n00.sigma + n01.sigma) - std::floor(n00.sigma)) * kBands), 0, kBands - 1);
+        cell.u = 0.25 * (n00.at.u + n01.at.u + n10.at.u + n11.at.u);
+        cell.v = 0.25 * (n00.at.v + n01.at.v + n10.at.v + n11.at.v);
+        cell.centre = 0.25 * (cell.corner[0] + cell.corner[1] + cell.corner[2] + cell.corner[3]);
+        if (const auto q = space.point(cell.piece, cell.u, cell.v)) {
+          const double gap = std::min(distance_to_triangle(q->p, cell.corner[0], cell.corner[1], cell.corner[2]),
+                                      distance_to_triangle(q->p, cell.corner[1], cell.corner[2], cell.corner[3]));
+          R.sag = std::max(R.sag, gap);
+        }
+        Box box;
+        for (const auto& p : cell.corner) {
+          box.add(p);
+          cell.radius = std::max(cell.radius, (p - cell.centre).norm());
+        }
+        boxes.push_back(box);
+        R.cells.push_back(cell);
+      }
+    }
+    const std::size_t sheet_cells = R.cells.size();
+    R.sag *= 2;  // the middle of a cell shows about the largest sag; twice that is taken as its bound
+    for (std::size_t k = 0; k < sheet_cells; ++k) R.cells[k].radius += R.sag;
+
+    // Edges: the sheet at both ends of the ring, and both tip edges.
+    std::vector<Box> edge_boxes;
+    const auto add_edge = [&](const std::vector<Vec3>& line, const char* patch) {
+      for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+        if ((line[k + 1] - line[k]).norm() < 1e-12) continue;
+        R.edges.push_back({line[k], line[k + 1], patch});
+        Box b;
+        b.add(line[k]);
+        b.add(line[k + 1]);
+        edge_boxes.push_back(b);
+        if (k > 0 && k + 2 < line.size()) {
+          // Sag of a chord, estimated from the turn between neighbours.
+          const Vec3 u = (line[k] - line[k - 1]), v = (line[k + 1] - line[k]);
+          if (u.norm() > 1e-9 && v.norm() > 1e-9)
+            R.edge_sag = std::max(R.edge_sag, 0.25 * v.norm() * u.normalized().cross(v.normalized()).norm());
+        }
+      }
+    };
+    const auto end_line = [&](double r, std::vector<Vec2>& profile) {
+      std::vector<Vec3> line;
+      const double z_tip = space.surface().z_tip(r);
+      for (int k = 0; k <= 500; ++k) {
+        const auto q = R.sheet.raw(5.0 * k / 500, r);
+        if (!q || q->contact.p.z() > z_tip) continue;
+        line.push_back(q->contact.p);
+        profile.push_back({std::atan2(q->contact.p.y(), q->contact.p.x()), q->contact.p.z()});
+      }
+      // The corners where the flanks leave through the tip surface.
+      for (const int side : {1, -1}) {
+        const auto c = invert_flank(space.surface(), side, r, z_tip);
+        if (!c) continue;
+        const auto q = space.point(side > 0 ? SpacePiece::flank_plus : SpacePiece::flank_minus, c->theta, c->B);
+        if (!q) continue;
+        const Vec2 corner(std::atan2(q->p.y(), q->p.x()), z_tip);
+        if (side > 0) {
+          line.insert(line.begin(), q->p);
+          profile.insert(profile.begin(), corner);
+        } else {
+          line.push_back(q->p);
+          profile.push_back(corner);
+        }
+      }
+      add_edge(line, "end edge");
+    };
+    end_line(r_in, R.end_in);
+    end_line(r_out, R.end_out);
+    std::vector<Vec3> plus_line, minus_line;
+    std::optional<FlankCoordinates> last_plus, last_minus;
+    const int table = 257;
+    for (int k = 0; k < table; ++k) {
+      const double r = r_in + (r_out - r_in) * k / (table - 1);
+      const double z_tip = space.surface().z_tip(r);
+      last_plus = invert_flank(space.surface(), 1, r, z_tip, last_plus);
+      last_minus = invert_flank(space.surface(), -1, r, z_tip, last_minus);
+      const auto root = space.point(SpacePiece::root, 0.5, std::sqrt(r * r - space.surface().E * space.surface().E) / space.surface().Sg);
+      R.table_r.push_back(r);
+      R.mid.push_back(std::atan2(root->p.y(), root->p.x()));
+      R.tip_plus.push_back(last_plus ? flank_azimuth(space.surface(), 1, *last_plus) : R.mid.back() - impl_->pitch / 2);
+      R.tip_minus.push_back(last_minus ? flank_azimuth(space.surface(), -1, *last_minus) + impl_->pitch
+                                       : R.mid.back() + impl_->pitch / 2);
+      plus_line.push_back({r * std::cos(R.tip_plus.back()), r * std::sin(R.tip_plus.back()), z_tip});
+      minus_line.push_back({r * std::cos(R.tip_minus.back()), r * std::sin(R.tip_minus.back()), z_tip});
+    }
+    add_edge(plus_line, "tip edge");
+    add_edge(minus_line, "tip edge");
+    R.edge_index = std::make_unique<SpatialIndex>(edge_boxes);
+    // The top land of tooth 0, which ends space 0 on its low side: bodies wider than a space may stand on it.
+    for (std::size_t k = 0; k + 4 < plus_line.size(); k += 4) {
+      for (int part = 0; part < 4; ++part) {
+        Cell cell;
+        cell.sheet = false;
+        cell.zone = zone;
+        for (int corner = 0; corner < 4; ++corner) {
+          const Vec3& a = plus_line[k + (corner / 2 ? 4 : 0)];
+          const Vec3 b = turned(minus_line[k + (corner / 2 ? 4 : 0)], -impl_->pitch);
+          cell.corner[std::size_t(corner)] = b + (a - b) * ((part + corner % 2) / 4.0);
+        }
+        cell.centre = 0.25 * (cell.corner[0] + cell.corner[1] + cell.corner[2] + cell.corner[3]);
+        Box box;
+        for (const auto& p : cell.corner) {
+          box.add(p);
+          cell.radius = std::max(cell.radius, (p - cell.centre).norm());
+        }
+        cell.radius += R.sag;
+        boxes.push_back(box);
+        R.cells.push_back(cell);
+      }
+    }
+    R.index = std::make_unique<SpatialIndex>(boxes);
+    impl_->sag = std::max(impl_->sag, R.sag);
+    impl_->rings.push_back(std::move(R));
+    ++zone;
+  }
+}
+
+GearDistance::~GearDistance() = default;
+GearDistance::GearDistance(GearDistance&&) noexcept = default;
+
+const std::vector<GearDistance::Cell>& GearDistance::cells(int zone) const { return impl_->rings[std::size_t(zone)].cells; }
+const SpatialIndex& GearDistance::cell_index(int zone) const { return *impl_->rings[std::size_t(zone)].index; }
+const SpaceSheet& GearDistance::space(int zone) const { return impl_->rings[std::size_t(zone)].space; }
+double GearDistance::cell_sag_mm() const { return impl_->sag; }
+const FaceGear& GearDistance::gear() const { return impl_->gear; }
+int GearDistance::zones() const { return int(impl_->rings.size()); }
+double GearDistance::space_azimuth(int zone, double r) const {
+  const auto& ring = impl_->rings[std::size_t(zone)];
+  return ring.lookup(ring.mid, r);
+}
+
+NearestPlace GearDistance::nearest(const Vec3& asked, double within) const {
+  NearestPlace best;
+  best.distance = within;
+  best.point = asked;
+  const double r = radius(asked), z = asked.z();
+  const auto take = [&](double d, bool exact, int zone, const char* patch, const Vec3& foot, const Vec3& at) {
+    if (d < best.distance) best = {d, exact, zone, patch, foot, at};
+  };
+  const auto& rings = impl_->rings;
+  for (std::size_t zone = 0; zone < rings.size(); ++zone) {
+    const auto& ring = rings[zone];
+    const double gap_r = std::max({ring.r_in - r, r - ring.r_out, 0.0});
+    if (gap_r >= best.distance) continue;
+    const double r_here = std::clamp(r, ring.r_in, ring.r_out);
+    const double z_tip = ring.space.surface().z_tip(r_here);
+    if (z - z_tip >= best.distance * 1.5 && std::abs(ring.space.surface().Cg) < 0.5) continue;
+    const double mid = ring.lookup(ring.mid, r);
+    const double away = std::remainder(std::atan2(asked.y(), asked.x()) - mid, kTwoPi);
+    const double index = std::round(away / impl_->pitch);
+    const Vec3 c = turned(asked, -index * impl_->pitch);
+    const double azimuth = mid + away - index * impl_->pitch;
+
+    // Candidates: the nearest cell of every band of every piece.
+    struct Seed {
+      double d = INFINITY;
+      std::size_t cell = 0;
+    };
+    std::array<Seed, kSpacePieces * kBands> seeds;
+    double d_mesh = INFINITY;
+    const double search = std::min(within, best.distance) + ring.sag;
+    ring.index->near(c, search, [&](std::size_t k, double r_query) {
+      const auto& cell = ring.cells[k];
+      if (!cell.sheet) return r_query;
+      const double d = std::min(distance_to_triangle(c, cell.corner[0], cell.corner[1], cell.corner[2]),
+                                distance_to_triangle(c, cell.corner[1], cell.corner[2], cell.corner[3]));
+      d_mesh = std::min(d_mesh, d);
+      const std::size_t band = std::size_t(cell.piece) * kBands + std::size_t(cell.band);
+      auto& seed = seeds[band];
+      if (d < seed.d || (d == seed.d && k < seed.cell)) seed = {d, k};
+      return r_query;
+    });
+    const auto& w = ring.space.surface().shaper;
+    bool found = false;
+    if (d_mesh < search) {
+      double accepted = INFINITY;
+      for (const auto& seed : seeds) {
+        // A seed whose facet is farther than the best exact distance cannot win.
+        if (seed.d > d_mesh + 4 * ring.sag + 0.02) continue;
+        if (seed.d - ring.sag > accepted) continue;
+        const auto& cell = ring.cells[seed.cell];
+        const auto foot = ring.space.foot(cell.piece, c, cell.u, cell.v);
+        if (!foot) continue;
+        const bool flank = cell.piece == SpacePiece::flank_plus || cell.piece == SpacePiece::flank_minus;
+        if (flank && foot->u > w.theta_t + kBorder) continue;
+        if (!flank && cell.piece != SpacePiece::root && (foot->u < w.A_t - kBorder || foot->u > w.A_e + kBorder)) continue;
+        if (cell.piece == SpacePiece::root && (foot->u < -kBorder || foot->u > 1 + kBorder)) continue;
+        found = true;
+        accepted = std::min(accepted, foot->distance);
+        const double rf = radius(foot->at.p);
+        const bool on_ring = rf >= ring.r_in - 1e-9 && rf <= ring.r_out + 1e-9 &&
+                             foot->at.p.z() <= ring.space.surface().z_tip(rf) + 1e-9;
+        if (on_ring) take(foot->distance, true, int(zone), to_string(cell.piece), foot->at.p, c);
+      }
+      // Newton must agree with the facets; where it does not, the facets decide with their sag.
+      if (!found || accepted > d_mesh + 2 * ring.sag + 1e-9) {
+        take(d_mesh - ring.sag, false, int(zone), "flank", c, c);
+      }
+    }
+    // Edges of the ring.
+    ring.edge_index->near(c, std::min(within, best.distance) + ring.edge_sag, [&](std::size_t k, double r_query) {
+      const auto& e = ring.edges[k];
+      take(distance_to_segment(c, e.a, e.b) - ring.edge_sag, false, int(zone), e.patch, e.a, c);
+      return r_query;
+    });
+    // End faces, top lands, and the inside of the material.
+    const bool beside = gap_r > 0;
+    if (beside) {
+      const auto& profile = r < ring.r_in ? ring.end_in : ring.end_out;
+      if (profile.size() > 2 && Ring::in_material(profile, azimuth, z, z_tip))
+        take(gap_r, true, int(zone), "end", c, c);
+    } else {
+      const bool over_land = azimuth <= ring.lookup(ring.tip_plus, r) || azimuth >= ring.lookup(ring.tip_minus, r);
+      const double slope = std::abs(ring.space.surface().Cg / ring.space.surface().Sg);
+      if (z >= z_tip) {
+        if (over_land) take((z - z_tip) / std::sqrt(1 + slope * slope), slope == 0, int(zone), "tip", Vec3(c.x(), c.y(), z_tip), c);
+      } else if (!found) {
+        // No surface near: either free in a wide space or deep inside the material.
+        const auto& st = ring.sheet.stations();
+        const double t = (r - st.front().r) / (st.back().r - st.front().r) * double(st.size() - 1);
+        const auto& nearest_station = st[std::size_t(std::clamp(std::round(t), 0.0, double(st.size() - 1)))];
+        std::vector<Vec2> profile;
+        profile.reserve(nearest_station.nodes.size());
+        for (const auto& node : nearest_station.nodes)
+          profile.push_back({std::atan2(node.at.contact.p.y(), node.at.contact.p.x()), node.at.contact.p.z()});
+        if (over_land || Ring::in_material(profile, azimuth, z, z_tip)) take(-within, false, int(zone), "inside", c, c);
+      }
+    }
+  }
+  if (rings.size() > 1) {
+    const double floor_z = impl_->gear.groove_floor();
+    for (std::size_t zone = 0; zone + 1 < rings.size(); ++zone) {
+      const double gap = std::max({rings[zone].r_out - r, r - rings[zone + 1].r_in, 0.0});
+      const double height = z - floor_z;
+      if (gap == 0) take(height, true, int(zone), "groove", Vec3(asked.x(), asked.y(), floor_z), asked);
+    }
+  }
+  return best;
+}
+
+}  // namespace toothpath

@@ -1,0 +1,48 @@
+// The gouge check of ball mills on a face gear: measured worst penetration and a proven bound between the samples.
+//
+// The bound needs no curvature: for any set, the squared distance minus |x|^2 is concave along a straight line, so between two
+// ball centres L apart the distance d to the part obeys  d(s)^2 >= (1 - s/L) d0^2 + (s/L) d1^2 - s (L - s).
+// A move is halved until that bound is within `proof_mm` of what was measured at its ends.
+#pragma once
+
+#include <vector>
+
+#include "cam/checked_cl_path.h"
+#include "cam/cutter.h"
+#include "cam/gear_distance.h"
+#include "cam/tool_motion.h"
+#include "cam/verification.h"
+#include "geometry/base/result.h"
+
+namespace toothpath {
+
+struct GougeCheckOptions {
+  double gouge_tolerance_mm = 0.002;  ///< deepest proven cut into the finished surface that is accepted
+  double proof_mm = 0.0002;           ///< how far the bound may lie above the measured value of a move
+  double clearance_mm = 0.05;         ///< least gap of shank and holder
+  double rapid_height_mm = 0;         ///< rapids must keep every body above this z, or radially off the rings
+};
+
+class GougeCheck {
+ public:
+  GougeCheck(const GearDistance& part, std::vector<ToolAssembly> tools, GougeCheckOptions options);
+
+  /// Checks motions; `tool_of_operation[op]` is an index into the tools. Runs on all threads; same bytes on any number.
+  [[nodiscard]] GougeResult check(const std::vector<ToolMotion>& motions, const std::vector<int>& tool_of_operation) const;
+
+  /// Is everything within the options?
+  [[nodiscard]] bool passes(const GougeResult& result) const;
+
+  /// The only maker of a CheckedClPath. On failure a verification diagnostic with the deepest place.
+  [[nodiscard]] Result<CheckedClPath> check_path(ClPath path) const;
+
+  /// The motions of a CL path in the order of its records.
+  static std::vector<ToolMotion> motions_of(const ClPath& path);
+
+ private:
+  const GearDistance& part_;
+  std::vector<ToolAssembly> tools_;
+  GougeCheckOptions options_;
+};
+
+}  // namespace toothpath

@@ -1,0 +1,31 @@
+// From ball passes to CL records: run-in, hops between passes, retract to the clearance height, feeds.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "cam/cl_path.h"
+#include "cam/finishing.h"
+
+namespace toothpath {
+
+struct LinkingOptions {
+  double ball_radius_mm = 0;
+  Vec3 axis = Vec3::UnitZ();      ///< fixed tool axis of the zone, tip to holder
+  double clearance_height_mm = 0; ///< z of the tip for rapids: above everything
+  double hop_mm = 0;              ///< lift along the axis between neighbouring passes in the air beside the ring
+  double longest_hop_mm = 0;      ///< passes that end and begin farther apart are linked over the clearance height
+  double feed_mm_min = 0;         ///< of the contact point
+  double inner_radius_mm = 0, outer_radius_mm = 0;  ///< of the ring
+  int zone = 0;
+};
+
+/// Is a straight move of the ball centre free of the finished part? Asked for hops only.
+using HopIsClear = std::function<bool(const Vec3& from, const Vec3& to)>;
+
+/// Appends the passes to `records`. Starts and ends with rapids at the clearance height. The tip's feed is the contact
+/// point's feed times the ratio of their ways, at most 20 % faster.
+void link_passes(const std::vector<BallPass>& passes, const LinkingOptions& options, const HopIsClear& hop_is_clear,
+                 std::vector<ClRecord>& records);
+
+}  // namespace toothpath

@@ -1,0 +1,215 @@
+#include "cam/plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "cam/linking.h"
+#include "cam/roughing.h"
+#include "cam/tool_direction.h"
+
+namespace toothpath {
+namespace {
+
+/// Of the chord tolerance, this share is spent on placing points; the rest covers the rounding of words and the proof.
+constexpr double kChordShare = 0.6;
+
+double lower_bound_between(double d0, double d1, double length) {
+  const double g = std::min(d0 * d0, d1 * d1) - length * length / 4;
+  return g > 0 ? std::sqrt(g) : 0;
+}
+
+/// Ball centres of everything that cuts: feed, engage and retract moves.
+std::vector<BallMove> ball_moves(const ClPath& path, double radius) {
+  std::vector<BallMove> out;
+  for (std::size_t k = 1; k < path.records.size(); ++k) {
+    const auto &a = path.records[k - 1], &b = path.records[k];
+    if (b.kind != MoveKind::rapid) out.push_back({a.tip + radius * a.axis, b.tip + radius * b.axis});
+  }
+  return out;
+}
+
+class JobPlanner {
+ public:
+  JobPlanner(const GearDistance& part, const std::vector<ToolAssembly>& tools, const std::vector<MillingOperation>& operations,
+             const PlanOptions& options, const PlanProgress& progress)
+      : part_(part), tools_(tools), operations_(operations), o_(options), progress_(progress) {}
+
+  std::variant<FaceGearPlan, PlanRefusal> run() {
+    for (std::size_t n = 0; n < operations_.size(); ++n) {
+      const auto& op = operations_[n];
+      ClPath path;
+      path.operation = int(n);
+      path.operation_type = to_string(op.type);
+      path.tool = op.tool;
+      path.spindle_rpm = op.speed_rpm;
+      OperationPlan summary;
+      summary.operation = int(n);
+      summary.scallop_min_mm = INFINITY;
+      for (int zone = 0; zone < part_.zones(); ++zone) {
+        if (progress_) progress_(std::string(to_string(op.type)) + ", zone " + std::to_string(zone));
+        if (auto refusal = plan_zone(int(n), zone, path, summary)) return *refusal;
+      }
+      if (summary.scallop_min_mm == INFINITY) summary.scallop_min_mm = 0;
+      if (n + 1 < operations_.size()) {
+        const double radius = tools_[std::size_t(op.tool)].radius_mm();
+        cleared_.push_back(std::make_unique<SweptPath>(ball_moves(path, radius), radius));
+      }
+      plan_.paths.push_back(std::move(path));
+      plan_.operations.push_back(summary);
+    }
+    return std::move(plan_);
+  }
+
+ private:
+  std::optional<PlanRefusal> plan_zone(int n, int zone, ClPath& path, OperationPlan& summary) {
+    const auto& op = operations_[std::size_t(n)];
+    const auto& tool = tools_[std::size_t(op.tool)];
+    const std::string key = "operation[" + std::to_string(n) + "]";
+    const double R = tool.radius_mm(), delta = R + op.allowance_mm;
+    const auto& space = part_.space(zone);
+    const auto& ring = space.ring().zone;
+
+    // How far the ball may go beyond the ends: free into the air, limited where the other ring of teeth stands.
+    const bool roughing = op.type == OperationType::roughing;
+    const double wanted = roughing ? 0.6 * delta + 0.1 : 0.5 * R;
+    double room = wanted;
+    const auto& rings = part_.gear().rings();
+    for (const auto& other : rings) {
+      const double gap = std::max(other.zone.inner_radius_mm - ring.outer_radius_mm, ring.inner_radius_mm - other.zone.outer_radius_mm);
+      if (gap <= 0) continue;
+      // The centre of a ball in contact at the end lies at most 0.7 delta beyond it.
+      room = std::min(room, roughing ? gap - R - 0.1 : gap - 1.7 * delta - 0.05);
+    }
+    if (room < 0.05 * wanted)
+      return PlanRefusal{key + ".tool", fail("a ball of {:.4f} mm has no room to run out into the relief groove of zone {}: the way "
+                                             "left is {:.4f} mm, at least {:.4f} mm is needed",
+                                             2 * R, zone, room, 0.05 * wanted)};
+
+    const double margin = std::max(delta, room) + 0.1;
+    const OffsetSheet sheet(space, delta, ring.inner_radius_mm - margin, ring.outer_radius_mm + margin);
+    if (auto refusal = check_width(sheet, key, zone, tool)) return refusal;
+
+    std::vector<BallPass> passes;
+    if (roughing) {
+      RoughingOptions r;
+      r.ball_radius_mm = R;
+      r.allowance_mm = op.allowance_mm;
+      r.step_down_mm = op.step_down_mm;
+      r.step_over_mm = op.step_over_mm;
+      r.chord_mm = kChordShare * std::min(op.chord_tolerance_mm, 0.15 * op.allowance_mm);
+      if (op.allowance_mm <= 0) r.chord_mm = kChordShare * std::min(op.chord_tolerance_mm, 0.001);
+      r.overrun_mm = room;
+      r.blank_top_mm = part_.gear().blank_top();
+      r.climb = op.climb;
+      std::vector<const SweptPath*> cleared;
+      for (const auto& c : cleared_) cleared.push_back(c.get());
+      auto planned = plan_roughing(sheet, r, cleared);
+      if (!planned) return PlanRefusal{key + ".tool", planned.error()};
+      passes = std::move(planned->passes);
+      summary.layers = std::max(summary.layers, planned->layers);
+      summary.skipped_passes += planned->skipped;
+      summary.chord_mm = std::max(summary.chord_mm, r.chord_mm);
+    } else {
+      FinishingOptions f;
+      f.ball_radius_mm = R;
+      f.allowance_mm = op.allowance_mm;
+      f.scallop_mm = op.scallop_mm;
+      f.chord_mm = kChordShare * op.chord_tolerance_mm;
+      if (op.type == OperationType::semi_finishing && op.allowance_mm > 0)
+        f.chord_mm = std::min(f.chord_mm, 0.1 * op.allowance_mm);
+      f.run_out_mm = room;
+      f.climb = op.climb;
+      auto planned = plan_finishing(sheet, f);
+      if (!planned) return PlanRefusal{key + ".tool", planned.error()};
+      passes = std::move(planned->passes);
+      summary.scallop_min_mm = std::min(summary.scallop_min_mm, planned->scallop_min_mm);
+      summary.scallop_max_mm = std::max(summary.scallop_max_mm, planned->scallop_max_mm);
+      summary.chord_mm = std::max(summary.chord_mm, planned->worst_chord_mm);
+      summary.corner_passes = summary.corner_passes || planned->corner_passes;
+    }
+    summary.passes += int(passes.size());
+    if (passes.empty()) return {};
+
+    DirectionChoice direction = choose_direction(part_, zone, sheet, passes, tool, {o_.clearance_mm, 0.01});
+    direction.operation = n;
+    plan_.directions.push_back(direction);
+    if (!direction.fixed)
+      return PlanRefusal{key + ".tool", fail("tool {} in zone {}: {}; a longer or slimmer tool is needed", tool.number, zone,
+                                             direction.explanation)};
+
+    LinkingOptions link;
+    link.ball_radius_mm = R;
+    link.axis = direction.axis;
+    link.clearance_height_mm = part_.gear().blank_top() + o_.rapid_clearance_mm;
+    link.hop_mm = 0.2 * R + op.allowance_mm;
+    link.longest_hop_mm = 1.5 * part_.gear().pitch() * ring.outer_radius_mm;
+    link.feed_mm_min = op.feed_mm_min;
+    link.inner_radius_mm = ring.inner_radius_mm;
+    link.outer_radius_mm = ring.outer_radius_mm;
+    link.zone = zone;
+    link_passes(passes, link, [&](const Vec3& a, const Vec3& b) { return hop_is_clear(a, b, R, op.allowance_mm); }, path.records);
+    return {};
+  }
+
+  /// A ball that does not fit between the flanks is refused with the width that it finds.
+  static std::optional<PlanRefusal> check_width(const OffsetSheet& sheet, const std::string& key, int zone,
+                                                const ToolAssembly& tool) {
+    const auto& ring = sheet.space().ring().zone;
+    if (sheet.empty() || sheet.r_to() - sheet.r_from() < 0.5 * (ring.outer_radius_mm - ring.inner_radius_mm))
+      return PlanRefusal{key + ".tool",
+                         fail("the ball-centre surface of tool {} (ball of {:.4f} mm) does not reach over zone {}: the flank "
+                              "ends (undercut) or is hollower than the ball",
+                              tool.number, tool.diameter_mm, zone)};
+    for (const auto& s : sheet.stations()) {
+      const auto &a = s.nodes.front(), &b = s.nodes.back();
+      const double width = (b.azimuth - a.azimuth) * s.r;
+      if (width <= 0)
+        return PlanRefusal{key + ".tool",
+                           fail("tool {} (ball of {:.4f} mm) is wider than the tooth space of zone {}: at radius {:.3f} its centre "
+                                "has {:.4f} mm of room between the flanks at the tip, it needs more than 0",
+                                tool.number, tool.diameter_mm, zone, s.r, width)};
+    }
+    return {};
+  }
+
+  [[nodiscard]] bool hop_is_clear(const Vec3& a, const Vec3& b, double R, double allowance) const {
+    const double length = (b - a).norm();
+    const int steps = std::max(1, int(std::ceil(length / (0.25 * R))));
+    const double look = R + 0.2;
+    double previous = part_.nearest(a, look).distance;
+    for (int k = 1; k <= steps; ++k) {
+      const double d = part_.nearest(a + (b - a) * (double(k) / steps), look).distance;
+      // Both ends of a hop touch the finished surface (or keep the allowance); in between there must be air.
+      const double least = R + 0.5 * allowance - 1e-3;
+      if (d < least || previous < least) return false;
+      if (k > 1 && k < steps && lower_bound_between(previous, d, length / steps) < 0.9 * R) return false;
+      previous = d;
+    }
+    return true;
+  }
+
+  const GearDistance& part_;
+  const std::vector<ToolAssembly>& tools_;
+  const std::vector<MillingOperation>& operations_;
+  const PlanOptions& o_;
+  const PlanProgress& progress_;
+  std::vector<std::unique_ptr<SweptPath>> cleared_;
+  FaceGearPlan plan_;
+};
+
+}  // namespace
+
+std::variant<FaceGearPlan, PlanRefusal> plan_face_gear(const GearDistance& part, const std::vector<ToolAssembly>& tools,
+                                                       const std::vector<MillingOperation>& operations,
+                                                       const PlanOptions& options, const PlanProgress& progress) {
+  return JobPlanner(part, tools, operations, options, progress).run();
+}
+
+double reach_of(const std::vector<ToolAssembly>& tools) {
+  double most = 0.5;
+  for (const auto& t : tools) most = std::max(most, t.radius_mm());
+  return 1.3 * most + 0.6;
+}
+
+}  // namespace toothpath

@@ -1,0 +1,53 @@
+// Plans every operation of a face gear job for one tooth space: from flanks to CL paths.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cam/cl_path.h"
+#include "cam/cutter.h"
+#include "cam/gear_distance.h"
+#include "cam/operation.h"
+#include "cam/verification.h"
+#include "geometry/base/result.h"
+
+namespace toothpath {
+
+struct PlanOptions {
+  double clearance_mm = 0.05;        ///< least gap of shank and holder
+  double rapid_clearance_mm = 2.0;   ///< height of rapids above the blank
+};
+
+/// What the planner knows about one operation; for the ledger and the report.
+struct OperationPlan {
+  int operation = 0;
+  double scallop_min_mm = 0, scallop_max_mm = 0;  ///< predicted on the flanks; 0 for roughing
+  double chord_mm = 0;                            ///< largest sag of a block against the exact path
+  int passes = 0, skipped_passes = 0, layers = 0;
+  bool corner_passes = false;
+};
+
+struct FaceGearPlan {
+  std::vector<ClPath> paths;  ///< one an operation
+  std::vector<OperationPlan> operations;
+  std::vector<DirectionChoice> directions;
+};
+
+/// A refusal with the key of the job it belongs to ("operation[2].tool", ...).
+struct PlanRefusal {
+  std::string key;
+  Diagnostic diagnostic;
+};
+
+using PlanProgress = std::function<void(const std::string&)>;
+
+[[nodiscard]] std::variant<FaceGearPlan, PlanRefusal> plan_face_gear(const GearDistance& part,
+                                                                     const std::vector<ToolAssembly>& tools,
+                                                                     const std::vector<MillingOperation>& operations,
+                                                                     const PlanOptions& options, const PlanProgress& progress = {});
+
+/// Largest distance that the planner and the checks will ask `GearDistance` for with these tools.
+[[nodiscard]] double reach_of(const std::vector<ToolAssembly>& tools);
+
+}  // namespace toothpath

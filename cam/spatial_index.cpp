@@ -1,0 +1,108 @@
+#include "cam/spatial_index.h"
+
+#if __has_include(<embree4/rtcore.h>) && !defined(TOOTHPATH_FORCE_EMBREE3)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+
+#include <atomic>
+#include <cmath>
+#include <stdexcept>
+
+namespace toothpath {
+namespace {
+
+std::atomic<std::size_t> built_count{0};
+
+// Rounding of a coordinate below 2^11 mm to float32 and of the distance computed from it, with room to spare.
+constexpr double kPad = 1e-3;
+
+struct Query {
+  SpatialIndex::Visit visit;
+  void* context;
+};
+
+bool on_candidate(RTCPointQueryFunctionArguments* args) {
+  auto* query = static_cast<Query*>(args->userPtr);
+  const double radius = double(args->query->radius);
+  const double next = query->visit(query->context, args->primID, radius);
+  if (next + kPad < radius) {
+    args->query->radius = float(next + kPad);
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+struct SpatialIndex::Impl {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  std::vector<Box> boxes;
+  Vec3 centre = Vec3::Zero();
+
+  ~Impl() {
+    if (scene) rtcReleaseScene(scene);
+    if (device) rtcReleaseDevice(device);
+  }
+};
+
+SpatialIndex::SpatialIndex(const std::vector<Box>& boxes) : impl_(std::make_unique<Impl>()) {
+  ++built_count;
+  impl_->boxes = boxes;
+  Box all;
+  for (const auto& b : boxes) {
+    all.add(b.low);
+    all.add(b.high);
+  }
+  if (!boxes.empty()) impl_->centre = 0.5 * (all.low + all.high);
+  impl_->device = rtcNewDevice("threads=1");
+  if (!impl_->device) throw std::runtime_error("the ray tracing device cannot be made");
+  impl_->scene = rtcNewScene(impl_->device);
+  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
+  RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, unsigned(boxes.size()));
+  rtcSetGeometryUserData(geometry, impl_.get());
+  rtcSetGeometryBoundsFunction(
+      geometry,
+      [](const RTCBoundsFunctionArguments* args) {
+        const auto& self = *static_cast<const Impl*>(args->geometryUserPtr);
+        const Box& b = self.boxes[args->primID];
+        const Vec3 low = b.low - self.centre, high = b.high - self.centre;
+        args->bounds_o->lower_x = float(low.x() - kPad);
+        args->bounds_o->lower_y = float(low.y() - kPad);
+        args->bounds_o->lower_z = float(low.z() - kPad);
+        args->bounds_o->upper_x = float(high.x() + kPad);
+        args->bounds_o->upper_y = float(high.y() + kPad);
+        args->bounds_o->upper_z = float(high.z() + kPad);
+      },
+      nullptr);
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(impl_->scene, geometry);
+  rtcReleaseGeometry(geometry);
+  rtcCommitScene(impl_->scene);
+}
+
+SpatialIndex::~SpatialIndex() = default;
+SpatialIndex::SpatialIndex(SpatialIndex&&) noexcept = default;
+SpatialIndex& SpatialIndex::operator=(SpatialIndex&&) noexcept = default;
+
+void SpatialIndex::near(const Vec3& p, double radius, Visit visit, void* context) const {
+  if (impl_->boxes.empty()) return;
+  const Vec3 local = p - impl_->centre;
+  RTCPointQuery query;
+  query.x = float(local.x());
+  query.y = float(local.y());
+  query.z = float(local.z());
+  query.time = 0;
+  query.radius = float(radius + kPad);
+  RTCPointQueryContext stack;
+  rtcInitPointQueryContext(&stack);
+  Query q{visit, context};
+  rtcPointQuery(impl_->scene, &query, &stack, on_candidate, &q);
+}
+
+std::size_t SpatialIndex::built() { return built_count; }
+
+}  // namespace toothpath

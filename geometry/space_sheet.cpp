@@ -1,0 +1,160 @@
+#include "geometry/space_sheet.h"
+
+#include <Eigen/LU>
+
+namespace toothpath {
+namespace {
+
+using Dual2 = Dual<double, 2>;
+
+int side_of(SpacePiece piece) {
+  return piece == SpacePiece::flank_plus || piece == SpacePiece::fillet_plus ? 1 : -1;
+}
+
+Vec3 value(const Vec3T<Dual2>& x) { return {x[0].v, x[1].v, x[2].v}; }
+Vec3 derivative(const Vec3T<Dual2>& x, std::size_t k) { return {x[0].d[k], x[1].d[k], x[2].d[k]}; }
+
+PatchPoint from_dual(const Vec3T<Dual2>& p, const Vec3T<Dual2>& n) {
+  return {value(p), value(n), derivative(p, 0), derivative(p, 1), derivative(n, 0), derivative(n, 1)};
+}
+
+PatchPoint turned(const PatchPoint& q, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const auto turn = [c, s](const Vec3& x) { return Vec3(c * x.x() - s * x.y(), s * x.x() + c * x.y(), x.z()); };
+  return {turn(q.p), turn(q.n), turn(q.pu), turn(q.pv), turn(q.nu), turn(q.nv)};
+}
+
+}  // namespace
+
+const char* to_string(SpacePiece piece) {
+  switch (piece) {
+    case SpacePiece::flank_plus: return "flank +1";
+    case SpacePiece::fillet_plus: return "fillet +1";
+    case SpacePiece::root: return "root";
+    case SpacePiece::fillet_minus: return "fillet -1";
+    case SpacePiece::flank_minus: return "flank -1";
+  }
+  return "";
+}
+
+SpaceSheet::SpaceSheet(const FaceGearParameters& gear, const FaceGearRing& ring)
+    : ring_(ring), dual_(make_surface<Dual2>(gear, ring.zone.helix_angle_rad)) {}
+
+template <typename S>
+SurfacePointT<S> SpaceSheet::root_point(const FaceGearSurface<S>& f, const S& fraction, const S& Z) const {
+  using std::atan2;
+  const S b0 = atan2(S(-f.E * f.Cg), S(f.Sg * Z));
+  const S twist = b0 - f.shaper.kappa * (Z - f.L0);
+  const S turn_plus = -f.i * (twist - f.shaper.psi_c), turn_minus = f.pitch - f.i * (twist + f.shaper.psi_c);
+  const S turn = turn_plus + fraction * (turn_minus - turn_plus);
+  const auto m = f.root_meridian(Z);
+  return {FaceGearSurface<S>::turned(m.p, turn), FaceGearSurface<S>::turned(m.n, turn)};
+}
+
+std::optional<PatchPoint> SpaceSheet::at(SpacePiece piece, double u, double v) const {
+  const auto& f = ring_.surface;
+  const int s = side_of(piece);
+  PatchPoint q;
+  switch (piece) {
+    case SpacePiece::flank_plus:
+    case SpacePiece::flank_minus: {
+      if (!(std::abs(v) < 1.4)) return {};
+      const auto H = f.flank_shape(s, u, v);
+      if (!(f.flank_J(s, u, v) > 0)) return {};
+      const auto point = f.flank(s, u, v);
+      const auto d = f.flank_derivatives(s, u, v);
+      const auto basis = f.flank_basis(s, u, v);
+      const auto dn = [&](const Vec3& along) {
+        const double x = along.dot(basis.e), y = along.dot(basis.l);
+        return Vec3(basis.e * (H.ee * x + H.el * y) + basis.l * (H.el * x + H.ll * y));
+      };
+      q = {point.p, point.n, d.u, d.v, dn(d.u), dn(d.v)};
+      break;
+    }
+    case SpacePiece::fillet_plus:
+    case SpacePiece::fillet_minus: {
+      const auto g = dual_.fillet(s, Dual2::variable(u, 0), Dual2::variable(v, 1));
+      if (!g.defined) return {};
+      q = from_dual(g.p, g.n);
+      break;
+    }
+    case SpacePiece::root: {
+      const auto g = root_point<Dual2>(dual_, Dual2::variable(u, 0), Dual2::variable(v, 1));
+      return from_dual(g.p, g.n);
+    }
+  }
+  return s > 0 ? q : turned(q, f.pitch);
+}
+
+std::optional<PatchPoint> SpaceSheet::point(SpacePiece piece, double u, double v) const {
+  const auto& f = ring_.surface;
+  const int s = side_of(piece);
+  SurfacePointT<double> q;
+  switch (piece) {
+    case SpacePiece::flank_plus:
+    case SpacePiece::flank_minus:
+      if (!(std::abs(v) < 1.4) || !(f.flank_J(s, u, v) > 0)) return {};
+      q = f.flank(s, u, v);
+      break;
+    case SpacePiece::fillet_plus:
+    case SpacePiece::fillet_minus: {
+      const auto g = f.fillet(s, u, v);
+      if (!g.defined) return {};
+      q = {g.p, g.n};
+      break;
+    }
+    case SpacePiece::root: q = root_point<double>(f, u, v); break;
+  }
+  PatchPoint out;
+  const bool turn = piece == SpacePiece::fillet_minus || piece == SpacePiece::flank_minus;
+  out.p = turn ? FaceGearSurface<double>::turned(q.p, f.pitch) : q.p;
+  out.n = turn ? FaceGearSurface<double>::turned(q.n, f.pitch) : q.n;
+  return out;
+}
+
+std::optional<PatchFoot> SpaceSheet::foot(SpacePiece piece, const Vec3& c, double u, double v) const {
+  PatchFoot f;
+  f.u = u;
+  f.v = v;
+  double previous = INFINITY;
+  for (int k = 0; k < 30; ++k) {
+    const auto q = at(piece, f.u, f.v);
+    if (!q) return {};
+    if (k == 0) f.distance = (c - q->p).dot(q->n);
+    const Vec3 residual = c - q->p - q->n * f.distance;
+    const double error = residual.norm();
+    f.at = *q;
+    if (error < 2e-13 * (1 + c.norm()) || (error < 1e-11 && error >= 0.5 * previous)) {
+      f.distance = (c - q->p).dot(q->n);
+      return f;
+    }
+    previous = error;
+    Mat3 J;
+    J.col(0) = q->pu + q->nu * f.distance;
+    J.col(1) = q->pv + q->nv * f.distance;
+    J.col(2) = q->n;
+    Vec3 step = J.inverse() * residual;
+    if (!step.allFinite()) return {};
+    // Roll, normal and base-tangent angles move by at most 0.15 rad, sections and distances by a fraction of a millimetre scale.
+    const double limit_u = piece == SpacePiece::root ? 0.5 : 0.15;
+    const double limit_v = piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus
+                               ? 0.15
+                               : 2 * ring_.surface.shaper.m_t;
+    const double shrink = std::max({1.0, std::abs(step[0]) / limit_u, std::abs(step[1]) / limit_v});
+    step /= shrink;
+    f.u += step[0];
+    f.v += step[1];
+    f.distance += step[2];
+  }
+  return {};
+}
+
+double SpaceSheet::normal_curvature(const PatchPoint& at, const Vec3& along) {
+  const Vec3 t = along - at.n * at.n.dot(along);
+  const double uu = at.pu.squaredNorm(), uv = at.pu.dot(at.pv), vv = at.pv.squaredNorm();
+  const double tu = t.dot(at.pu), tv = t.dot(at.pv), det = uu * vv - uv * uv;
+  const double a = (tu * vv - tv * uv) / det, b = (tv * uu - tu * uv) / det;
+  return (at.nu * a + at.nv * b).dot(t) / t.squaredNorm();
+}
+
+}  // namespace toothpath
