@@ -1,0 +1,157 @@
+#include "app/command_line.h"
+
+#include <tbb/global_control.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdio>
+#include <exception>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "app/commands/surface.h"
+#include "app/report/html_text.h"
+
+namespace toothpath {
+namespace {
+
+constexpr const char* kVersion = "toothpath " TOOTHPATH_VERSION;
+
+struct GlobalOptions {
+  bool json = false;
+  bool quiet = false;
+  int threads = 0;  ///< 0: as many as the machine has
+  std::string color = "auto";
+};
+
+using Command = std::function<CommandOutcome(const CommandRequest&)>;
+
+bool terminal_with_color(int descriptor) {
+  const char* no_color = std::getenv("NO_COLOR");
+  const char* terminal = std::getenv("TERM");
+  return ::isatty(descriptor) != 0 && (!no_color || !*no_color) && terminal && std::string_view(terminal) != "dumb";
+}
+
+bool wants_color(const std::string& choice, int descriptor) {
+  return choice == "always" || (choice == "auto" && terminal_with_color(descriptor));
+}
+
+/// Everything that came to stdout must have arrived: a full disk behind a redirection is an error of ours too.
+bool print(std::string_view text) {
+  return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+}
+
+std::string outcome_json(const std::string& command, const CommandOutcome& outcome) {
+  nlohmann::ordered_json json;
+  json["schema"] = 1;
+  json["command"] = command;
+  json["exit_code"] = static_cast<int>(outcome.exit_code);
+  json["errors"] = nlohmann::ordered_json::array();
+  for (const auto& error : outcome.errors)
+    json["errors"].push_back({{"file", valid_utf8(error.position.file)},
+                              {"line", error.position.line},
+                              {"column", error.position.column},
+                              {"message", valid_utf8(error.message)}});
+  if (!outcome.report_json.empty()) json["report"] = nlohmann::ordered_json::parse(outcome.report_json);
+  return json.dump() + "\n";
+}
+
+/// Errors to stderr, the result to stdout.
+int present(const std::string& command, const CommandOutcome& outcome, const GlobalOptions& options) {
+  const bool color = wants_color(options.color, STDERR_FILENO);
+  for (const auto& error : outcome.errors)
+    std::fprintf(stderr, "%s%s%s\n", color ? "\033[31m" : "", error.text().c_str(), color ? "\033[0m" : "");
+  std::fflush(stderr);
+  bool printed = true;
+  if (options.json) printed = print(outcome_json(command, outcome));
+  else if (!options.quiet) printed = print(outcome.summary);
+  if (!printed && outcome.exit_code == ExitCode::ok) {
+    std::fputs("error: cannot write to the standard output\n", stderr);
+    return static_cast<int>(ExitCode::file_access);
+  }
+  return static_cast<int>(outcome.exit_code);
+}
+
+CommandOutcome internal_error(std::string message) {
+  Diagnostic error;
+  error.message = std::move(message);
+  CommandOutcome outcome;
+  outcome.exit_code = ExitCode::internal;
+  outcome.errors.push_back(std::move(error));
+  return outcome;
+}
+
+CommandOutcome guarded(const Command& command, const CommandRequest& request) {
+  try {
+    return command(request);
+  } catch (const std::bad_alloc&) {
+    return internal_error("out of memory");
+  } catch (const std::exception& error) {
+    return internal_error(fmt::format("internal error: {}", error.what()));
+  }
+}
+
+/// A whole number in a range; the library's own check prints limits that nobody can read.
+std::string check_threads(const std::string& text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc{} && end == text.data() + text.size() && value >= 1 && value <= 1024) return {};
+  return "--threads = " + text + " is not a whole number from 1 to 1024";
+}
+
+struct Subcommand {
+  CLI::App* app = nullptr;
+  Command command;
+};
+
+/// Adds a command of the form `name JOB --out DIR`.
+Subcommand add_job_command(CLI::App& app, const char* name, const char* description, CommandRequest& request, Command command) {
+  CLI::App* sub = app.add_subcommand(name, description);
+  sub->fallthrough();
+  sub->add_option("JOB", request.job_file, "job file (TOML)")->required();
+  sub->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required();
+  return {sub, std::move(command)};
+}
+
+void add_global_options(CLI::App& app, GlobalOptions& options) {
+  app.set_version_flag("--version", kVersion);
+  app.add_flag("--json", options.json, "print one JSON object on stdout");
+  app.add_flag("--quiet", options.quiet, "print errors only");
+  app.add_option("--threads", options.threads, "number of threads (default: all)")->check(CLI::Validator(check_threads, "N", "threads"));
+  app.add_option("--color", options.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}));
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app{"Tool paths for gear teeth, from gear parameters to a checked NC program.", "toothpath"};
+  GlobalOptions options;
+  CommandRequest request;
+  add_global_options(app, options);
+  app.require_subcommand(0, 1);
+  std::vector<Subcommand> commands;
+  commands.push_back(add_job_command(app, "surface", "flanks, limits, inspection grid and mesh of the gear", request, run_surface));
+
+  try {
+    app.parse(argc, argv);
+    if (app.get_subcommands().empty()) throw CLI::CallForHelp();
+  } catch (const CLI::ParseError& error) {
+    const bool help = error.get_exit_code() == 0 && argc > 1;
+    app.exit(error);
+    return static_cast<int>(help ? ExitCode::ok : ExitCode::usage);
+  }
+
+  request.quiet = options.quiet || options.json;
+  request.color = wants_color(options.color, STDOUT_FILENO);
+  std::optional<tbb::global_control> threads;
+  if (options.threads > 0)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+  for (const auto& [sub, command] : commands)
+    if (sub->parsed()) return present(sub->get_name(), guarded(command, request), options);
+  return static_cast<int>(ExitCode::internal);
+}
+
+}  // namespace toothpath

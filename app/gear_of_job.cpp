@@ -1,0 +1,84 @@
+#include "app/gear_of_job.h"
+
+#include <filesystem>
+
+#include "machines/machine_file.h"
+#include "postproc/axis_program.h"
+
+namespace toothpath {
+namespace {
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+void check_speeds(const Job& job, const Machine& machine, std::vector<Diagnostic>& errors) {
+  for (std::size_t i = 0; i < job.operations.size(); ++i) {
+    const auto& operation = job.operations[i];
+    const std::string path = fmt::format("operation[{}]", i);
+    if (operation.speed_rpm > machine.max_spindle_speed)
+      errors.push_back(fail_at(job.where(path + ".speed"), "speed = {} 1/min exceeds {} 1/min, the spindle of {}",
+                               operation.speed_rpm, machine.max_spindle_speed, machine.name));
+    if (operation.feed_mm_min > machine.max_cutting_feed)
+      errors.push_back(fail_at(job.where(path + ".feed"), "feed = {} mm/min exceeds {} mm/min, the cutting feed of {}",
+                               operation.feed_mm_min, machine.max_cutting_feed, machine.name));
+  }
+}
+
+}  // namespace
+
+Diagnostic located(const Job& job, std::string_view key, Diagnostic diagnostic) {
+  if (diagnostic.position.file.empty()) diagnostic.position = job.where(key);
+  return diagnostic;
+}
+
+ValueOrErrors<FaceGear> make_face_gear(const Job& job) {
+  const FaceGearParameters* parameters = job.face_gear();
+  if (!parameters)
+    return std::vector{fail_at(job.where("gear.type"), "type = \"equal_base_circle_bevel_gear\", but this command needs a face_gear")};
+  auto made = FaceGear::make(*parameters);
+  if (auto* gear = std::get_if<FaceGear>(&made)) return std::move(*gear);
+  std::vector<Diagnostic> errors;
+  for (auto& refusal : std::get<1>(made)) {
+    // The stock of the blank stands in its own table.
+    const bool stock = refusal.key == "groove_depth" || refusal.key == "allowance_top";
+    errors.push_back(located(job, (stock ? "stock." : "gear.") + refusal.key, std::move(refusal.diagnostic)));
+  }
+  return errors;
+}
+
+ValueOrErrors<Machine> load_machine(const Job& job) {
+  if (job.machine.file.empty()) return std::vector{fail_at(job.where(""), "the job lacks the table [machine]")};
+  const std::string directory = std::filesystem::path(job.file).parent_path().string();
+  const auto path = find_machine_file(job.machine.file, directory);
+  if (!path) return std::vector{located(job, "machine.file", path.error())};
+  const auto kind = machine_kind_of(*path);
+  if (!kind) return std::vector{located(job, "machine.file", kind.error())};
+  if (*kind != MachineKind::five_axis)
+    return std::vector{fail_at(job.where("machine.file"), "{} is a gear shaper, but this command needs a milling machine", job.machine.file)};
+  auto reading = read_machine_file(*path);
+  if (!reading.machine) return reading.errors;
+  Machine machine = std::move(*reading.machine);
+  std::vector<Diagnostic> errors;
+  if (machine.assumed && !job.machine.accept_assumed)
+    errors.push_back(fail_at(job.where("machine.file"),
+                             "{} has assumed values ({}); measure them, or accept them with accept_assumed = true", job.machine.file,
+                             joined(machine.assumed_keys)));
+  check_speeds(job, machine, errors);
+  if (!errors.empty()) return errors;
+  return machine;
+}
+
+Status check_part_on_machine(const Job& job, const Machine& machine, double part_diameter_mm) {
+  const auto fits = check_part_fits(machine, part_diameter_mm);
+  if (!fits) {
+    Diagnostic error = fits.error();
+    error.position = job.where("machine.file");
+    return error;
+  }
+  return Ok{};
+}
+
+}  // namespace toothpath

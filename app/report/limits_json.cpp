@@ -1,0 +1,31 @@
+#include "app/report/limits_json.h"
+
+#include <nlohmann/json.hpp>
+
+namespace toothpath {
+
+std::string limits_json(const FaceGear& gear) {
+  using Json = nlohmann::ordered_json;
+  const auto radius = [](const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); };
+  Json zones = Json::array();
+  for (std::size_t i = 0; i < gear.rings().size(); ++i) {
+    const FaceGearRing& ring = gear.rings()[i];
+    Json flanks = Json::array();
+    for (const FlankLimits& flank : ring.limits.flanks)
+      flanks.push_back({{"side", flank.side},
+                        {"undercut_radius", radius(flank.undercut_radius)},
+                        {"involute_start_radius", radius(flank.involute_start_radius)},
+                        {"pointing_radius", radius(ring.limits.pointing_radius)}});
+    zones.push_back({{"zone", i},
+                     {"inner_radius", ring.zone.inner_radius_mm},
+                     {"outer_radius", ring.zone.outer_radius_mm},
+                     {"inner_limit", ring.limits.inner_limit},
+                     {"inner_limit_name", ring.limits.inner_limit_name},
+                     {"land_radius", radius(ring.limits.land_radius)},
+                     {"practical_land", ring.limits.practical_land_mm},
+                     {"flanks", std::move(flanks)}});
+  }
+  return Json{{"schema", 1}, {"zones", std::move(zones)}}.dump(2) + "\n";
+}
+
+}  // namespace toothpath

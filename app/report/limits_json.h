@@ -1,0 +1,14 @@
+// limits.json of a face gear: where its flanks end.
+#pragma once
+
+#include <string>
+
+#include "geometry/face_gear.h"
+
+namespace toothpath {
+
+/// `{"zones": [{"zone", "flanks": [{"side", "undercut_radius", "involute_start_radius", "pointing_radius"}]}]}`; radii in mm,
+/// null where a limit does not exist. Ends in a line feed.
+[[nodiscard]] std::string limits_json(const FaceGear& gear);
+
+}  // namespace toothpath

@@ -1,0 +1,141 @@
+#include <nlohmann/json.hpp>
+
+#include "app/report/html_text.h"
+#include "app/report/run_report.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double um(double mm) { return mm * 1000.0; }
+
+Json text_list(const std::vector<std::string>& texts) {
+  Json list = Json::array();
+  for (const auto& text : texts) list.push_back(valid_utf8(text));
+  return list;
+}
+
+Json vector_json(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+Json excess_json(const ExcessResult& e, bool with_operation) {
+  Json json;
+  if (with_operation) json["op"] = e.operation;
+  json["max"] = um(e.max_mm);
+  json["min"] = um(e.min_mm);
+  json["rms"] = um(e.rms_mm);
+  json["bound"] = um(e.bound_mm);
+  json["points"] = e.points;
+  return json;
+}
+
+Json place_json(const WorstPlace& place) {
+  return {{"depth_um", um(place.depth_mm)}, {"body", place.body},           {"patch", place.patch},
+          {"op", place.operation},          {"tooth", place.tooth},         {"zone", place.zone},
+          {"line", place.line},             {"radius", place.radius_mm},    {"height", place.height_mm},
+          {"point", vector_json(place.point)}};
+}
+
+void add_proof(Json& json, const RunReport& r) {
+  if (r.gouge) {
+    json["gouge_um"] = {{"measured", um(r.gouge->measured_mm)}, {"bound", um(r.gouge->bound_mm)}, {"tolerance", um(r.gouge_tolerance_mm)}};
+    json["clearance"] = {{"least", r.gouge->clearance_mm}, {"required", r.gouge->required_clearance_mm}, {"rapids_clear", r.gouge->rapids_clear}};
+    Json worst = Json::array();
+    for (const auto& place : r.gouge->worst) worst.push_back(place_json(place));
+    json["worst_places"] = std::move(worst);
+    json["deepest"] = place_json(r.gouge->deepest);
+  }
+  if (!r.excess.empty() || r.finished) {
+    Json excess;
+    excess["operations"] = Json::array();
+    for (const auto& e : r.excess) excess["operations"].push_back(excess_json(e, true));
+    if (r.finished) excess["finished"] = excess_json(*r.finished, false);
+    json["excess_um"] = std::move(excess);
+  }
+  if (r.scallop)
+    json["scallop_um"] = {{"requested", um(r.scallop->requested_mm)},
+                          {"reached_min", um(r.scallop->reached_min_mm)},
+                          {"reached_max", um(r.scallop->reached_max_mm)},
+                          {"share_within", r.scallop->share_within}};
+  if (r.unreached) json["unreached"] = {{"points", r.unreached->points}, {"max_height_um", um(r.unreached->max_height_mm)}};
+}
+
+void add_directions(Json& json, const RunReport& r) {
+  if (r.directions.empty()) return;
+  bool fixed = true;
+  Json list = Json::array();
+  for (const auto& d : r.directions) {
+    fixed = fixed && d.fixed;
+    list.push_back({{"op", d.operation},
+                    {"zone", d.zone},
+                    {"fixed", d.fixed},
+                    {"axis", vector_json(d.axis)},
+                    {"lean_deg", degrees(d.lean_rad)},
+                    {"clearance", d.clearance_mm},
+                    {"explanation", valid_utf8(d.explanation)}});
+  }
+  json["tilt"] = {{"mode", fixed ? "fixed" : "simultaneous"}, {"directions", std::move(list)}};
+}
+
+void add_motion(Json& json, const RunReport& r) {
+  if (r.operations.empty()) return;
+  json["cl_points"] = r.cl_points;
+  json["blocks"] = r.blocks;
+  json["cutting_minutes"] = r.feed_minutes;
+  json["total_minutes"] = r.total_minutes;
+  Json operations = Json::array();
+  for (const auto& o : r.operations)
+    operations.push_back({{"op", o.operation},
+                          {"type", o.type},
+                          {"tool", o.tool_number},
+                          {"speed", o.speed_rpm},
+                          {"feed", o.feed_mm_min},
+                          {"cl_points", o.cl_points},
+                          {"cutting_minutes", o.feed_minutes},
+                          {"rapid_minutes", o.rapid_minutes}});
+  json["operations"] = std::move(operations);
+  Json axes = Json::object();
+  for (const auto& axis : r.axes) {
+    const double f = axis.rotary ? degrees(1.0) : 1.0;
+    axes[std::string(1, axis.letter)] = {{"min", axis.min * f}, {"max", axis.max * f},
+                                         {"limit", Json::array({axis.lower_limit * f, axis.upper_limit * f})},
+                                         {"unit", axis.rotary ? "deg" : "mm"}};
+  }
+  json["axes"] = std::move(axes);
+}
+
+}  // namespace
+
+std::string report_json(const RunReport& r) {
+  Json json;
+  json["schema"] = 1;
+  json["command"] = r.command;
+  json["job"] = valid_utf8(r.job_name);
+  json["job_file"] = valid_utf8(r.job_file);
+  const bool proves = r.command != "surface";
+  if (proves) {
+    json["verified"] = r.verified;
+    json["reasons"] = text_list(r.reasons);
+    json["machine"] = {{"name", valid_utf8(r.machine_name)}, {"file", valid_utf8(r.machine_file)}, {"dialect", r.dialect}};
+  }
+  if (!r.program_file.empty())
+    json["program"] = {{"file", r.program_file}, {"sha256", r.program_sha256}, {"bytes", r.program_bytes}};
+  add_proof(json, r);
+  add_motion(json, r);
+  add_directions(json, r);
+  if (proves) {
+    Json ledger = Json::object();
+    for (const auto& entry : r.ledger) ledger[entry.source] = {{"predicted", entry.predicted_um}, {"measured", entry.measured_um}};
+    json["ledger"] = std::move(ledger);
+    json["assumed"] = text_list(r.assumed);
+  }
+  json["warnings"] = text_list(r.warnings);
+  json["files"] = text_list(r.files);
+  Json stages = Json::object();
+  for (const auto& [name, seconds] : r.stages) stages[name] = seconds;
+  json["stages"] = std::move(stages);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace toothpath

@@ -1,0 +1,61 @@
+// Everything that a run found out, as plain values: the one source of report.json, the set-up sheet and the table on the screen.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cam/verification.h"
+#include "postproc/axis_program.h"
+
+namespace toothpath {
+
+/// One operation as the machinist sees it.
+struct OperationReport {
+  int operation = 0;         ///< index in the job
+  std::string type;
+  int tool_number = 0;
+  double speed_rpm = 0, feed_mm_min = 0;
+  std::size_t cl_points = 0;  ///< one tooth space
+  double feed_minutes = 0, rapid_minutes = 0;  ///< all teeth
+};
+
+struct RunReport {
+  std::string command;  ///< "run", "check", "surface"
+  std::string job_name, job_file, machine_name, machine_file, dialect;
+  bool verified = false;
+  std::vector<std::string> reasons;  ///< why it is not verified
+
+  std::string program_file, program_sha256;  ///< empty where no program was written
+  std::size_t program_bytes = 0;
+
+  double gouge_tolerance_mm = 0;
+  std::optional<GougeResult> gouge;
+  std::vector<ExcessResult> excess;          ///< one an operation
+  std::optional<ExcessResult> finished;      ///< the finished surface, over the points that the finishing ball reaches
+  std::optional<UnreachedResult> unreached;
+  std::optional<ScallopResult> scallop;
+
+  std::size_t cl_points = 0, blocks = 0;
+  double feed_minutes = 0, total_minutes = 0;  ///< all teeth; tool changes left out
+  std::vector<OperationReport> operations;
+  std::vector<DirectionChoice> directions;
+  std::vector<AxisRange> axes;
+  std::vector<LedgerEntry> ledger;
+  std::vector<std::string> assumed, warnings;
+  std::vector<std::string> files;                        ///< written by this run
+  std::vector<std::pair<std::string, double>> stages;    ///< name and seconds, those that ran
+};
+
+/// report.json, ending in a line feed. Values that a command does not have are left out; lengths in um where the key says so.
+[[nodiscard]] std::string report_json(const RunReport& report);
+
+/// The table on the screen: verified or not, worst gouge, worst left material, cutting time, tools, axis ranges, every assumed
+/// value. Plain text; with `color` the verdict is green or red.
+[[nodiscard]] std::string summary_table(const RunReport& report, bool color);
+
+/// "1 h 23 min", "4 min 05 s".
+[[nodiscard]] std::string readable_minutes(double minutes);
+
+}  // namespace toothpath

@@ -1,0 +1,17 @@
+// setup.html: what the machinist needs at the machine, on A4 paper.
+#pragma once
+
+#include <string>
+
+#include "app/job.h"
+#include "app/report/run_report.h"
+#include "geometry/face_gear.h"
+#include "machines/machine.h"
+
+namespace toothpath {
+
+/// Machine, work offset, tools with lengths and run times, operations, axis ranges, every assumed value, warnings, and a sketch of the
+/// part in the machine as inline SVG. One self-contained page without script. The job has a set-up.
+[[nodiscard]] std::string setup_sheet(const Job& job, const FaceGear& gear, const Machine& machine, const RunReport& report);
+
+}  // namespace toothpath

@@ -1,0 +1,74 @@
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/run_report.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath {
+namespace {
+
+constexpr double kUm = 1000.0;
+
+void row(std::string& out, std::string_view name, const std::string& value) { out += fmt::format("  {:<20}{}\n", name, value); }
+
+std::string tools_text(const RunReport& report) {
+  std::string text;
+  std::vector<int> seen;
+  for (const auto& operation : report.operations) {
+    if (std::find(seen.begin(), seen.end(), operation.tool_number) != seen.end()) continue;
+    seen.push_back(operation.tool_number);
+    double minutes = 0;
+    for (const auto& other : report.operations)
+      if (other.tool_number == operation.tool_number) minutes += other.feed_minutes + other.rapid_minutes;
+    text += fmt::format("{}T{} {}", text.empty() ? "" : ", ", operation.tool_number, readable_minutes(minutes));
+  }
+  return text;
+}
+
+void axis_rows(std::string& out, const RunReport& report) {
+  for (const auto& axis : report.axes) {
+    const double f = axis.rotary ? degrees(1.0) : 1.0;
+    row(out, fmt::format("axis {}", axis.letter),
+        fmt::format("{:.3f} .. {:.3f} {}   limits {:g} .. {:g}", axis.min * f, axis.max * f, axis.rotary ? "deg" : "mm",
+                    axis.lower_limit * f, axis.upper_limit * f));
+  }
+}
+
+}  // namespace
+
+std::string readable_minutes(double minutes) {
+  const auto seconds = static_cast<long long>(std::llround(minutes * 60));
+  if (seconds >= 3600) return fmt::format("{} h {:02} min", seconds / 3600, seconds % 3600 / 60);
+  return fmt::format("{} min {:02} s", seconds / 60, seconds % 60);
+}
+
+std::string summary_table(const RunReport& report, bool color) {
+  std::string out = report.job_name + "\n";
+  const char* verdict = report.verified ? "yes" : "NO";
+  const char* paint = report.verified ? "\033[32m" : "\033[31m";
+  row(out, "verified", color ? fmt::format("{}{}\033[0m", paint, verdict) : std::string(verdict));
+  for (const auto& reason : report.reasons) row(out, "  because", reason);
+  if (report.gouge)
+    row(out, "worst gouge", fmt::format("{:.2f} um, proven below {:.2f} um (tolerance {:.2f} um)", std::max(0.0, report.gouge->measured_mm) * kUm,
+                                        std::max(0.0, report.gouge->bound_mm) * kUm, report.gouge_tolerance_mm * kUm));
+  if (report.finished)
+    row(out, "worst left material", fmt::format("{:.2f} um, proven below {:.2f} um", report.finished->max_mm * kUm, report.finished->bound_mm * kUm));
+  if (report.unreached && report.unreached->points > 0)
+    row(out, "corners not reached", fmt::format("up to {:.1f} um high", report.unreached->max_height_mm * kUm));
+  if (report.gouge) row(out, "least clearance", fmt::format("{:.3f} mm (neck, shank, holder)", report.gouge->clearance_mm));
+  if (!report.operations.empty()) {
+    row(out, "cutting time", fmt::format("{} (with rapids {})", readable_minutes(report.feed_minutes), readable_minutes(report.total_minutes)));
+    row(out, "tools", tools_text(report));
+  }
+  axis_rows(out, report);
+  if (!report.machine_name.empty()) row(out, "machine", report.machine_name);
+  for (const auto& name : report.assumed) row(out, "assumed", name);
+  if (!report.program_file.empty()) row(out, "program", fmt::format("{}, {} blocks", report.program_file, report.blocks));
+  for (const auto& warning : report.warnings) row(out, "warning", warning);
+  double seconds = 0;
+  for (const auto& stage : report.stages) seconds += stage.second;
+  row(out, "computed in", fmt::format("{:.1f} s", seconds));
+  return out;
+}
+
+}  // namespace toothpath
