@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "geometry/base/angle.h"
-#include "postproc/shaper_simulation.h"
 
 namespace toothpath {
 namespace {
@@ -276,11 +275,13 @@ std::variant<ShaperSetup, std::vector<ShaperRefusal>> plan_shaper_setup(const Sh
   s.infeed_min = s.strokes_infeed / s.strokes_set;
   s.generating_min = s.strokes_turn / s.strokes_set;
   set_passes(s);
-  s.relief.clearance_mm = back_stroke_clearance(s, machine.relief_mm);
-  s.relief.clear = s.relief.clearance_mm > 0;
-  if (!s.relief.clear)
-    s.warnings.push_back(fmt::format("the lifted cutter rubs on the back stroke: {:.4f} mm at a relief of {:.4f} mm; a smaller "
-                                     "circular feed or more relief is needed", s.relief.clearance_mm, machine.relief_mm));
+  s.relief = back_stroke_clearance(s, machine.relief_mm);
+  if (s.relief.flank_mm <= 0)
+    s.warnings.push_back(fmt::format("the lifted cutter rubs on the finished flanks by {:.4f} mm on the back stroke: {:.4f} mm of "
+                                     "relief are too little", -s.relief.flank_mm, machine.relief_mm));
+  if (s.relief.stock_mm <= 0)
+    s.warnings.push_back(fmt::format("on the back stroke the lifted cutter touches stock of the next stroke by {:.4f} mm; more relief "
+                                     "or a smaller circular feed spares its edge", -s.relief.stock_mm));
   return s;
 }
 

@@ -9,6 +9,7 @@
 #include "geometry/face_gear_surface.h"
 #include "machines/shaper_machine.h"
 #include "postproc/change_gears.h"
+#include "postproc/shaper_simulation.h"
 #include "postproc/shaping.h"
 
 namespace toothpath {
@@ -28,12 +29,6 @@ struct ShaperPass {
   int stroke = 0;             ///< the first double stroke at this depth or deeper
   double minutes = 0;         ///< from the first stroke
   double tooth_thickness_mm = 0, space_width_mm = 0;  ///< arcs on the tip surface at the inspection radius
-};
-
-/// Clearance of the cutter on the back stroke, from a simulation of the strokes.
-struct ReliefCheck {
-  double clearance_mm = 0;  ///< least distance of the lifted cutter's profile from material; negative: it rubs
-  bool clear = true;
 };
 
 /// Everything that `shaper.json` states. Signs and symbols: docs of the shaper output.
@@ -71,7 +66,7 @@ struct ShaperSetup {
 
   double inspection_radius_mm = 0;
   std::vector<ShaperPass> passes;
-  ReliefCheck relief;
+  BackStrokeClearance relief;
 
   [[nodiscard]] int strokes_total() const { return strokes_infeed + strokes_turn; }
   [[nodiscard]] double total_min() const { return infeed_min + generating_min; }

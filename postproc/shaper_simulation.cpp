@@ -88,12 +88,16 @@ double cutter_distance(const InvoluteShaper<double>& k, double x, double y) {
 std::optional<double> stroke_distance(const FaceGearSurface<double>& gear, const ShaperStroke& stroke, const Vec3& point) {
   const double length = stroke.z_to_mm - stroke.z_from_mm;
   const auto work_at = [&](double t) { return stroke.work_from + t * (stroke.work_to - stroke.work_from); };
-  // The section of the point hardly moves while the work turns by one feed: the fixed point converges at once.
+  // The section of the point hardly moves while the work turns by one feed: each step wins two digits or more.
   double t = 0.5;
   Seen seen;
-  for (int k = 0; k < 4; ++k) {
+  for (int k = 0; k < 16; ++k) {
     seen = seen_from_cutter(gear, point, work_at(t), stroke.x_mm);
+    const double before = t;
     t = (seen.Z - stroke.z_from_mm) / length;
+    if (std::abs(t - before) < 1e-13) break;
+    // Far from the cutter the last digits of the moment do not matter.
+    if (std::hypot(seen.at.x, seen.at.y) > gear.shaper.r_a + 2 * kNear) break;
   }
   if (!(t >= 0 && t <= 1)) return std::nullopt;
   return turned_cutter_distance(gear.shaper, seen.at,
@@ -190,7 +194,7 @@ std::vector<ShaperStroke> planned_strokes(const ShaperSetup& setup, int first, i
 }
 
 std::vector<FeedStudyRow> feed_study(const ShaperSetup& setup, const std::vector<double>& feeds_mm) {
-  const auto samples = flank_samples(setup.surface, setup.inner_radius_mm, setup.outer_radius_mm, 7, 9);
+  const auto samples = flank_samples(setup.surface, setup.inner_radius_mm, setup.outer_radius_mm, 9, 13);
   const double window = reach(setup.surface, setup.inner_radius_mm);
   std::vector<FeedStudyRow> rows;
   for (const double feed : feeds_mm) {
@@ -206,23 +210,25 @@ std::vector<FeedStudyRow> feed_study(const ShaperSetup& setup, const std::vector
   return rows;
 }
 
-double back_stroke_clearance(const ShaperSetup& s, double relief_mm) {
+BackStrokeClearance back_stroke_clearance(const ShaperSetup& s, double relief_mm) {
   const auto& gear = s.surface;
   const auto& cutter = gear.shaper;
   const int now = s.strokes_infeed + s.strokes_turn / 2;
   const int past = static_cast<int>(std::ceil(2 * reach(gear, s.inner_radius_mm) / (2 * kPi) * s.strokes_turn));
   const auto strokes = planned_strokes(s, std::max(s.strokes_infeed, now - past), now);
   const double phi = strokes.back().cutter_to, work = strokes.back().work_to, tooth = 2 * kPi / cutter.teeth;
-  double clearance = kFar;
+  BackStrokeClearance clearance{kFar, kFar};
   const auto probe = [&](double x, double y) {
     for (const double r : {s.inner_radius_mm, s.outer_radius_mm}) {
       const double across = gear.E + y;
       if (std::abs(across) >= r) continue;
       const double Z = std::sqrt((r - across) * (r + across));
       const Vec3 housing = gear.b() * across + gear.a() * Z + gear.d() * (x - relief_mm);
-      double free = housing.z() - gear.z_tip(r);
-      if (free < 0) free = std::max(free, -swept_distance(gear, strokes, FaceGearSurface<double>::turned(housing, -work)));
-      clearance = std::min(clearance, free);
+      const double above = housing.z() - gear.z_tip(r);
+      const Vec3 point = FaceGearSurface<double>::turned(housing, -work);
+      if (above >= std::min(clearance.flank_mm, clearance.stock_mm)) continue;
+      clearance.flank_mm = std::min(clearance.flank_mm, std::max(above, -generated_distance(gear, point)));
+      clearance.stock_mm = std::min(clearance.stock_mm, std::max(above, -swept_distance(gear, strokes, point)));
     }
   };
   constexpr int kSteps = 10;

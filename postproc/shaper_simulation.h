@@ -67,9 +67,13 @@ struct FeedStudyRow {
 /// Strokes at the set-up's strokes per minute with other circular feeds; one tooth, both flanks.
 [[nodiscard]] std::vector<FeedStudyRow> feed_study(const ShaperSetup& setup, const std::vector<double>& feeds_mm);
 
-/// Clearance of the cutter, lifted by `relief_mm` at the end of a stroke in the middle of the first turn, from the material that
-/// earlier strokes have left. Sampled on profile points of the teeth in engagement at the outer and the inner edge; negative: it rubs.
-[[nodiscard]] double back_stroke_clearance(const ShaperSetup& setup, double relief_mm);
+/// Least distances of the cutter's profile, lifted by `relief_mm` at the end of a stroke in the middle of the turn at full depth:
+/// from the finished teeth, and from all material that earlier strokes have left (the next chips included). Negative: it rubs.
+struct BackStrokeClearance {
+  double flank_mm = 0, stock_mm = 0;
+};
+/// Sampled on profile points of the teeth in engagement at the outer and the inner edge of the face.
+[[nodiscard]] BackStrokeClearance back_stroke_clearance(const ShaperSetup& setup, double relief_mm);
 
 /// Arcs on the tip surface at radius r if the work makes a full turn with the cutter lifted by x: tooth and space.
 /// Nothing where no tooth stands or no space is cut.
