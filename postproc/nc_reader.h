@@ -31,6 +31,7 @@ struct NcControl {
   std::array<double, 5> rapid_speed{};        ///< mm/min and deg/min
   std::map<int, double> tool_length_mm;       ///< by T and H number
   std::map<std::string, Vec3> work_offsets;   ///< "G54" -> origin, machine coordinates, mm
+  double rotary_rounding_deg = 0.5e-5;        ///< half the last digit that the dialect prints
   std::size_t max_steps = 400'000'000;        ///< executed blocks before the program is refused as endless
 };
 
@@ -46,7 +47,8 @@ struct ExecutedMove {
   std::int16_t operation = -1;  ///< from the (OP n type) comment; -1 before the first
   std::int16_t tool = 0;        ///< T in the spindle
   bool rapid = false;
-  bool machine = false;         ///< G53
+  std::int16_t tooth = -1;      ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
+  bool machine = false;         ///< G53, or the block that switches tool length compensation on
   bool known = false;           ///< all joints were known before and after
 };
 
@@ -61,6 +63,7 @@ struct TurnedCopies {
   bool copies = false;
   int line = 0;            ///< first place that differs, of the text; 0 when copies
   std::string difference;  ///< what differs there
+  double worst_shift_deg = 0;  ///< greatest distance of an index word from k * 360 / z
   struct Operation {
     int operation = 0;
     std::size_t moves_per_tooth = 0;  ///< G53 retracts before and after left out
@@ -74,7 +77,8 @@ struct OperationTrace {
   int operation = 0;
   int tool = 0;            ///< T
   std::size_t kept_teeth = 0;  ///< 1 when the others are proven copies, else all
-  std::vector<ExecutedMove> moves;  ///< with the retract before the first tooth
+  std::size_t lead = 0;        ///< moves before the first tooth (retracts)
+  std::vector<ExecutedMove> moves;
 };
 
 struct ReadBack {
@@ -90,7 +94,7 @@ struct ReadBackOptions {
   bool keep_all = false;  ///< keep every tooth although they are copies
 };
 
-/// Executes the program (twice: to count, then to compare and keep).
+/// Executes the program twice (to count, then to compare and keep), a third time where every tooth is kept.
 [[nodiscard]] Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control,
                                          const Machine& machine, const Setup& setup, const ReadBackOptions& options);
 

@@ -77,9 +77,10 @@ class Writer {
   std::string op_type(std::string type) const {
     return dialect_.percent_frame ? comment_text(type) : type;
   }
-  std::string free_feed() const { return "G94 F" + value(to_fixed(kFreeFeed, 0), 0); }
+  std::string free_feed() const { return fmt::format("G94 F{}", value(to_fixed(kFreeFeed, 0), 0)); }
   std::string retract() const {
-    return "Z" + value(to_fixed(program_.retract_z_mm, program_.format.linear_decimals), program_.format.linear_decimals);
+    const int digits = program_.format.linear_decimals;
+    return fmt::format("Z{}", value(to_fixed(program_.retract_z_mm, digits), digits));
   }
 
   void forget() {
@@ -94,7 +95,7 @@ class Writer {
   }
 
   void machine_retract() {
-    line(dialect_.compensation_with_z ? "G0 G49 G53 " + retract() : "G53 G0 " + retract());
+    line(fmt::format("{} {}", dialect_.compensation_with_z ? "G0 G49 G53" : "G53 G0", retract()));
     forget();
   }
 
@@ -316,7 +317,7 @@ class Writer {
     result.text = std::move(body_);
     result.text.reserve(result.text.size() + body.size() + 100);
     result.text += body;
-    result.text += "(" + hash + ")\n";
+    result.text += fmt::format("({})\n", hash);
     result.text += dialect_.percent_frame ? "%" : dialect_.program_end;
     result.text += '\n';
     return result;

@@ -1,0 +1,196 @@
+#include "postproc/nc_reader.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "geometry/base/angle.h"
+
+namespace toothpath {
+namespace {
+
+constexpr double kCoincident = 1e-9;  // mm
+constexpr double kParallel = 1e-12;
+
+/// Counts of one operation's moves.
+struct Count {
+  std::size_t total = 0, lead = 0, trail = 0;
+  bool started = false;
+  [[nodiscard]] std::size_t inner() const { return started ? total - lead - trail : 0; }
+};
+
+bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+
+/// Compares the teeth of a program as they are executed.
+class CopyCheck {
+ public:
+  CopyCheck(const std::map<int, Count>& counts, const NcControl& control, int teeth, int index_sign)
+      : counts_(counts), control_(control), teeth_(teeth), sign_(index_sign) {
+    result_.copies = true;
+    for (const auto& [op, c] : counts) {
+      if (op < 0) continue;
+      const auto z = static_cast<std::size_t>(teeth);
+      if (c.inner() == 0 || c.inner() % z != 0)
+        differ(0, fmt::format("operation {}: {} moves are not {} equal teeth", op, c.inner(), teeth));
+      else
+        state_[op].per_tooth = c.inner() / z;
+    }
+    if (index_sign == 0 && teeth > 1) differ(0, "the gear axis is not the axis of the rotary that carries the work");
+  }
+
+  void operator()(const ExecutedMove& m) {
+    if (m.operation < 0) return;
+    State& s = state_[m.operation];
+    const Count& c = counts_.at(m.operation);
+    const std::size_t i = s.seen++;
+    if (i < c.lead || i >= c.total - c.trail) {
+      if (i < c.lead) s.kept.push_back(m);
+      return;
+    }
+    if (!result_.copies) return;
+    const std::size_t copy = (i - c.lead) / s.per_tooth, position = (i - c.lead) % s.per_tooth;
+    if (copy == 0) {
+      if (position == 0) s.turns.push_back(0);
+      s.kept.push_back(m);
+      return;
+    }
+    compare(m, s, s.kept[c.lead + position], position);
+  }
+
+  TurnedCopies finish() {
+    for (auto& [op, s] : state_) {
+      std::vector<bool> met(static_cast<std::size_t>(teeth_), false);
+      for (const int k : s.turns) {
+        if (result_.copies && met[static_cast<std::size_t>(k)]) differ(0, fmt::format("operation {}: tooth {} twice", op, k));
+        met[static_cast<std::size_t>(k)] = true;
+      }
+      result_.operations.push_back({op, s.per_tooth, s.turns});
+    }
+    return result_;
+  }
+  std::vector<ExecutedMove> take(int operation) { return std::move(state_[operation].kept); }
+
+ private:
+  struct State {
+    std::size_t per_tooth = 0, seen = 0;
+    int turn = 0;  // of this copy, whole index steps, not reduced
+    std::vector<int> turns;
+    std::vector<ExecutedMove> kept;
+  };
+
+  void compare(const ExecutedMove& m, State& s, const ExecutedMove& first, std::size_t position) {
+    for (std::size_t a = 0; a < 5; ++a) {
+      if (a == 3) continue;
+      if (!same_bits(m.joints[a], first.joints[a]))
+        return differ(m.line, fmt::format("{} = {} where the first tooth has {}", control_.letters[a], m.joints[a], first.joints[a]));
+    }
+    const double pitch = 360.0 / teeth_;
+    const double turned = sign_ * (m.joints[3] - first.joints[3]);
+    if (position == 0) {
+      const int k = static_cast<int>(std::lround(turned / pitch));
+      s.turn = k;
+      s.turns.push_back(((k % teeth_) + teeth_) % teeth_);
+    }
+    const double error = std::abs(turned - s.turn * 360.0 / teeth_);
+    result_.worst_shift_deg = std::max(result_.worst_shift_deg, error);
+    if (!(error <= control_.rotary_rounding_deg * (1 + 1e-6) + 1e-9))
+      return differ(m.line, fmt::format("{} is turned by {} deg where {} * 360 / {} is expected", control_.letters[3], turned,
+                                        s.turn, teeth_));
+    if (m.rapid != first.rapid || m.tool != first.tool) return differ(m.line, "rapid and feed or tool differ");
+    if (!m.rapid && std::abs(m.minutes - first.minutes) > 1e-9 * first.minutes + 1e-12)
+      return differ(m.line, fmt::format("block takes {} min where the first tooth has {}", m.minutes, first.minutes));
+  }
+  void differ(int line, std::string what) {
+    if (!result_.copies) return;
+    result_.copies = false;
+    result_.line = line;
+    result_.difference = std::move(what);
+  }
+
+  const std::map<int, Count>& counts_;
+  const NcControl& control_;
+  int teeth_, sign_;
+  std::map<int, State> state_;
+  TurnedCopies result_;
+};
+
+/// +1, -1: word of the index rotary per turn of the gear; 0: the gear is not turned about its own axis.
+int index_sign(const Machine& machine, const Setup& setup) {
+  if (machine.chain.table.empty()) return 0;
+  const RotaryAxis& c = machine.chain.table[0];
+  const Vec3 g = setup.rotation().col(2);
+  if (c.direction.cross(g).norm() > kParallel) return 0;
+  if ((setup.origin_mm - c.point_mm).cross(c.direction).norm() > kCoincident) return 0;
+  return c.direction.dot(g) > 0 ? c.sign : -c.sign;
+}
+
+}  // namespace
+
+Result<NcControl> control_of(const Machine& machine, const Setup& setup, std::span<const ToolAssembly> tools) {
+  NcControl c;
+  c.dialect = machine.dialect;
+  if (c.dialect != "linuxcnc" && c.dialect != "fanuc")
+    return fail("dialect \"{}\" cannot be read back: \"linuxcnc\" and \"fanuc\" can", c.dialect);
+  const int digits = machine.post.rotary_decimals.value_or(c.dialect == "fanuc" ? 3 : 5);
+  c.rotary_rounding_deg = 0.5 * std::pow(10.0, -digits);
+  c.letters = {'X', 'Y', 'Z', 0, 0};
+  for (std::size_t i = 0; i < 3; ++i) c.rapid_speed[i] = machine.chain.linear[i].max_speed;
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
+    c.letters[3 + k] = machine.chain.rotary(k).letter;
+    c.rapid_speed[3 + k] = degrees(machine.chain.rotary(k).max_speed);
+  }
+  for (const auto& t : tools)
+    if (!c.tool_length_mm.emplace(t.number, t.length_mm).second) return fail("tool number {} occurs twice", t.number);
+  c.work_offsets[setup.work_offset] = setup.work_offset_at_mm;
+  return c;
+}
+
+Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control, const Machine& machine,
+                           const Setup& setup, const ReadBackOptions& options) {
+  ReadBack result;
+  result.least.fill(std::numeric_limits<double>::infinity());
+  result.greatest.fill(-std::numeric_limits<double>::infinity());
+  std::map<int, Count> counts;
+  const auto count = [&](const ExecutedMove& m) {
+    ++result.executed;
+    result.minutes += m.minutes;
+    if (!m.rapid) result.feed_minutes += m.minutes;
+    for (std::size_t a = 0; a < 5; ++a) {  // NaN (not yet known) passes neither comparison
+      if (m.joints[a] < result.least[a]) result.least[a] = m.joints[a];
+      if (m.joints[a] > result.greatest[a]) result.greatest[a] = m.joints[a];
+    }
+    Count& c = counts[m.operation];
+    ++c.total;
+    c.started = c.started || !m.machine;
+    if (!c.started) ++c.lead;
+    c.trail = m.machine && c.started ? c.trail + 1 : 0;
+  };
+  if (auto s = execute_nc(text, file, control, count); !s) return s.error();
+
+  CopyCheck check(counts, control, options.teeth, index_sign(machine, setup));
+  if (auto s = execute_nc(text, file, control, [&](const ExecutedMove& m) { check(m); }); !s) return s.error();
+  result.copies = check.finish();
+
+  const bool all = options.keep_all || !result.copies.copies;
+  std::map<int, OperationTrace> traces;
+  if (all) {
+    for (const auto& [op, c] : counts) traces[op].moves.reserve(c.total);
+    const auto keep = [&](const ExecutedMove& m) { traces[m.operation].moves.push_back(m); };
+    if (auto s = execute_nc(text, file, control, keep); !s) return s.error();
+  } else {
+    for (const auto& [op, c] : counts)
+      if (op >= 0) traces[op].moves = check.take(op);
+  }
+  for (auto& [op, t] : traces) {
+    if (op < 0) continue;
+    t.operation = op;
+    t.lead = counts[op].lead;
+    t.kept_teeth = all ? static_cast<std::size_t>(options.teeth) : 1;
+    t.tool = t.moves.empty() ? 0 : t.moves.back().tool;
+    result.operations.push_back(std::move(t));
+  }
+  return result;
+}
+
+}  // namespace toothpath
