@@ -1,0 +1,74 @@
+// Proof of a finger-milled bevel gear: gouge, clearance, rapids, material left on the walls, ridges on the root. Works on
+// the motions that were read back from the program, in double, with the real (hollow) cutter profile and the exact walls.
+//
+// Measured: points of the exact walls against the solid cutter along every motion. Proven: the centre of the cutter
+// against the nominal wall paths (cam/finger_reference.h), with everything that lies between samples added.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "cam/checked_cl_path.h"
+#include "cam/cutter.h"
+#include "cam/finger_reference.h"
+#include "cam/operation.h"
+#include "cam/verification.h"
+#include "geometry/base/tolerances.h"
+
+namespace toothpath {
+
+/// Ridges between the passes, above the root cone along the normal of the pitch cone; outside the relief groove.
+struct RidgeResult {
+  double requested_mm = 0;  ///< smallest ridge that an operation asks for; 0: none asks
+  double reached_mm = 0;    ///< highest, after all operations
+  double cone_distance_mm = 0, azimuth_rad = 0;  ///< where
+  std::size_t points = 0;
+};
+
+struct FingerCheckResult {
+  GougeResult gouge;
+  std::vector<ExcessResult> operations;  ///< after each operation, on the walls
+  ExcessResult finished;
+  RidgeResult ridge;
+  std::vector<SurfaceGrid> walls;
+  double root_gouge_mm = 0;       ///< deepest the tip goes below the root cone
+  double tilt_rad = 0;            ///< largest angle between a cutting axis and the normal of the pitch cone
+  double wall_excess_bound_mm = 0;  ///< what may stand on a wall anywhere, from the distance of the paths
+};
+
+struct FingerCheckOptions {
+  int columns = 25;       ///< of a wall grid, along the face of a half
+  int rows = 21;          ///< along the profile
+  int ridge_columns = 41; ///< along the face of the gear
+  int ridge_rows = 33;    ///< across the space
+};
+
+class FingerGougeCheck {
+ public:
+  /// @param gear made with the finishing mill; operations in the order of the job, their tools are indices into `tools`
+  FingerGougeCheck(const BevelGear& gear, std::span<const ToolAssembly> tools, std::span<const MillingOperation> operations,
+                   const Tolerances& tolerances, const FingerCheckOptions& options = {});
+  ~FingerGougeCheck();
+  FingerGougeCheck(const FingerGougeCheck&) = delete;
+  FingerGougeCheck& operator=(const FingerGougeCheck&) = delete;
+
+  /// Passes a path whose poses and straight moves cut no wall and no root deeper than the gouge tolerance, whose shank
+  /// and holder keep their clearance and whose rapids are clear of the blank. Else a verification diagnostic that names
+  /// place and depth. The walls that the path ought to cut are not judged here.
+  [[nodiscard]] Result<CheckedClPath> approve(ClPath path) const;
+
+  /// Everything, from motions of any tooth space; the wall and ridge measurements use those of the first tooth present.
+  [[nodiscard]] FingerCheckResult verify(std::span<const ToolMotion> motions) const;
+
+  /// Highest ridge left between the walls by these motions.
+  [[nodiscard]] RidgeResult ridge(std::span<const ToolMotion> motions) const;
+
+ private:
+  struct State;
+  State* state_;
+};
+
+/// Motions of a CL path, straight in tip and axis.
+[[nodiscard]] std::vector<ToolMotion> motions_of(const ClPath& path);
+
+}  // namespace toothpath

@@ -1,0 +1,143 @@
+#include "cam/finger_reference.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/base/angle.h"
+
+namespace toothpath {
+namespace {
+
+constexpr int kNodes = 240;
+constexpr int kEdgePoints = 40;
+constexpr double kEdgeSag = 3e-3;   // mm: what the cutter may come nearer between two edge points
+constexpr double kClear = 1e9;  // "no tooth in reach"
+
+/// dR_c/dbeta on the path of a wall.
+double slope(const BevelTrace<double>& t, int sigma, double beta, double beta_c) {
+  const double b = t.straight(sigma, beta) ? t.beta_end : beta;
+  return -2 * t.R_0 * std::sin(b) * t.speed_ratio(sigma, b) * std::cos(beta_c);
+}
+
+/// Points of a wall at one cone distance, from root to tip.
+std::vector<Vec3> edge_points(const BevelGear& g, const BevelWall<double>& wall, double ell) {
+  std::vector<Vec3> points;
+  const double low = -g.parameters().dedendum_mm, high = g.parameters().addendum_mm;
+  for (int i = 0; i <= kEdgePoints; ++i) {
+    const double height = low + (high - low) * (i + 0.02) / (kEdgePoints + 0.02);
+    if (const auto at = bevel_inverse(wall, ell, height))
+      points.push_back(blank_point(ell, height, at->azimuth, g.sin_delta(), g.cos_delta()));
+  }
+  return points;
+}
+
+}  // namespace
+
+ConePose cone_pose(const BevelGear& g, const Vec3& tip, const Vec3& axis, double index) {
+  const double sd = g.sin_delta(), cd = g.cos_delta();
+  // A vertical axis has no azimuth; then the tip's own counts (the tilt says what is wrong).
+  const double radial = std::hypot(axis.x(), axis.y());
+  const double e = radial > 1e-9 ? std::atan2(axis.y(), axis.x()) : std::atan2(tip.y(), tip.x());
+  const Vec3 q = cutter_from_blank<double>(tip, 0.0, e, sd, cd);
+  ConePose pose;
+  pose.lift = q.x() + g.parameters().dedendum_mm;
+  const double aside = std::atan2(q.y(), q.z() * sd);
+  pose.R_c = q.z();
+  double azimuth = std::remainder(e + aside - index, 2 * kPi);
+  pose.theta = azimuth * sd;
+  const Vec3 normal = g.axis(e + aside);
+  pose.tilt = std::atan2(normal.cross(axis).norm(), normal.dot(axis));
+  return pose;
+}
+
+WallReference::WallReference(const BevelGear& gear, int sigma)
+    : sigma_(sigma), solid_(gear.cutter()), sin_delta_(gear.sin_delta()), cos_delta_(gear.cos_delta()) {
+  inner_edge_ = edge_points(gear, gear.halves().front().wall(sigma), gear.R_i());
+  outer_edge_ = edge_points(gear, gear.halves().back().wall(sigma), gear.R_e());
+  const auto& first = gear.halves().front().wall(sigma);
+  reach_ = first.cutter.rho_D;
+  r_0_ = first.cutter.r_0;
+  near_ = gear.R_i() - reach_ - 0.5;
+  far_ = gear.R_e() + reach_ + 0.5;
+  const int k = sigma > 0 ? 0 : 1;
+  for (const auto& half : gear.halves()) {
+    Curve c;
+    c.trace = half.walls[k].trace;
+    for (int i = 0; i <= kNodes; ++i) {
+      const double beta = half.beta_from[k] + (half.beta_to[k] - half.beta_from[k]) * i / kNodes;
+      c.beta.push_back(beta);
+      c.R_c.push_back(c.trace.centre(sigma, beta).R_c);
+      if (!c.trace.straight(sigma, beta))
+        curvature_ = std::max(curvature_, std::abs(c.trace.kappa(beta) / c.trace.speed_ratio(sigma, beta)));
+    }
+    halves_.push_back(std::move(c));
+  }
+  end_ = halves_.back().trace.centre(sigma, halves_.back().beta.back());
+  if (gear.herringbone()) {
+    convex_ = sigma != gear.corner().sigma;
+    split_ = gear.corner().R_c;
+    if (convex_) {
+      corner_R_ = gear.R_ref();
+      corner_theta_ = -sigma * gear.e_h() * gear.sin_delta();
+      arc_from_ = halves_[0].R_c.back();
+      arc_to_ = halves_[1].R_c.front();
+      curvature_ = std::max(curvature_, 1 / r_0_);
+    }
+  }
+  const double depth = std::max(gear.parameters().addendum_mm, gear.parameters().dedendum_mm);
+  leverage_ = 1 + (depth * gear.cos_delta() + reach_) / (std::max(1e-9, gear.R_i() - reach_) * gear.sin_delta());
+}
+
+std::size_t WallReference::half_of(double R_c) const {
+  if (halves_.size() == 1) return 0;
+  const double split = convex_ ? 0.5 * (arc_from_ + arc_to_) : split_;
+  return R_c < split ? 0 : 1;
+}
+
+CutterCentre<double> WallReference::on_curve(const Curve& c, double R_c) const {
+  const auto it = std::lower_bound(c.R_c.begin(), c.R_c.end(), R_c);
+  const std::size_t i = std::clamp<std::size_t>(static_cast<std::size_t>(it - c.R_c.begin()), 1, c.R_c.size() - 1);
+  double beta = c.beta[i - 1] + (c.beta[i] - c.beta[i - 1]) * (R_c - c.R_c[i - 1]) / (c.R_c[i] - c.R_c[i - 1]);
+  beta = std::min(beta, kPi / 2 - 1e-3);
+  CutterCentre<double> at;
+  // Newton on R_c(beta); the table starts it within 1e-5 inside the pass.
+  for (int n = 0; n < 30; ++n) {
+    at = c.trace.centre(sigma_, beta);
+    const double step = (at.R_c - R_c) / slope(c.trace, sigma_, beta, at.beta_c);
+    beta = std::min(beta - std::clamp(step, -0.1, 0.1), kPi / 2 - 1e-3);
+    if (std::abs(at.R_c - R_c) < 1e-12 * R_c) break;
+  }
+  return at;
+}
+
+double WallReference::theta_at(double R_c) const { return on_curve(halves_[half_of(R_c)], R_c).theta_c; }
+
+double WallReference::edge_clearance(const std::vector<Vec3>& edge, double R_c, double theta) const {
+  if (edge.empty()) return -kClear;
+  double least = kClear;
+  for (const Vec3& p : edge)
+    least = std::min(least, solid_.signed_distance(cutter_from_blank<double>(p, R_c, theta / sin_delta_, sin_delta_, cos_delta_)));
+  return least - kEdgeSag;
+}
+
+double WallReference::side(double R_c, double theta) const {
+  if (R_c <= near_ || R_c >= far_) return kClear;
+  if (R_c > end_.R_c) {
+    const double turn = theta - end_.theta_c;
+    const double u = R_c * std::cos(turn) - end_.R_c, v = R_c * std::sin(turn);
+    const double straight = sigma_ * (v * std::cos(end_.beta_c) - u * std::sin(end_.beta_c));
+    return straight >= 0 ? straight : std::max(straight, edge_clearance(outer_edge_, R_c, theta));
+  }
+  if (convex_ && R_c > arc_from_ && R_c < arc_to_) {
+    const double turn = theta - corner_theta_;
+    const double distance = std::hypot(R_c * std::cos(turn) - corner_R_, R_c * std::sin(turn));
+    return (turn * sigma_ > 0 ? distance : -distance) - r_0_;
+  }
+  const auto at = on_curve(halves_[half_of(R_c)], R_c);
+  const double virtual_side = sigma_ * (theta - at.theta_c) * R_c * std::cos(at.beta_c);
+  if (virtual_side < 0 && R_c < halves_.front().R_c.front())
+    return std::max(virtual_side, edge_clearance(inner_edge_, R_c, theta));
+  return virtual_side;
+}
+
+}  // namespace toothpath
