@@ -12,6 +12,7 @@
 #include <optional>
 #include <thread>
 
+#include "app/commands/shaper.h"
 #include "app/commands/surface.h"
 #include "app/report/html_text.h"
 
@@ -134,6 +135,7 @@ int run_command_line(int argc, char** argv) {
   app.require_subcommand(0, 1);
   std::vector<Subcommand> commands;
   commands.push_back(add_job_command(app, "surface", "flanks, limits, inspection grid and mesh of the gear", request, run_surface));
+  commands.push_back(add_job_command(app, "shaper", "limits and gear-shaper set-up: sheet and stroke program", request, run_shaper));
 
   try {
     app.parse(argc, argv);

@@ -1,0 +1,137 @@
+#include "app/commands/shaper.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "app/gear_of_job.h"
+#include "app/job_file.h"
+#include "app/output_dir.h"
+#include "app/report/limits_json.h"
+#include "app/report/run_report.h"
+#include "app/sha256.h"
+#include "geometry/base/angle.h"
+#include "machines/machine_file.h"
+#include "machines/shaper_machine.h"
+#include "postproc/shaper_program.h"
+#include "postproc/shaper_setup.h"
+#include "postproc/shaper_sheet.h"
+
+namespace toothpath {
+namespace {
+
+/// The gear shaper of the job; refusals carry the place of the key that caused them.
+ValueOrErrors<ShaperMachine> load_shaper_machine(const Job& job) {
+  if (job.machine.file.empty()) return std::vector{fail_at(job.where(""), "the job lacks the table [machine]")};
+  const auto path = find_machine_file(job.machine.file, std::filesystem::path(job.file).parent_path().string());
+  if (!path) return std::vector{located(job, "machine.file", path.error())};
+  const auto kind = machine_kind_of(*path);
+  if (!kind) return std::vector{located(job, "machine.file", kind.error())};
+  if (*kind != MachineKind::gear_shaper)
+    return std::vector{fail_at(job.where("machine.file"), "{} is a milling machine, but this command needs a gear shaper", job.machine.file)};
+  auto reading = read_shaper_machine_file(*path);
+  if (!reading.machine) return std::move(reading.errors);
+  if (reading.machine->assumed && !job.machine.accept_assumed) {
+    std::string names;
+    for (const auto& name : reading.machine->assumed_keys) names += (names.empty() ? "" : ", ") + name;
+    return std::vector{fail_at(job.where("machine.file"),
+                               "{} has assumed values ({}); measure them, or accept them with accept_assumed = true", job.machine.file, names)};
+  }
+  return std::move(*reading.machine);
+}
+
+ValueOrErrors<ShaperSetup> plan_setup(const Job& job, const FaceGear& gear, const ShaperMachine& machine) {
+  if (!job.shaping) return std::vector{fail_at(job.where(""), "the job lacks the table [shaping]")};
+  ShaperWork work;
+  work.job_name = job.name;
+  work.machine_file = job.machine.file;
+  work.gear = gear.parameters();
+  work.shaping = *job.shaping;
+  auto planned = plan_shaper_setup(work, machine);
+  if (auto* setup = std::get_if<ShaperSetup>(&planned)) return std::move(*setup);
+  std::vector<Diagnostic> errors;
+  for (auto& refusal : std::get<1>(planned)) errors.push_back(located(job, refusal.key, std::move(refusal.diagnostic)));
+  return errors;
+}
+
+std::string summary_of(const ShaperSetup& s, const std::string& folder) {
+  std::string out = fmt::format("shaper set-up of {} on {}\n", s.job_name, s.machine.name);
+  out += fmt::format("  offset slide {:.4f} mm ({:.4f} deg by tan, {:.4f} deg by sin)\n", s.slide_mm, degrees(s.angle_tan_rad),
+                     degrees(s.angle_sin_rad));
+  out += fmt::format("  stroke {:.3f} mm, {:.3f} .. {:.3f}, {} double strokes/min\n", s.length_mm, s.start_mm, s.end_mm, s.strokes_set);
+  out += fmt::format("  index gears {}, feed gears {} ({:.5f} mm)\n", s.index_gears.text(), s.feed_gears.text(), s.circular_feed_set_mm);
+  out += fmt::format("  {} + {} double strokes, {:.1f} min\n", s.strokes_infeed, s.strokes_turn, s.total_min());
+  for (const auto& warning : s.warnings) out += "  warning: " + warning + "\n";
+  if (!s.machine.assumed_keys.empty()) {
+    out += "  assumed:";
+    for (const auto& name : s.machine.assumed_keys) out += " " + name;
+    out += "\n";
+  }
+  return out + "  files in " + folder + "\n";
+}
+
+}  // namespace
+
+const std::vector<std::string>& shaper_outputs() {
+  static const std::vector<std::string> names = {"limits.json", "shaper.json", "shaper.html", "shaper_program.ngc", "report.json"};
+  return names;
+}
+
+CommandOutcome run_shaper(const CommandRequest& request) {
+  Progress progress(request.quiet);
+  StageClock clock(progress);
+  auto output = OutputDir::open(request.out_dir, shaper_outputs());
+  if (!output) return failed(output.error());
+  auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
+  if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
+  const Job& job = std::get<0>(read);
+  auto made = clock.run("gear", [&] { return make_face_gear(job); });
+  if (auto* errors = std::get_if<1>(&made)) return failed(std::move(*errors));
+  const FaceGear& gear = std::get<0>(made);
+  auto loaded = clock.run("machine", [&] { return load_shaper_machine(job); });
+  if (auto* errors = std::get_if<1>(&loaded)) return failed(std::move(*errors));
+  const ShaperMachine& machine = std::get<0>(loaded);
+  auto planned = clock.run("shaper set-up", [&] { return plan_setup(job, gear, machine); });
+  if (auto* errors = std::get_if<1>(&planned)) return failed(std::move(*errors));
+  ShaperSetup& setup = std::get<0>(planned);
+  setup.warnings.insert(setup.warnings.begin(), gear.warnings().begin(), gear.warnings().end());
+  setup.warnings.insert(setup.warnings.begin(), job.warnings.begin(), job.warnings.end());
+  const auto study = clock.run("stroke simulation", [&] { return feed_study(setup, compared_feeds(setup)); });
+  const std::string program = clock.run("shaper program", [&] { return shaper_program_text(setup); });
+
+  RunReport report;
+  report.command = "shaper";
+  report.job_name = job.name;
+  report.job_file = job.file;
+  report.machine_name = machine.name;
+  report.machine_file = job.machine.file;
+  report.dialect = machine.dialect;
+  report.assumed = machine.assumed_keys;
+  report.warnings = setup.warnings;
+  report.program_file = "shaper_program.ngc";
+  report.program_sha256 = sha256_hex(program);
+  report.program_bytes = program.size();
+  report.blocks = static_cast<std::size_t>(std::count(program.begin(), program.end(), '\n'));
+  report.feed_minutes = report.total_minutes = setup.total_min();
+  const auto write = [&](const std::string& name, const std::string& content) -> Status {
+    report.files.push_back(name);
+    return output->write(name, content);
+  };
+  for (const auto& [name, content] : {std::pair<std::string, std::string>{"limits.json", limits_json(gear)},
+                                      {"shaper.json", shaper_json(setup, study)},
+                                      {"shaper.html", shaper_html(setup, study)},
+                                      {"shaper_program.ngc", program}})
+    if (const auto written = write(name, content); !written) return failed(written.error());
+  report.files.push_back("report.json");
+  report.stages = clock.seconds();
+  CommandOutcome outcome;
+  outcome.report_json = report_json(report);
+  if (const auto written = output->write("report.json", outcome.report_json); !written) return failed(written.error());
+  progress.clear();
+  if (const auto committed = output->commit(); !committed) return failed(committed.error());
+  outcome.summary = summary_of(setup, request.out_dir);
+  return outcome;
+}
+
+}  // namespace toothpath
