@@ -11,6 +11,8 @@ namespace {
 /// Height over the longest edge, as a part of that edge: below it three corners are on a line but for rounding.
 constexpr double kLeastShape = 1e-12;
 constexpr double kInch_mm = 25.4;
+/// Facets at one edge that are compared for equal corners; where there are more, the edge is refused anyway.
+constexpr std::size_t kMostCompared = 16;
 
 struct Edge {
   std::int32_t low = 0, high = 0;
@@ -114,9 +116,11 @@ class SolidCheck {
       std::size_t end = k;
       while (end < edges.size() && edges[end].low == edges[k].low && edges[end].high == edges[k].high) ++end;
       const std::size_t uses = end - k, first = edges[k].facet;
-      for (std::size_t j = k + 1; j < end; ++j)
-        if (same_corners(first, edges[j].facet))
-          return fail_at(at_, "{} and facet {} have the same three corners", place(first), edges[j].facet);
+      const std::size_t last = std::min(end, k + kMostCompared);
+      for (std::size_t i = k; i < last; ++i)
+        for (std::size_t j = i + 1; j < last; ++j)
+          if (same_corners(edges[i].facet, edges[j].facet))
+            return fail_at(at_, "{} and facet {} have the same three corners", place(edges[i].facet), edges[j].facet);
       if (uses == 1) return fail_at(at_, "{} has an open edge: used by 1 facet, a closed surface needs 2", place(first));
       if (uses > 2) return fail_at(at_, "{} has an edge used by {} facets; a solid has 2", place(first), uses);
       if (edges[k].rising == edges[k + 1].rising)
