@@ -7,7 +7,7 @@
 
 namespace toothpath {
 
-/// One curve. `x` and `y` have the same length; a NaN in `y` interrupts the curve.
+/// One curve. `x` and `y` have the same length; a NaN (or a size beyond 1e100) in `y` interrupts the curve.
 struct ChartSeries {
   std::string name;
   std::vector<double> x, y;

@@ -204,7 +204,7 @@ class Page {
       if (high <= 0) stops = kDeepOnly;
     } else {
       const wish = Number(byId('range-limit').value);
-      const limit = mode === 'fixed' && wish > 0 ? wish : niceUp(Math.max(0.01, sizes[Math.floor(0.998 * (sizes.length - 1))] || 0));
+      const limit = mode === 'fixed' && wish > 0 ? wish : niceUp(Math.max(0.01, sizes[Math.floor(0.99 * (sizes.length - 1))] || 0));
       range = [-limit, 0, limit];
     }
     Object.assign(state, {range, stops, shown: [low, high]});
@@ -257,7 +257,7 @@ class Page {
     }
     select.add(new Option(`all ${path.passes.length}`, -1));
     const zones = path.passes.some((p) => p.zone !== path.passes[0].zone);
-    path.passes.forEach((p, k) => select.add(new Option(zones ? `zone ${p.zone}, pass ${p.pass}` : `pass ${p.pass}`, k)));
+    path.passes.forEach((p, k) => select.add(new Option(zones ? `zone ${p.zone}: ${p.pass}` : `${p.pass}`, k)));
     if (!choosePass) return;
     // Something to look at: the middle of a pass in the middle that cuts.
     const cutting = path.passes.map((p, k) => k).filter((k) => path.passes[k].last - path.passes[k].first > 3);
@@ -329,17 +329,30 @@ class Page {
       const button = document.createElement('button');
       Object.assign(button, {type: 'button', className: 'marker', textContent: k + 1, title: g.text});
       button.addEventListener('click', () => this.showGouge(k, false));
+      g.normal = this.normalNear(g.point);
       byId('markers').append(button);
       return button;
     });
   }
 
+  /** Normal of the surface at the grid point nearest to a place; null without a surface. */
+  normalNear(point) {
+    let best = null, least = Infinity;
+    for (let i = 0; this.surface && i < this.surface.count; i++) {
+      const p = this.surface.points, away = Math.hypot(p[3 * i] - point[0], p[3 * i + 1] - point[1], p[3 * i + 2] - point[2]);
+      if (away < least) { least = away; best = i; }
+    }
+    return best === null ? null : [...this.surface.normals.subarray(3 * best, 3 * best + 3)];
+  }
+
   placeMarkers() {
+    const eye = this.camera.eye();
     const {clientWidth: width, clientHeight: height} = this.view.canvas;
     this.data.gouges.forEach((g, k) => {
       const at = this.view.project(g.point);
       const inside = at && at.x > 0 && at.y > 0 && at.x < width && at.y < height;
       this.markers[k].hidden = !inside;
+      this.markers[k].classList.toggle('behind', g.normal !== null && Vec.dot(g.normal, Vec.sub(eye, g.point)) < 0);
       if (inside) this.markers[k].style.transform = `translate(${at.x.toFixed(1)}px, ${at.y.toFixed(1)}px)`;
     });
   }

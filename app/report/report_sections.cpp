@@ -1,6 +1,7 @@
 #include "app/report/report_sections.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
 #include "app/report/html_text.h"
@@ -62,7 +63,14 @@ std::string list(std::string_view title, const std::vector<std::string>& items, 
   return out + "</ul></div>\n";
 }
 
-std::string um(double mm) { return fmt::format("{:.2f}", mm * kUm == 0 ? 0.0 : mm * kUm); }
+/// A number with a real minus sign.
+std::string decimal(double value, int decimals) {
+  const std::string text = fmt::format("{:.{}f}", std::abs(value), decimals);
+  const bool zero = text.find_first_not_of("0.") == std::string::npos;
+  return value < 0 && !zero ? "\u2212" + text : text;
+}
+
+std::string um(double mm) { return decimal(mm * kUm, 2); }
 
 std::string worst_row(const WorstPlace& place, std::size_t k, const ReportPage& page) {
   const bool listed = std::any_of(page.listing.begin(), page.listing.end(), [&](const NcExcerpt& e) {
@@ -72,10 +80,11 @@ std::string worst_row(const WorstPlace& place, std::size_t k, const ReportPage& 
                            : listed        ? fmt::format("<a href=\"#L{0}\" data-gouge=\"{1}\">{0}</a>", place.line, k)
                                            : fmt::format("<a href=\"#space\" data-gouge=\"{}\">{}</a>", k, place.line);
   return fmt::format("<tr data-row=\"{0}\"><td><a class=\"pin\" href=\"#space\" data-gouge=\"{0}\">{1}</a></td><td class=\"n\">{2}</td><td>{3}</td>"
-                     "<td>{4}</td><td>{5}</td><td class=\"n\">{6}</td><td class=\"n\">{7}</td><td class=\"n\">{8:.3f}</td><td class=\"n\">{9:.3f}</td>"
+                     "<td>{4}</td><td>{5}</td><td class=\"n\">{6}</td><td class=\"n\">{7}</td><td class=\"n\">{8}</td><td class=\"n\">{9}</td>"
                      "<td class=\"n\">{10}</td></tr>\n",
                      k, k + 1, um(place.depth_mm), html_escape(place.body), html_escape(place.patch),
-                     html_escape(operation_name(page, place.operation)), place.tooth, place.zone, place.radius_mm, place.height_mm, line);
+                     html_escape(operation_name(page, place.operation)), place.tooth, place.zone,
+                     decimal(place.radius_mm, 3), decimal(place.height_mm, 3), line);
 }
 
 std::string listing(const ReportPage& page) {
@@ -118,18 +127,20 @@ std::string page_header(const ReportPage& page) {
 }
 
 std::string overview_section(const ReportPage& page) {
-  std::string out = key_figures(page);
-  out += list("Warnings", page.warnings, "reasons warn");
+  const std::string out = key_figures(page) + list("Warnings", page.warnings, "reasons warn");
+  return out.empty() ? out : fmt::format("<section id=\"overview\">\n{}</section>\n", out);
+}
+
+std::string job_section(const ReportPage& page) {
   std::string columns;
   if (!page.summary.empty()) {
-    columns += "<div><h3>Job</h3><table class=\"pairs\"><tbody>\n";
+    columns += "<table class=\"pairs\"><tbody>\n";
     for (const auto& [name, value] : page.summary)
       columns += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", html_escape(name), html_escape(value));
-    columns += "</tbody></table></div>\n";
+    columns += "</tbody></table>\n";
   }
   columns += list("Assumed values", page.assumed, "assumed");
-  if (!columns.empty()) out += fmt::format("<details class=\"job\" open><summary>Job and assumed values</summary><div class=\"columns\">{}</div></details>\n", columns);
-  return out.empty() ? out : fmt::format("<section id=\"overview\">\n{}</section>\n", out);
+  return section("job", "Job", columns.empty() ? columns : fmt::format("<div class=\"columns\">{}</div>\n", columns));
 }
 
 std::string gouge_section(const ReportPage& page) {
@@ -166,7 +177,7 @@ std::string deviation_section(const ReportPage& page) {
   for (const ExcessResult& e : page.excess) {
     const std::string name = operation_name(page, e.operation);
     t.rows.push_back({name, um(e.max_mm), um(e.min_mm), um(e.rms_mm), um(e.bound_mm), std::to_string(e.points)});
-    HistogramChart chart{"After " + name, "deviation [\u00b5m]", e.histogram_from_mm * kUm, e.histogram_step_mm * kUm, e.histogram, {}};
+    HistogramChart chart{"After operation " + name, "deviation [\u00b5m]", e.histogram_from_mm * kUm, e.histogram_step_mm * kUm, e.histogram, {}};
     plots += figure(chart.title, svg_histogram(chart));
   }
   if (page.excess.empty()) return {};
@@ -197,7 +208,7 @@ std::string direction_section(const ReportPage& page) {
   PageTable t{"", {"Operation", "Zone", "Tilt", "Lean [\u00b0]", "Least gap [mm]", "Why"}, {}, {}};
   for (const DirectionChoice& c : page.directions) {
     t.rows.push_back({operation_name(page, c.operation), std::to_string(c.zone), c.fixed ? "fixed" : "simultaneous",
-                      fmt::format("{:.2f}", c.lean_rad / kDegree), fmt::format("{:.3f}", c.clearance_mm), c.explanation});
+                      fmt::format("{:.2f}", c.lean_rad / kDegree), decimal(c.clearance_mm, 3), c.explanation});
     plots += figure(fmt::format("Operation {}, zone {}", operation_name(page, c.operation), c.zone), svg_direction_map(c));
   }
   std::string out = table(t) + figures(plots);

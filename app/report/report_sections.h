@@ -7,10 +7,12 @@
 
 namespace toothpath {
 
-/// Title, verdict, reasons, key figures, warnings.
+/// Title, verdict, reasons.
 [[nodiscard]] std::string page_header(const ReportPage& page);
-/// Summary of the job, assumed values, key figures.
+/// Key figures and warnings.
 [[nodiscard]] std::string overview_section(const ReportPage& page);
+/// Summary of the job and assumed values.
+[[nodiscard]] std::string job_section(const ReportPage& page);
 /// Worst places with links into the 3D view, and the excerpt of the program.
 [[nodiscard]] std::string gouge_section(const ReportPage& page);
 /// Histogram and table of the deviation after each operation.

@@ -47,7 +47,7 @@ function multiply(a, b) {
 /** Turntable camera about the gear axis: azimuth and elevation of the eye, distance, target. */
 class Camera {
   constructor(target, size, azimuth) {
-    this.home = {target, distance: size * 2.6, azimuth: azimuth + 0.75, elevation: 0.62};
+    this.home = {target, distance: size * 4, azimuth: azimuth + 0.35, elevation: 1.0};
     this.size = size;
     this.facing = azimuth;
     this.reset();
@@ -387,7 +387,7 @@ class View {
     }
     for (const body of this.tools[tool.index]) {
       if (body.cutting !== opaque || (tool.cuttingOnly && !opaque)) continue;
-      gl.uniform4fv(at.u_colour, opaque ? [0.86, 0.68, 0.24, 1] : body.name === 'holder' ? [0.30, 0.36, 0.44, 0.26] : [0.45, 0.52, 0.60, 0.34]);
+      gl.uniform4fv(at.u_colour, opaque ? [0.86, 0.68, 0.24, 1] : body.name === 'holder' ? [0.24, 0.29, 0.36, 0.30] : [0.36, 0.42, 0.49, 0.38]);
       gl.bindVertexArray(body.vao);
       gl.drawArrays(gl.TRIANGLES, 0, body.count);
     }

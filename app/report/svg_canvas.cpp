@@ -150,7 +150,7 @@ double draw_legend(SvgCanvas& canvas, const std::vector<LegendEntry>& entries, d
 double text_width(std::string_view text) {
   std::size_t characters = 0;
   for (const char c : text) characters += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-  return 6.6 * static_cast<double>(characters);
+  return 7.2 * static_cast<double>(characters);
 }
 
 std::string px(double value) {

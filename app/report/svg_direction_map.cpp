@@ -73,7 +73,7 @@ std::string svg_direction_map(const DirectionChoice& choice) {
                               short_number(c.azimuth_rad / kDegree, 3), short_number(c.gap_mm, 3), c.worst_body));
   }
   for (const double ring : rings)
-    if (ring > 0) canvas.text(cx + 3, cy - ring / outer_degrees * kRadius - 3, fmt::format("{}\u00b0", short_number(ring)), "start", "halo");
+    if (ring > 0) canvas.text(cx + 0.38 * radius_of(ring * kDegree), cy - 0.92 * radius_of(ring * kDegree) + 4, fmt::format("{}\u00b0", short_number(ring)), "middle", "halo");
   const double azimuth = std::atan2(choice.axis.y(), choice.axis.x());
   const double lean = std::atan2(std::hypot(choice.axis.x(), choice.axis.y()), choice.axis.z());
   canvas.circle(cx + radius_of(lean) * std::cos(azimuth), cy - radius_of(lean) * std::sin(azimuth), std::max(6.0, size + 2), "chosen");

@@ -14,11 +14,14 @@ namespace {
 
 constexpr double kWidth = 480, kPlotHeight = 200, kLeft = 64, kRight = 14, kTop = 10, kBottom = 44;
 constexpr std::size_t kColumns = 400;  ///< of a thinned curve
+constexpr double kDrawable = 1e100;    ///< larger values are gaps: differences of two could overflow
+
+bool drawable(double v, bool log) { return std::abs(v) < kDrawable && (!log || v > 1 / kDrawable); }
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   void add(double v, bool log) {
-    if (std::isfinite(v) && (!log || v > 0)) low = std::min(low, v), high = std::max(high, v);
+    if (drawable(v, log)) low = std::min(low, v), high = std::max(high, v);
   }
   [[nodiscard]] bool empty() const { return low > high; }
   /// Widened by a share of itself; a single value gets some room on both sides.
@@ -65,7 +68,7 @@ std::vector<std::vector<Point>> pieces(const ChartSeries& series, bool log_x, bo
   bool open = false;
   for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
     const double x = series.x[i], y = series.y[i];
-    const bool drawn = std::isfinite(x) && std::isfinite(y) && (!log_x || x > 0) && (!log_y || y > 0);
+    const bool drawn = drawable(x, log_x) && drawable(y, log_y);
     if (drawn && !open) out.emplace_back();
     if (drawn) out.back().push_back({x, y});
     open = drawn;
@@ -111,8 +114,6 @@ std::string svg_line_chart(const LineChart& chart) {
   const Scale x{across.low, across.high, kLeft, kWidth - kRight, chart.log_x};
   const Scale y{up.low, up.high, top + kPlotHeight, top, chart.log_y};
   draw_axes(canvas, x, y, chart.x_label, chart.y_label);
-  for (const ChartLimit& limit : chart.limits)
-    if (std::isfinite(limit.y) && (!chart.log_y || limit.y > 0)) canvas.line(kLeft, y(limit.y), kWidth - kRight, y(limit.y), "lim");
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     const std::string css_class = fmt::format("s{}", i % 8);
     for (const auto& piece : pieces(chart.series[i], chart.log_x, chart.log_y)) {
@@ -123,6 +124,8 @@ std::string svg_line_chart(const LineChart& chart) {
                       fmt::format("{}: {}, {}", chart.series[i].name, short_number(p.x), short_number(p.y)));
     }
   }
+  for (const ChartLimit& limit : chart.limits)
+    if (drawable(limit.y, chart.log_y)) canvas.line(kLeft, y(limit.y), kWidth - kRight, y(limit.y), "lim");
   return std::move(canvas).finish();
 }
 
@@ -153,7 +156,7 @@ std::string svg_histogram(const HistogramChart& chart) {
                      fmt::format("{} to {}: {}", short_number(left), short_number(right), chart.counts[i]));
   }
   for (const ChartLimit& limit : chart.limits)
-    if (std::isfinite(limit.y)) canvas.line(x(limit.y), y.at_low, x(limit.y), y.at_high, "lim");
+    if (drawable(limit.y, false)) canvas.line(x(limit.y), y.at_low, x(limit.y), y.at_high, "lim");
   return std::move(canvas).finish();
 }
 
