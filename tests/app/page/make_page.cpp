@@ -1,0 +1,31 @@
+// make_page KIND FILE: writes a synthetic report page for the browser test. KIND: gouged, clean, awkward, large, plots.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <string>
+
+#include "tests/app/page/synthetic_page.h"
+
+int main(int argc, char** argv) {
+  using namespace toothpath;
+  if (argc != 3) {
+    fmt::print(stderr, "usage: make_page gouged|clean|awkward|large|plots FILE\n");
+    return 2;
+  }
+  const std::string kind = argv[1];
+  testing::SyntheticPageOptions options;
+  if (kind == "clean") options = {4000, false, true, false, false};
+  if (kind == "awkward") options = {2000, true, false, true, true};
+  if (kind == "large") options = {300000, true, false, false, true};
+  ReportPage page = testing::synthetic_page(options);
+  if (kind == "plots") {
+    page.surface.clear();
+    page.paths.clear();
+    page.gouge.reset();
+    page.listing.clear();
+    page.directions.clear();
+  }
+  const Status status = write_report_page(page, argv[2]);
+  if (!status) fmt::print(stderr, "{}\n", status.error().text());
+  return status ? 0 : 1;
+}

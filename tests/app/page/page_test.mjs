@@ -1,0 +1,218 @@
+// node page_test.mjs MAKE_PAGE DIR: opens generated report pages in a headless browser and looks at the pixels.
+import assert from 'node:assert/strict';
+import {execFileSync} from 'node:child_process';
+import {existsSync, mkdirSync, mkdtempSync, rmSync, statSync, writeFileSync} from 'node:fs';
+import {createRequire} from 'node:module';
+import {tmpdir} from 'node:os';
+import {join} from 'node:path';
+import {pathToFileURL} from 'node:url';
+
+const [makePage, folder] = process.argv.slice(2);
+const modules = process.env.TOOTHPATH_PAGE_MODULES;
+const chromium = [process.env.TOOTHPATH_CHROMIUM, '/usr/bin/chromium'].find((path) => path && existsSync(path));
+if (!chromium || !modules || !existsSync(join(modules, 'puppeteer-core'))) {
+  console.log('skipped: no browser or no puppeteer-core; run tools/get_page_tools.sh');
+  process.exit(77);
+}
+const puppeteer = createRequire(join(modules, '../package.json'))('puppeteer-core');
+mkdirSync(folder, {recursive: true});
+const profile = mkdtempSync(join(tmpdir(), 'toothpath-page-'));
+const flags = ['--no-sandbox', '--disable-gpu', '--enable-unsafe-swiftshader', '--disable-quic', '--no-first-run',
+               '--disable-background-networking', '--disable-component-update', '--disable-sync'];
+const browser = await puppeteer.launch({executablePath: chromium, userDataDir: profile, args: flags, protocolTimeout: 120000});
+
+/** Opens a page of that kind; everything that it complains about is collected. */
+async function open(kind, {width = 1280, height = 1000, dark = false, args = {}} = {}) {
+  const file = join(folder, `${kind}.html`);
+  execFileSync(makePage, [kind, file]);
+  const page = await browser.newPage();
+  const complaints = [];
+  page.on('pageerror', (error) => complaints.push(error.message));
+  page.on('console', (message) => { if (message.type() === 'error') complaints.push(message.text()); });
+  page.on('request', (request) => { if (!/^(file|data|blob):/.test(request.url())) complaints.push(`asks for ${request.url()}`); });
+  if (args.before) await page.evaluateOnNewDocument(args.before);
+  await page.setViewport({width, height, deviceScaleFactor: 1, isMobile: width < 600, hasTouch: width < 600});
+  await page.emulateMediaFeatures([{name: 'prefers-color-scheme', value: dark ? 'dark' : 'light'}]);
+  await page.goto(pathToFileURL(file).href);
+  await page.waitForFunction(() => !document.title.startsWith('Loading'), {timeout: 60000});
+  await settle(page);
+  return {page, complaints, file};
+}
+
+const settle = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
+/** Screenshot of one element, counted in another tab: [pixels, pixels for which `test` (r, g, b) holds ...]. */
+async function counted(page, selector, name, tests) {
+  const png = Buffer.from(await (await page.$(selector)).screenshot());
+  writeFileSync(join(folder, name), png);
+  const tab = await browser.newPage();
+  const counts = await tab.evaluate(async (data, sources) => {
+    const image = new Image();
+    image.src = `data:image/png;base64,${data}`;
+    await image.decode();
+    const canvas = Object.assign(document.createElement('canvas'), {width: image.width, height: image.height});
+    const context = canvas.getContext('2d');
+    context.drawImage(image, 0, 0);
+    const pixels = context.getImageData(0, 0, image.width, image.height).data;
+    const functions = sources.map((source) => (0, eval)(source));
+    const out = [image.width * image.height, ...functions.map(() => 0)];
+    for (let i = 0; i < pixels.length; i += 4)
+      functions.forEach((f, k) => { if (f(pixels[i], pixels[i + 1], pixels[i + 2])) out[k + 1]++; });
+    return out;
+  }, png.toString('base64'), tests.map(String));
+  await tab.close();
+  await page.bringToFront();
+  return counts;
+}
+
+const background = (r, g, b) => Math.abs(r - 231) < 3 && Math.abs(g - 235) < 3 && Math.abs(b - 239) < 3;
+const blue = (r, g, b) => b > r + 40;
+const red = (r, g, b) => r > b + 60 && r > g + 60;
+const gold = (r, g, b) => r > 120 && r > b + 60 && g > b + 30 && g < r - 10;
+
+const tests = {
+  async 'model, tool and legend are drawn'() {
+    const {page, complaints} = await open('gouged');
+    const [all, empty, blues, golds] = await counted(page, '.stage', 'gouged.png', [background, blue, gold]);
+    assert.ok(empty > 0.2 * all && empty < 0.9 * all, `background ${empty} of ${all}`);
+    assert.ok(blues > 0.02 * all, `blue ${blues} of ${all}`);
+    assert.ok(golds > 300, `tool ${golds}`);
+    const [bar, deep, left] = await counted(page, '#legend-bar', 'legend.png', [red, blue]);
+    assert.ok(deep > 0.15 * bar && left > 0.15 * bar, `legend ${deep} red, ${left} blue of ${bar}`);
+    const ticks = await page.$$eval('#legend-ticks span', (spans) => spans.map((s) => Number(s.textContent.replace('\u2212', '-'))));
+    assert.equal(ticks.length, 5);
+    assert.ok(ticks.every((v, i) => i === 0 || v > ticks[i - 1]) && ticks[0] === -ticks[4], `ticks ${ticks}`);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+
+  async 'a plain surface has no deviation colours and no legend'() {
+    const {page, complaints} = await open('gouged');
+    await page.select('#field', '-1');
+    await page.select('#tool-mode', 'none');
+    await page.select('#operation', '-1');
+    await settle(page);
+    const [all, , blues, golds] = await counted(page, '#view', 'plain.png', [background, blue, gold]);
+    assert.ok(blues < 0.002 * all && golds < 50, `blue ${blues}, gold ${golds}`);
+    assert.equal(await page.$eval('#legend', (e) => e.hidden), true);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+
+  async 'a gouge marker brings tool and listing to its NC line'() {
+    const {page, complaints} = await open('gouged');
+    const wanted = await page.$$eval('[data-row] td:last-child a', (links) => links.map((a) => Number(a.textContent)));
+    assert.ok(wanted.length >= 5);
+    for (const k of [0, 3]) {
+      await page.$eval(`.marker:nth-child(${k + 1})`, (button) => button.click());
+      await settle(page);
+      assert.ok((await page.$eval('#record-note', (e) => e.textContent)).includes(`NC line ${wanted[k]}.`));
+      assert.equal(await page.$eval('.listing .current a', (a) => Number(a.textContent)), wanted[k]);
+      assert.equal(await page.$eval('tr.current', (row) => Number(row.dataset.row)), k);
+    }
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+
+  async 'mouse, wheel, slider and play change the picture or the record'() {
+    const {page, complaints} = await open('clean');
+    const state = () => page.evaluate(() => {
+      const {camera, state: s} = window.toothpathPage;
+      return {azimuth: camera.azimuth, elevation: camera.elevation, distance: camera.distance, target: [...camera.target], record: s.record};
+    });
+    await page.$eval('#view', (e) => e.scrollIntoView());
+    const box = await (await page.$('#view')).boundingBox();
+    const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+    const a = await state();
+    await page.mouse.move(x, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 60, y + 20);
+    await page.mouse.up();
+    const b = await state();
+    assert.ok(b.azimuth < a.azimuth && b.elevation !== a.elevation && b.distance === a.distance);
+    await page.mouse.wheel({deltaY: -300});
+    await settle(page);
+    const c = await state();
+    assert.ok(c.distance < b.distance);
+    await page.mouse.down({button: 'right'});
+    await page.mouse.move(x + 100, y + 50);
+    await page.mouse.up({button: 'right'});
+    assert.notDeepEqual((await state()).target, c.target);
+    await page.click('[data-view=reset]');
+    assert.deepEqual(await state(), a);
+    await page.$eval('#record', (e) => { e.value = e.min; e.dispatchEvent(new Event('input')); });
+    const start = (await state()).record;
+    await page.click('#play');
+    await page.waitForFunction((from) => window.toothpathPage.state.record > from + 3, {timeout: 20000}, start);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+
+  async 'names with markup stay text'() {
+    const {page, complaints} = await open('awkward');
+    const title = await page.title();
+    assert.ok(title.startsWith('</script><script>'), title);
+    assert.equal(await page.$$eval('script', (s) => s.length), 3);
+    assert.equal(await page.$$eval('main b', (s) => s.length), 0);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+
+  async 'a phone and a dark screen show the page without sideways scrolling'() {
+    for (const [kind, options] of [['gouged', {width: 390, height: 800}], ['clean', {width: 390, height: 800, dark: true}], ['gouged', {dark: true}]]) {
+      const {page, complaints} = await open(kind, options);
+      const [inner, scroll] = await page.evaluate(() => [document.documentElement.clientWidth, document.documentElement.scrollWidth]);
+      assert.ok(scroll <= inner, `${kind}: ${scroll} wide on ${inner}`);
+      const [all, , blues] = await counted(page, '.stage', `${kind}-${options.width ?? 1280}${options.dark ? '-dark' : ''}.png`, [background, blue]);
+      assert.ok(blues > 0.01 * all, `blue ${blues} of ${all}`);
+      assert.deepEqual(complaints, []);
+      await page.close();
+    }
+  },
+
+  async 'without WebGL the page says so and keeps its plots'() {
+    const before = () => { HTMLCanvasElement.prototype.getContext = () => null; };
+    const {page, complaints} = await open('gouged', {args: {before}});
+    assert.match(await page.title(), /no 3D view/);
+    assert.match(await page.$eval('#message', (e) => e.textContent), /WebGL 2/);
+    assert.ok((await page.$$('svg.plot')).length > 10);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+
+  async 'plots alone need no 3D view'() {
+    const {page, complaints} = await open('plots');
+    assert.equal(await page.$eval('#space', (e) => e.hidden), true);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+
+  async 'three hundred thousand points open in seconds'() {
+    const start = Date.now();
+    const {page, complaints, file} = await open('large', {width: 900, height: 700});
+    await page.select('#pass', '-1');
+    await settle(page);
+    const points = await page.evaluate(() => window.toothpathPage.paths.reduce((n, p) => n + p.n, 0));
+    console.log(`  ${points} points, ${(statSync(file).size / 1e6).toFixed(2)} MB, open and drawn in ${((Date.now() - start) / 1e3).toFixed(1)} s`);
+    assert.ok(points > 280000 && statSync(file).size < 3e6);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+};
+
+let failed = 0;
+try {
+  for (const [name, test] of Object.entries(tests)) {
+    try {
+      await test();
+      console.log(`ok   ${name}`);
+    } catch (error) {
+      failed++;
+      console.log(`FAIL ${name}\n${error.stack}`);
+    }
+  }
+} finally {
+  await browser.close();
+  rmSync(profile, {recursive: true, force: true});
+}
+process.exit(failed ? 1 : 0);
