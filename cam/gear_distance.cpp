@@ -12,6 +12,7 @@ namespace {
 constexpr double kTwoPi = 6.283185307179586476925286766559;
 constexpr double kCellLength = 0.45;     // mm along the tooth
 constexpr double kBorder = 1e-9;         // a foot this far beyond the border of a piece (in its parameter) still counts
+constexpr int kEndPoints = 3000;         // on the profile at an end of the ring
 constexpr int kBands = 4;                // a fillet may be touched at both of its ends: seeds from several bands
 
 double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
@@ -146,15 +147,15 @@ GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::m
           // Sag of a chord, estimated from the turn between neighbours.
           const Vec3 u = (line[k] - line[k - 1]), v = (line[k + 1] - line[k]);
           if (u.norm() > 1e-9 && v.norm() > 1e-9)
-            R.edge_sag = std::max(R.edge_sag, 0.25 * v.norm() * u.normalized().cross(v.normalized()).norm());
+            R.edge_sag = std::max(R.edge_sag, 0.125 * v.norm() * u.normalized().cross(v.normalized()).norm());
         }
       }
     };
     const auto end_line = [&](double r, std::vector<Vec2>& profile) {
       std::vector<Vec3> line;
       const double z_tip = space.surface().z_tip(r);
-      for (int k = 0; k <= 500; ++k) {
-        const auto q = R.sheet.raw(5.0 * k / 500, r);
+      for (int k = 0; k <= kEndPoints; ++k) {
+        const auto q = R.sheet.raw(5.0 * k / kEndPoints, r);
         if (!q || q->contact.p.z() > z_tip) continue;
         line.push_back(q->contact.p);
         profile.push_back({std::atan2(q->contact.p.y(), q->contact.p.x()), q->contact.p.z()});

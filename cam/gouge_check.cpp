@@ -90,19 +90,39 @@ class MotionCheck {
   void near_flute(double t0, double t1, const NearestPlace& q0, const NearestPlace& q1) {
     const double level = std::min(kFirstLevel * R_, tool_.flute_length_mm - R_);
     if (level <= 0) return;
-    const double L = (centre(t1) - centre(t0)).norm() + 2 * slack_;
-    if (std::min(q0.distance, q1.distance) >= within_ - 1e-12 && L * L / 4 + level * level / 4 < within_ * within_ - R_ * R_) {
-      // Free by far: the corners above are at least (distance - level) away, and the square is small.
-      if (within_ - level - L > R_) return;
-    }
     const auto p0 = query(centre(t0) + level * axis(t0)), p1 = query(centre(t1) + level * axis(t1));
     note(p0, "flute");
     note(p1, "flute");
-    // Bilinear in the squares, minus s (L - s) + h (H - h): its least value over the rectangle is bounded by edges in s and h.
-    const double low = std::min(q0.distance, q1.distance), high = std::min(p0.distance, p1.distance);
-    const double upward = between(low, high, level);
-    const double g = upward * upward - L * L / 4;
-    slot_.bound = std::max(slot_.bound, R_ - (g > 0 ? std::sqrt(g) : 0) + slack_);
+    patch(t0, t1, 0, level, q0.distance, q1.distance, p0.distance, p1.distance, kDepth);
+  }
+  /// A rectangle of points on the tool axis, t0..t1 along the move and h0..h1 above the ball centre; corner distances d_th.
+  /// d^2 - |x|^2 is concave on it too: d^2 >= (blend of the corners) - L^2/4 - h (H - h).
+  void patch(double t0, double t1, double h0, double h1, double d00, double d10, double d01, double d11, int depth) {
+    const double L = (centre(t1) - centre(t0)).norm() + 2 * slack_, H = h1 - h0;
+    const double low = std::min(d00, d10), high = std::min(d01, d11);
+    const double upward = between(low, high, H), g = upward * upward - L * L / 4;
+    const double least = g > 0 ? std::sqrt(g) : 0;
+    const double seen = std::max(R_ - std::min(low, high), 0.0);
+    if (R_ - least <= seen + o_.proof_mm || depth == 0 || std::max(L, H) < 1e-6) {
+      slot_.bound = std::max(slot_.bound, R_ - least + slack_);
+      return;
+    }
+    if (H >= L) {
+      const double h = 0.5 * (h0 + h1);
+      const double a = at(t0, h), b = at(t1, h);
+      patch(t0, t1, h0, h, d00, d10, a, b, depth - 1);
+      patch(t0, t1, h, h1, a, b, d01, d11, depth - 1);
+    } else {
+      const double t = 0.5 * (t0 + t1);
+      const double a = at(t, h0), b = at(t, h1);
+      patch(t0, t, h0, h1, d00, a, d01, b, depth - 1);
+      patch(t, t1, h0, h1, a, d10, b, d11, depth - 1);
+    }
+  }
+  double at(double t, double h) {
+    const auto q = query(centre(t) + h * axis(t));
+    note(q, h > 0 ? "flute" : "ball");
+    return q.distance;
   }
 
   /// The flute above its first level: coarse, there is room.
@@ -113,13 +133,13 @@ class MotionCheck {
     double worst = -INFINITY;
     double h = level;
     double low = INFINITY;
-    for (const double t : {t0, t1}) low = std::min(low, level_distance(t, h));
+    for (const double t : {t0, t1}) low = std::min(low, at(t, h));
     while (h < top) {
       const Vec3 a = centre(t0) + h * axis(t0);
       if (a.z() - R_ > part_.gear().blank_top() + L && axis(t0).z() > 0.5) break;  // above the part from here on
       const double next = std::min(h + 0.5 * R_, top);
       double high = INFINITY;
-      for (const double t : {t0, t1}) high = std::min(high, level_distance(t, next));
+      for (const double t : {t0, t1}) high = std::min(high, at(t, next));
       const double upward = between(low, high, next - h);
       const double g = upward * upward - L * L / 4;
       worst = std::max(worst, R_ - (g > 0 ? std::sqrt(g) : 0));
@@ -133,12 +153,6 @@ class MotionCheck {
     flute(t0, 0.5 * (t0 + t1), depth - 1);
     flute(0.5 * (t0 + t1), t1, depth - 1);
   }
-  double level_distance(double t, double h) {
-    const auto q = query(centre(t) + h * axis(t));
-    note(q, "flute");
-    return q.distance;
-  }
-
   void bodies() {
     for (const auto& body : shank_and_holder(tool_)) body_interval(body, 0, 1, 14);
   }

@@ -81,10 +81,11 @@ OffsetSheet::OffsetSheet(const SpaceSheet& space, double delta, double r_from, d
     }
     all = std::move(even);
   }
-  for (auto& s : all) {
-    find_gaps(s);
-    has_gaps_ = has_gaps_ || !s.gaps.empty();
-  }
+  if (delta_ > 0)
+    for (auto& s : all) {
+      find_gaps(s);
+      has_gaps_ = has_gaps_ || !s.gaps.empty();
+    }
   stations_ = std::move(all);
   if (has_gaps_)
     for (auto& s : stations_)
@@ -172,16 +173,21 @@ std::optional<OffsetSheet::Station> OffsetSheet::make_station(double r, const St
 }
 
 void OffsetSheet::find_gaps(Station& station) const {
-  const auto plane = [&](std::size_t k) {
-    return Vec2(station.nodes[k].azimuth * station.r, station.nodes[k].at.centre.z());
-  };
   const std::size_t n = station.nodes.size();
+  std::vector<Vec2> plane;
+  for (const auto& node : station.nodes) plane.push_back({node.azimuth * station.r, node.at.centre.z()});
+  const auto apart = [&](std::size_t a, std::size_t b) {
+    const auto [a0, a1] = std::minmax(plane[a].x(), plane[a + 1].x());
+    const auto [b0, b1] = std::minmax(plane[b].x(), plane[b + 1].x());
+    return a1 < b0 || b1 < a0;
+  };
   std::size_t k = 0;
   while (k + 1 < n) {
     std::size_t hit = 0;
     std::pair<double, double> at;
     for (std::size_t j = n - 2; j > k + 1; --j) {
-      const auto c = crossing(plane(k), plane(k + 1), plane(j), plane(j + 1));
+      if (apart(k, j)) continue;
+      const auto c = crossing(plane[k], plane[k + 1], plane[j], plane[j + 1]);
       if (c) {
         hit = j;
         at = *c;
@@ -294,32 +300,6 @@ double OffsetSheet::bottom_sigma(double r) const {
   for (const auto& g : gaps(r))
     if (g.from < 2.5 && g.to > 2.5) return g.from;  // the ball does not reach the root land
   return 2.5;
-}
-
-std::optional<SheetPoint> OffsetSheet::wall(bool plus, double z, double r) const {
-  const auto holes = gaps(r);
-  double low = plus ? 0.0 : double(kSpacePieces), high = 2.5;  // low: the tip end, high: the bottom
-  for (const auto& g : holes)
-    if (g.from < 2.5 && g.to > 2.5) high = plus ? g.from : g.to;
-  const auto trimmed = [&](double sigma) {
-    for (const auto& g : holes)
-      if (sigma > g.from && sigma < g.to) return sigma - g.from < g.to - sigma ? g.from : g.to;
-    return sigma;
-  };
-  const auto top = raw(trimmed(low), r), bottom = raw(trimmed(high), r);
-  if (!top || !bottom || z > top->centre.z() || z < bottom->centre.z() - 1e-9) return {};
-  double a = low, b = high;
-  std::optional<SheetPoint> best = bottom;
-  for (int k = 0; k < 60; ++k) {
-    const double m = 0.5 * (a + b);
-    const auto s = raw(trimmed(m), r);
-    if (!s) return {};
-    best = s;
-    if (std::abs(s->centre.z() - z) < 1e-9) break;
-    (s->centre.z() > z ? a : b) = m;
-    if (std::abs(b - a) < 1e-13) break;
-  }
-  return best;
 }
 
 }  // namespace toothpath

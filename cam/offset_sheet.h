@@ -60,9 +60,6 @@ class OffsetSheet {
 
   /// sigma of the lowest centre at radius r (height above the root surface for shaft angles other than 90 deg).
   [[nodiscard]] double bottom_sigma(double r) const;
-  /// Place on the plus wall (sigma below the bottom) or the minus wall at height z of the centre; nothing above the tip
-  /// end of the sheet or below the bottom.
-  [[nodiscard]] std::optional<SheetPoint> wall(bool plus, double z, double r) const;
 
  private:
   [[nodiscard]] std::optional<Station> make_station(double r, const Station* neighbour) const;

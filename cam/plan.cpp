@@ -14,6 +14,9 @@ namespace {
 /// Of the chord tolerance, this share is spent on placing points; the rest covers the rounding of words and the proof.
 constexpr double kChordShare = 0.6;
 
+/// Roughing works on tables of the offset walls: this covers the sag between their entries, mm.
+constexpr double kRoughingPad = 0.004;
+
 double lower_bound_between(double d0, double d1, double length) {
   const double g = std::min(d0 * d0, d1 * d1) - length * length / 4;
   return g > 0 ? std::sqrt(g) : 0;
@@ -87,7 +90,8 @@ class JobPlanner {
                                              2 * R, zone, room, 0.05 * wanted)};
 
     const double margin = std::max(delta, room) + 0.1;
-    const OffsetSheet sheet(space, delta, ring.inner_radius_mm - margin, ring.outer_radius_mm + margin);
+    const OffsetSheet sheet(space, roughing ? delta + kRoughingPad : delta, ring.inner_radius_mm - margin,
+                            ring.outer_radius_mm + margin, roughing ? 65 : 33);
     if (auto refusal = check_width(sheet, key, zone, tool)) return refusal;
 
     std::vector<BallPass> passes;

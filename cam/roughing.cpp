@@ -21,6 +21,53 @@ std::vector<Vec3> lower_directions() {
   return out;
 }
 
+/// The walls of the trimmed offset at one station, as tables from the tip down to the bottom. Heights are above the
+/// offset root surface.
+struct Walls {
+  std::vector<double> plus_height, plus_azimuth, minus_height, minus_azimuth;  // heights descending
+  double root_z = 0;         // centre of a ball that touches the root surface, whether or not the walls let it
+  double bottom_height = 0;  // lowest centre that the walls allow
+};
+
+double at_height(const std::vector<double>& height, const std::vector<double>& azimuth, double h) {
+  if (h >= height.front()) return azimuth.front();
+  for (std::size_t k = 1; k < height.size(); ++k)
+    if (h >= height[k]) {
+      const double span = height[k - 1] - height[k];
+      const double t = span > 0 ? (height[k - 1] - h) / span : 1.0;
+      return azimuth[k - 1] + t * (azimuth[k] - azimuth[k - 1]);
+    }
+  return azimuth.back();
+}
+
+Walls walls_of(const OffsetSheet::Station& station) {
+  Walls w;
+  const SheetGap* across = nullptr;
+  for (const auto& g : station.gaps)
+    if (g.from < 2.5 && g.to > 2.5) across = &g;
+  const auto hidden = [&](double sigma) {
+    return std::any_of(station.gaps.begin(), station.gaps.end(), [&](const SheetGap& g) { return sigma > g.from && sigma < g.to; });
+  };
+  for (const auto& node : station.nodes)
+    if (node.sigma == 2.5) w.root_z = node.at.centre.z();
+  for (const auto& node : station.nodes) {
+    if (hidden(node.sigma)) continue;
+    const double h = node.at.centre.z() - w.root_z;
+    const bool plus = across ? node.sigma <= across->from : node.sigma <= 2.0;
+    const bool minus = across ? node.sigma >= across->to : node.sigma >= 3.0;
+    if (plus) {
+      w.plus_height.push_back(h);
+      w.plus_azimuth.push_back(node.azimuth);
+    }
+    if (minus) {
+      w.minus_height.insert(w.minus_height.begin(), h);
+      w.minus_azimuth.insert(w.minus_azimuth.begin(), node.azimuth);
+    }
+  }
+  w.bottom_height = across ? std::max(w.plus_height.back(), w.minus_height.back()) : 0.0;
+  return w;
+}
+
 class Planner {
  public:
   Planner(const OffsetSheet& sheet, const RoughingOptions& o, const std::vector<const SweptPath*>& cleared)
@@ -33,79 +80,50 @@ class Planner {
                   2 * o_.ball_radius_mm, o_.allowance_mm, ring.inner_radius_mm, ring.outer_radius_mm);
     from_ = std::max(sheet_.r_from(), ring.inner_radius_mm - o_.overrun_mm);
     to_ = std::min(sheet_.r_to(), ring.outer_radius_mm + o_.overrun_mm);
-    const double r_mid = 0.5 * (from_ + to_);
-    const double top = o_.blank_top_mm + o_.ball_radius_mm, root = root_height(r_mid);
-    // Heights of the ball centre above the offset root; the last layer lies on it.
-    std::vector<double> layers;
-    for (double z = top - o_.step_down_mm; z > root + 1e-6; z -= o_.step_down_mm) layers.push_back(z - root);
-    layers.push_back(0.0);
-    for (const auto& s : sheet_.stations())
-      for (const auto& g : s.gaps)
-        if (g.from < 2.5 && g.to > 2.5) out_.reaches_root = false;
-    double lowest_free = INFINITY, highest_bottom = -INFINITY;
-    for (int k = 0; k <= 16; ++k) {
-      const double r = from_ + (to_ - from_) * k / 16;
-      const auto bottom = sheet_.raw(sheet_.bottom_sigma(r), r);
-      if (!bottom) continue;
-      lowest_free = std::min(lowest_free, bottom->centre.z() - root_height(r));
-      highest_bottom = std::max(highest_bottom, bottom->centre.z() - root_height(r));
+    double lowest = INFINITY;
+    for (const auto& s : sheet_.stations()) {
+      walls_.push_back(walls_of(s));
+      lowest = std::min(lowest, walls_.back().bottom_height);
+      out_.reaches_root = out_.reaches_root && walls_.back().bottom_height == 0;
     }
-    bool bottom_done = false;
-    for (double height : layers) {
-      if (bottom_done) break;
-      // Below the highest bottom the passes run along it; one such layer at the end is enough when all is bottom.
-      if (height <= lowest_free + 1e-9) bottom_done = true;
-      if (auto ok = add_layer(height); !ok) return ok.error();
+    const double top = o_.blank_top_mm + o_.ball_radius_mm - walls_[walls_.size() / 2].root_z;
+    for (double height = top - o_.step_down_mm;; height -= o_.step_down_mm) {
+      // The last layer follows the bottom: the root land, or the corner between both walls where the ball is too wide.
+      const bool last = height <= lowest + 1e-6;
+      if (auto ok = add_layer(last ? 0.0 : height); !ok) return ok.error();
       ++out_.layers;
+      if (last) break;
     }
     return std::move(out_);
   }
 
  private:
-  /// z of a centre that touches the root surface at radius r (whether or not the walls let it).
-  [[nodiscard]] double root_height(double r) const {
-    const auto s = sheet_.raw(2.5, r);
-    return s ? s->centre.z() : NAN;
-  }
-
   struct Width {
     double plus = 0, minus = 0, z = 0;  // azimuths of the extreme centres and their height
   };
-  [[nodiscard]] std::optional<Width> width(double height, double r) const {
-    const double z = root_height(r) + height;
-    const auto bottom = sheet_.raw(sheet_.bottom_sigma(r), r);
-    const auto top_plus = sheet_.at(0.0, r), top_minus = sheet_.at(5.0, r);
-    if (!bottom || !top_plus || !top_minus) return {};
-    const auto azimuth = [](const Vec3& c) { return std::atan2(c.y(), c.x()); };
+  /// Between two stations everything is blended: the sheet of a roughing pass is made with a pad for that.
+  [[nodiscard]] Width width(double height, double r) const {
+    const double t = std::clamp((r - sheet_.r_from()) / (sheet_.r_to() - sheet_.r_from()), 0.0, 1.0) * double(walls_.size() - 1);
+    const auto j = std::min(std::size_t(t), walls_.size() - 2);
+    const double x = t - double(j);
     Width w;
-    w.z = std::max(z, bottom->centre.z());
-    if (z <= bottom->centre.z() && !reaches_root_at(r)) {
-      w.plus = w.minus = azimuth(bottom->centre);
-      return w;
+    for (const std::size_t k : {j, j + 1}) {
+      const auto& s = walls_[k];
+      const double share = k == j ? 1 - x : x, h = std::max(height, s.bottom_height);
+      w.plus += share * at_height(s.plus_height, s.plus_azimuth, h);
+      w.minus += share * at_height(s.minus_height, s.minus_azimuth, h);
+      w.z += share * (s.root_z + h);
     }
-    const auto a = sheet_.wall(true, w.z, r), b = sheet_.wall(false, w.z, r);
-    w.plus = a ? azimuth(a->centre) : azimuth(top_plus->centre);
-    w.minus = b ? azimuth(b->centre) : azimuth(top_minus->centre);
-    // On the root land itself both walls are its two ends.
-    if (height <= 1e-9 && reaches_root_at(r)) {
-      const auto left = sheet_.at(2.0, r), right = sheet_.at(3.0, r);
-      if (!left || !right) return {};
-      w.plus = azimuth(left->centre);
-      w.minus = azimuth(right->centre);
-    }
-    w.minus = w.plus + std::remainder(w.minus - w.plus, 6.283185307179586);
+    if (w.minus < w.plus) w.plus = w.minus = 0.5 * (w.plus + w.minus);
     return w;
   }
-
-  [[nodiscard]] bool reaches_root_at(double r) const { return sheet_.bottom_sigma(r) == 2.5; }
 
   Status add_layer(double height) {
     double widest = 0;
     for (int k = 0; k <= 8; ++k) {
       const double r = from_ + (to_ - from_) * k / 8;
       const auto w = width(height, r);
-      if (!w) return fail("the layer {:.4f} mm above the root cannot be bounded at radius {:.4f}", height, r);
-      widest = std::max(widest, r * (w->minus - w->plus));
+      widest = std::max(widest, r * (w.minus - w.plus));
     }
     const int count = widest < 1e-6 ? 1 : 1 + std::max(1, int(std::ceil(widest / o_.step_over_mm)));
     std::vector<double> shares;
@@ -118,10 +136,9 @@ class Planner {
     for (double share : shares) {
       const auto curve = [&](double r) -> std::optional<BallPass::Point> {
         const auto w = width(height, r);
-        if (!w) return {};
-        const double azimuth = w->plus + share * (w->minus - w->plus);
+        const double azimuth = w.plus + share * (w.minus - w.plus);
         BallPass::Point p;
-        p.centre = {r * std::cos(azimuth), r * std::sin(azimuth), w->z};
+        p.centre = {r * std::cos(azimuth), r * std::sin(azimuth), w.z};
         p.contact = p.centre;
         return p;
       };
@@ -146,7 +163,10 @@ class Planner {
     static const std::vector<Vec3> directions = lower_directions();
     const auto& ring = sheet_.space().ring().zone;
     constexpr double kWorthCutting = 0.01;  // mm: a thinner skin is not worth a roughing pass
+    Vec3 last = Vec3::Constant(INFINITY);
     for (const auto& point : points) {
+      if ((point.centre - last).norm() < 0.4 * o_.ball_radius_mm) continue;
+      last = point.centre;
       for (const auto& direction : directions) {
         const Vec3 q = point.centre + o_.ball_radius_mm * direction;
         const double r = radius(q);
@@ -167,6 +187,7 @@ class Planner {
   RoughingOptions o_;
   const std::vector<const SweptPath*>& cleared_;
   double from_ = 0, to_ = 0;
+  std::vector<Walls> walls_;  ///< one a station
   RoughingPasses out_;
 };
 

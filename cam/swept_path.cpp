@@ -27,12 +27,12 @@ SweptPath::SweptPath(std::vector<BallMove> moves, double ball_radius_mm)
     : moves_(std::move(moves)), radius_(ball_radius_mm), index_(boxes_of(moves_)) {}
 
 double SweptPath::excess(const Vec3& p, double cap) const {
-  double best = radius_ + cap;
-  index_.near(p, best, [&](std::size_t k, double) {
-    best = std::min(best, distance_to_segment(p, moves_[k].from, moves_[k].to));
-    return best;
+  double best = cap;
+  index_.near(p, radius_ + cap, [&](std::size_t k, double) {
+    best = std::min(best, distance_to_segment(p, moves_[k].from, moves_[k].to) - radius_);
+    return radius_ + best;
   });
-  return best - radius_;
+  return best;
 }
 
 }  // namespace toothpath
