@@ -106,16 +106,19 @@ std::string steps(const ShaperSetup& s) {
                           shortest(s.shaping.cutting_speed_m_min),
                           s.shaping.speed_basis == Shaping::SpeedBasis::mean ? "mean of the stroke" : "peak of a crank stroke",
                           value(s.speed_mean_m_min, 2, "m/min"), value(s.speed_peak_m_min, 2, "m/min")));
-  out += step(fmt::format("Index gears {} &nbsp;(a/b&middot;c/d = {}/{} &times; {}/{} = {}/{}, exact; constant{}).", gears_text(s.index_gears),
+  out += step(fmt::format("Index gears {} &nbsp;(a/b&middot;c/d = {}/{} &times; {}/{} = {}/{}, exact; constant{}, wheels{}).", gears_text(s.index_gears),
                           s.machine.index_constant.numerator, s.machine.index_constant.denominator, s.cutter_teeth, s.work_teeth,
-                          s.index_target.numerator, s.index_target.denominator, mark(s, "index.constant")));
+                          s.index_target.numerator, s.index_target.denominator, mark(s, "index.constant"),
+                          mark(s, "gears.teeth")));
   out += step(fmt::format("Feed gears {} &nbsp;for {:.6f} wanted (constant {}/{}{}): circular feed {} per double stroke on the cutter's pitch "
                           "circle, wanted {}.", gears_text(s.feed_gears), s.feed_target, s.machine.feed_constant.numerator,
                           s.machine.feed_constant.denominator, mark(s, "feed.constant"), value(s.circular_feed_set_mm, 5, "mm"),
                           shortest(s.shaping.circular_feed_mm)));
-  out += step(fmt::format("Turning senses: {} (C_work/C_cutter = {}{}/{}). Try a few strokes clear of the work and compare with the drawing.",
+  out += step(fmt::format("Turning senses: {} (C_work/C_cutter = {}{}/{}). Cutter turns {} per "
+                          "double stroke, {:.1f} double strokes per cutter turn, {:.1f} per work turn. Try a few strokes clear of the work.",
                           s.sense > 0 ? "cutter and work words of the same sign" : "cutter and work words of opposite sign",
-                          s.sense > 0 ? "+" : "-", s.generating.numerator, s.generating.denominator));
+                          s.sense > 0 ? "+" : "-", s.generating.numerator, s.generating.denominator,
+                          value(degrees(s.cutter_per_stroke_rad), 6, "&deg;"), s.strokes_per_cutter_turn, s.strokes_per_work_turn));
   out += step(fmt::format("Relief on the back stroke {}{}: lifted cutter stays {} clear of the finished flanks; from stock not yet cut {}.",
                           value(s.machine.relief_mm, 3, "mm"), mark(s, "stroke.relief"), value(s.relief.flank_mm, 3, "mm"),
                           value(s.relief.stock_mm, 3, "mm")));
