@@ -13,6 +13,7 @@
 #include <thread>
 
 #include "app/commands/shaper.h"
+#include "app/commands/run.h"
 #include "app/commands/surface.h"
 #include "app/report/html_text.h"
 
@@ -134,6 +135,7 @@ int run_command_line(int argc, char** argv) {
   add_global_options(app, options);
   app.require_subcommand(0, 1);
   std::vector<Subcommand> commands;
+  commands.push_back(add_job_command(app, "run", "the whole way from the job to a proven NC program", request, run_job));
   commands.push_back(add_job_command(app, "surface", "flanks, limits, inspection grid and mesh of the gear", request, run_surface));
   commands.push_back(add_job_command(app, "shaper", "limits and gear-shaper set-up: sheet and stroke program", request, run_shaper));
 

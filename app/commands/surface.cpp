@@ -1,9 +1,9 @@
 #include "app/commands/surface.h"
 
+#include "app/commands/surface_files.h"
 #include "app/gear_of_job.h"
 #include "app/job_file.h"
 #include "app/output_dir.h"
-#include "app/report/limits_json.h"
 #include "app/report/run_report.h"
 
 namespace toothpath {
@@ -31,11 +31,8 @@ CommandOutcome run_surface(const CommandRequest& request) {
   report.job_file = job.file;
   report.warnings = gear.warnings();
   report.warnings.insert(report.warnings.begin(), job.warnings.begin(), job.warnings.end());
-  const auto write = [&](const std::string& name, const std::string& content) -> Status {
-    report.files.push_back(name);
-    return output->write(name, content);
-  };
-  if (const auto written = write("limits.json", limits_json(gear)); !written) return failed(written.error());
+  if (const auto written = write_surface_files(*output, gear, job.name, clock, report.files); !written)
+    return failed(located(job, "gear", written.error()));
 
   report.files.push_back("report.json");
   report.stages = clock.seconds();

@@ -1,0 +1,76 @@
+#include "app/commands/proof.h"
+
+#include <algorithm>
+
+namespace toothpath {
+namespace {
+
+void judge_gouge(const GougeResult& gouge, const GougeCheck& check, const ProofOptions& options, std::vector<std::string>& reasons) {
+  if (check.passes(gouge)) return;
+  const WorstPlace& place = gouge.deepest;
+  if (gouge.bound_mm > options.gouge_tolerance_mm)
+    reasons.push_back(fmt::format("gouge: {:.2f} um measured, {:.2f} um proven, limit {:.2f} um; {} against {}, operation {}, line {}, r {:.3f} mm, z {:.3f} mm",
+                                  gouge.measured_mm * 1000, gouge.bound_mm * 1000, options.gouge_tolerance_mm * 1000, place.body, place.patch,
+                                  place.operation, place.line, place.radius_mm, place.height_mm));
+  if (gouge.clearance_mm < gouge.required_clearance_mm)
+    reasons.push_back(fmt::format("clearance of shank and holder: {:.4f} mm is below {:.4f} mm; {} against {}, operation {}, line {}", gouge.clearance_mm,
+                                  gouge.required_clearance_mm, place.body, place.patch, place.operation, place.line));
+  if (!gouge.rapids_clear) reasons.push_back("a rapid passes through the blank");
+  if (reasons.empty()) reasons.push_back("the gouge check does not pass");
+}
+
+void judge_comparison(const ClComparison& comparison, const ProofOptions& options, std::vector<std::string>& reasons) {
+  if (!comparison.complete)
+    reasons.push_back(fmt::format("operation {}, record {} is not met by the program: {}", comparison.missed_operation,
+                                  comparison.missed_record, comparison.message));
+  if (comparison.worst_extra_mm > options.path_tolerance_mm)
+    reasons.push_back(fmt::format("the program leaves the path by {:.4f} mm, limit {:.4f} mm, near line {}", comparison.worst_extra_mm,
+                                  options.path_tolerance_mm, comparison.line));
+}
+
+}  // namespace
+
+ClearanceBody clearance_body(const FaceGear& gear) {
+  double lowest = gear.lowest_root();
+  if (gear.rings().size() > 1) lowest = std::min(lowest, gear.groove_floor());
+  return {gear.outer_radius(), lowest - 2.5 * gear.parameters().module_mm, gear.blank_top()};
+}
+
+Result<ProgramProof> prove_program(std::string_view text, const std::string& file, const Job& job, const Machine& machine,
+                                   const GougeCheck& check, const ClearanceBody& body, int teeth, std::span<const ClPath* const> paths,
+                                   const ProofOptions& options, StageClock& clock) {
+  const auto control = control_of(machine, *job.setup, job.tools);
+  if (!control) return control.error();
+  auto read = clock.run("read back", [&] {
+    return read_back(text, file, *control, machine, *job.setup, {.teeth = teeth, .keep_all = job.verify.all_teeth});
+  });
+  if (!read) return read.error();
+
+  ProgramProof proof;
+  proof.read = std::move(read.value());
+  for (const OperationTrace& trace : proof.read.operations) {
+    auto motions = clock.run("read back", [&] {
+      return tool_motions(trace, proof.read.copies, *control, machine, *job.setup, teeth, options.motion_tolerance_mm,
+                          options.motion_tolerance_rad);
+    });
+    if (!motions) return motions.error();
+    proof.motions.insert(proof.motions.end(), motions->begin(), motions->end());
+    if (const auto clear = check_rapids(trace, *control, machine, *job.setup, body); !clear) proof.reasons.push_back(clear.error().message);
+  }
+  if (!proof.read.copies.copies && !job.verify.all_teeth)
+    proof.reasons.push_back(fmt::format("line {}: the teeth are not turned copies of the first: {}", proof.read.copies.line, proof.read.copies.difference));
+
+  std::vector<int> tool_of_operation;
+  for (const auto& operation : job.operations) tool_of_operation.push_back(operation.tool);
+  proof.gouge = clock.run("proof of the program", [&] { return check.check(proof.motions, tool_of_operation); });
+  judge_gouge(proof.gouge, check, options, proof.reasons);
+  if (!paths.empty()) {
+    proof.comparison = clock.run("compare with the path", [&] {
+      return compare_with_cl(proof.motions, paths, options.path_tolerance_mm, options.path_tolerance_rad);
+    });
+    judge_comparison(*proof.comparison, options, proof.reasons);
+  }
+  return proof;
+}
+
+}  // namespace toothpath

@@ -1,0 +1,255 @@
+#include "app/commands/run.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "app/commands/proof.h"
+#include "app/commands/surface_files.h"
+#include "app/gear_of_job.h"
+#include "app/job_file.h"
+#include "app/report/cl_csv.h"
+#include "app/report/page_of_run.h"
+#include "app/report/setup_sheet.h"
+#include "app/sha256.h"
+#include "cam/plan.h"
+#include "geometry/base/tolerances.h"
+#include "postproc/nc_writer.h"
+
+namespace toothpath {
+namespace {
+
+const std::vector<std::string> kOutputs = {"program.",      "cl.csv",   "report.json", "report.html", "setup.html",
+                                           "gear.stl",      "tooth.vtp", "inspection.csv", "limits.json"};
+
+/// What one run has made so far. Stages fill it in order.
+struct Run {
+  const CommandRequest& request;
+  Progress progress;
+  StageClock clock{progress};
+  Job job;
+  std::optional<FaceGear> gear;
+  Machine machine;
+  FaceGearPlan plan;
+  std::vector<CheckedClPath> checked;
+  RunReport report;
+  std::string program_text;  ///< as read back from the disk
+
+  explicit Run(const CommandRequest& r) : request(r), progress(r.quiet) {}
+  [[nodiscard]] PlanOptions plan_options() const {
+    PlanOptions options;
+    if (job.verify.clearance_mm) options.clearance_mm = *job.verify.clearance_mm;
+    return options;
+  }
+  [[nodiscard]] std::vector<const ClPath*> paths() const {
+    std::vector<const ClPath*> result;
+    for (const auto& path : plan.paths) result.push_back(&path);
+    return result;
+  }
+};
+
+/// Job, gear and machine with everything that is wrong with them.
+std::vector<Diagnostic> read_inputs(Run& run) {
+  auto read = run.clock.run("job", [&] { return read_job_file(run.request.job_file); });
+  if (auto* errors = std::get_if<1>(&read)) return std::move(*errors);
+  run.job = std::move(std::get<0>(read));
+  if (run.job.operations.empty()) return {fail_at(run.job.where("operation"), "the job lacks an [[operation]]: there is nothing to run")};
+  std::vector<Diagnostic> errors;
+  auto gear = run.clock.run("gear", [&] { return make_face_gear(run.job); });
+  if (auto* refused = std::get_if<1>(&gear)) errors = std::move(*refused);
+  else run.gear = std::move(std::get<0>(gear));
+  auto machine = run.clock.run("machine", [&] { return load_machine(run.job); });
+  if (auto* refused = std::get_if<1>(&machine)) errors.insert(errors.end(), refused->begin(), refused->end());
+  else run.machine = std::move(std::get<0>(machine));
+  if (!errors.empty()) return errors;
+  if (const auto fits = check_part_on_machine(run.job, run.machine, 2 * run.gear->outer_radius()); !fits) return {fits.error()};
+  return {};
+}
+
+void begin_report(Run& run) {
+  RunReport& report = run.report;
+  report.command = "run";
+  report.job_name = run.job.name;
+  report.job_file = run.job.file;
+  report.machine_name = run.machine.name;
+  report.machine_file = run.job.machine.file;
+  report.dialect = run.machine.dialect;
+  report.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
+  if (run.machine.assumed)
+    for (const auto& key : run.machine.assumed_keys) report.assumed.push_back(fmt::format("{}: {}", run.job.machine.file, key));
+  report.warnings = run.job.warnings;
+  report.warnings.insert(report.warnings.end(), run.gear->warnings().begin(), run.gear->warnings().end());
+}
+
+/// Plans every operation and lets the gouge check pass each path. Nothing: done.
+std::optional<Diagnostic> plan_and_check(Run& run, const GearDistance& part, const GougeCheck& check) {
+  auto planned = run.clock.run("plan", [&] {
+    return plan_face_gear(part, run.job.tools, run.job.operations, run.plan_options(), [&](const std::string& text) { run.progress.show(text); });
+  });
+  if (auto* refusal = std::get_if<PlanRefusal>(&planned)) return located(run.job, refusal->key, std::move(refusal->diagnostic));
+  run.plan = std::move(std::get<FaceGearPlan>(planned));
+  run.report.directions = run.plan.directions;
+  for (const ClPath& path : run.plan.paths) run.report.cl_points += path.records.size();
+  for (const ClPath& path : run.plan.paths) {
+    auto passed = run.clock.run("gouge check", [&] { return check.check_path(path); });
+    if (!passed) return located(run.job, fmt::format("operation[{}]", path.operation), passed.error());
+    run.checked.push_back(std::move(passed.value()));
+  }
+  return std::nullopt;
+}
+
+void report_axis_program(RunReport& report, const Job& job, const FaceGearPlan& plan, const AxisProgram& program) {
+  report.axes = program.ranges;
+  report.feed_minutes = program.feed_minutes;
+  report.total_minutes = program.minutes;
+  for (const auto& name : program.assumed)
+    if (std::find(report.assumed.begin(), report.assumed.end(), name) == report.assumed.end()) report.assumed.push_back(name);
+  for (const AxisOperation& o : program.operations) {
+    const auto& asked = job.operations[static_cast<std::size_t>(o.operation)];
+    OperationReport operation{o.operation, o.type, o.tool_number, asked.speed_rpm, asked.feed_mm_min, 0, o.feed_minutes, o.rapid_minutes};
+    for (const ClPath& path : plan.paths)
+      if (path.operation == o.operation) operation.cl_points += path.records.size();
+    report.operations.push_back(operation);
+  }
+}
+
+/// Sources of deviation: what was predicted, and what the program that lies on the disk shows.
+std::vector<LedgerEntry> ledger_of(const FaceGearPlan& plan, const AxisProgram& program, const ProgramProof& proof) {
+  double chord = 0, scallop = 0;
+  for (const OperationPlan& operation : plan.operations) chord = std::max(chord, operation.chord_mm);
+  if (!plan.operations.empty()) scallop = plan.operations.back().scallop_max_mm;
+  const double nothing = std::numeric_limits<double>::quiet_NaN();  // not measured on its own
+  const double met = proof.comparison ? proof.comparison->worst_mm * 1000 : nothing;
+  return {{"flank solve", Tolerances{}.flank_mm * 1000, nothing},
+          {"chord", chord * 1000, nothing},
+          {"scallop", scallop * 1000, nothing},
+          {"axis linearisation", program.chord_bound_mm * 1000, proof.comparison ? proof.comparison->worst_extra_mm * 1000 : nothing},
+          {"rounding", program.rounding_bound_mm * 1000, met},
+          {"verification", (proof.gouge.bound_mm - proof.gouge.measured_mm) * 1000, nothing}};
+}
+
+/// Axis program, NC text on the disk, proof of those bytes. Nothing: done, and `report.reasons` says whether it is safe.
+std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const GougeCheck& check) {
+  const auto dialect = dialect_of(run.machine);
+  if (!dialect) return located(run.job, "machine.file", dialect.error());
+  const ClearanceBody body = clearance_body(*run.gear);
+  const int teeth = run.gear->parameters().teeth;
+  auto program = run.clock.run("axis program", [&] {
+    return build_axis_program(run.checked, run.job.tools, *run.job.setup, run.machine, teeth, body, axis_options(*dialect, run.machine));
+  });
+  if (!program) return located(run.job, "setup", program.error());
+  report_axis_program(run.report, run.job, run.plan, *program);
+
+  NcHeader header;
+  header.job_name = run.job.name;
+  header.machine_name = run.machine.name;
+  header.assumed = run.report.assumed;
+  header.coolant = run.job.coolant != Coolant::off;
+  auto text = run.clock.run("NC text", [&] { return write_nc(*program, *dialect, header); });
+  if (!text) return located(run.job, "machine.file", text.error());
+  run.report.blocks = text->blocks;
+  const std::string name = "program" + dialect->extension;
+  if (const auto written = output.write(name, text->text); !written) return written.error();
+  auto bytes = output.read_back(name);
+  if (!bytes) return bytes.error();
+  run.program_text = std::move(bytes.value());
+
+  ProofOptions options;
+  options.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
+  options.path_tolerance_mm = program->chord_bound_mm + program->rounding_bound_mm + 2 * options.motion_tolerance_mm;
+  options.path_tolerance_rad = program->axis_bound_rad + 2 * options.motion_tolerance_rad;
+  const auto paths = run.paths();
+  auto proof = prove_program(run.program_text, output.final_path(name), run.job, run.machine, check, body, teeth, paths, options, run.clock);
+  if (!proof) {
+    Diagnostic error = proof.error();
+    error.kind = DiagnosticKind::verification;  // our own program must be readable
+    return error;
+  }
+  run.report.gouge = proof->gouge;
+  run.report.reasons = proof->reasons;
+  run.report.ledger = ledger_of(run.plan, *program, *proof);
+  if (!proof->reasons.empty()) return std::nullopt;
+  run.report.verified = true;
+  run.report.program_file = name;
+  run.report.program_sha256 = sha256_hex(run.program_text);
+  run.report.program_bytes = run.program_text.size();
+  run.report.files.push_back(name);
+  return std::nullopt;
+}
+
+/// The files for people and for other programs; the program itself is there already.
+Status write_results(Run& run, OutputDir& output, std::string& json) {
+  RunReport& report = run.report;
+  const auto write = [&](const std::string& name, const std::string& content) -> Status {
+    report.files.push_back(name);
+    return output.write(name, content);
+  };
+  if (report.verified) {
+    if (const auto s = write_surface_files(output, *run.gear, run.job.name, run.clock, report.files); !s) return s;
+    if (const auto s = write("setup.html", setup_sheet(run.job, *run.gear, run.machine, report)); !s) return s;
+  }
+  const auto paths = run.paths();
+  if (!paths.empty())
+    if (const auto s = write("cl.csv", cl_csv(paths)); !s) return s;
+  report.stages = run.clock.seconds();
+  const auto page = run.clock.run("report page", [&] { return render_report_page(page_of_run(run.job, report, run.plan.paths, run.program_text)); });
+  if (!page) return page.error();
+  if (const auto s = write("report.html", *page); !s) return s;
+  report.files.push_back("report.json");
+  report.stages = run.clock.seconds();
+  json = report_json(report);
+  return output.write("report.json", json);
+}
+
+/// The end of a run whose inputs were right: verified, or not and why.
+CommandOutcome finish(Run& run, OutputDir& output, const std::optional<Diagnostic>& stopped) {
+  CommandOutcome outcome;
+  if (stopped) {
+    run.report.reasons.push_back(stopped->message);
+    outcome.errors.push_back(*stopped);
+  } else {
+    for (const auto& reason : run.report.reasons) {
+      Diagnostic error = fail_as(DiagnosticKind::verification, "{}", reason);
+      error.position.file = run.job.file;
+      outcome.errors.push_back(std::move(error));
+    }
+  }
+  if (!run.report.verified) {
+    for (const char* extension : {".ngc", ".nc", ".mpf", ".h", ".apt"}) output.discard(std::string("program") + extension);
+    outcome.exit_code = ExitCode::unverified;
+  }
+  if (const auto written = write_results(run, output, outcome.report_json); !written) return failed(located(run.job, "gear", written.error()));
+  run.progress.clear();
+  if (const auto committed = output.commit(); !committed) return failed(committed.error());
+  outcome.summary = summary_table(run.report, run.request.color);
+  return outcome;
+}
+
+}  // namespace
+
+CommandOutcome run_job(const CommandRequest& request) {
+  auto output = OutputDir::open(request.out_dir, kOutputs);
+  if (!output) return failed(output.error());
+  Run run(request);
+  if (auto errors = read_inputs(run); !errors.empty()) {
+    run.progress.clear();
+    return failed(std::move(errors));
+  }
+  begin_report(run);
+
+  const GearDistance part = run.clock.run("distance index", [&] { return GearDistance(*run.gear, reach_of(run.job.tools)); });
+  GougeCheckOptions options;
+  options.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
+  options.clearance_mm = run.plan_options().clearance_mm;
+  options.rapid_height_mm = run.gear->blank_top();
+  const GougeCheck check(part, run.job.tools, options);
+
+  auto stopped = plan_and_check(run, part, check);
+  if (!stopped) stopped = post_and_prove(run, *output, check);
+  if (stopped && stopped->kind != DiagnosticKind::verification) {
+    run.progress.clear();
+    return failed(std::move(*stopped));
+  }
+  return finish(run, *output, stopped);
+}
+
+}  // namespace toothpath

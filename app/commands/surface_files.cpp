@@ -1,0 +1,64 @@
+#include "app/commands/surface_files.h"
+
+#include <sstream>
+
+#include "app/report/limits_json.h"
+#include "geometry/inspection_grid.h"
+#include "geometry/mesh_file.h"
+
+namespace toothpath {
+namespace {
+
+constexpr double kStlSag = 0.01, kVtpSag = 0.002;  // mm
+
+/// Number of the patch that the first triangle at each vertex belongs to.
+std::vector<double> patch_of_vertices(const ToothMesh& pitch) {
+  std::vector<double> field(pitch.mesh.vertices.size(), static_cast<double>(kPatchCount));
+  for (std::size_t t = pitch.tags.size(); t-- > 0;)
+    for (const auto vertex : pitch.mesh.triangles[t]) field[static_cast<std::size_t>(vertex)] = static_cast<double>(pitch.tags[t].patch);
+  return field;
+}
+
+Result<std::string> stl_text(const FaceGear& gear, const std::string& job_name) {
+  const auto pitch = mesh_tooth_space(gear, kStlSag);
+  if (!pitch) return pitch.error();
+  std::string title = "toothpath gear " + job_name;
+  title.resize(std::min<std::size_t>(title.size(), 80));
+  std::ostringstream out;
+  const auto counts = write_stl(out, *pitch, title);
+  if (!counts) return counts.error();
+  return std::move(out).str();
+}
+
+Result<std::string> vtp_text(const FaceGear& gear) {
+  const auto pitch = mesh_tooth_space(gear, kVtpSag);
+  if (!pitch) return pitch.error();
+  const auto patches = patch_of_vertices(*pitch);
+  const std::vector<PointField> fields = {{"patch", patches}};
+  std::ostringstream out;
+  if (const auto written = write_vtp(out, pitch->mesh, fields); !written) return written.error();
+  return std::move(out).str();
+}
+
+Result<std::string> inspection_text(const FaceGear& gear) {
+  const auto points = inspection_grid(gear);
+  if (!points) return points.error();
+  return inspection_csv(*points);
+}
+
+}  // namespace
+
+Status write_surface_files(OutputDir& output, const FaceGear& gear, const std::string& job_name, StageClock& clock,
+                           std::vector<std::string>& files) {
+  const auto write = [&](const std::string& name, const Result<std::string>& content) -> Status {
+    if (!content) return content.error();
+    files.push_back(name);
+    return output.write(name, *content);
+  };
+  if (const auto s = write("limits.json", limits_json(gear)); !s) return s;
+  if (const auto s = write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); })); !s) return s;
+  if (const auto s = write("gear.stl", clock.run("mesh", [&] { return stl_text(gear, job_name); })); !s) return s;
+  return write("tooth.vtp", clock.run("mesh", [&] { return vtp_text(gear); }));
+}
+
+}  // namespace toothpath

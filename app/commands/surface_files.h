@@ -1,0 +1,18 @@
+// The files that describe the finished gear: limits, inspection points and meshes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/output_dir.h"
+#include "app/stage_clock.h"
+#include "geometry/face_gear.h"
+
+namespace toothpath {
+
+/// Writes limits.json, inspection.csv, gear.stl (all teeth, sag at most 0.01 mm) and tooth.vtp (one pitch, sag at most 0.002 mm,
+/// with the number of the patch at every point) and appends their names to `files`.
+[[nodiscard]] Status write_surface_files(OutputDir& output, const FaceGear& gear, const std::string& job_name, StageClock& clock,
+                                         std::vector<std::string>& files);
+
+}  // namespace toothpath

@@ -1,0 +1,109 @@
+#include "app/report/page_of_run.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/html_text.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath {
+namespace {
+
+PageTool page_tool(const ToolAssembly& tool) {
+  PageTool page;
+  page.name = fmt::format("T{} ball {} mm", tool.number, short_number(tool.diameter_mm));
+  const double r = tool.radius_mm();
+  PageToolBody ball{"ball", {}, true};
+  constexpr int kSteps = 12;
+  for (int i = 0; i <= kSteps; ++i) {
+    const double angle = kPi / 2 * i / kSteps;
+    ball.profile.emplace_back(r * std::sin(angle), r * (1 - std::cos(angle)));
+  }
+  page.bodies.push_back(std::move(ball));
+  page.bodies.push_back({"flute", {Vec2(r, r), Vec2(r, tool.flute_length_mm)}, true});
+  const double shank = tool.shank_diameter_mm / 2;
+  page.bodies.push_back({"shank", {Vec2(shank, tool.flute_length_mm), Vec2(shank, tool.stick_out_mm)}, false});
+  PageToolBody holder{"holder", {}, false};
+  double z = tool.stick_out_mm;
+  for (const auto& part : tool.holder) {
+    holder.profile.emplace_back(part.lower_diameter_mm / 2, z);
+    z += part.height_mm;
+    holder.profile.emplace_back(part.upper_diameter_mm / 2, z);
+  }
+  page.bodies.push_back(std::move(holder));
+  return page;
+}
+
+std::vector<KeyFigure> key_figures(const RunReport& r) {
+  using State = KeyFigure::State;
+  std::vector<KeyFigure> figures;
+  const auto um = [](double mm) { return fmt::format("{:.2f}", mm * 1000); };
+  if (r.gouge)
+    figures.push_back({"worst gouge", um(std::max(0.0, r.gouge->measured_mm)), "um",
+                       fmt::format("bound {}, tolerance {}", um(std::max(0.0, r.gouge->bound_mm)), um(r.gouge_tolerance_mm)),
+                       r.gouge->bound_mm <= r.gouge_tolerance_mm ? State::good : State::bad});
+  if (r.finished) figures.push_back({"worst left material", um(r.finished->max_mm), "um", "bound " + um(r.finished->bound_mm), State::plain});
+  if (r.gouge)
+    figures.push_back({"least clearance", fmt::format("{:.3f}", r.gouge->clearance_mm), "mm",
+                       fmt::format("required {:.3f}", r.gouge->required_clearance_mm),
+                       r.gouge->clearance_mm >= r.gouge->required_clearance_mm ? State::good : State::bad});
+  if (!r.operations.empty()) {
+    figures.push_back({"cutting time", readable_minutes(r.feed_minutes), "", "with rapids " + readable_minutes(r.total_minutes), State::plain});
+    figures.push_back({"NC blocks", std::to_string(r.blocks), "", fmt::format("{} CL points a tooth", r.cl_points), State::plain});
+  }
+  return figures;
+}
+
+PageTable axis_table(const RunReport& r) {
+  PageTable table{"Axes", {"axis", "least", "greatest", "lower limit", "upper limit", "unit"}, {}, "machine coordinates"};
+  for (const auto& axis : r.axes) {
+    const double f = axis.rotary ? degrees(1.0) : 1.0;
+    const auto number = [&](double value) { return fmt::format("{:.3f}", value * f); };
+    table.rows.push_back({std::string(1, axis.letter), number(axis.min), number(axis.max), number(axis.lower_limit), number(axis.upper_limit),
+                          axis.rotary ? "deg" : "mm"});
+  }
+  return table;
+}
+
+PageTable operation_table(const RunReport& r) {
+  PageTable table{"Operations", {"op", "type", "tool", "S 1/min", "feed mm/min", "CL points", "cutting min", "rapid min"}, {}, ""};
+  for (const auto& o : r.operations)
+    table.rows.push_back({std::to_string(o.operation), o.type, fmt::format("T{}", o.tool_number), fmt::format("{:g}", o.speed_rpm),
+                          fmt::format("{:g}", o.feed_mm_min), std::to_string(o.cl_points), fmt::format("{:.2f}", o.feed_minutes),
+                          fmt::format("{:.2f}", o.rapid_minutes)});
+  return table;
+}
+
+}  // namespace
+
+ReportPage page_of_run(const Job& job, const RunReport& r, const std::vector<ClPath>& paths, std::string_view program) {
+  ReportPage page;
+  page.title = r.job_name;
+  if (const auto* gear = job.face_gear())
+    page.subtitle = fmt::format("face gear {}/{}, module {} mm, {}", gear->shaper_teeth, gear->teeth, short_number(gear->module_mm), r.machine_name);
+  page.verified = r.verified;
+  page.reasons = r.reasons;
+  page.warnings = r.warnings;
+  page.assumed = r.assumed;
+  page.figures = key_figures(r);
+  page.summary = {{"job", r.job_file}, {"machine", fmt::format("{} ({})", r.machine_name, r.machine_file)}, {"control", r.dialect}};
+  if (!r.program_sha256.empty()) page.summary.emplace_back("SHA-256 of the program", r.program_sha256);
+  for (const auto& path : paths) page.paths.push_back({path, {}});
+  for (const auto& tool : job.tools) page.tools.push_back(page_tool(tool));
+  page.gouge = r.gouge;
+  page.gouge_tolerance_mm = r.gouge_tolerance_mm;
+  page.nc_file = r.program_file;
+  if (r.gouge && !program.empty()) {
+    std::vector<int> lines;
+    for (const auto& place : r.gouge->worst) lines.push_back(place.line);
+    page.listing = nc_excerpts(program, lines);
+  }
+  page.excess = r.excess;
+  page.ledger = r.ledger;
+  page.directions = r.directions;
+  page.stage_seconds = r.stages;
+  if (!r.operations.empty()) page.tables = {operation_table(r), axis_table(r)};
+  return page;
+}
+
+}  // namespace toothpath

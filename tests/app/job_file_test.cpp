@@ -1,0 +1,218 @@
+// The job reader: every sample is read with the numbers that it states, and nothing that is wrong is read at all.
+#include "app/job_file.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "geometry/base/angle.h"
+
+namespace toothpath {
+namespace {
+
+const std::string kSamples = TOOTHPATH_SAMPLES;
+
+std::string text_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return std::move(out).str();
+}
+
+Job read(const std::string& name) {
+  auto result = read_job_file(kSamples + "/" + name);
+  if (auto* errors = std::get_if<1>(&result)) {
+    ADD_FAILURE() << to_text(*errors);
+    return {};
+  }
+  return std::get<0>(std::move(result));
+}
+
+std::vector<Diagnostic> errors_of(const std::string& text) {
+  auto result = parse_job(text, "job.toml");
+  if (auto* errors = std::get_if<1>(&result)) return *errors;
+  return {};
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
+}
+
+TEST(JobFile, EverySampleIsRead) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(kSamples)) {
+    if (entry.path().extension() != ".toml") continue;
+    const auto result = read_job_file(entry.path().string());
+    EXPECT_EQ(result.index(), 0u) << to_text(std::get_if<1>(&result) ? std::get<1>(result) : std::vector<Diagnostic>{});
+    ++count;
+  }
+  EXPECT_GE(count, 5);
+}
+
+TEST(JobFile, NumbersAreThoseOfTheFile) {
+  const Job job = read("dhfg_paper.toml");
+  const auto* gear = job.face_gear();
+  ASSERT_NE(gear, nullptr);
+  EXPECT_EQ(gear->teeth, 180);
+  EXPECT_EQ(gear->shaper_teeth, 30);
+  EXPECT_EQ(gear->module_plane, ModulePlane::transverse);
+  EXPECT_EQ(gear->reference_radius_mm, 472.0);
+  ASSERT_EQ(gear->zones.size(), 2u);
+  EXPECT_EQ(gear->zones[0].helix_angle_rad, radians(-30.0));
+  EXPECT_EQ(gear->zones[1].outer_radius_mm, 496.0);
+  EXPECT_EQ(gear->groove_depth_mm, 12.5);
+  ASSERT_EQ(job.tools.size(), 2u);
+  EXPECT_EQ(job.tools[0].holder.size(), 2u);
+  EXPECT_EQ(job.tools[0].holder[1].height_mm, 30.0);
+  ASSERT_EQ(job.operations.size(), 4u);
+  EXPECT_EQ(job.operations[3].type, OperationType::finishing);
+  EXPECT_EQ(job.operations[3].tool, 1);
+  EXPECT_EQ(job.operations[3].chord_tolerance_mm, 0.001);
+  EXPECT_TRUE(job.setup->axis_up);
+  EXPECT_EQ(job.setup->origin_mm, Vec3(3, -2, 150));
+  EXPECT_EQ(job.coolant, Coolant::flood);
+}
+
+TEST(JobFile, ShapingIsRead) {
+  const Job job = read("offset_shaped.toml");
+  ASSERT_TRUE(job.shaping.has_value());
+  EXPECT_EQ(job.shaping->cutting_speed_m_min, 20.0);
+  EXPECT_EQ(job.shaping->offset_reference, Shaping::OffsetReference::outer_radius);
+  EXPECT_TRUE(job.machine.accept_assumed);
+  EXPECT_EQ(job.face_gear()->offset_mm, 15.0);
+}
+
+TEST(JobFile, BevelGearIsRead) {
+  const std::string text = R"(schema = 1
+name = "b"
+[gear]
+type = "equal_base_circle_bevel_gear"
+teeth = 18
+mate_teeth = 37
+outer_transverse_module = 6.0
+pressure_angle = 20.0
+outer_spiral_angle = 30.0
+face_width = 36.0
+form = "herringbone"
+hand = "left"
+apex_cone_distance = 104.0
+relief_half_width = 3.2
+addendum = 4.1
+dedendum = 5.1
+)";
+  const auto result = parse_job(text, "b.toml");
+  ASSERT_EQ(result.index(), 0u) << to_text(std::get<1>(result));
+  const auto* gear = std::get<0>(result).bevel_gear();
+  ASSERT_NE(gear, nullptr);
+  EXPECT_EQ(gear->hand, -1);
+  EXPECT_NEAR(std::tan(gear->pitch_angle_rad), 18.0 / 37.0, 1e-15);  // shaft angle 90 deg: tan delta = z1 / z2
+}
+
+TEST(JobFile, KeysKeepTheirPlace) {
+  const Job job = read("dhfg_paper.toml");
+  const std::string text = text_of(kSamples + "/dhfg_paper.toml");
+  std::istringstream lines(text);
+  std::string line;
+  int number = 0, wanted = 0, zone = 0;
+  while (std::getline(lines, line)) {
+    ++number;
+    if (line.starts_with("[[gear.zone]]")) ++zone;
+    if (zone == 2 && line.starts_with("inner_radius")) wanted = number;
+  }
+  const auto position = job.where("gear.zone[1].inner_radius");
+  EXPECT_EQ(position.line, wanted);
+  EXPECT_EQ(position.column, 16);
+  EXPECT_EQ(job.where("operation[2].climb").line, job.where("operation[2]").line) << "an absent key is located at its table";
+  EXPECT_EQ(job.where("nowhere").file, job.file);
+}
+
+TEST(JobFile, EveryFindingIsReportedInTheOrderOfTheFile) {
+  std::string text = text_of(kSamples + "/spur_quick.toml");
+  text = replaced(text, "module = 2.0", "module = -2.0");
+  text = replaced(text, "diameter = 1.0", "diametr = 1.0");
+  text = replaced(text, "scallop = 0.02", "scallop = 0");
+  const auto errors = errors_of(text);
+  ASSERT_EQ(errors.size(), 4u) << to_text(errors);  // the misspelt key is unknown, and the right one is missing
+  for (std::size_t i = 1; i < errors.size(); ++i) EXPECT_LE(errors[i - 1].position.line, errors[i].position.line);
+  for (const auto& error : errors) {
+    EXPECT_GT(error.position.line, 0);
+    EXPECT_GT(error.position.column, 0);
+  }
+}
+
+TEST(JobFile, NegativeZeroIsZero) {
+  const auto result = parse_job(replaced(text_of(kSamples + "/spur_quick.toml"), "helix_angle = 0.0", "helix_angle = -0.0"), "j.toml");
+  ASSERT_EQ(result.index(), 0u);
+  EXPECT_FALSE(std::signbit(std::get<0>(result).face_gear()->zones[0].helix_angle_rad));
+}
+
+TEST(JobFile, LineEndsAndByteOrderMarkDoNotMatter) {
+  const std::string text = text_of(kSamples + "/spur_quick.toml");
+  std::string crlf;
+  for (const char c : text) crlf += c == '\n' ? std::string("\r\n") : std::string(1, c);
+  EXPECT_TRUE(errors_of(crlf).empty());
+  EXPECT_TRUE(errors_of("\xEF\xBB\xBF" + text).empty());
+  EXPECT_TRUE(errors_of(text.substr(0, text.size() - 1)).empty()) << "no line feed at the end";
+}
+
+TEST(JobFile, BytesThatAreNoJobAreRefused) {
+  const std::string text = text_of(kSamples + "/spur_quick.toml");
+  std::string utf16;
+  for (const char c : text) utf16 += {c, '\0'};
+  std::string cr = text;
+  for (char& c : cr)
+    if (c == '\n') c = '\r';
+  for (const auto& bad : {std::string(), utf16, "\xFF\xFE" + utf16, cr, text + '\0', text + "\xFF", text + "# \xE9\n", std::string(1000, '\x01')})
+    EXPECT_FALSE(errors_of(bad).empty());
+}
+
+TEST(JobFile, ResourceBombsAreRefused) {
+  const int deep = 100000;
+  EXPECT_FALSE(errors_of("a = " + std::string(deep, '[') + std::string(deep, ']')).empty());
+  std::string dotted = "a", inline_tables = "a = ";
+  for (int i = 0; i < deep; ++i) dotted += ".a";
+  for (int i = 0; i < deep; ++i) inline_tables += "{a=";
+  EXPECT_FALSE(errors_of("[" + dotted + "]").empty());
+  EXPECT_FALSE(errors_of(dotted + " = 1").empty());
+  EXPECT_FALSE(errors_of(inline_tables).empty());
+  EXPECT_FALSE(errors_of("a = \"\"\"\n# \"\"\"\nb.\"#\"." + dotted + " = 1").empty());
+}
+
+TEST(JobFile, FilesThatAreNoFilesAreRefused) {
+  for (const char* path : {"/dev/zero", "/dev/null", "/", "/nonexistent/job.toml"}) {
+    const auto result = read_job_file(path);
+    ASSERT_EQ(result.index(), 1u) << path;
+  }
+}
+
+/// Any damage to a job gives a job or located findings, never anything else.
+TEST(JobFile, DamagedTextGivesAJobOrFindings) {
+  const std::string text = text_of(kSamples + "/dhfg_paper.toml");
+  std::mt19937 random(42);
+  std::uniform_int_distribution<std::size_t> place(0, text.size() - 1);
+  std::uniform_int_distribution<int> byte(0, 255), kind(0, 3);
+  for (int i = 0; i < 3000; ++i) {
+    std::string damaged = text;
+    const std::size_t at = place(random);
+    switch (kind(random)) {
+      case 0: damaged[at] = static_cast<char>(byte(random)); break;
+      case 1: damaged.resize(at); break;
+      case 2: damaged.erase(at, 1 + place(random) % 40); break;
+      default: damaged.insert(at, text.substr(place(random), 30)); break;
+    }
+    const auto result = parse_job(damaged, "d.toml");
+    if (const auto* errors = std::get_if<1>(&result)) {
+      ASSERT_FALSE(errors->empty());
+      for (const auto& error : *errors) ASSERT_EQ(error.text().find('\n'), std::string::npos);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace toothpath

@@ -1,0 +1,110 @@
+// Runs the toothpath binary as a user would, and looks at what it leaves.
+#pragma once
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace toothpath::testing {
+
+inline const std::string kSamples = TOOTHPATH_SAMPLES;
+inline const std::string kBadJobs = TOOTHPATH_BAD_JOBS;
+
+struct Finished {
+  int exit_code = -1;  ///< -1: ended by a signal
+  std::string out, err;
+};
+
+struct Launch {
+  std::vector<std::string> arguments;
+  std::string stdout_file;      ///< instead of the captured one: "/dev/full"
+  rlim_t largest_file = RLIM_INFINITY;
+  int signal_number = 0;        ///< sent after `signal_after_ms`
+  int signal_after_ms = 0;
+};
+
+inline std::string file_text(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return std::move(out).str();
+}
+
+/// A directory of its own for the running test, removed at the end.
+class TestDir {
+ public:
+  TestDir() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "toothpath_test_XXXXXX").string();
+    path_ = ::mkdtemp(pattern.data());
+  }
+  ~TestDir() {
+    std::error_code error;
+    std::filesystem::remove_all(path_, error);
+  }
+  [[nodiscard]] std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline Finished run_program(const Launch& launch) {
+  const TestDir dir;
+  const std::string out = launch.stdout_file.empty() ? dir / "out" : launch.stdout_file, err = dir / "err";
+  std::vector<std::string> words = {TOOTHPATH_BINARY};
+  words.insert(words.end(), launch.arguments.begin(), launch.arguments.end());
+  std::vector<char*> argv;
+  for (auto& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDOUT_FILENO);
+    ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), STDERR_FILENO);
+    if (launch.largest_file != RLIM_INFINITY) {
+      const rlimit limit{launch.largest_file, launch.largest_file};
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ::execv(argv[0], argv.data());
+    ::_exit(127);
+  }
+  if (launch.signal_number != 0) {
+    ::usleep(static_cast<useconds_t>(launch.signal_after_ms) * 1000);
+    ::kill(child, launch.signal_number);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  Finished result;
+  if (WIFEXITED(status)) result.exit_code = WEXITSTATUS(status);
+  if (launch.stdout_file.empty()) result.out = file_text(out);
+  result.err = file_text(err);
+  return result;
+}
+
+inline Finished run_program(std::vector<std::string> arguments) {
+  Launch launch;
+  launch.arguments = std::move(arguments);
+  return run_program(launch);
+}
+
+/// Names in a directory, hidden ones too; empty where it does not exist.
+inline std::vector<std::string> names_in(const std::string& directory) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+inline void write_file(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+}  // namespace toothpath::testing

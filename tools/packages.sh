@@ -1,0 +1,19 @@
+# Debian packages that Toothpath needs, and how to get those that are missing. Sourced by ./run and ./check.
+
+build_packages=(g++ cmake ninja-build libeigen3-dev libcgal-dev libassimp-dev libembree-dev libtbb-dev libfmt-dev
+  nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libboost-dev zlib1g-dev)
+test_packages=(libgtest-dev libbenchmark-dev chromium nodejs npm fonts-dejavu-core)
+
+# need_packages NAME...: installs those that are not there, in one call; upgrades nothing.
+need_packages() {
+  local missing=() name
+  for name in "$@"; do
+    dpkg-query -W -f='${db:Status-Status}' "$name" 2>/dev/null | grep -qx installed || missing+=("$name")
+  done
+  ((${#missing[@]})) || return 0
+  echo "installing: ${missing[*]}" >&2
+  local as_root=()
+  [[ $(id -u) == 0 ]] || as_root=(sudo)
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get update -q >&2
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install --no-install-recommends -y -q "${missing[@]}" >&2
+}
