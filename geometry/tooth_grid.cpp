@@ -12,6 +12,10 @@ constexpr std::size_t kLeastRows = 2;
 
 using Lines = std::vector<std::vector<Vec3>>;  // [row][column]
 
+/// Radius at parameter u in [0, 1]. Even steps in u crowd at the inner end, where the curvature grows like 1/(r - R1c)
+/// next to an undercut: its square root is then even in u.
+double radius_at(const std::array<double, 2>& span, double u) { return span[0] + (span[1] - span[0]) * u * u; }
+
 /// Part of the second difference across the line's own direction, per unit parameter.
 double bend(const Vec3& before, const Vec3& at, const Vec3& after) {
   const Vec3 second = before + after - 2 * at, tangent = after - before;
@@ -77,7 +81,7 @@ Result<GridPlanner> GridPlanner::probe(const FaceGear& gear) {
     std::array<Lines, kSegmentCount> lines;
     std::optional<ToothSection> near;
     for (std::size_t i = 0; i < kProbes; ++i) {
-      const double r = i + 1 == kProbes ? r_out : r_in + (r_out - r_in) * double(i) / double(kProbes - 1);
+      const double r = i + 1 == kProbes ? r_out : radius_at({r_in, r_out}, double(i) / double(kProbes - 1));
       auto section = ToothSection::at(ring.surface, gear.parameters().teeth, r, near ? &*near : nullptr);
       if (!section) return section.error();
       near = *section;
@@ -112,7 +116,7 @@ ToothGrid GridPlanner::grid(double sag_mm) const {
   for (std::size_t s = 0; s < kSegmentCount; ++s) grid.fractions[s] = equal_shares(bend_across_[s], sag_mm, kLeastCells[s]);
   for (std::size_t k = 0; k < span_.size(); ++k) {
     std::vector<double> radii = equal_shares(bend_along_[k], sag_mm, kLeastRows);
-    for (double& t : radii) t = span_[k][0] + (span_[k][1] - span_[k][0]) * t;
+    for (double& u : radii) u = radius_at(span_[k], u);
     radii.front() = span_[k][0];
     radii.back() = span_[k][1];
     grid.radii.push_back(std::move(radii));

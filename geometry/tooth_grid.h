@@ -39,7 +39,8 @@ class GridPlanner {
 
  private:
   std::array<std::vector<double>, kSegmentCount> bend_across_;  ///< second derivative by fraction, mm
-  std::vector<std::vector<double>> bend_along_;                 ///< the same by fraction of the face width, one list a ring
+  std::vector<std::vector<double>> bend_along_;                 ///< the same by the root of the fraction of the face width,
+                                                ///< one list a ring
   std::vector<std::array<double, 2>> span_;                     ///< inner and outer radius of each ring
 };
 

@@ -15,7 +15,7 @@ constexpr double kMargin = 1.15;        ///< on the measured sag
 constexpr double kBaseModules = 2.5;    ///< thickness below the lowest point of teeth and groove
 constexpr double kFootModules = 0.25;   ///< how far below the root an end face ends and the body begins
 constexpr double kLeastTolerance_mm = 1e-4, kMostTolerance_mm = 10;
-constexpr std::size_t kMostPitchTriangles = 4'000'000, kMostGearTriangles = 40'000'000;
+constexpr std::size_t kMostPitchTriangles = 1'000'000, kMostGearTriangles = 40'000'000;
 constexpr int kMostRefinements = 10;
 
 using Index = std::int32_t;

@@ -65,7 +65,7 @@ struct ToothMesh {
 [[nodiscard]] Vec3 turned_by_pitches(const Vec3& p, int k, int teeth);
 
 /// The pitch of space 0, for collision checks. `tolerance_mm`: largest sag of a facet, 1e-4 .. 10 mm.
-/// Refused: a tolerance outside that range, more than 4 million triangles in the pitch, a groove floor above the root,
+/// Refused: a tolerance outside that range, more than 1 million triangles in the pitch, a groove floor above the root,
 /// a place where the flank does not reach the tip surface or the fillet (undercut, pointed).
 [[nodiscard]] Result<ToothMesh> mesh_tooth_space(const FaceGear& gear, double tolerance_mm);
 
