@@ -126,6 +126,10 @@ void Inspection::ring(std::size_t k, const FaceGearRing& r, std::vector<std::str
     if (flank.undercut_radius && inner < *flank.undercut_radius)
       refuse(zone_key(k, "inner_radius"), "inner_radius = {:.4f} mm lies inside the undercut limit R1c = {:.4f} mm of flank side {:+d}",
              inner, *flank.undercut_radius, flank.side);
+    if (flank.flank_start_radius && inner < *flank.flank_start_radius)
+      refuse(zone_key(k, "inner_radius"),
+             "inner_radius = {:.4f} mm: inside {:.4f} mm the fillet of flank side {:+d} reaches up to the tip and no involute is left",
+             inner, *flank.flank_start_radius, flank.side);
     if (flank.involute_start_radius && inner < *flank.involute_start_radius)
       warnings.push_back(fmt::format("zone {}: inner radius {:.4f} mm lies inside the involute start R1b = {:.4f} mm of flank side "
                                      "{:+d}; the tip corner there is not conjugate",

@@ -60,8 +60,22 @@ std::optional<double> involute_start_B(const FaceGearSurface<double>& f, int sid
     const double r = radius_of(Q);
     return r > std::abs(f.E) ? Q.z() - f.z_tip(r) : std::numeric_limits<double>::quiet_NaN();
   };
-  if (!(above_tip(0.0) < 0)) return {};  // the tip surface lies below the base circle: involute everywhere
-  return first_root(above_tip, 0.0, side * kMaxB);
+  // From far outside, where the base line stands above the tip surface, inwards: the first crossing is the outermost.
+  const auto B = first_root(above_tip, side * kMaxB, -side * kFarInside);
+  if (!B || !(f.flank_J(side, 0.0, *B) > 0)) return {};
+  return B;
+}
+
+/// B at which the line theta = theta_t comes down through the tip surface; none if it lies below it from the cusp on.
+std::optional<double> flank_start_B(const FaceGearSurface<double>& f, int side, const std::optional<double>& cusp) {
+  const auto above_tip = [&](double B) {
+    const Vec3 P = f.flank_housing(side, f.shaper.theta_t, B);
+    const double r = radius_of(P);
+    return r > std::abs(f.E) ? P.z() - f.z_tip(r) : std::numeric_limits<double>::quiet_NaN();
+  };
+  const double start = cusp ? *cusp : 0.0;
+  if (!(above_tip(start) > 0)) return {};
+  return first_root(above_tip, start, side * kMaxB);
 }
 
 FlankLimits flank_limits(const FaceGearSurface<double>& f, int side) {
@@ -73,6 +87,8 @@ FlankLimits flank_limits(const FaceGearSurface<double>& f, int side) {
     limits.undercut_radius = radius_of(P);
     limits.undercut_height = P.z();
   }
+  if (const auto B = flank_start_B(f, side, limits.undercut_B))
+    limits.flank_start_radius = radius_of(f.flank_housing(side, f.shaper.theta_t, *B));
   if (const auto B = involute_start_B(f, side))
     limits.involute_start_radius = radius_of(f.flank_housing(side, 0.0, *B));
   return limits;
@@ -103,23 +119,27 @@ class TipThickness {
   std::optional<FlankCoordinates> last_[2];
 };
 
-/// Radius at which the tooth on the tip surface is `land` thick: a walk from the pitch point, then bracketing.
-/// The thickness falls with the radius, so the walk goes outwards where it starts thicker, else inwards.
+/// Radius at which the tooth on the tip surface is `land` thick. The walk starts far outside, where both involutes are long
+/// and unmistakable, and goes inwards with each flank found from the step before: the continuation of a flank beyond
+/// theta = 0 is the other flank, so near the base circle a cold start can end on the wrong one.
 std::optional<double> radius_of_thickness(const FaceGearSurface<double>& f, double land) {
   TipThickness thickness(f);
-  double r0 = radius_of(f.flank_housing(1, std::tan(f.shaper.alpha_t), f.shaper.alpha_t));
-  const double step = std::max(0.25 * f.shaper.m_t, 0.005 * r0);  // the band is some 0.15 r0 wide
-  const double inner = std::max(f.M2, std::abs(f.E)), outer = 3 * std::max(inner, r0);
-  auto S0 = thickness(r0);
-  while (!S0 && r0 < outer) S0 = thickness(r0 += step);
-  if (!S0) return {};
-  const double direction = *S0 > land ? step : -step;
-  for (double r1 = r0 + direction; r1 < outer && r1 > inner; r1 += direction) {
+  const double pitch_radius = radius_of(f.flank_housing(1, std::tan(f.shaper.alpha_t), f.shaper.alpha_t));
+  const double step = std::max(0.25 * f.shaper.m_t, 0.005 * pitch_radius);
+  std::optional<double> S0;
+  double r0 = 0;
+  for (const double far : {1.6, 1.4, 1.25, 1.15}) {
+    r0 = far * pitch_radius;
+    S0 = thickness(r0);
+    if (S0 && *S0 <= land) break;
+  }
+  if (!S0 || *S0 > land) return {};
+  for (double r1 = r0 - step; r1 > std::max(f.M2, std::abs(f.E)); r1 -= step) {
     const auto S1 = thickness(r1);
     if (!S1) return {};
-    if ((*S1 > land) != (*S0 > land)) {
+    if (*S1 > land) {
       const auto spare = [&](double r) { return thickness(r).value_or(std::numeric_limits<double>::quiet_NaN()) - land; };
-      const double r = bracketed_root(spare, r0, *S0 - land, r1, *S1 - land);
+      const double r = bracketed_root(spare, r1, *S1 - land, r0, *S0 - land);
       return std::isfinite(r) ? std::optional(r) : std::nullopt;
     }
     r0 = r1;
@@ -175,6 +195,11 @@ ZoneLimits zone_limits(const FaceGearSurface<double>& surface, double module_mm)
     if (flank.undercut_radius && *flank.undercut_radius > limits.inner_limit) {
       limits.hard_inner_limit = limits.inner_limit = *flank.undercut_radius;
       limits.inner_limit_name = "undercut";
+    }
+  for (const auto& flank : limits.flanks)
+    if (flank.flank_start_radius && *flank.flank_start_radius > limits.inner_limit) {
+      limits.hard_inner_limit = limits.inner_limit = *flank.flank_start_radius;
+      limits.inner_limit_name = "fillet up to the tip";
     }
   for (const auto& flank : limits.flanks)
     if (flank.involute_start_radius && *flank.involute_start_radius > limits.inner_limit) {

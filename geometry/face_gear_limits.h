@@ -14,6 +14,8 @@ struct FlankLimits {
   std::optional<double> undercut_radius;         ///< R1c: cusp of the involute's end; none if there is no cusp on this side
   std::optional<double> undercut_height;         ///< z of that point
   std::optional<double> undercut_B;              ///< its flank parameter, rad
+  std::optional<double> flank_start_radius;      ///< inside it the fillet reaches up to the tip surface and no involute is left
+                                                 ///  (low teeth, many shaper teeth); none in ordinary gears
   std::optional<double> involute_start_radius;   ///< R1b: theta = 0 on the tip surface; none if the tip is above the base circle
 };
 
@@ -24,8 +26,8 @@ struct ZoneLimits {
   std::optional<double> land_radius;        ///< R2': top land of `practical_land_mm`
   double practical_land_mm = 0;             ///< 0.2 m
   double inner_limit = 0;                   ///< R1 = the largest of the undercut and involute-start radii; M2 where there is none
-  const char* inner_limit_name = "";        ///< which one governs: "undercut", "involute start" or "base cylinder"
-  double hard_inner_limit = 0;              ///< the largest undercut radius (or M2): below it the zone is refused
+  const char* inner_limit_name = "";        ///< which one governs: "undercut", "fillet up to the tip", "involute start" or "base cylinder"
+  double hard_inner_limit = 0;              ///< the largest undercut or flank start radius (or M2): below it the zone is refused
 };
 
 /// Limits of the zone with this helix angle. Radii to 1e-9 mm.
