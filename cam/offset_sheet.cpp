@@ -50,6 +50,7 @@ OffsetSheet::OffsetSheet(const SpaceSheet& space, double delta, double r_from, d
     line[1] = (samples.back().second - samples.front().second) / (samples.back().first - samples.front().first);
     line[0] = INFINITY;
     for (const auto& [r, theta] : samples) line[0] = std::min(line[0], theta - line[1] * r);
+    line[0] -= std::abs(line[1]) * delta_;  // r here is of the contact, later of the centre
   };
   tip_line(1, top_plus_);
   tip_line(-1, top_minus_);
