@@ -151,7 +151,7 @@ TEST_F(ShaperCommand, RefusalsHaveAPlaceAndLeaveNoFile) {
            {"over_run = 2.5", "over_run = 60.0", 27, "exceeds 125.0000"},
            {"cutting_speed = 20.0", "cutting_speed = 5.0", 23, "below 125.0000"},
            {"accept_assumed = true", "accept_assumed = false", 20, "assumed values (index)"},
-           {"teeth = 88", "teeth = 89", 13, "no exact index gears for 60/89"},
+           {"teeth = 88", "teeth = 87", 13, "no exact index gears for 20/29"},
        }) {
     const auto outcome = run(replaced(kJob, c.what, c.by));
     EXPECT_EQ(outcome.exit_code, ExitCode::refused) << c.by;
