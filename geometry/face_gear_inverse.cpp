@@ -114,7 +114,12 @@ std::optional<FlankCoordinates> invert_flank(const FaceGearSurface<double>& f, i
   }
   if (ok) {
     const double J = f.flank_J(side, theta, B);
-    if (J > 0) return FlankCoordinates{theta, B, J};
+    // Beyond theta = 0 a flank continues as the other one: let the outermost solution decide there.
+    if (J > 0 && theta >= 0) return FlankCoordinates{theta, B, J};
+    if (J > 0) {
+      const auto outermost = by_bracketing(f, side, r, z);
+      return outermost ? outermost : FlankCoordinates{theta, B, J};
+    }
   }
   return by_bracketing(f, side, r, z);
 }
