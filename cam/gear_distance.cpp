@@ -58,6 +58,7 @@ struct GearDistance::Ring {
   std::unique_ptr<SpatialIndex> edge_index;
   double sag = 0, edge_sag = 0;
   std::vector<double> table_r, mid, tip_plus, tip_minus;  // azimuths over r
+  std::vector<std::vector<Vec2>> profiles;                // the same at every station
   std::vector<Vec2> end_in, end_out;                      // (azimuth, z) of the sheet at the ends, tip to tip
   OffsetSheet sheet;
 
@@ -128,6 +129,12 @@ GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::m
         boxes.push_back(box);
         R.cells.push_back(cell);
       }
+    }
+    for (const auto& station : st) {
+      std::vector<Vec2> profile;
+      for (const auto& node : station.nodes)
+        profile.push_back({std::atan2(node.at.contact.p.y(), node.at.contact.p.x()), node.at.contact.p.z()});
+      R.profiles.push_back(std::move(profile));
     }
     const std::size_t sheet_cells = R.cells.size();
     R.sag *= 2;  // the middle of a cell shows about the largest sag; twice that is taken as its bound
@@ -274,14 +281,15 @@ NearestPlace GearDistance::nearest(const Vec3& asked, double within) const {
     const double search = std::min(within, best.distance) + ring.sag;
     ring.index->near(c, search, [&](std::size_t k, double r_query) {
       const auto& cell = ring.cells[k];
-      if (!cell.sheet) return r_query;
+      const double worth = d_mesh + 4 * ring.sag + 0.02;  // a facet farther than this cannot hold the nearest point
+      if (!cell.sheet || (c - cell.centre).norm() - cell.radius > worth) return r_query;
       const double d = std::min(distance_to_triangle(c, cell.corner[0], cell.corner[1], cell.corner[2]),
                                 distance_to_triangle(c, cell.corner[1], cell.corner[2], cell.corner[3]));
       d_mesh = std::min(d_mesh, d);
       const std::size_t band = std::size_t(cell.piece) * kBands + std::size_t(cell.band);
       auto& seed = seeds[band];
       if (d < seed.d || (d == seed.d && k < seed.cell)) seed = {d, k};
-      return r_query;
+      return std::min(r_query, d_mesh + 4 * ring.sag + 0.02);
     });
     const auto& w = ring.space.surface().shaper;
     bool found = false;
@@ -331,11 +339,7 @@ NearestPlace GearDistance::nearest(const Vec3& asked, double within) const {
         // No surface near: either free in a wide space or deep inside the material.
         const auto& st = ring.sheet.stations();
         const double t = (r - st.front().r) / (st.back().r - st.front().r) * double(st.size() - 1);
-        const auto& nearest_station = st[std::size_t(std::clamp(std::round(t), 0.0, double(st.size() - 1)))];
-        std::vector<Vec2> profile;
-        profile.reserve(nearest_station.nodes.size());
-        for (const auto& node : nearest_station.nodes)
-          profile.push_back({std::atan2(node.at.contact.p.y(), node.at.contact.p.x()), node.at.contact.p.z()});
+        const auto& profile = ring.profiles[std::size_t(std::clamp(std::round(t), 0.0, double(st.size() - 1)))];
         if (over_land || Ring::in_material(profile, azimuth, z, z_tip)) take(-within, false, int(zone), "inside", c, c);
       }
     }
