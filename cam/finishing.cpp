@@ -6,6 +6,10 @@
 namespace toothpath {
 namespace {
 
+/// The curvature jumps where fillets meet flanks and root land, and a cusp that spans the jump is higher than its step
+/// says: in the corners passes aim at this share of the asked cusp.
+constexpr double kCornerShare = 0.7;
+
 double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 
 /// Passes counted along one profile: `count` grows by one from pass to pass.
@@ -83,7 +87,8 @@ class Planner {
     const Vec3 across = s.contact.n.cross(feed);
     const double k = SpaceSheet::normal_curvature(s.contact, across);
     const double regular = std::max(1e-6, (1 + k * sheet_.delta()) / (1 + k * o_.allowance_mm));
-    return std::sqrt(8 * o_.scallop_mm * o_.ball_radius_mm * regular);
+    const bool corner = s.piece != SpacePiece::flank_plus && s.piece != SpacePiece::flank_minus;
+    return std::sqrt(8 * (corner ? kCornerShare : 1.0) * o_.scallop_mm * o_.ball_radius_mm * regular);
   }
 
   void count_profiles() {
