@@ -51,7 +51,8 @@ class Builder {
     if (!program_.loop && !choose_all(false)) return *error_;
     if (program_.loop && options_.loop_needs_constant_index && index_moves_inside_passes()) program_.loop = false;
     if (program_.loop && rounding_of_loop() > options_.nc_step_mm) program_.loop = false;
-    program_.rounding_bound_mm = program_.loop ? rounding_of_loop() : rounding_of_words();
+    copies_ = !program_.loop && coincident_ && teeth_ > 1 && rounding_of_copies() <= options_.nc_step_mm;
+    program_.rounding_bound_mm = program_.loop ? rounding_of_loop() : copies_ ? rounding_of_copies() : rounding_of_words();
     if (program_.rounding_bound_mm > options_.nc_step_mm)
       return fail("rounding the words moves the tip by up to {:.6f} mm, more than {:.6f}", program_.rounding_bound_mm,
                   options_.nc_step_mm);
@@ -204,7 +205,9 @@ class Builder {
   // loop whose index is printed rounded, half a digit of the index displace the tip.
   double rounding_of_words() const { return 0.5 * std::sqrt(3.0) * std::pow(10.0, -options_.format.linear_decimals); }
   double rounding_of_loop() const {
-    if (!options_.loop_needs_constant_index) return rounding_of_words();
+    return options_.loop_needs_constant_index ? rounding_of_copies() : rounding_of_words();
+  }
+  double rounding_of_copies() const {
     double reach = 0;
     for (const ClPath* path : paths_)
       for (const auto& r : path->records) reach = std::max(reach, r.tip.head<2>().norm());
@@ -260,12 +263,35 @@ class Builder {
         break;
       }
       op.teeth.push_back({k, {}});
+      if (copies_ && k > 0) {
+        turned_copy(op.teeth.front().blocks, angles->front()[0] - angles_[p].front()[0], k, op.teeth.back().blocks);
+        angles = std::move(next);
+        continue;
+      }
       op.teeth.back().blocks.reserve(path.records.size() + 16);
       tooth(path, *angles, next->front(), k, op.teeth.back().blocks);
       angles = std::move(next);
     }
     if (program_.loop) op.rapid_minutes += tooth_angle(teeth_ - 1) / chain_.table[0].max_speed;
     program_.operations.push_back(std::move(op));
+  }
+
+  /// Blocks of tooth k where the index rotary turns the gear about its own axis: the same words, the index from integers.
+  void turned_copy(const std::vector<AxisBlock>& first, double shift, int k, std::vector<AxisBlock>& blocks) {
+    tooth_ = k;
+    const auto turn = std::llround((shift - program_.index_sign * tooth_angle(k)) / (2 * kPi));
+    const int digits = options_.format.rotary_decimals;
+    const std::int64_t word = ratio_to_fixed(std::int64_t{360} * k * program_.index_sign, teeth_, digits) +
+                              turn * 360 * power_of_ten(digits);
+    blocks = first;
+    for (auto& b : blocks) {
+      b.words[3] += word;
+      current_op_->feed_minutes += b.kind == BlockKind::feed ? b.minutes : 0;
+      current_op_->rapid_minutes += b.kind == BlockKind::feed ? 0 : b.minutes;
+      record_ = b.record;
+      last_ = b;
+      note_position(joints_of(b));
+    }
   }
 
   void machine_retract() {
@@ -293,7 +319,7 @@ class Builder {
     }
     if (error_) return;
     // Ready to be turned to where the next tooth begins.
-    rise_to(tip_height_for_turn(rounded(next_start)), true);
+    rise_to(tip_height_for_turn(rounded(next_start)));
   }
 
   double tip_height() const { return height_of(last_); }
@@ -323,6 +349,7 @@ class Builder {
     needed = std::max(needed, goal_height);
     const bool first = start_of_tooth_;
     start_of_tooth_ = false;
+    if (!first && goal.words == last_.words) return;
     if (first && at_retract_) {
       const double swept = turns ? tip_height_for_turn(rotaries) : needed;
       if (std::max(swept, needed) > retract_height() + 1e-9) return too_low(std::max(swept, needed));
@@ -332,13 +359,14 @@ class Builder {
       last_ = top;
       at_retract_ = false;
     } else if (turns) {
-      rise_to(std::max(needed, tip_height_for_turn(rotaries)), false);
+      rise_to(std::max(needed, tip_height_for_turn(rotaries)));
     } else {
-      rise_to(needed, false);
+      rise_to(needed);
     }
     if (error_) return;
     if (turns || first) {
       AxisBlock b = last_;
+      b.record = -1;
       b.kind = BlockKind::rapid_rotary;
       b.words[3] = goal.words[3];
       b.words[4] = goal.words[4];
@@ -346,6 +374,7 @@ class Builder {
     }
     if (first || turns || goal.words[0] != last_.words[0] || goal.words[1] != last_.words[1]) {
       AxisBlock b = last_;
+      b.record = -1;
       b.kind = BlockKind::rapid_xy;
       b.words[0] = goal.words[0];
       b.words[1] = goal.words[1];
@@ -362,7 +391,7 @@ class Builder {
   }
 
   /// Z alone, upwards only.
-  void rise_to(double height, bool at_end) {
+  void rise_to(double height) {
     const double now = tip_height();
     if (height > retract_height() + 1e-9) return too_low(height);
     if (height <= now) return;
@@ -370,7 +399,7 @@ class Builder {
     b.kind = BlockKind::rapid_z;
     const Joints j = joints_of(last_);
     b.words[2] = std::min(linear_word(j.linear_mm.z() + height - now, 2) + 1, linear_word(program_.retract_z_mm, 2));
-    if (at_end) b.record = -1;
+    b.record = -1;
     push_rapid(b, true);
     broken_ = true;
   }
@@ -392,10 +421,10 @@ class Builder {
     const Joints from = joints_of(last_), to = joints_of(b);
     b.minutes = std::max(linear_time(from, to), rotary_time(from, to));
     current_op_->rapid_minutes += b.minutes * (program_.loop ? teeth_ : 1);
-    if (b.kind != BlockKind::rapid_z || b.words[2] <= last_.words[2]) b.record = b.record < 0 ? -1 : b.record;
     blocks_->push_back(b);
     last_ = b;
-    note_position(to);
+    positioned_ = positioned_ || b.kind == BlockKind::rapid_xy;
+    if (positioned_) note_position(to);
   }
 
   // Feed.
@@ -427,8 +456,14 @@ class Builder {
                     degrees(options_.axis_rad));
       return;
     }
-    const Pose middle{0.5 * (from.tip + to.tip), slerp(from.axis, to.axis, 0.5)};
-    const auto angles = angles_between(middle.axis, from_angles, to_angles);
+    // The mean of the commands keeps a fixed tilt fixed; where its axis is too far from the great circle, the inverse of that.
+    Pose middle{0.5 * (from.tip + to.tip), slerp(from.axis, to.axis, 0.5)};
+    std::optional<RotaryPair> angles = RotaryPair{0.5 * (from_angles[0] + to_angles[0]), 0.5 * (from_angles[1] + to_angles[1])};
+    const Vec3 mean_axis = chain_.forward(Joints{Vec3::Zero(), *angles}, length_).axis;
+    if (angle_between(mean_axis, middle.axis) <= 0.5 * options_.axis_rad)
+      middle.axis = mean_axis;
+    else
+      angles = angles_between(middle.axis, from_angles, to_angles);
     if (!angles) return;
     ++program_.inserted_blocks;
     feed_to(from, from_angles, middle, *angles, feed, depth + 1);
@@ -540,7 +575,8 @@ class Builder {
   }
 
   void note_position(const Joints& j) {
-    placed_.note(j, current_op_->operation, record_, tooth_, chain_, machine_.limit_margin);
+    const bool at_top = last_.kind != BlockKind::feed && last_.words[2] == linear_word(program_.retract_z_mm, 2);
+    placed_.note(j, !at_top, current_op_->operation, record_, tooth_, chain_, machine_.limit_margin);
   }
 
   void finish() {
@@ -561,7 +597,7 @@ class Builder {
   GearPlacement gear_;
   AxisProgram program_;
   std::vector<std::vector<RotaryPair>> angles_;  // tooth 0, by path
-  bool parallel_ = false, coincident_ = false;
+  bool parallel_ = false, coincident_ = false, copies_ = false;
   std::optional<Diagnostic> error_;
   TravelRecord placed_;
   // Where the sequence stands.
@@ -572,6 +608,7 @@ class Builder {
   int tooth_ = 0;
   std::int32_t record_ = 0;
   bool at_retract_ = true, start_of_tooth_ = true, broken_ = true;
+  bool positioned_ = false;  // X and Y have been commanded
   double pending_minutes_ = 0;
 };
 

@@ -11,7 +11,7 @@ constexpr std::size_t kListed = 20;
 constexpr double kStill = 1e-9;  // a joint that a shift of the set-up moves by less per mm is not moved
 }  // namespace
 
-void TravelRecord::note(const Joints& joints, int operation, int record, int tooth, const KinematicChain& chain,
+void TravelRecord::note(const Joints& joints, bool moves_with_part, int operation, int record, int tooth, const KinematicChain& chain,
                         const LimitMargin& margin) {
   for (std::size_t i = 0; i < 5; ++i) {
     const double v = i < 3 ? joints.linear_mm[static_cast<int>(i)] : joints.rotary_rad[i - 3];
@@ -24,6 +24,7 @@ void TravelRecord::note(const Joints& joints, int operation, int record, int too
     if (first_.size() < kListed)
       first_.push_back(fmt::format("operation {} record {} (tooth {}): {}", operation, record, tooth, violation.text()));
   }
+  if (!moves_with_part) return;
   const Vec3 zero = chain.table_to_machine(Vec3::Zero(), joints.rotary_rad);
   for (int m = 0; m < 3; ++m) {
     const Vec3 moved = chain.table_to_machine(Vec3::Unit(m), joints.rotary_rad) - zero;

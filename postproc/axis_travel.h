@@ -18,8 +18,8 @@ namespace toothpath {
 /// Collects positions; joint moves are straight in the joints, so that ends are enough.
 class TravelRecord {
  public:
-  /// One end of a block.
-  void note(const Joints& joints, int operation, int record, int tooth, const KinematicChain& chain,
+  /// One end of a block. `moves_with_part`: false where Z stands at its own top, whatever the set-up.
+  void note(const Joints& joints, bool moves_with_part, int operation, int record, int tooth, const KinematicChain& chain,
             const LimitMargin& margin);
 
   [[nodiscard]] const std::array<double, 5>& least() const { return least_; }

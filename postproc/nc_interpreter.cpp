@@ -499,6 +499,8 @@ class Interpreter {
     m.operation = static_cast<std::int16_t>(operation_);
     m.tool = static_cast<std::int16_t>(tool_);
     m.rapid = motion_ == 0;
+    for (std::size_t a = 0; a < 5; ++a)
+      if (r.has[a]) m.commanded = static_cast<std::uint8_t>(m.commanded | (1U << a));
     m.tooth = static_cast<std::int16_t>(tooth_);
     m.machine = r.g53 || r.g43;
     if (m.rapid) {
@@ -519,6 +521,7 @@ class Interpreter {
   Result<double> feed_minutes(const Request& r, const std::array<double, 5>& goal) {
     if (!spindle_) return here(r.column, "G1 while the spindle stands");
     if (tool_ < 0) return here(r.column, "G1 without a tool");
+    if (feed_mode_ == 93 && !r.f) return here(r.column, "G1 in G93 without F");
     double linear = 0, rotary = 0;
     for (std::size_t a = 0; a < 5; ++a) {
       const double d = goal[a] - joints_[a];
@@ -529,7 +532,6 @@ class Interpreter {
     rotary = std::sqrt(rotary);
     const double length = linear > 0 ? linear : rotary;
     if (feed_mode_ == 93) {
-      if (!r.f) return here(r.column, "G1 in G93 without F");
       if (length == 0) return 1 / *feed_;
       const double rate = length * *feed_;
       return length / (linuxcnc_ ? std::max(kLeastRate, rate) : rate);

@@ -55,7 +55,14 @@ class CopyCheck {
       s.kept.push_back(m);
       return;
     }
-    compare(m, s, s.kept[c.lead + position], position);
+    if (position == 0) {
+      s.commanded = 0;
+      s.turn_known = false;
+    }
+    s.commanded = static_cast<std::uint8_t>(s.commanded | m.commanded);
+    if (copy == 1 && m.rapid && s.kept.size() == c.lead + s.per_tooth + position) s.kept.push_back(m);  // link to the second
+    const ExecutedMove first = s.kept[c.lead + position];
+    compare(m, s, first);
   }
 
   TurnedCopies finish() {
@@ -74,24 +81,32 @@ class CopyCheck {
  private:
   struct State {
     std::size_t per_tooth = 0, seen = 0;
+    std::uint8_t commanded = 0;  // axes with a word since this copy began
+    bool turn_known = false;
     int turn = 0;  // of this copy, whole index steps, not reduced
     std::vector<int> turns;
     std::vector<ExecutedMove> kept;
   };
 
-  void compare(const ExecutedMove& m, State& s, const ExecutedMove& first, std::size_t position) {
+  void compare(const ExecutedMove& m, State& s, const ExecutedMove& first) {
+    // An axis without a word so far still stands where the tooth before left it; nothing is cut like that.
+    const auto set = [&](std::size_t a) { return control_.letters[a] == 0 || (s.commanded & (1U << a)) != 0; };
+    if (m.commanded != first.commanded) return differ(m.line, "other axes are named than in the first tooth");
     for (std::size_t a = 0; a < 5; ++a) {
-      if (a == 3) continue;
+      if (!m.rapid && !set(a)) return differ(m.line, fmt::format("the tooth cuts before it has set {}", control_.letters[a]));
+      if (a == 3 || !set(a)) continue;
       if (!same_bits(m.joints[a], first.joints[a]))
         return differ(m.line, fmt::format("{} = {} where the first tooth has {}", control_.letters[a], m.joints[a], first.joints[a]));
     }
     const double pitch = 360.0 / teeth_;
     const double turned = sign_ * (m.joints[3] - first.joints[3]);
-    if (position == 0) {
+    if (set(3) && !s.turn_known) {
+      s.turn_known = true;
       const int k = static_cast<int>(std::lround(turned / pitch));
       s.turn = k;
       s.turns.push_back(((k % teeth_) + teeth_) % teeth_);
     }
+    if (!set(3)) return;
     const double error = std::abs(turned - s.turn * 360.0 / teeth_);
     result_.worst_shift_deg = std::max(result_.worst_shift_deg, error);
     if (!(error <= control_.rotary_rounding_deg * (1 + 1e-6) + 1e-9))

@@ -2,7 +2,8 @@
 // the comparison with the path that was asked for. It shares no code with the writer.
 //
 // The interpreter executes every tooth of an index loop; what is kept is the first tooth of each operation when the
-// others are proven to be turned copies (same linear words bit for bit, the index rotary further by k * 360 / z).
+// others are proven to be turned copies (same linear words bit for bit, the index rotary further by k * 360 / z), and the
+// link from the first tooth to the second.
 #pragma once
 
 #include <array>
@@ -47,6 +48,7 @@ struct ExecutedMove {
   std::int16_t operation = -1;  ///< from the (OP n type) comment; -1 before the first
   std::int16_t tool = 0;        ///< T in the spindle
   bool rapid = false;
+  std::uint8_t commanded = 0;   ///< bit a: the block has a word for axis a
   std::int16_t tooth = -1;      ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
   bool machine = false;         ///< G53, or the block that switches tool length compensation on
   bool known = false;           ///< all joints were known before and after
