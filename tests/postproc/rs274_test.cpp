@@ -1,0 +1,168 @@
+// LinuxCNC's own interpreter as the second opinion on the text that we write. tools/get_rs274.sh fetches it; the variable
+// TOOTHPATH_RS274 names another copy.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "tests/postproc/nc_case.h"
+
+namespace toothpath {
+namespace {
+
+using namespace test;
+namespace fs = std::filesystem;
+
+std::string rs274() {
+  if (const char* given = std::getenv("TOOTHPATH_RS274")) return given;
+  return std::string(TOOTHPATH_SOURCE_DIR) + "/.deps/rs274/rs274";
+}
+
+struct Canonical {
+  int exit = -1;
+  std::string messages;
+  std::vector<std::string> lines;
+};
+
+Canonical interpret(const std::string& program, const std::string& name) {
+  Canonical out;
+  const fs::path dir = fs::path(testing::TempDir()) / ("toothpath_rs274_" + name + "_" + std::to_string(::getpid()));
+  fs::create_directories(dir);
+  std::ofstream(dir / "p.ngc") << program;
+  std::ofstream(dir / "t.tbl") << "T1 P1 Z0 D4 ;\nT2 P2 Z0 D4 ;\n";
+  std::ofstream(dir / "v.var") << "";
+  const std::string d = dir.string();
+  const std::string command = "cd '" + d + "' && HOME='" + d + "' timeout 60 '" + rs274() +
+                              "' -g -t t.tbl -v v.var p.ngc out.txt > log.txt 2>&1";
+  const int status = std::system(command.c_str());
+  out.exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  std::ifstream log(dir / "log.txt");
+  out.messages.assign(std::istreambuf_iterator<char>(log), {});
+  std::ifstream in(dir / "out.txt");
+  for (std::string l; std::getline(in, l);) out.lines.push_back(l);
+  fs::remove_all(dir);
+  return out;
+}
+
+/// What of a Fanuc program LinuxCNC would not understand: sub-programs as o-words, G69, the O number; M98 as a call.
+std::string iso_subset(const std::string& fanuc) {
+  std::istringstream in(fanuc);
+  std::string main, subs, l, open;
+  bool behind_end = false, in_main = false;
+  while (std::getline(in, l)) {
+    std::smatch m;
+    if (l == "%") continue;
+    if (std::regex_search(l, m, std::regex("^O(\\d+) "))) {
+      if (in_main) {
+        open = m[1];
+        subs += "o" + open + " sub\n";
+      }
+      in_main = true;
+      continue;
+    }
+    l = std::regex_replace(l, std::regex(" G69"), "");
+    if (std::regex_search(l, m, std::regex("^M98 P(\\d+)"))) l = "o" + std::string(m[1]) + " call";
+    if (l == "M99") l = "o" + open + " endsub";
+    (behind_end ? subs : main) += l + "\n";
+    if (l == "M30") behind_end = true;
+  }
+  return subs + main;
+}
+
+class Rs274 : public testing::TestWithParam<std::tuple<const char*, double, double, bool>> {
+ protected:
+  void SetUp() override {
+    if (!fs::exists(rs274())) FAIL() << rs274() << " is missing: run tools/get_rs274.sh";
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Programs, Rs274,
+                         testing::Values(std::tuple{"linuxcnc", 0.0, 0.0, false}, std::tuple{"linuxcnc", 0.3, 0.4, false},
+                                         std::tuple{"linuxcnc", 0.3, 0.4, true}, std::tuple{"fanuc", 0.3, 0.0, false},
+                                         std::tuple{"fanuc", 0.3, 0.2, true}));
+
+// LinuxCNC executes the program to its end, and what it executes are the turned CL records in order, tooth by tooth.
+TEST_P(Rs274, ExecutesTheClPathOfEveryTooth) {
+  const auto& [dialect, lean, swing, expand] = GetParam();
+  const Machine m = with_dialect(trunnion(), dialect);
+  const int z = 5;
+  std::vector<ClPath> paths = {sample_path(lean, swing, 12), sample_path(lean, swing, 9, 1)};
+  paths[1].tool = 1;
+  const auto text = nc_text(paths, m, standing(), z, expand);
+  ASSERT_TRUE(text) << text.error().message;
+  const std::string program = std::string(dialect) == "fanuc" ? iso_subset(text->text) : text->text;
+  const auto out = interpret(program, testing::UnitTest::GetInstance()->current_test_info()->name());
+  ASSERT_EQ(out.exit, 0) << out.messages;
+
+  std::array<std::size_t, 2> next{};  // record, over all teeth
+  std::size_t feeds = 0;
+  bool ended = false;
+  int op = -1;
+  const std::regex motion("STRAIGHT_(FEED|TRAVERSE)\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)");
+  for (const auto& l : out.lines) {
+    std::smatch match;
+    if (std::regex_search(l, match, std::regex("COMMENT\\(\"OP (\\d)"))) op = std::stoi(match[1]);
+    if (l.find("PROGRAM_END") != std::string::npos) ended = true;
+    if (!std::regex_search(l, match, motion) || op < 0 || match[1] != "FEED") continue;
+    ++feeds;
+    const auto o = static_cast<std::size_t>(op);
+    const double length = tools()[o].length_mm;
+    const Vec3 origin = standing().work_offset_at_mm;
+    const auto pose = trunnion_forward(kTrunnion, std::stod(match[2]) + origin.x(), std::stod(match[3]) + origin.y(),
+                                       std::stod(match[4]) + origin.z() + length, std::stod(match[5]), std::stod(match[7]), length);
+    const Vec3 tip = pose.tip - standing().origin_mm;
+    const auto& records = paths[o].records;
+    while (records[next[o] % records.size()].kind == MoveKind::rapid) ++next[o];
+    const auto k = next[o] / records.size();
+    const auto& r = records[next[o] % records.size()];
+    const Eigen::AngleAxisd turn(2 * kPi * static_cast<double>(k) / z, Vec3::UnitZ());
+    if ((tip - turn * r.tip).norm() < 2e-4 + tip.norm() * 1e-5 + (std::string(dialect) == "fanuc" ? 3e-3 : 0) &&
+        (pose.axis - turn * r.axis).norm() < 1e-4)
+      ++next[o];
+  }
+  EXPECT_TRUE(ended);
+  for (std::size_t o = 0; o < 2; ++o) {
+    const auto& records = paths[o].records;
+    while (next[o] < records.size() * z && records[next[o] % records.size()].kind == MoveKind::rapid) ++next[o];
+    EXPECT_EQ(next[o], records.size() * z) << "operation " << o << ": first record not met";
+  }
+  EXPECT_GE(feeds, static_cast<std::size_t>(z) * (2 * 14 + 2 * 11));
+}
+
+// The same program through both interpreters: joints of every move.
+TEST_P(Rs274, AgreesWithOurReaderMoveByMove) {
+  const auto& [dialect, lean, swing, expand] = GetParam();
+  const Machine m = with_dialect(trunnion(), dialect);
+  const auto text = nc_text({sample_path(lean, swing, 15)}, m, standing(), 4, expand);
+  ASSERT_TRUE(text);
+  const auto out = interpret(std::string(dialect) == "fanuc" ? iso_subset(text->text) : text->text,
+                             testing::UnitTest::GetInstance()->current_test_info()->name());
+  ASSERT_EQ(out.exit, 0) << out.messages;
+  const auto control = control_of(m, standing(), tools());
+  std::vector<ExecutedMove> ours;
+  const auto s = execute_nc(text->text, "p", *control, [&](const ExecutedMove& e) { ours.push_back(e); });
+  ASSERT_TRUE(s) << s.error().text();
+  const std::regex motion("STRAIGHT_(FEED|TRAVERSE)\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)");
+  std::size_t i = 0;
+  for (const auto& l : out.lines) {
+    std::smatch match;
+    if (!std::regex_search(l, match, motion)) continue;
+    ASSERT_LT(i, ours.size());
+    const ExecutedMove& e = ours[i++];
+    EXPECT_EQ(e.rapid, match[1] == "TRAVERSE");
+    if (!e.known || e.machine) continue;
+    EXPECT_NEAR(e.joints[0] - 3, std::stod(match[2]), 6e-5);
+    EXPECT_NEAR(e.joints[1] + 2, std::stod(match[3]), 6e-5);
+    EXPECT_NEAR(e.joints[2] - 95, std::stod(match[4]), 6e-5);
+    EXPECT_NEAR(e.joints[4], std::stod(match[5]), 6e-5);
+    EXPECT_NEAR(e.joints[3], std::stod(match[7]), 6e-5);
+  }
+  EXPECT_EQ(i, ours.size());
+}
+
+}  // namespace
+}  // namespace toothpath
