@@ -56,8 +56,8 @@ SourcePosition Job::where(std::string_view key) const {
   while (true) {
     if (const auto found = positions.find(path); found != positions.end()) return found->second;
     const auto cut = path.find_last_of(".[");
-    if (cut == std::string::npos) return {file, 0, 0};
-    path.resize(cut);
+    if (path.empty()) return {file, 0, 0};
+    path.resize(cut == std::string::npos ? 0 : cut);
   }
 }
 

@@ -5,6 +5,8 @@
 namespace toothpath {
 namespace {
 
+constexpr double kExcessMargin = 1e-3;  // mm: rounding, axis motion and the grid of the measurement
+
 void judge_gouge(const GougeResult& gouge, const GougeCheck& check, const ProofOptions& options, std::vector<std::string>& reasons) {
   if (check.passes(gouge)) return;
   const WorstPlace& place = gouge.deepest;
@@ -17,6 +19,17 @@ void judge_gouge(const GougeResult& gouge, const GougeCheck& check, const ProofO
                                   gouge.required_clearance_mm, place.body, place.patch, place.operation, place.line));
   if (!gouge.rapids_clear) reasons.push_back("a rapid passes through the blank");
   if (reasons.empty()) reasons.push_back("the gouge check does not pass");
+}
+
+/// What a finishing operation may leave, on every point that its ball can reach: the cusps, the chords and a micrometre.
+void judge_surface(const CutSurface& surface, const Job& job, std::vector<std::string>& reasons) {
+  const MillingOperation& last = job.operations.back();
+  if (last.type != OperationType::finishing) return;
+  const double limit = last.scallop_mm + last.chord_tolerance_mm + kExcessMargin;
+  if (surface.finished.max_mm <= limit) return;
+  reasons.push_back(fmt::format("left material: {:.2f} um after the last operation, limit {:.2f} um (scallop {:.2f}, chord {:.2f}, margin {:.2f})",
+                                surface.finished.max_mm * 1000, limit * 1000, last.scallop_mm * 1000, last.chord_tolerance_mm * 1000,
+                                kExcessMargin * 1000));
 }
 
 void judge_comparison(const ClComparison& comparison, const ProofOptions& options, std::vector<std::string>& reasons) {
@@ -37,7 +50,7 @@ ClearanceBody clearance_body(const FaceGear& gear) {
 }
 
 Result<ProgramProof> prove_program(std::string_view text, const std::string& file, const Job& job, const Machine& machine,
-                                   const GougeCheck& check, const ClearanceBody& body, int teeth, std::span<const ClPath* const> paths,
+                                   const GearDistance& part, const GougeCheck& check, const ClearanceBody& body, int teeth, std::span<const ClPath* const> paths,
                                    const ProofOptions& options, StageClock& clock) {
   const auto control = control_of(machine, *job.setup, job.tools);
   if (!control) return control.error();
@@ -64,6 +77,8 @@ Result<ProgramProof> prove_program(std::string_view text, const std::string& fil
   for (const auto& operation : job.operations) tool_of_operation.push_back(operation.tool);
   proof.gouge = clock.run("proof of the program", [&] { return check.check(proof.motions, tool_of_operation); });
   judge_gouge(proof.gouge, check, options, proof.reasons);
+  proof.surface = clock.run("cut surface", [&] { return measure_cut_surface(part, proof.motions, job.operations, job.tools); });
+  judge_surface(proof.surface, job, proof.reasons);
   if (!paths.empty()) {
     proof.comparison = clock.run("compare with the path", [&] {
       return compare_with_cl(proof.motions, paths, options.path_tolerance_mm, options.path_tolerance_rad);

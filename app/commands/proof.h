@@ -9,6 +9,7 @@
 
 #include "app/job.h"
 #include "app/stage_clock.h"
+#include "cam/cut_surface.h"
 #include "cam/gouge_check.h"
 #include "machines/machine.h"
 #include "postproc/nc_reader.h"
@@ -19,6 +20,7 @@ struct ProgramProof {
   std::vector<ToolMotion> motions;  ///< in program order; all teeth that were kept
   ReadBack read;
   GougeResult gouge;
+  CutSurface surface;               ///< what the program leaves on the finished surface
   std::optional<ClComparison> comparison;  ///< only where there is a path to compare with
   std::vector<std::string> reasons;        ///< why the program is not proven; empty: it is
 };
@@ -34,7 +36,7 @@ struct ProofOptions {
 /// Reads `text` back and checks it. `paths` may be empty (a program that somebody else wrote).
 /// Errors: what the reader refuses, located in `file`. A program that is read but not safe is no error: see `reasons`.
 [[nodiscard]] Result<ProgramProof> prove_program(std::string_view text, const std::string& file, const Job& job, const Machine& machine,
-                                                 const GougeCheck& check, const ClearanceBody& body, int teeth,
+                                                 const GearDistance& part, const GougeCheck& check, const ClearanceBody& body, int teeth,
                                                  std::span<const ClPath* const> paths, const ProofOptions& options, StageClock& clock);
 
 /// The blank as a cylinder about the gear axis: from the underside of the mesh to the top of the stock.

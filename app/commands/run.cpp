@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "app/commands/bevel_run.h"
 #include "app/commands/proof.h"
 #include "app/commands/surface_files.h"
 #include "app/gear_of_job.h"
@@ -32,6 +33,7 @@ struct Run {
   FaceGearPlan plan;
   std::vector<CheckedClPath> checked;
   RunReport report;
+  std::vector<SurfaceGrid> surface;
   std::string program_text;  ///< as read back from the disk
 
   explicit Run(const CommandRequest& r) : request(r), progress(r.quiet) {}
@@ -121,14 +123,14 @@ std::vector<LedgerEntry> ledger_of(const FaceGearPlan& plan, const AxisProgram& 
   const double met = proof.comparison ? proof.comparison->worst_mm * 1000 : nothing;
   return {{"flank solve", Tolerances{}.flank_mm * 1000, nothing},
           {"chord", chord * 1000, nothing},
-          {"scallop", scallop * 1000, nothing},
+          {"scallop", scallop * 1000, proof.surface.scallop.requested_mm > 0 ? proof.surface.scallop.reached_max_mm * 1000 : nothing},
           {"axis linearisation", program.chord_bound_mm * 1000, proof.comparison ? proof.comparison->worst_extra_mm * 1000 : nothing},
           {"rounding", program.rounding_bound_mm * 1000, met},
           {"verification", (proof.gouge.bound_mm - proof.gouge.measured_mm) * 1000, nothing}};
 }
 
 /// Axis program, NC text on the disk, proof of those bytes. Nothing: done, and `report.reasons` says whether it is safe.
-std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const GougeCheck& check) {
+std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const GearDistance& part, const GougeCheck& check) {
   const auto dialect = dialect_of(run.machine);
   if (!dialect) return located(run.job, "machine.file", dialect.error());
   const ClearanceBody body = clearance_body(*run.gear);
@@ -158,13 +160,19 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Goug
   options.path_tolerance_mm = program->chord_bound_mm + program->rounding_bound_mm + 2 * options.motion_tolerance_mm;
   options.path_tolerance_rad = program->axis_bound_rad + 2 * options.motion_tolerance_rad;
   const auto paths = run.paths();
-  auto proof = prove_program(run.program_text, output.final_path(name), run.job, run.machine, check, body, teeth, paths, options, run.clock);
+  auto proof = prove_program(run.program_text, output.final_path(name), run.job, run.machine, part, check, body, teeth, paths,
+                             options, run.clock);
   if (!proof) {
     Diagnostic error = proof.error();
     error.kind = DiagnosticKind::verification;  // our own program must be readable
     return error;
   }
   run.report.gouge = proof->gouge;
+  run.report.excess = proof->surface.operations;
+  run.report.finished = proof->surface.finished;
+  run.report.unreached = proof->surface.unreached;
+  if (proof->surface.scallop.requested_mm > 0) run.report.scallop = proof->surface.scallop;
+  run.surface = std::move(proof->surface.grids);
   run.report.reasons = proof->reasons;
   run.report.ledger = ledger_of(run.plan, *program, *proof);
   if (!proof->reasons.empty()) return std::nullopt;
@@ -191,7 +199,11 @@ Status write_results(Run& run, OutputDir& output, std::string& json) {
   if (!paths.empty())
     if (const auto s = write("cl.csv", cl_csv(paths)); !s) return s;
   report.stages = run.clock.seconds();
-  const auto page = run.clock.run("report page", [&] { return render_report_page(page_of_run(run.job, report, run.plan.paths, run.program_text)); });
+  const auto page = run.clock.run("report page", [&] {
+    ReportPage content = page_of_run(run.job, report, run.plan.paths, run.program_text);
+    content.surface = run.surface;
+    return render_report_page(content);
+  });
   if (!page) return page.error();
   if (const auto s = write("report.html", *page); !s) return s;
   report.files.push_back("report.json");
@@ -229,6 +241,7 @@ CommandOutcome finish(Run& run, OutputDir& output, const std::optional<Diagnosti
 CommandOutcome run_job(const CommandRequest& request) {
   auto output = OutputDir::open(request.out_dir, kOutputs);
   if (!output) return failed(output.error());
+  if (const auto bevel = bevel_job(request.job_file)) return run_bevel_job(request, *bevel, *output);
   Run run(request);
   if (auto errors = read_inputs(run); !errors.empty()) {
     run.progress.clear();
@@ -244,7 +257,7 @@ CommandOutcome run_job(const CommandRequest& request) {
   const GougeCheck check(part, run.job.tools, options);
 
   auto stopped = plan_and_check(run, part, check);
-  if (!stopped) stopped = post_and_prove(run, *output, check);
+  if (!stopped) stopped = post_and_prove(run, *output, part, check);
   if (stopped && stopped->kind != DiagnosticKind::verification) {
     run.progress.clear();
     return failed(std::move(*stopped));

@@ -46,7 +46,7 @@ std::string summary_table(const RunReport& report, bool color) {
   std::string out = report.job_name + "\n";
   const char* verdict = report.verified ? "yes" : "NO";
   const char* paint = report.verified ? "\033[32m" : "\033[31m";
-  row(out, "verified", color ? fmt::format("{}{}\033[0m", paint, verdict) : std::string(verdict));
+  if (report.command != "surface") row(out, "verified", color ? fmt::format("{}{}\033[0m", paint, verdict) : std::string(verdict));
   for (const auto& reason : report.reasons) row(out, "  because", reason);
   if (report.gouge)
     row(out, "worst gouge", fmt::format("{:.2f} um, proven below {:.2f} um (tolerance {:.2f} um)", std::max(0.0, report.gouge->measured_mm) * kUm,
@@ -65,6 +65,8 @@ std::string summary_table(const RunReport& report, bool color) {
   for (const auto& name : report.assumed) row(out, "assumed", name);
   if (!report.program_file.empty()) row(out, "program", fmt::format("{}, {} blocks", report.program_file, report.blocks));
   for (const auto& warning : report.warnings) row(out, "warning", warning);
+  if (report.command == "surface")
+    for (const auto& file : report.files) row(out, "written", file);
   double seconds = 0;
   for (const auto& stage : report.stages) seconds += stage.second;
   row(out, "computed in", fmt::format("{:.1f} s", seconds));
