@@ -284,13 +284,15 @@ class Builder {
     const std::int64_t word = ratio_to_fixed(std::int64_t{360} * k * program_.index_sign, teeth_, digits) +
                               turn * 360 * power_of_ten(digits);
     blocks = first;
+    bool set = false;  // before its first X Y block a tooth stands where the one before left it
     for (auto& b : blocks) {
+      set = set || b.kind == BlockKind::rapid_xy;
       b.words[3] += word;
       current_op_->feed_minutes += b.kind == BlockKind::feed ? b.minutes : 0;
       current_op_->rapid_minutes += b.kind == BlockKind::feed ? 0 : b.minutes;
       record_ = b.record;
       last_ = b;
-      note_position(joints_of(b));
+      if (set) note_position(joints_of(b));
     }
   }
 
