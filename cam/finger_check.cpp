@@ -14,7 +14,8 @@ namespace toothpath {
 namespace {
 
 constexpr double kUntouched = 1e6;       // mm of "excess" where nothing came near
-constexpr int kPoseSamples = 4;          // intervals of a motion at which its centre is judged
+constexpr double kBetween = 5e-5;        // mm: what the centre may do between two poses at which it is judged
+constexpr int kMostSamples = 2000;
 constexpr std::size_t kWorstPlaces = 20;
 
 /// Largest n . p of the blank in direction u: the rings of its cone surfaces.
@@ -53,6 +54,12 @@ class RadiusTable {
     for (int i = 0; i < kCells; ++i)
       slope_ = std::max(slope_, std::atan((radius_[static_cast<std::size_t>(i) + 1] - radius_[static_cast<std::size_t>(i)]) / ((high_ - low_) / kCells)));
     shrink_ = std::cos(slope_);
+    for (int i = 0; i <= kCells; ++i) lower_[static_cast<std::size_t>(i)] = solid.lower_surface(solid.largest_radius() * i / kCells);
+    radius_end_ = solid.largest_radius();
+  }
+  /// Never above the lower surface at radius rho.
+  [[nodiscard]] double floor_below(double rho) const {
+    return lower_[static_cast<std::size_t>(std::clamp(rho / radius_end_, 0.0, 1.0) * kCells)];
   }
   /// Never more than the distance from (x, rho) to the solid.
   [[nodiscard]] double lower_bound(double x, double rho) const {
@@ -63,7 +70,8 @@ class RadiusTable {
 
  private:
   static constexpr int kCells = 256;
-  double low_, high_, slope_, shrink_ = 1;
+  double low_, high_, slope_, shrink_ = 1, radius_end_ = 0;
+  std::array<double, kCells + 1> lower_{};
   std::array<double, kCells + 1> radius_{};
 };
 
@@ -105,20 +113,25 @@ double least_distance(const Vec3& p, const ToolMotion& m, const ToolState& tool,
   };
   const double middle = tool.solid.signed_distance(mid[0], mid[1]);
   if (middle - 0.5 * length > best) return best;
-  double a = 0, b = 1;
-  constexpr double g = 0.6180339887498949;
-  double x1 = 1 - g, x2 = g, f1 = distance(x1), f2 = distance(x2), least = std::min({best, middle, distance(0), distance(1), f1, f2});
-  for (int k = 0; k < 40 && (b - a) * length > 1e-6; ++k) {
-    // What is left of the interval cannot undercut `least` by more than its half length.
-    if (std::min(f1, f2) - (b - a) * length > least) break;
-    if (f1 < f2) b = x2, x2 = x1, f2 = f1, x1 = b - g * (b - a), f1 = distance(x1);
-    else a = x1, x1 = x2, f1 = f2, x2 = a + g * (b - a), f2 = distance(x2);
-    const double now = std::min(f1, f2);
-    if (now < least) {
-      const bool settled = least - now < 1e-9;
-      least = now;
-      if (settled && k > 12) break;
+  // Near the contact the distance is a smooth bowl: successive parabolas through the best three.
+  double a = 0, fa = distance(0), c = 1, fc = distance(1), b = 0.5, fb = middle;
+  double least = std::min({best, fa, fb, fc});
+  for (int k = 0; k < 6; ++k) {
+    const double d1 = (fb - fa) / (b - a), d2 = (fc - fb) / (c - b), bend = (d2 - d1) / (c - a);
+    if (!(bend > 0)) break;
+    const double t = std::clamp(0.5 * (a + b) - 0.5 * d1 / bend, a, c);
+    const double expected = fb + (t - b) * (d1 + bend * (t - a));
+    if (expected > least - 1e-9 || std::abs(t - b) < 1e-6) break;
+    const double f = distance(t);
+    least = std::min(least, f);
+    if (t < b) {
+      if (f < fb) c = b, fc = fb, b = t, fb = f;
+      else a = t, fa = f;
+    } else {
+      if (f < fb) a = b, fa = fb, b = t, fb = f;
+      else c = t, fc = f;
     }
+    if (!(b > a) || !(c > b)) break;
   }
   return least;
 }
@@ -133,7 +146,11 @@ double covering_height(const ToolState& tool, const Vec3& foot, const Vec3& norm
   const double d2 = dp.squaredNorm();
   // Down moves: the lower end.
   double t = d2 > 1e-16 ? std::clamp(wp.dot(dp) / d2, 0.0, 1.0) : (d.dot(u) < 0 ? 1.0 : 0.0);
-  if ((wp - t * dp).squaredNorm() > (rho_max + 1) * (rho_max + 1)) return best;
+  const double nearest = (wp - t * dp).norm();
+  if (nearest > rho_max + 1) return best;
+  // Even straight above the nearest place the cutter is higher than what is left already. The normal leans by rho/r_v
+  // against the axis, which shifts the radius by less than 0.2 mm over the depth of a tooth.
+  if (tool.table.floor_below(std::max(0.0, nearest - 0.2)) + h_f - 0.05 > best) return best;
   const Vec3 axis = blend_axis(m, t), tip = blend_tip(m, t);
   double h = 0;
   for (int k = 0; k < 12; ++k) {
@@ -241,7 +258,7 @@ struct FingerGougeCheck::State {
             std::optional<BevelFlankPoint<double>> f;
             if (r + 1 == opt.rows) {
               if (const auto at = bevel_inverse(w, ell, h_a)) f = w.point(at->beta, at->p);
-            } else if (const auto beta = beta_at_ell(w, ell, p)) {
+            } else if (const auto beta = bevel_beta_at(w, ell, p)) {
               f = w.point(*beta, p);
             }
             if (f) q.p = f->p, q.n = f->n;
@@ -249,17 +266,6 @@ struct FingerGougeCheck::State {
             points.push_back(q);
           }
       }
-  }
-
-  /// Spiral angle at which the profile point p touches the wall at cone distance ell; ell falls with beta.
-  static std::optional<double> beta_at_ell(const BevelWall<double>& w, double ell, double p) {
-    double lo = w.eps() > 0 && w.trace.beta_end > 0 ? -0.5 : 0.0, hi = kPi / 2 - 1e-3;
-    if (w.generatrix(lo, p)[0] < ell || w.generatrix(hi, p)[0] > ell) return std::nullopt;
-    for (int k = 0; k < 80; ++k) {
-      const double mid = 0.5 * (lo + hi);
-      (w.generatrix(mid, p)[0] > ell ? lo : hi) = mid;
-    }
-    return 0.5 * (lo + hi);
   }
 
   // Poses.
@@ -291,12 +297,23 @@ struct FingerGougeCheck::State {
     return out;
   }
 
-  /// What the centre may do between two of the pose samples of a motion.
-  double between(const ToolState& tool, const ToolMotion& m) const {
-    const double step = (m.tip_to - m.tip_from).norm() / kPoseSamples;
+  /// Number of intervals at whose ends a motion is judged, and what may happen between them: the centre's distance from a
+  /// wall path bends by no more than both curvatures together.
+  struct Sampling {
+    int intervals = 1;
+    double extra_mm = 0;
+  };
+  Sampling sampling(const ToolState& tool, const ToolMotion& m) const {
+    const ConePose a = cone_pose(gear, m.tip_from, m.axis_from, 0.0), b = cone_pose(gear, m.tip_to, m.axis_to, 0.0);
+    const double s = std::sin(0.5 * (b.theta - a.theta));
+    const double shift = std::sqrt((b.R_c - a.R_c) * (b.R_c - a.R_c) + 4 * a.R_c * b.R_c * s * s);
     const double curvature = std::max(tool.walls[0].largest_curvature(), tool.walls[1].largest_curvature()) +
                              1 / (gear.R_i() * gear.sin_delta());
-    return curvature * step * step / 8 + m.deviation_mm + m.axis_deviation * tool.depth_mm;
+    Sampling out;
+    out.intervals = std::clamp(static_cast<int>(std::ceil(shift * std::sqrt(curvature / (8 * kBetween)))), 1, kMostSamples);
+    const double step = shift / out.intervals;
+    out.extra_mm = curvature * step * step / 8 * tool.walls[0].leverage() + m.deviation_mm + m.axis_deviation * tool.depth_mm;
+    return out;
   }
 };
 
@@ -373,11 +390,12 @@ FingerCheckResult FingerGougeCheck::verify(std::span<const ToolMotion> given) co
       if (gap + from < s.tol.clearance_mm) note_worst(g, place_of(-(gap + from), body, "blank", at), -1e300);
     }
     if (gap >= 0) continue;
-    const double extra = s.between(*tool, m);
+    const State::Sampling sampling = s.sampling(*tool, m);
+    const double extra = sampling.extra_mm;
     State::Depth worst;
     double where = 0;
-    for (int k = 0; k <= kPoseSamples; ++k) {
-      const double t = static_cast<double>(k) / kPoseSamples;
+    for (int k = 0; k <= sampling.intervals; ++k) {
+      const double t = static_cast<double>(k) / sampling.intervals;
       const auto d = s.pose_depth(*tool, blend_tip(m, t), blend_axis(m, t));
       result.root_gouge_mm = std::max(result.root_gouge_mm, d.root);
       if (d.depth > worst.depth) worst = d, where = t;
@@ -478,8 +496,9 @@ FingerCheckResult FingerGougeCheck::verify(std::span<const ToolMotion> given) co
         if (s.tool_of(static_cast<int>(op)) != tool) continue;
         for (const ToolMotion* m : by_op[op]) {
           double low = 1e300, high = -1e300, side = 0;
-          for (int j = 0; j <= kPoseSamples; ++j) {
-            const double t = static_cast<double>(j) / kPoseSamples;
+          const State::Sampling sampling = s.sampling(*tool, *m);
+          for (int j = 0; j <= sampling.intervals; ++j) {
+            const double t = static_cast<double>(j) / sampling.intervals;
             const ConePose pose = cone_pose(s.gear, blend_tip(*m, t), blend_axis(*m, t), 0.0);
             if (pose.lift > 0.05 || pose.R_c < from - 1 || pose.R_c > to + 1) {
               side = kUntouched;
@@ -487,10 +506,10 @@ FingerCheckResult FingerGougeCheck::verify(std::span<const ToolMotion> given) co
             }
             low = std::min(low, pose.R_c);
             high = std::max(high, pose.R_c);
-            side = std::max(side, std::abs(wall.side(pose.R_c, pose.theta)) * wall.leverage() + std::abs(pose.lift));
+            side = std::max(side, std::abs(wall.offset(pose.R_c, pose.theta)) * wall.leverage() + std::abs(pose.lift));
           }
           if (side > 0.2) continue;
-          side += s.between(*tool, *m);
+          side += sampling.extra_mm;
           const double first = std::ceil((low - from) / width - 1e-6), last = std::floor((high - from) / width + 1e-6);
           for (double b = std::max(0.0, first); b <= std::min(last, static_cast<double>(kBins - 1)); b += 1)
             bin[static_cast<std::size_t>(b)] = std::min(bin[static_cast<std::size_t>(b)], side);
@@ -607,8 +626,9 @@ Result<CheckedClPath> FingerGougeCheck::approve(ClPath path) const {
     const auto located = [&](const std::string& what) {
       return fail_as(DiagnosticKind::verification, "operation {} record {}: {}", path.operation, m.line, what);
     };
-    for (int k = 0; k <= kPoseSamples; ++k) {
-      const double t = static_cast<double>(k) / kPoseSamples;
+    const State::Sampling sampling = s.sampling(*tool, m);
+    for (int k = 0; k <= sampling.intervals; ++k) {
+      const double t = static_cast<double>(k) / sampling.intervals;
       const Vec3 tip = blend_tip(m, t), u = blend_axis(m, t);
       const double gap = u.dot(tip) - blank_support(s.gear, u);
       if (m.rapid) {
@@ -621,7 +641,7 @@ Result<CheckedClPath> FingerGougeCheck::approve(ClPath path) const {
                                    tool->shank_from_mm < tool->holder_from_mm ? "shank" : "holder", clearance, s.tol.clearance_mm));
       if (gap >= 0) continue;
       const auto d = s.pose_depth(*tool, tip, u);
-      const double bound = d.depth + s.between(*tool, m);
+      const double bound = d.depth + sampling.extra_mm;
       if (bound > s.tol.gouge_mm)
         return located(fmt::format("the cutter goes up to {:.4f} mm into {}, more than {:.4f}", bound, d.patch, s.tol.gouge_mm));
     }

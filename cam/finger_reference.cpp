@@ -120,13 +120,11 @@ double WallReference::edge_clearance(const std::vector<Vec3>& edge, double R_c, 
   return least - kEdgeSag;
 }
 
-double WallReference::side(double R_c, double theta) const {
-  if (R_c <= near_ || R_c >= far_) return kClear;
+double WallReference::offset(double R_c, double theta) const {
   if (R_c > end_.R_c) {
     const double turn = theta - end_.theta_c;
     const double u = R_c * std::cos(turn) - end_.R_c, v = R_c * std::sin(turn);
-    const double straight = sigma_ * (v * std::cos(end_.beta_c) - u * std::sin(end_.beta_c));
-    return straight >= 0 ? straight : std::max(straight, edge_clearance(outer_edge_, R_c, theta));
+    return sigma_ * (v * std::cos(end_.beta_c) - u * std::sin(end_.beta_c));
   }
   if (convex_ && R_c > arc_from_ && R_c < arc_to_) {
     const double turn = theta - corner_theta_;
@@ -134,10 +132,16 @@ double WallReference::side(double R_c, double theta) const {
     return (turn * sigma_ > 0 ? distance : -distance) - r_0_;
   }
   const auto at = on_curve(halves_[half_of(R_c)], R_c);
-  const double virtual_side = sigma_ * (theta - at.theta_c) * R_c * std::cos(at.beta_c);
-  if (virtual_side < 0 && R_c < halves_.front().R_c.front())
-    return std::max(virtual_side, edge_clearance(inner_edge_, R_c, theta));
-  return virtual_side;
+  return sigma_ * (theta - at.theta_c) * R_c * std::cos(at.beta_c);
+}
+
+double WallReference::side(double R_c, double theta) const {
+  if (R_c <= near_ || R_c >= far_) return kClear;
+  const double on_path = offset(R_c, theta);
+  if (on_path >= 0) return on_path;
+  if (R_c > end_.R_c) return std::max(on_path, edge_clearance(outer_edge_, R_c, theta));
+  if (R_c < halves_.front().R_c.front()) return std::max(on_path, edge_clearance(inner_edge_, R_c, theta));
+  return on_path;
 }
 
 }  // namespace toothpath

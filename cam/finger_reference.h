@@ -25,9 +25,11 @@ struct ConePose {
 class WallReference {
  public:
   WallReference(const BevelGear& gear, int sigma);
-  /// Distance of a centre from the path, positive on the side of the space [mm]; exact to second order in the distance.
-  /// Large where the cutter reaches no tooth.
+  /// Room of a centre before the cutter touches the wall, negative: how far the centre lies beyond [mm]; exact to second
+  /// order in the distance. Beyond the ends of the face only the edge of the wall counts. Large where the cutter reaches no tooth.
   [[nodiscard]] double side(double R_c, double theta) const;
+  /// Distance of a centre from the path alone, which goes on beyond the face as the trace does; positive towards the space.
+  [[nodiscard]] double offset(double R_c, double theta) const;
   /// Polar angle of the path at R_c inside the passes.
   [[nodiscard]] double theta_at(double R_c) const;
   [[nodiscard]] int sigma() const { return sigma_; }

@@ -109,4 +109,14 @@ std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell
   return bevel_inverse(w, ell, height, start);
 }
 
+std::optional<double> bevel_beta_at(const BevelWall<double>& w, double ell, double p) {
+  double lo = w.eps() > 0 && w.trace.beta_end > 0 ? -0.5 : 0.0, hi = std::asin(1.0) - 1e-3;
+  if (w.generatrix(lo, p)[0] < ell || w.generatrix(hi, p)[0] > ell) return std::nullopt;
+  for (int k = 0; k < 80; ++k) {
+    const double mid = 0.5 * (lo + hi);
+    (w.generatrix(mid, p)[0] > ell ? lo : hi) = mid;
+  }
+  return 0.5 * (lo + hi);
+}
+
 }  // namespace toothpath

@@ -90,4 +90,8 @@ struct BevelWall {
 [[nodiscard]] std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& wall, double ell, double height,
                                                         const BevelInverse& start);
 
+/// Spiral angle at which profile point p touches the wall at cone distance ell; bisection, ell falls with beta. Empty
+/// outside the trace.
+[[nodiscard]] std::optional<double> bevel_beta_at(const BevelWall<double>& wall, double ell, double p);
+
 }  // namespace toothpath

@@ -30,12 +30,17 @@ double FingerSolid::lower_surface(double rho) const {
   }
   if (rho <= c_.rho_C) return c_.x_C + (rho - c_.rho_C) * c_.cos_phi / c_.sin_phi;
   if (rho >= c_.rho_D) return c_.x_D;
-  double lo = c_.p_C, hi = c_.p_D;
-  for (int k = 0; k < 60 && hi - lo > 1e-14 * (1 + c_.r_0); ++k) {
-    const double mid = 0.5 * (lo + hi);
-    (c_.involute(mid).rho < rho ? lo : hi) = mid;
+  // Newton on rho(p), kept inside a shrinking bracket: d rho/dp vanishes where the profile is parallel to the axis.
+  double lo = c_.p_C, hi = c_.p_D, p = lo + (hi - lo) * (rho - c_.rho_C) / (c_.rho_D - c_.rho_C);
+  for (int k = 0; k < 80; ++k) {
+    const auto q = c_.involute(p);
+    (q.rho < rho ? lo : hi) = p;
+    const double slope = q.dS * q.sin_psi, newton = p - (q.rho - rho) / slope;
+    const double next = slope > 0 && newton > lo && newton < hi ? newton : 0.5 * (lo + hi);
+    if (std::abs(next - p) <= 1e-14 * (1 + c_.r_0)) break;
+    p = next;
   }
-  return c_.involute(0.5 * (lo + hi)).x;
+  return c_.involute(p).x;
 }
 
 double FingerSolid::signed_distance(double x, double rho) const {
@@ -84,12 +89,13 @@ double FingerSolid::signed_distance(double x, double rho) const {
   const double edge = std::hypot(x - c_.x_D, rho - c_.rho_D);
   if (edge < std::abs(best)) best = edge;
   // Far from every foot (deep inside, beyond the centre of curvature): the ends of the pieces bound the distance.
-  const bool inside = x >= -c_.h_f && rho <= radius(x);
-  if (!std::isfinite(best)) {
-    best = std::min({edge, std::hypot(x - c_.x_C, rho - c_.rho_C), std::hypot(x - c_.x_B, rho - c_.rho_B),
+  if (!std::isfinite(best) || (edge <= std::abs(best) && x < c_.x_D)) {
+    const bool inside = x >= -c_.h_f && rho <= radius(x);
+    const double distance = std::min({edge, std::hypot(x - c_.x_C, rho - c_.rho_C), std::hypot(x - c_.x_B, rho - c_.rho_B),
                      std::hypot(x + c_.h_f, rho - c_.rho_o)});
+    return inside ? -distance : distance;
   }
-  return inside ? -std::abs(best) : std::abs(best);
+  return best;
 }
 
 }  // namespace toothpath

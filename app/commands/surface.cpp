@@ -1,5 +1,6 @@
 #include "app/commands/surface.h"
 
+#include "app/commands/bevel_run.h"
 #include "app/commands/surface_files.h"
 #include "app/gear_of_job.h"
 #include "app/job_file.h"
@@ -18,6 +19,7 @@ CommandOutcome run_surface(const CommandRequest& request) {
   StageClock clock(progress);
   auto output = OutputDir::open(request.out_dir, surface_outputs());
   if (!output) return failed(output.error());
+  if (const auto bevel = bevel_job(request.job_file)) return run_bevel_surface(request, *bevel, *output);
   auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
   const Job& job = std::get<0>(read);

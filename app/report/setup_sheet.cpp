@@ -53,10 +53,8 @@ std::string triple(const Vec3& v) {
 }
 
 /// Part in the X-Z plane of the machine, with its origin, the work offset and the rotary axes that the table carries.
-std::string part_sketch(const Setup& setup, const FaceGear& gear, const Machine& machine) {
-  const double r_in = gear.inner_radius(), r_out = gear.outer_radius();
-  const double top = gear.blank_top(), root = gear.lowest_root();
-  const double bottom = root - 2.5 * gear.parameters().module_mm;
+std::string part_sketch(const Setup& setup, const PartOutline& part, const Machine& machine) {
+  const auto [r_in, r_out, top, root, bottom] = part;
   const double up = setup.axis_up ? 1.0 : -1.0;
   const Vec3 at = setup.origin_mm, offset = setup.work_offset_at_mm;
   const auto z_of = [&](double z) { return at.z() + up * z; };
@@ -100,9 +98,9 @@ std::string part_sketch(const Setup& setup, const FaceGear& gear, const Machine&
 /// Cutter, shank and holder from the side, tip at the bottom.
 std::string tool_sketch(const ToolAssembly& tool) {
   double holder_height = 0, widest = std::max(tool.diameter_mm, tool.shank_diameter_mm);
-  for (const auto& part : tool.holder) {
-    holder_height += part.height_mm;
-    widest = std::max({widest, part.lower_diameter_mm, part.upper_diameter_mm});
+  for (const auto& segment : tool.holder) {
+    holder_height += segment.height_mm;
+    widest = std::max({widest, segment.lower_diameter_mm, segment.upper_diameter_mm});
   }
   const double height = std::max(tool.length_mm, tool.stick_out_mm + holder_height);
   std::string svg = fmt::format("<svg viewBox='{:.3f} {:.3f} {:.3f} {:.3f}' style='height:34mm' role=img aria-label='tool {}'>", -widest / 2 - 1,
@@ -111,9 +109,13 @@ std::string tool_sketch(const ToolAssembly& tool) {
     svg += fmt::format("<path d='M{:.3f} {:.3f}L{:.3f} {:.3f}L{:.3f} {:.3f}L{:.3f} {:.3f}Z' fill='{}' stroke='#333' stroke-width='.3'/>", -d1 / 2,
                        -z1, d1 / 2, -z1, d2 / 2, -z2, -d2 / 2, -z2, fill);
   };
+  // A finger mill is drawn by its widest and its tip.
+  const bool finger = tool.type == CutterType::finger_mill;
+  if (finger) cone(0, tool.module_mm / 2, tool.flute_length_mm, tool.shank_diameter_mm, "#e8c66a");
   const double r = tool.radius_mm();
-  cone(r, 2 * r, tool.flute_length_mm, 2 * r, "#e8c66a");
-  svg += fmt::format("<path d='M{0:.3f} {1:.3f}A{2:.3f} {2:.3f} 0 0 0 {2:.3f} {1:.3f}Z' fill='#e8c66a' stroke='#333' stroke-width='.3'/>", -r, -r, r);
+  if (!finger) cone(r, 2 * r, tool.flute_length_mm, 2 * r, "#e8c66a");
+  if (!finger)
+    svg += fmt::format("<path d='M{0:.3f} {1:.3f}A{2:.3f} {2:.3f} 0 0 0 {2:.3f} {1:.3f}Z' fill='#e8c66a' stroke='#333' stroke-width='.3'/>", -r, -r, r);
   cone(tool.flute_length_mm, tool.shank_diameter_mm, tool.stick_out_mm, tool.shank_diameter_mm, "#bbb");
   double z = tool.stick_out_mm;
   for (const auto& part : tool.holder) {
@@ -139,6 +141,13 @@ void machine_section(Sheet& sheet, const Job& job, const Machine& machine, const
   sheet.end_table();
 }
 
+std::string cutter_name(const ToolAssembly& tool) {
+  if (tool.type == CutterType::finger_mill)
+    return fmt::format("finger mill, module {:g}, tip radius {:g}, rack depth {:g}, profile height {:g}", tool.module_mm, tool.tip_radius_mm,
+                       tool.rack_depth_mm, tool.profile_height_mm);
+  return fmt::format("ball end mill, dia {:g}", tool.diameter_mm);
+}
+
 void tool_section(Sheet& sheet, const Job& job, const RunReport& report) {
   sheet.heading("Tools");
   sheet.begin_table({"T", "cutter", "length: gauge line to tip", "stick-out", "flute", "shank", "teeth", "run time"});
@@ -146,7 +155,7 @@ void tool_section(Sheet& sheet, const Job& job, const RunReport& report) {
     double minutes = 0;
     for (const auto& operation : report.operations)
       if (operation.tool_number == tool.number) minutes += operation.feed_minutes + operation.rapid_minutes;
-    sheet.row({std::to_string(tool.number), fmt::format("ball end mill, dia {:g}", tool.diameter_mm), millimetres(tool.length_mm),
+    sheet.row({std::to_string(tool.number), cutter_name(tool), millimetres(tool.length_mm),
                millimetres(tool.stick_out_mm), millimetres(tool.flute_length_mm), fmt::format("dia {:g}", tool.shank_diameter_mm),
                std::to_string(tool.teeth), readable_minutes(minutes)});
   }
@@ -177,6 +186,12 @@ void operation_section(Sheet& sheet, const RunReport& report) {
 }  // namespace
 
 std::string setup_sheet(const Job& job, const FaceGear& gear, const Machine& machine, const RunReport& report) {
+  const double root = gear.lowest_root();
+  return setup_sheet(job, PartOutline{gear.inner_radius(), gear.outer_radius(), gear.blank_top(), root, root - 2.5 * gear.parameters().module_mm},
+                     machine, report);
+}
+
+std::string setup_sheet(const Job& job, const PartOutline& part, const Machine& machine, const RunReport& report) {
   Sheet sheet;
   const std::string title = html_escape(job.name);
   sheet.raw(fmt::format("<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport content='width=device-width'><title>Set-up sheet: {}</title>"
@@ -188,7 +203,7 @@ std::string setup_sheet(const Job& job, const FaceGear& gear, const Machine& mac
   else sheet.raw("<div class=no>NOT VERIFIED: do not cut.</div>\n");
   if (!report.reasons.empty()) sheet.list(report.reasons, "no");
   machine_section(sheet, job, machine, report);
-  sheet.raw(part_sketch(*job.setup, gear, machine));
+  sheet.raw(part_sketch(*job.setup, part, machine));
   tool_section(sheet, job, report);
   operation_section(sheet, report);
   if (!report.assumed.empty()) {

@@ -10,8 +10,16 @@
 
 namespace toothpath {
 
+/// The part as the sketch shows it: a ring of teeth on a body, gear frame, mm.
+struct PartOutline {
+  double inner_radius = 0, outer_radius = 0;
+  double tooth_top = 0, root = 0, bottom = 0;  ///< z
+};
+
 /// Machine, work offset, tools with lengths and run times, operations, axis ranges, every assumed value, warnings, and a sketch of the
 /// part in the machine as inline SVG. One self-contained page without script. The job has a set-up.
 [[nodiscard]] std::string setup_sheet(const Job& job, const FaceGear& gear, const Machine& machine, const RunReport& report);
+/// The same for any part.
+[[nodiscard]] std::string setup_sheet(const Job& job, const PartOutline& part, const Machine& machine, const RunReport& report);
 
 }  // namespace toothpath

@@ -1,0 +1,122 @@
+#include "app/commands/bevel_files.h"
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "geometry/base/angle.h"
+#include "geometry/bevel_mesh.h"
+#include "geometry/mesh_file.h"
+
+namespace toothpath {
+namespace {
+
+Result<std::string> stl_text(const BevelGear& gear, const std::string& job_name) {
+  const auto mesh = bevel_gear_mesh(gear);
+  if (!mesh) return mesh.error();
+  std::string title = "toothpath gear " + job_name;
+  title.resize(std::min<std::size_t>(title.size(), 80));
+  std::ostringstream out;
+  const auto counts = write_stl(out, *mesh, title);
+  if (!counts) return counts.error();
+  return std::move(out).str();
+}
+
+/// The measured walls as one mesh with their deviation.
+Result<std::string> walls_text(const std::vector<SurfaceGrid>& walls) {
+  TriangleMesh mesh;
+  std::vector<double> deviation;
+  for (const auto& grid : walls) {
+    const auto base = static_cast<std::int32_t>(mesh.vertices.size());
+    const auto columns = static_cast<std::size_t>(grid.columns);
+    for (std::size_t i = 0; i < grid.points.size(); ++i) {
+      mesh.vertices.push_back(grid.points[i]);
+      deviation.push_back(grid.excess_um.empty() ? 0.0 : static_cast<double>(grid.excess_um.back()[i]));
+    }
+    for (std::size_t r = 0; r + 1 < static_cast<std::size_t>(grid.rows); ++r)
+      for (std::size_t c = 0; c + 1 < columns; ++c) {
+        const auto at = [&](std::size_t row, std::size_t column) { return base + static_cast<std::int32_t>(row * columns + column); };
+        if (!grid.reachable[r * columns + c] || !grid.reachable[r * columns + c + 1] || !grid.reachable[(r + 1) * columns + c] ||
+            !grid.reachable[(r + 1) * columns + c + 1])
+          continue;
+        std::array<std::int32_t, 3> a{at(r, c), at(r, c + 1), at(r + 1, c + 1)}, b{at(r, c), at(r + 1, c + 1), at(r + 1, c)};
+        const Vec3 normal = (mesh.vertices[static_cast<std::size_t>(a[1])] - mesh.vertices[static_cast<std::size_t>(a[0])])
+                                .cross(mesh.vertices[static_cast<std::size_t>(a[2])] - mesh.vertices[static_cast<std::size_t>(a[0])]);
+        if (normal.dot(grid.normals[r * columns + c]) < 0) std::swap(a[1], a[2]), std::swap(b[1], b[2]);
+        mesh.triangles.push_back(a);
+        mesh.triangles.push_back(b);
+      }
+  }
+  const std::vector<PointField> fields = {{"deviation_um", deviation}};
+  std::ostringstream out;
+  if (const auto written = write_vtp(out, mesh, fields); !written) return written.error();
+  return std::move(out).str();
+}
+
+Result<std::string> pitch_text(const BevelGear& gear) {
+  std::vector<double> patch;
+  const auto mesh = bevel_pitch_mesh(gear, patch);
+  if (!mesh) return mesh.error();
+  const std::vector<PointField> fields = {{"patch", patch}};
+  std::ostringstream out;
+  if (const auto written = write_vtp(out, *mesh, fields); !written) return written.error();
+  return std::move(out).str();
+}
+
+Result<std::string> inspection_text(const BevelGear& gear) {
+  const auto points = bevel_inspection_grid(gear);
+  if (!points) return points.error();
+  return bevel_inspection_csv(*points);
+}
+
+}  // namespace
+
+ClearanceBody bevel_clearance_body(const BevelGear& g) {
+  const auto& p = g.parameters();
+  const double below = p.dedendum_mm + 2 * p.outer_transverse_module_mm;
+  return {g.R_e() * g.sin_delta() + p.addendum_mm * g.cos_delta(), g.R_i() * g.cos_delta() - p.addendum_mm * g.sin_delta(),
+          g.R_e() * g.cos_delta() + below * g.sin_delta()};
+}
+
+PartOutline bevel_outline(const BevelGear& g) {
+  const auto& p = g.parameters();
+  const ClearanceBody body = bevel_clearance_body(g);
+  const double inner = std::max(0.0, g.R_i() * g.sin_delta() - p.dedendum_mm * g.cos_delta());
+  return {inner, body.radius_mm, body.z_min_mm, g.R_e() * g.cos_delta() + p.dedendum_mm * g.sin_delta(), body.z_max_mm};
+}
+
+std::string bevel_limits_json(const BevelGear& g) {
+  const BevelLimits& l = g.limits();
+  nlohmann::ordered_json j = {{"schema", 1},
+                              {"top_land", l.top_land_mm},
+                              {"space_width", l.space_width_mm},
+                              {"module_limit", l.module_limit_mm},
+                              {"module_at_small_end", l.module_at_small_end_mm},
+                              {"tip_flat", l.tip_flat_mm},
+                              {"tip_radius_limit", l.tip_radius_limit_mm},
+                              {"cutter_line_angle", degrees(l.line_angle_rad)},
+                              {"corner_fillet_reach", l.fillet_reach_mm},
+                              {"largest_face_width", l.largest_face_width_mm},
+                              {"least_regularity", l.least_regularity},
+                              {"cusp_speed_ratio", l.cusp_speed_ratio},
+                              {"cusp_loss", l.cusp_loss_mm},
+                              {"pitch_angle", degrees(g.delta())},
+                              {"outer_cone_distance", g.R_e()},
+                              {"inner_cone_distance", g.R_i()},
+                              {"trace_end", g.R_0()}};
+  return j.dump(2) + "\n";
+}
+
+Status write_bevel_files(OutputDir& output, const BevelGear& gear, const std::string& job_name, const std::vector<SurfaceGrid>& walls,
+                         StageClock& clock, std::vector<std::string>& files) {
+  const auto write = [&](const std::string& name, const Result<std::string>& content) -> Status {
+    if (!content) return content.error();
+    files.push_back(name);
+    return output.write(name, *content);
+  };
+  if (const auto s = write("limits.json", bevel_limits_json(gear)); !s) return s;
+  if (const auto s = write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); })); !s) return s;
+  if (const auto s = write("gear.stl", clock.run("mesh", [&] { return stl_text(gear, job_name); })); !s) return s;
+  return write("tooth.vtp", clock.run("mesh", [&] { return walls.empty() ? pitch_text(gear) : walls_text(walls); }));
+}
+
+}  // namespace toothpath
