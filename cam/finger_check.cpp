@@ -16,6 +16,7 @@ namespace {
 constexpr double kUntouched = 1e6;       // mm of "excess" where nothing came near
 constexpr double kBetween = 5e-5;        // mm: what the centre may do between two poses at which it is judged
 constexpr int kMostSamples = 2000;
+constexpr double kEndSlack = 2e-3;       // mm along a pass
 constexpr std::size_t kWorstPlaces = 20;
 
 /// Largest n . p of the blank in direction u: the rings of its cone surfaces.
@@ -510,7 +511,8 @@ FingerCheckResult FingerGougeCheck::verify(std::span<const ToolMotion> given) co
           }
           if (side > 0.2) continue;
           side += sampling.extra_mm;
-          const double first = std::ceil((low - from) / width - 1e-6), last = std::floor((high - from) / width + 1e-6);
+          // Rounded words may end a pass short of its last point; there the wall differs by the square of that.
+          const double first = std::ceil((low - kEndSlack - from) / width), last = std::floor((high + kEndSlack - from) / width);
           for (double b = std::max(0.0, first); b <= std::min(last, static_cast<double>(kBins - 1)); b += 1)
             bin[static_cast<std::size_t>(b)] = std::min(bin[static_cast<std::size_t>(b)], side);
         }

@@ -178,12 +178,9 @@ class BevelGearBuilder {
       return;
     }
     g.corner_ = *X;
-    const auto reach_of = [&](int k, double beta) {
-      const auto& w = g.halves_[static_cast<std::size_t>(k)].wall(sigma);
-      const double s = contact_reach(w, beta, p.addendum_mm);
-      return k == 0 ? s - (X->R_c - g.R_ref_) : s + (X->R_c - g.R_ref_);
-    };
-    const double reach = std::max(reach_of(0, X->beta_inner), reach_of(1, X->beta_outer));
+    // rho sin(gamma) at the tip of the larger fillet of the two halves, measured from the crossing.
+    const double reach = std::max(contact_reach(g.halves_[0].wall(sigma), X->beta_inner, p.addendum_mm),
+                                  contact_reach(g.halves_[1].wall(sigma), X->beta_outer, p.addendum_mm));
     g.limits_.fillet_reach_mm = reach;
     const double least = 2 * reach, lo = g.R_i_ + least, hi = g.R_e_ - least;
     if (g.R_ref_ < lo || g.R_ref_ > hi) {

@@ -110,7 +110,9 @@ std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell
 }
 
 std::optional<double> bevel_beta_at(const BevelWall<double>& w, double ell, double p) {
-  double lo = w.eps() > 0 && w.trace.beta_end > 0 ? -0.5 : 0.0, hi = std::asin(1.0) - 1e-3;
+  // The contact lies within the cutter's radius of its centre, the centre within r_0 of the trace.
+  const double lowest = std::max(ell - 3 * w.cutter.rho_D, 0.3 * ell);
+  double lo = w.eps() > 0 && w.trace.beta_end > 0 ? -0.5 : 0.0, hi = w.trace.beta(std::min(lowest, w.trace.R_0));
   if (w.generatrix(lo, p)[0] < ell || w.generatrix(hi, p)[0] > ell) return std::nullopt;
   for (int k = 0; k < 80; ++k) {
     const double mid = 0.5 * (lo + hi);

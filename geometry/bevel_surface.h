@@ -75,7 +75,8 @@ struct BevelWall {
     const S gamma = atan2(S(sin(c.beta_c) * (d + cd * (q.x * q.cos_psi + q.rho * q.sin_psi))), S(cos(c.beta_c) * d));
     const S y = S(-sigma) * q.rho * cos(gamma), z = S(sigma) * q.rho * sin(gamma);
     const S a = q.x * cd + (z + c.R_c) * sd;
-    const S lift = y * y / (sqrt(S(a * a + y * y)) + a);  // hypot(a, y) - a
+    const S r = sqrt(S(a * a + y * y));
+    const S lift = a > S(0) ? S(y * y / (r + a)) : S(r - a);
     return {S(z + c.R_c + lift * sd), S(q.x + lift * cd)};
   }
 };

@@ -131,7 +131,7 @@ TEST(BevelWorkedValues, HerringboneCornerOfW3) {
   const auto& w = g.halves()[0].wall(-1);
   EXPECT_NEAR(contact_reach(w, X.beta_inner, -3.1), 0.83, 0.01);
   EXPECT_NEAR(contact_reach(w, X.beta_inner, 0), 1.50, 0.03);
-  EXPECT_NEAR(g.limits().fillet_reach_mm, 2.94, 0.05);
+  EXPECT_NEAR(g.limits().fillet_reach_mm, 2.94, 0.01);
 }
 
 TEST(BevelWorkedValues, WheelsAreMade) {
