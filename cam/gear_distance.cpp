@@ -57,10 +57,29 @@ struct GearDistance::Ring {
   std::vector<EdgeSegment> edges;
   std::unique_ptr<SpatialIndex> edge_index;
   double sag = 0, edge_sag = 0;
+  double tip_sag = 0;  // of the tip surface's meridian against the straight line between its ends
+  double z_tip_in = 0, z_tip_out = 0;
   std::vector<double> table_r, mid, tip_plus, tip_minus;  // azimuths over r
+  std::vector<double> opening;                            // azimuth of the middle between the tip edges, over r
   std::vector<std::vector<Vec2>> profiles;                // the same at every station
   std::vector<Vec2> end_in, end_out;                      // (azimuth, z) of the sheet at the ends, tip to tip
   OffsetSheet sheet;
+  std::vector<bool> border;  // a cell: partly beyond an end of the ring or the tip
+
+  [[nodiscard]] bool on_ring(const Vec3& p) const {
+    const double rp = radius(p);
+    return rp >= r_in - 1e-9 && rp <= r_out + 1e-9 && p.z() <= space.surface().z_tip(rp) + 1e-9;
+  }
+  [[nodiscard]] bool over_land(double azimuth, double r) const {
+    return azimuth <= lookup(tip_plus, r) || azimuth >= lookup(tip_minus, r);
+  }
+  /// Distance to the tip surface's meridian in the plane (r, z), from below; `foot` is the radius of its foot.
+  [[nodiscard]] double to_tip_meridian(double r, double z, double& foot) const {
+    const double dr = r_out - r_in, dz = z_tip_out - z_tip_in;
+    const double t = std::clamp(((r - r_in) * dr + (z - z_tip_in) * dz) / (dr * dr + dz * dz), 0.0, 1.0);
+    foot = r_in + t * dr;
+    return std::hypot(r - foot, z - z_tip_in - t * dz) - tip_sag;
+  }
 
   Ring(const SpaceSheet& s, OffsetSheet o) : space(s), sheet(std::move(o)) {}
 
@@ -110,6 +129,13 @@ GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::m
         if (n00.at.piece != n01.at.piece) continue;
         Cell cell;
         cell.corner = {n00.at.contact.p, n01.at.contact.p, n10.at.contact.p, n11.at.contact.p};
+        // The sheet goes on beyond the ends and the tip; what lies wholly there is no part of the gear.
+        const auto all = [&](auto&& test) { return std::all_of(cell.corner.begin(), cell.corner.end(), test); };
+        const auto above_tip = [&](const Vec3& p) { return p.z() > space.surface().z_tip(radius(p)) + kCellLength; };
+        if (all([&](const Vec3& p) { return radius(p) < r_in; }) || all([&](const Vec3& p) { return radius(p) > r_out; }) ||
+            all(above_tip))
+          continue;
+        const bool whole = all([&](const Vec3& p) { return R.on_ring(p); });
         cell.zone = zone;
         cell.piece = n00.at.piece;
         cell.band = std::clamp(int((0.5 * (n00.sigma + n01.sigma) - std::floor(n00.sigma)) * kBands), 0, kBands - 1);
@@ -128,6 +154,7 @@ GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::m
         }
         boxes.push_back(box);
         R.cells.push_back(cell);
+        R.border.push_back(!whole);
       }
     }
     for (const auto& station : st) {
@@ -203,6 +230,13 @@ GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::m
       plus_line.push_back({r * std::cos(R.tip_plus.back()), r * std::sin(R.tip_plus.back()), z_tip});
       minus_line.push_back({r * std::cos(R.tip_minus.back()), r * std::sin(R.tip_minus.back()), z_tip});
     }
+    for (std::size_t k = 0; k < R.tip_plus.size(); ++k) R.opening.push_back(0.5 * (R.tip_plus[k] + R.tip_minus[k]));
+    R.z_tip_in = space.surface().z_tip(r_in);
+    R.z_tip_out = space.surface().z_tip(r_out);
+    for (int k = 1; k < 64; ++k) {
+      const double t = k / 64.0, z = space.surface().z_tip(r_in + t * (r_out - r_in));
+      R.tip_sag = std::max(R.tip_sag, 1.01 * std::abs(z - R.z_tip_in - t * (R.z_tip_out - R.z_tip_in)) - 1e-12);
+    }
     add_edge(plus_line, "tip edge");
     add_edge(minus_line, "tip edge");
     R.edge_index = std::make_unique<SpatialIndex>(edge_boxes);
@@ -226,6 +260,7 @@ GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::m
         cell.radius += R.sag;
         boxes.push_back(box);
         R.cells.push_back(cell);
+        R.border.push_back(true);
       }
     }
     R.index = std::make_unique<SpatialIndex>(boxes);
@@ -265,83 +300,90 @@ NearestPlace GearDistance::nearest(const Vec3& asked, double within) const {
     const double r_here = std::clamp(r, ring.r_in, ring.r_out);
     const double z_tip = ring.space.surface().z_tip(r_here);
     if (z - z_tip >= best.distance * 1.5 && std::abs(ring.space.surface().Cg) < 0.5) continue;
-    const double mid = ring.lookup(ring.mid, r);
-    const double away = std::remainder(std::atan2(asked.y(), asked.x()) - mid, kTwoPi);
+    // The space whose opening lies next: its root may stand off the middle of its opening by a good part of a pitch.
+    const double middle = ring.lookup(ring.opening, r);
+    const double away = std::remainder(std::atan2(asked.y(), asked.x()) - middle, kTwoPi);
     const double index = std::round(away / impl_->pitch);
     const Vec3 c = turned(asked, -index * impl_->pitch);
-    const double azimuth = mid + away - index * impl_->pitch;
+    const double azimuth = middle + away - index * impl_->pitch;
+    const bool beside = gap_r > 0;
+    const bool in_air = beside || z >= z_tip;  // certainly: neither between the radii of the ring and below its tip
 
-    // Candidates: the nearest cell of every band of every piece.
+    // Candidates: the nearest cell of every band of every piece, apart for whole cells and for those that reach beyond
+    // the ring: the nearest point of such a one may not exist, and must not hide a farther one that does.
     struct Seed {
       double d = INFINITY;
       std::size_t cell = 0;
     };
-    std::array<Seed, kSpacePieces * kBands> seeds;
-    double d_mesh = INFINITY;
+    std::array<Seed, 2 * kSpacePieces * kBands> seeds;
+    double d_mesh = INFINITY;  // to whole cells
     const double search = std::min(within, best.distance) + ring.sag;
+    const double slack = 4 * ring.sag + 0.02;  // a facet farther than the nearest by this cannot hold the nearest point
     ring.index->near(c, search, [&](std::size_t k, double r_query) {
       const auto& cell = ring.cells[k];
-      const double worth = d_mesh + 4 * ring.sag + 0.02;  // a facet farther than this cannot hold the nearest point
-      if (!cell.sheet || (c - cell.centre).norm() - cell.radius > worth) return r_query;
+      if (!cell.sheet || (c - cell.centre).norm() - cell.radius > std::min(d_mesh + slack, search)) return r_query;
       const double d = std::min(distance_to_triangle(c, cell.corner[0], cell.corner[1], cell.corner[2]),
                                 distance_to_triangle(c, cell.corner[1], cell.corner[2], cell.corner[3]));
-      d_mesh = std::min(d_mesh, d);
-      const std::size_t band = std::size_t(cell.piece) * kBands + std::size_t(cell.band);
+      const bool border = ring.border[k];
+      if (!border) d_mesh = std::min(d_mesh, d);
+      const std::size_t band = (std::size_t(cell.piece) * kBands + std::size_t(cell.band)) * 2 + border;
       auto& seed = seeds[band];
       if (d < seed.d || (d == seed.d && k < seed.cell)) seed = {d, k};
-      return std::min(r_query, d_mesh + 4 * ring.sag + 0.02);
+      return std::min(r_query, d_mesh + slack);
     });
     const auto& w = ring.space.surface().shaper;
-    bool found = false;
-    if (d_mesh < search) {
-      double accepted = INFINITY;
-      for (const auto& seed : seeds) {
-        // A seed whose facet is farther than the best exact distance cannot win.
-        if (seed.d > d_mesh + 4 * ring.sag + 0.02) continue;
-        if (seed.d - ring.sag > accepted) continue;
-        const auto& cell = ring.cells[seed.cell];
-        const auto foot = ring.space.foot(cell.piece, c, cell.u, cell.v);
-        if (!foot) continue;
-        const bool flank = cell.piece == SpacePiece::flank_plus || cell.piece == SpacePiece::flank_minus;
-        if (flank && foot->u > w.theta_t + kBorder) continue;
-        if (!flank && cell.piece != SpacePiece::root && (foot->u < w.A_t - kBorder || foot->u > w.A_e + kBorder)) continue;
-        if (cell.piece == SpacePiece::root && (foot->u < -kBorder || foot->u > 1 + kBorder)) continue;
-        found = true;
+    bool found = false;               // Newton has found the sheet, on the ring or on its continuation
+    double accepted = INFINITY;       // the best foot on the ring
+    double beyond = INFINITY, beyond_seed = INFINITY;  // signed distance to the continuation
+    for (const auto& seed : seeds) {
+      // A seed whose facet is farther than the best exact distance cannot win.
+      if (!(seed.d <= std::min(d_mesh + slack, search))) continue;
+      if (seed.d - ring.sag > accepted) continue;
+      const auto& cell = ring.cells[seed.cell];
+      const auto foot = ring.space.foot(cell.piece, c, cell.u, cell.v);
+      if (!foot) continue;
+      const bool flank = cell.piece == SpacePiece::flank_plus || cell.piece == SpacePiece::flank_minus;
+      if (flank && foot->u > w.theta_t + kBorder) continue;
+      if (!flank && cell.piece != SpacePiece::root && (foot->u < w.A_t - kBorder || foot->u > w.A_e + kBorder)) continue;
+      if (cell.piece == SpacePiece::root && (foot->u < -kBorder || foot->u > 1 + kBorder)) continue;
+      if (foot->distance < 0 && in_air) continue;  // seen through an end of the ring or the tip
+      found = true;
+      if (ring.on_ring(foot->at.p)) {
         accepted = std::min(accepted, foot->distance);
-        const double rf = radius(foot->at.p);
-        const bool on_ring = rf >= ring.r_in - 1e-9 && rf <= ring.r_out + 1e-9 &&
-                             foot->at.p.z() <= ring.space.surface().z_tip(rf) + 1e-9;
-        if (on_ring) take(foot->distance, true, int(zone), to_string(cell.piece), foot->at.p, c);
-      }
-      // Newton must agree with the facets; where it does not, the facets decide with their sag.
-      if (!found || accepted > d_mesh + 2 * ring.sag + 1e-9) {
-        take(d_mesh - ring.sag, false, int(zone), "flank", c, c);
+        take(foot->distance, true, int(zone), to_string(cell.piece), foot->at.p, c);
+      } else if (seed.d < beyond_seed) {
+        beyond = foot->distance;
+        beyond_seed = seed.d;
       }
     }
+    // Inside the material beside an end or below a tip edge: the nearest surface is that end or land.
+    if (beyond < 0 && accepted == INFINITY) take(beyond, false, int(zone), "inside", c, c);
     // Edges of the ring.
-    ring.edge_index->near(c, std::min(within, best.distance) + ring.edge_sag, [&](std::size_t k, double r_query) {
-      const auto& e = ring.edges[k];
-      take(distance_to_segment(c, e.a, e.b) - ring.edge_sag, false, int(zone), e.patch, e.a, c);
-      return r_query;
-    });
+    if (const double look = std::min(within, best.distance) + ring.edge_sag; look > 0)
+      ring.edge_index->near(c, look, [&](std::size_t k, double r_query) {
+        const auto& e = ring.edges[k];
+        take(distance_to_segment(c, e.a, e.b) - ring.edge_sag, false, int(zone), e.patch, e.a, c);
+        return r_query;
+      });
+    // Newton must agree with the facets; where it does not, the facets decide with their sag.
+    if (best.distance > d_mesh + 2 * ring.sag + 1e-9) take(d_mesh - ring.sag, false, int(zone), "flank", c, c);
     // End faces, top lands, and the inside of the material.
-    const bool beside = gap_r > 0;
     if (beside) {
       const auto& profile = r < ring.r_in ? ring.end_in : ring.end_out;
       if (profile.size() > 2 && Ring::in_material(profile, azimuth, z, z_tip))
         take(gap_r, true, int(zone), "end", c, c);
-    } else {
-      const bool over_land = azimuth <= ring.lookup(ring.tip_plus, r) || azimuth >= ring.lookup(ring.tip_minus, r);
-      const double slope = std::abs(ring.space.surface().Cg / ring.space.surface().Sg);
-      if (z >= z_tip) {
-        if (over_land) take((z - z_tip) / std::sqrt(1 + slope * slope), slope == 0, int(zone), "tip", Vec3(c.x(), c.y(), z_tip), c);
-      } else if (!found) {
-        // No surface near: either free in a wide space or deep inside the material.
-        const auto& st = ring.sheet.stations();
-        const double t = (r - st.front().r) / (st.back().r - st.front().r) * double(st.size() - 1);
-        const auto& profile = ring.profiles[std::size_t(std::clamp(std::round(t), 0.0, double(st.size() - 1)))];
-        if (over_land || Ring::in_material(profile, azimuth, z, z_tip)) take(-within, false, int(zone), "inside", c, c);
-      }
+    }
+    if (z >= z_tip) {
+      double foot = 0;
+      const double d = ring.to_tip_meridian(r, z, foot);
+      if (ring.over_land(azimuth, foot)) take(d, ring.tip_sag == 0, int(zone), "tip", 
+                                              Vec3(c.x() * foot / r, c.y() * foot / r, ring.space.surface().z_tip(foot)), c);
+    } else if (!beside && !found) {
+      // No surface near: either free in a wide space or deep inside the material.
+      const auto& st = ring.sheet.stations();
+      const double t = (r - st.front().r) / (st.back().r - st.front().r) * double(st.size() - 1);
+      const auto& profile = ring.profiles[std::size_t(std::clamp(std::round(t), 0.0, double(st.size() - 1)))];
+      if (ring.over_land(azimuth, r) || Ring::in_material(profile, azimuth, z, z_tip)) take(-within, false, int(zone), "inside", c, c);
     }
   }
   if (rings.size() > 1) {
