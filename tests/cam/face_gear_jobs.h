@@ -1,0 +1,187 @@
+// Gears, tools and planned programs that the tests of cam speak of.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <memory>
+#include <random>
+
+#include "cam/gouge_check.h"
+#include "cam/plan.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath::test {
+
+/// Uniform numbers, the same on every machine.
+class Random {
+ public:
+  explicit Random(unsigned seed) : generator_(seed) {}
+  double operator()(double low, double high) { return low + (high - low) * double(generator_() >> 11) * 0x1p-53; }
+  std::size_t index(std::size_t count) { return std::size_t(generator_() % count); }
+
+ private:
+  std::mt19937_64 generator_;
+};
+
+/// The double helical gear of the DHFG paper at quarter scale.
+inline FaceGearParameters quarter_dhfg() {
+  FaceGearParameters g;
+  g.teeth = 180;
+  g.shaper_teeth = 30;
+  g.module_mm = 1.25;
+  g.module_plane = ModulePlane::transverse;
+  g.pressure_angle_rad = radians(20);
+  g.reference_radius_mm = 118;
+  g.shaper_tip_radius_mm = 0.375;
+  g.groove_depth_mm = 3.125;
+  g.zones = {{radians(-30), 112.25, 117}, {radians(30), 119, 124}};
+  return g;
+}
+
+inline FaceGearParameters offset_gear() {
+  FaceGearParameters g;
+  g.teeth = 88;
+  g.shaper_teeth = 25;
+  g.module_mm = 3;
+  g.module_plane = ModulePlane::transverse;
+  g.pressure_angle_rad = radians(20);
+  g.offset_mm = 15;
+  g.shaper_tip_radius_mm = 0.9;
+  g.zones = {{0, 130.5, 147}};
+  return g;
+}
+
+inline FaceGearParameters small_spur() {
+  FaceGearParameters g;
+  g.teeth = 60;
+  g.shaper_teeth = 20;
+  g.module_mm = 2;
+  g.module_plane = ModulePlane::transverse;
+  g.pressure_angle_rad = radians(20);
+  g.shaper_tip_radius_mm = 0.6;
+  g.zones = {{0, 60, 65}};
+  return g;
+}
+
+inline FaceGearParameters conical_gear() {
+  FaceGearParameters g;
+  g.teeth = 75;
+  g.shaper_teeth = 22;
+  g.module_mm = 2;
+  g.pressure_angle_rad = radians(25);
+  g.offset_mm = 6;
+  g.shaft_angle_rad = radians(75);
+  g.shaper_tip_radius_mm = 0.4;
+  g.zones = {{radians(15), 74, 84}};
+  return g;
+}
+
+inline const std::vector<std::string>& gear_names() {
+  static const std::vector<std::string> names = {"dhfg", "offset", "spur", "conical"};
+  return names;
+}
+inline FaceGearParameters gear_named(const std::string& name) {
+  return name == "dhfg" ? quarter_dhfg() : name == "offset" ? offset_gear() : name == "spur" ? small_spur() : conical_gear();
+}
+
+inline ToolAssembly ball_mill(double diameter, double flute, double shank, double stick_out, double holder) {
+  ToolAssembly t;
+  t.number = 1;
+  t.diameter_mm = diameter;
+  t.flute_length_mm = flute;
+  t.shank_diameter_mm = shank;
+  t.length_mm = 80;
+  t.holder = {{holder, holder, 30}, {32, 32, 30}};
+  t.stick_out_mm = stick_out;
+  return t;
+}
+
+inline MillingOperation roughing(int tool, double step_down, double step_over, double allowance) {
+  MillingOperation o;
+  o.type = OperationType::roughing;
+  o.tool = tool;
+  o.speed_rpm = 18000;
+  o.feed_mm_min = 500;
+  o.step_down_mm = step_down;
+  o.step_over_mm = step_over;
+  o.allowance_mm = allowance;
+  return o;
+}
+inline MillingOperation finishing(int tool, double scallop, double chord, double allowance = 0) {
+  MillingOperation o;
+  o.type = allowance > 0 ? OperationType::semi_finishing : OperationType::finishing;
+  o.tool = tool;
+  o.speed_rpm = 20000;
+  o.feed_mm_min = 300;
+  o.scallop_mm = scallop;
+  if (chord > 0) o.chord_tolerance_mm = chord;
+  o.allowance_mm = allowance;
+  return o;
+}
+
+/// A gear with its distance query and one planned job.
+struct PlannedJob {
+  FaceGear gear;
+  std::vector<ToolAssembly> tools;
+  std::vector<MillingOperation> operations;
+  std::unique_ptr<GearDistance> part;
+  FaceGearPlan plan;
+
+  [[nodiscard]] std::vector<ToolMotion> motions() const {
+    std::vector<ToolMotion> all;
+    for (const auto& p : plan.paths) {
+      const auto m = GougeCheck::motions_of(p);
+      all.insert(all.end(), m.begin(), m.end());
+    }
+    return all;
+  }
+  [[nodiscard]] std::vector<int> tool_of_operation() const {
+    std::vector<int> out;
+    for (const auto& o : operations) out.push_back(o.tool);
+    return out;
+  }
+  [[nodiscard]] GougeCheckOptions check_options() const {
+    GougeCheckOptions o;
+    o.rapid_height_mm = gear.blank_top();
+    return o;
+  }
+  [[nodiscard]] const ToolAssembly& tool(int operation) const { return tools[std::size_t(operations[std::size_t(operation)].tool)]; }
+};
+
+inline FaceGear made(const FaceGearParameters& p) {
+  auto gear = FaceGear::make(p);
+  if (auto* refused = std::get_if<1>(&gear)) throw std::runtime_error(refused->front().key + ": " + refused->front().diagnostic.message);
+  return std::get<0>(std::move(gear));
+}
+
+inline PlannedJob planned(const FaceGearParameters& p, std::vector<ToolAssembly> tools, std::vector<MillingOperation> operations) {
+  PlannedJob job{made(p), std::move(tools), std::move(operations), nullptr, {}};
+  job.part = std::make_unique<GearDistance>(job.gear, reach_of(job.tools));
+  auto plan = plan_face_gear(*job.part, job.tools, job.operations, {});
+  if (auto* refusal = std::get_if<PlanRefusal>(&plan)) throw std::runtime_error(refusal->key + ": " + refusal->diagnostic.message);
+  job.plan = std::get<FaceGearPlan>(std::move(plan));
+  return job;
+}
+
+/// Planned once a program: "dhfg" (all four operations), "offset", "spur", "conical" (finishing), and "spur wide": a ball
+/// larger than the fillet.
+inline const PlannedJob& job_named(const std::string& name) {
+  static std::map<std::string, PlannedJob> jobs;
+  const auto it = jobs.find(name);
+  if (it != jobs.end()) return it->second;
+  const auto make = [&]() -> PlannedJob {
+    if (name == "dhfg")
+      return planned(quarter_dhfg(), {ball_mill(1, 3.5, 0.95, 16, 10), ball_mill(0.5, 3.2, 0.46, 14, 10)},
+                     {roughing(0, 0.25, 0.4, 0.08), roughing(1, 0.12, 0.2, 0.05), finishing(1, 0.008, 0, 0.02), finishing(1, 0.002, 7e-4)});
+    if (name == "offset") return planned(offset_gear(), {ball_mill(1.6, 8, 1.5, 14, 10)}, {finishing(0, 0.003, 0.001)});
+    if (name == "conical") return planned(conical_gear(), {ball_mill(0.7, 6, 0.65, 14, 10)}, {finishing(0, 0.004, 0.001)});
+    if (name == "spur wide")
+      return planned(small_spur(), {ball_mill(1.6, 6, 1.5, 16, 10)}, {roughing(0, 0.8, 0.5, 0.1), finishing(0, 0.02, 0.002)});
+    return planned(small_spur(), {ball_mill(1, 6, 0.95, 16, 10)},
+                   {roughing(0, 0.8, 0.5, 0.1), finishing(0, 0.02, 0.004, 0.05), finishing(0, 0.01, 0.002)});
+  };
+  return jobs.emplace(name, make()).first->second;
+}
+
+}  // namespace toothpath::test
