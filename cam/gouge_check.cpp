@@ -69,13 +69,19 @@ class MotionCheck {
     }
   }
 
+  /// Is a proven least distance good enough? Yes where it is free, or where it is close to what was seen in contact.
+  [[nodiscard]] bool settled(double least, double corner, double seen) const {
+    if (R_ - least + slack_ <= 0) return true;
+    return R_ - least <= seen + o_.proof_mm && corner < R_ + slack_ + 2 * o_.proof_mm;
+  }
+
   void ball(double t0, double t1, const NearestPlace& q0, const NearestPlace& q1, int depth) {
     note(q0, "ball");
     note(q1, "ball");
     const double L = (centre(t1) - centre(t0)).norm() + 2 * slack_;
     const double least = between(q0.distance, q1.distance, L);
     const double seen = std::max(R_ - std::min(q0.distance, q1.distance), 0.0);
-    if (R_ - least <= seen + o_.proof_mm || depth == 0 || L < 1e-6) {
+    if (settled(least, std::min(q0.distance, q1.distance), seen) || depth == 0 || L < 1e-6) {
       slot_.bound = std::max(slot_.bound, R_ - least + slack_);
       near_flute(t0, t1, q0, q1);
       return;
@@ -103,7 +109,7 @@ class MotionCheck {
     const double upward = between(low, high, H), g = upward * upward - L * L / 4;
     const double least = g > 0 ? std::sqrt(g) : 0;
     const double seen = std::max(R_ - std::min(low, high), 0.0);
-    if (R_ - least <= seen + o_.proof_mm || depth == 0 || std::max(L, H) < 1e-6) {
+    if (settled(least, std::min(low, high), seen) || depth == 0 || std::max(L, H) < 1e-6) {
       slot_.bound = std::max(slot_.bound, R_ - least + slack_);
       return;
     }
@@ -146,7 +152,7 @@ class MotionCheck {
       h = next;
       low = high;
     }
-    if (worst <= std::max(0.0, slot_.measured) + o_.proof_mm || depth == 0 || L < 1e-5) {
+    if (worst + slack_ <= std::max(0.0, slot_.measured) || depth == 0 || L < 1e-5) {
       slot_.bound = std::max(slot_.bound, worst + slack_);
       return;
     }
@@ -256,7 +262,10 @@ GougeResult GougeCheck::check(const std::vector<ToolMotion>& motions, const std:
       out.measured_mm = s.measured;
       out.deepest = place_of(s.deepest, m, s.measured, s.body);
     }
-    out.bound_mm = std::max(out.bound_mm, s.bound);
+    if (s.bound > out.bound_mm) {
+      out.bound_mm = s.bound;
+      out.bound_line = m.line;
+    }
     if (std::max(s.measured, s.bound) > options_.gouge_tolerance_mm)
       out.worst.push_back(place_of(s.deepest, m, std::max(s.measured, s.bound), s.body));
     const auto body = [&](const char* name) {

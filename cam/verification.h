@@ -23,6 +23,7 @@ struct WorstPlace {
 struct GougeResult {
   double measured_mm = 0;  ///< worst penetration found; negative: the least gap
   double bound_mm = 0;     ///< proven: nothing on any path between the samples is deeper
+  int bound_line = 0;      ///< line of the move with the greatest bound
   double clearance_mm = 0;        ///< least proven gap of shank and holder
   double required_clearance_mm = 0;
   bool rapids_clear = true;       ///< every rapid stays outside the blank, all bodies
