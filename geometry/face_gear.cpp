@@ -5,6 +5,8 @@
 #include <limits>
 
 #include "geometry/base/angle.h"
+#include "geometry/face_gear_inverse.h"
+#include "geometry/swept_solid.h"
 
 namespace toothpath {
 namespace {
@@ -34,6 +36,8 @@ class Inspection {
   void numbers();
   void zone_numbers();
   void shaper(std::size_t zone);
+  void land_over_zone(std::size_t zone, const FaceGearRing& r);
+  void swept_flank(std::size_t zone, const FaceGearRing& r);
   void ring(std::size_t zone, const FaceGearRing& r, std::vector<std::string>& warnings);
   void groove(const std::vector<FaceGearRing>& rings, std::vector<std::string>& warnings);
 
@@ -130,16 +134,17 @@ void Inspection::ring(std::size_t k, const FaceGearRing& r, std::vector<std::str
       refuse(zone_key(k, "inner_radius"),
              "inner_radius = {:.4f} mm: inside {:.4f} mm the fillet of flank side {:+d} reaches up to the tip and no involute is left",
              inner, *flank.flank_start_radius, flank.side);
+    if (flank.flank_end_radius && outer > *flank.flank_end_radius)
+      refuse(zone_key(k, "outer_radius"),
+             "outer_radius = {:.4f} mm: outside {:.4f} mm the fillet of flank side {:+d} reaches up to the tip and no involute is left",
+             outer, *flank.flank_end_radius, flank.side);
     if (flank.involute_start_radius && inner < *flank.involute_start_radius)
       warnings.push_back(fmt::format("zone {}: inner radius {:.4f} mm lies inside the involute start R1b = {:.4f} mm of flank side "
                                      "{:+d}; the tip corner there is not conjugate",
                                      k, inner, *flank.involute_start_radius, flank.side));
   }
-  if (!r.limits.pointing_radius) {
-    refuse(zone_key(k, "outer_radius"), "outer_radius = {:.4f} mm: the tooth has no top land at any radius", outer);
-    return;
-  }
-  if (outer > *r.limits.pointing_radius)
+  if (!r.limits.pointing_radius) land_over_zone(k, r);
+  else if (outer > *r.limits.pointing_radius)
     refuse(zone_key(k, "outer_radius"), "outer_radius = {:.4f} mm exceeds the pointing limit R2 = {:.4f} mm", outer,
            *r.limits.pointing_radius);
   else if (r.limits.land_radius && outer > *r.limits.land_radius)
@@ -151,6 +156,48 @@ void Inspection::ring(std::size_t k, const FaceGearRing& r, std::vector<std::str
                                    "up to {:.4f} mm keeps it",
                                    k, gear_.shaper_tip_radius_mm, r.surface.shaper.theta_t, theta_act,
                                    largest_active_tip_radius(gear_, z.helix_angle_rad)));
+}
+
+/// No pointing radius was found: the top land over the zone itself decides.
+void Inspection::land_over_zone(std::size_t k, const FaceGearRing& r) {
+  constexpr int kSections = 32;
+  const double inner = r.zone.inner_radius_mm, outer = r.zone.outer_radius_mm;
+  for (int n = kSections; n >= 0; --n) {  // from the outside, where teeth are thinnest
+    const double radius = inner + (outer - inner) * n / kSections;
+    const auto land = tip_thickness(r.surface, radius);
+    if (land && *land > 0) continue;
+    if (land)
+      refuse(zone_key(k, "outer_radius"), "outer_radius = {:.4f} mm: the top land at radius {:.4f} mm is {:.4f} mm, limit 0: the tooth is pointed",
+             outer, radius, *land);
+    else
+      refuse(zone_key(k, "outer_radius"), "outer_radius = {:.4f} mm: at radius {:.4f} mm a flank does not reach the tip surface", outer, radius);
+    return;
+  }
+}
+
+/// Just outside R1c the corner that the fillet cuts into the flank can run outwards instead of inwards (large offset, helix or
+/// shaft angle far from 90 deg). No closed form says where it ends: the solid shaper decides at the inner end of the zone.
+void Inspection::swept_flank(std::size_t k, const FaceGearRing& r) {
+  constexpr int kHeights = 6;
+  const double inner = r.zone.inner_radius_mm, outer = r.zone.outer_radius_mm, z_tip = r.surface.z_tip(inner);
+  const double cut_limit = 1e-4 * gear_.module_mm;
+  for (const double radius : {inner, inner + 0.02 * (outer - inner), inner + 0.1 * (outer - inner)})
+    for (const int side : {1, -1}) {
+      const auto low = fillet_line_height(r.surface, side, radius);
+      if (!low) continue;
+      for (int n = 0; n <= kHeights; ++n) {
+        const double z = *low + (z_tip - *low) * n / kHeights;
+        const auto at = invert_flank(r.surface, side, radius, z);
+        if (!at || at->theta < 0) continue;  // not conjugate there, and warned of as such
+        const double cut = -swept_clearance(r.surface, r.surface.flank(side, at->theta, at->B).p);
+        if (cut <= cut_limit) continue;
+        refuse(zone_key(k, "inner_radius"),
+               "inner_radius = {:.4f} mm: at radius {:.4f} mm and height {:.4f} mm the shaper cuts {:.4f} mm into flank side {:+d}, "
+               "limit {:.4f} mm: undercut beyond R1c",
+               inner, radius, z, cut, side, cut_limit);
+        return;
+      }
+    }
 }
 
 double mid_groove(const std::vector<FaceGearRing>& rings) {
@@ -221,6 +268,7 @@ std::variant<FaceGear, std::vector<FaceGearRefusal>> FaceGear::make(const FaceGe
     const auto surface = make_surface<double>(gear.parameters_, zone.helix_angle_rad);
     gear.rings_.push_back({zone, surface, zone_limits(surface, parameters.module_mm)});
     inspection.ring(gear.rings_.size() - 1, gear.rings_.back(), gear.warnings_);
+    if (inspection.refusals.empty()) inspection.swept_flank(gear.rings_.size() - 1, gear.rings_.back());
   }
   inspection.groove(gear.rings_, gear.warnings_);
   if (!inspection.refusals.empty()) return std::move(inspection.refusals);

@@ -22,11 +22,12 @@ Meridian meridian(const FaceGearSurface<double>& f, int s, double theta, double 
 }
 
 /// Newton for (theta, B) at (r, z) with short steps; false if it does not arrive.
-bool newton(const FaceGearSurface<double>& f, int s, double r, double z, double& theta, double& B) {
+bool newton(const FaceGearSurface<double>& f, int s, double r, double z, double& theta, double& B,
+            int& iterations) {
   const double goal = 4e-16 * std::max(r, 1.0);
   double best = INFINITY;
   int stalled = 0;
-  for (int k = 0; k < kNewtonLimit; ++k) {
+  for (int k = 0; k < kNewtonLimit; ++k, ++iterations) {
     const Vec3 P = f.flank_housing(s, theta, B);
     const double r_now = std::hypot(P.x(), P.y());
     const double er = r - r_now, ez = z - P.z(), error = std::hypot(er, ez);
@@ -98,6 +99,75 @@ std::optional<FlankCoordinates> by_bracketing(const FaceGearSurface<double>& f, 
   return {};
 }
 
+/// Radius of the fillet point at section Z; NaN where the edge has no contact.
+struct FilletRadius {
+  const FaceGearSurface<double>& f;
+  int side;
+  double A;
+  double operator()(double Z) const {
+    const auto p = f.fillet(side, A, Z);
+    return p.defined ? std::hypot(p.p.x(), p.p.y()) : NAN;
+  }
+};
+
+/// Secant from a section nearby. Only an arrival on the regular sheet counts, where the radius grows with Z.
+std::optional<double> fillet_by_secant(const FilletRadius& radius, double r, double start_Z) {
+  double Z0 = start_Z, e0 = radius(Z0) - r;
+  double Z1 = Z0 - e0, e1 = radius(Z1) - r, slope = 1;
+  double best = INFINITY;
+  for (int k = 0; k < kNewtonLimit; ++k) {
+    if (!(std::abs(e1) < INFINITY) || !(slope > 0)) return {};
+    const bool settled = std::abs(e1) <= 4e-16 * r || Z1 == Z0 || e1 == e0;
+    if (std::abs(e1) <= 1e-12 * r && (settled || (k > 8 && std::abs(e1) >= 0.5 * best))) return Z1;
+    if (settled) return {};
+    best = std::min(best, std::abs(e1));
+    if (std::abs(Z1 - Z0) > 1e-9 * r) slope = (e1 - e0) / (Z1 - Z0);
+    const double Z2 = Z1 - e1 / slope;
+    Z0 = Z1;
+    e0 = e1;
+    Z1 = Z2;
+    e1 = radius(Z1) - r;
+  }
+  return {};
+}
+
+/// From a section that lies outside r for certain inwards to the first crossing: the regular sheet is the outermost.
+/// Below it the contact may end (the radius is no number there); then the bracket closes on that end.
+std::optional<double> fillet_by_bracketing(const FilletRadius& radius, double r) {
+  const auto& f = radius.f;
+  const double step = 0.05 * f.shaper.m_t;
+  // r >= Z sin(gamma) - r_a |cos(gamma)| for every point of the shaper's section Z.
+  double Z0 = (r + f.shaper.r_a * std::abs(f.Cg)) / f.Sg, e0 = radius(Z0) - r;
+  if (std::isnan(e0)) return {};
+  if (e0 <= 0) return e0 == 0 ? std::optional(Z0) : std::nullopt;
+  while (Z0 > 0) {
+    double Z1 = Z0 - step, e1 = radius(Z1) - r;
+    for (int k = 0; k < kNewtonLimit && std::isnan(e1); ++k) {
+      Z1 = 0.5 * (Z0 + Z1);
+      if (Z1 >= Z0) return {};
+      e1 = radius(Z1) - r;
+      if (e1 > 0) {  // still outside: the end of the contact is further in
+        Z0 = Z1;
+        e0 = e1;
+        Z1 = Z0 - step * std::ldexp(1.0, -k - 1);
+        e1 = radius(Z1) - r;
+      }
+    }
+    if (std::isnan(e1)) return {};
+    if (e1 <= 0) {
+      std::uintmax_t steps = 200;
+      const auto error = [&](double Z) { return radius(Z) - r; };
+      const auto bracket =
+          boost::math::tools::toms748_solve(error, Z1, Z0, e1, e0, boost::math::tools::eps_tolerance<double>(52), steps);
+      const double Z = std::abs(error(bracket.first)) < std::abs(error(bracket.second)) ? bracket.first : bracket.second;
+      return std::abs(error(Z)) <= 1e-12 * r ? std::optional(Z) : std::nullopt;
+    }
+    Z0 = Z1;
+    e0 = e1;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::optional<FlankCoordinates> invert_flank(const FaceGearSurface<double>& f, int side, double r, double z,
@@ -108,17 +178,19 @@ std::optional<FlankCoordinates> invert_flank(const FaceGearSurface<double>& f, i
   const double distance = std::hypot(r - from.r, z - from.z), step = 0.5 * f.shaper.m_t;
   const int steps = std::clamp(int(std::ceil(distance / step)), 1, 400);
   bool ok = true;
+  int iterations = 0;
   for (int k = 1; k <= steps && ok; ++k) {
     const double t = double(k) / steps;
-    ok = newton(f, side, k == steps ? r : from.r + t * (r - from.r), k == steps ? z : from.z + t * (z - from.z), theta, B);
+    ok = newton(f, side, k == steps ? r : from.r + t * (r - from.r), k == steps ? z : from.z + t * (z - from.z), theta, B,
+                iterations);
   }
   if (ok) {
     const double J = f.flank_J(side, theta, B);
     // Beyond theta = 0 a flank continues as the other one: let the outermost solution decide there.
-    if (J > 0 && theta >= 0) return FlankCoordinates{theta, B, J};
+    if (J > 0 && theta >= 0) return FlankCoordinates{theta, B, J, iterations};
     if (J > 0) {
       const auto outermost = by_bracketing(f, side, r, z);
-      return outermost ? outermost : FlankCoordinates{theta, B, J};
+      return outermost ? outermost : FlankCoordinates{theta, B, J, iterations};
     }
   }
   return by_bracketing(f, side, r, z);
@@ -166,26 +238,10 @@ std::optional<double> flank_B_at_radius(const FaceGearSurface<double>& f, int si
 
 std::optional<double> fillet_Z_at_radius(const FaceGearSurface<double>& f, int side, double A, double r,
                                          double start_Z) {
-  const auto radius = [&](double Z) {
-    const auto p = f.fillet(side, A, Z);
-    return p.defined ? std::hypot(p.p.x(), p.p.y()) : NAN;
-  };
-  double Z0 = start_Z, e0 = radius(Z0) - r;
-  if (std::isnan(e0)) return {};
-  double Z1 = Z0 - e0, e1 = radius(Z1) - r;
-  for (int k = 0; k < kNewtonLimit; ++k) {
-    if (std::isnan(e1)) return {};
-    if (std::abs(e1) <= 4e-16 * r || Z1 == Z0) return Z1;
-    if (e1 == e0) return std::abs(e1) < 1e-12 * r ? std::optional(Z1) : std::nullopt;
-    const double slope = (e1 - e0) / (Z1 - Z0);
-    const double Z2 = Z1 - e1 / slope;
-    Z0 = Z1;
-    e0 = e1;
-    Z1 = Z2;
-    e1 = radius(Z1) - r;
-    if (k > 8 && std::abs(e1) < 1e-13 * r) return Z1;
-  }
-  return std::abs(e1) < 1e-12 * r ? std::optional(Z1) : std::nullopt;
+  if (!(r > 0 && r < INFINITY)) return {};
+  const FilletRadius radius{f, side, A};
+  if (const auto Z = fillet_by_secant(radius, r, start_Z)) return Z;
+  return fillet_by_bracketing(radius, r);
 }
 
 }  // namespace toothpath

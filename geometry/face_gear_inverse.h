@@ -11,6 +11,7 @@ namespace toothpath {
 struct FlankCoordinates {
   double theta = 0, B = 0;
   double J = 0;  ///< > 0 on the sheet that is cut
+  int iterations = 0;  ///< Newton steps of the whole way, filled in by invert_flank; 0 when a bracketing search found it
 };
 
 /// (r, z) -> (theta, B) on the regular sheet of side s. Start: any point of the same sheet; the pitch point is taken
@@ -37,7 +38,9 @@ struct FlankDistance {
 [[nodiscard]] std::optional<double> flank_B_at_radius(const FaceGearSurface<double>& surface, int side, double theta,
                                                       double r, double start_B);
 
-/// Section Z of the fillet (or edge of the root) at normal angle A whose point has radius r.
+/// Section Z of the fillet (or edge of the root) at normal angle A whose point has radius r, on the outermost sheet: by secant
+/// from `start_Z`, and where that does not arrive by a bracketing search from the outside. |radius - r| <= 1e-12 r. Nothing where the
+/// edge does not reach r.
 [[nodiscard]] std::optional<double> fillet_Z_at_radius(const FaceGearSurface<double>& surface, int side, double A,
                                                        double r, double start_Z);
 

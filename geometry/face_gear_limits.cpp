@@ -78,6 +78,19 @@ std::optional<double> flank_start_B(const FaceGearSurface<double>& f, int side, 
   return first_root(above_tip, start, side * kMaxB);
 }
 
+/// B at which the line theta = theta_t rises through the tip surface again; `inner` is where the flank begins.
+std::optional<double> flank_end_B(const FaceGearSurface<double>& f, int side, double inner) {
+  const auto above_tip = [&](double B) {
+    const Vec3 P = f.flank_housing(side, f.shaper.theta_t, B);
+    const double r = radius_of(P);
+    return r > std::abs(f.E) ? P.z() - f.z_tip(r) : std::numeric_limits<double>::quiet_NaN();
+  };
+  // A step outside the beginning, where the line may lie on the tip surface itself.
+  const double start = inner + side * kScanStep;
+  if (!(above_tip(start) < 0)) return {};
+  return first_root(above_tip, start, side * kMaxB);
+}
+
 FlankLimits flank_limits(const FaceGearSurface<double>& f, int side) {
   FlankLimits limits;
   limits.side = side;
@@ -87,8 +100,10 @@ FlankLimits flank_limits(const FaceGearSurface<double>& f, int side) {
     limits.undercut_radius = radius_of(P);
     limits.undercut_height = P.z();
   }
-  if (const auto B = flank_start_B(f, side, limits.undercut_B))
-    limits.flank_start_radius = radius_of(f.flank_housing(side, f.shaper.theta_t, *B));
+  const auto start_B = flank_start_B(f, side, limits.undercut_B);
+  if (start_B) limits.flank_start_radius = radius_of(f.flank_housing(side, f.shaper.theta_t, *start_B));
+  if (const auto B = flank_end_B(f, side, start_B.value_or(limits.undercut_B.value_or(0.0))))
+    limits.flank_end_radius = radius_of(f.flank_housing(side, f.shaper.theta_t, *B));
   if (const auto B = involute_start_B(f, side))
     limits.involute_start_radius = radius_of(f.flank_housing(side, 0.0, *B));
   return limits;
@@ -128,7 +143,7 @@ std::optional<double> radius_of_thickness(const FaceGearSurface<double>& f, doub
   const double step = std::max(0.25 * f.shaper.m_t, 0.005 * pitch_radius);
   std::optional<double> S0;
   double r0 = 0;
-  for (const double far : {1.6, 1.4, 1.25, 1.15}) {
+  for (const double far : {1.6, 1.4, 1.25, 1.15, 2.0, 2.5, 3.2}) {  // beyond 1.6: teeth that keep a land for long
     r0 = far * pitch_radius;
     S0 = thickness(r0);
     if (S0 && *S0 <= land) break;

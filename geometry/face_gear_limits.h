@@ -16,6 +16,8 @@ struct FlankLimits {
   std::optional<double> undercut_B;              ///< its flank parameter, rad
   std::optional<double> flank_start_radius;      ///< inside it the fillet reaches up to the tip surface and no involute is left
                                                  ///  (low teeth, many shaper teeth); none in ordinary gears
+  std::optional<double> flank_end_radius;        ///< outside it the fillet reaches up to the tip surface again (low teeth, large
+                                                 ///  rounding); none where the teeth are pointed first
   std::optional<double> involute_start_radius;   ///< R1b: theta = 0 on the tip surface; none if the tip is above the base circle
 };
 

@@ -49,11 +49,8 @@ struct Run {
   }
 };
 
-/// Job, gear and machine with everything that is wrong with them.
-std::vector<Diagnostic> read_inputs(Run& run) {
-  auto read = run.clock.run("job", [&] { return read_job_file(run.request.job_file); });
-  if (auto* errors = std::get_if<1>(&read)) return std::move(*errors);
-  run.job = std::move(std::get<0>(read));
+/// Gear and machine of the job with everything that is wrong with them.
+std::vector<Diagnostic> prepare(Run& run) {
   if (run.job.operations.empty()) return {fail_at(run.job.where("operation"), "the job lacks an [[operation]]: there is nothing to run")};
   std::vector<Diagnostic> errors;
   auto gear = run.clock.run("gear", [&] { return make_face_gear(run.job); });
@@ -65,6 +62,14 @@ std::vector<Diagnostic> read_inputs(Run& run) {
   if (!errors.empty()) return errors;
   if (const auto fits = check_part_on_machine(run.job, run.machine, 2 * run.gear->outer_radius()); !fits) return {fits.error()};
   return {};
+}
+
+/// Job, gear and machine with everything that is wrong with them.
+std::vector<Diagnostic> read_inputs(Run& run) {
+  auto read = run.clock.run("job", [&] { return read_job_file(run.request.job_file); });
+  if (auto* errors = std::get_if<1>(&read)) return std::move(*errors);
+  run.job = std::move(std::get<0>(read));
+  return prepare(run);
 }
 
 void begin_report(Run& run) {
@@ -184,6 +189,24 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   return std::nullopt;
 }
 
+/// From the prepared inputs to the proof. Nothing: done. A diagnostic of kind verification: the job is right, its program is not safe.
+std::optional<Diagnostic> plan_post_and_prove(Run& run, OutputDir& output, double proof_mm) {
+  begin_report(run);
+  const GearDistance part = run.clock.run("distance index", [&] { return GearDistance(*run.gear, reach_of(run.job.tools)); });
+  GougeCheckOptions options;
+  options.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
+  options.proof_mm = proof_mm;
+  options.clearance_mm = run.plan_options().clearance_mm;
+  options.rapid_height_mm = run.gear->blank_top();
+  const GougeCheck check(part, run.job.tools, options);
+  if (auto stopped = plan_and_check(run, part, check)) return stopped;
+  return post_and_prove(run, output, part, check);
+}
+
+void discard_program(OutputDir& output) {
+  for (const char* extension : {".ngc", ".nc", ".mpf", ".h", ".apt"}) output.discard(std::string("program") + extension);
+}
+
 /// The files for people and for other programs; the program itself is there already.
 Status write_results(Run& run, OutputDir& output, std::string& json) {
   RunReport& report = run.report;
@@ -226,7 +249,7 @@ CommandOutcome finish(Run& run, OutputDir& output, const std::optional<Diagnosti
     }
   }
   if (!run.report.verified) {
-    for (const char* extension : {".ngc", ".nc", ".mpf", ".h", ".apt"}) output.discard(std::string("program") + extension);
+    discard_program(output);
     outcome.exit_code = ExitCode::unverified;
   }
   if (const auto written = write_results(run, output, outcome.report_json); !written) return failed(located(run.job, "gear", written.error()));
@@ -247,22 +270,32 @@ CommandOutcome run_job(const CommandRequest& request) {
     run.progress.clear();
     return failed(std::move(errors));
   }
-  begin_report(run);
-
-  const GearDistance part = run.clock.run("distance index", [&] { return GearDistance(*run.gear, reach_of(run.job.tools)); });
-  GougeCheckOptions options;
-  options.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
-  options.clearance_mm = run.plan_options().clearance_mm;
-  options.rapid_height_mm = run.gear->blank_top();
-  const GougeCheck check(part, run.job.tools, options);
-
-  auto stopped = plan_and_check(run, part, check);
-  if (!stopped) stopped = post_and_prove(run, *output, part, check);
+  const auto stopped = plan_post_and_prove(run, *output, GougeCheckOptions{}.proof_mm);
   if (stopped && stopped->kind != DiagnosticKind::verification) {
     run.progress.clear();
-    return failed(std::move(*stopped));
+    return failed(*stopped);
   }
   return finish(run, *output, stopped);
+}
+
+StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bool quiet) {
+  CommandRequest request;
+  request.quiet = quiet;
+  Run run(request);
+  run.job = job;
+  StagesOutcome outcome;
+  outcome.errors = prepare(run);
+  if (!outcome.errors.empty()) return outcome;
+  if (const auto stopped = plan_post_and_prove(run, scratch, proof_mm)) {
+    if (stopped->kind != DiagnosticKind::verification) outcome.errors.push_back(*stopped);
+    run.report.reasons.push_back(stopped->message);
+    run.report.verified = false;
+  }
+  discard_program(scratch);
+  run.report.stages = run.clock.seconds();
+  run.progress.clear();
+  outcome.report = std::move(run.report);
+  return outcome;
 }
 
 }  // namespace toothpath

@@ -2,11 +2,25 @@
 #pragma once
 
 #include "app/commands/command.h"
+#include "app/job.h"
+#include "app/output_dir.h"
+#include "app/report/run_report.h"
 
 namespace toothpath {
 
 /// Gear, plan, gouge check, axis program, NC text, read back from the disk, proof, report. A program that is not proven is not
 /// left in the directory; the report is, and says why.
 [[nodiscard]] CommandOutcome run_job(const CommandRequest& request);
+
+/// What the stages of a run found out about a face gear job.
+struct StagesOutcome {
+  RunReport report;                ///< with its stages' seconds; `reasons` says why the program is not verified
+  std::vector<Diagnostic> errors;  ///< the job, gear or machine is refused: the report is not filled in
+};
+
+/// The stages of `run` on a job that has been read (and perhaps changed): the same code, without the files for people. The program
+/// goes through a temporary file of `scratch`, as in a run, and is dropped afterwards.
+/// @param proof_mm how far the bound of a move may lie above what was measured at its ends (GougeCheckOptions)
+[[nodiscard]] StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bool quiet);
 
 }  // namespace toothpath
