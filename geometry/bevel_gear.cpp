@@ -238,6 +238,9 @@ class BevelGearBuilder {
       }
     }
     g.limits_.cusp_speed_ratio = least_F_;
+    // The last micrometres before the end of the trace have no regular envelope on the convex wall.
+    auto& last = g.halves_.back();
+    last.ell_to = std::min(last.ell_to, last.walls[0].trace.R_lim());
     if (!(least_F_ > 0.05))
       refuse("face_width", "face_width = {:.4f}: the cutter centre path has a cusp inside the face (speed ratio {:.4f}, must exceed 0.05)",
              p.face_width_mm, least_F_);

@@ -35,7 +35,7 @@ struct BevelLimits {
 struct BevelHalf {
   int hand = 1;
   double R_from = 0, R_to = 0;      ///< trace of this half
-  double ell_from = 0, ell_to = 0;  ///< face that is left after the relief groove
+  double ell_from = 0, ell_to = 0;  ///< face that is left after the relief groove, at most up to R_lim
   BevelWall<double> walls[2];       ///< L (sigma = +1), U (sigma = -1)
   /// Ends of each wall's pass as spiral angles of the trace, at R_from's and R_to's side (6.2 of the page). On the concave
   /// side of a herringbone the path stops at the crossing.
