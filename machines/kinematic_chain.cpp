@@ -222,7 +222,10 @@ Result<std::vector<JointSolution>> KinematicChain::candidates(const TablePose& p
 
 std::vector<LimitViolation> KinematicChain::violations(const Joints& joints, const LimitMargin& margin) const {
   std::vector<LimitViolation> found;
+  // A joint put together from a word, an offset and a tool length may miss a limit that it stands on by their rounding.
+  constexpr double kRoundOff = 1e-10;
   const auto test = [&found](char letter, bool is_rotary, double value, double lo, double hi) {
+    if (value >= lo - kRoundOff && value <= hi + kRoundOff) return;
     if (!(value >= lo)) found.push_back({letter, is_rotary, value, lo, false});
     else if (!(value <= hi)) found.push_back({letter, is_rotary, value, hi, true});
   };
