@@ -87,6 +87,9 @@ std::optional<double> beta_at_centre(const BevelTrace<double>& t, int sigma, dou
 
 }  // namespace
 
+/// In modules: how far a wall grid stays away from where ell(beta) turns back.
+constexpr double kRegularMargin = 0.01;
+
 class BevelGearBuilder {
  public:
   BevelGearBuilder(const BevelGearParameters& p, const FingerCutterData& c) {
@@ -238,9 +241,19 @@ class BevelGearBuilder {
       }
     }
     g.limits_.cusp_speed_ratio = least_F_;
-    // The last micrometres before the end of the trace have no regular envelope on the convex wall.
+    // Just before the end of the trace the convex wall has no regular envelope at its tip: ell(beta) turns back there.
     auto& last = g.halves_.back();
     last.ell_to = std::min(last.ell_to, last.walls[0].trace.R_lim());
+    for (const auto& w : last.walls) {
+      if (w.eps() > 0) continue;
+      double lo = w.cutter.p_C, hi = w.cutter.p_D, farthest = 0;
+      for (int k = 0; k < 60; ++k) {
+        const double mid = 0.5 * (lo + hi);
+        (w.cutter.at(mid).x < p.addendum_mm ? lo : hi) = mid;
+      }
+      for (int k = 0; k <= 400; ++k) farthest = std::max(farthest, w.generatrix(0.2 * k / 400, hi)[0]);
+      last.ell_to = std::min(last.ell_to, farthest - kRegularMargin * m_te);
+    }
     if (!(least_F_ > 0.05))
       refuse("face_width", "face_width = {:.4f}: the cutter centre path has a cusp inside the face (speed ratio {:.4f}, must exceed 0.05)",
              p.face_width_mm, least_F_);
