@@ -12,8 +12,11 @@
 #include <optional>
 #include <thread>
 
+#include "app/commands/check.h"
 #include "app/commands/shaper.h"
 #include "app/commands/run.h"
+#include "app/commands/study_stability.h"
+#include "app/commands/study_work_precision.h"
 #include "app/commands/surface.h"
 #include "app/report/html_text.h"
 
@@ -118,6 +121,19 @@ Subcommand add_job_command(CLI::App& app, const char* name, const char* descript
   return {sub, std::move(command)};
 }
 
+/// `study work-precision JOB` and `study stability`: commands below a command.
+std::vector<Subcommand> add_studies(CLI::App& app, CommandRequest& request) {
+  CLI::App* study = app.add_subcommand("study", "error against run time; extreme cases");
+  study->fallthrough();
+  study->require_subcommand(1);
+  auto work_precision = add_job_command(*study, "work-precision", "vary the tolerances of a job: what they cost and what they buy", request, study_work_precision);
+  work_precision.app->add_flag("--quick", request.quick, "three factors a tolerance instead of five, and none for all together");
+  CLI::App* stability = study->add_subcommand("stability", "extreme gears and machine poses, double against 50 digits");
+  stability->fallthrough();
+  stability->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required();
+  return {work_precision, {stability, study_stability}};
+}
+
 void add_global_options(CLI::App& app, GlobalOptions& options) {
   app.set_version_flag("--version", kVersion);
   app.add_flag("--json", options.json, "print one JSON object on stdout");
@@ -136,8 +152,12 @@ int run_command_line(int argc, char** argv) {
   app.require_subcommand(0, 1);
   std::vector<Subcommand> commands;
   commands.push_back(add_job_command(app, "run", "the whole way from the job to a proven NC program", request, run_job));
+  commands.push_back(add_job_command(app, "check", "proves a program that is already there against the job's gear", request, check_program));
+  commands.back().app->add_option("PROGRAM", request.program_file, "NC program in the dialect of the job's machine")->required();
   commands.push_back(add_job_command(app, "surface", "flanks, limits, inspection grid and mesh of the gear", request, run_surface));
   commands.push_back(add_job_command(app, "shaper", "limits and gear-shaper set-up: sheet and stroke program", request, run_shaper));
+
+  for (auto& command : add_studies(app, request)) commands.push_back(std::move(command));
 
   try {
     app.parse(argc, argv);
@@ -154,7 +174,10 @@ int run_command_line(int argc, char** argv) {
   if (options.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
   for (const auto& [sub, command] : commands)
-    if (sub->parsed()) return present(sub->get_name(), guarded(command, request), options);
+    if (sub->parsed()) {
+      const bool top = sub->get_parent() == &app;
+      return present(top ? sub->get_name() : sub->get_parent()->get_name() + " " + sub->get_name(), guarded(command, request), options);
+    }
   return static_cast<int>(ExitCode::internal);
 }
 

@@ -13,8 +13,10 @@ namespace toothpath {
 struct CommandRequest {
   std::string job_file;
   std::string out_dir;
+  std::string program_file;  ///< of `check`
   bool quiet = false;
   bool color = false;  ///< of the summary
+  bool quick = false;  ///< studies: the short form
 };
 
 struct CommandOutcome {

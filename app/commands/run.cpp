@@ -9,6 +9,7 @@
 #include "app/gear_of_job.h"
 #include "app/job_file.h"
 #include "app/report/cl_csv.h"
+#include "app/report/deviation_vtp.h"
 #include "app/report/page_of_run.h"
 #include "app/report/setup_sheet.h"
 #include "app/sha256.h"
@@ -108,8 +109,6 @@ void report_axis_program(RunReport& report, const Job& job, const FaceGearPlan& 
   report.axes = program.ranges;
   report.feed_minutes = program.feed_minutes;
   report.total_minutes = program.minutes;
-  for (const auto& name : program.assumed)
-    if (std::find(report.assumed.begin(), report.assumed.end(), name) == report.assumed.end()) report.assumed.push_back(name);
   for (const AxisOperation& o : program.operations) {
     const auto& asked = job.operations[static_cast<std::size_t>(o.operation)];
     OperationReport operation{o.operation, o.type, o.tool_number, asked.speed_rpm, asked.feed_mm_min, 0, o.feed_minutes, o.rapid_minutes};
@@ -122,8 +121,11 @@ void report_axis_program(RunReport& report, const Job& job, const FaceGearPlan& 
 /// Sources of deviation: what was predicted, and what the program that lies on the disk shows.
 std::vector<LedgerEntry> ledger_of(const FaceGearPlan& plan, const AxisProgram& program, const ProgramProof& proof) {
   double chord = 0, scallop = 0;
-  for (const OperationPlan& operation : plan.operations) chord = std::max(chord, operation.chord_mm);
-  if (!plan.operations.empty()) scallop = plan.operations.back().scallop_max_mm;
+  if (!plan.operations.empty()) {
+    // The finished surface is what the last operation leaves; the others stay above it by their allowance.
+    chord = plan.operations.back().chord_mm;
+    scallop = plan.operations.back().scallop_max_mm;
+  }
   const double nothing = std::numeric_limits<double>::quiet_NaN();  // not measured on its own
   const double met = proof.comparison ? proof.comparison->worst_mm * 1000 : nothing;
   return {{"flank solve", Tolerances{}.flank_mm * 1000, nothing},
@@ -216,6 +218,9 @@ Status write_results(Run& run, OutputDir& output, std::string& json) {
   };
   if (report.verified) {
     if (const auto s = write_surface_files(output, *run.gear, run.job.name, run.clock, report.files); !s) return s;
+    const auto vtp = deviation_vtp(run.surface);
+    if (!vtp) return vtp.error();
+    if (const auto s = output.write("tooth.vtp", *vtp); !s) return s;  // with the deviation, instead of the plain one
     if (const auto s = write("setup.html", setup_sheet(run.job, *run.gear, run.machine, report)); !s) return s;
   }
   const auto paths = run.paths();

@@ -1,0 +1,166 @@
+#include "app/commands/check.h"
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+
+#include "app/commands/proof.h"
+#include "app/gear_of_job.h"
+#include "app/job_file.h"
+#include "app/output_dir.h"
+#include "app/report/deviation_vtp.h"
+#include "app/report/page_of_run.h"
+#include "app/sha256.h"
+#include "geometry/base/angle.h"
+#include "cam/plan.h"
+
+namespace toothpath {
+namespace {
+
+constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 30;
+
+Result<std::string> read_program(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return fail_as(DiagnosticKind::file_access, "program \"{}\" cannot be read", path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (in.bad() || (text.view().empty() && in.fail() && !in.eof()))
+    return fail_as(DiagnosticKind::file_access, "program \"{}\" cannot be read", path);
+  if (text.view().size() > kMostBytes)
+    return fail_as(DiagnosticKind::refused_input, "program \"{}\" has {} bytes, at most {} are read", path, text.view().size(), kMostBytes);
+  return std::move(text).str();
+}
+
+/// Lines of the table of places that are worst: where, which body, how deep.
+std::string table_of(const GougeResult& gouge) {
+  if (gouge.worst.empty()) return {};
+  std::string out = "  worst places\n    line  op  tooth  zone  patch        body        r mm      z mm       um\n";
+  for (const auto& w : gouge.worst)
+    out += fmt::format("    {:5} {:3} {:6} {:5}  {:<12} {:<7} {:9.3f} {:9.3f} {:8.2f}\n", w.line, w.operation, w.tooth, w.zone, w.patch,
+                       w.body, w.radius_mm, w.height_mm, w.depth_mm * 1000);
+  return out;
+}
+
+RunReport begin(const Job& job, const Machine& machine, const FaceGear& gear, const std::string& program) {
+  RunReport report;
+  report.command = "check";
+  report.job_name = job.name;
+  report.job_file = job.file;
+  report.machine_name = machine.name;
+  report.machine_file = job.machine.file;
+  report.dialect = machine.dialect;
+  report.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
+  report.program_file = program;
+  if (machine.assumed)
+    for (const auto& key : machine.assumed_keys) report.assumed.push_back(fmt::format("{}: {}", job.machine.file, key));
+  report.warnings = job.warnings;
+  report.warnings.insert(report.warnings.end(), gear.warnings().begin(), gear.warnings().end());
+  return report;
+}
+
+std::vector<AxisRange> ranges_of(const ReadBack& read, const Machine& machine) {
+  std::vector<AxisRange> out;
+  for (std::size_t k = 0; k < 3; ++k)
+    out.push_back({"XYZ"[k], false, read.least[k], read.greatest[k], machine.chain.linear[k].min_mm, machine.chain.linear[k].max_mm});
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
+    const auto& axis = machine.chain.rotary(k);
+    out.push_back({axis.letter, true, radians(read.least[3 + k]), radians(read.greatest[3 + k]), axis.min_rad, axis.max_rad});
+  }
+  return out;
+}
+
+double shown(const AxisRange& axis, double value) { return axis.rotary ? degrees(value) : value; }
+
+/// A program may use the travels of the machine, not more.
+void judge_travels(RunReport& report) {
+  for (const auto& a : report.axes) {
+    if (a.min < a.lower_limit - 1e-9)
+      report.reasons.push_back(fmt::format("travel: {} = {:.4f} is below {:.4f}", a.letter, shown(a, a.min), shown(a, a.lower_limit)));
+    if (a.max > a.upper_limit + 1e-9)
+      report.reasons.push_back(fmt::format("travel: {} = {:.4f} exceeds {:.4f}", a.letter, shown(a, a.max), shown(a, a.upper_limit)));
+  }
+}
+
+void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) {
+  report.gouge = proof.gouge;
+  report.reasons = proof.reasons;
+  report.excess = proof.surface.operations;
+  report.finished = proof.surface.finished;
+  report.unreached = proof.surface.unreached;
+  if (proof.surface.scallop.requested_mm > 0) report.scallop = proof.surface.scallop;
+  report.blocks = proof.read.executed;
+  report.feed_minutes = proof.read.feed_minutes;
+  report.total_minutes = proof.read.minutes;
+  report.axes = ranges_of(proof.read, machine);
+  judge_travels(report);
+  report.verified = report.reasons.empty();
+}
+
+}  // namespace
+
+CommandOutcome check_program(const CommandRequest& request) {
+  auto output = OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"});
+  if (!output) return failed(output.error());
+  Progress progress(request.quiet);
+  StageClock clock(progress);
+  auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
+  if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
+  const Job job = std::move(std::get<0>(read));
+  auto made = clock.run("gear", [&] { return make_face_gear(job); });
+  if (auto* refused = std::get_if<1>(&made)) return failed(std::move(*refused));
+  const FaceGear gear = std::move(std::get<0>(made));
+  auto loaded = clock.run("machine", [&] { return load_machine(job); });
+  if (auto* refused = std::get_if<1>(&loaded)) return failed(std::move(*refused));
+  const Machine machine = std::move(std::get<0>(loaded));
+  if (!job.setup) return failed(fail_at(job.where("setup"), "the job lacks a [setup]: where the gear stands is not known"));
+  auto text = read_program(request.program_file);
+  if (!text) return failed(text.error());
+
+  const GearDistance part = clock.run("distance index", [&] { return GearDistance(gear, reach_of(job.tools)); });
+  GougeCheckOptions options;
+  options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
+  options.clearance_mm = job.verify.clearance_mm.value_or(PlanOptions{}.clearance_mm);
+  options.rapid_height_mm = gear.blank_top();
+  const GougeCheck gouge_check(part, job.tools, options);
+  ProofOptions proof_options;
+  proof_options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
+  auto proof = prove_program(*text, request.program_file, job, machine, part, gouge_check, clearance_body(gear), gear.parameters().teeth, {},
+                             proof_options, clock);
+  if (!proof) {
+    progress.clear();
+    return failed(proof.error());
+  }
+  RunReport report = begin(job, machine, gear, request.program_file);
+  report.program_sha256 = sha256_hex(*text);
+  report.program_bytes = text->size();
+  fill(report, *proof, machine);
+
+  CommandOutcome outcome;
+  outcome.exit_code = report.verified ? ExitCode::ok : ExitCode::unverified;
+  for (const auto& reason : report.reasons) {
+    Diagnostic error = fail_as(DiagnosticKind::verification, "{}", reason);
+    error.position.file = request.program_file;
+    outcome.errors.push_back(std::move(error));
+  }
+  const auto vtp = deviation_vtp(proof->surface.grids);
+  if (!vtp) return failed(vtp.error());
+  if (const auto s = output->write("tooth.vtp", *vtp); !s) return failed(s.error());
+  report.files = {"tooth.vtp", "report.html", "report.json"};
+  report.stages = clock.seconds();
+  const auto page = clock.run("report page", [&] {
+    ReportPage content = page_of_run(job, report, {}, *text);
+    content.surface = proof->surface.grids;
+    return render_report_page(content);
+  });
+  if (!page) return failed(page.error());
+  if (const auto s = output->write("report.html", *page); !s) return failed(s.error());
+  report.stages = clock.seconds();
+  outcome.report_json = report_json(report);
+  if (const auto s = output->write("report.json", outcome.report_json); !s) return failed(s.error());
+  progress.clear();
+  if (const auto committed = output->commit(); !committed) return failed(committed.error());
+  outcome.summary = summary_table(report, request.color) + table_of(proof->gouge);
+  return outcome;
+}
+
+}  // namespace toothpath

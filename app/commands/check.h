@@ -1,0 +1,12 @@
+// `toothpath check JOB PROGRAM --out DIR`: proves a program that is already there against the job's gear.
+#pragma once
+
+#include "app/commands/command.h"
+
+namespace toothpath {
+
+/// Reads any NC program in the dialect of the job's machine back and checks it: gouges, clearance, rapids, left material.
+/// Writes report.json, report.html and tooth.vtp; the program itself is never touched. Exit: verified or unverified.
+[[nodiscard]] CommandOutcome check_program(const CommandRequest& request);
+
+}  // namespace toothpath

@@ -1,0 +1,12 @@
+// `toothpath study stability`: the extreme cases of gears and machines in double and in 50 digits.
+#pragma once
+
+#include "app/commands/command.h"
+
+namespace toothpath {
+
+/// Runs every extreme case and writes stability.csv, stability.json and stability.html. Exit code 0 only when every verdict is
+/// fine: no NaN, no wrong sheet, no error beyond rounding, every refusal with its reason; else 1. Needs no job.
+[[nodiscard]] CommandOutcome study_stability(const CommandRequest& request);
+
+}  // namespace toothpath

@@ -1,0 +1,256 @@
+#include "app/commands/study_work_precision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/run.h"
+#include "app/commands/study_page.h"
+#include "app/job_file.h"
+#include "app/report/html_text.h"
+#include "cam/gouge_check.h"
+
+namespace toothpath {
+namespace {
+
+const std::vector<std::string> kOutputs = {"work_precision.csv", "work_precision.json", "work_precision.html", "work_precision.svg", "program."};
+
+/// Which tolerances a line of the study multiplies.
+struct Sweep {
+  const char* name;
+  bool chord, scallop, proof;
+};
+constexpr Sweep kSweeps[] = {{"chord", true, false, false}, {"scallop", false, true, false}, {"verification", false, false, true}, {"all", true, true, true}};
+constexpr double kFactors[] = {0.1, 0.316227766016838, 3.16227766016838, 10.0};  ///< and 1, the job itself
+
+/// A coarse chord must be measured, not refused: the study lifts the gouge tolerance to this many chord tolerances.
+constexpr double kGougePerChord = 4;
+
+struct StudyRun {
+  std::string varied;
+  double factor = 1;
+  double chord_mm = 0, scallop_mm = 0, proof_mm = 0;
+  RunReport report;
+
+  [[nodiscard]] double seconds() const {
+    double sum = 0;
+    for (const auto& stage : report.stages) sum += stage.second;
+    return sum;
+  }
+  [[nodiscard]] double stage(const std::string& name) const {
+    for (const auto& [stage, s] : report.stages)
+      if (stage == name) return s;
+    return 0;
+  }
+  /// Largest size of material left or missing on the finished surface; NaN where the run did not get so far.
+  [[nodiscard]] double worst_mm() const {
+    return report.finished ? std::max(std::abs(report.finished->max_mm), std::abs(report.finished->min_mm)) : NAN;
+  }
+  [[nodiscard]] double rms_mm() const { return report.finished ? report.finished->rms_mm : NAN; }
+};
+
+/// The tolerances of the job that the finished surface depends on: those of its last operation with a scallop height.
+void asked(const Job& job, StudyRun& run) {
+  for (const auto& operation : job.operations) {
+    run.chord_mm = operation.chord_tolerance_mm;
+    if (operation.scallop_mm > 0) run.scallop_mm = operation.scallop_mm;
+  }
+}
+
+Job varied_job(Job job, const Sweep& sweep, double factor) {
+  double coarsest = 0;
+  for (auto& operation : job.operations) {
+    if (sweep.chord) operation.chord_tolerance_mm *= factor;
+    if (sweep.scallop) operation.scallop_mm *= factor;
+    coarsest = std::max(coarsest, operation.chord_tolerance_mm);
+  }
+  job.verify.gouge_tolerance_mm = std::max(job.verify.gouge_tolerance_mm, kGougePerChord * coarsest);
+  return job;
+}
+
+/// One run, or why the job itself cannot be run.
+std::vector<Diagnostic> add_run(const Job& job, const Sweep& sweep, const char* name, double factor, OutputDir& output, bool quiet,
+                                std::vector<StudyRun>& runs) {
+  const Job varied = varied_job(job, sweep, factor);
+  StudyRun run;
+  run.varied = name;
+  run.factor = factor;
+  run.proof_mm = GougeCheckOptions{}.proof_mm * (sweep.proof ? factor : 1);
+  asked(varied, run);
+  auto outcome = run_stages(varied, run.proof_mm, output, quiet);
+  run.report = std::move(outcome.report);
+  if (!outcome.errors.empty()) {
+    if (factor == 1) return outcome.errors;  // not the study's doing
+    run.report.reasons = {outcome.errors.front().message};
+  }
+  // The verdict is that of the job, not of the lifted tolerance.
+  const bool within = run.report.gouge && run.report.gouge->bound_mm <= job.verify.gouge_tolerance_mm;
+  if (run.report.verified && !within)
+    run.report.reasons.push_back(fmt::format("the bound of the gouge exceeds the job's tolerance {:.4f} mm", job.verify.gouge_tolerance_mm));
+  run.report.verified = run.report.verified && within;
+  runs.push_back(std::move(run));
+  return {};
+}
+
+std::string um(double mm) { return std::isfinite(mm) ? fmt::format("{:.4f}", mm * 1000) : ""; }
+std::string seconds_text(double s) { return fmt::format("{:.3f}", s); }
+
+PageTable table_of(const std::vector<StudyRun>& runs) {
+  std::vector<std::string> stages;  // all names, in the order of the first run that has them
+  for (const auto& run : runs)
+    for (const auto& [name, s] : run.report.stages)
+      if (std::find(stages.begin(), stages.end(), name) == stages.end()) stages.push_back(name);
+  PageTable table{"Runs", {"varied", "factor", "chord_um", "scallop_um", "verification_um", "cl_points", "blocks", "cutting_minutes", "worst_um", "rms_um",
+                           "left_bound_um", "gouge_um", "gouge_bound_um", "verified", "seconds"}, {}, ""};
+  for (const auto& name : stages) {
+    std::string column = name + "_s";
+    std::replace(column.begin(), column.end(), ' ', '_');
+    table.columns.push_back(column);
+  }
+  table.columns.emplace_back("reason");
+  for (const auto& run : runs) {
+    const RunReport& r = run.report;
+    std::vector<std::string> row = {run.varied, short_number(run.factor), um(run.chord_mm), um(run.scallop_mm), um(run.proof_mm), std::to_string(r.cl_points),
+                                    std::to_string(r.blocks), fmt::format("{:.3f}", r.feed_minutes), um(run.worst_mm()), um(run.rms_mm()),
+                                    um(r.finished ? r.finished->bound_mm : NAN), um(r.gouge ? r.gouge->measured_mm : NAN),
+                                    um(r.gouge ? r.gouge->bound_mm : NAN), r.verified ? "yes" : "no", seconds_text(run.seconds())};
+    for (const auto& name : stages) row.push_back(seconds_text(run.stage(name)));
+    row.push_back(r.reasons.empty() ? "" : r.reasons.front());
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+/// The runs of one sweep with the job's own run among them, by factor.
+std::vector<const StudyRun*> line_of(const std::vector<StudyRun>& runs, const std::string& name) {
+  std::vector<const StudyRun*> line;
+  for (const auto& run : runs)
+    if ((run.varied == name || run.varied == "job") && run.report.blocks > 0) line.push_back(&run);
+  std::sort(line.begin(), line.end(), [](const auto* a, const auto* b) { return a->factor < b->factor; });
+  return line;
+}
+
+template <typename X, typename Y>
+void add_series(LineChart& chart, const std::vector<StudyRun>& runs, const Sweep& sweep, const std::string& name, X x, Y y) {
+  ChartSeries series{name, {}, {}};
+  for (const StudyRun* run : line_of(runs, sweep.name)) {
+    series.x.push_back(x(*run));
+    series.y.push_back(y(*run));
+  }
+  if (series.x.size() > 1) chart.series.push_back(std::move(series));
+}
+
+std::vector<LineChart> charts_of(const std::vector<StudyRun>& runs, double gouge_tolerance_mm) {
+  const auto chart = [](std::string title, std::string x, std::string y, std::string note) {
+    LineChart c;
+    c.title = std::move(title), c.x_label = std::move(x), c.y_label = std::move(y), c.note = std::move(note);
+    c.log_x = c.log_y = c.markers = true;
+    return c;
+  };
+  LineChart error = chart("Error against run time", "run time [s]", "deviation of the finished surface [um]",
+                          "Each line multiplies one tolerance (or all) by 0.1 to 10; every dot is a whole run. Right is slower, down is more exact. "
+                          "A line that falls steeply buys accuracy with its time; a flat one only costs.");
+  LineChart cutting = chart("Error against cutting time", "cutting time [min]", "deviation of the finished surface [um]",
+                            "The same runs with the time on the machine: passes and blocks that the tolerances ask for.");
+  LineChart proof = chart("Sharpness of the proof against its time", "proof of the program [s]", "bound minus measured gouge [um]",
+                          "How far the proven bound stands above what was measured, and the seconds of the check.");
+  LineChart points = chart("Size of the program", "factor of the tolerance", "CL points of one tooth space",
+                           "Chord and scallop alone give a slope of -1/2: sag and cusp grow with the square of the step.");
+  proof.limits.push_back({"gouge tolerance", gouge_tolerance_mm * 1000});
+  for (const Sweep& sweep : kSweeps) {
+    const auto seconds = [](const StudyRun& r) { return r.seconds(); };
+    const std::string name = sweep.name;
+    add_series(error, runs, sweep, name + ", worst", seconds, [](const StudyRun& r) { return r.worst_mm() * 1000; });
+    add_series(error, runs, sweep, name + ", rms", seconds, [](const StudyRun& r) { return r.rms_mm() * 1000; });
+    add_series(cutting, runs, sweep, name + ", worst", [](const StudyRun& r) { return r.report.feed_minutes; }, [](const StudyRun& r) { return r.worst_mm() * 1000; });
+    add_series(proof, runs, sweep, name, [](const StudyRun& r) { return r.stage("proof of the program"); },
+               [](const StudyRun& r) { return r.report.gouge ? (r.report.gouge->bound_mm - r.report.gouge->measured_mm) * 1000 : NAN; });
+    add_series(points, runs, sweep, name, [](const StudyRun& r) { return r.factor; }, [](const StudyRun& r) { return static_cast<double>(r.report.cl_points); });
+  }
+  return {error, cutting, proof, points};
+}
+
+std::string json_of(const Job& job, const PageTable& table) {
+  nlohmann::ordered_json json;
+  json["schema"] = 1;
+  json["command"] = "study work-precision";
+  json["job"] = valid_utf8(job.name);
+  json["job_file"] = valid_utf8(job.file);
+  json["gouge_tolerance_um"] = job.verify.gouge_tolerance_mm * 1000;
+  json["runs"] = nlohmann::ordered_json::array();
+  for (const auto& row : table.rows) {
+    nlohmann::ordered_json run;
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      const std::string& name = table.columns[k];
+      if (name == "varied" || name == "reason") run[name] = valid_utf8(row[k]);
+      else if (name == "verified") run[name] = row[k] == "yes";
+      else if (row[k].empty()) run[name] = nullptr;
+      else run[name] = nlohmann::ordered_json::parse(row[k]);
+    }
+    json["runs"].push_back(std::move(run));
+  }
+  return json.dump(2) + "\n";
+}
+
+/// The columns that a screen has room for.
+std::string screen_table(const PageTable& table) {
+  PageTable narrow = table;
+  const std::vector<std::size_t> keep = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 11, 12, 13, 14};
+  const auto take = [&](const std::vector<std::string>& cells) {
+    std::vector<std::string> kept;
+    for (const auto k : keep) kept.push_back(cells[k]);
+    return kept;
+  };
+  narrow.columns = take(table.columns);
+  for (auto& row : narrow.rows) row = take(row);
+  return table_text(narrow);
+}
+
+}  // namespace
+
+CommandOutcome study_work_precision(const CommandRequest& request) {
+  auto output = OutputDir::open(request.out_dir, kOutputs);
+  if (!output) return failed(output.error());
+  auto read = read_job_file(request.job_file);
+  if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
+  const Job& job = std::get<0>(read);
+
+  std::vector<StudyRun> runs;
+  if (auto refused = add_run(job, {"job", false, false, false}, "job", 1, *output, request.quiet, runs); !refused.empty()) return failed(std::move(refused));
+  for (const Sweep& sweep : kSweeps)
+    for (const double factor : kFactors) {
+      const bool inner = factor > 0.2 && factor < 5, diagonal = sweep.chord && sweep.proof;
+      if (request.quick && (inner || diagonal)) continue;
+      if (auto failure = add_run(job, sweep, sweep.name, factor, *output, request.quiet, runs); !failure.empty()) return failed(std::move(failure));
+    }
+
+  const PageTable table = table_of(runs);
+  StudyPage page;
+  page.title = "Error against run time";
+  page.subtitle = fmt::format("{}: chord {} um, scallop {} um, verification {} um at factor 1", job.name, um(runs[0].chord_mm), um(runs[0].scallop_mm), um(runs[0].proof_mm));
+  page.good = runs[0].report.verified;
+  page.verdict = page.good ? "job verified" : "job not verified";
+  page.introduction = {
+      "Every row is one whole run of the job: planning, gouge check, axis motion, NC text, reading it back, proof and cut surface. The first row is the job "
+      "as it stands; in the others one tolerance, or all of them together, is multiplied by a factor between 0.1 and 10.",
+      "worst and rms: deviation of the finished surface from the exact one, measured on the program as read back, over all points that the finishing ball "
+      "can reach. gouge and its bound: the deepest cut below the finished surface over all operations, measured and proven.",
+      fmt::format("So that coarse settings are measured and not refused, the gouge tolerance of a run is lifted to {:g} chord tolerances where that is more; "
+                  "\"verified\" is the verdict with the job's own tolerance of {:.4f} mm.", kGougePerChord, job.verify.gouge_tolerance_mm)};
+  page.charts = charts_of(runs, job.verify.gouge_tolerance_mm);
+  page.tables = {table};
+
+  CommandOutcome outcome;
+  outcome.report_json = json_of(job, table);
+  const std::pair<const char*, std::string> files[] = {{"work_precision.csv", table_csv(table)},
+                                                       {"work_precision.svg", standalone_svg(page.charts.front())},
+                                                       {"work_precision.html", study_page_html(page)},
+                                                       {"work_precision.json", outcome.report_json}};
+  for (const auto& [name, content] : files)
+    if (const auto written = output->write(name, content); !written) return failed(written.error());
+  if (const auto committed = output->commit(); !committed) return failed(committed.error());
+  outcome.summary = screen_table(table);
+  return outcome;
+}
+
+}  // namespace toothpath
