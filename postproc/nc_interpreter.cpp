@@ -296,7 +296,7 @@ class Interpreter {
   struct Request {
     int motion = -1;           // G0 G1 in this block
     int feed_mode = -1;        // 93 94
-    bool g53 = false, g43 = false, g49 = false, g64 = false;
+    bool g53 = false, g43 = false, g49 = false, g64 = false, g61 = false;
     std::string offset;
     std::vector<int> m;
     std::array<double, 5> axis{};
@@ -373,7 +373,7 @@ class Interpreter {
       case 490: group = 7; r.g49 = true; break;
       case 800: group = 8; break;
       case 530: group = 9; r.g53 = true; break;
-      case 610: case 640: group = 10; r.g64 = tenths == 640; break;
+      case 610: case 640: group = 10; r.g64 = tenths == 640; r.g61 = tenths == 610; break;
       case 921: group = 11; break;
       case 690: group = 13; break;
       case 540: case 550: case 560: case 570: case 580: case 590: case 591: case 592: case 593: {
@@ -396,6 +396,8 @@ class Interpreter {
     if ((r.p || r.q) && !r.g64 && (r.m.empty() || r.m.front() != 98)) return here(r.p_column, "P or Q without G64 or M98");
     if (r.l) return here(r.column, "L is not in the subset");
     if (r.g64 && !r.p) return here(r.column, "G64 without P leaves the path without limit");
+    if (r.g64) blend_mm_ = *r.p;
+    if (r.g61) blend_mm_ = 0;
     if (r.feed_mode >= 0) {
       if (feed_mode_ != r.feed_mode) feed_.reset();
       feed_mode_ = r.feed_mode;
@@ -499,6 +501,7 @@ class Interpreter {
     m.operation = static_cast<std::int16_t>(operation_);
     m.tool = static_cast<std::int16_t>(tool_);
     m.rapid = motion_ == 0;
+    m.blend_mm = m.rapid ? 0.0F : static_cast<float>(blend_mm_);
     for (std::size_t a = 0; a < 5; ++a)
       if (r.has[a]) m.commanded = static_cast<std::uint8_t>(m.commanded | (1U << a));
     m.tooth = static_cast<std::int16_t>(tooth_);
@@ -544,6 +547,7 @@ class Interpreter {
 
   const std::string& file_;
   const NcControl& control_;
+  double blend_mm_ = 0;  ///< P of G64: how far the control may leave the corners of the path
   const std::function<void(const ExecutedMove&)>& sink_;
   bool linuxcnc_;
   std::vector<std::string_view> lines_;

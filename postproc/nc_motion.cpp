@@ -144,7 +144,7 @@ Result<std::vector<ToolMotion>> tool_motions(const OperationTrace& trace, const 
       motion.tip_to = end.tip;
       motion.axis_from = start.axis;
       motion.axis_to = end.axis;
-      motion.deviation_mm = tip_left + kRoundOff;
+      motion.deviation_mm = tip_left + kRoundOff + double(m.blend_mm);
       motion.axis_deviation = axis_left;
       motion.minutes = m.minutes / n;
       motion.rapid = m.rapid;

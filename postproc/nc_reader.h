@@ -48,6 +48,7 @@ struct ExecutedMove {
   std::int16_t operation = -1;  ///< from the (OP n type) comment; -1 before the first
   std::int16_t tool = 0;        ///< T in the spindle
   bool rapid = false;
+  float blend_mm = 0;           ///< the control may leave the corners of the path by this much (G64 P)
   std::uint8_t commanded = 0;   ///< bit a: the block has a word for axis a
   std::int16_t tooth = -1;      ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
   bool machine = false;         ///< G53, or the block that switches tool length compensation on

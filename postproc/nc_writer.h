@@ -46,7 +46,7 @@ struct NcHeader {
   std::string machine_name;
   std::vector<std::string> assumed;  ///< non-empty: a warning with each of them
   int program_number = 1001; ///< O word
-  double blend_mm = 0.002;   ///< P of G64
+  double blend_mm = 0.0003;  ///< P of G64: counts as deviation of the machine in every proof
   bool coolant = false;      ///< M8 with every operation
 };
 

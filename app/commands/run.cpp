@@ -119,7 +119,7 @@ void report_axis_program(RunReport& report, const Job& job, const FaceGearPlan& 
 }
 
 /// Sources of deviation: what was predicted, and what the program that lies on the disk shows.
-std::vector<LedgerEntry> ledger_of(const FaceGearPlan& plan, const AxisProgram& program, const ProgramProof& proof) {
+std::vector<LedgerEntry> ledger_of(const FaceGearPlan& plan, const AxisProgram& program, const ProgramProof& proof, double blend_mm) {
   double chord = 0, scallop = 0;
   if (!plan.operations.empty()) {
     // The finished surface is what the last operation leaves; the others stay above it by their allowance.
@@ -129,11 +129,13 @@ std::vector<LedgerEntry> ledger_of(const FaceGearPlan& plan, const AxisProgram& 
   const double nothing = std::numeric_limits<double>::quiet_NaN();  // not measured on its own
   const double met = proof.comparison ? proof.comparison->worst_mm * 1000 : nothing;
   return {{"flank solve", Tolerances{}.flank_mm * 1000, nothing},
-          {"chord", chord * 1000, nothing},
+          {"chord", chord * 1000, std::max(0.0, -proof.surface.finished.min_mm * 1000)},
           {"scallop", scallop * 1000, proof.surface.scallop.requested_mm > 0 ? proof.surface.scallop.reached_max_mm * 1000 : nothing},
           {"axis linearisation", program.chord_bound_mm * 1000, proof.comparison ? proof.comparison->worst_extra_mm * 1000 : nothing},
           {"rounding", program.rounding_bound_mm * 1000, met},
-          {"verification", (proof.gouge.bound_mm - proof.gouge.measured_mm) * 1000, nothing}};
+          {"path blending", blend_mm * 1000, nothing},
+          {"verification", (GougeCheckOptions{}.proof_mm + program.rounding_bound_mm + blend_mm) * 1000,
+           (proof.gouge.bound_mm - proof.gouge.measured_mm) * 1000}};
 }
 
 /// Axis program, NC text on the disk, proof of those bytes. Nothing: done, and `report.reasons` says whether it is safe.
@@ -181,7 +183,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   if (proof->surface.scallop.requested_mm > 0) run.report.scallop = proof->surface.scallop;
   run.surface = std::move(proof->surface.grids);
   run.report.reasons = proof->reasons;
-  run.report.ledger = ledger_of(run.plan, *program, *proof);
+  run.report.ledger = ledger_of(run.plan, *program, *proof, dialect->blend ? header.blend_mm : 0.0);
   if (!proof->reasons.empty()) return std::nullopt;
   run.report.verified = true;
   run.report.program_file = name;
