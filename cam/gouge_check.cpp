@@ -47,7 +47,7 @@ class MotionCheck {
     const Vec3 a = centre(0), b = centre(1);
     const auto qa = query(a), qb = query(b);
     ball(0, 1, qa, qb, kDepth);
-    flute(0, 1, kDepth);
+    flute();
     return slot_;
   }
 
@@ -69,10 +69,13 @@ class MotionCheck {
     }
   }
 
+  /// A wreck need not be measured to a fraction of a micrometre: how far its bound may lie above what was seen.
+  [[nodiscard]] double leeway(double seen) const { return seen > 10 * o_.gouge_tolerance_mm ? 0.25 * seen : 0; }
+
   /// Is a proven least distance good enough? Yes where it is free, or where it is close to what was seen in contact.
   [[nodiscard]] bool settled(double least, double corner, double seen) const {
     if (R_ - least + slack_ <= 0) return true;
-    return R_ - least <= seen + o_.proof_mm && corner < R_ + slack_ + 2 * o_.proof_mm;
+    return R_ - least <= seen + o_.proof_mm + leeway(seen) && corner < R_ + slack_ + 2 * o_.proof_mm;
   }
 
   void ball(double t0, double t1, const NearestPlace& q0, const NearestPlace& q1, int depth) {
@@ -106,7 +109,7 @@ class MotionCheck {
   void patch(double t0, double t1, double h0, double h1, double d00, double d10, double d01, double d11, int depth) {
     const double L = (centre(t1) - centre(t0)).norm() + 2 * slack_, H = h1 - h0;
     const double low = std::min(d00, d10), high = std::min(d01, d11);
-    const double upward = between(low, high, H), g = upward * upward - L * L / 4;
+    const double upward = std::max(between(low, high, H), 0.0), g = upward * upward - L * L / 4;
     const double least = g > 0 ? std::sqrt(g) : 0;
     const double seen = std::max(R_ - std::min(low, high), 0.0);
     if (settled(least, std::min(low, high), seen) || depth == 0 || std::max(L, H) < 1e-6) {
@@ -131,33 +134,22 @@ class MotionCheck {
     return q.distance;
   }
 
-  /// The flute above its first level: coarse, there is room.
-  void flute(double t0, double t1, int depth) {
+  /// The flute above its first level, in slabs: there is room, so that most need no more than their corners.
+  void flute() {
     const double level = std::min(kFirstLevel * R_, tool_.flute_length_mm - R_), top = tool_.flute_length_mm - R_;
     if (top <= level) return;
-    const double L = (centre(t1) - centre(t0)).norm() + 2 * slack_;
-    double worst = -INFINITY;
-    double h = level;
-    double low = INFINITY;
-    for (const double t : {t0, t1}) low = std::min(low, at(t, h));
+    const double L = (centre(1) - centre(0)).norm() + 2 * slack_;
+    double h = level, low_0 = at(0, h), low_1 = at(1, h);
     while (h < top) {
-      const Vec3 a = centre(t0) + h * axis(t0);
-      if (a.z() - R_ > part_.gear().blank_top() + L && axis(t0).z() > 0.5) break;  // above the part from here on
+      const Vec3 a = centre(0) + h * axis(0);
+      if (a.z() - R_ > part_.gear().blank_top() + L && axis(0).z() > 0.5) break;  // above the part from here on
       const double next = std::min(h + 0.5 * R_, top);
-      double high = INFINITY;
-      for (const double t : {t0, t1}) high = std::min(high, at(t, next));
-      const double upward = between(low, high, next - h);
-      const double g = upward * upward - L * L / 4;
-      worst = std::max(worst, R_ - (g > 0 ? std::sqrt(g) : 0));
+      const double high_0 = at(0, next), high_1 = at(1, next);
+      patch(0, 1, h, next, low_0, low_1, high_0, high_1, kDepth);
       h = next;
-      low = high;
+      low_0 = high_0;
+      low_1 = high_1;
     }
-    if (worst + slack_ <= std::max(0.0, slot_.measured) || depth == 0 || L < 1e-5) {
-      slot_.bound = std::max(slot_.bound, worst + slack_);
-      return;
-    }
-    flute(t0, 0.5 * (t0 + t1), depth - 1);
-    flute(0.5 * (t0 + t1), t1, depth - 1);
   }
   void bodies() {
     for (const auto& body : shank_and_holder(tool_)) body_interval(body, 0, 1, 14);
@@ -168,7 +160,7 @@ class MotionCheck {
                          m_.axis_deviation * body.to;
     const double enough = o_.clearance_mm + reach + 0.5;
     const auto gap = body_gap(part_, body, tip(t), axis(t), enough, 0.02);
-    if (gap.gap - reach < o_.clearance_mm && reach > 0.005 && depth > 0 && gap.gap > -1) {
+    if (gap.gap - reach < o_.clearance_mm && reach > 0.005 && depth > 0 && gap.gap > 0) {
       body_interval(body, t0, t, depth - 1);
       body_interval(body, t, t1, depth - 1);
       return;
