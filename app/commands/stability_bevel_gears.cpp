@@ -53,7 +53,7 @@ BevelCase pitch_angle(std::string name, int teeth, double delta_deg, double modu
   const double R_e = module_mm * teeth / (2 * std::sin(p.pitch_angle_rad));
   p.face_width_mm = std::min(0.29 * R_e, 10 * module_mm);
   const double share = 1 - p.face_width_mm / R_e, m = 0.96 * module_mm * share * std::sqrt(share) * std::cos(radians(30));
-  c.cutter = {m, 0.25 * m, 1.37 * m, 1.6 * m};
+  c.cutter = {m, 0.2 * m, 1.37 * m, 1.6 * m};
   p.addendum_mm = 1.37 * m;
   p.dedendum_mm = 1.7 * m;
   return c;

@@ -96,6 +96,12 @@ std::optional<ExactComparison> ExactFaceGear::inverse(const FaceGearSurface<doub
                          static_cast<double>(impl_->f.flank_J(side, theta, B)), static_cast<double>(theta)};
 }
 
+double ExactFaceGear::residual_mm(int side, double r, double z, const FlankCoordinates& found) const {
+  const Meridian m = meridian(impl_->f, side, Exact(found.theta), Exact(found.B));
+  const Exact dr = m.r - Exact(r), dz = m.z - Exact(z);
+  return static_cast<double>(sqrt(Exact(dr * dr + dz * dz)));
+}
+
 std::optional<ExactComparison> ExactFaceGear::fillet(const FaceGearSurface<double>& surface, int side, double A, double r, double Z) const {
   // The double A lies within rounding of [A_t, A_e]; the exact ends are a hair away, which the closed form does not mind.
   const Exact Ax(A), rx(r);

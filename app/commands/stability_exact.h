@@ -34,6 +34,9 @@ class ExactFaceGear {
   /// `position_mm` compares it with the double point at `found`, in space.
   [[nodiscard]] std::optional<ExactComparison> inverse(const FaceGearSurface<double>& surface, int side, double r, double z,
                                                        const FlankCoordinates& found) const;
+  /// How far the flank point at `found`, taken in 50 digits, lies from (r, z). At a fold (r, z) rounded to double may lie beyond the
+  /// flank, where there is nothing to compare positions with: this is what can still be asked.
+  [[nodiscard]] double residual_mm(int side, double r, double z, const FlankCoordinates& found) const;
   /// The fillet point at normal angle A whose radius is exactly r; `Z` is the double solution.
   [[nodiscard]] std::optional<ExactComparison> fillet(const FaceGearSurface<double>& surface, int side, double A, double r, double Z) const;
   /// Radius of the cusp (J = 0 at theta_t) minus `radius` [mm], by secant from `B`.

@@ -181,14 +181,14 @@ void near_undercut(std::vector<StabilityRow>& rows) {
     const double r = *flank.undercut_radius + distance;
     row.limit_mm = kRounding * kEps * r;
     const auto B = flank_B_at_radius(f, -1, f.shaper.theta_t, r, *flank.undercut_B - 0.02);
-    const auto at = B ? invert_flank(f, -1, r, f.flank_housing(-1, f.shaper.theta_t, *B).z()) : std::nullopt;
-    const auto compared = at ? exact.inverse(f, -1, r, f.flank_housing(-1, f.shaper.theta_t, *B).z(), *at) : std::nullopt;
-    if (compared) {
-      row.error_mm = compared->position_mm;
-      row.condition = compared->condition;
+    const double z = B ? f.flank_housing(-1, f.shaper.theta_t, *B).z() : NAN;
+    if (const auto at = invert_flank(f, -1, r, z)) {
+      const auto closed = exact.kernel(f, -1, f.shaper.theta_t, *B);
+      row.error_mm = std::max({closed.position_mm, exact.kernel(f, -1, at->theta, at->B).position_mm, exact.residual_mm(-1, r, z, *at)});
+      row.condition = closed.condition;
       row.iterations = at->iterations;
       row.points = 1;
-      row.reason = fmt::format("J = {:.2e} mm2", compared->J);
+      row.reason = fmt::format("J = {:.2e} mm2", closed.J);
     } else {
       row.error_mm = NAN;
       row.reason = "no flank point";
@@ -230,7 +230,7 @@ void refused(std::vector<StabilityRow>& rows) {
       {"inside the undercut", kOffsetGear, 0, 129, 147},
       {"beyond pointing", kOffsetGear, 0, 130, 152},
       {"inside the base cylinder", kOffsetGear, 0, 124, 147},
-      {"empty band, 10/30 high teeth", {"", 10, 30, 2, 20, 0, 0, 90, 1.3}, 0, 34, 36},
+      {"pointed shaper of few teeth", {"", 10, 30, 2, 20, 0, 0, 90, 1.3}, 0, 34, 36},
       {"pointed shaper", {"", 25, 88, 3, 20, 0, 15, 90, 1.9}, 0, 130, 147},
       {"rounding too large", kOffsetGear, 1.3, 130, 147},
       {"offset beyond the face", {"", 25, 88, 3, 20, 0, 140}, 0, 130, 147},

@@ -10,7 +10,7 @@ enum class Expected { accept, refuse };
 
 /// One extreme case.
 struct StabilityRow {
-  std::string group, name;
+  std::string group = {}, name = {};
   double error_mm = 0;     ///< greatest distance of double from 50 digits
   double limit_mm = 0;     ///< what rounding may do: a multiple of eps times the size of the part
   double condition = 0;    ///< of the hardest point: relative change of the answer per relative change of the question; 0: none
@@ -18,8 +18,8 @@ struct StabilityRow {
   double swept_mm = 0;     ///< greatest distance from the swept solid, which knows no equation of meshing; 0: not applicable
   int points = 0;
   bool fine = false;
-  std::string verdict;     ///< "pass", "refused" or "FAIL"
-  std::string reason;
+  std::string verdict = {};///< "pass", "refused" or "FAIL"
+  std::string reason = {};
 };
 
 /// Face gears: every extreme gear, near undercut, near pointing, gears that must be refused.
