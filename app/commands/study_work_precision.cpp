@@ -149,13 +149,14 @@ std::vector<LineChart> charts_of(const std::vector<StudyRun>& runs, double gouge
   };
   LineChart error = chart("Error against run time", "run time [s]", "deviation of the finished surface [um]",
                           "Each line multiplies one tolerance (or all) by 0.1 to 10; every dot is a whole run. Right is slower, down is more exact. "
-                          "A line that falls steeply buys accuracy with its time; a flat one only costs.");
+                          "A line that falls steeply buys accuracy with its time; a flat one only costs. Seconds are wall time: other work on the "
+                          "computer shows as scatter to the right.");
   LineChart cutting = chart("Error against cutting time", "cutting time [min]", "deviation of the finished surface [um]",
                             "The same runs with the time on the machine: passes and blocks that the tolerances ask for.");
   LineChart proof = chart("Sharpness of the proof against its time", "proof of the program [s]", "bound minus measured gouge [um]",
                           "How far the proven bound stands above what was measured, and the seconds of the check.");
   LineChart points = chart("Size of the program", "factor of the tolerance", "CL points of one tooth space",
-                           "Chord and scallop alone give a slope of -1/2: sag and cusp grow with the square of the step.");
+                           "Where one tolerance decides, the slope is -1/2: sag and cusp grow with the square of the step. Where a line gets flat, something else decides.");
   proof.limits.push_back({"gouge tolerance", gouge_tolerance_mm * 1000});
   for (const Sweep& sweep : kSweeps) {
     const auto seconds = [](const StudyRun& r) { return r.seconds(); };
