@@ -70,7 +70,7 @@ class MotionCheck {
   }
 
   /// A wreck need not be measured to a fraction of a micrometre: how far its bound may lie above what was seen.
-  [[nodiscard]] double leeway(double seen) const { return seen > 10 * o_.gouge_tolerance_mm ? 0.25 * seen : 0; }
+  [[nodiscard]] double leeway(double seen) const { return seen > 50 * o_.gouge_tolerance_mm ? 0.25 * seen : 0; }
 
   /// Is a proven least distance good enough? Yes where it is free, or where it is close to what was seen in contact.
   [[nodiscard]] bool settled(double least, double corner, double seen) const {

@@ -71,11 +71,6 @@ BodyGap body_gap(const GearDistance& part, const Frustum& f, const Vec3& tip, co
   BodyGap best{enough, 0, tip};
   const double above = lowest_z(f, tip, axis) - part.gear().blank_top();
   if (above >= enough) return best;
-  if (above > 0) {
-    // The whole part lies below: that height is a proven gap, and mostly all that is needed.
-    best.gap = above;
-    return best;
-  }
   const double widest = std::max(f.radius_from, f.radius_to);
   const int links = std::max(1, int(std::ceil((f.to - f.from) / std::max(widest, 0.5))));
   const double half = 0.5 * (f.to - f.from) / links;
@@ -107,6 +102,7 @@ BodyGap body_gap(const GearDistance& part, const Frustum& f, const Vec3& tip, co
       }
     }
   }
+  best.gap = std::max(best.gap, above);  // the whole part lies below: that height is a proven gap too
   return best;
 }
 

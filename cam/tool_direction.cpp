@@ -109,8 +109,10 @@ class Search {
 
   void explain_failure() {
     const DirectionChoice::Candidate* best = &choice_.candidates.front();
+    // Directions in which the shank, not the ball, would cut are no near miss: a body in the way tells more.
+    const auto stands = [](const DirectionChoice::Candidate& c) { return c.worst_body != "ball"; };
     for (const auto& c : choice_.candidates)
-      if (c.gap_mm > best->gap_mm) best = &c;
+      if (stands(c) > stands(*best) || (stands(c) == stands(*best) && c.gap_mm > best->gap_mm)) best = &c;
     choice_.explanation = fmt::format("no fixed direction is clear: the best of {} leans {:.0f} deg and its {} keeps {:.3f} mm",
                                       choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm);
   }
