@@ -86,10 +86,7 @@ class Meter {
     for (int zone = 0; zone < part_.zones(); ++zone) {
       const ZonePlaces places(part_, zone);
       for (int piece = 0; piece < kSpacePieces; ++piece) grid(places, zone, SpacePiece(piece));
-      if (!operations_.empty() && operations_.back().scallop_mm > 0) {
-        scallop_lines(places, true);
-        scallop_lines(places, false);
-      }
+      if (!operations_.empty() && operations_.back().scallop_mm > 0) fine_lines(places);
     }
     summarise();
     return std::move(out_);
@@ -142,25 +139,35 @@ class Meter {
     out_.grids.push_back(std::move(g));
   }
 
-  /// Cusps between neighbouring passes on lines across a flank.
-  void scallop_lines(const ZonePlaces& places, bool plus) {
+  /// Fine lines across the space, the ends of the ring among them: the greatest excess that a ball could have reached, and on the
+  /// flanks the cusps between neighbouring passes.
+  void fine_lines(const ZonePlaces& places) {
     const auto& op = operations_.back();
     const double R = tools_[std::size_t(op.tool)].radius_mm();
     const double step = std::sqrt(8 * R * op.scallop_mm) / 24;
-    for (int line = 0; line < o_.scallop_lines; ++line) {
-      const double r = places.radius((line + 0.5) / o_.scallop_lines);
-      const auto [from, to] = places.range(plus ? SpacePiece::flank_plus : SpacePiece::flank_minus, r);
-      const auto a = places.at(from, r), b = places.at(to, r);
-      if (!a || !b) continue;
-      const int n = std::max(8, int((b->p - a->p).norm() / step));
-      std::vector<double> e(std::size_t(n) + 1, 0.0);
-      tbb::parallel_for(0, n + 1, [&](int k) {
-        const auto s = places.at(from + (to - from) * k / n, r);
-        if (s) e[std::size_t(k)] = paths_.back()->excess(s->p, o_.cap_mm) - op.allowance_mm;
-      });
-      count_cusps(e, op.scallop_mm);
-      line_step_ = std::max(line_step_, (b->p - a->p).norm() / n);
-      for (double x : e) line_max_ = std::max(line_max_, x + op.allowance_mm);
+    for (int line = 0; line <= o_.scallop_lines + 1; ++line) {
+      const bool end = line == 0 || line == o_.scallop_lines + 1;
+      const double r = places.radius(end ? double(line > 0) : (line - 0.5) / o_.scallop_lines);
+      for (int piece = 0; piece < kSpacePieces; ++piece) {
+        const auto [from, to] = places.range(SpacePiece(piece), r);
+        const auto a = places.at(from, r), b = places.at(to, r);
+        if (!a || !b) continue;
+        const int n = std::max(16, int(1.2 * (b->p - a->p).norm() / step));
+        std::vector<double> e(std::size_t(n) + 1, 0.0);
+        tbb::parallel_for(0, n + 1, [&](int k) {
+          const auto s = places.at(from + (to - from) * k / n, r);
+          if (s) e[std::size_t(k)] = paths_.back()->excess(s->p, o_.cap_mm) - op.allowance_mm;
+        });
+        const bool flank = piece == 0 || piece == kSpacePieces - 1;
+        if (flank && !end) count_cusps(e, op.scallop_mm);
+        line_step_ = std::max(line_step_, (b->p - a->p).norm() / n);
+        for (int k = 0; k <= n; ++k) {
+          const double x = e[std::size_t(k)] + op.allowance_mm;
+          if (x <= line_max_) continue;
+          const auto s = places.at(from + (to - from) * k / n, r);
+          if (s && reachable(*s)) line_max_ = x;
+        }
+      }
     }
   }
 

@@ -1,21 +1,24 @@
 #include "cam/finishing.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace toothpath {
 namespace {
 
-/// The curvature jumps where fillets meet flanks and root land, and a cusp that spans the jump is higher than its step
-/// says: in the corners passes aim at this share of the asked cusp.
-constexpr double kCornerShare = 0.7;
+/// Nodes of a profile are divided this often before passes are counted: the curvature may change within one step-over.
+constexpr int kFiner = 4;
+constexpr int kCuspRounds = 4;
+constexpr double kCuspAim = 0.98;  // of the asked cusp: room for what lies between the stations
 
 double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 
 /// Passes counted along one profile: `count` grows by one from pass to pass.
 struct CountedProfile {
   std::vector<double> sigma, count;  ///< same length, both ascending; gaps are jumps in sigma at equal count
-  double flank_end_plus = 0, flank_end_minus = 0;  ///< count where the flanks meet the fillets
+  bool refined = false;              ///< nodes have been divided
 };
 
 double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at) {
@@ -48,6 +51,7 @@ class Planner {
       return fail("the ball centres of a {:.4f} mm ball find no surface between the radii {:.4f} and {:.4f}",
                   o_.ball_radius_mm, ring.inner_radius_mm, ring.outer_radius_mm);
     count_profiles();
+    for (int round = 0; round < kCuspRounds; ++round) sharpen_counts();
     const double most = *std::max_element(totals_.begin(), totals_.end());
     const int passes = std::max(2, int(std::ceil(most - 1e-9)));
     out_.scallop_min_mm = INFINITY;
@@ -87,8 +91,7 @@ class Planner {
     const Vec3 across = s.contact.n.cross(feed);
     const double k = SpaceSheet::normal_curvature(s.contact, across);
     const double regular = std::max(1e-6, (1 + k * sheet_.delta()) / (1 + k * o_.allowance_mm));
-    const bool corner = s.piece != SpacePiece::flank_plus && s.piece != SpacePiece::flank_minus;
-    return std::sqrt(8 * (corner ? kCornerShare : 1.0) * o_.scallop_mm * o_.ball_radius_mm * regular);
+    return std::sqrt(8 * o_.scallop_mm * o_.ball_radius_mm * regular);
   }
 
   void count_profiles() {
@@ -124,14 +127,109 @@ class Planner {
           previous_w = w;
           previous_feed = feed;
         }
-        p.flank_end_plus = interpolate(p.sigma, p.count, 1.0);
-        p.flank_end_minus = interpolate(p.sigma, p.count, 4.0);
         totals[j] = count;
         profiles[j] = std::move(p);
       }
       profiles_ = std::move(profiles);
       totals_ = std::move(totals);
     }
+  }
+
+  /// The count comes from curvatures at single points; here every cusp is measured between its two passes, and where it is
+  /// higher than asked the passes are drawn together.
+  void sharpen_counts() {
+    for (auto& p : profiles_) refine(p);
+    std::vector<std::vector<double>> counts(profiles_.size());
+    tbb::parallel_for(std::size_t(0), profiles_.size(), [&](std::size_t j) { counts[j] = sharpened(j); });
+    for (std::size_t j = 0; j < profiles_.size(); ++j) {
+      profiles_[j].count = std::move(counts[j]);
+      totals_[j] = profiles_[j].count.back();
+    }
+  }
+
+  /// New count of station j. Where the curvature jumps (around the corners) pairs of passes are tried at four phases, since the
+  /// final passes of a station fall anywhere; on the flanks one phase is enough.
+  [[nodiscard]] std::vector<double> sharpened(std::size_t j) const {
+    const auto& p = profiles_[j];
+    const double r = sheet_.stations()[j].r, total = totals_[j];
+    const auto gaps = sheet_.gaps(r);
+    struct Line {
+      double count, sigma;
+      SheetPoint at;
+      Vec3 feed;
+    };
+    std::vector<double> grow(p.sigma.size(), 1.0);
+    const auto try_pairs = [&](double begin, double end, double step, std::size_t apart) {
+      std::vector<Line> lines;
+      for (double c = begin; c <= end; c += step) {
+        const double sigma = interpolate(p.count, p.sigma, c);
+        const auto s = sheet_.at(sigma, r);
+        if (!s) return;
+        lines.push_back({c, sigma, *s, direction_at(j, sigma, c / total)});
+      }
+      for (std::size_t i = 0; i + apart < lines.size(); ++i) {
+        const auto &a = lines[i], &b = lines[i + apart];
+        const double height = cusp(a.sigma, a.at, a.feed, b.sigma, b.at, b.feed, r, gaps);
+        const double ratio = std::clamp(height / (kCuspAim * o_.scallop_mm), 1.0, 4.0);
+        if (ratio == 1.0) continue;
+        for (std::size_t k = 1; k < p.sigma.size(); ++k)
+          if (p.sigma[k] > a.sigma && p.sigma[k - 1] < b.sigma) grow[k] = std::max(grow[k], std::sqrt(ratio));
+      }
+    };
+    const double corner_begin = interpolate(p.sigma, p.count, 0.85), corner_end = interpolate(p.sigma, p.count, 4.15);
+    try_pairs(0.5, corner_begin, 1.0, 1);
+    try_pairs(std::max(corner_begin - 1.0, 0.0), std::min(corner_end + 1.0, total), 0.25, 4);
+    try_pairs(corner_end, total, 1.0, 1);
+    std::vector<double> count{p.count.front()};
+    for (std::size_t k = 1; k < p.count.size(); ++k) count.push_back(count.back() + (p.count[k] - p.count[k - 1]) * grow[k]);
+    return count;
+  }
+
+  static void refine(CountedProfile& p) {
+    if (p.refined) return;
+    p.refined = true;
+    std::vector<double> sigma{p.sigma.front()}, count{p.count.front()};
+    for (std::size_t k = 1; k < p.sigma.size(); ++k) {
+      const bool gap = p.sigma[k] - p.sigma[k - 1] > 0.2;  // a jump over a corner stays a jump
+      const int parts = gap ? 1 : kFiner;
+      for (int q = 1; q <= parts; ++q) {
+        sigma.push_back(p.sigma[k - 1] + (p.sigma[k] - p.sigma[k - 1]) * q / parts);
+        count.push_back(p.count[k - 1] + (p.count[k] - p.count[k - 1]) * q / parts);
+      }
+    }
+    p.sigma = std::move(sigma);
+    p.count = std::move(count);
+  }
+
+  /// Direction of a pass at a place of station j: towards the same share of the count at the neighbours.
+  [[nodiscard]] Vec3 direction_at(std::size_t j, double sigma, double share) const {
+    const auto& stations = sheet_.stations();
+    const std::size_t a = j > 0 ? j - 1 : j, b = j + 1 < stations.size() ? j + 1 : j;
+    const auto place = [&](std::size_t s) {
+      const double there = s == j ? sigma : interpolate(profiles_[s].count, profiles_[s].sigma, share * totals_[s]);
+      const auto q = sheet_.at(there, stations[s].r);
+      return q ? q->centre : Vec3(Vec3::Zero());
+    };
+    return (place(b) - place(a)).normalized();
+  }
+
+  /// Highest place of the surface between two passes, above what both balls leave. Allowance left out.
+  [[nodiscard]] double cusp(double sigma_a, const SheetPoint& a, const Vec3& feed_a, double sigma_b, const SheetPoint& b, const Vec3& feed_b,
+                            double r, const std::vector<SheetGap>& gaps) const {
+    const auto from_line = [](const Vec3& p, const Vec3& q, const Vec3& feed) { return (p - q).cross(feed).norm(); };
+    double worst = 0;
+    constexpr int kSamples = 8;
+    for (int k = 1; k < kSamples; ++k) {
+      const double sigma = sigma_a + (sigma_b - sigma_a) * k / kSamples;
+      bool hidden = false;
+      for (const auto& g : gaps) hidden = hidden || (sigma > g.from && sigma < g.to);
+      if (hidden) continue;  // a corner that the ball cannot reach has its own pass
+      const auto s = sheet_.raw(sigma, r);
+      if (!s) continue;
+      const Vec3 p = s->contact.p + o_.allowance_mm * s->contact.n;
+      worst = std::max(worst, std::min(from_line(p, a.centre, feed_a), from_line(p, b.centre, feed_b)) - o_.ball_radius_mm);
+    }
+    return worst;
   }
 
   [[nodiscard]] Vec3 feed_direction(std::size_t j, std::size_t k, int round) const {
@@ -183,38 +281,39 @@ class Planner {
     out_.worst_chord_mm = std::max(out_.worst_chord_mm, curve->worst_chord_mm);
     BallPass pass;
     pass.points = curve->points;
-    add_run_out(pass, sigma, from, to, begin == from, end == to);
+    add_run_out(pass, on_sheet, from, to, begin == from, end == to);
     pass.outward = plus == o_.climb;
     if (!pass.outward) std::reverse(pass.points.begin(), pass.points.end());
     return pass;
   }
 
-  /// Goes on tangentially beyond both ends: along the sheet as far as it is there, then straight.
-  template <typename Sigma>
-  void add_run_out(BallPass& pass, const Sigma& sigma, double from, double to, bool inside, bool outside) const {
+  /// Goes on beyond the ends of the ring: along the sheet as far as it is there, else straight on.
+  template <typename Curve>
+  void add_run_out(BallPass& pass, const Curve& on_sheet, double from, double to, bool inside, bool outside) const {
     const auto extend = [&](double end, double sense) {
-      const double step = 1e-4;
-      const auto a = sheet_.at(sigma(end), end), b = sheet_.at(sigma(end - sense * step), end - sense * step);
-      BallPass::Point p;
-      p.touching = false;
-      const double target = end + sense * o_.run_out_mm;
-      if (target >= sheet_.r_from() && target <= sheet_.r_to()) {
-        if (const auto s = sheet_.at(sigma(target), target)) {
-          // Straight to a point of the sheet would sag into a hollow-free side only; lift over the middle is not needed
-          // as long as the sheet bends less than the ball: the ring ends before the chord does.
-          p.centre = s->centre;
-          p.contact = s->contact.p;
-          return p;
+      const double target = std::clamp(end + sense * o_.run_out_mm, sheet_.r_from(), sheet_.r_to());
+      std::vector<BallPass::Point> out;
+      if (std::abs(target - end) > 0.3 * o_.run_out_mm)
+        if (const auto line = sample_curve(on_sheet, end, target, o_.chord_mm, 4.0 * o_.ball_radius_mm)) {
+          out.assign(line->points.begin() + 1, line->points.end());
+          for (auto& p : out) p.touching = false;
+          return out;
         }
-      }
+      const auto a = on_sheet(end), b = on_sheet(end - sense * 1e-4);
+      if (!a || !b) return out;
       const Vec3 tangent = (a->centre - b->centre).normalized();
       const double rate = std::abs(radius(a->centre + tangent * 1e-3) - radius(a->centre)) / 1e-3;
-      p.centre = a->centre + tangent * (o_.run_out_mm / std::max(rate, 0.2));
-      p.contact = a->contact.p;
-      return p;
+      out.push_back({a->centre + tangent * (o_.run_out_mm / std::max(rate, 0.2)), a->contact, false});
+      return out;
     };
-    if (inside) pass.points.insert(pass.points.begin(), extend(from, -1));
-    if (outside) pass.points.push_back(extend(to, 1));
+    if (inside) {
+      const auto points = extend(from, -1);
+      pass.points.insert(pass.points.begin(), points.rbegin(), points.rend());
+    }
+    if (outside) {
+      const auto points = extend(to, 1);
+      pass.points.insert(pass.points.end(), points.begin(), points.end());
+    }
   }
 
   /// Where the ball touches two walls of a corner at once: passes along the corners, as far as the corners are there.
@@ -234,17 +333,25 @@ class Planner {
         }
         std::size_t end = j;
         while (end + 1 < stations.size() && find(stations[end + 1].gaps, plus)) ++end;
-        if (end > j) {
-          const auto sigma = [&](double r) {
-            const auto gaps = sheet_.gaps(r);
-            const auto* g = find(gaps, plus);
-            return g ? g->from : (plus ? 2.0 : 3.0);
-          };
-          const auto pass = make_pass(sigma, plus, stations[j].r, stations[end].r);
-          if (!pass) return pass.error();
-          if (pass->points.size() > 1) out_.passes.push_back(*pass);
-          out_.corner_passes = true;
-        }
+        // The corner begins and ends somewhere between two stations, or two corners become one there: the pass goes on to the
+        // next station, along the place where the corner was last seen.
+        const std::size_t first = j > 0 ? j - 1 : j, last = std::min(end + 1, stations.size() - 1);
+        const auto middle = [&](std::size_t station) {
+          const auto* g = find(stations[station].gaps, plus);
+          return 0.5 * (g->from + g->to);
+        };
+        const double r_middle = 0.5 * (stations[j].r + stations[end].r), at_begin = middle(j), at_end = middle(end);
+        const auto sigma = [&](double r) {
+          const auto gaps = sheet_.gaps(r);
+          if (const auto* g = find(gaps, plus)) return g->from;
+          for (const auto& g : gaps)
+            if (g.from < 2.5 && g.to > 2.5) return plus ? g.from : g.to;
+          return r < r_middle ? at_begin : at_end;
+        };
+        const auto pass = make_pass(sigma, plus, stations[first].r, stations[last].r);
+        if (!pass) return pass.error();
+        if (pass->points.size() > 1) out_.passes.push_back(*pass);
+        out_.corner_passes = true;
         j = end + 1;
       }
     }

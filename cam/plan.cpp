@@ -101,8 +101,7 @@ class JobPlanner {
       r.allowance_mm = op.allowance_mm;
       r.step_down_mm = op.step_down_mm;
       r.step_over_mm = op.step_over_mm;
-      r.chord_mm = kChordShare * std::min(op.chord_tolerance_mm, 0.15 * op.allowance_mm);
-      if (op.allowance_mm <= 0) r.chord_mm = kChordShare * std::min(op.chord_tolerance_mm, 0.001);
+      r.chord_mm = std::min(kChordShare * op.chord_tolerance_mm, chord_room(op));
       r.overrun_mm = room;
       r.blank_top_mm = part_.gear().blank_top();
       r.climb = op.climb;
@@ -120,8 +119,7 @@ class JobPlanner {
       f.allowance_mm = op.allowance_mm;
       f.scallop_mm = op.scallop_mm;
       f.chord_mm = kChordShare * op.chord_tolerance_mm;
-      if (op.type == OperationType::semi_finishing && op.allowance_mm > 0)
-        f.chord_mm = std::min(f.chord_mm, 0.1 * op.allowance_mm);
+      f.chord_mm = std::min(f.chord_mm, chord_room(op));
       f.run_out_mm = room;
       f.climb = op.climb;
       auto planned = plan_finishing(sheet, f);
@@ -131,6 +129,7 @@ class JobPlanner {
       summary.scallop_max_mm = std::max(summary.scallop_max_mm, planned->scallop_max_mm);
       summary.chord_mm = std::max(summary.chord_mm, planned->worst_chord_mm);
       summary.corner_passes = summary.corner_passes || planned->corner_passes;
+      trim_run_outs(passes, R, op.allowance_mm);
     }
     summary.passes += int(passes.size());
     if (passes.empty()) return {};
@@ -154,6 +153,41 @@ class JobPlanner {
     link.zone = zone;
     link_passes(passes, link, [&](const Vec3& a, const Vec3& b) { return hop_is_clear(a, b, R, op.allowance_mm); }, path.records);
     return {};
+  }
+
+  /// Sag that an operation may have: a tenth of the stock that it leaves, and less than half of what may be gouged.
+  [[nodiscard]] double chord_room(const MillingOperation& op) const {
+    return 0.1 * op.allowance_mm + 0.4 * o_.gouge_tolerance_mm;
+  }
+
+  /// Run-outs go straight on beyond the ends of the ring; where the end of a tooth stands in the way (close to an undercut)
+  /// the pass ends with its last contact instead.
+  void trim_run_outs(std::vector<BallPass>& passes, double R, double allowance) const {
+    for (auto& pass : passes) {
+      auto& q = pass.points;
+      const auto contact = [](const BallPass::Point& p) { return p.touching; };
+      const auto last = std::find_if(q.rbegin(), q.rend(), contact);
+      if (last == q.rend()) continue;
+      for (auto k = std::size_t(q.rend() - last); k < q.size(); ++k)
+        if (!segment_is_clear(q[k - 1].centre, q[k].centre, R, allowance)) {
+          q.resize(k);
+          break;
+        }
+      for (auto k = std::size_t(std::find_if(q.begin(), q.end(), contact) - q.begin()); k > 0; --k)
+        if (!segment_is_clear(q[k].centre, q[k - 1].centre, R, allowance)) {
+          q.erase(q.begin(), q.begin() + long(k));
+          break;
+        }
+    }
+  }
+
+  [[nodiscard]] bool segment_is_clear(const Vec3& a, const Vec3& b, double R, double allowance) const {
+    const int steps = std::max(4, int(std::ceil((b - a).norm() / (0.05 * R))));
+    for (int k = 0; k <= steps; ++k) {
+      const double d = part_.nearest(a + (b - a) * (double(k) / steps), R + allowance + 0.05).distance;
+      if (d < R + 0.8 * allowance - 0.4 * o_.gouge_tolerance_mm) return false;
+    }
+    return true;
   }
 
   /// A ball that does not fit between the flanks is refused with the width that it finds.

@@ -16,6 +16,7 @@ namespace toothpath {
 
 struct PlanOptions {
   double clearance_mm = 0.05;        ///< least gap of shank and holder
+  double gouge_tolerance_mm = 0.002; ///< of the finished surface: chords of any operation may use a part of it
   double rapid_clearance_mm = 2.0;   ///< height of rapids above the blank
 };
 

@@ -40,28 +40,41 @@ double at_height(const std::vector<double>& height, const std::vector<double>& a
   return azimuth.back();
 }
 
-Walls walls_of(const OffsetSheet::Station& station) {
+Walls walls_of(const OffsetSheet& sheet, const OffsetSheet::Station& station) {
   Walls w;
   const SheetGap* across = nullptr;
   for (const auto& g : station.gaps)
     if (g.from < 2.5 && g.to > 2.5) across = &g;
-  const auto hidden = [&](double sigma) {
-    return std::any_of(station.gaps.begin(), station.gaps.end(), [&](const SheetGap& g) { return sigma > g.from && sigma < g.to; });
-  };
   for (const auto& node : station.nodes)
     if (node.sigma == 2.5) w.root_z = node.at.centre.z();
+  struct Place {
+    double sigma, height, azimuth;
+  };
+  std::vector<Place> places;
   for (const auto& node : station.nodes) {
-    if (hidden(node.sigma)) continue;
-    const double h = node.at.centre.z() - w.root_z;
-    const bool plus = across ? node.sigma <= across->from : node.sigma <= 2.0;
-    const bool minus = across ? node.sigma >= across->to : node.sigma >= 3.0;
+    const auto inside = [&](const SheetGap& g) { return node.sigma > g.from && node.sigma < g.to; };
+    if (std::none_of(station.gaps.begin(), station.gaps.end(), inside))
+      places.push_back({node.sigma, node.at.centre.z() - w.root_z, node.azimuth});
+  }
+  // The corners themselves, where the ball touches both of their walls: between the nodes beside them a blend would cut in.
+  for (const auto& g : station.gaps)
+    for (const double sigma : {g.from, g.to})
+      if (const auto s = sheet.raw(sigma, station.r)) {
+        const double reference = station.nodes[station.nodes.size() / 2].azimuth;
+        const double azimuth = reference + std::remainder(std::atan2(s->centre.y(), s->centre.x()) - reference, 6.283185307179586);
+        places.push_back({sigma, s->centre.z() - w.root_z, azimuth});
+      }
+  std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.sigma < b.sigma; });
+  for (const auto& p : places) {
+    const bool plus = across ? p.sigma <= across->from : p.sigma <= 2.0;
+    const bool minus = across ? p.sigma >= across->to : p.sigma >= 3.0;
     if (plus) {
-      w.plus_height.push_back(h);
-      w.plus_azimuth.push_back(node.azimuth);
+      w.plus_height.push_back(p.height);
+      w.plus_azimuth.push_back(p.azimuth);
     }
     if (minus) {
-      w.minus_height.insert(w.minus_height.begin(), h);
-      w.minus_azimuth.insert(w.minus_azimuth.begin(), node.azimuth);
+      w.minus_height.insert(w.minus_height.begin(), p.height);
+      w.minus_azimuth.insert(w.minus_azimuth.begin(), p.azimuth);
     }
   }
   w.bottom_height = across ? std::max(w.plus_height.back(), w.minus_height.back()) : 0.0;
@@ -82,7 +95,7 @@ class Planner {
     to_ = std::min(sheet_.r_to(), ring.outer_radius_mm + o_.overrun_mm);
     double lowest = INFINITY;
     for (const auto& s : sheet_.stations()) {
-      walls_.push_back(walls_of(s));
+      walls_.push_back(walls_of(sheet_, s));
       lowest = std::min(lowest, walls_.back().bottom_height);
       out_.reaches_root = out_.reaches_root && walls_.back().bottom_height == 0;
     }

@@ -22,7 +22,16 @@ void judge_gouge(const GougeResult& gouge, const GougeCheck& check, const ProofO
 }
 
 /// What a finishing operation may leave, on every point that its ball can reach: the cusps, the chords and a micrometre.
+/// The least stock after an operation, as a share of its allowance.
+constexpr double kLeastAllowance = 0.8;
+
 void judge_surface(const CutSurface& surface, const Job& job, std::vector<std::string>& reasons) {
+  for (const ExcessResult& after : surface.operations) {
+    const double allowance = job.operations[static_cast<std::size_t>(after.operation)].allowance_mm;
+    if (allowance > 0 && after.points > 0 && after.min_mm < kLeastAllowance * allowance)
+      reasons.push_back(fmt::format("operation {}: the least stock left is {:.4f} mm, below {:.4f} mm ({} of the allowance {:.4f})", after.operation,
+                                    after.min_mm, kLeastAllowance * allowance, kLeastAllowance, allowance));
+  }
   const MillingOperation& last = job.operations.back();
   if (last.type != OperationType::finishing) return;
   const double limit = last.scallop_mm + last.chord_tolerance_mm + kExcessMargin;

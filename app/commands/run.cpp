@@ -41,6 +41,7 @@ struct Run {
   [[nodiscard]] PlanOptions plan_options() const {
     PlanOptions options;
     if (job.verify.clearance_mm) options.clearance_mm = *job.verify.clearance_mm;
+    options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
     return options;
   }
   [[nodiscard]] std::vector<const ClPath*> paths() const {
