@@ -52,15 +52,22 @@ class Planner {
                   o_.ball_radius_mm, ring.inner_radius_mm, ring.outer_radius_mm);
     count_profiles();
     for (int round = 0; round < kCuspRounds; ++round) sharpen_counts();
+    out_.scallop_min_mm = INFINITY;
+    if (sheet_.has_gaps()) {
+      if (auto ok = passes_between_corners(); !ok) return ok.error();
+    } else {
+      if (auto ok = passes_over_all(); !ok) return ok.error();
+    }
+    return std::move(out_);
+  }
+
+ private:
+  /// The whole sheet as one: from both tips downwards, in turn, so that a climbing pass on one flank leads to a climbing pass
+  /// on the other.
+  Status passes_over_all() {
     const double most = *std::max_element(totals_.begin(), totals_.end());
     const int passes = std::max(2, int(std::ceil(most - 1e-9)));
-    out_.scallop_min_mm = INFINITY;
-    for (double total : totals_) {
-      const double h = o_.scallop_mm * (total / passes) * (total / passes);
-      out_.scallop_min_mm = std::min(out_.scallop_min_mm, h);
-      out_.scallop_max_mm = std::max(out_.scallop_max_mm, h);
-    }
-    // From both tips downwards, in turn, so that a climbing pass on one flank leads to a climbing pass on the other.
+    note_scallop(totals_, passes);
     std::vector<int> order;
     for (int a = 0, b = passes - 1; a <= b; ++a, --b) {
       order.push_back(a);
@@ -71,17 +78,117 @@ class Planner {
       std::vector<double> sigma;
       for (std::size_t j = 0; j < profiles_.size(); ++j)
         sigma.push_back(interpolate(profiles_[j].count, profiles_[j].sigma, share * totals_[j]));
-      const auto pass = make_pass([&](double r) { return smooth(sigma, station_coordinate(r)); }, share < 0.5);
-      if (!pass) return pass.error();
-      if (!pass->points.empty()) out_.passes.push_back(std::move(*pass));
+      if (auto ok = add_pass([&](double r) { return smooth(sigma, station_coordinate(r)); }, share < 0.5); !ok) return ok;
     }
-    if (sheet_.has_gaps()) {
-      if (auto ok = corner_passes(); !ok) return ok.error();
-    }
-    return std::move(out_);
+    return Ok{};
   }
 
- private:
+  void note_scallop(const std::vector<double>& totals, double passes) {
+    for (double total : totals) {
+      const double h = o_.scallop_mm * (total / passes) * (total / passes);
+      out_.scallop_min_mm = std::min(out_.scallop_min_mm, h);
+      out_.scallop_max_mm = std::max(out_.scallop_max_mm, h);
+    }
+  }
+
+  template <typename Sigma>
+  Status add_pass(const Sigma& sigma, bool plus, double r_low = -INFINITY, double r_high = INFINITY) {
+    auto pass = make_pass(sigma, plus, r_low, r_high);
+    if (!pass) return pass.error();
+    if (pass->points.size() > 1) out_.passes.push_back(std::move(*pass));
+    return Ok{};
+  }
+
+  /// Where the ball touches two walls of a corner at once. The plus corner lies on the plus side of the root land, the minus
+  /// corner on the other; where the ball does not reach the root land at all they are one.
+  struct Corner {
+    double from = 0, to = 0;
+    bool one = false;  ///< both corners in one
+  };
+  static std::optional<Corner> find_corner(const std::vector<SheetGap>& gaps, bool plus) {
+    for (const auto& g : gaps) {
+      if (g.from < 2.5 && g.to > 2.5) return Corner{g.from, g.to, true};
+      if (plus ? g.to <= 2.5 : g.from >= 2.5) return Corner{g.from, g.to, false};
+    }
+    return {};
+  }
+  /// The corner at any radius. Where it is not there (yet), the place where it was seen nearest.
+  [[nodiscard]] Corner corner_at(double r, bool plus) const {
+    if (const auto c = find_corner(sheet_.gaps(r), plus)) return *c;
+    double best = INFINITY;
+    Corner place{plus ? 2.0 : 3.0, plus ? 2.0 : 3.0, false};
+    for (const auto& s : sheet_.stations())
+      if (const auto c = find_corner(s.gaps, plus); c && !c->one && std::abs(s.r - r) < best) {
+        best = std::abs(s.r - r);
+        place.from = place.to = 0.5 * (c->from + c->to);
+      }
+    return place;
+  }
+
+  /// With corners: each flank has its own passes down to its corner, one pass follows every corner, and where the ball reaches
+  /// the root land its passes lie between the corners. No pass crosses a corner.
+  Status passes_between_corners() {
+    const auto& stations = sheet_.stations();
+    const std::size_t n = stations.size();
+    std::vector<Corner> plus(n), minus(n);
+    for (std::size_t j = 0; j < n; ++j) {
+      plus[j] = corner_at(stations[j].r, true);
+      minus[j] = corner_at(stations[j].r, false);
+    }
+    const auto count_at = [&](std::size_t j, double sigma) { return interpolate(profiles_[j].sigma, profiles_[j].count, sigma); };
+    const auto sigma_at = [&](std::size_t j, double count) { return interpolate(profiles_[j].count, profiles_[j].sigma, count); };
+    std::vector<double> a(n), c(n);  // counts of the plus flank and of the minus flank, tip to corner
+    for (std::size_t j = 0; j < n; ++j) {
+      a[j] = count_at(j, plus[j].from);
+      c[j] = totals_[j] - count_at(j, minus[j].to);
+    }
+    const int passes_a = std::max(1, int(std::ceil(*std::max_element(a.begin(), a.end()) - 0.5)));
+    const int passes_c = std::max(1, int(std::ceil(*std::max_element(c.begin(), c.end()) - 0.5)));
+    note_scallop(a, passes_a + 0.5);
+    note_scallop(c, passes_c + 0.5);
+    for (int i = 0; i < std::max(passes_a, passes_c); ++i) {
+      // Distances from the corner are smooth along the tooth, also where the corner itself moves.
+      if (i < passes_a) {
+        std::vector<double> away(n);
+        for (std::size_t j = 0; j < n; ++j) away[j] = plus[j].from - sigma_at(j, (i + 0.5) / (passes_a + 0.5) * a[j]);
+        const auto sigma = [&](double r) { return corner_at(r, true).from - smooth(away, station_coordinate(r)); };
+        if (auto ok = add_pass(sigma, true); !ok) return ok;
+      }
+      if (i < passes_c) {
+        std::vector<double> away(n);
+        for (std::size_t j = 0; j < n; ++j) away[j] = sigma_at(j, totals_[j] - (i + 0.5) / (passes_c + 0.5) * c[j]) - minus[j].to;
+        const auto sigma = [&](double r) { return corner_at(r, false).to + smooth(away, station_coordinate(r)); };
+        if (auto ok = add_pass(sigma, false); !ok) return ok;
+      }
+    }
+    out_.corner_passes = true;
+    if (auto ok = add_pass([&](double r) { return corner_at(r, true).from; }, true); !ok) return ok;
+    // The minus corner and the root land, over every stretch where they are apart from the plus corner.
+    for (std::size_t j = 0; j < n;) {
+      if (plus[j].one) {
+        ++j;
+        continue;
+      }
+      std::size_t end = j;
+      while (end + 1 < n && !plus[end + 1].one) ++end;
+      const double r_low = j > 0 ? stations[j - 1].r : -INFINITY, r_high = end + 1 < n ? stations[end + 1].r : INFINITY;
+      if (auto ok = add_pass([&](double r) { return corner_at(r, false).to; }, false, r_low, r_high); !ok) return ok;
+      double most = 0;
+      for (std::size_t k = j; k <= end; ++k) most = std::max(most, count_at(k, minus[k].from) - count_at(k, plus[k].to));
+      const int between = int(std::ceil(most - 1e-9));
+      for (int i = 1; i < between; ++i) {
+        const auto sigma = [&](double r) {
+          const Corner p = corner_at(r, true), m = corner_at(r, false);
+          if (p.one) return p.from;
+          return p.to + (m.from - p.to) * i / between;
+        };
+        if (auto ok = add_pass(sigma, 2 * i < between, r_low, r_high); !ok) return ok;
+      }
+      j = end + 1;
+    }
+    return Ok{};
+  }
+
   [[nodiscard]] double station_coordinate(double r) const {
     return (r - sheet_.r_from()) / (sheet_.r_to() - sheet_.r_from()) * double(profiles_.size() - 1);
   }
@@ -169,6 +276,8 @@ class Planner {
       }
       for (std::size_t i = 0; i + apart < lines.size(); ++i) {
         const auto &a = lines[i], &b = lines[i + apart];
+        const auto between = [&](const SheetGap& g) { return a.sigma <= g.from && b.sigma >= g.to; };
+        if (std::any_of(gaps.begin(), gaps.end(), between)) continue;  // a pass will run along the corner between them
         const double height = cusp(a.sigma, a.at, a.feed, b.sigma, b.at, b.feed, r, gaps);
         const double ratio = std::clamp(height / (kCuspAim * o_.scallop_mm), 1.0, 4.0);
         if (ratio == 1.0) continue;
@@ -314,48 +423,6 @@ class Planner {
       const auto points = extend(to, 1);
       pass.points.insert(pass.points.end(), points.begin(), points.end());
     }
-  }
-
-  /// Where the ball touches two walls of a corner at once: passes along the corners, as far as the corners are there.
-  Status corner_passes() {
-    const auto& stations = sheet_.stations();
-    const auto find = [](const std::vector<SheetGap>& gaps, bool plus) -> const SheetGap* {
-      for (const auto& g : gaps)
-        if (plus ? g.from < 2.5 : g.from > 2.5) return &g;  // one crossing that spans the root counts as the plus corner
-      return nullptr;
-    };
-    for (const bool plus : {true, false}) {
-      std::size_t j = 0;
-      while (j < stations.size()) {
-        if (!find(stations[j].gaps, plus)) {
-          ++j;
-          continue;
-        }
-        std::size_t end = j;
-        while (end + 1 < stations.size() && find(stations[end + 1].gaps, plus)) ++end;
-        // The corner begins and ends somewhere between two stations, or two corners become one there: the pass goes on to the
-        // next station, along the place where the corner was last seen.
-        const std::size_t first = j > 0 ? j - 1 : j, last = std::min(end + 1, stations.size() - 1);
-        const auto middle = [&](std::size_t station) {
-          const auto* g = find(stations[station].gaps, plus);
-          return 0.5 * (g->from + g->to);
-        };
-        const double r_middle = 0.5 * (stations[j].r + stations[end].r), at_begin = middle(j), at_end = middle(end);
-        const auto sigma = [&](double r) {
-          const auto gaps = sheet_.gaps(r);
-          if (const auto* g = find(gaps, plus)) return g->from;
-          for (const auto& g : gaps)
-            if (g.from < 2.5 && g.to > 2.5) return plus ? g.from : g.to;
-          return r < r_middle ? at_begin : at_end;
-        };
-        const auto pass = make_pass(sigma, plus, stations[first].r, stations[last].r);
-        if (!pass) return pass.error();
-        if (pass->points.size() > 1) out_.passes.push_back(*pass);
-        out_.corner_passes = true;
-        j = end + 1;
-      }
-    }
-    return Ok{};
   }
 
   const OffsetSheet& sheet_;
