@@ -11,7 +11,8 @@ namespace {
 /// Nodes of a profile are divided this often before passes are counted: the curvature may change within one step-over.
 constexpr int kFiner = 4;
 constexpr int kCuspRounds = 4;
-constexpr double kCuspAim = 0.98;  // of the asked cusp: room for what lies between the stations
+// Of the asked cusp: room for what lies between the stations; more of it around the corners, where the curvature jumps.
+constexpr double kFlankAim = 0.99, kCornerAim = 0.89;
 
 double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 
@@ -63,7 +64,7 @@ class Planner {
 
  private:
   /// The whole sheet as one: from both tips downwards, in turn, so that a climbing pass on one flank leads to a climbing pass
-  /// on the other.
+  /// on the other. (Counts of single flanks vary more along the tooth than the count of the whole space does.)
   Status passes_over_all() {
     const double most = *std::max_element(totals_.begin(), totals_.end());
     const int passes = std::max(2, int(std::ceil(most - 1e-9)));
@@ -224,9 +225,19 @@ class Planner {
           const Vec3 feed = feed_direction(j, k, round);
           const double w = spacing(node.at, feed);
           if (previous) {
-            const Vec3 step = node.at.centre - previous->at.centre;
             const Vec3 mean_feed = (feed + previous_feed).normalized();
-            count += step.cross(mean_feed).norm() / (0.5 * (w + previous_w));
+            Vec3 from = previous->at.centre;
+            // A corner between the two: both of its ends have one count.
+            for (const auto& g : st.gaps)
+              if (g.from >= previous->sigma && g.to <= node.sigma)
+                if (const auto corner = sheet_.raw(g.from, st.r)) {
+                  count += (corner->centre - from).cross(mean_feed).norm() / previous_w;
+                  p.sigma.insert(p.sigma.end(), {g.from, g.to});
+                  p.count.insert(p.count.end(), {count, count});
+                  from = corner->centre;
+                  previous_w = w;
+                }
+            count += (node.at.centre - from).cross(mean_feed).norm() / (0.5 * (w + previous_w));
           }
           p.sigma.push_back(node.sigma);
           p.count.push_back(count);
@@ -265,6 +276,7 @@ class Planner {
       SheetPoint at;
       Vec3 feed;
     };
+    const auto on_flank = [](double sigma) { return sigma < 0.96 || sigma > 4.04; };
     std::vector<double> grow(p.sigma.size(), 1.0);
     const auto try_pairs = [&](double begin, double end, double step, std::size_t apart) {
       std::vector<Line> lines;
@@ -279,7 +291,7 @@ class Planner {
         const auto between = [&](const SheetGap& g) { return a.sigma <= g.from && b.sigma >= g.to; };
         if (std::any_of(gaps.begin(), gaps.end(), between)) continue;  // a pass will run along the corner between them
         const double height = cusp(a.sigma, a.at, a.feed, b.sigma, b.at, b.feed, r, gaps);
-        const double ratio = std::clamp(height / (kCuspAim * o_.scallop_mm), 1.0, 4.0);
+        const double ratio = std::clamp(height / ((on_flank(a.sigma) && on_flank(b.sigma) ? kFlankAim : kCornerAim) * o_.scallop_mm), 1.0, 4.0);
         if (ratio == 1.0) continue;
         for (std::size_t k = 1; k < p.sigma.size(); ++k)
           if (p.sigma[k] > a.sigma && p.sigma[k - 1] < b.sigma) grow[k] = std::max(grow[k], std::sqrt(ratio));
@@ -299,7 +311,7 @@ class Planner {
     p.refined = true;
     std::vector<double> sigma{p.sigma.front()}, count{p.count.front()};
     for (std::size_t k = 1; k < p.sigma.size(); ++k) {
-      const bool gap = p.sigma[k] - p.sigma[k - 1] > 0.2;  // a jump over a corner stays a jump
+      const bool gap = p.count[k] == p.count[k - 1];  // a jump over a corner stays a jump
       const int parts = gap ? 1 : kFiner;
       for (int q = 1; q <= parts; ++q) {
         sigma.push_back(p.sigma[k - 1] + (p.sigma[k] - p.sigma[k - 1]) * q / parts);

@@ -74,9 +74,6 @@ class Writer {
   int decimals(std::size_t axis) const {
     return axis < 3 ? program_.format.linear_decimals : program_.format.rotary_decimals;
   }
-  std::string op_type(std::string type) const {
-    return dialect_.percent_frame ? comment_text(type) : type;
-  }
   std::string free_feed() const { return fmt::format("G94 F{}", value(to_fixed(kFreeFeed, 0), 0)); }
   std::string retract() const {
     const int digits = program_.format.linear_decimals;
@@ -100,7 +97,7 @@ class Writer {
   }
 
   void operation(const AxisOperation& op, int position) {
-    comment(fmt::format("OP {} {}", op.operation, op_type(op.type)));
+    comment(fmt::format("OP {} {}", op.operation, op.type));  // as in the job, in every dialect: programs look for it
     comment(comment_text(fmt::format("T{} {} LENGTH {} MM TO THE TIP", op.tool_number, op.tool_name,
                                      value(to_fixed(op.tool_length_mm, 4), 4))));
     if (program_.loop && dialect_.o_words) o_subprogram(op, position);

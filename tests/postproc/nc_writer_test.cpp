@@ -146,7 +146,7 @@ TEST_P(BothDialects, OperationCommentsAndSpeeds) {
   const std::string t = text();
   std::size_t from = 0;
   for (int op = 0; op < 3; ++op) {
-    const auto at = t.find(fanuc() ? fmt::format("(OP {} FINISHING)", op) : fmt::format("(OP {} finishing)", op), from);
+    const auto at = t.find(fmt::format("(OP {} finishing)", op), from);
     ASSERT_NE(at, std::string::npos);
     const auto next = t.find("(OP ", at + 5);
     const std::string section = t.substr(at, next == std::string::npos ? next : next - at);
