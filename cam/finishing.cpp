@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace toothpath {
 namespace {
@@ -12,7 +13,8 @@ namespace {
 constexpr int kFiner = 4;
 constexpr int kCuspRounds = 4;
 // Of the asked cusp: room for what lies between the stations; more of it around the corners, where the curvature jumps.
-constexpr double kFlankAim = 0.99, kCornerAim = 0.89;
+constexpr double kFlankAim = 0.99, kCornerAim = 0.95;
+constexpr double kHighestCusp = 1.04;  // a cusp above this share of the asked one gets a pass of its own
 
 double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 
@@ -69,19 +71,65 @@ class Planner {
     const double most = *std::max_element(totals_.begin(), totals_.end());
     const int passes = std::max(2, int(std::ceil(most - 1e-9)));
     note_scallop(totals_, passes);
-    std::vector<int> order;
-    for (int a = 0, b = passes - 1; a <= b; ++a, --b) {
-      order.push_back(a);
-      if (b != a) order.push_back(b);
-    }
-    for (int index : order) {
+    Chain chain;
+    for (int index = 0; index < passes; ++index) {
       const double share = (index + 0.5) / passes;
       std::vector<double> sigma;
       for (std::size_t j = 0; j < profiles_.size(); ++j)
         sigma.push_back(interpolate(profiles_[j].count, profiles_[j].sigma, share * totals_[j]));
-      if (auto ok = add_pass([&](double r) { return smooth(sigma, station_coordinate(r)); }, share < 0.5); !ok) return ok;
+      chain.push_back([this, sigma](double r) { return smooth(sigma, station_coordinate(r)); });
+    }
+    close_gaps(chain);
+    const int last = int(chain.size()) - 1;
+    for (int a = 0, b = last; a <= b; ++a, --b) {
+      if (auto ok = add_pass(chain[std::size_t(a)], 2 * a <= last); !ok) return ok;
+      if (b == a) break;
+      if (auto ok = add_pass(chain[std::size_t(b)], false); !ok) return ok;
     }
     return Ok{};
+  }
+
+  /// Neighbouring passes, each as sigma over the centre radius.
+  using Chain = std::vector<std::function<double(double)>>;
+
+  /// Looks at every cusp between the final passes, also between the stations, and puts one more pass where it is too high.
+  void close_gaps(Chain& chain) const {
+    for (int round = 0; round < 3; ++round)
+      if (!close_gaps_once(chain)) return;
+  }
+  [[nodiscard]] bool close_gaps_once(Chain& chain) const {
+    std::vector<char> add(chain.size(), 0);
+    tbb::parallel_for(std::size_t(0), chain.size() - 1, [&](std::size_t i) { add[i] = too_far_apart(chain[i], chain[i + 1]); });
+    Chain closed;
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      closed.push_back(chain[i]);
+      if (!add[i]) continue;
+      closed.push_back([this, a = chain[i], b = chain[i + 1]](double r) { return 0.5 * (a(r) + b(r)); });
+    }
+    const bool grown = closed.size() > chain.size();
+    chain = std::move(closed);
+    return grown;
+  }
+
+  [[nodiscard]] bool too_far_apart(const std::function<double(double)>& a, const std::function<double(double)>& b) const {
+    const double low = sheet_.r_from(), high = sheet_.r_to();
+    const int samples = 2 * int(sheet_.stations().size());
+    const double step = 1e-3 * (high - low);
+    for (int k = 1; k < samples; ++k) {
+      const double r = low + (high - low) * k / samples;
+      const double sigma_a = a(r), sigma_b = b(r);
+      const bool flat = std::max(sigma_a, sigma_b) < 0.9 || std::min(sigma_a, sigma_b) > 4.1;
+      if (flat && k % 4 != 0) continue;  // the flanks bend slowly
+      const auto pa = sheet_.at(sigma_a, r), pb = sheet_.at(sigma_b, r);
+      const auto na = sheet_.at(a(r + step), r + step), nb = sheet_.at(b(r + step), r + step);
+      if (!pa || !pb || !na || !nb) continue;
+      const double ra = radius(pa->contact.p);
+      const auto& ring = sheet_.space().ring().zone;
+      if (ra < ring.inner_radius_mm - o_.ball_radius_mm || ra > ring.outer_radius_mm + o_.ball_radius_mm) continue;
+      const Vec3 fa = (na->centre - pa->centre).normalized(), fb = (nb->centre - pb->centre).normalized();
+      if (cusp(sigma_a, *pa, fa, sigma_b, *pb, fb, r, sheet_.gaps(r)) > kHighestCusp * o_.scallop_mm) return true;
+    }
+    return false;
   }
 
   void note_scallop(const std::vector<double>& totals, double passes) {
@@ -147,23 +195,30 @@ class Planner {
     const int passes_c = std::max(1, int(std::ceil(*std::max_element(c.begin(), c.end()) - 0.5)));
     note_scallop(a, passes_a + 0.5);
     note_scallop(c, passes_c + 0.5);
-    for (int i = 0; i < std::max(passes_a, passes_c); ++i) {
-      // Distances from the corner are smooth along the tooth, also where the corner itself moves.
-      if (i < passes_a) {
-        std::vector<double> away(n);
-        for (std::size_t j = 0; j < n; ++j) away[j] = plus[j].from - sigma_at(j, (i + 0.5) / (passes_a + 0.5) * a[j]);
-        const auto sigma = [&](double r) { return corner_at(r, true).from - smooth(away, station_coordinate(r)); };
-        if (auto ok = add_pass(sigma, true); !ok) return ok;
-      }
-      if (i < passes_c) {
-        std::vector<double> away(n);
-        for (std::size_t j = 0; j < n; ++j) away[j] = sigma_at(j, totals_[j] - (i + 0.5) / (passes_c + 0.5) * c[j]) - minus[j].to;
-        const auto sigma = [&](double r) { return corner_at(r, false).to + smooth(away, station_coordinate(r)); };
-        if (auto ok = add_pass(sigma, false); !ok) return ok;
-      }
+    // Distances from the corner are smooth along the tooth, also where the corner itself moves.
+    Chain on_plus, on_minus;
+    for (int i = 0; i < passes_a; ++i) {
+      std::vector<double> away(n);
+      for (std::size_t j = 0; j < n; ++j) away[j] = plus[j].from - sigma_at(j, (i + 0.5) / (passes_a + 0.5) * a[j]);
+      on_plus.push_back([this, away](double r) { return corner_at(r, true).from - smooth(away, station_coordinate(r)); });
+    }
+    for (int i = 0; i < passes_c; ++i) {
+      std::vector<double> away(n);
+      for (std::size_t j = 0; j < n; ++j) away[j] = sigma_at(j, totals_[j] - (i + 0.5) / (passes_c + 0.5) * c[j]) - minus[j].to;
+      on_minus.push_back([this, away](double r) { return corner_at(r, false).to + smooth(away, station_coordinate(r)); });
+    }
+    on_plus.push_back([this](double r) { return corner_at(r, true).from; });
+    on_minus.push_back([this](double r) { return corner_at(r, false).to; });
+    close_gaps(on_plus);
+    close_gaps(on_minus);
+    on_minus.pop_back();  // the minus corner comes below, where it is apart from the plus corner
+    for (std::size_t i = 0; i < std::max(on_plus.size(), on_minus.size()); ++i) {
+      if (i < on_plus.size())
+        if (auto ok = add_pass(on_plus[i], true); !ok) return ok;
+      if (i < on_minus.size())
+        if (auto ok = add_pass(on_minus[i], false); !ok) return ok;
     }
     out_.corner_passes = true;
-    if (auto ok = add_pass([&](double r) { return corner_at(r, true).from; }, true); !ok) return ok;
     // The minus corner and the root land, over every stretch where they are apart from the plus corner.
     for (std::size_t j = 0; j < n;) {
       if (plus[j].one) {

@@ -162,7 +162,9 @@ TEST(FingerMilling, PlantedGougesAreFound) {
     const auto verdict = check.approve(path);
     ASSERT_FALSE(verdict);
     EXPECT_NE(verdict.error().message.find(at_L ? "wall L" : "wall U"), std::string::npos) << verdict.error().message;
-    if (planted == 1) EXPECT_GT(check.verify(motions_of(path)).gouge.bound_mm, 4e-3);
+    if (planted == 1) {
+      EXPECT_GT(check.verify(motions_of(path)).gouge.bound_mm, 4e-3);
+    }
   }
   EXPECT_GE(planted, 5);
 }
