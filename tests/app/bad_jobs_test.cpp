@@ -25,7 +25,7 @@ TEST_P(BadJob, IsRefusedWithItsFirstLine) {
   EXPECT_TRUE(names_in(dir / "out").empty());
 }
 
-INSTANTIATE_TEST_SUITE_P(All, BadJob, ::testing::ValuesIn(bad_jobs()), [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(All, BadJob, ::testing::ValuesIn(bad_jobs()), [](const auto& job) { return job.param; });
 
 }  // namespace
 }  // namespace toothpath::testing

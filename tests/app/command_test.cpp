@@ -67,7 +67,9 @@ TEST(CommandLine, OneAndTwoThreadsGiveTheSameBytes) {
   ASSERT_EQ(run_program({"surface", kQuick, "--out", dir / "1", "--threads", "1"}).exit_code, 0);
   ASSERT_EQ(run_program({"surface", kQuick, "--out", dir / "2", "--threads", "2"}).exit_code, 0);
   for (const auto& name : kSurfaceFiles)
-    if (name != "report.json") EXPECT_EQ(file_text(dir / ("1/" + name)), file_text(dir / ("2/" + name))) << name;
+    if (name != "report.json") {
+      EXPECT_EQ(file_text(dir / ("1/" + name)), file_text(dir / ("2/" + name))) << name;
+    }
 }
 
 TEST(CommandLine, FilesThatCannotBeReadAreFour) {
