@@ -49,7 +49,7 @@ ValueOrErrors<FaceGear> make_face_gear(const Job& job) {
   return errors;
 }
 
-ValueOrErrors<Machine> load_machine(const Job& job) {
+ValueOrErrors<Machine> load_machine(const Job& job, std::optional<double> part_diameter_mm) {
   if (job.machine.file.empty()) return std::vector{fail_at(job.where(""), "the job lacks the table [machine]")};
   const std::string directory = std::filesystem::path(job.file).parent_path().string();
   const auto path = find_machine_file(job.machine.file, directory);
@@ -62,6 +62,8 @@ ValueOrErrors<Machine> load_machine(const Job& job) {
   if (!reading.machine) return reading.errors;
   Machine machine = std::move(*reading.machine);
   std::vector<Diagnostic> errors;
+  if (part_diameter_mm)
+    if (const auto fits = check_part_on_machine(job, machine, *part_diameter_mm); !fits) errors.push_back(fits.error());
   if (machine.assumed && !job.machine.accept_assumed)
     errors.push_back(fail_at(job.where("machine.file"),
                              "{} has assumed values ({}); measure them, or accept them with accept_assumed = true", job.machine.file,

@@ -1,6 +1,7 @@
 // From a job to the face gear and the machine that it asks for; refusals get the place of the key that caused them.
 #pragma once
 
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -17,8 +18,9 @@ using ValueOrErrors = std::variant<T, std::vector<Diagnostic>>;
 [[nodiscard]] ValueOrErrors<FaceGear> make_face_gear(const Job& job);
 
 /// The milling machine of the job. Refused: no [machine], a file that is missing or wrong, a gear shaper, assumed values that
-/// the job does not accept, an operation that is faster than the spindle or the cutting feed of the machine.
-[[nodiscard]] ValueOrErrors<Machine> load_machine(const Job& job);
+/// the job does not accept, an operation that is faster than the spindle or the cutting feed of the machine; with a part
+/// diameter [mm] also a part that does not lie on it.
+[[nodiscard]] ValueOrErrors<Machine> load_machine(const Job& job, std::optional<double> part_diameter_mm = {});
 
 /// Does a part of this diameter [mm] lie on the machine? Refused at the place of machine.file, with diameter and limit.
 [[nodiscard]] Status check_part_on_machine(const Job& job, const Machine& machine, double part_diameter_mm);

@@ -12,9 +12,9 @@ namespace {
 /// Nodes of a profile are divided this often before passes are counted: the curvature may change within one step-over.
 constexpr int kFiner = 4;
 constexpr int kCuspRounds = 4;
-// Of the asked cusp: room for what lies between the stations; more of it around the corners, where the curvature jumps.
-constexpr double kFlankAim = 0.99, kCornerAim = 0.95;
-constexpr double kHighestCusp = 1.04;  // a cusp above this share of the asked one gets a pass of its own
+// Of the asked cusp: room for what lies between the stations.
+constexpr double kFlankAim = 0.99, kCornerAim = 0.98;
+constexpr double kHighestCusp = 1.1;  // a cusp above this share of the asked one gets a pass of its own
 
 double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 

@@ -119,6 +119,7 @@ CommandOutcome check_program(const CommandRequest& request) {
   const GearDistance part = clock.run("distance index", [&] { return GearDistance(gear, reach_of(job.tools)); });
   GougeCheckOptions options;
   options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
+  options.proof_mm = std::min(options.proof_mm, 0.1 * job.verify.gouge_tolerance_mm);
   options.clearance_mm = job.verify.clearance_mm.value_or(PlanOptions{}.clearance_mm);
   options.rapid_height_mm = gear.blank_top();
   const GougeCheck gouge_check(part, job.tools, options);

@@ -58,11 +58,10 @@ std::vector<Diagnostic> prepare(Run& run) {
   auto gear = run.clock.run("gear", [&] { return make_face_gear(run.job); });
   if (auto* refused = std::get_if<1>(&gear)) errors = std::move(*refused);
   else run.gear = std::move(std::get<0>(gear));
-  auto machine = run.clock.run("machine", [&] { return load_machine(run.job); });
+  auto machine = run.clock.run("machine", [&] { return load_machine(run.job, run.gear ? std::optional(2 * run.gear->outer_radius()) : std::nullopt); });
   if (auto* refused = std::get_if<1>(&machine)) errors.insert(errors.end(), refused->begin(), refused->end());
   else run.machine = std::move(std::get<0>(machine));
   if (!errors.empty()) return errors;
-  if (const auto fits = check_part_on_machine(run.job, run.machine, 2 * run.gear->outer_radius()); !fits) return {fits.error()};
   return {};
 }
 
@@ -156,6 +155,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   header.machine_name = run.machine.name;
   header.assumed = run.report.assumed;
   header.coolant = run.job.coolant != Coolant::off;
+  header.blend_mm = std::min(header.blend_mm, 0.15 * run.job.verify.gouge_tolerance_mm);
   auto text = run.clock.run("NC text", [&] { return write_nc(*program, *dialect, header); });
   if (!text) return located(run.job, "machine.file", text.error());
   run.report.blocks = text->blocks;
@@ -181,6 +181,9 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   run.report.excess = proof->surface.operations;
   run.report.finished = proof->surface.finished;
   run.report.unreached = proof->surface.unreached;
+  if (proof->surface.unreached.points > 0)
+    run.report.warnings.push_back(fmt::format("the finishing ball does not reach every corner: up to {:.3f} mm stay (measured up to one module)",
+                                              proof->surface.unreached.max_height_mm));
   if (proof->surface.scallop.requested_mm > 0) run.report.scallop = proof->surface.scallop;
   run.surface = std::move(proof->surface.grids);
   run.report.reasons = proof->reasons;
@@ -200,7 +203,7 @@ std::optional<Diagnostic> plan_post_and_prove(Run& run, OutputDir& output, doubl
   const GearDistance part = run.clock.run("distance index", [&] { return GearDistance(*run.gear, reach_of(run.job.tools)); });
   GougeCheckOptions options;
   options.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
-  options.proof_mm = proof_mm;
+  options.proof_mm = std::min(proof_mm, 0.1 * run.job.verify.gouge_tolerance_mm);
   options.clearance_mm = run.plan_options().clearance_mm;
   options.rapid_height_mm = run.gear->blank_top();
   const GougeCheck check(part, run.job.tools, options);
