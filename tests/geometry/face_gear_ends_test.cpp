@@ -68,7 +68,7 @@ TEST(FaceGearEnds, SweptClearanceAgreesWithBruteForce) {
 
 /// Stub teeth of a coarse shaper keep a land far beyond the pitch radius: a sound zone is no error because R2 is far away.
 TEST(FaceGearEnds, StubTeethAreAccepted) {
-  FaceGearCase c{"stub", 9, 61, 4.9, 27.8, 20.8, 51.6, 95.5, 0.33, false, 0, {}, {}, 0, 0};
+  FaceGearCase c{"low_teeth", 9, 61, 4.9, 27.8, 20.8, 51.6, 95.5, 0.33, false, 0, {}, {}, 0, 0};
   const auto f = c.surface();
   const auto limits = zone_limits(f, c.module_mm);
   const double inner = limits.inner_limit + c.module_mm, outer = inner + 2 * c.module_mm;
