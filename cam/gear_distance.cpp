@@ -263,6 +263,56 @@ GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::m
         R.border.push_back(true);
       }
     }
+    // End faces and the groove floor, for bodies only as well. A strip of an end face ends at the lower of its two edges: the
+    // sheet itself stands for the rest.
+    const auto add_body_cell = [&](const std::array<Vec3, 4>& corner) {
+      Cell cell;
+      cell.sheet = false;
+      cell.zone = zone;
+      cell.corner = corner;
+      cell.centre = 0.25 * (corner[0] + corner[1] + corner[2] + corner[3]);
+      Box box;
+      for (const auto& p : corner) {
+        box.add(p);
+        cell.radius = std::max(cell.radius, (p - cell.centre).norm());
+      }
+      cell.radius += R.sag;
+      boxes.push_back(box);
+      R.cells.push_back(cell);
+    };
+    const bool grooved = gear.rings().size() > 1;
+    const double base = std::min(gear.lowest_root(), grooved ? gear.groove_floor() : INFINITY) - 0.5;
+    const auto at = [](double r, double azimuth, double z) { return Vec3(r * std::cos(azimuth), r * std::sin(azimuth), z); };
+    constexpr int kStrips = 48;
+    for (const bool outer : {false, true}) {
+      const double r = outer ? r_out : r_in, z_tip = space.surface().z_tip(r), from = R.lookup(R.mid, r) - impl_->pitch / 2;
+      const auto& profile = outer ? R.end_out : R.end_in;
+      const auto top = [&](double azimuth) {
+        if (profile.size() < 2 || azimuth <= profile.front().x() || azimuth >= profile.back().x()) return z_tip;
+        const auto it = std::lower_bound(profile.begin(), profile.end(), azimuth, [](const Vec2& q, double az) { return q.x() < az; });
+        return std::min(z_tip, it == profile.begin() ? it->y() : std::min(it->y(), (it - 1)->y()));
+      };
+      for (int k = 0; k < kStrips; ++k) {
+        const double a = from + impl_->pitch * k / kStrips, b = from + impl_->pitch * (k + 1) / kStrips;
+        const double high = std::min(top(a), top(b));
+        const int pieces = std::max(1, int(std::ceil((high - base) / 1.0)));
+        for (int q = 0; q < pieces; ++q) {
+          const double z0 = base + (high - base) * q / pieces, z1 = base + (high - base) * (q + 1) / pieces;
+          add_body_cell({at(r, a, z0), at(r, b, z0), at(r, a, z1), at(r, b, z1)});
+        }
+      }
+    }
+    if (grooved && zone == 0) {
+      const double next = gear.rings()[1].zone.inner_radius_mm, from = R.lookup(R.mid, r_out) - impl_->pitch / 2;
+      const int rows = std::max(1, int(std::ceil((next - r_out) / 1.0)));
+      for (int k = 0; k < kStrips; ++k)
+        for (int q = 0; q < rows; ++q) {
+          const double a = from + impl_->pitch * k / kStrips, b = from + impl_->pitch * (k + 1) / kStrips;
+          const double r0 = r_out + (next - r_out) * q / rows, r1 = r_out + (next - r_out) * (q + 1) / rows;
+          add_body_cell({at(r0, a, gear.groove_floor()), at(r0, b, gear.groove_floor()), at(r1, a, gear.groove_floor()),
+                         at(r1, b, gear.groove_floor())});
+        }
+    }
     R.index = std::make_unique<SpatialIndex>(boxes);
     impl_->sag = std::max(impl_->sag, R.sag);
     impl_->rings.push_back(std::move(R));

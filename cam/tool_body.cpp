@@ -82,7 +82,9 @@ BodyGap body_gap(const GearDistance& part, const Frustum& f, const Vec3& tip, co
       const double r = std::max(std::hypot(x.x(), x.y()), 1.0);
       const double reach = std::hypot(widest, half) + enough + part.cell_sag_mm();
       const auto& ring = part.space(zone).ring().zone;
-      if (r + reach < ring.inner_radius_mm || r - reach > ring.outer_radius_mm) continue;
+      // The groove floor belongs to the ring inside it.
+      const double end = zone + 1 < part.zones() ? part.space(zone + 1).ring().zone.inner_radius_mm : ring.outer_radius_mm;
+      if (r + reach < ring.inner_radius_mm || r - reach > end) continue;
       const double azimuth = std::remainder(std::atan2(x.y(), x.x()) - part.space_azimuth(zone, r), 6.283185307179586);
       const int index = int(std::lround(azimuth / pitch));
       const int wide = 1 + int(std::ceil(reach / (pitch * ring.inner_radius_mm)));
