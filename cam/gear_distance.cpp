@@ -196,9 +196,9 @@ GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::m
       }
       // The corners where the flanks leave through the tip surface.
       for (const int side : {1, -1}) {
-        const auto c = invert_flank(space.surface(), side, r, z_tip);
+        const auto c = space.tip(side, r);
         if (!c) continue;
-        const auto q = space.point(side > 0 ? SpacePiece::flank_plus : SpacePiece::flank_minus, c->theta, c->B);
+        const auto q = space.point(side > 0 ? SpacePiece::flank_plus : SpacePiece::flank_minus, c->at.theta, c->at.B);
         if (!q) continue;
         const Vec2 corner(std::atan2(q->p.y(), q->p.x()), z_tip);
         if (side > 0) {
@@ -214,18 +214,19 @@ GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::m
     end_line(r_in, R.end_in);
     end_line(r_out, R.end_out);
     std::vector<Vec3> plus_line, minus_line;
-    std::optional<FlankCoordinates> last_plus, last_minus;
+    std::optional<TipPlace> last_plus, last_minus;
+    const auto start_of = [](const std::optional<TipPlace>& last) { return last ? std::optional(last->at) : std::nullopt; };
     const int table = 257;
     for (int k = 0; k < table; ++k) {
       const double r = r_in + (r_out - r_in) * k / (table - 1);
       const double z_tip = space.surface().z_tip(r);
-      last_plus = invert_flank(space.surface(), 1, r, z_tip, last_plus);
-      last_minus = invert_flank(space.surface(), -1, r, z_tip, last_minus);
+      last_plus = space.tip(1, r, start_of(last_plus));
+      last_minus = space.tip(-1, r, start_of(last_minus));
       const auto root = space.point(SpacePiece::root, 0.5, std::sqrt(r * r - space.surface().E * space.surface().E) / space.surface().Sg);
       R.table_r.push_back(r);
       R.mid.push_back(std::atan2(root->p.y(), root->p.x()));
-      R.tip_plus.push_back(last_plus ? flank_azimuth(space.surface(), 1, *last_plus) : R.mid.back() - impl_->pitch / 2);
-      R.tip_minus.push_back(last_minus ? flank_azimuth(space.surface(), -1, *last_minus) + impl_->pitch
+      R.tip_plus.push_back(last_plus ? last_plus->azimuth : R.mid.back() - impl_->pitch / 2);
+      R.tip_minus.push_back(last_minus ? last_minus->azimuth + impl_->pitch
                                        : R.mid.back() + impl_->pitch / 2);
       plus_line.push_back({r * std::cos(R.tip_plus.back()), r * std::sin(R.tip_plus.back()), z_tip});
       minus_line.push_back({r * std::cos(R.tip_minus.back()), r * std::sin(R.tip_minus.back()), z_tip});

@@ -266,13 +266,20 @@ std::variant<FaceGear, std::vector<FaceGearRefusal>> FaceGear::make(const FaceGe
     gear.parameters_.reference_radius_mm = make_surface<double>(parameters, parameters.zones.front().helix_angle_rad).L_p;
   for (const auto& zone : gear.parameters_.zones) {
     const auto surface = make_surface<double>(gear.parameters_, zone.helix_angle_rad);
-    gear.rings_.push_back({zone, surface, zone_limits(surface, parameters.module_mm)});
+    gear.rings_.push_back({zone, surface, zone_limits(surface, parameters.module_mm), nullptr});
     inspection.ring(gear.rings_.size() - 1, gear.rings_.back(), gear.warnings_);
     if (inspection.refusals.empty()) inspection.swept_flank(gear.rings_.size() - 1, gear.rings_.back());
   }
   inspection.groove(gear.rings_, gear.warnings_);
   if (!inspection.refusals.empty()) return std::move(inspection.refusals);
   warn_sharp_fillet(parameters, gear.rings_, gear.warnings_);
+  return gear;
+}
+
+FaceGear FaceGear::corrected(const std::vector<std::shared_ptr<const RingCorrection>>& corrections) const {
+  assert(corrections.size() == rings_.size());
+  FaceGear gear = *this;
+  for (std::size_t k = 0; k < rings_.size(); ++k) gear.rings_[k].correction = corrections[k];
   return gear;
 }
 

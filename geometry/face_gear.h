@@ -1,6 +1,7 @@
 // A whole face gear: its rings of teeth, blank, groove and limits. The one object that planners and checks ask.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -10,11 +11,14 @@
 
 namespace toothpath {
 
+struct RingCorrection;
+
 /// One ring with everything precomputed.
 struct FaceGearRing {
   FaceGearZone zone;
   FaceGearSurface<double> surface;
   ZoneLimits limits;
+  std::shared_ptr<const RingCorrection> correction = nullptr;  ///< flanks to aim at instead of the nominal ones; none: the nominal
 };
 
 /// A refused parameter: which key of the job it belongs to, so that the reader can add file, line and column.
@@ -33,6 +37,9 @@ class FaceGear {
   [[nodiscard]] double pitch() const { return rings_.front().surface.pitch; }
   [[nodiscard]] double inner_radius() const { return rings_.front().zone.inner_radius_mm; }
   [[nodiscard]] double outer_radius() const { return rings_.back().zone.outer_radius_mm; }
+  /// The same gear with other flanks to aim at, one correction a ring. Planners and checks then take the corrected flanks for the finished
+  /// surface; limits, blank, meshes and inspection points stay those of the nominal gear.
+  [[nodiscard]] FaceGear corrected(const std::vector<std::shared_ptr<const RingCorrection>>& corrections) const;
   /// Highest point of the blank (tip surface plus stock), mm in z.
   [[nodiscard]] double blank_top() const;
   /// Height z of the relief groove's floor; only with two zones. `groove_depth_mm` is measured from the tip surface of the

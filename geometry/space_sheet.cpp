@@ -1,6 +1,8 @@
 #include "geometry/space_sheet.h"
 
 #include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
 
 namespace toothpath {
 namespace {
@@ -38,7 +40,16 @@ const char* to_string(SpacePiece piece) {
 }
 
 SpaceSheet::SpaceSheet(const FaceGearParameters& gear, const FaceGearRing& ring)
-    : ring_(ring), dual_(make_surface<Dual2>(gear, ring.zone.helix_angle_rad)) {}
+    : ring_(ring), dual_(make_surface<Dual2>(gear, ring.zone.helix_angle_rad)) {
+  if (!ring_.correction) return;
+  const auto& f = ring_.surface;
+  const auto section = [&](double r) { return std::sqrt(std::max(0.0, r * r - f.E * f.E)) / f.Sg; };
+  const double margin = 6 * f.shaper.m_t + std::abs(f.Cg) * f.shaper.r_a;
+  for (const int side : {1, -1})
+    blends_[side > 0 ? 0 : 1] = std::make_shared<FilletBlend>(f, dual_, ring_.correction->side(side), side,
+                                                              section(ring.zone.inner_radius_mm) - margin,
+                                                              section(ring.zone.outer_radius_mm) + margin);
+}
 
 template <typename S>
 SurfacePointT<S> SpaceSheet::root_point(const FaceGearSurface<S>& f, const S& fraction, const S& Z) const {
@@ -51,7 +62,7 @@ SurfacePointT<S> SpaceSheet::root_point(const FaceGearSurface<S>& f, const S& fr
   return {FaceGearSurface<S>::turned(m.p, turn), FaceGearSurface<S>::turned(m.n, turn)};
 }
 
-std::optional<PatchPoint> SpaceSheet::at(SpacePiece piece, double u, double v) const {
+std::optional<PatchPoint> SpaceSheet::nominal(SpacePiece piece, double u, double v) const {
   const auto& f = ring_.surface;
   const int s = side_of(piece);
   PatchPoint q;
@@ -80,13 +91,76 @@ std::optional<PatchPoint> SpaceSheet::at(SpacePiece piece, double u, double v) c
     }
     case SpacePiece::root: {
       const auto g = root_point<Dual2>(dual_, Dual2::variable(u, 0), Dual2::variable(v, 1));
-      return from_dual(g.p, g.n);
+      q = from_dual(g.p, g.n);
+      break;
     }
   }
-  return s > 0 ? q : turned(q, f.pitch);
+  return q;
+}
+
+void SpaceSheet::displace(SpacePiece piece, double u, double v, PatchPoint& q) const {
+  const int s = side_of(piece);
+  double c = 0, c_u = 0, c_v = 0;
+  if (piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus) {
+    const double r = std::hypot(q.p.x(), q.p.y());
+    const auto offset = ring_.correction->side(s).at(u, r);
+    c = offset.value;
+    c_u = offset.d_theta + offset.d_radius * (q.p.x() * q.pu.x() + q.p.y() * q.pu.y()) / r;
+    c_v = offset.d_radius * (q.p.x() * q.pv.x() + q.p.y() * q.pv.y()) / r;
+  } else if (piece != SpacePiece::root) {
+    const auto offset = blends_[s > 0 ? 0 : 1]->at(u, v);
+    c = offset.value;
+    c_u = offset.d_A;
+    c_v = offset.d_Z;
+  } else {
+    return;
+  }
+  const Vec3 n = q.n;
+  q.p += c * n;
+  q.pu += c_u * n + c * q.nu;
+  q.pv += c_v * n + c * q.nv;
+  const Vec3 normal = q.pu.cross(q.pv);
+  const double size = normal.norm();
+  if (size > 0) q.n = normal * ((normal.dot(n) > 0 ? 1 : -1) / size);
+}
+
+std::optional<PatchPoint> SpaceSheet::at(SpacePiece piece, double u, double v) const {
+  auto q = nominal(piece, u, v);
+  if (!q || piece == SpacePiece::root) return q;
+  if (ring_.correction) displace(piece, u, v, *q);
+  return side_of(piece) > 0 ? q : turned(*q, ring_.surface.pitch);
+}
+
+std::optional<TipPlace> SpaceSheet::tip(int side, double r, const std::optional<FlankCoordinates>& start) const {
+  const auto& f = ring_.surface;
+  const double z = f.z_tip(r);
+  auto at = invert_flank(f, side, r, z, start);
+  if (!at) return {};
+  TipPlace place{*at, flank_azimuth(f, side, *at)};
+  if (!ring_.correction) return place;
+  const Vec3 before = f.flank(side, at->theta, at->B).p;
+  const auto piece = side > 0 ? SpacePiece::flank_plus : SpacePiece::flank_minus;
+  for (int k = 0; k < 20; ++k) {
+    auto q = nominal(piece, place.at.theta, place.at.B);
+    if (!q) return {};
+    displace(piece, place.at.theta, place.at.B, *q);
+    const double r_now = std::hypot(q->p.x(), q->p.y());
+    const double dr = r - r_now, dz = z - q->p.z();
+    if (std::abs(dr) + std::abs(dz) < 1e-11 * r) {
+      place.azimuth += std::atan2(before.x() * q->p.y() - before.y() * q->p.x(), before.x() * q->p.x() + before.y() * q->p.y());
+      return place;
+    }
+    const double ru = (q->p.x() * q->pu.x() + q->p.y() * q->pu.y()) / r_now, rv = (q->p.x() * q->pv.x() + q->p.y() * q->pv.y()) / r_now;
+    const double zu = q->pu.z(), zv = q->pv.z(), det = ru * zv - rv * zu;
+    if (det == 0) return {};
+    place.at.theta += (dr * zv - dz * rv) / det;
+    place.at.B += (dz * ru - dr * zu) / det;
+  }
+  return {};
 }
 
 std::optional<PatchPoint> SpaceSheet::point(SpacePiece piece, double u, double v) const {
+  if (ring_.correction) return at(piece, u, v);
   const auto& f = ring_.surface;
   const int s = side_of(piece);
   SurfacePointT<double> q;

@@ -2,10 +2,14 @@
 // tooth 1. Every piece has two parameters (u, v), exact first derivatives of point and normal, and a nearest-point search.
 #pragma once
 
+#include <array>
+#include <memory>
 #include <optional>
 
 #include "geometry/base/dual.h"
 #include "geometry/face_gear.h"
+#include "geometry/face_gear_inverse.h"
+#include "geometry/fillet_blend.h"
 
 namespace toothpath {
 
@@ -27,7 +31,17 @@ struct PatchFoot {
   PatchPoint at;
 };
 
+/// Where a flank leaves the tooth through the tip surface.
+struct TipPlace {
+  FlankCoordinates at;
+  double azimuth = 0;  ///< of the flank's own tooth, unwrapped, rad
+};
+
 /// Parameters: flanks (theta, B), fillets (A, Z), root (fraction from the plus to the minus edge, Z).
+///
+/// A ring with a correction gives the corrected flanks: points displaced along the nominal normals, with their own normals; the fillets
+/// carry the displacement on and let it fade. Derivatives of the normals are then those of the nominal surface: they serve the steps of
+/// Newton and the step-over, which a few hundredths of a millimetre do not change.
 class SpaceSheet {
  public:
   explicit SpaceSheet(const FaceGearParameters& gear, const FaceGearRing& ring);
@@ -44,6 +58,9 @@ class SpaceSheet {
   /// The point may lie beyond the borders of the piece.
   [[nodiscard]] std::optional<PatchFoot> foot(SpacePiece piece, const Vec3& c, double u, double v) const;
 
+  /// Where the flank of `side` meets the tip surface at radius r; `start` as in invert_flank.
+  [[nodiscard]] std::optional<TipPlace> tip(int side, double r, const std::optional<FlankCoordinates>& start = {}) const;
+
   /// Normal curvature in the tangential direction of `along`, convex positive, 1/mm.
   static double normal_curvature(const PatchPoint& at, const Vec3& along);
 
@@ -54,9 +71,14 @@ class SpaceSheet {
   using Dual2 = Dual<double, 2>;
   template <typename S>
   [[nodiscard]] SurfacePointT<S> root_point(const FaceGearSurface<S>& f, const S& fraction, const S& Z) const;
+  /// The nominal piece before it is turned to its tooth.
+  [[nodiscard]] std::optional<PatchPoint> nominal(SpacePiece piece, double u, double v) const;
+  /// Moves a point by the correction of its piece.
+  void displace(SpacePiece piece, double u, double v, PatchPoint& q) const;
 
   FaceGearRing ring_;
   FaceGearSurface<Dual2> dual_;
+  std::array<std::shared_ptr<const FilletBlend>, 2> blends_;  ///< sides +1 and -1; empty: nominal
 };
 
 }  // namespace toothpath
