@@ -1,0 +1,98 @@
+#include "tests/support/brute_force_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/face_gear_inverse.h"
+#include "geometry/face_gear_limits.h"
+
+namespace toothpath::test {
+namespace {
+constexpr double kPiHere = 3.14159265358979323846;
+const double kNan = std::numeric_limits<double>::quiet_NaN();
+}  // namespace
+
+BruteForceContact::BruteForceContact(const FaceGear& gear, int zone, int side, int pinion_teeth, const Misalignment& moved)
+    : side_(side), pinion_teeth_(pinion_teeth) {
+  const FaceGearRing& ring = gear.rings().at(std::size_t(zone));
+  const auto& f = ring.surface;
+  const auto& parameters = gear.parameters();
+  pitch_ = 2 * kPiHere / parameters.teeth;
+  r_in_ = ring.zone.inner_radius_mm;
+  r_out_ = ring.zone.outer_radius_mm;
+
+  // The gear's cloud: azimuth over columns of constant radius, even in height between the fillet line and the tip.
+  columns_ = 301;
+  rows_ = 121;
+  azimuth_.resize(std::size_t(columns_ * rows_));
+  for (int c = 0; c < columns_; ++c) {
+    const double r = r_in_ + (r_out_ - r_in_) * c / (columns_ - 1);
+    low_.push_back(*fillet_line_height(f, side, r));
+    top_.push_back(f.z_tip(r));
+    std::optional<FlankCoordinates> near;
+    for (int k = 0; k < rows_; ++k) {
+      const double z = low_.back() + (top_.back() - low_.back()) * k / (rows_ - 1);
+      near = invert_flank(f, side, r, z, near);
+      azimuth_[std::size_t(c * rows_ + k)] = near && near->theta >= 0 ? flank_azimuth(f, side, *near) : kNan;
+    }
+  }
+
+  // The pinion's cloud from the textbook involute, in its own axes.
+  const double m_t = f.shaper.m_t, alpha = f.shaper.alpha_t, r_p = m_t * pinion_teeth / 2, r_b = r_p * std::cos(alpha);
+  const double r_a = r_p + parameters.addendum_coefficient * parameters.module_mm;
+  const double beta = ring.zone.helix_angle_rad, twist = std::tan(beta) / r_p;
+  const double thickness = kPiHere / (2 * pinion_teeth);  // half a tooth space on the pitch circle
+  const double shift = 0.5 * m_t * (f.shaper.teeth - pinion_teeth);
+  const double Z_from = std::sqrt(r_in_ * r_in_ - 900) - 4, Z_to = r_out_ + 4;
+  const int along = 900, high = 240;
+  for (int n = 0; n < along; ++n)
+    for (int k = 0; k < high; ++k) {
+      const double Z = Z_from + (Z_to - Z_from) * n / (along - 1), R = r_b + (r_a - r_b) * k / (high - 1);
+      const double roll = std::acos(std::min(1.0, r_b / R));
+      // Half the space grows outwards: on the pitch circle `thickness`, elsewhere plus the difference of the involute functions.
+      const double half = thickness + (std::tan(roll) - roll) - (std::tan(alpha) - alpha);
+      const double angle = side * half + twist * (Z - f.L0);
+      pinion_.emplace_back(R * std::cos(angle), R * std::sin(angle), Z);
+    }
+  const double g = parameters.shaft_angle_rad, g_moved = g + moved.angle_rad;
+  a_ = {std::sin(g_moved), 0, -std::cos(g_moved)};
+  d_ = {-std::cos(g_moved), 0, -std::sin(g_moved)};
+  b_ = {0, 1, 0};
+  foot_ = Vec3(0, parameters.offset_mm + moved.offset_mm, 0) + shift * Vec3(-std::cos(g), 0, -std::sin(g)) + moved.axial_mm * a_;
+}
+
+double BruteForceContact::azimuth_at(double r, double z) const {
+  if (r < r_in_ || r > r_out_) return kNan;
+  const double place = (r - r_in_) / (r_out_ - r_in_) * (columns_ - 1);
+  const int c = std::min(columns_ - 2, int(place));
+  double value[2];
+  for (const int k : {0, 1}) {
+    const auto column = std::size_t(c + k);
+    const double height = (z - low_[column]) / (top_[column] - low_[column]) * (rows_ - 1);
+    if (height < 0 || height > rows_ - 1) return kNan;
+    const int row = std::min(rows_ - 2, int(height));
+    const double* from = &azimuth_[column * std::size_t(rows_) + std::size_t(row)];
+    value[k] = from[0] + (height - row) * (from[1] - from[0]);
+  }
+  return value[0] + (place - c) * (value[1] - value[0]);
+}
+
+double BruteForceContact::gear_turn(double phi_1) const {
+  // The gear's flank of side +1 lies on the pinion from below in azimuth: the least turn; side -1 the greatest.
+  double best = std::numeric_limits<double>::quiet_NaN();
+  for (int tooth = -2; tooth <= 2; ++tooth) {
+    const double turn = phi_1 + tooth * 2 * kPiHere / pinion_teeth_, c = std::cos(turn), s = std::sin(turn);
+    for (const Vec3& q : pinion_) {
+      const double x = c * q.x() - s * q.y(), y = s * q.x() + c * q.y();
+      const Vec3 p = foot_ + q.z() * a_ + x * d_ + y * b_;
+      const double azimuth = azimuth_at(std::hypot(p.x(), p.y()), p.z());
+      if (std::isnan(azimuth)) continue;
+      const double needed = std::atan2(p.y(), p.x()) - azimuth - tooth * pitch_;
+      if (std::isnan(best) || side_ * needed < side_ * best) best = needed;
+    }
+  }
+  return best;
+}
+
+}  // namespace toothpath::test

@@ -1,0 +1,31 @@
+// When do a pinion and a face gear touch? Two dense clouds of flank points, turned until the first pair meets. No normals, no
+// parallel-surface theorem, no closed-form turn of the pinion.
+#pragma once
+
+#include <vector>
+
+#include "geometry/face_gear.h"
+#include "geometry/pinion.h"
+
+namespace toothpath::test {
+
+class BruteForceContact {
+ public:
+  BruteForceContact(const FaceGear& gear, int zone, int side, int pinion_teeth, const Misalignment& moved = {});
+
+  /// Turn of the gear at which it lies on the pinion that has turned by phi_1: extreme over all points of both clouds and over the
+  /// neighbouring teeth. Error about the sag of the clouds' meshes, 1e-7 rad.
+  [[nodiscard]] double gear_turn(double phi_1) const;
+
+ private:
+  [[nodiscard]] double azimuth_at(double r, double z) const;  ///< NaN beside the flank
+
+  int side_, pinion_teeth_;
+  double r_in_, r_out_, z_low_, z_high_, pitch_;
+  int columns_, rows_;
+  std::vector<double> azimuth_, low_, top_;  ///< gear flank as columns of constant radius; ends of every column
+  std::vector<Vec3> pinion_;                 ///< cloud at phi_1 = 0, about its axis: (x along d, y along b, Z)
+  Vec3 foot_, a_, d_, b_;
+};
+
+}  // namespace toothpath::test
