@@ -13,9 +13,13 @@
 #include <thread>
 
 #include "app/commands/check.h"
+#include "app/commands/cutter.h"
+#include "app/commands/forces.h"
+#include "app/commands/machine.h"
 #include "app/commands/shaper.h"
 #include "app/commands/run.h"
 #include "app/commands/study_stability.h"
+#include "app/commands/study_trace_model.h"
 #include "app/commands/study_work_precision.h"
 #include "app/commands/surface.h"
 #include "app/report/html_text.h"
@@ -131,7 +135,31 @@ std::vector<Subcommand> add_studies(CLI::App& app, CommandRequest& request) {
   CLI::App* stability = study->add_subcommand("stability", "extreme gears and machine poses, double against 50 digits");
   stability->fallthrough();
   stability->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required();
-  return {work_precision, {stability, study_stability}};
+  auto trace_model = add_job_command(*study, "trace-model", "section-sweep models of a bevel gear against its envelope", request, study_trace_model);
+  trace_model.app->add_flag("--quick", request.quick, "a coarser grid");
+  return {work_precision, {stability, study_stability}, trace_model};
+}
+
+/// `machine show MACHINE`: commands below a command.
+std::vector<Subcommand> add_machine_commands(CLI::App& app, CommandRequest& request) {
+  CLI::App* machine = app.add_subcommand("machine", "what a machine file says, and how to prove it");
+  machine->fallthrough();
+  machine->require_subcommand(1);
+  CLI::App* show = machine->add_subcommand("show", "limits, chain, senses and assumed values of a machine");
+  show->fallthrough();
+  show->add_option("MACHINE", request.job_file, "machine file (TOML), or the name of an installed one")->required();
+  show->add_option("--out", request.out_dir, "directory for machine.html and machine.svg; without it only the text is printed");
+  return {{show, show_machine}};
+}
+
+/// `cutter JOB` and `forces JOB`: bevel gears.
+std::vector<Subcommand> add_bevel_commands(CLI::App& app, CommandRequest& request) {
+  auto cutter = add_job_command(app, "cutter", "designs the finger mill of a bevel gear and judges the mills that are there", request, run_cutter);
+  cutter.app->add_option("--tool", request.tool_number, "draw this tool of the job instead of the designed mill");
+  cutter.app->add_option("--cutter-of", request.other_job, "judge the mills of this other job too, as they were made for its gear");
+  auto forces = add_job_command(app, "forces", "tooth forces of a bevel pair over the apex cone distance, and what balances them", request, run_forces);
+  forces.app->add_option("--torque", request.torque_Nm, "torque on the gear of the job [N m]; overrides torque in its [load]")->check(CLI::Range(1e-6, 1e9));
+  return {cutter, forces};
 }
 
 void add_global_options(CLI::App& app, GlobalOptions& options) {
@@ -154,10 +182,16 @@ int run_command_line(int argc, char** argv) {
   commands.push_back(add_job_command(app, "run", "the whole way from the job to a proven NC program", request, run_job));
   commands.push_back(add_job_command(app, "check", "proves a program that is already there against the job's gear", request, check_program));
   commands.back().app->add_option("PROGRAM", request.program_file, "NC program in the dialect of the job's machine")->required();
+  commands.back().app->add_option("--measured", request.measured_files, "measured deviations that the program answers (see correct)");
+  commands.push_back(add_job_command(app, "correct", "the whole way again, with flanks that answer a measurement", request, run_job));
+  commands.back().app->add_option("--measured", request.measured_files, "measured grid: inspection.csv with a column deviation_um; several: one after each cut")
+      ->required();
   commands.push_back(add_job_command(app, "surface", "flanks, limits, inspection grid and mesh of the gear", request, run_surface));
   commands.push_back(add_job_command(app, "shaper", "limits and gear-shaper set-up: sheet and stroke program", request, run_shaper));
 
+  for (auto& command : add_bevel_commands(app, request)) commands.push_back(std::move(command));
   for (auto& command : add_studies(app, request)) commands.push_back(std::move(command));
+  for (auto& command : add_machine_commands(app, request)) commands.push_back(std::move(command));
 
   try {
     app.parse(argc, argv);

@@ -1,0 +1,92 @@
+// What `machine show` says of the senses is what the kinematics do; every shipped machine is shown, wrong files are refused.
+#include <gtest/gtest.h>
+
+#include "app/report/machine_sheet.h"
+#include "machines/machine_file.h"
+#include "program.h"
+
+namespace toothpath::testing {
+namespace {
+
+const std::vector<std::string> kShipped = {"t600s.toml",       "xyzac_large.toml", "xyzac_trt.toml", "xyzbc_trt.toml", "head_table_bc.toml",
+                                           "head_head_ca.toml", "fanuc_ac.toml",    "siemens_ac.toml", "heidenhain_ac.toml"};
+
+Machine shipped(const std::string& name) { return *read_machine_file(find_machine_file(name, ".").value()).machine; }
+
+// The words of the table against the motion of a point: 1 degree more of one axis, all others at zero.
+TEST(MachineShow, SensesAreThoseOfTheKinematics) {
+  int tables = 0, heads = 0;
+  for (const auto& name : kShipped) {
+    const Machine m = shipped(name);
+    for (std::size_t k = 0; k < m.chain.rotary_count(); ++k) {
+      const std::string said = positive_turn(m.chain, k);
+      const RotaryAxis& axis = m.chain.rotary(k);
+      Joints zero;
+      for (std::size_t j = 0; j < m.chain.rotary_count(); ++j) zero.rotary_rad[j] = m.chain.rotary(j).zero_rad;
+      Joints turned = zero;
+      turned.rotary_rad[k] += radians(1);
+      if (m.chain.in_table(k)) {
+        ++tables;
+        const auto moved = [&](const Vec3& arm) {
+          const Vec3 p = axis.point_mm + 100 * arm;
+          return Vec3(m.chain.table_to_machine(p, turned.rotary_rad) - m.chain.table_to_machine(p, zero.rotary_rad));
+        };
+        const struct {
+          const char* words;
+          double motion;
+        } senses[] = {{"Y+ side up", moved(Vec3::UnitY()).z()},   {"Y+ side down", -moved(Vec3::UnitY()).z()},
+                      {"X+ side up", moved(Vec3::UnitX()).z()},   {"X+ side down", -moved(Vec3::UnitX()).z()},
+                      {"table counter-clockwise", moved(Vec3::UnitX()).y()}, {"table clockwise", -moved(Vec3::UnitX()).y()}};
+        int matched = 0;
+        for (const auto& sense : senses) {
+          if (said.find(sense.words) == std::string::npos) continue;
+          ++matched;
+          EXPECT_GT(sense.motion, 1) << name << axis.letter << said;
+        }
+        EXPECT_EQ(matched, 1) << said;
+      } else {
+        ++heads;
+        if (said.find("clockwise") != std::string::npos) {
+          Vec3 x = axis.rotation(turned.rotary_rad[k]) * Vec3::UnitX();
+          EXPECT_EQ(x.y() > 0, said.find("counter-clockwise") != std::string::npos) << name << axis.letter;
+          continue;
+        }
+        const Vec3 moved = m.chain.forward(turned, 100).tip_mm - m.chain.forward(zero, 100).tip_mm;
+        const char to = said[said.size() - 2];
+        ASSERT_TRUE(to == 'X' || to == 'Y') << said;
+        EXPECT_GT((said.back() == '+' ? 1 : -1) * moved[to - 'X'], 1) << name << axis.letter << said;
+      }
+    }
+  }
+  EXPECT_GE(tables, 8);
+  EXPECT_GE(heads, 3);
+}
+
+TEST(MachineShow, EveryAssumedKeyIsNamed) {
+  for (const auto& name : kShipped) {
+    const Machine m = shipped(name);
+    const std::string text = machine_text(m);
+    EXPECT_NE(text.find(m.assumed_keys.empty() ? "No value is assumed" : std::to_string(m.assumed_keys.size()) + " values are assumed"), std::string::npos);
+    for (const auto& key : m.assumed_keys) EXPECT_NE(text.find(key.substr(key.rfind('.') + 1)), std::string::npos) << key;
+  }
+}
+
+TEST(MachineShow, WritesPageAndDrawingOnlyWhereAsked) {
+  const TestDir dir;
+  const Finished plain = run_program({"machine", "show", "t600s.toml"});
+  EXPECT_EQ(plain.exit_code, 0) << plain.err;
+  EXPECT_NE(plain.out.find("work - C - A - bed - X Y Z - spindle - tool"), std::string::npos);
+  const Finished both = run_program({"machine", "show", "t600s.toml", "--out", dir / "m"});
+  EXPECT_EQ(both.exit_code, 0) << both.err;
+  EXPECT_EQ(names_in(dir / "m"), (std::vector<std::string>{"machine.html", "machine.svg"}));
+  EXPECT_EQ(run_program({"machine", "show", "y514.toml"}).exit_code, 0);
+  EXPECT_EQ(run_program({"machine"}).exit_code, 2);
+  const Finished none = run_program({"machine", "show", "no_such_machine.toml", "--out", dir / "n"});
+  EXPECT_EQ(none.exit_code, 4);
+  EXPECT_NE(none.err.find("no_such_machine.toml"), std::string::npos);
+  const Finished job = run_program({"machine", "show", kSamples + "/spur_quick.toml"});
+  EXPECT_EQ(job.exit_code, 3) << job.err;
+}
+
+}  // namespace
+}  // namespace toothpath::testing
