@@ -3,8 +3,8 @@
 // The cutter axis stays normal to the pitch cone and the tip on the root cone, so a path is a curve (R_c, e) of the crown
 // plane: R_c along the generatrix, e the azimuth. Roughing: the middle of the space and the fill passes that keep the
 // ridges on the root low. Finishing: both walls of every half, which end so that no other wall is touched. Engage and
-// retract run along the cutter axis; in a herringbone each half is entered and left in the relief groove, the outer half
-// first. Derivation: docs/bevel_gear.md, section 6.
+// retract run along the cutter axis. Where they go: cam/finger_passes.h; here they become blocks with feeds.
+// Derivation: docs/bevel_gear.md, section 6.
 #pragma once
 
 #include <string>
@@ -12,13 +12,14 @@
 
 #include "cam/cl_path.h"
 #include "cam/cutter.h"
+#include "cam/finger_passes.h"
 #include "cam/operation.h"
 #include "geometry/base/tolerances.h"
 #include "geometry/bevel_gear.h"
 
 namespace toothpath {
 
-/// One pass, for reports.
+/// One pass in one half, for reports. The convex side of a herringbone runs through both halves: two entries.
 struct FingerPass {
   int half = 0;          ///< 0 inner, 1 outer
   int pass = 0;          ///< number in the half
@@ -46,11 +47,5 @@ struct FingerPlan {
 [[nodiscard]] Result<FingerPlan> plan_finger_operation(const BevelGear& gear, const ToolAssembly& tool,
                                                        const MillingOperation& operation, int operation_index,
                                                        const Tolerances& tolerances);
-
-/// Height above the root cone, along the normal of the pitch cone, of the ridge left between two positions a lateral
-/// distance `gap` apart at cone distance R_c, mm.
-[[nodiscard]] double finger_ridge(const BevelGear& gear, double R_c, double gap);
-/// The other way: largest lateral distance for a ridge, mm.
-[[nodiscard]] double finger_gap(const BevelGear& gear, double R_c, double ridge);
 
 }  // namespace toothpath
