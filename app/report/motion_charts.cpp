@@ -93,6 +93,33 @@ LineChart feed_chart(const std::vector<ToolMotion>& motions, const Machine& mach
 
 }  // namespace
 
+std::vector<int> lines_of_records(const ClPath& path, const std::vector<ToolMotion>& motions, double tolerance_mm) {
+  constexpr std::size_t kAhead = 256;  // moves of a link, and pieces of one turning move
+  std::vector<const ToolMotion*> own;
+  for (const ToolMotion& m : motions)
+    if (m.operation == path.operation && (own.empty() || m.tooth == own.front()->tooth)) own.push_back(&m);
+  const auto distance = [](const Vec3& p, const ToolMotion& m) {
+    const Vec3 d = m.tip_to - m.tip_from;
+    const double square = d.squaredNorm();
+    const double t = square > 0 ? std::clamp((p - m.tip_from).dot(d) / square, 0.0, 1.0) : 0.0;
+    return (p - m.tip_from - t * d).norm();
+  };
+  std::vector<int> lines;
+  std::size_t next = 0;
+  for (const ClRecord& record : path.records) {
+    int line = 0;
+    for (std::size_t j = next; j < std::min(own.size(), next + kAhead); ++j) {
+      if (distance(record.tip, *own[j]) > tolerance_mm) continue;
+      // Where the record ends this move, the next one touches it too: the first one has reached it.
+      line = own[j]->line;
+      next = j;
+      break;
+    }
+    lines.push_back(line);
+  }
+  return lines;
+}
+
 std::vector<LineChart> motion_charts(const ReadBack& read, const std::vector<ToolMotion>& motions, const Machine& machine) {
   std::vector<LineChart> charts;
   const AxisCurves curves = curves_of(read);

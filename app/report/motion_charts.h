@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/report/chart.h"
+#include "cam/cl_path.h"
 #include "machines/machine.h"
 #include "postproc/nc_reader.h"
 
@@ -14,5 +15,9 @@ namespace toothpath {
 /// lines where the machine states them. Feed: speed of the tip over the work in feed moves; rapids interrupt the curve.
 /// @param motions  of the same read-back, in program order
 [[nodiscard]] std::vector<LineChart> motion_charts(const ReadBack& read, const std::vector<ToolMotion>& motions, const Machine& machine);
+
+/// For every record of `path` the line of the program whose move reaches it, 0 where none does within `tolerance_mm`: lets the page jump from
+/// a place on the path to the text. `motions` in program order; those of the first tooth of the path's operation are looked at.
+[[nodiscard]] std::vector<int> lines_of_records(const ClPath& path, const std::vector<ToolMotion>& motions, double tolerance_mm);
 
 }  // namespace toothpath
