@@ -42,23 +42,33 @@ struct AxisOptions {
   double max_inverse_time = 0;    ///< greatest F in G93 that the control takes, 1/min; 0: no limit. Faster blocks are slowed
   bool loop_needs_constant_index = false;  ///< the dialect cannot shift a word in a sub-program: loop only where it stands still
   bool expand_teeth = false;      ///< write every tooth out even where the loop would do
+  bool tcp_starts_at_zero = false;  ///< TCP freezes the table frame where it is switched on: only with the rotaries at zero
+  bool tcp_loop = false;          ///< the dialect can turn the frame of a loop about the gear axis while TCP is on
 };
 
 enum class BlockKind : std::uint8_t {
-  feed,           ///< G1, all axes, inverse time
+  feed,           ///< G1, all axes; inverse time without TCP, feed of the tip with it
   rapid_z,        ///< G0, Z alone
   rapid_xy,       ///< G0, X and Y
   rapid_rotary,   ///< G0, both rotaries, no linear word
+  tcp_on,         ///< switches TCP on; with `tcp_starts_at_zero` it moves Z to its word, else nothing moves
+  tcp_off,        ///< switches TCP off; with `tcp_starts_at_zero` Z goes to its top, else nothing moves
+  rapid_tip,      ///< G0 with TCP: the tip goes straight, the rotaries stand
+  turn,           ///< G1 with TCP, rotary words alone: the tip stands still on the table
 };
 
 /// One block. Words: X Y Z [10^-linear_decimals mm, work coordinates with tool length compensation on], then the two
 /// rotaries in the order of the machine's axes [10^-rotary_decimals deg]. In a loop the index rotary is that of tooth 0.
+/// With TCP the linear words are the tip in the table frame, seen from the work offset.
 struct AxisBlock {
   std::array<std::int64_t, 5> words{};
   double minutes = 0;        ///< that the machine needs or is told, from the rounded words
+  double per_minute = 0;     ///< with TCP: feed of the tip, mm/min; of the rotaries where the tip stands, deg/min
+  Vec3 axis = Vec3::UnitZ(); ///< with TCP: tool axis at the end of the block, table frame
   std::int32_t record = -1;  ///< index of the CL record that the block goes to; -1: a link
   BlockKind kind = BlockKind::feed;
   bool forced = false;       ///< print every word of the kind: first block after a break
+  bool tip = false;          ///< the linear words are the tip in the table frame (TCP is on)
 };
 
 /// The blocks of one tooth of one operation. Starts and ends at a height where the rotaries may turn.
@@ -92,6 +102,9 @@ struct AxisProgram {
   bool loop = false;                        ///< one tooth is held; the index rotary turns it
   int index_axis = -1;                      ///< 3 or 4: which word is shifted by the index
   int index_sign = 1;                       ///< word of tooth k = word + index_sign * k * 360 / z
+  TcpMode tcp = TcpMode::none;              ///< how the blocks of a cut are meant
+  bool tcp_starts_at_zero = false;          ///< as in the options
+  int frame_sign = 1;                       ///< loop with TCP: the frame of tooth k is turned by frame_sign * k * 360 / z about +Z
   double retract_z_mm = 0;                  ///< G53 Z, machine coordinates of the gauge line
   std::string work_offset = "G54";
   Vec3 work_offset_at_mm = Vec3::Zero();

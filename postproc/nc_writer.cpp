@@ -8,22 +8,18 @@
 #include <utility>
 
 #include "postproc/fixed_point.h"
+#include "postproc/nc_lines.h"
 
 namespace toothpath {
 namespace {
 
-constexpr int kFirstSubprogram = 2001;  // Fanuc O numbers of the sub-programs; LinuxCNC o-words count from 100
-constexpr int kFirstOWord = 100;
+constexpr int kFirstSubprogram = 2001;  // O numbers of the sub-programs of a main program; labels count from 100
+constexpr int kFirstLabel = 100;
 constexpr double kFreeFeed = 1000;      // F that goes with G94 where nothing is cut, mm/min
-
-std::uint64_t fnv1a(std::string_view bytes) {
-  std::uint64_t h = 14695981039346656037ULL;
-  for (const char c : bytes) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return h;
-}
+constexpr int kVectorDecimals = 8;
 
 /// How the word of the index rotary is printed.
-enum class IndexWord { literal, parameter, left_out };
+enum class IndexWord { literal, shifted, left_out };
 
 /// Blocks [first, last) of one tooth.
 struct Segment {
@@ -33,126 +29,110 @@ struct Segment {
 class Writer {
  public:
   Writer(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header)
-      : program_(program), dialect_(dialect), header_(header) {}
+      : program_(program), dialect_(dialect), header_(header), out_(dialect), tcp_(program.tcp != TcpMode::none) {}
 
   Result<NcText> write() {
-    safe_start();
+    values_["number"] = std::to_string(header_.program_number);
+    values_["name"] = comment_text(header_.job_name).substr(0, 32);
+    values_["id"] = program_id(header_.job_name);
+    values_["offset"] = program_.work_offset;
+    values_["datum"] = std::to_string(datum_number());
+    values_["blend"] = out_.value(to_fixed(header_.blend_mm, 6), 6);
+    values_["free"] = out_.value(to_fixed(kFreeFeed, 0), 0);
+    values_["teeth"] = std::to_string(program_.teeth);
+    values_["last"] = std::to_string(program_.teeth - 1);
+    values_["sign"] = program_.index_sign < 0 ? "0-" : "";
+    values_["frame_sign"] = program_.frame_sign < 0 ? "0-" : "";
+    values_["top"] = linear(program_.retract_z_mm);
+    fill(dialect_.start);
     for (std::size_t i = 0; i < program_.operations.size(); ++i) {
       operation(program_.operations[i], static_cast<int>(i));
       if (error_) return *error_;
+      if (out_.error()) return *out_.error();
     }
-    program_end();
+    fill(dialect_.end);
     return assemble();
   }
 
  private:
   // Lines.
-  void line(std::string_view text) {
-    body_ += text;
-    end_line(body_.size() - text.size(), true);
+  void fill(const NcLinesOfText& templates) {
+    for (const auto& t : templates)
+      if (t == "{safe_start}")
+        out_.fill(dialect_.safe_start, values_);
+      else
+        out_.fill({t}, values_);
   }
-  void comment(std::string_view text) {
-    const std::size_t begin = body_.size();
-    body_ += '(';
-    body_ += text.substr(0, dialect_.max_line - 2);
-    body_ += ')';
-    end_line(begin, false);
-  }
-  void end_line(std::size_t begin, bool block) {
-    if (body_.size() - begin > dialect_.max_line && !error_)
-      error_ = fail("block of {} characters exceeds {}, the longest line of {}", body_.size() - begin, dialect_.max_line,
-                    dialect_.name);
-    body_ += '\n';
-    if (block) ++blocks_;
-  }
-  void number(std::int64_t scaled, int decimals) { append_fixed(body_, scaled, decimals, dialect_.point_always); }
-  std::string value(std::int64_t scaled, int decimals) const {
-    std::string s;
-    append_fixed(s, scaled, decimals, dialect_.point_always);
-    return s;
+  std::string linear(double mm) const {
+    return out_.value(to_fixed(mm, program_.format.linear_decimals), program_.format.linear_decimals);
   }
   int decimals(std::size_t axis) const {
     return axis < 3 ? program_.format.linear_decimals : program_.format.rotary_decimals;
   }
-  std::string free_feed() const { return fmt::format("G94 F{}", value(to_fixed(kFreeFeed, 0), 0)); }
-  std::string retract() const {
-    const int digits = program_.format.linear_decimals;
-    return fmt::format("Z{}", value(to_fixed(program_.retract_z_mm, digits), digits));
+  /// 1 for G54 .. 6 for G59, 7 and on for G59.1 ..
+  int datum_number() const {
+    const std::string& o = program_.work_offset;
+    if (o.size() >= 3 && o[0] == 'G' && o[1] == '5' && o[2] >= '4' && o[2] <= '9')
+      return o.size() == 5 ? 6 + (o[4] - '0') : o[2] - '3';
+    return 1;
   }
-
   void forget() {
     known_.fill(false);
     motion_ = -1;
-  }
-
-  void safe_start() {
-    for (const auto& text : dialect_.safe_start) line(text);
-    line(program_.work_offset);
-    if (dialect_.blend) line(fmt::format("G64 P{} Q0", value(to_fixed(header_.blend_mm, 6), 6)));
+    feed_ = -1;
   }
 
   void machine_retract() {
-    line(fmt::format("{} {}", dialect_.compensation_with_z ? "G0 G49 G53" : "G53 G0", retract()));
+    fill(dialect_.retract);
     forget();
   }
 
   void operation(const AxisOperation& op, int position) {
-    comment(fmt::format("OP {} {}", op.operation, op.type));  // as in the job, in every dialect: programs look for it
-    comment(comment_text(fmt::format("T{} {} LENGTH {} MM TO THE TIP", op.tool_number, op.tool_name,
-                                     value(to_fixed(op.tool_length_mm, 4), 4))));
-    if (program_.loop && dialect_.o_words) o_subprogram(op, position);
+    values_["tool"] = std::to_string(op.tool_number);
+    values_["speed"] = std::to_string(std::llround(op.spindle_rpm));
+    values_["label"] = std::to_string(kFirstLabel + 2 * position);
+    values_["label+1"] = std::to_string(kFirstLabel + 2 * position + 1);
+    values_["work_top"] = linear(program_.retract_z_mm - op.tool_length_mm - program_.work_offset_at_mm.z());
+    out_.comment(fmt::format("OP {} {}", op.operation, op.type));  // as in the job, in every dialect: programs look for it
+    out_.comment(comment_text(fmt::format("T{} {} LENGTH {} MM TO THE TIP", op.tool_number, op.tool_name,
+                                          out_.value(to_fixed(op.tool_length_mm, 4), 4))));
+    const NcLoop& loop = dialect_.loop;
+    if (program_.loop && loop.form == NcLoop::Form::sub_program) loop_body(op);
     machine_retract();
-    line(fmt::format("T{} M6", op.tool_number));
-    for (const auto& text : dialect_.safe_start) line(text);
-    line(program_.work_offset);
-    line(fmt::format("S{} M3", std::llround(op.spindle_rpm)));
-    compensation(op);
-    if (header_.coolant) line("M8");
-    if (program_.loop && dialect_.o_words) {
-      o_loop(position);
-    } else if (program_.loop) {
-      m98_calls(op);
-    } else {
+    fill(dialect_.tool_change);
+    fill(tcp_ ? dialect_.tcp_compensation : dialect_.compensation);
+    forget();
+    if (header_.coolant) fill(dialect_.coolant_on);
+    if (!program_.loop) {
       for (const auto& tooth : op.teeth) {
-        comment(fmt::format("TOOTH {}", tooth.tooth));
+        out_.comment(fmt::format("TOOTH {}", tooth.tooth));
         forget();
         blocks(tooth.blocks, {0, tooth.blocks.size()}, IndexWord::literal);
       }
+    } else if (loop.form == NcLoop::Form::stretches) {
+      stretch_calls(op);
+    } else if (loop.form == NcLoop::Form::sub_program) {
+      fill(loop.call);
+    } else {
+      loop_body(op);
     }
-    line(free_feed());
-    if (header_.coolant) line("M9");
-    line("M5");
+    fill(dialect_.operation_end);
+    if (header_.coolant) fill(dialect_.coolant_off);
+    fill(dialect_.spindle_off);
     machine_retract();
   }
 
-  void compensation(const AxisOperation& op) {
-    if (!dialect_.compensation_with_z) return line(fmt::format("G43 H{}", op.tool_number));
-    const double z = program_.retract_z_mm - op.tool_length_mm - program_.work_offset_at_mm.z();
-    line(fmt::format("G0 G43 H{} Z{}", op.tool_number,
-                     value(to_fixed(z, program_.format.linear_decimals), program_.format.linear_decimals)));
-    forget();
-  }
-
-  // LinuxCNC: one sub-program an operation, the angle of the tooth is its argument.
-  void o_subprogram(const AxisOperation& op, int position) {
-    const int o = kFirstOWord + 2 * position;
-    line(fmt::format("o{} sub", o));
+  /// One tooth, its index angle given by the control's arithmetic.
+  void loop_body(const AxisOperation& op) {
+    fill(dialect_.loop.before);
     forget();
     const auto& tooth = op.teeth.front().blocks;
-    blocks(tooth, {0, tooth.size()}, IndexWord::parameter);
-    line(fmt::format("o{} endsub", o));
-  }
-  void o_loop(int position) {
-    const int o = kFirstOWord + 2 * position;
-    line("#1=0");
-    line(fmt::format("o{} while [#1 LT {}]", o + 1, program_.teeth));
-    line(fmt::format("o{} call [{}#1*360/{}]", o, program_.index_sign < 0 ? "0-" : "", program_.teeth));
-    line("#1=[#1+1]");
-    line(fmt::format("o{} endwhile", o + 1));
+    blocks(tooth, {0, tooth.size()}, IndexWord::shifted);
+    fill(dialect_.loop.after);
   }
 
-  // Fanuc: a sub-program for every stretch with one index angle, called after an explicit rotary block.
-  void m98_calls(const AxisOperation& op) {
+  // A sub-program for every stretch with one index angle, called after an explicit rotary block.
+  void stretch_calls(const AxisOperation& op) {
     const auto& tooth = op.teeth.front().blocks;
     const auto segments = split_at_rotaries(tooth);
     if (!segments) return;
@@ -167,7 +147,7 @@ class Writer {
         turn.forced = true;
         forget();
         rapid(turn, IndexWord::literal);
-        line(fmt::format("M98 P{}", first + static_cast<int>(i)));
+        out_.line(fmt::format("M98 P{}", first + static_cast<int>(i)));
       }
     }
     forget();
@@ -189,10 +169,10 @@ class Writer {
   void write_subprograms() {
     for (std::size_t i = 0; i < subprograms_.size() && !error_; ++i) {
       const auto& [op, s] = subprograms_[i];
-      line(fmt::format("O{} (OPERATION {} PART {})", kFirstSubprogram + static_cast<int>(i), op->operation, i));
+      out_.line(fmt::format("O{} (OPERATION {} PART {})", kFirstSubprogram + static_cast<int>(i), op->operation, i));
       forget();
       blocks(op->teeth.front().blocks, {s.first + 1, s.last}, IndexWord::left_out);
-      line("M99");
+      out_.line("M99");
     }
   }
 
@@ -200,29 +180,69 @@ class Writer {
   void blocks(const std::vector<AxisBlock>& list, Segment s, IndexWord index) {
     inverse_time_ = false;
     for (std::size_t i = s.first; i < s.last && !error_; ++i) {
-      if (list[i].kind == BlockKind::feed)
-        feed(list[i], index);
-      else
-        rapid(list[i], index);
+      const AxisBlock& b = list[i];
+      switch (b.kind) {
+        case BlockKind::feed:
+        case BlockKind::turn:
+          if (b.tip)
+            tip_feed(b, index);
+          else
+            joint_feed(b, index);
+          break;
+        case BlockKind::tcp_on:
+        case BlockKind::tcp_off: switch_tcp(b, index); break;
+        default: rapid(b, index); break;
+      }
     }
-    if (inverse_time_) line(free_feed());
+    if (inverse_time_) out_.line(fmt::format("G94 F{}", values_["free"]));
     inverse_time_ = false;
   }
 
+  void switch_tcp(const AxisBlock& b, IndexWord index) {
+    if (inverse_time_) out_.line(fmt::format("G94 F{}", values_["free"]));
+    inverse_time_ = false;
+    values_["z"] = out_.value(b.words[2], decimals(2));
+    const bool on = b.kind == BlockKind::tcp_on;
+    const bool turned = program_.loop && index == IndexWord::shifted;
+    if (on && turned) fill(dialect_.loop.frame_on);
+    fill(on ? dialect_.tcp_on : dialect_.tcp_off);
+    if (!on && turned) fill(dialect_.loop.frame_off);
+    forget();
+  }
+
+  void motion(const std::string& word, int code) {
+    if (motion_ != code || !dialect_.motion_is_modal) out_.text() += word;
+    motion_ = code;
+  }
+
   void rapid(const AxisBlock& b, IndexWord index) {
-    const std::size_t begin = body_.size();
-    body_ += "G0";
+    const auto [from, to] = b.kind == BlockKind::rapid_z     ? std::pair<std::size_t, std::size_t>{2, 3}
+                            : b.kind == BlockKind::rapid_xy  ? std::pair<std::size_t, std::size_t>{0, 2}
+                            : b.kind == BlockKind::rapid_tip ? std::pair<std::size_t, std::size_t>{0, 3}
+                                                             : std::pair<std::size_t, std::size_t>{3, 5};
+    if (to == 5) shift_line(b, index);
+    const std::size_t begin = out_.size();
+    out_.text() += dialect_.rapid;
     motion_ = 0;
-    const std::size_t without_words = body_.size();
-    const auto [from, to] = b.kind == BlockKind::rapid_z    ? std::pair<std::size_t, std::size_t>{2, 3}
-                            : b.kind == BlockKind::rapid_xy ? std::pair<std::size_t, std::size_t>{0, 2}
-                                                            : std::pair<std::size_t, std::size_t>{3, 5};
+    const std::size_t without_words = out_.size();
     for (std::size_t a = from; a < to; ++a) word(b, a, index);
-    if (body_.size() == without_words) {
-      body_.resize(begin);
+    if (out_.size() == without_words) {
+      out_.text().resize(begin);
       return;
     }
-    end_line(begin, true);
+    out_.text() += dialect_.rapid_end;
+    out_.end_line(begin, true);
+  }
+
+  /// On controls without arithmetic in a word: the angle that the next index word refers to.
+  void shift_line(const AxisBlock& b, IndexWord index) {
+    if (index != IndexWord::shifted || dialect_.loop.index_line.empty()) return;
+    const auto axis = static_cast<std::size_t>(program_.index_axis);
+    if (shift_known_ && shift_ == b.words[axis] && known_[axis]) return;
+    values_["angle"] = out_.value(b.words[axis], decimals(axis));
+    out_.fill({dialect_.loop.index_line}, values_);
+    shift_ = b.words[axis];
+    shift_known_ = true;
   }
 
   void word(const AxisBlock& b, std::size_t axis, IndexWord index) {
@@ -233,15 +253,20 @@ class Writer {
     known_[axis] = true;
     last_[axis] = b.words[axis];
     if (unchanged && !b.forced) return;
-    body_ += ' ';
-    body_ += program_.letters[axis];
-    if (is_index && index == IndexWord::parameter) {
-      body_ += "[#1";
-      if (b.words[axis] >= 0) body_ += '+';
-      number(b.words[axis], decimals(axis));
-      body_ += ']';
+    std::string& text = out_.text();
+    text += ' ';
+    text += program_.letters[axis];
+    if (axis >= 3) text += dialect_.rotary_equals;
+    if (is_index && index == IndexWord::shifted) {
+      if (dialect_.loop.index_brackets) text += '[';
+      text += dialect_.loop.index;
+      if (dialect_.loop.index_line.empty()) {
+        if (b.words[axis] >= 0 && !dialect_.sign_always) text += '+';
+        out_.number(b.words[axis], decimals(axis));
+      }
+      if (dialect_.loop.index_brackets) text += ']';
     } else {
-      number(b.words[axis], decimals(axis));
+      out_.number(b.words[axis], decimals(axis));
     }
   }
 
@@ -259,120 +284,136 @@ class Writer {
     return linear > 0 ? linear : part(3, 5);
   }
 
-  void feed(const AxisBlock& b, IndexWord index) {
+  void joint_feed(const AxisBlock& b, IndexWord index) {
     const double rate = 1 / b.minutes;
-    if (!(b.minutes > 0) || (dialect_.max_inverse_time > 0 && rate > dialect_.max_inverse_time * (1 + 1e-9))) {
+    if (!(b.minutes > 0) ||
+        (dialect_.inverse_time && dialect_.max_inverse_time > 0 && rate > dialect_.max_inverse_time * (1 + 1e-9))) {
       error_ = fail("record {}: F {:.3f} of a block exceeds {:.3f}, the greatest that {} takes", b.record, rate,
                     dialect_.max_inverse_time, dialect_.name);
       return;
     }
+    const bool turns = b.words[3] != last_[3] || b.words[4] != last_[4];
+    if (!dialect_.inverse_time && turns) {
+      error_ = fail("record {}: rotaries move in a cutting block, and {} has no inverse time feed for it: tcp = \"angles\" is "
+                    "supported, or a tilt that is fixed in every pass",
+                    b.record, dialect_.name);
+      return;
+    }
     const double length = control_length(b);
-    const bool per_minute = dialect_.min_feed_product > 0 && rate * length < dialect_.min_feed_product;
-    if (!per_minute && !inverse_time_) line("G93");
-    if (per_minute && inverse_time_) line("G94");
+    const bool exact = dialect_.inverse_time && dialect_.min_feed_product > 0 && rate * length < dialect_.min_feed_product;
+    const bool per_minute = exact || !dialect_.inverse_time;
+    if (!per_minute && !inverse_time_) out_.line("G93");
+    if (per_minute && inverse_time_) out_.line("G94");
     inverse_time_ = !per_minute;
-    const std::size_t begin = body_.size();
-    if (motion_ != 1) body_ += "G1";
-    motion_ = 1;
+    const std::size_t begin = out_.size();
+    motion(dialect_.feed, 1);
     for (std::size_t a = 0; a < 5; ++a) word(b, a, index);
-    body_ += body_.size() == begin ? "F" : " F";
-    feed_number(per_minute ? length / b.minutes : rate, per_minute, b.record);
-    if (body_[begin] == ' ') body_.erase(begin, 1);
-    end_line(begin, true);
+    if (dialect_.inverse_time)
+      feed_number(per_minute ? length / b.minutes : rate, dialect_.point_always ? 3 : per_minute ? 9 : rate < 10 ? 6 : 3, b.record, begin);
+    else
+      modal_feed(length / b.minutes, b.record, begin);
+    finish_block(begin);
+  }
+
+  /// With TCP: feed of the tip, or of the rotaries where nothing linear moves.
+  void tip_feed(const AxisBlock& b, IndexWord index) {
+    const std::size_t begin = out_.size();
+    const bool vectors = program_.tcp == TcpMode::vectors && b.kind == BlockKind::feed;
+    if (vectors && !dialect_.vector_feed.empty()) motion(dialect_.vector_feed, 1);
+    else motion(dialect_.feed, 1);
+    for (std::size_t a = b.kind == BlockKind::turn ? 3 : 0; a < (vectors ? 3U : 5U); ++a) word(b, a, index);
+    if (vectors) vector(b);
+    modal_feed(b.per_minute, b.record, begin);
+    finish_block(begin);
+  }
+
+  void vector(const AxisBlock& b) {
+    const Vec3& axis = b.axis;
+    for (int i = 0; i < 3; ++i) {
+      out_.text() += ' ';
+      out_.text() += dialect_.vector_words[static_cast<std::size_t>(i)];
+      out_.number(to_fixed(axis[i], kVectorDecimals), kVectorDecimals);
+    }
+  }
+
+  void finish_block(std::size_t begin) {
+    std::string& text = out_.text();
+    if (text.size() > begin && text[begin] == ' ') text.erase(begin, 1);
+    out_.end_line(begin, true);
+  }
+
+  /// F on change. Rounded down but for round-off, never 0.
+  void modal_feed(double f, std::int32_t record, std::size_t begin) {
+    const int digits = dialect_.point_always || f >= 10 ? 3 : 6;
+    const double kept = f * (1 + 1e-12);
+    const std::int64_t scaled = kept < 9e9 ? to_fixed_down(kept, digits) : 0;
+    const std::int64_t common = scaled * power_of_ten(6 - digits);
+    if (common == feed_ && scaled > 0) return;
+    feed_number(kept, digits, record, begin);
+    feed_ = common;
   }
 
   /// Rounded down, never 0.
-  void feed_number(double f, bool per_minute, std::int32_t record) {
-    const int digits = dialect_.point_always ? 3 : per_minute ? 9 : f < 10 ? 6 : 3;
+  void feed_number(double f, int digits, std::int32_t record, std::size_t begin) {
+    out_.text() += out_.size() == begin ? "F" : " F";
     const std::int64_t scaled = f < 9e5 * 1e4 ? to_fixed_down(f, digits) : 0;
     if (scaled <= 0 && !error_) error_ = fail("record {}: F {} cannot be printed with {} decimals", record, f, digits);
-    number(scaled, digits);
-  }
-
-  void program_end() {
-    if (dialect_.blend) line("G61");
-    if (!dialect_.compensation_with_z) line("G49");
+    append_fixed(out_.text(), scaled, digits, dialect_.point_always);
   }
 
   Result<NcText> assemble() {
-    if (dialect_.percent_frame) {
-      line(dialect_.program_end);
-      write_subprograms();
-    }
+    fill(dialect_.body_end);
+    write_subprograms();
     if (error_) return *error_;
+    if (out_.error()) return *out_.error();
     NcText result;
-    result.body_hash = fnv1a(body_);
-    result.blocks = blocks_ + (dialect_.percent_frame ? 0 : 1);
+    result.body_hash = fnv1a(out_.text());
+    result.blocks = out_.blocks();
+    for (const auto& l : dialect_.frame_end) result.blocks += l == "%" ? 0 : 1;
     const std::string hash = fmt::format("HASH {:016X} BLOCKS {}", result.body_hash, result.blocks);
-    std::string body = std::move(body_);
-    body_.clear();
-    if (dialect_.percent_frame) {
-      body_ += "%\n";
-      body_ += fmt::format("O{} ({})\n", header_.program_number, comment_text(header_.job_name).substr(0, 32));
-    }
+    std::string body = std::move(out_.text());
+    out_.text().clear();
+    fill(dialect_.frame_begin);
     header_comments(hash);
-    result.text = std::move(body_);
-    result.text.reserve(result.text.size() + body.size() + 100);
-    result.text += body;
-    result.text += fmt::format("({})\n", hash);
-    result.text += dialect_.percent_frame ? "%" : dialect_.program_end;
-    result.text += '\n';
+    out_.text() += body;
+    out_.comment(hash);
+    fill(dialect_.frame_end);
+    if (out_.error()) return *out_.error();
+    result.text = dialect_.block_numbers ? NcLines::numbered(out_.text()) : std::move(out_.text());
     return result;
   }
 
   void header_comments(const std::string& hash) {
-    comment(comment_text("JOB " + header_.job_name));
-    if (!header_.job_hash.empty()) comment(comment_text("JOB FILE " + header_.job_hash));
-    comment(comment_text("MACHINE " + header_.machine_name));
-    comment(hash);
-    comment("TOOL LENGTHS RUN FROM THE GAUGE LINE TO THE TIP");
-    const auto at = [&](int i) { return value(to_fixed(program_.work_offset_at_mm[i], 4), 4); };
-    comment(fmt::format("WORK OFFSET {} AT X{} Y{} Z{} MM MACHINE", program_.work_offset, at(0), at(1), at(2)));
-    if (!header_.assumed.empty()) comment("WARNING, ASSUMED AND NOT MEASURED:");
-    for (const auto& a : header_.assumed) comment(comment_text("ASSUMED " + a));
+    out_.comment(comment_text("JOB " + header_.job_name));
+    if (!header_.job_hash.empty()) out_.comment(comment_text("JOB FILE " + header_.job_hash));
+    out_.comment(comment_text("MACHINE " + header_.machine_name));
+    out_.comment(hash);
+    out_.comment("TOOL LENGTHS RUN FROM THE GAUGE LINE TO THE TIP");
+    const auto at = [&](int i) { return out_.value(to_fixed(program_.work_offset_at_mm[i], 4), 4); };
+    out_.comment(fmt::format("WORK OFFSET {} AT X{} Y{} Z{} MM MACHINE", program_.work_offset, at(0), at(1), at(2)));
+    if (tcp_ && !dialect_.tcp_note.empty()) out_.comment(comment_text(dialect_.tcp_note));
+    if (!header_.assumed.empty()) out_.comment("WARNING, ASSUMED AND NOT MEASURED:");
+    for (const auto& a : header_.assumed) out_.comment(comment_text("ASSUMED " + a));
   }
 
   const AxisProgram& program_;
   const NcDialect& dialect_;
   const NcHeader& header_;
-  std::string body_;
-  std::size_t blocks_ = 0;
+  NcLines out_;
+  NcLines::Values values_;
+  bool tcp_;
   std::optional<Diagnostic> error_;
   std::array<std::int64_t, 5> last_{};
   std::array<bool, 5> known_{};
-  int motion_ = -1;  // 0, 1; -1: to be printed
+  int motion_ = -1;         // 0, 1; -1: to be printed
+  std::int64_t feed_ = -1;  // F per minute in force, millionths; -1: to be printed
+  std::int64_t shift_ = 0;
+  bool shift_known_ = false;
   bool inverse_time_ = false;
   std::vector<std::pair<const AxisOperation*, Segment>> subprograms_;
 };
 
 }  // namespace
-
-Result<NcDialect> find_dialect(std::string_view name) {
-  for (auto make : {linuxcnc_dialect, fanuc_dialect}) {
-    NcDialect d = make();
-    if (d.name == name) return d;
-  }
-  return fail("dialect = \"{}\" is not one of \"linuxcnc\", \"fanuc\"", name);
-}
-
-Result<NcDialect> dialect_of(const Machine& machine) {
-  auto d = find_dialect(machine.dialect);
-  if (!d) return d;
-  d->format.linear_decimals = machine.post.linear_decimals.value_or(d->format.linear_decimals);
-  d->format.rotary_decimals = machine.post.rotary_decimals.value_or(d->format.rotary_decimals);
-  for (const int digits : {d->format.linear_decimals, d->format.rotary_decimals})
-    if (digits < 1 || digits > 7) return fail("{} decimals in a word of the machine: 1 to 7 are possible", digits);
-  return d;
-}
-
-AxisOptions axis_options(const NcDialect& dialect, const Machine& machine) {
-  AxisOptions options;
-  options.format = dialect.format;
-  options.max_inverse_time = dialect.max_inverse_time;
-  options.loop_needs_constant_index = !dialect.o_words;
-  options.expand_teeth = !machine.post.index_loop.value_or(true);
-  return options;
-}
 
 std::string comment_text(std::string_view text) {
   std::string out;
@@ -389,11 +430,22 @@ std::string comment_text(std::string_view text) {
   return out;
 }
 
+std::string program_id(std::string_view text) {
+  std::string out;
+  for (const char c : comment_text(text).substr(0, 24)) {
+    const bool letter = c >= 'A' && c <= 'Z', digit = c >= '0' && c <= '9';
+    out += letter || digit ? c : '_';
+  }
+  if (out.empty() || out[0] < 'A' || out[0] > 'Z') out.insert(0, "P");
+  return out.substr(0, 24);
+}
+
 Result<NcText> write_nc(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
   if (program.format.linear_decimals != dialect.format.linear_decimals ||
       program.format.rotary_decimals != dialect.format.rotary_decimals)
     return fail("the axis program has {} and {} decimals, the dialect {} and {}", program.format.linear_decimals,
                 program.format.rotary_decimals, dialect.format.linear_decimals, dialect.format.rotary_decimals);
+  if (dialect.write != nullptr) return dialect.write(program, dialect, header);
   return Writer(program, dialect, header).write();
 }
 

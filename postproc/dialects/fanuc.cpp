@@ -1,6 +1,7 @@
-// Fanuc and compatible controls, IS-B (3 decimals), without TCP: every value has a point, G43 stands with Z, G49 only in
-// the block of a machine-coordinate retract, the largest F in G93 is 9999.999.
-#include "postproc/nc_writer.h"
+// Fanuc and compatible controls, IS-B (3 decimals): every value has a point, G43 stands with Z, G49 only in the block of a
+// machine-coordinate retract, the largest F in G93 is 9999.999. TCP is G43.4: its block moves Z alone, at rotary zero, where
+// the table frame is frozen.
+#include "postproc/nc_dialect.h"
 
 namespace toothpath {
 
@@ -10,12 +11,22 @@ NcDialect fanuc_dialect() {
   d.extension = ".nc";
   d.format = {.linear_decimals = 3, .rotary_decimals = 3};
   d.point_always = true;
-  d.percent_frame = true;
   d.max_inverse_time = 9999.999;
   d.max_line = 80;
+  d.frame_begin = {"%", "O{number} ({name})"};
   d.safe_start = {"G21 G17 G90 G94 G40 G80 G69"};
-  d.compensation_with_z = true;
-  d.program_end = "M30";
+  d.start = {"{safe_start}", "{offset}"};
+  d.retract = {"G0 G49 G53 Z{top}"};
+  d.tool_change = {"T{tool} M6", "{safe_start}", "{offset}", "S{speed} M3"};
+  d.compensation = {"G0 G43 H{tool} Z{work_top}"};
+  d.operation_end = {"G94 F{free}"};
+  d.body_end = {"M30"};
+  d.frame_end = {"%"};
+  d.tcp_on = {"G0 G43.4 H{tool} Z{z}"};
+  d.tcp_off = d.retract;
+  d.tcp_starts_at_zero = true;
+  d.tcp_note = "TCP G43.4, TABLE FRAME FROZEN AT ROTARY ZERO, PARAMETERS 19696#5 WKP 0, 1401#1 LRP 1";
+  d.loop.form = NcLoop::Form::stretches;
   return d;
 }
 

@@ -1,7 +1,7 @@
-// LinuxCNC 2.8 and later, joint output without TCP. G92.1 clears offsets that an earlier program left; G64 needs P, or
-// the control leaves the path as far as it likes; blocks that hardly move X, Y, Z lose their time in G93 before 2.9.0,
-// so they are printed in G94 with the exact feed.
-#include "postproc/nc_writer.h"
+// LinuxCNC 2.8 and later. G92.1 clears offsets that an earlier program left; G64 needs P, or the control leaves the path as
+// far as it likes; blocks that hardly move X, Y, Z lose their time in G93 before 2.9.0, so they are printed in G94 with the
+// exact feed. The codes of TCP are remaps of the site: machine data.
+#include "postproc/nc_dialect.h"
 
 namespace toothpath {
 
@@ -10,12 +10,24 @@ NcDialect linuxcnc_dialect() {
   d.name = "linuxcnc";
   d.extension = ".ngc";
   d.format = {.linear_decimals = 4, .rotary_decimals = 5};
-  d.o_words = true;
   d.min_feed_product = 0.2;
   d.max_line = 252;
   d.safe_start = {"G21 G17 G90 G94 G40 G49 G80", "G92.1"};
+  d.start = {"{safe_start}", "{offset}", "G64 P{blend} Q0"};
+  d.retract = {"G53 G0 Z{top}"};
+  d.tool_change = {"T{tool} M6", "{safe_start}", "{offset}", "S{speed} M3"};
+  d.compensation = d.tcp_compensation = {"G43 H{tool}"};
+  d.operation_end = {"G94 F{free}"};
+  d.end = {"G61", "G49"};
+  d.frame_end = {"M2"};
   d.blend = true;
-  d.program_end = "M2";
+  d.loop.form = NcLoop::Form::sub_program;
+  d.loop.before = {"o{label} sub"};
+  d.loop.after = {"o{label} endsub"};
+  d.loop.call = {"#1=0", "o{label+1} while [#1 LT {teeth}]", "o{label} call [{sign}#1*360/{teeth}]", "#1=[#1+1]",
+                 "o{label+1} endwhile"};
+  d.loop.index = "#1";
+  d.loop.index_brackets = true;
   return d;
 }
 

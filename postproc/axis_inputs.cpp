@@ -1,0 +1,59 @@
+#include "postproc/axis_inputs.h"
+
+#include <cmath>
+
+namespace toothpath {
+namespace {
+
+std::optional<Diagnostic> check_machine(const Machine& machine) {
+  if (machine.kind != MachineKind::five_axis) return fail("machine \"{}\" is not a milling machine", machine.name);
+  if (machine.post.length_reference != LengthReference::tip)
+    return fail("machine \"{}\": length_reference: only \"tip\" is posted", machine.name);
+  if (machine.post.pole != PoleOption::error && machine.post.pole != PoleOption::slow)
+    return fail("machine \"{}\": pole: only \"error\" and \"slow\" are posted", machine.name);
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k)
+    if (!(machine.chain.rotary(k).max_speed > 0)) return fail("axes.{}.max_speed must be above 0", machine.chain.rotary(k).letter);
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!(machine.chain.linear[i].max_speed > 0)) return fail("axes.{}.max_speed must be above 0", "XYZ"[i]);
+  return std::nullopt;
+}
+
+std::optional<Diagnostic> check_records(const ClPath& path) {
+  if (path.records.empty()) return fail("operation {}: the path has no records", path.operation);
+  if (path.records.front().kind != MoveKind::rapid)
+    return fail("operation {}: the path does not begin with a rapid", path.operation);
+  for (std::size_t i = 0; i < path.records.size(); ++i) {
+    const ClRecord& r = path.records[i];
+    if (!r.tip.allFinite() || !r.axis.allFinite() || r.tip.norm() > 1e5)
+      return fail("operation {} record {}: position is not a number below 1e5 mm", path.operation, i);
+    if (std::abs(r.axis.norm() - 1) > 1e-9)
+      return fail("operation {} record {}: tool axis has length {:.12f}, not 1", path.operation, i, r.axis.norm());
+    if (r.kind != MoveKind::rapid && !(r.feed_mm_min > 0 && std::isfinite(r.feed_mm_min)))
+      return fail("operation {} record {}: feed must be above 0", path.operation, i);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Diagnostic> check_axis_inputs(std::span<const ClPath* const> paths, std::span<const ToolAssembly> tools,
+                                            const Machine& machine, int teeth, const AxisOptions& options) {
+  if (auto bad = check_machine(machine)) return bad;
+  if (teeth < 1) return fail("teeth = {} is below 1", teeth);
+  if (paths.empty()) return fail("there is no operation to post");
+  if (!(options.chord_mm > 0) || !(options.axis_rad > 0)) return fail("chord and axis tolerances must be above 0");
+  for (const ClPath* path : paths) {
+    if (path->tool < 0 || static_cast<std::size_t>(path->tool) >= tools.size())
+      return fail("operation {}: tool {} of {} tools", path->operation, path->tool, tools.size());
+    if (!(tools[static_cast<std::size_t>(path->tool)].length_mm > 0))
+      return fail("operation {}: tool length must be above 0", path->operation);
+    if (!(path->spindle_rpm > 0)) return fail("operation {}: spindle speed must be above 0", path->operation);
+    if (machine.max_spindle_speed > 0 && path->spindle_rpm > machine.max_spindle_speed)
+      return fail("operation {}: spindle speed {} exceeds {}, the machine's", path->operation, path->spindle_rpm,
+                  machine.max_spindle_speed);
+    if (auto bad = check_records(*path)) return bad;
+  }
+  return std::nullopt;
+}
+
+}  // namespace toothpath

@@ -1,0 +1,108 @@
+// What differs between controls, as data: numbers, words and the lines that stand at certain places of every program. One
+// file a dialect under postproc/dialects; docs/dialects.md says how to add one.
+//
+// Lines are templates: {offset} G54 .., {datum} 1 for G54 and so on, {tool} number, {speed} 1/min, {top} machine Z of the
+// retract, {work_top} the same as a Z word with this tool's length, {z} Z word of the block that switches TCP on, {blend} mm,
+// {free} a feed where nothing is cut, {teeth}, {last} = teeth - 1, {label} and {label+1} numbers that belong to the operation
+// alone, {sign} and {frame_sign} "-" or nothing, {number} and {name} of the program, {id} its name in letters and digits. The
+// line "{safe_start}" stands for all lines of `safe_start`. Values are printed in the format of the dialect.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geometry/base/result.h"
+#include "postproc/axis_program.h"
+
+namespace toothpath {
+
+using NcLinesOfText = std::vector<std::string>;
+struct NcDialect;
+struct NcHeader;
+struct NcText;
+
+/// The teeth of an operation as a loop of the control.
+struct NcLoop {
+  enum class Form : std::uint8_t {
+    none,         ///< every tooth is written out
+    in_line,      ///< `before`, the blocks of the tooth, `after`
+    sub_program,  ///< `before`, the blocks, `after` ahead of the operation; `call` in its place
+    stretches,    ///< M98: a sub-program for every stretch with one index angle, called after an explicit rotary block
+  };
+  Form form = Form::none;
+  NcLinesOfText before, after, call;
+  std::string index;             ///< ahead of the number of the index rotary: "R2" prints C=R2+12.5
+  bool index_brackets = false;   ///< "[#1+12.5]"
+  /// Controls without arithmetic in a word: this line ahead of a block that changes the index angle, with {angle}; `index` is
+  /// then the whole word.
+  std::string index_line;
+  NcLinesOfText frame_on, frame_off;  ///< around TCP: turns the frame by the index; empty: no loop with TCP
+};
+
+/// What a control wants to read.
+struct NcDialect {
+  std::string name;       ///< as in a machine file
+  std::string extension;  ///< ".ngc"
+  WordFormat format;
+
+  // Words.
+  bool point_always = false;       ///< "10." and never "10"
+  bool sign_always = false;        ///< "+10"
+  std::string rotary_equals;       ///< between the letter of a rotary and its number
+  std::string rapid = "G0", feed = "G1";
+  bool motion_is_modal = true;     ///< G0 and G1 on change only
+  std::string rapid_end;           ///< behind the words of a rapid
+  std::size_t max_line = 252;      ///< characters
+
+  // Feed.
+  bool inverse_time = true;        ///< G93 exists; else joint blocks that turn cannot be timed and are refused
+  double max_inverse_time = 0;     ///< greatest F in G93; 0: no limit
+  double min_feed_product = 0;     ///< G93 blocks with F * path below it are printed in G94 (mm/min); 0: none
+
+  // Comments and block numbers.
+  std::string comment_open = "(", comment_close = ")";
+  bool block_numbers = false;      ///< every line, from 0
+
+  // Lines.
+  NcLinesOfText frame_begin, frame_end;  ///< first and last lines of the file
+  NcLinesOfText safe_start;              ///< modal groups reset before anything moves
+  NcLinesOfText start, end;              ///< of the program
+  NcLinesOfText body_end;                ///< ahead of sub-programs that stand behind the main program
+  NcLinesOfText retract;                 ///< Z to its top, machine coordinates
+  NcLinesOfText tool_change;             ///< behind the retract: tool, safe start, spindle
+  NcLinesOfText compensation;            ///< tool length, programs without TCP
+  NcLinesOfText tcp_compensation;        ///< the same with TCP
+  NcLinesOfText operation_end;           ///< ahead of coolant and spindle off
+  NcLinesOfText coolant_on = {"M8"}, coolant_off = {"M9"}, spindle_off = {"M5"};
+  bool blend = false;                    ///< `start` lets the control leave corners by {blend}: counts as deviation
+
+  // TCP.
+  NcLinesOfText tcp_on, tcp_off;                ///< empty: the dialect has no TCP (or its codes are site data)
+  bool tcp_starts_at_zero = false;              ///< the table frame is frozen where TCP starts
+  std::array<std::string, 3> vector_words{};    ///< ahead of the components of the tool axis; empty: no vectors
+  std::string vector_feed;                      ///< instead of `feed` in blocks with a vector
+  std::string tcp_note;                         ///< comment at the top of programs with TCP: what the control must be set to
+
+  NcLoop loop;
+
+  /// A dialect whose text is not made of blocks with words: prints everything. Null: the common writer.
+  Result<NcText> (*write)(const AxisProgram&, const NcDialect&, const NcHeader&) = nullptr;
+};
+
+/// By the name of a machine file; anything else is refused with the list.
+[[nodiscard]] Result<NcDialect> find_dialect(std::string_view name);
+/// Names of all dialects.
+[[nodiscard]] std::vector<std::string> dialect_names();
+[[nodiscard]] NcDialect linuxcnc_dialect();
+[[nodiscard]] NcDialect fanuc_dialect();
+
+/// The dialect that a machine file names, with the machine's own digits and TCP codes.
+/// Errors: unknown dialect, digits that cannot be printed, TCP of a kind that the dialect lacks.
+[[nodiscard]] Result<NcDialect> dialect_of(const Machine& machine);
+/// Options of the axis program that follow from the dialect and the machine; the tolerances keep their defaults.
+[[nodiscard]] AxisOptions axis_options(const NcDialect& dialect, const Machine& machine);
+
+}  // namespace toothpath

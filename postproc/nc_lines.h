@@ -1,0 +1,49 @@
+// Lines of NC text in the format of a dialect: numbers, comments, templates, length check, block numbers.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "postproc/nc_dialect.h"
+
+namespace toothpath {
+
+/// FNV-1a over bytes.
+[[nodiscard]] std::uint64_t fnv1a(std::string_view bytes);
+
+class NcLines {
+ public:
+  using Values = std::map<std::string, std::string, std::less<>>;
+
+  explicit NcLines(const NcDialect& dialect) : dialect_(dialect) {}
+
+  /// A whole line.
+  void line(std::string_view text);
+  void comment(std::string_view text);
+  /// Templates of the dialect, each a line. A name that `values` lacks is an error.
+  void fill(const NcLinesOfText& templates, const Values& values);
+
+  /// The line that is being put together: appended to, then ended.
+  [[nodiscard]] std::string& text() { return text_; }
+  [[nodiscard]] std::size_t size() const { return text_.size(); }
+  void end_line(std::size_t begin, bool block);
+  void number(std::int64_t scaled, int decimals);
+  [[nodiscard]] std::string value(std::int64_t scaled, int decimals) const;
+
+  [[nodiscard]] std::size_t blocks() const { return blocks_; }
+  [[nodiscard]] std::optional<Diagnostic>& error() { return error_; }
+
+  /// `text` with a number ahead of every line, from 0.
+  [[nodiscard]] static std::string numbered(std::string_view text);
+
+ private:
+  const NcDialect& dialect_;
+  std::string text_;
+  std::size_t blocks_ = 0;
+  std::optional<Diagnostic> error_;
+};
+
+}  // namespace toothpath
