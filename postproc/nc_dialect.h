@@ -75,6 +75,7 @@ struct NcDialect {
   NcLinesOfText tool_change;             ///< behind the retract: tool, safe start, spindle
   NcLinesOfText compensation;            ///< tool length, programs without TCP
   NcLinesOfText tcp_compensation;        ///< the same with TCP
+  NcLinesOfText pause = {"M0"};          ///< waits for the start button
   NcLinesOfText operation_end;           ///< ahead of coolant and spindle off
   NcLinesOfText coolant_on = {"M8"}, coolant_off = {"M9"}, spindle_off = {"M5"};
   bool blend = false;                    ///< `start` lets the control leave corners by {blend}: counts as deviation

@@ -105,9 +105,10 @@ class Writer {
     if (header_.coolant) fill(dialect_.coolant_on);
     if (!program_.loop) {
       for (const auto& tooth : op.teeth) {
-        out_.comment(fmt::format("TOOTH {}", tooth.tooth));
+        out_.comment(tooth.remark.empty() ? fmt::format("TOOTH {}", tooth.tooth) : comment_text(tooth.remark));
         forget();
         blocks(tooth.blocks, {0, tooth.blocks.size()}, IndexWord::literal);
+        if (tooth.pause) fill(dialect_.pause);
       }
     } else if (loop.form == NcLoop::Form::stretches) {
       stretch_calls(op);
