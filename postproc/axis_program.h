@@ -74,9 +74,9 @@ struct AxisBlock {
 /// The blocks of one tooth of one operation. Starts and ends at a height where the rotaries may turn.
 struct ToothBlocks {
   int tooth = 0;  ///< space index; in a loop 0
-  std::string remark;   ///< stands in the text instead of "TOOTH k"; empty: that
-  bool pause = false;   ///< the program stops behind the blocks until it is started again
   std::vector<AxisBlock> blocks;
+  std::string remark = {};   ///< stands in the text instead of "TOOTH k"; empty: that
+  bool pause = false;   ///< the program stops behind the blocks until it is started again
 };
 
 struct AxisOperation {
