@@ -1,0 +1,59 @@
+// A program that a machinist runs in air before the first cut: the tip of a test bar stands on one point of the table while the rotary
+// axes go through their range. A wrong sign, pivot, tool length or TCP switch moves the tip off that point.
+//
+// Poses only, free of any dialect. Spec of the idea: a dial indicator on the table (or a ball on a magnetic stand) at `point_mm`.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/base/result.h"
+#include "machines/machine.h"
+#include "postproc/axis_program.h"
+#include "postproc/nc_dialect.h"
+
+namespace toothpath {
+
+/// A place where the machinist looks at the indicator.
+struct SelfTestStation {
+  std::array<double, 2> rotary_rad{};  ///< commands, in the order of KinematicChain::rotary
+  std::string remark;                  ///< "A+30 C0: TABLE Y+ SIDE DOWN", ASCII upper case
+};
+
+struct SelfTest {
+  Vec3 point_mm = Vec3::Zero();  ///< of the tip: table frame, which is machine coordinates with all rotaries at zero
+  double tool_length_mm = 0;     ///< gauge point to the tip of the bar
+  double approach_mm = 0;        ///< the tip comes down to the point from this height above it
+  std::vector<SelfTestStation> stations;  ///< the first and the last stand at zero
+  /// Joints of every block. `station` >= 0: the block ends at that station.
+  struct Move {
+    Joints joints;
+    int station = -1;
+  };
+  std::vector<Move> moves;      ///< from the first station on
+  double tip_bound_mm = 0;      ///< proven: between two blocks, all joints linear, the tip leaves the point by no more
+  double tilt_rad = 0;          ///< largest tilt that is used
+};
+
+struct SelfTestOptions {
+  std::optional<double> tool_length_mm;  ///< nothing: the first of 100, 60 and 30 mm that the travels allow
+  double tip_mm = 0.005;            ///< how far the tip may leave the point between two blocks
+  double largest_tilt_rad = radians(30);
+};
+
+/// Chooses the point and the stations: each rotary axis alone (a full turn in quarters where its limits allow one, else to both sides),
+/// then the quarters of one with the other tilted. Point: off the axes so that every sign shows, on the table where there is one.
+/// Errors: no rotary axis; no point near the table from which even 5 degrees of tilt stay inside the travels: the message names axis,
+/// value and limit; a tool length that is not positive.
+[[nodiscard]] Result<SelfTest> plan_self_test(const Machine& machine, const SelfTestOptions& options = {});
+
+/// The poses as an axis program: retract, point, every station with a stop behind it. The work offset stands at the point. With TCP the
+/// blocks turn the rotaries alone and the control is what is tested.
+[[nodiscard]] AxisProgram self_test_program(const SelfTest& test, const Machine& machine, const NcDialect& dialect);
+
+/// The dialect without the line that starts the spindle.
+[[nodiscard]] NcDialect in_air(NcDialect dialect);
+
+}  // namespace toothpath

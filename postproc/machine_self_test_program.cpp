@@ -1,0 +1,131 @@
+#include <cmath>
+
+#include "postproc/axis_words.h"
+#include "postproc/fixed_point.h"
+#include "postproc/machine_self_test.h"
+
+namespace toothpath {
+namespace {
+
+constexpr double kFeed = 500;       // mm/min of the tip on the way down and up
+constexpr double kTurnSpeed = 720;  // deg/min: slow enough to watch
+
+class Builder {
+ public:
+  Builder(const SelfTest& test, const Machine& machine, const NcDialect& dialect)
+      : test_(test), machine_(machine), words_(machine.chain, dialect.format, test.point_mm) {
+    words_.set_length(test.tool_length_mm);
+    AxisProgram& p = program_;
+    p.format = dialect.format;
+    p.letters = {'X', 'Y', 'Z', 0, 0};
+    for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) p.letters[3 + k] = machine.chain.rotary(k).letter;
+    p.tcp = machine.tcp == TcpMode::none ? TcpMode::none : TcpMode::angles;
+    p.tcp_starts_at_zero = dialect.tcp_starts_at_zero;
+    const double unit = static_cast<double>(power_of_ten(dialect.format.linear_decimals));
+    p.retract_z_mm = std::floor((machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm) * unit + 1e-6) / unit;
+    p.work_offset_at_mm = test.point_mm;
+    p.assumed = machine.assumed_keys;
+  }
+
+  AxisProgram build() && {
+    AxisOperation op;
+    op.type = "self_test";
+    op.tool_number = 1;
+    op.tool_length_mm = test_.tool_length_mm;
+    op.tool_name = "TEST BAR";
+    std::size_t next = 1;
+    for (std::size_t s = 0; s < test_.stations.size(); ++s) {
+      ToothBlocks part;
+      part.tooth = static_cast<int>(s);
+      part.remark = fmt::format("STATION {} OF {}: {}", s + 1, test_.stations.size(), test_.stations[s].remark);
+      part.pause = true;
+      if (s == 0) approach(part);
+      for (; next < test_.moves.size() && s > 0; ++next) {
+        turn(part, test_.moves[next].joints);
+        if (test_.moves[next].station >= 0) {
+          ++next;
+          break;
+        }
+      }
+      if (!part.blocks.empty()) part.blocks.front().forced = true;
+      op.teeth.push_back(std::move(part));
+    }
+    ToothBlocks last;
+    last.tooth = static_cast<int>(test_.stations.size());
+    last.remark = "AWAY FROM THE POINT";
+    leave(last);
+    op.teeth.push_back(std::move(last));
+    program_.operations.push_back(std::move(op));
+    return std::move(program_);
+  }
+
+ private:
+  [[nodiscard]] bool tcp() const { return program_.tcp != TcpMode::none; }
+  /// The point, or a place above it, with the rotaries as given.
+  AxisBlock at(BlockKind kind, double height, const std::array<double, 2>& rotaries, bool tip) const {
+    AxisBlock b;
+    b.kind = kind;
+    const Vec3 place = test_.point_mm + Vec3(0, 0, height);
+    if (tip) words_.set_tip(b, place, rotaries);
+    else words_.set_joints(b, machine_.chain.linear_for(place, rotaries, test_.tool_length_mm).linear_mm, rotaries);
+    b.axis = machine_.chain.forward({Vec3::Zero(), rotaries}, test_.tool_length_mm).axis;
+    return b;
+  }
+  void straight(ToothBlocks& part, double height, double length) const {
+    AxisBlock b = at(BlockKind::feed, height, test_.stations.front().rotary_rad, tcp());
+    b.minutes = length / kFeed;
+    b.per_minute = kFeed;
+    part.blocks.push_back(b);
+  }
+  void approach(ToothBlocks& part) const {
+    const auto& zero = test_.stations.front().rotary_rad;
+    for (const BlockKind kind : {BlockKind::rapid_rotary, BlockKind::rapid_xy, BlockKind::rapid_z}) {
+      // Where TCP starts at its own block with Z, that block comes down.
+      if (kind == BlockKind::rapid_z && tcp() && program_.tcp_starts_at_zero) continue;
+      AxisBlock b = at(kind, test_.approach_mm, zero, false);
+      b.forced = true;
+      part.blocks.push_back(b);
+    }
+    if (tcp()) part.blocks.push_back(at(BlockKind::tcp_on, test_.approach_mm, zero, true));
+    straight(part, 0, test_.approach_mm);
+  }
+  /// To the next pose; with TCP the control itself keeps the tip on the point.
+  void turn(ToothBlocks& part, const Joints& to) {
+    const auto before = words_.rounded(at_);
+    const auto after = words_.rounded(to.rotary_rad);
+    at_ = to.rotary_rad;
+    const double angle = std::max(std::abs(degrees(after[0] - before[0])), std::abs(degrees(after[1] - before[1])));
+    if (angle == 0) return;
+    AxisBlock b = at(tcp() ? BlockKind::turn : BlockKind::feed, 0, after, tcp());
+    b.minutes = angle / kTurnSpeed;
+    b.per_minute = kTurnSpeed;
+    part.blocks.push_back(b);
+  }
+  void leave(ToothBlocks& part) const {
+    const auto& zero = test_.stations.front().rotary_rad;
+    straight(part, test_.approach_mm, test_.approach_mm);
+    part.blocks.front().forced = true;
+    if (tcp()) part.blocks.push_back(at(BlockKind::tcp_off, test_.approach_mm, zero, false));
+  }
+
+  const SelfTest& test_;
+  const Machine& machine_;
+  AxisWords words_;
+  AxisProgram program_;
+  std::array<double, 2> at_ = test_.stations.front().rotary_rad;
+};
+
+}  // namespace
+
+AxisProgram self_test_program(const SelfTest& test, const Machine& machine, const NcDialect& dialect) {
+  return Builder(test, machine, dialect).build();
+}
+
+NcDialect in_air(NcDialect dialect) {
+  // Everything but the spindle: the machinist stands beside the indicator.
+  std::erase_if(dialect.tool_change, [](const std::string& line) { return line.find("{speed}") != std::string::npos && line.find("{tool}") == std::string::npos; });
+  dialect.spindle_off = {"M5"};
+  return dialect;
+}
+
+}  // namespace toothpath
