@@ -1,29 +1,23 @@
 // Proof of a finger-milled bevel gear: gouge, clearance, rapids, material left on the walls, ridges on the root. Works on
 // the motions that were read back from the program, in double, with the real (hollow) cutter profile and the exact walls.
 //
-// Measured: points of the exact walls against the solid cutter along every motion. Proven: the centre of the cutter
-// against the nominal wall paths (cam/finger_reference.h), with everything that lies between samples added.
+// Measured: points of the exact walls against the solid cutter along every motion (finger_walls), ridges (finger_ridge).
+// Proven: the centre of the cutter against the nominal wall paths (finger_poses), with everything that lies between samples
+// added; shank, holder and flute against blank, hub and shaft (finger_obstacles).
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "cam/checked_cl_path.h"
 #include "cam/cutter.h"
-#include "cam/finger_reference.h"
+#include "cam/finger_ridge.h"
 #include "cam/operation.h"
 #include "cam/verification.h"
 #include "geometry/base/tolerances.h"
 
 namespace toothpath {
-
-/// Ridges between the passes, above the root cone along the normal of the pitch cone; outside the relief groove.
-struct RidgeResult {
-  double requested_mm = 0;  ///< smallest ridge that an operation asks for; 0: none asks
-  double reached_mm = 0;    ///< highest, after all operations
-  double cone_distance_mm = 0, azimuth_rad = 0;  ///< where
-  std::size_t points = 0;
-};
 
 struct FingerCheckResult {
   GougeResult gouge;
@@ -65,7 +59,7 @@ class FingerGougeCheck {
 
  private:
   struct State;
-  State* state_;
+  std::unique_ptr<State> state_;
 };
 
 /// Motions of a CL path, straight in tip and axis.

@@ -9,8 +9,7 @@ namespace toothpath {
 namespace {
 
 constexpr int kNodes = 240;
-constexpr int kEdgePoints = 40;
-constexpr double kEdgeSag = 3e-3;   // mm: what the cutter may come nearer between two edge points
+constexpr int kEdgePoints = 2048;
 constexpr double kClear = 1e9;  // "no tooth in reach"
 
 /// dR_c/dbeta on the path of a wall.
@@ -23,12 +22,22 @@ double slope(const BevelTrace<double>& t, int sigma, double beta, double beta_c)
 std::vector<Vec3> edge_points(const BevelGear& g, const BevelWall<double>& wall, double ell) {
   std::vector<Vec3> points;
   const double low = -g.parameters().dedendum_mm, high = g.parameters().addendum_mm;
+  std::optional<BevelInverse> at;
   for (int i = 0; i <= kEdgePoints; ++i) {
     const double height = low + (high - low) * (i + 0.02) / (kEdgePoints + 0.02);
-    if (const auto at = bevel_inverse(wall, ell, height))
-      points.push_back(blank_point(ell, height, at->azimuth, g.sin_delta(), g.cos_delta()));
+    auto next = at ? bevel_inverse(wall, ell, height, *at) : bevel_inverse(wall, ell, height);
+    if (!next && at) next = bevel_inverse(wall, ell, height);
+    at = next;
+    if (at) points.push_back(blank_point(ell, height, at->azimuth, g.sin_delta(), g.cos_delta()));
   }
   return points;
+}
+
+/// Largest distance of an edge point from its neighbour.
+double spacing_of(const std::vector<Vec3>& edge) {
+  double widest = 0;
+  for (std::size_t i = 1; i < edge.size(); ++i) widest = std::max(widest, (edge[i] - edge[i - 1]).norm());
+  return widest;
 }
 
 }  // namespace
@@ -54,6 +63,7 @@ WallReference::WallReference(const BevelGear& gear, int sigma)
     : sigma_(sigma), solid_(gear.cutter()), sin_delta_(gear.sin_delta()), cos_delta_(gear.cos_delta()) {
   inner_edge_ = edge_points(gear, gear.halves().front().wall(sigma), gear.R_i());
   outer_edge_ = edge_points(gear, gear.halves().back().wall(sigma), gear.R_e());
+  spacing_of_edges_ = std::max({spacing_of(inner_edge_), spacing_of(outer_edge_), 1e-9});
   const auto& first = gear.halves().front().wall(sigma);
   reach_ = first.cutter.rho_D;
   r_0_ = first.cutter.r_0;
@@ -114,10 +124,15 @@ double WallReference::theta_at(double R_c) const { return on_curve(halves_[half_
 
 double WallReference::edge_clearance(const std::vector<Vec3>& edge, double R_c, double theta) const {
   if (edge.empty()) return -kClear;
+  const double spacing = spacing_of_edges_;
   double least = kClear;
-  for (const Vec3& p : edge)
-    least = std::min(least, solid_.signed_distance(cutter_from_blank<double>(p, R_c, theta / sin_delta_, sin_delta_, cos_delta_)));
-  return least - kEdgeSag;
+  // A distance changes by no more than the way along the edge: far points let the next ones be passed over.
+  for (std::size_t i = 0; i < edge.size();) {
+    const double d = solid_.signed_distance(cutter_from_blank<double>(edge[i], R_c, theta / sin_delta_, sin_delta_, cos_delta_));
+    least = std::min(least, d);
+    i += std::max<std::size_t>(1, static_cast<std::size_t>((d - least) / spacing));
+  }
+  return least - 0.51 * spacing;  // nearest point at half a spacing, with room for the bend of the edge
 }
 
 double WallReference::offset(double R_c, double theta) const {

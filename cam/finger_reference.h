@@ -56,6 +56,7 @@ class WallReference {
 
   // Edges of the wall at the ends of the face: beyond the pass only they can be touched.
   std::vector<Vec3> inner_edge_, outer_edge_;
+  double spacing_of_edges_ = 0;
   FingerSolid solid_;
   double sin_delta_ = 0, cos_delta_ = 1;
   CutterCentre<double> end_;  // start of the straight run-out

@@ -23,6 +23,9 @@ struct BevelGearParameters {
   double addendum_mm = 0;
   double dedendum_mm = 0;
   double backlash_mm = 0;         ///< of the pair, circumferential at the outer pitch diameter
+  // What the blank has beside its teeth: cylinders about its axis, 0: none. The tool must not meet them.
+  double hub_diameter_mm = 0, hub_length_mm = 0;      ///< behind the root of the large end
+  double shaft_diameter_mm = 0, shaft_length_mm = 0;  ///< from the root of the small end towards the apex and beyond
 };
 
 }  // namespace toothpath

@@ -1,0 +1,40 @@
+// What else of the workpiece a finger mill can meet: the blank above its teeth, the hub behind it and the shaft before it.
+//
+// Both sides are sets of circles, so the gap along a direction n is exact: n . tool - n . part over the rims. Any direction
+// gives a lower bound of the distance of the convex hulls, hence of the bodies; the best one is searched.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "cam/cutter.h"
+#include "cam/tool_motion.h"
+#include "geometry/bevel_gear.h"
+
+namespace toothpath {
+
+/// A convex body of revolution about the gear axis, by its rims: (r, z) [mm], gear frame.
+struct CoaxialBody {
+  std::string name;  ///< "hub", "shaft"
+  std::vector<Vec2> rims;
+};
+/// Hub and shaft of the gear; empty where it has none.
+[[nodiscard]] std::vector<CoaxialBody> bodies_beside_teeth(const BevelGear& gear);
+
+/// A convex hull of one body of the tool, by its rims: (height above the tip, radius) [mm].
+struct ToolHull {
+  std::string name;  ///< "flute", "shank", "holder"
+  std::vector<Vec2> rims;
+};
+/// Flute (its corner arc circumscribed), shank and holder.
+[[nodiscard]] std::vector<ToolHull> tool_hulls(const FingerProfile<double>& cutter, const ToolAssembly& tool);
+
+/// Gap between the two over a whole motion, never above the true one [mm]; negative: how far they meet at least must be moved apart.
+/// Between the ends the tip is straight and the axis the normalised blend; deviations of the motion are taken off.
+[[nodiscard]] double body_gap(const ToolHull& tool, const CoaxialBody& body, const ToolMotion& m);
+
+/// Largest n . p of the blank (teeth and the ring below them) in direction n.
+[[nodiscard]] double blank_support(const BevelGear& gear, const Vec3& n);
+
+}  // namespace toothpath
