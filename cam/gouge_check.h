@@ -1,8 +1,6 @@
-// The gouge check of ball mills on a face gear: measured worst penetration and a proven bound between the samples.
-//
-// The bound needs no curvature: for any set, the squared distance minus |x|^2 is concave along a straight line, so between two
-// ball centres L apart the distance d to the part obeys  d(s)^2 >= (1 - s/L) d0^2 + (s/L) d1^2 - s (L - s).
-// A move is halved until that bound is within `proof_mm` of what was measured at its ends.
+// The gouge check of ball mills on a face gear: what every body of the tool was found to do along every motion, and a proven
+// bound for every moment between the blocks. Ball and flute: cam/cutter_sweep.h. Shank and holder: cam/body_sweep.h.
+// Rapids: cam/rapid_clearance.h. Why the bounds hold: docs/proof.md.
 #pragma once
 
 #include <vector>

@@ -24,7 +24,8 @@ struct GougeResult {
   double measured_mm = 0;  ///< worst penetration found; negative: the least gap
   double bound_mm = 0;     ///< proven: nothing on any path between the samples is deeper
   int bound_line = 0;      ///< line of the move with the greatest bound
-  double clearance_mm = 0;        ///< least proven gap of shank and holder
+  double clearance_mm = 0;        ///< least proven gap of shank and holder; gaps are followed to 0.3 mm beyond the required one
+  double clearance_measured_mm = 0;  ///< least gap of shank and holder that was found; negative: they cut
   double required_clearance_mm = 0;
   bool rapids_clear = true;       ///< every rapid stays outside the blank, all bodies
   std::vector<WorstPlace> worst;  ///< deepest first, at most 20, only those beyond the tolerance or the clearance
