@@ -6,6 +6,7 @@
 
 #include "cam/cl_path.h"
 #include "cam/finishing.h"
+#include "cam/tool_body.h"
 
 namespace toothpath {
 
@@ -18,14 +19,24 @@ struct LinkingOptions {
   double feed_mm_min = 0;         ///< of the contact point
   double inner_radius_mm = 0, outer_radius_mm = 0;  ///< of the ring
   int zone = 0;
+  /// Simultaneous: the axis at every point of every pass; empty: `axis` everywhere.
+  std::vector<std::vector<Vec3>> axes;
+  std::vector<Frustum> bodies;    ///< shank and holder: on rapids they stay above the clearance height too
 };
+
+/// Greatest turn of the axis between two neighbouring records of a hop, and over a whole hop; beyond it the link goes over the
+/// clearance height. rad.
+inline constexpr double kMostTurnOfHopRecord = 0.0175, kMostTurnOfHop = 0.35;
 
 /// Is a straight move of the ball centre free of the finished part? Asked for hops only.
 using HopIsClear = std::function<bool(const Vec3& from, const Vec3& to)>;
 
+/// Do shank and holder keep their clearance with the ball at a centre and this axis? Asked for hops in which the axis turns.
+using BodiesAreClear = std::function<bool(const Vec3& centre, const Vec3& axis)>;
+
 /// Appends the passes to `records`. Starts and ends with rapids at the clearance height. The tip's feed is the contact
 /// point's feed times the ratio of their ways, at most 20 % faster.
 void link_passes(const std::vector<BallPass>& passes, const LinkingOptions& options, const HopIsClear& hop_is_clear,
-                 std::vector<ClRecord>& records);
+                 std::vector<ClRecord>& records, const BodiesAreClear& bodies_are_clear = {});
 
 }  // namespace toothpath

@@ -7,12 +7,20 @@
 #include "cam/linking.h"
 #include "cam/roughing.h"
 #include "cam/tool_direction.h"
+#include "cam/tool_orientation.h"
+#include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
 /// Of the chord tolerance, this share is spent on placing points; the rest covers the rounding of words and the proof.
 constexpr double kChordShare = 0.6;
+
+/// Of that tolerance, the share for ball centres that leave the pass because the axis turns.
+constexpr double kTurnShare = 0.1;
+
+/// Hops in which the axis turns keep this much more than the clearance, mm: they are looked at in steps.
+constexpr double kTurnMargin = 0.02;
 
 /// Roughing works on tables of the offset walls: this covers the sag between their entries, mm.
 constexpr double kRoughingPad = 0.004;
@@ -134,14 +142,25 @@ class JobPlanner {
     summary.passes += int(passes.size());
     if (passes.empty()) return {};
 
-    DirectionChoice direction = choose_direction(part_, zone, sheet, passes, tool, {o_.clearance_mm, 0.01});
+    if (!bodies_) bodies_ = std::make_unique<BodyTree>(part_);
+    DirectionChoice direction = choose_direction(part_, *bodies_, zone, sheet, passes, tool, {o_.clearance_mm, 0.01});
     direction.operation = n;
-    plan_.directions.push_back(direction);
-    if (!direction.fixed)
-      return PlanRefusal{key + ".tool", fail("tool {} in zone {}: {}; a longer or slimmer tool is needed", tool.number, zone,
-                                             direction.explanation)};
-
     LinkingOptions link;
+    if (!direction.fixed) {
+      OrientationOptions turning;
+      turning.clearance_mm = o_.clearance_mm;
+      turning.chord_mm = kTurnShare * std::min(op.chord_tolerance_mm, chord_room(op));
+      auto oriented = orient(zone, tool, turning, passes);
+      if (const auto* refusal = std::get_if<OrientationRefusal>(&oriented)) {
+        plan_.directions.push_back(direction);
+        return PlanRefusal{key + ".tool", fail("tool {} in zone {}: {}; {}", tool.number, zone, direction.explanation, refusal->reason)};
+      }
+      auto& orientation = std::get<Orientation>(oriented);
+      describe(orientation, direction);
+      link.axes = std::move(orientation.axes);
+    }
+    plan_.directions.push_back(direction);
+
     link.ball_radius_mm = R;
     link.axis = direction.axis;
     link.clearance_height_mm = part_.gear().blank_top() + o_.rapid_clearance_mm;
@@ -151,8 +170,42 @@ class JobPlanner {
     link.inner_radius_mm = ring.inner_radius_mm;
     link.outer_radius_mm = ring.outer_radius_mm;
     link.zone = zone;
-    link_passes(passes, link, [&](const Vec3& a, const Vec3& b) { return hop_is_clear(a, b, R, op.allowance_mm); }, path.records);
+    link.bodies = shank_and_holder(tool);
+    const auto bodies_are_clear = [&](const Vec3& centre, const Vec3& axis) {
+      return bodies_->clear(link.bodies, centre - R * axis, axis, o_.clearance_mm + kTurnMargin, 0.01);
+    };
+    link_passes(passes, link, [&](const Vec3& a, const Vec3& b) { return hop_is_clear(a, b, R, op.allowance_mm); }, path.records,
+                bodies_are_clear);
     return {};
+  }
+
+  /// Simultaneous axes for one zone, as a stage of its own.
+  std::variant<Orientation, OrientationRefusal> orient(int zone, const ToolAssembly& tool, const OrientationOptions& options,
+                                                       std::vector<BallPass>& passes) const {
+    std::variant<Orientation, OrientationRefusal> result;
+    const auto work = [&] { result = orient_passes(part_, *bodies_, zone, tool, options, passes); };
+    if (o_.stage) o_.stage("five-axis orientation", work);
+    else work();
+    return result;
+  }
+
+  static void describe(const Orientation& o, DirectionChoice& d) {
+    Vec3 sum = Vec3::Zero();
+    for (const auto& pass : o.axes)
+      for (const auto& axis : pass) sum += axis;
+    d.axis = sum.normalized();
+    d.lean_rad = std::atan2(std::hypot(d.axis.x(), d.axis.y()), d.axis.z());
+    d.clearance_mm = o.clearance_mm;
+    d.least_lean_rad = o.least_lean_rad;
+    d.greatest_lean_rad = o.greatest_lean_rad;
+    d.greatest_turn_rad_per_mm = o.greatest_turn_rad_per_mm;
+    d.greatest_step_rad = o.greatest_step_rad;
+    d.passes = int(o.axes.size());
+    d.turning_passes = o.turning_passes;
+    d.explanation = fmt::format("{}; so the axis turns: lean {:.1f} to {:.1f} deg from the normal of the pitch surface, inside {} of {} passes, "
+                                "by at most {:.2f} deg/mm; shank and holder keep {:.3f} mm",
+                                d.explanation, degrees(o.least_lean_rad), degrees(o.greatest_lean_rad), o.turning_passes, o.axes.size(),
+                                degrees(o.greatest_turn_rad_per_mm), o.clearance_mm);
   }
 
   /// Sag that an operation may have: a tenth of the stock that it leaves, and less than half of what may be gouged.
@@ -233,6 +286,7 @@ class JobPlanner {
   const PlanOptions& o_;
   const PlanProgress& progress_;
   std::vector<std::unique_ptr<SweptPath>> cleared_;
+  std::unique_ptr<BodyTree> bodies_;  ///< built with the first zone
   FaceGearPlan plan_;
 };
 

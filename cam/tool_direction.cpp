@@ -5,13 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cam/tool_body.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kEnough = 2.0;  // mm: a gap beyond this is not measured further
+constexpr double kEnough = 2.0;   // mm: a gap beyond this is not measured further
+constexpr double kDeepest = 3.0;  // mm: how far a body in the way is followed
+constexpr double kResolution = 0.02;  // mm
 
 std::vector<Vec3> some_centres(const std::vector<BallPass>& passes, std::size_t count) {
   std::vector<Vec3> all;
@@ -26,25 +27,24 @@ std::vector<Vec3> some_centres(const std::vector<BallPass>& passes, std::size_t 
 /// One zone and tool: what a direction is worth.
 class Search {
  public:
-  Search(const GearDistance& part, int zone, const OffsetSheet& sheet, const std::vector<BallPass>& passes,
+  Search(const GearDistance& part, const BodyTree& tree, int zone, const OffsetSheet& sheet, const std::vector<BallPass>& passes,
          const ToolAssembly& tool, const DirectionOptions& options)
-      : part_(part), sheet_(sheet), tool_(tool), o_(options), few_(some_centres(passes, 24)), many_(some_centres(passes, 400)) {
+      : tree_(tree), sheet_(sheet), tool_(tool), o_(options), few_(some_centres(passes, 24)), many_(some_centres(passes, 400)),
+        frame_(pitch_frame(part, zone)) {
     choice_.zone = zone;
     choice_.fixed = false;
-    const auto& f = sheet.space().surface();
-    const auto& ring = sheet.space().ring().zone;
-    const double r = 0.5 * (ring.inner_radius_mm + ring.outer_radius_mm), azimuth = part.space_azimuth(zone, r);
-    up_ = FaceGearSurface<double>::turned(Vec3(-f.d()), f.Cg == 0 ? 0.0 : azimuth);
-    side_ = up_.cross(Vec3(std::cos(azimuth), std::sin(azimuth), 0)).normalized();
-    outwards_ = side_.cross(up_);
   }
 
   DirectionChoice run() {
     try_one(0, 0);
-    for (int lean_deg = 10; lean_deg <= 40; lean_deg += 10) {
-      for (int k = 0; k < 8; ++k) try_one(lean_deg, k);
-      if (choice_.fixed && lean_deg >= 20) break;  // enough of the map to see the neighbourhood
+    // A job whose upright tool is clear needs no more of the map than its neighbourhood.
+    const int step = choice_.fixed ? 10 : 5, widest = choice_.fixed ? 20 : 45;
+    for (int lean_deg = step; lean_deg <= widest; lean_deg += step) {
+      const int sides = choice_.fixed && lean_deg <= 20 && step == 10 ? 8 : std::max(8, 4 * int(std::ceil(std::sin(radians(lean_deg)) * 13)));
+      for (int k = 0; k < sides; ++k) try_one(radians(lean_deg), 2 * kPi * k / sides);
+      if (choice_.fixed && lean_deg >= 20) break;
     }
+    if (!choice_.fixed) refine();
     if (!choice_.fixed) explain_failure();
     return std::move(choice_);
   }
@@ -57,25 +57,73 @@ class Search {
     return least;
   }
 
+  /// Least gap of shank and holder over the centres; of a body that cuts in: minus its `depth`.
   [[nodiscard]] double gap(const Vec3& axis, const std::vector<Vec3>& centres, std::string& worst) const {
     double least = kEnough;
-    for (const auto& body : shank_and_holder(tool_))
+    for (const auto& body : shank_and_holder(tool_)) {
+      double here = least;
       for (const auto& c : centres) {
-        const auto g = body_gap(part_, body, c - tool_.radius_mm() * axis, axis, least, 0.02);
-        if (g.gap >= least) continue;
-        least = g.gap;
-        worst = body.name;
-        if (least < -1) return least;
+        here = std::min(here, tree_.gap(body, c - tool_.radius_mm() * axis, axis, here, kResolution).gap);
+        if (here < 0) break;
       }
+      if (here < 0) here = -depth(body, axis, centres);
+      if (here >= least) continue;
+      least = here;
+      worst = body.name;
+    }
     return least;
   }
 
-  void try_one(int lean_deg, int eighth) {
+  /// By how much a body that cuts in would have to be slimmer, and begin higher, to cut nowhere: how far a direction is from being clear.
+  [[nodiscard]] double depth(const Frustum& body, const Vec3& axis, const std::vector<Vec3>& centres) const {
+    const auto cuts = [&](double by) {
+      Frustum f = body;
+      f.from += by;
+      f.radius_from = std::max(f.radius_from - by, 0.0);
+      f.radius_to = std::max(f.radius_to - by, 0.0);
+      return f.from < f.to && std::any_of(centres.begin(), centres.end(), [&](const Vec3& c) {
+               return tree_.gap(f, c - tool_.radius_mm() * axis, axis, 0, kResolution).gap < 0;
+             });
+    };
+    double shallow = 0, deep = kDeepest;
+    if (cuts(deep)) return deep;
+    while (deep - shallow > kResolution) {
+      const double middle = 0.5 * (shallow + deep);
+      (cuts(middle) ? shallow : deep) = middle;
+    }
+    return deep;
+  }
+
+  /// Halved steps around the directions that come nearest to being clear: a narrow way through is found too.
+  void refine() {
+    std::vector<DirectionChoice::Candidate> best = choice_.candidates;
+    std::stable_sort(best.begin(), best.end(), [](const auto& a, const auto& b) { return a.gap_mm > b.gap_mm; });
+    best.resize(std::min<std::size_t>(best.size(), 3));
+    for (auto at : best) {
+      if (at.worst_body == "ball") continue;
+      for (double step = radians(2.5); step > radians(0.5) && !choice_.fixed; step *= 0.5)
+        for (bool better = true; better && !choice_.fixed;) {
+          better = false;
+          const double x = std::tan(at.lean_rad) * std::cos(at.azimuth_rad), y = std::tan(at.lean_rad) * std::sin(at.azimuth_rad);
+          for (int k = 0; k < 8 && !choice_.fixed; ++k) {
+            const double u = x + std::tan(step) * std::cos(kPi / 4 * k), v = y + std::tan(step) * std::sin(kPi / 4 * k);
+            try_one(std::atan(std::hypot(u, v)), std::atan2(v, u));
+            if (choice_.candidates.back().gap_mm > at.gap_mm + 0.01) {
+              at = choice_.candidates.back();
+              better = true;
+              break;
+            }
+          }
+        }
+    }
+  }
+
+  void try_one(double lean, double azimuth) {
     DirectionChoice::Candidate c;
-    c.lean_rad = radians(lean_deg);
-    c.azimuth_rad = kPi / 4 * eighth;
-    const Vec3 to = std::cos(c.azimuth_rad) * outwards_ + std::sin(c.azimuth_rad) * side_;
-    const Vec3 axis = lean_deg == 0 ? up_ : Vec3((std::cos(c.lean_rad) * up_ + std::sin(c.lean_rad) * to).normalized());
+    c.lean_rad = lean;
+    c.azimuth_rad = azimuth;
+    const Vec3 to = std::cos(azimuth) * frame_.outwards + std::sin(azimuth) * frame_.side;
+    const Vec3 axis = lean == 0 ? frame_.up : Vec3((std::cos(lean) * frame_.up + std::sin(lean) * to).normalized());
     const double least_draft = draft(axis);
     if (least_draft < o_.least_draft) {
       c.worst_body = "ball";
@@ -113,25 +161,41 @@ class Search {
     const auto stands = [](const DirectionChoice::Candidate& c) { return c.worst_body != "ball"; };
     for (const auto& c : choice_.candidates)
       if (stands(c) > stands(*best) || (stands(c) == stands(*best) && c.gap_mm > best->gap_mm)) best = &c;
-    choice_.explanation = fmt::format("no fixed direction is clear: the best of {} leans {:.0f} deg and its {} keeps {:.3f} mm",
-                                      choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm);
+    choice_.explanation =
+        best->gap_mm < 0
+            ? fmt::format("no fixed direction is clear: the best of {} leans {:.1f} deg and its {} cuts in by {}{:.3f} mm",
+                          choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm <= -kDeepest ? "more than " : "",
+                          -best->gap_mm)
+            : fmt::format("no fixed direction is clear: the best of {} leans {:.1f} deg and its {} keeps {:.3f} of {:.3f} mm",
+                          choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm, o_.clearance_mm);
   }
 
-  const GearDistance& part_;
+  const BodyTree& tree_;
   const OffsetSheet& sheet_;
   const ToolAssembly& tool_;
   const DirectionOptions& o_;
   std::vector<Vec3> few_, many_;
-  Vec3 up_ = Vec3::UnitZ(), side_ = Vec3::UnitY(), outwards_ = Vec3::UnitX();
+  PitchFrame frame_;
   DirectionChoice choice_;
 };
 
 }  // namespace
 
-DirectionChoice choose_direction(const GearDistance& part, int zone, const OffsetSheet& sheet,
+PitchFrame pitch_frame(const GearDistance& part, int zone) {
+  const auto& space = part.space(zone);
+  const auto& ring = space.ring().zone;
+  const double azimuth = part.space_azimuth(zone, 0.5 * (ring.inner_radius_mm + ring.outer_radius_mm));
+  PitchFrame frame;
+  frame.up = FaceGearSurface<double>::turned(Vec3(-space.surface().d()), space.surface().Cg == 0 ? 0.0 : azimuth);
+  frame.side = frame.up.cross(Vec3(std::cos(azimuth), std::sin(azimuth), 0)).normalized();
+  frame.outwards = frame.side.cross(frame.up);
+  return frame;
+}
+
+DirectionChoice choose_direction(const GearDistance& part, const BodyTree& tree, int zone, const OffsetSheet& sheet,
                                  const std::vector<BallPass>& passes, const ToolAssembly& tool,
                                  const DirectionOptions& options) {
-  return Search(part, zone, sheet, passes, tool, options).run();
+  return Search(part, tree, zone, sheet, passes, tool, options).run();
 }
 
 }  // namespace toothpath

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "cam/body_tree.h"
 #include "cam/cutter.h"
 #include "cam/finishing.h"
 #include "cam/gear_distance.h"
@@ -15,9 +16,20 @@ struct DirectionOptions {
   double least_draft = 0.01;   ///< least cosine between the tool axis and the normals of the surface: the ball, not its shank, cuts
 };
 
-/// Tries directions around the normal of the pitch surface (for a shaft angle of 90 deg: the gear axis), leaning by 0 to 40 deg to
-/// eight sides, and takes the clear one that leans least. `fixed` is false and the axis meaningless when none is clear.
-[[nodiscard]] DirectionChoice choose_direction(const GearDistance& part, int zone, const OffsetSheet& sheet,
+/// The frame in which directions are counted: `up` is the normal of the pitch surface in the middle of the zone (for a shaft angle
+/// of 90 deg the gear axis), `outwards` along the teeth, `side` across them. Orthonormal, gear frame.
+struct PitchFrame {
+  Vec3 up = Vec3::UnitZ(), side = Vec3::UnitY(), outwards = Vec3::UnitX();
+  /// Direction of a lean: tangents of its parts outwards and to the side.
+  [[nodiscard]] Vec3 axis(double out, double aside) const { return (up + out * outwards + aside * side).normalized(); }
+};
+[[nodiscard]] PitchFrame pitch_frame(const GearDistance& part, int zone);
+
+/// Tries directions around the normal of the pitch surface, leaning by 0 to 45 deg in steps of 5 deg to sides at most 7 deg of arc
+/// apart, then smaller and smaller steps around the best of them, and takes the clear one that leans least. `fixed` is false and
+/// the axis meaningless when none is clear; then the map holds every direction tried with the body in the way and its gap.
+/// A gap below 0 says by how much the body would have to be slimmer and begin higher to cut nowhere (followed to -3 mm).
+[[nodiscard]] DirectionChoice choose_direction(const GearDistance& part, const BodyTree& tree, int zone, const OffsetSheet& sheet,
                                                const std::vector<BallPass>& passes, const ToolAssembly& tool,
                                                const DirectionOptions& options);
 

@@ -77,6 +77,11 @@ struct DirectionChoice {
   Vec3 axis = Vec3::UnitZ();
   double lean_rad = 0;        ///< angle between the axis and the gear axis
   double clearance_mm = 0;    ///< least gap of shank and holder in that direction
+  // Simultaneous (`fixed` is false): `axis` is the mean of the path; leans are from the normal of the pitch surface.
+  double least_lean_rad = 0, greatest_lean_rad = 0;
+  double greatest_turn_rad_per_mm = 0;  ///< of the axis, along the ball centre
+  double greatest_step_rad = 0;         ///< between two neighbouring records of a pass
+  int passes = 0, turning_passes = 0;   ///< inside the others the axis stands still
   std::string explanation;
   /// Map of the directions tried: lean and azimuth [rad], least gap [mm], worst body.
   struct Candidate {
