@@ -90,8 +90,10 @@ void begin_report(Run& run) {
 
 /// Plans every operation and lets the gouge check pass each path. Nothing: done.
 std::optional<Diagnostic> plan_and_check(Run& run, const GearDistance& part, const GougeCheck& check) {
+  PlanOptions plan_options = run.plan_options();
+  plan_options.stage = [&](const std::string& name, const std::function<void()>& work) { run.clock.run(name, work); };
   auto planned = run.clock.run("plan", [&] {
-    return plan_face_gear(part, run.job.tools, run.job.operations, run.plan_options(), [&](const std::string& text) { run.progress.show(text); });
+    return plan_face_gear(part, run.job.tools, run.job.operations, plan_options, [&](const std::string& text) { run.progress.show(text); });
   });
   if (auto* refusal = std::get_if<PlanRefusal>(&planned)) return located(run.job, refusal->key, std::move(refusal->diagnostic));
   run.plan = std::move(std::get<FaceGearPlan>(planned));
