@@ -56,6 +56,42 @@ void read_gears(TomlTableReader gears, ShaperMachine& machine) {
   gears.refuse_unknown_keys();
 }
 
+/// An M code: M and one to four digits.
+std::string read_m_code(TomlTableReader& table, const char* key) {
+  const auto code = table.text(key, true);
+  if (!code) return "";
+  const bool right = code->size() >= 2 && code->size() <= 5 && code->front() == 'M' &&
+                     std::all_of(code->begin() + 1, code->end(), [](char c) { return c >= '0' && c <= '9'; });
+  if (!right) table.refuse(table.at(key), "{} = \"{}\" is no M code, as \"M61\"", table.name(key), *code);
+  return *code;
+}
+
+/// An axis name: one capital letter and at most two digits.
+std::string read_axis_name(TomlTableReader& table, const char* key) {
+  const auto name = table.text(key, true);
+  if (!name) return "";
+  const bool right = !name->empty() && name->size() <= 3 && name->front() >= 'A' && name->front() <= 'Z' &&
+                     std::all_of(name->begin() + 1, name->end(), [](char c) { return c >= '0' && c <= '9'; });
+  if (!right) table.refuse(table.at(key), "{} = \"{}\" is no axis name, as \"C2\"", table.name(key), *name);
+  return *name;
+}
+
+void read_gearbox(TomlTableReader table, ShaperMachine& machine) {
+  ElectronicGearbox box;
+  box.relief_on = read_m_code(table, "relief_on");
+  box.relief_off = read_m_code(table, "relief_off");
+  if (machine.dialect == "siemens") {
+    box.cutter_axis = read_axis_name(table, "cutter_axis");
+    box.work_axis = read_axis_name(table, "work_axis");
+    if (box.cutter_axis == box.work_axis)
+      table.refuse(table.at("work_axis"), "{} = \"{}\" must differ from {}", table.name("work_axis"), box.work_axis, table.name("cutter_axis"));
+  } else {
+    box.pulses_per_turn = table.whole_number("pulses_per_turn", 1, 999999999).value_or(0);
+  }
+  table.refuse_unknown_keys();
+  machine.gearbox = std::move(box);
+}
+
 ShaperAxis read_axis(TomlTableReader axis, bool rotary) {
   const double scale = rotary ? radians(1.0) : 1.0;
   const double largest = rotary ? kLargestAngle : kLargestLength;
@@ -84,13 +120,17 @@ ShaperMachine read_tree(const TomlValue& tree, const std::string& file, std::vec
     root.refuse(root.at("kind"), "kind = \"{}\" is no gear shaper; \"gear_shaper\" is needed here", *kind);
     return machine;
   }
-  machine.dialect = root.word("dialect", {"linuxcnc"}).value_or("");
+  machine.dialect = root.word("dialect", {"fanuc", "linuxcnc", "siemens"}).value_or("");
   machine.assumed_keys = read_assumed(root, tree);
   machine.assumed = !machine.assumed_keys.empty();
   if (const auto stroke = root.table("stroke")) read_stroke(*stroke, machine);
-  if (const auto index = root.table("index")) machine.index_constant = read_ratio(*index);
-  if (const auto feed = root.table("feed")) machine.feed_constant = read_ratio(*feed);
-  if (const auto gears = root.table("gears")) read_gears(*gears, machine);
+  if (machine.dialect == "siemens" || machine.dialect == "fanuc") {
+    if (const auto box = root.table("gearbox")) read_gearbox(*box, machine);
+  } else {
+    if (const auto index = root.table("index")) machine.index_constant = read_ratio(*index);
+    if (const auto feed = root.table("feed")) machine.feed_constant = read_ratio(*feed);
+    if (const auto gears = root.table("gears")) read_gears(*gears, machine);
+  }
   if (auto axes = root.table("axes")) {
     for (const char letter : {'X', 'Y', 'Z', 'A', 'C'})
       if (const auto axis = axes->table(std::string(1, letter)))

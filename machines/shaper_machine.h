@@ -27,10 +27,18 @@ struct ShaperAxis {
   int sign = 1;  ///< A and C: +1 turns about the axes of the gear frame, -1 reverses the words
 };
 
+/// An electronic gearbox in place of change gears: the control couples the work to the cutter by a ratio of whole numbers.
+struct ElectronicGearbox {
+  std::string cutter_axis = "A";         ///< words of the leading axis; Siemens: a machine axis name as C1
+  std::string work_axis = "C";           ///< words of the following axis
+  std::string relief_on, relief_off;     ///< M codes of the lift on the back stroke, as "M61"
+  std::int64_t pulses_per_turn = 0;      ///< Fanuc: pulses of one turn of the cutter axis; 0: not given
+};
+
 struct ShaperMachine {
   std::string name;
   std::string file;     ///< path as it was opened
-  std::string dialect;  ///< "linuxcnc"
+  std::string dialect;  ///< "linuxcnc": every stroke written out; "siemens", "fanuc": electronic gearbox
   bool assumed = false;
   std::vector<std::string> assumed_keys;  ///< dotted names; of `assumed = true`, every value of the file
 
@@ -41,6 +49,7 @@ struct ShaperMachine {
   Ratio feed_constant;                    ///< feed gears = feed_constant * s_c/d_s
   std::vector<int> gears;                 ///< teeth of the change gears; each is there once
   int mesh_margin = 15;                   ///< a + b >= c + mesh_margin and c + d >= b + mesh_margin
+  std::optional<ElectronicGearbox> gearbox;  ///< then [index], [feed] and [gears] are absent
   std::map<char, ShaperAxis> axes;        ///< X Y Z A C, all present
 };
 

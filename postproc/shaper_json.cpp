@@ -18,7 +18,7 @@ Json plain(double value) {
 Json machine_json(const ShaperSetup& s) {
   Json steps = Json::array();
   for (const double n : s.machine.stroke_steps) steps.push_back(plain(n));
-  return {{"name", s.machine.name},
+  Json json = {{"name", s.machine.name},
           {"file", s.machine_file},
           {"stroke_steps", steps},
           {"index_constant", ratio(s.machine.index_constant)},
@@ -26,6 +26,12 @@ Json machine_json(const ShaperSetup& s) {
           {"gears", s.machine.gears},
           {"mesh_margin", s.machine.mesh_margin},
           {"relief", s.machine.relief_mm}};
+  json["dialect"] = s.machine.dialect;
+  if (const auto& box = s.machine.gearbox) {
+    json["gearbox"] = {{"cutter_axis", box->cutter_axis}, {"work_axis", box->work_axis}, {"relief_on", box->relief_on}, {"relief_off", box->relief_off}};
+    if (box->pulses_per_turn > 0) json["gearbox"]["pulses_per_turn"] = box->pulses_per_turn;
+  }
+  return json;
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/base/angle.h"
+#include "postproc/shaper_gearbox_program.h"
 
 namespace toothpath {
 namespace {
@@ -130,6 +131,13 @@ void set_generating(ShaperSetup& s, Refusals& refusals) {
 
 void set_gears(ShaperSetup& s, Refusals& refusals) {
   const auto& m = s.machine;
+  if (m.gearbox) {  // the control couples by the ratio itself, and turns as asked
+    s.index_target = s.generating;
+    s.feed_target = s.shaping.circular_feed_mm / s.pitch_diameter_mm;
+    s.circular_feed_set_mm = s.shaping.circular_feed_mm;
+    if (const auto fits = check_gearbox(m, s.cutter_teeth, s.work_teeth); !fits) refuse(refusals, "gear.shaper_teeth", "{}", fits.error().message);
+    return;
+  }
   const WheelSet wheels{m.gears, m.mesh_margin};
   s.index_target = reduced({m.index_constant.numerator * s.cutter_teeth, m.index_constant.denominator * s.work_teeth});
   auto index = exact_train(wheels, s.index_target);
@@ -174,6 +182,13 @@ void check_travel(const ShaperSetup& s, Refusals& refusals) {
   const double A = radians(double(last.cutter) * 1e-5), C = radians(double(last.work) * 1e-5), deg = 180 / kPi;
   need('A', std::min(0.0, A), std::max(0.0, A), "machine.file", deg);
   need('C', std::min(0.0, C), std::max(0.0, C), "machine.file", deg);
+  if (s.machine.gearbox) {
+    const double ram = kPi * s.length_mm * s.strokes_set, limit = s.machine.axes.at('Z').max_speed;
+    if (ram > limit)
+      refuse(refusals, "shaping.cutting_speed", "at {:.4f} double strokes/min the ram needs {:.4f} mm/min at its peak, limit {:.4f} of {}", s.strokes_set,
+             ram, limit, s.machine.name);
+    return;
+  }
   const auto choice = choose_timing(s);
   if (choice.least > 1)
     refuse(refusals, "shaping.cutting_speed", "at {:.4f} double strokes/min axis {} is too slow: the axes need {:.4f} of the time "

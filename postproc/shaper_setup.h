@@ -82,7 +82,7 @@ struct ShaperRefusal {
 
 /// Computes the set-up. The gear must have passed `FaceGear::make`. Refused: more than one zone, a helix (needs a guide), a
 /// shaft angle other than 90 deg, no stroke step slow enough, a stroke longer than the machine's, travels, no exact index
-/// gears (the nearest is named), a pointed cutter tip. All refusals that can be found are returned.
+/// gears (the nearest is named) or a ratio that the electronic gearbox cannot hold, a pointed cutter tip. All refusals that can be found are returned.
 std::variant<ShaperSetup, std::vector<ShaperRefusal>> plan_shaper_setup(const ShaperWork& work,
                                                                         const ShaperMachine& machine);
 

@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "geometry/base/angle.h"
+#include "postproc/shaper_chart.h"
+#include "postproc/shaper_gearbox_program.h"
 
 namespace toothpath {
 namespace {
@@ -106,11 +108,22 @@ std::string steps(const ShaperSetup& s) {
                           shortest(s.shaping.cutting_speed_m_min),
                           s.shaping.speed_basis == Shaping::SpeedBasis::mean ? "mean of the stroke" : "peak of a crank stroke",
                           value(s.speed_mean_m_min, 2, "m/min"), value(s.speed_peak_m_min, 2, "m/min")));
-  out += step(fmt::format("Index gears {} &nbsp;(a/b&middot;c/d = {}/{} &times; {}/{} = {}/{}, exact; constant{}, wheels{}).", gears_text(s.index_gears),
+  if (const auto& box = s.machine.gearbox)
+    out += step(fmt::format("Electronic gearbox{}: work axis {} follows cutter axis {}, work turns : cutter turns = {}{}/{}, exact whole numbers ({}). Lift on the back "
+                            "stroke by {}, off by {}.",
+                            mark(s, "gearbox"), box->work_axis, box->cutter_axis, s.sense < 0 ? "-" : "", s.generating.numerator,
+                            s.generating.denominator, s.machine.dialect == "siemens" ? "EGDEF, EGON, EGOFS" : "G81.5, G80.5", box->relief_on,
+                            box->relief_off));
+  else
+    out += step(fmt::format("Index gears {} &nbsp;(a/b&middot;c/d = {}/{} &times; {}/{} = {}/{}, exact; constant{}, wheels{}).", gears_text(s.index_gears),
                           s.machine.index_constant.numerator, s.machine.index_constant.denominator, s.cutter_teeth, s.work_teeth,
                           s.index_target.numerator, s.index_target.denominator, mark(s, "index.constant"),
                           mark(s, "gears.teeth")));
-  out += step(fmt::format("Feed gears {} &nbsp;for {:.6f} wanted (constant {}/{}{}): circular feed {} per double stroke on the cutter's pitch "
+  if (s.machine.gearbox)
+    out += step(fmt::format("Circular feed {} per double stroke on the cutter's pitch circle, as the program turns the cutter.",
+                            value(s.circular_feed_set_mm, 5, "mm")));
+  else
+    out += step(fmt::format("Feed gears {} &nbsp;for {:.6f} wanted (constant {}/{}{}): circular feed {} per double stroke on the cutter's pitch "
                           "circle, wanted {}.", gears_text(s.feed_gears), s.feed_target, s.machine.feed_constant.numerator,
                           s.machine.feed_constant.denominator, mark(s, "feed.constant"), value(s.circular_feed_set_mm, 5, "mm"),
                           shortest(s.shaping.circular_feed_mm)));
@@ -126,7 +139,7 @@ std::string steps(const ShaperSetup& s) {
                           "double stroke, {} double strokes.", value(s.depth_mm, 3, "mm"), value(s.infeed_per_stroke_mm, 5, "mm"),
                           s.strokes_infeed));
   out += step(fmt::format("At full depth stop the infeed and let the work make one whole turn ({} double strokes), then withdraw. CNC shaper: "
-                          "shaper_program.ngc does the same; work offsets must be zero.", s.strokes_turn));
+                          "shaper_program{} does the same; work offsets must be zero.", s.strokes_turn, shaper_program_extension(s.machine)));
   return out + "</ol>\n";
 }
 
@@ -150,7 +163,7 @@ std::string study_table(const ShaperSetup& s, const std::vector<FeedStudyRow>& s
   for (const auto& row : study)
     out += fmt::format("<tr><td>{:.4f}<td>{:.2f}<td>{:.3f}<td>{:.3f}</tr>\n", row.circular_feed_mm, row.minutes, row.deviation.max_left_um,
                        row.deviation.rms_um);
-  return out + "</table><p>Simulated strokes with the cutter's involute against the exact flank; cutter without error.</p></div>\n";
+  return out + "</table>" + feed_study_charts(study, s.shaping.circular_feed_mm) + "<p>Simulated strokes with the cutter's involute against the exact flank; cutter without error.</p></div>\n";
 }
 
 std::string constants_table(const ShaperSetup& s) {
@@ -159,12 +172,19 @@ std::string constants_table(const ShaperSetup& s) {
   };
   std::string out = "<h2>Machine values used</h2>\n<table>\n";
   out += row("stroke steps, 1/min", list_of(s.machine.stroke_steps), mark(s, "stroke.steps"));
-  out += row("index constant", fmt::format("{}/{}", s.machine.index_constant.numerator, s.machine.index_constant.denominator),
-             mark(s, "index.constant"));
-  out += row("feed constant", fmt::format("{}/{}", s.machine.feed_constant.numerator, s.machine.feed_constant.denominator),
-             mark(s, "feed.constant"));
-  out += row("change gears, each once", list_of(s.machine.gears), mark(s, "gears.teeth"));
-  out += row("mesh margin, teeth", fmt::format("{}", s.machine.mesh_margin), mark(s, "gears.mesh_margin"));
+  if (s.machine.gearbox) {
+    const auto& box = *s.machine.gearbox;
+    std::string names = fmt::format("cutter {}, work {}, relief {} / {}", box.cutter_axis, box.work_axis, box.relief_on, box.relief_off);
+    if (box.pulses_per_turn > 0) names += fmt::format(", {} pulses per cutter turn", box.pulses_per_turn);
+    out += row("electronic gearbox", names, mark(s, "gearbox"));
+  } else {
+    out += row("index constant", fmt::format("{}/{}", s.machine.index_constant.numerator, s.machine.index_constant.denominator),
+               mark(s, "index.constant"));
+    out += row("feed constant", fmt::format("{}/{}", s.machine.feed_constant.numerator, s.machine.feed_constant.denominator),
+               mark(s, "feed.constant"));
+    out += row("change gears, each once", list_of(s.machine.gears), mark(s, "gears.teeth"));
+    out += row("mesh margin, teeth", fmt::format("{}", s.machine.mesh_margin), mark(s, "gears.mesh_margin"));
+  }
   out += row("relief, longest stroke, mm", fmt::format("{}, {}", shortest(s.machine.relief_mm), shortest(s.machine.max_stroke_mm)),
              mark(s, "stroke.relief"));
   std::string travels;
