@@ -21,8 +21,8 @@ enum class SectionModel {
 [[nodiscard]] Vec3 section_model_point(SectionModel model, const BevelWall<double>& wall, double beta, double p);
 
 /// Normal distance of the machined wall from the model at (ell, height) of the wall [mm]; negative: the machined tooth is thinner
-/// there. Measured along the wall's normal at equal cone distance and height, exact to the square of the distance times the
-/// curvature (below 1e-7 mm for 0.1 mm). Empty where wall or model has no such point.
+/// there. Measured along the wall's normal at equal cone distance and height; differs from the shortest distance by the curvature
+/// times the square (below 1e-6 mm for 0.01 mm). Empty where wall or model has no such point.
 [[nodiscard]] std::optional<double> section_model_deviation(SectionModel model, const BevelWall<double>& wall, double ell, double height);
 
 /// Closed estimate of S1's deviation at (beta, p): -rho cos(psi) (gamma - beta_c)^2 / 2 [mm].

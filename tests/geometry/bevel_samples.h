@@ -5,6 +5,7 @@
 
 #include "geometry/base/angle.h"
 #include "geometry/bevel_gear.h"
+#include "geometry/bevel_limits.h"
 
 namespace toothpath::bevel_test {
 
@@ -54,6 +55,34 @@ inline BevelGear made(const BevelGearParameters& p, const FingerCutterData& c) {
   }
   return std::get<0>(g);
 }
+
+/// A gear by the design rules of the samples: h_a = m_n(R_m), h_f = 1.25 m_n(R_m), m_nj = 0.97 m_n(R_i), r_t 0.8 of its limit.
+struct Designed {
+  BevelGearParameters p;
+  FingerCutterData c;
+};
+inline Designed design(int teeth, int mate, double m, double beta_deg, double width_share, int hand = 1, double pitch_angle_deg = 0) {
+  Designed d;
+  d.p = w1();
+  d.p.teeth = teeth;
+  d.p.mate_teeth = mate;
+  d.p.pitch_angle_rad = radians(pitch_angle_deg);
+  d.p.outer_transverse_module_mm = m;
+  d.p.outer_spiral_angle_rad = radians(beta_deg);
+  d.p.hand = hand;
+  const double delta = bevel_pitch_angle(d.p), R_e = teeth * m / (2 * std::sin(delta)), R_0 = R_e / std::pow(std::cos(radians(beta_deg)), 2);
+  d.p.face_width_mm = width_share * R_e;
+  const auto m_n = [&](double R) { return 2 * std::sin(delta) / teeth * R * std::sqrt(R / R_0); };
+  const double R_m = R_e - d.p.face_width_mm / 2, R_i = R_e - d.p.face_width_mm;
+  d.p.addendum_mm = m_n(R_m);
+  d.p.dedendum_mm = 1.25 * m_n(R_m);
+  d.c = {0.97 * m_n(R_i), 0.1, d.p.addendum_mm, 1.15 * d.p.addendum_mm};
+  const double kappa = std::cos(delta) / (R_0 * std::sin(delta));
+  d.c.tip_radius_mm = 0.8 * largest_tip_radius(make_finger_profile<double>(d.p.pressure_angle_rad, kappa, d.p.dedendum_mm, d.c.module_mm,
+                                                                         1e-3 * m, d.c.rack_depth_mm, d.c.profile_height_mm));
+  return d;
+}
+inline BevelGear gear_of(const Designed& d) { return made(d.p, d.c); }
 
 /// Brute force, knowing no meshing equation: smallest signed distance of a blank point to the solid cutter over all
 /// instants of one pass, by sampling and golden section. The cutter is known only as a solid of revolution, the pass only as
