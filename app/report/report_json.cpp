@@ -67,13 +67,20 @@ void add_directions(Json& json, const RunReport& r) {
   Json list = Json::array();
   for (const auto& d : r.directions) {
     fixed = fixed && d.fixed;
-    list.push_back({{"op", d.operation},
-                    {"zone", d.zone},
-                    {"fixed", d.fixed},
-                    {"axis", vector_json(d.axis)},
-                    {"lean_deg", degrees(d.lean_rad)},
-                    {"clearance", d.clearance_mm},
-                    {"explanation", valid_utf8(d.explanation)}});
+    Json entry = {{"op", d.operation},
+                  {"zone", d.zone},
+                  {"fixed", d.fixed},
+                  {"axis", vector_json(d.axis)},
+                  {"lean_deg", degrees(d.lean_rad)},
+                  {"clearance", d.clearance_mm},
+                  {"explanation", valid_utf8(d.explanation)}};
+    if (!d.fixed && d.passes > 0) {
+      entry["lean_from_pitch_normal_deg"] = {{"min", degrees(d.least_lean_rad)}, {"max", degrees(d.greatest_lean_rad)}};
+      entry["turn_deg_per_mm"] = degrees(d.greatest_turn_rad_per_mm);
+      entry["turning_passes"] = d.turning_passes;
+      entry["passes"] = d.passes;
+    }
+    list.push_back(std::move(entry));
   }
   json["tilt"] = {{"mode", fixed ? "fixed" : "simultaneous"}, {"directions", std::move(list)}};
 }

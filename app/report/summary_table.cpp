@@ -60,6 +60,10 @@ std::string summary_table(const RunReport& report, bool color) {
     row(out, "cutting time", fmt::format("{} (with rapids {})", readable_minutes(report.feed_minutes), readable_minutes(report.total_minutes)));
     row(out, "tools", tools_text(report));
   }
+  for (const auto& d : report.directions)
+    if (!d.fixed && d.passes > 0)
+      row(out, "tool axis", fmt::format("operation {}, zone {}: simultaneous, lean {:.1f} to {:.1f} deg, turns in {} of {} passes", d.operation, d.zone,
+                                        degrees(d.least_lean_rad), degrees(d.greatest_lean_rad), d.turning_passes, d.passes));
   axis_rows(out, report);
   if (!report.machine_name.empty()) row(out, "machine", report.machine_name);
   for (const auto& name : report.assumed) row(out, "assumed", name);
