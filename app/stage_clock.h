@@ -23,11 +23,11 @@ class StageClock {
  public:
   explicit StageClock(Progress& progress) : progress_(progress) {}
 
-  /// Runs `work`, adds its wall time to stage `name` and returns what it returns.
+  /// Runs `work`, adds its wall time to stage `name` and returns what it returns. A stage inside another counts for itself only.
   template <typename Work>
   decltype(auto) run(const std::string& name, Work&& work) {
     progress_.show(name);
-    const Stopwatch stopwatch{*this, name, std::chrono::steady_clock::now()};
+    const Stopwatch stopwatch{*this, name, std::chrono::steady_clock::now(), std::exchange(inner_, 0.0)};
     return std::forward<Work>(work)();
   }
 
@@ -39,11 +39,17 @@ class StageClock {
     StageClock& clock;
     const std::string& name;
     std::chrono::steady_clock::time_point start;
-    ~Stopwatch() { clock.add(name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()); }
+    double before;  ///< what stages inside the one around this have taken so far
+    ~Stopwatch() {
+      const double all = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      clock.add(name, all - clock.inner_);
+      clock.inner_ = before + all;
+    }
   };
   void add(const std::string& name, double seconds);
 
   Progress& progress_;
+  double inner_ = 0;  ///< seconds of the stages that ran inside the current one
   std::vector<std::pair<std::string, double>> seconds_;
 };
 

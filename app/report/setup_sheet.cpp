@@ -165,13 +165,25 @@ void tool_section(Sheet& sheet, const Job& job, const RunReport& report) {
   sheet.raw("</p>\n");
 }
 
+/// How the tool axis stands in an operation: with all its zones fixed, or turning in some.
+std::string tilt_of(const RunReport& report, int operation) {
+  std::string text;
+  for (const auto& d : report.directions) {
+    if (d.operation != operation || d.fixed) continue;
+    if (d.passes == 0) return "simultaneous";
+    text += fmt::format("{}zone {}: SIMULTANEOUS, lean {:.1f} to {:.1f} deg, turns in {} of {} passes", text.empty() ? "" : "; ", d.zone,
+                        degrees(d.least_lean_rad), degrees(d.greatest_lean_rad), d.turning_passes, d.passes);
+  }
+  return text.empty() ? "fixed" : text;
+}
+
 void operation_section(Sheet& sheet, const RunReport& report) {
   sheet.heading("Operations");
-  sheet.begin_table({"op", "type", "T", "S 1/min", "feed mm/min", "cutting", "rapids"});
+  sheet.begin_table({"op", "type", "T", "S 1/min", "feed mm/min", "cutting", "rapids", "tool axis"});
   for (const auto& o : report.operations)
     sheet.row({std::to_string(o.operation), o.type, std::to_string(o.tool_number), fmt::format("{:g}", o.speed_rpm), fmt::format("{:g}", o.feed_mm_min),
-               readable_minutes(o.feed_minutes), readable_minutes(o.rapid_minutes)});
-  sheet.row({"", "all", "", "", "", readable_minutes(report.feed_minutes), readable_minutes(report.total_minutes - report.feed_minutes)});
+               readable_minutes(o.feed_minutes), readable_minutes(o.rapid_minutes), tilt_of(report, o.operation)});
+  sheet.row({"", "all", "", "", "", readable_minutes(report.feed_minutes), readable_minutes(report.total_minutes - report.feed_minutes), ""});
   sheet.end_table();
   sheet.heading("Axis ranges, machine coordinates");
   sheet.begin_table({"axis", "least", "greatest", "lower limit", "upper limit", "unit"});
