@@ -50,6 +50,7 @@ struct Job {
   Coolant coolant = Coolant::off;
   VerifySettings verify;
   std::optional<Shaping> shaping;
+  std::optional<double> torque_Nm;  ///< [load]: on the gear of the job; only forces are computed from it
   KeyPositions positions;
   std::vector<std::string> warnings;  ///< located remarks that do not stop a run, e.g. an angle that looks like radians
 

@@ -77,6 +77,10 @@ JobOrErrors parse_job(std::string_view text, const std::string& file) {
   if (auto table = root.table("shaping")) job.shaping = read_shaping(*table);
   if (auto table = root.table("coolant")) job.coolant = read_coolant(*table);
   if (auto table = root.table("verify")) job.verify = read_verify(*table);
+  if (auto table = root.table("load")) {
+    job.torque_Nm = table->number("torque", {0, 1e9, " N m", true});
+    table->finish();
+  }
   read_tools(root, job);
   auto operations = root.tables("operation");
   if (operations.size() > 100) root.refuse("operation", "{} operations exceed the limit 100", operations.size());

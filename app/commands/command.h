@@ -1,6 +1,7 @@
 // What every command gets and what it gives back. Commands print nothing: app/command_line.cpp does.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,9 +15,17 @@ struct CommandRequest {
   std::string job_file;
   std::string out_dir;
   std::string program_file;  ///< of `check`
+  std::vector<std::string> measured_files;  ///< of `correct` and `check`: measured deviations, in the order of the cuts
   bool quiet = false;
   bool color = false;  ///< of the summary
+  std::optional<int> pinion_teeth;  ///< of `contact`, as the next four: instead of the keys of [contact]
+  std::optional<double> offset_error_mm, angle_error_deg, axial_error_mm, compound_um;
+  bool as_cut = false;        ///< of `contact`: the surface that the job's operations cut, too
+  std::string study_file;     ///< of `study dhfg`
   bool quick = false;  ///< studies: the short form
+  int tool_number = 0;      ///< of `cutter`: draw this tool of the job; 0: the designed mill
+  std::string other_job;    ///< of `cutter`: judge the mills of this job too
+  std::optional<double> torque_Nm;  ///< of `forces`: on the gear of the job
 };
 
 struct CommandOutcome {

@@ -59,11 +59,16 @@ std::string study_page_html(const StudyPage& page) {
   out += "<section>\n";
   for (const auto& paragraph : page.introduction) out += fmt::format("<p>{}</p>\n", html_escape(paragraph));
   out += "</section>\n";
-  if (!page.charts.empty()) {
+  if (!page.charts.empty() || !page.figures.empty()) {
     out += "<section><div class=plots>\n";
     for (const auto& chart : page.charts) {
       out += fmt::format("<figure><figcaption>{}</figcaption>{}", html_escape(chart.title), svg_line_chart(chart));
       if (!chart.note.empty()) out += fmt::format("<p class=note>{}</p>", html_escape(chart.note));
+      out += "</figure>\n";
+    }
+    for (const auto& figure : page.figures) {
+      out += fmt::format("<figure><figcaption>{}</figcaption>{}", html_escape(figure.caption), figure.svg);
+      if (!figure.note.empty()) out += fmt::format("<p class=note>{}</p>", html_escape(figure.note));
       out += "</figure>\n";
     }
     out += "</div></section>\n";

@@ -15,6 +15,10 @@ struct StudyPage {
   bool good = true;                       ///< colour of the verdict
   std::vector<std::string> introduction;  ///< paragraphs: what the study did and how to read it
   std::vector<LineChart> charts;
+  struct Figure {
+    std::string caption, svg, note;  ///< svg as finished element
+  };
+  std::vector<Figure> figures;  ///< after the charts
   std::vector<PageTable> tables;
 };
 [[nodiscard]] std::string study_page_html(const StudyPage& page);

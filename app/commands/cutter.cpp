@@ -1,0 +1,192 @@
+#include "app/commands/cutter.h"
+
+#include <nlohmann/json.hpp>
+
+#include "app/commands/study_page.h"
+#include "app/gear_of_job.h"
+#include "app/job_file.h"
+#include "app/output_dir.h"
+#include "app/report/cutter_sheet.h"
+#include "cam/finger_milling.h"
+#include "geometry/base/angle.h"
+#include "geometry/bevel_forces.h"
+#include "geometry/bevel_limits.h"
+
+namespace toothpath {
+namespace {
+
+const std::vector<std::string> kOutputs = {"cutter.csv", "cutter.svg", "cutter.dxf", "cutter.html", "cutter.json"};
+constexpr double kDxfChord = 2e-4;  // mm
+constexpr double kCsvChord = 1e-5;  // mm
+
+/// Design for the gear of a job; refusals with their place. What speaks of the designed mill belongs to the gear.
+ValueOrErrors<FingerCutterDesign> design_for(const Job& job) {
+  const BevelGearParameters* p = job.bevel_gear();
+  if (!p) return std::vector{fail_at(job.where("gear.type"), "type = \"face_gear\", but a finger mill makes an equal_base_circle_bevel_gear")};
+  auto made = design_finger_cutter(*p);
+  if (auto* design = std::get_if<FingerCutterDesign>(&made)) return std::move(*design);
+  std::vector<Diagnostic> errors;
+  for (auto& refusal : std::get<1>(made)) {
+    const bool mill = refusal.key.starts_with("tool.");
+    Diagnostic d = located(job, mill ? "gear" : "gear." + refusal.key, std::move(refusal.diagnostic));
+    if (mill) d.message = "no finger mill by the design rules: " + d.message;
+    errors.push_back(std::move(d));
+  }
+  return errors;
+}
+
+nlohmann::ordered_json json_of(const JudgedCutter& cutter) {
+  const auto& j = cutter.judgement;
+  const auto& c = j.profile;
+  nlohmann::ordered_json out = {{"name", cutter.name},
+                                {"module", j.data.module_mm},
+                                {"tip_radius", j.data.tip_radius_mm},
+                                {"rack_depth", j.data.rack_depth_mm},
+                                {"profile_height", j.data.profile_height_mm},
+                                {"half_width", c.r_0},
+                                {"tip_depth", c.h_f},
+                                {"tip_flat_radius", c.rho_o},
+                                {"line_angle", degrees(c.phi)},
+                                {"B", {c.x_B, c.rho_B}},
+                                {"C", {c.x_C, c.rho_C}},
+                                {"D", {c.x_D, c.rho_D}},
+                                {"usable", j.usable()}};
+  auto& conditions = out["conditions"] = nlohmann::ordered_json::array();
+  const char* verdicts[] = {"met", "remark", "broken"};
+  for (const auto& k : j.conditions)
+    conditions.push_back({{"name", k.name}, {"quantity", k.quantity}, {"value", k.value}, {"limit", k.limit}, {"relation", k.at_least ? ">=" : "<="},
+                          {"unit", k.unit}, {"verdict", verdicts[static_cast<int>(k.verdict)]}, {"meaning", k.meaning}});
+  auto& walls = out["walls"] = nlohmann::ordered_json::array();
+  for (const auto& w : j.walls)
+    walls.push_back({{"half", w.half}, {"wall", w.sigma > 0 ? "L" : "U"}, {"least_um", 1000 * w.least_mm}, {"least_at", {w.least_ell, w.least_height}},
+                     {"greatest_um", 1000 * w.greatest_mm}, {"greatest_at", {w.greatest_ell, w.greatest_height}}, {"points", w.points}, {"missing", w.missing}});
+  out["small_end_overcut_um"] = 1000 * j.small_end_overcut_mm;
+  out["small_end_estimate_um"] = 1000 * j.small_end_estimate_mm;
+  out["free_width_small_end"] = j.free_width_small_mm;
+  out["free_width_large_end"] = j.free_width_large_mm;
+  out["ridge_three_passes"] = j.ridge_mm;
+  return out;
+}
+
+std::string gear_line(const BevelGear& g) {
+  const auto& p = g.parameters();
+  const char* hand = p.hand > 0 ? "right" : "left";
+  return fmt::format("z {}{}, m_te {:g}, alpha_n {:g}\u00b0, beta_e {:g}\u00b0, b {:g}, pitch angle {:.4f}\u00b0, {}", p.teeth, p.mate_teeth > 0 ? fmt::format("/{}", p.mate_teeth) : "",
+                     p.outer_transverse_module_mm, degrees(p.pressure_angle_rad), degrees(p.outer_spiral_angle_rad), p.face_width_mm, degrees(g.delta()),
+                     g.herringbone() ? fmt::format("herringbone, inner half {}, R_J {:g}", hand, g.R_ref()) : fmt::format("{} hand", hand));
+}
+
+/// Mills of the job, and those of another job with the profile that its own gear gives them.
+std::vector<JudgedCutter> judge_mills(const BevelGear& gear, const Job& job, const Job* other) {
+  std::vector<JudgedCutter> mills;
+  for (const auto& tool : job.tools)
+    if (tool.type == CutterType::finger_mill) mills.push_back({fmt::format("tool {}", tool.number), judge_finger_cutter(gear, finger_cutter_data(tool))});
+  if (!other) return mills;
+  const BevelGearParameters& p = *other->bevel_gear();
+  const double delta = bevel_pitch_angle(p), R_e = p.teeth * p.outer_transverse_module_mm / (2 * std::sin(delta));
+  const double R_0 = R_e / std::pow(std::cos(p.outer_spiral_angle_rad), 2), kappa_v = std::abs(delta - kPi / 2) < 1e-15 ? 0.0 : std::cos(delta) / (R_0 * std::sin(delta));
+  for (const auto& tool : other->tools) {
+    if (tool.type != CutterType::finger_mill) continue;
+    const FingerCutterData d = finger_cutter_data(tool);
+    mills.push_back({fmt::format("tool {} of {}", tool.number, other->name),
+                     judge_finger_profile(gear, d, make_finger_profile<double>(p.pressure_angle_rad, kappa_v, p.dedendum_mm, d.module_mm, d.tip_radius_mm, d.rack_depth_mm,
+                                                                              d.profile_height_mm))});
+  }
+  return mills;
+}
+
+PageTable summary_table_of(const std::vector<JudgedCutter>& mills) {
+  PageTable table{"Mills", {"mill", "m_nj", "r_t", "h_C", "x_D", "walls [um]", "small end [um]", "ridge [mm]", "verdict"}, {}, ""};
+  for (const auto& m : mills) {
+    const auto& j = m.judgement;
+    table.rows.push_back({m.name, fmt::format("{:.4f}", j.data.module_mm), fmt::format("{:.4f}", j.data.tip_radius_mm), fmt::format("{:.4f}", j.data.rack_depth_mm),
+                          fmt::format("{:.4f}", j.data.profile_height_mm), j.walls.empty() ? "" : fmt::format("{:+.3f} .. {:+.3f}", 1000 * j.deepest_mm(), 1000 * j.proudest_mm()),
+                          fmt::format("{:.2f}", 1000 * j.small_end_overcut_mm), fmt::format("{:.3f}", j.ridge_mm), j.usable() ? "usable" : "not usable"});
+  }
+  return table;
+}
+
+}  // namespace
+
+CommandOutcome run_cutter(const CommandRequest& request) {
+  Progress progress(request.quiet);
+  StageClock clock(progress);
+  auto output = OutputDir::open(request.out_dir, kOutputs);
+  if (!output) return failed(output.error());
+  auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
+  if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
+  const Job& job = std::get<0>(read);
+  std::optional<Job> other;
+  if (!request.other_job.empty()) {
+    auto second = clock.run("job", [&] { return read_job_file(request.other_job); });
+    if (auto* errors = std::get_if<1>(&second)) return failed(std::move(*errors));
+    other = std::move(std::get<0>(second));
+    if (!other->bevel_gear()) return failed(fail_at(other->where("gear.type"), "type = \"face_gear\", but a finger mill makes an equal_base_circle_bevel_gear"));
+  }
+  auto made = clock.run("design", [&] { return design_for(job); });
+  if (auto* errors = std::get_if<1>(&made)) return failed(std::move(*errors));
+  const FingerCutterDesign& design = std::get<0>(made);
+
+  std::vector<JudgedCutter> mills = {{"designed", judge_finger_cutter(design.gear, design.data)}};
+  for (auto& mill : clock.run("judgement", [&] { return judge_mills(design.gear, job, other ? &*other : nullptr); })) mills.push_back(std::move(mill));
+  std::size_t drawn = 0;
+  if (request.tool_number != 0) {
+    const std::string name = fmt::format("tool {}", request.tool_number);
+    while (drawn < mills.size() && mills[drawn].name != name) ++drawn;
+    if (drawn == mills.size()) return failed(fail_at(job.where("tool"), "--tool = {} is not a finger mill of the job", request.tool_number));
+    if (mills[drawn].judgement.walls.empty()) return failed(fail_at(job.where("tool"), "tool {} cannot be drawn: its profile is impossible", request.tool_number));
+  }
+
+  CutterSheet sheet;
+  sheet.job_name = job.name;
+  sheet.job_file = job.file;
+  sheet.gear_line = gear_line(design.gear);
+  sheet.warnings = job.warnings;
+  sheet.warnings.insert(sheet.warnings.end(), design.gear.warnings().begin(), design.gear.warnings().end());
+  for (std::size_t i = 0; i < mills.size(); ++i)
+    if (i != drawn) sheet.others.push_back(mills[i]);
+  sheet.drawn = mills[drawn];
+  const auto& profile = sheet.drawn.judgement.profile;
+  sheet.length_mm = profile.h_f + profile.x_D + 0.5 * profile.rho_D;
+  const auto& data = sheet.drawn.judgement.data;
+  const CutterDxf dxf = cutter_dxf(profile, sheet.length_mm,
+                                   {fmt::format("finger mill ({}), job {}", sheet.drawn.name, job.name),
+                                    fmt::format("module {:.6g}, tip radius {:.6g}, rack depth {:.6g}, profile height {:.6g}", data.module_mm, data.tip_radius_mm, data.rack_depth_mm,
+                                                data.profile_height_mm)},
+                                   kDxfChord);
+  sheet.dxf_chord_mm = dxf.chord_error_mm;
+
+  nlohmann::ordered_json json = {{"schema", 1}, {"command", "cutter"}, {"job", job.file}, {"drawn", sheet.drawn.name}};
+  json["dxf"] = {{"chord_error_um", 1000 * dxf.chord_error_mm}, {"involute_vertices", dxf.vertices}};
+  json["mills"] = nlohmann::ordered_json::array();
+  for (const auto& mill : mills) json["mills"].push_back(json_of(mill));
+  std::string balance;
+  if (design.gear.herringbone()) {
+    const auto& g = design.gear;
+    if (const auto R_J = balanced_apex_distance(g.R_i(), g.R_e(), g.R_0(), g.parameters().relief_half_width_mm)) {
+      json["balanced_apex_cone_distance"] = *R_J;
+      balance = fmt::format("axial force is the same in both senses at apex_cone_distance = {:.4f} (now {:.4f}; uniform line load)\n", *R_J, g.R_ref());
+    }
+  }
+  json["warnings"] = sheet.warnings;
+
+  CommandOutcome outcome;
+  outcome.report_json = json.dump(2) + "\n";
+  std::optional<FingerProfile<double>> compared;
+  if (!sheet.others.empty()) compared = sheet.others.front().judgement.profile;
+  const std::string svg = cutter_svg(profile, sheet.length_mm, cutter_drawing_scale(profile, sheet.length_mm, 160, 240), compared, true);
+  for (const auto& [name, content] : {std::pair<std::string, std::string>{"cutter.csv", cutter_csv(profile, kCsvChord)}, {"cutter.svg", svg}, {"cutter.dxf", dxf.text},
+                                      {"cutter.html", cutter_sheet_html(sheet)}, {"cutter.json", outcome.report_json}})
+    if (const auto written = output->write(name, content); !written) return failed(written.error());
+  progress.clear();
+  if (const auto committed = output->commit(); !committed) return failed(committed.error());
+  outcome.summary = table_text(summary_table_of(mills));
+  for (const auto& mill : mills)
+    for (const auto& c : mill.judgement.conditions)
+      if (c.verdict != Verdict::met) outcome.summary += fmt::format("{}: {}\n", mill.name, c.text());
+  for (const auto& warning : sheet.warnings) outcome.summary += "warning: " + warning + "\n";
+  outcome.summary += balance + "files in " + request.out_dir + "\n";
+  return outcome;
+}
+
+}  // namespace toothpath
