@@ -158,33 +158,4 @@ Result<std::vector<ToolMotion>> tool_motions(const OperationTrace& trace, const 
   return out;
 }
 
-Status check_rapids(const OperationTrace& trace, const NcControl& control, const Machine& machine, const Setup& setup,
-                    const ClearanceBody& body) {
-  const auto motions = tool_motions(trace, {}, control, machine, setup, 1, 0.001, 1e-3);
-  if (!motions) return motions.error();
-  for (std::size_t i = 1; i < trace.moves.size(); ++i) {
-    const ExecutedMove &a = trace.moves[i - 1], &b = trace.moves[i];
-    if (!b.rapid || !b.known) continue;
-    const bool xy = a.joints[0] != b.joints[0] || a.joints[1] != b.joints[1];
-    const bool z = a.joints[2] != b.joints[2];
-    const bool rotary = a.joints[3] != b.joints[3] || a.joints[4] != b.joints[4];
-    if (int{xy} + int{z} + int{rotary} > 1)
-      return fail_as(DiagnosticKind::verification, "line {}: a rapid moves more than one group of axes", b.line);
-  }
-  for (const auto& m : *motions) {
-    if (!m.rapid) continue;
-    const double span = (m.tip_to - m.tip_from).norm();
-    const int n = std::max(1, static_cast<int>(std::ceil(span / 0.5)));
-    for (int s = 0; s <= n; ++s) {
-      const Vec3 p = m.tip_from + (m.tip_to - m.tip_from) * (static_cast<double>(s) / n);
-      const bool inside = p.head<2>().norm() < body.radius_mm - m.deviation_mm && p.z() > body.z_min_mm + m.deviation_mm &&
-                          p.z() < body.z_max_mm - m.deviation_mm;
-      if (inside)
-        return fail_as(DiagnosticKind::verification, "line {}: a rapid passes through the part at r {:.3f} z {:.3f} mm", m.line,
-                       p.head<2>().norm(), p.z());
-    }
-  }
-  return Ok{};
-}
-
 }  // namespace toothpath

@@ -124,8 +124,10 @@ struct ClComparison {
 [[nodiscard]] ClComparison compare_with_cl(std::span<const ToolMotion> motions, std::span<const ClPath* const> paths,
                                            double tolerance_mm, double axis_tolerance_rad);
 
-/// Rapids of a trace: one group of axes a move (Z, or XY, or rotaries), rotaries only while the tip is outside `body`
-/// (cylinder about the gear axis in W), the tip outside `body` altogether.
+/// Rapids of a trace: one group of axes a move (Z, or XY, or rotaries), and every body of the tool outside `body` (cylinder
+/// about the gear axis in W) at every moment, proven. `tools`: the job's; without them only the tip is looked at.
+[[nodiscard]] Status check_rapids(const OperationTrace& trace, const NcControl& control, const Machine& machine, const Setup& setup,
+                                  const ClearanceBody& body, std::span<const ToolAssembly> tools);
 [[nodiscard]] Status check_rapids(const OperationTrace& trace, const NcControl& control, const Machine& machine,
                                   const Setup& setup, const ClearanceBody& body);
 

@@ -124,7 +124,7 @@ Result<ProgramProof> prove_program(std::string_view text, const std::string& fil
     });
     if (!motions) return motions.error();
     proof.motions.insert(proof.motions.end(), motions->begin(), motions->end());
-    if (const auto clear = check_rapids(trace, *control, machine, *job.setup, body); !clear) proof.reasons.push_back(clear.error().message);
+    if (const auto clear = check_rapids(trace, *control, machine, *job.setup, body, job.tools); !clear) proof.reasons.push_back(clear.error().message);
   }
   // Teeth that are written out one by one: what is the first tooth again, turned, need not be proven again.
   if (!proof.read.copies.copies && !job.verify.all_teeth)
