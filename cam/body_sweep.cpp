@@ -176,15 +176,44 @@ class Sweep {
       const auto& cell = part_.cells(key.zone)[key.cell];
       const auto target = std::uint32_t(targets_.size());
       targets_.push_back({key.zone, key.tooth, key.cell});
-      std::array<Vec3, 4> p;
-      for (std::size_t n = 0; n < 4; ++n) p[n] = turned(cell.corner[n], key.tooth * pitch);
-      pieces_.push_back({{p[0], p[1], p[2]}, target, 0, 1});
-      pieces_.push_back({{p[1], p[2], p[3]}, target, 0, 1});
+      for (const std::size_t first : {0, 1}) {
+        const auto polygon = on_ring(cell, {cell.corner[first], cell.corner[first + 1], cell.corner[first + 2]});
+        for (std::size_t n = 1; n + 1 < polygon.size(); ++n)
+          pieces_.push_back({{turned(polygon[0], key.tooth * pitch), turned(polygon[n], key.tooth * pitch), turned(polygon[n + 1], key.tooth * pitch)}, target, 0, 1});
+      }
     }
   }
 
-  void note(Target& target, double d, const Vec3& p, double t) {
+  /// The sheet goes on above the tip and beyond the ends of the ring: what of a facet may stand for material, widened by the sag.
+  [[nodiscard]] std::vector<Vec3> on_ring(const GearDistance::Cell& cell, std::vector<Vec3> polygon) const {
+    if (!cell.sheet) return polygon;
+    const auto& space = part_.space(cell.zone);
+    const double r_in = space.ring().zone.inner_radius_mm, r_out = space.ring().zone.outer_radius_mm, sag = part_.cell_sag_mm();
+    const Vec3 outwards = Vec3(cell.centre.x(), cell.centre.y(), 0).normalized();
+    double tip = -INFINITY, across = 0;
+    for (const auto& p : cell.corner) {
+      tip = std::max(tip, space.surface().z_tip(std::clamp(std::hypot(p.x(), p.y()), r_in, r_out)));
+      across = std::max(across, p.cross(outwards).z() * p.cross(outwards).z());
+    }
+    polygon = cut(polygon, Vec3::UnitZ(), tip + sag);
+    polygon = cut(polygon, outwards, r_out + sag);
+    return cut(polygon, -outwards, -r_in + across / r_in + sag);
+  }
+  /// The part of a convex polygon where n.p <= limit.
+  static std::vector<Vec3> cut(const std::vector<Vec3>& polygon, const Vec3& n, double limit) {
+    std::vector<Vec3> out;
+    for (std::size_t k = 0; k < polygon.size(); ++k) {
+      const Vec3 &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+      const double da = n.dot(a) - limit, db = n.dot(b) - limit;
+      if (da <= 0) out.push_back(a);
+      if ((da < 0 && db > 0) || (da > 0 && db < 0)) out.push_back(a + (b - a) * (da / (da - db)));
+    }
+    return out;
+  }
+
+  void note(Target& target, double d, const Vec3& p, double t, bool curved) {
     best_ = std::min(best_, d);
+    if (!curved) best_flat_ = std::min(best_flat_, d);
     if (d >= target.found) return;
     target.found = d;
     target.t = t;
@@ -221,19 +250,21 @@ class Sweep {
       double least = INFINITY;
       for (const auto& v : x) least = std::min(least, g.dot(v - centre));
       least += d - slack(arm, piece.t1 - piece.t0) - (curved ? sag : 0);
-      const bool news = least < std::min(proven_, o_.enough_mm);
-      if (!news && (best_ >= o_.contact_mm || least >= best_)) continue;
+      // A curved facet is of interest where it lowers the bound; a flat one also where its own least gap is not known yet.
+      const bool contact = best_ < o_.contact_mm;
+      if (least >= (contact && !curved ? std::min(best_flat_, o_.contact_mm) : std::min(proven_, o_.enough_mm)) && (!contact || least >= best_)) continue;
       for (std::size_t k = 0; k < 3; ++k) {
-        note(target, frustum_distance(x[k], f_), piece.p[k], piece.t0);
-        note(target, frustum_distance(x[k + 3], f_), piece.p[k], piece.t1);
+        note(target, frustum_distance(x[k], f_), piece.p[k], piece.t0, curved);
+        note(target, frustum_distance(x[k + 3], f_), piece.p[k], piece.t1, curved);
       }
-      if (!news) continue;
       if (best_ < -std::max(0.25, 0.1 * widest_)) {
         proven_ = -widest_;  // no place lies deeper in a body than its radius
         return;
       }
+      if (curved && least >= proven_) continue;
       const double fixed = m_.deviation_mm + m_.axis_deviation * arm + (curved ? sag : 0);
-      if (least + fixed >= best_ - leeway(curved) || std::max(size, moved) < kSmallest || ++examined > kMostPieces) {
+      const double reached = contact && !curved ? std::min(best_flat_, o_.contact_mm) : best_;
+      if (least + fixed >= reached - leeway(curved) || std::max(size, moved) < kSmallest || ++examined > kMostPieces) {
         proven_ = std::min(proven_, least);
         continue;
       }
@@ -293,21 +324,31 @@ class Sweep {
     const auto& zone = space.ring().zone;
     Sight s{INFINITY, Vec3::Zero(), u, v, std::clamp(t, 0.0, 1.0)};
     auto q = space.point(piece, u, v);
-    for (int k = 0; q && k < 4; ++k) {
-      const double r = std::hypot(q->p.x(), q->p.y()), wanted = std::clamp(r, zone.inner_radius_mm, zone.outer_radius_mm);
-      if (std::abs(r - wanted) < 1e-9) break;
-      const auto d = space.at(piece, u, s.v);
+    const auto stands = [&](const Vec3& p) {
+      const double r = std::hypot(p.x(), p.y()), inside = std::clamp(r, zone.inner_radius_mm, zone.outer_radius_mm);
+      return Vec2(inside - r, std::min(0.0, space.surface().z_tip(inside) - p.z()));  // what it lacks in r and z
+    };
+    for (int k = 0; q && k < 8; ++k) {
+      const Vec2 lack = stands(q->p);
+      if (std::abs(lack.x()) < 1e-10 && std::abs(lack.y()) < 1e-10) break;
+      const auto d = space.at(piece, s.u, s.v);
       if (!d) return s;
-      s.v += (wanted - r) * r / (d->p.x() * d->pv.x() + d->p.y() * d->pv.y());
-      q = space.point(piece, u, s.v);
+      const double r = std::hypot(d->p.x(), d->p.y());
+      const double ru = (d->p.x() * d->pu.x() + d->p.y() * d->pu.y()) / r, rv = (d->p.x() * d->pv.x() + d->p.y() * d->pv.y()) / r;
+      if (std::abs(lack.y()) < 1e-10) {
+        s.v += lack.x() / rv;
+      } else {  // to the tip edge, at the radius where it stands or at the end
+        const double det = ru * d->pv.z() - rv * d->pu.z();
+        s.u += (lack.x() * d->pv.z() - rv * lack.y()) / det;
+        s.v += (ru * lack.y() - lack.x() * d->pu.z()) / det;
+      }
+      q = space.point(piece, s.u, s.v);
     }
-    if (!q) return s;
-    const double r = std::hypot(q->p.x(), q->p.y());
-    if (r < zone.inner_radius_mm - 1e-6 || r > zone.outer_radius_mm + 1e-6 || q->p.z() > space.surface().z_tip(r) + 1e-9) return s;
+    if (!q || stands(q->p).cwiseAbs().maxCoeff() > 1e-7) return s;
     const auto& w = space.surface().shaper;
     const bool flank = piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus;
     const double low = flank ? -INFINITY : piece == SpacePiece::root ? 0 : w.A_t, high = flank ? w.theta_t : piece == SpacePiece::root ? 1 : w.A_e;
-    if (u < low || u > high) return s;
+    if (s.u < low || s.u > high) return s;
     s.p = q->p;
     s.gap = frustum_distance(seen(turned(q->p, target.tooth * part_.gear().pitch()), s.t), f_);
     return s;
@@ -352,7 +393,8 @@ class Sweep {
   Vec3 normal_, side_;
   std::vector<Target> targets_;
   std::vector<Piece> pieces_;
-  double proven_ = INFINITY, best_ = INFINITY;
+  double proven_ = INFINITY;
+  double best_ = INFINITY, best_flat_ = INFINITY;  // least gap found: on any facet, on flat ones
 };
 
 }  // namespace

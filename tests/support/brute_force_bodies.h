@@ -1,0 +1,52 @@
+// How deep a body of a tool cuts into a face gear, the plain way: signed distances at a dense set of boundary points of the gear and at
+// many moments of the motion, the deepest improved by a pattern search. Shares nothing with the bounds of cam.
+#pragma once
+
+#include <vector>
+
+#include "cam/tool_motion.h"
+#include "tests/support/brute_force_gear_solid.h"
+
+namespace toothpath::test {
+
+/// A body about the tool axis: a truncated cone, or a capsule (cylinder with round ends) where `round`.
+struct BruteBody {
+  double from = 0, to = 0;                    ///< heights above the tip, mm
+  double radius_from = 0, radius_to = 0;
+  bool round = false;
+};
+
+struct BruteDepth {
+  double depth = -INFINITY;  ///< > 0: cuts; < 0: the least gap
+  Vec3 place = Vec3::Zero(); ///< gear frame
+  int tooth = 0, zone = 0, patch = 0;
+  double x = 0, y = 0, t = 0;
+};
+
+class BruteForceBodies {
+ public:
+  /// `rows` x `columns` boundary points a patch.
+  explicit BruteForceBodies(const FaceGear& gear, int rows = 24, int columns = 24);
+
+  /// Deepest place over the whole motion, over `moments` + 1 moments and the teeth near the tool; the pattern search starts from up
+  /// to `most_starts` places.
+  [[nodiscard]] BruteDepth deepest(const BruteBody& body, const ToolMotion& motion, int moments = 6, std::size_t most_starts = 8) const;
+  /// The same from one place on: only the pattern search.
+  [[nodiscard]] BruteDepth improved(const BruteBody& body, const ToolMotion& motion, BruteDepth start, double first_step = 0.05) const;
+  [[nodiscard]] const BruteForceGearSolid& solid() const { return solid_; }
+
+ private:
+  struct Sample {
+    Vec3 p;
+    int zone, patch;
+    double x, y;
+  };
+  const FaceGear& gear_;
+  BruteForceGearSolid solid_;
+  std::vector<Sample> samples_;
+};
+
+/// Depth of one point of space in a body whose tip and axis are given.
+[[nodiscard]] double depth_in_body(const Vec3& p, const BruteBody& body, const Vec3& tip, const Vec3& axis);
+
+}  // namespace toothpath::test
