@@ -4,305 +4,11 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
-#include "geometry/face_gear_inverse.h"
+#include "geometry/touch_search.h"
 
 namespace toothpath {
-namespace {
-
-constexpr double kNever = -1e300;
-
-/// Sine and cosine once for many places.
-struct Turn {
-  double c, s;
-  explicit Turn(double angle) : c(std::cos(angle)), s(std::sin(angle)) {}
-  Vec3 operator()(const Vec3& v) const { return {c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z()}; }
-};
-
-/// The pinion's turn, times the side, that a place of the gear asks for; never where the pinion has no involute.
-double asked_turn(const Pinion<double>& pinion, int side, const Vec3& point) {
-  const auto place = pinion.place(point);
-  if (!(place.radius >= pinion.r_b) || !(place.radius <= pinion.r_a)) return kNever;
-  return side * pinion.turn_at(side, place);
-}
-
-template <typename F>
-double golden_place(F&& f, double lo, double hi) {
-  constexpr double kRatio = 0.6180339887498949;
-  double a = lo, b = hi, c = b - kRatio * (b - a), d = a + kRatio * (b - a), fc = f(c), fd = f(d);
-  for (int k = 0; k < 40; ++k) {
-    if (fc > fd) {
-      b = d, d = c, fd = fc;
-      c = b - kRatio * (b - a), fc = f(c);
-    } else {
-      a = c, c = d, fc = fd;
-      d = a + kRatio * (b - a), fd = f(d);
-    }
-  }
-  const double m = (a + b) / 2, fm = f(m), flo = f(lo), fhi = f(hi);
-  if (flo > fm && flo >= fhi) return lo;
-  return fhi > fm ? hi : m;
-}
-
-/// The search for the first touch on one flank at one position of the gear: the highest asked turn over the grid and between its nodes.
-class TouchSearch {
- public:
-  TouchSearch(const ContactMember& member, double phi_2)
-      : flank_(member.flank), pinion_(member.pinion), turn_(phi_2), exact_(member.flank.exact()) {
-    nodes_.resize(flank_.points.size());
-    for (std::size_t k = 0; k < nodes_.size(); ++k) {
-      nodes_[k] = asked_turn(pinion_, flank_.side, turn_(flank_.points[k] + flank_.deviation_mm[k] * flank_.normals[k]));
-      if (nodes_[k] > kNever) any_ = true;
-    }
-  }
-
-  [[nodiscard]] bool any() const { return any_; }
-  [[nodiscard]] const std::vector<double>& nodes() const { return nodes_; }
-
-  /// Best place between the nodes.
-  [[nodiscard]] std::optional<TouchPlace> best() const {
-    if (!any_) return std::nullopt;
-    int best_column = -1;
-    double best_value = kNever;
-    for (int c = 0; c < flank_.columns; ++c) {
-      const double value = estimate(c);
-      if (value > best_value) best_value = value, best_column = c;
-    }
-    if (best_column < 0) return std::nullopt;
-    const auto along = [&](double column) { return value_at(row_of(column, true), column); };
-    // The bracket moves on while the best place lies at its end: neighbouring columns differ by less than their estimates may err.
-    double column = best_column;
-    for (int k = 0; k < flank_.columns; ++k) {
-      const double from = std::max(0.0, std::floor(column) - 1), to = std::min(flank_.columns - 1.0, std::ceil(column) + 1);
-      const double next = golden_place(along, from, to);
-      const bool at_end = (next == from && from > 0) || (next == to && to < flank_.columns - 1);
-      column = next;
-      if (!at_end) break;
-    }
-    TouchPlace place;
-    place.column = column;
-    place.row = row_of(column, true);
-    place.point = point_at(place.row, column);
-    place.phi_1 = flank_.side * value_at(place.row, column);
-    return place;
-  }
-
- private:
-  struct Cell {
-    std::size_t k00, k01, k10, k11;
-    double u, v;
-  };
-  [[nodiscard]] Cell cell(double row, double column) const {
-    const int r = std::clamp(static_cast<int>(row), 0, flank_.rows - 2), c = std::clamp(static_cast<int>(column), 0, flank_.columns - 2);
-    const std::size_t k = flank_.index(r, c), w = static_cast<std::size_t>(flank_.columns);
-    return {k, k + 1, k + w, k + w + 1, row - r, column - c};
-  }
-  template <typename Field>
-  static double blend(const Field& f, const Cell& c) {
-    return (1 - c.u) * ((1 - c.v) * f[c.k00] + c.v * f[c.k01]) + c.u * ((1 - c.v) * f[c.k10] + c.v * f[c.k11]);
-  }
-  /// Parameters are blended, so the point lies on the exact flank; its deviation is blended too.
-  [[nodiscard]] Vec3 point_at(double row, double column) const {
-    const Cell c = cell(row, column);
-    const auto p = flank_.surface.flank(flank_.side, blend(flank_.theta, c), blend(flank_.B, c));
-    return exact_ ? p.p : Vec3(p.p + blend(flank_.deviation_mm, c) * p.n);
-  }
-  [[nodiscard]] double value_at(double row, double column) const {
-    return row < 0 ? kNever : asked_turn(pinion_, flank_.side, turn_(point_at(row, column)));
-  }
-  /// Highest asked turn of a node column: the parabola through the best node and its neighbours, or the edge of the pinion's involute.
-  [[nodiscard]] double estimate(int c) const {
-    const double row = row_of(c, false);
-    if (row < 0) return kNever;
-    const double value = value_at(row, c);
-    const int r = static_cast<int>(row);
-    if (row != r || r == 0 || r + 1 >= flank_.rows) return value;
-    const double below = nodes_[flank_.index(r - 1, c)], above = nodes_[flank_.index(r + 1, c)];
-    if (below == kNever || above == kNever) return value;
-    const double bend = 2 * value - below - above;
-    return bend > 0 ? value + (above - below) * (above - below) / (8 * bend) : value;
-  }
-  /// The best row of a column; with `refine` between the nodes. -1: none is within the pinion's involute.
-  [[nodiscard]] double row_of(double column, bool refine) const {
-    const int c0 = std::clamp(static_cast<int>(column), 0, flank_.columns - 1);
-    const bool node_column = column == c0;
-    const auto at_node = [&](int r) { return node_column ? nodes_[flank_.index(r, c0)] : value_at(r, column); };
-    int best = -1, first = -1, last = -1;
-    double value = kNever;
-    for (int r = 0; r < flank_.rows; ++r) {
-      const double f = at_node(r);
-      if (f == kNever) continue;
-      if (first < 0) first = r;
-      last = r;
-      if (f > value) value = f, best = r;
-    }
-    if (best < 0) return -1;
-    // Where the pinion's involute ends between two nodes its edge is a place of its own.
-    const double low = first > 0 ? edge(column, first, first - 1) : 0;
-    const double high = last + 1 < flank_.rows ? edge(column, last, last + 1) : flank_.rows - 1;
-    const double from = std::max(low, double(best - 1)), to = std::min(high, double(best + 1));
-    double row = best;
-    if (refine) row = golden_place([&](double r) { return value_at(r, column); }, from, to);
-    for (const double end : {low, high})
-      if (value_at(end, column) > value_at(row, column)) row = end;
-    return row;
-  }
-  /// Row between `inside` and `outside` where the asked turn ceases to exist, on the inside.
-  [[nodiscard]] double edge(double column, double inside, double outside) const {
-    for (int k = 0; k < 48; ++k) {
-      const double middle = (inside + outside) / 2;
-      (value_at(middle, column) > kNever ? inside : outside) = middle;
-    }
-    return inside;
-  }
-
-  const ContactFlank& flank_;
-  const Pinion<double>& pinion_;
-  Turn turn_;
-  bool exact_, any_ = false;
-  std::vector<double> nodes_;
-};
-
-}  // namespace
-
-Status check_pinion(const FaceGearParameters& gear, int pinion_teeth) {
-  if (pinion_teeth < 5) return fail("pinion_teeth = {} is below 5", pinion_teeth);
-  if (pinion_teeth > gear.shaper_teeth)
-    return fail("pinion_teeth = {} exceeds the shaper's {}: such a pinion bears on the ends of the face", pinion_teeth, gear.shaper_teeth);
-  return Ok{};
-}
-
-bool ContactFlank::exact() const {
-  return std::all_of(deviation_mm.begin(), deviation_mm.end(), [](double d) { return d == 0; });
-}
-
-Result<ContactFlank> exact_flank(const FaceGear& gear, int zone, int side, int rows, int columns) {
-  if (rows < 3 || columns < 3) return fail("a flank needs at least 3 x 3 places, not {} x {}", rows, columns);
-  const FaceGearRing& ring = gear.rings().at(static_cast<std::size_t>(zone));
-  ContactFlank flank;
-  flank.surface = ring.surface;
-  flank.zone = zone;
-  flank.side = side;
-  flank.rows = rows;
-  flank.columns = columns;
-  const auto size = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
-  flank.theta.resize(size);
-  flank.B.resize(size);
-  flank.points.resize(size);
-  flank.normals.resize(size);
-  flank.deviation_mm.assign(size, 0.0);
-  std::optional<FlankCoordinates> near;
-  for (int c = 0; c < columns; ++c) {
-    const double r = ring.zone.inner_radius_mm + (ring.zone.outer_radius_mm - ring.zone.inner_radius_mm) * c / (columns - 1);
-    const auto low = fillet_line_height(ring.surface, side, r);
-    auto top = low ? invert_flank(ring.surface, side, r, ring.surface.z_tip(r), near) : std::nullopt;
-    if (!top) return fail("the flank of side {:+} does not reach from tip to fillet at radius {:.4f} mm", side, r);
-    double z_top = ring.surface.z_tip(r);
-    if (top->theta < 0) {  // the tip lies inside the base circle: the involute starts lower
-      const auto B = flank_B_at_radius(ring.surface, side, 0, r, top->B);
-      if (!B) return fail("no start of the involute of side {:+} at radius {:.4f} mm", side, r);
-      top->theta = 0;
-      top->B = *B;
-      z_top = ring.surface.flank_housing(side, 0.0, *B).z();
-    }
-    near = top;
-    for (int k = 0; k < rows; ++k) {
-      const int row = rows - 1 - k;
-      const double z = z_top + (*low - z_top) * k / (rows - 1);
-      const auto at = k == 0 ? top : invert_flank(ring.surface, side, r, z, near);
-      if (!at) return fail("no point of the flank of side {:+} at radius {:.4f} mm, height {:.4f} mm", side, r, z);
-      if (k > 0) near = at;
-      const std::size_t n = flank.index(row, c);
-      flank.theta[n] = at->theta;
-      flank.B[n] = at->B;
-      const auto p = ring.surface.flank(side, at->theta, at->B);
-      flank.points[n] = p.p;
-      flank.normals[n] = p.n;
-    }
-    near = top;
-  }
-  return flank;
-}
-
-Result<ContactFlank> measured_flank(const FaceGear& gear, int zone, int side, int rows, int columns, const std::vector<Vec3>& nominal,
-                                    const std::vector<double>& deviation_mm) {
-  const auto size = static_cast<std::size_t>(std::max(0, rows)) * static_cast<std::size_t>(std::max(0, columns));
-  if (rows < 3 || columns < 3) return fail("a flank needs at least 3 x 3 places, not {} x {}", rows, columns);
-  if (nominal.size() != size || deviation_mm.size() != size)
-    return fail("{} x {} places, but {} points and {} deviations", rows, columns, nominal.size(), deviation_mm.size());
-  ContactFlank flank;
-  flank.surface = gear.rings().at(static_cast<std::size_t>(zone)).surface;
-  flank.zone = zone;
-  flank.side = side;
-  flank.rows = rows;
-  flank.columns = columns;
-  flank.theta.resize(size);
-  flank.B.resize(size);
-  flank.points.resize(size);
-  flank.normals.resize(size);
-  flank.deviation_mm.resize(size);
-  const auto last = static_cast<std::size_t>((rows - 1) * columns);
-  const bool flip_rows = nominal[0].z() > nominal[last].z();
-  const auto radius = [](const Vec3& p) { return std::hypot(p.x(), p.y()); };
-  const bool flip_columns = radius(nominal[0]) > radius(nominal[static_cast<std::size_t>(columns - 1)]);
-  std::optional<FlankCoordinates> near;
-  for (int r = 0; r < rows; ++r)
-    for (int c = 0; c < columns; ++c) {
-      const auto from = static_cast<std::size_t>((flip_rows ? rows - 1 - r : r) * columns + (flip_columns ? columns - 1 - c : c));
-      const Vec3& p = nominal[from];
-      const auto at = invert_flank(flank.surface, side, radius(p), p.z(), near);
-      if (!at) return fail("the point at radius {:.4f} mm, height {:.4f} mm is not on the flank of side {:+}", radius(p), p.z(), side);
-      near = at;
-      const std::size_t n = flank.index(r, c);
-      flank.theta[n] = at->theta;
-      flank.B[n] = at->B;
-      const auto exact = flank.surface.flank(side, at->theta, at->B);
-      flank.points[n] = exact.p;
-      flank.normals[n] = exact.n;
-      flank.deviation_mm[n] = deviation_mm[from];
-      if (c == columns - 1) near.reset();
-    }
-  return flank;
-}
 
 std::optional<TouchPlace> touch(const ContactMember& member, double phi_2) { return TouchSearch(member, phi_2).best(); }
-
-std::optional<PathRange> path_on_flanks(const ContactPath<double>& path, const ContactMember& member) {
-  const auto& f = member.flank;
-  const Pinion<double>& pinion = member.pinion;
-  const auto first = static_cast<std::size_t>(f.columns - 1);
-  const double r_in = std::hypot(f.points[0].x(), f.points[0].y()), r_out = std::hypot(f.points[first].x(), f.points[first].y());
-  const auto inside = [&](double theta_1) {
-    const double theta = path.theta(theta_1);
-    if (theta < 0 || theta > f.surface.shaper.theta_t) return false;
-    const Vec3 p = path.point(theta_1);
-    const double r = std::hypot(p.x(), p.y());
-    return r >= r_in && r <= r_out && p.z() <= f.surface.z_tip(r) && f.surface.flank_J(f.side, theta, path.B) > 0;
-  };
-  const int n = 400;
-  double from = -1, to = -1;
-  for (int k = 0; k <= n; ++k) {
-    const double x = pinion.theta_a * k / n;
-    if (!inside(x)) {
-      if (from >= 0) break;
-      continue;
-    }
-    if (from < 0) from = x;
-    to = x;
-  }
-  if (from < 0) return std::nullopt;
-  const auto end = [&](double in, double out) {
-    for (int k = 0; k < 60; ++k) {
-      const double middle = (in + out) / 2;
-      (inside(middle) ? in : out) = middle;
-    }
-    return in;
-  };
-  PathRange range;
-  range.theta_1_from = from > 0 ? end(from, from - pinion.theta_a / n) : 0;
-  range.theta_1_to = to < pinion.theta_a ? end(to, std::min(pinion.theta_a, to + pinion.theta_a / n)) : to;
-  range.ratio = (range.theta_1_to - range.theta_1_from) * std::abs(path.per_theta) * pinion.teeth / (2 * kPi);
-  return range;
-}
 
 namespace {
 
@@ -313,9 +19,10 @@ struct Lattice {
   [[nodiscard]] double phi_2(int k) const { return start + step * k; }
 };
 
+/// One member at every lattice position.
 struct MemberRoll {
-  std::vector<std::optional<TouchPlace>> touches;  ///< by lattice position
-  std::vector<std::vector<double>> nodes;
+  std::vector<std::optional<TouchPlace>> touches;
+  std::vector<std::vector<double>> nodes;  ///< asked turns of the grid's places; empty where none is in reach
 };
 
 double median_of(const ContactFlank& f, const std::vector<double>& values) {
@@ -391,63 +98,70 @@ void describe(const ContactFlank& f, double compound, FlankPattern& pattern) {
   pattern.width_mm = 4 * std::sqrt(std::max(0.0, mean - spread));
 }
 
-}  // namespace
+/// What a roll works on; `contact` is what it finds first: side * phi_1 of the pinion at each position of one pitch.
+struct Roll {
+  const std::vector<ContactMember>& members;
+  const RollOptions& options;
+  Lattice lattice;
+  int side = 1, steps = 0;
+  double pinion_pitch = 0, ratio = 0;
+  std::vector<MemberRoll> rolls;
+  std::vector<double> contact;
 
-Result<RollResult> roll(const std::vector<ContactMember>& members, const RollOptions& options) {
-  if (members.empty()) return fail("no flank to roll on");
-  if (options.steps < 4 || options.steps > 2000) return fail("{} positions a pitch: 4 to 2000 are possible", options.steps);
-  const Lattice lattice = lattice_of(members, options);
-  const int side = members.front().flank.side, n = options.steps;
-  const auto at = [&](int k) { return static_cast<std::size_t>(k - lattice.first); };
-  const double pinion_pitch = 2 * kPi / members.front().pinion.teeth, ratio = members.front().pinion.ratio;
-
-  std::vector<MemberRoll> rolls(members.size());
-  for (std::size_t m = 0; m < members.size(); ++m)
-    for (int k = lattice.first; k <= lattice.last; ++k) {
-      const TouchSearch search(members[m], lattice.phi_2(k));
-      rolls[m].touches.push_back(search.best());
-      rolls[m].nodes.push_back(search.any() ? search.nodes() : std::vector<double>{});
-    }
-
-  // One pitch of positions; the pair of tooth j stands where tooth 0 stands j pitches later.
-  RollResult result;
-  std::vector<double> contact(static_cast<std::size_t>(n), kNever);  // side * phi_1 of the pinion
-  const auto pairs = [&](int k, auto&& visit) {
-    int j = (lattice.first - k) / n - 1;
-    for (; k + j * n <= lattice.last; ++j)
-      if (k + j * n >= lattice.first) visit(j, k + j * n);
-  };
-  for (int k = 0; k < n; ++k) {
-    RollPosition position;
-    position.phi_2 = lattice.phi_2(k);
-    double& best = contact[static_cast<std::size_t>(k)];
-    for (std::size_t m = 0; m < members.size(); ++m)
-      pairs(k, [&](int j, int position_k) {
-        const auto& place = rolls[m].touches[at(position_k)];
-        if (!place) return;
-        const double value = side * (place->phi_1 - j * pinion_pitch);
-        if (value <= best) return;
-        best = value;
-        position.member = static_cast<int>(m);
-        position.tooth = j;
-        position.radius_mm = std::hypot(place->point.x(), place->point.y());
-        position.height_mm = place->point.z();
-      });
-    if (best == kNever) return fail("flank {:+}: the pinion of {} teeth does not reach the gear", side, members.front().pinion.teeth);
-    position.phi_1 = side * best;
-    position.error_rad = position.phi_2 - position.phi_1 * ratio;
-    // Which teeth are close: over all members, tooth by tooth.
-    pairs(k, [&](int j, int position_k) {
-      double gap = 1e300;
-      for (std::size_t m = 0; m < members.size(); ++m)
-        if (const auto& place = rolls[m].touches[at(position_k)])
-          gap = std::min(gap, (best - side * (place->phi_1 - j * pinion_pitch)) * members[m].pinion.r_b * members[m].pinion.cos_bb);
-      position.touching += gap <= options.touch_mm;
-      position.marking += gap <= options.compound_mm;
-    });
-    result.cycle.push_back(position);
+  [[nodiscard]] std::size_t at(int k) const { return static_cast<std::size_t>(k - lattice.first); }
+  /// Gap of a pair whose flanks would touch at side * phi_1 = `asked` while the pinion stands at `stand`.
+  [[nodiscard]] double gap(std::size_t member, double stand, double asked) const {
+    return (stand - asked) * members[member].pinion.r_b * members[member].pinion.cos_bb;
   }
+  /// The pairs at position k of the pitch: tooth j stands where tooth 0 stands j pitches later.
+  template <typename Visit>
+  void pairs(int k, Visit visit) const {
+    for (int j = (lattice.first - k) / steps - 1; k + j * steps <= lattice.last; ++j)
+      if (k + j * steps >= lattice.first) visit(j, k + j * steps);
+  }
+};
 
+void search_touches(Roll& roll) {
+  roll.rolls.resize(roll.members.size());
+  for (std::size_t m = 0; m < roll.members.size(); ++m)
+    for (int k = roll.lattice.first; k <= roll.lattice.last; ++k) {
+      const TouchSearch search(roll.members[m], roll.lattice.phi_2(k));
+      roll.rolls[m].touches.push_back(search.best());
+      roll.rolls[m].nodes.push_back(search.any() ? search.nodes() : std::vector<double>{});
+    }
+}
+
+/// Which flank stops the pinion at position k, and how many others are near. False: none is in reach.
+bool position_of(Roll& roll, int k, RollPosition& position) {
+  double& best = roll.contact[static_cast<std::size_t>(k)];
+  position.phi_2 = roll.lattice.phi_2(k);
+  for (std::size_t m = 0; m < roll.members.size(); ++m)
+    roll.pairs(k, [&](int j, int place_k) {
+      const auto& place = roll.rolls[m].touches[roll.at(place_k)];
+      if (!place) return;
+      const double value = roll.side * (place->phi_1 - j * roll.pinion_pitch);
+      if (value <= best) return;
+      best = value;
+      position.member = static_cast<int>(m);
+      position.tooth = j;
+      position.radius_mm = std::hypot(place->point.x(), place->point.y());
+      position.height_mm = place->point.z();
+    });
+  if (best == kNever) return false;
+  position.phi_1 = roll.side * best;
+  position.error_rad = position.phi_2 - position.phi_1 * roll.ratio;
+  roll.pairs(k, [&](int j, int place_k) {
+    double gap = 1e300;
+    for (std::size_t m = 0; m < roll.members.size(); ++m)
+      if (const auto& place = roll.rolls[m].touches[roll.at(place_k)])
+        gap = std::min(gap, roll.gap(m, best, roll.side * (place->phi_1 - j * roll.pinion_pitch)));
+    position.touching += gap <= roll.options.touch_mm;
+    position.marking += gap <= roll.options.compound_mm;
+  });
+  return true;
+}
+
+void summarise(RollResult& result) {
   double low = 1e300, high = -1e300, sum = 0, touching = 0, marking = 0;
   result.least_touching = result.least_marking = 1 << 20;
   for (const auto& p : result.cycle) {
@@ -461,50 +175,67 @@ Result<RollResult> roll(const std::vector<ContactMember>& members, const RollOpt
     result.least_marking = std::min(result.least_marking, p.marking);
     result.most_marking = std::max(result.most_marking, p.marking);
   }
+  const auto n = static_cast<double>(result.cycle.size());
   result.error_range_rad = high - low;
   result.error_mean_rad = sum / n;
   result.contact_ratio = touching / n;
   result.marking_ratio = marking / n;
+}
 
-  // The pattern: least gap of every place while its tooth goes through the mesh.
-  for (std::size_t m = 0; m < members.size(); ++m) {
-    const ContactFlank& f = members[m].flank;
-    const Pinion<double>& pinion = members[m].pinion;
-    const double lever = pinion.r_b * pinion.cos_bb;
-    FlankPattern pattern;
-    pattern.gap_mm.assign(f.points.size(), 1e300);
-    std::vector<int> moment(f.points.size(), 0);
-    for (int k = lattice.first; k <= lattice.last; ++k) {
-      const int base = ((k % n) + n) % n, j = (k - base) / n;
-      const double stand = contact[static_cast<std::size_t>(base)] + side * j * pinion_pitch;
-      const auto& nodes = rolls[m].nodes[at(k)];
-      for (std::size_t p = 0; p < nodes.size(); ++p) {
-        if (nodes[p] == kNever) continue;
-        const double gap = lever * (stand - nodes[p]);
-        if (gap < pattern.gap_mm[p]) pattern.gap_mm[p] = gap, moment[p] = k;
-      }
-      const auto& place = rolls[m].touches[at(k)];
-      if (place && lever * (stand - side * place->phi_1) <= options.touch_mm) {
-        RollPosition on_path;
-        on_path.phi_2 = lattice.phi_2(k);
-        on_path.phi_1 = place->phi_1;
-        on_path.error_rad = on_path.phi_2 - on_path.phi_1 * ratio;
-        on_path.member = static_cast<int>(m);
-        on_path.radius_mm = std::hypot(place->point.x(), place->point.y());
-        on_path.height_mm = place->point.z();
-        pattern.path.push_back(on_path);
-      }
+/// Least gap of every place of a flank while its tooth goes through the mesh, and the path on which it touches.
+FlankPattern pattern_of(const Roll& roll, std::size_t m) {
+  const ContactFlank& f = roll.members[m].flank;
+  const Pinion<double>& pinion = roll.members[m].pinion;
+  FlankPattern pattern;
+  pattern.gap_mm.assign(f.points.size(), 1e300);
+  std::vector<int> moment(f.points.size(), 0);
+  for (int k = roll.lattice.first; k <= roll.lattice.last; ++k) {
+    const int base = ((k % roll.steps) + roll.steps) % roll.steps, j = (k - base) / roll.steps;
+    const double stand = roll.contact[static_cast<std::size_t>(base)] + roll.side * j * roll.pinion_pitch;
+    const auto& nodes = roll.rolls[m].nodes[roll.at(k)];
+    for (std::size_t p = 0; p < nodes.size(); ++p) {
+      if (nodes[p] == kNever) continue;
+      const double gap = roll.gap(m, stand, nodes[p]);
+      if (gap < pattern.gap_mm[p]) pattern.gap_mm[p] = gap, moment[p] = k;
     }
-    pattern.pinion_radius_mm.resize(f.points.size());
-    pattern.pinion_Z_mm.resize(f.points.size());
-    for (std::size_t p = 0; p < f.points.size(); ++p) {
-      const auto place = pinion.place(Turn(lattice.phi_2(moment[p]))(f.points[p]));
-      pattern.pinion_radius_mm[p] = place.radius;
-      pattern.pinion_Z_mm[p] = place.Z;
-    }
-    describe(f, options.compound_mm, pattern);
-    result.patterns.push_back(std::move(pattern));
+    const auto& place = roll.rolls[m].touches[roll.at(k)];
+    if (!place || roll.gap(m, stand, roll.side * place->phi_1) > roll.options.touch_mm) continue;
+    RollPosition on_path;
+    on_path.phi_2 = roll.lattice.phi_2(k);
+    on_path.phi_1 = place->phi_1;
+    on_path.error_rad = on_path.phi_2 - on_path.phi_1 * roll.ratio;
+    on_path.member = static_cast<int>(m);
+    on_path.radius_mm = std::hypot(place->point.x(), place->point.y());
+    on_path.height_mm = place->point.z();
+    pattern.path.push_back(on_path);
   }
+  for (std::size_t p = 0; p < f.points.size(); ++p) {
+    const auto place = pinion.place(GearTurn(roll.lattice.phi_2(moment[p]))(f.points[p]));
+    pattern.pinion_radius_mm.push_back(place.radius);
+    pattern.pinion_Z_mm.push_back(place.Z);
+  }
+  describe(f, roll.options.compound_mm, pattern);
+  return pattern;
+}
+
+}  // namespace
+
+Result<RollResult> roll(const std::vector<ContactMember>& members, const RollOptions& options) {
+  if (members.empty()) return fail("no flank to roll on");
+  if (options.steps < 4 || options.steps > 2000) return fail("{} positions a pitch: 4 to 2000 are possible", options.steps);
+  const Pinion<double>& pinion = members.front().pinion;
+  Roll work{members, options, lattice_of(members, options), members.front().flank.side, options.steps, 2 * kPi / pinion.teeth, pinion.ratio, {}, {}};
+  work.contact.assign(static_cast<std::size_t>(options.steps), kNever);
+  search_touches(work);
+  RollResult result;
+  for (int k = 0; k < options.steps; ++k) {
+    RollPosition position;
+    if (!position_of(work, k, position))
+      return fail("flank {:+}: the pinion of {} teeth does not reach the gear", work.side, pinion.teeth);
+    result.cycle.push_back(position);
+  }
+  summarise(result);
+  for (std::size_t m = 0; m < members.size(); ++m) result.patterns.push_back(pattern_of(work, m));
   return result;
 }
 
