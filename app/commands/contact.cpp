@@ -1,0 +1,104 @@
+#include "app/commands/contact.h"
+
+#include "app/commands/study_page.h"
+#include "app/contact_analysis.h"
+#include "app/job_file.h"
+#include "app/output_dir.h"
+#include "app/report/contact_figures.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath {
+namespace {
+
+const std::vector<std::string> kOutputs = {"contact.csv", "transmission.csv", "contact.json", "contact.html", "program."};
+
+/// Rows that resolve the cusps of a finishing operation: several to a pass.
+constexpr int kCutRows = 241, kCutColumns = 33;
+
+std::optional<Diagnostic> out_of_range(const CommandRequest& r) {
+  const auto check = [](const char* name, const std::optional<double>& value, double low, double high, const char* unit) -> std::optional<Diagnostic> {
+    if (!value || (*value >= low && *value <= high)) return std::nullopt;
+    return fail_as(DiagnosticKind::usage, "{} = {:g} is not from {:g} to {:g} {}", name, *value, low, high, unit);
+  };
+  if (auto e = check("--offset-error", r.offset_error_mm, -5, 5, "mm")) return e;
+  if (auto e = check("--axial-error", r.axial_error_mm, -5, 5, "mm")) return e;
+  if (auto e = check("--angle-error", r.angle_error_deg, -1, 1, "deg")) return e;
+  if (auto e = check("--compound", r.compound_um, 0.1, 100, "um")) return e;
+  return std::nullopt;
+}
+
+std::string page_of(const ContactAnalysis& a) {
+  StudyPage page;
+  page.title = a.job_name + ": contact";
+  page.subtitle = fmt::format("pinion of {} teeth, gear of {} teeth, compound {:g} um", a.pinion_teeth, a.gear_teeth, a.settings.compound_mm * 1000);
+  const Misalignment& moved = a.settings.moved;
+  if (moved.offset_mm != 0 || moved.axial_mm != 0 || moved.angle_rad != 0)
+    page.subtitle += fmt::format("; offset {:+g} mm, shaft angle {:+g} deg, axial {:+g} mm", moved.offset_mm, degrees(moved.angle_rad), moved.axial_mm);
+  bool edge = false;
+  for (const auto& side : a.sides) edge |= side.kind.find("edge") != std::string::npos;
+  page.good = !edge;
+  page.verdict = edge ? "edge contact" : "contact inside the flanks";
+  page.introduction = {
+      "Both members turn as rigid bodies without load, as on a rolling tester. The compound marks every place where the flanks come closer than its "
+      "thickness at any moment of the mesh; the orange line is the path of contact.",
+      "A pinion with fewer teeth than the shaper touches the exact flank in one point that runs along a straight line of the housing; a pinion that is the "
+      "shaper touches along lines. In both cases the transmission error is a constant, aligned or not, as long as contact stays inside the flank."};
+  for (const auto& note : a.notes) page.introduction.push_back(note);
+  page.charts = contact_charts(a);
+  for (auto& f : contact_patterns(a)) page.figures.push_back({std::move(f.caption), std::move(f.svg), std::move(f.note)});
+  page.tables = {contact_table(a)};
+  return study_page_html(page);
+}
+
+}  // namespace
+
+ContactSettings contact_settings(const Job& job, const CommandRequest& request) {
+  ContactSettings s = job.contact.value_or(ContactSettings{});
+  if (request.pinion_teeth) s.pinion_teeth = *request.pinion_teeth;
+  if (request.offset_error_mm) s.moved.offset_mm = *request.offset_error_mm;
+  if (request.axial_error_mm) s.moved.axial_mm = *request.axial_error_mm;
+  if (request.angle_error_deg) s.moved.angle_rad = radians(*request.angle_error_deg);
+  if (request.compound_um) s.compound_mm = *request.compound_um / 1000;
+  return s;
+}
+
+CommandOutcome run_contact(const CommandRequest& request) {
+  if (auto error = out_of_range(request)) return failed(std::move(*error));
+  Progress progress(request.quiet);
+  StageClock clock(progress);
+  auto output = OutputDir::open(request.out_dir, kOutputs);
+  if (!output) return failed(output.error());
+  auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
+  if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
+  const Job& job = std::get<0>(read);
+  auto made = clock.run("gear", [&] { return make_face_gear(job); });
+  if (auto* errors = std::get_if<1>(&made)) return failed(std::move(*errors));
+  const FaceGear& gear = std::get<0>(made);
+  std::optional<CutFlanks> cut;
+  if (request.as_cut) {
+    auto flanks = cut_flanks(job, gear, kCutRows, kCutColumns, *output, request.quiet);
+    if (auto* errors = std::get_if<1>(&flanks)) return failed(std::move(*errors));
+    cut = std::move(std::get<0>(flanks));
+  }
+  auto analysed = clock.run("contact", [&] { return analyse_contact(job, gear, contact_settings(job, request), cut ? &*cut : nullptr); });
+  if (auto* errors = std::get_if<1>(&analysed)) return failed(std::move(*errors));
+  ContactAnalysis& analysis = std::get<0>(analysed);
+  if (cut) {
+    if (!cut->verified) analysis.notes.push_back("the program of the cut surface is not verified");
+    for (const auto& assumed : cut->assumed) analysis.notes.push_back("assumed: " + assumed);
+  }
+
+  CommandOutcome outcome;
+  outcome.report_json = contact_json(analysis);
+  for (const auto& [name, content] : {std::pair<std::string, std::string>{"contact.csv", contact_csv(analysis)},
+                                      {"transmission.csv", transmission_csv(analysis)},
+                                      {"contact.json", outcome.report_json},
+                                      {"contact.html", page_of(analysis)}})
+    if (const auto written = output->write(name, content); !written) return failed(written.error());
+  progress.clear();
+  if (const auto committed = output->commit(); !committed) return failed(committed.error());
+  outcome.summary = contact_summary(analysis) + "  files in " + request.out_dir + "\n";
+  return outcome;
+}
+
+}  // namespace toothpath

@@ -1,0 +1,20 @@
+// `toothpath study dhfg --file STUDY.toml`: the nine orthogonal trials of the literature on double helical face gears.
+#pragma once
+
+#include <string_view>
+
+#include "app/commands/command.h"
+#include "app/dhfg_trial.h"
+#include "app/gear_of_job.h"
+
+namespace toothpath {
+
+/// Reads a study file: tables [study], [[tool]] and [[operation]] (as in a job). Without text: the literature's levels, m 5, no milling.
+/// Refused with line and column: unknown keys, types, ranges; three levels are needed for every factor.
+[[nodiscard]] ValueOrErrors<DhfgStudy> parse_dhfg_study(std::string_view text, const std::string& file);
+
+/// Writes dhfg.csv, dhfg.json and dhfg.html. With `quick` scallops are ten times, chords five times, steps twice as coarse: the milling
+/// times are then those of that coarse surface, and say so.
+[[nodiscard]] CommandOutcome study_dhfg(const CommandRequest& request);
+
+}  // namespace toothpath

@@ -1,0 +1,148 @@
+#include "app/report/contact_figures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report/html_text.h"
+#include "app/report/svg_contact_pattern.h"
+#include "app/report/svg_plot.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath {
+namespace {
+
+constexpr double kUm = 1e3, kMicro = 1e6;
+
+std::string name_of(const ContactAnalysis& a, const ContactOfSide& side) {
+  return fmt::format("flank {:+}, {}", side.side, side.as_cut ? a.route : "exact");
+}
+
+std::string pattern_note(const ContactAnalysis& a, const ContactOfSide& side, const FlankPattern& p) {
+  std::string note = fmt::format("{:.1f} % of the flank carries compound of {:g} um. ", p.marked_share * 100, a.settings.compound_mm * kUm);
+  if (p.marked_share > 0 && p.marked_share < 0.95)
+    note += fmt::format("Long axis {:.1f} mm, inclined {:.1f} deg to the direction of the tooth; {:.1f} mm across. ", p.length_mm,
+                        degrees(p.inclination_rad), p.width_mm);
+  if (side.kind == "edge") note += "The path of contact misses the flank: it bears on an edge. ";
+  return note;
+}
+
+/// Every n-th row of a fine grid: the eye does not see more.
+int stride_of(int rows) { return std::max(1, (rows - 1) / 60); }
+
+PatternDrawing drawing(const ContactAnalysis& a, const ContactMember& member, const FlankPattern& p, bool on_pinion) {
+  const ContactFlank& f = member.flank;
+  PatternDrawing d;
+  d.compound_um = a.settings.compound_mm * kUm;
+  d.columns = f.columns;
+  const int stride = stride_of(f.rows);
+  for (int r = 0; r < f.rows; r += stride) {
+    ++d.rows;
+    for (int c = 0; c < f.columns; ++c) {
+      const auto k = f.index(r, c);
+      d.x.push_back(on_pinion ? p.pinion_Z_mm[k] : std::hypot(f.points[k].x(), f.points[k].y()));
+      d.y.push_back(on_pinion ? p.pinion_radius_mm[k] : f.points[k].z());
+      d.gap_um.push_back(p.gap_mm[k] * kUm);
+    }
+  }
+  d.x_label = on_pinion ? "along the pinion's axis [mm]" : "radius from the gear's axis [mm]";
+  d.y_label = on_pinion ? "radius [mm]" : "height z [mm]";
+  if (!on_pinion)
+    for (const auto& place : p.path) d.path.emplace_back(place.radius_mm, place.height_mm);
+  return d;
+}
+
+}  // namespace
+
+std::vector<ContactFigure> contact_patterns(const ContactAnalysis& a) {
+  std::vector<ContactFigure> figures;
+  for (const auto& side : a.sides)
+    for (std::size_t m = 0; m < side.members.size(); ++m) {
+      const std::string zone = side.members.size() > 1 ? fmt::format(", ring {}", side.members[m].flank.zone) : "";
+      const FlankPattern& p = side.roll.patterns[m];
+      for (const bool on_pinion : {false, true}) {
+        PatternDrawing d = drawing(a, side.members[m], p, on_pinion);
+        d.title = fmt::format("contact pattern on the {}, {}{}", on_pinion ? "pinion" : "gear", name_of(a, side), zone);
+        figures.push_back({fmt::format("{}: {}{}", on_pinion ? "Pinion" : "Gear", name_of(a, side), zone), svg_contact_pattern(d),
+                           on_pinion ? "The places of the gear's grid at the moment of their least gap, on the pinion's flank." : pattern_note(a, side, p)});
+      }
+    }
+  return figures;
+}
+
+std::vector<LineChart> contact_charts(const ContactAnalysis& a) {
+  LineChart error, pairs;
+  error.title = "Transmission error over one pitch";
+  error.x_label = "gear turn [pitches]";
+  error.y_label = "phi_2 - phi_1 N_p/N_2, less its mean [urad]";
+  error.note = "Rigid bodies, no load. On the exact flank the error is a constant wherever contact is inside the flank, also misaligned.";
+  pairs.title = "Pairs in contact over one pitch";
+  pairs.x_label = "gear turn [pitches]";
+  pairs.y_label = "pairs";
+  pairs.note = "Touching: gap below a nanometre. Within the compound: gap below its thickness; elastic flanks under load share it among about as many.";
+  for (const auto& side : a.sides) {
+    ChartSeries e{name_of(a, side), {}, {}}, t{name_of(a, side) + (side.as_cut ? ", compound" : ", touching"), {}, {}};
+    const double pitch = 2 * kPi / a.gear_teeth, start = side.roll.cycle.front().phi_2;
+    for (const auto& p : side.roll.cycle) {
+      const double x = (p.phi_2 - start) / pitch;
+      // Rounding would look like a curve of its own.
+      const double value = (p.error_rad - side.roll.error_mean_rad) * kMicro;
+      e.x.push_back(x), e.y.push_back(std::abs(value) < 1e-5 ? 0 : value);
+      t.x.push_back(x), t.y.push_back(side.as_cut ? p.marking : p.touching);
+    }
+    error.series.push_back(std::move(e));
+    pairs.series.push_back(std::move(t));
+  }
+  const auto flat = [](const LineChart& c) {
+    for (const auto& s : c.series)
+      for (const double y : s.y)
+        if (y != 0) return false;
+    return true;
+  };
+  std::vector<LineChart> charts;
+  if (!flat(error)) charts.push_back(std::move(error));
+  charts.push_back(std::move(pairs));
+  return charts;
+}
+
+PageTable contact_table(const ContactAnalysis& a) {
+  PageTable table{"Contact", {"flank", "surface", "ring", "contact", "error range urad", "error range um", "error mean urad", "contact ratio", "pairs",
+                              "within compound", "pattern %", "r mm", "z mm"}, {}, ""};
+  table.note = fmt::format("Micrometres at the pitch radius {:.3f} mm. Ratio: mean number of pairs that touch.", a.pitch_radius_mm);
+  for (const auto& side : a.sides)
+    for (std::size_t m = 0; m < side.members.size(); ++m) {
+      const RollResult& r = side.roll;
+      const FlankPattern& p = r.patterns[m];
+      table.rows.push_back({fmt::format("{:+}", side.side), side.as_cut ? a.route : "exact", std::to_string(side.members[m].flank.zone), side.kind,
+                            short_number(r.error_range_rad * kMicro < 1e-5 ? 0 : r.error_range_rad * kMicro, 4),
+                            short_number(r.error_range_rad * kMicro < 1e-5 ? 0 : r.error_range_rad * a.pitch_radius_mm * kUm, 4),
+                            fmt::format("{:.4f}", std::abs(r.error_mean_rad) < 1e-11 ? 0 : r.error_mean_rad * kMicro), fmt::format("{:.3f}", r.contact_ratio),
+                            fmt::format("{} to {}", r.least_touching, r.most_touching), fmt::format("{} to {}", r.least_marking, r.most_marking),
+                            fmt::format("{:.1f}", p.marked_share * 100), fmt::format("{:.2f} to {:.2f}", p.inner_mm, p.outer_mm),
+                            fmt::format("{:.2f} to {:.2f}", p.low_mm, p.high_mm)});
+    }
+  return table;
+}
+
+std::string contact_section_body(const ContactAnalysis& a) {
+  std::string out = fmt::format("<p>Rolled with a pinion of {} teeth as rigid bodies without load, marking compound of {:g} um.</p>\n", a.pinion_teeth,
+                                a.settings.compound_mm * kUm);
+  for (const auto& note : a.notes) out += "<p class=\"note\">" + html_escape(note) + "</p>\n";
+  const PageTable t = contact_table(a);
+  out += "<div class=\"table\"><table><thead><tr>";
+  for (const auto& column : t.columns) out += fmt::format("<th>{}</th>", html_escape(column));
+  out += "</tr></thead><tbody>\n";
+  for (const auto& row : t.rows) {
+    out += "<tr>";
+    for (const auto& cell : row) out += fmt::format("<td>{}</td>", html_escape(cell));
+    out += "</tr>\n";
+  }
+  out += fmt::format("</tbody></table></div>\n<p class=\"note\">{}</p>\n<div class=\"plots\">\n", html_escape(t.note));
+  for (const auto& chart : contact_charts(a))
+    out += fmt::format("<figure><figcaption>{}</figcaption>{}<p class=\"note\">{}</p></figure>\n", html_escape(chart.title), svg_line_chart(chart),
+                       html_escape(chart.note));
+  for (const auto& f : contact_patterns(a))
+    out += fmt::format("<figure><figcaption>{}</figcaption>{}<p class=\"note\">{}</p></figure>\n", html_escape(f.caption), f.svg, html_escape(f.note));
+  return out + "</div>\n";
+}
+
+}  // namespace toothpath
