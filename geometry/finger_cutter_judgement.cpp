@@ -142,6 +142,12 @@ struct Trial {
       }
   }
 
+  /// A mill whose walls stand this far from the design makes another gear; the mate decides whether that is good enough.
+  void wall_condition() const {
+    condition("walls as designed", "largest deviation", 1000 * std::max(-out.deepest_mm(), out.proudest_mm()), 10, false, "um", true,
+              "another tooth form: made for another gear, or reaching another depth");
+  }
+
   /// Points of the designed walls near the small end against the pass of the opposite wall, the mill as a solid.
   void small_end() const {
     const auto& half = g.halves().front();
@@ -214,6 +220,7 @@ CutterJudgement judge_finger_profile(const BevelGear& g, const FingerCutterData&
   trial.widths();
   trial.path_conditions();
   trial.walls(options);
+  trial.wall_condition();
   trial.small_end();
   return out;
 }

@@ -83,7 +83,8 @@ std::vector<Row> cases(const Pair& pair, const std::optional<double>& balanced) 
   return rows;
 }
 
-std::string kN(double newton) { return fmt::format("{:.3f}", newton == 0 ? 0.0 : newton / 1000); }
+/// Three decimals of a kN; what rounds to nothing has no sign.
+std::string kN(double newton) { return fmt::format("{:.3f}", std::abs(newton) < 0.5 ? 0.0 : newton / 1000); }
 
 PageTable table_of(const std::vector<Row>& rows, bool halves) {
   PageTable table{halves ? "Every half" : "Sums",
