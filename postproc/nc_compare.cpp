@@ -8,6 +8,8 @@
 namespace toothpath {
 namespace {
 
+constexpr double kStillTip = 1e-6;  // mm
+
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -31,18 +33,21 @@ class Walk {
       if (!(path_.records[i].kind == MoveKind::rapid ? rapid() : feed())) return false;
     }
     for (; next_ < motions_.size(); ++next_)
-      if (!motions_[next_]->rapid) return miss("the program feeds on behind the last record");
+      if (!links(*motions_[next_])) return miss("the program feeds on behind the last record");
     return true;
   }
 
  private:
   const ClRecord& record() const { return path_.records[record_]; }
 
+  /// Rapids, and turns with the tip standing still (links with TCP).
+  static bool links(const ToolMotion& m) { return m.rapid || (m.tip_to - m.tip_from).norm() < kStillTip; }
+
   /// Links: rapids until the record's pose is reached for good.
   bool rapid() {
     std::optional<std::size_t> met;
     std::size_t j = next_;
-    for (; j < motions_.size() && motions_[j]->rapid; ++j)
+    for (; j < motions_.size() && links(*motions_[j]); ++j)
       if (near(motions_[j]->tip_to, motions_[j]->axis_to)) met = j;
     const bool stands = position_known_ && near(tip_, axis_);
     if (!met && stands) return true;

@@ -2,7 +2,8 @@
 //
 // A move is straight in the joints. With w = sum of the turns of the rotaries, R = the greatest distance of the tip from a
 // rotary axis and |dX| the linear step, the tip's second derivative is at most w^2 R + 2 w |dX| (nested rotations, each
-// pair of derivatives bounded by the inner arm), so that it stays within an eighth of that from its chord.
+// pair of derivatives bounded by the inner arm), so that it stays within an eighth of that from its chord. With TCP the
+// control keeps the tip on its chord; the rotaries are linear in time all the same, and the bound of the axis holds.
 #include <algorithm>
 #include <cmath>
 
@@ -116,7 +117,8 @@ Result<std::vector<ToolMotion>> tool_motions(const OperationTrace& trace, const 
     const Placed from = kinematics.place(kinematics.joints(trace.moves[i - 1].joints), *length);
     const Placed to = kinematics.place(kinematics.joints(m.joints), *length);
     const double factor = m.rapid ? kRapidFactor : 1;
-    const auto [tip_bound, axis_bound] = kinematics.bounds(from, to, *length);
+    auto [tip_bound, axis_bound] = kinematics.bounds(from, to, *length);
+    if (m.tcp) tip_bound = 0;
     const double pieces = std::ceil(std::sqrt(std::max(tip_bound / (factor * tolerance_mm), axis_bound / (factor * axis_tolerance_rad))));
     if (pieces > kMostPieces) return fail("line {}: move turns too far to be followed within {} mm", m.line, tolerance_mm);
     const int n = std::max(1, static_cast<int>(pieces));
@@ -136,6 +138,8 @@ Result<std::vector<ToolMotion>> tool_motions(const OperationTrace& trace, const 
         j.linear_mm = (1 - t) * from.joints.linear_mm + t * to.joints.linear_mm;
         for (std::size_t k = 0; k < 2; ++k)
           j.rotary_rad[k] = (1 - t) * from.joints.rotary_rad[k] + t * to.joints.rotary_rad[k];
+        if (m.tcp)  // the linear joints follow from the tip
+          j = machine.chain.linear_for((1 - t) * from.table.tip_mm + t * to.table.tip_mm, j.rotary_rad, *length);
         end = kinematics.place(j, *length);
       }
       const auto [tip_left, axis_left] = kinematics.bounds(start, end, *length);
@@ -144,7 +148,7 @@ Result<std::vector<ToolMotion>> tool_motions(const OperationTrace& trace, const 
       motion.tip_to = end.tip;
       motion.axis_from = start.axis;
       motion.axis_to = end.axis;
-      motion.deviation_mm = tip_left + kRoundOff + double(m.blend_mm);
+      motion.deviation_mm = (m.tcp ? 0 : tip_left) + kRoundOff + double(m.blend_mm);
       motion.axis_deviation = axis_left;
       motion.minutes = m.minutes / n;
       motion.rapid = m.rapid;

@@ -32,7 +32,7 @@ Status check_rapids(const OperationTrace& trace, const NcControl& control, const
   if (!motions) return motions.error();
   for (std::size_t i = 1; i < trace.moves.size(); ++i) {
     const ExecutedMove &a = trace.moves[i - 1], &b = trace.moves[i];
-    if (b.rapid && b.known && mixes_axes(a, b))
+    if (b.rapid && b.known && !b.tcp && mixes_axes(a, b))  // with TCP the tip goes straight, whatever the joints do
       return fail_as(DiagnosticKind::verification, "line {}: a rapid moves more than one group of axes", b.line);
   }
   const auto found = std::find_if(tools.begin(), tools.end(), [&](const ToolAssembly& t) { return t.number == trace.tool; });

@@ -6,12 +6,15 @@
 #include <map>
 
 #include "geometry/base/angle.h"
+#include "postproc/nc_readers.h"
 
 namespace toothpath {
 namespace {
 
 constexpr double kCoincident = 1e-9;  // mm
 constexpr double kParallel = 1e-12;
+constexpr double kSameTip = 1e-7;           // mm: round-off of a turned frame
+constexpr double kTipStep = radians(0.5);   // joints follow a straight tip: looked at in such steps of the rotaries
 
 /// Counts of one operation's moves.
 struct Count {
@@ -25,8 +28,8 @@ bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == s
 /// Compares the teeth of a program as they are executed.
 class CopyCheck {
  public:
-  CopyCheck(const std::map<int, Count>& counts, const NcControl& control, int teeth, int index_sign)
-      : counts_(counts), control_(control), teeth_(teeth), sign_(index_sign) {
+  CopyCheck(const std::map<int, Count>& counts, const NcControl& control, const Setup& setup, int teeth, int index_sign)
+      : counts_(counts), control_(control), setup_(setup), teeth_(teeth), sign_(index_sign) {
     result_.copies = true;
     for (const auto& [op, c] : counts) {
       if (op < 0) continue;
@@ -94,7 +97,7 @@ class CopyCheck {
     if (m.commanded != first.commanded) return differ(m.line, "other axes are named than in the first tooth");
     for (std::size_t a = 0; a < 5; ++a) {
       if (!m.rapid && !set(a)) return differ(m.line, fmt::format("the tooth cuts before it has set {}", control_.letters[a]));
-      if (a == 3 || !set(a)) continue;
+      if (a == 3 || !set(a) || (m.tcp && a < 3)) continue;
       if (!same_bits(m.joints[a], first.joints[a]))
         return differ(m.line, fmt::format("{} = {} where the first tooth has {}", control_.letters[a], m.joints[a], first.joints[a]));
     }
@@ -112,9 +115,16 @@ class CopyCheck {
     if (!(error <= control_.rotary_rounding_deg * (1 + 1e-6) + 1e-9))
       return differ(m.line, fmt::format("{} is turned by {} deg where {} * 360 / {} is expected", control_.letters[3], turned,
                                         s.turn, teeth_));
+    if (m.tcp != first.tcp || (m.tcp && (m.tip - turned_tip(first.tip, s.turn)).norm() > kSameTip))
+      return differ(m.line, "the tip is not that of the first tooth, turned");
     if (m.rapid != first.rapid || m.tool != first.tool) return differ(m.line, "rapid and feed or tool differ");
     if (!m.rapid && std::abs(m.minutes - first.minutes) > 1e-9 * first.minutes + 1e-12)
       return differ(m.line, fmt::format("block takes {} min where the first tooth has {}", m.minutes, first.minutes));
+  }
+  /// A point of the table, turned by whole index steps about the gear axis.
+  Vec3 turned_tip(const Vec3& p, int turn) const {
+    const Vec3 axis = setup_.rotation().col(2);
+    return setup_.origin_mm + Eigen::AngleAxisd(2 * kPi * turn / teeth_, axis) * (p - setup_.origin_mm);
   }
   void differ(int line, std::string what) {
     if (!result_.copies) return;
@@ -125,6 +135,7 @@ class CopyCheck {
 
   const std::map<int, Count>& counts_;
   const NcControl& control_;
+  const Setup& setup_;
   int teeth_, sign_;
   std::map<int, State> state_;
   TurnedCopies result_;
@@ -140,15 +151,59 @@ int index_sign(const Machine& machine, const Setup& setup) {
   return c.direction.dot(g) > 0 ? c.sign : -c.sign;
 }
 
+/// Joints inside a block whose tip goes straight.
+template <typename Sink>
+void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcControl& control, const KinematicChain& chain, const Sink& sink) {
+  const auto length = control.tool_length_mm.find(to.tool);
+  const double turn = radians(std::abs(to.joints[3] - from.joints[3]) + std::abs(to.joints[4] - from.joints[4]));
+  if (turn == 0 || length == control.tool_length_mm.end() || !std::isfinite(turn)) return;
+  const auto& j = from.joints;
+  const Vec3 start = from.tcp ? from.tip : chain.forward({Vec3(j[0], j[1], j[2]), {radians(j[3]), radians(j[4])}}, length->second).tip_mm;
+  const int n = static_cast<int>(std::min(1e5, std::ceil(turn / kTipStep))) + 3;
+  for (int i = 1; i < n; ++i) {
+    const double t = static_cast<double>(i) / n;
+    const double r0 = (1 - t) * j[3] + t * to.joints[3], r1 = (1 - t) * j[4] + t * to.joints[4];
+    const Vec3 x = chain.linear_for((1 - t) * start + t * to.tip, {radians(r0), radians(r1)}, length->second).linear_mm;
+    sink({x.x(), x.y(), x.z(), r0, r1});
+  }
+}
+
+/// Who reads a dialect, and the digits that it prints for rotaries unless the machine says otherwise.
+struct ReaderOfDialect {
+  const char* name;
+  int rotary_decimals;
+  Status (*execute)(std::string_view, const std::string&, const NcControl&, const MoveSink&);
+};
+constexpr ReaderOfDialect kReaders[] = {{"linuxcnc", 5, execute_iso}, {"fanuc", 3, execute_iso}};
+
+const ReaderOfDialect* reader_of(std::string_view dialect) {
+  for (const auto& r : kReaders)
+    if (dialect == r.name) return &r;
+  return nullptr;
+}
+std::string readable_dialects() {
+  std::string list;
+  for (const auto& r : kReaders) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", r.name);
+  return list;
+}
+
 }  // namespace
+
+Status execute_nc(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+  const ReaderOfDialect* reader = reader_of(control.dialect);
+  if (reader == nullptr) return fail("dialect \"{}\" cannot be read back: {} can", control.dialect, readable_dialects());
+  return reader->execute(text, file, control, sink);
+}
 
 Result<NcControl> control_of(const Machine& machine, const Setup& setup, std::span<const ToolAssembly> tools) {
   NcControl c;
   c.dialect = machine.dialect;
-  if (c.dialect != "linuxcnc" && c.dialect != "fanuc")
-    return fail("dialect \"{}\" cannot be read back: \"linuxcnc\" and \"fanuc\" can", c.dialect);
-  const int digits = machine.post.rotary_decimals.value_or(c.dialect == "fanuc" ? 3 : 5);
-  c.rotary_rounding_deg = 0.5 * std::pow(10.0, -digits);
+  const ReaderOfDialect* reader = reader_of(c.dialect);
+  if (reader == nullptr) return fail("dialect \"{}\" cannot be read back: {} can", c.dialect, readable_dialects());
+  c.rotary_rounding_deg = 0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(reader->rotary_decimals));
+  if (machine.tcp != TcpMode::none) c.chain = machine.chain;
+  c.tcp_on = machine.post.tcp_on;
+  c.tcp_off = machine.post.tcp_off;
   c.letters = {'X', 'Y', 'Z', 0, 0};
   for (std::size_t i = 0; i < 3; ++i) c.rapid_speed[i] = machine.chain.linear[i].max_speed;
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
@@ -167,14 +222,20 @@ Result<ReadBack> read_back(std::string_view text, const std::string& file, const
   result.least.fill(std::numeric_limits<double>::infinity());
   result.greatest.fill(-std::numeric_limits<double>::infinity());
   std::map<int, Count> counts;
+  const auto reach = [&result](const std::array<double, 5>& joints) {
+    for (std::size_t a = 0; a < 5; ++a) {  // NaN (not yet known) passes neither comparison
+      if (joints[a] < result.least[a]) result.least[a] = joints[a];
+      if (joints[a] > result.greatest[a]) result.greatest[a] = joints[a];
+    }
+  };
+  ExecutedMove before;
   const auto count = [&](const ExecutedMove& m) {
     ++result.executed;
     result.minutes += m.minutes;
     if (!m.rapid) result.feed_minutes += m.minutes;
-    for (std::size_t a = 0; a < 5; ++a) {  // NaN (not yet known) passes neither comparison
-      if (m.joints[a] < result.least[a]) result.least[a] = m.joints[a];
-      if (m.joints[a] > result.greatest[a]) result.greatest[a] = m.joints[a];
-    }
+    if (m.tcp && m.known) follow_tip(before, m, control, machine.chain, reach);
+    before = m;
+    reach(m.joints);
     Count& c = counts[m.operation];
     ++c.total;
     c.started = c.started || !m.machine;
@@ -183,7 +244,7 @@ Result<ReadBack> read_back(std::string_view text, const std::string& file, const
   };
   if (auto s = execute_nc(text, file, control, count); !s) return s.error();
 
-  CopyCheck check(counts, control, options.teeth, index_sign(machine, setup));
+  CopyCheck check(counts, control, setup, options.teeth, index_sign(machine, setup));
   if (auto s = execute_nc(text, file, control, [&](const ExecutedMove& m) { check(m); }); !s) return s.error();
   result.copies = check.finish();
 

@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,12 +28,15 @@ namespace toothpath {
 
 /// What the control knows beside the text.
 struct NcControl {
-  std::string dialect = "linuxcnc";           ///< or "fanuc"
+  std::string dialect = "linuxcnc";           ///< as in a machine file
   std::array<char, 5> letters{};              ///< X Y Z and the rotaries in the machine's order; 0: none
   std::array<double, 5> rapid_speed{};        ///< mm/min and deg/min
   std::map<int, double> tool_length_mm;       ///< by T and H number
   std::map<std::string, Vec3> work_offsets;   ///< "G54" -> origin, machine coordinates, mm
   double rotary_rounding_deg = 0.5e-5;        ///< half the last digit that the dialect prints
+  double linear_rounding_mm = 0.5e-4;         ///< the same of the linear words
+  std::optional<KinematicChain> chain;        ///< of a machine with TCP: the control knows it; empty: TCP is refused
+  std::vector<std::string> tcp_on, tcp_off;   ///< codes of the site that switch TCP (LinuxCNC)
   std::size_t max_steps = 400'000'000;        ///< executed blocks before the program is refused as endless
 };
 
@@ -43,11 +47,13 @@ struct NcControl {
 /// End of one executed move: joints in machine coordinates, gauge line (mm) and rotaries as words (deg).
 struct ExecutedMove {
   std::array<double, 5> joints{};
+  Vec3 tip = Vec3::Zero();      ///< with `tcp`: table frame
   double minutes = 0;
   std::int32_t line = 0;        ///< of the text, from 1
   std::int16_t operation = -1;  ///< from the (OP n type) comment; -1 before the first
   std::int16_t tool = 0;        ///< T in the spindle
   bool rapid = false;
+  bool tcp = false;             ///< the tip goes straight to `tip`, the rotaries are linear, the other joints follow
   float blend_mm = 0;           ///< the control may leave the corners of the path by this much (G64 P)
   std::uint8_t commanded = 0;   ///< bit a: the block has a word for axis a
   std::int16_t tooth = -1;      ///< from a (TOOTH k) comment, where the teeth are written out; -1: none

@@ -37,8 +37,8 @@ class Writer {
     values_["id"] = program_id(header_.job_name);
     values_["offset"] = program_.work_offset;
     values_["datum"] = std::to_string(datum_number());
-    values_["blend"] = out_.value(to_fixed(header_.blend_mm, 6), 6);
-    values_["free"] = out_.value(to_fixed(kFreeFeed, 0), 0);
+    values_["blend"] = unsigned_value(header_.blend_mm, 6);
+    values_["free"] = unsigned_value(kFreeFeed, 0);
     values_["teeth"] = std::to_string(program_.teeth);
     values_["last"] = std::to_string(program_.teeth - 1);
     values_["sign"] = program_.index_sign < 0 ? "0-" : "";
@@ -62,6 +62,11 @@ class Writer {
         out_.fill(dialect_.safe_start, values_);
       else
         out_.fill({t}, values_);
+  }
+  std::string unsigned_value(double v, int decimals) const {
+    std::string s;
+    append_fixed(s, to_fixed(v, decimals), decimals, dialect_.point_always);
+    return s;
   }
   std::string linear(double mm) const {
     return out_.value(to_fixed(mm, program_.format.linear_decimals), program_.format.linear_decimals);
@@ -205,9 +210,9 @@ class Writer {
     values_["z"] = out_.value(b.words[2], decimals(2));
     const bool on = b.kind == BlockKind::tcp_on;
     const bool turned = program_.loop && index == IndexWord::shifted;
-    if (on && turned) fill(dialect_.loop.frame_on);
-    fill(on ? dialect_.tcp_on : dialect_.tcp_off);
     if (!on && turned) fill(dialect_.loop.frame_off);
+    fill(on ? dialect_.tcp_on : dialect_.tcp_off);
+    if (on && turned) fill(dialect_.loop.frame_on);
     forget();
   }
 

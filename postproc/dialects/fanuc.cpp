@@ -25,7 +25,7 @@ NcDialect fanuc_dialect() {
   d.tcp_on = {"G0 G43.4 H{tool} Z{z}"};
   d.tcp_off = d.retract;
   d.tcp_starts_at_zero = true;
-  d.tcp_note = "TCP G43.4, TABLE FRAME FROZEN AT ROTARY ZERO, PARAMETERS 19696#5 WKP 0, 1401#1 LRP 1";
+  d.tcp_note = "TCP G43.4 FROM ROTARY ZERO, PARAMETERS 19696#5 WKP=0, 1401#1 LRP=1";
   d.loop.form = NcLoop::Form::stretches;
   return d;
 }

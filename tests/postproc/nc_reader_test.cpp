@@ -302,7 +302,7 @@ TEST(NcReader, RefusalsNameLineAndColumn) {
       {"o100 while [1]\n", "p.ngc:8:1: error: o100 is never closed"},
       {"o100 while [1]\no100 endwhile\n", "error: more than 10000 executed blocks"},
       {"G49\nG0 Z1\n", "p.ngc:9:4: error: Z word without tool length compensation"},
-      {"T1 M6\n", "p.ngc:8:1: error: M6 while the spindle turns"},
+      {"T1 M6\n", "p.ngc:8:1: error: tool change while the spindle turns"},
       {"G64\n", ""},
       {"T9 M6\n", "tool 9 is not in the tool list"},
       {"G55\n", "work offset G55 is not defined"},

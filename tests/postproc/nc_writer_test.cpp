@@ -235,7 +235,7 @@ TEST(NcWriter, FeedBeyondTheControlIsAnErrorNotAClamp) {
 TEST(NcWriter, UnknownDialect) {
   const auto d = find_dialect("grbl");
   ASSERT_FALSE(d);
-  EXPECT_EQ(d.error().message, "dialect = \"grbl\" is not one of \"linuxcnc\", \"fanuc\"");
+  EXPECT_EQ(d.error().message, "dialect = \"grbl\" is not one of \"linuxcnc\", \"fanuc\", \"siemens\", \"heidenhain\", \"apt\", \"mitsubishi_m80\"");
 }
 
 }  // namespace

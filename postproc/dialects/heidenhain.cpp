@@ -1,0 +1,44 @@
+// Heidenhain TNC 640, plain text. There is no inverse time feed, so that blocks in which rotaries move need TCPM; without it
+// the tilt is fixed in every pass. Cycle 32 bounds the blending of the corners and counts in the proof. The teeth run in a
+// repeated section; a word takes no arithmetic, so that the index angle is a Q parameter, set ahead of each rotary block.
+#include "postproc/nc_dialect.h"
+
+namespace toothpath {
+
+NcDialect heidenhain_dialect() {
+  NcDialect d;
+  d.name = "heidenhain";
+  d.extension = ".h";
+  d.format = {.linear_decimals = 4, .rotary_decimals = 4};
+  d.sign_always = true;
+  d.rapid = d.feed = "L";
+  d.motion_is_modal = false;
+  d.rapid_end = " R0 FMAX";
+  d.max_line = 120;
+  d.inverse_time = false;
+  d.comment_open = "; ";
+  d.comment_close = "";
+  d.block_numbers = true;
+  d.frame_begin = {"BEGIN PGM {id} MM"};
+  d.frame_end = {"M30", "END PGM {id} MM"};
+  d.safe_start = {"PLANE RESET STAY", "FUNCTION RESET TCPM", "TRANS DATUM RESET", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+0"};
+  d.start = {"{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M126", "CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1 T{blend}"};
+  d.retract = {"L Z{top} R0 FMAX M91"};
+  d.tool_change = {"TOOL CALL {tool} Z S{speed}", "{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M3"};
+  d.end = {"CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1", "M127"};
+  d.blend = true;
+  d.tcp_on = {"FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"};
+  d.tcp_off = {"FUNCTION RESET TCPM"};
+  d.vector_words = {"TX", "TY", "TZ"};
+  d.vector_feed = "LN";
+  d.loop.form = NcLoop::Form::in_line;
+  d.loop.before = {"Q1 = 0", "LBL {label}", "Q2 = {sign}Q1 * 360 / {teeth}"};
+  d.loop.after = {"Q1 = Q1 + 1", "CALL LBL {label} REP{last}"};
+  d.loop.index_line = "FN 1: Q5 = +Q2 + {angle}";
+  d.loop.index = "+Q5";
+  d.loop.frame_on = {"Q3 = {frame_sign}Q1 * 360 / {teeth}", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+Q3"};
+  d.loop.frame_off = {"CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+0"};
+  return d;
+}
+
+}  // namespace toothpath

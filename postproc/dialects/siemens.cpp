@@ -1,0 +1,39 @@
+// Siemens 840D sl. TRAORI and TRAFOOF may drop the frames (machine data 10602), so that the work offset stands behind each of
+// them. G641 ADIS bounds the blending of the corners, the compressor stays off: both count in the proof. The teeth run in a
+// FOR loop of the control; with TRAORI the programmable frame ROT turns with them. ORIAXES: the rotaries are linear between
+// the blocks, also where a block carries the tool vector A3 B3 C3.
+#include "postproc/nc_dialect.h"
+
+namespace toothpath {
+
+NcDialect siemens_dialect() {
+  NcDialect d;
+  d.name = "siemens";
+  d.extension = ".mpf";
+  d.format = {.linear_decimals = 5, .rotary_decimals = 6};
+  d.rotary_equals = "=";
+  d.comment_open = ";";
+  d.comment_close = "";
+  d.max_line = 240;
+  d.safe_start = {"G17 G40 G90 G94 G710", "TRAFOOF", "ROT", "COMPOF"};
+  d.start = {"{safe_start}", "{offset}", "G641 ADIS={blend}"};
+  d.retract = {"SUPA G0 Z{top} D0"};
+  d.tool_change = {"T=\"T{tool}\"", "M6", "{safe_start}", "{offset}", "S{speed} M3"};
+  d.compensation = d.tcp_compensation = {"D1"};
+  d.operation_end = {"G94 F{free}"};
+  d.end = {"G60"};
+  d.frame_end = {"M30"};
+  d.blend = true;
+  d.tcp_on = {"TRAORI", "{offset}", "ORIWKS", "ORIAXES"};
+  d.tcp_off = {"TRAFOOF", "{offset}"};
+  d.vector_words = {"A3=", "B3=", "C3="};
+  d.loop.form = NcLoop::Form::in_line;
+  d.loop.before = {"FOR R1=0 TO {last}", "R2={sign}R1*360/{teeth}"};
+  d.loop.after = {"ENDFOR"};
+  d.loop.index = "R2";
+  d.loop.frame_on = {"R3={frame_sign}R1*360/{teeth}", "ROT Z=R3"};
+  d.loop.frame_off = {"ROT"};
+  return d;
+}
+
+}  // namespace toothpath

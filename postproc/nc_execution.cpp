@@ -1,0 +1,244 @@
+#include "postproc/nc_execution.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/base/angle.h"
+#include "postproc/axis_solution.h"
+
+namespace toothpath {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kStill = 1e-9;       // mm: round-off of a tip that does not move
+constexpr double kZeroRotary = 1e-9;  // deg
+
+bool known(const std::array<double, 5>& joints) {
+  return std::none_of(joints.begin(), joints.end(), [](double v) { return std::isnan(v); });
+}
+
+Vec3 turned(const Vec3& v, double deg) {
+  if (deg == 0) return v;
+  const double c = std::cos(radians(deg)), s = std::sin(radians(deg));
+  return {c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z()};
+}
+
+}  // namespace
+
+NcExecution::NcExecution(const NcControl& control, const NcRules& rules, const std::function<void(const ExecutedMove&)>& sink)
+    : control_(control), rules_(rules), sink_(sink) {
+  joints_.fill(kUnknown);
+  for (std::size_t a = 0; a < 5; ++a)
+    if (control.letters[a] == 0) joints_[a] = 0;
+}
+
+void NcExecution::begin_operation(int operation) {
+  operation_ = operation;
+  spindle_set_ = false;
+  tooth_ = -1;
+}
+
+void NcExecution::set_feed_mode(Feed mode) {
+  if (feed_mode_ != mode) feed_.reset();
+  feed_mode_ = mode;
+}
+
+NcExecution::Problem NcExecution::set_feed(double f) {
+  if (!(f > 0)) return "F must be above 0";
+  feed_ = f;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::set_speed(double s) {
+  if (!(s > 0)) return "S must be above 0";
+  spindle_set_ = true;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::choose_tool(double number) {
+  if (!(std::abs(number) < 1e6) || number != std::floor(number) || control_.tool_length_mm.count(static_cast<int>(number)) == 0)
+    return fmt::format("tool {} is not in the tool list", number);
+  next_tool_ = static_cast<int>(number);
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::change_tool() {
+  if (spindle_) return "tool change while the spindle turns";
+  if (feed_mode_ == Feed::inverse_time) return "tool change in G93";
+  if (tcp_) return "tool change with TCP on";
+  if (!retracted_) return "tool change without a machine retract before it";
+  if (next_tool_ < 0) return "tool change without a T word";
+  tool_ = next_tool_;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::spindle_on() {
+  if (!spindle_set_ || operation_ < 0) return "M3 without an S word of this operation";
+  spindle_ = true;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::select_offset(const std::string& name) {
+  const auto found = control_.work_offsets.find(name);
+  if (found == control_.work_offsets.end()) return fmt::format("work offset {} is not defined", name);
+  if (tcp_ && offset_ != found->second) return "another work offset with TCP on";
+  offset_ = found->second;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::set_length(int tool) {
+  const auto found = control_.tool_length_mm.find(tool);
+  if (found == control_.tool_length_mm.end()) return fmt::format("tool length {} is not in the tool list", tool);
+  length_ = found->second;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::tcp_on() {
+  if (!control_.chain) return "TCP on a machine without TCP (tcp = \"none\")";
+  if (tcp_) return "TCP is on already";
+  if (!length_ || !offset_) return "TCP without tool length compensation or work offset";
+  if (!known(joints_)) return "TCP at a position that the program did not set";
+  if (rules_.tcp_needs_zero && (std::abs(joints_[3]) > kZeroRotary || std::abs(joints_[4]) > kZeroRotary))
+    return "TCP starts with the rotaries away from zero: the table frame would be frozen there";
+  tip_ = tip_of(joints_);
+  tcp_ = true;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::tcp_off() {
+  tcp_ = false;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::end_program(bool inside_call) {
+  if (feed_mode_ == Feed::inverse_time) return "program end in G93";
+  if (spindle_) return "program end while the spindle turns";
+  if (tcp_) return "program end with TCP on";
+  if (inside_call) return "program end inside a sub-program or loop";
+  return std::nullopt;
+}
+
+Vec3 NcExecution::tip_of(const std::array<double, 5>& j) const {
+  return control_.chain->forward({Vec3(j[0], j[1], j[2]), {radians(j[3]), radians(j[4])}}, *length_).tip_mm;
+}
+
+std::array<double, 5> NcExecution::joints_for(const Vec3& tip, double r0, double r1) const {
+  const Joints j = control_.chain->linear_for(tip, {radians(r0), radians(r1)}, *length_);
+  return {j.linear_mm.x(), j.linear_mm.y(), j.linear_mm.z(), r0, r1};
+}
+
+/// Joint words.
+NcExecution::Problem NcExecution::goal_of(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const {
+  if (m.vector) return "a tool vector without TCP";
+  for (std::size_t a = 0; a < 5; ++a) {
+    if (!m.has[a]) continue;
+    commanded = static_cast<std::uint8_t>(commanded | (1U << a));
+    joints[a] = m.axis[a];
+    if (a >= 3 || m.machine_frame) continue;
+    if (!offset_) return "axis word before a work offset";
+    if (frame_deg_ != 0) return "a turned frame without TCP";
+    joints[a] += (*offset_)[static_cast<int>(a)];
+    if (a != 2) continue;
+    if (!length_) return "Z word without tool length compensation";
+    joints[a] += *length_;
+  }
+  tip = Vec3::Zero();
+  return std::nullopt;
+}
+
+/// Words of the tip and rotary words or a vector.
+NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const {
+  Vec3 words = turned(tip_ - *offset_, -frame_deg_);
+  const Vec3 before = words;
+  for (std::size_t a = 0; a < 5; ++a) {
+    if (!m.has[a]) continue;
+    commanded = static_cast<std::uint8_t>(commanded | (1U << a));
+    if (a < 3) words[static_cast<int>(a)] = m.axis[a];
+    else joints[a] = m.axis[a];
+  }
+  tip = words == before ? tip_ : Vec3(*offset_ + turned(words, frame_deg_));
+  if (m.vector) {
+    const double size = m.vector->norm();
+    if (!(std::abs(size - 1) < 1e-5)) return fmt::format("a tool vector of length {:.6f}", size);
+    const auto list = control_.chain->rotary_solutions(turned(*m.vector / size, frame_deg_));
+    if (!list) return list.error().message;
+    double nearest = std::numeric_limits<double>::infinity();
+    const std::array<double, 2> now = {radians(joints[3]), radians(joints[4])};
+    for (const auto& s : *list) {
+      std::array<double, 2> angles{};
+      double distance = 0;
+      for (std::size_t k = 0; k < control_.chain->rotary_count(); ++k) {
+        angles[k] = s.free_rotary == static_cast<int>(k) ? now[k] : nearest_turn(s.joints.rotary_rad[k], now[k]);
+        distance = std::max(distance, std::abs(angles[k] - now[k]));
+      }
+      if (distance >= nearest) continue;
+      nearest = distance;
+      for (std::size_t k = 0; k < 2; ++k) joints[3 + k] = degrees(angles[k]);
+    }
+    commanded = static_cast<std::uint8_t>(commanded | 0x18U);
+  }
+  joints = joints_for(tip, joints[3], joints[4]);
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::move(const Move& m, std::int32_t line) {
+  std::array<double, 5> goal = joints_;
+  Vec3 tip = Vec3::Zero();
+  ExecutedMove e;
+  if (tcp_ && m.machine_frame) return "machine coordinates with TCP on";
+  if (auto bad = tcp_ ? tip_goal(m, goal, tip, e.commanded) : goal_of(m, goal, tip, e.commanded)) return bad;
+  e.joints = goal;
+  e.tip = tip;
+  e.tcp = tcp_;
+  e.known = known(goal) && known(joints_);
+  e.line = line;
+  e.operation = static_cast<std::int16_t>(operation_);
+  e.tool = static_cast<std::int16_t>(tool_);
+  e.rapid = m.rapid;
+  e.blend_mm = m.rapid ? 0.0F : static_cast<float>(blend_mm_ * (tcp_ ? rules_.tcp_blend_factor : 1));
+  e.tooth = static_cast<std::int16_t>(tooth_);
+  e.machine = m.machine_frame || m.compensation;
+  if (m.rapid) {
+    for (std::size_t a = 0; a < 5; ++a)
+      if ((m.has[a] || tcp_) && e.known && control_.rapid_speed[a] > 0)
+        e.minutes = std::max(e.minutes, std::abs(goal[a] - joints_[a]) / control_.rapid_speed[a]);
+  } else if (auto bad = feed_minutes(m, goal, tip, e.minutes)) {
+    return bad;
+  }
+  retracted_ = m.machine_frame && m.has[2];
+  joints_ = goal;
+  tip_ = tip;
+  sink_(e);
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::feed_minutes(const Move& m, const std::array<double, 5>& goal, const Vec3& tip,
+                                               double& minutes) const {
+  if (!spindle_) return "G1 while the spindle stands";
+  if (tool_ < 0) return "G1 without a tool";
+  if (feed_mode_ == Feed::inverse_time && !m.own_feed) return "G1 in G93 without F";
+  if (m.machine_frame) return "machine coordinates with G1";
+  double linear = 0, rotary = 0;
+  for (std::size_t a = 0; a < 5; ++a) {
+    const double d = goal[a] - joints_[a];
+    if (std::isnan(d)) return "G1 from a position that the program did not set";
+    (a < 3 ? linear : rotary) += d * d;
+  }
+  linear = tcp_ ? (tip - tip_).norm() : std::sqrt(linear);
+  if (tcp_ && linear < kStill) linear = 0;
+  rotary = std::sqrt(rotary);
+  const double length = linear > 0 ? linear : rotary;
+  if (feed_mode_ == Feed::inverse_time) {
+    if (length == 0) minutes = 1 / *feed_;
+    else minutes = length / std::max(rules_.least_rate, length * *feed_);
+    return std::nullopt;
+  }
+  if (feed_mode_ != Feed::per_minute || !feed_) return "G1 without F";
+  if (!tcp_ && !rules_.per_minute_turns && rotary > 0) return "G94 with a rotary word";
+  if (!tcp_ && linear > 0 && rotary > 0 && !m.own_feed) return "G94 with rotary and linear words and no F of its own";
+  minutes = length / *feed_;
+  return std::nullopt;
+}
+
+}  // namespace toothpath

@@ -1,0 +1,18 @@
+// One reader a family of dialects. None of them shares code with a writer; each refuses what is not in its subset, with line and
+// column.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "postproc/nc_reader.h"
+
+namespace toothpath {
+
+using MoveSink = std::function<void(const ExecutedMove&)>;
+
+/// LinuxCNC (o-words, bracket expressions), Fanuc and Mitsubishi (M98, a point in every number).
+[[nodiscard]] Status execute_iso(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
+
+}  // namespace toothpath
