@@ -9,7 +9,7 @@
 namespace toothpath {
 namespace {
 
-constexpr double kWidth = 170, kHeight = 104, kLeft = 26, kRight = 6, kTop = 6, kBottom = 24;
+constexpr double kWidth = 170, kHeight = 106, kLeft = 26, kRight = 6, kTop = 6, kBottom = 28;
 
 struct LogScale {
   double low, high, at_low, at_high;
@@ -38,16 +38,16 @@ std::string chart(const std::vector<FeedStudyRow>& rows, double job_feed, const 
   const LogScale x{std::log10(xs.front()), std::log10(xs.back()), kLeft, kWidth - kRight};
   const LogScale y{std::log10(ys.front()), std::log10(ys.back()), kHeight - kBottom, kTop};
   std::string out = fmt::format("<svg viewBox=\"0 0 {} {}\" style=\"width:49%\" role=\"img\" aria-label=\"deviation over {}\">"
-                                "<g font-size=\"6.5\" fill=\"#111\" stroke=\"none\">", kWidth, kHeight, x_label);
+                                "<g font-size=\"7\" fill=\"#111\" stroke=\"none\">", kWidth, kHeight, x_label);
   for (const double v : xs)
     out += fmt::format("<path d=\"M{0:.1f} {1:.1f}V{2:.1f}\" stroke=\"#ccc\" stroke-width=\".4\"/><text x=\"{0:.1f}\" y=\"{3:.1f}\" text-anchor=\"middle\">"
-                       "{4:g}</text>", x(v), kTop, kHeight - kBottom, kHeight - kBottom + 7.5, v);
+                       "{4:g}</text>", x(v), kTop, kHeight - kBottom, kHeight - kBottom + 8, v);
   for (std::size_t k = 0; k < ys.size(); ++k) {
     out += fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}\" stroke=\"#ccc\" stroke-width=\".4\"/>", kLeft, y(ys[k]), kWidth - kRight);
     if (ys.size() <= 7 || k % 3 == ys.size() % 3)
       out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"end\">{:g}</text>", kLeft - 2, y(ys[k]) + 2.2, ys[k]);
   }
-  out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>", 0.5 * (kLeft + kWidth - kRight), kHeight - 7, x_label);
+  out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>", 0.5 * (kLeft + kWidth - kRight), kHeight - 12, x_label);
   out += fmt::format("<text transform=\"translate(6 {:.1f}) rotate(-90)\" text-anchor=\"middle\">left on flanks, &#181;m</text>", 0.5 * (kTop + kHeight - kBottom));
   for (const bool greatest : {true, false}) {
     std::string path;
@@ -62,11 +62,11 @@ std::string chart(const std::vector<FeedStudyRow>& rows, double job_feed, const 
     out += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1\"{}/>{}", path, greatest ? "#005a9c" : "#b35c00",
                        greatest ? "" : " stroke-dasharray=\"3 1.5\"", dots);
   }
-  out += fmt::format("<g fill=\"#005a9c\"><path d=\"M{0:.1f} {1:.1f}h10\" stroke=\"#005a9c\"/><text x=\"{2:.1f}\" y=\"{3:.1f}\">max</text></g>", kLeft + 2, kHeight - 2.0,
-                     kLeft + 14, kHeight - 0.5);
+  out += fmt::format("<g fill=\"#005a9c\"><path d=\"M{0:.1f} {1:.1f}h10\" stroke=\"#005a9c\"/><text x=\"{2:.1f}\" y=\"{3:.1f}\">max</text></g>", kLeft + 2, kHeight - 4.0,
+                     kLeft + 14, kHeight - 2.0);
   out += fmt::format("<g fill=\"#b35c00\"><path d=\"M{0:.1f} {1:.1f}h10\" stroke=\"#b35c00\" stroke-dasharray=\"3 1.5\"/><text x=\"{2:.1f}\" y=\"{3:.1f}\">rms</text></g>",
-                     kLeft + 36, kHeight - 2.0, kLeft + 48, kHeight - 0.5);
-  out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">ring: this job</text>", kLeft + 70, kHeight - 0.5);
+                     kLeft + 36, kHeight - 4.0, kLeft + 48, kHeight - 2.0);
+  out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">ring: this job</text>", kLeft + 70, kHeight - 2.0);
   return out + "</g></svg>";
 }
 

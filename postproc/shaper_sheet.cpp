@@ -21,7 +21,7 @@ constexpr std::string_view kStyle =
     "table{border-collapse:collapse;width:100%}td,th{border:.2mm solid #777;padding:.3mm 1.2mm;text-align:right}"
     "th{background:#eee;font-weight:600}.l{text-align:left}"
     ".a{font-size:7pt;font-weight:700;color:#8a3b00;border:.2mm solid #8a3b00;padding:0 .7mm;border-radius:.6mm;white-space:nowrap}"
-    ".w{border:.4mm solid #b00;padding:.8mm 1.6mm;margin:1mm 0}.two{display:grid;grid-template-columns:1fr 1fr;gap:0 5mm}"
+    ".k td:first-child{white-space:nowrap;width:1%}.w{border:.4mm solid #b00;padding:.8mm 1.6mm;margin:1mm 0}.two{display:grid;grid-template-columns:1fr 1fr;gap:0 5mm}"
     ".box{display:inline-block;width:3.2mm;height:3.2mm;border:.3mm solid #111;margin-right:1mm;vertical-align:-.4mm}"
     "tr,li,.w{break-inside:avoid}";
 
@@ -170,7 +170,7 @@ std::string constants_table(const ShaperSetup& s) {
   const auto row = [](const std::string& name, const std::string& text, const std::string& m) {
     return fmt::format("<tr><td class=l>{}<td class=l>{}{}</tr>\n", name, text, m);
   };
-  std::string out = "<h2>Machine values used</h2>\n<table>\n";
+  std::string out = "<h2>Machine values used</h2>\n<table class=k>\n";
   out += row("stroke steps, 1/min", list_of(s.machine.stroke_steps), mark(s, "stroke.steps"));
   if (s.machine.gearbox) {
     const auto& box = *s.machine.gearbox;

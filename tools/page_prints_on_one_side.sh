@@ -13,6 +13,6 @@ trap 'rm -rf "$work"' EXIT
 "$browser" --headless --no-sandbox --disable-gpu --user-data-dir="$work/profile" --no-pdf-header-footer \
   --print-to-pdf="$work/page.pdf" "file://$(realpath "$1")" >/dev/null 2>&1
 [ $# -lt 2 ] || cp "$work/page.pdf" "$2"
-sides=$(grep -a -o '/Type */Page[^s]' "$work/page.pdf" | wc -l)
+sides=$(grep -a -o '/Count [0-9]*' "$work/page.pdf" | head -n 1 | cut -d ' ' -f 2)
 echo "$sides side(s)"
 [ "$sides" -eq 1 ]
