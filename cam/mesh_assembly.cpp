@@ -39,11 +39,11 @@ double MeshAssembly::other_body(std::size_t index, const ToolPose& pose) {
   if (f.gap < 0 || f.gap - motion_between(f.pose, pose, arm) < within_) {
     ++queries_;
     const double limit = within_ + f.ahead;
-    const double found = mesh_.to_frustum(body, pose.tip, pose.axis, limit).distance;
     f.pose = pose;
-    f.gap = found;
-    f.ahead = found >= limit ? std::min(2 * f.ahead, kMostAhead) : std::max(kLeastAhead, 0.5 * (found - within_));
-    gap = std::min(found, within_);
+    f.gap = mesh_.frustum_bound(body, pose.tip, pose.axis, limit);
+    f.ahead = f.gap >= limit ? std::min(2 * f.ahead, kMostAhead) : std::max(kLeastAhead, f.gap - within_);
+    if (f.gap < within_) f.gap = mesh_.to_frustum(body, pose.tip, pose.axis, within_ + kLeastAhead).distance;
+    gap = std::min(f.gap, within_);
   }
   const Vec3 middle = pose.tip + 0.5 * (body.from + body.to) * pose.axis;
   if (side(f, pose, gap, motion_between(f.last, pose, arm), middle)) {

@@ -65,7 +65,30 @@ class FrustumSearch {
   MeshPlace best_;
 };
 
+/// The least of the kernels' lower bounds.
+void least_bound(const TreeView& view, const FrustumView& f, std::int32_t index, double& best) {
+  const MeshNode& n = view.nodes[index];
+  alignas(64) double d[kLanes], t[kLanes];
+  mesh_kernels().frustum_to_boxes(n, f, d);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    if (!(d[lane] < best)) continue;
+    if (n.child[lane] >= 0) {
+      least_bound(view, f, n.child[lane], best);
+    } else {
+      mesh_kernels().frustum_to_triangles(view.blocks[~n.child[lane]], f, t);
+      for (int k = 0; k < kLanes; ++k) best = std::min(best, t[k]);
+    }
+  }
+}
+
 }  // namespace
+
+double MeshDistance::frustum_bound(const Frustum& body, const Vec3& tip, const Vec3& axis, double within) const {
+  constexpr double rounding = 1e-9;
+  double best = within + rounding;
+  if (tree_.triangles() > 0) least_bound(view(), frustum_view(body, tip - tree_.origin(), axis), 0, best);
+  return std::max(best - rounding, 0.0);
+}
 
 FrustumView frustum_view(const Frustum& body, const Vec3& tip, const Vec3& axis) {
   const double length = body.to - body.from, slope = length > 0 ? (body.radius_to - body.radius_from) / length : 0;

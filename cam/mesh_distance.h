@@ -39,6 +39,9 @@ class MeshDistance {
   /// Distance to a solid frustum, up to `within`: proven from below, at most 1e-9 mm below the true one. 0: touches.
   [[nodiscard]] MeshPlace to_frustum(const Frustum& body, const Vec3& tip, const Vec3& axis, double within) const;
 
+  /// A lower bound of the same distance, up to `within`; at most about the size of the triangles nearby below it, and much faster.
+  [[nodiscard]] double frustum_bound(const Frustum& body, const Vec3& tip, const Vec3& axis, double within) const;
+
   /// Distance to the axis of the cutting part, from `centre` over `height` along `axis`, up to `within`.
   [[nodiscard]] MeshPlace to_segment(const Vec3& centre, const Vec3& axis, double height, double within) const;
 

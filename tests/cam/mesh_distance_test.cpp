@@ -174,7 +174,7 @@ TEST(MeshDistance, FrustumAndTriangleAreBoundedFromBothSides) {
     }
   }
   EXPECT_LT(widest, 1e-7);
-  EXPECT_GT(touching, 30);
+  EXPECT_GT(touching, 15);
   EXPECT_GT(apart, 200);
 }
 

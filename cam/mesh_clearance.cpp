@@ -1,0 +1,142 @@
+#include "cam/mesh_clearance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toothpath {
+namespace {
+
+constexpr int kDepth = 40;
+constexpr double kOnAxis = 1e-3;  // mm: a draw back that leaves its axis by less
+
+struct Stretch {
+  Vec3 tip, axis;  ///< in its middle
+  double tips = 0, axes = 0;  ///< how far tip [mm] and axis are from there at most
+  const ToolMotion* motion = nullptr;
+  [[nodiscard]] double reach(double arm) const { return tips + arm * axes; }
+};
+
+Vec3 tip_at(const ToolMotion& m, double t) { return (1 - t) * m.tip_from + t * m.tip_to; }
+Vec3 axis_at(const ToolMotion& m, double t) { return ((1 - t) * m.axis_from + t * m.axis_to).normalized(); }
+
+/// A piece t0..t1 of one motion.
+Stretch stretch_of(const ToolMotion& m, double t0, double t1) {
+  const double t = 0.5 * (t0 + t1);
+  Stretch s{tip_at(m, t), axis_at(m, t), 0, 0, &m};
+  s.tips = 0.5 * (tip_at(m, t1) - tip_at(m, t0)).norm() + m.deviation_mm;
+  s.axes = std::max((axis_at(m, t0) - s.axis).norm(), (axis_at(m, t1) - s.axis).norm()) + m.axis_deviation;
+  return s;
+}
+
+/// Several motions about the middle one.
+Stretch stretch_of(std::span<const ToolMotion> motions) {
+  const ToolMotion& m = motions[motions.size() / 2];
+  Stretch s{tip_at(m, 0.5), axis_at(m, 0.5), 0, 0, &m};
+  for (const auto& k : motions) {
+    s.tips = std::max(s.tips, std::max((k.tip_from - s.tip).norm(), (k.tip_to - s.tip).norm()) + k.deviation_mm);
+    s.axes = std::max(s.axes, std::max((k.axis_from - s.axis).norm(), (k.axis_to - s.axis).norm()) + k.axis_deviation);
+  }
+  return s;
+}
+
+/// One body of the tool against one mesh along some motions.
+class BodyWatch {
+ public:
+  BodyWatch(const MeshDistance& mesh, std::size_t index, const ToolAssembly& tool, const Frustum* body, double rule, const MeshClearanceOptions& o,
+            const std::optional<Withdrawal>& withdrawal)
+      : mesh_(mesh), index_(index), tool_(tool), body_(body), rule_(rule), o_(o), withdrawal_(withdrawal) {
+    const double top = body ? body->to : tool.flute_length_mm, wide = body ? std::max(body->radius_from, body->radius_to) : tool.radius_mm();
+    arm_ = std::hypot(top, wide);
+  }
+
+  void motions(std::span<const ToolMotion> m) {
+    if (m.empty()) return;
+    if (m.size() == 1) return piece(m[0], 0, 1, kDepth);
+    if (settled(stretch_of(m), false)) return;
+    motions(m.subspan(0, m.size() / 2));
+    motions(m.subspan(m.size() / 2));
+  }
+  std::optional<MeshMeeting> worst;
+
+ private:
+  void piece(const ToolMotion& m, double t0, double t1, int depth) {
+    const double t = 0.5 * (t0 + t1);
+    if (settled(stretch_of(m, t0, t1), depth == 0)) return;
+    piece(m, t0, t, depth - 1);
+    piece(m, t, t1, depth - 1);
+  }
+  /// Is enough known about a stretch? Notes what it proves.
+  bool settled(const Stretch& s, bool last) {
+    const double reach = s.reach(arm_), within = rule_ + o_.look_mm + reach;
+    const MeshPlace place = gap(s, within);
+    if (place.distance >= within && !inside(s)) return true;
+    const bool hit = place.distance <= 0 || place.distance >= within;
+    const double measured = place.distance >= within ? -INFINITY : place.distance, proven = measured - reach;
+    const double best = worst ? worst->gap_mm : INFINITY;
+    if (!hit && proven >= best) return true;  // no nearer than what is known already
+    if (!hit && !last && reach > o_.proof_mm && reach > 0.05 * (measured - rule_)) return false;
+    if (!hit && inside(s)) return note(s, place, -INFINITY, -INFINITY), true;
+    note(s, place, measured, hit ? std::min(measured, 0.0) : proven);
+    return true;
+  }
+  void note(const Stretch& s, const MeshPlace& place, double measured, double proven) {
+    if (worst && worst->gap_mm <= proven) return;
+    worst = MeshMeeting{proven, measured, body_ ? body_->name : "cutter", s.motion->operation, s.motion->tooth, s.motion->line, s.motion->rapid, index_, place.foot};
+  }
+  [[nodiscard]] bool inside(const Stretch& s) const {
+    const double h = body_ ? 0.5 * (body_->from + body_->to) : withdrawal_ ? tool_.flute_length_mm : 0.5 * (tool_.radius_mm() + tool_.flute_length_mm);
+    return mesh_.inside(s.tip + h * s.axis);
+  }
+  [[nodiscard]] MeshPlace gap(const Stretch& s, double within) const {
+    if (body_) return mesh_.to_frustum(*body_, s.tip, s.axis, within);
+    const double R = tool_.radius_mm();
+    if (withdrawal_) {
+      // Only what has come out of the room that the cutting part had: the ring of its flute above the old top.
+      const double back = (s.tip - withdrawal_->tip).dot(s.axis), from = tool_.flute_length_mm - std::max(back, 0.0);
+      return mesh_.to_frustum({from, tool_.flute_length_mm, R, R, "cutter"}, s.tip, s.axis, within);
+    }
+    MeshPlace place = mesh_.to_segment(s.tip + R * s.axis, s.axis, std::max(0.0, tool_.flute_length_mm - R), within + R);
+    place.distance = std::max(place.distance - R, 0.0);
+    return place;
+  }
+
+  const MeshDistance& mesh_;
+  std::size_t index_;
+  const ToolAssembly& tool_;
+  const Frustum* body_;  ///< none: the cutting part
+  double rule_, arm_ = 0;
+  const MeshClearanceOptions& o_;
+  const std::optional<Withdrawal>& withdrawal_;
+};
+
+}  // namespace
+
+std::optional<MeshMeeting> MeshClearance::nearest(std::span<const ToolMotion> motions, const ToolAssembly& tool, const MeshRule& rule,
+                                                  const std::optional<Withdrawal>& withdrawal) const {
+  std::optional<MeshMeeting> worst;
+  const auto bodies = shank_and_holder(tool);
+  for (std::size_t k = 0; k < meshes_.size(); ++k) {
+    const auto watch = [&](const Frustum* body, double least) {
+      BodyWatch w(*meshes_[k], k, tool, body, least, options_, withdrawal);
+      w.motions(motions);
+      if (w.worst && (!worst || w.worst->gap_mm - least < worst->gap_mm - (worst->body == "cutter" ? rule.cutter_mm : rule.others_mm))) worst = w.worst;
+    };
+    if (rule.cutter) watch(nullptr, rule.cutter_mm);
+    if (rule.others)
+      for (const auto& body : bodies) watch(&body, rule.others_mm);
+  }
+  return worst;
+}
+
+bool draws_back(const ToolMotion& m, const Withdrawal& w) {
+  double last = -kOnAxis;
+  for (const auto& [tip, axis] : {std::pair{m.tip_from, m.axis_from}, std::pair{m.tip_to, m.axis_to}}) {
+    const Vec3 d = tip - w.tip;
+    const double back = d.dot(w.axis);
+    if (back < last || (d - back * w.axis).norm() > kOnAxis || (axis - w.axis).norm() > 1e-6) return false;
+    last = back;
+  }
+  return true;
+}
+
+}  // namespace toothpath
