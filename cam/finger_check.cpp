@@ -253,7 +253,7 @@ FingerCheckResult FingerGougeCheck::verify(std::span<const ToolMotion> given) co
   const std::vector<FingerCut> cuts = s.cuts_of_first_tooth(local);
   std::vector<std::vector<FingerCut>> by_operation(s.operations.size());
   for (const FingerCut& cut : cuts) by_operation[static_cast<std::size_t>(cut.motion->operation)].push_back(cut);
-  const WallExcess excess = measure_walls(s.points, by_operation);
+  const WallExcess excess = measure_walls(s.points, by_operation, s.gear.parameters().addendum_mm + s.gear.parameters().dedendum_mm);
   for (std::size_t op = 0; op < by_operation.size(); ++op)
     result.operations.push_back(summary_of(s.points, excess.after[op], static_cast<int>(op)));
   if (!result.operations.empty()) {

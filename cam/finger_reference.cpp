@@ -18,28 +18,6 @@ double slope(const BevelTrace<double>& t, int sigma, double beta, double beta_c)
   return -2 * t.R_0 * std::sin(b) * t.speed_ratio(sigma, b) * std::cos(beta_c);
 }
 
-/// Points of a wall at one cone distance, from root to tip.
-std::vector<Vec3> edge_points(const BevelGear& g, const BevelWall<double>& wall, double ell) {
-  std::vector<Vec3> points;
-  const double low = -g.parameters().dedendum_mm, high = g.parameters().addendum_mm;
-  std::optional<BevelInverse> at;
-  for (int i = 0; i <= kEdgePoints; ++i) {
-    const double height = low + (high - low) * (i + 0.02) / (kEdgePoints + 0.02);
-    auto next = at ? bevel_inverse(wall, ell, height, *at) : bevel_inverse(wall, ell, height);
-    if (!next && at) next = bevel_inverse(wall, ell, height);
-    at = next;
-    if (at) points.push_back(blank_point(ell, height, at->azimuth, g.sin_delta(), g.cos_delta()));
-  }
-  return points;
-}
-
-/// Largest distance of an edge point from its neighbour.
-double spacing_of(const std::vector<Vec3>& edge) {
-  double widest = 0;
-  for (std::size_t i = 1; i < edge.size(); ++i) widest = std::max(widest, (edge[i] - edge[i - 1]).norm());
-  return widest;
-}
-
 }  // namespace
 
 ConePose cone_pose(const BevelGear& g, const Vec3& tip, const Vec3& axis, double index) {
@@ -59,11 +37,29 @@ ConePose cone_pose(const BevelGear& g, const Vec3& tip, const Vec3& axis, double
   return pose;
 }
 
+/// Points of a wall at one cone distance, from root to tip.
+WallReference::Edge WallReference::edge_points(const BevelGear& g, const BevelWall<double>& wall, double ell) {
+  Edge edge;
+  const double low = -g.parameters().dedendum_mm, high = g.parameters().addendum_mm;
+  std::optional<BevelInverse> at;
+  for (int i = 0; i <= kEdgePoints; ++i) {
+    const double height = low + (high - low) * (i + 0.02) / (kEdgePoints + 0.02);
+    auto next = at ? bevel_inverse(wall, ell, height, *at) : bevel_inverse(wall, ell, height);
+    if (!next && at) next = bevel_inverse(wall, ell, height);
+    at = next;
+    if (!at) continue;
+    const Vec3 p = blank_point(ell, height, at->azimuth, g.sin_delta(), g.cos_delta());
+    if (!edge.points.empty()) edge.spacing = std::max(edge.spacing, (p - edge.points.back()).norm());
+    edge.points.push_back(p);
+  }
+  return edge;
+}
+
 WallReference::WallReference(const BevelGear& gear, int sigma)
     : sigma_(sigma), solid_(gear.cutter()), sin_delta_(gear.sin_delta()), cos_delta_(gear.cos_delta()) {
   inner_edge_ = edge_points(gear, gear.halves().front().wall(sigma), gear.R_i());
-  outer_edge_ = edge_points(gear, gear.halves().back().wall(sigma), gear.R_e());
-  spacing_of_edges_ = std::max({spacing_of(inner_edge_), spacing_of(outer_edge_), 1e-9});
+  // Before the very end of the trace the envelope turns back: the face that is measured ends at ell_to.
+  outer_edge_ = edge_points(gear, gear.halves().back().wall(sigma), gear.halves().back().ell_to);
   const auto& first = gear.halves().front().wall(sigma);
   reach_ = first.cutter.rho_D;
   r_0_ = first.cutter.r_0;
@@ -122,17 +118,16 @@ CutterCentre<double> WallReference::on_curve(const Curve& c, double R_c) const {
 
 double WallReference::theta_at(double R_c) const { return on_curve(halves_[half_of(R_c)], R_c).theta_c; }
 
-double WallReference::edge_clearance(const std::vector<Vec3>& edge, double R_c, double theta) const {
-  if (edge.empty()) return -kClear;
-  const double spacing = spacing_of_edges_;
+double WallReference::edge_clearance(const Edge& edge, double R_c, double theta) const {
+  if (edge.points.empty()) return -kClear;
   double least = kClear;
   // A distance changes by no more than the way along the edge: far points let the next ones be passed over.
-  for (std::size_t i = 0; i < edge.size();) {
-    const double d = solid_.signed_distance(cutter_from_blank<double>(edge[i], R_c, theta / sin_delta_, sin_delta_, cos_delta_));
+  for (std::size_t i = 0; i < edge.points.size();) {
+    const double d = solid_.signed_distance(cutter_from_blank<double>(edge.points[i], R_c, theta / sin_delta_, sin_delta_, cos_delta_));
     least = std::min(least, d);
-    i += std::max<std::size_t>(1, static_cast<std::size_t>((d - least) / spacing));
+    i += std::max<std::size_t>(1, static_cast<std::size_t>((d - least) / edge.spacing));
   }
-  return least - 0.51 * spacing;  // nearest point at half a spacing, with room for the bend of the edge
+  return least - 0.51 * edge.spacing;  // nearest point at half a spacing, with room for the bend of the edge
 }
 
 double WallReference::offset(double R_c, double theta) const {

@@ -52,11 +52,14 @@ class WallReference {
   int sigma_;
   double reach_ = 0, near_ = 0, far_ = 0, curvature_ = 0, leverage_ = 1;
   std::vector<Curve> halves_;
-  [[nodiscard]] double edge_clearance(const std::vector<Vec3>& edge, double R_c, double theta) const;
-
   // Edges of the wall at the ends of the face: beyond the pass only they can be touched.
-  std::vector<Vec3> inner_edge_, outer_edge_;
-  double spacing_of_edges_ = 0;
+  struct Edge {
+    std::vector<Vec3> points;
+    double spacing = 1e-9;  // largest distance of neighbours, mm
+  };
+  [[nodiscard]] static Edge edge_points(const BevelGear& gear, const BevelWall<double>& wall, double ell);
+  [[nodiscard]] double edge_clearance(const Edge& edge, double R_c, double theta) const;
+  Edge inner_edge_, outer_edge_;
   FingerSolid solid_;
   double sin_delta_ = 0, cos_delta_ = 1;
   CutterCentre<double> end_;  // start of the straight run-out

@@ -63,20 +63,20 @@ std::vector<WallPoint> wall_points(const BevelGear& gear, int rows, int columns)
             f = w.point(*beta, p);
           }
           if (f) q.p = f->p, q.n = f->n;
-          else q.row = -1;
+          else if (q.row = -1; !points.empty()) q.p = points.back().p, q.n = points.back().n;
           points.push_back(q);
         }
     }
   return points;
 }
 
-WallExcess measure_walls(std::span<const WallPoint> points, std::span<const std::vector<FingerCut>> by_operation) {
+WallExcess measure_walls(std::span<const WallPoint> points, std::span<const std::vector<FingerCut>> by_operation, double most_mm) {
   WallExcess out;
-  out.after.assign(by_operation.size(), std::vector<double>(points.size(), kUntouched));
+  out.after.assign(by_operation.size(), std::vector<double>(points.size(), most_mm));
   out.deepest.assign(points.size(), nullptr);
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
     if (points[i].row < 0) return;
-    double best = kUntouched;
+    double best = most_mm;
     for (std::size_t op = 0; op < by_operation.size(); ++op) {
       for (const FingerCut& cut : by_operation[op]) {
         const double d = least_distance(points[i].p, *cut.motion, *cut.tool, best);

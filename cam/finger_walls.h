@@ -13,7 +13,7 @@
 namespace toothpath {
 
 struct WallPoint {
-  int half = 0, wall = 0, row = 0, column = 0;  ///< row -1: the wall has no such point
+  int half = 0, wall = 0, row = 0, column = 0;  ///< row -1: the wall has no such point; its place is that of the point before
   Vec3 p = Vec3::Zero(), n = Vec3::Zero();      ///< blank frame; out of the material
 };
 
@@ -27,7 +27,8 @@ struct WallExcess {
   std::vector<const ToolMotion*> deepest;       ///< the motion that comes nearest to the point; null: none
 };
 /// @param by_operation  cutting motions in tooth space 0, in the order of the job
-[[nodiscard]] WallExcess measure_walls(std::span<const WallPoint> points, std::span<const std::vector<FingerCut>> by_operation);
+/// @param most_mm  stands for everything that is thicker, where no motion comes near
+[[nodiscard]] WallExcess measure_walls(std::span<const WallPoint> points, std::span<const std::vector<FingerCut>> by_operation, double most_mm);
 
 /// Extremes and histogram of one field; bound_mm is left at the largest measured value.
 [[nodiscard]] ExcessResult summary_of(std::span<const WallPoint> points, std::span<const double> excess, int operation);
