@@ -26,6 +26,16 @@ void optional_number(TableReader& table, std::string_view key, const Range& rang
 
 constexpr double kDegree = kPi / 180;
 
+/// NAME_diameter and NAME_length: both or none.
+void optional_cylinder(TableReader& gear, const std::string& name, double& diameter, double& length) {
+  const std::string wide = name + "_diameter", tall = name + "_length";
+  const bool has_diameter = gear.has(wide), has_length = gear.has(tall);
+  optional_number(gear, wide, kLength, diameter);
+  optional_number(gear, tall, kLength, length);
+  if (has_diameter && !has_length) gear.refuse(wide, "{} = {} mm needs {} as well", wide, diameter, tall);
+  if (has_length && !has_diameter) gear.refuse(tall, "{} = {} mm needs {} as well", tall, length, wide);
+}
+
 void read_zones(TableReader& gear, FaceGearParameters& result, std::vector<std::string>& warnings) {
   auto zones = gear.tables("zone");
   if (!gear.has("zone")) gear.refuse("zone", "[gear] lacks its teeth: at least one [[gear.zone]]");
@@ -122,6 +132,8 @@ BevelGearParameters read_bevel_gear(TableReader& gear) {
   optional_number(gear, "backlash", kLengthOrZero, p.backlash_mm);
   if (module && p.backlash_mm >= *module)
     gear.refuse("backlash", "backlash = {} mm is not below outer_transverse_module = {} mm", p.backlash_mm, *module);
+  optional_cylinder(gear, "hub", p.hub_diameter_mm, p.hub_length_mm);
+  optional_cylinder(gear, "shaft", p.shaft_diameter_mm, p.shaft_length_mm);
   if (p.face_width_mm > 0 && p.pitch_angle_rad > 0 && module && p.teeth > 0) {
     const double outer = *module * p.teeth / (2 * std::sin(p.pitch_angle_rad));
     if (p.face_width_mm >= outer)

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "app/report/deviation_vtp.h"
+#include "cam/finger_obstacles.h"
 #include "geometry/base/angle.h"
 #include "geometry/bevel_mesh.h"
 #include "geometry/mesh_file.h"
@@ -18,37 +20,6 @@ Result<std::string> stl_text(const BevelGear& gear, const std::string& job_name)
   std::ostringstream out;
   const auto counts = write_stl(out, *mesh, title);
   if (!counts) return counts.error();
-  return std::move(out).str();
-}
-
-/// The measured walls as one mesh with their deviation.
-Result<std::string> walls_text(const std::vector<SurfaceGrid>& walls) {
-  TriangleMesh mesh;
-  std::vector<double> deviation;
-  for (const auto& grid : walls) {
-    const auto base = static_cast<std::int32_t>(mesh.vertices.size());
-    const auto columns = static_cast<std::size_t>(grid.columns);
-    for (std::size_t i = 0; i < grid.points.size(); ++i) {
-      mesh.vertices.push_back(grid.points[i]);
-      deviation.push_back(grid.excess_um.empty() ? 0.0 : static_cast<double>(grid.excess_um.back()[i]));
-    }
-    for (std::size_t r = 0; r + 1 < static_cast<std::size_t>(grid.rows); ++r)
-      for (std::size_t c = 0; c + 1 < columns; ++c) {
-        const auto at = [&](std::size_t row, std::size_t column) { return base + static_cast<std::int32_t>(row * columns + column); };
-        if (!grid.reachable[r * columns + c] || !grid.reachable[r * columns + c + 1] || !grid.reachable[(r + 1) * columns + c] ||
-            !grid.reachable[(r + 1) * columns + c + 1])
-          continue;
-        std::array<std::int32_t, 3> a{at(r, c), at(r, c + 1), at(r + 1, c + 1)}, b{at(r, c), at(r + 1, c + 1), at(r + 1, c)};
-        const Vec3 normal = (mesh.vertices[static_cast<std::size_t>(a[1])] - mesh.vertices[static_cast<std::size_t>(a[0])])
-                                .cross(mesh.vertices[static_cast<std::size_t>(a[2])] - mesh.vertices[static_cast<std::size_t>(a[0])]);
-        if (normal.dot(grid.normals[r * columns + c]) < 0) std::swap(a[1], a[2]), std::swap(b[1], b[2]);
-        mesh.triangles.push_back(a);
-        mesh.triangles.push_back(b);
-      }
-  }
-  const std::vector<PointField> fields = {{"deviation_um", deviation}};
-  std::ostringstream out;
-  if (const auto written = write_vtp(out, mesh, fields); !written) return written.error();
   return std::move(out).str();
 }
 
@@ -73,8 +44,15 @@ Result<std::string> inspection_text(const BevelGear& gear) {
 ClearanceBody bevel_clearance_body(const BevelGear& g) {
   const auto& p = g.parameters();
   const double below = p.dedendum_mm + 2 * p.outer_transverse_module_mm;
-  return {g.R_e() * g.sin_delta() + p.addendum_mm * g.cos_delta(), g.R_i() * g.cos_delta() - p.addendum_mm * g.sin_delta(),
-          g.R_e() * g.cos_delta() + below * g.sin_delta()};
+  ClearanceBody body{g.R_e() * g.sin_delta() + p.addendum_mm * g.cos_delta(), g.R_i() * g.cos_delta() - p.addendum_mm * g.sin_delta(),
+                     g.R_e() * g.cos_delta() + below * g.sin_delta()};
+  for (const CoaxialBody& beside : bodies_beside_teeth(g))
+    for (const Vec2& rim : beside.rims) {
+      body.radius_mm = std::max(body.radius_mm, rim.x());
+      body.z_min_mm = std::min(body.z_min_mm, rim.y());
+      body.z_max_mm = std::max(body.z_max_mm, rim.y());
+    }
+  return body;
 }
 
 PartOutline bevel_outline(const BevelGear& g) {
@@ -116,7 +94,7 @@ Status write_bevel_files(OutputDir& output, const BevelGear& gear, const std::st
   if (const auto s = write("limits.json", bevel_limits_json(gear)); !s) return s;
   if (const auto s = write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); })); !s) return s;
   if (const auto s = write("gear.stl", clock.run("mesh", [&] { return stl_text(gear, job_name); })); !s) return s;
-  return write("tooth.vtp", clock.run("mesh", [&] { return walls.empty() ? pitch_text(gear) : walls_text(walls); }));
+  return write("tooth.vtp", clock.run("mesh", [&] { return walls.empty() ? pitch_text(gear) : deviation_vtp(walls); }));
 }
 
 }  // namespace toothpath

@@ -4,6 +4,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "app/commands/bevel_check.h"
+#include "app/commands/bevel_run.h"
 #include "app/commands/proof.h"
 #include "app/gear_of_job.h"
 #include "app/job_file.h"
@@ -101,6 +103,7 @@ void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) 
 CommandOutcome check_program(const CommandRequest& request) {
   auto output = OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"});
   if (!output) return failed(output.error());
+  if (const auto bevel = bevel_job(request.job_file)) return check_bevel_program(request, *bevel, *output);
   Progress progress(request.quiet);
   StageClock clock(progress);
   auto read = clock.run("job", [&] { return read_job_file(request.job_file); });

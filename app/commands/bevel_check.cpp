@@ -1,0 +1,75 @@
+#include "app/commands/bevel_check.h"
+
+#include "app/commands/bevel_page.h"
+#include "app/commands/bevel_run.h"
+#include "app/commands/program_report.h"
+#include "app/report/deviation_vtp.h"
+#include "app/sha256.h"
+
+namespace toothpath {
+namespace {
+
+RunReport report_of(const Job& job, const Machine& machine, const BevelGear& gear, const BevelProof& proof, const std::string& program_file,
+                    std::string_view text) {
+  RunReport report = report_of("check", job, machine, gear.warnings());
+  report.program_file = program_file;
+  report.program_sha256 = sha256_hex(text);
+  report.program_bytes = text.size();
+  report.gouge = proof.result.gouge;
+  report.excess = proof.result.operations;
+  report.finished = proof.result.finished;
+  report.directions = directions_of(gear, job, proof);
+  report.blocks = proof.read.executed;
+  report.feed_minutes = proof.read.feed_minutes;
+  report.total_minutes = proof.read.minutes;
+  report.axes = ranges_of(proof.read, machine);
+  report.reasons = proof.reasons;
+  judge_travels(report.axes, report.reasons);
+  report.verified = report.reasons.empty();
+  return report;
+}
+
+}  // namespace
+
+CommandOutcome check_bevel_program(const CommandRequest& request, const Job& job, OutputDir& output) {
+  Progress progress(request.quiet);
+  StageClock clock(progress);
+  auto made = clock.run("gear", [&] { return make_bevel_gear(job); });
+  if (auto* refused = std::get_if<1>(&made)) return failed(std::move(*refused));
+  const BevelGear gear = std::move(std::get<0>(made));
+  auto loaded = clock.run("machine", [&] { return load_machine(job); });
+  if (auto* refused = std::get_if<1>(&loaded)) return failed(std::move(*refused));
+  const Machine machine = std::move(std::get<0>(loaded));
+  if (!job.setup) return failed(fail_at(job.where("setup"), "the job lacks a [setup]: where the gear stands is not known"));
+  const auto text = read_program_file(request.program_file);
+  if (!text) return failed(text.error());
+
+  const FingerGougeCheck check(gear, job.tools, job.operations, proof_tolerances(job));
+  const auto proof = prove_bevel_program(*text, request.program_file, job, machine, gear, check, {}, {}, clock);
+  if (!proof) {
+    progress.clear();
+    return failed(proof.error());
+  }
+  RunReport report = report_of(job, machine, gear, *proof, request.program_file, *text);
+
+  CommandOutcome outcome;
+  outcome.exit_code = report.verified ? ExitCode::ok : ExitCode::unverified;
+  outcome.errors = errors_of(report.reasons, request.program_file);
+  const auto vtp = deviation_vtp(proof->result.walls);
+  if (!vtp) return failed(vtp.error());
+  if (const auto s = output.write("tooth.vtp", *vtp); !s) return failed(s.error());
+  report.files = {"tooth.vtp", "report.html", "report.json"};
+  report.stages = clock.seconds();
+  const auto page = clock.run("report page", [&] { return render_report_page(bevel_page(job, gear, machine, report, {}, &*proof, *text)); });
+  if (!page) return failed(page.error());
+  if (const auto s = output.write("report.html", *page); !s) return failed(s.error());
+  report.stages = clock.seconds();
+  outcome.report_json = with_bevel_keys(report_json(report), gear, {}, &*proof);
+  if (const auto s = output.write("report.json", outcome.report_json); !s) return failed(s.error());
+  progress.clear();
+  if (const auto committed = output.commit(); !committed) return failed(committed.error());
+  outcome.summary = summary_table(report, request.color) + ridge_line(&*proof) + table_of_worst(proof->result.gouge);
+  return outcome;
+}
+
+}  // namespace toothpath

@@ -1,0 +1,97 @@
+#include "app/commands/bevel_page.h"
+
+#include <nlohmann/json.hpp>
+
+#include "app/report/motion_charts.h"
+#include "app/report/page_of_run.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath {
+namespace {
+
+PageTool page_tool(const BevelGear& gear, const ToolAssembly& tool) {
+  PageTool page;
+  page.name = fmt::format("T{} finger mill m {:g} mm", tool.number, tool.module_mm);
+  const auto own = gear_for_finger_mill(gear, tool);
+  if (!own) return page;
+  const auto& c = own->cutter();
+  PageToolBody flute{"flute", {Vec2(0, 0)}, true};
+  for (int i = 0; i <= 40; ++i) {
+    const auto q = c.at(c.p_A + (c.p_D - c.p_A) * i / 40);
+    flute.profile.emplace_back(q.rho, q.x + c.h_f);
+  }
+  flute.profile.emplace_back(c.rho_D, tool.flute_length_mm);
+  page.bodies.push_back(std::move(flute));
+  page.bodies.push_back({"shank", {Vec2(tool.shank_diameter_mm / 2, tool.flute_length_mm), Vec2(tool.shank_diameter_mm / 2, tool.stick_out_mm)}, false});
+  PageToolBody holder{"holder", {}, false};
+  double z = tool.stick_out_mm;
+  for (const auto& part : tool.holder) {
+    holder.profile.emplace_back(part.lower_diameter_mm / 2, z);
+    z += part.height_mm;
+    holder.profile.emplace_back(part.upper_diameter_mm / 2, z);
+  }
+  page.bodies.push_back(std::move(holder));
+  return page;
+}
+
+PageTable pass_table(const std::vector<FingerPlan>& plans) {
+  PageTable table{"Passes", {"op", "zone", "pass", "name", "direction", "length mm", "points"}, {}, "One tooth space; the convex side of a herringbone is one pass through both zones."};
+  for (const auto& plan : plans)
+    for (const auto& pass : plan.passes)
+      table.rows.push_back({std::to_string(plan.path.operation), std::to_string(pass.half), std::to_string(pass.pass), pass.name,
+                            pass.outward ? "outwards" : "inwards", fmt::format("{:.3f}", pass.length_mm), std::to_string(pass.points)});
+  return table;
+}
+
+}  // namespace
+
+ReportPage bevel_page(const Job& job, const BevelGear& gear, const Machine& machine, const RunReport& report,
+                      const std::vector<FingerPlan>& plans, const BevelProof* proof, std::string_view program) {
+  std::vector<ClPath> paths;
+  for (const auto& plan : plans) paths.push_back(plan.path);
+  ReportPage page = page_of_run(job, report, paths, program);
+  const auto& p = gear.parameters();
+  page.subtitle = fmt::format("equal-base-circle bevel gear z {}, outer module {:g} mm, {}, pitch angle {:.4f} deg, {}", p.teeth,
+                              p.outer_transverse_module_mm, gear.herringbone() ? "herringbone" : "single hand", degrees(gear.delta()),
+                              report.machine_name);
+  page.tools.clear();
+  for (const auto& tool : job.tools) page.tools.push_back(page_tool(gear, tool));
+  if (!plans.empty()) page.tables.push_back(pass_table(plans));
+  if (!proof) return page;
+  page.surface = proof->result.walls;
+  page.motion = motion_charts(proof->read, proof->motions, machine);
+  for (std::size_t k = 0; k < paths.size(); ++k)
+    page.paths[k].nc_lines = lines_of_records(paths[k], proof->motions, proof->path_tolerance_mm);
+  const RidgeResult& ridge = proof->result.ridge;
+  if (ridge.points > 0)
+    page.figures.push_back({"highest ridge", fmt::format("{:.4f}", ridge.reached_mm), "mm", fmt::format("asked {:.4f}", ridge.requested_mm),
+                            ridge.reached_mm <= ridge.requested_mm ? KeyFigure::State::good : KeyFigure::State::bad});
+  return page;
+}
+
+std::string with_bevel_keys(const std::string& json, const BevelGear& gear, const std::vector<FingerPlan>& plans, const BevelProof* proof) {
+  auto j = nlohmann::ordered_json::parse(json);
+  if (proof && proof->result.ridge.points > 0) {
+    const RidgeResult& ridge = proof->result.ridge;
+    j["ridge_mm"] = {{"requested", ridge.requested_mm}, {"reached", ridge.reached_mm}, {"cone_distance", ridge.cone_distance_mm},
+                     {"azimuth_deg", degrees(ridge.azimuth_rad)}};
+  }
+  if (proof && j.contains("tilt")) {
+    j["tilt"]["lean_deg"] = 90 - degrees(gear.delta());
+    j["tilt"]["simultaneous_axes"] = proof->moving.simultaneous;
+    j["tilt"]["moving_axes"] = proof->moving.letters;
+  }
+  auto passes = nlohmann::ordered_json::array();
+  for (const auto& plan : plans)
+    for (const auto& pass : plan.passes)
+      passes.push_back({{"op", plan.path.operation}, {"zone", pass.half}, {"pass", pass.pass}, {"name", pass.name}, {"length", pass.length_mm}, {"points", pass.points}});
+  if (!plans.empty()) j["passes"] = std::move(passes);
+  return j.dump(2) + "\n";
+}
+
+std::string ridge_line(const BevelProof* proof) {
+  if (!proof || proof->result.ridge.points == 0) return {};
+  return fmt::format("  {:<20}{:.4f} mm (asked {:.4f} mm)\n", "highest ridge", proof->result.ridge.reached_mm, proof->result.ridge.requested_mm);
+}
+
+}  // namespace toothpath

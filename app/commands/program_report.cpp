@@ -1,0 +1,133 @@
+#include "app/commands/program_report.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "app/gear_of_job.h"
+#include "geometry/base/angle.h"
+#include "postproc/nc_writer.h"
+
+namespace toothpath {
+namespace {
+
+constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 30;
+constexpr double kBlendShare = 0.15;  // of the gouge tolerance that the control may round corners by
+
+double shown(const AxisRange& axis, double value) { return axis.rotary ? degrees(value) : value; }
+
+}  // namespace
+
+RunReport report_of(const std::string& command, const Job& job, const Machine& machine, const std::vector<std::string>& gear_warnings) {
+  RunReport report;
+  report.command = command;
+  report.job_name = job.name;
+  report.job_file = job.file;
+  report.machine_name = machine.name;
+  report.machine_file = job.machine.file;
+  report.dialect = machine.dialect;
+  report.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
+  if (machine.assumed)
+    for (const auto& key : machine.assumed_keys) report.assumed.push_back(fmt::format("{}: {}", job.machine.file, key));
+  report.warnings = job.warnings;
+  report.warnings.insert(report.warnings.end(), gear_warnings.begin(), gear_warnings.end());
+  return report;
+}
+
+void note_axis_program(RunReport& report, const Job& job, std::span<const ClPath* const> paths, const AxisProgram& program) {
+  report.axes = program.ranges;
+  report.feed_minutes = program.feed_minutes;
+  report.total_minutes = program.minutes;
+  for (const AxisOperation& o : program.operations) {
+    const auto& asked = job.operations[static_cast<std::size_t>(o.operation)];
+    OperationReport operation{o.operation, o.type, o.tool_number, asked.speed_rpm, asked.feed_mm_min, 0, o.feed_minutes, o.rapid_minutes};
+    for (const ClPath* path : paths)
+      if (path->operation == o.operation) operation.cl_points += path->records.size();
+    report.operations.push_back(operation);
+  }
+}
+
+Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const Job& job, const Machine& machine, int teeth,
+                                   const ClearanceBody& body, const std::vector<std::string>& assumed, OutputDir& output, StageClock& clock) {
+  const auto dialect = dialect_of(machine);
+  if (!dialect) return located(job, "machine.file", dialect.error());
+  auto program = clock.run("axis program", [&] {
+    return build_axis_program(paths, job.tools, *job.setup, machine, teeth, body, axis_options(*dialect, machine));
+  });
+  if (!program) return located(job, "setup", program.error());
+  PostedProgram posted;
+  posted.axes = std::move(program.value());
+
+  NcHeader header;
+  header.job_name = job.name;
+  header.machine_name = machine.name;
+  header.assumed = assumed;
+  header.coolant = job.coolant != Coolant::off;
+  header.blend_mm = std::min(header.blend_mm, kBlendShare * job.verify.gouge_tolerance_mm);
+  auto text = clock.run("NC text", [&] { return write_nc(posted.axes, *dialect, header); });
+  if (!text) return located(job, "machine.file", text.error());
+  posted.blocks = text->blocks;
+  posted.blend_mm = header.blend_mm;
+  posted.file = "program" + dialect->extension;
+  if (const auto written = output.write(posted.file, text->text); !written) return written.error();
+  auto bytes = output.read_back(posted.file);
+  if (!bytes) return bytes.error();
+  posted.text = std::move(bytes.value());
+  return posted;
+}
+
+void discard_program(OutputDir& output) {
+  for (const char* extension : {".ngc", ".nc", ".mpf", ".h", ".apt"}) output.discard(std::string("program") + extension);
+}
+
+Result<std::string> read_program_file(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return fail_as(DiagnosticKind::file_access, "program \"{}\" cannot be read", path);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (in.bad() || (text.view().empty() && in.fail() && !in.eof()))
+    return fail_as(DiagnosticKind::file_access, "program \"{}\" cannot be read", path);
+  if (text.view().size() > kMostBytes)
+    return fail_as(DiagnosticKind::refused_input, "program \"{}\" has {} bytes, at most {} are read", path, text.view().size(), kMostBytes);
+  return std::move(text).str();
+}
+
+std::vector<AxisRange> ranges_of(const ReadBack& read, const Machine& machine) {
+  std::vector<AxisRange> out;
+  for (std::size_t k = 0; k < 3; ++k)
+    out.push_back({"XYZ"[k], false, read.least[k], read.greatest[k], machine.chain.linear[k].min_mm, machine.chain.linear[k].max_mm});
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
+    const auto& axis = machine.chain.rotary(k);
+    out.push_back({axis.letter, true, radians(read.least[3 + k]), radians(read.greatest[3 + k]), axis.min_rad, axis.max_rad});
+  }
+  return out;
+}
+
+void judge_travels(std::span<const AxisRange> axes, std::vector<std::string>& reasons) {
+  for (const auto& a : axes) {
+    if (a.min < a.lower_limit - 1e-9) reasons.push_back(fmt::format("travel: {} = {:.4f} is below {:.4f}", a.letter, shown(a, a.min), shown(a, a.lower_limit)));
+    if (a.max > a.upper_limit + 1e-9) reasons.push_back(fmt::format("travel: {} = {:.4f} exceeds {:.4f}", a.letter, shown(a, a.max), shown(a, a.upper_limit)));
+  }
+}
+
+std::string table_of_worst(const GougeResult& gouge) {
+  if (gouge.worst.empty()) return {};
+  std::string out = "  worst places\n    line  op  tooth  zone  patch        body        r mm      z mm       um\n";
+  for (const auto& w : gouge.worst)
+    out += fmt::format("    {:5} {:3} {:6} {:5}  {:<12} {:<7} {:9.3f} {:9.3f} {:8.2f}\n", w.line, w.operation, w.tooth, w.zone, w.patch, w.body,
+                       w.radius_mm, w.height_mm, w.depth_mm * 1000);
+  return out;
+}
+
+std::vector<Diagnostic> errors_of(std::span<const std::string> reasons, const std::string& file) {
+  std::vector<Diagnostic> errors;
+  for (const auto& reason : reasons) {
+    Diagnostic error = fail_as(DiagnosticKind::verification, "{}", reason);
+    error.position.file = file;
+    errors.push_back(std::move(error));
+  }
+  return errors;
+}
+
+}  // namespace toothpath

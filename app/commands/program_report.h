@@ -1,0 +1,54 @@
+// What every command that makes or checks an NC program does in the same way, whatever the gear: begin the report, take over the
+// axis program, read a program file, judge travels, print the table of worst places.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "app/commands/command.h"
+#include "app/job.h"
+#include "app/output_dir.h"
+#include "app/report/run_report.h"
+#include "cam/checked_cl_path.h"
+#include "machines/machine.h"
+#include "postproc/nc_reader.h"
+
+namespace toothpath {
+
+/// Names of job and machine, assumed values, warnings.
+[[nodiscard]] RunReport report_of(const std::string& command, const Job& job, const Machine& machine, const std::vector<std::string>& gear_warnings);
+
+/// Axis ranges, times and operations. `paths`: one an operation.
+void note_axis_program(RunReport& report, const Job& job, std::span<const ClPath* const> paths, const AxisProgram& program);
+
+/// An NC program that this run has made: on the disk, and what lies there.
+struct PostedProgram {
+  AxisProgram axes;
+  std::string file;      ///< name in the output directory
+  std::string text;      ///< the bytes as read back
+  std::size_t blocks = 0;
+  double blend_mm = 0;   ///< how far the control may leave the corners; 0: the dialect has no such word
+};
+/// Axis program, NC text, the file, its bytes. Errors carry their place in the job.
+[[nodiscard]] Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const Job& job, const Machine& machine, int teeth,
+                                                 const ClearanceBody& body, const std::vector<std::string>& assumed, OutputDir& output,
+                                                 StageClock& clock);
+/// Takes every program file out of the directory again.
+void discard_program(OutputDir& output);
+
+/// Text of a program that is already there; at most 1 GiB.
+[[nodiscard]] Result<std::string> read_program_file(const std::string& path);
+
+/// Least and greatest position of every axis over all executed moves, against its limits.
+[[nodiscard]] std::vector<AxisRange> ranges_of(const ReadBack& read, const Machine& machine);
+/// A program may use the travels of the machine, not more: adds to `reasons`.
+void judge_travels(std::span<const AxisRange> axes, std::vector<std::string>& reasons);
+
+/// Lines of the table of places that are worst: where, which body, how deep. Empty where there is none.
+[[nodiscard]] std::string table_of_worst(const GougeResult& gouge);
+
+/// One error a reason, of kind verification, in `file`.
+[[nodiscard]] std::vector<Diagnostic> errors_of(std::span<const std::string> reasons, const std::string& file);
+
+}  // namespace toothpath

@@ -1,0 +1,134 @@
+// Bevel gears from outside: run, then check of the program as it is and with planted faults.
+#include <nlohmann/json.hpp>
+#include <regex>
+
+#include "program.h"
+
+namespace toothpath::testing {
+namespace {
+
+const std::string kTrunnion = kSamples + "/bevel_trunnion.toml";
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+std::string text_of(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const auto& line : lines) text += line + "\n";
+  return text;
+}
+std::size_t line_with(const std::vector<std::string>& lines, const std::string& begin) {
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (lines[i].starts_with(begin)) return i;
+  ADD_FAILURE() << begin << " is not in the program";
+  return 0;
+}
+
+/// One run for all tests of this file.
+class BevelCommand : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    dir_ = new TestDir;
+    run_ = new Finished(run_program({"run", kTrunnion, "--out", *dir_ / "run"}));
+    report_ = new nlohmann::json(nlohmann::json::parse(file_text(*dir_ / "run/report.json"), nullptr, false));
+  }
+  static void TearDownTestSuite() {
+    delete report_;
+    delete run_;
+    delete dir_;
+  }
+  static nlohmann::json check(const std::string& name, const std::vector<std::string>& program, int exit_code) {
+    write_file(*dir_ / (name + ".ngc"), text_of(program));
+    const Finished done = run_program({"check", kTrunnion, *dir_ / (name + ".ngc"), "--out", *dir_ / name});
+    EXPECT_EQ(done.exit_code, exit_code) << done.out << done.err;
+    return nlohmann::json::parse(file_text(*dir_ / (name + "/report.json")), nullptr, false);
+  }
+  static std::vector<std::string> program() { return lines_of(file_text(*dir_ / "run/program.ngc")); }
+
+  static TestDir* dir_;
+  static Finished* run_;
+  static nlohmann::json* report_;
+};
+TestDir* BevelCommand::dir_ = nullptr;
+Finished* BevelCommand::run_ = nullptr;
+nlohmann::json* BevelCommand::report_ = nullptr;
+
+TEST_F(BevelCommand, RunIsVerifiedWithItsNumbers) {
+  ASSERT_EQ(run_->exit_code, 0) << run_->err;
+  const auto& r = *report_;
+  EXPECT_TRUE(r["verified"].get<bool>());
+  EXPECT_LE(r["gouge_um"]["measured"].get<double>(), 1.0);
+  EXPECT_LE(r["gouge_um"]["bound"].get<double>(), 2.0);
+  EXPECT_LE(r["excess_um"]["finished"]["bound"].get<double>(), 0.5 + 1.5);
+  EXPECT_LE(r["ridge_mm"]["reached"].get<double>(), r["ridge_mm"]["requested"].get<double>());
+  EXPECT_LT(r["clearance"]["least"].get<double>(), 1.0) << "shank above the tips";
+}
+
+TEST_F(BevelCommand, TwoAxesMoveAndTheReportSaysSo) {
+  const auto& tilt = (*report_)["tilt"];
+  EXPECT_EQ(tilt["simultaneous_axes"], 2);
+  EXPECT_EQ(tilt["moving_axes"], "YC");
+  for (const auto& d : tilt["directions"])
+    EXPECT_NE(d["explanation"].get<std::string>().find("two simultaneous axes (YC) plus fixed tilt"), std::string::npos) << d["explanation"];
+  EXPECT_NE(file_text(*dir_ / "run/report.html").find("two simultaneous axes"), std::string::npos);
+}
+
+TEST_F(BevelCommand, NoBallMillCodeRuns) {
+  for (const char* stage : {"distance index", "cut surface", "compare the teeth"})
+    EXPECT_FALSE((*report_)["stages"].contains(stage)) << stage;
+}
+
+TEST_F(BevelCommand, CheckSaysTheSameOfTheProgram) {
+  const auto again = check("same", program(), 0);
+  for (const char* key : {"measured", "bound"})
+    EXPECT_NEAR(again["gouge_um"][key].get<double>(), (*report_)["gouge_um"][key].get<double>(), 1e-6) << key;
+  EXPECT_NEAR(again["ridge_mm"]["reached"].get<double>(), (*report_)["ridge_mm"]["reached"].get<double>(), 1e-9);
+  EXPECT_TRUE(std::filesystem::exists(*dir_ / "same/report.html"));
+}
+
+TEST_F(BevelCommand, WallPassesAloneLeaveARidge) {
+  auto lines = program();
+  const std::size_t first = line_with(lines, "(OP 0"), second = line_with(lines, "(OP 1");
+  lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(first), lines.begin() + static_cast<std::ptrdiff_t>(second));
+  const auto report = check("walls", lines, 1);
+  EXPECT_GT(report["ridge_mm"]["reached"].get<double>(), 0.3);
+  bool named = false;
+  for (const auto& reason : report["reasons"]) named = named || reason.get<std::string>().starts_with("ridge: ");
+  EXPECT_TRUE(named) << report["reasons"];
+}
+
+// One block of a wall pass turned by 0.05 deg one way or the other: one cuts into the wall and is named, the other leaves material.
+TEST_F(BevelCommand, ATurnedBlockIsFound) {
+  const std::regex word("C\\[#1([-+][0-9.]+)\\]");
+  bool gouge = false, left = false;
+  for (const double turn : {0.05, -0.05}) {
+    auto lines = program();
+    const std::size_t from = line_with(lines, "(OP 1");
+    std::size_t at = from;
+    int seen = 0;
+    std::smatch m;
+    for (; at < lines.size(); ++at)
+      if (lines[at].find('Y') != std::string::npos && std::regex_search(lines[at], m, word) && ++seen == 25) break;
+    ASSERT_LT(at, lines.size());
+    char changed[64];
+    std::snprintf(changed, sizeof changed, "C[#1%+.5f]", std::stod(m[1].str()) + turn);
+    lines[at] = m.prefix().str() + changed + m.suffix().str();
+    const auto report = check(turn > 0 ? "plus" : "minus", lines, 1);
+    for (const auto& reason : report["reasons"]) {
+      if (reason.get<std::string>().starts_with("gouge: ")) gouge = true;
+      if (reason.get<std::string>().starts_with("material left")) left = true;
+    }
+    if (report["gouge_um"]["bound"].get<double>() > 5) {
+      const int line = report["worst_places"][0]["line"].get<int>();
+      EXPECT_TRUE(line == static_cast<int>(at) + 1 || line == static_cast<int>(at) + 2) << line << " for " << at + 1;
+    }
+  }
+  EXPECT_TRUE(gouge);
+  EXPECT_TRUE(left);
+}
+
+}  // namespace
+}  // namespace toothpath::testing
