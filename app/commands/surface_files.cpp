@@ -2,7 +2,10 @@
 
 #include <sstream>
 
+#include "app/commands/study_page.h"
+#include "app/report/limits_chart.h"
 #include "app/report/limits_json.h"
+#include "geometry/inspection_dmis.h"
 #include "geometry/inspection_grid.h"
 #include "geometry/mesh_file.h"
 
@@ -56,6 +59,13 @@ Status write_surface_files(OutputDir& output, const FaceGear& gear, const std::s
     return output.write(name, *content);
   };
   if (const auto s = write("limits.json", limits_json(gear)); !s) return s;
+  if (const auto s = write("limits.html", limits_page(gear, job_name)); !s) return s;
+  for (std::size_t zone = 0; zone < gear.rings().size(); ++zone)
+    if (const auto s = write(gear.rings().size() == 1 ? "limits.svg" : "limits_" + std::to_string(zone) + ".svg", standalone_svg(limit_charts(gear)[2 * zone])); !s)
+      return s;
+  const auto dmis = inspection_grid(gear);
+  if (!dmis) return dmis.error();
+  if (const auto s = write("inspection.dmi", inspection_dmis(gear, *dmis, job_name)); !s) return s;
   if (const auto s = write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); })); !s) return s;
   if (const auto s = write("gear.stl", clock.run("mesh", [&] { return stl_text(gear, job_name); })); !s) return s;
   return write("tooth.vtp", clock.run("mesh", [&] { return vtp_text(gear); }));

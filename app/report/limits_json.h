@@ -8,7 +8,8 @@
 namespace toothpath {
 
 /// `{"zones": [{"zone", "flanks": [{"side", "undercut_radius", "involute_start_radius", "pointing_radius"}]}]}`; radii in mm,
-/// null where a limit does not exist. Ends in a line feed.
+/// null where a limit does not exist. Beside the keys of the contract: heights, the fillet line at nine radii, and which limit of
+/// which side governs. Ends in a line feed.
 [[nodiscard]] std::string limits_json(const FaceGear& gear);
 
 }  // namespace toothpath

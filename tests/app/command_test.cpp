@@ -7,7 +7,8 @@ namespace toothpath::testing {
 namespace {
 
 const std::string kQuick = kSamples + "/spur_quick.toml";
-const std::vector<std::string> kSurfaceFiles = {"gear.stl", "inspection.csv", "limits.json", "report.json", "tooth.vtp"};
+const std::vector<std::string> kSurfaceFiles = {"gear.stl",    "inspection.csv", "inspection.dmi", "limits.html",
+                                                "limits.json", "limits.svg",     "report.json",    "tooth.vtp"};
 
 TEST(CommandLine, UsageErrorsAreTwo) {
   for (const std::vector<std::string>& arguments :
