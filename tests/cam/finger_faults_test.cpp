@@ -43,6 +43,7 @@ ClRecord moved(ClRecord r, double turn, double up) {
 TEST_F(FingerFaults, RandomPlacesOnWallsRootEndsAndCorner) {
   std::mt19937 random(20260);
   int on_wall = 0, in_root = 0, at_ends = 0, in_corner = 0;
+  const WallReference L(clean().gear, 1), U(clean().gear, -1);
   for (int n = 0; n < 160; ++n) {
     const std::size_t op = random() % 2;
     ClPath path = clean().plans[op].path;
@@ -52,7 +53,6 @@ TEST_F(FingerFaults, RandomPlacesOnWallsRootEndsAndCorner) {
     const ConePose pose = cone_pose(clean().gear, record.tip, record.axis, 0);
     if (pose.R_c > clean().gear.R_e()) continue;  // run-out: nothing to gouge
     const double depth = 0.004 + 0.056 * static_cast<double>(random() % 1000) / 1000;
-    const WallReference L(clean().gear, 1), U(clean().gear, -1);
     const double side_L = L.offset(pose.R_c, pose.theta), side_U = U.offset(pose.R_c, pose.theta);
     std::string expected;
     if (random() % 3 == 0) {
