@@ -13,11 +13,14 @@
 #include <thread>
 
 #include "app/commands/check.h"
+#include "app/commands/compare.h"
+#include "app/commands/contact.h"
 #include "app/commands/cutter.h"
 #include "app/commands/forces.h"
 #include "app/commands/machine.h"
 #include "app/commands/shaper.h"
 #include "app/commands/run.h"
+#include "app/commands/study_dhfg.h"
 #include "app/commands/study_stability.h"
 #include "app/commands/study_trace_model.h"
 #include "app/commands/study_work_precision.h"
@@ -137,7 +140,12 @@ std::vector<Subcommand> add_studies(CLI::App& app, CommandRequest& request) {
   stability->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required();
   auto trace_model = add_job_command(*study, "trace-model", "section-sweep models of a bevel gear against its envelope", request, study_trace_model);
   trace_model.app->add_flag("--quick", request.quick, "a coarser grid");
-  return {work_precision, {stability, study_stability}, trace_model};
+  CLI::App* dhfg = study->add_subcommand("dhfg", "nine orthogonal trials of double helical face gears: limits, contact, forces, milling time");
+  dhfg->fallthrough();
+  dhfg->add_option("--file", request.study_file, "study file (TOML); without it the literature's levels and no milling");
+  dhfg->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required();
+  dhfg->add_flag("--quick", request.quick, "coarse tolerances of the planned paths");
+  return {work_precision, {stability, study_stability}, trace_model, {dhfg, study_dhfg}};
 }
 
 /// `machine show MACHINE`: commands below a command.
@@ -160,6 +168,28 @@ std::vector<Subcommand> add_bevel_commands(CLI::App& app, CommandRequest& reques
   auto forces = add_job_command(app, "forces", "tooth forces of a bevel pair over the apex cone distance, and what balances them", request, run_forces);
   forces.app->add_option("--torque", request.torque_Nm, "torque on the gear of the job [N m]; overrides torque in its [load]")->check(CLI::Range(1e-6, 1e9));
   return {cutter, forces};
+}
+
+/// `contact JOB`: the pinion and where it stands.
+Subcommand add_contact(CLI::App& app, CommandRequest& request) {
+  auto contact = add_job_command(app, "contact", "gear and pinion rolled: contact pattern, transmission error, pairs", request, run_contact);
+  contact.app->add_option("--pinion-teeth", request.pinion_teeth, "teeth of the pinion (default: mate_teeth, else the shaper's)");
+  contact.app->add_option("--offset-error", request.offset_error_mm, "pinion axis off its place across the tooth, mm");
+  contact.app->add_option("--angle-error", request.angle_error_deg, "error of the shaft angle, deg");
+  contact.app->add_option("--axial-error", request.axial_error_mm, "pinion off its place along its axis, mm");
+  contact.app->add_option("--compound", request.compound_um, "thickness of the marking compound, um (default 6)");
+  contact.app->add_flag("--as-cut", request.as_cut, "roll the surface that the job cuts, too");
+  return contact;
+}
+
+/// `compare SHAPED MILLED`: one gear, two routes.
+Subcommand add_compare(CLI::App& app, CommandRequest& request) {
+  CLI::App* compare = app.add_subcommand("compare", "one gear shaped and milled: deviations on the same places, times");
+  compare->fallthrough();
+  compare->add_option("SHAPED", request.job_file, "job file with [shaping]")->required();
+  compare->add_option("MILLED", request.other_job, "job file with operations of the same gear")->required();
+  compare->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required();
+  return {compare, run_compare};
 }
 
 void add_global_options(CLI::App& app, GlobalOptions& options) {
@@ -190,6 +220,8 @@ int run_command_line(int argc, char** argv) {
   commands.push_back(add_job_command(app, "shaper", "limits and gear-shaper set-up: sheet and stroke program", request, run_shaper));
 
   for (auto& command : add_bevel_commands(app, request)) commands.push_back(std::move(command));
+  commands.push_back(add_contact(app, request));
+  commands.push_back(add_compare(app, request));
   for (auto& command : add_studies(app, request)) commands.push_back(std::move(command));
   for (auto& command : add_machine_commands(app, request)) commands.push_back(std::move(command));
 

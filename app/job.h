@@ -13,6 +13,7 @@
 #include "geometry/base/diagnostic.h"
 #include "geometry/bevel_gear_parameters.h"
 #include "geometry/face_gear_parameters.h"
+#include "geometry/pinion.h"
 #include "postproc/setup.h"
 #include "postproc/shaping.h"
 
@@ -29,6 +30,13 @@ struct VerifySettings {
   double gouge_tolerance_mm = 2e-3;     ///< deepest cut into the finished surface that counts as verified
   bool all_teeth = false;               ///< false: one space is proven, the others are turned copies
   std::optional<double> clearance_mm;   ///< least gap of neck, shank and holder; none: the program's default
+};
+
+/// The [contact] table: the pinion that runs with the gear, and where it stands.
+struct ContactSettings {
+  int pinion_teeth = 0;        ///< N_p; 0: mate_teeth of the gear
+  Misalignment moved;
+  double compound_mm = 0.006;  ///< thickness of the marking compound
 };
 
 /// The [coolant] table.
@@ -50,6 +58,7 @@ struct Job {
   Coolant coolant = Coolant::off;
   VerifySettings verify;
   std::optional<Shaping> shaping;
+  std::optional<ContactSettings> contact;
   std::optional<double> torque_Nm;  ///< [load]: on the gear of the job; only forces are computed from it
   KeyPositions positions;
   std::vector<std::string> warnings;  ///< located remarks that do not stop a run, e.g. an angle that looks like radians

@@ -75,6 +75,7 @@ JobOrErrors parse_job(std::string_view text, const std::string& file) {
   if (auto table = root.table("machine")) job.machine = read_machine_choice(*table);
   if (auto table = root.table("setup")) job.setup = read_setup(*table);
   if (auto table = root.table("shaping")) job.shaping = read_shaping(*table);
+  if (auto table = root.table("contact")) job.contact = read_contact(*table);
   if (auto table = root.table("coolant")) job.coolant = read_coolant(*table);
   if (auto table = root.table("verify")) job.verify = read_verify(*table);
   if (auto table = root.table("load")) {

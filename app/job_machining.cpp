@@ -3,6 +3,7 @@
 #include <regex>
 
 #include "app/job_tables.h"
+#include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
@@ -190,6 +191,18 @@ Shaping read_shaping(TableReader& table) {
   }
   table.finish();
   return s;
+}
+
+ContactSettings read_contact(TableReader& table) {
+  ContactSettings c;
+  const auto number = [&](const char* key, const Range& range) { return table.if_present(key, [&] { return table.number(key, range); }); };
+  if (const auto teeth = table.if_present("pinion_teeth", [&] { return table.integer("pinion_teeth", {5, 1000}); })) c.pinion_teeth = *teeth;
+  if (const auto offset = number("offset_error", {-5, 5, " mm"})) c.moved.offset_mm = *offset;
+  if (const auto axial = number("axial_error", {-5, 5, " mm"})) c.moved.axial_mm = *axial;
+  if (const auto angle = number("angle_error", {-1, 1, " deg"})) c.moved.angle_rad = radians(*angle);
+  if (const auto compound = number("compound", {1e-4, 0.1, " mm"})) c.compound_mm = *compound;
+  table.finish();
+  return c;
 }
 
 VerifySettings read_verify(TableReader& table) {

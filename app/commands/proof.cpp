@@ -134,7 +134,7 @@ Result<ProgramProof> prove_program(std::string_view text, const std::string& fil
   for (const auto& operation : job.operations) tool_of_operation.push_back(operation.tool);
   proof.gouge = clock.run("proof of the program", [&] { return check.check(proof.motions, tool_of_operation); });
   judge_gouge(proof.gouge, check, options, proof.reasons);
-  proof.surface = clock.run("cut surface", [&] { return measure_cut_surface(part, proof.motions, job.operations, job.tools); });
+  proof.surface = clock.run("cut surface", [&] { return measure_cut_surface(part, proof.motions, job.operations, job.tools, options.cut_surface); });
   judge_surface(proof.surface, job, proof.reasons);
   if (!paths.empty()) {
     proof.comparison = clock.run("compare with the path", [&] {

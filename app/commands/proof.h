@@ -31,6 +31,7 @@ struct ProofOptions {
   double motion_tolerance_rad = 1e-4;  ///< the same for the axis
   double path_tolerance_mm = 2e-3;     ///< how far a CL record may lie from the motion that meets it
   double path_tolerance_rad = 2e-3;
+  CutSurfaceOptions cut_surface;       ///< grid on which the cut surface is measured
 };
 
 /// Reads `text` back and checks it. `paths` may be empty (a program that somebody else wrote).

@@ -6,9 +6,11 @@
 #include "app/commands/bevel_run.h"
 #include "app/commands/proof.h"
 #include "app/commands/surface_files.h"
+#include "app/contact_analysis.h"
 #include "app/gear_of_job.h"
 #include "app/job_file.h"
 #include "app/report/cl_csv.h"
+#include "app/report/contact_figures.h"
 #include "app/report/deviation_vtp.h"
 #include "app/report/page_of_run.h"
 #include "app/report/setup_sheet.h"
@@ -34,6 +36,7 @@ struct Run {
   FaceGearPlan plan;
   std::vector<CheckedClPath> checked;
   RunReport report;
+  CutSurfaceOptions cut_surface;  ///< grid on which the cut surface is measured
   std::vector<SurfaceGrid> surface;
   std::string program_text;  ///< as read back from the disk
 
@@ -168,6 +171,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   run.program_text = std::move(bytes.value());
 
   ProofOptions options;
+  options.cut_surface = run.cut_surface;
   options.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
   options.path_tolerance_mm = program->chord_bound_mm + program->rounding_bound_mm + 2 * options.motion_tolerance_mm;
   options.path_tolerance_rad = program->axis_bound_rad + 2 * options.motion_tolerance_rad;
@@ -217,6 +221,25 @@ void discard_program(OutputDir& output) {
   for (const char* extension : {".ngc", ".nc", ".mpf", ".h", ".apt"}) output.discard(std::string("program") + extension);
 }
 
+/// Contact with the pinion, for jobs that ask for it with [contact]: the exact flanks and those that the program cuts. Empty otherwise,
+/// and where the pinion cannot run (then the report warns).
+std::string contact_of(Run& run) {
+  if (!run.job.contact) return {};
+  CutFlanks cut;
+  cut.route = "milled";
+  cut.flanks = flanks_of(run.surface);
+  auto analysed = analyse_contact(run.job, *run.gear, *run.job.contact, cut.flanks.empty() ? nullptr : &cut);
+  if (const auto* errors = std::get_if<1>(&analysed)) {
+    run.report.warnings.push_back("no contact analysis: " + errors->front().message);
+    return {};
+  }
+  auto& analysis = std::get<0>(analysed);
+  if (!analysis.route.empty())
+    analysis.notes.emplace_back("The cut surface is taken from the report's grid, which does not resolve every cusp: for its transmission error run "
+                                "`toothpath contact --as-cut`.");
+  return contact_section_body(analysis);
+}
+
 /// The files for people and for other programs; the program itself is there already.
 Status write_results(Run& run, OutputDir& output, std::string& json) {
   RunReport& report = run.report;
@@ -236,8 +259,10 @@ Status write_results(Run& run, OutputDir& output, std::string& json) {
     if (const auto s = write("cl.csv", cl_csv(paths)); !s) return s;
   report.stages = run.clock.seconds();
   const auto page = run.clock.run("report page", [&] {
+    const std::string contact = contact_of(run);
     ReportPage content = page_of_run(run.job, report, run.plan.paths, run.program_text);
     content.surface = run.surface;
+    content.contact = contact;
     return render_report_page(content);
   });
   if (!page) return page.error();
@@ -291,11 +316,12 @@ CommandOutcome run_job(const CommandRequest& request) {
   return finish(run, *output, stopped);
 }
 
-StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bool quiet) {
+StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bool quiet, const CutSurfaceOptions& grid) {
   CommandRequest request;
   request.quiet = quiet;
   Run run(request);
   run.job = job;
+  run.cut_surface = grid;
   StagesOutcome outcome;
   outcome.errors = prepare(run);
   if (!outcome.errors.empty()) return outcome;
@@ -308,6 +334,7 @@ StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bo
   run.report.stages = run.clock.seconds();
   run.progress.clear();
   outcome.report = std::move(run.report);
+  outcome.surface = std::move(run.surface);
   return outcome;
 }
 

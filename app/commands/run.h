@@ -5,6 +5,7 @@
 #include "app/job.h"
 #include "app/output_dir.h"
 #include "app/report/run_report.h"
+#include "cam/cut_surface.h"
 
 namespace toothpath {
 
@@ -16,11 +17,13 @@ namespace toothpath {
 struct StagesOutcome {
   RunReport report;                ///< with its stages' seconds; `reasons` says why the program is not verified
   std::vector<Diagnostic> errors;  ///< the job, gear or machine is refused: the report is not filled in
+  std::vector<SurfaceGrid> surface;  ///< the cut surface of tooth space 0; empty where the run did not get so far
 };
 
 /// The stages of `run` on a job that has been read (and perhaps changed): the same code, without the files for people. The program
 /// goes through a temporary file of `scratch`, as in a run, and is dropped afterwards.
 /// @param proof_mm how far the bound of a move may lie above what was measured at its ends (GougeCheckOptions)
-[[nodiscard]] StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bool quiet);
+/// @param grid     rows and columns of the grid on which the cut surface is measured
+[[nodiscard]] StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bool quiet, const CutSurfaceOptions& grid = {});
 
 }  // namespace toothpath

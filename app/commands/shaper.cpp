@@ -134,4 +134,10 @@ CommandOutcome run_shaper(const CommandRequest& request) {
   return outcome;
 }
 
+ValueOrErrors<ShaperSetup> shaper_setup_of(const Job& job, const FaceGear& gear) {
+  auto loaded = load_shaper_machine(job);
+  if (auto* errors = std::get_if<1>(&loaded)) return std::move(*errors);
+  return plan_setup(job, gear, std::get<0>(loaded));
+}
+
 }  // namespace toothpath

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "app/commands/command.h"
+#include "app/gear_of_job.h"
+#include "postproc/shaper_setup.h"
 
 namespace toothpath {
 
@@ -14,5 +16,8 @@ namespace toothpath {
 /// Writes limits.json, shaper.json, shaper.html, shaper_program.ngc and report.json. Refused, with the place in the job: what the gear, the
 /// set-up or the machine does not allow; assumed values of the machine that the job does not accept. Then no file is written.
 [[nodiscard]] CommandOutcome run_shaper(const CommandRequest& request);
+
+/// Set-up of the job's gear on the job's gear shaper, as `shaper` plans it; refusals carry the place of the key that caused them.
+[[nodiscard]] ValueOrErrors<ShaperSetup> shaper_setup_of(const Job& job, const FaceGear& gear);
 
 }  // namespace toothpath

@@ -85,6 +85,7 @@ struct ReportPage {
   std::vector<DirectionChoice> directions;
   std::vector<LineChart> motion;          ///< axis positions, speeds and feed over time; any length, thinned by the writer
   std::vector<LineChart> work_precision;  ///< from the study, when there is one
+  std::string contact;  ///< body of the section on contact with the pinion, finished markup; may be empty
   std::vector<std::pair<std::string, double>> stage_seconds;
   std::vector<PageTable> tables;
 };

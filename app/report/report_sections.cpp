@@ -228,6 +228,8 @@ std::string work_precision_section(const ReportPage& page) {
   return section("work-precision", "Error against run time", figures(plots));
 }
 
+std::string contact_section(const ReportPage& page) { return section("contact", "Contact with the pinion", page.contact); }
+
 std::string stages_section(const ReportPage& page) {
   if (page.stage_seconds.empty()) return {};
   double total = 0;

@@ -22,6 +22,8 @@ namespace toothpath {
 /// Axis positions, speeds and feed over time.
 [[nodiscard]] std::string motion_section(const ReportPage& page);
 [[nodiscard]] std::string work_precision_section(const ReportPage& page);
+/// What `page.contact` holds.
+[[nodiscard]] std::string contact_section(const ReportPage& page);
 [[nodiscard]] std::string stages_section(const ReportPage& page);
 [[nodiscard]] std::string tables_section(const ReportPage& page);
 
