@@ -1,5 +1,6 @@
 #include "app/dhfg_trial.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "cam/plan.h"
@@ -31,11 +32,14 @@ std::optional<FaceGear> make_trial_gear(const DhfgStudy& study, DhfgTrial& trial
   trial.inner_mm = trial.R1_mm + study.margin_mm;
   trial.outer_mm = trial.land_mm - study.margin_mm;
   trial.groove_mm = (trial.inner_mm + trial.outer_mm) / 2;
-  trial.half_face_mm = (trial.outer_mm - trial.inner_mm - study.groove_width_mm) / 2;
-  if (!(trial.half_face_mm > 0)) {
+  trial.feasible_mm = (trial.outer_mm - trial.inner_mm - study.groove_width_mm) / 2;
+  if (!(trial.feasible_mm > 0)) {
     trial.refusal = fmt::format("band {:.3f} to {:.3f} mm leaves no room beside a groove of {:g} mm", trial.inner_mm, trial.outer_mm, study.groove_width_mm);
     return std::nullopt;
   }
+  trial.half_face_mm = study.half_face_mm > 0 ? std::min(study.half_face_mm, trial.feasible_mm) : trial.feasible_mm;
+  trial.inner_mm = trial.groove_mm - study.groove_width_mm / 2 - trial.half_face_mm;
+  trial.outer_mm = trial.groove_mm + study.groove_width_mm / 2 + trial.half_face_mm;
   p.reference_radius_mm = trial.groove_mm;
   const double w = study.groove_width_mm / 2;
   p.zones = {{-trial.helix_angle_rad, trial.inner_mm, trial.groove_mm - w}, {trial.helix_angle_rad, trial.groove_mm + w, trial.outer_mm}};

@@ -17,6 +17,7 @@ struct DhfgStudy {
   std::string name, file;
   FaceGearParameters base;          ///< module, reading, pressure angle, coefficients, tip radius; teeth and zones come from the trial
   std::vector<double> pinion_teeth, ratio, helix_angle_rad;  ///< three levels each
+  double half_face_mm = 0;          ///< radial width of each half beside the groove; 0: all that is feasible
   double groove_width_mm = 8, margin_mm = 1;  ///< between the halves; kept clear of R1 and R2'
   double torque_nmm = 532e3;        ///< on the face gear
   double held_share = 0.65;         ///< torque share of the outer half when the pinion is held along its axis and one half bears first
@@ -45,7 +46,8 @@ struct DhfgTrial {
   double R1_mm = 0, R2_mm = 0, land_mm = 0, L_p_mm = 0;  ///< R1, pointing R2, R2' at a land of 0.2 m
   const char* R1_name = "";
   double inner_mm = 0, groove_mm = 0, outer_mm = 0;      ///< R_in, R_g, R_out as chosen: band less margins, groove in the middle
-  double half_face_mm = 0;                               ///< radial width of each half; <= 0: not feasible
+  double feasible_mm = 0;                                ///< largest radial width of each half; <= 0: not feasible
+  double half_face_mm = 0;                               ///< as chosen
   std::string refusal;                                   ///< why there is no gear
   // Contact with the pinion of as many teeth as the shaper: line contact.
   double overlap_halves[2] = {0, 0}, overlap = 0;        ///< contact ratio of inner and outer half; of the V-teeth

@@ -29,6 +29,7 @@ void read_study(TableReader& t, DhfgStudy& s) {
   optional("clearance_coefficient", {0, 1, ""}, p.clearance_coefficient);
   optional("shaper_tip_radius", {0, 100, " mm"}, p.shaper_tip_radius_mm);
   optional("groove_width", {0, 500, " mm"}, s.groove_width_mm);
+  optional("half_face", {0, 1000, " mm", true}, s.half_face_mm);
   optional("margin", {0, 100, " mm"}, s.margin_mm);
   optional("held_share", {0.5, 1, ""}, s.held_share);
   optional("rapid", {1, 100000, " mm/min"}, s.rapid_mm_min);
@@ -75,12 +76,13 @@ std::string minutes(double m) { return fmt::format("{:.0f}", m); }
 
 PageTable geometry_table(const std::vector<DhfgTrial>& trials) {
   PageTable t{"Limits and feasible halves", {"trial", "N_p", "N_2", "helix deg", "R1 mm", "governed by", "R2 mm", "R2' mm", "R_in mm", "R_g mm", "R_out mm",
-                                             "half mm", "remark"}, {}, ""};
+                                             "half mm", "feasible mm", "remark"}, {}, ""};
   t.note = "R1: largest inner limit of both flanks; R2: pointed; R2': top land 0.2 m. The halves take the band less the margins on both sides of the groove.";
   for (const auto& r : trials)
     t.rows.push_back({std::to_string(r.levels.number), std::to_string(r.pinion_teeth), std::to_string(r.teeth), fmt::format("{:g}", degrees(r.helix_angle_rad)),
                       fmt::format("{:.3f}", r.R1_mm), r.R1_name, fmt::format("{:.3f}", r.R2_mm), fmt::format("{:.3f}", r.land_mm), fmt::format("{:.3f}", r.inner_mm),
-                      fmt::format("{:.3f}", r.groove_mm), fmt::format("{:.3f}", r.outer_mm), fmt::format("{:.3f}", r.half_face_mm), r.refusal});
+                      fmt::format("{:.3f}", r.groove_mm), fmt::format("{:.3f}", r.outer_mm), fmt::format("{:.3f}", r.half_face_mm),
+                      fmt::format("{:.3f}", r.feasible_mm), r.refusal});
   return t;
 }
 
@@ -119,7 +121,7 @@ struct Quantity {
   double (*of)(const DhfgTrial&);
 };
 constexpr Quantity kQuantities[] = {
-    {"half face mm", [](const DhfgTrial& t) { return t.half_face_mm; }},
+    {"feasible half mm", [](const DhfgTrial& t) { return t.feasible_mm; }},
     {"contact ratio", [](const DhfgTrial& t) { return t.overlap; }},
     {"single-helix axial N", [](const DhfgTrial& t) { return std::abs(t.balanced.single_axial_n); }},
     {"cutting min", [](const DhfgTrial& t) { return t.milling.cutting_minutes; }},
@@ -165,7 +167,7 @@ std::vector<LineChart> charts_of(const std::vector<DhfgTrial>& trials) {
                                                          {"held pinion", [](const DhfgTrial& t) { return std::abs(t.held.axial_n); }},
                                                          {"floating pinion", [](const DhfgTrial& t) { return std::abs(t.balanced.axial_n); }}},
                 "Statics of rigid bodies: zero for a pinion that floats."),
-          chart("Face of each half", "radial width [mm]", {{"half", [](const DhfgTrial& t) { return t.half_face_mm; }}}, ""),
+          chart("Face of each half", "radial width [mm]", {{"chosen", [](const DhfgTrial& t) { return t.half_face_mm; }}, {"feasible", [](const DhfgTrial& t) { return t.feasible_mm; }}}, ""),
           chart("Milling time", "cutting time [min]", {{"all teeth", [](const DhfgTrial& t) { return t.milling.cutting_minutes; }}}, "")};
 }
 
@@ -179,8 +181,8 @@ std::vector<std::string> introduction_of(const DhfgStudy& s) {
       "teeth and friction; stiffness, stress and loaded transmission error are not computed here.",
       "What differs by nature: the rigid transmission error is zero in every trial, so it cannot rank them; the rigid axial force of the double helix is zero for a "
       "floating pinion at any helix angle, so no angle is best. A remainder appears only when the halves share the torque unequally: a remainder of 30 % means a share of 65 to 35.",
-      "Torque is taken on the face gear; the literature does not print face widths, groove, L0 or whose torque it states: widths come from the limits here, the groove "
-      "lies in the middle of the band."};
+      "Torque is taken on the face gear; the literature does not print face widths, groove, L0 or whose torque it states: here the groove lies in "
+      "the middle of the band, and the halves take all that the limits leave unless the study file gives half_face. Wider halves mean more overlap."};
 }
 
 nlohmann::ordered_json json_of(const DhfgStudy& s, const std::vector<DhfgTrial>& trials, bool quick) {
@@ -194,7 +196,7 @@ nlohmann::ordered_json json_of(const DhfgStudy& s, const std::vector<DhfgTrial>&
   for (const auto& r : trials)
     json["trials"].push_back({{"trial", r.levels.number}, {"pinion_teeth", r.pinion_teeth}, {"teeth", r.teeth}, {"helix_deg", degrees(r.helix_angle_rad)},
                               {"R1", r.R1_mm}, {"R1_governed_by", r.R1_name}, {"R2", r.R2_mm}, {"R2_land", r.land_mm}, {"R_in", r.inner_mm}, {"R_g", r.groove_mm},
-                              {"R_out", r.outer_mm}, {"half_face", r.half_face_mm}, {"refusal", r.refusal},
+                              {"R_out", r.outer_mm}, {"half_face", r.half_face_mm}, {"feasible_half_face", r.feasible_mm}, {"refusal", r.refusal},
                               {"contact_ratio", {{"inner", r.overlap_halves[0]}, {"outer", r.overlap_halves[1]}, {"v_teeth", r.overlap}}},
                               {"pairs", {r.least_pairs, r.most_pairs}}, {"error_range_urad", r.error_range_rad * 1e6},
                               {"axial_N", {{"single_helix", r.balanced.single_axial_n}, {"inner_half", r.balanced.inner.pinion_axial_n},

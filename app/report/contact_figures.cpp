@@ -34,6 +34,7 @@ PatternDrawing drawing(const ContactAnalysis& a, const ContactMember& member, co
   PatternDrawing d;
   d.compound_um = a.settings.compound_mm * kUm;
   d.columns = f.columns;
+  d.outline = !on_pinion;
   const int stride = stride_of(f.rows);
   for (int r = 0; r < f.rows; r += stride) {
     ++d.rows;

@@ -107,9 +107,14 @@ std::string svg_contact_pattern(const PatternDrawing& p) {
                                                               {kFills[3], "\u2264 " + um(3)},
                                                               {kFills[4], "wider"},
                                                               {kFills[5], "never met"}};
+  if (!p.outline) entries.pop_back();
   SvgCanvas probe(1, 1, "");
   const double top = key(probe, entries);
-  const Frame f = frame_of(p.x, p.y, top);
+  std::vector<double> xs, ys;
+  for (std::size_t k = 0; k < size; ++k)
+    if (p.outline || p.gap_um[k] < 1e6) xs.push_back(p.x[k]), ys.push_back(p.y[k]);
+  if (xs.empty()) return {};
+  const Frame f = frame_of(xs, ys, top);
   SvgCanvas canvas(kWidth, f.height, p.title);
   key(canvas, entries);
   draw_axes(canvas, f.x, f.y, p.x_label, p.y_label);
@@ -117,11 +122,11 @@ std::string svg_contact_pattern(const PatternDrawing& p) {
   fill_cells(canvas, f, p.rows, p.columns, p.x, p.y, kClasses,
              [&](int r, int c) {
                const double corners[] = {gap(r, c), gap(r, c + 1), gap(r + 1, c), gap(r + 1, c + 1)};
-               if (*std::max_element(corners, corners + 4) > 1e6) return kClasses - 1;
+               if (*std::max_element(corners, corners + 4) > 1e6) return p.outline ? kClasses - 1 : -1;
                return class_of((corners[0] + corners[1] + corners[2] + corners[3]) / 4, p.compound_um);
              },
              {kFills, kFills + kClasses});
-  outline(canvas, f, p.rows, p.columns, p.x, p.y);
+  if (p.outline) outline(canvas, f, p.rows, p.columns, p.x, p.y);
   if (p.path.size() > 1) {
     std::string d;
     for (const auto& [x, y] : p.path) d += (d.empty() ? "M" : "L") + px(f.x(x)) + " " + px(f.y(y));

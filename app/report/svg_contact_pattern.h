@@ -15,6 +15,7 @@ struct PatternDrawing {
   std::vector<double> x, y;      ///< row-major, mm
   std::vector<double> gap_um;    ///< row-major; beyond 1e6: the mate never comes
   double compound_um = 6;
+  bool outline = true;           ///< false: only places that the mate meets are drawn, and no edge around them
   std::vector<std::pair<double, double>> path;  ///< path of contact, drawn as a line
 };
 

@@ -1,0 +1,189 @@
+// `contact`, `compare` and `study dhfg`, run as a user would.
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/app/program.h"
+
+namespace toothpath::testing {
+namespace {
+
+using Json = nlohmann::json;
+
+/// Text of a sample with one piece replaced, in a file of the test's directory.
+std::string changed_sample(const TestDir& dir, const std::string& sample, const std::string& from, const std::string& to) {
+  std::string text = file_text(kSamples + "/" + sample);
+  const auto at = text.find(from);
+  if (at == std::string::npos) throw std::invalid_argument("no " + from);
+  text.replace(at, from.size(), to);
+  const std::string path = dir / sample.substr(sample.find_last_of('/') + 1);
+  write_file(path, text);
+  return path;
+}
+
+Json contact_of(std::vector<std::string> arguments) {
+  arguments.push_back("--json");
+  const auto done = run_program(arguments);
+  EXPECT_EQ(done.exit_code, 0) << done.err;
+  return Json::parse(done.out).at("report");
+}
+
+/// The offset sample with a pinion of two teeth less: the printed path, no transmission error, a pattern that keeps off the outer end.
+TEST(ContactCommand, OffsetGear) {
+  const TestDir dir;
+  const std::string out = dir / "out";
+  const Json report = contact_of({"contact", kSamples + "/offset_shaped.toml", "--pinion-teeth", "23", "--out", out});
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"contact.csv", "contact.html", "contact.json", "transmission.csv"}));
+  EXPECT_EQ(report, Json::parse(file_text(out + "/contact.json")));
+  ASSERT_EQ(report.at("flanks").size(), 2u);
+  const double tip[] = {134.031, 132.173}, pinion_tip[] = {132.266, 133.759};
+  for (const int k : {0, 1}) {
+    const Json& flank = report.at("flanks")[std::size_t(k)];
+    EXPECT_EQ(flank.at("side"), k == 0 ? 1 : -1);
+    EXPECT_EQ(flank.at("contact"), "point");
+    EXPECT_LT(flank.at("transmission_error").at("range_urad").get<double>(), 1e-6);
+    const Json& zone = flank.at("zones")[0];
+    EXPECT_NEAR(zone.at("path").at("from").at("r").get<double>(), tip[k], 6e-4);
+    EXPECT_NEAR(zone.at("path").at("to").at("r").get<double>(), pinion_tip[k], 6e-4);
+    EXPECT_NEAR(zone.at("path").at("B_deg").get<double>(), k == 0 ? 20 : -20, 1e-9);
+    EXPECT_NEAR(flank.at("contact_ratio").get<double>(), zone.at("path").at("ratio").get<double>(), 0.05);
+    const double share = zone.at("pattern").at("share");
+    EXPECT_GT(share, 0.02);
+    EXPECT_LT(share, 0.9);
+    EXPECT_FALSE(zone.at("pattern").at("at_outer_end").get<bool>());
+  }
+  // The drawing has the pattern of both members and both sides.
+  const std::string page = file_text(out + "/contact.html");
+  for (const char* words : {"Gear: flank +1, exact", "Pinion: flank +1, exact", "Gear: flank -1, exact", "Pinion: flank -1, exact"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+}
+
+/// Options stand above the keys of [contact]; a misalignment moves the path; the pinion as shaper marks the whole flank it reaches.
+TEST(ContactCommand, KeysAndOptions) {
+  const TestDir dir;
+  const std::string job = changed_sample(dir, "offset_shaped.toml", "[machine]", "[contact]\npinion_teeth = 23\noffset_error = 0.1\ncompound = 0.01\n\n[machine]");
+  const Json keys = contact_of({"contact", job, "--out", dir / "a"});
+  EXPECT_EQ(keys.at("pinion_teeth"), 23);
+  EXPECT_NEAR(keys.at("compound_um").get<double>(), 10, 1e-12);
+  EXPECT_NEAR(keys.at("flanks")[0].at("zones")[0].at("path").at("B_deg").get<double>(), 21.996, 6e-4);
+  const Json options = contact_of({"contact", job, "--pinion-teeth", "25", "--offset-error", "0", "--compound", "4", "--out", dir / "b"});
+  EXPECT_EQ(options.at("pinion_teeth"), 25);
+  for (const Json& flank : options.at("flanks")) {
+    EXPECT_EQ(flank.at("contact"), "line");
+    EXPECT_LT(flank.at("transmission_error").at("range_urad").get<double>(), 1e-6);
+    EXPECT_GT(flank.at("zones")[0].at("pattern").at("share").get<double>(), 0.8);
+  }
+}
+
+TEST(ContactCommand, Refusals) {
+  const TestDir dir;
+  const auto many = run_program({"contact", kSamples + "/offset_shaped.toml", "--pinion-teeth", "26", "--out", dir / "a"});
+  EXPECT_EQ(many.exit_code, 3);
+  EXPECT_NE(many.err.find("pinion_teeth = 26 exceeds the shaper's 25"), std::string::npos) << many.err;
+  EXPECT_EQ(run_program({"contact", kSamples + "/offset_shaped.toml", "--compound", "1000", "--out", dir / "b"}).exit_code, 2);
+  EXPECT_EQ(run_program({"contact", kSamples + "/bevel_pinion.toml", "--out", dir / "c"}).exit_code, 3);
+  EXPECT_EQ(run_program({"compare", kSamples + "/offset_milled.toml", kSamples + "/offset_milled.toml", "--out", dir / "d"}).exit_code, 3);
+  for (const char* name : {"a", "b", "c", "d"}) EXPECT_TRUE(names_in(dir / name).empty()) << name;
+}
+
+constexpr const char* kShapingTables = R"([machine]
+file = "y514.toml"
+accept_assumed = true
+
+[shaping]
+cutting_speed = 20.0
+speed_basis = "mean"
+circular_feed = 0.3
+radial_feed = 0.02
+over_run = 2.5
+offset_reference = "outer_radius"
+)";
+
+/// The gear of the quick sample on the gear shaper.
+std::string shaped_job(const TestDir& dir, const std::string& name) {
+  const std::string milled = file_text(kSamples + "/spur_quick.toml");
+  const std::string path = dir / name;
+  write_file(path, milled.substr(0, milled.find("[machine]")) + kShapingTables);
+  return path;
+}
+
+/// Strokes cut a polygon: the ripple of its flanks shows in the mesh, and stays below their deviation.
+TEST(ContactCommand, SurfaceOfTheStrokes) {
+  const TestDir dir;
+  const Json report = contact_of({"contact", shaped_job(dir, "shaped.toml"), "--pinion-teeth", "18", "--as-cut", "--out", dir / "out"});
+  EXPECT_EQ(report.at("cut_surface"), "shaped");
+  ASSERT_EQ(report.at("flanks").size(), 4u);
+  for (const std::size_t k : {2u, 3u}) {
+    const double um = report.at("flanks")[k].at("transmission_error").at("range_um");
+    EXPECT_GT(um, 1e-3);
+    EXPECT_LT(um, 20);
+  }
+}
+
+/// One quick gear by both routes: both deviations are those that the routes' own commands state, their difference is taken place by place.
+TEST(CompareCommand, QuickGear) {
+  const TestDir dir;
+  const std::string out = dir / "out";
+  const auto done = run_program({"compare", shaped_job(dir, "shaped.toml"), kSamples + "/spur_quick.toml", "--out", out, "--json"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"compare.csv", "compare.html", "compare.json"}));
+  const Json report = Json::parse(done.out).at("report");
+  EXPECT_TRUE(report.at("milled").at("verified").get<bool>());
+  EXPECT_GT(report.at("shaped").at("minutes").get<double>(), 0);
+  EXPECT_GT(report.at("milled").at("minutes").get<double>(), report.at("milled").at("cutting_minutes").get<double>());
+  ASSERT_EQ(report.at("flanks").size(), 2u);
+  for (const Json& flank : report.at("flanks")) {
+    const Json &shaped = flank.at("shaped"), &milled = flank.at("milled"), &difference = flank.at("difference");
+    EXPECT_GT(shaped.at("min_um").get<double>(), -0.5);  // strokes never cut into the generated flank
+    EXPECT_LT(shaped.at("max_um").get<double>(), 20);
+    EXPECT_GT(milled.at("min_um").get<double>(), -2.0);
+    EXPECT_LT(milled.at("max_um").get<double>(), 40);
+    EXPECT_LE(difference.at("max_um").get<double>(), milled.at("max_um").get<double>() - shaped.at("min_um").get<double>() + 1e-9);
+    EXPECT_GE(difference.at("min_um").get<double>(), milled.at("min_um").get<double>() - shaped.at("max_um").get<double>() - 1e-9);
+  }
+  // Another gear is refused with key and both values.
+  const std::string other = changed_sample(dir, "spur_quick.toml", "teeth = 60", "teeth = 62");
+  const auto refused = run_program({"compare", shaped_job(dir, "shaped.toml"), other, "--out", dir / "other"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_NE(refused.err.find("teeth = 62 differs from 60"), std::string::npos) << refused.err;
+}
+
+/// The levels of the literature without milling: nine rows, balanced axial forces, no transmission error, trends of the overlap.
+TEST(DhfgStudy, NineTrials) {
+  const TestDir dir;
+  const std::string out = dir / "out";
+  const auto done = run_program({"study", "dhfg", "--out", out, "--json"});
+  ASSERT_EQ(done.exit_code, 0) << done.err;
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"dhfg.csv", "dhfg.html", "dhfg.json"}));
+  const Json report = Json::parse(done.out).at("report");
+  ASSERT_EQ(report.at("trials").size(), 9u);
+  // Every pair of levels of two factors occurs once.
+  std::set<std::pair<int, int>> teeth_ratio, teeth_helix;
+  for (const Json& trial : report.at("trials")) {
+    const int teeth = trial.at("pinion_teeth"), gear = trial.at("teeth");
+    teeth_ratio.insert({teeth, gear / teeth});
+    teeth_helix.insert({teeth, int(std::lround(trial.at("helix_deg").get<double>()))});
+    EXPECT_EQ(trial.at("refusal"), "") << trial.at("trial");
+    EXPECT_GT(trial.at("half_face").get<double>(), 5);
+    EXPECT_NEAR(trial.at("axial_N").at("balanced").get<double>(), 0, 1e-6);
+    EXPECT_NEAR(trial.at("axial_N").at("held").get<double>() / trial.at("axial_N").at("single_helix").get<double>(), 0.3, 1e-9);
+    EXPECT_LT(trial.at("error_range_urad").get<double>(), 1e-6);
+    EXPECT_GE(trial.at("contact_ratio").at("v_teeth").get<double>(), trial.at("contact_ratio").at("outer").get<double>() - 1e-12);
+    EXPECT_GE(trial.at("pairs")[0].get<int>(), 2);
+  }
+  EXPECT_EQ(teeth_ratio.size(), 9u);
+  EXPECT_EQ(teeth_helix.size(), 9u);
+  EXPECT_NE(file_text(out + "/dhfg.html").find("finite elements"), std::string::npos);
+}
+
+TEST(DhfgStudy, RefusesAWrongFile) {
+  const TestDir dir;
+  const std::string file = changed_sample(dir, "studies/dhfg_l9.toml", "ratio = [6, 8, 10]", "ratio = [6, 8]");
+  const auto done = run_program({"study", "dhfg", "--file", file, "--out", dir / "out"});
+  EXPECT_EQ(done.exit_code, 3);
+  EXPECT_NE(done.err.find(":12:9: error: "), std::string::npos) << done.err;
+  EXPECT_EQ(run_program({"study", "dhfg", "--file", dir / "none.toml", "--out", dir / "out"}).exit_code, 4);
+}
+
+}  // namespace
+}  // namespace toothpath::testing
