@@ -45,7 +45,7 @@ class Lattice {
     reached = 0;
     for (std::size_t k = 0; k < n; ++k) {
       const double ds = way_.s[1] - way_.s[0];
-      const int steps = std::max(1, int(std::floor(kMostTurn * ds / LeanGrid::kStep)));
+      const int steps = std::max(1, int(std::floor(kMostTurn * ds / grid_.step)));
       bool any = false;
       for (std::size_t g = 0; g < m; ++g) {
         if (known_[at(k, g)] != kClear) continue;
@@ -58,7 +58,7 @@ class Lattice {
               if (std::abs(x + dx) > grid_.half || std::abs(y + dy) > grid_.half) continue;
               const int h = index_[cell(x + dx, y + dy)];
               if (h < 0 || cost[at(k - 1, std::size_t(h))] == INFINITY) continue;
-              const double turn = double(dx * dx + dy * dy) * LeanGrid::kStep * LeanGrid::kStep;
+              const double turn = double(dx * dx + dy * dy) * grid_.step * grid_.step;
               const double total = cost[at(k - 1, std::size_t(h))] + kTurnWeight * turn / ds;
               if (total >= best || forbidden.count({at(k - 1, std::size_t(h)), at(k, g)}) > 0) continue;
               best = total;
@@ -104,14 +104,14 @@ double slope(double left, double right) {
 
 }  // namespace
 
-LeanGrid::LeanGrid(double widest_tangent) : half(int(std::floor(widest_tangent / kStep))) {
+LeanGrid::LeanGrid(double widest_tangent, double step_tangent) : step(step_tangent), half(int(std::floor(widest_tangent / step_tangent))) {
   for (int x = -half; x <= half; ++x)
     for (int y = -half; y <= half; ++y)
       if (x * x + y * y <= half * half) cells.emplace_back(x, y);
   std::stable_sort(cells.begin(), cells.end(), [](const auto& a, const auto& b) {
     return a.first * a.first + a.second * a.second < b.first * b.first + b.second * b.second;
   });
-  for (const auto& [x, y] : cells) leans.emplace_back(x * kStep, y * kStep);
+  for (const auto& [x, y] : cells) leans.emplace_back(x * step, y * step);
 }
 
 Vec2 OrientationWay::lean_at(double radius) const {

@@ -18,11 +18,12 @@ inline constexpr double kLeanWeight = 0.1, kNearWeight = 0.5, kTurnWeight = 20;
 
 /// Leans on a square grid inside a disc, least lean first.
 struct LeanGrid {
-  static constexpr double kStep = 0.04;  ///< tangent, 2.3 deg
-  int half = 0;                          ///< columns to each side of upright
+  double step = 0;  ///< tangent
+  int half = 0;     ///< columns to each side of upright
   std::vector<Vec2> leans;
   std::vector<std::pair<int, int>> cells;
-  explicit LeanGrid(double widest_tangent);
+  /// 0.04: 2.3 deg.
+  explicit LeanGrid(double widest_tangent, double step_tangent = 0.04);
 };
 
 struct OrientationWay {

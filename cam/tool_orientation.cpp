@@ -109,7 +109,11 @@ class Orienter {
     const auto between = [&](std::size_t station, const Vec2& a, const Vec2& b) {
       return clear_at(blend(way.points[station], way.points[station + 1], 0.5), 0.5 * (a + b), 0.5 * o_.margin_mm);
     };
-    const auto found = find_way(way, grid_, reference, clear, between);
+    if (find_way(way, grid_, reference, clear, between).found) return true;
+    // A narrow way may slip through a grid of 2 deg.
+    if (!fine_) fine_.emplace(std::tan(o_.widest_lean_rad), 0.5 * grid_.step);
+    if (find_constant(way, *fine_, reference, clear)) return true;
+    const auto found = find_way(way, *fine_, reference, clear, between);
     if (found.found) return true;
     refusal_ = found.none_clear ? blocked(way, found.blocked_at) : parted(way, found.blocked_at);
     return false;
@@ -339,6 +343,7 @@ class Orienter {
   std::vector<BallPass>& passes_;
   OrientationCheck check_;
   LeanGrid grid_;
+  std::optional<LeanGrid> fine_;  ///< made when the coarse one does not do
   std::vector<Track> tracks_;
   std::vector<OrientationWay> ways_;
   std::vector<Records> made_;
