@@ -13,6 +13,7 @@ namespace {
 
 // A point counts as reached when a ball that touches it comes no closer than this to anything else, mm.
 constexpr double kReachTolerance = 1e-4;
+constexpr double kSamePlace = 1e-6;
 constexpr int kHistogramBins = 40;
 
 struct Sample {
@@ -102,10 +103,14 @@ class Meter {
     }
     return e;
   }
-  [[nodiscard]] bool reachable(const Sample& s) const {
+  [[nodiscard]] bool reachable(const Sample& s, double* residual = nullptr) const {
     if (operations_.empty()) return true;
     const double R = tools_[std::size_t(operations_.back().tool)].radius_mm();
-    return part_.nearest(s.p + R * s.n, R + 0.01).distance >= R - kReachTolerance;
+    const auto q = part_.nearest(s.p + R * s.n, R + 0.01);
+    // Where the foot is the place itself, the two solvers must agree.
+    if (residual && q.exact && std::abs((q.point - q.foot).norm() - R) < kReachTolerance && std::abs(q.distance - R) < kSamePlace)
+      *residual = std::abs(q.distance - R);
+    return q.distance >= R - kReachTolerance;
   }
 
   void grid(const ZonePlaces& places, int zone, SpacePiece piece) {
@@ -120,6 +125,7 @@ class Meter {
     g.normals.resize(count);
     g.reachable.resize(count);
     std::vector<std::vector<float>> excess(count);
+    std::vector<double> residual(count, 0.0);
     tbb::parallel_for(0, g.columns, [&](int column) {
       const double r = places.radius(double(column) / (g.columns - 1));
       const auto [from, to] = places.range(piece, r);
@@ -130,12 +136,13 @@ class Meter {
         g.points[k] = s->p;
         g.normals[k] = s->n;
         excess[k] = excess_of(s->p);
-        g.reachable[k] = reachable(*s);
+        g.reachable[k] = reachable(*s, &residual[k]);
       }
     });
     g.excess_um.assign(paths_.size(), std::vector<float>(count));
     for (std::size_t k = 0; k < count; ++k)
       for (std::size_t n = 0; n < excess[k].size(); ++n) g.excess_um[n][k] = excess[k][n];
+    out_.solve_residual_mm = std::max(out_.solve_residual_mm, *std::max_element(residual.begin(), residual.end()));
     out_.grids.push_back(std::move(g));
   }
 

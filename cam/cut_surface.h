@@ -24,6 +24,7 @@ struct CutSurface {
   std::vector<ExcessResult> operations;     ///< after each operation, over all points
   ExcessResult finished;                    ///< after the last one, over the points that its ball can reach
   UnreachedResult unreached;
+  double solve_residual_mm = 0;             ///< greatest difference between a radius and the distance from a centre that far above the grid
   ScallopResult scallop;                    ///< cusps of the last operation on the flanks; requested 0: it has none
 };
 

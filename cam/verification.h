@@ -68,6 +68,7 @@ struct SurfaceGrid {
 struct LedgerEntry {
   std::string source;  ///< "flank solve", "chord", "scallop", "orientation", "axis linearisation", "rounding", "verification"
   double predicted_um = 0, measured_um = 0;
+  std::string note;    ///< what was measured, or why the source does not occur
 };
 
 /// Why the tool stands as it does in one zone of one operation.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "app/commands/bevel_run.h"
+#include "app/commands/ledger.h"
 #include "app/commands/proof.h"
 #include "app/commands/surface_files.h"
 #include "app/contact_analysis.h"
@@ -36,6 +37,7 @@ struct Run {
   FaceGearPlan plan;
   std::vector<CheckedClPath> checked;
   RunReport report;
+  double proof_mm = 0;  ///< how far the bound of the gouge check may lie above what it measured
   CutSurfaceOptions cut_surface;  ///< grid on which the cut surface is measured
   std::vector<SurfaceGrid> surface;
   std::string program_text;  ///< as read back from the disk
@@ -123,26 +125,6 @@ void report_axis_program(RunReport& report, const Job& job, const FaceGearPlan& 
   }
 }
 
-/// Sources of deviation: what was predicted, and what the program that lies on the disk shows.
-std::vector<LedgerEntry> ledger_of(const FaceGearPlan& plan, const AxisProgram& program, const ProgramProof& proof, double blend_mm) {
-  double chord = 0, scallop = 0;
-  if (!plan.operations.empty()) {
-    // The finished surface is what the last operation leaves; the others stay above it by their allowance.
-    chord = plan.operations.back().chord_mm;
-    scallop = plan.operations.back().scallop_max_mm;
-  }
-  const double nothing = std::numeric_limits<double>::quiet_NaN();  // not measured on its own
-  const double met = proof.comparison ? proof.comparison->worst_mm * 1000 : nothing;
-  return {{"flank solve", Tolerances{}.flank_mm * 1000, nothing},
-          {"chord", chord * 1000, std::max(0.0, -proof.surface.finished.min_mm * 1000)},
-          {"scallop", scallop * 1000, proof.surface.scallop.requested_mm > 0 ? proof.surface.scallop.reached_max_mm * 1000 : nothing},
-          {"axis linearisation", program.chord_bound_mm * 1000, proof.comparison ? proof.comparison->worst_extra_mm * 1000 : nothing},
-          {"rounding", program.rounding_bound_mm * 1000, met},
-          {"path blending", blend_mm * 1000, nothing},
-          {"verification", (GougeCheckOptions{}.proof_mm + program.rounding_bound_mm + blend_mm) * 1000,
-           (proof.gouge.bound_mm - proof.gouge.measured_mm) * 1000}};
-}
-
 /// Axis program, NC text on the disk, proof of those bytes. Nothing: done, and `report.reasons` says whether it is safe.
 std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const GearDistance& part, const GougeCheck& check) {
   const auto dialect = dialect_of(run.machine);
@@ -193,7 +175,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   if (proof->surface.scallop.requested_mm > 0) run.report.scallop = proof->surface.scallop;
   run.surface = std::move(proof->surface.grids);
   run.report.reasons = proof->reasons;
-  run.report.ledger = ledger_of(run.plan, *program, *proof, dialect->blend ? header.blend_mm : 0.0);
+  run.report.ledger = face_gear_ledger(part, run.plan, run.job.tools, *program, *proof, dialect->blend ? header.blend_mm : 0.0, run.proof_mm);
   if (!proof->reasons.empty()) return std::nullopt;
   run.report.verified = true;
   run.report.program_file = name;
@@ -209,7 +191,7 @@ std::optional<Diagnostic> plan_post_and_prove(Run& run, OutputDir& output, doubl
   const GearDistance part = run.clock.run("distance index", [&] { return GearDistance(*run.gear, reach_of(run.job.tools)); });
   GougeCheckOptions options;
   options.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
-  options.proof_mm = std::min(proof_mm, 0.1 * run.job.verify.gouge_tolerance_mm);
+  options.proof_mm = run.proof_mm = std::min(proof_mm, 0.1 * run.job.verify.gouge_tolerance_mm);
   options.clearance_mm = run.plan_options().clearance_mm;
   options.rapid_height_mm = run.gear->blank_top();
   const GougeCheck check(part, run.job.tools, options);

@@ -133,7 +133,10 @@ std::string report_json(const RunReport& r) {
   add_directions(json, r);
   if (proves) {
     Json ledger = Json::object();
-    for (const auto& entry : r.ledger) ledger[entry.source] = {{"predicted", entry.predicted_um}, {"measured", entry.measured_um}};
+    for (const auto& entry : r.ledger) {
+      ledger[entry.source] = {{"predicted", entry.predicted_um}, {"measured", entry.measured_um}};
+      if (!entry.note.empty()) ledger[entry.source]["note"] = entry.note;
+    }
     json["ledger"] = std::move(ledger);
     json["assumed"] = text_list(r.assumed);
   }
