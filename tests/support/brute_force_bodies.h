@@ -26,7 +26,7 @@ struct BruteDepth {
 class BruteForceBodies {
  public:
   /// `rows` x `columns` boundary points a patch.
-  explicit BruteForceBodies(const FaceGear& gear, int rows = 24, int columns = 24);
+  explicit BruteForceBodies(const FaceGear& gear, int rows = 16, int columns = 16);
 
   /// Deepest place over the whole motion, over `moments` + 1 moments and the teeth near the tool; the pattern search starts from up
   /// to `most_starts` places.

@@ -1,0 +1,50 @@
+// The ledger of errors adds up on the samples: every source has a number on both sides, and the predicted bounds cover what the cut surface
+// of the program shows, gouge and left material.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/run.h"
+
+namespace toothpath {
+namespace {
+
+class Ledger : public testing::TestWithParam<const char*> {};
+
+TEST_P(Ledger, CoversWhatIsMeasured) {
+  const auto out = std::filesystem::temp_directory_path() / (std::string("toothpath_ledger_") + GetParam());
+  std::filesystem::remove_all(out);
+  CommandRequest request;
+  request.job_file = std::string(TOOTHPATH_SAMPLES) + "/" + GetParam() + ".toml";
+  request.out_dir = out.string();
+  request.quiet = true;
+  const auto outcome = run_job(request);
+  if (!outcome.errors.empty() && outcome.exit_code != ExitCode::unverified) GTEST_SKIP() << "refused: " << outcome.errors.front().message;
+  ASSERT_TRUE(outcome.errors.empty()) << outcome.errors.front().message;
+  const auto report = nlohmann::json::parse(outcome.report_json);
+  std::filesystem::remove_all(out);
+  double sum = 0;
+  for (const auto& [source, entry] : report["ledger"].items()) {
+    ASSERT_TRUE(entry["predicted"].is_number()) << source;
+    ASSERT_TRUE(entry["measured"].is_number()) << source;
+    EXPECT_GE(entry["predicted"].get<double>(), 0) << source;
+    EXPECT_GE(entry["measured"].get<double>(), 0) << source;
+    EXPECT_TRUE(entry.contains("note")) << source;
+    if (source != "ridge") sum += entry["predicted"].get<double>();
+  }
+  for (const char* source : {"flank solve", "chord", "orientation", "axis linearisation", "rounding", "path blending", "verification"})
+    EXPECT_TRUE(report["ledger"].contains(source)) << source;
+  EXPECT_LE(report["ledger"]["flank solve"]["measured"].get<double>(), report["ledger"]["flank solve"]["predicted"].get<double>());
+  const auto& finished = report["excess_um"]["finished"];
+  EXPECT_GE(sum, report["gouge_um"]["measured"].get<double>()) << "gouge";
+  EXPECT_GE(sum, -finished["min"].get<double>()) << "gouge on the grid";
+  EXPECT_GE(sum, finished["max"].get<double>()) << "left material";
+}
+
+INSTANTIATE_TEST_SUITE_P(Samples, Ledger, testing::Values("spur_quick", "offset_milled", "dhfg_t600s", "dhfg_paper", "short_tool", "bevel_pinion", "bevel_trunnion",
+                                                             "bevel_wheel"),
+                         [](const auto& c) { return std::string(c.param); });
+
+}  // namespace
+}  // namespace toothpath

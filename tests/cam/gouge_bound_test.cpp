@@ -1,0 +1,184 @@
+// What a clean result and a bound mean: 200 small clean programs pass, a tenfold denser sampling of random motions (turning axes among
+// them) never exceeds the bound, and single precision alone would have let a gouge pass.
+#include "cam/cutter_sweep.h"
+#include "cam/gouge_check.h"
+#include "tests/cam/face_gear_jobs.h"
+#include "tests/support/brute_force_bodies.h"
+
+namespace toothpath {
+namespace {
+
+using test::job_named;
+using test::PlannedJob;
+
+/// One pass along the space of a gear, the ball in contact, with its approach from above.
+std::optional<ClPath> one_pass(const PlannedJob& job, test::Random& random, double R, double above) {
+  const int zone = int(random.index(std::size_t(job.part->zones())));
+  const auto& ring = job.part->space(zone).ring().zone;
+  const double length = ring.outer_radius_mm - ring.inner_radius_mm;
+  const double from = ring.inner_radius_mm + random(0.1, 0.5) * length, to = from + random(0.05, 0.3) * length;
+  const OffsetSheet sheet(job.part->space(zone), R + above, from - 0.2, to + 0.2, 9);
+  if (sheet.empty() || sheet.r_from() > from || sheet.r_to() < to) return {};
+  const double sigma = random(0.6, 4.4);
+  const int steps = 2 + int((to - from) / std::sqrt(8 * R * 1e-3));  // short blocks: little sag
+  ClPath path;
+  path.operation_type = "finishing";
+  for (int k = 0; k <= steps; ++k) {
+    const auto s = sheet.at(sigma, from + (to - from) * k / steps);
+    if (!s) return {};
+    path.records.push_back({s->centre - Vec3(0, 0, R), Vec3::UnitZ(), 300, MoveKind::feed, zone, 0});
+  }
+  const double high = job.gear.blank_top() + 2;
+  const auto lifted = [&](ClRecord r, MoveKind kind) {
+    r.tip.z() = high;
+    r.kind = kind;
+    return r;
+  };
+  path.records.insert(path.records.begin(), lifted(path.records.front(), MoveKind::rapid));
+  path.records[1].kind = MoveKind::engage;
+  path.records.push_back(lifted(path.records.back(), MoveKind::retract));
+  path.records.push_back(lifted(path.records.front(), MoveKind::rapid));
+  return path;
+}
+
+class CleanPrograms : public testing::TestWithParam<const char*> {};
+
+TEST_P(CleanPrograms, NoneIsReported) {
+  const auto& job = job_named(GetParam());
+  const test::BruteForceGearSolid brute(job.gear, 20, 30);
+  test::Random random(2024);
+  const double R_job = job.tools.back().radius_mm(), roof = job.gear.blank_top();
+  int clean = 0;
+  for (int attempt = 0; attempt < 400 && clean < 50; ++attempt) {
+    const double R = R_job * random(0.5, 0.95), tolerance = random(0.001, 0.005);
+    const auto path = one_pass(job, random, R, random(0, 0.002));
+    if (!path) continue;
+    // By construction: the flute is longer than any tooth is high, shank and holder stay above the blank.
+    ToolAssembly tool = test::ball_mill(2 * R, 8 * job.gear.parameters().module_mm, 1.9 * R, 9 * job.gear.parameters().module_mm, 10);
+    // And by brute force: ball and flute against the sampled surfaces.
+    double worst = -INFINITY;
+    for (std::size_t k = 2; k + 2 < path->records.size(); k += 1 + path->records.size() / 6)
+      for (const double t : {0.0, 0.5})
+        for (const double h : {0.0, 0.7 * R}) {
+          const Vec3 c = (1 - t) * path->records[k].tip + t * path->records[k + 1].tip + Vec3(0, 0, R + h);
+          worst = std::max(worst, R - brute.nearest(c).distance);
+        }
+    if (worst > tolerance - 3e-4) continue;
+    ++clean;
+    auto options = job.check_options();
+    options.gouge_tolerance_mm = tolerance;
+    options.rapid_height_mm = roof;
+    const GougeCheck check(*job.part, {tool}, options);
+    const auto r = check.check(GougeCheck::motions_of(*path), {0});
+    EXPECT_TRUE(check.passes(r)) << attempt << ": brute force " << worst << " measured " << r.measured_mm << " bound " << r.bound_mm << " limit " << tolerance
+                                 << " clearance " << r.clearance_mm << " rapids " << r.rapids_clear;
+    EXPECT_TRUE(r.worst.empty());
+    EXPECT_GE(r.bound_mm, r.measured_mm);
+    EXPECT_GE(r.bound_mm, worst - 1e-6);
+  }
+  EXPECT_EQ(clean, 50);
+}
+
+INSTANTIATE_TEST_SUITE_P(Jobs, CleanPrograms, testing::Values("spur", "offset", "conical", "dhfg"), [](const auto& c) { return std::string(c.param); });
+
+class RandomMotions : public testing::TestWithParam<const char*> {};
+
+TEST_P(RandomMotions, TenfoldSamplingNeverExceedsTheBound) {
+  const auto& job = job_named(GetParam());
+  const auto& path = job.plan.paths.back();
+  test::Random random(99);
+  auto tool = job.tool(path.operation);
+  tool.flute_length_mm = tool.radius_mm() + 1.5;
+  tool.stick_out_mm = tool.flute_length_mm + 2;
+  const double R = tool.radius_mm();
+  const auto options = job.check_options();
+  int turning = 0;
+  for (int k = 0; k < 60; ++k) {
+    const auto& record = path.records[2 + random.index(path.records.size() - 4)];
+    const auto wander = [&](double size) { return Vec3(random(-size, size), random(-size, size), random(-size, size)); };
+    ToolMotion m;
+    m.axis_from = (record.axis + wander(0.2)).normalized();
+    m.axis_to = k % 2 == 0 ? m.axis_from : Vec3((m.axis_from + wander(0.3)).normalized());
+    m.tip_from = record.tip + wander(0.02) + Vec3(0, 0, random(0, 0.2));
+    m.tip_to = m.tip_from + wander(k % 3 == 0 ? 2.0 : 0.3);
+    turning += m.axis_from != m.axis_to;
+    CutterSweep sweep(*job.part, tool, options.proof_mm, options.gouge_tolerance_mm);
+    const auto found = sweep.check(m);
+    EXPECT_GE(found.bound_mm, found.measured_mm);
+    const int steps = 10 * int(std::max<std::size_t>(20, std::min<std::size_t>(sweep.queries(), 60)));
+    double deepest = -INFINITY;
+    for (int s = 0; s <= steps; ++s) {
+      const double t = double(s) / steps;
+      for (const double h : {0.0, 0.05 * R, 0.3 * R, R, tool.flute_length_mm - R}) {
+        const auto q = job.part->nearest(tip_at(m, t) + (R + h) * axis_at(m, t), R + 0.1);
+        deepest = std::max(deepest, R - q.distance);
+      }
+    }
+    EXPECT_GE(found.bound_mm, deepest - 1e-9) << k;
+  }
+  EXPECT_GE(turning, 20);
+}
+
+INSTANTIATE_TEST_SUITE_P(Jobs, RandomMotions, testing::Values("spur", "conical"), [](const auto& c) { return std::string(c.param); });
+
+/// The straight-line bound against sets of random points: the sharpest case that it must cover.
+TEST(LeastBetween, HoldsForEverySet) {
+  test::Random random(5);
+  for (int k = 0; k < 400; ++k) {
+    std::vector<Vec3> set;
+    for (std::size_t n = 0; n < 1 + random.index(4); ++n) set.push_back({random(-2, 2), random(0.1, 2), random(-2, 2)});
+    const auto distance = [&](const Vec3& p) {
+      double d = INFINITY;
+      for (const auto& q : set) d = std::min(d, (p - q).norm());
+      return d;
+    };
+    const Vec3 a(random(-1, 1), 0, 0), b(random(-1, 1), random(-0.2, 0.2), 0);
+    const double bound = least_between(distance(a), distance(b), (b - a).norm());
+    for (int s = 0; s <= 200; ++s) EXPECT_GE(distance(a + (b - a) * (s / 200.0)), bound - 1e-12);
+  }
+}
+
+/// Distance of a ball's centre from the plane of a facet that touches the surface at the foot, all in single precision: no sag of
+/// facets is left, only the arithmetic at 300 mm.
+TEST(SinglePrecision, MissesAGougeAtThreeHundredMillimetres) {
+  FaceGearParameters p;
+  p.teeth = 200;
+  p.shaper_teeth = 30;
+  p.module_mm = 3;
+  p.module_plane = ModulePlane::transverse;
+  p.pressure_angle_rad = radians(20);
+  p.shaper_tip_radius_mm = 0.9;
+  p.zones = {{0, 304, 318}};
+  const FaceGear gear = test::made(p);
+  const GearDistance part(gear, 1.5);
+  const double R = 0.8, limit = 0.002;
+  test::Random random(8);
+  int planted = 0, missed = 0, found = 0;
+  const auto& cells = part.cells(0);
+  for (int k = 0; k < 4000 && planted < 200; ++k) {
+    const auto& cell = cells[random.index(cells.size())];
+    if (!cell.sheet) continue;
+    const auto q = part.space(0).at(cell.piece, cell.u, cell.v);
+    if (!q) continue;
+    const double depth = limit + random(1e-6, 3e-5);  // a gouge just beyond the limit
+    const double turn = gear.pitch() * double(random.index(200));
+    const auto placed = [&](const Vec3& x) { return FaceGearSurface<double>::turned(x, turn); };
+    const Vec3 c = placed(q->p + (R - depth) * q->n);
+    if (std::abs(part.nearest(c, R + 0.1).distance - (R - depth)) > 1e-8) continue;  // another surface is nearer
+    ++planted;
+    found += R - part.nearest(c, R + 0.1).distance > limit;
+    const Vec3 e = q->pu.normalized(), f = q->n.cross(e);
+    const Eigen::Vector3f a = placed(q->p + 0.2 * e).cast<float>(), b = placed(q->p - 0.1 * e + 0.17 * f).cast<float>(),
+                          d = placed(q->p - 0.1 * e - 0.17 * f).cast<float>(), ball = c.cast<float>();
+    const float height = std::abs((ball - a).dot((b - a).cross(d - a).normalized()));
+    missed += float(R) - height <= float(limit);
+  }
+  EXPECT_GE(planted, 100);
+  EXPECT_EQ(found, planted);
+  EXPECT_GE(missed, 1);
+  RecordProperty("planted", planted);
+  RecordProperty("missed_in_single_precision", missed);
+}
+
+}  // namespace
+}  // namespace toothpath
