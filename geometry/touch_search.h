@@ -31,7 +31,7 @@ template <typename F>
 double golden_place(F&& f, double lo, double hi) {
   constexpr double kRatio = 0.6180339887498949;
   double a = lo, b = hi, c = b - kRatio * (b - a), d = a + kRatio * (b - a), fc = f(c), fd = f(d);
-  for (int k = 0; k < 40; ++k) {
+  for (int k = 0; k < 32; ++k) {
     if (fc > fd) {
       b = d, d = c, fd = fc;
       c = b - kRatio * (b - a), fc = f(c);

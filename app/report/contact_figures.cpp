@@ -19,7 +19,7 @@ std::string name_of(const ContactAnalysis& a, const ContactOfSide& side) {
 
 std::string pattern_note(const ContactAnalysis& a, const ContactOfSide& side, const FlankPattern& p) {
   std::string note = fmt::format("{:.1f} % of the flank carries compound of {:g} um. ", p.marked_share * 100, a.settings.compound_mm * kUm);
-  if (p.marked_share > 0 && p.marked_share < 0.95)
+  if (p.marked_share > 0 && p.marked_share < 0.95 && p.length_mm >= 1.3 * p.width_mm)
     note += fmt::format("Long axis {:.1f} mm, inclined {:.1f} deg to the direction of the tooth; {:.1f} mm across. ", p.length_mm,
                         degrees(p.inclination_rad), p.width_mm);
   if (side.kind == "edge") note += "The path of contact misses the flank: it bears on an edge. ";
@@ -27,7 +27,7 @@ std::string pattern_note(const ContactAnalysis& a, const ContactOfSide& side, co
 }
 
 /// Every n-th row of a fine grid: the eye does not see more.
-int stride_of(int rows) { return std::max(1, (rows - 1) / 60); }
+int stride_of(int rows) { return std::max(1, (rows - 1) / 240); }
 
 PatternDrawing drawing(const ContactAnalysis& a, const ContactMember& member, const FlankPattern& p, bool on_pinion) {
   const ContactFlank& f = member.flank;
