@@ -214,6 +214,10 @@ int run_command_line(int argc, char** argv) {
   commands.back().app->add_option("PROGRAM", request.program_file, "NC program in the dialect of the job's machine")->required();
   commands.back().app->add_option("--measured", request.measured_files, "measured deviations that the program answers (see correct)");
   commands.push_back(add_job_command(app, "correct", "the whole way again, with flanks that answer a measurement", request, run_job));
+  commands.back().app->add_option("--stock", request.stock_files, "closed mesh of the stock before the program (STL or OBJ, mm, gear frame); repeatable");
+  commands.back().app->add_option("--fixture", request.fixture_files,
+                                  "closed mesh of what holds the work and turns with it (STL or OBJ, mm, gear frame); repeatable. Facets are taken as exact: "
+                                  "what they leave out of the true part must lie within the clearance of the job");
   commands.back().app->add_option("--measured", request.measured_files, "measured grid: inspection.csv with a column deviation_um; several: one after each cut")
       ->required();
   commands.push_back(add_job_command(app, "surface", "flanks, limits, inspection grid and mesh of the gear", request, run_surface));

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "app/commands/bevel_check.h"
 #include "app/commands/bevel_run.h"
 #include "app/commands/proof.h"
+#include "app/commands/scene.h"
 #include "app/gear_of_job.h"
 #include "app/job_file.h"
 #include "app/output_dir.h"
@@ -100,11 +102,26 @@ void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) 
 
 }  // namespace
 
+/// What the meshes say joins the reasons and the table of the worst places.
+void add_scene(std::vector<SceneVerdict>& verdicts, ProgramProof& proof, RunReport& report) {
+  for (auto& reason : reasons_of(verdicts)) proof.reasons.push_back(std::move(reason));
+  for (const auto& v : verdicts) {
+    for (const auto& m : v.worst) proof.gouge.worst.push_back(worst_place(m, v.name));
+    if (v.unjudged > 0)
+      report.warnings.push_back(fmt::format("{}: {} blocks move from a position that the program does not tell, or without a tool of the job; they are not judged",
+                                            v.name, v.unjudged));
+  }
+  report.scene = std::move(verdicts);
+}
+
 CommandOutcome check_program(const CommandRequest& request) {
   auto output = OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"});
   if (!output) return failed(output.error());
   if (const auto bevel = bevel_job(request.job_file)) return check_bevel_program(request, *bevel, *output);
   Progress progress(request.quiet);
+  const bool with_scene = !request.stock_files.empty() || !request.fixture_files.empty();
+  if (const auto bevel = bevel_job(request.job_file); bevel && with_scene)
+    return failed(fail_as(DiagnosticKind::usage, "--stock and --fixture are read for face gears only, not yet for bevel gears"));
   StageClock clock(progress);
   auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
@@ -126,6 +143,13 @@ CommandOutcome check_program(const CommandRequest& request) {
   options.clearance_mm = job.verify.clearance_mm.value_or(PlanOptions{}.clearance_mm);
   options.rapid_height_mm = gear.blank_top();
   const GougeCheck gouge_check(part, job.tools, options);
+  std::optional<Scene> scene;
+  if (with_scene) {
+    auto meshes = clock.run("stock and fixture meshes", [&] { return load_scene(request, 2 * gear.outer_radius()); });
+    if (!meshes) return failed(meshes.error());
+    scene = std::move(meshes.value());
+  }
+
   ProofOptions proof_options;
   proof_options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
   auto proof = prove_program(*text, request.program_file, job, machine, part, gouge_check, clearance_body(gear), gear.parameters().teeth, {},
@@ -142,6 +166,16 @@ CommandOutcome check_program(const CommandRequest& request) {
   CommandOutcome outcome;
   outcome.exit_code = report.verified ? ExitCode::ok : ExitCode::unverified;
   for (const auto& reason : report.reasons) {
+  if (scene) {
+    auto verdicts = clock.run("stock and fixture", [&] {
+      return check_scene(*scene, *text, request.program_file, job, machine, proof->read, gear.parameters().teeth, options.clearance_mm);
+    });
+    if (!verdicts) {
+      progress.clear();
+      return failed(verdicts.error());
+    }
+    add_scene(*verdicts, *proof, report);
+  }
     Diagnostic error = fail_as(DiagnosticKind::verification, "{}", reason);
     error.position.file = request.program_file;
     outcome.errors.push_back(std::move(error));

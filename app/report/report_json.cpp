@@ -1,3 +1,4 @@
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "app/report/html_text.h"
@@ -59,6 +60,27 @@ void add_proof(Json& json, const RunReport& r) {
                           {"reached_max", um(r.scallop->reached_max_mm)},
                           {"share_within", r.scallop->share_within}};
   if (r.unreached) json["unreached"] = {{"points", r.unreached->points}, {"max_height_um", um(r.unreached->max_height_mm)}};
+}
+
+Json meeting_json(const MeshMeeting& m) {
+  const bool inside = !std::isfinite(m.measured_mm);
+  return {{"gap", std::max(m.gap_mm, 0.0)}, {"touches", m.gap_mm <= 0}, {"inside", inside}, {"body", m.body}, {"rapid", m.rapid},
+          {"op", m.operation}, {"tooth", m.tooth}, {"line", m.line}, {"file", m.mesh}, {"point", vector_json(m.place)}};
+}
+
+/// "fixture" and "stock": lengths in mm; "file" counts the files from 0.
+void add_scene(Json& json, const RunReport& r) {
+  for (const auto& v : r.scene) {
+    Json entry = {{"files", text_list(v.files)}, {"facets", v.facets}, {"clear", v.clear()}, {"required", v.required_mm}, {"looked", v.look_mm}};
+    entry["clearance"] = v.nearest ? Json(std::max(v.nearest->gap_mm, 0.0)) : Json(nullptr);
+    entry["nearest"] = v.nearest ? meeting_json(*v.nearest) : Json(nullptr);
+    entry["worst"] = Json::array();
+    for (const auto& m : v.worst) entry["worst"].push_back(meeting_json(m));
+    entry["failed"] = v.failed;
+    entry["motions"] = v.motions;
+    entry["unjudged"] = v.unjudged;
+    json[v.name] = std::move(entry);
+  }
 }
 
 void add_directions(Json& json, const RunReport& r) {
@@ -129,6 +151,7 @@ std::string report_json(const RunReport& r) {
   if (!r.program_file.empty())
     json["program"] = {{"file", r.program_file}, {"sha256", r.program_sha256}, {"bytes", r.program_bytes}};
   add_proof(json, r);
+  add_scene(json, r);
   add_motion(json, r);
   add_directions(json, r);
   if (proves) {

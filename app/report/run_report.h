@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/report/scene_report.h"
 #include "cam/verification.h"
 #include "postproc/axis_program.h"
 
@@ -50,6 +51,7 @@ struct RunReport {
 
 /// report.json, ending in a line feed. Values that a command does not have are left out; lengths in um where the key says so.
 [[nodiscard]] std::string report_json(const RunReport& report);
+  std::vector<SceneVerdict> scene;                       ///< fixture and stock, where meshes of them were given
 
 /// The table on the screen: verified or not, worst gouge, worst left material, cutting time, tools, axis ranges, every assumed
 /// value. Plain text; with `color` the verdict is green or red.

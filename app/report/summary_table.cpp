@@ -56,6 +56,12 @@ std::string summary_table(const RunReport& report, bool color) {
   if (report.unreached && report.unreached->points > 0)
     row(out, "corners not reached", fmt::format("up to {:.1f} um high", report.unreached->max_height_mm * kUm));
   if (report.gouge) row(out, "least clearance", fmt::format("{:.3f} mm (neck, shank, holder)", report.gouge->clearance_mm));
+  for (const auto& v : report.scene) {
+    const std::string place = v.nearest ? fmt::format("{}, op {}, tooth {}, line {}", v.nearest->body, v.nearest->operation, v.nearest->tooth, v.nearest->line) : "";
+    row(out, v.name, !v.nearest ? fmt::format("clear by more than {:.3f} mm", v.look_mm)
+                                : fmt::format("{}: least gap {:.3f} mm proven ({}), clearance {:.3f} mm", v.clear() ? "clear" : "NOT clear",
+                                              std::max(0.0, v.nearest->gap_mm), place, v.required_mm));
+  }
   if (!report.operations.empty()) {
     row(out, "cutting time", fmt::format("{} (with rapids {})", readable_minutes(report.feed_minutes), readable_minutes(report.total_minutes)));
     row(out, "tools", tools_text(report));

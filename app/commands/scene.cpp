@@ -1,0 +1,257 @@
+#include "app/commands/scene.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "geometry/base/angle.h"
+#include "geometry/mesh_file.h"
+
+namespace toothpath {
+namespace {
+
+constexpr std::size_t kChunk = std::size_t(1) << 15;  // moves that are held at a time
+constexpr std::size_t kGroup = 32;                    // motions that are looked at together first
+constexpr double kTip = 1e-4, kAxis = 2e-6;           // mm, rad: motions of feeds; rapids are cut 50 times coarser
+constexpr std::size_t kMostRows = 20;
+
+Status load(const std::vector<std::string>& files, double least_mm, std::vector<std::unique_ptr<MeshDistance>>& out, std::size_t& facets) {
+  for (const auto& file : files) {
+    MeshImportLimits limits;
+    limits.expected_size_mm = least_mm;
+    const auto mesh = load_mesh(file, limits);
+    if (!mesh) return mesh.error();
+    Vec3 low = Vec3::Constant(INFINITY), high = -low;
+    for (const auto& v : mesh->vertices) {
+      low = low.cwiseMin(v);
+      high = high.cwiseMax(v);
+    }
+    const double size = (high - low).maxCoeff();
+    if (size < least_mm) {
+      Diagnostic error = fail("the longest side of the stock, {:.4g} mm, is below {:.4g} mm, the outer diameter of the finished gear; if the file is "
+                              "in inches, it would be {:.4g} mm, in metres {:.4g} mm: mesh files are read as mm",
+                              size, least_mm, 25.4 * size, 1000 * size);
+      error.position.file = file;
+      return error;
+    }
+    facets += mesh->triangles.size();
+    out.push_back(std::make_unique<MeshDistance>(*mesh));
+  }
+  return Ok{};
+}
+
+/// Motions that are judged together.
+struct Group {
+  std::size_t from = 0, to = 0;
+  const ToolAssembly* tool = nullptr;
+  bool rapid = false;
+  std::optional<Withdrawal> withdrawal;
+};
+
+/// Follows the program move by move.
+class SceneWalk {
+ public:
+  SceneWalk(const Scene& scene, const Job& job, const Machine& machine, const NcControl& control, const ReadBack& read, int teeth, double clearance)
+      : job_(job), machine_(machine), control_(control), read_(read), teeth_(teeth), clearance_(clearance) {
+    for (const auto& m : scene.fixture) fixture_.push_back(m.get());
+    for (const auto& m : scene.stock) stock_.push_back(m.get());
+    if (!fixture_.empty()) verdicts_.push_back(verdict("fixture", scene.fixture_files, scene.fixture_facets));
+    if (!stock_.empty()) verdicts_.push_back(verdict("stock", scene.stock_files, scene.stock_facets));
+  }
+
+  void operator()(ExecutedMove m) {
+    if (error_) return;
+    if (!moves_.empty() && (m.tool != moves_.back().tool || m.operation != moves_.back().operation || moves_.size() >= kChunk)) flush();
+    if (moves_.empty() && last_) {  // a new tool starts where the spindle stands
+      moves_.push_back(*last_);
+      moves_.back().tool = m.tool;
+      moves_.back().operation = m.operation;
+    }
+    label(m);
+    last_ = m;
+    moves_.push_back(m);
+  }
+  Result<std::vector<SceneVerdict>> finish() {
+    flush();
+    if (error_) return *error_;
+    for (auto& v : verdicts_) {
+      v.unjudged = unjudged_;
+      std::stable_sort(v.worst.begin(), v.worst.end(), [](const MeshMeeting& a, const MeshMeeting& b) { return a.gap_mm < b.gap_mm; });
+      if (v.worst.size() > kMostRows) v.worst.resize(kMostRows);
+    }
+    return std::move(verdicts_);
+  }
+
+ private:
+  [[nodiscard]] SceneVerdict verdict(const char* name, const std::vector<std::string>& files, std::size_t facets) const {
+    SceneVerdict v;
+    v.name = name;
+    v.files = files;
+    v.facets = facets;
+    v.required_mm = clearance_;
+    v.look_mm = clearance_ + options_.look_mm;
+    return v;
+  }
+  /// The tooth of a move, where the program's teeth are turned copies.
+  void label(ExecutedMove& m) {
+    const std::size_t i = seen_[m.operation]++;
+    if (!read_.copies.copies || m.tooth >= 0) return;
+    for (const auto& op : read_.copies.operations)
+      for (const auto& trace : read_.operations)
+        if (op.operation == m.operation && trace.operation == m.operation && op.moves_per_tooth > 0 && !op.turns.empty()) {
+          const std::size_t copy = i < trace.lead ? 0 : (i - trace.lead) / op.moves_per_tooth;
+          m.tooth = std::int16_t(op.turns[std::min(copy, op.turns.size() - 1)]);
+        }
+  }
+  /// The tooth nearest to a tip, counted from that of the operation's first cut.
+  [[nodiscard]] int nearest_tooth(const ToolMotion& m) {
+    const double azimuth = std::atan2(m.tip_to.y(), m.tip_to.x());
+    if (!m.rapid) first_cut_.emplace(m.operation, azimuth);
+    const auto first = first_cut_.find(m.operation);
+    if (first == first_cut_.end()) return 0;
+    const int k = int(std::lround((azimuth - first->second) / (2 * kPi) * teeth_)) % teeth_;
+    return k < 0 ? k + teeth_ : k;
+  }
+
+  void flush() {
+    if (moves_.size() < 2) return moves_.clear();
+    const ToolAssembly* tool = nullptr;
+    for (const auto& t : job_.tools)
+      if (t.number == moves_.back().tool) tool = &t;
+    for (std::size_t k = 1; k < moves_.size(); ++k) unjudged_ += tool == nullptr || !moves_[k].known;
+    if (tool == nullptr) {
+      withdrawal_.reset();
+      return moves_.clear();
+    }
+    OperationTrace trace;
+    trace.operation = moves_.back().operation;
+    trace.tool = moves_.back().tool;
+    const bool named = moves_.back().tooth >= 0;
+    trace.moves = std::move(moves_);
+    moves_ = {};
+    auto motions = tool_motions(trace, {}, control_, machine_, *job_.setup, teeth_, kTip, kAxis);
+    if (!motions) {
+      error_ = motions.error();
+      return;
+    }
+    if (!named)
+      for (auto& m : *motions) m.tooth = nearest_tooth(m);
+    judge(*motions, *tool);
+  }
+
+  void judge(const std::vector<ToolMotion>& motions, const ToolAssembly& tool) {
+    std::vector<Group> groups;
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      const ToolMotion& m = motions[k];
+      if (m.rapid && withdrawal_ && !draws_back(m, *withdrawal_)) withdrawal_.reset();
+      const bool back = m.rapid && withdrawal_.has_value();
+      const bool joins = !groups.empty() && k - groups.back().from < kGroup && groups.back().rapid == m.rapid && groups.back().withdrawal.has_value() == back &&
+                         m.tooth == motions[k - 1].tooth && (m.tip_from - motions[k - 1].tip_to).norm() < 1e-6;
+      if (!joins) groups.push_back({k, k, &tool, m.rapid, back ? withdrawal_ : std::nullopt});
+      groups.back().to = k + 1;
+      if (!m.rapid) withdrawal_ = Withdrawal{m.tip_to, m.axis_to};
+    }
+    for (auto& v : verdicts_) {
+      std::vector<std::optional<MeshMeeting>> found(groups.size());
+      const bool stock = v.name == "stock";
+      const MeshClearance check(stock ? stock_ : fixture_, options_);
+      tbb::parallel_for(std::size_t(0), groups.size(), [&](std::size_t k) {
+        const Group& g = groups[k];
+        found[k] = check.nearest(std::span(motions).subspan(g.from, g.to - g.from), *g.tool, rule(g, stock), stock ? g.withdrawal : std::nullopt);
+      });
+      for (std::size_t k = 0; k < groups.size(); ++k) note(v, found[k], rule(groups[k], stock));
+      v.motions += motions.size();
+    }
+  }
+  [[nodiscard]] MeshRule rule(const Group& g, bool stock) const {
+    if (!stock) return {clearance_, clearance_};
+    if (!g.rapid) return {0, 0, false, true};
+    if (g.withdrawal) return {0, 0};
+    return {clearance_, clearance_};
+  }
+  static void note(SceneVerdict& v, const std::optional<MeshMeeting>& found, const MeshRule& rule) {
+    if (!found) return;
+    const double required = found->body == "cutter" ? rule.cutter_mm : rule.others_mm;
+    if (!v.nearest || found->gap_mm < v.nearest->gap_mm) v.nearest = found;
+    if (found->gap_mm > 0 && found->gap_mm >= required) return;
+    ++v.failed;
+    const auto same = std::find_if(v.worst.begin(), v.worst.end(), [&](const MeshMeeting& w) {
+      return w.line == found->line && w.tooth == found->tooth && w.operation == found->operation && w.body == found->body;
+    });
+    if (same != v.worst.end()) {
+      if (found->gap_mm < same->gap_mm) *same = *found;
+      return;
+    }
+    if (v.worst.size() < 50 * kMostRows) v.worst.push_back(*found);
+  }
+
+  const Job& job_;
+  const Machine& machine_;
+  const NcControl& control_;
+  const ReadBack& read_;
+  int teeth_;
+  double clearance_;
+  MeshClearanceOptions options_;
+  std::vector<const MeshDistance*> fixture_, stock_;
+  std::vector<SceneVerdict> verdicts_;
+  std::vector<ExecutedMove> moves_;
+  std::optional<ExecutedMove> last_;
+  std::optional<Withdrawal> withdrawal_;
+  std::optional<Diagnostic> error_;
+  std::map<int, std::size_t> seen_;
+  std::map<int, double> first_cut_;
+  std::size_t unjudged_ = 0;
+};
+
+std::string where_of(const MeshMeeting& m) {
+  return fmt::format("{}{}, operation {}, tooth {}, line {}", m.body, m.rapid ? " on a rapid" : "", m.operation, m.tooth, m.line);
+}
+
+}  // namespace
+
+Result<Scene> load_scene(const CommandRequest& request, double gear_diameter_mm) {
+  Scene scene;
+  scene.fixture_files = request.fixture_files;
+  scene.stock_files = request.stock_files;
+  if (const auto s = load(request.fixture_files, 0, scene.fixture, scene.fixture_facets); !s) return s.error();
+  if (const auto s = load(request.stock_files, gear_diameter_mm, scene.stock, scene.stock_facets); !s) return s.error();
+  return scene;
+}
+
+Result<std::vector<SceneVerdict>> check_scene(const Scene& scene, std::string_view text, const std::string& file, const Job& job, const Machine& machine,
+                                              const ReadBack& read, int teeth, double clearance_mm) {
+  const auto control = control_of(machine, *job.setup, job.tools);
+  if (!control) return control.error();
+  SceneWalk walk(scene, job, machine, *control, read, teeth, clearance_mm);
+  if (const auto s = execute_nc(text, file, *control, [&](const ExecutedMove& m) { walk(m); }); !s) return s.error();
+  return walk.finish();
+}
+
+std::vector<std::string> reasons_of(const std::vector<SceneVerdict>& verdicts) {
+  std::vector<std::string> out;
+  for (const auto& v : verdicts) {
+    if (v.clear() || v.worst.empty()) continue;
+    const MeshMeeting& w = v.worst.front();
+    if (w.gap_mm <= 0) out.push_back(fmt::format("{}: {} {} it", v.name, where_of(w), std::isfinite(w.measured_mm) ? "touches" : "is inside"));
+    else out.push_back(fmt::format("{}: {} comes within {:.4f} mm (proven), the clearance is {:.4f} mm", v.name, where_of(w), w.gap_mm, v.required_mm));
+  }
+  return out;
+}
+
+WorstPlace worst_place(const MeshMeeting& m, const std::string& what) {
+  WorstPlace w;
+  w.depth_mm = std::isfinite(m.gap_mm) ? -m.gap_mm : 0;
+  w.body = m.body;
+  w.patch = what;
+  w.operation = m.operation;
+  w.tooth = m.tooth;
+  w.line = m.line;
+  w.radius_mm = m.place.head<2>().norm();
+  w.height_mm = m.place.z();
+  w.point = m.place;
+  return w;
+}
+
+}  // namespace toothpath
