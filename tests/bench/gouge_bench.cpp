@@ -1,191 +1,125 @@
-// Gouge queries per second against CGAL's AABB_tree: the whole assembly (ball, flute, shank, holder) at one pose, where the
-// tree can only be marched along the bodies, and the ball alone, where it is asked for the closest point. One core, same
-// poses; the mesh is the whole ring of the same gear. `deviation_mm` is the largest difference between the two answers.
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
-#include <CGAL/Simple_cartesian.h>
-#include <benchmark/benchmark.h>
-
-#include <map>
+// Gouge queries against CGAL's AABB_tree, as a table of ratios: the mesh engine (whole assembly, ball alone) on a ring of teeth of two
+// finenesses, and the analytic engine on a face gear. One thread, its own processor time, the same mesh and the same poses on both sides.
+//
+// Both sides answer the same question: for every body of the tool, its distance to the surface up to 0.5 mm (the cutting part: less its
+// radius, so that a cut is negative). We answer exactly; the tree is marched to the resolution in the table, and answers from above.
+// "largest difference" is between the two answers: it may reach the resolution. "missed": places where the tree finds a cut or a touch
+// and we find none, over the passes and over poses sunk by up to 8 mm.
+#include <cstdio>
 #include <memory>
-#include <random>
 
-#include "cam/tool_body.h"
-#include "geometry/base/angle.h"
-#include "geometry/tooth_mesh.h"
+#include "tests/bench/gouge_bench_analytic.h"
+#include "tests/bench/gouge_bench_cgal.h"
+#include "tests/bench/gouge_bench_scene.h"
+#include "tests/bench/thread_seconds.h"
 
+namespace toothpath::bench {
 namespace {
 
-using namespace toothpath;
-using Kernel = CGAL::Simple_cartesian<double>;
-using Triangles = std::vector<Kernel::Triangle_3>;
-using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::iterator>;
-using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+constexpr double kWithin = 0.5;
 
-FaceGear quarter_dhfg() {
-  FaceGearParameters g;
-  g.teeth = 180;
-  g.shaper_teeth = 30;
-  g.module_mm = 1.25;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.reference_radius_mm = 118;
-  g.shaper_tip_radius_mm = 0.375;
-  g.groove_depth_mm = 3.125;
-  g.zones = {{radians(-30), 112.25, 117}, {radians(30), 119, 124}};
-  return std::get<FaceGear>(FaceGear::make(g));
+void heading() {
+  std::printf("%-28s %9s %8s %12s %12s %8s %11s %6s %6s\n", "question", "triangles", "march mm", "ours 1/s", "CGAL 1/s", "ratio", "largest dif",
+              "hits", "missed");
 }
 
-ToolAssembly mill() {
-  ToolAssembly t;
-  t.diameter_mm = 0.5;
-  t.flute_length_mm = 3.2;
-  t.shank_diameter_mm = 0.46;
-  t.length_mm = 88;
-  t.holder = {{10, 10, 30}, {32, 32, 30}};
-  t.stick_out_mm = 14;
-  return t;
-}
-
-/// A pose: ball centre in contact with a flank or fillet of some tooth, tool upright or nearly so.
-struct Pose {
-  Vec3 centre, axis;
+struct Row {
+  std::string question;
+  std::size_t triangles = 0;
+  double resolution = 0, ours = 0, theirs = 0, difference = 0;
+  std::size_t hits = 0, missed = 0;
+  void print() const {
+    std::printf("%-28s %9zu %8g %12.0f %12.0f %7.1fx %11.2e %6zu %6zu\n", question.c_str(), triangles, resolution, ours, theirs, ours / theirs,
+                difference, hits, missed);
+    std::fflush(stdout);
+  }
 };
 
-struct Scene {
-  FaceGear gear = quarter_dhfg();
-  ToolAssembly tool = mill();
-  GearDistance part{gear, 1.0};
-  std::vector<Pose> poses;
-  std::map<double, std::pair<std::unique_ptr<Triangles>, std::unique_ptr<Tree>>> trees;
-  double sag = 0;
+std::vector<double> by_marching(const CgalTree& tree, const ToolAssembly& tool, std::span<const ToolPose> poses, double resolution) {
+  std::vector<double> gaps;
+  const double R = tool.radius_mm();
+  const auto bodies = shank_and_holder(tool);
+  for (const auto& p : poses) {
+    gaps.push_back(tree.cutting_part(p.tip + R * p.axis, p.axis, tool.flute_length_mm - R, R, kWithin, resolution));
+    for (const auto& body : bodies) gaps.push_back(tree.frustum(body, p.tip, p.axis, kWithin, resolution));
+  }
+  return gaps;
+}
 
-  Scene() {
-    std::mt19937_64 generator(1);
-    const auto uniform = [&](double a, double b) { return a + (b - a) * double(generator() >> 11) * 0x1p-53; };
-    while (poses.size() < 2000) {
-      const int zone = int(generator() % 2);
-      const auto& cells = part.cells(zone);
-      const auto& cell = cells[generator() % cells.size()];
-      if (!cell.sheet) continue;
-      const auto q = part.space(zone).point(cell.piece, cell.u, cell.v);
-      if (!q) continue;
-      const double lean = uniform(0, 0.05), to = uniform(0, 6.28), turn = gear.pitch() * double(generator() % 180);
-      const Vec3 axis(std::sin(lean) * std::cos(to), std::sin(lean) * std::sin(to), std::cos(lean));
-      poses.push_back({FaceGearSurface<double>::turned(Vec3(q->p + (tool.radius_mm() + 1e-4) * q->n), turn), axis});
+/// Adds what two lists of gaps tell about each other.
+void compare(const std::vector<double>& ours, const std::vector<double>& theirs, Row& row) {
+  for (std::size_t k = 0; k < ours.size(); ++k) {
+    if (!std::isfinite(ours[k])) continue;  // wholly inside: a hit of ours that the tree cannot see
+    row.difference = std::max(row.difference, std::abs(ours[k] - theirs[k]));
+    const bool hit = theirs[k] < -1e-9 || (theirs[k] <= 0 && k % 4 != 0);
+    row.hits += hit;
+    row.missed += hit && ours[k] > 0;
+  }
+}
+
+void assembly(const MeshDistance& mesh, const CgalTree& tree, bool long_tool, double resolution) {
+  const ToolAssembly tool = ball_mill(long_tool);
+  const auto poses = flank_passes(35, false), sunk = flank_passes(2, true);
+  const std::span<const ToolPose> theirs(poses.data(), poses.size());
+  MeshAssembly engine(mesh, tool, kWithin);
+  const std::size_t n = engine.bodies();
+  std::vector<double> gaps(poses.size() * n), marched;
+  Row row{long_tool ? "assembly, long" : "assembly, short", mesh.tree().triangles(), resolution};
+  row.ours = double(poses.size()) / thread_seconds([&] { engine.gaps(poses, gaps); }, 5);
+  // Whole passes, one in five.
+  std::vector<ToolPose> few;
+  std::vector<double> few_gaps;
+  const std::size_t pass = poses.size() / 35;
+  for (std::size_t k = 0; k < poses.size(); ++k)
+    if (k / pass % 5 == k / pass / 5 % 5) {
+      few.push_back(poses[k]);
+      few_gaps.insert(few_gaps.end(), gaps.begin() + std::ptrdiff_t(k * n), gaps.begin() + std::ptrdiff_t((k + 1) * n));
+    }
+  row.theirs = double(few.size()) / thread_seconds([&] { marched = by_marching(tree, tool, few, resolution); }, 1);
+  compare(few_gaps, marched, row);
+  std::vector<double> sunk_gaps(sunk.size() * n);
+  engine.gaps(sunk, sunk_gaps);
+  compare(sunk_gaps, by_marching(tree, tool, sunk, resolution), row);
+  row.print();
+}
+
+void ball(const MeshDistance& mesh, const CgalTree& tree) {
+  std::vector<Vec3> centres;
+  for (const auto& p : flank_passes(35, false)) centres.push_back(p.tip + 2 * p.axis);
+  std::vector<double> ours(centres.size()), theirs(centres.size());
+  Row row{"ball", mesh.tree().triangles(), 0};
+  row.ours = double(centres.size()) / thread_seconds([&] { mesh.nearest_along(centres, 1e3, ours); }, 5);
+  row.theirs = double(centres.size()) / thread_seconds([&] {
+                 for (std::size_t k = 0; k < centres.size(); ++k) theirs[k] = tree.distance(centres[k]);
+               }, 2);
+  for (std::size_t k = 0; k < ours.size(); ++k) {
+    row.difference = std::max(row.difference, std::abs(ours[k] - theirs[k]));
+    row.hits += theirs[k] < 2 - 1e-9;
+    row.missed += theirs[k] < 2 - 1e-9 && ours[k] >= 2;
+  }
+  row.print();
+}
+
+void run() {
+  std::printf("inner loops: %s; one thread; gaps up to %g mm; poses 0.1 mm apart on flank passes, ball R2\n", mesh_kernels().name, kWithin);
+  heading();
+  for (const auto& [across, along] : {std::pair{24, 34}, std::pair{54, 77}}) {
+    const TriangleMesh mesh = ring_mesh(across, along);
+    const MeshDistance distance(mesh);
+    const CgalTree tree(mesh);
+    ball(distance, tree);
+    for (const bool long_tool : {true, false}) {
+      assembly(distance, tree, long_tool, 1e-2);
+      assembly(distance, tree, long_tool, 1e-3);
     }
   }
-  const Tree& tree(double tolerance) {
-    auto& slot = trees[tolerance];
-    if (!slot.second) {
-      const auto mesh = *mesh_gear(gear, tolerance);
-      slot.first = std::make_unique<Triangles>();
-      const auto p = [&](const Vec3& v) { return Kernel::Point_3(v.x(), v.y(), v.z()); };
-      for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        slot.first->push_back(Kernel::Triangle_3(p(mesh.corner(t, 0)), p(mesh.corner(t, 1)), p(mesh.corner(t, 2))));
-      slot.second = std::make_unique<Tree>(slot.first->begin(), slot.first->end());
-      slot.second->build();
-      slot.second->accelerate_distance_queries();
-    }
-    return *slot.second;
-  }
-};
-Scene& scene() {
-  static Scene s;
-  return s;
+  analytic_rows();
 }
-
-double tree_distance(const Tree& tree, const Vec3& c) { return std::sqrt(tree.squared_distance(Kernel::Point_3(c.x(), c.y(), c.z()))); }
-
-/// What both sides answer: how deep the cutting part lies, and the gap of shank and holder (no more than 0.5 mm is asked for).
-struct Answer {
-  double depth = -INFINITY, gap = 0.5;
-};
-
-/// Marches a segment of the axis: the least distance to it, to 1e-3 mm, by steps as long as the distance allows.
-double march(const Tree& tree, const Vec3& a, const Vec3& axis, double length, double radius, double enough) {
-  double best = INFINITY;
-  for (double h = 0; h <= length;) {
-    const double d = tree_distance(tree, a + h * axis);
-    best = std::min(best, d - radius);
-    h += std::max(1e-3, d - radius - std::min(best, enough) + 1e-3);
-    if (h > length && h < length + 1e-3) h = length;
-  }
-  return best;
-}
-
-Answer by_marching(const Tree& tree, const ToolAssembly& tool, const Pose& pose) {
-  const double R = tool.radius_mm();
-  Answer a;
-  a.depth = -march(tree, pose.centre, pose.axis, tool.flute_length_mm - R, R, 0.0);
-  for (const auto& body : shank_and_holder(tool))  // as capsules: what a distance query can march
-    a.gap = std::min(a.gap, march(tree, pose.centre + (body.from - R) * pose.axis, pose.axis, body.to - body.from, body.radius_from, a.gap));
-  return a;
-}
-
-Answer exact(const GearDistance& part, const ToolAssembly& tool, const Pose& pose) {
-  const double R = tool.radius_mm();
-  Answer a;
-  const Vec3 tip = pose.centre - R * pose.axis;
-  const double top = tool.flute_length_mm - R, proof = 1e-3;
-  for (double h = 0; h <= top;) {
-    const double d = part.nearest(pose.centre + h * pose.axis, R + 0.5).distance;
-    a.depth = std::max(a.depth, R - d);
-    if ((pose.centre + h * pose.axis).z() - R > part.gear().blank_top()) break;
-    h += std::max(proof, d - R + a.depth + proof);
-  }
-  for (const auto& body : shank_and_holder(tool)) a.gap = std::min(a.gap, body_gap(part, body, tip, pose.axis, a.gap, 0.02).gap);
-  return a;
-}
-
-void assembly_exact(benchmark::State& state) {
-  auto& s = scene();
-  std::size_t k = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(exact(s.part, s.tool, s.poses[k++ % s.poses.size()]));
-  state.counters["poses/s"] = benchmark::Counter(double(state.iterations()), benchmark::Counter::kIsRate);
-}
-BENCHMARK(assembly_exact);
-
-void assembly_cgal(benchmark::State& state) {
-  auto& s = scene();
-  const auto& tree = s.tree(double(state.range(0)) * 1e-4);
-  std::size_t k = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(by_marching(tree, s.tool, s.poses[k++ % s.poses.size()]));
-  double deviation = 0;
-  for (std::size_t n = 0; n < 40; ++n)
-    deviation = std::max(deviation, std::abs(exact(s.part, s.tool, s.poses[n]).depth - by_marching(tree, s.tool, s.poses[n]).depth));
-  state.counters["poses/s"] = benchmark::Counter(double(state.iterations()), benchmark::Counter::kIsRate);
-  state.counters["triangles"] = double(tree.size());
-  state.counters["deviation_mm"] = deviation;
-}
-BENCHMARK(assembly_cgal)->Arg(50)->Arg(5)->Unit(benchmark::kMicrosecond);
-
-void ball_exact(benchmark::State& state) {
-  auto& s = scene();
-  std::size_t k = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(s.part.nearest(s.poses[k++ % s.poses.size()].centre, s.tool.radius_mm() + 0.12));
-  state.counters["balls/s"] = benchmark::Counter(double(state.iterations()), benchmark::Counter::kIsRate);
-}
-BENCHMARK(ball_exact);
-
-void ball_cgal(benchmark::State& state) {
-  auto& s = scene();
-  const auto& tree = s.tree(double(state.range(0)) * 1e-4);
-  std::size_t k = 0;
-  for (auto _ : state) {
-    const auto& c = s.poses[k++ % s.poses.size()].centre;
-    benchmark::DoNotOptimize(tree.closest_point(Kernel::Point_3(c.x(), c.y(), c.z())));
-  }
-  double deviation = 0;
-  for (const auto& pose : s.poses)
-    deviation = std::max(deviation, std::abs(tree_distance(tree, pose.centre) - s.part.nearest(pose.centre, s.tool.radius_mm() + 0.12).distance));
-  state.counters["balls/s"] = benchmark::Counter(double(state.iterations()), benchmark::Counter::kIsRate);
-  state.counters["triangles"] = double(tree.size());
-  state.counters["deviation_mm"] = deviation;
-}
-BENCHMARK(ball_cgal)->Arg(50)->Arg(5);
 
 }  // namespace
+}  // namespace toothpath::bench
 
-BENCHMARK_MAIN();
+int main() {
+  toothpath::bench::run();
+  return 0;
+}

@@ -1,0 +1,128 @@
+#include "tests/bench/gouge_bench_analytic.h"
+
+#include <cstdio>
+#include <random>
+
+#include "geometry/base/angle.h"
+#include "geometry/tooth_mesh.h"
+#include "tests/bench/gouge_bench_cgal.h"
+#include "tests/bench/thread_seconds.h"
+#include "cam/gear_distance.h"
+
+namespace toothpath::bench {
+namespace {
+
+FaceGear quarter_dhfg() {
+  FaceGearParameters g;
+  g.teeth = 180;
+  g.shaper_teeth = 30;
+  g.module_mm = 1.25;
+  g.module_plane = ModulePlane::transverse;
+  g.pressure_angle_rad = radians(20);
+  g.reference_radius_mm = 118;
+  g.shaper_tip_radius_mm = 0.375;
+  g.groove_depth_mm = 3.125;
+  g.zones = {{radians(-30), 112.25, 117}, {radians(30), 119, 124}};
+  return std::get<FaceGear>(FaceGear::make(g));
+}
+
+ToolAssembly mill() {
+  ToolAssembly t;
+  t.diameter_mm = 0.5;
+  t.flute_length_mm = 3.2;
+  t.shank_diameter_mm = 0.46;
+  t.length_mm = 88;
+  t.holder = {{10, 10, 30}, {32, 32, 30}};
+  t.stick_out_mm = 14;
+  return t;
+}
+
+struct Pose {
+  Vec3 centre, axis;
+};
+
+/// Ball centres 0.1 um off flanks and fillets of any tooth, tool upright or nearly so.
+std::vector<Pose> poses_of(const FaceGear& gear, const GearDistance& part, const ToolAssembly& tool) {
+  std::mt19937_64 generator(1);
+  const auto uniform = [&](double a, double b) { return a + (b - a) * double(generator() >> 11) * 0x1p-53; };
+  std::vector<Pose> poses;
+  while (poses.size() < 2000) {
+    const int zone = int(generator() % 2);
+    const auto& cells = part.cells(zone);
+    const auto& cell = cells[generator() % cells.size()];
+    if (!cell.sheet) continue;
+    const auto q = part.space(zone).point(cell.piece, cell.u, cell.v);
+    if (!q) continue;
+    const double lean = uniform(0, 0.05), to = uniform(0, 6.28), turn = gear.pitch() * double(generator() % 180);
+    const Vec3 axis(std::sin(lean) * std::cos(to), std::sin(lean) * std::sin(to), std::cos(lean));
+    poses.push_back({FaceGearSurface<double>::turned(Vec3(q->p + (tool.radius_mm() + 1e-4) * q->n), turn), axis});
+  }
+  return poses;
+}
+
+constexpr double kWithin = 0.5, kMarch = 1e-3, kBodies = 0.02;
+
+struct Answer {
+  double cutter = kWithin, gap = kWithin;
+};
+
+Answer exact(const GearDistance& part, const ToolAssembly& tool, const Pose& pose) {
+  const double R = tool.radius_mm(), top = tool.flute_length_mm - R;
+  Answer a;
+  for (double h = 0; h <= top;) {
+    const double d = part.nearest(pose.centre + h * pose.axis, R + kWithin).distance - R;
+    a.cutter = std::min(a.cutter, d);
+    if ((pose.centre + h * pose.axis).z() - R > part.gear().blank_top()) break;
+    h += std::max(d - a.cutter, 0.0) + kMarch;
+  }
+  for (const auto& body : shank_and_holder(tool))
+    a.gap = std::min(a.gap, body_gap(part, body, pose.centre - R * pose.axis, pose.axis, a.gap, kBodies).gap);
+  return a;
+}
+
+Answer marched(const CgalTree& tree, const ToolAssembly& tool, const Pose& pose) {
+  const double R = tool.radius_mm();
+  Answer a;
+  a.cutter = tree.cutting_part(pose.centre, pose.axis, tool.flute_length_mm - R, R, kWithin, kMarch);
+  for (const auto& body : shank_and_holder(tool)) a.gap = std::min(a.gap, tree.frustum(body, pose.centre - R * pose.axis, pose.axis, a.gap, kBodies));
+  return a;
+}
+
+}  // namespace
+
+void analytic_rows() {
+  const FaceGear gear = quarter_dhfg();
+  const ToolAssembly tool = mill();
+  const GearDistance part(gear, 1.0);
+  const auto poses = poses_of(gear, part, tool);
+  std::printf("\nanalytic engine of a face gear (180 teeth, two rings; ball R0.25; random poses in contact), the mesh is its own within the sag\n");
+  std::printf("%-28s %9s %8s %12s %12s %8s %11s\n", "question", "triangles", "sag mm", "ours 1/s", "CGAL 1/s", "ratio", "largest dif");
+  const double balls = double(poses.size()) / thread_seconds([&] {
+                         for (const auto& p : poses) keep(part.nearest(p.centre, tool.radius_mm() + 0.12).distance);
+                       }, 3);
+  const double tools = double(poses.size()) / thread_seconds([&] {
+                         for (const auto& p : poses) keep(exact(part, tool, p).gap);
+                       }, 2);
+  for (const double sag : {5e-3, 5e-4}) {
+    const auto mesh = mesh_gear(gear, sag);
+    if (!mesh) continue;
+    const CgalTree tree(*mesh);
+    double ball_difference = 0, difference = 0;
+    const double cgal_balls = double(poses.size()) / thread_seconds([&] {
+                                for (const auto& p : poses) keep(tree.distance(p.centre));
+                              }, 2);
+    const std::size_t few = 200;
+    const double cgal_tools = double(few) / thread_seconds([&] {
+                                for (std::size_t k = 0; k < few; ++k) keep(marched(tree, tool, poses[k]).gap);
+                              }, 1);
+    for (const auto& p : poses)
+      ball_difference = std::max(ball_difference, std::abs(tree.distance(p.centre) - part.nearest(p.centre, tool.radius_mm() + 0.12).distance));
+    for (std::size_t k = 0; k < few; ++k)
+      difference = std::max(difference, std::abs(marched(tree, tool, poses[k]).cutter - exact(part, tool, poses[k]).cutter));
+    std::printf("%-28s %9zu %8g %12.0f %12.0f %7.1fx %11.2e\n", "ball, analytic", mesh->triangles.size(), sag, balls, cgal_balls, balls / cgal_balls, ball_difference);
+    std::printf("%-28s %9zu %8g %12.0f %12.0f %7.1fx %11.2e\n", "assembly, analytic", mesh->triangles.size(), sag, tools, cgal_tools, tools / cgal_tools, difference);
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace toothpath::bench
