@@ -1,5 +1,7 @@
 #include "app/commands/contact.h"
 
+#include "app/commands/bevel_contact.h"
+#include "app/commands/bevel_run.h"
 #include "app/commands/study_page.h"
 #include "app/contact_analysis.h"
 #include "app/job_file.h"
@@ -22,6 +24,7 @@ std::optional<Diagnostic> out_of_range(const CommandRequest& r) {
   };
   if (auto e = check("--offset-error", r.offset_error_mm, -5, 5, "mm")) return e;
   if (auto e = check("--axial-error", r.axial_error_mm, -5, 5, "mm")) return e;
+  if (auto e = check("--wheel-axial-error", r.wheel_axial_error_mm, -5, 5, "mm")) return e;
   if (auto e = check("--angle-error", r.angle_error_deg, -1, 1, "deg")) return e;
   if (auto e = check("--compound", r.compound_um, 0.1, 100, "um")) return e;
   return std::nullopt;
@@ -68,6 +71,7 @@ CommandOutcome run_contact(const CommandRequest& request) {
   StageClock clock(progress);
   auto output = OutputDir::open(request.out_dir, kOutputs);
   if (!output) return failed(output.error());
+  if (const auto bevel = bevel_job(request.job_file)) return run_bevel_contact(request, *bevel, *output);
   auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
   const Job& job = std::get<0>(read);

@@ -10,7 +10,7 @@ namespace toothpath {
 [[nodiscard]] ContactSettings contact_settings(const Job& job, const CommandRequest& request);
 
 /// Writes contact.csv, transmission.csv, contact.json and contact.html. With `as_cut` the job's route is run as well (`run`, or the strokes of
-/// `shaper`) and its surface is rolled beside the exact one. Refused: a bevel gear; a pinion that cannot run; options out of range.
+/// `shaper`) and its surface is rolled beside the exact one. A bevel gear: see commands/bevel_contact.h. Refused: a pinion that cannot run; options out of range.
 [[nodiscard]] CommandOutcome run_contact(const CommandRequest& request);
 
 }  // namespace toothpath
