@@ -12,6 +12,8 @@ namespace {
 constexpr double kTwoPi = 6.283185307179586476925286766559;
 constexpr double kCellLength = 0.45;     // mm along the tooth
 constexpr double kBorder = 1e-9;         // a foot this far beyond the border of a piece (in its parameter) still counts
+// Corrected flanks and fillets share their normals to 1e-6 only; a foot so little beyond is less than 1e-6 mm wrong.
+constexpr double kCorrectedBorder = 1e-5;
 constexpr int kEndPoints = 3000;         // on the profile at an end of the ring
 constexpr int kBands = 4;                // a fillet may be touched at both of its ends: seeds from several bands
 
@@ -383,6 +385,7 @@ NearestPlace GearDistance::nearest(const Vec3& asked, double within) const {
       return std::min(r_query, d_mesh + slack);
     });
     const auto& w = ring.space.surface().shaper;
+    const double border_slack = ring.space.ring().correction ? kCorrectedBorder : kBorder;
     bool found = false;               // Newton has found the sheet, on the ring or on its continuation
     double accepted = INFINITY;       // the best foot on the ring
     double beyond = INFINITY, beyond_seed = INFINITY;  // signed distance to the continuation
@@ -394,9 +397,9 @@ NearestPlace GearDistance::nearest(const Vec3& asked, double within) const {
       const auto foot = ring.space.foot(cell.piece, c, cell.u, cell.v);
       if (!foot) continue;
       const bool flank = cell.piece == SpacePiece::flank_plus || cell.piece == SpacePiece::flank_minus;
-      if (flank && foot->u > w.theta_t + kBorder) continue;
-      if (!flank && cell.piece != SpacePiece::root && (foot->u < w.A_t - kBorder || foot->u > w.A_e + kBorder)) continue;
-      if (cell.piece == SpacePiece::root && (foot->u < -kBorder || foot->u > 1 + kBorder)) continue;
+      if (flank && foot->u > w.theta_t + border_slack) continue;
+      if (!flank && cell.piece != SpacePiece::root && (foot->u < w.A_t - border_slack || foot->u > w.A_e + border_slack)) continue;
+      if (cell.piece == SpacePiece::root && (foot->u < -border_slack || foot->u > 1 + border_slack)) continue;
       if (foot->distance < 0 && in_air) continue;  // seen through an end of the ring or the tip
       found = true;
       if (ring.on_ring(foot->at.p)) {

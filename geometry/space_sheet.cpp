@@ -127,7 +127,21 @@ void SpaceSheet::displace(SpacePiece piece, double u, double v, PatchPoint& q) c
 std::optional<PatchPoint> SpaceSheet::at(SpacePiece piece, double u, double v) const {
   auto q = nominal(piece, u, v);
   if (!q || piece == SpacePiece::root) return q;
-  if (ring_.correction) displace(piece, u, v, *q);
+  if (ring_.correction) {
+    displace(piece, u, v, *q);
+    // Second derivatives of the field count where a ball hardly fits the fillet: the normals' derivatives by differences of the normals.
+    const bool flank = piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus;
+    const double h = 1e-5, g = flank ? 1e-5 : 1e-3;  // rad; rad or mm
+    const auto normal = [&](double a, double b) -> std::optional<Vec3> {
+      auto near = nominal(piece, a, b);
+      if (!near) return {};
+      displace(piece, a, b, *near);
+      return near->n;
+    };
+    const auto u0 = normal(u - h, v), u1 = normal(u + h, v), v0 = normal(u, v - g), v1 = normal(u, v + g);
+    if (u0 && u1) q->nu = (*u1 - *u0) / (2 * h);
+    if (v0 && v1) q->nv = (*v1 - *v0) / (2 * g);
+  }
   return side_of(piece) > 0 ? q : turned(*q, ring_.surface.pitch);
 }
 
@@ -160,7 +174,12 @@ std::optional<TipPlace> SpaceSheet::tip(int side, double r, const std::optional<
 }
 
 std::optional<PatchPoint> SpaceSheet::point(SpacePiece piece, double u, double v) const {
-  if (ring_.correction) return at(piece, u, v);
+  if (ring_.correction) {
+    auto q = nominal(piece, u, v);
+    if (!q || piece == SpacePiece::root) return q;
+    displace(piece, u, v, *q);
+    return side_of(piece) > 0 ? q : turned(*q, ring_.surface.pitch);
+  }
   const auto& f = ring_.surface;
   const int s = side_of(piece);
   SurfacePointT<double> q;

@@ -40,8 +40,8 @@ struct TipPlace {
 /// Parameters: flanks (theta, B), fillets (A, Z), root (fraction from the plus to the minus edge, Z).
 ///
 /// A ring with a correction gives the corrected flanks: points displaced along the nominal normals, with their own normals; the fillets
-/// carry the displacement on and let it fade. Derivatives of the normals are then those of the nominal surface: they serve the steps of
-/// Newton and the step-over, which a few hundredths of a millimetre do not change.
+/// carry the displacement on and let it fade. Derivatives of the normals are then differences of the normals (1e-8 relative): they serve
+/// the steps of Newton and the step-over, not a place.
 class SpaceSheet {
  public:
   explicit SpaceSheet(const FaceGearParameters& gear, const FaceGearRing& ring);

@@ -12,7 +12,8 @@ namespace {
 
 std::set<std::string> stages_of(const CommandOutcome& outcome) {
   std::set<std::string> names;
-  for (const auto& [name, seconds] : nlohmann::json::parse(outcome.report_json)["stages"].items()) names.insert(name);
+  const auto report = nlohmann::json::parse(outcome.report_json);
+  for (const auto& [name, seconds] : report["stages"].items()) names.insert(name);
   return names;
 }
 
