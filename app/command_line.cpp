@@ -178,6 +178,8 @@ Subcommand add_contact(CLI::App& app, CommandRequest& request) {
   contact.app->add_option("--angle-error", request.angle_error_deg, "error of the shaft angle, deg");
   contact.app->add_option("--axial-error", request.axial_error_mm, "pinion off its place along its axis, mm");
   contact.app->add_option("--compound", request.compound_um, "thickness of the marking compound, um (default 6)");
+  contact.app->add_option("--mate", request.other_job, "bevel gears: job of the mate (default: by the rules of the pair, same mill)");
+  contact.app->add_option("--wheel-axial-error", request.wheel_axial_error_mm, "bevel gears: wheel off its place along its axis, mm");
   contact.app->add_flag("--as-cut", request.as_cut, "roll the surface that the job cuts, too");
   return contact;
 }
@@ -212,12 +214,12 @@ int run_command_line(int argc, char** argv) {
   commands.push_back(add_job_command(app, "run", "the whole way from the job to a proven NC program", request, run_job));
   commands.push_back(add_job_command(app, "check", "proves a program that is already there against the job's gear", request, check_program));
   commands.back().app->add_option("PROGRAM", request.program_file, "NC program in the dialect of the job's machine")->required();
-  commands.back().app->add_option("--measured", request.measured_files, "measured deviations that the program answers (see correct)");
-  commands.push_back(add_job_command(app, "correct", "the whole way again, with flanks that answer a measurement", request, run_job));
   commands.back().app->add_option("--stock", request.stock_files, "closed mesh of the stock before the program (STL or OBJ, mm, gear frame); repeatable");
   commands.back().app->add_option("--fixture", request.fixture_files,
                                   "closed mesh of what holds the work and turns with it (STL or OBJ, mm, gear frame); repeatable. Facets are taken as exact: "
                                   "what they leave out of the true part must lie within the clearance of the job");
+  commands.back().app->add_option("--measured", request.measured_files, "measured deviations that the program answers (see correct)");
+  commands.push_back(add_job_command(app, "correct", "the whole way again, with flanks that answer a measurement", request, run_job));
   commands.back().app->add_option("--measured", request.measured_files, "measured grid: inspection.csv with a column deviation_um; several: one after each cut")
       ->required();
   commands.push_back(add_job_command(app, "surface", "flanks, limits, inspection grid and mesh of the gear", request, run_surface));

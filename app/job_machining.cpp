@@ -1,4 +1,4 @@
-// [machine], [setup], [[tool]], [[operation]], [coolant], [verify] and [shaping].
+// [machine], [setup], [[tool]], [[operation]], [coolant], [verify], [shaping] and [contact].
 #include <algorithm>
 #include <regex>
 

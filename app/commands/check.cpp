@@ -11,8 +11,10 @@
 #include "app/commands/scene.h"
 #include "app/gear_of_job.h"
 #include "app/job_file.h"
+#include "app/measured_file.h"
 #include "app/output_dir.h"
 #include "app/report/deviation_vtp.h"
+#include "app/report/motion_charts.h"
 #include "app/report/page_of_run.h"
 #include "app/sha256.h"
 #include "geometry/base/angle.h"
@@ -100,8 +102,6 @@ void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) 
   report.verified = report.reasons.empty();
 }
 
-}  // namespace
-
 /// What the meshes say joins the reasons and the table of the worst places.
 void add_scene(std::vector<SceneVerdict>& verdicts, ProgramProof& proof, RunReport& report) {
   for (auto& reason : reasons_of(verdicts)) proof.reasons.push_back(std::move(reason));
@@ -114,27 +114,41 @@ void add_scene(std::vector<SceneVerdict>& verdicts, ProgramProof& proof, RunRepo
   report.scene = std::move(verdicts);
 }
 
+}  // namespace
+
 CommandOutcome check_program(const CommandRequest& request) {
   auto output = OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"});
   if (!output) return failed(output.error());
-  if (const auto bevel = bevel_job(request.job_file)) return check_bevel_program(request, *bevel, *output);
-  Progress progress(request.quiet);
   const bool with_scene = !request.stock_files.empty() || !request.fixture_files.empty();
   if (const auto bevel = bevel_job(request.job_file); bevel && with_scene)
     return failed(fail_as(DiagnosticKind::usage, "--stock and --fixture are read for face gears only, not yet for bevel gears"));
+  if (const auto bevel = bevel_job(request.job_file)) return check_bevel_program(request, *bevel, *output);
+  Progress progress(request.quiet);
   StageClock clock(progress);
   auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
   const Job job = std::move(std::get<0>(read));
   auto made = clock.run("gear", [&] { return make_face_gear(job); });
   if (auto* refused = std::get_if<1>(&made)) return failed(std::move(*refused));
-  const FaceGear gear = std::move(std::get<0>(made));
+  FaceGear gear = std::move(std::get<0>(made));
+  if (!request.measured_files.empty()) {
+    auto corrected = clock.run("correction", [&] { return correct_gear(gear, request.measured_files); });
+    if (!corrected) return failed(corrected.error());
+    gear = std::move(corrected->gear);
+  }
   auto loaded = clock.run("machine", [&] { return load_machine(job); });
   if (auto* refused = std::get_if<1>(&loaded)) return failed(std::move(*refused));
   const Machine machine = std::move(std::get<0>(loaded));
   if (!job.setup) return failed(fail_at(job.where("setup"), "the job lacks a [setup]: where the gear stands is not known"));
   auto text = read_program(request.program_file);
   if (!text) return failed(text.error());
+
+  std::optional<Scene> scene;
+  if (with_scene) {
+    auto meshes = clock.run("stock and fixture meshes", [&] { return load_scene(request, 2 * gear.outer_radius()); });
+    if (!meshes) return failed(meshes.error());
+    scene = std::move(meshes.value());
+  }
 
   const GearDistance part = clock.run("distance index", [&] { return GearDistance(gear, reach_of(job.tools)); });
   GougeCheckOptions options;
@@ -143,13 +157,6 @@ CommandOutcome check_program(const CommandRequest& request) {
   options.clearance_mm = job.verify.clearance_mm.value_or(PlanOptions{}.clearance_mm);
   options.rapid_height_mm = gear.blank_top();
   const GougeCheck gouge_check(part, job.tools, options);
-  std::optional<Scene> scene;
-  if (with_scene) {
-    auto meshes = clock.run("stock and fixture meshes", [&] { return load_scene(request, 2 * gear.outer_radius()); });
-    if (!meshes) return failed(meshes.error());
-    scene = std::move(meshes.value());
-  }
-
   ProofOptions proof_options;
   proof_options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
   auto proof = prove_program(*text, request.program_file, job, machine, part, gouge_check, clearance_body(gear), gear.parameters().teeth, {},
@@ -159,13 +166,6 @@ CommandOutcome check_program(const CommandRequest& request) {
     return failed(proof.error());
   }
   RunReport report = begin(job, machine, gear, request.program_file);
-  report.program_sha256 = sha256_hex(*text);
-  report.program_bytes = text->size();
-  fill(report, *proof, machine);
-
-  CommandOutcome outcome;
-  outcome.exit_code = report.verified ? ExitCode::ok : ExitCode::unverified;
-  for (const auto& reason : report.reasons) {
   if (scene) {
     auto verdicts = clock.run("stock and fixture", [&] {
       return check_scene(*scene, *text, request.program_file, job, machine, proof->read, gear.parameters().teeth, options.clearance_mm);
@@ -176,6 +176,13 @@ CommandOutcome check_program(const CommandRequest& request) {
     }
     add_scene(*verdicts, *proof, report);
   }
+  report.program_sha256 = sha256_hex(*text);
+  report.program_bytes = text->size();
+  fill(report, *proof, machine);
+
+  CommandOutcome outcome;
+  outcome.exit_code = report.verified ? ExitCode::ok : ExitCode::unverified;
+  for (const auto& reason : report.reasons) {
     Diagnostic error = fail_as(DiagnosticKind::verification, "{}", reason);
     error.position.file = request.program_file;
     outcome.errors.push_back(std::move(error));
@@ -188,6 +195,7 @@ CommandOutcome check_program(const CommandRequest& request) {
   const auto page = clock.run("report page", [&] {
     ReportPage content = page_of_run(job, report, {}, *text);
     content.surface = proof->surface.grids;
+    content.motion = motion_charts(proof->read, proof->motions, machine);
     return render_report_page(content);
   });
   if (!page) return failed(page.error());

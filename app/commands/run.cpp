@@ -10,9 +10,12 @@
 #include "app/contact_analysis.h"
 #include "app/gear_of_job.h"
 #include "app/job_file.h"
+#include "app/measured_file.h"
 #include "app/report/cl_csv.h"
 #include "app/report/contact_figures.h"
 #include "app/report/deviation_vtp.h"
+#include "app/report/limits_chart.h"
+#include "app/report/motion_charts.h"
 #include "app/report/page_of_run.h"
 #include "app/report/setup_sheet.h"
 #include "app/sha256.h"
@@ -24,7 +27,7 @@ namespace toothpath {
 namespace {
 
 const std::vector<std::string> kOutputs = {"program.",      "cl.csv",   "report.json", "report.html", "setup.html",
-                                           "gear.stl",      "tooth.vtp", "inspection.csv", "limits.json"};
+                                           "gear.stl",      "tooth.vtp", "inspection.csv", "limits.", "limits_0.svg", "limits_1.svg", "inspection.dmi", "correction.json"};
 
 /// What one run has made so far. Stages fill it in order.
 struct Run {
@@ -32,7 +35,8 @@ struct Run {
   Progress progress;
   StageClock clock{progress};
   Job job;
-  std::optional<FaceGear> gear;
+  std::optional<FaceGear> gear;                 ///< with the flanks to aim at
+  std::optional<CorrectedGear> correction;      ///< where they answer measured files
   Machine machine;
   FaceGearPlan plan;
   std::vector<CheckedClPath> checked;
@@ -41,6 +45,8 @@ struct Run {
   CutSurfaceOptions cut_surface;  ///< grid on which the cut surface is measured
   std::vector<SurfaceGrid> surface;
   std::string program_text;  ///< as read back from the disk
+  std::vector<LineChart> motion;        ///< axes over time, for the page
+  std::vector<std::vector<int>> lines;  ///< of the program, for every record of every path
 
   explicit Run(const CommandRequest& r) : request(r), progress(r.quiet) {}
   [[nodiscard]] PlanOptions plan_options() const {
@@ -67,6 +73,12 @@ std::vector<Diagnostic> prepare(Run& run) {
   if (auto* refused = std::get_if<1>(&machine)) errors.insert(errors.end(), refused->begin(), refused->end());
   else run.machine = std::move(std::get<0>(machine));
   if (!errors.empty()) return errors;
+  if (!run.request.measured_files.empty()) {
+    auto corrected = run.clock.run("correction", [&] { return correct_gear(*run.gear, run.request.measured_files); });
+    if (!corrected) return {corrected.error()};
+    run.correction = std::move(*corrected);
+    run.gear = run.correction->gear;
+  }
   return {};
 }
 
@@ -80,7 +92,7 @@ std::vector<Diagnostic> read_inputs(Run& run) {
 
 void begin_report(Run& run) {
   RunReport& report = run.report;
-  report.command = "run";
+  report.command = run.correction ? "correct" : "run";
   report.job_name = run.job.name;
   report.job_file = run.job.file;
   report.machine_name = run.machine.name;
@@ -91,6 +103,14 @@ void begin_report(Run& run) {
     for (const auto& key : run.machine.assumed_keys) report.assumed.push_back(fmt::format("{}: {}", run.job.machine.file, key));
   report.warnings = run.job.warnings;
   report.warnings.insert(report.warnings.end(), run.gear->warnings().begin(), run.gear->warnings().end());
+  if (!run.correction) return;
+  double most = 0;
+  for (const auto& f : run.correction->fit.flanks) {
+    report.correction.push_back({f.zone, f.side, f.residual});
+    most = std::max(most, f.residual.measured_max_mm);
+  }
+  report.warnings.push_back(fmt::format("the flanks to cut answer measured deviations of up to {:.2f} um (correction.json): gouge and left material are "
+                                        "counted from them, not from the nominal flanks", most * 1000));
 }
 
 /// Plans every operation and lets the gouge check pass each path. Nothing: done.
@@ -138,7 +158,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   report_axis_program(run.report, run.job, run.plan, *program);
 
   NcHeader header;
-  header.job_name = run.job.name;
+  header.job_name = run.job.name + (run.correction ? ", corrected" : "");
   header.machine_name = run.machine.name;
   header.assumed = run.report.assumed;
   header.coolant = run.job.coolant != Coolant::off;
@@ -174,6 +194,8 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
                                               proof->surface.unreached.max_height_mm));
   if (proof->surface.scallop.requested_mm > 0) run.report.scallop = proof->surface.scallop;
   run.surface = std::move(proof->surface.grids);
+  run.motion = motion_charts(proof->read, proof->motions, run.machine);
+  for (const ClPath& path : run.plan.paths) run.lines.push_back(lines_of_records(path, proof->motions, options.path_tolerance_mm));
   run.report.reasons = proof->reasons;
   run.report.ledger = face_gear_ledger(part, run.plan, run.job.tools, *program, *proof, dialect->blend ? header.blend_mm : 0.0, run.proof_mm);
   if (!proof->reasons.empty()) return std::nullopt;
@@ -229,6 +251,8 @@ Status write_results(Run& run, OutputDir& output, std::string& json) {
     report.files.push_back(name);
     return output.write(name, content);
   };
+  if (run.correction)
+    if (const auto s = write("correction.json", correction_json(run.correction->fit, run.correction->measurements)); !s) return s;
   if (report.verified) {
     if (const auto s = write_surface_files(output, *run.gear, run.job.name, run.clock, report.files); !s) return s;
     const auto vtp = deviation_vtp(run.surface);
@@ -245,6 +269,9 @@ Status write_results(Run& run, OutputDir& output, std::string& json) {
     ReportPage content = page_of_run(run.job, report, run.plan.paths, run.program_text);
     content.surface = run.surface;
     content.contact = contact;
+    content.gear_limits = limit_charts(*run.gear);
+    content.motion = run.motion;
+    for (std::size_t k = 0; k < run.lines.size(); ++k) content.paths[k].nc_lines = run.lines[k];
     return render_report_page(content);
   });
   if (!page) return page.error();
@@ -284,7 +311,7 @@ CommandOutcome finish(Run& run, OutputDir& output, const std::optional<Diagnosti
 CommandOutcome run_job(const CommandRequest& request) {
   auto output = OutputDir::open(request.out_dir, kOutputs);
   if (!output) return failed(output.error());
-  if (const auto bevel = bevel_job(request.job_file)) return run_bevel_job(request, *bevel, *output);
+  if (const auto bevel = bevel_job(request.job_file); bevel && request.measured_files.empty()) return run_bevel_job(request, *bevel, *output);
   Run run(request);
   if (auto errors = read_inputs(run); !errors.empty()) {
     run.progress.clear();

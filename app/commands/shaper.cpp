@@ -14,6 +14,8 @@
 #include "geometry/base/angle.h"
 #include "machines/machine_file.h"
 #include "machines/shaper_machine.h"
+#include "postproc/shaper_gearbox_program.h"
+#include "postproc/shaper_gearbox_reader.h"
 #include "postproc/shaper_program.h"
 #include "postproc/shaper_setup.h"
 #include "postproc/shaper_sheet.h"
@@ -60,7 +62,10 @@ std::string summary_of(const ShaperSetup& s, const std::string& folder) {
   out += fmt::format("  offset slide {:.4f} mm ({:.4f} deg by tan, {:.4f} deg by sin)\n", s.slide_mm, degrees(s.angle_tan_rad),
                      degrees(s.angle_sin_rad));
   out += fmt::format("  stroke {:.3f} mm, {:.3f} .. {:.3f}, {} double strokes/min\n", s.length_mm, s.start_mm, s.end_mm, s.strokes_set);
-  out += fmt::format("  index gears {}, feed gears {} ({:.5f} mm)\n", s.index_gears.text(), s.feed_gears.text(), s.circular_feed_set_mm);
+  if (s.machine.gearbox)
+    out += fmt::format("  electronic gearbox {}{}/{}, read back from the program\n", s.sense < 0 ? "-" : "", s.generating.numerator, s.generating.denominator);
+  else
+    out += fmt::format("  index gears {}, feed gears {} ({:.5f} mm)\n", s.index_gears.text(), s.feed_gears.text(), s.circular_feed_set_mm);
   out += fmt::format("  {} + {} double strokes, {:.1f} min\n", s.strokes_infeed, s.strokes_turn, s.total_min());
   for (const auto& warning : s.warnings) out += "  warning: " + warning + "\n";
   if (!s.machine.assumed_keys.empty()) {
@@ -74,7 +79,7 @@ std::string summary_of(const ShaperSetup& s, const std::string& folder) {
 }  // namespace
 
 const std::vector<std::string>& shaper_outputs() {
-  static const std::vector<std::string> names = {"limits.json", "shaper.json", "shaper.html", "shaper_program.ngc", "report.json"};
+  static const std::vector<std::string> names = {"limits.json", "shaper.json", "shaper.html", "shaper_program.", "report.json"};
   return names;
 }
 
@@ -98,7 +103,17 @@ CommandOutcome run_shaper(const CommandRequest& request) {
   setup.warnings.insert(setup.warnings.begin(), gear.warnings().begin(), gear.warnings().end());
   setup.warnings.insert(setup.warnings.begin(), job.warnings.begin(), job.warnings.end());
   const auto study = clock.run("stroke simulation", [&] { return feed_study(setup, compared_feeds(setup)); });
-  const std::string program = clock.run("shaper program", [&] { return shaper_program_text(setup); });
+  const std::string program_name = std::string("shaper_program") + shaper_program_extension(machine);
+  const std::string program = clock.run("shaper program", [&] { return machine.gearbox ? shaper_gearbox_text(setup) : shaper_program_text(setup); });
+  if (const auto written = output->write(program_name, program); !written) return failed(written.error());
+  const auto bytes = output->read_back(program_name);
+  if (!bytes) return failed(bytes.error());
+  if (machine.gearbox) {
+    const auto faults = clock.run("read back", [&] { return gearbox_program_faults(*bytes, setup); });
+    std::vector<Diagnostic> errors;
+    for (const auto& fault : faults) errors.push_back(fail_as(DiagnosticKind::verification, "{}: {}", program_name, fault));
+    if (!errors.empty()) return failed(std::move(errors));
+  }
 
   RunReport report;
   report.command = "shaper";
@@ -109,7 +124,7 @@ CommandOutcome run_shaper(const CommandRequest& request) {
   report.dialect = machine.dialect;
   report.assumed = machine.assumed_keys;
   report.warnings = setup.warnings;
-  report.program_file = "shaper_program.ngc";
+  report.program_file = program_name;
   report.program_sha256 = sha256_hex(program);
   report.program_bytes = program.size();
   report.blocks = static_cast<std::size_t>(std::count(program.begin(), program.end(), '\n'));
@@ -120,9 +135,9 @@ CommandOutcome run_shaper(const CommandRequest& request) {
   };
   for (const auto& [name, content] : {std::pair<std::string, std::string>{"limits.json", limits_json(gear)},
                                       {"shaper.json", shaper_json(setup, study)},
-                                      {"shaper.html", shaper_html(setup, study)},
-                                      {"shaper_program.ngc", program}})
+                                      {"shaper.html", shaper_html(setup, study)}})
     if (const auto written = write(name, content); !written) return failed(written.error());
+  report.files.push_back(program_name);
   report.files.push_back("report.json");
   report.stages = clock.seconds();
   CommandOutcome outcome;

@@ -74,6 +74,17 @@ PageTable operation_table(const RunReport& r) {
   return table;
 }
 
+PageTable correction_table(const RunReport& r) {
+  PageTable table{"Correction", {"zone", "flank", "measured max um", "measured rms um", "not followed max um", "not followed rms um", "degrees"}, {},
+                  "The target of this program: nominal flanks moved by minus the smooth part of the measured deviations (products of "
+                  "Chebyshev polynomials along profile and face). Deviations in this report are from that target."};
+  for (const auto& c : r.correction)
+    table.rows.push_back({std::to_string(c.zone), fmt::format("{:+}", c.side), fmt::format("{:.2f}", c.fit.measured_max_mm * 1000),
+                          fmt::format("{:.2f}", c.fit.measured_rms_mm * 1000), fmt::format("{:.2f}", c.fit.residual_max_mm * 1000),
+                          fmt::format("{:.2f}", c.fit.residual_rms_mm * 1000), fmt::format("{} x {}", c.fit.profile_degree, c.fit.lead_degree)});
+  return table;
+}
+
 }  // namespace
 
 ReportPage page_of_run(const Job& job, const RunReport& r, const std::vector<ClPath>& paths, std::string_view program) {
@@ -103,6 +114,7 @@ ReportPage page_of_run(const Job& job, const RunReport& r, const std::vector<ClP
   page.directions = r.directions;
   page.stage_seconds = r.stages;
   if (!r.operations.empty()) page.tables = {operation_table(r), axis_table(r)};
+  if (!r.correction.empty()) page.tables.push_back(correction_table(r));
   return page;
 }
 

@@ -163,6 +163,19 @@ std::string report_json(const RunReport& r) {
     json["ledger"] = std::move(ledger);
     json["assumed"] = text_list(r.assumed);
   }
+  if (!r.correction.empty()) {
+    Json flanks = Json::array();
+    for (const auto& c : r.correction)
+      flanks.push_back({{"zone", c.zone},
+                        {"side", c.side},
+                        {"profile_degree", c.fit.profile_degree},
+                        {"lead_degree", c.fit.lead_degree},
+                        {"measured_max_um", c.fit.measured_max_mm * 1000},
+                        {"measured_rms_um", c.fit.measured_rms_mm * 1000},
+                        {"residual_max_um", c.fit.residual_max_mm * 1000},
+                        {"residual_rms_um", c.fit.residual_rms_mm * 1000}});
+    json["correction"] = std::move(flanks);
+  }
   json["warnings"] = text_list(r.warnings);
   json["files"] = text_list(r.files);
   Json stages = Json::object();

@@ -37,8 +37,8 @@ std::string filled(std::string_view text, const std::vector<Part>& parts) {
 
 /// Links to the sections that are there.
 std::string contents(std::string_view sections, bool view) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 10> kNames{{{"job", "Job"}, {"gouge", "Gouge"}, {"deviation", "Deviation"},
-      {"ledger", "Ledger"}, {"direction", "Tool direction"}, {"motion", "Axes"}, {"contact", "Contact"}, {"work-precision", "Error against run time"},
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kNames{{{"job", "Job"}, {"gouge", "Gouge"}, {"deviation", "Deviation"},
+      {"ledger", "Ledger"}, {"direction", "Tool direction"}, {"motion", "Axes"}, {"contact", "Contact"}, {"limits", "Limits"}, {"work-precision", "Error against run time"},
       {"stages", "Run time"}, {"tables", "Tables"}}};
   std::string out = "<nav>";
   if (view) out += "<a href=\"#space\">3D view</a>";
@@ -83,7 +83,7 @@ Result<std::string> render_report_page(const ReportPage& page) {
   const bool view = std::any_of(page.surface.begin(), page.surface.end(), [](const SurfaceGrid& g) { return g.rows > 1 && g.columns > 1; }) ||
                     std::any_of(page.paths.begin(), page.paths.end(), [](const PagePath& p) { return !p.cl.records.empty(); });
   const std::string sections = job_section(page) + gouge_section(page) + deviation_section(page) + ledger_section(page) + direction_section(page) +
-                               motion_section(page) + contact_section(page) + work_precision_section(page) + stages_section(page) + tables_section(page);
+                               motion_section(page) + contact_section(page) + limits_section(page) + work_precision_section(page) + stages_section(page) + tables_section(page);
   return filled(kReportTemplate, {{"TITLE", html_escape(page.title)},
                                   {"STYLE", std::string(kReportStyle)},
                                   {"HEADER", page_header(page) + contents(sections, view)},

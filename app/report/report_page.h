@@ -84,6 +84,7 @@ struct ReportPage {
   std::vector<LedgerEntry> ledger;
   std::vector<DirectionChoice> directions;
   std::vector<LineChart> motion;          ///< axis positions, speeds and feed over time; any length, thinned by the writer
+  std::vector<LineChart> gear_limits;     ///< where the flanks of the gear end
   std::vector<LineChart> work_precision;  ///< from the study, when there is one
   std::string contact;  ///< body of the section on contact with the pinion, finished markup; may be empty
   std::vector<std::pair<std::string, double>> stage_seconds;

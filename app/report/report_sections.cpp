@@ -222,6 +222,12 @@ std::string motion_section(const ReportPage& page) {
   return section("motion", "Axes over time", figures(plots));
 }
 
+std::string limits_section(const ReportPage& page) {
+  std::string plots;
+  for (const LineChart& chart : page.gear_limits) plots += figure(chart.title, svg_line_chart(chart), chart.note);
+  return section("limits", "Limits of the flanks", figures(plots));
+}
+
 std::string work_precision_section(const ReportPage& page) {
   std::string plots;
   for (const LineChart& chart : page.work_precision) plots += figure(chart.title, svg_line_chart(chart), chart.note);

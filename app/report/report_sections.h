@@ -21,6 +21,8 @@ namespace toothpath {
 [[nodiscard]] std::string direction_section(const ReportPage& page);
 /// Axis positions, speeds and feed over time.
 [[nodiscard]] std::string motion_section(const ReportPage& page);
+/// Where the flanks of the gear end.
+[[nodiscard]] std::string limits_section(const ReportPage& page);
 [[nodiscard]] std::string work_precision_section(const ReportPage& page);
 /// What `page.contact` holds.
 [[nodiscard]] std::string contact_section(const ReportPage& page);

@@ -8,6 +8,7 @@
 
 #include "app/report/scene_report.h"
 #include "cam/verification.h"
+#include "geometry/flank_correction.h"
 #include "postproc/axis_program.h"
 
 namespace toothpath {
@@ -20,6 +21,12 @@ struct OperationReport {
   double speed_rpm = 0, feed_mm_min = 0;
   std::size_t cl_points = 0;  ///< one tooth space
   double feed_minutes = 0, rapid_minutes = 0;  ///< all teeth
+};
+
+/// A flank that was corrected by a measurement.
+struct CorrectionRow {
+  int zone = 0, side = 1;
+  CorrectionResidual fit;
 };
 
 struct RunReport {
@@ -44,6 +51,8 @@ struct RunReport {
   std::vector<DirectionChoice> directions;
   std::vector<AxisRange> axes;
   std::vector<LedgerEntry> ledger;
+  std::vector<SceneVerdict> scene;                       ///< fixture and stock, where meshes of them were given
+  std::vector<CorrectionRow> correction;                 ///< empty: the nominal flanks are the target
   std::vector<std::string> assumed, warnings;
   std::vector<std::string> files;                        ///< written by this run
   std::vector<std::pair<std::string, double>> stages;    ///< name and seconds, those that ran
@@ -51,7 +60,6 @@ struct RunReport {
 
 /// report.json, ending in a line feed. Values that a command does not have are left out; lengths in um where the key says so.
 [[nodiscard]] std::string report_json(const RunReport& report);
-  std::vector<SceneVerdict> scene;                       ///< fixture and stock, where meshes of them were given
 
 /// The table on the screen: verified or not, worst gouge, worst left material, cutting time, tools, axis ranges, every assumed
 /// value. Plain text; with `color` the verdict is green or red.

@@ -74,6 +74,10 @@ std::string summary_table(const RunReport& report, bool color) {
   if (!report.machine_name.empty()) row(out, "machine", report.machine_name);
   for (const auto& name : report.assumed) row(out, "assumed", name);
   if (!report.program_file.empty()) row(out, "program", fmt::format("{}, {} blocks", report.program_file, report.blocks));
+  for (const auto& c : report.correction)
+    row(out, "correction", fmt::format("zone {}, flank {:+}: measured max {:.2f} um, rms {:.2f} um; not followed max {:.2f} um, rms {:.2f} um", c.zone,
+                                       c.side, c.fit.measured_max_mm * kUm, c.fit.measured_rms_mm * kUm, c.fit.residual_max_mm * kUm,
+                                       c.fit.residual_rms_mm * kUm));
   for (const auto& warning : report.warnings) row(out, "warning", warning);
   if (report.command == "surface")
     for (const auto& file : report.files) row(out, "written", file);
