@@ -233,7 +233,7 @@ Machine read_tree(const TomlValue& tree, const std::string& file, std::vector<Di
     root.refuse(root.at("kind"), "kind = \"{}\" is no milling machine; \"five_axis\" is needed here", *kind);
     return machine;
   }
-  machine.dialect = root.word("dialect", {"linuxcnc", "fanuc", "siemens", "heidenhain", "apt"}).value_or("");
+  machine.dialect = root.word("dialect", {"linuxcnc", "fanuc", "siemens", "heidenhain", "apt", "mitsubishi_m80"}).value_or("");
   const std::vector<std::string> modes = {"none", "angles", "vectors"};
   if (const auto tcp = root.word("tcp", modes))
     machine.tcp = static_cast<TcpMode>(std::find(modes.begin(), modes.end(), *tcp) - modes.begin());

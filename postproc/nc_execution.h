@@ -42,6 +42,7 @@ class NcExecution {
   void begin_operation(int operation);
   void begin_tooth(int tooth) { tooth_ = tooth; }
   [[nodiscard]] int operation() const { return operation_; }
+  [[nodiscard]] int tool() const { return tool_; }  ///< in the spindle; -1: none
 
   // Modes.
   enum class Feed { none, inverse_time, per_minute };

@@ -1,8 +1,42 @@
 #include "postproc/nc_lines.h"
 
 #include "postproc/fixed_point.h"
+#include "postproc/nc_writer.h"
 
 namespace toothpath {
+namespace {
+
+constexpr double kFreeFeed = 1000;  // F that goes with G94 where nothing is cut, mm/min
+
+/// 1 for G54 .. 6 for G59, 7 and on for G59.1 ..
+int datum_number(const std::string& offset) {
+  if (offset.size() >= 3 && offset[0] == 'G' && offset[1] == '5' && offset[2] >= '4' && offset[2] <= '9')
+    return offset.size() == 5 ? 6 + (offset[4] - '0') : offset[2] - '3';
+  return 1;
+}
+
+}  // namespace
+
+NcLines::Values program_values(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
+  const auto unsigned_value = [&](double v, int decimals) {
+    std::string s;
+    append_fixed(s, to_fixed(v, decimals), decimals, dialect.point_always);
+    return s;
+  };
+  NcLines::Values values;
+  values["number"] = std::to_string(header.program_number);
+  values["name"] = comment_text(header.job_name).substr(0, 32);
+  values["id"] = program_id(header.job_name);
+  values["offset"] = program.work_offset;
+  values["datum"] = std::to_string(datum_number(program.work_offset));
+  values["blend"] = unsigned_value(header.blend_mm, 6);
+  values["free"] = unsigned_value(kFreeFeed, 0);
+  values["teeth"] = std::to_string(program.teeth);
+  values["last"] = std::to_string(program.teeth - 1);
+  values["sign"] = program.index_sign < 0 ? "0-" : "";
+  values["frame_sign"] = program.frame_sign < 0 ? "0-" : "";
+  return values;
+}
 
 std::uint64_t fnv1a(std::string_view bytes) {
   std::uint64_t h = 14695981039346656037ULL;
@@ -81,6 +115,31 @@ std::string NcLines::numbered(std::string_view text) {
     begin = end + 1;
   }
   return out;
+}
+
+std::string comment_text(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c >= 'a' && c <= 'z')
+      out += static_cast<char>(c - 'a' + 'A');
+    else if (c == '(' || c == ')')
+      out += c == '(' ? '[' : ']';
+    else if (c == '%' || c == ';' || c < ' ' || c > '~')
+      out += '?';
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string program_id(std::string_view text) {
+  std::string out;
+  for (const char c : comment_text(text).substr(0, 24)) {
+    const bool letter = c >= 'A' && c <= 'Z', digit = c >= '0' && c <= '9';
+    out += letter || digit ? c : '_';
+  }
+  if (out.empty() || out[0] < 'A' || out[0] > 'Z') out.insert(0, "P");
+  return out.substr(0, 24);
 }
 
 }  // namespace toothpath

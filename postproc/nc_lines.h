@@ -46,4 +46,7 @@ class NcLines {
   std::optional<Diagnostic> error_;
 };
 
+/// Values of the templates that are the same throughout a program.
+[[nodiscard]] NcLines::Values program_values(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
+
 }  // namespace toothpath

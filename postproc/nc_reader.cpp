@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kCoincident = 1e-9;  // mm
 constexpr double kParallel = 1e-12;
-constexpr double kSameTip = 1e-7;           // mm: round-off of a turned frame
+constexpr double kSameTip = 1e-9;           // mm: round-off of a turned frame
 constexpr double kTipStep = radians(0.5);   // joints follow a straight tip: looked at in such steps of the rotaries
 
 /// Counts of one operation's moves.
@@ -98,7 +98,7 @@ class CopyCheck {
     for (std::size_t a = 0; a < 5; ++a) {
       if (!m.rapid && !set(a)) return differ(m.line, fmt::format("the tooth cuts before it has set {}", control_.letters[a]));
       if (a == 3 || !set(a) || (m.tcp && a < 3)) continue;
-      if (!same_bits(m.joints[a], first.joints[a]))
+      if (!same(m.joints[a], first.joints[a]))
         return differ(m.line, fmt::format("{} = {} where the first tooth has {}", control_.letters[a], m.joints[a], first.joints[a]));
     }
     const double pitch = 360.0 / teeth_;
@@ -121,6 +121,8 @@ class CopyCheck {
     if (!m.rapid && std::abs(m.minutes - first.minutes) > 1e-9 * first.minutes + 1e-12)
       return differ(m.line, fmt::format("block takes {} min where the first tooth has {}", m.minutes, first.minutes));
   }
+  /// Without TCP bit for bit; with it the joints behind a cut follow from a turned tip, with its round-off.
+  bool same(double a, double b) const { return same_bits(a, b) || (control_.chain && std::abs(a - b) <= kSameTip); }
   /// A point of the table, turned by whole index steps about the gear axis.
   Vec3 turned_tip(const Vec3& p, int turn) const {
     const Vec3 axis = setup_.rotation().col(2);
@@ -174,7 +176,9 @@ struct ReaderOfDialect {
   int rotary_decimals;
   Status (*execute)(std::string_view, const std::string&, const NcControl&, const MoveSink&);
 };
-constexpr ReaderOfDialect kReaders[] = {{"linuxcnc", 5, execute_iso}, {"fanuc", 3, execute_iso}};
+constexpr ReaderOfDialect kReaders[] = {{"linuxcnc", 5, execute_iso},           {"fanuc", 3, execute_iso},
+                                         {"siemens", 6, execute_siemens},       {"heidenhain", 4, execute_heidenhain},
+                                         {"apt", 7, execute_apt},               {"mitsubishi_m80", 4, execute_iso}};
 
 const ReaderOfDialect* reader_of(std::string_view dialect) {
   for (const auto& r : kReaders)
@@ -202,6 +206,7 @@ Result<NcControl> control_of(const Machine& machine, const Setup& setup, std::sp
   if (reader == nullptr) return fail("dialect \"{}\" cannot be read back: {} can", c.dialect, readable_dialects());
   c.rotary_rounding_deg = 0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(reader->rotary_decimals));
   if (machine.tcp != TcpMode::none) c.chain = machine.chain;
+  c.top_mm = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
   c.tcp_on = machine.post.tcp_on;
   c.tcp_off = machine.post.tcp_off;
   c.letters = {'X', 'Y', 'Z', 0, 0};

@@ -36,6 +36,7 @@ struct NcControl {
   double rotary_rounding_deg = 0.5e-5;        ///< half the last digit that the dialect prints
   double linear_rounding_mm = 0.5e-4;         ///< the same of the linear words
   std::optional<KinematicChain> chain;        ///< of a machine with TCP: the control knows it; empty: TCP is refused
+  double top_mm = 0;                          ///< highest Z, machine coordinates of the gauge line
   std::vector<std::string> tcp_on, tcp_off;   ///< codes of the site that switch TCP (LinuxCNC)
   std::size_t max_steps = 400'000'000;        ///< executed blocks before the program is refused as endless
 };

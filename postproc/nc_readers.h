@@ -15,4 +15,8 @@ using MoveSink = std::function<void(const ExecutedMove&)>;
 /// LinuxCNC (o-words, bracket expressions), Fanuc and Mitsubishi (M98, a point in every number).
 [[nodiscard]] Status execute_iso(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
 
+[[nodiscard]] Status execute_siemens(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
+[[nodiscard]] Status execute_heidenhain(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
+[[nodiscard]] Status execute_apt(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
+
 }  // namespace toothpath

@@ -9,22 +9,17 @@
 
 #include "postproc/fixed_point.h"
 #include "postproc/nc_lines.h"
+#include "postproc/nc_stretches.h"
 
 namespace toothpath {
 namespace {
 
 constexpr int kFirstSubprogram = 2001;  // O numbers of the sub-programs of a main program; labels count from 100
 constexpr int kFirstLabel = 100;
-constexpr double kFreeFeed = 1000;      // F that goes with G94 where nothing is cut, mm/min
 constexpr int kVectorDecimals = 8;
 
 /// How the word of the index rotary is printed.
 enum class IndexWord { literal, shifted, left_out };
-
-/// Blocks [first, last) of one tooth.
-struct Segment {
-  std::size_t first = 0, last = 0;
-};
 
 class Writer {
  public:
@@ -32,17 +27,7 @@ class Writer {
       : program_(program), dialect_(dialect), header_(header), out_(dialect), tcp_(program.tcp != TcpMode::none) {}
 
   Result<NcText> write() {
-    values_["number"] = std::to_string(header_.program_number);
-    values_["name"] = comment_text(header_.job_name).substr(0, 32);
-    values_["id"] = program_id(header_.job_name);
-    values_["offset"] = program_.work_offset;
-    values_["datum"] = std::to_string(datum_number());
-    values_["blend"] = unsigned_value(header_.blend_mm, 6);
-    values_["free"] = unsigned_value(kFreeFeed, 0);
-    values_["teeth"] = std::to_string(program_.teeth);
-    values_["last"] = std::to_string(program_.teeth - 1);
-    values_["sign"] = program_.index_sign < 0 ? "0-" : "";
-    values_["frame_sign"] = program_.frame_sign < 0 ? "0-" : "";
+    values_ = program_values(program_, dialect_, header_);
     values_["top"] = linear(program_.retract_z_mm);
     fill(dialect_.start);
     for (std::size_t i = 0; i < program_.operations.size(); ++i) {
@@ -63,23 +48,11 @@ class Writer {
       else
         out_.fill({t}, values_);
   }
-  std::string unsigned_value(double v, int decimals) const {
-    std::string s;
-    append_fixed(s, to_fixed(v, decimals), decimals, dialect_.point_always);
-    return s;
-  }
   std::string linear(double mm) const {
     return out_.value(to_fixed(mm, program_.format.linear_decimals), program_.format.linear_decimals);
   }
   int decimals(std::size_t axis) const {
     return axis < 3 ? program_.format.linear_decimals : program_.format.rotary_decimals;
-  }
-  /// 1 for G54 .. 6 for G59, 7 and on for G59.1 ..
-  int datum_number() const {
-    const std::string& o = program_.work_offset;
-    if (o.size() >= 3 && o[0] == 'G' && o[1] == '5' && o[2] >= '4' && o[2] <= '9')
-      return o.size() == 5 ? 6 + (o[4] - '0') : o[2] - '3';
-    return 1;
   }
   void forget() {
     known_.fill(false);
@@ -140,8 +113,11 @@ class Writer {
   // A sub-program for every stretch with one index angle, called after an explicit rotary block.
   void stretch_calls(const AxisOperation& op) {
     const auto& tooth = op.teeth.front().blocks;
-    const auto segments = split_at_rotaries(tooth);
-    if (!segments) return;
+    const auto segments = stretches_of(tooth, program_.index_axis, dialect_.name);
+    if (!segments) {
+      error_ = segments.error();
+      return;
+    }
     const int first = kFirstSubprogram + static_cast<int>(subprograms_.size());
     for (const auto& s : *segments) subprograms_.push_back({&op, s});
     const auto index = static_cast<std::size_t>(program_.index_axis);
@@ -158,20 +134,6 @@ class Writer {
     }
     forget();
   }
-  std::optional<std::vector<Segment>> split_at_rotaries(const std::vector<AxisBlock>& tooth) {
-    std::vector<Segment> segments;
-    for (std::size_t i = 0; i < tooth.size(); ++i) {
-      if (tooth[i].kind == BlockKind::rapid_rotary) segments.push_back({i, i});
-      const bool moved = !segments.empty() && tooth[i].words[static_cast<std::size_t>(program_.index_axis)] !=
-                                                  tooth[segments.back().first].words[static_cast<std::size_t>(program_.index_axis)];
-      if (segments.empty() || moved) {
-        error_ = fail("the index rotary moves inside a tooth: {} cannot loop over it, write the teeth out", dialect_.name);
-        return std::nullopt;
-      }
-      segments.back().last = i + 1;
-    }
-    return segments;
-  }
   void write_subprograms() {
     for (std::size_t i = 0; i < subprograms_.size() && !error_; ++i) {
       const auto& [op, s] = subprograms_[i];
@@ -183,7 +145,7 @@ class Writer {
   }
 
   // Blocks of one stretch; begins and ends in G94.
-  void blocks(const std::vector<AxisBlock>& list, Segment s, IndexWord index) {
+  void blocks(const std::vector<AxisBlock>& list, NcStretch s, IndexWord index) {
     inverse_time_ = false;
     for (std::size_t i = s.first; i < s.last && !error_; ++i) {
       const AxisBlock& b = list[i];
@@ -416,35 +378,10 @@ class Writer {
   std::int64_t shift_ = 0;
   bool shift_known_ = false;
   bool inverse_time_ = false;
-  std::vector<std::pair<const AxisOperation*, Segment>> subprograms_;
+  std::vector<std::pair<const AxisOperation*, NcStretch>> subprograms_;
 };
 
 }  // namespace
-
-std::string comment_text(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c >= 'a' && c <= 'z')
-      out += static_cast<char>(c - 'a' + 'A');
-    else if (c == '(' || c == ')')
-      out += c == '(' ? '[' : ']';
-    else if (c == '%' || c == ';' || c < ' ' || c > '~')
-      out += '?';
-    else
-      out += c;
-  }
-  return out;
-}
-
-std::string program_id(std::string_view text) {
-  std::string out;
-  for (const char c : comment_text(text).substr(0, 24)) {
-    const bool letter = c >= 'A' && c <= 'Z', digit = c >= '0' && c <= '9';
-    out += letter || digit ? c : '_';
-  }
-  if (out.empty() || out[0] < 'A' || out[0] > 'Z') out.insert(0, "P");
-  return out.substr(0, 24);
-}
 
 Result<NcText> write_nc(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
   if (program.format.linear_decimals != dialect.format.linear_decimals ||

@@ -13,6 +13,7 @@ namespace toothpath {
 namespace {
 
 constexpr int kAxisDecimals = 9;
+constexpr std::size_t kLongestTip = 34;  // 72 characters less the longest axis
 
 class Apt {
  public:
@@ -52,11 +53,16 @@ class Apt {
     else
       out_.line("RAPID");
     std::string& text = out_.text();
-    const std::size_t begin = text.size();
+    std::size_t begin = text.size();
     text += "GOTO/";
     for (std::size_t i = 0; i < 3; ++i) {
       append_fixed(text, b.words[i], program_.format.linear_decimals, true);
       text += ',';
+    }
+    if (text.size() - begin > kLongestTip) {  // 72 characters: the axis goes on in the next line
+      text += '$';
+      out_.end_line(begin, false);
+      begin = text.size();
     }
     for (int i = 0; i < 3; ++i) {
       append_fixed(text, to_fixed(b.axis[i], kAxisDecimals), kAxisDecimals, true);

@@ -1,4 +1,6 @@
-// Lines of NC text per second: the project's fixed-point printer, std::to_chars and an output stream, on the same words. The
+// Blocks per second on one core, written and read, for every dialect with and without TCP (nc_write/.., nc_read/..); the counter
+// `rounding_mm` is the proven bound of the printed words, `worst_mm` what the read-back finds at the ends of the blocks.
+// And lines of NC text per second: the project's fixed-point printer, std::to_chars and an output stream, on the same words. The
 // counter `max_error_mm` is the greatest distance of a printed X word from the number that it stands for.
 #include <benchmark/benchmark.h>
 
@@ -12,6 +14,9 @@
 #include <vector>
 
 #include "postproc/fixed_point.h"
+#include "postproc/nc_reader.h"
+#include "postproc/nc_writer.h"
+#include "tests/postproc/nc_case.h"
 
 namespace {
 
@@ -101,9 +106,77 @@ void run(benchmark::State& state) {
   state.counters["max_error_mm"] = largest_error(out, lines);
 }
 
+struct Post {
+  const char* name;
+  const char* dialect;
+  TcpMode tcp;
+};
+constexpr Post kPosts[] = {{"linuxcnc", "linuxcnc", TcpMode::none},          {"linuxcnc_tcp", "linuxcnc", TcpMode::angles},
+                           {"fanuc", "fanuc", TcpMode::none},                {"fanuc_tcp", "fanuc", TcpMode::angles},
+                           {"siemens", "siemens", TcpMode::none},            {"siemens_tcp", "siemens", TcpMode::angles},
+                           {"heidenhain_tcp", "heidenhain", TcpMode::angles}, {"apt", "apt", TcpMode::vectors}};
+
+/// A long pass with a moving tool axis, one tooth.
+struct Job {
+  Machine machine;
+  ClPath path;
+  AxisProgram program;
+  NcDialect dialect;
+  std::string text;
+};
+Job job_of(const Post& post) {
+  Job j;
+  j.machine = test::with_dialect(test::trunnion(), post.dialect);
+  j.machine.tcp = post.tcp;
+  j.machine.post.tcp_on = post.tcp != TcpMode::none && std::string(post.dialect) == "linuxcnc" ? std::vector<std::string>{"M428"} : std::vector<std::string>{};
+  if (!j.machine.post.tcp_on.empty()) j.machine.post.tcp_off = {"M429"};
+  j.path = test::sample_path(0.3, 0.4, 50000);
+  j.dialect = *dialect_of(j.machine);
+  j.program = *AxisProgramTestAccess::build(std::vector{j.path}, test::tools(), test::standing(), j.machine, 1, test::kBody,
+                                            axis_options(j.dialect, j.machine));
+  j.text = write_nc(j.program, j.dialect, {})->text;
+  return j;
+}
+
+void write_blocks(benchmark::State& state, const Post& post) {
+  const Job j = job_of(post);
+  std::size_t blocks = 0;
+  for (auto _ : state) {
+    const auto text = write_nc(j.program, j.dialect, {});
+    blocks = text->blocks;
+    benchmark::DoNotOptimize(text->text.data());
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks));
+  state.counters["rounding_mm"] = j.program.rounding_bound_mm;
+}
+
+void read_blocks(benchmark::State& state, const Post& post) {
+  const Job j = job_of(post);
+  const auto control = control_of(j.machine, test::standing(), test::tools());
+  std::size_t blocks = 0;
+  for (auto _ : state) {
+    blocks = 0;
+    const auto done = execute_nc(j.text, "p", *control, [&](const ExecutedMove&) { ++blocks; });
+    if (!done) state.SkipWithError(done.error().message.c_str());
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks));
+  const auto back = read_back(j.text, "p", *control, j.machine, test::standing(), {.teeth = 1});
+  const auto motions = tool_motions(back->operations[0], back->copies, *control, j.machine, test::standing(), 1, 1e-3, 1e-3);
+  const std::vector<const ClPath*> paths = {&j.path};
+  state.counters["worst_mm"] = compare_with_cl(*motions, paths, 5e-3, 1e-3).worst_mm;
+}
+
 }  // namespace
 
 BENCHMARK(run<print_fixed>)->Name("nc_lines/fixed_point")->Arg(1000)->Arg(100000);
 BENCHMARK(run<print_to_chars>)->Name("nc_lines/to_chars")->Arg(1000)->Arg(100000);
 BENCHMARK(run<print_stream>)->Name("nc_lines/iostream")->Arg(1000)->Arg(100000);
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  for (const auto& post : kPosts) {
+    benchmark::RegisterBenchmark((std::string("nc_write/") + post.name).c_str(), write_blocks, post);
+    benchmark::RegisterBenchmark((std::string("nc_read/") + post.name).c_str(), read_blocks, post);
+  }
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

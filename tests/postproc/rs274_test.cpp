@@ -164,5 +164,51 @@ TEST_P(Rs274, AgreesWithOurReaderMoveByMove) {
   EXPECT_EQ(i, ours.size());
 }
 
+// With TCP the words are the tip. LinuxCNC's interpreter knows no remaps: without the two codes it reads the same numbers.
+TEST(Rs274Tcp, AgreesAboutTipWordsAndFeeds) {
+  Machine m = trunnion();
+  m.tcp = TcpMode::angles;
+  m.post.tcp_on = {"M428"};
+  m.post.tcp_off = {"M429"};
+  const auto text = nc_text({sample_path(0.3, 0.4, 12)}, m, standing(), 3);
+  ASSERT_TRUE(text) << text.error().message;
+  const auto out = interpret(std::regex_replace(text->text, std::regex("M42[89]\n"), ""), "tcp");
+  ASSERT_EQ(out.exit, 0) << out.messages;
+  const auto control = control_of(m, standing(), tools());
+  std::vector<ExecutedMove> ours;
+  ASSERT_TRUE(execute_nc(text->text, "p", *control, [&](const ExecutedMove& e) { ours.push_back(e); }));
+  const std::regex motion("STRAIGHT_(FEED|TRAVERSE)\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)");
+  std::size_t i = 0, tips = 0;
+  for (const auto& l : out.lines) {
+    std::smatch match;
+    if (!std::regex_search(l, match, motion)) continue;
+    ASSERT_LT(i, ours.size());
+    const ExecutedMove& e = ours[i++];
+    EXPECT_EQ(e.rapid, match[1] == "TRAVERSE");
+    if (!e.tcp) continue;
+    ++tips;
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(e.tip[k] - standing().work_offset_at_mm[k], std::stod(match[static_cast<std::size_t>(2 + k)]), 6e-5);
+    EXPECT_NEAR(e.joints[4], std::stod(match[5]), 6e-5);
+    EXPECT_NEAR(e.joints[3], std::stod(match[7]), 6e-5);
+  }
+  EXPECT_EQ(i, ours.size());
+  EXPECT_GT(tips, 3u * 24u);
+}
+
+// The golden files that are plain ISO are programs for LinuxCNC too.
+TEST(Rs274Golden, ReadsTheFiles) {
+  for (const char* file : {"linuxcnc_joints.ngc", "linuxcnc_tcp.ngc", "fanuc_joints.nc", "mitsubishi_m80.nc"}) {
+    std::ifstream in(std::string(TOOTHPATH_SOURCE_DIR) + "/tests/golden/posts/" + file);
+    ASSERT_TRUE(in) << file;
+    std::stringstream text;
+    text << in.rdbuf();
+    const std::string program = std::regex_replace(text.str(), std::regex("M42[89]\n"), "");
+    const bool percent = program.substr(0, 1) == "%";
+    const auto out = interpret(percent ? iso_subset(program) : program, "golden");
+    EXPECT_EQ(out.exit, 0) << file << ": " << out.messages;
+    EXPECT_TRUE(std::any_of(out.lines.begin(), out.lines.end(), [](const std::string& l) { return l.find("PROGRAM_END") != std::string::npos; })) << file;
+  }
+}
+
 }  // namespace
 }  // namespace toothpath

@@ -1,0 +1,61 @@
+// A short job in every dialect, byte for byte as it stands in tests/golden/posts. TOOTHPATH_WRITE_GOLDEN=1 writes the files anew:
+// a deliberate act, to be explained block by block.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "tests/postproc/nc_case.h"
+
+namespace toothpath {
+namespace {
+
+using namespace test;
+
+struct Golden {
+  const char* file;
+  const char* dialect;
+  TcpMode tcp;
+  double swing;
+  bool expand;
+};
+void PrintTo(const Golden& g, std::ostream* out) { *out << g.file; }
+
+class GoldenPost : public testing::TestWithParam<Golden> {};
+INSTANTIATE_TEST_SUITE_P(Files, GoldenPost,
+                         testing::Values(Golden{"linuxcnc_joints.ngc", "linuxcnc", TcpMode::none, 0.1, false},
+                                         Golden{"linuxcnc_tcp.ngc", "linuxcnc", TcpMode::angles, 0.1, true},
+                                         Golden{"fanuc_joints.nc", "fanuc", TcpMode::none, 0, false},
+                                         Golden{"fanuc_tcp.nc", "fanuc", TcpMode::angles, 0.1, true},
+                                         Golden{"mitsubishi_m80.nc", "mitsubishi_m80", TcpMode::none, 0, false},
+                                         Golden{"siemens_joints.mpf", "siemens", TcpMode::none, 0.1, false},
+                                         Golden{"siemens_tcp.mpf", "siemens", TcpMode::angles, 0.1, false},
+                                         Golden{"siemens_vectors.mpf", "siemens", TcpMode::vectors, 0.1, false},
+                                         Golden{"heidenhain_joints.h", "heidenhain", TcpMode::none, 0, false},
+                                         Golden{"heidenhain_tcp.h", "heidenhain", TcpMode::angles, 0, false},
+                                         Golden{"heidenhain_vectors.h", "heidenhain", TcpMode::vectors, 0.1, true},
+                                         Golden{"cutter_location.apt", "apt", TcpMode::vectors, 0.1, true}));
+
+TEST_P(GoldenPost, ByteForByte) {
+  const Golden& g = GetParam();
+  Machine m = with_dialect(trunnion(), g.dialect);
+  m.tcp = g.tcp;
+  if (std::string(g.dialect) == "linuxcnc") {
+    m.post.tcp_on = {"M428"};
+    m.post.tcp_off = {"M429"};
+  }
+  ClPath path = sample_path(0.3, g.swing, 3);
+  const auto text = nc_text({path}, m, standing(), 2, g.expand);
+  ASSERT_TRUE(text) << text.error().message;
+  const std::string file = std::string(TOOTHPATH_SOURCE_DIR) + "/tests/golden/posts/" + g.file;
+  if (std::getenv("TOOTHPATH_WRITE_GOLDEN") != nullptr) std::ofstream(file, std::ios::binary) << text->text;
+  std::ifstream in(file, std::ios::binary);
+  ASSERT_TRUE(in) << file;
+  std::ostringstream expected;
+  expected << in.rdbuf();
+  EXPECT_EQ(text->text, expected.str());
+}
+
+}  // namespace
+}  // namespace toothpath
