@@ -190,12 +190,19 @@ class Sweep {
     const auto& space = part_.space(cell.zone);
     const double r_in = space.ring().zone.inner_radius_mm, r_out = space.ring().zone.outer_radius_mm, sag = part_.cell_sag_mm();
     const Vec3 outwards = Vec3(cell.centre.x(), cell.centre.y(), 0).normalized();
-    double tip = -INFINITY, across = 0;
+    double across = 0, low = INFINITY, high = 0;
+    const auto radius = [&](const Vec3& p) { return std::clamp(std::hypot(p.x(), p.y()), r_in, r_out); };
     for (const auto& p : cell.corner) {
-      tip = std::max(tip, space.surface().z_tip(std::clamp(std::hypot(p.x(), p.y()), r_in, r_out)));
       across = std::max(across, p.cross(outwards).z() * p.cross(outwards).z());
+      low = std::min(low, radius(p));
+      high = std::max(high, radius(p));
     }
-    polygon = cut(polygon, Vec3::UnitZ(), tip + sag);
+    // The tip surface over the cell lies below a plane that slopes as it does.
+    const auto z_tip = [&](double r) { return space.surface().z_tip(r); };
+    const double slope = high - low > 1e-9 ? (z_tip(high) - z_tip(low)) / (high - low) : 0;
+    double tip = -INFINITY;
+    for (const double r : {low, 0.5 * (low + high), high}) tip = std::max(tip, z_tip(r) - slope * r);
+    polygon = cut(polygon, Vec3(Vec3::UnitZ() - slope * outwards), tip + std::abs(slope) * (across / r_in + sag) + sag);
     polygon = cut(polygon, outwards, r_out + sag);
     return cut(polygon, -outwards, -r_in + across / r_in + sag);
   }

@@ -288,7 +288,7 @@ GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::m
     const auto at = [](double r, double azimuth, double z) { return Vec3(r * std::cos(azimuth), r * std::sin(azimuth), z); };
     constexpr int kStrips = 48;
     for (const bool outer : {false, true}) {
-      const double r = outer ? r_out : r_in, z_tip = space.surface().z_tip(r), from = R.lookup(R.mid, r) - impl_->pitch / 2;
+      const double r = outer ? r_out : r_in, z_tip = space.surface().z_tip(r), from = R.lookup(R.opening, r) - impl_->pitch / 2;
       const auto& profile = outer ? R.end_out : R.end_in;
       const auto top = [&](double azimuth) {
         if (profile.size() < 2 || azimuth <= profile.front().x() || azimuth >= profile.back().x()) return z_tip;

@@ -45,7 +45,7 @@ class CleanPrograms : public testing::TestWithParam<const char*> {};
 
 TEST_P(CleanPrograms, NoneIsReported) {
   const auto& job = job_named(GetParam());
-  const test::BruteForceGearSolid brute(job.gear, 20, 30);
+  const test::BruteForceGearSolid brute(job.gear, 14, 20);
   test::Random random(2024);
   const double R_job = job.tools.back().radius_mm(), roof = job.gear.blank_top();
   int clean = 0;
@@ -57,7 +57,7 @@ TEST_P(CleanPrograms, NoneIsReported) {
     ToolAssembly tool = test::ball_mill(2 * R, 8 * job.gear.parameters().module_mm, 1.9 * R, 9 * job.gear.parameters().module_mm, 10);
     // And by brute force: ball and flute against the sampled surfaces.
     double worst = -INFINITY;
-    for (std::size_t k = 2; k + 2 < path->records.size(); k += 1 + path->records.size() / 6)
+    for (std::size_t k = 2; k + 2 < path->records.size(); k += 1 + path->records.size() / 4)
       for (const double t : {0.0, 0.5})
         for (const double h : {0.0, 0.7 * R}) {
           const Vec3 c = (1 - t) * path->records[k].tip + t * path->records[k + 1].tip + Vec3(0, 0, R + h);
