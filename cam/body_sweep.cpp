@@ -259,7 +259,12 @@ class Sweep {
       least += d - slack(arm, piece.t1 - piece.t0) - (curved ? sag : 0);
       // A curved facet is of interest where it lowers the bound; a flat one also where its own least gap is not known yet.
       const bool contact = best_ < o_.contact_mm;
-      if (least >= (contact && !curved ? std::min(best_flat_, o_.contact_mm) : std::min(proven_, o_.enough_mm)) && (!contact || least >= best_)) continue;
+      const double told = least - (curved ? 0 : sag);  // lands of a conical tip surface and their edges have a sag, too
+      const bool flat_contact = contact && !curved;
+      if ((flat_contact ? least >= std::min(best_flat_, o_.contact_mm) : told >= std::min(proven_, o_.enough_mm)) && (!contact || least >= best_)) {
+        proven_ = std::min(proven_, std::max(told, flat_contact ? -INFINITY : proven_));
+        continue;
+      }
       for (std::size_t k = 0; k < 3; ++k) {
         note(target, frustum_distance(x[k], f_), piece.p[k], piece.t0, curved);
         note(target, frustum_distance(x[k + 3], f_), piece.p[k], piece.t1, curved);
@@ -272,7 +277,7 @@ class Sweep {
       const double fixed = m_.deviation_mm + m_.axis_deviation * arm + (curved ? sag : 0);
       const double reached = contact && !curved ? std::min(best_flat_, o_.contact_mm) : best_;
       if (least + fixed >= reached - leeway(curved) || std::max(size, moved) < kSmallest || ++examined > kMostPieces) {
-        proven_ = std::min(proven_, least);
+        proven_ = std::min(proven_, told);
         continue;
       }
       halve(piece, size, moved + (piece.t1 - piece.t0) * turn_rate_ * arm);
