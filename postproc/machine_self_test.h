@@ -7,6 +7,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geometry/base/result.h"
@@ -55,5 +56,17 @@ struct SelfTestOptions {
 
 /// The dialect without the line that starts the spindle.
 [[nodiscard]] NcDialect in_air(NcDialect dialect);
+
+/// What the text of a self-test does, read back through the machine's kinematics.
+struct SelfTestProof {
+  double worst_mm = 0;       ///< greatest distance of the tip from the point, from the first station to the last, inside the blocks too
+  std::size_t moves = 0;     ///< executed between them
+  double minutes = 0;        ///< of the whole program, stops left out
+};
+
+/// Executes the text with a standing spindle. Errors (verification): what the reader refuses; a station that is not met in its
+/// order; a joint outside its travel; a tip that leaves the point by more than the plan's bound and 3 um of rounding.
+[[nodiscard]] Result<SelfTestProof> prove_self_test(std::string_view text, const std::string& file, const SelfTest& test,
+                                                    const Machine& machine);
 
 }  // namespace toothpath

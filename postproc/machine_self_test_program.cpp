@@ -1,8 +1,12 @@
+#include <algorithm>
 #include <cmath>
+#include <span>
 
+#include "cam/cutter.h"
 #include "postproc/axis_words.h"
 #include "postproc/fixed_point.h"
 #include "postproc/machine_self_test.h"
+#include "postproc/nc_reader.h"
 
 namespace toothpath {
 namespace {
@@ -122,10 +126,74 @@ AxisProgram self_test_program(const SelfTest& test, const Machine& machine, cons
 }
 
 NcDialect in_air(NcDialect dialect) {
-  // Everything but the spindle: the machinist stands beside the indicator.
-  std::erase_if(dialect.tool_change, [](const std::string& line) { return line.find("{speed}") != std::string::npos && line.find("{tool}") == std::string::npos; });
-  dialect.spindle_off = {"M5"};
+  // Everything but the start of the spindle: the machinist stands beside the indicator.
+  std::erase_if(dialect.tool_change, [](const std::string& line) { return line == "M3" || line.ends_with(" M3"); });
   return dialect;
+}
+
+Result<SelfTestProof> prove_self_test(std::string_view text, const std::string& file, const SelfTest& test, const Machine& machine) {
+  ToolAssembly bar;
+  bar.number = 1;
+  bar.length_mm = test.tool_length_mm;
+  Setup setup;
+  setup.work_offset_at_mm = test.point_mm;
+  auto control = control_of(machine, setup, std::span(&bar, 1));
+  if (!control) return control.error();
+  control->dry_run = true;
+  const double allowed = test.tip_bound_mm + 0.003;
+  SelfTestProof proof;
+  std::size_t next = 0;  // station that comes next
+  bool on_point = false;
+  std::optional<Diagnostic> error;
+  Joints before;
+  const auto joints_of = [](const ExecutedMove& m) {
+    Joints j;
+    for (int i = 0; i < 3; ++i) j.linear_mm[i] = m.joints[static_cast<std::size_t>(i)];
+    for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = radians(m.joints[3 + k]);
+    return j;
+  };
+  const auto fault = [&](const ExecutedMove& m, std::string what) {
+    if (error) return;
+    error = fail_as(DiagnosticKind::verification, "{}", what);
+    error->position = {file, m.line, 0};
+  };
+  const auto status = execute_nc(text, file, *control, [&](const ExecutedMove& m) {
+    proof.minutes += m.minutes;
+    if (!m.known || error) return;
+    const Joints now = joints_of(m);
+    const auto outside = machine.chain.violations(now, machine.limit_margin);
+    if (!outside.empty()) fault(m, outside.front().text());
+    const auto distance = [&](const Joints& j) { return (machine.chain.forward(j, test.tool_length_mm).tip_mm - test.point_mm).norm(); };
+    const double off = distance(now);
+    if (on_point && next < test.stations.size()) {
+      ++proof.moves;
+      for (int s = 1; s <= 4; ++s) {
+        // With TCP the control holds the tip on its chord; else every joint is linear.
+        Joints j;
+        const double t = s / 4.0;
+        j.linear_mm = before.linear_mm + t * (now.linear_mm - before.linear_mm);
+        for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = before.rotary_rad[k] + t * (now.rotary_rad[k] - before.rotary_rad[k]);
+        proof.worst_mm = std::max(proof.worst_mm, m.tcp ? off : distance(j));
+      }
+      if (proof.worst_mm > allowed) fault(m, fmt::format("the tip leaves the point by {:.4f} mm, allowed {:.4f}", proof.worst_mm, allowed));
+    }
+    if (!on_point && !m.rapid && off <= 0.003) on_point = true;
+    if (on_point && next < test.stations.size()) {
+      double turn = 0;
+      for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) turn = std::max(turn, std::abs(now.rotary_rad[k] - test.stations[next].rotary_rad[k]));
+      if (turn <= radians(0.001)) ++next;
+    }
+    before = now;
+  });
+  if (!status) {
+    Diagnostic refused = status.error();
+    refused.kind = DiagnosticKind::verification;
+    return refused;
+  }
+  if (error) return *error;
+  if (next < test.stations.size())
+    return fail_as(DiagnosticKind::verification, "station {} of {} ({}) is not met", next + 1, test.stations.size(), test.stations[next].remark);
+  return proof;
 }
 
 }  // namespace toothpath

@@ -215,7 +215,7 @@ NcExecution::Problem NcExecution::move(const Move& m, std::int32_t line) {
 
 NcExecution::Problem NcExecution::feed_minutes(const Move& m, const std::array<double, 5>& goal, const Vec3& tip,
                                                double& minutes) const {
-  if (!spindle_) return "G1 while the spindle stands";
+  if (!spindle_ && !control_.dry_run) return "G1 while the spindle stands";
   if (tool_ < 0) return "G1 without a tool";
   if (feed_mode_ == Feed::inverse_time && !m.own_feed) return "G1 in G93 without F";
   if (m.machine_frame) return "machine coordinates with G1";

@@ -184,7 +184,7 @@ class Heidenhain {
     else if (*m == 30) {
       ready_to_end_ = true;
       return placed(column, execution_.end_program(!repeats_.empty()));
-    } else if (*m != 8 && *m != 9 && *m != 126 && *m != 127)
+    } else if (*m != 0 && *m != 8 && *m != 9 && *m != 126 && *m != 127)
       return here(column, fmt::format("M{} is not in the subset", *m));
     return std::nullopt;
   }

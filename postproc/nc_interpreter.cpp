@@ -91,7 +91,7 @@ class Interpreter {
       case 'G': return take_g(r, w, v);
       case 'M': {
         const int m = static_cast<int>(std::lround(v));
-        static constexpr std::array<int, 9> known = {2, 3, 5, 6, 8, 9, 30, 98, 99};
+        static constexpr std::array<int, 10> known = {0, 2, 3, 5, 6, 8, 9, 30, 98, 99};
         if (v == m && linuxcnc_ && site_code(r, fmt::format("M{}", m))) return std::nullopt;
         if (v != m || std::find(known.begin(), known.end(), m) == known.end() || (linuxcnc_ && m > 90))
           return here(w.column, fmt::format("M{} is not in the subset", v));

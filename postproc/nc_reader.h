@@ -38,6 +38,7 @@ struct NcControl {
   std::optional<KinematicChain> chain;        ///< of a machine with TCP: the control knows it; empty: TCP is refused
   double top_mm = 0;                          ///< highest Z, machine coordinates of the gauge line
   std::vector<std::string> tcp_on, tcp_off;   ///< codes of the site that switch TCP (LinuxCNC)
+  bool dry_run = false;                       ///< feed moves with a standing spindle are meant: a program that runs in air
   std::size_t max_steps = 400'000'000;        ///< executed blocks before the program is refused as endless
 };
 

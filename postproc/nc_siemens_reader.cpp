@@ -213,7 +213,7 @@ class Siemens {
         r.d = static_cast<int>(*v);
         return std::nullopt;
       case 'M': {
-        static constexpr int known[] = {3, 5, 6, 8, 9, 30};
+        static constexpr int known[] = {0, 3, 5, 6, 8, 9, 30};
         if (std::find(std::begin(known), std::end(known), *v) == std::end(known)) return here(column, fmt::format("M{} is not in the subset", *v));
         if (r.m >= 0) return here(column, "two M words in a block");
         r.m = static_cast<int>(*v);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "machines/machine_file.h"
+#include "postproc/nc_writer.h"
 
 namespace toothpath {
 namespace {
@@ -66,6 +67,36 @@ TEST_P(SelfTestOf, WrongMachineIsSeen) {
   longer.tool_length_mm += 0.5;
   if (!m.chain.head.empty()) {
     EXPECT_GT(worst_reading(longer, m.chain), 0.2);
+  }
+}
+
+/// The program's text, as `machine test` writes it.
+std::string text_of(const SelfTest& test, const Machine& m) {
+  const auto dialect = dialect_of(m);
+  EXPECT_TRUE(dialect) << dialect.error().message;
+  NcHeader header;
+  header.job_name = "self test";
+  const auto text = write_nc(self_test_program(test, m, *dialect), in_air(*dialect), header);
+  EXPECT_TRUE(text) << text.error().message;
+  return text ? text->text : std::string();
+}
+
+TEST_P(SelfTestOf, TextIsReadBackAndNeverStartsTheSpindle) {
+  const Machine m = shipped(GetParam());
+  const auto test = plan_self_test(m);
+  ASSERT_TRUE(test) << test.error().message;
+  const std::string text = text_of(*test, m);
+  EXPECT_EQ(text.find("M3\n"), std::string::npos);
+  EXPECT_NE(text.find("STATION 1 OF"), std::string::npos);
+  const auto proof = prove_self_test(text, "t", *test, m);
+  ASSERT_TRUE(proof) << proof.error().text();
+  EXPECT_LE(proof->worst_mm, test->tip_bound_mm + 0.003);
+  EXPECT_GE(proof->moves, test->stations.size() - 1);
+  // A machine whose second rotary turns the other way must not pass.
+  Machine wrong = m;
+  (wrong.chain.head.empty() ? wrong.chain.table.back() : wrong.chain.head.back()).sign *= -1;
+  if (m.tcp == TcpMode::none) {
+    EXPECT_FALSE(prove_self_test(text, "t", *test, wrong));
   }
 }
 
