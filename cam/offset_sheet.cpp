@@ -55,33 +55,7 @@ OffsetSheet::OffsetSheet(const SpaceSheet& space, double delta, double r_from, d
   tip_line(1, top_plus_);
   tip_line(-1, top_minus_);
 
-  const auto station_at = [&](int k) { return r_from + (r_to - r_from) * k / (stations - 1); };
-  std::vector<Station> all;
-  for (int k = 0; k < stations; ++k) {
-    auto s = make_station(station_at(k), all.empty() ? nullptr : &all.back());
-    if (s) {
-      all.push_back(std::move(*s));
-    } else if (!all.empty()) {
-      break;  // beyond the regular sheet
-    }
-  }
-  // A surface that only begins inside the range (near the undercut): find its first station, then space them evenly.
-  if (!all.empty() && int(all.size()) < stations) {
-    double good = all.front().r, bad = r_from;
-    if (good > r_from) {
-      for (int k = 0; k < 20; ++k) {
-        const double middle = 0.5 * (good + bad);
-        (make_station(middle, &all.front()) ? good : bad) = middle;
-      }
-    }
-    const double last = all.back().r;
-    std::vector<Station> even;
-    for (int k = 0; k < stations; ++k) {
-      auto s = make_station(good + (last - good) * k / (stations - 1), even.empty() ? &all.front() : &even.back());
-      if (s) even.push_back(std::move(*s));
-    }
-    all = std::move(even);
-  }
+  std::vector<Station> all = regular_stations(r_from, r_to, stations);
   if (delta_ > 0)
     for (auto& s : all) {
       find_gaps(s);
@@ -91,6 +65,53 @@ OffsetSheet::OffsetSheet(const SpaceSheet& space, double delta, double r_from, d
   if (has_gaps_)
     for (auto& s : stations_)
       for (auto& g : s.gaps) (void)refine_gap(g, s.r);
+}
+
+std::vector<OffsetSheet::Station> OffsetSheet::regular_stations(double r_from, double r_to, int count) const {
+  const auto radius_of = [&](int k) { return r_from + (r_to - r_from) * k / (count - 1); };
+  std::vector<Station> all;
+  for (int k = 0; k < count; ++k) {
+    auto s = make_station(radius_of(k), all.empty() ? nullptr : &all.back());
+    if (s) {
+      all.push_back(std::move(*s));
+    } else if (!all.empty()) {
+      break;  // beyond the regular sheet
+    }
+  }
+  if (all.empty() || int(all.size()) == count) return all;
+  // The surface begins or ends inside the range (near the undercut): find where, then space the stations evenly.
+  const auto last_good = [&](double good, double bad, const Station& from) {
+    for (int k = 0; k < 20; ++k) {
+      const double middle = 0.5 * (good + bad);
+      (make_station(middle, &from) ? good : bad) = middle;
+    }
+    return good;
+  };
+  const double step = (r_to - r_from) / (count - 1);
+  double low = all.front().r, high = all.back().r;
+  if (low > r_from) low = last_good(low, low - step, all.front());
+  if (high < r_to) high = last_good(high, high + step, all.back());
+  for (int round = 0; round < 4 && high > low; ++round) {
+    const std::vector<Station> before = std::move(all);
+    all.clear();
+    for (int k = 0; k < count; ++k) {
+      const double r = low + (high - low) * k / (count - 1);
+      const Station* from = all.empty() ? nullptr : &all.back();
+      for (const auto& s : before)
+        if (from == nullptr || (all.empty() && std::abs(s.r - r) < std::abs(from->r - r))) from = &s;
+      auto s = make_station(r, from);
+      if (!s) break;
+      all.push_back(std::move(*s));
+    }
+    if (int(all.size()) == count) return all;
+    if (all.empty()) {
+      low += 0.01 * (high - low);
+      all = before;
+    } else {
+      high = all.back().r;
+    }
+  }
+  return {};
 }
 
 double OffsetSheet::parameter(SpacePiece piece, double t, double r) const {
@@ -155,9 +176,16 @@ std::optional<OffsetSheet::Station> OffsetSheet::make_station(double r, const St
         const auto B = flank_B_at_radius(f, side, theta_c, r, start);
         if (B) s = solve(kind, u, r, *B);
       } else {
-        double start = neighbour ? neighbour->nodes[index].at.v + (r - neighbour->r) : Z_plane / f.Sg;
-        if (!neighbour && piece > 0 && k > 0) start = station.nodes.back().at.v;
-        s = solve(kind, u, r, start);
+        // Edge by edge in one section; where Newton starts from nothing, from the edge's own place at this radius.
+        const bool follows = !neighbour && (k > 0 || kind != SpacePiece::fillet_plus);
+        const double plane = (Z_plane + f.shaper.r_a * f.Cg) / f.Sg;
+        const double start = follows     ? station.nodes.back().at.v
+                             : neighbour ? neighbour->nodes[index].at.v + (r - neighbour->r)
+                                         : plane;
+        if (neighbour || follows) s = solve(kind, u, r, start);
+        if (!s && kind != SpacePiece::root)
+          if (const auto Z = fillet_Z_at_radius(f, side, u, r, start)) s = solve(kind, u, r, *Z);
+        if (!s) s = solve(kind, u, r, plane);
       }
       if (!s) return {};
       Node node;
@@ -184,16 +212,17 @@ void OffsetSheet::find_gaps(Station& station) const {
   };
   std::size_t k = 0;
   while (k + 1 < n) {
+    // One segment may cross several others: the offset is left at the first place along it, for the farthest of those that meet there.
     std::size_t hit = 0;
-    std::pair<double, double> at;
+    std::pair<double, double> at(INFINITY, 0);
     for (std::size_t j = n - 2; j > k + 1; --j) {
       if (apart(k, j)) continue;
       const auto c = crossing(plane[k], plane[k + 1], plane[j], plane[j + 1]);
-      if (c) {
-        hit = j;
-        at = *c;
-        break;
-      }
+      if (!c || c->first > at.first - 1e-9) continue;
+      const double left_at = station.nodes[k].sigma + c->first * (station.nodes[k + 1].sigma - station.nodes[k].sigma);
+      if (station.nodes[j].sigma - left_at < kLeastGap && hit != 0) continue;
+      hit = j;
+      at = *c;
     }
     if (hit == 0) {
       ++k;
@@ -248,6 +277,7 @@ std::size_t OffsetSheet::station_before(double r) const {
 }
 
 std::optional<SheetPoint> OffsetSheet::raw(double sigma, double r) const {
+  if (stations_.size() < 2) return {};
   const double bounded = std::clamp(sigma, 0.0, double(kSpacePieces));
   const int piece = std::min(int(bounded), kSpacePieces - 1);
   const double t = bounded - piece;
@@ -269,7 +299,10 @@ std::vector<SheetGap> OffsetSheet::gaps(double r) const {
   const auto &s0 = stations_[j], &s1 = stations_[j + 1];
   if (s0.gaps.empty() && s1.gaps.empty()) return {};
   std::vector<SheetGap> out;
-  bool ok = s0.gaps.size() == s1.gaps.size();
+  // The same corners at both stations: which side of the middle of the root land a gap lies on, or both.
+  const auto place = [](const SheetGap& g) { return g.to <= 2.5 ? -1 : g.from >= 2.5 ? 1 : 0; };
+  bool ok = std::equal(s0.gaps.begin(), s0.gaps.end(), s1.gaps.begin(), s1.gaps.end(),
+                       [&](const SheetGap& a, const SheetGap& b) { return place(a) == place(b); });
   if (ok) {
     const double y = (r - s0.r) / (s1.r - s0.r);
     for (std::size_t k = 0; k < s0.gaps.size() && ok; ++k) {

@@ -51,7 +51,7 @@ class OffsetSheet {
   [[nodiscard]] bool has_gaps() const { return has_gaps_; }
   [[nodiscard]] const SpaceSheet& space() const { return space_; }
 
-  /// Raw offset at (sigma, r), not trimmed.
+  /// Raw offset at (sigma, r), not trimmed. Nothing on an empty sheet.
   [[nodiscard]] std::optional<SheetPoint> raw(double sigma, double r) const;
   /// Trimmed: a sigma inside a gap is moved to the nearer end of the gap.
   [[nodiscard]] std::optional<SheetPoint> at(double sigma, double r) const;
@@ -62,6 +62,8 @@ class OffsetSheet {
   [[nodiscard]] double bottom_sigma(double r) const;
 
  private:
+  /// Evenly spaced stations over the part of the range in which the surfaces exist; none or at least two.
+  [[nodiscard]] std::vector<Station> regular_stations(double r_from, double r_to, int count) const;
   [[nodiscard]] std::optional<Station> make_station(double r, const Station* neighbour) const;
   [[nodiscard]] std::optional<SheetPoint> solve(SpacePiece piece, double u, double r, double v_start) const;
   [[nodiscard]] double parameter(SpacePiece piece, double fraction, double r) const;
