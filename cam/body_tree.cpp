@@ -82,6 +82,7 @@ BodyGap BodyTree::gap(const Frustum& body, const Vec3& tip, const Vec3& axis, do
     const Zone& zone = zones_[z];
     if (zone.nodes.empty()) continue;
     const auto& cells = part_.cells(int(z));
+    const auto& triangles = part_.triangles(int(z));
     for (const auto& [c, s] : turns_) {
       const Vec3 t(c * tip.x() - s * tip.y(), s * tip.x() + c * tip.y(), tip.z());
       const Vec3 u(c * axis.x() - s * axis.y(), s * axis.x() + c * axis.y(), axis.z());
@@ -98,8 +99,10 @@ BodyGap BodyTree::gap(const Frustum& body, const Vec3& tip, const Vec3& axis, do
         for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
           const auto& cell = cells[zone.order[k]];
           if (distance_to_frustum(cell.centre, body, t, u) - cell.radius >= best.gap) continue;
-          double g = triangle_gap(cell.corner[0], cell.corner[1], cell.corner[2], body, t, u, best.gap + sag, resolution_mm, 8);
-          g = triangle_gap(cell.corner[1], cell.corner[2], cell.corner[3], body, t, u, g, resolution_mm, 8) - sag;
+          double g = best.gap + sag;
+          for (std::uint32_t q = cell.first_triangle; q < cell.first_triangle + cell.triangles; ++q)
+            g = triangle_gap(triangles[q][0], triangles[q][1], triangles[q][2], body, t, u, g, resolution_mm, 8);
+          g -= sag;
           if (g < best.gap) best = {g, int(z), cell.centre};
         }
         if (best.gap <= -resolution_mm) return best;

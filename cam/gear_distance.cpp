@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cam/gear_cells.h"
 #include "cam/swept_path.h"
 #include "geometry/face_gear_inverse.h"
 
@@ -12,8 +13,8 @@ namespace {
 constexpr double kTwoPi = 6.283185307179586476925286766559;
 constexpr double kCellLength = 0.45;     // mm along the tooth
 constexpr double kBorder = 1e-9;         // a foot this far beyond the border of a piece (in its parameter) still counts
-// Corrected flanks and fillets share their normals to 1e-6 only; a foot so little beyond is less than 1e-6 mm wrong.
-constexpr double kCorrectedBorder = 1e-5;
+// Corrected pieces share their normals to 1e-5 only; a foot so little beyond is about 1e-6 mm wrong.
+constexpr double kCorrectedBorder = 3e-5;
 constexpr int kEndPoints = 3000;         // on the profile at an end of the ring
 constexpr int kBands = 4;                // a fillet may be touched at both of its ends: seeds from several bands
 
@@ -66,6 +67,7 @@ struct GearDistance::Ring {
   std::vector<std::vector<Vec2>> profiles;                // the same at every station
   std::vector<Vec2> end_in, end_out;                      // (azimuth, z) of the sheet at the ends, tip to tip
   OffsetSheet sheet;
+  std::vector<std::array<Vec3, 3>> triangles;  // of the cells, for bodies
   std::vector<bool> border;  // a cell: partly beyond an end of the ring or the tip
 
   [[nodiscard]] bool on_ring(const Vec3& p) const {
@@ -109,6 +111,7 @@ struct GearDistance::Impl {
   std::vector<Ring> rings;
   double pitch = 0;
   double sag = 0;
+  std::optional<FaceGearRefusal> refusal;
   explicit Impl(const FaceGear& g) : gear(g) {}
 };
 
@@ -123,6 +126,17 @@ GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::m
     Ring R(space, OffsetSheet(space, 0.0, r_in - beyond, r_out + beyond, stations));
     R.r_in = r_in;
     R.r_out = r_out;
+    if (R.sheet.empty() || R.sheet.r_from() > r_in || R.sheet.r_to() < r_out) {
+      const std::string key = "zone[" + std::to_string(zone) + "]";
+      if (R.sheet.empty())
+        impl_->refusal = {key, fail("zone {}: the flanks and fillets of the tooth space are found at no radius between {:.4f} and {:.4f} mm",
+                                    zone, r_in - beyond, r_out + beyond)};
+      else
+        impl_->refusal = {key, fail("zone {}: the flanks and fillets of the tooth space are found from radius {:.4f} to {:.4f} mm only, the ring "
+                                    "is {:.4f} to {:.4f} mm", zone, R.sheet.r_from(), R.sheet.r_to(), r_in, r_out)};
+      impl_->rings.clear();
+      return;
+    }
     const auto& st = R.sheet.stations();
     std::vector<Box> boxes;
     for (std::size_t j = 0; j + 1 < st.size(); ++j) {
@@ -286,26 +300,13 @@ GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::m
     const bool grooved = gear.rings().size() > 1;
     const double base = std::min(gear.lowest_root(), grooved ? gear.groove_floor() : INFINITY) - 0.5;
     const auto at = [](double r, double azimuth, double z) { return Vec3(r * std::cos(azimuth), r * std::sin(azimuth), z); };
-    constexpr int kStrips = 48;
     for (const bool outer : {false, true}) {
-      const double r = outer ? r_out : r_in, z_tip = space.surface().z_tip(r), from = R.lookup(R.opening, r) - impl_->pitch / 2;
-      const auto& profile = outer ? R.end_out : R.end_in;
-      const auto top = [&](double azimuth) {
-        if (profile.size() < 2 || azimuth <= profile.front().x() || azimuth >= profile.back().x()) return z_tip;
-        const auto it = std::lower_bound(profile.begin(), profile.end(), azimuth, [](const Vec2& q, double az) { return q.x() < az; });
-        return std::min(z_tip, it == profile.begin() ? it->y() : std::min(it->y(), (it - 1)->y()));
-      };
-      for (int k = 0; k < kStrips; ++k) {
-        const double a = from + impl_->pitch * k / kStrips, b = from + impl_->pitch * (k + 1) / kStrips;
-        const double high = std::min(top(a), top(b));
-        const int pieces = std::max(1, int(std::ceil((high - base) / 1.0)));
-        for (int q = 0; q < pieces; ++q) {
-          const double z0 = base + (high - base) * q / pieces, z1 = base + (high - base) * (q + 1) / pieces;
-          add_body_cell({at(r, a, z0), at(r, b, z0), at(r, a, z1), at(r, b, z1)});
-        }
-      }
+      const double r = outer ? r_out : r_in;
+      const EndFace face{r, outer, space.surface().z_tip(r), R.lookup(R.opening, r) - impl_->pitch / 2, impl_->pitch, base};
+      for (const auto& quad : end_face_quads(face, outer ? R.end_out : R.end_in)) add_body_cell(quad);
     }
     if (grooved && zone == 0) {
+      constexpr int kStrips = 48;
       const double next = gear.rings()[1].zone.inner_radius_mm, from = R.lookup(R.mid, r_out) - impl_->pitch / 2;
       const int rows = std::max(1, int(std::ceil((next - r_out) / 1.0)));
       for (int k = 0; k < kStrips; ++k)
@@ -315,6 +316,15 @@ GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::m
           add_body_cell({at(r0, a, gear.groove_floor()), at(r0, b, gear.groove_floor()), at(r1, a, gear.groove_floor()),
                          at(r1, b, gear.groove_floor())});
         }
+    }
+    for (auto& cell : R.cells) {
+      cell.first_triangle = std::uint32_t(R.triangles.size());
+      for (const std::size_t first : {0, 1}) {
+        std::vector<Vec3> polygon{cell.corner[first], cell.corner[first + 1], cell.corner[first + 2]};
+        if (cell.sheet) polygon = on_ring(space, std::move(polygon), R.sag);
+        for (std::size_t k = 1; k + 1 < polygon.size(); ++k) R.triangles.push_back({polygon[0], polygon[k], polygon[k + 1]});
+      }
+      cell.triangles = std::uint32_t(R.triangles.size()) - cell.first_triangle;
     }
     R.index = std::make_unique<SpatialIndex>(boxes);
     impl_->sag = std::max(impl_->sag, R.sag);
@@ -327,6 +337,8 @@ GearDistance::~GearDistance() = default;
 GearDistance::GearDistance(GearDistance&&) noexcept = default;
 
 const std::vector<GearDistance::Cell>& GearDistance::cells(int zone) const { return impl_->rings[std::size_t(zone)].cells; }
+const std::vector<std::array<Vec3, 3>>& GearDistance::triangles(int zone) const { return impl_->rings[std::size_t(zone)].triangles; }
+const std::optional<FaceGearRefusal>& GearDistance::refusal() const { return impl_->refusal; }
 const SpatialIndex& GearDistance::cell_index(int zone) const { return *impl_->rings[std::size_t(zone)].index; }
 const SpaceSheet& GearDistance::space(int zone) const { return impl_->rings[std::size_t(zone)].space; }
 double GearDistance::cell_sag_mm() const { return impl_->sag; }
@@ -341,6 +353,11 @@ NearestPlace GearDistance::nearest(const Vec3& asked, double within) const {
   NearestPlace best;
   best.distance = within;
   best.point = asked;
+  if (impl_->refusal) {
+    best.distance = -within;
+    best.patch = "inside";
+    return best;
+  }
   const double r = radius(asked), z = asked.z();
   const auto take = [&](double d, bool exact, int zone, const char* patch, const Vec3& foot, const Vec3& at) {
     if (d < best.distance) best = {d, exact, zone, patch, foot, at};

@@ -7,7 +7,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,12 +31,17 @@ struct NearestPlace {
 class GearDistance {
  public:
   /// `reach_mm`: largest distance that will ever be asked for (`within`).
+  /// Where the surfaces of a ring cannot be followed over its whole width there is a `refusal()`; such a part has no zones, and
+  /// `nearest` calls every point inside.
   GearDistance(const FaceGear& gear, double reach_mm);
   ~GearDistance();
   GearDistance(GearDistance&&) noexcept;
 
   /// Distance from `c` (gear frame, any tooth) to the solid; distances above `within` are returned as `within`, not exact.
   [[nodiscard]] NearestPlace nearest(const Vec3& c, double within) const;
+
+  /// Why there is no distance to this gear: key within [gear] and message; none for a gear that can be asked.
+  [[nodiscard]] const std::optional<FaceGearRefusal>& refusal() const;
 
   /// The cells and edges themselves, for bodies that are no balls: visits candidates near a point of space 0.
   struct Cell {
@@ -45,9 +52,12 @@ class GearDistance {
     SpacePiece piece = SpacePiece::root;
     double u = 0, v = 0;
     bool sheet = true;  ///< false: a piece of a top land, which has no analytic patch; for bodies only
+    std::uint32_t first_triangle = 0, triangles = 0;  ///< what of the cell stands for material, in `triangles(zone)`
     int band = 0;  ///< quarter of the piece across the space: a fillet may be touched at both of its ends
   };
   [[nodiscard]] const std::vector<Cell>& cells(int zone) const;
+  /// The cells cut off at the tip surface and the ends of the ring, widened there by no more than the sag.
+  [[nodiscard]] const std::vector<std::array<Vec3, 3>>& triangles(int zone) const;
   [[nodiscard]] const SpatialIndex& cell_index(int zone) const;
   [[nodiscard]] const SpaceSheet& space(int zone) const;
 

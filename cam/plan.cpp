@@ -47,6 +47,7 @@ class JobPlanner {
       : part_(part), tools_(tools), operations_(operations), o_(options), progress_(progress) {}
 
   std::variant<FaceGearPlan, PlanRefusal> run() {
+    if (const auto& refusal = part_.refusal()) return PlanRefusal{"gear." + refusal->key, refusal->diagnostic};
     for (std::size_t n = 0; n < operations_.size(); ++n) {
       const auto& op = operations_[n];
       ClPath path;

@@ -77,6 +77,7 @@ BodyGap body_gap(const GearDistance& part, const Frustum& f, const Vec3& tip, co
   const double pitch = part.gear().pitch();
   for (int zone = 0; zone < part.zones(); ++zone) {
     const auto& cells = part.cells(zone);
+    const auto& triangles = part.triangles(zone);
     for (int k = 0; k < links; ++k) {
       const Vec3 x = tip + axis * (f.from + (2 * k + 1) * half);
       const double r = std::max(std::hypot(x.x(), x.y()), 1.0);
@@ -94,9 +95,9 @@ BodyGap body_gap(const GearDistance& part, const Frustum& f, const Vec3& tip, co
         part.cell_index(zone).near(x_0, reach, [&](std::size_t c, double radius) {
           const auto& cell = cells[c];
           if (distance_to_frustum(cell.centre, f, tip_0, axis_0) - cell.radius >= best.gap) return radius;
-          double gap = triangle_gap(cell.corner[0], cell.corner[1], cell.corner[2], f, tip_0, axis_0,
-                                    best.gap + part.cell_sag_mm(), resolution_mm, 8);
-          gap = triangle_gap(cell.corner[1], cell.corner[2], cell.corner[3], f, tip_0, axis_0, gap, resolution_mm, 8);
+          double gap = best.gap + part.cell_sag_mm();
+          for (std::uint32_t q = cell.first_triangle; q < cell.first_triangle + cell.triangles; ++q)
+            gap = triangle_gap(triangles[q][0], triangles[q][1], triangles[q][2], f, tip_0, axis_0, gap, resolution_mm, 8);
           gap -= part.cell_sag_mm();
           if (gap < best.gap) best = {gap, zone, cell.centre};
           return radius;
