@@ -9,6 +9,8 @@
 namespace toothpath {
 namespace {
 
+constexpr double kLargestDeviation = 0.01;  // of the mean normal module: a mill that leaves more is not usable
+
 /// Spiral angle at which the centre of wall sigma has the cone distance R_c; R_c falls with beta.
 double beta_at_centre(const BevelTrace<double>& t, int sigma, double R_c) {
   double lo = -sigma * t.h > 0 ? -1.0 : 0.0, hi = kPi / 2 - 1e-6;
@@ -146,6 +148,9 @@ struct Trial {
   void wall_condition() const {
     condition("walls as designed", "largest deviation", 1000 * std::max(-out.deepest_mm(), out.proudest_mm()), 10, false, "um", true,
               "another tooth form: made for another gear, or reaching another depth");
+    const double module = g.normal_module(g.R_m());
+    condition("walls of this gear", "largest deviation", 1000 * std::max(-out.deepest_mm(), out.proudest_mm()), 1000 * kLargestDeviation * module, false, "um", false,
+              "more than a hundredth of the mean normal module: the profile belongs to another gear");
   }
 
   /// Points of the designed walls near the small end against the pass of the opposite wall, the mill as a solid.
