@@ -107,6 +107,9 @@ Result<std::vector<ToolMotion>> tool_motions(const OperationTrace& trace, const 
       break;
     }
 
+  // Teeth that were not kept stand where their index words put them: rounded, so off the exact turn by up to this.
+  const double shift = copies.copies && trace.kept_teeth == 1 ? radians(copies.worst_shift_deg) : 0;
+
   std::vector<ToolMotion> out;
   out.reserve(trace.moves.size() + 64);
   for (std::size_t i = 1; i < trace.moves.size(); ++i) {
@@ -148,8 +151,9 @@ Result<std::vector<ToolMotion>> tool_motions(const OperationTrace& trace, const 
       motion.tip_to = end.tip;
       motion.axis_from = start.axis;
       motion.axis_to = end.axis;
-      motion.deviation_mm = (m.tcp ? 0 : tip_left) + kRoundOff + double(m.blend_mm);
-      motion.axis_deviation = axis_left;
+      motion.deviation_mm = (m.tcp ? 0 : tip_left) + kRoundOff + double(m.blend_mm) +
+                            shift * std::max(motion.tip_from.head<2>().norm(), motion.tip_to.head<2>().norm());
+      motion.axis_deviation = axis_left + shift;
       motion.minutes = m.minutes / n;
       motion.rapid = m.rapid;
       motion.operation = m.operation;

@@ -102,6 +102,28 @@ TEST_P(RoundTrip, MeetsEveryRecord) {
   }
 }
 
+// 360/7 deg does not end after three decimals: the other teeth stand off by the rounding, and the kept one answers for them.
+TEST(ToolMotions, RoundedIndexAnglesCountAsDeviation) {
+  const Machine m = with_dialect(trunnion(), "fanuc");
+  const std::vector<ClPath> paths = {sample_path(0.3, 0)};
+  for (const int teeth : {7, 6}) {
+    const auto program = axis_program(paths, m, standing(), teeth, false);
+    ASSERT_TRUE(program) << program.error().message;
+    const auto text = write_nc(*program, *dialect_of(m), {});
+    ASSERT_TRUE(text) << text.error().message;
+    const Outcome o = examine(text->text, paths, m, standing(), teeth);
+    ASSERT_EQ(o.error, "");
+    ASSERT_TRUE(o.back.copies.copies) << o.back.copies.difference;
+    const double shift = radians(o.back.copies.worst_shift_deg);
+    if (teeth == 7) {
+      EXPECT_GT(shift, radians(1e-4));
+    } else {
+      EXPECT_LT(shift, 1e-12);
+    }
+    for (const auto& motion : o.motions) EXPECT_GE(motion.deviation_mm, shift * motion.tip_to.head<2>().norm());
+  }
+}
+
 // The proven bound of a motion holds: the true tip, sampled with other kinematics, stays within it.
 TEST(ToolMotions, DeviationIsABound) {
   const Machine m = trunnion();
