@@ -157,7 +157,12 @@ std::vector<Subcommand> add_machine_commands(CLI::App& app, CommandRequest& requ
   show->fallthrough();
   show->add_option("MACHINE", request.job_file, "machine file (TOML), or the name of an installed one")->required();
   show->add_option("--out", request.out_dir, "directory for machine.html and machine.svg; without it only the text is printed");
-  return {{show, show_machine}};
+  CLI::App* test = machine->add_subcommand("test", "program that holds the tip of a test bar on one point while the rotary axes turn: run it in air");
+  test->fallthrough();
+  test->add_option("MACHINE", request.job_file, "machine file (TOML), or the name of an installed one")->required();
+  test->add_option("--out", request.out_dir, "directory for the program and its page; made where it does not exist")->required();
+  test->add_option("--tool-length", request.tool_length_mm, "gauge line to the tip of the test bar, mm (default: 100, 60 or 30, what fits)");
+  return {{show, show_machine}, {test, test_machine}};
 }
 
 /// `cutter JOB` and `forces JOB`: bevel gears.

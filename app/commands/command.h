@@ -27,6 +27,7 @@ struct CommandRequest {
   int tool_number = 0;      ///< of `cutter`: draw this tool of the job; 0: the designed mill
   std::string other_job;    ///< of `cutter`: judge the mills of this job too; of `contact`: the mate of a bevel gear
   std::optional<double> wheel_axial_error_mm;  ///< of `contact` for bevel gears
+  std::optional<double> tool_length_mm;  ///< of `machine test`: gauge line to the tip of the test bar
   std::optional<double> torque_Nm;  ///< of `forces`: on the gear of the job
 };
 

@@ -1,8 +1,16 @@
 #include "app/commands/machine.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/commands/study_page.h"
 #include "app/output_dir.h"
 #include "app/report/machine_sheet.h"
+#include "geometry/base/angle.h"
 #include "machines/machine_file.h"
+#include "postproc/machine_self_test.h"
+#include "postproc/nc_writer.h"
 
 namespace toothpath {
 namespace {
@@ -44,6 +52,79 @@ CommandOutcome show_machine(const CommandRequest& request) {
   if (!machine.drawing.empty())
     if (const auto s = output->write("machine.svg", machine.drawing); !s) return failed(s.error());
   if (const auto s = output->commit(); !s) return failed(s.error());
+  return outcome;
+}
+
+namespace {
+
+/// What the machinist reads beside the machine.
+std::string test_page(const Machine& machine, const SelfTest& test, const SelfTestProof& proof, const std::string& program) {
+  StudyPage page;
+  page.title = machine.name + ": dry run of signs and pivots";
+  page.subtitle = fmt::format("{}, {}", program, machine.file);
+  page.good = machine.assumed_keys.empty();
+  page.verdict = page.good ? "nothing assumed" : fmt::format("{} values assumed", machine.assumed_keys.size());
+  const Vec3& p = test.point_mm;
+  page.introduction = {
+      fmt::format("The spindle does not turn. A test bar of {:g} mm (gauge line to the tip) is tool 1; its length must stand in the tool table. The work offset {} is X {:g} Y {:g} Z {:g} in "
+                  "machine coordinates: the program keeps the tip of the bar there while the table and the head turn.",
+                  test.tool_length_mm, "G54", p.x(), p.y(), p.z()),
+      "1. Set the offset and the length, remove part and fixture, feed override at zero. 2. Start; open the override slowly. The program stops at every station. 3. At station 1 bring a "
+      "dial indicator on the table to the tip and set it to zero. 4. At every further station the indicator turns with the table: read it. Watch that each axis turns the way that the table "
+      "of `machine show` says.",
+      fmt::format("Read back from the text: the tip leaves the point by at most {:.4f} mm. What the indicator shows beyond that is the error of a sign, a pivot or a length: a wrong sign "
+                  "shows millimetres, a pivot that is off by half a millimetre more than two tenths. A reading that grows with one axis alone belongs to its pivot.",
+                  proof.worst_mm)};
+  PageTable stations{"Stations", {"station", "axes", "indicator mm", "direction right"}, {}, "The last two columns are filled in at the machine."};
+  for (std::size_t k = 0; k < test.stations.size(); ++k) stations.rows.push_back({fmt::format("{}", k + 1), test.stations[k].remark, "", ""});
+  PageTable senses{"What a positive command turns", {"axis", "seen"}, {}, ""};
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) senses.rows.push_back({std::string(1, machine.chain.rotary(k).letter), positive_turn(machine.chain, k)});
+  page.tables = {senses, stations};
+  return study_page_html(page);
+}
+
+const std::vector<std::string> kTestOutputs = {"machine_test.", "machine_test.html"};
+
+}  // namespace
+
+CommandOutcome test_machine(const CommandRequest& request) {
+  const auto path = find_machine_file(request.job_file, ".");
+  if (!path) return failed(path.error());
+  auto output = OutputDir::open(request.out_dir, kTestOutputs);
+  if (!output) return failed(output.error());
+  auto reading = read_machine_file(*path);
+  if (!reading.machine) return failed(std::move(reading.errors));
+  const Machine& machine = *reading.machine;
+  const auto at_file = [&](Diagnostic error) {
+    if (error.position.file.empty()) error.position.file = *path;
+    return failed(std::move(error));
+  };
+  const auto dialect = dialect_of(machine);
+  if (!dialect) return at_file(dialect.error());
+  SelfTestOptions options;
+  options.tool_length_mm = request.tool_length_mm;
+  const auto test = plan_self_test(machine, options);
+  if (!test) return at_file(test.error());
+  NcHeader header;
+  header.job_name = "self test " + machine.name;
+  header.machine_name = machine.name;
+  for (const auto& key : machine.assumed_keys) header.assumed.push_back(key);
+  header.program_number = 1900;
+  const auto text = write_nc(self_test_program(*test, machine, *dialect), in_air(*dialect), header);
+  if (!text) return at_file(text.error());
+  const std::string name = "machine_test" + dialect->extension;
+  if (const auto s = output->write(name, text->text); !s) return failed(s.error());
+  const auto bytes = output->read_back(name);
+  if (!bytes) return failed(bytes.error());
+  const auto proof = prove_self_test(*bytes, output->final_path(name), *test, machine);
+  if (!proof) return failed(proof.error());
+  if (const auto s = output->write("machine_test.html", test_page(machine, *test, *proof, name)); !s) return failed(s.error());
+  if (const auto s = output->commit(); !s) return failed(s.error());
+  CommandOutcome outcome;
+  outcome.summary = fmt::format("{}: {} stations, bar of {:g} mm, tilt up to {:g} deg, {:.1f} min\n  point X {:g} Y {:g} Z {:g} mm machine (G54)\n  read back: the tip leaves it by at most "
+                                "{:.4f} mm over {} moves; the spindle stands\n  files machine_test{} machine_test.html in {}\n",
+                                machine.name, test->stations.size(), test->tool_length_mm, degrees(test->tilt_rad), proof->minutes, test->point_mm.x(), test->point_mm.y(), test->point_mm.z(),
+                                proof->worst_mm, proof->moves, dialect->extension, request.out_dir);
   return outcome;
 }
 

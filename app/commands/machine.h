@@ -9,4 +9,9 @@ namespace toothpath {
 /// turns, every assumed value. With an output directory also machine.html and machine.svg (milling machines).
 [[nodiscard]] CommandOutcome show_machine(const CommandRequest& request);
 
+/// Writes machine_test.* (NC text in the machine's dialect), machine_test.html (what the machinist does and must see at every
+/// station) and nothing else. The text is read back and proven before it is kept. `request.tool_length_mm`: of the test bar.
+/// Refused: gear shapers; machines without rotary axes; no place near the table that the travels allow; a dialect without axes.
+[[nodiscard]] CommandOutcome test_machine(const CommandRequest& request);
+
 }  // namespace toothpath

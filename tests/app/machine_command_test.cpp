@@ -88,5 +88,30 @@ TEST(MachineShow, WritesPageAndDrawingOnlyWhereAsked) {
   EXPECT_EQ(job.exit_code, 3) << job.err;
 }
 
+TEST(MachineTest, WritesAProvenProgramForEveryShippedMachine) {
+  for (const auto& name : kShipped) {
+    const TestDir dir;
+    const Finished run = run_program({"machine", "test", name, "--out", dir / "t"});
+    ASSERT_EQ(run.exit_code, 0) << name << run.err;
+    const auto files = names_in(dir / "t");
+    ASSERT_EQ(files.size(), 2u) << name;
+    EXPECT_TRUE(files[1].starts_with("machine_test.")) << files[1];
+    EXPECT_NE(run.out.find("read back"), std::string::npos);
+    if (!shipped(name).assumed_keys.empty()) {
+      EXPECT_NE((file_text(dir / ("t/" + files[0])) + file_text(dir / ("t/" + files[1]))).find("ASSUMED"), std::string::npos) << name;
+    }
+  }
+}
+
+TEST(MachineTest, RefusalsLeaveNothing) {
+  const TestDir dir;
+  const Finished shaper = run_program({"machine", "test", "y514.toml", "--out", dir / "t"});
+  EXPECT_EQ(shaper.exit_code, 3);
+  const Finished length = run_program({"machine", "test", "t600s.toml", "--tool-length", "2000", "--out", dir / "u"});
+  EXPECT_EQ(length.exit_code, 1);
+  EXPECT_NE(length.err.find("no point near the table"), std::string::npos) << length.err;
+  EXPECT_TRUE(names_in(dir / "u").empty());
+}
+
 }  // namespace
 }  // namespace toothpath::testing
