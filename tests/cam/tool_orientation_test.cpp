@@ -116,8 +116,8 @@ TEST(Orientation, ClearDirectionsAgainstSampledSurfaces) {
       EXPECT_GE(truth, 0.05);
     } else if (check.cutting(point, axis)) {
       ++blocked;
-      // Resolution, sag, and the cells at the borders, which overhang tip and ends by up to their length of 0.45 mm: the safe side.
-      EXPECT_LE(truth, 0.05 + 0.01 + 2 * job.part->cell_sag_mm() + 0.45);
+      // Resolution, sag, and the step of the samples.
+      EXPECT_LE(truth, 0.05 + 0.01 + 2 * job.part->cell_sag_mm() + 0.05);
     }
   }
   EXPECT_GE(clear, 10);
