@@ -37,6 +37,7 @@ class Builder {
     op.tool_number = 1;
     op.tool_length_mm = test_.tool_length_mm;
     op.tool_name = "TEST BAR";
+    op.spindle_rpm = 100;  // stands where a control wants it with the tool; nothing starts the spindle
     std::size_t next = 1;
     for (std::size_t s = 0; s < test_.stations.size(); ++s) {
       ToothBlocks part;
