@@ -138,6 +138,7 @@ class JobPlanner {
       summary.scallop_max_mm = std::max(summary.scallop_max_mm, planned->scallop_max_mm);
       summary.chord_mm = std::max(summary.chord_mm, planned->worst_chord_mm);
       summary.corner_passes = summary.corner_passes || planned->corner_passes;
+      if (auto refusal = check_passes(passes, tool, key, zone)) return refusal;
       trim_run_outs(passes, R, op.allowance_mm);
     }
     summary.passes += int(passes.size());
@@ -212,6 +213,23 @@ class JobPlanner {
   /// Sag that an operation may have: a tenth of the stock that it leaves, and less than half of what may be gouged.
   [[nodiscard]] double chord_room(const MillingOperation& op) const {
     return 0.1 * op.allowance_mm + 0.4 * o_.gouge_tolerance_mm;
+  }
+
+  /// A planned place at which the ball would cut deeper than may be gouged is refused before any motion is made of it.
+  [[nodiscard]] std::optional<PlanRefusal> check_passes(const std::vector<BallPass>& passes, const ToolAssembly& tool,
+                                                        const std::string& key, int zone) const {
+    const double R = tool.radius_mm();
+    for (const auto& pass : passes)
+      for (const auto& p : pass.points) {
+        if (!p.touching) continue;
+        const double cut = R - part_.nearest(p.centre, R + 0.01).distance;
+        if (cut > o_.gouge_tolerance_mm)
+          return PlanRefusal{key + ".tool", fail("tool {} in zone {}: its ball of radius {:.4f} mm would cut {:.4f} mm into the finished surface with its "
+                                                 "centre at radius {:.4f}, height {:.4f}; the limit is {:.4f} mm",
+                                                 tool.number, zone, R, cut, std::hypot(p.centre.x(), p.centre.y()), p.centre.z(),
+                                                 o_.gouge_tolerance_mm)};
+      }
+    return {};
   }
 
   /// Run-outs go straight on beyond the ends of the ring; where the end of a tooth stands in the way (close to an undercut)
