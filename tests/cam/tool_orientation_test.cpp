@@ -23,7 +23,7 @@ FaceGearParameters steep_gear() {
   return g;
 }
 
-ToolAssembly short_tool(double stick_out = 12.5) {
+ToolAssembly short_tool(double stick_out = 12.0) {
   auto t = test::ball_mill(2, 6, 7.6, stick_out, 40);
   t.holder = {{40, 40, 40}};
   return t;
@@ -312,7 +312,7 @@ TEST(Orientation, WhatCannotBeDoneIsRefusedWithThePlace) {
   ASSERT_NE(at, std::string::npos) << blocked;
   const double advised = std::stod(blocked.substr(at + 15));
   EXPECT_GT(advised, 7);
-  EXPECT_LT(advised, 12.5);  // with which the whole job is known to work
+  EXPECT_LT(advised, 12.0);  // with which the whole job is known to work
 }
 
 TEST(Orientation, PlainJobsRunNoSimultaneousSolver) {
