@@ -45,7 +45,7 @@ FilletBlend::FilletBlend(const FaceGearSurface<double>& f, const FaceGearSurface
     const double lean = normal.dot(n);
     if (lean == 0) return {};
     const double c_A = -normal.dot(p_A + c.value * derivative(g.n, 0)) / lean;
-    return Entry{c.value, A_span_ * c_A, step_ * c.d_radius * along_r(p_Z), 0, 0, 0};
+    return Entry{c.value, A_span_ * c_A, step_ * c.d_radius * along_r(p_Z), 0};
   };
   std::vector<std::optional<Entry>> found;
   for (int k = 0; k < kEntries; ++k) found.push_back(entry(from_ + step_ * k));
@@ -61,47 +61,23 @@ FilletBlend::FilletBlend(const FaceGearSurface<double>& f, const FaceGearSurface
     const auto &a = table_[k > 0 ? k - 1 : k], &b = table_[std::min(k + 1, table_.size() - 1)];
     table_[k].d_slope = 0.5 * (b.slope - a.slope);
   }
-  // Fraction 0 .. 1 of the root land is a turn of its points about the gear axis.
-  const double land = f.pitch - 2 * f.i * f.shaper.psi_c;
-  for (std::size_t k = 0; k < table_.size(); ++k) {
-    auto& e = table_[k];
-    const auto g = dual.fillet(side, Dual2::variable(f.shaper.A_e, 0), Dual2::variable(from_ + step_ * double(k), 1));
-    if (!g.defined) continue;
-    const double c = e.value + 0.5 * e.slope, c_Z = (e.d_value + 0.5 * e.d_slope) / step_;
-    const Vec3 p = value(g.p), n = value(g.n), axis = Vec3::UnitZ();
-    const Vec3 normal = (derivative(g.p, 0) + c * derivative(g.n, 0)).cross(derivative(g.p, 1) + c_Z * n + c * derivative(g.n, 1));
-    const double lean = normal.dot(n);
-    if (lean != 0) e.end = -land * normal.dot(axis.cross(p) + c * axis.cross(n)) / lean;
-  }
-  for (std::size_t k = 1; k + 1 < table_.size(); ++k) table_[k].d_end = 0.5 * (table_[k + 1].end - table_[k - 1].end);
-}
-
-FilletBlend::Place FilletBlend::place_of(double Z) const {
-  const double place = std::clamp((Z - from_) / step_, 0.0, double(kEntries - 1));
-  const auto k = std::min(std::size_t(place), table_.size() - 2);
-  return {k, place - double(k), Z < from_ || Z > from_ + step_ * (kEntries - 1)};
-}
-
-FilletBlend::End FilletBlend::end(double Z) const {
-  const auto [k, y, outside] = place_of(Z);
-  const auto &a = table_[k], &b = table_[k + 1];
-  const Hermite c = hermite(y, a.value, a.d_value, b.value, b.d_value), m = hermite(y, a.slope, a.d_slope, b.slope, b.d_slope),
-                e = hermite(y, a.end, a.d_end, b.end, b.d_end);
-  if (outside) return {c.v + 0.5 * m.v, e.v, 0, 0};
-  return {c.v + 0.5 * m.v, e.v, (c.d + 0.5 * m.d) / step_, e.d / step_};
 }
 
 FilletBlend::Offset FilletBlend::at(double A, double Z) const {
-  const auto [k, y, outside] = place_of(Z);
+  const double place = std::clamp((Z - from_) / step_, 0.0, double(kEntries - 1));
+  const auto k = std::min(std::size_t(place), table_.size() - 2);
+  const bool outside = Z < from_ || Z > from_ + step_ * (kEntries - 1);
   const auto &a = table_[k], &b = table_[k + 1];
+  const double y = place - double(k);
   Hermite c = hermite(y, a.value, a.d_value, b.value, b.d_value), m = hermite(y, a.slope, a.d_slope, b.slope, b.d_slope);
   if (outside) c.d = m.d = 0;
-  // Before A_t and beyond A_e Newton may look: the flank's tangent, and the last value.
+  // Before A_t and beyond A_e Newton may look: the flank's tangent, and nothing.
   const double t = (A - A_t_) / A_span_;
-  if (t >= 1) return {c.v + 0.5 * m.v, 0, (c.d + 0.5 * m.d) / step_};
+  if (t >= 1) return {};
   if (t <= 0) return {c.v + t * m.v, m.v / A_span_, (c.d + t * m.d) / step_};
-  const double fade = t * (1 - 0.5 * t);
-  return {c.v + m.v * fade, m.v * (1 - t) / A_span_, (c.d + m.d * fade) / step_};
+  const Hermite from_value = hermite(t, 1, 0, 0, 0), from_slope = hermite(t, 0, 1, 0, 0);
+  return {c.v * from_value.v + m.v * from_slope.v, (c.v * from_value.d + m.v * from_slope.d) / A_span_,
+          (c.d * from_value.v + m.d * from_slope.v) / step_};
 }
 
 }  // namespace toothpath

@@ -113,13 +113,7 @@ void SpaceSheet::displace(SpacePiece piece, double u, double v, PatchPoint& q) c
     c_u = offset.d_A;
     c_v = offset.d_Z;
   } else {
-    // From the end of one fillet to that of the other: a cubic with the values and slopes of both.
-    const auto a = blends_[0]->end(v), b = blends_[1]->end(v);
-    const double t = std::clamp(u, 0.0, 1.0), w = 1 - t;
-    const double h0 = (1 + 2 * t) * w * w, h1 = t * t * (3 - 2 * t), g0 = t * w * w, g1 = -t * t * w;
-    c = h0 * a.value + g0 * a.slope + h1 * b.value + g1 * b.slope;
-    c_u = 6 * t * w * (b.value - a.value) + w * (1 - 3 * t) * a.slope + t * (3 * t - 2) * b.slope;
-    c_v = h0 * a.d_value + g0 * a.d_slope + h1 * b.d_value + g1 * b.d_slope;
+    return;
   }
   const Vec3 n = q.n;
   q.p += c * n;
@@ -132,7 +126,7 @@ void SpaceSheet::displace(SpacePiece piece, double u, double v, PatchPoint& q) c
 
 std::optional<PatchPoint> SpaceSheet::at(SpacePiece piece, double u, double v) const {
   auto q = nominal(piece, u, v);
-  if (!q) return q;
+  if (!q || piece == SpacePiece::root) return q;
   if (ring_.correction) {
     displace(piece, u, v, *q);
     // Second derivatives of the field count where a ball hardly fits the fillet: the normals' derivatives by differences of the normals.
@@ -148,7 +142,7 @@ std::optional<PatchPoint> SpaceSheet::at(SpacePiece piece, double u, double v) c
     if (u0 && u1) q->nu = (*u1 - *u0) / (2 * h);
     if (v0 && v1) q->nv = (*v1 - *v0) / (2 * g);
   }
-  return side_of(piece) > 0 || piece == SpacePiece::root ? q : turned(*q, ring_.surface.pitch);
+  return side_of(piece) > 0 ? q : turned(*q, ring_.surface.pitch);
 }
 
 std::optional<TipPlace> SpaceSheet::tip(int side, double r, const std::optional<FlankCoordinates>& start) const {
@@ -182,9 +176,9 @@ std::optional<TipPlace> SpaceSheet::tip(int side, double r, const std::optional<
 std::optional<PatchPoint> SpaceSheet::point(SpacePiece piece, double u, double v) const {
   if (ring_.correction) {
     auto q = nominal(piece, u, v);
-    if (!q) return q;
+    if (!q || piece == SpacePiece::root) return q;
     displace(piece, u, v, *q);
-    return side_of(piece) > 0 || piece == SpacePiece::root ? q : turned(*q, ring_.surface.pitch);
+    return side_of(piece) > 0 ? q : turned(*q, ring_.surface.pitch);
   }
   const auto& f = ring_.surface;
   const int s = side_of(piece);

@@ -156,7 +156,7 @@ TEST_P(CorrectedSheet, FlankFilletAndRootJoinSmoothly) {
       const auto e = sheet.at(fillet, f.shaper.A_e, Z), r = sheet.at(SpacePiece::root, side > 0 ? 0.0 : 1.0, Z);
       ASSERT_TRUE(e && r);
       EXPECT_LT((e->p - r->p).norm(), 1e-9);
-      EXPECT_LT((e->n - r->n).norm(), 1e-5);  // the field beyond the grid is C1 only
+      EXPECT_LT((e->n - r->n).norm(), 1e-9);
     }
   }
 }
