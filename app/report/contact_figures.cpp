@@ -74,8 +74,8 @@ std::vector<LineChart> contact_charts(const ContactAnalysis& a) {
   LineChart error, pairs;
   error.title = "Transmission error over one pitch";
   error.x_label = "gear turn [pitches]";
-  error.y_label = "phi_2 - phi_1 N_p/N_2, less its mean [urad]";
-  error.note = "Rigid bodies, no load. On the exact flank the error is a constant wherever contact is inside the flank, also misaligned.";
+  error.y_label = "error less its mean [\u00b5rad]";
+  error.note = "The gear's turn beyond that of the gear ratio, phi_2 - phi_1 N_p/N_2. Rigid bodies, no load. On the exact flank the error is a constant wherever contact is inside the flank, also misaligned.";
   pairs.title = "Pairs in contact over one pitch";
   pairs.x_label = "gear turn [pitches]";
   pairs.y_label = "pairs";
@@ -137,7 +137,7 @@ std::string contact_section_body(const ContactAnalysis& a) {
     for (const auto& cell : row) out += fmt::format("<td>{}</td>", html_escape(cell));
     out += "</tr>\n";
   }
-  out += fmt::format("</tbody></table></div>\n<p class=\"note\">{}</p>\n<div class=\"plots\">\n", html_escape(t.note));
+  out += fmt::format("</tbody></table></div>\n<p class=\"note\">{}</p>\n<div class=\"plots two\">\n", html_escape(t.note));
   for (const auto& chart : contact_charts(a))
     out += fmt::format("<figure><figcaption>{}</figcaption>{}<p class=\"note\">{}</p></figure>\n", html_escape(chart.title), svg_line_chart(chart),
                        html_escape(chart.note));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "geometry/base/angle.h"
 
@@ -11,55 +12,83 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-/// Positions at the ends of the blocks and mean speeds in them, one series an axis.
-struct AxisCurves {
-  std::vector<double> times;        ///< ends of the blocks, min
-  std::vector<double> step_times;   ///< both ends of every block: speeds are steps
-  std::array<std::vector<double>, 5> positions, speeds;
+constexpr double kRoom = 0.3;          ///< of the range while cutting: rapids that leave it by more are not drawn
+constexpr double kStanding = 1e-6;     ///< mm or deg
+constexpr double kAxisPlotHeight = 110;
+
+/// Positions of one axis at the ends of the blocks, and its mean speed in the blocks that feed.
+struct AxisCurve {
+  ChartSeries position{"position", {}, {}}, speed{"speed", {}, {}};
+  double least = std::numeric_limits<double>::infinity(), greatest = -least;  ///< position while feeding
+  double fastest = 0;
 };
 
-AxisCurves curves_of(const ReadBack& read) {
-  AxisCurves curves;
+/// Positions far from where the axis cuts (tool change, retract) become gaps: they would press the rest flat.
+void drop_far(AxisCurve& curve) {
+  const double room = kRoom * (curve.greatest - curve.least);
+  for (double& v : curve.position.y)
+    if (v < curve.least - room || v > curve.greatest + room) v = kNothing;
+}
+
+std::array<AxisCurve, 5> curves_of(const ReadBack& read) {
+  std::array<AxisCurve, 5> curves;
   double now = 0;
   for (const OperationTrace& trace : read.operations) {
     const ExecutedMove* before = nullptr;
     for (const ExecutedMove& move : trace.moves) {
       if (!move.known) continue;
-      if (before != nullptr && move.minutes > 0) {
-        curves.step_times.push_back(now);
-        curves.step_times.push_back(now + move.minutes);
-        for (std::size_t a = 0; a < 5; ++a) {
-          const double speed = std::abs(move.joints[a] - before->joints[a]) / move.minutes;
-          curves.speeds[a].insert(curves.speeds[a].end(), 2, speed);
-        }
+      const double start = now;
+      if (before != nullptr) now += move.minutes;
+      for (std::size_t a = 0; a < 5; ++a) {
+        AxisCurve& curve = curves[a];
+        curve.position.x.push_back(now);
+        curve.position.y.push_back(move.joints[a]);
+        if (before == nullptr || !(move.minutes > 0)) continue;
+        // Speeds are steps: both ends of the block.
+        const double speed = move.rapid ? kNothing : std::abs(move.joints[a] - before->joints[a]) / move.minutes;
+        curve.speed.x.insert(curve.speed.x.end(), {start, now});
+        curve.speed.y.insert(curve.speed.y.end(), 2, speed);
+        if (move.rapid) continue;
+        curve.fastest = std::max(curve.fastest, speed);
+        for (const double at : {before->joints[a], move.joints[a]}) curve.least = std::min(curve.least, at), curve.greatest = std::max(curve.greatest, at);
       }
-      now += before != nullptr ? move.minutes : 0;
-      curves.times.push_back(now);
-      for (std::size_t a = 0; a < 5; ++a) curves.positions[a].push_back(move.joints[a]);
       before = &move;
     }
   }
+  for (AxisCurve& curve : curves) drop_far(curve);
   return curves;
 }
 
-/// Two charts of the axes [from, to) of the machine's joints: positions and speeds.
-void add_axes(std::vector<LineChart>& charts, const AxisCurves& curves, const Machine& machine, std::size_t from, std::size_t to, bool rotary) {
-  LineChart position{rotary ? "Rotary axes" : "Linear axes", "time [min]", rotary ? "position [deg]" : "position [mm]", {}, {}, false, false, false,
-                     "First tooth of every operation, machine coordinates."};
-  LineChart speed{rotary ? "Speed of the rotary axes" : "Speed of the linear axes", "time [min]", rotary ? "speed [deg/min]" : "speed [mm/min]", {}, {}, false, true, false,
-                  "Mean of each block; standing axes are left out of the logarithmic scale."};
-  double fastest = 0;
-  for (std::size_t a = from; a < to; ++a) {
-    const std::string name(1, rotary ? machine.chain.rotary(a - 3).letter : "XYZ"[a]);
-    position.series.push_back({name, curves.times, curves.positions[a]});
-    speed.series.push_back({name, curves.step_times, curves.speeds[a]});
-    for (const double v : curves.speeds[a]) fastest = std::max(fastest, v);
-    const double limit = rotary ? degrees(machine.chain.rotary(a - 3).max_speed) : machine.chain.linear[a].max_speed;
-    const bool stated = std::any_of(speed.limits.begin(), speed.limits.end(), [&](const ChartLimit& l) { return l.y == limit; });
-    if (!stated) speed.limits.push_back({"limit of " + name, limit});
+/// Position and speed of one axis side by side; nothing for an axis that stands still while cutting: `standing` says where.
+void add_axis(std::vector<LineChart>& charts, AxisCurve& curve, char letter, bool rotary, double limit, std::string& standing) {
+  const char* unit = rotary ? "deg" : "mm";
+  if (!(curve.least <= curve.greatest)) return;
+  if (curve.greatest - curve.least < kStanding) {
+    standing += fmt::format("{}{} at {:.3f} {}", standing.empty() ? "Standing while cutting: " : ", ", letter, curve.least, unit);
+    return;
   }
+  LineChart position, speed;
+  position.title = fmt::format("{}, position", letter);
+  speed.title = fmt::format("{}, speed while feeding", letter);
+  position.x_label = speed.x_label = "time [min]";
+  position.y_label = fmt::format("{} [{}]", letter, unit);
+  speed.y_label = fmt::format("{} [{}/min]", letter, unit);
+  position.plot_height = speed.plot_height = kAxisPlotHeight;
+  position.series.push_back(std::move(curve.position));
+  speed.series.push_back(std::move(curve.speed));
+  if (curve.fastest > 0.2 * limit) speed.limits.push_back({"limit of the axis", limit});  // far away it would press the curve flat
   charts.push_back(std::move(position));
-  if (fastest > 0) charts.push_back(std::move(speed));
+  charts.push_back(std::move(speed));
+}
+
+/// The first tooth of every operation. Its retract from the tool change still stands at the last tooth of the operation before.
+std::map<int, int> first_teeth(const std::vector<ToolMotion>& motions) {
+  std::map<int, int> first;
+  for (const ToolMotion& m : motions) {
+    const auto at = first.try_emplace(m.operation, m.tooth).first;
+    at->second = std::min(at->second, m.tooth);
+  }
+  return first;
 }
 
 LineChart feed_chart(const std::vector<ToolMotion>& motions, const Machine& machine) {
@@ -67,13 +96,9 @@ LineChart feed_chart(const std::vector<ToolMotion>& motions, const Machine& mach
                   "Feed moves of the first tooth of every operation; rapids are left out."};
   double now = 0;
   auto& [name, x, y] = chart.series.front();
-  int operation = -1, tooth = -1;
+  const std::map<int, int> first = first_teeth(motions);
   for (const ToolMotion& m : motions) {
-    if (m.operation != operation) {
-      operation = m.operation;
-      tooth = m.tooth;
-    }
-    if (m.tooth != tooth || !(m.minutes > 0)) continue;
+    if (m.tooth != first.at(m.operation) || !(m.minutes > 0)) continue;
     if (!m.rapid) {
       const double speed = (m.tip_to - m.tip_from).norm() / m.minutes;
       x.insert(x.end(), {now, now + m.minutes});
@@ -95,9 +120,10 @@ LineChart feed_chart(const std::vector<ToolMotion>& motions, const Machine& mach
 
 std::vector<int> lines_of_records(const ClPath& path, const std::vector<ToolMotion>& motions, double tolerance_mm) {
   constexpr std::size_t kAhead = 256;  // moves of a link, and pieces of one turning move
+  const std::map<int, int> first = first_teeth(motions);
   std::vector<const ToolMotion*> own;
   for (const ToolMotion& m : motions)
-    if (m.operation == path.operation && (own.empty() || m.tooth == own.front()->tooth)) own.push_back(&m);
+    if (m.operation == path.operation && m.tooth == first.at(m.operation)) own.push_back(&m);
   const auto distance = [](const Vec3& p, const ToolMotion& m) {
     const Vec3 d = m.tip_to - m.tip_from;
     const double square = d.squaredNorm();
@@ -122,11 +148,16 @@ std::vector<int> lines_of_records(const ClPath& path, const std::vector<ToolMoti
 
 std::vector<LineChart> motion_charts(const ReadBack& read, const std::vector<ToolMotion>& motions, const Machine& machine) {
   std::vector<LineChart> charts;
-  const AxisCurves curves = curves_of(read);
-  if (curves.times.size() < 2) return charts;
-  add_axes(charts, curves, machine, 0, 3, false);
-  if (const std::size_t rotaries = machine.chain.rotary_count(); rotaries > 0) add_axes(charts, curves, machine, 3, 3 + rotaries, true);
+  std::array<AxisCurve, 5> curves = curves_of(read);
+  if (curves[0].position.x.size() < 2) return charts;
+  std::string standing;
+  for (std::size_t a = 0; a < 3 + machine.chain.rotary_count(); ++a) {
+    const bool rotary = a >= 3;
+    const char letter = rotary ? machine.chain.rotary(a - 3).letter : "XYZ"[a];
+    add_axis(charts, curves[a], letter, rotary, rotary ? degrees(machine.chain.rotary(a - 3).max_speed) : machine.chain.linear[a].max_speed, standing);
+  }
   charts.push_back(feed_chart(motions, machine));
+  if (!standing.empty()) charts.back().note += " " + standing + ".";
   return charts;
 }
 

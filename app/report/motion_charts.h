@@ -11,8 +11,10 @@
 namespace toothpath {
 
 /// From the program as it was read back. Time runs in minutes from the first known position, tool changes left out; operations follow one
-/// another, of each the teeth that were kept. Speeds are the means of the blocks; a rotary's and a linear axis' limit stand as
-/// lines where the machine states them. Feed: speed of the tip over the work in feed moves; rapids interrupt the curve.
+/// another, of each the teeth that were kept. Two charts an axis: positions in machine coordinates, with a gap where a rapid goes far
+/// from where the axis cuts, and the mean speed of every block that feeds, with the axis' limit where it comes near. An axis that
+/// stands still while cutting has no chart; the note of the last chart says where it stands. That chart is the feed: speed of the
+/// tip over the work in feed moves; rapids interrupt the curve.
 /// @param motions  of the same read-back, in program order
 [[nodiscard]] std::vector<LineChart> motion_charts(const ReadBack& read, const std::vector<ToolMotion>& motions, const Machine& machine);
 

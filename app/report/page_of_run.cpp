@@ -39,10 +39,10 @@ std::vector<KeyFigure> key_figures(const RunReport& r) {
   std::vector<KeyFigure> figures;
   const auto um = [](double mm) { return fmt::format("{:.2f}", mm * 1000); };
   if (r.gouge)
-    figures.push_back({"worst gouge", um(std::max(0.0, r.gouge->measured_mm)), "um",
+    figures.push_back({"worst gouge", um(std::max(0.0, r.gouge->measured_mm)), "\u00b5m",
                        fmt::format("bound {}, tolerance {}", um(std::max(0.0, r.gouge->bound_mm)), um(r.gouge_tolerance_mm)),
                        r.gouge->bound_mm <= r.gouge_tolerance_mm ? State::good : State::bad});
-  if (r.finished) figures.push_back({"worst left material", um(r.finished->max_mm), "um", "bound " + um(r.finished->bound_mm), State::plain});
+  if (r.finished) figures.push_back({"worst left material", um(r.finished->max_mm), "\u00b5m", "bound " + um(r.finished->bound_mm), State::plain});
   if (r.gouge)
     figures.push_back({"least clearance", fmt::format("{:.3f}", r.gouge->clearance_mm), "mm",
                        fmt::format("required {:.3f}", r.gouge->required_clearance_mm),
@@ -55,7 +55,7 @@ std::vector<KeyFigure> key_figures(const RunReport& r) {
 }
 
 PageTable axis_table(const RunReport& r) {
-  PageTable table{"Axes", {"axis", "least", "greatest", "lower limit", "upper limit", "unit"}, {}, "machine coordinates"};
+  PageTable table{"Axes", {"axis", "least", "greatest", "lower limit", "upper limit", "unit"}, {}, "Machine coordinates, over the whole program."};
   for (const auto& axis : r.axes) {
     const double f = axis.rotary ? degrees(1.0) : 1.0;
     const auto number = [&](double value) { return fmt::format("{:.3f}", value * f); };
@@ -65,10 +65,15 @@ PageTable axis_table(const RunReport& r) {
   return table;
 }
 
+std::string readable_type(std::string type) {
+  std::replace(type.begin(), type.end(), '_', ' ');
+  return type;
+}
+
 PageTable operation_table(const RunReport& r) {
   PageTable table{"Operations", {"op", "type", "tool", "S 1/min", "feed mm/min", "CL points", "cutting min", "rapid min"}, {}, ""};
   for (const auto& o : r.operations)
-    table.rows.push_back({std::to_string(o.operation), o.type, fmt::format("T{}", o.tool_number), fmt::format("{:g}", o.speed_rpm),
+    table.rows.push_back({std::to_string(o.operation), readable_type(o.type), fmt::format("T{}", o.tool_number), fmt::format("{:g}", o.speed_rpm),
                           fmt::format("{:g}", o.feed_mm_min), std::to_string(o.cl_points), fmt::format("{:.2f}", o.feed_minutes),
                           fmt::format("{:.2f}", o.rapid_minutes)});
   return table;

@@ -31,7 +31,7 @@ std::string figures(std::string_view inside) { return inside.empty() ? "" : fmt:
 /// Digits with the usual signs around them, or a dash: set right-aligned.
 bool reads_as_number(std::string_view cell) {
   return !cell.empty() && cell.find_first_of("0123456789") != std::string_view::npos &&
-         cell.find_first_not_of("0123456789+-.,eE%/ \xE2\x88\x92\x93\xC2\xB0") == std::string_view::npos;
+         cell.find_first_not_of("0123456789+-.,eE%/< \xE2\x88\x92\x93\xC2\xB0") == std::string_view::npos;
 }
 
 std::string table(const PageTable& t) {
@@ -191,7 +191,7 @@ std::string ledger_section(const ReportPage& page) {
   chart.x_label = "error [\u00b5m], logarithmic";
   PageTable t{"", {"Source", "Predicted [\u00b5m]", "Measured [\u00b5m]", "Measured / predicted"}, {}, {}};
   double predicted = 0, measured = 0;
-  const auto share = [](double m, double p) { return p > 0 ? fmt::format("{:.2f}", m / p) : std::string("\u2013"); };
+  const auto share = [](double m, double p) { return p > 0 && m > 0 && m < 0.005 * p ? std::string("< 0.01") : p > 0 ? fmt::format("{:.2f}", m / p) : std::string("\u2013"); };
   for (const LedgerEntry& e : page.ledger) {
     chart.rows.push_back({e.source, e.predicted_um, e.measured_um});
     t.rows.push_back({e.source, short_number(e.predicted_um), short_number(e.measured_um), share(e.measured_um, e.predicted_um)});
@@ -219,7 +219,7 @@ std::string direction_section(const ReportPage& page) {
 std::string motion_section(const ReportPage& page) {
   std::string plots;
   for (const LineChart& chart : page.motion) plots += figure(chart.title, svg_line_chart(chart), chart.note);
-  return section("motion", "Axes over time", figures(plots));
+  return section("motion", "Axes over time", plots.empty() ? plots : fmt::format("<div class=\"plots two\">\n{}</div>\n", plots));
 }
 
 std::string limits_section(const ReportPage& page) {

@@ -40,9 +40,9 @@ struct Point {
   double x = 0, y = 0;
 };
 
-/// First, least, greatest and last point of each column, in order; all points when they are few.
-std::vector<Point> thinned(const std::vector<Point>& points, double low, double high) {
-  if (points.size() <= 4 * kColumns) return points;
+/// First, least, greatest and last point of each column, in order; all points when those of the curve, `total`, are few.
+std::vector<Point> thinned(const std::vector<Point>& points, double low, double high, std::size_t total) {
+  if (total <= 4 * kColumns) return points;
   const auto column_of = [&](const Point& p) {
     return static_cast<std::size_t>(std::clamp((p.x - low) / (high - low), 0.0, 1.0) * (kColumns - 1));
   };
@@ -109,15 +109,15 @@ std::string svg_line_chart(const LineChart& chart) {
   SvgCanvas probe(1, 1, "");  // only to learn how many rows the legend takes
   const double legend_height = draw_legend(probe, legend, kLeft, 0, kWidth - kLeft - kRight);
   const double top = kTop + legend_height;
-  SvgCanvas canvas(kWidth, top + kPlotHeight + kBottom, chart.title);
+  SvgCanvas canvas(kWidth, top + chart.plot_height + kBottom, chart.title);
   draw_legend(canvas, legend, kLeft, 2, kWidth - kLeft - kRight);
   const Scale x{across.low, across.high, kLeft, kWidth - kRight, chart.log_x};
-  const Scale y{up.low, up.high, top + kPlotHeight, top, chart.log_y};
+  const Scale y{up.low, up.high, top + chart.plot_height, top, chart.log_y};
   draw_axes(canvas, x, y, chart.x_label, chart.y_label);
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     const std::string css_class = fmt::format("s{}", i % 8);
     for (const auto& piece : pieces(chart.series[i], chart.log_x, chart.log_y)) {
-      canvas.path(path_of(thinned(piece, across.low, across.high), x, y), "cv " + css_class);
+      canvas.path(path_of(thinned(piece, across.low, across.high, chart.series[i].x.size()), x, y), "cv " + css_class);
       if (!chart.markers) continue;
       for (const Point& p : piece)
         canvas.circle(x(p.x), y(p.y), 3.2, "dot " + css_class,
