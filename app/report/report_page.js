@@ -85,8 +85,15 @@ async function loadPath(op) {
 class Page {
   constructor(data, surface, paths, view) {
     Object.assign(this, {data, surface, paths, view, dirty: true, playing: false});
-    const [centre, size, azimuth] = this.extent();
-    this.camera = new Camera(centre, size, azimuth);
+    const [centre, size] = this.extent();
+    const down = this.cutsFromBelow();
+    if (this.hidesWork(size)) byId('tool-mode').value = 'cutting';
+    const across = Math.hypot(centre[0], centre[1]) > 1e-6;
+    this.camera = new Camera(centre, size, across ? Math.atan2(down ? -centre[1] : centre[1], centre[0]) : 0, down);
+    if (this.leansFar()) {  // from behind such a tool its end would cover the space
+      Object.assign(this.camera.home, {azimuth: this.camera.facing + 1.25, elevation: 0.9});
+      this.camera.reset();
+    }
     this.state = {field: data.fields.length - 1, operation: Math.max(0, paths.length - 1), pass: -1, record: 0};
     this.fillControls();
     this.connectPointer();
@@ -107,16 +114,34 @@ class Page {
     requestAnimationFrame(frame);
   }
 
-  /** Middle, half size and azimuth of the tooth space (of the cutting moves where there is no surface). */
+  /** Whether the tool comes from below the gear frame: the view then stands on its head, so that the tool is above the work. */
+  cutsFromBelow() {
+    const path = this.paths[this.paths.length - 1];
+    return path !== undefined && path.n > 0 && path.toolAxis(Math.floor(path.n / 2))[2] < -0.1;
+  }
+
+  /** Whether the tool lies flatter than 45 degrees. */
+  leansFar() {
+    const path = this.paths[this.paths.length - 1];
+    return path !== undefined && path.n > 0 && Math.abs(path.toolAxis(Math.floor(path.n / 2))[2]) < 0.7;
+  }
+
+  /** Whether shank or holder of the tool are so thick near the tip that the whole assembly would cover the tooth space. */
+  hidesWork(size) {
+    const path = this.paths[this.paths.length - 1], tool = path && this.data.tools[path.tool];
+    return Boolean(tool) && tool.bodies.some((b) => !b.cutting && b.profile.some(([r, height]) => r > 0.4 * size && height < 4 * size));
+  }
+
+  /** Middle and half size of the tooth space (of the cutting moves where there is no surface). */
   extent() {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     const add = (p) => p.forEach((v, c) => { low[c] = Math.min(low[c], v); high[c] = Math.max(high[c], v); });
     if (this.surface) for (let i = 0; i < this.surface.count; i++) add([...this.surface.points.subarray(i * 3, i * 3 + 3)]);
     else for (const p of this.paths) for (let i = 0; i < p.n; i++) if (p.kind(i) === 2 || p.n < 3) add(p.tip(i));
-    if (!(low[0] <= high[0])) return [[0, 0, 0], 10, 0];
+    if (!(low[0] <= high[0])) return [[0, 0, 0], 10];
     const centre = low.map((v, c) => (v + high[c]) / 2);
     const size = Math.max(0.5, Math.hypot(...low.map((v, c) => high[c] - v)) / 2);
-    return [centre, size, Math.hypot(centre[0], centre[1]) > 1e-6 ? Math.atan2(centre[1], centre[0]) : 0];
+    return [centre, size];
   }
 
   fillControls() {
@@ -162,7 +187,7 @@ class Page {
     if (name === 'inside') c.look(c.facing + Math.PI, 0.25);
     if (name === 'side') c.look(c.facing + half, 0.12);
     if (name === 'tool' && this.path()) {
-      const a = this.path().toolAxis(this.state.record);
+      const a = c.turned(this.path().toolAxis(this.state.record));
       c.look(Math.hypot(a[0], a[1]) > 1e-6 ? Math.atan2(a[1], a[0]) : c.facing, Math.asin(Math.max(-1, Math.min(1, a[2]))));
     }
     this.dirty = true;

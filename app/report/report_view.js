@@ -44,9 +44,11 @@ function multiply(a, b) {
   return out;
 }
 
-/** Turntable camera about the gear axis: azimuth and elevation of the eye, distance, target. */
+/** Turntable camera about the gear axis: azimuth and elevation of the eye, distance, target. A gear that is cut from below its
+ *  frame (`down`) stands on its head: angles are those of the frame turned by 180 degrees about x. */
 class Camera {
-  constructor(target, size, azimuth) {
+  constructor(target, size, azimuth, down = false) {
+    this.down = down;
     this.home = {target, distance: size * 4, azimuth: azimuth + 0.35, elevation: 1.0};
     this.size = size;
     this.facing = azimuth;
@@ -56,11 +58,13 @@ class Camera {
   look(azimuth, elevation) {
     Object.assign(this, {target: [...this.home.target], distance: this.home.distance, azimuth, elevation});
   }
+  /** From the turned frame to the gear frame and back. */
+  turned(v) { return this.down ? [v[0], -v[1], -v[2]] : v; }
   back() {
     const c = Math.cos(this.elevation);
-    return [c * Math.cos(this.azimuth), c * Math.sin(this.azimuth), Math.sin(this.elevation)];
+    return this.turned([c * Math.cos(this.azimuth), c * Math.sin(this.azimuth), Math.sin(this.elevation)]);
   }
-  right() { return [-Math.sin(this.azimuth), Math.cos(this.azimuth), 0]; }
+  right() { return this.turned([-Math.sin(this.azimuth), Math.cos(this.azimuth), 0]); }
   up() { return Vec.cross(this.back(), this.right()); }
   eye() { return Vec.add(this.target, Vec.scale(this.back(), this.distance)); }
   orbit(dx, dy) {
