@@ -108,8 +108,71 @@ const tests = {
       await settle(page);
       assert.ok((await page.$eval('#record-note', (e) => e.textContent)).includes(`NC line ${wanted[k]}.`));
       assert.equal(await page.$eval('.listing .current a', (a) => Number(a.textContent)), wanted[k]);
+      assert.ok(await page.$eval('.listing .current', (line) => {
+        const own = line.getBoundingClientRect(), box = line.closest('.listing').getBoundingClientRect();
+        return own.top >= box.top - 1 && own.bottom <= box.bottom + 1;
+      }), `line ${wanted[k]} is out of the listing's window`);
       assert.equal(await page.$eval('tr.current', (row) => Number(row.dataset.row)), k);
     }
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+
+  async 'axes over time and the plots of the study are there, with curves'() {
+    for (const [kind, studied] of [['gouged', true], ['clean', false]]) {
+      const {page, complaints} = await open(kind);
+      const plots = await page.$$eval('#motion figure', (figures) => figures.map((f) => [f.querySelector('figcaption').textContent,
+        [...f.querySelectorAll('path.cv')].reduce((n, p) => n + p.getAttribute('d').length, 0)]));
+      assert.ok(plots.length >= 4, `${plots.length} plots`);
+      for (const [title, length] of plots) assert.ok(length > 100, `${title}: a curve of ${length} characters`);
+      assert.equal(await page.$eval('a[href="#motion"]', (a) => a.textContent), 'Axes');
+      const dots = await page.$$eval('#work-precision circle.dot', (c) => c.length);
+      assert.equal((await page.$('#work-precision')) !== null, studied, kind);
+      assert.ok(!studied || dots >= 20, `${dots} runs of the study`);
+      const [all, colours] = await counted(page, '#motion', `${kind}-motion.png`, [(r, g, b) => Math.max(r, g, b) - Math.min(r, g, b) > 60]);
+      assert.ok(colours > 0.002 * all, `curves: ${colours} of ${all}`);
+      assert.deepEqual(complaints, []);
+      await page.close();
+    }
+  },
+
+  async 'a chosen record shows its NC line and moves the tool'() {
+    const {page, complaints} = await open('gouged');
+    await page.select('#operation', '0');
+    await page.select('#pass', '-1');
+    const seen = [];
+    for (const share of [0.2, 0.7]) {
+      seen.push(await page.evaluate((at) => {
+        const slider = document.getElementById('record');
+        slider.value = Math.round(Number(slider.min) + at * (slider.max - slider.min));
+        slider.dispatchEvent(new Event('input'));
+        const {state, paths} = window.toothpathPage, path = paths[state.operation];
+        return {record: state.record, wanted: Number(slider.value), line: path.line(state.record), tip: path.tip(state.record)};
+      }, share));
+      await settle(page);
+      const last = seen.at(-1);
+      assert.equal(last.record, last.wanted);
+      assert.ok(last.line > 0);
+      const note = await page.$eval('#record-note', (e) => e.textContent);
+      assert.ok(note.includes(`NC line ${last.line}.`) && note.includes(`Record ${last.record + 1} of`), note);
+      last.picture = Buffer.from(await (await page.$('#view')).screenshot()).toString('base64');
+    }
+    assert.notEqual(seen[0].line, seen[1].line);
+    assert.notDeepEqual(seen[0].tip, seen[1].tip);
+    assert.notEqual(seen[0].picture, seen[1].picture);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+
+  async 'work that is cut from below stands on its head'() {
+    const {page, complaints} = await open('below');
+    const {up, axis, tilted} = await page.evaluate(() => {
+      const {camera, paths} = window.toothpathPage;
+      return {up: camera.up(), axis: paths.at(-1).toolAxis(10), tilted: camera.down};
+    });
+    assert.ok(tilted && axis[2] < 0 && up[0] * axis[0] + up[1] * axis[1] + up[2] * axis[2] > 0, `up ${up}, tool ${axis}`);
+    const [all, , blues, golds] = await counted(page, '#view', 'below.png', [background, blue, gold]);
+    assert.ok(blues > 0.01 * all && golds > 100, `blue ${blues}, tool ${golds} of ${all}`);
     assert.deepEqual(complaints, []);
     await page.close();
   },

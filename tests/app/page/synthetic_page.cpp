@@ -301,8 +301,8 @@ ReportPage synthetic_page(const SyntheticPageOptions& options) {
                   {"material left", "3.10", "\u00b5m", "bound 3.50", State::plain}, {"scallop", "2.84", "\u00b5m", "3.00 asked for", State::plain},
                   {"path points", std::to_string(page.gouge->motions), "", "41 spaces in the program", State::plain},
                   {"cutting time", "148", "min", "all teeth", State::plain}, {"run time", "3.9", "s", "2 threads", State::plain}};
-  page.ledger = {{"flank solve", 0.00002, 0.000004}, {"chord", 0.5, 0.41}, {"scallop", 3.0, 2.84}, {"orientation", 0, 0},
-                 {"axis linearisation", 0.2, 0.034}, {"rounding", 0.09, 0.062}, {"verification", 0.15, 0.02}};
+  page.ledger = {{"flank solve", 0.00002, 0.000004, ""}, {"chord", 0.5, 0.41, ""}, {"scallop", 3.0, 2.84, ""}, {"orientation", 0, 0, ""},
+                 {"axis linearisation", 0.2, 0.034, ""}, {"rounding", 0.09, 0.062, ""}, {"verification", 0.15, 0.02, ""}};
   for (const PagePath& p : page.paths)
     for (int zone = 0; zone < 2; ++zone) page.directions.push_back(direction(p.cl.operation, zone));
   page.motion = motion();
