@@ -46,10 +46,25 @@ class Search {
     }
     if (!choice_.fixed) refine();
     if (!choice_.fixed) explain_failure();
+    candidates_in_gear_frame();
     return std::move(choice_);
   }
 
  private:
+  [[nodiscard]] Vec3 axis_at(double lean, double azimuth) const {
+    const Vec3 to = std::cos(azimuth) * frame_.outwards + std::sin(azimuth) * frame_.side;
+    return lean == 0 ? frame_.up : Vec3((std::cos(lean) * frame_.up + std::sin(lean) * to).normalized());
+  }
+
+  /// The search leans from the normal of the pitch surface; the map is about the gear axis, as `axis` and `lean_rad` are.
+  void candidates_in_gear_frame() {
+    for (auto& c : choice_.candidates) {
+      const Vec3 axis = axis_at(c.lean_rad, c.azimuth_rad);
+      c.lean_rad = std::atan2(std::hypot(axis.x(), axis.y()), axis.z());
+      c.azimuth_rad = std::atan2(axis.y(), axis.x());
+    }
+  }
+
   [[nodiscard]] double draft(const Vec3& axis) const {
     double least = INFINITY;
     for (const auto& s : sheet_.stations())
@@ -122,8 +137,7 @@ class Search {
     DirectionChoice::Candidate c;
     c.lean_rad = lean;
     c.azimuth_rad = azimuth;
-    const Vec3 to = std::cos(azimuth) * frame_.outwards + std::sin(azimuth) * frame_.side;
-    const Vec3 axis = lean == 0 ? frame_.up : Vec3((std::cos(lean) * frame_.up + std::sin(lean) * to).normalized());
+    const Vec3 axis = axis_at(lean, azimuth);
     const double least_draft = draft(axis);
     if (least_draft < o_.least_draft) {
       c.worst_body = "ball";
