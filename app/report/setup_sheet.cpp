@@ -14,7 +14,7 @@ h1{font-size:16pt;margin:0 0 1mm}h2{font-size:11.5pt;margin:4mm 0 1mm;border-bot
 table{border-collapse:collapse;width:100%}th,td{border:.2mm solid #999;padding:.6mm 1.6mm;text-align:left;vertical-align:top}
 th{background:#eee;font-weight:600}td.n{text-align:right;font-variant-numeric:tabular-nums}tr,svg{break-inside:avoid}
 .no{border:.8mm solid #b00;padding:2mm;color:#b00;font-weight:700}.yes{border:.4mm solid #070;padding:1.5mm}
-.assumed{border:.5mm dashed #a60;padding:1.5mm}ul{margin:1mm 0;padding-left:5mm}svg{max-width:100%}
+.assumed{border:.5mm dashed #a60;padding:1.5mm}.assumed ul{columns:3 46mm;column-gap:5mm}@media print{body{margin:0}}ul{margin:1mm 0;padding-left:5mm}svg{max-width:100%}
 )";
 
 class Sheet {
@@ -72,7 +72,7 @@ std::string part_sketch(const Setup& setup, const PartOutline& part, const Machi
   const auto px = [&](double x) { return x - *x_min + margin; };
   const auto py = [&](double z) { return *z_max - z + margin; };
   std::string svg = fmt::format("<svg viewBox='0 0 {:.3f} {:.3f}' role=img aria-label='part in the machine, X to the right, Z up' "
-                                "style='height:62mm' font-size='{:.3f}' font-family='sans-serif'>", width, height, 2.4 * unit);
+                                "style='width:100%;max-height:62mm' font-size='{:.3f}' font-family='sans-serif'>", width, height, 2.4 * unit);
   const auto body = [&](double x1, double x2, double z1, double z2, const char* fill) {
     svg += fmt::format("<rect x='{:.3f}' y='{:.3f}' width='{:.3f}' height='{:.3f}' fill='{}' stroke='#333' stroke-width='{:.3f}'/>",
                        px(x1), py(std::max(z1, z2)), x2 - x1, std::abs(z2 - z1), fill, 0.2 * unit);
@@ -82,15 +82,18 @@ std::string part_sketch(const Setup& setup, const PartOutline& part, const Machi
     const double a = at.x() + side * r_in, b = at.x() + side * r_out;
     body(std::min(a, b), std::max(a, b), z_of(top), z_of(root), "#9ab");
   }
-  const auto mark = [&](const Vec3& p, const std::string& name, double below) {
+  std::vector<std::pair<Vec3, std::string>> marks = {{at, "gear origin"}, {offset, setup.work_offset}};
+  for (const auto& axis : machine.chain.table) marks.emplace_back(axis.point_mm, fmt::format("axis {}", axis.letter));
+  std::stable_sort(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.first.z() > b.first.z(); });
+  double free = 0;  // names of places at nearly the same height stand below one another
+  for (const auto& [p, name] : marks) {
     const double x = px(p.x()), y = py(p.z()), r = 1.4 * unit;
     svg += fmt::format("<path d='M{0:.3f} {1:.3f}h{2:.3f}M{3:.3f} {4:.3f}v{2:.3f}' stroke='#b00' stroke-width='{5:.3f}'/>", x - r, y, 2 * r, x,
                        y - r, 0.3 * unit);
-    svg += fmt::format("<text x='{:.3f}' y='{:.3f}' fill='#b00'>{}</text>", x + 1.6 * unit, y + below * unit, html_escape(name));
-  };
-  mark(at, "gear origin", -0.6);
-  mark(offset, setup.work_offset, 2.6);
-  for (const auto& axis : machine.chain.table) mark(axis.point_mm, fmt::format("axis {}", axis.letter), -2.8);
+    const double line = std::max(y + 0.8 * unit, free);
+    svg += fmt::format("<text x='{:.3f}' y='{:.3f}' fill='#b00'>{}</text>", x + 1.9 * unit, line, html_escape(name));
+    free = line + 2.7 * unit;
+  }
   svg += fmt::format("<text x='{:.3f}' y='{:.3f}'>X right, Z up, outer diameter {:.3f} mm</text></svg>\n", unit, 3 * unit, 2 * r_out);
   return svg;
 }

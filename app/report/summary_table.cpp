@@ -28,9 +28,11 @@ std::string tools_text(const RunReport& report) {
 void axis_rows(std::string& out, const RunReport& report) {
   for (const auto& axis : report.axes) {
     const double f = axis.rotary ? degrees(1.0) : 1.0;
-    row(out, fmt::format("axis {}", axis.letter),
-        fmt::format("{:.3f} .. {:.3f} {}   limits {:g} .. {:g}", axis.min * f, axis.max * f, axis.rotary ? "deg" : "mm",
-                    axis.lower_limit * f, axis.upper_limit * f));
+    const char* unit = axis.rotary ? "deg" : "mm";
+    const bool stands = axis.max - axis.min < 1e-9;
+    const std::string moves = stands ? fmt::format("{:>10.3f} {:<16}", axis.min * f, std::string(unit) + ", stands still")
+                                     : fmt::format("{:>10.3f} .. {:>9.3f} {:<3}", axis.min * f, axis.max * f, unit);
+    row(out, fmt::format("axis {}", axis.letter), fmt::format("{}   limits {:g} .. {:g}", moves, axis.lower_limit * f, axis.upper_limit * f));
   }
 }
 
@@ -64,7 +66,7 @@ std::string summary_table(const RunReport& report, bool color) {
   }
   if (!report.operations.empty()) {
     row(out, "cutting time", fmt::format("{} (with rapids {})", readable_minutes(report.feed_minutes), readable_minutes(report.total_minutes)));
-    row(out, "tools", tools_text(report));
+    row(out, "time by tool", tools_text(report));
   }
   for (const auto& d : report.directions)
     if (!d.fixed && d.passes > 0)
