@@ -244,6 +244,18 @@ std::string contact_of(Run& run) {
   return contact_section_body(analysis);
 }
 
+/// What the report page shows of the run as far as it got.
+ReportPage page_content(Run& run) {
+  const std::string contact = contact_of(run);  // first: it may add a warning
+  ReportPage page = page_of_run(run.job, run.report, run.plan.paths, run.program_text);
+  page.surface = run.surface;
+  page.contact = contact;
+  page.gear_limits = limit_charts(*run.gear);
+  page.motion = run.motion;
+  for (std::size_t k = 0; k < run.lines.size(); ++k) page.paths[k].nc_lines = run.lines[k];
+  return page;
+}
+
 /// The files for people and for other programs; the program itself is there already.
 Status write_results(Run& run, OutputDir& output, std::string& json) {
   RunReport& report = run.report;
@@ -264,16 +276,7 @@ Status write_results(Run& run, OutputDir& output, std::string& json) {
   if (!paths.empty())
     if (const auto s = write("cl.csv", cl_csv(paths)); !s) return s;
   report.stages = run.clock.seconds();
-  const auto page = run.clock.run("report page", [&] {
-    const std::string contact = contact_of(run);
-    ReportPage content = page_of_run(run.job, report, run.plan.paths, run.program_text);
-    content.surface = run.surface;
-    content.contact = contact;
-    content.gear_limits = limit_charts(*run.gear);
-    content.motion = run.motion;
-    for (std::size_t k = 0; k < run.lines.size(); ++k) content.paths[k].nc_lines = run.lines[k];
-    return render_report_page(content);
-  });
+  const auto page = run.clock.run("report page", [&] { return render_report_page(page_content(run)); });
   if (!page) return page.error();
   if (const auto s = write("report.html", *page); !s) return s;
   report.files.push_back("report.json");
@@ -325,7 +328,7 @@ CommandOutcome run_job(const CommandRequest& request) {
   return finish(run, *output, stopped);
 }
 
-StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bool quiet, const CutSurfaceOptions& grid) {
+StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bool quiet, const CutSurfaceOptions& grid, bool with_page) {
   CommandRequest request;
   request.quiet = quiet;
   Run run(request);
@@ -341,6 +344,10 @@ StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bo
   }
   discard_program(scratch);
   run.report.stages = run.clock.seconds();
+  if (with_page) {
+    outcome.page = page_content(run);
+    outcome.page->nc_file.clear();  // dropped: the listing on the page is what stays of it
+  }
   run.progress.clear();
   outcome.report = std::move(run.report);
   outcome.surface = std::move(run.surface);

@@ -75,7 +75,7 @@ TEST(StudyWorkPrecision, QuickSweepOfTheSpurSample) {
   const std::string out = dir / "out";
   const auto done = run_program({"study", "work-precision", kSamples + "/spur_quick.toml", "--out", out, "--quick", "--json"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_EQ(names_in(out), (std::vector<std::string>{"work_precision.csv", "work_precision.html", "work_precision.json", "work_precision.svg"}));
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"report.html", "work_precision.csv", "work_precision.html", "work_precision.json", "work_precision.svg"}));
   const Json report = Json::parse(done.out).at("report");
   EXPECT_EQ(report, Json::parse(file_text(out + "/work_precision.json")));
   std::map<std::pair<std::string, double>, Json> runs;
@@ -117,6 +117,10 @@ TEST(StudyWorkPrecision, QuickSweepOfTheSpurSample) {
   const std::string svg = file_text(out + "/work_precision.svg");
   EXPECT_EQ(svg.rfind("<svg xmlns=", 0), 0u);
   EXPECT_NE(file_text(out + "/work_precision.html").find("Error against run time"), std::string::npos);
+  const std::string page = file_text(out + "/report.html");  // of the job's own run, the study's plots in it
+  for (const char* part : {"<section id=\"work-precision\">", "Sharpness of the proof against its time", "<section id=\"motion\">", "<section id=\"deviation\">",
+                           "tolerance 2.00", "<p class=\"verdict good\">"})
+    EXPECT_NE(page.find(part), std::string::npos) << part;
 }
 
 TEST(Study, RefusesWhatItCannotDo) {
