@@ -32,7 +32,6 @@ struct StudyRun {
   double factor = 1;
   double chord_mm = 0, scallop_mm = 0, proof_mm = 0;
   RunReport report;
-  std::optional<ReportPage> page;  ///< of the job as it stands
 
   [[nodiscard]] double seconds() const {
     double sum = 0;
@@ -66,7 +65,7 @@ Job varied_job(Job job, const Sweep& sweep, double factor) {
     if (sweep.scallop) operation.scallop_mm *= factor;
     coarsest = std::max(coarsest, operation.chord_tolerance_mm);
   }
-  if (factor != 1) job.verify.gouge_tolerance_mm = std::max(job.verify.gouge_tolerance_mm, kGougePerChord * coarsest);
+  job.verify.gouge_tolerance_mm = std::max(job.verify.gouge_tolerance_mm, kGougePerChord * coarsest);
   return job;
 }
 
@@ -79,9 +78,8 @@ std::vector<Diagnostic> add_run(const Job& job, const Sweep& sweep, const char* 
   run.factor = factor;
   run.proof_mm = GougeCheckOptions{}.proof_mm * (sweep.proof ? factor : 1);
   asked(varied, run);
-  auto outcome = run_stages(varied, run.proof_mm, output, quiet, {}, factor == 1);
+  auto outcome = run_stages(varied, run.proof_mm, output, quiet);
   run.report = std::move(outcome.report);
-  run.page = std::move(outcome.page);
   if (!outcome.errors.empty()) {
     if (factor == 1) return outcome.errors;  // not the study's doing
     run.report.reasons = {outcome.errors.front().message};
@@ -196,8 +194,10 @@ std::string json_of(const Job& job, const PageTable& table) {
   return json.dump(2) + "\n";
 }
 
-/// The report page of the job as it stands, the plots of the study among its sections.
-Result<std::string> report_page_text(StudyRun& own, const std::vector<LineChart>& charts) {
+/// The report page of the job as it stands, its own gouge tolerance and all, the plots of the study among its sections.
+Result<std::string> report_page_text(const Job& job, OutputDir& output, bool quiet, const std::vector<LineChart>& charts) {
+  auto own = run_stages(job, GougeCheckOptions{}.proof_mm, output, quiet, {}, true);
+  if (!own.errors.empty()) return own.errors.front();
   assert(own.page);
   own.page->work_precision = charts;
   own.page->warnings.emplace_back("this page belongs to a study: its program was measured and not kept; `toothpath run` writes it");
@@ -247,14 +247,14 @@ CommandOutcome study_work_precision(const CommandRequest& request) {
       "as it stands; in the others one tolerance, or all of them together, is multiplied by a factor between 0.1 and 10.",
       "worst and rms: deviation of the finished surface from the exact one, measured on the program as read back, over all points that the finishing ball "
       "can reach. gouge and its bound: the deepest cut below the finished surface over all operations, measured and proven.",
-      fmt::format("So that coarse settings are measured and not refused, the gouge tolerance of a run with another factor is lifted to {:g} chord tolerances where that is more; "
+      fmt::format("So that coarse settings are measured and not refused, the gouge tolerance of a run is lifted to {:g} chord tolerances where that is more; "
                   "\"verified\" is the verdict with the job's own tolerance of {:.4f} mm.", kGougePerChord, job.verify.gouge_tolerance_mm)};
   page.charts = charts_of(runs, job.verify.gouge_tolerance_mm);
   page.tables = {table};
 
   CommandOutcome outcome;
   outcome.report_json = json_of(job, table);
-  auto report = report_page_text(runs.front(), page.charts);
+  auto report = report_page_text(job, *output, request.quiet, page.charts);
   if (!report) return failed(report.error());
   const std::pair<const char*, std::string> files[] = {{"report.html", std::move(*report)},
                                                        {"work_precision.csv", table_csv(table)},

@@ -119,7 +119,7 @@ LineChart feed_chart(const std::vector<ToolMotion>& motions, const Machine& mach
 }  // namespace
 
 std::vector<int> lines_of_records(const ClPath& path, const std::vector<ToolMotion>& motions, double tolerance_mm) {
-  constexpr std::size_t kAhead = 256;  // moves of a link, and pieces of one turning move
+  constexpr std::size_t kAhead = 256;  // feed moves; rapids do not count: the index from the last tooth comes in thousands of pieces
   const std::map<int, int> first = first_teeth(motions);
   std::vector<const ToolMotion*> own;
   for (const ToolMotion& m : motions)
@@ -134,7 +134,9 @@ std::vector<int> lines_of_records(const ClPath& path, const std::vector<ToolMoti
   std::size_t next = 0;
   for (const ClRecord& record : path.records) {
     int line = 0;
-    for (std::size_t j = next; j < std::min(own.size(), next + kAhead); ++j) {
+    std::size_t feeds = 0;
+    for (std::size_t j = next; j < own.size() && feeds < kAhead; ++j) {
+      feeds += own[j]->rapid ? 0 : 1;
       if (distance(record.tip, *own[j]) > tolerance_mm) continue;
       // Where the record ends this move, the next one touches it too: the first one has reached it.
       line = own[j]->line;

@@ -116,7 +116,7 @@ std::vector<Tick> ticks_for(const Scale& scale, int wanted) {
 void draw_axes(SvgCanvas& canvas, const Scale& x, const Scale& y, std::string_view x_label, std::string_view y_label) {
   const double width = x.at_high - x.at_low, height = y.at_low - y.at_high;
   double label_edge = 0;
-  for (const Tick& tick : ticks_for(y, std::max(2, static_cast<int>(height / 42)))) {
+  for (const Tick& tick : ticks_for(y, std::max(3, static_cast<int>(height / 42)))) {
     const double at = y(tick.value);
     canvas.line(x.at_low, at, x.at_high, at, tick.label.empty() ? "grid minor" : "grid");
     canvas.text(x.at_low - 6, at + 4, tick.label, "end");
