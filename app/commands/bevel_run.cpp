@@ -75,7 +75,7 @@ std::optional<Diagnostic> plan_and_check(BevelRun& run, const FingerGougeCheck& 
 /// Axis program, NC text on the disk, proof of those bytes. Nothing: done, and `report.reasons` says whether it is safe.
 std::optional<Diagnostic> post_and_prove(BevelRun& run, OutputDir& output, const FingerGougeCheck& check) {
   const auto paths = run.paths();
-  auto posted = post_program(run.checked, run.job, run.machine, run.gear->parameters().teeth, bevel_clearance_body(*run.gear), run.report.assumed,
+  auto posted = post_program(run.checked, run.job, run.job.name, run.machine, run.gear->parameters().teeth, bevel_clearance_body(*run.gear), run.report.assumed,
                              output, run.clock);
   if (!posted) return posted.error();
   run.program = std::move(posted.value());

@@ -7,6 +7,7 @@
 
 #include "app/commands/bevel_check.h"
 #include "app/commands/bevel_run.h"
+#include "app/commands/program_report.h"
 #include "app/commands/proof.h"
 #include "app/commands/scene.h"
 #include "app/gear_of_job.h"
@@ -23,70 +24,6 @@
 namespace toothpath {
 namespace {
 
-constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 30;
-
-Result<std::string> read_program(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return fail_as(DiagnosticKind::file_access, "program \"{}\" cannot be read", path);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (in.bad() || (text.view().empty() && in.fail() && !in.eof()))
-    return fail_as(DiagnosticKind::file_access, "program \"{}\" cannot be read", path);
-  if (text.view().size() > kMostBytes)
-    return fail_as(DiagnosticKind::refused_input, "program \"{}\" has {} bytes, at most {} are read", path, text.view().size(), kMostBytes);
-  return std::move(text).str();
-}
-
-/// Lines of the table of places that are worst: where, which body, how deep.
-std::string table_of(const GougeResult& gouge) {
-  if (gouge.worst.empty()) return {};
-  std::string out = "  worst places\n    line  op  tooth  zone  patch        body        r mm      z mm       um\n";
-  for (const auto& w : gouge.worst)
-    out += fmt::format("    {:5} {:3} {:6} {:5}  {:<12} {:<7} {:9.3f} {:9.3f} {:8.2f}\n", w.line, w.operation, w.tooth, w.zone, w.patch,
-                       w.body, w.radius_mm, w.height_mm, w.depth_mm * 1000);
-  return out;
-}
-
-RunReport begin(const Job& job, const Machine& machine, const FaceGear& gear, const std::string& program) {
-  RunReport report;
-  report.command = "check";
-  report.job_name = job.name;
-  report.job_file = job.file;
-  report.machine_name = machine.name;
-  report.machine_file = job.machine.file;
-  report.dialect = machine.dialect;
-  report.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
-  report.program_file = program;
-  if (machine.assumed)
-    for (const auto& key : machine.assumed_keys) report.assumed.push_back(fmt::format("{}: {}", job.machine.file, key));
-  report.warnings = job.warnings;
-  report.warnings.insert(report.warnings.end(), gear.warnings().begin(), gear.warnings().end());
-  return report;
-}
-
-std::vector<AxisRange> ranges_of(const ReadBack& read, const Machine& machine) {
-  std::vector<AxisRange> out;
-  for (std::size_t k = 0; k < 3; ++k)
-    out.push_back({"XYZ"[k], false, read.least[k], read.greatest[k], machine.chain.linear[k].min_mm, machine.chain.linear[k].max_mm});
-  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
-    const auto& axis = machine.chain.rotary(k);
-    out.push_back({axis.letter, true, radians(read.least[3 + k]), radians(read.greatest[3 + k]), axis.min_rad, axis.max_rad});
-  }
-  return out;
-}
-
-double shown(const AxisRange& axis, double value) { return axis.rotary ? degrees(value) : value; }
-
-/// A program may use the travels of the machine, not more.
-void judge_travels(RunReport& report) {
-  for (const auto& a : report.axes) {
-    if (a.min < a.lower_limit - 1e-9)
-      report.reasons.push_back(fmt::format("travel: {} = {:.4f} is below {:.4f}", a.letter, shown(a, a.min), shown(a, a.lower_limit)));
-    if (a.max > a.upper_limit + 1e-9)
-      report.reasons.push_back(fmt::format("travel: {} = {:.4f} exceeds {:.4f}", a.letter, shown(a, a.max), shown(a, a.upper_limit)));
-  }
-}
-
 void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) {
   report.gouge = proof.gouge;
   report.reasons = proof.reasons;
@@ -98,7 +35,7 @@ void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) 
   report.feed_minutes = proof.read.feed_minutes;
   report.total_minutes = proof.read.minutes;
   report.axes = ranges_of(proof.read, machine);
-  judge_travels(report);
+  judge_travels(report.axes, report.reasons);
   report.verified = report.reasons.empty();
 }
 
@@ -140,7 +77,7 @@ CommandOutcome check_program(const CommandRequest& request) {
   if (auto* refused = std::get_if<1>(&loaded)) return failed(std::move(*refused));
   const Machine machine = std::move(std::get<0>(loaded));
   if (!job.setup) return failed(fail_at(job.where("setup"), "the job lacks a [setup]: where the gear stands is not known"));
-  auto text = read_program(request.program_file);
+  auto text = read_program_file(request.program_file);
   if (!text) return failed(text.error());
 
   std::optional<Scene> scene;
@@ -165,7 +102,8 @@ CommandOutcome check_program(const CommandRequest& request) {
     progress.clear();
     return failed(proof.error());
   }
-  RunReport report = begin(job, machine, gear, request.program_file);
+  RunReport report = report_of("check", job, machine, gear.warnings());
+  report.program_file = request.program_file;
   if (scene) {
     auto verdicts = clock.run("stock and fixture", [&] {
       return check_scene(*scene, *text, request.program_file, job, machine, proof->read, gear.parameters().teeth, options.clearance_mm);
@@ -205,7 +143,7 @@ CommandOutcome check_program(const CommandRequest& request) {
   if (const auto s = output->write("report.json", outcome.report_json); !s) return failed(s.error());
   progress.clear();
   if (const auto committed = output->commit(); !committed) return failed(committed.error());
-  outcome.summary = summary_table(report, request.color) + table_of(proof->gouge);
+  outcome.summary = summary_table(report, request.color) + table_of_worst(proof->gouge);
   return outcome;
 }
 

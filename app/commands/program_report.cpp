@@ -48,7 +48,7 @@ void note_axis_program(RunReport& report, const Job& job, std::span<const ClPath
   }
 }
 
-Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const Job& job, const Machine& machine, int teeth,
+Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const Job& job, const std::string& title, const Machine& machine, int teeth,
                                    const ClearanceBody& body, const std::vector<std::string>& assumed, OutputDir& output, StageClock& clock) {
   const auto dialect = dialect_of(machine);
   if (!dialect) return located(job, "machine.file", dialect.error());
@@ -60,7 +60,7 @@ Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const J
   posted.axes = std::move(program.value());
 
   NcHeader header;
-  header.job_name = job.name;
+  header.job_name = title;
   header.machine_name = machine.name;
   header.assumed = assumed;
   header.coolant = job.coolant != Coolant::off;
@@ -68,7 +68,7 @@ Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const J
   auto text = clock.run("NC text", [&] { return write_nc(posted.axes, *dialect, header); });
   if (!text) return located(job, "machine.file", text.error());
   posted.blocks = text->blocks;
-  posted.blend_mm = header.blend_mm;
+  posted.blend_mm = dialect->blend ? header.blend_mm : 0;
   posted.file = "program" + dialect->extension;
   if (const auto written = output.write(posted.file, text->text); !written) return written.error();
   auto bytes = output.read_back(posted.file);

@@ -30,8 +30,8 @@ struct PostedProgram {
   std::size_t blocks = 0;
   double blend_mm = 0;   ///< how far the control may leave the corners; 0: the dialect has no such word
 };
-/// Axis program, NC text, the file, its bytes. Errors carry their place in the job.
-[[nodiscard]] Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const Job& job, const Machine& machine, int teeth,
+/// Axis program, NC text, the file, its bytes. Errors carry their place in the job. `title`: of the job, at the top of the text.
+[[nodiscard]] Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const Job& job, const std::string& title, const Machine& machine, int teeth,
                                                  const ClearanceBody& body, const std::vector<std::string>& assumed, OutputDir& output,
                                                  StageClock& clock);
 /// Takes every program file out of the directory again.

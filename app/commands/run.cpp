@@ -5,6 +5,7 @@
 
 #include "app/commands/bevel_run.h"
 #include "app/commands/ledger.h"
+#include "app/commands/program_report.h"
 #include "app/commands/proof.h"
 #include "app/commands/surface_files.h"
 #include "app/contact_analysis.h"
@@ -91,18 +92,8 @@ std::vector<Diagnostic> read_inputs(Run& run) {
 }
 
 void begin_report(Run& run) {
+  run.report = report_of(run.correction ? "correct" : "run", run.job, run.machine, run.gear->warnings());
   RunReport& report = run.report;
-  report.command = run.correction ? "correct" : "run";
-  report.job_name = run.job.name;
-  report.job_file = run.job.file;
-  report.machine_name = run.machine.name;
-  report.machine_file = run.job.machine.file;
-  report.dialect = run.machine.dialect;
-  report.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
-  if (run.machine.assumed)
-    for (const auto& key : run.machine.assumed_keys) report.assumed.push_back(fmt::format("{}: {}", run.job.machine.file, key));
-  report.warnings = run.job.warnings;
-  report.warnings.insert(report.warnings.end(), run.gear->warnings().begin(), run.gear->warnings().end());
   if (!run.correction) return;
   double most = 0;
   for (const auto& f : run.correction->fit.flanks) {
@@ -132,53 +123,24 @@ std::optional<Diagnostic> plan_and_check(Run& run, const GearDistance& part, con
   return std::nullopt;
 }
 
-void report_axis_program(RunReport& report, const Job& job, const FaceGearPlan& plan, const AxisProgram& program) {
-  report.axes = program.ranges;
-  report.feed_minutes = program.feed_minutes;
-  report.total_minutes = program.minutes;
-  for (const AxisOperation& o : program.operations) {
-    const auto& asked = job.operations[static_cast<std::size_t>(o.operation)];
-    OperationReport operation{o.operation, o.type, o.tool_number, asked.speed_rpm, asked.feed_mm_min, 0, o.feed_minutes, o.rapid_minutes};
-    for (const ClPath& path : plan.paths)
-      if (path.operation == o.operation) operation.cl_points += path.records.size();
-    report.operations.push_back(operation);
-  }
-}
-
 /// Axis program, NC text on the disk, proof of those bytes. Nothing: done, and `report.reasons` says whether it is safe.
 std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const GearDistance& part, const GougeCheck& check) {
-  const auto dialect = dialect_of(run.machine);
-  if (!dialect) return located(run.job, "machine.file", dialect.error());
   const ClearanceBody body = clearance_body(*run.gear);
   const int teeth = run.gear->parameters().teeth;
-  auto program = run.clock.run("axis program", [&] {
-    return build_axis_program(run.checked, run.job.tools, *run.job.setup, run.machine, teeth, body, axis_options(*dialect, run.machine));
-  });
-  if (!program) return located(run.job, "setup", program.error());
-  report_axis_program(run.report, run.job, run.plan, *program);
-
-  NcHeader header;
-  header.job_name = run.job.name + (run.correction ? ", corrected" : "");
-  header.machine_name = run.machine.name;
-  header.assumed = run.report.assumed;
-  header.coolant = run.job.coolant != Coolant::off;
-  header.blend_mm = std::min(header.blend_mm, 0.15 * run.job.verify.gouge_tolerance_mm);
-  auto text = run.clock.run("NC text", [&] { return write_nc(*program, *dialect, header); });
-  if (!text) return located(run.job, "machine.file", text.error());
-  run.report.blocks = text->blocks;
-  const std::string name = "program" + dialect->extension;
-  if (const auto written = output.write(name, text->text); !written) return written.error();
-  auto bytes = output.read_back(name);
-  if (!bytes) return bytes.error();
-  run.program_text = std::move(bytes.value());
+  const auto paths = run.paths();
+  auto posted = post_program(run.checked, run.job, run.job.name + (run.correction ? ", corrected" : ""), run.machine, teeth, body, run.report.assumed, output, run.clock);
+  if (!posted) return posted.error();
+  const AxisProgram& program = posted->axes;
+  note_axis_program(run.report, run.job, paths, program);
+  run.report.blocks = posted->blocks;
+  run.program_text = std::move(posted->text);
 
   ProofOptions options;
   options.cut_surface = run.cut_surface;
   options.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
-  options.path_tolerance_mm = program->chord_bound_mm + program->rounding_bound_mm + 2 * options.motion_tolerance_mm;
-  options.path_tolerance_rad = program->axis_bound_rad + 2 * options.motion_tolerance_rad;
-  const auto paths = run.paths();
-  auto proof = prove_program(run.program_text, output.final_path(name), run.job, run.machine, part, check, body, teeth, paths,
+  options.path_tolerance_mm = program.chord_bound_mm + program.rounding_bound_mm + 2 * options.motion_tolerance_mm;
+  options.path_tolerance_rad = program.axis_bound_rad + 2 * options.motion_tolerance_rad;
+  auto proof = prove_program(run.program_text, output.final_path(posted->file), run.job, run.machine, part, check, body, teeth, paths,
                              options, run.clock);
   if (!proof) {
     Diagnostic error = proof.error();
@@ -197,13 +159,13 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   run.motion = motion_charts(proof->read, proof->motions, run.machine);
   for (const ClPath& path : run.plan.paths) run.lines.push_back(lines_of_records(path, proof->motions, options.path_tolerance_mm));
   run.report.reasons = proof->reasons;
-  run.report.ledger = face_gear_ledger(part, run.plan, run.job.tools, *program, *proof, dialect->blend ? header.blend_mm : 0.0, run.proof_mm);
+  run.report.ledger = face_gear_ledger(part, run.plan, run.job.tools, program, *proof, posted->blend_mm, run.proof_mm);
   if (!proof->reasons.empty()) return std::nullopt;
   run.report.verified = true;
-  run.report.program_file = name;
+  run.report.program_file = posted->file;
   run.report.program_sha256 = sha256_hex(run.program_text);
   run.report.program_bytes = run.program_text.size();
-  run.report.files.push_back(name);
+  run.report.files.push_back(posted->file);
   return std::nullopt;
 }
 
@@ -219,10 +181,6 @@ std::optional<Diagnostic> plan_post_and_prove(Run& run, OutputDir& output, doubl
   const GougeCheck check(part, run.job.tools, options);
   if (auto stopped = plan_and_check(run, part, check)) return stopped;
   return post_and_prove(run, output, part, check);
-}
-
-void discard_program(OutputDir& output) {
-  for (const char* extension : {".ngc", ".nc", ".mpf", ".h", ".apt"}) output.discard(std::string("program") + extension);
 }
 
 /// Contact with the pinion, for jobs that ask for it with [contact]: the exact flanks and those that the program cuts. Empty otherwise,
