@@ -80,7 +80,7 @@ TEST(MeshClearance, BoundHoldsBetweenTheSamples) {
     }
   }
   EXPECT_GT(near, 10);
-  EXPECT_GT(struck, 10);
+  EXPECT_GT(struck, 5);
   EXPECT_GT(free, 10);
 }
 

@@ -79,7 +79,7 @@ inline constexpr BadFile kBadMachineFiles[] = {
     {"12 duplicate key", "min = -110.0", "min = -110.0\nmin = -110.0",
      "m.toml:41:7: error: Error while parsing key-value pair: cannot redefine existing floating-point 'min'\n"},
     {"36 unknown dialect", "\"linuxcnc\"", "\"linuxnc\"",
-     "m.toml:4:11: error: dialect = \"linuxnc\" is not one of linuxcnc, fanuc, siemens, heidenhain, apt\n"},
+     "m.toml:4:11: error: dialect = \"linuxnc\" is not one of linuxcnc, fanuc, siemens, heidenhain, apt, mitsubishi_m80\n"},
     {"schema of another version", "schema = 1", "schema = 2",
      "m.toml:1:10: error: schema = 2 must be 1\n"},
     {"a gear shaper", "\"five_axis\"", "\"gear_shaper\"",
