@@ -87,6 +87,10 @@ FaceGearParameters read_face_gear(TableReader& gear, TableReader* stock, std::ve
     gear.refuse("backlash", "backlash = {} mm is not below module = {} mm", p.backlash_mm, *module);
   if (module && p.shaper_tip_radius_mm >= *module)
     gear.refuse("shaper_tip_radius", "shaper_tip_radius = {} mm is not below module = {} mm", p.shaper_tip_radius_mm, *module);
+  double land = 0;
+  optional_number(gear, "least_land", kLengthOrZero, land);
+  if (land > 0) p.least_land_mm = land;
+  if (module && land >= *module) gear.refuse("least_land", "least_land = {} mm is not below module = {} mm", land, *module);
   read_zones(gear, p, warnings);
   if (!p.zones.empty() && p.zones.front().inner_radius_mm > 0 && std::abs(p.offset_mm) >= p.zones.front().inner_radius_mm)
     gear.refuse("offset", "offset = {} mm reaches the inner radius {} mm", p.offset_mm, p.zones.front().inner_radius_mm);

@@ -266,7 +266,7 @@ std::variant<FaceGear, std::vector<FaceGearRefusal>> FaceGear::make(const FaceGe
     gear.parameters_.reference_radius_mm = make_surface<double>(parameters, parameters.zones.front().helix_angle_rad).L_p;
   for (const auto& zone : gear.parameters_.zones) {
     const auto surface = make_surface<double>(gear.parameters_, zone.helix_angle_rad);
-    gear.rings_.push_back({zone, surface, zone_limits(surface, parameters.module_mm), nullptr});
+    gear.rings_.push_back({zone, surface, zone_limits(surface, parameters.module_mm, parameters.least_land_mm), nullptr});
     inspection.ring(gear.rings_.size() - 1, gear.rings_.back(), gear.warnings_);
     if (inspection.refusals.empty()) inspection.swept_flank(gear.rings_.size() - 1, gear.rings_.back());
   }

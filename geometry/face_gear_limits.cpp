@@ -198,10 +198,10 @@ std::optional<double> root_height(const FaceGearSurface<double>& f, double r) {
   return f.root_meridian(Z).p.z();
 }
 
-ZoneLimits zone_limits(const FaceGearSurface<double>& surface, double module_mm) {
+ZoneLimits zone_limits(const FaceGearSurface<double>& surface, double module_mm, std::optional<double> least_land_mm) {
   ZoneLimits limits;
   limits.flanks = {flank_limits(surface, 1), flank_limits(surface, -1)};
-  limits.practical_land_mm = 0.2 * module_mm;
+  limits.practical_land_mm = least_land_mm.value_or(0.2 * module_mm);
   limits.pointing_radius = radius_of_thickness(surface, 0.0);
   limits.land_radius = radius_of_thickness(surface, limits.practical_land_mm);
   limits.hard_inner_limit = limits.inner_limit = surface.M2;

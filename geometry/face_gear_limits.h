@@ -26,7 +26,7 @@ struct ZoneLimits {
   std::array<FlankLimits, 2> flanks;        ///< side +1, then side -1
   std::optional<double> pointing_radius;    ///< R2: both flanks meet on the tip surface
   std::optional<double> land_radius;        ///< R2': top land of `practical_land_mm`
-  double practical_land_mm = 0;             ///< 0.2 m
+  double practical_land_mm = 0;             ///< the gear's least land, else 0.2 m
   double inner_limit = 0;                   ///< R1 = the largest of the undercut and involute-start radii; M2 where there is none
   const char* inner_limit_name = "";        ///< which one governs: "undercut", "fillet up to the tip", "involute start" or "base cylinder"
   double hard_inner_limit = 0;              ///< the largest undercut or flank start radius (or M2): below it the zone is refused
@@ -34,7 +34,7 @@ struct ZoneLimits {
 
 /// Limits of the zone with this helix angle. Radii to 1e-9 mm.
 /// Source: docs/face_gear.md 7.
-[[nodiscard]] ZoneLimits zone_limits(const FaceGearSurface<double>& surface, double module_mm);
+[[nodiscard]] ZoneLimits zone_limits(const FaceGearSurface<double>& surface, double module_mm, std::optional<double> least_land_mm = {});
 
 /// Arc thickness of a tooth on the tip surface at radius r: r (Theta_+ - Theta_-); negative beyond pointing.
 /// Nothing where r lies at or inside M2 or the flank cannot be reached.

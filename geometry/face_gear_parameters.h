@@ -36,6 +36,7 @@ struct FaceGearParameters {
   double groove_depth_mm = -1;                ///< below the tip surface at mid-groove; < 0: 0.25 m below the root
   double allowance_top_mm = 0;                ///< stock above the tip surface
   std::vector<FaceGearZone> zones;            ///< from the inside outwards, not overlapping
+  std::optional<double> least_land_mm = {};   ///< top land that the tooth should have at least; none: 0.2 m
 };
 
 }  // namespace toothpath

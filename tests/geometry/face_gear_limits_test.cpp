@@ -219,5 +219,17 @@ TEST(FaceGearLimits, MirrorExchangesTheSides) {
   }
 }
 
+// The job's land: the radius where the tooth is that thick, between the pointed one and the one for 0.2 m.
+TEST(FaceGearLimits, LeastLandOfTheGear) {
+  const auto& c = case_named("offset_15");
+  const auto usual = zone_limits(c.surface(), c.module_mm), thin = zone_limits(c.surface(), c.module_mm, 0.3);
+  ASSERT_TRUE(usual.land_radius && thin.land_radius && thin.pointing_radius);
+  EXPECT_DOUBLE_EQ(usual.practical_land_mm, 0.2 * c.module_mm);
+  EXPECT_DOUBLE_EQ(thin.practical_land_mm, 0.3);
+  EXPECT_LT(*usual.land_radius, *thin.land_radius);
+  EXPECT_LT(*thin.land_radius, *thin.pointing_radius);
+  EXPECT_NEAR(tip_thickness(c.surface(), *thin.land_radius).value_or(0), 0.3, 1e-9);
+}
+
 }  // namespace
 }  // namespace toothpath::test
