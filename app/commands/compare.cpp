@@ -5,11 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/contact.h"
-#include "app/commands/study_page.h"
 #include "app/contact_analysis.h"
 #include "app/job_file.h"
 #include "app/report/html_text.h"
 #include "app/report/run_report.h"
+#include "app/report/study_page.h"
 #include "app/report/svg_contact_pattern.h"
 #include "geometry/base/angle.h"
 

@@ -2,11 +2,11 @@
 
 #include "app/commands/bevel_contact.h"
 #include "app/commands/bevel_run.h"
-#include "app/commands/study_page.h"
 #include "app/contact_analysis.h"
 #include "app/job_file.h"
 #include "app/output_dir.h"
 #include "app/report/contact_figures.h"
+#include "app/report/study_page.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {

@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/commands/study_page.h"
 #include "app/gear_of_job.h"
 #include "app/job_file.h"
 #include "app/output_dir.h"
 #include "app/report/cutter_sheet.h"
+#include "app/report/study_page.h"
 #include "cam/finger_milling.h"
 #include "geometry/base/angle.h"
 #include "geometry/bevel_forces.h"

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/bevel_run.h"
-#include "app/commands/study_page.h"
 #include "app/job_file.h"
+#include "app/report/study_page.h"
 #include "geometry/base/angle.h"
 #include "geometry/bevel_forces.h"
 

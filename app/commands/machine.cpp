@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
-#include "app/commands/study_page.h"
 #include "app/output_dir.h"
 #include "app/report/machine_sheet.h"
+#include "app/report/study_page.h"
 #include "geometry/base/angle.h"
 #include "machines/machine_file.h"
 #include "postproc/machine_self_test.h"

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/commands/study_page.h"
 #include "app/job_file.h"
 #include "app/job_tables.h"
 #include "app/output_dir.h"
+#include "app/report/study_page.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/stability_rows.h"
-#include "app/commands/study_page.h"
 #include "app/output_dir.h"
+#include "app/report/study_page.h"
 
 namespace toothpath {
 namespace {

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/bevel_run.h"
-#include "app/commands/study_page.h"
 #include "app/job_file.h"
+#include "app/report/study_page.h"
 #include "app/report/svg_field_map.h"
 #include "geometry/base/angle.h"
 #include "geometry/bevel_section_models.h"

@@ -6,9 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/run.h"
-#include "app/commands/study_page.h"
 #include "app/job_file.h"
 #include "app/report/html_text.h"
+#include "app/report/study_page.h"
 #include "cam/gouge_check.h"
 
 namespace toothpath {

@@ -2,9 +2,9 @@
 
 #include <sstream>
 
-#include "app/commands/study_page.h"
 #include "app/report/limits_chart.h"
 #include "app/report/limits_json.h"
+#include "app/report/study_page.h"
 #include "geometry/inspection_dmis.h"
 #include "geometry/inspection_grid.h"
 #include "geometry/mesh_file.h"

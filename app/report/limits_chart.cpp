@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "app/commands/study_page.h"
+#include "app/report/study_page.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/commands/study_page.h"
 #include "app/report/html_text.h"
+#include "app/report/study_page.h"
 
 namespace toothpath {
 namespace {

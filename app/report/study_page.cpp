@@ -1,4 +1,4 @@
-#include "app/commands/study_page.h"
+#include "app/report/study_page.h"
 
 #include <fmt/format.h>
 
