@@ -7,24 +7,11 @@
 #include "geometry/tooth_mesh.h"
 #include "tests/bench/gouge_bench_cgal.h"
 #include "tests/bench/thread_seconds.h"
+#include "tests/support/sample_gears.h"
 #include "cam/gear_distance.h"
 
 namespace toothpath::bench {
 namespace {
-
-FaceGear quarter_dhfg() {
-  FaceGearParameters g;
-  g.teeth = 180;
-  g.shaper_teeth = 30;
-  g.module_mm = 1.25;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.reference_radius_mm = 118;
-  g.shaper_tip_radius_mm = 0.375;
-  g.groove_depth_mm = 3.125;
-  g.zones = {{radians(-30), 112.25, 117}, {radians(30), 119, 124}};
-  return std::get<FaceGear>(FaceGear::make(g));
-}
 
 ToolAssembly mill() {
   ToolAssembly t;
@@ -91,7 +78,7 @@ Answer marched(const CgalTree& tree, const ToolAssembly& tool, const Pose& pose)
 }  // namespace
 
 void analytic_rows() {
-  const FaceGear gear = quarter_dhfg();
+  const FaceGear gear = test::made(test::quarter_dhfg());
   const ToolAssembly tool = mill();
   const GearDistance part(gear, 1.0);
   const auto poses = poses_of(gear, part, tool);

@@ -10,6 +10,7 @@
 #include "cam/gouge_check.h"
 #include "cam/plan.h"
 #include "geometry/base/angle.h"
+#include "tests/support/sample_gears.h"
 
 namespace toothpath::test {
 
@@ -23,59 +24,6 @@ class Random {
  private:
   std::mt19937_64 generator_;
 };
-
-/// The double helical gear of the DHFG paper at quarter scale.
-inline FaceGearParameters quarter_dhfg() {
-  FaceGearParameters g;
-  g.teeth = 180;
-  g.shaper_teeth = 30;
-  g.module_mm = 1.25;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.reference_radius_mm = 118;
-  g.shaper_tip_radius_mm = 0.375;
-  g.groove_depth_mm = 3.125;
-  g.zones = {{radians(-30), 112.25, 117}, {radians(30), 119, 124}};
-  return g;
-}
-
-inline FaceGearParameters offset_gear() {
-  FaceGearParameters g;
-  g.teeth = 88;
-  g.shaper_teeth = 25;
-  g.module_mm = 3;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.offset_mm = 15;
-  g.shaper_tip_radius_mm = 0.9;
-  g.zones = {{0, 130.5, 147}};
-  return g;
-}
-
-inline FaceGearParameters small_spur() {
-  FaceGearParameters g;
-  g.teeth = 60;
-  g.shaper_teeth = 20;
-  g.module_mm = 2;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.shaper_tip_radius_mm = 0.6;
-  g.zones = {{0, 60, 65}};
-  return g;
-}
-
-inline FaceGearParameters conical_gear() {
-  FaceGearParameters g;
-  g.teeth = 75;
-  g.shaper_teeth = 22;
-  g.module_mm = 2;
-  g.pressure_angle_rad = radians(25);
-  g.offset_mm = 6;
-  g.shaft_angle_rad = radians(75);
-  g.shaper_tip_radius_mm = 0.4;
-  g.zones = {{radians(15), 74, 84}};
-  return g;
-}
 
 inline const std::vector<std::string>& gear_names() {
   static const std::vector<std::string> names = {"dhfg", "offset", "spur", "conical"};
@@ -148,12 +96,6 @@ struct PlannedJob {
   }
   [[nodiscard]] const ToolAssembly& tool(int operation) const { return tools[std::size_t(operations[std::size_t(operation)].tool)]; }
 };
-
-inline FaceGear made(const FaceGearParameters& p) {
-  auto gear = FaceGear::make(p);
-  if (auto* refused = std::get_if<1>(&gear)) throw std::runtime_error(refused->front().key + ": " + refused->front().diagnostic.message);
-  return std::get<0>(std::move(gear));
-}
 
 inline PlannedJob planned(const FaceGearParameters& p, std::vector<ToolAssembly> tools, std::vector<MillingOperation> operations) {
   PlannedJob job{made(p), std::move(tools), std::move(operations), nullptr, {}};

@@ -5,26 +5,10 @@
 
 #include "geometry/face_gear.h"
 #include "tests/support/face_gear_cases.h"
+#include "tests/support/sample_gears.h"
 
 namespace toothpath::test {
 namespace {
-
-FaceGearParameters offset_gear() {
-  auto g = case_named("offset_15").parameters();
-  g.module_plane = ModulePlane::transverse;
-  g.shaper_tip_radius_mm = 0.9;
-  g.zones = {{0, 130.5, 147}};
-  return g;
-}
-
-FaceGearParameters double_helical() {
-  auto g = case_named("dhfg_transverse").parameters();
-  g.shaper_tip_radius_mm = 1.5;
-  g.reference_radius_mm = 472;
-  g.groove_depth_mm = 12.5;
-  g.zones = {{radians(-30), 449, 468}, {radians(30), 476, 496}};
-  return g;
-}
 
 TEST(FaceGearMake, AcceptsBothSamples) {
   const auto offset = FaceGear::make(offset_gear());
@@ -38,7 +22,7 @@ TEST(FaceGearMake, AcceptsBothSamples) {
   EXPECT_DOUBLE_EQ(o.outer_radius(), 147);
   EXPECT_NEAR(o.pitch() * 88, 2 * kPi, 1e-14);
 
-  const auto helical = FaceGear::make(double_helical());
+  const auto helical = FaceGear::make(double_helical_parameters());
   ASSERT_TRUE(std::holds_alternative<FaceGear>(helical));
   const auto& d = std::get<FaceGear>(helical);
   EXPECT_EQ(d.rings().size(), 2u);
@@ -54,7 +38,7 @@ TEST(FaceGearMake, AcceptsBothSamples) {
 }
 
 TEST(FaceGearMake, TracesOfBothHalvesMeetAtTheReferenceRadius) {
-  const auto made = FaceGear::make(double_helical());
+  const auto made = FaceGear::make(double_helical_parameters());
   const auto& gear = std::get<FaceGear>(made);
   const auto middle = [](const FaceGearSurface<double>& f, double Z) {
     return 0.5 * (f.root_edge_azimuth(1, Z) + f.root_edge_azimuth(-1, Z));
@@ -67,7 +51,7 @@ TEST(FaceGearMake, TracesOfBothHalvesMeetAtTheReferenceRadius) {
 }
 
 TEST(FaceGearMake, GrooveFloor) {
-  auto g = double_helical();
+  auto g = double_helical_parameters();
   g.groove_depth_mm = -1;
   const auto made = FaceGear::make(g);
   EXPECT_NEAR(std::get<FaceGear>(made).groove_floor(), -81.25 - 0.25 * 5, 1e-12);
@@ -135,7 +119,7 @@ const std::vector<Refusal>& refusals() {
 TEST(FaceGearMake, RefusesWithKeyValueAndLimit) {
   for (const auto& r : refusals()) {
     SCOPED_TRACE(r.name);
-    auto g = r.helical ? double_helical() : offset_gear();
+    auto g = r.helical ? double_helical_parameters() : offset_gear();
     r.spoil(g);
     const auto made = FaceGear::make(g);
     const auto* list = std::get_if<std::vector<FaceGearRefusal>>(&made);
@@ -157,7 +141,7 @@ TEST(FaceGearMake, RefusesWithKeyValueAndLimit) {
 
 /// Several faults are all told at once.
 TEST(FaceGearMake, TellsEveryFault) {
-  auto g = double_helical();
+  auto g = double_helical_parameters();
   g.zones[0].inner_radius_mm = 440;
   g.zones[1].outer_radius_mm = 520;
   g.groove_depth_mm = 1;

@@ -9,23 +9,12 @@
 #include "geometry/base/angle.h"
 #include "geometry/face_gear_inverse.h"
 #include "geometry/inspection_dmis.h"
+#include "tests/support/sample_gears.h"
 
 namespace toothpath {
 namespace {
 
-FaceGear sample_gear() {
-  FaceGearParameters g;
-  g.teeth = 180;
-  g.shaper_teeth = 30;
-  g.module_mm = 1.25;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.reference_radius_mm = 118;
-  g.shaper_tip_radius_mm = 0.375;
-  g.groove_depth_mm = 3.125;
-  g.zones = {{radians(-30), 112.25, 117}, {radians(30), 119, 124}};
-  return std::get<0>(FaceGear::make(g));
-}
+FaceGear sample_gear() { return test::made(test::quarter_dhfg()); }
 
 /// Statements with their continuations joined; comments left out.
 std::vector<std::string> statements(const std::string& text) {

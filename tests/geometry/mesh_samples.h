@@ -4,11 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "geometry/base/angle.h"
 #include "geometry/tooth_mesh.h"
+#include "tests/support/sample_gears.h"
 
 namespace toothpath::test {
 
@@ -17,31 +17,6 @@ struct MeshSample {
   FaceGearParameters gear;
 };
 inline void PrintTo(const MeshSample& sample, std::ostream* out) { *out << sample.name; }
-
-inline FaceGearParameters spur_parameters() {
-  FaceGearParameters g;
-  g.teeth = 88;
-  g.shaper_teeth = 25;
-  g.module_mm = 3;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.zones = {{0, 130.5, 147}};
-  return g;
-}
-
-inline FaceGearParameters double_helical_parameters() {
-  FaceGearParameters g;
-  g.teeth = 180;
-  g.shaper_teeth = 30;
-  g.module_mm = 5;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.reference_radius_mm = 472;
-  g.shaper_tip_radius_mm = 1.5;
-  g.groove_depth_mm = 12.5;
-  g.zones = {{radians(-30), 449, 468}, {radians(30), 476, 496}};
-  return g;
-}
 
 inline std::vector<MeshSample> mesh_samples() {
   std::vector<MeshSample> samples;
@@ -53,7 +28,7 @@ inline std::vector<MeshSample> mesh_samples() {
   g = spur_parameters();
   g.offset_mm = 15;
   add("offset_sharp", g);
-  g.shaper_tip_radius_mm = 0.9;
+  g = offset_gear();
   g.zones = {{0, 129.6, 147}};  // 0.1 mm outside the undercut radius
   add("offset_near_undercut", g);
   g = double_helical_parameters();
@@ -64,24 +39,8 @@ inline std::vector<MeshSample> mesh_samples() {
   g.shaper_tip_radius_mm = 0;
   g.zones = {{radians(30), 470, 507.5}};
   add("helical_sharp_thin_land", g);
-  g = {};
-  g.teeth = 75;
-  g.shaper_teeth = 22;
-  g.module_mm = 2;
-  g.pressure_angle_rad = radians(25);
-  g.offset_mm = 6;
-  g.shaft_angle_rad = radians(75);
-  g.shaper_tip_radius_mm = 0.4;
-  g.zones = {{radians(15), 74, 84}};
-  add("gamma_75_helical_offset", g);
+  add("gamma_75_helical_offset", conical_gear());
   return samples;
-}
-
-inline FaceGear made(const FaceGearParameters& parameters) {
-  auto gear = FaceGear::make(parameters);
-  if (auto* refused = std::get_if<std::vector<FaceGearRefusal>>(&gear))
-    throw std::runtime_error(refused->front().key + ": " + refused->front().diagnostic.message);
-  return std::get<FaceGear>(std::move(gear));
 }
 
 inline ToothMesh meshed(const FaceGear& gear, double tolerance_mm) {
