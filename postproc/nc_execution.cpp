@@ -186,6 +186,8 @@ NcExecution::Problem NcExecution::move(const Move& m, std::int32_t line) {
   std::array<double, 5> goal = joints_;
   Vec3 tip = Vec3::Zero();
   ExecutedMove e;
+  if (!unit_) return "axis words ahead of the unit code: whether they are mm would depend on the last program";
+  if (!absolute_) return "axis words ahead of G90: whether they are positions would depend on the last program";
   if (tcp_ && m.machine_frame) return "machine coordinates with TCP on";
   if (auto bad = tcp_ ? tip_goal(m, goal, tip, e.commanded) : goal_of(m, goal, tip, e.commanded)) return bad;
   e.joints = goal;

@@ -45,6 +45,8 @@ class NcExecution {
   [[nodiscard]] int tool() const { return tool_; }  ///< in the spindle; -1: none
 
   // Modes.
+  void set_unit() { unit_ = true; }          ///< the program has said that its words are mm
+  void set_absolute() { absolute_ = true; }  ///< the program has said that its words are positions
   enum class Feed { none, inverse_time, per_minute };
   void set_feed_mode(Feed mode);
   [[nodiscard]] Feed feed_mode() const { return feed_mode_; }
@@ -88,6 +90,7 @@ class NcExecution {
   std::optional<Vec3> offset_;
   double blend_mm_ = 0;
   bool spindle_ = false, spindle_set_ = false, retracted_ = false;
+  bool unit_ = false, absolute_ = false;
 };
 
 }  // namespace toothpath

@@ -128,9 +128,9 @@ class Interpreter {
     switch (tenths) {
       case 0: case 10: group = 1; r.motion = tenths / 10; break;
       case 170: group = 2; break;
-      case 900: group = 3; break;
+      case 900: group = 3; execution_.set_absolute(); break;
       case 930: case 940: group = 4; r.feed_mode = tenths / 10; break;
-      case 210: group = 5; break;
+      case 210: group = 5; execution_.set_unit(); break;
       case 400: group = 6; break;
       case 430: group = 7; r.g43 = true; break;
       case 434: group = 7; r.g43 = r.tcp = true; break;
