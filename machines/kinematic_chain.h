@@ -25,6 +25,7 @@ struct LinearAxis {
   double min_mm = 0.0;
   double max_mm = 0.0;
   double max_speed = 0.0;  ///< mm/min
+  double max_acceleration = 0.0;  ///< mm/min^2; 0: not stated
 };
 
 struct RotaryAxis {
@@ -37,6 +38,7 @@ struct RotaryAxis {
   double min_rad = 0.0;
   double max_rad = 0.0;
   double max_speed = 0.0;             ///< rad/min
+  double max_acceleration = 0.0;      ///< rad/min^2; 0: not stated
 
   [[nodiscard]] double pivot_length_mm() const { return point_mm.z(); }  ///< head axes only
   /// Rot(direction, sign * (command - zero)).

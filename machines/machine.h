@@ -35,6 +35,7 @@ struct PostSettings {
   std::vector<std::string> tcp_off;    ///< and off
   LengthReference length_reference = LengthReference::tip;
   PoleOption pole = PoleOption::error;
+  std::optional<double> pole_angle_rad;  ///< `tilt`: least angle kept from the pole; `hold`, `through`, `retract`: greatest change of the axis
 };
 
 struct Machine {
@@ -58,6 +59,8 @@ struct Machine {
   KinematicChain chain;
   PostSettings post;
 
+  /// Every axis of the chain has an acceleration.
+  [[nodiscard]] bool has_acceleration() const;
   /// Largest part that turns on the table: `part_diameter_mm` if stated, else `table_diameter_mm`.
   [[nodiscard]] double largest_part_mm() const { return part_diameter_mm.value_or(table_diameter_mm); }
 };

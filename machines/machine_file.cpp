@@ -12,6 +12,8 @@ namespace {
 // Plausible ranges; a value outside them is a typing error or another unit.
 constexpr double kLargestLength = 1e5;       // mm
 constexpr double kLargestSpeed = 1e6;        // mm/min, deg/min, 1/min
+constexpr double kLargestAcceleration = 1e7; // mm/s^2, deg/s^2
+constexpr double kLargestPoleAngle = 45.0;   // deg
 constexpr double kLargestAngle = 1e7;        // deg: 27000 turns
 constexpr double kLeastTravel = 10.0;        // mm; less means metres
 constexpr double kLeastDirection = 1e-3;     // length of a direction as written
@@ -58,6 +60,12 @@ double read_speed(TomlTableReader& axis, const char* unit) {
   return axis.number("max_speed", TomlTableReader::positive(kLargestSpeed, unit)).value_or(0.0);
 }
 
+/// `max_acceleration`, per second squared in the file, per minute squared here; 0 where it is left out.
+double read_acceleration(TomlTableReader& axis, const char* unit) {
+  if (!axis.has("max_acceleration")) return 0.0;
+  return 3600.0 * axis.number("max_acceleration", TomlTableReader::positive(kLargestAcceleration, unit)).value_or(0.0);
+}
+
 LinearAxis read_linear(TomlTableReader axis, const LimitMargin& margin) {
   LinearAxis out;
   if (const auto range = read_range(axis, kLargestLength, "mm")) {
@@ -69,6 +77,7 @@ LinearAxis read_linear(TomlTableReader axis, const LimitMargin& margin) {
                   axis.name("max"), axis.name("min"), out.max_mm - out.min_mm, least);
   }
   out.max_speed = read_speed(axis, "mm/min");
+  out.max_acceleration = read_acceleration(axis, "mm/s^2");
   axis.refuse_unknown_keys();
   return out;
 }
@@ -126,6 +135,7 @@ RotaryAxis read_rotary(TomlTableReader axis, char letter, bool in_table, const L
                   axis.name("min"), range->second - range->first, degrees(margin.rotary_rad));
   }
   out.max_speed = radians(read_speed(axis, "deg/min"));
+  out.max_acceleration = radians(read_acceleration(axis, "deg/s^2"));
   axis.refuse_unknown_keys();
   return out;
 }
@@ -205,6 +215,8 @@ void read_post(TomlTableReader post, PostSettings& settings) {
     if (const auto word = post.word("pole", words))
       settings.pole = static_cast<PoleOption>(std::find(words.begin(), words.end(), *word) - words.begin());
   }
+  if (post.has("pole_angle"))
+    if (const auto angle = post.number("pole_angle", TomlTableReader::positive(kLargestPoleAngle, "deg"))) settings.pole_angle_rad = radians(*angle);
   post.refuse_unknown_keys();
 }
 
@@ -221,6 +233,20 @@ void check_control(TomlTableReader& root, const Machine& machine) {
   if (machine.dialect == "linuxcnc" && machine.tcp != TcpMode::none &&
       (machine.post.tcp_on.empty() || machine.post.tcp_off.empty()))
     root.refuse(root.at("tcp"), "tcp with dialect \"linuxcnc\" needs post.tcp_on and post.tcp_off: its codes are site data");
+}
+
+/// A time with some axes that stop at once and some that do not would mean nothing.
+void check_accelerations(TomlTableReader& root, const Machine& machine) {
+  if (machine.has_acceleration()) return;
+  bool any = false;
+  std::string lacking;
+  const auto look = [&](char letter, double acceleration) {
+    any = any || acceleration > 0;
+    if (!(acceleration > 0)) lacking += fmt::format("{}axes.{}", lacking.empty() ? "" : ", ", letter);
+  };
+  for (std::size_t i = 0; i < 3; ++i) look("XYZ"[i], machine.chain.linear[i].max_acceleration);
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) look(machine.chain.rotary(k).letter, machine.chain.rotary(k).max_acceleration);
+  if (any) root.refuse(root.at("axes"), "max_acceleration stands at some axes and is missing at {}: every axis has one, or none", lacking);
 }
 
 Machine read_tree(const TomlValue& tree, const std::string& file, std::vector<Diagnostic>& errors) {
@@ -249,6 +275,7 @@ Machine read_tree(const TomlValue& tree, const std::string& file, std::vector<Di
     if (const auto post = root.table("post")) read_post(*post, machine.post);
   read_chain(root, machine);
   check_control(root, machine);
+  check_accelerations(root, machine);
   root.refuse_unknown_keys();
   if (errors.empty())
     if (const Status chain = check_chain(machine.chain); !chain)

@@ -269,7 +269,7 @@ TEST(FindMachineFile, BesideTheJobFirstThenInstalled) {
   EXPECT_EQ(none.error().kind, DiagnosticKind::file_access);
   EXPECT_EQ(none.error().message,
             "machine file \"no_such.toml\" is neither beside the job nor installed; installed are: apt_free.toml, fanuc_ac.toml, "
-            "head_head_ca.toml, head_table_bc.toml, heidenhain_ac.toml, m80_ac.toml, shaper_fanuc.toml, shaper_siemens.toml, siemens_ac.toml, t600s.toml, xyzac_large.toml, "
+            "head_head_ca.toml, head_table_bc.toml, heidenhain_ac.toml, m80_ac.toml, nutating_table.toml, shaper_fanuc.toml, shaper_siemens.toml, siemens_ac.toml, t600s.toml, xyzac_large.toml, "
             "xyzac_trt.toml, xyzbc_trt.toml, y514.toml");
   EXPECT_FALSE(find_machine_file("../data/t600s.toml", dir.path("")));  // installed files have plain names
 }
