@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/contact.h"
+#include "app/commands/opening_and_end.h"
 #include "app/contact_analysis.h"
 #include "app/job_file.h"
 #include "app/report/html_text.h"
@@ -240,13 +241,9 @@ CommandOutcome run_compare(const CommandRequest& request) {
   outcome.summary = page.title + "\n";
   for (const auto& table : page.tables) outcome.summary += "\n" + table_text(table);
   outcome.summary += "\nfiles in " + request.out_dir + "\n";
-  for (const auto& [name, content] : {std::pair<std::string, std::string>{"compare.csv", csv_of(flanks)},
-                                      {"compare.json", outcome.report_json},
-                                      {"compare.html", study_page_html(page)}})
-    if (const auto written = output->write(name, content); !written) return failed(written.error());
+  const NamedFiles files = {{"compare.csv", csv_of(flanks)}, {"compare.json", outcome.report_json}, {"compare.html", study_page_html(page)}};
   progress.clear();
-  if (const auto committed = output->commit(); !committed) return failed(committed.error());
-  return outcome;
+  return finished(*output, files, std::move(outcome));
 }
 
 }  // namespace toothpath

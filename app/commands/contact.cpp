@@ -2,9 +2,8 @@
 
 #include "app/commands/bevel_contact.h"
 #include "app/commands/bevel_run.h"
+#include "app/commands/opening_and_end.h"
 #include "app/contact_analysis.h"
-#include "app/job_file.h"
-#include "app/output_dir.h"
 #include "app/report/contact_figures.h"
 #include "app/report/study_page.h"
 #include "geometry/base/angle.h"
@@ -72,12 +71,9 @@ CommandOutcome run_contact(const CommandRequest& request) {
   auto output = OutputDir::open(request.out_dir, kOutputs);
   if (!output) return failed(output.error());
   if (const auto bevel = bevel_job(request.job_file)) return run_bevel_contact(request, *bevel, *output);
-  auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
+  auto read = read_face_gear_job(request.job_file, clock);
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
-  const Job& job = std::get<0>(read);
-  auto made = clock.run("gear", [&] { return make_face_gear(job); });
-  if (auto* errors = std::get_if<1>(&made)) return failed(std::move(*errors));
-  const FaceGear& gear = std::get<0>(made);
+  const auto& [job, gear] = std::get<0>(read);
   std::optional<CutFlanks> cut;
   if (request.as_cut) {
     auto flanks = cut_flanks(job, gear, kCutRows, kCutColumns, *output, request.quiet);
@@ -94,15 +90,13 @@ CommandOutcome run_contact(const CommandRequest& request) {
 
   CommandOutcome outcome;
   outcome.report_json = contact_json(analysis);
-  for (const auto& [name, content] : {std::pair<std::string, std::string>{"contact.csv", contact_csv(analysis)},
-                                      {"transmission.csv", transmission_csv(analysis)},
-                                      {"contact.json", outcome.report_json},
-                                      {"contact.html", page_of(analysis)}})
-    if (const auto written = output->write(name, content); !written) return failed(written.error());
-  progress.clear();
-  if (const auto committed = output->commit(); !committed) return failed(committed.error());
   outcome.summary = contact_summary(analysis) + "  files in " + request.out_dir + "\n";
-  return outcome;
+  const NamedFiles files = {{"contact.csv", contact_csv(analysis)},
+                            {"transmission.csv", transmission_csv(analysis)},
+                            {"contact.json", outcome.report_json},
+                            {"contact.html", page_of(analysis)}};
+  progress.clear();
+  return finished(*output, files, std::move(outcome));
 }
 
 }  // namespace toothpath

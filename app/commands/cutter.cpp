@@ -2,9 +2,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/commands/opening_and_end.h"
 #include "app/gear_of_job.h"
 #include "app/job_file.h"
-#include "app/output_dir.h"
 #include "app/report/cutter_sheet.h"
 #include "app/report/study_page.h"
 #include "cam/finger_milling.h"
@@ -175,18 +175,19 @@ CommandOutcome run_cutter(const CommandRequest& request) {
   std::optional<FingerProfile<double>> compared;
   if (!sheet.others.empty()) compared = sheet.others.front().judgement.profile;
   const std::string svg = cutter_svg(profile, sheet.length_mm, cutter_drawing_scale(profile, sheet.length_mm, 160, 240), compared, true);
-  for (const auto& [name, content] : {std::pair<std::string, std::string>{"cutter.csv", cutter_csv(profile, kCsvChord)}, {"cutter.svg", svg}, {"cutter.dxf", dxf.text},
-                                      {"cutter.html", cutter_sheet_html(sheet)}, {"cutter.json", outcome.report_json}})
-    if (const auto written = output->write(name, content); !written) return failed(written.error());
-  progress.clear();
-  if (const auto committed = output->commit(); !committed) return failed(committed.error());
+  const NamedFiles files = {{"cutter.csv", cutter_csv(profile, kCsvChord)},
+                            {"cutter.svg", svg},
+                            {"cutter.dxf", dxf.text},
+                            {"cutter.html", cutter_sheet_html(sheet)},
+                            {"cutter.json", outcome.report_json}};
   outcome.summary = table_text(summary_table_of(mills));
   for (const auto& mill : mills)
     for (const auto& c : mill.judgement.conditions)
       if (c.verdict != Verdict::met) outcome.summary += fmt::format("{}: {}\n", mill.name, c.text());
   for (const auto& warning : sheet.warnings) outcome.summary += "warning: " + warning + "\n";
   outcome.summary += balance + "files in " + request.out_dir + "\n";
-  return outcome;
+  progress.clear();
+  return finished(*output, files, std::move(outcome));
 }
 
 }  // namespace toothpath

@@ -4,8 +4,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "app/commands/bevel_run.h"
-#include "app/job_file.h"
+#include "app/commands/opening_and_end.h"
 #include "app/report/study_page.h"
 #include "geometry/base/angle.h"
 #include "geometry/bevel_forces.h"
@@ -191,12 +190,9 @@ CommandOutcome run_forces(const CommandRequest& request) {
   if (!output) return failed(output.error());
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
+  auto read = read_bevel_gear_job(request.job_file, clock);
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
-  const Job& job = std::get<0>(read);
-  auto made = clock.run("gear", [&] { return make_bevel_gear(job); });
-  if (auto* errors = std::get_if<1>(&made)) return failed(std::move(*errors));
-  const BevelGear& gear = std::get<0>(made);
+  const auto& [job, gear] = std::get<0>(read);
   const auto torque = request.torque_Nm ? request.torque_Nm : job.torque_Nm;
   if (!torque) return failed(fail_at(job.where(""), "no torque: give --torque or the table [load] with the key \"torque\" (N m on this gear)"));
   const Pair pair = pair_of(gear, *torque);
@@ -205,12 +201,6 @@ CommandOutcome run_forces(const CommandRequest& request) {
 
   CommandOutcome outcome;
   outcome.report_json = json_of(pair, job.file, rows, balanced);
-  const std::pair<const char*, std::string> files[] = {
-      {"forces.csv", csv_over_apex(pair)}, {"forces.html", study_page_html(page_of(pair, job, rows, balanced))}, {"forces.json", outcome.report_json}};
-  for (const auto& [name, content] : files)
-    if (const auto written = output->write(name, content); !written) return failed(written.error());
-  progress.clear();
-  if (const auto committed = output->commit(); !committed) return failed(committed.error());
   PageTable screen = table_of(rows, false);
   for (auto& row : screen.rows) row.erase(row.begin() + 5);
   screen.columns.erase(screen.columns.begin() + 5);
@@ -218,7 +208,10 @@ CommandOutcome run_forces(const CommandRequest& request) {
   outcome.summary += balanced ? fmt::format("same axial force in both senses at R_J = {:.4f} mm (uniform line load, groove +-{:.4g} mm left out)\n", *balanced, pair.relief)
                               : std::string("no R_J balances this face\n");
   outcome.summary += "files in " + request.out_dir + "\n";
-  return outcome;
+  const NamedFiles files = {
+      {"forces.csv", csv_over_apex(pair)}, {"forces.html", study_page_html(page_of(pair, job, rows, balanced))}, {"forces.json", outcome.report_json}};
+  progress.clear();
+  return finished(*output, files, std::move(outcome));
 }
 
 }  // namespace toothpath

@@ -5,9 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "app/gear_of_job.h"
-#include "app/job_file.h"
-#include "app/output_dir.h"
+#include "app/commands/opening_and_end.h"
 #include "app/report/limits_json.h"
 #include "app/report/run_report.h"
 #include "app/sha256.h"
@@ -88,12 +86,9 @@ CommandOutcome run_shaper(const CommandRequest& request) {
   StageClock clock(progress);
   auto output = OutputDir::open(request.out_dir, shaper_outputs());
   if (!output) return failed(output.error());
-  auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
+  auto read = read_face_gear_job(request.job_file, clock);
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
-  const Job& job = std::get<0>(read);
-  auto made = clock.run("gear", [&] { return make_face_gear(job); });
-  if (auto* errors = std::get_if<1>(&made)) return failed(std::move(*errors));
-  const FaceGear& gear = std::get<0>(made);
+  const auto& [job, gear] = std::get<0>(read);
   auto loaded = clock.run("machine", [&] { return load_shaper_machine(job); });
   if (auto* errors = std::get_if<1>(&loaded)) return failed(std::move(*errors));
   const ShaperMachine& machine = std::get<0>(loaded);
@@ -138,14 +133,9 @@ CommandOutcome run_shaper(const CommandRequest& request) {
                                       {"shaper.html", shaper_html(setup, study)}})
     if (const auto written = write(name, content); !written) return failed(written.error());
   report.files.push_back(program_name);
-  report.files.push_back("report.json");
-  report.stages = clock.seconds();
-  CommandOutcome outcome;
-  outcome.report_json = report_json(report);
-  if (const auto written = output->write("report.json", outcome.report_json); !written) return failed(written.error());
   progress.clear();
-  if (const auto committed = output->commit(); !committed) return failed(committed.error());
-  outcome.summary = summary_of(setup, request.out_dir);
+  CommandOutcome outcome = finished_report(*output, clock, std::move(report), request.color);
+  if (outcome.exit_code == ExitCode::ok) outcome.summary = summary_of(setup, request.out_dir);
   return outcome;
 }
 

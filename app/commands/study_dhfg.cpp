@@ -4,9 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/commands/opening_and_end.h"
 #include "app/job_file.h"
 #include "app/job_tables.h"
-#include "app/output_dir.h"
 #include "app/report/study_page.h"
 #include "geometry/base/angle.h"
 
@@ -269,11 +269,9 @@ CommandOutcome study_dhfg(const CommandRequest& request) {
   outcome.summary = page.title + "\n";
   for (const auto& table : tables) outcome.summary += "\n" + table.title + "\n" + table_text(table) + table.note + "\n";
   for (const auto& paragraph : page.introduction) outcome.summary += "\n" + paragraph + "\n";
-  for (const auto& [name, content] : {std::pair<std::string, std::string>{"dhfg.csv", table_csv(all)}, {"dhfg.json", outcome.report_json}, {"dhfg.html", study_page_html(page)}})
-    if (const auto written = output->write(name, content); !written) return failed(written.error());
+  const NamedFiles files = {{"dhfg.csv", table_csv(all)}, {"dhfg.json", outcome.report_json}, {"dhfg.html", study_page_html(page)}};
   progress.clear();
-  if (const auto committed = output->commit(); !committed) return failed(committed.error());
-  return outcome;
+  return finished(*output, files, std::move(outcome));
 }
 
 }  // namespace toothpath

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/commands/opening_and_end.h"
 #include "app/commands/stability_rows.h"
-#include "app/output_dir.h"
 #include "app/report/study_page.h"
 
 namespace toothpath {
@@ -91,11 +91,8 @@ CommandOutcome study_stability(const CommandRequest& request) {
 
   CommandOutcome outcome;
   outcome.report_json = json_of(rows, failures == 0);
-  const std::pair<const char*, std::string> files[] = {
+  const NamedFiles files = {
       {"stability.csv", table_csv(table)}, {"stability.html", study_page_html(page)}, {"stability.json", outcome.report_json}};
-  for (const auto& [name, content] : files)
-    if (const auto written = output->write(name, content); !written) return failed(written.error());
-  if (const auto committed = output->commit(); !committed) return failed(committed.error());
   PageTable screen = table;
   for (auto& row : screen.rows) row.back() = shortened(row.back());
   outcome.summary = table_text(screen) + fmt::format("{} cases, {} fail\n", rows.size(), failures);
@@ -104,7 +101,7 @@ CommandOutcome study_stability(const CommandRequest& request) {
     for (const auto& row : rows)
       if (!row.fine) outcome.errors.push_back(fail_as(DiagnosticKind::verification, "{}, {}: {}", row.group, row.name, row.reason));
   }
-  return outcome;
+  return finished(*output, files, std::move(outcome));
 }
 
 }  // namespace toothpath

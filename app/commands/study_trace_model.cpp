@@ -2,8 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/commands/bevel_run.h"
-#include "app/job_file.h"
+#include "app/commands/opening_and_end.h"
 #include "app/report/study_page.h"
 #include "app/report/svg_field_map.h"
 #include "geometry/base/angle.h"
@@ -91,25 +90,19 @@ CommandOutcome study_trace_model(const CommandRequest& request) {
   if (!output) return failed(output.error());
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
+  auto read = read_bevel_gear_job(request.job_file, clock);
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
-  const Job& job = std::get<0>(read);
-  auto made = clock.run("gear", [&] { return make_bevel_gear(job); });
-  if (auto* errors = std::get_if<1>(&made)) return failed(std::move(*errors));
-  const BevelGear& gear = std::get<0>(made);
+  const auto& [job, gear] = std::get<0>(read);
   const auto maps = clock.run("models", [&] {
     return section_model_maps(gear, request.quick ? SectionModelOptions{9, 13, 0, 0} : SectionModelOptions{});
   });
   CommandOutcome outcome;
   outcome.report_json = json_of(gear, job.file, maps);
-  const std::pair<const char*, std::string> files[] = {
+  const NamedFiles files = {
       {"trace_model.csv", points_csv(maps)}, {"trace_model.html", study_page_html(page_of(gear, job, maps))}, {"trace_model.json", outcome.report_json}};
-  for (const auto& [name, content] : files)
-    if (const auto written = output->write(name, content); !written) return failed(written.error());
-  progress.clear();
-  if (const auto committed = output->commit(); !committed) return failed(committed.error());
   outcome.summary = table_text(numbers(gear, maps)) + "files in " + request.out_dir + "\n";
-  return outcome;
+  progress.clear();
+  return finished(*output, files, std::move(outcome));
 }
 
 }  // namespace toothpath

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/commands/opening_and_end.h"
 #include "app/commands/run.h"
 #include "app/job_file.h"
 #include "app/report/html_text.h"
@@ -256,16 +257,13 @@ CommandOutcome study_work_precision(const CommandRequest& request) {
   outcome.report_json = json_of(job, table);
   auto report = report_page_text(job, *output, request.quiet, page.charts);
   if (!report) return failed(report.error());
-  const std::pair<const char*, std::string> files[] = {{"report.html", std::move(*report)},
-                                                       {"work_precision.csv", table_csv(table)},
-                                                       {"work_precision.svg", standalone_svg(page.charts.front())},
-                                                       {"work_precision.html", study_page_html(page)},
-                                                       {"work_precision.json", outcome.report_json}};
-  for (const auto& [name, content] : files)
-    if (const auto written = output->write(name, content); !written) return failed(written.error());
-  if (const auto committed = output->commit(); !committed) return failed(committed.error());
+  const NamedFiles files = {{"report.html", std::move(*report)},
+                            {"work_precision.csv", table_csv(table)},
+                            {"work_precision.svg", standalone_svg(page.charts.front())},
+                            {"work_precision.html", study_page_html(page)},
+                            {"work_precision.json", outcome.report_json}};
   outcome.summary = screen_table(table);
-  return outcome;
+  return finished(*output, files, std::move(outcome));
 }
 
 }  // namespace toothpath
