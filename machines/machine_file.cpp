@@ -17,6 +17,8 @@ constexpr double kLargestPoleAngle = 45.0;   // deg
 constexpr double kLargestAngle = 1e7;        // deg: 27000 turns
 constexpr double kLeastTravel = 10.0;        // mm; less means metres
 constexpr double kLeastDirection = 1e-3;     // length of a direction as written
+constexpr double kLeastOffset = 1.0;         // mm; the largest offset of all table axes: less may mean metres ...
+constexpr double kMeasuredOffset = 0.1;      // mm; ... but for this little, which is measured on axes that should meet
 constexpr std::size_t kMostRotaries = 2;
 
 std::string letter_name(char letter) { return std::string(1, letter); }
@@ -140,6 +142,22 @@ RotaryAxis read_rotary(TomlTableReader axis, char letter, bool in_table, const L
   return out;
 }
 
+/// Where every offset of the table's axes is below a millimetre although one is more than what is left of axes that should
+/// meet, the file is in metres. Whoever means it can give the point elsewhere on its axis.
+void refuse_offsets_in_metres(TomlTableReader& axes, const Machine& machine) {
+  double largest = 0;
+  const RotaryAxis* at = nullptr;
+  for (const RotaryAxis& axis : machine.chain.table)
+    if (const double reach = axis.point_mm.cwiseAbs().maxCoeff(); reach > largest) {
+      largest = reach;
+      at = &axis;
+    }
+  if (largest < kMeasuredOffset || largest >= kLeastOffset) return;
+  if (auto axis = axes.table(letter_name(at->letter)))
+    axis->refuse(axis->at("point"), "{} = [{}, {}, {}]: the largest offset of the rotary axes, {} mm, is below {} mm; lengths are in mm, not metres",
+                 axis->name("point"), at->point_mm.x(), at->point_mm.y(), at->point_mm.z(), largest, kLeastOffset);
+}
+
 /// One axis of the chain: its table is missing, or read.
 void read_chain(TomlTableReader& root, Machine& machine) {
   auto chain = root.table("chain");
@@ -176,6 +194,7 @@ void read_chain(TomlTableReader& root, Machine& machine) {
       (in_table ? machine.chain.table : machine.chain.head)
           .push_back(read_rotary(*axis, all[k].letter, in_table, machine.limit_margin));
   }
+  refuse_offsets_in_metres(*axes, machine);
   for (const TomlEntry& entry : axes->entries())
     if (entry.key == "A" || entry.key == "B" || entry.key == "C") {
       if (std::none_of(all.begin(), all.end(), [&entry](const NamedAxis& a) { return a.letter == entry.key[0]; }))
