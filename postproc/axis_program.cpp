@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kCoincident = 1e-9;      // mm: the gear axis lies on the index axis
 constexpr double kParallel = 1e-12;       // sine of the angle between gear axis and index axis
+constexpr std::size_t kMostBlocks = 20'000'000;  // of 100 bytes in memory, and 50 to 100 bytes of text each
 
 /// Decides about angles, loop and copies; the blocks of a tooth come from ToothBuilder.
 class Builder {
@@ -38,6 +39,7 @@ class Builder {
     if (!program_.loop && !choose_all(false)) return *error_;
     if (program_.loop && options_.loop_needs_constant_index && index_moves_inside_passes()) program_.loop = false;
     if (program_.loop && rounding_of_loop() > options_.nc_step_mm) program_.loop = false;
+    if (auto bad = check_size()) return *bad;
     // With TCP the words of the tip differ from tooth to tooth.
     copies_ = !tcp() && !program_.loop && coincident_ && teeth_ > 1 && rounding_of_copies() <= options_.nc_step_mm;
     program_.rounding_bound_mm =
@@ -94,6 +96,16 @@ class Builder {
     const Vec3 gear_axis = gear_.rotation.col(2);
     return std::abs(std::abs(gear_axis.z()) - 1) <= kParallel &&
            (gear_.origin - setup_.work_offset_at_mm).head<2>().norm() <= kCoincident;
+  }
+
+  /// Refuses by number what would not fit into memory, before a block is made.
+  std::optional<Diagnostic> check_size() const {
+    std::size_t records = 0;
+    for (const ClPath* path : paths_) records += path->records.size();
+    const std::size_t written = program_.loop ? 1 : static_cast<std::size_t>(teeth_);
+    if (records <= kMostBlocks / written) return std::nullopt;
+    return fail("the program would have at least {} blocks ({} records, {} teeth written out), more than {}", records * written, records,
+                written, kMostBlocks);
   }
 
   double tooth_angle(int k) const { return 2 * kPi * k / teeth_; }

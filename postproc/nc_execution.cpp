@@ -13,6 +13,7 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStill = 1e-9;       // mm: round-off of a tip that does not move
 constexpr double kZeroRotary = 1e-9;  // deg
+constexpr double kFlip = 170;         // deg: a tool vector that turns further in one block leaves the plane of the turn open
 
 bool known(const std::array<double, 5>& joints) {
   return std::none_of(joints.begin(), joints.end(), [](double v) { return std::isnan(v); });
@@ -161,10 +162,15 @@ NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>&
   if (m.vector) {
     const double size = m.vector->norm();
     if (!(std::abs(size - 1) < 1e-5)) return fmt::format("a tool vector of length {:.6f}", size);
-    const auto list = control_.chain->rotary_solutions(turned(*m.vector / size, frame_deg_));
+    const Vec3 axis = turned(*m.vector / size, frame_deg_);
+    const auto list = control_.chain->rotary_solutions(axis);
     if (!list) return list.error().message;
     double nearest = std::numeric_limits<double>::infinity();
     const std::array<double, 2> now = {radians(joints[3]), radians(joints[4])};
+    const Vec3 from = control_.chain->forward({Vec3::Zero(), now}, 1.0).axis;
+    const double turn = degrees(std::atan2(from.cross(axis).norm(), from.dot(axis)));
+    if (!m.rapid && turn > kFlip + 1e-4)
+      return fmt::format("the tool axis turns by {:.4f} deg in one block, limit {:g}: which way is not said", turn, kFlip);
     for (const auto& s : *list) {
       std::array<double, 2> angles{};
       double distance = 0;

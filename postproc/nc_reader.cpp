@@ -256,6 +256,12 @@ Result<ReadBack> read_back(std::string_view text, const std::string& file, const
   const bool all = options.keep_all || !result.copies.copies;
   std::map<int, OperationTrace> traces;
   if (all) {
+    if (result.executed > options.max_kept) {
+      Diagnostic error = fail("{} moves would have to be kept, more than {}: the teeth are not turned copies of the first one ({})", result.executed,
+                              options.max_kept, result.copies.copies ? "all are asked for" : result.copies.difference);
+      error.position = {file, result.copies.line, 0};
+      return error;
+    }
     for (const auto& [op, c] : counts) traces[op].moves.reserve(c.total);
     const auto keep = [&](const ExecutedMove& m) { traces[m.operation].moves.push_back(m); };
     if (auto s = execute_nc(text, file, control, keep); !s) return s.error();

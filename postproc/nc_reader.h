@@ -103,6 +103,7 @@ struct ReadBack {
 struct ReadBackOptions {
   int teeth = 1;
   bool keep_all = false;  ///< keep every tooth although they are copies
+  std::size_t max_kept = 20'000'000;  ///< moves of 100 bytes; a program that needs more is refused by their number, before any is kept
 };
 
 /// Executes the program twice (to count, then to compare and keep), a third time where every tooth is kept.
