@@ -76,6 +76,8 @@ class Heidenhain {
       started_ = true;
       name_ = s.rest();
       if (name_.size() < 4 || name_.substr(name_.size() - 3) != " MM") return here(s.column(), "a program in MM with a name expected");
+      execution_.set_unit();
+      execution_.set_absolute();  // increments have words of their own
       return std::nullopt;
     }
     if (ready_to_end_ && !s.take("END PGM ")) return here(s.column(), "END PGM expected behind M30");

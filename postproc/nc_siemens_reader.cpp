@@ -273,9 +273,9 @@ class Siemens {
       case 54: case 55: case 56: case 57: group = 8; r.offset = fmt::format("G{}", g); break;
       case 60: group = 10; r.g60 = true; break;
       case 641: group = 10; r.g641 = true; break;
-      case 90: group = 14; break;
+      case 90: group = 14; execution_.set_absolute(); break;
       case 93: case 94: group = 15; r.feed_mode = g; break;
-      case 710: group = 13; break;
+      case 710: group = 13; execution_.set_unit(); break;
       default: return here(column, fmt::format("G{} is not in the subset", v));
     }
     if ((r.groups & (1U << group)) != 0) return here(column, "two G words of one modal group in a block");
