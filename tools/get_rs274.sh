@@ -5,7 +5,7 @@
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 target="$root/.deps/rs274"
-if [ -x "$target/rs274" ] && [ -f "$target/modules/xyzac-trt-kins.so" ] && [ -x "$target/bin/milltask" ]; then
+if [ -x "$target/rs274" ] && [ -f "$target/modules/xyzac-trt-kins.so" ] && [ -f "$target/modules/hal_lib.so" ]; then
   exit 0
 fi
 for tool in apt-get dpkg; do
@@ -23,7 +23,7 @@ mkdir -p "$work/keep/lib" "$work/keep/modules" "$work/keep/bin" "$work/keep/pyth
 for name in librs274 libnml liblinuxcnchal liblinuxcncini libposemath libpyplugin libtooldata libboost_python libpython3.11 libedit libtirpc; do
   find "$work/x" -name "$name*.so*" -exec cp -P {} "$work/keep/lib/" \;
 done
-for name in xyzac-trt-kins xyzbc-trt-kins trivkins motmod tpmod homemod sampler; do
+for name in hal_lib xyzac-trt-kins xyzbc-trt-kins motmod tpmod homemod sampler; do
   cp "$work/x/usr/lib/linuxcnc/modules/$name.so" "$work/keep/modules/"
 done
 for name in rtapi_app halcmd halsampler milltask linuxcncsvr io; do

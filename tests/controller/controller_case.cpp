@@ -1,0 +1,286 @@
+// Makes the folder from which LinuxCNC's motion controller runs a program of a job, and compares what it executed with our
+// read-back of the same text.
+//   toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH MODE   TEETH: teeth per operation, "1,1"; MODE: exact | blend
+//   toothpath_controller_case compare JOB FOLDER MODE                 FOLDER/samples.txt: what halsampler recorded
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <sstream>
+
+#include "app/gear_of_job.h"
+#include "app/job_file.h"
+#include "postproc/nc_reader.h"
+#include "tests/controller/joint_record.h"
+
+namespace toothpath {
+namespace {
+
+namespace fs = std::filesystem;
+using test::JointVector, test::PathCorner;
+
+// The record is printed with six digits after the point.
+constexpr double kPrinted = 1e-6;           // mm and deg
+constexpr double kGiveUp = 0.1;             // mm: beyond this the record does not follow the path
+constexpr double kPiece = 0.02;             // deg: moves with TCP are cut into pieces that turn by no more than this
+constexpr double kPeriod = 1e-3;            // s: of the controller and of the record
+// Where the joints go does not depend on it, but how near to a stop the last sample lies does.
+constexpr double kAcceleration = 200;       // mm/s^2 and deg/s^2
+
+struct Case {
+  Job job;
+  Machine machine;
+  char tilt = 'A';
+};
+
+std::string read(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+Result<Case> read_case(const std::string& job_file) {
+  auto read = read_job_file(job_file);
+  if (auto* errors = std::get_if<1>(&read)) return errors->front();
+  Case c{std::move(std::get<0>(read)), {}, 'A'};
+  auto machine = load_machine(c.job);
+  if (auto* errors = std::get_if<1>(&machine)) return errors->front();
+  c.machine = std::move(std::get<0>(machine));
+  const KinematicChain& chain = c.machine.chain;
+  if (c.machine.dialect != "linuxcnc" || chain.table.size() != 2 || chain.table[0].letter != 'C' || chain.table[0].sign != -1 ||
+      chain.table[1].sign != -1)
+    return fail("{} is no machine for xyzac-trt or xyzbc-trt: C on A or B in the table, both senses reversed, dialect linuxcnc", c.machine.file);
+  c.tilt = chain.table[1].letter;
+  return c;
+}
+
+std::string kinematics(const Case& c) { return c.tilt == 'A' ? "xyzac-trt-kins" : "xyzbc-trt-kins"; }
+
+std::string ini(const Case& c) {
+  const KinematicChain& chain = c.machine.chain;
+  struct Joint {
+    double least, greatest, speed;
+    bool angular;
+  };
+  std::vector<Joint> joints;
+  for (const LinearAxis& a : chain.linear) joints.push_back({a.min_mm, a.max_mm, a.max_speed / 60, false});
+  for (const std::size_t k : {1u, 0u}) {
+    const RotaryAxis& a = chain.rotary(k);
+    joints.push_back({degrees(a.min_rad), degrees(a.max_rad), degrees(a.max_speed) / 60, true});
+  }
+  double fastest = 0;
+  for (const Joint& j : joints) fastest = std::max(fastest, j.speed);
+  std::string text = fmt::format(R"([EMC]
+VERSION = 1.1
+MACHINE = toothpath
+NML_FILE = linuxcnc.nml
+[DISPLAY]
+DISPLAY = none
+MAX_FEED_OVERRIDE = 1
+[RS274NGC]
+PARAMETER_FILE = offsets.var
+SUBROUTINE_PATH = .
+HAL_PIN_VARS = 1
+REMAP = M428  modalgroup=10  ngc=428remap
+REMAP = M429  modalgroup=10  ngc=429remap
+[KINS]
+KINEMATICS = {} sparm=identityfirst
+JOINTS = 5
+[TRAJ]
+COORDINATES = XYZ{}C
+LINEAR_UNITS = mm
+ANGULAR_UNITS = deg
+DEFAULT_LINEAR_VELOCITY = {}
+MAX_LINEAR_VELOCITY = {}
+MAX_LINEAR_ACCELERATION = {}
+[EMCMOT]
+EMCMOT = motmod
+SERVO_PERIOD = 1000000
+COMM_TIMEOUT = 30
+[TASK]
+TASK = milltask
+CYCLE_TIME = 0.001
+[EMCIO]
+EMCIO = io
+CYCLE_TIME = 0.100
+TOOL_TABLE = tools.tbl
+)", kinematics(c), c.tilt, fastest, fastest, kAcceleration);
+  // With TCP the words of an axis are not its joint: only the joints have limits.
+  for (std::size_t i = 0; i < 5; ++i)
+    text += fmt::format("[AXIS_{}]\nMIN_LIMIT = -100000\nMAX_LIMIT = 100000\nMAX_VELOCITY = {}\nMAX_ACCELERATION = {}\n",
+                        i == 3 ? c.tilt : "XYZ?C"[i], joints[i].speed, kAcceleration);
+  for (std::size_t i = 0; i < 5; ++i)
+    text += fmt::format("[JOINT_{}]\nTYPE = {}\nHOME = 0\nHOME_SEARCH_VEL = 0\nHOME_SEQUENCE = 0\nMIN_LIMIT = {}\nMAX_LIMIT = {}\nMAX_VELOCITY = {}\n"
+                        "MAX_ACCELERATION = {}\nFERROR = 1\nMIN_FERROR = 1\n",
+                        i, joints[i].angular ? "ANGULAR" : "LINEAR", joints[i].least, joints[i].greatest, joints[i].speed, kAcceleration);
+  return text;
+}
+
+std::string hal(const Case& c) {
+  const std::string kins = kinematics(c);
+  const Vec3 &on_c = c.machine.chain.table[0].point_mm, &on_tilt = c.machine.chain.table[1].point_mm;
+  std::string text = fmt::format("loadrt {} sparm=identityfirst coordinates=XYZ{}C\nloadrt motmod servo_period_nsec=1000000 num_joints=5\n"
+                                 "loadrt sampler depth=60000 cfg=fffff\naddf motion-command-handler servo-thread\n"
+                                 "addf motion-controller servo-thread\naddf sampler.0 servo-thread\n", kins, c.tilt);
+  for (int i = 0; i < 5; ++i)
+    text += fmt::format("net joint{} joint.{}.motor-pos-cmd => joint.{}.motor-pos-fb sampler.0.pin.{}\n", i, i, i, i);
+  text += fmt::format("setp {0}.x-rot-point {1}\nsetp {0}.y-rot-point {2}\nsetp {0}.z-rot-point 0\nsetp {0}.{3}-offset {4}\nsetp {0}.z-offset {5}\n",
+                      kins, on_c.x(), on_c.y(), c.tilt == 'A' ? 'y' : 'x', c.tilt == 'A' ? on_tilt.y() - on_c.y() : on_tilt.x() - on_c.x(),
+                      on_tilt.z());
+  text += fmt::format("net tool-offset motion.tooloffset.z => {}.tool-offset\nnet kinstype motion.analog-out-03 => motion.switchkins-type\n"
+                      "net estop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in\n"
+                      "net tool-prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared\n"
+                      "net tool-change iocontrol.0.tool-change => iocontrol.0.tool-changed\n", kins);
+  return text;
+}
+
+/// M428 and M429 of the site: the kinematics follow an analog output, and the interpreter waits for them.
+std::string remap(int code, int kinematics_type) {
+  return fmt::format("o<{0}remap> sub\nM68 E3 Q{1}\nM66 E0 L0\no<{0}remap> endsub\nM2\n", code, kinematics_type);
+}
+
+/// The program with these teeth of every operation instead of all, and with exact stops where asked. What the controller runs is
+/// what we read, but for the word of the exact stop (our readers know exact path only, which ends at the same joints). Teeth stand
+/// in a loop, or are written out behind (TOOTH k).
+Result<std::string> shortened(const std::string& text, const std::string& teeth, bool exact) {
+  std::vector<std::string> counts;
+  std::istringstream list(teeth), in(text);
+  for (std::string count; std::getline(list, count, ',');) counts.push_back(count);
+  const std::regex loop(R"(\[#1 LT (\d+)\])"), tooth(R"(\(TOOTH (\d+)\))"), blend(R"(G64 P[0-9.]+ Q0)");
+  std::string out;
+  std::size_t operations = 0;
+  bool dropped = false;
+  for (std::string line; std::getline(in, line);) {
+    std::smatch m;
+    if (line.rfind("(OP ", 0) == 0 && ++operations > counts.size()) return fail("the program has more operations than \"{}\"", teeth);
+    if (std::regex_search(line, m, tooth)) dropped = std::stoi(m[1]) >= std::stoi(counts.at(operations - 1));
+    if (line.rfind("G94 F", 0) == 0 || line == "M5") dropped = false;  // the end of the operation
+    if (dropped) continue;
+    if (std::regex_search(line, loop)) line = std::regex_replace(line, loop, "[#1 LT " + counts.at(operations - 1) + "]");
+    if (exact) line = std::regex_replace(line, blend, "G61");
+    out += line + "\n";
+  }
+  if (operations < counts.size()) return fail("the program has fewer operations than \"{}\"", teeth);
+  return out;
+}
+
+Status write(const fs::path& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) return fail("{} cannot be written", file.string());
+  return Ok{};
+}
+
+Status prepare(const Case& c, const std::string& program, const fs::path& folder, const std::string& teeth, bool exact) {
+  const std::string text = read(program);
+  if (text.empty()) return fail("{} is missing or empty", program);
+  const auto part = shortened(text, teeth, exact);
+  if (!part) return part.error();
+  std::string tools, offsets;
+  for (const ToolAssembly& t : c.job.tools) tools += fmt::format("T{0} P{0} Z{1} D{2}\n", t.number, t.length_mm, t.diameter_mm);
+  if (!c.job.setup || c.job.setup->work_offset != "G54") return fail("the job must stand in G54");
+  const Vec3 at = c.job.setup->work_offset_at_mm;
+  offsets = fmt::format("5220\t1\n5221\t{}\n5222\t{}\n5223\t{}\n", at.x(), at.y(), at.z());
+  const std::pair<const char*, std::string> files[] = {
+      {"machine.ini", ini(c)}, {"machine.hal", hal(c)}, {"tools.tbl", tools}, {"offsets.var", offsets},
+      {"428remap.ngc", remap(428, 1)}, {"429remap.ngc", remap(429, 0)}, {"read.ngc", *part},
+      {"program.ngc", exact ? std::regex_replace(*part, std::regex("G61\\b"), "G61.1") : *part}};
+  for (const auto& [name, content] : files)
+    if (const Status s = write(folder / name, content); !s) return s;
+  return Ok{};
+}
+
+/// Corners of what we read, in LinuxCNC's order of joints, from the first place where all joints are known.
+Result<std::vector<PathCorner>> expected_path(const Case& c, const std::string& text, double& blend_mm, std::size_t& blocks) {
+  const auto control = control_of(c.machine, *c.job.setup, c.job.tools);
+  if (!control) return control.error();
+  const KinematicChain& chain = c.machine.chain;
+  std::vector<PathCorner> path;
+  const ExecutedMove* previous = nullptr;
+  ExecutedMove last;
+  const auto add = [&path](const std::array<double, 5>& j, int line) { path.push_back({{j[0], j[1], j[2], j[4], j[3]}, line}); };
+  const Status s = execute_nc(text, "read.ngc", *control, [&](const ExecutedMove& e) {
+    const bool all_known = std::none_of(e.joints.begin(), e.joints.end(), [](double v) { return std::isnan(v); });
+    if (!all_known) return;
+    blend_mm = std::max(blend_mm, static_cast<double>(e.blend_mm));
+    ++blocks;
+    if (previous && e.tcp) {
+      // The tip goes straight, the rotaries are linear: joints in between from our own inverse.
+      const double length = control->tool_length_mm.at(e.tool);
+      const auto tip_of = [&](const ExecutedMove& m) {
+        return chain.forward({{m.joints[0], m.joints[1], m.joints[2]}, {radians(m.joints[3]), radians(m.joints[4])}}, length).tip_mm;
+      };
+      const Vec3 from = tip_of(last), to = tip_of(e);
+      const double turn = std::max(std::abs(e.joints[3] - last.joints[3]), std::abs(e.joints[4] - last.joints[4]));
+      const int pieces = static_cast<int>(std::ceil(turn / kPiece));
+      for (int i = 1; i < pieces; ++i) {
+        const double t = static_cast<double>(i) / pieces;
+        const double r0 = std::lerp(last.joints[3], e.joints[3], t), r1 = std::lerp(last.joints[4], e.joints[4], t);
+        const Joints j = chain.linear_for(from + t * (to - from), {radians(r0), radians(r1)}, length);
+        add({j.linear_mm.x(), j.linear_mm.y(), j.linear_mm.z(), r0, r1}, e.line);
+      }
+    }
+    add(e.joints, e.line);
+    last = e;
+    previous = &last;
+  });
+  if (!s) return s.error();
+  if (path.size() < 2) return fail("the program moves nothing");
+  return path;
+}
+
+Result<bool> compare(const Case& c, const fs::path& folder, bool exact) {
+  double blend = 0;
+  std::size_t blocks = 0;
+  const auto path = expected_path(c, read(folder / "read.ngc"), blend, blocks);
+  if (!path) return path.error();
+  std::ifstream in(folder / "samples.txt");
+  if (!in) return fail("{} is missing", (folder / "samples.txt").string());
+  const auto samples = test::read_samples(in);
+  if (!samples) return samples.error();
+  // Half of the last printed digit in five joints; and what two samples a period apart leave out on both sides of a stop. Blended:
+  // also what the program allows (with TCP the reader counts four times P).
+  const double digits = 0.5 * kPrinted * std::sqrt(3 + 2 * test::kMmPerDegree * test::kMmPerDegree);
+  const double bound = digits + kAcceleration * test::kMmPerDegree * kPeriod * kPeriod + (exact ? 0 : blend);
+  const auto result = test::compare_curves(*path, *samples, kGiveUp);
+  fmt::print("{}: {} moves, {} samples of 1 ms, ", exact ? "exact stop" : fmt::format("G64, corners allowed {:.3g} um", blend * 1e3), blocks, samples->size());
+  if (!result.followed) {
+    fmt::print("NOT FOLLOWED: the controller left the path near line {} of the program (more than {} mm away, or stopped there)\n",
+               result.stuck_line, kGiveUp);
+    return false;
+  }
+  fmt::print("greatest distance of the executed joints from ours {:.3g} um at line {}, bound {:.3g} um: {}\n", result.worst * 1e3, result.line,
+             bound * 1e3, result.worst <= bound ? "agree" : "DIFFER");
+  return result.worst <= bound;
+}
+
+int run(const std::vector<std::string>& args) {
+  const bool preparing = args.size() == 6 && args[0] == "prepare", comparing = args.size() == 4 && args[0] == "compare";
+  const std::string mode = args.empty() ? "" : args.back();
+  if ((!preparing && !comparing) || (mode != "exact" && mode != "blend")) {
+    fmt::print(stderr, "usage: toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH exact|blend\n"
+                       "       toothpath_controller_case compare JOB FOLDER exact|blend\n");
+    return 2;
+  }
+  const auto c = read_case(args[1]);
+  if (!c) {
+    fmt::print(stderr, "{}\n", c.error().text());
+    return 3;
+  }
+  if (preparing) {
+    const Status s = prepare(*c, args[2], args[3], args[4], mode == "exact");
+    if (!s) fmt::print(stderr, "{}\n", s.error().text());
+    return s ? 0 : 3;
+  }
+  const auto same = compare(*c, args[2], mode == "exact");
+  if (!same) fmt::print(stderr, "{}\n", same.error().text());
+  return same && *same ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace toothpath
+
+int main(int argc, char** argv) { return toothpath::run(std::vector<std::string>(argv + 1, argv + argc)); }
