@@ -75,6 +75,7 @@ std::string test_page(const Machine& machine, const SelfTest& test, const SelfTe
       fmt::format("Read back from the text: the tip leaves the point by at most {:.4f} mm. What the indicator shows beyond that is the error of a sign, a pivot or a length: a wrong sign "
                   "shows millimetres, a pivot that is off by half a millimetre more than two tenths. A reading that grows with one axis alone belongs to its pivot.",
                   proof.worst_mm)};
+  for (const auto& key : machine.assumed_keys) page.introduction.push_back("Assumed and not measured: " + key);
   PageTable stations{"Stations", {"station", "axes", "indicator mm", "direction right"}, {}, "The last two columns are filled in at the machine."};
   for (std::size_t k = 0; k < test.stations.size(); ++k) stations.rows.push_back({fmt::format("{}", k + 1), test.stations[k].remark, "", ""});
   PageTable senses{"What a positive command turns", {"axis", "seen"}, {}, ""};

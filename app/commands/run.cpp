@@ -224,7 +224,7 @@ Status write_results(Run& run, OutputDir& output, std::string& json) {
   if (run.correction)
     if (const auto s = write("correction.json", correction_json(run.correction->fit, run.correction->measurements)); !s) return s;
   if (report.verified) {
-    if (const auto s = write_surface_files(output, *run.gear, run.job.name, run.clock, report.files); !s) return s;
+    if (const auto s = write_surface_files(output, *run.gear, run.job.name, run.clock, report.files, report.assumed); !s) return s;
     const auto vtp = deviation_vtp(run.surface);
     if (!vtp) return vtp.error();
     if (const auto s = output.write("tooth.vtp", *vtp); !s) return s;  // with the deviation, instead of the plain one

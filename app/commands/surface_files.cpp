@@ -52,14 +52,14 @@ Result<std::string> inspection_text(const FaceGear& gear) {
 }  // namespace
 
 Status write_surface_files(OutputDir& output, const FaceGear& gear, const std::string& job_name, StageClock& clock,
-                           std::vector<std::string>& files) {
+                           std::vector<std::string>& files, const std::vector<std::string>& assumed) {
   const auto write = [&](const std::string& name, const Result<std::string>& content) -> Status {
     if (!content) return content.error();
     files.push_back(name);
     return output.write(name, *content);
   };
   if (const auto s = write("limits.json", limits_json(gear)); !s) return s;
-  if (const auto s = write("limits.html", limits_page(gear, job_name)); !s) return s;
+  if (const auto s = write("limits.html", limits_page(gear, job_name, assumed)); !s) return s;
   for (std::size_t zone = 0; zone < gear.rings().size(); ++zone)
     if (const auto s = write(gear.rings().size() == 1 ? "limits.svg" : "limits_" + std::to_string(zone) + ".svg", standalone_svg(limit_charts(gear)[2 * zone])); !s)
       return s;

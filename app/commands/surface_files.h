@@ -12,7 +12,8 @@ namespace toothpath {
 
 /// Writes limits.json, limits.html, limits.svg (limits_0.svg, limits_1.svg with two zones), inspection.csv, inspection.dmi, gear.stl (all teeth, sag at most 0.01 mm) and tooth.vtp (one pitch, sag at most 0.002 mm,
 /// with the number of the patch at every point) and appends their names to `files`.
+/// @param assumed values of the machine that nobody measured, for limits.html
 [[nodiscard]] Status write_surface_files(OutputDir& output, const FaceGear& gear, const std::string& job_name, StageClock& clock,
-                                         std::vector<std::string>& files);
+                                         std::vector<std::string>& files, const std::vector<std::string>& assumed = {});
 
 }  // namespace toothpath

@@ -109,7 +109,7 @@ std::vector<LineChart> limit_charts(const FaceGear& gear) {
   return charts;
 }
 
-std::string limits_page(const FaceGear& gear, const std::string& job_name) {
+std::string limits_page(const FaceGear& gear, const std::string& job_name, const std::vector<std::string>& assumed) {
   StudyPage page;
   const auto& p = gear.parameters();
   page.title = "Limits of the flanks: " + job_name;
@@ -119,6 +119,7 @@ std::string limits_page(const FaceGear& gear, const std::string& job_name) {
   page.good = gear.warnings().empty();
   page.introduction = gear.warnings();
   if (page.introduction.empty()) page.introduction = {"Every zone lies between the undercut and the pointed end of its teeth."};
+  for (const auto& value : assumed) page.introduction.push_back("Assumed of the machine and not measured: " + value);
   page.charts = limit_charts(gear);
   PageTable table{"Limits", {"zone", "flank", "undercut radius", "involute start", "pointed radius", "land radius", "fillet line at the inner end", "at the outer end"}, {}, ""};
   for (std::size_t k = 0; k < gear.rings().size(); ++k) {

@@ -14,7 +14,8 @@ namespace toothpath {
 [[nodiscard]] std::vector<LineChart> limit_charts(const FaceGear& gear);
 
 /// A page of its own with the plots and a table of the limits, which one governs, and every fillet line.
-[[nodiscard]] std::string limits_page(const FaceGear& gear, const std::string& job_name);
+/// @param assumed values of the machine that nobody measured, of a run that writes a program: the page names them
+[[nodiscard]] std::string limits_page(const FaceGear& gear, const std::string& job_name, const std::vector<std::string>& assumed = {});
 
 /// "undercut, flank -1": the limit that governs the inner radius of a zone and its side; without side where both share it.
 [[nodiscard]] std::string governing_limit(const ZoneLimits& limits);

@@ -92,6 +92,8 @@ class Apt {
     const std::string hash = fmt::format("HASH {:016X} BLOCKS {}", result.body_hash, result.blocks);
     out_.comment(hash);
     out_.comment("TIP AND TOOL AXIS IN WORK COORDINATES");
+    for (const auto& line : order_comments(program_)) out_.comment(line);
+    if (!header_.assumed.empty()) out_.comment("WARNING, ASSUMED AND NOT MEASURED:");
     for (const auto& a : header_.assumed) out_.comment(comment_text("ASSUMED " + a));
     out_.text() += body;
     out_.comment(hash);
