@@ -1,0 +1,66 @@
+// docs/dangers.md: every danger has a row, every row names tests, every test that is named exists.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+
+namespace toothpath {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream out;
+  out << in.rdbuf();
+  return std::move(out).str();
+}
+
+/// "Suite.Name" of every GoogleTest case in the sources under tests.
+std::set<std::string> tests_in_sources() {
+  std::set<std::string> names;
+  const std::regex test(R"((?:^|\n)TEST(?:_F|_P)?\((\w+),\s*(\w+)\))");
+  for (const auto& entry : fs::recursive_directory_iterator(fs::path(TOOTHPATH_SOURCE_DIR) / "tests")) {
+    if (entry.path().extension() != ".cpp") continue;
+    const std::string text = text_of(entry.path());
+    for (std::sregex_iterator it(text.begin(), text.end(), test), end; it != end; ++it) names.insert((*it)[1].str() + "." + (*it)[2].str());
+  }
+  return names;
+}
+
+TEST(DangersTable, EveryRowNamesTestsThatExist) {
+  constexpr int kDangers = 29;
+  const auto known = tests_in_sources();
+  ASSERT_GT(known.size(), 500u);
+  std::istringstream in(text_of(fs::path(TOOTHPATH_SOURCE_DIR) / "docs/dangers.md"));
+  const std::regex named(R"(`([A-Za-z0-9]+\.[A-Za-z0-9]+)`)");
+  int row = 0;
+  for (std::string line; std::getline(in, line);) {
+    if (!std::regex_search(line, std::regex(R"(^\| \d+ \|)"))) continue;
+    ++row;
+    EXPECT_EQ(std::stoi(line.substr(2)), row);
+    std::vector<std::string> cells;
+    std::istringstream columns(line.substr(1));
+    for (std::string cell; std::getline(columns, cell, '|');) cells.push_back(cell);
+    ASSERT_EQ(cells.size(), 5u) << "row " << row;
+    int tests = 0;
+    for (std::sregex_iterator it(cells[4].begin(), cells[4].end(), named), end; it != end; ++it, ++tests)
+      EXPECT_EQ(known.count((*it)[1]), 1u) << "row " << row << " names " << (*it)[1] << ", which no source has";
+    EXPECT_GE(tests, 1) << "row " << row;
+    // Files that are named are there.
+    const std::regex file(R"(`((?:app/(?:report/)?)?[a-z0-9_]+\.(?:cpp|h))`)");
+    for (std::sregex_iterator it(cells[3].begin(), cells[3].end(), file), end; it != end; ++it) {
+      const std::string name = (*it)[1];
+      bool there = false;
+      for (const char* folder : {"", "postproc/", "postproc/dialects/", "app/", "app/commands/"}) there = there || fs::exists(fs::path(TOOTHPATH_SOURCE_DIR) / folder / name);
+      EXPECT_TRUE(there) << "row " << row << ": " << name;
+    }
+  }
+  EXPECT_EQ(row, kDangers);
+}
+
+}  // namespace
+}  // namespace toothpath
