@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "app/interruption.h"
+#include "app/sha256.h"
 #include "app/toml_document.h"
 
 namespace toothpath {
@@ -143,7 +144,7 @@ Status OutputDir::write(std::string_view name, std::string_view content) {
     forget_temporary(temporary);
     return cannot("write", final_path(name), error);
   }
-  files_.push_back({std::string(name), temporary});
+  files_.push_back({std::string(name), temporary, sha256_hex(content)});
   int error = write_all(descriptor, content);
   if (::close(descriptor) != 0 && error == 0) error = errno;
   if (error == 0) return Ok{};
@@ -186,6 +187,15 @@ Status OutputDir::commit() {
     return cannot("write", target, error);
   }
   flush_directory(path_);
+  for (const File& file : files_) {
+    const std::string target = final_path(file.name);
+    const auto bytes = read_regular_file(target, std::string().max_size());
+    if (bytes && sha256_hex(*bytes) == file.sha256) continue;
+    for (const File& other : files_) ::unlink(final_path(other.name).c_str());
+    discard_all();
+    if (!bytes) return bytes.error();
+    return Diagnostic{DiagnosticKind::file_access, {target, 0, 0}, "the file on the disk differs from what was written; all files of this run are removed"};
+  }
   for (const File& file : files_) forget_temporary(file.temporary_path);
   for (const auto& directory : made_) forget_temporary(directory);
   files_.clear();

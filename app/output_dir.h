@@ -35,13 +35,15 @@ class OutputDir {
   /// Drops a file written before (an NC program that turned out not to be safe).
   void discard(std::string_view name);
   /// Gives every file its final name, in the order in which they were written. When one cannot be renamed, those already
-  /// renamed are removed again. Nothing can be written afterwards.
+  /// renamed are removed again. Then every file is read under its final name; where one differs from what was written, all are
+  /// removed. Nothing can be written afterwards.
   Status commit();
 
  private:
   OutputDir() = default;
   struct File {
     std::string name, temporary_path;
+    std::string sha256;  ///< of what was written
   };
   void discard_all();
   [[nodiscard]] const File* find(std::string_view name) const;

@@ -1,0 +1,87 @@
+// A machine with assumed pivots: no program without `accept_assumed`, and with it a warning on every page and in the program.
+#include <cctype>
+#include <nlohmann/json.hpp>
+
+#include "program.h"
+
+namespace toothpath::testing {
+namespace {
+
+/// The quick sample on a machine of its own whose tilt axis nobody measured.
+class AssumedPivot : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    write_file(dir / "m.toml", replaced(file_text(std::string(TOOTHPATH_MACHINES) + "/xyzac_large.toml"), "assumed = false", "assumed = [\"axes.A.point\"]"));
+  }
+  static std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    const auto at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return at == std::string::npos ? text : text.replace(at, from.size(), to);
+  }
+  std::string job(const std::string& accept) {
+    const std::string path = dir / "job.toml";
+    write_file(path, replaced(file_text(kSamples + "/spur_quick.toml"), "file = \"xyzac_large.toml\"", "file = \"m.toml\"\n" + accept));
+    return path;
+  }
+  TestDir dir;
+};
+
+TEST_F(AssumedPivot, NoProgramUnlessTheJobAcceptsIt) {
+  for (const char* accept : {"", "accept_assumed = false"}) {
+    const std::string path = job(accept);
+    const Finished run = run_program({"run", path, "--out", dir / "out"});
+    EXPECT_EQ(run.exit_code, 3);
+    EXPECT_EQ(run.err, path + ":20:8: error: m.toml has assumed values (axes.A.point); measure them, or accept them with accept_assumed = true\n");
+    EXPECT_TRUE(names_in(dir / "out").empty());
+  }
+}
+
+TEST_F(AssumedPivot, EveryPageAndTheProgramCarryTheWarning) {
+  const Finished run = run_program({"run", job("accept_assumed = true"), "--out", dir / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("m.toml: axes.A.point"), std::string::npos) << run.out;
+  int pages = 0;
+  for (const auto& name : names_in(dir / "out")) {
+    if (!name.ends_with(".html")) continue;
+    ++pages;
+    const std::string page = file_text(dir / ("out/" + name));
+    EXPECT_NE(page.find("m.toml: axes.A.point"), std::string::npos) << name;
+    EXPECT_NE(page.find("ssumed"), std::string::npos) << name;
+  }
+  EXPECT_GE(pages, 3);
+  const std::string program = file_text(dir / "out/program.ngc");
+  const auto warning = program.find("(WARNING, ASSUMED AND NOT MEASURED:)\n(ASSUMED M.TOML: AXES.A.POINT)\n");
+  ASSERT_NE(warning, std::string::npos) << program.substr(0, 600);
+  EXPECT_LT(warning, program.find("\nG"));
+  const auto report = nlohmann::json::parse(file_text(dir / "out/report.json"));
+  EXPECT_EQ(report["assumed"], nlohmann::json::array({"m.toml: axes.A.point"}));
+}
+
+// The dry run that is made to measure the pivots may be written, and says what is assumed.
+TEST_F(AssumedPivot, TheDryRunSaysIt) {
+  const Finished run = run_program({"machine", "test", dir / "m.toml", "--out", dir / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(file_text(dir / "out/machine_test.html").find("axes.A.point"), std::string::npos);
+  EXPECT_NE(file_text(dir / "out/machine_test.ngc").find("ASSUMED AXES.A.POINT"), std::string::npos);
+  ASSERT_EQ(run_program({"machine", "show", dir / "m.toml", "--out", dir / "shown"}).exit_code, 0);
+  const std::string shown = file_text(dir / "shown/machine.html");
+  EXPECT_NE(shown.find("1 values assumed"), std::string::npos);
+}
+
+// Danger 29: the report names the bytes that lie there; danger 24: the first lines and the last ones name the same hash and blocks.
+TEST_F(AssumedPivot, TheReportNamesTheBytesOnTheDisk) {
+  ASSERT_EQ(run_program({"run", job("accept_assumed = true"), "--out", dir / "out"}).exit_code, 0);
+  const auto report = nlohmann::json::parse(file_text(dir / "out/report.json"));
+  const std::string program = file_text(dir / "out/program.ngc");
+  const std::string command = "sha256sum '" + (dir / "out/program.ngc") + "' > '" + (dir / "sum") + "'";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(report["program"]["sha256"].get<std::string>(), file_text(dir / "sum").substr(0, 64));
+  const auto first = program.find("(HASH "), last = program.rfind("(HASH ");
+  ASSERT_NE(first, last);
+  const auto line_of = [&](std::size_t at) { return program.substr(at, program.find('\n', at) - at); };
+  EXPECT_EQ(line_of(first), line_of(last));
+  EXPECT_LT(program.size() - last, 60u);
+}
+
+}  // namespace
+}  // namespace toothpath::testing
