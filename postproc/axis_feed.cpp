@@ -34,7 +34,13 @@ void ToothBuilder::feed_to(const TablePose& from, const RotaryPair& from_angles,
       j.linear_mm = (1 - t) * ja.linear_mm + t * jb.linear_mm;
       for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = (1 - t) * a[k] + t * b[k];
       const TablePose p = chain_.forward(j, length);
-      if (!tcp_) tip_error = std::max(tip_error, (p.tip_mm - ((1 - t) * from.tip_mm + t * to.tip_mm)).norm());
+      const Vec3 chord = (1 - t) * from.tip_mm + t * to.tip_mm;
+      if (cone_ball_) {  // the centre of the ball goes straight, the tool turns about it
+        const Vec3 centre = chord + *cone_ball_ * ((1 - t) * from.axis + t * to.axis), tip = tcp_ ? chord : p.tip_mm;
+        tip_error = std::max(tip_error, (tip + *cone_ball_ * p.axis - centre).norm());
+      } else if (!tcp_) {
+        tip_error = std::max(tip_error, (p.tip_mm - chord).norm());
+      }
       axis_error = std::max(axis_error, angle_between(p.axis, slerp(from.axis, to.axis, t)));
     }
   }
@@ -50,18 +56,31 @@ void ToothBuilder::feed_to(const TablePose& from, const RotaryPair& from_angles,
                   degrees(options.axis_rad));
     return;
   }
-  // The mean of the commands keeps a fixed tilt fixed; where its axis is too far from the great circle, the inverse of that.
-  TablePose middle{0.5 * (from.tip_mm + to.tip_mm), slerp(from.axis, to.axis, 0.5)};
-  std::optional<RotaryPair> angles = RotaryPair{0.5 * (from_angles[0] + to_angles[0]), 0.5 * (from_angles[1] + to_angles[1])};
-  const Vec3 mean_axis = chain_.forward(Joints{Vec3::Zero(), *angles}, length).axis;
-  if (angle_between(mean_axis, middle.axis) <= 0.5 * options.axis_rad)
-    middle.axis = mean_axis;
-  else
-    angles = angles_between(middle.axis, from_angles, to_angles);
-  if (!angles) return;
+  const auto middle = middle_of(from, from_angles, to, to_angles);
+  if (!middle) return;
   ++program_.inserted_blocks;
-  feed_to(from, from_angles, middle, *angles, feed, depth + 1);
-  feed_to(middle, *angles, to, to_angles, feed, depth + 1);
+  feed_to(from, from_angles, middle->pose, middle->angles, feed, depth + 1);
+  feed_to(middle->pose, middle->angles, to, to_angles, feed, depth + 1);
+}
+
+/// The mean of the commands keeps a fixed tilt fixed; where its axis is too far from the great circle, the inverse of that. In the
+/// cone about a pole the commands rule and the axis follows from them.
+std::optional<ToothBuilder::Middle> ToothBuilder::middle_of(const TablePose& from, const RotaryPair& from_angles, const TablePose& to,
+                                                            const RotaryPair& to_angles) {
+  Middle m{{0.5 * (from.tip_mm + to.tip_mm), slerp(from.axis, to.axis, 0.5)},
+           {0.5 * (from_angles[0] + to_angles[0]), 0.5 * (from_angles[1] + to_angles[1])}};
+  const Vec3 mean_axis = chain_.forward(Joints{Vec3::Zero(), m.angles}, words_.length()).axis;
+  if (cone_ball_) {
+    m.pose.tip_mm += *cone_ball_ * (0.5 * (from.axis + to.axis) - mean_axis);
+    m.pose.axis = mean_axis;
+  } else if (angle_between(mean_axis, m.pose.axis) <= 0.5 * job_.options.axis_rad) {
+    m.pose.axis = mean_axis;
+  } else {
+    const auto angles = angles_between(m.pose.axis, from_angles, to_angles);
+    if (!angles) return std::nullopt;
+    m.angles = *angles;
+  }
+  return m;
 }
 
 /// The solution for an axis in the middle of a step, on the branch of its ends.
@@ -151,6 +170,7 @@ void ToothBuilder::push_feed(const TablePose& target, const RotaryPair& rotaries
   const auto ruler = std::max_element(times, times + kTimeTerms) - times;
   ++program_.time_ruled[static_cast<std::size_t>(ruler)];
   AxisBlock& pushed = blocks_->back();
+  pushed.ruler = static_cast<std::uint8_t>(ruler);
   pushed.minutes = times[ruler];
   if (!(pushed.minutes > 0)) {
     error_ = fail("operation {} record {}: a block takes no time", operation_->operation, record_);

@@ -9,8 +9,6 @@ std::optional<Diagnostic> check_machine(const Machine& machine) {
   if (machine.kind != MachineKind::five_axis) return fail("machine \"{}\" is not a milling machine", machine.name);
   if (machine.post.length_reference != LengthReference::tip)
     return fail("machine \"{}\": length_reference: only \"tip\" is posted", machine.name);
-  if (machine.post.pole != PoleOption::error && machine.post.pole != PoleOption::slow)
-    return fail("machine \"{}\": pole: only \"error\" and \"slow\" are posted", machine.name);
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k)
     if (!(machine.chain.rotary(k).max_speed > 0)) return fail("axes.{}.max_speed must be above 0", machine.chain.rotary(k).letter);
   for (std::size_t i = 0; i < 3; ++i)

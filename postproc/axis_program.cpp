@@ -9,6 +9,7 @@
 #include "postproc/axis_clearance.h"
 #include "postproc/axis_inputs.h"
 #include "postproc/axis_solution.h"
+#include "postproc/axis_time.h"
 #include "postproc/axis_tooth.h"
 #include "postproc/axis_travel.h"
 #include "postproc/fixed_point.h"
@@ -19,6 +20,7 @@ namespace {
 constexpr double kCoincident = 1e-9;      // mm: the gear axis lies on the index axis
 constexpr double kParallel = 1e-12;       // sine of the angle between gear axis and index axis
 constexpr std::size_t kMostBlocks = 20'000'000;  // of 100 bytes in memory, and 50 to 100 bytes of text each
+constexpr double kLeastPoleTilt = radians(5);  // kept by pole = "tilt" where the machine file does not say
 
 /// Decides about angles, loop and copies; the blocks of a tooth come from ToothBuilder.
 class Builder {
@@ -37,6 +39,7 @@ class Builder {
       if (!choose_all(true)) program_.loop = false;  // one tooth at a time may still find its turns
     }
     if (!program_.loop && !choose_all(false)) return *error_;
+    note_poles();
     if (program_.loop && options_.loop_needs_constant_index && index_moves_inside_passes()) program_.loop = false;
     if (program_.loop && rounding_of_loop() > options_.nc_step_mm) program_.loop = false;
     if (auto bad = check_size()) return *bad;
@@ -47,17 +50,50 @@ class Builder {
     if (program_.rounding_bound_mm > options_.nc_step_mm)
       return fail("rounding the words moves the tip by up to {:.6f} mm, more than {:.6f}", program_.rounding_bound_mm,
                   options_.nc_step_mm);
+    if (options_.search_origin) {
+      poses_.emplace(chain_, machine_.limit_margin, coincident_ ? std::optional(chain_.table[0].direction) : std::nullopt);
+      placed_.collect(&*poses_);
+    }
     const AxisJob job{machine_, body_, options_, teeth_, gear_, coincident_};
     ToothBuilder builder(job, program_, placed_, setup_.work_offset_at_mm);
     for (std::size_t p = 0; p < paths_.size(); ++p)
       if (auto bad = operation(p, builder)) return *bad;
-    if (auto bad = check_travel(program_, machine_, placed_)) return *bad;
+    if (poses_) program_.offer = poses_->best();
+    if (auto bad = check_travel(program_, machine_, placed_)) return with_offer(*bad);
     finish();
     return std::move(program_);
   }
 
  private:
   [[nodiscard]] bool tcp() const { return machine_.tcp != TcpMode::none; }
+
+  /// Only for a program that is refused as it stands: it takes as long as the program itself.
+  void try_offer() {
+    TravelOffer& offer = *program_.offer;
+    if (*std::min_element(offer.room_then_mm.begin(), offer.room_then_mm.end()) < 0) return;
+    Setup there = setup_;
+    there.origin_mm += offer.shift_mm;
+    there.work_offset_at_mm += offer.shift_mm;
+    AxisOptions options = options_;
+    options.search_origin = false;
+    offer.posted = Builder(paths_, tools_, there, machine_, teeth_, body_, options).build().has_value();
+  }
+  /// The error of a travel that is exceeded, with the place of the part that has the most room.
+  Diagnostic with_offer(Diagnostic bad) {
+    if (!program_.offer) return bad;
+    try_offer();
+    const TravelOffer& offer = *program_.offer;
+    const auto& room = offer.room_then_mm;
+    const Vec3 at = setup_.origin_mm + offer.shift_mm, work = setup_.work_offset_at_mm + offer.shift_mm;
+    if (offer.posted)
+      bad.message += fmt::format("; most room: set-up origin [{:.3f}, {:.3f}, {:.3f}] with work_offset_at [{:.3f}, {:.3f}, {:.3f}] leaves X {:.3f}, Y {:.3f}, "
+                                 "Z {:.3f} mm",
+                                 at.x(), at.y(), at.z(), work.x(), work.y(), work.z(), room[0], room[1], room[2]);
+    else if (*std::min_element(room.begin(), room.end()) < 0)
+      bad.message += fmt::format("; nowhere{} does the part have room: at best X {:.3f}, Y {:.3f}, Z {:.3f} mm", offer.on_index_axis ? " on the axis that turns it" : "",
+                                 room[0], room[1], room[2]);
+    return bad;
+  }
 
   void describe_machine() {
     program_.format = options_.format;
@@ -129,35 +165,78 @@ class Builder {
     }
     return out;
   }
+  PoleRules pole_rules(const ToolAssembly& tool) const {
+    const PostSettings& post = machine_.post;
+    PoleRules rules;
+    rules.option = post.pole;
+    if (chain_.rotary_count() > 0) rules.letter = chain_.rotary(0).letter;
+    rules.ball = tool.type == CutterType::ball_end_mill;
+    rules.ball_radius_mm = rules.ball ? tool.radius_mm() : 0;
+    const bool moves = post.pole == PoleOption::hold || post.pole == PoleOption::through || post.pole == PoleOption::retract;
+    rules.change_rad = moves ? post.pole_angle_rad.value_or(options_.axis_rad) : options_.axis_rad;
+    if (!rules.ball) rules.change_rad = std::min(rules.change_rad, options_.axis_rad);
+    rules.keep_rad = post.pole == PoleOption::tilt ? post.pole_angle_rad.value_or(kLeastPoleTilt) : 0;
+    rules.body = body_;
+    rules.margin_mm = options_.clearance_margin_mm;
+    return rules;
+  }
+  /// Poles handled, then the angles. @param rotation table frame from the gear frame of this tooth
+  Result<FollowedPath> follow(std::size_t p, const Mat3& rotation, bool leave_room_for_index) {
+    FollowedPath out;
+    out.planned = paths_[p];
+    const PoleRules rules = pole_rules(tools_[static_cast<std::size_t>(paths_[p]->tool)]);
+    std::vector<Vec3> poles = poles_of(chain_);
+    for (Vec3& pole : poles) pole = rotation.transpose() * pole;
+    auto handled = handle_poles(*paths_[p], poles, rules);
+    if (!handled) return handled.error();
+    out.changed = std::move(*handled);
+    out.ball_radius_mm = rules.ball_radius_mm;
+    if (out.changed && out.changed->passages > 0) {
+      program_.pole_axis_rad = std::max(program_.pole_axis_rad, rules.change_rad);
+      program_.pole_tip_mm = std::max(program_.pole_tip_mm, 2 * rules.ball_radius_mm * std::sin(rules.change_rad / 2));
+    }
+    auto angles = choose_rotaries(out.path(), rotation, chain_, ranges(leave_room_for_index), machine_.post.pole,
+                                  out.changed ? out.changed->switches : std::vector<char>{});
+    if (!angles) return angles.error();
+    out.angles = std::move(*angles);
+    return out;
+  }
   /// Angles of tooth 0 for every path; false (and error_) if some path has none.
   bool choose_all(bool leave_room_for_index) {
-    angles_.clear();
+    followed_.clear();
     error_.reset();
-    for (const ClPath* path : paths_) {
-      auto a = choose_rotaries(*path, gear_.rotation, chain_, ranges(leave_room_for_index), machine_.post.pole);
-      if (!a) {
-        error_ = a.error();
+    for (std::size_t p = 0; p < paths_.size(); ++p) {
+      auto f = follow(p, gear_.rotation, leave_room_for_index);
+      if (!f) {
+        error_ = f.error();
         return false;
       }
-      angles_.push_back(std::move(*a));
+      followed_.push_back(std::move(*f));
     }
     return true;
   }
+  void note_poles() {
+    bool changed = false;
+    for (const auto& f : followed_) {
+      changed = changed || f.changed;
+      program_.pole_passages += f.changed ? f.changed->passages : 0;
+    }
+    if (changed)
+      for (const auto& f : followed_) program_.followed.push_back(f.path());
+  }
   bool index_moves_inside_passes() const {
-    for (std::size_t p = 0; p < paths_.size(); ++p)
-      for (std::size_t i = 1; i < angles_[p].size(); ++i)
-        if (paths_[p]->records[i].kind != MoveKind::rapid &&
-            words_.rotary_word(angles_[p][i][0]) != words_.rotary_word(angles_[p][i - 1][0]))
+    for (const auto& f : followed_)
+      for (std::size_t i = 1; i < f.angles.size(); ++i)
+        if (f.path().records[i].kind != MoveKind::rapid && words_.rotary_word(f.angles[i][0]) != words_.rotary_word(f.angles[i - 1][0]))
           return true;
     return false;
   }
   /// Angles of tooth k of path p. Parallel axes: those of tooth 0 further on by the index, in whole turns that fit.
-  Result<std::vector<RotaryPair>> tooth_angles(std::size_t p, int k) const {
-    if (k == 0) return angles_[p];
-    if (!parallel_) {
-      return choose_rotaries(*paths_[p], tooth_rotation(k), chain_, ranges(false), machine_.post.pole);
-    }
-    auto a = angles_[p];
+  Result<FollowedPath> tooth_angles(std::size_t p, int k) {
+    if (k == 0) return followed_[p];
+    if (!parallel_) return follow(p, tooth_rotation(k), false);
+    FollowedPath turned = followed_[p];
+    auto& a = turned.angles;
     double least = a.front()[0], greatest = least;
     for (const auto& r : a) {
       least = std::min(least, r[0]);
@@ -169,7 +248,7 @@ class Builder {
       const double shift = index + 2 * kPi * turn;
       if (least + shift < range.lower - 1e-9 || greatest + shift > range.upper + 1e-9) continue;
       for (auto& r : a) r[0] += shift;
-      return a;
+      return turned;
     }
     return fail_as(DiagnosticKind::verification, "operation {} tooth {}: {} = {:.4f} .. {:.4f} deg outside [{:.4f}, {:.4f}]",
                    paths_[p]->operation, k, chain_.table[0].letter, degrees(least + index), degrees(greatest + index),
@@ -210,11 +289,11 @@ class Builder {
       op.teeth.push_back({k, {}});
       auto& blocks = op.teeth.back().blocks;
       if (copies_ && k > 0) {
-        turned_copy(op.teeth.front().blocks, angles->front()[0] - angles_[p].front()[0], k, blocks);
+        turned_copy(op.teeth.front().blocks, angles->angles.front()[0] - followed_[p].angles.front()[0], k, blocks);
         builder.take_over(blocks, k);
       } else {
         blocks.reserve(path.records.size() + 16);
-        builder.tooth(path, *angles, next->front(), k, tooth_rotation(k), blocks);
+        builder.tooth(*angles, next->angles.front(), k, tooth_rotation(k), blocks);
       }
       if (builder.error()) return builder.error();
       angles = std::move(next);
@@ -239,6 +318,7 @@ class Builder {
       program_.feed_minutes += op.feed_minutes;
       program_.minutes += op.feed_minutes + op.rapid_minutes;
     }
+    estimate_times(program_, machine_);
   }
 
   std::span<const ClPath* const> paths_;
@@ -252,10 +332,11 @@ class Builder {
   AxisWords words_;
   ClearanceBody body_;
   AxisProgram program_;
-  std::vector<std::vector<RotaryPair>> angles_;  // tooth 0, by path
+  std::vector<FollowedPath> followed_;  // tooth 0, by path
   bool parallel_ = false, coincident_ = false, copies_ = false;
   std::optional<Diagnostic> error_;
   TravelRecord placed_;
+  std::optional<TravelPoses> poses_;
 };
 
 Result<AxisProgram> build_from(std::span<const ClPath* const> paths, std::span<const ToolAssembly> tools, const Setup& setup,

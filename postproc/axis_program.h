@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -41,6 +42,7 @@ struct AxisOptions {
   double clearance_margin_mm = 5; ///< between the clearance body and the tool tip on rapids
   double max_inverse_time = 0;    ///< greatest F in G93 that the control takes, 1/min; 0: no limit. Faster blocks are slowed
   bool loop_needs_constant_index = false;  ///< the dialect cannot shift a word in a sub-program: loop only where it stands still
+  bool search_origin = true;      ///< look for the set-up with the most room in the travels
   bool expand_teeth = false;      ///< write every tooth out even where the loop would do
   bool tcp_starts_at_zero = false;  ///< TCP freezes the table frame where it is switched on: only with the rotaries at zero
   bool tcp_loop = false;          ///< the dialect can turn the frame of a loop about the gear axis while TCP is on
@@ -67,6 +69,7 @@ struct AxisBlock {
   Vec3 axis = Vec3::UnitZ(); ///< with TCP: tool axis at the end of the block, table frame
   std::int32_t record = -1;  ///< index of the CL record that the block goes to; -1: a link
   BlockKind kind = BlockKind::feed;
+  std::uint8_t ruler = 0;    ///< feed blocks: the entry of `time_rulers` that decided the time
   bool forced = false;       ///< print every word of the kind: first block after a break
   bool tip = false;          ///< the linear words are the tip in the table frame (TCP is on)
 };
@@ -79,6 +82,11 @@ struct ToothBlocks {
   bool pause = false;   ///< the program stops behind the blocks until it is started again
 };
 
+/// Run time over all teeth.
+struct TimedMinutes {
+  double feed = 0, rapid = 0;
+};
+
 struct AxisOperation {
   int operation = 0;  ///< index in the job
   std::string type;
@@ -88,6 +96,7 @@ struct AxisOperation {
   double spindle_rpm = 0;
   std::vector<ToothBlocks> teeth;  ///< one entry in a loop, else z entries in order
   double feed_minutes = 0, rapid_minutes = 0;  ///< over all teeth
+  TimedMinutes accelerated;                    ///< the same with the accelerations of the axes, where the machine states them
 };
 
 /// Least and greatest position of one axis over all teeth, against its limits [mm or rad, machine coordinates].
@@ -95,6 +104,14 @@ struct AxisRange {
   char letter = '?';
   bool rotary = false;
   double min = 0, max = 0, lower_limit = 0, upper_limit = 0;
+};
+
+/// Where the part would stand with the most room in the travels of X Y Z.
+struct TravelOffer {
+  Vec3 shift_mm = Vec3::Zero();        ///< of set-up origin and work offset, machine axes
+  std::array<double, 3> room_now_mm{}, room_then_mm{};  ///< X Y Z: distance to the nearer limit, limit_margin taken off; < 0: beyond
+  bool on_index_axis = false;          ///< the gear stays on the axis that turns it: only shifts along it were looked at
+  bool posted = false;                 ///< a program was built there and fits; tried only where this one exceeds a travel
 };
 
 struct AxisProgram {
@@ -119,6 +136,13 @@ struct AxisProgram {
   double rounding_bound_mm = 0;             ///< proven: rounding the words moves the tip by no more (section 4)
   double chord_bound_mm = 0;                ///< proven: the tip leaves the CL chord inside a block by no more (section 3)
   double axis_bound_rad = 0;                ///< the same for the tool axis
+  std::vector<ClPath> followed;             ///< the paths where poles were handled by changing them (tooth 0); empty: as given
+  std::size_t pole_passages = 0;            ///< of tooth 0, handled
+  double pole_axis_rad = 0;                 ///< proven: handling poles moves the tool axis by no more ..
+  double pole_tip_mm = 0;                   ///< .. and the tip, about the centre of the ball, which stays
+  bool has_acceleration = false;            ///< the machine states them: `accelerated` is filled in
+  TimedMinutes accelerated;                 ///< over all operations
+  std::optional<TravelOffer> offer;         ///< empty: not looked for, or too many directions of the part
   std::size_t inserted_blocks = 0;          ///< by the subdivision
   std::size_t dropped_blocks = 0;           ///< all words equal to those before
 };

@@ -49,8 +49,8 @@ std::vector<Run> runs_of(const ClPath& path) {
 class Chooser {
  public:
   Chooser(const ClPath& path, const Mat3& rotation, const KinematicChain& chain, const std::array<RotaryRange, 2>& ranges,
-          PoleOption pole)
-      : path_(path), rotation_(rotation), chain_(chain), ranges_(ranges), pole_(pole), count_(chain.rotary_count()) {}
+          PoleOption pole, const std::vector<char>& switches)
+      : path_(path), rotation_(rotation), chain_(chain), ranges_(ranges), pole_(pole), switches_(switches), count_(chain.rotary_count()) {}
 
   Result<std::vector<RotaryPair>> choose() {
     const auto runs = runs_of(path_);
@@ -87,7 +87,9 @@ class Chooser {
     chain.pair = pair;
     std::size_t free_until[2] = {run.first, run.first};  // leading records with this rotary free
     bool exists = false;
+    int wanted = pair;
     for (std::size_t i = run.first; i < run.last; ++i) {
+      if (!switches_.empty() && switches_[i] != 0) wanted = 3 - wanted;
       auto list = solutions(i);
       if (!list) {
         why = list.error();
@@ -95,7 +97,7 @@ class Chooser {
       }
       const JointSolution* chosen = nullptr;
       for (const auto& s : *list)
-        if (s.pair == pair) chosen = &s;
+        if (s.pair == wanted) chosen = &s;
       exists = exists || chosen != nullptr;
       if (chosen == nullptr) chosen = &list->front();
       RotaryPair angles = chosen->joints.rotary_rad;
@@ -158,6 +160,7 @@ class Chooser {
       std::set<int> first;
       const int near_zero = static_cast<int>(std::lround(-chains[c].angles.front()[0] / kTurn));
       for (int t = near_zero - kNearTurns; t <= near_zero + kNearTurns; ++t) first.insert(std::clamp(t, low0, std::max(low0, high0)));
+      first.insert({low0, high0});  // the most room to wind up again
       if (before != nullptr)
         for (const auto& s : *before) {
           const double end = (*chains_before)[s.chain].angles.back()[0] + kTurn * s.turns[0];
@@ -235,6 +238,7 @@ class Chooser {
   const KinematicChain& chain_;
   std::array<RotaryRange, 2> ranges_;
   PoleOption pole_;
+  const std::vector<char>& switches_;
   std::size_t count_;
   std::optional<std::vector<JointSolution>> cached_;
   Vec3 cached_axis_ = Vec3::Zero();
@@ -247,8 +251,9 @@ double nearest_turn(double angle, double reference) {
 }
 
 Result<std::vector<RotaryPair>> choose_rotaries(const ClPath& path, const Mat3& table_from_gear, const KinematicChain& chain,
-                                                const std::array<RotaryRange, 2>& ranges, PoleOption pole) {
-  return Chooser(path, table_from_gear, chain, ranges, pole).choose();
+                                                const std::array<RotaryRange, 2>& ranges, PoleOption pole,
+                                                const std::vector<char>& switches) {
+  return Chooser(path, table_from_gear, chain, ranges, pole, switches).choose();
 }
 
 }  // namespace toothpath

@@ -26,11 +26,13 @@ struct RotaryRange {
 /// angle of its neighbour.
 /// @param table_from_gear directions of the gear frame in the table frame
 /// @param ranges of the two rotaries, margins taken off
+/// @param switches not empty: one a record; where it is set, on a pole, the pass goes on with the other pair of angles
 /// Errors: no angle reaches an axis; no candidate inside the ranges; a block inside a pass in which a rotary would turn by
-/// 170 deg or, near the pole, by more than 30 deg.
+/// 170 deg or, near the pole, by more than 30 deg (handle_poles leaves no such block).
 [[nodiscard]] Result<std::vector<RotaryPair>> choose_rotaries(const ClPath& path, const Mat3& table_from_gear,
                                                               const KinematicChain& chain,
-                                                              const std::array<RotaryRange, 2>& ranges, PoleOption pole);
+                                                              const std::array<RotaryRange, 2>& ranges, PoleOption pole,
+                                                              const std::vector<char>& switches = {});
 
 /// angle + whole turns, nearest to `reference`.
 [[nodiscard]] double nearest_turn(double angle, double reference);

@@ -20,8 +20,10 @@ void ToothBuilder::begin(AxisOperation& operation, double tool_length_mm) {
   at_retract_ = true;  // the rotaries stay, Z is at its top; before the first operation they stand at zero
 }
 
-void ToothBuilder::tooth(const ClPath& path, const std::vector<RotaryPair>& angles, const RotaryPair& next_start, int k,
-                         const Mat3& rotation, std::vector<AxisBlock>& blocks) {
+void ToothBuilder::tooth(const FollowedPath& followed, const RotaryPair& next_start, int k, const Mat3& rotation,
+                         std::vector<AxisBlock>& blocks) {
+  const ClPath& path = followed.path();
+  const auto& angles = followed.angles;
   blocks_ = &blocks;
   tooth_ = k;
   const auto pose = [&](std::size_t i) {
@@ -32,7 +34,7 @@ void ToothBuilder::tooth(const ClPath& path, const std::vector<RotaryPair>& angl
   pending_minutes_ = 0;
   if (stays_in_tcp) start_at_zero();
   for (std::size_t i = 0; i < path.records.size() && !error_; ++i) {
-    record_ = static_cast<std::int32_t>(i);
+    record_ = followed.record(i);
     if (path.records[i].kind == MoveKind::rapid) {
       if (stays_in_tcp)
         tip_link_to(pose(i), words_.rounded(angles[i]));
@@ -40,6 +42,7 @@ void ToothBuilder::tooth(const ClPath& path, const std::vector<RotaryPair>& angl
         rapid_to(pose(i), words_.rounded(angles[i]));
     } else {
       if (program_.tcp != TcpMode::none && !tcp_) tcp_on();
+      cone_ball_ = followed.in_cone(i) ? std::optional(followed.ball_radius_mm) : std::nullopt;
       feed_to(pose(i - 1), angles[i - 1], pose(i), angles[i], path.records[i].feed_mm_min, 0);
     }
   }
@@ -84,7 +87,9 @@ double ToothBuilder::rotary_time(const Joints& a, const Joints& b) const {
 
 void ToothBuilder::note_position(const Joints& j) {
   const bool at_top = last_.kind != BlockKind::feed && !last_.tip && last_.words[2] == words_.joint_word(program_.retract_z_mm, 2);
-  travel_.note(j, !at_top, operation_->operation, record_, tooth_, chain_, job_.machine.limit_margin);
+  // Where the rotaries turn, X Y Z stand where the pose before left them: that one moves with the part.
+  const bool turns = last_.kind == BlockKind::rapid_rotary;
+  travel_.note(j, !at_top && !turns, operation_->operation, record_, tooth_, chain_, job_.machine.limit_margin);
 }
 
 ToothBuilder::TipTimes ToothBuilder::follow_tip(const AxisBlock& from, const AxisBlock& to) {

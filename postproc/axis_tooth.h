@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "postproc/axis_clearance.h"
+#include "postproc/axis_pole.h"
 #include "postproc/axis_program.h"
 #include "postproc/axis_travel.h"
 #include "postproc/axis_words.h"
@@ -33,6 +34,18 @@ struct AxisJob {
   bool coincident = false;  ///< the first rotary of the table turns the gear about its own axis
 };
 
+/// A path with the rotaries of its records.
+struct FollowedPath {
+  const ClPath* planned = nullptr;
+  std::optional<PolePath> changed;  ///< where poles had to be handled: followed instead
+  std::vector<RotaryPair> angles;
+  double ball_radius_mm = 0;        ///< in the cone about a pole the tool turns about this centre
+
+  [[nodiscard]] const ClPath& path() const { return changed ? changed->path : *planned; }
+  [[nodiscard]] std::int32_t record(std::size_t i) const { return changed ? changed->source[i] : static_cast<std::int32_t>(i); }
+  [[nodiscard]] bool in_cone(std::size_t i) const { return changed && changed->in_cone[i] != 0; }
+};
+
 class ToothBuilder {
  public:
   ToothBuilder(const AxisJob& job, AxisProgram& program, TravelRecord& travel, const Vec3& work_offset_mm);
@@ -40,8 +53,7 @@ class ToothBuilder {
   /// A new tool: the machine stands at the top of Z.
   void begin(AxisOperation& operation, double tool_length_mm);
   /// Blocks of one tooth. @param rotation table frame from the gear frame of this tooth; @param next_start rotaries of the next
-  void tooth(const ClPath& path, const std::vector<RotaryPair>& angles, const RotaryPair& next_start, int k, const Mat3& rotation,
-             std::vector<AxisBlock>& blocks);
+  void tooth(const FollowedPath& path, const RotaryPair& next_start, int k, const Mat3& rotation, std::vector<AxisBlock>& blocks);
   /// Counts blocks that were made by turning those of another tooth.
   void take_over(const std::vector<AxisBlock>& blocks, int k);
 
@@ -84,6 +96,11 @@ class ToothBuilder {
   // axis_feed.cpp
   void feed_to(const TablePose& from, const RotaryPair& from_angles, const TablePose& to, const RotaryPair& to_angles, double feed,
                int depth);
+  struct Middle {
+    TablePose pose;
+    RotaryPair angles;
+  };
+  std::optional<Middle> middle_of(const TablePose& from, const RotaryPair& from_angles, const TablePose& to, const RotaryPair& to_angles);
   std::optional<RotaryPair> angles_between(const Vec3& axis, const RotaryPair& a, const RotaryPair& b);
   void note_bounds(const Joints& a, const Joints& b, const TablePose& from, const TablePose& to, double axis_error);
   void push_feed(const TablePose& to, const RotaryPair& rotaries, double feed);
@@ -103,6 +120,7 @@ class ToothBuilder {
   bool positioned_ = false;  // X and Y have been commanded
   bool tcp_ = false;         // switched on
   double pending_minutes_ = 0;
+  std::optional<double> cone_ball_;  // the step lies in the cone about a pole: ball radius, 0 for other tools
 };
 
 }  // namespace toothpath

@@ -25,6 +25,7 @@ void TravelRecord::note(const Joints& joints, bool moves_with_part, int operatio
       first_.push_back(fmt::format("operation {} record {} (tooth {}): {}", operation, record, tooth, violation.text()));
   }
   if (!moves_with_part) return;
+  if (poses_ != nullptr) poses_->note(joints);
   const Vec3 zero = chain.table_to_machine(Vec3::Zero(), joints.rotary_rad);
   for (int m = 0; m < 3; ++m) {
     const Vec3 moved = chain.table_to_machine(Vec3::Unit(m), joints.rotary_rad) - zero;

@@ -12,6 +12,7 @@
 #include "machines/machine.h"
 #include "postproc/axis_program.h"
 #include "postproc/setup.h"
+#include "postproc/travel_offer.h"
 
 namespace toothpath {
 
@@ -21,6 +22,9 @@ class TravelRecord {
   /// One end of a block. `moves_with_part`: false where Z stands at its own top, whatever the set-up.
   void note(const Joints& joints, bool moves_with_part, int operation, int record, int tooth, const KinematicChain& chain,
             const LimitMargin& margin);
+
+  /// Poses that move with the part go to `poses`, too.
+  void collect(TravelPoses* poses) { poses_ = poses; }
 
   [[nodiscard]] const std::array<double, 5>& least() const { return least_; }
   [[nodiscard]] const std::array<double, 5>& greatest() const { return greatest_; }
@@ -35,10 +39,11 @@ class TravelRecord {
   std::array<double, 3> shift_low_{-kFar, -kFar, -kFar}, shift_high_{kFar, kFar, kFar};
   std::size_t count_ = 0;
   bool rotary_outside_ = false;
+  TravelPoses* poses_ = nullptr;
   std::vector<std::string> first_;
 };
 
-/// Fills `program.ranges`; the error lists the first 20 violations, their number and the shift that would fit.
+/// Fills `program.ranges`; the error lists the first 20 violations, their number and the shifts along one axis that would fit.
 [[nodiscard]] std::optional<Diagnostic> check_travel(AxisProgram& program, const Machine& machine, const TravelRecord& record);
 
 }  // namespace toothpath

@@ -65,21 +65,28 @@ class Walk {
     return measure();
   }
 
-  /// Feed motions as long as they come nearer to the record; each must stay on the chord from the record before.
+  /// Feed motions up to the one that comes nearest to the record; each must stay on the chord from the record before. Between two
+  /// ends of a block the tip may stray by the tolerance, so that it may also fall back by it on the way.
   bool feed() {
     const Vec3 from = path_.records[record_ - 1].tip, to = record().tip;
     double minutes = 0, length = 0;
-    while (next_ < motions_.size() && !motions_[next_]->rapid) {
+    double nearest = off(tip_, axis_);
+    std::size_t end = next_;
+    for (std::size_t j = next_; j < motions_.size() && !motions_[j]->rapid; ++j) {
+      const double then = off(motions_[j]->tip_to, motions_[j]->axis_to);
+      if (then > nearest + tolerance_) break;
+      if (then > nearest) continue;
+      nearest = then;
+      end = j + 1;
+    }
+    for (; next_ < end; ++next_) {
       const ToolMotion& m = *motions_[next_];
-      const double now = off(tip_, axis_), then = off(m.tip_to, m.axis_to);
-      if (then > now) break;
       const double extra = distance_to_segment(m.tip_to, from, to);
       result_.worst_extra_mm = std::max(result_.worst_extra_mm, extra);
       if (extra > tolerance_) return miss("a block leaves the path before this record", extra);
       minutes += m.minutes;
       length += (m.tip_to - m.tip_from).norm();
       stand_at(m);
-      ++next_;
     }
     if (minutes > 0) {
       const double ratio = length / minutes / record().feed_mm_min;
