@@ -13,6 +13,7 @@
 #include "postproc/axis_tooth.h"
 #include "postproc/axis_travel.h"
 #include "postproc/fixed_point.h"
+#include "postproc/tooth_order.h"
 
 namespace toothpath {
 namespace {
@@ -98,6 +99,7 @@ class Builder {
   void describe_machine() {
     program_.format = options_.format;
     program_.teeth = teeth_;
+    program_.tooth_stride = options_.tooth_stride;
     program_.letters = {'X', 'Y', 'Z', 0, 0};
     for (std::size_t k = 0; k < chain_.rotary_count(); ++k) program_.letters[3 + k] = chain_.rotary(k).letter;
     program_.work_offset = setup_.work_offset;
@@ -282,9 +284,10 @@ class Builder {
     builder.begin(op, tool.length_mm);
     const int written = program_.loop ? 1 : teeth_;
     auto angles = tooth_angles(p, 0);
-    for (int k = 0; k < written; ++k) {
+    for (int n = 0; n < written; ++n) {
+      const int k = tooth_of_place(n, options_.tooth_stride, teeth_);
       if (!angles) return angles.error();
-      auto next = k + 1 < written ? tooth_angles(p, k + 1) : angles;
+      auto next = n + 1 < written ? tooth_angles(p, tooth_of_place(n + 1, options_.tooth_stride, teeth_)) : angles;
       if (!next) return next.error();
       op.teeth.push_back({k, {}});
       auto& blocks = op.teeth.back().blocks;
@@ -298,7 +301,7 @@ class Builder {
       if (builder.error()) return builder.error();
       angles = std::move(next);
     }
-    if (program_.loop) op.rapid_minutes += tooth_angle(teeth_ - 1) / chain_.table[0].max_speed;
+    if (program_.loop) op.rapid_minutes += tooth_angle(1) * pitches_turned(0, options_.tooth_stride, teeth_) / chain_.table[0].max_speed;
     program_.operations.push_back(std::move(op));
     return std::nullopt;
   }

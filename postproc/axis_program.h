@@ -44,6 +44,7 @@ struct AxisOptions {
   bool loop_needs_constant_index = false;  ///< the dialect cannot shift a word in a sub-program: loop only where it stands still
   bool search_origin = true;      ///< look for the set-up with the most room in the travels
   bool expand_teeth = false;      ///< write every tooth out even where the loop would do
+  int tooth_stride = 1;           ///< place n of the order cuts tooth n * stride mod z (tooth_order.h); 1: the sequence
   bool tcp_starts_at_zero = false;  ///< TCP freezes the table frame where it is switched on: only with the rotaries at zero
   bool tcp_loop = false;          ///< the dialect can turn the frame of a loop about the gear axis while TCP is on
 };
@@ -94,7 +95,8 @@ struct AxisOperation {
   double tool_length_mm = 0;
   std::string tool_name;  ///< for the header comment
   double spindle_rpm = 0;
-  std::vector<ToothBlocks> teeth;  ///< one entry in a loop, else z entries in order
+  std::vector<ToothBlocks> teeth;  ///< one entry in a loop, else one a tooth in the order of the program
+  int first_place = 0;             ///< where the order begins; not 0 only in a program that begins in the middle
   double feed_minutes = 0, rapid_minutes = 0;  ///< over all teeth
   TimedMinutes accelerated;                    ///< the same with the accelerations of the axes, where the machine states them
 };
@@ -104,6 +106,11 @@ struct AxisRange {
   char letter = '?';
   bool rotary = false;
   double min = 0, max = 0, lower_limit = 0, upper_limit = 0;
+};
+
+/// Where a program begins that leaves out what was cut before.
+struct ProgramRestart {
+  int operation = 0, tooth = 0;
 };
 
 /// Where the part would stand with the most room in the travels of X Y Z.
@@ -119,6 +126,8 @@ struct AxisProgram {
   std::array<char, 5> letters{};            ///< X Y Z and the two rotaries; 0: no such axis
   int teeth = 1;
   bool loop = false;                        ///< one tooth is held; the index rotary turns it
+  int tooth_stride = 1;                     ///< as in the options
+  std::optional<ProgramRestart> restart;    ///< the program begins there, not at its beginning
   int index_axis = -1;                      ///< 3 or 4: which word is shifted by the index
   int index_sign = 1;                       ///< word of tooth k = word + index_sign * k * 360 / z
   TcpMode tcp = TcpMode::none;              ///< how the blocks of a cut are meant

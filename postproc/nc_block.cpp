@@ -151,12 +151,16 @@ class Parser {
       if (const auto n = number(point)) push(NcStep::Kind::number, *n);
     }
   }
+  /// MOD binds as a product does; 0 <= r < abs(b), as LinuxCNC makes it.
+  bool modulo_here() const {
+    return i_ + 2 < line_.size() && upper(line_[i_]) == 'M' && upper(line_[i_ + 1]) == 'O' && upper(line_[i_ + 2]) == 'D';
+  }
   void product(int depth) {
     primary(depth);
-    for (skip_blanks(); !problem_ && (at() == '*' || at() == '/'); skip_blanks()) {
-      const auto kind = at() == '*' ? NcStep::Kind::multiply : NcStep::Kind::divide;
-      ++i_;
-      if (at() == '*') return stop(i_, "powers are not in the subset");
+    for (skip_blanks(); !problem_ && (at() == '*' || at() == '/' || modulo_here()); skip_blanks()) {
+      const auto kind = at() == '*' ? NcStep::Kind::multiply : at() == '/' ? NcStep::Kind::divide : NcStep::Kind::modulo;
+      i_ += kind == NcStep::Kind::modulo ? 3 : 1;
+      if (kind == NcStep::Kind::multiply && at() == '*') return stop(i_, "powers are not in the subset");
       primary(depth);
       push(kind);
     }

@@ -1,6 +1,7 @@
 // One line of NC text as a list of words, expressions kept as a short program for a stack. Knows no meaning of a word.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -12,7 +13,7 @@ namespace toothpath {
 
 /// Step of an expression in postfix order.
 struct NcStep {
-  enum class Kind : std::uint8_t { number, parameter, negate, add, subtract, multiply, divide, lt, le, gt, ge, eq, ne };
+  enum class Kind : std::uint8_t { number, parameter, negate, add, subtract, multiply, divide, modulo, lt, le, gt, ge, eq, ne };
   Kind kind = Kind::number;
   double value = 0;  ///< of a number; index of a parameter
 };
@@ -78,6 +79,11 @@ template <typename Parameters>
         case K::divide:
           if (b == 0) return fail("division by zero");
           a = a / b;
+          break;
+        case K::modulo:
+          if (b == 0) return fail("remainder of a division by zero");
+          a = std::fmod(a, b);
+          if (a < 0) a += std::abs(b);
           break;
         case K::lt: a = a < b ? 1 : 0; break;
         case K::le: a = a <= b ? 1 : 0; break;

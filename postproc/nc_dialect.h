@@ -4,8 +4,10 @@
 // Lines are templates: {offset} G54 .., {datum} 1 for G54 and so on, {tool} number, {speed} 1/min, {top} machine Z of the
 // retract, {work_top} the same as a Z word with this tool's length, {z} Z word of the block that switches TCP on, {blend} mm,
 // {free} a feed where nothing is cut, {teeth}, {last} = teeth - 1, {label} and {label+1} numbers that belong to the operation
-// alone, {sign} and {frame_sign} "-" or nothing, {number} and {name} of the program, {id} its name in letters and digits. The
-// line "{safe_start}" stands for all lines of `safe_start`. Values are printed in the format of the dialect.
+// alone, {sign} and {frame_sign} "-" or nothing, {number} and {name} of the program, {id} its name in letters and digits. In the
+// loop over the teeth: {first} place of the order that it begins with, {stride} of the order, {tooth} the variable that holds the
+// tooth. The line "{safe_start}" stands for all lines of `safe_start`, "{pick}" for those of `pick` where the order is spread,
+// "{first_tooth}" for the comment that names the line behind it. Values are printed in the format of the dialect.
 #pragma once
 
 #include <array>
@@ -34,6 +36,8 @@ struct NcLoop {
   };
   Form form = Form::none;
   NcLinesOfText before, after, call;
+  NcLinesOfText pick;            ///< the tooth from its place in the order, by whole numbers; in sequence the place is the tooth
+  std::string place, tooth;      ///< the variables of place and picked tooth
   std::string index;             ///< ahead of the number of the index rotary: "R2" prints C=R2+12.5
   bool index_brackets = false;   ///< "[#1+12.5]"
   /// Controls without arithmetic in a word: this line ahead of a block that changes the index angle, with {angle}; `index` is

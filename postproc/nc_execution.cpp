@@ -1,6 +1,7 @@
 #include "postproc/nc_execution.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,15 @@ constexpr double kFlip = 170;         // deg: a tool vector that turns further i
 
 bool known(const std::array<double, 5>& joints) {
   return std::none_of(joints.begin(), joints.end(), [](double v) { return std::isnan(v); });
+}
+
+std::uint64_t print_of(const Vec3& v) {
+  std::uint64_t h = 14695981039346656037ULL;
+  for (int i = 0; i < 3; ++i) {
+    const auto bits = std::bit_cast<std::uint64_t>(v[i]);
+    for (int k = 0; k < 64; k += 8) h = (h ^ ((bits >> k) & 0xff)) * 1099511628211ULL;
+  }
+  return h;
 }
 
 Vec3 turned(const Vec3& v, double deg) {
@@ -198,6 +208,7 @@ NcExecution::Problem NcExecution::move(const Move& m, std::int32_t line) {
   if (auto bad = tcp_ ? tip_goal(m, goal, tip, e.commanded) : goal_of(m, goal, tip, e.commanded)) return bad;
   e.joints = goal;
   e.tip = tip;
+  if (m.vector) e.vector_print = print_of(*m.vector);
   e.tcp = tcp_;
   e.known = known(goal) && known(joints_);
   e.line = line;

@@ -1,5 +1,5 @@
 // Executes the subset of Heidenhain plain text that a gear program needs: L and LN blocks, TCPM, rotation cycle, datum cycle,
-// tolerance cycle, Q parameters, repeated sections. Everything else is refused where it stands.
+// tolerance cycle, Q parameters, repeated sections, a jump to a label. Everything else is refused where it stands.
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -96,6 +96,7 @@ class Heidenhain {
   Problem statement(NcScanner& s, int column) {
     if (s.take("LBL ")) return (void)s.number(), std::nullopt;
     if (s.take("CALL LBL ")) return repeat(s);
+    if (s.take("FN 12: IF ")) return jump_if_less(s);
     if (s.at() == 'Q' || s.take("FN 0: ") || s.take("FN 1: ")) return assign(s);
     if (s.take("TOOL CALL ")) return tool_call(s, column);
     if (s.take("CYCL DEF ")) return cycle(s, column);
@@ -118,6 +119,7 @@ class Heidenhain {
   }
   Result<double> expression(NcScanner& s) {
     const int column = s.column();
+    s.set_truncation("INT");
     auto v = s.expression([this](NcScanner& p) -> const double* {
       const auto n = parameter_number(p);
       const auto found = n ? parameters_.find(*n) : parameters_.end();
@@ -171,6 +173,24 @@ class Heidenhain {
     } else {
       repeats_.erase(entry);
     }
+    return std::nullopt;
+  }
+
+  /// IF value LT value GOTO LBL number
+  Problem jump_if_less(NcScanner& s) {
+    const auto a = word_value(s);
+    if (!a) return a.error();
+    s.skip_blanks();
+    if (!s.take("LT ")) return here(s.column(), "LT expected");
+    const auto b = word_value(s);
+    if (!b) return b.error();
+    s.skip_blanks();
+    if (!s.take("GOTO LBL ")) return here(s.column(), "GOTO LBL expected");
+    const int column = s.column();
+    const auto label = s.number();
+    const auto found = label ? labels_.find(*label) : labels_.end();
+    if (found == labels_.end()) return here(column, "GOTO LBL of a label that does not exist");
+    if (*a < *b) pc_ = found->second + 1;
     return std::nullopt;
   }
 

@@ -33,9 +33,48 @@ NcLines::Values program_values(const AxisProgram& program, const NcDialect& dial
   values["free"] = unsigned_value(kFreeFeed, 0);
   values["teeth"] = std::to_string(program.teeth);
   values["last"] = std::to_string(program.teeth - 1);
+  values["stride"] = std::to_string(program.tooth_stride);
+  values["tooth"] = program.tooth_stride == 1 ? dialect.loop.place : dialect.loop.tooth;
   values["sign"] = program.index_sign < 0 ? "0-" : "";
   values["frame_sign"] = program.frame_sign < 0 ? "0-" : "";
   return values;
+}
+
+std::vector<std::string> header_comments(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header,
+                                         std::string_view hash) {
+  std::vector<std::string> out = {comment_text("JOB " + header.job_name)};
+  if (!header.job_hash.empty()) out.push_back(comment_text("JOB FILE " + header.job_hash));
+  out.push_back(comment_text("MACHINE " + header.machine_name));
+  out.emplace_back(hash);
+  out.emplace_back("TOOL LENGTHS RUN FROM THE GAUGE LINE TO THE TIP");
+  const auto at = [&](int i) {
+    const std::int64_t scaled = to_fixed(program.work_offset_at_mm[i], 4);
+    std::string s = dialect.sign_always && scaled >= 0 ? "+" : "";
+    append_fixed(s, scaled, 4, dialect.point_always);
+    return s;
+  };
+  out.push_back(fmt::format("WORK OFFSET {} AT X{} Y{} Z{} MM MACHINE", program.work_offset, at(0), at(1), at(2)));
+  if (program.tcp != TcpMode::none && !dialect.tcp_note.empty()) out.push_back(comment_text(dialect.tcp_note));
+  for (auto& line : order_comments(program)) out.push_back(std::move(line));
+  if (!header.assumed.empty()) out.emplace_back("WARNING, ASSUMED AND NOT MEASURED:");
+  for (const auto& a : header.assumed) out.push_back(comment_text("ASSUMED " + a));
+  return out;
+}
+
+std::vector<std::string> order_comments(const AxisProgram& program) {
+  std::vector<std::string> out;
+  if (program.tooth_stride != 1)
+    out.push_back(fmt::format("TOOTH ORDER SPREAD: PLACE N CUTS TOOTH N * {} MOD {}", program.tooth_stride, program.teeth));
+  if (program.restart) {
+    out.push_back(fmt::format("RESTART AT OPERATION {} TOOTH {}", program.restart->operation, program.restart->tooth));
+    out.emplace_back("WHAT THE WHOLE PROGRAM CUTS BEFORE THAT IS TAKEN AS DONE");
+  }
+  return out;
+}
+
+std::string first_tooth_comment(const AxisProgram& program) {
+  if (program.tooth_stride == 1) return fmt::format("FIRST TOOTH, 0 TO {}", program.teeth - 1);
+  return fmt::format("FIRST TOOTH BY ITS PLACE, 0 TO {}: TOOTH = PLACE * {} MOD {}", program.teeth - 1, program.tooth_stride, program.teeth);
 }
 
 std::uint64_t fnv1a(std::string_view bytes) {

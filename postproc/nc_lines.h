@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "postproc/nc_dialect.h"
 
@@ -48,5 +49,13 @@ class NcLines {
 
 /// Values of the templates that are the same throughout a program.
 [[nodiscard]] NcLines::Values program_values(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
+
+/// Comments at the top of a program. @param hash the line that stands at the end too
+[[nodiscard]] std::vector<std::string> header_comments(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header,
+                                                       std::string_view hash);
+/// Those that tell the order of the teeth and where the program begins, if not as usual.
+[[nodiscard]] std::vector<std::string> order_comments(const AxisProgram& program);
+/// Names the line behind it: where the operator may set another first tooth.
+[[nodiscard]] std::string first_tooth_comment(const AxisProgram& program);
 
 }  // namespace toothpath

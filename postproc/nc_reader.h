@@ -61,6 +61,7 @@ struct ExecutedMove {
   std::int16_t tooth = -1;      ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
   bool machine = false;         ///< G53, or the block that switches tool length compensation on
   bool known = false;           ///< all joints were known before and after
+  std::uint64_t vector_print = 0;  ///< of the words of a tool vector, FNV-1a over their bytes; 0: rotary words
 };
 
 /// Executes `text` and hands every move to `sink`, in order. Stops with a located error (line and column of `file`) at

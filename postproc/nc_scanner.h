@@ -62,6 +62,9 @@ class NcScanner {
     return line_[begin] == '-' ? -v : v;
   }
 
+  /// The control's name for cutting off the digits behind the point: "TRUNC" or "INT"; empty: none.
+  void set_truncation(std::string_view name) { truncation_ = name; }
+
   /// Sums, products, signs and brackets over numbers and parameters. `parameter(scanner)` reads a name and returns a pointer to
   /// its value, null where it has none.
   template <typename Parameter>
@@ -115,6 +118,11 @@ class NcScanner {
       if (inner && negative) return -*inner;
       return inner;
     }
+    if (!truncation_.empty() && line_.substr(i_, truncation_.size()) == truncation_ && !is_letter(at_offset(truncation_.size()))) {
+      i_ += truncation_.size();
+      const auto inner = primary(parameter, depth + 1);
+      return inner ? Result<double>(std::trunc(*inner)) : inner;
+    }
     if (is_letter(at())) {
       const double* p = parameter(*this);
       if (p == nullptr) return fail("a parameter that was never set, or no parameter");
@@ -124,7 +132,9 @@ class NcScanner {
     return fail("number expected");
   }
 
-  std::string_view line_;
+  [[nodiscard]] char at_offset(std::size_t n) const { return i_ + n < line_.size() ? line_[i_ + n] : '\0'; }
+
+  std::string_view line_, truncation_;
   std::size_t i_ = 0;
 };
 

@@ -84,6 +84,7 @@ class Siemens {
 
   Result<double> expression(NcScanner& s) {
     const int column = s.column();
+    s.set_truncation("TRUNC");
     auto v = s.expression([this](NcScanner& p) { return parameter(p); });
     if (!v) return here(column, v.error().message);
     if (!std::isfinite(*v) || std::abs(*v) > 1e9) return here(column, "value is not a number below 1e9");

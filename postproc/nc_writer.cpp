@@ -10,6 +10,7 @@
 #include "postproc/fixed_point.h"
 #include "postproc/nc_lines.h"
 #include "postproc/nc_stretches.h"
+#include "postproc/tooth_order.h"
 
 namespace toothpath {
 namespace {
@@ -45,6 +46,10 @@ class Writer {
     for (const auto& t : templates)
       if (t == "{safe_start}")
         out_.fill(dialect_.safe_start, values_);
+      else if (t == "{pick}")
+        out_.fill(program_.tooth_stride == 1 ? NcLinesOfText{} : dialect_.loop.pick, values_);
+      else if (t == "{first_tooth}")
+        out_.comment(first_tooth_comment(program_));
       else
         out_.fill({t}, values_);
   }
@@ -70,6 +75,7 @@ class Writer {
     values_["speed"] = std::to_string(std::llround(op.spindle_rpm));
     values_["label"] = std::to_string(kFirstLabel + 2 * position);
     values_["label+1"] = std::to_string(kFirstLabel + 2 * position + 1);
+    values_["first"] = std::to_string(op.first_place);
     values_["work_top"] = linear(program_.retract_z_mm - op.tool_length_mm - program_.work_offset_at_mm.z());
     out_.comment(fmt::format("OP {} {}", op.operation, op.type));  // as in the job, in every dialect: programs look for it
     out_.comment(comment_text(fmt::format("T{} {} LENGTH {} MM TO THE TIP", op.tool_number, op.tool_name,
@@ -121,7 +127,8 @@ class Writer {
     const int first = kFirstSubprogram + static_cast<int>(subprograms_.size());
     for (const auto& s : *segments) subprograms_.push_back({&op, s});
     const auto index = static_cast<std::size_t>(program_.index_axis);
-    for (int k = 0; k < program_.teeth; ++k) {
+    for (int n = op.first_place; n < program_.teeth; ++n) {
+      const int k = tooth_of_place(n, program_.tooth_stride, program_.teeth);
       for (std::size_t i = 0; i < segments->size(); ++i) {
         AxisBlock turn = tooth[(*segments)[i].first];
         turn.words[index] += ratio_to_fixed(std::int64_t{360} * k * program_.index_sign, program_.teeth,
@@ -342,26 +349,13 @@ class Writer {
     std::string body = std::move(out_.text());
     out_.text().clear();
     fill(dialect_.frame_begin);
-    header_comments(hash);
+    for (const auto& line : header_comments(program_, dialect_, header_, hash)) out_.comment(line);
     out_.text() += body;
     out_.comment(hash);
     fill(dialect_.frame_end);
     if (out_.error()) return *out_.error();
     result.text = dialect_.block_numbers ? NcLines::numbered(out_.text()) : std::move(out_.text());
     return result;
-  }
-
-  void header_comments(const std::string& hash) {
-    out_.comment(comment_text("JOB " + header_.job_name));
-    if (!header_.job_hash.empty()) out_.comment(comment_text("JOB FILE " + header_.job_hash));
-    out_.comment(comment_text("MACHINE " + header_.machine_name));
-    out_.comment(hash);
-    out_.comment("TOOL LENGTHS RUN FROM THE GAUGE LINE TO THE TIP");
-    const auto at = [&](int i) { return out_.value(to_fixed(program_.work_offset_at_mm[i], 4), 4); };
-    out_.comment(fmt::format("WORK OFFSET {} AT X{} Y{} Z{} MM MACHINE", program_.work_offset, at(0), at(1), at(2)));
-    if (tcp_ && !dialect_.tcp_note.empty()) out_.comment(comment_text(dialect_.tcp_note));
-    if (!header_.assumed.empty()) out_.comment("WARNING, ASSUMED AND NOT MEASURED:");
-    for (const auto& a : header_.assumed) out_.comment(comment_text("ASSUMED " + a));
   }
 
   const AxisProgram& program_;

@@ -29,6 +29,7 @@ class Apt {
       feed_ = -1;
       for (const auto& tooth : op.teeth) {
         out_.comment(fmt::format("TOOTH {}", tooth.tooth));
+        feed_ = -1;  // a tooth can be begun with
         for (const auto& b : tooth.blocks) block(b);
       }
       if (header_.coolant) out_.line("COOLNT/OFF");

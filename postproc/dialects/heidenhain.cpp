@@ -1,6 +1,8 @@
 // Heidenhain TNC 640, plain text. There is no inverse time feed, so that blocks in which rotaries move need TCPM; without it
 // the tilt is fixed in every pass. Cycle 32 bounds the blending of the corners and counts in the proof. The teeth run in a
-// repeated section; a word takes no arithmetic, so that the index angle is a Q parameter, set ahead of each rotary block.
+// section that is jumped back to (a count of repetitions would not follow a changed first tooth); a word takes no arithmetic, so that
+// the index angle is a Q parameter, set ahead of each rotary block. The remainder of the spread order is made with INT, half a unit
+// away from where it could fall on the wrong side.
 #include "postproc/nc_dialect.h"
 
 namespace toothpath {
@@ -32,11 +34,14 @@ NcDialect heidenhain_dialect() {
   d.vector_words = {"TX", "TY", "TZ"};
   d.vector_feed = "LN";
   d.loop.form = NcLoop::Form::in_line;
-  d.loop.before = {"Q1 = 0", "LBL {label}", "Q2 = {sign}Q1 * 360 / {teeth}"};
-  d.loop.after = {"Q1 = Q1 + 1", "CALL LBL {label} REP{last}"};
+  d.loop.before = {"{first_tooth}", "Q1 = {first}", "LBL {label}", "{pick}", "Q2 = {sign}{tooth} * 360 / {teeth}"};
+  d.loop.after = {"Q1 = Q1 + 1", "FN 12: IF +Q1 LT +{teeth} GOTO LBL {label}"};
+  d.loop.pick = {"Q6 = ( Q1 * {stride} + 0.5 ) / {teeth}", "Q6 = INT Q6", "Q4 = Q1 * {stride} - Q6 * {teeth}"};
+  d.loop.place = "Q1";
+  d.loop.tooth = "Q4";
   d.loop.index_line = "FN 1: Q5 = +Q2 + {angle}";
   d.loop.index = "+Q5";
-  d.loop.frame_on = {"Q3 = {frame_sign}Q1 * 360 / {teeth}", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+Q3"};
+  d.loop.frame_on = {"Q3 = {frame_sign}{tooth} * 360 / {teeth}", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+Q3"};
   d.loop.frame_off = {"CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+0"};
   return d;
 }

@@ -24,8 +24,11 @@ NcDialect linuxcnc_dialect() {
   d.loop.form = NcLoop::Form::sub_program;
   d.loop.before = {"o{label} sub"};
   d.loop.after = {"o{label} endsub"};
-  d.loop.call = {"#1=0", "o{label+1} while [#1 LT {teeth}]", "o{label} call [{sign}#1*360/{teeth}]", "#1=[#1+1]",
-                 "o{label+1} endwhile"};
+  d.loop.call = {"{first_tooth}", "#1={first}", "o{label+1} while [#1 LT {teeth}]", "{pick}", "o{label} call [{sign}{tooth}*360/{teeth}]",
+                 "#1=[#1+1]", "o{label+1} endwhile"};
+  d.loop.pick = {"#2=[[#1*{stride}] MOD {teeth}]"};
+  d.loop.place = "#1";
+  d.loop.tooth = "#2";
   d.loop.index = "#1";
   d.loop.index_brackets = true;
   return d;

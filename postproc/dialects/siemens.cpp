@@ -1,6 +1,7 @@
 // Siemens 840D sl. TRAORI and TRAFOOF may drop the frames (machine data 10602), so that the work offset stands behind each of
 // them. G641 ADIS bounds the blending of the corners, the compressor stays off: both count in the proof. The teeth run in a
-// FOR loop of the control; with TRAORI the programmable frame ROT turns with them. ORIAXES: the rotaries are linear between
+// FOR loop of the control; with TRAORI the programmable frame ROT turns with them. MOD is for whole variables only there, so that the
+// remainder of the spread order is made with TRUNC, half a unit away from where it could fall on the wrong side. ORIAXES: the rotaries are linear between
 // the blocks, also where a block carries the tool vector A3 B3 C3.
 #include "postproc/nc_dialect.h"
 
@@ -28,10 +29,13 @@ NcDialect siemens_dialect() {
   d.tcp_off = {"TRAFOOF", "{offset}"};
   d.vector_words = {"A3=", "B3=", "C3="};
   d.loop.form = NcLoop::Form::in_line;
-  d.loop.before = {"FOR R1=0 TO {last}", "R2={sign}R1*360/{teeth}"};
+  d.loop.before = {"{first_tooth}", "FOR R1={first} TO {last}", "{pick}", "R2={sign}{tooth}*360/{teeth}"};
+  d.loop.pick = {"R4=R1*{stride}-{teeth}*TRUNC((R1*{stride}+0.5)/{teeth})"};
+  d.loop.place = "R1";
+  d.loop.tooth = "R4";
   d.loop.after = {"ENDFOR"};
   d.loop.index = "R2";
-  d.loop.frame_on = {"R3={frame_sign}R1*360/{teeth}", "ROT Z=R3"};
+  d.loop.frame_on = {"R3={frame_sign}{tooth}*360/{teeth}", "ROT Z=R3"};
   d.loop.frame_off = {"ROT"};
   return d;
 }

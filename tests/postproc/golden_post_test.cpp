@@ -6,7 +6,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "tests/postproc/nc_case.h"
+#include "tests/postproc/post_forms.h"
 
 namespace toothpath {
 namespace {
@@ -19,6 +19,7 @@ struct Golden {
   TcpMode tcp;
   double swing;
   bool expand;
+  int teeth = 2, stride = 1, steps = 3;
 };
 void PrintTo(const Golden& g, std::ostream* out) { *out << g.file; }
 
@@ -35,18 +36,18 @@ INSTANTIATE_TEST_SUITE_P(Files, GoldenPost,
                                          Golden{"heidenhain_joints.h", "heidenhain", TcpMode::none, 0, false},
                                          Golden{"heidenhain_tcp.h", "heidenhain", TcpMode::angles, 0, false},
                                          Golden{"heidenhain_vectors.h", "heidenhain", TcpMode::vectors, 0.1, true},
-                                         Golden{"cutter_location.apt", "apt", TcpMode::vectors, 0.1, true}));
+                                         Golden{"cutter_location.apt", "apt", TcpMode::vectors, 0.1, true},
+                                         Golden{"linuxcnc_spread.ngc", "linuxcnc", TcpMode::none, 0.1, false, 5, 2, 1},
+                                         Golden{"fanuc_spread.nc", "fanuc", TcpMode::none, 0, false, 5, 2, 1},
+                                         Golden{"siemens_spread.mpf", "siemens", TcpMode::angles, 0.1, false, 5, 2, 1},
+                                         Golden{"heidenhain_spread.h", "heidenhain", TcpMode::angles, 0, false, 5, 2, 1}));
 
 TEST_P(GoldenPost, ByteForByte) {
   const Golden& g = GetParam();
-  Machine m = with_dialect(trunnion(), g.dialect);
-  m.tcp = g.tcp;
-  if (std::string(g.dialect) == "linuxcnc") {
-    m.post.tcp_on = {"M428"};
-    m.post.tcp_off = {"M429"};
-  }
-  ClPath path = sample_path(0.3, g.swing, 3);
-  const auto text = nc_text({path}, m, standing(), 2, g.expand);
+  const PostForm form{g.dialect, g.tcp, g.swing, g.expand};
+  const auto program = program_of(form, {sample_path(0.3, g.swing, g.steps)}, g.teeth, g.stride);
+  ASSERT_TRUE(program) << program.error().message;
+  const auto text = text_of(form, *program);
   ASSERT_TRUE(text) << text.error().message;
   const std::string file = std::string(TOOTHPATH_SOURCE_DIR) + "/tests/golden/posts/" + g.file;
   if (std::getenv("TOOTHPATH_WRITE_GOLDEN") != nullptr) std::ofstream(file, std::ios::binary) << text->text;

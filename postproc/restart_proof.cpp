@@ -1,0 +1,148 @@
+#include "postproc/restart_proof.h"
+
+#include <bit>
+#include <limits>
+#include <vector>
+
+namespace toothpath {
+namespace {
+
+struct Count {
+  std::size_t total = 0;          ///< all moves
+  std::size_t lead = 0;           ///< machine moves ahead of the first tooth of the operation
+  std::size_t of_operation = 0;   ///< moves of its teeth and the retract behind them
+  std::size_t trail = 0;
+  bool started = false, labelled = false;
+};
+
+Result<Count> count_moves(std::string_view text, const std::string& file, const NcControl& control, int operation) {
+  Count c;
+  const auto sink = [&](const ExecutedMove& m) {
+    ++c.total;
+    if (m.operation != operation) return;
+    c.started = c.started || !m.machine;
+    c.labelled = c.labelled || m.tooth >= 0;
+    ++(c.started ? c.of_operation : c.lead);
+    c.trail = c.started && m.machine ? c.trail + 1 : 0;
+  };
+  if (auto s = execute_nc(text, file, control, sink); !s) return s.error();
+  return c;
+}
+
+/// A move as a number, without the axes that had no word since the first tooth began. Two moves that differ have the same number
+/// once in 2^64.
+class Fingerprint {
+ public:
+  std::uint64_t of(const ExecutedMove& m) {
+    set_ = static_cast<std::uint8_t>(set_ | m.commanded);
+    h_ = 14695981039346656037ULL;
+    add(static_cast<std::uint64_t>(m.operation) << 32 | static_cast<std::uint32_t>(m.tool));
+    add(static_cast<std::uint64_t>(m.tooth) << 16 | static_cast<std::uint64_t>(m.commanded) << 4 | (m.rapid ? 1U : 0U) | (m.tcp ? 2U : 0U) |
+        (m.machine ? 4U : 0U));
+    // A vector stands for the rotaries: which of their positions has it follows from where they stood.
+    add(m.vector_print);
+    for (std::size_t a = m.tcp ? 3 : 0; a < 5; ++a)
+      if ((set_ & (1U << a)) != 0 && m.vector_print == 0) add(std::bit_cast<std::uint64_t>(m.joints[a]));
+    if (m.tcp)
+      for (int i = 0; i < 3; ++i) add(std::bit_cast<std::uint64_t>(m.tip[i]));
+    if (!m.rapid) add(std::bit_cast<std::uint64_t>(m.minutes));
+    add(std::bit_cast<std::uint32_t>(m.blend_mm));
+    return h_;
+  }
+  /// Every axis of the machine has had its word.
+  [[nodiscard]] bool all_set(const NcControl& control) const {
+    for (std::size_t a = 0; a < 5; ++a)
+      if (control.letters[a] != 0 && (set_ & (1U << a)) == 0) return false;
+    return true;
+  }
+
+ private:
+  void add(std::uint64_t v) {
+    h_ = (h_ ^ v) * 1099511628211ULL;
+    h_ ^= h_ >> 32;
+  }
+  std::uint8_t set_ = 0;
+  std::uint64_t h_ = 0;
+};
+
+struct Kept {
+  std::uint64_t print = 0;
+  std::int32_t line = 0;
+};
+
+}  // namespace
+
+Result<RestartProof> prove_restart(std::string_view whole, std::string_view restart, const std::string& file, const NcControl& control, int operation,
+                                   int tooth, int place, int teeth) {
+  const auto all = count_moves(whole, file, control, operation);
+  if (!all) return all.error();
+  const auto part = count_moves(restart, file, control, operation);
+  if (!part) return part.error();
+  RestartProof proof;
+  proof.least.fill(std::numeric_limits<double>::infinity());
+  proof.greatest.fill(-std::numeric_limits<double>::infinity());
+  const auto differs = [&](int line, int whole_line, std::string what) {
+    if (proof.difference.empty()) {
+      proof.line = line;
+      proof.whole_line = whole_line;
+      proof.difference = std::move(what);
+    }
+  };
+  const auto z = static_cast<std::size_t>(teeth), left = static_cast<std::size_t>(teeth - place);
+  // Where no comment names the teeth their number of moves does.
+  if (!all->labelled && (part->of_operation - part->trail) * z != (all->of_operation - all->trail) * left)
+    differs(0, 0, fmt::format("operation {} has {} moves from tooth {} on, not {} of {} teeth of the {} of the whole program", operation,
+                              part->of_operation - part->trail, tooth, left, teeth, all->of_operation - all->trail));
+  const std::size_t tail = part->total - part->lead;
+  if (tail > all->total) differs(0, 0, "the restart has more moves than the whole program");
+  if (!proof.difference.empty()) return proof;
+
+  std::vector<Kept> kept;
+  kept.reserve(tail);
+  std::size_t i = 0;
+  Fingerprint print;
+  ExecutedMove before;
+  auto s = execute_nc(whole, file, control, [&](const ExecutedMove& m) {
+    if (i++ < all->total - tail) {
+      before = m;
+      return;
+    }
+    if (kept.empty() && m.tooth >= 0 && before.operation == operation && before.tooth == m.tooth && !before.machine)
+      differs(0, m.line, "the restart begins inside a tooth");
+    if (kept.empty() && (m.operation != operation || (m.tooth >= 0 && m.tooth != tooth)))
+      differs(0, m.line, fmt::format("the whole program is at operation {} tooth {} there", m.operation, m.tooth));
+    kept.push_back({print.of(m), m.line});
+  });
+  if (!s) return s.error();
+
+  i = 0;
+  Fingerprint own;
+  bool cut = false;
+  s = execute_nc(restart, file, control, [&](const ExecutedMove& m) {
+    for (std::size_t a = 0; a < 5; ++a) {
+      if (m.joints[a] < proof.least[a]) proof.least[a] = m.joints[a];
+      if (m.joints[a] > proof.greatest[a]) proof.greatest[a] = m.joints[a];
+    }
+    if (!cut) proof.approach.moves.push_back(m);
+    cut = cut || !m.rapid;
+    const std::size_t n = i++;
+    if (n < part->lead) {
+      if (!m.machine) differs(m.line, 0, "a move ahead of the first tooth is no machine move");
+      return;
+    }
+    const Kept& k = kept[n - part->lead];
+    if (own.of(m) != k.print) differs(m.line, k.line, "another move than in the whole program");
+    if (!m.rapid && !own.all_set(control)) differs(m.line, k.line, "a cut before every axis has had its word");
+    proof.line_of.emplace(k.line, m.line);
+  });
+  if (!s) return s.error();
+  proof.moves = i - part->lead;
+  proof.approach.operation = operation;
+  proof.approach.lead = part->lead;
+  proof.approach.tool = proof.approach.moves.empty() ? 0 : proof.approach.moves.back().tool;
+  proof.approach.kept_teeth = 1;
+  proof.same = proof.difference.empty();
+  return proof;
+}
+
+}  // namespace toothpath
