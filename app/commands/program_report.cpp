@@ -39,6 +39,7 @@ void note_axis_program(RunReport& report, const Job& job, std::span<const ClPath
   report.axes = program.ranges;
   report.feed_minutes = program.feed_minutes;
   report.total_minutes = program.minutes;
+  report.block_times = block_times_of(program);
   for (const AxisOperation& o : program.operations) {
     const auto& asked = job.operations[static_cast<std::size_t>(o.operation)];
     OperationReport operation{o.operation, o.type, o.tool_number, asked.speed_rpm, asked.feed_mm_min, 0, o.feed_minutes, o.rapid_minutes};

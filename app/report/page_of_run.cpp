@@ -114,6 +114,7 @@ ReportPage page_of_run(const Job& job, const RunReport& r, const std::vector<ClP
     for (const auto& place : r.gouge->worst) lines.push_back(place.line);
     page.listing = nc_excerpts(program, lines);
   }
+  if (r.block_times) page.block_times = block_time_chart(*r.block_times);
   page.excess = r.excess;
   page.ledger = r.ledger;
   page.directions = r.directions;

@@ -132,6 +132,13 @@ void add_motion(Json& json, const RunReport& r) {
                                          {"unit", axis.rotary ? "deg" : "mm"}};
   }
   json["axes"] = std::move(axes);
+  if (!r.block_times) return;
+  const BlockTimes& t = *r.block_times;
+  Json bins = Json::array(), ruled = Json::object();
+  for (std::size_t i = 0; i < t.counts.size(); ++i)
+    bins.push_back({{"from", std::pow(10.0, t.from_log_ms + t.step_log_ms * static_cast<double>(i))}, {"blocks", t.counts[i]}});
+  for (const auto& [what, blocks] : t.ruled) ruled[what] = blocks;
+  json["block_time_ms"] = {{"least", t.least_ms}, {"median", t.median_ms}, {"ruled_by", std::move(ruled)}, {"histogram", std::move(bins)}};
 }
 
 }  // namespace

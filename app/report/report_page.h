@@ -83,6 +83,7 @@ struct ReportPage {
   std::vector<ExcessResult> excess;  ///< one histogram an operation
   std::vector<LedgerEntry> ledger;
   std::vector<DirectionChoice> directions;
+  std::optional<HistogramChart> block_times;  ///< how long the cutting blocks take
   std::vector<LineChart> motion;          ///< axis positions, speeds and feed over time; any length, thinned by the writer
   std::vector<LineChart> gear_limits;     ///< where the flanks of the gear end
   std::vector<LineChart> work_precision;  ///< from the study, when there is one

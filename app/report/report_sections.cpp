@@ -219,6 +219,7 @@ std::string direction_section(const ReportPage& page) {
 std::string motion_section(const ReportPage& page) {
   std::string plots;
   for (const LineChart& chart : page.motion) plots += figure(chart.title, svg_line_chart(chart), chart.note);
+  if (page.block_times && !page.block_times->counts.empty()) plots += figure(page.block_times->title, svg_histogram(*page.block_times));
   return section("motion", "Axes over time", plots.empty() ? plots : fmt::format("<div class=\"plots two\">\n{}</div>\n", plots));
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/report/block_times.h"
 #include "app/report/scene_report.h"
 #include "cam/verification.h"
 #include "geometry/flank_correction.h"
@@ -50,6 +51,7 @@ struct RunReport {
   std::vector<OperationReport> operations;
   std::vector<DirectionChoice> directions;
   std::vector<AxisRange> axes;
+  std::optional<BlockTimes> block_times;                 ///< none where no program was posted
   std::vector<LedgerEntry> ledger;
   std::vector<SceneVerdict> scene;                       ///< fixture and stock, where meshes of them were given
   std::vector<CorrectionRow> correction;                 ///< empty: the nominal flanks are the target
