@@ -151,6 +151,7 @@ class JobPlanner {
     if (!direction.fixed) {
       OrientationOptions turning;
       turning.clearance_mm = o_.clearance_mm;
+      turning.least_tilt_rad = o_.least_tilt_rad;
       turning.chord_mm = kTurnShare * std::min(op.chord_tolerance_mm, chord_room(op));
       auto oriented = orient(zone, tool, turning, passes);
       if (const auto* refusal = std::get_if<OrientationRefusal>(&oriented)) {

@@ -29,6 +29,9 @@
 
 namespace toothpath {
 
+/// Least angle to the pole that `tilt` keeps where the machine file does not say.
+inline constexpr double kLeastPoleTilt = radians(5);
+
 struct PoleRules {
   PoleOption option = PoleOption::error;
   char letter = 'C';              ///< of the first rotary axis

@@ -21,7 +21,6 @@ namespace {
 constexpr double kCoincident = 1e-9;      // mm: the gear axis lies on the index axis
 constexpr double kParallel = 1e-12;       // sine of the angle between gear axis and index axis
 constexpr std::size_t kMostBlocks = 20'000'000;  // of 100 bytes in memory, and 50 to 100 bytes of text each
-constexpr double kLeastPoleTilt = radians(5);  // kept by pole = "tilt" where the machine file does not say
 
 /// Decides about angles, loop and copies; the blocks of a tooth come from ToothBuilder.
 class Builder {
