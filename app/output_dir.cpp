@@ -194,7 +194,9 @@ Status OutputDir::commit() {
     for (const File& other : files_) ::unlink(final_path(other.name).c_str());
     discard_all();
     if (!bytes) return bytes.error();
-    return Diagnostic{DiagnosticKind::file_access, {target, 0, 0}, "the file on the disk differs from what was written; all files of this run are removed"};
+    Diagnostic differs = fail_as(DiagnosticKind::file_access, "the file on the disk differs from what was written; all files of this run are removed");
+    differs.position.file = target;
+    return differs;
   }
   for (const File& file : files_) forget_temporary(file.temporary_path);
   for (const auto& directory : made_) forget_temporary(directory);
