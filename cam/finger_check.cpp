@@ -1,9 +1,12 @@
 #include "cam/finger_check.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
+#include "cam/finger_deepest.h"
 #include "cam/finger_milling.h"
 #include "cam/finger_obstacles.h"
 #include "cam/finger_poses.h"
@@ -14,6 +17,7 @@ namespace toothpath {
 namespace {
 
 constexpr std::size_t kWorstPlaces = 20;
+constexpr std::size_t kLookedAt = 16;  // motions whose deepest place is searched
 constexpr double kBelievable = 1.0;  // mm: a larger bound of what is left means a path that is not run
 
 /// A motion turned to tooth space 0.
@@ -100,13 +104,14 @@ struct FingerGougeCheck::State {
   FingerCheckOptions opt;
   std::vector<std::unique_ptr<FingerTool>> states;  // by tool index, only those in use
   std::vector<std::vector<ToolHull>> hulls;         // the same
+  CoaxialBody blank;
   std::vector<CoaxialBody> beside;
   std::optional<Diagnostic> error;
   std::vector<WallPoint> points;
 
   State(const BevelGear& g, std::span<const ToolAssembly> t, std::span<const MillingOperation> o, const Tolerances& tolerances,
         const FingerCheckOptions& options)
-      : gear(g), tools(t.begin(), t.end()), operations(o.begin(), o.end()), tol(tolerances), opt(options), beside(bodies_beside_teeth(g)) {
+      : gear(g), tools(t.begin(), t.end()), operations(o.begin(), o.end()), tol(tolerances), opt(options), blank(blank_body(g)), beside(bodies_beside_teeth(g)) {
     states.resize(tools.size());
     hulls.resize(tools.size());
     for (const auto& op : operations) {
@@ -138,28 +143,33 @@ struct FingerGougeCheck::State {
   bool judge_bodies(const ToolMotion& m, const FingerTool& tool, FingerCheckResult& result) const {
     GougeResult& g = result.gouge;
     const AxialGap above = axial_gap(gear, m);
-    const Vec3 place = motion_tip(m, above.at);
+    const Vec3 tip = motion_tip(m, above.at), axis = motion_axis(m, above.at);
     if (m.rapid && above.gap < 0) {
       g.rapids_clear = false;
-      note_worst(g, place_of(gear, m, place, -above.gap, "flute", "blank, by a rapid"), -1e300);
+      note_worst(g, place_of(gear, m, blank_place(gear, axis, tip), -above.gap, "flute", "blank, by a rapid"), -1e300);
     }
-    const auto need_clearance = [&](double gap, const std::string& body, const std::string& patch) {
+    const auto need_clearance = [&](double gap, const Vec3& place, const std::string& body, const std::string& patch) {
       g.clearance_mm = std::min(g.clearance_mm, gap);
       if (gap < tol.clearance_mm) note_worst(g, place_of(gear, m, place, -gap, body, patch), -1e300);
     };
-    if (!m.rapid) {
-      need_clearance(above.gap + tool.shank_from_mm, "shank", "blank");
-      need_clearance(above.gap + tool.holder_from_mm, "holder", "blank");
+    const auto& bodies = hulls[static_cast<std::size_t>(operations[static_cast<std::size_t>(m.operation)].tool)];
+    for (const ToolHull& hull : bodies) {
+      if (m.rapid || hull.name == "flute") continue;
+      // Along the axis the gap costs nothing; where it is too small, an axis that leans may still leave more.
+      ObstacleGap least{above.gap + (hull.name == "shank" ? tool.shank_from_mm : tool.holder_from_mm), blank_place(gear, axis, tip)};
+      if (least.gap < tol.clearance_mm)
+        if (const ObstacleGap whole = nearest_obstacle(hull, blank, m); whole.gap > least.gap) least = whole;
+      need_clearance(least.gap, least.place, hull.name, "blank");
     }
     for (const CoaxialBody& body : beside)
-      for (const ToolHull& hull : hulls[static_cast<std::size_t>(operations[static_cast<std::size_t>(m.operation)].tool)]) {
-        const double gap = body_gap(hull, body, m);
+      for (const ToolHull& hull : bodies) {
+        const auto [gap, place] = nearest_obstacle(hull, body, m);
         if (m.rapid) {
           if (gap >= 0) continue;
           g.rapids_clear = false;
           note_worst(g, place_of(gear, m, place, -gap, hull.name, body.name + ", by a rapid"), -1e300);
         } else if (hull.name != "flute") {
-          need_clearance(gap, hull.name, body.name);
+          need_clearance(gap, place, hull.name, body.name);
         } else if (gap < 0) {
           g.bound_mm = std::max(g.bound_mm, -gap);
           g.measured_mm = std::max(g.measured_mm, -gap);
@@ -169,23 +179,56 @@ struct FingerGougeCheck::State {
     return !m.rapid && above.gap < 0;
   }
 
+  /// What one motion may do to walls and root: proven, not measured.
+  struct MotionDepth {
+    double bound_mm = -1e300;
+    double dip_mm = 0;           ///< of the tip below the root cone
+    Vec3 lowest = Vec3::Zero();  ///< the tip there
+    std::string patch;
+  };
+
   /// The cutting part against walls and root, one motion.
-  void judge_poses(const ToolMotion& m, const FingerTool& tool, FingerCheckResult& result) const {
+  MotionDepth judge_poses(const ToolMotion& m, const FingerTool& tool, FingerCheckResult& result) const {
     GougeResult& g = result.gouge;
     const PoseSampling sampling = pose_sampling(gear, tool, m);
     PoseDepth worst;
-    double where = 0;
+    MotionDepth out;
     for (int k = 0; k <= sampling.intervals; ++k) {
       const double t = static_cast<double>(k) / sampling.intervals;
       const auto d = pose_depth(gear, tool, motion_tip(m, t), motion_axis(m, t));
       result.root_gouge_mm = std::max(result.root_gouge_mm, d.root);
       result.tilt_rad = std::max(result.tilt_rad, d.tilt);
-      if (d.depth > worst.depth) worst = d, where = t;
+      if (d.root > out.dip_mm) out.dip_mm = d.root, out.lowest = motion_tip(m, t);
+      if (d.depth > worst.depth) worst = d;
       ++g.distance_queries;
     }
-    const double bound = worst.depth + sampling.extra_mm;
-    if (bound > g.bound_mm) g.bound_mm = bound, g.bound_line = m.line;
-    note_worst(g, place_of(gear, m, motion_tip(m, where), bound, "flute", worst.patch), tol.gouge_mm);
+    out.bound_mm = worst.depth + sampling.extra_mm;
+    out.patch = worst.patch;
+    if (out.bound_mm > g.bound_mm) g.bound_mm = out.bound_mm, g.bound_line = m.line;
+    return out;
+  }
+
+  /// The motions with the greatest bounds, looked at on the walls themselves.
+  void judge_deepest(std::span<const ToolMotion> local, std::span<const MotionDepth> depths, FingerCheckResult& result) const {
+    GougeResult& g = result.gouge;
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < depths.size(); ++k)
+      if (depths[k].bound_mm > 0) order.push_back(k);
+    const auto deeper = [&](std::size_t a, std::size_t b) { return depths[a].bound_mm != depths[b].bound_mm ? depths[a].bound_mm > depths[b].bound_mm : a < b; };
+    const std::size_t n = std::min(order.size(), kLookedAt);
+    std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n), order.end(), deeper);
+    std::vector<DeepestCut> found(n);
+    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) { found[k] = deepest_cut(gear, *tool_of(local[order[k]].operation), local[order[k]]); });
+    for (std::size_t k = 0; k < n; ++k) {
+      const ToolMotion& m = local[order[k]];
+      const MotionDepth& d = depths[order[k]];
+      const bool in_wall = found[k].depth_mm >= d.dip_mm;
+      const double depth = std::max(found[k].depth_mm, d.dip_mm);
+      WorstPlace w = place_of(gear, m, in_wall ? found[k].point : d.lowest, depth, "flute", in_wall ? wall_name(found[k].wall) : "root");
+      if (in_wall) w.zone = found[k].half;
+      g.measured_mm = std::max(g.measured_mm, depth);
+      note_worst(g, std::move(w), d.bound_mm > tol.gouge_mm ? -1e300 : tol.gouge_mm);
+    }
   }
 
   /// The deepest wall point that was measured, and the motion that cut it.
@@ -246,8 +289,11 @@ FingerCheckResult FingerGougeCheck::verify(std::span<const ToolMotion> given) co
   std::vector<ToolMotion> local;
   local.reserve(given.size());
   for (const auto& m : given) local.push_back(turned(m, s.gear.pitch()));
-  for (const ToolMotion& m : local)
-    if (const FingerTool* tool = s.tool_of(m.operation); tool && s.judge_bodies(m, *tool, result)) s.judge_poses(m, *tool, result);
+  std::vector<State::MotionDepth> depths(local.size());
+  for (std::size_t k = 0; k < local.size(); ++k)
+    if (const FingerTool* tool = s.tool_of(local[k].operation); tool && s.judge_bodies(local[k], *tool, result))
+      depths[k] = s.judge_poses(local[k], *tool, result);
+  s.judge_deepest(local, depths, result);
 
   // Measured: walls and ridges, first tooth present.
   const std::vector<FingerCut> cuts = s.cuts_of_first_tooth(local);
@@ -285,7 +331,8 @@ Result<CheckedClPath> FingerGougeCheck::approve(ClPath path) const {
   for (const ToolMotion& m : motions_of(path)) {
     FingerCheckResult one;
     one.gouge.clearance_mm = std::numeric_limits<double>::infinity();
-    if (s.judge_bodies(m, *tool, one)) s.judge_poses(m, *tool, one);
+    State::MotionDepth walls;
+    if (s.judge_bodies(m, *tool, one)) walls = s.judge_poses(m, *tool, one);
     const GougeResult& g = one.gouge;
     const auto refuse = [&](const std::string& what) {
       return fail_as(DiagnosticKind::verification, "operation {} record {}: {}", path.operation, m.line, what);
@@ -295,7 +342,7 @@ Result<CheckedClPath> FingerGougeCheck::approve(ClPath path) const {
       return refuse(fmt::format("the {} comes within {:.4f} mm of the {}, less than {:.4f}", g.worst.front().body, g.clearance_mm,
                                 g.worst.front().patch, s.tol.clearance_mm));
     if (g.bound_mm > s.tol.gouge_mm)
-      return refuse(fmt::format("the cutter goes up to {:.4f} mm into {}, more than {:.4f}", g.bound_mm, g.deepest.patch, s.tol.gouge_mm));
+      return refuse(fmt::format("the cutter goes up to {:.4f} mm into {}, more than {:.4f}", g.bound_mm, walls.bound_mm >= g.bound_mm ? walls.patch : g.deepest.patch, s.tol.gouge_mm));
   }
   return CheckedClPath(std::move(path));
 }

@@ -12,6 +12,8 @@ constexpr double kLift = 3.0;        // mm, of the tip above the face cone betwe
 // mm: a block with straight joints (R_c, e) stays this close to the straight tip. Posts move the joints; below their own
 // tolerance of 0.5 um they insert nothing, and only two axes move.
 constexpr double kJointSag = 4e-4;
+constexpr int kPlaces = 8;           // a block is compared with its piece at the ends of so many parts
+constexpr int kMostAttempts = 40;    // each with a twelfth more points
 constexpr int kFine = 96;            // intervals on which the chord error of a piece is measured
 
 using Centre = CutterCentre<double>;
@@ -48,7 +50,7 @@ class Planner {
 
   /// How far a block a..b leaves the exact piece at a point c of it in the same share s, as a multiple of what is allowed:
   /// across the path and down, for a straight tip and for straight joints (R_c, e), and both against each other.
-  double block_error(const Centre& a, const Centre& b, const Centre& c, double s) {
+  double block_error(const Centre& a, const Centre& b, const Centre& c, double s) const {
     const double R_s = a.R_c + s * (b.R_c - a.R_c), e_s = a.e + s * (b.e - a.e);
     const double dR = R_s - c.R_c, dT = a.theta_c + s * (b.theta_c - a.theta_c) - c.theta_c;
     const double joints = std::abs(c.R_c * dT * std::cos(c.beta_c) - dR * std::sin(c.beta_c));
@@ -56,8 +58,46 @@ class Planner {
     const Vec3 q = cutter_from_blank<double>(tip, c.R_c, c.e, sd_, cd_);
     const double across = q.y() * std::cos(c.beta_c) - q.z() * std::sin(c.beta_c);
     const double chord = std::max(joints, std::hypot(across, q.x() + gear_.parameters().dedendum_mm));
-    worst_chord_ = std::max(worst_chord_, chord);
     return std::max(chord / chord_, (tip - gear_.tip(R_s, e_s)).norm() / kJointSag);
+  }
+
+  /// What a block a..b may leave its piece by, whose parameters there are t_a and t_b: the distance from the nearest pose of the piece
+  /// at seven places of the block, for a straight tip and for straight joints, and what may lie between two of them. There the
+  /// distance bends by no more than the path (the turn of its heading, doubled) and the cone under a straight line.
+  double block_bound(const std::function<Centre(double)>& piece, const Centre& a, const Centre& b, double t_a, double t_b) const {
+    const double length = crown_distance(a, b), per_length = (t_b - t_a) / length;
+    const Vec3 tip_a = gear_.tip(a.R_c, a.e), tip_b = gear_.tip(b.R_c, b.e);
+    /// Crown-plane and normal distance (along the generatrix, azimuthal, down) of something from a pose -> distance from the path.
+    const auto nearest = [&](double s, const auto& seen_from) {
+      double t = t_a + s * (t_b - t_a);
+      Centre c = piece(t);
+      Vec3 d = seen_from(c);
+      for (int k = 0; k < 3; ++k) {
+        t = std::clamp(t + (d.x() * std::cos(c.beta_c) + d.y() * std::sin(c.beta_c)) * per_length, 0.0, 1.0);
+        c = piece(t);
+        d = seen_from(c);
+      }
+      return std::hypot(d.y() * std::cos(c.beta_c) - d.x() * std::sin(c.beta_c), d.z());
+    };
+    double worst = 0, bend = 0, heading = a.beta_c + a.theta_c;
+    for (int k = 1; k <= kPlaces; ++k) {
+      const double s = static_cast<double>(k) / kPlaces;
+      const Centre c = piece(t_a + s * (t_b - t_a));
+      bend = std::max(bend, std::abs(c.beta_c + c.theta_c - heading) * kPlaces / length);
+      heading = c.beta_c + c.theta_c;
+      if (k == kPlaces) break;
+      const Vec3 tip = tip_a + s * (tip_b - tip_a);
+      worst = std::max(worst, nearest(s, [&](const Centre& from) {
+        const Vec3 q = cutter_from_blank<double>(tip, from.R_c, from.e, sd_, cd_);
+        return Vec3(q.z(), q.y(), q.x() + gear_.parameters().dedendum_mm);
+      }));
+      const double R = a.R_c + s * (b.R_c - a.R_c), theta = a.theta_c + s * (b.theta_c - a.theta_c);
+      worst = std::max(worst, nearest(s, [&](const Centre& from) {
+        return Vec3(R * std::cos(theta - from.theta_c) - from.R_c, R * std::sin(theta - from.theta_c), 0);
+      }));
+    }
+    const double cone = 1 / (gear_.R_i() * sd_ - gear_.parameters().dedendum_mm * cd_);
+    return worst + (2 * bend + cone) * length * length / (8 * kPlaces * kPlaces);
   }
 
   /// Points of a piece with equal block errors: the error of a block grows with the square of its share.
@@ -81,13 +121,14 @@ class Planner {
       at.push_back(1.0);
       std::vector<Centre> points;
       for (const double t : at) points.push_back(piece(t));
-      double worst = 0;
-      worst_chord_ = 0;
+      double worst = 0, bound = 0;
       for (std::size_t i = 1; i < points.size(); ++i)
         for (const double s : {0.25, 0.5, 0.75})
           worst = std::max(worst, block_error(points[i - 1], points[i], piece(at[i - 1] + s * (at[i] - at[i - 1])), s));
-      if (worst <= 1 || attempt >= 40) {
-        plan_.chord_mm = std::max(plan_.chord_mm, worst_chord_);
+      for (std::size_t i = 1; i < points.size() && (worst <= 1 || attempt >= kMostAttempts); ++i)
+        bound = std::max(bound, block_bound(piece, points[i - 1], points[i], at[i - 1], at[i]));
+      if ((worst <= 1 && bound <= chord_) || attempt >= kMostAttempts) {
+        plan_.chord_mm = std::max(plan_.chord_mm, bound);
         return points;
       }
       n += 1 + n / 12;
@@ -151,7 +192,7 @@ class Planner {
 
   const BevelGear& gear_;
   const MillingOperation& op_;
-  double sd_, cd_, chord_ = 0, worst_chord_ = 0;
+  double sd_, cd_, chord_ = 0;
   std::vector<CentrePass> passes_;
   std::vector<std::vector<PassPoint>> blocks_;
   FingerPlan plan_;

@@ -32,7 +32,7 @@ struct FingerPass {
 struct FingerPlan {
   ClPath path;
   std::vector<FingerPass> passes;
-  double chord_mm = 0;             ///< largest deviation of a block from the exact path, straight tip or straight joints
+  double chord_mm = 0;             ///< no block leaves the exact path by more, straight tip or straight joints
   double ridge_predicted_mm = 0;   ///< roughing: highest ridge between passes and walls
 };
 

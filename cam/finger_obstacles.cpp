@@ -3,15 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cam/finger_bodies.h"
 #include "cam/finger_tool.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-constexpr int kArcPieces = 16;
+constexpr double kOneChord = 1e9;  // mm: the hull of a hollow flank needs no more
 constexpr int kDirections = 48;
 constexpr int kMostHalvings = 7;
+constexpr double kNear = 0.5;    // mm: a smaller gap is looked for in all directions
+constexpr int kGoldenSteps = 24;
+constexpr double kTie = 2e-4;    // mm: rims that reach as far as each other, to the precision of a direction
 constexpr double kEnough = 5.0;  // mm: a gap that nobody asks to know better
 
 /// The rims once, for all directions: how high the body reaches along n.
@@ -40,36 +44,114 @@ double gap_along(const ToolHull& tool, const CoaxialBody& body, const ToolMotion
   return std::min(lowest(tool, m.tip_from, m.axis_from, n), lowest(tool, m.tip_to, m.axis_to, n)) - support(body.rims, n);
 }
 
-/// Best of the directions in the axial plane through the middle of the tool; the gap is a concave function of the angle near it.
-double best_gap(const ToolHull& tool, const CoaxialBody& body, const ToolMotion& m) {
+/// Place of the greatest value between a and b, of a function that rises and then falls.
+template <typename F>
+double highest(const F& at, double a, double b, int steps) {
+  constexpr double gold = 0.6180339887498949;
+  double x1 = b - gold * (b - a), x2 = a + gold * (b - a), f1 = at(x1), f2 = at(x2);
+  for (int k = 0; k < steps; ++k) {
+    if (f1 < f2) a = x1, x1 = x2, f1 = f2, x2 = a + gold * (b - a), f2 = at(x2);
+    else b = x2, x2 = x1, f2 = f1, x1 = b - gold * (b - a), f1 = at(x1);
+  }
+  return f1 > f2 ? x1 : x2;
+}
+
+struct Direction {
+  double gap = 0;
+  Vec3 n = Vec3::UnitZ();
+};
+
+/// Best of the directions in the axial plane through the middle of the tool.
+Direction in_axial_plane(const ToolHull& tool, const CoaxialBody& body, const ToolMotion& m) {
   const Vec3 axis = motion_axis(m, 0.5);
   Vec3 outwards(axis.x(), axis.y(), 0);
   if (outwards.norm() < 1e-9) outwards = Vec3(m.tip_from.x() + m.tip_to.x(), m.tip_from.y() + m.tip_to.y(), 0);
   outwards = outwards.norm() < 1e-9 ? Vec3(1, 0, 0) : Vec3(outwards.normalized());
-  const auto at = [&](double angle) { return gap_along(tool, body, m, std::cos(angle) * outwards + std::sin(angle) * Vec3::UnitZ()); };
+  const auto direction = [&](double angle) -> Vec3 { return std::cos(angle) * outwards + std::sin(angle) * Vec3::UnitZ(); };
+  const auto at = [&](double angle) { return gap_along(tool, body, m, direction(angle)); };
   double best = -std::numeric_limits<double>::infinity(), where = 0;
   const double step = 2 * kPi / kDirections;
   for (int k = 0; k < kDirections; ++k)
     if (const double gap = at(k * step); gap > best) best = gap, where = k * step;
-  double a = where - step, b = where + step;
-  constexpr double gold = 0.6180339887498949;
-  double x1 = b - gold * (b - a), x2 = a + gold * (b - a), f1 = at(x1), f2 = at(x2);
-  for (int k = 0; k < 40; ++k) {
-    if (f1 < f2) a = x1, x1 = x2, f1 = f2, x2 = a + gold * (b - a), f2 = at(x2);
-    else b = x2, x2 = x1, f2 = f1, x1 = b - gold * (b - a), f1 = at(x1);
-  }
-  return std::max({best, f1, f2});
+  const double finer = highest(at, where - step, where + step, 40);
+  if (at(finer) > best) where = finer;
+  return {at(where), direction(where)};
 }
 
-double gap_by_halves(const ToolHull& tool, const CoaxialBody& body, const ToolMotion& m, double off, int depth) {
+/// Best of the directions about `start`. The gap along n is a minimum of linear functions of n; where it is positive, gap / |n| rises and
+/// then falls along every line, and so does its maximum over parallel lines. Bodies that meet are moved apart for the search.
+Direction about(const ToolHull& tool, const CoaxialBody& body, const ToolMotion& m, const Direction& start, double range, double least_mm) {
+  const Vec3 t1 = start.n.unitOrthogonal(), t2 = start.n.cross(t1);
+  const double apart = std::max(0.0, least_mm - start.gap);
+  const auto direction = [&](double a, double b) -> Vec3 { return (start.n + a * t1 + b * t2).normalized(); };
+  const auto at = [&](double a, double b) {
+    const Vec3 n = direction(a, b);
+    return gap_along(tool, body, m, n) + apart * n.dot(start.n);
+  };
+  const auto along = [&](double a) { return highest([&](double b) { return at(a, b); }, -range, range, kGoldenSteps); };
+  const double a = highest([&](double u) { return at(u, along(u)); }, -range, range, kGoldenSteps), b = along(a);
+  const Vec3 n = direction(a, b);
+  const double gap = gap_along(tool, body, m, n);
+  return gap > start.gap ? Direction{gap, n} : start;
+}
+
+/// Best of all directions near `start`: in ever smaller circles, ever less apart.
+Direction in_space(const ToolHull& tool, const CoaxialBody& body, const ToolMotion& m, Direction best) {
+  for (const auto& [range, apart] : {std::pair{1.0, 0.05}, {0.3, 0.02}, {0.1, 0.005}, {0.03, 0.001}, {0.01, 0.0002}}) best = about(tool, body, m, best, range, apart);
+  return best;
+}
+
+/// A piece of line that reaches farthest along some direction; two equal ends: a point.
+struct Reach {
+  double far = -std::numeric_limits<double>::infinity();
+  Vec3 a = Vec3::Zero(), b = Vec3::Zero();
+  void add(double value, const Vec3& p) {
+    if (value > far + kTie) far = value, a = b = p;
+    else if (value > far - kTie) b = p;
+  }
+};
+
+/// Where the body of the gear is met, for the direction n in which both come nearest.
+Vec3 meeting_place(const ToolHull& tool, const CoaxialBody& body, const ToolMotion& m, const Vec3& n) {
+  Reach part, low;
+  const double across = std::hypot(n.x(), n.y());
+  const Vec3 radial = across > 1e-12 ? Vec3(n.x() / across, n.y() / across, 0) : Vec3(0, 0, 0);
+  for (const Vec2& rim : body.rims) part.add(rim.x() * across + rim.y() * n.z(), rim.x() * radial + rim.y() * Vec3::UnitZ());
+  for (const double t : {0.0, 1.0}) {
+    const Vec3 axis = motion_axis(m, t), side = n - n.dot(axis) * axis;
+    const Vec3 down = side.norm() > 1e-12 ? Vec3(-side.normalized()) : Vec3(0, 0, 0);
+    for (const Vec2& rim : tool.rims) {
+      const Vec3 p = motion_tip(m, t) + rim.x() * axis + rim.y() * down;
+      low.add(-n.dot(p), p);
+    }
+  }
+  // Of both pieces of line, the point of the first that is nearest to the second: alternating projections.
+  const auto onto = [](const Vec3& p, const Reach& r) -> Vec3 {
+    const Vec3 d = r.b - r.a;
+    const double l = d.squaredNorm();
+    return l > 0 ? Vec3(r.a + std::clamp((p - r.a).dot(d) / l, 0.0, 1.0) * d) : r.a;
+  };
+  Vec3 place = 0.5 * (part.a + part.b);
+  for (int k = 0; k < 50; ++k) place = onto(onto(place, low), part);
+  return place;
+}
+
+ObstacleGap gap_by_halves(const ToolHull& tool, const CoaxialBody& body, const ToolMotion& m, double off, int depth) {
   // A point of the tool swings about the tip: it leaves the straight line between its ends by an eighth of the angle's square.
   const double swing = 2 * std::asin(std::min(1.0, 0.5 * (m.axis_to - m.axis_from).norm()));
-  const double whole = best_gap(tool, body, m) - off - farthest(tool) * swing * swing / 8;
-  if (whole > kEnough || depth == 0 || (m.tip_to - m.tip_from).norm() < 0.05) return whole;
-  ToolMotion first = m, second = m;
-  first.tip_to = second.tip_from = motion_tip(m, 0.5);
-  first.axis_to = second.axis_from = motion_axis(m, 0.5);
-  return std::max(whole, std::min(gap_by_halves(tool, body, first, off, depth - 1), gap_by_halves(tool, body, second, off, depth - 1)));
+  const double loss = off + farthest(tool) * swing * swing / 8;
+  Direction best = in_axial_plane(tool, body, m);
+  const bool last = depth == 0 || (m.tip_to - m.tip_from).norm() < 0.05;
+  if (best.gap - loss <= kEnough && !last) {
+    ToolMotion first = m, second = m;
+    first.tip_to = second.tip_from = motion_tip(m, 0.5);
+    first.axis_to = second.axis_from = motion_axis(m, 0.5);
+    const ObstacleGap a = gap_by_halves(tool, body, first, off, depth - 1), b = gap_by_halves(tool, body, second, off, depth - 1);
+    const ObstacleGap& less = a.gap < b.gap ? a : b;
+    if (less.gap >= best.gap - loss) return less;
+  }
+  if (best.gap < kNear) best = in_space(tool, body, m, best);
+  return {best.gap - loss, best.gap < kNear ? meeting_place(tool, body, m, best.n) : Vec3(Vec3::Zero())};
 }
 
 }  // namespace
@@ -89,17 +171,8 @@ std::vector<CoaxialBody> bodies_beside_teeth(const BevelGear& g) {
 }
 
 std::vector<ToolHull> tool_hulls(const FingerProfile<double>& c, const ToolAssembly& tool) {
-  ToolHull flute{"flute", {}}, shank{"shank", {}}, holder{"holder", {}};
-  // Corners of tangents around the arc, from the flat (psi = 90 deg) to the straight (phi).
-  const double step = (kPi / 2 - c.phi) / kArcPieces, out = c.r_t / std::cos(0.5 * step);
-  for (int k = 0; k < kArcPieces; ++k) {
-    const double psi = kPi / 2 - (k + 0.5) * step;
-    flute.rims.emplace_back(c.x_o - out * std::sin(psi) + c.h_f, c.rho_o + out * std::cos(psi));
-  }
-  // The flank is hollow: its chord encloses it.
-  flute.rims.emplace_back(c.x_D + c.h_f, c.rho_D);
-  const double shank_from = tool.flute_length_mm > 0 ? tool.flute_length_mm : c.h_f + c.x_D;
-  flute.rims.emplace_back(std::max(shank_from, c.x_D + c.h_f), c.rho_D);
+  ToolHull flute{"flute", finger_meridian(c, tool, kOneChord)}, shank{"shank", {}}, holder{"holder", {}};
+  const double shank_from = finger_flute_end(c, tool);
   shank.rims = {Vec2(shank_from, tool.shank_diameter_mm / 2), Vec2(tool.stick_out_mm, tool.shank_diameter_mm / 2)};
   double z = tool.stick_out_mm;
   for (const auto& part : tool.holder) {
@@ -112,20 +185,29 @@ std::vector<ToolHull> tool_hulls(const FingerProfile<double>& c, const ToolAssem
   return hulls;
 }
 
-double body_gap(const ToolHull& tool, const CoaxialBody& body, const ToolMotion& m) {
+ObstacleGap nearest_obstacle(const ToolHull& tool, const CoaxialBody& body, const ToolMotion& m) {
   const double off = m.deviation_mm + m.axis_deviation * farthest(tool);
   return gap_by_halves(tool, body, m, off, kMostHalvings);
 }
 
-double blank_support(const BevelGear& g, const Vec3& n) {
+CoaxialBody blank_body(const BevelGear& g) {
   const double h_a = g.parameters().addendum_mm, low = -g.parameters().dedendum_mm - 2 * g.parameters().outer_transverse_module_mm;
-  double top = -std::numeric_limits<double>::infinity();
+  CoaxialBody blank{"blank", {}};
   for (const double ell : {g.R_i(), g.R_e()})
-    for (const double height : {h_a, low}) {
-      const double r = std::max(0.0, ell * g.sin_delta() + height * g.cos_delta()), z = ell * g.cos_delta() - height * g.sin_delta();
-      top = std::max(top, r * std::hypot(n.x(), n.y()) + z * n.z());
-    }
-  return top;
+    for (const double height : {h_a, low})
+      blank.rims.emplace_back(std::max(0.0, ell * g.sin_delta() + height * g.cos_delta()), ell * g.cos_delta() - height * g.sin_delta());
+  return blank;
+}
+
+double blank_support(const BevelGear& g, const Vec3& n) { return support(blank_body(g).rims, n); }
+
+Vec3 blank_place(const BevelGear& g, const Vec3& n, const Vec3& near) {
+  const double across = std::hypot(n.x(), n.y()), h_a = g.parameters().addendum_mm, sd = g.sin_delta(), cd = g.cos_delta();
+  const Vec3 radial = across > 1e-12 ? Vec3(n.x() / across, n.y() / across, 0) : Vec3(0, 0, 0);
+  const auto reach = [&](double ell) { return (ell * sd + h_a * cd) * across + (ell * cd - h_a * sd) * n.z(); };
+  double ell = std::clamp(cone_point(near, sd, cd).ell, g.R_i(), g.R_e());
+  if (std::abs(reach(g.R_e()) - reach(g.R_i())) > kTie) ell = reach(g.R_e()) > reach(g.R_i()) ? g.R_e() : g.R_i();
+  return (ell * sd + h_a * cd) * radial + (ell * cd - h_a * sd) * Vec3::UnitZ();
 }
 
 }  // namespace toothpath

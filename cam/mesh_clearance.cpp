@@ -42,11 +42,15 @@ Stretch stretch_of(std::span<const ToolMotion> motions) {
 /// One body of the tool against one mesh along some motions.
 class BodyWatch {
  public:
-  BodyWatch(const MeshDistance& mesh, std::size_t index, const ToolAssembly& tool, const Frustum* body, double rule, const MeshClearanceOptions& o,
+  BodyWatch(const MeshDistance& mesh, std::size_t index, const MeshBody& body, double rule, const MeshClearanceOptions& o,
             const std::optional<Withdrawal>& withdrawal)
-      : mesh_(mesh), index_(index), tool_(tool), body_(body), rule_(rule), o_(o), withdrawal_(withdrawal) {
-    const double top = body ? body->to : tool.flute_length_mm, wide = body ? std::max(body->radius_from, body->radius_to) : tool.radius_mm();
-    arm_ = std::hypot(top, wide);
+      : mesh_(mesh), index_(index), body_(body), rule_(rule), o_(o), withdrawal_(withdrawal), around_(body.pieces.front()) {
+    for (const Frustum& f : body.pieces) {
+      around_.to = f.to;
+      around_.radius_from = std::max({around_.radius_from, f.radius_from, f.radius_to});
+    }
+    around_.radius_to = around_.radius_from;
+    arm_ = std::hypot(around_.to, around_.radius_to);
   }
 
   void motions(std::span<const ToolMotion> m) {
@@ -81,50 +85,67 @@ class BodyWatch {
   }
   void note(const Stretch& s, const MeshPlace& place, double measured, double proven) {
     if (worst && worst->gap_mm <= proven) return;
-    worst = MeshMeeting{proven, measured, body_ ? body_->name : "cutter", s.motion->operation, s.motion->tooth, s.motion->line, s.motion->rapid, index_, place.foot};
+    worst = MeshMeeting{proven, measured, body_.name, s.motion->operation, s.motion->tooth, s.motion->line, s.motion->rapid, index_, place.foot};
   }
+  /// A body that the surface does not come near is inside or outside as a whole.
   [[nodiscard]] bool inside(const Stretch& s) const {
-    const double h = body_ ? 0.5 * (body_->from + body_->to) : withdrawal_ ? tool_.flute_length_mm : 0.5 * (tool_.radius_mm() + tool_.flute_length_mm);
+    const double h = credited() ? around_.to : 0.5 * (around_.from + body_.ball_mm + around_.to);
     return mesh_.inside(s.tip + h * s.axis);
   }
+  [[nodiscard]] bool credited() const { return withdrawal_.has_value() && body_.cuts(); }
   [[nodiscard]] MeshPlace gap(const Stretch& s, double within) const {
-    if (body_) return mesh_.to_frustum(*body_, s.tip, s.axis, within);
-    const double R = tool_.radius_mm();
-    if (withdrawal_) {
-      // Only what has come out of the room that the cutting part had: the ring of its flute above the old top.
-      const double back = (s.tip - withdrawal_->tip).dot(s.axis), from = tool_.flute_length_mm - std::max(back, 0.0);
-      return mesh_.to_frustum({from, tool_.flute_length_mm, R, R, "cutter"}, s.tip, s.axis, within);
+    if (body_.ball_mm > 0 && !credited()) {
+      const double R = body_.ball_mm;
+      MeshPlace place = mesh_.to_segment(s.tip + R * s.axis, s.axis, std::max(0.0, around_.to - R), within + R);
+      place.distance = std::max(place.distance - R, 0.0);
+      return place;
     }
-    MeshPlace place = mesh_.to_segment(s.tip + R * s.axis, s.axis, std::max(0.0, tool_.flute_length_mm - R), within + R);
-    place.distance = std::max(place.distance - R, 0.0);
-    return place;
+    MeshPlace least;
+    least.distance = within;
+    if (body_.pieces.size() > 1 && mesh_.frustum_bound(around_, s.tip, s.axis, within) >= within) return least;
+    // Drawn back, only what has come out of the room that the cutting part had: its part above the old top.
+    const double from = credited() ? around_.to - std::max((s.tip - withdrawal_->tip).dot(s.axis), 0.0) : -INFINITY;
+    for (Frustum f : body_.pieces) {
+      if (f.to < from) continue;
+      if (f.from < from) {
+        f.radius_from += (f.radius_to - f.radius_from) * (from - f.from) / (f.to - f.from);
+        f.from = from;
+      }
+      const MeshPlace place = mesh_.to_frustum(f, s.tip, s.axis, least.distance);
+      if (place.distance < least.distance) least = place;
+    }
+    return least;
   }
 
   const MeshDistance& mesh_;
   std::size_t index_;
-  const ToolAssembly& tool_;
-  const Frustum* body_;  ///< none: the cutting part
+  const MeshBody& body_;
   double rule_, arm_ = 0;
   const MeshClearanceOptions& o_;
   const std::optional<Withdrawal>& withdrawal_;
+  Frustum around_;  ///< a cylinder about all pieces
 };
 
 }  // namespace
 
-std::optional<MeshMeeting> MeshClearance::nearest(std::span<const ToolMotion> motions, const ToolAssembly& tool, const MeshRule& rule,
+std::vector<MeshBody> mesh_bodies(const ToolAssembly& tool) {
+  const double R = tool.radius_mm();
+  std::vector<MeshBody> bodies{{"cutter", {{0, tool.flute_length_mm, R, R, "cutter"}}, R}};
+  for (const Frustum& f : shank_and_holder(tool)) bodies.push_back({f.name, {f}, 0});
+  return bodies;
+}
+
+std::optional<MeshMeeting> MeshClearance::nearest(std::span<const ToolMotion> motions, std::span<const MeshBody> tool, const MeshRule& rule,
                                                   const std::optional<Withdrawal>& withdrawal) const {
   std::optional<MeshMeeting> worst;
-  const auto bodies = shank_and_holder(tool);
-  for (std::size_t k = 0; k < meshes_.size(); ++k) {
-    const auto watch = [&](const Frustum* body, double least) {
-      BodyWatch w(*meshes_[k], k, tool, body, least, options_, withdrawal);
+  for (std::size_t k = 0; k < meshes_.size(); ++k)
+    for (const MeshBody& body : tool) {
+      if (!(body.cuts() ? rule.cutter : rule.others)) continue;
+      const double least = body.cuts() ? rule.cutter_mm : rule.others_mm;
+      BodyWatch w(*meshes_[k], k, body, least, options_, withdrawal);
       w.motions(motions);
       if (w.worst && (!worst || w.worst->gap_mm - least < worst->gap_mm - (worst->body == "cutter" ? rule.cutter_mm : rule.others_mm))) worst = w.worst;
-    };
-    if (rule.cutter) watch(nullptr, rule.cutter_mm);
-    if (rule.others)
-      for (const auto& body : bodies) watch(&body, rule.others_mm);
-  }
+    }
   return worst;
 }
 

@@ -25,6 +25,17 @@ struct MeshMeeting {
   Vec3 place = Vec3::Zero();  ///< on the mesh, W
 };
 
+/// One body of a tool: a union of truncated cones about its axis, or a ball mill's cutting part.
+struct MeshBody {
+  std::string name;              ///< "cutter", "shank", "holder"
+  std::vector<Frustum> pieces;   ///< joined, from below; of a ball mill's cutting part: the cylinder over its whole length
+  double ball_mm = 0;            ///< > 0: the lower end is a ball of this radius that touches the tip
+  [[nodiscard]] bool cuts() const { return name == "cutter"; }
+  [[nodiscard]] double top_mm() const { return pieces.back().to; }
+};
+/// Cutting part, shank and holder of a ball mill, from below.
+[[nodiscard]] std::vector<MeshBody> mesh_bodies(const ToolAssembly& tool);
+
 /// Which bodies must keep which distance.
 struct MeshRule {
   double cutter_mm = 0, others_mm = 0;  ///< least proven gap that passes
@@ -48,8 +59,13 @@ class MeshClearance {
 
   /// The nearest meeting of these motions, of all bodies and meshes; nothing where all gaps exceed the rule by `look_mm`.
   /// `withdrawal`: see above; the motions must draw the tool back along that axis.
-  [[nodiscard]] std::optional<MeshMeeting> nearest(std::span<const ToolMotion> motions, const ToolAssembly& tool, const MeshRule& rule,
+  [[nodiscard]] std::optional<MeshMeeting> nearest(std::span<const ToolMotion> motions, std::span<const MeshBody> tool, const MeshRule& rule,
                                                    const std::optional<Withdrawal>& withdrawal = {}) const;
+  /// The same for a ball mill.
+  [[nodiscard]] std::optional<MeshMeeting> nearest(std::span<const ToolMotion> motions, const ToolAssembly& tool, const MeshRule& rule,
+                                                   const std::optional<Withdrawal>& withdrawal = {}) const {
+    return nearest(motions, mesh_bodies(tool), rule, withdrawal);
+  }
 
  private:
   std::span<const MeshDistance* const> meshes_;
