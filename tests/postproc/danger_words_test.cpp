@@ -1,4 +1,4 @@
-// The words of a program: docs/dangers.md, rows 4, 14, 20, 23, 27. Every dialect in every way that it is posted.
+// The words of a program: docs/dangers.md, rows 4, 14, 20, 23, 24, 27. Every dialect in every way that it is posted.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -185,6 +185,27 @@ TEST_F(DangerWords, IndexAnglesDoNotDrift) {
         ASSERT_LE(std::abs(off), bound) << p.name << " z = " << z << " tooth " << k;
       }
     }
+  });
+}
+
+// 24: what stands at the top about the text stands at its end again, so that a file that was cut off shows it; another text, another hash.
+TEST_F(DangerWords, HashAndBlocksStandAtTheTopAndAtTheEnd) {
+  const std::regex stamp(R"(HASH [0-9A-F]{16} BLOCKS \d+)");
+  every_post([&] {
+    const auto stamps = [&](const std::string& text) {
+      std::vector<std::string> found;
+      for (std::sregex_iterator it(text.begin(), text.end(), stamp), end; it != end; ++it) found.push_back((*it)[0]);
+      return found;
+    };
+    const std::string text = text_of(post(), {sample_path(0.3, 0, 5)});
+    const auto both = stamps(text);
+    ASSERT_EQ(both.size(), 2u);
+    EXPECT_EQ(both[0], both[1]);
+    EXPECT_LT(text.find(both[0]), 500u);
+    EXPECT_GT(text.rfind(both[1]), text.size() - 100);
+    ClPath other = sample_path(0.3, 0, 5);
+    other.records[4].tip.x() += 0.002;
+    EXPECT_NE(stamps(text_of(post(), {other}))[0], both[0]);
   });
 }
 
