@@ -9,23 +9,6 @@ namespace {
 
 constexpr std::uint32_t kLeaf = 4;  // cells
 
-/// Least gap of a triangle and a frustum, from below: the sphere about it, halved until its size matters no more.
-double triangle_gap(const Vec3& a, const Vec3& b, const Vec3& c, const Frustum& f, const Vec3& tip, const Vec3& axis, double best,
-                    double resolution, int depth) {
-  if (best <= -resolution) return best;
-  const Vec3 centre = (a + b + c) / 3;
-  const double size = std::max({(a - centre).norm(), (b - centre).norm(), (c - centre).norm()});
-  const double d = distance_to_frustum(centre, f, tip, axis);
-  if (d - size >= best) return best;
-  if (d == 0) return std::min(best, -resolution);
-  if (size <= resolution || depth == 0) return std::min(best, d - size);
-  const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-  best = triangle_gap(ab, bc, ca, f, tip, axis, best, resolution, depth - 1);
-  best = triangle_gap(a, ab, ca, f, tip, axis, best, resolution, depth - 1);
-  best = triangle_gap(ab, b, bc, f, tip, axis, best, resolution, depth - 1);
-  return triangle_gap(ca, bc, c, f, tip, axis, best, resolution, depth - 1);
-}
-
 }  // namespace
 
 BodyTree::BodyTree(const GearDistance& part) : part_(part) {

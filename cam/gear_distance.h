@@ -2,7 +2,8 @@
 //
 // The solid is the rings of teeth (each between its two radii, below its tip surface), the groove floor between two rings and
 // the body below. A grid of cells over the working sheet of one tooth space finds candidates (Embree, float32); Newton on
-// the analytic patches decides in double. Edges (ends of the ring, tip edges) are polylines whose sag is subtracted.
+// the analytic patches decides in double. Edges (ends of the ring, tip edges) are polylines whose proven sag is subtracted.
+// How the cells are made: cam/gear_ring.h.
 // All spaces are turned copies: a point is first turned into space 0.
 #pragma once
 
@@ -17,6 +18,8 @@
 #include "cam/spatial_index.h"
 
 namespace toothpath {
+
+class BodyPatches;
 
 /// What lies nearest to a point.
 struct NearestPlace {
@@ -43,6 +46,8 @@ class GearDistance {
   /// Why there is no distance to this gear: key within [gear] and message; none for a gear that can be asked.
   [[nodiscard]] const std::optional<FaceGearRefusal>& refusal() const;
 
+  static constexpr int kBands = 4;  ///< a fillet may be touched at both of its ends: start places from several bands
+
   /// The cells and edges themselves, for bodies that are no balls: visits candidates near a point of space 0.
   struct Cell {
     std::array<Vec3, 4> corner;
@@ -60,8 +65,13 @@ class GearDistance {
   [[nodiscard]] const std::vector<std::array<Vec3, 3>>& triangles(int zone) const;
   [[nodiscard]] const SpatialIndex& cell_index(int zone) const;
   [[nodiscard]] const SpaceSheet& space(int zone) const;
+  /// The same cells on the exact surface, with proven sags: what shank and holder are proven against.
+  [[nodiscard]] const BodyPatches& patches(int zone) const;
+  /// Bounds of sags that are measured and not proven: none on nominal gears. docs/proof.md, What a clean result means.
+  [[nodiscard]] std::size_t unproven() const;
 
-  /// Largest distance between a facet of the cells and the exact surface, measured when the cells were made, doubled. mm.
+  /// Largest distance between a facet of the cells and the exact surface as it showed when the cells were made, doubled, mm: for searches
+  /// of tool directions and for the start places of Newton. What is proven rests on `patches`.
   [[nodiscard]] double cell_sag_mm() const;
   [[nodiscard]] const FaceGear& gear() const;
   [[nodiscard]] int zones() const;
@@ -69,7 +79,6 @@ class GearDistance {
   [[nodiscard]] double space_azimuth(int zone, double r) const;
 
  private:
-  struct Ring;
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };

@@ -17,6 +17,7 @@ constexpr std::size_t kChunk = 256;     // motions that one thread checks one af
 constexpr std::size_t kMostWorst = 20;  // places that are listed
 constexpr double kLook = 0.3;           // mm: gaps of shank and holder are followed this far beyond the clearance
 constexpr double kAhead = 0.4;          // mm: and this much farther where a body is looked at anew, so that later motions need not
+constexpr double kContact = 0.005;  // mm: smaller gaps of shank and holder are followed to proof_mm
 constexpr double kGapStep = 0.02;       // mm: to which the least gap is told
 
 WorstPlace place_of(const NearestPlace& q, const ToolMotion& m, double depth, const char* body) {
@@ -132,7 +133,8 @@ class Chunk {
     }
     SweptGapOptions look;
     look.enough_mm = enough + kAhead;
-    look.contact_mm = 2 * part_.cell_sag_mm() + 0.005;
+    look.contact_mm = kContact;
+    look.contact_proof_mm = o_.proof_mm;
     look.proof_mm = 0.5 * kGapStep;
     const auto gap = swept_gap(part_, body.frustum, m, look);
     body = {body.frustum, true, m.tip_to, m.axis_to, gap.proven_mm};

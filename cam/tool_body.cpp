@@ -11,23 +11,6 @@ Vec3 turned(const Vec3& p, double angle) {
   return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
 }
 
-/// Least distance between a triangle and a frustum, from below: halves the triangle until its size matters no more.
-double triangle_gap(const Vec3& a, const Vec3& b, const Vec3& c, const Frustum& f, const Vec3& tip, const Vec3& axis,
-                    double best, double resolution, int depth) {
-  if (best <= -resolution) return best;  // inside: how deep does not matter
-  const Vec3 centre = (a + b + c) / 3;
-  const double size = std::max({(a - centre).norm(), (b - centre).norm(), (c - centre).norm()});
-  const double d = distance_to_frustum(centre, f, tip, axis);
-  if (d - size >= best) return best;
-  if (d == 0) return std::min(best, -resolution);
-  if (size <= resolution || depth == 0) return std::min(best, d - size);
-  const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-  best = triangle_gap(ab, bc, ca, f, tip, axis, best, resolution, depth - 1);
-  best = triangle_gap(a, ab, ca, f, tip, axis, best, resolution, depth - 1);
-  best = triangle_gap(ab, b, bc, f, tip, axis, best, resolution, depth - 1);
-  return triangle_gap(ca, bc, c, f, tip, axis, best, resolution, depth - 1);
-}
-
 }  // namespace
 
 std::vector<Frustum> shank_and_holder(const ToolAssembly& tool) {
@@ -59,6 +42,22 @@ double distance_to_frustum(const Vec3& point, const Frustum& f, const Vec3& tip,
   };
   return std::min({to_segment(0, f.from, f.radius_from, f.from), to_segment(f.radius_from, f.from, f.radius_to, f.to),
                    to_segment(0, f.to, f.radius_to, f.to)});
+}
+
+double triangle_gap(const Vec3& a, const Vec3& b, const Vec3& c, const Frustum& f, const Vec3& tip, const Vec3& axis,
+                    double best, double resolution, int depth) {
+  if (best <= -resolution) return best;  // inside: how deep does not matter
+  const Vec3 centre = (a + b + c) / 3;
+  const double size = std::max({(a - centre).norm(), (b - centre).norm(), (c - centre).norm()});
+  const double d = distance_to_frustum(centre, f, tip, axis);
+  if (d - size >= best) return best;
+  if (d == 0) return std::min(best, -resolution);
+  if (size <= resolution || depth == 0) return std::min(best, d - size);
+  const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
+  best = triangle_gap(ab, bc, ca, f, tip, axis, best, resolution, depth - 1);
+  best = triangle_gap(a, ab, ca, f, tip, axis, best, resolution, depth - 1);
+  best = triangle_gap(ab, b, bc, f, tip, axis, best, resolution, depth - 1);
+  return triangle_gap(ca, bc, c, f, tip, axis, best, resolution, depth - 1);
 }
 
 double lowest_z(const Frustum& f, const Vec3& tip, const Vec3& axis) {

@@ -21,6 +21,11 @@ struct Frustum {
 /// Distance from a point to a solid frustum with its tip at `tip` and unit axis `axis`; 0 inside.
 [[nodiscard]] double distance_to_frustum(const Vec3& point, const Frustum& f, const Vec3& tip, const Vec3& axis);
 
+/// Least distance between a triangle and a frustum, from below, or `best` where that is less: the triangle is halved until its size is
+/// `resolution` or can matter no more. A triangle that cuts in: -resolution.
+[[nodiscard]] double triangle_gap(const Vec3& a, const Vec3& b, const Vec3& c, const Frustum& f, const Vec3& tip, const Vec3& axis, double best,
+                                  double resolution, int depth);
+
 /// Lowest z of a frustum.
 [[nodiscard]] double lowest_z(const Frustum& f, const Vec3& tip, const Vec3& axis);
 
