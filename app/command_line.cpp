@@ -217,6 +217,7 @@ int run_command_line(int argc, char** argv) {
   app.require_subcommand(0, 1);
   std::vector<Subcommand> commands;
   commands.push_back(add_job_command(app, "run", "the whole way from the job to a proven NC program", request, run_job));
+  commands.back().app->add_option("--restart", request.restart, "OP:TOOTH, from 0: the program begins there; what comes before is taken as done");
   commands.push_back(add_job_command(app, "check", "proves a program that is already there against the job's gear", request, check_program));
   commands.back().app->add_option("PROGRAM", request.program_file, "NC program in the dialect of the job's machine")->required();
   commands.back().app->add_option("--stock", request.stock_files, "closed mesh of the stock before the program (STL or OBJ, mm, gear frame); repeatable");

@@ -32,6 +32,11 @@ struct VerifySettings {
   std::optional<double> clearance_mm;   ///< least gap of neck, shank and holder; none: the program's default
 };
 
+/// The [program] table.
+struct ProgramSettings {
+  bool spread_teeth = false;  ///< tooth_order = "spread": neighbours are not cut one after the other; else in sequence
+};
+
 /// The [contact] table: the pinion that runs with the gear, and where it stands.
 struct ContactSettings {
   int pinion_teeth = 0;        ///< N_p; 0: mate_teeth of the gear
@@ -57,6 +62,7 @@ struct Job {
   std::vector<MillingOperation> operations;  ///< `tool` is an index into `tools`
   Coolant coolant = Coolant::off;
   VerifySettings verify;
+  ProgramSettings program;
   std::optional<Shaping> shaping;
   std::optional<ContactSettings> contact;
   std::optional<double> torque_Nm;  ///< [load]: on the gear of the job; only forces are computed from it

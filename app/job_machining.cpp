@@ -1,4 +1,4 @@
-// [machine], [setup], [[tool]], [[operation]], [coolant], [verify], [shaping] and [contact].
+// [machine], [setup], [[tool]], [[operation]], [coolant], [verify], [program], [shaping] and [contact].
 #include <algorithm>
 #include <regex>
 
@@ -214,6 +214,14 @@ VerifySettings read_verify(TableReader& table) {
   verify.clearance_mm = table.if_present("clearance", [&] { return table.number("clearance", {0, 50, " mm"}); });
   table.finish();
   return verify;
+}
+
+ProgramSettings read_program_settings(TableReader& table) {
+  ProgramSettings program;
+  if (const auto order = table.if_present("tooth_order", [&] { return table.word("tooth_order", {"sequence", "spread"}); }))
+    program.spread_teeth = *order == "spread";
+  table.finish();
+  return program;
 }
 
 MachineChoice read_machine_choice(TableReader& table) {

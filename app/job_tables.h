@@ -23,6 +23,7 @@ namespace toothpath {
 [[nodiscard]] Shaping read_shaping(TableReader& table);
 [[nodiscard]] ContactSettings read_contact(TableReader& table);
 [[nodiscard]] VerifySettings read_verify(TableReader& table);
+[[nodiscard]] ProgramSettings read_program_settings(TableReader& table);
 [[nodiscard]] MachineChoice read_machine_choice(TableReader& table);
 [[nodiscard]] Coolant read_coolant(TableReader& table);
 

@@ -92,6 +92,15 @@ Result<RestartMenu> restart_menu(std::string_view text, const std::string& file,
     }
   }
 
+  std::map<int, std::size_t> teeth;
+  for (const auto& op : menu.operations) teeth[op.operation] = static_cast<std::size_t>(program.teeth);
+  for (const auto& op : program.operations) teeth[op.operation] = static_cast<std::size_t>(program.teeth - op.first_place);
+  const auto tooth_at = [&](int place) { return tooth_of_place(place, program.tooth_stride, program.teeth); };
+  for (auto& op : menu.operations)
+    if (op.first_tooth.line != 0)
+      for (int n = program.teeth - static_cast<int>(teeth[op.operation]); n < program.teeth; ++n) op.teeth.push_back({n, tooth_at(n), {}});
+  if (std::none_of(menu.operations.begin(), menu.operations.end(), [](const auto& op) { return op.first_tooth.line == 0; })) return menu;
+
   std::map<int, Count> counts;
   const auto count = [&](const ExecutedMove& m) {
     Count& c = counts[m.operation];
@@ -101,13 +110,12 @@ Result<RestartMenu> restart_menu(std::string_view text, const std::string& file,
     c.trail = m.machine && c.started ? c.trail + 1 : 0;
   };
   if (auto s = execute_nc(text, file, control, count); !s) return s.error();
-  std::map<int, std::size_t> teeth;
-  for (const auto& [op, c] : counts) teeth[op] = static_cast<std::size_t>(program.teeth);
-  for (const auto& op : program.operations) teeth[op.operation] = static_cast<std::size_t>(program.teeth - op.first_place);
+  for (const auto& [op, c] : counts) teeth.emplace(op, static_cast<std::size_t>(program.teeth));
   FirstLines first(counts, teeth);
   if (auto s = execute_nc(text, file, control, [&](const ExecutedMove& m) { first(m); }); !s) return s.error();
 
   for (auto& op : menu.operations) {
+    if (op.first_tooth.line != 0) continue;
     const auto& found = first.of(op.operation);
     if (found.size() != teeth[op.operation])
       return fail("operation {} has {} teeth in the text where {} are expected", op.operation, found.size(), teeth[op.operation]);
@@ -115,17 +123,15 @@ Result<RestartMenu> restart_menu(std::string_view text, const std::string& file,
     for (std::size_t n = 0; n < found.size(); ++n) {
       RestartTooth t;
       t.place = start + static_cast<int>(n);
-      t.tooth = tooth_of_place(t.place, program.tooth_stride, program.teeth);
+      t.tooth = tooth_at(t.place);
       if (found[n].second >= 0 && found[n].second != t.tooth)
         return fail("line {}: tooth {} where tooth {} is expected", found[n].first, found[n].second, t.tooth);
-      if (op.first_tooth.line == 0) {
-        int line = found[n].first, number = -1;
-        while (found[n].second >= 0 && line > op.at.line && comment_label(comment_of(lines[static_cast<std::size_t>(line) - 1], number), "TOOTH ") < 0) --line;
-        t.at = {line, number_of(lines[static_cast<std::size_t>(line) - 1])};
-      }
+      int line = found[n].first, number = -1;
+      while (found[n].second >= 0 && line > op.at.line && comment_label(comment_of(lines[static_cast<std::size_t>(line) - 1], number), "TOOTH ") < 0) --line;
+      t.at = {line, number_of(lines[static_cast<std::size_t>(line) - 1])};
       op.teeth.push_back(t);
     }
-    if (op.first_tooth.line != 0 || op.teeth.empty()) continue;
+    if (op.teeth.empty()) continue;
     const int end = op.teeth.front().at.line - 1;
     op.opening_end = {end, number_of(lines[static_cast<std::size_t>(end) - 1])};
   }

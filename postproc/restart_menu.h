@@ -39,7 +39,8 @@ struct RestartMenu {
   std::vector<RestartOperation> operations;
 };
 
-/// Finds the places. `program` tells how many teeth an operation has and in which order they come; every line comes from the text.
+/// Finds the places. `program` tells how many teeth an operation has and in which order they come; every line comes from the text, which is
+/// executed where teeth have lines of their own.
 /// Errors: what the reader refuses; an operation whose moves are not its teeth.
 [[nodiscard]] Result<RestartMenu> restart_menu(std::string_view text, const std::string& file, const NcControl& control,
                                                const AxisProgram& program);

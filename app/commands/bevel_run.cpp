@@ -7,9 +7,12 @@
 #include "app/commands/bevel_page.h"
 #include "app/commands/bevel_proof.h"
 #include "app/commands/program_report.h"
+#include "app/commands/restart.h"
 #include "app/commands/ledger.h"
 #include "app/job_file.h"
 #include "app/report/cl_csv.h"
+#include "app/report/length_tolerance.h"
+#include "app/report/motion_charts.h"
 #include "app/report/setup_sheet.h"
 #include "app/sha256.h"
 #include "cam/finger_check.h"
@@ -29,6 +32,8 @@ struct BevelRun {
   std::vector<FingerPlan> plans;
   std::vector<CheckedClPath> checked;
   std::optional<PostedProgram> program;
+  std::optional<ProgramRestart> restart;  ///< where the program begins, if not at its beginning
+  std::vector<std::vector<int>> lines;    ///< of the file, for every record of every path; restarts only
   std::optional<BevelProof> proof;
   RunReport report;
 
@@ -39,6 +44,11 @@ struct BevelRun {
     return out;
   }
 };
+
+constexpr double kRootShare = 1;  // the flat tip of the mill faces the root: a length error reaches it in full
+
+/// What lies on the disk.
+const std::string& text_of(const PostedProgram& program) { return program.restarted ? program.restart_text : program.text; }
 
 std::vector<Diagnostic> read_inputs(BevelRun& run) {
   if (run.job.operations.empty()) return {fail_at(run.job.where("operation"), "the job lacks an [[operation]]: there is nothing to run")};
@@ -51,6 +61,9 @@ std::vector<Diagnostic> read_inputs(BevelRun& run) {
   else run.machine = std::move(std::get<0>(machine));
   if (!errors.empty()) return errors;
   if (const auto fits = check_part_on_machine(run.job, run.machine, 2 * bevel_clearance_body(*run.gear).radius_mm); !fits) return {fits.error()};
+  auto restart = read_restart(run.request.restart, run.job, run.gear->parameters().teeth);
+  if (!restart) return {restart.error()};
+  run.restart = *restart;
   return {};
 }
 
@@ -76,11 +89,11 @@ std::optional<Diagnostic> plan_and_check(BevelRun& run, const FingerGougeCheck& 
 std::optional<Diagnostic> post_and_prove(BevelRun& run, OutputDir& output, const FingerGougeCheck& check) {
   const auto paths = run.paths();
   auto posted = post_program(run.checked, run.job, run.job.name, run.machine, run.gear->parameters().teeth, bevel_clearance_body(*run.gear), run.report.assumed,
-                             output, run.clock);
+                             output, run.clock, run.restart);
   if (!posted) return posted.error();
   run.program = std::move(posted.value());
   const AxisProgram& axes = run.program->axes;
-  note_axis_program(run.report, run.job, paths, axes);
+  note_axis_program(run.report, run.job, paths, run.program->restarted ? *run.program->restarted : axes);
   run.report.blocks = run.program->blocks;
 
   auto proof = prove_bevel_program(run.program->text, output.final_path(run.program->file), run.job, run.machine, *run.gear, check, paths,
@@ -97,14 +110,21 @@ std::optional<Diagnostic> post_and_prove(BevelRun& run, OutputDir& output, const
   const bool finishes = std::any_of(run.job.operations.begin(), run.job.operations.end(),
                                     [](const MillingOperation& o) { return o.type == OperationType::finger_finishing; });
   if (finishes) run.report.finished = result.finished;
+  run.report.length_tolerances = length_tolerances(run.job, run.report, paths, result.walls, {kRootShare});
   run.report.ledger = bevel_ledger(*run.gear, run.plans, axes, *run.proof, run.program->blend_mm);
   run.report.directions = directions_of(*run.gear, run.job, *run.proof);
   run.report.reasons = run.proof->reasons;
+  if (run.restart)
+    for (const auto& plan : run.plans) run.lines.push_back(lines_of_records(plan.path, run.proof->motions, run.proof->path_tolerance_mm));
+  if (auto done = note_restart(run.report, *run.program, output.final_path(run.program->file), run.job, run.machine, bevel_clearance_body(*run.gear), run.lines,
+                               run.clock);
+      !done)
+    return done.error();
   if (!run.report.reasons.empty()) return std::nullopt;
   run.report.verified = true;
   run.report.program_file = run.program->file;
-  run.report.program_sha256 = sha256_hex(run.program->text);
-  run.report.program_bytes = run.program->text.size();
+  run.report.program_sha256 = sha256_hex(text_of(*run.program));
+  run.report.program_bytes = text_of(*run.program).size();
   run.report.files.push_back(run.program->file);
   return std::nullopt;
 }
@@ -126,7 +146,10 @@ Status write_results(BevelRun& run, OutputDir& output, std::string& json) {
     if (const auto s = write("cl.csv", cl_csv(paths)); !s) return s;
   report.stages = run.clock.seconds();
   const auto page = run.clock.run("report page", [&] {
-    return render_report_page(bevel_page(run.job, *run.gear, run.machine, report, run.plans, proof, run.program ? std::string_view(run.program->text) : ""));
+    ReportPage content = bevel_page(run.job, *run.gear, run.machine, report, run.plans, proof, run.program ? std::string_view(text_of(*run.program)) : "");
+    if (run.restart)
+      for (std::size_t k = 0; k < run.lines.size() && k < content.paths.size(); ++k) content.paths[k].nc_lines = run.lines[k];
+    return render_report_page(content);
   });
   if (!page) return page.error();
   if (const auto s = write("report.html", *page); !s) return s;

@@ -15,6 +15,7 @@ struct CommandRequest {
   std::string job_file;
   std::string out_dir;
   std::string program_file;  ///< of `check`
+  std::string restart;       ///< of `run`: "OP:TOOTH", both from 0; empty: from the beginning
   std::vector<std::string> stock_files, fixture_files;  ///< of `check`: meshes in the gear frame
   std::vector<std::string> measured_files;  ///< of `correct` and `check`: measured deviations, in the order of the cuts
   bool quiet = false;

@@ -8,6 +8,7 @@
 #include "app/gear_of_job.h"
 #include "geometry/base/angle.h"
 #include "postproc/nc_writer.h"
+#include "postproc/tooth_order.h"
 
 namespace toothpath {
 namespace {
@@ -50,11 +51,14 @@ void note_axis_program(RunReport& report, const Job& job, std::span<const ClPath
 }
 
 Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const Job& job, const std::string& title, const Machine& machine, int teeth,
-                                   const ClearanceBody& body, const std::vector<std::string>& assumed, OutputDir& output, StageClock& clock) {
+                                   const ClearanceBody& body, const std::vector<std::string>& assumed, OutputDir& output, StageClock& clock,
+                                   const std::optional<ProgramRestart>& restart) {
   const auto dialect = dialect_of(machine);
   if (!dialect) return located(job, "machine.file", dialect.error());
   auto program = clock.run("axis program", [&] {
-    return build_axis_program(paths, job.tools, *job.setup, machine, teeth, body, axis_options(*dialect, machine));
+    AxisOptions options = axis_options(*dialect, machine);
+    if (job.program.spread_teeth) options.tooth_stride = spread_stride(teeth);
+    return build_axis_program(paths, job.tools, *job.setup, machine, teeth, body, options);
   });
   if (!program) return located(job, "setup", program.error());
   PostedProgram posted;
@@ -71,10 +75,20 @@ Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const J
   posted.blocks = text->blocks;
   posted.blend_mm = dialect->blend ? header.blend_mm : 0;
   posted.file = "program" + dialect->extension;
-  if (const auto written = output.write(posted.file, text->text); !written) return written.error();
+  std::string whole = std::move(text->text);
+  if (restart) {
+    auto part = program_from(posted.axes, restart->operation, restart->tooth);
+    if (!part) return part.error();
+    posted.restarted = std::move(part.value());
+    text = write_nc(*posted.restarted, *dialect, header);
+    if (!text) return located(job, "machine.file", text.error());
+    posted.blocks = text->blocks;
+  }
+  if (const auto written = output.write(posted.file, restart ? text->text : whole); !written) return written.error();
   auto bytes = output.read_back(posted.file);
   if (!bytes) return bytes.error();
-  posted.text = std::move(bytes.value());
+  posted.text = std::move(restart ? whole : bytes.value());
+  if (restart) posted.restart_text = std::move(bytes.value());
   return posted;
 }
 

@@ -2,6 +2,7 @@
 // axis program, read a program file, judge travels, print the table of worst places.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,14 +27,17 @@ void note_axis_program(RunReport& report, const Job& job, std::span<const ClPath
 struct PostedProgram {
   AxisProgram axes;
   std::string file;      ///< name in the output directory
-  std::string text;      ///< the bytes as read back
+  std::string text;      ///< the bytes as read back; with a restart the whole program, which is proven but not written
   std::size_t blocks = 0;
+  std::optional<AxisProgram> restarted;  ///< of the file, where it begins in the middle
+  std::string restart_text;              ///< the bytes of that file as read back
   double blend_mm = 0;   ///< how far the control may leave the corners; 0: the dialect has no such word
 };
 /// Axis program, NC text, the file, its bytes. Errors carry their place in the job. `title`: of the job, at the top of the text.
+/// With `restart` the file holds the program from there on.
 [[nodiscard]] Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const Job& job, const std::string& title, const Machine& machine, int teeth,
                                                  const ClearanceBody& body, const std::vector<std::string>& assumed, OutputDir& output,
-                                                 StageClock& clock);
+                                                 StageClock& clock, const std::optional<ProgramRestart>& restart = std::nullopt);
 /// Takes every program file out of the directory again.
 void discard_program(OutputDir& output);
 

@@ -7,6 +7,7 @@
 #include "app/commands/ledger.h"
 #include "app/commands/program_report.h"
 #include "app/commands/proof.h"
+#include "app/commands/restart.h"
 #include "app/commands/surface_files.h"
 #include "app/contact_analysis.h"
 #include "app/gear_of_job.h"
@@ -15,6 +16,7 @@
 #include "app/report/cl_csv.h"
 #include "app/report/contact_figures.h"
 #include "app/report/deviation_vtp.h"
+#include "app/report/length_tolerance.h"
 #include "app/report/limits_chart.h"
 #include "app/report/motion_charts.h"
 #include "app/report/page_of_run.h"
@@ -39,6 +41,7 @@ struct Run {
   std::optional<FaceGear> gear;                 ///< with the flanks to aim at
   std::optional<CorrectedGear> correction;      ///< where they answer measured files
   Machine machine;
+  std::optional<ProgramRestart> restart;        ///< where the program begins, if not at its beginning
   FaceGearPlan plan;
   std::vector<CheckedClPath> checked;
   RunReport report;
@@ -88,7 +91,11 @@ std::vector<Diagnostic> read_inputs(Run& run) {
   auto read = run.clock.run("job", [&] { return read_job_file(run.request.job_file); });
   if (auto* errors = std::get_if<1>(&read)) return std::move(*errors);
   run.job = std::move(std::get<0>(read));
-  return prepare(run);
+  if (auto errors = prepare(run); !errors.empty()) return errors;
+  auto restart = read_restart(run.request.restart, run.job, run.gear->parameters().teeth);
+  if (!restart) return {restart.error()};
+  run.restart = *restart;
+  return {};
 }
 
 void begin_report(Run& run) {
@@ -128,19 +135,19 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   const ClearanceBody body = clearance_body(*run.gear);
   const int teeth = run.gear->parameters().teeth;
   const auto paths = run.paths();
-  auto posted = post_program(run.checked, run.job, run.job.name + (run.correction ? ", corrected" : ""), run.machine, teeth, body, run.report.assumed, output, run.clock);
+  auto posted = post_program(run.checked, run.job, run.job.name + (run.correction ? ", corrected" : ""), run.machine, teeth, body, run.report.assumed, output, run.clock,
+                             run.restart);
   if (!posted) return posted.error();
   const AxisProgram& program = posted->axes;
-  note_axis_program(run.report, run.job, paths, program);
+  note_axis_program(run.report, run.job, paths, posted->restarted ? *posted->restarted : program);
   run.report.blocks = posted->blocks;
-  run.program_text = std::move(posted->text);
 
   ProofOptions options;
   options.cut_surface = run.cut_surface;
   options.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
   options.path_tolerance_mm = program.chord_bound_mm + program.rounding_bound_mm + 2 * options.motion_tolerance_mm;
   options.path_tolerance_rad = program.axis_bound_rad + 2 * options.motion_tolerance_rad;
-  auto proof = prove_program(run.program_text, output.final_path(posted->file), run.job, run.machine, part, check, body, teeth, paths,
+  auto proof = prove_program(posted->text, output.final_path(posted->file), run.job, run.machine, part, check, body, teeth, paths,
                              options, run.clock);
   if (!proof) {
     Diagnostic error = proof.error();
@@ -159,8 +166,11 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   run.motion = motion_charts(proof->read, proof->motions, run.machine);
   for (const ClPath& path : run.plan.paths) run.lines.push_back(lines_of_records(path, proof->motions, options.path_tolerance_mm));
   run.report.reasons = proof->reasons;
+  run.report.length_tolerances = length_tolerances(run.job, run.report, paths, run.surface, {});
+  if (auto done = note_restart(run.report, *posted, output.final_path(posted->file), run.job, run.machine, body, run.lines, run.clock); !done) return done.error();
+  run.program_text = std::move(posted->restarted ? posted->restart_text : posted->text);
   run.report.ledger = face_gear_ledger(part, run.plan, run.job.tools, program, *proof, posted->blend_mm, run.proof_mm);
-  if (!proof->reasons.empty()) return std::nullopt;
+  if (!run.report.reasons.empty()) return std::nullopt;
   run.report.verified = true;
   run.report.program_file = posted->file;
   run.report.program_sha256 = sha256_hex(run.program_text);

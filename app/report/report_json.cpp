@@ -124,6 +124,14 @@ void add_motion(Json& json, const RunReport& r) {
                           {"cutting_minutes", o.feed_minutes},
                           {"rapid_minutes", o.rapid_minutes}});
   json["operations"] = std::move(operations);
+  if (r.tooth_stride != 1) json["tooth_order"] = {{"order", "spread"}, {"stride", r.tooth_stride}, {"teeth", r.teeth}};
+  if (r.restart) json["restart"] = {{"op", r.restart->operation}, {"tooth", r.restart->tooth}};
+  Json tolerances = Json::array();
+  for (const auto& t : r.length_tolerances) {
+    tolerances.push_back({{"op", t.operation}, {"tool", t.tool_number}, {"share", t.share}, {"flank_share", t.flank_share}, {"too_long_um", t.too_long_mm * 1000}});
+    if (t.too_short_mm) tolerances.back()["too_short_um"] = *t.too_short_mm * 1000;
+  }
+  if (!tolerances.empty()) json["length_tolerance"] = std::move(tolerances);
   Json axes = Json::object();
   for (const auto& axis : r.axes) {
     const double f = axis.rotary ? degrees(1.0) : 1.0;

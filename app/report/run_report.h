@@ -11,6 +11,7 @@
 #include "cam/verification.h"
 #include "geometry/flank_correction.h"
 #include "postproc/axis_program.h"
+#include "postproc/restart_menu.h"
 
 namespace toothpath {
 
@@ -28,6 +29,23 @@ struct OperationReport {
 struct CorrectionRow {
   int zone = 0, side = 1;
   CorrectionResidual fit;
+};
+
+/// How wrong the length of a tool may be before a proven program leaves its limits (docs/setup_sheet.md).
+struct LengthTolerance {
+  int operation = 0, tool_number = 0;
+  double share = 1;                   ///< proven: the error moves the cut surface along its normal by no more than this times itself
+  double flank_share = 1;             ///< the same on the flanks alone
+  double too_long_mm = 0;             ///< the gouge tolerance is not left
+  std::optional<double> too_short_mm; ///< what a finishing operation may leave is not exceeded; none: another operation cuts there
+};
+
+/// A table of the set-up sheet that is made elsewhere.
+struct SheetSection {
+  std::string title;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+  std::string note;  ///< below the table
 };
 
 struct RunReport {
@@ -51,6 +69,11 @@ struct RunReport {
   std::vector<OperationReport> operations;
   std::vector<DirectionChoice> directions;
   std::vector<AxisRange> axes;
+  int teeth = 0, tooth_stride = 1;                       ///< of the program: place n cuts tooth n * stride mod teeth
+  std::optional<ProgramRestart> restart;                 ///< the program begins there
+  std::optional<RestartMenu> restart_menu;               ///< where it can be taken up again
+  std::vector<LengthTolerance> length_tolerances;
+  std::vector<SheetSection> sheet_sections;              ///< stand behind the axis ranges
   std::optional<BlockTimes> block_times;                 ///< none where no program was posted
   std::vector<LedgerEntry> ledger;
   std::vector<SceneVerdict> scene;                       ///< fixture and stock, where meshes of them were given

@@ -3,6 +3,10 @@
 #include <algorithm>
 
 #include "app/report/html_text.h"
+#include "app/report/part_swing.h"
+#include "app/report/restart_section.h"
+#include "app/report/setup_drawings.h"
+#include "app/report/sheet_html.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
@@ -15,117 +19,12 @@ table{border-collapse:collapse;width:100%}th,td{border:.2mm solid #999;padding:.
 th{background:#eee;font-weight:600}td.n{text-align:right;font-variant-numeric:tabular-nums}tr,svg{break-inside:avoid}
 .no{border:.8mm solid #b00;padding:2mm;color:#b00;font-weight:700}.yes{border:.4mm solid #070;padding:1.5mm}
 .assumed{border:.5mm dashed #a60;padding:1.5mm}.assumed ul{columns:3 46mm;column-gap:5mm}@media print{body{margin:0}}ul{margin:1mm 0;padding-left:5mm}svg{max-width:100%}
+.small{font-size:9pt;margin:1mm 0}.pairs{columns:6 26mm;column-gap:4mm;font-size:8.5pt;font-variant-numeric:tabular-nums}.pairs span{display:block}
 )";
-
-class Sheet {
- public:
-  void heading(std::string_view text) { out_ += fmt::format("<h2>{}</h2>\n", html_escape(text)); }
-  void begin_table(const std::vector<std::string>& columns) {
-    out_ += "<table><thead><tr>";
-    for (const auto& column : columns) out_ += fmt::format("<th>{}</th>", html_escape(column));
-    out_ += "</tr></thead><tbody>\n";
-  }
-  /// Cells that begin with a digit or a minus sign are set to the right.
-  void row(const std::vector<std::string>& cells) {
-    out_ += "<tr>";
-    for (const auto& cell : cells) {
-      const bool number = !cell.empty() && (cell[0] == '-' || (cell[0] >= '0' && cell[0] <= '9'));
-      out_ += fmt::format("<td{}>{}</td>", number ? " class=n" : "", html_escape(cell));
-    }
-    out_ += "</tr>\n";
-  }
-  void end_table() { out_ += "</tbody></table>\n"; }
-  void list(const std::vector<std::string>& items, std::string_view css_class) {
-    out_ += fmt::format("<div class={}><ul>", css_class);
-    for (const auto& item : items) out_ += fmt::format("<li>{}</li>", html_escape(item));
-    out_ += "</ul></div>\n";
-  }
-  void raw(std::string_view html) { out_ += html; }
-  [[nodiscard]] std::string finish() && { return std::move(out_) + "</body></html>\n"; }
-
- private:
-  std::string out_;
-};
 
 std::string millimetres(double value) { return fmt::format("{:.3f}", value == 0 ? 0.0 : value); }
 std::string triple(const Vec3& v) {
   return fmt::format("X {}  Y {}  Z {}", millimetres(v.x()), millimetres(v.y()), millimetres(v.z()));
-}
-
-/// Part in the X-Z plane of the machine, with its origin, the work offset and the rotary axes that the table carries.
-std::string part_sketch(const Setup& setup, const PartOutline& part, const Machine& machine) {
-  const auto [r_in, r_out, top, root, bottom] = part;
-  const double up = setup.axis_up ? 1.0 : -1.0;
-  const Vec3 at = setup.origin_mm, offset = setup.work_offset_at_mm;
-  const auto z_of = [&](double z) { return at.z() + up * z; };
-  // View box in machine mm, Z upwards.
-  std::vector<double> xs = {at.x() - r_out, at.x() + r_out, offset.x()};
-  std::vector<double> zs = {z_of(top), z_of(bottom), at.z(), offset.z()};
-  for (const auto& axis : machine.chain.table) {
-    xs.push_back(axis.point_mm.x());
-    zs.push_back(axis.point_mm.z());
-  }
-  const auto [x_min, x_max] = std::minmax_element(xs.begin(), xs.end());
-  const auto [z_min, z_max] = std::minmax_element(zs.begin(), zs.end());
-  const double margin = 0.12 * std::max(*x_max - *x_min, *z_max - *z_min) + 1;
-  const double width = *x_max - *x_min + 2 * margin, height = *z_max - *z_min + 2 * margin, unit = width / 100;
-  const auto px = [&](double x) { return x - *x_min + margin; };
-  const auto py = [&](double z) { return *z_max - z + margin; };
-  std::string svg = fmt::format("<svg viewBox='0 0 {:.3f} {:.3f}' role=img aria-label='part in the machine, X to the right, Z up' "
-                                "style='width:100%;max-height:62mm' font-size='{:.3f}' font-family='sans-serif'>", width, height, 2.4 * unit);
-  const auto body = [&](double x1, double x2, double z1, double z2, const char* fill) {
-    svg += fmt::format("<rect x='{:.3f}' y='{:.3f}' width='{:.3f}' height='{:.3f}' fill='{}' stroke='#333' stroke-width='{:.3f}'/>",
-                       px(x1), py(std::max(z1, z2)), x2 - x1, std::abs(z2 - z1), fill, 0.2 * unit);
-  };
-  body(at.x() - r_out, at.x() + r_out, z_of(root), z_of(bottom), "#ddd");
-  for (const double side : {-1.0, 1.0}) {
-    const double a = at.x() + side * r_in, b = at.x() + side * r_out;
-    body(std::min(a, b), std::max(a, b), z_of(top), z_of(root), "#9ab");
-  }
-  std::vector<std::pair<Vec3, std::string>> marks = {{at, "gear origin"}, {offset, setup.work_offset}};
-  for (const auto& axis : machine.chain.table) marks.emplace_back(axis.point_mm, fmt::format("axis {}", axis.letter));
-  std::stable_sort(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.first.z() > b.first.z(); });
-  double free = 0;  // names of places at nearly the same height stand below one another
-  for (const auto& [p, name] : marks) {
-    const double x = px(p.x()), y = py(p.z()), r = 1.4 * unit;
-    svg += fmt::format("<path d='M{0:.3f} {1:.3f}h{2:.3f}M{3:.3f} {4:.3f}v{2:.3f}' stroke='#b00' stroke-width='{5:.3f}'/>", x - r, y, 2 * r, x,
-                       y - r, 0.3 * unit);
-    const double line = std::max(y + 0.8 * unit, free);
-    svg += fmt::format("<text x='{:.3f}' y='{:.3f}' fill='#b00'>{}</text>", x + 1.9 * unit, line, html_escape(name));
-    free = line + 2.7 * unit;
-  }
-  svg += fmt::format("<text x='{:.3f}' y='{:.3f}'>X right, Z up, outer diameter {:.3f} mm</text></svg>\n", unit, 3 * unit, 2 * r_out);
-  return svg;
-}
-
-/// Cutter, shank and holder from the side, tip at the bottom.
-std::string tool_sketch(const ToolAssembly& tool) {
-  double holder_height = 0, widest = std::max(tool.diameter_mm, tool.shank_diameter_mm);
-  for (const auto& segment : tool.holder) {
-    holder_height += segment.height_mm;
-    widest = std::max({widest, segment.lower_diameter_mm, segment.upper_diameter_mm});
-  }
-  const double height = std::max(tool.length_mm, tool.stick_out_mm + holder_height);
-  std::string svg = fmt::format("<svg viewBox='{:.3f} {:.3f} {:.3f} {:.3f}' style='height:34mm' role=img aria-label='tool {}'>", -widest / 2 - 1,
-                                -height - 1, widest + 2, height + 2, tool.number);
-  const auto cone = [&](double z1, double d1, double z2, double d2, const char* fill) {
-    svg += fmt::format("<path d='M{:.3f} {:.3f}L{:.3f} {:.3f}L{:.3f} {:.3f}L{:.3f} {:.3f}Z' fill='{}' stroke='#333' stroke-width='.3'/>", -d1 / 2,
-                       -z1, d1 / 2, -z1, d2 / 2, -z2, -d2 / 2, -z2, fill);
-  };
-  // A finger mill is drawn by its widest and its tip.
-  const bool finger = tool.type == CutterType::finger_mill;
-  if (finger) cone(0, tool.module_mm / 2, tool.flute_length_mm, tool.shank_diameter_mm, "#e8c66a");
-  const double r = tool.radius_mm();
-  if (!finger) cone(r, 2 * r, tool.flute_length_mm, 2 * r, "#e8c66a");
-  if (!finger)
-    svg += fmt::format("<path d='M{0:.3f} {1:.3f}A{2:.3f} {2:.3f} 0 0 0 {2:.3f} {1:.3f}Z' fill='#e8c66a' stroke='#333' stroke-width='.3'/>", -r, -r, r);
-  cone(tool.flute_length_mm, tool.shank_diameter_mm, tool.stick_out_mm, tool.shank_diameter_mm, "#bbb");
-  double z = tool.stick_out_mm;
-  for (const auto& part : tool.holder) {
-    cone(z, part.lower_diameter_mm, z + part.height_mm, part.upper_diameter_mm, "#888");
-    z += part.height_mm;
-  }
-  return svg + "</svg>\n";
 }
 
 void machine_section(Sheet& sheet, const Job& job, const Machine& machine, const RunReport& report) {
@@ -153,19 +52,46 @@ std::string cutter_name(const ToolAssembly& tool) {
 
 void tool_section(Sheet& sheet, const Job& job, const RunReport& report) {
   sheet.heading("Tools");
-  sheet.begin_table({"T", "cutter", "length: gauge line to tip", "stick-out", "flute", "shank", "teeth", "run time"});
+  sheet.begin_table({"T", "cutter", "length: gauge line to tip", "stick-out", "flute", "shank", "teeth", "cutting", "rapids", "total"});
+  int changes = 0, before = -1;
+  for (const auto& operation : report.operations) {
+    changes += operation.tool_number != before ? 1 : 0;
+    before = operation.tool_number;
+  }
   for (const auto& tool : job.tools) {
-    double minutes = 0;
-    for (const auto& operation : report.operations)
-      if (operation.tool_number == tool.number) minutes += operation.feed_minutes + operation.rapid_minutes;
+    double feed = 0, rapid = 0;
+    for (const auto& operation : report.operations) {
+      if (operation.tool_number != tool.number) continue;
+      feed += operation.feed_minutes;
+      rapid += operation.rapid_minutes;
+    }
     sheet.row({std::to_string(tool.number), cutter_name(tool), millimetres(tool.length_mm),
                millimetres(tool.stick_out_mm), millimetres(tool.flute_length_mm), fmt::format("dia {:g}", tool.shank_diameter_mm),
-               std::to_string(tool.teeth), readable_minutes(minutes)});
+               std::to_string(tool.teeth), readable_minutes(feed), readable_minutes(rapid), readable_minutes(feed + rapid)});
   }
   sheet.end_table();
+  sheet.raw(fmt::format("<p class=small>{} tool change{}, the first tool included; changes are not in the times.</p>\n", changes, changes == 1 ? "" : "s"));
   sheet.raw("<p>");
   for (const auto& tool : job.tools) sheet.raw(fmt::format("T{} {} &nbsp; ", tool.number, tool_sketch(tool)));
   sheet.raw("</p>\n");
+}
+
+std::string microns(double mm) {
+  return mm < 0.1 ? fmt::format("{:.2f} um", mm * 1000) : fmt::format("{:.3f} mm", mm);
+}
+
+void length_section(Sheet& sheet, const RunReport& report) {
+  if (report.length_tolerances.empty()) return;
+  sheet.heading("Tool length: how exactly it must be set");
+  sheet.begin_table({"op", "T", "moves the surface by, of the error", "on the flanks", "too long by at most", "too short by at most"});
+  for (const auto& t : report.length_tolerances)
+    sheet.row({std::to_string(t.operation), std::to_string(t.tool_number), fmt::format("{:.3f}", t.share), fmt::format("{:.3f}", t.flank_share),
+               microns(t.too_long_mm), t.too_short_mm ? microns(*t.too_short_mm) : "another operation finishes there"});
+  sheet.end_table();
+  sheet.raw("<p class=small>A length error d moves the cut surface by d (u &middot; n) along its normal n, u being the tool axis; the share is the largest "
+            "|u &middot; n| on what the operation cuts. Too long: what is left of the gouge tolerance beyond the proven bound, and the stock that the operation "
+            "leaves. Too short: what the scallop and chord of the last operation allow beyond what is left. An error of the work offset along the "
+            "tool axis adds to it.</p>\n");
 }
 
 /// How the tool axis stands in an operation: with all its zones fixed, or turning in some.
@@ -198,6 +124,14 @@ void operation_section(Sheet& sheet, const RunReport& report) {
   sheet.end_table();
 }
 
+void table_section(Sheet& sheet, const SheetSection& section) {
+  sheet.heading(section.title);
+  sheet.begin_table(section.columns);
+  for (const auto& row : section.rows) sheet.row(row);
+  sheet.end_table();
+  if (!section.note.empty()) sheet.raw(fmt::format("<p class=small>{}</p>\n", html_escape(section.note)));
+}
+
 }  // namespace
 
 std::string setup_sheet(const Job& job, const FaceGear& gear, const Machine& machine, const RunReport& report) {
@@ -220,7 +154,12 @@ std::string setup_sheet(const Job& job, const PartOutline& part, const Machine& 
   machine_section(sheet, job, machine, report);
   sheet.raw(part_sketch(*job.setup, part, machine));
   tool_section(sheet, job, report);
+  length_section(sheet, report);
   operation_section(sheet, report);
+  restart_section(sheet, job, report);
+  const BlankCylinder blank{part.outer_radius, std::min(part.bottom, part.tooth_top), std::max(part.bottom, part.tooth_top)};
+  if (!report.axes.empty()) table_section(sheet, swing_section(part_swing(blank, *job.setup, machine, report.axes)));
+  for (const auto& section : report.sheet_sections) table_section(sheet, section);
   if (!report.assumed.empty()) {
     sheet.heading("Assumed values: measure before the first cut");
     sheet.list(report.assumed, "assumed");

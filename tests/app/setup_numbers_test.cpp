@@ -1,0 +1,138 @@
+// The numbers of the set-up sheet against brute force: swing and heights over random turns, and how a wrong tool length moves the surface.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "app/report/length_tolerance.h"
+#include "app/report/part_swing.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath {
+namespace {
+
+Machine trunnion_machine(double px, double py, double tilt_y, double tilt_z, int sign) {
+  Machine m;
+  m.part_diameter_mm = 400;
+  RotaryAxis c;
+  c.letter = 'C';
+  c.point_mm = Vec3(px, py, 0);
+  c.sign = sign;
+  RotaryAxis a;
+  a.letter = 'A';
+  a.direction = Vec3::UnitX();
+  a.point_mm = Vec3(0, tilt_y, tilt_z);
+  a.sign = sign;
+  m.chain.table = {c, a};
+  return m;
+}
+
+TEST(PartSwing, HoldsEveryPointOfTheBlank) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (int trial = 0; trial < 20; ++trial) {
+    const Machine m = trunnion_machine(10 * u(random), 10 * u(random), 30 * u(random), 60 * u(random), trial % 2 == 0 ? 1 : -1);
+    Setup setup;
+    setup.axis_up = trial % 3 != 0;
+    setup.origin_mm = Vec3(m.chain.table[0].point_mm.x() + 5 * u(random), m.chain.table[0].point_mm.y(), 80 + 40 * u(random));
+    const BlankCylinder blank{80 + 50 * u(random), -30, 12};
+    const double from = radians(-70 + 20 * u(random)), to = radians(10 + 20 * u(random));
+    const std::vector<AxisRange> axes = {{'Z', false, 200, 400, 0, 500}, {'C', true, -10, 10, -20, 20}, {'A', true, from, to, -2, 2}};
+    const PartSwing swing = part_swing(blank, setup, m, axes);
+    ASSERT_EQ(swing.axes.size(), 2u);
+    EXPECT_EQ(swing.axes[0].limit_mm, 200);
+    EXPECT_FALSE(swing.axes[1].limit_mm);
+    EXPECT_EQ(swing.lowest_nose_mm, 200);
+    double reach_c = 0, reach_a = 0, top = -1e9, bottom = 1e9;
+    for (int i = 0; i < 20000; ++i) {
+      const double phi = kPi * u(random), z = i % 2 == 0 ? blank.z_min_mm : blank.z_max_mm;
+      const Vec3 p = setup.origin_mm + setup.rotation() * Vec3(blank.radius_mm * std::cos(phi), blank.radius_mm * std::sin(phi), z);
+      reach_c = std::max(reach_c, (p - m.chain.table[0].point_mm).head<2>().norm());
+      const double tilt = i % 5 == 0 ? from : i % 5 == 1 ? to : 0.5 * (from + to) + 0.5 * (to - from) * u(random);
+      const Vec3 q = m.chain.table_to_machine(p, {kPi * u(random), tilt});
+      reach_a = std::max(reach_a, (q - m.chain.table[1].point_mm).tail<2>().norm());
+      top = std::max(top, q.z());
+      bottom = std::min(bottom, q.z());
+    }
+    EXPECT_GE(swing.axes[0].radius_mm, reach_c - 1e-9);
+    EXPECT_LE(swing.axes[0].radius_mm, reach_c + 0.01);
+    EXPECT_GE(swing.axes[1].radius_mm, reach_a - 1e-9);
+    EXPECT_LE(swing.axes[1].radius_mm, reach_a + 1);
+    EXPECT_GE(swing.top_mm, top);
+    EXPECT_LE(swing.top_mm, top + 1);
+    EXPECT_LE(swing.bottom_mm, bottom);
+    EXPECT_GE(swing.bottom_mm, bottom - 1);
+    EXPECT_EQ(swing_section(swing).rows.size(), 4u);
+  }
+}
+
+// A ball that touches a surface everywhere, moved along its axis: no place is cut deeper than the share says.
+TEST(LengthTolerance, NoPlaceIsMovedByMoreThanItsShare) {
+  Job job;
+  ToolAssembly tool;
+  tool.number = 3;
+  tool.diameter_mm = 2;
+  job.tools = {tool};
+  MillingOperation finishing;
+  finishing.type = OperationType::finishing;
+  finishing.scallop_mm = 0.004;
+  finishing.chord_tolerance_mm = 0.002;
+  job.operations = {finishing};
+  // A valley: normals from 20 to 160 deg about the y axis.
+  SurfaceGrid grid;
+  grid.patch = "flank +1";
+  for (int i = 0; i <= 60; ++i) {
+    const double angle = radians(20 + i);  // one flank: to 80 deg
+    grid.normals.emplace_back(std::cos(angle), 0, std::sin(angle));
+    grid.points.emplace_back(-10 * std::cos(angle), 0, -10 * std::sin(angle));
+    grid.reachable.push_back(1);
+  }
+  const Vec3 axis = Vec3(0.3, 0, 1).normalized();
+  ClPath path;
+  path.records.push_back({Vec3::Zero(), axis, 0, MoveKind::rapid, 0, 0});
+  path.records.push_back({Vec3(1, 0, 0), axis, 100, MoveKind::feed, 0, 0});
+  RunReport report;
+  report.gouge_tolerance_mm = 0.002;
+  report.gouge = GougeResult{};
+  report.gouge->bound_mm = 0.0005;
+  report.finished = ExcessResult{};
+  report.finished->bound_mm = 0.004;
+  const ClPath* list[] = {&path};
+  const auto found = length_tolerances(job, report, list, {grid}, {});
+  ASSERT_EQ(found.size(), 1u);
+  const LengthTolerance& t = found[0];
+  EXPECT_EQ(t.tool_number, 3);
+  EXPECT_EQ(t.share, t.flank_share);
+  const double R = tool.radius_mm();
+  double deepest = -1, highest = -1;
+  for (std::size_t k = 0; k < grid.points.size(); ++k) {
+    const Vec3 centre = grid.points[k] + R * grid.normals[k];
+    deepest = std::max(deepest, R - (centre - t.too_long_mm * axis - grid.points[k]).norm());
+    highest = std::max(highest, (centre + *t.too_short_mm * axis - grid.points[k]).norm() - R);
+  }
+  EXPECT_LE(deepest, 0.002 - 0.0005);
+  EXPECT_GT(deepest, 0.98 * (0.002 - 0.0005)) << "no tolerance is given away";
+  EXPECT_LE(highest, (0.004 + 0.002 + 0.001 - 0.004) * 1.01);
+  EXPECT_GT(highest, 0.98 * (0.004 + 0.002 + 0.001 - 0.004));
+  // A corner that the ball does not reach does not count; a root that the tip faces does.
+  grid.patch = "root";
+  grid.normals.push_back(axis);
+  grid.points.push_back(Vec3::Zero());
+  grid.reachable.push_back(0);
+  EXPECT_EQ(length_tolerances(job, report, list, {grid}, {})[0].share, t.share);
+  EXPECT_EQ(length_tolerances(job, report, list, {grid}, {})[0].flank_share, 0);
+  grid.reachable.back() = 1;
+  EXPECT_NEAR(length_tolerances(job, report, list, {grid}, {})[0].share, 1, 1e-12);
+  EXPECT_EQ(length_tolerances(job, report, list, {grid}, {1}).front().share, 1);
+  // Stock that an operation leaves is eaten before the part is.
+  job.operations[0].type = OperationType::roughing;
+  job.operations[0].allowance_mm = 0.1;
+  ExcessResult after;
+  after.min_mm = 0.09;
+  report.excess = {after};
+  const auto rough = length_tolerances(job, report, list, {grid}, {1});
+  EXPECT_NEAR(rough[0].too_long_mm, 0.09 + 0.0015, 1e-12);
+  EXPECT_FALSE(rough[0].too_short_mm);
+}
+
+}  // namespace
+}  // namespace toothpath
