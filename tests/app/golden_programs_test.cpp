@@ -1,0 +1,305 @@
+// The programs of the samples in every dialect, byte for byte as they stand in tests/golden/samples: each sample's gear and tools with a
+// coarse form of its operations. Long programs are kept folded: the middle as a count of lines and a hash. Every program is also read back
+// and compared with its path. TOOTHPATH_WRITE_GOLDEN=1 writes the files anew: a deliberate act, to be explained in the commit.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "app/commands/bevel_files.h"
+#include "app/commands/bevel_proof.h"
+#include "app/commands/bevel_run.h"
+#include "app/commands/proof.h"
+#include "app/commands/shaper.h"
+#include "app/gear_of_job.h"
+#include "app/job_file.h"
+#include "cam/finger_check.h"
+#include "cam/finger_milling.h"
+#include "cam/plan.h"
+#include "postproc/nc_reader.h"
+#include "postproc/nc_writer.h"
+#include "postproc/shaper_gearbox_program.h"
+#include "postproc/shaper_program.h"
+
+namespace toothpath {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kWholeBytes = 60000;            // a longer program is folded
+constexpr std::size_t kHeadLines = 300, kTailLines = 100;
+constexpr std::uintmax_t kLargestFile = 300'000, kLargestSum = 3'000'000;
+const fs::path kGolden = fs::path(TOOTHPATH_SOURCE_DIR) / "tests/golden/samples";
+
+/// What is coarser than in the sample: operations that are kept, their steps [mm].
+struct Coarse {
+  const char* sample;
+  std::vector<std::size_t> operations;
+  double step_down, step_over, scallop, ridge;
+  int fanuc_decimals;  ///< 3: IS-B, 4: IS-C where the part is too large for three
+};
+void PrintTo(const Coarse& c, std::ostream* out) { *out << c.sample; }
+
+struct Form {
+  const char* file;
+  const char* dialect;
+  TcpMode tcp;
+};
+constexpr Form kForms[] = {{"linuxcnc.ngc", "linuxcnc", TcpMode::none},        {"fanuc.nc", "fanuc", TcpMode::none},
+                           {"fanuc_tcp.nc", "fanuc", TcpMode::angles},         {"siemens.mpf", "siemens", TcpMode::angles},
+                           {"heidenhain.h", "heidenhain", TcpMode::angles},    {"cutter_location.apt", "apt", TcpMode::vectors},
+                           {"mitsubishi_m80.nc", "mitsubishi_m80", TcpMode::none}};
+
+Job job_of(const std::string& sample) {
+  auto read = read_job_file(std::string(TOOTHPATH_SOURCE_DIR) + "/samples/" + sample + ".toml");
+  if (const auto* errors = std::get_if<1>(&read)) {
+    ADD_FAILURE() << errors->front().text();
+    return {};
+  }
+  return std::move(std::get<0>(read));
+}
+
+Job coarse_job(const Coarse& c) {
+  Job job = job_of(c.sample);
+  std::vector<MillingOperation> kept;
+  for (const std::size_t i : c.operations) {
+    MillingOperation o = job.operations.at(i);
+    o.step_down_mm = c.step_down;
+    o.step_over_mm = c.step_over;
+    o.scallop_mm = c.scallop;
+    if (c.ridge > 0) o.ridge_mm = c.ridge;
+    o.chord_tolerance_mm = 0.01;
+    kept.push_back(o);
+  }
+  job.operations = kept;
+  job.verify.gouge_tolerance_mm = 0.02;
+  return job;
+}
+
+/// A gear's checked paths, and what the post needs beside them.
+struct Planned {
+  std::vector<CheckedClPath> checked;
+  std::vector<ClPath> paths;
+  ClearanceBody body;
+  int teeth = 0;
+  std::string error;
+};
+
+Planned plan_face(const Job& job) {
+  Planned out;
+  auto made = make_face_gear(job);
+  if (const auto* errors = std::get_if<1>(&made)) return out.error = errors->front().text(), out;
+  const FaceGear& gear = std::get<0>(made);
+  const GearDistance part(gear, reach_of(job.tools));
+  PlanOptions options;
+  if (job.verify.clearance_mm) options.clearance_mm = *job.verify.clearance_mm;
+  options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
+  auto planned = plan_face_gear(part, job.tools, job.operations, options);
+  if (const auto* refusal = std::get_if<PlanRefusal>(&planned)) return out.error = refusal->diagnostic.message, out;
+  out.paths = std::get<FaceGearPlan>(planned).paths;
+  GougeCheckOptions check;
+  check.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
+  check.proof_mm = 0.1 * check.gouge_tolerance_mm;
+  check.clearance_mm = options.clearance_mm;
+  check.rapid_height_mm = gear.blank_top();
+  const GougeCheck gouge(part, job.tools, check);
+  for (const auto& path : out.paths) {
+    auto passed = gouge.check_path(path);
+    if (!passed) return out.error = passed.error().message, out;
+    out.checked.push_back(std::move(*passed));
+  }
+  out.body = clearance_body(gear);
+  out.teeth = gear.parameters().teeth;
+  return out;
+}
+
+Planned plan_bevel(const Job& job) {
+  Planned out;
+  auto made = make_bevel_gear(job);
+  if (const auto* errors = std::get_if<1>(&made)) return out.error = errors->front().text(), out;
+  const BevelGear& gear = std::get<0>(made);
+  const Tolerances tolerances = proof_tolerances(job);
+  const FingerGougeCheck gouge(gear, job.tools, job.operations, tolerances);
+  for (std::size_t i = 0; i < job.operations.size(); ++i) {
+    const auto& o = job.operations[i];
+    auto plan = plan_finger_operation(gear, job.tools[static_cast<std::size_t>(o.tool)], o, static_cast<int>(i), tolerances);
+    if (!plan) return out.error = plan.error().message, out;
+    auto passed = gouge.approve(plan->path);
+    if (!passed) return out.error = passed.error().message, out;
+    out.paths.push_back(plan->path);
+    out.checked.push_back(std::move(*passed));
+  }
+  out.body = bevel_clearance_body(gear);
+  out.teeth = gear.parameters().teeth;
+  return out;
+}
+
+/// The sample's machine as if it had this control.
+Machine machine_with(const Machine& of_sample, const Form& form, int fanuc_decimals) {
+  Machine m = of_sample;
+  const bool own = m.dialect == form.dialect;
+  m.dialect = form.dialect;
+  m.tcp = form.tcp;
+  m.max_simultaneous_axes = 5;
+  if (!own) m.post.linear_decimals = m.post.rotary_decimals = std::nullopt;
+  m.post.index_loop = std::nullopt;
+  if (m.dialect == "fanuc") m.post.linear_decimals = m.post.rotary_decimals = fanuc_decimals;
+  if (m.dialect != "linuxcnc") {
+    m.post.tcp_on.clear();
+    m.post.tcp_off.clear();
+  }
+  return m;
+}
+
+/// A long program with its middle left out: how many lines, and a hash of them.
+std::string folded(const std::string& text) {
+  if (text.size() <= kWholeBytes) return text;
+  std::vector<std::string_view> lines;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at) + 1;
+    lines.emplace_back(text.data() + at, end - at);
+    at = end;
+  }
+  if (lines.size() <= kHeadLines + kTailLines) return text;
+  std::string out;
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (i < kHeadLines || i + kTailLines >= lines.size()) {
+      out += lines[i];
+      continue;
+    }
+    for (const char c : lines[i]) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+    if (i + kTailLines + 1 == lines.size())
+      out += fmt::format("..... {} lines are left out here, FNV-1a {:016X} .....\n", lines.size() - kHeadLines - kTailLines, hash);
+  }
+  return out;
+}
+
+void expect_golden(const fs::path& file, const std::string& text) {
+  if (std::getenv("TOOTHPATH_WRITE_GOLDEN") != nullptr) {
+    fs::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary) << text;
+  }
+  std::ifstream in(file, std::ios::binary);
+  ASSERT_TRUE(in) << file;
+  std::ostringstream stored;
+  stored << in.rdbuf();
+  if (stored.str() == text) return;
+  std::istringstream a(stored.str()), b(text);
+  std::string old_line, new_line;
+  int n = 0;
+  do {
+    ++n;
+    if (!std::getline(a, old_line)) old_line = "(end)";
+    if (!std::getline(b, new_line)) new_line = "(end)";
+  } while (old_line == new_line && old_line != "(end)");
+  ADD_FAILURE() << file << " differs first in line " << n << "\n  stored: " << old_line << "\n  now:    " << new_line;
+}
+
+/// The program meets its path: records to the rounding of the words, rapids clear of the blank.
+void expect_round_trip(const std::string& text, const AxisProgram& program, const Planned& planned, const Job& job, const Machine& m) {
+  const auto control = control_of(m, *job.setup, job.tools);
+  ASSERT_TRUE(control);
+  const auto back = read_back(text, "p", *control, m, *job.setup, {.teeth = planned.teeth});
+  ASSERT_TRUE(back) << back.error().text();
+  std::vector<ToolMotion> motions;
+  for (const auto& trace : back->operations) {
+    const auto part = tool_motions(trace, back->copies, *control, m, *job.setup, planned.teeth, 1e-4, 1e-4);
+    ASSERT_TRUE(part) << part.error().text();
+    motions.insert(motions.end(), part->begin(), part->end());
+    if (job.bevel_gear() != nullptr) continue;  // its rapids pass beside the cone, inside that cylinder: judged by the finger check
+    const auto clear = check_rapids(trace, *control, m, *job.setup, planned.body);
+    EXPECT_TRUE(clear) << (clear ? "" : clear.error().message);
+  }
+  std::vector<const ClPath*> list;
+  for (const auto& p : planned.paths) list.push_back(&p);
+  const double bound = program.rounding_bound_mm + program.chord_bound_mm;
+  const auto met = compare_with_cl(motions, list, bound + 2e-4, program.axis_bound_rad + 2e-3);
+  EXPECT_TRUE(met.complete) << met.message;
+  EXPECT_LE(met.worst_mm, program.rounding_bound_mm + 1e-6);
+  EXPECT_LT(met.fastest_ratio, 1.05);
+}
+
+class GoldenPrograms : public testing::TestWithParam<Coarse> {};
+INSTANTIATE_TEST_SUITE_P(Samples, GoldenPrograms,
+                         testing::Values(Coarse{"dhfg_paper", {0, 3}, 5, 3, 0.08, 0, 4}, Coarse{"dhfg_t600s", {0, 3}, 1.2, 0.8, 0.02, 0, 3},
+                                         Coarse{"offset_milled", {0}, 0, 0, 0.05, 0, 3}, Coarse{"short_tool", {0, 1}, 4, 1.8, 0.3, 0, 3},
+                                         Coarse{"spur_quick", {0, 1}, 2, 0.9, 0.06, 0, 3}, Coarse{"bevel_pinion", {0, 1}, 0, 0, 0, 1.0, 3},
+                                         Coarse{"bevel_wheel", {0, 1}, 0, 0, 0, 1.0, 3}, Coarse{"bevel_trunnion", {0, 1}, 0, 0, 0, 0.3, 3}),
+                         [](const auto& c) { return std::string(c.param.sample); });
+
+TEST_P(GoldenPrograms, ByteForByteAndOnTheirPath) {
+  const Coarse& c = GetParam();
+  const Job job = coarse_job(c);
+  ASSERT_TRUE(job.setup);
+  const Planned planned = job.bevel_gear() != nullptr ? plan_bevel(job) : plan_face(job);
+  ASSERT_EQ(planned.error, "");
+  auto loaded = load_machine(job);
+  ASSERT_EQ(loaded.index(), 0u) << std::get<1>(loaded).front().text();
+  for (const Form& form : kForms) {
+    SCOPED_TRACE(form.file);
+    const Machine m = machine_with(std::get<0>(loaded), form, c.fanuc_decimals);
+    const auto dialect = dialect_of(m);
+    ASSERT_TRUE(dialect) << dialect.error().message;
+    const auto program = build_axis_program(planned.checked, job.tools, *job.setup, m, planned.teeth, planned.body, axis_options(*dialect, m));
+    if (!program) {  // the control cannot do it: why, word for word
+      expect_golden(kGolden / c.sample / (std::string(form.file) + ".refused"), program.error().message + "\n");
+      continue;
+    }
+    NcHeader header;
+    header.job_name = job.name + ", coarse";
+    header.machine_name = m.name;
+    if (m.assumed) header.assumed = m.assumed_keys;
+    header.coolant = job.coolant != Coolant::off;
+    const auto text = write_nc(*program, *dialect, header);
+    ASSERT_TRUE(text) << text.error().message;
+    expect_golden(kGolden / c.sample / form.file, folded(text->text));
+    expect_round_trip(text->text, *program, planned, job, m);
+  }
+}
+
+// The shaped gear on its three shapers.
+TEST(GoldenShaper, ByteForByte) {
+  Job job = job_of("offset_shaped");
+  auto made = make_face_gear(job);
+  ASSERT_EQ(made.index(), 0u);
+  const std::pair<const char*, const char*> files[] = {
+      {"y514.toml", "strokes.ngc"}, {"shaper_siemens.toml", "gearbox.mpf"}, {"shaper_fanuc.toml", "gearbox.nc"}};
+  for (const auto& [machine, file] : files) {
+    SCOPED_TRACE(file);
+    job.machine.file = machine;
+    auto planned = shaper_setup_of(job, std::get<0>(made));
+    ASSERT_EQ(planned.index(), 0u) << std::get<1>(planned).front().text();
+    const ShaperSetup& setup = std::get<0>(planned);
+    expect_golden(kGolden / "offset_shaped" / file, folded(setup.machine.gearbox ? shaper_gearbox_text(setup) : shaper_program_text(setup)));
+  }
+}
+
+// The folder stays small, and every sample says what to look at.
+TEST(GoldenFolder, IsSmallAndExplained) {
+  std::uintmax_t sum = 0;
+  int samples = 0;
+  for (const auto& sample : fs::directory_iterator(kGolden)) {
+    if (!sample.is_directory()) continue;
+    ++samples;
+    std::ifstream in(sample.path() / "README.md");
+    std::ostringstream readme;
+    readme << in.rdbuf();
+    for (const auto& file : fs::directory_iterator(sample.path())) {
+      sum += file.file_size();
+      EXPECT_LE(file.file_size(), kLargestFile) << file.path();
+      const std::string name = file.path().filename().string();
+      if (name != "README.md") {
+        EXPECT_NE(readme.str().find("`" + name + "`"), std::string::npos) << sample.path().filename() << "/README.md says nothing of " << name;
+      }
+    }
+  }
+  EXPECT_EQ(samples, 9);
+  EXPECT_LE(sum, kLargestSum);
+}
+
+}  // namespace
+}  // namespace toothpath
