@@ -136,12 +136,12 @@ class BruteFinger {
       if (depth > best.depth) best.depth = depth, best.place = p, index = i, turn = phi;
     };
     for (int i = 0; i <= 12; ++i)
-      for (int j = 0; j < 48; ++j) look(double(line_.size() - 1) * i / 12, 2 * M_PI * j / 48);
-    double along = double(line_.size()) / 12, around = 2 * M_PI / 48;
-    for (int level = 0; level < 7; ++level, along *= 0.4, around *= 0.4) {
+      for (int j = 0; j < 36; ++j) look(double(line_.size() - 1) * i / 12, 2 * M_PI * j / 36);
+    double along = double(line_.size()) / 12, around = 2 * M_PI / 36;
+    for (int level = 0; level < 7; ++level, along *= 0.45, around *= 0.45) {
       const double i0 = index, phi0 = turn;
-      for (int a = -3; a <= 3; ++a)
-        for (int b = -3; b <= 3; ++b) look(i0 + along * a / 3, phi0 + around * b / 3);
+      for (int a = -2; a <= 2; ++a)
+        for (int b = -2; b <= 2; ++b) look(i0 + along * a / 2, phi0 + around * b / 2);
     }
     return best;
   }
