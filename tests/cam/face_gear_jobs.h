@@ -106,8 +106,8 @@ inline PlannedJob planned(const FaceGearParameters& p, std::vector<ToolAssembly>
   return job;
 }
 
-/// Planned once a program: "dhfg" (all four operations), "offset", "spur", "conical" (finishing), and "spur wide": a ball
-/// larger than the fillet.
+/// Planned once a program: "dhfg" (all four operations), "offset", "spur", "conical" (finishing), "double" (a narrow double helical
+/// gear, finishing), and "spur wide": a ball larger than the fillet.
 inline const PlannedJob& job_named(const std::string& name) {
   static std::map<std::string, PlannedJob> jobs;
   const auto it = jobs.find(name);
@@ -116,6 +116,12 @@ inline const PlannedJob& job_named(const std::string& name) {
     if (name == "dhfg")
       return planned(quarter_dhfg(), {ball_mill(1, 3.5, 0.95, 16, 10), ball_mill(0.5, 3.2, 0.46, 14, 10)},
                      {roughing(0, 0.25, 0.4, 0.08), roughing(1, 0.12, 0.2, 0.05), finishing(1, 0.008, 0, 0.02), finishing(1, 0.002, 7e-4)});
+    if (name == "double") {
+      auto gear = quarter_dhfg();
+      gear.zones[0].inner_radius_mm = 114;
+      gear.zones[1].outer_radius_mm = 121.5;
+      return planned(gear, {ball_mill(0.5, 3.2, 0.46, 14, 10)}, {finishing(0, 0.01, 0.002)});
+    }
     if (name == "offset") return planned(offset_gear(), {ball_mill(1.6, 8, 1.5, 14, 10)}, {finishing(0, 0.003, 0.001)});
     if (name == "conical") return planned(conical_gear(), {ball_mill(0.7, 6, 0.65, 14, 10)}, {finishing(0, 0.004, 0.001)});
     if (name == "spur wide")

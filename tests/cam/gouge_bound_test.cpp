@@ -1,5 +1,6 @@
 // What a clean result and a bound mean: 200 small clean programs pass, a tenfold denser sampling of random motions (turning axes among
 // them) never exceeds the bound, and single precision alone would have let a gouge pass.
+#include "cam/body_sweep.h"
 #include "cam/cutter_sweep.h"
 #include "cam/gouge_check.h"
 #include "tests/cam/face_gear_jobs.h"
@@ -120,6 +121,60 @@ TEST_P(RandomMotions, TenfoldSamplingNeverExceedsTheBound) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Jobs, RandomMotions, testing::Values("spur", "conical"), [](const auto& c) { return std::string(c.param); });
+
+class RandomBodies : public testing::TestWithParam<const char*> {};
+
+/// Shank and holder of stubby tools in random motions, half of them turning, against the sampled solid at ten times as many moments as the motion
+/// would need to look at: no place comes nearer than the proven gap, and what is measured is a gap that exists.
+TEST_P(RandomBodies, TenfoldSamplingNeverExceedsTheBound) {
+  const auto& job = job_named(GetParam());
+  const auto& path = job.plan.paths.back();
+  const test::BruteForceBodies brute(job.gear);
+  test::Random random(123);
+  const double roof = job.gear.blank_top();
+  int near = 0, cutting = 0, turning = 0;
+  for (int k = 0; k < 24; ++k) {
+    const auto& record = path.records[2 + random.index(path.records.size() - 4)];
+    const auto wander = [&](double size) { return Vec3(random(-size, size), random(-size, size), random(-size, size)); };
+    const double above = std::max(roof - record.tip.z(), 0.0), R = job.tool(path.operation).radius_mm();
+    const double low = k % 2 == 0 ? R + random(0.1, 1.0) : above + random(-0.05, 0.3);
+    const double r0 = k % 2 == 0 ? R * random(0.8, 1.0) : random(2, 6), r1 = k % 2 == 0 ? r0 : r0 * random(1.0, 1.3);
+    const Frustum body{low, low + random(3, 12), r0, r1, k % 2 == 0 ? "shank" : "holder"};
+    ToolMotion m;
+    m.axis_from = (record.axis + wander(0.12)).normalized();
+    m.axis_to = k % 4 < 2 ? m.axis_from : Vec3((m.axis_from + wander(0.1)).normalized());
+    m.tip_from = record.tip + Vec3(0, 0, random(0, 0.1));
+    m.tip_to = m.tip_from + wander(k % 3 == 0 ? 1.5 : 0.2);
+    SweptGapOptions options;
+    options.enough_mm = 0.8;
+    options.contact_mm = 0.005;
+    const auto found = swept_gap(*job.part, body, m, options);
+    const auto truth = brute.deepest({body.from, body.to, r0, r1, false}, m, 60, 6);
+    EXPECT_LE(found.proven_mm, std::min(-truth.depth, options.enough_mm) + 1e-9) << k << " " << body.name;
+    EXPECT_LE(found.proven_mm, found.measured_mm) << k;
+    if (found.measured_mm < options.enough_mm) {
+      near += 1;
+      turning += m.axis_from != m.axis_to;
+      // The gap that is told exists: at its place, at some moment.
+      double there = INFINITY;
+      for (int tooth = 0; tooth < job.gear.parameters().teeth; ++tooth) {
+        const Vec3 p = FaceGearSurface<double>::turned(found.place, tooth * job.gear.pitch());
+        if ((p - m.tip_from).norm() > body.to + r1 + 4) continue;
+        for (int s = 0; s <= 1000; ++s)
+          there = std::min(there, -test::depth_in_body(p, {body.from, body.to, r0, r1, false}, tip_at(m, s / 1000.0), axis_at(m, s / 1000.0)));
+      }
+      EXPECT_NEAR(found.measured_mm, there, 0.002 + 0.3 * std::max(0.0, -found.measured_mm)) << k << " " << found.patch;
+    }
+    cutting += found.measured_mm < 0;
+  }
+  EXPECT_GE(near, 10);
+  EXPECT_GE(cutting, 2);
+  EXPECT_GE(turning, 3);
+  RecordProperty("near", near);
+  RecordProperty("cutting", cutting);
+}
+
+INSTANTIATE_TEST_SUITE_P(Jobs, RandomBodies, testing::Values("spur", "conical", "double"), [](const auto& c) { return std::string(c.param); });
 
 /// The straight-line bound against sets of random points: the sharpest case that it must cover.
 TEST(LeastBetween, HoldsForEverySet) {

@@ -73,20 +73,17 @@ class BodyPlanter {
       m.line = int(k) + 1;
       return m;
     };
-    // The depth grows with the lean: halve.
+    // The depth grows with the lean: samples tell roughly where, then it is halved.
     double low = 0, high = 1.0;
-    if (brute_.deepest(f.shape, leaning(low), 1, 1).depth > -0.01) return {};
+    if (brute_.sampled(f.shape, leaning(low)).depth > -0.03) return {};
     for (double angle = 0.05; angle < 1.0; angle += 0.05)
-      if (brute_.deepest(f.shape, leaning(angle), 1, 2).depth > kDepth) {
+      if (brute_.sampled(f.shape, leaning(angle)).depth > -0.05) {
         high = angle;
         break;
       }
+    for (; high < 1.0 && brute_.deepest(f.shape, leaning(high), 1, 2).depth <= kDepth; high += 0.02) low = high;
     if (high >= 1.0) return {};
-    low = high - 0.05;
-    for (int step = 0; step < 3; ++step) {
-      const double middle = 0.5 * (low + high);
-      (brute_.deepest(f.shape, leaning(middle), 2, 3).depth > kDepth ? high : low) = middle;
-    }
+    low = std::max(low, high - 0.05);
     BruteDepth near = brute_.deepest(f.shape, leaning(high), 4);
     for (int step = 0; step < 40 && high - low > 1e-8; ++step) {
       const double middle = 0.5 * (low + high);
@@ -94,7 +91,7 @@ class BodyPlanter {
       (near.depth > kDepth ? high : low) = middle;
     }
     f.motion = leaning(high);
-    f.truth = brute_.deepest(f.shape, f.motion, 6);
+    f.truth = brute_.deepest(f.shape, f.motion, 6, 6);
     if (std::abs(f.truth.depth - kDepth) > 1e-4) return {};  // another place was deeper: not what was meant
     if (body == "flute" && brute_.deepest({R, f.tool.flute_length_mm, R, R, true}, f.motion, 4, 4).depth > f.truth.depth + 1e-4) return {};
     return f;
@@ -114,7 +111,7 @@ TEST_P(EveryBody, IsFoundWithinAFifthOfAMicrometre) {
   BodyPlanter planter(job, 77);
   int planted = 0, found = 0, turning = 0, deeper = 0;
   const test::BruteForceGearSolid solid(job.gear);
-  const int wanted = job.gear.parameters().zones[0].helix_angle_rad == 0 ? 12 : 5;
+  const int wanted = std::string(std::get<0>(GetParam())) == "spur" ? 12 : 7;
   for (int k = 0; k < wanted; ++k) {
     const auto fault = planter.plant(body);
     if (!fault) continue;
@@ -170,16 +167,15 @@ TEST_P(EveryBody, IsFoundWithinAFifthOfAMicrometre) {
     found += right;
   }
   EXPECT_EQ(found, planted);
-  EXPECT_GE(planted, wanted - 2);
+  EXPECT_GE(planted, wanted - 1);
   RecordProperty("planted", planted);
   RecordProperty("found", found);
   RecordProperty("turning", turning);
   RecordProperty("deeper_than_sampled", deeper);
 }
 
-using Case = std::tuple<const char*, const char*>;
 INSTANTIATE_TEST_SUITE_P(Jobs, EveryBody,
-                         testing::Values(Case{"spur", "flute"}, Case{"spur", "shank"}, Case{"spur", "holder"}, Case{"conical", "shank"}),
+                         testing::Combine(testing::Values("spur", "conical", "offset", "double"), testing::Values("flute", "shank", "holder")),
                          [](const auto& c) { return std::string(std::get<0>(c.param)) + "_" + std::get<1>(c.param); });
 
 }  // namespace

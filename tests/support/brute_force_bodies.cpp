@@ -45,7 +45,7 @@ BruteForceBodies::BruteForceBodies(const FaceGear& gear, int rows, int columns) 
     }
 }
 
-BruteDepth BruteForceBodies::deepest(const BruteBody& body, const ToolMotion& m, int moments, std::size_t most_starts) const {
+std::vector<BruteDepth> BruteForceBodies::seeds(const BruteBody& body, const ToolMotion& m, int moments) const {
   // The teeth near the lower part of the tool; a body that leans reaches farther.
   const double pitch = gear_.pitch();
   const Vec3 low = tip_of(m, 0.5) + body.from * axis_of(m, 0.5);
@@ -66,11 +66,21 @@ BruteDepth BruteForceBodies::deepest(const BruteBody& body, const ToolMotion& m,
         if (b.depth > -0.5) seeds.push_back(b);
     }
   std::sort(seeds.begin(), seeds.end(), [](const BruteDepth& a, const BruteDepth& b) { return a.depth > b.depth; });
-  if (seeds.empty()) return {};
+  return seeds;
+}
+
+BruteDepth BruteForceBodies::sampled(const BruteBody& body, const ToolMotion& m, int moments) const {
+  const auto all = seeds(body, m, moments);
+  return all.empty() ? BruteDepth{} : all.front();
+}
+
+BruteDepth BruteForceBodies::deepest(const BruteBody& body, const ToolMotion& m, int moments, std::size_t most_starts) const {
+  const auto all = seeds(body, m, moments);
+  if (all.empty()) return {};
   // The best few, of different patches and teeth first.
   std::vector<BruteDepth> starts;
-  for (const auto& s : seeds) {
-    if (starts.size() >= most_starts || s.depth < seeds.front().depth - 0.1) break;
+  for (const auto& s : all) {
+    if (starts.size() >= most_starts || s.depth < all.front().depth - 0.1) break;
     const auto same = [&](const BruteDepth& o) {
       return o.tooth == s.tooth && o.zone == s.zone && o.patch == s.patch && std::abs(o.x - s.x) + std::abs(o.y - s.y) < 0.3;
     };

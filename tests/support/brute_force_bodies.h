@@ -31,6 +31,8 @@ class BruteForceBodies {
   /// Deepest place over the whole motion, over `moments` + 1 moments and the teeth near the tool; the pattern search starts from up
   /// to `most_starts` places.
   [[nodiscard]] BruteDepth deepest(const BruteBody& body, const ToolMotion& motion, int moments = 6, std::size_t most_starts = 8) const;
+  /// Only the deepest sample, at `moments` + 1 moments: quick, and too shallow by what lies between the samples.
+  [[nodiscard]] BruteDepth sampled(const BruteBody& body, const ToolMotion& motion, int moments = 1) const;
   /// The same from one place on: only the pattern search.
   [[nodiscard]] BruteDepth improved(const BruteBody& body, const ToolMotion& motion, BruteDepth start, double first_step = 0.05) const;
   [[nodiscard]] const BruteForceGearSolid& solid() const { return solid_; }
@@ -41,6 +43,8 @@ class BruteForceBodies {
     int zone, patch;
     double x, y;
   };
+  /// The deepest samples of every zone, patch, tooth and moment.
+  [[nodiscard]] std::vector<BruteDepth> seeds(const BruteBody& body, const ToolMotion& motion, int moments) const;
   const FaceGear& gear_;
   BruteForceGearSolid solid_;
   std::vector<Sample> samples_;
