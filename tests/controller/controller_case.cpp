@@ -1,8 +1,8 @@
 // Makes the folder from which LinuxCNC's motion controller runs a program of a job, and compares what it executed with our
 // read-back of the same text.
-//   toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH MODE   TEETH: teeth per operation, "1,1"; MODE: exact | blend
+//   toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH MODE   TEETH: teeth per operation, "1,1"; MODE: exact (G61.1), path (G61), blend (as written)
 //   toothpath_controller_case compare JOB FOLDER MODE                 FOLDER/samples.txt: what halsampler recorded
-// Exact stops are run with 200 mm/s^2 and deg/s^2: how near to a stop the last sample lies depends on it. Blends: 2000.
+// Exact stops are run with 200 mm/s^2 and deg/s^2: how near to a stop the last sample lies depends on it. The others: 2000.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -58,9 +58,11 @@ Result<Case> read_case(const std::string& job_file) {
 
 std::string kinematics(const Case& c) { return c.tilt == 'A' ? "xyzac-trt-kins" : "xyzbc-trt-kins"; }
 
-double acceleration(bool exact) { return exact ? 200 : 2000; }  // mm/s^2 and deg/s^2
+enum class Mode { exact, path, blend };
 
-std::string ini(const Case& c, bool exact) {
+double acceleration(Mode mode) { return mode == Mode::exact ? 200 : 2000; }  // mm/s^2 and deg/s^2
+
+std::string ini(const Case& c, Mode mode) {
   const KinematicChain& chain = c.machine.chain;
   struct Joint {
     double least, greatest, speed;
@@ -108,15 +110,15 @@ CYCLE_TIME = 0.001
 EMCIO = io
 CYCLE_TIME = 0.100
 TOOL_TABLE = tools.tbl
-)", kinematics(c), c.tilt, fastest, fastest, acceleration(exact));
+)", kinematics(c), c.tilt, fastest, fastest, acceleration(mode));
   // With TCP the words of an axis are not its joint: only the joints have limits.
   for (std::size_t i = 0; i < 5; ++i)
     text += fmt::format("[AXIS_{}]\nMIN_LIMIT = -100000\nMAX_LIMIT = 100000\nMAX_VELOCITY = {}\nMAX_ACCELERATION = {}\n",
-                        i == 3 ? c.tilt : "XYZ?C"[i], joints[i].speed, acceleration(exact));
+                        i == 3 ? c.tilt : "XYZ?C"[i], joints[i].speed, acceleration(mode));
   for (std::size_t i = 0; i < 5; ++i)
     text += fmt::format("[JOINT_{}]\nTYPE = {}\nHOME = 0\nHOME_SEARCH_VEL = 0\nHOME_SEQUENCE = 0\nMIN_LIMIT = {}\nMAX_LIMIT = {}\nMAX_VELOCITY = {}\n"
                         "MAX_ACCELERATION = {}\nFERROR = 1\nMIN_FERROR = 1\n",
-                        i, joints[i].angular ? "ANGULAR" : "LINEAR", joints[i].least, joints[i].greatest, joints[i].speed, acceleration(exact));
+                        i, joints[i].angular ? "ANGULAR" : "LINEAR", joints[i].least, joints[i].greatest, joints[i].speed, acceleration(mode));
   return text;
 }
 
@@ -146,7 +148,7 @@ std::string remap(int code, int kinematics_type) {
 /// The program with these teeth of every operation instead of all, and with exact stops where asked. What the controller runs is
 /// what we read, but for the word of the exact stop (our readers know exact path only, which ends at the same joints). Teeth stand
 /// in a loop, or are written out behind (TOOTH k).
-Result<std::string> shortened(const std::string& text, const std::string& teeth, bool exact) {
+Result<std::string> shortened(const std::string& text, const std::string& teeth, Mode mode) {
   std::vector<std::string> counts;
   std::istringstream list(teeth), in(text);
   for (std::string count; std::getline(list, count, ',');) counts.push_back(count);
@@ -161,7 +163,7 @@ Result<std::string> shortened(const std::string& text, const std::string& teeth,
     if (line.rfind("G94 F", 0) == 0 || line == "M5") dropped = false;  // the end of the operation
     if (dropped) continue;
     if (std::regex_search(line, loop)) line = std::regex_replace(line, loop, "[#1 LT " + counts.at(operations - 1) + "]");
-    if (exact) line = std::regex_replace(line, blend, "G61");
+    if (mode != Mode::blend) line = std::regex_replace(line, blend, "G61");
     out += line + "\n";
   }
   if (operations < counts.size()) return fail("the program has fewer operations than \"{}\"", teeth);
@@ -176,10 +178,10 @@ Status write(const fs::path& file, const std::string& text) {
   return Ok{};
 }
 
-Status prepare(const Case& c, const std::string& program, const fs::path& folder, const std::string& teeth, bool exact) {
+Status prepare(const Case& c, const std::string& program, const fs::path& folder, const std::string& teeth, Mode mode) {
   const std::string text = read(program);
   if (text.empty()) return fail("{} is missing or empty", program);
-  const auto part = shortened(text, teeth, exact);
+  const auto part = shortened(text, teeth, mode);
   if (!part) return part.error();
   std::string tools, offsets;
   for (const ToolAssembly& t : c.job.tools) tools += fmt::format("T{0} P{0} Z{1} D{2}\n", t.number, t.length_mm, t.diameter_mm);
@@ -187,9 +189,9 @@ Status prepare(const Case& c, const std::string& program, const fs::path& folder
   const Vec3 at = c.job.setup->work_offset_at_mm;
   offsets = fmt::format("5220\t1\n5221\t{}\n5222\t{}\n5223\t{}\n", at.x(), at.y(), at.z());
   const std::pair<const char*, std::string> files[] = {
-      {"machine.ini", ini(c, exact)}, {"machine.hal", hal(c)}, {"tools.tbl", tools}, {"offsets.var", offsets},
+      {"machine.ini", ini(c, mode)}, {"machine.hal", hal(c)}, {"tools.tbl", tools}, {"offsets.var", offsets},
       {"428remap.ngc", remap(428, 1)}, {"429remap.ngc", remap(429, 0)}, {"read.ngc", *part},
-      {"program.ngc", exact ? std::regex_replace(*part, std::regex("G61\\b"), "G61.1") : *part}};
+      {"program.ngc", mode == Mode::exact ? std::regex_replace(*part, std::regex("G61\\b"), "G61.1") : *part}};
   for (const auto& [name, content] : files)
     if (const Status s = write(folder / name, content); !s) return s;
   return Ok{};
@@ -264,7 +266,8 @@ bool judge(const char* what, std::span<const PathCorner> path, std::span<const J
   return good;
 }
 
-Result<bool> compare(const Case& c, const fs::path& folder, bool exact) {
+Result<bool> compare(const Case& c, const fs::path& folder, Mode mode) {
+  const bool exact = mode == Mode::exact;
   const auto expected = expected_path(c, read(folder / "read.ngc"));
   if (!expected) return expected.error();
   std::ifstream in(folder / "samples.txt");
@@ -274,8 +277,8 @@ Result<bool> compare(const Case& c, const fs::path& folder, bool exact) {
   // Half of the last printed digit in five joints; and what two samples a period apart leave out, on both sides of a stop or of the
   // arc between them.
   const double digits = 0.5 * kPrinted * std::sqrt(3 + 2 * test::kMmPerDegree * test::kMmPerDegree);
-  const double seen = digits + acceleration(exact) * test::kMmPerDegree * kPeriod * kPeriod * (exact ? 1 : 0.125);
-  fmt::print("{}: {} moves, {} samples of 1 ms\n", exact ? "exact stop" : fmt::format("G64, corners allowed {:.3g} um", expected->blend_mm * 1e3),
+  const double seen = digits + acceleration(mode) * test::kMmPerDegree * kPeriod * kPeriod * (exact ? 1 : 0.125);
+  fmt::print("{}: {} moves, {} samples of 1 ms\n", exact ? "exact stop" : mode == Mode::path ? "exact path" : fmt::format("G64, corners allowed {:.3g} um", expected->blend_mm * 1e3),
              expected->blocks, samples->size());
   const bool joints = judge("joints", expected->path, *samples, exact ? seen : 0);
   // Blended, the program promises where the tip goes (with TCP the reader counts a multiple of P).
@@ -296,10 +299,11 @@ Result<bool> compare(const Case& c, const fs::path& folder, bool exact) {
 
 int run(const std::vector<std::string>& args) {
   const bool preparing = args.size() == 6 && args[0] == "prepare", comparing = args.size() == 4 && args[0] == "compare";
-  const std::string mode = args.empty() ? "" : args.back();
-  if ((!preparing && !comparing) || (mode != "exact" && mode != "blend")) {
-    fmt::print(stderr, "usage: toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH exact|blend\n"
-                       "       toothpath_controller_case compare JOB FOLDER exact|blend\n");
+  const std::string word = args.empty() ? "" : args.back();
+  const Mode mode = word == "exact" ? Mode::exact : word == "path" ? Mode::path : Mode::blend;
+  if ((!preparing && !comparing) || (mode == Mode::blend && word != "blend")) {
+    fmt::print(stderr, "usage: toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH exact|path|blend\n"
+                       "       toothpath_controller_case compare JOB FOLDER exact|path|blend\n");
     return 2;
   }
   const auto c = read_case(args[1]);
@@ -308,11 +312,11 @@ int run(const std::vector<std::string>& args) {
     return 3;
   }
   if (preparing) {
-    const Status s = prepare(*c, args[2], args[3], args[4], mode == "exact");
+    const Status s = prepare(*c, args[2], args[3], args[4], mode);
     if (!s) fmt::print(stderr, "{}\n", s.error().text());
     return s ? 0 : 3;
   }
-  const auto same = compare(*c, args[2], mode == "exact");
+  const auto same = compare(*c, args[2], mode);
   if (!same) fmt::print(stderr, "{}\n", same.error().text());
   return same && *same ? 0 : 1;
 }
