@@ -1,6 +1,5 @@
 #include "tests/support/nc_modal_simulator.h"
 
-#include <functional>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
