@@ -3,11 +3,15 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "geometry/space_sheet.h"
 
 namespace toothpath {
+
+/// A place of the gear frame in cylinder coordinates.
+[[nodiscard]] inline Vec3 on_cylinder(double r, double azimuth, double z) { return {r * std::cos(azimuth), r * std::sin(azimuth), z}; }
 
 /// A corner of a flat polygon, with the parameters of its place on a patch. `stands`: it is a place of the ring's surface.
 struct FacetCorner {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "cam/gear_cells.h"
+#include "cam/ring_edges.h"
 
 namespace toothpath {
 namespace {
@@ -16,21 +17,12 @@ constexpr int kTable = 257;           // places over the radius
 constexpr std::size_t kLandStep = 4;  // of them, along a cell of a land
 constexpr int kLandParts = 4;         // cells across a land
 constexpr int kFloorStrips = 48;      // of the groove floor over a pitch
-constexpr double kEdgeSag = 5e-6;      // mm: where the proven sag of an edge is larger, smaller boxes are tried
-constexpr std::size_t kEndStretch = 60;  // places of an end edge whose bend is bounded together, at most
 
 double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 Vec3 turned(const Vec3& p, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
 }
-
-/// A place of the sheet at an end of the ring.
-struct EndPlace {
-  SpacePiece piece;
-  double u, v;
-  Vec3 p;
-};
 
 /// Makes one ring, step by step.
 class Maker {
@@ -43,8 +35,10 @@ class Maker {
     end_line(R.r_out, R.end_out, places_[1]);
     tables();
     end_edges();
-    add_edge(plus_line_, tip_sags(0), "tip edge");
-    add_edge(minus_line_, tip_sags(1), "tip edge");
+    for (std::size_t n = 0; n < 2; ++n) {
+      tip_bend_[n] = tip_bends(bounds_, n == 0 ? 1 : -1, tip_[n], R.table_r);
+      add_edge(n == 0 ? plus_line_ : minus_line_, tip_edge_sags(bounds_, tip_bend_[n], R.table_r), "tip edge");
+    }
     R.edge_index = std::make_unique<SpatialIndex>(edge_boxes_);
     land_cells();
     end_cells();
@@ -184,68 +178,14 @@ class Maker {
     }
   }
 
-  /// The sags of the edges' polylines from bounds of their second derivatives.
   void end_edges() {
     for (std::size_t n = 0; n < 2; ++n) {
-      const auto& places = places_[n];
-      std::vector<double> sags(places.size(), -1);
-      for (std::size_t from = 0, to = 0; from + 1 < places.size(); from = to) {
-        to = from + 1;  // the step from piece to piece belongs to the piece before it
-        while (to + 1 < places.size() && to < from + kEndStretch && places[to].piece == places[from].piece) ++to;
-        prove_stretch(places, from, to, sags);
-      }
       std::vector<Vec3> line;
-      for (const auto& place : places) line.push_back(place.p);
+      for (const auto& place : places_[n]) line.push_back(place.p);
       const std::size_t first = R.edges.size();
-      add_edge(line, sags, "end edge");
+      add_edge(line, end_edge_sags(bounds_, places_[n]), "end edge");
       for (std::size_t k = first; k < R.edges.size(); ++k) border_sag_[n] = std::max(border_sag_[n], R.edges[k].sag);
     }
-  }
-
-  /// Places from .. to of an end edge, all of one piece but perhaps the last, which is the border to the next piece.
-  void prove_stretch(const std::vector<EndPlace>& places, std::size_t from, std::size_t to, std::vector<double>& sags) const {
-    const std::size_t last = places[to].piece == places[from].piece ? to : to - 1;
-    const std::size_t back = last > from || from == 0 ? from : from - 1;
-    if (places[back].piece != places[from].piece || last == back) return;
-    // The coordinate a runs along the stretch, b along the parameter v.
-    const Vec2 x(places[back].u, places[back].v), y(places[last].u, places[last].v);
-    const PatchFrame frame{0.5 * (x + y), 0.5 * (y - x), Vec2(0, 1)};
-    double off = 0, step = last == from ? 2 : 0;
-    for (std::size_t k = from; k <= last; ++k) {
-      const Vec2 ab = frame.ab({places[k].u, places[k].v});
-      off = std::max(off, std::abs(ab.y()));
-      if (k > from) step = std::max(step, std::abs(ab.x() - frame.ab({places[k - 1].u, places[k - 1].v}).x()));
-    }
-    const double half_a = last == to ? 1 : 1 + 1.01 * step;
-    bool good = false;
-    for (double half_b = 2 * off + 1e-6; half_b < 1 && !good; half_b *= 5) {
-      const auto bend = bounds_.bend_at_radius(places[from].piece, frame, half_a, half_b);
-      if (!bend) continue;
-      good = true;
-      for (std::size_t k = from; k < to; ++k) {  // only what leads away from the chord counts
-        const Vec3 chord = (places[k + 1].p - places[k].p).normalized();
-        sags[k] = 0.125 * step * step * ((bend->middle - chord.dot(bend->middle) * chord).norm() + bend->spread);
-        good = good && sags[k] <= kEdgeSag;
-      }
-    }
-    if (good || to - from < 2) return;
-    const std::size_t middle = (from + to) / 2;  // smaller boxes
-    prove_stretch(places, from, middle, sags);
-    prove_stretch(places, middle, to, sags);
-  }
-
-  /// The same for the tip edge of a side; keeps the bounds of its azimuth for the land.
-  std::vector<double> tip_sags(std::size_t n) {
-    std::vector<double> sags;
-    for (std::size_t k = 0; k + 1 < tip_[n].size(); ++k) {
-      const double r0 = R.table_r[k], r1 = R.table_r[k + 1], step = r1 - r0;
-      const auto &a = tip_[n][k], &b = tip_[n][k + 1];
-      tip_bend_[n].push_back(a && b ? bounds_.tip_azimuth(n == 0 ? 1 : -1, *a, r0, *b, r1) : std::nullopt);
-      const auto& bend = tip_bend_[n].back();
-      const double a1 = bend ? bend->slope.magnitude() : 0, a2 = bend ? bend->bend.magnitude() : 0;
-      sags.push_back(bend ? 0.125 * step * step * std::hypot(r1 * a1 * a1, 2 * a1 + r1 * a2, bounds_.tip_surface_bend(r0, r1).magnitude()) : -1);
-    }
-    return sags;
   }
 
   /// The top land of tooth 0, which ends space 0 on its low side: bodies wider than a space may stand on it.
