@@ -96,8 +96,8 @@ std::optional<Diagnostic> post_and_prove(BevelRun& run, OutputDir& output, const
   note_axis_program(run.report, run.job, paths, run.program->restarted ? *run.program->restarted : axes);
   run.report.blocks = run.program->blocks;
 
-  auto proof = prove_bevel_program(run.program->text, output.final_path(run.program->file), run.job, run.machine, *run.gear, check, paths,
-                                   {axes.chord_bound_mm + axes.rounding_bound_mm, axes.axis_bound_rad}, run.clock);
+  auto proof = prove_bevel_program(run.program->text, output.final_path(run.program->file), run.job, run.machine, *run.gear, check, paths_to_meet(axes, paths),
+                                   {axes.chord_bound_mm + axes.rounding_bound_mm + axes.pole_tip_mm, axes.axis_bound_rad}, run.clock);
   if (!proof) {
     Diagnostic error = proof.error();
     error.kind = DiagnosticKind::verification;  // our own program must be readable

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "app/gear_of_job.h"
+#include "app/report/setup_travel.h"
 #include "geometry/base/angle.h"
 #include "postproc/nc_writer.h"
 #include "postproc/tooth_order.h"
@@ -38,16 +39,30 @@ RunReport report_of(const std::string& command, const Job& job, const Machine& m
 
 void note_axis_program(RunReport& report, const Job& job, std::span<const ClPath* const> paths, const AxisProgram& program) {
   report.axes = program.ranges;
-  report.feed_minutes = program.feed_minutes;
-  report.total_minutes = program.minutes;
+  const bool timed = program.has_acceleration && !program.restart;  // a program that begins in the middle has its own times
+  report.has_acceleration = timed;
+  report.feed_minutes = timed ? program.accelerated.feed : program.feed_minutes;
+  report.total_minutes = timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes;
+  if (job.setup && program.offer)
+    report.travel_room = TravelRoom{*program.offer, job.setup->origin_mm + program.offer->shift_mm, job.setup->work_offset_at_mm + program.offer->shift_mm};
+  if (job.setup && program.offer) report.sheet_sections.push_back(travel_section(program, *job.setup));
+  report.sheet_sections.push_back(time_section(program));
   report.block_times = block_times_of(program);
   for (const AxisOperation& o : program.operations) {
     const auto& asked = job.operations[static_cast<std::size_t>(o.operation)];
-    OperationReport operation{o.operation, o.type, o.tool_number, asked.speed_rpm, asked.feed_mm_min, 0, o.feed_minutes, o.rapid_minutes};
+    OperationReport operation{o.operation, o.type, o.tool_number, asked.speed_rpm, asked.feed_mm_min, 0, timed ? o.accelerated.feed : o.feed_minutes,
+                              timed ? o.accelerated.rapid : o.rapid_minutes};
     for (const ClPath* path : paths)
       if (path->operation == o.operation) operation.cl_points += path->records.size();
     report.operations.push_back(operation);
   }
+}
+
+std::vector<const ClPath*> paths_to_meet(const AxisProgram& program, std::span<const ClPath* const> paths) {
+  if (program.followed.empty()) return {paths.begin(), paths.end()};
+  std::vector<const ClPath*> followed;
+  for (const ClPath& path : program.followed) followed.push_back(&path);
+  return followed;
 }
 
 Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const Job& job, const std::string& title, const Machine& machine, int teeth,

@@ -23,6 +23,9 @@ namespace toothpath {
 /// Axis ranges, times and operations. `paths`: one an operation.
 void note_axis_program(RunReport& report, const Job& job, std::span<const ClPath* const> paths, const AxisProgram& program);
 
+/// The paths that the program follows: those given, or where poles were handled those that were made of them.
+[[nodiscard]] std::vector<const ClPath*> paths_to_meet(const AxisProgram& program, std::span<const ClPath* const> paths);
+
 /// An NC program that this run has made: on the disk, and what lies there.
 struct PostedProgram {
   AxisProgram axes;

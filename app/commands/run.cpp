@@ -24,6 +24,7 @@
 #include "app/sha256.h"
 #include "cam/plan.h"
 #include "geometry/base/tolerances.h"
+#include "postproc/axis_pole.h"
 #include "postproc/nc_writer.h"
 
 namespace toothpath {
@@ -57,6 +58,9 @@ struct Run {
     PlanOptions options;
     if (job.verify.clearance_mm) options.clearance_mm = *job.verify.clearance_mm;
     options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
+    // `tilt` keeps what it asks between two records, too, where the axis dips by less than this margin.
+    if (machine.post.pole == PoleOption::tilt)
+      options.least_tilt_rad = std::max(options.least_tilt_rad, machine.post.pole_angle_rad.value_or(kLeastPoleTilt) + 1e-3);
     return options;
   }
   [[nodiscard]] std::vector<const ClPath*> paths() const {
@@ -145,9 +149,9 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   ProofOptions options;
   options.cut_surface = run.cut_surface;
   options.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
-  options.path_tolerance_mm = program.chord_bound_mm + program.rounding_bound_mm + 2 * options.motion_tolerance_mm;
+  options.path_tolerance_mm = program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm + 2 * options.motion_tolerance_mm;
   options.path_tolerance_rad = program.axis_bound_rad + 2 * options.motion_tolerance_rad;
-  auto proof = prove_program(posted->text, output.final_path(posted->file), run.job, run.machine, part, check, body, teeth, paths,
+  auto proof = prove_program(posted->text, output.final_path(posted->file), run.job, run.machine, part, check, body, teeth, paths_to_meet(program, paths),
                              options, run.clock);
   if (!proof) {
     Diagnostic error = proof.error();

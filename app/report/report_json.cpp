@@ -140,6 +140,16 @@ void add_motion(Json& json, const RunReport& r) {
                                          {"unit", axis.rotary ? "deg" : "mm"}};
   }
   json["axes"] = std::move(axes);
+  json["acceleration_in_times"] = r.has_acceleration;
+  if (r.travel_room) {
+    const TravelOffer& offer = r.travel_room->offer;
+    json["travel_room"] = {{"now", offer.room_now_mm},
+                           {"most", offer.room_then_mm},
+                           {"origin", vector_json(r.travel_room->origin_mm)},
+                           {"work_offset_at", vector_json(r.travel_room->work_offset_at_mm)},
+                           {"on_index_axis", offer.on_index_axis},
+                           {"riser", offer.shift_mm.z()}};
+  }
   if (!r.block_times) return;
   const BlockTimes& t = *r.block_times;
   Json bins = Json::array(), ruled = Json::object();

@@ -48,6 +48,12 @@ struct SheetSection {
   std::string note;  ///< below the table
 };
 
+/// Where the part has the most room, and set-up origin and work offset there.
+struct TravelRoom {
+  TravelOffer offer;
+  Vec3 origin_mm = Vec3::Zero(), work_offset_at_mm = Vec3::Zero();
+};
+
 struct RunReport {
   std::string command;  ///< "run", "check", "surface"
   std::string job_name, job_file, machine_name, machine_file, dialect;
@@ -69,12 +75,14 @@ struct RunReport {
   std::vector<OperationReport> operations;
   std::vector<DirectionChoice> directions;
   std::vector<AxisRange> axes;
+  std::optional<TravelRoom> travel_room;                 ///< none where it was not looked for
+  bool has_acceleration = false;                         ///< the times above hold the accelerations of the axes
+  std::optional<BlockTimes> block_times;                 ///< none where no program was posted
   int teeth = 0, tooth_stride = 1;                       ///< of the program: place n cuts tooth n * stride mod teeth
   std::optional<ProgramRestart> restart;                 ///< the program begins there
   std::optional<RestartMenu> restart_menu;               ///< where it can be taken up again
   std::vector<LengthTolerance> length_tolerances;
   std::vector<SheetSection> sheet_sections;              ///< stand behind the axis ranges
-  std::optional<BlockTimes> block_times;                 ///< none where no program was posted
   std::vector<LedgerEntry> ledger;
   std::vector<SceneVerdict> scene;                       ///< fixture and stock, where meshes of them were given
   std::vector<CorrectionRow> correction;                 ///< empty: the nominal flanks are the target

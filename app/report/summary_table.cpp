@@ -65,7 +65,8 @@ std::string summary_table(const RunReport& report, bool color) {
                                               std::max(0.0, v.nearest->gap_mm), place, v.required_mm));
   }
   if (!report.operations.empty()) {
-    row(out, "cutting time", fmt::format("{} (with rapids {})", readable_minutes(report.feed_minutes), readable_minutes(report.total_minutes)));
+    row(out, "cutting time", fmt::format("{} (with rapids {})", readable_minutes(report.feed_minutes), readable_minutes(report.total_minutes)) +
+                                (report.has_acceleration ? ", accelerations included" : ""));
     row(out, "time by tool", tools_text(report));
   }
   for (const auto& d : report.directions)
@@ -73,6 +74,12 @@ std::string summary_table(const RunReport& report, bool color) {
       row(out, "tool axis", fmt::format("operation {}, zone {}: simultaneous, lean {:.1f} to {:.1f} deg, turns in {} of {} passes", d.operation, d.zone,
                                         degrees(d.least_lean_rad), degrees(d.greatest_lean_rad), d.turning_passes, d.passes));
   axis_rows(out, report);
+  if (report.travel_room) {
+    const auto& [offer, origin, work] = *report.travel_room;
+    row(out, "room in travels", fmt::format("X {:.1f}  Y {:.1f}  Z {:.1f} mm; most with the origin at [{:.3f}, {:.3f}, {:.3f}]: X {:.1f}  Y {:.1f}  Z {:.1f} mm", offer.room_now_mm[0],
+                                            offer.room_now_mm[1], offer.room_now_mm[2], origin.x(), origin.y(), origin.z(), offer.room_then_mm[0], offer.room_then_mm[1],
+                                            offer.room_then_mm[2]));
+  }
   if (!report.machine_name.empty()) row(out, "machine", report.machine_name);
   for (const auto& name : report.assumed) row(out, "assumed", name);
   if (!report.program_file.empty()) row(out, "program", fmt::format("{}, {} blocks", report.program_file, report.blocks));
