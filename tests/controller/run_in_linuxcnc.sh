@@ -22,7 +22,7 @@ python=/usr/bin/python3
 [ -x "$python" ] || cannot "$python is missing; LinuxCNC's interface is a module for Debian's Python"
 for tool in cc flock timeout; do command -v "$tool" >/dev/null || cannot "$tool is missing"; done
 
-work=$(mktemp -d "${TMPDIR:-/tmp}/toothpath_controller.XXXXXX")
+work=$(mktemp -d -t toothpath_controller.XXXXXX)
 trap '[ -n "${KEEP:-}" ] && echo "kept: $work" >&2 || rm -rf "$work"' EXIT
 cp -r "$parts" "$work/linuxcnc"
 cc -shared -fPIC -O1 -o "$work/linuxcnc/prefix_paths.so" "$here/prefix_paths.c" -ldl
@@ -51,7 +51,7 @@ run() {
   cp "$work/linuxcnc/linuxcnc.nml" "$folder/"
   if [ "$(id -u)" = 0 ]; then chmod 755 "$work"; chown -R nobody "$folder"; fi
   # One controller at a time: its shared memory has fixed keys.
-  if ! flock "${TMPDIR:-/tmp}/toothpath_controller.lock" "${as_user[@]}" timeout "$((seconds + 120))" \
+  if ! flock "$(dirname "$work")/toothpath_controller.lock" "${as_user[@]}" timeout "$((seconds + 120))" \
       env -i PATH=/usr/bin:/bin HOME="$folder" LC_ALL=C "$work/controller.sh" "$work" "$folder" "$seconds"; then
     echo "$name, $mode: the controller did not run the program to its end" >&2
     tail -n 20 "$folder/log" >&2
