@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "postproc/pole_geometry.h"
 
 namespace toothpath {
 namespace {
@@ -12,53 +13,12 @@ constexpr double kPoleTurn = radians(30);    // of the azimuth in one block, or 
 constexpr double kPoleRatio = 4;             // and more than this multiple of the turn of the tool
 constexpr double kAzimuthStep = radians(20); // of the blocks that are made
 constexpr double kLeastTilt = 1e-7;          // rad from the pole: keeps the azimuth determined
-constexpr double kUndefined = 1e-13;         // rad from the pole: no azimuth
 constexpr double kTurnLength = 20;           // mm per rad: how turns count in the length along the path
 constexpr double kReachable = 1e-9;          // rad: the second rotary takes the tool to the pole
 constexpr double kFlat = 0.3;                // cosine between tool and gear axis below which a retract leaves sideways
 constexpr int kBisections = 60;
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 double wrapped(double a) { return std::remainder(a, 2 * kPi); }
-
-Vec3 slerp(const Vec3& a, const Vec3& b, double t) {
-  const double angle = angle_between(a, b);
-  if (angle < 1e-9) return ((1 - t) * a + t * b).normalized();
-  return (std::sin((1 - t) * angle) * a + std::sin(t * angle) * b) / std::sin(angle);
-}
-
-/// Polar angles about one pole.
-struct PoleFrame {
-  Vec3 pole, e1, e2;
-  explicit PoleFrame(const Vec3& p) : pole(p), e1(p.unitOrthogonal()), e2(p.cross(e1)) {}
-  [[nodiscard]] double theta(const Vec3& u) const { return angle_between(u, pole); }
-  [[nodiscard]] double phi(const Vec3& u) const { return std::atan2(u.dot(e2), u.dot(e1)); }
-  [[nodiscard]] Vec3 axis(double theta, double phi) const {
-    return (std::cos(theta) * pole + std::sin(theta) * (std::cos(phi) * e1 + std::sin(phi) * e2)).normalized();
-  }
-};
-
-/// The great circle from u to v seen from the pole.
-struct Arc {
-  double least = 0, at = 0;       ///< least angle to the pole, and where on the arc (0..1)
-  double turn = 0, azimuth = 0;   ///< of the tool; of the azimuth, signed, 0 where an end has none
-};
-Arc arc_of(const PoleFrame& f, const Vec3& u, const Vec3& v) {
-  Arc a;
-  const double tu = f.theta(u), tv = f.theta(v);
-  a.turn = angle_between(u, v);
-  a.least = std::min(tu, tv);
-  a.at = tu <= tv ? 0 : 1;
-  if (tu > kUndefined && tv > kUndefined) a.azimuth = wrapped(f.phi(v) - f.phi(u));
-  const Vec3 cross = u.cross(v);
-  if (cross.norm() < 1e-15) return a;
-  const Vec3 n = cross.normalized();
-  const Vec3 q = f.pole - f.pole.dot(n) * n;
-  if (q.norm() < 1e-6 || u.cross(q).dot(n) < 0 || q.cross(v).dot(n) < 0) return a;
-  a.least = std::atan2(std::abs(f.pole.dot(n)), q.norm());
-  a.at = std::clamp(angle_between(u, q.normalized()) / a.turn, 0.0, 1.0);
-  return a;
-}
 
 /// A stretch of one pass inside the cone; s counts records, with the fraction of the step.
 struct Stretch {
@@ -87,7 +47,7 @@ class Handler {
   Vec3 axis_at(double s) const {
     if (last_ - first_ < 2) return rec(first_).axis;
     const std::size_t i = step_of(s);
-    return slerp(rec(i).axis, rec(i + 1).axis, s - static_cast<double>(i));
+    return blend_axes(rec(i).axis, rec(i + 1).axis, s - static_cast<double>(i));
   }
   Vec3 tip_at(double s) const {
     if (last_ - first_ < 2) return rec(first_).tip;
@@ -100,18 +60,18 @@ class Handler {
   double crossing(std::size_t i, double inside, double outside) const {
     for (int k = 0; k < kBisections; ++k) {
       const double middle = 0.5 * (inside + outside);
-      (f_.theta(slerp(rec(i).axis, rec(i + 1).axis, middle)) <= cone_ ? inside : outside) = middle;
+      (f_.theta(blend_axes(rec(i).axis, rec(i + 1).axis, middle)) <= cone_ ? inside : outside) = middle;
     }
     return inside;
   }
 
-  static bool steep(const Arc& a) { return std::abs(a.azimuth) > kPoleTurn && std::abs(a.azimuth) > kPoleRatio * a.turn; }
+  static bool steep(const PoleArc& a) { return std::abs(a.azimuth) > kPoleTurn && std::abs(a.azimuth) > kPoleRatio * a.turn; }
 
   void find() {
     arcs_.clear();
     stretches_.clear();
     for (std::size_t i = first_; i + 1 < last_; ++i) {
-      const Arc a = arc_of(f_, rec(i).axis, rec(i + 1).axis);
+      const PoleArc a = pole_arc(f_, rec(i).axis, rec(i + 1).axis);
       arcs_.push_back(a);
       if (a.least > cone_) continue;
       const double base = static_cast<double>(i);
@@ -224,7 +184,7 @@ class Handler {
     nodes.push_back({st.s_out, 0});
     double length = 0;
     for (std::size_t k = 1; k < nodes.size(); ++k) {
-      length += (tip_at(nodes[k].s) - tip_at(nodes[k - 1].s)).norm() + kTurnLength * angle_between(axis_at(nodes[k].s), axis_at(nodes[k - 1].s)) + 1e-12;
+      length += (tip_at(nodes[k].s) - tip_at(nodes[k - 1].s)).norm() + kTurnLength * angle_between_axes(axis_at(nodes[k].s), axis_at(nodes[k - 1].s)) + 1e-12;
       nodes[k].f = length;
     }
     for (auto& n : nodes) n.f /= length;
@@ -253,7 +213,7 @@ class Handler {
   Vec3 on_meridian(double s, double phi) const {
     const Vec3 u = axis_at(s);
     const double theta = f_.theta(u);
-    const double along = theta > kUndefined ? theta * std::cos(f_.phi(u) - phi) : 0;
+    const double along = theta > kNoAzimuth ? theta * std::cos(f_.phi(u) - phi) : 0;
     return f_.axis(std::clamp(along, kLeastTilt, std::max(cone_, kLeastTilt)), phi);
   }
 
@@ -353,7 +313,7 @@ class Handler {
   const PoleRules& rules_;
   double cone_;
   std::size_t first_ = 0, last_ = 0;
-  std::vector<Arc> arcs_;
+  std::vector<PoleArc> arcs_;
   std::vector<Stretch> stretches_;
 };
 
@@ -363,7 +323,7 @@ Vec3 nearest_pole(const ClPath& path, std::size_t first, std::size_t last, std::
   double least = 1e9;
   for (const Vec3& p : poles)
     for (std::size_t i = first; i < last; ++i)
-      if (const double a = angle_between(path.records[i].axis, p); a < least) {
+      if (const double a = angle_between_axes(path.records[i].axis, p); a < least) {
         least = a;
         best = p;
       }
@@ -376,9 +336,9 @@ std::vector<Vec3> poles_of(const KinematicChain& chain) {
   std::vector<Vec3> poles;
   if (chain.rotary_count() != 2) return poles;
   const Vec3 &d1 = chain.rotary(0).direction, &d2 = chain.rotary(1).direction;
-  const double cone = angle_between(Vec3::UnitZ(), d2);
+  const double cone = angle_between_axes(Vec3::UnitZ(), d2);
   for (const Vec3& p : {d1, Vec3(-d1)})
-    if (std::abs(angle_between(p, d2) - cone) <= kReachable) poles.push_back(p);
+    if (std::abs(angle_between_axes(p, d2) - cone) <= kReachable) poles.push_back(p);
   return poles;
 }
 

@@ -1,8 +1,11 @@
 // Run time with the accelerations of the axes: closed forms, and what must hold for every program.
 #include <gtest/gtest.h>
 
+#include <fstream>
 #include <random>
+#include <sstream>
 
+#include "machines/machine_file.h"
 #include "postproc/axis_time.h"
 #include "postproc/fixed_point.h"
 #include "tests/postproc/nc_case.h"
@@ -152,6 +155,39 @@ TEST(TimeEstimate, LoopAndTeethAgree) {
   ASSERT_FALSE(teeth->loop);
   EXPECT_NEAR(loop->accelerated.feed, teeth->accelerated.feed, 1e-3 * loop->accelerated.feed);
   EXPECT_NEAR(loop->accelerated.rapid, teeth->accelerated.rapid, 0.25 * loop->accelerated.rapid);
+}
+
+std::string nutating_file() {
+  std::ifstream in(std::string(TOOTHPATH_SOURCE_DIR) + "/machines/data/nutating_table.toml");
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  const auto at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return text.replace(at, what.size(), by);
+}
+
+// The keys of the machine file: per second squared there, per minute squared inside; every axis or none.
+TEST(TimeEstimate, AccelerationsOfTheMachineFile) {
+  const auto whole = read_machine_text(nutating_file(), "m.toml");
+  ASSERT_TRUE(whole.machine) << to_text(whole.errors);
+  EXPECT_TRUE(whole.machine->has_acceleration());
+  EXPECT_DOUBLE_EQ(whole.machine->chain.linear[1].max_acceleration, 5000 * kPerSecond2);
+  EXPECT_DOUBLE_EQ(whole.machine->chain.table[0].max_acceleration, radians(3000) * kPerSecond2);
+  const auto partly = read_machine_text(replaced(nutating_file(), "max_acceleration = 1500", "#"), "m.toml");
+  ASSERT_FALSE(partly.machine);
+  EXPECT_NE(to_text(partly.errors).find("max_acceleration stands at some axes and is missing at axes.B: every axis has one, or none"), std::string::npos)
+      << to_text(partly.errors);
+  const auto zero = read_machine_text(replaced(nutating_file(), "max_acceleration = 1500", "max_acceleration = 0"), "m.toml");
+  EXPECT_FALSE(zero.machine);
+  const auto pole = read_machine_text(nutating_file() + "\n[post]\npole = \"hold\"\npole_angle = 0.5\n", "m.toml");
+  ASSERT_TRUE(pole.machine) << to_text(pole.errors);
+  EXPECT_EQ(pole.machine->post.pole, PoleOption::hold);
+  EXPECT_DOUBLE_EQ(pole.machine->post.pole_angle_rad.value_or(0), radians(0.5));
+  EXPECT_FALSE(read_machine_text(nutating_file() + "\n[post]\npole_angle = 60\n", "m.toml").machine);
 }
 
 }  // namespace
