@@ -65,6 +65,12 @@ std::array<double, 3> TravelPoses::room(const Vec3& shift_mm) const {
 
 std::optional<TravelOffer> TravelPoses::best() const {
   if (list_.empty() || too_many_) return std::nullopt;
+  const auto up = best(true);
+  if (up && *std::min_element(up->room_then_mm.begin(), up->room_then_mm.end()) >= 0) return up;
+  return best(false);
+}
+
+std::optional<TravelOffer> TravelPoses::best(bool only_up) const {
   const int shifts = keep_on_ ? 1 : 3, n = shifts + 1;
   const auto room_at = static_cast<std::size_t>(shifts);
   const auto shift_of = [&](const LinearPoint& x) -> Vec3 { return keep_on_ ? Vec3(x[0] * *keep_on_) : Vec3(x[0], x[1], x[2]); };
@@ -76,6 +82,11 @@ std::optional<TravelOffer> TravelPoses::best() const {
     LinearRow worst;
     double greatest = -std::numeric_limits<double>::infinity();
     const Vec3 d = shift_of(x);
+    if (only_up) {
+      greatest = -d.z();
+      if (keep_on_) worst.a[0] = -keep_on_->z();
+      else worst.a[2] = -1;
+    }
     for (const auto& e : list_) {
       const Vec3 moved = e.turn * d;
       for (int i = 0; i < 3; ++i) {
@@ -137,6 +148,7 @@ std::optional<TravelOffer> TravelPoses::best() const {
   TravelOffer offer;
   for (int m = 0; m < 3; ++m) offer.shift_mm[m] = std::round(shift_of(*found)[m] * 1e3) / 1e3;
   if (keep_on_) offer.shift_mm = std::round((*found)[0] * 1e3) / 1e3 * *keep_on_;
+  if (offer.shift_mm.z() == 0) offer.shift_mm.z() = 0;  // no -0
   offer.on_index_axis = keep_on_.has_value();
   offer.room_now_mm = room(Vec3::Zero());
   offer.room_then_mm = room(offer.shift_mm);

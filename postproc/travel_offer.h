@@ -27,10 +27,12 @@ class TravelPoses {
 
   /// Room of X Y Z with the part shifted by `shift_mm` [mm]; below 0: beyond a limit.
   [[nodiscard]] std::array<double, 3> room(const Vec3& shift_mm) const;
-  /// The best shift, rounded to 1 um, with its rooms. Empty: there is no pose, or more than 2^21 pairs of angles.
+  /// The best shift that does not lower the part (what it stands on is not known), or where none of these fits the best of all; rounded to
+  /// 1 um, with its rooms. Empty: there is no pose, or more than 2^21 pairs of angles.
   [[nodiscard]] std::optional<TravelOffer> best() const;
 
  private:
+  [[nodiscard]] std::optional<TravelOffer> best(bool only_up) const;
   struct Extremes {
     Mat3 turn;  ///< machine from table
     Vec3 least, greatest;

@@ -95,6 +95,7 @@ TEST(PartOffset, BruteForceNeverBeatsIt) {
       const double scale = std::pow(0.1, k % 5);
       Vec3 d = offer->shift_mm + scale * Vec3(shift(random), shift(random), shift(random));
       if (axis) d = d.dot(*axis) * *axis;
+      if (least(offer->room_then_mm) >= 0) d.z() = std::abs(d.z());  // a lower seat is offered only where no other fits
       ASSERT_LE(least(poses.room(d)), least(offer->room_then_mm) + 2e-3) << trial;  // 1 um of rounding in each coordinate
     }
   }
@@ -106,10 +107,10 @@ TEST(PartOffset, EveryAxisIsCentred) {
   m.chain.table.clear();
   m.chain.linear = {LinearAxis{-300, 300, 1000}, LinearAxis{-200, 200, 1000}, LinearAxis{-400, 0, 1000}};
   TravelPoses poses(m.chain, m.limit_margin, std::nullopt);
-  for (const Vec3& p : {Vec3(10, -60, -50), Vec3(110, 60, -20), Vec3(40, 0, -90)}) poses.note({p, {0, 0}});
+  for (const Vec3& p : {Vec3(10, -60, -350), Vec3(110, 60, -320), Vec3(40, 0, -390)}) poses.note({p, {0, 0}});
   const auto offer = poses.best();
   ASSERT_TRUE(offer);
-  EXPECT_LT((offer->shift_mm - Vec3(-60, 0, -145)).norm(), 2e-3);
+  EXPECT_LT((offer->shift_mm - Vec3(-60, 0, 155)).norm(), 2e-3);
   EXPECT_NEAR(offer->room_then_mm[0], 300 - 0.1 - 50, 2e-3);
   EXPECT_NEAR(offer->room_then_mm[1], 200 - 0.1 - 60, 2e-3);
   EXPECT_NEAR(offer->room_then_mm[2], 200 - 0.1 - 35, 2e-3);
@@ -168,6 +169,22 @@ TEST(PartOffset, RefusedJobIsAcceptedAtTheOffer) {
     }
     ASSERT_TRUE(accepted->offer);
     EXPECT_LT(least(accepted->offer->room_then_mm), least(accepted->offer->room_now_mm) + 0.01) << "nothing better from there";
+  }
+}
+
+// Downwards only where nothing else fits.
+TEST(PartOffset, LowerOnlyWhereItMust) {
+  Machine m = trunnion();
+  m.chain.table.clear();
+  m.chain.linear = {LinearAxis{-300, 300, 1000}, LinearAxis{-200, 200, 1000}, LinearAxis{-400, 0, 1000}};
+  for (const double top : {-20.0, 12.0}) {
+    TravelPoses poses(m.chain, m.limit_margin, std::nullopt);
+    poses.note({Vec3(0, 0, top), {0, 0}});
+    poses.note({Vec3(0, 0, top - 40), {0, 0}});
+    const auto offer = poses.best();
+    ASSERT_TRUE(offer);
+    EXPECT_NEAR(offer->shift_mm.z(), top < 0 ? 0 : -192, 2e-3);
+    EXPECT_NEAR(offer->room_then_mm[2], top < 0 ? 19.9 : 179.9, 2e-3);
   }
 }
 
