@@ -36,9 +36,6 @@ void restart_section(Sheet& sheet, const Job& job, const RunReport& report) {
   if (!report.restart_menu) return;
   const RestartMenu& menu = *report.restart_menu;
   sheet.heading("Start and restart");
-  if (report.restart)
-    sheet.raw(fmt::format("<p class=no>This program begins at operation {}, tooth {}. What the whole program cuts before that is taken as done: look before you start.</p>",
-                          report.restart->operation, report.restart->tooth));
   sheet.begin_table({"point", "begin at", "active from there", "first tooth"});
   sheet.row({"start", "line 1", "nothing is taken over from an earlier program", fmt::format("as written: {}", report.restart ? report.restart->tooth : 0)});
   for (const auto& op : menu.operations) {

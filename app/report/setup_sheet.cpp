@@ -80,13 +80,20 @@ std::string microns(double mm) {
   return mm < 0.1 ? fmt::format("{:.2f} um", mm * 1000) : fmt::format("{:.3f} mm", mm);
 }
 
+/// What the flanks could bear if nothing else were cut.
+std::string flanks_alone(const LengthTolerance& t) {
+  if (t.flank_share <= 0) return "no flank";
+  const double by = t.share / t.flank_share;
+  return microns(t.too_long_mm * by) + (t.too_short_mm ? ", " + microns(*t.too_short_mm * by) : "");
+}
+
 void length_section(Sheet& sheet, const RunReport& report) {
   if (report.length_tolerances.empty()) return;
   sheet.heading("Tool length: how exactly it must be set");
-  sheet.begin_table({"op", "T", "moves the surface by, of the error", "on the flanks", "too long by at most", "too short by at most"});
+  sheet.begin_table({"op", "T", "share of the error", "too long by at most", "too short by at most", "share on the flanks", "flanks alone: long, short"});
   for (const auto& t : report.length_tolerances)
-    sheet.row({std::to_string(t.operation), std::to_string(t.tool_number), fmt::format("{:.3f}", t.share), fmt::format("{:.3f}", t.flank_share),
-               microns(t.too_long_mm), t.too_short_mm ? microns(*t.too_short_mm) : "another operation finishes there"});
+    sheet.row({std::to_string(t.operation), std::to_string(t.tool_number), fmt::format("{:.3f}", t.share), microns(t.too_long_mm),
+               t.too_short_mm ? microns(*t.too_short_mm) : "another operation finishes there", fmt::format("{:.3f}", t.flank_share), flanks_alone(t)});
   sheet.end_table();
   sheet.raw("<p class=small>A length error d moves the cut surface by d (u &middot; n) along its normal n, u being the tool axis; the share is the largest "
             "|u &middot; n| on what the operation cuts. Too long: what is left of the gouge tolerance beyond the proven bound, and the stock that the operation "
@@ -151,6 +158,9 @@ std::string setup_sheet(const Job& job, const PartOutline& part, const Machine& 
                           report.gouge_tolerance_mm * 1000));
   else sheet.raw("<div class=no>NOT VERIFIED: do not cut.</div>\n");
   if (!report.reasons.empty()) sheet.list(report.reasons, "no");
+  if (report.restart)
+    sheet.raw(fmt::format("<p class=no>This program begins at operation {}, tooth {}. What the whole program cuts before that is taken as done: look before you "
+                          "start.</p>\n", report.restart->operation, report.restart->tooth));
   machine_section(sheet, job, machine, report);
   sheet.raw(part_sketch(*job.setup, part, machine));
   tool_section(sheet, job, report);

@@ -1,4 +1,4 @@
-// `run --restart` and the order of the teeth from outside: what the files say, that `check` passes the part alone, what is refused.
+// `run --restart` and the order of the teeth from outside: what the files say, what `check` says of the part alone, what is refused.
 #include <nlohmann/json.hpp>
 
 #include "program.h"
@@ -50,9 +50,12 @@ TEST(RestartCommand, SpreadProgramFromTheMiddleIsProven) {
     EXPECT_GE(t["too_long_um"].get<double>(), 2.0 - report["gouge_um"]["bound"].get<double>() - 1e-9);
   }
   EXPECT_EQ(report["length_tolerance"].size(), 2u);
-  // The part alone is a program like any other.
+  // Alone it is safe, but leaves what the earlier part cuts: tooth 0 is not in it.
   const Finished check = run_program({"check", job, dir / "out/program.ngc", "--out", dir / "check"});
-  EXPECT_EQ(check.exit_code, 0) << check.err << check.out;
+  EXPECT_EQ(check.exit_code, 1);
+  const auto alone = nlohmann::json::parse(file_text(dir / "check/report.json"));
+  ASSERT_EQ(alone["reasons"].size(), 1u) << alone["reasons"];
+  EXPECT_NE(alone["reasons"][0].get<std::string>().find("left material"), std::string::npos);
 }
 
 TEST(RestartCommand, WhatDoesNotExistIsUsage) {

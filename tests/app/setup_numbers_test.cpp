@@ -31,7 +31,7 @@ TEST(PartSwing, HoldsEveryPointOfTheBlank) {
   std::uniform_real_distribution<double> u(-1, 1);
   for (int trial = 0; trial < 20; ++trial) {
     const Machine m = trunnion_machine(10 * u(random), 10 * u(random), 30 * u(random), 60 * u(random), trial % 2 == 0 ? 1 : -1);
-    Setup setup;
+    toothpath::Setup setup;
     setup.axis_up = trial % 3 != 0;
     setup.origin_mm = Vec3(m.chain.table[0].point_mm.x() + 5 * u(random), m.chain.table[0].point_mm.y(), 80 + 40 * u(random));
     const BlankCylinder blank{80 + 50 * u(random), -30, 12};
