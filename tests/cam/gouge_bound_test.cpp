@@ -137,7 +137,7 @@ TEST_P(RandomBodies, TenfoldSamplingNeverExceedsTheBound) {
     const auto& record = path.records[2 + random.index(path.records.size() - 4)];
     const auto wander = [&](double size) { return Vec3(random(-size, size), random(-size, size), random(-size, size)); };
     const double above = std::max(roof - record.tip.z(), 0.0), R = job.tool(path.operation).radius_mm();
-    const double low = k % 2 == 0 ? R + random(0.1, 1.0) : above + random(-0.05, 0.3);
+    const double low = k % 2 == 0 ? R + random(0.1, 1.0) : above + random(-0.15, 0.2);
     const double r0 = k % 2 == 0 ? R * random(0.8, 1.0) : random(2, 6), r1 = k % 2 == 0 ? r0 : r0 * random(1.0, 1.3);
     const Frustum body{low, low + random(3, 12), r0, r1, k % 2 == 0 ? "shank" : "holder"};
     ToolMotion m;
