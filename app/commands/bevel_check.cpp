@@ -3,18 +3,14 @@
 #include "app/commands/bevel_page.h"
 #include "app/commands/bevel_run.h"
 #include "app/commands/program_report.h"
+#include "app/commands/scene.h"
 #include "app/report/deviation_vtp.h"
 #include "app/sha256.h"
 
 namespace toothpath {
 namespace {
 
-RunReport report_of(const Job& job, const Machine& machine, const BevelGear& gear, const BevelProof& proof, const std::string& program_file,
-                    std::string_view text) {
-  RunReport report = report_of("check", job, machine, gear.warnings());
-  report.program_file = program_file;
-  report.program_sha256 = sha256_hex(text);
-  report.program_bytes = text.size();
+void fill(RunReport& report, const BevelGear& gear, const Job& job, const Machine& machine, const BevelProof& proof) {
   report.gouge = proof.result.gouge;
   report.excess = proof.result.operations;
   report.finished = proof.result.finished;
@@ -26,7 +22,6 @@ RunReport report_of(const Job& job, const Machine& machine, const BevelGear& gea
   report.reasons = proof.reasons;
   judge_travels(report.axes, report.reasons);
   report.verified = report.reasons.empty();
-  return report;
 }
 
 }  // namespace
@@ -44,13 +39,36 @@ CommandOutcome check_bevel_program(const CommandRequest& request, const Job& job
   const auto text = read_program_file(request.program_file);
   if (!text) return failed(text.error());
 
+  std::optional<Scene> scene;
+  if (wants_scene(request)) {
+    auto meshes = clock.run("stock and fixture meshes", [&] { return load_scene(request, outer_diameter(gear)); });
+    if (!meshes) return failed(meshes.error());
+    scene = std::move(meshes.value());
+  }
+
   const FingerGougeCheck check(gear, job.tools, job.operations, proof_tolerances(job));
-  const auto proof = prove_bevel_program(*text, request.program_file, job, machine, gear, check, {}, {}, clock);
+  auto proof = prove_bevel_program(*text, request.program_file, job, machine, gear, check, {}, {}, clock);
   if (!proof) {
     progress.clear();
     return failed(proof.error());
   }
-  RunReport report = report_of(job, machine, gear, *proof, request.program_file, *text);
+  RunReport report = report_of("check", job, machine, gear.warnings());
+  if (scene) {
+    auto verdicts = clock.run("stock and fixture", [&]() -> Result<std::vector<SceneVerdict>> {
+      const auto around = scene_of_bevel_gear(job, gear, proof_tolerances(job).clearance_mm);
+      if (!around) return around.error();
+      return check_scene(*scene, *text, request.program_file, job, machine, proof->read, *around);
+    });
+    if (!verdicts) {
+      progress.clear();
+      return failed(verdicts.error());
+    }
+    add_scene(*verdicts, proof->reasons, proof->result.gouge, report);
+  }
+  fill(report, gear, job, machine, *proof);
+  report.program_file = request.program_file;
+  report.program_sha256 = sha256_hex(*text);
+  report.program_bytes = text->size();
 
   CommandOutcome outcome;
   outcome.exit_code = report.verified ? ExitCode::ok : ExitCode::unverified;
@@ -68,7 +86,7 @@ CommandOutcome check_bevel_program(const CommandRequest& request, const Job& job
   if (const auto s = output.write("report.json", outcome.report_json); !s) return failed(s.error());
   progress.clear();
   if (const auto committed = output.commit(); !committed) return failed(committed.error());
-  outcome.summary = summary_table(report, request.color) + ridge_line(&*proof) + table_of_worst(proof->result.gouge);
+  outcome.summary = bevel_summary(report, request.color, &*proof) + table_of_worst(proof->result.gouge);
   return outcome;
 }
 

@@ -9,6 +9,8 @@
 namespace toothpath {
 namespace {
 
+constexpr std::string_view kRowAfterRidge = "  least clearance";
+
 PageTool page_tool(const BevelGear& gear, const ToolAssembly& tool) {
   PageTool page;
   page.name = fmt::format("T{} finger mill m {:g} mm", tool.number, tool.module_mm);
@@ -89,9 +91,12 @@ std::string with_bevel_keys(const std::string& json, const BevelGear& gear, cons
   return j.dump(2) + "\n";
 }
 
-std::string ridge_line(const BevelProof* proof) {
-  if (!proof || proof->result.ridge.points == 0) return {};
-  return fmt::format("  {:<20}{:.4f} mm (asked {:.4f} mm)\n", "highest ridge", proof->result.ridge.reached_mm, proof->result.ridge.requested_mm);
+std::string bevel_summary(const RunReport& report, bool color, const BevelProof* proof) {
+  std::string table = summary_table(report, color);
+  if (!proof || proof->result.ridge.points == 0) return table;
+  const std::string ridge = fmt::format("  {:<20}{:.4f} mm (asked {:.4f} mm)\n", "highest ridge", proof->result.ridge.reached_mm, proof->result.ridge.requested_mm);
+  const auto after = table.find(kRowAfterRidge);
+  return table.insert(after == std::string::npos ? table.size() : after, ridge);
 }
 
 }  // namespace toothpath

@@ -18,7 +18,7 @@ namespace toothpath {
 /// report.json with the keys that only bevel gears have: ridge_mm, tilt.lean_deg, tilt.simultaneous_axes, passes.
 [[nodiscard]] std::string with_bevel_keys(const std::string& json, const BevelGear& gear, const std::vector<FingerPlan>& plans, const BevelProof* proof);
 
-/// The line of the table on the screen, for the ridge; empty without one.
-[[nodiscard]] std::string ridge_line(const BevelProof* proof);
+/// The table on the screen; the highest ridge stands among the results where there is one.
+[[nodiscard]] std::string bevel_summary(const RunReport& report, bool color, const BevelProof* proof);
 
 }  // namespace toothpath

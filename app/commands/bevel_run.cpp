@@ -176,7 +176,7 @@ CommandOutcome finish(BevelRun& run, OutputDir& output, const std::optional<Diag
   run.progress.clear();
   if (const auto committed = output.commit(); !committed) return failed(committed.error());
   const BevelProof* proof = run.proof ? &*run.proof : nullptr;
-  outcome.summary = summary_table(run.report, run.request.color) + ridge_line(proof);
+  outcome.summary = bevel_summary(run.report, run.request.color, proof);
   if (proof) outcome.summary += table_of_worst(proof->result.gouge);
   return outcome;
 }

@@ -39,26 +39,11 @@ void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) 
   report.verified = report.reasons.empty();
 }
 
-/// What the meshes say joins the reasons and the table of the worst places.
-void add_scene(std::vector<SceneVerdict>& verdicts, ProgramProof& proof, RunReport& report) {
-  for (auto& reason : reasons_of(verdicts)) proof.reasons.push_back(std::move(reason));
-  for (const auto& v : verdicts) {
-    for (const auto& m : v.worst) proof.gouge.worst.push_back(worst_place(m, v.name));
-    if (v.unjudged > 0)
-      report.warnings.push_back(fmt::format("{}: {} blocks move from a position that the program does not tell, or without a tool of the job; they are not judged",
-                                            v.name, v.unjudged));
-  }
-  report.scene = std::move(verdicts);
-}
-
 }  // namespace
 
 CommandOutcome check_program(const CommandRequest& request) {
   auto output = OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"});
   if (!output) return failed(output.error());
-  const bool with_scene = !request.stock_files.empty() || !request.fixture_files.empty();
-  if (const auto bevel = bevel_job(request.job_file); bevel && with_scene)
-    return failed(fail_as(DiagnosticKind::usage, "--stock and --fixture are read for face gears only, not yet for bevel gears"));
   if (const auto bevel = bevel_job(request.job_file)) return check_bevel_program(request, *bevel, *output);
   Progress progress(request.quiet);
   StageClock clock(progress);
@@ -81,7 +66,7 @@ CommandOutcome check_program(const CommandRequest& request) {
   if (!text) return failed(text.error());
 
   std::optional<Scene> scene;
-  if (with_scene) {
+  if (wants_scene(request)) {
     auto meshes = clock.run("stock and fixture meshes", [&] { return load_scene(request, 2 * gear.outer_radius()); });
     if (!meshes) return failed(meshes.error());
     scene = std::move(meshes.value());
@@ -106,13 +91,14 @@ CommandOutcome check_program(const CommandRequest& request) {
   report.program_file = request.program_file;
   if (scene) {
     auto verdicts = clock.run("stock and fixture", [&] {
-      return check_scene(*scene, *text, request.program_file, job, machine, proof->read, gear.parameters().teeth, options.clearance_mm);
+      return check_scene(*scene, *text, request.program_file, job, machine, proof->read,
+                         scene_of_face_gear(job, gear.parameters().teeth, options.clearance_mm));
     });
     if (!verdicts) {
       progress.clear();
       return failed(verdicts.error());
     }
-    add_scene(*verdicts, *proof, report);
+    add_scene(*verdicts, proof->reasons, proof->gouge, report);
   }
   report.program_sha256 = sha256_hex(*text);
   report.program_bytes = text->size();

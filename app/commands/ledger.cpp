@@ -106,7 +106,8 @@ void add_machine_sources(std::vector<LedgerEntry>& ledger, const AxisProgram& pr
   ledger.push_back(entry("axis linearisation", program.chord_bound_mm, turns ? std::max(0.0, extra - worst) : 0,
                          turns ? "blocks against the chords of the path, rounding taken off" : "no rotary axis turns while the tool cuts"));
   ledger.push_back(entry("rounding", program.rounding_bound_mm, worst, "records against the motions that were read back"));
-  ledger.push_back(entry("path blending", blend_mm, blend_read_back(read),
+  // In single precision, as the moves that are read back carry it.
+  ledger.push_back(entry("path blending", double(float(blend_mm)), blend_read_back(read),
                          blend_mm > 0 ? "the tolerance that the text grants the control" : "the text grants the control none"));
 }
 

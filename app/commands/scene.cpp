@@ -6,6 +6,9 @@
 #include <cmath>
 #include <map>
 
+#include "app/gear_of_job.h"
+#include "cam/finger_bodies.h"
+#include "cam/finger_milling.h"
 #include "geometry/base/angle.h"
 #include "geometry/mesh_file.h"
 
@@ -45,7 +48,6 @@ Status load(const std::vector<std::string>& files, double least_mm, std::vector<
 /// Motions that are judged together.
 struct Group {
   std::size_t from = 0, to = 0;
-  const ToolAssembly* tool = nullptr;
   bool rapid = false;
   std::optional<Withdrawal> withdrawal;
 };
@@ -53,8 +55,8 @@ struct Group {
 /// Follows the program move by move.
 class SceneWalk {
  public:
-  SceneWalk(const Scene& scene, const Job& job, const Machine& machine, const NcControl& control, const ReadBack& read, int teeth, double clearance)
-      : job_(job), machine_(machine), control_(control), read_(read), teeth_(teeth), clearance_(clearance) {
+  SceneWalk(const Scene& scene, const Job& job, const Machine& machine, const NcControl& control, const ReadBack& read, const SceneGear& gear)
+      : job_(job), machine_(machine), control_(control), read_(read), gear_(gear), clearance_(gear.clearance_mm) {
     for (const auto& m : scene.fixture) fixture_.push_back(m.get());
     for (const auto& m : scene.stock) stock_.push_back(m.get());
     if (!fixture_.empty()) verdicts_.push_back(verdict("fixture", scene.fixture_files, scene.fixture_facets));
@@ -107,19 +109,19 @@ class SceneWalk {
   }
   /// The tooth nearest to a tip, counted from that of the operation's first cut.
   [[nodiscard]] int nearest_tooth(const ToolMotion& m) {
-    const double azimuth = std::atan2(m.tip_to.y(), m.tip_to.x());
+    const double azimuth = gear_.azimuth(m.tip_to);
     if (!m.rapid) first_cut_.emplace(m.operation, azimuth);
     const auto first = first_cut_.find(m.operation);
     if (first == first_cut_.end()) return 0;
-    const int k = int(std::lround((azimuth - first->second) / (2 * kPi) * teeth_)) % teeth_;
-    return k < 0 ? k + teeth_ : k;
+    const int k = int(std::lround((azimuth - first->second) / (2 * kPi) * gear_.teeth)) % gear_.teeth;
+    return k < 0 ? k + gear_.teeth : k;
   }
 
   void flush() {
     if (moves_.size() < 2) return moves_.clear();
-    const ToolAssembly* tool = nullptr;
-    for (const auto& t : job_.tools)
-      if (t.number == moves_.back().tool) tool = &t;
+    const std::vector<MeshBody>* tool = nullptr;
+    for (std::size_t k = 0; k < job_.tools.size(); ++k)
+      if (job_.tools[k].number == moves_.back().tool && !gear_.bodies[k].empty()) tool = &gear_.bodies[k];
     for (std::size_t k = 1; k < moves_.size(); ++k) unjudged_ += tool == nullptr || !moves_[k].known;
     if (tool == nullptr) {
       withdrawal_.reset();
@@ -131,7 +133,7 @@ class SceneWalk {
     const bool named = moves_.back().tooth >= 0;
     trace.moves = std::move(moves_);
     moves_ = {};
-    auto motions = tool_motions(trace, {}, control_, machine_, *job_.setup, teeth_, kTip, kAxis);
+    auto motions = tool_motions(trace, {}, control_, machine_, *job_.setup, gear_.teeth, kTip, kAxis);
     if (!motions) {
       error_ = motions.error();
       return;
@@ -141,7 +143,7 @@ class SceneWalk {
     judge(*motions, *tool);
   }
 
-  void judge(const std::vector<ToolMotion>& motions, const ToolAssembly& tool) {
+  void judge(const std::vector<ToolMotion>& motions, const std::vector<MeshBody>& tool) {
     std::vector<Group> groups;
     for (std::size_t k = 0; k < motions.size(); ++k) {
       const ToolMotion& m = motions[k];
@@ -149,7 +151,7 @@ class SceneWalk {
       const bool back = m.rapid && withdrawal_.has_value();
       const bool joins = !groups.empty() && k - groups.back().from < kGroup && groups.back().rapid == m.rapid && groups.back().withdrawal.has_value() == back &&
                          m.tooth == motions[k - 1].tooth && (m.tip_from - motions[k - 1].tip_to).norm() < 1e-6;
-      if (!joins) groups.push_back({k, k, &tool, m.rapid, back ? withdrawal_ : std::nullopt});
+      if (!joins) groups.push_back({k, k, m.rapid, back ? withdrawal_ : std::nullopt});
       groups.back().to = k + 1;
       if (!m.rapid) withdrawal_ = Withdrawal{m.tip_to, m.axis_to};
     }
@@ -159,7 +161,7 @@ class SceneWalk {
       const MeshClearance check(stock ? stock_ : fixture_, options_);
       tbb::parallel_for(std::size_t(0), groups.size(), [&](std::size_t k) {
         const Group& g = groups[k];
-        found[k] = check.nearest(std::span(motions).subspan(g.from, g.to - g.from), *g.tool, rule(g, stock), stock ? g.withdrawal : std::nullopt);
+        found[k] = check.nearest(std::span(motions).subspan(g.from, g.to - g.from), tool, rule(g, stock), stock ? g.withdrawal : std::nullopt);
       });
       for (std::size_t k = 0; k < groups.size(); ++k) note(v, found[k], rule(groups[k], stock));
       v.motions += motions.size();
@@ -191,7 +193,7 @@ class SceneWalk {
   const Machine& machine_;
   const NcControl& control_;
   const ReadBack& read_;
-  int teeth_;
+  const SceneGear& gear_;
   double clearance_;
   MeshClearanceOptions options_;
   std::vector<const MeshDistance*> fixture_, stock_;
@@ -209,37 +211,7 @@ std::string where_of(const MeshMeeting& m) {
   return fmt::format("{}{}, operation {}, tooth {}, line {}", m.body, m.rapid ? " on a rapid" : "", m.operation, m.tooth, m.line);
 }
 
-}  // namespace
-
-Result<Scene> load_scene(const CommandRequest& request, double gear_diameter_mm) {
-  Scene scene;
-  scene.fixture_files = request.fixture_files;
-  scene.stock_files = request.stock_files;
-  if (const auto s = load(request.fixture_files, 0, scene.fixture, scene.fixture_facets); !s) return s.error();
-  if (const auto s = load(request.stock_files, gear_diameter_mm, scene.stock, scene.stock_facets); !s) return s.error();
-  return scene;
-}
-
-Result<std::vector<SceneVerdict>> check_scene(const Scene& scene, std::string_view text, const std::string& file, const Job& job, const Machine& machine,
-                                              const ReadBack& read, int teeth, double clearance_mm) {
-  const auto control = control_of(machine, *job.setup, job.tools);
-  if (!control) return control.error();
-  SceneWalk walk(scene, job, machine, *control, read, teeth, clearance_mm);
-  if (const auto s = execute_nc(text, file, *control, [&](const ExecutedMove& m) { walk(m); }); !s) return s.error();
-  return walk.finish();
-}
-
-std::vector<std::string> reasons_of(const std::vector<SceneVerdict>& verdicts) {
-  std::vector<std::string> out;
-  for (const auto& v : verdicts) {
-    if (v.clear() || v.worst.empty()) continue;
-    const MeshMeeting& w = v.worst.front();
-    if (w.gap_mm <= 0) out.push_back(fmt::format("{}: {} {} it", v.name, where_of(w), std::isfinite(w.measured_mm) ? "touches" : "is inside"));
-    else out.push_back(fmt::format("{}: {} comes within {:.4f} mm (proven), the clearance is {:.4f} mm", v.name, where_of(w), w.gap_mm, v.required_mm));
-  }
-  return out;
-}
-
+/// A meeting as a row of the table of worst places.
 WorstPlace worst_place(const MeshMeeting& m, const std::string& what) {
   WorstPlace w;
   w.depth_mm = std::isfinite(m.gap_mm) ? -m.gap_mm : 0;
@@ -252,6 +224,77 @@ WorstPlace worst_place(const MeshMeeting& m, const std::string& what) {
   w.height_mm = m.place.z();
   w.point = m.place;
   return w;
+}
+
+/// How far the middle of a tooth space has wound about the axis at a tip, from the reference cone distance on.
+double space_azimuth(const BevelGear& gear, const Vec3& tip) {
+  const double ell = std::clamp(cone_point(tip, gear.sin_delta(), gear.cos_delta()).ell, gear.R_i(), gear.R_e());
+  const BevelHalf& half = ell > gear.R_ref() ? gear.halves().back() : gear.halves().front();
+  const auto& trace = half.walls[0].trace;
+  return trace.middle(trace.beta(ell)).e;
+}
+
+}  // namespace
+
+Result<Scene> load_scene(const CommandRequest& request, double gear_diameter_mm) {
+  Scene scene;
+  scene.fixture_files = request.fixture_files;
+  scene.stock_files = request.stock_files;
+  if (const auto s = load(request.fixture_files, 0, scene.fixture, scene.fixture_facets); !s) return s.error();
+  if (const auto s = load(request.stock_files, gear_diameter_mm, scene.stock, scene.stock_facets); !s) return s.error();
+  return scene;
+}
+
+Result<std::vector<SceneVerdict>> check_scene(const Scene& scene, std::string_view text, const std::string& file, const Job& job, const Machine& machine,
+                                              const ReadBack& read, const SceneGear& gear) {
+  const auto control = control_of(machine, *job.setup, job.tools);
+  if (!control) return control.error();
+  SceneWalk walk(scene, job, machine, *control, read, gear);
+  if (const auto s = execute_nc(text, file, *control, [&](const ExecutedMove& m) { walk(m); }); !s) return s.error();
+  return walk.finish();
+}
+
+SceneGear scene_of_face_gear(const Job& job, int teeth, double clearance_mm) {
+  SceneGear out{teeth, clearance_mm, {}, [](const Vec3& tip) { return std::atan2(tip.y(), tip.x()); }};
+  for (const auto& tool : job.tools) out.bodies.push_back(mesh_bodies(tool));
+  return out;
+}
+
+Result<SceneGear> scene_of_bevel_gear(const Job& job, const BevelGear& gear, double clearance_mm) {
+  SceneGear out{gear.parameters().teeth, clearance_mm, {}, [gear](const Vec3& tip) { return std::atan2(tip.y(), tip.x()) - space_azimuth(gear, tip); }};
+  out.bodies.resize(job.tools.size());
+  for (const auto& operation : job.operations) {
+    const auto k = std::size_t(operation.tool);
+    if (!out.bodies[k].empty()) continue;
+    const auto own = gear_for_finger_mill(gear, job.tools[k]);
+    if (!own) return located(job, fmt::format("tool[{}]", k), own.error());
+    out.bodies[k] = finger_bodies(own->cutter(), job.tools[k]);
+  }
+  return out;
+}
+
+double outer_diameter(const BevelGear& gear) { return 2 * (gear.R_e() * gear.sin_delta() + gear.parameters().addendum_mm * gear.cos_delta()); }
+
+std::vector<std::string> reasons_of(const std::vector<SceneVerdict>& verdicts) {
+  std::vector<std::string> out;
+  for (const auto& v : verdicts) {
+    if (v.clear() || v.worst.empty()) continue;
+    const MeshMeeting& w = v.worst.front();
+    if (w.gap_mm <= 0) out.push_back(fmt::format("{}: {} {} it", v.name, where_of(w), std::isfinite(w.measured_mm) ? "touches" : "is inside"));
+    else out.push_back(fmt::format("{}: {} comes within {:.4f} mm (proven), the clearance is {:.4f} mm", v.name, where_of(w), w.gap_mm, v.required_mm));
+  }
+  return out;
+}
+
+void add_scene(std::vector<SceneVerdict>& verdicts, std::vector<std::string>& reasons, GougeResult& gouge, RunReport& report) {
+  for (auto& reason : reasons_of(verdicts)) reasons.push_back(std::move(reason));
+  for (const auto& v : verdicts) {
+    for (const auto& m : v.worst) gouge.worst.push_back(worst_place(m, v.name));
+    if (v.unjudged > 0)
+      report.warnings.push_back(fmt::format("{}: {} blocks move from a position that the program does not tell, or without a tool of the job; they are not judged",
+                                            v.name, v.unjudged));
+  }
+  report.scene = std::move(verdicts);
 }
 
 }  // namespace toothpath

@@ -1,6 +1,7 @@
 // Fixture and stock as meshes: `toothpath check JOB PROGRAM --fixture FILE --stock FILE`.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -8,10 +9,12 @@
 
 #include "app/commands/command.h"
 #include "app/job.h"
+#include "app/report/run_report.h"
 #include "app/report/scene_report.h"
 #include "app/stage_clock.h"
 #include "cam/mesh_distance.h"
 #include "cam/verification.h"
+#include "geometry/bevel_gear.h"
 #include "machines/machine.h"
 #include "postproc/nc_reader.h"
 
@@ -25,24 +28,41 @@ struct Scene {
   [[nodiscard]] bool empty() const { return fixture.empty() && stock.empty(); }
 };
 
+/// Does the request name a mesh?
+[[nodiscard]] inline bool wants_scene(const CommandRequest& request) { return !request.stock_files.empty() || !request.fixture_files.empty(); }
+
 /// Loads what the request names; nothing is loaded or built when it names nothing. `gear_diameter_mm`: outer diameter of the finished gear.
 /// Errors: those of load_mesh, located in the file; a stock that is smaller than the gear.
 [[nodiscard]] Result<Scene> load_scene(const CommandRequest& request, double gear_diameter_mm);
 
+/// What a check of the meshes must know of gear and tools.
+struct SceneGear {
+  int teeth = 0;
+  double clearance_mm = 0;
+  std::vector<std::vector<MeshBody>> bodies;        ///< of every tool, by index in the job; empty: a tool that no operation uses
+  std::function<double(const Vec3& tip)> azimuth;   ///< of a tip in W, less that of the tooth space there: names teeth that no index tells apart
+};
+/// Ball mills on a face gear, whose spaces are radial enough to count teeth by the tip's azimuth.
+[[nodiscard]] SceneGear scene_of_face_gear(const Job& job, int teeth, double clearance_mm);
+/// Finger mills on a bevel gear: W stands in the pitch apex. Errors: a mill that does not fit the gear, at its place in the job.
+[[nodiscard]] Result<SceneGear> scene_of_bevel_gear(const Job& job, const BevelGear& gear, double clearance_mm);
+/// Largest diameter of the finished teeth of a bevel gear, mm.
+[[nodiscard]] double outer_diameter(const BevelGear& gear);
+
 /// Executes the program once more and judges every move of every tooth, in the order in which the machine makes them, with the tool that is
 /// in the spindle:
-/// - fixture: every body, on feeds and rapids, keeps `clearance_mm` (proven between the blocks);
-/// - stock, as it stood before the program: shank and holder never touch it; on rapids every body keeps `clearance_mm` from it. One removal is
+/// - fixture: every body, on feeds and rapids, keeps the clearance (proven between the blocks);
+/// - stock, as it stood before the program: shank and holder never touch it; on rapids every body keeps the clearance from it. One removal is
 ///   credited: a rapid that draws the tool back along its own axis from where a feed ended is judged without the room that the cutting part
 ///   had there.
 /// `read`: of the same text; names the teeth.
 [[nodiscard]] Result<std::vector<SceneVerdict>> check_scene(const Scene& scene, std::string_view text, const std::string& file, const Job& job,
-                                                            const Machine& machine, const ReadBack& read, int teeth, double clearance_mm);
+                                                            const Machine& machine, const ReadBack& read, const SceneGear& gear);
 
 /// Why a program does not pass, one line a kind of mesh; empty: it does.
 [[nodiscard]] std::vector<std::string> reasons_of(const std::vector<SceneVerdict>& verdicts);
 
-/// A meeting as a row of the table of worst places.
-[[nodiscard]] WorstPlace worst_place(const MeshMeeting& meeting, const std::string& what);
+/// What the meshes say joins the reasons, the table of the worst places and the report.
+void add_scene(std::vector<SceneVerdict>& verdicts, std::vector<std::string>& reasons, GougeResult& gouge, RunReport& report);
 
 }  // namespace toothpath

@@ -130,5 +130,39 @@ TEST_F(BevelCommand, ATurnedBlockIsFound) {
   EXPECT_TRUE(left);
 }
 
+/// The text with one part of it replaced, which must be there.
+std::string with(std::string text, const std::string& old, const std::string& now) {
+  const auto at = text.find(old);
+  EXPECT_NE(at, std::string::npos) << old;
+  return at == std::string::npos ? text : text.replace(at, old.size(), now);
+}
+
+// The wheel that belongs to the pinion of the trunnion sample, on a machine with words of three decimals and another control.
+TEST(BevelMate, RunsOnTheT600SAndIsCheckedThere) {
+  const TestDir dir;
+  std::string job = file_text(kTrunnion);
+  job = with(job, "teeth = 18\nmate_teeth = 27", "teeth = 27\nmate_teeth = 18");
+  job = with(job, "hand = \"right\"", "hand = \"left\"");
+  job = with(job, "tip_radius = 0.12 ", "tip_radius = 0.07 ");
+  job = with(job, "file = \"xyzac_trt.toml\"", "file = \"t600s.toml\"");
+  job = with(job, "origin = [0.0, 0.0, 20.0]", "origin = [0.0, 0.0, -265.0]");
+  job = with(job, "work_offset_at = [0.0, 0.0, 20.0]", "work_offset_at = [0.0, 0.0, -285.0]");
+  write_file(dir / "mate.toml", job);
+  const Finished run = run_program({"run", dir / "mate.toml", "--out", dir / "run"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto report = nlohmann::json::parse(file_text(dir / "run/report.json"));
+  EXPECT_TRUE(report["verified"].get<bool>());
+  EXPECT_LE(report["gouge_um"]["bound"].get<double>(), 2.0);
+  EXPECT_EQ(report["tilt"]["simultaneous_axes"], 2);
+  EXPECT_LE(report["ridge_mm"]["reached"].get<double>(), 0.1);
+  for (const auto& [source, entry] : report["ledger"].items())
+    EXPECT_LE(entry["measured"].get<double>(), entry["predicted"].get<double>()) << source;
+  // The ridge is a result: it stands before the times.
+  ASSERT_NE(run.out.find("highest ridge"), std::string::npos);
+  EXPECT_LT(run.out.find("highest ridge"), run.out.find("cutting time"));
+  const Finished check = run_program({"check", dir / "mate.toml", dir / "run/program.nc", "--out", dir / "check", "--quiet"});
+  EXPECT_EQ(check.exit_code, 0) << check.err;
+}
+
 }  // namespace
 }  // namespace toothpath::testing
