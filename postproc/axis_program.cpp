@@ -320,7 +320,16 @@ class Builder {
       program_.feed_minutes += op.feed_minutes;
       program_.minutes += op.feed_minutes + op.rapid_minutes;
     }
+    program_.turns_in_cuts = std::any_of(program_.operations.begin(), program_.operations.end(), turns_in_cuts);
     estimate_times(program_, machine_);
+  }
+  static bool turns_in_cuts(const AxisOperation& op) {
+    for (const auto& tooth : op.teeth)
+      for (std::size_t i = 1; i < tooth.blocks.size(); ++i) {
+        const auto &from = tooth.blocks[i - 1].words, &to = tooth.blocks[i].words;
+        if (tooth.blocks[i].kind == BlockKind::feed && (from[3] != to[3] || from[4] != to[4])) return true;
+      }
+    return false;
   }
 
   std::span<const ClPath* const> paths_;

@@ -131,6 +131,7 @@ struct AxisProgram {
   int index_axis = -1;                      ///< 3 or 4: which word is shifted by the index
   int index_sign = 1;                       ///< word of tooth k = word + index_sign * k * 360 / z
   TcpMode tcp = TcpMode::none;              ///< how the blocks of a cut are meant
+  bool turns_in_cuts = false;               ///< some feed block moves a rotary; the index does not count
   bool tcp_starts_at_zero = false;          ///< as in the options
   int frame_sign = 1;                       ///< loop with TCP: the frame of tooth k is turned by frame_sign * k * 360 / z about +Z
   double retract_z_mm = 0;                  ///< G53 Z, machine coordinates of the gauge line

@@ -32,6 +32,7 @@ class Builder {
   }
 
   AxisProgram build() && {
+    program_.turns_in_cuts = true;
     AxisOperation op;
     op.type = "self_test";
     op.tool_number = 1;

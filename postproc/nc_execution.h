@@ -19,7 +19,7 @@ struct NcRules {
   bool tcp_needs_zero = false;     ///< TCP may be switched on with the rotaries at zero only
   double least_rate = 0;           ///< G93 blocks are raised to this rate, mm/min or deg/min
   bool per_minute_turns = false;   ///< G94 with rotary words without TCP has a defined time
-  double tcp_blend_factor = 1;     ///< with TCP the control leaves corners by this times the stated tolerance
+  double tcp_blend_factor = 1;     ///< with TCP the control leaves corners by this times a tolerance that holds for X, Y, Z alone
 };
 
 class NcExecution {
@@ -59,7 +59,11 @@ class NcExecution {
   Problem select_offset(const std::string& name);
   Problem set_length(int tool);      ///< tool length compensation with the length of this tool
   void drop_length() { length_.reset(); }
-  void set_blend(double mm) { blend_mm_ = mm; }
+  /// The control may leave corners by this. @param linear_only it does not hold for rotaries: feed blocks must not turn them
+  void set_blend(double mm, bool linear_only = false) {
+    blend_mm_ = mm;
+    blend_is_linear_ = linear_only;
+  }
   Problem tcp_on();
   Problem tcp_off();
   [[nodiscard]] bool tcp() const { return tcp_; }
@@ -89,6 +93,7 @@ class NcExecution {
   std::optional<double> feed_, length_;
   std::optional<Vec3> offset_;
   double blend_mm_ = 0;
+  bool blend_is_linear_ = false;
   bool spindle_ = false, spindle_set_ = false, retracted_ = false;
   bool unit_ = false, absolute_ = false;
 };

@@ -19,6 +19,11 @@ constexpr int kFirstSubprogram = 2001;  // O numbers of the sub-programs of a ma
 constexpr int kFirstLabel = 100;
 constexpr int kVectorDecimals = 8;
 
+/// The words of the blending bound X, Y, Z alone, and rotaries turn in cuts.
+bool keeps_exact_path(const AxisProgram& program, const NcDialect& dialect) {
+  return program.turns_in_cuts && !dialect.exact_path.empty();
+}
+
 /// How the word of the index rotary is printed.
 enum class IndexWord { literal, shifted, left_out };
 
@@ -50,6 +55,8 @@ class Writer {
         out_.fill(program_.tooth_stride == 1 ? NcLinesOfText{} : dialect_.loop.pick, values_);
       else if (t == "{first_tooth}")
         out_.comment(first_tooth_comment(program_));
+      else if (t.find("{blend}") != std::string::npos && keeps_exact_path(program_, dialect_))
+        out_.fill({dialect_.exact_path_mm <= header_.exact_path_mm ? dialect_.exact_path : dialect_.exact_stop}, values_);
       else
         out_.fill({t}, values_);
   }
@@ -376,6 +383,12 @@ class Writer {
 };
 
 }  // namespace
+
+double granted_blend_mm(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
+  if (!dialect.blend) return 0;
+  if (!keeps_exact_path(program, dialect)) return header.blend_mm;
+  return dialect.exact_path_mm <= header.exact_path_mm ? dialect.exact_path_mm : 0;
+}
 
 Result<NcText> write_nc(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
   if (program.format.linear_decimals != dialect.format.linear_decimals ||

@@ -21,6 +21,7 @@ struct NcHeader {
   std::vector<std::string> assumed;  ///< non-empty: a warning with each of them
   int program_number = 1001; ///< O word
   double blend_mm = 0.0003;  ///< how far the control may leave a corner: counts as deviation of the machine in every proof
+  double exact_path_mm = 0.0005;  ///< the same for a mode that keeps the path but for this; more: exact stops
   bool coolant = false;      ///< M8 with every operation
 };
 
@@ -29,6 +30,9 @@ struct NcText {
   std::size_t blocks = 0;       ///< lines that are not comments, empty or %
   std::uint64_t body_hash = 0;  ///< FNV-1a over everything between the header comments and the last comment, without block numbers
 };
+
+/// By how much the text lets the control leave corners in this program, mm; what the reader of the dialect counts.
+[[nodiscard]] double granted_blend_mm(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
 
 /// Prints the program. Errors: an F that the control cannot take, a line that is too long, a number out of its format, joint
 /// blocks that turn on a control without inverse time.

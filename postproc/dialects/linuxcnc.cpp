@@ -1,5 +1,5 @@
 // LinuxCNC 2.8 and later. G92.1 clears offsets that an earlier program left; G64 needs P, or the control leaves the path as
-// far as it likes; blocks that hardly move X, Y, Z lose their time in G93 before 2.9.0, so they are printed in G94 with the
+// far as it likes, and P bounds X, Y, Z alone, so that programs whose cuts turn a rotary keep the exact path; blocks that hardly move X, Y, Z lose their time in G93 before 2.9.0, so they are printed in G94 with the
 // exact feed. The codes of TCP are remaps of the site: machine data.
 #include "postproc/nc_dialect.h"
 
@@ -21,6 +21,9 @@ NcDialect linuxcnc_dialect() {
   d.end = {"G61", "G49"};
   d.frame_end = {"M2"};
   d.blend = true;
+  d.exact_path = "G61";
+  d.exact_stop = "G61.1";
+  d.exact_path_mm = 0.0005;  // 0.37 um were seen: tests/controller
   d.loop.form = NcLoop::Form::sub_program;
   d.loop.before = {"o{label} sub"};
   d.loop.after = {"o{label} endsub"};

@@ -96,7 +96,7 @@ TEST_P(RoundTrip, MeetsEveryRecord) {
     EXPECT_NEAR(o.back.greatest[a], r.max * scale, 1e-3) << r.letter;
   }
   for (const auto& motion : o.motions) {
-    EXPECT_LE(motion.deviation_mm, (motion.rapid ? 50 : 1) * 2e-4 * 1.2 + (motion.rapid ? 0 : NcHeader{}.blend_mm) + 1e-8);
+    EXPECT_LE(motion.deviation_mm, (motion.rapid ? 50 : 1) * 2e-4 * 1.2 + (motion.rapid ? 0 : std::max(NcHeader{}.blend_mm, NcHeader{}.exact_path_mm)) + 1e-8);
     EXPECT_GE(motion.tooth, 0);
     EXPECT_LT(motion.tooth, 6);
   }
@@ -326,6 +326,7 @@ TEST(NcReader, RefusalsNameLineAndColumn) {
       {"G49\nG0 Z1\n", "p.ngc:9:4: error: Z word without tool length compensation"},
       {"T1 M6\n", "p.ngc:8:1: error: tool change while the spindle turns"},
       {"G64\n", ""},
+      {"G64 P0.001 Q0\nG0 A0 C0\nG0 X1 Y1\nG0 Z1\nG1 X2 F100\nG1 X1 C5\n", "p.ngc:13:7: error: G64 bounds X, Y and Z alone, this G1 turns a rotary axis: G61 or G61.1 is needed"},
       {"T9 M6\n", "tool 9 is not in the tool list"},
       {"G55\n", "work offset G55 is not defined"},
       {"M2\n", "program end while the spindle turns"},

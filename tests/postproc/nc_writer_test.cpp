@@ -185,6 +185,33 @@ TEST(NcWriter, CommentsAreFiltered) {
   }
 }
 
+// P of G64 holds for X, Y, Z alone: where a cut turns a rotary, LinuxCNC is told to keep the path, as exactly as the tolerance needs it.
+TEST(NcWriter, CutsThatTurnARotaryKeepTheExactPath) {
+  const Machine m = trunnion();
+  const auto control = control_of(m, standing(), tools());
+  const auto corner_line = [&](const ClPath& path, double allowed, float counted) {
+    const auto p = axis_program({path}, m, standing(), 3);
+    NcHeader header;
+    header.exact_path_mm = allowed;
+    const auto t = write_nc(*p, linuxcnc_dialect(), header);
+    EXPECT_EQ(static_cast<float>(granted_blend_mm(*p, linuxcnc_dialect(), header)), counted);
+    int cuts = 0;
+    const auto s = execute_nc(t->text, "p.ngc", *control, [&](const ExecutedMove& e) {
+      if (e.rapid) return;
+      ++cuts;
+      EXPECT_EQ(e.blend_mm, counted);
+    });
+    EXPECT_TRUE(s) << s.error().text();
+    EXPECT_GT(cuts, 10);
+    for (const auto& line : lines(t->text))
+      if (line.rfind("G6", 0) == 0) return line;
+    return std::string();
+  };
+  EXPECT_EQ(corner_line(sample_path(0.3, 0), 0.0005, 0.0003F), "G64 P0.0003 Q0");
+  EXPECT_EQ(corner_line(sample_path(0.3, 0.6), 0.0005, 0.0005F), "G61");
+  EXPECT_EQ(corner_line(sample_path(0.3, 0.6), 0.0004, 0), "G61.1");
+}
+
 // Danger 7: a block that hardly moves X Y Z but turns keeps its time on a control that raises slow rates.
 TEST(NcWriter, TinyLinearStepsKeepTheirTime) {
   ClPath path;

@@ -42,11 +42,11 @@ const char* const kPlainWord = R"(([XYZABCFSTHDPQ])(-?\d*\.?\d*|\[.*\]))";
 
 Language linuxcnc() {
   Language l;
-  l.words = iso_and({{"G92.1", "shift", "off"}, {"G61", "smoothing", "off"}, {"G64", "smoothing", "on"}, {"M428", "tcp", "on"}, {"M429", "tcp", "off"},
+  l.words = iso_and({{"G92.1", "shift", "off"}, {"G61", "smoothing", "off"}, {"G61.1", "smoothing", "off"}, {"G64", "smoothing", "on"}, {"M428", "tcp", "on"}, {"M429", "tcp", "off"},
                      {"M2", "-", "end"}});
   l.axis = kPlainWord;
   l.safe = {{"units", "mm"}, {"plane", "xy"}, {"distance", "absolute"}, {"feed", "per minute"}, {"radius", "off"}, {"length", "off"},
-            {"cycle", "off"}, {"shift", "off"}, {"offset", "G54"}, {"smoothing", "on"}};
+            {"cycle", "off"}, {"shift", "off"}, {"offset", "G54"}};  // smoothing: on or off by what the cuts turn
   l.end = l.safe;
   l.end["smoothing"] = l.end["spindle"] = "off";
   return l;
