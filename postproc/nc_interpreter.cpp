@@ -19,7 +19,8 @@ NcRules rules_of(bool linuxcnc) {
   r.tcp_needs_zero = !linuxcnc;
   r.least_rate = linuxcnc ? 0.1 : 0;  // LinuxCNC before 2.9.0 raises the rate of a G93 block to this
   r.per_minute_turns = linuxcnc;
-  // LinuxCNC with TCP: P of G64 was seen to be exceeded by a factor of 5.7 (motion controller, tests/controller).
+  // LinuxCNC: P of G64 was seen to be exceeded by 1.2, with TCP by 5.7 (motion controller, tests/controller).
+  r.blend_factor = linuxcnc ? 1.5 : 1;
   r.tcp_blend_factor = linuxcnc ? 8 : 1;
   return r;
 }

@@ -386,7 +386,8 @@ class Writer {
 
 double granted_blend_mm(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
   if (!dialect.blend) return 0;
-  if (!keeps_exact_path(program, dialect)) return header.blend_mm;
+  if (!keeps_exact_path(program, dialect))
+    return header.blend_mm * (program.tcp == TcpMode::none ? dialect.blend_factor : dialect.tcp_blend_factor);
   return dialect.exact_path_mm <= header.exact_path_mm ? dialect.exact_path_mm : 0;
 }
 

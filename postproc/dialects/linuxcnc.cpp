@@ -21,6 +21,8 @@ NcDialect linuxcnc_dialect() {
   d.end = {"G61", "G49"};
   d.frame_end = {"M2"};
   d.blend = true;
+  d.blend_factor = 1.5;    // 1.2 and 5.7 were seen: tests/controller
+  d.tcp_blend_factor = 8;
   d.exact_path = "G61";
   d.exact_stop = "G61.1";
   d.exact_path_mm = 0.0005;  // 0.37 um were seen: tests/controller

@@ -1,18 +1,17 @@
 #!/usr/bin/env bash
 # Runs stretches of two samples through LinuxCNC's real motion controller, without display and without real-time kernel, and
 # compares the joints that it executed with our read-back of the same text:
-#   tests/controller/run_in_linuxcnc.sh [--quick | --known] TOOTHPATH CASE   both programs of a build: toothpath, toothpath_controller_case
-# --quick: exact stop only; --known: only what is known to differ (README.md).
+#   tests/controller/run_in_linuxcnc.sh [--quick] TOOTHPATH CASE   both programs of a build: toothpath, toothpath_controller_case
+# --quick: exact stop only.
 # Takes about the time that the machine would take. Exit 77 and a reason where this machine cannot run it.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 root=$(cd "$here/../.." && pwd)
-quick= known=
+quick=
 case "${1:-}" in
   --quick) quick=yes; shift ;;
-  --known) known=yes; shift ;;
 esac
-[ $# -eq 2 ] || { sed -n '2,6p' "$0" >&2; exit 2; }
+[ $# -eq 2 ] || { sed -n '2,5p' "$0" >&2; exit 2; }
 toothpath=$(realpath "$1") case_program=$(realpath "$2")
 cannot() { echo "run_in_linuxcnc: cannot run here: $*" >&2; exit 77; }
 
@@ -62,22 +61,16 @@ run() {
   "$case_program" compare "$job" "$folder" "$mode" || status=1
 }
 
-# What is known to differ: rotaries that turn in a pass, written as joints, under G64; before it the same with exact path (G61).
-if [ -n "$known" ]; then
-  run short_tool "$root/samples/short_tool.toml" 0,1 path 900
-  run short_tool "$root/samples/short_tool.toml" 0,1 blend 900
-  exit $status
-fi
-
 # Joints as they are written: a fixed tool axis, then one that turns in the passes.
 run spur_quick "$root/samples/spur_quick.toml" 1,1 exact 600
-[ -n "$quick" ] || run spur_quick "$root/samples/spur_quick.toml" 1,1 blend 600
+[ -n "$quick" ] || run spur_quick "$root/samples/spur_quick.toml" 1,1 written 600
 run short_tool "$root/samples/short_tool.toml" 0,1 exact 900
+[ -n "$quick" ] || run short_tool "$root/samples/short_tool.toml" 0,1 written 900
 
 # With TCP the controller's own kinematics make the joints, while the tool axis turns.
 mkdir "$work/tcp"
 sed 's/^tcp = "none"/tcp = "angles"/' "$root/machines/data/xyzac_trt.toml" > "$work/tcp/xyzac_trt.toml"
 cp "$root/samples/short_tool.toml" "$work/tcp/"
 run short_tool_tcp "$work/tcp/short_tool.toml" 0,1 exact 900
-[ -n "$quick" ] || run short_tool_tcp "$work/tcp/short_tool.toml" 0,1 blend 900
+[ -n "$quick" ] || run short_tool_tcp "$work/tcp/short_tool.toml" 0,1 written 900
 exit $status

@@ -207,7 +207,7 @@ TEST(NcWriter, CutsThatTurnARotaryKeepTheExactPath) {
       if (line.rfind("G6", 0) == 0) return line;
     return std::string();
   };
-  EXPECT_EQ(corner_line(sample_path(0.3, 0), 0.0005, 0.0003F), "G64 P0.0003 Q0");
+  EXPECT_EQ(corner_line(sample_path(0.3, 0), 0.0005, 0.00045F), "G64 P0.0003 Q0");
   EXPECT_EQ(corner_line(sample_path(0.3, 0.6), 0.0005, 0.0005F), "G61");
   EXPECT_EQ(corner_line(sample_path(0.3, 0.6), 0.0004, 0), "G61.1");
 }
