@@ -61,6 +61,8 @@ ValueOrErrors<Machine> load_machine(const Job& job, std::optional<double> part_d
   auto reading = read_machine_file(*path);
   if (!reading.machine) return reading.errors;
   Machine machine = std::move(*reading.machine);
+  if (job.program.pole) machine.post.pole = *job.program.pole;
+  if (job.program.pole_angle_rad) machine.post.pole_angle_rad = *job.program.pole_angle_rad;
   std::vector<Diagnostic> errors;
   if (part_diameter_mm)
     if (const auto fits = check_part_on_machine(job, machine, *part_diameter_mm); !fits) errors.push_back(fits.error());

@@ -32,9 +32,13 @@ struct VerifySettings {
   std::optional<double> clearance_mm;   ///< least gap of neck, shank and holder; none: the program's default
 };
 
+enum class PoleOption;  // machines/machine.h
+
 /// The [program] table.
 struct ProgramSettings {
   bool spread_teeth = false;  ///< tooth_order = "spread": neighbours are not cut one after the other; else in sequence
+  std::optional<PoleOption> pole;        ///< instead of post.pole of the machine file
+  std::optional<double> pole_angle_rad;  ///< instead of post.pole_angle
 };
 
 /// The [contact] table: the pinion that runs with the gear, and where it stands.

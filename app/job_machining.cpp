@@ -4,6 +4,7 @@
 
 #include "app/job_tables.h"
 #include "geometry/base/angle.h"
+#include "machines/machine_file.h"
 
 namespace toothpath {
 namespace {
@@ -220,6 +221,13 @@ ProgramSettings read_program_settings(TableReader& table) {
   ProgramSettings program;
   if (const auto order = table.if_present("tooth_order", [&] { return table.word("tooth_order", {"sequence", "spread"}); }))
     program.spread_teeth = *order == "spread";
+  constexpr std::pair<std::string_view, PoleOption> kPoles[] = {{"error", PoleOption::error}, {"tilt", PoleOption::tilt},       {"hold", PoleOption::hold},
+                                                                {"through", PoleOption::through}, {"slow", PoleOption::slow}, {"retract", PoleOption::retract}};
+  if (const auto word = table.if_present("pole", [&] { return table.word("pole", {"error", "tilt", "hold", "through", "slow", "retract"}); }))
+    for (const auto& [name, option] : kPoles)
+      if (*word == name) program.pole = option;
+  if (const auto angle = table.if_present("pole_angle", [&] { return table.number("pole_angle", {0, kLargestPoleAngle, " deg", true}); }))
+    program.pole_angle_rad = radians(*angle);
   table.finish();
   return program;
 }

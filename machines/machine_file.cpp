@@ -13,7 +13,6 @@ namespace {
 constexpr double kLargestLength = 1e5;       // mm
 constexpr double kLargestSpeed = 1e6;        // mm/min, deg/min, 1/min
 constexpr double kLargestAcceleration = 1e7; // mm/s^2, deg/s^2
-constexpr double kLargestPoleAngle = 45.0;   // deg
 constexpr double kLargestAngle = 1e7;        // deg: 27000 turns
 constexpr double kLeastTravel = 10.0;        // mm; less means metres
 constexpr double kLeastDirection = 1e-3;     // length of a direction as written

@@ -13,6 +13,9 @@
 
 namespace toothpath {
 
+/// Of the keys pole_angle, deg.
+inline constexpr double kLargestPoleAngle = 45.0;
+
 /// A machine, or everything that is wrong with its file. `machine` is empty if and only if `errors` is not.
 struct MachineReading {
   std::optional<Machine> machine;

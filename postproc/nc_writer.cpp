@@ -163,6 +163,7 @@ class Writer {
     inverse_time_ = false;
     for (std::size_t i = s.first; i < s.last && !error_; ++i) {
       const AxisBlock& b = list[i];
+      if (i > s.first) note_unwinding(list[i - 1], b);
       switch (b.kind) {
         case BlockKind::feed:
         case BlockKind::turn:
@@ -178,6 +179,15 @@ class Writer {
     }
     if (inverse_time_) out_.line(fmt::format("G94 F{}", values_["free"]));
     inverse_time_ = false;
+  }
+
+  /// A reposition of a rotary by a whole turn or more is said in the text.
+  void note_unwinding(const AxisBlock& from, const AxisBlock& to) {
+    if (to.kind != BlockKind::rapid_rotary && to.kind != BlockKind::turn) return;
+    const std::int64_t turn = to_fixed(360, program_.format.rotary_decimals);
+    for (std::size_t a = 3; a < 5; ++a)
+      if (const auto turns = std::abs(to.words[a] - from.words[a]) / turn; turns >= 1)
+        out_.comment(fmt::format("{} UNWINDS BY {} TURN{}", program_.letters[a], turns, turns == 1 ? "" : "S"));
   }
 
   void switch_tcp(const AxisBlock& b, IndexWord index) {

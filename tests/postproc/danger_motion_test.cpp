@@ -170,6 +170,7 @@ TEST_F(DangerMotion, FortyTurnsAreUnwoundAboveThePart) {
     ASSERT_TRUE(program) << p.name << ": " << program.error().message;
     const auto text = write_nc(*program, *dialect_of(m), {});
     ASSERT_TRUE(text) << text.error().message;
+    EXPECT_NE(text->text.find(" UNWINDS BY "), std::string::npos) << p.name;
     const auto moves = executed(p, text->text, m);
     double cut = 0, unwound = 0;
     for (std::size_t i = 1; i < moves.size(); ++i) {
