@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "cam/linking.h"
+#include "cam/prescribed_axes.h"
 #include "cam/roughing.h"
 #include "cam/tool_direction.h"
 #include "cam/tool_orientation.h"
@@ -145,14 +146,23 @@ class JobPlanner {
     if (passes.empty()) return {};
 
     if (!bodies_) bodies_ = std::make_unique<BodyTree>(part_);
-    DirectionChoice direction = choose_direction(part_, *bodies_, zone, sheet, passes, tool, {o_.clearance_mm, 0.01});
-    direction.operation = n;
+    OrientationOptions turning;
+    turning.clearance_mm = o_.clearance_mm;
+    turning.least_tilt_rad = o_.least_tilt_rad;
+    turning.chord_mm = kTurnShare * std::min(op.chord_tolerance_mm, chord_room(op));
     LinkingOptions link;
-    if (!direction.fixed) {
-      OrientationOptions turning;
-      turning.clearance_mm = o_.clearance_mm;
-      turning.least_tilt_rad = o_.least_tilt_rad;
-      turning.chord_mm = kTurnShare * std::min(op.chord_tolerance_mm, chord_room(op));
+    DirectionChoice direction;
+    const bool prescribed = !op.axis_plus.empty();
+    if (!prescribed) direction = choose_direction(part_, *bodies_, zone, sheet, passes, tool, {o_.clearance_mm, 0.01});
+    direction.operation = n;
+    direction.zone = zone;
+    if (prescribed) {
+      auto made = prescribe(zone, tool, op, turning, passes);
+      if (const auto* refusal = std::get_if<OrientationRefusal>(&made))
+        return PlanRefusal{key + ".tool_axis", fail("tool {} in zone {}: {}", tool.number, zone, refusal->reason)};
+      describe_prescribed(std::get<Orientation>(made), direction);
+      link.axes = std::move(std::get<Orientation>(made).axes);
+    } else if (!direction.fixed) {
       auto oriented = orient(zone, tool, turning, passes);
       if (const auto* refusal = std::get_if<OrientationRefusal>(&oriented)) {
         plan_.directions.push_back(direction);
@@ -185,14 +195,23 @@ class JobPlanner {
   /// Simultaneous axes for one zone, as a stage of its own.
   std::variant<Orientation, OrientationRefusal> orient(int zone, const ToolAssembly& tool, const OrientationOptions& options,
                                                        std::vector<BallPass>& passes) const {
+    return as_stage([&] { return orient_passes(part_, *bodies_, zone, tool, options, passes); });
+  }
+  /// The same with the axes that the operation prescribes.
+  std::variant<Orientation, OrientationRefusal> prescribe(int zone, const ToolAssembly& tool, const MillingOperation& op, const OrientationOptions& options,
+                                                          std::vector<BallPass>& passes) const {
+    return as_stage([&] { return prescribe_axes(part_, *bodies_, zone, tool, op, options, passes); });
+  }
+  template <typename Work>
+  std::variant<Orientation, OrientationRefusal> as_stage(const Work& make) const {
     std::variant<Orientation, OrientationRefusal> result;
-    const auto work = [&] { result = orient_passes(part_, *bodies_, zone, tool, options, passes); };
+    const auto work = [&] { result = make(); };
     if (o_.stage) o_.stage("five-axis orientation", work);
     else work();
     return result;
   }
 
-  static void describe(const Orientation& o, DirectionChoice& d) {
+  static void measure(const Orientation& o, DirectionChoice& d) {
     Vec3 sum = Vec3::Zero();
     for (const auto& pass : o.axes)
       for (const auto& axis : pass) sum += axis;
@@ -205,10 +224,25 @@ class JobPlanner {
     d.greatest_step_rad = o.greatest_step_rad;
     d.passes = int(o.axes.size());
     d.turning_passes = o.turning_passes;
+  }
+  static void describe(const Orientation& o, DirectionChoice& d) {
+    measure(o, d);
     d.explanation = fmt::format("{}; so the axis turns: lean {:.1f} to {:.1f} deg from the normal of the pitch surface, inside {} of {} passes, "
                                 "by at most {:.2f} deg/mm; shank and holder keep {:.3f} mm",
                                 d.explanation, degrees(o.least_lean_rad), degrees(o.greatest_lean_rad), o.turning_passes, o.axes.size(),
                                 degrees(o.greatest_turn_rad_per_mm), o.clearance_mm);
+  }
+  static void describe_prescribed(const Orientation& o, DirectionChoice& d) {
+    measure(o, d);
+    d.fixed = std::all_of(o.axes.begin(), o.axes.end(), [&](const auto& pass) {
+      return std::all_of(pass.begin(), pass.end(), [&](const Vec3& axis) { return axis == o.axes.front().front(); });
+    });
+    d.explanation = d.fixed ? fmt::format("prescribed: leans {:.2f} deg from the normal of the pitch surface; shank and holder keep {:.3f} mm",
+                                          degrees(o.greatest_lean_rad), o.clearance_mm)
+                            : fmt::format("prescribed: lean {:.2f} to {:.2f} deg from the normal of the pitch surface, the axis turns inside {} of {} passes, by at most "
+                                          "{:.2f} deg/mm; shank and holder keep {:.3f} mm",
+                                          degrees(o.least_lean_rad), degrees(o.greatest_lean_rad), o.turning_passes, o.axes.size(),
+                                          degrees(o.greatest_turn_rad_per_mm), o.clearance_mm);
   }
 
   /// Sag that an operation may have: a tenth of the stock that it leaves, and less than half of what may be gouged.

@@ -26,27 +26,6 @@ constexpr double kLongestStickOut = 60; // mm: how much longer a tool is looked 
 double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-BallPass::Point blend(const BallPass::Point& a, const BallPass::Point& b, double t) {
-  return {a.centre + t * (b.centre - a.centre), a.contact + t * (b.contact - a.contact), a.touching && b.touching};
-}
-
-/// A pass by the way of its ball centre.
-struct Track {
-  std::vector<double> at;  ///< mm from its start, of every point
-  const std::vector<BallPass::Point>* points = nullptr;
-
-  explicit Track(const BallPass& pass) : points(&pass.points) {
-    for (std::size_t k = 0; k < pass.points.size(); ++k)
-      at.push_back(k == 0 ? 0 : at.back() + (pass.points[k].centre - pass.points[k - 1].centre).norm());
-  }
-  [[nodiscard]] BallPass::Point point(double s) const {
-    const auto k = std::size_t(std::clamp<long>(std::upper_bound(at.begin(), at.end(), s) - at.begin(), 1, std::max<long>(1, long(at.size()) - 1)));
-    if (at.size() < 2) return points->front();
-    const double span = at[k] - at[k - 1];
-    return blend((*points)[k - 1], (*points)[k], span > 0 ? std::clamp((s - at[k - 1]) / span, 0.0, 1.0) : 0);
-  }
-};
-
 class Orienter {
  public:
   Orienter(const GearDistance& part, const BodyTree& tree, int zone, const ToolAssembly& tool, const OrientationOptions& o,
@@ -64,13 +43,13 @@ class Orienter {
     relax();
     for (std::size_t p = 0; p < ways_.size(); ++p)
       if (!make_axes(p)) return *refusal_;
-    return finish();
+    return take_axes(std::move(made_), check_, tree_, tool_, passes_);
   }
 
  private:
-  OrientationWay make_way(const Track& track, double spacing) const {
+  OrientationWay make_way(const PassTrack& track, double spacing) const {
     OrientationWay way;
-    const double length = track.at.back();
+    const double length = track.at().back();
     const int count = std::max(2, int(std::ceil(length / spacing)));
     for (int k = 0; k <= count; ++k) {
       way.s.push_back(length * k / count);
@@ -107,7 +86,7 @@ class Orienter {
     const auto clear = [&](std::size_t station, const Vec2& lean) { return clear_at(way.points[station], lean, o_.margin_mm); };
     if (find_constant(way, grid_, reference, clear)) return true;
     const auto between = [&](std::size_t station, const Vec2& a, const Vec2& b) {
-      return clear_at(blend(way.points[station], way.points[station + 1], 0.5), 0.5 * (a + b), 0.5 * o_.margin_mm);
+      return clear_at(blend_points(way.points[station], way.points[station + 1], 0.5), 0.5 * (a + b), 0.5 * o_.margin_mm);
     };
     if (find_way(way, grid_, reference, clear, between).found) return true;
     // A narrow way may slip through a grid of 2 deg.
@@ -165,7 +144,7 @@ class Orienter {
         bool good = true;
         for (const std::size_t j : {k - 1, k + 1})
           if (j < n && good)
-            good = clear_at(blend(way.points[k], way.points[j], 0.5), 0.5 * (lean + way.lean[j]), 0.5 * o_.margin_mm);
+            good = clear_at(blend_points(way.points[k], way.points[j], 0.5), 0.5 * (lean + way.lean[j]), 0.5 * o_.margin_mm);
         if (!good) continue;
         way.lean[k] = lean;
         most = std::max(most, (lean - from).norm());
@@ -189,7 +168,7 @@ class Orienter {
     double spacing = kStation;
     for (int round = 0;; ++round) {
       for (const bool smooth : {true, false}) {
-        Records records = records_of(p, smooth);
+        AxisRecords records = records_of(p, smooth);
         std::vector<char> good(records.points.size());
         tbb::parallel_for(std::size_t(0), good.size(), [&](std::size_t k) {
           good[k] = check_.clear(records.points[k], records.axes[k], o_.clearance_mm);
@@ -214,69 +193,13 @@ class Orienter {
     }
   }
 
-  struct Records {
-    std::vector<BallPass::Point> points;
-    std::vector<Vec3> axes;
-  };
-
-  [[nodiscard]] Records records_of(std::size_t p, bool smooth) const {
+  [[nodiscard]] AxisRecords records_of(std::size_t p, bool smooth) const {
     const OrientationWay& way = ways_[p];
-    const Track& track = tracks_[p];
-    // The axis may turn so far between two records that neither the centre leaves the pass nor a rotary jumps.
-    const double limit = std::min(0.9 * kMostTurnPerRecord, std::sqrt(8 * o_.chord_mm / tool_.radius_mm()));
     const auto axis = [&](double s) {
       const Vec2 q = way.lean_along(s, smooth);
       return check_.frame().axis(q.x(), q.y());
     };
-    Records out;
-    for (std::size_t k = 0; k < track.at.size(); ++k) {
-      if (k > 0) {
-        const double from = track.at[k - 1], to = track.at[k];
-        constexpr int kSamples = 16;
-        double turn = 0;
-        for (int j = 1; j <= kSamples; ++j)
-          turn = std::max(turn, kSamples * angle_between(axis(from + (to - from) * (j - 1) / kSamples), axis(from + (to - from) * j / kSamples)));
-        const int pieces = std::max(1, int(std::ceil(turn / limit)));
-        for (int j = 1; j < pieces; ++j) {
-          const double t = double(j) / pieces;
-          out.points.push_back(blend((*track.points)[k - 1], (*track.points)[k], t));
-          out.axes.push_back(axis(from + t * (to - from)));
-        }
-      }
-      out.points.push_back((*track.points)[k]);
-      out.axes.push_back(axis(track.at[k]));
-    }
-    return out;
-  }
-
-  std::variant<Orientation, OrientationRefusal> finish() {
-    Orientation out;
-    out.least_lean_rad = INFINITY;
-    out.clearance_mm = kFarthestGap;
-    for (std::size_t p = 0; p < made_.size(); ++p) {
-      auto& [points, axes] = made_[p];
-      std::vector<double> gaps(points.size(), kFarthestGap);
-      tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
-        for (const auto& body : check_.bodies())
-          gaps[k] = std::min(gaps[k], tree_.gap(body, points[k].centre - tool_.radius_mm() * axes[k], axes[k], gaps[k], kResolution).gap);
-      });
-      double turned = 0;
-      for (std::size_t k = 0; k < points.size(); ++k) {
-        out.clearance_mm = std::min(out.clearance_mm, gaps[k]);
-        const double lean = angle_between(axes[k], check_.frame().up);
-        out.least_lean_rad = std::min(out.least_lean_rad, lean);
-        out.greatest_lean_rad = std::max(out.greatest_lean_rad, lean);
-        if (k == 0) continue;
-        const double step = angle_between(axes[k - 1], axes[k]), way = (points[k].centre - points[k - 1].centre).norm();
-        turned += step;
-        out.greatest_step_rad = std::max(out.greatest_step_rad, step);
-        if (way > 1e-6) out.greatest_turn_rad_per_mm = std::max(out.greatest_turn_rad_per_mm, step / way);
-      }
-      if (turned > 1e-6) ++out.turning_passes;
-      passes_[p].points = std::move(points);
-      out.axes.push_back(std::move(axes));
-    }
-    return out;
+    return records_with_axes(tracks_[p], axis, o_.chord_mm, tool_.radius_mm());
   }
 
   // Refusals.
@@ -344,9 +267,9 @@ class Orienter {
   OrientationCheck check_;
   LeanGrid grid_;
   std::optional<LeanGrid> fine_;  ///< made when the coarse one does not do
-  std::vector<Track> tracks_;
+  std::vector<PassTrack> tracks_;
   std::vector<OrientationWay> ways_;
-  std::vector<Records> made_;
+  std::vector<AxisRecords> made_;
   std::optional<OrientationRefusal> refusal_;
 };
 
@@ -372,6 +295,37 @@ bool OrientationCheck::cutting(const BallPass::Point& point, const Vec3& axis) c
 
 bool OrientationCheck::clear(const BallPass::Point& point, const Vec3& axis, double clearance_mm) const {
   return tree_.clear(bodies_, point.centre - tool_.radius_mm() * axis, axis, clearance_mm, kResolution) && cutting(point, axis);
+}
+
+Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& check, const BodyTree& tree, const ToolAssembly& tool,
+                      std::vector<BallPass>& passes) {
+  Orientation out;
+  out.least_lean_rad = INFINITY;
+  out.clearance_mm = kFarthestGap;
+  for (std::size_t p = 0; p < made.size(); ++p) {
+    auto& [points, axes] = made[p];
+    std::vector<double> gaps(points.size(), kFarthestGap);
+    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
+      for (const auto& body : check.bodies())
+        gaps[k] = std::min(gaps[k], tree.gap(body, points[k].centre - tool.radius_mm() * axes[k], axes[k], gaps[k], kResolution).gap);
+    });
+    double turned = 0;
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      out.clearance_mm = std::min(out.clearance_mm, gaps[k]);
+      const double lean = angle_between(axes[k], check.frame().up);
+      out.least_lean_rad = std::min(out.least_lean_rad, lean);
+      out.greatest_lean_rad = std::max(out.greatest_lean_rad, lean);
+      if (k == 0) continue;
+      const double step = angle_between(axes[k - 1], axes[k]), way = (points[k].centre - points[k - 1].centre).norm();
+      turned += step;
+      out.greatest_step_rad = std::max(out.greatest_step_rad, step);
+      if (way > 1e-6) out.greatest_turn_rad_per_mm = std::max(out.greatest_turn_rad_per_mm, step / way);
+    }
+    if (turned > 1e-6) ++out.turning_passes;
+    passes[p].points = std::move(points);
+    out.axes.push_back(std::move(axes));
+  }
+  return out;
 }
 
 std::variant<Orientation, OrientationRefusal> orient_passes(const GearDistance& part, const BodyTree& tree, int zone,

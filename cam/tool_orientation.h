@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "cam/axis_records.h"
 #include "cam/tool_direction.h"
 
 namespace toothpath {
@@ -22,13 +23,6 @@ struct OrientationOptions {
   double widest_lean_rad = 0.66; ///< of the grid, from the pitch normal
   double chord_mm = 0.0002;      ///< how far the ball centre may leave the pass because the axis turns between two records
 };
-
-/// Greatest turn of the axis between two neighbouring records of a pass, rad.
-inline constexpr double kMostTurnPerRecord = 0.0175;
-
-/// Ball centre between two records, tips straight and axes blended: this far from the straight line of centres. From
-/// |n - (blend before normalising)| <= 1 - cos(turn / 2) <= turn^2 / 8.
-[[nodiscard]] inline double centre_sag(double ball_radius_mm, double turn_rad) { return ball_radius_mm * turn_rad * turn_rad / 8; }
 
 struct Orientation {
   std::vector<std::vector<Vec3>> axes;  ///< of every point of every pass; the passes have been given more points where the axis turns
@@ -68,6 +62,10 @@ class OrientationCheck {
 [[nodiscard]] std::variant<Orientation, OrientationRefusal> orient_passes(const GearDistance& part, const BodyTree& tree, int zone,
                                                                           const ToolAssembly& tool, const OrientationOptions& options,
                                                                           std::vector<BallPass>& passes);
+
+/// Puts the records into their passes and measures them: leans, turns, least gap of shank and holder.
+[[nodiscard]] Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& check, const BodyTree& tree, const ToolAssembly& tool,
+                                    std::vector<BallPass>& passes);
 
 /// How often `orient_passes` has run in this process: a job whose zones all have a fixed direction leaves it alone.
 [[nodiscard]] std::size_t orientation_runs();
