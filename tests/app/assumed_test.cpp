@@ -11,7 +11,7 @@ namespace {
 class AssumedPivot : public ::testing::Test {
  protected:
   void SetUp() override {
-    write_file(dir / "m.toml", replaced(file_text(std::string(TOOTHPATH_MACHINES) + "/xyzac_large.toml"), "assumed = false", "assumed = [\"axes.A.point\"]"));
+    write_file(dir / "m.toml", replaced(file_text(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml"), "assumed = false", "assumed = [\"axes.A.point\"]"));
   }
   static std::string replaced(std::string text, const std::string& from, const std::string& to) {
     const auto at = text.find(from);

@@ -14,7 +14,7 @@
 namespace toothpath {
 namespace {
 
-const std::string kSamples = TOOTHPATH_SAMPLES;
+const std::string kSamples = TOOTHPATH_SOURCE_DIR "/samples";
 
 std::string text_of(const std::string& path) {
   std::ifstream in(path, std::ios::binary);

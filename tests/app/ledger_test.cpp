@@ -17,7 +17,7 @@ TEST_P(Ledger, CoversWhatIsMeasured) {
   const auto out = std::filesystem::temp_directory_path() / (std::string("toothpath_ledger_") + GetParam());
   std::filesystem::remove_all(out);
   CommandRequest request;
-  request.job_file = std::string(TOOTHPATH_SAMPLES) + "/" + GetParam() + ".toml";
+  request.job_file = std::string(TOOTHPATH_SOURCE_DIR) + "/samples/" + GetParam() + ".toml";
   request.out_dir = out.string();
   request.quiet = true;
   const auto outcome = run_job(request);

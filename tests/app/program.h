@@ -18,8 +18,8 @@
 
 namespace toothpath::testing {
 
-inline const std::string kSamples = TOOTHPATH_SAMPLES;
-inline const std::string kBadJobs = TOOTHPATH_BAD_JOBS;
+inline const std::string kSamples = TOOTHPATH_SOURCE_DIR "/samples";
+inline const std::string kBadJobs = TOOTHPATH_SOURCE_DIR "/tests/bad_jobs";
 
 struct Finished {
   int exit_code = -1;  ///< -1: ended by a signal
