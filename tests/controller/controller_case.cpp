@@ -1,8 +1,9 @@
 // Makes the folder from which LinuxCNC's motion controller runs a program of a job, and compares what it executed with our
 // read-back of the same text.
-//   toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH MODE   TEETH: teeth per operation, "1,1"; MODE: exact (G61.1 instead of G64 or G61), written
-//   toothpath_controller_case compare JOB FOLDER MODE                 FOLDER/samples.txt: what halsampler recorded
-// Exact stops are run with 200 mm/s^2 and deg/s^2: how near to a stop the last sample lies depends on it. The others: 2000.
+//   toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH CORNERS ACCELERATION PERIOD
+//   toothpath_controller_case compare JOB FOLDER ACCELERATION PERIOD      FOLDER/samples.txt: what halsampler recorded
+// TEETH: teeth per operation, "1,1". CORNERS: "written", or a line like "G61.1" or "G64 P0.0003 Q0" in the place of the program's own.
+// ACCELERATION: of every axis, mm/s^2 and deg/s^2. PERIOD: of the servo thread and of the record, microseconds.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -27,7 +28,6 @@ using test::JointVector, test::PathCorner;
 constexpr double kPrinted = 1e-6;           // mm and deg
 constexpr double kGiveUp = 1.0;             // mm: beyond this the record does not follow the path
 constexpr double kPiece = 0.02;             // deg: moves with TCP are cut into pieces that turn by no more than this
-constexpr double kPeriod = 1e-3;            // s: of the controller and of the record
 
 struct Case {
   Job job;
@@ -57,11 +57,13 @@ Result<Case> read_case(const std::string& job_file) {
 
 std::string kinematics(const Case& c) { return c.tilt == 'A' ? "xyzac-trt-kins" : "xyzbc-trt-kins"; }
 
-enum class Mode { exact, written };
+/// What the controller is set to.
+struct Settings {
+  double acceleration = 0;  ///< of every axis [mm/s^2, deg/s^2]
+  int period_us = 0;        ///< of the servo thread
+};
 
-double acceleration(Mode mode) { return mode == Mode::exact ? 200 : 2000; }  // mm/s^2 and deg/s^2
-
-std::string ini(const Case& c, Mode mode) {
+std::string ini(const Case& c, const Settings& settings) {
   const KinematicChain& chain = c.machine.chain;
   struct Joint {
     double least, greatest, speed;
@@ -100,7 +102,7 @@ MAX_LINEAR_VELOCITY = {}
 MAX_LINEAR_ACCELERATION = {}
 [EMCMOT]
 EMCMOT = motmod
-SERVO_PERIOD = 1000000
+SERVO_PERIOD = {}
 COMM_TIMEOUT = 30
 [TASK]
 TASK = milltask
@@ -109,24 +111,24 @@ CYCLE_TIME = 0.001
 EMCIO = io
 CYCLE_TIME = 0.100
 TOOL_TABLE = tools.tbl
-)", kinematics(c), c.tilt, fastest, fastest, acceleration(mode));
+)", kinematics(c), c.tilt, fastest, fastest, settings.acceleration, settings.period_us * 1000);
   // With TCP the words of an axis are not its joint: only the joints have limits.
   for (std::size_t i = 0; i < 5; ++i)
     text += fmt::format("[AXIS_{}]\nMIN_LIMIT = -100000\nMAX_LIMIT = 100000\nMAX_VELOCITY = {}\nMAX_ACCELERATION = {}\n",
-                        i == 3 ? c.tilt : "XYZ?C"[i], joints[i].speed, acceleration(mode));
+                        i == 3 ? c.tilt : "XYZ?C"[i], joints[i].speed, settings.acceleration);
   for (std::size_t i = 0; i < 5; ++i)
     text += fmt::format("[JOINT_{}]\nTYPE = {}\nHOME = 0\nHOME_SEARCH_VEL = 0\nHOME_SEQUENCE = 0\nMIN_LIMIT = {}\nMAX_LIMIT = {}\nMAX_VELOCITY = {}\n"
                         "MAX_ACCELERATION = {}\nFERROR = 1\nMIN_FERROR = 1\n",
-                        i, joints[i].angular ? "ANGULAR" : "LINEAR", joints[i].least, joints[i].greatest, joints[i].speed, acceleration(mode));
+                        i, joints[i].angular ? "ANGULAR" : "LINEAR", joints[i].least, joints[i].greatest, joints[i].speed, settings.acceleration);
   return text;
 }
 
-std::string hal(const Case& c) {
+std::string hal(const Case& c, const Settings& settings) {
   const std::string kins = kinematics(c);
   const Vec3 &on_c = c.machine.chain.table[0].point_mm, &on_tilt = c.machine.chain.table[1].point_mm;
-  std::string text = fmt::format("loadrt {} sparm=identityfirst coordinates=XYZ{}C\nloadrt motmod servo_period_nsec=1000000 num_joints=5\n"
+  std::string text = fmt::format("loadrt {} sparm=identityfirst coordinates=XYZ{}C\nloadrt motmod servo_period_nsec={} num_joints=5\n"
                                  "loadrt sampler depth=60000 cfg=fffff\naddf motion-command-handler servo-thread\n"
-                                 "addf motion-controller servo-thread\naddf sampler.0 servo-thread\n", kins, c.tilt);
+                                 "addf motion-controller servo-thread\naddf sampler.0 servo-thread\n", kins, c.tilt, settings.period_us * 1000);
   for (int i = 0; i < 5; ++i)
     text += fmt::format("net joint{} joint.{}.motor-pos-cmd => joint.{}.motor-pos-fb sampler.0.pin.{}\n", i, i, i, i);
   text += fmt::format("setp {0}.x-rot-point {1}\nsetp {0}.y-rot-point {2}\nsetp {0}.z-rot-point 0\nsetp {0}.{3}-offset {4}\nsetp {0}.z-offset {5}\n",
@@ -144,9 +146,9 @@ std::string remap(int code, int kinematics_type) {
   return fmt::format("o<{0}remap> sub\nM68 E3 Q{1}\nM66 E0 L0\no<{0}remap> endsub\nM2\n", code, kinematics_type);
 }
 
-/// The program with these teeth of every operation instead of all, and with exact stops where asked. What the controller runs is
+/// The program with these teeth of every operation instead of all, and with another word for corners where asked. What the controller runs is
 /// what we read. Teeth stand in a loop, or are written out behind (TOOTH k).
-Result<std::string> shortened(const std::string& text, const std::string& teeth, Mode mode) {
+Result<std::string> shortened(const std::string& text, const std::string& teeth, const std::string& corners_line) {
   std::vector<std::string> counts;
   std::istringstream list(teeth), in(text);
   for (std::string count; std::getline(list, count, ',');) counts.push_back(count);
@@ -161,7 +163,7 @@ Result<std::string> shortened(const std::string& text, const std::string& teeth,
     if (line.rfind("G94 F", 0) == 0 || line == "M5") dropped = false;  // the end of the operation
     if (dropped) continue;
     if (std::regex_search(line, loop)) line = std::regex_replace(line, loop, "[#1 LT " + counts.at(operations - 1) + "]");
-    if (mode == Mode::exact) line = std::regex_replace(line, corners, "G61.1");
+    if (corners_line != "written") line = std::regex_replace(line, corners, corners_line);
     out += line + "\n";
   }
   if (operations < counts.size()) return fail("the program has fewer operations than \"{}\"", teeth);
@@ -176,10 +178,11 @@ Status write(const fs::path& file, const std::string& text) {
   return Ok{};
 }
 
-Status prepare(const Case& c, const std::string& program, const fs::path& folder, const std::string& teeth, Mode mode) {
+Status prepare(const Case& c, const std::string& program, const fs::path& folder, const std::string& teeth, const std::string& corners,
+               const Settings& settings) {
   const std::string text = read(program);
   if (text.empty()) return fail("{} is missing or empty", program);
-  const auto part = shortened(text, teeth, mode);
+  const auto part = shortened(text, teeth, corners);
   if (!part) return part.error();
   std::string tools, offsets;
   for (const ToolAssembly& t : c.job.tools) tools += fmt::format("T{0} P{0} Z{1} D{2}\n", t.number, t.length_mm, t.diameter_mm);
@@ -187,7 +190,7 @@ Status prepare(const Case& c, const std::string& program, const fs::path& folder
   const Vec3 at = c.job.setup->work_offset_at_mm;
   offsets = fmt::format("5220\t1\n5221\t{}\n5222\t{}\n5223\t{}\n", at.x(), at.y(), at.z());
   const std::pair<const char*, std::string> files[] = {
-      {"machine.ini", ini(c, mode)}, {"machine.hal", hal(c)}, {"tools.tbl", tools}, {"offsets.var", offsets},
+      {"machine.ini", ini(c, settings)}, {"machine.hal", hal(c, settings)}, {"tools.tbl", tools}, {"offsets.var", offsets},
       {"428remap.ngc", remap(428, 1)}, {"429remap.ngc", remap(429, 0)}, {"program.ngc", *part}};
   for (const auto& [name, content] : files)
     if (const Status s = write(folder / name, content); !s) return s;
@@ -249,58 +252,81 @@ JointVector pose_of(const Case& c, const JointVector& j, double tool_length_mm, 
   return {pose.tip_mm.x(), pose.tip_mm.y(), pose.tip_mm.z(), with_axis ? degrees(pose.axis.x()) : 0, with_axis ? degrees(pose.axis.y()) : 0};
 }
 
-/// One line of the result: greatest distance in one space, with its bound; 0: no bound is promised.
+/// Greatest acceleration of a point of this space while LinuxCNC runs a block so that every joint keeps its own: of a block with the
+/// steps d_i the joints accelerate by d_i / max(d_i / a_i), the point by its own step in the same proportion.
+double greatest_acceleration(std::span<const PathCorner> joints, std::span<const PathCorner> points, double of_every_axis) {
+  double most = 0;
+  for (std::size_t k = 1; k < joints.size(); ++k) {
+    double least_time_squared = 0;
+    for (std::size_t i = 0; i < 5; ++i)
+      least_time_squared = std::max(least_time_squared, std::abs(joints[k].joints[i] - joints[k - 1].joints[i]) / of_every_axis);
+    if (least_time_squared > 0) most = std::max(most, test::joint_distance(points[k - 1].joints, points[k].joints) / least_time_squared);
+  }
+  return most;
+}
+
+/// One line of the result: greatest distances in one space, with their bound.
 bool judge(const char* what, std::span<const PathCorner> path, std::span<const JointVector> record, double bound) {
-  const auto result = test::compare_curves(path, record, kGiveUp);
-  if (!result.followed) {
-    fmt::print("  {:<12} NOT FOLLOWED: more than {} mm away near line {} of the program, or stopped there\n", what, kGiveUp, result.stuck_line);
+  using test::Counted;
+  const auto both = test::compare_curves(path, record, kGiveUp);
+  if (!both.followed) {
+    fmt::print("  {:<12} NOT FOLLOWED: more than {} mm away near line {} of the program, or stopped there\n", what, kGiveUp, both.stuck_line);
     return false;
   }
-  const bool good = bound == 0 || result.worst <= bound;
-  fmt::print("  {:<12} greatest distance {:.3g} um at line {}", what, result.worst * 1e3, result.line);
-  if (bound > 0) fmt::print(", bound {:.3g} um: {}", bound * 1e3, good ? "agree" : "DIFFER");
-  fmt::print("\n");
+  const auto samples = test::compare_curves(path, record, kGiveUp, Counted::samples), corners = test::compare_curves(path, record, kGiveUp, Counted::corners);
+  const bool good = both.worst <= bound;
+  fmt::print("  {:<12} off the path {:.3g} um at line {}, corner not reached {:.3g} um at line {}, together {:.3g} um, bound {:.3g} um: {}\n", what,
+             samples.worst * 1e3, samples.line, corners.worst * 1e3, corners.line, both.worst * 1e3, bound * 1e3, good ? "agree" : "DIFFER");
   return good;
 }
 
-Result<bool> compare(const Case& c, const fs::path& folder, Mode mode) {
-  const bool exact = mode == Mode::exact;
-  const auto expected = expected_path(c, read(folder / "program.ngc"));
+/// What LinuxCNC leaves of a corner under the last G6x line of the program: docs/dialects.md.
+double corner_bound(const std::string& text, double acceleration, double period) {
+  double tolerance = 0;
+  std::smatch m;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);)
+    if (std::regex_match(line, m, std::regex(R"(G64 P([0-9.]+) Q0)"))) tolerance = std::stod(m[1]);
+  const double filter = acceleration * period * period / 4, late = tolerance > 0 ? period / 2 * std::sqrt(acceleration / 2) : 0;
+  return std::pow(std::sqrt(tolerance) + late, 2) + filter;
+}
+
+Result<bool> compare(const Case& c, const fs::path& folder, const Settings& settings) {
+  const std::string text = read(folder / "program.ngc");
+  const auto expected = expected_path(c, text);
   if (!expected) return expected.error();
   std::ifstream in(folder / "samples.txt");
   if (!in) return fail("{} is missing", (folder / "samples.txt").string());
   const auto samples = test::read_samples(in);
   if (!samples) return samples.error();
-  // Half of the last printed digit in five joints; and what two samples a period apart leave out, on both sides of a stop or of the
-  // arc between them.
   const double digits = 0.5 * kPrinted * std::sqrt(3 + 2 * test::kMmPerDegree * test::kMmPerDegree);
-  const double seen = digits + acceleration(mode) * test::kMmPerDegree * kPeriod * kPeriod * (exact ? 1 : 0.125);
-  fmt::print("{}: {} moves, {} samples of 1 ms\n", exact ? "exact stop" : fmt::format("as written, corners allowed {:.3g} um", expected->blend_mm * 1e3),
-             expected->blocks, samples->size());
-  const bool joints = judge("joints", expected->path, *samples, exact ? seen : 0);
-  // As written, the reader says by how much the tip may leave its path.
-  const auto poses = [&](bool with_axis, std::vector<PathCorner>& path, std::vector<JointVector>& record) {
-    path = expected->path;
-    for (PathCorner& corner : path) corner.joints = pose_of(c, corner.joints, expected->tool_length_mm, with_axis);
-    record.clear();
-    for (const JointVector& j : *samples) record.push_back(pose_of(c, j, expected->tool_length_mm, with_axis));
+  fmt::print("{} moves, {} samples of {} us, {:g} mm/s^2 and deg/s^2; counted for corners {:.3g} um\n", expected->blocks, samples->size(),
+             settings.period_us, settings.acceleration, expected->blend_mm * 1e3);
+  bool good = true;
+  const auto look = [&](const char* what, std::span<const PathCorner> path, std::span<const JointVector> record) {
+    const double acceleration = greatest_acceleration(expected->path, path, settings.acceleration);
+    fmt::print("  {:<12} greatest acceleration {:.4g} mm/s^2\n", what, acceleration);
+    good = judge(what, path, record, corner_bound(text, acceleration, settings.period_us * 1e-6) + digits) && good;
   };
-  std::vector<PathCorner> path;
-  std::vector<JointVector> record;
-  poses(false, path, record);
-  const bool tip = judge("tip", path, record, exact ? seen : expected->blend_mm + seen);
-  poses(true, path, record);
-  const bool axis = judge("tip and axis", path, record, exact ? seen : 0);
-  return joints && tip && axis;
+  look("joints", expected->path, *samples);
+  for (const bool with_axis : {false, true}) {
+    std::vector<PathCorner> path = expected->path;
+    for (PathCorner& corner : path) corner.joints = pose_of(c, corner.joints, expected->tool_length_mm, with_axis);
+    std::vector<JointVector> record;
+    record.reserve(samples->size());
+    for (const JointVector& j : *samples) record.push_back(pose_of(c, j, expected->tool_length_mm, with_axis));
+    look(with_axis ? "tip and axis" : "tip", path, record);
+  }
+  return good;
 }
 
 int run(const std::vector<std::string>& args) {
-  const bool preparing = args.size() == 6 && args[0] == "prepare", comparing = args.size() == 4 && args[0] == "compare";
-  const std::string word = args.empty() ? "" : args.back();
-  const Mode mode = word == "exact" ? Mode::exact : Mode::written;
-  if ((!preparing && !comparing) || (mode == Mode::written && word != "written")) {
-    fmt::print(stderr, "usage: toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH exact|written\n"
-                       "       toothpath_controller_case compare JOB FOLDER exact|written\n");
+  const bool preparing = args.size() == 8 && args[0] == "prepare", comparing = args.size() == 5 && args[0] == "compare";
+  Settings settings;
+  if (preparing || comparing) settings = {std::atof(args[args.size() - 2].c_str()), std::atoi(args.back().c_str())};
+  if (!(settings.acceleration > 0) || settings.period_us <= 0) {
+    fmt::print(stderr, "usage: toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH CORNERS ACCELERATION PERIOD\n"
+                       "       toothpath_controller_case compare JOB FOLDER ACCELERATION PERIOD\n");
     return 2;
   }
   const auto c = read_case(args[1]);
@@ -309,11 +335,11 @@ int run(const std::vector<std::string>& args) {
     return 3;
   }
   if (preparing) {
-    const Status s = prepare(*c, args[2], args[3], args[4], mode);
+    const Status s = prepare(*c, args[2], args[3], args[4], args[5], settings);
     if (!s) fmt::print(stderr, "{}\n", s.error().text());
     return s ? 0 : 3;
   }
-  const auto same = compare(*c, args[2], mode);
+  const auto same = compare(*c, args[2], settings);
   if (!same) fmt::print(stderr, "{}\n", same.error().text());
   return same && *same ? 0 : 1;
 }

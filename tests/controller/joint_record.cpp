@@ -44,8 +44,10 @@ double joint_distance(const JointVector& a, const JointVector& b) {
 
 // costs[j - first]: the least greatest distance over all walks that stand in segment j (corner j to j + 1) at this sample. Segments
 // whose cost is beyond give_up are dropped at both ends, so the list stays short.
-CurveComparison compare_curves(std::span<const PathCorner> path, std::span<const JointVector> record, double give_up) {
+CurveComparison compare_curves(std::span<const PathCorner> path, std::span<const JointVector> record, double give_up, Counted counted) {
   CurveComparison result;
+  const auto sample = [&](double distance) { return counted == Counted::corners && distance <= give_up ? 0 : distance; };
+  const auto corner = [&](double distance) { return counted == Counted::samples && distance <= give_up ? 0 : distance; };
   if (path.size() < 2) return result;
   const std::size_t last = path.size() - 2;
   const auto to_segment = [&](const JointVector& p, std::size_t j) { return distance_to_segment(p, path[j].joints, path[j + 1].joints); };
@@ -58,18 +60,18 @@ CurveComparison compare_curves(std::span<const PathCorner> path, std::span<const
     const JointVector& s = record[i];
     const JointVector& before = record[i ? i - 1 : 0];
     // As long as it has not left the first segment behind, the walk may begin at any sample that is at the first corner.
-    const double at_start = joint_distance(s, path[0].joints);
+    const double at_start = corner(joint_distance(s, path[0].joints));
     const bool may_start = first == 0 && at_start <= give_up;
     next.clear();
     if (may_start && costs.empty()) started_at = i;
     Cost carry;
     for (std::size_t j = first; j <= last; ++j) {
       // Over the corner j: it lies within the distance of the stretch from the sample before.
-      if (j > first && std::isfinite(carry.value)) carry = raised(carry, distance_to_segment(path[j].joints, before, s), path[j].line);
+      if (j > first && std::isfinite(carry.value)) carry = raised(carry, corner(distance_to_segment(path[j].joints, before, s)), path[j].line);
       if (carry.value > give_up) carry = Cost{};
       if (j < first + costs.size() && costs[j - first].value < carry.value) carry = costs[j - first];
       if (j == 0 && may_start && at_start < carry.value) carry = {at_start, path[0].line};
-      Cost here = raised(carry, to_segment(s, j), path[j + 1].line);
+      Cost here = raised(carry, sample(to_segment(s, j)), path[j + 1].line);
       if (here.value > give_up) here = Cost{};
       next.push_back(here);
       if (j >= first + costs.size() && !std::isfinite(carry.value)) break;
@@ -82,7 +84,7 @@ CurveComparison compare_curves(std::span<const PathCorner> path, std::span<const
     costs.swap(next);
     if (!costs.empty()) best_j = std::max(best_j, first + costs.size() - 1);
     if (!costs.empty() && first + costs.size() - 1 == last) {
-      const Cost end = raised(costs.back(), joint_distance(s, path[last + 1].joints), path[last + 1].line);
+      const Cost end = raised(costs.back(), corner(joint_distance(s, path[last + 1].joints)), path[last + 1].line);
       if (end.value <= give_up && end.value < arrived.value) {
         arrived = end;
         arrived_at = i;

@@ -33,10 +33,17 @@ struct CurveComparison {
   std::size_t samples = 0;   ///< of the record between the first corner and the last
 };
 
+/// Which distances `worst` is made of.
+enum class Counted {
+  both,
+  samples,  ///< of the record from the path: the motion left its path
+  corners,  ///< of the path's corners from the record: the motion did not come so far
+};
+
 /// The smallest d for which the record can be walked along the path, never backwards over a corner, with every sample within d
 /// of the path and every corner within d of the record (a Frechet distance for sampled curves).
-/// @param give_up [mm] a record farther off than this does not follow the path
-CurveComparison compare_curves(std::span<const PathCorner> path, std::span<const JointVector> record, double give_up);
+/// @param give_up [mm] a record farther off than this does not follow the path, whatever is counted
+CurveComparison compare_curves(std::span<const PathCorner> path, std::span<const JointVector> record, double give_up, Counted counted = Counted::both);
 
 /// Samples as LinuxCNC's halsampler prints them: five numbers a line. Errors: a line with "overrun" (samples were lost) or
 /// anything else that is not five finite numbers; no line at all.

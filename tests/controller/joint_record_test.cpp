@@ -55,6 +55,20 @@ TEST(JointRecord, SamplingCutsCornersByLessThanAStep) {
   EXPECT_LT(c.worst, 0.05);
 }
 
+// A corner that is cut short is not reached while no sample is off the path by as much; a detour is the other way round.
+TEST(JointRecord, TheTwoDirectionsAreToldApart) {
+  std::vector<PathCorner> path{{{0, 0, 0, 0, 0}, 1}, {{10, 0, 0, 0, 0}, 2}, {{10, 10, 0, 0, 0}, 3}};
+  const std::vector<JointVector> cut{{0, 0, 0, 0, 0}, {9.99, 0, 0, 0, 0}, {10, 0.01, 0, 0, 0}, {10, 10, 0, 0, 0}};
+  EXPECT_NEAR(compare_curves(path, cut, 1.0).worst, 0.01 / std::sqrt(2), 1e-12);
+  EXPECT_NEAR(compare_curves(path, cut, 1.0, Counted::corners).worst, 0.01 / std::sqrt(2), 1e-12);
+  EXPECT_NEAR(compare_curves(path, cut, 1.0, Counted::samples).worst, 0, 1e-12);
+  const std::vector<JointVector> detour{{0, 0, 0, 0, 0}, {5, -0.02, 0, 0, 0}, {10, 0, 0, 0, 0}, {10, 10, 0, 0, 0}};
+  EXPECT_NEAR(compare_curves(path, detour, 1.0).worst, 0.02, 1e-12);
+  EXPECT_NEAR(compare_curves(path, detour, 1.0, Counted::corners).worst, 0, 1e-12);
+  EXPECT_NEAR(compare_curves(path, detour, 1.0, Counted::samples).worst, 0.02, 1e-12);
+  EXPECT_FALSE(compare_curves(path, detour, 0.01, Counted::corners).followed) << "beyond the limit nothing is followed, whatever is counted";
+}
+
 TEST(JointRecord, WaitingAtEitherEndIsAllowed) {
   const auto path = zigzag();
   auto record = walk(path, true);
