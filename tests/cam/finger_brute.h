@@ -59,13 +59,12 @@ class BruteFinger {
       return (q - std::clamp(q.dot(d) / d.squaredNorm(), 0.0, 1.0) * d).norm();
     };
     best = to(at);
-    for (const int way : {-1, 1})
-      for (std::size_t k = at, misses = 0; misses < 40;) {
-        if ((way < 0 && k == 1) || (way > 0 && k + 1 == n)) break;
-        k = std::size_t(std::ptrdiff_t(k) + way);
-        const double d = to(k);
-        if (d < best) best = d, misses = 0;
-        else ++misses;
+    std::size_t near = at;
+    for (const std::size_t stride : {250, 50, 10, 2, 1})
+      for (bool nearer = true; nearer;) {
+        nearer = false;
+        for (const std::size_t k : {near > stride ? near - stride : 1, std::min(near + stride, n - 1)})
+          if (const double d = to(k); d < best) best = d, near = k, nearer = true;
       }
     if (rho <= line_.front().y()) best = std::min(best, std::abs(height));
     if (height > line_.back().x()) best = std::min(best, std::abs(rho - line_.back().y()));

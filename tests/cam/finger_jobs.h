@@ -64,6 +64,21 @@ inline Milled mill_all(const BevelGearParameters& p, double tip_radius, double c
   return mill_all(Designed{p, {3.0, tip_radius, 4.1, 4.8}}, chord, ridge);
 }
 
+/// The small pinion of samples/bevel_trunnion.toml, with hub and shaft.
+inline Milled mill_trunnion(double chord = 5e-4) {
+  BevelGearParameters p = w3();
+  p.mate_teeth = 27;
+  p.outer_transverse_module_mm = 2;
+  p.face_width_mm = 14;
+  p.apex_cone_distance_mm = 25.45, p.relief_half_width_mm = 1.1;
+  p.addendum_mm = 1.2, p.dedendum_mm = 1.5, p.backlash_mm = 0.05;
+  p.hub_diameter_mm = 24, p.hub_length_mm = 10;
+  p.shaft_diameter_mm = 8, p.shaft_length_mm = 6;
+  Milled r = mill_all(Designed{p, {0.72, 0.12, 1.2, 1.4}}, chord, 0.1);
+  r.tools[0].length_mm = 70, r.tools[0].shank_diameter_mm = 6, r.tools[0].holder = {{20, 20, 40}}, r.tools[0].stick_out_mm = 25;
+  return r;
+}
+
 /// Passes of approve and verify with everything within its limit.
 inline void expect_good(const Milled& r, double chord, double ridge, const FingerCheckOptions& options = {}) {
   const FingerGougeCheck check(r.gear, r.tools, r.ops, Tolerances{}, options);

@@ -331,55 +331,5 @@ TEST_F(FingerPlanted, ShankAndHolderInBlankHubAndShaft) {
   for (const char* what : {"shank blank", "holder blank", "holder hub", "shank hub", "holder shaft"}) EXPECT_GE(found[what], 3) << what;
 }
 
-// Motions that stray at random from the path: ten times denser than the check looks, nothing is deeper than its bound.
-TEST_F(FingerPlanted, DenserSamplingStaysBelowTheBound) {
-  const auto all = blocks(gear().R_i() - 2, gear().R_e() + 1);
-  const double flute = gear().parameters().dedendum_mm + clean_->tools[0].profile_height_mm;
-  const std::vector<Vec2> shank = {{flute, 5}, {40, 5}};
-  // Points of the walls, closely spaced; the check looks at 7 to 20 poses of such a motion.
-  std::vector<Vec3> walls;
-  for (const auto& half : gear().halves())
-    for (const auto& wall : half.walls)
-      for (int i = 0; i <= 160; ++i)
-        for (int j = 0; j <= 40; ++j) {
-          const auto& c = wall.cutter;
-          const std::size_t w = wall.sigma > 0 ? 0 : 1;
-          const Vec3 p = wall.point(half.beta_from[w] + (half.beta_to[w] - half.beta_from[w]) * i / 160, c.p_A + (c.p_D - c.p_A) * (j + 0.01) / 40.01).p;
-          if (brute_->on_face(p)) walls.push_back(p);
-        }
-  int asked = 0;
-  for (int n = 0; n < 8; ++n) {
-    const std::size_t k = pick(all);
-    const auto& r = clean_->plans[1].path.records;
-    ToolMotion m;
-    const auto strayed = [&](const ClRecord& record, double size) {
-      const Vec3 off(uniform(-size, size), uniform(-size, size), uniform(-size, size));
-      return std::pair<Vec3, Vec3>(record.tip + off, (record.axis + 0.03 * Vec3(off.y(), off.z(), off.x())).normalized());
-    };
-    std::tie(m.tip_from, m.axis_from) = strayed(r[k], 0.01);
-    std::tie(m.tip_to, m.axis_to) = strayed(r[std::min(k + 1 + n % 3, r.size() - 2)], 0.01);
-    m.operation = 1, m.line = 1;
-    const auto v = check_->verify(std::span(&m, 1));
-    for (const Vec3& p : walls)
-      if ((p - m.tip_from).norm() < 12 && brute_->distance(p, pose_at(m, 0.5)) < 0.5) {
-        EXPECT_LE(brute_->inside(p, m, 200), v.gouge.bound_mm + 1e-7) << n << " at " << p.transpose();
-        ++asked;
-      }
-    // Where the motion goes above the teeth its gaps are judged alone.
-    const auto rims = [&] {
-      const double sd = gear().sin_delta(), cd = gear().cos_delta();
-      std::vector<Vec2> part;
-      for (const double ell : {gear().R_i(), gear().R_e()})
-        for (const double height : {4.1, -17.1}) part.emplace_back(ell * sd + height * cd, ell * cd - height * sd);
-      return part;
-    }();
-    for (const double s : {0.0, 0.37, 1.0}) {
-      const auto pose = pose_at(m, s);
-      EXPECT_GE(-overlap_of(shank, pose, rims, pose.axis).depth, v.gouge.clearance_mm - 5e-5) << n;
-    }
-  }
-  EXPECT_GT(asked, 1000);
-}
-
 }  // namespace
 }  // namespace toothpath
