@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "app/job_tables.h"
+#include "app/job_words.h"
+#include "machines/toml/regular_file.h"
 
 namespace toothpath {
 namespace {
@@ -62,13 +64,13 @@ SourcePosition Job::where(std::string_view key) const {
 }
 
 JobOrErrors parse_job(std::string_view text, const std::string& file) {
-  const auto document = parse_document(text, file, kMaxJobNesting);
+  const auto document = parse_toml(text, file, kJobSyntax);
   if (!document) return std::vector<Diagnostic>{document.error()};
 
   Job job;
   job.file = file;
-  ReaderFindings findings;
-  TableReader root(*document->table(), document->position, "", findings);
+  ReaderFindings findings(job_words());
+  TableReader root(*document, "", findings);
   (void)root.integer("schema", {1, 1});
   job.name = root.text("name").value_or("");
   read_gear(root, job);
@@ -91,9 +93,7 @@ JobOrErrors parse_job(std::string_view text, const std::string& file) {
   root.finish();
 
   if (!findings.errors.empty()) {
-    std::stable_sort(findings.errors.begin(), findings.errors.end(), [](const Diagnostic& a, const Diagnostic& b) {
-      return std::pair(a.position.line, a.position.column) < std::pair(b.position.line, b.position.column);
-    });
+    sort_by_position(findings.errors);
     return std::move(findings.errors);
   }
   job.positions = std::move(findings.positions);

@@ -11,9 +11,8 @@
 
 namespace toothpath {
 
-/// Limits of a job file; beyond them it is refused before it is parsed.
+/// A larger job file is refused before it is parsed.
 inline constexpr std::size_t kMaxJobBytes = 4u << 20;
-inline constexpr int kMaxJobNesting = 32;
 
 /// What a reader returns: the job, or all that is wrong with it, in the order of the file.
 using JobOrErrors = std::variant<Job, std::vector<Diagnostic>>;

@@ -1,9 +1,13 @@
 // The tables of a job file, one function each. Findings go to the reader; what could not be read keeps its default.
 #pragma once
 
-#include "app/table_reader.h"
+#include "app/job.h"
+#include "machines/toml/table_reader.h"
 
 namespace toothpath {
+
+using DocumentValue = TomlValue;
+using DocumentArray = TomlArray;
 
 /// [gear] with type = "face_gear", its [[gear.zone]] tables, and [stock] where there is one.
 [[nodiscard]] FaceGearParameters read_face_gear(TableReader& gear, TableReader* stock, std::vector<std::string>& warnings);

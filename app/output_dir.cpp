@@ -14,7 +14,7 @@
 
 #include "app/interruption.h"
 #include "app/sha256.h"
-#include "app/toml_document.h"
+#include "machines/toml/regular_file.h"
 
 namespace toothpath {
 namespace {

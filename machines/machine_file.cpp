@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "machines/toml_tree.h"
+#include "machines/machine_table.h"
 
 namespace toothpath {
 namespace {
@@ -28,67 +28,69 @@ struct NamedAxis {
   SourcePosition position;
 };
 
-std::vector<NamedAxis> read_letters(TomlTableReader& chain, std::string_view key) {
-  const TomlValue* list = chain.value(key);
+std::vector<NamedAxis> read_letters(TableReader& chain, std::string_view key) {
+  const TomlValue* list = chain.required(key);
   std::vector<NamedAxis> letters;
   if (!list) return letters;
-  if (list->type != TomlValue::Type::array) {
-    chain.refuse(list->position, "{} must be a list of axis letters", chain.name(key));
+  const TomlArray* array = list->array();
+  if (!array) {
+    chain.refuse_at(list->position, "{} must be a list of axis letters", chain.name(key));
     return letters;
   }
-  for (const TomlValue& item : list->items) {
-    if (item.type == TomlValue::Type::text && (item.text == "A" || item.text == "B" || item.text == "C"))
-      letters.push_back({item.text[0], item.position});
+  for (const TomlValue& item : array->values) {
+    const std::string* text = item.text();
+    if (text && (*text == "A" || *text == "B" || *text == "C"))
+      letters.push_back({text->front(), item.position});
     else
-      chain.refuse(item.position, "{} lists rotary axes: \"A\", \"B\" or \"C\"", chain.name(key));
+      chain.refuse_at(item.position, "{} lists rotary axes: \"A\", \"B\" or \"C\"", chain.name(key));
   }
   return letters;
 }
 
 /// `min` and `max` of an axis in the units of the file, reversed limits refused.
-std::optional<std::pair<double, double>> read_range(TomlTableReader& axis, double largest, const char* unit) {
+std::optional<std::pair<double, double>> read_range(TableReader& axis, double largest, const char* unit) {
   const auto lo = axis.number("min", {-largest, largest, unit});
   const auto hi = axis.number("max", {-largest, largest, unit});
   if (!lo || !hi) return std::nullopt;
   if (!(*hi > *lo)) {
-    axis.refuse(axis.at("max"), "{} = {} must exceed {} = {}", axis.name("max"), *hi, axis.name("min"), *lo);
+    axis.refuse("max", "{} = {} must exceed {} = {}", axis.name("max"), *hi, axis.name("min"), *lo);
     return std::nullopt;
   }
   return std::pair(*lo, *hi);
 }
 
-double read_speed(TomlTableReader& axis, const char* unit) {
-  return axis.number("max_speed", TomlTableReader::positive(kLargestSpeed, unit)).value_or(0.0);
+double read_speed(TableReader& axis, const char* unit) {
+  return axis.number("max_speed", Range::positive(kLargestSpeed, unit)).value_or(0.0);
 }
 
 /// `max_acceleration`, per second squared in the file, per minute squared here; 0 where it is left out.
-double read_acceleration(TomlTableReader& axis, const char* unit) {
+double read_acceleration(TableReader& axis, const char* unit) {
   if (!axis.has("max_acceleration")) return 0.0;
-  return 3600.0 * axis.number("max_acceleration", TomlTableReader::positive(kLargestAcceleration, unit)).value_or(0.0);
+  return 3600.0 * axis.number("max_acceleration", Range::positive(kLargestAcceleration, unit)).value_or(0.0);
 }
 
-LinearAxis read_linear(TomlTableReader axis, const LimitMargin& margin) {
+LinearAxis read_linear(TableReader axis, const LimitMargin& margin) {
   LinearAxis out;
-  if (const auto range = read_range(axis, kLargestLength, "mm")) {
+  if (const auto range = read_range(axis, kLargestLength, " mm")) {
     out.min_mm = range->first;
     out.max_mm = range->second;
     const double least = std::max(kLeastTravel, 2 * margin.linear_mm);
     if (out.max_mm - out.min_mm < least)
-      axis.refuse(axis.at("max"), "{} - {} = {:.6g} mm of travel is below {} mm; lengths are in mm, not metres",
+      axis.refuse("max", "{} - {} = {:.6g} mm of travel is below {} mm; lengths are in mm, not metres",
                   axis.name("max"), axis.name("min"), out.max_mm - out.min_mm, least);
   }
-  out.max_speed = read_speed(axis, "mm/min");
-  out.max_acceleration = read_acceleration(axis, "mm/s^2");
-  axis.refuse_unknown_keys();
+  out.max_speed = read_speed(axis, " mm/min");
+  out.max_acceleration = read_acceleration(axis, " mm/s^2");
+  axis.finish();
   return out;
 }
 
-Vec3 read_direction(TomlTableReader& axis) {
-  const auto direction = axis.vector("direction", kLargestLength);
+Vec3 read_direction(TableReader& axis) {
+  const auto direction = read_vector(axis, "direction", kLargestLength);
   if (!direction) return Vec3::UnitZ();
   const double length = direction->norm();
   if (length < kLeastDirection) {
-    axis.refuse(axis.at("direction"), "{} = [{}, {}, {}] has length {}, must be at least {}", axis.name("direction"),
+    axis.refuse("direction", "{} = [{}, {}, {}] has length {}, must be at least {}", axis.name("direction"),
                 direction->x(), direction->y(), direction->z(), length, kLeastDirection);
     return Vec3::UnitZ();
   }
@@ -96,54 +98,54 @@ Vec3 read_direction(TomlTableReader& axis) {
 }
 
 /// Where a head axis lies, seen from the gauge point: lateral offset in `point`, height in `pivot_length`.
-Vec3 read_head_point(TomlTableReader& axis, const Vec3& direction) {
+Vec3 read_head_point(TableReader& axis, const Vec3& direction) {
   Vec3 point = Vec3::Zero();
   if (axis.has("point")) {
-    point = axis.vector("point", kLargestLength).value_or(Vec3::Zero());
+    point = read_vector(axis, "point", kLargestLength).value_or(Vec3::Zero());
     if (point.z() != 0.0)
-      axis.refuse(axis.at("point"), "{}[2] = {} must be 0: the height of a head axis is its pivot_length",
+      axis.refuse("point", "{}[2] = {} must be 0: the height of a head axis is its pivot_length",
                   axis.name("point"), point.z());
   }
   const bool along_spindle = direction.head<2>().norm() == 0.0;  // then its height has no effect
   if (along_spindle && !axis.has("pivot_length")) return point;
-  if (const auto pivot = axis.number("pivot_length", {0.0, kLargestLength, "mm"})) {
+  if (const auto pivot = axis.number("pivot_length", {0.0, kLargestLength, " mm"})) {
     if (*pivot > 0.0 && *pivot < 1.0)
-      axis.refuse(axis.at("pivot_length"), "{} = {} mm is below 1 mm; lengths are in mm, not metres",
+      axis.refuse("pivot_length", "{} = {} mm is below 1 mm; lengths are in mm, not metres",
                   axis.name("pivot_length"), *pivot);
     point.z() = *pivot;
   }
   return point;
 }
 
-RotaryAxis read_rotary(TomlTableReader axis, char letter, bool in_table, const LimitMargin& margin) {
+RotaryAxis read_rotary(TableReader axis, char letter, bool in_table, const LimitMargin& margin) {
   RotaryAxis out;
   out.letter = letter;
   out.direction = read_direction(axis);
-  out.point_mm = in_table ? axis.vector("point", kLargestLength).value_or(Vec3::Zero())
+  out.point_mm = in_table ? read_vector(axis, "point", kLargestLength).value_or(Vec3::Zero())
                           : read_head_point(axis, out.direction);
   if (in_table && axis.has("pivot_length")) {
     (void)axis.value("pivot_length");
-    axis.refuse(axis.at("pivot_length"), "{} belongs to head axes; {} is in the table", axis.name("pivot_length"), letter);
+    axis.refuse("pivot_length", "{} belongs to head axes; {} is in the table", axis.name("pivot_length"), letter);
   }
-  out.sign = axis.sense("sign");
-  if (axis.has("zero")) out.zero_rad = radians(axis.number("zero", {-360.0, 360.0, "deg"}).value_or(0.0));
-  if (const auto range = read_range(axis, kLargestAngle, "deg")) {
+  out.sign = read_sense(axis, "sign");
+  if (axis.has("zero")) out.zero_rad = radians(axis.number("zero", {-360.0, 360.0, " deg"}).value_or(0.0));
+  if (const auto range = read_range(axis, kLargestAngle, " deg")) {
     out.min_rad = radians(range->first);
     out.max_rad = radians(range->second);
     const double least = 2 * degrees(margin.rotary_rad);
     if (range->second - range->first <= least)
-      axis.refuse(axis.at("max"), "{} - {} = {:.6g} deg leaves nothing between the margins of {:.6g} deg", axis.name("max"),
+      axis.refuse("max", "{} - {} = {:.6g} deg leaves nothing between the margins of {:.6g} deg", axis.name("max"),
                   axis.name("min"), range->second - range->first, degrees(margin.rotary_rad));
   }
-  out.max_speed = radians(read_speed(axis, "deg/min"));
-  out.max_acceleration = radians(read_acceleration(axis, "deg/s^2"));
-  axis.refuse_unknown_keys();
+  out.max_speed = radians(read_speed(axis, " deg/min"));
+  out.max_acceleration = radians(read_acceleration(axis, " deg/s^2"));
+  axis.finish();
   return out;
 }
 
 /// Where every offset of the table's axes is below a millimetre although one is more than what is left of axes that should
 /// meet, the file is in metres. Whoever means it can give the point elsewhere on its axis.
-void refuse_offsets_in_metres(TomlTableReader& axes, const Machine& machine) {
+void refuse_offsets_in_metres(TableReader& axes, const Machine& machine) {
   double largest = 0;
   const RotaryAxis* at = nullptr;
   for (const RotaryAxis& axis : machine.chain.table)
@@ -152,22 +154,22 @@ void refuse_offsets_in_metres(TomlTableReader& axes, const Machine& machine) {
       at = &axis;
     }
   if (largest < kMeasuredOffset || largest >= kLeastOffset) return;
-  if (auto axis = axes.table(letter_name(at->letter)))
-    axis->refuse(axis->at("point"), "{} = [{}, {}, {}]: the largest offset of the rotary axes, {} mm, is below {} mm; lengths are in mm, not metres",
+  if (auto axis = axes.required_table(letter_name(at->letter)))
+    axis->refuse("point", "{} = [{}, {}, {}]: the largest offset of the rotary axes, {} mm, is below {} mm; lengths are in mm, not metres",
                  axis->name("point"), at->point_mm.x(), at->point_mm.y(), at->point_mm.z(), largest, kLeastOffset);
 }
 
 /// One axis of the chain: its table is missing, or read.
-void read_chain(TomlTableReader& root, Machine& machine) {
-  auto chain = root.table("chain");
-  auto axes = root.table("axes");
+void read_chain(TableReader& root, Machine& machine) {
+  auto chain = root.required_table("chain");
+  auto axes = root.required_table("axes");
   if (!chain || !axes) return;
   const std::vector<NamedAxis> table = read_letters(*chain, "table");
   const std::vector<NamedAxis> head = read_letters(*chain, "head");
-  chain->refuse_unknown_keys();
+  chain->finish();
 
   for (std::size_t i = 0; i < 3; ++i)
-    if (auto axis = axes->table(letter_name("XYZ"[i])))
+    if (auto axis = axes->required_table(letter_name("XYZ"[i])))
       machine.chain.linear[i] = read_linear(*axis, machine.limit_margin);
 
   std::vector<NamedAxis> all = table;
@@ -175,21 +177,21 @@ void read_chain(TomlTableReader& root, Machine& machine) {
   for (std::size_t k = 0; k < all.size(); ++k) {
     const auto same = [&all, k](const NamedAxis& a) { return a.letter == all[k].letter; };
     if (std::any_of(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(k), same)) {
-      root.refuse(all[k].position, "axis {} is in the chain twice", all[k].letter);
+      root.refuse_at(all[k].position, "axis {} is in the chain twice", all[k].letter);
       continue;
     }
     if (k >= kMostRotaries) {
-      root.refuse(all[k].position, "axis {} is rotary axis number {}, a chain has at most {}", all[k].letter, k + 1,
+      root.refuse_at(all[k].position, "axis {} is rotary axis number {}, a chain has at most {}", all[k].letter, k + 1,
                   kMostRotaries);
       continue;
     }
     const std::string key = letter_name(all[k].letter);
     if (!axes->has(key)) {
-      (void)axes->value(key);
+      (void)axes->required(key);
       continue;
     }
     const bool in_table = k < table.size();
-    if (auto axis = axes->table(key))
+    if (auto axis = axes->required_table(key))
       (in_table ? machine.chain.table : machine.chain.head)
           .push_back(read_rotary(*axis, all[k].letter, in_table, machine.limit_margin));
   }
@@ -197,64 +199,66 @@ void read_chain(TomlTableReader& root, Machine& machine) {
   for (const TomlEntry& entry : axes->entries())
     if (entry.key == "A" || entry.key == "B" || entry.key == "C") {
       if (std::none_of(all.begin(), all.end(), [&entry](const NamedAxis& a) { return a.letter == entry.key[0]; }))
-        root.refuse(entry.key_position, "axes.{} is named in neither chain.table nor chain.head", entry.key);
+        root.refuse_at(entry.key_position, "axes.{} is named in neither chain.table nor chain.head", entry.key);
     } else if (entry.key != "X" && entry.key != "Y" && entry.key != "Z") {
-      root.refuse(entry.key_position, "unknown key axes.{}", entry.key);
+      root.refuse_at(entry.key_position, "unknown key axes.{}", entry.key);
     }
 }
 
-void read_limits(TomlTableReader limits, Machine& machine) {
+void read_limits(TableReader limits, Machine& machine) {
   const auto diameter = [&limits](std::string_view key) {
-    return limits.number(key, TomlTableReader::positive(kLargestLength, "mm"));
+    return limits.number(key, Range::positive(kLargestLength, " mm"));
   };
-  machine.max_cutting_feed = limits.number("cutting_feed", TomlTableReader::positive(kLargestSpeed, "mm/min")).value_or(0.0);
+  machine.max_cutting_feed = limits.number("cutting_feed", Range::positive(kLargestSpeed, " mm/min")).value_or(0.0);
   machine.table_diameter_mm = diameter("table_diameter").value_or(0.0);
-  machine.min_block_ms = limits.number("min_block_ms", {0.0, 1e4, "ms"}).value_or(0.0);
+  machine.min_block_ms = limits.number("min_block_ms", {0.0, 1e4, " ms"}).value_or(0.0);
   if (limits.has("part_diameter")) machine.part_diameter_mm = diameter("part_diameter");
-  if (limits.has("part_mass")) machine.max_part_mass_kg = limits.number("part_mass", TomlTableReader::positive(1e6, "kg"));
+  if (limits.has("part_mass")) machine.max_part_mass_kg = limits.number("part_mass", Range::positive(1e6, " kg"));
   if (limits.has("limit_margin"))
-    machine.limit_margin.linear_mm = limits.number("limit_margin", {0.0, 100.0, "mm"}).value_or(0.0);
+    machine.limit_margin.linear_mm = limits.number("limit_margin", {0.0, 100.0, " mm"}).value_or(0.0);
   if (limits.has("limit_margin_angle"))
-    machine.limit_margin.rotary_rad = radians(limits.number("limit_margin_angle", {0.0, 10.0, "deg"}).value_or(0.0));
-  limits.refuse_unknown_keys();
+    machine.limit_margin.rotary_rad = radians(limits.number("limit_margin_angle", {0.0, 10.0, " deg"}).value_or(0.0));
+  limits.finish();
 }
 
-void read_post(TomlTableReader post, PostSettings& settings) {
-  if (post.has("linear_decimals")) settings.linear_decimals = post.whole_number("linear_decimals", 0, 9);
-  if (post.has("rotary_decimals")) settings.rotary_decimals = post.whole_number("rotary_decimals", 0, 9);
+void read_post(TableReader post, PostSettings& settings) {
+  if (post.has("linear_decimals")) settings.linear_decimals = post.integer("linear_decimals", {0, 9});
+  if (post.has("rotary_decimals")) settings.rotary_decimals = post.integer("rotary_decimals", {0, 9});
   if (post.has("index_loop")) settings.index_loop = post.boolean("index_loop");
-  if (post.has("tcp_on")) settings.tcp_on = post.texts("tcp_on").value_or(std::vector<std::string>{});
-  if (post.has("tcp_off")) settings.tcp_off = post.texts("tcp_off").value_or(std::vector<std::string>{});
+  if (post.has("tcp_on")) settings.tcp_on = post.ascii_list("tcp_on").value_or(std::vector<std::string>{});
+  if (post.has("tcp_off")) settings.tcp_off = post.ascii_list("tcp_off").value_or(std::vector<std::string>{});
   if (post.has("length_reference"))
     if (const auto word = post.word("length_reference", {"tip", "centre"}))
       settings.length_reference = *word == "tip" ? LengthReference::tip : LengthReference::centre;
   if (post.has("pole")) {
-    const std::vector<std::string> words = {"error", "tilt", "hold", "through", "slow", "retract"};
+    const std::initializer_list<std::string_view> words = {"error", "tilt", "hold", "through", "slow", "retract"};
     if (const auto word = post.word("pole", words))
       settings.pole = static_cast<PoleOption>(std::find(words.begin(), words.end(), *word) - words.begin());
   }
   if (post.has("pole_angle"))
-    if (const auto angle = post.number("pole_angle", TomlTableReader::positive(kLargestPoleAngle, "deg"))) settings.pole_angle_rad = radians(*angle);
-  post.refuse_unknown_keys();
+    if (const auto angle = post.number("pole_angle", Range::positive(kLargestPoleAngle, " deg"))) settings.pole_angle_rad = radians(*angle);
+  post.finish();
 }
 
 /// Where the direction of the last rotary axis stands: that of a pair that cannot work together.
 SourcePosition direction_position(const TomlValue& tree, const KinematicChain& chain) {
-  const TomlEntry* axes = tree.find("axes");
+  const auto inside = [](const TomlEntry* entry, std::string_view key) {
+    const TomlTable* table = entry ? entry->value.table() : nullptr;
+    return table ? table->find(key) : nullptr;
+  };
   const char letter = chain.rotary(chain.rotary_count() - 1).letter;
-  const TomlEntry* axis = axes ? axes->value.find(letter_name(letter)) : nullptr;
-  const TomlEntry* direction = axis ? axis->value.find("direction") : nullptr;
+  const TomlEntry* direction = inside(inside(tree.table()->find("axes"), letter_name(letter)), "direction");
   return direction ? direction->value.position : tree.position;
 }
 
-void check_control(TomlTableReader& root, const Machine& machine) {
+void check_control(TableReader& root, const Machine& machine) {
   if (machine.dialect == "linuxcnc" && machine.tcp != TcpMode::none &&
       (machine.post.tcp_on.empty() || machine.post.tcp_off.empty()))
-    root.refuse(root.at("tcp"), "tcp with dialect \"linuxcnc\" needs post.tcp_on and post.tcp_off: its codes are site data");
+    root.refuse("tcp", "tcp with dialect \"linuxcnc\" needs post.tcp_on and post.tcp_off: its codes are site data");
 }
 
 /// A time with some axes that stop at once and some that do not would mean nothing.
-void check_accelerations(TomlTableReader& root, const Machine& machine) {
+void check_accelerations(TableReader& root, const Machine& machine) {
   if (machine.has_acceleration()) return;
   bool any = false;
   std::string lacking;
@@ -264,40 +268,40 @@ void check_accelerations(TomlTableReader& root, const Machine& machine) {
   };
   for (std::size_t i = 0; i < 3; ++i) look("XYZ"[i], machine.chain.linear[i].max_acceleration);
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) look(machine.chain.rotary(k).letter, machine.chain.rotary(k).max_acceleration);
-  if (any) root.refuse(root.at("axes"), "max_acceleration stands at some axes and is missing at {}: every axis has one, or none", lacking);
+  if (any) root.refuse("axes", "max_acceleration stands at some axes and is missing at {}: every axis has one, or none", lacking);
 }
 
-Machine read_tree(const TomlValue& tree, const std::string& file, std::vector<Diagnostic>& errors) {
-  TomlTableReader root(tree, "", errors);
+Machine read_tree(const TomlValue& tree, const std::string& file, ReaderFindings& findings) {
+  TableReader root(tree, "", findings);
   Machine machine;
   machine.file = file;
-  (void)root.whole_number("schema", 1, 1);
+  (void)root.integer("schema", {1, 1});
   machine.name = root.text("name").value_or("");
-  if (const auto kind = root.word("kind", {"five_axis", "gear_shaper"}); kind && *kind != "five_axis") {
-    root.refuse(root.at("kind"), "kind = \"{}\" is no milling machine; \"five_axis\" is needed here", *kind);
+  if (const auto kind = read_kind(root); kind && *kind != "five_axis") {
+    root.refuse("kind", "kind = \"{}\" is no milling machine; \"five_axis\" is needed here", *kind);
     return machine;
   }
   machine.dialect = root.word("dialect", {"linuxcnc", "fanuc", "siemens", "heidenhain", "apt", "mitsubishi_m80"}).value_or("");
-  const std::vector<std::string> modes = {"none", "angles", "vectors"};
+  const std::initializer_list<std::string_view> modes = {"none", "angles", "vectors"};
   if (const auto tcp = root.word("tcp", modes))
     machine.tcp = static_cast<TcpMode>(std::find(modes.begin(), modes.end(), *tcp) - modes.begin());
   machine.assumed_keys = read_assumed(root, tree);
   machine.assumed = !machine.assumed_keys.empty();
-  machine.max_simultaneous_axes = root.whole_number("max_simultaneous_axes", 3, 9).value_or(0);
-  if (auto spindle = root.table("spindle")) {
-    machine.max_spindle_speed = spindle->number("max_speed", TomlTableReader::positive(kLargestSpeed, "1/min")).value_or(0.0);
-    spindle->refuse_unknown_keys();
+  machine.max_simultaneous_axes = root.integer("max_simultaneous_axes", {3, 9}).value_or(0);
+  if (auto spindle = root.required_table("spindle")) {
+    machine.max_spindle_speed = spindle->number("max_speed", Range::positive(kLargestSpeed, " 1/min")).value_or(0.0);
+    spindle->finish();
   }
-  if (const auto limits = root.table("limits")) read_limits(*limits, machine);
+  if (const auto limits = root.required_table("limits")) read_limits(*limits, machine);
   if (root.has("post"))
-    if (const auto post = root.table("post")) read_post(*post, machine.post);
+    if (const auto post = root.required_table("post")) read_post(*post, machine.post);
   read_chain(root, machine);
   check_control(root, machine);
   check_accelerations(root, machine);
-  root.refuse_unknown_keys();
-  if (errors.empty())
+  root.finish();
+  if (findings.errors.empty())
     if (const Status chain = check_chain(machine.chain); !chain)
-      root.refuse(direction_position(tree, machine.chain), "{}", chain.error().message);
+      root.refuse_at(direction_position(tree, machine.chain), "{}", chain.error().message);
   return machine;
 }
 
@@ -305,19 +309,21 @@ Machine read_tree(const TomlValue& tree, const std::string& file, std::vector<Di
 
 MachineReading read_machine_text(std::string_view text, const std::string& file) {
   MachineReading reading;
-  const auto tree = parse_toml(text, file);
+  const auto tree = parse_machine_toml(text, file);
   if (!tree) {
     reading.errors.push_back(tree.error());
     return reading;
   }
-  Machine machine = read_tree(*tree, file, reading.errors);
+  ReaderFindings findings(machine_words());
+  Machine machine = read_tree(*tree, file, findings);
+  reading.errors = std::move(findings.errors);
   sort_by_position(reading.errors);
   if (reading.errors.empty()) reading.machine = std::move(machine);
   return reading;
 }
 
 MachineReading read_machine_file(const std::string& path) {
-  const auto text = read_text_file(path);
+  const auto text = read_machine_bytes(path);
   if (text) return read_machine_text(*text, path);
   MachineReading reading;
   reading.errors.push_back(text.error());
@@ -325,14 +331,14 @@ MachineReading read_machine_file(const std::string& path) {
 }
 
 Result<MachineKind> machine_kind_of(const std::string& path) {
-  const auto text = read_text_file(path);
+  const auto text = read_machine_bytes(path);
   if (!text) return text.error();
-  const auto tree = parse_toml(*text, path);
+  const auto tree = parse_machine_toml(*text, path);
   if (!tree) return tree.error();
-  std::vector<Diagnostic> errors;
-  TomlTableReader root(*tree, "", errors);
-  const auto kind = root.word("kind", {"five_axis", "gear_shaper"});
-  if (!kind) return errors.front();
+  ReaderFindings findings(machine_words());
+  TableReader root(*tree, "", findings);
+  const auto kind = read_kind(root);
+  if (!kind) return findings.errors.front();
   return *kind == "five_axis" ? MachineKind::five_axis : MachineKind::gear_shaper;
 }
 

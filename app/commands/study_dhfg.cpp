@@ -7,8 +7,10 @@
 #include "app/commands/opening_and_end.h"
 #include "app/job_file.h"
 #include "app/job_tables.h"
+#include "app/job_words.h"
 #include "app/report/study_page.h"
 #include "geometry/base/angle.h"
+#include "machines/toml/regular_file.h"
 
 namespace toothpath {
 namespace {
@@ -209,12 +211,12 @@ nlohmann::ordered_json json_of(const DhfgStudy& s, const std::vector<DhfgTrial>&
 }  // namespace
 
 ValueOrErrors<DhfgStudy> parse_dhfg_study(std::string_view text, const std::string& file) {
-  const auto document = parse_document(text, file, kMaxJobNesting);
+  const auto document = parse_toml(text, file, kJobSyntax);
   if (!document) return std::vector<Diagnostic>{document.error()};
   DhfgStudy study = default_study();
   study.file = file;
-  ReaderFindings findings;
-  TableReader root(*document->table(), document->position, "", findings);
+  ReaderFindings findings(job_words());
+  TableReader root(*document, "", findings);
   (void)root.integer("schema", {1, 1});
   study.name = root.text("name").value_or("");
   if (auto table = root.table("study")) read_study(*table, study);

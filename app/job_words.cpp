@@ -1,0 +1,123 @@
+#include "app/job_words.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace toothpath {
+namespace {
+
+/// Number of insertions, deletions and replacements that turn a into b.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
+    }
+  }
+  return row.back();
+}
+
+/// A key as it may be printed: cut to 60 characters, control characters replaced.
+std::string shown(std::string_view key) {
+  std::string text(key.substr(0, 60));
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  return text;
+}
+
+std::string title(const std::string& path) { return path.empty() ? "the job" : "[" + path + "]"; }
+
+const char* type_name(TomlType type) {
+  switch (type) {
+    case TomlType::boolean: return "a boolean";
+    case TomlType::integer: return "a whole number";
+    case TomlType::real: return "a number";
+    case TomlType::text: return "a string";
+    case TomlType::date: return "a date or time";
+    case TomlType::array: return "an array";
+    case TomlType::table: return "a table";
+  }
+  return "";
+}
+
+class JobWords final : public TableWords {
+ public:
+  std::string name(const std::string&, std::string_view key) const override { return std::string(key); }
+
+  std::string missing(const std::string& path, std::string_view key) const override {
+    return fmt::format("{} lacks the key \"{}\"", title(path), key);
+  }
+
+  std::string unknown(const std::string& path, const std::string& key, const KnownKeys& known) const override {
+    std::string hint;
+    std::size_t nearest = 3;
+    for (const auto& candidate : known) {
+      if (key.size() > 60) break;
+      const std::size_t distance = edit_distance(key, candidate);
+      if (distance < nearest && distance < candidate.size()) {
+        nearest = distance;
+        hint = fmt::format("; did you mean \"{}\"?", candidate);
+      }
+    }
+    return fmt::format("unknown key \"{}\" in {}{}", shown(key), title(path), hint);
+  }
+
+  std::string wrong_type(const std::string& name, TomlType wanted, TomlType found) const override {
+    return fmt::format("{} must be {}, not {}", name, wanted == TomlType::boolean ? "true or false" : type_name(wanted), type_name(found));
+  }
+
+  std::string no_table(const std::string& path, std::string_view key, bool many, TomlType found) const override {
+    const std::string whole = path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+    return many ? fmt::format("{} must be a list of tables [[{}]], not {}", key, whole, type_name(found))
+                : fmt::format("{} must be one table [{}], not {}", key, whole, type_name(found));
+  }
+
+  std::string not_numbers(const std::string& name, std::size_t count, const TomlValue&) const override {
+    return fmt::format("{} must be an array of {} numbers", name, count);
+  }
+
+  std::string not_finite(const std::string& name, double number) const override {
+    return fmt::format("{} = {} is not a finite number", name, number);
+  }
+
+  std::string outside(const std::string& name, double number, const Range& range) const override {
+    const bool low = range.open_low ? number <= range.low : number < range.low;
+    const double limit = low ? range.low : range.high;
+    const bool open = low ? range.open_low : range.open_high;
+    const char* relation = low ? (open ? "is not above" : "is below") : (open ? "is not below" : "exceeds");
+    return fmt::format("{} = {}{} {} {}{}", name, number, range.unit, relation, limit, range.unit);
+  }
+
+  std::string integer_outside(const std::string& name, std::int64_t number, const Range& range) const override {
+    return outside(name, static_cast<double>(number), range);
+  }
+
+  std::optional<std::string> text_fault(const std::string& name, const std::string& text, bool ascii) const override {
+    const auto has = [&](auto wrong) { return std::any_of(text.begin(), text.end(), [&](char c) { return wrong(static_cast<unsigned char>(c)); }); };
+    if (text.empty()) return fmt::format("{} is empty", name);
+    if (text.size() > 255) return fmt::format("{} has {} bytes, which exceeds 255", name, text.size());
+    if (has([](unsigned char c) { return c < 0x20 || c == 0x7f; })) return fmt::format("{} contains a control character", name);
+    if (ascii && has([](unsigned char c) { return c > 0x7f; })) return fmt::format("{} contains a character outside ASCII", name);
+    return std::nullopt;
+  }
+
+  std::string not_one_of(const std::string& name, const std::string& text, std::initializer_list<std::string_view> words) const override {
+    std::string list;
+    for (const auto word : words) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", word);
+    return fmt::format("{} = \"{}\" is not one of {}", name, shown(text), list);
+  }
+};
+
+}  // namespace
+
+const TableWords& job_words() {
+  static const JobWords words;
+  return words;
+}
+
+}  // namespace toothpath

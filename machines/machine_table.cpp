@@ -1,0 +1,161 @@
+#include "machines/machine_table.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "machines/toml/regular_file.h"
+
+namespace toothpath {
+namespace {
+
+const char* type_name(TomlType type) {
+  switch (type) {
+    case TomlType::boolean: return "a boolean";
+    case TomlType::integer: return "a whole number";
+    case TomlType::real: return "a number";
+    case TomlType::text: return "a text";
+    case TomlType::date: return "a date or time";
+    case TomlType::array: return "a list";
+    case TomlType::table: return "a table";
+  }
+  return "";
+}
+
+class MachineWords final : public TableWords {
+ public:
+  std::string name(const std::string& path, std::string_view key) const override {
+    return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
+  }
+
+  std::string missing(const std::string& path, std::string_view key) const override {
+    return fmt::format("{} is missing", name(path, key));
+  }
+
+  std::string unknown(const std::string& path, const std::string& key, const KnownKeys&) const override {
+    return fmt::format("unknown key {}", name(path, key));
+  }
+
+  std::string wrong_type(const std::string& name, TomlType wanted, TomlType found) const override {
+    return fmt::format("{} must be {}, is {}", name, wanted == TomlType::boolean ? "true or false" : type_name(wanted), type_name(found));
+  }
+
+  std::string no_table(const std::string& path, std::string_view key, bool many, TomlType found) const override {
+    return wrong_type(name(path, key), many ? TomlType::array : TomlType::table, found);
+  }
+
+  std::string not_numbers(const std::string& name, std::size_t count, const TomlValue& found) const override {
+    const TomlArray* array = found.array();
+    if (!array) return wrong_type(name, TomlType::array, found.type());
+    return fmt::format("{} has {} numbers, must have {}", name, array->values.size(), count);
+  }
+
+  std::string not_finite(const std::string& name, double number) const override {
+    return fmt::format("{} = {} must be finite", name, number);
+  }
+
+  std::string outside(const std::string& name, double number, const Range& range) const override {
+    if (number > range.high) return fmt::format("{} = {} exceeds {}{}", name, number, range.high, range.unit);
+    return fmt::format("{} = {} {} {}{}", name, number, range.open_low ? "must be above" : "is below", range.low, range.unit);
+  }
+
+  std::string integer_outside(const std::string& name, std::int64_t number, const Range& range) const override {
+    if (range.low == range.high) return fmt::format("{} = {} must be {}", name, number, range.low);
+    return fmt::format("{} = {} is outside {} to {}", name, number, range.low, range.high);
+  }
+
+  std::optional<std::string> text_fault(const std::string& name, const std::string& text, bool ascii) const override {
+    if (text.empty() || text.size() > 120) return fmt::format("{} has {} characters, allowed are 1 to 120", name, text.size());
+    for (const char c : text) {
+      const auto byte = static_cast<unsigned char>(c);
+      if (byte < 0x20 || byte == 0x7f || (ascii && byte > 0x7f))
+        return fmt::format("{} contains byte 0x{:02x}; only {} is allowed", name, byte, ascii ? "printable ASCII" : "printable text");
+    }
+    return std::nullopt;
+  }
+
+  std::string not_one_of(const std::string& name, const std::string& text, std::initializer_list<std::string_view> words) const override {
+    return fmt::format("{} = \"{}\" is not one of {}", name, text, fmt::join(words, ", "));
+  }
+};
+
+/// Dotted names of all values below a table.
+void collect_names(const TomlTable& table, const std::string& prefix, std::vector<std::string>& names) {
+  for (const TomlEntry& entry : table.entries) {
+    const std::string name = prefix + entry.key;
+    if (const TomlTable* inner = entry.value.table()) collect_names(*inner, name + ".", names);
+    else names.push_back(name);
+  }
+}
+
+}  // namespace
+
+Result<std::string> read_machine_bytes(const std::string& path) {
+  const auto refuse = [&path](std::string why) {
+    return Diagnostic{DiagnosticKind::file_access, {path, 0, 0}, std::move(why)};
+  };
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found) return refuse("file does not exist");
+  if (error) return refuse(fmt::format("cannot be opened: {}", error.message()));
+  if (status.type() == std::filesystem::file_type::directory) return refuse("is a directory, not a file");
+  if (status.type() != std::filesystem::file_type::regular) return refuse("is not a regular file");
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (!error && bytes > kMaxMachineFileBytes)
+    return refuse(fmt::format("has more than {} bytes, the largest machine file allowed", kMaxMachineFileBytes));
+  auto text = read_regular_file(path, kMaxMachineFileBytes);
+  if (!text) return refuse("cannot be opened for reading");
+  return text;
+}
+
+Result<TomlValue> parse_machine_toml(std::string_view text, const std::string& file) { return parse_toml(text, file, {}); }
+
+const TableWords& machine_words() {
+  static const MachineWords words;
+  return words;
+}
+
+int read_sense(TableReader& table, std::string_view key) {
+  const TomlValue* value = table.required(key);
+  if (!value) return 1;
+  const auto* sense = std::get_if<std::int64_t>(&value->data);
+  if (sense && (*sense == 1 || *sense == -1)) return static_cast<int>(*sense);
+  if (sense) table.refuse(key, "{} = {} must be 1 or -1", table.name(key), *sense);
+  else table.refuse(key, "{} must be 1 or -1, is {}", table.name(key), type_name(value->type()));
+  return 1;
+}
+
+std::optional<Vec3> read_vector(TableReader& table, std::string_view key, double largest_mm) {
+  const auto xyz = table.numbers(key, 3, {-largest_mm, largest_mm});
+  return xyz ? std::optional(Vec3((*xyz)[0], (*xyz)[1], (*xyz)[2])) : std::nullopt;
+}
+
+std::optional<std::string> read_kind(TableReader& root) { return root.word("kind", {"five_axis", "gear_shaper"}); }
+
+std::vector<std::string> read_assumed(TableReader& root, const TomlValue& tree) {
+  const TomlValue* value = root.required("assumed");
+  if (!value) return {};
+  std::vector<std::string> all;
+  collect_names(*tree.table(), "", all);
+  std::erase_if(all, [](const std::string& n) { return n == "schema" || n == "name" || n == "kind" || n == "assumed"; });
+  if (const auto* every = std::get_if<bool>(&value->data)) return *every ? all : std::vector<std::string>{};
+  const TomlArray* list = value->array();
+  if (!list) {
+    root.refuse("assumed", "assumed must be true, false or a list of key names, is {}", type_name(value->type()));
+    return {};
+  }
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < list->values.size(); ++i) {
+    const TomlValue& item = list->values[i];
+    const std::string* text = item.text();
+    if (!text) {
+      root.refuse_at(item.position, "assumed[{}] must be a text, is {}", i, type_name(item.type()));
+      continue;
+    }
+    const bool exists = std::any_of(all.begin(), all.end(), [text](const std::string& n) { return n == *text || n.starts_with(*text + "."); });
+    if (exists) names.push_back(*text);
+    else root.refuse_at(item.position, "assumed names \"{}\", which this file does not have", *text);
+  }
+  return names;
+}
+
+}  // namespace toothpath

@@ -1,0 +1,40 @@
+#include "machines/toml/regular_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace toothpath {
+
+Result<std::string> read_regular_file(const std::string& path, std::size_t max_bytes) {
+  const auto cannot = [&](const char* what) {
+    return Diagnostic{DiagnosticKind::file_access, {path, 0, 0}, fmt::format("cannot {}: {}", what, std::strerror(errno))};
+  };
+  // O_NONBLOCK: opening a pipe must not wait for its writer.
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (descriptor < 0) return cannot("open");
+  struct Closer {
+    int descriptor;
+    ~Closer() { ::close(descriptor); }
+  } closer{descriptor};
+  struct stat status {};
+  if (::fstat(descriptor, &status) != 0) return cannot("look at");
+  const SourcePosition position{path, 0, 0};
+  if (S_ISDIR(status.st_mode)) return Diagnostic{DiagnosticKind::file_access, position, "cannot read: it is a directory"};
+  if (!S_ISREG(status.st_mode)) return fail_at(position, "is not a regular file");
+  std::string text;
+  char block[1 << 16];
+  while (true) {
+    const ssize_t got = ::read(descriptor, block, sizeof block);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return cannot("read");
+    if (got == 0) return text;
+    text.append(block, static_cast<std::size_t>(got));
+    if (text.size() > max_bytes) return fail_at(position, "is longer than {} bytes", max_bytes);
+  }
+}
+
+}  // namespace toothpath

@@ -1,0 +1,143 @@
+// Reads one table of a TOML file key by key: type, range and presence are checked here and every finding is collected.
+// What a finding says is the business of the format: `TableWords`.
+#pragma once
+
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "machines/toml/toml_tree.h"
+
+namespace toothpath {
+
+/// What a number may be. The unit stands in messages only: " mm", " deg", "" for counts.
+struct Range {
+  double low, high;
+  const char* unit = "";
+  bool open_low = false, open_high = false;  ///< the limit itself is refused
+
+  /// Above 0, up to `high`.
+  [[nodiscard]] static constexpr Range positive(double high, const char* unit) { return {0.0, high, unit, true}; }
+};
+
+/// The messages of one format. `path` is the dotted name of a table, "" for the file itself: "gear", "gear.zone[0]".
+/// `name` is what `name()` made, with an index in brackets for an element of an array.
+class TableWords {
+ public:
+  using KnownKeys = std::set<std::string, std::less<>>;
+
+  virtual ~TableWords() = default;
+  /// What a key of a table is called in messages.
+  [[nodiscard]] virtual std::string name(const std::string& path, std::string_view key) const = 0;
+  [[nodiscard]] virtual std::string missing(const std::string& path, std::string_view key) const = 0;
+  [[nodiscard]] virtual std::string unknown(const std::string& path, const std::string& key, const KnownKeys& known) const = 0;
+  [[nodiscard]] virtual std::string wrong_type(const std::string& name, TomlType wanted, TomlType found) const = 0;
+  /// `found` is no table, or, with `many`, no array of tables.
+  [[nodiscard]] virtual std::string no_table(const std::string& path, std::string_view key, bool many, TomlType found) const = 0;
+  /// `found` is no array of `count` numbers: another type, or another count.
+  [[nodiscard]] virtual std::string not_numbers(const std::string& name, std::size_t count, const TomlValue& found) const = 0;
+  [[nodiscard]] virtual std::string not_finite(const std::string& name, double number) const = 0;
+  [[nodiscard]] virtual std::string outside(const std::string& name, double number, const Range& range) const = 0;
+  [[nodiscard]] virtual std::string integer_outside(const std::string& name, std::int64_t number, const Range& range) const = 0;
+  /// What a text may not be in this format; nothing when it is right. `ascii`: it goes into NC text.
+  [[nodiscard]] virtual std::optional<std::string> text_fault(const std::string& name, const std::string& text, bool ascii) const = 0;
+  [[nodiscard]] virtual std::string not_one_of(const std::string& name, const std::string& text,
+                                               std::initializer_list<std::string_view> words) const = 0;
+};
+
+/// What all tables of one file share.
+struct ReaderFindings {
+  explicit ReaderFindings(const TableWords& format) : words(format) {}
+
+  const TableWords& words;
+  std::vector<Diagnostic> errors;
+  /// Of every table that was opened and of its keys: "gear", "gear.module", "gear.zone[0].inner_radius".
+  std::map<std::string, SourcePosition, std::less<>> positions;
+};
+
+class TableReader {
+ public:
+  /// @param table  a value that is a table; it and `findings` outlive the reader
+  /// @param path   dotted name of the table: "gear", "gear.zone[0]"; empty for the file itself
+  TableReader(const TomlValue& table, std::string path, ReaderFindings& findings);
+
+  [[nodiscard]] bool has(std::string_view key) const { return table_.find(key) != nullptr; }
+  /// Place of the value of a key, or of the table where the key is absent.
+  [[nodiscard]] SourcePosition where(std::string_view key) const;
+  /// What a key of this table is called in messages.
+  [[nodiscard]] std::string name(std::string_view key) const { return words().name(path_, key); }
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+  // Required keys: a missing, mistyped or out-of-range one is recorded and gives nothing.
+  std::optional<double> number(std::string_view key, const Range& range);
+  std::optional<int> integer(std::string_view key, const Range& range);
+  std::optional<std::string> text(std::string_view key, bool ascii = false);
+  std::optional<std::string> word(std::string_view key, std::initializer_list<std::string_view> allowed);
+  std::optional<bool> boolean(std::string_view key);
+  /// Exactly `count` finite numbers.
+  std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, const Range& range);
+  /// The numbers of an array inside a value, one a range; recorded under `name` where they are something else.
+  std::optional<std::vector<double>> numbers_of(const TomlValue& value, const std::string& name, std::initializer_list<Range> ranges);
+  // Arrays of any length.
+  std::optional<std::vector<double>> number_list(std::string_view key, const Range& range);
+  std::optional<std::vector<int>> integer_list(std::string_view key, const Range& range);
+  std::optional<std::vector<std::string>> ascii_list(std::string_view key);
+  /// A value whose structure the caller reads itself; recorded when absent.
+  const TomlValue* required(std::string_view key);
+  std::optional<TableReader> required_table(std::string_view key);
+
+  /// The same for any getter, but an absent key is no error.
+  template <typename Reader>
+  auto if_present(std::string_view key, Reader read) -> decltype(read()) {
+    known_.emplace(key);
+    if (!has(key)) return std::nullopt;
+    return read();
+  }
+
+  /// A value whose structure the caller reads itself; nothing when absent.
+  const TomlValue* value(std::string_view key);
+  /// A table; recorded when it is something else. Nothing when absent.
+  std::optional<TableReader> table(std::string_view key);
+  /// An array of tables ([[key]]); recorded when it is something else. Empty when absent.
+  std::vector<TableReader> tables(std::string_view key);
+  /// Every entry of this table; marks all as known.
+  const std::vector<TomlEntry>& entries();
+
+  /// Records a refusal of `key`.
+  template <typename... Args>
+  void refuse(std::string_view key, fmt::format_string<Args...> text, Args&&... args) {
+    record(where(key), fmt::format(text, std::forward<Args>(args)...));
+  }
+  /// The same at another place.
+  template <typename... Args>
+  void refuse_at(const SourcePosition& position, fmt::format_string<Args...> text, Args&&... args) {
+    record(position, fmt::format(text, std::forward<Args>(args)...));
+  }
+  /// Records every key that was never asked for.
+  void finish();
+
+ private:
+  [[nodiscard]] const TableWords& words() const { return findings_->words; }
+  [[nodiscard]] std::string join(std::string_view key) const;
+  void record(SourcePosition position, std::string message);
+  std::optional<double> to_number(const TomlValue& value, const std::string& name, const Range& range);
+  std::optional<int> to_integer(const TomlValue& value, const std::string& name, const Range& range);
+  std::optional<std::string> to_text(const TomlValue& value, const std::string& name, bool ascii);
+  template <typename T, typename Read>
+  std::optional<std::vector<T>> list(std::string_view key, Read read);
+
+  const TomlTable& table_;
+  SourcePosition position_;
+  std::string path_;
+  ReaderFindings* findings_;
+  TableWords::KnownKeys known_;
+};
+
+/// Into the order of the file.
+void sort_by_position(std::vector<Diagnostic>& errors);
+
+}  // namespace toothpath

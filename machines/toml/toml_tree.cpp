@@ -1,0 +1,170 @@
+#include "machines/toml/toml_tree.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <toml++/toml.h>
+
+namespace toothpath {
+namespace {
+
+/// Looks for what could make the parser or its tree recurse without bound. Strings cannot span lines here, so the state of
+/// a line does not depend on the lines before it, except for the open brackets.
+Status check_lines(std::string_view text, const std::string& file, int max_nesting) {
+  int line = 1, column = 0, depth = 0, dots = 0;
+  char quote = 0;
+  bool comment = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    ++column;
+    if (c == '\n') {
+      ++line;
+      column = dots = 0;
+      quote = 0;
+      comment = false;
+      continue;
+    }
+    if (c == '\r' && text.substr(i + 1, 1) != "\n") return fail_at({file, line, column}, "a carriage return without a line feed");
+    if (comment) continue;
+    if (quote != 0) {
+      if (quote == '"' && c == '\\') { ++i; ++column; }
+      else if (c == quote) quote = 0;
+      continue;
+    }
+    const SourcePosition here{file, line, column};
+    switch (c) {
+      case '#': comment = true; break;
+      case '"':
+      case '\'':
+        if (text.substr(i, 3) == std::string(3, c)) return fail_at(here, "multi-line strings are not part of this format");
+        quote = c;
+        break;
+      case '[':
+      case '{':
+        if (++depth > max_nesting) return fail_at(here, "brackets are nested deeper than {}", max_nesting);
+        dots = 0;
+        break;
+      case ']':
+      case '}':
+        depth = std::max(0, depth - 1);
+        dots = 0;
+        break;
+      case ',':
+      case '=': dots = 0; break;
+      case '.':
+        if (++dots >= max_nesting) return fail_at(here, "a key has more than {} parts", max_nesting);
+        break;
+      default: break;
+    }
+  }
+  return Ok{};
+}
+
+/// The library would name a NUL byte as a character of TOML that is not allowed; what it means is that the file is no text.
+Status check_nul(std::string_view text, const std::string& file) {
+  const auto nul = text.find('\0');
+  if (nul == std::string_view::npos) return Ok{};
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(nul), '\n');
+  const auto line_start = text.rfind('\n', nul);
+  const auto column = line_start == std::string_view::npos ? nul + 1 : nul - line_start;
+  return fail_at({file, static_cast<int>(line), static_cast<int>(column)}, "NUL byte; this is not a text file");
+}
+
+SourcePosition position_of(const toml::source_region& region, const std::string& file) {
+  return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
+}
+
+/// Copies nodes of the library; remembers the first that lies too deep.
+class Copier {
+ public:
+  Copier(const std::string& file, int max_nesting) : file_(file), max_nesting_(max_nesting) {}
+
+  TomlValue copy(const toml::node& node, int depth = 0) {
+    TomlValue result;
+    result.position = position_of(node.source(), file_);
+    if (depth > max_nesting_) {
+      if (!too_deep_) too_deep_ = result.position;
+    } else if (const auto* table = node.as_table()) {
+      result.data = copy_table(*table, depth);
+    } else if (const auto* array = node.as_array()) {
+      TomlArray values;
+      for (const auto& element : *array) values.values.push_back(copy(element, depth + 1));
+      result.data = std::move(values);
+    } else if (const auto* text = node.as_string()) {
+      result.data = text->get();
+    } else if (const auto* integer = node.as_integer()) {
+      result.data = std::int64_t{integer->get()};
+    } else if (const auto* number = node.as_floating_point()) {
+      result.data = number->get();
+    } else if (const auto* boolean = node.as_boolean()) {
+      result.data = boolean->get();
+    } else {
+      result.data = TomlDate{};
+    }
+    return result;
+  }
+
+  [[nodiscard]] const std::optional<SourcePosition>& too_deep() const { return too_deep_; }
+
+ private:
+  TomlTable copy_table(const toml::table& table, int depth) {
+    TomlTable result;
+    for (const auto& [key, value] : table) {
+      TomlEntry& entry = result.entries.emplace_back(TomlEntry{std::string(key.str()), position_of(key.source(), file_), copy(value, depth + 1)});
+      // A table that only its sub-tables name has no place of its own.
+      if (entry.value.position.line == 0) entry.value.position = entry.key_position;
+    }
+    std::stable_sort(result.entries.begin(), result.entries.end(), [](const TomlEntry& a, const TomlEntry& b) {
+      return std::pair(a.key_position.line, a.key_position.column) < std::pair(b.key_position.line, b.key_position.column);
+    });
+    return result;
+  }
+
+  const std::string& file_;
+  int max_nesting_;
+  std::optional<SourcePosition> too_deep_;
+};
+
+/// One line of printable text: the library quotes bytes of the file in its messages.
+std::string printable(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte >= 0x7f) result += fmt::format("\\x{:02X}", byte);
+    else result += c;
+  }
+  return result;
+}
+
+}  // namespace
+
+const TomlEntry* TomlTable::find(std::string_view key) const {
+  for (const auto& entry : entries)
+    if (entry.key == key) return &entry;
+  return nullptr;
+}
+
+std::optional<double> TomlValue::number() const {
+  if (const auto* real = std::get_if<double>(&data)) return *real;
+  if (const auto* whole = std::get_if<std::int64_t>(&data)) return static_cast<double>(*whole);
+  return std::nullopt;
+}
+
+Result<TomlValue> parse_toml(std::string_view text, const std::string& file, const TomlSyntax& syntax) {
+  const Status checked = syntax.one_line_strings ? check_lines(text, file, syntax.max_nesting) : check_nul(text, file);
+  if (!checked) return checked.error();
+  try {
+    const toml::table table = toml::parse(text, std::string_view{file});
+    // Where the brackets have been counted, the depth is bounded already.
+    Copier copier(file, syntax.one_line_strings ? std::numeric_limits<int>::max() : syntax.max_nesting);
+    TomlValue root = copier.copy(table);
+    if (copier.too_deep()) return fail_at(*copier.too_deep(), "nested deeper than {} levels", syntax.max_nesting);
+    root.position = {file, 1, 1};
+    return root;
+  } catch (const toml::parse_error& error) {
+    const std::string_view what = error.description();
+    return fail_at(position_of(error.source(), file), "{}", syntax.ascii_messages ? printable(what) : std::string(what));
+  }
+}
+
+}  // namespace toothpath
