@@ -1,11 +1,7 @@
-// A good machine file to damage, and a directory that goes away with the test.
+// A good machine file to damage.
 #pragma once
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <string>
+#include "tests/support/files.h"
 
 namespace toothpath::test {
 
@@ -61,37 +57,6 @@ max = 36000.0
 max_speed = 12000
 )";
 
-/// `text` with the first `from` replaced; fails the test when it is not there.
-inline std::string edited(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  if (at == std::string::npos) {
-    ADD_FAILURE() << "the example has no \"" << from << '"';
-    return text;
-  }
-  return text.replace(at, from.size(), to);
-}
-
 inline constexpr std::size_t kMaxBytesForTest = 1u << 20;
-
-class TemporaryDirectory {
- public:
-  TemporaryDirectory() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "toothpath-XXXXXX").string();
-    path_ = mkdtemp(pattern.data()) ? pattern : std::string();
-    EXPECT_FALSE(path_.empty());
-  }
-  ~TemporaryDirectory() {
-    std::error_code ignored;
-    if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-  [[nodiscard]] std::string path(const std::string& name) const {
-    return name.empty() ? path_ : (std::filesystem::path(path_) / name).string();
-  }
-
- private:
-  std::string path_;
-};
 
 }  // namespace toothpath::test

@@ -124,6 +124,46 @@ TEST(RotarySolutions, PoleLeavesTheFirstRotaryFree) {
   }
 }
 
+// A rotary that a pole leaves free stands at its zero; asked for with limits, it takes the wanted angle or the limit nearest to it.
+TEST(RotarySolutions, FreeRotaryStandsAtItsZeroAndInsideItsLimits) {
+  for (KinematicChain chain : {ac_table(), bc_table(), test::head_table('B'), test::head_head('A')}) {
+    RotaryAxis& first = chain.table.empty() ? chain.head.front() : chain.table.front();
+    first.zero_rad = 0.7;
+    const auto s = chain.rotary_solutions(Vec3::UnitZ());
+    ASSERT_TRUE(s);
+    ASSERT_EQ(s->front().free_rotary, 0);
+    EXPECT_EQ(s->front().joints.rotary_rad[0], 0.7);
+    first.min_rad = -1;
+    first.max_rad = 2;
+    const LimitMargin margin{0, 0.25};
+    for (const double wanted : {-9.0, -1.0, 0.1, 1.9, 40.0}) {
+      const auto found = chain.candidates({Vec3(10, 20, 30), Vec3::UnitZ()}, 100, margin, wanted);
+      ASSERT_TRUE(found) << found.error().message;
+      for (const auto& one : *found) {
+        EXPECT_TRUE(chain.violations(one.joints, margin).empty()) << wanted;
+        EXPECT_EQ(one.joints.rotary_rad[0], std::max(-0.75, std::min(1.75, wanted)));
+      }
+    }
+  }
+}
+
+// An axis beyond the reach is served by the nearest one as far as text rounds it, and no farther.
+TEST(RotarySolutions, ReachEndsWithTheRoundingOfText) {
+  KinematicChain nutating = bc_table();
+  nutating.table[1].direction = Vec3(0, 1, 1).normalized();
+  KinematicChain tilt_only = test::head_table('B');
+  tilt_only.table.clear();
+  KinematicChain turntable = ac_table();
+  turntable.table.pop_back();
+  for (const double beyond : {5e-11, 1e-9, 1e-6}) {
+    const bool served = beyond < 1e-10;
+    EXPECT_EQ(bool(nutating.rotary_solutions({std::cos(beyond), 0, -std::sin(beyond)})), served) << beyond;
+    EXPECT_EQ(bool(tilt_only.rotary_solutions(Vec3(std::sin(0.4), std::sin(beyond), std::cos(0.4)).normalized())), served) << beyond;
+    EXPECT_EQ(bool(turntable.rotary_solutions({std::sin(beyond), 0, std::cos(beyond)})), served) << beyond;
+    EXPECT_EQ(bool(test::with_linear().rotary_solutions({std::sin(beyond), 0, std::cos(beyond)})), served) << beyond;
+  }
+}
+
 // Nutating table at 45 deg: the tilt reaches 90 deg and no further; at the end of reach both pairs meet.
 TEST(RotarySolutions, NutatingAxisEndsAtItsCone) {
   KinematicChain chain = bc_table();

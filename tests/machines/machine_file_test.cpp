@@ -15,7 +15,7 @@ namespace toothpath {
 namespace {
 
 namespace fs = std::filesystem;
-using test::edited, test::kMachine, test::kMaxBytesForTest, test::TemporaryDirectory;
+using test::damaged, test::replaced, test::kMachine, test::kMaxBytesForTest, test::TestDir;
 
 std::vector<std::string> shipped(MachineKind kind) {
   std::vector<std::string> files;
@@ -133,7 +133,7 @@ TEST(MachineFile, TheExampleItselfIsGood) { EXPECT_EQ(messages(kMachine), ""); }
 class BadMachineFile : public testing::TestWithParam<test::BadFile> {};
 
 TEST_P(BadMachineFile, IsRefusedWithItsPlace) {
-  EXPECT_EQ(messages(edited(kMachine, GetParam().from, GetParam().to)), std::string(GetParam().messages));
+  EXPECT_EQ(messages(replaced(kMachine, GetParam().from, GetParam().to)), std::string(GetParam().messages));
 }
 
 INSTANTIATE_TEST_SUITE_P(Checklist, BadMachineFile, testing::ValuesIn(test::kBadMachineFiles),
@@ -157,11 +157,11 @@ TEST(MachineFile, EmptyFileLacksEveryRequiredKey) {
 
 // 78: a head axis 0.25 above the nose is one given in metres.
 TEST(MachineFile, PivotInMetres) {
-  std::string text = edited(kMachine, "table = [\"C\", \"A\"]\nhead = []", "table = [\"C\"]\nhead = [\"A\"]");
-  text = edited(text, "point = [0.0, 0.0, -285.0]", "pivot_length = 0.25");
+  std::string text = replaced(kMachine, "table = [\"C\", \"A\"]\nhead = []", "table = [\"C\"]\nhead = [\"A\"]");
+  text = replaced(text, "point = [0.0, 0.0, -285.0]", "pivot_length = 0.25");
   EXPECT_EQ(messages(text),
             "m.toml:38:16: error: axes.A.pivot_length = 0.25 mm is below 1 mm; lengths are in mm, not metres\n");
-  const auto good = read_machine_text(edited(text, "0.25", "250"), "m.toml");
+  const auto good = read_machine_text(replaced(text, "0.25", "250"), "m.toml");
   ASSERT_TRUE(good.machine);
   EXPECT_EQ(good.machine->chain.head.at(0).pivot_length_mm(), 250);
 }
@@ -178,8 +178,8 @@ TEST(MachineFile, KindDecidesBeforeTheKeys) {
 }
 
 TEST(MachineFile, EveryComplaintIsCollected) {
-  std::string text = edited(kMachine, "sign = 1\nmin = -110.0", "sign = 0\nmin = nan");
-  text = edited(text, "max_speed = 24000", "max_sped = 24000");
+  std::string text = replaced(kMachine, "sign = 1\nmin = -110.0", "sign = 0\nmin = nan");
+  text = replaced(text, "max_speed = 24000", "max_sped = 24000");
   EXPECT_EQ(messages(text),
             "m.toml:9:1: error: spindle.max_speed is missing\n"
             "m.toml:10:1: error: unknown key spindle.max_sped\n"
@@ -188,16 +188,16 @@ TEST(MachineFile, EveryComplaintIsCollected) {
 }
 
 TEST(MachineFile, AssumedMayBeAListOfKeysOrTables) {
-  const auto reading = read_machine_text(edited(kMachine, "assumed = false", "assumed = [\"axes.A.point\", \"limits\"]"), "m");
+  const auto reading = read_machine_text(replaced(kMachine, "assumed = false", "assumed = [\"axes.A.point\", \"limits\"]"), "m");
   ASSERT_TRUE(reading.machine) << to_text(reading.errors);
   EXPECT_TRUE(reading.machine->assumed);
   EXPECT_EQ(reading.machine->assumed_keys, (std::vector<std::string>{"axes.A.point", "limits"}));
-  const auto none = read_machine_text(edited(kMachine, "assumed = false", "assumed = []"), "m");
+  const auto none = read_machine_text(replaced(kMachine, "assumed = false", "assumed = []"), "m");
   EXPECT_FALSE(none.machine->assumed);
 }
 
 TEST(MachineFile, DirectionsAreNormalised) {
-  const auto reading = read_machine_text(edited(kMachine, "direction = [1.0, 0.0, 0.0]", "direction = [0, 3, 3]"), "m");
+  const auto reading = read_machine_text(replaced(kMachine, "direction = [1.0, 0.0, 0.0]", "direction = [0, 3, 3]"), "m");
   ASSERT_TRUE(reading.machine) << to_text(reading.errors);
   EXPECT_LE((reading.machine->chain.table[1].direction - Vec3(0, 1, 1).normalized()).norm(), 1e-15);
 }
@@ -214,20 +214,20 @@ TEST(Machine, TooManyAxesAtOnce) {
 }
 
 TEST(MachineFile, FilesThatCannotBeRead) {
-  const TemporaryDirectory dir;
+  const TestDir dir;
   const auto error_of = [](const std::string& path) {
     const auto reading = read_machine_file(path);
     EXPECT_EQ(reading.errors.size(), 1u);
     EXPECT_EQ(reading.errors[0].kind, DiagnosticKind::file_access);
     return reading.errors[0].message;
   };
-  EXPECT_EQ(error_of(dir.path("none.toml")), "file does not exist");
-  EXPECT_EQ(error_of(dir.path("")), "is a directory, not a file");
+  EXPECT_EQ(error_of(dir / "none.toml"), "file does not exist");
+  EXPECT_EQ(error_of(dir.path()), "is a directory, not a file");
   EXPECT_EQ(error_of("/dev/zero"), "is not a regular file");
-  fs::create_symlink(dir.path("loop.toml"), dir.path("loop.toml"));
-  EXPECT_EQ(error_of(dir.path("loop.toml")).substr(0, 17), "cannot be opened:");
-  std::ofstream(dir.path("big.toml")) << std::string(kMaxBytesForTest + 1, '#');
-  EXPECT_EQ(error_of(dir.path("big.toml")), "has more than 1048576 bytes, the largest machine file allowed");
+  fs::create_symlink(dir / "loop.toml", dir / "loop.toml");
+  EXPECT_EQ(error_of(dir / "loop.toml").substr(0, 17), "cannot be opened:");
+  std::ofstream(dir / "big.toml") << std::string(kMaxBytesForTest + 1, '#');
+  EXPECT_EQ(error_of(dir / "big.toml"), "has more than 1048576 bytes, the largest machine file allowed");
 }
 
 // Any bytes give a machine or complaints: damaged copies of the example, one to six random bytes each.
@@ -236,13 +236,7 @@ TEST(MachineFile, DamagedFilesNeverCrash) {
   const std::string good = kMachine;
   int refused = 0;
   for (int i = 0; i < 4000; ++i) {
-    std::string text = good;
-    const auto edits = 1 + rng() % 6;
-    for (std::uint64_t k = 0; k < edits; ++k) {
-      const std::size_t at = rng() % text.size();
-      if (rng() % 4 == 0) text.erase(at, rng() % 20);
-      else text[at] = static_cast<char>(rng() % 256);
-    }
+    const std::string text = damaged(good, rng, 1 + i % 6, "0123456789.-=[]\"\n");
     const auto reading = read_machine_text(text, "m.toml");
     ASSERT_EQ(reading.machine.has_value(), reading.errors.empty());
     for (const Diagnostic& d : reading.errors) ASSERT_FALSE(d.message.empty());
@@ -253,25 +247,25 @@ TEST(MachineFile, DamagedFilesNeverCrash) {
 }
 
 TEST(FindMachineFile, BesideTheJobFirstThenInstalled) {
-  const TemporaryDirectory dir;
-  const auto installed = find_machine_file("t600s.toml", dir.path(""));
+  const TestDir dir;
+  const auto installed = find_machine_file("t600s.toml", dir.path());
   ASSERT_TRUE(installed) << installed.error().message;
   EXPECT_TRUE(fs::equivalent(*installed, TOOTHPATH_SOURCE_DIR "/machines/data/t600s.toml"));
-  const auto in_folder = find_machine_file("machines/xyzac_large.toml", dir.path(""));
+  const auto in_folder = find_machine_file("machines/xyzac_large.toml", dir.path());
   ASSERT_TRUE(in_folder);
   EXPECT_TRUE(fs::equivalent(*in_folder, TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml"));
-  std::ofstream(dir.path("t600s.toml")) << "schema = 1\n";
-  const auto beside = find_machine_file("t600s.toml", dir.path(""));
+  std::ofstream(dir / "t600s.toml") << "schema = 1\n";
+  const auto beside = find_machine_file("t600s.toml", dir.path());
   ASSERT_TRUE(beside);
-  EXPECT_TRUE(fs::equivalent(*beside, dir.path("t600s.toml")));
-  const auto none = find_machine_file("no_such.toml", dir.path(""));
+  EXPECT_TRUE(fs::equivalent(*beside, dir / "t600s.toml"));
+  const auto none = find_machine_file("no_such.toml", dir.path());
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().kind, DiagnosticKind::file_access);
   EXPECT_EQ(none.error().message,
             "machine file \"no_such.toml\" is neither beside the job nor installed; installed are: apt_free.toml, fanuc_ac.toml, "
             "head_head_ca.toml, head_table_bc.toml, heidenhain_ac.toml, m80_ac.toml, nutating_table.toml, shaper_fanuc.toml, shaper_siemens.toml, siemens_ac.toml, t600s.toml, xyzac_large.toml, "
             "xyzac_trt.toml, xyzbc_trt.toml, y514.toml");
-  EXPECT_FALSE(find_machine_file("../data/t600s.toml", dir.path("")));  // installed files have plain names
+  EXPECT_FALSE(find_machine_file("../data/t600s.toml", dir.path()));  // installed files have plain names
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <numeric>
 
 #include "geometry/base/angle.h"
@@ -14,14 +12,11 @@
 namespace toothpath {
 namespace {
 
-using test::edited;
+using test::replaced;
 
 const std::string kFile = TOOTHPATH_SOURCE_DIR "/machines/data/y514.toml";
 
-std::string text_of_y514() {
-  std::ifstream in(kFile);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+std::string text_of_y514() { return test::file_text(kFile); }
 
 ShaperMachine y514() {
   const auto reading = read_shaper_machine_file(kFile);
@@ -88,7 +83,7 @@ TEST(ShaperMachine, Y514NamesItsAssumptions) {
 TEST(ShaperMachine, BadFilesAreRefusedWithTheirPlace) {
   const std::string good = text_of_y514();
   const auto message = [&good](const std::string& from, const std::string& to) {
-    return to_text(read_shaper_machine_text(edited(good, from, to), "s.toml").errors);
+    return to_text(read_shaper_machine_text(replaced(good, from, to), "s.toml").errors);
   };
   EXPECT_EQ(message("[125, 179", "[179, 125"),
             "s.toml:11:9: error: stroke.steps[1] = 125 must exceed the step before it, 179\n");
