@@ -9,12 +9,12 @@
 #include "app/commands/program_report.h"
 #include "app/commands/restart.h"
 #include "app/commands/ledger.h"
+#include "app/commands/opening_and_end.h"
 #include "app/job_file.h"
 #include "app/report/cl_csv.h"
 #include "app/report/length_tolerance.h"
 #include "app/report/motion_charts.h"
 #include "app/report/setup_sheet.h"
-#include "app/sha256.h"
 #include "cam/finger_check.h"
 #include "cam/finger_milling.h"
 
@@ -51,15 +51,8 @@ constexpr double kRootShare = 1;  // the flat tip of the mill faces the root: a 
 const std::string& text_of(const PostedProgram& program) { return program.restarted ? program.restart_text : program.text; }
 
 std::vector<Diagnostic> read_inputs(BevelRun& run) {
-  if (run.job.operations.empty()) return {fail_at(run.job.where("operation"), "the job lacks an [[operation]]: there is nothing to run")};
-  std::vector<Diagnostic> errors;
-  auto gear = run.clock.run("gear", [&] { return make_bevel_gear(run.job); });
-  if (auto* refused = std::get_if<1>(&gear)) errors = std::move(*refused);
-  else run.gear = std::move(std::get<0>(gear));
-  auto machine = run.clock.run("machine", [&] { return load_machine(run.job); });
-  if (auto* refused = std::get_if<1>(&machine)) errors.insert(errors.end(), refused->begin(), refused->end());
-  else run.machine = std::move(std::get<0>(machine));
-  if (!errors.empty()) return errors;
+  if (auto errors = make_gear_and_machine(run.job, run.clock, make_bevel_gear, [&] { return load_machine(run.job); }, run.gear, run.machine); !errors.empty())
+    return errors;
   if (const auto fits = check_part_on_machine(run.job, run.machine, 2 * bevel_clearance_body(*run.gear).radius_mm); !fits) return {fits.error()};
   auto restart = read_restart(run.request.restart, run.job, run.gear->parameters().teeth);
   if (!restart) return {restart.error()};
@@ -121,11 +114,7 @@ std::optional<Diagnostic> post_and_prove(BevelRun& run, OutputDir& output, const
       !done)
     return done.error();
   if (!run.report.reasons.empty()) return std::nullopt;
-  run.report.verified = true;
-  run.report.program_file = run.program->file;
-  run.report.program_sha256 = sha256_hex(text_of(*run.program));
-  run.report.program_bytes = text_of(*run.program).size();
-  run.report.files.push_back(run.program->file);
+  note_verified(run.report, run.program->file, text_of(*run.program));
   return std::nullopt;
 }
 
@@ -161,17 +150,7 @@ Status write_results(BevelRun& run, OutputDir& output, std::string& json) {
 
 /// The end of a run whose inputs were right: verified, or not and why.
 CommandOutcome finish(BevelRun& run, OutputDir& output, const std::optional<Diagnostic>& stopped) {
-  CommandOutcome outcome;
-  if (stopped) {
-    run.report.reasons.push_back(stopped->message);
-    outcome.errors.push_back(*stopped);
-  } else {
-    outcome.errors = errors_of(run.report.reasons, run.job.file);
-  }
-  if (!run.report.verified) {
-    discard_program(output);
-    outcome.exit_code = ExitCode::unverified;
-  }
+  CommandOutcome outcome = verdict_of(run.report, stopped, run.job.file, output);
   if (const auto written = write_results(run, output, outcome.report_json); !written) return failed(located(run.job, "gear", written.error()));
   run.progress.clear();
   if (const auto committed = output.commit(); !committed) return failed(committed.error());

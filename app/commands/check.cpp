@@ -106,11 +106,7 @@ CommandOutcome check_program(const CommandRequest& request) {
 
   CommandOutcome outcome;
   outcome.exit_code = report.verified ? ExitCode::ok : ExitCode::unverified;
-  for (const auto& reason : report.reasons) {
-    Diagnostic error = fail_as(DiagnosticKind::verification, "{}", reason);
-    error.position.file = request.program_file;
-    outcome.errors.push_back(std::move(error));
-  }
+  outcome.errors = errors_of(report.reasons, request.program_file);
   const auto vtp = deviation_vtp(proof->surface.grids);
   if (!vtp) return failed(vtp.error());
   if (const auto s = output->write("tooth.vtp", *vtp); !s) return failed(s.error());

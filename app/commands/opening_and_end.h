@@ -1,6 +1,7 @@
 // How commands begin and end: the job and its gear, read and made; files written, the directory made complete.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,6 +25,22 @@ struct GearJob {
 /// The job in the file and its gear; stages "job" and "gear". Refused: all that is wrong with either, each with its place.
 [[nodiscard]] ValueOrErrors<GearJob<FaceGear>> read_face_gear_job(const std::string& job_file, StageClock& clock);
 [[nodiscard]] ValueOrErrors<GearJob<BevelGear>> read_bevel_gear_job(const std::string& job_file, StageClock& clock);
+
+/// Gear and machine of a milling job; stages "gear" and "machine". Both are tried: all that is wrong with either, each with its place. A
+/// job without operations is refused.
+/// @param make  the gear of a job;  @param load  the machine, called when `gear` is there or refused
+template <typename Gear, typename Make, typename Load>
+[[nodiscard]] std::vector<Diagnostic> make_gear_and_machine(const Job& job, StageClock& clock, Make make, Load load, std::optional<Gear>& gear, Machine& machine) {
+  if (job.operations.empty()) return {fail_at(job.where("operation"), "the job lacks an [[operation]]: there is nothing to run")};
+  std::vector<Diagnostic> errors;
+  auto made = clock.run("gear", [&] { return make(job); });
+  if (auto* refused = std::get_if<1>(&made)) errors = std::move(*refused);
+  else gear = std::move(std::get<0>(made));
+  auto loaded = clock.run("machine", load);
+  if (auto* refused = std::get_if<1>(&loaded)) errors.insert(errors.end(), refused->begin(), refused->end());
+  else machine = std::move(std::get<0>(loaded));
+  return errors;
+}
 
 /// Contents by file name.
 using NamedFiles = std::vector<std::pair<std::string, std::string>>;

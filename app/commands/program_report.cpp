@@ -7,6 +7,7 @@
 
 #include "app/gear_of_job.h"
 #include "app/report/setup_travel.h"
+#include "app/sha256.h"
 #include "geometry/base/angle.h"
 #include "postproc/nc_writer.h"
 #include "postproc/tooth_order.h"
@@ -160,6 +161,29 @@ std::vector<Diagnostic> errors_of(std::span<const std::string> reasons, const st
     errors.push_back(std::move(error));
   }
   return errors;
+}
+
+void note_verified(RunReport& report, const std::string& file, std::string_view text) {
+  report.verified = true;
+  report.program_file = file;
+  report.program_sha256 = sha256_hex(text);
+  report.program_bytes = text.size();
+  report.files.push_back(file);
+}
+
+CommandOutcome verdict_of(RunReport& report, const std::optional<Diagnostic>& stopped, const std::string& job_file, OutputDir& output) {
+  CommandOutcome outcome;
+  if (stopped) {
+    report.reasons.push_back(stopped->message);
+    outcome.errors.push_back(*stopped);
+  } else {
+    outcome.errors = errors_of(report.reasons, job_file);
+  }
+  if (!report.verified) {
+    discard_program(output);
+    outcome.exit_code = ExitCode::unverified;
+  }
+  return outcome;
 }
 
 }  // namespace toothpath

@@ -58,4 +58,11 @@ void judge_travels(std::span<const AxisRange> axes, std::vector<std::string>& re
 /// One error a reason, of kind verification, in `file`.
 [[nodiscard]] std::vector<Diagnostic> errors_of(std::span<const std::string> reasons, const std::string& file);
 
+/// The program in the file `file`, whose text was proven, is what the run leaves.
+void note_verified(RunReport& report, const std::string& file, std::string_view text);
+
+/// The end of a run whose inputs were right, as far as the verdict goes: reasons as errors, the exit code, and no program left that is not
+/// verified. `stopped`: what kept the run from its proof; joins the reasons.
+[[nodiscard]] CommandOutcome verdict_of(RunReport& report, const std::optional<Diagnostic>& stopped, const std::string& job_file, OutputDir& output);
+
 }  // namespace toothpath

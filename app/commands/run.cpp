@@ -5,6 +5,7 @@
 
 #include "app/commands/bevel_run.h"
 #include "app/commands/ledger.h"
+#include "app/commands/opening_and_end.h"
 #include "app/commands/program_report.h"
 #include "app/commands/proof.h"
 #include "app/commands/restart.h"
@@ -21,7 +22,6 @@
 #include "app/report/motion_charts.h"
 #include "app/report/page_of_run.h"
 #include "app/report/setup_sheet.h"
-#include "app/sha256.h"
 #include "cam/plan.h"
 #include "geometry/base/tolerances.h"
 #include "postproc/axis_pole.h"
@@ -72,15 +72,8 @@ struct Run {
 
 /// Gear and machine of the job with everything that is wrong with them.
 std::vector<Diagnostic> prepare(Run& run) {
-  if (run.job.operations.empty()) return {fail_at(run.job.where("operation"), "the job lacks an [[operation]]: there is nothing to run")};
-  std::vector<Diagnostic> errors;
-  auto gear = run.clock.run("gear", [&] { return make_face_gear(run.job); });
-  if (auto* refused = std::get_if<1>(&gear)) errors = std::move(*refused);
-  else run.gear = std::move(std::get<0>(gear));
-  auto machine = run.clock.run("machine", [&] { return load_machine(run.job, run.gear ? std::optional(2 * run.gear->outer_radius()) : std::nullopt); });
-  if (auto* refused = std::get_if<1>(&machine)) errors.insert(errors.end(), refused->begin(), refused->end());
-  else run.machine = std::move(std::get<0>(machine));
-  if (!errors.empty()) return errors;
+  const auto load = [&] { return load_machine(run.job, run.gear ? std::optional(2 * run.gear->outer_radius()) : std::nullopt); };
+  if (auto errors = make_gear_and_machine(run.job, run.clock, make_face_gear, load, run.gear, run.machine); !errors.empty()) return errors;
   if (!run.request.measured_files.empty()) {
     auto corrected = run.clock.run("correction", [&] { return correct_gear(*run.gear, run.request.measured_files); });
     if (!corrected) return {corrected.error()};
@@ -175,11 +168,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   run.program_text = std::move(posted->restarted ? posted->restart_text : posted->text);
   run.report.ledger = face_gear_ledger(part, run.plan, run.job.tools, program, *proof, posted->blend_mm, run.proof_mm);
   if (!run.report.reasons.empty()) return std::nullopt;
-  run.report.verified = true;
-  run.report.program_file = posted->file;
-  run.report.program_sha256 = sha256_hex(run.program_text);
-  run.report.program_bytes = run.program_text.size();
-  run.report.files.push_back(posted->file);
+  note_verified(run.report, posted->file, run.program_text);
   return std::nullopt;
 }
 
@@ -259,21 +248,7 @@ Status write_results(Run& run, OutputDir& output, std::string& json) {
 
 /// The end of a run whose inputs were right: verified, or not and why.
 CommandOutcome finish(Run& run, OutputDir& output, const std::optional<Diagnostic>& stopped) {
-  CommandOutcome outcome;
-  if (stopped) {
-    run.report.reasons.push_back(stopped->message);
-    outcome.errors.push_back(*stopped);
-  } else {
-    for (const auto& reason : run.report.reasons) {
-      Diagnostic error = fail_as(DiagnosticKind::verification, "{}", reason);
-      error.position.file = run.job.file;
-      outcome.errors.push_back(std::move(error));
-    }
-  }
-  if (!run.report.verified) {
-    discard_program(output);
-    outcome.exit_code = ExitCode::unverified;
-  }
+  CommandOutcome outcome = verdict_of(run.report, stopped, run.job.file, output);
   if (const auto written = write_results(run, output, outcome.report_json); !written) return failed(located(run.job, "gear", written.error()));
   run.progress.clear();
   if (const auto committed = output.commit(); !committed) return failed(committed.error());
