@@ -4,37 +4,13 @@
 
 #include "app/report/motion_charts.h"
 #include "app/report/page_of_run.h"
+#include "app/report/tool_body.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
 constexpr std::string_view kRowAfterRidge = "  least clearance";
-
-PageTool page_tool(const BevelGear& gear, const ToolAssembly& tool) {
-  PageTool page;
-  page.name = fmt::format("T{} finger mill m {:g} mm", tool.number, tool.module_mm);
-  const auto own = gear_for_finger_mill(gear, tool);
-  if (!own) return page;
-  const auto& c = own->cutter();
-  PageToolBody flute{"flute", {Vec2(0, 0)}, true};
-  for (int i = 0; i <= 40; ++i) {
-    const auto q = c.at(c.p_A + (c.p_D - c.p_A) * i / 40);
-    flute.profile.emplace_back(q.rho, q.x + c.h_f);
-  }
-  flute.profile.emplace_back(c.rho_D, tool.flute_length_mm);
-  page.bodies.push_back(std::move(flute));
-  page.bodies.push_back({"shank", {Vec2(tool.shank_diameter_mm / 2, tool.flute_length_mm), Vec2(tool.shank_diameter_mm / 2, tool.stick_out_mm)}, false});
-  PageToolBody holder{"holder", {}, false};
-  double z = tool.stick_out_mm;
-  for (const auto& part : tool.holder) {
-    holder.profile.emplace_back(part.lower_diameter_mm / 2, z);
-    z += part.height_mm;
-    holder.profile.emplace_back(part.upper_diameter_mm / 2, z);
-  }
-  page.bodies.push_back(std::move(holder));
-  return page;
-}
 
 PageTable pass_table(const std::vector<FingerPlan>& plans) {
   PageTable table{"Passes", {"op", "zone", "pass", "name", "direction", "length mm", "points"}, {}, "One tooth space; the convex side of a herringbone is one pass through both zones."};
@@ -57,7 +33,7 @@ ReportPage bevel_page(const Job& job, const BevelGear& gear, const Machine& mach
                               p.outer_transverse_module_mm, gear.herringbone() ? "herringbone" : "single hand", degrees(gear.delta()),
                               report.machine_name);
   page.tools.clear();
-  for (const auto& tool : job.tools) page.tools.push_back(page_tool(gear, tool));
+  for (const auto& tool : job.tools) page.tools.push_back(page_finger_mill(gear, tool));
   if (!plans.empty()) page.tables.push_back(pass_table(plans));
   if (!proof) return page;
   page.surface = proof->result.walls;

@@ -1,38 +1,13 @@
 #include "app/report/page_of_run.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/report/html_text.h"
+#include "app/report/tool_body.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
-
-PageTool page_tool(const ToolAssembly& tool) {
-  PageTool page;
-  page.name = fmt::format("T{} ball {} mm", tool.number, short_number(tool.diameter_mm));
-  const double r = tool.radius_mm();
-  PageToolBody ball{"ball", {}, true};
-  constexpr int kSteps = 12;
-  for (int i = 0; i <= kSteps; ++i) {
-    const double angle = kPi / 2 * i / kSteps;
-    ball.profile.emplace_back(r * std::sin(angle), r * (1 - std::cos(angle)));
-  }
-  page.bodies.push_back(std::move(ball));
-  page.bodies.push_back({"flute", {Vec2(r, r), Vec2(r, tool.flute_length_mm)}, true});
-  const double shank = tool.shank_diameter_mm / 2;
-  page.bodies.push_back({"shank", {Vec2(shank, tool.flute_length_mm), Vec2(shank, tool.stick_out_mm)}, false});
-  PageToolBody holder{"holder", {}, false};
-  double z = tool.stick_out_mm;
-  for (const auto& part : tool.holder) {
-    holder.profile.emplace_back(part.lower_diameter_mm / 2, z);
-    z += part.height_mm;
-    holder.profile.emplace_back(part.upper_diameter_mm / 2, z);
-  }
-  page.bodies.push_back(std::move(holder));
-  return page;
-}
 
 std::vector<KeyFigure> key_figures(const RunReport& r) {
   using State = KeyFigure::State;
@@ -105,7 +80,7 @@ ReportPage page_of_run(const Job& job, const RunReport& r, const std::vector<ClP
   page.summary = {{"job", r.job_file}, {"machine", fmt::format("{} ({})", r.machine_name, r.machine_file)}, {"control", r.dialect}};
   if (!r.program_sha256.empty()) page.summary.emplace_back("SHA-256 of the program", r.program_sha256);
   for (const auto& path : paths) page.paths.push_back({path, {}});
-  for (const auto& tool : job.tools) page.tools.push_back(page_tool(tool));
+  for (const auto& tool : job.tools) page.tools.push_back(page_ball_mill(tool));
   page.gouge = r.gouge;
   page.gouge_tolerance_mm = r.gouge_tolerance_mm;
   page.nc_file = r.program_file;
