@@ -65,11 +65,11 @@ ContactSettings contact_settings(const Job& job, const CommandRequest& request) 
 }
 
 CommandOutcome run_contact(const CommandRequest& request) {
-  if (auto error = out_of_range(request)) return failed(std::move(*error));
   Progress progress(request.quiet);
   StageClock clock(progress);
   auto output = OutputDir::open(request.out_dir, kOutputs);
   if (!output) return failed(output.error());
+  if (auto error = out_of_range(request)) return failed(std::move(*error));
   if (const auto bevel = bevel_job(request.job_file)) return run_bevel_contact(request, *bevel, *output);
   auto read = read_face_gear_job(request.job_file, clock);
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));

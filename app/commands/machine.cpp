@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
+#include "app/commands/opening_and_end.h"
 #include "app/output_dir.h"
 #include "app/report/machine_sheet.h"
 #include "app/report/study_page.h"
@@ -38,6 +40,12 @@ std::variant<Shown, std::vector<Diagnostic>> shown(const std::string& path) {
 }  // namespace
 
 CommandOutcome show_machine(const CommandRequest& request) {
+  std::optional<OutputDir> output;  // first: what an earlier call left there goes, whatever this one finds
+  if (!request.out_dir.empty()) {
+    auto opened = OutputDir::open(request.out_dir, kShowOutputs);
+    if (!opened) return failed(opened.error());
+    output.emplace(std::move(opened).value());
+  }
   const auto path = find_machine_file(request.job_file, ".");
   if (!path) return failed(path.error());
   auto result = shown(*path);
@@ -45,14 +53,10 @@ CommandOutcome show_machine(const CommandRequest& request) {
   const Shown& machine = std::get<0>(result);
   CommandOutcome outcome;
   outcome.summary = machine.text;
-  if (request.out_dir.empty()) return outcome;
-  auto output = OutputDir::open(request.out_dir, kShowOutputs);
-  if (!output) return failed(output.error());
-  if (const auto s = output->write("machine.html", machine.page); !s) return failed(s.error());
-  if (!machine.drawing.empty())
-    if (const auto s = output->write("machine.svg", machine.drawing); !s) return failed(s.error());
-  if (const auto s = output->commit(); !s) return failed(s.error());
-  return outcome;
+  if (!output) return outcome;
+  NamedFiles files = {{"machine.html", machine.page}};
+  if (!machine.drawing.empty()) files.emplace_back("machine.svg", machine.drawing);
+  return finished(*output, files, std::move(outcome));
 }
 
 namespace {
@@ -89,10 +93,10 @@ const std::vector<std::string> kTestOutputs = {"machine_test.", "machine_test.ht
 }  // namespace
 
 CommandOutcome test_machine(const CommandRequest& request) {
-  const auto path = find_machine_file(request.job_file, ".");
-  if (!path) return failed(path.error());
   auto output = OutputDir::open(request.out_dir, kTestOutputs);
   if (!output) return failed(output.error());
+  const auto path = find_machine_file(request.job_file, ".");
+  if (!path) return failed(path.error());
   auto reading = read_machine_file(*path);
   if (!reading.machine) return failed(std::move(reading.errors));
   const Machine& machine = *reading.machine;

@@ -103,10 +103,31 @@ TEST(MachineTest, WritesAProvenProgramForEveryShippedMachine) {
   }
 }
 
+// A page of the machine that was there before does not outlive a refusal of the one that is there now.
+TEST(MachineShow, RefusalsTakeTheOldFilesAway) {
+  const TestDir dir;
+  const std::string machine = dir / "m.toml", good = file_text(find_machine_file("xyzac_trt.toml", ".").value());
+  const auto shown = [&] {
+    write_file(machine, good);
+    EXPECT_EQ(run_program({"machine", "show", machine, "--out", dir / "out"}).exit_code, 0);
+    EXPECT_EQ(names_in(dir / "out"), (std::vector<std::string>{"machine.html", "machine.svg"}));
+  };
+  shown();
+  write_file(machine, good + "\nspeed = 1\n");
+  EXPECT_EQ(run_program({"machine", "show", machine, "--out", dir / "out"}).exit_code, 3);
+  EXPECT_TRUE(names_in(dir / "out").empty());
+  shown();
+  EXPECT_EQ(run_program({"machine", "show", "no_such_machine.toml", "--out", dir / "out"}).exit_code, 4);
+  EXPECT_TRUE(names_in(dir / "out").empty());
+}
+
 TEST(MachineTest, RefusalsLeaveNothing) {
   const TestDir dir;
   const Finished shaper = run_program({"machine", "test", "y514.toml", "--out", dir / "t"});
   EXPECT_EQ(shaper.exit_code, 3);
+  EXPECT_EQ(run_program({"machine", "test", "t600s.toml", "--out", dir / "u"}).exit_code, 0);
+  EXPECT_EQ(run_program({"machine", "test", "no_such_machine.toml", "--out", dir / "u"}).exit_code, 4);
+  EXPECT_TRUE(names_in(dir / "u").empty());
   const Finished length = run_program({"machine", "test", "t600s.toml", "--tool-length", "2000", "--out", dir / "u"});
   EXPECT_EQ(length.exit_code, 1);
   EXPECT_NE(length.err.find("no point near the table"), std::string::npos) << length.err;
