@@ -11,8 +11,8 @@ const [makePage, folder] = process.argv.slice(2);
 const modules = process.env.TOOTHPATH_PAGE_MODULES;
 const chromium = [process.env.TOOTHPATH_CHROMIUM, '/usr/bin/chromium'].find((path) => path && existsSync(path));
 if (!chromium || !modules || !existsSync(join(modules, 'puppeteer-core'))) {
-  console.log('skipped: no browser or no puppeteer-core; run tools/get_page_tools.sh');
-  process.exit(77);
+  console.error('no browser or no puppeteer-core: run tools/get_page_tools.sh');
+  process.exit(1);
 }
 const puppeteer = createRequire(join(modules, '../package.json'))('puppeteer-core');
 mkdirSync(folder, {recursive: true});
