@@ -4,7 +4,7 @@
 
 #include "program.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 /// The quick sample on a machine of its own whose tilt axis nobody measured.
@@ -12,11 +12,6 @@ class AssumedPivot : public ::testing::Test {
  protected:
   void SetUp() override {
     write_file(dir / "m.toml", replaced(file_text(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml"), "assumed = false", "assumed = [\"axes.A.point\"]"));
-  }
-  static std::string replaced(std::string text, const std::string& from, const std::string& to) {
-    const auto at = text.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    return at == std::string::npos ? text : text.replace(at, from.size(), to);
   }
   std::string job(const std::string& accept) {
     const std::string path = dir / "job.toml";
@@ -84,4 +79,4 @@ TEST_F(AssumedPivot, TheReportNamesTheBytesOnTheDisk) {
 }
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

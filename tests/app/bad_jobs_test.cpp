@@ -1,7 +1,7 @@
 // Every file in tests/bad_jobs is refused with exactly the diagnostic in its first line, exit code 3, and no file is left.
 #include "program.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 std::vector<std::string> bad_jobs(const std::string& folder) {
@@ -38,4 +38,4 @@ TEST_P(BadShaperJob, IsRefusedWithItsFirstLine) { expect_first_line("shaper", kB
 INSTANTIATE_TEST_SUITE_P(All, BadShaperJob, ::testing::ValuesIn(bad_jobs(kBadJobs + "/shaper")), [](const auto& job) { return job.param; });
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

@@ -4,7 +4,7 @@
 #include "tests/machines/bad_machine_files.h"
 #include "tests/machines/example_files.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 /// The messages with the path of the file instead of the name that they have in the table.
@@ -23,7 +23,7 @@ TEST(BadMachines, ShowRefusesEachWithItsPlace) {
   const std::string path = dir / "m.toml";
   for (const auto& bad : test::kBadMachineFiles) {
     if (std::string(bad.to) == "\"gear_shaper\"") continue;  // `machine show` shows shapers, too: their reader complains of other keys
-    write_file(path, test::replaced(test::kMachine, bad.from, bad.to));
+    write_file(path, replaced(kMachine, bad.from, bad.to));
     const Finished shown = run_program({"machine", "show", path, "--out", dir / "out"});
     EXPECT_EQ(shown.exit_code, 3) << bad.what;
     EXPECT_EQ(shown.err, with_path(bad.messages, path)) << bad.what;
@@ -42,7 +42,7 @@ TEST(BadMachines, RunRefusesThemToo) {
   for (const auto& bad : test::kBadMachineFiles) {
     const std::string number(bad.what, 2);
     if (number < "69" || number > "78") continue;
-    write_file(path, test::replaced(test::kMachine, bad.from, bad.to));
+    write_file(path, replaced(kMachine, bad.from, bad.to));
     const Finished run = run_program({"run", job, "--out", dir / "out"});
     EXPECT_EQ(run.exit_code, 3) << bad.what;
     EXPECT_EQ(run.err, with_path(bad.messages, path)) << bad.what;
@@ -53,4 +53,4 @@ TEST(BadMachines, RunRefusesThemToo) {
 }
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

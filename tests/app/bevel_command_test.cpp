@@ -4,7 +4,7 @@
 
 #include "program.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 const std::string kTrunnion = kSamples + "/bevel_trunnion.toml";
@@ -130,23 +130,16 @@ TEST_F(BevelCommand, ATurnedBlockIsFound) {
   EXPECT_TRUE(left);
 }
 
-/// The text with one part of it replaced, which must be there.
-std::string with(std::string text, const std::string& old, const std::string& now) {
-  const auto at = text.find(old);
-  EXPECT_NE(at, std::string::npos) << old;
-  return at == std::string::npos ? text : text.replace(at, old.size(), now);
-}
-
 // The wheel that belongs to the pinion of the trunnion sample, on a machine with words of three decimals and another control.
 TEST(BevelMate, RunsOnTheT600SAndIsCheckedThere) {
   const TestDir dir;
   std::string job = file_text(kTrunnion);
-  job = with(job, "teeth = 18\nmate_teeth = 27", "teeth = 27\nmate_teeth = 18");
-  job = with(job, "hand = \"right\"", "hand = \"left\"");
-  job = with(job, "tip_radius = 0.12 ", "tip_radius = 0.07 ");
-  job = with(job, "file = \"xyzac_trt.toml\"", "file = \"t600s.toml\"");
-  job = with(job, "origin = [0.0, 0.0, 20.0]", "origin = [0.0, 0.0, -265.0]");
-  job = with(job, "work_offset_at = [0.0, 0.0, 20.0]", "work_offset_at = [0.0, 0.0, -285.0]");
+  job = replaced(job, "teeth = 18\nmate_teeth = 27", "teeth = 27\nmate_teeth = 18");
+  job = replaced(job, "hand = \"right\"", "hand = \"left\"");
+  job = replaced(job, "tip_radius = 0.12 ", "tip_radius = 0.07 ");
+  job = replaced(job, "file = \"xyzac_trt.toml\"", "file = \"t600s.toml\"");
+  job = replaced(job, "origin = [0.0, 0.0, 20.0]", "origin = [0.0, 0.0, -265.0]");
+  job = replaced(job, "work_offset_at = [0.0, 0.0, 20.0]", "work_offset_at = [0.0, 0.0, -285.0]");
   write_file(dir / "mate.toml", job);
   const Finished run = run_program({"run", dir / "mate.toml", "--out", dir / "run"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -165,4 +158,4 @@ TEST(BevelMate, RunsOnTheT600SAndIsCheckedThere) {
 }
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

@@ -1,21 +1,13 @@
 // `toothpath check` of a bevel gear with meshes of fixture and stock: planted collisions of every body are found, clean scenes pass.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <nlohmann/json.hpp>
-
 #include "app/commands/bevel_run.h"
 #include "app/job_file.h"
 #include "cam/finger_milling.h"
-#include "geometry/mesh_file.h"
-#include "tests/app/program.h"
-#include "tests/cam/mesh_shapes.h"
+#include "tests/app/check_scene.h"
 
-namespace toothpath {
+namespace toothpath::test {
 namespace {
-
-using testing::TestDir;
-using Json = nlohmann::json;
 
 /// A solid turned about z from a closed outline (r, z), clockwise in that plane.
 TriangleMesh turned(const std::vector<Vec2>& outline, int n = 90) {
@@ -34,32 +26,12 @@ TriangleMesh turned(const std::vector<Vec2>& outline, int n = 90) {
 
 // The herringbone pinion of the trunnion sample: 18 teeth, pitch angle 33.7 deg, cone distances 18.45 to 32.45. The cutting part of the mill
 // is 2.9 high, the shank has radius 3, the holder (radius 10) begins 25 above the tip.
-class BevelScene : public ::testing::Test {
+class BevelScene : public CheckScene {
  protected:
   static void SetUpTestSuite() {
-    dir_ = new TestDir;
-    ASSERT_EQ(testing::run_program({"run", job(), "--out", *dir_ / "run", "--quiet"}).exit_code, 0);
-    auto read = read_job_file(job());
-    gear_ = new BevelGear(std::get<0>(make_bevel_gear(std::get<0>(read))));
-  }
-  static void TearDownTestSuite() {
-    delete gear_;
-    delete dir_;
-  }
-  static std::string job() { return testing::kSamples + "/bevel_trunnion.toml"; }
-
-  static std::string stl(const std::string& name, const TriangleMesh& mesh) {
-    std::ofstream out(*dir_ / name, std::ios::binary);
-    EXPECT_TRUE(write_stl(out, mesh, name));
-    return *dir_ / name;
-  }
-  testing::Finished check(std::vector<std::string> options) {
-    std::vector<std::string> words = {"check", job(), *dir_ / "run/program.ngc", "--out", *dir_ / "check"};
-    words.insert(words.end(), options.begin(), options.end());
-    const auto finished = testing::run_program(words);
-    const std::string text = testing::file_text(*dir_ / "check/report.json");
-    report_ = text.empty() ? Json() : Json::parse(text);
-    return finished;
+    run_sample("bevel_trunnion.toml");
+    auto read = read_job_file(job_);
+    gear_.emplace(std::get<0>(make_bevel_gear(std::get<0>(read))));
   }
   /// (r, z) at a cone distance and a height above the pitch cone.
   static Vec2 place(double ell, double height) {
@@ -75,23 +47,15 @@ class BevelScene : public ::testing::Test {
     const auto& trace = gear_->halves().back().walls[0].trace;
     const double e = trace.middle(trace.beta(std::min(ell, gear_->R_e()))).e + tooth * gear_->pitch();
     const Vec3 c = gear_->tip(ell, e, up);
-    return testing::box(c - Vec3::Constant(half), c + Vec3::Constant(half));
+    return box(c - Vec3::Constant(half), c + Vec3::Constant(half));
   }
-  Json report_;
-  static TestDir* dir_;
-  static BevelGear* gear_;
+  static inline std::optional<BevelGear> gear_;
 };
-TestDir* BevelScene::dir_ = nullptr;
-BevelGear* BevelScene::gear_ = nullptr;
 
-TEST_F(BevelScene, WithoutMeshesNothingIsLoaded) {
-  ASSERT_EQ(check({}).exit_code, 0);
-  EXPECT_FALSE(report_.contains("fixture"));
-  EXPECT_FALSE(report_.contains("stock"));
-}
+TEST_F(BevelScene, WithoutMeshesNothingIsLoaded) { expect_nothing_loaded_without_meshes(); }
 
 TEST_F(BevelScene, CleanFixtureAndStockPass) {
-  const std::string plate = stl("plate.stl", testing::box(Vec3(-40, -40, 38), Vec3(40, 40, 50)));
+  const std::string plate = stl("plate.stl", box(Vec3(-40, -40, 38), Vec3(40, 40, 50)));
   const std::string turned_blank = stl("blank.stl", blank(gear_->parameters().addendum_mm));
   const auto finished = check({"--fixture", plate, "--stock", turned_blank});
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
@@ -101,7 +65,7 @@ TEST_F(BevelScene, CleanFixtureAndStockPass) {
   EXPECT_GT(report_["fixture"]["motions"].get<int>(), 5000) << "every tooth";
   // The shank begins 0.2 above the tips: that is the gap which the stock shows.
   EXPECT_NEAR(report_["stock"]["clearance"].get<double>(), 0.2, 0.03);
-  EXPECT_NE(testing::file_text(*dir_ / "check/report.html"), "");
+  EXPECT_NE(file_text(*dir_ / "check/report.html"), "");
 }
 
 TEST_F(BevelScene, HolderOnlyAndOneToothOnly) {
@@ -163,7 +127,7 @@ TEST_F(BevelScene, RapidOnly) {
 
 TEST_F(BevelScene, StockInTheWayOfRapidsAndOfTheShank) {
   // A bar along the tool axis, from above the holder of every feed: only rapids come there.
-  TriangleMesh bar = testing::box(Vec3(-1, -1, 75), Vec3(1, 1, 130));
+  TriangleMesh bar = box(Vec3(-1, -1, 75), Vec3(1, 1, 130));
   const Vec3 u = gear_->axis(0), across = Vec3::UnitY(), along = across.cross(u);
   for (Vec3& v : bar.vertices) v = Vec3(gear_->tip(25.45, 0, 0) + v.x() * along + v.y() * across + v.z() * u);
   EXPECT_EQ(check({"--stock", stl("bar.stl", bar)}).exit_code, 1);
@@ -183,17 +147,11 @@ TEST_F(BevelScene, StockInTheWayOfRapidsAndOfTheShank) {
 }
 
 TEST_F(BevelScene, BadFilesAreRefusedWithTheirPlace) {
-  const auto missing = check({"--fixture", *dir_ / "nowhere.stl"});
-  EXPECT_EQ(missing.exit_code, 4);
-  EXPECT_NE(missing.err.find("nowhere.stl"), std::string::npos);
-  testing::write_file(*dir_ / "broken.stl", "solid nothing\nfacet nonsense");
-  const auto broken = check({"--stock", *dir_ / "broken.stl"});
-  EXPECT_EQ(broken.exit_code, 3);
-  EXPECT_NE(broken.err.find("broken.stl"), std::string::npos);
-  const auto small = check({"--stock", stl("small.stl", testing::box(Vec3(-18, -18, 10), Vec3(18, 18, 30)))});
+  for (const char* option : {"--fixture", "--stock"}) expect_bad_files_refused(option);
+  const auto small = check({"--stock", stl("small.stl", box(Vec3(-18, -18, 10), Vec3(18, 18, 30)))});
   EXPECT_EQ(small.exit_code, 3);
   EXPECT_NE(small.err.find("outer diameter of the finished gear"), std::string::npos) << small.err;
 }
 
 }  // namespace
-}  // namespace toothpath
+}  // namespace toothpath::test

@@ -3,7 +3,7 @@
 
 #include "program.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 const std::string kQuick = kSamples + "/spur_quick.toml";
@@ -154,15 +154,9 @@ TEST(OutputDirectory, ASignalLeavesNothing) {
   }
 }
 
-std::string with(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
-
 TEST(Machine, APartThatDoesNotFitIsRefusedWithBothNumbers) {
   const TestDir dir;
-  std::string text = with(file_text(kSamples + "/dhfg_paper.toml"), "file = \"xyzac_large.toml\"", "file = \"t600s.toml\"\naccept_assumed = true");
+  std::string text = replaced(file_text(kSamples + "/dhfg_paper.toml"), "file = \"xyzac_large.toml\"", "file = \"t600s.toml\"\naccept_assumed = true");
   write_file(dir / "job.toml", text);
   const Finished run = run_program({"run", dir / "job.toml", "--out", dir / "out"});
   EXPECT_EQ(run.exit_code, 3);
@@ -201,4 +195,4 @@ TEST(Run, ASmallGearGoesTheWholeWay) {
 }
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

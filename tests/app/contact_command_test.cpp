@@ -5,7 +5,7 @@
 
 #include "tests/app/program.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 using Json = nlohmann::json;
@@ -186,4 +186,4 @@ TEST(DhfgStudy, RefusesAWrongFile) {
 }
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

@@ -11,7 +11,7 @@
 #include "cam/swept_path.h"
 #include "program.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 /// The quick spur gear with a short face and fine passes, so that cusps do not hide the error.
@@ -219,4 +219,4 @@ TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
 }
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

@@ -5,7 +5,7 @@
 
 #include "tests/app/program.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 using Json = nlohmann::json;
@@ -169,4 +169,4 @@ TEST(TraceModelStudy, NumbersOfTheSample) {
 }
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

@@ -2,40 +2,26 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
 #include <numeric>
-#include <sstream>
 
 #include "app/job_file.h"
 #include "app/report/block_times.h"
+#include "tests/support/files.h"
 
 namespace toothpath {
 namespace {
 
-std::string sample() {
-  std::ifstream in(std::string(TOOTHPATH_SOURCE_DIR) + "/samples/spur_quick.toml");
-  std::ostringstream out;
-  out << in.rdbuf();
-  return std::move(out).str();
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return at == std::string::npos ? text : text.replace(at, from.size(), to);
-}
-
 // There is one unit of length. A job that asks for another is refused at the place where it does: nothing is scaled, so that no angle
 // can be scaled along with a length.
 TEST(DangerUnits, JobsInInchesAreRefused) {
-  const std::string good = sample();
+  const std::string good = test::file_text(TOOTHPATH_SOURCE_DIR "/samples/spur_quick.toml");
   ASSERT_EQ(parse_job(good, "j").index(), 0u);
   const std::pair<std::string, std::string> cases[] = {
       {"module = 2.0", "module = \"0.0787402 in\""}, {"module = 2.0", "module = 0.0787402in"},   {"teeth = 60", "teeth = 60\nunits = \"inch\""},
       {"schema = 1", "schema = 1\nunits = \"inch\""}, {"[setup]", "[setup]\nunit = \"inch\""},   {"inner_radius = 60.0", "inner_radius = \"2.36220in\""},
       {"inner_radius = 60.0", "inner_radius_inch = 2.36220"}};
   for (const auto& [from, to] : cases) {
-    const auto read = parse_job(replaced(good, from, to), "j");
+    const auto read = parse_job(test::replaced(good, from, to), "j");
     ASSERT_EQ(read.index(), 1u) << to;
     EXPECT_GT(std::get<1>(read).front().position.line, 0) << to;
   }

@@ -12,7 +12,7 @@
 
 #include "program.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -100,4 +100,4 @@ TEST(Folders, IncludeOnlyWhatLiesBelow) {
 }
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "app/commands/bevel_files.h"
@@ -23,6 +22,7 @@
 #include "postproc/nc_writer.h"
 #include "postproc/shaper_gearbox_program.h"
 #include "postproc/shaper_program.h"
+#include "tests/support/files.h"
 
 namespace toothpath {
 namespace {
@@ -181,14 +181,12 @@ std::string folded(const std::string& text) {
 void expect_golden(const fs::path& file, const std::string& text) {
   if (std::getenv("TOOTHPATH_WRITE_GOLDEN") != nullptr) {
     fs::create_directories(file.parent_path());
-    std::ofstream(file, std::ios::binary) << text;
+    test::write_file(file, text);
   }
-  std::ifstream in(file, std::ios::binary);
-  ASSERT_TRUE(in) << file;
-  std::ostringstream stored;
-  stored << in.rdbuf();
-  if (stored.str() == text) return;
-  std::istringstream a(stored.str()), b(text);
+  ASSERT_TRUE(fs::exists(file)) << file;
+  const std::string stored = test::file_text(file);
+  if (stored == text) return;
+  std::istringstream a(stored), b(text);
   std::string old_line, new_line;
   int n = 0;
   do {
@@ -285,15 +283,13 @@ TEST(GoldenFolder, IsSmallAndExplained) {
   for (const auto& sample : fs::directory_iterator(kGolden)) {
     if (!sample.is_directory()) continue;
     ++samples;
-    std::ifstream in(sample.path() / "README.md");
-    std::ostringstream readme;
-    readme << in.rdbuf();
+    const std::string readme = test::file_text(sample.path() / "README.md");
     for (const auto& file : fs::directory_iterator(sample.path())) {
       sum += file.file_size();
       EXPECT_LE(file.file_size(), kLargestFile) << file.path();
       const std::string name = file.path().filename().string();
       if (name != "README.md") {
-        EXPECT_NE(readme.str().find("`" + name + "`"), std::string::npos) << sample.path().filename() << "/README.md says nothing of " << name;
+        EXPECT_NE(readme.find("`" + name + "`"), std::string::npos) << sample.path().filename() << "/README.md says nothing of " << name;
       }
     }
   }

@@ -7,7 +7,7 @@
 #include "cam/spatial_index.h"
 #include "program.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 std::set<std::string> stages_of(const CommandOutcome& outcome) {
@@ -65,4 +65,4 @@ TEST(LightCommands, ShaperWithElectronicGearboxReadsItsProgramBack) {
 }
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

@@ -5,7 +5,7 @@
 #include "machines/machine_file.h"
 #include "program.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 const std::vector<std::string> kShipped = {"t600s.toml",       "xyzac_large.toml", "xyzac_trt.toml", "xyzbc_trt.toml", "head_table_bc.toml",
@@ -135,4 +135,4 @@ TEST(MachineTest, RefusalsLeaveNothing) {
 }
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

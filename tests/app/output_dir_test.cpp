@@ -6,7 +6,7 @@
 #include "app/sha256.h"
 #include "program.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 TEST(OutputDir, FilesAppearAtCommitOnly) {
@@ -76,4 +76,4 @@ TEST(Sha256, ExamplesOfTheStandard) {
 }
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

@@ -11,12 +11,12 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
-namespace toothpath::testing {
+#include "tests/support/files.h"
+
+namespace toothpath::test {
 
 inline const std::string kSamples = TOOTHPATH_SOURCE_DIR "/samples";
 inline const std::string kBadJobs = TOOTHPATH_SOURCE_DIR "/tests/bad_jobs";
@@ -32,30 +32,6 @@ struct Launch {
   rlim_t largest_file = RLIM_INFINITY;
   int signal_number = 0;        ///< sent after `signal_after_ms`
   int signal_after_ms = 0;
-};
-
-inline std::string file_text(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return std::move(out).str();
-}
-
-/// A directory of its own for the running test, removed at the end.
-class TestDir {
- public:
-  TestDir() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "toothpath_test_XXXXXX").string();
-    path_ = ::mkdtemp(pattern.data());
-  }
-  ~TestDir() {
-    std::error_code error;
-    std::filesystem::remove_all(path_, error);
-  }
-  [[nodiscard]] std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
- private:
-  std::filesystem::path path_;
 };
 
 inline Finished run_program(const Launch& launch) {
@@ -105,6 +81,4 @@ inline std::vector<std::string> names_in(const std::string& directory) {
   return names;
 }
 
-inline void write_file(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
-
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

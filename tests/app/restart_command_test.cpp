@@ -3,7 +3,7 @@
 
 #include "program.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 const std::string kQuick = kSamples + "/spur_quick.toml";
@@ -73,4 +73,4 @@ TEST(RestartCommand, WhatDoesNotExistIsUsage) {
 }
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

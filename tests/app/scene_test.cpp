@@ -2,68 +2,31 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
-#include "geometry/mesh_file.h"
-#include "tests/app/program.h"
-#include "tests/cam/mesh_shapes.h"
+#include "tests/app/check_scene.h"
 
-namespace toothpath {
+namespace toothpath::test {
 namespace {
-
-using testing::TestDir;
-using Json = nlohmann::json;
 
 // The quick spur job: 60 teeth, radii 60 to 65, tips at z = -18, rapids of the tip at z = -16, deepest cut near z = -22.5; the holder
 // (radius 5, 40 high) begins 16 above the tip, the flute ends 6 above it.
-class SceneTest : public ::testing::Test {
+class SceneTest : public CheckScene {
  protected:
-  static void SetUpTestSuite() {
-    dir_ = new TestDir;
-    ASSERT_EQ(testing::run_program({"run", job(), "--out", *dir_ / "run", "--quiet"}).exit_code, 0);
-  }
-  static void TearDownTestSuite() {
-    delete dir_;
-    dir_ = nullptr;
-  }
-  static std::string job() { return testing::kSamples + "/spur_quick.toml"; }
-
-  static std::string stl(const std::string& name, const TriangleMesh& mesh) {
-    std::ofstream out(*dir_ / name, std::ios::binary);
-    EXPECT_TRUE(write_stl(out, mesh, name));
-    return *dir_ / name;
-  }
-  testing::Finished check(std::vector<std::string> options) {
-    std::vector<std::string> words = {"check", job(), *dir_ / "run/program.ngc", "--out", *dir_ / "check"};
-    words.insert(words.end(), options.begin(), options.end());
-    const auto finished = testing::run_program(words);
-    const std::string text = testing::file_text(*dir_ / "check/report.json");
-    report_ = text.empty() ? Json() : Json::parse(text);
-    return finished;
-  }
+  static void SetUpTestSuite() { run_sample("spur_quick.toml"); }
   /// A block between two radii at a tooth; the spaces are cut half a pitch further on.
   static TriangleMesh block(double tooth, double r0, double r1, double half, double z0, double z1) {
-    TriangleMesh mesh = testing::box(Vec3(r0, -half, z0), Vec3(r1, half, z1));
+    TriangleMesh mesh = box(Vec3(r0, -half, z0), Vec3(r1, half, z1));
     const double angle = 2 * M_PI * tooth / 60;
     for (auto& v : mesh.vertices) v = Vec3(std::cos(angle) * v.x() - std::sin(angle) * v.y(), std::sin(angle) * v.x() + std::cos(angle) * v.y(), v.z());
     return mesh;
   }
-  Json report_;
-  static TestDir* dir_;
 };
-TestDir* SceneTest::dir_ = nullptr;
 
-TEST_F(SceneTest, WithoutMeshesNothingIsLoaded) {
-  ASSERT_EQ(check({}).exit_code, 0);
-  EXPECT_FALSE(report_.contains("fixture"));
-  EXPECT_FALSE(report_.contains("stock"));
-  for (const auto& [stage, seconds] : report_["stages"].items()) EXPECT_EQ(stage.find("stock"), std::string::npos);
-}
+TEST_F(SceneTest, WithoutMeshesNothingIsLoaded) { expect_nothing_loaded_without_meshes(); }
 
 TEST_F(SceneTest, CleanFixtureAndStockPass) {
-  const std::string plate = stl("plate.stl", testing::box(Vec3(-80, -80, -60), Vec3(80, 80, -40)));
-  const std::string blank = stl("blank.stl", testing::box(Vec3(-66, -66, -45), Vec3(66, 66, -18)));
+  const std::string plate = stl("plate.stl", box(Vec3(-80, -80, -60), Vec3(80, 80, -40)));
+  const std::string blank = stl("blank.stl", box(Vec3(-66, -66, -45), Vec3(66, 66, -18)));
   const auto finished = check({"--fixture", plate, "--stock", blank});
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
   EXPECT_TRUE(report_["fixture"]["clear"].get<bool>());
@@ -102,14 +65,14 @@ TEST_F(SceneTest, CutterAgainstAClampInsideTheRing) {
 
 TEST_F(SceneTest, RapidOnly) {
   // High above the tool as it cuts, in the way of its first descent.
-  const std::string bridge = stl("bridge.stl", testing::box(Vec3(58, 1, 60), Vec3(61, 5, 61)));
+  const std::string bridge = stl("bridge.stl", box(Vec3(58, 1, 60), Vec3(61, 5, 61)));
   EXPECT_EQ(check({"--fixture", bridge}).exit_code, 1);
   ASSERT_FALSE(report_["fixture"]["worst"].empty());
   for (const auto& w : report_["fixture"]["worst"]) EXPECT_TRUE(w["rapid"].get<bool>());
 }
 
 TEST_F(SceneTest, StockInTheWayOfRapidsAndOfTheShank) {
-  const std::string high = stl("high.stl", testing::box(Vec3(-66, -66, -45), Vec3(66, 66, -15.9)));
+  const std::string high = stl("high.stl", box(Vec3(-66, -66, -45), Vec3(66, 66, -15.9)));
   EXPECT_EQ(check({"--stock", high}).exit_code, 1);
   bool rapid = false, shank = false;
   for (const auto& w : report_["stock"]["worst"]) {
@@ -119,7 +82,7 @@ TEST_F(SceneTest, StockInTheWayOfRapidsAndOfTheShank) {
   }
   EXPECT_TRUE(rapid);
   // The shank begins 6 above the tip: -16.5 at the deepest place.
-  const std::string boss = stl("boss.stl", testing::box(Vec3(-66, -66, -45), Vec3(66, 66, -16.2)));
+  const std::string boss = stl("boss.stl", box(Vec3(-66, -66, -45), Vec3(66, 66, -16.2)));
   EXPECT_EQ(check({"--stock", boss}).exit_code, 1);
   for (const auto& w : report_["stock"]["worst"]) {
     EXPECT_EQ(w["body"], "shank");
@@ -128,20 +91,14 @@ TEST_F(SceneTest, StockInTheWayOfRapidsAndOfTheShank) {
 }
 
 TEST_F(SceneTest, BadFilesAreRefusedWithTheirPlace) {
-  const auto missing = check({"--fixture", *dir_ / "nowhere.stl"});
-  EXPECT_EQ(missing.exit_code, 4);
-  EXPECT_NE(missing.err.find("nowhere.stl"), std::string::npos);
-  testing::write_file(*dir_ / "broken.stl", "solid nothing\nfacet nonsense");
-  const auto broken = check({"--fixture", *dir_ / "broken.stl"});
-  EXPECT_EQ(broken.exit_code, 3);
-  EXPECT_NE(broken.err.find("broken.stl"), std::string::npos);
+  for (const char* option : {"--fixture", "--stock"}) expect_bad_files_refused(option);
   // Inches taken for millimetres: a stock smaller than the gear.
-  const auto inches = check({"--stock", stl("inches.stl", testing::box(Vec3(-2.6, -2.6, -1.8), Vec3(2.6, 2.6, -0.7)))});
+  const auto inches = check({"--stock", stl("inches.stl", box(Vec3(-2.6, -2.6, -1.8), Vec3(2.6, 2.6, -0.7)))});
   EXPECT_EQ(inches.exit_code, 3);
   EXPECT_NE(inches.err.find("inches"), std::string::npos) << inches.err;
-  const auto metres = check({"--fixture", stl("metres.stl", testing::box(Vec3(-0.08, -0.08, -0.06), Vec3(0.08, 0.08, -0.04)))});
+  const auto metres = check({"--fixture", stl("metres.stl", box(Vec3(-0.08, -0.08, -0.06), Vec3(0.08, 0.08, -0.04)))});
   EXPECT_EQ(metres.exit_code, 3);
 }
 
 }  // namespace
-}  // namespace toothpath
+}  // namespace toothpath::test

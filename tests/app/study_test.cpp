@@ -6,7 +6,7 @@
 
 #include "tests/app/program.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 using Json = nlohmann::json;
@@ -136,4 +136,4 @@ TEST(Study, RefusesWhatItCannotDo) {
 }
 
 }  // namespace
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

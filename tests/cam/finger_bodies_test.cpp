@@ -10,7 +10,7 @@ namespace toothpath {
 namespace {
 
 using namespace bevel_test;
-using testing::Random;
+using test::Random;
 
 TEST(FingerBodies, PiecesEncloseTheCutterClosely) {
   Random random(3);
@@ -27,7 +27,7 @@ TEST(FingerBodies, PiecesEncloseTheCutterClosely) {
     EXPECT_EQ(bodies[2].pieces.front().from, tool.stick_out_mm) << "holder";
     double most = 0;
     for (int n = 0; n < 4000; ++n) {
-      const double height = random.uniform(-1, tool.flute_length_mm - 0.5), rho = random.uniform(0, 1.5 * gear.cutter().rho_D);
+      const double height = random(-1, tool.flute_length_mm - 0.5), rho = random(0, 1.5 * gear.cutter().rho_D);
       const double truth = std::max(0.0, solid.signed_distance(height - d.p.dedendum_mm, rho));
       double pieces = INFINITY;
       for (const auto& f : bodies[0].pieces) pieces = std::min(pieces, distance_to_frustum(Vec3(rho, 0, height), f, Vec3::Zero(), Vec3::UnitZ()));
@@ -68,9 +68,9 @@ TEST(FingerBodies, ProvenGapAgainstDenseSampling) {
   int near = 0, struck = 0;
   std::array<int, 3> body{};
   for (int k = 0; k < 80; ++k) {
-    const double height = random.uniform(-1, 34), size = random.uniform(0.3, 1.5), turn = random.uniform(0, 2 * kPi);
-    const Vec3 middle(random.uniform(1, 15) * std::cos(turn), 0, height);
-    const TriangleMesh obstacle = testing::box(middle - Vec3::Constant(size), middle + Vec3::Constant(size));
+    const double height = random(-1, 34), size = random(0.3, 1.5), turn = random(0, 2 * kPi);
+    const Vec3 middle(random(1, 15) * std::cos(turn), 0, height);
+    const TriangleMesh obstacle = test::box(middle - Vec3::Constant(size), middle + Vec3::Constant(size));
     const MeshDistance mesh(obstacle);
     const MeshDistance* meshes[] = {&mesh};
     std::vector<ToolMotion> motions;
@@ -119,7 +119,7 @@ TEST(FingerBodies, DrawnBackTheMillPassesWhereItWas) {
   const ToolAssembly tool = mill(pinion_mill());
   const auto bodies = finger_bodies(gear.cutter(), tool);
   const double top = finger_flute_end(gear.cutter(), tool);  // 9.9
-  const MeshDistance plate(testing::box(Vec3(-20, -20, 1), Vec3(20, 20, top - 2))), lid(testing::box(Vec3(-20, -20, top + 1), Vec3(20, 20, top + 1.5)));
+  const MeshDistance plate(test::box(Vec3(-20, -20, 1), Vec3(20, 20, top - 2))), lid(test::box(Vec3(-20, -20, top + 1), Vec3(20, 20, top + 1.5)));
   ToolMotion back;
   back.tip_to = Vec3(0, 0, 5);
   back.axis_from = back.axis_to = Vec3::UnitZ();

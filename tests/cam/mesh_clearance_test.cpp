@@ -6,22 +6,13 @@
 #include <cmath>
 
 #include "tests/cam/mesh_shapes.h"
+#include "tests/support/sample_tools.h"
 
 namespace toothpath {
 namespace {
 
-using testing::Random;
-
-ToolAssembly mill() {
-  ToolAssembly t;
-  t.diameter_mm = 2;
-  t.flute_length_mm = 4;
-  t.shank_diameter_mm = 1.8;
-  t.length_mm = 60;
-  t.stick_out_mm = 9;
-  t.holder = {{3, 10, 6}, {10, 10, 12}};
-  return t;
-}
+using test::Random;
+using test::stubby_mill;
 
 ToolMotion motion(const Vec3& a, const Vec3& b, const Vec3& u = Vec3::UnitZ(), const Vec3& v = Vec3::UnitZ()) {
   ToolMotion m;
@@ -50,7 +41,7 @@ TEST(MeshClearance, BoundHoldsBetweenTheSamples) {
   Random random(11);
   int near = 0, struck = 0, free = 0;
   for (int k = 0; k < 80; ++k) {
-    const TriangleMesh obstacle = testing::ball(random.vector(9), random.uniform(0.5, 6), 6);
+    const TriangleMesh obstacle = test::ball(random.vector(9), random(0.5, 6), 6);
     const MeshDistance mesh(obstacle);
     const MeshDistance* meshes[] = {&mesh};
     MeshClearanceOptions options;
@@ -64,8 +55,8 @@ TEST(MeshClearance, BoundHoldsBetweenTheSamples) {
       tip = next;
       axis = turned;
     }
-    const auto found = clearance.nearest(motions, mill(), {0.1, 0.1});
-    const double dense = sampled(mesh, motions, mill(), 40);
+    const auto found = clearance.nearest(motions, stubby_mill(), {0.1, 0.1});
+    const double dense = sampled(mesh, motions, stubby_mill(), 40);
     if (!found) {
       ++free;
       EXPECT_GE(dense, 0.1 + options.look_mm - 1e-9);
@@ -85,34 +76,34 @@ TEST(MeshClearance, BoundHoldsBetweenTheSamples) {
 }
 
 TEST(MeshClearance, SeesAWallThinnerThanTheStep) {
-  const MeshDistance wall(testing::box(Vec3(20, -1, -50), Vec3(20.01, 1, 50)));
+  const MeshDistance wall(test::box(Vec3(20, -1, -50), Vec3(20.01, 1, 50)));
   const MeshDistance* meshes[] = {&wall};
   const MeshClearance clearance(meshes, {});
   const ToolMotion pass[] = {motion(Vec3(0, 0, 0), Vec3(100, 0, 0))};
-  const auto found = clearance.nearest(pass, mill(), {0.05, 0.05});
+  const auto found = clearance.nearest(pass, stubby_mill(), {0.05, 0.05});
   ASSERT_TRUE(found);
   EXPECT_LE(found->gap_mm, 0);
 }
 
 TEST(MeshClearance, ToolInsideIsNotClear) {
-  const MeshDistance block(testing::box(Vec3(-100, -100, -100), Vec3(100, 100, 100)));
+  const MeshDistance block(test::box(Vec3(-100, -100, -100), Vec3(100, 100, 100)));
   const MeshDistance* meshes[] = {&block};
   const ToolMotion pass[] = {motion(Vec3(0, 0, 0), Vec3(1, 0, 0))};
-  const auto found = MeshClearance(meshes, {}).nearest(pass, mill(), {0.05, 0.05});
+  const auto found = MeshClearance(meshes, {}).nearest(pass, stubby_mill(), {0.05, 0.05});
   ASSERT_TRUE(found);
   EXPECT_EQ(found->measured_mm, -INFINITY);
 }
 
 TEST(MeshClearance, DrawnBackAlongItsAxisTheCutterPassesWhereItWas) {
   // A plate 3 mm thick that the flute (4 mm) has cut into, and a lid above the flute that it has not.
-  const MeshDistance plate(testing::box(Vec3(-20, -20, 0), Vec3(20, 20, 3))), lid(testing::box(Vec3(-20, -20, 6), Vec3(20, 20, 7)));
+  const MeshDistance plate(test::box(Vec3(-20, -20, 0), Vec3(20, 20, 3))), lid(test::box(Vec3(-20, -20, 6), Vec3(20, 20, 7)));
   const ToolMotion back[] = {motion(Vec3(0, 0, 0.5), Vec3(0, 0, 4.0))};
   const Withdrawal w{Vec3(0, 0, 0.5), Vec3::UnitZ()};
   ASSERT_TRUE(draws_back(back[0], w));
   EXPECT_FALSE(draws_back(motion(Vec3(0, 0, 0.5), Vec3(0.01, 0, 4)), w)) << "aside";
   EXPECT_FALSE(draws_back(motion(Vec3(0, 0, 0.5), Vec3(0, 0, 0.2)), w)) << "deeper";
   EXPECT_FALSE(draws_back(motion(Vec3(0, 0, 0.5), Vec3(0, 0, 4), Vec3::UnitZ(), Vec3(0.01, 0, 1).normalized()), w)) << "tilted";
-  ToolAssembly tool = mill();
+  ToolAssembly tool = stubby_mill();
   tool.stick_out_mm = 30;
   const MeshRule rule{0, 0};
   const MeshDistance* plates[] = {&plate};

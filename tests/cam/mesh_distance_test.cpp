@@ -10,11 +10,13 @@
 #include "cam/frustum_triangle.h"
 #include "cam/mesh_assembly.h"
 #include "tests/cam/mesh_shapes.h"
+#include "tests/support/sample_tools.h"
 
 namespace toothpath {
 namespace {
 
-using testing::Random;
+using test::Random;
+using test::stubby_mill;
 
 /// Distance of a point to a triangle by the regions of its corners and edges (Ericson), shared with nobody.
 double reference_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -59,7 +61,7 @@ double halved(const Vec3& a, const Vec3& b, const Vec3& c, const Frustum& f, con
 TEST(MeshDistance, PointsAgreeWithBruteForce) {
   Random random(1);
   for (const std::size_t count : {std::size_t(1), std::size_t(7), std::size_t(8), std::size_t(9), std::size_t(60), std::size_t(1000)}) {
-    const TriangleMesh mesh = testing::scattered(random, count, 20, 4);
+    const TriangleMesh mesh = test::scattered(random, count, 20, 4);
     const MeshDistance distance(mesh);
     for (int k = 0; k < 200; ++k) {
       const Vec3 p = random.vector(30);
@@ -93,9 +95,9 @@ TEST(MeshDistance, SliversAndPointsAreNoExceptions) {
   };
   for (int k = 0; k < 300; ++k) {
     const Vec3 a = random.vector(10), d = random.vector(5);
-    const double width = std::pow(10.0, random.uniform(-14, -2));
+    const double width = std::pow(10.0, random(-14, -2));
     switch (k % 4) {
-      case 0: add(a, a + d, a + random.uniform(0, 1) * d + random.vector(width)); break;  // needle
+      case 0: add(a, a + d, a + random(0, 1) * d + random.vector(width)); break;  // needle
       case 1: add(a, a + d, a + 2 * d); break;                                             // a line
       case 2: add(a, a, a + d); break;                                                     // an edge twice
       default: add(a, a, a);                                                               // a point
@@ -110,12 +112,12 @@ TEST(MeshDistance, SliversAndPointsAreNoExceptions) {
 
 TEST(MeshDistance, PathsGiveWhatSinglePointsGive) {
   Random random(3);
-  const TriangleMesh mesh = testing::scattered(random, 800, 15, 1);
+  const TriangleMesh mesh = test::scattered(random, 800, 15, 1);
   const MeshDistance distance(mesh);
   std::vector<Vec3> path;
   for (int pass = 0; pass < 40; ++pass) {
     Vec3 p = random.vector(20);
-    const Vec3 step = random.vector(1).normalized() * (pass % 2 ? 0.1 : random.uniform(0, 3));
+    const Vec3 step = random.vector(1).normalized() * (pass % 2 ? 0.1 : random(0, 3));
     for (int k = 0; k < 37; ++k, p += step) path.push_back(p);
   }
   std::vector<double> found(path.size());
@@ -125,7 +127,7 @@ TEST(MeshDistance, PathsGiveWhatSinglePointsGive) {
 
 TEST(MeshDistance, InsideIsToldByParity) {
   Random random(4);
-  const TriangleMesh ball = testing::ball(Vec3(3, -2, 5), 10, 24), box = testing::box(Vec3(-4, -5, -6), Vec3(7, 8, 9));
+  const TriangleMesh ball = test::ball(Vec3(3, -2, 5), 10, 24), box = test::box(Vec3(-4, -5, -6), Vec3(7, 8, 9));
   const MeshDistance in_ball(ball), in_box(box);
   int inside = 0;
   for (int k = 0; k < 3000; ++k) {
@@ -152,9 +154,9 @@ TEST(MeshDistance, FrustumAndTriangleAreBoundedFromBothSides) {
   int touching = 0, apart = 0;
   for (int k = 0; k < 250; ++k) {
     const Vec3 a = random.vector(6);
-    const double size = std::pow(10.0, random.uniform(-3, 1.5));
+    const double size = std::pow(10.0, random(-3, 1.5));
     const TriangleCorners t{a, a + random.vector(size), k % 7 == 0 ? Vec3(a + random.vector(1e-9)) : Vec3(a + random.vector(size))};
-    const Frustum f{random.uniform(0, 2), random.uniform(2.1, 9), random.uniform(0.1, 4), random.uniform(0.1, 4), "holder"};
+    const Frustum f{random(0, 2), random(2.1, 9), random(0.1, 4), random(0.1, 4), "holder"};
     const Vec3 tip = random.vector(3), axis = random.vector(1).normalized();
     const FrustumGap gap = frustum_to_triangle(f, tip, axis, t, INFINITY);
     const double brute = halved(t.a, t.b, t.c, f, tip, axis, INFINITY, 2e-3);
@@ -180,10 +182,10 @@ TEST(MeshDistance, FrustumAndTriangleAreBoundedFromBothSides) {
 
 TEST(MeshDistance, FrustumAgainstMeshAgreesWithBruteForce) {
   Random random(6);
-  const TriangleMesh mesh = testing::scattered(random, 300, 20, 3);
+  const TriangleMesh mesh = test::scattered(random, 300, 20, 3);
   const MeshDistance distance(mesh);
   for (int k = 0; k < 120; ++k) {
-    const Frustum f{random.uniform(0, 2), random.uniform(2.1, 9), random.uniform(0.1, 4), random.uniform(0.1, 4), "holder"};
+    const Frustum f{random(0, 2), random(2.1, 9), random(0.1, 4), random(0.1, 4), "holder"};
     const Vec3 tip = random.vector(25), axis = random.vector(1).normalized();
     double brute = INFINITY;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -199,11 +201,11 @@ TEST(MeshDistance, FrustumAgainstMeshAgreesWithBruteForce) {
 
 TEST(MeshDistance, SegmentAgreesWithSamples) {
   Random random(7);
-  const TriangleMesh mesh = testing::scattered(random, 400, 20, 3);
+  const TriangleMesh mesh = test::scattered(random, 400, 20, 3);
   const MeshDistance distance(mesh);
   for (int k = 0; k < 40; ++k) {
     const Vec3 from = random.vector(20), axis = random.vector(1).normalized();
-    const double height = random.uniform(0.5, 12), found = distance.to_segment(from, axis, height, 100).distance;
+    const double height = random(0.5, 12), found = distance.to_segment(from, axis, height, 100).distance;
     double sampled = INFINITY;
     for (int n = 0; n <= 100; ++n) sampled = std::min(sampled, brute_distance(mesh, from + n * height / 100 * axis));
     EXPECT_LE(found, sampled + 1e-9);
@@ -214,7 +216,7 @@ TEST(MeshDistance, SegmentAgreesWithSamples) {
 /// Every processor gets the same bits.
 TEST(MeshDistance, KernelsAgreeBitForBit) {
   Random random(8);
-  const TriangleMesh mesh = testing::scattered(random, 2000, 20, 2);
+  const TriangleMesh mesh = test::scattered(random, 2000, 20, 2);
   const MeshDistance distance(mesh);
   const TreeView tree = distance.view();
   const MeshKernels &fast = mesh_kernels(), &plain = plain_mesh_kernels();
@@ -246,23 +248,12 @@ TEST(MeshDistance, KernelsAgreeBitForBit) {
   }
 }
 
-ToolAssembly mill() {
-  ToolAssembly t;
-  t.diameter_mm = 2;
-  t.flute_length_mm = 4;
-  t.shank_diameter_mm = 1.8;
-  t.length_mm = 60;
-  t.stick_out_mm = 9;
-  t.holder = {{3, 10, 6}, {10, 10, 12}};
-  return t;
-}
-
 /// The assembly along paths, against the bodies one by one without any coherence.
 TEST(MeshAssembly, PosesAgreeWithSingleQuestions) {
   Random random(9);
-  const TriangleMesh mesh = testing::scattered(random, 1500, 25, 1.5);
+  const TriangleMesh mesh = test::scattered(random, 1500, 25, 1.5);
   const MeshDistance distance(mesh);
-  const ToolAssembly tool = mill();
+  const ToolAssembly tool = stubby_mill();
   const double within = 0.5;
   int cut = 0, struck = 0, free = 0;
   for (int pass = 0; pass < 30; ++pass) {
@@ -306,9 +297,9 @@ TEST(MeshAssembly, PosesAgreeWithSingleQuestions) {
 
 /// A tool wholly inside a solid has no surface near it, on a path that starts there and on one that jumps there.
 TEST(MeshAssembly, ToolInsideTheSolidIsFound) {
-  const TriangleMesh mesh = testing::box(Vec3(-100, -100, -100), Vec3(100, 100, 100));
+  const TriangleMesh mesh = test::box(Vec3(-100, -100, -100), Vec3(100, 100, 100));
   const MeshDistance distance(mesh);
-  MeshAssembly assembly(distance, mill(), 0.5);
+  MeshAssembly assembly(distance, stubby_mill(), 0.5);
   const std::size_t n = assembly.bodies();
   std::vector<ToolPose> poses = {{Vec3(0, 0, 0), Vec3::UnitZ()}, {Vec3(0.1, 0, 0), Vec3::UnitZ()}, {Vec3(0, 0, 150), Vec3::UnitZ()},
                                  {Vec3(0, 0, 20), Vec3::UnitZ()}, {Vec3(0, 0, 96.2), Vec3::UnitZ()}};

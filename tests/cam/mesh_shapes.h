@@ -2,21 +2,11 @@
 #pragma once
 
 #include <cmath>
-#include <random>
 
 #include "geometry/triangle_mesh.h"
+#include "tests/support/random.h"
 
-namespace toothpath::testing {
-
-class Random {
- public:
-  explicit Random(std::uint64_t seed) : generator_(seed) {}
-  double uniform(double a, double b) { return a + (b - a) * double(generator_() >> 11) * 0x1p-53; }
-  Vec3 vector(double size) { return {uniform(-size, size), uniform(-size, size), uniform(-size, size)}; }
-
- private:
-  std::mt19937_64 generator_;
-};
+namespace toothpath::test {
 
 /// Triangles of sides up to about `side` in a cube of half width `room`; an open soup.
 inline TriangleMesh scattered(Random& random, std::size_t count, double room, double side) {
@@ -67,4 +57,4 @@ inline TriangleMesh ball(const Vec3& centre, double radius, int n) {
   return mesh;
 }
 
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

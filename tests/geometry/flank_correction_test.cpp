@@ -9,25 +9,16 @@
 #include "geometry/flank_correction.h"
 #include "geometry/inspection_grid.h"
 #include "geometry/space_sheet.h"
+#include "tests/support/sample_gears.h"
 
 namespace toothpath {
 namespace {
 
 FaceGear gear_of(double offset, double helix_deg, double shaft_deg) {
-  FaceGearParameters g;
-  g.teeth = 88;
-  g.shaper_teeth = 25;
-  g.module_mm = 3;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
+  auto g = test::transverse_gear(88, 25, 3, 0.7, {{radians(helix_deg), 131.5, 144}});
   g.shaft_angle_rad = radians(shaft_deg);
   g.offset_mm = offset;
-  g.shaper_tip_radius_mm = 0.7;
-  g.zones = {{radians(helix_deg), 131.5, 144}};
-  auto made = FaceGear::make(g);
-  if (made.index() == 1)
-    for (const auto& refusal : std::get<1>(made)) ADD_FAILURE() << refusal.key << ": " << refusal.diagnostic.message;
-  return std::get<0>(std::move(made));
+  return test::made(g);
 }
 
 std::vector<FlankDeviation> field_on_grid(const FaceGear& gear, int side, const std::function<double(double, double)>& field) {

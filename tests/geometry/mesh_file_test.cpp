@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "tests/geometry/mesh_samples.h"
+#include "tests/support/files.h"
 
 namespace toothpath::test {
 namespace {
@@ -66,12 +67,6 @@ std::string obj(const TriangleMesh& mesh) {
 std::string refusal(const std::string& bytes, const std::string& name = "box.stl", const MeshImportLimits& limits = {}) {
   const auto mesh = parse_mesh(bytes, name, limits);
   return mesh ? "accepted" : mesh.error().text();
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
 }
 
 TEST(MeshFile, WholeGearComesBackThroughAssimp) {
@@ -247,18 +242,8 @@ TEST(MeshFile, MutatedFilesGiveASolidOrADiagnostic) {
   std::mt19937 random(20);
   std::size_t accepted = 0, refused = 0;
   for (int n = 0; n < 1500; ++n) {
-    auto [name, bytes] = seeds[std::size_t(n) % seeds.size()];
-    const int edits = 1 + int(random() % 4);
-    for (int e = 0; e < edits && !bytes.empty(); ++e) {
-      const std::size_t at = random() % bytes.size();
-      switch (random() % 5) {
-        case 0: bytes[at] = static_cast<char>(random() & 255); break;
-        case 1: bytes[at] = static_cast<char>(bytes[at] ^ (1 << (random() % 8))); break;
-        case 2: bytes.erase(at, 1 + random() % 20); break;
-        case 3: bytes.insert(at, bytes.substr(random() % bytes.size(), random() % 40)); break;
-        default: bytes.resize(at); break;
-      }
-    }
+    const auto& [name, good] = seeds[std::size_t(n) % seeds.size()];
+    const std::string bytes = damaged(good, random, 1 + n % 4, "0123456789.-ef \n");
     const auto mesh = parse_mesh(bytes, name);
     if (mesh) {
       ++accepted;

@@ -9,6 +9,7 @@
 #include "geometry/base/angle.h"
 #include "machines/shaper_machine.h"
 #include "postproc/shaper_setup.h"
+#include "tests/support/sample_gears.h"
 #include "tests/support/shaper_program_reader.h"
 
 namespace toothpath::test {
@@ -33,14 +34,8 @@ inline ShaperWork shaper_work() {
   ShaperWork work;
   work.job_name = "offset-shaped";
   work.machine_file = "test_shaper.toml";
-  auto& g = work.gear;
-  g.teeth = 88;
-  g.shaper_teeth = 25;
-  g.module_mm = 3;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.offset_mm = 15;
-  g.zones = {{0, 130.5, 147}};
+  work.gear = spur_parameters();
+  work.gear.offset_mm = 15;
   auto& s = work.shaping;
   s.cutting_speed_m_min = 20;
   s.circular_feed_mm = 0.1;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <stdexcept>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -10,34 +11,32 @@
 
 namespace toothpath::test {
 
+/// Cut by a shaper of 20 deg, the module in the transverse plane.
+inline FaceGearParameters transverse_gear(int teeth, int shaper_teeth, double module_mm, double shaper_tip_radius_mm, std::vector<FaceGearZone> zones) {
+  FaceGearParameters g;
+  g.teeth = teeth;
+  g.shaper_teeth = shaper_teeth;
+  g.module_mm = module_mm;
+  g.module_plane = ModulePlane::transverse;
+  g.pressure_angle_rad = radians(20);
+  g.shaper_tip_radius_mm = shaper_tip_radius_mm;
+  g.zones = std::move(zones);
+  return g;
+}
+
 /// The double helical gear of the DHFG paper (30/180, 20 deg, module 5 in the transverse plane), lengths times `scale`; scale 1/4 is
 /// samples/dhfg_t600s.toml.
 inline FaceGearParameters double_helical_parameters(double scale = 1) {
-  FaceGearParameters g;
-  g.teeth = 180;
-  g.shaper_teeth = 30;
-  g.module_mm = 5 * scale;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
+  auto g = transverse_gear(180, 30, 5 * scale, 1.5 * scale,
+                           {{radians(-30), 449 * scale, 468 * scale}, {radians(30), 476 * scale, 496 * scale}});
   g.reference_radius_mm = 472 * scale;
-  g.shaper_tip_radius_mm = 1.5 * scale;
   g.groove_depth_mm = 12.5 * scale;
-  g.zones = {{radians(-30), 449 * scale, 468 * scale}, {radians(30), 476 * scale, 496 * scale}};
   return g;
 }
 inline FaceGearParameters quarter_dhfg() { return double_helical_parameters(0.25); }
 
 /// The orthogonal pair 25/88, module 3: straight teeth, sharp shaper, no offset.
-inline FaceGearParameters spur_parameters() {
-  FaceGearParameters g;
-  g.teeth = 88;
-  g.shaper_teeth = 25;
-  g.module_mm = 3;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.zones = {{0, 130.5, 147}};
-  return g;
-}
+inline FaceGearParameters spur_parameters() { return transverse_gear(88, 25, 3, 0, {{0, 130.5, 147}}); }
 
 /// The same with 15 mm of offset and a rounded shaper tip: samples/offset_milled.toml.
 inline FaceGearParameters offset_gear() {
@@ -48,15 +47,13 @@ inline FaceGearParameters offset_gear() {
 }
 
 /// 20/60, module 2, short straight teeth: samples/spur_quick.toml.
-inline FaceGearParameters small_spur() {
-  FaceGearParameters g;
-  g.teeth = 60;
-  g.shaper_teeth = 20;
-  g.module_mm = 2;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.shaper_tip_radius_mm = 0.6;
-  g.zones = {{0, 60, 65}};
+inline FaceGearParameters small_spur() { return transverse_gear(60, 20, 2, 0.6, {{0, 60, 65}}); }
+
+/// 20/30, module 5, an acute or obtuse shaft angle: at 70 deg the root stands far out along the shaper's axis, at 105 deg a tool along the
+/// gear axis does not fit.
+inline FaceGearParameters steep_gear(double shaft_angle_deg, double inner_radius_mm, double outer_radius_mm) {
+  auto g = transverse_gear(30, 20, 5, 1, {{0, inner_radius_mm, outer_radius_mm}});
+  g.shaft_angle_rad = radians(shaft_angle_deg);
   return g;
 }
 

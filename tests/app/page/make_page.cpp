@@ -13,12 +13,12 @@ int main(int argc, char** argv) {
     return 2;
   }
   const std::string kind = argv[1];
-  testing::SyntheticPageOptions options;
+  test::SyntheticPageOptions options;
   if (kind == "clean") options = {4000, false, true, false, false};
   if (kind == "below") options = {4000, false, false, false, false};
   if (kind == "awkward") options = {2000, true, false, true, true};
   if (kind == "large") options = {300000, true, false, false, true};
-  ReportPage page = testing::synthetic_page(options);
+  ReportPage page = test::synthetic_page(options);
   if (kind == "below")  // the same work, turned by 180 degrees about x
     for (auto& path : page.paths)
       for (auto& record : path.cl.records)

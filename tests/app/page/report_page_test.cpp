@@ -17,21 +17,21 @@ std::size_t count(const std::string& text, std::string_view part) {
 }
 
 TEST(ReportPage, SameInputSameBytes) {
-  const auto a = render_report_page(testing::synthetic_page({})), b = render_report_page(testing::synthetic_page({}));
+  const auto a = render_report_page(test::synthetic_page({})), b = render_report_page(test::synthetic_page({}));
   ASSERT_TRUE(a && b);
   EXPECT_EQ(*a, *b);
 }
 
 TEST(ReportPage, LoadsNothingFromElsewhere) {
-  const auto text = render_report_page(testing::synthetic_page({}));
+  const auto text = render_report_page(test::synthetic_page({}));
   ASSERT_TRUE(text);
   for (const char* mark : {"http://", "https://", "src=", "@import", "url(", "<link"}) EXPECT_EQ(count(*text, mark), 0U) << mark;
 }
 
 TEST(ReportPage, AwkwardNamesStayText) {
-  testing::SyntheticPageOptions options;
+  test::SyntheticPageOptions options;
   options.awkward_names = true;
-  const auto text = render_report_page(testing::synthetic_page(options));
+  const auto text = render_report_page(test::synthetic_page(options));
   ASSERT_TRUE(text);
   EXPECT_EQ(count(*text, "</script"), 3U);  // data, view, page
   EXPECT_EQ(count(*text, "<script"), 3U);
@@ -41,9 +41,9 @@ TEST(ReportPage, AwkwardNamesStayText) {
 }
 
 TEST(ReportPage, ThreeHundredThousandPointsStayBelowThreeMegabytes) {
-  testing::SyntheticPageOptions options;
+  test::SyntheticPageOptions options;
   options.path_points = 300000;
-  const ReportPage page = testing::synthetic_page(options);
+  const ReportPage page = test::synthetic_page(options);
   std::size_t points = 0;
   for (const PagePath& path : page.paths) points += path.cl.records.size();
   ASSERT_GT(points, 280000U);
@@ -63,7 +63,7 @@ TEST(ReportPage, EmptyPartsAreLeftOut) {
 }
 
 TEST(ReportPage, EveryWorstPlaceHasItsRowAndItsLine) {
-  const ReportPage page = testing::synthetic_page({});
+  const ReportPage page = test::synthetic_page({});
   const auto text = render_report_page(page);
   ASSERT_TRUE(text);
   for (const WorstPlace& place : page.gouge->worst) EXPECT_EQ(count(*text, fmt::format("<div id=\"L{}\">", place.line)), 1U);
@@ -71,7 +71,7 @@ TEST(ReportPage, EveryWorstPlaceHasItsRowAndItsLine) {
 }
 
 TEST(ReportPage, RefusesWhatDoesNotFitTogether) {
-  const ReportPage good = testing::synthetic_page({});
+  const ReportPage good = test::synthetic_page({});
   const auto refused = [&](auto&& spoil) {
     ReportPage page = good;
     spoil(page);
@@ -104,7 +104,7 @@ TEST(ReportPage, ExcerptsJoinWhereTheyTouch) {
 }
 
 TEST(ReportPage, WritingToAMissingFolderIsAFileError) {
-  const Status status = write_report_page(testing::synthetic_page({}), "no/such/folder/report.html");
+  const Status status = write_report_page(test::synthetic_page({}), "no/such/folder/report.html");
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().kind, DiagnosticKind::file_access);
 }

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-namespace toothpath::testing {
+namespace toothpath::test {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -337,4 +337,4 @@ ReportPage synthetic_page(const SyntheticPageOptions& options) {
   return page;
 }
 
-}  // namespace toothpath::testing
+}  // namespace toothpath::test

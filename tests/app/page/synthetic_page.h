@@ -5,7 +5,7 @@
 
 #include "app/report/report_page.h"
 
-namespace toothpath::testing {
+namespace toothpath::test {
 
 struct SyntheticPageOptions {
   std::size_t path_points = 12000;  ///< of all operations together, about
@@ -17,4 +17,4 @@ struct SyntheticPageOptions {
 
 [[nodiscard]] ReportPage synthetic_page(const SyntheticPageOptions& options);
 
-}  // namespace toothpath::testing
+}  // namespace toothpath::test
