@@ -1,5 +1,8 @@
 #include "machines/machine.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace toothpath {
 
 bool Machine::has_acceleration() const {
@@ -8,6 +11,16 @@ bool Machine::has_acceleration() const {
   for (std::size_t k = 0; k < chain.rotary_count(); ++k)
     if (!(chain.rotary(k).max_acceleration > 0)) return false;
   return true;
+}
+
+double Machine::exact_corner_mm() const {
+  constexpr double kUsual = 0.0005, kPeriod = 0.001 / 60;  // mm, min
+  double square = 0;
+  for (const auto& axis : chain.linear) square += axis.max_acceleration * axis.max_acceleration;
+  double turning = 0;  // with TCP the words of X, Y and Z are the tip
+  for (std::size_t k = 0; k < chain.rotary_count() && tcp == TcpMode::none; ++k) turning += chain.rotary(k).max_acceleration;
+  const double tip = std::sqrt(square) + turning * largest_part_mm() / 2;
+  return post.corner_tolerance_mm.value_or(std::max(kUsual, tip * kPeriod * kPeriod / 4));
 }
 
 Status check_simultaneous_axes(const Machine& machine, std::string_view moving) {

@@ -33,6 +33,7 @@ struct PostSettings {
   std::optional<bool> index_loop;      ///< tooth indexing as a loop or sub-program (true) or written out (false)
   std::vector<std::string> tcp_on;     ///< blocks that switch TCP on, e.g. {"M428"}
   std::vector<std::string> tcp_off;    ///< and off
+  std::optional<double> corner_tolerance_mm;  ///< LinuxCNC: the tip is off a corner of its path by no more in exact path mode
   LengthReference length_reference = LengthReference::tip;
   PoleOption pole = PoleOption::error;
   std::optional<double> pole_angle_rad;  ///< `tilt`: least angle kept from the pole; `hold`, `through`, `retract`: greatest change of the axis
@@ -59,6 +60,10 @@ struct Machine {
   KinematicChain chain;
   PostSettings post;
 
+  /// How far the tip may be off a corner that the control takes exactly [mm]: `post.corner_tolerance` if stated, else 0.0005 or, if the axes
+  /// have accelerations, what those leave at the rim of the largest part and a servo period of 1 ms if that is more (LinuxCNC,
+  /// docs/dialects.md).
+  [[nodiscard]] double exact_corner_mm() const;
   /// Every axis of the chain has an acceleration.
   [[nodiscard]] bool has_acceleration() const;
   /// Largest part that turns on the table: `part_diameter_mm` if stated, else `table_diameter_mm`.

@@ -227,6 +227,7 @@ void read_post(TableReader post, PostSettings& settings) {
   if (post.has("index_loop")) settings.index_loop = post.boolean("index_loop");
   if (post.has("tcp_on")) settings.tcp_on = post.ascii_list("tcp_on").value_or(std::vector<std::string>{});
   if (post.has("tcp_off")) settings.tcp_off = post.ascii_list("tcp_off").value_or(std::vector<std::string>{});
+  if (post.has("corner_tolerance")) settings.corner_tolerance_mm = post.number("corner_tolerance", Range::positive(0.1, " mm"));
   if (post.has("length_reference"))
     if (const auto word = post.word("length_reference", {"tip", "centre"}))
       settings.length_reference = *word == "tip" ? LengthReference::tip : LengthReference::centre;

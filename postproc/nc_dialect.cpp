@@ -27,6 +27,7 @@ Result<NcDialect> dialect_of(const Machine& machine) {
   d->format.rotary_decimals = machine.post.rotary_decimals.value_or(d->format.rotary_decimals);
   for (const int digits : {d->format.linear_decimals, d->format.rotary_decimals})
     if (digits < 1 || digits > 7) return fail("{} decimals in a word of the machine: 1 to 7 are possible", digits);
+  if (d->exact_path_mm > 0) d->exact_path_mm = machine.exact_corner_mm();
   if (!machine.post.tcp_on.empty()) d->tcp_on = machine.post.tcp_on;
   if (!machine.post.tcp_off.empty()) {
     d->tcp_off = machine.post.tcp_off;

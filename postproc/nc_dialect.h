@@ -83,11 +83,7 @@ struct NcDialect {
   NcLinesOfText operation_end;           ///< ahead of coolant and spindle off
   NcLinesOfText coolant_on = {"M8"}, coolant_off = {"M9"}, spindle_off = {"M5"};
   bool blend = false;                    ///< `start` lets the control leave corners by {blend}: counts as deviation
-  double blend_factor = 1, tcp_blend_factor = 1;  ///< corners are left by up to this times {blend}; the second with TCP
-  /// Not empty: {blend} bounds X, Y, Z alone. Where cuts turn a rotary its line is this code, which leaves the path by up to
-  /// `exact_path_mm`, or, where that is too much, `exact_stop`.
-  std::string exact_path, exact_stop;
-  double exact_path_mm = 0;
+  double exact_path_mm = 0;              ///< without `blend`: the tip is off a corner by up to this all the same
 
   // TCP.
   NcLinesOfText tcp_on, tcp_off;                ///< empty: the dialect has no TCP (or its codes are site data)

@@ -217,7 +217,7 @@ NcExecution::Problem NcExecution::move(const Move& m, std::int32_t line) {
   e.rapid = m.rapid;
   if (!m.rapid && blend_is_linear_ && e.known && (std::abs(goal[3] - joints_[3]) > kStill || std::abs(goal[4] - joints_[4]) > kStill))
     return "G64 bounds X, Y and Z alone, this G1 turns a rotary axis: G61 or G61.1 is needed";
-  e.blend_mm = m.rapid ? 0.0F : static_cast<float>(blend_mm_ * (!blend_is_linear_ ? 1 : tcp_ ? rules_.tcp_blend_factor : rules_.blend_factor));
+  e.blend_mm = m.rapid ? 0.0F : static_cast<float>(blend_mm_);
   e.tooth = static_cast<std::int16_t>(tooth_);
   e.machine = m.machine_frame || m.compensation;
   if (m.rapid) {

@@ -19,8 +19,6 @@ struct NcRules {
   bool tcp_needs_zero = false;     ///< TCP may be switched on with the rotaries at zero only
   double least_rate = 0;           ///< G93 blocks are raised to this rate, mm/min or deg/min
   bool per_minute_turns = false;   ///< G94 with rotary words without TCP has a defined time
-  double blend_factor = 1;         ///< the control leaves corners by this times a tolerance that holds for X, Y, Z alone
-  double tcp_blend_factor = 1;     ///< the same with TCP
 };
 
 class NcExecution {

@@ -10,18 +10,20 @@
 namespace toothpath {
 namespace {
 
-/// G61 of LinuxCNC: at small corners the controller goes on without a stop; 0.37 um were seen where rotaries turn (motion controller at
-/// 2000 mm/s^2 and deg/s^2, tests/controller).
-constexpr double kExactPath = 0.0005;
+/// LinuxCNC: what its motion controller leaves of a corner under G64 P, mm. The next block begins a servo period early at worst, and the
+/// samples are smoothed and joined by chords: docs/dialects.md. The machine says what its acceleration leaves under G61, a T^2 / 4.
+double corner_of_g64(double p_mm, double q_mm, double exact_path_mm) {
+  constexpr double kUnequal = 1.06;  // blocks next to a corner that is passed without a stop accelerate by a tenth less
+  const double early = std::sqrt(0.5 * exact_path_mm);  // (T / 2) sqrt(a / 2)
+  const double root = std::sqrt(kUnequal * p_mm) + early;
+  return root * root + 1.2 * exact_path_mm + q_mm;
+}
 
 NcRules rules_of(bool linuxcnc) {
   NcRules r;
   r.tcp_needs_zero = !linuxcnc;
   r.least_rate = linuxcnc ? 0.1 : 0;  // LinuxCNC before 2.9.0 raises the rate of a G93 block to this
   r.per_minute_turns = linuxcnc;
-  // LinuxCNC: P of G64 was seen to be exceeded by 1.2, with TCP by 5.7 (motion controller, tests/controller).
-  r.blend_factor = linuxcnc ? 1.5 : 1;
-  r.tcp_blend_factor = linuxcnc ? 8 : 1;
   return r;
 }
 
@@ -56,7 +58,7 @@ class Interpreter {
     NcExecution::Move move;
     int motion = -1;           // G0 G1 in this block
     int feed_mode = -1;        // 93 94
-    bool g53 = false, g43 = false, tcp = false, g49 = false, g64 = false, g61 = false, exact_stop = false;
+    bool g53 = false, g43 = false, tcp = false, g49 = false, g64 = false, g61 = false;
     std::string offset;
     std::vector<int> m;
     int switch_tcp = -1;       // 1 on, 0 off: a code of the site
@@ -146,7 +148,6 @@ class Interpreter {
         group = 10;
         r.g64 = tenths == 640;
         r.g61 = !r.g64;
-        r.exact_stop = tenths == 611;
         break;
       case 921: group = 11; break;
       case 690: group = 13; break;
@@ -168,9 +169,12 @@ class Interpreter {
   Problem apply(Request& r) {
     if ((r.p || r.q) && !r.g64 && (r.m.empty() || r.m.front() != 98)) return here(r.p_column, "P or Q without G64 or M98");
     if (r.l) return here(r.column, "L is not in the subset");
-    if (r.g64 && !r.p) return here(r.column, "G64 without P leaves the path without limit");
-    if (r.g64) execution_.set_blend(*r.p, true);
-    if (r.g61) execution_.set_blend(r.exact_stop ? 0 : kExactPath);
+    if (r.g64 && (!r.p || *r.p == 0)) return here(r.column, fmt::format("G64 {} leaves the path without limit", r.p ? "P0" : "without P"));
+    if (r.g64 && (*r.p < 0 || r.q.value_or(0) < 0)) return here(r.column, "P and Q of G64 must not be negative");
+    // Without Q the lines that are joined may be off by P.
+    corners_said_ = corners_said_ || r.g64 || r.g61;
+    if (r.g64) execution_.set_blend(corner_of_g64(*r.p, r.q.value_or(*r.p), control_.exact_path_mm), true);
+    if (r.g61) execution_.set_blend(control_.exact_path_mm);  // a stop leaves as much
     if (r.feed_mode == 93) execution_.set_feed_mode(NcExecution::Feed::inverse_time);
     if (r.feed_mode == 94) execution_.set_feed_mode(NcExecution::Feed::per_minute);
     if (r.f)
@@ -234,6 +238,8 @@ class Interpreter {
   Problem move(Request& r) {
     if (motion_ < 0) return here(r.column, "axis word before G0 or G1");
     if (r.g53 && motion_ != 0) return here(r.column, "G53 with G1");
+    if (linuxcnc_ && motion_ == 1 && !corners_said_)
+      return here(r.column, "G1 ahead of G61, G61.1 or G64 P: how far the control leaves the path would depend on the last program");
     r.move.rapid = motion_ == 0;
     r.move.machine_frame = r.g53;
     r.move.compensation = r.g43 && !r.tcp;
@@ -250,6 +256,7 @@ class Interpreter {
   NcFlow flow_;
   NcExecution execution_;
   int motion_ = -1;
+  bool corners_said_ = false;  // G61, G61.1 or G64 P
 };
 
 }  // namespace

@@ -54,6 +54,13 @@ std::vector<std::string> header_comments(const AxisProgram& program, const NcDia
     return s;
   };
   out.push_back(fmt::format("WORK OFFSET {} AT X{} Y{} Z{} MM MACHINE", program.work_offset, at(0), at(1), at(2)));
+  if (!dialect.blend && dialect.exact_path_mm > 0) {
+    const std::int64_t corner = to_fixed(dialect.exact_path_mm, 6);
+    std::string within, product;
+    append_fixed(within, corner, 6, false);
+    append_fixed(product, 4 * corner, 6, false);
+    out.push_back(fmt::format("CORNERS WITHIN {} MM: TOOL ACCELERATION X SERVO PERIOD SQUARED IS AT MOST {} MM", within, product));
+  }
   if (program.tcp != TcpMode::none && !dialect.tcp_note.empty()) out.push_back(comment_text(dialect.tcp_note));
   for (auto& line : order_comments(program)) out.push_back(std::move(line));
   if (!header.assumed.empty()) out.emplace_back("WARNING, ASSUMED AND NOT MEASURED:");

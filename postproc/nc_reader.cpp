@@ -207,6 +207,7 @@ Result<NcControl> control_of(const Machine& machine, const Setup& setup, std::sp
   c.rotary_rounding_deg = 0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(reader->rotary_decimals));
   if (machine.tcp != TcpMode::none) c.chain = machine.chain;
   c.top_mm = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
+  c.exact_path_mm = machine.exact_corner_mm();
   c.tcp_on = machine.post.tcp_on;
   c.tcp_off = machine.post.tcp_off;
   c.letters = {'X', 'Y', 'Z', 0, 0};

@@ -36,6 +36,7 @@ struct NcControl {
   double rotary_rounding_deg = 0.5e-5;        ///< half the last digit that the dialect prints
   double linear_rounding_mm = 0.5e-4;         ///< the same of the linear words
   std::optional<KinematicChain> chain;        ///< of a machine with TCP: the control knows it; empty: TCP is refused
+  double exact_path_mm = 0.0005;              ///< LinuxCNC: the tip is off a corner by no more under G61 and G61.1
   double top_mm = 0;                          ///< highest Z, machine coordinates of the gauge line
   std::vector<std::string> tcp_on, tcp_off;   ///< codes of the site that switch TCP (LinuxCNC)
   bool dry_run = false;                       ///< feed moves with a standing spindle are meant: a program that runs in air

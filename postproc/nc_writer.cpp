@@ -19,11 +19,6 @@ constexpr int kFirstSubprogram = 2001;  // O numbers of the sub-programs of a ma
 constexpr int kFirstLabel = 100;
 constexpr int kVectorDecimals = 8;
 
-/// The words of the blending bound X, Y, Z alone, and rotaries turn in cuts.
-bool keeps_exact_path(const AxisProgram& program, const NcDialect& dialect) {
-  return program.turns_in_cuts && !dialect.exact_path.empty();
-}
-
 /// How the word of the index rotary is printed.
 enum class IndexWord { literal, shifted, left_out };
 
@@ -55,8 +50,6 @@ class Writer {
         out_.fill(program_.tooth_stride == 1 ? NcLinesOfText{} : dialect_.loop.pick, values_);
       else if (t == "{first_tooth}")
         out_.comment(first_tooth_comment(program_));
-      else if (t.find("{blend}") != std::string::npos && keeps_exact_path(program_, dialect_))
-        out_.fill({dialect_.exact_path_mm <= header_.exact_path_mm ? dialect_.exact_path : dialect_.exact_stop}, values_);
       else
         out_.fill({t}, values_);
   }
@@ -394,11 +387,8 @@ class Writer {
 
 }  // namespace
 
-double granted_blend_mm(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
-  if (!dialect.blend) return 0;
-  if (!keeps_exact_path(program, dialect))
-    return header.blend_mm * (program.tcp == TcpMode::none ? dialect.blend_factor : dialect.tcp_blend_factor);
-  return dialect.exact_path_mm <= header.exact_path_mm ? dialect.exact_path_mm : 0;
+double granted_blend_mm(const AxisProgram&, const NcDialect& dialect, const NcHeader& header) {
+  return dialect.blend ? header.blend_mm : dialect.exact_path_mm;
 }
 
 Result<NcText> write_nc(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {

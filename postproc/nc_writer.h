@@ -21,7 +21,6 @@ struct NcHeader {
   std::vector<std::string> assumed;  ///< non-empty: a warning with each of them
   int program_number = 1001; ///< O word
   double blend_mm = 0.0003;  ///< how far the control may leave a corner: counts as deviation of the machine in every proof
-  double exact_path_mm = 0.0005;  ///< the same for a mode that keeps the path but for this; more: exact stops
   bool coolant = false;      ///< M8 with every operation
 };
 

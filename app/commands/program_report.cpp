@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 30;
 constexpr double kBlendShare = 0.15;      // of the gouge tolerance that the control may round corners by
-constexpr double kExactPathShare = 0.25;  // the same where only exact path mode or exact stops keep the path
 
 double shown(const AxisRange& axis, double value) { return axis.rotary ? degrees(value) : value; }
 
@@ -87,7 +86,6 @@ Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const J
   header.assumed = assumed;
   header.coolant = job.coolant != Coolant::off;
   header.blend_mm = std::min(header.blend_mm, kBlendShare * job.verify.gouge_tolerance_mm);
-  header.exact_path_mm = kExactPathShare * job.verify.gouge_tolerance_mm;
   auto text = clock.run("NC text", [&] { return write_nc(posted.axes, *dialect, header); });
   if (!text) return located(job, "machine.file", text.error());
   posted.blocks = text->blocks;

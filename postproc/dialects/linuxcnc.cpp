@@ -1,6 +1,6 @@
-// LinuxCNC 2.8 and later. G92.1 clears offsets that an earlier program left; G64 needs P, or the control leaves the path as
-// far as it likes, and P bounds X, Y, Z alone, so that programs whose cuts turn a rotary keep the exact path; blocks that hardly move X, Y, Z lose their time in G93 before 2.9.0, so they are printed in G94 with the
-// exact feed. The codes of TCP are remaps of the site: machine data.
+// LinuxCNC 2.8 and later. G92.1 clears offsets that an earlier program left. G61: what G64 P leaves of a corner is more than P, does
+// not hold for rotaries and saves no time (docs/dialects.md). Blocks that hardly move X, Y, Z lose their time in G93 before 2.9.0, so
+// they are printed in G94 with the exact feed. The codes of TCP are remaps of the site: machine data.
 #include "postproc/nc_dialect.h"
 
 namespace toothpath {
@@ -13,19 +13,14 @@ NcDialect linuxcnc_dialect() {
   d.min_feed_product = 0.2;
   d.max_line = 252;
   d.safe_start = {"G21 G17 G90 G94 G40 G49 G80", "G92.1"};
-  d.start = {"{safe_start}", "{offset}", "G64 P{blend} Q0"};
+  d.start = {"{safe_start}", "{offset}", "G61"};
   d.retract = {"G53 G0 Z{top}"};
   d.tool_change = {"T{tool} M6", "{safe_start}", "{offset}", "S{speed} M3"};
   d.compensation = d.tcp_compensation = {"G43 H{tool}"};
   d.operation_end = {"G94 F{free}"};
   d.end = {"G61", "G49"};
   d.frame_end = {"M2"};
-  d.blend = true;
-  d.blend_factor = 1.5;    // 1.2 and 5.7 were seen: tests/controller
-  d.tcp_blend_factor = 8;
-  d.exact_path = "G61";
-  d.exact_stop = "G61.1";
-  d.exact_path_mm = 0.0005;  // 0.37 um were seen: tests/controller
+  d.exact_path_mm = 0.0005;  // unless the machine says otherwise
   d.loop.form = NcLoop::Form::sub_program;
   d.loop.before = {"o{label} sub"};
   d.loop.after = {"o{label} endsub"};

@@ -31,20 +31,6 @@ class DangerModes : public EveryPost {
   }
 };
 
-/// A cutting block gives a rotary axis another word than it had.
-bool turns_in_cuts(const ModalRun& run) {
-  std::map<std::string, std::string> last;
-  bool turns = false;
-  for (const auto& b : run.blocks)
-    for (const char* axis : {"A", "B", "C"}) {
-      if (!b.has(axis)) continue;
-      const auto known = last.find(axis);
-      turns = turns || (!b.rapid && known != last.end() && known->second != b.words.at(axis));
-      last[axis] = b.words.at(axis);
-    }
-  return turns;
-}
-
 // 1: whatever the last program left, every modal group is set before anything moves, and again behind every tool change.
 TEST_F(DangerModes, SafeStartBeforeTheFirstMotion) {
   every_post([&] {
@@ -315,12 +301,11 @@ TEST_F(DangerModes, NoArcsNoCyclesNoRadiusCompensation) {
   });
 }
 
-// 19: smoothing never without its tolerance, and with LinuxCNC, where that does not hold for rotaries, never in a cut that turns one; what
-// is on in a cut is off at the end.
+// 19: smoothing never without its tolerance, and never with LinuxCNC, where that does not hold; what is on in a cut is off at the end.
 TEST_F(DangerModes, SmoothingHasItsToleranceAndEnds) {
   every_post([&] {
     const std::string d = post().dialect;
-    const std::regex bounded(R"(G64 P0\.0003 Q0|G641 ADIS=0\.0003|CYCL DEF 32\.1 T0\.0003)"), any(R"(\bG64\b|\bG64[1-5]\b|CYCL DEF 32\.1 |CYCLE832|G5\.1|G05|G8 P|COMPON|COMPCURV|COMPCAD)");
+    const std::regex bounded(R"(G641 ADIS=0\.0003|CYCL DEF 32\.1 T0\.0003)"), any(R"(\bG64\b|\bG64[1-5]\b|CYCL DEF 32\.1 |CYCLE832|G5\.1|G05|G8 P|COMPON|COMPCURV|COMPCAD)");
     every_job([&](const ModalRun& run, const auto&) {
       int on = 0, exact = 0;
       for (const auto& b : run.blocks) {
@@ -329,7 +314,7 @@ TEST_F(DangerModes, SmoothingHasItsToleranceAndEnds) {
           ++on;
         }
       }
-      if (d == "linuxcnc" && turns_in_cuts(run)) {
+      if (d == "linuxcnc") {
         for (const auto& b : run.blocks) exact += std::regex_search(b.code, std::regex(R"(\bG61\b)"));
         EXPECT_EQ(on, 0);
         EXPECT_EQ(exact, 2);  // at the start and at the end
@@ -337,7 +322,7 @@ TEST_F(DangerModes, SmoothingHasItsToleranceAndEnds) {
           if (b.moves && !b.rapid) {
             EXPECT_EQ(b.mode("smoothing"), "off") << b.line;
           }
-      } else if (d == "linuxcnc" || d == "siemens" || d == "heidenhain") {
+      } else if (d == "siemens" || d == "heidenhain") {
         EXPECT_EQ(on, 1);
         EXPECT_EQ(run.blocks.back().mode("smoothing"), "off");
         for (const auto& b : run.blocks)

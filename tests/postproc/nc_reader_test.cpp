@@ -96,7 +96,7 @@ TEST_P(RoundTrip, MeetsEveryRecord) {
     EXPECT_NEAR(o.back.greatest[a], r.max * scale, 1e-3) << r.letter;
   }
   for (const auto& motion : o.motions) {
-    EXPECT_LE(motion.deviation_mm, (motion.rapid ? 50 : 1) * 2e-4 * 1.2 + (motion.rapid ? 0 : std::max(NcHeader{}.blend_mm, NcHeader{}.exact_path_mm)) + 1e-8);
+    EXPECT_LE(motion.deviation_mm, (motion.rapid ? 50 : 1) * 2e-4 * 1.2 + (motion.rapid ? 0 : linuxcnc_dialect().exact_path_mm) + 1e-8);
     EXPECT_GE(motion.tooth, 0);
     EXPECT_LT(motion.tooth, 6);
   }
@@ -301,7 +301,7 @@ TEST_F(PlantedFault, SecondToothDiffers) {
 TEST(NcReader, RefusalsNameLineAndColumn) {
   const Machine m = trunnion();
   const auto control = control_of(m, standing(), tools());
-  const std::string start = "G21 G17 G90 G94 G40 G49 G80\nG54\n(OP 0 finishing)\nG53 G0 Z500\nT1 M6\nS100 M3\nG43 H1\n";
+  const std::string start = "G21 G17 G90 G94 G40 G49 G80 G61\nG54\n(OP 0 finishing)\nG53 G0 Z500\nT1 M6\nS100 M3\nG43 H1\n";
   const auto error = [&](const std::string& text) {
     NcControl c = *control;
     c.max_steps = 10000;
@@ -325,7 +325,10 @@ TEST(NcReader, RefusalsNameLineAndColumn) {
       {"o100 while [1]\no100 endwhile\n", "error: more than 10000 executed blocks"},
       {"G49\nG0 Z1\n", "p.ngc:9:4: error: Z word without tool length compensation"},
       {"T1 M6\n", "p.ngc:8:1: error: tool change while the spindle turns"},
-      {"G64\n", ""},
+      {"G64\n", "G64 without P leaves the path without limit"},
+      {"G64 P0 Q0\n", "G64 P0 leaves the path without limit"},
+      {"G64 P-0.001\n", "P and Q of G64 must not be negative"},
+      {"G64 P0.001 Q-1\n", "P and Q of G64 must not be negative"},
       {"G64 P0.001 Q0\nG0 A0 C0\nG0 X1 Y1\nG0 Z1\nG1 X2 F100\nG1 X1 C5\n", "p.ngc:13:7: error: G64 bounds X, Y and Z alone, this G1 turns a rotary axis: G61 or G61.1 is needed"},
       {"T9 M6\n", "tool 9 is not in the tool list"},
       {"G55\n", "work offset G55 is not defined"},
@@ -340,6 +343,11 @@ TEST(NcReader, RefusalsNameLineAndColumn) {
     EXPECT_NE(e, "none") << text;
     EXPECT_NE(e.find(expected), std::string::npos) << text << " gave " << e;
   }
+  std::string unsaid = start + "G1 X1 F100\n";
+  unsaid.erase(unsaid.find(" G61"), 4);
+  const auto r = execute_nc(unsaid, "p.ngc", *control, [](const ExecutedMove&) {});
+  ASSERT_FALSE(r);
+  EXPECT_EQ(r.error().text(), "p.ngc:8:4: error: G1 ahead of G61, G61.1 or G64 P: how far the control leaves the path would depend on the last program");
 }
 
 // Any bytes give an answer: mutations of a good program neither crash nor hang.

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 #include <regex>
 #include <sstream>
@@ -185,31 +187,73 @@ TEST(NcWriter, CommentsAreFiltered) {
   }
 }
 
-// P of G64 holds for X, Y, Z alone: where a cut turns a rotary, LinuxCNC is told to keep the path, as exactly as the tolerance needs it.
-TEST(NcWriter, CutsThatTurnARotaryKeepTheExactPath) {
-  const Machine m = trunnion();
-  const auto control = control_of(m, standing(), tools());
-  const auto corner_line = [&](const ClPath& path, double allowed, float counted) {
+// LinuxCNC is told to keep the path; what its servo period leaves of a corner is counted, as the machine says it.
+TEST(NcWriter, LinuxcncKeepsThePathAndCountsWhatItLeaves) {
+  Machine m = trunnion();
+  const auto counts = [&](const ClPath& path, double counted, const std::string& comment) {
+    const auto control = control_of(m, standing(), tools());
+    const auto dialect = dialect_of(m);
     const auto p = axis_program({path}, m, standing(), 3);
-    NcHeader header;
-    header.exact_path_mm = allowed;
-    const auto t = write_nc(*p, linuxcnc_dialect(), header);
-    EXPECT_EQ(static_cast<float>(granted_blend_mm(*p, linuxcnc_dialect(), header)), counted);
+    const auto t = write_nc(*p, *dialect, NcHeader{});
+    EXPECT_DOUBLE_EQ(granted_blend_mm(*p, *dialect, NcHeader{}), counted);
     int cuts = 0;
     const auto s = execute_nc(t->text, "p.ngc", *control, [&](const ExecutedMove& e) {
       if (e.rapid) return;
       ++cuts;
-      EXPECT_EQ(e.blend_mm, counted);
+      EXPECT_EQ(e.blend_mm, static_cast<float>(counted));
     });
     EXPECT_TRUE(s) << s.error().text();
     EXPECT_GT(cuts, 10);
-    for (const auto& line : lines(t->text))
-      if (line.rfind("G6", 0) == 0) return line;
-    return std::string();
+    const auto text = lines(t->text);
+    EXPECT_NE(std::find(text.begin(), text.end(), "G61"), text.end());
+    EXPECT_NE(std::find(text.begin(), text.end(), comment), text.end()) << comment;
+    EXPECT_EQ(t->text.find("G64"), std::string::npos);
   };
-  EXPECT_EQ(corner_line(sample_path(0.3, 0), 0.0005, 0.00045F), "G64 P0.0003 Q0");
-  EXPECT_EQ(corner_line(sample_path(0.3, 0.6), 0.0005, 0.0005F), "G61");
-  EXPECT_EQ(corner_line(sample_path(0.3, 0.6), 0.0004, 0), "G61.1");
+  const std::string usual = "(CORNERS WITHIN 0.0005 MM: TOOL ACCELERATION X SERVO PERIOD SQUARED IS AT MOST 0.002 MM)";
+  counts(sample_path(0.3, 0), 0.0005, usual);
+  counts(sample_path(0.3, 0.6), 0.0005, usual);
+  m.post.corner_tolerance_mm = 0.0001;
+  counts(sample_path(0.3, 0.6), 0.0001, "(CORNERS WITHIN 0.0001 MM: TOOL ACCELERATION X SERVO PERIOD SQUARED IS AT MOST 0.0004 MM)");
+  // Accelerations that are stated and leave more: 3000 mm/s^2 along X, 4000 along Y in 1 ms squared, a quarter of 5 um.
+  m.post.corner_tolerance_mm.reset();
+  m.tcp = TcpMode::angles;
+  m.post.tcp_on = {"M428"};
+  m.post.tcp_off = {"M429"};
+  m.chain.linear[0].max_acceleration = 3000 * 3600.0;
+  m.chain.linear[1].max_acceleration = 4000 * 3600.0;
+  EXPECT_NEAR(m.exact_corner_mm(), 0.00125, 1e-12);
+  EXPECT_EQ(dialect_of(m)->exact_path_mm, m.exact_corner_mm());
+  // 1000 deg/s^2 at the rim of the largest part, where the words are the joints.
+  m.chain.table[0].max_acceleration = radians(1000 * 3600.0);
+  EXPECT_NEAR(m.exact_corner_mm(), 0.00125, 1e-12);
+  m.tcp = TcpMode::none;
+  EXPECT_NEAR(m.exact_corner_mm(), 0.00125 + radians(1000) * m.largest_part_mm() / 2 * 1e-6 / 4, 1e-12);
+}
+
+// A text with G64 P: more than P is counted, as docs/dialects.md derives it, and lines that are joined without Q.
+TEST(NcReader, G64OfLinuxcncCountsMoreThanItsTolerance) {
+  const Machine m = trunnion();
+  auto control = control_of(m, standing(), tools());
+  const auto p = axis_program({sample_path(0.3, 0)}, m, standing(), 3);
+  const std::string text = write_nc(*p, *dialect_of(m), NcHeader{})->text;
+  const auto counted = [&](const std::string& word) {
+    std::string with = text;
+    with.replace(with.find("\nG61\n"), 5, "\n" + word);
+    double most = 0;
+    const auto s = execute_nc(with, "p.ngc", *control, [&](const ExecutedMove& e) { most = std::max(most, double(e.blend_mm)); });
+    EXPECT_TRUE(s) << s.error().text();
+    return most;
+  };
+  // Tip acceleration a = 2000 mm/s^2, period T = 1 ms, P in mm.
+  const auto bound = [](double a, double t, double tolerance) { return std::pow(std::sqrt(1.06 * tolerance) + t / 2 * std::sqrt(a / 2), 2) + 0.3 * a * t * t; };
+  EXPECT_NEAR(counted("G64 P0.0003 Q0"), bound(2000, 1e-3, 0.0003), 1e-9);
+  EXPECT_NEAR(counted("G64 P0.002 Q0"), bound(2000, 1e-3, 0.002), 1e-9);
+  EXPECT_NEAR(counted("G64 P0.002"), bound(2000, 1e-3, 0.002) + 0.002, 1e-9);
+  EXPECT_NEAR(counted("G64 P0.002 Q0.001"), bound(2000, 1e-3, 0.002) + 0.001, 1e-9);
+  EXPECT_NEAR(counted("G61.1"), 0.0005, 1e-9);
+  control->exact_path_mm = 300 * 1e-6 / 4;
+  EXPECT_NEAR(counted("G64 P0.0003 Q0"), bound(300, 1e-3, 0.0003), 1e-9);
+  EXPECT_NEAR(counted("G61"), 0.000075, 1e-9);
 }
 
 // Danger 7: a block that hardly moves X Y Z but turns keeps its time on a control that raises slow rates.

@@ -81,7 +81,7 @@ TEST_P(TcpRoundTrip, MeetsEveryRecord) {
   EXPECT_GT(o->comparison.fastest_ratio, 0.9);
   for (const auto& motion : o->motions)
     if (!motion.rapid) {
-      EXPECT_LE(motion.deviation_mm, 8 * NcHeader{}.blend_mm + 1e-8);
+      EXPECT_LE(motion.deviation_mm, linuxcnc_dialect().exact_path_mm + 1e-8);
       const bool cuts = (motion.tip_to - motion.tip_from).norm() > 1e-6;  // a turn above the part is cut by the bound of its whole
       EXPECT_LE(motion.axis_deviation, cuts ? 1.05e-4 : 1e-3);
     }
@@ -214,7 +214,7 @@ TEST(TcpReader, Refusals) {
     const Machine m = tcp_machine(dialect);
     const auto control = control_of(m, standing(), tools());
     const std::string start = dialect == "fanuc" ? "%\nO1 (X)\nG21 G17 G90 G94 G40 G80 G69\nG54\n(OP 0 finishing)\nG0 G49 G53 Z500.\nT1 M6\nS100 M3\n"
-                                                 : "G21 G17 G90 G94 G40 G49 G80\nG54\n(OP 0 finishing)\nG53 G0 Z500\nT1 M6\nS100 M3\nG43 H1\n";
+                                                 : "G21 G17 G90 G94 G40 G49 G80 G61\nG54\n(OP 0 finishing)\nG53 G0 Z500\nT1 M6\nS100 M3\nG43 H1\n";
     const auto r = execute_nc(start + body + (dialect == "fanuc" ? "M30\n%\n" : "M2\n"), "p", *control, [](const ExecutedMove&) {});
     return r ? std::string("none") : r.error().text();
   };
