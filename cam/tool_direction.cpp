@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "geometry/base/angle.h"
 
@@ -13,6 +14,15 @@ namespace {
 constexpr double kEnough = 2.0;   // mm: a gap beyond this is not measured further
 constexpr double kDeepest = 3.0;  // mm: how far a body in the way is followed
 constexpr double kResolution = 0.02;  // mm
+constexpr double kFluteSkin = 0.03;   // mm: the flute grazes the walls that it cuts; thinner by this it may cut nowhere
+
+/// The flute above the ball as a body. It stands on the side that is away from its own walls where these have draft; the other ring of
+/// teeth, across a relief groove, may still be in its way.
+std::optional<Frustum> flute_body(const ToolAssembly& tool) {
+  const double R = tool.radius_mm(), skin = std::min(kFluteSkin, 0.1 * R);
+  if (tool.flute_length_mm - R < skin) return std::nullopt;
+  return Frustum{R + skin, tool.flute_length_mm, R - skin, R - skin, "flute"};
+}
 
 std::vector<Vec3> some_centres(const std::vector<BallPass>& passes, std::size_t count) {
   std::vector<Vec3> all;
@@ -30,12 +40,15 @@ class Search {
   Search(const GearDistance& part, const BodyTree& tree, int zone, const OffsetSheet& sheet, const std::vector<BallPass>& passes,
          const ToolAssembly& tool, const DirectionOptions& options)
       : tree_(tree), sheet_(sheet), tool_(tool), o_(options), few_(some_centres(passes, 24)), many_(some_centres(passes, 400)),
-        frame_(pitch_frame(part, zone)) {
+        frame_(pitch_frame(part, zone)), beside_ring_(part.zones() > 1) {
+    if (beside_ring_) flute_ = flute_body(tool);
     choice_.zone = zone;
     choice_.fixed = false;
   }
 
   DirectionChoice run() {
+    // Beside another ring of teeth an axis that leans may bring the flute into it, an upright one never does.
+    if (beside_ring_ && frame_.up.z() < 1 - 1e-9) try_one(std::acos(frame_.up.z()), frame_.outwards.z() > 0 ? 0 : kPi);
     try_one(0, 0);
     // A job whose upright tool is clear needs no more of the map than its neighbourhood.
     const int step = choice_.fixed ? 10 : 5, widest = choice_.fixed ? 20 : 45;
@@ -87,6 +100,10 @@ class Search {
       worst = body.name;
     }
     return least;
+  }
+
+  [[nodiscard]] bool flute_cuts(const Vec3& axis) const {
+    return std::any_of(many_.begin(), many_.end(), [&](const Vec3& c) { return tree_.gap(*flute_, c - tool_.radius_mm() * axis, axis, 0, 1e-3).gap < 0; });
   }
 
   /// By how much a body that cuts in would have to be slimmer, and begin higher, to cut nowhere: how far a direction is from being clear.
@@ -145,6 +162,10 @@ class Search {
     } else {
       c.gap_mm = gap(axis, few_, c.worst_body);
       if (c.gap_mm >= o_.clearance_mm && !choice_.fixed) c.gap_mm = gap(axis, many_, c.worst_body);
+      if (c.gap_mm >= o_.clearance_mm && flute_ && flute_cuts(axis)) {
+        c.gap_mm = 0;
+        c.worst_body = flute_->name;
+      }
       c.clear = c.gap_mm >= o_.clearance_mm;
       if (c.clear && !choice_.fixed) take(axis, c, least_draft);
     }
@@ -155,9 +176,18 @@ class Search {
     choice_.fixed = true;
     choice_.axis = axis;
     choice_.lean_rad = std::atan2(std::hypot(axis.x(), axis.y()), axis.z());
+    if (choice_.lean_rad < 1e-12) {  // what rounding left of a turn back to the gear axis
+      choice_.axis = Vec3::UnitZ();
+      choice_.lean_rad = 0;
+    }
     choice_.clearance_mm = c.gap_mm;
     const std::string room = c.gap_mm >= kEnough ? fmt::format("more than {:.0f} mm", kEnough) : fmt::format("{:.3f} mm", c.gap_mm);
-    if (c.lean_rad == 0)
+    if (choice_.lean_rad == 0 && c.lean_rad > 0)
+      choice_.explanation = fmt::format(
+          "along the gear axis, {:.0f} deg from the normal of the pitch surface: the flute stays clear of the other ring of teeth, every "
+          "flank has draft (least cosine {:.3f}), shank and holder keep {} from the teeth",
+          degrees(c.lean_rad), least_draft, room);
+    else if (c.lean_rad == 0)
       choice_.explanation = fmt::format(
           "normal to the pitch surface: every flank has draft (least cosine {:.3f}), shank and holder keep {} from the teeth, "
           "and no axis needs to turn while cutting",
@@ -190,6 +220,8 @@ class Search {
   const DirectionOptions& o_;
   std::vector<Vec3> few_, many_;
   PitchFrame frame_;
+  bool beside_ring_;              ///< a double helical gear: another ring of teeth stands across the groove
+  std::optional<Frustum> flute_;  ///< asked for then
   DirectionChoice choice_;
 };
 

@@ -35,6 +35,30 @@ TEST(Direction, FatHolderOnAShortToolIsRefusedOrLeansAndSaysWhy) {
   }
 }
 
+// At a shaft angle of 100 deg the normal of the pitch surface leans by 10 deg. Along it the flute of a tool that runs out of one ring would cut
+// into the other, 1.4 mm away; the gear axis keeps clear of it.
+TEST(Direction, TheFluteStaysOutOfTheOtherRing) {
+  FaceGearParameters g;
+  g.teeth = 244;
+  g.shaper_teeth = 38;
+  g.module_mm = 1.25;
+  g.module_plane = ModulePlane::normal;
+  g.pressure_angle_rad = radians(20);
+  g.clearance_coefficient = 0.2;
+  g.shaft_angle_rad = radians(100);
+  g.shaper_tip_radius_mm = 0.3745;
+  g.reference_radius_mm = 188.073;
+  g.zones = {{radians(28.27), 186.017, 187.392}, {radians(-28.27), 188.754, 190.129}};
+  const auto job = test::planned(g, {test::ball_mill(1.25, 3.985, 1.25, 10.548, 10)}, {test::roughing(0, 0.8, 0.6, 0.075)});
+  for (const auto& d : job.plan.directions) {
+    EXPECT_TRUE(d.fixed);
+    EXPECT_EQ(d.lean_rad, 0);
+    EXPECT_NE(d.explanation.find("other ring"), std::string::npos) << d.explanation;
+  }
+  const GougeCheck check(*job.part, job.tools, job.check_options());
+  EXPECT_TRUE(check.passes(check.check(job.motions(), job.tool_of_operation())));
+}
+
 TEST(Body, GapAgainstSampledSurfaces) {
   for (const auto& name : test::gear_names()) {
     const FaceGear gear = test::made(test::gear_named(name));
