@@ -144,15 +144,19 @@ struct FingerGougeCheck::State {
     GougeResult& g = result.gouge;
     const AxialGap above = axial_gap(gear, m);
     const Vec3 tip = motion_tip(m, above.at), axis = motion_axis(m, above.at);
-    if (m.rapid && above.gap < 0) {
-      g.rapids_clear = false;
-      note_worst(g, place_of(gear, m, blank_place(gear, axis, tip), -above.gap, "flute", "blank, by a rapid"), -1e300);
-    }
     const auto need_clearance = [&](double gap, const Vec3& place, const std::string& body, const std::string& patch) {
       g.clearance_mm = std::min(g.clearance_mm, gap);
       if (gap < tol.clearance_mm) note_worst(g, place_of(gear, m, place, -gap, body, patch), -1e300);
     };
     const auto& bodies = hulls[static_cast<std::size_t>(operations[static_cast<std::size_t>(m.operation)].tool)];
+    // A rapid whose blank does not lie wholly behind the tip may still pass beside it: a tool that leans goes over the small end.
+    if (m.rapid && above.gap < 0)
+      for (const ToolHull& hull : bodies) {
+        const auto [gap, place] = nearest_obstacle(hull, blank, m);
+        if (gap >= 0) continue;
+        g.rapids_clear = false;
+        note_worst(g, place_of(gear, m, place, -gap, hull.name, "blank, by a rapid"), -1e300);
+      }
     for (const ToolHull& hull : bodies) {
       if (m.rapid || hull.name == "flute") continue;
       // Along the axis the gap costs nothing; where it is too small, an axis that leans may still leave more.

@@ -1,9 +1,12 @@
 #include "app/commands/bevel_files.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "app/report/deviation_vtp.h"
+#include "cam/finger_bodies.h"
+#include "cam/finger_milling.h"
 #include "cam/finger_obstacles.h"
 #include "geometry/base/angle.h"
 #include "geometry/bevel_mesh.h"
@@ -52,6 +55,21 @@ ClearanceBody bevel_clearance_body(const BevelGear& g) {
       body.z_min_mm = std::min(body.z_min_mm, rim.y());
       body.z_max_mm = std::max(body.z_max_mm, rim.y());
     }
+  return body;
+}
+
+ClearanceBody bevel_link_body(const BevelGear& g, const std::vector<ToolAssembly>& tools, const Machine& machine) {
+  ClearanceBody body = bevel_clearance_body(g);
+  if (machine.tcp == TcpMode::none) return body;
+  double below = 0;  // the tip; every axis stands at 90 deg + delta to the gear axis
+  for (const auto& tool : tools) {
+    const auto own = gear_for_finger_mill(g, tool);
+    if (!own) continue;  // its operation is refused
+    for (const auto& part : finger_bodies(own->cutter(), tool))
+      for (const Frustum& f : part.pieces)
+        below = std::max({below, f.radius_from * g.cos_delta() - f.from * g.sin_delta(), f.radius_to * g.cos_delta() - f.to * g.sin_delta()});
+  }
+  body.z_min_mm -= below;
   return body;
 }
 

@@ -15,6 +15,9 @@ namespace toothpath {
 
 /// The blank as a cylinder about the gear axis.
 [[nodiscard]] ClearanceBody bevel_clearance_body(const BevelGear& gear);
+/// The same for links: with TCP the tip keeps its height over the part while the tool leans over it, so that the body of the tool reaches below
+/// its tip; the cylinder is longer by that at the small end. Without TCP links go over the top of Z, and it is not.
+[[nodiscard]] ClearanceBody bevel_link_body(const BevelGear& gear, const std::vector<ToolAssembly>& tools, const Machine& machine);
 /// The same for the sketch of the set-up sheet.
 [[nodiscard]] PartOutline bevel_outline(const BevelGear& gear);
 

@@ -81,7 +81,7 @@ std::optional<Diagnostic> plan_and_check(BevelRun& run, const FingerGougeCheck& 
 /// Axis program, NC text on the disk, proof of those bytes. Nothing: done, and `report.reasons` says whether it is safe.
 std::optional<Diagnostic> post_and_prove(BevelRun& run, OutputDir& output, const FingerGougeCheck& check) {
   const auto paths = run.paths();
-  auto posted = post_program(run.checked, run.job, run.job.name, run.machine, run.gear->parameters().teeth, bevel_clearance_body(*run.gear), run.report.assumed,
+  auto posted = post_program(run.checked, run.job, run.job.name, run.machine, run.gear->parameters().teeth, bevel_link_body(*run.gear, run.job.tools, run.machine), run.report.assumed,
                              output, run.clock, run.restart);
   if (!posted) return posted.error();
   run.program = std::move(posted.value());
@@ -109,7 +109,7 @@ std::optional<Diagnostic> post_and_prove(BevelRun& run, OutputDir& output, const
   run.report.reasons = run.proof->reasons;
   if (run.restart)
     for (const auto& plan : run.plans) run.lines.push_back(lines_of_records(plan.path, run.proof->motions, run.proof->path_tolerance_mm));
-  if (auto done = note_restart(run.report, *run.program, output.final_path(run.program->file), run.job, run.machine, bevel_clearance_body(*run.gear), run.lines,
+  if (auto done = note_restart(run.report, *run.program, output.final_path(run.program->file), run.job, run.machine, bevel_link_body(*run.gear, run.job.tools, run.machine), run.lines,
                                run.clock);
       !done)
     return done.error();
