@@ -4,6 +4,7 @@
 
 #include "machines/machine_file.h"
 #include "postproc/axis_program.h"
+#include "postproc/work_offset.h"
 
 namespace toothpath {
 namespace {
@@ -71,6 +72,9 @@ ValueOrErrors<Machine> load_machine(const Job& job, std::optional<double> part_d
                              "{} has assumed values ({}); measure them, or accept them with accept_assumed = true", job.machine.file,
                              joined(machine.assumed_keys)));
   check_speeds(job, machine, errors);
+  if (job.setup)
+    if (const auto others = other_work_offsets(machine.dialect, job.setup->work_offset))
+      errors.push_back(fail_at(job.where("setup.work_offset"), "work_offset = \"{}\" is none of {}: it has {}", job.setup->work_offset, machine.name, *others));
   if (!errors.empty()) return errors;
   return machine;
 }

@@ -6,6 +6,7 @@
 
 #include "postproc/nc_execution.h"
 #include "postproc/nc_readers.h"
+#include "postproc/work_offset.h"
 #include "postproc/nc_scanner.h"
 
 namespace toothpath {
@@ -245,9 +246,9 @@ class Heidenhain {
     if (s.take("247 DATUM SETTING Q339=")) {
       const auto n = word_value(s);
       if (!n) return n.error();
-      if (!(*n >= 1 && *n <= 9) || *n != std::floor(*n)) return here(column, fmt::format("datum {} is not defined", *n));
-      const int k = static_cast<int>(*n);
-      return placed(column, execution_.select_offset(k <= 6 ? fmt::format("G{}", 53 + k) : fmt::format("G59.{}", k - 6)));
+      for (const auto& offset : control_.work_offsets)
+        if (preset_number(offset.first) == *n) return placed(column, execution_.select_offset(offset.first));
+      return here(column, fmt::format("datum {} is not defined", *n));
     }
     return here(column, "the cycle is not in the subset");
   }

@@ -150,6 +150,7 @@ class Interpreter {
         r.g61 = !r.g64;
         break;
       case 921: group = 11; break;
+      case 541: group = 12; r.offset = "G54.1"; break;
       case 690: group = 13; break;
       case 540: case 550: case 560: case 570: case 580: case 590: case 591: case 592: case 593: {
         group = 12;
@@ -158,7 +159,7 @@ class Interpreter {
       }
       default: return here(w.column, fmt::format("G{} is not in the subset", v));
     }
-    const bool foreign = linuxcnc_ ? tenths == 690 || tenths == 434 : (tenths == 921 || tenths == 610 || tenths == 611 || tenths == 640 || (tenths > 590 && tenths < 600));
+    const bool foreign = linuxcnc_ ? tenths == 690 || tenths == 434 || tenths == 541 : (tenths == 921 || tenths == 610 || tenths == 611 || tenths == 640 || (tenths > 590 && tenths < 600));
     if (foreign) return here(w.column, fmt::format("G{} is not in the dialect", v));
     if ((r.groups & (1U << group)) != 0) return here(w.column, "two G words of one modal group in a block");
     r.groups |= 1U << group;
@@ -167,6 +168,11 @@ class Interpreter {
   }
 
   Problem apply(Request& r) {
+    if (r.offset == "G54.1") {
+      if (!r.p || *r.p != std::floor(*r.p) || !(*r.p >= 1 && *r.p <= 300)) return here(r.column, "G54.1 needs P1 to P300");
+      r.offset = fmt::format("G54.1 P{}", static_cast<int>(*r.p));
+      r.p.reset();
+    }
     if ((r.p || r.q) && !r.g64 && (r.m.empty() || r.m.front() != 98)) return here(r.p_column, "P or Q without G64 or M98");
     if (r.l) return here(r.column, "L is not in the subset");
     if (r.g64 && (!r.p || *r.p == 0)) return here(r.column, fmt::format("G64 {} leaves the path without limit", r.p ? "P0" : "without P"));

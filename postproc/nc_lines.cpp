@@ -2,18 +2,12 @@
 
 #include "postproc/fixed_point.h"
 #include "postproc/nc_writer.h"
+#include "postproc/work_offset.h"
 
 namespace toothpath {
 namespace {
 
 constexpr double kFreeFeed = 1000;  // F that goes with G94 where nothing is cut, mm/min
-
-/// 1 for G54 .. 6 for G59, 7 and on for G59.1 ..
-int datum_number(const std::string& offset) {
-  if (offset.size() >= 3 && offset[0] == 'G' && offset[1] == '5' && offset[2] >= '4' && offset[2] <= '9')
-    return offset.size() == 5 ? 6 + (offset[4] - '0') : offset[2] - '3';
-  return 1;
-}
 
 }  // namespace
 
@@ -28,7 +22,7 @@ NcLines::Values program_values(const AxisProgram& program, const NcDialect& dial
   values["name"] = comment_text(header.job_name).substr(0, 32);
   values["id"] = program_id(header.job_name);
   values["offset"] = program.work_offset;
-  values["datum"] = std::to_string(datum_number(program.work_offset));
+  values["datum"] = std::to_string(preset_number(program.work_offset));
   values["blend"] = unsigned_value(header.blend_mm, 6);
   values["free"] = unsigned_value(kFreeFeed, 0);
   values["teeth"] = std::to_string(program.teeth);

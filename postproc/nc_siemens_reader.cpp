@@ -267,11 +267,11 @@ class Siemens {
   Problem g_word(Request& r, double v, int column) {
     unsigned group = 0;
     const int g = v == std::floor(v) ? static_cast<int>(v) : -1;
-    switch (g) {
+    switch (g >= 505 && g <= 599 ? 505 : g) {
       case 0: case 1: group = 1; r.motion = g; break;
       case 17: group = 6; break;
       case 40: group = 7; break;
-      case 54: case 55: case 56: case 57: group = 8; r.offset = fmt::format("G{}", g); break;
+      case 54: case 55: case 56: case 57: case 505: group = 8; r.offset = fmt::format("G{}", g); break;
       case 60: group = 10; r.g60 = true; break;
       case 641: group = 10; r.g641 = true; break;
       case 90: group = 14; execution_.set_absolute(); break;

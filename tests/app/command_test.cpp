@@ -1,5 +1,7 @@
 // The program from outside: exit codes, what lies in the output directory afterwards, faults of the disk, signals.
 #include <nlohmann/json.hpp>
+#include <regex>
+#include <tuple>
 
 #include "program.h"
 
@@ -192,6 +194,98 @@ TEST(Run, ASmallGearGoesTheWholeWay) {
   ASSERT_EQ(run_program({"run", kQuick, "--out", dir / "2", "--threads", "2"}).exit_code, 0);
   for (const char* name : {"program.ngc", "cl.csv", "gear.stl", "tooth.vtp", "inspection.csv", "limits.json", "setup.html"})
     EXPECT_EQ(file_text(dir / (std::string("1/") + name)), file_text(dir / (std::string("2/") + name))) << name;
+}
+
+// Every control has its own names of work offsets: written, read back, and refused where the control has none of that name.
+TEST(WorkOffset, IsThatOfTheControl) {
+  const std::string quick = file_text(kQuick);
+  const auto job_on = [&](const std::string& machine, const std::string& offset) {
+    std::string job = std::regex_replace(quick, std::regex("file = \"xyzac_large.toml\""), "file = \"" + machine + "\"\naccept_assumed = true");
+    job = std::regex_replace(job, std::regex("origin = .*"), "origin = [1.0, 2.0, 40.0]");
+    job = std::regex_replace(job, std::regex("work_offset_at = .*"), "work_offset_at = [1.0, 2.0, 30.0]");
+    return std::regex_replace(job, std::regex("work_offset = .*"), "work_offset = \"" + offset + "\"");
+  };
+  struct Case {
+    std::string machine, offset, extension, written;
+  };
+  for (const auto& [machine, offset, extension, written] :
+       {Case{"fanuc_ac.toml", "G54.1 P3", "nc", "\nG54.1 P3\n"}, Case{"siemens_ac.toml", "G505", "mpf", "\nG505\n"}, Case{"heidenhain_ac.toml", "12", "h", "Q339=+12\n"},
+        Case{"heidenhain_ac.toml", "G55", "h", "Q339=+2\n"}}) {
+    const TestDir dir;
+    write_file(dir / "job.toml", job_on(machine, offset));
+    const Finished run = run_program({"run", dir / "job.toml", "--out", dir / "out", "--quiet"});
+    EXPECT_EQ(run.exit_code, 0) << machine << " " << offset << " " << run.err;
+    if (run.exit_code != 0) continue;
+    EXPECT_NE(file_text(dir / ("out/program." + extension)).find(written), std::string::npos) << machine << " " << offset;
+  }
+  for (const auto& [machine, offset, named] :
+       {std::tuple{"siemens_ac.toml", "G58", "G505 to G599"}, std::tuple{"fanuc_ac.toml", "G59.1", "G54.1 P1 to P300"}, std::tuple{"xyzac_large.toml", "G54.1 P3", "G59.1 to G59.3"},
+        std::tuple{"heidenhain_ac.toml", "G505", "presets 1 to 99"}}) {
+    const TestDir dir;
+    write_file(dir / "job.toml", job_on(machine, offset));
+    const Finished run = run_program({"run", dir / "job.toml", "--out", dir / "out"});
+    EXPECT_EQ(run.exit_code, 3) << machine << " " << offset;
+    EXPECT_NE(run.err.find(named), std::string::npos) << run.err;
+  }
+}
+
+// The pitch angle of 15 deg lays the tool almost flat over the small end of the pinion. With the tip in control, links keep its height: the thick
+// flute reaches 10 mm below it.
+TEST(BevelLinks, AFlatToolPassesOverTheSmallEnd) {
+  const TestDir dir;
+  write_file(dir / "job.toml", R"(schema = 1
+name = "steep-pinion"
+
+[gear]
+type = "equal_base_circle_bevel_gear"
+teeth = 7
+pitch_angle = 15.0
+outer_transverse_module = 6.0
+pressure_angle = 22.5
+outer_spiral_angle = 5.0
+face_width = 6.0
+form = "single"
+hand = "right"
+addendum = 4.125
+dedendum = 5.156
+
+[machine]
+file = "fanuc_ac.toml"
+accept_assumed = true
+
+[setup]
+origin = [0.0, 0.0, 30.0]
+axis = "down"
+work_offset = "G54"
+work_offset_at = [0.0, 0.0, 0.0]
+
+[verify]
+gouge_tolerance = 0.003
+teeth = "one"
+
+[[tool]]
+number = 3
+type = "finger_mill"
+module = 3.938
+tip_radius = 0.681
+rack_depth = 4.125
+profile_height = 5.221
+length = 102.61
+shank_diameter = 28.871
+holder = [[32.0, 32.0, 40.0]]
+stick_out = 25.38
+flute_length = 13.377
+
+[[operation]]
+type = "finger_finishing"
+tool = 3
+speed = 5000
+feed = 100.0
+chord_tolerance = 0.005
+)");
+  const Finished run = run_program({"run", dir / "job.toml", "--out", dir / "out", "--quiet"});
+  const auto report = nlohmann::json::parse(file_text(dir / "out/report.json"));
+  EXPECT_TRUE(report["clearance"]["rapids_clear"].get<bool>()) << run.err;
 }
 
 }  // namespace
