@@ -21,7 +21,7 @@ constexpr Range kPosition{-100000, 100000, " mm"};
 
 std::vector<HolderSegment> read_holder(TableReader& table) {
   std::vector<HolderSegment> result;
-  const DocumentValue* value = table.value("holder");
+  const TomlValue* value = table.value("holder");
   if (!value) {
     table.refuse("holder", "[{}] lacks the key \"holder\"", table.path());
     return result;
@@ -30,10 +30,10 @@ std::vector<HolderSegment> read_holder(TableReader& table) {
     table.refuse("holder", "holder must be an array of [lower diameter, upper diameter, height] in mm, each above 0 and at most 2000");
     return std::vector<HolderSegment>{};
   };
-  const DocumentArray* segments = value->array();
+  const TomlArray* segments = value->array();
   if (!segments || segments->values.empty() || segments->values.size() > 100) return wrong();
   for (const auto& segment : segments->values) {
-    const DocumentArray* numbers = segment.array();
+    const TomlArray* numbers = segment.array();
     if (!numbers || numbers->values.size() != 3) return wrong();
     double read[3] = {};
     for (std::size_t i = 0; i < 3; ++i) {
@@ -183,7 +183,7 @@ Shaping read_shaping(TableReader& table) {
   s.circular_feed_mm = table.number("circular_feed", {0, 100, " mm", true}).value_or(0);
   s.radial_feed_mm = table.number("radial_feed", {0, 100, " mm", true}).value_or(0);
   s.over_run_mm = table.number("over_run", {0, 1000, " mm"}).value_or(0);
-  const DocumentValue* reference = table.value("offset_reference");
+  const TomlValue* reference = table.value("offset_reference");
   if (reference && !std::holds_alternative<std::string>(reference->data)) {
     s.offset_reference = Shaping::OffsetReference::given;
     s.offset_reference_mm = table.number("offset_reference", {0, 10000, " mm", true}).value_or(0);

@@ -6,9 +6,6 @@
 
 namespace toothpath {
 
-using DocumentValue = TomlValue;
-using DocumentArray = TomlArray;
-
 /// [gear] with type = "face_gear", its [[gear.zone]] tables, and [stock] where there is one.
 [[nodiscard]] FaceGearParameters read_face_gear(TableReader& gear, TableReader* stock, std::vector<std::string>& warnings);
 
