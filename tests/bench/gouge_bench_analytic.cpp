@@ -8,21 +8,11 @@
 #include "tests/bench/gouge_bench_cgal.h"
 #include "tests/bench/thread_seconds.h"
 #include "tests/support/sample_gears.h"
+#include "tests/support/sample_tools.h"
 #include "cam/gear_distance.h"
 
 namespace toothpath::bench {
 namespace {
-
-ToolAssembly mill() {
-  ToolAssembly t;
-  t.diameter_mm = 0.5;
-  t.flute_length_mm = 3.2;
-  t.shank_diameter_mm = 0.46;
-  t.length_mm = 88;
-  t.holder = {{10, 10, 30}, {32, 32, 30}};
-  t.stick_out_mm = 14;
-  return t;
-}
 
 struct Pose {
   Vec3 centre, axis;
@@ -79,7 +69,7 @@ Answer marched(const CgalTree& tree, const ToolAssembly& tool, const Pose& pose)
 
 void analytic_rows() {
   const FaceGear gear = test::made(test::quarter_dhfg());
-  const ToolAssembly tool = mill();
+  const ToolAssembly tool = test::ball_mill(0.5, 3.2, 0.46, 14, 10);
   const GearDistance part(gear, 1.0);
   const auto poses = poses_of(gear, part, tool);
   std::printf("\nanalytic engine of a face gear (180 teeth, two rings; ball R0.25; random poses in contact), the mesh is its own within the sag\n");

@@ -13,35 +13,16 @@
 
 #include "cam/gouge_check.h"
 #include "cam/plan.h"
-#include "geometry/base/angle.h"
+#include "tests/support/sample_gears.h"
+#include "tests/support/sample_tools.h"
 
 namespace {
 
 using namespace toothpath;
 
-FaceGearParameters spur(int teeth) {
-  FaceGearParameters g;
-  g.teeth = teeth;
-  g.shaper_teeth = 18;
-  g.module_mm = 2;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.shaper_tip_radius_mm = 0.6;
-  g.zones = {{0, teeth + 1.3, teeth + 3.3}};
-  return g;
-}
+FaceGearParameters spur(int teeth) { return test::transverse_gear(teeth, 18, 2, 0.6, {{0, teeth + 1.3, teeth + 3.3}}); }
 
-ToolAssembly mill() {
-  ToolAssembly t;
-  t.number = 1;
-  t.diameter_mm = 1;
-  t.flute_length_mm = 6;
-  t.shank_diameter_mm = 0.95;
-  t.length_mm = 80;
-  t.holder = {{10, 10, 30}, {32, 32, 30}};
-  t.stick_out_mm = 16;
-  return t;
-}
+ToolAssembly mill() { return test::ball_mill(1, 6, 0.95, 16, 10); }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -62,12 +43,7 @@ struct Planned {
 
 /// A finishing path of about `records` records: the cusp height decides. Passes repeat where the planner's own number is not reached.
 std::unique_ptr<Planned> plan(int teeth, std::size_t records) {
-  auto made = FaceGear::make(spur(teeth));
-  if (auto* refused = std::get_if<1>(&made)) {
-    std::fprintf(stderr, "%s\n", refused->front().diagnostic.message.c_str());
-    std::exit(1);
-  }
-  auto job = std::make_unique<Planned>(Planned{std::get<0>(std::move(made)), {mill()}, GearDistance(std::get<0>(FaceGear::make(spur(teeth))), 1.3), {}});
+  auto job = std::make_unique<Planned>(Planned{test::made(spur(teeth)), {mill()}, GearDistance(test::made(spur(teeth)), 1.3), {}});
   MillingOperation op;
   op.type = OperationType::finishing;
   op.speed_rpm = 20000;

@@ -5,25 +5,15 @@
 
 #include <map>
 #include <memory>
-#include <random>
 
 #include "cam/gouge_check.h"
 #include "cam/plan.h"
 #include "geometry/base/angle.h"
+#include "tests/support/random.h"
 #include "tests/support/sample_gears.h"
+#include "tests/support/sample_tools.h"
 
 namespace toothpath::test {
-
-/// Uniform numbers, the same on every machine.
-class Random {
- public:
-  explicit Random(unsigned seed) : generator_(seed) {}
-  double operator()(double low, double high) { return low + (high - low) * double(generator_() >> 11) * 0x1p-53; }
-  std::size_t index(std::size_t count) { return std::size_t(generator_() % count); }
-
- private:
-  std::mt19937_64 generator_;
-};
 
 inline const std::vector<std::string>& gear_names() {
   static const std::vector<std::string> names = {"dhfg", "offset", "spur", "conical"};
@@ -31,18 +21,6 @@ inline const std::vector<std::string>& gear_names() {
 }
 inline FaceGearParameters gear_named(const std::string& name) {
   return name == "dhfg" ? quarter_dhfg() : name == "offset" ? offset_gear() : name == "spur" ? small_spur() : conical_gear();
-}
-
-inline ToolAssembly ball_mill(double diameter, double flute, double shank, double stick_out, double holder) {
-  ToolAssembly t;
-  t.number = 1;
-  t.diameter_mm = diameter;
-  t.flute_length_mm = flute;
-  t.shank_diameter_mm = shank;
-  t.length_mm = 80;
-  t.holder = {{holder, holder, 30}, {32, 32, 30}};
-  t.stick_out_mm = stick_out;
-  return t;
 }
 
 inline MillingOperation roughing(int tool, double step_down, double step_over, double allowance) {
