@@ -309,26 +309,11 @@ Machine read_tree(const TomlValue& tree, const std::string& file, ReaderFindings
 }  // namespace
 
 MachineReading read_machine_text(std::string_view text, const std::string& file) {
-  MachineReading reading;
-  const auto tree = parse_machine_toml(text, file);
-  if (!tree) {
-    reading.errors.push_back(tree.error());
-    return reading;
-  }
-  ReaderFindings findings(machine_words());
-  Machine machine = read_tree(*tree, file, findings);
-  reading.errors = std::move(findings.errors);
-  sort_by_position(reading.errors);
-  if (reading.errors.empty()) reading.machine = std::move(machine);
-  return reading;
+  return read_machine_as<MachineReading>(text, file, read_tree);
 }
 
 MachineReading read_machine_file(const std::string& path) {
-  const auto text = read_machine_bytes(path);
-  if (text) return read_machine_text(*text, path);
-  MachineReading reading;
-  reading.errors.push_back(text.error());
-  return reading;
+  return read_machine_file_as<MachineReading>(path, read_machine_text);
 }
 
 Result<MachineKind> machine_kind_of(const std::string& path) {

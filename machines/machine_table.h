@@ -32,4 +32,33 @@ inline constexpr std::size_t kMaxMachineFileBytes = 1u << 20;
 /// dotted names, each of a value or a table of this file. Returns the names; records an error for a name that the file does not have.
 [[nodiscard]] std::vector<std::string> read_assumed(TableReader& root, const TomlValue& tree);
 
+/// A machine, or everything that is wrong with its file in the order of the file.
+/// @param Reading    has `machine`, an optional, and `errors`
+/// @param read_tree  the machine in a tree, its complaints to the findings
+template <typename Reading, typename ReadTree>
+[[nodiscard]] Reading read_machine_as(std::string_view text, const std::string& file, ReadTree read_tree) {
+  Reading reading;
+  const auto tree = parse_machine_toml(text, file);
+  if (!tree) {
+    reading.errors.push_back(tree.error());
+    return reading;
+  }
+  ReaderFindings findings(machine_words());
+  auto machine = read_tree(*tree, file, findings);
+  reading.errors = std::move(findings.errors);
+  sort_by_position(reading.errors);
+  if (reading.errors.empty()) reading.machine = std::move(machine);
+  return reading;
+}
+
+/// The same from a file; `read_text` reads its bytes.
+template <typename Reading, typename ReadText>
+[[nodiscard]] Reading read_machine_file_as(const std::string& path, ReadText read_text) {
+  const auto text = read_machine_bytes(path);
+  if (text) return read_text(*text, path);
+  Reading reading;
+  reading.errors.push_back(text.error());
+  return reading;
+}
+
 }  // namespace toothpath

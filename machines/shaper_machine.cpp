@@ -144,26 +144,11 @@ ShaperMachine read_tree(const TomlValue& tree, const std::string& file, ReaderFi
 }  // namespace
 
 ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file) {
-  ShaperMachineReading reading;
-  const auto tree = parse_machine_toml(text, file);
-  if (!tree) {
-    reading.errors.push_back(tree.error());
-    return reading;
-  }
-  ReaderFindings findings(machine_words());
-  ShaperMachine machine = read_tree(*tree, file, findings);
-  reading.errors = std::move(findings.errors);
-  sort_by_position(reading.errors);
-  if (reading.errors.empty()) reading.machine = std::move(machine);
-  return reading;
+  return read_machine_as<ShaperMachineReading>(text, file, read_tree);
 }
 
 ShaperMachineReading read_shaper_machine_file(const std::string& path) {
-  const auto text = read_machine_bytes(path);
-  if (text) return read_shaper_machine_text(*text, path);
-  ShaperMachineReading reading;
-  reading.errors.push_back(text.error());
-  return reading;
+  return read_machine_file_as<ShaperMachineReading>(path, read_shaper_machine_text);
 }
 
 }  // namespace toothpath
