@@ -97,18 +97,9 @@ TEST(RandomGears, APlanThatDoesNotCutOrARefusalWithItsReason) {
   EXPECT_GE(refused, 6);
 }
 
-/// Module 5 at 70 deg: the root stands far out along the shaper's axis.
 Asked steep_gear(double inner, double outer) {
   Asked a;
-  auto& g = a.gear;
-  g.teeth = 30;
-  g.shaper_teeth = 20;
-  g.module_mm = 5;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.shaft_angle_rad = radians(70);
-  g.shaper_tip_radius_mm = 1;
-  g.zones = {{0, inner, outer}};
+  a.gear = test::steep_gear(70, inner, outer);
   a.ball_radius = 0.9;
   a.scallop = 0.06;
   return a;

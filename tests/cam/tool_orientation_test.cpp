@@ -10,18 +10,7 @@ namespace {
 
 double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
-FaceGearParameters steep_gear() {
-  FaceGearParameters g;
-  g.teeth = 30;
-  g.shaper_teeth = 20;
-  g.module_mm = 5;
-  g.module_plane = ModulePlane::transverse;
-  g.pressure_angle_rad = radians(20);
-  g.shaper_tip_radius_mm = 1;
-  g.shaft_angle_rad = radians(105);
-  g.zones = {{0, 77.5, 85.5}};
-  return g;
-}
+FaceGearParameters steep_gear() { return test::steep_gear(105, 77.5, 85.5); }
 
 ToolAssembly short_tool(double stick_out = 12.0) {
   auto t = test::ball_mill(2, 6, 7.6, stick_out, 40);

@@ -139,6 +139,45 @@ TEST(AxisProgram, FeedIsThatOfTheTip) {
 }
 
 // Danger 20: random axis paths across C = 180 deg, no flip and no jump inside a pass.
+// The machine's largest cutting feed rules where the path asks for more; where it asks for less nothing changes.
+TEST(AxisProgram, NoTipIsFasterThanTheLargestCuttingFeed) {
+  const auto path = sample_path(0.35, 0.4);  // asks for 800
+  for (const double largest : {300.0, 900.0}) {
+    Machine m = trunnion();
+    m.max_cutting_feed = largest;
+    const auto program = axis_program({path}, m, standing(), 3);
+    ASSERT_TRUE(program) << program.error().message;
+    const auto& op = program->operations[0];
+    const auto& blocks = op.teeth[0].blocks;
+    double fastest = 0;
+    for (std::size_t i = 1; i < blocks.size(); ++i) {
+      if (blocks[i].kind != BlockKind::feed) continue;
+      const Vec3 a = pose(joints_of(*program, op, blocks[i - 1]), standing(), 95).tip,
+                 b = pose(joints_of(*program, op, blocks[i]), standing(), 95).tip;
+      fastest = std::max(fastest, (b - a).norm() / blocks[i].minutes);
+    }
+    EXPECT_NEAR(fastest, std::min(largest, 800.0), 0.01);
+  }
+}
+
+// Records that fall on the same words make no block of their own; their time is not lost.
+TEST(AxisProgram, RecordsWithoutABlockKeepTheirTime) {
+  ClPath path = sample_path(0.35, 0.0, 1);
+  path.records.resize(2);
+  const int steps = 4000;
+  const double feed = 0.5;    // so slow that nothing else rules
+  const Vec3 way(0, 0.1, 0);  // a step is a quarter of the last digit of a word
+  const ClRecord start = path.records.back();
+  for (int i = 1; i <= steps; ++i) path.records.push_back({start.tip + way * i / steps, start.axis, feed, MoveKind::feed, 0, 0});
+  const auto program = axis_program({path}, trunnion(), standing(), 1);
+  ASSERT_TRUE(program) << program.error().message;
+  EXPECT_GT(program->dropped_blocks, 1000u);
+  double minutes = 0;
+  for (const AxisBlock& b : program->operations[0].teeth[0].blocks)
+    if (b.kind == BlockKind::feed && b.record >= 2) minutes += b.minutes;
+  EXPECT_NEAR(minutes, way.norm() / feed, 0.01 * way.norm() / feed);
+}
+
 TEST(AxisProgram, NoFlipInsideAPass) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> lean(0.15, 0.7), start(-kPi, kPi), swing(-4, 4);

@@ -2,22 +2,16 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 #include <regex>
 #include <set>
 #include <sstream>
+
+#include "tests/support/files.h"
 
 namespace toothpath {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream out;
-  out << in.rdbuf();
-  return std::move(out).str();
-}
 
 /// "Suite.Name" of every GoogleTest case in the sources under tests.
 std::set<std::string> tests_in_sources() {
@@ -25,7 +19,7 @@ std::set<std::string> tests_in_sources() {
   const std::regex test(R"((?:^|\n)TEST(?:_F|_P)?\((\w+),\s*(\w+)\))");
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(TOOTHPATH_SOURCE_DIR) / "tests")) {
     if (entry.path().extension() != ".cpp") continue;
-    const std::string text = text_of(entry.path());
+    const std::string text = test::file_text(entry.path());
     for (std::sregex_iterator it(text.begin(), text.end(), test), end; it != end; ++it) names.insert((*it)[1].str() + "." + (*it)[2].str());
   }
   return names;
@@ -35,7 +29,7 @@ TEST(DangersTable, EveryRowNamesTestsThatExist) {
   constexpr int kDangers = 29;
   const auto known = tests_in_sources();
   ASSERT_GT(known.size(), 500u);
-  std::istringstream in(text_of(fs::path(TOOTHPATH_SOURCE_DIR) / "docs/dangers.md"));
+  std::istringstream in(test::file_text(fs::path(TOOTHPATH_SOURCE_DIR) / "docs/dangers.md"));
   const std::regex named(R"(`([A-Za-z0-9]+\.[A-Za-z0-9]+)`)");
   int row = 0;
   for (std::string line; std::getline(in, line);) {

@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <fstream>
-#include <sstream>
 
 #include "tests/postproc/post_forms.h"
+#include "tests/support/files.h"
 
 namespace toothpath {
 namespace {
@@ -50,12 +49,9 @@ TEST_P(GoldenPost, ByteForByte) {
   const auto text = text_of(form, *program);
   ASSERT_TRUE(text) << text.error().message;
   const std::string file = std::string(TOOTHPATH_SOURCE_DIR) + "/tests/golden/posts/" + g.file;
-  if (std::getenv("TOOTHPATH_WRITE_GOLDEN") != nullptr) std::ofstream(file, std::ios::binary) << text->text;
-  std::ifstream in(file, std::ios::binary);
-  ASSERT_TRUE(in) << file;
-  std::ostringstream expected;
-  expected << in.rdbuf();
-  EXPECT_EQ(text->text, expected.str());
+  if (std::getenv("TOOTHPATH_WRITE_GOLDEN") != nullptr) write_file(file, text->text);
+  ASSERT_NE(text->text, "");
+  EXPECT_EQ(text->text, file_text(file)) << file;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "postproc/axis_solution.h"
 #include "postproc/axis_words.h"
 #include "tests/postproc/nc_case.h"
+#include "tests/postproc/tooth_comparison.h"
 
 namespace toothpath {
 namespace {
@@ -83,20 +84,7 @@ TEST_P(KinematicClass, EndToEnd) {
       const auto motions = tool_motions(back->operations[0], back->copies, *control, m, standing(), 3, 1e-4, 1e-4);
       ASSERT_TRUE(motions);
       for (int k = 0; k < 3; ++k) {
-        ClPath turned = path;
-        const Mat3 turn = Eigen::AngleAxisd(2 * kPi * k / 3, Vec3::UnitZ()).toRotationMatrix();
-        for (auto& r : turned.records) {
-          r.tip = turn * r.tip;
-          r.axis = turn * r.axis;
-        }
-        std::vector<ToolMotion> tooth;
-        for (ToolMotion motion : *motions)
-          if (motion.tooth == k) {
-            motion.tooth = 0;
-            tooth.push_back(motion);
-          }
-        const std::vector<const ClPath*> list = {&turned};
-        const auto met = compare_with_cl(tooth, list, program->rounding_bound_mm + program->chord_bound_mm + 1e-4, 2e-3);
+        const auto met = compare_tooth(*motions, k, 3, path, program->rounding_bound_mm + program->chord_bound_mm + 1e-4, 2e-3);
         ASSERT_TRUE(met.complete) << "tooth " << k << ": " << met.message;
         EXPECT_LE(met.worst_mm, program->rounding_bound_mm + 1e-6);
         EXPECT_LE(met.worst_axis_rad, 4e-7);

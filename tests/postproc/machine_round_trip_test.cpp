@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "machines/machine_file.h"
 #include "tests/postproc/nc_case.h"
+#include "tests/postproc/tooth_comparison.h"
 
 namespace toothpath {
 namespace {
@@ -162,7 +161,7 @@ TEST(TcpTeeth, EveryToothIsTheTurnedPath) {
     ASSERT_TRUE(dialect);
     AxisOptions options = axis_options(*dialect, m);
     options.expand_teeth = true;
-    ClPath path = small_path(0.3, 0.4);
+    const ClPath path = small_path(0.3, 0.4);
     const auto program = AxisProgramTestAccess::build(std::vector{path}, short_tool(), setup, m, 4, kSmallBody, options);
     ASSERT_TRUE(program) << program.error().message;
     const auto text = write_nc(*program, *dialect, {});
@@ -172,20 +171,7 @@ TEST(TcpTeeth, EveryToothIsTheTurnedPath) {
     ASSERT_TRUE(back) << back.error().text();
     const auto motions = tool_motions(back->operations[0], back->copies, *control, m, setup, 4, 1e-4, 1e-4);
     for (int k = 0; k < 4; ++k) {
-      ClPath turned = path;
-      const Mat3 turn = Eigen::AngleAxisd(2 * kPi * k / 4, Vec3::UnitZ()).toRotationMatrix();
-      for (auto& r : turned.records) {
-        r.tip = turn * r.tip;
-        r.axis = turn * r.axis;
-      }
-      std::vector<ToolMotion> tooth;
-      for (ToolMotion motion : *motions)
-        if (motion.tooth == k) {
-          motion.tooth = 0;
-          tooth.push_back(motion);
-        }
-      const std::vector<const ClPath*> list = {&turned};
-      const auto met = compare_with_cl(tooth, list, program->rounding_bound_mm + 1e-6, 1e-3);
+      const auto met = compare_tooth(*motions, k, 4, path, program->rounding_bound_mm + 1e-6, 1e-3);
       EXPECT_TRUE(met.complete) << file << " tooth " << k << ": " << met.message;
     }
   }

@@ -1,16 +1,13 @@
 // `toothpath shaper` from job file to files on disk, and what it refuses: exit code 3, a place, no files.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
-#include <sstream>
-
 #include <nlohmann/json.hpp>
 
 #include "app/commands/shaper.h"
+#include "tests/support/files.h"
 
-namespace toothpath {
+namespace toothpath::test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -82,28 +79,14 @@ max = 36000.0
 max_speed = 7200
 )";
 
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const auto at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return text.replace(at, what.size(), by);
-}
-std::string bytes_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
 class ShaperCommand : public ::testing::Test {
  protected:
-  ShaperCommand() : folder_(fs::temp_directory_path() / ("shaper_command_" + std::to_string(::getpid()))) { fs::create_directories(folder_); }
-  ~ShaperCommand() override { fs::remove_all(folder_); }
   CommandOutcome run(const std::string& job, const std::string& machine = kMachine, const std::string& out = "out") {
-    std::ofstream(folder_ / "job.toml") << job;
-    std::ofstream(folder_ / "shaper.toml") << machine;
+    write_file(folder_ / "job.toml", job);
+    write_file(folder_ / "shaper.toml", machine);
     CommandRequest request;
-    request.job_file = (folder_ / "job.toml").string();
-    request.out_dir = (folder_ / out).string();
+    request.job_file = folder_ / "job.toml";
+    request.out_dir = folder_ / out;
     request.quiet = true;
     return run_shaper(request);
   }
@@ -111,7 +94,7 @@ class ShaperCommand : public ::testing::Test {
     const fs::path path = folder_ / out;
     return fs::exists(path) ? static_cast<std::size_t>(std::distance(fs::directory_iterator(path), fs::directory_iterator())) : 0;
   }
-  fs::path folder_;
+  TestDir folder_;
 };
 
 TEST_F(ShaperCommand, WritesEveryFileAndTheSameBytesAgain) {
@@ -119,11 +102,11 @@ TEST_F(ShaperCommand, WritesEveryFileAndTheSameBytesAgain) {
   ASSERT_EQ(outcome.exit_code, ExitCode::ok) << to_text(outcome.errors);
   ASSERT_EQ(run(kJob, kMachine, "again").exit_code, ExitCode::ok);
   for (const char* name : {"limits.json", "shaper.json", "shaper.html", "shaper_program.ngc"}) {
-    const auto text = bytes_of(folder_ / "out" / name);
+    const auto text = file_text(fs::path(folder_ / "out") / name);
     EXPECT_GT(text.size(), 100u) << name;
-    EXPECT_EQ(text, bytes_of(folder_ / "again" / name)) << name;
+    EXPECT_EQ(text, file_text(fs::path(folder_ / "again") / name)) << name;
   }
-  EXPECT_EQ(nlohmann::json::parse(bytes_of(folder_ / "out" / "shaper.json"))["machine"]["file"], "shaper.toml");
+  EXPECT_EQ(nlohmann::json::parse(file_text(folder_ / "out/shaper.json"))["machine"]["file"], "shaper.toml");
   // Neither planner, mesh nor check had a part in it.
   const auto report = nlohmann::json::parse(outcome.report_json);
   ASSERT_TRUE(report.contains("stages"));
@@ -166,4 +149,4 @@ TEST_F(ShaperCommand, RefusalsHaveAPlaceAndLeaveNoFile) {
 }
 
 }  // namespace
-}  // namespace toothpath
+}  // namespace toothpath::test

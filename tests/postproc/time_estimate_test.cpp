@@ -1,14 +1,13 @@
 // Run time with the accelerations of the axes: closed forms, and what must hold for every program.
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <random>
-#include <sstream>
 
 #include "machines/machine_file.h"
 #include "postproc/axis_time.h"
 #include "postproc/fixed_point.h"
 #include "tests/postproc/nc_case.h"
+#include "tests/support/files.h"
 
 namespace toothpath {
 namespace {
@@ -157,18 +156,7 @@ TEST(TimeEstimate, LoopAndTeethAgree) {
   EXPECT_NEAR(loop->accelerated.rapid, teeth->accelerated.rapid, 0.25 * loop->accelerated.rapid);
 }
 
-std::string nutating_file() {
-  std::ifstream in(std::string(TOOTHPATH_SOURCE_DIR) + "/machines/data/nutating_table.toml");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& by) {
-  const auto at = text.find(what);
-  EXPECT_NE(at, std::string::npos) << what;
-  return text.replace(at, what.size(), by);
-}
+std::string nutating_file() { return file_text(TOOTHPATH_SOURCE_DIR "/machines/data/nutating_table.toml"); }
 
 // The keys of the machine file: per second squared there, per minute squared inside; every axis or none.
 TEST(TimeEstimate, AccelerationsOfTheMachineFile) {

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <regex>
 #include <set>
+#include <tuple>
 
 #include "tests/postproc/post_forms.h"
 
@@ -52,6 +53,29 @@ TEST(ToothOrder, CutTeethDivideTheCircleEvenly) {
     if (z > 12) {
       EXPECT_GT(worst_gap(z, 1), 2.5) << z;
     }
+  }
+}
+
+/// Largest partial quotient of teeth / stride, in the continued fraction that ends with a 1.
+int largest_partial_quotient(int teeth, int stride) {
+  int largest = 0;
+  for (int a = teeth, b = stride; b != 0;) {
+    const int quotient = a / b, rest = a % b;
+    largest = std::max(largest, rest == 0 && quotient > 1 ? quotient - 1 : quotient);
+    a = b;
+    b = rest;
+  }
+  return largest;
+}
+
+// Among all strides up to half a turn that meet every tooth: the least largest quotient, and of those the nearest to the golden section.
+TEST(ToothOrder, StrideIsTheBestOfAll) {
+  const double golden = (3 - std::sqrt(5.0)) / 2;
+  for (int z = 5; z <= 400; ++z) {
+    std::vector<std::tuple<int, double, int>> all;
+    for (int s = 1; 2 * s <= z; ++s)
+      if (std::gcd(s, z) == 1) all.emplace_back(largest_partial_quotient(z, s), std::abs(s - golden * z), s);
+    EXPECT_EQ(spread_stride(z), std::get<2>(*std::min_element(all.begin(), all.end()))) << z;
   }
 }
 
