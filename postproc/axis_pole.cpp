@@ -115,19 +115,27 @@ class Handler {
                 path_.operation, i, degrees(least), rules_.letter, degrees(turned), degrees(kPoleTurn), advice);
   }
 
+  /// What helps where `tilt` cannot: the plan is not its own.
+  const char* instead_of_tilt() const {
+    return rules_.ball ? "directions that are fixed or prescribed by tool_axis are not moved; change them or lower post.pole_angle, or take \"slow\", \"hold\", "
+                         "\"through\" or \"retract\", or mount the part inclined"
+                       : "the axis of a finger mill follows from its flank and is not moved; \"slow\" (follows it exactly, at the speed of the rotary) and \"retract\" (turns "
+                         "outside the part) serve finger mills, or mount the part inclined";
+  }
+
   std::optional<Diagnostic> judge() const {
     if (rules_.option == PoleOption::tilt) {
       std::size_t worst = arcs_.size();
       for (std::size_t k = 0; k < arcs_.size(); ++k)
         if (arcs_[k].turn > 1e-9 && arcs_[k].least < rules_.keep_rad - 1e-6 && (worst == arcs_.size() || arcs_[k].least < arcs_[worst].least)) worst = k;
       if (worst < arcs_.size())
-        return fail("operation {} record {}: the tool axis comes to {:.4f} deg of the pole of {}, post.pole = \"tilt\" keeps {:.4f}: this plan is fixed, "
-                    "lower post.pole_angle or mount the part inclined",
-                    path_.operation, first_ + worst + 1, degrees(arcs_[worst].least), rules_.letter, degrees(rules_.keep_rad));
+        return fail("operation {} record {}: the tool axis comes to {:.4f} deg of the pole of {}, post.pole = \"tilt\" keeps {:.4f}: {}",
+                    path_.operation, first_ + worst + 1, degrees(arcs_[worst].least), rules_.letter, degrees(rules_.keep_rad), instead_of_tilt());
     }
     const bool changes = rules_.option == PoleOption::hold || rules_.option == PoleOption::through || rules_.option == PoleOption::retract;
     const bool refuses = rules_.option == PoleOption::error || rules_.option == PoleOption::tilt;
-    const std::string ways = "post.pole = \"slow\", \"hold\", \"through\" or \"retract\" goes past it, or mount the part inclined";
+    const std::string ways = rules_.ball ? "post.pole = \"slow\", \"hold\", \"through\" or \"retract\" goes past it, or mount the part inclined"
+                                         : "post.pole = \"slow\" or \"retract\" goes past it with a finger mill, or mount the part inclined";
     for (const auto& s : stretches_) {
       const auto i = static_cast<std::size_t>(std::ceil(s.nearest_s));
       if (refuses) return passes(std::max(i, first_ + 1), s.least, std::max(s.greatest_step, s.turned), ways);

@@ -151,6 +151,29 @@ TEST(Pole, TiltSaysHowNearThePlanComes) {
   EXPECT_TRUE(axis_program({sample_path(0.02, 0)}, pole_machine(PoleOption::tilt), standing(), 1));
 }
 
+// The axis of a finger mill follows from its flank: what serves it instead is named, and runs.
+TEST(Pole, TiltAndErrorNameWhatServesFingerMills) {
+  std::vector<ToolAssembly> finger = tools();
+  finger[0].type = CutterType::finger_mill;
+  const auto built = [&](const ClPath& path, PoleOption option) {
+    const Machine m = pole_machine(option);
+    return AxisProgramTestAccess::build(std::vector{path}, finger, standing(), m, 1, kBody, axis_options(*dialect_of(m), m));
+  };
+  const auto tilt = built(passing(0.3, radians(3), 0.1, 0.1, 40), PoleOption::tilt);
+  ASSERT_FALSE(tilt);
+  EXPECT_NE(tilt.error().message.find("keeps 5.0000: the axis of a finger mill follows from its flank and is not moved; \"slow\" (follows it exactly, at the speed of the rotary) "
+                                      "and \"retract\" (turns outside the part) serve finger mills, or mount the part inclined"),
+            std::string::npos)
+      << tilt.error().message;
+  const ClPath through = passing(0.3, 1e-4, 0.1, 0.1, 10);
+  const auto error = built(through, PoleOption::error);
+  ASSERT_FALSE(error);
+  EXPECT_NE(error.error().message.find("limit 30: post.pole = \"slow\" or \"retract\" goes past it with a finger mill, or mount the part inclined"), std::string::npos)
+      << error.error().message;
+  EXPECT_TRUE(built(through, PoleOption::slow));
+  EXPECT_TRUE(built(through, PoleOption::retract));
+}
+
 // Straight through: A changes its sign, C stands but for the bend. Held: A keeps its sign, C makes the half turn.
 TEST(Pole, ThroughChangesTheSideHoldDoesNot) {
   const ClPath path = passing(0.7, 1e-5, 0.1, 0.1, 12);
