@@ -17,6 +17,9 @@ constexpr double kDeepest = 3.0;      // mm: how far a body that cuts in is foll
 
 double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 
+/// Lean towards a side, deg, to the digits that are told: no -0.000.
+double lean_deg(const Vec3& axis, const Vec3& side, const Vec3& up) { return std::round(degrees(std::atan2(axis.dot(side), axis.dot(up))) * 1000) / 1000 + 0.0; }
+
 /// Slope at a key from the slopes of the stretches beside it (h mm wide): the weighted mean, limited so that the cubic does not overshoot; 0 at
 /// a turning point.
 double limited_slope(double left, double h_left, double right, double h_right) {
@@ -170,9 +173,8 @@ std::variant<Orientation, OrientationRefusal> prescribe_axes(const GearDistance&
   }
   if (worst.by > 0)
     return OrientationRefusal{fmt::format("with the ball at radius {:.3f}, height {:.3f} the prescribed axis leans {:.3f} deg outwards and {:.3f} deg aside, and {}",
-                                          radius(worst.point.centre), worst.point.centre.z(),
-                                          degrees(std::atan2(worst.axis.dot(frame.outwards), worst.axis.dot(frame.up))),
-                                          degrees(std::atan2(worst.axis.dot(frame.side), worst.axis.dot(frame.up))), worst.words)};
+                                          radius(worst.point.centre), worst.point.centre.z(), lean_deg(worst.axis, frame.outwards, frame.up),
+                                          lean_deg(worst.axis, frame.side, frame.up), worst.words)};
   return take_axes(std::move(made), prover.check(), tree, tool, passes);
 }
 
