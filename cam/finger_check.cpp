@@ -6,6 +6,8 @@
 #include <cmath>
 #include <optional>
 
+#include "cam/finger_bodies.h"
+#include "cam/finger_clearance.h"
 #include "cam/finger_deepest.h"
 #include "cam/finger_milling.h"
 #include "cam/finger_obstacles.h"
@@ -104,6 +106,8 @@ struct FingerGougeCheck::State {
   FingerCheckOptions opt;
   std::vector<std::unique_ptr<FingerTool>> states;  // by tool index, only those in use
   std::vector<std::vector<ToolHull>> hulls;         // the same
+  std::vector<std::vector<Frustum>> shank_holder;   // the same
+  FingerClearance part;
   CoaxialBody blank;
   std::vector<CoaxialBody> beside;
   std::optional<Diagnostic> error;
@@ -111,9 +115,10 @@ struct FingerGougeCheck::State {
 
   State(const BevelGear& g, std::span<const ToolAssembly> t, std::span<const MillingOperation> o, const Tolerances& tolerances,
         const FingerCheckOptions& options)
-      : gear(g), tools(t.begin(), t.end()), operations(o.begin(), o.end()), tol(tolerances), opt(options), blank(blank_body(g)), beside(bodies_beside_teeth(g)) {
+      : gear(g), tools(t.begin(), t.end()), operations(o.begin(), o.end()), tol(tolerances), opt(options), part(g), blank(blank_body(g)), beside(bodies_beside_teeth(g)) {
     states.resize(tools.size());
     hulls.resize(tools.size());
+    shank_holder.resize(tools.size());
     for (const auto& op : operations) {
       const auto index = static_cast<std::size_t>(op.tool);
       if (states[index]) continue;
@@ -124,6 +129,9 @@ struct FingerGougeCheck::State {
       }
       states[index] = std::make_unique<FingerTool>(*own, gear, tools[index]);
       hulls[index] = tool_hulls(own->cutter(), tools[index]);
+      ToolAssembly whole = tools[index];
+      whole.flute_length_mm = finger_flute_end(own->cutter(), whole);
+      shank_holder[index] = shank_and_holder(whole);
     }
     points = wall_points(gear, opt.rows, opt.columns);
   }
@@ -139,13 +147,19 @@ struct FingerGougeCheck::State {
     return nullptr;
   }
 
-  /// Shank, holder and flute against blank, hub and shaft, one motion. False: the motion stays above the teeth.
-  bool judge_bodies(const ToolMotion& m, const FingerTool& tool, FingerCheckResult& result) const {
+  struct BodiesVerdict {
+    bool among_teeth = false;  ///< a feed that comes lower than the tips
+    double clearance_mm = std::numeric_limits<double>::infinity();  ///< proven, of shank and holder
+  };
+
+  /// Shank, holder and flute against blank, hub and shaft, one motion.
+  BodiesVerdict judge_bodies(const ToolMotion& m, const FingerTool& tool, FingerCheckResult& result) const {
     GougeResult& g = result.gouge;
+    BodiesVerdict out;
     const AxialGap above = axial_gap(gear, m);
     const Vec3 tip = motion_tip(m, above.at), axis = motion_axis(m, above.at);
     const auto need_clearance = [&](double gap, const Vec3& place, const std::string& body, const std::string& patch) {
-      g.clearance_mm = std::min(g.clearance_mm, gap);
+      out.clearance_mm = std::min(out.clearance_mm, gap);
       if (gap < tol.clearance_mm) note_worst(g, place_of(gear, m, place, -gap, body, patch), -1e300);
     };
     const auto& bodies = hulls[static_cast<std::size_t>(operations[static_cast<std::size_t>(m.operation)].tool)];
@@ -180,7 +194,24 @@ struct FingerGougeCheck::State {
           note_worst(g, place_of(gear, m, place, -gap, hull.name, body.name), tol.gouge_mm);
         }
       }
-    return !m.rapid && above.gap < 0;
+    g.clearance_mm = std::min(g.clearance_mm, out.clearance_mm);
+    out.among_teeth = !m.rapid && above.gap < 0;
+    return out;
+  }
+
+  /// Shank and holder against the finished part: the motions with the least proven gaps first, until no other can come nearer.
+  void judge_clearance(std::span<const ToolMotion> local, std::span<const double> proven, GougeResult& g) const {
+    std::vector<std::size_t> order;
+    for (std::size_t k = 0; k < proven.size(); ++k)
+      if (std::isfinite(proven[k])) order.push_back(k);
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return proven[a] < proven[b]; });
+    FoundGap found;
+    for (const std::size_t k : order) {
+      if (proven[k] >= found.gap_mm) break;
+      for (const Frustum& body : shank_holder[static_cast<std::size_t>(operations[static_cast<std::size_t>(local[k].operation)].tool)])
+        found = part.least(body, local[k], found);
+    }
+    g.clearance_measured_mm = found.gap_mm;
   }
 
   /// What one motion may do to walls and root: proven, not measured.
@@ -286,7 +317,7 @@ FingerCheckResult FingerGougeCheck::verify(std::span<const ToolMotion> given) co
   const State& s = *state_;
   FingerCheckResult result;
   result.gouge.required_clearance_mm = s.tol.clearance_mm;
-  result.gouge.clearance_mm = std::numeric_limits<double>::infinity();
+  result.gouge.clearance_mm = result.gouge.clearance_measured_mm = std::numeric_limits<double>::infinity();
   result.gouge.motions = given.size();
 
   // Bounds: every motion of every tooth.
@@ -294,10 +325,15 @@ FingerCheckResult FingerGougeCheck::verify(std::span<const ToolMotion> given) co
   local.reserve(given.size());
   for (const auto& m : given) local.push_back(turned(m, s.gear.pitch()));
   std::vector<State::MotionDepth> depths(local.size());
+  std::vector<double> clearances(local.size(), std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < local.size(); ++k)
-    if (const FingerTool* tool = s.tool_of(local[k].operation); tool && s.judge_bodies(local[k], *tool, result))
-      depths[k] = s.judge_poses(local[k], *tool, result);
+    if (const FingerTool* tool = s.tool_of(local[k].operation)) {
+      const State::BodiesVerdict bodies = s.judge_bodies(local[k], *tool, result);
+      clearances[k] = bodies.clearance_mm;
+      if (bodies.among_teeth) depths[k] = s.judge_poses(local[k], *tool, result);
+    }
   s.judge_deepest(local, depths, result);
+  s.judge_clearance(local, clearances, result.gouge);
 
   // Measured: walls and ridges, first tooth present.
   const std::vector<FingerCut> cuts = s.cuts_of_first_tooth(local);
@@ -336,7 +372,7 @@ Result<CheckedClPath> FingerGougeCheck::approve(ClPath path) const {
     FingerCheckResult one;
     one.gouge.clearance_mm = std::numeric_limits<double>::infinity();
     State::MotionDepth walls;
-    if (s.judge_bodies(m, *tool, one)) walls = s.judge_poses(m, *tool, one);
+    if (s.judge_bodies(m, *tool, one).among_teeth) walls = s.judge_poses(m, *tool, one);
     const GougeResult& g = one.gouge;
     const auto refuse = [&](const std::string& what) {
       return fail_as(DiagnosticKind::verification, "operation {} record {}: {}", path.operation, m.line, what);

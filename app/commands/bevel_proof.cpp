@@ -49,6 +49,7 @@ void take_worse(FingerCheckResult& all, FingerCheckResult one) {
   a.measured_mm = std::max(a.measured_mm, b.measured_mm);
   if (b.bound_mm > a.bound_mm) a.bound_mm = b.bound_mm, a.bound_line = b.bound_line;
   a.clearance_mm = std::min(a.clearance_mm, b.clearance_mm);
+  a.clearance_measured_mm = std::min(a.clearance_measured_mm, b.clearance_measured_mm);
   a.rapids_clear = a.rapids_clear && b.rapids_clear;
   a.motions += b.motions;
   a.distance_queries += b.distance_queries;

@@ -41,7 +41,10 @@ Json place_json(const WorstPlace& place) {
 void add_proof(Json& json, const RunReport& r) {
   if (r.gouge) {
     json["gouge_um"] = {{"measured", um(r.gouge->measured_mm)}, {"bound", um(r.gouge->bound_mm)}, {"tolerance", um(r.gouge_tolerance_mm)}};
-    json["clearance"] = {{"least", r.gouge->clearance_mm}, {"required", r.gouge->required_clearance_mm}, {"rapids_clear", r.gouge->rapids_clear}};
+    json["clearance"] = {{"least", r.gouge->clearance_mm},
+                         {"measured", r.gouge->clearance_measured_mm},
+                         {"required", r.gouge->required_clearance_mm},
+                         {"rapids_clear", r.gouge->rapids_clear}};
     Json worst = Json::array();
     for (const auto& place : r.gouge->worst) worst.push_back(place_json(place));
     json["worst_places"] = std::move(worst);

@@ -65,6 +65,8 @@ TEST_F(BevelCommand, RunIsVerifiedWithItsNumbers) {
   EXPECT_LE(r["excess_um"]["finished"]["bound"].get<double>(), 0.5 + 1.5);
   EXPECT_LE(r["ridge_mm"]["reached"].get<double>(), r["ridge_mm"]["requested"].get<double>());
   EXPECT_LT(r["clearance"]["least"].get<double>(), 1.0) << "shank above the tips";
+  EXPECT_GE(r["clearance"]["measured"].get<double>(), r["clearance"]["least"].get<double>());
+  EXPECT_LT(r["clearance"]["measured"].get<double>(), 1.0) << "at the tip edges beside the space";
 }
 
 TEST_F(BevelCommand, TwoAxesMoveAndTheReportSaysSo) {
