@@ -33,6 +33,10 @@ struct PostSettings {
   std::optional<bool> index_loop;      ///< tooth indexing as a loop or sub-program (true) or written out (false)
   std::vector<std::string> tcp_on;     ///< blocks that switch TCP on, e.g. {"M428"}
   std::vector<std::string> tcp_off;    ///< and off
+  /// Blocks that switch the control's own smoothing on ahead of the teeth of an operation and off behind them; empty: the dialect's way.
+  std::vector<std::string> smoothing_on, smoothing_off;
+  std::optional<double> smoothing_tolerance_mm;        ///< stated by the shop: the tip leaves the path by no more while it is on
+  std::optional<double> smoothing_axis_tolerance_rad;  ///< the same of the tool axis; not stated: no cut may turn a rotary
   std::optional<double> corner_tolerance_mm;  ///< LinuxCNC: the tip is off a corner of its path by no more in exact path mode
   LengthReference length_reference = LengthReference::tip;
   PoleOption pole = PoleOption::error;

@@ -228,6 +228,13 @@ void read_post(TableReader post, PostSettings& settings) {
   if (post.has("tcp_on")) settings.tcp_on = post.ascii_list("tcp_on").value_or(std::vector<std::string>{});
   if (post.has("tcp_off")) settings.tcp_off = post.ascii_list("tcp_off").value_or(std::vector<std::string>{});
   if (post.has("corner_tolerance")) settings.corner_tolerance_mm = post.number("corner_tolerance", Range::positive(0.1, " mm"));
+  if (post.has("smoothing_on")) {
+    settings.smoothing_on = post.ascii_list("smoothing_on").value_or(std::vector<std::string>{});
+    settings.smoothing_off = post.ascii_list("smoothing_off").value_or(std::vector<std::string>{});
+    settings.smoothing_tolerance_mm = post.number("smoothing_tolerance", Range::positive(1.0, " mm"));
+  }
+  if (post.has("smoothing_axis_tolerance"))
+    if (const auto angle = post.number("smoothing_axis_tolerance", Range::positive(1.0, " deg"))) settings.smoothing_axis_tolerance_rad = radians(*angle);
   if (post.has("length_reference"))
     if (const auto word = post.word("length_reference", {"tip", "centre"}))
       settings.length_reference = *word == "tip" ? LengthReference::tip : LengthReference::centre;

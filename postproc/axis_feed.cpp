@@ -126,6 +126,7 @@ void ToothBuilder::note_bounds(const Joints& a, const Joints& b, const TablePose
   double arm = words_.length();
   for (const auto& axis : chain_.head) arm += 2 * axis.point_mm.norm();
   if (!chain_.head.empty()) reach = std::max(reach, arm);
+  program_.tip_reach_mm = std::max(program_.tip_reach_mm, reach);
   reach += 0.5 * (dx + w * reach);
   program_.chord_bound_mm = std::max(program_.chord_bound_mm, (w * w * reach + 2 * w * dx) / 8);
 }

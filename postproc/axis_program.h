@@ -132,6 +132,7 @@ struct AxisProgram {
   int index_sign = 1;                       ///< word of tooth k = word + index_sign * k * 360 / z
   TcpMode tcp = TcpMode::none;              ///< how the blocks of a cut are meant
   bool turns_in_cuts = false;               ///< some feed block moves a rotary; the index does not count
+  double tip_reach_mm = 0;                  ///< greatest distance of the tip from a rotary axis in blocks that turn, without TCP
   bool tcp_starts_at_zero = false;          ///< as in the options
   int frame_sign = 1;                       ///< loop with TCP: the frame of tooth k is turned by frame_sign * k * 360 / z about +Z
   double retract_z_mm = 0;                  ///< G53 Z, machine coordinates of the gauge line

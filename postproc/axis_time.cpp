@@ -9,6 +9,7 @@
 namespace toothpath {
 namespace {
 
+constexpr const char* kAcceleration = "acceleration";
 constexpr double kRuled = 1.01;             // a feed block that takes longer than this share of its time is ruled by acceleration
 constexpr double kLeastShare = 1e-9;        // of a corner: two blocks that could not be joined at all
 constexpr double kLeastBlockMs = 1.0;       // of a control that states none
@@ -96,15 +97,17 @@ void estimate_times(AxisProgram& program, const Machine& machine) {
   bool known = false;
   for (auto& op : program.operations) {
     op.accelerated = {};
-    const int copies = program.loop ? program.teeth : 1;
+    const int cut = program.teeth - op.first_place, copies = program.loop ? cut : 1;
     for (const auto& tooth : op.teeth) {
       if (tooth.blocks.empty()) continue;
       if (!known) stands = tooth.blocks.front();
       known = true;
-      const auto times = accelerated_times(tooth.blocks, stands, program, op.tool_length_mm, machine);
+      const auto first = accelerated_times(tooth.blocks, stands, program, op.tool_length_mm, machine);
+      // In a loop the other teeth begin where the one before has ended; the turn of the index is counted below.
+      const auto times = copies > 1 ? accelerated_times(tooth.blocks, tooth.blocks.back(), program, op.tool_length_mm, machine) : first;
       for (std::size_t i = 0; i < times.size(); ++i) {
         const AxisBlock& b = tooth.blocks[i];
-        (b.kind == BlockKind::feed ? op.accelerated.feed : op.accelerated.rapid) += copies * times[i];
+        (b.kind == BlockKind::feed ? op.accelerated.feed : op.accelerated.rapid) += first[i] + (copies - 1) * times[i];
         if (b.kind != BlockKind::feed) continue;
         if (times[i] > kRuled * b.minutes) ++ruled;
         else ++program.time_ruled[b.ruler];
@@ -116,16 +119,19 @@ void estimate_times(AxisProgram& program, const Machine& machine) {
     for (const auto& tooth : op.teeth)
       for (const auto& b : tooth.blocks) blocks += b.kind == BlockKind::feed ? 0 : copies * b.minutes;
     const double index = std::max(0.0, op.rapid_minutes - blocks);
-    if (program.loop && program.teeth > 1 && index > 1e-12) {
+    if (program.loop && cut > 1 && index > 1e-12) {
       const RotaryAxis& axis = machine.chain.table[0];
-      const int turns = program.teeth - 1;
+      const int turns = cut - 1;
       op.accelerated.rapid += turns * time_from_rest(index * axis.max_speed / turns, axis.max_speed, axis.max_acceleration);
     }
     program.accelerated.feed += op.accelerated.feed;
     program.accelerated.rapid += op.accelerated.rapid;
   }
-  program.time_rulers.emplace_back("acceleration");
-  program.time_ruled.push_back(ruled);
+  if (program.time_rulers.empty() || program.time_rulers.back() != kAcceleration) {  // else the program is part of one that has been timed
+    program.time_rulers.emplace_back(kAcceleration);
+    program.time_ruled.push_back(0);
+  }
+  program.time_ruled.back() = ruled;
 }
 
 }  // namespace toothpath

@@ -33,6 +33,8 @@ class Builder {
 
   AxisProgram build() && {
     program_.turns_in_cuts = true;
+    for (std::size_t k = 0; k < machine_.chain.rotary_count(); ++k)
+      program_.tip_reach_mm = std::max(program_.tip_reach_mm, (machine_.chain.rotary(k).point_mm - test_.point_mm).norm() + test_.tool_length_mm);
     AxisOperation op;
     op.type = "self_test";
     op.tool_number = 1;
@@ -130,6 +132,8 @@ AxisProgram self_test_program(const SelfTest& test, const Machine& machine, cons
 NcDialect in_air(NcDialect dialect) {
   // Everything but the start of the spindle: the machinist stands beside the indicator.
   std::erase_if(dialect.tool_change, [](const std::string& line) { return line == "M3" || line.ends_with(" M3"); });
+  dialect.smoothing_on.clear();  // nothing is cut
+  dialect.smoothing_off.clear();
   return dialect;
 }
 

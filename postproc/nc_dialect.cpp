@@ -35,6 +35,18 @@ Result<NcDialect> dialect_of(const Machine& machine) {
   }
   if (machine.tcp != TcpMode::none && (d->tcp_on.empty() || d->tcp_off.empty()))
     return fail("machine \"{}\": dialect \"{}\" has no TCP: tcp = \"none\" (joint output) is supported", machine.name, d->name);
+  if (!machine.post.smoothing_on.empty()) {
+    if (!d->takes_smoothing)
+      return fail("machine \"{}\": post.smoothing_on: dialect \"{}\" has its own words for what may be left of corners", machine.name, d->name);
+    if (machine.post.smoothing_off.empty() || !machine.post.smoothing_tolerance_mm)
+      return fail("machine \"{}\": post.smoothing_on needs post.smoothing_off and post.smoothing_tolerance", machine.name);
+    d->smoothing_on = machine.post.smoothing_on;
+    d->smoothing_off = machine.post.smoothing_off;
+    d->smoothing_mm = *machine.post.smoothing_tolerance_mm;
+    d->smoothing_axis_rad = machine.post.smoothing_axis_tolerance_rad;
+    d->blend = false;
+    std::erase_if(d->start, [](const std::string& line) { return line.find("{blend}") != std::string::npos; });
+  }
   if (machine.tcp == TcpMode::vectors && d->vector_words[0].empty())
     return fail("machine \"{}\": dialect \"{}\" has no tool vectors: tcp = \"none\" and \"angles\" are supported", machine.name, d->name);
   return d;

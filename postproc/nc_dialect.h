@@ -2,7 +2,7 @@
 // file a dialect under postproc/dialects; docs/dialects.md says how to add one.
 //
 // Lines are templates: {offset} G54 .., {datum} 1 for G54 and so on, {tool} number, {speed} 1/min, {top} machine Z of the
-// retract, {work_top} the same as a Z word with this tool's length, {z} Z word of the block that switches TCP on, {blend} mm,
+// retract, {work_top} the same as a Z word with this tool's length, {z} Z word of the block that switches TCP on, {blend} mm, {blend_axis} deg,
 // {free} a feed where nothing is cut, {teeth}, {last} = teeth - 1, {label} and {label+1} numbers that belong to the operation
 // alone, {sign} and {frame_sign} "-" or nothing, {number} and {name} of the program, {id} its name in letters and digits. In the
 // loop over the teeth: {first} place of the order that it begins with, {stride} of the order, {tooth} the variable that holds the
@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -84,6 +85,15 @@ struct NcDialect {
   NcLinesOfText coolant_on = {"M8"}, coolant_off = {"M9"}, spindle_off = {"M5"};
   bool blend = false;                    ///< `start` lets the control leave corners by {blend}: counts as deviation
   double exact_path_mm = 0;              ///< without `blend`: the tip is off a corner by up to this all the same
+  /// {blend} is not a distance from the path but the way ahead of and behind a corner within which every axis may leave it (G641 ADIS).
+  bool blend_is_way = false;
+  /// With it, where cuts turn a rotary without TCP: all {axes} are the path, a rotary {axis} at the {radius} mm; at the end none is named.
+  std::string path_group, path_radius, path_group_end;
+  bool blend_axis = false;               ///< `start` lets the control lean the tool by {blend_axis} deg while TCP is on
+  bool takes_smoothing = false;          ///< the machine file may state lines that switch the control's own smoothing
+  NcLinesOfText smoothing_on, smoothing_off;  ///< those lines, ahead of the teeth of an operation and behind them; instead of `blend`
+  double smoothing_mm = 0;               ///< what the machine file states: the tip leaves the path by no more
+  std::optional<double> smoothing_axis_rad;  ///< the tool axis; not stated: no cut may turn a rotary
 
   // TCP.
   NcLinesOfText tcp_on, tcp_off;                ///< empty: the dialect has no TCP (or its codes are site data)

@@ -105,6 +105,18 @@ NcExecution::Problem NcExecution::set_length(int tool) {
   return std::nullopt;
 }
 
+bool NcExecution::site_smoothing(std::string_view line) {
+  while (!line.empty() && line.front() == ' ') line.remove_prefix(1);
+  while (!line.empty() && line.back() == ' ') line.remove_suffix(1);
+  const auto is = [line](const std::vector<std::string>& list) { return std::find(list.begin(), list.end(), line) != list.end(); };
+  const bool on = is(control_.smoothing_on);
+  if (line.empty() || (!on && !is(control_.smoothing_off))) return false;
+  set_blend(on ? control_.smoothing_mm : 0);
+  blend_axis_rad_ = on ? control_.smoothing_axis_rad : std::nullopt;
+  site_smoothing_ = on;
+  return true;
+}
+
 NcExecution::Problem NcExecution::tcp_on() {
   if (!control_.chain) return "TCP on a machine without TCP (tcp = \"none\")";
   if (tcp_) return "TCP is on already";
@@ -215,9 +227,8 @@ NcExecution::Problem NcExecution::move(const Move& m, std::int32_t line) {
   e.operation = static_cast<std::int16_t>(operation_);
   e.tool = static_cast<std::int16_t>(tool_);
   e.rapid = m.rapid;
-  if (!m.rapid && blend_is_linear_ && e.known && (std::abs(goal[3] - joints_[3]) > kStill || std::abs(goal[4] - joints_[4]) > kStill))
-    return "G64 bounds X, Y and Z alone, this G1 turns a rotary axis: G61 or G61.1 is needed";
-  e.blend_mm = m.rapid ? 0.0F : static_cast<float>(blend_mm_);
+  if (!m.rapid && e.known)
+    if (auto bad = corners(goal, tip, e)) return bad;
   e.tooth = static_cast<std::int16_t>(tooth_);
   e.machine = m.machine_frame || m.compensation;
   if (m.rapid) {
@@ -231,6 +242,31 @@ NcExecution::Problem NcExecution::move(const Move& m, std::int32_t line) {
   joints_ = goal;
   tip_ = tip;
   sink_(e);
+  return std::nullopt;
+}
+
+/// How far the control may leave the corners at both ends of a feed block.
+NcExecution::Problem NcExecution::corners(const std::array<double, 5>& goal, const Vec3& tip, ExecutedMove& e) const {
+  const bool turns = std::abs(goal[3] - joints_[3]) > kStill || std::abs(goal[4] - joints_[4]) > kStill;
+  if (turns && blend_is_linear_) return "G64 bounds X, Y and Z alone, this G1 turns a rotary axis: G61 or G61.1 is needed";
+  if (turns && tcp_ && rules_.turns_need_axis_blend && !blend_axis_rad_)
+    return "this block turns a rotary axis and no TA says how far the control may leave its way: CYCL DEF 32.2 is needed";
+  if (turns && site_smoothing_ && !blend_axis_rad_)
+    return "this block turns a rotary axis under smoothing that the machine file states, without post.smoothing_axis_tolerance";
+  e.blend_mm = static_cast<float>(blend_mm_);
+  if (site_smoothing_) e.blend_axis_rad = static_cast<float>(blend_axis_rad_.value_or(0));
+  for (std::size_t a = 3; a < 5 && tcp_ && blend_axis_rad_ && !site_smoothing_; ++a)  // a tolerance of each rotary
+    if (control_.letters[a] != 0) e.blend_axis_rad += static_cast<float>(*blend_axis_rad_);
+  if (!corner_way_) return std::nullopt;
+  if (tcp_ && path_weights_) return "FGROUP with TRAORI is not in the subset";
+  if (!tcp_ && turns && !path_weights_)
+    return "this G1 turns a rotary axis and no FGROUP says what ADIS is measured over";
+  double way = 0;
+  if (tcp_) way = (tip - tip_).norm();
+  else
+    for (std::size_t a = 0; a < 5; ++a) way = std::hypot(way, (path_weights_ ? (*path_weights_)[a] : a < 3 ? 1.0 : 0.0) * (goal[a] - joints_[a]));
+  e.corner_path_mm = static_cast<float>(*corner_way_);
+  if (*corner_way_ > 0) e.corner_share = *corner_way_ < 0.5 * way ? static_cast<float>(*corner_way_ / way * (1 + 1e-6)) : 0.5F;
   return std::nullopt;
 }
 

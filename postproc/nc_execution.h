@@ -9,6 +9,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "postproc/nc_reader.h"
 
@@ -19,6 +20,7 @@ struct NcRules {
   bool tcp_needs_zero = false;     ///< TCP may be switched on with the rotaries at zero only
   double least_rate = 0;           ///< G93 blocks are raised to this rate, mm/min or deg/min
   bool per_minute_turns = false;   ///< G94 with rotary words without TCP has a defined time
+  bool turns_need_axis_blend = false;  ///< a tolerance of the tip leaves that of the rotaries to the machine: it must be said too
 };
 
 class NcExecution {
@@ -62,7 +64,19 @@ class NcExecution {
   void set_blend(double mm, bool linear_only = false) {
     blend_mm_ = mm;
     blend_is_linear_ = linear_only;
+    corner_way_.reset();
   }
+  /// Every axis may leave the path within this way ahead of and behind a corner, mm (G641).
+  void set_corner_way(double mm) {
+    set_blend(0);
+    corner_way_ = mm;
+  }
+  /// What the way is measured over: mm for each mm or degree of an axis. Nothing: what the machine data say.
+  void set_path_weights(std::optional<std::array<double, 5>> weights) { path_weights_ = weights; }
+  /// How far the control may turn a rotary off its way with TCP, rad. Nothing: not said.
+  void set_blend_axis(std::optional<double> rad) { blend_axis_rad_ = rad; }
+  /// A line that the machine file states for the control's own smoothing, blanks around it left out: takes its effect. @returns it is one
+  bool site_smoothing(std::string_view line);
   Problem tcp_on();
   Problem tcp_off();
   [[nodiscard]] bool tcp() const { return tcp_; }
@@ -76,6 +90,7 @@ class NcExecution {
  private:
   Problem goal_of(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const;
   Problem tip_goal(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const;
+  Problem corners(const std::array<double, 5>& goal, const Vec3& tip, ExecutedMove& e) const;
   Problem feed_minutes(const Move& m, const std::array<double, 5>& joints, const Vec3& tip, double& minutes) const;
   [[nodiscard]] Vec3 tip_of(const std::array<double, 5>& joints) const;
   [[nodiscard]] std::array<double, 5> joints_for(const Vec3& tip, double r0, double r1) const;
@@ -92,7 +107,9 @@ class NcExecution {
   std::optional<double> feed_, length_;
   std::optional<Vec3> offset_;
   double blend_mm_ = 0;
-  bool blend_is_linear_ = false;
+  bool blend_is_linear_ = false, site_smoothing_ = false;
+  std::optional<double> corner_way_, blend_axis_rad_;
+  std::optional<std::array<double, 5>> path_weights_;
   bool spindle_ = false, spindle_set_ = false, retracted_ = false;
   bool unit_ = false, absolute_ = false;
 };

@@ -29,6 +29,7 @@ class NcFlow {
 
   /// A diagnostic in the line that is being executed.
   [[nodiscard]] Diagnostic here(int column, std::string message) const { return at(line_ + 1, column, std::move(message)); }
+  [[nodiscard]] std::string_view text() const { return lines_[line_]; }  ///< of the line that is being executed
   [[nodiscard]] std::int32_t line() const { return static_cast<std::int32_t>(line_) + 1; }
   [[nodiscard]] Result<double> value(const NcBlock& b, const NcValue& v, int column) const;
 

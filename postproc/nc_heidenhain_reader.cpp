@@ -4,6 +4,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "geometry/base/angle.h"
 #include "postproc/nc_execution.h"
 #include "postproc/nc_readers.h"
 #include "postproc/work_offset.h"
@@ -17,7 +18,7 @@ constexpr std::size_t kLongestLine = 256;
 class Heidenhain {
  public:
   Heidenhain(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink)
-      : file_(file), control_(control), lines_(lines_of(text)), execution_(control, {}, sink) {
+      : file_(file), control_(control), lines_(lines_of(text)), execution_(control, {.turns_need_axis_blend = true}, sink) {
     execution_.set_feed_mode(NcExecution::Feed::per_minute);
   }
 
@@ -241,6 +242,14 @@ class Heidenhain {
         blend = *v;
       }
       execution_.set_blend(blend);
+      execution_.set_blend_axis({});  // the block that follows may say it
+      return std::nullopt;
+    }
+    if (s.take("32.2 HSC-MODE:")) {
+      if (!s.take("0 TA") && !s.take("1 TA")) return here(s.column(), "HSC-MODE:0 or 1 and TA expected");
+      const auto v = s.number();
+      if (!v || !(*v >= 0 && *v <= 10)) return here(s.column(), "TA must be 0 to 10 deg");
+      execution_.set_blend_axis(radians(*v));
       return std::nullopt;
     }
     if (s.take("247 DATUM SETTING Q339=")) {

@@ -50,7 +50,8 @@ class Interpreter {
   Problem block(const NcBlock& b) {
     if (b.operation >= 0) execution_.begin_operation(b.operation);
     if (b.tooth >= 0) execution_.begin_tooth(b.tooth);
-    return b.words.empty() ? Problem{} : words(b);
+    if (b.words.empty() || execution_.site_smoothing(flow_.text())) return std::nullopt;
+    return words(b);
   }
 
   // Words of one block, sorted by meaning before anything happens.

@@ -1,6 +1,9 @@
 #include "postproc/nc_lines.h"
 
+#include <cmath>
+
 #include "postproc/fixed_point.h"
+#include "postproc/nc_corners.h"
 #include "postproc/nc_writer.h"
 #include "postproc/work_offset.h"
 
@@ -23,7 +26,12 @@ NcLines::Values program_values(const AxisProgram& program, const NcDialect& dial
   values["id"] = program_id(header.job_name);
   values["offset"] = program.work_offset;
   values["datum"] = std::to_string(preset_number(program.work_offset));
-  values["blend"] = unsigned_value(header.blend_mm, 6);
+  const CornerWords corners = corner_words(program, dialect, header);
+  values["blend"] = unsigned_value(corners.blend_mm, 6);
+  values["blend_axis"] = unsigned_value(std::floor(header.blend_axis_deg * 1e4 + 1e-6) * 1e-4, 4);
+  values["radius"] = unsigned_value(corners.radius_mm, 0);
+  for (const char letter : program.letters)
+    if (letter != 0) values["axes"] += (values["axes"].empty() ? "" : ",") + std::string(1, letter);
   values["free"] = unsigned_value(kFreeFeed, 0);
   values["teeth"] = std::to_string(program.teeth);
   values["last"] = std::to_string(program.teeth - 1);
@@ -69,6 +77,9 @@ std::vector<std::string> order_comments(const AxisProgram& program) {
   if (program.restart) {
     out.push_back(fmt::format("RESTART AT OPERATION {} TOOTH {}", program.restart->operation, program.restart->tooth));
     out.emplace_back("WHAT THE WHOLE PROGRAM CUTS BEFORE THAT IS TAKEN AS DONE");
+    const bool timed = program.has_acceleration;
+    out.push_back(fmt::format("RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING", timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes,
+                              timed ? program.accelerated.feed : program.feed_minutes));
   }
   return out;
 }

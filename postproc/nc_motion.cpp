@@ -4,6 +4,11 @@
 // rotary axis and |dX| the linear step, the tip's second derivative is at most w^2 R + 2 w |dX| (nested rotations, each
 // pair of derivatives bounded by the inner arm), so that it stays within an eighth of that from its chord. With TCP the
 // control keeps the tip on its chord; the rotaries are linear in time all the same, and the bound of the axis holds.
+//
+// At a corner that the control may leave within a way (G641), each axis stays between its least and its greatest position on the pieces
+// of both blocks: off the corner by the larger of the two pieces, axis by axis. With d of X Y Z, w the sum of the turns and R the distance of
+// the corner's tip from the rotary axes, the tip is off by |d| + w (R + |d| + w R) at most, the tool axis by w. With TCP the pieces are of
+// the tip itself: |d|, w.
 #include <algorithm>
 #include <cmath>
 
@@ -45,33 +50,58 @@ class Motions {
     return std::abs(b.rotary_rad[0] - a.rotary_rad[0]) + std::abs(b.rotary_rad[1] - a.rotary_rad[1]);
   }
 
+  /// Greatest distance of the tip from a rotary axis, mm.
+  double reach_of(const Placed& p, double length) const {
+    double reach = 0, arm = length;
+    for (std::size_t k = 0; k < chain_.table.size(); ++k) {
+      const Vec3 tip = k == 0 ? p.table.tip_mm : chain_.table_to_machine(p.table.tip_mm, p.joints.rotary_rad);
+      reach = std::max(reach, (tip - chain_.table[k].point_mm).cross(chain_.table[k].direction).norm());
+    }
+    for (const auto& axis : chain_.head) arm += 2 * axis.point_mm.norm();
+    return chain_.head.empty() ? reach : std::max(reach, arm);
+  }
+
   /// Bounds of the whole move, tip [mm] and axis [rad]; halving the step divides both by 4 or more.
   std::pair<double, double> bounds(const Placed& a, const Placed& b, double length) const {
     const double w = turn(a.joints, b.joints);
     if (w == 0) return {0, 0};
     const double dx = (b.joints.linear_mm - a.joints.linear_mm).norm();
-    double reach = 0, slope = 0;
+    double reach = std::max(reach_of(a, length), reach_of(b, length)), slope = 0;
     for (std::size_t k = 0; k < chain_.table.size(); ++k) {
       const RotaryAxis& axis = chain_.table[k];
       for (const Placed* p : {&a, &b}) {
-        const Vec3 tip = k == 0 ? p->table.tip_mm : chain_.table_to_machine(p->table.tip_mm, p->joints.rotary_rad);
-        reach = std::max(reach, (tip - axis.point_mm).cross(axis.direction).norm());
         const Vec3 u = k == 0 ? p->table.axis : chain_.tool_axis_in_machine(p->joints.rotary_rad);
         slope = std::max(slope, u.cross(axis.direction).norm());
       }
     }
-    if (!chain_.head.empty()) {
-      double arm = length;
-      for (const auto& axis : chain_.head) arm += 2 * axis.point_mm.norm();
-      reach = std::max(reach, arm);
-      slope = 1;
-    }
+    if (!chain_.head.empty()) slope = 1;
     reach += 0.5 * (dx + w * reach);
     // Only the second table axis meets the whole sine of the tool axis when the first does not turn it.
     const bool first_only = chain_.head.empty() && a.joints.rotary_rad[1] == b.joints.rotary_rad[1];
     if (first_only) slope = a.table.axis.cross(chain_.table[0].direction).norm();
     else slope = std::min(1.0, slope + 0.5 * w);
     return {(w * w * reach + 2 * w * dx) / 8, w * w * slope / 4 * 1.1};
+  }
+
+  /// How far tip [mm] and tool axis [rad] leave the corner between two moves, by the shares of their blocks.
+  std::pair<double, double> corner(const ExecutedMove& before, const ExecutedMove& m, const ExecutedMove* next, double length) const {
+    const Placed at = place(joints(m.joints), length);
+    std::array<double, 5> off{};
+    const auto piece = [&](const ExecutedMove& other, const ExecutedMove& block) {
+      if (block.corner_share == 0) return;
+      const Placed p = place(joints(other.joints), length);
+      const Vec3 way = block.tcp ? p.table.tip_mm - at.table.tip_mm : p.joints.linear_mm - at.joints.linear_mm;
+      for (std::size_t a = 0; a < 5; ++a) {
+        const double moved = a < 3 ? way[static_cast<int>(a)] : p.joints.rotary_rad[a - 3] - at.joints.rotary_rad[a - 3];
+        off[a] = std::max(off[a], double(block.corner_share) * std::abs(moved));
+      }
+    };
+    piece(before, m);
+    const bool goes_on = next != nullptr && next->known && next->tool == m.tool;
+    if (goes_on) piece(*next, *next);
+    const double d = Vec3(off[0], off[1], off[2]).norm(), w = off[3] + off[4];
+    const bool tcp = m.tcp && (!goes_on || next->tcp || next->corner_share == 0);
+    return {tcp ? d : d + w * ((1 + w) * reach_of(at, length) + d), w};
   }
 
  private:
@@ -132,6 +162,16 @@ Result<std::vector<ToolMotion>> tool_motions(const OperationTrace& trace, const 
     } else if (tooth < 0) {
       tooth = nearest_tooth(to.tip, reference, teeth);
     }
+    // The corners at both ends.
+    double corner_mm = 0, corner_rad = 0;
+    const auto corner = [&](std::size_t k) {
+      const auto [tip_off, axis_off] =
+          kinematics.corner(trace.moves[k - 1], trace.moves[k], k + 1 < trace.moves.size() ? &trace.moves[k + 1] : nullptr, *length);
+      corner_mm = std::max(corner_mm, tip_off);
+      corner_rad = std::max(corner_rad, axis_off);
+    };
+    if (m.corner_share > 0) corner(i);
+    if (m.corner_share > 0 && i > 1 && trace.moves[i - 1].known) corner(i - 1);
     Placed start = from;
     for (int piece = 1; piece <= n; ++piece) {
       Placed end = to;
@@ -151,9 +191,9 @@ Result<std::vector<ToolMotion>> tool_motions(const OperationTrace& trace, const 
       motion.tip_to = end.tip;
       motion.axis_from = start.axis;
       motion.axis_to = end.axis;
-      motion.deviation_mm = (m.tcp ? 0 : tip_left) + kRoundOff + double(m.blend_mm) +
+      motion.deviation_mm = (m.tcp ? 0 : tip_left) + kRoundOff + double(m.blend_mm) + corner_mm +
                             shift * std::max(motion.tip_from.head<2>().norm(), motion.tip_to.head<2>().norm());
-      motion.axis_deviation = axis_left + shift;
+      motion.axis_deviation = axis_left + shift + double(m.blend_axis_rad) + corner_rad;
       motion.minutes = m.minutes / n;
       motion.rapid = m.rapid;
       motion.operation = m.operation;

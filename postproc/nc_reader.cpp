@@ -7,6 +7,7 @@
 
 #include "geometry/base/angle.h"
 #include "postproc/nc_readers.h"
+#include "postproc/operation_moves.h"
 
 namespace toothpath {
 namespace {
@@ -14,30 +15,24 @@ namespace {
 constexpr double kCoincident = 1e-9;  // mm
 constexpr double kParallel = 1e-12;
 constexpr double kSameTip = 1e-9;           // mm: round-off of a turned frame
+constexpr float kSameShare = 1e-6F;         // of a block: its length with the round-off of a turned frame
 constexpr double kTipStep = radians(0.5);   // joints follow a straight tip: looked at in such steps of the rotaries
-
-/// Counts of one operation's moves.
-struct Count {
-  std::size_t total = 0, lead = 0, trail = 0;
-  bool started = false;
-  [[nodiscard]] std::size_t inner() const { return started ? total - lead - trail : 0; }
-};
 
 bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 /// Compares the teeth of a program as they are executed.
 class CopyCheck {
  public:
-  CopyCheck(const std::map<int, Count>& counts, const NcControl& control, const Setup& setup, int teeth, int index_sign)
+  CopyCheck(const std::map<int, OperationMoves>& counts, const NcControl& control, const Setup& setup, int teeth, int index_sign)
       : counts_(counts), control_(control), setup_(setup), teeth_(teeth), sign_(index_sign) {
     result_.copies = true;
     for (const auto& [op, c] : counts) {
       if (op < 0) continue;
       const auto z = static_cast<std::size_t>(teeth);
-      if (c.inner() == 0 || c.inner() % z != 0)
-        differ(0, fmt::format("operation {}: {} moves are not {} equal teeth", op, c.inner(), teeth));
+      if (c.teeth() == 0 || c.teeth() % z != 0)
+        differ(0, fmt::format("operation {}: {} moves are not {} equal teeth", op, c.teeth(), teeth));
       else
-        state_[op].per_tooth = c.inner() / z;
+        state_[op].per_tooth = c.teeth() / z;
     }
     if (index_sign == 0 && teeth > 1) differ(0, "the gear axis is not the axis of the rotary that carries the work");
   }
@@ -45,7 +40,7 @@ class CopyCheck {
   void operator()(const ExecutedMove& m) {
     if (m.operation < 0) return;
     State& s = state_[m.operation];
-    const Count& c = counts_.at(m.operation);
+    const OperationMoves& c = counts_.at(m.operation);
     const std::size_t i = s.seen++;
     if (i < c.lead || i >= c.total - c.trail) {
       if (i < c.lead) s.kept.push_back(m);
@@ -117,6 +112,9 @@ class CopyCheck {
                                         s.turn, teeth_));
     if (m.tcp != first.tcp || (m.tcp && (m.tip - turned_tip(first.tip, s.turn)).norm() > kSameTip))
       return differ(m.line, "the tip is not that of the first tooth, turned");
+    if (m.blend_mm != first.blend_mm || m.blend_axis_rad != first.blend_axis_rad || m.corner_path_mm != first.corner_path_mm ||
+        std::abs(m.corner_share - first.corner_share) > kSameShare)
+      return differ(m.line, "the control may leave corners otherwise than in the first tooth");
     if (m.rapid != first.rapid || m.tool != first.tool) return differ(m.line, "rapid and feed or tool differ");
     if (!m.rapid && std::abs(m.minutes - first.minutes) > 1e-9 * first.minutes + 1e-12)
       return differ(m.line, fmt::format("block takes {} min where the first tooth has {}", m.minutes, first.minutes));
@@ -135,7 +133,7 @@ class CopyCheck {
     result_.difference = std::move(what);
   }
 
-  const std::map<int, Count>& counts_;
+  const std::map<int, OperationMoves>& counts_;
   const NcControl& control_;
   const Setup& setup_;
   int teeth_, sign_;
@@ -151,23 +149,6 @@ int index_sign(const Machine& machine, const Setup& setup) {
   if (c.direction.cross(g).norm() > kParallel) return 0;
   if ((setup.origin_mm - c.point_mm).cross(c.direction).norm() > kCoincident) return 0;
   return c.direction.dot(g) > 0 ? c.sign : -c.sign;
-}
-
-/// Joints inside a block whose tip goes straight.
-template <typename Sink>
-void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcControl& control, const KinematicChain& chain, const Sink& sink) {
-  const auto length = control.tool_length_mm.find(to.tool);
-  const double turn = radians(std::abs(to.joints[3] - from.joints[3]) + std::abs(to.joints[4] - from.joints[4]));
-  if (turn == 0 || length == control.tool_length_mm.end() || !std::isfinite(turn)) return;
-  const auto& j = from.joints;
-  const Vec3 start = from.tcp ? from.tip : chain.forward({Vec3(j[0], j[1], j[2]), {radians(j[3]), radians(j[4])}}, length->second).tip_mm;
-  const int n = static_cast<int>(std::min(1e5, std::ceil(turn / kTipStep))) + 3;
-  for (int i = 1; i < n; ++i) {
-    const double t = static_cast<double>(i) / n;
-    const double r0 = (1 - t) * j[3] + t * to.joints[3], r1 = (1 - t) * j[4] + t * to.joints[4];
-    const Vec3 x = chain.linear_for((1 - t) * start + t * to.tip, {radians(r0), radians(r1)}, length->second).linear_mm;
-    sink({x.x(), x.y(), x.z(), r0, r1});
-  }
 }
 
 /// Who reads a dialect, and the digits that it prints for rotaries unless the machine says otherwise.
@@ -193,6 +174,22 @@ std::string readable_dialects() {
 
 }  // namespace
 
+void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcControl& control, const KinematicChain& chain,
+                const std::function<void(const std::array<double, 5>&)>& sink) {
+  const auto length = control.tool_length_mm.find(to.tool);
+  const double turn = radians(std::abs(to.joints[3] - from.joints[3]) + std::abs(to.joints[4] - from.joints[4]));
+  if (turn == 0 || length == control.tool_length_mm.end() || !std::isfinite(turn)) return;
+  const auto& j = from.joints;
+  const Vec3 start = from.tcp ? from.tip : chain.forward({Vec3(j[0], j[1], j[2]), {radians(j[3]), radians(j[4])}}, length->second).tip_mm;
+  const int n = static_cast<int>(std::min(1e5, std::ceil(turn / kTipStep))) + 3;
+  for (int i = 1; i < n; ++i) {
+    const double t = static_cast<double>(i) / n;
+    const double r0 = (1 - t) * j[3] + t * to.joints[3], r1 = (1 - t) * j[4] + t * to.joints[4];
+    const Vec3 x = chain.linear_for((1 - t) * start + t * to.tip, {radians(r0), radians(r1)}, length->second).linear_mm;
+    sink({x.x(), x.y(), x.z(), r0, r1});
+  }
+}
+
 Status execute_nc(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
   const ReaderOfDialect* reader = reader_of(control.dialect);
   if (reader == nullptr) return fail("dialect \"{}\" cannot be read back: {} can", control.dialect, readable_dialects());
@@ -210,6 +207,10 @@ Result<NcControl> control_of(const Machine& machine, const Setup& setup, std::sp
   c.exact_path_mm = machine.exact_corner_mm();
   c.tcp_on = machine.post.tcp_on;
   c.tcp_off = machine.post.tcp_off;
+  c.smoothing_on = machine.post.smoothing_on;
+  c.smoothing_off = machine.post.smoothing_off;
+  c.smoothing_mm = machine.post.smoothing_tolerance_mm.value_or(0);
+  c.smoothing_axis_rad = machine.post.smoothing_axis_tolerance_rad;
   c.letters = {'X', 'Y', 'Z', 0, 0};
   for (std::size_t i = 0; i < 3; ++i) c.rapid_speed[i] = machine.chain.linear[i].max_speed;
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
@@ -227,7 +228,7 @@ Result<ReadBack> read_back(std::string_view text, const std::string& file, const
   ReadBack result;
   result.least.fill(std::numeric_limits<double>::infinity());
   result.greatest.fill(-std::numeric_limits<double>::infinity());
-  std::map<int, Count> counts;
+  std::map<int, OperationMoves> counts;
   const auto reach = [&result](const std::array<double, 5>& joints) {
     for (std::size_t a = 0; a < 5; ++a) {  // NaN (not yet known) passes neither comparison
       if (joints[a] < result.least[a]) result.least[a] = joints[a];
@@ -242,11 +243,7 @@ Result<ReadBack> read_back(std::string_view text, const std::string& file, const
     if (m.tcp && m.known) follow_tip(before, m, control, machine.chain, reach);
     before = m;
     reach(m.joints);
-    Count& c = counts[m.operation];
-    ++c.total;
-    c.started = c.started || !m.machine;
-    if (!c.started) ++c.lead;
-    c.trail = m.machine && c.started ? c.trail + 1 : 0;
+    counts[m.operation].add(m);
   };
   if (auto s = execute_nc(text, file, control, count); !s) return s.error();
 

@@ -39,6 +39,10 @@ struct NcControl {
   double exact_path_mm = 0.0005;              ///< LinuxCNC: the tip is off a corner by no more under G61 and G61.1
   double top_mm = 0;                          ///< highest Z, machine coordinates of the gauge line
   std::vector<std::string> tcp_on, tcp_off;   ///< codes of the site that switch TCP (LinuxCNC)
+  /// Lines of the machine file that switch the control's own smoothing on and off, and what the shop states for it.
+  std::vector<std::string> smoothing_on, smoothing_off;
+  double smoothing_mm = 0;
+  std::optional<double> smoothing_axis_rad;   ///< not stated: no cut may turn a rotary while it is on
   bool dry_run = false;                       ///< feed moves with a standing spindle are meant: a program that runs in air
   std::size_t max_steps = 400'000'000;        ///< executed blocks before the program is refused as endless
 };
@@ -58,6 +62,9 @@ struct ExecutedMove {
   bool rapid = false;
   bool tcp = false;             ///< the tip goes straight to `tip`, the rotaries are linear, the other joints follow
   float blend_mm = 0;           ///< the control may leave the corners of the path by this much (G64 P)
+  float blend_axis_rad = 0;     ///< the same of the tool axis (TA of cycle 32)
+  float corner_path_mm = 0;     ///< every axis may leave the path within this way ahead of and behind a corner (G641 ADIS) ..
+  float corner_share = 0;       ///< .. which is this part of the block, a half at most
   std::uint8_t commanded = 0;   ///< bit a: the block has a word for axis a
   std::int16_t tooth = -1;      ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
   bool machine = false;         ///< G53, or the block that switches tool length compensation on

@@ -12,6 +12,10 @@ namespace toothpath {
 
 using MoveSink = std::function<void(const ExecutedMove&)>;
 
+/// Joints inside a block whose tip goes straight, every half degree of the rotaries.
+void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcControl& control, const KinematicChain& chain,
+                const std::function<void(const std::array<double, 5>&)>& sink);
+
 /// LinuxCNC (o-words, bracket expressions), Fanuc and Mitsubishi (M98, a point in every number).
 [[nodiscard]] Status execute_iso(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
 

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "postproc/nc_execution.h"
+#include "postproc/nc_path_group.h"
 #include "postproc/nc_readers.h"
 #include "postproc/nc_scanner.h"
 
@@ -17,7 +18,7 @@ constexpr std::size_t kLongestLine = 512;
 class Siemens {
  public:
   Siemens(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink)
-      : file_(file), control_(control), lines_(lines_of(text)), execution_(control, {}, sink) {}
+      : file_(file), control_(control), lines_(lines_of(text)), execution_(control, {}, sink), path_(control.letters) {}
 
   Status run() {
     if (auto bad = find_loops()) return *bad;
@@ -147,7 +148,7 @@ class Siemens {
       text = text.substr(0, semicolon);
     }
     NcScanner s(text);
-    if (s.done()) return std::nullopt;
+    if (s.done() || execution_.site_smoothing(text)) return std::nullopt;
     if (s.take("FOR ")) return loop_head(s);
     if (s.take("ENDFOR")) return loop_end(s);
     if (s.at() == 'R' && NcScanner::is_digit(s.ahead())) {
@@ -242,6 +243,7 @@ class Siemens {
     else if (name == "TRAFOOF") r.trafoof = true;
     else if (name == "SUPA") r.supa = true;
     else if (name == "ORIWKS" || name == "ORIAXES" || name == "COMPOF") return std::nullopt;
+    else if (name == "FGROUP" || name == "FGREF") return path_group(s, name == "FGREF");
     else if (name == "ADIS") {
       if (!s.take("=")) return here(s.column(), "= expected");
       const auto v = expression(s);
@@ -261,6 +263,22 @@ class Siemens {
       return here(column, fmt::format("{} is not in the subset", name));
     }
     r.column = column;
+    return std::nullopt;
+  }
+
+  Problem path_group(NcScanner& s, bool radius) {
+    const int column = s.column();
+    if (!radius) {
+      if (auto bad = path_.group(s); !bad.empty()) return here(s.column(), std::move(bad));
+    } else {
+      const auto rotary = path_.rotary(s);
+      if (!rotary) return here(column, "FGREF needs a rotary axis of the machine in brackets, and =");
+      const auto v = expression(s);
+      if (!v) return v.error();
+      if (!(*v > 0)) return here(column, "FGREF must be above 0");
+      path_.set_radius(*rotary, *v);
+    }
+    execution_.set_path_weights(path_.weights());
     return std::nullopt;
   }
 
@@ -287,7 +305,7 @@ class Siemens {
 
   Problem apply(Request& r) {
     if (r.adis.has_value() != r.g641) return here(r.column, "G641 and ADIS belong together");
-    if (r.g641) execution_.set_blend(*r.adis);
+    if (r.g641) execution_.set_corner_way(*r.adis);
     if (r.g60) execution_.set_blend(0);
     if (r.feed_mode == 93) execution_.set_feed_mode(NcExecution::Feed::inverse_time);
     if (r.feed_mode == 94) execution_.set_feed_mode(NcExecution::Feed::per_minute);
@@ -352,6 +370,7 @@ class Siemens {
   std::unordered_map<int, double> parameters_;
   std::vector<Loop> loops_;
   std::size_t pc_ = 0, line_ = 0;
+  NcPathGroup path_;
   int motion_ = -1, tool_ = -1;
   bool ended_ = false;
 };

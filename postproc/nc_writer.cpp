@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "postproc/fixed_point.h"
+#include "postproc/nc_corners.h"
 #include "postproc/nc_lines.h"
 #include "postproc/nc_stretches.h"
 #include "postproc/tooth_order.h"
@@ -25,7 +26,7 @@ enum class IndexWord { literal, shifted, left_out };
 class Writer {
  public:
   Writer(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header)
-      : program_(program), dialect_(dialect), header_(header), out_(dialect), tcp_(program.tcp != TcpMode::none) {}
+      : program_(program), dialect_(dialect), header_(header), corners_(corner_words(program, dialect, header)), out_(dialect), tcp_(program.tcp != TcpMode::none) {}
 
   Result<NcText> write() {
     values_ = program_values(program_, dialect_, header_);
@@ -50,8 +51,22 @@ class Writer {
         out_.fill(program_.tooth_stride == 1 ? NcLinesOfText{} : dialect_.loop.pick, values_);
       else if (t == "{first_tooth}")
         out_.comment(first_tooth_comment(program_));
+      else if (t.find("{blend}") != std::string::npos)
+        corner_line(t);
+      else if (t == "{path_group_end}")
+        out_.fill(corners_.group ? NcLinesOfText{dialect_.path_group_end} : NcLinesOfText{}, values_);
       else
         out_.fill({t}, values_);
+  }
+  /// The line with {blend}: as it stands, or behind the axes of the path.
+  void corner_line(const std::string& pattern) {
+    if (corners_.group) out_.fill({dialect_.path_group}, values_);
+    for (std::size_t a = 3; a < 5 && corners_.group; ++a)
+      if (program_.letters[a] != 0) {
+        values_["axis"] = program_.letters[a];
+        out_.fill({dialect_.path_radius}, values_);
+      }
+    out_.fill({pattern}, values_);
   }
   std::string linear(double mm) const {
     return out_.value(to_fixed(mm, program_.format.linear_decimals), program_.format.linear_decimals);
@@ -87,6 +102,7 @@ class Writer {
     fill(tcp_ ? dialect_.tcp_compensation : dialect_.compensation);
     forget();
     if (header_.coolant) fill(dialect_.coolant_on);
+    for (const auto& line : dialect_.smoothing_on) out_.line(line);
     if (!program_.loop) {
       for (const auto& tooth : op.teeth) {
         out_.comment(tooth.remark.empty() ? fmt::format("TOOTH {}", tooth.tooth) : comment_text(tooth.remark));
@@ -101,6 +117,7 @@ class Writer {
     } else {
       loop_body(op);
     }
+    for (const auto& line : dialect_.smoothing_off) out_.line(line);
     fill(dialect_.operation_end);
     if (header_.coolant) fill(dialect_.coolant_off);
     fill(dialect_.spindle_off);
@@ -371,6 +388,7 @@ class Writer {
   const AxisProgram& program_;
   const NcDialect& dialect_;
   const NcHeader& header_;
+  CornerWords corners_;
   NcLines out_;
   NcLines::Values values_;
   bool tcp_;
@@ -387,15 +405,13 @@ class Writer {
 
 }  // namespace
 
-double granted_blend_mm(const AxisProgram&, const NcDialect& dialect, const NcHeader& header) {
-  return dialect.blend ? header.blend_mm : dialect.exact_path_mm;
-}
-
 Result<NcText> write_nc(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
   if (program.format.linear_decimals != dialect.format.linear_decimals ||
       program.format.rotary_decimals != dialect.format.rotary_decimals)
     return fail("the axis program has {} and {} decimals, the dialect {} and {}", program.format.linear_decimals,
                 program.format.rotary_decimals, dialect.format.linear_decimals, dialect.format.rotary_decimals);
+  if (program.turns_in_cuts && !dialect.smoothing_on.empty() && !dialect.smoothing_axis_rad)
+    return fail("cuts turn a rotary axis: post.smoothing_on needs post.smoothing_axis_tolerance beside post.smoothing_tolerance");
   if (dialect.write != nullptr) return dialect.write(program, dialect, header);
   return Writer(program, dialect, header).write();
 }

@@ -21,6 +21,7 @@ struct NcHeader {
   std::vector<std::string> assumed;  ///< non-empty: a warning with each of them
   int program_number = 1001; ///< O word
   double blend_mm = 0.0003;  ///< how far the control may leave a corner: counts as deviation of the machine in every proof
+  double blend_axis_deg = 0.002;  ///< how far the control may turn a rotary off its way with TCP: counts as deviation of the tool axis
   bool coolant = false;      ///< M8 with every operation
 };
 
@@ -32,6 +33,9 @@ struct NcText {
 
 /// By how much the text lets the control leave corners in this program, mm; what the reader of the dialect counts.
 [[nodiscard]] double granted_blend_mm(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
+/// The same of the tool axis where the text names a tolerance of the rotaries, rad. What a way at the corners (G641) lets the axis do follows
+/// from the blocks and is counted by the reader alone.
+[[nodiscard]] double granted_blend_rad(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
 
 /// Prints the program. Errors: an F that the control cannot take, a line that is too long, a number out of its format, joint
 /// blocks that turn on a control without inverse time.

@@ -5,17 +5,11 @@
 #include <map>
 
 #include "postproc/nc_scanner.h"
+#include "postproc/operation_moves.h"
 #include "postproc/tooth_order.h"
 
 namespace toothpath {
 namespace {
-
-/// Moves of one operation: retracts ahead of the teeth, and in all without those behind them.
-struct Count {
-  std::size_t lead = 0, total = 0, trail = 0;
-  bool started = false;
-  [[nodiscard]] std::size_t teeth() const { return total - lead - trail; }
-};
 
 /// Leading block number and the text of a comment behind it; empty: the line is no comment.
 std::string_view comment_of(std::string_view line, int& number) {
@@ -44,11 +38,11 @@ int number_of(std::string_view line) {
 /// First lines of the teeth as they are executed. A tooth begins with its TOOTH comment, or after as many moves as the others have.
 class FirstLines {
  public:
-  FirstLines(const std::map<int, Count>& counts, const std::map<int, std::size_t>& teeth) : counts_(counts), teeth_(teeth) {}
+  FirstLines(const std::map<int, OperationMoves>& counts, const std::map<int, std::size_t>& teeth) : counts_(counts), teeth_(teeth) {}
 
   void operator()(const ExecutedMove& m) {
     if (m.operation < 0) return;
-    const Count& c = counts_.at(m.operation);
+    const OperationMoves& c = counts_.at(m.operation);
     const std::size_t i = seen_[m.operation]++;
     if (i < c.lead || i >= c.total - c.trail) return;
     auto& lines = lines_[m.operation];
@@ -64,7 +58,7 @@ class FirstLines {
   [[nodiscard]] const std::vector<std::pair<int, int>>& of(int operation) { return lines_[operation]; }
 
  private:
-  const std::map<int, Count>& counts_;
+  const std::map<int, OperationMoves>& counts_;
   const std::map<int, std::size_t>& teeth_;
   std::map<int, std::size_t> seen_;
   std::map<int, int> label_;
@@ -101,14 +95,8 @@ Result<RestartMenu> restart_menu(std::string_view text, const std::string& file,
       for (int n = program.teeth - static_cast<int>(teeth[op.operation]); n < program.teeth; ++n) op.teeth.push_back({n, tooth_at(n), {}});
   if (std::none_of(menu.operations.begin(), menu.operations.end(), [](const auto& op) { return op.first_tooth.line == 0; })) return menu;
 
-  std::map<int, Count> counts;
-  const auto count = [&](const ExecutedMove& m) {
-    Count& c = counts[m.operation];
-    ++c.total;
-    c.started = c.started || !m.machine;
-    if (!c.started) ++c.lead;
-    c.trail = m.machine && c.started ? c.trail + 1 : 0;
-  };
+  std::map<int, OperationMoves> counts;
+  const auto count = [&](const ExecutedMove& m) { counts[m.operation].add(m); };
   if (auto s = execute_nc(text, file, control, count); !s) return s.error();
   for (const auto& [op, c] : counts) teeth.emplace(op, static_cast<std::size_t>(program.teeth));
   FirstLines first(counts, teeth);

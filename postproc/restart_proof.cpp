@@ -4,26 +4,23 @@
 #include <limits>
 #include <vector>
 
+#include "postproc/nc_readers.h"
+#include "postproc/operation_moves.h"
+
 namespace toothpath {
 namespace {
 
+/// Moves of a text, and those of one operation.
 struct Count {
-  std::size_t total = 0;          ///< all moves
-  std::size_t lead = 0;           ///< machine moves ahead of the first tooth of the operation
-  std::size_t of_operation = 0;   ///< moves of its teeth and the retract behind them
-  std::size_t trail = 0;
-  bool started = false, labelled = false;
+  std::size_t total = 0;
+  OperationMoves operation;
 };
 
 Result<Count> count_moves(std::string_view text, const std::string& file, const NcControl& control, int operation) {
   Count c;
   const auto sink = [&](const ExecutedMove& m) {
     ++c.total;
-    if (m.operation != operation) return;
-    c.started = c.started || !m.machine;
-    c.labelled = c.labelled || m.tooth >= 0;
-    ++(c.started ? c.of_operation : c.lead);
-    c.trail = c.started && m.machine ? c.trail + 1 : 0;
+    if (m.operation == operation) c.operation.add(m);
   };
   if (auto s = execute_nc(text, file, control, sink); !s) return s.error();
   return c;
@@ -46,7 +43,7 @@ class Fingerprint {
     if (m.tcp)
       for (int i = 0; i < 3; ++i) add(std::bit_cast<std::uint64_t>(m.tip[i]));
     if (!m.rapid) add(std::bit_cast<std::uint64_t>(m.minutes));
-    add(std::bit_cast<std::uint32_t>(m.blend_mm));
+    for (const float v : {m.blend_mm, m.blend_axis_rad, m.corner_path_mm, m.corner_share}) add(std::bit_cast<std::uint32_t>(v));
     return h_;
   }
   /// Every axis of the machine has had its word.
@@ -90,10 +87,11 @@ Result<RestartProof> prove_restart(std::string_view whole, std::string_view rest
   };
   const auto z = static_cast<std::size_t>(teeth), left = static_cast<std::size_t>(teeth - place);
   // Where no comment names the teeth their number of moves does.
-  if (!all->labelled && (part->of_operation - part->trail) * z != (all->of_operation - all->trail) * left)
+  const OperationMoves &in_all = all->operation, &in_part = part->operation;
+  if (!in_all.labelled && in_part.teeth() * z != in_all.teeth() * left)
     differs(0, 0, fmt::format("operation {} has {} moves from tooth {} on, not {} of {} teeth of the {} of the whole program", operation,
-                              part->of_operation - part->trail, tooth, left, teeth, all->of_operation - all->trail));
-  const std::size_t tail = part->total - part->lead;
+                              in_part.teeth(), tooth, left, teeth, in_all.teeth()));
+  const std::size_t tail = part->total - in_part.lead;
   if (tail > all->total) differs(0, 0, "the restart has more moves than the whole program");
   if (!proof.difference.empty()) return proof;
 
@@ -118,27 +116,33 @@ Result<RestartProof> prove_restart(std::string_view whole, std::string_view rest
   i = 0;
   Fingerprint own;
   bool cut = false;
-  s = execute_nc(restart, file, control, [&](const ExecutedMove& m) {
-    for (std::size_t a = 0; a < 5; ++a) {
-      if (m.joints[a] < proof.least[a]) proof.least[a] = m.joints[a];
-      if (m.joints[a] > proof.greatest[a]) proof.greatest[a] = m.joints[a];
+  const auto reach = [&proof](const std::array<double, 5>& joints) {
+    for (std::size_t a = 0; a < 5; ++a) {  // NaN (not yet known) passes neither comparison
+      if (joints[a] < proof.least[a]) proof.least[a] = joints[a];
+      if (joints[a] > proof.greatest[a]) proof.greatest[a] = joints[a];
     }
+  };
+  ExecutedMove last;
+  s = execute_nc(restart, file, control, [&](const ExecutedMove& m) {
+    reach(m.joints);
+    if (m.tcp && m.known && control.chain) follow_tip(last, m, control, *control.chain, reach);
+    last = m;
     if (!cut) proof.approach.moves.push_back(m);
     cut = cut || !m.rapid;
     const std::size_t n = i++;
-    if (n < part->lead) {
+    if (n < in_part.lead) {
       if (!m.machine) differs(m.line, 0, "a move ahead of the first tooth is no machine move");
       return;
     }
-    const Kept& k = kept[n - part->lead];
+    const Kept& k = kept[n - in_part.lead];
     if (own.of(m) != k.print) differs(m.line, k.line, "another move than in the whole program");
     if (!m.rapid && !own.all_set(control)) differs(m.line, k.line, "a cut before every axis has had its word");
     proof.line_of.emplace(k.line, m.line);
   });
   if (!s) return s.error();
-  proof.moves = i - part->lead;
+  proof.moves = i - in_part.lead;
   proof.approach.operation = operation;
-  proof.approach.lead = part->lead;
+  proof.approach.lead = in_part.lead;
   proof.approach.tool = proof.approach.moves.empty() ? 0 : proof.approach.moves.back().tool;
   proof.approach.kept_teeth = 1;
   proof.same = proof.difference.empty();

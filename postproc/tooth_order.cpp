@@ -66,8 +66,15 @@ Result<AxisProgram> program_from(AxisProgram program, int operation, int tooth) 
   op.first_place = place_of_tooth(tooth, program.tooth_stride, program.teeth);
   const double share = static_cast<double>(program.teeth - op.first_place) / program.teeth;
   if (program.loop) {
+    // Rapids: those of the blocks, and the turns of the index.
+    double blocks = 0;
+    for (const auto& t : op.teeth)
+      for (const AxisBlock& b : t.blocks) blocks += b.kind == BlockKind::feed ? 0 : b.minutes;
+    const double index = std::max(0.0, op.rapid_minutes - blocks * program.teeth);
+    const double turns = pitches_turned(0, program.tooth_stride, program.teeth);
     op.feed_minutes *= share;
-    op.rapid_minutes *= share;
+    op.rapid_minutes = blocks * (program.teeth - op.first_place) +
+                       (turns > 0 ? index * pitches_turned(op.first_place, program.tooth_stride, program.teeth) / turns : 0);
   } else {
     const auto gone = op.teeth.begin() + op.first_place;
     for (auto t = op.teeth.begin(); t != gone; ++t)

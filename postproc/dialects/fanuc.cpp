@@ -26,6 +26,7 @@ NcDialect fanuc_dialect() {
   d.tcp_off = d.retract;
   d.tcp_starts_at_zero = true;
   d.tcp_note = "TCP G43.4 FROM ROTARY ZERO, PARAMETERS 19696#5 WKP=0, 1401#1 LRP=1";
+  d.takes_smoothing = true;  // G5.1 Q1 and the like state no bound of their own
   d.loop.form = NcLoop::Form::stretches;
   return d;
 }

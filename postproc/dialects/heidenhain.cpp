@@ -1,5 +1,5 @@
 // Heidenhain TNC 640, plain text. There is no inverse time feed, so that blocks in which rotaries move need TCPM; without it
-// the tilt is fixed in every pass. Cycle 32 bounds the blending of the corners and counts in the proof. The teeth run in a
+// the tilt is fixed in every pass. Cycle 32 bounds the blending of the corners (T: the tip, TA: the rotaries with TCPM). The teeth run in a
 // section that is jumped back to (a count of repetitions would not follow a changed first tooth); a word takes no arithmetic, so that
 // the index angle is a Q parameter, set ahead of each rotary block. The remainder of the spread order is made with INT, half a unit
 // away from where it could fall on the wrong side.
@@ -24,11 +24,12 @@ NcDialect heidenhain_dialect() {
   d.frame_begin = {"BEGIN PGM {id} MM"};
   d.frame_end = {"M30", "END PGM {id} MM"};
   d.safe_start = {"PLANE RESET STAY", "FUNCTION RESET TCPM", "TRANS DATUM RESET", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+0"};
-  d.start = {"{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M126", "CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1 T{blend}"};
+  d.start = {"{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M126", "CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1 T{blend}",
+             "CYCL DEF 32.2 HSC-MODE:0 TA{blend_axis}"};
   d.retract = {"L Z{top} R0 FMAX M91"};
   d.tool_change = {"TOOL CALL {tool} Z S{speed}", "{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M3"};
   d.end = {"CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1", "M127"};
-  d.blend = true;
+  d.blend = d.blend_axis = true;
   d.tcp_on = {"FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"};
   d.tcp_off = {"FUNCTION RESET TCPM"};
   d.vector_words = {"TX", "TY", "TZ"};

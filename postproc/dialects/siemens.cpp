@@ -1,5 +1,6 @@
 // Siemens 840D sl. TRAORI and TRAFOOF may drop the frames (machine data 10602), so that the work offset stands behind each of
-// them. G641 ADIS bounds the blending of the corners, the compressor stays off: both count in the proof. The teeth run in a
+// them. G641 ADIS is the way ahead of and behind a corner within which the axes may leave the path; where cuts turn a
+// rotary the text names the axes whose travel is the way. The compressor stays off. The teeth run in a
 // FOR loop of the control; with TRAORI the programmable frame ROT turns with them. MOD is for whole variables only there, so that the
 // remainder of the spread order is made with TRUNC, half a unit away from where it could fall on the wrong side. ORIAXES: the rotaries are linear between
 // the blocks, also where a block carries the tool vector A3 B3 C3.
@@ -22,9 +23,13 @@ NcDialect siemens_dialect() {
   d.tool_change = {"T=\"T{tool}\"", "M6", "{safe_start}", "{offset}", "S{speed} M3"};
   d.compensation = d.tcp_compensation = {"D1"};
   d.operation_end = {"G94 F{free}"};
-  d.end = {"G60"};
+  d.end = {"G60", "{path_group_end}"};
   d.frame_end = {"M30"};
-  d.blend = true;
+  d.blend = d.blend_is_way = true;
+  d.takes_smoothing = true;  // CYCLE832 in place of G641
+  d.path_group = "FGROUP({axes})";
+  d.path_radius = "FGREF[{axis}]={radius}";
+  d.path_group_end = "FGROUP()";
   d.tcp_on = {"TRAORI", "{offset}", "ORIWKS", "ORIAXES"};
   d.tcp_off = {"TRAFOOF", "{offset}"};
   d.vector_words = {"A3=", "B3=", "C3="};

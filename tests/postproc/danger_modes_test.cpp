@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <regex>
 #include <set>
 
@@ -30,6 +31,20 @@ class DangerModes : public EveryPost {
     }
   }
 };
+
+/// A cutting block gives a rotary axis another word than it had.
+bool turns_in_cuts(const ModalRun& run) {
+  std::map<std::string, std::string> last;
+  bool turns = false;
+  for (const auto& b : run.blocks)
+    for (const char* axis : {"A", "B", "C"}) {
+      if (!b.has(axis)) continue;
+      const auto known = last.find(axis);
+      turns = turns || (!b.rapid && known != last.end() && known->second != b.words.at(axis));
+      last[axis] = b.words.at(axis);
+    }
+  return turns;
+}
 
 // 1: whatever the last program left, every modal group is set before anything moves, and again behind every tool change.
 TEST_F(DangerModes, SafeStartBeforeTheFirstMotion) {
@@ -305,7 +320,7 @@ TEST_F(DangerModes, NoArcsNoCyclesNoRadiusCompensation) {
 TEST_F(DangerModes, SmoothingHasItsToleranceAndEnds) {
   every_post([&] {
     const std::string d = post().dialect;
-    const std::regex bounded(R"(G641 ADIS=0\.0003|CYCL DEF 32\.1 T0\.0003)"), any(R"(\bG64\b|\bG64[1-5]\b|CYCL DEF 32\.1 |CYCLE832|G5\.1|G05|G8 P|COMPON|COMPCURV|COMPCAD)");
+    const std::regex bounded(R"(G641 ADIS=0\.000(212|122)|CYCL DEF 32\.1 T0\.0003)"), any(R"(\bG64\b|\bG64[1-5]\b|CYCL DEF 32\.1 |CYCLE832|G5\.1|G05|G8 P|COMPON|COMPCURV|COMPCAD)");
     every_job([&](const ModalRun& run, const auto&) {
       int on = 0, exact = 0;
       for (const auto& b : run.blocks) {
@@ -328,7 +343,15 @@ TEST_F(DangerModes, SmoothingHasItsToleranceAndEnds) {
         for (const auto& b : run.blocks)
           if (b.moves && !b.rapid) {
             EXPECT_EQ(b.mode("smoothing"), "on") << b.line;
+            if (d == "heidenhain") {
+              EXPECT_EQ(b.mode("axis smoothing"), "on") << b.line;
+            } else if (turns_in_cuts(run) && b.mode("tcp") != "on") {
+              EXPECT_EQ(b.mode("path group"), "named") << b.line;
+            }
           }
+        if (d == "siemens") {
+          EXPECT_NE(run.blocks.back().mode("path group"), "named");
+        }
       } else {
         EXPECT_EQ(on, 0);
       }

@@ -5,6 +5,7 @@
 #include <regex>
 #include <sstream>
 
+#include "postproc/axis_time.h"
 #include "postproc/restart_menu.h"
 #include "postproc/restart_proof.h"
 #include "tests/postproc/post_forms.h"
@@ -105,6 +106,54 @@ TEST_P(Restart, WrittenProgramMakesTheLastMoves) {
         ASSERT_EQ(a, b);
       }
     }
+}
+
+// The part has times and ranges of its own: those of its text, and with accelerations those of its teeth.
+TEST_P(Restart, TimesAndRangesAreThoseOfThePart) {
+  Machine quick = machine;
+  for (auto& axis : quick.chain.linear) axis.max_acceleration = 2000 * 3600.0;
+  for (auto* list : {&quick.chain.table, &quick.chain.head})
+    for (auto& axis : *list) axis.max_acceleration = radians(3000) * 3600;
+  AxisProgram timed = program;
+  estimate_times(timed, quick);
+  const std::size_t rulers = timed.time_rulers.size();
+  const auto shares = [](const AxisOperation& o) { return o.accelerated.feed + o.accelerated.rapid; };
+  double before = 1e9;
+  for (int place = 0; place < kTeeth; ++place) {
+    auto part = program_from(timed, 1, tooth_of_place(place, GetParam().stride, kTeeth));
+    ASSERT_TRUE(part);
+    estimate_times(*part, quick);
+    EXPECT_EQ(part->time_rulers.size(), rulers);
+    EXPECT_EQ(part->time_ruled.size(), rulers);
+    ASSERT_EQ(part->operations.size(), 1u);
+    const AxisOperation &own = part->operations[0], &all = timed.operations[1];
+    EXPECT_NEAR(own.accelerated.feed, all.accelerated.feed * (kTeeth - place) / kTeeth, 2e-3 * all.accelerated.feed);
+    EXPECT_GE(own.accelerated.feed, own.feed_minutes);
+    EXPECT_GE(own.accelerated.rapid, own.rapid_minutes * (1 - 1e-9));
+    if (place == 0) {
+      // The first tooth comes from the top of Z in the part, from the operation before in the whole program.
+      EXPECT_NEAR(shares(own), shares(all), 0.05 * shares(all));
+      EXPECT_NEAR(own.rapid_minutes, all.rapid_minutes, 1e-12);
+    }
+    EXPECT_LT(shares(own), before);
+    before = shares(own);
+    EXPECT_NEAR(part->accelerated.feed + part->accelerated.rapid, shares(own), 1e-12);
+    const auto text = text_of(GetParam().form, *part);
+    ASSERT_TRUE(text);
+    EXPECT_NE(text->text.find(fmt::format("RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING", shares(own), own.accelerated.feed)), std::string::npos);
+    const auto read = read_back(text->text, "p", control, machine, standing(), {.teeth = kTeeth});
+    ASSERT_TRUE(read) << read.error().text();
+    EXPECT_GE(read->feed_minutes, own.feed_minutes * (1 - 5e-3));
+    if (!part->tcp_starts_at_zero) {  // else the links have G1 of their own
+      EXPECT_LE(read->feed_minutes, own.feed_minutes * (1 + 5e-3));
+    }
+    const auto proof = prove(text->text, 1, place);
+    ASSERT_TRUE(proof);
+    for (std::size_t a = 0; a < 5; ++a) {
+      EXPECT_EQ(proof->least[a], read->least[a]);
+      EXPECT_EQ(proof->greatest[a], read->greatest[a]);
+    }
+  }
 }
 
 TEST_P(Restart, EveryPlaceOfTheMenuGivesTheSameMotion) {

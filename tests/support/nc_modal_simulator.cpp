@@ -72,7 +72,8 @@ Language siemens() {
                      {"ORIWKS", "orientation", "work"}, {"ORIAXES", "interpolation", "axes"}, {"M30", "-", "end"}});
   // TRAORI and TRAFOOF may drop the frames: the offset counts as lost until it is named again.
   l.lines = {{"TRAORI", "tcp", "on"}, {"TRAFOOF", "tcp", "off"}, {"TRAORI|TRAFOOF", "offset", "dropped"}, {"ROT", "frame", "zero"},
-             {"ROT Z=R3", "frame", "turned"}, {R"(R\d=.*)", "-", ""}, {R"(FOR .*|ENDFOR)", "-", ""}, {R"re(T="T\d+")re", "-", ""}};
+             {"ROT Z=R3", "frame", "turned"}, {R"(R\d=.*)", "-", ""}, {R"(FOR .*|ENDFOR)", "-", ""}, {R"re(T="T\d+")re", "-", ""},
+             {R"(FGROUP\([A-Z,]+\))", "path group", "named"}, {R"(FGROUP\(\))", "path group", "machine"}, {R"(FGREF\[[ABC]\]=\d+)", "-", ""}};
   l.comment = ';';
   l.axis = R"(([XYZ]|[ABC]=|[ABC]3=|F|S|ADIS=)(R2[+-]\d*\.?\d*|-?\d*\.?\d*))";
   l.safe = {{"units", "mm"}, {"plane", "xy"}, {"distance", "absolute"}, {"feed", "per minute"}, {"radius", "off"}, {"tcp", "off"},
@@ -93,6 +94,7 @@ Language heidenhain() {
              {R"(CYCL DEF 10\.0 ROTATION|CYCL DEF 32\.0 TOLERANCE)", "-", ""}, {R"(CYCL DEF 10\.1 ROT\+0)", "frame", "zero"},
              {R"(CYCL DEF 10\.1 ROT\+Q3)", "frame", "turned"}, {R"(CYCL DEF 247 DATUM SETTING Q339=\+1)", "offset", "G54"},
              {R"(CYCL DEF 32\.1 T[0-9.]+)", "smoothing", "on"}, {R"(CYCL DEF 32\.1)", "smoothing", "off"},
+             {R"(CYCL DEF 32\.2 HSC-MODE:0 TA[0-9.]+)", "axis smoothing", "on"},
              {R"(TOOL CALL \d+ Z S\d+)", "length", "on"}, {R"(TOOL CALL \d+ Z S\d+)", "-", "tool change"},
              {R"(Q\d = .*|FN 1: Q5 = .*)", "-", ""}, {R"(LBL \d+)", "-", ""}};
   l.comment = ';';
