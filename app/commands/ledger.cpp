@@ -76,7 +76,7 @@ double blend_read_back(const ReadBack& read) {
   double most = 0;
   for (const auto& trace : read.operations)
     for (const auto& move : trace.moves)
-      if (!move.rapid) most = std::max(most, double(move.blend_mm));
+      if (!move.rapid) most = std::max({most, double(move.blend_mm), double(move.corner_path_mm)});
   return most;
 }
 

@@ -9,6 +9,7 @@
 #include "app/report/setup_travel.h"
 #include "app/sha256.h"
 #include "geometry/base/angle.h"
+#include "postproc/axis_time.h"
 #include "postproc/nc_writer.h"
 #include "postproc/tooth_order.h"
 
@@ -16,6 +17,7 @@ namespace toothpath {
 namespace {
 
 constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 30;
+constexpr double kLeastAxisBlend = 0.0001;  // deg: the last digit of a tolerance of the rotaries
 constexpr double kBlendShare = 0.15;      // of the gouge tolerance that the control may round corners by
 
 double shown(const AxisRange& axis, double value) { return axis.rotary ? degrees(value) : value; }
@@ -33,6 +35,11 @@ RunReport report_of(const std::string& command, const Job& job, const Machine& m
   report.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
   if (machine.assumed)
     for (const auto& key : machine.assumed_keys) report.assumed.push_back(fmt::format("{}: {}", job.machine.file, key));
+  if (!machine.post.smoothing_on.empty() && machine.post.smoothing_tolerance_mm)
+    report.assumed.push_back(fmt::format("{}: post.smoothing_tolerance = {:g} mm, what \"{}\" leaves of the path", job.machine.file,
+                                         *machine.post.smoothing_tolerance_mm, machine.post.smoothing_on.front()));
+  if (!machine.post.smoothing_on.empty() && machine.post.smoothing_axis_tolerance_rad)
+    report.assumed.push_back(fmt::format("{}: post.smoothing_axis_tolerance = {:g} deg", job.machine.file, degrees(*machine.post.smoothing_axis_tolerance_rad)));
   report.warnings = job.warnings;
   report.warnings.insert(report.warnings.end(), gear_warnings.begin(), gear_warnings.end());
   return report;
@@ -40,7 +47,7 @@ RunReport report_of(const std::string& command, const Job& job, const Machine& m
 
 void note_axis_program(RunReport& report, const Job& job, std::span<const ClPath* const> paths, const AxisProgram& program) {
   report.axes = program.ranges;
-  const bool timed = program.has_acceleration && !program.restart;  // a program that begins in the middle has its own times
+  const bool timed = program.has_acceleration;
   report.has_acceleration = timed;
   report.feed_minutes = timed ? program.accelerated.feed : program.feed_minutes;
   report.total_minutes = timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes;
@@ -86,16 +93,20 @@ Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const J
   header.assumed = assumed;
   header.coolant = job.coolant != Coolant::off;
   header.blend_mm = std::min(header.blend_mm, kBlendShare * job.verify.gouge_tolerance_mm);
+  double radius = 0;  // a lean of the tool moves the centre of its ball by no more than a corner does
+  for (const auto& tool : job.tools) radius = std::max(radius, tool.radius_mm());
+  if (radius > 0) header.blend_axis_deg = std::max(kLeastAxisBlend, std::min(header.blend_axis_deg, degrees(header.blend_mm / (2 * radius))));
   auto text = clock.run("NC text", [&] { return write_nc(posted.axes, *dialect, header); });
   if (!text) return located(job, "machine.file", text.error());
   posted.blocks = text->blocks;
-  posted.blend_mm = granted_blend_mm(posted.axes, *dialect, header);
+  posted.blend_mm = granted_blend_mm(posted.axes, *dialect, header) + radius * granted_blend_rad(posted.axes, *dialect, header);
   posted.file = "program" + dialect->extension;
   std::string whole = std::move(text->text);
   if (restart) {
     auto part = program_from(posted.axes, restart->operation, restart->tooth);
     if (!part) return part.error();
     posted.restarted = std::move(part.value());
+    estimate_times(*posted.restarted, machine);
     text = write_nc(*posted.restarted, *dialect, header);
     if (!text) return located(job, "machine.file", text.error());
     posted.blocks = text->blocks;

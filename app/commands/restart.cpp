@@ -2,6 +2,7 @@
 
 #include <charconv>
 
+#include "geometry/base/angle.h"
 #include "postproc/restart_proof.h"
 #include "postproc/tooth_order.h"
 
@@ -47,6 +48,12 @@ Status prove(RunReport& report, const PostedProgram& posted, const std::string& 
     report.gouge->bound_line = line_in(proof->line_of, report.gouge->bound_line);
   }
   report.restart = at;
+  for (std::size_t k = 0, rotary = 3; k < report.axes.size(); ++k) {  // where this program goes, not the whole one
+    AxisRange& axis = report.axes[k];
+    const std::size_t a = axis.rotary ? rotary++ : k;
+    axis.min = axis.rotary ? radians(proof->least[a]) : proof->least[a];
+    axis.max = axis.rotary ? radians(proof->greatest[a]) : proof->greatest[a];
+  }
   report.warnings.insert(report.warnings.begin(),
                          fmt::format("this program begins at operation {}, tooth {}: what the whole program cuts before that is taken as done. Proven is the "
                                      "whole program, and that this one makes its {} last moves; gouge and left material are those of all teeth of the whole "

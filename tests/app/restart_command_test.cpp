@@ -23,6 +23,7 @@ TEST(RestartCommand, SpreadProgramFromTheMiddleIsProven) {
   const std::string program = file_text(dir / "out/program.ngc");
   EXPECT_NE(program.find("(TOOTH ORDER SPREAD: PLACE N CUTS TOOTH N * 23 MOD 60)\n(RESTART AT OPERATION 1 TOOTH 7)\n"
                          "(WHAT THE WHOLE PROGRAM CUTS BEFORE THAT IS TAKEN AS DONE)\n"), std::string::npos);
+  EXPECT_NE(program.find("(RUN TIME "), std::string::npos);
   EXPECT_EQ(program.find("(OP 0"), std::string::npos);
   EXPECT_NE(program.find("(OP 1 finishing)"), std::string::npos);
   const auto report = nlohmann::json::parse(file_text(dir / "out/report.json"));
@@ -31,6 +32,18 @@ TEST(RestartCommand, SpreadProgramFromTheMiddleIsProven) {
   EXPECT_EQ(report["restart"]["tooth"], 7);
   EXPECT_EQ(report["tooth_order"]["stride"], 23);
   EXPECT_EQ(report["operations"].size(), 1u);
+  // Its own times and axis ranges, which the whole program exceeds.
+  const Finished all = run_program({"run", job, "--out", dir / "whole"});
+  ASSERT_EQ(all.exit_code, 0) << all.err;
+  const auto whole = nlohmann::json::parse(file_text(dir / "whole/report.json"));
+  EXPECT_LT(report["total_minutes"].get<double>(), 0.8 * whole["total_minutes"].get<double>());
+  bool narrower = false;
+  for (const auto& [letter, axis] : report["axes"].items()) {
+    EXPECT_GE(axis["min"].get<double>(), whole["axes"][letter]["min"].get<double>() - 1e-6) << letter;
+    EXPECT_LE(axis["max"].get<double>(), whole["axes"][letter]["max"].get<double>() + 1e-6) << letter;
+    narrower = narrower || axis["max"].get<double>() - axis["min"].get<double>() < whole["axes"][letter]["max"].get<double>() - whole["axes"][letter]["min"].get<double>() - 1e-3;
+  }
+  EXPECT_TRUE(narrower);
   EXPECT_EQ(report["excess_um"]["operations"].size(), 2u) << "judged as if the earlier part was done";
   EXPECT_NE(report["warnings"][0].get<std::string>().find("taken as done"), std::string::npos);
   // 23 n mod 60 = 7: n = 29. The menu names the line where that number stands.
