@@ -13,6 +13,7 @@ namespace {
 constexpr int kFiner = 4;
 constexpr int kCuspRounds = 4;
 // Of the asked cusp: room for what lies between the stations.
+constexpr double kLongestRunOut = 1.5;  // way of a run-out along the sheet, of the straight line between its ends
 constexpr double kFlankAim = 0.99, kCornerAim = 0.98;
 constexpr double kHighestCusp = 1.1;  // a cusp above this share of the asked one gets a pass of its own
 
@@ -463,14 +464,22 @@ class Planner {
     return pass;
   }
 
-  /// Goes on beyond the ends of the ring: along the sheet as far as it is there, else straight on.
+  /// Not to and fro: its way is that of a curve, not many times the straight line between its ends.
+  static bool keeps_on(const std::vector<BallPass::Point>& points) {
+    double way = 0;
+    for (std::size_t k = 1; k < points.size(); ++k) way += (points[k].centre - points[k - 1].centre).norm();
+    return way <= kLongestRunOut * (points.back().centre - points.front().centre).norm();
+  }
+
+  /// Goes on beyond the ends of the ring: along the sheet where that is there and smooth, else straight on. Out there the ball may come to
+  /// a corner that the ring does not have, and the sheet jumps from one wall of it to the other.
   template <typename Curve>
   void add_run_out(BallPass& pass, const Curve& on_sheet, double from, double to, bool inside, bool outside) const {
     const auto extend = [&](double end, double sense) {
       const double target = std::clamp(end + sense * o_.run_out_mm, sheet_.r_from(), sheet_.r_to());
       std::vector<BallPass::Point> out;
       if (std::abs(target - end) > 0.3 * o_.run_out_mm)
-        if (const auto line = sample_curve(on_sheet, end, target, o_.chord_mm, 4.0 * o_.ball_radius_mm)) {
+        if (const auto line = sample_curve(on_sheet, end, target, o_.chord_mm, 4.0 * o_.ball_radius_mm); line && keeps_on(line->points)) {
           out.assign(line->points.begin() + 1, line->points.end());
           for (auto& p : out) p.touching = false;
           return out;

@@ -171,5 +171,34 @@ TEST(WideBalls, TrimmedCentresKeepTheRadius) {
   }
 }
 
+// Beyond the end of the ring the ball comes between the walls of a corner that the ring itself does not have. The sheet jumps from one wall
+// to the other there; a run-out that followed it went to and fro hundreds of times.
+TEST(RunOut, NeverTurnsBack) {
+  Asked a;
+  auto& g = a.gear;
+  g.teeth = 160;
+  g.shaper_teeth = 31;
+  g.module_mm = 1;
+  g.module_plane = ModulePlane::transverse;
+  g.pressure_angle_rad = radians(22.5);
+  g.addendum_coefficient = 0.6;
+  g.clearance_coefficient = 0.3;
+  g.shaper_tip_radius_mm = 0.2;
+  g.zones = {{radians(29.09), 91.27, 93.27}};
+  a.ball_radius = 0.3;
+  a.scallop = 0.004;
+  const FaceGear gear = test::made(g);
+  const GearDistance part(gear, a.ball_radius);
+  FinishingOptions o = options(a);
+  o.chord_mm = 0.0002;
+  const auto plan = plan_finishing(OffsetSheet(part.space(0), a.ball_radius, 91.27 - 0.4, 93.27 + 0.4, 33), o);
+  ASSERT_TRUE(plan) << plan.error().message;
+  for (const auto& pass : plan->passes) {
+    double way = 0, across = (pass.points.back().centre - pass.points.front().centre).norm();
+    for (std::size_t k = 1; k < pass.points.size(); ++k) way += (pass.points[k].centre - pass.points[k - 1].centre).norm();
+    EXPECT_LT(way, 1.05 * across) << pass.points.size() << " points";
+  }
+}
+
 }  // namespace
 }  // namespace toothpath
