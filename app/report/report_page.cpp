@@ -39,7 +39,7 @@ std::string filled(std::string_view text, const std::vector<Part>& parts) {
 std::string contents(std::string_view sections, bool view) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kNames{{{"job", "Job"}, {"gouge", "Gouge"}, {"deviation", "Deviation"},
       {"ledger", "Ledger"}, {"direction", "Tool direction"}, {"motion", "Axes"}, {"contact", "Contact"}, {"limits", "Limits"}, {"work-precision", "Error against run time"},
-      {"stages", "Run time"}, {"tables", "Tables"}}};
+      {"stages", "Computing time"}, {"tables", "Tables"}}};
   std::string out = "<nav>";
   if (view) out += "<a href=\"#space\">3D view</a>";
   for (const auto& [id, name] : kNames)

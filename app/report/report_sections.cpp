@@ -173,7 +173,9 @@ std::string gouge_section(const ReportPage& page) {
 std::string deviation_section(const ReportPage& page) {
   std::string plots;
   PageTable t{"Material left (+) or missing (\u2212) along the normal",
-              {"Operation", "Max [\u00b5m]", "Min [\u00b5m]", "RMS [\u00b5m]", "Bound [\u00b5m]", "Points"}, {}, {}};
+              {"Operation", "Max [\u00b5m]", "Min [\u00b5m]", "RMS [\u00b5m]", "Bound [\u00b5m]", "Points"}, {},
+              "Bound: the greatest value on the grid and what may stand between its points. The figure at the top bounds the finished surface by its cusps, which "
+              "is closer."};
   for (const ExcessResult& e : page.excess) {
     const std::string name = operation_name(page, e.operation);
     t.rows.push_back({name, um(e.max_mm), um(e.min_mm), um(e.rms_mm), um(e.bound_mm), std::to_string(e.points)});
@@ -241,7 +243,7 @@ std::string stages_section(const ReportPage& page) {
   if (page.stage_seconds.empty()) return {};
   double total = 0;
   for (const auto& [name, seconds] : page.stage_seconds) total += seconds;
-  return section("stages", "Run time", figures(figure(fmt::format("Stages, {} s together", short_number(total, 3)), svg_bars(page.stage_seconds, "time [s]"))));
+  return section("stages", "Computing time", figures(figure(fmt::format("Stages, {} s together", short_number(total, 3)), svg_bars(page.stage_seconds, "time [s]"))));
 }
 
 std::string tables_section(const ReportPage& page) {

@@ -44,7 +44,7 @@ void restart_section(Sheet& sheet, const Job& job, const RunReport& report) {
                how_to_set_the_tooth(op, report)});
   }
   sheet.end_table();
-  sheet.raw(fmt::format("<p class=small>After a tool break: measure the new tool, then <code>toothpath run {} --restart OP:TOOTH</code> writes and proves a program that "
+  sheet.raw(fmt::format("<p class=small>After a tool break: measure the new tool, then <code>toothpath run {} --restart OP:TOOTH --out DIR</code> writes and proves a program that "
                         "begins there. By hand: run from line 1 to {} (units, modal codes, work offset), go on where the operation begins, and set the first tooth as "
                         "the table says. A tooth that was not finished is cut again from its beginning. Put a changed first tooth back afterwards.</p>\n",
                         html_escape(job.file.substr(job.file.find_last_of('/') + 1)), place(menu.start_end)));

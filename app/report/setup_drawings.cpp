@@ -6,6 +6,11 @@
 #include "geometry/base/result.h"
 
 namespace toothpath {
+namespace {
+
+constexpr double kPageWidth = 182, kSketchHeight = 62;  // mm of paper
+
+}  // namespace
 
 std::string part_sketch(const Setup& setup, const PartOutline& part, const Machine& machine) {
   const auto [r_in, r_out, top, root, bottom] = part;
@@ -22,11 +27,14 @@ std::string part_sketch(const Setup& setup, const PartOutline& part, const Machi
   const auto [x_min, x_max] = std::minmax_element(xs.begin(), xs.end());
   const auto [z_min, z_max] = std::minmax_element(zs.begin(), zs.end());
   const double margin = 0.12 * std::max(*x_max - *x_min, *z_max - *z_min) + 1;
-  const double width = *x_max - *x_min + 2 * margin, height = *z_max - *z_min + 2 * margin, unit = width / 100;
-  const auto px = [&](double x) { return x - *x_min + margin; };
+  const double height = *z_max - *z_min + 2 * margin;
+  // The view box is as wide as the page, so that lines and letters have the same size on every sheet.
+  const double scale = std::max((*x_max - *x_min + 2 * margin) / kPageWidth, height / kSketchHeight);  // mm of the machine a mm of paper
+  const double width = scale * kPageWidth, unit = 1.1 * scale, left = (width - (*x_max - *x_min)) / 2;
+  const auto px = [&](double x) { return x - *x_min + left; };
   const auto py = [&](double z) { return *z_max - z + margin; };
   std::string svg = fmt::format("<svg viewBox='0 0 {:.3f} {:.3f}' role=img aria-label='part in the machine, X to the right, Z up' "
-                                "style='width:100%;max-height:62mm' font-size='{:.3f}' font-family='sans-serif'>", width, height, 2.4 * unit);
+                                "style='width:100%;max-height:{:g}mm' font-size='{:.3f}' font-family='sans-serif'>", width, height, kSketchHeight, 2.4 * unit);
   const auto body = [&](double x1, double x2, double z1, double z2, const char* fill) {
     svg += fmt::format("<rect x='{:.3f}' y='{:.3f}' width='{:.3f}' height='{:.3f}' fill='{}' stroke='#333' stroke-width='{:.3f}'/>",
                        px(x1), py(std::max(z1, z2)), x2 - x1, std::abs(z2 - z1), fill, 0.2 * unit);

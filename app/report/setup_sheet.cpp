@@ -27,10 +27,28 @@ std::string triple(const Vec3& v) {
   return fmt::format("X {}  Y {}  Z {}", millimetres(v.x()), millimetres(v.y()), millimetres(v.z()));
 }
 
-void machine_section(Sheet& sheet, const Job& job, const Machine& machine, const RunReport& report) {
+/// What the gear is, in the words of its drawing.
+std::string gear_text(const Job& job) {
+  if (const auto* p = job.bevel_gear())
+    return fmt::format("bevel gear, z {}, {}outer transverse module {:g} mm", p->teeth, p->mate_teeth > 0 ? fmt::format("mate z {}, ", p->mate_teeth) : "",
+                       p->outer_transverse_module_mm);
+  const FaceGearParameters& p = *job.face_gear();
+  const char* plane = p.module_plane == ModulePlane::normal ? "normal" : "transverse";
+  std::string text = fmt::format("face gear, z {}, shaper z {}, {} module {:g} mm, pressure angle {:g} deg, shaft angle {:g} deg", p.teeth, p.shaper_teeth, plane,
+                                 p.module_mm, degrees(p.pressure_angle_rad), degrees(p.shaft_angle_rad));
+  if (p.offset_mm != 0) text += fmt::format(", offset {:g} mm", p.offset_mm);
+  for (const auto& zone : p.zones)
+    text += fmt::format("; radius {:g} to {:g} mm, {}", zone.inner_radius_mm, zone.outer_radius_mm,
+                        zone.helix_angle_rad == 0 ? "spur" : fmt::format("shaper helix {:g} deg", degrees(zone.helix_angle_rad)));
+  return text;
+}
+
+void machine_section(Sheet& sheet, const Job& job, const PartOutline& part, const Machine& machine, const RunReport& report) {
   const Setup& setup = *job.setup;
-  sheet.heading("Machine and work offset");
+  sheet.heading("Gear, machine and work offset");
   sheet.begin_table({"what", "value"});
+  sheet.row({"gear", gear_text(job)});
+  sheet.row({"heights, gear Z", fmt::format("tooth tops {}, deepest root {}, both from the gear origin", millimetres(part.tooth_top), millimetres(part.root))});
   sheet.row({"machine", fmt::format("{} ({})", machine.name, job.machine.file)});
   sheet.row({"control", machine.dialect});
   sheet.row({"program", report.program_file.empty() ? "none: the run is not verified" : report.program_file});
@@ -45,14 +63,14 @@ void machine_section(Sheet& sheet, const Job& job, const Machine& machine, const
 
 std::string cutter_name(const ToolAssembly& tool) {
   if (tool.type == CutterType::finger_mill)
-    return fmt::format("finger mill, module {:g}, tip radius {:g}, rack depth {:g}, profile height {:g}", tool.module_mm, tool.tip_radius_mm,
+    return fmt::format("finger mill, module {:g}, tip radius {:g}, rack depth {:g}, profile height {:g} mm", tool.module_mm, tool.tip_radius_mm,
                        tool.rack_depth_mm, tool.profile_height_mm);
-  return fmt::format("ball end mill, dia {:g}", tool.diameter_mm);
+  return fmt::format("ball end mill, dia {:g} mm", tool.diameter_mm);
 }
 
 void tool_section(Sheet& sheet, const Job& job, const RunReport& report) {
   sheet.heading("Tools");
-  sheet.begin_table({"T", "cutter", "length: gauge line to tip", "stick-out", "flute", "shank", "teeth", "cutting", "rapids", "total"});
+  sheet.begin_table({"T", "cutter", "length mm: gauge line to tip", "stick-out mm", "flute mm", "shank mm", "teeth", "cutting", "rapids", "total"});
   int changes = 0, before = -1;
   for (const auto& operation : report.operations) {
     changes += operation.tool_number != before ? 1 : 0;
@@ -161,7 +179,7 @@ std::string setup_sheet(const Job& job, const PartOutline& part, const Machine& 
   if (report.restart)
     sheet.raw(fmt::format("<p class=no>This program begins at operation {}, tooth {}. What the whole program cuts before that is taken as done: look before you "
                           "start.</p>\n", report.restart->operation, report.restart->tooth));
-  machine_section(sheet, job, machine, report);
+  machine_section(sheet, job, part, machine, report);
   sheet.raw(part_sketch(*job.setup, part, machine));
   tool_section(sheet, job, report);
   length_section(sheet, report);

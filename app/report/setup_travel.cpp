@@ -21,12 +21,12 @@ SheetSection travel_section(const AxisProgram& program, const Setup& setup) {
   section.title = "Room in the travels";
   if (!program.offer) return section;
   const TravelOffer& offer = *program.offer;
-  section.columns = {"axis", "room now, mm", "most room, mm", "gear origin there", setup.work_offset + " there", "shift"};
+  section.columns = {"axis", "room now, mm", "most room, mm", "gear origin there", setup.work_offset + " there", "shift, mm"};
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);
     section.rows.push_back({std::string(1, "XYZ"[i]), millimetres(offer.room_now_mm[k]), millimetres(offer.room_then_mm[k]),
                             millimetres(setup.origin_mm[i] + offer.shift_mm[i]), millimetres(setup.work_offset_at_mm[i] + offer.shift_mm[i]),
-                            fmt::format("{:+.3f}", offer.shift_mm[i])});
+                            std::abs(offer.shift_mm[i]) < 5e-4 ? "0.000" : fmt::format("{:+.3f}", offer.shift_mm[i])});
   }
   section.note = "Room: from the outermost joint of the whole program to the nearer limit, margin taken off.";
   section.note += offer.on_index_axis ? " The gear stays on the axis that turns it: only shifts along it were looked at." : "";
