@@ -123,27 +123,27 @@ struct Subcommand {
 Subcommand add_job_command(CLI::App& app, const char* name, const char* description, CommandRequest& request, Command command) {
   CLI::App* sub = app.add_subcommand(name, description);
   sub->fallthrough();
-  sub->add_option("JOB", request.job_file, "job file (TOML)")->required();
-  sub->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required();
+  sub->add_option("JOB", request.job_file, "job file (TOML)")->required()->type_name("FILE");
+  sub->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required()->type_name("DIR");
   return {sub, std::move(command)};
 }
 
 /// `study work-precision JOB` and `study stability`: commands below a command.
 std::vector<Subcommand> add_studies(CLI::App& app, CommandRequest& request) {
-  CLI::App* study = app.add_subcommand("study", "error against run time; extreme cases");
+  CLI::App* study = app.add_subcommand("study", "error against run time, extreme cases, section models, double helical gears");
   study->fallthrough();
   study->require_subcommand(1);
   auto work_precision = add_job_command(*study, "work-precision", "vary the tolerances of a job: what they cost and what they buy", request, study_work_precision);
   work_precision.app->add_flag("--quick", request.quick, "three factors a tolerance instead of five, and none for all together");
   CLI::App* stability = study->add_subcommand("stability", "extreme gears and machine poses, double against 50 digits");
   stability->fallthrough();
-  stability->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required();
+  stability->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required()->type_name("DIR");
   auto trace_model = add_job_command(*study, "trace-model", "section-sweep models of a bevel gear against its envelope", request, study_trace_model);
   trace_model.app->add_flag("--quick", request.quick, "a coarser grid");
   CLI::App* dhfg = study->add_subcommand("dhfg", "nine orthogonal trials of double helical face gears: limits, contact, forces, milling time");
   dhfg->fallthrough();
-  dhfg->add_option("--file", request.study_file, "study file (TOML); without it the literature's levels and no milling");
-  dhfg->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required();
+  dhfg->add_option("--file", request.study_file, "study file (TOML); without it the literature's levels and no milling")->type_name("FILE");
+  dhfg->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required()->type_name("DIR");
   dhfg->add_flag("--quick", request.quick, "coarse tolerances of the planned paths");
   return {work_precision, {stability, study_stability}, trace_model, {dhfg, study_dhfg}};
 }
@@ -155,12 +155,12 @@ std::vector<Subcommand> add_machine_commands(CLI::App& app, CommandRequest& requ
   machine->require_subcommand(1);
   CLI::App* show = machine->add_subcommand("show", "limits, chain, senses and assumed values of a machine");
   show->fallthrough();
-  show->add_option("MACHINE", request.job_file, "machine file (TOML), or the name of an installed one")->required();
-  show->add_option("--out", request.out_dir, "directory for machine.html and machine.svg; without it only the text is printed");
+  show->add_option("MACHINE", request.job_file, "machine file (TOML), or the name of an installed one")->required()->type_name("FILE");
+  show->add_option("--out", request.out_dir, "directory for machine.html and machine.svg; without it only the text is printed")->type_name("DIR");
   CLI::App* test = machine->add_subcommand("test", "program that holds the tip of a test bar on one point while the rotary axes turn: run it in air");
   test->fallthrough();
-  test->add_option("MACHINE", request.job_file, "machine file (TOML), or the name of an installed one")->required();
-  test->add_option("--out", request.out_dir, "directory for the program and its page; made where it does not exist")->required();
+  test->add_option("MACHINE", request.job_file, "machine file (TOML), or the name of an installed one")->required()->type_name("FILE");
+  test->add_option("--out", request.out_dir, "directory for the program and its page; made where it does not exist")->required()->type_name("DIR");
   test->add_option("--tool-length", request.tool_length_mm, "gauge line to the tip of the test bar, mm (default: 100, 60 or 30, what fits)");
   return {{show, show_machine}, {test, test_machine}};
 }
@@ -169,7 +169,7 @@ std::vector<Subcommand> add_machine_commands(CLI::App& app, CommandRequest& requ
 std::vector<Subcommand> add_bevel_commands(CLI::App& app, CommandRequest& request) {
   auto cutter = add_job_command(app, "cutter", "designs the finger mill of a bevel gear and judges the mills that are there", request, run_cutter);
   cutter.app->add_option("--tool", request.tool_number, "draw this tool of the job instead of the designed mill");
-  cutter.app->add_option("--cutter-of", request.other_job, "judge the mills of this other job too, as they were made for its gear");
+  cutter.app->add_option("--cutter-of", request.other_job, "judge the mills of this other job too, as they were made for its gear")->type_name("JOB");
   auto forces = add_job_command(app, "forces", "tooth forces of a bevel pair over the apex cone distance, and what balances them", request, run_forces);
   forces.app->add_option("--torque", request.torque_Nm, "torque on the gear of the job [N m]; overrides torque in its [load]")->check(CLI::Range(1e-6, 1e9));
   return {cutter, forces};
@@ -183,7 +183,7 @@ Subcommand add_contact(CLI::App& app, CommandRequest& request) {
   contact.app->add_option("--angle-error", request.angle_error_deg, "error of the shaft angle, deg");
   contact.app->add_option("--axial-error", request.axial_error_mm, "pinion off its place along its axis, mm");
   contact.app->add_option("--compound", request.compound_um, "thickness of the marking compound, um (default 6)");
-  contact.app->add_option("--mate", request.other_job, "bevel gears: job of the mate (default: by the rules of the pair, same mill)");
+  contact.app->add_option("--mate", request.other_job, "bevel gears: job of the mate (default: by the rules of the pair, same mill)")->type_name("JOB");
   contact.app->add_option("--wheel-axial-error", request.wheel_axial_error_mm, "bevel gears: wheel off its place along its axis, mm");
   contact.app->add_flag("--as-cut", request.as_cut, "roll the surface that the job cuts, too");
   return contact;
@@ -193,9 +193,9 @@ Subcommand add_contact(CLI::App& app, CommandRequest& request) {
 Subcommand add_compare(CLI::App& app, CommandRequest& request) {
   CLI::App* compare = app.add_subcommand("compare", "one gear shaped and milled: deviations on the same places, times");
   compare->fallthrough();
-  compare->add_option("SHAPED", request.job_file, "job file with [shaping]")->required();
-  compare->add_option("MILLED", request.other_job, "job file with operations of the same gear")->required();
-  compare->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required();
+  compare->add_option("SHAPED", request.job_file, "job file with [shaping]")->required()->type_name("FILE");
+  compare->add_option("MILLED", request.other_job, "job file with operations of the same gear")->required()->type_name("FILE");
+  compare->add_option("--out", request.out_dir, "directory for the results; made where it does not exist")->required()->type_name("DIR");
   return {compare, run_compare};
 }
 
@@ -214,20 +214,24 @@ int run_command_line(int argc, char** argv) {
   GlobalOptions options;
   CommandRequest request;
   add_global_options(app, options);
+  app.footer("Exit codes: 0 done and verified, 1 not verified (no program is left), 2 usage, 3 an input file is refused, 4 a file cannot be read or\n"
+             "written, 70 internal error, 130 interrupted. `toothpath COMMAND --help` lists the options of a command.");
   app.require_subcommand(0, 1);
   std::vector<Subcommand> commands;
   commands.push_back(add_job_command(app, "run", "the whole way from the job to a proven NC program", request, run_job));
-  commands.back().app->add_option("--restart", request.restart, "OP:TOOTH, from 0: the program begins there; what comes before is taken as done");
+  commands.back().app->add_option("--restart", request.restart, "operation and tooth, both from 0: the program begins there; what comes before is taken as done")->type_name("OP:TOOTH");
   commands.push_back(add_job_command(app, "check", "proves a program that is already there against the job's gear", request, check_program));
-  commands.back().app->add_option("PROGRAM", request.program_file, "NC program in the dialect of the job's machine")->required();
-  commands.back().app->add_option("--stock", request.stock_files, "closed mesh of the stock before the program (STL or OBJ, mm, gear frame); repeatable");
+  commands.back().app->add_option("PROGRAM", request.program_file, "NC program in the dialect of the job's machine")->required()->type_name("FILE");
+  commands.back().app->add_option("--stock", request.stock_files, "closed mesh of the stock before the program (STL or OBJ, mm, gear frame); repeatable")->type_name("FILE");
   commands.back().app->add_option("--fixture", request.fixture_files,
                                   "closed mesh of what holds the work and turns with it (STL or OBJ, mm, gear frame); repeatable. Facets are taken as exact: "
-                                  "what they leave out of the true part must lie within the clearance of the job");
-  commands.back().app->add_option("--measured", request.measured_files, "measured deviations that the program answers (see correct)");
+                                  "what they leave out of the true part must lie within the clearance of the job")
+      ->type_name("FILE");
+  commands.back().app->add_option("--measured", request.measured_files, "measured deviations that the program answers (see correct)")->type_name("FILE");
   commands.push_back(add_job_command(app, "correct", "the whole way again, with flanks that answer a measurement", request, run_job));
   commands.back().app->add_option("--measured", request.measured_files, "measured grid: inspection.csv with a column deviation_um; several: one after each cut")
-      ->required();
+      ->required()
+      ->type_name("FILE");
   commands.push_back(add_job_command(app, "surface", "flanks, limits, inspection grid and mesh of the gear", request, run_surface));
   commands.push_back(add_job_command(app, "shaper", "limits and gear-shaper set-up: sheet and stroke program", request, run_shaper));
 
