@@ -1,6 +1,9 @@
 // Where flanks and fillets end in gears that are no longer ordinary: low teeth, no pointing radius, undercut that runs outwards.
 #include <gtest/gtest.h>
 
+#include <map>
+#include <string>
+
 #include "geometry/face_gear.h"
 #include "geometry/swept_solid.h"
 #include "tests/support/brute_force_face_gear.h"
@@ -48,6 +51,34 @@ TEST(FaceGearEnds, FilletIsFoundFromAnyStart) {
     }
   }
   EXPECT_GT(queries, 5000);
+}
+
+/// No flank exists inside the limit that is said to be hard: it is the largest of what bounds either flank, and its name says which.
+TEST(FaceGearEnds, HardLimitIsTheLargestOfAllAndNamed) {
+  std::map<std::string, int> named;
+  auto cases = random_cases(41, 60);
+  for (auto c : cases)  // low teeth: the fillet reaches the tip before the flank is undercut
+    for (const double addendum : {1.0, 0.5, 0.25}) {
+      c.addendum = addendum;
+      c.tip_radius_mm = 0;
+      if (!check_shaper(c.parameters(), c.beta())) continue;
+      const auto f = c.surface();
+      const auto limits = zone_limits(f, c.module_mm);
+      double hard = f.M2;
+      std::string name = "base cylinder";
+      for (const auto& flank : limits.flanks)
+        if (flank.undercut_radius && *flank.undercut_radius > hard) hard = *flank.undercut_radius, name = "undercut";
+      for (const auto& flank : limits.flanks)
+        if (flank.flank_start_radius && *flank.flank_start_radius > hard) hard = *flank.flank_start_radius, name = "fillet up to the tip";
+      EXPECT_EQ(limits.hard_inner_limit, hard) << c.name << " addendum " << addendum;
+      EXPECT_GE(limits.inner_limit, hard);
+      if (limits.inner_limit == hard) {
+        EXPECT_EQ(limits.inner_limit_name, name);
+      }
+      ++named[name];
+    }
+  EXPECT_GE(named["undercut"], 5);
+  EXPECT_GE(named["fillet up to the tip"], 5);
 }
 
 /// The judge inside the library and the one of the tests, which share no line, agree near the flank.
