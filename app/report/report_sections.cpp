@@ -174,8 +174,8 @@ std::string deviation_section(const ReportPage& page) {
   std::string plots;
   PageTable t{"Material left (+) or missing (\u2212) along the normal",
               {"Operation", "Max [\u00b5m]", "Min [\u00b5m]", "RMS [\u00b5m]", "Bound [\u00b5m]", "Points"}, {},
-              "Bound: the greatest value on the grid and what may stand between its points. The figure at the top bounds the finished surface by its cusps, which "
-              "is closer."};
+              "Bound: the greatest value on the grid and what may stand between its points. The finished surface, where there is one, has a closer bound at the "
+              "top of the page: from its cusps."};
   for (const ExcessResult& e : page.excess) {
     const std::string name = operation_name(page, e.operation);
     t.rows.push_back({name, um(e.max_mm), um(e.min_mm), um(e.rms_mm), um(e.bound_mm), std::to_string(e.points)});
