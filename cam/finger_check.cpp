@@ -80,24 +80,6 @@ AxialGap axial_gap(const BevelGear& gear, const ToolMotion& m) {
 
 }  // namespace
 
-std::vector<ToolMotion> motions_of(const ClPath& path) {
-  std::vector<ToolMotion> out;
-  for (std::size_t i = 1; i < path.records.size(); ++i) {
-    const ClRecord &a = path.records[i - 1], &b = path.records[i];
-    ToolMotion m;
-    m.tip_from = a.tip;
-    m.tip_to = b.tip;
-    m.axis_from = a.axis;
-    m.axis_to = b.axis;
-    m.rapid = b.kind == MoveKind::rapid;
-    m.operation = path.operation;
-    m.line = static_cast<int>(i);
-    if (b.feed_mm_min > 0) m.minutes = (b.tip - a.tip).norm() / b.feed_mm_min;
-    out.push_back(m);
-  }
-  return out;
-}
-
 struct FingerGougeCheck::State {
   BevelGear gear;
   std::vector<ToolAssembly> tools;

@@ -14,6 +14,7 @@
 #include "cam/cutter.h"
 #include "cam/finger_ridge.h"
 #include "cam/operation.h"
+#include "cam/path_motions.h"
 #include "cam/verification.h"
 #include "geometry/base/tolerances.h"
 
@@ -61,8 +62,5 @@ class FingerGougeCheck {
   struct State;
   std::unique_ptr<State> state_;
 };
-
-/// Motions of a CL path, straight in tip and axis.
-[[nodiscard]] std::vector<ToolMotion> motions_of(const ClPath& path);
 
 }  // namespace toothpath

@@ -8,6 +8,7 @@
 
 #include "cam/body_sweep.h"
 #include "cam/cutter_sweep.h"
+#include "cam/path_motions.h"
 #include "cam/rapid_clearance.h"
 
 namespace toothpath {
@@ -195,23 +196,7 @@ bool GougeCheck::passes(const GougeResult& r) const {
          r.clearance_mm >= options_.clearance_mm && r.rapids_clear;
 }
 
-std::vector<ToolMotion> GougeCheck::motions_of(const ClPath& path) {
-  std::vector<ToolMotion> out;
-  for (std::size_t k = 1; k < path.records.size(); ++k) {
-    const auto &a = path.records[k - 1], &b = path.records[k];
-    ToolMotion m;
-    m.tip_from = a.tip;
-    m.tip_to = b.tip;
-    m.axis_from = a.axis;
-    m.axis_to = b.axis;
-    m.rapid = b.kind == MoveKind::rapid;
-    m.minutes = m.rapid || b.feed_mm_min <= 0 ? 0 : (b.tip - a.tip).norm() / b.feed_mm_min;
-    m.operation = path.operation;
-    m.line = int(k);
-    out.push_back(m);
-  }
-  return out;
-}
+std::vector<ToolMotion> GougeCheck::motions_of(const ClPath& path) { return toothpath::motions_of(path); }
 
 Result<CheckedClPath> GougeCheck::check_path(ClPath path) const {
   std::vector<int> tool_of_operation(std::size_t(path.operation) + 1, path.tool);
