@@ -4,22 +4,13 @@
 
 #include "geometry/base/angle.h"
 #include "geometry/bevel_limits.h"
+#include "geometry/bevel_pass.h"
 #include "geometry/finger_cutter_design.h"
 
 namespace toothpath {
 namespace {
 
 constexpr double kLargestDeviation = 0.01;  // of the mean normal module: a mill that leaves more is not usable
-
-/// Spiral angle at which the centre of wall sigma has the cone distance R_c; R_c falls with beta.
-double beta_at_centre(const BevelTrace<double>& t, int sigma, double R_c) {
-  double lo = -sigma * t.h > 0 ? -1.0 : 0.0, hi = kPi / 2 - 1e-6;
-  for (int k = 0; k < 100; ++k) {
-    const double mid = 0.5 * (lo + hi);
-    (t.centre(sigma, mid).R_c > R_c ? lo : hi) = mid;
-  }
-  return 0.5 * (lo + hi);
-}
 
 /// Smallest signed distance of a blank point to the mill over a pass: samples, then golden section about the nearest.
 double clearance(const Vec3& point, const BevelTrace<double>& t, int sigma, double beta_from, double beta_to, const FingerSolid& solid) {
@@ -161,9 +152,10 @@ struct Trial {
     double worst = 0;
     for (int k = 0; k < 2; ++k) {
       const auto other = wall(half, 1 - k);
+      // A pass that ends before one of these places is looked at up to its end.
       const double over = other.eps() < 0 ? 1.25 * c.rho_D * std::sin(other.trace.beta(g.R_i())) + 0.1 * g.parameters().outer_transverse_module_mm : 0.0;
-      const double from = beta_at_centre(other.trace, other.sigma, std::max(g.R_i() - over, 0.1 * g.R_i()));
-      const double to = beta_at_centre(other.trace, other.sigma, g.R_i() + 0.5 * b);
+      const double from = beta_at_centre(other.trace, other.sigma, std::max(g.R_i() - over, 0.1 * g.R_i())).value_or(kPi / 2 - 1e-6);
+      const double to = beta_at_centre(other.trace, other.sigma, g.R_i() + 0.5 * b).value_or(0);
       for (int n = 0; n <= 6; ++n)
         for (int r = 0; r <= 8; ++r) {
           const auto at = bevel_inverse(half.walls[k], g.R_i() + 0.25 * b * n / 6, low + (high - low) * r / 8);
