@@ -1,5 +1,7 @@
 // [machine], [setup], [[tool]], [[operation]], [coolant], [verify], [program], [shaping] and [contact].
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <regex>
 
 #include "app/job_tables.h"
@@ -18,6 +20,9 @@ constexpr Range kAllowance{0, 50, " mm"};
 constexpr Range kScallop{1e-5, 1, " mm"};
 constexpr Range kChordTolerance{1e-5, 0.1, " mm"};
 constexpr Range kPosition{-100000, 100000, " mm"};
+constexpr double kMostAxisLean = 60;  // deg
+constexpr double kAxisKeyGap = 0.01;  // mm between two keys of a tool axis
+constexpr std::size_t kMostAxisKeys = 1000;
 
 std::vector<HolderSegment> read_holder(TableReader& table) {
   std::vector<HolderSegment> result;
@@ -59,6 +64,64 @@ void read_finger_profile(TableReader& table, const BevelGearParameters* bevel, T
     table.refuse("diameter", "diameter contradicts type = \"finger_mill\": its width follows from module and profile_height");
 }
 
+/// Three finite numbers of an array; nothing where it is something else.
+std::optional<std::array<double, 3>> three_numbers(const TomlValue& value) {
+  const TomlArray* array = value.array();
+  if (!array || array->values.size() != 3) return std::nullopt;
+  std::array<double, 3> out{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& data = array->values[i].data;
+    if (const auto* real = std::get_if<double>(&data)) out[i] = *real;
+    else if (const auto* whole = std::get_if<std::int64_t>(&data)) out[i] = static_cast<double>(*whole);
+    else return std::nullopt;
+    if (!std::isfinite(out[i])) return std::nullopt;
+  }
+  return out;
+}
+
+/// A list of [radius, lean outwards, lean aside], radii ascending; empty and recorded where it is something else.
+std::vector<ToolAxisKey> read_axis_keys(TableReader& table, std::string_view key) {
+  std::vector<ToolAxisKey> keys;
+  const TomlValue* value = table.value(key);
+  if (!value) return keys;
+  const TomlArray* list = value->array();
+  if (!list || list->values.empty() || list->values.size() > kMostAxisKeys) {
+    table.refuse(key, "{} must be an array of 1 to {} keys [radius in mm, lean outwards in deg, lean aside in deg]", key, kMostAxisKeys);
+    return {};
+  }
+  for (std::size_t k = 0; k < list->values.size(); ++k) {
+    const auto numbers = three_numbers(list->values[k]);
+    if (!numbers) {
+      table.refuse(key, "{}[{}] must be [radius in mm, lean outwards in deg, lean aside in deg]", key, k);
+      return {};
+    }
+    const auto [radius, outwards, aside] = *numbers;
+    if (!(radius > 0)) table.refuse(key, "{}[{}]: radius = {} mm is not above 0 mm", key, k, radius);
+    else if (!keys.empty() && radius < keys.back().radius_mm + kAxisKeyGap)
+      table.refuse(key, "{}[{}]: radius = {} mm is not {} mm beyond {} mm, the radius of the key before it", key, k, radius, kAxisKeyGap, keys.back().radius_mm);
+    else if (std::abs(outwards) > kMostAxisLean) table.refuse(key, "{}[{}]: lean outwards = {} deg is outside -{} to {} deg", key, k, outwards, kMostAxisLean, kMostAxisLean);
+    else if (std::abs(aside) > kMostAxisLean) table.refuse(key, "{}[{}]: lean aside = {} deg is outside -{} to {} deg", key, k, aside, kMostAxisLean, kMostAxisLean);
+    else {
+      keys.push_back({radius, radians(outwards), radians(aside)});
+      continue;
+    }
+    return {};
+  }
+  return keys;
+}
+
+/// Prescribed tool axes: one list for all passes, or one for each flank.
+void read_tool_axis(TableReader& table, MillingOperation& operation) {
+  const bool both = table.value("tool_axis") != nullptr, plus = table.has("tool_axis_plus"), minus = table.has("tool_axis_minus");
+  operation.axis_plus = read_axis_keys(table, both ? "tool_axis" : "tool_axis_plus");
+  operation.axis_minus = both ? operation.axis_plus : read_axis_keys(table, "tool_axis_minus");
+  if (both)
+    for (const char* key : {"tool_axis_plus", "tool_axis_minus"}) {
+      if (table.value(key)) table.refuse(key, "{} contradicts tool_axis, which holds for both flanks", key);
+    }
+  else if (plus != minus) table.refuse(plus ? "tool_axis_plus" : "tool_axis_minus", "tool_axis_plus and tool_axis_minus stand together: the other is missing");
+}
+
 MillingOperation read_ball_operation(TableReader& table, OperationType type) {
   MillingOperation operation;
   if (type == OperationType::roughing) {
@@ -66,6 +129,7 @@ MillingOperation read_ball_operation(TableReader& table, OperationType type) {
     operation.step_over_mm = table.number("step_over", kStep).value_or(0);
   } else {
     operation.scallop_mm = table.number("scallop", kScallop).value_or(0);
+    read_tool_axis(table, operation);
   }
   if (type != OperationType::finishing) operation.allowance_mm = table.number("allowance", kAllowance).value_or(0);
   if (const auto climb = table.if_present("climb", [&] { return table.boolean("climb"); })) operation.climb = *climb;
