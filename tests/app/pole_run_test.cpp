@@ -1,0 +1,259 @@
+// Whole runs whose prescribed tool axis comes to the pole of C: every option of `[program] pole`, from the job to the proven bytes, and those
+// bytes against the planned path by kinematics of their own.
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+
+#include "pole_job.h"
+
+namespace toothpath::test {
+namespace {
+
+using Json = nlohmann::json;
+constexpr double kDegree = 0.017453292519943295;
+// The ball centre: the tip inside a block (0.5 um) and the axis there (0.001 rad at the ball radius of 0.5 mm), the rounding of words (0.09 um), and
+// the sag between two records of the plan whose axis turns (0.12 um).
+constexpr double kCentreBound = 5e-4 + 1e-3 * kBall + 9e-5 + 1.2e-4;
+
+struct PoleRun {
+  Finished run;
+  Json report;
+  std::string program;
+  std::vector<PlannedStep> plan;
+};
+PoleRun run_pole(const TestDir& dir, const PoleJob& job, const std::string& extension = "ngc") {
+  write_file(dir / "job.toml", job_text(job));
+  PoleRun out;
+  out.run = run_program({"run", dir / "job.toml", "--out", dir / "out"});
+  const std::string report = file_text(dir / "out/report.json");
+  if (!report.empty()) out.report = Json::parse(report);
+  out.program = file_text(dir / ("out/program." + extension));
+  out.plan = planned_steps(file_text(dir / "out/cl.csv"));
+  return out;
+}
+
+/// The feeds of tooth 0 at five places each, against the plan.
+struct Sampled {
+  double centre_mm = 0, axis_rad = 0, c_speed = 0, c_turn = 0, a_least = INFINITY, a_greatest = -INFINITY, nearest_pole = INFINITY, minutes = 0;
+  std::size_t away = 0;  ///< motions off the plan
+};
+Sampled sampled(const PoleRun& r) {
+  Sampled s;
+  for (const auto& m : joint_feeds(r.program)) {
+    const double dc = std::abs(m.to.at('C') - m.from.at('C'));
+    s.c_speed = std::max(s.c_speed, dc / m.minutes);
+    s.c_turn += dc;
+    s.minutes += m.minutes;
+    bool on_plan = true;
+    for (int k = 0; k <= 4; ++k) {
+      std::map<char, double> w;
+      for (const auto& [letter, value] : m.from) w[letter] = value + (m.to.at(letter) - value) * k / 4;
+      const auto pose = pose_of(w);
+      s.nearest_pole = std::min(s.nearest_pole, angle_of(pose.axis, Vec3::UnitZ()));
+      const auto off = from_plan(r.plan, pose.tip + kBall * pose.axis, pose.axis);
+      if (off.centre_mm > 0.02) {
+        on_plan = false;
+        continue;
+      }
+      s.centre_mm = std::max(s.centre_mm, off.centre_mm);
+      s.axis_rad = std::max(s.axis_rad, off.axis_rad);
+    }
+    s.a_least = std::min(s.a_least, m.to.at('A'));
+    s.a_greatest = std::max(s.a_greatest, m.to.at('A'));
+    if (on_plan) continue;
+    ++s.away;
+    EXPECT_EQ(dc, 0) << "rotaries stand where the tool leaves the plan";
+    EXPECT_EQ(m.to.at('A'), m.from.at('A'));
+  }
+  return s;
+}
+
+void print(const char* name, const PoleRun& r, const Sampled& s) {
+  std::printf("%-22s gouge %.3f um, bound %.3f um, %.2f min, C at most %.0f deg/min, %.1f deg a tooth, centre within %.3f um, axis within %.4f deg, pole at %.4f deg\n", name,
+              r.report["gouge_um"]["measured"].get<double>(), r.report["gouge_um"]["bound"].get<double>(), r.report["cutting_minutes"].get<double>(), s.c_speed, s.c_turn,
+              s.centre_mm * 1000, s.axis_rad / kDegree, s.nearest_pole / kDegree);
+}
+
+struct Case {
+  const char* pole;
+  double aside_deg;
+  std::optional<double> angle_deg;
+};
+class PoleOptions : public ::testing::TestWithParam<Case> {};
+INSTANTIATE_TEST_SUITE_P(Run, PoleOptions,
+                         ::testing::Values(Case{"slow", 0, {}}, Case{"hold", 0, {}}, Case{"through", 0, {}}, Case{"retract", 0, {}}, Case{"slow", 0.3, {}},
+                                           Case{"hold", 0.3, 1.0}, Case{"through", 0.3, 1.0}, Case{"retract", 0.3, 1.0}));
+
+TEST_P(PoleOptions, GoesTheWholeWayOnATrunnion) {
+  const Case& c = GetParam();
+  const TestDir dir;
+  PoleJob job;
+  job.pole = c.pole;
+  job.aside_deg = c.aside_deg;
+  job.angle_deg = c.angle_deg;
+  const PoleRun r = run_pole(dir, job);
+  ASSERT_EQ(r.run.exit_code, 0) << r.run.err << r.run.out;
+  EXPECT_EQ(r.report["verified"], true);
+  EXPECT_LE(r.report["gouge_um"]["bound"].get<double>(), 3.0);
+  EXPECT_LE(r.report["gouge_um"]["measured"].get<double>(), r.report["gouge_um"]["bound"].get<double>());
+  const Sampled s = sampled(r);
+  print(fmt::format("{} aside {}", c.pole, c.aside_deg).c_str(), r, s);
+  EXPECT_LT(s.centre_mm, kCentreBound);
+  EXPECT_LT(s.axis_rad, c.angle_deg.value_or(0.0573) * kDegree + 1.5e-3);
+  EXPECT_LE(s.c_speed, 12000 * (1 + 1e-6));
+  const std::string pole = c.pole;
+  EXPECT_EQ(s.away > 0, pole == "retract");
+  if (pole == "through") {
+    EXPECT_LT(s.a_least, -2.5);
+    EXPECT_GT(s.a_greatest, 2.5);
+    EXPECT_LT(s.nearest_pole, 1e-4);
+  }
+  if (pole == "slow") {
+    EXPECT_LT(s.axis_rad, 2.5e-3);
+  }
+  if (pole == "slow" || pole == "hold") {
+    EXPECT_GT(s.c_turn, 100) << "C turns to the other side in the cut";
+  }
+}
+
+// LinuxCNC's own interpreter on tooth 0 of every program: as many feeds as were counted here, and each ends on the plan.
+TEST(PoleRun, LinuxCncExecutesThem) {
+  const char* given = std::getenv("TOOTHPATH_RS274");
+  const std::string rs274 = given != nullptr ? given : std::string(TOOTHPATH_SOURCE_DIR) + "/.deps/rs274/rs274";
+  if (!std::filesystem::exists(rs274)) FAIL() << rs274 << " is missing: run tools/get_rs274.sh";
+  for (const char* pole : {"slow", "hold", "through", "retract"}) {
+    const TestDir dir;
+    PoleJob job;
+    job.pole = pole;
+    const PoleRun r = run_pole(dir, job);
+    ASSERT_EQ(r.run.exit_code, 0) << r.run.err;
+    std::string text = r.program;
+    const auto loop = text.find("[#1 LT 60]");
+    ASSERT_NE(loop, std::string::npos);
+    text.replace(loop, 10, "[#1 LT 1]");
+    write_file(dir / "p.ngc", text);
+    write_file(dir / "t.tbl", "T1 P1 Z0 D1 ;\n");
+    write_file(dir / "v.var", "");
+    const std::string command = "cd '" + (dir / "") + "' && HOME=. timeout 60 '" + rs274 + "' -g -t t.tbl -v v.var p.ngc out.txt > log.txt 2>&1";
+    ASSERT_EQ(std::system(command.c_str()), 0) << file_text(dir / "log.txt");
+    std::istringstream in(file_text(dir / "out.txt"));
+    std::size_t feeds = 0, on_plan = 0;
+    for (std::string line; std::getline(in, line);) {
+      const auto at = line.find("STRAIGHT_FEED(");
+      if (at == std::string::npos) continue;
+      double x = 0, y = 0, z = 0, a = 0, b = 0, c = 0;
+      ASSERT_EQ(std::sscanf(line.c_str() + at, "STRAIGHT_FEED(%lf, %lf, %lf, %lf, %lf, %lf", &x, &y, &z, &a, &b, &c), 6) << line;
+      ++feeds;
+      const auto pose = pose_of({{'X', x}, {'Y', y}, {'Z', z}, {'A', a}, {'C', c}});
+      const auto off = from_plan(r.plan, pose.tip + kBall * pose.axis, pose.axis);
+      if (off.centre_mm > 0.02) continue;  // on the way out of a retract
+      ++on_plan;
+      EXPECT_LT(off.centre_mm, kCentreBound);
+      EXPECT_LT(off.axis_rad, 0.0573 * kDegree + 1.5e-3);
+    }
+    EXPECT_EQ(feeds, joint_feeds(r.program).size()) << pole;
+    EXPECT_GT(on_plan, feeds - 100) << pole;
+  }
+}
+
+TEST(PoleRun, ErrorNamesBlockAngleAndLimit) {
+  const TestDir dir;
+  PoleJob job;
+  const PoleRun r = run_pole(dir, job);
+  EXPECT_EQ(r.run.exit_code, 3) << r.run.err;
+  EXPECT_NE(r.run.err.find("operation 0 record "), std::string::npos) << r.run.err;
+  EXPECT_NE(r.run.err.find("the tool axis passes the pole at 0.0000 deg, C turns by "), std::string::npos) << r.run.err;
+  EXPECT_NE(r.run.err.find("limit 30: post.pole = \"slow\", \"hold\", \"through\" or \"retract\" goes past it"), std::string::npos) << r.run.err;
+  EXPECT_TRUE(r.program.empty());
+}
+
+TEST(PoleRun, TiltMovesNoPrescribedAxis) {
+  const TestDir dir;
+  PoleJob job;
+  job.pole = "tilt";
+  const PoleRun r = run_pole(dir, job);
+  EXPECT_EQ(r.run.exit_code, 3) << r.run.err;
+  EXPECT_NE(r.run.err.find("comes to 0.0000 deg of the pole of C, post.pole = \"tilt\" keeps 5.0000: directions that are fixed or prescribed by tool_axis are not moved"),
+            std::string::npos)
+      << r.run.err;
+  EXPECT_TRUE(r.program.empty());
+  // Keys that keep the distance are as good as a plan that does.
+  const TestDir other;
+  job.inner_deg = 6;
+  job.outer_deg = 9;
+  const PoleRun far = run_pole(other, job);
+  ASSERT_EQ(far.run.exit_code, 0) << far.run.err;
+  EXPECT_GT(sampled(far).nearest_pole, 5.9 * kDegree);
+}
+
+// What TCP controls get; the proof reads the bytes back through the kinematics of the machine.
+class PoleControls : public ::testing::TestWithParam<std::tuple<const char*, const char*>> {};
+INSTANTIATE_TEST_SUITE_P(Run, PoleControls,
+                         ::testing::Combine(::testing::Values("fanuc_ac.toml", "siemens_ac.toml", "heidenhain_ac.toml"), ::testing::Values("slow", "hold", "through", "retract")));
+
+TEST_P(PoleControls, GoesTheWholeWayWithTcp) {
+  const auto& [machine, pole] = GetParam();
+  const TestDir dir;
+  PoleJob job;
+  job.machine = machine;
+  job.pole = pole;
+  job.aside_deg = 0.3;
+  if (job.pole != "slow") job.angle_deg = 1;
+  const PoleRun r = run_pole(dir, job, job.machine == "fanuc_ac.toml" ? "nc" : job.machine == "siemens_ac.toml" ? "mpf" : "h");
+  ASSERT_EQ(r.run.exit_code, 0) << r.run.err << r.run.out;
+  EXPECT_EQ(r.report["verified"], true);
+  EXPECT_LE(r.report["gouge_um"]["bound"].get<double>(), 3.0);
+  EXPECT_FALSE(r.program.empty());
+  std::printf("%s %s: gouge %.3f um, bound %.3f um, %.2f min\n", machine, pole, r.report["gouge_um"]["measured"].get<double>(), r.report["gouge_um"]["bound"].get<double>(),
+              r.report["cutting_minutes"].get<double>());
+}
+
+// C stands while it should turn: from the middle of the turn on, 40 deg of it are left out of one block.
+TEST(PoleRun, ACThatStaysBehindIsCaught) {
+  const TestDir dir;
+  PoleJob job;
+  job.pole = "slow";
+  const PoleRun r = run_pole(dir, job);
+  ASSERT_EQ(r.run.exit_code, 0) << r.run.err;
+  std::istringstream in(r.program);
+  std::string text, line, held;
+  int changed = 0;
+  for (bool inside = false; std::getline(in, line);) {
+    const auto at = line.find(" C[#1");
+    if (line.rfind("G0", 0) == 0 || line.rfind("o", 0) == 0) inside = false;
+    if (at != std::string::npos && line.rfind("G0", 0) != 0 && changed < 4) {
+      const auto end = line.find(']', at) + 1;
+      if (inside) {
+        line.replace(at, end - at, held);
+        ++changed;
+      } else if (changed == 0) {
+        held = line.substr(at, end - at);
+        inside = true;
+      }
+    }
+    text += line + "\n";
+  }
+  ASSERT_GT(changed, 0);
+  write_file(dir / "stays.ngc", text);
+  const Finished check = run_program({"check", dir / "job.toml", dir / "stays.ngc", "--out", dir / "check"});
+  EXPECT_EQ(check.exit_code, 1) << check.err << check.out;
+  const Finished whole = run_program({"check", dir / "job.toml", dir / "out/program.ngc", "--out", dir / "whole"});
+  EXPECT_EQ(whole.exit_code, 0) << whole.err;
+}
+
+// A key list that the planner cannot prove is refused at its place in the job.
+TEST(PoleRun, RefusedAxesAreLocatedInTheJob) {
+  const TestDir dir;
+  std::string text = job_text({});
+  const auto at = text.find("tool_axis = ");
+  text.replace(at, text.find('\n', at) - at, "tool_axis = [[61.0, 0.0, 28.0]]");
+  write_file(dir / "job.toml", text);
+  const Finished run = run_program({"run", dir / "job.toml", "--out", dir / "out"});
+  EXPECT_EQ(run.exit_code, 3);
+  const std::string place = fmt::format("job.toml:{}:13: error: tool 1 in zone 0: with the ball at radius", 1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n'));
+  EXPECT_NE(run.err.find(place), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("28.000 deg aside"), std::string::npos) << run.err;
+}
+
+}  // namespace
+}  // namespace toothpath::test
