@@ -4,6 +4,7 @@
 #include <random>
 
 #include "tests/postproc/nc_case.h"
+#include "tests/support/files.h"
 
 namespace toothpath {
 namespace {
@@ -116,16 +117,7 @@ TEST(DialectReaders, SurviveMutations) {
     std::mt19937 random(7);
     int refused = 0;
     for (int i = 0; i < 1500; ++i) {
-      std::string t = good->text;
-      for (int k = 0; k < 1 + i % 4; ++k) {
-        const std::size_t at = random() % t.size();
-        switch (random() % 4) {
-          case 0: t[at] = static_cast<char>(random() & 0xff); break;
-          case 1: t.erase(at, random() % 20); break;
-          case 2: t.insert(at, t.substr(random() % t.size(), random() % 30)); break;
-          default: t[at] = "GMXYZACFRQ=/+(0123456789.-"[random() % 26]; break;
-        }
-      }
+      const std::string t = damaged(good->text, random, 1 + i % 4, "GMXYZACFRQ=/+(0123456789.-");
       const auto r = read_back(t, "p", *control, m, standing(), {.teeth = 3});
       refused += r ? 0 : 1;
       if (!r) {
