@@ -6,33 +6,15 @@
 #include <cmath>
 #include <functional>
 
+#include "cam/pass_count.h"
+
 namespace toothpath {
 namespace {
 
-/// Nodes of a profile are divided this often before passes are counted: the curvature may change within one step-over.
-constexpr int kFiner = 4;
-constexpr int kCuspRounds = 4;
-// Of the asked cusp: room for what lies between the stations.
 constexpr double kLongestRunOut = 1.5;  // way of a run-out along the sheet, of the straight line between its ends
-constexpr double kFlankAim = 0.99, kCornerAim = 0.98;
 constexpr double kHighestCusp = 1.1;  // a cusp above this share of the asked one gets a pass of its own
 
 double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
-
-/// Passes counted along one profile: `count` grows by one from pass to pass.
-struct CountedProfile {
-  std::vector<double> sigma, count;  ///< same length, both ascending; gaps are jumps in sigma at equal count
-  bool refined = false;              ///< nodes have been divided
-};
-
-double interpolate(const std::vector<double>& x, const std::vector<double>& y, double at) {
-  const auto it = std::upper_bound(x.begin(), x.end(), at);
-  if (it == x.begin()) return y.front();
-  if (it == x.end()) return y.back();
-  const auto k = std::size_t(it - x.begin());
-  const double t = x[k] > x[k - 1] ? (at - x[k - 1]) / (x[k] - x[k - 1]) : 0;
-  return y[k - 1] + t * (y[k] - y[k - 1]);
-}
 
 /// Cubic through equally spaced values (Catmull-Rom), value at t in [0, n - 1].
 double smooth(const std::vector<double>& y, double t) {
@@ -47,15 +29,9 @@ double smooth(const std::vector<double>& y, double t) {
 
 class Planner {
  public:
-  Planner(const OffsetSheet& sheet, const FinishingOptions& options) : sheet_(sheet), o_(options) {}
+  Planner(const OffsetSheet& sheet, const FinishingOptions& options) : sheet_(sheet), o_(options), count_(sheet, options) {}
 
   Result<FinishingPasses> run() {
-    const auto& ring = sheet_.space().ring().zone;
-    if (sheet_.empty() || sheet_.r_from() >= sheet_.r_to())
-      return fail("the ball centres of a {:.4f} mm ball find no surface between the radii {:.4f} and {:.4f}",
-                  o_.ball_radius_mm, ring.inner_radius_mm, ring.outer_radius_mm);
-    count_profiles();
-    for (int round = 0; round < kCuspRounds; ++round) sharpen_counts();
     out_.scallop_min_mm = INFINITY;
     if (sheet_.has_gaps()) {
       if (auto ok = passes_between_corners(); !ok) return ok.error();
@@ -69,15 +45,15 @@ class Planner {
   /// The whole sheet as one: from both tips downwards, in turn, so that a climbing pass on one flank leads to a climbing pass
   /// on the other. (Counts of single flanks vary more along the tooth than the count of the whole space does.)
   Status passes_over_all() {
-    const double most = *std::max_element(totals_.begin(), totals_.end());
+    const auto& totals = count_.totals();
+    const double most = *std::max_element(totals.begin(), totals.end());
     const int passes = std::max(2, int(std::ceil(most - 1e-9)));
-    note_scallop(totals_, passes);
+    note_scallop(totals, passes);
     Chain chain;
     for (int index = 0; index < passes; ++index) {
       const double share = (index + 0.5) / passes;
       std::vector<double> sigma;
-      for (std::size_t j = 0; j < profiles_.size(); ++j)
-        sigma.push_back(interpolate(profiles_[j].count, profiles_[j].sigma, share * totals_[j]));
+      for (std::size_t j = 0; j < totals.size(); ++j) sigma.push_back(count_.sigma_at(j, share * totals[j]));
       chain.push_back([this, sigma](double r) { return smooth(sigma, station_coordinate(r)); });
     }
     close_gaps(chain);
@@ -128,7 +104,7 @@ class Planner {
       const auto& ring = sheet_.space().ring().zone;
       if (ra < ring.inner_radius_mm - o_.ball_radius_mm || ra > ring.outer_radius_mm + o_.ball_radius_mm) continue;
       const Vec3 fa = (na->centre - pa->centre).normalized(), fb = (nb->centre - pb->centre).normalized();
-      if (cusp(sigma_a, *pa, fa, sigma_b, *pb, fb, r, sheet_.gaps(r)) > kHighestCusp * o_.scallop_mm) return true;
+      if (count_.cusp(sigma_a, *pa, fa, sigma_b, *pb, fb, r, sheet_.gaps(r)) > kHighestCusp * o_.scallop_mm) return true;
     }
     return false;
   }
@@ -185,12 +161,11 @@ class Planner {
       plus[j] = corner_at(stations[j].r, true);
       minus[j] = corner_at(stations[j].r, false);
     }
-    const auto count_at = [&](std::size_t j, double sigma) { return interpolate(profiles_[j].sigma, profiles_[j].count, sigma); };
-    const auto sigma_at = [&](std::size_t j, double count) { return interpolate(profiles_[j].count, profiles_[j].sigma, count); };
+    const auto& totals = count_.totals();
     std::vector<double> a(n), c(n);  // counts of the plus flank and of the minus flank, tip to corner
     for (std::size_t j = 0; j < n; ++j) {
-      a[j] = count_at(j, plus[j].from);
-      c[j] = totals_[j] - count_at(j, minus[j].to);
+      a[j] = count_.count_at(j, plus[j].from);
+      c[j] = totals[j] - count_.count_at(j, minus[j].to);
     }
     const int passes_a = std::max(1, int(std::ceil(*std::max_element(a.begin(), a.end()) - 0.5)));
     const int passes_c = std::max(1, int(std::ceil(*std::max_element(c.begin(), c.end()) - 0.5)));
@@ -200,12 +175,12 @@ class Planner {
     Chain on_plus, on_minus;
     for (int i = 0; i < passes_a; ++i) {
       std::vector<double> away(n);
-      for (std::size_t j = 0; j < n; ++j) away[j] = plus[j].from - sigma_at(j, (i + 0.5) / (passes_a + 0.5) * a[j]);
+      for (std::size_t j = 0; j < n; ++j) away[j] = plus[j].from - count_.sigma_at(j, (i + 0.5) / (passes_a + 0.5) * a[j]);
       on_plus.push_back([this, away](double r) { return corner_at(r, true).from - smooth(away, station_coordinate(r)); });
     }
     for (int i = 0; i < passes_c; ++i) {
       std::vector<double> away(n);
-      for (std::size_t j = 0; j < n; ++j) away[j] = sigma_at(j, totals_[j] - (i + 0.5) / (passes_c + 0.5) * c[j]) - minus[j].to;
+      for (std::size_t j = 0; j < n; ++j) away[j] = count_.sigma_at(j, totals[j] - (i + 0.5) / (passes_c + 0.5) * c[j]) - minus[j].to;
       on_minus.push_back([this, away](double r) { return corner_at(r, false).to + smooth(away, station_coordinate(r)); });
     }
     on_plus.push_back([this](double r) { return corner_at(r, true).from; });
@@ -231,7 +206,7 @@ class Planner {
       const double r_low = j > 0 ? stations[j - 1].r : -INFINITY, r_high = end + 1 < n ? stations[end + 1].r : INFINITY;
       if (auto ok = add_pass([&](double r) { return corner_at(r, false).to; }, false, r_low, r_high); !ok) return ok;
       double most = 0;
-      for (std::size_t k = j; k <= end; ++k) most = std::max(most, count_at(k, minus[k].from) - count_at(k, plus[k].to));
+      for (std::size_t k = j; k <= end; ++k) most = std::max(most, count_.count_at(k, minus[k].from) - count_.count_at(k, plus[k].to));
       const int between = int(std::ceil(most - 1e-9));
       for (int i = 1; i < between; ++i) {
         const auto sigma = [&](double r) {
@@ -247,179 +222,7 @@ class Planner {
   }
 
   [[nodiscard]] double station_coordinate(double r) const {
-    return (r - sheet_.r_from()) / (sheet_.r_to() - sheet_.r_from()) * double(profiles_.size() - 1);
-  }
-
-  /// Centre spacing across the pass for the asked cusp at a contact point.
-  [[nodiscard]] double spacing(const SheetPoint& s, const Vec3& feed) const {
-    const Vec3 across = s.contact.n.cross(feed);
-    const double k = SpaceSheet::normal_curvature(s.contact, across);
-    const double regular = std::max(1e-6, (1 + k * sheet_.delta()) / (1 + k * o_.allowance_mm));
-    return std::sqrt(8 * o_.scallop_mm * o_.ball_radius_mm * regular);
-  }
-
-  void count_profiles() {
-    const auto& stations = sheet_.stations();
-    const std::size_t n = stations.size();
-    // Direction of the passes: first along constant sigma, then along constant share of the count.
-    for (int round = 0; round < 2; ++round) {
-      std::vector<CountedProfile> profiles(n);
-      std::vector<double> totals(n);
-      for (std::size_t j = 0; j < n; ++j) {
-        const auto& st = stations[j];
-        CountedProfile p;
-        double count = 0;
-        const OffsetSheet::Node* previous = nullptr;
-        double previous_w = 0;
-        Vec3 previous_feed = Vec3::Zero();
-        for (std::size_t k = 0; k < st.nodes.size(); ++k) {
-          const auto& node = st.nodes[k];
-          const bool hidden = std::any_of(st.gaps.begin(), st.gaps.end(), [&](const SheetGap& g) {
-            return node.sigma > g.from && node.sigma < g.to;
-          });
-          if (hidden) continue;
-          const Vec3 feed = feed_direction(j, k, round);
-          const double w = spacing(node.at, feed);
-          if (previous) {
-            const Vec3 mean_feed = (feed + previous_feed).normalized();
-            Vec3 from = previous->at.centre;
-            // A corner between the two: both of its ends have one count.
-            for (const auto& g : st.gaps)
-              if (g.from >= previous->sigma && g.to <= node.sigma)
-                if (const auto corner = sheet_.raw(g.from, st.r)) {
-                  count += (corner->centre - from).cross(mean_feed).norm() / previous_w;
-                  p.sigma.insert(p.sigma.end(), {g.from, g.to});
-                  p.count.insert(p.count.end(), {count, count});
-                  from = corner->centre;
-                  previous_w = w;
-                }
-            count += (node.at.centre - from).cross(mean_feed).norm() / (0.5 * (w + previous_w));
-          }
-          p.sigma.push_back(node.sigma);
-          p.count.push_back(count);
-          previous = &node;
-          previous_w = w;
-          previous_feed = feed;
-        }
-        totals[j] = count;
-        profiles[j] = std::move(p);
-      }
-      profiles_ = std::move(profiles);
-      totals_ = std::move(totals);
-    }
-  }
-
-  /// The count comes from curvatures at single points; here every cusp is measured between its two passes, and where it is
-  /// higher than asked the passes are drawn together.
-  void sharpen_counts() {
-    for (auto& p : profiles_) refine(p);
-    std::vector<std::vector<double>> counts(profiles_.size());
-    tbb::parallel_for(std::size_t(0), profiles_.size(), [&](std::size_t j) { counts[j] = sharpened(j); });
-    for (std::size_t j = 0; j < profiles_.size(); ++j) {
-      profiles_[j].count = std::move(counts[j]);
-      totals_[j] = profiles_[j].count.back();
-    }
-  }
-
-  /// New count of station j. Where the curvature jumps (around the corners) pairs of passes are tried at four phases, since the
-  /// final passes of a station fall anywhere; on the flanks one phase is enough.
-  [[nodiscard]] std::vector<double> sharpened(std::size_t j) const {
-    const auto& p = profiles_[j];
-    const double r = sheet_.stations()[j].r, total = totals_[j];
-    const auto gaps = sheet_.gaps(r);
-    struct Line {
-      double count, sigma;
-      SheetPoint at;
-      Vec3 feed;
-    };
-    const auto on_flank = [](double sigma) { return sigma < 0.96 || sigma > 4.04; };
-    std::vector<double> grow(p.sigma.size(), 1.0);
-    const auto try_pairs = [&](double begin, double end, double step, std::size_t apart) {
-      std::vector<Line> lines;
-      for (double c = begin; c <= end; c += step) {
-        const double sigma = interpolate(p.count, p.sigma, c);
-        const auto s = sheet_.at(sigma, r);
-        if (!s) return;
-        lines.push_back({c, sigma, *s, direction_at(j, sigma, c / total)});
-      }
-      for (std::size_t i = 0; i + apart < lines.size(); ++i) {
-        const auto &a = lines[i], &b = lines[i + apart];
-        const auto between = [&](const SheetGap& g) { return a.sigma <= g.from && b.sigma >= g.to; };
-        if (std::any_of(gaps.begin(), gaps.end(), between)) continue;  // a pass will run along the corner between them
-        const double height = cusp(a.sigma, a.at, a.feed, b.sigma, b.at, b.feed, r, gaps);
-        const double ratio = std::clamp(height / ((on_flank(a.sigma) && on_flank(b.sigma) ? kFlankAim : kCornerAim) * o_.scallop_mm), 1.0, 4.0);
-        if (ratio == 1.0) continue;
-        for (std::size_t k = 1; k < p.sigma.size(); ++k)
-          if (p.sigma[k] > a.sigma && p.sigma[k - 1] < b.sigma) grow[k] = std::max(grow[k], std::sqrt(ratio));
-      }
-    };
-    const double corner_begin = interpolate(p.sigma, p.count, 0.85), corner_end = interpolate(p.sigma, p.count, 4.15);
-    try_pairs(0.5, corner_begin, 1.0, 1);
-    try_pairs(std::max(corner_begin - 1.0, 0.0), std::min(corner_end + 1.0, total), 0.25, 4);
-    try_pairs(corner_end, total, 1.0, 1);
-    std::vector<double> count{p.count.front()};
-    for (std::size_t k = 1; k < p.count.size(); ++k) count.push_back(count.back() + (p.count[k] - p.count[k - 1]) * grow[k]);
-    return count;
-  }
-
-  static void refine(CountedProfile& p) {
-    if (p.refined) return;
-    p.refined = true;
-    std::vector<double> sigma{p.sigma.front()}, count{p.count.front()};
-    for (std::size_t k = 1; k < p.sigma.size(); ++k) {
-      const bool gap = p.count[k] == p.count[k - 1];  // a jump over a corner stays a jump
-      const int parts = gap ? 1 : kFiner;
-      for (int q = 1; q <= parts; ++q) {
-        sigma.push_back(p.sigma[k - 1] + (p.sigma[k] - p.sigma[k - 1]) * q / parts);
-        count.push_back(p.count[k - 1] + (p.count[k] - p.count[k - 1]) * q / parts);
-      }
-    }
-    p.sigma = std::move(sigma);
-    p.count = std::move(count);
-  }
-
-  /// Direction of a pass at a place of station j: towards the same share of the count at the neighbours.
-  [[nodiscard]] Vec3 direction_at(std::size_t j, double sigma, double share) const {
-    const auto& stations = sheet_.stations();
-    const std::size_t a = j > 0 ? j - 1 : j, b = j + 1 < stations.size() ? j + 1 : j;
-    const auto place = [&](std::size_t s) {
-      const double there = s == j ? sigma : interpolate(profiles_[s].count, profiles_[s].sigma, share * totals_[s]);
-      const auto q = sheet_.at(there, stations[s].r);
-      return q ? q->centre : Vec3(Vec3::Zero());
-    };
-    return (place(b) - place(a)).normalized();
-  }
-
-  /// Highest place of the surface between two passes, above what both balls leave. Allowance left out.
-  [[nodiscard]] double cusp(double sigma_a, const SheetPoint& a, const Vec3& feed_a, double sigma_b, const SheetPoint& b, const Vec3& feed_b,
-                            double r, const std::vector<SheetGap>& gaps) const {
-    const auto from_line = [](const Vec3& p, const Vec3& q, const Vec3& feed) { return (p - q).cross(feed).norm(); };
-    double worst = 0;
-    constexpr int kSamples = 8;
-    for (int k = 1; k < kSamples; ++k) {
-      const double sigma = sigma_a + (sigma_b - sigma_a) * k / kSamples;
-      bool hidden = false;
-      for (const auto& g : gaps) hidden = hidden || (sigma > g.from && sigma < g.to);
-      if (hidden) continue;  // a corner that the ball cannot reach has its own pass
-      const auto s = sheet_.raw(sigma, r);
-      if (!s) continue;
-      const Vec3 p = s->contact.p + o_.allowance_mm * s->contact.n;
-      worst = std::max(worst, std::min(from_line(p, a.centre, feed_a), from_line(p, b.centre, feed_b)) - o_.ball_radius_mm);
-    }
-    return worst;
-  }
-
-  [[nodiscard]] Vec3 feed_direction(std::size_t j, std::size_t k, int round) const {
-    const auto& stations = sheet_.stations();
-    const std::size_t a = j > 0 ? j - 1 : j, b = j + 1 < stations.size() ? j + 1 : j;
-    const auto place = [&](std::size_t s) -> Vec3 {
-      if (round == 0 || profiles_.empty()) return stations[s].nodes[k].at.centre;
-      const double share = interpolate(profiles_[j].sigma, profiles_[j].count, stations[j].nodes[k].sigma) / totals_[j];
-      const double sigma = interpolate(profiles_[s].count, profiles_[s].sigma, share * totals_[s]);
-      const auto q = sheet_.at(sigma, stations[s].r);
-      return q ? q->centre : stations[s].nodes[k].at.centre;
-    };
-    return (place(b) - place(a)).normalized();
+    return (r - sheet_.r_from()) / (sheet_.r_to() - sheet_.r_from()) * double(sheet_.stations().size() - 1);
   }
 
   /// The piece of the curve whose contact lies on the ring, with the run-out at both ends.
@@ -503,14 +306,17 @@ class Planner {
 
   const OffsetSheet& sheet_;
   FinishingOptions o_;
-  std::vector<CountedProfile> profiles_;
-  std::vector<double> totals_;
+  PassCount count_;
   FinishingPasses out_;
 };
 
 }  // namespace
 
 Result<FinishingPasses> plan_finishing(const OffsetSheet& sheet, const FinishingOptions& options) {
+  const auto& ring = sheet.space().ring().zone;
+  if (sheet.empty() || sheet.r_from() >= sheet.r_to())
+    return fail("the ball centres of a {:.4f} mm ball find no surface between the radii {:.4f} and {:.4f}",
+                options.ball_radius_mm, ring.inner_radius_mm, ring.outer_radius_mm);
   return Planner(sheet, options).run();
 }
 
