@@ -23,12 +23,6 @@ double Machine::exact_corner_mm() const {
   return post.corner_tolerance_mm.value_or(std::max(kUsual, tip * kPeriod * kPeriod / 4));
 }
 
-Status check_simultaneous_axes(const Machine& machine, std::string_view moving) {
-  if (static_cast<int>(moving.size()) <= machine.max_simultaneous_axes) return Ok{};
-  return fail("{} axes move at once ({}), the control of {} interpolates {}: fix the tilt in each pass and index C (3+2)",
-              moving.size(), moving, machine.name, machine.max_simultaneous_axes);
-}
-
 Status check_part_fits(const Machine& machine, double part_diameter_mm) {
   if (part_diameter_mm <= machine.largest_part_mm()) return Ok{};
   return fail("part diameter = {:.4f} mm exceeds {:.4f} mm, the largest that turns on {}", part_diameter_mm,

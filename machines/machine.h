@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "geometry/base/angle.h"
@@ -73,10 +72,6 @@ struct Machine {
   /// Largest part that turns on the table: `part_diameter_mm` if stated, else `table_diameter_mm`.
   [[nodiscard]] double largest_part_mm() const { return part_diameter_mm.value_or(table_diameter_mm); }
 };
-
-/// Refuses a program that moves more axes in one block than the control interpolates.
-/// @param moving letters of the axes that move together, e.g. "XYZAC"
-[[nodiscard]] Status check_simultaneous_axes(const Machine& machine, std::string_view moving);
 
 /// Refuses a part whose outside diameter [mm] does not fit the machine.
 [[nodiscard]] Status check_part_fits(const Machine& machine, double part_diameter_mm);

@@ -150,7 +150,6 @@ void ToothBuilder::push_feed(const TablePose& target, const RotaryPair& rotaries
                               machine.min_block_ms / 60000,
                               !tcp_ && job_.options.max_inverse_time > 0 ? 1 / job_.options.max_inverse_time : 0};
   if (b.words == last_.words) {
-    pending_minutes_ += times[kFeed];
     ++program_.dropped_blocks;
     if (!blocks_->empty() && blocks_->back().kind == BlockKind::feed) blocks_->back().record = record_;
     return;
@@ -166,8 +165,6 @@ void ToothBuilder::push_feed(const TablePose& target, const RotaryPair& rotaries
     times[kRotarySpeed] = rotary_time(from, to);
     note_position(to);
   }
-  times[kFeed] += pending_minutes_;
-  pending_minutes_ = 0;
   const auto ruler = std::max_element(times, times + kTimeTerms) - times;
   ++program_.time_ruled[static_cast<std::size_t>(ruler)];
   AxisBlock& pushed = blocks_->back();

@@ -31,7 +31,6 @@ void ToothBuilder::tooth(const FollowedPath& followed, const RotaryPair& next_st
   };
   const bool stays_in_tcp = program_.tcp != TcpMode::none && program_.tcp_starts_at_zero;
   start_of_tooth_ = true;
-  pending_minutes_ = 0;
   if (stays_in_tcp) start_at_zero();
   for (std::size_t i = 0; i < path.records.size() && !error_; ++i) {
     record_ = followed.record(i);

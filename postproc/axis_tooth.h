@@ -119,7 +119,6 @@ class ToothBuilder {
   bool at_retract_ = true, start_of_tooth_ = true, broken_ = true;
   bool positioned_ = false;  // X and Y have been commanded
   bool tcp_ = false;         // switched on
-  double pending_minutes_ = 0;
   std::optional<double> cone_ball_;  // the step lies in the cone about a pole: ball radius, 0 for other tools
 };
 

@@ -202,17 +202,6 @@ TEST(MachineFile, DirectionsAreNormalised) {
   EXPECT_LE((reading.machine->chain.table[1].direction - Vec3(0, 1, 1).normalized()).norm(), 1e-15);
 }
 
-// 77: the control interpolates fewer axes than the program moves.
-TEST(Machine, TooManyAxesAtOnce) {
-  Machine m;
-  m.name = "small control";
-  m.max_simultaneous_axes = 4;
-  EXPECT_TRUE(check_simultaneous_axes(m, "XYZC"));
-  EXPECT_EQ(check_simultaneous_axes(m, "XYZAC").error().message,
-            "5 axes move at once (XYZAC), the control of small control interpolates 4: fix the tilt in each pass and index C "
-            "(3+2)");
-}
-
 TEST(MachineFile, FilesThatCannotBeRead) {
   const TestDir dir;
   const auto error_of = [](const std::string& path) {
