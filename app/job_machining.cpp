@@ -13,7 +13,7 @@ namespace {
 
 constexpr Range kToolLength{0, 2000, " mm", true};
 constexpr Range kToolDiameter{0.01, 500, " mm"};
-constexpr Range kSpeed{0, 500000, " 1/min", true};
+constexpr Range kSpeed{1, 500000, " 1/min"};
 constexpr Range kFeed{0, 100000, " mm/min", true};
 constexpr Range kStep{0.001, 100, " mm"};
 constexpr Range kAllowance{0, 50, " mm"};
