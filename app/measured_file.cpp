@@ -4,12 +4,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "app/report/html_text.h"
+#include "machines/toml/regular_file.h"
 
 namespace toothpath {
 namespace {
@@ -171,16 +169,9 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
 }
 
 Result<MeasuredFlanks> read_measured(const std::string& path, const FaceGear& gear) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  std::ifstream in(path, std::ios::binary);
-  if (error || !std::filesystem::is_regular_file(status) || !in)
-    return fail_as(DiagnosticKind::file_access, "measured file \"{}\" cannot be read", path);
-  if (std::filesystem::file_size(path, error) > kMostBytes)
-    return at(path, 1, 0, "more than {} bytes: no measured grid", kMostBytes);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return parse_measured(text.view(), path, gear);
+  const auto text = read_regular_file(path, kMostBytes);
+  if (!text) return text.error();
+  return parse_measured(*text, path, gear);
 }
 
 Result<FittedCorrection> fit_correction(const FaceGear& gear, const std::vector<MeasuredFlanks>& measurements) {

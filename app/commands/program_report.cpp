@@ -1,14 +1,12 @@
 #include "app/commands/program_report.h"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "app/gear_of_job.h"
 #include "app/report/setup_travel.h"
 #include "app/sha256.h"
 #include "geometry/base/angle.h"
+#include "machines/toml/regular_file.h"
 #include "postproc/axis_time.h"
 #include "postproc/nc_writer.h"
 #include "postproc/tooth_order.h"
@@ -16,7 +14,7 @@
 namespace toothpath {
 namespace {
 
-constexpr std::uintmax_t kMostBytes = std::uintmax_t(1) << 30;
+constexpr std::size_t kMostBytes = std::size_t(1) << 30;
 constexpr double kLeastAxisBlend = 0.0001;  // deg: the last digit of a tolerance of the rotaries
 constexpr double kBlendShare = 0.15;      // of the gouge tolerance that the control may round corners by
 
@@ -123,17 +121,7 @@ void discard_program(OutputDir& output) {
   for (const char* extension : {".ngc", ".nc", ".mpf", ".h", ".apt"}) output.discard(std::string("program") + extension);
 }
 
-Result<std::string> read_program_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return fail_as(DiagnosticKind::file_access, "program \"{}\" cannot be read", path);
-  std::ostringstream text;
-  text << in.rdbuf();
-  if (in.bad() || (text.view().empty() && in.fail() && !in.eof()))
-    return fail_as(DiagnosticKind::file_access, "program \"{}\" cannot be read", path);
-  if (text.view().size() > kMostBytes)
-    return fail_as(DiagnosticKind::refused_input, "program \"{}\" has {} bytes, at most {} are read", path, text.view().size(), kMostBytes);
-  return std::move(text).str();
-}
+Result<std::string> read_program_file(const std::string& path) { return read_regular_file(path, kMostBytes); }
 
 std::vector<AxisRange> ranges_of(const ReadBack& read, const Machine& machine) {
   std::vector<AxisRange> out;

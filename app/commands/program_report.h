@@ -44,7 +44,7 @@ struct PostedProgram {
 /// Takes every program file out of the directory again.
 void discard_program(OutputDir& output);
 
-/// Text of a program that is already there; at most 1 GiB.
+/// Text of a program that is already there: a regular file of at most 1 GiB.
 [[nodiscard]] Result<std::string> read_program_file(const std::string& path);
 
 /// Least and greatest position of every axis over all executed moves, against its limits.

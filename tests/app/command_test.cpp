@@ -100,6 +100,8 @@ TEST(CommandLine, InputsThatNeverEndAreRefused) {
   ASSERT_EQ(::mkfifo((dir / "pipe").c_str(), 0600), 0);
   EXPECT_EQ(run_program({"surface", dir / "pipe", "--out", dir / "out"}).exit_code, 3);
   EXPECT_EQ(run_program({"surface", "/dev/zero", "--out", dir / "out"}).exit_code, 3);
+  EXPECT_EQ(run_program({"check", kSamples + "/spur_quick.toml", dir / "pipe", "--out", dir / "out"}).exit_code, 3);
+  EXPECT_EQ(run_program({"check", kSamples + "/spur_quick.toml", "/dev/zero", "--out", dir / "out"}).exit_code, 3);
   write_file(dir / "long.toml", "# " + std::string(10'000'000, 'x') + "\n");
   EXPECT_EQ(run_program({"surface", dir / "long.toml", "--out", dir / "out"}).exit_code, 3);
   std::filesystem::create_symlink(dir / "loop", dir / "loop");
