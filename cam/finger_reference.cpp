@@ -11,11 +11,24 @@ namespace {
 constexpr int kNodes = 240;
 constexpr int kEdgePoints = 2048;
 constexpr double kClear = 1e9;  // "no tooth in reach"
+constexpr int kEngagedProfile = 64;      // places of the profile at which the end of the engagement is looked for
+constexpr double kEngagedMargin = 0.01;  // of the cutter's radius: what the contact may reach between them
 
 /// dR_c/dbeta on the path of a wall.
 double slope(const BevelTrace<double>& t, int sigma, double beta, double beta_c) {
   const double b = t.straight(sigma, beta) ? t.beta_end : beta;
   return -2 * t.R_0 * std::sin(b) * t.speed_ratio(sigma, b) * std::cos(beta_c);
+}
+
+/// A shift of the centre in the crown plane is a turn about the gear's axis and a way along the generator. The way moves every point alike, the
+/// turn by its distance from the axis: the farthest point of a circle of radius rho about the cutter axis, square to it, at the height h_a or h_f.
+double leverage_of(const BevelGear& gear, double R_c, double rho) {
+  const double sd = gear.sin_delta(), cd = gear.cos_delta();
+  const double from_axis = R_c * sd, height = std::max(gear.parameters().addendum_mm, gear.parameters().dedendum_mm);
+  const double centre = from_axis + height * cd;
+  const bool outermost = centre * sd >= rho * cd * cd;  // the circle's point in the axial plane
+  const double farthest = outermost ? centre + rho * sd : std::hypot(centre / cd, rho);
+  return std::max(1.0, farthest / from_axis);
 }
 
 }  // namespace
@@ -90,8 +103,20 @@ WallReference::WallReference(const BevelGear& gear, int sigma)
       curvature_ = std::max(curvature_, 1 / r_0_);
     }
   }
-  const double depth = std::max(gear.parameters().addendum_mm, gear.parameters().dedendum_mm);
-  leverage_ = 1 + (depth * gear.cos_delta() + reach_) / (std::max(1e-9, gear.R_i() - reach_) * gear.sin_delta());
+  engaged_from_ = first_engaged(gear, sigma, halves_.front());
+  leverage_ = leverage_of(gear, std::max(1e-9, gear.R_i() - reach_), reach_);
+}
+
+double WallReference::first_engaged(const BevelGear& gear, int sigma, const Curve& first) {
+  const BevelWall<double>& wall = gear.halves().front().wall(sigma);
+  const double high = gear.parameters().addendum_mm, low = wall.cutter.p_A, step = (wall.cutter.p_D - low) / kEngagedProfile;
+  for (std::size_t i = 0; i < first.beta.size(); ++i)
+    for (int k = 0; k <= kEngagedProfile; ++k) {
+      const auto at = wall.generatrix(first.beta[i], low + k * step);
+      if (at[0] >= gear.R_i() - kEngagedMargin * wall.cutter.rho_D) return first.R_c[i > 0 ? i - 1 : 0];
+      if (at[1] > high) break;
+    }
+  return first.R_c.back();
 }
 
 std::size_t WallReference::half_of(double R_c) const {
@@ -150,7 +175,7 @@ double WallReference::side(double R_c, double theta) const {
   const double on_path = offset(R_c, theta);
   if (on_path >= 0) return on_path;
   if (R_c > end_.R_c) return std::max(on_path, edge_clearance(outer_edge_, R_c, theta));
-  if (R_c < halves_.front().R_c.front()) return std::max(on_path, edge_clearance(inner_edge_, R_c, theta));
+  if (R_c < engaged_from_) return std::max(on_path, edge_clearance(inner_edge_, R_c, theta));
   return on_path;
 }
 

@@ -38,7 +38,9 @@ class WallReference {
   /// R_c range of the pass of a half.
   [[nodiscard]] double R_c_from(std::size_t half) const { return halves_[half].R_c.front(); }
   [[nodiscard]] double R_c_to(std::size_t half) const { return halves_[half].R_c.back(); }
-  /// Displacement of the cutter's farthest engaged point per unit of lateral shift of the centre.
+  /// R_c below which the pass runs out of the small end: the cutter touches nothing of the face any more, at most its edge.
+  [[nodiscard]] double engaged_from() const { return engaged_from_; }
+  /// Greatest displacement of an engaged point of the cutter per unit of shift of the centre in the crown plane.
   [[nodiscard]] double leverage() const { return leverage_; }
 
  private:
@@ -48,9 +50,10 @@ class WallReference {
   };
   [[nodiscard]] CutterCentre<double> on_curve(const Curve& curve, double R_c) const;
   [[nodiscard]] std::size_t half_of(double R_c) const;
+  [[nodiscard]] static double first_engaged(const BevelGear& gear, int sigma, const Curve& first);
 
   int sigma_;
-  double reach_ = 0, near_ = 0, far_ = 0, curvature_ = 0, leverage_ = 1;
+  double reach_ = 0, near_ = 0, far_ = 0, curvature_ = 0, leverage_ = 1, engaged_from_ = 0;
   std::vector<Curve> halves_;
   // Edges of the wall at the ends of the face: beyond the pass only they can be touched.
   struct Edge {

@@ -224,37 +224,5 @@ TEST(FingerObstacles, GapAgainstSampledPoints) {
   }
 }
 
-// Beyond the small end only the edge of the wall can be touched: brute force over a dense patch of the wall behind it.
-TEST(FingerReference, EdgeBoundIsNeverTooGood) {
-  const BevelGear g = made(w3(), pinion_mill());
-  const FingerSolid solid(g.cutter());
-  std::mt19937 random(5);
-  const auto uniform = [&](double a, double b) { return a + (b - a) * static_cast<double>(random()) / 4294967295.0; };
-  for (const int sigma : {1, -1}) {
-    const auto& wall = g.halves()[0].wall(sigma);
-    if (wall.eps() < 0) continue;
-    const WallReference reference(g, sigma);
-    std::vector<Vec3> patch;
-    for (int i = 0; i <= 24; ++i)
-      for (int j = 0; j <= 60; ++j) {
-        const double ell = g.R_i() + 4.0 * i * i / 576, height = -5.0 + 9.1 * j / 60;
-        if (const auto at = bevel_inverse(wall, ell, height)) patch.push_back(blank_point(ell, height, at->azimuth, g.sin_delta(), g.cos_delta()));
-      }
-    ASSERT_GT(patch.size(), 1000u);
-    int beyond = 0;
-    for (int n = 0; n < 150; ++n) {
-      const double R_c = g.R_i() - uniform(0, 5);
-      const double path = reference.theta_at(R_c) - sigma * uniform(0, 0.6) / R_c;
-      const double side = reference.side(R_c, path);
-      beyond += reference.offset(R_c, path) < 0 && side > reference.offset(R_c, path);
-      double least = 1e9;
-      for (const Vec3& p : patch)
-        least = std::min(least, solid.signed_distance(cutter_from_blank<double>(p, R_c, path / g.sin_delta(), g.sin_delta(), g.cos_delta())));
-      EXPECT_GE(least, (side < 0 ? side * reference.leverage() : side) - 1e-9) << "R_c " << R_c << " side " << side;
-    }
-    EXPECT_GT(beyond, 20) << "the edge decides";
-  }
-}
-
 }  // namespace
 }  // namespace toothpath

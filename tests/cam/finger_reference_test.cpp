@@ -1,0 +1,93 @@
+// The room of a centre before the cutter touches a wall, against brute force: distances of the solid cutter from a dense patch of the wall.
+#include <random>
+
+#include "cam/finger_reference.h"
+#include "tests/geometry/bevel_samples.h"
+
+namespace toothpath {
+namespace {
+
+using namespace bevel_test;
+
+struct Case {
+  const char* name;
+  Designed gear;
+  double mill_share;  ///< of the largest module that the space at the small end takes; 0: the mill of the design
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+
+BevelGear gear_of_case(const Case& c) {
+  FingerCutterData mill = c.gear.c;
+  if (c.mill_share > 0) mill.module_mm = c.mill_share * made(c.gear.p, mill).limits().module_limit_mm;
+  return made(c.gear.p, mill);
+}
+
+class SmallEnd : public ::testing::TestWithParam<Case> {};
+
+// Within its reach before and behind the small end, on the path and up to 0.6 mm beyond: nowhere deeper than told. Where the pass has run
+// out of the face only the edge of the wall counts, which is less than the distance from the path.
+TEST_P(SmallEnd, RoomIsNeverTooGood) {
+  const BevelGear g = gear_of_case(GetParam());
+  const FingerSolid solid(g.cutter());
+  const double reach = g.cutter().rho_D, h_a = g.parameters().addendum_mm, h_f = g.parameters().dedendum_mm;
+  std::mt19937 random(5);
+  const auto uniform = [&](double a, double b) { return a + (b - a) * static_cast<double>(random()) / 4294967295.0; };
+  for (const int sigma : {1, -1}) {
+    const auto& wall = g.halves()[0].wall(sigma);
+    const WallReference reference(g, sigma);
+    std::vector<Vec3> patch;
+    const double length = std::min(2.5 * reach, g.halves()[0].ell_to - g.R_i());
+    for (int i = 0; i <= 48; ++i)
+      for (int j = 0; j <= 80; ++j) {
+        const double ell = g.R_i() + length * i * i / (48.0 * 48.0), height = -0.99 * h_f + (h_a + 0.99 * h_f) * j / 80;
+        if (const auto at = bevel_inverse(wall, ell, height)) patch.push_back(blank_point(ell, height, at->azimuth, g.sin_delta(), g.cos_delta()));
+      }
+    ASSERT_GT(patch.size(), 2000u);
+    int beyond = 0;
+    double tightest = 1e9;
+    for (int n = 0; n < 400; ++n) {
+      const double R_c = g.R_i() - uniform(-0.3, 1.3) * reach;
+      const double path = reference.theta_at(R_c) - sigma * uniform(0, std::min(0.6, 0.3 * reach)) / R_c;
+      const double side = reference.side(R_c, path);
+      beyond += reference.offset(R_c, path) < 0 && side > reference.offset(R_c, path);
+      double least = 1e9;
+      for (const Vec3& p : patch)
+        least = std::min(least, solid.signed_distance(cutter_from_blank<double>(p, R_c, path / g.sin_delta(), g.sin_delta(), g.cos_delta())));
+      const double bound = side < 0 ? side * reference.leverage() : side > 1e8 ? 0 : side;  // no tooth in reach: more than nothing
+      tightest = std::min(tightest, least - bound);
+      EXPECT_GE(least, bound - 1e-9) << "sigma " << sigma << " R_c " << R_c << " side " << side << " R_i " << g.R_i() << " engaged from " << reference.engaged_from();
+    }
+    EXPECT_GT(beyond, 20) << "the edge decides";
+    EXPECT_LT(tightest, 0.05 * reach) << "the bound is near the truth somewhere";
+  }
+}
+
+// The least R_c with a contact on the face, by the contacts themselves.
+TEST_P(SmallEnd, EngagementBeginsWhereAContactReachesTheFace) {
+  const BevelGear g = gear_of_case(GetParam());
+  for (const int sigma : {1, -1}) {
+    const auto& half = g.halves()[0];
+    const auto& wall = half.wall(sigma);
+    const WallReference reference(g, sigma);
+    const int k = sigma > 0 ? 0 : 1;
+    double first = 1e9;
+    for (int i = 0; i <= 1000; ++i) {
+      const double beta = half.beta_from[k] + (half.beta_to[k] - half.beta_from[k]) * i / 1000;
+      for (int j = 0; j <= 400; ++j) {
+        const auto at = wall.generatrix(beta, wall.cutter.p_A + (wall.cutter.p_D - wall.cutter.p_A) * j / 400);
+        if (at[1] <= g.parameters().addendum_mm && at[0] >= g.R_i()) first = std::min(first, wall.trace.centre(sigma, beta).R_c);
+      }
+    }
+    EXPECT_LE(reference.engaged_from(), first + 1e-9) << "sigma " << sigma;
+    EXPECT_GE(reference.engaged_from(), first - 0.1 * g.cutter().rho_D - (reference.R_c_to(0) - reference.R_c_from(0)) / 100) << "sigma " << sigma;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Gears, SmallEnd,
+                         ::testing::Values(Case{"w3", {w3(), pinion_mill()}, 0}, Case{"seven_teeth", design(7, 0, 2.0, 30, 0.32, 1, 30), 0.99},
+                                           Case{"flat_cone", design(7, 0, 10.0, 30, 0.27, -1, 75.2), 0.96}, Case{"slender", design(9, 0, 6.0, 5, 0.25, 1, 20), 0.97}),
+                         [](const auto& c) { return std::string(c.param.name); });
+
+}  // namespace
+}  // namespace toothpath
