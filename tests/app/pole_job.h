@@ -8,7 +8,7 @@
 #include <optional>
 #include <sstream>
 
-#include "program.h"
+#include "tests/app/program.h"
 #include "tests/support/trunnion_kinematics.h"
 
 namespace toothpath::test {

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "pole_job.h"
+#include "tests/app/pole_job.h"
 
 namespace toothpath::test {
 namespace {
