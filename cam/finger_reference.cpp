@@ -50,13 +50,13 @@ ConePose cone_pose(const BevelGear& g, const Vec3& tip, const Vec3& axis, double
   return pose;
 }
 
-/// Points of a wall at one cone distance, from root to tip.
+/// Points of a wall at one cone distance, from root to tip. The fillet leaves the root at a tangent: its points need heights that begin in squares.
 WallReference::Edge WallReference::edge_points(const BevelGear& g, const BevelWall<double>& wall, double ell) {
   Edge edge;
   const double low = -g.parameters().dedendum_mm, high = g.parameters().addendum_mm;
   std::optional<BevelInverse> at;
   for (int i = 0; i <= kEdgePoints; ++i) {
-    const double height = low + (high - low) * (i + 0.02) / (kEdgePoints + 0.02);
+    const double t = (i + 0.02) / (kEdgePoints + 0.02), height = low + (high - low) * t * t * (2 - t);
     auto next = at ? bevel_inverse(wall, ell, height, *at) : bevel_inverse(wall, ell, height);
     if (!next && at) next = bevel_inverse(wall, ell, height);
     at = next;
