@@ -112,7 +112,10 @@ std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell
 std::optional<double> bevel_beta_at(const BevelWall<double>& w, double ell, double p) {
   // The contact lies within the cutter's radius of its centre, the centre within r_0 of the trace.
   const double lowest = std::max(ell - 3 * w.cutter.rho_D, 0.3 * ell);
-  double lo = w.eps() > 0 && w.trace.beta_end > 0 ? -0.5 : 0.0, hi = w.trace.beta(std::min(lowest, w.trace.R_0));
+  double lo = 0.0, hi = w.trace.beta(std::min(lowest, w.trace.R_0));
+  // The straight end of an eps = +1 path goes on for any negative parameter; near beta_e = 0 a unit of it is short.
+  if (w.eps() > 0 && w.trace.beta_end > 0)
+    for (lo = -0.5; lo > -1e4 && w.generatrix(lo, p)[0] < ell;) lo *= 2;
   // Just before the end of the trace ell may turn back (convex wall, tip): the bracket starts on the falling branch.
   for (int k = 1; k <= 400 && w.generatrix(lo, p)[0] < ell; ++k) lo = 0.2 * k / 400;
   if (w.generatrix(lo, p)[0] < ell || w.generatrix(hi, p)[0] > ell) return std::nullopt;

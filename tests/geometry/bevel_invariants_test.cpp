@@ -210,6 +210,22 @@ TEST(BevelExtremes, StraightAtTheLargeEnd) {
   EXPECT_TRUE(mesh) << mesh.error().message;
 }
 
+// Near beta_e = 0 the straight end of the path has a short parameter; the walls still have every profile point at both ends of the face.
+TEST(BevelExtremes, SmallSpiralAnglesHaveTheirWholeWalls) {
+  for (const double beta_deg : {0.5, 2.0, 5.0, 10.0}) {
+    const BevelGear g = gear_of(design(7, 0, 6.0, beta_deg, 0.18, 1, 15));
+    for (const auto& wall : g.halves()[0].walls)
+      for (const double ell : {g.R_i(), g.halves()[0].ell_to})
+        for (int k = 0; k <= 20; ++k) {
+          const double p = wall.cutter.p_A + (wall.cutter.p_C - wall.cutter.p_A) * k / 20;
+          const auto beta = bevel_beta_at(wall, ell, p);
+          ASSERT_TRUE(beta) << beta_deg << " deg, wall " << wall.sigma << ", ell " << ell << ", p " << p;
+          EXPECT_NEAR(wall.generatrix(*beta, p)[0], ell, 1e-9 * g.R_0()) << beta_deg;
+        }
+    EXPECT_TRUE(bevel_gear_mesh(g)) << beta_deg;
+  }
+}
+
 TEST(BevelExtremes, AlmostACrownWheelAndAlmostACylinder) {
   const BevelGear flat = gear_of(design(30, 0, 4, 35, 0.25, 1, 90)), nearly = gear_of(design(30, 0, 4, 35, 0.25, 1, 89.9999));
   EXPECT_LT((flat.halves()[0].walls[0].point(0.7, 1.0).p - nearly.halves()[0].walls[0].point(0.7, 1.0).p).norm(), 1e-3);
