@@ -101,7 +101,10 @@ class Motions {
     if (goes_on) piece(*next, *next);
     const double d = Vec3(off[0], off[1], off[2]).norm(), w = off[3] + off[4];
     const bool tcp = m.tcp && (!goes_on || next->tcp || next->corner_share == 0);
-    return {tcp ? d : d + w * ((1 + w) * reach_of(at, length) + d), w};
+    // The first rotary, which carries the work, moves the tool axis by the sine between them, and the second one may turn it away by off[4].
+    const bool table = chain_.head.empty() && !chain_.table.empty();
+    const double sine = table ? std::min(1.0, at.table.axis.cross(chain_.table[0].direction).norm() + off[4]) : 1;
+    return {tcp ? d : d + w * ((1 + w) * reach_of(at, length) + d), off[3] * sine + off[4]};
   }
 
  private:

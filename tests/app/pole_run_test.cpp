@@ -79,6 +79,7 @@ struct Case {
   double aside_deg;
   std::optional<double> angle_deg;
 };
+std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.pole << (c.aside_deg > 0 ? ", past the pole" : ", through the pole"); }
 class PoleOptions : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Run, PoleOptions,
                          ::testing::Values(Case{"slow", 0, {}}, Case{"hold", 0, {}}, Case{"through", 0, {}}, Case{"retract", 0, {}}, Case{"slow", 0.3, {}},
@@ -187,7 +188,7 @@ TEST(PoleRun, TiltMovesNoPrescribedAxis) {
 }
 
 // What TCP controls get; the proof reads the bytes back through the kinematics of the machine.
-class PoleControls : public ::testing::TestWithParam<std::tuple<const char*, const char*>> {};
+class PoleControls : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
 INSTANTIATE_TEST_SUITE_P(Run, PoleControls,
                          ::testing::Combine(::testing::Values("fanuc_ac.toml", "siemens_ac.toml", "heidenhain_ac.toml"), ::testing::Values("slow", "hold", "through", "retract")));
 
