@@ -205,7 +205,7 @@ TEST_P(PoleControls, GoesTheWholeWayWithTcp) {
   EXPECT_EQ(r.report["verified"], true);
   EXPECT_LE(r.report["gouge_um"]["bound"].get<double>(), 3.0);
   EXPECT_FALSE(r.program.empty());
-  std::printf("%s %s: gouge %.3f um, bound %.3f um, %.2f min\n", machine, pole, r.report["gouge_um"]["measured"].get<double>(), r.report["gouge_um"]["bound"].get<double>(),
+  std::printf("%s %s: gouge %.3f um, bound %.3f um, %.2f min\n", machine.c_str(), pole.c_str(), r.report["gouge_um"]["measured"].get<double>(), r.report["gouge_um"]["bound"].get<double>(),
               r.report["cutting_minutes"].get<double>());
 }
 
