@@ -59,7 +59,9 @@ std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell
   const double scale = w.trace.R_0, half_pi = std::asin(1.0);
   // Steps are cut back: beta stays inside the trace, p inside the profile (a little beyond D on the involute).
   const double p_low = c.p_A, p_high = c.p_D + 0.25 * (c.p_D - c.p_A);
-  const double lowest = w.eps() > 0 && w.trace.beta_end > 0 ? -1.0 : 0.0;
+  // On the straight end of an eps = +1 path, which goes on for any negative parameter, ell is nearly linear; a unit may be short there.
+  const bool goes_on = w.eps() > 0 && w.trace.beta_end > 0;
+  const double lowest = goes_on ? -1e4 : 0.0;
   double beta = start.beta, p = std::clamp(start.p, p_low + 1e-9 * (p_high - p_low), p_high);
   for (int n = 0; n < 60; ++n) {
     const Vec2T<D2> g = dual.generatrix(D2::variable(beta, 0), D2::variable(p, 1));
@@ -68,7 +70,9 @@ std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell
     const double det = a * d - b * e;
     if (!(std::abs(det) > 0) || !std::isfinite(det)) return std::nullopt;
     double db = -(d * f0 - b * f1) / det, dp = -(a * f1 - e * f0) / det;
-    const double next_beta = std::clamp(beta + std::clamp(db, -0.2, 0.2), lowest, half_pi - 0.5 * (half_pi - beta));
+    const bool straight = goes_on && beta < w.trace.beta_end;
+    const double farthest = straight ? 1e3 : 0.2, highest = straight ? w.trace.beta_end + 0.2 : half_pi - 0.5 * (half_pi - beta);
+    const double next_beta = std::clamp(beta + std::clamp(db, -farthest, farthest), lowest, highest);
     const double widest = 0.3 * (p_high - p_low);
     const double next_p = std::clamp(p + std::clamp(dp, -widest, widest), p_low, p_high);
     const bool clipped = next_beta != beta + db || next_p != p + dp;
@@ -88,6 +92,48 @@ std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell
   return std::nullopt;
 }
 
+std::optional<double> bevel_beta_at(const BevelWall<double>& w, double ell, double p) {
+  // The contact lies within the cutter's radius of its centre, the centre within r_0 of the trace.
+  const double lowest = std::max(ell - 3 * w.cutter.rho_D, 0.3 * ell);
+  double lo = 0.0, hi = w.trace.beta(std::min(lowest, w.trace.R_0));
+  // The straight end of an eps = +1 path goes on for any negative parameter; near beta_e = 0 a unit of it is short.
+  if (w.eps() > 0 && w.trace.beta_end > 0)
+    for (lo = -0.5; lo > -1e4 && w.generatrix(lo, p)[0] < ell;) lo *= 2;
+  // Just before the end of the trace ell may turn back (convex wall, tip): the bracket starts on the falling branch.
+  for (int k = 1; k <= 400 && w.generatrix(lo, p)[0] < ell; ++k) lo = 0.2 * k / 400;
+  if (w.generatrix(lo, p)[0] < ell || w.generatrix(hi, p)[0] > ell) return std::nullopt;
+  for (int k = 0; k < 80; ++k) {
+    const double mid = 0.5 * (lo + hi);
+    (w.generatrix(mid, p)[0] > ell ? lo : hi) = mid;
+  }
+  return 0.5 * (lo + hi);
+}
+
+namespace {
+
+/// A start on the branch that the wall lies on, where ell turns back near the end of the trace: the height rises with p at one cone distance.
+std::optional<BevelInverse> start_by_bisection(const BevelWall<double>& w, double ell, double height) {
+  BevelInverse at;
+  const auto height_at = [&](double p) -> std::optional<double> {
+    const auto beta = bevel_beta_at(w, ell, p);
+    if (!beta) return std::nullopt;
+    at.beta = *beta, at.p = p;
+    return w.generatrix(*beta, p)[1];
+  };
+  double low = w.cutter.p_A, high = w.cutter.p_D;
+  const auto least = height_at(low), most = height_at(high);
+  if (!least || !most || *least > height || *most < height) return std::nullopt;
+  for (int k = 0; k < 40; ++k) {
+    const double mid = 0.5 * (low + high);
+    const auto there = height_at(mid);
+    if (!there) return std::nullopt;
+    (*there < height ? low : high) = mid;
+  }
+  return at;
+}
+
+}  // namespace
+
 std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell, double height) {
   BevelInverse start;
   start.beta = std::max({w.trace.beta(std::min(ell, w.trace.R_0)), 1e-3, w.eps() > 0 ? w.trace.beta_end : 0.0});
@@ -106,24 +152,9 @@ std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell
     const double s = std::clamp((c.x_o - height) / c.r_t, -1.0, 1.0);
     start.p = c.p_B - c.r_t * (std::asin(s) - c.phi);
   }
-  return bevel_inverse(w, ell, height, start);
-}
-
-std::optional<double> bevel_beta_at(const BevelWall<double>& w, double ell, double p) {
-  // The contact lies within the cutter's radius of its centre, the centre within r_0 of the trace.
-  const double lowest = std::max(ell - 3 * w.cutter.rho_D, 0.3 * ell);
-  double lo = 0.0, hi = w.trace.beta(std::min(lowest, w.trace.R_0));
-  // The straight end of an eps = +1 path goes on for any negative parameter; near beta_e = 0 a unit of it is short.
-  if (w.eps() > 0 && w.trace.beta_end > 0)
-    for (lo = -0.5; lo > -1e4 && w.generatrix(lo, p)[0] < ell;) lo *= 2;
-  // Just before the end of the trace ell may turn back (convex wall, tip): the bracket starts on the falling branch.
-  for (int k = 1; k <= 400 && w.generatrix(lo, p)[0] < ell; ++k) lo = 0.2 * k / 400;
-  if (w.generatrix(lo, p)[0] < ell || w.generatrix(hi, p)[0] > ell) return std::nullopt;
-  for (int k = 0; k < 80; ++k) {
-    const double mid = 0.5 * (lo + hi);
-    (w.generatrix(mid, p)[0] > ell ? lo : hi) = mid;
-  }
-  return 0.5 * (lo + hi);
+  if (const auto found = bevel_inverse(w, ell, height, start)) return found;
+  const auto bracketed = start_by_bisection(w, ell, height);
+  return bracketed ? bevel_inverse(w, ell, height, *bracketed) : std::nullopt;
 }
 
 }  // namespace toothpath

@@ -222,7 +222,8 @@ TEST(BevelExtremes, SmallSpiralAnglesHaveTheirWholeWalls) {
           ASSERT_TRUE(beta) << beta_deg << " deg, wall " << wall.sigma << ", ell " << ell << ", p " << p;
           EXPECT_NEAR(wall.generatrix(*beta, p)[0], ell, 1e-9 * g.R_0()) << beta_deg;
         }
-    EXPECT_TRUE(bevel_gear_mesh(g)) << beta_deg;
+    const auto mesh = bevel_gear_mesh(g);
+    EXPECT_TRUE(mesh) << beta_deg << ": " << mesh.error().message;
   }
 }
 
