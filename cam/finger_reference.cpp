@@ -62,8 +62,11 @@ WallReference::Edge WallReference::edge_points(const BevelGear& g, const BevelWa
     at = next;
     if (!at) continue;
     const Vec3 p = blank_point(ell, height, at->azimuth, g.sin_delta(), g.cos_delta());
-    if (!edge.points.empty()) edge.spacing = std::max(edge.spacing, (p - edge.points.back()).norm());
+    const double gap = edge.points.empty() ? 0 : (p - edge.points.back()).norm();
+    if (!edge.points.empty()) edge.gap.back() = std::max(edge.gap.back(), gap);
     edge.points.push_back(p);
+    edge.gap.push_back(gap);
+    edge.spacing = std::max(edge.spacing, gap);
   }
   return edge;
 }
@@ -146,13 +149,14 @@ double WallReference::theta_at(double R_c) const { return on_curve(halves_[half_
 double WallReference::edge_clearance(const Edge& edge, double R_c, double theta) const {
   if (edge.points.empty()) return -kClear;
   double least = kClear;
-  // A distance changes by no more than the way along the edge: far points let the next ones be passed over.
+  // The nearest place is at half a gap from a point, with room for the bend of the edge. A distance changes by no more than the way along the
+  // edge: far points let the next ones be passed over.
   for (std::size_t i = 0; i < edge.points.size();) {
     const double d = solid_.signed_distance(cutter_from_blank<double>(edge.points[i], R_c, theta / sin_delta_, sin_delta_, cos_delta_));
-    least = std::min(least, d);
-    i += std::max<std::size_t>(1, static_cast<std::size_t>((d - least) / edge.spacing));
+    least = std::min(least, d - 0.51 * edge.gap[i]);
+    i += 1 + static_cast<std::size_t>(std::max(0.0, (d - least) / edge.spacing - 1.51));
   }
-  return least - 0.51 * edge.spacing;  // nearest point at half a spacing, with room for the bend of the edge
+  return least;
 }
 
 double WallReference::offset(double R_c, double theta) const {

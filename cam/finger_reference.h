@@ -58,7 +58,8 @@ class WallReference {
   // Edges of the wall at the ends of the face: beyond the pass only they can be touched.
   struct Edge {
     std::vector<Vec3> points;
-    double spacing = 1e-9;  // largest distance of neighbours, mm
+    std::vector<double> gap;  // of every point to the farther one of its neighbours, mm
+    double spacing = 1e-9;    // largest of them
   };
   [[nodiscard]] static Edge edge_points(const BevelGear& gear, const BevelWall<double>& wall, double ell);
   [[nodiscard]] double edge_clearance(const Edge& edge, double R_c, double theta) const;
