@@ -157,8 +157,17 @@ TEST(Corners, SiemensCountsBlocksThatTurnOnly) {
   for (const auto& motion : motions_of(moves, m))
     if (!motion.rapid) {
       EXPECT_LT(motion.deviation_mm, 0.02 + 0.0162 * 100);  // |d| + w R, and what the chord of 2 deg leaves
-      EXPECT_GE(motion.axis_deviation, motion.line == 18 ? 0.01 / 120 : 0);
+      EXPECT_LT(motion.axis_deviation, 1e-9);  // the tool stands along C
     }
+  // A tool that leans by 30 deg: C moves its axis by the half of its turn.
+  bool seen = false;
+  for (const auto& motion : motions_of(moves_of(replaced(start, "A=0", "A=30") + "G1 C=2 F10\nG1 C=2.002 F10\nG1 C=2.004 X100.5 F10\n" + end, m, error), m))
+    if (!motion.rapid && motion.line == 18) {
+      seen = true;
+      EXPECT_GE(motion.axis_deviation, 0.5 * 0.01 / 120);
+      EXPECT_LE(motion.axis_deviation, 0.51 * 0.01 / 120 + 2e-4);  // and the arc of 2 deg
+    }
+  EXPECT_TRUE(seen);
   // What is not said is not guessed.
   const std::string turn = "G1 C=2 F10\n";
   (void)moves_of(replaced(start, "FGROUP[^\n]*\n", "") + turn + end, m, error);
@@ -215,7 +224,9 @@ TEST(Corners, SiemensTraoriCountsTheToolAxis) {
       if (moves[i].rapid || !moves[i - 1].tcp) continue;
       EXPECT_LE(counted[k].deviation_mm - rest[k].deviation_mm, std::sqrt(2) * adis * (1 + 1e-5) + 1e-12);
       const double way = (moves[i].tip - moves[i - 1].tip).norm(), share = std::min(0.5, adis / way);
-      const double turn = radians(std::abs(moves[i].joints[3] - moves[i - 1].joints[3]) + std::abs(moves[i].joints[4] - moves[i - 1].joints[4]));
+      // C, which carries the work, moves the tool axis by the sine of the tilt.
+      const double sine = std::min(std::abs(std::sin(radians(moves[i].joints[4]))), std::abs(std::sin(radians(moves[i - 1].joints[4]))));
+      const double turn = radians(sine * std::abs(moves[i].joints[3] - moves[i - 1].joints[3]) + std::abs(moves[i].joints[4] - moves[i - 1].joints[4]));
       const double axis = counted[k].axis_deviation - rest[k].axis_deviation;
       EXPECT_GE(axis, share * turn * (1 - 1e-6) - 1e-12);
       most = std::max(most, axis);
