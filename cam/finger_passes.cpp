@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cam/finger_reference.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
@@ -59,10 +60,31 @@ CentrePass wall_pass(int sigma, bool climb) {
   return pass;
 }
 
+/// Where the trace begins to lie between both wall paths, from `from` on towards `to`: at the small end of a gear with few teeth they close before it.
+double first_between(const BevelGear& gear, const Trace& t, double from, double to) {
+  const WallReference L(gear, 1), U(gear, -1);
+  const auto between = [&](double beta) {
+    const Centre c = t.middle(beta);
+    return L.offset(c.R_c, c.theta_c) >= 0 && U.offset(c.R_c, c.theta_c) >= 0;
+  };
+  if (between(from)) return from;
+  constexpr int kLooks = 64;
+  for (int k = 1; k <= kLooks; ++k) {
+    double inside = from + (to - from) * k / kLooks, outside = from + (to - from) * (k - 1) / kLooks;
+    if (!between(inside)) continue;
+    for (int n = 0; n < 40; ++n) {
+      const double mid = 0.5 * (inside + outside);
+      (between(mid) ? inside : outside) = mid;
+    }
+    return inside;
+  }
+  return from;
+}
+
 CentrePass middle(const BevelGear& gear, std::size_t i) {
   const BevelHalf& half = gear.halves()[i];
   const Trace t = trace_of(gear, i);
-  const double from = t.beta(half.R_from), to = t.beta(std::min(half.R_to, t.R_lim()));
+  const double begin = t.beta(half.R_from), to = t.beta(std::min(half.R_to, t.R_lim())), from = i == 0 ? first_between(gear, t, begin, to) : begin;
   CentrePass pass;
   pass.name = "middle";
   pass.pieces.push_back({static_cast<int>(i), [t, from, to](double s) { return t.middle(from + (to - from) * s); }});

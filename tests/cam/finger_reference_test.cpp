@@ -1,6 +1,7 @@
 // The room of a centre before the cutter touches a wall, against brute force: distances of the solid cutter from a dense patch of the wall.
 #include <random>
 
+#include "cam/finger_passes.h"
 #include "cam/finger_reference.h"
 #include "tests/geometry/bevel_samples.h"
 
@@ -82,6 +83,23 @@ TEST_P(SmallEnd, EngagementBeginsWhereAContactReachesTheFace) {
     EXPECT_LE(reference.engaged_from(), first + 1e-9) << "sigma " << sigma;
     EXPECT_GE(reference.engaged_from(), first - 0.1 * g.cutter().rho_D - (reference.R_c_to(0) - reference.R_c_from(0)) / 100) << "sigma " << sigma;
   }
+}
+
+// The trace leaves the space before the small end where few teeth close it quickly: the middle pass begins behind that.
+TEST_P(SmallEnd, MiddlePassStaysBetweenTheWalls) {
+  const BevelGear g = gear_of_case(GetParam());
+  const WallReference L(g, 1), U(g, -1);
+  double ridge = 0;
+  int middles = 0;
+  for (const auto& pass : roughing_passes(g, 0.2 * g.parameters().dedendum_mm, ridge)) {
+    if (pass.name != "middle" || pass.pieces.front().half != 0) continue;
+    ++middles;
+    for (int k = 0; k <= 200; ++k) {
+      const auto c = pass.pieces.front().at(k / 200.0);
+      EXPECT_GE(std::min(L.offset(c.R_c, c.theta_c), U.offset(c.R_c, c.theta_c)), -1e-9) << "R_c " << c.R_c;
+    }
+  }
+  EXPECT_EQ(middles, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Gears, SmallEnd,
