@@ -104,4 +104,21 @@ bool BodyTree::clear(const std::vector<Frustum>& bodies, const Vec3& tip, const 
   });
 }
 
+double BodyTree::depth(const Frustum& body, std::span<const Vec3> tips, const Vec3& axis, double deepest_mm, double resolution_mm) const {
+  const auto cuts = [&](double by) {
+    Frustum f = body;
+    f.from += by;
+    f.radius_from = std::max(f.radius_from - by, 0.0);
+    f.radius_to = std::max(f.radius_to - by, 0.0);
+    return f.from < f.to && std::any_of(tips.begin(), tips.end(), [&](const Vec3& tip) { return gap(f, tip, axis, 0, resolution_mm).gap < 0; });
+  };
+  double shallow = 0, deep = deepest_mm;
+  if (cuts(deep)) return deep;
+  while (deep - shallow > resolution_mm) {
+    const double middle = 0.5 * (shallow + deep);
+    (cuts(middle) ? shallow : deep) = middle;
+  }
+  return deep;
+}
+
 }  // namespace toothpath

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "cam/gear_distance.h"
@@ -24,6 +25,10 @@ class BodyTree {
   /// Does every body keep `clearance_mm` (with `resolution_mm` to spare at most)?
   [[nodiscard]] bool clear(const std::vector<Frustum>& bodies, const Vec3& tip, const Vec3& axis, double clearance_mm,
                            double resolution_mm) const;
+
+  /// By how much a body would have to be slimmer, and begin higher, to cut nowhere with the tool's tip at any of `tips`, to `resolution_mm`;
+  /// `deepest_mm` where that is not enough.
+  [[nodiscard]] double depth(const Frustum& body, std::span<const Vec3> tips, const Vec3& axis, double deepest_mm, double resolution_mm) const;
 
  private:
   struct Node {

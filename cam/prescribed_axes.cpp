@@ -71,7 +71,7 @@ class Prover {
     for (const auto& body : check_.bodies()) {
       const double gap = tree_.gap(body, tip, s.axis, o_.clearance_mm, kResolution).gap;
       if (gap >= o_.clearance_mm) continue;
-      const double depth = gap > 0 ? 0 : depth_of(body, tip, s.axis);
+      const double depth = gap > 0 ? 0 : tree_.depth(body, {&tip, 1}, s.axis, kDeepest, kResolution);
       const double by = gap > 0 ? o_.clearance_mm - gap : o_.clearance_mm + depth;
       if (by <= s.by) continue;
       s.by = by;
@@ -79,24 +79,6 @@ class Prover {
                         : fmt::format("its {} cuts in by {}{:.3f} mm, the clearance is {:.3f} mm", body.name, depth >= kDeepest ? "more than " : "", depth,
                                       o_.clearance_mm);
     }
-  }
-
-  /// By how much a body that cuts in would have to be slimmer, and begin higher, to touch nothing.
-  [[nodiscard]] double depth_of(const Frustum& body, const Vec3& tip, const Vec3& axis) const {
-    const auto cuts = [&](double by) {
-      Frustum f = body;
-      f.from += by;
-      f.radius_from = std::max(f.radius_from - by, 0.0);
-      f.radius_to = std::max(f.radius_to - by, 0.0);
-      return f.from < f.to && tree_.gap(f, tip, axis, 0, kResolution).gap < 0;
-    };
-    double shallow = 0, deep = kDeepest;
-    if (cuts(deep)) return deep;
-    while (deep - shallow > kResolution) {
-      const double middle = 0.5 * (shallow + deep);
-      (cuts(middle) ? shallow : deep) = middle;
-    }
-    return deep;
   }
 
   /// Draft or flute, where more is missing than for any body.

@@ -106,24 +106,11 @@ class Search {
     return std::any_of(many_.begin(), many_.end(), [&](const Vec3& c) { return tree_.gap(*flute_, c - tool_.radius_mm() * axis, axis, 0, 1e-3).gap < 0; });
   }
 
-  /// By how much a body that cuts in would have to be slimmer, and begin higher, to cut nowhere: how far a direction is from being clear.
+  /// How far a direction is from being clear.
   [[nodiscard]] double depth(const Frustum& body, const Vec3& axis, const std::vector<Vec3>& centres) const {
-    const auto cuts = [&](double by) {
-      Frustum f = body;
-      f.from += by;
-      f.radius_from = std::max(f.radius_from - by, 0.0);
-      f.radius_to = std::max(f.radius_to - by, 0.0);
-      return f.from < f.to && std::any_of(centres.begin(), centres.end(), [&](const Vec3& c) {
-               return tree_.gap(f, c - tool_.radius_mm() * axis, axis, 0, kResolution).gap < 0;
-             });
-    };
-    double shallow = 0, deep = kDeepest;
-    if (cuts(deep)) return deep;
-    while (deep - shallow > kResolution) {
-      const double middle = 0.5 * (shallow + deep);
-      (cuts(middle) ? shallow : deep) = middle;
-    }
-    return deep;
+    std::vector<Vec3> tips;
+    for (const Vec3& c : centres) tips.push_back(c - tool_.radius_mm() * axis);
+    return tree_.depth(body, tips, axis, kDeepest, kResolution);
   }
 
   /// Halved steps around the directions that come nearest to being clear: a narrow way through is found too.
