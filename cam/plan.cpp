@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "cam/corner_ends.h"
 #include "cam/linking.h"
 #include "cam/prescribed_axes.h"
 #include "cam/roughing.h"
@@ -135,6 +136,8 @@ class JobPlanner {
       auto planned = plan_finishing(sheet, f);
       if (!planned) return PlanRefusal{key + ".tool", planned.error()};
       passes = std::move(planned->passes);
+      const auto distance = [&](const Vec3& centre) { return part_.nearest(centre, delta + 0.01).distance; };
+      for (auto& pass : plan_corner_ends(sheet, f, distance)) passes.push_back(std::move(pass));
       summary.scallop_min_mm = std::min(summary.scallop_min_mm, planned->scallop_min_mm);
       summary.scallop_max_mm = std::max(summary.scallop_max_mm, planned->scallop_max_mm);
       summary.chord_mm = std::max(summary.chord_mm, planned->worst_chord_mm);

@@ -1,0 +1,112 @@
+// A ball wider than the fillet on a gear whose root leans along the tooth: at the ends of the ring it reaches past the crossing of two walls.
+#include "cam/corner_ends.h"
+
+#include "cam/cut_surface.h"
+#include "tests/cam/face_gear_jobs.h"
+
+namespace toothpath {
+namespace {
+
+/// 87/15 at 70 deg, module 1: the root's normal stands 20 deg off the gear axis.
+FaceGearParameters leaning_gear() {
+  FaceGearParameters g;
+  g.teeth = 87;
+  g.shaper_teeth = 15;
+  g.mate_teeth = 12;
+  g.module_mm = 1;
+  g.pressure_angle_rad = radians(20);
+  g.addendum_coefficient = 0.6;
+  g.shaft_angle_rad = radians(70);
+  g.shaper_tip_radius_mm = 0.1;
+  g.reference_radius_mm = 59.771;
+  g.zones = {{radians(27.38), 60.227, 61.326}};
+  return g;
+}
+constexpr double kBall = 0.35;
+
+const test::PlannedJob& leaning_job() {
+  static const auto job = test::planned(leaning_gear(), {test::ball_mill(2 * kBall, 2.174, 0.63, 9.311, 10)}, {test::finishing(0, 0.004, 3e-4)});
+  return job;
+}
+FinishingOptions options_of(const MillingOperation& op) {
+  FinishingOptions o;
+  o.ball_radius_mm = kBall;
+  o.scallop_mm = op.scallop_mm;
+  o.chord_mm = op.chord_tolerance_mm;
+  o.run_out_mm = 0.5 * kBall;
+  return o;
+}
+OffsetSheet sheet_of(const GearDistance& part, double ball) {
+  const auto& zone = part.space(0).ring().zone;
+  return OffsetSheet(part.space(0), ball, zone.inner_radius_mm - ball - 0.1, zone.outer_radius_mm + ball + 0.1);
+}
+std::vector<BallPass> ends_of(const GearDistance& part, const OffsetSheet& sheet, const FinishingOptions& o) {
+  return plan_corner_ends(sheet, o, [&](const Vec3& c) { return part.nearest(c, o.ball_radius_mm + 0.01).distance; });
+}
+
+TEST(CornerEnds, NothingThatTheBallReachesStaysHigherThanTheCusp) {
+  const auto& job = leaning_job();
+  CutSurfaceOptions dense;
+  dense.flank_rows = 12;
+  dense.fillet_rows = 50;
+  dense.columns = 49;
+  const auto whole = measure_cut_surface(*job.part, job.motions(), job.operations, job.tools, dense);
+  EXPECT_GT(whole.unreached.points, 100u);
+  EXPECT_LE(whole.finished.max_mm, job.operations[0].scallop_mm + 0.0005);
+
+  // The last passes are those of the ends; without them the fault is there.
+  const auto ends = ends_of(*job.part, sheet_of(*job.part, kBall), options_of(job.operations[0]));
+  ASSERT_FALSE(ends.empty());
+  auto plan = job.plan;
+  int passes = 0;
+  for (const auto& r : plan.paths[0].records) passes = std::max(passes, r.pass + 1);
+  std::erase_if(plan.paths[0].records, [&](const ClRecord& r) { return r.pass >= passes - int(ends.size()); });
+  const auto less = measure_cut_surface(*job.part, GougeCheck::motions_of(plan.paths[0]), job.operations, job.tools, dense);
+  EXPECT_GT(less.finished.max_mm, job.operations[0].scallop_mm + 0.0015);
+}
+
+TEST(CornerEnds, TouchThePartAndEndInTheCorner) {
+  const auto& job = leaning_job();
+  const auto& zone = job.part->space(0).ring().zone;
+  const auto sheet = sheet_of(*job.part, kBall);
+  for (const auto& pass : ends_of(*job.part, sheet, options_of(job.operations[0]))) {
+    int contacts = 0;
+    double low = INFINITY, high = 0;
+    for (const auto& p : pass.points) {
+      if (!p.touching) continue;
+      ++contacts;
+      EXPECT_NEAR(job.part->nearest(p.centre, kBall + 0.01).distance, kBall, 6e-5);
+      EXPECT_NEAR((p.centre - p.contact).norm(), kBall, 1e-9);
+      low = std::min(low, std::hypot(p.contact.x(), p.contact.y()));
+      high = std::max(high, std::hypot(p.contact.x(), p.contact.y()));
+    }
+    EXPECT_GE(contacts, 2);
+    EXPECT_GE(low, zone.inner_radius_mm - 1e-6);
+    EXPECT_LE(high, zone.outer_radius_mm + 1e-6);
+    EXPECT_LT(std::min(low - zone.inner_radius_mm, zone.outer_radius_mm - high), 1e-6) << "a pass begins at an end of the ring";
+    EXPECT_LT(high - low, 0.5 * (zone.outer_radius_mm - zone.inner_radius_mm));
+    const auto& inside = pass.points.front().touching ? pass.points.front() : pass.points.back();
+    double apart = INFINITY;
+    const double r = std::hypot(inside.centre.x(), inside.centre.y());
+    for (const auto& g : sheet.gaps(r))
+      if (const auto corner = sheet.raw(g.from, r)) apart = std::min(apart, (corner->centre - inside.centre).norm());
+    EXPECT_LT(apart, 1e-3) << "and ends where the corner closes";
+  }
+}
+
+TEST(CornerEnds, ThereAreNoneWhereTheBallFitsOrBothWallsEndTogether) {
+  const auto& job = leaning_job();
+  auto o = options_of(job.operations[0]);
+  o.ball_radius_mm = 0.05;
+  EXPECT_TRUE(ends_of(*job.part, sheet_of(*job.part, 0.05), o).empty());
+
+  const auto spur = test::made(test::small_spur());  // straight teeth, 90 deg: both contacts lie at one radius
+  const GearDistance part(spur, 1.5);
+  const auto sheet = sheet_of(part, 0.8);
+  ASSERT_TRUE(sheet.has_gaps());
+  o.ball_radius_mm = 0.8;
+  EXPECT_TRUE(ends_of(part, sheet, o).empty());
+}
+
+}  // namespace
+}  // namespace toothpath
