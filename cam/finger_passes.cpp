@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "cam/finger_reference.h"
 #include "geometry/base/angle.h"
@@ -11,18 +12,22 @@ namespace {
 
 constexpr double kRidgeShare = 0.85;  // of the allowed ridge that the planner uses
 constexpr double kClearAir = 1.0;     // mm, between cutter and blank beyond the large end
+constexpr int kStations = 32;         // intervals along a half on which the gap between passes is looked at
 
 using Centre = CutterCentre<double>;
 using Trace = BevelTrace<double>;
 
 const Trace& trace_of(const BevelGear& gear, std::size_t half) { return gear.halves()[half].walls[0].trace; }
 
+/// Cone distance at which the cutter has left the blank at the large end.
+double clear_end(const BevelGear& gear) { return gear.R_e() + gear.cutter().rho_D + kClearAir; }
+
 /// Straight run-out at the large end until the cutter has left the blank.
 void run_out(const BevelGear& gear, std::size_t half, CentrePass& pass) {
   if (half + 1 != gear.halves().size()) return;
   const Trace t = trace_of(gear, half);
   const Centre end = pass.pieces.back().at(1.0);
-  const double want = gear.R_e() + gear.cutter().rho_D + kClearAir;
+  const double want = clear_end(gear);
   if (end.R_c >= want) return;
   double length = want - end.R_c;
   for (int k = 0; k < 60; ++k) {
@@ -60,76 +65,75 @@ CentrePass wall_pass(int sigma, bool climb) {
   return pass;
 }
 
-/// Where the trace begins to lie between both wall paths, from `from` on towards `to`: at the small end of a gear with few teeth they close before it.
-double first_between(const BevelGear& gear, const Trace& t, double from, double to) {
-  const WallReference L(gear, 1), U(gear, -1);
-  const auto between = [&](double beta) {
-    const Centre c = t.middle(beta);
-    return L.offset(c.R_c, c.theta_c) >= 0 && U.offset(c.R_c, c.theta_c) >= 0;
-  };
-  if (between(from)) return from;
-  constexpr int kLooks = 64;
-  for (int k = 1; k <= kLooks; ++k) {
-    double inside = from + (to - from) * k / kLooks, outside = from + (to - from) * (k - 1) / kLooks;
-    if (!between(inside)) continue;
+/// The space between both wall paths, by cone distance: a centre in it cuts neither wall.
+class Space {
+ public:
+  explicit Space(const BevelGear& gear) : gear_(gear), L_(gear, 1), U_(gear, -1) {}
+
+  /// At the share mu of the room at one cone distance, from -1, wall L, to 1, wall U.
+  [[nodiscard]] Centre at(double R_c, double mu) const {
+    const Centre L = L_.place_at(R_c), U = U_.place_at(R_c);
+    const double a = 0.5 * (1 - mu), b = 0.5 * (1 + mu);
+    Centre c;
+    c.R_c = R_c;
+    c.theta_c = a * L.theta_c + b * U.theta_c;
+    c.e = c.theta_c / gear_.sin_delta();
+    c.beta_c = std::atan(a * std::tan(L.beta_c) + b * std::tan(U.beta_c));
+    return c;
+  }
+  /// Distance of the wall paths across the space, mm; negative where they have crossed.
+  [[nodiscard]] double width(double R_c) const {
+    return (U_.place_at(R_c).theta_c - L_.place_at(R_c).theta_c) * R_c * std::cos(at(R_c, 0).beta_c);
+  }
+  /// Where the space begins: as far before the small end as a wall pass runs out of it, or where the wall paths cross.
+  [[nodiscard]] double begin() const {
+    const double first = std::min(L_.R_c_from(0), U_.R_c_from(0)), last = std::max(L_.R_c_to(0), U_.R_c_to(0));
+    // From the small end outwards to the first place with room, or inwards to the last.
+    const bool room = width(gear_.R_i()) >= 0;
+    double outside = gear_.R_i(), inside = gear_.R_i();
+    for (int k = 1; k <= kLooks; ++k) {
+      const double next = gear_.R_i() + ((room ? first : last) - gear_.R_i()) * k / kLooks;
+      if ((width(next) >= 0) != room) {
+        (room ? outside : inside) = next;
+        break;
+      }
+      (room ? inside : outside) = next;
+    }
+    if ((room && inside == first) || (!room && outside == last)) return room ? first : last;
     for (int n = 0; n < 40; ++n) {
       const double mid = 0.5 * (inside + outside);
-      (between(mid) ? inside : outside) = mid;
+      (width(mid) >= 0 ? inside : outside) = mid;
     }
     return inside;
   }
-  return from;
-}
+  /// Cone distances between which the room is smooth, of one half: from its begin or the corner to the corner or clear of the large end.
+  [[nodiscard]] std::vector<double> smooth(std::size_t half) const {
+    const double from = half == 0 ? begin() : gear_.corner().R_c, to = half + 1 < gear_.halves().size() ? gear_.corner().R_c : clear_end(gear_);
+    std::vector<double> ends{from, to};
+    for (const WallReference* wall : {&L_, &U_})
+      for (const double R : wall->joints())
+        if (R > from && R < to) ends.push_back(R);
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end(), [](double a, double b) { return b - a < kShortest; }), ends.end());
+    ends.back() = to;
+    return ends;
+  }
 
-CentrePass middle(const BevelGear& gear, std::size_t i) {
-  const BevelHalf& half = gear.halves()[i];
-  const Trace t = trace_of(gear, i);
-  const double begin = t.beta(half.R_from), to = t.beta(std::min(half.R_to, t.R_lim())), from = i == 0 ? first_between(gear, t, begin, to) : begin;
+ private:
+  static constexpr int kLooks = 64;
+  static constexpr double kShortest = 1e-6;  // mm of a piece
+  BevelGear gear_;
+  WallReference L_, U_;
+};
+
+/// One roughing pass of a half at the share mu of the room.
+CentrePass space_pass(const std::shared_ptr<const Space>& space, std::size_t half, double mu, std::string name) {
   CentrePass pass;
-  pass.name = "middle";
-  pass.pieces.push_back({static_cast<int>(i), [t, from, to](double s) { return t.middle(from + (to - from) * s); }});
-  run_out(gear, i, pass);
+  pass.name = std::move(name);
+  const auto ends = space->smooth(half);
+  for (std::size_t k = 1; k < ends.size(); ++k)
+    pass.pieces.push_back({static_cast<int>(half), [space, mu, from = ends[k - 1], to = ends[k]](double s) { return space->at(from + (to - from) * s, mu); }});
   return pass;
-}
-
-/// Trace parameters that both walls' passes of a half have in common, and the middle too.
-std::pair<double, double> common(const BevelGear& gear, std::size_t i) {
-  const BevelHalf& half = gear.halves()[i];
-  const Trace& t = trace_of(gear, i);
-  const double from = std::min({half.beta_from[0], half.beta_from[1], t.beta(half.R_from)});
-  const double to = std::max({half.beta_to[0], half.beta_to[1], t.beta(std::min(half.R_to, t.R_lim())), t.beta_end});
-  return {from, to};
-}
-
-/// Between the walls: polar blend of both wall paths at the same trace parameter, mu in (-1, 1), -1 = wall L.
-Centre blend(const Trace& t, double beta, double mu) {
-  const Centre L = t.centre(1, beta), U = t.centre(-1, beta);
-  const double a = 0.5 * (1 - mu), b = 0.5 * (1 + mu);
-  Centre c;
-  c.R_c = a * L.R_c + b * U.R_c;
-  c.theta_c = a * L.theta_c + b * U.theta_c;
-  c.e = c.theta_c / t.sin_delta;
-  const double f_L = t.speed_ratio(1, beta), f_U = t.speed_ratio(-1, beta);
-  const double dR = a * f_L * std::cos(L.beta_c) + b * f_U * std::cos(U.beta_c);
-  const double dT = a * f_L * std::sin(L.beta_c) / L.R_c + b * f_U * std::sin(U.beta_c) / U.R_c;
-  c.beta_c = std::atan2(c.R_c * dT, dR);
-  return c;
-}
-
-CentrePass fill(const BevelGear& gear, std::size_t i, double mu, double from, double to) {
-  const Trace t = trace_of(gear, i);
-  CentrePass pass;
-  pass.name = fmt::format("fill {:.2f}", mu);
-  pass.pieces.push_back({static_cast<int>(i), [t, mu, from, to](double s) { return blend(t, from + (to - from) * s, mu); }});
-  run_out(gear, i, pass);
-  return pass;
-}
-
-/// Gaps between the middle and one wall that the allowed ridge asks for, at trace parameter beta.
-int gaps(const BevelGear& gear, std::size_t i, double beta, double ridge_mm) {
-  const Trace& t = trace_of(gear, i);
-  const double allowed = finger_gap(gear, t.R(beta), kRidgeShare * ridge_mm);
-  return std::max(1, static_cast<int>(std::ceil(0.5 * crown_distance(t.centre(1, beta), t.centre(-1, beta)) / allowed)));
 }
 
 /// Height above the root cone of the lower surface of the cutter at lateral distance y.
@@ -163,16 +167,25 @@ CutterCentre<double> corner_arc(const BevelGear& gear, double t) {
 std::vector<CentrePass> roughing_passes(const BevelGear& gear, double ridge_mm, double& predicted_mm) {
   std::vector<CentrePass> passes;
   predicted_mm = 0;
+  const auto space = std::make_shared<const Space>(gear);
   for (std::size_t n = gear.halves().size(); n-- > 0;) {
-    passes.push_back(middle(gear, n));
-    const auto [from, to] = common(gear, n);
-    const int most = std::max(gaps(gear, n, to, ridge_mm), gaps(gear, n, from, ridge_mm));
+    // Ridges stand square to the passes: those at the end of the face belong to centres a little beyond it.
+    const double from = space->smooth(n).front(), end = n + 1 < gear.halves().size() ? gear.corner().R_c : gear.R_e();
+    const double to = end + 0.5 * std::max(0.0, space->width(end)) * std::sin(std::abs(space->at(end, 0).beta_c));
+    int most = 1;
+    for (int k = 0; k <= kStations; ++k) {
+      const double R = from + (to - from) * k / kStations;
+      most = std::max(most, static_cast<int>(std::ceil(0.5 * space->width(R) / finger_gap(gear, R, kRidgeShare * ridge_mm))));
+    }
+    passes.push_back(space_pass(space, n, 0, "middle"));
     for (int k = 1; k < most; ++k)
-      for (const int side : {-1, 1}) passes.push_back(fill(gear, n, side * static_cast<double>(k) / most, from, to));
-    const Trace& t = trace_of(gear, n);
-    for (int s = 0; s <= 32; ++s) {
-      const double beta = from + (to - from) * s / 32.0;
-      predicted_mm = std::max(predicted_mm, finger_ridge(gear, t.R(beta), 0.5 * crown_distance(t.centre(1, beta), t.centre(-1, beta)) / most));
+      for (const int side : {-1, 1}) {
+        const double mu = side * static_cast<double>(k) / most;
+        passes.push_back(space_pass(space, n, mu, fmt::format("fill {:.2f}", mu)));
+      }
+    for (int k = 0; k <= kStations; ++k) {
+      const double R = from + (to - from) * k / kStations;
+      predicted_mm = std::max(predicted_mm, finger_ridge(gear, R, 0.5 * space->width(R) / most));
     }
   }
   return passes;

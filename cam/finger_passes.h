@@ -1,9 +1,10 @@
 // Where the centre of a finger mill goes in one tooth space: passes as smooth pieces of crown-plane curves, before they are
 // cut into blocks. Ends and corners as docs/bevel_gear.md, section 6, says.
 //
-// Roughing: the middle of each half and the fill passes that the allowed ridge asks for. Finishing: both walls. In a
-// herringbone the wall whose corner is convex is one pass through both halves, closed by the arc of radius r_0 about the
-// corner of the trace; the other wall is two passes, which stop where the offset curves of the halves cross.
+// Roughing: the middle of each half and the fill passes that the allowed ridge asks for, at even shares of the room between
+// both wall paths, which they never leave. Finishing: both walls. In a herringbone the wall whose corner is convex is one pass
+// through both halves, closed by the arc of radius r_0 about the corner of the trace; the other wall is two passes, which stop
+// where the offset curves of the halves cross.
 #pragma once
 
 #include <functional>
@@ -29,7 +30,7 @@ struct CentrePass {
 
 /// Passes of finger roughing, outer half first.
 /// @param ridge_mm highest ridge that may stay on the root
-/// @param predicted_mm  gets the highest ridge between the passes and the walls
+/// @param predicted_mm  gets the highest ridge between the passes and the walls, not below the true one
 [[nodiscard]] std::vector<CentrePass> roughing_passes(const BevelGear& gear, double ridge_mm, double& predicted_mm);
 
 /// Both walls. `climb`: material lies to the right of the feed, seen from the shank.

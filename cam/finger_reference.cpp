@@ -20,18 +20,18 @@ double slope(const BevelTrace<double>& t, int sigma, double beta, double beta_c)
   return -2 * t.R_0 * std::sin(b) * t.speed_ratio(sigma, b) * std::cos(beta_c);
 }
 
-/// A shift of the centre in the crown plane is a turn about the gear's axis and a way along the generator. The way moves every point alike, the
-/// turn by its distance from the axis: the farthest point of a circle of radius rho about the cutter axis, square to it, at the height h_a or h_f.
-double leverage_of(const BevelGear& gear, double R_c, double rho) {
-  const double sd = gear.sin_delta(), cd = gear.cos_delta();
-  const double from_axis = R_c * sd, height = std::max(gear.parameters().addendum_mm, gear.parameters().dedendum_mm);
+}  // namespace
+
+// A shift of the centre in the crown plane is a turn about the gear's axis and a way along the generator. The way moves every point alike, the
+// turn by its distance from the axis: the farthest point of a circle of radius rho about the cutter axis, square to it, at the height h_a or h_f.
+double centre_leverage(const BevelGear& gear) {
+  const double sd = gear.sin_delta(), cd = gear.cos_delta(), rho = gear.cutter().rho_D;
+  const double from_axis = std::max(1e-9, gear.R_i() - rho) * sd, height = std::max(gear.parameters().addendum_mm, gear.parameters().dedendum_mm);
   const double centre = from_axis + height * cd;
   const bool outermost = centre * sd >= rho * cd * cd;  // the circle's point in the axial plane
   const double farthest = outermost ? centre + rho * sd : std::hypot(centre / cd, rho);
   return std::max(1.0, farthest / from_axis);
 }
-
-}  // namespace
 
 ConePose cone_pose(const BevelGear& g, const Vec3& tip, const Vec3& axis, double index) {
   const double sd = g.sin_delta(), cd = g.cos_delta();
@@ -107,7 +107,7 @@ WallReference::WallReference(const BevelGear& gear, int sigma)
     }
   }
   engaged_from_ = first_engaged(gear, sigma, halves_.front());
-  leverage_ = leverage_of(gear, std::max(1e-9, gear.R_i() - reach_), reach_);
+  leverage_ = centre_leverage(gear);
 }
 
 double WallReference::first_engaged(const BevelGear& gear, int sigma, const Curve& first) {
@@ -145,6 +145,38 @@ CutterCentre<double> WallReference::on_curve(const Curve& c, double R_c) const {
 }
 
 double WallReference::theta_at(double R_c) const { return on_curve(halves_[half_of(R_c)], R_c).theta_c; }
+
+CutterCentre<double> WallReference::place_at(double R_c) const {
+  CutterCentre<double> c;
+  if (R_c > end_.R_c) {
+    // A straight line keeps its distance from the apex.
+    c.R_c = R_c;
+    c.beta_c = std::asin(end_.R_c * std::sin(end_.beta_c) / R_c);
+    c.theta_c = end_.theta_c + end_.beta_c - c.beta_c;
+  } else if (convex_ && R_c > arc_from_ && R_c < arc_to_) {
+    const double turn = sigma_ * std::acos(std::clamp((R_c * R_c + corner_R_ * corner_R_ - r_0_ * r_0_) / (2 * R_c * corner_R_), -1.0, 1.0));
+    const double u = R_c - corner_R_ * std::cos(turn), v = corner_R_ * std::sin(turn);  // from the corner, seen along the ray of the place
+    c.R_c = R_c;
+    c.theta_c = corner_theta_ + turn;
+    c.beta_c = std::atan2(-sigma_ * u, sigma_ * v);
+  } else {
+    c = on_curve(halves_[half_of(R_c)], R_c);
+  }
+  c.e = c.theta_c / sin_delta_;
+  return c;
+}
+
+std::vector<double> WallReference::joints() const {
+  std::vector<double> at;
+  for (const Curve& c : halves_) {
+    if (halves_.size() > 1 && &c == &halves_.front()) at.push_back(c.R_c.back());
+    if (halves_.size() > 1 && &c == &halves_.back()) at.push_back(c.R_c.front());
+    if (c.trace.straight(sigma_, c.beta.back()) && !c.trace.straight(sigma_, c.beta.front())) at.push_back(c.trace.centre(sigma_, c.trace.beta_end).R_c);
+  }
+  at.push_back(end_.R_c);
+  std::sort(at.begin(), at.end());
+  return at;
+}
 
 double WallReference::edge_clearance(const Edge& edge, double R_c, double theta) const {
   if (edge.points.empty()) return -kClear;

@@ -21,6 +21,10 @@ struct ConePose {
 /// @param index azimuth of the tooth space
 [[nodiscard]] ConePose cone_pose(const BevelGear& gear, const Vec3& tip, const Vec3& axis, double index);
 
+/// Greatest displacement of a point of the cutter among the teeth per unit of shift of its centre in the crown plane, for every centre from which
+/// the mill of this gear reaches the face; at least 1.
+[[nodiscard]] double centre_leverage(const BevelGear& gear);
+
 /// Path of one wall over the whole gear: passes of the halves, the corner between them, the run-out.
 class WallReference {
  public:
@@ -32,6 +36,10 @@ class WallReference {
   [[nodiscard]] double offset(double R_c, double theta) const;
   /// Polar angle of the path at R_c inside the passes.
   [[nodiscard]] double theta_at(double R_c) const;
+  /// The whole path at R_c: curves of both halves, arc of a convex corner, straight run-out; below the small end as the trace goes on.
+  [[nodiscard]] CutterCentre<double> place_at(double R_c) const;
+  /// Cone distances at which the bend of the path jumps, ascending [mm].
+  [[nodiscard]] std::vector<double> joints() const;
   [[nodiscard]] int sigma() const { return sigma_; }
   /// Largest curvature of the path [1/mm].
   [[nodiscard]] double largest_curvature() const { return curvature_; }
@@ -40,7 +48,7 @@ class WallReference {
   [[nodiscard]] double R_c_to(std::size_t half) const { return halves_[half].R_c.back(); }
   /// R_c below which the pass runs out of the small end: the cutter touches nothing of the face any more, at most its edge.
   [[nodiscard]] double engaged_from() const { return engaged_from_; }
-  /// Greatest displacement of an engaged point of the cutter per unit of shift of the centre in the crown plane.
+  /// centre_leverage of the gear.
   [[nodiscard]] double leverage() const { return leverage_; }
 
  private:

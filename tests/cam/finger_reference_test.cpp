@@ -1,4 +1,5 @@
 // The room of a centre before the cutter touches a wall, against brute force: distances of the solid cutter from a dense patch of the wall.
+#include <algorithm>
 #include <random>
 
 #include "cam/finger_passes.h"
@@ -85,21 +86,55 @@ TEST_P(SmallEnd, EngagementBeginsWhereAContactReachesTheFace) {
   }
 }
 
-// The trace leaves the space before the small end where few teeth close it quickly: the middle pass begins behind that.
-TEST_P(SmallEnd, MiddlePassStaysBetweenTheWalls) {
+// Places of the whole path, corner and straight run-out with it: at distance zero from it, along its own heading, in one run.
+TEST_P(SmallEnd, PlacesLieOnThePath) {
   const BevelGear g = gear_of_case(GetParam());
-  const WallReference L(g, 1), U(g, -1);
-  double ridge = 0;
-  int middles = 0;
-  for (const auto& pass : roughing_passes(g, 0.2 * g.parameters().dedendum_mm, ridge)) {
-    if (pass.name != "middle" || pass.pieces.front().half != 0) continue;
-    ++middles;
-    for (int k = 0; k <= 200; ++k) {
-      const auto c = pass.pieces.front().at(k / 200.0);
-      EXPECT_GE(std::min(L.offset(c.R_c, c.theta_c), U.offset(c.R_c, c.theta_c)), -1e-9) << "R_c " << c.R_c;
+  const double from = g.R_i() - 0.1 * g.cutter().rho_D, to = g.R_e() + 1.2 * g.cutter().rho_D, step = (to - from) / 4000;
+  for (const int sigma : {1, -1}) {
+    const WallReference wall(g, sigma);
+    const auto joints = wall.joints();
+    EXPECT_TRUE(std::is_sorted(joints.begin(), joints.end()));
+    auto before = wall.place_at(from);
+    for (int k = 1; k <= 4000; ++k) {
+      const auto c = wall.place_at(from + step * k);
+      EXPECT_NEAR(wall.offset(c.R_c, c.theta_c), 0, 1e-9) << "R_c " << c.R_c;
+      EXPECT_NEAR(c.e * g.sin_delta(), c.theta_c, 1e-12);
+      // The chord of a step has the heading of its middle, but for the third order; not across the corner of the concave side.
+      const bool corner = std::any_of(joints.begin(), joints.end(), [&](double R) { return R >= before.R_c && R <= c.R_c; });
+      if (!corner) {
+        const double slope = (c.theta_c - before.theta_c) / step;
+        EXPECT_NEAR(slope, 0.5 * (std::tan(c.beta_c) / c.R_c + std::tan(before.beta_c) / before.R_c), 1e-3 / g.R_i()) << "R_c " << c.R_c;
+      }
+      EXPECT_LT(crown_distance(before, c), 3 * step) << "R_c " << c.R_c;
+      before = c;
     }
   }
-  EXPECT_EQ(middles, 1);
+}
+
+// The space of a gear with few teeth closes quickly before its small end, and both walls bend. Every roughing pass keeps to the space side of
+// both wall paths all along, from before the small end until the cutter is clear of the large end.
+TEST_P(SmallEnd, RoughingPassesStayBetweenTheWalls) {
+  const BevelGear g = gear_of_case(GetParam());
+  const WallReference L(g, 1), U(g, -1);
+  for (const double share : {0.2, 0.004}) {
+    double ridge = 0;
+    std::size_t fills = 0;
+    double first = 1e9, last = 0;
+    for (const auto& pass : roughing_passes(g, share * g.parameters().dedendum_mm, ridge)) {
+      fills += pass.name != "middle";
+      for (const auto& piece : pass.pieces)
+        for (int k = 0; k <= 200; ++k) {
+          const auto c = piece.at(k / 200.0);
+          first = std::min(first, c.R_c), last = std::max(last, c.R_c);
+          EXPECT_GE(std::min(L.offset(c.R_c, c.theta_c), U.offset(c.R_c, c.theta_c)), -1e-9) << pass.name << " R_c " << c.R_c;
+        }
+    }
+    EXPECT_LT(first, g.R_i()) << "the whole face";
+    EXPECT_GT(last, g.R_e() + g.cutter().rho_D);
+    if (share < 0.01) {
+      EXPECT_GT(fills, 1u);
+    }
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Gears, SmallEnd,
