@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cam/finger_passes.h"
+#include "cam/finger_reference.h"
 
 namespace toothpath {
 namespace {
@@ -22,7 +23,8 @@ class Planner {
  public:
   Planner(const BevelGear& gear, const MillingOperation& op, int index, const Tolerances& tol)
       : gear_(gear), op_(op), sd_(gear.sin_delta()), cd_(gear.cos_delta()) {
-    chord_ = std::min(op.chord_tolerance_mm, 0.5 * tol.gouge_mm);
+    // The other half is for what posts and proof add. The proof counts a shift of the centre with its leverage.
+    chord_ = std::min(op.chord_tolerance_mm, 0.5 * tol.gouge_mm / centre_leverage(gear));
     plan_.path.operation = index;
     plan_.path.operation_type = to_string(op.type);
     plan_.path.tool = op.tool;

@@ -42,8 +42,8 @@ struct FingerPlan {
 [[nodiscard]] FingerCutterData finger_cutter_data(const ToolAssembly& tool);
 
 /// finger_roughing or finger_finishing of tooth space 0. The chord of a block stays within the operation's chord
-/// tolerance and within half of the gouge tolerance. Feeds: op.feed_mm_min is the speed of the cutter centre on the pitch
-/// cone; a record carries the tip speed that belongs to it.
+/// tolerance and within half of the gouge tolerance divided by the leverage of the proof (centre_leverage). Feeds: op.feed_mm_min is
+/// the speed of the cutter centre on the pitch cone; a record carries the tip speed that belongs to it.
 [[nodiscard]] Result<FingerPlan> plan_finger_operation(const BevelGear& gear, const ToolAssembly& tool,
                                                        const MillingOperation& operation, int operation_index,
                                                        const Tolerances& tolerances);

@@ -1,4 +1,6 @@
 // The whole way of the finger mill on the worked gears: plan, approve, verify; planted faults.
+#include <random>
+
 #include "tests/cam/finger_jobs.h"
 
 namespace toothpath {
@@ -52,6 +54,68 @@ TEST(FingerMilling, TwoWallPassesAloneLeaveTheRidge) {
   EXPECT_NEAR(left_by_brute_force(r, ridge.cone_distance_mm, ridge.azimuth_rad), ridge.reached_mm, 0.01);
   // The whole check says so as well.
   EXPECT_GT(check.verify(r.motions).ridge.reached_mm, 2.8);
+}
+
+// What the planner says of the highest ridge is never below what the passes leave, and no higher than the job allows; many gears, random mills.
+TEST(FingerMilling, RidgeIsAsPredicted) {
+  std::mt19937 random(11);
+  const auto uniform = [&](double a, double b) { return a + (b - a) * static_cast<double>(random()) / 4294967295.0; };
+  int made_of = 0, fills = 0;
+  double nearest = 0;
+  for (int n = 0; n < 14; ++n) {
+    Designed d = design(7 + static_cast<int>(uniform(0, 54)), 0, uniform(1, 12), uniform(0, 40), uniform(0.12, 0.3), n % 2 ? 1 : -1, uniform(15, 78));
+    const double share = uniform(0.8, 1.0), ridge = uniform(0.02, 0.3) * d.p.dedendum_mm;
+    d.c.module_mm *= share, d.c.tip_radius_mm *= 0.5;
+    const auto gear = BevelGear::make(d.p, d.c);
+    if (gear.index() == 1) continue;
+    Milled r{std::get<0>(gear), {mill(d.c)}, operations(2e-3, ridge), {}, {}};
+    double predicted = 0;
+    for (std::size_t i = 0; i < r.ops.size(); ++i) {
+      const auto plan = plan_finger_operation(r.gear, r.tools[0], r.ops[i], static_cast<int>(i), Tolerances{});
+      ASSERT_TRUE(plan) << plan.error().message;
+      if (i == 0) predicted = plan->ridge_predicted_mm, fills += plan->passes.size() > 1;
+      const auto m = motions_of(plan->path);
+      r.motions.insert(r.motions.end(), m.begin(), m.end());
+    }
+    const FingerGougeCheck check(r.gear, r.tools, r.ops, Tolerances{}, {.columns = 3, .rows = 3, .ridge_columns = 6, .ridge_rows = 17});
+    const double reached = check.ridge(r.motions).reached_mm;
+    EXPECT_LE(predicted, ridge) << n;
+    EXPECT_LE(reached, 1.0001 * predicted) << n;
+    nearest = std::max(nearest, reached / predicted);
+    ++made_of;
+  }
+  EXPECT_GE(made_of, 8);
+  EXPECT_GE(fills, 2);
+  EXPECT_GT(nearest, 0.8) << "close somewhere";
+}
+
+// The proof counts a shift of the centre with the leverage of the points beyond it, on a slender cone of few teeth twofold. A job whose chord
+// tolerance is coarse keeps half of the gouge tolerance for what posts add; its walls are proven against a little more than this half.
+TEST(FingerMilling, ChordLeavesTheProofItsLeverage) {
+  for (const Designed& d : {design(7, 0, 6.0, 5, 0.145, 1, 15), design(7, 0, 2.0, 30, 0.32, -1, 30), Designed{w3(), pinion_mill()}}) {
+    const BevelGear gear = made(d.p, d.c);
+    const double leverage = centre_leverage(gear);
+    EXPECT_EQ(leverage, WallReference(gear, 1).leverage());
+    Tolerances job;
+    job.gouge_mm = 3e-3;
+    const auto tool = mill(d.c);
+    const auto ops = operations(2e-3);
+    Tolerances half = job;
+    half.gouge_mm = 0.6 * job.gouge_mm;
+    const FingerGougeCheck check(gear, std::vector{tool}, ops, half, {.columns = 3, .rows = 3, .ridge_columns = 2, .ridge_rows = 3});
+    for (std::size_t i = 0; i < ops.size(); ++i) {
+      const auto plan = plan_finger_operation(gear, tool, ops[i], static_cast<int>(i), job);
+      ASSERT_TRUE(plan) << plan.error().message;
+      EXPECT_LE(plan->chord_mm * leverage, 0.5 * job.gouge_mm);
+      EXPECT_GT(plan->chord_mm * leverage, 0.2 * job.gouge_mm) << "no finer than needed";
+      const auto verdict = check.approve(plan->path);
+      EXPECT_TRUE(verdict) << verdict.error().message;
+    }
+    // A chord tolerance below that decides.
+    const auto fine = plan_finger_operation(gear, tool, operations(3e-4)[1], 1, job);
+    ASSERT_TRUE(fine) << fine.error().message;
+    EXPECT_LE(fine->chord_mm, 3e-4);
+  }
 }
 
 TEST(FingerMilling, FeedIsConstantOnThePitchCone) {
