@@ -45,8 +45,8 @@ class OpenEnd {
  private:
   [[nodiscard]] std::optional<SheetGap> gap(double r) const {
     for (const auto& g : sheet_.gaps(r)) {
-      const bool one = g.from < 2.5 && g.to > 2.5;
-      if (one ? plus_ : plus_ ? g.to <= 2.5 : g.from >= 2.5) return g;
+      const SheetCorner which = corner_of(g);
+      if (which == SheetCorner::plus || which == SheetCorner::both ? plus_ : !plus_) return g;
     }
     return {};
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <type_traits>
 
 #include "cam/pass_count.h"
 
@@ -12,6 +13,7 @@ namespace toothpath {
 namespace {
 
 constexpr double kLongestRunOut = 1.5;  // way of a run-out along the sheet, of the straight line between its ends
+constexpr double kRootBegin = 2, kRootEnd = 3;  // the root land on the sheet; below it plus fillet and flank, above it minus
 constexpr double kHighestCusp = 1.1;  // a cusp above this share of the asked one gets a pass of its own
 
 double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
@@ -57,17 +59,35 @@ class Planner {
       chain.push_back([this, sigma](double r) { return smooth(sigma, station_coordinate(r)); });
     }
     close_gaps(chain);
-    const int last = int(chain.size()) - 1;
-    for (int a = 0, b = last; a <= b; ++a, --b) {
-      if (auto ok = add_pass(chain[std::size_t(a)], 2 * a <= last); !ok) return ok;
-      if (b == a) break;
-      if (auto ok = add_pass(chain[std::size_t(b)], false); !ok) return ok;
+    const std::size_t all = chain.size(), on_plus = passes_of_plus(chain);
+    for (std::size_t i = 0; i < std::max(on_plus, all - on_plus); ++i) {
+      if (i < on_plus)
+        if (auto ok = add_pass(chain[i], true); !ok) return ok;
+      if (i < all - on_plus)
+        if (auto ok = add_pass(chain[all - 1 - i], false); !ok) return ok;
     }
     return Ok{};
   }
 
   /// Neighbouring passes, each as sigma over the centre radius.
   using Chain = std::vector<std::function<double(double)>>;
+
+  /// How many passes of the chain are fed as those of the plus flank: none that touches the minus fillet, and all that touch the plus fillet
+  /// or flank, so that material lies on the asked side of every one. The root land takes either feed: there the middle of the chain divides.
+  [[nodiscard]] std::size_t passes_of_plus(const Chain& chain) const {
+    std::size_t clear_of_minus = 0, touching_plus = 0;
+    for (const auto& sigma : chain) {
+      double least = INFINITY, most = -INFINITY;
+      for (const auto& station : sheet_.stations()) {
+        least = std::min(least, sigma(station.r));
+        most = std::max(most, sigma(station.r));
+      }
+      if (most <= kRootEnd) ++clear_of_minus;
+      if (least < kRootBegin) ++touching_plus;
+    }
+    const auto [low, high] = std::minmax(clear_of_minus, touching_plus);
+    return std::clamp((chain.size() + 1) / 2, low, high);
+  }
 
   /// Looks at every cusp between the final passes, also between the stations, and puts one more pass where it is too high.
   void close_gaps(Chain& chain) const {
@@ -119,7 +139,12 @@ class Planner {
 
   template <typename Sigma>
   Status add_pass(const Sigma& sigma, bool plus, double r_low = -INFINITY, double r_high = INFINITY) {
-    auto pass = make_pass(sigma, plus, r_low, r_high);
+    return add_pass(sigma, sigma, plus, r_low, r_high);
+  }
+  /// Along a corner: the ball touches at `sigma` and at `other`, and the pass is as long as either of the two contacts lies on the ring.
+  template <typename Sigma, typename Other>
+  Status add_pass(const Sigma& sigma, const Other& other, bool plus, double r_low, double r_high) {
+    auto pass = make_pass(sigma, other, plus, r_low, r_high);
     if (!pass) return pass.error();
     if (pass->points.size() > 1) out_.passes.push_back(std::move(*pass));
     return Ok{};
@@ -127,22 +152,22 @@ class Planner {
 
   /// Where the ball touches two walls of a corner at once. The plus corner lies on the plus side of the root land, the minus
   /// corner on the other; where the ball does not reach the root land at all they are one.
-  struct Corner {
+  struct CornerPlace {
     double from = 0, to = 0;
     bool one = false;  ///< both corners in one
   };
-  static std::optional<Corner> find_corner(const std::vector<SheetGap>& gaps, bool plus) {
+  static std::optional<CornerPlace> find_corner(const std::vector<SheetGap>& gaps, bool plus) {
     for (const auto& g : gaps) {
-      if (g.from < 2.5 && g.to > 2.5) return Corner{g.from, g.to, true};
-      if (plus ? g.to <= 2.5 : g.from >= 2.5) return Corner{g.from, g.to, false};
+      const SheetCorner which = corner_of(g);
+      if (which == SheetCorner::both || which == (plus ? SheetCorner::plus : SheetCorner::minus)) return CornerPlace{g.from, g.to, which == SheetCorner::both};
     }
     return {};
   }
   /// The corner at any radius. Where it is not there (yet), the place where it was seen nearest.
-  [[nodiscard]] Corner corner_at(double r, bool plus) const {
+  [[nodiscard]] CornerPlace corner_at(double r, bool plus) const {
     if (const auto c = find_corner(sheet_.gaps(r), plus)) return *c;
     double best = INFINITY;
-    Corner place{plus ? 2.0 : 3.0, plus ? 2.0 : 3.0, false};
+    CornerPlace place{plus ? 2.0 : 3.0, plus ? 2.0 : 3.0, false};
     for (const auto& s : sheet_.stations())
       if (const auto c = find_corner(s.gaps, plus); c && !c->one && std::abs(s.r - r) < best) {
         best = std::abs(s.r - r);
@@ -156,7 +181,7 @@ class Planner {
   Status passes_between_corners() {
     const auto& stations = sheet_.stations();
     const std::size_t n = stations.size();
-    std::vector<Corner> plus(n), minus(n);
+    std::vector<CornerPlace> plus(n), minus(n);
     for (std::size_t j = 0; j < n; ++j) {
       plus[j] = corner_at(stations[j].r, true);
       minus[j] = corner_at(stations[j].r, false);
@@ -189,8 +214,11 @@ class Planner {
     close_gaps(on_minus);
     on_minus.pop_back();  // the minus corner comes below, where it is apart from the plus corner
     for (std::size_t i = 0; i < std::max(on_plus.size(), on_minus.size()); ++i) {
-      if (i < on_plus.size())
+      if (i + 1 == on_plus.size()) {  // along the corner
+        if (auto ok = add_pass(on_plus[i], [this](double r) { return corner_at(r, true).to; }, true, -INFINITY, INFINITY); !ok) return ok;
+      } else if (i < on_plus.size()) {
         if (auto ok = add_pass(on_plus[i], true); !ok) return ok;
+      }
       if (i < on_minus.size())
         if (auto ok = add_pass(on_minus[i], false); !ok) return ok;
     }
@@ -204,13 +232,14 @@ class Planner {
       std::size_t end = j;
       while (end + 1 < n && !plus[end + 1].one) ++end;
       const double r_low = j > 0 ? stations[j - 1].r : -INFINITY, r_high = end + 1 < n ? stations[end + 1].r : INFINITY;
-      if (auto ok = add_pass([&](double r) { return corner_at(r, false).to; }, false, r_low, r_high); !ok) return ok;
+      const auto minus_corner = [&](double r) { return corner_at(r, false).to; };
+      if (auto ok = add_pass(minus_corner, [&](double r) { return corner_at(r, false).from; }, false, r_low, r_high); !ok) return ok;
       double most = 0;
       for (std::size_t k = j; k <= end; ++k) most = std::max(most, count_.count_at(k, minus[k].from) - count_.count_at(k, plus[k].to));
       const int between = int(std::ceil(most - 1e-9));
       for (int i = 1; i < between; ++i) {
         const auto sigma = [&](double r) {
-          const Corner p = corner_at(r, true), m = corner_at(r, false);
+          const CornerPlace p = corner_at(r, true), m = corner_at(r, false);
           if (p.one) return p.from;
           return p.to + (m.from - p.to) * i / between;
         };
@@ -225,29 +254,33 @@ class Planner {
     return (r - sheet_.r_from()) / (sheet_.r_to() - sheet_.r_from()) * double(sheet_.stations().size() - 1);
   }
 
-  /// The piece of the curve whose contact lies on the ring, with the run-out at both ends.
-  template <typename Sigma>
-  Result<BallPass> make_pass(const Sigma& sigma, bool plus, double r_low = -INFINITY, double r_high = INFINITY) {
+  /// The piece of the curve whose contact (one of the two, along a corner) lies on the ring, with the run-out at both ends.
+  template <typename Sigma, typename Other>
+  Result<BallPass> make_pass(const Sigma& sigma, const Other& other, bool plus, double r_low, double r_high) {
     const auto& ring = sheet_.space().ring().zone;
-    const auto contact_radius = [&](double r) -> double {
-      const auto s = sheet_.at(sigma(r), r);
+    const auto contact_radius = [&](double at, double r) -> double {
+      const auto s = sheet_.at(at, r);
       return s ? radius(s->contact.p) : NAN;
     };
-    const auto solve = [&](double target) -> double {
+    const auto solve = [&](const auto& curve, double target) -> double {
       double a = sheet_.r_from(), b = sheet_.r_to();
-      if (contact_radius(a) > target || contact_radius(b) < target) return NAN;
+      if (contact_radius(curve(a), a) > target || contact_radius(curve(b), b) < target) return NAN;
       for (int k = 0; k < 60 && b - a > 1e-9; ++k) {
         const double m = 0.5 * (a + b);
-        (contact_radius(m) < target ? a : b) = m;
+        (contact_radius(curve(m), m) < target ? a : b) = m;
       }
       return 0.5 * (a + b);
     };
-    const double from = solve(ring.inner_radius_mm), to = solve(ring.outer_radius_mm);
+    double from = solve(sigma, ring.inner_radius_mm), to = solve(sigma, ring.outer_radius_mm);
+    if constexpr (!std::is_same_v<Sigma, Other>) {
+      from = std::min(from, solve(other, ring.inner_radius_mm));
+      to = std::max(to, solve(other, ring.outer_radius_mm));
+    }
     if (std::isnan(from) || std::isnan(to))
       return fail("the flank ends inside the ring: ball centres reach contact radii {:.4f} to {:.4f}, the ring is "
                   "{:.4f} to {:.4f}",
-                  contact_radius(sheet_.r_from()), contact_radius(sheet_.r_to()), ring.inner_radius_mm,
-                  ring.outer_radius_mm);
+                  contact_radius(sigma(sheet_.r_from()), sheet_.r_from()), contact_radius(sigma(sheet_.r_to()), sheet_.r_to()),
+                  ring.inner_radius_mm, ring.outer_radius_mm);
     // A corner that begins or ends inside the ring: the pass is as long as the corner.
     const double begin = std::max(from, r_low), end = std::min(to, r_high);
     if (!(end > begin)) return BallPass{};

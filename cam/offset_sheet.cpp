@@ -28,6 +28,12 @@ std::optional<std::pair<double, double>> crossing(const Vec2& a0, const Vec2& a1
 
 }  // namespace
 
+SheetCorner corner_of(const SheetGap& gap) {
+  constexpr double kRootBegins = double(SpacePiece::root), kRootEnds = kRootBegins + 1;
+  if (gap.from < kRootBegins && gap.to > kRootEnds) return SheetCorner::both;
+  return gap.from < kRootBegins ? SheetCorner::plus : SheetCorner::minus;
+}
+
 OffsetSheet::OffsetSheet(const SpaceSheet& space, double delta, double r_from, double r_to, int stations)
     : space_(space), delta_(delta) {
   const auto& f = space_.surface();
@@ -299,10 +305,9 @@ std::vector<SheetGap> OffsetSheet::gaps(double r) const {
   const auto &s0 = stations_[j], &s1 = stations_[j + 1];
   if (s0.gaps.empty() && s1.gaps.empty()) return {};
   std::vector<SheetGap> out;
-  // The same corners at both stations: which side of the middle of the root land a gap lies on, or both.
-  const auto place = [](const SheetGap& g) { return g.to <= 2.5 ? -1 : g.from >= 2.5 ? 1 : 0; };
+  // The same corners at both stations.
   bool ok = std::equal(s0.gaps.begin(), s0.gaps.end(), s1.gaps.begin(), s1.gaps.end(),
-                       [&](const SheetGap& a, const SheetGap& b) { return place(a) == place(b); });
+                       [](const SheetGap& a, const SheetGap& b) { return corner_of(a) == corner_of(b); });
   if (ok) {
     const double y = (r - s0.r) / (s1.r - s0.r);
     for (std::size_t k = 0; k < s0.gaps.size() && ok; ++k) {
@@ -328,12 +333,6 @@ std::optional<SheetPoint> OffsetSheet::at(double sigma, double r) const {
         break;
       }
   return raw(sigma, r);
-}
-
-double OffsetSheet::bottom_sigma(double r) const {
-  for (const auto& g : gaps(r))
-    if (g.from < 2.5 && g.to > 2.5) return g.from;  // the ball does not reach the root land
-  return 2.5;
 }
 
 }  // namespace toothpath

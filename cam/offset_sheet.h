@@ -25,6 +25,11 @@ struct SheetGap {
   double from = 0, to = 0;
 };
 
+/// Which corner a gap stands for: between root land and plus wall, between root land and minus wall, or both in one where the ball does not
+/// reach the root land. The two need not meet in the middle of the land.
+enum class SheetCorner { plus, minus, both };
+[[nodiscard]] SheetCorner corner_of(const SheetGap& gap);
+
 class OffsetSheet {
  public:
   /// One profile: the trimmed offset at a fixed centre radius.
@@ -58,8 +63,6 @@ class OffsetSheet {
   /// Gaps at any centre radius of the range.
   [[nodiscard]] std::vector<SheetGap> gaps(double r) const;
 
-  /// sigma of the lowest centre at radius r (height above the root surface for shaft angles other than 90 deg).
-  [[nodiscard]] double bottom_sigma(double r) const;
 
  private:
   /// Evenly spaced stations over the part of the range in which the surfaces exist; none or at least two.

@@ -44,7 +44,7 @@ Walls walls_of(const OffsetSheet& sheet, const OffsetSheet::Station& station) {
   Walls w;
   const SheetGap* across = nullptr;
   for (const auto& g : station.gaps)
-    if (g.from < 2.5 && g.to > 2.5) across = &g;
+    if (corner_of(g) == SheetCorner::both) across = &g;
   for (const auto& node : station.nodes)
     if (node.sigma == 2.5) w.root_z = node.at.centre.z();
   struct Place {

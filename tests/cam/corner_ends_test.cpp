@@ -1,4 +1,4 @@
-// A ball wider than the fillet on a gear whose root leans along the tooth: at the ends of the ring it reaches past the crossing of two walls.
+// A ball wider than the fillet touches two walls of a corner at two radii: where its passes begin and end, and what it reaches past the crossing.
 #include "cam/corner_ends.h"
 
 #include "cam/cut_surface.h"
@@ -107,6 +107,56 @@ TEST(CornerEnds, ThereAreNoneWhereTheBallFitsOrBothWallsEndTogether) {
   o.ball_radius_mm = 0.8;
   EXPECT_TRUE(ends_of(part, sheet, o).empty());
 }
+
+TEST(SheetCorners, AreToldApartByTheRootLandNotByItsMiddle) {
+  EXPECT_EQ(corner_of({0.96, 2.503}), SheetCorner::plus);
+  EXPECT_EQ(corner_of({2.51, 4.03}), SheetCorner::minus);
+  EXPECT_EQ(corner_of({2.49, 4.03}), SheetCorner::minus);
+  EXPECT_EQ(corner_of({1.2, 1.8}), SheetCorner::plus);
+  EXPECT_EQ(corner_of({3.2, 3.9}), SheetCorner::minus);
+  EXPECT_EQ(corner_of({0.96, 4.04}), SheetCorner::both);
+}
+
+/// One ring, everything read in the normal section.
+FaceGearParameters ring_gear(int teeth, int shaper_teeth, double module_mm, double tip_radius_mm, FaceGearZone zone) {
+  FaceGearParameters g;
+  g.teeth = teeth;
+  g.shaper_teeth = shaper_teeth;
+  g.module_mm = module_mm;
+  g.pressure_angle_rad = radians(20);
+  g.shaper_tip_radius_mm = tip_radius_mm;
+  g.zones = {zone};
+  return g;
+}
+struct WideBallCase {
+  std::string name;
+  FaceGearParameters gear;
+  double ball_mm = 0, scallop_mm = 0;
+};
+/// "one_corner": the ball never reaches the root land; its contacts lie 0.6 mm apart along a ring of 0.8 mm. "two_corners": it reaches the
+/// land over a part of the ring, and the two corners meet away from the middle of the land.
+std::vector<WideBallCase> wide_balls() {
+  auto one = ring_gear(104, 16, 1.63, 0.489, {radians(-30.55), 102.543, 103.358});
+  one.clearance_coefficient = 0.3;
+  one.offset_mm = -6.85;
+  one.reference_radius_mm = 102.543;
+  auto two = ring_gear(150, 39, 1.92, 0, {radians(-14.23), 154.8, 155.72});
+  two.module_plane = ModulePlane::transverse;
+  two.pressure_angle_rad = radians(22.5);
+  return {{"one_corner", one, 0.7335, 0.00815}, {"two_corners", two, 0.672, 0.0192}};
+}
+class WideBall : public testing::TestWithParam<WideBallCase> {};
+
+TEST_P(WideBall, LeavesNoMoreThanTheCuspOnBothWallsAndCutsNothing) {
+  const auto& [name, gear, ball, scallop] = GetParam();
+  const auto job = test::planned(gear, {test::ball_mill(2 * ball, 5, 1.8 * ball, 20, 10)}, {test::finishing(0, scallop, 0.002)});
+  const auto cut = measure_cut_surface(*job.part, job.motions(), job.operations, job.tools);
+  EXPECT_TRUE(job.plan.operations[0].corner_passes);
+  EXPECT_LE(cut.finished.max_mm, scallop + 0.001);
+  const GougeCheck check(*job.part, job.tools, job.check_options());
+  EXPECT_TRUE(check.passes(check.check(job.motions(), job.tool_of_operation())));
+}
+INSTANTIATE_TEST_SUITE_P(Gears, WideBall, testing::ValuesIn(wide_balls()), [](const auto& wide) { return wide.param.name; });
 
 }  // namespace
 }  // namespace toothpath
