@@ -221,20 +221,42 @@ void read_limits(TableReader limits, Machine& machine) {
   limits.finish();
 }
 
-void read_post(TableReader post, PostSettings& settings) {
+/// Smoothing is stated whole: its blocks, and how far the tip leaves the path while it is on.
+void read_smoothing(TableReader& post, PostSettings& settings) {
+  if (!post.has("smoothing_on")) {
+    for (const char* key : {"smoothing_off", "smoothing_tolerance", "smoothing_axis_tolerance"})
+      if (post.value(key)) post.refuse(key, "{} needs {}", post.name(key), post.name("smoothing_on"));
+    return;
+  }
+  const auto blocks = [&post](const char* key) {
+    auto list = post.ascii_list(key);
+    if (list && list->empty()) post.refuse(key, "{} is empty, must have at least one block", post.name(key));
+    return std::move(list).value_or(std::vector<std::string>{});
+  };
+  settings.smoothing_on = blocks("smoothing_on");
+  settings.smoothing_off = blocks("smoothing_off");
+  settings.smoothing_tolerance_mm = post.number("smoothing_tolerance", Range::positive(1.0, " mm"));
+  if (post.has("smoothing_axis_tolerance"))
+    if (const auto angle = post.number("smoothing_axis_tolerance", Range::positive(1.0, " deg"))) settings.smoothing_axis_tolerance_rad = radians(*angle);
+}
+
+/// Keys that mean something to some controls only.
+void refuse_keys_of_other_dialects(TableReader& post, const std::string& dialect) {
+  if (post.has("corner_tolerance") && !dialect.empty() && dialect != "linuxcnc")
+    post.refuse("corner_tolerance", "{} belongs to dialect \"linuxcnc\", this is \"{}\"", post.name("corner_tolerance"), dialect);
+  if (post.has("smoothing_on") && (dialect == "linuxcnc" || dialect == "heidenhain" || dialect == "apt"))
+    post.refuse("smoothing_on", "{}: dialect \"{}\" has its own words for what may be left of corners", post.name("smoothing_on"), dialect);
+}
+
+void read_post(TableReader post, const std::string& dialect, PostSettings& settings) {
   if (post.has("linear_decimals")) settings.linear_decimals = post.integer("linear_decimals", {0, 9});
   if (post.has("rotary_decimals")) settings.rotary_decimals = post.integer("rotary_decimals", {0, 9});
   if (post.has("index_loop")) settings.index_loop = post.boolean("index_loop");
   if (post.has("tcp_on")) settings.tcp_on = post.ascii_list("tcp_on").value_or(std::vector<std::string>{});
   if (post.has("tcp_off")) settings.tcp_off = post.ascii_list("tcp_off").value_or(std::vector<std::string>{});
   if (post.has("corner_tolerance")) settings.corner_tolerance_mm = post.number("corner_tolerance", Range::positive(0.1, " mm"));
-  if (post.has("smoothing_on")) {
-    settings.smoothing_on = post.ascii_list("smoothing_on").value_or(std::vector<std::string>{});
-    settings.smoothing_off = post.ascii_list("smoothing_off").value_or(std::vector<std::string>{});
-    settings.smoothing_tolerance_mm = post.number("smoothing_tolerance", Range::positive(1.0, " mm"));
-  }
-  if (post.has("smoothing_axis_tolerance"))
-    if (const auto angle = post.number("smoothing_axis_tolerance", Range::positive(1.0, " deg"))) settings.smoothing_axis_tolerance_rad = radians(*angle);
+  read_smoothing(post, settings);
+  refuse_keys_of_other_dialects(post, dialect);
   if (post.has("length_reference"))
     if (const auto word = post.word("length_reference", {"tip", "centre"}))
       settings.length_reference = *word == "tip" ? LengthReference::tip : LengthReference::centre;
@@ -302,7 +324,7 @@ Machine read_tree(const TomlValue& tree, const std::string& file, ReaderFindings
   }
   if (const auto limits = root.required_table("limits")) read_limits(*limits, machine);
   if (root.has("post"))
-    if (const auto post = root.required_table("post")) read_post(*post, machine.post);
+    if (const auto post = root.required_table("post")) read_post(*post, machine.dialect, machine.post);
   read_chain(root, machine);
   check_control(root, machine);
   check_accelerations(root, machine);

@@ -2,6 +2,7 @@
 // nothing written. `machine show` reads the file by itself; `run` meets it by way of a job.
 #include "program.h"
 #include "tests/machines/bad_machine_files.h"
+#include "tests/machines/bad_post_keys.h"
 #include "tests/machines/example_files.h"
 
 namespace toothpath::test {
@@ -28,6 +29,20 @@ TEST(BadMachines, ShowRefusesEachWithItsPlace) {
     EXPECT_EQ(shown.exit_code, 3) << bad.what;
     EXPECT_EQ(shown.err, with_path(bad.messages, path)) << bad.what;
     EXPECT_TRUE(names_in(dir / "out").empty()) << bad.what;
+  }
+}
+
+TEST(BadMachines, SmoothingAndCornerKeys) {
+  const TestDir dir;
+  const std::string path = dir / "m.toml";
+  for (const PostKeys& keys : kPostKeys) {
+    write_file(path, machine_with(keys));
+    const Finished shown = run_program({"machine", "show", path, "--out", dir / "out"});
+    const bool good = std::string(keys.messages).empty();
+    EXPECT_EQ(shown.exit_code, good ? 0 : 3) << keys.what;
+    EXPECT_EQ(shown.err, with_path(keys.messages, path)) << keys.what;
+    EXPECT_EQ(names_in(dir / "out").empty(), !good) << keys.what;
+    std::filesystem::remove_all(dir / "out");
   }
 }
 

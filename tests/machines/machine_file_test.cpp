@@ -9,6 +9,7 @@
 
 #include "machines/shaper_machine.h"
 #include "tests/machines/bad_machine_files.h"
+#include "tests/machines/bad_post_keys.h"
 #include "tests/machines/example_files.h"
 
 namespace toothpath {
@@ -142,6 +143,11 @@ INSTANTIATE_TEST_SUITE_P(Checklist, BadMachineFile, testing::ValuesIn(test::kBad
                            for (const char* c = place.param.what; *c; ++c) name += std::isalnum(static_cast<unsigned char>(*c)) ? *c : '_';
                            return name;
                          });
+
+// Every way in which the keys of smoothing and corners can be wrong, alone or with their partners and the dialect.
+TEST(MachineFile, SmoothingAndCornerKeys) {
+  for (const test::PostKeys& keys : test::kPostKeys) EXPECT_EQ(messages(test::machine_with(keys)), std::string(keys.messages)) << keys.what;
+}
 
 TEST(MachineFile, NulByteIsNoText) {
   std::string text = kMachine;
