@@ -248,6 +248,7 @@ std::vector<double> windings(const RotaryAxis& axis, double command_rad, double 
   const double turn = 2.0 * kPi;
   const double lo = axis.min_rad + margin_rad, hi = axis.max_rad - margin_rad;
   std::vector<double> all;
+  if (axis.rollover) return {axis.zero_rad + std::remainder(command_rad - axis.zero_rad, turn)};
   if (!(lo <= hi)) return all;
   const double first = std::ceil((lo - command_rad) / turn), last = std::floor((hi - command_rad) / turn);
   for (double k = first - 1; k <= last + 1; ++k) {  // one more at both ends: the quotients are rounded

@@ -37,6 +37,7 @@ struct RotaryAxis {
   double zero_rad = 0.0;              ///< command at which the axis stands at its zero
   double min_rad = 0.0;
   double max_rad = 0.0;
+  bool rollover = false;              ///< the control counts it within one turn and it has no ends: min and max are infinite
   double max_speed = 0.0;             ///< rad/min
   double max_acceleration = 0.0;      ///< rad/min^2; 0: not stated
 
@@ -125,7 +126,7 @@ struct KinematicChain {
   /// 1e-9 mm (coordinates up to 1 m). Errors: as rotary_solutions.
   [[nodiscard]] Result<std::vector<JointSolution>> inverse(const TablePose& pose, double tool_length_mm) const;
 
-  /// inverse with every winding of 360 deg inside the rotary limits, joints outside their limits left out; ordered by
+  /// inverse with every winding of 360 deg inside the rotary limits (`windings`), joints outside their limits left out; ordered by
   /// pair, then by angle. A free rotary axis stands at the allowed angle nearest to `free_angle_rad` and is not wound.
   /// An empty list does not occur. Errors: as inverse; no candidate inside the limits (the message names axis, value, limit
   /// and the value of the other solution).
@@ -141,7 +142,8 @@ struct KinematicChain {
   Result<std::vector<JointSolution>> one_rotary(const Vec3& axis) const;
 };
 
-/// command_rad + k * 360 deg for every whole k that lies in the limits minus margin, ascending; empty when there is none.
+/// command_rad + k * 360 deg for every whole k that lies in the limits minus margin, ascending; empty when there is none. Of an axis
+/// that rolls over: the one within half a turn of its zero.
 [[nodiscard]] std::vector<double> windings(const RotaryAxis& axis, double command_rad, double margin_rad = 0.0);
 
 /// Refuses chains that no inverse can serve: more than two rotary axes, a direction that is no unit vector, two parallel

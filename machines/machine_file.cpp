@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
 #include "machines/machine_table.h"
 
@@ -57,6 +58,15 @@ std::optional<std::pair<double, double>> read_range(TableReader& axis, double la
     return std::nullopt;
   }
   return std::pair(*lo, *hi);
+}
+
+/// An axis that rolls over is counted from 0 to 360 deg for ever: it has neither `min` nor `max`.
+void refuse_ends(TableReader& axis) {
+  for (const char* end : {"min", "max"})
+    if (axis.has(end)) {
+      (void)axis.value(end);
+      axis.refuse(end, "{} of an axis with rollover = true, which turns without end: leave {} out, or rollover", axis.name(end), end);
+    }
 }
 
 double read_speed(TableReader& axis, const char* unit) {
@@ -129,7 +139,12 @@ RotaryAxis read_rotary(TableReader axis, char letter, bool in_table, const Limit
   }
   out.sign = read_sense(axis, "sign");
   if (axis.has("zero")) out.zero_rad = radians(axis.number("zero", {-360.0, 360.0, " deg"}).value_or(0.0));
-  if (const auto range = read_range(axis, kLargestAngle, " deg")) {
+  if (axis.has("rollover")) out.rollover = axis.boolean("rollover").value_or(false);
+  if (out.rollover) {
+    refuse_ends(axis);
+    out.max_rad = std::numeric_limits<double>::infinity();
+    out.min_rad = -out.max_rad;
+  } else if (const auto range = read_range(axis, kLargestAngle, " deg")) {
     out.min_rad = radians(range->first);
     out.max_rad = radians(range->second);
     const double least = 2 * degrees(margin.rotary_rad);

@@ -1,5 +1,6 @@
 #include "postproc/axis_inputs.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace toothpath {
@@ -52,6 +53,22 @@ std::optional<Diagnostic> check_axis_inputs(std::span<const ClPath* const> paths
     if (auto bad = check_records(*path)) return bad;
   }
   return std::nullopt;
+}
+
+PoleRules pole_rules_of(const Machine& machine, const AxisOptions& options, const ToolAssembly& tool, const ClearanceBody& body) {
+  const PostSettings& post = machine.post;
+  PoleRules rules;
+  rules.option = post.pole;
+  if (machine.chain.rotary_count() > 0) rules.letter = machine.chain.rotary(0).letter;
+  rules.ball = tool.type == CutterType::ball_end_mill;
+  rules.ball_radius_mm = rules.ball ? tool.radius_mm() : 0;
+  const bool moves = post.pole == PoleOption::hold || post.pole == PoleOption::through || post.pole == PoleOption::retract;
+  rules.change_rad = moves ? post.pole_angle_rad.value_or(options.axis_rad) : options.axis_rad;
+  if (!rules.ball) rules.change_rad = std::min(rules.change_rad, options.axis_rad);
+  rules.keep_rad = post.pole == PoleOption::tilt ? post.pole_angle_rad.value_or(kLeastPoleTilt) : 0;
+  rules.body = body;
+  rules.margin_mm = options.clearance_margin_mm;
+  return rules;
 }
 
 }  // namespace toothpath

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "postproc/axis_rollover.h"
 #include "postproc/axis_tooth.h"
 
 namespace toothpath {
@@ -53,7 +54,7 @@ void ToothBuilder::rapid_to(const TablePose& target, const RotaryPair& rotaries)
     b.kind = BlockKind::rapid_rotary;
     b.words[3] = goal.words[3];
     b.words[4] = goal.words[4];
-    if (chain_.rotary_count() > 0) push_rapid(b, first || turns);
+    if (chain_.rotary_count() > 0) push_rotaries(b, first || turns);
   }
   if (first || turns || goal.words[0] != last_.words[0] || goal.words[1] != last_.words[1]) {
     AxisBlock b = last_;
@@ -92,6 +93,11 @@ void ToothBuilder::too_low(double height) {
                    "operation {} record {} (tooth {}): the part sweeps up to {:.3f} mm above the machine zero with its "
                    "margin, the tool tip at Z {:.3f} rises to {:.3f} only",
                    operation_->operation, record_, tooth_, height, program_.retract_z_mm, retract_height());
+}
+
+/// The rotaries, in parts where one that rolls over would go half a turn.
+void ToothBuilder::push_rotaries(const AxisBlock& b, bool forced) {
+  for (const AxisBlock& part : blocks_of_turn(chain_, words_, words_.joints(last_).rotary_rad, b)) push_rapid(part, forced);
 }
 
 void ToothBuilder::push_rapid(AxisBlock b, bool forced) {

@@ -8,6 +8,7 @@
 #include "geometry/base/angle.h"
 #include "postproc/axis_clearance.h"
 #include "postproc/axis_inputs.h"
+#include "postproc/axis_rollover.h"
 #include "postproc/axis_solution.h"
 #include "postproc/axis_time.h"
 #include "postproc/axis_tooth.h"
@@ -56,8 +57,10 @@ class Builder {
     }
     const AxisJob job{machine_, body_, options_, teeth_, gear_, coincident_};
     ToothBuilder builder(job, program_, placed_, setup_.work_offset_at_mm);
-    for (std::size_t p = 0; p < paths_.size(); ++p)
+    for (std::size_t p = 0; p < paths_.size(); ++p) {
       if (auto bad = operation(p, builder)) return *bad;
+      if (!loop_is_entered_) return written_out();
+    }
     if (poses_) program_.offer = poses_->best();
     if (auto bad = check_travel(program_, machine_, placed_)) return with_offer(*bad);
     finish();
@@ -67,6 +70,12 @@ class Builder {
  private:
   [[nodiscard]] bool tcp() const { return machine_.tcp != TcpMode::none; }
 
+  /// The same without the loop.
+  Result<AxisProgram> written_out() const {
+    AxisOptions options = options_;
+    options.expand_teeth = true;
+    return Builder(paths_, tools_, setup_, machine_, teeth_, body_, options).build();
+  }
   /// Only for a program that is refused as it stands: it takes as long as the program itself.
   void try_offer() {
     TravelOffer& offer = *program_.offer;
@@ -100,7 +109,10 @@ class Builder {
     program_.teeth = teeth_;
     program_.tooth_stride = options_.tooth_stride;
     program_.letters = {'X', 'Y', 'Z', 0, 0};
-    for (std::size_t k = 0; k < chain_.rotary_count(); ++k) program_.letters[3 + k] = chain_.rotary(k).letter;
+    for (std::size_t k = 0; k < chain_.rotary_count(); ++k) {
+      program_.letters[3 + k] = chain_.rotary(k).letter;
+      program_.rollover[3 + k] = chain_.rotary(k).rollover;
+    }
     program_.work_offset = setup_.work_offset;
     program_.work_offset_at_mm = setup_.work_offset_at_mm;
     program_.tcp = machine_.tcp;
@@ -166,26 +178,11 @@ class Builder {
     }
     return out;
   }
-  PoleRules pole_rules(const ToolAssembly& tool) const {
-    const PostSettings& post = machine_.post;
-    PoleRules rules;
-    rules.option = post.pole;
-    if (chain_.rotary_count() > 0) rules.letter = chain_.rotary(0).letter;
-    rules.ball = tool.type == CutterType::ball_end_mill;
-    rules.ball_radius_mm = rules.ball ? tool.radius_mm() : 0;
-    const bool moves = post.pole == PoleOption::hold || post.pole == PoleOption::through || post.pole == PoleOption::retract;
-    rules.change_rad = moves ? post.pole_angle_rad.value_or(options_.axis_rad) : options_.axis_rad;
-    if (!rules.ball) rules.change_rad = std::min(rules.change_rad, options_.axis_rad);
-    rules.keep_rad = post.pole == PoleOption::tilt ? post.pole_angle_rad.value_or(kLeastPoleTilt) : 0;
-    rules.body = body_;
-    rules.margin_mm = options_.clearance_margin_mm;
-    return rules;
-  }
   /// Poles handled, then the angles. @param rotation table frame from the gear frame of this tooth
   Result<FollowedPath> follow(std::size_t p, const Mat3& rotation, bool leave_room_for_index) {
     FollowedPath out;
     out.planned = paths_[p];
-    const PoleRules rules = pole_rules(tools_[static_cast<std::size_t>(paths_[p]->tool)]);
+    const PoleRules rules = pole_rules_of(machine_, options_, tools_[static_cast<std::size_t>(paths_[p]->tool)], body_);
     std::vector<Vec3> poles = poles_of(chain_);
     for (Vec3& pole : poles) pole = rotation.transpose() * pole;
     auto handled = handle_poles(*paths_[p], poles, rules);
@@ -283,15 +280,19 @@ class Builder {
     builder.begin(op, tool.length_mm);
     const int written = program_.loop ? 1 : teeth_;
     auto angles = tooth_angles(p, 0);
+    double first_index = 0;  // angle of the index rotary at the beginning of the first tooth
     for (int n = 0; n < written; ++n) {
       const int k = tooth_of_place(n, options_.tooth_stride, teeth_);
       if (!angles) return angles.error();
       auto next = n + 1 < written ? tooth_angles(p, tooth_of_place(n + 1, options_.tooth_stride, teeth_)) : angles;
       if (!next) return next.error();
+      roll_to(chain_, builder.start_rotaries(), angles->angles);
+      roll_to(chain_, angles->angles.back(), next->angles);
+      if (n == 0) first_index = angles->angles.front()[0];
       op.teeth.push_back({k, {}});
       auto& blocks = op.teeth.back().blocks;
       if (copies_ && k > 0) {
-        turned_copy(op.teeth.front().blocks, angles->angles.front()[0] - followed_[p].angles.front()[0], k, blocks);
+        turned_copy(op.teeth.front().blocks, angles->angles.front()[0] - first_index, k, blocks);
         builder.take_over(blocks, k);
       } else {
         blocks.reserve(path.records.size() + 16);
@@ -300,9 +301,29 @@ class Builder {
       if (builder.error()) return builder.error();
       angles = std::move(next);
     }
+    if (program_.loop && rolls_over(chain_)) {
+      loop_is_entered_ = enter_loop(op);
+      stood_ = words_.joints(op.teeth.back().blocks.back()).rotary_rad;
+      (*stood_)[0] += program_.index_sign * tooth_angle(tooth_of_place(teeth_ - 1, options_.tooth_stride, teeth_));
+    }
     if (program_.loop) op.rapid_minutes += tooth_angle(1) * pitches_turned(0, options_.tooth_stride, teeth_) / chain_.table[0].max_speed;
     program_.operations.push_back(std::move(op));
     return std::nullopt;
+  }
+
+  /// A loop on a rotary that rolls over: a tooth is entered from the end of the one before, a pitch back, the first one from the end of
+  /// the operation before. No way may reach half a turn: the first gets one block more, with the second there is no loop (false).
+  bool enter_loop(AxisOperation& op) {
+    std::vector<AxisBlock>& blocks = op.teeth.front().blocks;
+    auto first = std::find_if(blocks.begin(), blocks.end(), [](const AxisBlock& b) { return b.kind == BlockKind::rapid_rotary; });
+    if (first == blocks.end()) return true;
+    RotaryPair end = words_.joints(blocks.back()).rotary_rad;
+    end[0] -= program_.index_sign * tooth_angle(options_.tooth_stride);
+    auto turn = blocks_of_turn(chain_, words_, end, *first);
+    turn.pop_back();
+    for (const AxisBlock& b : turn) op.rapid_minutes += b.minutes * teeth_;
+    first = blocks.insert(first, turn.begin(), turn.end());
+    return !stood_ || blocks_of_turn(chain_, words_, *stood_, *first).size() == 1;
   }
 
   /// Blocks of tooth k where the index rotary turns the gear about its own axis: the same words, the index from integers.
@@ -345,6 +366,8 @@ class Builder {
   AxisProgram program_;
   std::vector<FollowedPath> followed_;  // tooth 0, by path
   bool parallel_ = false, coincident_ = false, copies_ = false;
+  std::optional<RotaryPair> stood_;  // the rotaries behind the operation before
+  bool loop_is_entered_ = true;
   std::optional<Diagnostic> error_;
   TravelRecord placed_;
   std::optional<TravelPoses> poses_;

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -106,6 +107,8 @@ struct AxisRange {
   char letter = '?';
   bool rotary = false;
   double min = 0, max = 0, lower_limit = 0, upper_limit = 0;
+  /// The rotary rolls over: its positions go on beyond a turn and it has no limits.
+  [[nodiscard]] bool endless() const { return std::isinf(upper_limit); }
 };
 
 /// Where a program begins that leaves out what was cut before.
@@ -124,6 +127,7 @@ struct TravelOffer {
 struct AxisProgram {
   WordFormat format;
   std::array<char, 5> letters{};            ///< X Y Z and the two rotaries; 0: no such axis
+  std::array<bool, 5> rollover{};           ///< the control counts the rotary within one turn; words here go on beyond it
   int teeth = 1;
   bool loop = false;                        ///< one tooth is held; the index rotary turns it
   int tooth_stride = 1;                     ///< as in the options

@@ -142,9 +142,9 @@ class Chooser {
     return std::nullopt;
   }
 
-  /// Whole turns that keep the run inside the range of rotary k.
+  /// Whole turns that keep the run inside the range of rotary k. Of an axis that rolls over all are the same.
   std::pair<int, int> turns(const Chain& c, std::size_t k) const {
-    if (k >= count_) return {0, 0};
+    if (k >= count_ || chain_.rotary(k).rollover) return {0, 0};
     constexpr double slack = 1e-9;  // rad: a command on the limit itself is inside
     const double lowest = std::ceil((ranges_[k].lower - slack - c.least[k]) / kTurn);
     const double highest = std::floor((ranges_[k].upper + slack - c.greatest[k]) / kTurn);
@@ -187,7 +187,8 @@ class Chooser {
         double reposition = 0;
         for (std::size_t k = 0; k < count_; ++k) {
           const double end = (*chains_before)[(*before)[p].chain].angles.back()[k] + kTurn * (*before)[p].turns[k];
-          reposition = std::max(reposition, std::abs(start(s, k) - end) / chain_.rotary(k).max_speed);
+          const double turn = start(s, k) - end;
+          reposition = std::max(reposition, std::abs(chain_.rotary(k).rollover ? std::remainder(turn, kTurn) : turn) / chain_.rotary(k).max_speed);
         }
         const double cost = (*before)[p].cost + reposition;
         if (cost < best) {
@@ -230,6 +231,13 @@ class Chooser {
           out[i][k] = chains[r][state.chain].angles[i - runs[r].first][k] + kTurn * state.turns[k];
       s = state.from;
     }
+    // An axis that rolls over goes on from where it stands.
+    for (std::size_t r = 1; r < runs.size(); ++r)
+      for (std::size_t k = 0; k < count_; ++k) {
+        if (!chain_.rotary(k).rollover) continue;
+        const double shift = kTurn * std::round((out[runs[r].first - 1][k] - out[runs[r].first][k]) / kTurn);
+        for (std::size_t i = runs[r].first; i < runs[r].last; ++i) out[i][k] += shift;
+      }
     return out;
   }
 

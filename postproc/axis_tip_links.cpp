@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "postproc/axis_rollover.h"
 #include "postproc/axis_tooth.h"
 
 namespace toothpath {
@@ -16,29 +17,37 @@ double ToothBuilder::link_height() const {
   return body_top(chain_, job_.gear, job_.body, {0, 0}) + job_.options.clearance_margin_mm;
 }
 
+/// Zero, of a rotary that rolls over the nearest whole turn.
+RotaryPair ToothBuilder::zero_rotaries() const {
+  std::vector<RotaryPair> zero = {{0, 0}};
+  roll_to(chain_, words_.joints(last_).rotary_rad, zero);
+  return zero.front();
+}
+
 /// Z at its top, rotaries at zero, the tip over the gear axis, TCP on in the block that lowers Z.
 void ToothBuilder::start_at_zero() {
   const double top = link_height();
   if (top > retract_height() + 1e-9) return too_low(top);
   last_.words[2] = words_.joint_word(program_.retract_z_mm, 2);
   last_.tip = false;
-  const double swept = tip_height_for_turn({0, 0});
+  const RotaryPair zero = zero_rotaries();
+  const double swept = tip_height_for_turn(zero);
   if (swept > retract_height() + 1e-9) return too_low(swept);
   const Vec3 up = job_.gear.rotation.col(2);
   Vec3 start = job_.gear.origin;
   if (std::abs(up.z()) > 0.5) start += up * ((top - start.z()) / up.z());
   start.z() = top;
-  const Joints j = chain_.linear_for(start, {0, 0}, words_.length());
+  const Joints j = chain_.linear_for(start, zero, words_.length());
   AxisBlock b = last_;
   b.record = -1;
   b.kind = BlockKind::rapid_rotary;
-  b.words[3] = b.words[4] = 0;
-  if (chain_.rotary_count() > 0) push_rapid(b, true);
+  for (std::size_t k = 0; k < 2; ++k) b.words[3 + k] = words_.rotary_word(zero[k]);
+  if (chain_.rotary_count() > 0) push_rotaries(b, true);
   b.kind = BlockKind::rapid_xy;
   for (int i = 0; i < 2; ++i) b.words[static_cast<std::size_t>(i)] = words_.joint_word(j.linear_mm[i], i);
   push_rapid(b, true);
   b.kind = BlockKind::tcp_on;
-  words_.set_tip(b, start, {0, 0});
+  words_.set_tip(b, start, zero);
   push_rapid(b, true);
   at_retract_ = start_of_tooth_ = false;
   tcp_ = true;
@@ -114,8 +123,15 @@ void ToothBuilder::push_tip(const Vec3& tip) {
   operation_->rapid_minutes += blocks_->back().minutes * copies();
 }
 
-/// The control takes F in deg/min where nothing linear is named; the time is that of the slowest joint that it drags along.
 void ToothBuilder::push_turn(const RotaryPair& rotaries) {
+  AxisBlock to = last_;
+  words_.set_tip(to, words_.tip(last_), rotaries);
+  for (const AxisBlock& part : blocks_of_turn(chain_, words_, words_.joints(last_).rotary_rad, to))
+    push_turn_block({words_.word_angle(part.words[3]), words_.word_angle(part.words[4])});
+}
+
+/// The control takes F in deg/min where nothing linear is named; the time is that of the slowest joint that it drags along.
+void ToothBuilder::push_turn_block(const RotaryPair& rotaries) {
   AxisBlock b = last_;
   words_.set_tip(b, words_.tip(last_), rotaries);
   b.kind = BlockKind::turn;

@@ -29,7 +29,7 @@ void ToothBuilder::tooth(const FollowedPath& followed, const RotaryPair& next_st
   const auto pose = [&](std::size_t i) {
     return TablePose{rotation * path.records[i].tip + job_.gear.origin, rotation * path.records[i].axis};
   };
-  const bool stays_in_tcp = program_.tcp != TcpMode::none && program_.tcp_starts_at_zero;
+  const bool stays_in_tcp = this->stays_in_tcp();
   start_of_tooth_ = true;
   if (stays_in_tcp) start_at_zero();
   for (std::size_t i = 0; i < path.records.size() && !error_; ++i) {
@@ -51,6 +51,8 @@ void ToothBuilder::tooth(const FollowedPath& followed, const RotaryPair& next_st
   // Ready to be turned to where the next tooth begins.
   rise_to(tip_height_for_turn(words_.rounded(next_start)));
 }
+
+RotaryPair ToothBuilder::start_rotaries() const { return stays_in_tcp() ? zero_rotaries() : words_.joints(last_).rotary_rad; }
 
 void ToothBuilder::take_over(const std::vector<AxisBlock>& blocks, int k) {
   tooth_ = k;

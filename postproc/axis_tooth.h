@@ -54,6 +54,8 @@ class ToothBuilder {
   void begin(AxisOperation& operation, double tool_length_mm);
   /// Blocks of one tooth. @param rotation table frame from the gear frame of this tooth; @param next_start rotaries of the next
   void tooth(const FollowedPath& path, const RotaryPair& next_start, int k, const Mat3& rotation, std::vector<AxisBlock>& blocks);
+  /// Where the rotaries stand when the links of the next tooth begin [rad].
+  [[nodiscard]] RotaryPair start_rotaries() const;
   /// Counts blocks that were made by turning those of another tooth.
   void take_over(const std::vector<AxisBlock>& blocks, int k);
 
@@ -66,6 +68,7 @@ class ToothBuilder {
   [[nodiscard]] double linear_time(const Joints& a, const Joints& b) const;
   [[nodiscard]] double rotary_time(const Joints& a, const Joints& b) const;
   void note_position(const Joints& j);
+  [[nodiscard]] bool stays_in_tcp() const { return program_.tcp != TcpMode::none && program_.tcp_starts_at_zero; }
   [[nodiscard]] int copies() const { return program_.loop ? job_.teeth : 1; }
   /// Joint times of a block whose tip goes straight, and the travel inside it.
   struct TipTimes {
@@ -77,6 +80,7 @@ class ToothBuilder {
   void rapid_to(const TablePose& target, const RotaryPair& rotaries);
   void rise_to(double height);
   void push_rapid(AxisBlock b, bool forced);
+  void push_rotaries(const AxisBlock& b, bool forced);
   void too_low(double height);
   [[nodiscard]] double height_of(const AxisBlock& b) const;
   [[nodiscard]] double retract_height() const { return program_.retract_z_mm - words_.length(); }
@@ -91,6 +95,8 @@ class ToothBuilder {
   void leave_to_top();
   void push_tip(const Vec3& tip);
   void push_turn(const RotaryPair& rotaries);
+  void push_turn_block(const RotaryPair& rotaries);
+  [[nodiscard]] RotaryPair zero_rotaries() const;
   [[nodiscard]] double link_height() const;
 
   // axis_feed.cpp

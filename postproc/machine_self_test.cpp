@@ -4,6 +4,8 @@
 #include <cmath>
 #include <optional>
 
+#include "postproc/axis_solution.h"
+
 namespace toothpath {
 namespace {
 
@@ -69,6 +71,10 @@ std::vector<SelfTestStation> stations_for(const Machine& machine, double tilt) {
     add(r);
     add(zero);
   }
+  // A rotary that rolls over goes on from where it stands.
+  for (std::size_t s = 1; s < stations.size(); ++s)
+    for (std::size_t k = 0; k < chain.rotary_count(); ++k)
+      if (chain.rotary(k).rollover) stations[s].rotary_rad[k] = nearest_turn(stations[s].rotary_rad[k], stations[s - 1].rotary_rad[k]);
   return stations;
 }
 

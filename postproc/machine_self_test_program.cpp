@@ -22,7 +22,10 @@ class Builder {
     AxisProgram& p = program_;
     p.format = dialect.format;
     p.letters = {'X', 'Y', 'Z', 0, 0};
-    for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) p.letters[3 + k] = machine.chain.rotary(k).letter;
+    for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
+      p.letters[3 + k] = machine.chain.rotary(k).letter;
+      p.rollover[3 + k] = machine.chain.rotary(k).rollover;
+    }
     p.tcp = machine.tcp == TcpMode::none ? TcpMode::none : TcpMode::angles;
     p.tcp_starts_at_zero = dialect.tcp_starts_at_zero;
     const double unit = static_cast<double>(power_of_ten(dialect.format.linear_decimals));
@@ -79,8 +82,8 @@ class Builder {
     b.axis = machine_.chain.forward({Vec3::Zero(), rotaries}, test_.tool_length_mm).axis;
     return b;
   }
-  void straight(ToothBlocks& part, double height, double length) const {
-    AxisBlock b = at(BlockKind::feed, height, test_.stations.front().rotary_rad, tcp());
+  void straight(ToothBlocks& part, double height, double length, const std::array<double, 2>& rotaries) const {
+    AxisBlock b = at(BlockKind::feed, height, rotaries, tcp());
     b.minutes = length / kFeed;
     b.per_minute = kFeed;
     part.blocks.push_back(b);
@@ -95,7 +98,7 @@ class Builder {
       part.blocks.push_back(b);
     }
     if (tcp()) part.blocks.push_back(at(BlockKind::tcp_on, test_.approach_mm, zero, true));
-    straight(part, 0, test_.approach_mm);
+    straight(part, 0, test_.approach_mm, zero);
   }
   /// To the next pose; with TCP the control itself keeps the tip on the point.
   void turn(ToothBlocks& part, const Joints& to) {
@@ -110,8 +113,8 @@ class Builder {
     part.blocks.push_back(b);
   }
   void leave(ToothBlocks& part) const {
-    const auto& zero = test_.stations.front().rotary_rad;
-    straight(part, test_.approach_mm, test_.approach_mm);
+    const auto& zero = test_.stations.back().rotary_rad;
+    straight(part, test_.approach_mm, test_.approach_mm, zero);
     part.blocks.front().forced = true;
     if (tcp()) part.blocks.push_back(at(BlockKind::tcp_off, test_.approach_mm, zero, false));
   }
@@ -186,7 +189,10 @@ Result<SelfTestProof> prove_self_test(std::string_view text, const std::string& 
     if (!on_point && !m.rapid && off <= 0.003) on_point = true;
     if (on_point && next < test.stations.size()) {
       double turn = 0;
-      for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) turn = std::max(turn, std::abs(now.rotary_rad[k] - test.stations[next].rotary_rad[k]));
+      for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
+        const double off_station = now.rotary_rad[k] - test.stations[next].rotary_rad[k];
+        turn = std::max(turn, std::abs(machine.chain.rotary(k).rollover ? std::remainder(off_station, 2 * kPi) : off_station));
+      }
       if (turn <= radians(0.001)) ++next;
     }
     before = now;

@@ -120,7 +120,8 @@ class Parser {
     skip_blanks();
     NcValue v;
     point = true;
-    if (at() == '[' || at() == '#') {
+    const char ahead = i_ + 1 < line_.size() ? line_[i_ + 1] : '\0';
+    if (at() == '[' || at() == '#' || (at() == '-' && (ahead == '[' || ahead == '#'))) {
       v.first = static_cast<std::int32_t>(block_.steps.size());
       primary(0);
       v.count = static_cast<std::int32_t>(block_.steps.size()) - v.first;

@@ -47,6 +47,10 @@ Result<NcDialect> dialect_of(const Machine& machine) {
     d->blend = false;
     std::erase_if(d->start, [](const std::string& line) { return line.find("{blend}") != std::string::npos; });
   }
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k)
+    if (machine.chain.rotary(k).rollover && d->rollover.way == NcRollover::Way::none && d->write == nullptr)
+      return fail("machine \"{}\": axes.{}.rollover: dialect \"{}\" has no words for an axis that rolls over", machine.name, machine.chain.rotary(k).letter,
+                  d->name);
   if (machine.tcp == TcpMode::vectors && d->vector_words[0].empty())
     return fail("machine \"{}\": dialect \"{}\" has no tool vectors: tcp = \"none\" and \"angles\" are supported", machine.name, d->name);
   return d;

@@ -4,7 +4,7 @@
 // Lines are templates: {offset} G54 .., {datum} 1 for G54 and so on, {tool} number, {speed} 1/min, {top} machine Z of the
 // retract, {work_top} the same as a Z word with this tool's length, {z} Z word of the block that switches TCP on, {blend} mm, {blend_axis} deg,
 // {free} a feed where nothing is cut, {teeth}, {last} = teeth - 1, {label} and {label+1} numbers that belong to the operation
-// alone, {sign} and {frame_sign} "-" or nothing, {number} and {name} of the program, {id} its name in letters and digits. In the
+// alone, {sign} and {frame_sign} "-" or nothing, {turns} the teeth that the index is turned by, {number} and {name} of the program, {id} its name in letters and digits. In the
 // loop over the teeth: {first} place of the order that it begins with, {stride} of the order, {tooth} the variable that holds the
 // tooth. The line "{safe_start}" stands for all lines of `safe_start`, "{pick}" for those of `pick` where the order is spread,
 // "{first_tooth}" for the comment that names the line behind it. Values are printed in the format of the dialect.
@@ -45,6 +45,21 @@ struct NcLoop {
   /// then the whole word.
   std::string index_line;
   NcLinesOfText frame_on, frame_off;  ///< around TCP: turns the frame by the index; empty: no loop with TCP
+};
+
+/// Rotaries that the control counts within one turn (`rollover` in the machine file): words of 0 to 360 deg, and the way that is taken.
+struct NcRollover {
+  enum class Way : std::uint8_t {
+    none,      ///< the dialect does not know such axes
+    shortest,  ///< the nearer way
+    sign,      ///< the sense of the sign: -10 goes to 10 backwards
+  };
+  Way way = Way::none;
+  std::string open, close;   ///< around the number: "DC(" and ")"
+  std::string index;         ///< in a loop, between these: the place within the turn, from {word}, a sum that is not below 0
+  NcLinesOfText index_lines; ///< the same for controls without arithmetic in a word, behind `NcLoop::index_line`
+  std::string backwards;     ///< in a loop whose index falls, instead of {sign}{tooth}: not below 0 either
+  std::string note;          ///< comment at the top, with {axis}: what the control must be set to
 };
 
 /// What a control wants to read.
@@ -103,6 +118,7 @@ struct NcDialect {
   std::string tcp_note;                         ///< comment at the top of programs with TCP: what the control must be set to
 
   NcLoop loop;
+  NcRollover rollover;
 
   /// A dialect whose text is not made of blocks with words: prints everything. Null: the common writer.
   Result<NcText> (*write)(const AxisProgram&, const NcDialect&, const NcHeader&) = nullptr;

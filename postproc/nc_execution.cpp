@@ -14,6 +14,9 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStill = 1e-9;       // mm: round-off of a tip that does not move
 constexpr double kZeroRotary = 1e-9;  // deg
+constexpr double kTurn = 360;         // deg
+constexpr double kHalfTurn = 180 - 1e-6;  // deg: from here on round-off decides which way is the nearer one
+constexpr double kBelowZero = 1e-9;   // deg: round-off of a remainder
 constexpr double kFlip = 170;         // deg: a tool vector that turns further in one block leaves the plane of the turn open
 
 bool known(const std::array<double, 5>& joints) {
@@ -29,6 +32,23 @@ std::uint64_t print_of(const Vec3& v) {
   return h;
 }
 
+/// A place within one turn, on a grid of 2^-30 deg: with whole turns added it stays the same number.
+double on_grid(double deg) { return std::ldexp(std::nearbyint(std::ldexp(deg, 30)), -30); }
+
+/// The same place as `deg`, in the turn nearest to `now`.
+double turned_on(double deg, double now) {
+  const double place = on_grid(std::remainder(deg, kTurn));
+  return place + kTurn * std::round((now - place) / kTurn);
+}
+
+/// Where LinuxCNC takes an axis that rolls over and stands at `now` (published source, 2.9): the sign is the sense.
+double by_sign(double word, double now) {
+  const double to = std::abs(word) + std::floor(now / kTurn) * kTurn;
+  if (!std::signbit(word) && to < now) return to + kTurn;
+  if (std::signbit(word) && to > now) return to - kTurn;
+  return to;
+}
+
 Vec3 turned(const Vec3& v, double deg) {
   if (deg == 0) return v;
   const double c = std::cos(radians(deg)), s = std::sin(radians(deg));
@@ -40,6 +60,7 @@ Vec3 turned(const Vec3& v, double deg) {
 NcExecution::NcExecution(const NcControl& control, const NcRules& rules, const std::function<void(const ExecutedMove&)>& sink)
     : control_(control), rules_(rules), sink_(sink) {
   joints_.fill(kUnknown);
+  rolled_.fill(kUnknown);
   for (std::size_t a = 0; a < 5; ++a)
     if (control.letters[a] == 0) joints_[a] = 0;
 }
@@ -122,11 +143,15 @@ NcExecution::Problem NcExecution::tcp_on() {
   if (tcp_) return "TCP is on already";
   if (!length_ || !offset_) return "TCP without tool length compensation or work offset";
   if (!known(joints_)) return "TCP at a position that the program did not set";
-  if (rules_.tcp_needs_zero && (std::abs(joints_[3]) > kZeroRotary || std::abs(joints_[4]) > kZeroRotary))
+  if (rules_.tcp_needs_zero && !(at_zero(3) && at_zero(4)))
     return "TCP starts with the rotaries away from zero: the table frame would be frozen there";
   tip_ = tip_of(joints_);
   tcp_ = true;
   return std::nullopt;
+}
+
+bool NcExecution::at_zero(std::size_t axis) const {
+  return std::abs(control_.rollover[axis] ? std::remainder(joints_[axis], kTurn) : joints_[axis]) <= kZeroRotary;
 }
 
 NcExecution::Problem NcExecution::tcp_off() {
@@ -142,12 +167,18 @@ NcExecution::Problem NcExecution::end_program(bool inside_call) {
   return std::nullopt;
 }
 
+/// Angles of rotaries, deg, for the kinematics [rad]: of those that roll over the place within the turn, so that whole turns change no digit.
+std::array<double, 2> NcExecution::angles_of(double r0, double r1) const {
+  const auto angle = [this](std::size_t axis, double deg) { return radians(control_.rollover[axis] ? deg - kTurn * std::floor(deg / kTurn) : deg); };
+  return {angle(3, r0), angle(4, r1)};
+}
+
 Vec3 NcExecution::tip_of(const std::array<double, 5>& j) const {
-  return control_.chain->forward({Vec3(j[0], j[1], j[2]), {radians(j[3]), radians(j[4])}}, *length_).tip_mm;
+  return control_.chain->forward({Vec3(j[0], j[1], j[2]), angles_of(j[3], j[4])}, *length_).tip_mm;
 }
 
 std::array<double, 5> NcExecution::joints_for(const Vec3& tip, double r0, double r1) const {
-  const Joints j = control_.chain->linear_for(tip, {radians(r0), radians(r1)}, *length_);
+  const Joints j = control_.chain->linear_for(tip, angles_of(r0, r1), *length_);
   return {j.linear_mm.x(), j.linear_mm.y(), j.linear_mm.z(), r0, r1};
 }
 
@@ -202,7 +233,7 @@ NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>&
       }
       if (distance >= nearest) continue;
       nearest = distance;
-      for (std::size_t k = 0; k < 2; ++k) joints[3 + k] = degrees(angles[k]);
+      for (std::size_t k = 0; k < 2; ++k) joints[3 + k] = control_.rollover[3 + k] ? turned_on(degrees(angles[k]), joints_[3 + k]) : degrees(angles[k]);
     }
     commanded = static_cast<std::uint8_t>(commanded | 0x18U);
   }
@@ -210,7 +241,38 @@ NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>&
   return std::nullopt;
 }
 
+/// Words of rotaries that roll over become positions that go on beyond a turn.
+NcExecution::Problem NcExecution::roll(Move& m) {
+  for (std::size_t a = 3; a < 5; ++a) {
+    if (!control_.rollover[a] || !m.has[a]) continue;
+    const double word = m.axis[a], now = joints_[a];
+    const double least = rules_.sign_is_sense ? -kTurn : -kBelowZero;
+    if (!(word > least && word < kTurn))
+      return fmt::format("{} = {} of an axis that rolls over is outside {} 360", control_.letters[a], word, rules_.sign_is_sense ? "-360 .." : "0 ..");
+    double turns = 0;
+    if (rules_.sign_is_sense) {
+      rolled_[a] = std::isnan(rolled_[a]) ? std::abs(word) : by_sign(word, rolled_[a]);
+      turns = std::round((rolled_[a] - std::abs(word)) / kTurn);
+    } else if (!std::isnan(now)) {
+      turns = std::round((now - word) / kTurn);
+    }
+    m.axis[a] = kTurn * turns + on_grid(std::abs(word));
+    const double turn = std::abs(m.axis[a] - now);
+    if (turn >= kHalfTurn && !(rules_.sign_is_sense && m.rapid))
+      return fmt::format("{} turns by {:.6f} deg in one block, limit 180: {}", control_.letters[a], turn,
+                         rules_.sign_is_sense ? "a cut is not meant to" : "which way is not said");
+  }
+  return std::nullopt;
+}
+
 NcExecution::Problem NcExecution::move(const Move& m, std::int32_t line) {
+  if (!control_.rollover[3] && !control_.rollover[4]) return move_to(m, line);
+  Move rolled = m;
+  if (auto bad = roll(rolled)) return bad;
+  return move_to(rolled, line);
+}
+
+NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
   std::array<double, 5> goal = joints_;
   Vec3 tip = Vec3::Zero();
   ExecutedMove e;

@@ -20,6 +20,7 @@ struct NcRules {
   bool tcp_needs_zero = false;     ///< TCP may be switched on with the rotaries at zero only
   double least_rate = 0;           ///< G93 blocks are raised to this rate, mm/min or deg/min
   bool per_minute_turns = false;   ///< G94 with rotary words without TCP has a defined time
+  bool sign_is_sense = false;      ///< the sign of a word says which way a rotary that rolls over turns; else the nearer way is taken
   bool turns_need_axis_blend = false;  ///< a tolerance of the tip leaves that of the rotaries to the machine: it must be said too
 };
 
@@ -88,10 +89,14 @@ class NcExecution {
   Problem move(const Move& m, std::int32_t line);
 
  private:
+  Problem move_to(const Move& m, std::int32_t line);
+  Problem roll(Move& m);
+  [[nodiscard]] bool at_zero(std::size_t axis) const;
   Problem goal_of(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const;
   Problem tip_goal(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const;
   Problem corners(const std::array<double, 5>& goal, const Vec3& tip, ExecutedMove& e) const;
   Problem feed_minutes(const Move& m, const std::array<double, 5>& joints, const Vec3& tip, double& minutes) const;
+  [[nodiscard]] std::array<double, 2> angles_of(double r0, double r1) const;
   [[nodiscard]] Vec3 tip_of(const std::array<double, 5>& joints) const;
   [[nodiscard]] std::array<double, 5> joints_for(const Vec3& tip, double r0, double r1) const;
 
@@ -101,6 +106,7 @@ class NcExecution {
   std::array<double, 5> joints_{};
   Vec3 tip_ = Vec3::Zero();  // with TCP: table frame
   bool tcp_ = false;
+  std::array<double, 5> rolled_{};  // rotaries that roll over by the sign of their words: as the control adds them up
   double frame_deg_ = 0;
   int operation_ = -1, tooth_ = -1, tool_ = -1, next_tool_ = -1;
   Feed feed_mode_ = Feed::none;

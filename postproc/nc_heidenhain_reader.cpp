@@ -121,7 +121,7 @@ class Heidenhain {
   }
   Result<double> expression(NcScanner& s) {
     const int column = s.column();
-    s.set_truncation("INT");
+    s.set_functions("INT");
     auto v = s.expression([this](NcScanner& p) -> const double* {
       const auto n = parameter_number(p);
       const auto found = n ? parameters_.find(*n) : parameters_.end();
@@ -208,7 +208,9 @@ class Heidenhain {
     else if (*m == 30) {
       ready_to_end_ = true;
       return placed(column, execution_.end_program(!repeats_.empty()));
-    } else if (*m != 0 && *m != 8 && *m != 9 && *m != 126 && *m != 127)
+    } else if (*m == 126 || *m == 127) {
+      nearer_way_ = *m == 126;
+    } else if (*m != 0 && *m != 8 && *m != 9)
       return here(column, fmt::format("M{} is not in the subset", *m));
     return std::nullopt;
   }
@@ -306,6 +308,7 @@ class Heidenhain {
       s.advance(1);
       const auto v = word_value(s);
       if (!v) return v.error();
+      if (control_.rollover[a] && !nearer_way_) return here(column, fmt::format("{} rolls over: which way it turns is said by M126 alone", c));
       m.has[a] = true;
       m.axis[a] = *v;
     }
@@ -327,6 +330,7 @@ class Heidenhain {
   std::unordered_map<int, double> parameters_;
   std::string_view name_;
   std::size_t pc_ = 0, line_ = 0;
+  bool nearer_way_ = false;  // M126
   bool started_ = false, ready_to_end_ = false, ended_ = false;
 };
 

@@ -24,6 +24,7 @@ NcRules rules_of(bool linuxcnc) {
   r.tcp_needs_zero = !linuxcnc;
   r.least_rate = linuxcnc ? 0.1 : 0;  // LinuxCNC before 2.9.0 raises the rate of a G93 block to this
   r.per_minute_turns = linuxcnc;
+  r.sign_is_sense = linuxcnc;
   return r;
 }
 

@@ -38,6 +38,8 @@ NcLines::Values program_values(const AxisProgram& program, const NcDialect& dial
   values["stride"] = std::to_string(program.tooth_stride);
   values["tooth"] = program.tooth_stride == 1 ? dialect.loop.place : dialect.loop.tooth;
   values["sign"] = program.index_sign < 0 ? "0-" : "";
+  const bool rolls_back = program.index_axis >= 0 && program.rollover[static_cast<std::size_t>(program.index_axis)] && program.index_sign < 0;
+  values["turns"] = rolls_back ? expanded(dialect.rollover.backwards, values).value_or("") : values["sign"] + values["tooth"];
   values["frame_sign"] = program.frame_sign < 0 ? "0-" : "";
   return values;
 }
@@ -64,6 +66,9 @@ std::vector<std::string> header_comments(const AxisProgram& program, const NcDia
     out.push_back(fmt::format("CORNERS WITHIN {} MM: TOOL ACCELERATION X SERVO PERIOD SQUARED IS AT MOST {} MM", within, product));
   }
   if (program.tcp != TcpMode::none && !dialect.tcp_note.empty()) out.push_back(comment_text(dialect.tcp_note));
+  for (std::size_t a = 3; a < 5; ++a)
+    if (program.rollover[a])
+      if (const auto note = expanded(dialect.rollover.note, {{"axis", std::string(1, program.letters[a])}})) out.push_back(comment_text(*note));
   for (auto& line : order_comments(program)) out.push_back(std::move(line));
   if (!header.assumed.empty()) out.emplace_back("WARNING, ASSUMED AND NOT MEASURED:");
   for (const auto& a : header.assumed) out.push_back(comment_text("ASSUMED " + a));
@@ -108,28 +113,26 @@ void NcLines::comment(std::string_view text) {
   end_line(begin, false);
 }
 
+std::optional<std::string> expanded(std::string_view pattern, const NcLines::Values& values) {
+  std::string text;
+  for (std::size_t i = 0; i < pattern.size();) {
+    const std::size_t open = pattern.find('{', i);
+    if (open == std::string_view::npos) return text.append(pattern.substr(i));
+    text.append(pattern.substr(i, open - i));
+    const std::size_t close = pattern.find('}', open);
+    const auto found = close == std::string_view::npos ? values.end() : values.find(pattern.substr(open + 1, close - open - 1));
+    if (found == values.end()) return std::nullopt;
+    text += found->second;
+    i = close + 1;
+  }
+  return text;
+}
+
 void NcLines::fill(const NcLinesOfText& templates, const Values& values) {
   for (const std::string& pattern : templates) {
-    const std::size_t begin = text_.size();
-    for (std::size_t i = 0; i < pattern.size();) {
-      const std::size_t open = pattern.find('{', i);
-      if (open == std::string::npos) {
-        text_.append(pattern, i);
-        break;
-      }
-      text_.append(pattern, i, open - i);
-      const std::size_t close = pattern.find('}', open);
-      const std::string_view name =
-          close == std::string::npos ? std::string_view() : std::string_view(pattern).substr(open + 1, close - open - 1);
-      const auto found = values.find(name);
-      if (found == values.end()) {
-        if (!error_) error_ = fail("dialect {}: \"{}\" names a value that does not exist here", dialect_.name, pattern);
-        return;
-      }
-      text_ += found->second;
-      i = close + 1;
-    }
-    end_line(begin, true);
+    const auto text = expanded(pattern, values);
+    if (text) line(*text);
+    else if (!error_) error_ = fail("dialect {}: \"{}\" names a value that does not exist here", dialect_.name, pattern);
   }
 }
 

@@ -47,6 +47,9 @@ class NcLines {
   std::optional<Diagnostic> error_;
 };
 
+/// A template with its names replaced; empty: it names a value that `values` lacks.
+[[nodiscard]] std::optional<std::string> expanded(std::string_view pattern, const NcLines::Values& values);
+
 /// Values of the templates that are the same throughout a program.
 [[nodiscard]] NcLines::Values program_values(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
 

@@ -216,6 +216,7 @@ Result<NcControl> control_of(const Machine& machine, const Setup& setup, std::sp
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
     c.letters[3 + k] = machine.chain.rotary(k).letter;
     c.rapid_speed[3 + k] = degrees(machine.chain.rotary(k).max_speed);
+    c.rollover[3 + k] = machine.chain.rotary(k).rollover;
   }
   for (const auto& t : tools)
     if (!c.tool_length_mm.emplace(t.number, t.length_mm).second) return fail("tool number {} occurs twice", t.number);

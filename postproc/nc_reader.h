@@ -31,6 +31,7 @@ struct NcControl {
   std::string dialect = "linuxcnc";           ///< as in a machine file
   std::array<char, 5> letters{};              ///< X Y Z and the rotaries in the machine's order; 0: none
   std::array<double, 5> rapid_speed{};        ///< mm/min and deg/min
+  std::array<bool, 5> rollover{};             ///< the control counts this rotary within one turn
   std::map<int, double> tool_length_mm;       ///< by T and H number
   std::map<std::string, Vec3> work_offsets;   ///< "G54" -> origin, machine coordinates, mm
   double rotary_rounding_deg = 0.5e-5;        ///< half the last digit that the dialect prints
@@ -51,7 +52,8 @@ struct NcControl {
 [[nodiscard]] Result<NcControl> control_of(const Machine& machine, const Setup& setup,
                                            std::span<const ToolAssembly> tools);
 
-/// End of one executed move: joints in machine coordinates, gauge line (mm) and rotaries as words (deg).
+/// End of one executed move: joints in machine coordinates, gauge line (mm) and rotaries as words (deg); those that roll over go on beyond
+/// a turn, the same place in two turns differs by a multiple of 360 exactly.
 struct ExecutedMove {
   std::array<double, 5> joints{};
   Vec3 tip = Vec3::Zero();      ///< with `tcp`: table frame

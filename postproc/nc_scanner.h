@@ -62,8 +62,11 @@ class NcScanner {
     return line_[begin] == '-' ? -v : v;
   }
 
-  /// The control's name for cutting off the digits behind the point: "TRUNC" or "INT"; empty: none.
-  void set_truncation(std::string_view name) { truncation_ = name; }
+  /// The control's names for cutting off the digits behind the point, "TRUNC" or "INT", and for the amount, "ABS"; empty: none.
+  void set_functions(std::string_view truncation, std::string_view amount = {}) {
+    truncation_ = truncation;
+    amount_ = amount;
+  }
 
   /// Sums, products, signs and brackets over numbers and parameters. `parameter(scanner)` reads a name and returns a pointer to
   /// its value, null where it has none.
@@ -118,10 +121,12 @@ class NcScanner {
       if (inner && negative) return -*inner;
       return inner;
     }
-    if (!truncation_.empty() && line_.substr(i_, truncation_.size()) == truncation_ && !is_letter(at_offset(truncation_.size()))) {
-      i_ += truncation_.size();
+    for (const std::string_view name : {truncation_, amount_}) {
+      if (name.empty() || line_.substr(i_, name.size()) != name || is_letter(at_offset(name.size()))) continue;
+      i_ += name.size();
       const auto inner = primary(parameter, depth + 1);
-      return inner ? Result<double>(std::trunc(*inner)) : inner;
+      if (!inner) return inner;
+      return name == truncation_ ? std::trunc(*inner) : std::abs(*inner);
     }
     if (is_letter(at())) {
       const double* p = parameter(*this);
@@ -134,7 +139,7 @@ class NcScanner {
 
   [[nodiscard]] char at_offset(std::size_t n) const { return i_ + n < line_.size() ? line_[i_ + n] : '\0'; }
 
-  std::string_view line_, truncation_;
+  std::string_view line_, truncation_, amount_;
   std::size_t i_ = 0;
 };
 

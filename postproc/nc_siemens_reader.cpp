@@ -85,7 +85,7 @@ class Siemens {
 
   Result<double> expression(NcScanner& s) {
     const int column = s.column();
-    s.set_truncation("TRUNC");
+    s.set_functions("TRUNC", "ABS");
     auto v = s.expression([this](NcScanner& p) { return parameter(p); });
     if (!v) return here(column, v.error().message);
     if (!std::isfinite(*v) || std::abs(*v) > 1e9) return here(column, "value is not a number below 1e9");
@@ -187,8 +187,14 @@ class Siemens {
     for (std::size_t a = 0; a < 5; ++a) {
       if (control_.letters[a] != c) continue;
       if (r.move.has[a]) return here(column, fmt::format("two {} words in a block", c));
-      const auto v = s.take("=") ? expression(s) : literal(s, column);
+      const bool equals = s.take("=");
+      if (const bool direct = equals && s.rest().starts_with("DC("); direct != control_.rollover[a])
+        return here(column, direct ? fmt::format("DC() of {}, which does not roll over", c)
+                                   : fmt::format("{} rolls over: which way it turns is said by DC() alone", c));
+      else if (direct) s.advance(2);
+      const auto v = equals ? expression(s) : literal(s, column);
       if (!v) return v.error();
+      if (control_.rollover[a] && !(*v >= 0 && *v < 360)) return here(column, fmt::format("{}=DC({}) is outside 0 .. 360", c, *v));
       r.move.has[a] = true;
       r.move.axis[a] = *v;
       r.column = column;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "postproc/fixed_point.h"
+#include "postproc/nc_axis_words.h"
 #include "postproc/nc_corners.h"
 #include "postproc/nc_lines.h"
 #include "postproc/nc_stretches.h"
@@ -20,13 +21,10 @@ constexpr int kFirstSubprogram = 2001;  // O numbers of the sub-programs of a ma
 constexpr int kFirstLabel = 100;
 constexpr int kVectorDecimals = 8;
 
-/// How the word of the index rotary is printed.
-enum class IndexWord { literal, shifted, left_out };
-
 class Writer {
  public:
   Writer(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header)
-      : program_(program), dialect_(dialect), header_(header), corners_(corner_words(program, dialect, header)), out_(dialect), tcp_(program.tcp != TcpMode::none) {}
+      : program_(program), dialect_(dialect), header_(header), corners_(corner_words(program, dialect, header)), out_(dialect), words_(program, dialect, out_), tcp_(program.tcp != TcpMode::none) {}
 
   Result<NcText> write() {
     values_ = program_values(program_, dialect_, header_);
@@ -71,11 +69,8 @@ class Writer {
   std::string linear(double mm) const {
     return out_.value(to_fixed(mm, program_.format.linear_decimals), program_.format.linear_decimals);
   }
-  int decimals(std::size_t axis) const {
-    return axis < 3 ? program_.format.linear_decimals : program_.format.rotary_decimals;
-  }
   void forget() {
-    known_.fill(false);
+    words_.forget();
     motion_ = -1;
     feed_ = -1;
   }
@@ -129,6 +124,7 @@ class Writer {
     fill(dialect_.loop.before);
     forget();
     const auto& tooth = op.teeth.front().blocks;
+    words_.enter_loop(tooth);
     blocks(tooth, {0, tooth.size()}, IndexWord::shifted);
     fill(dialect_.loop.after);
   }
@@ -194,16 +190,15 @@ class Writer {
   /// A reposition of a rotary by a whole turn or more is said in the text.
   void note_unwinding(const AxisBlock& from, const AxisBlock& to) {
     if (to.kind != BlockKind::rapid_rotary && to.kind != BlockKind::turn) return;
-    const std::int64_t turn = to_fixed(360, program_.format.rotary_decimals);
     for (std::size_t a = 3; a < 5; ++a)
-      if (const auto turns = std::abs(to.words[a] - from.words[a]) / turn; turns >= 1)
+      if (const auto turns = std::abs(to.words[a] - from.words[a]) / words_.turn_word(); turns >= 1)
         out_.comment(fmt::format("{} UNWINDS BY {} TURN{}", program_.letters[a], turns, turns == 1 ? "" : "S"));
   }
 
   void switch_tcp(const AxisBlock& b, IndexWord index) {
     if (inverse_time_) out_.line(fmt::format("G94 F{}", values_["free"]));
     inverse_time_ = false;
-    values_["z"] = out_.value(b.words[2], decimals(2));
+    values_["z"] = out_.value(b.words[2], words_.decimals(2));
     const bool on = b.kind == BlockKind::tcp_on;
     const bool turned = program_.loop && index == IndexWord::shifted;
     if (!on && turned) fill(dialect_.loop.frame_off);
@@ -222,68 +217,18 @@ class Writer {
                             : b.kind == BlockKind::rapid_xy  ? std::pair<std::size_t, std::size_t>{0, 2}
                             : b.kind == BlockKind::rapid_tip ? std::pair<std::size_t, std::size_t>{0, 3}
                                                              : std::pair<std::size_t, std::size_t>{3, 5};
-    if (to == 5) shift_line(b, index);
+    if (to == 5) words_.shift_line(b, index, values_);
     const std::size_t begin = out_.size();
     out_.text() += dialect_.rapid;
     motion_ = 0;
     const std::size_t without_words = out_.size();
-    for (std::size_t a = from; a < to; ++a) word(b, a, index);
+    for (std::size_t a = from; a < to; ++a) words_.print(b, a, index);
     if (out_.size() == without_words) {
       out_.text().resize(begin);
       return;
     }
     out_.text() += dialect_.rapid_end;
     out_.end_line(begin, true);
-  }
-
-  /// On controls without arithmetic in a word: the angle that the next index word refers to.
-  void shift_line(const AxisBlock& b, IndexWord index) {
-    if (index != IndexWord::shifted || dialect_.loop.index_line.empty()) return;
-    const auto axis = static_cast<std::size_t>(program_.index_axis);
-    if (shift_known_ && shift_ == b.words[axis] && known_[axis]) return;
-    values_["angle"] = out_.value(b.words[axis], decimals(axis));
-    out_.fill({dialect_.loop.index_line}, values_);
-    shift_ = b.words[axis];
-    shift_known_ = true;
-  }
-
-  void word(const AxisBlock& b, std::size_t axis, IndexWord index) {
-    if (program_.letters[axis] == 0) return;
-    const bool is_index = static_cast<int>(axis) == program_.index_axis;
-    if (is_index && index == IndexWord::left_out) return;
-    const bool unchanged = known_[axis] && last_[axis] == b.words[axis];
-    known_[axis] = true;
-    last_[axis] = b.words[axis];
-    if (unchanged && !b.forced) return;
-    std::string& text = out_.text();
-    text += ' ';
-    text += program_.letters[axis];
-    if (axis >= 3) text += dialect_.rotary_equals;
-    if (is_index && index == IndexWord::shifted) {
-      if (dialect_.loop.index_brackets) text += '[';
-      text += dialect_.loop.index;
-      if (dialect_.loop.index_line.empty()) {
-        if (b.words[axis] >= 0 && !dialect_.sign_always) text += '+';
-        out_.number(b.words[axis], decimals(axis));
-      }
-      if (dialect_.loop.index_brackets) text += ']';
-    } else {
-      out_.number(b.words[axis], decimals(axis));
-    }
-  }
-
-  /// Length that the control takes for a feed block: X Y Z if any of them moves, else the rotaries [mm or deg].
-  double control_length(const AxisBlock& b) const {
-    const auto part = [&](std::size_t from, std::size_t to) {
-      double sum = 0;
-      for (std::size_t a = from; a < to; ++a) {
-        const double d = static_cast<double>(b.words[a] - last_[a]) / static_cast<double>(power_of_ten(decimals(a)));
-        sum += d * d;
-      }
-      return std::sqrt(sum);
-    };
-    const double linear = part(0, 3);
-    return linear > 0 ? linear : part(3, 5);
   }
 
   void joint_feed(const AxisBlock& b, IndexWord index) {
@@ -294,14 +239,14 @@ class Writer {
                     dialect_.max_inverse_time, dialect_.name);
       return;
     }
-    const bool turns = b.words[3] != last_[3] || b.words[4] != last_[4];
+    const bool turns = words_.turns(b);
     if (!dialect_.inverse_time && turns) {
       error_ = fail("record {}: rotaries move in a cutting block, and {} has no inverse time feed for it: tcp = \"angles\" is "
                     "supported, or a tilt that is fixed in every pass",
                     b.record, dialect_.name);
       return;
     }
-    const double length = control_length(b);
+    const double length = words_.length(b);
     const bool exact = dialect_.inverse_time && dialect_.min_feed_product > 0 && rate * length < dialect_.min_feed_product;
     const bool per_minute = exact || !dialect_.inverse_time;
     if (!per_minute && !inverse_time_) out_.line("G93");
@@ -309,7 +254,7 @@ class Writer {
     inverse_time_ = !per_minute;
     const std::size_t begin = out_.size();
     motion(dialect_.feed, 1);
-    for (std::size_t a = 0; a < 5; ++a) word(b, a, index);
+    for (std::size_t a = 0; a < 5; ++a) words_.print(b, a, index);
     if (dialect_.inverse_time)
       feed_number(per_minute ? length / b.minutes : rate, dialect_.point_always ? 3 : per_minute ? 9 : rate < 10 ? 6 : 3, b.record, begin);
     else
@@ -323,8 +268,9 @@ class Writer {
     const bool vectors = program_.tcp == TcpMode::vectors && b.kind == BlockKind::feed;
     if (vectors && !dialect_.vector_feed.empty()) motion(dialect_.vector_feed, 1);
     else motion(dialect_.feed, 1);
-    for (std::size_t a = b.kind == BlockKind::turn ? 3 : 0; a < (vectors ? 3U : 5U); ++a) word(b, a, index);
+    for (std::size_t a = b.kind == BlockKind::turn ? 3 : 0; a < (vectors ? 3U : 5U); ++a) words_.print(b, a, index);
     if (vectors) vector(b);
+    words_.stand(b);
     modal_feed(b.per_minute, b.record, begin);
     finish_block(begin);
   }
@@ -390,15 +336,12 @@ class Writer {
   const NcHeader& header_;
   CornerWords corners_;
   NcLines out_;
+  NcAxisWords words_;
   NcLines::Values values_;
   bool tcp_;
   std::optional<Diagnostic> error_;
-  std::array<std::int64_t, 5> last_{};
-  std::array<bool, 5> known_{};
   int motion_ = -1;         // 0, 1; -1: to be printed
   std::int64_t feed_ = -1;  // F per minute in force, millionths; -1: to be printed
-  std::int64_t shift_ = 0;
-  bool shift_known_ = false;
   bool inverse_time_ = false;
   std::vector<std::pair<const AxisOperation*, NcStretch>> subprograms_;
 };

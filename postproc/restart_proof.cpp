@@ -1,6 +1,7 @@
 #include "postproc/restart_proof.h"
 
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -30,6 +31,8 @@ Result<Count> count_moves(std::string_view text, const std::string& file, const 
 /// once in 2^64.
 class Fingerprint {
  public:
+  explicit Fingerprint(const NcControl& control) : control_(control) {}
+
   std::uint64_t of(const ExecutedMove& m) {
     set_ = static_cast<std::uint8_t>(set_ | m.commanded);
     h_ = 14695981039346656037ULL;
@@ -39,7 +42,7 @@ class Fingerprint {
     // A vector stands for the rotaries: which of their positions has it follows from where they stood.
     add(m.vector_print);
     for (std::size_t a = m.tcp ? 3 : 0; a < 5; ++a)
-      if ((set_ & (1U << a)) != 0 && m.vector_print == 0) add(std::bit_cast<std::uint64_t>(m.joints[a]));
+      if ((set_ & (1U << a)) != 0 && m.vector_print == 0) add_joint(m, a);
     if (m.tcp)
       for (int i = 0; i < 3; ++i) add(std::bit_cast<std::uint64_t>(m.tip[i]));
     if (!m.rapid) add(std::bit_cast<std::uint64_t>(m.minutes));
@@ -54,10 +57,18 @@ class Fingerprint {
   }
 
  private:
+  /// A rotary that rolls over counts by its place within the turn, where it has a word.
+  void add_joint(const ExecutedMove& m, std::size_t a) {
+    double v = m.joints[a];
+    if (control_.rollover[a] && (m.commanded & (1U << a)) == 0) return;
+    if (control_.rollover[a]) v -= 360 * std::floor(v / 360);
+    add(std::bit_cast<std::uint64_t>(v));
+  }
   void add(std::uint64_t v) {
     h_ = (h_ ^ v) * 1099511628211ULL;
     h_ ^= h_ >> 32;
   }
+  const NcControl& control_;
   std::uint8_t set_ = 0;
   std::uint64_t h_ = 0;
 };
@@ -98,7 +109,7 @@ Result<RestartProof> prove_restart(std::string_view whole, std::string_view rest
   std::vector<Kept> kept;
   kept.reserve(tail);
   std::size_t i = 0;
-  Fingerprint print;
+  Fingerprint print(control);
   ExecutedMove before;
   auto s = execute_nc(whole, file, control, [&](const ExecutedMove& m) {
     if (i++ < all->total - tail) {
@@ -114,7 +125,7 @@ Result<RestartProof> prove_restart(std::string_view whole, std::string_view rest
   if (!s) return s.error();
 
   i = 0;
-  Fingerprint own;
+  Fingerprint own(control);
   bool cut = false;
   const auto reach = [&proof](const std::array<double, 5>& joints) {
     for (std::size_t a = 0; a < 5; ++a) {  // NaN (not yet known) passes neither comparison

@@ -81,7 +81,7 @@ Facts facts_of(const Machine& m) {
   for (std::size_t k = 0; k < m.chain.rotary_count(); ++k) {
     const RotaryAxis& axis = m.chain.rotary(k);
     f.axes.rows.push_back({std::string(1, axis.letter), m.chain.in_table(k) ? "table" : "head", triple(axis.direction), triple(axis.point_mm),
-                           axis.sign > 0 ? "+1, ISO 841" : "-1, reversed", fmt::format("{} .. {} deg", number(degrees(axis.min_rad)), number(degrees(axis.max_rad))),
+                           axis.sign > 0 ? "+1, ISO 841" : "-1, reversed", axis.rollover ? "rolls over" : fmt::format("{} .. {} deg", number(degrees(axis.min_rad)), number(degrees(axis.max_rad))),
                            fmt::format("{} deg/min", number(degrees(axis.max_speed))), positive_turn(m.chain, k)});
   }
   f.axes.note = "Point of a table axis: machine coordinates. Of a head axis: from the gauge point, its z is the pivot length.";

@@ -34,7 +34,8 @@ PageTable axis_table(const RunReport& r) {
   for (const auto& axis : r.axes) {
     const double f = axis.rotary ? degrees(1.0) : 1.0;
     const auto number = [&](double value) { return fmt::format("{:.3f}", value * f); };
-    table.rows.push_back({std::string(1, axis.letter), number(axis.min), number(axis.max), number(axis.lower_limit), number(axis.upper_limit),
+    const auto limit = [&](double value) { return axis.endless() ? "rolls over" : number(value); };
+    table.rows.push_back({std::string(1, axis.letter), number(axis.min), number(axis.max), limit(axis.lower_limit), limit(axis.upper_limit),
                           axis.rotary ? "deg" : "mm"});
   }
   return table;

@@ -138,9 +138,10 @@ void add_motion(Json& json, const RunReport& r) {
   Json axes = Json::object();
   for (const auto& axis : r.axes) {
     const double f = axis.rotary ? degrees(1.0) : 1.0;
-    axes[std::string(1, axis.letter)] = {{"min", axis.min * f}, {"max", axis.max * f},
-                                         {"limit", Json::array({axis.lower_limit * f, axis.upper_limit * f})},
-                                         {"unit", axis.rotary ? "deg" : "mm"}};
+    Json& entry = axes[std::string(1, axis.letter)];
+    entry = {{"min", axis.min * f}, {"max", axis.max * f}, {"unit", axis.rotary ? "deg" : "mm"}};
+    if (axis.endless()) entry["rolls_over"] = true;
+    else entry["limit"] = {axis.lower_limit * f, axis.upper_limit * f};
   }
   json["axes"] = std::move(axes);
   json["acceleration_in_times"] = r.has_acceleration;

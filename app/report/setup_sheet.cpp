@@ -143,8 +143,9 @@ void operation_section(Sheet& sheet, const RunReport& report) {
   sheet.begin_table({"axis", "least", "greatest", "lower limit", "upper limit", "unit"});
   for (const auto& axis : report.axes) {
     const double f = axis.rotary ? degrees(1.0) : 1.0;
-    sheet.row({std::string(1, axis.letter), millimetres(axis.min * f), millimetres(axis.max * f), millimetres(axis.lower_limit * f),
-               millimetres(axis.upper_limit * f), axis.rotary ? "deg" : "mm"});
+    const auto limit = [&](double value) { return axis.endless() ? "rolls over" : millimetres(value * f); };
+    sheet.row({std::string(1, axis.letter), millimetres(axis.min * f), millimetres(axis.max * f), limit(axis.lower_limit), limit(axis.upper_limit),
+               axis.rotary ? "deg" : "mm"});
   }
   sheet.end_table();
 }

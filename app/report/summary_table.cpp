@@ -32,7 +32,8 @@ void axis_rows(std::string& out, const RunReport& report) {
     const bool stands = axis.max - axis.min < 1e-9;
     const std::string moves = stands ? fmt::format("{:>10.3f} {:<16}", axis.min * f, std::string(unit) + ", stands still")
                                      : fmt::format("{:>10.3f} .. {:>9.3f} {:<3}", axis.min * f, axis.max * f, unit);
-    row(out, fmt::format("axis {}", axis.letter), fmt::format("{}   limits {:g} .. {:g}", moves, axis.lower_limit * f, axis.upper_limit * f));
+    const std::string limits = axis.endless() ? "rolls over" : fmt::format("limits {:g} .. {:g}", axis.lower_limit * f, axis.upper_limit * f);
+    row(out, fmt::format("axis {}", axis.letter), fmt::format("{}   {}", moves, limits));
   }
 }
 

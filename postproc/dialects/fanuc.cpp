@@ -28,6 +28,8 @@ NcDialect fanuc_dialect() {
   d.tcp_note = "TCP G43.4 FROM ROTARY ZERO, PARAMETERS 19696#5 WKP=0, 1401#1 LRP=1";
   d.takes_smoothing = true;  // G5.1 Q1 and the like state no bound of their own
   d.loop.form = NcLoop::Form::stretches;
+  d.rollover.way = NcRollover::Way::shortest;
+  d.rollover.note = "{axis} ROLLS OVER: PARAMETERS 1008#0 ROA=1, 1008#1 RAB=0, 1260=360.";
   return d;
 }
 

@@ -35,13 +35,17 @@ NcDialect heidenhain_dialect() {
   d.vector_words = {"TX", "TY", "TZ"};
   d.vector_feed = "LN";
   d.loop.form = NcLoop::Form::in_line;
-  d.loop.before = {"{first_tooth}", "Q1 = {first}", "LBL {label}", "{pick}", "Q2 = {sign}{tooth} * 360 / {teeth}"};
+  d.loop.before = {"{first_tooth}", "Q1 = {first}", "LBL {label}", "{pick}", "Q2 = {turns} * 360 / {teeth}"};
   d.loop.after = {"Q1 = Q1 + 1", "FN 12: IF +Q1 LT +{teeth} GOTO LBL {label}"};
   d.loop.pick = {"Q6 = ( Q1 * {stride} + 0.5 ) / {teeth}", "Q6 = INT Q6", "Q4 = Q1 * {stride} - Q6 * {teeth}"};
   d.loop.place = "Q1";
   d.loop.tooth = "Q4";
   d.loop.index_line = "FN 1: Q5 = +Q2 + {angle}";
   d.loop.index = "+Q5";
+  d.rollover.way = NcRollover::Way::shortest;  // M126
+  d.rollover.index_lines = {"Q6 = Q5 / 360", "Q6 = INT Q6", "Q5 = Q5 - Q6 * 360"};
+  d.rollover.backwards = "( {teeth} - {tooth} )";
+  d.rollover.note = "{axis} ROLLS OVER: MODULO AXIS, DISPLAY BELOW 360";
   d.loop.frame_on = {"Q3 = {frame_sign}{tooth} * 360 / {teeth}", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+Q3"};
   d.loop.frame_off = {"CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+0"};
   return d;

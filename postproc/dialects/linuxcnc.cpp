@@ -24,13 +24,17 @@ NcDialect linuxcnc_dialect() {
   d.loop.form = NcLoop::Form::sub_program;
   d.loop.before = {"o{label} sub"};
   d.loop.after = {"o{label} endsub"};
-  d.loop.call = {"{first_tooth}", "#1={first}", "o{label+1} while [#1 LT {teeth}]", "{pick}", "o{label} call [{sign}{tooth}*360/{teeth}]",
+  d.loop.call = {"{first_tooth}", "#1={first}", "o{label+1} while [#1 LT {teeth}]", "{pick}", "o{label} call [{turns}*360/{teeth}]",
                  "#1=[#1+1]", "o{label+1} endwhile"};
   d.loop.pick = {"#2=[[#1*{stride}] MOD {teeth}]"};
   d.loop.place = "#1";
   d.loop.tooth = "#2";
   d.loop.index = "#1";
   d.loop.index_brackets = true;
+  d.rollover.way = NcRollover::Way::sign;
+  d.rollover.index = "[{word} MOD 360]";
+  d.rollover.backwards = "[{teeth}-{tooth}]";
+  d.rollover.note = "{axis} ROLLS OVER: [AXIS_{axis}] WRAPPED_ROTARY = 1";
   return d;
 }
 

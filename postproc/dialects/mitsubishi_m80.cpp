@@ -13,6 +13,7 @@ NcDialect mitsubishi_m80_dialect() {
   d.tcp_off.clear();
   d.tcp_starts_at_zero = false;
   d.tcp_note.clear();
+  d.rollover.note = "{axis} ROLLS OVER: SHORTCUT OF THE ROTARY AXIS VALID, 8213=1";
   return d;
 }
 

@@ -34,12 +34,18 @@ NcDialect siemens_dialect() {
   d.tcp_off = {"TRAFOOF", "{offset}"};
   d.vector_words = {"A3=", "B3=", "C3="};
   d.loop.form = NcLoop::Form::in_line;
-  d.loop.before = {"{first_tooth}", "FOR R1={first} TO {last}", "{pick}", "R2={sign}{tooth}*360/{teeth}"};
+  d.loop.before = {"{first_tooth}", "FOR R1={first} TO {last}", "{pick}", "R2={turns}*360/{teeth}"};
   d.loop.pick = {"R4=R1*{stride}-{teeth}*TRUNC((R1*{stride}+0.5)/{teeth})"};
   d.loop.place = "R1";
   d.loop.tooth = "R4";
   d.loop.after = {"ENDFOR"};
   d.loop.index = "R2";
+  d.rollover.way = NcRollover::Way::shortest;
+  d.rollover.open = "DC(";
+  d.rollover.close = ")";
+  d.rollover.index = "ABS({word}-360*TRUNC(({word})/360))";  // ABS: the quotient may be rounded up to a whole number
+  d.rollover.backwards = "({teeth}-{tooth})";
+  d.rollover.note = "{axis} ROLLS OVER: MODULO AXIS, 30310=1, 30330=360";
   d.loop.frame_on = {"R3={frame_sign}{tooth}*360/{teeth}", "ROT Z=R3"};
   d.loop.frame_off = {"ROT"};
   return d;

@@ -24,8 +24,8 @@ struct PoleJob {
 inline constexpr double kBall = 0.5, kLength = 80;
 
 /// xyzac_large: rotary axes where the part stands. The others turn about the machine zero.
-inline Vec3 origin_of(const PoleJob& job) { return job.machine == "xyzac_large.toml" ? Vec3(3, -2, 120) : Vec3(0, 0, 100); }
-inline Vec3 work_offset_of(const PoleJob& job) { return job.machine == "xyzac_large.toml" ? Vec3(3, -2, 0) : Vec3(0, 0, 0); }
+inline Vec3 origin_of(const PoleJob& job) { return job.machine.starts_with("xyzac_large") ? Vec3(3, -2, 120) : Vec3(0, 0, 100); }
+inline Vec3 work_offset_of(const PoleJob& job) { return job.machine.starts_with("xyzac_large") ? Vec3(3, -2, 0) : Vec3(0, 0, 0); }
 
 inline std::string job_text(const PoleJob& job) {
   const Vec3 o = origin_of(job), w = work_offset_of(job);

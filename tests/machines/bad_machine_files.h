@@ -35,6 +35,11 @@ inline constexpr BadFile kBadMachineFiles[] = {
      "m.toml:10:13: error: spindle.max_speed = -24000 must be above 0 1/min\n"},
     {"74 second rotary turns about the spindle", "[\"C\", \"A\"]", "[\"A\", \"C\"]",
      "m.toml:45:13: error: rotary axis C is parallel to the spindle and cannot tilt the tool: its angle to Z is 0.000000 deg, must be above 0.000057 deg\n"},
+    {"an axis that rolls over has no ends", "max = 30.0", "max = 30.0\nrollover = true",
+     "m.toml:40:7: error: axes.A.min of an axis with rollover = true, which turns without end: leave min out, or rollover\n"
+     "m.toml:41:7: error: axes.A.max of an axis with rollover = true, which turns without end: leave max out, or rollover\n"},
+    {"rollover is no number", "max = 30.0", "max = 30.0\nrollover = 360",
+     "m.toml:42:12: error: axes.A.rollover must be true or false, is a whole number\n"},
     {"74 range smaller than its margins", "max = 30.0", "max = -109.99",
      "m.toml:41:7: error: axes.A.max - axes.A.min = 0.01 deg leaves nothing between the margins of 0.01 deg\n"},
     {"75 sign 0", "sign = 1", "sign = 0",

@@ -1,6 +1,8 @@
 // Every form in which a program can hold its teeth: dialect, with or without TCP, loop, calls, or written out.
 #pragma once
 
+#include <limits>
+
 #include "postproc/tooth_order.h"
 #include "tests/postproc/nc_case.h"
 
@@ -11,12 +13,36 @@ struct PostForm {
   TcpMode tcp;
   double swing;  ///< turn of the tool axis inside a pass
   bool expand;   ///< every tooth written out
+  int rollover = 0;  ///< C rolls over and its index rises (1) or falls (-1)
 };
 
 inline void PrintTo(const PostForm& f, std::ostream* out) {
-  *out << f.dialect << (f.tcp == TcpMode::none ? "" : f.tcp == TcpMode::angles ? "_tcp" : "_vectors") << (f.expand ? "_written" : "");
+  *out << f.dialect << (f.tcp == TcpMode::none ? "" : f.tcp == TcpMode::angles ? "_tcp" : "_vectors") << (f.expand ? "_written" : "")
+       << (f.rollover > 0 ? "_rollover" : f.rollover < 0 ? "_rollover_back" : "");
 }
 
+/// The same with a C that rolls over.
+inline const std::vector<PostForm>& rollover_forms() {
+  static const std::vector<PostForm> forms = [] {
+    std::vector<PostForm> list;
+    for (const int sense : {1, -1})
+      for (const PostForm& f : {PostForm{"linuxcnc", TcpMode::none, 0.1, false}, PostForm{"linuxcnc", TcpMode::none, 0.1, true},
+                                PostForm{"linuxcnc", TcpMode::angles, 0.1, true}, PostForm{"fanuc", TcpMode::none, 0, false},
+                                PostForm{"fanuc", TcpMode::none, 0.1, true}, PostForm{"fanuc", TcpMode::angles, 0.1, true},
+                                PostForm{"mitsubishi_m80", TcpMode::none, 0.1, true}, PostForm{"siemens", TcpMode::none, 0.1, false},
+                                PostForm{"siemens", TcpMode::none, 0.1, true}, PostForm{"siemens", TcpMode::angles, 0.1, false},
+                                PostForm{"siemens", TcpMode::vectors, 0.1, false}, PostForm{"siemens", TcpMode::vectors, 0.1, true},
+                                PostForm{"heidenhain", TcpMode::none, 0, false}, PostForm{"heidenhain", TcpMode::angles, 0, false},
+                                PostForm{"heidenhain", TcpMode::angles, 0.1, true}, PostForm{"heidenhain", TcpMode::vectors, 0.1, true}}) {
+        list.push_back(f);
+        list.back().rollover = sense;
+      }
+    return list;
+  }();
+  return forms;
+}
+
+/// Every form, C counted continuously and rolling over.
 inline const std::vector<PostForm>& post_forms() {
   static const std::vector<PostForm> forms = {
       {"linuxcnc", TcpMode::none, 0.1, false},     {"linuxcnc", TcpMode::none, 0.1, true},      {"linuxcnc", TcpMode::angles, 0.1, true},
@@ -24,7 +50,20 @@ inline const std::vector<PostForm>& post_forms() {
       {"mitsubishi_m80", TcpMode::none, 0, false}, {"siemens", TcpMode::none, 0.1, false},      {"siemens", TcpMode::angles, 0.1, false},
       {"siemens", TcpMode::vectors, 0.1, false},   {"siemens", TcpMode::vectors, 0.1, true},    {"heidenhain", TcpMode::none, 0, false},
       {"heidenhain", TcpMode::angles, 0, false},   {"heidenhain", TcpMode::vectors, 0.1, true}, {"apt", TcpMode::vectors, 0.1, true}};
-  return forms;
+  static const std::vector<PostForm> all = [] {
+    std::vector<PostForm> list = forms;
+    for (const auto& f : rollover_forms()) list.push_back(f);
+    return list;
+  }();
+  return all;
+}
+
+/// The axis has no ends; `sense`: of its words against the index of a gear that stands on it.
+inline void roll_over(RotaryAxis& axis, int sense) {
+  axis.rollover = true;
+  axis.sign = sense;
+  axis.max_rad = std::numeric_limits<double>::infinity();
+  axis.min_rad = -axis.max_rad;
 }
 
 inline Machine machine_of(const PostForm& f) {
@@ -34,6 +73,7 @@ inline Machine machine_of(const PostForm& f) {
     m.post.tcp_on = {"M428"};
     m.post.tcp_off = {"M429"};
   }
+  if (f.rollover != 0) roll_over(m.chain.table[0], f.rollover);
   return m;
 }
 

@@ -103,6 +103,8 @@ TEST_P(Restart, WrittenProgramMakesTheLastMoves) {
           a = a.substr(a.find(' '));
           b = b.substr(b.find(' '));
         }
+        if (GetParam().form.rollover != 0)  // the first tooth is turned to from nowhere, by any way
+          for (std::string* line : {&a, &b}) *line = std::regex_replace(*line, std::regex("^G0 C-"), "G0 C");
         ASSERT_EQ(a, b);
       }
     }

@@ -1,53 +1,17 @@
-// LinuxCNC's own interpreter as the second opinion on the text that we write. tools/get_rs274.sh fetches it; the variable
-// TOOTHPATH_RS274 names another copy.
+// LinuxCNC's own interpreter as the second opinion on the text that we write (tests/support/rs274.h).
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <regex>
 #include <sstream>
 
 #include "tests/postproc/nc_case.h"
+#include "tests/support/rs274.h"
 
 namespace toothpath {
 namespace {
 
 using namespace test;
-namespace fs = std::filesystem;
-
-std::string rs274() {
-  if (const char* given = std::getenv("TOOTHPATH_RS274")) return given;
-  return std::string(TOOTHPATH_SOURCE_DIR) + "/.deps/rs274/rs274";
-}
-
-struct Canonical {
-  int exit = -1;
-  std::string messages;
-  std::vector<std::string> lines;
-};
-
-Canonical interpret(const std::string& program, const std::string& name) {
-  Canonical out;
-  const fs::path dir = fs::path(testing::TempDir()) / ("toothpath_rs274_" + name + "_" + std::to_string(::getpid()));
-  fs::create_directories(dir);
-  std::ofstream(dir / "p.ngc") << program;
-  std::ofstream(dir / "t.tbl") << "T1 P1 Z0 D4 ;\nT2 P2 Z0 D4 ;\n";
-  std::ofstream(dir / "v.var") << "";
-  const std::string d = dir.string();
-  const std::string command = "cd '" + d + "' && HOME='" + d + "' timeout 60 '" + rs274() +
-                              "' -g -t t.tbl -v v.var p.ngc out.txt > log.txt 2>&1";
-  const int status = std::system(command.c_str());
-  out.exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  std::ifstream log(dir / "log.txt");
-  out.messages.assign(std::istreambuf_iterator<char>(log), {});
-  std::ifstream in(dir / "out.txt");
-  for (std::string l; std::getline(in, l);) out.lines.push_back(l);
-  fs::remove_all(dir);
-  return out;
-}
 
 /// What of a Fanuc program LinuxCNC would not understand: sub-programs as o-words, G69, the O number; M98 as a call.
 std::string iso_subset(const std::string& fanuc) {
@@ -74,12 +38,7 @@ std::string iso_subset(const std::string& fanuc) {
   return subs + main;
 }
 
-class Rs274 : public testing::TestWithParam<std::tuple<const char*, double, double, bool>> {
- protected:
-  void SetUp() override {
-    if (!fs::exists(rs274())) FAIL() << rs274() << " is missing: run tools/get_rs274.sh";
-  }
-};
+class Rs274 : public testing::TestWithParam<std::tuple<const char*, double, double, bool>> {};
 INSTANTIATE_TEST_SUITE_P(Programs, Rs274,
                          testing::Values(std::tuple{"linuxcnc", 0.0, 0.0, false}, std::tuple{"linuxcnc", 0.3, 0.4, false},
                                          std::tuple{"linuxcnc", 0.3, 0.4, true}, std::tuple{"fanuc", 0.3, 0.0, false},

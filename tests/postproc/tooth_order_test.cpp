@@ -1,17 +1,13 @@
 // The order of the teeth: every tooth once, far from the last one, angles from integers, the same in every dialect.
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <numeric>
 #include <regex>
 #include <set>
 #include <tuple>
 
 #include "tests/postproc/post_forms.h"
+#include "tests/support/rs274.h"
 
 namespace toothpath {
 namespace {
@@ -161,9 +157,6 @@ TEST(ToothOrder, RemaindersOfTheControlsAreExact) {
 
 // LinuxCNC's own interpreter (tools/get_rs274.sh) turns C to the same teeth, also from an edited first place on.
 TEST(ToothOrder, LinuxcncAgrees) {
-  const char* given = std::getenv("TOOTHPATH_RS274");
-  const std::string rs274 = given != nullptr ? given : std::string(TOOTHPATH_SOURCE_DIR) + "/.deps/rs274/rs274";
-  if (::access(rs274.c_str(), X_OK) != 0) FAIL() << "rs274 is missing: run tools/get_rs274.sh";
   const int teeth = 31, stride = spread_stride(teeth);
   const auto program = axis_program({sample_path(0.3, 0, 1)}, trunnion(), standing(), teeth);
   ASSERT_TRUE(program && program->loop);
@@ -171,19 +164,13 @@ TEST(ToothOrder, LinuxcncAgrees) {
   spread.tooth_stride = stride;
   const auto written = write_nc(spread, linuxcnc_dialect(), {});
   ASSERT_TRUE(written);
-  const auto dir = std::filesystem::path(testing::TempDir()) / ("toothpath_order_" + std::to_string(::getpid()));
-  std::filesystem::create_directories(dir);
-  std::ofstream(dir / "t.tbl") << "T1 P1 Z0 D4 ;\n";
-  std::ofstream(dir / "v.var") << "";
   for (const int first : {0, 17}) {
-    std::ofstream(dir / "p.ngc") << std::regex_replace(written->text, std::regex("\n#1=0\n"), fmt::format("\n#1={}\n", first));
-    const std::string d = dir.string();
-    ASSERT_EQ(std::system(("cd '" + d + "' && HOME='" + d + "' timeout 60 '" + rs274 + "' -g -t t.tbl -v v.var p.ngc out.txt > log.txt 2>&1").c_str()), 0);
-    std::ifstream in(dir / "out.txt");
+    const auto out = interpret(std::regex_replace(written->text, std::regex("\n#1=0\n"), fmt::format("\n#1={}\n", first)), "order");
+    ASSERT_EQ(out.exit, 0) << out.messages;
     std::vector<double> turns;  // C of each first rotary rapid of a tooth, from the one of tooth 0
     const std::regex traverse("STRAIGHT_TRAVERSE\\(([^)]*)\\)");
     double last = 0;
-    for (std::string l; std::getline(in, l);) {
+    for (const std::string& l : out.lines) {
       std::smatch m;
       if (!std::regex_search(l, m, traverse)) continue;
       const std::string words = m[1];
@@ -196,7 +183,6 @@ TEST(ToothOrder, LinuxcncAgrees) {
     for (int n = first; n < teeth; ++n)
       EXPECT_NEAR(turns[static_cast<std::size_t>(n - first)], base + spread.index_sign * 360.0 * (n * stride % teeth) / teeth, 1e-4) << n;
   }
-  std::filesystem::remove_all(dir);
 }
 
 // The new words of the readers, and what they refuse.
