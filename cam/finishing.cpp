@@ -163,17 +163,29 @@ class Planner {
     }
     return {};
   }
-  /// The corner at any radius. Where it is not there (yet), the place where it was seen nearest.
-  [[nodiscard]] CornerPlace corner_at(double r, bool plus) const {
-    if (const auto c = find_corner(sheet_.gaps(r), plus)) return *c;
+  /// Where a corner was seen at the station nearest to r: stands for it where it is not there.
+  [[nodiscard]] CornerPlace nearest_corner(double r, bool plus) const {
     double best = INFINITY;
-    CornerPlace place{plus ? 2.0 : 3.0, plus ? 2.0 : 3.0, false};
+    CornerPlace place{plus ? kRootBegin : kRootEnd, plus ? kRootBegin : kRootEnd, false};
     for (const auto& s : sheet_.stations())
       if (const auto c = find_corner(s.gaps, plus); c && !c->one && std::abs(s.r - r) < best) {
         best = std::abs(s.r - r);
         place.from = place.to = 0.5 * (c->from + c->to);
       }
     return place;
+  }
+  /// The corner at any radius. Between two stations of which one has none it is on the straight line between its places there: next to
+  /// where it opens, both walls cross so flatly that its own place jumps.
+  [[nodiscard]] CornerPlace corner_at(double r, bool plus) const {
+    const auto& stations = sheet_.stations();
+    const double t = std::clamp(station_coordinate(r), 0.0, double(stations.size() - 1));
+    const std::size_t j = std::min(std::size_t(t), stations.size() - 2);
+    const auto before = find_corner(stations[j].gaps, plus), after = find_corner(stations[j + 1].gaps, plus);
+    if (before && after)
+      if (const auto c = find_corner(sheet_.gaps(r), plus)) return *c;
+    const CornerPlace a = before ? *before : nearest_corner(stations[j].r, plus), b = after ? *after : nearest_corner(stations[j + 1].r, plus);
+    const double y = t - double(j);
+    return {(1 - y) * a.from + y * b.from, (1 - y) * a.to + y * b.to, y < 0.5 ? a.one : b.one};
   }
 
   /// With corners: each flank has its own passes down to its corner, one pass follows every corner, and where the ball reaches

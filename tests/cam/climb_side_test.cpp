@@ -1,4 +1,4 @@
-// On which side of the feed the material lies: to the right, seen from the holder, when climbing; to the left otherwise.
+// On which side of the feed the material lies: to the right, seen from the holder, when climbing; to the left otherwise. No pass turns back.
 #include "cam/finishing.h"
 #include "tests/cam/face_gear_jobs.h"
 
@@ -7,6 +7,7 @@ namespace {
 
 struct Sides {
   double right_mm = 0, left_mm = 0;  ///< way of contacts beside the feed; those within 6 deg of below the ball count as neither
+  int turns = 0;                     ///< points where the feed turns by more than 60 deg
 };
 
 /// A tool along the gear axis.
@@ -34,6 +35,7 @@ Sides sides_of(const FaceGearParameters& gear, double ball, double scallop, doub
         const Vec3 way = p.centre - pass.points[k - 1].centre;
         if (!p.touching || !pass.points[k - 1].touching) continue;
         const Vec3 right = way.normalized().cross(Vec3::UnitZ());
+        if (k > 1 && way.normalized().dot((pass.points[k - 1].centre - pass.points[k - 2].centre).normalized()) < 0.5) ++out.turns;
         const double share = (p.contact - p.centre).normalized().dot(right);
         if (share > 0.1) out.right_mm += way.norm();
         if (share < -0.1) out.left_mm += way.norm();
@@ -59,12 +61,14 @@ TEST(ClimbSide, EveryPassOnFlankAndFilletHasTheMaterialOnTheAskedSide) {
                         {"helical", helical, 0.7, 0.01, 0, true},
                         {"semi-finishing", test::offset_gear(), 0.7, 0.02, 0.05, true},
                         {"dhfg", test::quarter_dhfg(), 0.25, 0.004, 0, true},
+                        {"a corner that opens inside the ring", test::quarter_dhfg(), 0.3, 0.004, 0, true},
                         {"spur", test::small_spur(), 0.5, 0.01, 0, false}};
   for (const auto& c : cases) {
     SCOPED_TRACE(c.name);
     const Sides s = sides_of(c.gear, c.ball, c.scallop, c.allowance, c.climb);
     EXPECT_GT(c.climb ? s.right_mm : s.left_mm, 50.0);
     EXPECT_EQ(c.climb ? s.left_mm : s.right_mm, 0.0);
+    EXPECT_EQ(s.turns, 0);
   }
 }
 
