@@ -13,7 +13,7 @@ namespace {
 
 // A point counts as reached when a ball that touches it comes no closer than this to anything else, mm.
 constexpr double kReachTolerance = 1e-4;
-constexpr double kSamePlace = 1e-6;
+constexpr double kSamePlace = 1e-6;  // a foot this near to a place of the grid is that place, mm
 constexpr int kHistogramBins = 40;
 
 struct Sample {
@@ -108,8 +108,7 @@ class Meter {
     const double R = tools_[std::size_t(operations_.back().tool)].radius_mm();
     const auto q = part_.nearest(s.p + R * s.n, R + 0.01);
     // Where the foot is the place itself, the two solvers must agree.
-    if (residual && q.exact && std::abs((q.point - q.foot).norm() - R) < kReachTolerance && std::abs(q.distance - R) < kSamePlace)
-      *residual = std::abs(q.distance - R);
+    if (residual && q.exact && (q.foot - s.p).norm() < kSamePlace) *residual = std::abs(q.distance - R);
     return q.distance >= R - kReachTolerance;
   }
 

@@ -191,10 +191,7 @@ NearestPlace GearDistance::nearest(const Vec3& asked, double within) const {
                                               Vec3(c.x() * foot / r, c.y() * foot / r, ring.space.surface().z_tip(foot)), c);
     } else if (!beside && !found) {
       // No surface near: either free in a wide space or deep inside the material.
-      const auto& st = ring.sheet.stations();
-      const double t = (r - st.front().r) / (st.back().r - st.front().r) * double(st.size() - 1);
-      const auto& profile = ring.profiles[std::size_t(std::clamp(std::round(t), 0.0, double(st.size() - 1)))];
-      if (ring.over_land(azimuth, r) || in_material(profile, azimuth, z, z_tip)) take(-within, false, int(zone), "inside", c, c);
+      if (ring.over_land(azimuth, r) || in_material(ring.profile(r), azimuth, z, z_tip)) take(-within, false, int(zone), "inside", c, c);
     }
   }
   if (rings.size() > 1) {

@@ -360,15 +360,29 @@ double GearRing::lookup(const std::vector<double>& y, double r) const {
   return y[k] + (t - double(k)) * (y[k + 1] - y[k]);
 }
 
+std::vector<Vec2> GearRing::profile(double r) const {
+  const auto& st = sheet.stations();
+  const double last = double(st.size() - 1), t = std::clamp((r - st.front().r) / (st.back().r - st.front().r) * last, 0.0, last);
+  const std::size_t j = std::min(std::size_t(t), st.size() - 2);
+  std::vector<Vec2> out = profiles[j];
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    const Vec2 step = profiles[j + 1][k] - out[k];
+    out[k] += (t - double(j)) * Vec2(std::remainder(step.x(), 6.283185307179586), step.y());
+  }
+  return out;
+}
+
 bool in_material(const std::vector<Vec2>& profile, double azimuth, double z, double z_tip) {
   if (z >= z_tip) return false;
   if (azimuth <= profile.front().x() || azimuth >= profile.back().x()) return true;
-  // The space is star-shaped seen from above: the profile is a function of the azimuth up to steep flanks.
-  const auto it = std::lower_bound(profile.begin(), profile.end(), azimuth, [](const Vec2& q, double az) { return q.x() < az; });
-  if (it == profile.begin() || it == profile.end()) return true;
-  const Vec2 &a = *(it - 1), &b = *it;
-  const double t = b.x() > a.x() ? (azimuth - a.x()) / (b.x() - a.x()) : 0;
-  return z < a.y() + t * (b.y() - a.y());
+  // Straight up from a place in the material the profile is crossed an odd number of times, also where a flank leans back.
+  bool inside = false;
+  for (std::size_t k = 1; k < profile.size(); ++k) {
+    const Vec2 &a = profile[k - 1], &b = profile[k];
+    if ((a.x() <= azimuth) == (b.x() <= azimuth)) continue;
+    if (z < a.y() + (azimuth - a.x()) / (b.x() - a.x()) * (b.y() - a.y())) inside = !inside;
+  }
+  return inside;
 }
 
 }  // namespace toothpath

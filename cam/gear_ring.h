@@ -52,6 +52,8 @@ struct GearRing {
   [[nodiscard]] bool over_land(double azimuth, double r) const;
   /// Distance to the tip surface's meridian in the plane (r, z), from below; `foot` is the radius of its foot.
   [[nodiscard]] double to_tip_meridian(double r, double z, double& foot) const;
+  /// (azimuth, z) across the space at radius r, tip to tip: between the stations, since a conical root rises along the tooth.
+  [[nodiscard]] std::vector<Vec2> profile(double r) const;
   /// A table over the radius.
   [[nodiscard]] double lookup(const std::vector<double>& y, double r) const;
 };

@@ -69,6 +69,26 @@ TEST(CutSurface, ASmallerBallShowsUp) {
   EXPECT_GT(smaller.finished.max_mm, surface(job, job.motions()).finished.max_mm + 0.004);
 }
 
+// Where the ball is about to touch a second wall, that wall is no second opinion about the first.
+TEST(CutSurface, SolversAreComparedAtOnePlaceOnly) {
+  FaceGearParameters g;
+  g.teeth = 138;
+  g.shaper_teeth = 36;
+  g.module_mm = 0.58;
+  g.pressure_angle_rad = radians(22.5);
+  g.addendum_coefficient = 0.6;
+  g.reference_radius_mm = 48.344;
+  g.shaper_tip_radius_mm = 0.1612;
+  g.backlash_mm = 0.0058;
+  g.zones = {{radians(25.47), 47.31, 47.89}};
+  const auto gear = test::made(g);
+  const GearDistance part(gear, 1.0);
+  // The residual needs the tool, not its path.
+  const auto cut = measure_cut_surface(part, {}, {test::finishing(0, 0.0087, 0.005, 0.0104)}, {test::ball_mill(0.29, 1, 0.29, 8, 10)});
+  EXPECT_LE(cut.solve_residual_mm, 1e-9);
+  EXPECT_GT(cut.solve_residual_mm, 0);
+}
+
 class Promises : public testing::TestWithParam<std::string> {};
 
 TEST_P(Promises, AllowanceStaysAndFinishingLeavesOnlyCusps) {

@@ -99,6 +99,38 @@ TEST_P(Distance, DepthBelowTheSurface) {
       }
 }
 
+// A conical root rises along the tooth: a short look that sees no surface must still tell air from material at every radius.
+TEST(DistanceOnACone, ShortLooksTellAirFromMaterial) {
+  FaceGearParameters p;
+  p.teeth = 79;
+  p.shaper_teeth = 21;
+  p.module_mm = 1.26;
+  p.pressure_angle_rad = radians(20);
+  p.shaft_angle_rad = radians(60);
+  p.shaper_tip_radius_mm = 0.2306;
+  p.reference_radius_mm = 54.81;
+  p.zones = {{0, 54.81, 56.07}};
+  const auto gear = test::made(p);
+  const GearDistance part(gear, 1.25);
+  test::Random random(23);
+  int free = 0, inside = 0;
+  for (int k = 0; k < 6000; ++k) {
+    const double r = random(gear.inner_radius(), gear.outer_radius()), a = random(0, gear.pitch());
+    const double root = root_height(gear.rings()[0].surface, r).value();
+    const Vec3 c(r * std::cos(a), r * std::sin(a), root + random(-0.3, 1.0) * p.module_mm);
+    const double within = random(0.02, 0.1), truth = part.nearest(c, 1.2).distance, said = part.nearest(c, within).distance;
+    if (truth > within + 1e-3) {
+      ++free;
+      EXPECT_EQ(said, within) << c.transpose() << " is " << truth << " away";
+    } else if (truth < -1e-3) {
+      ++inside;
+      EXPECT_LT(said, 0) << c.transpose() << " is " << -truth << " deep";
+    }
+  }
+  EXPECT_GT(free, 1000);
+  EXPECT_GT(inside, 1000);
+}
+
 TEST_P(Distance, TheSameAtEveryTooth) {
   test::Random random(19);
   const int teeth = gear.parameters().teeth;
