@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kLeastTolerance_mm = 1e-4, kMostTolerance_mm = 10;
 constexpr std::size_t kMostPitchTriangles = 1'000'000, kMostGearTriangles = 40'000'000;
-constexpr int kMostRefinements = 10;
+constexpr int kMostRefinements = 40;  // on coarse grids many steps of the aim change no cell
 
 using Index = std::int32_t;
 constexpr std::size_t idx(Index i) { return static_cast<std::size_t>(i); }

@@ -173,6 +173,22 @@ TEST(MeshToothSpace, FinerToleranceGivesMoreTrianglesAndLessSag) {
   EXPECT_GT(fine.mesh.triangles.size(), 4 * coarse.mesh.triangles.size());
 }
 
+TEST(MeshToothSpace, CoarseGridsAreRefinedUntilTheyHoldTheTolerance) {
+  // On so short a ring most steps of refinement change no cell: it takes 13 of them.
+  auto p = offset_gear();
+  p.teeth = 160;
+  p.shaper_teeth = 23;
+  p.module_mm = 0.87;
+  p.module_plane = ModulePlane::normal;
+  p.offset_mm = 9.28;
+  p.shaper_tip_radius_mm = 0.0559;
+  p.zones = {{0, 75.556, 76.426}};
+  const auto gear = made(p);
+  const auto mesh = mesh_tooth_space(gear, 0.002);
+  ASSERT_TRUE(mesh) << mesh.error().message;
+  EXPECT_LE(mesh->max_sag(), 0.002);
+}
+
 TEST(MeshToothSpace, SameInputSameBits) {
   const FaceGear gear = made(spur_parameters());
   const ToothMesh a = meshed(gear, 0.02), b = meshed(gear, 0.02);
