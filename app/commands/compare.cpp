@@ -17,7 +17,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"compare.csv", "compare.json", "compare.html", "program."};
+const std::vector<std::string> kOutputs = {"compare.csv", "compare.json", "compare.html"};
 constexpr int kRows = 121, kColumns = 33;
 constexpr double kUm = 1e3;
 /// Two numbers of job files that mean the same gear differ by rounding at most.

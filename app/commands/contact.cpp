@@ -11,7 +11,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"contact.csv", "transmission.csv", "contact.json", "contact.html", "program."};
+const std::vector<std::string> kOutputs = {"contact.csv", "transmission.csv", "contact.json", "contact.html"};
 
 /// Rows that resolve the cusps of a finishing operation: several to a pass.
 constexpr int kCutRows = 241, kCutColumns = 33;

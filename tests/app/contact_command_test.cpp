@@ -75,6 +75,51 @@ TEST(ContactCommand, KeysAndOptions) {
   }
 }
 
+/// A contact run that fails, however it does, leaves nothing that an earlier one wrote, and nothing half-written; what belongs to others stays.
+TEST(ContactCommand, AFailedRunLeavesNoOlderPage) {
+  const TestDir dir;
+  const std::string out = dir / "out", good = kSamples + "/offset_shaped.toml", bevel = kSamples + "/bevel_pinion.toml";
+  const std::vector<std::string> pages = {"contact.csv", "contact.html", "contact.json", "transmission.csv"}, kept = {"my notes.txt", "program.ngc", "report.html"};
+  const auto older = [&] {
+    std::filesystem::create_directories(out);
+    for (const auto& name : pages) write_file(out + "/" + name, "older");
+    for (const auto& name : kept) write_file(out + "/" + name, "not of this command");
+  };
+  const auto expect_only_kept = [&](const std::string& what) {
+    EXPECT_EQ(names_in(out), kept) << what;
+    for (const auto& name : kept) EXPECT_EQ(file_text(out + "/" + name), "not of this command") << what;
+  };
+  const std::pair<int, std::vector<std::string>> refused[] = {{3, {good, "--pinion-teeth", "26"}},
+                                                              {2, {good, "--compound", "1000"}},
+                                                              {3, {kBadJobs + "/module_negative.toml"}},
+                                                              {4, {dir / "no_such.toml"}},
+                                                              {3, {bevel, "--mate", good}}};
+  for (const auto& [code, words] : refused) {
+    older();
+    std::vector<std::string> arguments = {"contact", "--out", out};
+    arguments.insert(arguments.end(), words.begin(), words.end());
+    EXPECT_EQ(run_program(arguments).exit_code, code) << words.back();
+    expect_only_kept(words.back());
+  }
+  // The disk is full from the beginning, and at a later file.
+  for (const rlim_t bytes : {rlim_t{0}, rlim_t{4000}}) {
+    older();
+    Launch launch;
+    launch.arguments = {"contact", good, "--pinion-teeth", "23", "--out", out, "--quiet"};
+    launch.largest_file = bytes;
+    EXPECT_EQ(run_program(launch).exit_code, 4) << bytes;
+    expect_only_kept("files of at most " + std::to_string(bytes) + " bytes");
+  }
+  // Ended by a signal while it computes.
+  older();
+  Launch launch;
+  launch.arguments = {"contact", good, "--pinion-teeth", "23", "--out", out};
+  launch.signal_number = SIGTERM;
+  launch.signal_after_ms = 300;
+  EXPECT_EQ(run_program(launch).exit_code, 130);
+  expect_only_kept("signal");
+}
+
 TEST(ContactCommand, Refusals) {
   const TestDir dir;
   const auto many = run_program({"contact", kSamples + "/offset_shaped.toml", "--pinion-teeth", "26", "--out", dir / "a"});
