@@ -86,7 +86,7 @@ std::optional<Diagnostic> post_and_prove(BevelRun& run, OutputDir& output, const
   if (!posted) return posted.error();
   run.program = std::move(posted.value());
   const AxisProgram& axes = run.program->axes;
-  note_axis_program(run.report, run.job, paths, run.program->restarted ? *run.program->restarted : axes);
+  note_axis_program(run.report, run.job, run.machine, paths, run.program->restarted ? *run.program->restarted : axes);
   run.report.blocks = run.program->blocks;
 
   auto proof = prove_bevel_program(run.program->text, output.final_path(run.program->file), run.job, run.machine, *run.gear, check, paths_to_meet(axes, paths),

@@ -18,6 +18,9 @@ constexpr std::size_t kMostBytes = std::size_t(1) << 30;
 constexpr double kLeastAxisBlend = 0.0001;  // deg: the last digit of a tolerance of the rotaries
 constexpr double kBlendShare = 0.15;      // of the gouge tolerance that the control may round corners by
 
+/// The words of `pole`, in the order of PoleOption.
+constexpr const char* kPoleWords[] = {"error", "tilt", "hold", "through", "slow", "retract"};
+
 double shown(const AxisRange& axis, double value) { return axis.rotary ? degrees(value) : value; }
 
 }  // namespace
@@ -43,7 +46,7 @@ RunReport report_of(const std::string& command, const Job& job, const Machine& m
   return report;
 }
 
-void note_axis_program(RunReport& report, const Job& job, std::span<const ClPath* const> paths, const AxisProgram& program) {
+void note_axis_program(RunReport& report, const Job& job, const Machine& machine, std::span<const ClPath* const> paths, const AxisProgram& program) {
   report.axes = program.ranges;
   const bool timed = program.has_acceleration;
   report.has_acceleration = timed;
@@ -52,7 +55,9 @@ void note_axis_program(RunReport& report, const Job& job, std::span<const ClPath
   if (job.setup && program.offer)
     report.travel_room = TravelRoom{*program.offer, job.setup->origin_mm + program.offer->shift_mm, job.setup->work_offset_at_mm + program.offer->shift_mm};
   if (job.setup && program.offer) report.sheet_sections.push_back(travel_section(program, *job.setup));
-  report.sheet_sections.push_back(time_section(program));
+  if (program.pole_passages > 0)
+    report.poles = PolesReport{program.pole_passages, kPoleWords[static_cast<std::size_t>(machine.post.pole)], program.pole_axis_rad, program.pole_tip_mm};
+  report.sheet_sections.push_back(time_section(program, report.poles));
   report.block_times = block_times_of(program);
   for (const AxisOperation& o : program.operations) {
     const auto& asked = job.operations[static_cast<std::size_t>(o.operation)];

@@ -20,8 +20,8 @@ namespace toothpath {
 /// Names of job and machine, assumed values, warnings.
 [[nodiscard]] RunReport report_of(const std::string& command, const Job& job, const Machine& machine, const std::vector<std::string>& gear_warnings);
 
-/// Axis ranges, times and operations. `paths`: one an operation.
-void note_axis_program(RunReport& report, const Job& job, std::span<const ClPath* const> paths, const AxisProgram& program);
+/// Axis ranges, times, poles and operations. `paths`: one an operation.
+void note_axis_program(RunReport& report, const Job& job, const Machine& machine, std::span<const ClPath* const> paths, const AxisProgram& program);
 
 /// The paths that the program follows: those given, or where poles were handled those that were made of them.
 [[nodiscard]] std::vector<const ClPath*> paths_to_meet(const AxisProgram& program, std::span<const ClPath* const> paths);

@@ -136,7 +136,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
                              run.restart);
   if (!posted) return posted.error();
   const AxisProgram& program = posted->axes;
-  note_axis_program(run.report, run.job, paths, posted->restarted ? *posted->restarted : program);
+  note_axis_program(run.report, run.job, run.machine, paths, posted->restarted ? *posted->restarted : program);
   run.report.blocks = posted->blocks;
 
   ProofOptions options;

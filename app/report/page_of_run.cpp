@@ -38,6 +38,7 @@ PageTable axis_table(const RunReport& r) {
     table.rows.push_back({std::string(1, axis.letter), number(axis.min), number(axis.max), limit(axis.lower_limit), limit(axis.upper_limit),
                           axis.rotary ? "deg" : "mm"});
   }
+  if (r.poles) table.note += " " + poles_text(*r.poles);
   return table;
 }
 

@@ -144,6 +144,11 @@ void add_motion(Json& json, const RunReport& r) {
     else entry["limit"] = {axis.lower_limit * f, axis.upper_limit * f};
   }
   json["axes"] = std::move(axes);
+  if (r.poles)
+    json["poles"] = {{"passages_per_tooth", r.poles->passages},
+                     {"option", r.poles->option},
+                     {"axis_change_deg", degrees(r.poles->axis_rad)},
+                     {"tip_change_um", um(r.poles->tip_mm)}};
   json["acceleration_in_times"] = r.has_acceleration;
   if (r.travel_room) {
     const TravelOffer& offer = r.travel_room->offer;

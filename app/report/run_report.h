@@ -40,6 +40,17 @@ struct LengthTolerance {
   std::optional<double> too_short_mm; ///< what a finishing operation may leave is not exceeded; none: another operation cuts there
 };
 
+/// Poles of a rotary that the program passes (docs/axis_motion.md).
+struct PolesReport {
+  std::size_t passages = 0;  ///< of one tooth
+  std::string option;        ///< of the machine file or the job that was taken: "hold"
+  double axis_rad = 0;       ///< proven: for it the tool axis moves by no more ..
+  double tip_mm = 0;         ///< .. and the tip, about the centre of the ball, which stays
+};
+
+/// The same in one line, for page and set-up sheet.
+[[nodiscard]] std::string poles_text(const PolesReport& poles);
+
 /// A table of the set-up sheet that is made elsewhere.
 struct SheetSection {
   std::string title;
@@ -75,6 +86,7 @@ struct RunReport {
   std::vector<OperationReport> operations;
   std::vector<DirectionChoice> directions;
   std::vector<AxisRange> axes;
+  std::optional<PolesReport> poles;                      ///< none where the program comes to no pole
   std::optional<TravelRoom> travel_room;                 ///< none where it was not looked for
   bool has_acceleration = false;                         ///< the times above hold the accelerations of the axes
   std::optional<BlockTimes> block_times;                 ///< none where no program was posted

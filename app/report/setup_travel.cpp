@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/base/angle.h"
+
 namespace toothpath {
 namespace {
 
@@ -14,6 +16,11 @@ std::string riser_text(const TravelOffer& offer) {
   const double z = offer.shift_mm.z();
   if (std::abs(z) < 5e-4) return {};
   return z > 0 ? fmt::format("needs a riser of {:.3f} mm under the part", z) : fmt::format("needs the part {:.3f} mm lower: a lower fixture, or none", -z);
+}
+
+std::string poles_text(const PolesReport& poles) {
+  return fmt::format("Poles passed: {} a tooth (pole = \"{}\"); the tool axis moves by at most {:.4f} deg for it, the tip by {:.4f} mm about the centre of the ball.",
+                     poles.passages, poles.option, degrees(poles.axis_rad), poles.tip_mm);
 }
 
 SheetSection travel_section(const AxisProgram& program, const Setup& setup) {
@@ -36,7 +43,7 @@ SheetSection travel_section(const AxisProgram& program, const Setup& setup) {
   return section;
 }
 
-SheetSection time_section(const AxisProgram& program) {
+SheetSection time_section(const AxisProgram& program, const std::optional<PolesReport>& poles) {
   SheetSection section;
   section.title = "Run time";
   section.columns = {"what", "cutting, min", "rapids, min"};
@@ -51,9 +58,7 @@ SheetSection time_section(const AxisProgram& program) {
   for (std::size_t i = 0; i < program.time_rulers.size(); ++i)
     if (program.time_ruled[i] > 0) rulers += fmt::format("{}{} {}", rulers.empty() ? "" : ", ", program.time_rulers[i], program.time_ruled[i]);
   if (!rulers.empty()) section.note += " Feed blocks by what ruled their time: " + rulers + ".";
-  if (program.pole_passages > 0)
-    section.note += fmt::format(" Poles passed: {}; the tool axis moves by at most {:.4f} deg for it, the tip by {:.4f} mm about the centre of the ball.", program.pole_passages,
-                                program.pole_axis_rad * 180 / kPi, program.pole_tip_mm);
+  if (poles) section.note += " " + poles_text(*poles);
   return section;
 }
 

@@ -13,8 +13,9 @@ namespace toothpath {
 /// section has no rows where no place was looked for.
 [[nodiscard]] SheetSection travel_section(const AxisProgram& program, const Setup& setup);
 
-/// Times of the program and with the accelerations of the axes, or that the machine file states none; which term ruled the blocks.
-[[nodiscard]] SheetSection time_section(const AxisProgram& program);
+/// Times of the program and with the accelerations of the axes, or that the machine file states none; which term ruled the blocks;
+/// poles that the program passes.
+[[nodiscard]] SheetSection time_section(const AxisProgram& program, const std::optional<PolesReport>& poles);
 
 /// What a place means for the fixture: "needs a riser of 12.000 mm", "needs the part 3.000 mm lower", or nothing.
 [[nodiscard]] std::string riser_text(const TravelOffer& offer);

@@ -74,6 +74,29 @@ void print(const char* name, const PoleRun& r, const Sampled& s) {
               s.centre_mm * 1000, s.axis_rad / kDegree, s.nearest_pole / kDegree);
 }
 
+/// report.json, page and set-up sheet tell the poles that are passed, with the option of the job and what it may move.
+void expect_poles_told(const PoleRun& r, const PoleJob& job, const TestDir& dir) {
+  ASSERT_TRUE(r.report.contains("poles"));
+  const Json& poles = r.report["poles"];
+  const int passages = poles["passages_per_tooth"];
+  const double axis_deg = poles["axis_change_deg"], tip_um = poles["tip_change_um"];
+  EXPECT_GE(passages, 10) << "one in each of some twenty passes";
+  EXPECT_LE(passages, 40);
+  EXPECT_EQ(poles["option"], job.pole);
+  EXPECT_GE(axis_deg, 0);
+  EXPECT_LE(axis_deg, job.angle_deg.value_or(0.0573) * (1 + 1e-3));
+  // The tip turns about the centre of the ball with the axis.
+  EXPECT_NEAR(tip_um, 1000 * kBall * axis_deg * kDegree, 0.01 + 1e-3 * tip_um);
+  for (const char* name : {"report.html", "setup.html"}) {
+    const std::string page = file_text(dir / (std::string("out/") + name));
+    const auto at = page.find("Poles passed: ");
+    ASSERT_NE(at, std::string::npos) << name;
+    EXPECT_EQ(page.find("Poles passed: ", at + 1), std::string::npos) << name << " tells them twice";
+    const std::string line = page.substr(at, 300);
+    EXPECT_TRUE(line.starts_with(fmt::format("Poles passed: {} a tooth (pole = &quot;{}&quot;); the tool axis moves by at most {:.4f} deg", passages, job.pole, axis_deg))) << line;
+  }
+}
+
 struct Case {
   const char* pole;
   double aside_deg;
@@ -97,6 +120,11 @@ TEST_P(PoleOptions, GoesTheWholeWayOnATrunnion) {
   EXPECT_EQ(r.report["verified"], true);
   EXPECT_LE(r.report["gouge_um"]["bound"].get<double>(), 3.0);
   EXPECT_LE(r.report["gouge_um"]["measured"].get<double>(), r.report["gouge_um"]["bound"].get<double>());
+  if (std::string(c.pole) == "slow" && c.aside_deg > 0) {
+    EXPECT_FALSE(r.report.contains("poles")) << "the path keeps outside the cone: nothing is changed there";
+  } else {
+    expect_poles_told(r, job, dir);
+  }
   const Sampled s = sampled(r);
   print(fmt::format("{} aside {}", c.pole, c.aside_deg).c_str(), r, s);
   EXPECT_LT(s.centre_mm, kCentreBound);
@@ -184,6 +212,8 @@ TEST(PoleRun, TiltMovesNoPrescribedAxis) {
   job.outer_deg = 9;
   const PoleRun far = run_pole(other, job);
   ASSERT_EQ(far.run.exit_code, 0) << far.run.err;
+  EXPECT_FALSE(far.report.contains("poles")) << "there is none to pass";
+  for (const char* name : {"report.html", "setup.html"}) EXPECT_EQ(file_text(other / (std::string("out/") + name)).find("Poles passed"), std::string::npos) << name;
   EXPECT_GT(sampled(far).nearest_pole, 5.9 * kDegree);
 }
 
