@@ -18,7 +18,7 @@ struct Golden {
   TcpMode tcp;
   double swing;
   bool expand;
-  int teeth = 2, stride = 1, steps = 3;
+  int teeth = 2, stride = 1, steps = 3, rollover = 0;
 };
 void PrintTo(const Golden& g, std::ostream* out) { *out << g.file; }
 
@@ -39,11 +39,15 @@ INSTANTIATE_TEST_SUITE_P(Files, GoldenPost,
                                          Golden{"linuxcnc_spread.ngc", "linuxcnc", TcpMode::none, 0.1, false, 5, 2, 1},
                                          Golden{"fanuc_spread.nc", "fanuc", TcpMode::none, 0, false, 5, 2, 1},
                                          Golden{"siemens_spread.mpf", "siemens", TcpMode::angles, 0.1, false, 5, 2, 1},
-                                         Golden{"heidenhain_spread.h", "heidenhain", TcpMode::angles, 0, false, 5, 2, 1}));
+                                         Golden{"heidenhain_spread.h", "heidenhain", TcpMode::angles, 0, false, 5, 2, 1},
+                                         Golden{"linuxcnc_rollover.ngc", "linuxcnc", TcpMode::none, 0.1, false, 5, 1, 1, -1},
+                                         Golden{"fanuc_rollover.nc", "fanuc", TcpMode::none, 0, false, 5, 1, 1, -1},
+                                         Golden{"siemens_rollover.mpf", "siemens", TcpMode::angles, 0.1, false, 5, 1, 1, -1},
+                                         Golden{"heidenhain_rollover.h", "heidenhain", TcpMode::angles, 0, false, 5, 1, 1, -1}));
 
 TEST_P(GoldenPost, ByteForByte) {
   const Golden& g = GetParam();
-  const PostForm form{g.dialect, g.tcp, g.swing, g.expand};
+  const PostForm form{g.dialect, g.tcp, g.swing, g.expand, g.rollover};
   const auto program = program_of(form, {sample_path(0.3, g.swing, g.steps)}, g.teeth, g.stride);
   ASSERT_TRUE(program) << program.error().message;
   const auto text = text_of(form, *program);
