@@ -10,8 +10,6 @@
 
 namespace toothpath {
 
-struct ShaperSetup;
-
 /// Work turns over cutter turns, as the program says them, with its sign.
 struct GearboxRatio {
   std::int64_t work_turns = 0, cutter_turns = 0;
@@ -45,9 +43,5 @@ struct GearboxWords {
 
 /// Any text gives a reading; what is not understood is a problem.
 [[nodiscard]] GearboxReading read_gearbox_program(std::string_view text, const GearboxWords& words);
-
-/// Everything in which the program differs from the set-up: the ratio as an equality of whole numbers, stroke ends and offset slide to half
-/// a printed digit, infeed to full depth and one whole turn of the work there (whole numbers again), senses, times to 0.2 %. Empty: proven.
-[[nodiscard]] std::vector<std::string> gearbox_program_faults(std::string_view text, const ShaperSetup& setup);
 
 }  // namespace toothpath

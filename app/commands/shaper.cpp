@@ -13,7 +13,7 @@
 #include "machines/machine_file.h"
 #include "machines/shaper_machine.h"
 #include "postproc/shaper_gearbox_program.h"
-#include "postproc/shaper_gearbox_reader.h"
+#include "postproc/shaper_gearbox_proof.h"
 #include "postproc/shaper_program.h"
 #include "postproc/shaper_setup.h"
 #include "postproc/shaper_sheet.h"

@@ -4,6 +4,7 @@
 #include <sstream>
 
 #include "postproc/shaper_gearbox_program.h"
+#include "postproc/shaper_gearbox_proof.h"
 #include "postproc/shaper_gearbox_reader.h"
 #include "tests/postproc/shaper_case.h"
 
