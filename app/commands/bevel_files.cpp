@@ -2,38 +2,29 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
+#include "app/commands/gear_files.h"
 #include "app/report/deviation_vtp.h"
 #include "cam/finger_bodies.h"
 #include "cam/finger_milling.h"
 #include "cam/finger_obstacles.h"
 #include "geometry/base/angle.h"
 #include "geometry/bevel_mesh.h"
-#include "geometry/mesh_file.h"
 
 namespace toothpath {
 namespace {
 
-Result<std::string> stl_text(const BevelGear& gear, const std::string& job_name) {
+Result<std::string> gear_text(const BevelGear& gear, const std::string& job_name) {
   const auto mesh = bevel_gear_mesh(gear);
   if (!mesh) return mesh.error();
-  std::string title = "toothpath gear " + job_name;
-  title.resize(std::min<std::size_t>(title.size(), 80));
-  std::ostringstream out;
-  const auto counts = write_stl(out, *mesh, title);
-  if (!counts) return counts.error();
-  return std::move(out).str();
+  return stl_text(*mesh, job_name);
 }
 
 Result<std::string> pitch_text(const BevelGear& gear) {
-  std::vector<double> patch;
-  const auto mesh = bevel_pitch_mesh(gear, patch);
+  std::vector<double> patches;
+  const auto mesh = bevel_pitch_mesh(gear, patches);
   if (!mesh) return mesh.error();
-  const std::vector<PointField> fields = {{"patch", patch}};
-  std::ostringstream out;
-  if (const auto written = write_vtp(out, *mesh, fields); !written) return written.error();
-  return std::move(out).str();
+  return vtp_text(*mesh, patches);
 }
 
 Result<std::string> inspection_text(const BevelGear& gear) {
@@ -104,15 +95,11 @@ std::string bevel_limits_json(const BevelGear& g) {
 
 Status write_bevel_files(OutputDir& output, const BevelGear& gear, const std::string& job_name, const std::vector<SurfaceGrid>& walls,
                          StageClock& clock, std::vector<std::string>& files) {
-  const auto write = [&](const std::string& name, const Result<std::string>& content) -> Status {
-    if (!content) return content.error();
-    files.push_back(name);
-    return output.write(name, *content);
-  };
-  if (const auto s = write("limits.json", bevel_limits_json(gear)); !s) return s;
-  if (const auto s = write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); })); !s) return s;
-  if (const auto s = write("gear.stl", clock.run("mesh", [&] { return stl_text(gear, job_name); })); !s) return s;
-  return write("tooth.vtp", clock.run("mesh", [&] { return walls.empty() ? pitch_text(gear) : deviation_vtp(walls); }));
+  GearFiles to(output, files);
+  if (const auto s = to.write("limits.json", bevel_limits_json(gear)); !s) return s;
+  if (const auto s = to.write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); })); !s) return s;
+  if (const auto s = to.write("gear.stl", clock.run("mesh", [&] { return gear_text(gear, job_name); })); !s) return s;
+  return to.write("tooth.vtp", clock.run("mesh", [&] { return walls.empty() ? pitch_text(gear) : deviation_vtp(walls); }));
 }
 
 }  // namespace toothpath

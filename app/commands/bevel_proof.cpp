@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "app/commands/program_motions.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
@@ -121,36 +122,17 @@ Tolerances proof_tolerances(const Job& job) {
 Result<BevelProof> prove_bevel_program(std::string_view text, const std::string& file, const Job& job, const Machine& machine,
                                        const BevelGear& gear, const FingerGougeCheck& check, std::span<const ClPath* const> paths,
                                        const PathTolerance& path, StageClock& clock) {
-  const int teeth = gear.parameters().teeth;
-  const auto control = control_of(machine, *job.setup, job.tools);
-  if (!control) return control.error();
-  auto read = clock.run("read back", [&] {
-    return read_back(text, file, *control, machine, *job.setup, {.teeth = teeth, .keep_all = job.verify.all_teeth});
-  });
+  auto read = motions_of_program(text, file, job, machine, gear.parameters().teeth, kMotionTolerance, kMotionTolerance, clock);
   if (!read) return read.error();
   BevelProof proof;
-  proof.read = std::move(read.value());
-  for (const OperationTrace& trace : proof.read.operations) {
-    auto part = clock.run("read back", [&] {
-      return tool_motions(trace, proof.read.copies, *control, machine, *job.setup, teeth, kMotionTolerance, kMotionTolerance);
-    });
-    if (!part) return part.error();
-    proof.motions.insert(proof.motions.end(), part->begin(), part->end());
-  }
+  proof.read = std::move(read->read);
+  proof.motions = std::move(read->motions);
   proof.result = clock.run("proof of the program", [&] { return verify_teeth(check, proof.motions); });
-  proof.moving = moving_axes(proof.read, proof.motions, *control);
+  proof.moving = moving_axes(proof.read, proof.motions, read->control);
   judge(job, proof.result, proof.reasons);
   if (paths.empty()) return proof;
   proof.path_tolerance_mm = path.mm + 2 * kMotionTolerance;
-  proof.comparison = clock.run("compare with the path", [&] {
-    return compare_with_cl(proof.motions, paths, proof.path_tolerance_mm, path.rad + 2 * kMotionTolerance);
-  });
-  const ClComparison& c = *proof.comparison;
-  if (!c.complete)
-    proof.reasons.push_back(fmt::format("operation {}, record {} is not met by the program: {}", c.missed_operation, c.missed_record, c.message));
-  if (c.worst_extra_mm > proof.path_tolerance_mm)
-    proof.reasons.push_back(fmt::format("the program leaves the path by {:.4f} mm, limit {:.4f} mm, near line {}", c.worst_extra_mm,
-                                        proof.path_tolerance_mm, c.line));
+  proof.comparison = compare_with_paths(proof.motions, paths, proof.path_tolerance_mm, path.rad + 2 * kMotionTolerance, clock, proof.reasons);
   return proof;
 }
 

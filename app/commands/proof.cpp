@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "app/commands/program_motions.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
@@ -25,10 +26,10 @@ void judge_gouge(const GougeResult& gouge, const GougeCheck& check, const ProofO
   if (reasons.empty()) reasons.push_back("the gouge check does not pass");
 }
 
-/// What a finishing operation may leave, on every point that its ball can reach: the cusps, the chords and a micrometre.
 /// The least stock after an operation, as a share of its allowance.
 constexpr double kLeastAllowance = 0.8;
 
+/// What a finishing operation may leave, on every point that its ball can reach: the cusps, the chords and a micrometre.
 void judge_surface(const CutSurface& surface, const Job& job, std::vector<std::string>& reasons) {
   for (const ExcessResult& after : surface.operations) {
     const double allowance = job.operations[static_cast<std::size_t>(after.operation)].allowance_mm;
@@ -43,15 +44,6 @@ void judge_surface(const CutSurface& surface, const Job& job, std::vector<std::s
   reasons.push_back(fmt::format("left material: {:.2f} um after the last operation, limit {:.2f} um (scallop {:.2f}, chord {:.2f}, margin {:.2f})",
                                 surface.finished.max_mm * 1000, limit * 1000, last.scallop_mm * 1000, last.chord_tolerance_mm * 1000,
                                 kExcessMargin * 1000));
-}
-
-void judge_comparison(const ClComparison& comparison, const ProofOptions& options, std::vector<std::string>& reasons) {
-  if (!comparison.complete)
-    reasons.push_back(fmt::format("operation {}, record {} is not met by the program: {}", comparison.missed_operation,
-                                  comparison.missed_record, comparison.message));
-  if (comparison.worst_extra_mm > options.path_tolerance_mm)
-    reasons.push_back(fmt::format("the program leaves the path by {:.4f} mm, limit {:.4f} mm, near line {}", comparison.worst_extra_mm,
-                                  options.path_tolerance_mm, comparison.line));
 }
 
 Vec3 turned(const Vec3& v, double angle) {
@@ -108,24 +100,13 @@ ClearanceBody clearance_body(const FaceGear& gear) {
 Result<ProgramProof> prove_program(std::string_view text, const std::string& file, const Job& job, const Machine& machine,
                                    const GearDistance& part, const GougeCheck& check, const ClearanceBody& body, int teeth, std::span<const ClPath* const> paths,
                                    const ProofOptions& options, StageClock& clock) {
-  const auto control = control_of(machine, *job.setup, job.tools);
-  if (!control) return control.error();
-  auto read = clock.run("read back", [&] {
-    return read_back(text, file, *control, machine, *job.setup, {.teeth = teeth, .keep_all = job.verify.all_teeth});
-  });
+  auto read = motions_of_program(text, file, job, machine, teeth, options.motion_tolerance_mm, options.motion_tolerance_rad, clock);
   if (!read) return read.error();
-
   ProgramProof proof;
-  proof.read = std::move(read.value());
-  for (const OperationTrace& trace : proof.read.operations) {
-    auto motions = clock.run("read back", [&] {
-      return tool_motions(trace, proof.read.copies, *control, machine, *job.setup, teeth, options.motion_tolerance_mm,
-                          options.motion_tolerance_rad);
-    });
-    if (!motions) return motions.error();
-    proof.motions.insert(proof.motions.end(), motions->begin(), motions->end());
-    if (const auto clear = check_rapids(trace, *control, machine, *job.setup, body, job.tools); !clear) proof.reasons.push_back(clear.error().message);
-  }
+  proof.read = std::move(read->read);
+  proof.motions = std::move(read->motions);
+  for (const OperationTrace& trace : proof.read.operations)
+    if (const auto clear = check_rapids(trace, read->control, machine, *job.setup, body, job.tools); !clear) proof.reasons.push_back(clear.error().message);
   // Teeth that are written out one by one: what is the first tooth again, turned, need not be proven again.
   if (!proof.read.copies.copies && !job.verify.all_teeth)
     proof.motions = clock.run("compare the teeth", [&] { return without_copies(std::move(proof.motions), teeth); });
@@ -136,12 +117,8 @@ Result<ProgramProof> prove_program(std::string_view text, const std::string& fil
   judge_gouge(proof.gouge, check, options, proof.reasons);
   proof.surface = clock.run("cut surface", [&] { return measure_cut_surface(part, proof.motions, job.operations, job.tools, options.cut_surface); });
   judge_surface(proof.surface, job, proof.reasons);
-  if (!paths.empty()) {
-    proof.comparison = clock.run("compare with the path", [&] {
-      return compare_with_cl(proof.motions, paths, options.path_tolerance_mm, options.path_tolerance_rad);
-    });
-    judge_comparison(*proof.comparison, options, proof.reasons);
-  }
+  if (!paths.empty())
+    proof.comparison = compare_with_paths(proof.motions, paths, options.path_tolerance_mm, options.path_tolerance_rad, clock, proof.reasons);
   return proof;
 }
 

@@ -1,13 +1,11 @@
 #include "app/commands/surface_files.h"
 
-#include <sstream>
-
+#include "app/commands/gear_files.h"
 #include "app/report/limits_chart.h"
 #include "app/report/limits_json.h"
 #include "app/report/study_page.h"
 #include "geometry/inspection_dmis.h"
 #include "geometry/inspection_grid.h"
-#include "geometry/mesh_file.h"
 
 namespace toothpath {
 namespace {
@@ -22,25 +20,16 @@ std::vector<double> patch_of_vertices(const ToothMesh& pitch) {
   return field;
 }
 
-Result<std::string> stl_text(const FaceGear& gear, const std::string& job_name) {
+Result<std::string> gear_text(const FaceGear& gear, const std::string& job_name) {
   const auto pitch = mesh_tooth_space(gear, kStlSag);
   if (!pitch) return pitch.error();
-  std::string title = "toothpath gear " + job_name;
-  title.resize(std::min<std::size_t>(title.size(), 80));
-  std::ostringstream out;
-  const auto counts = write_stl(out, *pitch, title);
-  if (!counts) return counts.error();
-  return std::move(out).str();
+  return stl_text(*pitch, job_name);
 }
 
-Result<std::string> vtp_text(const FaceGear& gear) {
+Result<std::string> pitch_text(const FaceGear& gear) {
   const auto pitch = mesh_tooth_space(gear, kVtpSag);
   if (!pitch) return pitch.error();
-  const auto patches = patch_of_vertices(*pitch);
-  const std::vector<PointField> fields = {{"patch", patches}};
-  std::ostringstream out;
-  if (const auto written = write_vtp(out, pitch->mesh, fields); !written) return written.error();
-  return std::move(out).str();
+  return vtp_text(pitch->mesh, patch_of_vertices(*pitch));
 }
 
 Result<std::string> inspection_text(const FaceGear& gear) {
@@ -53,22 +42,18 @@ Result<std::string> inspection_text(const FaceGear& gear) {
 
 Status write_surface_files(OutputDir& output, const FaceGear& gear, const std::string& job_name, StageClock& clock,
                            std::vector<std::string>& files, const std::vector<std::string>& assumed) {
-  const auto write = [&](const std::string& name, const Result<std::string>& content) -> Status {
-    if (!content) return content.error();
-    files.push_back(name);
-    return output.write(name, *content);
-  };
-  if (const auto s = write("limits.json", limits_json(gear)); !s) return s;
-  if (const auto s = write("limits.html", limits_page(gear, job_name, assumed)); !s) return s;
+  GearFiles to(output, files);
+  if (const auto s = to.write("limits.json", limits_json(gear)); !s) return s;
+  if (const auto s = to.write("limits.html", limits_page(gear, job_name, assumed)); !s) return s;
   for (std::size_t zone = 0; zone < gear.rings().size(); ++zone)
-    if (const auto s = write(gear.rings().size() == 1 ? "limits.svg" : "limits_" + std::to_string(zone) + ".svg", standalone_svg(limit_charts(gear)[2 * zone])); !s)
+    if (const auto s = to.write(gear.rings().size() == 1 ? "limits.svg" : "limits_" + std::to_string(zone) + ".svg", standalone_svg(limit_charts(gear)[2 * zone])); !s)
       return s;
   const auto dmis = inspection_grid(gear);
   if (!dmis) return dmis.error();
-  if (const auto s = write("inspection.dmi", inspection_dmis(gear, *dmis, job_name)); !s) return s;
-  if (const auto s = write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); })); !s) return s;
-  if (const auto s = write("gear.stl", clock.run("mesh", [&] { return stl_text(gear, job_name); })); !s) return s;
-  return write("tooth.vtp", clock.run("mesh", [&] { return vtp_text(gear); }));
+  if (const auto s = to.write("inspection.dmi", inspection_dmis(gear, *dmis, job_name)); !s) return s;
+  if (const auto s = to.write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); })); !s) return s;
+  if (const auto s = to.write("gear.stl", clock.run("mesh", [&] { return gear_text(gear, job_name); })); !s) return s;
+  return to.write("tooth.vtp", clock.run("mesh", [&] { return pitch_text(gear); }));
 }
 
 }  // namespace toothpath
