@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/postproc/nc_case.h"
+#include "tests/postproc/trunnion_post.h"
 #include "tests/support/nc_modal_simulator.h"
 
 namespace toothpath::test {
@@ -42,15 +42,7 @@ inline const std::vector<Post>& all_posts() {
   return posts;
 }
 
-inline Machine machine_of(const Post& p) {
-  Machine m = with_dialect(trunnion(), p.dialect);
-  m.tcp = p.tcp;
-  if (std::string(p.dialect) == "linuxcnc") {
-    m.post.tcp_on = {"M428"};
-    m.post.tcp_off = {"M429"};
-  }
-  return m;
-}
+inline Machine machine_of(const Post& p) { return trunnion_with(p.dialect, p.tcp); }
 
 /// Rotaries may move in a cut. Heidenhain without TCP has no feed for it.
 inline bool may_turn(const Post& p) { return p.tcp != TcpMode::none || std::string(p.dialect) != "heidenhain"; }
