@@ -44,8 +44,8 @@ ValueOrErrors<FaceGear> make_face_gear(const Job& job) {
   std::vector<Diagnostic> errors;
   for (auto& refusal : std::get<1>(made)) {
     // The stock of the blank stands in its own table.
-    const bool stock = refusal.key == "groove_depth" || refusal.key == "allowance_top";
-    errors.push_back(located(job, (stock ? "stock." : "gear.") + refusal.key, std::move(refusal.diagnostic)));
+    const bool stock = refusal.key.starts_with("stock.");
+    errors.push_back(located(job, (stock ? "" : "gear.") + refusal.key, std::move(refusal.diagnostic)));
   }
   return errors;
 }

@@ -222,11 +222,9 @@ void Inspection::groove(const std::vector<FaceGearRing>& rings, std::vector<std:
   }
   const double r = mid_groove(rings);
   if (gear_.groove_depth_mm >= 0) {
-    double root = std::numeric_limits<double>::infinity();
-    for (const auto& ring : rings) root = std::min(root, root_height(ring.surface, r).value_or(root));
-    const double depth = rings[0].surface.z_tip(r) - root;
+    const double depth = rings[0].surface.z_tip(r) - root_in_groove(rings);
     if (gear_.groove_depth_mm < depth * (1 - 1e-12))
-      refuse("stock.groove_depth", "groove_depth = {:.4f} mm does not reach the root, {:.4f} mm below the tip surface at mid-groove",
+      refuse("stock.groove_depth", "groove_depth = {:.4f} mm does not reach the root beside the groove, {:.4f} mm below the tip surface at mid-groove",
              gear_.groove_depth_mm, depth);
     if (gear_.groove_depth_mm > 1000)
       refuse("stock.groove_depth", "groove_depth = {:.4f} mm exceeds 1000 mm", gear_.groove_depth_mm);

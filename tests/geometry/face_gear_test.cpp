@@ -66,6 +66,18 @@ TEST(FaceGearMake, GrooveFloor) {
   EXPECT_NEAR(c.groove_floor(), c.rings()[0].surface.z_tip(459) - 13, 1e-12);
   EXPECT_EQ(c.rings()[0].surface.L0, c.rings()[1].surface.L0);
   EXPECT_GT(std::abs(c.rings()[0].surface.z_tip(445) - c.rings()[0].surface.z_tip(455)), 1);
+  // The root is a cone too: the floor is flat and must lie below it at both edges of the groove, not at its middle only.
+  double lowest = INFINITY;
+  for (const auto& ring : c.rings())
+    for (const double r : {455.0, 463.0}) lowest = std::min(lowest, root_height(ring.surface, r).value());
+  const double least = c.rings()[0].surface.z_tip(459) - lowest;
+  EXPECT_GT(least, c.rings()[0].surface.z_tip(459) - root_height(c.rings()[0].surface, 459).value() + 0.5);
+  g.groove_depth_mm = least - 1e-6;
+  const auto shallow = FaceGear::make(g);
+  ASSERT_TRUE(std::holds_alternative<std::vector<FaceGearRefusal>>(shallow));
+  EXPECT_EQ(std::get<1>(shallow).front().key, "stock.groove_depth");
+  g.groove_depth_mm = least + 1e-6;
+  EXPECT_TRUE(std::holds_alternative<FaceGear>(FaceGear::make(g)));
 }
 
 struct Refusal {
