@@ -119,7 +119,7 @@ std::string limits_page(const FaceGear& gear, const std::string& job_name, const
   page.good = gear.warnings().empty();
   page.introduction = gear.warnings();
   if (page.introduction.empty()) page.introduction = {"Every zone lies between the undercut and the pointed end of its teeth."};
-  for (const auto& value : assumed) page.introduction.push_back("Assumed of the machine and not measured: " + value);
+  if (!assumed.empty()) page.introduction.push_back(fmt::format("Assumed of the machine and not measured: {}.", fmt::join(assumed, ", ")));
   page.charts = limit_charts(gear);
   PageTable table{"Limits", {"zone", "flank", "undercut radius", "involute start", "pointed radius", "land radius", "fillet line at the inner end", "at the outer end"}, {}, ""};
   for (std::size_t k = 0; k < gear.rings().size(); ++k) {
