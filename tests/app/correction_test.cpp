@@ -10,6 +10,7 @@
 #include "app/measured_file.h"
 #include "cam/swept_path.h"
 #include "program.h"
+#include "tests/support/inspection_points.h"
 
 namespace toothpath::test {
 namespace {
@@ -90,13 +91,6 @@ std::string measured_csv(const std::vector<InspectionPoint>& grid, const std::fu
     out += line + fmt::format(",{:.4f}\n", deviation_mm(p) * 1000);
   }
   return out;
-}
-
-std::vector<InspectionPoint> grid_of(const FaceGear& gear, int rows, int columns) {
-  InspectionOptions options;
-  options.rows = rows;
-  options.columns = columns;
-  return *inspection_grid(gear, options);
 }
 
 TEST(Correction, TwentyMicrometresAreGoneAfterOneLoop) {

@@ -2,8 +2,8 @@
 #include "cam/cut_surface.h"
 #include "cam/swept_path.h"
 #include "geometry/flank_correction.h"
-#include "geometry/inspection_grid.h"
 #include "tests/cam/face_gear_jobs.h"
+#include "tests/support/inspection_points.h"
 
 namespace toothpath::test {
 namespace {
@@ -18,13 +18,6 @@ FaceGearParameters short_spur() {
   auto g = small_spur();
   g.zones = {{0, 60, 62}};
   return g;
-}
-
-std::vector<InspectionPoint> grid_of(const FaceGear& gear, int rows, int columns) {
-  InspectionOptions options;
-  options.rows = rows;
-  options.columns = columns;
-  return *inspection_grid(gear, options);
 }
 
 FaceGear corrected(const FaceGear& nominal) {
