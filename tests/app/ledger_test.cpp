@@ -43,7 +43,7 @@ TEST_P(Ledger, CoversWhatIsMeasured) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, Ledger, testing::Values("spur_quick", "offset_milled", "dhfg_t600s", "dhfg_paper", "short_tool", "bevel_pinion", "bevel_trunnion",
-                                                             "bevel_wheel"),
+                                                             "bevel_wheel", "tool_axis"),
                          [](const auto& c) { return std::string(c.param); });
 
 }  // namespace
