@@ -30,8 +30,9 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"program.",      "cl.csv",   "report.json", "report.html", "setup.html",
-                                           "gear.stl",      "tooth.vtp", "inspection.csv", "limits.", "limits_0.svg", "limits_1.svg", "inspection.dmi", "correction.json"};
+const std::vector<std::string> kOutputs = {"program.",       "cl.csv",         "report.json", "report.html", "setup.html", "gear.stl",     "tooth.vtp",
+                                           "inspection.csv", "inspection.dmi", "limits.json", "limits.html", "limits.svg", "limits_0.svg", "limits_1.svg",
+                                           "correction.json"};
 
 /// What one run has made so far. Stages fill it in order.
 struct Run {

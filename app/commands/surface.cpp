@@ -6,7 +6,7 @@
 namespace toothpath {
 
 const std::vector<std::string>& surface_outputs() {
-  static const std::vector<std::string> names = {"limits.json", "limits.html", "limits.", "limits_0.svg", "limits_1.svg", "inspection.csv", "inspection.dmi", "gear.stl", "tooth.vtp", "report.json"};
+  static const std::vector<std::string> names = {"limits.json", "limits.html", "limits.svg", "limits_0.svg", "limits_1.svg", "inspection.csv", "inspection.dmi", "gear.stl", "tooth.vtp", "report.json"};
   return names;
 }
 

@@ -44,6 +44,8 @@ TEST(CommandLine, SurfaceWritesItsFilesAndNothingElse) {
   // A spur gear without offset is its own mirror image.
   EXPECT_NEAR(limits["zones"][0]["flanks"][0]["pointing_radius"].get<double>(),
               limits["zones"][0]["flanks"][1]["pointing_radius"].get<double>(), 1e-9);
+  EXPECT_EQ(run_program({"surface", kBadJobs + "/module_negative.toml", "--out", dir / "a/b"}).exit_code, 3);
+  EXPECT_EQ(names_in(dir / "a/b"), std::vector<std::string>{});
 }
 
 TEST(CommandLine, JsonIsOneObjectOnStdout) {
@@ -196,6 +198,10 @@ TEST(Run, ASmallGearGoesTheWholeWay) {
   ASSERT_EQ(run_program({"run", kQuick, "--out", dir / "2", "--threads", "2"}).exit_code, 0);
   for (const char* name : {"program.ngc", "cl.csv", "gear.stl", "tooth.vtp", "inspection.csv", "limits.json", "setup.html"})
     EXPECT_EQ(file_text(dir / (std::string("1/") + name)), file_text(dir / (std::string("2/") + name))) << name;
+
+  // A refused run into the same directory takes every one of its files.
+  EXPECT_EQ(run_program({"run", kBadJobs + "/module_negative.toml", "--out", dir / "2"}).exit_code, 3);
+  EXPECT_EQ(names_in(dir / "2"), std::vector<std::string>{});
 }
 
 // Every control has its own names of work offsets: written, read back, and refused where the control has none of that name.
