@@ -68,12 +68,13 @@ void CutterSweep::note(const NearestPlace& q, const char* body) {
 }
 
 /// Is a proven least distance good enough? Where it is free; where it is no deeper than what was found before; where it is
-/// close to what is seen here. A wreck need not be followed to a fraction of a micrometre.
-bool CutterSweep::settled(double least, double seen, double slack) const {
+/// close to what is seen here. A wreck need not be followed to a fraction of a micrometre. @param arm from the tip: what the deviation of
+/// the axis does there is not made smaller by halving.
+bool CutterSweep::settled(double least, double seen, double slack, double arm) const {
   const double deepest = R_ - least + slack;
   const double here = std::max(seen, deepest <= tolerance_ ? worst_ : 0);  // beyond the tolerance its own place is wanted
   const double leeway = here > 50 * tolerance_ ? 0.25 * here : 0;
-  return deepest <= 0 || deepest <= here + proof_ + leeway + m_->deviation_mm + R_ * m_->axis_deviation;
+  return deepest <= 0 || deepest <= here + proof_ + leeway + m_->deviation_mm + arm * m_->axis_deviation;
 }
 
 CutterFinding CutterSweep::check(const ToolMotion& motion) {
@@ -113,7 +114,7 @@ double CutterSweep::ball(double t0, double t1, const NearestPlace& q0, const Nea
     return -within_;
   }
   const double least = least_between(q0.distance, q1.distance, L);
-  if (settled(least, R_ - low, slack) || depth == 0 || L + slack < kShortest) {
+  if (settled(least, R_ - low, slack, R_) || depth == 0 || L + slack < kShortest) {
     found_.bound_mm = std::max(found_.bound_mm, R_ - least + slack);
     return least - slack;
   }
@@ -154,7 +155,7 @@ void CutterSweep::flute(double low) {
       return;  // above the part from here on
     const double H = row.height - h;
     double high = remembered(row);
-    const auto good = [&] { return settled(least_between(low, high, H), worst_, 0); };
+    const auto good = [&] { return settled(least_between(low, high, H), worst_, 0, R_); };
     if (!good()) high = std::max(high, fresh(row));
     const double least = least_between(low, high, H);
     if (good())
@@ -178,12 +179,13 @@ void CutterSweep::patch(double t0, double t1, double h0, double h1, double d00, 
   const double slack = line_slack(*m_, R_ + h1, t1 - t0);
   const double low = least_between(d00, d10, L0), high = least_between(d01, d11, L1);
   const double least = least_between(low, high, H), corner = std::min({d00, d10, d01, d11});
-  if (settled(least, R_ - corner, slack) || depth == 0 || std::max({L0, L1, H}) + slack < kShortest) {
+  if (settled(least, R_ - corner, slack, R_ + h0) || depth == 0 || std::max({L0, L1, H}) + slack < kShortest) {
     found_.bound_mm = std::max(found_.bound_mm, R_ - least + slack);
     return;
   }
-  // Halve what costs more: the way between the heights, or the way along the motion.
-  if (std::min(low, high) - least > corner - std::min(low, high) + slack) {
+  // Halve what costs more: the way between the heights, or the way along the motion. The deviation of the axis differs by height alone.
+  const double lean = m_->axis_deviation, along = slack - m_->deviation_mm - (R_ + h1) * lean;
+  if (std::min(low, high) - least + H * lean > corner - std::min(low, high) + along) {
     const double h = 0.5 * (h0 + h1), a = at(t0, h), b = at(t1, h);
     patch(t0, t1, h0, h, d00, d10, a, b, depth - 1);
     patch(t0, t1, h, h1, a, b, d01, d11, depth - 1);

@@ -58,7 +58,7 @@ class CutterSweep {
   [[nodiscard]] Vec3 place(double t, double height) const;
   NearestPlace query(const Vec3& p, double most);
   void note(const NearestPlace& q, const char* body);
-  [[nodiscard]] bool settled(double least, double seen, double slack) const;
+  [[nodiscard]] bool settled(double least, double seen, double slack, double arm) const;
   [[nodiscard]] double height_above() const;
   double ball(double t0, double t1, const NearestPlace& q0, const NearestPlace& q1, int depth);
   void flute(double least_at_centre);

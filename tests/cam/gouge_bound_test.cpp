@@ -122,6 +122,38 @@ TEST_P(RandomMotions, TenfoldSamplingNeverExceedsTheBound) {
 
 INSTANTIATE_TEST_SUITE_P(Jobs, RandomMotions, testing::Values("spur", "conical"), [](const auto& c) { return std::string(c.param); });
 
+// A control that may lean the tool by degrees: the bound covers every lean, and the search for it ends.
+TEST_P(RandomMotions, AWideToleranceOfTheAxisIsBoundedInFewDistances) {
+  const auto& job = job_named(GetParam());
+  const auto& path = job.plan.paths.back();
+  test::Random random(7);
+  auto tool = job.tool(path.operation);
+  tool.flute_length_mm = tool.radius_mm() + 3;
+  const double R = tool.radius_mm();
+  const auto options = job.check_options();
+  for (const double lean : {1e-4, 3e-3, 2e-2}) {
+    CutterSweep sweep(*job.part, tool, options.proof_mm, options.gouge_tolerance_mm);
+    double margin = INFINITY;
+    for (int k = 0; k < 40; ++k) {
+      const std::size_t i = 2 + random.index(path.records.size() - 4);
+      const auto &a = path.records[i], &b = path.records[i + 1];
+      ToolMotion m;
+      m.tip_from = a.tip, m.tip_to = b.tip, m.axis_from = a.axis, m.axis_to = b.axis;
+      m.deviation_mm = 1e-4;
+      m.axis_deviation = lean;
+      const auto found = sweep.check(m);
+      for (int n = 0; n < 60; ++n) {
+        const double t = random(0, 1), h = random(0, tool.flute_length_mm - R);
+        const Vec3 u = axis_at(m, t), aside = u.cross(Vec3(random(-1, 1), random(-1, 1), random(-1, 1))).normalized();
+        const auto q = job.part->nearest(tip_at(m, t) + (R + h) * (std::cos(lean) * u + std::sin(lean) * aside), R + 0.3);
+        margin = std::min(margin, found.bound_mm - (R - q.distance));
+      }
+    }
+    EXPECT_GE(margin, -1e-9) << lean;
+    EXPECT_LT(sweep.queries(), 60000u) << lean;
+  }
+}
+
 class RandomBodies : public testing::TestWithParam<const char*> {};
 
 /// Shank and holder of stubby tools in random motions, half of them turning, against the sampled solid at ten times as many moments as the motion
