@@ -141,6 +141,7 @@ struct FingerGougeCheck::State {
     const AxialGap above = axial_gap(gear, m);
     const Vec3 tip = motion_tip(m, above.at), axis = motion_axis(m, above.at);
     const auto need_clearance = [&](double gap, const Vec3& place, const std::string& body, const std::string& patch) {
+      if (gap < std::min(out.clearance_mm, g.clearance_mm)) g.closest = place_of(gear, m, place, -gap, body, patch);
       out.clearance_mm = std::min(out.clearance_mm, gap);
       if (gap < tol.clearance_mm) note_worst(g, place_of(gear, m, place, -gap, body, patch), -1e300);
     };
@@ -361,8 +362,8 @@ Result<CheckedClPath> FingerGougeCheck::approve(ClPath path) const {
     };
     if (!g.rapids_clear) return refuse(fmt::format("the rapid goes {:.4f} mm into the {}", g.worst.front().depth_mm, g.worst.front().patch));
     if (g.clearance_mm < s.tol.clearance_mm)
-      return refuse(fmt::format("the {} comes within {:.4f} mm of the {}, less than {:.4f}", g.worst.front().body, g.clearance_mm,
-                                g.worst.front().patch, s.tol.clearance_mm));
+      return refuse(fmt::format("the {} comes within {:.4f} mm of the {}, less than {:.4f}", g.closest.body, g.clearance_mm, g.closest.patch,
+                                s.tol.clearance_mm));
     if (g.bound_mm > s.tol.gouge_mm)
       return refuse(fmt::format("the cutter goes up to {:.4f} mm into {}, more than {:.4f}", g.bound_mm, walls.bound_mm >= g.bound_mm ? walls.patch : g.deepest.patch, s.tol.gouge_mm));
   }

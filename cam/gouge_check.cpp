@@ -140,6 +140,7 @@ class Chunk {
     const auto gap = swept_gap(part_, body.frustum, m, look);
     body = {body.frustum, true, m.tip_to, m.axis_to, gap.proven_mm};
     out_.clearance_measured_mm = std::min({out_.clearance_measured_mm, gap.measured_mm, enough});
+    if (gap.proven_mm < out_.clearance_mm) out_.closest = place_of(gap, m, body.frustum.name);
     out_.clearance_mm = std::min({out_.clearance_mm, gap.proven_mm, enough});
     if (gap.proven_mm < o_.clearance_mm) out_.worst.push_back(place_of(gap, m, body.frustum.name));
   }
@@ -163,6 +164,7 @@ void add(GougeResult& all, const GougeResult& r) {
     all.bound_mm = r.bound_mm;
     all.bound_line = r.bound_line;
   }
+  if (r.clearance_mm < all.clearance_mm) all.closest = r.closest;
   all.clearance_mm = std::min(all.clearance_mm, r.clearance_mm);
   all.clearance_measured_mm = std::min(all.clearance_measured_mm, r.clearance_measured_mm);
   all.rapids_clear = all.rapids_clear && r.rapids_clear;

@@ -30,6 +30,7 @@ struct GougeResult {
   bool rapids_clear = true;       ///< every rapid stays outside the blank, all bodies
   std::vector<WorstPlace> worst;  ///< deepest first, at most 20, only those beyond the tolerance or the clearance
   WorstPlace deepest;             ///< the single deepest place, also when all is well
+  WorstPlace closest;             ///< of shank or holder, where they keep less than is required: the place of the least gap
   std::size_t motions = 0, distance_queries = 0;
 };
 

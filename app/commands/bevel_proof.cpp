@@ -28,13 +28,16 @@ void judge(const Job& job, const FingerCheckResult& v, std::vector<std::string>&
   const GougeResult& g = v.gouge;
   const double tolerance = job.verify.gouge_tolerance_mm;
   const WorstPlace& place = g.worst.empty() ? g.deepest : g.worst.front();
-  const std::string where = fmt::format("{} against {}, operation {}, tooth {}, line {}, r {:.3f} mm, z {:.3f} mm", place.body, place.patch,
-                                        place.operation, place.tooth, place.line, place.radius_mm, place.height_mm);
+  const auto told = [](const WorstPlace& p) {
+    return fmt::format("{} against {}, operation {}, tooth {}, line {}, r {:.3f} mm, z {:.3f} mm", p.body, p.patch, p.operation, p.tooth, p.line, p.radius_mm,
+                       p.height_mm);
+  };
+  const std::string where = told(place);
   if (!(g.bound_mm <= tolerance))
     reasons.push_back(fmt::format("gouge: {:.2f} um measured, {:.2f} um proven, limit {:.2f} um; {}", g.measured_mm * 1000, g.bound_mm * 1000,
                                   tolerance * 1000, where));
   if (!(g.clearance_mm >= g.required_clearance_mm))
-    reasons.push_back(fmt::format("clearance of shank and holder: {:.4f} mm is below {:.4f} mm; {}", g.clearance_mm, g.required_clearance_mm, where));
+    reasons.push_back(fmt::format("clearance of shank and holder: {:.4f} mm is below {:.4f} mm; {}", g.clearance_mm, g.required_clearance_mm, told(g.closest)));
   if (!g.rapids_clear) reasons.push_back("a rapid passes through the blank; " + where);
   if (v.ridge.requested_mm > 0 && !(v.ridge.reached_mm <= v.ridge.requested_mm))
     reasons.push_back(fmt::format("ridge: {:.4f} mm is left on the root at cone distance {:.3f} mm, asked {:.4f} mm", v.ridge.reached_mm,
@@ -49,6 +52,7 @@ void take_worse(FingerCheckResult& all, FingerCheckResult one) {
   GougeResult &a = all.gouge, &b = one.gouge;
   a.measured_mm = std::max(a.measured_mm, b.measured_mm);
   if (b.bound_mm > a.bound_mm) a.bound_mm = b.bound_mm, a.bound_line = b.bound_line;
+  if (b.clearance_mm < a.clearance_mm) a.closest = b.closest;
   a.clearance_mm = std::min(a.clearance_mm, b.clearance_mm);
   a.clearance_measured_mm = std::min(a.clearance_measured_mm, b.clearance_measured_mm);
   a.rapids_clear = a.rapids_clear && b.rapids_clear;

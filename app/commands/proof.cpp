@@ -14,14 +14,17 @@ constexpr double kExcessMargin = 1e-3;  // mm: rounding, axis motion and the gri
 
 void judge_gouge(const GougeResult& gouge, const GougeCheck& check, const ProofOptions& options, std::vector<std::string>& reasons) {
   if (check.passes(gouge)) return;
-  const WorstPlace& place = gouge.deepest;
+  // Where the tool cuts too deep, or else where it may.
+  const auto cuts = std::find_if(gouge.worst.begin(), gouge.worst.end(), [](const WorstPlace& w) { return w.body == "ball" || w.body == "flute"; });
+  const bool seen = gouge.measured_mm > options.gouge_tolerance_mm || cuts == gouge.worst.end();
+  const WorstPlace &place = seen ? gouge.deepest : *cuts, &body = gouge.closest;
   if (gouge.bound_mm > options.gouge_tolerance_mm)
     reasons.push_back(fmt::format("gouge: {:.2f} um measured, {:.2f} um proven, limit {:.2f} um; {} against {}, operation {}, line {}, r {:.3f} mm, z {:.3f} mm",
                                   gouge.measured_mm * 1000, gouge.bound_mm * 1000, options.gouge_tolerance_mm * 1000, place.body, place.patch,
                                   place.operation, place.line, place.radius_mm, place.height_mm));
   if (gouge.clearance_mm < gouge.required_clearance_mm)
     reasons.push_back(fmt::format("clearance of shank and holder: {:.4f} mm is below {:.4f} mm; {} against {}, operation {}, line {}", gouge.clearance_mm,
-                                  gouge.required_clearance_mm, place.body, place.patch, place.operation, place.line));
+                                  gouge.required_clearance_mm, body.body, body.patch, body.operation, body.line));
   if (!gouge.rapids_clear) reasons.push_back("a rapid passes through the blank");
   if (reasons.empty()) reasons.push_back("the gouge check does not pass");
 }
