@@ -317,9 +317,8 @@ class Builder {
     std::vector<AxisBlock>& blocks = op.teeth.front().blocks;
     auto first = std::find_if(blocks.begin(), blocks.end(), [](const AxisBlock& b) { return b.kind == BlockKind::rapid_rotary; });
     if (first == blocks.end()) return true;
-    RotaryPair end = words_.joints(blocks.back()).rotary_rad;
-    end[0] -= program_.index_sign * tooth_angle(options_.tooth_stride);
-    auto turn = blocks_of_turn(chain_, words_, end, *first);
+    const auto entry = loop_entry(blocks, program_);
+    auto turn = blocks_of_turn(chain_, words_, {words_.word_angle(entry[0]), words_.word_angle(entry[1])}, *first);
     turn.pop_back();
     for (const AxisBlock& b : turn) op.rapid_minutes += b.minutes * teeth_;
     first = blocks.insert(first, turn.begin(), turn.end());

@@ -8,7 +8,6 @@
 
 namespace toothpath {
 namespace {
-constexpr double kTurn = 2 * kPi;
 constexpr double kLongest = radians(170);  // the nearer way must stay the nearer one, whatever the last digits are
 }  // namespace
 
@@ -22,7 +21,7 @@ void roll_to(const KinematicChain& chain, const RotaryPair& from, std::vector<Ro
   if (angles.empty()) return;
   for (std::size_t k = 0; k < chain.rotary_count(); ++k) {
     if (!chain.rotary(k).rollover) continue;
-    const double shift = kTurn * std::round((from[k] - angles.front()[k]) / kTurn);
+    const double shift = whole_turns(angles.front()[k], from[k]);
     if (shift != 0)
       for (auto& a : angles) a[k] += shift;
   }

@@ -235,7 +235,7 @@ class Chooser {
     for (std::size_t r = 1; r < runs.size(); ++r)
       for (std::size_t k = 0; k < count_; ++k) {
         if (!chain_.rotary(k).rollover) continue;
-        const double shift = kTurn * std::round((out[runs[r].first - 1][k] - out[runs[r].first][k]) / kTurn);
+        const double shift = whole_turns(out[runs[r].first][k], out[runs[r].first - 1][k]);
         for (std::size_t i = runs[r].first; i < runs[r].last; ++i) out[i][k] += shift;
       }
     return out;
@@ -254,9 +254,9 @@ class Chooser {
 
 }  // namespace
 
-double nearest_turn(double angle, double reference) {
-  return angle + kTurn * std::round((reference - angle) / kTurn);
-}
+double whole_turns(double angle, double reference) { return kTurn * std::round((reference - angle) / kTurn); }
+
+double nearest_turn(double angle, double reference) { return angle + whole_turns(angle, reference); }
 
 Result<std::vector<RotaryPair>> choose_rotaries(const ClPath& path, const Mat3& table_from_gear, const KinematicChain& chain,
                                                 const std::array<RotaryRange, 2>& ranges, PoleOption pole,

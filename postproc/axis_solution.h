@@ -34,6 +34,8 @@ struct RotaryRange {
                                                               const std::array<RotaryRange, 2>& ranges, PoleOption pole,
                                                               const std::vector<char>& switches = {});
 
+/// Whole turns [rad] that take an angle next to `reference`.
+[[nodiscard]] double whole_turns(double angle, double reference);
 /// angle + whole turns, nearest to `reference`.
 [[nodiscard]] double nearest_turn(double angle, double reference);
 

@@ -75,9 +75,10 @@ void NcAxisWords::rollover_number(std::size_t axis, std::int64_t word, bool shif
   if (shifted) shifted_number(axis, place);
   else out_.number(place, decimals(axis));
   if (shifted && !roll.index.empty()) {
-    const std::string sum = text.substr(begin);
+    const auto place_in_turn = expanded(roll.index, {{"word", text.substr(begin)}});
     text.resize(begin);
-    text += expanded(roll.index, {{"word", sum}}).value_or("");
+    if (place_in_turn) text += *place_in_turn;
+    else if (!out_.error()) out_.error() = fail("dialect {}: \"{}\" names a value that does not exist here", dialect_.name, roll.index);
   }
   text += roll.close;
 }

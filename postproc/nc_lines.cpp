@@ -39,7 +39,8 @@ NcLines::Values program_values(const AxisProgram& program, const NcDialect& dial
   values["tooth"] = program.tooth_stride == 1 ? dialect.loop.place : dialect.loop.tooth;
   values["sign"] = program.index_sign < 0 ? "0-" : "";
   const bool rolls_back = program.index_axis >= 0 && program.rollover[static_cast<std::size_t>(program.index_axis)] && program.index_sign < 0;
-  values["turns"] = rolls_back ? expanded(dialect.rollover.backwards, values).value_or("") : values["sign"] + values["tooth"];
+  if (!rolls_back) values["turns"] = values["sign"] + values["tooth"];
+  else if (const auto turns = expanded(dialect.rollover.backwards, values); turns && !turns->empty()) values["turns"] = *turns;
   values["frame_sign"] = program.frame_sign < 0 ? "0-" : "";
   return values;
 }
@@ -67,8 +68,10 @@ std::vector<std::string> header_comments(const AxisProgram& program, const NcDia
   }
   if (program.tcp != TcpMode::none && !dialect.tcp_note.empty()) out.push_back(comment_text(dialect.tcp_note));
   for (std::size_t a = 3; a < 5; ++a)
-    if (program.rollover[a])
-      if (const auto note = expanded(dialect.rollover.note, {{"axis", std::string(1, program.letters[a])}})) out.push_back(comment_text(*note));
+    if (program.rollover[a]) {
+      const auto note = expanded(dialect.rollover.note, {{"axis", std::string(1, program.letters[a])}});
+      out.push_back(comment_text(note.value_or(dialect.rollover.note)));  // a name that does not exist stays visible
+    }
   for (auto& line : order_comments(program)) out.push_back(std::move(line));
   if (!header.assumed.empty()) out.emplace_back("WARNING, ASSUMED AND NOT MEASURED:");
   for (const auto& a : header.assumed) out.push_back(comment_text("ASSUMED " + a));
