@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "postproc/tooth_order.h"
-#include "tests/postproc/nc_case.h"
+#include "tests/postproc/trunnion_post.h"
 
 namespace toothpath::test {
 
@@ -67,12 +67,7 @@ inline void roll_over(RotaryAxis& axis, int sense) {
 }
 
 inline Machine machine_of(const PostForm& f) {
-  Machine m = with_dialect(trunnion(), f.dialect);
-  m.tcp = f.tcp;
-  if (std::string(f.dialect) == "linuxcnc") {
-    m.post.tcp_on = {"M428"};
-    m.post.tcp_off = {"M429"};
-  }
+  Machine m = trunnion_with(f.dialect, f.tcp);
   if (f.rollover != 0) roll_over(m.chain.table[0], f.rollover);
   return m;
 }
