@@ -6,6 +6,7 @@
 
 #include "cam/gear_cells.h"
 #include "cam/ring_edges.h"
+#include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
@@ -367,7 +368,7 @@ std::vector<Vec2> GearRing::profile(double r) const {
   std::vector<Vec2> out = profiles[j];
   for (std::size_t k = 0; k < out.size(); ++k) {
     const Vec2 step = profiles[j + 1][k] - out[k];
-    out[k] += (t - double(j)) * Vec2(std::remainder(step.x(), 6.283185307179586), step.y());
+    out[k] += (t - double(j)) * Vec2(std::remainder(step.x(), 2 * kPi), step.y());
   }
   return out;
 }
