@@ -7,6 +7,9 @@
 #include <memory>
 
 #include "cam/swept_path.h"
+#include "cam/unreached.h"
+#include "cam/zone_places.h"
+#include "geometry/involute_shaper.h"
 
 namespace toothpath {
 namespace {
@@ -15,57 +18,15 @@ namespace {
 constexpr double kReachTolerance = 1e-4;
 constexpr double kSamePlace = 1e-6;  // a foot this near to a place of the grid is that place, mm
 constexpr int kHistogramBins = 40;
+constexpr int kCrestSteps = 10;  // of a golden section: a hundredth of what the samples leave
 
-struct Sample {
-  Vec3 p, n;
+/// A line across the tooth space: the excess above the allowance from tip to tip.
+struct LinePoint {
+  SpacePiece piece = SpacePiece::root;
+  double sigma = 0, left = 0;
 };
 
-/// Places on the sheet of one zone at contact radius r.
-class ZonePlaces {
- public:
-  ZonePlaces(const GearDistance& part, int zone)
-      : space_(part.space(zone)),
-        sheet_(space_, 0.0, space_.ring().zone.inner_radius_mm, space_.ring().zone.outer_radius_mm, 49) {}
-
-  [[nodiscard]] double radius(double share) const {
-    const auto& z = space_.ring().zone;
-    return std::clamp(z.inner_radius_mm + share * (z.outer_radius_mm - z.inner_radius_mm), sheet_.r_from(), sheet_.r_to());
-  }
-  [[nodiscard]] std::optional<Sample> at(double sigma, double r) const {
-    const auto s = sheet_.raw(sigma, r);
-    if (!s) return {};
-    return Sample{s->contact.p, s->contact.n};
-  }
-  /// sigma where the flank leaves through the tip surface.
-  [[nodiscard]] double tip_sigma(bool plus, double r) const {
-    const double z_tip = space_.surface().z_tip(r);
-    double out = plus ? 0.0 : 5.0, in = plus ? 1.0 : 4.0;
-    const auto above = [&](double sigma) {
-      const auto s = at(sigma, r);
-      return !s || s->p.z() > z_tip;
-    };
-    if (!above(out)) return out;
-    for (int k = 0; k < 40; ++k) {
-      const double m = 0.5 * (out + in);
-      (above(m) ? out : in) = m;
-    }
-    return in;
-  }
-  [[nodiscard]] std::pair<double, double> range(SpacePiece piece, double r) const {
-    switch (piece) {
-      case SpacePiece::flank_plus: return {tip_sigma(true, r), 1.0};
-      case SpacePiece::fillet_plus: return {1.0, 2.0};
-      case SpacePiece::root: return {2.0, 3.0};
-      case SpacePiece::fillet_minus: return {3.0, 4.0};
-      case SpacePiece::flank_minus: return {4.0, tip_sigma(false, r)};
-    }
-    return {0, 0};
-  }
-
- private:
-  const SpaceSheet& space_;
-  OffsetSheet sheet_;
-};
+bool is_flank(SpacePiece piece) { return piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus; }
 
 class Meter {
  public:
@@ -84,10 +45,12 @@ class Meter {
   }
 
   CutSurface run() {
+    const auto& gear = part_.gear().parameters();
+    for (const auto& ring : part_.gear().rings()) active_end_.push_back(active_roll_parameter(gear, ring.zone.helix_angle_rad));
     for (int zone = 0; zone < part_.zones(); ++zone) {
       const ZonePlaces places(part_, zone);
       for (int piece = 0; piece < kSpacePieces; ++piece) grid(places, zone, SpacePiece(piece));
-      if (!operations_.empty() && operations_.back().scallop_mm > 0) fine_lines(places);
+      if (!operations_.empty() && operations_.back().scallop_mm > 0) fine_lines(places, zone);
     }
     summarise();
     return std::move(out_);
@@ -103,7 +66,7 @@ class Meter {
     }
     return e;
   }
-  [[nodiscard]] bool reachable(const Sample& s, double* residual = nullptr) const {
+  [[nodiscard]] bool reachable(const PatchPoint& s, double* residual = nullptr) const {
     if (operations_.empty()) return true;
     const double R = tools_[std::size_t(operations_.back().tool)].radius_mm();
     const auto q = part_.nearest(s.p + R * s.n, R + 0.01);
@@ -116,7 +79,7 @@ class Meter {
     SurfaceGrid g;
     g.zone = zone;
     g.patch = to_string(piece);
-    const bool flank = piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus;
+    const bool flank = is_flank(piece);
     g.rows = flank ? o_.flank_rows : piece == SpacePiece::root ? o_.root_rows : o_.fillet_rows;
     g.columns = o_.columns;
     const std::size_t count = std::size_t(g.rows) * std::size_t(g.columns);
@@ -125,6 +88,7 @@ class Meter {
     g.reachable.resize(count);
     std::vector<std::vector<float>> excess(count);
     std::vector<double> residual(count, 0.0);
+    std::vector<std::optional<SheetPoint>> left(count);
     tbb::parallel_for(0, g.columns, [&](int column) {
       const double r = places.radius(double(column) / (g.columns - 1));
       const auto [from, to] = places.range(piece, r);
@@ -132,62 +96,122 @@ class Meter {
         const std::size_t k = std::size_t(row) * std::size_t(g.columns) + std::size_t(column);
         const auto s = places.at(from + (to - from) * row / (g.rows - 1), r);
         if (!s) continue;
-        g.points[k] = s->p;
-        g.normals[k] = s->n;
-        excess[k] = excess_of(s->p);
-        g.reachable[k] = reachable(*s, &residual[k]);
+        g.points[k] = s->contact.p;
+        g.normals[k] = s->contact.n;
+        excess[k] = excess_of(s->contact.p);
+        g.reachable[k] = reachable(s->contact, &residual[k]);
+        if (!g.reachable[k]) left[k] = s;
       }
     });
     g.excess_um.assign(paths_.size(), std::vector<float>(count));
     for (std::size_t k = 0; k < count; ++k)
       for (std::size_t n = 0; n < excess[k].size(); ++n) g.excess_um[n][k] = excess[k][n];
+    for (std::size_t k = 0; k < count; ++k)
+      if (left[k]) note_unreached(*left[k], zone, double(g.excess_um.back()[k]) / 1000);
     out_.solve_residual_mm = std::max(out_.solve_residual_mm, *std::max_element(residual.begin(), residual.end()));
     out_.grids.push_back(std::move(g));
   }
 
-  /// Fine lines across the space, the ends of the ring among them: the greatest excess that a ball could have reached, and on the
-  /// flanks the cusps between neighbouring passes.
-  void fine_lines(const ZonePlaces& places) {
-    const auto& op = operations_.back();
-    const double R = tools_[std::size_t(op.tool)].radius_mm();
-    const double step = std::sqrt(8 * R * op.scallop_mm) / 24;
+  /// Fine lines across the space, the ends of the ring among them: the greatest excess that a ball could have reached, what it could not
+  /// reach, and the cusps between neighbouring passes.
+  void fine_lines(const ZonePlaces& places, int zone) {
     for (int line = 0; line <= o_.scallop_lines + 1; ++line) {
       const bool end = line == 0 || line == o_.scallop_lines + 1;
       const double r = places.radius(end ? double(line > 0) : (line - 0.5) / o_.scallop_lines);
-      for (int piece = 0; piece < kSpacePieces; ++piece) {
-        const auto [from, to] = places.range(SpacePiece(piece), r);
-        const auto a = places.at(from, r), b = places.at(to, r);
-        if (!a || !b) continue;
-        const int n = std::max(16, int(1.2 * (b->p - a->p).norm() / step));
-        std::vector<double> e(std::size_t(n) + 1, 0.0);
-        tbb::parallel_for(0, n + 1, [&](int k) {
-          const auto s = places.at(from + (to - from) * k / n, r);
-          if (s) e[std::size_t(k)] = paths_.back()->excess(s->p, o_.cap_mm) - op.allowance_mm;
-        });
-        const bool flank = piece == 0 || piece == kSpacePieces - 1;
-        if (flank && !end) count_cusps(e, op.scallop_mm);
-        line_step_ = std::max(line_step_, (b->p - a->p).norm() / n);
-        for (int k = 0; k <= n; ++k) {
-          const double x = e[std::size_t(k)] + op.allowance_mm;
-          if (x <= line_max_) continue;
-          const auto s = places.at(from + (to - from) * k / n, r);
-          if (s && reachable(*s)) line_max_ = x;
-        }
+      const auto points = line_across(places, r);
+      if (!end) count_cusps(places, r, points);
+      for (const auto& q : points) {
+        const double x = q.left + operations_.back().allowance_mm;
+        if (x <= std::min(line_max_, unreached_limit())) continue;
+        const auto s = places.at(q.sigma, r);
+        if (!s) continue;
+        if (reachable(s->contact)) line_max_ = std::max(line_max_, x);
+        else note_unreached(*s, zone, x);
       }
     }
   }
 
-  void count_cusps(const std::vector<double>& e, double wanted) {
+  [[nodiscard]] std::vector<LinePoint> line_across(const ZonePlaces& places, double r) {
+    const auto& op = operations_.back();
+    const double step = std::sqrt(8 * tools_[std::size_t(op.tool)].radius_mm() * op.scallop_mm) / 24;
+    std::vector<LinePoint> points;
+    for (int piece = 0; piece < kSpacePieces; ++piece) {
+      const auto [from, to] = places.range(SpacePiece(piece), r);
+      const auto a = places.at(from, r), b = places.at(to, r);
+      if (!a || !b) continue;
+      const double length = (b->contact.p - a->contact.p).norm();
+      const int n = std::max(16, int(1.2 * length / step));
+      line_step_ = std::max(line_step_, length / n);
+      // Where two pieces join one point is enough.
+      for (int k = points.empty() ? 0 : 1; k <= n; ++k) points.push_back({SpacePiece(piece), from + (to - from) * k / n, 0});
+    }
+    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) { points[k].left = left_at(places, points[k].sigma, r); });
+    return points;
+  }
+  /// Material of the last operation above its allowance; 0 where there is no surface.
+  [[nodiscard]] double left_at(const ZonePlaces& places, double sigma, double r) const {
+    const auto s = places.at(sigma, r);
+    return s ? paths_.back()->excess(s->contact.p, o_.cap_mm) - operations_.back().allowance_mm : 0;
+  }
+
+  void count_cusps(const ZonePlaces& places, double r, const std::vector<LinePoint>& line) {
+    const double wanted = operations_.back().scallop_mm;
     // Valleys are where the ball touched; a cusp is the highest place between two neighbouring valleys.
     std::vector<std::size_t> valleys;
-    for (std::size_t k = 1; k + 1 < e.size(); ++k)
-      if (e[k] <= e[k - 1] && e[k] < e[k + 1]) valleys.push_back(k);
+    for (std::size_t k = 1; k + 1 < line.size(); ++k)
+      if (line[k].left <= line[k - 1].left && line[k].left < line[k + 1].left) valleys.push_back(k);
     for (std::size_t v = 1; v < valleys.size(); ++v) {
-      const double top = *std::max_element(e.begin() + long(valleys[v - 1]), e.begin() + long(valleys[v]));
-      const double height = top - 0.5 * (e[valleys[v - 1]] + e[valleys[v]]);
-      if (height < 0.02 * wanted) continue;  // two samples of one valley
-      cusps_.push_back(height);
+      const LinePoint &a = line[valleys[v - 1]], &b = line[valleys[v]];
+      const auto first = line.begin() + long(valleys[v - 1]);
+      const auto top = std::max_element(first, line.begin() + long(valleys[v]), [](const auto& p, const auto& q) { return p.left < q.left; });
+      const double valley = 0.5 * (a.left + b.left);
+      if (top->left - valley < 0.02 * wanted) continue;  // two samples of one valley
+      const auto [sigma, height] = crest(places, r, *(top - 1), *(top + 1));
+      const auto s = places.at(sigma, r);
+      if (!s || !reachable(s->contact)) continue;  // a corner that was left
+      line_max_ = std::max(line_max_, height + operations_.back().allowance_mm);
+      if (is_flank(a.piece) && a.piece == b.piece) cusps_.push_back(height - valley);
+      else fillet_cusp_ = std::max(fillet_cusp_, height - valley);
     }
+  }
+
+  /// Place and height of the one crest between two neighbours of the highest sample: two arcs meet there, and a sample beside it lies up to 7 %
+  /// of the cusp lower.
+  [[nodiscard]] std::pair<double, double> crest(const ZonePlaces& places, double r, const LinePoint& before, const LinePoint& after) const {
+    constexpr double kGolden = 0.6180339887498949;
+    double a = before.sigma, b = after.sigma;
+    double x = b - kGolden * (b - a), y = a + kGolden * (b - a), f = left_at(places, x, r), g = left_at(places, y, r);
+    for (int k = 0; k < kCrestSteps; ++k) {
+      if (f > g) {
+        b = y;
+        y = x;
+        g = f;
+        x = b - kGolden * (b - a);
+        f = left_at(places, x, r);
+      } else {
+        a = x;
+        x = y;
+        f = g;
+        y = a + kGolden * (b - a);
+        g = left_at(places, y, r);
+      }
+    }
+    return f > g ? std::pair{x, f} : std::pair{y, g};
+  }
+
+  /// Excess above which a place that the ball does not reach was left; no place is where the last operation does not finish.
+  [[nodiscard]] double unreached_limit() const {
+    if (operations_.empty() || operations_.back().type != OperationType::finishing) return INFINITY;
+    return most_left_mm(operations_.back());
+  }
+
+  void note_unreached(const SheetPoint& s, int zone, double height) {
+    if (height <= unreached_limit()) return;
+    auto& u = out_.unreached;
+    u.height_mm = std::max(u.height_mm, height);
+    if (!is_flank(s.piece) || s.u > active_end_[std::size_t(zone)]) return;
+    if (!u.active || height > u.active->height_mm)
+      u.active = {height, zone, to_string(s.piece), std::hypot(s.contact.p.x(), s.contact.p.y()), s.contact.p.z()};
   }
 
   static void finish(ExcessResult& r, const std::vector<float>& values_um) {
@@ -229,11 +253,12 @@ class Meter {
         const float e = g.excess_um.back()[k];
         if (g.reachable[k]) {
           values.push_back(e);
-        } else {
+        } else if (g.normals[k] != Vec3::Zero()) {
           ++out_.unreached.points;
           out_.unreached.max_height_mm = std::max(out_.unreached.max_height_mm, double(e) / 1000);
         }
       }
+    judge_unreached();
     const auto& op = operations_.back();
     const double R = tools_[std::size_t(op.tool)].radius_mm();
     out_.finished.operation = int(paths_.size()) - 1;
@@ -242,6 +267,7 @@ class Meter {
     out_.finished.max_mm = std::max(out_.finished.max_mm, line_max_);
     out_.finished.bound_mm = out_.finished.max_mm + 0.5 * line_step_ * std::sqrt(2 * std::max(op.scallop_mm, 0.0) / R) +
                              op.chord_tolerance_mm;
+    out_.scallop.fillet_max_mm = fillet_cusp_;
     if (!cusps_.empty()) {
       auto& s = out_.scallop;
       s.requested_mm = op.scallop_mm;
@@ -253,13 +279,39 @@ class Meter {
     }
   }
 
+  /// Share of the area that was left, and the ball that would not leave it.
+  void judge_unreached() {
+    auto& u = out_.unreached;
+    if (unreached_limit() == INFINITY) return;
+    const double R = tools_[std::size_t(operations_.back().tool)].radius_mm();
+    u.ball_mm = 2 * R;
+    u.limit_mm = unreached_limit();
+    double left = 0, all = 0;
+    for (const auto& g : out_.grids) {
+      const auto columns = std::size_t(g.columns);
+      for (std::size_t row = 0; row + 1 < std::size_t(g.rows); ++row)
+        for (std::size_t column = 0; column + 1 < columns; ++column) {
+          const std::size_t k = row * columns + column;
+          const std::size_t corner[4] = {k, k + 1, k + columns + 1, k + columns};
+          if (std::any_of(std::begin(corner), std::end(corner), [&](std::size_t c) { return g.normals[c] == Vec3::Zero(); })) continue;
+          const double area = 0.5 * (g.points[corner[2]] - g.points[corner[0]]).cross(g.points[corner[3]] - g.points[corner[1]]).norm();
+          all += area;
+          for (const std::size_t c : corner)
+            if (!g.reachable[c] && double(g.excess_um.back()[c]) / 1000 > u.limit_mm) left += 0.25 * area;
+        }
+    }
+    u.share = all > 0 ? left / all : 0;
+    if (u.left()) u.largest_ball_mm = 2 * largest_reaching_ball(part_, R).radius_mm;
+  }
+
   const GearDistance& part_;
   const std::vector<MillingOperation>& operations_;
   const std::vector<ToolAssembly>& tools_;
   CutSurfaceOptions o_;
   std::vector<std::unique_ptr<SweptPath>> paths_;
   std::vector<double> cusps_;
-  double line_step_ = 0, line_max_ = 0;
+  std::vector<double> active_end_;  ///< roll parameter at the end of the active flank, a zone each
+  double line_step_ = 0, line_max_ = 0, fillet_cusp_ = 0;
   CutSurface out_;
 };
 

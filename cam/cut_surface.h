@@ -18,6 +18,11 @@ struct CutSurfaceOptions {
   double cap_mm = 0;           ///< excess above this is reported as this; 0: one module
 };
 
+/// Rounding, axis motion and the grid of the measurement, beside cusps and chords.
+inline constexpr double kExcessMargin = 1e-3;  // mm
+/// What an operation may leave above its allowance on every place that its ball can reach.
+[[nodiscard]] inline double most_left_mm(const MillingOperation& o) { return o.scallop_mm + o.chord_tolerance_mm + kExcessMargin; }
+
 /// The cut surface of tooth space 0.
 struct CutSurface {
   std::vector<SurfaceGrid> grids;           ///< every patch of every zone
@@ -25,7 +30,7 @@ struct CutSurface {
   ExcessResult finished;                    ///< after the last one, over the points that its ball can reach
   UnreachedResult unreached;
   double solve_residual_mm = 0;             ///< greatest difference between a radius and the distance from a centre that far above the grid
-  ScallopResult scallop;                    ///< cusps of the last operation on the flanks; requested 0: it has none
+  ScallopResult scallop;                    ///< cusps of the last operation; requested 0: it has none
 };
 
 /// `motions`: those of tooth 0 are used. Excess at a point p: the least, over all moves so far, of (distance from p to the

@@ -1,6 +1,7 @@
 // What the proof of a program returns: gouge, clearance, what is left, and the ledger of errors. All lengths mm.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,16 +45,31 @@ struct ExcessResult {
   std::vector<std::size_t> histogram;
 };
 
-/// Corners that no ball of the finishing radius can reach without gouging.
+/// Corners that no ball of the finishing radius can reach without gouging. What a finished surface may keep anywhere (cusps, chords and a
+/// margin: `limit_mm`) is no corner that was left: `share`, `height_mm` and `active` speak of what stands higher than that.
 struct UnreachedResult {
-  std::size_t points = 0;
-  double max_height_mm = 0;
+  std::size_t points = 0;       ///< of the grid, whatever stays there
+  double max_height_mm = 0;     ///< greatest excess at these points
+  double ball_mm = 0;           ///< diameter of the finishing ball; 0: the last operation does not finish, nothing below is told
+  double limit_mm = 0;
+  double share = 0;             ///< of the area of the finished surface
+  double height_mm = 0;         ///< greatest height; 0: nothing was left
+  double largest_ball_mm = 0;   ///< diameter of the largest ball that reaches all of the surface; 0 where nothing was left, or no ball does
+  struct Place {
+    double height_mm = 0;
+    int zone = 0;
+    std::string patch;
+    double radius_mm = 0, z_mm = 0;
+  };
+  std::optional<Place> active;  ///< the highest place on an active flank: between the tip and what a pinion equal to the shaper touches
+  [[nodiscard]] bool left() const { return height_mm > 0; }
 };
 
-/// Cusp height reached on the flanks by the last operation.
+/// Cusp height reached by the last operation.
 struct ScallopResult {
-  double requested_mm = 0, reached_min_mm = 0, reached_max_mm = 0;
-  double share_within = 0;  ///< share of the flank between -15 % and +5 % of the request
+  double requested_mm = 0, reached_min_mm = 0, reached_max_mm = 0;  ///< on the flanks
+  double share_within = 0;   ///< share of the flank between -15 % and +5 % of the request
+  double fillet_max_mm = 0;  ///< highest cusp on fillets and root
 };
 
 /// One grid of the cut surface: a patch of tooth space 0 with its deviation. Row-major, rows along the profile.

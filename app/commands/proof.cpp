@@ -10,8 +10,6 @@
 namespace toothpath {
 namespace {
 
-constexpr double kExcessMargin = 1e-3;  // mm: rounding, axis motion and the grid of the measurement
-
 void judge_gouge(const GougeResult& gouge, const GougeCheck& check, const ProofOptions& options, std::vector<std::string>& reasons) {
   if (check.passes(gouge)) return;
   // Where the tool cuts too deep, or else where it may.
@@ -42,7 +40,7 @@ void judge_surface(const CutSurface& surface, const Job& job, std::vector<std::s
   }
   const MillingOperation& last = job.operations.back();
   if (last.type != OperationType::finishing) return;
-  const double limit = last.scallop_mm + last.chord_tolerance_mm + kExcessMargin;
+  const double limit = most_left_mm(last);
   if (surface.finished.max_mm <= limit) return;
   reasons.push_back(fmt::format("left material: {:.2f} um after the last operation, limit {:.2f} um (scallop {:.2f}, chord {:.2f}, margin {:.2f})",
                                 surface.finished.max_mm * 1000, limit * 1000, last.scallop_mm * 1000, last.chord_tolerance_mm * 1000,
