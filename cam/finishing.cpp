@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <type_traits>
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double kLongestRunOut = 1.5;  // way of a run-out along the sheet, of the straight line between its ends
 constexpr double kRootBegin = 2, kRootEnd = 3;  // the root land on the sheet; below it plus fillet and flank, above it minus
-constexpr double kHighestCusp = 1.1;  // a cusp above this share of the asked one gets a pass of its own
+constexpr int kDrawRounds = 6;        // how often all passes are laid anew, closer where a cusp is too high
 
 double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 
@@ -34,7 +35,6 @@ class Planner {
   Planner(const OffsetSheet& sheet, const FinishingOptions& options) : sheet_(sheet), o_(options), count_(sheet, options) {}
 
   Result<FinishingPasses> run() {
-    out_.scallop_min_mm = INFINITY;
     if (sheet_.has_gaps()) {
       if (auto ok = passes_between_corners(); !ok) return ok.error();
     } else {
@@ -44,21 +44,14 @@ class Planner {
   }
 
  private:
+  /// Neighbouring passes, each as sigma over the centre radius.
+  using Chain = std::vector<std::function<double(double)>>;
+
   /// The whole sheet as one: from both tips downwards, in turn, so that a climbing pass on one flank leads to a climbing pass
   /// on the other. (Counts of single flanks vary more along the tooth than the count of the whole space does.)
   Status passes_over_all() {
-    const auto& totals = count_.totals();
-    const double most = *std::max_element(totals.begin(), totals.end());
-    const int passes = std::max(2, int(std::ceil(most - 1e-9)));
-    note_scallop(totals, passes);
-    Chain chain;
-    for (int index = 0; index < passes; ++index) {
-      const double share = (index + 0.5) / passes;
-      std::vector<double> sigma;
-      for (std::size_t j = 0; j < totals.size(); ++j) sigma.push_back(count_.sigma_at(j, share * totals[j]));
-      chain.push_back([this, sigma](double r) { return smooth(sigma, station_coordinate(r)); });
-    }
-    close_gaps(chain);
+    Chain chain = drawn_together<1>([this] { return std::array{chain_over_all()}; })[0];
+    note_cusps(chain);
     const std::size_t all = chain.size(), on_plus = passes_of_plus(chain);
     for (std::size_t i = 0; i < std::max(on_plus, all - on_plus); ++i) {
       if (i < on_plus)
@@ -69,8 +62,18 @@ class Planner {
     return Ok{};
   }
 
-  /// Neighbouring passes, each as sigma over the centre radius.
-  using Chain = std::vector<std::function<double(double)>>;
+  [[nodiscard]] Chain chain_over_all() const {
+    const auto& totals = count_.totals();
+    const int passes = std::max(2, int(std::ceil(most_on_ring(totals) - 1e-9)));
+    Chain chain;
+    for (int index = 0; index < passes; ++index) {
+      const double share = (index + 0.5) / passes;
+      std::vector<double> sigma;
+      for (std::size_t j = 0; j < totals.size(); ++j) sigma.push_back(count_.sigma_at(j, share * totals[j]));
+      chain.push_back([this, sigma](double r) { return smooth(sigma, station_coordinate(r)); });
+    }
+    return chain;
+  }
 
   /// How many passes of the chain are fed as those of the plus flank: none that touches the minus fillet, and all that touch the plus fillet
   /// or flank, so that material lies on the asked side of every one. The root land takes either feed: there the middle of the chain divides.
@@ -89,52 +92,118 @@ class Planner {
     return std::clamp((chain.size() + 1) / 2, low, high);
   }
 
-  /// Looks at every cusp between the final passes, also between the stations, and puts one more pass where it is too high.
+  [[nodiscard]] int samples() const { return 2 * int(sheet_.stations().size()); }
+  [[nodiscard]] double sample_radius(int k) const { return sheet_.r_from() + (sheet_.r_to() - sheet_.r_from()) * k / samples(); }
+  /// The pass as its neighbours see it at every sample radius between the ends of the sheet; nothing where the sheet has no point.
+  [[nodiscard]] std::vector<std::optional<PassLine>> lines_of(const std::function<double(double)>& sigma) const {
+    std::vector<std::optional<SheetPoint>> places;
+    for (int k = 0; k <= samples(); ++k) places.push_back(sheet_.at(sigma(sample_radius(k)), sample_radius(k)));
+    const auto centre = [&](std::size_t k) { return places[k] ? std::optional(places[k]->centre) : std::nullopt; };
+    std::vector<std::optional<PassLine>> lines(places.size());
+    for (std::size_t k = 1; k + 1 < places.size(); ++k)
+      if (places[k] && (places[k - 1] || places[k + 1])) lines[k] = PassLine(sigma(sample_radius(int(k))), *places[k], centre(k - 1), centre(k + 1));
+    return lines;
+  }
+
+  /// The cusps between the passes of a chain that are higher than `above` on the ring, also between the stations; one list a pair.
+  [[nodiscard]] std::vector<std::vector<HighCusp>> cusps_above(const Chain& chain, double above) const {
+    std::vector<std::vector<std::optional<PassLine>>> lines(chain.size());
+    tbb::parallel_for(std::size_t(0), chain.size(), [&](std::size_t i) { lines[i] = lines_of(chain[i]); });
+    std::vector<std::vector<HighCusp>> out(chain.size() - 1);  // a chain has one pass at least
+    tbb::parallel_for(std::size_t(0), chain.size() - 1, [&](std::size_t i) {
+      for (int k = 1; k < samples(); ++k) {
+        const auto &a = lines[i][std::size_t(k)], &b = lines[i + 1][std::size_t(k)];
+        if (!a || !b || !on_ring(*a, *b)) continue;
+        const bool flat = std::max(a->sigma, b->sigma) < 0.9 || std::min(a->sigma, b->sigma) > 4.1;
+        if (flat && k % 2 != 0) continue;  // the flanks bend slowly
+        const double r = sample_radius(k);
+        const Crest crest = count_.cusp(*a, *b, r, sheet_.gaps(r));
+        if (crest.height_mm > above) out[i].push_back({r, std::min(a->sigma, b->sigma), std::max(a->sigma, b->sigma), crest});
+      }
+    });
+    return out;
+  }
+  /// Does the crest between two passes stand on the ring, or hardly beyond its ends?
+  [[nodiscard]] bool on_ring(const PassLine& a, const PassLine& b) const {
+    const auto [low, high] = std::minmax({radius(a.at.contact.p), radius(b.at.contact.p)});
+    const double beyond = high - low + 0.02 * o_.ball_radius_mm;
+    const auto& ring = sheet_.space().ring().zone;
+    return high > ring.inner_radius_mm - beyond && low < ring.outer_radius_mm + beyond;
+  }
+
+  /// Of one value a station, the greatest where some contact of the station lies on the ring: beyond its ends no cusp counts.
+  [[nodiscard]] double most_on_ring(const std::vector<double>& values) const {
+    const auto& ring = sheet_.space().ring().zone;
+    double most = 0;
+    for (std::size_t j = 0; j < values.size(); ++j) {
+      const auto& nodes = sheet_.stations()[j].nodes;
+      const bool on = std::any_of(nodes.begin(), nodes.end(), [&](const OffsetSheet::Node& n) {
+        const double r = radius(n.at.contact.p);
+        return r >= ring.inner_radius_mm && r <= ring.outer_radius_mm;
+      });
+      if (on) most = std::max(most, values[j]);
+    }
+    return most;
+  }
+
+  /// Lays chains with `lay`, draws the passes together where a cusp is too high and lays them anew. A place where the surface bends
+  /// sharply would draw all passes together along the whole tooth: of all rounds the one with the fewest passes is taken, those counted that
+  /// must then stand between two others.
+  template <std::size_t N, typename Lay>
+  [[nodiscard]] std::array<Chain, N> drawn_together(const Lay& lay) {
+    std::array<Chain, N> best;
+    std::size_t fewest = SIZE_MAX;
+    for (int round = 0; round <= kDrawRounds; ++round) {
+      std::array<Chain, N> chains = lay();
+      std::vector<HighCusp> high;
+      std::size_t passes = 0;
+      for (const Chain& chain : chains) {
+        passes += chain.size();
+        for (const auto& pair : cusps_above(chain, o_.scallop_mm)) {
+          passes += pair.empty() ? 0 : 1;
+          high.insert(high.end(), pair.begin(), pair.end());
+        }
+      }
+      if (passes < fewest) {
+        fewest = passes;
+        best = std::move(chains);
+      }
+      if (high.empty()) break;
+      count_.draw_together(high);
+    }
+    for (Chain& chain : best) close_gaps(chain);
+    return best;
+  }
+
+  [[nodiscard]] std::vector<HighCusp> high_cusps(const Chain& chain) const {
+    std::vector<HighCusp> all;
+    for (const auto& pair : cusps_above(chain, o_.scallop_mm)) all.insert(all.end(), pair.begin(), pair.end());
+    return all;
+  }
+  void note_cusps(const Chain& chain) {
+    for (const auto& pair : cusps_above(chain, 0))
+      for (const auto& c : pair) {
+        out_.scallop_max_mm = std::max(out_.scallop_max_mm, c.crest.height_mm);
+        out_.crest_lean = std::max(out_.crest_lean, c.crest.lean);
+      }
+  }
+
+  /// Where passes that were drawn together still leave a cusp that is too high, one more pass.
   void close_gaps(Chain& chain) const {
     for (int round = 0; round < 3; ++round)
       if (!close_gaps_once(chain)) return;
   }
   [[nodiscard]] bool close_gaps_once(Chain& chain) const {
-    std::vector<char> add(chain.size(), 0);
-    tbb::parallel_for(std::size_t(0), chain.size() - 1, [&](std::size_t i) { add[i] = too_far_apart(chain[i], chain[i + 1]); });
+    const auto high = cusps_above(chain, o_.scallop_mm);
     Chain closed;
     for (std::size_t i = 0; i < chain.size(); ++i) {
       closed.push_back(chain[i]);
-      if (!add[i]) continue;
-      closed.push_back([this, a = chain[i], b = chain[i + 1]](double r) { return 0.5 * (a(r) + b(r)); });
+      if (i + 1 == chain.size() || high[i].empty()) continue;
+      closed.push_back([a = chain[i], b = chain[i + 1]](double r) { return 0.5 * (a(r) + b(r)); });
     }
     const bool grown = closed.size() > chain.size();
     chain = std::move(closed);
     return grown;
-  }
-
-  [[nodiscard]] bool too_far_apart(const std::function<double(double)>& a, const std::function<double(double)>& b) const {
-    const double low = sheet_.r_from(), high = sheet_.r_to();
-    const int samples = 2 * int(sheet_.stations().size());
-    const double step = 1e-3 * (high - low);
-    for (int k = 1; k < samples; ++k) {
-      const double r = low + (high - low) * k / samples;
-      const double sigma_a = a(r), sigma_b = b(r);
-      const bool flat = std::max(sigma_a, sigma_b) < 0.9 || std::min(sigma_a, sigma_b) > 4.1;
-      if (flat && k % 4 != 0) continue;  // the flanks bend slowly
-      const auto pa = sheet_.at(sigma_a, r), pb = sheet_.at(sigma_b, r);
-      const auto na = sheet_.at(a(r + step), r + step), nb = sheet_.at(b(r + step), r + step);
-      if (!pa || !pb || !na || !nb) continue;
-      const double ra = radius(pa->contact.p);
-      const auto& ring = sheet_.space().ring().zone;
-      if (ra < ring.inner_radius_mm - o_.ball_radius_mm || ra > ring.outer_radius_mm + o_.ball_radius_mm) continue;
-      const Vec3 fa = (na->centre - pa->centre).normalized(), fb = (nb->centre - pb->centre).normalized();
-      if (count_.cusp(sigma_a, *pa, fa, sigma_b, *pb, fb, r, sheet_.gaps(r)) > kHighestCusp * o_.scallop_mm) return true;
-    }
-    return false;
-  }
-
-  void note_scallop(const std::vector<double>& totals, double passes) {
-    for (double total : totals) {
-      const double h = o_.scallop_mm * (total / passes) * (total / passes);
-      out_.scallop_min_mm = std::min(out_.scallop_min_mm, h);
-      out_.scallop_max_mm = std::max(out_.scallop_max_mm, h);
-    }
   }
 
   template <typename Sigma>
@@ -188,42 +257,63 @@ class Planner {
     return {(1 - y) * a.from + y * b.from, (1 - y) * a.to + y * b.to, y < 0.5 ? a.one : b.one};
   }
 
-  /// With corners: each flank has its own passes down to its corner, one pass follows every corner, and where the ball reaches
-  /// the root land its passes lie between the corners. No pass crosses a corner.
-  Status passes_between_corners() {
-    const auto& stations = sheet_.stations();
-    const std::size_t n = stations.size();
-    std::vector<CornerPlace> plus(n), minus(n);
-    for (std::size_t j = 0; j < n; ++j) {
-      plus[j] = corner_at(stations[j].r, true);
-      minus[j] = corner_at(stations[j].r, false);
-    }
+  /// Both corners at every station.
+  struct Corners {
+    std::vector<CornerPlace> plus, minus;
+  };
+  /// The passes of the plus flank and of the minus flank, each from its tip down to its corner, which is the last one.
+  [[nodiscard]] std::array<Chain, 2> chains_to_corners(const Corners& corners) const {
+    const std::size_t n = sheet_.stations().size();
     const auto& totals = count_.totals();
     std::vector<double> a(n), c(n);  // counts of the plus flank and of the minus flank, tip to corner
     for (std::size_t j = 0; j < n; ++j) {
-      a[j] = count_.count_at(j, plus[j].from);
-      c[j] = totals[j] - count_.count_at(j, minus[j].to);
+      a[j] = count_.count_at(j, corners.plus[j].from);
+      c[j] = totals[j] - count_.count_at(j, corners.minus[j].to);
     }
-    const int passes_a = std::max(1, int(std::ceil(*std::max_element(a.begin(), a.end()) - 0.5)));
-    const int passes_c = std::max(1, int(std::ceil(*std::max_element(c.begin(), c.end()) - 0.5)));
-    note_scallop(a, passes_a + 0.5);
-    note_scallop(c, passes_c + 0.5);
-    // Distances from the corner are smooth along the tooth, also where the corner itself moves.
-    Chain on_plus, on_minus;
+    const int passes_a = std::max(1, int(std::ceil(most_on_ring(a) - 0.5)));
+    const int passes_c = std::max(1, int(std::ceil(most_on_ring(c) - 0.5)));
+    std::array<Chain, 2> chains;
+    auto& [on_plus, on_minus] = chains;
     for (int i = 0; i < passes_a; ++i) {
-      std::vector<double> away(n);
-      for (std::size_t j = 0; j < n; ++j) away[j] = plus[j].from - count_.sigma_at(j, (i + 0.5) / (passes_a + 0.5) * a[j]);
-      on_plus.push_back([this, away](double r) { return corner_at(r, true).from - smooth(away, station_coordinate(r)); });
+      const double share = (i + 0.5) / (passes_a + 0.5);
+      std::vector<double> sigma(n);
+      for (std::size_t j = 0; j < n; ++j) sigma[j] = count_.sigma_at(j, share * a[j]);
+      on_plus.push_back(beside_corner(std::move(sigma), share, corners.plus, true));
     }
     for (int i = 0; i < passes_c; ++i) {
-      std::vector<double> away(n);
-      for (std::size_t j = 0; j < n; ++j) away[j] = count_.sigma_at(j, totals[j] - (i + 0.5) / (passes_c + 0.5) * c[j]) - minus[j].to;
-      on_minus.push_back([this, away](double r) { return corner_at(r, false).to + smooth(away, station_coordinate(r)); });
+      const double share = (i + 0.5) / (passes_c + 0.5);
+      std::vector<double> sigma(n);
+      for (std::size_t j = 0; j < n; ++j) sigma[j] = count_.sigma_at(j, totals[j] - share * c[j]);
+      on_minus.push_back(beside_corner(std::move(sigma), share, corners.minus, false));
     }
     on_plus.push_back([this](double r) { return corner_at(r, true).from; });
     on_minus.push_back([this](double r) { return corner_at(r, false).to; });
-    close_gaps(on_plus);
-    close_gaps(on_minus);
+    return chains;
+  }
+
+  /// A pass of a flank, smooth through its places at the stations. Between them the corner may leave the smooth curve through its own places:
+  /// the passes follow it by their share of the way from tip to corner, so that they keep their distances.
+  [[nodiscard]] std::function<double(double)> beside_corner(std::vector<double> sigma, double share, const std::vector<CornerPlace>& corner, bool plus) const {
+    std::vector<double> edge;
+    for (const auto& c : corner) edge.push_back(plus ? c.from : c.to);
+    return [this, sigma = std::move(sigma), share, edge = std::move(edge), plus](double r) {
+      const double t = station_coordinate(r);
+      const CornerPlace c = corner_at(r, plus);
+      return smooth(sigma, t) + share * ((plus ? c.from : c.to) - smooth(edge, t));
+    };
+  }
+
+  /// With corners: each flank has its own passes down to its corner, one pass follows every corner, and where the ball reaches
+  /// the root land its passes lie between the corners. No pass crosses a corner.
+  Status passes_between_corners() {
+    Corners corners;
+    for (const auto& station : sheet_.stations()) {
+      corners.plus.push_back(corner_at(station.r, true));
+      corners.minus.push_back(corner_at(station.r, false));
+    }
+    auto [on_plus, on_minus] = drawn_together<2>([&] { return chains_to_corners(corners); });
+    note_cusps(on_plus);
+    note_cusps(on_minus);
     on_minus.pop_back();  // the minus corner comes below, where it is apart from the plus corner
     for (std::size_t i = 0; i < std::max(on_plus.size(), on_minus.size()); ++i) {
       if (i + 1 == on_plus.size()) {  // along the corner
@@ -235,28 +325,43 @@ class Planner {
         if (auto ok = add_pass(on_minus[i], false); !ok) return ok;
     }
     out_.corner_passes = true;
-    // The minus corner and the root land, over every stretch where they are apart from the plus corner.
+    return passes_on_root_land(corners);
+  }
+
+  /// From corner to corner over the root land, both of them included; where the corners are one, that one.
+  [[nodiscard]] Chain land_chain(int between) const {
+    Chain land;
+    for (int i = 0; i <= between; ++i)
+      land.push_back([this, i, between](double r) {
+        const CornerPlace p = corner_at(r, true), m = corner_at(r, false);
+        if (p.one) return p.from;
+        return p.to + (m.from - p.to) * i / std::max(between, 1);
+      });
+    return land;
+  }
+
+  /// The minus corner and the root land, over every stretch where they are apart from the plus corner.
+  Status passes_on_root_land(const Corners& corners) {
+    const auto& stations = sheet_.stations();
+    const std::size_t n = stations.size();
     for (std::size_t j = 0; j < n;) {
-      if (plus[j].one) {
+      if (corners.plus[j].one) {
         ++j;
         continue;
       }
       std::size_t end = j;
-      while (end + 1 < n && !plus[end + 1].one) ++end;
+      while (end + 1 < n && !corners.plus[end + 1].one) ++end;
       const double r_low = j > 0 ? stations[j - 1].r : -INFINITY, r_high = end + 1 < n ? stations[end + 1].r : INFINITY;
       const auto minus_corner = [&](double r) { return corner_at(r, false).to; };
       if (auto ok = add_pass(minus_corner, [&](double r) { return corner_at(r, false).from; }, false, r_low, r_high); !ok) return ok;
       double most = 0;
-      for (std::size_t k = j; k <= end; ++k) most = std::max(most, count_.count_at(k, minus[k].from) - count_.count_at(k, plus[k].to));
-      const int between = int(std::ceil(most - 1e-9));
-      for (int i = 1; i < between; ++i) {
-        const auto sigma = [&](double r) {
-          const CornerPlace p = corner_at(r, true), m = corner_at(r, false);
-          if (p.one) return p.from;
-          return p.to + (m.from - p.to) * i / between;
-        };
-        if (auto ok = add_pass(sigma, 2 * i < between, r_low, r_high); !ok) return ok;
-      }
+      for (std::size_t k = j; k <= end; ++k) most = std::max(most, count_.count_at(k, corners.minus[k].from) - count_.count_at(k, corners.plus[k].to));
+      int between = int(std::ceil(most - 1e-9));
+      Chain land = land_chain(between);
+      for (int round = 0; round < kDrawRounds && !high_cusps(land).empty(); ++round) land = land_chain(++between);
+      note_cusps(land);
+      for (int i = 1; i < between; ++i)
+        if (auto ok = add_pass(land[std::size_t(i)], 2 * i < between, r_low, r_high); !ok) return ok;
       j = end + 1;
     }
     return Ok{};

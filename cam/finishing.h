@@ -29,7 +29,8 @@ struct FinishingOptions {
 
 struct FinishingPasses {
   std::vector<BallPass> passes;     ///< in cutting order
-  double scallop_min_mm = 0, scallop_max_mm = 0;  ///< predicted, on the flanks
+  double scallop_max_mm = 0;        ///< highest cusp found between two passes, flanks, fillets and root
+  double crest_lean = 0;            ///< greatest lean of a crest (cam/pass_count.h)
   double worst_chord_mm = 0;        ///< largest sag found while placing points
   bool corner_passes = false;       ///< the ball is too large for the fillet: extra passes run along the corners
 };

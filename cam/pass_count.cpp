@@ -11,6 +11,8 @@ namespace {
 /// Nodes of a profile are divided this often before cusps are measured: the curvature may change within one step-over.
 constexpr int kFiner = 4;
 constexpr int kCuspRounds = 4;
+constexpr int kCrestSteps = 12;
+constexpr double kSameHeight = 1e-3;  // of the asked cusp: both balls leave the same
 // Of the asked cusp: room for what lies between the stations.
 constexpr double kFlankAim = 0.99, kCornerAim = 0.98;
 
@@ -38,6 +40,25 @@ void divide(std::vector<double>& sigma, std::vector<double>& count) {
 }
 
 }  // namespace
+
+PassLine::PassLine(double place, const SheetPoint& point, const std::optional<Vec3>& before, const std::optional<Vec3>& after) : sigma(place), at(point) {
+  const Vec3 &c = at.centre, from = before.value_or(c), to = after.value_or(c);
+  if (!before || !after) {
+    feed = (to - from).normalized();
+    return;
+  }
+  const double back = (c - from).norm(), on = (to - c).norm();
+  const Vec3 u = (c - from) / back, v = (to - c) / on;
+  bend = (v - u) / (back + on);
+  feed = ((back * v + on * u) / (back + on)).normalized();
+}
+
+double PassLine::distance(const Vec3& p) const {
+  const Vec3 away = p - at.centre;
+  // One step of Newton from the foot on the straight line; a pass that bends within a ball radius is taken straight for half of it.
+  const double t = away.dot(feed) / std::max(0.5, 1 - 2 * away.dot(bend));
+  return (away - t * feed - t * t * bend).norm();
+}
 
 PassCount::PassCount(const OffsetSheet& sheet, const FinishingOptions& options) : sheet_(sheet), o_(options) {
   count_profiles();
@@ -110,40 +131,55 @@ void PassCount::count_profiles() {
 /// The count comes from curvatures at single points; here every cusp is measured between its two passes, and where it is
 /// higher than asked the passes are drawn together.
 void PassCount::sharpen() {
-  std::vector<std::vector<double>> counts(profiles_.size());
-  tbb::parallel_for(std::size_t(0), profiles_.size(), [&](std::size_t j) { counts[j] = sharpened(j); });
-  for (std::size_t j = 0; j < profiles_.size(); ++j) {
-    profiles_[j].count = std::move(counts[j]);
-    totals_[j] = profiles_[j].count.back();
-  }
+  std::vector<std::vector<double>> grow(profiles_.size());
+  tbb::parallel_for(std::size_t(0), profiles_.size(), [&](std::size_t j) { grow[j] = growth(j); });
+  for (std::size_t j = 0; j < profiles_.size(); ++j) apply(j, grow[j]);
 }
 
-/// New count of station j. Where the curvature jumps (around the corners) pairs of passes are tried at four phases, since the
+void PassCount::draw_together(std::span<const HighCusp> cusps) {
+  const auto& stations = sheet_.stations();
+  std::vector<std::vector<double>> grow(profiles_.size());
+  for (std::size_t j = 0; j < profiles_.size(); ++j) grow[j].assign(profiles_[j].sigma.size(), 1.0);
+  const double step = (sheet_.r_to() - sheet_.r_from()) / double(stations.size() - 1);
+  for (const auto& c : cusps) {
+    const auto before = std::size_t(std::clamp(std::floor((c.r - sheet_.r_from()) / step), 0.0, double(stations.size() - 2)));
+    const double factor = std::sqrt(std::clamp(c.crest.height_mm / (kCornerAim * o_.scallop_mm), 1.0, 4.0));
+    for (const std::size_t j : {before, before + 1})
+      for (std::size_t k = 1; k < grow[j].size(); ++k)
+        if (profiles_[j].sigma[k] > c.sigma_a && profiles_[j].sigma[k - 1] < c.sigma_b) grow[j][k] = std::max(grow[j][k], factor);
+  }
+  for (std::size_t j = 0; j < profiles_.size(); ++j) apply(j, grow[j]);
+}
+
+/// Stretches every interval of station j by its factor.
+void PassCount::apply(std::size_t j, const std::vector<double>& grow) {
+  auto& old = profiles_[j].count;
+  std::vector<double> count{old.front()};
+  for (std::size_t k = 1; k < old.size(); ++k) count.push_back(count.back() + (old[k] - old[k - 1]) * grow[k]);
+  old = std::move(count);
+  totals_[j] = old.back();
+}
+
+/// Factor of every interval of station j. Where the curvature jumps (around the corners) pairs of passes are tried at four phases, since the
 /// final passes of a station fall anywhere; on the flanks one phase is enough.
-std::vector<double> PassCount::sharpened(std::size_t j) const {
+std::vector<double> PassCount::growth(std::size_t j) const {
   const auto& p = profiles_[j];
   const double r = sheet_.stations()[j].r, total = totals_[j];
   const auto gaps = sheet_.gaps(r);
-  struct Line {
-    double count, sigma;
-    SheetPoint at;
-    Vec3 feed;
-  };
   const auto on_flank = [](double sigma) { return sigma < 0.96 || sigma > 4.04; };
   std::vector<double> grow(p.sigma.size(), 1.0);
   const auto try_pairs = [&](double begin, double end, double step, std::size_t apart) {
-    std::vector<Line> lines;
+    std::vector<PassLine> lines;
     for (double c = begin; c <= end; c += step) {
-      const double sigma = sigma_at(j, c);
-      const auto s = sheet_.at(sigma, r);
-      if (!s) return;
-      lines.push_back({c, sigma, *s, direction_at(j, sigma, c / total)});
+      const auto line = line_at(j, c);
+      if (!line) return;
+      lines.push_back(*line);
     }
     for (std::size_t i = 0; i + apart < lines.size(); ++i) {
       const auto &a = lines[i], &b = lines[i + apart];
       const auto between = [&](const SheetGap& g) { return a.sigma <= g.from && b.sigma >= g.to; };
       if (std::any_of(gaps.begin(), gaps.end(), between)) continue;  // a pass will run along the corner between them
-      const double height = cusp(a.sigma, a.at, a.feed, b.sigma, b.at, b.feed, r, gaps);
+      const double height = cusp(a, b, r, gaps).height_mm;
       const double ratio = std::clamp(height / ((on_flank(a.sigma) && on_flank(b.sigma) ? kFlankAim : kCornerAim) * o_.scallop_mm), 1.0, 4.0);
       if (ratio == 1.0) continue;
       for (std::size_t k = 1; k < p.sigma.size(); ++k)
@@ -154,40 +190,60 @@ std::vector<double> PassCount::sharpened(std::size_t j) const {
   try_pairs(0.5, corner_begin, 1.0, 1);
   try_pairs(std::max(corner_begin - 1.0, 0.0), std::min(corner_end + 1.0, total), 0.25, 4);
   try_pairs(corner_end, total, 1.0, 1);
-  std::vector<double> count{p.count.front()};
-  for (std::size_t k = 1; k < p.count.size(); ++k) count.push_back(count.back() + (p.count[k] - p.count[k - 1]) * grow[k]);
-  return count;
+  return grow;
 }
 
-/// Direction of a pass at a place of station j: towards the same share of the count at the neighbours.
-Vec3 PassCount::direction_at(std::size_t j, double sigma, double share) const {
+/// A pass where station j has a count: it goes on through the same share of the counts of the neighbours.
+std::optional<PassLine> PassCount::line_at(std::size_t j, double count) const {
   const auto& stations = sheet_.stations();
-  const std::size_t a = j > 0 ? j - 1 : j, b = j + 1 < stations.size() ? j + 1 : j;
-  const auto place = [&](std::size_t s) {
-    const double there = s == j ? sigma : sigma_at(s, share * totals_[s]);
-    const auto q = sheet_.at(there, stations[s].r);
-    return q ? q->centre : Vec3(Vec3::Zero());
+  const auto centre = [&](std::size_t s) -> std::optional<Vec3> {
+    if (s >= stations.size()) return {};  // before the first one, too
+    const auto q = sheet_.at(sigma_at(s, count / totals_[j] * totals_[s]), stations[s].r);
+    if (!q) return {};
+    return q->centre;
   };
-  return (place(b) - place(a)).normalized();
+  const double sigma = sigma_at(j, count);
+  const auto here = sheet_.at(sigma, stations[j].r);
+  const auto before = centre(j - 1), after = centre(j + 1);
+  if (!here || (!before && !after)) return {};
+  return PassLine(sigma, *here, before, after);
 }
 
-/// Highest place of the surface between two passes, above what both balls leave. Allowance left out.
-double PassCount::cusp(double sigma_a, const SheetPoint& a, const Vec3& feed_a, double sigma_b, const SheetPoint& b, const Vec3& feed_b,
-                       double r, const std::vector<SheetGap>& gaps) const {
-  const auto from_line = [](const Vec3& p, const Vec3& q, const Vec3& feed) { return (p - q).cross(feed).norm(); };
-  double worst = 0;
-  constexpr int kSamples = 8;
-  for (int k = 1; k < kSamples; ++k) {
-    const double sigma = sigma_a + (sigma_b - sigma_a) * k / kSamples;
-    bool hidden = false;
-    for (const auto& g : gaps) hidden = hidden || (sigma > g.from && sigma < g.to);
-    if (hidden) continue;  // a corner that the ball cannot reach has its own pass
+/// The crest stands where both balls leave the same: from one pass to the other the distance to the first grows and that to the second falls,
+/// so that the place between them is enclosed. Allowance left out.
+Crest PassCount::cusp(const PassLine& a, const PassLine& b, double r, const std::vector<SheetGap>& gaps) const {
+  // What both balls leave at a place.
+  const auto over = [&](const SheetPoint& s) {
+    const Vec3 p = s.contact.p + o_.allowance_mm * s.contact.n;
+    return std::pair{a.distance(p) - o_.ball_radius_mm, b.distance(p) - o_.ball_radius_mm};
+  };
+  const auto crest = [&](const SheetPoint& s, double height) {
+    const auto lean = [&](const PassLine& pass) { return (s.contact.p - pass.at.centre).normalized().cross(pass.at.contact.n).norm(); };
+    return Crest{std::max(0.0, height), std::max(lean(a), lean(b))};
+  };
+  // Beside a corner that the ball cannot reach, which has its own pass, the surface ends: the higher of the two ends.
+  for (const auto& g : gaps)
+    if (a.sigma < g.from && b.sigma > g.to) {
+      Crest most;
+      for (const double end : {g.from, g.to})
+        if (const auto s = sheet_.raw(end, r))
+          if (const double height = std::min(over(*s).first, over(*s).second); height > most.height_mm) most = crest(*s, height);
+      return most;
+    }
+  const auto slope = [](const std::pair<double, double>& h) { return h.first - h.second; };
+  double low = a.sigma, high = b.sigma, f_low = slope(over(a.at)), f_high = slope(over(b.at));
+  for (int k = 1; k <= kCrestSteps; ++k) {
+    // Where the line through both ends is zero; every third time the middle, so that the bracket shrinks from both sides.
+    const bool line = k % 3 != 0 && f_low < 0 && f_high > 0;
+    const double sigma = line ? low - f_low * (high - low) / (f_high - f_low) : 0.5 * (low + high);
     const auto s = sheet_.raw(sigma, r);
-    if (!s) continue;
-    const Vec3 p = s->contact.p + o_.allowance_mm * s->contact.n;
-    worst = std::max(worst, std::min(from_line(p, a.centre, feed_a), from_line(p, b.centre, feed_b)) - o_.ball_radius_mm);
+    if (!s) return {};
+    const auto h = over(*s);
+    if (std::abs(slope(h)) < kSameHeight * o_.scallop_mm || k == kCrestSteps) return crest(*s, 0.5 * (h.first + h.second));
+    (slope(h) < 0 ? low : high) = sigma;
+    (slope(h) < 0 ? f_low : f_high) = slope(h);
   }
-  return worst;
+  return {};
 }
 
 Vec3 PassCount::feed_direction(std::size_t j, std::size_t k, int round) const {

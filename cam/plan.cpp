@@ -59,12 +59,10 @@ class JobPlanner {
       path.spindle_rpm = op.speed_rpm;
       OperationPlan summary;
       summary.operation = int(n);
-      summary.scallop_min_mm = INFINITY;
       for (int zone = 0; zone < part_.zones(); ++zone) {
         if (progress_) progress_(std::string(to_string(op.type)) + ", zone " + std::to_string(zone));
         if (auto refusal = plan_zone(int(n), zone, path, summary)) return *refusal;
       }
-      if (summary.scallop_min_mm == INFINITY) summary.scallop_min_mm = 0;
       if (n + 1 < operations_.size()) {
         const double radius = tools_[std::size_t(op.tool)].radius_mm();
         cleared_.push_back(std::make_unique<SweptPath>(ball_moves(path, radius), radius));
@@ -138,8 +136,8 @@ class JobPlanner {
       passes = std::move(planned->passes);
       const auto distance = [&](const Vec3& centre) { return part_.nearest(centre, delta + 0.01).distance; };
       for (auto& pass : plan_corner_ends(sheet, f, distance)) passes.push_back(std::move(pass));
-      summary.scallop_min_mm = std::min(summary.scallop_min_mm, planned->scallop_min_mm);
       summary.scallop_max_mm = std::max(summary.scallop_max_mm, planned->scallop_max_mm);
+      summary.crest_lean = std::max(summary.crest_lean, planned->crest_lean);
       summary.chord_mm = std::max(summary.chord_mm, planned->worst_chord_mm);
       summary.corner_passes = summary.corner_passes || planned->corner_passes;
       if (auto refusal = check_passes(passes, tool, key, zone)) return refusal;

@@ -26,7 +26,8 @@ struct PlanOptions {
 /// What the planner knows about one operation; for the ledger and the report.
 struct OperationPlan {
   int operation = 0;
-  double scallop_min_mm = 0, scallop_max_mm = 0;  ///< predicted on the flanks; 0 for roughing
+  double scallop_max_mm = 0;                      ///< highest cusp between two passes, predicted; 0 for roughing
+  double crest_lean = 0;                          ///< what of a path error sideways shows in the height of a cusp, at most
   double chord_mm = 0;                            ///< largest sag of a block against the exact path
   int passes = 0, skipped_passes = 0, layers = 0;
   bool corner_passes = false;

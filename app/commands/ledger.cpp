@@ -94,6 +94,14 @@ Stated stated_deviation(std::span<const ToolMotion> motions) {
   return out;
 }
 
+/// Height above its two valleys of a cusp that was planned `height` high, where each pass lies up to `moved` beside its place. Sideways errors
+/// show with the lean of the crest. Along the normal, two arcs of one curvature that stand d <= 2 moved apart meet d^2 / (16 height) above
+/// where they would have; an arc that the other one swallows (d > 4 height) makes no cusp, so that a lower one never exceeds `moved`.
+double cusp_of_moved_passes(double height, double moved, double lean) {
+  if (height <= 0) return 0;
+  return std::max(height + lean * moved + moved * moved / (4 * height), moved);
+}
+
 LedgerEntry entry(std::string source, double predicted_mm, double measured_mm, std::string note = {}) {
   return {std::move(source), predicted_mm * kUm, measured_mm * kUm, std::move(note)};
 }
@@ -125,9 +133,11 @@ std::vector<LedgerEntry> face_gear_ledger(const GearDistance& part, const FaceGe
   ledger.push_back(entry("flank solve", Tolerances{}.flank_mm, std::max(planned.solve_mm, proof.surface.solve_residual_mm),
                          "feet of the touching records and of the measured grid"));
   ledger.push_back(entry("chord", plan.operations.back().chord_mm, planned.chord_mm, "middles of the blocks between touching records"));
-  ledger.push_back(entry("scallop", std::max(plan.operations.back().scallop_max_mm, scallop.requested_mm),
-                         scallop.requested_mm > 0 ? scallop.reached_max_mm : 0,
-                         scallop.requested_mm > 0 ? "cusps of the cut surface" : "the last operation asks for no cusp height"));
+  // Chords, turning axes and rounded words move the passes, too.
+  const double moved = plan.operations.back().chord_mm + program.chord_bound_mm + program.rounding_bound_mm + radius * rotary_rounding(program);
+  ledger.push_back(entry("scallop", cusp_of_moved_passes(std::max(plan.operations.back().scallop_max_mm, scallop.requested_mm), moved, plan.operations.back().crest_lean),
+                         scallop.requested_mm > 0 ? std::max(scallop.reached_max_mm, scallop.fillet_max_mm) : 0,
+                         scallop.requested_mm > 0 ? "cusps of the cut surface, fillets and root among them" : "the last operation asks for no cusp height"));
   // The tip is what the words give; the ball's centre stands a radius along the axis.
   ledger.push_back(entry("orientation", radius * (program.axis_bound_rad + rotary_rounding(program)),
                          proof.comparison ? radius * proof.comparison->worst_axis_rad : 0, "axis of the records against the axis that was read back"));
