@@ -30,6 +30,7 @@ struct VerifySettings {
   double gouge_tolerance_mm = 2e-3;     ///< deepest cut into the finished surface that counts as verified
   bool all_teeth = false;               ///< false: one space is proven, the others are turned copies
   std::optional<double> clearance_mm;   ///< least gap of neck, shank and holder; none: the program's default
+  std::optional<double> unreached_mm;   ///< surface out of the finishing ball's reach may stand so high; none: it is told, no verdict
 };
 
 enum class PoleOption;  // machines/machine.h

@@ -270,13 +270,15 @@ ContactSettings read_contact(TableReader& table) {
   return c;
 }
 
-VerifySettings read_verify(TableReader& table) {
+VerifySettings read_verify(TableReader& table, bool bevel) {
   VerifySettings verify;
   if (const auto gouge = table.if_present("gouge_tolerance", [&] { return table.number("gouge_tolerance", {1e-5, 0.1, " mm"}); }))
     verify.gouge_tolerance_mm = *gouge;
   if (const auto teeth = table.if_present("teeth", [&] { return table.word("teeth", {"one", "all"}); }))
     verify.all_teeth = *teeth == "all";
   verify.clearance_mm = table.if_present("clearance", [&] { return table.number("clearance", {0, 50, " mm"}); });
+  verify.unreached_mm = table.if_present("unreached", [&] { return table.number("unreached", {0, 50, " mm"}); });
+  if (bevel && verify.unreached_mm) table.refuse("unreached", "unreached is asked of the ball that finishes a face gear: what a finger mill leaves is its ridge");
   table.finish();
   return verify;
 }

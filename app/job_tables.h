@@ -23,7 +23,7 @@ namespace toothpath {
 [[nodiscard]] Setup read_setup(TableReader& table);
 [[nodiscard]] Shaping read_shaping(TableReader& table);
 [[nodiscard]] ContactSettings read_contact(TableReader& table);
-[[nodiscard]] VerifySettings read_verify(TableReader& table);
+[[nodiscard]] VerifySettings read_verify(TableReader& table, bool bevel);
 [[nodiscard]] ProgramSettings read_program_settings(TableReader& table);
 [[nodiscard]] MachineChoice read_machine_choice(TableReader& table);
 [[nodiscard]] Coolant read_coolant(TableReader& table);

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "app/commands/program_motions.h"
+#include "app/report/unreached_text.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
@@ -45,6 +46,16 @@ void judge_surface(const CutSurface& surface, const Job& job, std::vector<std::s
   reasons.push_back(fmt::format("left material: {:.2f} um after the last operation, limit {:.2f} um (scallop {:.2f}, chord {:.2f}, margin {:.2f})",
                                 surface.finished.max_mm * 1000, limit * 1000, last.scallop_mm * 1000, last.chord_tolerance_mm * 1000,
                                 kExcessMargin * 1000));
+}
+
+/// Surface that the ball of a finishing operation does not reach: on an active flank always a reason, elsewhere above what the job allows.
+void judge_unreached(const UnreachedResult& unreached, const Job& job, std::vector<std::string>& reasons) {
+  if (const auto& a = unreached.active)
+    reasons.push_back(fmt::format("unreached: the ball of {:g} mm does not reach the active flank: {:.4f} mm stay on {}, zone {}, r {:.3f} mm, z {:.3f} mm, limit {:.4f} mm; {}",
+                                  unreached.ball_mm, a->height_mm, a->patch, a->zone, a->radius_mm, a->z_mm, unreached.limit_mm, largest_ball_text(unreached)));
+  if (const auto& limit = job.verify.unreached_mm; limit && unreached.height_mm > *limit)
+    reasons.push_back(fmt::format("unreached: {:.4f} mm stay out of reach of the ball of {:g} mm, limit {:.4f} mm ([verify] unreached); {}", unreached.height_mm,
+                                  unreached.ball_mm, *limit, largest_ball_text(unreached)));
 }
 
 Vec3 turned(const Vec3& v, double angle) {
@@ -118,6 +129,7 @@ Result<ProgramProof> prove_program(std::string_view text, const std::string& fil
   judge_gouge(proof.gouge, check, options, proof.reasons);
   proof.surface = clock.run("cut surface", [&] { return measure_cut_surface(part, proof.motions, job.operations, job.tools, options.cut_surface); });
   judge_surface(proof.surface, job, proof.reasons);
+  judge_unreached(proof.surface.unreached, job, proof.reasons);
   if (!paths.empty())
     proof.comparison = compare_with_paths(proof.motions, paths, options.path_tolerance_mm, options.path_tolerance_rad, clock, proof.reasons);
   return proof;

@@ -156,9 +156,6 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   run.report.excess = proof->surface.operations;
   run.report.finished = proof->surface.finished;
   run.report.unreached = proof->surface.unreached;
-  if (proof->surface.unreached.points > 0)
-    run.report.warnings.push_back(fmt::format("the finishing ball does not reach every corner: up to {:.3f} mm stay (measured up to one module)",
-                                              proof->surface.unreached.max_height_mm));
   if (proof->surface.scallop.requested_mm > 0) run.report.scallop = proof->surface.scallop;
   run.surface = std::move(proof->surface.grids);
   run.motion = motion_charts(proof->read, proof->motions, run.machine);

@@ -4,6 +4,7 @@
 
 #include "app/report/html_text.h"
 #include "app/report/tool_body.h"
+#include "app/report/unreached_text.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
@@ -18,6 +19,9 @@ std::vector<KeyFigure> key_figures(const RunReport& r) {
                        fmt::format("bound {}, tolerance {}", um(std::max(0.0, r.gouge->bound_mm)), um(r.gouge_tolerance_mm)),
                        r.gouge->bound_mm <= r.gouge_tolerance_mm ? State::good : State::bad});
   if (r.finished) figures.push_back({"worst left material", um(r.finished->max_mm), "\u00b5m", "bound " + um(r.finished->bound_mm), State::plain});
+  if (r.unreached && r.unreached->left())
+    figures.push_back({"surface not reached", unreached_share_text(*r.unreached), "", fmt::format("up to {:.3f} mm high; {}", r.unreached->height_mm, largest_ball_text(*r.unreached)),
+                       State::bad});
   if (r.gouge)
     figures.push_back({"least clearance", fmt::format("{:.3f}", r.gouge->clearance_mm), "mm",
                        fmt::format("required {:.3f}", r.gouge->required_clearance_mm),
@@ -75,6 +79,7 @@ ReportPage page_of_run(const Job& job, const RunReport& r, const std::vector<ClP
   if (const auto* gear = job.face_gear())
     page.subtitle = fmt::format("face gear {}/{}, module {} mm, {}", gear->shaper_teeth, gear->teeth, short_number(gear->module_mm), r.machine_name);
   page.verified = r.verified;
+  if (r.unreached) page.unfinished = unreached_text(*r.unreached);
   page.reasons = r.reasons;
   page.warnings = r.warnings;
   page.assumed = r.assumed;

@@ -38,6 +38,21 @@ Json place_json(const WorstPlace& place) {
           {"point", vector_json(place.point)}};
 }
 
+/// What was left is told only where an operation finishes.
+Json unreached_json(const UnreachedResult& u) {
+  Json json = {{"points", u.points}, {"max_height_um", um(u.max_height_mm)}};
+  if (u.ball_mm <= 0) return json;
+  json["ball_mm"] = u.ball_mm;
+  json["limit_um"] = um(u.limit_mm);
+  json["share_percent"] = 100 * u.share;
+  json["height_um"] = um(u.height_mm);
+  json["largest_ball_mm"] = u.left() ? Json(u.largest_ball_mm) : Json(nullptr);
+  json["active_flank"] = nullptr;
+  if (const auto& a = u.active)
+    json["active_flank"] = {{"height_um", um(a->height_mm)}, {"patch", a->patch}, {"zone", a->zone}, {"radius", a->radius_mm}, {"height", a->z_mm}};
+  return json;
+}
+
 void add_proof(Json& json, const RunReport& r) {
   if (r.gouge) {
     json["gouge_um"] = {{"measured", um(r.gouge->measured_mm)}, {"bound", um(r.gouge->bound_mm)}, {"tolerance", um(r.gouge_tolerance_mm)}};
@@ -61,8 +76,9 @@ void add_proof(Json& json, const RunReport& r) {
     json["scallop_um"] = {{"requested", um(r.scallop->requested_mm)},
                           {"reached_min", um(r.scallop->reached_min_mm)},
                           {"reached_max", um(r.scallop->reached_max_mm)},
-                          {"share_within", r.scallop->share_within}};
-  if (r.unreached) json["unreached"] = {{"points", r.unreached->points}, {"max_height_um", um(r.unreached->max_height_mm)}};
+                          {"share_within", r.scallop->share_within},
+                          {"fillet_max", um(r.scallop->fillet_max_mm)}};
+  if (r.unreached) json["unreached"] = unreached_json(*r.unreached);
 }
 
 Json meeting_json(const MeshMeeting& m) {
@@ -179,6 +195,7 @@ std::string report_json(const RunReport& r) {
   const bool proves = r.command != "surface";
   if (proves) {
     json["verified"] = r.verified;
+    json["verdict"] = verdict_text(r);
     json["reasons"] = text_list(r.reasons);
     json["machine"] = {{"name", valid_utf8(r.machine_name)}, {"file", valid_utf8(r.machine_file)}, {"dialect", r.dialect}};
   }

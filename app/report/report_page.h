@@ -65,6 +65,7 @@ struct ReportPage {
   std::string title;     ///< job name
   std::string subtitle;  ///< one line: gear, machine, program version; may be empty
   bool verified = false;
+  std::string unfinished;             ///< what a verified program leaves out of its ball's reach; empty: nothing
   std::vector<std::string> reasons;   ///< why the program is not verified
   std::vector<std::string> warnings;
   std::vector<std::string> assumed;   ///< values that the job did not give

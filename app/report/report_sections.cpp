@@ -119,9 +119,12 @@ std::string key_figures(const ReportPage& page) {
 }  // namespace
 
 std::string page_header(const ReportPage& page) {
+  const bool part = page.verified && !page.unfinished.empty();
   std::string out = fmt::format("<header>\n<div class=\"name\"><h1>{}</h1>{}</div>\n<p class=\"verdict {}\">{}</p>\n</header>\n",
                                 html_escape(page.title), page.subtitle.empty() ? "" : fmt::format("<p>{}</p>", html_escape(page.subtitle)),
-                                page.verified ? "good" : "bad", page.verified ? "Verified" : "Not verified");
+                                part ? "part" : page.verified ? "good" : "bad",
+                                part ? "Verified, root not finished" : page.verified ? "Verified" : "Not verified");
+  if (!page.unfinished.empty()) out += list("Not finished", {page.unfinished}, "reasons warn");
   if (!page.reasons.empty()) out += list(page.verified ? "Verdict" : "Why it is not verified", page.reasons, page.verified ? "reasons" : "reasons bad");
   return out;
 }

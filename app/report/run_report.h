@@ -106,8 +106,11 @@ struct RunReport {
 /// report.json, ending in a line feed. Values that a command does not have are left out; lengths in um where the key says so.
 [[nodiscard]] std::string report_json(const RunReport& report);
 
+/// "verified", "verified, root not finished" (surface that the finishing ball does not reach was left) or "not verified".
+[[nodiscard]] std::string verdict_text(const RunReport& report);
+
 /// The table on the screen: verified or not, worst gouge, worst left material, cutting time, tools, axis ranges, every assumed
-/// value. Plain text; with `color` the verdict is green or red.
+/// value. Plain text; with `color` the verdict is green, amber or red.
 [[nodiscard]] std::string summary_table(const RunReport& report, bool color);
 
 /// "1 h 23 min", "4 min 05 s".

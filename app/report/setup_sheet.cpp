@@ -7,6 +7,7 @@
 #include "app/report/restart_section.h"
 #include "app/report/setup_drawings.h"
 #include "app/report/sheet_html.h"
+#include "app/report/unreached_text.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
@@ -17,7 +18,7 @@ body{font:10.5pt/1.35 sans-serif;color:#111;background:#fff;max-width:182mm;marg
 h1{font-size:16pt;margin:0 0 1mm}h2{font-size:11.5pt;margin:4mm 0 1mm;border-bottom:.3mm solid #888;break-after:avoid}
 table{border-collapse:collapse;width:100%}th,td{border:.2mm solid #999;padding:.6mm 1.6mm;text-align:left;vertical-align:top}
 th{background:#eee;font-weight:600}td.n{text-align:right;font-variant-numeric:tabular-nums}tr,svg{break-inside:avoid}
-.no{border:.8mm solid #b00;padding:2mm;color:#b00;font-weight:700}.yes{border:.4mm solid #070;padding:1.5mm}
+.no{border:.8mm solid #b00;padding:2mm;color:#b00;font-weight:700}.yes{border:.4mm solid #070;padding:1.5mm}.part{border:.6mm solid #a60;padding:1.5mm;font-weight:600}
 .assumed{border:.5mm dashed #a60;padding:1.5mm}.assumed ul{columns:3 46mm;column-gap:5mm}@media print{body{margin:0}}ul{margin:1mm 0;padding-left:5mm}svg{max-width:100%}
 .small{font-size:9pt;margin:1mm 0}.pairs{columns:6 26mm;column-gap:4mm;font-size:8.5pt;font-variant-numeric:tabular-nums}.pairs span{display:block}
 )";
@@ -171,10 +172,11 @@ std::string setup_sheet(const Job& job, const PartOutline& part, const Machine& 
   const std::string title = html_escape(job.name);
   sheet.raw(fmt::format("<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport content='width=device-width'><title>Set-up sheet: {}</title>"
                         "<style>{}</style></head><body>\n<h1>Set-up sheet: {}</h1>\n", title, kStyle, title));
+  const std::string left = report.unreached ? unreached_text(*report.unreached) : std::string();
   if (report.verified && report.gouge)
-    sheet.raw(fmt::format("<div class=yes>Verified: worst gouge {:.2f} um, proven below {:.2f} um, tolerance {:.2f} um.</div>\n",
-                          std::max(0.0, report.gouge->measured_mm) * 1000, std::max(0.0, report.gouge->bound_mm) * 1000,
-                          report.gouge_tolerance_mm * 1000));
+    sheet.raw(fmt::format("<div class={}>{}: worst gouge {:.2f} um, proven below {:.2f} um, tolerance {:.2f} um.{}</div>\n", left.empty() ? "yes" : "part",
+                          left.empty() ? "Verified" : "Verified, root not finished", std::max(0.0, report.gouge->measured_mm) * 1000, std::max(0.0, report.gouge->bound_mm) * 1000,
+                          report.gouge_tolerance_mm * 1000, left.empty() ? "" : fmt::format("<br>Not finished: {}.", html_escape(left))));
   else sheet.raw("<div class=no>NOT VERIFIED: do not cut.</div>\n");
   if (!report.reasons.empty()) sheet.list(report.reasons, "no");
   if (report.restart)

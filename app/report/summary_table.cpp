@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "app/report/run_report.h"
+#include "app/report/unreached_text.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
@@ -45,19 +46,24 @@ std::string readable_minutes(double minutes) {
   return fmt::format("{} min {:02} s", seconds / 60, seconds % 60);
 }
 
+std::string verdict_text(const RunReport& report) {
+  if (!report.verified) return "not verified";
+  return report.unreached && report.unreached->left() ? "verified, root not finished" : "verified";
+}
+
 std::string summary_table(const RunReport& report, bool color) {
   std::string out = report.job_name + "\n";
-  const char* verdict = report.verified ? "yes" : "NO";
-  const char* paint = report.verified ? "\033[32m" : "\033[31m";
+  const bool left = report.unreached && report.unreached->left();
+  const char* verdict = !report.verified ? "NO" : left ? "yes, root not finished" : "yes";
+  const char* paint = !report.verified ? "\033[31m" : left ? "\033[33m" : "\033[32m";
   if (report.command != "surface") row(out, "verified", color ? fmt::format("{}{}\033[0m", paint, verdict) : std::string(verdict));
   for (const auto& reason : report.reasons) row(out, "  because", reason);
+  if (left) row(out, "not finished", unreached_text(*report.unreached));
   if (report.gouge)
     row(out, "worst gouge", fmt::format("{:.2f} um, proven below {:.2f} um (tolerance {:.2f} um)", std::max(0.0, report.gouge->measured_mm) * kUm,
                                         std::max(0.0, report.gouge->bound_mm) * kUm, report.gouge_tolerance_mm * kUm));
   if (report.finished)
     row(out, "worst left material", fmt::format("{:.2f} um, proven below {:.2f} um", report.finished->max_mm * kUm, report.finished->bound_mm * kUm));
-  if (report.unreached && report.unreached->points > 0)
-    row(out, "corners not reached", fmt::format("up to {:.1f} um high", report.unreached->max_height_mm * kUm));
   if (report.gouge) row(out, "least clearance", fmt::format("{:.3f} mm (neck, shank, holder)", report.gouge->clearance_mm));
   for (const auto& v : report.scene) {
     const std::string place = v.nearest ? fmt::format("{}, op {}, tooth {}, line {}", v.nearest->body, v.nearest->operation, v.nearest->tooth, v.nearest->line) : "";
