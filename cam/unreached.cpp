@@ -19,11 +19,6 @@ constexpr double kEdgeSag = 1e-3;   // mm: more than the polylines of edges leav
 constexpr double kSharp = 1e-3;     // mm: a ball smaller than this is none
 constexpr double kFinest = 1e-5;    // of the pattern search, in sigma and in shares of the face
 
-Vec3 turned(const Vec3& v, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z()};
-}
-
 class BallSearch {
  public:
   BallSearch(const GearDistance& part, int zone, double most) : part_(part), places_(part, zone), zone_(zone), most_(most) {}
@@ -64,11 +59,12 @@ class BallSearch {
       const Vec3 c = p + R * n;
       const auto q = part_.nearest(c, R);
       if (q.distance >= R - kTouch) return R;
+      using Turning = FaceGearSurface<double>;
       const double turn = std::atan2(q.point.y(), q.point.x()) - std::atan2(c.y(), c.x());
-      const Vec3 across = q.foot - turned(p, turn);
+      const Vec3 across = q.foot - Turning::turned(p, turn);
       // A foot beside the place is its own curvature, which is known already; one on an edge may be nearer by the sag of the edge's polyline.
       if (across.norm() < kBeside * R || (!q.exact && q.distance >= R - kEdgeSag)) return R;
-      const double ahead = across.dot(turned(n, turn)), next = ahead > 0 ? across.squaredNorm() / (2 * ahead) : R;
+      const double ahead = across.dot(Turning::turned(n, turn)), next = ahead > 0 ? across.squaredNorm() / (2 * ahead) : R;
       if (!(next < R)) return R;
       R = next;
     }
