@@ -4,6 +4,7 @@
 
 #include "machines/machine_file.h"
 #include "postproc/axis_program.h"
+#include "postproc/nc_dialect.h"
 #include "postproc/work_offset.h"
 
 namespace toothpath {
@@ -14,6 +15,10 @@ std::string joined(const std::vector<std::string>& names) {
   for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
 }
+
+// As in job files. A type of gear without its word does not compile.
+const char* type_word(const FaceGearParameters&) { return "face_gear"; }
+const char* type_word(const BevelGearParameters&) { return "equal_base_circle_bevel_gear"; }
 
 void check_speeds(const Job& job, const Machine& machine, std::vector<Diagnostic>& errors) {
   for (std::size_t i = 0; i < job.operations.size(); ++i) {
@@ -35,10 +40,12 @@ Diagnostic located(const Job& job, std::string_view key, Diagnostic diagnostic) 
   return diagnostic;
 }
 
+const char* gear_type(const Job& job) { return std::visit([](const auto& gear) { return type_word(gear); }, job.gear); }
+
 ValueOrErrors<FaceGear> make_face_gear(const Job& job) {
   const FaceGearParameters* parameters = job.face_gear();
   if (!parameters)
-    return std::vector{fail_at(job.where("gear.type"), "type = \"equal_base_circle_bevel_gear\", but this command needs a face_gear")};
+    return std::vector{fail_at(job.where("gear.type"), "type = \"{}\", but this command needs a face_gear", gear_type(job))};
   auto made = FaceGear::make(*parameters);
   if (auto* gear = std::get_if<FaceGear>(&made)) return std::move(*gear);
   std::vector<Diagnostic> errors;
@@ -75,6 +82,10 @@ ValueOrErrors<Machine> load_machine(const Job& job, std::optional<double> part_d
   if (job.setup)
     if (const auto others = other_work_offsets(machine.dialect, job.setup->work_offset))
       errors.push_back(fail_at(job.where("setup.work_offset"), "work_offset = \"{}\" is none of {}: it has {}", job.setup->work_offset, machine.name, *others));
+  const auto dialect = dialect_of(machine);
+  if (!dialect) errors.push_back(located(job, "machine.file", dialect.error()));
+  else if (job.coolant != Coolant::off)
+    if (const auto words = coolant_words(*dialect, job.coolant); !words) errors.push_back(located(job, "coolant.mode", words.error()));
   if (!errors.empty()) return errors;
   return machine;
 }

@@ -255,6 +255,18 @@ void read_smoothing(TableReader& post, PostSettings& settings) {
     if (const auto angle = post.number("smoothing_axis_tolerance", Range::positive(1.0, " deg"))) settings.smoothing_axis_tolerance_rad = radians(*angle);
 }
 
+/// What the builder switches a coolant with: the word that does it, and the one that ends it.
+void read_coolant_words(TableReader& post, PostSettings& settings) {
+  for (const Coolant coolant : kCoolants) {
+    const std::string key = fmt::format("coolant_{}", to_string(coolant));
+    const auto words = post.if_present(key, [&] { return post.ascii_list(key); });
+    if (!words) continue;
+    if (words->size() != 2) post.refuse(key, "{} has {} words, must have 2: on and off", post.name(key), words->size());
+    else if (words->front() == words->back()) post.refuse(key, "{}: {} cannot mean both on and off", post.name(key), words->front());
+    else settings.coolant[coolant] = {words->front(), words->back()};
+  }
+}
+
 /// Keys that mean something to some controls only.
 void refuse_keys_of_other_dialects(TableReader& post, const std::string& dialect) {
   if (post.has("corner_tolerance") && !dialect.empty() && dialect != "linuxcnc")
@@ -271,6 +283,7 @@ void read_post(TableReader post, const std::string& dialect, PostSettings& setti
   if (post.has("tcp_off")) settings.tcp_off = post.ascii_list("tcp_off").value_or(std::vector<std::string>{});
   if (post.has("corner_tolerance")) settings.corner_tolerance_mm = post.number("corner_tolerance", Range::positive(0.1, " mm"));
   read_smoothing(post, settings);
+  read_coolant_words(post, settings);
   refuse_keys_of_other_dialects(post, dialect);
   if (post.has("length_reference"))
     if (const auto word = post.word("length_reference", {"tip", "centre"}))
@@ -344,6 +357,7 @@ Machine read_tree(const TomlValue& tree, const std::string& file, ReaderFindings
   check_control(root, machine);
   check_accelerations(root, machine);
   root.finish();
+  machine.positions = findings.positions;
   if (findings.errors.empty())
     if (const Status chain = check_chain(machine.chain); !chain)
       root.refuse_at(direction_position(tree, machine.chain), "{}", chain.error().message);

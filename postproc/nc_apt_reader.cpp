@@ -66,7 +66,7 @@ class Apt {
     }
     if (s.take("SPINDL/OFF")) return execution_.spindle_off(), std::nullopt;
     if (s.take("UNITS/MM")) return execution_.set_unit(), execution_.set_absolute(), std::nullopt;
-    if (s.take("MULTAX/ON") || s.take("COOLNT/ON") || s.take("COOLNT/OFF")) return std::nullopt;
+    if (s.take("MULTAX/ON") || s.take("COOLNT/ON") || s.take("COOLNT/FLOOD") || s.take("COOLNT/MIST") || s.take("COOLNT/OFF")) return std::nullopt;
     if (s.take("END")) {
       if (auto bad = placed(execution_.tcp_off())) return bad;
       return placed(execution_.end_program(false));

@@ -12,9 +12,11 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "geometry/base/result.h"
@@ -97,7 +99,10 @@ struct NcDialect {
   NcLinesOfText tcp_compensation;        ///< the same with TCP
   NcLinesOfText pause = {"M0"};          ///< waits for the start button
   NcLinesOfText operation_end;           ///< ahead of coolant and spindle off
-  NcLinesOfText coolant_on = {"M8"}, coolant_off = {"M9"}, spindle_off = {"M5"};
+  NcLinesOfText spindle_off = {"M5"};
+  std::map<Coolant, CoolantWords> coolant = {{Coolant::mist, {"M7", "M9"}}, {Coolant::flood, {"M8", "M9"}}};  ///< those of ISO 6983
+  bool takes_coolant = true;             ///< the machine file may name M words of its builder
+  std::vector<std::pair<int, int>> own_m = {{0, 6}, {19, 19}, {30, 30}, {96, 99}};  ///< M words, first to last, that can be no coolant
   bool blend = false;                    ///< `start` lets the control leave corners by {blend}: counts as deviation
   double exact_path_mm = 0;              ///< without `blend`: the tip is off a corner by up to this all the same
   /// {blend} is not a distance from the path but the way ahead of and behind a corner within which every axis may leave it (G641 ADIS).
@@ -126,6 +131,8 @@ struct NcDialect {
 
 /// By the name of a machine file; anything else is refused with the list.
 [[nodiscard]] Result<NcDialect> find_dialect(std::string_view name);
+/// File extensions of programs, each once: ".ngc", ".nc" .. Whoever removes or refuses a program asks here.
+[[nodiscard]] std::vector<std::string> program_extensions();
 /// Names of all dialects.
 [[nodiscard]] std::vector<std::string> dialect_names();
 [[nodiscard]] NcDialect linuxcnc_dialect();
@@ -134,6 +141,9 @@ struct NcDialect {
 /// The dialect that a machine file names, with the machine's own digits and TCP codes.
 /// Errors: unknown dialect, digits that cannot be printed, TCP of a kind that the dialect lacks.
 [[nodiscard]] Result<NcDialect> dialect_of(const Machine& machine);
+/// Words for a coolant that is not off, in the dialect of the machine.
+/// Errors: unknown dialect; it has none and the machine file names none. The message says which ones there are.
+[[nodiscard]] Result<CoolantWords> coolant_words(const NcDialect& dialect, Coolant coolant);
 /// Options of the axis program that follow from the dialect and the machine; the tolerances keep their defaults.
 [[nodiscard]] AxisOptions axis_options(const NcDialect& dialect, const Machine& machine);
 

@@ -210,7 +210,7 @@ class Heidenhain {
       return placed(column, execution_.end_program(!repeats_.empty()));
     } else if (*m == 126 || *m == 127) {
       nearer_way_ = *m == 126;
-    } else if (*m != 0 && *m != 8 && *m != 9)
+    } else if (*m != 0 && *m != 8 && *m != 9 && !control_.switches_coolant(fmt::format("M{}", *m)))
       return here(column, fmt::format("M{} is not in the subset", *m));
     return std::nullopt;
   }

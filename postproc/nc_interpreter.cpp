@@ -100,9 +100,10 @@ class Interpreter {
       case 'G': return take_g(r, w, v);
       case 'M': {
         const int m = static_cast<int>(std::lround(v));
-        static constexpr std::array<int, 10> known = {0, 2, 3, 5, 6, 8, 9, 30, 98, 99};
+        static constexpr std::array<int, 11> known = {0, 2, 3, 5, 6, 7, 8, 9, 30, 98, 99};
         if (v == m && linuxcnc_ && site_code(r, fmt::format("M{}", m))) return std::nullopt;
-        if (v != m || std::find(known.begin(), known.end(), m) == known.end() || (linuxcnc_ && m > 90))
+        const bool in_subset = std::find(known.begin(), known.end(), m) != known.end() && !(linuxcnc_ && m > 90);
+        if (v != m || !(in_subset || control_.switches_coolant(fmt::format("M{}", m))))
           return here(w.column, fmt::format("M{} is not in the subset", v));
         if (!r.m.empty()) return here(w.column, "two M words in a block");
         r.m.push_back(m);
@@ -238,7 +239,7 @@ class Interpreter {
         return flow_.call_program(p);
       }
       case 99: return flow_.return_from_program(r.column);
-      default: break;  // M8 M9
+      default: break;  // coolants
     }
     return std::nullopt;
   }

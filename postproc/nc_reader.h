@@ -6,6 +6,7 @@
 // link from the first tooth to the second.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -44,8 +45,13 @@ struct NcControl {
   std::vector<std::string> smoothing_on, smoothing_off;
   double smoothing_mm = 0;
   std::optional<double> smoothing_axis_rad;   ///< not stated: no cut may turn a rotary while it is on
+  std::vector<std::string> coolant_words;     ///< M words of the builder that switch coolants, on and off
   bool dry_run = false;                       ///< feed moves with a standing spindle are meant: a program that runs in air
   std::size_t max_steps = 400'000'000;        ///< executed blocks before the program is refused as endless
+
+  [[nodiscard]] bool switches_coolant(std::string_view word) const {
+    return std::find(coolant_words.begin(), coolant_words.end(), word) != coolant_words.end();
+  }
 };
 
 /// Control of a machine with the job's tools and its one work offset.

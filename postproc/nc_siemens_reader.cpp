@@ -221,8 +221,8 @@ class Siemens {
         r.d = static_cast<int>(*v);
         return std::nullopt;
       case 'M': {
-        static constexpr int known[] = {0, 3, 5, 6, 8, 9, 30};
-        if (std::find(std::begin(known), std::end(known), *v) == std::end(known)) return here(column, fmt::format("M{} is not in the subset", *v));
+        static constexpr int known[] = {0, 3, 5, 6, 7, 8, 9, 30};
+        if (std::find(std::begin(known), std::end(known), *v) == std::end(known) && !control_.switches_coolant(fmt::format("M{}", *v))) return here(column, fmt::format("M{} is not in the subset", *v));
         if (r.m >= 0) return here(column, "two M words in a block");
         r.m = static_cast<int>(*v);
         r.column = column;

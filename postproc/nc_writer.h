@@ -22,7 +22,7 @@ struct NcHeader {
   int program_number = 1001; ///< O word
   double blend_mm = 0.0003;  ///< how far the control may leave a corner: counts as deviation of the machine in every proof
   double blend_axis_deg = 0.002;  ///< how far the control may turn a rotary off its way with TCP: counts as deviation of the tool axis
-  bool coolant = false;      ///< M8 with every operation
+  Coolant coolant = Coolant::off;  ///< with every operation
 };
 
 struct NcText {

@@ -94,7 +94,7 @@ Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const J
   header.job_name = title;
   header.machine_name = machine.name;
   header.assumed = assumed;
-  header.coolant = job.coolant != Coolant::off;
+  header.coolant = job.coolant;
   header.blend_mm = std::min(header.blend_mm, kBlendShare * job.verify.gouge_tolerance_mm);
   double radius = 0;  // a lean of the tool moves the centre of its ball by no more than a corner does
   for (const auto& tool : job.tools) radius = std::max(radius, tool.radius_mm());
@@ -123,7 +123,7 @@ Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const J
 }
 
 void discard_program(OutputDir& output) {
-  for (const char* extension : {".ngc", ".nc", ".mpf", ".h", ".apt"}) output.discard(std::string("program") + extension);
+  for (const auto& extension : program_extensions()) output.discard("program" + extension);
 }
 
 Result<std::string> read_program_file(const std::string& path) { return read_regular_file(path, kMostBytes); }

@@ -8,6 +8,7 @@
 #include "app/report/setup_drawings.h"
 #include "app/report/sheet_html.h"
 #include "geometry/base/angle.h"
+#include "postproc/nc_dialect.h"
 
 namespace toothpath {
 namespace {
@@ -27,12 +28,13 @@ std::string triple(const Vec3& v) {
   return fmt::format("X {}  Y {}  Z {}", millimetres(v.x()), millimetres(v.y()), millimetres(v.z()));
 }
 
-/// What the gear is, in the words of its drawing.
-std::string gear_text(const Job& job) {
-  if (const auto* p = job.bevel_gear())
-    return fmt::format("bevel gear, z {}, {}outer transverse module {:g} mm", p->teeth, p->mate_teeth > 0 ? fmt::format("mate z {}, ", p->mate_teeth) : "",
-                       p->outer_transverse_module_mm);
-  const FaceGearParameters& p = *job.face_gear();
+// What the gear is, in the words of its drawing. A type of gear without these words does not compile.
+std::string gear_words(const BevelGearParameters& p) {
+  return fmt::format("bevel gear, z {}, {}outer transverse module {:g} mm", p.teeth, p.mate_teeth > 0 ? fmt::format("mate z {}, ", p.mate_teeth) : "",
+                     p.outer_transverse_module_mm);
+}
+
+std::string gear_words(const FaceGearParameters& p) {
   const char* plane = p.module_plane == ModulePlane::normal ? "normal" : "transverse";
   std::string text = fmt::format("face gear, z {}, shaper z {}, {} module {:g} mm, pressure angle {:g} deg, shaft angle {:g} deg", p.teeth, p.shaper_teeth, plane,
                                  p.module_mm, degrees(p.pressure_angle_rad), degrees(p.shaft_angle_rad));
@@ -43,11 +45,18 @@ std::string gear_text(const Job& job) {
   return text;
 }
 
+/// What cools, and the words that the operator finds in the program.
+std::string coolant_text(Coolant coolant, const Machine& machine) {
+  const auto dialect = dialect_of(machine);
+  const auto words = dialect && coolant != Coolant::off ? coolant_words(*dialect, coolant) : Result<CoolantWords>(Diagnostic{});
+  return words ? fmt::format("{}: on with {}, off with {}", to_string(coolant), words->on, words->off) : to_string(coolant);
+}
+
 void machine_section(Sheet& sheet, const Job& job, const PartOutline& part, const Machine& machine, const RunReport& report) {
   const Setup& setup = *job.setup;
   sheet.heading("Gear, machine and work offset");
   sheet.begin_table({"what", "value"});
-  sheet.row({"gear", gear_text(job)});
+  sheet.row({"gear", std::visit([](const auto& gear) { return gear_words(gear); }, job.gear)});
   sheet.row({"heights, gear Z", fmt::format("tooth tops {}, deepest root {}, both from the gear origin", millimetres(part.tooth_top), millimetres(part.root))});
   sheet.row({"machine", fmt::format("{} ({})", machine.name, job.machine.file)});
   sheet.row({"control", machine.dialect});
@@ -57,7 +66,7 @@ void machine_section(Sheet& sheet, const Job& job, const PartOutline& part, cons
   sheet.row({"gear origin, machine", triple(setup.origin_mm)});
   sheet.row({"gear origin, " + setup.work_offset, triple(setup.origin_mm - setup.work_offset_at_mm)});
   sheet.row({"gear axis", setup.axis_up ? "up: teeth towards the spindle, gear X along machine X" : "down: turned by 180 deg about X"});
-  sheet.row({"coolant", to_string(job.coolant)});
+  sheet.row({"coolant", coolant_text(job.coolant, machine)});
   sheet.end_table();
 }
 

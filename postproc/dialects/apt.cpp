@@ -17,22 +17,27 @@ constexpr std::size_t kLongestTip = 34;  // 72 characters less the longest axis
 
 class Apt {
  public:
-  Apt(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) : program_(program), out_(dialect), header_(header) {}
+  Apt(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) : program_(program), dialect_(dialect), out_(dialect), header_(header) {}
 
   Result<NcText> write() {
+    if (header_.coolant != Coolant::off) {
+      auto words = coolant_words(dialect_, header_.coolant);
+      if (!words) return words.error();
+      coolant_ = std::move(*words);
+    }
     out_.line("MULTAX/ON");
     for (const auto& op : program_.operations) {
       out_.comment(fmt::format("OP {} {}", op.operation, op.type));
       out_.line(fmt::format("LOADTL/{},LENGTH,{}", op.tool_number, number(to_fixed(op.tool_length_mm, 4), 4)));
       out_.line(fmt::format("SPINDL/RPM,{},CLW", std::llround(op.spindle_rpm)));
-      if (header_.coolant) out_.line("COOLNT/ON");
+      if (coolant_) out_.line(coolant_->on);
       feed_ = -1;
       for (const auto& tooth : op.teeth) {
         out_.comment(fmt::format("TOOTH {}", tooth.tooth));
         feed_ = -1;  // a tooth can be begun with
         for (const auto& b : tooth.blocks) block(b);
       }
-      if (header_.coolant) out_.line("COOLNT/OFF");
+      if (coolant_) out_.line(coolant_->off);
       out_.line("SPINDL/OFF");
     }
     if (error_) return *error_;
@@ -106,8 +111,10 @@ class Apt {
   }
 
   const AxisProgram& program_;
+  const NcDialect& dialect_;
   NcLines out_;
   const NcHeader& header_;
+  std::optional<CoolantWords> coolant_;
   std::int64_t feed_ = -1;
   std::optional<Diagnostic> error_;
 };
@@ -129,6 +136,8 @@ NcDialect apt_dialect() {
   d.tcp_on = d.tcp_off = {"MULTAX/ON"};
   d.tcp_starts_at_zero = true;
   d.vector_words = {"I", "J", "K"};
+  d.coolant = {{Coolant::mist, {"COOLNT/MIST", "COOLNT/OFF"}}, {Coolant::flood, {"COOLNT/FLOOD", "COOLNT/OFF"}}};
+  d.takes_coolant = false;
   d.write = write_apt;
   return d;
 }

@@ -28,6 +28,8 @@ NcDialect heidenhain_dialect() {
              "CYCL DEF 32.2 HSC-MODE:0 TA{blend_axis}"};
   d.retract = {"L Z{top} R0 FMAX M91"};
   d.tool_change = {"TOOL CALL {tool} Z S{speed}", "{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M3"};
+  d.coolant = {{Coolant::flood, {"M8", "M9"}}};  // M7 is none of its own
+  d.own_m = {{0, 6}, {13, 14}, {19, 19}, {30, 30}, {89, 299}};
   d.end = {"CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1", "M127"};
   d.blend = d.blend_axis = true;
   d.tcp_on = {"FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"};

@@ -20,6 +20,7 @@ NcDialect linuxcnc_dialect() {
   d.operation_end = {"G94 F{free}"};
   d.end = {"G61", "G49"};
   d.frame_end = {"M2"};
+  d.own_m = {{0, 6}, {19, 19}, {30, 30}, {48, 53}, {60, 73}, {98, 99}};
   d.exact_path_mm = 0.0005;  // unless the machine says otherwise
   d.loop.form = NcLoop::Form::sub_program;
   d.loop.before = {"o{label} sub"};

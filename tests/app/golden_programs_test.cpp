@@ -151,6 +151,7 @@ Machine machine_with(const Machine& of_sample, const Form& form, int fanuc_decim
     m.post.tcp_on.clear();
     m.post.tcp_off.clear();
   }
+  if (m.dialect == "heidenhain") m.post.coolant[Coolant::mist] = {"M7", "M9"};  // the control has no word of its own
   return m;
 }
 
@@ -251,7 +252,7 @@ TEST_P(GoldenPrograms, ByteForByteAndOnTheirPath) {
     header.job_name = job.name + ", coarse";
     header.machine_name = m.name;
     if (m.assumed) header.assumed = m.assumed_keys;
-    header.coolant = job.coolant != Coolant::off;
+    header.coolant = job.coolant;
     const auto text = write_nc(*program, *dialect, header);
     ASSERT_TRUE(text) << text.error().message;
     expect_golden(kGolden / c.sample / form.file, folded(text->text));

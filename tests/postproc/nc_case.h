@@ -112,7 +112,7 @@ inline Result<NcText> nc_text(const std::vector<ClPath>& paths, const Machine& m
   NcHeader header;
   header.job_name = "sample";
   header.machine_name = machine.name;
-  header.coolant = true;
+  header.coolant = Coolant::flood;
   return write_nc(*program, *dialect_of(machine), header);
 }
 

@@ -86,7 +86,7 @@ inline Result<NcText> text_of(const PostForm& f, const AxisProgram& program) {
   NcHeader header;
   header.job_name = "sample";
   header.machine_name = "trunnion";
-  header.coolant = true;
+  header.coolant = Coolant::flood;
   return write_nc(program, *dialect_of(machine_of(f)), header);
 }
 

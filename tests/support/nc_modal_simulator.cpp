@@ -113,7 +113,7 @@ Language apt() {
   Language l;
   l.lines = {{R"(PARTNO/.*)", "-", ""}, {"UNITS/MM", "units", "mm"}, {"UNITS/INCHES", "units", "inch"}, {"MULTAX/ON", "axes", "all"},
              {R"(LOADTL/\d+,LENGTH,[0-9.]+)", "-", "tool change"}, {R"(SPINDL/RPM,\d+,CLW)", "spindle", "on"}, {"SPINDL/OFF", "spindle", "off"},
-             {"COOLNT/ON", "coolant", "on"}, {"COOLNT/OFF", "coolant", "off"}, {"RAPID", "next", "rapid"}, {R"(FEDRAT/[0-9.]+,MMPM)", "feed", "per minute"},
+             {"COOLNT/ON|COOLNT/FLOOD|COOLNT/MIST", "coolant", "on"}, {"COOLNT/OFF", "coolant", "off"}, {"RAPID", "next", "rapid"}, {R"(FEDRAT/[0-9.]+,MMPM)", "feed", "per minute"},
              {R"(GOTO/.*)", "-", ""}, {"END", "-", "end"}, {"FINI", "-", ""}};
   l.comment = '$';  // "$$"; one alone goes on in the next line
   l.axis = "";
