@@ -15,13 +15,13 @@
 #include "app/interruption.h"
 #include "app/sha256.h"
 #include "machines/toml/regular_file.h"
+#include "postproc/nc_dialect.h"
 
 namespace toothpath {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kExtensions[] = {"ngc", "nc", "mpf", "h", "apt"};
 constexpr std::string_view kTemporaryPrefix = ".toothpath-";
 
 Diagnostic cannot(const char* what, const std::string& path, int error) {
@@ -72,8 +72,8 @@ Status remove_old_outputs(const std::string& directory, const std::vector<std::s
       if (const auto removed = remove_output(directory + "/" + name); !removed) return removed;
       continue;
     }
-    for (const auto extension : kExtensions)
-      if (const auto removed = remove_output(directory + "/" + name + std::string(extension)); !removed) return removed;
+    for (const auto& extension : program_extensions())
+      if (const auto removed = remove_output(directory + "/" + name + extension.substr(1)); !removed) return removed;
   }
   // What a run that was killed outright could not take with it.
   std::error_code error;

@@ -58,7 +58,8 @@ std::optional<std::string> other_work_offsets(std::string_view dialect, std::str
     if (basic || tenth || between(whole(name), 1, 99)) return std::nullopt;
     return "the presets 1 to 99, or G54 for preset 1 to G59 for 6, G59.1 for 7 to G59.3 for 9";
   }
-  return std::nullopt;  // cutter location data know no work offset
+  if (dialect == "apt") return std::nullopt;  // cutter location data know no work offset
+  return "none that is known: there is no such control";
 }
 
 }  // namespace toothpath

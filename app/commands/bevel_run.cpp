@@ -171,7 +171,7 @@ std::optional<Job> bevel_job(const std::string& job_file) {
 
 ValueOrErrors<BevelGear> make_bevel_gear(const Job& job) {
   const BevelGearParameters* parameters = job.bevel_gear();
-  if (!parameters) return std::vector{fail_at(job.where("gear.type"), "type = \"face_gear\", but a bevel gear is needed here")};
+  if (!parameters) return std::vector{fail_at(job.where("gear.type"), "type = \"{}\", but a bevel gear is needed here", gear_type(job))};
   std::optional<std::size_t> tool;
   for (std::size_t i = job.tools.size(); i-- > 0;)
     if (job.tools[i].type == CutterType::finger_mill) tool = i;

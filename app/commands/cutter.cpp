@@ -22,7 +22,7 @@ constexpr double kCsvChord = 1e-5;  // mm
 /// Design for the gear of a job; refusals with their place. What speaks of the designed mill belongs to the gear.
 ValueOrErrors<FingerCutterDesign> design_for(const Job& job) {
   const BevelGearParameters* p = job.bevel_gear();
-  if (!p) return std::vector{fail_at(job.where("gear.type"), "type = \"face_gear\", but a finger mill makes an equal_base_circle_bevel_gear")};
+  if (!p) return std::vector{fail_at(job.where("gear.type"), "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear", gear_type(job))};
   auto made = design_finger_cutter(*p);
   if (auto* design = std::get_if<FingerCutterDesign>(&made)) return std::move(*design);
   std::vector<Diagnostic> errors;
@@ -121,7 +121,7 @@ CommandOutcome run_cutter(const CommandRequest& request) {
     auto second = clock.run("job", [&] { return read_job_file(request.other_job); });
     if (auto* errors = std::get_if<1>(&second)) return failed(std::move(*errors));
     other = std::move(std::get<0>(second));
-    if (!other->bevel_gear()) return failed(fail_at(other->where("gear.type"), "type = \"face_gear\", but a finger mill makes an equal_base_circle_bevel_gear"));
+    if (!other->bevel_gear()) return failed(fail_at(other->where("gear.type"), "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear", gear_type(*other)));
   }
   auto made = clock.run("design", [&] { return design_for(job); });
   if (auto* errors = std::get_if<1>(&made)) return failed(std::move(*errors));
