@@ -3,9 +3,7 @@
 #include <filesystem>
 
 #include "machines/machine_file.h"
-#include "postproc/axis_program.h"
-#include "postproc/nc_dialect.h"
-#include "postproc/work_offset.h"
+#include "postproc/controls/of_machine.h"
 
 namespace toothpath {
 namespace {
@@ -66,7 +64,7 @@ ValueOrErrors<Machine> load_machine(const Job& job, std::optional<double> part_d
   if (!kind) return std::vector{located(job, "machine.file", kind.error())};
   if (*kind != MachineKind::five_axis)
     return std::vector{fail_at(job.where("machine.file"), "{} is a gear shaper, but this command needs a milling machine", job.machine.file)};
-  auto reading = read_machine_file(*path);
+  auto reading = controls::read_machine(*path);
   if (!reading.machine) return reading.errors;
   Machine machine = std::move(*reading.machine);
   if (job.program.pole) machine.post.pole = *job.program.pole;
@@ -80,9 +78,9 @@ ValueOrErrors<Machine> load_machine(const Job& job, std::optional<double> part_d
                              joined(machine.assumed_keys)));
   check_speeds(job, machine, errors);
   if (job.setup)
-    if (const auto others = other_work_offsets(machine.dialect, job.setup->work_offset))
+    if (const auto others = controls::other_work_offsets(machine, job.setup->work_offset))
       errors.push_back(fail_at(job.where("setup.work_offset"), "work_offset = \"{}\" is none of {}: it has {}", job.setup->work_offset, machine.name, *others));
-  const auto dialect = dialect_of(machine);
+  const auto dialect = controls::dialect_of(machine);
   if (!dialect) errors.push_back(located(job, "machine.file", dialect.error()));
   else if (job.coolant != Coolant::off)
     if (const auto words = coolant_words(*dialect, job.coolant); !words) errors.push_back(located(job, "coolant.mode", words.error()));

@@ -15,7 +15,7 @@
 #include "app/interruption.h"
 #include "app/sha256.h"
 #include "machines/toml/regular_file.h"
-#include "postproc/nc_dialect.h"
+#include "postproc/controls/registry.h"
 
 namespace toothpath {
 namespace {
@@ -72,7 +72,7 @@ Status remove_old_outputs(const std::string& directory, const std::vector<std::s
       if (const auto removed = remove_output(directory + "/" + name); !removed) return removed;
       continue;
     }
-    for (const auto& extension : program_extensions())
+    for (const auto& extension : controls::program_extensions())
       if (const auto removed = remove_output(directory + "/" + name + extension.substr(1)); !removed) return removed;
   }
   // What a run that was killed outright could not take with it.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 
 #include "machines/machine_table.h"
@@ -267,15 +268,7 @@ void read_coolant_words(TableReader& post, PostSettings& settings) {
   }
 }
 
-/// Keys that mean something to some controls only.
-void refuse_keys_of_other_dialects(TableReader& post, const std::string& dialect) {
-  if (post.has("corner_tolerance") && !dialect.empty() && dialect != "linuxcnc")
-    post.refuse("corner_tolerance", "{} belongs to dialect \"linuxcnc\", this is \"{}\"", post.name("corner_tolerance"), dialect);
-  if (post.has("smoothing_on") && (dialect == "linuxcnc" || dialect == "heidenhain" || dialect == "apt"))
-    post.refuse("smoothing_on", "{}: dialect \"{}\" has its own words for what may be left of corners", post.name("smoothing_on"), dialect);
-}
-
-void read_post(TableReader post, const std::string& dialect, PostSettings& settings) {
+void read_post(TableReader post, PostSettings& settings) {
   if (post.has("linear_decimals")) settings.linear_decimals = post.integer("linear_decimals", {0, 9});
   if (post.has("rotary_decimals")) settings.rotary_decimals = post.integer("rotary_decimals", {0, 9});
   if (post.has("index_loop")) settings.index_loop = post.boolean("index_loop");
@@ -284,7 +277,6 @@ void read_post(TableReader post, const std::string& dialect, PostSettings& setti
   if (post.has("corner_tolerance")) settings.corner_tolerance_mm = post.number("corner_tolerance", Range::positive(0.1, " mm"));
   read_smoothing(post, settings);
   read_coolant_words(post, settings);
-  refuse_keys_of_other_dialects(post, dialect);
   if (post.has("length_reference"))
     if (const auto word = post.word("length_reference", {"tip", "centre"}))
       settings.length_reference = *word == "tip" ? LengthReference::tip : LengthReference::centre;
@@ -309,12 +301,6 @@ SourcePosition direction_position(const TomlValue& tree, const KinematicChain& c
   return direction ? direction->value.position : tree.position;
 }
 
-void check_control(TableReader& root, const Machine& machine) {
-  if (machine.dialect == "linuxcnc" && machine.tcp != TcpMode::none &&
-      (machine.post.tcp_on.empty() || machine.post.tcp_off.empty()))
-    root.refuse("tcp", "tcp with dialect \"linuxcnc\" needs post.tcp_on and post.tcp_off: its codes are site data");
-}
-
 /// A time with some axes that stop at once and some that do not would mean nothing.
 void check_accelerations(TableReader& root, const Machine& machine) {
   if (machine.has_acceleration()) return;
@@ -329,7 +315,7 @@ void check_accelerations(TableReader& root, const Machine& machine) {
   if (any) root.refuse("axes", "max_acceleration stands at some axes and is missing at {}: every axis has one, or none", lacking);
 }
 
-Machine read_tree(const TomlValue& tree, const std::string& file, ReaderFindings& findings) {
+Machine read_tree(const TomlValue& tree, const std::string& file, const MachineJudge& judge, ReaderFindings& findings) {
   TableReader root(tree, "", findings);
   Machine machine;
   machine.file = file;
@@ -339,7 +325,7 @@ Machine read_tree(const TomlValue& tree, const std::string& file, ReaderFindings
     root.refuse("kind", "kind = \"{}\" is no milling machine; \"five_axis\" is needed here", *kind);
     return machine;
   }
-  machine.dialect = root.word("dialect", {"linuxcnc", "fanuc", "siemens", "heidenhain", "apt", "mitsubishi_m80"}).value_or("");
+  machine.dialect = root.text("dialect", true).value_or("");
   const std::initializer_list<std::string_view> modes = {"none", "angles", "vectors"};
   if (const auto tcp = root.word("tcp", modes))
     machine.tcp = static_cast<TcpMode>(std::find(modes.begin(), modes.end(), *tcp) - modes.begin());
@@ -352,12 +338,15 @@ Machine read_tree(const TomlValue& tree, const std::string& file, ReaderFindings
   }
   if (const auto limits = root.required_table("limits")) read_limits(*limits, machine);
   if (root.has("post"))
-    if (const auto post = root.required_table("post")) read_post(*post, machine.dialect, machine.post);
+    if (const auto post = root.required_table("post")) read_post(*post, machine.post);
   read_chain(root, machine);
-  check_control(root, machine);
   check_accelerations(root, machine);
   root.finish();
   machine.positions = findings.positions;
+  if (judge && !machine.dialect.empty()) {
+    auto complaints = judge(machine);
+    findings.errors.insert(findings.errors.end(), std::make_move_iterator(complaints.begin()), std::make_move_iterator(complaints.end()));
+  }
   if (findings.errors.empty())
     if (const Status chain = check_chain(machine.chain); !chain)
       root.refuse_at(direction_position(tree, machine.chain), "{}", chain.error().message);
@@ -366,12 +355,14 @@ Machine read_tree(const TomlValue& tree, const std::string& file, ReaderFindings
 
 }  // namespace
 
-MachineReading read_machine_text(std::string_view text, const std::string& file) {
-  return read_machine_as<MachineReading>(text, file, read_tree);
+MachineReading read_machine_text(std::string_view text, const std::string& file, const MachineJudge& judge) {
+  return read_machine_as<MachineReading>(text, file, [&judge](const TomlValue& tree, const std::string& name, ReaderFindings& findings) {
+    return read_tree(tree, name, judge, findings);
+  });
 }
 
-MachineReading read_machine_file(const std::string& path) {
-  return read_machine_file_as<MachineReading>(path, read_machine_text);
+MachineReading read_machine_file(const std::string& path, const MachineJudge& judge) {
+  return read_machine_file_as<MachineReading>(path, [&judge](std::string_view text, const std::string& file) { return read_machine_text(text, file, judge); });
 }
 
 Result<MachineKind> machine_kind_of(const std::string& path) {

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "cam/cutter.h"
+#include "postproc/controls/of_machine.h"
 #include "postproc/axis_words.h"
 #include "postproc/fixed_point.h"
 #include "postproc/machine_self_test.h"
@@ -146,7 +147,7 @@ Result<SelfTestProof> prove_self_test(std::string_view text, const std::string& 
   bar.length_mm = test.tool_length_mm;
   Setup setup;
   setup.work_offset_at_mm = test.point_mm;
-  auto control = control_of(machine, setup, std::span(&bar, 1));
+  auto control = controls::control_of(machine, setup, std::span(&bar, 1));
   if (!control) return control.error();
   control->dry_run = true;
   const double allowed = test.tip_bound_mm + 0.003;

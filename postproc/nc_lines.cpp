@@ -5,7 +5,6 @@
 #include "postproc/fixed_point.h"
 #include "postproc/nc_corners.h"
 #include "postproc/nc_writer.h"
-#include "postproc/work_offset.h"
 
 namespace toothpath {
 namespace {
@@ -25,7 +24,7 @@ NcLines::Values program_values(const AxisProgram& program, const NcDialect& dial
   values["name"] = comment_text(header.job_name).substr(0, 32);
   values["id"] = program_id(header.job_name);
   values["offset"] = program.work_offset;
-  values["datum"] = std::to_string(preset_number(program.work_offset));
+  if (dialect.datum != nullptr) values["datum"] = std::to_string(dialect.datum(program.work_offset));
   const CornerWords corners = corner_words(program, dialect, header);
   values["blend"] = unsigned_value(corners.blend_mm, 6);
   values["blend_axis"] = unsigned_value(std::floor(header.blend_axis_deg * 1e4 + 1e-6) * 1e-4, 4);

@@ -6,7 +6,6 @@
 #include <map>
 
 #include "geometry/base/angle.h"
-#include "postproc/nc_readers.h"
 #include "postproc/operation_moves.h"
 
 namespace toothpath {
@@ -151,27 +150,6 @@ int index_sign(const Machine& machine, const Setup& setup) {
   return c.direction.dot(g) > 0 ? c.sign : -c.sign;
 }
 
-/// Who reads a dialect, and the digits that it prints for rotaries unless the machine says otherwise.
-struct ReaderOfDialect {
-  const char* name;
-  int rotary_decimals;
-  Status (*execute)(std::string_view, const std::string&, const NcControl&, const MoveSink&);
-};
-constexpr ReaderOfDialect kReaders[] = {{"linuxcnc", 5, execute_iso},           {"fanuc", 3, execute_iso},
-                                         {"siemens", 6, execute_siemens},       {"heidenhain", 4, execute_heidenhain},
-                                         {"apt", 7, execute_apt},               {"mitsubishi_m80", 4, execute_iso}};
-
-const ReaderOfDialect* reader_of(std::string_view dialect) {
-  for (const auto& r : kReaders)
-    if (dialect == r.name) return &r;
-  return nullptr;
-}
-std::string readable_dialects() {
-  std::string list;
-  for (const auto& r : kReaders) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", r.name);
-  return list;
-}
-
 }  // namespace
 
 void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcControl& control, const KinematicChain& chain,
@@ -191,38 +169,8 @@ void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcContro
 }
 
 Status execute_nc(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
-  const ReaderOfDialect* reader = reader_of(control.dialect);
-  if (reader == nullptr) return fail("dialect \"{}\" cannot be read back: {} can", control.dialect, readable_dialects());
-  return reader->execute(text, file, control, sink);
-}
-
-Result<NcControl> control_of(const Machine& machine, const Setup& setup, std::span<const ToolAssembly> tools) {
-  NcControl c;
-  c.dialect = machine.dialect;
-  const ReaderOfDialect* reader = reader_of(c.dialect);
-  if (reader == nullptr) return fail("dialect \"{}\" cannot be read back: {} can", c.dialect, readable_dialects());
-  c.rotary_rounding_deg = 0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(reader->rotary_decimals));
-  if (machine.tcp != TcpMode::none) c.chain = machine.chain;
-  c.top_mm = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
-  c.exact_path_mm = machine.exact_corner_mm();
-  c.tcp_on = machine.post.tcp_on;
-  c.tcp_off = machine.post.tcp_off;
-  c.smoothing_on = machine.post.smoothing_on;
-  c.smoothing_off = machine.post.smoothing_off;
-  c.smoothing_mm = machine.post.smoothing_tolerance_mm.value_or(0);
-  c.smoothing_axis_rad = machine.post.smoothing_axis_tolerance_rad;
-  for (const auto& [coolant, words] : machine.post.coolant) c.coolant_words.insert(c.coolant_words.end(), {words.on, words.off});
-  c.letters = {'X', 'Y', 'Z', 0, 0};
-  for (std::size_t i = 0; i < 3; ++i) c.rapid_speed[i] = machine.chain.linear[i].max_speed;
-  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
-    c.letters[3 + k] = machine.chain.rotary(k).letter;
-    c.rapid_speed[3 + k] = degrees(machine.chain.rotary(k).max_speed);
-    c.rollover[3 + k] = machine.chain.rotary(k).rollover;
-  }
-  for (const auto& t : tools)
-    if (!c.tool_length_mm.emplace(t.number, t.length_mm).second) return fail("tool number {} occurs twice", t.number);
-  c.work_offsets[setup.work_offset] = setup.work_offset_at_mm;
-  return c;
+  if (control.execute == nullptr) return fail("a control without a reader: its programs cannot be read back");
+  return control.execute(text, file, control, sink);
 }
 
 Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control, const Machine& machine,

@@ -27,9 +27,17 @@
 
 namespace toothpath {
 
-/// What the control knows beside the text.
+struct NcControl;
+struct ExecutedMove;
+using MoveSink = std::function<void(const ExecutedMove&)>;
+
+/// Reader of a language: executes `text` and hands every move to `sink`. It shares no code with a writer, and refuses what is not in its
+/// subset with line and column.
+using NcExecute = Status (*)(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
+
+/// What the control knows beside the text. Made by controls::control_of.
 struct NcControl {
-  std::string dialect = "linuxcnc";           ///< as in a machine file
+  NcExecute execute = nullptr;                ///< reader of its language
   std::array<char, 5> letters{};              ///< X Y Z and the rotaries in the machine's order; 0: none
   std::array<double, 5> rapid_speed{};        ///< mm/min and deg/min
   std::array<bool, 5> rollover{};             ///< the control counts this rotary within one turn
@@ -53,10 +61,6 @@ struct NcControl {
     return std::find(coolant_words.begin(), coolant_words.end(), word) != coolant_words.end();
   }
 };
-
-/// Control of a machine with the job's tools and its one work offset.
-[[nodiscard]] Result<NcControl> control_of(const Machine& machine, const Setup& setup,
-                                           std::span<const ToolAssembly> tools);
 
 /// End of one executed move: joints in machine coordinates, gauge line (mm) and rotaries as words (deg); those that roll over go on beyond
 /// a turn, the same place in two turns differs by a multiple of 360 exactly.
@@ -83,8 +87,11 @@ struct ExecutedMove {
 /// Executes `text` and hands every move to `sink`, in order. Stops with a located error (line and column of `file`) at
 /// anything that is not in the subset, at an undefined tool, offset, label or parameter, at a feed move without F or
 /// without spindle, at G1 in G94 with rotary and linear words whose time is not exact, and beyond max_steps.
-[[nodiscard]] Status execute_nc(std::string_view text, const std::string& file, const NcControl& control,
-                                const std::function<void(const ExecutedMove&)>& sink);
+[[nodiscard]] Status execute_nc(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
+
+/// Joints inside a block whose tip goes straight, every half degree of the rotaries.
+void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcControl& control, const KinematicChain& chain,
+                const std::function<void(const std::array<double, 5>&)>& sink);
 
 /// Are the teeth of every operation turned copies of its first one?
 struct TurnedCopies {

@@ -361,6 +361,8 @@ Result<NcText> write_nc(const AxisProgram& program, const NcDialect& dialect, co
                 program.format.rotary_decimals, dialect.format.linear_decimals, dialect.format.rotary_decimals);
   if (program.turns_in_cuts && !dialect.smoothing_on.empty() && !dialect.smoothing_axis_rad)
     return fail("cuts turn a rotary axis: post.smoothing_on needs post.smoothing_axis_tolerance beside post.smoothing_tolerance");
+  if (program.loop && dialect.write == nullptr && dialect.loop.form == NcLoop::Form::none)
+    return fail("{} has no loop for the teeth: they must be written out", dialect.name);
   if (dialect.write != nullptr) return dialect.write(program, dialect, header);
   return Writer(program, dialect, header).write();
 }

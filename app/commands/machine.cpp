@@ -11,6 +11,7 @@
 #include "app/report/study_page.h"
 #include "geometry/base/angle.h"
 #include "machines/machine_file.h"
+#include "postproc/controls/of_machine.h"
 #include "postproc/machine_self_test.h"
 #include "postproc/nc_writer.h"
 
@@ -32,7 +33,7 @@ std::variant<Shown, std::vector<Diagnostic>> shown(const std::string& path) {
     if (!reading.machine) return std::move(reading.errors);
     return Shown{machine_text(*reading.machine), machine_page(*reading.machine), {}};
   }
-  auto reading = read_machine_file(path);
+  auto reading = controls::read_machine(path);
   if (!reading.machine) return std::move(reading.errors);
   return Shown{machine_text(*reading.machine), machine_page(*reading.machine), machine_drawing_svg(*reading.machine)};
 }
@@ -97,14 +98,14 @@ CommandOutcome test_machine(const CommandRequest& request) {
   if (!output) return failed(output.error());
   const auto path = find_machine_file(request.job_file, ".");
   if (!path) return failed(path.error());
-  auto reading = read_machine_file(*path);
+  auto reading = controls::read_machine(*path);
   if (!reading.machine) return failed(std::move(reading.errors));
   const Machine& machine = *reading.machine;
   const auto at_file = [&](Diagnostic error) {
     if (error.position.file.empty()) error.position.file = *path;
     return failed(std::move(error));
   };
-  const auto dialect = dialect_of(machine);
+  const auto dialect = controls::dialect_of(machine);
   if (!dialect) return at_file(dialect.error());
   SelfTestOptions options;
   options.tool_length_mm = request.tool_length_mm;

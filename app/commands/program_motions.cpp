@@ -1,10 +1,11 @@
 #include "app/commands/program_motions.h"
+#include "postproc/controls/of_machine.h"
 
 namespace toothpath {
 
 Result<ProgramMotions> motions_of_program(std::string_view text, const std::string& file, const Job& job, const Machine& machine, int teeth, double tolerance_mm,
                                           double tolerance_rad, StageClock& clock) {
-  auto control = control_of(machine, *job.setup, job.tools);
+  auto control = controls::control_of(machine, *job.setup, job.tools);
   if (!control) return control.error();
   ProgramMotions out;
   out.control = std::move(*control);

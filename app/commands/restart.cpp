@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "geometry/base/angle.h"
+#include "postproc/controls/of_machine.h"
 #include "postproc/restart_proof.h"
 #include "postproc/tooth_order.h"
 
@@ -77,7 +78,7 @@ Result<std::optional<ProgramRestart>> read_restart(const std::string& text, cons
 
 Status note_restart(RunReport& report, const PostedProgram& posted, const std::string& file, const Job& job, const Machine& machine,
                     const ClearanceBody& body, std::vector<std::vector<int>>& lines, StageClock& clock) {
-  const auto control = control_of(machine, *job.setup, job.tools);
+  const auto control = controls::control_of(machine, *job.setup, job.tools);
   if (!control) return control.error();
   report.teeth = posted.axes.teeth;
   report.tooth_stride = posted.axes.tooth_stride;

@@ -8,7 +8,7 @@
 #include "app/report/setup_drawings.h"
 #include "app/report/sheet_html.h"
 #include "geometry/base/angle.h"
-#include "postproc/nc_dialect.h"
+#include "postproc/controls/of_machine.h"
 
 namespace toothpath {
 namespace {
@@ -47,7 +47,7 @@ std::string gear_words(const FaceGearParameters& p) {
 
 /// What cools, and the words that the operator finds in the program.
 std::string coolant_text(Coolant coolant, const Machine& machine) {
-  const auto dialect = dialect_of(machine);
+  const auto dialect = controls::dialect_of(machine);
   const auto words = dialect && coolant != Coolant::off ? coolant_words(*dialect, coolant) : Result<CoolantWords>(Diagnostic{});
   return words ? fmt::format("{}: on with {}, off with {}", to_string(coolant), words->on, words->off) : to_string(coolant);
 }

@@ -18,6 +18,7 @@
 #include "cam/finger_check.h"
 #include "cam/finger_milling.h"
 #include "cam/plan.h"
+#include "postproc/controls/of_machine.h"
 #include "postproc/nc_reader.h"
 #include "postproc/nc_writer.h"
 #include "postproc/shaper_gearbox_program.h"
@@ -200,7 +201,7 @@ void expect_golden(const fs::path& file, const std::string& text) {
 
 /// The program meets its path: records to the rounding of the words, rapids clear of the blank.
 void expect_round_trip(const std::string& text, const AxisProgram& program, const Planned& planned, const Job& job, const Machine& m) {
-  const auto control = control_of(m, *job.setup, job.tools);
+  const auto control = controls::control_of(m, *job.setup, job.tools);
   ASSERT_TRUE(control);
   const auto back = read_back(text, "p", *control, m, *job.setup, {.teeth = planned.teeth});
   ASSERT_TRUE(back) << back.error().text();
@@ -241,9 +242,9 @@ TEST_P(GoldenPrograms, ByteForByteAndOnTheirPath) {
   for (const Form& form : kForms) {
     SCOPED_TRACE(form.file);
     const Machine m = machine_with(std::get<0>(loaded), form, c.fanuc_decimals);
-    const auto dialect = dialect_of(m);
+    const auto dialect = controls::dialect_of(m);
     ASSERT_TRUE(dialect) << dialect.error().message;
-    const auto program = build_axis_program(planned.checked, job.tools, *job.setup, m, planned.teeth, planned.body, axis_options(*dialect, m));
+    const auto program = build_axis_program(planned.checked, job.tools, *job.setup, m, planned.teeth, planned.body, controls::axis_options(*dialect, m));
     if (!program) {  // the control cannot do it: why, word for word
       expect_golden(kGolden / c.sample / (std::string(form.file) + ".refused"), program.error().message + "\n");
       continue;

@@ -5,20 +5,17 @@
 #include <filesystem>
 
 #include "app/output_dir.h"
-#include "postproc/nc_dialect.h"
+#include "postproc/controls/registry.h"
 #include "program.h"
 
 namespace toothpath::test {
 namespace {
 
 TEST(ProgramExtensions, OldProgramsOfEveryControlGo) {
-  const auto extensions = program_extensions();
+  const auto extensions = controls::program_extensions();
   ASSERT_GE(extensions.size(), 5u);
-  for (const auto& name : dialect_names()) {
-    const auto dialect = find_dialect(name);
-    ASSERT_TRUE(dialect);
-    EXPECT_EQ(std::count(extensions.begin(), extensions.end(), dialect->extension), 1) << name;
-  }
+  for (const auto* control : controls::all())
+    EXPECT_EQ(std::count(extensions.begin(), extensions.end(), control->words.extension), 1) << control->words.name;
   const TestDir dir;
   std::filesystem::create_directory(dir / "out");
   for (const auto& extension : extensions) {

@@ -214,7 +214,7 @@ TEST(AxisProgram, PoleAndIndexSense) {
           r.axis = -r.axis;
         }
       const auto program = AxisProgramTestAccess::build(std::vector{path}, tools(), s, m, 9,
-                                                        ClearanceBody{120, -5, 5}, axis_options(linuxcnc_dialect(), m));
+                                                        ClearanceBody{120, -5, 5}, axis_options(words_of("linuxcnc"), m));
       ASSERT_TRUE(program) << program.error().message;
       EXPECT_TRUE(program->loop);
       EXPECT_EQ(program->index_sign, sign * (up ? 1 : -1));

@@ -1,12 +1,13 @@
 // Reads cutter location data back (APT, the subset that we write): GOTO with tip and axis in work coordinates. The machine is the
 // one of the job, whose axes follow the tool; LOADTL stands for a tool change at the top of Z with the rotaries at zero.
+#include "postproc/controls/apt/apt_reader.h"
+
 #include <cmath>
 
 #include "postproc/nc_execution.h"
-#include "postproc/nc_readers.h"
 #include "postproc/nc_scanner.h"
 
-namespace toothpath {
+namespace toothpath::controls {
 namespace {
 
 class Apt {
@@ -145,4 +146,4 @@ Status execute_apt(std::string_view text, const std::string& file, const NcContr
   return Apt(text, file, control, sink).run();
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::controls

@@ -1,11 +1,28 @@
 // Fanuc and compatible controls, IS-B (3 decimals): every value has a point, G43 stands with Z, G49 only in the block of a
 // machine-coordinate retract, the largest F in G93 is 9999.999. TCP is G43.4: its block moves Z alone, at rotary zero, where
 // the table frame is frozen.
-#include "postproc/nc_dialect.h"
+#include "postproc/controls/fanuc/fanuc.h"
 
-namespace toothpath {
+#include "postproc/work_offset.h"
 
-NcDialect fanuc_dialect() {
+namespace toothpath::controls {
+namespace {
+
+constexpr int kLastExtended = 300;  // G54.1 P
+
+bool has_offset(std::string_view name) {
+  const int n = extended_offset(name, "G54.1 P");
+  return basic_offset(name) > 0 || (n >= 1 && n <= kLastExtended);
+}
+
+Status execute(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+  static const IsoLanguage language = fanuc_language();
+  return execute_iso(text, file, control, sink, language);
+}
+
+}  // namespace
+
+NcDialect fanuc_words() {
   NcDialect d;
   d.name = "fanuc";
   d.extension = ".nc";
@@ -33,4 +50,16 @@ NcDialect fanuc_dialect() {
   return d;
 }
 
-}  // namespace toothpath
+IsoLanguage fanuc_language() {
+  IsoLanguage l;
+  l.g_tenths = {434, 690};
+  l.extended = {.tenths = 541, .last = kLastExtended};
+  l.rules.tcp_needs_zero = true;
+  return l;
+}
+
+WorkOffsets fanuc_offsets() { return {"G54 to G59 and G54.1 P1 to P300", has_offset}; }
+
+Control fanuc() { return {fanuc_words(), {}, fanuc_offsets(), execute}; }
+
+}  // namespace toothpath::controls

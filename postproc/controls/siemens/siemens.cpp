@@ -4,11 +4,15 @@
 // FOR loop of the control; with TRAORI the programmable frame ROT turns with them. MOD is for whole variables only there, so that the
 // remainder of the spread order is made with TRUNC, half a unit away from where it could fall on the wrong side. ORIAXES: the rotaries are linear between
 // the blocks, also where a block carries the tool vector A3 B3 C3.
-#include "postproc/nc_dialect.h"
+#include "postproc/controls/control.h"
+#include "postproc/controls/siemens/siemens_reader.h"
+#include "postproc/work_offset.h"
 
-namespace toothpath {
+namespace toothpath::controls {
 
-NcDialect siemens_dialect() {
+namespace {
+
+NcDialect words() {
   NcDialect d;
   d.name = "siemens";
   d.extension = ".mpf";
@@ -51,4 +55,15 @@ NcDialect siemens_dialect() {
   return d;
 }
 
-}  // namespace toothpath
+bool has_offset(std::string_view name) {
+  const int n = !name.empty() && name[0] == 'G' ? whole_number(name.substr(1)) : -1;
+  return (n >= 54 && n <= 57) || (n >= 505 && n <= 599);
+}
+
+}  // namespace
+
+Control siemens() {
+  return {words(), {"sinumerik"}, {"G54 to G57 and G505 to G599 (G58 and G59 shift single axes)", has_offset}, execute_siemens};
+}
+
+}  // namespace toothpath::controls

@@ -5,11 +5,13 @@
 
 #include <cmath>
 
+#include "postproc/controls/apt/apt_reader.h"
+#include "postproc/controls/control.h"
 #include "postproc/fixed_point.h"
 #include "postproc/nc_lines.h"
 #include "postproc/nc_writer.h"
 
-namespace toothpath {
+namespace toothpath::controls {
 namespace {
 
 constexpr int kAxisDecimals = 9;
@@ -123,9 +125,7 @@ Result<NcText> write_apt(const AxisProgram& program, const NcDialect& dialect, c
   return Apt(program, dialect, header).write();
 }
 
-}  // namespace
-
-NcDialect apt_dialect() {
+NcDialect words() {
   NcDialect d;
   d.name = "apt";
   d.extension = ".apt";
@@ -142,4 +142,11 @@ NcDialect apt_dialect() {
   return d;
 }
 
-}  // namespace toothpath
+/// Tips are relative to the one offset of the job, whatever it is called.
+bool has_offset(std::string_view) { return true; }
+
+}  // namespace
+
+Control apt() { return {words(), {"cldata"}, {"any: the data do not name it", has_offset}, execute_apt}; }
+
+}  // namespace toothpath::controls

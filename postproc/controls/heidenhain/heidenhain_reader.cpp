@@ -1,16 +1,17 @@
 // Executes the subset of Heidenhain plain text that a gear program needs: L and LN blocks, TCPM, rotation cycle, datum cycle,
 // tolerance cycle, Q parameters, repeated sections, a jump to a label. Everything else is refused where it stands.
+#include "postproc/controls/heidenhain/heidenhain_reader.h"
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
 #include "geometry/base/angle.h"
+#include "postproc/controls/heidenhain/presets.h"
 #include "postproc/nc_execution.h"
-#include "postproc/nc_readers.h"
-#include "postproc/work_offset.h"
 #include "postproc/nc_scanner.h"
 
-namespace toothpath {
+namespace toothpath::controls {
 namespace {
 
 constexpr std::size_t kLongestLine = 256;
@@ -340,4 +341,4 @@ Status execute_heidenhain(std::string_view text, const std::string& file, const 
   return Heidenhain(text, file, control, sink).run();
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::controls

@@ -9,7 +9,7 @@
 #include "geometry/base/angle.h"
 #include "postproc/nc_scanner.h"
 
-namespace toothpath {
+namespace toothpath::controls {
 
 class NcPathGroup {
  public:
@@ -56,4 +56,4 @@ class NcPathGroup {
   std::array<double, 2> radius_ = {degrees(1), degrees(1)};  // as the control begins: 1 mm for 1 deg
 };
 
-}  // namespace toothpath
+}  // namespace toothpath::controls

@@ -1,15 +1,16 @@
 // Executes the subset of Siemens 840D text that a gear program needs: G words, TRAORI with rotary words or A3 B3 C3, ROT about
 // Z, R parameters, FOR loops. Everything else is refused where it stands.
+#include "postproc/controls/siemens/siemens_reader.h"
+
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
 
+#include "postproc/controls/siemens/path_group.h"
 #include "postproc/nc_execution.h"
-#include "postproc/nc_path_group.h"
-#include "postproc/nc_readers.h"
 #include "postproc/nc_scanner.h"
 
-namespace toothpath {
+namespace toothpath::controls {
 namespace {
 
 constexpr std::size_t kDeepestLoop = 8;
@@ -387,4 +388,4 @@ Status execute_siemens(std::string_view text, const std::string& file, const NcC
   return Siemens(text, file, control, sink).run();
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::controls

@@ -3,11 +3,16 @@
 // section that is jumped back to (a count of repetitions would not follow a changed first tooth); a word takes no arithmetic, so that
 // the index angle is a Q parameter, set ahead of each rotary block. The remainder of the spread order is made with INT, half a unit
 // away from where it could fall on the wrong side.
-#include "postproc/nc_dialect.h"
+#include "postproc/controls/control.h"
+#include "postproc/controls/heidenhain/heidenhain_reader.h"
+#include "postproc/controls/heidenhain/presets.h"
+#include "postproc/work_offset.h"
 
-namespace toothpath {
+namespace toothpath::controls {
 
-NcDialect heidenhain_dialect() {
+namespace {
+
+NcDialect words() {
   NcDialect d;
   d.name = "heidenhain";
   d.extension = ".h";
@@ -26,6 +31,7 @@ NcDialect heidenhain_dialect() {
   d.safe_start = {"PLANE RESET STAY", "FUNCTION RESET TCPM", "TRANS DATUM RESET", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+0"};
   d.start = {"{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M126", "CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1 T{blend}",
              "CYCL DEF 32.2 HSC-MODE:0 TA{blend_axis}"};
+  d.datum = preset_number;
   d.retract = {"L Z{top} R0 FMAX M91"};
   d.tool_change = {"TOOL CALL {tool} Z S{speed}", "{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M3"};
   d.coolant = {{Coolant::flood, {"M8", "M9"}}};  // M7 is none of its own
@@ -53,4 +59,15 @@ NcDialect heidenhain_dialect() {
   return d;
 }
 
-}  // namespace toothpath
+bool has_offset(std::string_view name) {
+  const int preset = whole_number(name);
+  return basic_offset(name) > 0 || tenth_offset(name) > 0 || (preset >= 1 && preset <= 99);
+}
+
+}  // namespace
+
+Control heidenhain() {
+  return {words(), {}, {"the presets 1 to 99, or G54 for preset 1 to G59 for 6, G59.1 for 7 to G59.3 for 9", has_offset}, execute_heidenhain};
+}
+
+}  // namespace toothpath::controls

@@ -1,0 +1,7 @@
+// Every control, in the order of messages: the name of its folder and of the function in it that makes its object.
+CONTROL(linuxcnc)
+CONTROL(fanuc)
+CONTROL(siemens)
+CONTROL(heidenhain)
+CONTROL(apt)
+CONTROL(mitsubishi_m80)
