@@ -125,7 +125,7 @@ Language apt() {
 
 const Language& language(const std::string& dialect) {
   static const std::map<std::string, Language> all = [] {
-    std::map<std::string, Language> m = {{"linuxcnc", linuxcnc()}, {"fanuc", fanuc()},           {"mitsubishi_m80", fanuc()},
+    std::map<std::string, Language> m = {{"linuxcnc", linuxcnc()}, {"fanuc", fanuc()},           {"mitsubishi_m80", fanuc()}, {"haas", fanuc()},
                                          {"siemens", siemens()},   {"heidenhain", heidenhain()}, {"apt", apt()}};
     for (auto& [name, l] : m) {
       for (const auto& s : l.lines) l.patterns.emplace_back(s.word);
