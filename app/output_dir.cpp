@@ -13,7 +13,7 @@
 #include <optional>
 
 #include "app/interruption.h"
-#include "app/sha256.h"
+#include "geometry/base/hash.h"
 #include "machines/toml/regular_file.h"
 
 namespace toothpath {

@@ -5,7 +5,7 @@
 #include "app/commands/program_report.h"
 #include "app/commands/scene.h"
 #include "app/report/deviation_vtp.h"
-#include "app/sha256.h"
+#include "geometry/base/hash.h"
 
 namespace toothpath {
 namespace {

@@ -17,7 +17,7 @@
 #include "app/report/deviation_vtp.h"
 #include "app/report/motion_charts.h"
 #include "app/report/page_of_run.h"
-#include "app/sha256.h"
+#include "geometry/base/hash.h"
 #include "geometry/base/angle.h"
 #include "cam/plan.h"
 

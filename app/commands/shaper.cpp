@@ -8,7 +8,7 @@
 #include "app/commands/opening_and_end.h"
 #include "app/report/limits_json.h"
 #include "app/report/run_report.h"
-#include "app/sha256.h"
+#include "geometry/base/hash.h"
 #include "geometry/base/angle.h"
 #include "machines/machine_file.h"
 #include "machines/shaper_machine.h"

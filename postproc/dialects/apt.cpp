@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "geometry/base/hash.h"
 #include "postproc/fixed_point.h"
 #include "postproc/nc_lines.h"
 #include "postproc/nc_writer.h"

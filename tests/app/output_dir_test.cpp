@@ -3,7 +3,7 @@
 
 #include <sys/stat.h>
 
-#include "app/sha256.h"
+#include "geometry/base/hash.h"
 #include "program.h"
 
 namespace toothpath::test {
