@@ -25,6 +25,7 @@
 #include "app/commands/study_trace_model.h"
 #include "app/commands/study_work_precision.h"
 #include "app/commands/surface.h"
+#include "app/output_dir.h"
 #include "app/report/html_text.h"
 
 namespace toothpath {
@@ -67,6 +68,7 @@ std::string outcome_json(const std::string& command, const CommandOutcome& outco
                               {"line", error.position.line},
                               {"column", error.position.column},
                               {"message", valid_utf8(error.message)}});
+  if (const std::string note = OutputDir::closing_note(); !note.empty()) json["note"] = valid_utf8(note);
   if (!outcome.report_json.empty()) json["report"] = nlohmann::ordered_json::parse(outcome.report_json);
   return json.dump() + "\n";
 }
@@ -76,6 +78,8 @@ int present(const std::string& command, const CommandOutcome& outcome, const Glo
   const bool color = wants_color(options.color, STDERR_FILENO);
   for (const auto& error : outcome.errors)
     std::fprintf(stderr, "%s%s%s\n", color ? "\033[31m" : "", error.text().c_str(), color ? "\033[0m" : "");
+  if (const std::string note = OutputDir::closing_note(); !note.empty() && (!options.quiet || outcome.exit_code != ExitCode::ok))
+    std::fprintf(stderr, "note: %s\n", note.c_str());
   std::fflush(stderr);
   bool printed = true;
   if (options.json) printed = print(outcome_json(command, outcome));

@@ -194,6 +194,7 @@ CommandOutcome run_bevel_job(const CommandRequest& request, const Job& job, Outp
     run.progress.clear();
     return failed(std::move(errors));
   }
+  if (const auto aside = output.set_aside(); !aside) return failed(aside.error());
   run.report = report_of("run", job, run.machine, run.gear->warnings());
   const FingerGougeCheck check(*run.gear, job.tools, job.operations, proof_tolerances(job));
   auto stopped = plan_and_check(run, check);

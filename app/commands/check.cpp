@@ -17,9 +17,9 @@
 #include "app/report/deviation_vtp.h"
 #include "app/report/motion_charts.h"
 #include "app/report/page_of_run.h"
-#include "geometry/base/hash.h"
 #include "geometry/base/angle.h"
 #include "cam/plan.h"
+#include "geometry/base/hash.h"
 
 namespace toothpath {
 namespace {
@@ -42,7 +42,9 @@ void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) 
 }  // namespace
 
 CommandOutcome check_program(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"});
+  std::vector<std::string> inputs = {request.job_file, request.program_file};
+  for (const auto* more : {&request.stock_files, &request.fixture_files, &request.measured_files}) inputs.insert(inputs.end(), more->begin(), more->end());
+  auto output = OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"}, inputs);
   if (!output) return failed(output.error());
   if (const auto bevel = bevel_job(request.job_file)) return check_bevel_program(request, *bevel, *output);
   Progress progress(request.quiet);

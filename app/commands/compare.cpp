@@ -170,7 +170,7 @@ nlohmann::ordered_json figures_json(const Figures& f) { return {{"min_um", f.lea
 CommandOutcome run_compare(const CommandRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
   Side shaped_side, milled_side;
   std::vector<Diagnostic> errors = read_side(request.job_file, shaped_side);

@@ -67,7 +67,7 @@ ContactSettings contact_settings(const Job& job, const CommandRequest& request) 
 CommandOutcome run_contact(const CommandRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
   if (auto error = out_of_range(request)) return failed(std::move(*error));
   if (const auto bevel = bevel_job(request.job_file)) return run_bevel_contact(request, *bevel, *output);

@@ -111,7 +111,7 @@ PageTable summary_table_of(const std::vector<JudgedCutter>& mills) {
 CommandOutcome run_cutter(const CommandRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
   auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));

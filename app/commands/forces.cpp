@@ -186,7 +186,7 @@ std::string json_of(const Pair& pair, const std::string& job_file, const std::ve
 }  // namespace
 
 CommandOutcome run_forces(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kOutputs, {request.job_file});
   if (!output) return failed(output.error());
   Progress progress(request.quiet);
   StageClock clock(progress);

@@ -40,9 +40,9 @@ std::variant<Shown, std::vector<Diagnostic>> shown(const std::string& path) {
 }  // namespace
 
 CommandOutcome show_machine(const CommandRequest& request) {
-  std::optional<OutputDir> output;  // first: what an earlier call left there goes, whatever this one finds
+  std::optional<OutputDir> output;
   if (!request.out_dir.empty()) {
-    auto opened = OutputDir::open(request.out_dir, kShowOutputs);
+    auto opened = OutputDir::open(request.out_dir, kShowOutputs, {request.job_file});
     if (!opened) return failed(opened.error());
     output.emplace(std::move(opened).value());
   }
@@ -89,11 +89,12 @@ std::string test_page(const Machine& machine, const SelfTest& test, const SelfTe
 }
 
 const std::vector<std::string> kTestOutputs = {"machine_test.", "machine_test.html"};
+constexpr const char* kPreviousTest = "previous_machine_test";
 
 }  // namespace
 
 CommandOutcome test_machine(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kTestOutputs);
+  auto output = OutputDir::open(request.out_dir, kTestOutputs, {request.job_file}, kPreviousTest);
   if (!output) return failed(output.error());
   const auto path = find_machine_file(request.job_file, ".");
   if (!path) return failed(path.error());
@@ -106,6 +107,7 @@ CommandOutcome test_machine(const CommandRequest& request) {
   };
   const auto dialect = dialect_of(machine);
   if (!dialect) return at_file(dialect.error());
+  if (const auto aside = output->set_aside(); !aside) return failed(aside.error());
   SelfTestOptions options;
   options.tool_length_mm = request.tool_length_mm;
   const auto test = plan_self_test(machine, options);

@@ -260,7 +260,9 @@ CommandOutcome finish(Run& run, OutputDir& output, const std::optional<Diagnosti
 }  // namespace
 
 CommandOutcome run_job(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  std::vector<std::string> inputs = request.measured_files;
+  inputs.push_back(request.job_file);
+  auto output = OutputDir::open(request.out_dir, kOutputs, inputs, kPrevious);
   if (!output) return failed(output.error());
   if (const auto bevel = bevel_job(request.job_file); bevel && request.measured_files.empty()) return run_bevel_job(request, *bevel, *output);
   Run run(request);
@@ -268,6 +270,7 @@ CommandOutcome run_job(const CommandRequest& request) {
     run.progress.clear();
     return failed(std::move(errors));
   }
+  if (const auto aside = output->set_aside(); !aside) return failed(aside.error());
   const auto stopped = plan_post_and_prove(run, *output, GougeCheckOptions{}.proof_mm);
   if (stopped && stopped->kind != DiagnosticKind::verification) {
     run.progress.clear();

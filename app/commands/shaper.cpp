@@ -8,8 +8,8 @@
 #include "app/commands/opening_and_end.h"
 #include "app/report/limits_json.h"
 #include "app/report/run_report.h"
-#include "geometry/base/hash.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/hash.h"
 #include "machines/machine_file.h"
 #include "machines/shaper_machine.h"
 #include "postproc/shaper_gearbox_program.h"
@@ -76,6 +76,8 @@ std::string summary_of(const ShaperSetup& s, const std::string& folder) {
 
 }  // namespace
 
+constexpr const char* kPreviousShaper = "previous_shaper";
+
 const std::vector<std::string>& shaper_outputs() {
   static const std::vector<std::string> names = {"limits.json", "shaper.json", "shaper.html", "shaper_program.", "report.json"};
   return names;
@@ -84,7 +86,7 @@ const std::vector<std::string>& shaper_outputs() {
 CommandOutcome run_shaper(const CommandRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, shaper_outputs());
+  auto output = OutputDir::open(request.out_dir, shaper_outputs(), {request.job_file}, kPreviousShaper);
   if (!output) return failed(output.error());
   auto read = read_face_gear_job(request.job_file, clock);
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
@@ -95,6 +97,7 @@ CommandOutcome run_shaper(const CommandRequest& request) {
   auto planned = clock.run("shaper set-up", [&] { return plan_setup(job, gear, machine); });
   if (auto* errors = std::get_if<1>(&planned)) return failed(std::move(*errors));
   ShaperSetup& setup = std::get<0>(planned);
+  if (const auto aside = output->set_aside(); !aside) return failed(aside.error());
   setup.warnings.insert(setup.warnings.begin(), gear.warnings().begin(), gear.warnings().end());
   setup.warnings.insert(setup.warnings.begin(), job.warnings.begin(), job.warnings.end());
   const auto study = clock.run("stroke simulation", [&] { return feed_study(setup, compared_feeds(setup)); });

@@ -231,7 +231,7 @@ ValueOrErrors<DhfgStudy> parse_dhfg_study(std::string_view text, const std::stri
 CommandOutcome study_dhfg(const CommandRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kOutputs, {request.study_file});
   if (!output) return failed(output.error());
   DhfgStudy study = default_study();
   if (!request.study_file.empty()) {

@@ -86,7 +86,7 @@ StudyPage page_of(const BevelGear& g, const Job& job, const std::vector<SectionM
 }  // namespace
 
 CommandOutcome study_trace_model(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kOutputs, {request.job_file});
   if (!output) return failed(output.error());
   Progress progress(request.quiet);
   StageClock clock(progress);

@@ -15,7 +15,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"work_precision.csv", "work_precision.json", "work_precision.html", "work_precision.svg", "report.html", "program."};
+const std::vector<std::string> kOutputs = {"work_precision.csv", "work_precision.json", "work_precision.html", "work_precision.svg", "report.html"};
 
 /// Which tolerances a line of the study multiplies.
 struct Sweep {
@@ -222,7 +222,7 @@ std::string screen_table(const PageTable& table) {
 }  // namespace
 
 CommandOutcome study_work_precision(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kOutputs, {request.job_file});
   if (!output) return failed(output.error());
   auto read = read_job_file(request.job_file);
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));

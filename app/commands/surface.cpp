@@ -13,7 +13,7 @@ const std::vector<std::string>& surface_outputs() {
 CommandOutcome run_surface(const CommandRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, surface_outputs());
+  auto output = OutputDir::open(request.out_dir, surface_outputs(), {request.job_file});
   if (!output) return failed(output.error());
   if (const auto bevel = bevel_job(request.job_file)) return run_bevel_surface(request, *bevel, *output);
   auto read = read_face_gear_job(request.job_file, clock);
