@@ -41,7 +41,7 @@ void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) 
 
 }  // namespace
 
-CommandOutcome check_program(const CommandRequest& request) {
+CommandOutcome check_program(const CheckRequest& request) {
   std::vector<std::string> inputs = {request.job_file, request.program_file};
   for (const auto* more : {&request.stock_files, &request.fixture_files, &request.measured_files}) inputs.insert(inputs.end(), more->begin(), more->end());
   auto output = OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"}, inputs);
@@ -129,6 +129,21 @@ CommandOutcome check_program(const CommandRequest& request) {
   if (const auto committed = output->commit(); !committed) return failed(committed.error());
   outcome.summary = summary_table(report, request.color) + table_of_worst(proof->gouge);
   return outcome;
+}
+
+void add_check(Commands& commands) {
+  commands.push_back(command_of<CheckRequest>(
+      "check", "proves a program that is already there against the job's gear",
+      [](OptionSet& set, CheckRequest& request) {
+        job_options(set, request);
+        set.file("PROGRAM", request.program_file, "NC program in the dialect of the job's machine");
+        set.files("--stock", request.stock_files, "closed mesh of the stock before the program (STL or OBJ, mm, gear frame); repeatable");
+        set.files("--fixture", request.fixture_files,
+                  "closed mesh of what holds the work and turns with it (STL or OBJ, mm, gear frame); repeatable. Facets are taken as exact: "
+                  "what they leave out of the true part must lie within the clearance of the job");
+        set.files("--measured", request.measured_files, "measured deviations that the program answers (see correct)");
+      },
+      check_program));
 }
 
 }  // namespace toothpath

@@ -36,7 +36,7 @@ const std::vector<std::string> kOutputs = {"program.",       "cl.csv",         "
 
 /// What one run has made so far. Stages fill it in order.
 struct Run {
-  const CommandRequest& request;
+  const RunRequest& request;
   Progress progress;
   StageClock clock{progress};
   Job job;
@@ -54,7 +54,7 @@ struct Run {
   std::vector<LineChart> motion;        ///< axes over time, for the page
   std::vector<std::vector<int>> lines;  ///< of the program, for every record of every path
 
-  explicit Run(const CommandRequest& r) : request(r), progress(r.quiet) {}
+  explicit Run(const RunRequest& r) : request(r), progress(r.quiet) {}
   [[nodiscard]] PlanOptions plan_options() const {
     PlanOptions options;
     if (job.verify.clearance_mm) options.clearance_mm = *job.verify.clearance_mm;
@@ -259,7 +259,7 @@ CommandOutcome finish(Run& run, OutputDir& output, const std::optional<Diagnosti
 
 }  // namespace
 
-CommandOutcome run_job(const CommandRequest& request) {
+CommandOutcome run_job(const RunRequest& request) {
   std::vector<std::string> inputs = request.measured_files;
   inputs.push_back(request.job_file);
   auto output = OutputDir::open(request.out_dir, kOutputs, inputs, kPrevious);
@@ -280,7 +280,7 @@ CommandOutcome run_job(const CommandRequest& request) {
 }
 
 StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bool quiet, const CutSurfaceOptions& grid, bool with_page) {
-  CommandRequest request;
+  RunRequest request;
   request.quiet = quiet;
   Run run(request);
   run.job = job;
@@ -303,6 +303,16 @@ StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bo
   outcome.report = std::move(run.report);
   outcome.surface = std::move(run.surface);
   return outcome;
+}
+
+void add_run(Commands& commands) {
+  commands.push_back(command_of<RunRequest>(
+      "run", "the whole way from the job to a proven NC program",
+      [](OptionSet& set, RunRequest& request) {
+        job_options(set, request);
+        set.text("--restart", request.restart, "operation and tooth, both from 0: the program begins there; what comes before is taken as done", "OP:TOOTH");
+      },
+      run_job));
 }
 
 }  // namespace toothpath

@@ -83,7 +83,7 @@ const std::vector<std::string>& shaper_outputs() {
   return names;
 }
 
-CommandOutcome run_shaper(const CommandRequest& request) {
+CommandOutcome run_shaper(const JobRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
   auto output = OutputDir::open(request.out_dir, shaper_outputs(), {request.job_file}, kPreviousShaper);
@@ -146,6 +146,10 @@ ValueOrErrors<ShaperSetup> shaper_setup_of(const Job& job, const FaceGear& gear)
   auto loaded = load_shaper_machine(job);
   if (auto* errors = std::get_if<1>(&loaded)) return std::move(*errors);
   return plan_setup(job, gear, std::get<0>(loaded));
+}
+
+void add_shaper(Commands& commands) {
+  commands.push_back(command_of<JobRequest>("shaper", "limits and gear-shaper set-up: sheet and stroke program", job_options, run_shaper));
 }
 
 }  // namespace toothpath
