@@ -1,6 +1,8 @@
 // What `machine show` says of the senses is what the kinematics do; every shipped machine is shown, wrong files are refused.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "app/report/machine_sheet.h"
 #include "machines/machine_file.h"
 #include "program.h"
@@ -86,6 +88,25 @@ TEST(MachineShow, WritesPageAndDrawingOnlyWhereAsked) {
   EXPECT_NE(none.err.find("no_such_machine.toml"), std::string::npos);
   const Finished job = run_program({"machine", "show", kSamples + "/spur_quick.toml"});
   EXPECT_EQ(job.exit_code, 3) << job.err;
+}
+
+TEST(MachineList, EveryInstalledMachineHasItsLine) {
+  const Finished run = run_program({"machine", "list"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(static_cast<std::size_t>(std::count(run.out.begin(), run.out.end(), '\n')), installed_machines().size() + 1) << run.out;
+  for (const auto& name : kShipped) {
+    const Machine m = shipped(name);
+    const auto at = run.out.find(name);
+    ASSERT_NE(at, std::string::npos) << name;
+    const std::string line = run.out.substr(at, run.out.find('\n', at) - at);
+    for (const std::string& word : {m.name, m.dialect, m.assumed_keys.empty() ? std::string("-") : std::to_string(m.assumed_keys.size())})
+      EXPECT_NE(line.find(word), std::string::npos) << line;
+  }
+  const auto json = nlohmann::json::parse(run_program({"machine", "list", "--json"}).out);
+  EXPECT_EQ(json["command"], "machine list");
+  EXPECT_EQ(json["report"]["machines"].size(), installed_machines().size());
+  EXPECT_EQ(run_program({"machine", "show", "t600s"}).exit_code, 0) << "without its ending";
+  EXPECT_NE(run_program({"machine", "show", "t600"}).err.find("did you mean \"t600s.toml\"?"), std::string::npos);
 }
 
 TEST(MachineTest, WritesAProvenProgramForEveryShippedMachine) {
