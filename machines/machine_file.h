@@ -41,9 +41,12 @@ using MachineJudge = std::function<std::vector<Diagnostic>(const Machine&)>;
 /// the data folder of the source tree this was built from. Only those that exist.
 [[nodiscard]] std::vector<std::string> machine_directories();
 
+/// File names of the installed machines, "t600s.toml", in order, each once.
+[[nodiscard]] std::vector<std::string> installed_machines();
+
 /// Path of the machine file that a job calls `name`: `job_directory/name` if it exists, else `name` among the installed
-/// machines (a leading "machines/" is dropped there). An absolute name is taken as it is.
-/// Errors (file_access): found nowhere; the message lists the installed machines.
+/// machines (a leading "machines/" is dropped there, and ".toml" may be left out). An absolute name is taken as it is.
+/// Errors (file_access): found nowhere; the message proposes a near name and lists the installed machines.
 [[nodiscard]] Result<std::string> find_machine_file(const std::string& name, const std::string& job_directory);
 
 }  // namespace toothpath

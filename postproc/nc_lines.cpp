@@ -96,12 +96,6 @@ std::string first_tooth_comment(const AxisProgram& program) {
   return fmt::format("FIRST TOOTH BY ITS PLACE, 0 TO {}: TOOTH = PLACE * {} MOD {}", program.teeth - 1, program.tooth_stride, program.teeth);
 }
 
-std::uint64_t fnv1a(std::string_view bytes) {
-  std::uint64_t h = 14695981039346656037ULL;
-  for (const char c : bytes) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return h;
-}
-
 void NcLines::line(std::string_view text) {
   text_ += text;
   end_line(text_.size() - text.size(), true);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/base/hash.h"
 #include "postproc/fixed_point.h"
 #include "postproc/nc_axis_words.h"
 #include "postproc/nc_corners.h"

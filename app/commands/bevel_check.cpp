@@ -5,7 +5,7 @@
 #include "app/commands/program_report.h"
 #include "app/commands/scene.h"
 #include "app/report/deviation_vtp.h"
-#include "app/sha256.h"
+#include "geometry/base/hash.h"
 
 namespace toothpath {
 namespace {
@@ -26,7 +26,7 @@ void fill(RunReport& report, const BevelGear& gear, const Job& job, const Machin
 
 }  // namespace
 
-CommandOutcome check_bevel_program(const CommandRequest& request, const Job& job, OutputDir& output) {
+CommandOutcome check_bevel_program(const CheckRequest& request, const Job& job, OutputDir& output) {
   Progress progress(request.quiet);
   StageClock clock(progress);
   auto made = clock.run("gear", [&] { return make_bevel_gear(job); });

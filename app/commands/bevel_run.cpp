@@ -8,6 +8,7 @@
 #include "app/commands/bevel_proof.h"
 #include "app/commands/program_report.h"
 #include "app/commands/restart.h"
+#include "app/commands/run.h"
 #include "app/commands/ledger.h"
 #include "app/commands/opening_and_end.h"
 #include "app/job_file.h"
@@ -23,7 +24,7 @@ namespace {
 
 /// What one run has made so far. Stages fill it in order.
 struct BevelRun {
-  const CommandRequest& request;
+  const RunRequest& request;
   const Job& job;
   Progress progress;
   StageClock clock{progress};
@@ -37,7 +38,7 @@ struct BevelRun {
   std::optional<BevelProof> proof;
   RunReport report;
 
-  BevelRun(const CommandRequest& r, const Job& j) : request(r), job(j), progress(r.quiet) {}
+  BevelRun(const RunRequest& r, const Job& j) : request(r), job(j), progress(r.quiet) {}
   [[nodiscard]] std::vector<const ClPath*> paths() const {
     std::vector<const ClPath*> out;
     for (const auto& plan : plans) out.push_back(&plan.path);
@@ -188,12 +189,13 @@ ValueOrErrors<BevelGear> make_bevel_gear(const Job& job) {
   return errors;
 }
 
-CommandOutcome run_bevel_job(const CommandRequest& request, const Job& job, OutputDir& output) {
+CommandOutcome run_bevel_job(const RunRequest& request, const Job& job, OutputDir& output) {
   BevelRun run(request, job);
   if (auto errors = read_inputs(run); !errors.empty()) {
     run.progress.clear();
     return failed(std::move(errors));
   }
+  if (const auto aside = output.set_aside(); !aside) return failed(aside.error());
   run.report = report_of("run", job, run.machine, run.gear->warnings());
   const FingerGougeCheck check(*run.gear, job.tools, job.operations, proof_tolerances(job));
   auto stopped = plan_and_check(run, check);

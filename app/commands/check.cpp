@@ -17,9 +17,9 @@
 #include "app/report/deviation_vtp.h"
 #include "app/report/motion_charts.h"
 #include "app/report/page_of_run.h"
-#include "app/sha256.h"
 #include "geometry/base/angle.h"
 #include "cam/plan.h"
+#include "geometry/base/hash.h"
 
 namespace toothpath {
 namespace {
@@ -41,8 +41,10 @@ void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) 
 
 }  // namespace
 
-CommandOutcome check_program(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"});
+CommandOutcome check_program(const CheckRequest& request) {
+  std::vector<std::string> inputs = {request.job_file, request.program_file};
+  for (const auto* more : {&request.stock_files, &request.fixture_files, &request.measured_files}) inputs.insert(inputs.end(), more->begin(), more->end());
+  auto output = OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"}, inputs);
   if (!output) return failed(output.error());
   if (const auto bevel = bevel_job(request.job_file)) return check_bevel_program(request, *bevel, *output);
   Progress progress(request.quiet);
@@ -127,6 +129,21 @@ CommandOutcome check_program(const CommandRequest& request) {
   if (const auto committed = output->commit(); !committed) return failed(committed.error());
   outcome.summary = summary_table(report, request.color) + table_of_worst(proof->gouge);
   return outcome;
+}
+
+void add_check(Commands& commands) {
+  commands.push_back(command_of<CheckRequest>(
+      "check", "proves a program that is already there against the job's gear",
+      [](OptionSet& set, CheckRequest& request) {
+        job_options(set, request);
+        set.file("PROGRAM", request.program_file, "NC program in the dialect of the job's machine");
+        set.files("--stock", request.stock_files, "closed mesh of the stock before the program (STL or OBJ, mm, gear frame); repeatable");
+        set.files("--fixture", request.fixture_files,
+                  "closed mesh of what holds the work and turns with it (STL or OBJ, mm, gear frame); repeatable. Facets are taken as exact: "
+                  "what they leave out of the true part must lie within the clearance of the job");
+        set.files("--measured", request.measured_files, "measured deviations that the program answers (see correct)");
+      },
+      check_program));
 }
 
 }  // namespace toothpath

@@ -167,10 +167,10 @@ nlohmann::ordered_json figures_json(const Figures& f) { return {{"min_um", f.lea
 
 }  // namespace
 
-CommandOutcome run_compare(const CommandRequest& request) {
+CommandOutcome run_compare(const CompareRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
   Side shaped_side, milled_side;
   std::vector<Diagnostic> errors = read_side(request.job_file, shaped_side);
@@ -190,7 +190,7 @@ CommandOutcome run_compare(const CommandRequest& request) {
   const auto flanks = compared(shaped, milled);
 
   // Both flanks under the same pinion: what the deviations mean in the mesh.
-  const ContactSettings settings = contact_settings(milled_side.job, request);
+  const ContactSettings settings = contact_settings(milled_side.job, {});
   PageTable contact{"Under the same pinion", {"flank", "route", "transmission error um", "within compound", "pattern %"}, {}, ""};
   nlohmann::ordered_json contact_rows = nlohmann::ordered_json::array();
   for (const CutFlanks* cut : {&shaped, &milled}) {
@@ -244,6 +244,17 @@ CommandOutcome run_compare(const CommandRequest& request) {
   const NamedFiles files = {{"compare.csv", csv_of(flanks)}, {"compare.json", outcome.report_json}, {"compare.html", study_page_html(page)}};
   progress.clear();
   return finished(*output, files, std::move(outcome));
+}
+
+void add_compare(Commands& commands) {
+  commands.push_back(command_of<CompareRequest>(
+      "compare", "one gear shaped and milled: deviations on the same places, times",
+      [](OptionSet& set, CompareRequest& request) {
+        set.file("SHAPED", request.job_file, "job file with [shaping]");
+        set.file("MILLED", request.other_job, "job file with operations of the same gear");
+        set.out_dir(request.out_dir);
+      },
+      run_compare));
 }
 
 }  // namespace toothpath

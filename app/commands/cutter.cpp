@@ -108,10 +108,10 @@ PageTable summary_table_of(const std::vector<JudgedCutter>& mills) {
 
 }  // namespace
 
-CommandOutcome run_cutter(const CommandRequest& request) {
+CommandOutcome run_cutter(const CutterRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
   auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
@@ -188,6 +188,17 @@ CommandOutcome run_cutter(const CommandRequest& request) {
   outcome.summary += balance + "files in " + request.out_dir + "\n";
   progress.clear();
   return finished(*output, files, std::move(outcome));
+}
+
+void add_cutter(Commands& commands) {
+  commands.push_back(command_of<CutterRequest>(
+      "cutter", "designs the finger mill of a bevel gear and judges the mills that are there",
+      [](OptionSet& set, CutterRequest& request) {
+        job_options(set, request);
+        set.number("--tool", request.tool_number, "draw this tool of the job instead of the designed mill");
+        set.text("--cutter-of", request.other_job, "judge the mills of this other job too, as they were made for its gear", "JOB");
+      },
+      run_cutter));
 }
 
 }  // namespace toothpath

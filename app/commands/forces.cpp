@@ -185,8 +185,8 @@ std::string json_of(const Pair& pair, const std::string& job_file, const std::ve
 
 }  // namespace
 
-CommandOutcome run_forces(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+CommandOutcome run_forces(const ForcesRequest& request) {
+  auto output = OutputDir::open(request.out_dir, kOutputs, {request.job_file});
   if (!output) return failed(output.error());
   Progress progress(request.quiet);
   StageClock clock(progress);
@@ -212,6 +212,16 @@ CommandOutcome run_forces(const CommandRequest& request) {
       {"forces.csv", csv_over_apex(pair)}, {"forces.html", study_page_html(page_of(pair, job, rows, balanced))}, {"forces.json", outcome.report_json}};
   progress.clear();
   return finished(*output, files, std::move(outcome));
+}
+
+void add_forces(Commands& commands) {
+  commands.push_back(command_of<ForcesRequest>(
+      "forces", "tooth forces of a bevel pair over the apex cone distance, and what balances them",
+      [](OptionSet& set, ForcesRequest& request) {
+        job_options(set, request);
+        set.number("--torque", request.torque_Nm, "torque on the gear of the job [N m]; overrides torque in its [load]", 1e-6, 1e9);
+      },
+      run_forces));
 }
 
 }  // namespace toothpath

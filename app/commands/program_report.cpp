@@ -4,8 +4,8 @@
 
 #include "app/gear_of_job.h"
 #include "app/report/setup_travel.h"
-#include "app/sha256.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/hash.h"
 #include "machines/toml/regular_file.h"
 #include "postproc/axis_time.h"
 #include "postproc/controls/of_machine.h"

@@ -36,7 +36,7 @@ const std::vector<std::string> kOutputs = {"program.",       "cl.csv",         "
 
 /// What one run has made so far. Stages fill it in order.
 struct Run {
-  const CommandRequest& request;
+  const RunRequest& request;
   Progress progress;
   StageClock clock{progress};
   Job job;
@@ -54,7 +54,7 @@ struct Run {
   std::vector<LineChart> motion;        ///< axes over time, for the page
   std::vector<std::vector<int>> lines;  ///< of the program, for every record of every path
 
-  explicit Run(const CommandRequest& r) : request(r), progress(r.quiet) {}
+  explicit Run(const RunRequest& r) : request(r), progress(r.quiet) {}
   [[nodiscard]] PlanOptions plan_options() const {
     PlanOptions options;
     if (job.verify.clearance_mm) options.clearance_mm = *job.verify.clearance_mm;
@@ -259,8 +259,10 @@ CommandOutcome finish(Run& run, OutputDir& output, const std::optional<Diagnosti
 
 }  // namespace
 
-CommandOutcome run_job(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+CommandOutcome run_job(const RunRequest& request) {
+  std::vector<std::string> inputs = request.measured_files;
+  inputs.push_back(request.job_file);
+  auto output = OutputDir::open(request.out_dir, kOutputs, inputs, kPrevious);
   if (!output) return failed(output.error());
   if (const auto bevel = bevel_job(request.job_file); bevel && request.measured_files.empty()) return run_bevel_job(request, *bevel, *output);
   Run run(request);
@@ -268,6 +270,7 @@ CommandOutcome run_job(const CommandRequest& request) {
     run.progress.clear();
     return failed(std::move(errors));
   }
+  if (const auto aside = output->set_aside(); !aside) return failed(aside.error());
   const auto stopped = plan_post_and_prove(run, *output, GougeCheckOptions{}.proof_mm);
   if (stopped && stopped->kind != DiagnosticKind::verification) {
     run.progress.clear();
@@ -277,7 +280,7 @@ CommandOutcome run_job(const CommandRequest& request) {
 }
 
 StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bool quiet, const CutSurfaceOptions& grid, bool with_page) {
-  CommandRequest request;
+  RunRequest request;
   request.quiet = quiet;
   Run run(request);
   run.job = job;
@@ -300,6 +303,16 @@ StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bo
   outcome.report = std::move(run.report);
   outcome.surface = std::move(run.surface);
   return outcome;
+}
+
+void add_run(Commands& commands) {
+  commands.push_back(command_of<RunRequest>(
+      "run", "the whole way from the job to a proven NC program",
+      [](OptionSet& set, RunRequest& request) {
+        job_options(set, request);
+        set.text("--restart", request.restart, "operation and tooth, both from 0: the program begins there; what comes before is taken as done", "OP:TOOTH");
+      },
+      run_job));
 }
 
 }  // namespace toothpath

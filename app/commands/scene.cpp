@@ -237,7 +237,7 @@ double space_azimuth(const BevelGear& gear, const Vec3& tip) {
 
 }  // namespace
 
-Result<Scene> load_scene(const CommandRequest& request, double gear_diameter_mm) {
+Result<Scene> load_scene(const SceneFiles& request, double gear_diameter_mm) {
   Scene scene;
   scene.fixture_files = request.fixture_files;
   scene.stock_files = request.stock_files;

@@ -62,7 +62,7 @@ void judge_refusal(StabilityRow& row, Expected expected, const std::string& mess
   row.reason = was_refused ? message : expected == Expected::refuse ? "accepted, although it cannot be made" : "";
 }
 
-CommandOutcome study_stability(const CommandRequest& request) {
+CommandOutcome study_stability(const StabilityRequest& request) {
   auto output = OutputDir::open(request.out_dir, kOutputs);
   if (!output) return failed(output.error());
   Progress progress(request.quiet);
@@ -102,6 +102,12 @@ CommandOutcome study_stability(const CommandRequest& request) {
       if (!row.fine) outcome.errors.push_back(fail_as(DiagnosticKind::verification, "{}, {}: {}", row.group, row.name, row.reason));
   }
   return finished(*output, files, std::move(outcome));
+}
+
+void add_study_stability(Commands& commands) {
+  commands.push_back(command_of<StabilityRequest>(
+      "stability", "extreme gears and machine poses, double against 50 digits",
+      [](OptionSet& set, StabilityRequest& request) { set.out_dir(request.out_dir); }, study_stability, &kStudies));
 }
 
 }  // namespace toothpath

@@ -15,7 +15,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"work_precision.csv", "work_precision.json", "work_precision.html", "work_precision.svg", "report.html", "program."};
+const std::vector<std::string> kOutputs = {"work_precision.csv", "work_precision.json", "work_precision.html", "work_precision.svg", "report.html"};
 
 /// Which tolerances a line of the study multiplies.
 struct Sweep {
@@ -221,8 +221,8 @@ std::string screen_table(const PageTable& table) {
 
 }  // namespace
 
-CommandOutcome study_work_precision(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+CommandOutcome study_work_precision(const WorkPrecisionRequest& request) {
+  auto output = OutputDir::open(request.out_dir, kOutputs, {request.job_file});
   if (!output) return failed(output.error());
   auto read = read_job_file(request.job_file);
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
@@ -264,6 +264,16 @@ CommandOutcome study_work_precision(const CommandRequest& request) {
                             {"work_precision.json", outcome.report_json}};
   outcome.summary = screen_table(table);
   return finished(*output, files, std::move(outcome));
+}
+
+void add_study_work_precision(Commands& commands) {
+  commands.push_back(command_of<WorkPrecisionRequest>(
+      "work-precision", "vary the tolerances of a job: what they cost and what they buy",
+      [](OptionSet& set, WorkPrecisionRequest& request) {
+        job_options(set, request);
+        set.flag("--quick", request.quick, "three factors a tolerance instead of five, and none for all together");
+      },
+      study_work_precision, &kStudies));
 }
 
 }  // namespace toothpath

@@ -97,7 +97,7 @@ std::string measured_csv(const std::vector<InspectionPoint>& grid, const std::fu
 TEST(Correction, TwentyMicrometresAreGoneAfterOneLoop) {
   const TestDir dir;
   write_file(dir / "job.toml", quick_job());
-  CommandRequest request;
+  RunRequest request;
   request.job_file = dir / "job.toml";
   request.out_dir = dir / "first";
   request.quiet = true;

@@ -271,6 +271,16 @@ TEST(FindMachineFile, BesideTheJobFirstThenInstalled) {
   for (const auto& file : files) list += (list.empty() ? "" : ", ") + file;
   EXPECT_EQ(list.find("apt_free.toml, fanuc_ac.toml, "), 0u);
   EXPECT_EQ(none.error().message, "machine file \"no_such.toml\" is neither beside the job nor installed; installed are: " + list);
+  // The ending may be left out, and a misspelt name brings the near one.
+  const auto plain = find_machine_file("xyzac_trt", dir.path());
+  ASSERT_TRUE(plain) << plain.error().message;
+  EXPECT_TRUE(fs::equivalent(*plain, TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_trt.toml"));
+  for (const auto& [wrong, meant] : {std::pair{"t600.toml", "t600s.toml"}, {"fanuc_ca", "fanuc_ac.toml"}}) {
+    const auto refused = find_machine_file(wrong, dir.path());
+    ASSERT_FALSE(refused) << wrong;
+    EXPECT_NE(refused.error().message.find(std::string("installed; did you mean \"") + meant + "\"?; installed are: apt_free.toml,"), std::string::npos)
+        << refused.error().message;
+  }
   EXPECT_FALSE(find_machine_file("../data/t600s.toml", dir.path()));  // installed files have plain names
 }
 

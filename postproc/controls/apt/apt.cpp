@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "geometry/base/hash.h"
 #include "postproc/controls/apt/apt_reader.h"
 #include "postproc/controls/control.h"
 #include "postproc/fixed_point.h"
