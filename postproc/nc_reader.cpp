@@ -140,6 +140,45 @@ class CopyCheck {
   TurnedCopies result_;
 };
 
+/// Collects the moves that stand in no trace of an operation, with the moves that they start from.
+class Between {
+ public:
+  /// @param trails  of operations: kept by no trace where the teeth are copies
+  Between(const std::map<int, OperationMoves>& counts, bool trails) : counts_(counts), trails_(trails) {}
+
+  void operator()(const ExecutedMove& m) {
+    const OperationMoves& c = counts_.at(m.operation);
+    const std::size_t i = seen_[m.operation]++;
+    const bool outside = m.operation < 0 || i == 0 || (trails_ && i >= c.total - c.trail);
+    if (!outside) {
+      open_ = false;
+    } else {
+      if (!open_ || made_.back().operation != m.operation || made_.back().tool != m.tool) begin(m);
+      made_.back().moves.push_back(m);
+    }
+    before_ = m;
+  }
+  std::vector<OperationTrace> take() { return std::move(made_); }
+
+ private:
+  /// With the tool of the stretch: it is changed where the gauge line stands.
+  void begin(const ExecutedMove& m) {
+    OperationTrace t;
+    t.operation = m.operation;
+    t.tool = m.tool;
+    t.moves.push_back(before_);
+    t.moves.front().tool = m.tool;
+    made_.push_back(std::move(t));
+    open_ = true;
+  }
+
+  const std::map<int, OperationMoves>& counts_;
+  bool trails_, open_ = false;
+  std::map<int, std::size_t> seen_;
+  ExecutedMove before_;
+  std::vector<OperationTrace> made_;
+};
+
 /// +1, -1: word of the index rotary per turn of the gear; 0: the gear is not turned about its own axis.
 int index_sign(const Machine& machine, const Setup& setup) {
   if (machine.chain.table.empty()) return 0;
@@ -191,6 +230,7 @@ Result<ReadBack> read_back(std::string_view text, const std::string& file, const
     result.minutes += m.minutes;
     if (!m.rapid) result.feed_minutes += m.minutes;
     if (m.tcp && m.known) follow_tip(before, m, control, machine.chain, reach);
+    if (result.mixed_rapid == 0 && mixes_axis_groups(before, m)) result.mixed_rapid = m.line;
     before = m;
     reach(m.joints);
     counts[m.operation].add(m);
@@ -198,7 +238,13 @@ Result<ReadBack> read_back(std::string_view text, const std::string& file, const
   if (auto s = execute_nc(text, file, control, count); !s) return s.error();
 
   CopyCheck check(counts, control, setup, options.teeth, index_sign(machine, setup));
-  if (auto s = execute_nc(text, file, control, [&](const ExecutedMove& m) { check(m); }); !s) return s.error();
+  Between between(counts, true);
+  const auto look = [&](const ExecutedMove& m) {
+    check(m);
+    between(m);
+  };
+  if (auto s = execute_nc(text, file, control, look); !s) return s.error();
+  result.between = between.take();
   result.copies = check.finish();
 
   const bool all = options.keep_all || !result.copies.copies;
@@ -211,8 +257,13 @@ Result<ReadBack> read_back(std::string_view text, const std::string& file, const
       return error;
     }
     for (const auto& [op, c] : counts) traces[op].moves.reserve(c.total);
-    const auto keep = [&](const ExecutedMove& m) { traces[m.operation].moves.push_back(m); };
+    Between gaps(counts, false);
+    const auto keep = [&](const ExecutedMove& m) {
+      traces[m.operation].moves.push_back(m);
+      gaps(m);
+    };
     if (auto s = execute_nc(text, file, control, keep); !s) return s.error();
+    result.between = gaps.take();
   } else {
     for (const auto& [op, c] : counts)
       if (op >= 0) traces[op].moves = check.take(op);

@@ -119,9 +119,13 @@ struct OperationTrace {
 struct ReadBack {
   TurnedCopies copies;
   std::vector<OperationTrace> operations;
+  /// What else is executed: moves ahead of the first operation, from one to the next, and behind the last tooth where the teeth are copies. Each
+  /// stretch begins with where it starts from and has one tool.
+  std::vector<OperationTrace> between;
   std::array<double, 5> least{}, greatest{};  ///< joints over all executed moves, mm and deg
   std::size_t executed = 0;
   double minutes = 0, feed_minutes = 0;
+  int mixed_rapid = 0;  ///< line of the first rapid that moves more than one group of axes, of all executed moves; 0: none does
 };
 
 struct ReadBackOptions {
@@ -157,11 +161,18 @@ struct ClComparison {
 [[nodiscard]] ClComparison compare_with_cl(std::span<const ToolMotion> motions, std::span<const ClPath* const> paths,
                                            double tolerance_mm, double axis_tolerance_rad);
 
-/// Rapids of a trace: one group of axes a move (Z, or XY, or rotaries), and every body of the tool outside `body` (cylinder
-/// about the gear axis in W) at every moment, proven. `tools`: the job's; without them only the tip is looked at.
+/// A rapid without TCP that moves more than one group of axes (Z, or XY, or rotaries): which arrives first is not known. With TCP the tip goes
+/// straight, whatever the joints do.
+[[nodiscard]] bool mixes_axis_groups(const ExecutedMove& from, const ExecutedMove& to);
+/// No rapid of the trace does that. The refusal names the line.
+[[nodiscard]] Status check_axis_groups(const OperationTrace& trace);
+/// In every rapid of the trace every body of the tool is outside `body` (cylinder about the gear axis in W) at every moment, proven. `tools`: the
+/// job's; without them only the tip is looked at.
+[[nodiscard]] Status check_rapids_outside(const OperationTrace& trace, const NcControl& control, const Machine& machine, const Setup& setup,
+                                          const ClearanceBody& body, std::span<const ToolAssembly> tools);
+
+/// Both of these.
 [[nodiscard]] Status check_rapids(const OperationTrace& trace, const NcControl& control, const Machine& machine, const Setup& setup,
-                                  const ClearanceBody& body, std::span<const ToolAssembly> tools);
-[[nodiscard]] Status check_rapids(const OperationTrace& trace, const NcControl& control, const Machine& machine,
-                                  const Setup& setup, const ClearanceBody& body);
+                                  const ClearanceBody& body, std::span<const ToolAssembly> tools = {});
 
 }  // namespace toothpath

@@ -20,7 +20,6 @@ void fill(RunReport& report, const BevelGear& gear, const Job& job, const Machin
   report.total_minutes = proof.read.minutes;
   report.axes = ranges_of(proof.read, machine);
   report.reasons = proof.reasons;
-  judge_travels(report.axes, report.reasons);
   report.verified = report.reasons.empty();
 }
 
@@ -47,7 +46,8 @@ CommandOutcome check_bevel_program(const CheckRequest& request, const Job& job, 
   }
 
   const FingerGougeCheck check(gear, job.tools, job.operations, proof_tolerances(job));
-  auto proof = prove_bevel_program(*text, request.program_file, job, machine, gear, check, {}, {}, clock);
+  BevelGearCheck bevel(job, machine, gear, check);
+  auto proof = prove_bevel_gear({*text, request.program_file, job, machine}, {}, bevel, clock);
   if (!proof) {
     progress.clear();
     return failed(proof.error());

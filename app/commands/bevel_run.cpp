@@ -90,8 +90,11 @@ std::optional<Diagnostic> post_and_prove(BevelRun& run, OutputDir& output, const
   note_axis_program(run.report, run.job, run.machine, paths, run.program->restarted ? *run.program->restarted : axes);
   run.report.blocks = run.program->blocks;
 
-  auto proof = prove_bevel_program(run.program->text, output.final_path(run.program->file), run.job, run.machine, *run.gear, check, paths_to_meet(axes, paths),
-                                   {axes.chord_bound_mm + axes.rounding_bound_mm + axes.pole_tip_mm, axes.axis_bound_rad}, run.clock);
+  BevelGearCheck bevel(run.job, run.machine, *run.gear, check);
+  const std::vector<const ClPath*> asked = paths_to_meet(axes, paths);
+  const std::string file = output.final_path(run.program->file);
+  auto proof = prove_bevel_gear({run.program->text, file, run.job, run.machine},
+                                {asked, axes.chord_bound_mm + axes.rounding_bound_mm + axes.pole_tip_mm, axes.axis_bound_rad}, bevel, run.clock);
   if (!proof) {
     Diagnostic error = proof.error();
     error.kind = DiagnosticKind::verification;  // our own program must be readable
@@ -110,9 +113,7 @@ std::optional<Diagnostic> post_and_prove(BevelRun& run, OutputDir& output, const
   run.report.reasons = run.proof->reasons;
   if (run.restart)
     for (const auto& plan : run.plans) run.lines.push_back(lines_of_records(plan.path, run.proof->motions, run.proof->path_tolerance_mm));
-  if (auto done = note_restart(run.report, *run.program, output.final_path(run.program->file), run.job, run.machine, bevel_link_body(*run.gear, run.job.tools, run.machine), run.lines,
-                               run.clock);
-      !done)
+  if (auto done = note_restart(run.report, *run.program, file, run.job, run.machine, bevel, run.lines, run.clock); !done)
     return done.error();
   if (!run.report.reasons.empty()) return std::nullopt;
   note_verified(run.report, run.program->file, text_of(*run.program));

@@ -24,7 +24,7 @@
 namespace toothpath {
 namespace {
 
-void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) {
+void fill(RunReport& report, const FaceGearProof& proof, const Machine& machine) {
   report.gouge = proof.gouge;
   report.reasons = proof.reasons;
   report.excess = proof.surface.operations;
@@ -35,7 +35,6 @@ void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) 
   report.feed_minutes = proof.read.feed_minutes;
   report.total_minutes = proof.read.minutes;
   report.axes = ranges_of(proof.read, machine);
-  judge_travels(report.axes, report.reasons);
   report.verified = report.reasons.empty();
 }
 
@@ -81,10 +80,8 @@ CommandOutcome check_program(const CheckRequest& request) {
   options.clearance_mm = job.verify.clearance_mm.value_or(PlanOptions{}.clearance_mm);
   options.rapid_height_mm = gear.blank_top();
   const GougeCheck gouge_check(part, job.tools, options);
-  ProofOptions proof_options;
-  proof_options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
-  auto proof = prove_program(*text, request.program_file, job, machine, part, gouge_check, clearance_body(gear), gear.parameters().teeth, {},
-                             proof_options, clock);
+  FaceGearCheck face(job, machine, part, gouge_check);
+  auto proof = prove_face_gear({*text, request.program_file, job, machine}, {}, face, clock);
   if (!proof) {
     progress.clear();
     return failed(proof.error());

@@ -114,7 +114,7 @@ void add_machine_sources(std::vector<LedgerEntry>& ledger, const AxisProgram& pr
 }  // namespace
 
 std::vector<LedgerEntry> face_gear_ledger(const GearDistance& part, const FaceGearPlan& plan, std::span<const ToolAssembly> tools,
-                                          const AxisProgram& program, const ProgramProof& proof, double blend_mm, double proof_mm) {
+                                          const AxisProgram& program, const FaceGearProof& proof, double blend_mm, double proof_mm) {
   if (plan.paths.empty()) return {};
   const ClPath& path = plan.paths.back();
   const double radius = tools[std::size_t(path.tool)].radius_mm();

@@ -140,13 +140,11 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   note_axis_program(run.report, run.job, run.machine, paths, posted->restarted ? *posted->restarted : program);
   run.report.blocks = posted->blocks;
 
-  ProofOptions options;
-  options.cut_surface = run.cut_surface;
-  options.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
-  options.path_tolerance_mm = program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm + 2 * options.motion_tolerance_mm;
-  options.path_tolerance_rad = program.axis_bound_rad + 2 * options.motion_tolerance_rad;
-  auto proof = prove_program(posted->text, output.final_path(posted->file), run.job, run.machine, part, check, body, teeth, paths_to_meet(program, paths),
-                             options, run.clock);
+  FaceGearCheck face(run.job, run.machine, part, check, run.cut_surface);
+  const std::vector<const ClPath*> asked = paths_to_meet(program, paths);
+  const std::string file = output.final_path(posted->file);
+  auto proof = prove_face_gear({posted->text, file, run.job, run.machine},
+                               {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad}, face, run.clock);
   if (!proof) {
     Diagnostic error = proof.error();
     error.kind = DiagnosticKind::verification;  // our own program must be readable
@@ -162,10 +160,10 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   if (proof->surface.scallop.requested_mm > 0) run.report.scallop = proof->surface.scallop;
   run.surface = std::move(proof->surface.grids);
   run.motion = motion_charts(proof->read, proof->motions, run.machine);
-  for (const ClPath& path : run.plan.paths) run.lines.push_back(lines_of_records(path, proof->motions, options.path_tolerance_mm));
+  for (const ClPath& path : run.plan.paths) run.lines.push_back(lines_of_records(path, proof->motions, proof->path_tolerance_mm));
   run.report.reasons = proof->reasons;
   run.report.length_tolerances = length_tolerances(run.job, run.report, paths, run.surface, {});
-  if (auto done = note_restart(run.report, *posted, output.final_path(posted->file), run.job, run.machine, body, run.lines, run.clock); !done) return done.error();
+  if (auto done = note_restart(run.report, *posted, file, run.job, run.machine, face, run.lines, run.clock); !done) return done.error();
   run.program_text = std::move(posted->restarted ? posted->restart_text : posted->text);
   run.report.ledger = face_gear_ledger(part, run.plan, run.job.tools, program, *proof, posted->blend_mm, run.proof_mm);
   if (!run.report.reasons.empty()) return std::nullopt;

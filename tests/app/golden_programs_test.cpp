@@ -205,6 +205,7 @@ void expect_round_trip(const std::string& text, const AxisProgram& program, cons
   ASSERT_TRUE(control);
   const auto back = read_back(text, "p", *control, m, *job.setup, {.teeth = planned.teeth});
   ASSERT_TRUE(back) << back.error().text();
+  EXPECT_EQ(back->mixed_rapid, 0);
   std::vector<ToolMotion> motions;
   for (const auto& trace : back->operations) {
     const auto part = tool_motions(trace, back->copies, *control, m, *job.setup, planned.teeth, 1e-4, 1e-4);
@@ -214,6 +215,11 @@ void expect_round_trip(const std::string& text, const AxisProgram& program, cons
     const auto clear = check_rapids(trace, *control, m, *job.setup, planned.body);
     EXPECT_TRUE(clear) << (clear ? "" : clear.error().message);
   }
+  if (job.bevel_gear() == nullptr)
+    for (const auto& stretch : back->between) {
+      const auto clear = check_rapids(stretch, *control, m, *job.setup, planned.body);
+      EXPECT_TRUE(clear) << (clear ? "" : clear.error().message);
+    }
   std::vector<const ClPath*> list;
   for (const auto& p : planned.paths) list.push_back(&p);
   const double bound = program.rounding_bound_mm + program.chord_bound_mm;
