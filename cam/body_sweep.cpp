@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "cam/body_patches.h"
-#include "cam/cutter_sweep.h"
+#include "cam/motion_blend.h"
 
 namespace toothpath {
 namespace {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cam/motion_blend.h"
+
 namespace toothpath {
 namespace {
 
@@ -31,19 +33,6 @@ double least_between(double d0, double d1, double length) {
   const double s = std::clamp(0.5 * (length - (g1 - g0) / length), 0.0, length);
   const double g = g0 + (g1 - g0) * s / length - s * (length - s);
   return std::min({d0, d1, std::max(g > 0 ? std::sqrt(g) : -INFINITY, steep)});
-}
-
-double line_slack(const ToolMotion& m, double arm_mm, double dt) {
-  // The axis is b / |b| with b linear: with T = 2 tan(half the turn), its second derivative is at most T^2 sqrt(1 + T^2).
-  const double half = std::min(0.5 * (m.axis_to - m.axis_from).norm(), 0.9999);
-  const double T = 2 * half / std::sqrt(1 - half * half);
-  return m.deviation_mm + arm_mm * (m.axis_deviation + T * T * std::sqrt(1 + T * T) * dt * dt / 8);
-}
-
-Vec3 axis_at(const ToolMotion& m, double t) {
-  if (t == 0) return m.axis_from;
-  if (t == 1) return m.axis_to;
-  return ((1 - t) * m.axis_from + t * m.axis_to).normalized();
 }
 
 CutterSweep::CutterSweep(const GearDistance& part, const ToolAssembly& tool, double proof_mm, double tolerance_mm)

@@ -21,14 +21,6 @@ namespace toothpath {
 /// distances (inside) are bounded by their slope of 1. mm.
 [[nodiscard]] double least_between(double d0, double d1, double length);
 
-/// How far a point `arm_mm` along the tool axis may leave the straight line between its two places when a share `dt` of the
-/// motion is passed through: the stated deviations, and the arc of an axis that turns. mm
-[[nodiscard]] double line_slack(const ToolMotion& motion, double arm_mm, double dt);
-
-/// Normalised linear blend of the axes of a motion, t in [0, 1].
-[[nodiscard]] Vec3 axis_at(const ToolMotion& motion, double t);
-[[nodiscard]] inline Vec3 tip_at(const ToolMotion& motion, double t) { return (1 - t) * motion.tip_from + t * motion.tip_to; }
-
 struct CutterFinding {
   double measured_mm = -INFINITY;  ///< deepest place found; negative: the least gap
   double bound_mm = -INFINITY;     ///< proven: no place of the motion is deeper
