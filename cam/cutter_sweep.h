@@ -8,6 +8,7 @@
 // time, it bounds the flute between two heights. What the true motion leaves of the straight line is added: docs/proof.md.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -47,6 +48,11 @@ class CutterSweep {
     Vec3 at = Vec3::Zero();
     double distance = 0;
   };
+  /// A distance asked to its full range: neighbouring stretches share their corners.
+  struct Known {
+    Vec3 at = Vec3::Constant(NAN);
+    NearestPlace nearest;
+  };
   [[nodiscard]] Vec3 place(double t, double height) const;
   NearestPlace query(const Vec3& p, double most);
   void note(const NearestPlace& q, const char* body);
@@ -62,6 +68,7 @@ class CutterSweep {
   const GearDistance& part_;
   double R_, top_, proof_, tolerance_, within_;
   std::vector<Row> rows_;
+  std::vector<Known> known_;  ///< by the bits of the place
   bool chained_ = false;
   Vec3 last_centre_ = Vec3::Zero();
   NearestPlace last_;
