@@ -65,7 +65,9 @@ class JobPlanner {
       if (progress_) progress_(to_string(op.type));
       // Rings know nothing of each other's passes; directions and links follow in order, each on all threads.
       std::vector<std::optional<std::variant<ZonePasses, PlanRefusal>>> zones(std::size_t(part_.zones()));
-      tbb::parallel_for(std::size_t(0), zones.size(), [&](std::size_t zone) { zones[zone] = plan_passes(int(n), int(zone)); });
+      as_stage("tool passes", [&] {
+        tbb::parallel_for(std::size_t(0), zones.size(), [&](std::size_t zone) { zones[zone] = plan_passes(int(n), int(zone)); });
+      });
       for (std::size_t zone = 0; zone < zones.size(); ++zone) {
         if (const auto* refusal = std::get_if<PlanRefusal>(&*zones[zone])) return *refusal;
         if (auto refusal = lead_tool(int(n), int(zone), std::get<ZonePasses>(*zones[zone]), path, summary)) return *refusal;
@@ -189,7 +191,6 @@ class JobPlanner {
   [[nodiscard]] std::optional<PlanRefusal> lead_tool(int n, int zone, ZonePasses& made, ClPath& path, OperationPlan& summary) {
     add(summary, made.summary, operation(n).type != OperationType::roughing);
     if (made.passes.empty()) return {};
-    if (!bodies_) bodies_ = std::make_unique<BodyTree>(part_);
     LinkingOptions link;
     DirectionChoice direction;
     if (auto refusal = direct(n, zone, made, direction, link.axes)) return refusal;
@@ -210,8 +211,10 @@ class JobPlanner {
     const auto bodies_are_clear = [&](const Vec3& centre, const Vec3& axis) {
       return bodies_->clear(link.bodies, centre - R * axis, axis, o_.clearance_mm + kTurnMargin, 0.01);
     };
-    link_passes(made.passes, link, [&](const Vec3& a, const Vec3& b) { return hop_is_clear(a, b, R, op.allowance_mm); }, path.records,
-                bodies_are_clear);
+    as_stage("links", [&] {
+      link_passes(made.passes, link, [&](const Vec3& a, const Vec3& b) { return hop_is_clear(a, b, R, op.allowance_mm); }, path.records,
+                  bodies_are_clear);
+    });
     return {};
   }
 
@@ -224,7 +227,10 @@ class JobPlanner {
     turning.least_tilt_rad = o_.least_tilt_rad;
     turning.chord_mm = kTurnShare * std::min(op.chord_tolerance_mm, chord_room(op));
     const bool prescribed = !op.axis_plus.empty();
-    if (!prescribed) direction = choose_direction(part_, *bodies_, zone, made.sheet, made.passes, tool, {o_.clearance_mm, 0.01});
+    as_stage("tool direction", [&] {
+      if (!bodies_) bodies_ = std::make_unique<BodyTree>(part_);
+      if (!prescribed) direction = choose_direction(part_, *bodies_, zone, made.sheet, made.passes, tool, {o_.clearance_mm, 0.01});
+    });
     direction.operation = n;
     direction.zone = zone;
     if (prescribed) {
@@ -245,23 +251,23 @@ class JobPlanner {
     return {};
   }
 
-  /// Simultaneous axes for one zone, as a stage of its own.
-  std::variant<Orientation, OrientationRefusal> orient(int zone, const ToolAssembly& tool, const OrientationOptions& options,
-                                                       std::vector<BallPass>& passes) const {
-    return as_stage([&] { return orient_passes(part_, *bodies_, zone, tool, options, passes); });
+  /// Simultaneous axes for one zone.
+  [[nodiscard]] std::variant<Orientation, OrientationRefusal> orient(int zone, const ToolAssembly& tool, const OrientationOptions& options,
+                                                                     std::vector<BallPass>& passes) const {
+    std::variant<Orientation, OrientationRefusal> result;
+    as_stage("five-axis orientation", [&] { result = orient_passes(part_, *bodies_, zone, tool, options, passes); });
+    return result;
   }
   /// The same with the axes that the operation prescribes.
-  std::variant<Orientation, OrientationRefusal> prescribe(int zone, const ToolAssembly& tool, const MillingOperation& op, const OrientationOptions& options,
-                                                          std::vector<BallPass>& passes) const {
-    return as_stage([&] { return prescribe_axes(part_, *bodies_, zone, tool, op, options, passes); });
-  }
-  template <typename Work>
-  std::variant<Orientation, OrientationRefusal> as_stage(const Work& make) const {
+  [[nodiscard]] std::variant<Orientation, OrientationRefusal> prescribe(int zone, const ToolAssembly& tool, const MillingOperation& op,
+                                                                        const OrientationOptions& options, std::vector<BallPass>& passes) const {
     std::variant<Orientation, OrientationRefusal> result;
-    const auto work = [&] { result = make(); };
-    if (o_.stage) o_.stage("five-axis orientation", work);
-    else work();
+    as_stage("five-axis orientation", [&] { result = prescribe_axes(part_, *bodies_, zone, tool, op, options, passes); });
     return result;
+  }
+  void as_stage(const char* name, const std::function<void()>& work) const {
+    if (o_.stage) o_.stage(name, work);
+    else work();
   }
 
   static void measure(const Orientation& o, DirectionChoice& d) {
