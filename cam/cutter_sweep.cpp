@@ -1,7 +1,11 @@
 #include "cam/cutter_sweep.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+
+#include "cam/motion_blend.h"
 
 namespace toothpath {
 namespace {
@@ -33,21 +37,8 @@ double least_between(double d0, double d1, double length) {
   return std::min({d0, d1, std::max(g > 0 ? std::sqrt(g) : -INFINITY, steep)});
 }
 
-double line_slack(const ToolMotion& m, double arm_mm, double dt) {
-  // The axis is b / |b| with b linear: with T = 2 tan(half the turn), its second derivative is at most T^2 sqrt(1 + T^2).
-  const double half = std::min(0.5 * (m.axis_to - m.axis_from).norm(), 0.9999);
-  const double T = 2 * half / std::sqrt(1 - half * half);
-  return m.deviation_mm + arm_mm * (m.axis_deviation + T * T * std::sqrt(1 + T * T) * dt * dt / 8);
-}
-
-Vec3 axis_at(const ToolMotion& m, double t) {
-  if (t == 0) return m.axis_from;
-  if (t == 1) return m.axis_to;
-  return ((1 - t) * m.axis_from + t * m.axis_to).normalized();
-}
-
 CutterSweep::CutterSweep(const GearDistance& part, const ToolAssembly& tool, double proof_mm, double tolerance_mm)
-    : part_(part), R_(tool.radius_mm()), top_(tool.flute_length_mm - R_), proof_(proof_mm), tolerance_(tolerance_mm), within_(R_ + std::max(kLook, kLookShare * R_)) {
+    : part_(part), R_(tool.radius_mm()), top_(tool.flute_length_mm - R_), proof_(proof_mm), tolerance_(tolerance_mm), within_(R_ + std::max(kLook, kLookShare * R_)), known_(256) {
   for (const double h : heights(R_, top_)) rows_.push_back({h, false, Vec3::Zero(), 0});
 }
 
@@ -55,7 +46,12 @@ Vec3 CutterSweep::place(double t, double height) const { return tip_at(*m_, t) +
 
 NearestPlace CutterSweep::query(const Vec3& p, double most) {
   ++queries_;
-  return part_.nearest(p, std::min(within_, most + kSearchPad));
+  if (most + kSearchPad < within_) return part_.nearest(p, most + kSearchPad);
+  std::size_t key = 0;
+  for (const double x : {p.x(), p.y(), p.z()}) key = (key ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
+  Known& known = known_[key >> 56];
+  if (known.at != p) known = {p, part_.nearest(p, within_)};
+  return known.nearest;
 }
 
 void CutterSweep::note(const NearestPlace& q, const char* body) {

@@ -9,6 +9,7 @@
 #include "cam/body_sweep.h"
 #include "cam/cutter_sweep.h"
 #include "cam/gouge_merge.h"
+#include "cam/motion_blend.h"
 #include "cam/path_motions.h"
 #include "cam/rapid_clearance.h"
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cam/motion_blend.h"
+
 namespace toothpath {
 namespace {
 
@@ -15,9 +17,6 @@ struct Stretch {
   const ToolMotion* motion = nullptr;
   [[nodiscard]] double reach(double arm) const { return tips + arm * axes; }
 };
-
-Vec3 tip_at(const ToolMotion& m, double t) { return (1 - t) * m.tip_from + t * m.tip_to; }
-Vec3 axis_at(const ToolMotion& m, double t) { return ((1 - t) * m.axis_from + t * m.axis_to).normalized(); }
 
 /// A piece t0..t1 of one motion.
 Stretch stretch_of(const ToolMotion& m, double t0, double t1) {

@@ -69,7 +69,7 @@ class Prover {
   void bodies(Shortfall& s) const {
     const Vec3 tip = s.point.centre - tool_.radius_mm() * s.axis;
     for (const auto& body : check_.bodies()) {
-      const double gap = tree_.gap(body, tip, s.axis, o_.clearance_mm, kResolution).gap;
+      const double gap = tree_.gap(body, tip, s.axis, o_.clearance_mm, kResolution);
       if (gap >= o_.clearance_mm) continue;
       const double depth = gap > 0 ? 0 : tree_.depth(body, {&tip, 1}, s.axis, kDeepest, kResolution);
       const double by = gap > 0 ? o_.clearance_mm - gap : o_.clearance_mm + depth;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "cam/cutter_sweep.h"
+#include "cam/motion_blend.h"
 #include "cam/tool_body.h"
 
 namespace toothpath {

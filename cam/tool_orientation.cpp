@@ -223,7 +223,7 @@ class Orienter {
       double gap = o_.clearance_mm;
       std::string worst;
       for (const auto& f : check_.bodies()) {
-        const double g = tree_.gap(f, point.centre - tool_.radius_mm() * axis, axis, gap, kResolution).gap;
+        const double g = tree_.gap(f, point.centre - tool_.radius_mm() * axis, axis, gap, kResolution);
         if (g < gap) gap = g, worst = f.name;
       }
       if (gap > best) best = gap, lean = angle_between(axis, check_.frame().up), body = worst;
@@ -279,11 +279,16 @@ OrientationCheck::OrientationCheck(const GearDistance& part, const BodyTree& tre
                                    const OrientationOptions& options)
     : part_(part), tree_(tree), tool_(tool), o_(options), frame_(pitch_frame(part, zone)), bodies_(shank_and_holder(tool)) {}
 
-bool OrientationCheck::cutting(const BallPass::Point& point, const Vec3& axis) const {
+bool OrientationCheck::cutting(const BallPass::Point& point, const Vec3& axis) const { return stands_right(point, axis) && flute_is_free(point, axis); }
+
+bool OrientationCheck::stands_right(const BallPass::Point& point, const Vec3& axis) const {
   if (std::atan2(std::hypot(axis.x(), axis.y()), axis.z()) < o_.least_tilt_rad) return false;
-  const double R = tool_.radius_mm();
   const Vec3 normal = point.centre - point.contact;
-  if (point.touching && normal.norm() > 0.1 * R && normal.normalized().dot(axis) < o_.least_draft) return false;
+  return !point.touching || normal.norm() <= 0.1 * tool_.radius_mm() || normal.normalized().dot(axis) >= o_.least_draft;
+}
+
+bool OrientationCheck::flute_is_free(const BallPass::Point& point, const Vec3& axis) const {
+  const double R = tool_.radius_mm();
   const double top = tool_.flute_length_mm - R;
   for (double h = std::min(0.4 * R, top); h > 0; h = h < top ? std::min(h + R, top) : -1) {
     const Vec3 c = point.centre + h * axis;
@@ -294,7 +299,8 @@ bool OrientationCheck::cutting(const BallPass::Point& point, const Vec3& axis) c
 }
 
 bool OrientationCheck::clear(const BallPass::Point& point, const Vec3& axis, double clearance_mm) const {
-  return tree_.clear(bodies_, point.centre - tool_.radius_mm() * axis, axis, clearance_mm, kResolution) && cutting(point, axis);
+  return stands_right(point, axis) && tree_.clear(bodies_, point.centre - tool_.radius_mm() * axis, axis, clearance_mm, kResolution) &&
+         flute_is_free(point, axis);
 }
 
 Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& check, const BodyTree& tree, const ToolAssembly& tool,
@@ -307,7 +313,7 @@ Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& che
     std::vector<double> gaps(points.size(), kFarthestGap);
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
       for (const auto& body : check.bodies())
-        gaps[k] = std::min(gaps[k], tree.gap(body, points[k].centre - tool.radius_mm() * axes[k], axes[k], gaps[k], kResolution).gap);
+        gaps[k] = std::min(gaps[k], tree.gap(body, points[k].centre - tool.radius_mm() * axes[k], axes[k], gaps[k], kResolution));
     });
     double turned = 0;
     for (std::size_t k = 0; k < points.size(); ++k) {
