@@ -25,10 +25,6 @@ namespace toothpath {
 /// motion is passed through: the stated deviations, and the arc of an axis that turns. mm
 [[nodiscard]] double line_slack(const ToolMotion& motion, double arm_mm, double dt);
 
-/// Normalised linear blend of the axes of a motion, t in [0, 1].
-[[nodiscard]] Vec3 axis_at(const ToolMotion& motion, double t);
-[[nodiscard]] inline Vec3 tip_at(const ToolMotion& motion, double t) { return (1 - t) * motion.tip_from + t * motion.tip_to; }
-
 struct CutterFinding {
   double measured_mm = -INFINITY;  ///< deepest place found; negative: the least gap
   double bound_mm = -INFINITY;     ///< proven: no place of the motion is deeper

@@ -13,10 +13,10 @@
 namespace toothpath {
 namespace {
 
-std::atomic<std::size_t> built_count{0};
+std::atomic<std::size_t> indices_built{0};
 
 // Rounding of a coordinate below 2^11 mm to float32 and of the distance computed from it, with room to spare.
-constexpr double kPad = 1e-3;
+constexpr double kBoxPad = 1e-3;
 
 struct Query {
   SpatialIndex::Visit visit;
@@ -27,8 +27,8 @@ bool on_candidate(RTCPointQueryFunctionArguments* args) {
   auto* query = static_cast<Query*>(args->userPtr);
   const double radius = double(args->query->radius);
   const double next = query->visit(query->context, args->primID, radius);
-  if (next + kPad < radius) {
-    args->query->radius = float(next + kPad);
+  if (next + kBoxPad < radius) {
+    args->query->radius = float(next + kBoxPad);
     return true;
   }
   return false;
@@ -49,7 +49,7 @@ struct SpatialIndex::Impl {
 };
 
 SpatialIndex::SpatialIndex(const std::vector<Box>& boxes) : impl_(std::make_unique<Impl>()) {
-  ++built_count;
+  ++indices_built;
   impl_->boxes = boxes;
   Box all;
   for (const auto& b : boxes) {
@@ -70,12 +70,12 @@ SpatialIndex::SpatialIndex(const std::vector<Box>& boxes) : impl_(std::make_uniq
         const auto& self = *static_cast<const Impl*>(args->geometryUserPtr);
         const Box& b = self.boxes[args->primID];
         const Vec3 low = b.low - self.centre, high = b.high - self.centre;
-        args->bounds_o->lower_x = float(low.x() - kPad);
-        args->bounds_o->lower_y = float(low.y() - kPad);
-        args->bounds_o->lower_z = float(low.z() - kPad);
-        args->bounds_o->upper_x = float(high.x() + kPad);
-        args->bounds_o->upper_y = float(high.y() + kPad);
-        args->bounds_o->upper_z = float(high.z() + kPad);
+        args->bounds_o->lower_x = float(low.x() - kBoxPad);
+        args->bounds_o->lower_y = float(low.y() - kBoxPad);
+        args->bounds_o->lower_z = float(low.z() - kBoxPad);
+        args->bounds_o->upper_x = float(high.x() + kBoxPad);
+        args->bounds_o->upper_y = float(high.y() + kBoxPad);
+        args->bounds_o->upper_z = float(high.z() + kBoxPad);
       },
       nullptr);
   rtcCommitGeometry(geometry);
@@ -96,13 +96,13 @@ void SpatialIndex::near(const Vec3& p, double radius, Visit visit, void* context
   query.y = float(local.y());
   query.z = float(local.z());
   query.time = 0;
-  query.radius = float(radius + kPad);
+  query.radius = float(radius + kBoxPad);
   RTCPointQueryContext stack;
   rtcInitPointQueryContext(&stack);
   Query q{visit, context};
   rtcPointQuery(impl_->scene, &query, &stack, on_candidate, &q);
 }
 
-std::size_t SpatialIndex::built() { return built_count; }
+std::size_t SpatialIndex::built() { return indices_built; }
 
 }  // namespace toothpath

@@ -6,10 +6,6 @@
 namespace toothpath {
 namespace {
 
-Vec3 turned(const Vec3& p, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
-}
 
 }  // namespace
 

@@ -12,8 +12,8 @@ namespace toothpath {
 namespace {
 
 constexpr double kEnough = 2.0;   // mm: a gap beyond this is not measured further
-constexpr double kDeepest = 3.0;  // mm: how far a body in the way is followed
-constexpr double kResolution = 0.02;  // mm
+constexpr double kDirectionDeepest = 3.0;  // mm: how far a body in the way is followed
+constexpr double kDirectionResolution = 0.02;  // mm
 constexpr double kFluteSkin = 0.03;   // mm: the flute grazes the walls that it cuts; thinner by this it may cut nowhere
 
 /// The flute above the ball as a body. It stands on the side that is away from its own walls where these have draft; the other ring of
@@ -91,7 +91,7 @@ class Search {
     for (const auto& body : shank_and_holder(tool_)) {
       double here = least;
       for (const auto& c : centres) {
-        here = std::min(here, tree_.gap(body, c - tool_.radius_mm() * axis, axis, here, kResolution).gap);
+        here = std::min(here, tree_.gap(body, c - tool_.radius_mm() * axis, axis, here, kDirectionResolution).gap);
         if (here < 0) break;
       }
       if (here < 0) here = -depth(body, axis, centres);
@@ -110,7 +110,7 @@ class Search {
   [[nodiscard]] double depth(const Frustum& body, const Vec3& axis, const std::vector<Vec3>& centres) const {
     std::vector<Vec3> tips;
     for (const Vec3& c : centres) tips.push_back(c - tool_.radius_mm() * axis);
-    return tree_.depth(body, tips, axis, kDeepest, kResolution);
+    return tree_.depth(body, tips, axis, kDirectionDeepest, kDirectionResolution);
   }
 
   /// Halved steps around the directions that come nearest to being clear: a narrow way through is found too.
@@ -195,7 +195,7 @@ class Search {
     choice_.explanation =
         best->gap_mm < 0
             ? fmt::format("no fixed direction is clear: the best of {} leans {:.1f} deg and its {} cuts in by {}{:.3f} mm",
-                          choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm <= -kDeepest ? "more than " : "",
+                          choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm <= -kDirectionDeepest ? "more than " : "",
                           -best->gap_mm)
             : fmt::format("no fixed direction is clear: the best of {} leans {:.1f} deg and its {} keeps {:.3f} of {:.3f} mm",
                           choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm, o_.clearance_mm);

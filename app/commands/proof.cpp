@@ -49,10 +49,6 @@ void judge_surface(const CutSurface& surface, const Job& job, std::vector<std::s
                                 kExcessMargin * 1000));
 }
 
-Vec3 turned(const Vec3& v, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z()};
-}
 
 /// Cutting motions of a tooth that are those of the first tooth of the same operation, turned about the gear axis to within
 /// `kCopyTolerance`, are left out; the distance found is added to the deviation of the first tooth's motions, so that a bound
