@@ -8,21 +8,17 @@
 
 #include "cam/body_patches.h"
 #include "cam/motion_blend.h"
+#include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586476925286766559;
-constexpr double kWreck = 0.05;     // mm: deeper cuts are followed more coarsely
-constexpr double kSmallest = 1e-5;  // mm: smaller quads are not halved
+constexpr double kWreckDepth = 0.05;     // mm: deeper cuts are followed more coarsely
+constexpr double kSmallestQuad = 1e-5;  // mm: smaller quads are not halved
 constexpr std::size_t kMostPieces = 200000;
 constexpr int kTeeth = 1 << 20;       // a gear has fewer
 constexpr double kRoundOff = 1 + 1e-9;
 
-Vec3 turned(const Vec3& p, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
-}
 
 /// A quad of the part during a stretch of the motion.
 struct Piece {
@@ -169,7 +165,7 @@ class Sweep {
 
   /// How far below a gap that was found the bound of a piece may lie.
   [[nodiscard]] double leeway(double gap) const {
-    return gap >= o_.contact_mm ? o_.proof_mm : std::max(0.5 * o_.contact_proof_mm, -0.1 * (gap + kWreck));
+    return gap >= o_.contact_mm ? o_.proof_mm : std::max(0.5 * o_.contact_proof_mm, -0.1 * (gap + kWreckDepth));
   }
 
   void prove() {
@@ -216,7 +212,7 @@ class Sweep {
       const double fixed = m_.deviation_mm + m_.axis_deviation * arm;
       double size = 0;
       for (std::size_t k = 0; k < 4; ++k) size = std::max(size, (piece.quad.corner[k] - piece.quad.corner[(k + 1) % 4]).norm());
-      if (least + fixed >= best_ - leeway(std::min(best_, least + fixed)) || std::max(size, moved) < kSmallest || ++examined > kMostPieces ||
+      if (least + fixed >= best_ - leeway(std::min(best_, least + fixed)) || std::max(size, moved) < kSmallestQuad || ++examined > kMostPieces ||
           !std::isfinite(least)) {
         proven_ = std::min(proven_, std::isfinite(least) ? least : -widest_);
         continue;

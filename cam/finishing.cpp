@@ -17,7 +17,6 @@ constexpr double kLongestRunOut = 1.5;  // way of a run-out along the sheet, of 
 constexpr double kRootBegin = 2, kRootEnd = 3;  // the root land on the sheet; below it plus fillet and flank, above it minus
 constexpr double kHighestCusp = 1.1;  // a cusp above this share of the asked one gets a pass of its own
 
-double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 
 /// Cubic through equally spaced values (Catmull-Rom), value at t in [0, n - 1].
 double smooth(const std::vector<double>& y, double t) {
@@ -30,9 +29,9 @@ double smooth(const std::vector<double>& y, double t) {
   return y1 + 0.5 * x * (y2 - y0 + x * (2 * y0 - 5 * y1 + 4 * y2 - y3 + x * (3 * (y1 - y2) + y3 - y0)));
 }
 
-class Planner {
+class FinishingPlanner {
  public:
-  Planner(const OffsetSheet& sheet, const FinishingOptions& options) : sheet_(sheet), o_(options), count_(sheet, options) {}
+  FinishingPlanner(const OffsetSheet& sheet, const FinishingOptions& options) : sheet_(sheet), o_(options), count_(sheet, options) {}
 
   Result<FinishingPasses> run() {
     out_.scallop_min_mm = INFINITY;
@@ -374,7 +373,7 @@ Result<FinishingPasses> plan_finishing(const OffsetSheet& sheet, const Finishing
   if (sheet.empty() || sheet.r_from() >= sheet.r_to())
     return fail("the ball centres of a {:.4f} mm ball find no surface between the radii {:.4f} and {:.4f}",
                 options.ball_radius_mm, ring.inner_radius_mm, ring.outer_radius_mm);
-  return Planner(sheet, options).run();
+  return FinishingPlanner(sheet, options).run();
 }
 
 }  // namespace toothpath

@@ -8,17 +8,16 @@
 
 #include "cam/gear_ring.h"
 #include "cam/swept_path.h"
+#include "geometry/base/angle.h"
 #include "geometry/face_gear_inverse.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586476925286766559;
 constexpr double kBorder = 1e-9;         // a foot this far beyond the border of a piece (in its parameter) still counts
 // Corrected pieces share their normals to 1e-5 only; a foot so little beyond is about 1e-6 mm wrong.
 constexpr double kCorrectedBorder = 3e-5;
 
-double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 
 }  // namespace
 

@@ -19,11 +19,6 @@ constexpr std::size_t kLandStep = 4;  // of them, along a cell of a land
 constexpr int kLandParts = 4;         // cells across a land
 constexpr int kFloorStrips = 48;      // of the groove floor over a pitch
 
-double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
-Vec3 turned(const Vec3& p, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
-}
 
 /// Makes one ring, step by step.
 class Maker {

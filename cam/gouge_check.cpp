@@ -17,7 +17,7 @@ namespace toothpath {
 namespace {
 
 constexpr std::size_t kChunk = 256;     // motions that one thread checks one after another; the same on any number of threads
-constexpr double kLook = 0.3;           // mm: gaps of shank and holder are followed this far beyond the clearance
+constexpr double kBodyLook = 0.3;           // mm: gaps of shank and holder are followed this far beyond the clearance
 constexpr double kAhead = 0.4;          // mm: and this much farther where a body is looked at anew, so that later motions need not
 constexpr double kContact = 0.005;  // mm: smaller gaps of shank and holder are followed to proof_mm
 constexpr double kGapStep = 0.02;       // mm: to which the least gap is told
@@ -107,7 +107,7 @@ class Chunk {
   }
 
   void clearance(Body& body, const ToolMotion& m) {
-    const double enough = o_.clearance_mm + kLook, arm = std::hypot(body.frustum.to, std::max(body.frustum.radius_from, body.frustum.radius_to));
+    const double enough = o_.clearance_mm + kBodyLook, arm = std::hypot(body.frustum.to, std::max(body.frustum.radius_from, body.frustum.radius_to));
     if (body.known) {
       const auto away = [&](const Vec3& tip, const Vec3& axis) { return (tip - body.tip).norm() + arm * (axis - body.axis).norm(); };
       const double left = body.gap - std::max(away(m.tip_from, m.axis_from), away(m.tip_to, m.axis_to)) - line_slack(m, arm, 1);

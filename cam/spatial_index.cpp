@@ -15,10 +15,10 @@
 namespace toothpath {
 namespace {
 
-std::atomic<std::size_t> built_count{0};
+std::atomic<std::size_t> indices_built{0};
 
 // Rounding of a coordinate below 2^11 mm to float32 and of the distance computed from it, with room to spare.
-constexpr double kPad = 1e-3;
+constexpr double kBoxPad = 1e-3;
 
 struct Query {
   SpatialIndex::Visit visit;
@@ -29,8 +29,8 @@ bool on_candidate(RTCPointQueryFunctionArguments* args) {
   auto* query = static_cast<Query*>(args->userPtr);
   const double radius = double(args->query->radius);
   const double next = query->visit(query->context, args->primID, radius);
-  if (next + kPad < radius) {
-    args->query->radius = float(next + kPad);
+  if (next + kBoxPad < radius) {
+    args->query->radius = float(next + kBoxPad);
     return true;
   }
   return false;
@@ -81,7 +81,7 @@ struct SpatialIndex::Impl {
 /// A device that is told a number of threads ("threads=1") holds the whole process to it as long as it lives. So it is told none, and the
 /// tree is built in an arena of one thread: the same tree on any machine, and every thread for those who ask.
 SpatialIndex::SpatialIndex(const std::vector<Box>& boxes) : impl_(std::make_unique<Impl>()) {
-  ++built_count;
+  ++indices_built;
   impl_->boxes = boxes;
   Box all;
   for (const auto& b : boxes) {
@@ -104,13 +104,13 @@ void SpatialIndex::near(const Vec3& p, double radius, Visit visit, void* context
   query.y = float(local.y());
   query.z = float(local.z());
   query.time = 0;
-  query.radius = float(radius + kPad);
+  query.radius = float(radius + kBoxPad);
   RTCPointQueryContext stack;
   rtcInitPointQueryContext(&stack);
   Query q{visit, context};
   rtcPointQuery(impl_->scene, &query, &stack, on_candidate, &q);
 }
 
-std::size_t SpatialIndex::built() { return built_count; }
+std::size_t SpatialIndex::built() { return indices_built; }
 
 }  // namespace toothpath

@@ -14,8 +14,8 @@ namespace toothpath {
 namespace {
 
 constexpr double kEnough = 2.0;   // mm: a gap beyond this is not measured further
-constexpr double kDeepest = 3.0;  // mm: how far a body in the way is followed
-constexpr double kResolution = 0.02;  // mm
+constexpr double kDirectionDeepest = 3.0;  // mm: how far a body in the way is followed
+constexpr double kDirectionResolution = 0.02;  // mm
 constexpr double kFluteSkin = 0.03;   // mm: the flute grazes the walls that it cuts; thinner by this it may cut nowhere
 
 /// The flute above the ball as a body. It stands on the side that is away from its own walls where these have draft; the other ring of
@@ -105,7 +105,7 @@ class Search {
     double least = kEnough;
     for (const auto& body : shank_and_holder(tool_)) {
       double here = least_gap(body, tips, axis, least);
-      if (here < 0) here = -tree_.depth(body, tips, axis, kDeepest, kResolution);
+      if (here < 0) here = -tree_.depth(body, tips, axis, kDirectionDeepest, kDirectionResolution);
       if (here >= least) continue;
       least = here;
       worst = body.name;
@@ -119,7 +119,7 @@ class Search {
     tbb::parallel_for(std::size_t(0), tips.size(), [&](std::size_t k) {
       double seen = least;
       if (seen < 0) return;
-      const double here = tree_.gap(body, tips[k], axis, seen, kResolution);
+      const double here = tree_.gap(body, tips[k], axis, seen, kDirectionResolution);
       while (here < seen && !least.compare_exchange_weak(seen, here)) {
       }
     });
@@ -234,7 +234,7 @@ class Search {
     choice_.explanation =
         best->gap_mm < 0
             ? fmt::format("no fixed direction is clear: the best of {} leans {:.1f} deg and its {} cuts in by {}{:.3f} mm",
-                          choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm <= -kDeepest ? "more than " : "",
+                          choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm <= -kDirectionDeepest ? "more than " : "",
                           -best->gap_mm)
             : fmt::format("no fixed direction is clear: the best of {} leans {:.1f} deg and its {} keeps {:.3f} of {:.3f} mm",
                           choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm, o_.clearance_mm);

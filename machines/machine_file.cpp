@@ -12,10 +12,7 @@ namespace toothpath {
 namespace {
 
 // Plausible ranges; a value outside them is a typing error or another unit.
-constexpr double kLargestLength = 1e5;       // mm
-constexpr double kLargestSpeed = 1e6;        // mm/min, deg/min, 1/min
 constexpr double kLargestAcceleration = 1e7; // mm/s^2, deg/s^2
-constexpr double kLargestAngle = 1e7;        // deg: 27000 turns
 constexpr double kLeastTravel = 10.0;        // mm; less means metres
 constexpr double kLeastDirection = 1e-3;     // length of a direction as written
 constexpr double kLeastOffset = 1.0;         // mm; the largest offset of all table axes: less may mean metres ...
@@ -315,7 +312,7 @@ void check_accelerations(TableReader& root, const Machine& machine) {
   if (any) root.refuse("axes", "max_acceleration stands at some axes and is missing at {}: every axis has one, or none", lacking);
 }
 
-Machine read_tree(const TomlValue& tree, const std::string& file, const MachineJudge& judge, ReaderFindings& findings) {
+Machine read_machine_tree(const TomlValue& tree, const std::string& file, const MachineJudge& judge, ReaderFindings& findings) {
   TableReader root(tree, "", findings);
   Machine machine;
   machine.file = file;
@@ -357,7 +354,7 @@ Machine read_tree(const TomlValue& tree, const std::string& file, const MachineJ
 
 MachineReading read_machine_text(std::string_view text, const std::string& file, const MachineJudge& judge) {
   return read_machine_as<MachineReading>(text, file, [&judge](const TomlValue& tree, const std::string& name, ReaderFindings& findings) {
-    return read_tree(tree, name, judge, findings);
+    return read_machine_tree(tree, name, judge, findings);
   });
 }
 

@@ -15,9 +15,9 @@ namespace {
 constexpr double kFeed = 500;       // mm/min of the tip on the way down and up
 constexpr double kTurnSpeed = 720;  // deg/min: slow enough to watch
 
-class Builder {
+class SelfTestBuilder {
  public:
-  Builder(const SelfTest& test, const Machine& machine, const NcDialect& dialect)
+  SelfTestBuilder(const SelfTest& test, const Machine& machine, const NcDialect& dialect)
       : test_(test), machine_(machine), words_(machine.chain, dialect.format, test.point_mm) {
     words_.set_length(test.tool_length_mm);
     AxisProgram& p = program_;
@@ -130,7 +130,7 @@ class Builder {
 }  // namespace
 
 AxisProgram self_test_program(const SelfTest& test, const Machine& machine, const NcDialect& dialect) {
-  return Builder(test, machine, dialect).build();
+  return SelfTestBuilder(test, machine, dialect).build();
 }
 
 NcDialect in_air(NcDialect dialect) {

@@ -11,11 +11,11 @@
 namespace toothpath {
 namespace {
 
-constexpr double kCoincident = 1e-9;  // mm
-constexpr double kParallel = 1e-12;
+constexpr double kReadCoincident = 1e-9;  // mm
+constexpr double kReadParallel = 1e-12;
 constexpr double kSameTip = 1e-9;           // mm: round-off of a turned frame
 constexpr float kSameShare = 1e-6F;         // of a block: its length with the round-off of a turned frame
-constexpr double kTipStep = radians(0.5);   // joints follow a straight tip: looked at in such steps of the rotaries
+constexpr double kReadTipStep = radians(0.5);   // joints follow a straight tip: looked at in such steps of the rotaries
 
 bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
@@ -184,8 +184,8 @@ int index_sign(const Machine& machine, const Setup& setup) {
   if (machine.chain.table.empty()) return 0;
   const RotaryAxis& c = machine.chain.table[0];
   const Vec3 g = setup.rotation().col(2);
-  if (c.direction.cross(g).norm() > kParallel) return 0;
-  if ((setup.origin_mm - c.point_mm).cross(c.direction).norm() > kCoincident) return 0;
+  if (c.direction.cross(g).norm() > kReadParallel) return 0;
+  if ((setup.origin_mm - c.point_mm).cross(c.direction).norm() > kReadCoincident) return 0;
   return c.direction.dot(g) > 0 ? c.sign : -c.sign;
 }
 
@@ -198,7 +198,7 @@ void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcContro
   if (turn == 0 || length == control.tool_length_mm.end() || !std::isfinite(turn)) return;
   const auto& j = from.joints;
   const Vec3 start = from.tcp ? from.tip : chain.forward({Vec3(j[0], j[1], j[2]), {radians(j[3]), radians(j[4])}}, length->second).tip_mm;
-  const int n = static_cast<int>(std::min(1e5, std::ceil(turn / kTipStep))) + 3;
+  const int n = static_cast<int>(std::min(1e5, std::ceil(turn / kReadTipStep))) + 3;
   for (int i = 1; i < n; ++i) {
     const double t = static_cast<double>(i) / n;
     const double r0 = (1 - t) * j[3] + t * to.joints[3], r1 = (1 - t) * j[4] + t * to.joints[4];

@@ -11,7 +11,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"contact.csv", "transmission.csv", "contact.json", "contact.html"};
+const std::vector<std::string> kContactOutputs = {"contact.csv", "transmission.csv", "contact.json", "contact.html"};
 
 /// Rows that resolve the cusps of a finishing operation: several to a pass.
 constexpr int kCutRows = 241, kCutColumns = 33;
@@ -67,7 +67,7 @@ ContactSettings contact_settings(const Job& job, const ContactRequest& request) 
 CommandOutcome run_contact(const ContactRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kOutputs, {request.job_file, request.other_job});
+  auto output = OutputDir::open(request.out_dir, kContactOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
   if (auto error = out_of_range(request)) return failed(std::move(*error));
   if (const auto bevel = bevel_job(request.job_file)) return run_bevel_contact(request, *bevel, *output);

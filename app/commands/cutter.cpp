@@ -15,7 +15,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"cutter.csv", "cutter.svg", "cutter.dxf", "cutter.html", "cutter.json"};
+const std::vector<std::string> kCutterOutputs = {"cutter.csv", "cutter.svg", "cutter.dxf", "cutter.html", "cutter.json"};
 constexpr double kDxfChord = 2e-4;  // mm
 constexpr double kCsvChord = 1e-5;  // mm
 
@@ -111,7 +111,7 @@ PageTable summary_table_of(const std::vector<JudgedCutter>& mills) {
 CommandOutcome run_cutter(const CutterRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kOutputs, {request.job_file, request.other_job});
+  auto output = OutputDir::open(request.out_dir, kCutterOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
   auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));

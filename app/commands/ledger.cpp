@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/units.h"
 #include "cam/finger_reference.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/tolerances.h"
@@ -12,7 +13,6 @@ namespace {
 
 constexpr double kTouch = 1e-6;     // mm: a record whose ball is this near to a patch touches it
 constexpr double kOnPath = 1e-4;    // mm: a centre this near to a wall's path belongs to it
-constexpr double kUm = 1000;
 
 struct Planned {
   double solve_mm = 0, chord_mm = 0;  // greatest residual of a touching record, greatest sag of a block between two of them

@@ -25,7 +25,7 @@ struct Shown {
 };
 
 /// Text, page and drawing of a machine of either kind.
-std::variant<Shown, std::vector<Diagnostic>> shown(const std::string& path) {
+std::variant<Shown, std::vector<Diagnostic>> show(const std::string& path) {
   const auto kind = machine_kind_of(path);
   if (!kind) return std::vector{kind.error()};
   if (*kind == MachineKind::gear_shaper) {
@@ -49,7 +49,7 @@ CommandOutcome show_machine(const MachineRequest& request) {
   }
   const auto path = find_machine_file(request.machine_file, ".");
   if (!path) return failed(path.error());
-  auto result = shown(*path);
+  auto result = show(*path);
   if (auto* errors = std::get_if<1>(&result)) return failed(std::move(*errors));
   const Shown& machine = std::get<0>(result);
   CommandOutcome outcome;

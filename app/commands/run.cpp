@@ -30,7 +30,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"program.",       "cl.csv",         "report.json", "report.html", "setup.html", "gear.stl",     "tooth.vtp",
+const std::vector<std::string> kRunOutputs = {"program.",       "cl.csv",         "report.json", "report.html", "setup.html", "gear.stl",     "tooth.vtp",
                                            "inspection.csv", "inspection.dmi", "limits.json", "limits.html", "limits.svg", "limits_0.svg", "limits_1.svg",
                                            "correction.json"};
 
@@ -260,7 +260,7 @@ CommandOutcome finish(Run& run, OutputDir& output, const std::optional<Diagnosti
 CommandOutcome run_job(const RunRequest& request) {
   std::vector<std::string> inputs = request.measured_files;
   inputs.push_back(request.job_file);
-  auto output = OutputDir::open(request.out_dir, kOutputs, inputs, kPrevious);
+  auto output = OutputDir::open(request.out_dir, kRunOutputs, inputs, kPrevious);
   if (!output) return failed(output.error());
   if (const auto bevel = bevel_job(request.job_file); bevel && request.measured_files.empty()) return run_bevel_job(request, *bevel, *output);
   Run run(request);

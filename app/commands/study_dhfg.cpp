@@ -15,7 +15,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"dhfg.csv", "dhfg.json", "dhfg.html"};
+const std::vector<std::string> kDhfgOutputs = {"dhfg.csv", "dhfg.json", "dhfg.html"};
 constexpr double kQuickScallop = 10, kQuickChord = 5, kQuickStep = 2;
 
 void read_study(TableReader& t, DhfgStudy& s) {
@@ -231,7 +231,7 @@ ValueOrErrors<DhfgStudy> parse_dhfg_study(std::string_view text, const std::stri
 CommandOutcome study_dhfg(const DhfgRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kOutputs, {request.study_file});
+  auto output = OutputDir::open(request.out_dir, kDhfgOutputs, {request.study_file});
   if (!output) return failed(output.error());
   DhfgStudy study = default_study();
   if (!request.study_file.empty()) {

@@ -11,7 +11,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"stability.csv", "stability.json", "stability.html"};
+const std::vector<std::string> kStabilityOutputs = {"stability.csv", "stability.json", "stability.html"};
 
 std::string size(double value) { return value == 0 ? "" : fmt::format("{:.1e}", value); }
 
@@ -63,7 +63,7 @@ void judge_refusal(StabilityRow& row, Expected expected, const std::string& mess
 }
 
 CommandOutcome study_stability(const StabilityRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kStabilityOutputs);
   if (!output) return failed(output.error());
   Progress progress(request.quiet);
   StageClock clock(progress);

@@ -11,7 +11,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"trace_model.csv", "trace_model.json", "trace_model.html"};
+const std::vector<std::string> kTraceModelOutputs = {"trace_model.csv", "trace_model.json", "trace_model.html"};
 
 const char* name_of(SectionModel model) { return model == SectionModel::centre_path ? "S1" : "S2"; }
 
@@ -86,7 +86,7 @@ StudyPage page_of(const BevelGear& g, const Job& job, const std::vector<SectionM
 }  // namespace
 
 CommandOutcome study_trace_model(const TraceModelRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs, {request.job_file});
+  auto output = OutputDir::open(request.out_dir, kTraceModelOutputs, {request.job_file});
   if (!output) return failed(output.error());
   Progress progress(request.quiet);
   StageClock clock(progress);

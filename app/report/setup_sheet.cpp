@@ -13,7 +13,7 @@
 namespace toothpath {
 namespace {
 
-constexpr std::string_view kStyle = R"(@page{size:A4;margin:14mm}
+constexpr std::string_view kSetupStyle = R"(@page{size:A4;margin:14mm}
 body{font:10.5pt/1.35 sans-serif;color:#111;background:#fff;max-width:182mm;margin:6mm auto}
 h1{font-size:16pt;margin:0 0 1mm}h2{font-size:11.5pt;margin:4mm 0 1mm;border-bottom:.3mm solid #888;break-after:avoid}
 table{border-collapse:collapse;width:100%}th,td{border:.2mm solid #999;padding:.6mm 1.6mm;text-align:left;vertical-align:top}
@@ -23,8 +23,7 @@ th{background:#eee;font-weight:600}td.n{text-align:right;font-variant-numeric:ta
 .small{font-size:9pt;margin:1mm 0}.pairs{columns:6 26mm;column-gap:4mm;font-size:8.5pt;font-variant-numeric:tabular-nums}.pairs span{display:block}
 )";
 
-std::string millimetres(double value) { return fmt::format("{:.3f}", value == 0 ? 0.0 : value); }
-std::string triple(const Vec3& v) {
+std::string coordinates(const Vec3& v) {
   return fmt::format("X {}  Y {}  Z {}", millimetres(v.x()), millimetres(v.y()), millimetres(v.z()));
 }
 
@@ -62,9 +61,9 @@ void machine_section(Sheet& sheet, const Job& job, const PartOutline& part, cons
   sheet.row({"control", machine.dialect});
   sheet.row({"program", report.program_file.empty() ? "none: the run is not verified" : report.program_file});
   if (!report.program_sha256.empty()) sheet.row({"SHA-256", report.program_sha256});
-  sheet.row({"work offset", fmt::format("{} = machine {}", setup.work_offset, triple(setup.work_offset_at_mm))});
-  sheet.row({"gear origin, machine", triple(setup.origin_mm)});
-  sheet.row({"gear origin, " + setup.work_offset, triple(setup.origin_mm - setup.work_offset_at_mm)});
+  sheet.row({"work offset", fmt::format("{} = machine {}", setup.work_offset, coordinates(setup.work_offset_at_mm))});
+  sheet.row({"gear origin, machine", coordinates(setup.origin_mm)});
+  sheet.row({"gear origin, " + setup.work_offset, coordinates(setup.origin_mm - setup.work_offset_at_mm)});
   sheet.row({"gear axis", setup.axis_up ? "up: teeth towards the spindle, gear X along machine X" : "down: turned by 180 deg about X"});
   sheet.row({"coolant", coolant_text(job.coolant, machine)});
   sheet.end_table();
@@ -179,7 +178,7 @@ std::string setup_sheet(const Job& job, const PartOutline& part, const Machine& 
   Sheet sheet;
   const std::string title = html_escape(job.name);
   sheet.raw(fmt::format("<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport content='width=device-width'><title>Set-up sheet: {}</title>"
-                        "<style>{}</style></head><body>\n<h1>Set-up sheet: {}</h1>\n", title, kStyle, title));
+                        "<style>{}</style></head><body>\n<h1>Set-up sheet: {}</h1>\n", title, kSetupStyle, title));
   if (report.verified && report.gouge)
     sheet.raw(fmt::format("<div class=yes>Verified: worst gouge {:.2f} um, proven below {:.2f} um, tolerance {:.2f} um.</div>\n",
                           std::max(0.0, report.gouge->measured_mm) * 1000, std::max(0.0, report.gouge->bound_mm) * 1000,

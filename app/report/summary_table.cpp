@@ -2,12 +2,12 @@
 #include <cmath>
 
 #include "app/report/run_report.h"
+#include "app/units.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kUm = 1000.0;
 
 void row(std::string& out, std::string_view name, const std::string& value) { out += fmt::format("  {:<20}{}\n", name, value); }
 

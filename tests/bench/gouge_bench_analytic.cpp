@@ -37,17 +37,17 @@ std::vector<Pose> poses_of(const FaceGear& gear, const GearDistance& part, const
   return poses;
 }
 
-constexpr double kWithin = 0.5, kMarch = 1e-3, kBodies = 0.02;
+constexpr double kAnalyticWithin = 0.5, kMarch = 1e-3, kBodies = 0.02;
 
 struct Answer {
-  double cutter = kWithin, gap = kWithin;
+  double cutter = kAnalyticWithin, gap = kAnalyticWithin;
 };
 
 Answer exact(const GearDistance& part, const BodyTree& tree, const ToolAssembly& tool, const Pose& pose) {
   const double R = tool.radius_mm(), top = tool.flute_length_mm - R;
   Answer a;
   for (double h = 0; h <= top;) {
-    const double d = part.nearest(pose.centre + h * pose.axis, R + kWithin).distance - R;
+    const double d = part.nearest(pose.centre + h * pose.axis, R + kAnalyticWithin).distance - R;
     a.cutter = std::min(a.cutter, d);
     if ((pose.centre + h * pose.axis).z() - R > part.gear().blank_top()) break;
     h += std::max(d - a.cutter, 0.0) + kMarch;
@@ -60,7 +60,7 @@ Answer exact(const GearDistance& part, const BodyTree& tree, const ToolAssembly&
 Answer marched(const CgalTree& tree, const ToolAssembly& tool, const Pose& pose) {
   const double R = tool.radius_mm();
   Answer a;
-  a.cutter = tree.cutting_part(pose.centre, pose.axis, tool.flute_length_mm - R, R, kWithin, kMarch);
+  a.cutter = tree.cutting_part(pose.centre, pose.axis, tool.flute_length_mm - R, R, kAnalyticWithin, kMarch);
   for (const auto& body : shank_and_holder(tool)) a.gap = std::min(a.gap, tree.frustum(body, pose.centre - R * pose.axis, pose.axis, a.gap, kBodies));
   return a;
 }

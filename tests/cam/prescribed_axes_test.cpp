@@ -8,7 +8,6 @@
 namespace toothpath {
 namespace {
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 ToolAxisKey key(double radius, double outwards_deg, double aside_deg) { return {radius, radians(outwards_deg), radians(aside_deg)}; }
 
 FaceGearParameters narrow_spur() {

@@ -9,7 +9,6 @@
 namespace toothpath {
 namespace {
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 FaceGearParameters steep_gear() { return test::steep_gear(105, 77.5, 85.5); }
 

@@ -45,6 +45,16 @@ inline const std::vector<Post>& all_posts() {
 
 inline Machine machine_of(const Post& p) { return trunnion_with(p.dialect, p.tcp); }
 
+/// What the control would do with a text; a text that it refuses fails the test.
+inline std::vector<ExecutedMove> executed(const Post& p, const std::string& text, const Machine& m) {
+  const auto control = control_of(m, standing(), tools());
+  std::vector<ExecutedMove> moves;
+  const auto done = execute_nc(text, "p", *control, [&](const ExecutedMove& e) { moves.push_back(e); });
+  EXPECT_TRUE(done) << p.name << ": " << (done ? "" : done.error().text());
+  return moves;
+}
+inline std::vector<ExecutedMove> executed(const Post& p, const std::string& text) { return executed(p, text, machine_of(p)); }
+
 /// Rotaries may move in a cut. Heidenhain without TCP has no feed for it.
 inline bool may_turn(const Post& p) { return p.tcp != TcpMode::none || std::string(p.dialect) != "heidenhain"; }
 inline bool is_iso_point(const Post& p) { return std::string(p.dialect) == "fanuc" || std::string(p.dialect) == "mitsubishi_m80" || std::string(p.dialect) == "haas"; }

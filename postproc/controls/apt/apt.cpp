@@ -18,9 +18,9 @@ namespace {
 constexpr int kAxisDecimals = 9;
 constexpr std::size_t kLongestTip = 34;  // 72 characters less the longest axis
 
-class Apt {
+class AptWriter {
  public:
-  Apt(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) : program_(program), dialect_(dialect), out_(dialect), header_(header) {}
+  AptWriter(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) : program_(program), dialect_(dialect), out_(dialect), header_(header) {}
 
   Result<NcText> write() {
     if (header_.coolant != Coolant::off) {
@@ -123,7 +123,7 @@ class Apt {
 };
 
 Result<NcText> write_apt(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
-  return Apt(program, dialect, header).write();
+  return AptWriter(program, dialect, header).write();
 }
 
 NcDialect words() {

@@ -10,9 +10,9 @@
 namespace toothpath::controls {
 namespace {
 
-class Apt {
+class AptReader {
  public:
-  Apt(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink)
+  AptReader(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink)
       : file_(file), control_(control), lines_(lines_of(text)), execution_(control, {}, sink) {
     execution_.set_feed_mode(NcExecution::Feed::per_minute);
   }
@@ -143,7 +143,7 @@ class Apt {
 }  // namespace
 
 Status execute_apt(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
-  return Apt(text, file, control, sink).run();
+  return AptReader(text, file, control, sink).run();
 }
 
 }  // namespace toothpath::controls

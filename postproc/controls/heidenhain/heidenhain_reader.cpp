@@ -14,7 +14,7 @@
 namespace toothpath::controls {
 namespace {
 
-constexpr std::size_t kLongestLine = 256;
+constexpr std::size_t kLongestHeidenhainLine = 256;
 
 class Heidenhain {
  public:
@@ -51,7 +51,7 @@ class Heidenhain {
   /// Block numbers count up from 0; labels occur once.
   Problem find_labels() {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
-      if (lines_[i].size() > kLongestLine) return place(i + 1, static_cast<int>(kLongestLine), fmt::format("line of {} characters exceeds {}", lines_[i].size(), kLongestLine));
+      if (lines_[i].size() > kLongestHeidenhainLine) return place(i + 1, static_cast<int>(kLongestHeidenhainLine), fmt::format("line of {} characters exceeds {}", lines_[i].size(), kLongestHeidenhainLine));
       NcScanner s(lines_[i]);
       const auto n = s.number();
       if (!n || *n != static_cast<double>(i) || (s.at() != ' ' && s.at() != '\0')) return place(i + 1, 1, fmt::format("block number {} expected", i));

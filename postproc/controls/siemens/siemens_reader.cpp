@@ -14,7 +14,7 @@ namespace toothpath::controls {
 namespace {
 
 constexpr std::size_t kDeepestLoop = 8;
-constexpr std::size_t kLongestLine = 512;
+constexpr std::size_t kLongestSiemensLine = 512;
 
 class Siemens {
  public:
@@ -140,7 +140,7 @@ class Siemens {
 
   // Lines.
   Problem execute(std::string_view text) {
-    if (text.size() > kLongestLine) return here(static_cast<int>(kLongestLine), fmt::format("line of {} characters exceeds {}", text.size(), kLongestLine));
+    if (text.size() > kLongestSiemensLine) return here(static_cast<int>(kLongestSiemensLine), fmt::format("line of {} characters exceeds {}", text.size(), kLongestSiemensLine));
     const std::size_t semicolon = text.find(';');
     if (semicolon != std::string_view::npos) {
       const std::string_view comment = text.substr(semicolon + 1);
