@@ -13,9 +13,9 @@ namespace {
 
 constexpr std::uint32_t kLeaf = 4;     // cells
 constexpr int kHalvings = 8;           // of a facet, at most
-constexpr double kRoundOff = 1e-11;    // mm: bounds of a branch and of what lies in it may disagree by less; so no order of search matters
+constexpr double kTreeRoundOff = 1e-11;    // mm: bounds of a branch and of what lies in it may disagree by less; so no order of search matters
 
-Vec3 turned(const Vec3& p, const std::pair<double, double>& turn) {
+Vec3 turned_by(const Vec3& p, const std::pair<double, double>& turn) {
   return {turn.first * p.x() - turn.second * p.y(), turn.second * p.x() + turn.first * p.y(), p.z()};
 }
 
@@ -43,7 +43,7 @@ class BodyTree::Search {
   /// The teeth whose sphere comes near that of the body, nearest first.
   void teeth(const Zone& zone) {
     const Node& root = zone.nodes.front();
-    const double reach = best_ + root.radius + radius_ + kRoundOff, dz = middle_.z() - root.centre.z();
+    const double reach = best_ + root.radius + radius_ + kTreeRoundOff, dz = middle_.z() - root.centre.z();
     const double ra = std::hypot(middle_.x(), middle_.y()), rb = std::hypot(root.centre.x(), root.centre.y()), pitch = tree_.pitch_;
     if (std::hypot(ra - rb, dz) > reach) return;
     const int count = int(tree_.turns_.size());
@@ -54,7 +54,7 @@ class BodyTree::Search {
     for (int k = 0; k <= 2 * wide && k < count && !ended(); ++k) {
       const int tooth = nearest + (k % 2 == 0 ? k / 2 : -(k + 1) / 2);
       const auto& turn = tree_.turns_[std::size_t(((tooth % count) + count) % count)];
-      descend(zone, PlacedFrustum(body_, turned(tip_, turn), turned(axis_, turn)));
+      descend(zone, PlacedFrustum(body_, turned_by(tip_, turn), turned_by(axis_, turn)));
     }
   }
 
@@ -67,13 +67,13 @@ class BodyTree::Search {
     std::size_t count = 0;
     const auto enter = [&](std::uint32_t index) -> Open {
       const Node& node = zone.nodes[index];
-      if (body.beyond(node.centre, best_ + node.radius + kRoundOff)) return {index, INFINITY};
+      if (body.beyond(node.centre, best_ + node.radius + kTreeRoundOff)) return {index, INFINITY};
       return {index, body.slope(node.centre).distance - node.radius};
     };
     open[count++] = enter(0);
     while (count > 0 && !ended()) {
       const Open at = open[--count];
-      if (at.least > best_ + kRoundOff) continue;
+      if (at.least > best_ + kTreeRoundOff) continue;
       const Node& node = zone.nodes[at.node];
       if (node.count > 0) {
         leaf(zone, node, body);
@@ -89,7 +89,7 @@ class BodyTree::Search {
   void leaf(const Zone& zone, const Node& node, const PlacedFrustum& body) {
     for (std::uint32_t k = node.first; k < node.first + node.count; ++k) {
       const Cell& cell = zone.cells[k];
-      if (body.beyond(cell.centre, best_ + cell.radius + kRoundOff)) continue;
+      if (body.beyond(cell.centre, best_ + cell.radius + kTreeRoundOff)) continue;
       for (std::uint32_t q = cell.first; q < cell.first + cell.count && !ended(); ++q) {
         const Facet& f = zone.facets[q];
         facet(f.corner[0], f.corner[1], f.corner[2], f.centre, f.size, body, kHalvings);
@@ -99,9 +99,9 @@ class BodyTree::Search {
 
   /// A facet is halved until its size is `resolution` or can matter no more; it stands for the sphere about it.
   void facet(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& centre, double size, const PlacedFrustum& body, int depth) {
-    if (ended() || body.beyond(centre, best_ + size + kRoundOff)) return;
+    if (ended() || body.beyond(centre, best_ + size + kTreeRoundOff)) return;
     const auto [distance, slope] = body.slope(centre);
-    if (distance - size > best_ + kRoundOff) return;
+    if (distance - size > best_ + kTreeRoundOff) return;
     if (distance <= 0 || size <= resolution_ || depth == 0) {
       best_ = std::min(best_, distance <= 0 ? -resolution_ : distance - size);
       return;
@@ -110,7 +110,7 @@ class BodyTree::Search {
     double last = size;
     for (int k = depth; k > 0 && last > resolution_; --k) last *= 0.5;
     const double lowest = distance + std::min({slope.dot(a - centre), slope.dot(b - centre), slope.dot(c - centre)});
-    if (lowest - last > best_ + kRoundOff) return;
+    if (lowest - last > best_ + kTreeRoundOff) return;
     const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
     const auto part = [&](const Vec3& p, const Vec3& q, const Vec3& r) { facet(p, q, r, (p + q + r) / 3, 0.5 * size, body, depth - 1); };
     part(ab, bc, ca);

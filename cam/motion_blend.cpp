@@ -5,12 +5,6 @@
 
 namespace toothpath {
 
-Vec3 axis_at(const ToolMotion& m, double t) {
-  if (t == 0) return m.axis_from;
-  if (t == 1) return m.axis_to;
-  return ((1 - t) * m.axis_from + t * m.axis_to).normalized();
-}
-
 double line_slack(const ToolMotion& m, double arm_mm, double dt) {
   // The axis is b / |b| with b linear: with T = 2 tan(half the turn), its second derivative is at most T^2 sqrt(1 + T^2).
   const double half = std::min(0.5 * (m.axis_to - m.axis_from).norm(), 0.9999);

@@ -58,12 +58,12 @@ struct SpatialIndex::Impl {
           const auto& self = *static_cast<const Impl*>(args->geometryUserPtr);
           const Box& b = self.boxes[args->primID];
           const Vec3 low = b.low - self.centre, high = b.high - self.centre;
-          args->bounds_o->lower_x = float(low.x() - kPad);
-          args->bounds_o->lower_y = float(low.y() - kPad);
-          args->bounds_o->lower_z = float(low.z() - kPad);
-          args->bounds_o->upper_x = float(high.x() + kPad);
-          args->bounds_o->upper_y = float(high.y() + kPad);
-          args->bounds_o->upper_z = float(high.z() + kPad);
+          args->bounds_o->lower_x = float(low.x() - kBoxPad);
+          args->bounds_o->lower_y = float(low.y() - kBoxPad);
+          args->bounds_o->lower_z = float(low.z() - kBoxPad);
+          args->bounds_o->upper_x = float(high.x() + kBoxPad);
+          args->bounds_o->upper_y = float(high.y() + kBoxPad);
+          args->bounds_o->upper_z = float(high.z() + kBoxPad);
         },
         nullptr);
     rtcCommitGeometry(geometry);

@@ -12,7 +12,7 @@ namespace {
 
 /// mm and rad: proven distance of a read-back motion from its straight line. Half of a face gear's: it counts in the bound of the gouge and in that
 /// of the material left, which has 1.5 um above the chords; a face gear's left material is measured and does not contain it.
-constexpr double kMotionTolerance = 5e-5;
+constexpr double kFingerMotionTolerance = 5e-5;
 constexpr double kWallAllowance = 1.5e-3;  // mm above the chord tolerance that a finished wall may stand proud
 constexpr double kRoundedLinear = 2.5e-3;  // mm and deg: an axis that changes less stands still (words of three decimals)
 constexpr double kAlongAxis = 0.05;        // a move with less across the axis, as a share, is an engage or retract
@@ -84,11 +84,11 @@ BevelGearCheck::BevelGearCheck(const Job& job, const Machine& machine, const Bev
 
 int BevelGearCheck::teeth() const { return gear_.parameters().teeth; }
 
-double BevelGearCheck::motion_tolerance() const { return kMotionTolerance; }
+double BevelGearCheck::motion_tolerance() const { return kFingerMotionTolerance; }
 
 /// Against the cone of the blank, hub and shaft: engaging rapids pass beside the cone, inside the cylinder that links avoid.
 Status BevelGearCheck::rapids_clear(const OperationTrace& trace, const NcControl& control) const {
-  auto motions = tool_motions(trace, {}, control, machine_, *job_.setup, teeth(), kMotionTolerance, kMotionTolerance);
+  auto motions = tool_motions(trace, {}, control, machine_, *job_.setup, teeth(), kFingerMotionTolerance, kFingerMotionTolerance);
   if (!motions) return motions.error();
   int operation = trace.operation;  // below 0: ahead of the first one, where only the tool is known
   for (std::size_t k = 0; k < job_.operations.size() && operation < 0; ++k)

@@ -5,7 +5,7 @@
 namespace toothpath {
 namespace {
 
-constexpr double kMotionTolerance = 1e-4;  // mm and rad: proven distance of a read-back motion from its straight line
+constexpr double kBallMotionTolerance = 1e-4;  // mm and rad: proven distance of a read-back motion from its straight line
 constexpr double kExcessMargin = 1e-3;  // mm: rounding, axis motion and the grid of the measurement
 
 void judge_gouge(const GougeResult& gouge, const GougeCheck& check, double tolerance, std::vector<std::string>& reasons) {
@@ -58,7 +58,7 @@ FaceGearCheck::FaceGearCheck(const Job& job, const Machine& machine, const GearD
 
 int FaceGearCheck::teeth() const { return part_.gear().parameters().teeth; }
 
-double FaceGearCheck::motion_tolerance() const { return kMotionTolerance; }
+double FaceGearCheck::motion_tolerance() const { return kBallMotionTolerance; }
 
 /// The cylinder that the axis program promised to avoid.
 Status FaceGearCheck::rapids_clear(const OperationTrace& trace, const NcControl& control) const {
