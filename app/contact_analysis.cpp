@@ -3,12 +3,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/units.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kUm = 1e3, kMicro = 1e6;
 /// Below this transmission error [rad] contact counts as inside the flank: rounding is a thousand times less, edges far more.
 constexpr double kNoError = 1e-10;
 

@@ -10,7 +10,7 @@
 namespace toothpath {
 namespace {
 
-constexpr int kRows = 11, kColumns = 17, kSteps = 24;
+constexpr int kTrialRows = 11, kTrialColumns = 17, kTrialSteps = 24;
 
 /// Limits, the radii chosen between them, and the gear itself.
 std::optional<FaceGear> make_trial_gear(const DhfgStudy& study, DhfgTrial& trial) {
@@ -55,11 +55,11 @@ void roll_trial(const FaceGear& gear, DhfgTrial& trial) {
   const auto rolled_on = [&](const std::vector<int>& zones) -> Result<RollResult> {
     std::vector<ContactMember> members;
     for (const int zone : zones) {
-      auto flank = exact_flank(gear, zone, 1, kRows, kColumns);
+      auto flank = exact_flank(gear, zone, 1, kTrialRows, kTrialColumns);
       if (!flank) return flank.error();
       members.push_back({std::move(*flank), make_pinion(gear.rings()[static_cast<std::size_t>(zone)].surface, trial.pinion_teeth)});
     }
-    return roll(members, {.steps = kSteps});
+    return roll(members, {.steps = kTrialSteps});
   };
   for (const int zone : {0, 1}) {
     const auto half = rolled_on({zone});

@@ -3,8 +3,7 @@
 #include <filesystem>
 
 #include "machines/machine_file.h"
-#include "postproc/axis_program.h"
-#include "postproc/work_offset.h"
+#include "postproc/controls/of_machine.h"
 
 namespace toothpath {
 namespace {
@@ -14,6 +13,10 @@ std::string joined(const std::vector<std::string>& names) {
   for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
 }
+
+// As in job files. A type of gear without its word does not compile.
+const char* type_word(const FaceGearParameters&) { return "face_gear"; }
+const char* type_word(const BevelGearParameters&) { return "equal_base_circle_bevel_gear"; }
 
 void check_speeds(const Job& job, const Machine& machine, std::vector<Diagnostic>& errors) {
   for (std::size_t i = 0; i < job.operations.size(); ++i) {
@@ -35,10 +38,12 @@ Diagnostic located(const Job& job, std::string_view key, Diagnostic diagnostic) 
   return diagnostic;
 }
 
+const char* gear_type(const Job& job) { return std::visit([](const auto& gear) { return type_word(gear); }, job.gear); }
+
 ValueOrErrors<FaceGear> make_face_gear(const Job& job) {
   const FaceGearParameters* parameters = job.face_gear();
   if (!parameters)
-    return std::vector{fail_at(job.where("gear.type"), "type = \"equal_base_circle_bevel_gear\", but this command needs a face_gear")};
+    return std::vector{fail_at(job.where("gear.type"), "type = \"{}\", but this command needs a face_gear", gear_type(job))};
   auto made = FaceGear::make(*parameters);
   if (auto* gear = std::get_if<FaceGear>(&made)) return std::move(*gear);
   std::vector<Diagnostic> errors;
@@ -59,7 +64,7 @@ ValueOrErrors<Machine> load_machine(const Job& job, std::optional<double> part_d
   if (!kind) return std::vector{located(job, "machine.file", kind.error())};
   if (*kind != MachineKind::five_axis)
     return std::vector{fail_at(job.where("machine.file"), "{} is a gear shaper, but this command needs a milling machine", job.machine.file)};
-  auto reading = read_machine_file(*path);
+  auto reading = controls::read_machine(*path);
   if (!reading.machine) return reading.errors;
   Machine machine = std::move(*reading.machine);
   if (job.program.pole) machine.post.pole = *job.program.pole;
@@ -73,8 +78,12 @@ ValueOrErrors<Machine> load_machine(const Job& job, std::optional<double> part_d
                              joined(machine.assumed_keys)));
   check_speeds(job, machine, errors);
   if (job.setup)
-    if (const auto others = other_work_offsets(machine.dialect, job.setup->work_offset))
+    if (const auto others = controls::other_work_offsets(machine, job.setup->work_offset))
       errors.push_back(fail_at(job.where("setup.work_offset"), "work_offset = \"{}\" is none of {}: it has {}", job.setup->work_offset, machine.name, *others));
+  const auto dialect = controls::dialect_of(machine);
+  if (!dialect) errors.push_back(located(job, "machine.file", dialect.error()));
+  else if (job.coolant != Coolant::off)
+    if (const auto words = coolant_words(*dialect, job.coolant); !words) errors.push_back(located(job, "coolant.mode", words.error()));
   if (!errors.empty()) return errors;
   return machine;
 }

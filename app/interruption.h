@@ -1,4 +1,4 @@
-// SIGINT and SIGTERM: leave at once with 130, and leave nothing half-written behind.
+// SIGINT and SIGTERM: leave at once with 130, leave nothing half-written behind, and say what stands in the output directory.
 #pragma once
 
 #include <string>
@@ -13,6 +13,9 @@ void handle_signals();
 /// (false), as are paths beyond 4095 bytes.
 [[nodiscard]] bool register_temporary(const std::string& path, bool is_directory);
 void forget_temporary(const std::string& path);
+
+/// The line that a signal leaves on stderr, at most 1000 bytes of it; empty (as at first): none.
+void set_last_line(const std::string& text);
 
 /// While one of these lives the signals wait: renaming must not be cut in two.
 class SignalsBlocked {

@@ -14,6 +14,7 @@
 #include "geometry/bevel_gear_parameters.h"
 #include "geometry/face_gear_parameters.h"
 #include "geometry/pinion.h"
+#include "machines/coolant.h"
 #include "postproc/setup.h"
 #include "postproc/shaping.h"
 
@@ -49,10 +50,6 @@ struct ContactSettings {
   double compound_mm = 0.006;  ///< thickness of the marking compound
 };
 
-/// The [coolant] table.
-enum class Coolant { off, mist, flood };
-[[nodiscard]] const char* to_string(Coolant coolant);  ///< as in the job file
-
 /// Where a key was written: "gear.module", "gear.zone[0].inner_radius", "tool[1].diameter", "operation[2].scallop",
 /// "machine.file"; a table itself as "gear", "tool[1]". Later stages ask it to locate what they refuse.
 using KeyPositions = std::map<std::string, SourcePosition, std::less<>>;
@@ -65,7 +62,7 @@ struct Job {
   std::optional<Setup> setup;            ///< present in every milling job
   std::vector<ToolAssembly> tools;
   std::vector<MillingOperation> operations;  ///< `tool` is an index into `tools`
-  Coolant coolant = Coolant::off;
+  Coolant coolant = Coolant::off;        ///< mode of [coolant]
   VerifySettings verify;
   ProgramSettings program;
   std::optional<Shaping> shaping;

@@ -44,15 +44,6 @@ void check_milling(TableReader& root, const Job& job) {
 
 }  // namespace
 
-const char* to_string(Coolant coolant) {
-  switch (coolant) {
-    case Coolant::off: return "off";
-    case Coolant::mist: return "mist";
-    case Coolant::flood: return "flood";
-  }
-  return "";
-}
-
 SourcePosition Job::where(std::string_view key) const {
   std::string path(key);
   while (true) {

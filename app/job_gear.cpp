@@ -24,7 +24,6 @@ void optional_number(TableReader& table, std::string_view key, const Range& rang
   if (const auto value = table.if_present(key, [&] { return table.number(key, range); })) target = *value * factor;
 }
 
-constexpr double kDegree = kPi / 180;
 
 /// NAME_diameter and NAME_length: both or none.
 void optional_cylinder(TableReader& gear, const std::string& name, double& diameter, double& length) {

@@ -308,10 +308,11 @@ MachineChoice read_machine_choice(TableReader& table) {
 }
 
 Coolant read_coolant(TableReader& table) {
-  const auto mode = table.word("mode", {"off", "mist", "flood"});
+  const auto mode = table.word("mode", {"off", "mist", "flood", "air", "through_spindle"});
   table.finish();
-  if (!mode || *mode == "off") return Coolant::off;
-  return *mode == "mist" ? Coolant::mist : Coolant::flood;
+  for (const Coolant coolant : kCoolants)
+    if (mode && *mode == to_string(coolant)) return coolant;
+  return Coolant::off;
 }
 
 }  // namespace toothpath

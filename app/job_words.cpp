@@ -1,26 +1,11 @@
 #include "app/job_words.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "machines/toml/near_name.h"
 
 namespace toothpath {
 namespace {
-
-/// Number of insertions, deletions and replacements that turn a into b.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
-}
 
 /// A key as it may be printed: cut to 60 characters, control characters replaced.
 std::string shown(std::string_view key) {
@@ -54,16 +39,8 @@ class JobWords final : public TableWords {
   }
 
   std::string unknown(const std::string& path, const std::string& key, const KnownKeys& known) const override {
-    std::string hint;
-    std::size_t nearest = 3;
-    for (const auto& candidate : known) {
-      if (key.size() > 60) break;
-      const std::size_t distance = edit_distance(key, candidate);
-      if (distance < nearest && distance < candidate.size()) {
-        nearest = distance;
-        hint = fmt::format("; did you mean \"{}\"?", candidate);
-      }
-    }
+    const std::string_view near = near_name(key, known);
+    const std::string hint = near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);
     return fmt::format("unknown key \"{}\" in {}{}", shown(key), title(path), hint);
   }
 

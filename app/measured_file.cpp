@@ -7,13 +7,14 @@
 #include <nlohmann/json.hpp>
 
 #include "app/report/html_text.h"
+#include "app/units.h"
 #include "machines/toml/regular_file.h"
 
 namespace toothpath {
 namespace {
 
 constexpr std::string_view kHeader = "zone,flank,row,column,x,y,z,i,j,k,deviation_um";
-constexpr std::size_t kColumns = 11, kMostBytes = 64u << 20;
+constexpr std::size_t kMeasuredColumns = 11, kMostMeasuredBytes = 64u << 20;
 constexpr double kPlaceTolerance = 0.005;  // mm
 
 template <typename... Args>
@@ -25,8 +26,8 @@ Diagnostic at(const std::string& file, int line, std::size_t column, fmt::format
 
 struct Line {
   int number = 0;
-  std::array<std::string_view, kColumns> cell;
-  std::array<std::size_t, kColumns> column{};
+  std::array<std::string_view, kMeasuredColumns> cell;
+  std::array<std::size_t, kMeasuredColumns> column{};
   int zone = 0, side = 1, row = 0, place = 0;  ///< place: along the face
   Vec3 p = Vec3::Zero();
   double deviation_um = 0;
@@ -46,16 +47,16 @@ Result<Line> parse_line(std::string_view text, int number, const std::string& fi
   std::size_t count = 0, begin = 0;
   for (std::size_t k = 0; k <= text.size(); ++k) {
     if (k < text.size() && text[k] != ',') continue;
-    if (count < kColumns) {
+    if (count < kMeasuredColumns) {
       line.cell[count] = text.substr(begin, k - begin);
       line.column[count] = begin;
     }
     ++count;
     begin = k + 1;
   }
-  if (count != kColumns) return at(file, number, 0, "{} columns, must be {}: {}", count, kColumns, kHeader);
+  if (count != kMeasuredColumns) return at(file, number, 0, "{} columns, must be {}: {}", count, kMeasuredColumns, kHeader);
   const auto names = [](std::size_t k) {
-    static constexpr std::array<const char*, kColumns> kNames = {"zone", "flank", "row", "column", "x", "y", "z", "i", "j", "k", "deviation_um"};
+    static constexpr std::array<const char*, kMeasuredColumns> kNames = {"zone", "flank", "row", "column", "x", "y", "z", "i", "j", "k", "deviation_um"};
     return kNames[k];
   };
   std::array<int*, 4> whole = {&line.zone, &line.side, &line.row, &line.place};
@@ -64,7 +65,7 @@ Result<Line> parse_line(std::string_view text, int number, const std::string& fi
       return at(file, number, line.column[k], "{} = \"{}\" is no whole number from 0 to 999", names(k), valid_utf8(line.cell[k]));
   if (line.side != 1 && line.side != -1) return at(file, number, line.column[1], "flank = {} must be 1 or -1", line.side);
   double normal = 0;
-  for (std::size_t k = 4; k < kColumns; ++k) {
+  for (std::size_t k = 4; k < kMeasuredColumns; ++k) {
     double& value = k < 7 ? line.p[Eigen::Index(k) - 4] : k < 10 ? normal : line.deviation_um;
     if (!parse(line.cell[k], value) || !std::isfinite(value))
       return at(file, number, line.column[k], "{} = \"{}\" is no finite number", names(k), valid_utf8(line.cell[k]));
@@ -115,7 +116,6 @@ std::optional<Diagnostic> check_sizes(const std::string& file, const std::vector
   return {};
 }
 
-double um(double mm) { return mm * 1000; }
 
 }  // namespace
 
@@ -169,7 +169,7 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
 }
 
 Result<MeasuredFlanks> read_measured(const std::string& path, const FaceGear& gear) {
-  const auto text = read_regular_file(path, kMostBytes);
+  const auto text = read_regular_file(path, kMostMeasuredBytes);
   if (!text) return text.error();
   return parse_measured(*text, path, gear);
 }

@@ -2,18 +2,20 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <cstring>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "app/interruption.h"
-#include "app/sha256.h"
+#include "app/standing_results.h"
+#include "geometry/base/hash.h"
 #include "machines/toml/regular_file.h"
 
 namespace toothpath {
@@ -21,11 +23,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kExtensions[] = {"ngc", "nc", "mpf", "h", "apt"};
 constexpr std::string_view kTemporaryPrefix = ".toothpath-";
+constexpr const char* kLock = ".toothpath-lock";
 
-Diagnostic cannot(const char* what, const std::string& path, int error) {
-  return {DiagnosticKind::file_access, {path, 0, 0}, fmt::format("cannot {}: {}", what, std::strerror(error))};
+/// What is said at the end: by a signal, and by the command line.
+std::string note;
+
+void say(const std::string& interrupted, const std::string& ended) {
+  set_last_line("interrupted: " + interrupted);
+  note = ended;
 }
 
 /// Makes the directory and its parents; returns those that were made, outermost first.
@@ -37,16 +43,18 @@ Result<std::vector<std::string>> make_directories(const std::string& path) {
     if (p.has_filename()) missing.push_back(p.string());
   }
   for (auto it = missing.rbegin(); it != missing.rend(); ++it) {
-    if (::mkdir(it->c_str(), 0777) != 0 && errno != EEXIST) {
-      const int error = errno;
-      for (auto old = made.rbegin(); old != made.rend(); ++old) {
-        ::rmdir(old->c_str());
-        forget_temporary(*old);
-      }
-      return cannot("make the directory", *it, error);
+    if (::mkdir(it->c_str(), 0777) == 0) {
+      made.push_back(*it);
+      if (!register_temporary(*it, true)) return cannot("use", *it, ENAMETOOLONG);
+      continue;
     }
-    made.push_back(*it);
-    if (!register_temporary(*it, true)) return cannot("use", *it, ENAMETOOLONG);
+    if (errno == EEXIST) continue;  // another run made it meanwhile, and will take it away
+    const int error = errno;
+    for (auto old = made.rbegin(); old != made.rend(); ++old) {
+      ::rmdir(old->c_str());
+      forget_temporary(*old);
+    }
+    return cannot("make the directory", *it, error);
   }
   return made;
 }
@@ -61,52 +69,26 @@ std::optional<pid_t> writer_of(std::string_view name) {
   return pid;
 }
 
-Status remove_output(const std::string& path) {
-  if (::unlink(path.c_str()) == 0 || errno == ENOENT) return Ok{};
-  return cannot("replace", path, errno);
-}
-
-Status remove_old_outputs(const std::string& directory, const std::vector<std::string>& names) {
-  for (const auto& name : names) {
-    if (name.back() != '.') {
-      if (const auto removed = remove_output(directory + "/" + name); !removed) return removed;
-      continue;
-    }
-    for (const auto extension : kExtensions)
-      if (const auto removed = remove_output(directory + "/" + name + std::string(extension)); !removed) return removed;
-  }
-  // What a run that was killed outright could not take with it.
+/// What a run that was killed outright could not take with it.
+void remove_leftovers(const std::string& directory) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(directory, error)) {
     const auto writer = writer_of(entry.path().filename().string());
     if (writer && ::kill(*writer, 0) != 0 && errno == ESRCH) ::unlink(entry.path().c_str());
   }
-  return Ok{};
 }
 
-/// Name of the directory itself on disk: a rename is safe only when the directory is flushed too.
-void flush_directory(const std::string& path) {
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return;
-  ::fsync(descriptor);
-  ::close(descriptor);
-}
-
-int write_all(int descriptor, std::string_view content) {
-  while (!content.empty()) {
-    const ssize_t written = ::write(descriptor, content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return errno;
-    content.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return ::fsync(descriptor) == 0 || errno == EINVAL ? 0 : errno;
-}
+bool same_file(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
 
 }  // namespace
 
-Result<OutputDir> OutputDir::open(const std::string& path, const std::vector<std::string>& own_names) {
-  OutputDir result;
-  result.path_ = path;
+OutputDir::OutputDir(std::string path, const std::vector<std::string>& own_names, const std::string& previous)
+    : path_(std::move(path)), names_(own_names), previous_(previous), exchange_(path_, names_, previous_) {}
+
+Result<OutputDir> OutputDir::open(const std::string& path, const std::vector<std::string>& own_names, const std::vector<std::string>& inputs,
+                                  const std::string& previous) {
+  OutputDir result(path, own_names, previous);
+  say("nothing was written", {});
   auto made = make_directories(path);
   if (!made) return made.error();
   result.made_ = std::move(made.value());
@@ -114,16 +96,97 @@ Result<OutputDir> OutputDir::open(const std::string& path, const std::vector<std
   std::error_code error;
   if (!fs::is_directory(path, error)) return cannot("write into", path, ENOTDIR);
   if (::access(path.c_str(), W_OK | X_OK) != 0) return cannot("write into", path, errno);
-  if (const auto removed = remove_old_outputs(path, own_names); !removed) return removed.error();
+  if (auto s = result.lock(); !s) return s.error();
+  {
+    const SignalsBlocked blocked;
+    remove_leftovers(path);
+    if (auto s = result.exchange_.recover(); !s) return s.error();
+  }
+  if (auto s = result.exchange_.check(); !s) return s.error();
+  result.note_standing();
+  if (auto s = result.refuse_replaced_inputs(inputs); !s) return s.error();
   return result;
 }
 
 OutputDir::OutputDir(OutputDir&& other) noexcept
-    : path_(std::move(other.path_)), made_(std::move(other.made_)), files_(std::move(other.files_)),
-      active_(std::exchange(other.active_, false)) {}
+    : path_(std::move(other.path_)), names_(std::move(other.names_)), previous_(std::move(other.previous_)), exchange_(std::move(other.exchange_)),
+      made_(std::move(other.made_)), files_(std::move(other.files_)), aside_(std::move(other.aside_)), lock_(std::exchange(other.lock_, -1)), active_(std::exchange(other.active_, false)) {}
 
 OutputDir::~OutputDir() {
   if (active_) discard_all();
+}
+
+/// A hidden file, locked as long as this run lives: who dies leaves a file without a lock. The file goes with its run, so a lock counts only while
+/// its file stands there.
+Status OutputDir::lock() {
+  const std::string path = path_ + "/" + kLock;
+  for (;;) {
+    lock_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (lock_ < 0) return cannot("write", path, errno);
+    int locked = 0;
+    do locked = ::flock(lock_, LOCK_EX | LOCK_NB);
+    while (locked != 0 && errno == EINTR);
+    const int error = errno;
+    struct stat ours {}, there {};
+    const bool counts = locked == 0 && ::fstat(lock_, &ours) == 0 && ::lstat(path.c_str(), &there) == 0 && same_file(ours, there);
+    if (counts) break;
+    ::close(std::exchange(lock_, -1));
+    if (locked == 0) continue;
+    if (error == EWOULDBLOCK) {
+      Diagnostic busy = fail_as(DiagnosticKind::file_access, "another run is writing into this directory: wait for its end, or give another --out");
+      busy.position.file = path_;
+      return busy;
+    }
+    return cannot("lock", path, error);
+  }
+  if (register_temporary(path, false)) return Ok{};
+  unlock();
+  return cannot("write", path, ENAMETOOLONG);
+}
+
+void OutputDir::unlock() {
+  if (lock_ < 0) return;
+  const std::string path = path_ + "/" + kLock;
+  ::unlink(path.c_str());
+  forget_temporary(path);
+  ::close(std::exchange(lock_, -1));
+}
+
+Status OutputDir::refuse_replaced_inputs(const std::vector<std::string>& inputs) const {
+  for (const auto& input : inputs) {
+    struct stat read {}, replaced {};
+    if (::stat(input.c_str(), &read) != 0) continue;  // who reads it says why
+    const auto refuse_in = [&](const std::string& directory) -> Status {
+      for (const auto& name : names_.standing_in(directory)) {
+        if (::lstat((directory + "/" + name).c_str(), &replaced) != 0 || !same_file(read, replaced)) continue;
+        Diagnostic refusal = fail_as(DiagnosticKind::usage, "this input lies where the command writes its own {}: copy it elsewhere, or give another --out", name);
+        refusal.position.file = input;
+        return refusal;
+      }
+      return Ok{};
+    };
+    if (auto s = refuse_in(path_); !s) return s;
+    if (auto s = previous_.empty() ? Status(Ok{}) : refuse_in(path_ + "/" + previous_); !s) return s;
+  }
+  return Ok{};
+}
+
+void OutputDir::note_standing() const {
+  const std::string standing = describe_results(path_, names_.standing_in(path_));
+  if (standing.empty()) return say(path_ + " holds no results of this command", {});
+  const std::string text = fmt::format("{} stays as it was: {}", path_, standing);
+  say(text, text);
+}
+
+Status OutputDir::set_aside() {
+  const auto standing = names_.standing_in(path_);
+  if (standing.empty() || !names_.is_program(standing.front())) return Ok{};
+  std::string text = fmt::format("what stood in {} is in {}/{}: {}", path_, path_, previous_, describe_results(path_, standing));
+  const SignalsBlocked blocked;
+  if (auto s = exchange_.set_aside(); !s) return s;
+  aside_ = std::move(text);
+  say(aside_, aside_);
+  return Ok{};
 }
 
 const OutputDir::File* OutputDir::find(std::string_view name) const {
@@ -168,6 +231,7 @@ void OutputDir::discard(std::string_view name) {
 
 void OutputDir::discard_all() {
   while (!files_.empty()) discard(std::string(files_.back().name));
+  unlock();
   for (auto it = made_.rbegin(); it != made_.rend(); ++it) {
     ::rmdir(it->c_str());  // fails where something is in it, as it should
     forget_temporary(*it);
@@ -176,34 +240,38 @@ void OutputDir::discard_all() {
   active_ = false;
 }
 
+/// What lies under the final names is what was written.
+Status OutputDir::verify() const {
+  for (const File& file : files_) {
+    const auto bytes = read_regular_file(final_path(file.name), std::string().max_size());
+    if (!bytes) return bytes.error();
+    if (sha256_hex(*bytes) == file.sha256) continue;
+    Diagnostic differs = fail_as(DiagnosticKind::file_access, "the file on the disk differs from what was written; all files of this run are removed");
+    differs.position.file = final_path(file.name);
+    return differs;
+  }
+  return Ok{};
+}
+
 Status OutputDir::commit() {
   const SignalsBlocked blocked;
-  for (std::size_t i = 0; i < files_.size(); ++i) {
-    const std::string target = final_path(files_[i].name);
-    if (::rename(files_[i].temporary_path.c_str(), target.c_str()) == 0) continue;
-    const int error = errno;
-    for (std::size_t k = 0; k < i; ++k) ::unlink(final_path(files_[k].name).c_str());
+  std::stable_partition(files_.begin(), files_.end(), [&](const File& file) { return !names_.is_program(file.name); });
+  std::vector<OutputExchange::NewFile> renamed;
+  for (const File& file : files_) renamed.push_back({file.temporary_path, file.name});
+  if (auto s = exchange_.replace(renamed, [&] { return verify(); }); !s) {
     discard_all();
-    return cannot("write", target, error);
-  }
-  flush_directory(path_);
-  for (const File& file : files_) {
-    const std::string target = final_path(file.name);
-    const auto bytes = read_regular_file(target, std::string().max_size());
-    if (bytes && sha256_hex(*bytes) == file.sha256) continue;
-    for (const File& other : files_) ::unlink(final_path(other.name).c_str());
-    discard_all();
-    if (!bytes) return bytes.error();
-    Diagnostic differs = fail_as(DiagnosticKind::file_access, "the file on the disk differs from what was written; all files of this run are removed");
-    differs.position.file = target;
-    return differs;
+    return s;
   }
   for (const File& file : files_) forget_temporary(file.temporary_path);
   for (const auto& directory : made_) forget_temporary(directory);
   files_.clear();
   made_.clear();
+  unlock();
   active_ = false;
+  say(path_ + " holds the results of this run" + (aside_.empty() ? "" : "; " + aside_), aside_);
   return Ok{};
 }
+
+std::string OutputDir::closing_note() { return note; }
 
 }  // namespace toothpath

@@ -6,9 +6,8 @@
 namespace toothpath {
 namespace {
 
-constexpr int kSamples = 16;  // of the axis between two points of a pass
+constexpr int kAxisSamples = 16;  // of the axis between two points of a pass
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 }  // namespace
 
@@ -37,8 +36,8 @@ AxisRecords records_with_axes(const PassTrack& track, const std::function<Vec3(d
     if (k > 0) {
       const double from = at[k - 1], to = at[k];
       double turn = 0;
-      for (int j = 1; j <= kSamples; ++j)
-        turn = std::max(turn, kSamples * angle_between(axis(from + (to - from) * (j - 1) / kSamples), axis(from + (to - from) * j / kSamples)));
+      for (int j = 1; j <= kAxisSamples; ++j)
+        turn = std::max(turn, kAxisSamples * angle_between(axis(from + (to - from) * (j - 1) / kAxisSamples), axis(from + (to - from) * j / kAxisSamples)));
       const int pieces = std::max(1, int(std::ceil(turn / limit)));
       for (int j = 1; j < pieces; ++j) {
         const double t = double(j) / pieces;

@@ -7,7 +7,6 @@
 namespace toothpath {
 namespace {
 
-constexpr double kSampleDoubt = 3;  // sampled second differences are taken this many times
 
 }  // namespace
 

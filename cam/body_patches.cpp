@@ -12,7 +12,6 @@ namespace {
 constexpr double kStands = 1e-9;       // mm: a place this far beyond a border still counts
 constexpr double kPlainSag = 0.005;    // mm: cells whose bound is larger are looked at more closely
 constexpr int kClosest = 3;            // halvings each way for that
-constexpr double kSampleDoubt = 3;     // sampled second differences are taken this many times
 constexpr int kSteps = 8;              // of Newton back to a border
 
 /// Extent of the parameters of a quad.

@@ -7,20 +7,18 @@
 #include <functional>
 
 #include "cam/body_patches.h"
-#include "cam/cutter_sweep.h"
+#include "cam/motion_blend.h"
+#include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586476925286766559;
-constexpr double kWreck = 0.05;     // mm: deeper cuts are followed more coarsely
-constexpr double kSmallest = 1e-5;  // mm: smaller quads are not halved
+constexpr double kWreckDepth = 0.05;     // mm: deeper cuts are followed more coarsely
+constexpr double kSmallestQuad = 1e-5;  // mm: smaller quads are not halved
 constexpr std::size_t kMostPieces = 200000;
+constexpr int kTeeth = 1 << 20;       // a gear has fewer
+constexpr double kRoundOff = 1 + 1e-9;
 
-Vec3 turned(const Vec3& p, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
-}
 
 /// A quad of the part during a stretch of the motion.
 struct Piece {
@@ -99,18 +97,13 @@ class Sweep {
     return m_.deviation_mm + m_.axis_deviation * arm + (T * T * std::sqrt(1 + T * T) * arm + 2 * T * travel_) * dt * dt / 8;
   }
 
-  void gather() {
-    const double enough = o_.enough_mm + m_.deviation_mm + m_.axis_deviation * arm_;
+  /// Cells that may come near at any moment, each once: zone, tooth, cell in order.
+  [[nodiscard]] std::vector<std::uint64_t> near_cells(double enough) const {
     const double way = travel_ + arm_ * (m_.axis_to - m_.axis_from).norm();
     const int parts = std::clamp(int(std::ceil(way / (widest_ + o_.enough_mm))), 1, 4096);
     const int links = std::max(1, int(std::ceil((f_.to - f_.from) / std::max(widest_, 0.5))));
     const double half = 0.5 * (f_.to - f_.from) / links, pitch = part_.gear().pitch();
-    struct Key {
-      int zone, tooth;
-      std::size_t cell;
-      auto operator<=>(const Key&) const = default;
-    };
-    std::vector<Key> keys;
+    std::vector<std::uint64_t> keys;
     for (int zone = 0; zone < part_.zones(); ++zone) {
       const auto& ring = part_.space(zone).ring().zone;
       const double reach = std::hypot(widest_, half) + enough + 0.5 * way / parts + part_.patches(zone).search_margin();
@@ -126,22 +119,34 @@ class Sweep {
           const int index = int(std::lround(azimuth / pitch)), wide = 1 + int(std::ceil(reach / (pitch * ring.inner_radius_mm)));
           for (int tooth = index - wide; tooth <= index + wide; ++tooth)
             part_.cell_index(zone).near(turned(x, -tooth * pitch), reach, [&](std::size_t c, double radius) {
-              keys.push_back({zone, tooth, c});
+              keys.push_back(std::uint64_t(zone) << 56 | std::uint64_t(tooth + kTeeth) << 32 | c);
               return radius;
             });
         }
     }
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    return keys;
+  }
+
+  void gather() {
+    const double enough = o_.enough_mm + m_.deviation_mm + m_.axis_deviation * arm_, pitch = part_.gear().pitch();
     const View first = view(0), last = view(1);
+    const PlacedFrustum in_T(f_, Vec3::Zero(), Vec3::UnitZ());
     std::vector<std::pair<double, Target>> order;
-    for (const auto& key : keys) {
-      Target target{key.zone, key.tooth, key.cell, std::cos(key.tooth * pitch), std::sin(key.tooth * pitch)};
-      const auto& patches = part_.patches(key.zone);
-      const Vec3 c = target.placed(patches.centre(key.cell)), a = first(c), b = last(c);
-      const double arm = std::max(a.norm(), b.norm());
-      const double least = frustum_distance(0.5 * (a + b), f_) - 0.5 * (b - a).norm() - slack(arm, 1) - patches.radius(key.cell);
-      if (least <= enough) order.push_back({least, target});
+    Target cell{-1, 0, 0, 1, 0};
+    for (const auto& key : near_cells(enough)) {
+      const int zone = int(key >> 56), tooth = int(key >> 32 & 0xffffff) - kTeeth;
+      if (zone != cell.zone || tooth != cell.tooth) cell = {zone, tooth, 0, std::cos(tooth * pitch), std::sin(tooth * pitch)};
+      cell.cell = std::size_t(key & 0xffffffff);
+      const auto& patches = part_.patches(zone);
+      const Vec3 c = cell.placed(patches.centre(cell.cell)), a = first(c), b = last(c);
+      const double arm = std::sqrt(std::max(a.squaredNorm(), b.squaredNorm()));
+      const double away = 0.5 * (b - a).norm() + slack(arm, 1) + patches.radius(cell.cell);
+      const Vec3 middle = 0.5 * (a + b);
+      if (in_T.beyond(middle, (enough + away) * kRoundOff)) continue;
+      const double least = frustum_distance(middle, f_) - away;
+      if (least <= enough) order.push_back({least, cell});
     }
     // The nearest comes last and is looked at first.
     std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
@@ -160,7 +165,7 @@ class Sweep {
 
   /// How far below a gap that was found the bound of a piece may lie.
   [[nodiscard]] double leeway(double gap) const {
-    return gap >= o_.contact_mm ? o_.proof_mm : std::max(0.5 * o_.contact_proof_mm, -0.1 * (gap + kWreck));
+    return gap >= o_.contact_mm ? o_.proof_mm : std::max(0.5 * o_.contact_proof_mm, -0.1 * (gap + kWreckDepth));
   }
 
   void prove() {
@@ -207,7 +212,7 @@ class Sweep {
       const double fixed = m_.deviation_mm + m_.axis_deviation * arm;
       double size = 0;
       for (std::size_t k = 0; k < 4; ++k) size = std::max(size, (piece.quad.corner[k] - piece.quad.corner[(k + 1) % 4]).norm());
-      if (least + fixed >= best_ - leeway(std::min(best_, least + fixed)) || std::max(size, moved) < kSmallest || ++examined > kMostPieces ||
+      if (least + fixed >= best_ - leeway(std::min(best_, least + fixed)) || std::max(size, moved) < kSmallestQuad || ++examined > kMostPieces ||
           !std::isfinite(least)) {
         proven_ = std::min(proven_, std::isfinite(least) ? least : -widest_);
         continue;

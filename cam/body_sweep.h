@@ -8,6 +8,7 @@
 #pragma once
 
 #include "cam/frustum_distance.h"
+#include "cam/gear_distance.h"
 #include "cam/tool_motion.h"
 
 namespace toothpath {

@@ -7,15 +7,14 @@
 namespace toothpath {
 namespace {
 
-constexpr double kTouch = 5e-5;      // a ball this much into the edge of the other wall still counts as touching it, mm
+constexpr double kWallTouch = 5e-5;      // a ball this much into the edge of the other wall still counts as touching it, mm
 constexpr double kSearchStep = 0.02; // in sigma: fiftieths of a fillet
 constexpr double kCuspAim = 0.8;     // of the asked cusp
-constexpr double kShortest = 1e-3;   // a stretch shorter than this needs no pass, mm
+constexpr double kShortestPass = 1e-3;   // a stretch shorter than this needs no pass, mm
 constexpr double kFeedStep = 1e-4;   // between two places of a pass, for its direction, mm
 constexpr int kMostPasses = 40;      // at one end of one wall
-constexpr int kSamples = 48;         // places of a profile at which the height is measured
+constexpr int kHeightSamples = 48;         // places of a profile at which the height is measured
 
-double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 
 /// One wall of one corner at one end of the ring.
 class OpenEnd {
@@ -33,7 +32,7 @@ class OpenEnd {
     const auto opened = solve([&](double r) { return contact_radius(place(1, r), r); });
     if (!closed || !opened) return {};
     const double inward = inner_ ? 1 : -1;
-    if (inward * (*closed - *opened) < kShortest) return {};
+    if (inward * (*closed - *opened) < kShortestPass) return {};
     int count = 0;
     while (count < kMostPasses && left_between(count, *opened) > kCuspAim * o_.scallop_mm) ++count;
     std::vector<BallPass> out;
@@ -99,11 +98,11 @@ class OpenEnd {
     return start + sense * good;
   }
   /// sigma at a share of the way from the crossing to the reach.
-  [[nodiscard]] double place(double share, double r) const { return edge(r) + share * (reach(r, kTouch) - edge(r)); }
+  [[nodiscard]] double place(double share, double r) const { return edge(r) + share * (reach(r, kWallTouch) - edge(r)); }
 
   /// Highest place past the crossing above what `count` passes and the pass along the corner leave, in the profile at r.
   [[nodiscard]] double left_between(int count, double r) const {
-    const double from = edge(r), to = reach(r, 2 * kTouch);
+    const double from = edge(r), to = reach(r, 2 * kWallTouch);
     std::vector<SheetPoint> lines;
     std::vector<Vec3> feeds;
     for (int i = 0; i <= count; ++i) {
@@ -114,8 +113,8 @@ class OpenEnd {
       feeds.push_back((next->centre - s->centre).normalized());
     }
     double most = 0;
-    for (int k = 1; k <= kSamples; ++k) {
-      const auto s = sheet_.raw(from + (to - from) * k / kSamples, r);
+    for (int k = 1; k <= kHeightSamples; ++k) {
+      const auto s = sheet_.raw(from + (to - from) * k / kHeightSamples, r);
       if (!s) continue;
       const Vec3 p = s->contact.p + o_.allowance_mm * s->contact.n;
       double least = INFINITY;
@@ -128,7 +127,7 @@ class OpenEnd {
   /// From the end of the ring to where the corner closes, at a share of the way from the crossing to the reach.
   [[nodiscard]] std::optional<BallPass> make_pass(double share, double closed) const {
     const auto begin = solve([&](double r) { return contact_radius(place(share, r), r); });
-    if (!begin || std::abs(closed - *begin) < kShortest) return {};
+    if (!begin || std::abs(closed - *begin) < kShortestPass) return {};
     const auto curve = [&](double r) -> std::optional<BallPass::Point> {
       const double at = place(share, r);
       if (std::isnan(at)) return {};

@@ -1,17 +1,21 @@
 #include "cam/cutter_sweep.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+
+#include "cam/motion_blend.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kLook = 0.12;        // mm beyond the ball within which distances are wanted exactly, at least
+constexpr double kCutterLook = 0.12;        // mm beyond the ball within which distances are wanted exactly, at least
 constexpr double kLookShare = 0.2;    // and this share of its radius
 constexpr double kSearchPad = 1e-4;   // mm: sag of edges, by which two distances may disagree
-constexpr double kWreck = 0.5;        // a ball whose centre is this near, in radii, is bounded by all that can be asked for
-constexpr int kDepth = 24;
-constexpr double kShortest = 1e-6;    // mm: shorter pieces are not halved
+constexpr double kWreckShare = 0.5;        // a ball whose centre is this near, in radii, is bounded by all that can be asked for
+constexpr int kCutterHalvings = 24;
+constexpr double kShortestPiece = 1e-6;    // mm: shorter pieces are not halved
 
 /// Heights of the flute in ball radii: close above the centre first, where the flute leaves the contact slowly.
 std::vector<double> heights(double R, double top) {
@@ -33,21 +37,8 @@ double least_between(double d0, double d1, double length) {
   return std::min({d0, d1, std::max(g > 0 ? std::sqrt(g) : -INFINITY, steep)});
 }
 
-double line_slack(const ToolMotion& m, double arm_mm, double dt) {
-  // The axis is b / |b| with b linear: with T = 2 tan(half the turn), its second derivative is at most T^2 sqrt(1 + T^2).
-  const double half = std::min(0.5 * (m.axis_to - m.axis_from).norm(), 0.9999);
-  const double T = 2 * half / std::sqrt(1 - half * half);
-  return m.deviation_mm + arm_mm * (m.axis_deviation + T * T * std::sqrt(1 + T * T) * dt * dt / 8);
-}
-
-Vec3 axis_at(const ToolMotion& m, double t) {
-  if (t == 0) return m.axis_from;
-  if (t == 1) return m.axis_to;
-  return ((1 - t) * m.axis_from + t * m.axis_to).normalized();
-}
-
 CutterSweep::CutterSweep(const GearDistance& part, const ToolAssembly& tool, double proof_mm, double tolerance_mm)
-    : part_(part), R_(tool.radius_mm()), top_(tool.flute_length_mm - R_), proof_(proof_mm), tolerance_(tolerance_mm), within_(R_ + std::max(kLook, kLookShare * R_)) {
+    : part_(part), R_(tool.radius_mm()), top_(tool.flute_length_mm - R_), proof_(proof_mm), tolerance_(tolerance_mm), within_(R_ + std::max(kCutterLook, kLookShare * R_)), known_(256) {
   for (const double h : heights(R_, top_)) rows_.push_back({h, false, Vec3::Zero(), 0});
 }
 
@@ -55,7 +46,12 @@ Vec3 CutterSweep::place(double t, double height) const { return tip_at(*m_, t) +
 
 NearestPlace CutterSweep::query(const Vec3& p, double most) {
   ++queries_;
-  return part_.nearest(p, std::min(within_, most + kSearchPad));
+  if (most + kSearchPad < within_) return part_.nearest(p, most + kSearchPad);
+  std::size_t key = 0;
+  for (const double x : {p.x(), p.y(), p.z()}) key = (key ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
+  Known& known = known_[key >> 56];
+  if (known.at != p) known = {p, part_.nearest(p, within_)};
+  return known.nearest;
 }
 
 void CutterSweep::note(const NearestPlace& q, const char* body) {
@@ -89,7 +85,7 @@ CutterFinding CutterSweep::check(const ToolMotion& motion) {
   if (const double height = height_above(); height > 0)
     found_.bound_mm = std::max(-height, found_.measured_mm);
   else
-    flute(ball(0, 1, qa, qb, kDepth));
+    flute(ball(0, 1, qa, qb, kCutterHalvings));
   chained_ = true;
   last_centre_ = b;
   last_ = qb;
@@ -109,12 +105,12 @@ double CutterSweep::ball(double t0, double t1, const NearestPlace& q0, const Nea
   const Vec3 a = place(t0, 0), b = place(t1, 0);
   const double L = (b - a).norm(), slack = line_slack(*m_, R_, t1 - t0);
   const double low = std::min(q0.distance, q1.distance);
-  if (low < kWreck * R_) {
+  if (low < kWreckShare * R_) {
     found_.bound_mm = R_ + within_;
     return -within_;
   }
   const double least = least_between(q0.distance, q1.distance, L);
-  if (settled(least, R_ - low, slack, R_) || depth == 0 || L + slack < kShortest) {
+  if (settled(least, R_ - low, slack, R_) || depth == 0 || L + slack < kShortestPiece) {
     found_.bound_mm = std::max(found_.bound_mm, R_ - least + slack);
     return least - slack;
   }
@@ -161,7 +157,7 @@ void CutterSweep::flute(double low) {
     if (good())
       found_.bound_mm = std::max(found_.bound_mm, R_ - least);
     else
-      patch(0, 1, h, row.height, at(0, h), at(1, h), at(0, row.height), at(1, row.height), kDepth);
+      patch(0, 1, h, row.height, at(0, h), at(1, h), at(0, row.height), at(1, row.height), kCutterHalvings);
     low = high;
     h = row.height;
   }
@@ -179,7 +175,7 @@ void CutterSweep::patch(double t0, double t1, double h0, double h1, double d00, 
   const double slack = line_slack(*m_, R_ + h1, t1 - t0);
   const double low = least_between(d00, d10, L0), high = least_between(d01, d11, L1);
   const double least = least_between(low, high, H), corner = std::min({d00, d10, d01, d11});
-  if (settled(least, R_ - corner, slack, R_ + h0) || depth == 0 || std::max({L0, L1, H}) + slack < kShortest) {
+  if (settled(least, R_ - corner, slack, R_ + h0) || depth == 0 || std::max({L0, L1, H}) + slack < kShortestPiece) {
     found_.bound_mm = std::max(found_.bound_mm, R_ - least + slack);
     return;
   }

@@ -8,6 +8,7 @@
 // time, it bounds the flute between two heights. What the true motion leaves of the straight line is added: docs/proof.md.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -20,14 +21,6 @@ namespace toothpath {
 /// Least distance to any set on a straight line of length `length`, from lower bounds of the distances at its ends. Negative
 /// distances (inside) are bounded by their slope of 1. mm.
 [[nodiscard]] double least_between(double d0, double d1, double length);
-
-/// How far a point `arm_mm` along the tool axis may leave the straight line between its two places when a share `dt` of the
-/// motion is passed through: the stated deviations, and the arc of an axis that turns. mm
-[[nodiscard]] double line_slack(const ToolMotion& motion, double arm_mm, double dt);
-
-/// Normalised linear blend of the axes of a motion, t in [0, 1].
-[[nodiscard]] Vec3 axis_at(const ToolMotion& motion, double t);
-[[nodiscard]] inline Vec3 tip_at(const ToolMotion& motion, double t) { return (1 - t) * motion.tip_from + t * motion.tip_to; }
 
 struct CutterFinding {
   double measured_mm = -INFINITY;  ///< deepest place found; negative: the least gap
@@ -55,6 +48,11 @@ class CutterSweep {
     Vec3 at = Vec3::Zero();
     double distance = 0;
   };
+  /// A distance asked to its full range: neighbouring stretches share their corners.
+  struct Known {
+    Vec3 at = Vec3::Constant(NAN);
+    NearestPlace nearest;
+  };
   [[nodiscard]] Vec3 place(double t, double height) const;
   NearestPlace query(const Vec3& p, double most);
   void note(const NearestPlace& q, const char* body);
@@ -70,6 +68,7 @@ class CutterSweep {
   const GearDistance& part_;
   double R_, top_, proof_, tolerance_, within_;
   std::vector<Row> rows_;
+  std::vector<Known> known_;  ///< by the bits of the place
   bool chained_ = false;
   Vec3 last_centre_ = Vec3::Zero();
   NearestPlace last_;

@@ -13,12 +13,13 @@
 #include "cam/finger_obstacles.h"
 #include "cam/finger_poses.h"
 #include "cam/finger_walls.h"
+#include "cam/gouge_merge.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-constexpr std::size_t kWorstPlaces = 20;
+constexpr std::size_t kChunk = 64;     // motions that one thread checks one after another; the same on any number of threads
 constexpr std::size_t kLookedAt = 16;  // motions whose deepest place is searched
 constexpr double kBelievable = 1.0;  // mm: a larger bound of what is left means a path that is not run
 
@@ -50,11 +51,16 @@ WorstPlace place_of(const BevelGear& gear, const ToolMotion& m, const Vec3& poin
 }
 
 void note_worst(GougeResult& g, WorstPlace place, double limit) {
-  if (place.depth_mm > g.deepest.depth_mm || g.deepest.body.empty()) g.deepest = place;
-  if (place.depth_mm <= limit) return;
-  g.worst.push_back(std::move(place));
-  std::sort(g.worst.begin(), g.worst.end(), [](const WorstPlace& a, const WorstPlace& b) { return a.depth_mm > b.depth_mm; });
-  if (g.worst.size() > kWorstPlaces) g.worst.resize(kWorstPlaces);
+  note_deepest(g, place);
+  if (place.depth_mm > limit) add_worst(g, std::move(place));
+}
+
+/// Nothing cut yet: a bevel gear's depths begin at 0.
+FingerCheckResult nothing_yet(double required_clearance_mm) {
+  FingerCheckResult r;
+  r.gouge = no_motion_yet(required_clearance_mm);
+  r.gouge.measured_mm = r.gouge.bound_mm = 0;
+  return r;
 }
 
 /// Gap between the tip and the blank along the axis, least over a motion and never above the true one. Everything of the tool
@@ -226,6 +232,26 @@ struct FingerGougeCheck::State {
     return out;
   }
 
+  /// Bodies and cutting part along all motions, on all threads: chunks of motions are put together in the order of the program.
+  void judge_motions(std::span<const ToolMotion> local, std::span<MotionDepth> depths, std::span<double> clearances, FingerCheckResult& result) const {
+    std::vector<FingerCheckResult> chunks((local.size() + kChunk - 1) / kChunk);
+    tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t n) {
+      FingerCheckResult chunk = nothing_yet(tol.clearance_mm);
+      for (std::size_t k = n * kChunk; k < std::min(local.size(), (n + 1) * kChunk); ++k)
+        if (const FingerTool* tool = tool_of(local[k].operation)) {
+          const BodiesVerdict bodies = judge_bodies(local[k], *tool, chunk);
+          clearances[k] = bodies.clearance_mm;
+          if (bodies.among_teeth) depths[k] = judge_poses(local[k], *tool, chunk);
+        }
+      chunks[n] = std::move(chunk);
+    });
+    for (const FingerCheckResult& chunk : chunks) {
+      add_result(result.gouge, chunk.gouge);
+      result.root_gouge_mm = std::max(result.root_gouge_mm, chunk.root_gouge_mm);
+      result.tilt_rad = std::max(result.tilt_rad, chunk.tilt_rad);
+    }
+  }
+
   /// The motions with the greatest bounds, looked at on the walls themselves.
   void judge_deepest(std::span<const ToolMotion> local, std::span<const MotionDepth> depths, FingerCheckResult& result) const {
     GougeResult& g = result.gouge;
@@ -268,6 +294,24 @@ struct FingerGougeCheck::State {
     g.bound_mm = std::max(g.bound_mm, g.measured_mm);
   }
 
+  /// Why a motion of a path may not be run; nothing: it may.
+  std::optional<Diagnostic> refusal(const ToolMotion& m, const FingerTool& tool) const {
+    FingerCheckResult one = nothing_yet(tol.clearance_mm);
+    MotionDepth walls;
+    if (judge_bodies(m, tool, one).among_teeth) walls = judge_poses(m, tool, one);
+    const GougeResult& g = one.gouge;
+    const auto refuse = [&](const std::string& what) {
+      return fail_as(DiagnosticKind::verification, "operation {} record {}: {}", m.operation, m.line, what);
+    };
+    if (!g.rapids_clear) return refuse(fmt::format("the rapid goes {:.4f} mm into the {}", g.worst.front().depth_mm, g.worst.front().patch));
+    if (g.clearance_mm < tol.clearance_mm)
+      return refuse(fmt::format("the {} comes within {:.4f} mm of the {}, less than {:.4f}", g.closest.body, g.clearance_mm, g.closest.patch, tol.clearance_mm));
+    if (g.bound_mm > tol.gouge_mm)
+      return refuse(fmt::format("the cutter goes up to {:.4f} mm into {}, more than {:.4f}", g.bound_mm,
+                                walls.bound_mm >= g.bound_mm ? walls.patch : g.deepest.patch, tol.gouge_mm));
+    return std::nullopt;
+  }
+
   std::vector<FingerCut> cuts_of_first_tooth(std::span<const ToolMotion> local) const {
     std::vector<FingerCut> cuts;
     int tooth = -1;
@@ -298,10 +342,7 @@ FingerGougeCheck::~FingerGougeCheck() = default;
 
 FingerCheckResult FingerGougeCheck::verify(std::span<const ToolMotion> given) const {
   const State& s = *state_;
-  FingerCheckResult result;
-  result.gouge.required_clearance_mm = s.tol.clearance_mm;
-  result.gouge.clearance_mm = result.gouge.clearance_measured_mm = std::numeric_limits<double>::infinity();
-  result.gouge.motions = given.size();
+  FingerCheckResult result = nothing_yet(s.tol.clearance_mm);
 
   // Bounds: every motion of every tooth.
   std::vector<ToolMotion> local;
@@ -309,12 +350,8 @@ FingerCheckResult FingerGougeCheck::verify(std::span<const ToolMotion> given) co
   for (const auto& m : given) local.push_back(turned(m, s.gear.pitch()));
   std::vector<State::MotionDepth> depths(local.size());
   std::vector<double> clearances(local.size(), std::numeric_limits<double>::infinity());
-  for (std::size_t k = 0; k < local.size(); ++k)
-    if (const FingerTool* tool = s.tool_of(local[k].operation)) {
-      const State::BodiesVerdict bodies = s.judge_bodies(local[k], *tool, result);
-      clearances[k] = bodies.clearance_mm;
-      if (bodies.among_teeth) depths[k] = s.judge_poses(local[k], *tool, result);
-    }
+  s.judge_motions(local, depths, clearances, result);
+  result.gouge.motions = given.size();
   s.judge_deepest(local, depths, result);
   s.judge_clearance(local, clearances, result.gouge);
 
@@ -339,6 +376,14 @@ FingerCheckResult FingerGougeCheck::verify(std::span<const ToolMotion> given) co
   return result;
 }
 
+GougeResult FingerGougeCheck::rapids(std::span<const ToolMotion> given) const {
+  const State& s = *state_;
+  FingerCheckResult result = nothing_yet(s.tol.clearance_mm);
+  for (const auto& m : given)
+    if (const FingerTool* tool = m.rapid ? s.tool_of(m.operation) : nullptr) s.judge_bodies(turned(m, s.gear.pitch()), *tool, result);
+  return result.gouge;
+}
+
 RidgeResult FingerGougeCheck::ridge(std::span<const ToolMotion> given) const {
   const State& s = *state_;
   std::vector<ToolMotion> local;
@@ -351,22 +396,11 @@ Result<CheckedClPath> FingerGougeCheck::approve(ClPath path) const {
   if (s.error) return *s.error;
   const FingerTool* tool = s.tool_of(path.operation);
   if (!tool) return fail("operation {} is not in the job", path.operation);
-  for (const ToolMotion& m : motions_of(path)) {
-    FingerCheckResult one;
-    one.gouge.clearance_mm = std::numeric_limits<double>::infinity();
-    State::MotionDepth walls;
-    if (s.judge_bodies(m, *tool, one).among_teeth) walls = s.judge_poses(m, *tool, one);
-    const GougeResult& g = one.gouge;
-    const auto refuse = [&](const std::string& what) {
-      return fail_as(DiagnosticKind::verification, "operation {} record {}: {}", path.operation, m.line, what);
-    };
-    if (!g.rapids_clear) return refuse(fmt::format("the rapid goes {:.4f} mm into the {}", g.worst.front().depth_mm, g.worst.front().patch));
-    if (g.clearance_mm < s.tol.clearance_mm)
-      return refuse(fmt::format("the {} comes within {:.4f} mm of the {}, less than {:.4f}", g.closest.body, g.clearance_mm, g.closest.patch,
-                                s.tol.clearance_mm));
-    if (g.bound_mm > s.tol.gouge_mm)
-      return refuse(fmt::format("the cutter goes up to {:.4f} mm into {}, more than {:.4f}", g.bound_mm, walls.bound_mm >= g.bound_mm ? walls.patch : g.deepest.patch, s.tol.gouge_mm));
-  }
+  const std::vector<ToolMotion> motions = motions_of(path);
+  std::vector<std::optional<Diagnostic>> refused(motions.size());
+  tbb::parallel_for(std::size_t{0}, motions.size(), [&](std::size_t k) { refused[k] = s.refusal(motions[k], *tool); });
+  for (auto& diagnostic : refused)  // the first one of the path
+    if (diagnostic) return *diagnostic;
   return CheckedClPath(std::move(path));
 }
 

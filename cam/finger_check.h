@@ -52,8 +52,11 @@ class FingerGougeCheck {
   /// place and depth. The walls that the path ought to cut are not judged here.
   [[nodiscard]] Result<CheckedClPath> approve(ClPath path) const;
 
-  /// Everything, from motions of any tooth space; the wall and ridge measurements use those of the first tooth present.
+  /// Everything, from motions of any tooth space; runs on all threads, same bytes on any number. The wall and ridge measurements use those of the first tooth present.
   [[nodiscard]] FingerCheckResult verify(std::span<const ToolMotion> motions) const;
+
+  /// The rapids among these motions against blank, hub and shaft; the places that are met stand in `worst`.
+  [[nodiscard]] GougeResult rapids(std::span<const ToolMotion> motions) const;
 
   /// Highest ridge left between the walls by these motions.
   [[nodiscard]] RidgeResult ridge(std::span<const ToolMotion> motions) const;

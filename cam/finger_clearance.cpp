@@ -11,10 +11,10 @@
 namespace toothpath {
 namespace {
 
-constexpr int kStations = 128;
-constexpr int kMoments = 4, kAlong = 6, kAcross = 6;  // intervals of the first look
+constexpr int kBodyStations = 128;
+constexpr int kMoments = 4, kBodyAlong = 6, kAcross = 6;  // intervals of the first look
 constexpr double kWindow = kPi / 3;   // rad: of a surface of revolution, to both sides of the body
-constexpr double kFinest = 1e-6;      // mm
+constexpr double kBodyFinest = 1e-6;      // mm
 
 /// Where on a patch and a motion; all three 0 .. 1.
 using At = std::array<double, 3>;
@@ -25,8 +25,8 @@ FingerClearance::Edges FingerClearance::edges_of(const BevelHalf& half) const {
   Edges out;
   out.half = &half;
   std::optional<BevelInverse> near[2];
-  for (int i = 0; i <= kStations; ++i) {
-    const double ell = half.ell_from + (half.ell_to - half.ell_from) * i / kStations;
+  for (int i = 0; i <= kBodyStations; ++i) {
+    const double ell = half.ell_from + (half.ell_to - half.ell_from) * i / kBodyStations;
     std::array<double, 2> azimuth{};
     bool both = true;
     for (int k = 0; k < 2; ++k) {
@@ -122,15 +122,15 @@ FoundGap FingerClearance::least(const Frustum& body, const ToolMotion& m, const 
     const bool turned = p.kind == Patch::Kind::turned;
     const double w_from = turned ? azimuth - kWindow / (2 * kPi) : 0, w_to = turned ? azimuth + kWindow / (2 * kPi) : 1;
     const auto gap = [&](const At& at) { return gap_at(place(p, at[1], at[2]), at[0]); };
-    At step{1.0 / kMoments, 1.0 / kAlong, (w_to - w_from) / kAcross}, at{};
+    At step{1.0 / kMoments, 1.0 / kBodyAlong, (w_to - w_from) / kAcross}, at{};
     double least = std::numeric_limits<double>::infinity();
     for (int i = 0; i <= kMoments; ++i)
-      for (int j = 0; j <= kAlong; ++j)
+      for (int j = 0; j <= kBodyAlong; ++j)
         for (int k = 0; k <= kAcross; ++k)
           if (const At here{i * step[0], j * step[1], w_from + k * step[2]}; gap(here) < least) least = gap(here), at = here;
     if (least - step[0] * way - step[1] * p.size_u - step[2] * p.size_w > best.gap_mm) continue;
     const double size = std::max({step[0] * way, step[1] * p.size_u, step[2] * p.size_w});
-    for (double share = 1; share * size > kFinest;) {
+    for (double share = 1; share * size > kBodyFinest;) {
       const At before = at;
       const double was = least;
       for (std::size_t n = 0; n < 3; ++n)

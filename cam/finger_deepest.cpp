@@ -8,8 +8,8 @@ namespace {
 
 constexpr double kFar = 2.0;         // mm: walls that the motion does not come near
 constexpr double kPiece = 1.0;       // mm: longer motions are looked at in pieces, on which the distance is a bowl
-constexpr int kAlong = 12, kUp = 8;  // intervals of the first look
-constexpr double kFinest = 1e-4;     // share of a first interval at which the search ends
+constexpr int kDeepestAlong = 12, kUp = 8;  // intervals of the first look
+constexpr double kDeepestFinest = 1e-4;     // share of a first interval at which the search ends
 
 /// A wall of a half over the rectangle ell_from .. ell_to, 0 .. 1 from the end of the fillet at the root to the tip of the tooth.
 class WallSearch {
@@ -32,11 +32,11 @@ class WallSearch {
   /// Downhill from the best place of a coarse look between two cone distances.
   [[nodiscard]] Place lowest(double from, double to) const {
     Place best;
-    for (int c = 0; c <= kAlong; ++c)
-      for (int r = 0; r <= kUp; ++r) take(best, from + (to - from) * c / kAlong, double(r) / kUp);
+    for (int c = 0; c <= kDeepestAlong; ++c)
+      for (int r = 0; r <= kUp; ++r) take(best, from + (to - from) * c / kDeepestAlong, double(r) / kUp);
     if (!(best.gap < kFar)) return best;
-    double along = (to - from) / kAlong, up = 1.0 / kUp;
-    for (double share = 1; share > kFinest;) {
+    double along = (to - from) / kDeepestAlong, up = 1.0 / kUp;
+    for (double share = 1; share > kDeepestFinest;) {
       const Place before = best;
       for (const auto& [a, b] : {std::pair{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}, {0.7, 0.7}, {-0.7, 0.7}, {0.7, -0.7}, {-0.7, -0.7}})
         take(best, before.ell + a * along, before.up + b * up);

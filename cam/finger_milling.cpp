@@ -19,9 +19,9 @@ constexpr int kFine = 96;            // intervals on which the chord error of a 
 
 using Centre = CutterCentre<double>;
 
-class Planner {
+class FingerPlanner {
  public:
-  Planner(const BevelGear& gear, const MillingOperation& op, int index, const Tolerances& tol)
+  FingerPlanner(const BevelGear& gear, const MillingOperation& op, int index, const Tolerances& tol)
       : gear_(gear), op_(op), sd_(gear.sin_delta()), cd_(gear.cos_delta()) {
     // The other half is for what posts and proof add. The proof counts a shift of the centre with its leverage.
     chord_ = std::min(op.chord_tolerance_mm, 0.5 * tol.gouge_mm / centre_leverage(gear));
@@ -223,7 +223,7 @@ Result<FingerPlan> plan_finger_operation(const BevelGear& gear, const ToolAssemb
   if (!own) return own.error();
   if (operation.type == OperationType::finger_roughing && !(operation.ridge_mm > 0))
     return fail("ridge = {:.4f} must be positive", operation.ridge_mm);
-  return Planner(*own, operation, operation_index, tolerances).plan();
+  return FingerPlanner(*own, operation, operation_index, tolerances).plan();
 }
 
 }  // namespace toothpath

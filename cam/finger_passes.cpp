@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRidgeShare = 0.85;  // of the allowed ridge that the planner uses
 constexpr double kClearAir = 1.0;     // mm, between cutter and blank beyond the large end
-constexpr int kStations = 32;         // intervals along a half on which the gap between passes is looked at
+constexpr int kGapStations = 32;         // intervals along a half on which the gap between passes is looked at
 
 using Centre = CutterCentre<double>;
 using Trace = BevelTrace<double>;
@@ -173,8 +173,8 @@ std::vector<CentrePass> roughing_passes(const BevelGear& gear, double ridge_mm, 
     const double from = space->smooth(n).front(), end = n + 1 < gear.halves().size() ? gear.corner().R_c : gear.R_e();
     const double to = end + 0.5 * std::max(0.0, space->width(end)) * std::sin(std::abs(space->at(end, 0).beta_c));
     int most = 1;
-    for (int k = 0; k <= kStations; ++k) {
-      const double R = from + (to - from) * k / kStations;
+    for (int k = 0; k <= kGapStations; ++k) {
+      const double R = from + (to - from) * k / kGapStations;
       most = std::max(most, static_cast<int>(std::ceil(0.5 * space->width(R) / finger_gap(gear, R, kRidgeShare * ridge_mm))));
     }
     passes.push_back(space_pass(space, n, 0, "middle"));
@@ -183,8 +183,8 @@ std::vector<CentrePass> roughing_passes(const BevelGear& gear, double ridge_mm, 
         const double mu = side * static_cast<double>(k) / most;
         passes.push_back(space_pass(space, n, mu, fmt::format("fill {:.2f}", mu)));
       }
-    for (int k = 0; k <= kStations; ++k) {
-      const double R = from + (to - from) * k / kStations;
+    for (int k = 0; k <= kGapStations; ++k) {
+      const double R = from + (to - from) * k / kGapStations;
       predicted_mm = std::max(predicted_mm, finger_ridge(gear, R, 0.5 * space->width(R) / most));
     }
   }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <type_traits>
 
 #include "cam/pass_count.h"
@@ -15,9 +16,7 @@ namespace {
 
 constexpr double kLongestRunOut = 1.5;  // way of a run-out along the sheet, of the straight line between its ends
 constexpr double kRootBegin = 2, kRootEnd = 3;  // the root land on the sheet; below it plus fillet and flank, above it minus
-constexpr int kDrawRounds = 6;        // how often all passes are laid anew, closer where a cusp is too high
-
-double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
+constexpr int kDrawRounds = 6;  // how often all passes are laid anew, closer where a cusp is too high
 
 /// Cubic through equally spaced values (Catmull-Rom), value at t in [0, n - 1].
 double smooth(const std::vector<double>& y, double t) {
@@ -30,16 +29,14 @@ double smooth(const std::vector<double>& y, double t) {
   return y1 + 0.5 * x * (y2 - y0 + x * (2 * y0 - 5 * y1 + 4 * y2 - y3 + x * (3 * (y1 - y2) + y3 - y0)));
 }
 
-class Planner {
+class FinishingPlanner {
  public:
-  Planner(const OffsetSheet& sheet, const FinishingOptions& options) : sheet_(sheet), o_(options), count_(sheet, options) {}
+  FinishingPlanner(const OffsetSheet& sheet, const FinishingOptions& options) : sheet_(sheet), o_(options), count_(sheet, options) {}
 
   Result<FinishingPasses> run() {
-    if (sheet_.has_gaps()) {
-      if (auto ok = passes_between_corners(); !ok) return ok.error();
-    } else {
-      if (auto ok = passes_over_all(); !ok) return ok.error();
-    }
+    if (sheet_.has_gaps()) passes_between_corners();
+    else passes_over_all();
+    if (auto ok = make_passes(); !ok) return ok.error();
     return std::move(out_);
   }
 
@@ -47,19 +44,21 @@ class Planner {
   /// Neighbouring passes, each as sigma over the centre radius.
   using Chain = std::vector<std::function<double(double)>>;
 
+  struct MadePass {
+    BallPass pass;
+    double worst_chord_mm = 0;
+  };
+
   /// The whole sheet as one: from both tips downwards, in turn, so that a climbing pass on one flank leads to a climbing pass
   /// on the other. (Counts of single flanks vary more along the tooth than the count of the whole space does.)
-  Status passes_over_all() {
+  void passes_over_all() {
     Chain chain = drawn_together<1>([this] { return std::array{chain_over_all()}; })[0];
     note_cusps(chain);
     const std::size_t all = chain.size(), on_plus = passes_of_plus(chain);
     for (std::size_t i = 0; i < std::max(on_plus, all - on_plus); ++i) {
-      if (i < on_plus)
-        if (auto ok = add_pass(chain[i], true); !ok) return ok;
-      if (i < all - on_plus)
-        if (auto ok = add_pass(chain[all - 1 - i], false); !ok) return ok;
+      if (i < on_plus) add_pass(chain[i], true);
+      if (i < all - on_plus) add_pass(chain[all - 1 - i], false);
     }
-    return Ok{};
   }
 
   [[nodiscard]] Chain chain_over_all() const {
@@ -206,16 +205,25 @@ class Planner {
     return grown;
   }
 
+  /// Asks for a pass; `make_passes` makes all of them. What the curves refer to must live until then.
   template <typename Sigma>
-  Status add_pass(const Sigma& sigma, bool plus, double r_low = -INFINITY, double r_high = INFINITY) {
-    return add_pass(sigma, sigma, plus, r_low, r_high);
+  void add_pass(const Sigma& sigma, bool plus, double r_low = -INFINITY, double r_high = INFINITY) {
+    asked_.push_back([=, this] { return make_pass(sigma, sigma, plus, r_low, r_high); });
   }
   /// Along a corner: the ball touches at `sigma` and at `other`, and the pass is as long as either of the two contacts lies on the ring.
   template <typename Sigma, typename Other>
-  Status add_pass(const Sigma& sigma, const Other& other, bool plus, double r_low, double r_high) {
-    auto pass = make_pass(sigma, other, plus, r_low, r_high);
-    if (!pass) return pass.error();
-    if (pass->points.size() > 1) out_.passes.push_back(std::move(*pass));
+  void add_pass(const Sigma& sigma, const Other& other, bool plus, double r_low, double r_high) {
+    asked_.push_back([=, this] { return make_pass(sigma, other, plus, r_low, r_high); });
+  }
+  /// On all threads; kept in the order in which they were asked for.
+  Status make_passes() {
+    std::vector<std::optional<Result<MadePass>>> made(asked_.size());
+    tbb::parallel_for(std::size_t(0), made.size(), [&](std::size_t k) { made[k] = asked_[k](); });
+    for (auto& pass : made) {
+      if (!*pass) return pass->error();
+      out_.worst_chord_mm = std::max(out_.worst_chord_mm, (*pass)->worst_chord_mm);
+      if ((*pass)->pass.points.size() > 1) out_.passes.push_back(std::move((*pass)->pass));
+    }
     return Ok{};
   }
 
@@ -305,7 +313,7 @@ class Planner {
 
   /// With corners: each flank has its own passes down to its corner, one pass follows every corner, and where the ball reaches
   /// the root land its passes lie between the corners. No pass crosses a corner.
-  Status passes_between_corners() {
+  void passes_between_corners() {
     Corners corners;
     for (const auto& station : sheet_.stations()) {
       corners.plus.push_back(corner_at(station.r, true));
@@ -316,16 +324,14 @@ class Planner {
     note_cusps(on_minus);
     on_minus.pop_back();  // the minus corner comes below, where it is apart from the plus corner
     for (std::size_t i = 0; i < std::max(on_plus.size(), on_minus.size()); ++i) {
-      if (i + 1 == on_plus.size()) {  // along the corner
-        if (auto ok = add_pass(on_plus[i], [this](double r) { return corner_at(r, true).to; }, true, -INFINITY, INFINITY); !ok) return ok;
-      } else if (i < on_plus.size()) {
-        if (auto ok = add_pass(on_plus[i], true); !ok) return ok;
-      }
-      if (i < on_minus.size())
-        if (auto ok = add_pass(on_minus[i], false); !ok) return ok;
+      if (i + 1 == on_plus.size())  // along the corner
+        add_pass(on_plus[i], [this](double r) { return corner_at(r, true).to; }, true, -INFINITY, INFINITY);
+      else if (i < on_plus.size())
+        add_pass(on_plus[i], true);
+      if (i < on_minus.size()) add_pass(on_minus[i], false);
     }
     out_.corner_passes = true;
-    return passes_on_root_land(corners);
+    passes_on_root_land(corners);
   }
 
   /// From corner to corner over the root land, both of them included; where the corners are one, that one.
@@ -341,7 +347,7 @@ class Planner {
   }
 
   /// The minus corner and the root land, over every stretch where they are apart from the plus corner.
-  Status passes_on_root_land(const Corners& corners) {
+  void passes_on_root_land(const Corners& corners) {
     const auto& stations = sheet_.stations();
     const std::size_t n = stations.size();
     for (std::size_t j = 0; j < n;) {
@@ -352,19 +358,16 @@ class Planner {
       std::size_t end = j;
       while (end + 1 < n && !corners.plus[end + 1].one) ++end;
       const double r_low = j > 0 ? stations[j - 1].r : -INFINITY, r_high = end + 1 < n ? stations[end + 1].r : INFINITY;
-      const auto minus_corner = [&](double r) { return corner_at(r, false).to; };
-      if (auto ok = add_pass(minus_corner, [&](double r) { return corner_at(r, false).from; }, false, r_low, r_high); !ok) return ok;
+      add_pass([this](double r) { return corner_at(r, false).to; }, [this](double r) { return corner_at(r, false).from; }, false, r_low, r_high);
       double most = 0;
       for (std::size_t k = j; k <= end; ++k) most = std::max(most, count_.count_at(k, corners.minus[k].from) - count_.count_at(k, corners.plus[k].to));
       int between = int(std::ceil(most - 1e-9));
       Chain land = land_chain(between);
       for (int round = 0; round < kDrawRounds && !high_cusps(land).empty(); ++round) land = land_chain(++between);
       note_cusps(land);
-      for (int i = 1; i < between; ++i)
-        if (auto ok = add_pass(land[std::size_t(i)], 2 * i < between, r_low, r_high); !ok) return ok;
+      for (int i = 1; i < between; ++i) add_pass(land[std::size_t(i)], 2 * i < between, r_low, r_high);
       j = end + 1;
     }
-    return Ok{};
   }
 
   [[nodiscard]] double station_coordinate(double r) const {
@@ -373,7 +376,7 @@ class Planner {
 
   /// The piece of the curve whose contact (one of the two, along a corner) lies on the ring, with the run-out at both ends.
   template <typename Sigma, typename Other>
-  Result<BallPass> make_pass(const Sigma& sigma, const Other& other, bool plus, double r_low, double r_high) {
+  Result<MadePass> make_pass(const Sigma& sigma, const Other& other, bool plus, double r_low, double r_high) const {
     const auto& ring = sheet_.space().ring().zone;
     const auto contact_radius = [&](double at, double r) -> double {
       const auto s = sheet_.at(at, r);
@@ -400,7 +403,7 @@ class Planner {
                   ring.inner_radius_mm, ring.outer_radius_mm);
     // A corner that begins or ends inside the ring: the pass is as long as the corner.
     const double begin = std::max(from, r_low), end = std::min(to, r_high);
-    if (!(end > begin)) return BallPass{};
+    if (!(end > begin)) return MadePass{};
     const auto on_sheet = [&](double r) -> std::optional<BallPass::Point> {
       const auto s = sheet_.at(sigma(r), r);
       if (!s) return {};
@@ -408,13 +411,12 @@ class Planner {
     };
     const auto curve = sample_curve(on_sheet, begin, end, o_.chord_mm, 4.0 * o_.ball_radius_mm);
     if (!curve) return fail("the ball-centre surface cannot be followed between radii {:.4f} and {:.4f}", from, to);
-    out_.worst_chord_mm = std::max(out_.worst_chord_mm, curve->worst_chord_mm);
     BallPass pass;
     pass.points = curve->points;
     add_run_out(pass, on_sheet, from, to, begin == from, end == to);
     pass.outward = plus == o_.climb;
     if (!pass.outward) std::reverse(pass.points.begin(), pass.points.end());
-    return pass;
+    return MadePass{std::move(pass), curve->worst_chord_mm};
   }
 
   /// Not to and fro: its way is that of a curve, not many times the straight line between its ends.
@@ -457,6 +459,7 @@ class Planner {
   const OffsetSheet& sheet_;
   FinishingOptions o_;
   PassCount count_;
+  std::vector<std::function<Result<MadePass>()>> asked_;
   FinishingPasses out_;
 };
 
@@ -467,7 +470,7 @@ Result<FinishingPasses> plan_finishing(const OffsetSheet& sheet, const Finishing
   if (sheet.empty() || sheet.r_from() >= sheet.r_to())
     return fail("the ball centres of a {:.4f} mm ball find no surface between the radii {:.4f} and {:.4f}",
                 options.ball_radius_mm, ring.inner_radius_mm, ring.outer_radius_mm);
-  return Planner(sheet, options).run();
+  return FinishingPlanner(sheet, options).run();
 }
 
 }  // namespace toothpath

@@ -48,4 +48,17 @@ FrustumSlope frustum_slope(const Vec3& x, const Frustum& f) {
   return {q.distance, Vec3(q.d_rho * radial + Vec3(0, 0, q.d_h))};
 }
 
+PlacedFrustum::PlacedFrustum(const Frustum& body, const Vec3& tip, const Vec3& axis)
+    : body_(body), tip_(tip), axis_(axis), widest_(std::max(body.radius_from, body.radius_to)) {}
+
+FrustumSlope PlacedFrustum::slope(const Vec3& point) const {
+  const Vec3 d = point - tip_;
+  const double h = d.dot(axis_);
+  const Vec3 across = d - h * axis_;
+  const double rho = across.norm();
+  const auto q = half_plane(rho, h, body_);
+  const Vec3 radial = rho > 1e-12 ? Vec3(across / rho) : Vec3(0, 0, 0);
+  return {q.distance, Vec3(q.d_rho * radial + q.d_h * axis_)};
+}
+
 }  // namespace toothpath

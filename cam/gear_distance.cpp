@@ -1,25 +1,23 @@
 #include "cam/gear_distance.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "cam/gear_ring.h"
 #include "cam/swept_path.h"
+#include "geometry/base/angle.h"
 #include "geometry/face_gear_inverse.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kTwoPi = 6.283185307179586476925286766559;
 constexpr double kBorder = 1e-9;         // a foot this far beyond the border of a piece (in its parameter) still counts
 // Corrected pieces share their normals to 1e-5 only; a foot so little beyond is about 1e-6 mm wrong.
 constexpr double kCorrectedBorder = 3e-5;
 
-double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
-Vec3 turned(const Vec3& p, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
-}
 
 }  // namespace
 
@@ -49,22 +47,34 @@ struct GearDistance::Impl {
   std::vector<std::unique_ptr<GearRing>> rings;
   double pitch = 0;
   double sag = 0;
+  double groove_floor = 0;  ///< where there are two rings
   std::optional<FaceGearRefusal> refusal;
-  explicit Impl(const FaceGear& g) : gear(g) {}
+  int half_turn = 0;                             ///< teeth
+  std::vector<std::pair<double, double>> turns;  ///< cosine and sine of the turn of every tooth back to space 0, from -half_turn on
+
+  explicit Impl(const FaceGear& g) : gear(g), pitch(g.pitch()), half_turn(g.parameters().teeth / 2 + 1) {
+    for (int k = -half_turn; k <= half_turn; ++k) turns.emplace_back(std::cos(-double(k) * pitch), std::sin(-double(k) * pitch));
+  }
+  [[nodiscard]] Vec3 to_space_0(const Vec3& p, double tooth) const {
+    const auto& [c, s] = turns[std::size_t(int(tooth) + half_turn)];
+    return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
+  }
+  class Question;
 };
 
 GearDistance::GearDistance(const FaceGear& gear, double reach_mm) : impl_(std::make_unique<Impl>(gear)) {
-  impl_->pitch = gear.pitch();
-  for (int zone = 0; zone < int(gear.rings().size()); ++zone) {
-    auto ring = GearRing::make(gear, zone, reach_mm);
-    if (auto* refusal = std::get_if<1>(&ring)) {
+  std::vector<std::optional<std::variant<std::unique_ptr<GearRing>, FaceGearRefusal>>> made(gear.rings().size());
+  tbb::parallel_for(std::size_t(0), made.size(), [&](std::size_t zone) { made[zone] = GearRing::make(gear, int(zone), reach_mm); });
+  for (auto& ring : made) {
+    if (auto* refusal = std::get_if<FaceGearRefusal>(&*ring)) {
       impl_->refusal = std::move(*refusal);
       impl_->rings.clear();
       return;
     }
-    impl_->rings.push_back(std::move(std::get<0>(ring)));
+    impl_->rings.push_back(std::move(std::get<std::unique_ptr<GearRing>>(*ring)));
     impl_->sag = std::max(impl_->sag, impl_->rings.back()->sag);
   }
+  if (impl_->rings.size() > 1) impl_->groove_floor = gear.groove_floor();
 }
 
 GearDistance::~GearDistance() = default;
@@ -89,120 +99,180 @@ double GearDistance::space_azimuth(int zone, double r) const {
   return ring.lookup(ring.mid, r);
 }
 
-NearestPlace GearDistance::nearest(const Vec3& asked, double within) const {
-  NearestPlace best;
-  best.distance = within;
-  best.point = asked;
-  if (impl_->refusal) {
-    best.distance = -within;
-    best.patch = "inside";
-    return best;
+/// One point asked: every ring in turn offers what lies nearest of its sheet, its edges, its ends and lands.
+class GearDistance::Impl::Question {
+ public:
+  Question(const Impl& part, const Vec3& asked, double within) : part_(part), asked_(asked), within_(within), r_(radius(asked)), z_(asked.z()) {
+    best_.distance = within;
+    best_.point = asked;
   }
-  const double r = radius(asked), z = asked.z();
-  const auto take = [&](double d, bool exact, int zone, const char* patch, const Vec3& foot, const Vec3& at) {
-    if (d < best.distance) best = {d, exact, zone, patch, foot, at};
-  };
-  const auto& rings = impl_->rings;
-  for (std::size_t zone = 0; zone < rings.size(); ++zone) {
-    const auto& ring = *rings[zone];
-    const double gap_r = std::max({ring.r_in - r, r - ring.r_out, 0.0});
-    if (gap_r >= best.distance) continue;
-    const double r_here = std::clamp(r, ring.r_in, ring.r_out);
-    const double z_tip = ring.space.surface().z_tip(r_here);
-    if (z - z_tip >= best.distance * 1.5 && std::abs(ring.space.surface().Cg) < 0.5) continue;
-    // The space whose opening lies next: its root may stand off the middle of its opening by a good part of a pitch.
-    const double middle = ring.lookup(ring.opening, r);
-    const double away = std::remainder(std::atan2(asked.y(), asked.x()) - middle, kTwoPi);
-    const double index = std::round(away / impl_->pitch);
-    const Vec3 c = turned(asked, -index * impl_->pitch);
-    const double azimuth = middle + away - index * impl_->pitch;
-    const bool beside = gap_r > 0;
-    const bool in_air = beside || z >= z_tip;  // certainly: neither between the radii of the ring and below its tip
 
-    // Candidates: the nearest cell of every band of every piece, apart for whole cells and for those that reach beyond
-    // the ring: the nearest point of such a one may not exist, and must not hide a farther one that does.
-    struct Seed {
-      double d = INFINITY;
-      std::size_t cell = 0;
-    };
-    std::array<Seed, 2 * kSpacePieces * kBands> seeds;
-    double d_mesh = INFINITY;  // to whole cells
-    const double search = std::min(within, best.distance) + ring.sag;
-    const double slack = 4 * ring.sag + 0.02;  // a facet farther than the nearest by this cannot hold the nearest point
-    ring.index->near(c, search, [&](std::size_t k, double r_query) {
+  NearestPlace answer() {
+    if (part_.refusal) {
+      best_.distance = -within_;
+      best_.patch = "inside";
+      return best_;
+    }
+    for (std::size_t zone = 0; zone < part_.rings.size(); ++zone) ask(zone);
+    grooves();
+    return best_;
+  }
+
+ private:
+  /// The point as one ring sees it.
+  struct View {
+    const GearRing& ring;
+    int zone;
+    Vec3 c;  ///< turned to space 0
+    double azimuth, z_tip, gap_r;
+    [[nodiscard]] bool beside() const { return gap_r > 0; }
+    [[nodiscard]] bool in_air() const { return beside() || c.z() >= z_tip; }  ///< certainly: neither between the radii of the ring and below its tip
+  };
+  /// The nearest cell of every band of every piece, apart for whole cells and for those that reach beyond the ring: the nearest point of
+  /// such a one may not exist, and must not hide a farther one that does.
+  struct Seed {
+    double d = INFINITY;
+    std::size_t cell = 0;
+  };
+  struct Seeds {
+    std::array<Seed, 2 * kSpacePieces * kBands> of_band;
+    double d_mesh = INFINITY;  ///< to whole cells
+    double search = 0, slack = 0;
+  };
+
+  void take(double d, bool exact, int zone, const char* patch, const Vec3& foot, const Vec3& at) {
+    if (d < best_.distance) best_ = {d, exact, zone, patch, foot, at};
+  }
+
+  void ask(std::size_t zone) {
+    const auto& ring = *part_.rings[zone];
+    const double gap_r = std::max({ring.r_in - r_, r_ - ring.r_out, 0.0});
+    if (gap_r >= best_.distance) return;
+    const double z_tip = ring.space.surface().z_tip(std::clamp(r_, ring.r_in, ring.r_out));
+    if (z_ - z_tip >= best_.distance * 1.5 && std::abs(ring.space.surface().Cg) < 0.5) return;
+    // The space whose opening lies next: its root may stand off the middle of its opening by a good part of a pitch.
+    const double middle = ring.lookup(ring.opening, r_);
+    const double away = std::remainder(std::atan2(asked_.y(), asked_.x()) - middle, kTwoPi);
+    const double index = std::round(away / part_.pitch);
+    const View at{ring, int(zone), part_.to_space_0(asked_, index), middle + away - index * part_.pitch, z_tip, gap_r};
+    const Seeds seeds = seeds_of(at);
+    const bool found = sheet(at, seeds);
+    edges(at);
+    // Newton must agree with the facets; where it does not, the facets decide with their sag.
+    if (best_.distance > seeds.d_mesh + 2 * ring.sag + 1e-9) take(seeds.d_mesh - ring.sag, false, at.zone, "flank", at.c, at.c);
+    end_faces(at);
+    land_or_inside(at, found);
+  }
+
+  [[nodiscard]] Seeds seeds_of(const View& at) const {
+    const auto& ring = at.ring;
+    const Vec3& c = at.c;
+    Seeds s;
+    s.search = std::min(within_, best_.distance) + ring.sag;
+    s.slack = 4 * ring.sag + 0.02;  // a facet farther than the nearest by this cannot hold the nearest point
+    ring.index->near(c, s.search, [&](std::size_t k, double r_query) {
       const auto& cell = ring.cells[k];
-      if (!cell.sheet || (c - cell.centre).norm() - cell.radius > std::min(d_mesh + slack, search)) return r_query;
+      if (!cell.sheet || (c - cell.centre).norm() - cell.radius > std::min(s.d_mesh + s.slack, s.search)) return r_query;
       const double d = std::min(distance_to_triangle(c, cell.corner[0], cell.corner[1], cell.corner[2]),
                                 distance_to_triangle(c, cell.corner[1], cell.corner[2], cell.corner[3]));
       const bool border = ring.border[k];
-      if (!border) d_mesh = std::min(d_mesh, d);
+      if (!border) s.d_mesh = std::min(s.d_mesh, d);
       const std::size_t band = (std::size_t(cell.piece) * kBands + std::size_t(cell.band)) * 2 + border;
-      auto& seed = seeds[band];
+      auto& seed = s.of_band[band];
       if (d < seed.d || (d == seed.d && k < seed.cell)) seed = {d, k};
-      return std::min(r_query, d_mesh + slack);
+      return std::min(r_query, s.d_mesh + s.slack);
     });
-    const auto& w = ring.space.surface().shaper;
-    const double border_slack = ring.space.ring().correction ? kCorrectedBorder : kBorder;
-    bool found = false;               // Newton has found the sheet, on the ring or on its continuation
-    double accepted = INFINITY;       // the best foot on the ring
+    return s;
+  }
+
+  /// Newton from every seed that can win. Did it find the sheet, on the ring or on its continuation?
+  bool sheet(const View& at, const Seeds& seeds) {
+    const auto& ring = at.ring;
+    bool found = false;
+    double accepted = INFINITY;                        // the best foot on the ring
     double beyond = INFINITY, beyond_seed = INFINITY;  // signed distance to the continuation
-    for (const auto& seed : seeds) {
+    for (const auto& seed : seeds.of_band) {
       // A seed whose facet is farther than the best exact distance cannot win.
-      if (!(seed.d <= std::min(d_mesh + slack, search))) continue;
+      if (!(seed.d <= std::min(seeds.d_mesh + seeds.slack, seeds.search))) continue;
       if (seed.d - ring.sag > accepted) continue;
       const auto& cell = ring.cells[seed.cell];
-      const auto foot = ring.space.foot(cell.piece, c, cell.u, cell.v);
-      if (!foot) continue;
-      const bool flank = cell.piece == SpacePiece::flank_plus || cell.piece == SpacePiece::flank_minus;
-      if (flank && foot->u > w.theta_t + border_slack) continue;
-      if (!flank && cell.piece != SpacePiece::root && (foot->u < w.A_t - border_slack || foot->u > w.A_e + border_slack)) continue;
-      if (cell.piece == SpacePiece::root && (foot->u < -border_slack || foot->u > 1 + border_slack)) continue;
-      if (foot->distance < 0 && in_air) continue;  // seen through an end of the ring or the tip
+      const auto foot = ring.space.foot(cell.piece, at.c, cell.u, cell.v);
+      if (!foot || !on_piece(ring, cell.piece, foot->u)) continue;
+      if (foot->distance < 0 && at.in_air()) continue;  // seen through an end of the ring or the tip
       found = true;
       if (ring.on_ring(foot->at.p)) {
         accepted = std::min(accepted, foot->distance);
-        take(foot->distance, true, int(zone), to_string(cell.piece), foot->at.p, c);
+        take(foot->distance, true, at.zone, to_string(cell.piece), foot->at.p, at.c);
       } else if (seed.d < beyond_seed) {
         beyond = foot->distance;
         beyond_seed = seed.d;
       }
     }
     // Inside the material beside an end or below a tip edge: the nearest surface is that end or land.
-    if (beyond < 0 && accepted == INFINITY) take(beyond, false, int(zone), "inside", c, c);
-    // Edges of the ring.
-    if (const double look = std::min(within, best.distance) + ring.edge_sag; look > 0)
-      ring.edge_index->near(c, look, [&](std::size_t k, double r_query) {
-        const auto& e = ring.edges[k];
-        take(distance_to_segment(c, e.a, e.b) - e.sag, false, int(zone), e.patch, e.a, c);
-        return r_query;
-      });
-    // Newton must agree with the facets; where it does not, the facets decide with their sag.
-    if (best.distance > d_mesh + 2 * ring.sag + 1e-9) take(d_mesh - ring.sag, false, int(zone), "flank", c, c);
-    // End faces, top lands, and the inside of the material.
-    if (beside) {
-      const auto& profile = r < ring.r_in ? ring.end_in : ring.end_out;
-      if (profile.size() > 2 && in_material(profile, azimuth, z, z_tip))
-        take(gap_r, true, int(zone), "end", c, c);
+    if (beyond < 0 && accepted == INFINITY) take(beyond, false, at.zone, "inside", at.c, at.c);
+    return found;
+  }
+
+  /// Does a foot lie on its piece, not on the continuation beyond its borders?
+  [[nodiscard]] static bool on_piece(const GearRing& ring, SpacePiece piece, double u) {
+    const auto& w = ring.space.surface().shaper;
+    const double slack = ring.space.ring().correction ? kCorrectedBorder : kBorder;
+    switch (piece) {
+      case SpacePiece::flank_plus:
+      case SpacePiece::flank_minus: return u <= w.theta_t + slack;
+      case SpacePiece::root: return u >= -slack && u <= 1 + slack;
+      case SpacePiece::fillet_plus:
+      case SpacePiece::fillet_minus: return u >= w.A_t - slack && u <= w.A_e + slack;
     }
-    if (z >= z_tip) {
+    return false;
+  }
+
+  void edges(const View& at) {
+    const auto& ring = at.ring;
+    const double look = std::min(within_, best_.distance) + ring.edge_sag;
+    if (!(look > 0)) return;
+    ring.edge_index->near(at.c, look, [&](std::size_t k, double r_query) {
+      const auto& e = ring.edges[k];
+      take(distance_to_segment(at.c, e.a, e.b) - e.sag, false, at.zone, e.patch, e.a, at.c);
+      return r_query;
+    });
+  }
+
+  void end_faces(const View& at) {
+    if (!at.beside()) return;
+    const auto& profile = r_ < at.ring.r_in ? at.ring.end_in : at.ring.end_out;
+    if (profile.size() > 2 && in_material(profile, at.azimuth, z_, at.z_tip)) take(at.gap_r, true, at.zone, "end", at.c, at.c);
+  }
+
+  void land_or_inside(const View& at, bool found) {
+    const auto& ring = at.ring;
+    if (z_ >= at.z_tip) {
       double foot = 0;
-      const double d = ring.to_tip_meridian(r, z, foot);
-      if (ring.over_land(azimuth, foot)) take(d, ring.tip_sag == 0, int(zone), "tip", 
-                                              Vec3(c.x() * foot / r, c.y() * foot / r, ring.space.surface().z_tip(foot)), c);
-    } else if (!beside && !found) {
+      const double d = ring.to_tip_meridian(r_, z_, foot);
+      if (ring.over_land(at.azimuth, foot))
+        take(d, ring.tip_sag == 0, at.zone, "tip", Vec3(at.c.x() * foot / r_, at.c.y() * foot / r_, ring.space.surface().z_tip(foot)), at.c);
+    } else if (!at.beside() && !found) {
       // No surface near: either free in a wide space or deep inside the material.
-      if (ring.over_land(azimuth, r) || in_material(ring.profile(r), azimuth, z, z_tip)) take(-within, false, int(zone), "inside", c, c);
+      if (ring.over_land(at.azimuth, r_) || ring.in_material_at(r_, at.azimuth, z_, at.z_tip)) take(-within_, false, at.zone, "inside", at.c, at.c);
     }
   }
-  if (rings.size() > 1) {
-    const double floor_z = impl_->gear.groove_floor();
+
+  void grooves() {
+    const auto& rings = part_.rings;
+    if (rings.size() < 2) return;
+    const double floor_z = part_.groove_floor;
     for (std::size_t zone = 0; zone + 1 < rings.size(); ++zone) {
-      const double gap = std::max({rings[zone]->r_out - r, r - rings[zone + 1]->r_in, 0.0});
-      const double height = z - floor_z;
-      if (gap == 0) take(height, true, int(zone), "groove", Vec3(asked.x(), asked.y(), floor_z), asked);
+      const double gap = std::max({rings[zone]->r_out - r_, r_ - rings[zone + 1]->r_in, 0.0});
+      if (gap == 0) take(z_ - floor_z, true, int(zone), "groove", Vec3(asked_.x(), asked_.y(), floor_z), asked_);
     }
   }
-  return best;
-}
+
+  const Impl& part_;
+  const Vec3& asked_;
+  double within_, r_, z_;
+  NearestPlace best_;
+};
+
+NearestPlace GearDistance::nearest(const Vec3& asked, double within) const { return Impl::Question(*impl_, asked, within).answer(); }
 
 }  // namespace toothpath

@@ -19,11 +19,6 @@ constexpr std::size_t kLandStep = 4;  // of them, along a cell of a land
 constexpr int kLandParts = 4;         // cells across a land
 constexpr int kFloorStrips = 48;      // of the groove floor over a pitch
 
-double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
-Vec3 turned(const Vec3& p, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
-}
 
 /// Makes one ring, step by step.
 class Maker {
@@ -85,6 +80,14 @@ class Maker {
       for (const auto& node : station.nodes)
         profile.push_back({std::atan2(node.at.contact.p.y(), node.at.contact.p.x()), node.at.contact.p.z()});
       R.profiles.push_back(std::move(profile));
+    }
+    for (std::size_t j = 0; j + 1 < R.profiles.size(); ++j) {
+      std::vector<Vec2> steps;
+      for (std::size_t k = 0; k < R.profiles[j].size(); ++k) {
+        const Vec2 step = R.profiles[j + 1][k] - R.profiles[j][k];
+        steps.emplace_back(std::remainder(step.x(), 2 * kPi), step.y());
+      }
+      R.profile_steps.push_back(std::move(steps));
     }
     R.sag *= 2;  // the middle of a cell shows about the largest sag
     for (auto& cell : R.cells) cell.radius += R.sag;
@@ -361,29 +364,36 @@ double GearRing::lookup(const std::vector<double>& y, double r) const {
   return y[k] + (t - double(k)) * (y[k + 1] - y[k]);
 }
 
-std::vector<Vec2> GearRing::profile(double r) const {
+namespace {
+
+/// The profile runs from tip to tip; `point(k)` is a place of it, k < count.
+template <typename Point>
+bool inside_profile(std::size_t count, const Point& point, double azimuth, double z, double z_tip) {
+  if (z >= z_tip) return false;
+  Vec2 a = point(0);
+  if (azimuth <= a.x() || azimuth >= point(count - 1).x()) return true;
+  // Straight up from a place in the material the profile is crossed an odd number of times, also where a flank leans back.
+  bool inside = false;
+  for (std::size_t k = 1; k < count; ++k) {
+    const Vec2 b = point(k);
+    if ((a.x() <= azimuth) != (b.x() <= azimuth) && z < a.y() + (azimuth - a.x()) / (b.x() - a.x()) * (b.y() - a.y())) inside = !inside;
+    a = b;
+  }
+  return inside;
+}
+
+}  // namespace
+
+bool GearRing::in_material_at(double r, double azimuth, double z, double z_tip) const {
   const auto& st = sheet.stations();
   const double last = double(st.size() - 1), t = std::clamp((r - st.front().r) / (st.back().r - st.front().r) * last, 0.0, last);
   const std::size_t j = std::min(std::size_t(t), st.size() - 2);
-  std::vector<Vec2> out = profiles[j];
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    const Vec2 step = profiles[j + 1][k] - out[k];
-    out[k] += (t - double(j)) * Vec2(std::remainder(step.x(), 2 * kPi), step.y());
-  }
-  return out;
+  const auto &at = profiles[j], &step = profile_steps[j];
+  return inside_profile(at.size(), [&, x = t - double(j)](std::size_t k) -> Vec2 { return at[k] + x * step[k]; }, azimuth, z, z_tip);
 }
 
 bool in_material(const std::vector<Vec2>& profile, double azimuth, double z, double z_tip) {
-  if (z >= z_tip) return false;
-  if (azimuth <= profile.front().x() || azimuth >= profile.back().x()) return true;
-  // Straight up from a place in the material the profile is crossed an odd number of times, also where a flank leans back.
-  bool inside = false;
-  for (std::size_t k = 1; k < profile.size(); ++k) {
-    const Vec2 &a = profile[k - 1], &b = profile[k];
-    if ((a.x() <= azimuth) == (b.x() <= azimuth)) continue;
-    if (z < a.y() + (azimuth - a.x()) / (b.x() - a.x()) * (b.y() - a.y())) inside = !inside;
-  }
-  return inside;
+  return inside_profile(profile.size(), [&](std::size_t k) { return profile[k]; }, azimuth, z, z_tip);
 }
 
 }  // namespace toothpath

@@ -38,6 +38,7 @@ struct GearRing {
   std::vector<double> table_r, mid, tip_plus, tip_minus;  ///< azimuths over r
   std::vector<double> opening;                            ///< azimuth of the middle between the tip edges, over r
   std::vector<std::vector<Vec2>> profiles;                ///< (azimuth, z) of the sheet at every station
+  std::vector<std::vector<Vec2>> profile_steps;           ///< from there to the next station, the azimuth the short way round
   std::vector<Vec2> end_in, end_out;                      ///< the same at the ends, tip to tip
   std::vector<std::array<Vec3, 3>> triangles;             ///< of the cells, for bodies
   std::unique_ptr<BodyPatches> patches;                   ///< the same cells on the exact surface
@@ -52,8 +53,9 @@ struct GearRing {
   [[nodiscard]] bool over_land(double azimuth, double r) const;
   /// Distance to the tip surface's meridian in the plane (r, z), from below; `foot` is the radius of its foot.
   [[nodiscard]] double to_tip_meridian(double r, double z, double& foot) const;
-  /// (azimuth, z) across the space at radius r, tip to tip: between the stations, since a conical root rises along the tooth.
-  [[nodiscard]] std::vector<Vec2> profile(double r) const;
+  /// Is the place at radius r inside the material? By the profile across the space there: between the stations, since a conical root
+  /// rises along the tooth.
+  [[nodiscard]] bool in_material_at(double r, double azimuth, double z, double z_tip) const;
   /// A table over the radius.
   [[nodiscard]] double lookup(const std::vector<double>& y, double r) const;
 };

@@ -8,6 +8,8 @@
 
 #include "cam/body_sweep.h"
 #include "cam/cutter_sweep.h"
+#include "cam/gouge_merge.h"
+#include "cam/motion_blend.h"
 #include "cam/path_motions.h"
 #include "cam/rapid_clearance.h"
 
@@ -15,8 +17,7 @@ namespace toothpath {
 namespace {
 
 constexpr std::size_t kChunk = 256;     // motions that one thread checks one after another; the same on any number of threads
-constexpr std::size_t kMostWorst = 20;  // places that are listed
-constexpr double kLook = 0.3;           // mm: gaps of shank and holder are followed this far beyond the clearance
+constexpr double kBodyLook = 0.3;           // mm: gaps of shank and holder are followed this far beyond the clearance
 constexpr double kAhead = 0.4;          // mm: and this much farther where a body is looked at anew, so that later motions need not
 constexpr double kContact = 0.005;  // mm: smaller gaps of shank and holder are followed to proof_mm
 constexpr double kGapStep = 0.02;       // mm: to which the least gap is told
@@ -44,25 +45,11 @@ WorstPlace place_of(const SweptGap& gap, const ToolMotion& m, const char* body) 
   return place_of(q, m, -gap.measured_mm, body);
 }
 
-/// Deepest first; of equal depth the one that comes first in the program.
-void keep_worst(std::vector<WorstPlace>& places) {
-  std::stable_sort(places.begin(), places.end(), [](const WorstPlace& a, const WorstPlace& b) { return a.depth_mm > b.depth_mm; });
-  if (places.size() > kMostWorst) places.resize(kMostWorst);
-}
-
-GougeResult nothing_yet(const GougeCheckOptions& options) {
-  GougeResult r;
-  r.measured_mm = r.bound_mm = -INFINITY;
-  r.clearance_mm = r.clearance_measured_mm = INFINITY;
-  r.required_clearance_mm = options.clearance_mm;
-  return r;
-}
-
 /// Motions that follow one another, checked by one thread.
 class Chunk {
  public:
   Chunk(const GearDistance& part, const std::vector<ToolAssembly>& tools, const GougeCheckOptions& options)
-      : part_(part), tools_(tools), o_(options), out_(nothing_yet(options)) {}
+      : part_(part), tools_(tools), o_(options), out_(no_motion_yet(options.clearance_mm)) {}
 
   void check(const ToolMotion& m, int tool) {
     if (tool != tool_) take(tool);
@@ -70,14 +57,14 @@ class Chunk {
     const auto cut = cutter_->check(m);
     if (cut.measured_mm > out_.measured_mm) {
       out_.measured_mm = cut.measured_mm;
-      out_.deepest = place_of(cut.deepest, m, cut.measured_mm, cut.body);
+      note_deepest(out_, place_of(cut.deepest, m, cut.measured_mm, cut.body));
     }
     if (cut.bound_mm > out_.bound_mm) {
       out_.bound_mm = cut.bound_mm;
       out_.bound_line = m.line;
     }
     if (const double depth = std::max(cut.measured_mm, cut.bound_mm); depth > o_.gouge_tolerance_mm)
-      out_.worst.push_back(place_of(cut.deepest, m, depth, cut.body));
+      add_worst(out_, place_of(cut.deepest, m, depth, cut.body));
     for (Body& body : bodies_) clearance(body, m);
     if (m.rapid) {
       const auto proof = prove_rapid(m, assembly,
@@ -89,16 +76,14 @@ class Chunk {
         w.patch = "blank";
         w.radius_mm = proof.tip.head<2>().norm();
         w.height_mm = proof.tip.z();
-        out_.worst.push_back(w);
+        add_worst(out_, std::move(w));
       }
     }
-    if (out_.worst.size() > 4 * kMostWorst) keep_worst(out_.worst);
     ++out_.motions;
   }
 
   GougeResult finish() {
     take(-1);
-    keep_worst(out_.worst);
     return std::move(out_);
   }
 
@@ -122,7 +107,7 @@ class Chunk {
   }
 
   void clearance(Body& body, const ToolMotion& m) {
-    const double enough = o_.clearance_mm + kLook, arm = std::hypot(body.frustum.to, std::max(body.frustum.radius_from, body.frustum.radius_to));
+    const double enough = o_.clearance_mm + kBodyLook, arm = std::hypot(body.frustum.to, std::max(body.frustum.radius_from, body.frustum.radius_to));
     if (body.known) {
       const auto away = [&](const Vec3& tip, const Vec3& axis) { return (tip - body.tip).norm() + arm * (axis - body.axis).norm(); };
       const double left = body.gap - std::max(away(m.tip_from, m.axis_from), away(m.tip_to, m.axis_to)) - line_slack(m, arm, 1);
@@ -142,7 +127,7 @@ class Chunk {
     out_.clearance_measured_mm = std::min({out_.clearance_measured_mm, gap.measured_mm, enough});
     if (gap.proven_mm < out_.clearance_mm) out_.closest = place_of(gap, m, body.frustum.name);
     out_.clearance_mm = std::min({out_.clearance_mm, gap.proven_mm, enough});
-    if (gap.proven_mm < o_.clearance_mm) out_.worst.push_back(place_of(gap, m, body.frustum.name));
+    if (gap.proven_mm < o_.clearance_mm) add_worst(out_, place_of(gap, m, body.frustum.name));
   }
 
   const GearDistance& part_;
@@ -153,26 +138,6 @@ class Chunk {
   std::optional<CutterSweep> cutter_;
   std::vector<Body> bodies_;
 };
-
-/// Adds what a later chunk found.
-void add(GougeResult& all, const GougeResult& r) {
-  if (r.measured_mm > all.measured_mm) {
-    all.measured_mm = r.measured_mm;
-    all.deepest = r.deepest;
-  }
-  if (r.bound_mm > all.bound_mm) {
-    all.bound_mm = r.bound_mm;
-    all.bound_line = r.bound_line;
-  }
-  if (r.clearance_mm < all.clearance_mm) all.closest = r.closest;
-  all.clearance_mm = std::min(all.clearance_mm, r.clearance_mm);
-  all.clearance_measured_mm = std::min(all.clearance_measured_mm, r.clearance_measured_mm);
-  all.rapids_clear = all.rapids_clear && r.rapids_clear;
-  all.worst.insert(all.worst.end(), r.worst.begin(), r.worst.end());
-  if (all.worst.size() > 4 * kMostWorst) keep_worst(all.worst);
-  all.motions += r.motions;
-  all.distance_queries += r.distance_queries;
-}
 
 }  // namespace
 
@@ -187,9 +152,8 @@ GougeResult GougeCheck::check(const std::vector<ToolMotion>& motions, const std:
       chunk.check(motions[k], tool_of_operation[std::size_t(motions[k].operation)]);
     chunks[n] = chunk.finish();
   });
-  GougeResult out = nothing_yet(options_);
-  for (const auto& chunk : chunks) add(out, chunk);
-  keep_worst(out.worst);
+  GougeResult out = no_motion_yet(options_.clearance_mm);
+  for (const auto& chunk : chunks) add_result(out, chunk);
   return out;
 }
 

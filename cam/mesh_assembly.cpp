@@ -6,8 +6,8 @@
 namespace toothpath {
 namespace {
 
-constexpr std::size_t kWindow = 16;     // poses that share their candidates
-constexpr double kWindowReach = 1.6;    // mm
+constexpr std::size_t kPoseWindow = 16;     // poses that share their candidates
+constexpr double kPoseWindowReach = 1.6;    // mm
 constexpr double kMostAhead = 16;       // mm
 constexpr double kLeastAhead = 0.25;
 
@@ -61,7 +61,7 @@ void MeshAssembly::cutting_part(std::span<const ToolPose> poses, std::span<doubl
   const auto centre = [&](std::size_t k) -> Vec3 { return poses[k].tip + radius_ * poses[k].axis - origin; };
   for (std::size_t from = 0, to = 0; from < poses.size(); from = to) {
     to = from + 1;
-    while (to < poses.size() && to - from < kWindow && motion_between(poses[from], poses[to], arm) < kWindowReach) ++to;
+    while (to < poses.size() && to - from < kPoseWindow && motion_between(poses[from], poses[to], arm) < kPoseWindowReach) ++to;
     const ToolPose& middle = poses[from + (to - from) / 2];
     const Vec3 c = centre(from + (to - from) / 2);
     double half = 0;

@@ -3,35 +3,34 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cam/motion_blend.h"
+
 namespace toothpath {
 namespace {
 
-constexpr int kDepth = 40;
+constexpr int kMeshHalvings = 40;
 constexpr double kOnAxis = 1e-3;  // mm: a draw back that leaves its axis by less
 
-struct Stretch {
+struct MeshStretch {
   Vec3 tip, axis;  ///< in its middle
   double tips = 0, axes = 0;  ///< how far tip [mm] and axis are from there at most
   const ToolMotion* motion = nullptr;
   [[nodiscard]] double reach(double arm) const { return tips + arm * axes; }
 };
 
-Vec3 tip_at(const ToolMotion& m, double t) { return (1 - t) * m.tip_from + t * m.tip_to; }
-Vec3 axis_at(const ToolMotion& m, double t) { return ((1 - t) * m.axis_from + t * m.axis_to).normalized(); }
-
 /// A piece t0..t1 of one motion.
-Stretch stretch_of(const ToolMotion& m, double t0, double t1) {
+MeshStretch stretch_of(const ToolMotion& m, double t0, double t1) {
   const double t = 0.5 * (t0 + t1);
-  Stretch s{tip_at(m, t), axis_at(m, t), 0, 0, &m};
+  MeshStretch s{tip_at(m, t), axis_at(m, t), 0, 0, &m};
   s.tips = 0.5 * (tip_at(m, t1) - tip_at(m, t0)).norm() + m.deviation_mm;
   s.axes = std::max((axis_at(m, t0) - s.axis).norm(), (axis_at(m, t1) - s.axis).norm()) + m.axis_deviation;
   return s;
 }
 
 /// Several motions about the middle one.
-Stretch stretch_of(std::span<const ToolMotion> motions) {
+MeshStretch stretch_of(std::span<const ToolMotion> motions) {
   const ToolMotion& m = motions[motions.size() / 2];
-  Stretch s{tip_at(m, 0.5), axis_at(m, 0.5), 0, 0, &m};
+  MeshStretch s{tip_at(m, 0.5), axis_at(m, 0.5), 0, 0, &m};
   for (const auto& k : motions) {
     s.tips = std::max(s.tips, std::max((k.tip_from - s.tip).norm(), (k.tip_to - s.tip).norm()) + k.deviation_mm);
     s.axes = std::max(s.axes, std::max((k.axis_from - s.axis).norm(), (k.axis_to - s.axis).norm()) + k.axis_deviation);
@@ -55,7 +54,7 @@ class BodyWatch {
 
   void motions(std::span<const ToolMotion> m) {
     if (m.empty()) return;
-    if (m.size() == 1) return piece(m[0], 0, 1, kDepth);
+    if (m.size() == 1) return piece(m[0], 0, 1, kMeshHalvings);
     if (settled(stretch_of(m), false)) return;
     motions(m.subspan(0, m.size() / 2));
     motions(m.subspan(m.size() / 2));
@@ -70,7 +69,7 @@ class BodyWatch {
     piece(m, t, t1, depth - 1);
   }
   /// Is enough known about a stretch? Notes what it proves.
-  bool settled(const Stretch& s, bool last) {
+  bool settled(const MeshStretch& s, bool last) {
     const double reach = s.reach(arm_), within = rule_ + o_.look_mm + reach;
     const MeshPlace place = gap(s, within);
     if (place.distance >= within && !inside(s)) return true;
@@ -83,17 +82,17 @@ class BodyWatch {
     note(s, place, measured, hit ? std::min(measured, 0.0) : proven);
     return true;
   }
-  void note(const Stretch& s, const MeshPlace& place, double measured, double proven) {
+  void note(const MeshStretch& s, const MeshPlace& place, double measured, double proven) {
     if (worst && worst->gap_mm <= proven) return;
     worst = MeshMeeting{proven, measured, body_.name, s.motion->operation, s.motion->tooth, s.motion->line, s.motion->rapid, index_, place.foot};
   }
   /// A body that the surface does not come near is inside or outside as a whole.
-  [[nodiscard]] bool inside(const Stretch& s) const {
+  [[nodiscard]] bool inside(const MeshStretch& s) const {
     const double h = credited() ? around_.to : 0.5 * (around_.from + body_.ball_mm + around_.to);
     return mesh_.inside(s.tip + h * s.axis);
   }
   [[nodiscard]] bool credited() const { return withdrawal_.has_value() && body_.cuts(); }
-  [[nodiscard]] MeshPlace gap(const Stretch& s, double within) const {
+  [[nodiscard]] MeshPlace gap(const MeshStretch& s, double within) const {
     if (body_.ball_mm > 0 && !credited()) {
       const double R = body_.ball_mm;
       MeshPlace place = mesh_.to_segment(s.tip + R * s.axis, s.axis, std::max(0.0, around_.to - R), within + R);

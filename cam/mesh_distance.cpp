@@ -7,11 +7,11 @@
 namespace toothpath {
 namespace {
 
-std::atomic<std::size_t> built_count{0};
+std::atomic<std::size_t> distances_built{0};
 
-constexpr double kPad = 1e-9;              // mm: rounding of bounds
-constexpr std::size_t kWindow = 16;        // places that share their candidates
-constexpr double kWindowReach = 1.6;       // mm: a longer window looks at too much
+constexpr double kBoundPad = 1e-9;              // mm: rounding of bounds
+constexpr std::size_t kPlaceWindow = 16;        // places that share their candidates
+constexpr double kPlaceWindowReach = 1.6;       // mm: a longer window looks at too much
 
 /// Crossings of the ray p + t d, t > 0, with the triangles; -1: one of them is too close to an edge to tell.
 class RayParity {
@@ -30,11 +30,11 @@ class RayParity {
     for (int lane = 0; lane < kLanes; ++lane) {
       double from = 0, to = INFINITY;
       for (int k = 0; k < 3; ++k) {
-        const double x = (node.low[k][lane] - kPad - p_[k]) / d_[k], y = (node.high[k][lane] + kPad - p_[k]) / d_[k];
+        const double x = (node.low[k][lane] - kBoundPad - p_[k]) / d_[k], y = (node.high[k][lane] + kBoundPad - p_[k]) / d_[k];
         from = std::max(from, std::min(x, y));
         to = std::min(to, std::max(x, y));
       }
-      if (from <= to * (1 + 1e-12) + kPad && node.low[0][lane] < 1e149) visit(node.child[lane]);
+      if (from <= to * (1 + 1e-12) + kBoundPad && node.low[0][lane] < 1e149) visit(node.child[lane]);
     }
   }
   void block(const TriangleBlock& b) {
@@ -145,10 +145,10 @@ double segment_to_triangle(const Vec3& a, const Vec3& axis, double height, const
 
 void MeshWindow::gather(const TreeView& tree, const CapsuleView& middle, double reach) {
   if (blocks_.size() < 64) blocks_.resize(64);
-  std::size_t count = mesh_kernels().gather(tree, middle, reach + kPad, blocks_.data(), blocks_.size());
+  std::size_t count = mesh_kernels().gather(tree, middle, reach + kBoundPad, blocks_.data(), blocks_.size());
   if (count > blocks_.size()) {
     blocks_.resize(2 * count);
-    count = mesh_kernels().gather(tree, middle, reach + kPad, blocks_.data(), blocks_.size());
+    count = mesh_kernels().gather(tree, middle, reach + kBoundPad, blocks_.data(), blocks_.size());
   }
   groups_.resize((count + kLanes - 1) / kLanes);
   for (std::size_t k = 0; k < groups_.size() * kLanes; ++k) {
@@ -167,9 +167,9 @@ void MeshWindow::gather(const TreeView& tree, const CapsuleView& middle, double 
   }
 }
 
-MeshDistance::MeshDistance(const TriangleMesh& mesh) : tree_(mesh) { ++built_count; }
+MeshDistance::MeshDistance(const TriangleMesh& mesh) : tree_(mesh) { ++distances_built; }
 
-std::size_t MeshDistance::built() { return built_count; }
+std::size_t MeshDistance::built() { return distances_built; }
 
 MeshPlace MeshDistance::nearest(const Vec3& p, double within) const {
   MeshPlace place{within, -1, p};
@@ -195,7 +195,7 @@ void MeshDistance::nearest_along(std::span<const Vec3> path, double within, std:
   TriangleHit near{};
   for (std::size_t from = 0, to = 0; from < path.size(); from = to) {
     to = from + 1;
-    while (to < path.size() && to - from < kWindow && (path[to] - path[from]).norm() < kWindowReach) ++to;
+    while (to < path.size() && to - from < kPlaceWindow && (path[to] - path[from]).norm() < kPlaceWindowReach) ++to;
     const Vec3 middle = 0.5 * (path[from] + path[to - 1]) - tree_.origin();
     double half = 0;
     for (std::size_t k = from; k < to; ++k) half = std::max(half, (path[k] - tree_.origin() - middle).norm());

@@ -14,7 +14,6 @@ constexpr int kNodes[kSpacePieces] = {56, 28, 8, 28, 56};
 // A crossing closer than this in sigma is one place seen from two pieces, or too small to hold a thousandth of a micrometre.
 constexpr double kLeastGap = 0.01;
 
-double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 
 /// Crossing of segments a0 a1 and b0 b1; parameters in [0, 1] or nothing.
 std::optional<std::pair<double, double>> crossing(const Vec2& a0, const Vec2& a1, const Vec2& b0, const Vec2& b1) {

@@ -12,7 +12,6 @@ using First = Dual<Interval, 2>;  // value and first derivatives over a box
 using Second = Dual<First, 2>;    // and second derivatives
 
 constexpr int kSampled = 5;          // second differences along each side of a box of a corrected patch
-constexpr double kSampleDoubt = 3;
 constexpr double kUnit = 1 + 1e-14;  // covers the rounding of a few operations
 
 /// A parameter that moves by (da, db) with the two coordinates.

@@ -39,6 +39,9 @@ struct PatchBend {
   static std::optional<PatchBend> of(const std::array<std::array<Interval, 3>, 3>& second);
 };
 
+/// Second differences that are sampled, not proven, are taken this many times.
+inline constexpr double kSampleDoubt = 3;
+
 /// A vector known up to a distance.
 struct VectorBound {
   Vec3 middle = Vec3::Zero();

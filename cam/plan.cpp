@@ -1,5 +1,7 @@
 #include "cam/plan.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -59,9 +61,15 @@ class JobPlanner {
       path.spindle_rpm = op.speed_rpm;
       OperationPlan summary;
       summary.operation = int(n);
-      for (int zone = 0; zone < part_.zones(); ++zone) {
-        if (progress_) progress_(std::string(to_string(op.type)) + ", zone " + std::to_string(zone));
-        if (auto refusal = plan_zone(int(n), zone, path, summary)) return *refusal;
+      if (progress_) progress_(to_string(op.type));
+      // Rings know nothing of each other's passes; directions and links follow in order, each on all threads.
+      std::vector<std::optional<std::variant<ZonePasses, PlanRefusal>>> zones(std::size_t(part_.zones()));
+      as_stage("tool passes", [&] {
+        tbb::parallel_for(std::size_t(0), zones.size(), [&](std::size_t zone) { zones[zone] = plan_passes(int(n), int(zone)); });
+      });
+      for (std::size_t zone = 0; zone < zones.size(); ++zone) {
+        if (const auto* refusal = std::get_if<PlanRefusal>(&*zones[zone])) return *refusal;
+        if (auto refusal = lead_tool(int(n), int(zone), std::get<ZonePasses>(*zones[zone]), path, summary)) return *refusal;
       }
       if (n + 1 < operations_.size()) {
         const double radius = tools_[std::size_t(op.tool)].radius_mm();
@@ -74,107 +82,120 @@ class JobPlanner {
   }
 
  private:
-  std::optional<PlanRefusal> plan_zone(int n, int zone, ClPath& path, OperationPlan& summary) {
-    const auto& op = operations_[std::size_t(n)];
-    const auto& tool = tools_[std::size_t(op.tool)];
-    const std::string key = "operation[" + std::to_string(n) + "]";
-    const double R = tool.radius_mm(), delta = R + op.allowance_mm;
-    const auto& space = part_.space(zone);
-    const auto& ring = space.ring().zone;
+  /// What an operation does in one zone, before the tool has a direction.
+  struct ZonePasses {
+    OffsetSheet sheet;
+    std::vector<BallPass> passes;
+    OperationPlan summary;  ///< of this zone alone
+  };
+  [[nodiscard]] static std::string key_of(int n) { return "operation[" + std::to_string(n) + "]"; }
+  [[nodiscard]] const MillingOperation& operation(int n) const { return operations_[std::size_t(n)]; }
+  [[nodiscard]] const ToolAssembly& tool_of(int n) const { return tools_[std::size_t(operation(n).tool)]; }
 
-    // How far the ball may go beyond the ends: free into the air, limited where the other ring of teeth stands.
+  [[nodiscard]] std::variant<ZonePasses, PlanRefusal> plan_passes(int n, int zone) const {
+    const auto& op = operation(n);
+    const auto& tool = tool_of(n);
+    const double R = tool.radius_mm(), delta = R + op.allowance_mm;
+    const auto& ring = part_.space(zone).ring().zone;
     const bool roughing = op.type == OperationType::roughing;
-    const double wanted = roughing ? 0.6 * delta + 0.1 : 0.5 * R;
+    // How far the ball may go beyond the ends: free into the air, limited where the other ring of teeth stands.
+    const double wanted = roughing ? 0.6 * delta + 0.1 : 0.5 * R, room = room_beyond(zone, roughing, R, delta, wanted);
+    if (room < 0.05 * wanted)
+      return PlanRefusal{key_of(n) + ".tool", fail("a ball of {:.4f} mm has no room to run out into the relief groove of zone {}: the way "
+                                                   "left is {:.4f} mm, at least {:.4f} mm is needed",
+                                                   2 * R, zone, room, 0.05 * wanted)};
+    const double margin = std::max(delta, room) + 0.1;
+    ZonePasses out{OffsetSheet(part_.space(zone), roughing ? delta + kRoughingPad : delta, ring.inner_radius_mm - margin,
+                               ring.outer_radius_mm + margin, roughing ? 65 : 33),
+                   {}, {}};
+    if (auto refusal = check_width(out.sheet, key_of(n), zone, tool)) return *refusal;
+    if (auto refusal = roughing ? rough(n, room, out) : finish(n, zone, room, out)) return *refusal;
+    out.summary.passes = int(out.passes.size());
+    return out;
+  }
+
+  /// Way that a ball has beyond the ends of a zone, at most `wanted`. mm
+  [[nodiscard]] double room_beyond(int zone, bool roughing, double R, double delta, double wanted) const {
+    const auto& ring = part_.space(zone).ring().zone;
     double room = wanted;
-    const auto& rings = part_.gear().rings();
-    for (const auto& other : rings) {
+    for (const auto& other : part_.gear().rings()) {
       const double gap = std::max(other.zone.inner_radius_mm - ring.outer_radius_mm, ring.inner_radius_mm - other.zone.outer_radius_mm);
       if (gap <= 0) continue;
       // The centre of a ball in contact at the end lies at most 0.7 delta beyond it.
       room = std::min(room, roughing ? gap - R - 0.1 : gap - 1.7 * delta - 0.05);
     }
-    if (room < 0.05 * wanted)
-      return PlanRefusal{key + ".tool", fail("a ball of {:.4f} mm has no room to run out into the relief groove of zone {}: the way "
-                                             "left is {:.4f} mm, at least {:.4f} mm is needed",
-                                             2 * R, zone, room, 0.05 * wanted)};
+    return room;
+  }
 
-    const double margin = std::max(delta, room) + 0.1;
-    const OffsetSheet sheet(space, roughing ? delta + kRoughingPad : delta, ring.inner_radius_mm - margin,
-                            ring.outer_radius_mm + margin, roughing ? 65 : 33);
-    if (auto refusal = check_width(sheet, key, zone, tool)) return refusal;
+  [[nodiscard]] std::optional<PlanRefusal> rough(int n, double room, ZonePasses& out) const {
+    const auto& op = operation(n);
+    RoughingOptions r;
+    r.ball_radius_mm = tool_of(n).radius_mm();
+    r.allowance_mm = op.allowance_mm;
+    r.step_down_mm = op.step_down_mm;
+    r.step_over_mm = op.step_over_mm;
+    r.chord_mm = std::min(kChordShare * op.chord_tolerance_mm, chord_room(op));
+    r.overrun_mm = room;
+    r.blank_top_mm = part_.gear().blank_top();
+    r.climb = op.climb;
+    std::vector<const SweptPath*> cleared;
+    for (const auto& c : cleared_) cleared.push_back(c.get());
+    auto planned = plan_roughing(out.sheet, r, cleared);
+    if (!planned) return PlanRefusal{key_of(n) + ".tool", planned.error()};
+    out.passes = std::move(planned->passes);
+    out.summary.layers = planned->layers;
+    out.summary.skipped_passes = planned->skipped;
+    out.summary.chord_mm = r.chord_mm;
+    return {};
+  }
 
-    std::vector<BallPass> passes;
-    if (roughing) {
-      RoughingOptions r;
-      r.ball_radius_mm = R;
-      r.allowance_mm = op.allowance_mm;
-      r.step_down_mm = op.step_down_mm;
-      r.step_over_mm = op.step_over_mm;
-      r.chord_mm = std::min(kChordShare * op.chord_tolerance_mm, chord_room(op));
-      r.overrun_mm = room;
-      r.blank_top_mm = part_.gear().blank_top();
-      r.climb = op.climb;
-      std::vector<const SweptPath*> cleared;
-      for (const auto& c : cleared_) cleared.push_back(c.get());
-      auto planned = plan_roughing(sheet, r, cleared);
-      if (!planned) return PlanRefusal{key + ".tool", planned.error()};
-      passes = std::move(planned->passes);
-      summary.layers = std::max(summary.layers, planned->layers);
-      summary.skipped_passes += planned->skipped;
-      summary.chord_mm = std::max(summary.chord_mm, r.chord_mm);
-    } else {
-      FinishingOptions f;
-      f.ball_radius_mm = R;
-      f.allowance_mm = op.allowance_mm;
-      f.scallop_mm = op.scallop_mm;
-      f.chord_mm = kChordShare * op.chord_tolerance_mm;
-      f.chord_mm = std::min(f.chord_mm, chord_room(op));
-      f.run_out_mm = room;
-      f.climb = op.climb;
-      auto planned = plan_finishing(sheet, f);
-      if (!planned) return PlanRefusal{key + ".tool", planned.error()};
-      passes = std::move(planned->passes);
-      const auto distance = [&](const Vec3& centre) { return part_.nearest(centre, delta + 0.01).distance; };
-      for (auto& pass : plan_corner_ends(sheet, f, distance)) passes.push_back(std::move(pass));
-      summary.scallop_max_mm = std::max(summary.scallop_max_mm, planned->scallop_max_mm);
-      summary.crest_lean = std::max(summary.crest_lean, planned->crest_lean);
-      summary.chord_mm = std::max(summary.chord_mm, planned->worst_chord_mm);
-      summary.corner_passes = summary.corner_passes || planned->corner_passes;
-      if (auto refusal = check_passes(passes, tool, key, zone)) return refusal;
-      trim_run_outs(passes, R, op.allowance_mm);
-    }
-    summary.passes += int(passes.size());
-    if (passes.empty()) return {};
+  [[nodiscard]] std::optional<PlanRefusal> finish(int n, int zone, double room, ZonePasses& out) const {
+    const auto& op = operation(n);
+    const auto& tool = tool_of(n);
+    FinishingOptions f;
+    f.ball_radius_mm = tool.radius_mm();
+    f.allowance_mm = op.allowance_mm;
+    f.scallop_mm = op.scallop_mm;
+    f.chord_mm = kChordShare * op.chord_tolerance_mm;
+    f.chord_mm = std::min(f.chord_mm, chord_room(op));
+    f.run_out_mm = room;
+    f.climb = op.climb;
+    auto planned = plan_finishing(out.sheet, f);
+    if (!planned) return PlanRefusal{key_of(n) + ".tool", planned.error()};
+    out.passes = std::move(planned->passes);
+    const auto distance = [&](const Vec3& centre) { return part_.nearest(centre, f.ball_radius_mm + op.allowance_mm + 0.01).distance; };
+    for (auto& pass : plan_corner_ends(out.sheet, f, distance)) out.passes.push_back(std::move(pass));
+    out.summary.scallop_max_mm = planned->scallop_max_mm;
+    out.summary.crest_lean = planned->crest_lean;
+    out.summary.chord_mm = planned->worst_chord_mm;
+    out.summary.corner_passes = planned->corner_passes;
+    if (auto refusal = check_passes(out.passes, tool, key_of(n), zone)) return refusal;
+    trim_run_outs(out.passes, f.ball_radius_mm, op.allowance_mm);
+    return {};
+  }
 
-    if (!bodies_) bodies_ = std::make_unique<BodyTree>(part_);
-    OrientationOptions turning;
-    turning.clearance_mm = o_.clearance_mm;
-    turning.least_tilt_rad = o_.least_tilt_rad;
-    turning.chord_mm = kTurnShare * std::min(op.chord_tolerance_mm, chord_room(op));
+  static void add(OperationPlan& all, const OperationPlan& zone, bool finishing) {
+    all.layers = std::max(all.layers, zone.layers);
+    all.skipped_passes += zone.skipped_passes;
+    all.chord_mm = std::max(all.chord_mm, zone.chord_mm);
+    all.corner_passes = all.corner_passes || zone.corner_passes;
+    all.passes += zone.passes;
+    if (!finishing) return;
+    all.scallop_max_mm = std::max(all.scallop_max_mm, zone.scallop_max_mm);
+    all.crest_lean = std::max(all.crest_lean, zone.crest_lean);
+  }
+
+  /// Tool directions for the passes of a zone, and the links between them: its records.
+  [[nodiscard]] std::optional<PlanRefusal> lead_tool(int n, int zone, ZonePasses& made, ClPath& path, OperationPlan& summary) {
+    add(summary, made.summary, operation(n).type != OperationType::roughing);
+    if (made.passes.empty()) return {};
     LinkingOptions link;
     DirectionChoice direction;
-    const bool prescribed = !op.axis_plus.empty();
-    if (!prescribed) direction = choose_direction(part_, *bodies_, zone, sheet, passes, tool, {o_.clearance_mm, 0.01});
-    direction.operation = n;
-    direction.zone = zone;
-    if (prescribed) {
-      auto made = prescribe(zone, tool, op, turning, passes);
-      if (const auto* refusal = std::get_if<OrientationRefusal>(&made))
-        return PlanRefusal{key + ".tool_axis", fail("tool {} in zone {}: {}", tool.number, zone, refusal->reason)};
-      describe_prescribed(std::get<Orientation>(made), direction);
-      link.axes = std::move(std::get<Orientation>(made).axes);
-    } else if (!direction.fixed) {
-      auto oriented = orient(zone, tool, turning, passes);
-      if (const auto* refusal = std::get_if<OrientationRefusal>(&oriented)) {
-        plan_.directions.push_back(direction);
-        return PlanRefusal{key + ".tool", fail("tool {} in zone {}: {}; {}", tool.number, zone, direction.explanation, refusal->reason)};
-      }
-      auto& orientation = std::get<Orientation>(oriented);
-      describe(orientation, direction);
-      link.axes = std::move(orientation.axes);
-    }
+    if (auto refusal = direct(n, zone, made, direction, link.axes)) return refusal;
     plan_.directions.push_back(direction);
-
+    const auto& op = operation(n);
+    const double R = tool_of(n).radius_mm();
+    const auto& ring = part_.space(zone).ring().zone;
     link.ball_radius_mm = R;
     link.axis = direction.axis;
     link.clearance_height_mm = part_.gear().blank_top() + o_.rapid_clearance_mm;
@@ -184,32 +205,67 @@ class JobPlanner {
     link.inner_radius_mm = ring.inner_radius_mm;
     link.outer_radius_mm = ring.outer_radius_mm;
     link.zone = zone;
-    link.bodies = shank_and_holder(tool);
+    link.bodies = shank_and_holder(tool_of(n));
     const auto bodies_are_clear = [&](const Vec3& centre, const Vec3& axis) {
       return bodies_->clear(link.bodies, centre - R * axis, axis, o_.clearance_mm + kTurnMargin, 0.01);
     };
-    link_passes(passes, link, [&](const Vec3& a, const Vec3& b) { return hop_is_clear(a, b, R, op.allowance_mm); }, path.records,
-                bodies_are_clear);
+    as_stage("links", [&] {
+      link_passes(made.passes, link, [&](const Vec3& a, const Vec3& b) { return hop_is_clear(a, b, R, op.allowance_mm); }, path.records,
+                  bodies_are_clear);
+    });
     return {};
   }
 
-  /// Simultaneous axes for one zone, as a stage of its own.
-  std::variant<Orientation, OrientationRefusal> orient(int zone, const ToolAssembly& tool, const OrientationOptions& options,
-                                                       std::vector<BallPass>& passes) const {
-    return as_stage([&] { return orient_passes(part_, *bodies_, zone, tool, options, passes); });
+  /// One direction for the whole zone, or axes for every point: as prescribed, or where no fixed direction is clear.
+  [[nodiscard]] std::optional<PlanRefusal> direct(int n, int zone, ZonePasses& made, DirectionChoice& direction, std::vector<std::vector<Vec3>>& axes) {
+    const auto& op = operation(n);
+    const auto& tool = tool_of(n);
+    OrientationOptions turning;
+    turning.clearance_mm = o_.clearance_mm;
+    turning.least_tilt_rad = o_.least_tilt_rad;
+    turning.chord_mm = kTurnShare * std::min(op.chord_tolerance_mm, chord_room(op));
+    const bool prescribed = !op.axis_plus.empty();
+    as_stage("tool direction", [&] {
+      if (!bodies_) bodies_ = std::make_unique<BodyTree>(part_);
+      if (!prescribed) direction = choose_direction(part_, *bodies_, zone, made.sheet, made.passes, tool, {o_.clearance_mm, 0.01});
+    });
+    direction.operation = n;
+    direction.zone = zone;
+    if (prescribed) {
+      auto oriented = prescribe(zone, tool, op, turning, made.passes);
+      if (const auto* refusal = std::get_if<OrientationRefusal>(&oriented))
+        return PlanRefusal{key_of(n) + ".tool_axis", fail("tool {} in zone {}: {}", tool.number, zone, refusal->reason)};
+      describe_prescribed(std::get<Orientation>(oriented), direction);
+      axes = std::move(std::get<Orientation>(oriented).axes);
+    } else if (!direction.fixed) {
+      auto oriented = orient(zone, tool, turning, made.passes);
+      if (const auto* refusal = std::get_if<OrientationRefusal>(&oriented)) {
+        plan_.directions.push_back(direction);
+        return PlanRefusal{key_of(n) + ".tool", fail("tool {} in zone {}: {}; {}", tool.number, zone, direction.explanation, refusal->reason)};
+      }
+      describe(std::get<Orientation>(oriented), direction);
+      axes = std::move(std::get<Orientation>(oriented).axes);
+    }
+    return {};
+  }
+
+  /// Simultaneous axes for one zone.
+  [[nodiscard]] std::variant<Orientation, OrientationRefusal> orient(int zone, const ToolAssembly& tool, const OrientationOptions& options,
+                                                                     std::vector<BallPass>& passes) const {
+    std::variant<Orientation, OrientationRefusal> result;
+    as_stage("five-axis orientation", [&] { result = orient_passes(part_, *bodies_, zone, tool, options, passes); });
+    return result;
   }
   /// The same with the axes that the operation prescribes.
-  std::variant<Orientation, OrientationRefusal> prescribe(int zone, const ToolAssembly& tool, const MillingOperation& op, const OrientationOptions& options,
-                                                          std::vector<BallPass>& passes) const {
-    return as_stage([&] { return prescribe_axes(part_, *bodies_, zone, tool, op, options, passes); });
-  }
-  template <typename Work>
-  std::variant<Orientation, OrientationRefusal> as_stage(const Work& make) const {
+  [[nodiscard]] std::variant<Orientation, OrientationRefusal> prescribe(int zone, const ToolAssembly& tool, const MillingOperation& op,
+                                                                        const OrientationOptions& options, std::vector<BallPass>& passes) const {
     std::variant<Orientation, OrientationRefusal> result;
-    const auto work = [&] { result = make(); };
-    if (o_.stage) o_.stage("five-axis orientation", work);
-    else work();
+    as_stage("five-axis orientation", [&] { result = prescribe_axes(part_, *bodies_, zone, tool, op, options, passes); });
     return result;
+  }
+  void as_stage(const char* name, const std::function<void()>& work) const {
+    if (o_.stage) o_.stage(name, work);
+    else work();
   }
 
   static void measure(const Orientation& o, DirectionChoice& d) {
@@ -255,27 +311,37 @@ class JobPlanner {
   [[nodiscard]] std::optional<PlanRefusal> check_passes(const std::vector<BallPass>& passes, const ToolAssembly& tool,
                                                         const std::string& key, int zone) const {
     const double R = tool.radius_mm();
-    for (const auto& pass : passes)
-      for (const auto& p : pass.points) {
+    struct Deep {
+      const BallPass::Point* point = nullptr;
+      double cut = 0;
+    };
+    std::vector<Deep> first(passes.size());  // in every pass
+    tbb::parallel_for(std::size_t(0), passes.size(), [&](std::size_t k) {
+      for (const auto& p : passes[k].points) {
         if (!p.touching) continue;
         const double cut = R - part_.nearest(p.centre, R + 0.01).distance;
-        if (cut > o_.gouge_tolerance_mm)
-          return PlanRefusal{key + ".tool", fail("tool {} in zone {}: its ball of radius {:.4f} mm would cut {:.4f} mm into the finished surface with its "
-                                                 "centre at radius {:.4f}, height {:.4f}; the limit is {:.4f} mm",
-                                                 tool.number, zone, R, cut, std::hypot(p.centre.x(), p.centre.y()), p.centre.z(),
-                                                 o_.gouge_tolerance_mm)};
+        if (cut <= o_.gouge_tolerance_mm) continue;
+        first[k] = {&p, cut};
+        return;
       }
+    });
+    for (const auto& [point, cut] : first)
+      if (point)
+        return PlanRefusal{key + ".tool", fail("tool {} in zone {}: its ball of radius {:.4f} mm would cut {:.4f} mm into the finished surface with its "
+                                               "centre at radius {:.4f}, height {:.4f}; the limit is {:.4f} mm",
+                                               tool.number, zone, R, cut, std::hypot(point->centre.x(), point->centre.y()), point->centre.z(),
+                                               o_.gouge_tolerance_mm)};
     return {};
   }
 
   /// Run-outs go straight on beyond the ends of the ring; where the end of a tooth stands in the way (close to an undercut)
   /// the pass ends with its last contact instead.
   void trim_run_outs(std::vector<BallPass>& passes, double R, double allowance) const {
-    for (auto& pass : passes) {
-      auto& q = pass.points;
+    tbb::parallel_for(std::size_t(0), passes.size(), [&](std::size_t n) {
+      auto& q = passes[n].points;
       const auto contact = [](const BallPass::Point& p) { return p.touching; };
       const auto last = std::find_if(q.rbegin(), q.rend(), contact);
-      if (last == q.rend()) continue;
+      if (last == q.rend()) return;
       for (auto k = std::size_t(q.rend() - last); k < q.size(); ++k)
         if (!segment_is_clear(q[k - 1].centre, q[k].centre, R, allowance)) {
           q.resize(k);
@@ -286,7 +352,7 @@ class JobPlanner {
           q.erase(q.begin(), q.begin() + long(k));
           break;
         }
-    }
+    });
   }
 
   [[nodiscard]] bool segment_is_clear(const Vec3& a, const Vec3& b, double R, double allowance) const {

@@ -19,7 +19,8 @@ struct PlanOptions {
   double gouge_tolerance_mm = 0.002; ///< of the finished surface: chords of any operation may use a part of it
   double rapid_clearance_mm = 2.0;   ///< height of rapids above the blank
   double least_tilt_rad = 0.035;     ///< of a tool axis that turns in a pass, from the gear axis: the pole of a rotary that carries the work
-  /// Runs a stage under its name; empty: just runs it. Called for simultaneous five-axis only where it is needed.
+  /// Runs a stage under its name; empty: just runs it. Called on the thread of the caller, for "tool passes", "tool direction" and "links",
+  /// and for "five-axis orientation" only where it is needed.
   std::function<void(const std::string& name, const std::function<void()>& work)> stage;
 };
 

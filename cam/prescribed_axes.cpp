@@ -11,11 +11,10 @@
 namespace toothpath {
 namespace {
 
-constexpr double kResolution = 0.01;  // mm, of gaps
+constexpr double kPrescribedResolution = 0.01;  // mm, of gaps
 constexpr double kPlaces = 0.3;       // mm between the places that are looked at
-constexpr double kDeepest = 3.0;      // mm: how far a body that cuts in is followed
+constexpr double kPrescribedDeepest = 3.0;      // mm: how far a body that cuts in is followed
 
-double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 
 /// Lean towards a side, deg, to the digits that are told: no -0.000.
 double lean_deg(const Vec3& axis, const Vec3& side, const Vec3& up) { return std::round(degrees(std::atan2(axis.dot(side), axis.dot(up))) * 1000) / 1000 + 0.0; }
@@ -69,14 +68,14 @@ class Prover {
   void bodies(Shortfall& s) const {
     const Vec3 tip = s.point.centre - tool_.radius_mm() * s.axis;
     for (const auto& body : check_.bodies()) {
-      const double gap = tree_.gap(body, tip, s.axis, o_.clearance_mm, kResolution).gap;
+      const double gap = tree_.gap(body, tip, s.axis, o_.clearance_mm, kPrescribedResolution);
       if (gap >= o_.clearance_mm) continue;
-      const double depth = gap > 0 ? 0 : tree_.depth(body, {&tip, 1}, s.axis, kDeepest, kResolution);
+      const double depth = gap > 0 ? 0 : tree_.depth(body, {&tip, 1}, s.axis, kPrescribedDeepest, kPrescribedResolution);
       const double by = gap > 0 ? o_.clearance_mm - gap : o_.clearance_mm + depth;
       if (by <= s.by) continue;
       s.by = by;
       s.words = gap > 0 ? fmt::format("its {} keeps {:.3f} mm, the clearance is {:.3f} mm", body.name, gap, o_.clearance_mm)
-                        : fmt::format("its {} cuts in by {}{:.3f} mm, the clearance is {:.3f} mm", body.name, depth >= kDeepest ? "more than " : "", depth,
+                        : fmt::format("its {} cuts in by {}{:.3f} mm, the clearance is {:.3f} mm", body.name, depth >= kPrescribedDeepest ? "more than " : "", depth,
                                       o_.clearance_mm);
     }
   }

@@ -4,17 +4,17 @@
 #include <cmath>
 #include <vector>
 
-#include "cam/cutter_sweep.h"
+#include "cam/motion_blend.h"
 #include "cam/tool_body.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kTouch = 1e-6;    // mm: a rapid at the very height of the blank is clear
-constexpr double kSmallest = 1e-4; // mm
+constexpr double kBlankTouch = 1e-6;    // mm: a rapid at the very height of the blank is clear
+constexpr double kSmallestRapid = 1e-4; // mm
 
 /// A stretch of the tool axis with the largest radius about it.
-struct Stretch {
+struct RapidStretch {
   double from = 0, to = 0, radius = 0;
   const char* name = "ball";
 };
@@ -79,11 +79,11 @@ class Rapid {
     const double turning = stray(t0, t1), rise = std::abs(half.z()) + turning, run = half.head<2>().norm() + turning;
     const char* body = "";
     const auto [least, most] = radii(tip, axis);
-    if (lowest(tip, axis, body) - rise >= o_.top_mm - kTouch) return true;
+    if (lowest(tip, axis, body) - rise >= o_.top_mm - kBlankTouch) return true;
     if (least - run >= o_.outer_radius_mm) return true;
     if (o_.inner_radius_mm > 0 && most + run <= o_.inner_radius_mm) return true;
     if (highest(tip, axis) + rise <= o_.bottom_mm) return true;
-    if (run + rise < kSmallest + 2 * (m_.deviation_mm + arm_ * m_.axis_deviation) || depth > 40) {
+    if (run + rise < kSmallestRapid + 2 * (m_.deviation_mm + arm_ * m_.axis_deviation) || depth > 40) {
       proof.t = 0.5 * (t0 + t1);
       proof.tip = tip;
       proof.body = body;
@@ -96,7 +96,7 @@ class Rapid {
   const ToolMotion& m_;
   const RapidObstacle& o_;
   std::vector<Frustum> frustums_;
-  std::vector<Stretch> stretches_;
+  std::vector<RapidStretch> stretches_;
   double arm_ = 0, ball_radius_ = 0;
 };
 

@@ -6,7 +6,6 @@
 namespace toothpath {
 namespace {
 
-double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
 
 /// Directions on the lower half of a ball: where it cuts.
 std::vector<Vec3> lower_directions() {
@@ -81,9 +80,9 @@ Walls walls_of(const OffsetSheet& sheet, const OffsetSheet::Station& station) {
   return w;
 }
 
-class Planner {
+class RoughingPlanner {
  public:
-  Planner(const OffsetSheet& sheet, const RoughingOptions& o, const std::vector<const SweptPath*>& cleared)
+  RoughingPlanner(const OffsetSheet& sheet, const RoughingOptions& o, const std::vector<const SweptPath*>& cleared)
       : sheet_(sheet), o_(o), cleared_(cleared) {}
 
   Result<RoughingPasses> run() {
@@ -208,7 +207,7 @@ class Planner {
 
 Result<RoughingPasses> plan_roughing(const OffsetSheet& sheet, const RoughingOptions& options,
                                      const std::vector<const SweptPath*>& cleared) {
-  return Planner(sheet, options, cleared).run();
+  return RoughingPlanner(sheet, options, cleared).run();
 }
 
 }  // namespace toothpath

@@ -6,6 +6,8 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include <tbb/task_arena.h>
+
 #include <atomic>
 #include <cmath>
 #include <stdexcept>
@@ -13,10 +15,10 @@
 namespace toothpath {
 namespace {
 
-std::atomic<std::size_t> built_count{0};
+std::atomic<std::size_t> indices_built{0};
 
 // Rounding of a coordinate below 2^11 mm to float32 and of the distance computed from it, with room to spare.
-constexpr double kPad = 1e-3;
+constexpr double kBoxPad = 1e-3;
 
 struct Query {
   SpatialIndex::Visit visit;
@@ -27,8 +29,8 @@ bool on_candidate(RTCPointQueryFunctionArguments* args) {
   auto* query = static_cast<Query*>(args->userPtr);
   const double radius = double(args->query->radius);
   const double next = query->visit(query->context, args->primID, radius);
-  if (next + kPad < radius) {
-    args->query->radius = float(next + kPad);
+  if (next + kBoxPad < radius) {
+    args->query->radius = float(next + kBoxPad);
     return true;
   }
   return false;
@@ -42,14 +44,44 @@ struct SpatialIndex::Impl {
   std::vector<Box> boxes;
   Vec3 centre = Vec3::Zero();
 
+  void build() {
+    device = rtcNewDevice(nullptr);
+    if (!device) throw std::runtime_error("the ray tracing device cannot be made");
+    scene = rtcNewScene(device);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, unsigned(boxes.size()));
+    rtcSetGeometryUserData(geometry, this);
+    rtcSetGeometryBoundsFunction(
+        geometry,
+        [](const RTCBoundsFunctionArguments* args) {
+          const auto& self = *static_cast<const Impl*>(args->geometryUserPtr);
+          const Box& b = self.boxes[args->primID];
+          const Vec3 low = b.low - self.centre, high = b.high - self.centre;
+          args->bounds_o->lower_x = float(low.x() - kBoxPad);
+          args->bounds_o->lower_y = float(low.y() - kBoxPad);
+          args->bounds_o->lower_z = float(low.z() - kBoxPad);
+          args->bounds_o->upper_x = float(high.x() + kBoxPad);
+          args->bounds_o->upper_y = float(high.y() + kBoxPad);
+          args->bounds_o->upper_z = float(high.z() + kBoxPad);
+        },
+        nullptr);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene);
+  }
+
   ~Impl() {
     if (scene) rtcReleaseScene(scene);
     if (device) rtcReleaseDevice(device);
   }
 };
 
+/// A device that is told a number of threads ("threads=1") holds the whole process to it as long as it lives. So it is told none, and the
+/// tree is built in an arena of one thread: the same tree on any machine, and every thread for those who ask.
 SpatialIndex::SpatialIndex(const std::vector<Box>& boxes) : impl_(std::make_unique<Impl>()) {
-  ++built_count;
+  ++indices_built;
   impl_->boxes = boxes;
   Box all;
   for (const auto& b : boxes) {
@@ -57,31 +89,7 @@ SpatialIndex::SpatialIndex(const std::vector<Box>& boxes) : impl_(std::make_uniq
     all.add(b.high);
   }
   if (!boxes.empty()) impl_->centre = 0.5 * (all.low + all.high);
-  impl_->device = rtcNewDevice("threads=1");
-  if (!impl_->device) throw std::runtime_error("the ray tracing device cannot be made");
-  impl_->scene = rtcNewScene(impl_->device);
-  rtcSetSceneFlags(impl_->scene, RTC_SCENE_FLAG_ROBUST);
-  RTCGeometry geometry = rtcNewGeometry(impl_->device, RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, unsigned(boxes.size()));
-  rtcSetGeometryUserData(geometry, impl_.get());
-  rtcSetGeometryBoundsFunction(
-      geometry,
-      [](const RTCBoundsFunctionArguments* args) {
-        const auto& self = *static_cast<const Impl*>(args->geometryUserPtr);
-        const Box& b = self.boxes[args->primID];
-        const Vec3 low = b.low - self.centre, high = b.high - self.centre;
-        args->bounds_o->lower_x = float(low.x() - kPad);
-        args->bounds_o->lower_y = float(low.y() - kPad);
-        args->bounds_o->lower_z = float(low.z() - kPad);
-        args->bounds_o->upper_x = float(high.x() + kPad);
-        args->bounds_o->upper_y = float(high.y() + kPad);
-        args->bounds_o->upper_z = float(high.z() + kPad);
-      },
-      nullptr);
-  rtcCommitGeometry(geometry);
-  rtcAttachGeometry(impl_->scene, geometry);
-  rtcReleaseGeometry(geometry);
-  rtcCommitScene(impl_->scene);
+  tbb::task_arena(1).execute([&] { impl_->build(); });
 }
 
 SpatialIndex::~SpatialIndex() = default;
@@ -96,13 +104,13 @@ void SpatialIndex::near(const Vec3& p, double radius, Visit visit, void* context
   query.y = float(local.y());
   query.z = float(local.z());
   query.time = 0;
-  query.radius = float(radius + kPad);
+  query.radius = float(radius + kBoxPad);
   RTCPointQueryContext stack;
   rtcInitPointQueryContext(&stack);
   Query q{visit, context};
   rtcPointQuery(impl_->scene, &query, &stack, on_candidate, &q);
 }
 
-std::size_t SpatialIndex::built() { return built_count; }
+std::size_t SpatialIndex::built() { return indices_built; }
 
 }  // namespace toothpath

@@ -1,8 +1,10 @@
 #include "cam/tool_direction.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <optional>
 
@@ -12,8 +14,8 @@ namespace toothpath {
 namespace {
 
 constexpr double kEnough = 2.0;   // mm: a gap beyond this is not measured further
-constexpr double kDeepest = 3.0;  // mm: how far a body in the way is followed
-constexpr double kResolution = 0.02;  // mm
+constexpr double kDirectionDeepest = 3.0;  // mm: how far a body in the way is followed
+constexpr double kDirectionResolution = 0.02;  // mm
 constexpr double kFluteSkin = 0.03;   // mm: the flute grazes the walls that it cuts; thinner by this it may cut nowhere
 
 /// The flute above the ball as a body. It stands on the side that is away from its own walls where these have draft; the other ring of
@@ -48,13 +50,15 @@ class Search {
 
   DirectionChoice run() {
     // Beside another ring of teeth an axis that leans may bring the flute into it, an upright one never does.
-    if (beside_ring_ && frame_.up.z() < 1 - 1e-9) try_one(std::acos(frame_.up.z()), frame_.outwards.z() > 0 ? 0 : kPi);
-    try_one(0, 0);
+    if (beside_ring_ && frame_.up.z() < 1 - 1e-9) try_one({std::acos(frame_.up.z()), frame_.outwards.z() > 0 ? 0 : kPi});
+    try_one({0, 0});
     // A job whose upright tool is clear needs no more of the map than its neighbourhood.
     const int step = choice_.fixed ? 10 : 5, widest = choice_.fixed ? 20 : 45;
     for (int lean_deg = step; lean_deg <= widest; lean_deg += step) {
       const int sides = choice_.fixed && lean_deg <= 20 && step == 10 ? 8 : std::max(8, 4 * int(std::ceil(std::sin(radians(lean_deg)) * 13)));
-      for (int k = 0; k < sides; ++k) try_one(radians(lean_deg), 2 * kPi * k / sides);
+      std::vector<Lean> round;
+      for (int k = 0; k < sides; ++k) round.push_back({radians(lean_deg), 2 * kPi * k / sides});
+      try_all(round);
       if (choice_.fixed && lean_deg >= 20) break;
     }
     if (!choice_.fixed) refine();
@@ -64,6 +68,15 @@ class Search {
   }
 
  private:
+  struct Lean {
+    double by = 0, azimuth = 0;
+  };
+  /// What is measured of a direction, whatever was found before: draft, and the gap at few centres where there is draft.
+  struct Measured {
+    DirectionChoice::Candidate candidate;
+    double least_draft = 0;
+  };
+
   [[nodiscard]] Vec3 axis_at(double lean, double azimuth) const {
     const Vec3 to = std::cos(azimuth) * frame_.outwards + std::sin(azimuth) * frame_.side;
     return lean == 0 ? frame_.up : Vec3((std::cos(lean) * frame_.up + std::sin(lean) * to).normalized());
@@ -87,14 +100,12 @@ class Search {
 
   /// Least gap of shank and holder over the centres; of a body that cuts in: minus its `depth`.
   [[nodiscard]] double gap(const Vec3& axis, const std::vector<Vec3>& centres, std::string& worst) const {
+    std::vector<Vec3> tips;
+    for (const Vec3& c : centres) tips.push_back(c - tool_.radius_mm() * axis);
     double least = kEnough;
     for (const auto& body : shank_and_holder(tool_)) {
-      double here = least;
-      for (const auto& c : centres) {
-        here = std::min(here, tree_.gap(body, c - tool_.radius_mm() * axis, axis, here, kResolution).gap);
-        if (here < 0) break;
-      }
-      if (here < 0) here = -depth(body, axis, centres);
+      double here = least_gap(body, tips, axis, least);
+      if (here < 0) here = -tree_.depth(body, tips, axis, kDirectionDeepest, kDirectionResolution);
       if (here >= least) continue;
       least = here;
       worst = body.name;
@@ -102,15 +113,25 @@ class Search {
     return least;
   }
 
-  [[nodiscard]] bool flute_cuts(const Vec3& axis) const {
-    return std::any_of(many_.begin(), many_.end(), [&](const Vec3& c) { return tree_.gap(*flute_, c - tool_.radius_mm() * axis, axis, 0, 1e-3).gap < 0; });
+  /// Over the tips, on all threads: every one looks only for less than was found so far. Ends where the body cuts in.
+  [[nodiscard]] double least_gap(const Frustum& body, const std::vector<Vec3>& tips, const Vec3& axis, double enough) const {
+    std::atomic<double> least{enough};
+    tbb::parallel_for(std::size_t(0), tips.size(), [&](std::size_t k) {
+      double seen = least;
+      if (seen < 0) return;
+      const double here = tree_.gap(body, tips[k], axis, seen, kDirectionResolution);
+      while (here < seen && !least.compare_exchange_weak(seen, here)) {
+      }
+    });
+    return least;
   }
 
-  /// How far a direction is from being clear.
-  [[nodiscard]] double depth(const Frustum& body, const Vec3& axis, const std::vector<Vec3>& centres) const {
-    std::vector<Vec3> tips;
-    for (const Vec3& c : centres) tips.push_back(c - tool_.radius_mm() * axis);
-    return tree_.depth(body, tips, axis, kDeepest, kResolution);
+  [[nodiscard]] bool flute_cuts(const Vec3& axis) const {
+    std::atomic<bool> cuts{false};
+    tbb::parallel_for(std::size_t(0), many_.size(), [&](std::size_t k) {
+      if (!cuts && !tree_.keeps(*flute_, many_[k] - tool_.radius_mm() * axis, axis, 0, 1e-3)) cuts = true;
+    });
+    return cuts;
   }
 
   /// Halved steps around the directions that come nearest to being clear: a narrow way through is found too.
@@ -126,7 +147,7 @@ class Search {
           const double x = std::tan(at.lean_rad) * std::cos(at.azimuth_rad), y = std::tan(at.lean_rad) * std::sin(at.azimuth_rad);
           for (int k = 0; k < 8 && !choice_.fixed; ++k) {
             const double u = x + std::tan(step) * std::cos(kPi / 4 * k), v = y + std::tan(step) * std::sin(kPi / 4 * k);
-            try_one(std::atan(std::hypot(u, v)), std::atan2(v, u));
+            try_one({std::atan(std::hypot(u, v)), std::atan2(v, u)});
             if (choice_.candidates.back().gap_mm > at.gap_mm + 0.01) {
               at = choice_.candidates.back();
               better = true;
@@ -137,26 +158,44 @@ class Search {
     }
   }
 
-  void try_one(double lean, double azimuth) {
-    DirectionChoice::Candidate c;
-    c.lean_rad = lean;
-    c.azimuth_rad = azimuth;
-    const Vec3 axis = axis_at(lean, azimuth);
-    const double least_draft = draft(axis);
-    if (least_draft < o_.least_draft) {
+  void try_one(const Lean& lean) { judge(measure(lean)); }
+
+  /// Measured together, judged one after another.
+  void try_all(const std::vector<Lean>& leans) {
+    std::vector<Measured> measured(leans.size());
+    tbb::parallel_for(std::size_t(0), leans.size(), [&](std::size_t k) { measured[k] = measure(leans[k]); });
+    for (auto& m : measured) judge(std::move(m));
+  }
+
+  [[nodiscard]] Measured measure(const Lean& lean) const {
+    Measured m;
+    auto& c = m.candidate;
+    c.lean_rad = lean.by;
+    c.azimuth_rad = lean.azimuth;
+    const Vec3 axis = axis_at(lean.by, lean.azimuth);
+    m.least_draft = draft(axis);
+    if (m.least_draft < o_.least_draft) {
       c.worst_body = "ball";
-      c.gap_mm = least_draft < 0 ? -1 : 0;
+      c.gap_mm = m.least_draft < 0 ? -1 : 0;
     } else {
       c.gap_mm = gap(axis, few_, c.worst_body);
+    }
+    return m;
+  }
+
+  void judge(Measured m) {
+    auto& c = m.candidate;
+    if (m.least_draft >= o_.least_draft) {
+      const Vec3 axis = axis_at(c.lean_rad, c.azimuth_rad);
       if (c.gap_mm >= o_.clearance_mm && !choice_.fixed) c.gap_mm = gap(axis, many_, c.worst_body);
       if (c.gap_mm >= o_.clearance_mm && flute_ && flute_cuts(axis)) {
         c.gap_mm = 0;
         c.worst_body = flute_->name;
       }
       c.clear = c.gap_mm >= o_.clearance_mm;
-      if (c.clear && !choice_.fixed) take(axis, c, least_draft);
+      if (c.clear && !choice_.fixed) take(axis, c, m.least_draft);
     }
-    choice_.candidates.push_back(c);
+    choice_.candidates.push_back(std::move(c));
   }
 
   void take(const Vec3& axis, const DirectionChoice::Candidate& c, double least_draft) {
@@ -195,7 +234,7 @@ class Search {
     choice_.explanation =
         best->gap_mm < 0
             ? fmt::format("no fixed direction is clear: the best of {} leans {:.1f} deg and its {} cuts in by {}{:.3f} mm",
-                          choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm <= -kDeepest ? "more than " : "",
+                          choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm <= -kDirectionDeepest ? "more than " : "",
                           -best->gap_mm)
             : fmt::format("no fixed direction is clear: the best of {} leans {:.1f} deg and its {} keeps {:.3f} of {:.3f} mm",
                           choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm, o_.clearance_mm);

@@ -20,4 +20,12 @@ struct ToolMotion {
   int line = 0;              ///< of the NC file, from 1
 };
 
+/// The pose at the share t of a motion, in [0, 1]: linear in the tip, normalised linear in the axis.
+[[nodiscard]] inline Vec3 tip_at(const ToolMotion& m, double t) { return (1 - t) * m.tip_from + t * m.tip_to; }
+[[nodiscard]] inline Vec3 axis_at(const ToolMotion& m, double t) {
+  if (t == 0) return m.axis_from;
+  if (t == 1) return m.axis_to;
+  return ((1 - t) * m.axis_from + t * m.axis_to).normalized();
+}
+
 }  // namespace toothpath

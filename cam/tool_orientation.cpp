@@ -15,7 +15,7 @@ namespace {
 
 std::atomic<std::size_t> runs{0};
 
-constexpr double kResolution = 0.01;   // mm, of gaps
+constexpr double kGapResolution = 0.01;   // mm, of gaps
 constexpr double kStation = 0.7;       // mm between stations, at most
 constexpr int kSweeps = 16;            // of the relaxation
 constexpr double kSettled = 0.002;     // tangent: the relaxation ends when no direction moves by more
@@ -23,8 +23,6 @@ constexpr int kRounds = 3;             // halvings of the stations of a pass tha
 constexpr double kFarthestGap = 2.0;   // mm: gaps beyond are not measured
 constexpr double kLongestStickOut = 60; // mm: how much longer a tool is looked for, when a job is refused
 
-double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 class Orienter {
  public:
@@ -223,7 +221,7 @@ class Orienter {
       double gap = o_.clearance_mm;
       std::string worst;
       for (const auto& f : check_.bodies()) {
-        const double g = tree_.gap(f, point.centre - tool_.radius_mm() * axis, axis, gap, kResolution).gap;
+        const double g = tree_.gap(f, point.centre - tool_.radius_mm() * axis, axis, gap, kGapResolution);
         if (g < gap) gap = g, worst = f.name;
       }
       if (gap > best) best = gap, lean = angle_between(axis, check_.frame().up), body = worst;
@@ -243,7 +241,7 @@ class Orienter {
       if (flute) longer.flute_length_mm += by;
       const auto bodies = shank_and_holder(longer);
       return std::any_of(usable.begin(), usable.end(), [&](const Vec3& axis) {
-        return tree_.clear(bodies, point.centre - tool_.radius_mm() * axis, axis, o_.clearance_mm + o_.margin_mm, kResolution);
+        return tree_.clear(bodies, point.centre - tool_.radius_mm() * axis, axis, o_.clearance_mm + o_.margin_mm, kGapResolution);
       });
     };
     for (const bool flute : {false, true}) {
@@ -279,11 +277,16 @@ OrientationCheck::OrientationCheck(const GearDistance& part, const BodyTree& tre
                                    const OrientationOptions& options)
     : part_(part), tree_(tree), tool_(tool), o_(options), frame_(pitch_frame(part, zone)), bodies_(shank_and_holder(tool)) {}
 
-bool OrientationCheck::cutting(const BallPass::Point& point, const Vec3& axis) const {
+bool OrientationCheck::cutting(const BallPass::Point& point, const Vec3& axis) const { return stands_right(point, axis) && flute_is_free(point, axis); }
+
+bool OrientationCheck::stands_right(const BallPass::Point& point, const Vec3& axis) const {
   if (std::atan2(std::hypot(axis.x(), axis.y()), axis.z()) < o_.least_tilt_rad) return false;
-  const double R = tool_.radius_mm();
   const Vec3 normal = point.centre - point.contact;
-  if (point.touching && normal.norm() > 0.1 * R && normal.normalized().dot(axis) < o_.least_draft) return false;
+  return !point.touching || normal.norm() <= 0.1 * tool_.radius_mm() || normal.normalized().dot(axis) >= o_.least_draft;
+}
+
+bool OrientationCheck::flute_is_free(const BallPass::Point& point, const Vec3& axis) const {
+  const double R = tool_.radius_mm();
   const double top = tool_.flute_length_mm - R;
   for (double h = std::min(0.4 * R, top); h > 0; h = h < top ? std::min(h + R, top) : -1) {
     const Vec3 c = point.centre + h * axis;
@@ -294,7 +297,8 @@ bool OrientationCheck::cutting(const BallPass::Point& point, const Vec3& axis) c
 }
 
 bool OrientationCheck::clear(const BallPass::Point& point, const Vec3& axis, double clearance_mm) const {
-  return tree_.clear(bodies_, point.centre - tool_.radius_mm() * axis, axis, clearance_mm, kResolution) && cutting(point, axis);
+  return stands_right(point, axis) && tree_.clear(bodies_, point.centre - tool_.radius_mm() * axis, axis, clearance_mm, kGapResolution) &&
+         flute_is_free(point, axis);
 }
 
 Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& check, const BodyTree& tree, const ToolAssembly& tool,
@@ -307,7 +311,7 @@ Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& che
     std::vector<double> gaps(points.size(), kFarthestGap);
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
       for (const auto& body : check.bodies())
-        gaps[k] = std::min(gaps[k], tree.gap(body, points[k].centre - tool.radius_mm() * axes[k], axes[k], gaps[k], kResolution).gap);
+        gaps[k] = std::min(gaps[k], tree.gap(body, points[k].centre - tool.radius_mm() * axes[k], axes[k], gaps[k], kGapResolution));
     });
     double turned = 0;
     for (std::size_t k = 0; k < points.size(); ++k) {

@@ -50,6 +50,9 @@ class OrientationCheck {
   [[nodiscard]] const std::vector<Frustum>& bodies() const { return bodies_; }
 
  private:
+  [[nodiscard]] bool stands_right(const BallPass::Point& point, const Vec3& axis) const;  ///< draft, and away from the gear axis
+  [[nodiscard]] bool flute_is_free(const BallPass::Point& point, const Vec3& axis) const;
+
   const GearDistance& part_;
   const BodyTree& tree_;
   const ToolAssembly& tool_;

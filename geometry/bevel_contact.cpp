@@ -11,7 +11,6 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
 /// One wall of the pair on a grid of the wheel.
 class Roll {

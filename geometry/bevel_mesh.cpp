@@ -27,7 +27,6 @@ Result<std::vector<Vec3>> wall_points(const BevelGear& g, const BevelWall<double
   return points;
 }
 
-double azimuth(const Vec3& p) { return std::atan2(p.y(), p.x()); }
 
 Result<Section> tooth_section(const BevelGear& g, const BevelHalf& half, double ell, const BevelMeshOptions& o) {
   const auto L = wall_points(g, half.walls[0], ell, o.rows), U = wall_points(g, half.walls[1], ell, o.rows);

@@ -9,7 +9,6 @@ namespace {
 
 constexpr double kAtEdge = 1e-9;  // of the cone distance: points on an edge count as on the flank
 
-double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 Mat3 turn_about_z(double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix(); }
 
 void change_wall(BevelWall<double>& wall, const BevelGear& gear, const PinionChange& change) {

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/base/angle.h"
+
 namespace toothpath {
 namespace {
 
@@ -15,7 +17,6 @@ Vec2 turned_section(const FingerProfile<double>& c, double p) {
 }
 
 /// Azimuths are compared near each other: the trace winds, the point does not.
-double wrapped(double angle) { return std::remainder(angle, 2 * std::acos(-1.0)); }
 
 }  // namespace
 

@@ -9,7 +9,6 @@
 namespace toothpath {
 namespace {
 
-constexpr double kMaxB = radians(80.0);
 constexpr int kNewtonLimit = 60;
 
 struct Meridian {

@@ -3,9 +3,13 @@
 
 #include <optional>
 
+#include "geometry/base/angle.h"
 #include "geometry/face_gear_surface.h"
 
 namespace toothpath {
+
+/// Beyond this B [rad] Z runs away: no practical flank.
+inline constexpr double kMaxB = radians(80.0);
 
 /// Parameters of a flank point and its regularity.
 struct FlankCoordinates {

@@ -11,7 +11,6 @@
 namespace toothpath {
 namespace {
 
-constexpr double kMaxB = radians(80.0);    // beyond it Z runs away: no practical flank
 constexpr double kFarInside = 0.6;         // the walk for the cusp goes on to s B = -0.6
 constexpr double kScanStep = 0.005;        // of B, rad: far below the distance of two roots of one sign change
 

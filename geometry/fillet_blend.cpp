@@ -9,8 +9,6 @@ namespace {
 
 constexpr int kEntries = 2049;
 
-Vec3 value(const Vec3T<FilletBlend::Dual2>& x) { return {x[0].v, x[1].v, x[2].v}; }
-Vec3 derivative(const Vec3T<FilletBlend::Dual2>& x, std::size_t k) { return {x[0].d[k], x[1].d[k], x[2].d[k]}; }
 
 struct Hermite {
   double v = 0, d = 0;

@@ -37,7 +37,7 @@ double clearance(const Vec3& point, const BevelTrace<double>& t, int sigma, doub
 }
 
 /// The gear of a design with another mill on it.
-struct Trial {
+struct Judge {
   const BevelGear& g;
   const FingerProfile<double>& c;
   CutterJudgement& out;
@@ -208,7 +208,7 @@ CutterJudgement judge_finger_profile(const BevelGear& g, const FingerCutterData&
   CutterJudgement out;
   out.data = data;
   out.profile = profile;
-  const Trial trial{g, out.profile, out};
+  const Judge trial{g, out.profile, out};
   out.small_end_estimate_mm = 0.5 * kPi * (data.module_mm - g.normal_module(g.R_i()));
   trial.profile_conditions();
   // A mill whose profile contradicts itself has no walls to compare.

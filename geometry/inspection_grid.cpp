@@ -11,7 +11,7 @@
 namespace toothpath {
 namespace {
 
-constexpr int kLeastRows = 5, kLeastColumns = 9, kMost = 1000;
+constexpr int kLeastInspectedRows = 5, kLeastInspectedColumns = 9, kMost = 1000;
 constexpr double kMostMargin = 0.4;
 
 /// k of n values spread over [from, to], both ends moved in by a part of the span.
@@ -53,10 +53,10 @@ Result<std::vector<InspectionPoint>> column_points(const FaceGearSurface<double>
 }  // namespace
 
 Result<std::vector<InspectionPoint>> inspection_grid(const FaceGear& gear, const InspectionOptions& options) {
-  if (options.rows < kLeastRows || options.rows > kMost)
-    return fail("inspection rows = {} is outside {} .. {}", options.rows, kLeastRows, kMost);
-  if (options.columns < kLeastColumns || options.columns > kMost)
-    return fail("inspection columns = {} is outside {} .. {}", options.columns, kLeastColumns, kMost);
+  if (options.rows < kLeastInspectedRows || options.rows > kMost)
+    return fail("inspection rows = {} is outside {} .. {}", options.rows, kLeastInspectedRows, kMost);
+  if (options.columns < kLeastInspectedColumns || options.columns > kMost)
+    return fail("inspection columns = {} is outside {} .. {}", options.columns, kLeastInspectedColumns, kMost);
   if (!(options.margin >= 0 && options.margin <= kMostMargin))
     return fail("inspection margin = {:g} is outside 0 .. {:g}", options.margin, kMostMargin);
   std::vector<InspectionPoint> grid;

@@ -13,6 +13,7 @@
 #include <set>
 #include <vector>
 
+#include "geometry/base/hash.h"
 #include "geometry/solid_check.h"
 #include "geometry/stl_scan.h"
 
@@ -49,9 +50,8 @@ class Weld {
 
   std::int32_t index(const aiVector3D& p, std::vector<Vec3>& vertices) {
     const std::array<float, 3> key{p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};  // -0 becomes 0
-    std::uint64_t hash = 0x9E3779B97F4A7C15ULL;
-    for (const float c : key) hash = (hash ^ std::bit_cast<std::uint32_t>(c)) * 0xBF58476D1CE4E5B9ULL, hash ^= hash >> 29;
-    for (std::size_t slot = hash & (table_.size() - 1);; slot = (slot + 1) & (table_.size() - 1)) {
+    const auto bytes = std::bit_cast<std::array<char, sizeof key>>(key);
+    for (std::size_t slot = fnv1a({bytes.data(), bytes.size()}) & (table_.size() - 1);; slot = (slot + 1) & (table_.size() - 1)) {
       if (table_[slot] < 0) {
         table_[slot] = static_cast<std::int32_t>(keys_.size());
         keys_.push_back(key);

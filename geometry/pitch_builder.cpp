@@ -14,7 +14,6 @@ constexpr double kBaseModules = 2.5;    ///< thickness below the lowest point of
 constexpr double kFootModules = 0.25;   ///< how far below the root an end face ends and the body begins
 
 using Index = std::int32_t;
-constexpr std::size_t idx(Index i) { return static_cast<std::size_t>(i); }
 
 /// Distance of p to the triangle a, b, c.
 double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {

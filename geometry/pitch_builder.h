@@ -11,11 +11,6 @@
 
 namespace toothpath {
 
-/// Azimuth from one place to another about the gear axis, in (-pi, pi].
-[[nodiscard]] inline double angle_from_to(const Vec3& from, const Vec3& to) {
-  return std::atan2(from.x() * to.y() - from.y() * to.x(), from.x() * to.x() + from.y() * to.y());
-}
-
 /// Builds the pitch row by row: the toothed surface of every ring, its end faces, the groove floors, the body below. Holds references to
 /// gear and grid.
 class PitchBuilder {

@@ -13,8 +13,6 @@ int side_of(SpacePiece piece) {
   return piece == SpacePiece::flank_plus || piece == SpacePiece::fillet_plus ? 1 : -1;
 }
 
-Vec3 value(const Vec3T<Dual2>& x) { return {x[0].v, x[1].v, x[2].v}; }
-Vec3 derivative(const Vec3T<Dual2>& x, std::size_t k) { return {x[0].d[k], x[1].d[k], x[2].d[k]}; }
 
 PatchPoint from_dual(const Vec3T<Dual2>& p, const Vec3T<Dual2>& n) {
   return {value(p), value(n), derivative(p, 0), derivative(p, 1), derivative(n, 0), derivative(n, 1)};

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t kProbes = 33;
 constexpr std::array<std::size_t, kSegmentCount> kLeastCells{1, 3, 2, 1, 2, 3, 1};
-constexpr std::size_t kLeastRows = 2;
+constexpr std::size_t kLeastGridRows = 2;
 
 using Lines = std::vector<std::vector<Vec3>>;  // [row][column]
 
@@ -115,7 +115,7 @@ ToothGrid GridPlanner::grid(double sag_mm) const {
   ToothGrid grid;
   for (std::size_t s = 0; s < kSegmentCount; ++s) grid.fractions[s] = equal_shares(bend_across_[s], sag_mm, kLeastCells[s]);
   for (std::size_t k = 0; k < span_.size(); ++k) {
-    std::vector<double> radii = equal_shares(bend_along_[k], sag_mm, kLeastRows);
+    std::vector<double> radii = equal_shares(bend_along_[k], sag_mm, kLeastGridRows);
     for (double& u : radii) u = radius_at(span_[k], u);
     radii.front() = span_[k][0];
     radii.back() = span_[k][1];

@@ -14,10 +14,6 @@ constexpr double kArcNoise_mm = 1e-9;
 /// A fillet that misses the end of its flank by more than this is on another sheet.
 constexpr double kJoin_mm = 1e-7;
 
-double azimuth(const Vec3& p) { return std::atan2(p.y(), p.x()); }
-double angle_from_to(const Vec3& from, const Vec3& to) {
-  return std::atan2(from.x() * to.y() - from.y() * to.x(), from.x() * to.x() + from.y() * to.y());
-}
 Vec3 on_circle(double r, double angle, double z) { return {r * std::cos(angle), r * std::sin(angle), z}; }
 double mixed(double a, double b, double t) { return a + t * (b - a); }
 

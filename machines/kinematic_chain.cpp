@@ -20,7 +20,6 @@ constexpr double kParallelSine = 1e-6;
 Vec3 across(const Vec3& v, const Vec3& d) { return v - d.dot(v) * d; }
 
 /// Angle between two vectors, 0..pi, full precision everywhere.
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 /// Angle of the turn about d that takes the direction of a to that of b; both perpendicular to d.
 double turn_angle(const Vec3& a, const Vec3& b, const Vec3& d) { return std::atan2(d.dot(a.cross(b)), a.dot(b)); }

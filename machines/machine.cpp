@@ -13,6 +13,11 @@ bool Machine::has_acceleration() const {
   return true;
 }
 
+SourcePosition Machine::where(std::string_view key) const {
+  const auto found = positions.find(key);
+  return found == positions.end() ? SourcePosition{file, 0, 0} : found->second;
+}
+
 double Machine::exact_corner_mm() const {
   constexpr double kUsual = 0.0005, kPeriod = 0.001 / 60;  // mm, min
   double square = 0;

@@ -1,11 +1,15 @@
 // A milling machine as its file describes it: kinematic chain, limits, control and what of it is assumed.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/diagnostic.h"
+#include "machines/coolant.h"
 #include "machines/kinematic_chain.h"
 
 namespace toothpath {
@@ -37,6 +41,7 @@ struct PostSettings {
   std::optional<double> smoothing_tolerance_mm;        ///< stated by the shop: the tip leaves the path by no more while it is on
   std::optional<double> smoothing_axis_tolerance_rad;  ///< the same of the tool axis; not stated: no cut may turn a rotary
   std::optional<double> corner_tolerance_mm;  ///< LinuxCNC: the tip is off a corner of its path by no more in exact path mode
+  std::map<Coolant, CoolantWords> coolant;    ///< words of the builder, instead of those of the control or where it has none
   LengthReference length_reference = LengthReference::tip;
   PoleOption pole = PoleOption::error;
   std::optional<double> pole_angle_rad;  ///< `tilt`: least angle kept from the pole; `hold`, `through`, `retract`: greatest change of the axis
@@ -60,9 +65,14 @@ struct Machine {
   double min_block_ms = 1.0;                      ///< shortest block that the control keeps up with
   LimitMargin limit_margin;
 
+  /// Place of every table and key of the file by its dotted name, `post.corner_tolerance`: for those who judge them later.
+  std::map<std::string, SourcePosition, std::less<>> positions;
+
   KinematicChain chain;
   PostSettings post;
 
+  /// Place of a key that stands in the file, else the file alone.
+  [[nodiscard]] SourcePosition where(std::string_view key) const;
   /// How far the tip may be off a corner that the control takes exactly [mm]: `post.corner_tolerance` if stated, else 0.0005 or, if the axes
   /// have accelerations, what those leave at the rim of the largest part and a servo period of 1 ms if that is more (LinuxCNC,
   /// docs/dialects.md).

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <limits>
 
 #include "machines/machine_table.h"
@@ -11,10 +12,7 @@ namespace toothpath {
 namespace {
 
 // Plausible ranges; a value outside them is a typing error or another unit.
-constexpr double kLargestLength = 1e5;       // mm
-constexpr double kLargestSpeed = 1e6;        // mm/min, deg/min, 1/min
 constexpr double kLargestAcceleration = 1e7; // mm/s^2, deg/s^2
-constexpr double kLargestAngle = 1e7;        // deg: 27000 turns
 constexpr double kLeastTravel = 10.0;        // mm; less means metres
 constexpr double kLeastDirection = 1e-3;     // length of a direction as written
 constexpr double kLeastOffset = 1.0;         // mm; the largest offset of all table axes: less may mean metres ...
@@ -255,15 +253,19 @@ void read_smoothing(TableReader& post, PostSettings& settings) {
     if (const auto angle = post.number("smoothing_axis_tolerance", Range::positive(1.0, " deg"))) settings.smoothing_axis_tolerance_rad = radians(*angle);
 }
 
-/// Keys that mean something to some controls only.
-void refuse_keys_of_other_dialects(TableReader& post, const std::string& dialect) {
-  if (post.has("corner_tolerance") && !dialect.empty() && dialect != "linuxcnc")
-    post.refuse("corner_tolerance", "{} belongs to dialect \"linuxcnc\", this is \"{}\"", post.name("corner_tolerance"), dialect);
-  if (post.has("smoothing_on") && (dialect == "linuxcnc" || dialect == "heidenhain" || dialect == "apt"))
-    post.refuse("smoothing_on", "{}: dialect \"{}\" has its own words for what may be left of corners", post.name("smoothing_on"), dialect);
+/// What the builder switches a coolant with: the word that does it, and the one that ends it.
+void read_coolant_words(TableReader& post, PostSettings& settings) {
+  for (const Coolant coolant : kCoolants) {
+    const std::string key = fmt::format("coolant_{}", to_string(coolant));
+    const auto words = post.if_present(key, [&] { return post.ascii_list(key); });
+    if (!words) continue;
+    if (words->size() != 2) post.refuse(key, "{} has {} words, must have 2: on and off", post.name(key), words->size());
+    else if (words->front() == words->back()) post.refuse(key, "{}: {} cannot mean both on and off", post.name(key), words->front());
+    else settings.coolant[coolant] = {words->front(), words->back()};
+  }
 }
 
-void read_post(TableReader post, const std::string& dialect, PostSettings& settings) {
+void read_post(TableReader post, PostSettings& settings) {
   if (post.has("linear_decimals")) settings.linear_decimals = post.integer("linear_decimals", {0, 9});
   if (post.has("rotary_decimals")) settings.rotary_decimals = post.integer("rotary_decimals", {0, 9});
   if (post.has("index_loop")) settings.index_loop = post.boolean("index_loop");
@@ -271,7 +273,7 @@ void read_post(TableReader post, const std::string& dialect, PostSettings& setti
   if (post.has("tcp_off")) settings.tcp_off = post.ascii_list("tcp_off").value_or(std::vector<std::string>{});
   if (post.has("corner_tolerance")) settings.corner_tolerance_mm = post.number("corner_tolerance", Range::positive(0.1, " mm"));
   read_smoothing(post, settings);
-  refuse_keys_of_other_dialects(post, dialect);
+  read_coolant_words(post, settings);
   if (post.has("length_reference"))
     if (const auto word = post.word("length_reference", {"tip", "centre"}))
       settings.length_reference = *word == "tip" ? LengthReference::tip : LengthReference::centre;
@@ -296,12 +298,6 @@ SourcePosition direction_position(const TomlValue& tree, const KinematicChain& c
   return direction ? direction->value.position : tree.position;
 }
 
-void check_control(TableReader& root, const Machine& machine) {
-  if (machine.dialect == "linuxcnc" && machine.tcp != TcpMode::none &&
-      (machine.post.tcp_on.empty() || machine.post.tcp_off.empty()))
-    root.refuse("tcp", "tcp with dialect \"linuxcnc\" needs post.tcp_on and post.tcp_off: its codes are site data");
-}
-
 /// A time with some axes that stop at once and some that do not would mean nothing.
 void check_accelerations(TableReader& root, const Machine& machine) {
   if (machine.has_acceleration()) return;
@@ -316,7 +312,7 @@ void check_accelerations(TableReader& root, const Machine& machine) {
   if (any) root.refuse("axes", "max_acceleration stands at some axes and is missing at {}: every axis has one, or none", lacking);
 }
 
-Machine read_tree(const TomlValue& tree, const std::string& file, ReaderFindings& findings) {
+Machine read_machine_tree(const TomlValue& tree, const std::string& file, const MachineJudge& judge, ReaderFindings& findings) {
   TableReader root(tree, "", findings);
   Machine machine;
   machine.file = file;
@@ -326,7 +322,7 @@ Machine read_tree(const TomlValue& tree, const std::string& file, ReaderFindings
     root.refuse("kind", "kind = \"{}\" is no milling machine; \"five_axis\" is needed here", *kind);
     return machine;
   }
-  machine.dialect = root.word("dialect", {"linuxcnc", "fanuc", "siemens", "heidenhain", "apt", "mitsubishi_m80"}).value_or("");
+  machine.dialect = root.text("dialect", true).value_or("");
   const std::initializer_list<std::string_view> modes = {"none", "angles", "vectors"};
   if (const auto tcp = root.word("tcp", modes))
     machine.tcp = static_cast<TcpMode>(std::find(modes.begin(), modes.end(), *tcp) - modes.begin());
@@ -339,11 +335,15 @@ Machine read_tree(const TomlValue& tree, const std::string& file, ReaderFindings
   }
   if (const auto limits = root.required_table("limits")) read_limits(*limits, machine);
   if (root.has("post"))
-    if (const auto post = root.required_table("post")) read_post(*post, machine.dialect, machine.post);
+    if (const auto post = root.required_table("post")) read_post(*post, machine.post);
   read_chain(root, machine);
-  check_control(root, machine);
   check_accelerations(root, machine);
   root.finish();
+  machine.positions = findings.positions;
+  if (judge && !machine.dialect.empty()) {
+    auto complaints = judge(machine);
+    findings.errors.insert(findings.errors.end(), std::make_move_iterator(complaints.begin()), std::make_move_iterator(complaints.end()));
+  }
   if (findings.errors.empty())
     if (const Status chain = check_chain(machine.chain); !chain)
       root.refuse_at(direction_position(tree, machine.chain), "{}", chain.error().message);
@@ -352,12 +352,14 @@ Machine read_tree(const TomlValue& tree, const std::string& file, ReaderFindings
 
 }  // namespace
 
-MachineReading read_machine_text(std::string_view text, const std::string& file) {
-  return read_machine_as<MachineReading>(text, file, read_tree);
+MachineReading read_machine_text(std::string_view text, const std::string& file, const MachineJudge& judge) {
+  return read_machine_as<MachineReading>(text, file, [&judge](const TomlValue& tree, const std::string& name, ReaderFindings& findings) {
+    return read_machine_tree(tree, name, judge, findings);
+  });
 }
 
-MachineReading read_machine_file(const std::string& path) {
-  return read_machine_file_as<MachineReading>(path, read_machine_text);
+MachineReading read_machine_file(const std::string& path, const MachineJudge& judge) {
+  return read_machine_file_as<MachineReading>(path, [&judge](std::string_view text, const std::string& file) { return read_machine_text(text, file, judge); });
 }
 
 Result<MachineKind> machine_kind_of(const std::string& path) {

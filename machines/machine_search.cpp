@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "machines/machine_file.h"
+#include "machines/toml/near_name.h"
 
 namespace toothpath {
 namespace {
@@ -14,17 +15,12 @@ bool is_there(const fs::path& path) {
   return fs::exists(path, error);
 }
 
-/// Names of the .toml files of the directories, sorted, each once.
-std::vector<std::string> installed_names(const std::vector<std::string>& directories) {
-  std::vector<std::string> names;
-  for (const std::string& directory : directories) {
-    std::error_code error;
-    for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error))
-      if (it->path().extension() == ".toml") names.push_back(it->path().filename().string());
-  }
-  std::sort(names.begin(), names.end());
-  names.erase(std::unique(names.begin(), names.end()), names.end());
-  return names;
+/// "; did you mean ...?" for a name that is like one of these, with its ending or without.
+std::string hint_for(const std::string& name, const std::vector<std::string>& installed) {
+  std::string_view near = near_name(name, installed);
+  const std::string whole = name + ".toml";
+  if (near.empty()) near = near_name(whole, installed);
+  return near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);
 }
 
 }  // namespace
@@ -43,22 +39,34 @@ std::vector<std::string> machine_directories() {
   return found;
 }
 
+std::vector<std::string> installed_machines() {
+  std::vector<std::string> names;
+  for (const std::string& directory : machine_directories()) {
+    std::error_code error;
+    for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error))
+      if (it->path().extension() == ".toml") names.push_back(it->path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
+  return names;
+}
+
 Result<std::string> find_machine_file(const std::string& name, const std::string& job_directory) {
   if (name.empty() || name.find('\0') != std::string::npos)
     return fail_as(DiagnosticKind::file_access, "machine file has no name");
   const fs::path wanted(name);
   const fs::path beside = fs::path(job_directory) / wanted;  // an absolute name replaces the directory
   if (is_there(beside)) return beside.string();
-  const std::vector<std::string> directories = machine_directories();
   if (wanted.is_relative()) {
     const fs::path plain = wanted.parent_path() == "machines" ? wanted.filename() : wanted;
     if (!plain.has_parent_path())
-      for (const std::string& directory : directories)
-        if (const fs::path path = fs::path(directory) / plain; is_there(path)) return path.string();
+      for (const std::string& directory : machine_directories())
+        for (const char* ending : {"", ".toml"})
+          if (const fs::path path = fs::path(directory) / (plain.string() + ending); is_there(path)) return path.string();
   }
-  return fail_as(DiagnosticKind::file_access,
-                 "machine file \"{}\" is neither beside the job nor installed; installed are: {}", name,
-                 fmt::join(installed_names(directories), ", "));
+  const std::vector<std::string> installed = installed_machines();
+  return fail_as(DiagnosticKind::file_access, "machine file \"{}\" is neither beside the job nor installed{}; installed are: {}", name, hint_for(name, installed),
+                 fmt::join(installed, ", "));
 }
 
 }  // namespace toothpath

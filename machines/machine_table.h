@@ -9,6 +9,10 @@ namespace toothpath {
 
 /// Largest machine file that is opened.
 inline constexpr std::size_t kMaxMachineFileBytes = 1u << 20;
+/// Largest numbers in one.
+inline constexpr double kLargestLength = 1e5;  ///< mm
+inline constexpr double kLargestSpeed = 1e6;   ///< mm/min, deg/min, 1/min
+inline constexpr double kLargestAngle = 1e7;   ///< deg: 27000 turns
 
 /// The bytes of a machine file. Errors (kind file_access): missing, not a regular file, larger than kMaxMachineFileBytes, unreadable.
 [[nodiscard]] Result<std::string> read_machine_bytes(const std::string& path);

@@ -8,9 +8,6 @@
 namespace toothpath {
 namespace {
 
-constexpr double kLargestLength = 1e5;   // mm
-constexpr double kLargestSpeed = 1e6;    // mm/min, deg/min
-constexpr double kLargestAngle = 1e7;    // deg
 constexpr int kMostTeeth = 1000;         // of a change gear
 constexpr int kLargestConstant = 1000000;
 
@@ -110,7 +107,7 @@ ShaperAxis read_axis(TableReader axis, bool rotary) {
   return out;
 }
 
-ShaperMachine read_tree(const TomlValue& tree, const std::string& file, ReaderFindings& findings) {
+ShaperMachine read_shaper_tree(const TomlValue& tree, const std::string& file, ReaderFindings& findings) {
   TableReader root(tree, "", findings);
   ShaperMachine machine;
   machine.file = file;
@@ -144,7 +141,7 @@ ShaperMachine read_tree(const TomlValue& tree, const std::string& file, ReaderFi
 }  // namespace
 
 ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file) {
-  return read_machine_as<ShaperMachineReading>(text, file, read_tree);
+  return read_machine_as<ShaperMachineReading>(text, file, read_shaper_tree);
 }
 
 ShaperMachineReading read_shaper_machine_file(const std::string& path) {

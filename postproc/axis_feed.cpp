@@ -16,7 +16,6 @@ Vec3 slerp(const Vec3& a, const Vec3& b, double t) {
   return (std::sin((1 - t) * angle) * a + std::sin(t * angle) * b) / std::sin(angle);
 }
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 }  // namespace
 

@@ -18,7 +18,6 @@ constexpr double kReachable = 1e-9;          // rad: the second rotary takes the
 constexpr double kFlat = 0.3;                // cosine between tool and gear axis below which a retract leaves sideways
 constexpr int kBisections = 60;
 
-double wrapped(double a) { return std::remainder(a, 2 * kPi); }
 
 /// A stretch of one pass inside the cone; s counts records, with the fraction of the step.
 struct Stretch {

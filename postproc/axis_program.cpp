@@ -24,9 +24,9 @@ constexpr double kParallel = 1e-12;       // sine of the angle between gear axis
 constexpr std::size_t kMostBlocks = 20'000'000;  // of 100 bytes in memory, and 50 to 100 bytes of text each
 
 /// Decides about angles, loop and copies; the blocks of a tooth come from ToothBuilder.
-class Builder {
+class ProgramBuilder {
  public:
-  Builder(std::span<const ClPath* const> paths, std::span<const ToolAssembly> tools, const Setup& setup,
+  ProgramBuilder(std::span<const ClPath* const> paths, std::span<const ToolAssembly> tools, const Setup& setup,
           const Machine& machine, int teeth, const ClearanceBody& body, const AxisOptions& options)
       : paths_(paths), tools_(tools), setup_(setup), machine_(machine), chain_(machine.chain), options_(options), teeth_(teeth),
         gear_{setup.rotation(), setup.origin_mm}, words_(machine.chain, options.format, setup.work_offset_at_mm),
@@ -74,7 +74,7 @@ class Builder {
   Result<AxisProgram> written_out() const {
     AxisOptions options = options_;
     options.expand_teeth = true;
-    return Builder(paths_, tools_, setup_, machine_, teeth_, body_, options).build();
+    return ProgramBuilder(paths_, tools_, setup_, machine_, teeth_, body_, options).build();
   }
   /// Only for a program that is refused as it stands: it takes as long as the program itself.
   void try_offer() {
@@ -85,7 +85,7 @@ class Builder {
     there.work_offset_at_mm += offer.shift_mm;
     AxisOptions options = options_;
     options.search_origin = false;
-    offer.posted = Builder(paths_, tools_, there, machine_, teeth_, body_, options).build().has_value();
+    offer.posted = ProgramBuilder(paths_, tools_, there, machine_, teeth_, body_, options).build().has_value();
   }
   /// The error of a travel that is exceeded, with the place of the part that has the most room.
   Diagnostic with_offer(Diagnostic bad) {
@@ -374,7 +374,7 @@ class Builder {
 
 Result<AxisProgram> build_from(std::span<const ClPath* const> paths, std::span<const ToolAssembly> tools, const Setup& setup,
                                const Machine& machine, int teeth, const ClearanceBody& body, const AxisOptions& options) {
-  return Builder(paths, tools, setup, machine, teeth, body, options).build();
+  return ProgramBuilder(paths, tools, setup, machine, teeth, body, options).build();
 }
 
 }  // namespace

@@ -11,10 +11,9 @@
 namespace toothpath {
 namespace {
 
-constexpr double kTurn = 2 * kPi;
 constexpr double kLargestStep = radians(170);   // beyond it the sense of a turn is ambiguous on a rollover axis
 constexpr double kPoleStep = radians(30);       // C in one block that only a pole explains ..
-constexpr double kPoleRatio = 4;                // .. when it is this much more than the axis itself turns
+constexpr double kPoleStepRatio = 4;                // .. when it is this much more than the axis itself turns
 constexpr double kTiltWeight = 1e-6;            // minutes per rad: decides ties only
 constexpr double kTurnWeight = 1e-9;
 constexpr int kNearTurns = 3;                   // whole turns about zero that are always candidates
@@ -135,7 +134,7 @@ class Chooser {
       if (step >= kLargestStep)
         return fail("operation {} record {}: {} turns by {:.3f} deg in one block, limit {:.0f}", path_.operation, record,
                     chain_.rotary(k).letter, degrees(step), degrees(kLargestStep));
-      if (step > kPoleStep && step > kPoleRatio * turn && pole_ != PoleOption::slow)
+      if (step > kPoleStep && step > kPoleStepRatio * turn && pole_ != PoleOption::slow)
         return fail("operation {} record {}: the tool axis passes the pole, {} turns by {:.3f} deg in one block, limit {:.0f}",
                     path_.operation, record, chain_.rotary(k).letter, degrees(step), degrees(kPoleStep));
     }
@@ -146,8 +145,8 @@ class Chooser {
   std::pair<int, int> turns(const Chain& c, std::size_t k) const {
     if (k >= count_ || chain_.rotary(k).rollover) return {0, 0};
     constexpr double slack = 1e-9;  // rad: a command on the limit itself is inside
-    const double lowest = std::ceil((ranges_[k].lower - slack - c.least[k]) / kTurn);
-    const double highest = std::floor((ranges_[k].upper + slack - c.greatest[k]) / kTurn);
+    const double lowest = std::ceil((ranges_[k].lower - slack - c.least[k]) / kTwoPi);
+    const double highest = std::floor((ranges_[k].upper + slack - c.greatest[k]) / kTwoPi);
     return {static_cast<int>(std::clamp(lowest, -1e6, 1e6)), static_cast<int>(std::clamp(highest, -1e6, 1e6))};
   }
 
@@ -158,20 +157,20 @@ class Chooser {
       const auto [low0, high0] = turns(chains[c], 0);
       const auto [low1, high1] = turns(chains[c], 1);
       std::set<int> first;
-      const int near_zero = static_cast<int>(std::lround(-chains[c].angles.front()[0] / kTurn));
+      const int near_zero = static_cast<int>(std::lround(-chains[c].angles.front()[0] / kTwoPi));
       for (int t = near_zero - kNearTurns; t <= near_zero + kNearTurns; ++t) first.insert(std::clamp(t, low0, std::max(low0, high0)));
       first.insert({low0, high0});  // the most room to wind up again
       if (before != nullptr)
         for (const auto& s : *before) {
-          const double end = (*chains_before)[s.chain].angles.back()[0] + kTurn * s.turns[0];
-          const int t = static_cast<int>(std::lround((end - chains[c].angles.front()[0]) / kTurn));
+          const double end = (*chains_before)[s.chain].angles.back()[0] + kTwoPi * s.turns[0];
+          const int t = static_cast<int>(std::lround((end - chains[c].angles.front()[0]) / kTwoPi));
           if (t >= low0 && t <= high0) first.insert(t);
         }
       for (int t1 = std::max(low1, -1); t1 <= std::min(high1, 1); ++t1)
         for (const int t0 : first)
           if (t0 >= low0 && t0 <= high0) list.push_back({c, {t0, t1}, 0, -1});
     }
-    const auto start = [&](const State& s, std::size_t k) { return chains[s.chain].angles.front()[k] + kTurn * s.turns[k]; };
+    const auto start = [&](const State& s, std::size_t k) { return chains[s.chain].angles.front()[k] + kTwoPi * s.turns[k]; };
     std::stable_sort(list.begin(), list.end(), [&](const State& a, const State& b) {
       const double ta = std::abs(start(a, 1)), tb = std::abs(start(b, 1));
       if (std::abs(ta - tb) > 1e-12) return ta < tb;
@@ -186,9 +185,9 @@ class Chooser {
       for (std::size_t p = 0; p < before->size(); ++p) {
         double reposition = 0;
         for (std::size_t k = 0; k < count_; ++k) {
-          const double end = (*chains_before)[(*before)[p].chain].angles.back()[k] + kTurn * (*before)[p].turns[k];
+          const double end = (*chains_before)[(*before)[p].chain].angles.back()[k] + kTwoPi * (*before)[p].turns[k];
           const double turn = start(s, k) - end;
-          reposition = std::max(reposition, std::abs(chain_.rotary(k).rollover ? std::remainder(turn, kTurn) : turn) / chain_.rotary(k).max_speed);
+          reposition = std::max(reposition, std::abs(chain_.rotary(k).rollover ? std::remainder(turn, kTwoPi) : turn) / chain_.rotary(k).max_speed);
         }
         const double cost = (*before)[p].cost + reposition;
         if (cost < best) {
@@ -228,7 +227,7 @@ class Chooser {
       const State& state = states[r][static_cast<std::size_t>(s)];
       for (std::size_t i = runs[r].first; i < runs[r].last; ++i)
         for (std::size_t k = 0; k < count_; ++k)
-          out[i][k] = chains[r][state.chain].angles[i - runs[r].first][k] + kTurn * state.turns[k];
+          out[i][k] = chains[r][state.chain].angles[i - runs[r].first][k] + kTwoPi * state.turns[k];
       s = state.from;
     }
     // An axis that rolls over goes on from where it stands.
@@ -254,7 +253,7 @@ class Chooser {
 
 }  // namespace
 
-double whole_turns(double angle, double reference) { return kTurn * std::round((reference - angle) / kTurn); }
+double whole_turns(double angle, double reference) { return kTwoPi * std::round((reference - angle) / kTwoPi); }
 
 double nearest_turn(double angle, double reference) { return angle + whole_turns(angle, reference); }
 

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "cam/cutter.h"
+#include "postproc/controls/of_machine.h"
 #include "postproc/axis_words.h"
 #include "postproc/fixed_point.h"
 #include "postproc/machine_self_test.h"
@@ -14,9 +15,9 @@ namespace {
 constexpr double kFeed = 500;       // mm/min of the tip on the way down and up
 constexpr double kTurnSpeed = 720;  // deg/min: slow enough to watch
 
-class Builder {
+class SelfTestBuilder {
  public:
-  Builder(const SelfTest& test, const Machine& machine, const NcDialect& dialect)
+  SelfTestBuilder(const SelfTest& test, const Machine& machine, const NcDialect& dialect)
       : test_(test), machine_(machine), words_(machine.chain, dialect.format, test.point_mm) {
     words_.set_length(test.tool_length_mm);
     AxisProgram& p = program_;
@@ -129,7 +130,7 @@ class Builder {
 }  // namespace
 
 AxisProgram self_test_program(const SelfTest& test, const Machine& machine, const NcDialect& dialect) {
-  return Builder(test, machine, dialect).build();
+  return SelfTestBuilder(test, machine, dialect).build();
 }
 
 NcDialect in_air(NcDialect dialect) {
@@ -146,7 +147,7 @@ Result<SelfTestProof> prove_self_test(std::string_view text, const std::string& 
   bar.length_mm = test.tool_length_mm;
   Setup setup;
   setup.work_offset_at_mm = test.point_mm;
-  auto control = control_of(machine, setup, std::span(&bar, 1));
+  auto control = controls::control_of(machine, setup, std::span(&bar, 1));
   if (!control) return control.error();
   control->dry_run = true;
   const double allowed = test.tip_bound_mm + 0.003;

@@ -6,7 +6,7 @@
 namespace toothpath {
 namespace {
 
-constexpr std::size_t kLongestLine = 256;
+constexpr std::size_t kLongestBlock = 256;
 constexpr int kDeepestExpression = 16;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
@@ -18,7 +18,7 @@ class Parser {
   Parser(std::string_view line, bool o_words) : line_(line), o_words_(o_words) {}
 
   Result<NcBlock> parse() {
-    if (line_.size() > kLongestLine) return error(kLongestLine, fmt::format("line of {} characters exceeds {}", line_.size(), kLongestLine));
+    if (line_.size() > kLongestBlock) return error(kLongestBlock, fmt::format("line of {} characters exceeds {}", line_.size(), kLongestBlock));
     skip_blanks();
     if (at() == '%') {
       ++i_;

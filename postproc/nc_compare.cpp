@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kStillTip = 1e-6;  // mm
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 d = b - a;

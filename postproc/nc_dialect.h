@@ -1,5 +1,5 @@
-// What differs between controls, as data: numbers, words and the lines that stand at certain places of every program. One
-// file a dialect under postproc/dialects; docs/dialects.md says how to add one.
+// What differs between controls, as data: numbers, words and the lines that stand at certain places of every program. Made in the folder of
+// the control, postproc/controls; docs/dialects.md says how to add one.
 //
 // Lines are templates: {offset} G54 .., {datum} 1 for G54 and so on, {tool} number, {speed} 1/min, {top} machine Z of the
 // retract, {work_top} the same as a Z word with this tool's length, {z} Z word of the block that switches TCP on, {blend} mm, {blend_axis} deg,
@@ -12,9 +12,11 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "geometry/base/result.h"
@@ -97,7 +99,10 @@ struct NcDialect {
   NcLinesOfText tcp_compensation;        ///< the same with TCP
   NcLinesOfText pause = {"M0"};          ///< waits for the start button
   NcLinesOfText operation_end;           ///< ahead of coolant and spindle off
-  NcLinesOfText coolant_on = {"M8"}, coolant_off = {"M9"}, spindle_off = {"M5"};
+  NcLinesOfText spindle_off = {"M5"};
+  std::map<Coolant, CoolantWords> coolant = {{Coolant::mist, {"M7", "M9"}}, {Coolant::flood, {"M8", "M9"}}};  ///< those of ISO 6983
+  bool takes_coolant = true;             ///< the machine file may name M words of its builder
+  std::vector<std::pair<int, int>> own_m = {{0, 6}, {19, 19}, {30, 30}, {96, 99}};  ///< M words, first to last, that can be no coolant
   bool blend = false;                    ///< `start` lets the control leave corners by {blend}: counts as deviation
   double exact_path_mm = 0;              ///< without `blend`: the tip is off a corner by up to this all the same
   /// {blend} is not a distance from the path but the way ahead of and behind a corner within which every axis may leave it (G641 ADIS).
@@ -110,7 +115,10 @@ struct NcDialect {
   double smoothing_mm = 0;               ///< what the machine file states: the tip leaves the path by no more
   std::optional<double> smoothing_axis_rad;  ///< the tool axis; not stated: no cut may turn a rotary
 
+  int (*datum)(std::string_view work_offset) = nullptr;  ///< {datum}, the number of a work offset; null: the lines do not use it
+
   // TCP.
+  bool tcp_codes_of_site = false;               ///< the codes are those of the machine file, there are none else
   NcLinesOfText tcp_on, tcp_off;                ///< empty: the dialect has no TCP (or its codes are site data)
   bool tcp_starts_at_zero = false;              ///< the table frame is frozen where TCP starts
   std::array<std::string, 3> vector_words{};    ///< ahead of the components of the tool axis; empty: no vectors
@@ -124,17 +132,8 @@ struct NcDialect {
   Result<NcText> (*write)(const AxisProgram&, const NcDialect&, const NcHeader&) = nullptr;
 };
 
-/// By the name of a machine file; anything else is refused with the list.
-[[nodiscard]] Result<NcDialect> find_dialect(std::string_view name);
-/// Names of all dialects.
-[[nodiscard]] std::vector<std::string> dialect_names();
-[[nodiscard]] NcDialect linuxcnc_dialect();
-[[nodiscard]] NcDialect fanuc_dialect();
-
-/// The dialect that a machine file names, with the machine's own digits and TCP codes.
-/// Errors: unknown dialect, digits that cannot be printed, TCP of a kind that the dialect lacks.
-[[nodiscard]] Result<NcDialect> dialect_of(const Machine& machine);
-/// Options of the axis program that follow from the dialect and the machine; the tolerances keep their defaults.
-[[nodiscard]] AxisOptions axis_options(const NcDialect& dialect, const Machine& machine);
+/// Words for a coolant that is not off.
+/// Errors: the control has none and the machine file names none. The message says which ones there are.
+[[nodiscard]] Result<CoolantWords> coolant_words(const NcDialect& dialect, Coolant coolant);
 
 }  // namespace toothpath

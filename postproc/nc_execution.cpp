@@ -12,9 +12,9 @@ namespace toothpath {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kStill = 1e-9;       // mm: round-off of a tip that does not move
+constexpr double kTipStill = 1e-9;       // mm: round-off of a tip that does not move
 constexpr double kZeroRotary = 1e-9;  // deg
-constexpr double kTurn = 360;         // deg
+constexpr double kFullTurn = 360;         // deg
 constexpr double kHalfTurn = 180 - 1e-6;  // deg: from here on round-off decides which way is the nearer one
 constexpr double kBelowZero = 1e-9;   // deg: round-off of a remainder
 constexpr double kFlip = 170;         // deg: a tool vector that turns further in one block leaves the plane of the turn open
@@ -37,19 +37,19 @@ double on_grid(double deg) { return std::ldexp(std::nearbyint(std::ldexp(deg, 30
 
 /// The same place as `deg`, in the turn nearest to `now`.
 double turned_on(double deg, double now) {
-  const double place = on_grid(std::remainder(deg, kTurn));
-  return place + kTurn * std::round((now - place) / kTurn);
+  const double place = on_grid(std::remainder(deg, kFullTurn));
+  return place + kFullTurn * std::round((now - place) / kFullTurn);
 }
 
 /// Where LinuxCNC takes an axis that rolls over and stands at `now` (published source, 2.9): the sign is the sense.
 double by_sign(double word, double now) {
-  const double to = std::abs(word) + std::floor(now / kTurn) * kTurn;
-  if (!std::signbit(word) && to < now) return to + kTurn;
-  if (std::signbit(word) && to > now) return to - kTurn;
+  const double to = std::abs(word) + std::floor(now / kFullTurn) * kFullTurn;
+  if (!std::signbit(word) && to < now) return to + kFullTurn;
+  if (std::signbit(word) && to > now) return to - kFullTurn;
   return to;
 }
 
-Vec3 turned(const Vec3& v, double deg) {
+Vec3 turned_deg(const Vec3& v, double deg) {
   if (deg == 0) return v;
   const double c = std::cos(radians(deg)), s = std::sin(radians(deg));
   return {c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z()};
@@ -151,7 +151,7 @@ NcExecution::Problem NcExecution::tcp_on() {
 }
 
 bool NcExecution::at_zero(std::size_t axis) const {
-  return std::abs(control_.rollover[axis] ? std::remainder(joints_[axis], kTurn) : joints_[axis]) <= kZeroRotary;
+  return std::abs(control_.rollover[axis] ? std::remainder(joints_[axis], kFullTurn) : joints_[axis]) <= kZeroRotary;
 }
 
 NcExecution::Problem NcExecution::tcp_off() {
@@ -169,7 +169,7 @@ NcExecution::Problem NcExecution::end_program(bool inside_call) {
 
 /// Angles of rotaries, deg, for the kinematics [rad]: of those that roll over the place within the turn, so that whole turns change no digit.
 std::array<double, 2> NcExecution::angles_of(double r0, double r1) const {
-  const auto angle = [this](std::size_t axis, double deg) { return radians(control_.rollover[axis] ? deg - kTurn * std::floor(deg / kTurn) : deg); };
+  const auto angle = [this](std::size_t axis, double deg) { return radians(control_.rollover[axis] ? deg - kFullTurn * std::floor(deg / kFullTurn) : deg); };
   return {angle(3, r0), angle(4, r1)};
 }
 
@@ -191,7 +191,7 @@ NcExecution::Problem NcExecution::goal_of(const Move& m, std::array<double, 5>& 
     joints[a] = m.axis[a];
     if (a >= 3 || m.machine_frame) continue;
     if (!offset_) return "axis word before a work offset";
-    if (frame_deg_ != 0) return "a turned frame without TCP";
+    if (frame_deg_ != 0) return "a turned_deg frame without TCP";
     joints[a] += (*offset_)[static_cast<int>(a)];
     if (a != 2) continue;
     if (!length_) return "Z word without tool length compensation";
@@ -203,7 +203,7 @@ NcExecution::Problem NcExecution::goal_of(const Move& m, std::array<double, 5>& 
 
 /// Words of the tip and rotary words or a vector.
 NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const {
-  Vec3 words = turned(tip_ - *offset_, -frame_deg_);
+  Vec3 words = turned_deg(tip_ - *offset_, -frame_deg_);
   const Vec3 before = words;
   for (std::size_t a = 0; a < 5; ++a) {
     if (!m.has[a]) continue;
@@ -211,11 +211,11 @@ NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>&
     if (a < 3) words[static_cast<int>(a)] = m.axis[a];
     else joints[a] = m.axis[a];
   }
-  tip = words == before ? tip_ : Vec3(*offset_ + turned(words, frame_deg_));
+  tip = words == before ? tip_ : Vec3(*offset_ + turned_deg(words, frame_deg_));
   if (m.vector) {
     const double size = m.vector->norm();
     if (!(std::abs(size - 1) < 1e-5)) return fmt::format("a tool vector of length {:.6f}", size);
-    const Vec3 axis = turned(*m.vector / size, frame_deg_);
+    const Vec3 axis = turned_deg(*m.vector / size, frame_deg_);
     const auto list = control_.chain->rotary_solutions(axis);
     if (!list) return list.error().message;
     double nearest = std::numeric_limits<double>::infinity();
@@ -246,17 +246,17 @@ NcExecution::Problem NcExecution::roll(Move& m) {
   for (std::size_t a = 3; a < 5; ++a) {
     if (!control_.rollover[a] || !m.has[a]) continue;
     const double word = m.axis[a], now = joints_[a];
-    const double least = rules_.sign_is_sense ? -kTurn : -kBelowZero;
-    if (!(word > least && word < kTurn))
+    const double least = rules_.sign_is_sense ? -kFullTurn : -kBelowZero;
+    if (!(word > least && word < kFullTurn))
       return fmt::format("{} = {} of an axis that rolls over is outside {} 360", control_.letters[a], word, rules_.sign_is_sense ? "-360 .." : "0 ..");
     double turns = 0;
     if (rules_.sign_is_sense) {
       rolled_[a] = std::isnan(rolled_[a]) ? std::abs(word) : by_sign(word, rolled_[a]);
-      turns = std::round((rolled_[a] - std::abs(word)) / kTurn);
+      turns = std::round((rolled_[a] - std::abs(word)) / kFullTurn);
     } else if (!std::isnan(now)) {
-      turns = std::round((now - word) / kTurn);
+      turns = std::round((now - word) / kFullTurn);
     }
-    m.axis[a] = kTurn * turns + on_grid(std::abs(word));
+    m.axis[a] = kFullTurn * turns + on_grid(std::abs(word));
     const double turn = std::abs(m.axis[a] - now);
     if (turn >= kHalfTurn && !(rules_.sign_is_sense && m.rapid))
       return fmt::format("{} turns by {:.6f} deg in one block, limit 180: {}", control_.letters[a], turn,
@@ -309,7 +309,7 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
 
 /// How far the control may leave the corners at both ends of a feed block.
 NcExecution::Problem NcExecution::corners(const std::array<double, 5>& goal, const Vec3& tip, ExecutedMove& e) const {
-  const bool turns = std::abs(goal[3] - joints_[3]) > kStill || std::abs(goal[4] - joints_[4]) > kStill;
+  const bool turns = std::abs(goal[3] - joints_[3]) > kTipStill || std::abs(goal[4] - joints_[4]) > kTipStill;
   if (turns && blend_is_linear_) return "G64 bounds X, Y and Z alone, this G1 turns a rotary axis: G61 or G61.1 is needed";
   if (turns && tcp_ && rules_.turns_need_axis_blend && !blend_axis_rad_)
     return "this block turns a rotary axis and no TA says how far the control may leave its way: CYCL DEF 32.2 is needed";
@@ -345,7 +345,7 @@ NcExecution::Problem NcExecution::feed_minutes(const Move& m, const std::array<d
     (a < 3 ? linear : rotary) += d * d;
   }
   linear = tcp_ ? (tip - tip_).norm() : std::sqrt(linear);
-  if (tcp_ && linear < kStill) linear = 0;
+  if (tcp_ && linear < kTipStill) linear = 0;
   rotary = std::sqrt(rotary);
   const double length = linear > 0 ? linear : rotary;
   if (feed_mode_ == Feed::inverse_time) {

@@ -1,39 +1,21 @@
-// Executes the subset of LinuxCNC, Fanuc and Mitsubishi text that we write. Everything else is refused where it stands.
+#include "postproc/nc_interpreter.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "postproc/nc_execution.h"
 #include "postproc/nc_flow.h"
-#include "postproc/nc_readers.h"
 
 namespace toothpath {
 namespace {
 
-/// LinuxCNC: what its motion controller leaves of a corner under G64 P, mm. The next block begins a servo period early at worst, and the
-/// samples are smoothed and joined by chords: docs/dialects.md. The machine says what its acceleration leaves under G61, a T^2 / 4.
-double corner_of_g64(double p_mm, double q_mm, double exact_path_mm) {
-  constexpr double kUnequal = 1.06;  // blocks next to a corner that is passed without a stop accelerate by a tenth less
-  const double early = std::sqrt(0.5 * exact_path_mm);  // (T / 2) sqrt(a / 2)
-  const double root = std::sqrt(kUnequal * p_mm) + early;
-  return root * root + 1.2 * exact_path_mm + q_mm;
-}
-
-NcRules rules_of(bool linuxcnc) {
-  NcRules r;
-  r.tcp_needs_zero = !linuxcnc;
-  r.least_rate = linuxcnc ? 0.1 : 0;  // LinuxCNC before 2.9.0 raises the rate of a G93 block to this
-  r.per_minute_turns = linuxcnc;
-  r.sign_is_sense = linuxcnc;
-  return r;
-}
+constexpr unsigned kOffsets = 12;  // modal group
 
 class Interpreter {
  public:
   Interpreter(std::string_view text, const std::string& file, const NcControl& control,
-              const std::function<void(const ExecutedMove&)>& sink)
-      : control_(control), linuxcnc_(control.dialect == "linuxcnc"), flow_(text, file, linuxcnc_, control.max_steps),
-        execution_(control, rules_of(linuxcnc_), sink) {}
+              const MoveSink& sink, const IsoLanguage& language)
+      : control_(control), language_(language), flow_(text, file, language.o_words, control.max_steps), execution_(control, language.rules, sink) {}
 
   Status run() {
     return flow_.run([this](const NcBlock& b) { return block(b); });
@@ -61,6 +43,7 @@ class Interpreter {
     int motion = -1;           // G0 G1 in this block
     int feed_mode = -1;        // 93 94
     bool g53 = false, g43 = false, tcp = false, g49 = false, g64 = false, g61 = false;
+    bool extended = false;     // G54.1, its number in P
     std::string offset;
     std::vector<int> m;
     int switch_tcp = -1;       // 1 on, 0 off: a code of the site
@@ -81,7 +64,7 @@ class Interpreter {
     return apply(r);
   }
 
-  /// LinuxCNC: codes of the machine file that switch TCP.
+  /// Codes of the machine file that switch TCP.
   bool site_code(Request& r, const std::string& code) const {
     const auto is = [&](const std::vector<std::string>& list) { return std::find(list.begin(), list.end(), code) != list.end(); };
     if (!is(control_.tcp_on) && !is(control_.tcp_off)) return false;
@@ -95,15 +78,21 @@ class Interpreter {
     return std::nullopt;
   }
 
+  [[nodiscard]] bool has_m(int m) const {
+    static constexpr std::array<int, 6> common = {0, 2, 3, 5, 6, 30};
+    const bool call = m == 98 || m == 99;
+    return std::find(common.begin(), common.end(), m) != common.end() || (call && !language_.o_words) ||
+           std::find(language_.coolant_m.begin(), language_.coolant_m.end(), m) != language_.coolant_m.end();
+  }
+  [[nodiscard]] bool has_g(int tenths) const { return std::find(language_.g_tenths.begin(), language_.g_tenths.end(), tenths) != language_.g_tenths.end(); }
+
   Problem take(Request& r, const NcWord& w, double v) {
     switch (w.letter) {
       case 'G': return take_g(r, w, v);
       case 'M': {
         const int m = static_cast<int>(std::lround(v));
-        static constexpr std::array<int, 10> known = {0, 2, 3, 5, 6, 8, 9, 30, 98, 99};
-        if (v == m && linuxcnc_ && site_code(r, fmt::format("M{}", m))) return std::nullopt;
-        if (v != m || std::find(known.begin(), known.end(), m) == known.end() || (linuxcnc_ && m > 90))
-          return here(w.column, fmt::format("M{} is not in the subset", v));
+        if (v == m && language_.codes_of_site && site_code(r, fmt::format("M{}", m))) return std::nullopt;
+        if (v != m || !(has_m(m) || control_.switches_coolant(fmt::format("M{}", m)))) return here(w.column, fmt::format("M{} is not in the subset", v));
         if (!r.m.empty()) return here(w.column, "two M words in a block");
         r.m.push_back(m);
         return std::nullopt;
@@ -121,7 +110,7 @@ class Interpreter {
     for (std::size_t a = 0; a < 5; ++a) {
       if (control_.letters[a] != w.letter) continue;
       if (r.move.has[a]) return here(w.column, fmt::format("two {} words in a block", w.letter));
-      if (!linuxcnc_ && !w.point) return here(w.column, fmt::format("{} without a decimal point", w.letter));
+      if (language_.point_needed && !w.point) return here(w.column, fmt::format("{} without a decimal point", w.letter));
       r.move.has[a] = true;
       r.move.axis[a] = v;
       r.column = w.column;
@@ -130,39 +119,45 @@ class Interpreter {
     return here(w.column, fmt::format("word {} is not in the subset or no axis of the machine", w.letter));
   }
 
-  Problem take_g(Request& r, const NcWord& w, double v) {
-    const int tenths = static_cast<int>(std::lround(v * 10));
-    if (std::abs(v * 10 - tenths) > 1e-6) return here(w.column, fmt::format("G{} is not in the subset", v));
-    unsigned group = 0;
+  static std::string g_word(int tenths) {
+    return tenths % 10 == 0 ? fmt::format("G{}", tenths / 10) : fmt::format("G{}.{}", tenths / 10, tenths % 10);
+  }
+
+  /// Takes a G code of the family and gives its modal group; 0: it is none.
+  unsigned group_of(Request& r, int tenths) {
     switch (tenths) {
-      case 0: case 10: group = 1; r.motion = tenths / 10; break;
-      case 170: group = 2; break;
-      case 900: group = 3; execution_.set_absolute(); break;
-      case 930: case 940: group = 4; r.feed_mode = tenths / 10; break;
-      case 210: group = 5; execution_.set_unit(); break;
-      case 400: group = 6; break;
-      case 430: group = 7; r.g43 = true; break;
-      case 434: group = 7; r.g43 = r.tcp = true; break;
-      case 490: group = 7; r.g49 = true; break;
-      case 800: group = 8; break;
-      case 530: group = 9; r.g53 = true; break;
+      case 0: case 10: r.motion = tenths / 10; return 1;
+      case 170: return 2;
+      case 900: execution_.set_absolute(); return 3;
+      case 930: case 940: r.feed_mode = tenths / 10; return 4;
+      case 210: execution_.set_unit(); return 5;
+      case 400: return 6;
+      case 430: r.g43 = true; return 7;
+      case 434: r.g43 = r.tcp = true; return 7;
+      case 490: r.g49 = true; return 7;
+      case 800: return 8;
+      case 530: r.g53 = true; return 9;
       case 610: case 611: case 640:
-        group = 10;
         r.g64 = tenths == 640;
         r.g61 = !r.g64;
-        break;
-      case 921: group = 11; break;
-      case 541: group = 12; r.offset = "G54.1"; break;
-      case 690: group = 13; break;
-      case 540: case 550: case 560: case 570: case 580: case 590: case 591: case 592: case 593: {
-        group = 12;
-        r.offset = tenths % 10 == 0 ? fmt::format("G{}", tenths / 10) : fmt::format("G{}.{}", tenths / 10, tenths % 10);
-        break;
-      }
-      default: return here(w.column, fmt::format("G{} is not in the subset", v));
+        return 10;
+      case 921: return 11;
+      case 690: return 13;
+      case 540: case 550: case 560: case 570: case 580: case 590: case 591: case 592: case 593:
+        r.offset = g_word(tenths);
+        return kOffsets;
+      default: return 0;
     }
-    const bool foreign = linuxcnc_ ? tenths == 690 || tenths == 434 || tenths == 541 : (tenths == 921 || tenths == 610 || tenths == 611 || tenths == 640 || (tenths > 590 && tenths < 600));
-    if (foreign) return here(w.column, fmt::format("G{} is not in the dialect", v));
+  }
+
+  Problem take_g(Request& r, const NcWord& w, double v) {
+    const int tenths = static_cast<int>(std::lround(v * 10));
+    const bool extended = tenths > 0 && tenths == language_.extended.tenths;
+    const unsigned group = extended ? kOffsets : group_of(r, tenths);
+    r.extended = r.extended || extended;
+    if (group == 0 || std::abs(v * 10 - tenths) > 1e-6) return here(w.column, fmt::format("G{} is not in the subset", v));
+    const bool special = tenths == 434 || tenths == 690 || tenths == 921 || tenths == 610 || tenths == 611 || tenths == 640 || (tenths > 590 && tenths < 600);
+    if (special && !has_g(tenths)) return here(w.column, fmt::format("G{} is not in the dialect", v));
     if ((r.groups & (1U << group)) != 0) return here(w.column, "two G words of one modal group in a block");
     r.groups |= 1U << group;
     if (r.column == 1) r.column = w.column;
@@ -170,9 +165,11 @@ class Interpreter {
   }
 
   Problem apply(Request& r) {
-    if (r.offset == "G54.1") {
-      if (!r.p || *r.p != std::floor(*r.p) || !(*r.p >= 1 && *r.p <= 300)) return here(r.column, "G54.1 needs P1 to P300");
-      r.offset = fmt::format("G54.1 P{}", static_cast<int>(*r.p));
+    if (r.extended) {
+      const std::string code = g_word(language_.extended.tenths);
+      const int last = language_.extended.last;
+      if (!r.p || *r.p != std::floor(*r.p) || !(*r.p >= 1 && *r.p <= last)) return here(r.column, fmt::format("{} needs P1 to P{}", code, last));
+      r.offset = fmt::format("{} P{}", code, static_cast<int>(*r.p));
       r.p.reset();
     }
     if ((r.p || r.q) && !r.g64 && (r.m.empty() || r.m.front() != 98)) return here(r.p_column, "P or Q without G64 or M98");
@@ -181,7 +178,7 @@ class Interpreter {
     if (r.g64 && (*r.p < 0 || r.q.value_or(0) < 0)) return here(r.column, "P and Q of G64 must not be negative");
     // Without Q the lines that are joined may be off by P.
     corners_said_ = corners_said_ || r.g64 || r.g61;
-    if (r.g64) execution_.set_blend(corner_of_g64(*r.p, r.q.value_or(*r.p), control_.exact_path_mm), true);
+    if (r.g64) execution_.set_blend(language_.corner_of_g64(*r.p, r.q.value_or(*r.p), control_.exact_path_mm), true);
     if (r.g61) execution_.set_blend(control_.exact_path_mm);  // a stop leaves as much
     if (r.feed_mode == 93) execution_.set_feed_mode(NcExecution::Feed::inverse_time);
     if (r.feed_mode == 94) execution_.set_feed_mode(NcExecution::Feed::per_minute);
@@ -210,7 +207,7 @@ class Interpreter {
   Problem length(const Request& r) {
     if (r.g49) {
       // With G43.4 in force this is the end of TCP: it stands with a machine-coordinate move of Z.
-      if (!linuxcnc_ && execution_.tcp()) {
+      if (has_g(434) && execution_.tcp()) {
         if (!r.g53) return here(r.column, "G49 ends TCP and must stand with G53");
         if (auto bad = placed(r.column, execution_.tcp_off())) return bad;
       }
@@ -238,7 +235,7 @@ class Interpreter {
         return flow_.call_program(p);
       }
       case 99: return flow_.return_from_program(r.column);
-      default: break;  // M8 M9
+      default: break;  // coolants
     }
     return std::nullopt;
   }
@@ -246,7 +243,7 @@ class Interpreter {
   Problem move(Request& r) {
     if (motion_ < 0) return here(r.column, "axis word before G0 or G1");
     if (r.g53 && motion_ != 0) return here(r.column, "G53 with G1");
-    if (linuxcnc_ && motion_ == 1 && !corners_said_)
+    if (language_.corner_of_g64 != nullptr && motion_ == 1 && !corners_said_)
       return here(r.column, "G1 ahead of G61, G61.1 or G64 P: how far the control leaves the path would depend on the last program");
     r.move.rapid = motion_ == 0;
     r.move.machine_frame = r.g53;
@@ -260,7 +257,7 @@ class Interpreter {
   }
 
   const NcControl& control_;
-  bool linuxcnc_;
+  const IsoLanguage& language_;
   NcFlow flow_;
   NcExecution execution_;
   int motion_ = -1;
@@ -269,9 +266,8 @@ class Interpreter {
 
 }  // namespace
 
-Status execute_iso(std::string_view text, const std::string& file, const NcControl& control,
-                   const std::function<void(const ExecutedMove&)>& sink) {
-  return Interpreter(text, file, control, sink).run();
+Status execute_iso(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink, const IsoLanguage& language) {
+  return Interpreter(text, file, control, sink, language).run();
 }
 
 }  // namespace toothpath

@@ -5,7 +5,6 @@
 #include "postproc/fixed_point.h"
 #include "postproc/nc_corners.h"
 #include "postproc/nc_writer.h"
-#include "postproc/work_offset.h"
 
 namespace toothpath {
 namespace {
@@ -25,7 +24,7 @@ NcLines::Values program_values(const AxisProgram& program, const NcDialect& dial
   values["name"] = comment_text(header.job_name).substr(0, 32);
   values["id"] = program_id(header.job_name);
   values["offset"] = program.work_offset;
-  values["datum"] = std::to_string(preset_number(program.work_offset));
+  if (dialect.datum != nullptr) values["datum"] = std::to_string(dialect.datum(program.work_offset));
   const CornerWords corners = corner_words(program, dialect, header);
   values["blend"] = unsigned_value(corners.blend_mm, 6);
   values["blend_axis"] = unsigned_value(std::floor(header.blend_axis_deg * 1e4 + 1e-6) * 1e-4, 4);
@@ -95,12 +94,6 @@ std::vector<std::string> order_comments(const AxisProgram& program) {
 std::string first_tooth_comment(const AxisProgram& program) {
   if (program.tooth_stride == 1) return fmt::format("FIRST TOOTH, 0 TO {}", program.teeth - 1);
   return fmt::format("FIRST TOOTH BY ITS PLACE, 0 TO {}: TOOTH = PLACE * {} MOD {}", program.teeth - 1, program.tooth_stride, program.teeth);
-}
-
-std::uint64_t fnv1a(std::string_view bytes) {
-  std::uint64_t h = 14695981039346656037ULL;
-  for (const char c : bytes) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return h;
 }
 
 void NcLines::line(std::string_view text) {

@@ -12,9 +12,6 @@
 
 namespace toothpath {
 
-/// FNV-1a over bytes.
-[[nodiscard]] std::uint64_t fnv1a(std::string_view bytes);
-
 class NcLines {
  public:
   using Values = std::map<std::string, std::string, std::less<>>;

@@ -147,7 +147,7 @@ Result<std::vector<ToolMotion>> tool_motions(const OperationTrace& trace, const 
   out.reserve(trace.moves.size() + 64);
   for (std::size_t i = 1; i < trace.moves.size(); ++i) {
     const ExecutedMove& m = trace.moves[i];
-    if (!m.known || m.tool != trace.moves[i - 1].tool) continue;
+    if (!m.known) continue;  // a change of tool moves nothing: the new one starts where the gauge line stands
     const double* length = length_of(m.tool);
     if (length == nullptr) return fail("line {}: tool {} is not in the tool list", m.line, m.tool);
     const Placed from = kinematics.place(kinematics.joints(trace.moves[i - 1].joints), *length);

@@ -26,15 +26,19 @@ ToolAssembly bare_tip(int number) {
 
 }  // namespace
 
-Status check_rapids(const OperationTrace& trace, const NcControl& control, const Machine& machine, const Setup& setup,
-                    const ClearanceBody& body, std::span<const ToolAssembly> tools) {
+bool mixes_axis_groups(const ExecutedMove& from, const ExecutedMove& to) { return to.rapid && to.known && !to.tcp && mixes_axes(from, to); }
+
+Status check_axis_groups(const OperationTrace& trace) {
+  for (std::size_t i = 1; i < trace.moves.size(); ++i)
+    if (mixes_axis_groups(trace.moves[i - 1], trace.moves[i]))
+      return fail_as(DiagnosticKind::verification, "line {}: a rapid moves more than one group of axes", trace.moves[i].line);
+  return Ok{};
+}
+
+Status check_rapids_outside(const OperationTrace& trace, const NcControl& control, const Machine& machine, const Setup& setup,
+                            const ClearanceBody& body, std::span<const ToolAssembly> tools) {
   const auto motions = tool_motions(trace, {}, control, machine, setup, 1, 0.001, 1e-3);
   if (!motions) return motions.error();
-  for (std::size_t i = 1; i < trace.moves.size(); ++i) {
-    const ExecutedMove &a = trace.moves[i - 1], &b = trace.moves[i];
-    if (b.rapid && b.known && !b.tcp && mixes_axes(a, b))  // with TCP the tip goes straight, whatever the joints do
-      return fail_as(DiagnosticKind::verification, "line {}: a rapid moves more than one group of axes", b.line);
-  }
   const auto found = std::find_if(tools.begin(), tools.end(), [&](const ToolAssembly& t) { return t.number == trace.tool; });
   const ToolAssembly tool = found != tools.end() ? *found : bare_tip(trace.tool);
   const RapidObstacle obstacle{body.radius_mm, 0, body.z_max_mm, body.z_min_mm};
@@ -49,8 +53,9 @@ Status check_rapids(const OperationTrace& trace, const NcControl& control, const
 }
 
 Status check_rapids(const OperationTrace& trace, const NcControl& control, const Machine& machine, const Setup& setup,
-                    const ClearanceBody& body) {
-  return check_rapids(trace, control, machine, setup, body, {});
+                    const ClearanceBody& body, std::span<const ToolAssembly> tools) {
+  if (const auto single = check_axis_groups(trace); !single) return single;
+  return check_rapids_outside(trace, control, machine, setup, body, tools);
 }
 
 }  // namespace toothpath

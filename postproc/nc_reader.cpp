@@ -6,17 +6,16 @@
 #include <map>
 
 #include "geometry/base/angle.h"
-#include "postproc/nc_readers.h"
 #include "postproc/operation_moves.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kCoincident = 1e-9;  // mm
-constexpr double kParallel = 1e-12;
+constexpr double kReadCoincident = 1e-9;  // mm
+constexpr double kReadParallel = 1e-12;
 constexpr double kSameTip = 1e-9;           // mm: round-off of a turned frame
 constexpr float kSameShare = 1e-6F;         // of a block: its length with the round-off of a turned frame
-constexpr double kTipStep = radians(0.5);   // joints follow a straight tip: looked at in such steps of the rotaries
+constexpr double kReadTipStep = radians(0.5);   // joints follow a straight tip: looked at in such steps of the rotaries
 
 bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
@@ -141,35 +140,53 @@ class CopyCheck {
   TurnedCopies result_;
 };
 
+/// Collects the moves that stand in no trace of an operation, with the moves that they start from.
+class Between {
+ public:
+  /// @param trails  of operations: kept by no trace where the teeth are copies
+  Between(const std::map<int, OperationMoves>& counts, bool trails) : counts_(counts), trails_(trails) {}
+
+  void operator()(const ExecutedMove& m) {
+    const OperationMoves& c = counts_.at(m.operation);
+    const std::size_t i = seen_[m.operation]++;
+    const bool outside = m.operation < 0 || i == 0 || (trails_ && i >= c.total - c.trail);
+    if (!outside) {
+      open_ = false;
+    } else {
+      if (!open_ || made_.back().operation != m.operation || made_.back().tool != m.tool) begin(m);
+      made_.back().moves.push_back(m);
+    }
+    before_ = m;
+  }
+  std::vector<OperationTrace> take() { return std::move(made_); }
+
+ private:
+  /// With the tool of the stretch: it is changed where the gauge line stands.
+  void begin(const ExecutedMove& m) {
+    OperationTrace t;
+    t.operation = m.operation;
+    t.tool = m.tool;
+    t.moves.push_back(before_);
+    t.moves.front().tool = m.tool;
+    made_.push_back(std::move(t));
+    open_ = true;
+  }
+
+  const std::map<int, OperationMoves>& counts_;
+  bool trails_, open_ = false;
+  std::map<int, std::size_t> seen_;
+  ExecutedMove before_;
+  std::vector<OperationTrace> made_;
+};
+
 /// +1, -1: word of the index rotary per turn of the gear; 0: the gear is not turned about its own axis.
 int index_sign(const Machine& machine, const Setup& setup) {
   if (machine.chain.table.empty()) return 0;
   const RotaryAxis& c = machine.chain.table[0];
   const Vec3 g = setup.rotation().col(2);
-  if (c.direction.cross(g).norm() > kParallel) return 0;
-  if ((setup.origin_mm - c.point_mm).cross(c.direction).norm() > kCoincident) return 0;
+  if (c.direction.cross(g).norm() > kReadParallel) return 0;
+  if ((setup.origin_mm - c.point_mm).cross(c.direction).norm() > kReadCoincident) return 0;
   return c.direction.dot(g) > 0 ? c.sign : -c.sign;
-}
-
-/// Who reads a dialect, and the digits that it prints for rotaries unless the machine says otherwise.
-struct ReaderOfDialect {
-  const char* name;
-  int rotary_decimals;
-  Status (*execute)(std::string_view, const std::string&, const NcControl&, const MoveSink&);
-};
-constexpr ReaderOfDialect kReaders[] = {{"linuxcnc", 5, execute_iso},           {"fanuc", 3, execute_iso},
-                                         {"siemens", 6, execute_siemens},       {"heidenhain", 4, execute_heidenhain},
-                                         {"apt", 7, execute_apt},               {"mitsubishi_m80", 4, execute_iso}};
-
-const ReaderOfDialect* reader_of(std::string_view dialect) {
-  for (const auto& r : kReaders)
-    if (dialect == r.name) return &r;
-  return nullptr;
-}
-std::string readable_dialects() {
-  std::string list;
-  for (const auto& r : kReaders) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", r.name);
-  return list;
 }
 
 }  // namespace
@@ -181,7 +198,7 @@ void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcContro
   if (turn == 0 || length == control.tool_length_mm.end() || !std::isfinite(turn)) return;
   const auto& j = from.joints;
   const Vec3 start = from.tcp ? from.tip : chain.forward({Vec3(j[0], j[1], j[2]), {radians(j[3]), radians(j[4])}}, length->second).tip_mm;
-  const int n = static_cast<int>(std::min(1e5, std::ceil(turn / kTipStep))) + 3;
+  const int n = static_cast<int>(std::min(1e5, std::ceil(turn / kReadTipStep))) + 3;
   for (int i = 1; i < n; ++i) {
     const double t = static_cast<double>(i) / n;
     const double r0 = (1 - t) * j[3] + t * to.joints[3], r1 = (1 - t) * j[4] + t * to.joints[4];
@@ -191,37 +208,8 @@ void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcContro
 }
 
 Status execute_nc(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
-  const ReaderOfDialect* reader = reader_of(control.dialect);
-  if (reader == nullptr) return fail("dialect \"{}\" cannot be read back: {} can", control.dialect, readable_dialects());
-  return reader->execute(text, file, control, sink);
-}
-
-Result<NcControl> control_of(const Machine& machine, const Setup& setup, std::span<const ToolAssembly> tools) {
-  NcControl c;
-  c.dialect = machine.dialect;
-  const ReaderOfDialect* reader = reader_of(c.dialect);
-  if (reader == nullptr) return fail("dialect \"{}\" cannot be read back: {} can", c.dialect, readable_dialects());
-  c.rotary_rounding_deg = 0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(reader->rotary_decimals));
-  if (machine.tcp != TcpMode::none) c.chain = machine.chain;
-  c.top_mm = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
-  c.exact_path_mm = machine.exact_corner_mm();
-  c.tcp_on = machine.post.tcp_on;
-  c.tcp_off = machine.post.tcp_off;
-  c.smoothing_on = machine.post.smoothing_on;
-  c.smoothing_off = machine.post.smoothing_off;
-  c.smoothing_mm = machine.post.smoothing_tolerance_mm.value_or(0);
-  c.smoothing_axis_rad = machine.post.smoothing_axis_tolerance_rad;
-  c.letters = {'X', 'Y', 'Z', 0, 0};
-  for (std::size_t i = 0; i < 3; ++i) c.rapid_speed[i] = machine.chain.linear[i].max_speed;
-  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
-    c.letters[3 + k] = machine.chain.rotary(k).letter;
-    c.rapid_speed[3 + k] = degrees(machine.chain.rotary(k).max_speed);
-    c.rollover[3 + k] = machine.chain.rotary(k).rollover;
-  }
-  for (const auto& t : tools)
-    if (!c.tool_length_mm.emplace(t.number, t.length_mm).second) return fail("tool number {} occurs twice", t.number);
-  c.work_offsets[setup.work_offset] = setup.work_offset_at_mm;
-  return c;
+  if (control.execute == nullptr) return fail("a control without a reader: its programs cannot be read back");
+  return control.execute(text, file, control, sink);
 }
 
 Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control, const Machine& machine,
@@ -242,6 +230,7 @@ Result<ReadBack> read_back(std::string_view text, const std::string& file, const
     result.minutes += m.minutes;
     if (!m.rapid) result.feed_minutes += m.minutes;
     if (m.tcp && m.known) follow_tip(before, m, control, machine.chain, reach);
+    if (result.mixed_rapid == 0 && mixes_axis_groups(before, m)) result.mixed_rapid = m.line;
     before = m;
     reach(m.joints);
     counts[m.operation].add(m);
@@ -249,7 +238,13 @@ Result<ReadBack> read_back(std::string_view text, const std::string& file, const
   if (auto s = execute_nc(text, file, control, count); !s) return s.error();
 
   CopyCheck check(counts, control, setup, options.teeth, index_sign(machine, setup));
-  if (auto s = execute_nc(text, file, control, [&](const ExecutedMove& m) { check(m); }); !s) return s.error();
+  Between between(counts, true);
+  const auto look = [&](const ExecutedMove& m) {
+    check(m);
+    between(m);
+  };
+  if (auto s = execute_nc(text, file, control, look); !s) return s.error();
+  result.between = between.take();
   result.copies = check.finish();
 
   const bool all = options.keep_all || !result.copies.copies;
@@ -262,8 +257,13 @@ Result<ReadBack> read_back(std::string_view text, const std::string& file, const
       return error;
     }
     for (const auto& [op, c] : counts) traces[op].moves.reserve(c.total);
-    const auto keep = [&](const ExecutedMove& m) { traces[m.operation].moves.push_back(m); };
+    Between gaps(counts, false);
+    const auto keep = [&](const ExecutedMove& m) {
+      traces[m.operation].moves.push_back(m);
+      gaps(m);
+    };
     if (auto s = execute_nc(text, file, control, keep); !s) return s.error();
+    result.between = gaps.take();
   } else {
     for (const auto& [op, c] : counts)
       if (op >= 0) traces[op].moves = check.take(op);

@@ -6,6 +6,7 @@
 // link from the first tooth to the second.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -26,9 +27,17 @@
 
 namespace toothpath {
 
-/// What the control knows beside the text.
+struct NcControl;
+struct ExecutedMove;
+using MoveSink = std::function<void(const ExecutedMove&)>;
+
+/// Reader of a language: executes `text` and hands every move to `sink`. It shares no code with a writer, and refuses what is not in its
+/// subset with line and column.
+using NcExecute = Status (*)(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
+
+/// What the control knows beside the text. Made by controls::control_of.
 struct NcControl {
-  std::string dialect = "linuxcnc";           ///< as in a machine file
+  NcExecute execute = nullptr;                ///< reader of its language
   std::array<char, 5> letters{};              ///< X Y Z and the rotaries in the machine's order; 0: none
   std::array<double, 5> rapid_speed{};        ///< mm/min and deg/min
   std::array<bool, 5> rollover{};             ///< the control counts this rotary within one turn
@@ -44,13 +53,14 @@ struct NcControl {
   std::vector<std::string> smoothing_on, smoothing_off;
   double smoothing_mm = 0;
   std::optional<double> smoothing_axis_rad;   ///< not stated: no cut may turn a rotary while it is on
+  std::vector<std::string> coolant_words;     ///< M words of the builder that switch coolants, on and off
   bool dry_run = false;                       ///< feed moves with a standing spindle are meant: a program that runs in air
   std::size_t max_steps = 400'000'000;        ///< executed blocks before the program is refused as endless
-};
 
-/// Control of a machine with the job's tools and its one work offset.
-[[nodiscard]] Result<NcControl> control_of(const Machine& machine, const Setup& setup,
-                                           std::span<const ToolAssembly> tools);
+  [[nodiscard]] bool switches_coolant(std::string_view word) const {
+    return std::find(coolant_words.begin(), coolant_words.end(), word) != coolant_words.end();
+  }
+};
 
 /// End of one executed move: joints in machine coordinates, gauge line (mm) and rotaries as words (deg); those that roll over go on beyond
 /// a turn, the same place in two turns differs by a multiple of 360 exactly.
@@ -77,8 +87,11 @@ struct ExecutedMove {
 /// Executes `text` and hands every move to `sink`, in order. Stops with a located error (line and column of `file`) at
 /// anything that is not in the subset, at an undefined tool, offset, label or parameter, at a feed move without F or
 /// without spindle, at G1 in G94 with rotary and linear words whose time is not exact, and beyond max_steps.
-[[nodiscard]] Status execute_nc(std::string_view text, const std::string& file, const NcControl& control,
-                                const std::function<void(const ExecutedMove&)>& sink);
+[[nodiscard]] Status execute_nc(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
+
+/// Joints inside a block whose tip goes straight, every half degree of the rotaries.
+void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcControl& control, const KinematicChain& chain,
+                const std::function<void(const std::array<double, 5>&)>& sink);
 
 /// Are the teeth of every operation turned copies of its first one?
 struct TurnedCopies {
@@ -106,9 +119,13 @@ struct OperationTrace {
 struct ReadBack {
   TurnedCopies copies;
   std::vector<OperationTrace> operations;
+  /// What else is executed: moves ahead of the first operation, from one to the next, and behind the last tooth where the teeth are copies. Each
+  /// stretch begins with where it starts from and has one tool.
+  std::vector<OperationTrace> between;
   std::array<double, 5> least{}, greatest{};  ///< joints over all executed moves, mm and deg
   std::size_t executed = 0;
   double minutes = 0, feed_minutes = 0;
+  int mixed_rapid = 0;  ///< line of the first rapid that moves more than one group of axes, of all executed moves; 0: none does
 };
 
 struct ReadBackOptions {
@@ -144,11 +161,18 @@ struct ClComparison {
 [[nodiscard]] ClComparison compare_with_cl(std::span<const ToolMotion> motions, std::span<const ClPath* const> paths,
                                            double tolerance_mm, double axis_tolerance_rad);
 
-/// Rapids of a trace: one group of axes a move (Z, or XY, or rotaries), and every body of the tool outside `body` (cylinder
-/// about the gear axis in W) at every moment, proven. `tools`: the job's; without them only the tip is looked at.
+/// A rapid without TCP that moves more than one group of axes (Z, or XY, or rotaries): which arrives first is not known. With TCP the tip goes
+/// straight, whatever the joints do.
+[[nodiscard]] bool mixes_axis_groups(const ExecutedMove& from, const ExecutedMove& to);
+/// No rapid of the trace does that. The refusal names the line.
+[[nodiscard]] Status check_axis_groups(const OperationTrace& trace);
+/// In every rapid of the trace every body of the tool is outside `body` (cylinder about the gear axis in W) at every moment, proven. `tools`: the
+/// job's; without them only the tip is looked at.
+[[nodiscard]] Status check_rapids_outside(const OperationTrace& trace, const NcControl& control, const Machine& machine, const Setup& setup,
+                                          const ClearanceBody& body, std::span<const ToolAssembly> tools);
+
+/// Both of these.
 [[nodiscard]] Status check_rapids(const OperationTrace& trace, const NcControl& control, const Machine& machine, const Setup& setup,
-                                  const ClearanceBody& body, std::span<const ToolAssembly> tools);
-[[nodiscard]] Status check_rapids(const OperationTrace& trace, const NcControl& control, const Machine& machine,
-                                  const Setup& setup, const ClearanceBody& body);
+                                  const ClearanceBody& body, std::span<const ToolAssembly> tools = {});
 
 }  // namespace toothpath

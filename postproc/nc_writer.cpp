@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "geometry/base/hash.h"
 #include "postproc/fixed_point.h"
 #include "postproc/nc_axis_words.h"
 #include "postproc/nc_corners.h"
@@ -27,6 +28,11 @@ class Writer {
       : program_(program), dialect_(dialect), header_(header), corners_(corner_words(program, dialect, header)), out_(dialect), words_(program, dialect, out_), tcp_(program.tcp != TcpMode::none) {}
 
   Result<NcText> write() {
+    if (header_.coolant != Coolant::off) {
+      auto words = coolant_words(dialect_, header_.coolant);
+      if (!words) return words.error();
+      coolant_ = std::move(*words);
+    }
     values_ = program_values(program_, dialect_, header_);
     values_["top"] = linear(program_.retract_z_mm);
     fill(dialect_.start);
@@ -96,7 +102,7 @@ class Writer {
     fill(dialect_.tool_change);
     fill(tcp_ ? dialect_.tcp_compensation : dialect_.compensation);
     forget();
-    if (header_.coolant) fill(dialect_.coolant_on);
+    if (coolant_) out_.line(coolant_->on);
     for (const auto& line : dialect_.smoothing_on) out_.line(line);
     if (!program_.loop) {
       for (const auto& tooth : op.teeth) {
@@ -114,7 +120,7 @@ class Writer {
     }
     for (const auto& line : dialect_.smoothing_off) out_.line(line);
     fill(dialect_.operation_end);
-    if (header_.coolant) fill(dialect_.coolant_off);
+    if (coolant_) out_.line(coolant_->off);
     fill(dialect_.spindle_off);
     machine_retract();
   }
@@ -339,6 +345,7 @@ class Writer {
   NcAxisWords words_;
   NcLines::Values values_;
   bool tcp_;
+  std::optional<CoolantWords> coolant_;
   std::optional<Diagnostic> error_;
   int motion_ = -1;         // 0, 1; -1: to be printed
   std::int64_t feed_ = -1;  // F per minute in force, millionths; -1: to be printed
@@ -355,6 +362,8 @@ Result<NcText> write_nc(const AxisProgram& program, const NcDialect& dialect, co
                 program.format.rotary_decimals, dialect.format.linear_decimals, dialect.format.rotary_decimals);
   if (program.turns_in_cuts && !dialect.smoothing_on.empty() && !dialect.smoothing_axis_rad)
     return fail("cuts turn a rotary axis: post.smoothing_on needs post.smoothing_axis_tolerance beside post.smoothing_tolerance");
+  if (program.loop && dialect.write == nullptr && dialect.loop.form == NcLoop::Form::none)
+    return fail("{} has no loop for the teeth: they must be written out", dialect.name);
   if (dialect.write != nullptr) return dialect.write(program, dialect, header);
   return Writer(program, dialect, header).write();
 }

@@ -22,7 +22,7 @@ struct NcHeader {
   int program_number = 1001; ///< O word
   double blend_mm = 0.0003;  ///< how far the control may leave a corner: counts as deviation of the machine in every proof
   double blend_axis_deg = 0.002;  ///< how far the control may turn a rotary off its way with TCP: counts as deviation of the tool axis
-  bool coolant = false;      ///< M8 with every operation
+  Coolant coolant = Coolant::off;  ///< with every operation
 };
 
 struct NcText {
@@ -38,7 +38,7 @@ struct NcText {
 [[nodiscard]] double granted_blend_rad(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
 
 /// Prints the program. Errors: an F that the control cannot take, a line that is too long, a number out of its format, joint
-/// blocks that turn on a control without inverse time.
+/// blocks that turn on a control without inverse time, teeth as a loop on a control that has none.
 [[nodiscard]] Result<NcText> write_nc(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
 
 /// Text that may stand in a comment of any dialect: printable ASCII, upper case, ( ) -> [ ], the rest -> '?'.

@@ -5,7 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "postproc/nc_readers.h"
 #include "postproc/operation_moves.h"
 
 namespace toothpath {

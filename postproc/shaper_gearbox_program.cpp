@@ -14,8 +14,6 @@ namespace {
 
 constexpr std::int64_t kMostTurnsT = 1000, kMostTurnsL = 21;       // Fanuc G81.5 T and L
 constexpr std::int64_t kMostPulses = 999999999, kMostDegrees = 99999;  // Fanuc G81.5 P, and C with three decimals in eight digits
-/// Feed from the clear height down to the work and back [mm/min], unless the axis is slower.
-constexpr double kApproachFeed = 200;
 
 struct Numbers {
   int length_decimals, angle_decimals;

@@ -10,7 +10,6 @@
 namespace toothpath {
 namespace {
 
-constexpr double kPlace = 5.1e-4;  // half of the third decimal, the coarser of both controls
 constexpr double kTime = 2e-3;     // relative
 
 }  // namespace

@@ -9,7 +9,6 @@
 namespace toothpath {
 namespace {
 
-constexpr double kPlace = 5.1e-4;  // half of the third decimal, the coarser of both controls
 
 std::string_view trimmed(std::string_view s) {
   while (!s.empty() && (s.front() == ' ' || s.front() == '\r')) s.remove_prefix(1);

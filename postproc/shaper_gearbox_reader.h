@@ -10,6 +10,9 @@
 
 namespace toothpath {
 
+/// Places that agree [mm]: half of the third decimal, the coarser of both controls.
+inline constexpr double kPlace = 5.1e-4;
+
 /// Work turns over cutter turns, as the program says them, with its sign.
 struct GearboxRatio {
   std::int64_t work_turns = 0, cutter_turns = 0;

@@ -13,8 +13,6 @@ namespace toothpath {
 namespace {
 
 constexpr int kLengthDecimals = 5;
-/// Feed from the clear height down to the first infeed position [mm/min], unless the axis is slower.
-constexpr double kApproachFeed = 200;
 
 /// Fixed decimals without the zeros at the end and without a negative zero.
 std::string number(double value, int decimals) {

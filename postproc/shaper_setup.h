@@ -14,6 +14,9 @@
 
 namespace toothpath {
 
+/// Feed of programs from the clear height down to the work and back [mm/min], unless the axis is slower.
+inline constexpr double kApproachFeed = 200;
+
 /// What is to be shaped, and how; the gear's limits have been checked by `FaceGear::make`.
 struct ShaperWork {
   std::string job_name;

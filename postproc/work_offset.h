@@ -1,16 +1,17 @@
-// The names of work offsets: which ones a dialect has, and their numbers.
+// The names of work offsets: what kind of name it is, and its number. Which ones a control has is said in its folder.
 #pragma once
 
-#include <optional>
-#include <string>
 #include <string_view>
 
 namespace toothpath {
 
-/// Number of a preset (Heidenhain: CYCL DEF 247): "12" is 12; G54 is 1 .. G59 6, G59.1 7 .. G59.3 9; "G54.1 P3" 3. 0 for other names.
-[[nodiscard]] int preset_number(std::string_view name);
-
-/// Nothing: the dialect has this work offset. Else the ones that it has, as text: "G54 to G57 and G505 to G599".
-[[nodiscard]] std::optional<std::string> other_work_offsets(std::string_view dialect, std::string_view name);
+/// Whole number above 0, without leading zeros, that is all of the text; -1: it is none.
+[[nodiscard]] int whole_number(std::string_view text);
+/// 54 to 59 of G54 to G59; -1: the name is none of these.
+[[nodiscard]] int basic_offset(std::string_view name);
+/// 1 to 3 of G59.1 to G59.3; -1: the name is none of these.
+[[nodiscard]] int tenth_offset(std::string_view name);
+/// n of the prefix and n: "G54.1 P3" with the prefix "G54.1 P"; -1: the name is none of these.
+[[nodiscard]] int extended_offset(std::string_view name, std::string_view prefix);
 
 }  // namespace toothpath

@@ -1,7 +1,7 @@
 # Debian packages that Toothpath needs, and how to get those that are missing. Sourced by ./run and ./check.
 
 build_packages=(g++ cmake ninja-build libeigen3-dev libcgal-dev libassimp-dev libembree-dev libtbb-dev libfmt-dev
-  nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libboost-dev zlib1g-dev)
+  nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libboost-dev zlib1g-dev libssl-dev)
 test_packages=(libgtest-dev libbenchmark-dev)  # the browser: tools/get_page_tools.sh
 
 # need_packages NAME...: installs those that are not there, in one call; upgrades nothing.

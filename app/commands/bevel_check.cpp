@@ -5,7 +5,7 @@
 #include "app/commands/program_report.h"
 #include "app/commands/scene.h"
 #include "app/report/deviation_vtp.h"
-#include "app/sha256.h"
+#include "geometry/base/hash.h"
 
 namespace toothpath {
 namespace {
@@ -20,13 +20,12 @@ void fill(RunReport& report, const BevelGear& gear, const Job& job, const Machin
   report.total_minutes = proof.read.minutes;
   report.axes = ranges_of(proof.read, machine);
   report.reasons = proof.reasons;
-  judge_travels(report.axes, report.reasons);
   report.verified = report.reasons.empty();
 }
 
 }  // namespace
 
-CommandOutcome check_bevel_program(const CommandRequest& request, const Job& job, OutputDir& output) {
+CommandOutcome check_bevel_program(const CheckRequest& request, const Job& job, OutputDir& output) {
   Progress progress(request.quiet);
   StageClock clock(progress);
   auto made = clock.run("gear", [&] { return make_bevel_gear(job); });
@@ -47,7 +46,8 @@ CommandOutcome check_bevel_program(const CommandRequest& request, const Job& job
   }
 
   const FingerGougeCheck check(gear, job.tools, job.operations, proof_tolerances(job));
-  auto proof = prove_bevel_program(*text, request.program_file, job, machine, gear, check, {}, {}, clock);
+  BevelGearCheck bevel(job, machine, gear, check);
+  auto proof = prove_bevel_gear({*text, request.program_file, job, machine}, {}, bevel, clock);
   if (!proof) {
     progress.clear();
     return failed(proof.error());

@@ -178,7 +178,7 @@ std::string json_of(const PairAnalysis& a) {
 }
 
 /// The gear that the job's gear runs with.
-ValueOrErrors<BevelGear> mate_of(const CommandRequest& request, const Job& job, const BevelGear& gear, std::string& name) {
+ValueOrErrors<BevelGear> mate_of(const ContactRequest& request, const Job& job, const BevelGear& gear, std::string& name) {
   if (request.other_job.empty()) {
     auto mate = bevel_mate(gear);
     if (!mate) return std::vector{located(job, "gear.mate_teeth", mate.error())};
@@ -195,7 +195,7 @@ ValueOrErrors<BevelGear> mate_of(const CommandRequest& request, const Job& job, 
 
 }  // namespace
 
-CommandOutcome run_bevel_contact(const CommandRequest& request, const Job& job, OutputDir& output) {
+CommandOutcome run_bevel_contact(const ContactRequest& request, const Job& job, OutputDir& output) {
   Progress progress(request.quiet);
   StageClock clock(progress);
   auto made = clock.run("gear", [&] { return make_bevel_gear(job); });

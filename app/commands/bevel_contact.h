@@ -1,7 +1,7 @@
 // `toothpath contact` for equal-base-circle bevel gears: the pair as cut, rolled as rigid bodies.
 #pragma once
 
-#include "app/commands/command.h"
+#include "app/commands/contact.h"
 #include "app/job.h"
 #include "app/output_dir.h"
 
@@ -9,6 +9,6 @@ namespace toothpath {
 
 /// Rolls the job's gear against its mate: the gear of `request.other_job`, else the one that its rules give. Writes contact.csv,
 /// transmission.csv, contact.json, contact.html. `output` is open. Refused: what makes no pair, each with its place.
-[[nodiscard]] CommandOutcome run_bevel_contact(const CommandRequest& request, const Job& job, OutputDir& output);
+[[nodiscard]] CommandOutcome run_bevel_contact(const ContactRequest& request, const Job& job, OutputDir& output);
 
 }  // namespace toothpath

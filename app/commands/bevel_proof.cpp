@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <set>
 
-#include "app/commands/program_motions.h"
+#include "cam/finger_teeth.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kMotionTolerance = 5e-5;  // mm and rad: proven distance of a read-back motion from its straight line
+/// mm and rad: proven distance of a read-back motion from its straight line. Half of a face gear's: it counts in the bound of the gouge and in that
+/// of the material left, which has 1.5 um above the chords; a face gear's left material is measured and does not contain it.
+constexpr double kFingerMotionTolerance = 5e-5;
 constexpr double kWallAllowance = 1.5e-3;  // mm above the chord tolerance that a finished wall may stand proud
 constexpr double kRoundedLinear = 2.5e-3;  // mm and deg: an axis that changes less stands still (words of three decimals)
 constexpr double kAlongAxis = 0.05;        // a move with less across the axis, as a share, is an engage or retract
@@ -24,72 +25,27 @@ std::optional<double> finishing_chord(const Job& job) {
   return chord;
 }
 
-void judge(const Job& job, const FingerCheckResult& v, std::vector<std::string>& reasons) {
+std::string told(const WorstPlace& p) {
+  return fmt::format("{} against {}, operation {}, tooth {}, line {}, r {:.3f} mm, z {:.3f} mm", p.body, p.patch, p.operation, p.tooth, p.line, p.radius_mm,
+                     p.height_mm);
+}
+
+void judge_teeth(const Job& job, const FingerCheckResult& v, std::vector<std::string>& reasons) {
   const GougeResult& g = v.gouge;
   const double tolerance = job.verify.gouge_tolerance_mm;
   const WorstPlace& place = g.worst.empty() ? g.deepest : g.worst.front();
-  const auto told = [](const WorstPlace& p) {
-    return fmt::format("{} against {}, operation {}, tooth {}, line {}, r {:.3f} mm, z {:.3f} mm", p.body, p.patch, p.operation, p.tooth, p.line, p.radius_mm,
-                       p.height_mm);
-  };
   const std::string where = told(place);
   if (!(g.bound_mm <= tolerance))
     reasons.push_back(fmt::format("gouge: {:.2f} um measured, {:.2f} um proven, limit {:.2f} um; {}", g.measured_mm * 1000, g.bound_mm * 1000,
                                   tolerance * 1000, where));
   if (!(g.clearance_mm >= g.required_clearance_mm))
     reasons.push_back(fmt::format("clearance of shank and holder: {:.4f} mm is below {:.4f} mm; {}", g.clearance_mm, g.required_clearance_mm, told(g.closest)));
-  if (!g.rapids_clear) reasons.push_back("a rapid passes through the blank; " + where);
   if (v.ridge.requested_mm > 0 && !(v.ridge.reached_mm <= v.ridge.requested_mm))
     reasons.push_back(fmt::format("ridge: {:.4f} mm is left on the root at cone distance {:.3f} mm, asked {:.4f} mm", v.ridge.reached_mm,
                                   v.ridge.cone_distance_mm, v.ridge.requested_mm));
   if (const auto chord = finishing_chord(job); chord && !(v.finished.bound_mm <= *chord + kWallAllowance))
     reasons.push_back(fmt::format("material left on the walls: {:.2f} um measured, {:.2f} um proven, limit {:.2f} um", v.finished.max_mm * 1000,
                                   v.finished.bound_mm * 1000, (*chord + kWallAllowance) * 1000));
-}
-
-/// The worse of two teeth, field by field.
-void take_worse(FingerCheckResult& all, FingerCheckResult one) {
-  GougeResult &a = all.gouge, &b = one.gouge;
-  a.measured_mm = std::max(a.measured_mm, b.measured_mm);
-  if (b.bound_mm > a.bound_mm) a.bound_mm = b.bound_mm, a.bound_line = b.bound_line;
-  if (b.clearance_mm < a.clearance_mm) a.closest = b.closest;
-  a.clearance_mm = std::min(a.clearance_mm, b.clearance_mm);
-  a.clearance_measured_mm = std::min(a.clearance_measured_mm, b.clearance_measured_mm);
-  a.rapids_clear = a.rapids_clear && b.rapids_clear;
-  a.motions += b.motions;
-  a.distance_queries += b.distance_queries;
-  if (b.deepest.depth_mm > a.deepest.depth_mm) a.deepest = b.deepest;
-  a.worst.insert(a.worst.end(), b.worst.begin(), b.worst.end());
-  std::stable_sort(a.worst.begin(), a.worst.end(), [](const WorstPlace& x, const WorstPlace& y) { return x.depth_mm > y.depth_mm; });
-  if (a.worst.size() > 20) a.worst.resize(20);
-  all.root_gouge_mm = std::max(all.root_gouge_mm, one.root_gouge_mm);
-  all.tilt_rad = std::max(all.tilt_rad, one.tilt_rad);
-  all.wall_excess_bound_mm = std::max(all.wall_excess_bound_mm, one.wall_excess_bound_mm);
-  if (one.ridge.reached_mm > all.ridge.reached_mm) all.ridge = one.ridge;
-  if (one.finished.bound_mm > all.finished.bound_mm) {
-    all.finished = one.finished;
-    all.operations = one.operations;
-    all.walls = one.walls;
-  }
-}
-
-/// Teeth that are not copies of the first are proven one by one.
-FingerCheckResult verify_teeth(const FingerGougeCheck& check, const std::vector<ToolMotion>& motions) {
-  std::map<int, std::vector<ToolMotion>> teeth;
-  std::set<int> cut;
-  for (const auto& m : motions) {
-    teeth[m.tooth].push_back(m);
-    if (!m.rapid) cut.insert(m.tooth);
-  }
-  if (cut.size() <= 1) return check.verify(motions);
-  std::optional<FingerCheckResult> all;
-  for (auto& [tooth, part] : teeth) {
-    FingerCheckResult one = check.verify(part);
-    if (!all) all = std::move(one);
-    else if (cut.contains(tooth)) take_worse(*all, std::move(one));
-    else all->gouge.rapids_clear = all->gouge.rapids_clear && one.gouge.rapids_clear;
-  }
-  return std::move(*all);
 }
 
 MovingAxes moving_axes(const ReadBack& read, const std::vector<ToolMotion>& motions, const NcControl& control) {
@@ -123,21 +79,40 @@ Tolerances proof_tolerances(const Job& job) {
   return tolerances;
 }
 
-Result<BevelProof> prove_bevel_program(std::string_view text, const std::string& file, const Job& job, const Machine& machine,
-                                       const BevelGear& gear, const FingerGougeCheck& check, std::span<const ClPath* const> paths,
-                                       const PathTolerance& path, StageClock& clock) {
-  auto read = motions_of_program(text, file, job, machine, gear.parameters().teeth, kMotionTolerance, kMotionTolerance, clock);
-  if (!read) return read.error();
-  BevelProof proof;
-  proof.read = std::move(read->read);
-  proof.motions = std::move(read->motions);
-  proof.result = clock.run("proof of the program", [&] { return verify_teeth(check, proof.motions); });
-  proof.moving = moving_axes(proof.read, proof.motions, read->control);
-  judge(job, proof.result, proof.reasons);
-  if (paths.empty()) return proof;
-  proof.path_tolerance_mm = path.mm + 2 * kMotionTolerance;
-  proof.comparison = compare_with_paths(proof.motions, paths, proof.path_tolerance_mm, path.rad + 2 * kMotionTolerance, clock, proof.reasons);
-  return proof;
+BevelGearCheck::BevelGearCheck(const Job& job, const Machine& machine, const BevelGear& gear, const FingerGougeCheck& check)
+    : job_(job), machine_(machine), gear_(gear), check_(check) {}
+
+int BevelGearCheck::teeth() const { return gear_.parameters().teeth; }
+
+double BevelGearCheck::motion_tolerance() const { return kFingerMotionTolerance; }
+
+/// Against the cone of the blank, hub and shaft: engaging rapids pass beside the cone, inside the cylinder that links avoid.
+Status BevelGearCheck::rapids_clear(const OperationTrace& trace, const NcControl& control) const {
+  auto motions = tool_motions(trace, {}, control, machine_, *job_.setup, teeth(), kFingerMotionTolerance, kFingerMotionTolerance);
+  if (!motions) return motions.error();
+  int operation = trace.operation;  // below 0: ahead of the first one, where only the tool is known
+  for (std::size_t k = 0; k < job_.operations.size() && operation < 0; ++k)
+    if (job_.tools[static_cast<std::size_t>(job_.operations[k].tool)].number == trace.tool) operation = static_cast<int>(k);
+  for (ToolMotion& m : *motions) m.operation = operation;
+  if (operation < 0 && !motions->empty()) return fail_as(DiagnosticKind::verification, "line {}: no operation has tool {}", motions->front().line, trace.tool);
+  const GougeResult met = check_.rapids(*motions);
+  if (met.rapids_clear) return Ok{};
+  const auto first = std::min_element(met.worst.begin(), met.worst.end(), [](const WorstPlace& a, const WorstPlace& b) { return a.line < b.line; });
+  return fail_as(DiagnosticKind::verification, "a rapid passes through the blank; {}", told(*first));
+}
+
+/// Before copies go: the joints of turned teeth differ where the gear is off the axis of its rotary.
+void BevelGearCheck::meet(const ProgramProof& whole) { moving = moving_axes(whole.read, whole.motions, whole.control); }
+
+void BevelGearCheck::judge(ProgramProof& program, StageClock& clock) {
+  result = clock.run("proof of the program", [&] { return verify_teeth(check_, program.motions); });
+  judge_teeth(job_, result, program.reasons);
+}
+
+Result<BevelProof> prove_bevel_gear(const ProgramText& program, const AskedPaths& asked, BevelGearCheck& check, StageClock& clock) {
+  auto proof = prove_program(program, asked, check, clock);
+  if (!proof) return proof.error();
+  return BevelProof{std::move(*proof), std::move(check.result), std::move(check.moving)};
 }
 
 std::vector<DirectionChoice> directions_of(const BevelGear& g, const Job& job, const BevelProof& proof) {

@@ -8,6 +8,7 @@
 #include "app/commands/bevel_proof.h"
 #include "app/commands/program_report.h"
 #include "app/commands/restart.h"
+#include "app/commands/run.h"
 #include "app/commands/ledger.h"
 #include "app/commands/opening_and_end.h"
 #include "app/job_file.h"
@@ -23,7 +24,7 @@ namespace {
 
 /// What one run has made so far. Stages fill it in order.
 struct BevelRun {
-  const CommandRequest& request;
+  const RunRequest& request;
   const Job& job;
   Progress progress;
   StageClock clock{progress};
@@ -37,7 +38,7 @@ struct BevelRun {
   std::optional<BevelProof> proof;
   RunReport report;
 
-  BevelRun(const CommandRequest& r, const Job& j) : request(r), job(j), progress(r.quiet) {}
+  BevelRun(const RunRequest& r, const Job& j) : request(r), job(j), progress(r.quiet) {}
   [[nodiscard]] std::vector<const ClPath*> paths() const {
     std::vector<const ClPath*> out;
     for (const auto& plan : plans) out.push_back(&plan.path);
@@ -89,8 +90,11 @@ std::optional<Diagnostic> post_and_prove(BevelRun& run, OutputDir& output, const
   note_axis_program(run.report, run.job, run.machine, paths, run.program->restarted ? *run.program->restarted : axes);
   run.report.blocks = run.program->blocks;
 
-  auto proof = prove_bevel_program(run.program->text, output.final_path(run.program->file), run.job, run.machine, *run.gear, check, paths_to_meet(axes, paths),
-                                   {axes.chord_bound_mm + axes.rounding_bound_mm + axes.pole_tip_mm, axes.axis_bound_rad}, run.clock);
+  BevelGearCheck bevel(run.job, run.machine, *run.gear, check);
+  const std::vector<const ClPath*> asked = paths_to_meet(axes, paths);
+  const std::string file = output.final_path(run.program->file);
+  auto proof = prove_bevel_gear({run.program->text, file, run.job, run.machine},
+                                {asked, axes.chord_bound_mm + axes.rounding_bound_mm + axes.pole_tip_mm, axes.axis_bound_rad}, bevel, run.clock);
   if (!proof) {
     Diagnostic error = proof.error();
     error.kind = DiagnosticKind::verification;  // our own program must be readable
@@ -109,9 +113,7 @@ std::optional<Diagnostic> post_and_prove(BevelRun& run, OutputDir& output, const
   run.report.reasons = run.proof->reasons;
   if (run.restart)
     for (const auto& plan : run.plans) run.lines.push_back(lines_of_records(plan.path, run.proof->motions, run.proof->path_tolerance_mm));
-  if (auto done = note_restart(run.report, *run.program, output.final_path(run.program->file), run.job, run.machine, bevel_link_body(*run.gear, run.job.tools, run.machine), run.lines,
-                               run.clock);
-      !done)
+  if (auto done = note_restart(run.report, *run.program, file, run.job, run.machine, bevel, run.lines, run.clock); !done)
     return done.error();
   if (!run.report.reasons.empty()) return std::nullopt;
   note_verified(run.report, run.program->file, text_of(*run.program));
@@ -171,7 +173,7 @@ std::optional<Job> bevel_job(const std::string& job_file) {
 
 ValueOrErrors<BevelGear> make_bevel_gear(const Job& job) {
   const BevelGearParameters* parameters = job.bevel_gear();
-  if (!parameters) return std::vector{fail_at(job.where("gear.type"), "type = \"face_gear\", but a bevel gear is needed here")};
+  if (!parameters) return std::vector{fail_at(job.where("gear.type"), "type = \"{}\", but a bevel gear is needed here", gear_type(job))};
   std::optional<std::size_t> tool;
   for (std::size_t i = job.tools.size(); i-- > 0;)
     if (job.tools[i].type == CutterType::finger_mill) tool = i;
@@ -188,12 +190,13 @@ ValueOrErrors<BevelGear> make_bevel_gear(const Job& job) {
   return errors;
 }
 
-CommandOutcome run_bevel_job(const CommandRequest& request, const Job& job, OutputDir& output) {
+CommandOutcome run_bevel_job(const RunRequest& request, const Job& job, OutputDir& output) {
   BevelRun run(request, job);
   if (auto errors = read_inputs(run); !errors.empty()) {
     run.progress.clear();
     return failed(std::move(errors));
   }
+  if (const auto aside = output.set_aside(); !aside) return failed(aside.error());
   run.report = report_of("run", job, run.machine, run.gear->warnings());
   const FingerGougeCheck check(*run.gear, job.tools, job.operations, proof_tolerances(job));
   auto stopped = plan_and_check(run, check);

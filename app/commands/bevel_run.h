@@ -10,6 +10,8 @@
 
 namespace toothpath {
 
+struct RunRequest;
+
 /// The job of this file if it is readable and asks for a bevel gear; else nothing (whoever reads it next reports why).
 [[nodiscard]] std::optional<Job> bevel_job(const std::string& job_file);
 
@@ -18,9 +20,9 @@ namespace toothpath {
 [[nodiscard]] ValueOrErrors<BevelGear> make_bevel_gear(const Job& job);
 
 /// Flanks, limits, inspection points and meshes. `output` is open.
-[[nodiscard]] CommandOutcome run_bevel_surface(const CommandRequest& request, const Job& job, OutputDir& output);
+[[nodiscard]] CommandOutcome run_bevel_surface(const JobRequest& request, const Job& job, OutputDir& output);
 
 /// Plan, check, post, read back, prove, report. A program that is not proven is not left in the directory.
-[[nodiscard]] CommandOutcome run_bevel_job(const CommandRequest& request, const Job& job, OutputDir& output);
+[[nodiscard]] CommandOutcome run_bevel_job(const RunRequest& request, const Job& job, OutputDir& output);
 
 }  // namespace toothpath

@@ -4,7 +4,7 @@
 
 namespace toothpath {
 
-CommandOutcome run_bevel_surface(const CommandRequest& request, const Job& job, OutputDir& output) {
+CommandOutcome run_bevel_surface(const JobRequest& request, const Job& job, OutputDir& output) {
   Progress progress(request.quiet);
   StageClock clock(progress);
   auto made = clock.run("gear", [&] { return make_bevel_gear(job); });

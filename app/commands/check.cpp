@@ -17,14 +17,14 @@
 #include "app/report/deviation_vtp.h"
 #include "app/report/motion_charts.h"
 #include "app/report/page_of_run.h"
-#include "app/sha256.h"
 #include "geometry/base/angle.h"
 #include "cam/plan.h"
+#include "geometry/base/hash.h"
 
 namespace toothpath {
 namespace {
 
-void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) {
+void fill(RunReport& report, const FaceGearProof& proof, const Machine& machine) {
   report.gouge = proof.gouge;
   report.reasons = proof.reasons;
   report.excess = proof.surface.operations;
@@ -35,14 +35,15 @@ void fill(RunReport& report, const ProgramProof& proof, const Machine& machine) 
   report.feed_minutes = proof.read.feed_minutes;
   report.total_minutes = proof.read.minutes;
   report.axes = ranges_of(proof.read, machine);
-  judge_travels(report.axes, report.reasons);
   report.verified = report.reasons.empty();
 }
 
 }  // namespace
 
-CommandOutcome check_program(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"});
+CommandOutcome check_program(const CheckRequest& request) {
+  std::vector<std::string> inputs = {request.job_file, request.program_file};
+  for (const auto* more : {&request.stock_files, &request.fixture_files, &request.measured_files}) inputs.insert(inputs.end(), more->begin(), more->end());
+  auto output = OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"}, inputs);
   if (!output) return failed(output.error());
   if (const auto bevel = bevel_job(request.job_file)) return check_bevel_program(request, *bevel, *output);
   Progress progress(request.quiet);
@@ -79,10 +80,8 @@ CommandOutcome check_program(const CommandRequest& request) {
   options.clearance_mm = job.verify.clearance_mm.value_or(PlanOptions{}.clearance_mm);
   options.rapid_height_mm = gear.blank_top();
   const GougeCheck gouge_check(part, job.tools, options);
-  ProofOptions proof_options;
-  proof_options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
-  auto proof = prove_program(*text, request.program_file, job, machine, part, gouge_check, clearance_body(gear), gear.parameters().teeth, {},
-                             proof_options, clock);
+  FaceGearCheck face(job, machine, part, gouge_check);
+  auto proof = prove_face_gear({*text, request.program_file, job, machine}, {}, face, clock);
   if (!proof) {
     progress.clear();
     return failed(proof.error());
@@ -127,6 +126,21 @@ CommandOutcome check_program(const CommandRequest& request) {
   if (const auto committed = output->commit(); !committed) return failed(committed.error());
   outcome.summary = summary_table(report, request.color) + table_of_worst(proof->gouge);
   return outcome;
+}
+
+void add_check(Commands& commands) {
+  commands.push_back(command_of<CheckRequest>(
+      "check", "proves a program that is already there against the job's gear",
+      [](OptionSet& set, CheckRequest& request) {
+        job_options(set, request);
+        set.file("PROGRAM", request.program_file, "NC program in the dialect of the job's machine");
+        set.files("--stock", request.stock_files, "closed mesh of the stock before the program (STL or OBJ, mm, gear frame); repeatable");
+        set.files("--fixture", request.fixture_files,
+                  "closed mesh of what holds the work and turns with it (STL or OBJ, mm, gear frame); repeatable. Facets are taken as exact: "
+                  "what they leave out of the true part must lie within the clearance of the job");
+        set.files("--measured", request.measured_files, "measured deviations that the program answers (see correct)");
+      },
+      check_program));
 }
 
 }  // namespace toothpath

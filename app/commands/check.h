@@ -2,11 +2,17 @@
 #pragma once
 
 #include "app/commands/command.h"
+#include "app/commands/scene.h"
 
 namespace toothpath {
 
+struct CheckRequest : JobRequest, SceneFiles {
+  std::string program_file;
+  std::vector<std::string> measured_files;  ///< measured deviations that the program answers, in the order of the cuts
+};
+
 /// Reads any NC program in the dialect of the job's machine back and checks it: gouges, clearance, rapids, left material.
 /// Writes report.json, report.html and tooth.vtp; the program itself is never touched. Exit: verified or unverified.
-[[nodiscard]] CommandOutcome check_program(const CommandRequest& request);
+[[nodiscard]] CommandOutcome check_program(const CheckRequest& request);
 
 }  // namespace toothpath

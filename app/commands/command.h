@@ -1,35 +1,36 @@
-// What every command gets and what it gives back. Commands print nothing: app/command_line.cpp does.
+// What a command is: its name, its options, what it does with them and what it gives back. Commands print nothing: app/command_line.cpp does.
+//
+// A command stands in one file of this folder, which ends with
+//
+//     void add_surface(Commands& commands) {
+//       commands.push_back(command_of<JobRequest>("surface", "flanks, limits, inspection grid and mesh of the gear", job_options, run_surface));
+//     }
+//
+// and in the list of commands in app/CMakeLists.txt, where `surface` stands for commands/surface.cpp and add_surface().
 #pragma once
 
-#include <optional>
+#include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "app/commands/option_set.h"
 #include "app/exit_code.h"
 #include "app/stage_clock.h"
 
 namespace toothpath {
 
-struct CommandRequest {
-  std::string job_file;
-  std::string out_dir;
-  std::string program_file;  ///< of `check`
-  std::string restart;       ///< of `run`: "OP:TOOTH", both from 0; empty: from the beginning
-  std::vector<std::string> stock_files, fixture_files;  ///< of `check`: meshes in the gear frame
-  std::vector<std::string> measured_files;  ///< of `correct` and `check`: measured deviations, in the order of the cuts
+/// What every command gets, whatever its own options.
+struct CommonRequest {
   bool quiet = false;
   bool color = false;  ///< of the summary
-  std::optional<int> pinion_teeth;  ///< of `contact`, as the next four: instead of the keys of [contact]
-  std::optional<double> offset_error_mm, angle_error_deg, axial_error_mm, compound_um;
-  bool as_cut = false;        ///< of `contact`: the surface that the job's operations cut, too
-  std::string study_file;     ///< of `study dhfg`
-  bool quick = false;  ///< studies: the short form
-  int tool_number = 0;      ///< of `cutter`: draw this tool of the job; 0: the designed mill
-  std::string other_job;    ///< of `cutter`: judge the mills of this job too; of `contact`: the mate of a bevel gear
-  std::optional<double> wheel_axial_error_mm;  ///< of `contact` for bevel gears
-  std::optional<double> tool_length_mm;  ///< of `machine test`: gauge line to the tip of the test bar
-  std::optional<double> torque_Nm;  ///< of `forces`: on the gear of the job
+};
+
+/// Of the commands `name JOB --out DIR`; others build theirs on it.
+struct JobRequest : CommonRequest {
+  std::string job_file;
+  std::string out_dir;
 };
 
 struct CommandOutcome {
@@ -47,5 +48,46 @@ struct CommandOutcome {
   return outcome;
 }
 [[nodiscard]] inline CommandOutcome failed(Diagnostic error) { return failed(std::vector{std::move(error)}); }
+
+/// Commands below a command: `study stability`.
+struct CommandGroup {
+  const char* name;
+  const char* description;
+};
+inline constexpr CommandGroup kStudies = {"study", "error against run time, extreme cases, section models, double helical gears"};
+inline constexpr CommandGroup kMachines = {"machine", "what a machine file says, and how to prove it"};
+
+struct Command {
+  using Action = std::function<CommandOutcome(const CommonRequest&)>;
+  const CommandGroup* group = nullptr;
+  const char* name = "";
+  const char* description = "";
+  /// Adds the options; the action is called after they have been read.
+  std::function<Action(OptionSet&)> set_up;
+};
+using Commands = std::vector<Command>;
+
+/// A command whose request is a `Request` (a CommonRequest with more).
+/// @param options  void(OptionSet&, Request&): what the command line fills in;  @param run  CommandOutcome(const Request&)
+template <typename Request, typename Options, typename Run>
+[[nodiscard]] Command command_of(const char* name, const char* description, Options options, Run run, const CommandGroup* group = nullptr) {
+  return {group, name, description, [options, run](OptionSet& set) -> Command::Action {
+            auto request = std::make_shared<Request>();
+            options(set, *request);
+            return [request, run](const CommonRequest& common) {
+              static_cast<CommonRequest&>(*request) = common;
+              return run(*request);
+            };
+          }};
+}
+
+/// JOB and --out.
+inline void job_options(OptionSet& set, JobRequest& request) {
+  set.file("JOB", request.job_file, "job file (TOML)");
+  set.out_dir(request.out_dir);
+}
+
+/// All commands in the order of the list in app/CMakeLists.txt, which makes the text of this function.
+[[nodiscard]] Commands all_commands();
 
 }  // namespace toothpath

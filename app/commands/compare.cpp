@@ -12,16 +12,16 @@
 #include "app/report/run_report.h"
 #include "app/report/study_page.h"
 #include "app/report/svg_contact_pattern.h"
+#include "app/units.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"compare.csv", "compare.json", "compare.html"};
-constexpr int kRows = 121, kColumns = 33;
-constexpr double kUm = 1e3;
+const std::vector<std::string> kCompareOutputs = {"compare.csv", "compare.json", "compare.html"};
+constexpr int kCompareRows = 121, kCompareColumns = 33;
 /// Two numbers of job files that mean the same gear differ by rounding at most.
-constexpr double kSame = 1e-9;
+constexpr double kSameSurface = 1e-9;
 
 struct Side {
   Job job;
@@ -43,7 +43,7 @@ std::vector<Diagnostic> differences(const Side& shaped, const Side& milled) {
   std::vector<Diagnostic> found;
   const FaceGearParameters &a = shaped.gear->parameters(), &b = milled.gear->parameters();
   const auto compare = [&](const std::string& key, double x, double y) {
-    if (std::abs(x - y) <= kSame * std::max(1.0, std::abs(x))) return;
+    if (std::abs(x - y) <= kSameSurface * std::max(1.0, std::abs(x))) return;
     found.push_back(fail_at(milled.job.where("gear." + key), "{} = {:g} differs from {:g} of {}: not the same gear", key, y, x, shaped.job.file));
   };
   compare("teeth", a.teeth, b.teeth);
@@ -167,10 +167,10 @@ nlohmann::ordered_json figures_json(const Figures& f) { return {{"min_um", f.lea
 
 }  // namespace
 
-CommandOutcome run_compare(const CommandRequest& request) {
+CommandOutcome run_compare(const CompareRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kCompareOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
   Side shaped_side, milled_side;
   std::vector<Diagnostic> errors = read_side(request.job_file, shaped_side);
@@ -181,7 +181,7 @@ CommandOutcome run_compare(const CommandRequest& request) {
   if (milled_side.job.operations.empty()) return failed(fail_at(milled_side.job.where(""), "the job lacks an [[operation]]: nothing is milled"));
   if (auto found = differences(shaped_side, milled_side); !found.empty()) return failed(std::move(found));
 
-  auto milled_or = clock.run("milled", [&] { return cut_flanks(milled_side.job, *milled_side.gear, kRows, kColumns, *output, request.quiet); });
+  auto milled_or = clock.run("milled", [&] { return cut_flanks(milled_side.job, *milled_side.gear, kCompareRows, kCompareColumns, *output, request.quiet); });
   if (auto* e = std::get_if<1>(&milled_or)) return failed(std::move(*e));
   const CutFlanks& milled = std::get<0>(milled_or);
   auto shaped_or = clock.run("shaped", [&] { return shaped_flanks(shaped_side.job, *shaped_side.gear, milled.flanks); });
@@ -190,7 +190,7 @@ CommandOutcome run_compare(const CommandRequest& request) {
   const auto flanks = compared(shaped, milled);
 
   // Both flanks under the same pinion: what the deviations mean in the mesh.
-  const ContactSettings settings = contact_settings(milled_side.job, request);
+  const ContactSettings settings = contact_settings(milled_side.job, {});
   PageTable contact{"Under the same pinion", {"flank", "route", "transmission error um", "within compound", "pattern %"}, {}, ""};
   nlohmann::ordered_json contact_rows = nlohmann::ordered_json::array();
   for (const CutFlanks* cut : {&shaped, &milled}) {
@@ -223,7 +223,7 @@ CommandOutcome run_compare(const CommandRequest& request) {
 
   StudyPage page;
   page.title = milled_side.job.name + ": shaped and milled";
-  page.subtitle = fmt::format("{} against {}, {} x {} places a flank", shaped_side.job.file, milled_side.job.file, kRows, kColumns);
+  page.subtitle = fmt::format("{} against {}, {} x {} places a flank", shaped_side.job.file, milled_side.job.file, kCompareRows, kCompareColumns);
   page.good = milled.verified;
   page.verdict = milled.verified ? "both routes cut the gear" : "milled program not verified";
   page.introduction = {"The same flanks by two routes, each judged on what it cuts: the strokes of the shaper as straight sweeps of the cutter's profile, the "
@@ -244,6 +244,17 @@ CommandOutcome run_compare(const CommandRequest& request) {
   const NamedFiles files = {{"compare.csv", csv_of(flanks)}, {"compare.json", outcome.report_json}, {"compare.html", study_page_html(page)}};
   progress.clear();
   return finished(*output, files, std::move(outcome));
+}
+
+void add_compare(Commands& commands) {
+  commands.push_back(command_of<CompareRequest>(
+      "compare", "one gear shaped and milled: deviations on the same places, times",
+      [](OptionSet& set, CompareRequest& request) {
+        set.file("SHAPED", request.job_file, "job file with [shaping]");
+        set.file("MILLED", request.other_job, "job file with operations of the same gear");
+        set.out_dir(request.out_dir);
+      },
+      run_compare));
 }
 
 }  // namespace toothpath

@@ -11,12 +11,12 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"contact.csv", "transmission.csv", "contact.json", "contact.html"};
+const std::vector<std::string> kContactOutputs = {"contact.csv", "transmission.csv", "contact.json", "contact.html"};
 
 /// Rows that resolve the cusps of a finishing operation: several to a pass.
 constexpr int kCutRows = 241, kCutColumns = 33;
 
-std::optional<Diagnostic> out_of_range(const CommandRequest& r) {
+std::optional<Diagnostic> out_of_range(const ContactRequest& r) {
   const auto check = [](const char* name, const std::optional<double>& value, double low, double high, const char* unit) -> std::optional<Diagnostic> {
     if (!value || (*value >= low && *value <= high)) return std::nullopt;
     return fail_as(DiagnosticKind::usage, "{} = {:g} is not from {:g} to {:g} {}", name, *value, low, high, unit);
@@ -54,7 +54,7 @@ std::string page_of(const ContactAnalysis& a) {
 
 }  // namespace
 
-ContactSettings contact_settings(const Job& job, const CommandRequest& request) {
+ContactSettings contact_settings(const Job& job, const ContactRequest& request) {
   ContactSettings s = job.contact.value_or(ContactSettings{});
   if (request.pinion_teeth) s.pinion_teeth = *request.pinion_teeth;
   if (request.offset_error_mm) s.moved.offset_mm = *request.offset_error_mm;
@@ -64,10 +64,10 @@ ContactSettings contact_settings(const Job& job, const CommandRequest& request) 
   return s;
 }
 
-CommandOutcome run_contact(const CommandRequest& request) {
+CommandOutcome run_contact(const ContactRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kContactOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
   if (auto error = out_of_range(request)) return failed(std::move(*error));
   if (const auto bevel = bevel_job(request.job_file)) return run_bevel_contact(request, *bevel, *output);
@@ -97,6 +97,23 @@ CommandOutcome run_contact(const CommandRequest& request) {
                             {"contact.html", page_of(analysis)}};
   progress.clear();
   return finished(*output, files, std::move(outcome));
+}
+
+void add_contact(Commands& commands) {
+  commands.push_back(command_of<ContactRequest>(
+      "contact", "gear and pinion rolled: contact pattern, transmission error, pairs",
+      [](OptionSet& set, ContactRequest& request) {
+        job_options(set, request);
+        set.number("--pinion-teeth", request.pinion_teeth, "teeth of the pinion (default: mate_teeth, else the shaper's)");
+        set.number("--offset-error", request.offset_error_mm, "pinion axis off its place across the tooth, mm");
+        set.number("--angle-error", request.angle_error_deg, "error of the shaft angle, deg");
+        set.number("--axial-error", request.axial_error_mm, "pinion off its place along its axis, mm");
+        set.number("--compound", request.compound_um, "thickness of the marking compound, um (default 6)");
+        set.text("--mate", request.other_job, "bevel gears: job of the mate (default: by the rules of the pair, same mill)", "JOB");
+        set.number("--wheel-axial-error", request.wheel_axial_error_mm, "bevel gears: wheel off its place along its axis, mm");
+        set.flag("--as-cut", request.as_cut, "roll the surface that the job cuts, too");
+      },
+      run_contact));
 }
 
 }  // namespace toothpath

@@ -15,14 +15,14 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"cutter.csv", "cutter.svg", "cutter.dxf", "cutter.html", "cutter.json"};
+const std::vector<std::string> kCutterOutputs = {"cutter.csv", "cutter.svg", "cutter.dxf", "cutter.html", "cutter.json"};
 constexpr double kDxfChord = 2e-4;  // mm
 constexpr double kCsvChord = 1e-5;  // mm
 
 /// Design for the gear of a job; refusals with their place. What speaks of the designed mill belongs to the gear.
 ValueOrErrors<FingerCutterDesign> design_for(const Job& job) {
   const BevelGearParameters* p = job.bevel_gear();
-  if (!p) return std::vector{fail_at(job.where("gear.type"), "type = \"face_gear\", but a finger mill makes an equal_base_circle_bevel_gear")};
+  if (!p) return std::vector{fail_at(job.where("gear.type"), "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear", gear_type(job))};
   auto made = design_finger_cutter(*p);
   if (auto* design = std::get_if<FingerCutterDesign>(&made)) return std::move(*design);
   std::vector<Diagnostic> errors;
@@ -108,10 +108,10 @@ PageTable summary_table_of(const std::vector<JudgedCutter>& mills) {
 
 }  // namespace
 
-CommandOutcome run_cutter(const CommandRequest& request) {
+CommandOutcome run_cutter(const CutterRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kCutterOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
   auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
@@ -121,7 +121,7 @@ CommandOutcome run_cutter(const CommandRequest& request) {
     auto second = clock.run("job", [&] { return read_job_file(request.other_job); });
     if (auto* errors = std::get_if<1>(&second)) return failed(std::move(*errors));
     other = std::move(std::get<0>(second));
-    if (!other->bevel_gear()) return failed(fail_at(other->where("gear.type"), "type = \"face_gear\", but a finger mill makes an equal_base_circle_bevel_gear"));
+    if (!other->bevel_gear()) return failed(fail_at(other->where("gear.type"), "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear", gear_type(*other)));
   }
   auto made = clock.run("design", [&] { return design_for(job); });
   if (auto* errors = std::get_if<1>(&made)) return failed(std::move(*errors));
@@ -188,6 +188,17 @@ CommandOutcome run_cutter(const CommandRequest& request) {
   outcome.summary += balance + "files in " + request.out_dir + "\n";
   progress.clear();
   return finished(*output, files, std::move(outcome));
+}
+
+void add_cutter(Commands& commands) {
+  commands.push_back(command_of<CutterRequest>(
+      "cutter", "designs the finger mill of a bevel gear and judges the mills that are there",
+      [](OptionSet& set, CutterRequest& request) {
+        job_options(set, request);
+        set.number("--tool", request.tool_number, "draw this tool of the job instead of the designed mill");
+        set.text("--cutter-of", request.other_job, "judge the mills of this other job too, as they were made for its gear", "JOB");
+      },
+      run_cutter));
 }
 
 }  // namespace toothpath

@@ -12,8 +12,8 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"forces.csv", "forces.json", "forces.html"};
-constexpr int kSteps = 72;  // of R_J over the face
+const std::vector<std::string> kForcesOutputs = {"forces.csv", "forces.json", "forces.html"};
+constexpr int kForceSteps = 72;  // of R_J over the face
 
 struct Member {
   std::string name;
@@ -108,8 +108,8 @@ double over_apex(const Pair& pair, const Member& m, double R_J, int sigma, LoadS
 
 std::string csv_over_apex(const Pair& pair) {
   std::string out = "R_J,member,load_sharing,loaded_wall,F_t_N,F_a_N,F_r_N,F_a_pressure_N,F_a_spiral_N\n";
-  for (int k = 0; k <= kSteps; ++k) {
-    const double R_J = pair.R_i + (pair.R_e - pair.R_i) * k / kSteps;
+  for (int k = 0; k <= kForceSteps; ++k) {
+    const double R_J = pair.R_i + (pair.R_e - pair.R_i) * k / kForceSteps;
     for (const auto& m : pair.members)
       for (const LoadSplit split : {LoadSplit::line_load, LoadSplit::equal_torque}) {
         const auto faces = herringbone_faces(pair.R_i, R_J, pair.R_e, pair.relief, m.hand);
@@ -133,8 +133,8 @@ LineChart chart_of(const Pair& pair, const Member& m, bool axial) {
     for (const int sigma : {1, -1}) {
       ChartSeries series;
       series.name = fmt::format("{}, wall {} loaded", split == LoadSplit::line_load ? "line load" : "equal torque", sigma > 0 ? 'L' : 'U');
-      for (int k = 0; k <= kSteps; ++k) {
-        const double R_J = pair.R_i + (pair.R_e - pair.R_i) * k / kSteps;
+      for (int k = 0; k <= kForceSteps; ++k) {
+        const double R_J = pair.R_i + (pair.R_e - pair.R_i) * k / kForceSteps;
         series.x.push_back(R_J);
         series.y.push_back(over_apex(pair, m, R_J, sigma, split, axial) / 1000);
       }
@@ -185,8 +185,8 @@ std::string json_of(const Pair& pair, const std::string& job_file, const std::ve
 
 }  // namespace
 
-CommandOutcome run_forces(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+CommandOutcome run_forces(const ForcesRequest& request) {
+  auto output = OutputDir::open(request.out_dir, kForcesOutputs, {request.job_file});
   if (!output) return failed(output.error());
   Progress progress(request.quiet);
   StageClock clock(progress);
@@ -212,6 +212,16 @@ CommandOutcome run_forces(const CommandRequest& request) {
       {"forces.csv", csv_over_apex(pair)}, {"forces.html", study_page_html(page_of(pair, job, rows, balanced))}, {"forces.json", outcome.report_json}};
   progress.clear();
   return finished(*output, files, std::move(outcome));
+}
+
+void add_forces(Commands& commands) {
+  commands.push_back(command_of<ForcesRequest>(
+      "forces", "tooth forces of a bevel pair over the apex cone distance, and what balances them",
+      [](OptionSet& set, ForcesRequest& request) {
+        job_options(set, request);
+        set.number("--torque", request.torque_Nm, "torque on the gear of the job [N m]; overrides torque in its [load]", 1e-6, 1e9);
+      },
+      run_forces));
 }
 
 }  // namespace toothpath

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/units.h"
 #include "cam/finger_reference.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/tolerances.h"
@@ -12,7 +13,6 @@ namespace {
 
 constexpr double kTouch = 1e-6;     // mm: a record whose ball is this near to a patch touches it
 constexpr double kOnPath = 1e-4;    // mm: a centre this near to a wall's path belongs to it
-constexpr double kUm = 1000;
 
 struct Planned {
   double solve_mm = 0, chord_mm = 0;  // greatest residual of a touching record, greatest sag of a block between two of them
@@ -122,7 +122,7 @@ void add_machine_sources(std::vector<LedgerEntry>& ledger, const AxisProgram& pr
 }  // namespace
 
 std::vector<LedgerEntry> face_gear_ledger(const GearDistance& part, const FaceGearPlan& plan, std::span<const ToolAssembly> tools,
-                                          const AxisProgram& program, const ProgramProof& proof, double blend_mm, double proof_mm) {
+                                          const AxisProgram& program, const FaceGearProof& proof, double blend_mm, double proof_mm) {
   if (plan.paths.empty()) return {};
   const ClPath& path = plan.paths.back();
   const double radius = tools[std::size_t(path.tool)].radius_mm();

@@ -17,7 +17,7 @@ namespace toothpath {
 /// @param blend_mm how far the control may round the corners of the path; 0: the dialect has no word for it
 /// @param proof_mm how far the bound of the gouge check may lie above what it measured
 [[nodiscard]] std::vector<LedgerEntry> face_gear_ledger(const GearDistance& part, const FaceGearPlan& plan, std::span<const ToolAssembly> tools,
-                                                        const AxisProgram& program, const ProgramProof& proof, double blend_mm, double proof_mm);
+                                                        const AxisProgram& program, const FaceGearProof& proof, double blend_mm, double proof_mm);
 
 /// Of a bevel gear made with a finger mill. The ridge stands on the root, not on the walls: it is listed, and no part of the sum.
 [[nodiscard]] std::vector<LedgerEntry> bevel_ledger(const BevelGear& gear, std::span<const FingerPlan> plans, const AxisProgram& program,

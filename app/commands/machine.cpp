@@ -11,6 +11,7 @@
 #include "app/report/study_page.h"
 #include "geometry/base/angle.h"
 #include "machines/machine_file.h"
+#include "postproc/controls/of_machine.h"
 #include "postproc/machine_self_test.h"
 #include "postproc/nc_writer.h"
 
@@ -24,7 +25,7 @@ struct Shown {
 };
 
 /// Text, page and drawing of a machine of either kind.
-std::variant<Shown, std::vector<Diagnostic>> shown(const std::string& path) {
+std::variant<Shown, std::vector<Diagnostic>> show(const std::string& path) {
   const auto kind = machine_kind_of(path);
   if (!kind) return std::vector{kind.error()};
   if (*kind == MachineKind::gear_shaper) {
@@ -32,23 +33,23 @@ std::variant<Shown, std::vector<Diagnostic>> shown(const std::string& path) {
     if (!reading.machine) return std::move(reading.errors);
     return Shown{machine_text(*reading.machine), machine_page(*reading.machine), {}};
   }
-  auto reading = read_machine_file(path);
+  auto reading = controls::read_machine(path);
   if (!reading.machine) return std::move(reading.errors);
   return Shown{machine_text(*reading.machine), machine_page(*reading.machine), machine_drawing_svg(*reading.machine)};
 }
 
 }  // namespace
 
-CommandOutcome show_machine(const CommandRequest& request) {
-  std::optional<OutputDir> output;  // first: what an earlier call left there goes, whatever this one finds
+CommandOutcome show_machine(const MachineRequest& request) {
+  std::optional<OutputDir> output;
   if (!request.out_dir.empty()) {
-    auto opened = OutputDir::open(request.out_dir, kShowOutputs);
+    auto opened = OutputDir::open(request.out_dir, kShowOutputs, {request.machine_file});
     if (!opened) return failed(opened.error());
     output.emplace(std::move(opened).value());
   }
-  const auto path = find_machine_file(request.job_file, ".");
+  const auto path = find_machine_file(request.machine_file, ".");
   if (!path) return failed(path.error());
-  auto result = shown(*path);
+  auto result = show(*path);
   if (auto* errors = std::get_if<1>(&result)) return failed(std::move(*errors));
   const Shown& machine = std::get<0>(result);
   CommandOutcome outcome;
@@ -89,23 +90,25 @@ std::string test_page(const Machine& machine, const SelfTest& test, const SelfTe
 }
 
 const std::vector<std::string> kTestOutputs = {"machine_test.", "machine_test.html"};
+constexpr const char* kPreviousTest = "previous_machine_test";
 
 }  // namespace
 
-CommandOutcome test_machine(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kTestOutputs);
+CommandOutcome test_machine(const MachineRequest& request) {
+  auto output = OutputDir::open(request.out_dir, kTestOutputs, {request.machine_file}, kPreviousTest);
   if (!output) return failed(output.error());
-  const auto path = find_machine_file(request.job_file, ".");
+  const auto path = find_machine_file(request.machine_file, ".");
   if (!path) return failed(path.error());
-  auto reading = read_machine_file(*path);
+  auto reading = controls::read_machine(*path);
   if (!reading.machine) return failed(std::move(reading.errors));
   const Machine& machine = *reading.machine;
   const auto at_file = [&](Diagnostic error) {
     if (error.position.file.empty()) error.position.file = *path;
     return failed(std::move(error));
   };
-  const auto dialect = dialect_of(machine);
+  const auto dialect = controls::dialect_of(machine);
   if (!dialect) return at_file(dialect.error());
+  if (const auto aside = output->set_aside(); !aside) return failed(aside.error());
   SelfTestOptions options;
   options.tool_length_mm = request.tool_length_mm;
   const auto test = plan_self_test(machine, options);
@@ -131,6 +134,25 @@ CommandOutcome test_machine(const CommandRequest& request) {
                                 machine.name, test->stations.size(), test->tool_length_mm, degrees(test->tilt_rad), proof->minutes, test->point_mm.x(), test->point_mm.y(), test->point_mm.z(),
                                 proof->worst_mm, proof->moves, dialect->extension, request.out_dir);
   return outcome;
+}
+
+void add_machine(Commands& commands) {
+  constexpr const char* kMachine = "machine file (TOML), or the name of an installed one";
+  commands.push_back(command_of<MachineRequest>(
+      "show", "limits, chain, senses and assumed values of a machine",
+      [](OptionSet& set, MachineRequest& request) {
+        set.file("MACHINE", request.machine_file, kMachine);
+        set.out_dir_or_none(request.out_dir, "directory for machine.html and machine.svg; without it only the text is printed");
+      },
+      show_machine, &kMachines));
+  commands.push_back(command_of<MachineRequest>(
+      "test", "program that holds the tip of a test bar on one point while the rotary axes turn: run it in air",
+      [](OptionSet& set, MachineRequest& request) {
+        set.file("MACHINE", request.machine_file, kMachine);
+        set.out_dir(request.out_dir, "directory for the program and its page; made where it does not exist");
+        set.number("--tool-length", request.tool_length_mm, "gauge line to the tip of the test bar, mm (default: 100, 60 or 30, what fits)");
+      },
+      test_machine, &kMachines));
 }
 
 }  // namespace toothpath

@@ -4,10 +4,12 @@
 
 #include "app/gear_of_job.h"
 #include "app/report/setup_travel.h"
-#include "app/sha256.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/hash.h"
 #include "machines/toml/regular_file.h"
 #include "postproc/axis_time.h"
+#include "postproc/controls/of_machine.h"
+#include "postproc/controls/registry.h"
 #include "postproc/nc_writer.h"
 #include "postproc/tooth_order.h"
 
@@ -79,10 +81,10 @@ std::vector<const ClPath*> paths_to_meet(const AxisProgram& program, std::span<c
 Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const Job& job, const std::string& title, const Machine& machine, int teeth,
                                    const ClearanceBody& body, const std::vector<std::string>& assumed, OutputDir& output, StageClock& clock,
                                    const std::optional<ProgramRestart>& restart) {
-  const auto dialect = dialect_of(machine);
+  const auto dialect = controls::dialect_of(machine);
   if (!dialect) return located(job, "machine.file", dialect.error());
   auto program = clock.run("axis program", [&] {
-    AxisOptions options = axis_options(*dialect, machine);
+    AxisOptions options = controls::axis_options(*dialect, machine);
     if (job.program.spread_teeth) options.tooth_stride = spread_stride(teeth);
     return build_axis_program(paths, job.tools, *job.setup, machine, teeth, body, options);
   });
@@ -94,7 +96,7 @@ Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const J
   header.job_name = title;
   header.machine_name = machine.name;
   header.assumed = assumed;
-  header.coolant = job.coolant != Coolant::off;
+  header.coolant = job.coolant;
   header.blend_mm = std::min(header.blend_mm, kBlendShare * job.verify.gouge_tolerance_mm);
   double radius = 0;  // a lean of the tool moves the centre of its ball by no more than a corner does
   for (const auto& tool : job.tools) radius = std::max(radius, tool.radius_mm());
@@ -123,7 +125,7 @@ Result<PostedProgram> post_program(std::span<const CheckedClPath> paths, const J
 }
 
 void discard_program(OutputDir& output) {
-  for (const char* extension : {".ngc", ".nc", ".mpf", ".h", ".apt"}) output.discard(std::string("program") + extension);
+  for (const auto& extension : controls::program_extensions()) output.discard("program" + extension);
 }
 
 Result<std::string> read_program_file(const std::string& path) { return read_regular_file(path, kMostBytes); }

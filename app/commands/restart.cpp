@@ -3,6 +3,7 @@
 #include <charconv>
 
 #include "geometry/base/angle.h"
+#include "postproc/controls/of_machine.h"
 #include "postproc/restart_proof.h"
 #include "postproc/tooth_order.h"
 
@@ -27,8 +28,8 @@ int line_in(const std::map<int, int>& line_of, int line) {
 }
 
 /// The restart against the whole program; what it says goes to the report.
-Status prove(RunReport& report, const PostedProgram& posted, const std::string& file, const NcControl& control, const Job& job, const Machine& machine,
-             const ClearanceBody& body, std::vector<std::vector<int>>& lines, StageClock& clock) {
+Status prove(RunReport& report, const PostedProgram& posted, const std::string& file, const NcControl& control, const GearCheck& gear,
+             std::vector<std::vector<int>>& lines, StageClock& clock) {
   const ProgramRestart at = *posted.restarted->restart;
   const int place = place_of_tooth(at.tooth, posted.axes.tooth_stride, posted.axes.teeth);
   const auto proof = clock.run("proof of the restart", [&] {
@@ -38,8 +39,8 @@ Status prove(RunReport& report, const PostedProgram& posted, const std::string& 
   if (!proof->same)
     report.reasons.push_back(fmt::format("restart at operation {} tooth {}: {} (line {}, of the whole program {})", at.operation, at.tooth,
                                          proof->difference, proof->line, proof->whole_line));
-  if (const auto clear = check_rapids(proof->approach, control, machine, *job.setup, body, job.tools); !clear)
-    report.reasons.push_back("restart: " + clear.error().message);
+  for (const Status& rapids : {check_axis_groups(proof->approach), gear.rapids_clear(proof->approach, control)})
+    if (!rapids) report.reasons.push_back("restart: " + rapids.error().message);
   for (auto& path : lines)
     for (int& line : path) line = line_in(proof->line_of, line);
   if (report.gouge) {
@@ -54,6 +55,7 @@ Status prove(RunReport& report, const PostedProgram& posted, const std::string& 
     axis.min = axis.rotary ? radians(proof->least[a]) : proof->least[a];
     axis.max = axis.rotary ? radians(proof->greatest[a]) : proof->greatest[a];
   }
+  judge_travels(report.axes, report.reasons);
   report.warnings.insert(report.warnings.begin(),
                          fmt::format("this program begins at operation {}, tooth {}: what the whole program cuts before that is taken as done. Proven is the "
                                      "whole program, and that this one makes its {} last moves; gouge and left material are those of all teeth of the whole "
@@ -76,13 +78,13 @@ Result<std::optional<ProgramRestart>> read_restart(const std::string& text, cons
 }
 
 Status note_restart(RunReport& report, const PostedProgram& posted, const std::string& file, const Job& job, const Machine& machine,
-                    const ClearanceBody& body, std::vector<std::vector<int>>& lines, StageClock& clock) {
-  const auto control = control_of(machine, *job.setup, job.tools);
+                    const GearCheck& gear, std::vector<std::vector<int>>& lines, StageClock& clock) {
+  const auto control = controls::control_of(machine, *job.setup, job.tools);
   if (!control) return control.error();
   report.teeth = posted.axes.teeth;
   report.tooth_stride = posted.axes.tooth_stride;
   if (posted.restarted)
-    if (auto done = prove(report, posted, file, *control, job, machine, body, lines, clock); !done) return done;
+    if (auto done = prove(report, posted, file, *control, gear, lines, clock); !done) return done;
   const bool part = posted.restarted.has_value();
   auto menu = clock.run("restart points", [&] {
     return restart_menu(part ? posted.restart_text : posted.text, file, *control, part ? *posted.restarted : posted.axes);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/commands/command.h"
+#include "app/commands/program_proof.h"
 #include "app/commands/program_report.h"
 #include "app/job.h"
 #include "app/report/run_report.h"
@@ -20,6 +21,6 @@ namespace toothpath {
 /// @param lines lines of the whole program for records of paths; made those of the file, 0 where it has none
 /// Errors: what the reader refuses in our own text (kind verification).
 [[nodiscard]] Status note_restart(RunReport& report, const PostedProgram& posted, const std::string& file, const Job& job, const Machine& machine,
-                                  const ClearanceBody& body, std::vector<std::vector<int>>& lines, StageClock& clock);
+                                  const GearCheck& gear, std::vector<std::vector<int>>& lines, StageClock& clock);
 
 }  // namespace toothpath

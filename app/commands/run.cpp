@@ -30,13 +30,13 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"program.",       "cl.csv",         "report.json", "report.html", "setup.html", "gear.stl",     "tooth.vtp",
+const std::vector<std::string> kRunOutputs = {"program.",       "cl.csv",         "report.json", "report.html", "setup.html", "gear.stl",     "tooth.vtp",
                                            "inspection.csv", "inspection.dmi", "limits.json", "limits.html", "limits.svg", "limits_0.svg", "limits_1.svg",
                                            "correction.json"};
 
 /// What one run has made so far. Stages fill it in order.
 struct Run {
-  const CommandRequest& request;
+  const RunRequest& request;
   Progress progress;
   StageClock clock{progress};
   Job job;
@@ -54,7 +54,7 @@ struct Run {
   std::vector<LineChart> motion;        ///< axes over time, for the page
   std::vector<std::vector<int>> lines;  ///< of the program, for every record of every path
 
-  explicit Run(const CommandRequest& r) : request(r), progress(r.quiet) {}
+  explicit Run(const RunRequest& r) : request(r), progress(r.quiet) {}
   [[nodiscard]] PlanOptions plan_options() const {
     PlanOptions options;
     if (job.verify.clearance_mm) options.clearance_mm = *job.verify.clearance_mm;
@@ -140,13 +140,11 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   note_axis_program(run.report, run.job, run.machine, paths, posted->restarted ? *posted->restarted : program);
   run.report.blocks = posted->blocks;
 
-  ProofOptions options;
-  options.cut_surface = run.cut_surface;
-  options.gouge_tolerance_mm = run.job.verify.gouge_tolerance_mm;
-  options.path_tolerance_mm = program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm + 2 * options.motion_tolerance_mm;
-  options.path_tolerance_rad = program.axis_bound_rad + 2 * options.motion_tolerance_rad;
-  auto proof = prove_program(posted->text, output.final_path(posted->file), run.job, run.machine, part, check, body, teeth, paths_to_meet(program, paths),
-                             options, run.clock);
+  FaceGearCheck face(run.job, run.machine, part, check, run.cut_surface);
+  const std::vector<const ClPath*> asked = paths_to_meet(program, paths);
+  const std::string file = output.final_path(posted->file);
+  auto proof = prove_face_gear({posted->text, file, run.job, run.machine},
+                               {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad}, face, run.clock);
   if (!proof) {
     Diagnostic error = proof.error();
     error.kind = DiagnosticKind::verification;  // our own program must be readable
@@ -159,10 +157,10 @@ std::optional<Diagnostic> post_and_prove(Run& run, OutputDir& output, const Gear
   if (proof->surface.scallop.requested_mm > 0) run.report.scallop = proof->surface.scallop;
   run.surface = std::move(proof->surface.grids);
   run.motion = motion_charts(proof->read, proof->motions, run.machine);
-  for (const ClPath& path : run.plan.paths) run.lines.push_back(lines_of_records(path, proof->motions, options.path_tolerance_mm));
+  for (const ClPath& path : run.plan.paths) run.lines.push_back(lines_of_records(path, proof->motions, proof->path_tolerance_mm));
   run.report.reasons = proof->reasons;
   run.report.length_tolerances = length_tolerances(run.job, run.report, paths, run.surface, {});
-  if (auto done = note_restart(run.report, *posted, output.final_path(posted->file), run.job, run.machine, body, run.lines, run.clock); !done) return done.error();
+  if (auto done = note_restart(run.report, *posted, file, run.job, run.machine, face, run.lines, run.clock); !done) return done.error();
   run.program_text = std::move(posted->restarted ? posted->restart_text : posted->text);
   run.report.ledger = face_gear_ledger(part, run.plan, run.job.tools, program, *proof, posted->blend_mm, run.proof_mm);
   if (!run.report.reasons.empty()) return std::nullopt;
@@ -256,8 +254,10 @@ CommandOutcome finish(Run& run, OutputDir& output, const std::optional<Diagnosti
 
 }  // namespace
 
-CommandOutcome run_job(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+CommandOutcome run_job(const RunRequest& request) {
+  std::vector<std::string> inputs = request.measured_files;
+  inputs.push_back(request.job_file);
+  auto output = OutputDir::open(request.out_dir, kRunOutputs, inputs, kPrevious);
   if (!output) return failed(output.error());
   if (const auto bevel = bevel_job(request.job_file); bevel && request.measured_files.empty()) return run_bevel_job(request, *bevel, *output);
   Run run(request);
@@ -265,6 +265,7 @@ CommandOutcome run_job(const CommandRequest& request) {
     run.progress.clear();
     return failed(std::move(errors));
   }
+  if (const auto aside = output->set_aside(); !aside) return failed(aside.error());
   const auto stopped = plan_post_and_prove(run, *output, GougeCheckOptions{}.proof_mm);
   if (stopped && stopped->kind != DiagnosticKind::verification) {
     run.progress.clear();
@@ -274,7 +275,7 @@ CommandOutcome run_job(const CommandRequest& request) {
 }
 
 StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bool quiet, const CutSurfaceOptions& grid, bool with_page) {
-  CommandRequest request;
+  RunRequest request;
   request.quiet = quiet;
   Run run(request);
   run.job = job;
@@ -297,6 +298,16 @@ StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bo
   outcome.report = std::move(run.report);
   outcome.surface = std::move(run.surface);
   return outcome;
+}
+
+void add_run(Commands& commands) {
+  commands.push_back(command_of<RunRequest>(
+      "run", "the whole way from the job to a proven NC program",
+      [](OptionSet& set, RunRequest& request) {
+        job_options(set, request);
+        set.text("--restart", request.restart, "operation and tooth, both from 0: the program begins there; what comes before is taken as done", "OP:TOOTH");
+      },
+      run_job));
 }
 
 }  // namespace toothpath

@@ -10,9 +10,15 @@
 
 namespace toothpath {
 
+/// Of `run` and `correct`.
+struct RunRequest : JobRequest {
+  std::string restart;                      ///< "OP:TOOTH", both from 0; empty: from the beginning
+  std::vector<std::string> measured_files;  ///< measured deviations that the flanks answer, in the order of the cuts
+};
+
 /// Gear, plan, gouge check, axis program, NC text, read back from the disk, proof, report. A program that is not proven is not
 /// left in the directory; the report is, and says why.
-[[nodiscard]] CommandOutcome run_job(const CommandRequest& request);
+[[nodiscard]] CommandOutcome run_job(const RunRequest& request);
 
 /// What the stages of a run found out about a face gear job.
 struct StagesOutcome {

@@ -11,6 +11,7 @@
 #include "cam/finger_milling.h"
 #include "geometry/base/angle.h"
 #include "geometry/mesh_file.h"
+#include "postproc/controls/of_machine.h"
 
 namespace toothpath {
 namespace {
@@ -236,7 +237,7 @@ double space_azimuth(const BevelGear& gear, const Vec3& tip) {
 
 }  // namespace
 
-Result<Scene> load_scene(const CommandRequest& request, double gear_diameter_mm) {
+Result<Scene> load_scene(const SceneFiles& request, double gear_diameter_mm) {
   Scene scene;
   scene.fixture_files = request.fixture_files;
   scene.stock_files = request.stock_files;
@@ -247,7 +248,7 @@ Result<Scene> load_scene(const CommandRequest& request, double gear_diameter_mm)
 
 Result<std::vector<SceneVerdict>> check_scene(const Scene& scene, std::string_view text, const std::string& file, const Job& job, const Machine& machine,
                                               const ReadBack& read, const SceneGear& gear) {
-  const auto control = control_of(machine, *job.setup, job.tools);
+  const auto control = controls::control_of(machine, *job.setup, job.tools);
   if (!control) return control.error();
   SceneWalk walk(scene, job, machine, *control, read, gear);
   if (const auto s = execute_nc(text, file, *control, [&](const ExecutedMove& m) { walk(m); }); !s) return s.error();

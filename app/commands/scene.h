@@ -28,12 +28,17 @@ struct Scene {
   [[nodiscard]] bool empty() const { return fixture.empty() && stock.empty(); }
 };
 
+/// Files of meshes that a request names, each a solid.
+struct SceneFiles {
+  std::vector<std::string> stock_files, fixture_files;
+};
+
 /// Does the request name a mesh?
-[[nodiscard]] inline bool wants_scene(const CommandRequest& request) { return !request.stock_files.empty() || !request.fixture_files.empty(); }
+[[nodiscard]] inline bool wants_scene(const SceneFiles& request) { return !request.stock_files.empty() || !request.fixture_files.empty(); }
 
 /// Loads what the request names; nothing is loaded or built when it names nothing. `gear_diameter_mm`: outer diameter of the finished gear.
 /// Errors: those of load_mesh, located in the file; a stock that is smaller than the gear.
-[[nodiscard]] Result<Scene> load_scene(const CommandRequest& request, double gear_diameter_mm);
+[[nodiscard]] Result<Scene> load_scene(const SceneFiles& request, double gear_diameter_mm);
 
 /// What a check of the meshes must know of gear and tools.
 struct SceneGear {

@@ -8,8 +8,8 @@
 #include "app/commands/opening_and_end.h"
 #include "app/report/limits_json.h"
 #include "app/report/run_report.h"
-#include "app/sha256.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/hash.h"
 #include "machines/machine_file.h"
 #include "machines/shaper_machine.h"
 #include "postproc/shaper_gearbox_program.h"
@@ -76,15 +76,17 @@ std::string summary_of(const ShaperSetup& s, const std::string& folder) {
 
 }  // namespace
 
+constexpr const char* kPreviousShaper = "previous_shaper";
+
 const std::vector<std::string>& shaper_outputs() {
   static const std::vector<std::string> names = {"limits.json", "shaper.json", "shaper.html", "shaper_program.", "report.json"};
   return names;
 }
 
-CommandOutcome run_shaper(const CommandRequest& request) {
+CommandOutcome run_shaper(const JobRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, shaper_outputs());
+  auto output = OutputDir::open(request.out_dir, shaper_outputs(), {request.job_file}, kPreviousShaper);
   if (!output) return failed(output.error());
   auto read = read_face_gear_job(request.job_file, clock);
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
@@ -95,6 +97,7 @@ CommandOutcome run_shaper(const CommandRequest& request) {
   auto planned = clock.run("shaper set-up", [&] { return plan_setup(job, gear, machine); });
   if (auto* errors = std::get_if<1>(&planned)) return failed(std::move(*errors));
   ShaperSetup& setup = std::get<0>(planned);
+  if (const auto aside = output->set_aside(); !aside) return failed(aside.error());
   setup.warnings.insert(setup.warnings.begin(), gear.warnings().begin(), gear.warnings().end());
   setup.warnings.insert(setup.warnings.begin(), job.warnings.begin(), job.warnings.end());
   const auto study = clock.run("stroke simulation", [&] { return feed_study(setup, compared_feeds(setup)); });
@@ -143,6 +146,10 @@ ValueOrErrors<ShaperSetup> shaper_setup_of(const Job& job, const FaceGear& gear)
   auto loaded = load_shaper_machine(job);
   if (auto* errors = std::get_if<1>(&loaded)) return std::move(*errors);
   return plan_setup(job, gear, std::get<0>(loaded));
+}
+
+void add_shaper(Commands& commands) {
+  commands.push_back(command_of<JobRequest>("shaper", "limits and gear-shaper set-up: sheet and stroke program", job_options, run_shaper));
 }
 
 }  // namespace toothpath

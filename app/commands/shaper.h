@@ -15,7 +15,7 @@ namespace toothpath {
 
 /// Writes limits.json, shaper.json, shaper.html, shaper_program.ngc and report.json. Refused, with the place in the job: what the gear, the
 /// set-up or the machine does not allow; assumed values of the machine that the job does not accept. Then no file is written.
-[[nodiscard]] CommandOutcome run_shaper(const CommandRequest& request);
+[[nodiscard]] CommandOutcome run_shaper(const JobRequest& request);
 
 /// Set-up of the job's gear on the job's gear shaper, as `shaper` plans it; refusals carry the place of the key that caused them.
 [[nodiscard]] ValueOrErrors<ShaperSetup> shaper_setup_of(const Job& job, const FaceGear& gear);

@@ -11,8 +11,6 @@
 namespace toothpath {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kRounding = 256;
 
 struct BevelCase {
   std::string name;

@@ -9,7 +9,7 @@ namespace {
 using Exact = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 using Vec3X = Vec3T<Exact>;
 
-constexpr int kSteps = 60;
+constexpr int kMostSteps = 60;
 const Exact kSettled("1e-40");
 
 Vec3X exact(const Vec3& v) { return {Exact(v.x()), Exact(v.y()), Exact(v.z())}; }
@@ -43,7 +43,7 @@ double condition_of(const FaceGearSurface<Exact>& f, const Meridian& m) {
 
 /// Newton for (theta, B) at (r, z). Short steps: the start is the double solution.
 bool solve(const FaceGearSurface<Exact>& f, int side, const Exact& r, const Exact& z, Exact& theta, Exact& B) {
-  for (int k = 0; k < kSteps; ++k) {
+  for (int k = 0; k < kMostSteps; ++k) {
     const Meridian m = meridian(f, side, theta, B);
     const Exact er = r - m.r, ez = z - m.z, det = m.r_theta * m.z_B - m.r_B * m.z_theta;
     if (det == 0) return false;
@@ -110,7 +110,7 @@ std::optional<ExactComparison> ExactFaceGear::fillet(const FaceGearSurface<doubl
     return p.defined ? radius_of(p.p) : Exact(-1);
   };
   Exact Z0 = Exact(Z) * (Exact(1) + Exact("1e-12")), Z1(Z), e0 = radius(Z0) - rx, e1 = radius(Z1) - rx;
-  for (int k = 0; k < kSteps && abs(e1) > kSettled * rx && e1 != e0; ++k) {
+  for (int k = 0; k < kMostSteps && abs(e1) > kSettled * rx && e1 != e0; ++k) {
     const Exact Z2 = Z1 - e1 * (Z1 - Z0) / (e1 - e0);
     Z0 = Z1, e0 = e1;
     Z1 = Z2, e1 = radius(Z1) - rx;
@@ -125,7 +125,7 @@ std::optional<double> ExactFaceGear::undercut_error(int side, double B, double r
   const auto& f = impl_->f;
   Exact B0 = Exact(B) + Exact("1e-9"), B1(B);
   Exact J0 = f.flank_J(side, f.shaper.theta_t, B0), J1 = f.flank_J(side, f.shaper.theta_t, B1);
-  for (int k = 0; k < kSteps && abs(Exact(B1 - B0)) > kSettled && J1 != J0; ++k) {
+  for (int k = 0; k < kMostSteps && abs(Exact(B1 - B0)) > kSettled && J1 != J0; ++k) {
     const Exact B2 = B1 - J1 * (B1 - B0) / (J1 - J0);
     B0 = B1, J0 = J1;
     B1 = B2, J1 = f.flank_J(side, f.shaper.theta_t, B1);

@@ -12,8 +12,6 @@
 namespace toothpath {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kRounding = 256;      // eps times the radius of the part: some hundred operations, no cancellation
 constexpr double kSweptPerModule = 1e-9;  // what the minimum over a sampled roll angle can resolve
 
 struct GearCase {

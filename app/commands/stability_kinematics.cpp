@@ -10,8 +10,7 @@
 namespace toothpath {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kToolLength = 120;  // mm
+constexpr double kStudiedToolLength = 120;  // mm
 constexpr double kAxisAsLength = 100;  // mm: an error of the axis counts with this arm
 
 RotaryAxis rotary(char letter, const Vec3& direction, const Vec3& point) {
@@ -55,13 +54,13 @@ StabilityRow pole_row(const NamedChain& named, double gap) {
   const Vec3 aside = std::cos(0.7) * across + std::sin(0.7) * pole.cross(across);
   const TablePose pose{Vec3(83, -41, 27), (std::cos(gap) * pole + std::sin(gap) * aside).normalized()};
   row.limit_mm = 1e-10;  // coordinates of some hundred mm, a turn by an angle of several rad
-  const auto solutions = named.chain.inverse(pose, kToolLength);
+  const auto solutions = named.chain.inverse(pose, kStudiedToolLength);
   if (!solutions) {
     judge_refusal(row, Expected::accept, solutions.error().message);
     return row;
   }
   for (const auto& solution : *solutions) {
-    const auto compared = exact_pose(named.chain, solution.joints, kToolLength, pose);
+    const auto compared = exact_pose(named.chain, solution.joints, kStudiedToolLength, pose);
     const double worst = std::max(compared.position_mm, kAxisAsLength * compared.normal);
     row.error_mm = worst <= row.error_mm ? row.error_mm : worst;
     ++row.points;
@@ -74,7 +73,7 @@ StabilityRow pole_row(const NamedChain& named, double gap) {
 /// A tool axis that no angle reaches.
 StabilityRow unreachable_row(const NamedChain& named) {
   StabilityRow row{"pole", fmt::format("{}, axis out of reach", named.name)};
-  const auto solutions = named.chain.inverse({Vec3(10, 0, 0), Vec3(std::sin(2.0), 0, std::cos(2.0))}, kToolLength);
+  const auto solutions = named.chain.inverse({Vec3(10, 0, 0), Vec3(std::sin(2.0), 0, std::cos(2.0))}, kStudiedToolLength);
   judge_refusal(row, Expected::refuse, solutions ? "" : solutions.error().message);
   return row;
 }
@@ -85,7 +84,7 @@ StabilityRow unreachable_row(const NamedChain& named) {
 StabilityRow nonlinear_row(const char* name, const KinematicChain& chain, const Joints& from, const Joints& to) {
   constexpr int kSamples = 64;
   StabilityRow row{"non-linear error", name};
-  const TablePose a = chain.forward(from, kToolLength), b = chain.forward(to, kToolLength);
+  const TablePose a = chain.forward(from, kStudiedToolLength), b = chain.forward(to, kStudiedToolLength);
   const double w = std::abs(to.rotary_rad[0] - from.rotary_rad[0]) + std::abs(to.rotary_rad[1] - from.rotary_rad[1]);
   const double dx = (to.linear_mm - from.linear_mm).norm();
   double reach = 0, deviation = 0;
@@ -94,14 +93,14 @@ StabilityRow nonlinear_row(const char* name, const KinematicChain& chain, const 
     Joints j;
     j.linear_mm = from.linear_mm + t * (to.linear_mm - from.linear_mm);
     for (std::size_t n = 0; n < 2; ++n) j.rotary_rad[n] = from.rotary_rad[n] + t * (to.rotary_rad[n] - from.rotary_rad[n]);
-    const TablePose at = chain.forward(j, kToolLength);
+    const TablePose at = chain.forward(j, kStudiedToolLength);
     for (std::size_t n = 0; n < chain.table.size(); ++n) {
       const Vec3 p = n == 0 ? at.tip_mm : chain.table_to_machine(at.tip_mm, j.rotary_rad);
       reach = std::max(reach, (p - chain.table[n].point_mm).cross(chain.table[n].direction).norm());
     }
     // Against the point of the chord at the same time: what the control leaves when nothing corrects it.
     deviation = std::max(deviation, (at.tip_mm - (a.tip_mm + t * (b.tip_mm - a.tip_mm))).norm());
-    const auto compared = exact_pose(chain, j, kToolLength, at);
+    const auto compared = exact_pose(chain, j, kStudiedToolLength, at);
     row.error_mm = std::max(row.error_mm, compared.position_mm);
     ++row.points;
   }

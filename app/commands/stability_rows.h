@@ -1,10 +1,15 @@
 // The rows of the stability study: what was tried, how far double is from 50 digits, and the verdict.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 namespace toothpath {
+
+/// Round-off of a double, and how many of it the size of a part may take: some hundred operations, no cancellation.
+inline constexpr double kEps = std::numeric_limits<double>::epsilon();
+inline constexpr double kRounding = 256;
 
 enum class Expected { accept, refuse };
 

@@ -15,7 +15,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"dhfg.csv", "dhfg.json", "dhfg.html"};
+const std::vector<std::string> kDhfgOutputs = {"dhfg.csv", "dhfg.json", "dhfg.html"};
 constexpr double kQuickScallop = 10, kQuickChord = 5, kQuickStep = 2;
 
 void read_study(TableReader& t, DhfgStudy& s) {
@@ -228,10 +228,10 @@ ValueOrErrors<DhfgStudy> parse_dhfg_study(std::string_view text, const std::stri
   return study;
 }
 
-CommandOutcome study_dhfg(const CommandRequest& request) {
+CommandOutcome study_dhfg(const DhfgRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+  auto output = OutputDir::open(request.out_dir, kDhfgOutputs, {request.study_file});
   if (!output) return failed(output.error());
   DhfgStudy study = default_study();
   if (!request.study_file.empty()) {
@@ -274,6 +274,17 @@ CommandOutcome study_dhfg(const CommandRequest& request) {
   const NamedFiles files = {{"dhfg.csv", table_csv(all)}, {"dhfg.json", outcome.report_json}, {"dhfg.html", study_page_html(page)}};
   progress.clear();
   return finished(*output, files, std::move(outcome));
+}
+
+void add_study_dhfg(Commands& commands) {
+  commands.push_back(command_of<DhfgRequest>(
+      "dhfg", "nine orthogonal trials of double helical face gears: limits, contact, forces, milling time",
+      [](OptionSet& set, DhfgRequest& request) {
+        set.text("--file", request.study_file, "study file (TOML); without it the literature's levels and no milling", "FILE");
+        set.out_dir(request.out_dir);
+        set.flag("--quick", request.quick, "coarse tolerances of the planned paths");
+      },
+      study_dhfg, &kStudies));
 }
 
 }  // namespace toothpath

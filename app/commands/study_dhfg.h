@@ -9,12 +9,18 @@
 
 namespace toothpath {
 
+struct DhfgRequest : CommonRequest {
+  std::string study_file;  ///< empty: the literature's levels, no milling
+  std::string out_dir;
+  bool quick = false;  ///< the short form
+};
+
 /// Reads a study file: tables [study], [[tool]] and [[operation]] (as in a job). Without text: the literature's levels, m 5, no milling.
 /// Refused with line and column: unknown keys, types, ranges; three levels are needed for every factor.
 [[nodiscard]] ValueOrErrors<DhfgStudy> parse_dhfg_study(std::string_view text, const std::string& file);
 
 /// Writes dhfg.csv, dhfg.json and dhfg.html. With `quick` scallops are ten times, chords five times, steps twice as coarse: the milling
 /// times are then those of that coarse surface, and say so.
-[[nodiscard]] CommandOutcome study_dhfg(const CommandRequest& request);
+[[nodiscard]] CommandOutcome study_dhfg(const DhfgRequest& request);
 
 }  // namespace toothpath

@@ -11,7 +11,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"stability.csv", "stability.json", "stability.html"};
+const std::vector<std::string> kStabilityOutputs = {"stability.csv", "stability.json", "stability.html"};
 
 std::string size(double value) { return value == 0 ? "" : fmt::format("{:.1e}", value); }
 
@@ -62,8 +62,8 @@ void judge_refusal(StabilityRow& row, Expected expected, const std::string& mess
   row.reason = was_refused ? message : expected == Expected::refuse ? "accepted, although it cannot be made" : "";
 }
 
-CommandOutcome study_stability(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+CommandOutcome study_stability(const StabilityRequest& request) {
+  auto output = OutputDir::open(request.out_dir, kStabilityOutputs);
   if (!output) return failed(output.error());
   Progress progress(request.quiet);
   StageClock clock(progress);
@@ -102,6 +102,12 @@ CommandOutcome study_stability(const CommandRequest& request) {
       if (!row.fine) outcome.errors.push_back(fail_as(DiagnosticKind::verification, "{}, {}: {}", row.group, row.name, row.reason));
   }
   return finished(*output, files, std::move(outcome));
+}
+
+void add_study_stability(Commands& commands) {
+  commands.push_back(command_of<StabilityRequest>(
+      "stability", "extreme gears and machine poses, double against 50 digits",
+      [](OptionSet& set, StabilityRequest& request) { set.out_dir(request.out_dir); }, study_stability, &kStudies));
 }
 
 }  // namespace toothpath

@@ -5,8 +5,12 @@
 
 namespace toothpath {
 
+struct StabilityRequest : CommonRequest {
+  std::string out_dir;
+};
+
 /// Runs every extreme case and writes stability.csv, stability.json and stability.html. Exit code 0 only when every verdict is
 /// fine: no NaN, no wrong sheet, no error beyond rounding, every refusal with its reason; else 1. Needs no job.
-[[nodiscard]] CommandOutcome study_stability(const CommandRequest& request);
+[[nodiscard]] CommandOutcome study_stability(const StabilityRequest& request);
 
 }  // namespace toothpath

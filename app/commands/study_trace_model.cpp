@@ -11,7 +11,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"trace_model.csv", "trace_model.json", "trace_model.html"};
+const std::vector<std::string> kTraceModelOutputs = {"trace_model.csv", "trace_model.json", "trace_model.html"};
 
 const char* name_of(SectionModel model) { return model == SectionModel::centre_path ? "S1" : "S2"; }
 
@@ -85,8 +85,8 @@ StudyPage page_of(const BevelGear& g, const Job& job, const std::vector<SectionM
 
 }  // namespace
 
-CommandOutcome study_trace_model(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+CommandOutcome study_trace_model(const TraceModelRequest& request) {
+  auto output = OutputDir::open(request.out_dir, kTraceModelOutputs, {request.job_file});
   if (!output) return failed(output.error());
   Progress progress(request.quiet);
   StageClock clock(progress);
@@ -103,6 +103,16 @@ CommandOutcome study_trace_model(const CommandRequest& request) {
   outcome.summary = table_text(numbers(gear, maps)) + "files in " + request.out_dir + "\n";
   progress.clear();
   return finished(*output, files, std::move(outcome));
+}
+
+void add_study_trace_model(Commands& commands) {
+  commands.push_back(command_of<TraceModelRequest>(
+      "trace-model", "section-sweep models of a bevel gear against its envelope",
+      [](OptionSet& set, TraceModelRequest& request) {
+        job_options(set, request);
+        set.flag("--quick", request.quick, "a coarser grid");
+      },
+      study_trace_model, &kStudies));
 }
 
 }  // namespace toothpath

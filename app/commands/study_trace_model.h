@@ -5,8 +5,12 @@
 
 namespace toothpath {
 
+struct TraceModelRequest : JobRequest {
+  bool quick = false;  ///< the short form
+};
+
 /// Writes trace_model.csv (every point), trace_model.json (numbers a wall) and trace_model.html (maps). Refused: a face gear and
 /// what BevelGear::make refuses. Quick: a coarser grid.
-[[nodiscard]] CommandOutcome study_trace_model(const CommandRequest& request);
+[[nodiscard]] CommandOutcome study_trace_model(const TraceModelRequest& request);
 
 }  // namespace toothpath

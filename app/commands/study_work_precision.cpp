@@ -15,7 +15,7 @@
 namespace toothpath {
 namespace {
 
-const std::vector<std::string> kOutputs = {"work_precision.csv", "work_precision.json", "work_precision.html", "work_precision.svg", "report.html", "program."};
+const std::vector<std::string> kWorkPrecisionOutputs = {"work_precision.csv", "work_precision.json", "work_precision.html", "work_precision.svg", "report.html"};
 
 /// Which tolerances a line of the study multiplies.
 struct Sweep {
@@ -94,7 +94,7 @@ std::vector<Diagnostic> add_run(const Job& job, const Sweep& sweep, const char* 
   return {};
 }
 
-std::string um(double mm) { return std::isfinite(mm) ? fmt::format("{:.4f}", mm * 1000) : ""; }
+std::string um_text(double mm) { return std::isfinite(mm) ? fmt::format("{:.4f}", mm * 1000) : ""; }
 std::string seconds_text(double s) { return fmt::format("{:.3f}", s); }
 
 PageTable table_of(const std::vector<StudyRun>& runs) {
@@ -112,10 +112,10 @@ PageTable table_of(const std::vector<StudyRun>& runs) {
   table.columns.emplace_back("reason");
   for (const auto& run : runs) {
     const RunReport& r = run.report;
-    std::vector<std::string> row = {run.varied, short_number(run.factor), um(run.chord_mm), um(run.scallop_mm), um(run.proof_mm), std::to_string(r.cl_points),
-                                    std::to_string(r.blocks), fmt::format("{:.3f}", r.feed_minutes), um(run.worst_mm()), um(run.rms_mm()),
-                                    um(r.finished ? r.finished->bound_mm : NAN), um(r.gouge ? r.gouge->measured_mm : NAN),
-                                    um(r.gouge ? r.gouge->bound_mm : NAN), r.verified ? "yes" : "no", seconds_text(run.seconds())};
+    std::vector<std::string> row = {run.varied, short_number(run.factor), um_text(run.chord_mm), um_text(run.scallop_mm), um_text(run.proof_mm), std::to_string(r.cl_points),
+                                    std::to_string(r.blocks), fmt::format("{:.3f}", r.feed_minutes), um_text(run.worst_mm()), um_text(run.rms_mm()),
+                                    um_text(r.finished ? r.finished->bound_mm : NAN), um_text(r.gouge ? r.gouge->measured_mm : NAN),
+                                    um_text(r.gouge ? r.gouge->bound_mm : NAN), r.verified ? "yes" : "no", seconds_text(run.seconds())};
     for (const auto& name : stages) row.push_back(seconds_text(run.stage(name)));
     row.push_back(r.reasons.empty() ? "" : r.reasons.front());
     table.rows.push_back(std::move(row));
@@ -221,8 +221,8 @@ std::string screen_table(const PageTable& table) {
 
 }  // namespace
 
-CommandOutcome study_work_precision(const CommandRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kOutputs);
+CommandOutcome study_work_precision(const WorkPrecisionRequest& request) {
+  auto output = OutputDir::open(request.out_dir, kWorkPrecisionOutputs, {request.job_file});
   if (!output) return failed(output.error());
   auto read = read_job_file(request.job_file);
   if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
@@ -240,7 +240,7 @@ CommandOutcome study_work_precision(const CommandRequest& request) {
   const PageTable table = table_of(runs);
   StudyPage page;
   page.title = "Error against run time";
-  page.subtitle = fmt::format("{}: chord {} um, scallop {} um, verification {} um at factor 1", job.name, um(runs[0].chord_mm), um(runs[0].scallop_mm), um(runs[0].proof_mm));
+  page.subtitle = fmt::format("{}: chord {} um, scallop {} um, verification {} um at factor 1", job.name, um_text(runs[0].chord_mm), um_text(runs[0].scallop_mm), um_text(runs[0].proof_mm));
   page.good = runs[0].report.verified;
   page.verdict = page.good ? "job verified" : "job not verified";
   page.introduction = {
@@ -264,6 +264,16 @@ CommandOutcome study_work_precision(const CommandRequest& request) {
                             {"work_precision.json", outcome.report_json}};
   outcome.summary = screen_table(table);
   return finished(*output, files, std::move(outcome));
+}
+
+void add_study_work_precision(Commands& commands) {
+  commands.push_back(command_of<WorkPrecisionRequest>(
+      "work-precision", "vary the tolerances of a job: what they cost and what they buy",
+      [](OptionSet& set, WorkPrecisionRequest& request) {
+        job_options(set, request);
+        set.flag("--quick", request.quick, "three factors a tolerance instead of five, and none for all together");
+      },
+      study_work_precision, &kStudies));
 }
 
 }  // namespace toothpath

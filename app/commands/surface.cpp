@@ -10,10 +10,10 @@ const std::vector<std::string>& surface_outputs() {
   return names;
 }
 
-CommandOutcome run_surface(const CommandRequest& request) {
+CommandOutcome run_surface(const JobRequest& request) {
   Progress progress(request.quiet);
   StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, surface_outputs());
+  auto output = OutputDir::open(request.out_dir, surface_outputs(), {request.job_file});
   if (!output) return failed(output.error());
   if (const auto bevel = bevel_job(request.job_file)) return run_bevel_surface(request, *bevel, *output);
   auto read = read_face_gear_job(request.job_file, clock);
@@ -24,6 +24,10 @@ CommandOutcome run_surface(const CommandRequest& request) {
     return failed(located(job, "gear", written.error()));
   progress.clear();
   return finished_report(*output, clock, std::move(report), request.color);
+}
+
+void add_surface(Commands& commands) {
+  commands.push_back(command_of<JobRequest>("surface", "flanks, limits, inspection grid and mesh of the gear", job_options, run_surface));
 }
 
 }  // namespace toothpath

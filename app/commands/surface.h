@@ -9,6 +9,6 @@ namespace toothpath {
 /// Files that the command owns in its output directory.
 [[nodiscard]] const std::vector<std::string>& surface_outputs();
 
-[[nodiscard]] CommandOutcome run_surface(const CommandRequest& request);
+[[nodiscard]] CommandOutcome run_surface(const JobRequest& request);
 
 }  // namespace toothpath

@@ -6,12 +6,12 @@
 #include "app/report/html_text.h"
 #include "app/report/svg_contact_pattern.h"
 #include "app/report/svg_plot.h"
+#include "app/units.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kUm = 1e3, kMicro = 1e6;
 
 std::string name_of(const ContactAnalysis& a, const ContactOfSide& side) {
   return fmt::format("flank {:+}, {}", side.side, side.as_cut ? a.route : "exact");

@@ -10,7 +10,7 @@
 namespace toothpath {
 namespace {
 
-constexpr const char* kStyle =
+constexpr const char* kCutterStyle =
     "@page{size:A4;margin:11mm 12mm}*{box-sizing:border-box}html{background:#fff}body{margin:0 auto;max-width:188mm;padding:6mm 0;background:#fff;color:#16191c;"
     "font:8.8pt/1.34 system-ui,'Segoe UI',Roboto,'Liberation Sans',Arial,sans-serif;font-variant-numeric:tabular-nums}"
     "@media print{body{padding:0}}h1{font-size:15pt;margin:0}h2{font-size:9.6pt;margin:0 0 1mm}p{margin:0}header{display:flex;justify-content:space-between;"
@@ -123,7 +123,7 @@ std::string cutter_sheet_html(const CutterSheet& sheet) {
   if (!sheet.others.empty()) compared = sheet.others.front().judgement.profile;
   const double scale = cutter_drawing_scale(j.profile, sheet.length_mm, 104, 92);
   std::string out = fmt::format("<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport content=\"width=device-width\"><title>Finger mill {}</title><style>{}</style></head><body>\n",
-                                html_escape(sheet.job_name), kStyle);
+                                html_escape(sheet.job_name), kCutterStyle);
   out += fmt::format("<header><div><h1>Finger mill, {}</h1><p>{}</p><p>job {}; lengths in mm</p></div><div class=\"verdict {}\">{}</div></header>\n", html_escape(sheet.drawn.name),
                      html_escape(sheet.gear_line), html_escape(sheet.job_name), j.usable() ? "good" : "bad", j.usable() ? "all conditions met" : "not usable");
   out += "<div class=\"two top\"><div>" + cutter_svg(j.profile, sheet.length_mm, scale, compared, false);

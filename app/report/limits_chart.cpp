@@ -13,7 +13,7 @@ namespace toothpath {
 namespace {
 
 constexpr int kPoints = 121;
-constexpr double kSame = 1e-6;  // mm: limits of both sides that agree
+constexpr double kSameLimit = 1e-6;  // mm: limits of both sides that agree
 
 std::string side_name(int side) { return side > 0 ? "+1" : "-1"; }
 
@@ -92,7 +92,7 @@ std::string governing_limit(const ZoneLimits& limits) {
   for (const auto& flank : limits.flanks) {
     bool here = false;
     for (const auto& r : {flank.undercut_radius, flank.involute_start_radius, flank.flank_start_radius})
-      here = here || (r && std::abs(*r - limits.inner_limit) < kSame);
+      here = here || (r && std::abs(*r - limits.inner_limit) < kSameLimit);
     if (!here) continue;
     ++sides;
     side = ", flank " + side_name(flank.side);

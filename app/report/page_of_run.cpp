@@ -71,13 +71,18 @@ PageTable correction_table(const RunReport& r) {
   return table;
 }
 
+// A type of gear without its subtitle does not compile.
+std::string subtitle_of(const FaceGearParameters& gear, const std::string& machine) {
+  return fmt::format("face gear {}/{}, module {} mm, {}", gear.shaper_teeth, gear.teeth, short_number(gear.module_mm), machine);
+}
+std::string subtitle_of(const BevelGearParameters&, const std::string&) { return {}; }  // its page makes its own
+
 }  // namespace
 
 ReportPage page_of_run(const Job& job, const RunReport& r, const std::vector<ClPath>& paths, std::string_view program) {
   ReportPage page;
   page.title = r.job_name;
-  if (const auto* gear = job.face_gear())
-    page.subtitle = fmt::format("face gear {}/{}, module {} mm, {}", gear->shaper_teeth, gear->teeth, short_number(gear->module_mm), r.machine_name);
+  page.subtitle = std::visit([&](const auto& gear) { return subtitle_of(gear, r.machine_name); }, job.gear);
   page.verified = r.verified;
   if (r.unreached) page.unfinished = unreached_text(*r.unreached);
   page.reasons = r.reasons;

@@ -10,7 +10,7 @@ namespace toothpath {
 namespace {
 
 constexpr int kRimPoints = 1440;
-constexpr double kStep = radians(0.5);
+constexpr double kSwingStep = radians(0.5);
 
 /// Points of both rims, table frame, on circles so much wider that the true rim lies inside their polygon.
 std::vector<Vec3> rims(const BlankCylinder& blank, const Setup& setup) {
@@ -75,7 +75,7 @@ PartSwing part_swing(const BlankCylinder& blank, const Setup& setup, const Machi
     for (const Vec3& p : points) reach = std::max(reach, circle(p, tilt).second);
     out.axes.push_back({tilt.letter, reach, std::nullopt});
     const auto [from, to] = range_of(axes, tilt.letter);
-    const int n = std::max(1, static_cast<int>(std::ceil((to - from) / kStep)));
+    const int n = std::max(1, static_cast<int>(std::ceil((to - from) / kSwingStep)));
     const double slack = reach * (1 - std::cos((to - from) / n / 2));  // an arc between two samples rises by no more
     for (int i = 0; i <= n; ++i) {
       // The command turns the tool relative to the work: the table turns the other way.

@@ -3,6 +3,7 @@
 
 #include "app/report/html_text.h"
 #include "app/report/run_report.h"
+#include "app/units.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
@@ -10,7 +11,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double um(double mm) { return mm * 1000.0; }
 
 Json text_list(const std::vector<std::string>& texts) {
   Json list = Json::array();

@@ -7,12 +7,12 @@
 #include "app/report/html_text.h"
 #include "app/report/report_data.h"
 #include "app/report/svg_plot.h"
+#include "app/units.h"
+#include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kUm = 1e3;
-constexpr double kDegree = std::numbers::pi / 180;
 
 std::string section(std::string_view id, std::string_view title, std::string_view body) {
   if (body.empty()) return {};
@@ -70,7 +70,7 @@ std::string decimal(double value, int decimals) {
   return value < 0 && !zero ? "\u2212" + text : text;
 }
 
-std::string um(double mm) { return decimal(mm * kUm, 2); }
+std::string um_text(double mm) { return decimal(mm * kUm, 2); }
 
 std::string worst_row(const WorstPlace& place, std::size_t k, const ReportPage& page) {
   const bool listed = std::any_of(page.listing.begin(), page.listing.end(), [&](const NcExcerpt& e) {
@@ -82,7 +82,7 @@ std::string worst_row(const WorstPlace& place, std::size_t k, const ReportPage& 
   return fmt::format("<tr data-row=\"{0}\"><td><a class=\"pin\" href=\"#space\" data-gouge=\"{0}\">{1}</a></td><td class=\"n\">{2}</td><td>{3}</td>"
                      "<td>{4}</td><td>{5}</td><td class=\"n\">{6}</td><td class=\"n\">{7}</td><td class=\"n\">{8}</td><td class=\"n\">{9}</td>"
                      "<td class=\"n\">{10}</td></tr>\n",
-                     k, k + 1, um(place.depth_mm), html_escape(place.body), html_escape(place.patch),
+                     k, k + 1, um_text(place.depth_mm), html_escape(place.body), html_escape(place.patch),
                      html_escape(operation_name(page, place.operation)), place.tooth, place.zone,
                      decimal(place.radius_mm, 3), decimal(place.height_mm, 3), line);
 }
@@ -155,9 +155,9 @@ std::string gouge_section(const ReportPage& page) {
   std::string out = "<p>";
   out += html_escape(g.measured_mm >= 0
                          ? fmt::format("Deepest penetration into the finished surface {} \u00b5m{}, proven bound {} \u00b5m, tolerance {} \u00b5m.",
-                                       um(g.measured_mm), where, um(g.bound_mm), um(page.gouge_tolerance_mm))
+                                       um_text(g.measured_mm), where, um_text(g.bound_mm), um_text(page.gouge_tolerance_mm))
                          : fmt::format("The cutter stays at least {} \u00b5m away from the finished surface{}; proven bound {} \u00b5m, tolerance {} \u00b5m.",
-                                       um(-g.measured_mm), where, um(g.bound_mm), um(page.gouge_tolerance_mm)));
+                                       um_text(-g.measured_mm), where, um_text(g.bound_mm), um_text(page.gouge_tolerance_mm)));
   out += html_escape(fmt::format(" Shank and holder keep {:.3f} mm, {:.3f} mm asked for. Rapids {} the blank.", g.clearance_mm, g.required_clearance_mm,
                                  g.rapids_clear ? "stay outside" : "enter"));
   out += fmt::format(" {} motions checked.</p>\n", g.motions);
@@ -181,7 +181,7 @@ std::string deviation_section(const ReportPage& page) {
               "top of the page: from its cusps."};
   for (const ExcessResult& e : page.excess) {
     const std::string name = operation_name(page, e.operation);
-    t.rows.push_back({name, um(e.max_mm), um(e.min_mm), um(e.rms_mm), um(e.bound_mm), std::to_string(e.points)});
+    t.rows.push_back({name, um_text(e.max_mm), um_text(e.min_mm), um_text(e.rms_mm), um_text(e.bound_mm), std::to_string(e.points)});
     HistogramChart chart{"After operation " + name, "deviation [\u00b5m]", e.histogram_from_mm * kUm, e.histogram_step_mm * kUm, e.histogram, {}};
     plots += figure(chart.title, svg_histogram(chart));
   }

@@ -9,11 +9,12 @@
 #include "app/report/sheet_html.h"
 #include "app/report/unreached_text.h"
 #include "geometry/base/angle.h"
+#include "postproc/controls/of_machine.h"
 
 namespace toothpath {
 namespace {
 
-constexpr std::string_view kStyle = R"(@page{size:A4;margin:14mm}
+constexpr std::string_view kSetupStyle = R"(@page{size:A4;margin:14mm}
 body{font:10.5pt/1.35 sans-serif;color:#111;background:#fff;max-width:182mm;margin:6mm auto}
 h1{font-size:16pt;margin:0 0 1mm}h2{font-size:11.5pt;margin:4mm 0 1mm;border-bottom:.3mm solid #888;break-after:avoid}
 table{border-collapse:collapse;width:100%}th,td{border:.2mm solid #999;padding:.6mm 1.6mm;text-align:left;vertical-align:top}
@@ -23,17 +24,17 @@ th{background:#eee;font-weight:600}td.n{text-align:right;font-variant-numeric:ta
 .small{font-size:9pt;margin:1mm 0}.pairs{columns:6 26mm;column-gap:4mm;font-size:8.5pt;font-variant-numeric:tabular-nums}.pairs span{display:block}
 )";
 
-std::string millimetres(double value) { return fmt::format("{:.3f}", value == 0 ? 0.0 : value); }
-std::string triple(const Vec3& v) {
+std::string coordinates(const Vec3& v) {
   return fmt::format("X {}  Y {}  Z {}", millimetres(v.x()), millimetres(v.y()), millimetres(v.z()));
 }
 
-/// What the gear is, in the words of its drawing.
-std::string gear_text(const Job& job) {
-  if (const auto* p = job.bevel_gear())
-    return fmt::format("bevel gear, z {}, {}outer transverse module {:g} mm", p->teeth, p->mate_teeth > 0 ? fmt::format("mate z {}, ", p->mate_teeth) : "",
-                       p->outer_transverse_module_mm);
-  const FaceGearParameters& p = *job.face_gear();
+// What the gear is, in the words of its drawing. A type of gear without these words does not compile.
+std::string gear_words(const BevelGearParameters& p) {
+  return fmt::format("bevel gear, z {}, {}outer transverse module {:g} mm", p.teeth, p.mate_teeth > 0 ? fmt::format("mate z {}, ", p.mate_teeth) : "",
+                     p.outer_transverse_module_mm);
+}
+
+std::string gear_words(const FaceGearParameters& p) {
   const char* plane = p.module_plane == ModulePlane::normal ? "normal" : "transverse";
   std::string text = fmt::format("face gear, z {}, shaper z {}, {} module {:g} mm, pressure angle {:g} deg, shaft angle {:g} deg", p.teeth, p.shaper_teeth, plane,
                                  p.module_mm, degrees(p.pressure_angle_rad), degrees(p.shaft_angle_rad));
@@ -44,21 +45,28 @@ std::string gear_text(const Job& job) {
   return text;
 }
 
+/// What cools, and the words that the operator finds in the program.
+std::string coolant_text(Coolant coolant, const Machine& machine) {
+  const auto dialect = controls::dialect_of(machine);
+  const auto words = dialect && coolant != Coolant::off ? coolant_words(*dialect, coolant) : Result<CoolantWords>(Diagnostic{});
+  return words ? fmt::format("{}: on with {}, off with {}", to_string(coolant), words->on, words->off) : to_string(coolant);
+}
+
 void machine_section(Sheet& sheet, const Job& job, const PartOutline& part, const Machine& machine, const RunReport& report) {
   const Setup& setup = *job.setup;
   sheet.heading("Gear, machine and work offset");
   sheet.begin_table({"what", "value"});
-  sheet.row({"gear", gear_text(job)});
+  sheet.row({"gear", std::visit([](const auto& gear) { return gear_words(gear); }, job.gear)});
   sheet.row({"heights, gear Z", fmt::format("tooth tops {}, deepest root {}, both from the gear origin", millimetres(part.tooth_top), millimetres(part.root))});
   sheet.row({"machine", fmt::format("{} ({})", machine.name, job.machine.file)});
   sheet.row({"control", machine.dialect});
   sheet.row({"program", report.program_file.empty() ? "none: the run is not verified" : report.program_file});
   if (!report.program_sha256.empty()) sheet.row({"SHA-256", report.program_sha256});
-  sheet.row({"work offset", fmt::format("{} = machine {}", setup.work_offset, triple(setup.work_offset_at_mm))});
-  sheet.row({"gear origin, machine", triple(setup.origin_mm)});
-  sheet.row({"gear origin, " + setup.work_offset, triple(setup.origin_mm - setup.work_offset_at_mm)});
+  sheet.row({"work offset", fmt::format("{} = machine {}", setup.work_offset, coordinates(setup.work_offset_at_mm))});
+  sheet.row({"gear origin, machine", coordinates(setup.origin_mm)});
+  sheet.row({"gear origin, " + setup.work_offset, coordinates(setup.origin_mm - setup.work_offset_at_mm)});
   sheet.row({"gear axis", setup.axis_up ? "up: teeth towards the spindle, gear X along machine X" : "down: turned by 180 deg about X"});
-  sheet.row({"coolant", to_string(job.coolant)});
+  sheet.row({"coolant", coolant_text(job.coolant, machine)});
   sheet.end_table();
 }
 
@@ -171,7 +179,7 @@ std::string setup_sheet(const Job& job, const PartOutline& part, const Machine& 
   Sheet sheet;
   const std::string title = html_escape(job.name);
   sheet.raw(fmt::format("<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport content='width=device-width'><title>Set-up sheet: {}</title>"
-                        "<style>{}</style></head><body>\n<h1>Set-up sheet: {}</h1>\n", title, kStyle, title));
+                        "<style>{}</style></head><body>\n<h1>Set-up sheet: {}</h1>\n", title, kSetupStyle, title));
   const std::string left = report.unreached ? unreached_text(*report.unreached) : std::string();
   if (report.verified && report.gouge)
     sheet.raw(fmt::format("<div class={}>{}: worst gouge {:.2f} um, proven below {:.2f} um, tolerance {:.2f} um.{}</div>\n", left.empty() ? "yes" : "part",

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/report/sheet_html.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-std::string millimetres(double mm) { return fmt::format("{:.3f}", mm == 0 ? 0.0 : mm); }
 
 }  // namespace
 

@@ -11,6 +11,9 @@
 
 namespace toothpath {
 
+/// Three decimals, no minus before zero.
+[[nodiscard]] inline std::string millimetres(double mm) { return fmt::format("{:.3f}", mm == 0 ? 0.0 : mm); }
+
 class Sheet {
  public:
   void heading(std::string_view text) { out_ += fmt::format("<h2>{}</h2>\n", html_escape(text)); }

@@ -3,12 +3,12 @@
 
 #include "app/report/run_report.h"
 #include "app/report/unreached_text.h"
+#include "app/units.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kUm = 1000.0;
 
 void row(std::string& out, std::string_view name, const std::string& value) { out += fmt::format("  {:<20}{}\n", name, value); }
 

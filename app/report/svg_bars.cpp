@@ -11,7 +11,7 @@
 namespace toothpath {
 namespace {
 
-constexpr double kWidth = 480, kRight = 58, kMostDecades = 8;
+constexpr double kBarsWidth = 480, kBarsRight = 58, kMostDecades = 8;
 
 template <typename Rows>
 double label_room(const Rows& rows) {
@@ -45,14 +45,14 @@ std::string svg_paired_bars(const PairedBarChart& chart) {
   const double last = std::ceil(std::log10(high) + 1e-9);
   const double first = std::max(last - kMostDecades, std::min(std::floor(std::log10(low) - 1e-9), last - 1));
 
-  constexpr double kRow = 34, kTop = 26;
+  constexpr double kRow = 34, kBarsTop = 26;
   const double left = label_room(names);
-  const double bottom = kTop + kRow * static_cast<double>(chart.rows.size());
-  SvgCanvas canvas(kWidth, bottom + 44, chart.title);
-  draw_legend(canvas, {{chart.first_name, "bar s0", true}, {chart.second_name, "bar s1", true}}, left, 2, kWidth - left - kRight);
-  const Scale x{std::pow(10.0, first), std::pow(10.0, last), left, kWidth - kRight, true};
+  const double bottom = kBarsTop + kRow * static_cast<double>(chart.rows.size());
+  SvgCanvas canvas(kBarsWidth, bottom + 44, chart.title);
+  draw_legend(canvas, {{chart.first_name, "bar s0", true}, {chart.second_name, "bar s1", true}}, left, 2, kBarsWidth - left - kBarsRight);
+  const Scale x{std::pow(10.0, first), std::pow(10.0, last), left, kBarsWidth - kBarsRight, true};
   for (const Tick& tick : ticks_for(x, 5)) {
-    canvas.line(x(tick.value), kTop, x(tick.value), bottom, tick.label.empty() ? "grid minor" : "grid");
+    canvas.line(x(tick.value), kBarsTop, x(tick.value), bottom, tick.label.empty() ? "grid minor" : "grid");
     canvas.text(x(tick.value), bottom + 17, tick.label, "middle");
   }
   const auto bar = [&](double value, double top, std::string_view css_class) {
@@ -62,14 +62,14 @@ std::string svg_paired_bars(const PairedBarChart& chart) {
     canvas.text(left + length + 5, top + 10, short_number(value, 3), "start", "val");
   };
   for (std::size_t i = 0; i < chart.rows.size(); ++i) {
-    const double top = kTop + kRow * static_cast<double>(i) + 5;
+    const double top = kBarsTop + kRow * static_cast<double>(i) + 5;
     canvas.text(left - 8, top + 16, fitted(chart.rows[i].name, left - 12), "end");
     bar(chart.rows[i].first, top, "bar s0");
     bar(chart.rows[i].second, top + 13, "bar s1");
   }
-  canvas.line(left, kTop, left, bottom, "ax");
-  canvas.line(left, bottom, kWidth - kRight, bottom, "ax");
-  canvas.text((left + kWidth - kRight) / 2, bottom + 36, chart.x_label, "middle", "lab");
+  canvas.line(left, kBarsTop, left, bottom, "ax");
+  canvas.line(left, bottom, kBarsWidth - kBarsRight, bottom, "ax");
+  canvas.text((left + kBarsWidth - kBarsRight) / 2, bottom + 36, chart.x_label, "middle", "lab");
   return std::move(canvas).finish();
 }
 
@@ -82,25 +82,25 @@ std::string svg_bars(const std::vector<std::pair<std::string, double>>& rows, co
   }
   if (rows.empty()) return {};
   if (high <= 0) high = 1;
-  constexpr double kRow = 22, kTop = 8;
+  constexpr double kRow = 22, kBarsTop = 8;
   const double left = label_room(names);
-  const double bottom = kTop + kRow * static_cast<double>(rows.size());
-  SvgCanvas canvas(kWidth, bottom + 44, x_label);
-  const Scale x{0, high, left, kWidth - kRight};
+  const double bottom = kBarsTop + kRow * static_cast<double>(rows.size());
+  SvgCanvas canvas(kBarsWidth, bottom + 44, x_label);
+  const Scale x{0, high, left, kBarsWidth - kBarsRight};
   for (const Tick& tick : ticks_for(x, 5)) {
-    canvas.line(x(tick.value), kTop, x(tick.value), bottom, "grid");
+    canvas.line(x(tick.value), kBarsTop, x(tick.value), bottom, "grid");
     canvas.text(x(tick.value), bottom + 17, tick.label, "middle");
   }
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double top = kTop + kRow * static_cast<double>(i) + 4;
+    const double top = kBarsTop + kRow * static_cast<double>(i) + 4;
     const double length = std::isfinite(rows[i].second) ? std::max(0.0, x(rows[i].second) - left) : 0;
     canvas.text(left - 8, top + 11, fitted(names[i], left - 12), "end");
     canvas.rectangle(left, top, length, 14, "bar s0");
     canvas.text(left + length + 5, top + 11, short_number(rows[i].second, 3), "start", "val");
   }
-  canvas.line(left, kTop, left, bottom, "ax");
-  canvas.line(left, bottom, kWidth - kRight, bottom, "ax");
-  canvas.text((left + kWidth - kRight) / 2, bottom + 36, x_label, "middle", "lab");
+  canvas.line(left, kBarsTop, left, bottom, "ax");
+  canvas.line(left, bottom, kBarsWidth - kBarsRight, bottom, "ax");
+  canvas.text((left + kBarsWidth - kBarsRight) / 2, bottom + 36, x_label, "middle", "lab");
   return std::move(canvas).finish();
 }
 

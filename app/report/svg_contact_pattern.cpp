@@ -11,7 +11,7 @@
 namespace toothpath {
 namespace {
 
-constexpr double kLeft = 62, kRight = 16, kWidth = 620, kBottom = 46, kLongest = 6;
+constexpr double kPatternLeft = 62, kPatternRight = 16, kPatternWidth = 620, kPatternBottom = 46, kLongest = 6;
 
 /// Fills for light and dark pages alike: the flank is metal, the compound blue.
 constexpr const char* kFills[] = {"#0b3c8c", "#2f6fd0", "#86b4ee", "#c3c8ce", "#dfe2e5", "#eceef0"};
@@ -34,13 +34,13 @@ Frame frame_of(const std::vector<double>& xs, const std::vector<double>& ys, dou
   const auto [x0, x1] = std::minmax_element(xs.begin(), xs.end());
   const auto [y0, y1] = std::minmax_element(ys.begin(), ys.end());
   const double dx = std::max(*x1 - *x0, 1e-9), dy = std::max(*y1 - *y0, 1e-9);
-  const double plot = kWidth - kLeft - kRight;
+  const double plot = kPatternWidth - kPatternLeft - kPatternRight;
   const double unit = plot / (dx * 1.04);
   const double high = std::clamp(dy * 1.08 * unit, plot / kLongest, plot * 0.75);
   Frame f;
-  f.x = {*x0 - 0.02 * dx, *x1 + 0.02 * dx, kLeft, kWidth - kRight};
+  f.x = {*x0 - 0.02 * dx, *x1 + 0.02 * dx, kPatternLeft, kPatternWidth - kPatternRight};
   f.y = {*y0 - 0.04 * dy, *y1 + 0.04 * dy, top + high, top};
-  f.height = top + high + kBottom;
+  f.height = top + high + kPatternBottom;
   return f;
 }
 
@@ -84,10 +84,10 @@ void outline(SvgCanvas& canvas, const Frame& f, int rows, int columns, const std
 
 /// Boxes with their meaning along the top; returns the height used.
 double key(SvgCanvas& canvas, const std::vector<std::pair<std::string, std::string>>& entries) {
-  double x = kLeft, y = 6;
+  double x = kPatternLeft, y = 6;
   for (const auto& [fill, text] : entries) {
     const double wide = 24 + text_width(text) + 14;
-    if (x + wide > kWidth && x > kLeft) x = kLeft, y += 20;
+    if (x + wide > kPatternWidth && x > kPatternLeft) x = kPatternLeft, y += 20;
     canvas.raw(fmt::format(R"(<rect x="{}" y="{}" width="16" height="12" fill="{}" stroke="#8a949e" stroke-width="0.6"/>)", px(x), px(y), fill));
     canvas.text(x + 21, y + 10.5, text, "start");
     x += wide;
@@ -115,7 +115,7 @@ std::string svg_contact_pattern(const PatternDrawing& p) {
     if (p.outline || p.gap_um[k] < 1e6) xs.push_back(p.x[k]), ys.push_back(p.y[k]);
   if (xs.empty()) return {};
   const Frame f = frame_of(xs, ys, top);
-  SvgCanvas canvas(kWidth, f.height, p.title);
+  SvgCanvas canvas(kPatternWidth, f.height, p.title);
   key(canvas, entries);
   draw_axes(canvas, f.x, f.y, p.x_label, p.y_label);
   const auto gap = [&](int r, int c) { return p.gap_um[static_cast<std::size_t>(r) * static_cast<std::size_t>(p.columns) + static_cast<std::size_t>(c)]; };
@@ -153,7 +153,7 @@ std::string svg_flank_field(const FlankFieldDrawing& p) {
   SvgCanvas probe(1, 1, "");
   const double top = key(probe, entries);
   const Frame f = frame_of(p.x, p.y, top);
-  SvgCanvas canvas(kWidth, f.height, p.title);
+  SvgCanvas canvas(kPatternWidth, f.height, p.title);
   key(canvas, entries);
   draw_axes(canvas, f.x, f.y, p.x_label, p.y_label);
   const auto value = [&](int r, int c) { return p.value[static_cast<std::size_t>(r) * static_cast<std::size_t>(p.columns) + static_cast<std::size_t>(c)]; };

@@ -8,11 +8,12 @@
 #include "app/report/html_text.h"
 #include "app/report/svg_canvas.h"
 #include "app/report/svg_plot.h"
+#include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-constexpr double kWidth = 480, kRadius = 150, kDegree = std::numbers::pi / 180;
+constexpr double kMapWidth = 480, kRadius = 150;
 constexpr int kGapClasses = 4;  ///< clear directions are shaded in so many steps of their gap
 
 }  // namespace
@@ -41,10 +42,10 @@ std::string svg_direction_map(const DirectionChoice& choice) {
   legend.push_back({choice.fixed ? "chosen" : "mean of the path", "chosen", true});
 
   SvgCanvas probe(1, 1, "");
-  const double legend_height = draw_legend(probe, legend, 10, 0, kWidth - 20);
-  const double cx = kWidth / 2, cy = legend_height + kRadius + 30;
-  SvgCanvas canvas(kWidth, cy + kRadius + 30, fmt::format("Tool directions, operation {}, zone {}", choice.operation, choice.zone));
-  draw_legend(canvas, legend, 10, 2, kWidth - 20);
+  const double legend_height = draw_legend(probe, legend, 10, 0, kMapWidth - 20);
+  const double cx = kMapWidth / 2, cy = legend_height + kRadius + 30;
+  SvgCanvas canvas(kMapWidth, cy + kRadius + 30, fmt::format("Tool directions, operation {}, zone {}", choice.operation, choice.zone));
+  draw_legend(canvas, legend, 10, 2, kMapWidth - 20);
 
   const auto radius_of = [&](double lean_rad) { return lean_rad / kDegree / outer_degrees * kRadius; };
   for (int degrees = 0; degrees < 360; degrees += 45) {

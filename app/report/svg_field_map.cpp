@@ -11,7 +11,7 @@
 namespace toothpath {
 namespace {
 
-constexpr double kWidth = 480, kHeight = 250, kLeft = 58, kTop = 8, kBottom = 96;
+constexpr double kFieldWidth = 480, kFieldHeight = 250, kFieldLeft = 58, kFieldTop = 8, kFieldBottom = 96;
 
 /// White to a strong blue or red; t = -1 .. 1.
 std::string colour(double t) {
@@ -35,8 +35,8 @@ std::vector<double> edges(const std::vector<double>& centres) {
 std::string svg_field_map(const FieldMap& map) {
   if (map.x.size() < 2 || map.y.size() < 2 || map.values.size() != map.x.size() * map.y.size()) return {};
   const double largest = map.largest > 0 ? map.largest : 1;
-  SvgCanvas canvas(kWidth, kHeight + kTop + kBottom, map.title);
-  const Scale x{map.x.front(), map.x.back(), kLeft, kWidth - 8, false}, y{map.y.front(), map.y.back(), kTop + kHeight, kTop, false};
+  SvgCanvas canvas(kFieldWidth, kFieldHeight + kFieldTop + kFieldBottom, map.title);
+  const Scale x{map.x.front(), map.x.back(), kFieldLeft, kFieldWidth - 8, false}, y{map.y.front(), map.y.back(), kFieldTop + kFieldHeight, kFieldTop, false};
   draw_axes(canvas, x, y, map.x_label, map.y_label);
   const auto ex = edges(map.x), ey = edges(map.y);
   for (std::size_t r = 0; r < map.y.size(); ++r)
@@ -48,7 +48,7 @@ std::string svg_field_map(const FieldMap& map) {
                              y(ey[r]) - y(ey[r + 1]) + 0.3, colour(v / largest)));
     }
   constexpr int kSteps = 40;
-  const double top = kTop + kHeight + 50, left = kLeft, width = kWidth - kLeft - 60;
+  const double top = kFieldTop + kFieldHeight + 50, left = kFieldLeft, width = kFieldWidth - kFieldLeft - 60;
   for (int k = 0; k < kSteps; ++k)
     canvas.raw(fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"12\" fill=\"{}\"/>", left + width * k / kSteps, top, width / kSteps + 0.3,
                            colour(-1 + (2 * k + 1.0) / kSteps)));

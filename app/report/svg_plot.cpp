@@ -12,7 +12,7 @@
 namespace toothpath {
 namespace {
 
-constexpr double kWidth = 480, kPlotHeight = 200, kLeft = 64, kRight = 14, kTop = 10, kBottom = 44;
+constexpr double kPlotWidth = 480, kPlotHeight = 200, kPlotLeft = 64, kPlotRight = 14, kPlotTop = 10, kPlotBottom = 44;
 constexpr std::size_t kColumns = 400;  ///< of a thinned curve
 constexpr double kDrawable = 1e100;    ///< larger values are gaps: differences of two could overflow
 
@@ -107,11 +107,11 @@ std::string svg_line_chart(const LineChart& chart) {
   if (!chart.limits.empty()) legend.push_back({chart.limits.size() == 1 ? chart.limits[0].name : "limit", "lim"});
 
   SvgCanvas probe(1, 1, "");  // only to learn how many rows the legend takes
-  const double legend_height = draw_legend(probe, legend, kLeft, 0, kWidth - kLeft - kRight);
-  const double top = kTop + legend_height;
-  SvgCanvas canvas(kWidth, top + chart.plot_height + kBottom, chart.title);
-  draw_legend(canvas, legend, kLeft, 2, kWidth - kLeft - kRight);
-  const Scale x{across.low, across.high, kLeft, kWidth - kRight, chart.log_x};
+  const double legend_height = draw_legend(probe, legend, kPlotLeft, 0, kPlotWidth - kPlotLeft - kPlotRight);
+  const double top = kPlotTop + legend_height;
+  SvgCanvas canvas(kPlotWidth, top + chart.plot_height + kPlotBottom, chart.title);
+  draw_legend(canvas, legend, kPlotLeft, 2, kPlotWidth - kPlotLeft - kPlotRight);
+  const Scale x{across.low, across.high, kPlotLeft, kPlotWidth - kPlotRight, chart.log_x};
   const Scale y{up.low, up.high, top + chart.plot_height, top, chart.log_y};
   draw_axes(canvas, x, y, chart.x_label, chart.y_label);
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
@@ -125,7 +125,7 @@ std::string svg_line_chart(const LineChart& chart) {
     }
   }
   for (const ChartLimit& limit : chart.limits)
-    if (drawable(limit.y, chart.log_y)) canvas.line(kLeft, y(limit.y), kWidth - kRight, y(limit.y), "lim");
+    if (drawable(limit.y, chart.log_y)) canvas.line(kPlotLeft, y(limit.y), kPlotWidth - kPlotRight, y(limit.y), "lim");
   return std::move(canvas).finish();
 }
 
@@ -142,10 +142,10 @@ std::string svg_histogram(const HistogramChart& chart) {
   std::vector<LegendEntry> legend;
   for (const ChartLimit& limit : chart.limits) legend.push_back({fmt::format("{} {}", limit.name, short_number(limit.y)), "lim"});
   SvgCanvas probe(1, 1, "");
-  const double top = kTop + draw_legend(probe, legend, kLeft, 0, kWidth - kLeft - kRight);
-  SvgCanvas canvas(kWidth, top + kPlotHeight + kBottom, chart.title);
-  draw_legend(canvas, legend, kLeft, 2, kWidth - kLeft - kRight);
-  const Scale x{across.low, across.high, kLeft, kWidth - kRight};
+  const double top = kPlotTop + draw_legend(probe, legend, kPlotLeft, 0, kPlotWidth - kPlotLeft - kPlotRight);
+  SvgCanvas canvas(kPlotWidth, top + kPlotHeight + kPlotBottom, chart.title);
+  draw_legend(canvas, legend, kPlotLeft, 2, kPlotWidth - kPlotLeft - kPlotRight);
+  const Scale x{across.low, across.high, kPlotLeft, kPlotWidth - kPlotRight};
   const Scale y{0, static_cast<double>(most) * 1.05, top + kPlotHeight, top};
   draw_axes(canvas, x, y, chart.x_label, "grid points");
   for (std::size_t i = 0; i < chart.counts.size(); ++i) {

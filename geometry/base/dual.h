@@ -88,6 +88,14 @@ struct Dual {
   }
 };
 
+/// The vector without its derivatives, and its derivative by variable k.
+template <typename S, int N>
+[[nodiscard]] Eigen::Matrix<S, 3, 1> value(const Eigen::Matrix<Dual<S, N>, 3, 1>& x) { return {x[0].v, x[1].v, x[2].v}; }
+template <typename S, int N>
+[[nodiscard]] Eigen::Matrix<S, 3, 1> derivative(const Eigen::Matrix<Dual<S, N>, 3, 1>& x, std::size_t k) {
+  return {x[0].d[k], x[1].d[k], x[2].d[k]};
+}
+
 }  // namespace toothpath
 
 template <typename S, int N>

@@ -1,8 +1,9 @@
-// Names for the small fixed-size vectors, double or any other scalar.
+// Names for the small fixed-size vectors, double or any other scalar, and what they say about the z axis, the axis of every gear.
 #pragma once
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace toothpath {
 
@@ -13,5 +14,21 @@ using Vec3T = Eigen::Matrix<S, 3, 1>;
 using Vec2 = Vec2T<double>;
 using Vec3 = Vec3T<double>;
 using Mat3 = Eigen::Matrix3d;
+
+/// Distance from the z axis.
+[[nodiscard]] inline double radius(const Vec3& p) { return std::hypot(p.x(), p.y()); }
+/// About the z axis from x, in (-pi, pi].
+[[nodiscard]] inline double azimuth(const Vec3& p) { return std::atan2(p.y(), p.x()); }
+/// Azimuth from one place to another, in (-pi, pi].
+[[nodiscard]] inline double angle_from_to(const Vec3& from, const Vec3& to) {
+  return std::atan2(from.x() * to.y() - from.y() * to.x(), from.x() * to.x() + from.y() * to.y());
+}
+/// p turned about the z axis by `angle` [rad].
+[[nodiscard]] inline Vec3 turned(const Vec3& p, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
+}
+/// Angle between two directions of any length, in [0, pi], with all digits at both ends.
+[[nodiscard]] inline double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
 }  // namespace toothpath

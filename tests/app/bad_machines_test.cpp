@@ -1,5 +1,6 @@
 // Every bad machine file of tests/machines through the program, as a user meets it: exit code 3, the exact messages with their place,
 // nothing written. `machine show` reads the file by itself; `run` meets it by way of a job.
+#include "postproc/controls/registry.h"
 #include "program.h"
 #include "tests/machines/bad_machine_files.h"
 #include "tests/machines/bad_post_keys.h"
@@ -29,6 +30,10 @@ TEST(BadMachines, ShowRefusesEachWithItsPlace) {
     EXPECT_EQ(shown.exit_code, 3) << bad.what;
     EXPECT_EQ(shown.err, with_path(bad.messages, path)) << bad.what;
     EXPECT_TRUE(names_in(dir / "out").empty()) << bad.what;
+  }
+  for (const auto& bad : test::kBadControls) {
+    write_file(path, replaced(kMachine, bad.from, bad.to));
+    EXPECT_EQ(run_program({"machine", "show", path, "--out", dir / "out"}).err, with_path(with_controls(bad.messages, controls::list_of_names()), path)) << bad.what;
   }
 }
 

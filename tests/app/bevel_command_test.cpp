@@ -27,6 +27,9 @@ std::size_t line_with(const std::vector<std::string>& lines, const std::string& 
   return 0;
 }
 
+/// A sample beside the axis of its rotary table: no loop of teeth.
+std::string off_the_axis() { return replaced(file_text(kSamples + "/bevel_pinion.toml"), "origin = [3.0, -2.0, 260.0]", "origin = [8.0, 4.0, 260.0]"); }
+
 /// One run for all tests of this file.
 class BevelCommand : public ::testing::Test {
  protected:
@@ -130,6 +133,124 @@ TEST_F(BevelCommand, ATurnedBlockIsFound) {
   }
   EXPECT_TRUE(gouge);
   EXPECT_TRUE(left);
+}
+
+// Danger 12: which axis of a diagonal rapid arrives first is not known. Rotaries with X Y, X Y with Z below the safe height, Z with a
+// rotary behind the last tooth: each is a verdict with its line.
+TEST_F(BevelCommand, DiagonalRapidsAreRefused) {
+  const auto refused = [](const std::string& name, const std::vector<std::string>& lines, std::size_t at) {
+    const auto report = check(name, lines, 1);
+    const std::string reason = "line " + std::to_string(at + 1) + ": a rapid moves more than one group of axes";
+    EXPECT_NE(std::find(report["reasons"].begin(), report["reasons"].end(), reason), report["reasons"].end()) << name << " " << report["reasons"];
+  };
+  const auto clean = program();
+  std::size_t second = 0;  // index of the second cut
+  for (int seen = 0; second < clean.size(); ++second)
+    if (clean[second].starts_with("G0 C[") && ++seen == 2) break;
+  ASSERT_LT(second + 2, clean.size());
+  ASSERT_TRUE(clean[second + 1].starts_with("G0 X")) << clean[second + 1];
+  ASSERT_TRUE(clean[second + 2].starts_with("G0 Z")) << clean[second + 2];
+  auto lines = clean;
+  lines[second] += clean[second + 1].substr(2);
+  refused("rotary_and_xy", lines, second);
+  lines = clean;
+  lines[second + 1] += clean[second + 2].substr(2);
+  lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(second) + 2);
+  refused("xy_and_z", lines, second + 1);
+  lines = clean;
+  std::size_t last = lines.size();
+  while (last-- > 0 && !lines[last].starts_with("G53 G0 Z")) {
+  }
+  lines[last] += " Y0";
+  refused("behind_the_last_tooth", lines, last);
+}
+
+// What stands between the operations and behind the last tooth is proven too: a dive in machine
+// coordinates through the gear, an operation that the job does not have.
+TEST_F(BevelCommand, MovesBesideTheTeethAreProven) {
+  const auto clean = program();
+  std::vector<std::size_t> retracts;
+  for (std::size_t i = 0; i < clean.size(); ++i)
+    if (clean[i].starts_with("G53 G0 Z")) retracts.push_back(i);
+  ASSERT_EQ(retracts.size(), 4u) << "ahead of and behind the teeth of both operations";
+  for (const std::size_t at : {retracts[1], retracts[3]}) {
+    auto lines = clean;
+    lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(at), {"G53 G0 Y0", "G53 G0 Z-40"});
+    const auto report = check("dive", lines, 1);
+    bool named = false;
+    for (const auto& reason : report["reasons"]) {
+      const auto text = reason.get<std::string>();
+      named = named || (text.starts_with("a rapid passes through the blank") && text.find("line " + std::to_string(at + 2) + ",") != std::string::npos);
+    }
+    EXPECT_TRUE(named) << at << " " << report["reasons"];
+  }
+  auto lines = clean;
+  lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(retracts[3]) + 1, "(OP 7 finger_finishing)");
+  lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(retracts[3]) + 2, clean[retracts[3]]);
+  write_file(*dir_ / "op.ngc", text_of(lines));
+  const Finished unknown = run_program({"check", kTrunnion, *dir_ / "op.ngc", "--out", *dir_ / "op"});
+  EXPECT_EQ(unknown.exit_code, 3);
+  EXPECT_NE(unknown.err.find("operation 7: the job has the operations 0 to 1"), std::string::npos) << unknown.err;
+}
+
+// The same proof on any number of threads: of the program as it is, and where teeth are written out.
+TEST_F(BevelCommand, OneAndTwoThreadsSayTheSame) {
+  const auto report_on = [](const std::string& job, const std::string& name, const char* threads) {
+    const Finished done = run_program({"run", job, "--out", *dir_ / name, "--threads", threads, "--quiet"});
+    EXPECT_EQ(done.exit_code, 0) << done.err;
+    auto report = nlohmann::json::parse(file_text(*dir_ / (name + "/report.json")), nullptr, false);
+    report.erase("stages");
+    return report;
+  };
+  write_file(*dir_ / "off.toml", off_the_axis());
+  for (const std::string& job : {kTrunnion, *dir_ / "off.toml"}) {
+    EXPECT_EQ(report_on(job, "one", "1"), report_on(job, "two", "2")) << job;
+    for (const char* file : {"program.ngc", "tooth.vtp", "setup.html"})
+      EXPECT_EQ(file_text(*dir_ / (std::string("one/") + file)), file_text(*dir_ / (std::string("two/") + file))) << job << " " << file;
+  }
+}
+
+// Off the axis of the rotary every tooth is written out. Those that are the first one again are not proven again; a fault in one tooth is
+// found there.
+TEST_F(BevelCommand, TeethWrittenOutAreCompared) {
+  const std::string job = *dir_ / "written.toml";
+  write_file(job, off_the_axis());
+  ASSERT_EQ(run_program({"run", job, "--out", *dir_ / "written", "--quiet"}).exit_code, 0);
+  const auto checked = [&](const std::string& text, const std::string& name, int exit_code) {
+    write_file(*dir_ / (name + ".ngc"), text);
+    const Finished done = run_program({"check", job, *dir_ / (name + ".ngc"), "--out", *dir_ / name, "--quiet"});
+    EXPECT_EQ(done.exit_code, exit_code) << name << done.err;
+    return nlohmann::json::parse(file_text(*dir_ / (name + "/report.json")), nullptr, false);
+  };
+  auto lines = lines_of(file_text(*dir_ / "written/program.ngc"));
+  const auto compared = checked(text_of(lines), "compared", 0);
+  EXPECT_TRUE(compared["stages"].contains("compare the teeth"));
+  EXPECT_EQ(compared["deepest"]["tooth"], 0) << "the first tooth stands for all";
+  EXPECT_EQ(compared["tilt"]["simultaneous_axes"], 4) << "of all teeth: X Y Z C";
+
+  const std::size_t finishing = line_with(lines, "(OP 1");
+  std::size_t at = finishing;
+  while (at < lines.size() && lines[at] != "(TOOTH 5)") ++at;
+  const std::regex word("C([-+]?[0-9.]+)");
+  std::smatch m;
+  int seen = 0;
+  for (; at < lines.size(); ++at)
+    if (!lines[at].starts_with("G0") && std::regex_search(lines[at], m, word) && ++seen == 25) break;
+  ASSERT_LT(at, lines.size());
+  bool gouge = false;
+  for (const double turn : {0.05, -0.05}) {
+    auto changed = lines;
+    char c[64];
+    std::snprintf(c, sizeof c, "C%.5f", std::stod(m[1].str()) + turn);
+    changed[at] = m.prefix().str() + c + m.suffix().str();
+    const auto report = checked(text_of(changed), turn > 0 ? "tooth_plus" : "tooth_minus", 1);
+    if (report["gouge_um"]["bound"].get<double>() < 5) continue;
+    gouge = true;
+    const auto& place = report["worst_places"][0];
+    EXPECT_EQ(place["tooth"], 5);
+    EXPECT_LE(std::abs(place["line"].get<int>() - static_cast<int>(at) - 1), 1);
+  }
+  EXPECT_TRUE(gouge);
 }
 
 // The wheel that belongs to the pinion of the trunnion sample, on a machine with words of three decimals and another control.

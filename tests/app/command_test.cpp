@@ -44,8 +44,10 @@ TEST(CommandLine, SurfaceWritesItsFilesAndNothingElse) {
   // A spur gear without offset is its own mirror image.
   EXPECT_NEAR(limits["zones"][0]["flanks"][0]["pointing_radius"].get<double>(),
               limits["zones"][0]["flanks"][1]["pointing_radius"].get<double>(), 1e-9);
-  EXPECT_EQ(run_program({"surface", kBadJobs + "/module_negative.toml", "--out", dir / "a/b"}).exit_code, 3);
-  EXPECT_EQ(names_in(dir / "a/b"), std::vector<std::string>{});
+  const Finished refused = run_program({"surface", kBadJobs + "/module_negative.toml", "--out", dir / "a/b"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_EQ(names_in(dir / "a/b"), kSurfaceFiles);
+  EXPECT_NE(refused.err.find("note: " + (dir / "a/b") + " stays as it was: surface \"spur-quick\" of 20"), std::string::npos) << refused.err;
 }
 
 TEST(CommandLine, JsonIsOneObjectOnStdout) {
@@ -140,12 +142,62 @@ TEST(OutputDirectory, AFullStdoutIsFour) {
   EXPECT_EQ(run_program(launch).exit_code, 4);
 }
 
-TEST(OutputDirectory, ARefusedRunRemovesWhatAnEarlierOneLeft) {
+/// What an earlier run of a face gear may have left, and a file of somebody else.
+const std::vector<std::string> kEarlier = {"cl.csv", "my notes.txt", "program.nc", "program.ngc", "report.json", "setup.html"};
+
+void leave_earlier_results(const std::string& out) {
+  std::filesystem::create_directories(out);
+  for (const auto& name : kEarlier) write_file(out + "/" + name, "old");
+}
+
+TEST(OutputDirectory, ARefusedRunLeavesItAsItWas) {
   const TestDir dir;
-  std::filesystem::create_directories(dir / "out");
-  for (const char* name : {"program.ngc", "program.nc", "cl.csv", "report.json", "setup.html", "my notes.txt"}) write_file(dir / "out/" + name, "old");
-  EXPECT_EQ(run_program({"run", kBadJobs + "/module_negative.toml", "--out", dir / "out"}).exit_code, 3);
-  EXPECT_EQ(names_in(dir / "out"), std::vector<std::string>{"my notes.txt"});
+  leave_earlier_results(dir / "out");
+  const std::string missing = dir / "missing.csv";
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"run", kBadJobs + "/module_negative.toml"}, {"run", kQuick, "--restart", "9:0"}, {"run", dir / "none.toml"},
+                                                    {"shaper", kQuick}, {"correct", kQuick, "--measured", missing}, {"contact", kBadJobs + "/module_negative.toml"}}) {
+    auto words = arguments;
+    words.insert(words.end(), {"--out", dir / "out"});
+    EXPECT_NE(run_program(words).exit_code, 0) << arguments.front();
+    EXPECT_EQ(names_in(dir / "out"), kEarlier) << arguments.front();
+    for (const auto& name : kEarlier) EXPECT_EQ(file_text(dir / ("out/" + name)), "old") << arguments.front() << " " << name;
+  }
+}
+
+TEST(OutputDirectory, AnotherRunMovesTheEarlierOneToPrevious) {
+  const TestDir dir;
+  leave_earlier_results(dir / "out");
+  const Finished run = run_program({"run", kQuick, "--out", dir / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(run.err.starts_with("note: what stood in " + (dir / "out") + " is in " + (dir / "out/previous") + ": program.ngc of 20")) << run.err;
+  EXPECT_EQ(names_in(dir / "out/previous"), (std::vector<std::string>{"cl.csv", "program.nc", "program.ngc", "report.json", "setup.html"}));
+  EXPECT_EQ(file_text(dir / "out/my notes.txt"), "old");
+  const auto first = file_text(dir / "out/program.ngc");
+
+  // Not verified: the program moves, the report of the new one stands there alone.
+  write_file(dir / "job.toml", std::regex_replace(file_text(kQuick), std::regex("gouge_tolerance = .*"), "gouge_tolerance = 0.0004"));
+  const Finished second = run_program({"run", dir / "job.toml", "--out", dir / "out"});
+  EXPECT_EQ(second.exit_code, 1) << second.err;
+  EXPECT_FALSE(std::filesystem::exists(dir / "out/program.ngc"));
+  EXPECT_EQ(nlohmann::json::parse(file_text(dir / "out/report.json"))["verified"], false);
+  EXPECT_EQ(file_text(dir / "out/previous/program.ngc"), first);
+  EXPECT_FALSE(std::filesystem::exists(dir / "out/previous/program.nc")) << "one generation";
+  EXPECT_NE(second.err.find("note: what stood in "), std::string::npos) << second.err;
+
+  // Commands that make no program leave it where it is.
+  EXPECT_EQ(run_program({"surface", kQuick, "--out", dir / "out", "--quiet"}).exit_code, 0);
+  EXPECT_EQ(file_text(dir / "out/previous/program.ngc"), first);
+}
+
+TEST(OutputDirectory, CommandsThatShareItKeepTheProgram) {
+  const TestDir dir;
+  leave_earlier_results(dir / "out");
+  ASSERT_EQ(run_program({"surface", kQuick, "--out", dir / "out", "--quiet"}).exit_code, 0);
+  EXPECT_EQ(run_program({"shaper", kSamples + "/offset_shaped.toml", "--out", dir / "out", "--quiet"}).exit_code, 0);
+  const auto stroke = file_text(dir / "out/shaper_program.ngc");
+  EXPECT_EQ(run_program({"shaper", kSamples + "/offset_shaped.toml", "--out", dir / "out", "--quiet"}).exit_code, 0);
+  EXPECT_EQ(file_text(dir / "out/previous_shaper/shaper_program.ngc"), stroke);
+  for (const char* name : {"program.nc", "program.ngc", "setup.html", "cl.csv"}) EXPECT_EQ(file_text(dir / (std::string("out/") + name)), "old") << name;
 }
 
 TEST(OutputDirectory, ASignalLeavesNothing) {
@@ -155,9 +207,65 @@ TEST(OutputDirectory, ASignalLeavesNothing) {
     launch.arguments = {"run", kSamples + "/dhfg_paper.toml", "--out", dir / "out"};
     launch.signal_number = number;
     launch.signal_after_ms = 300;
-    EXPECT_EQ(run_program(launch).exit_code, 130);
+    const Finished run = run_program(launch);
+    EXPECT_EQ(run.exit_code, 130);
     EXPECT_TRUE(names_in(dir / "out").empty());
+    EXPECT_EQ(run.err, "interrupted: " + (dir / "out") + " holds no results of this command\n");
   }
+}
+
+// In the middle of planning no program stands there any more, and nothing is lost.
+TEST(OutputDirectory, ASignalLeavesEarlierResultsInPrevious) {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGKILL}) {
+    const TestDir dir;
+    leave_earlier_results(dir / "out");
+    Launch launch;
+    launch.arguments = {"run", kSamples + "/dhfg_paper.toml", "--out", dir / "out"};
+    launch.signal_number = number;
+    launch.signal_when = dir / "out/previous";
+    const Finished run = run_program(launch);
+    EXPECT_EQ(run.exit_code, number == SIGKILL ? -1 : 130);
+    for (const auto& name : kEarlier) EXPECT_EQ(file_text(dir / ((name == "my notes.txt" ? "out/" : "out/previous/") + name)), "old") << name;
+    const auto names = names_in(dir / "out");
+    if (number == SIGKILL) {
+      EXPECT_FALSE(std::filesystem::exists(dir / "out/program.ngc"));
+      continue;
+    }
+    EXPECT_EQ(names, (std::vector<std::string>{"my notes.txt", "previous"}));
+    EXPECT_TRUE(run.err.starts_with("interrupted: what stood in " + (dir / "out") + " is in " + (dir / "out/previous") + ": program.n")) << run.err;
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+  }
+}
+
+TEST(OutputDirectory, ASecondRunAtTheSameTimeIsFour) {
+  const TestDir dir;
+  const Finished second = [&] {
+    Launch first;
+    first.arguments = {"run", kSamples + "/dhfg_paper.toml", "--out", dir / "out"};
+    first.signal_number = SIGTERM;
+    first.signal_when = dir / "out/.toothpath-lock";
+    Finished other;
+    first.before_signal = [&] { other = run_program({"surface", kQuick, "--out", dir / "out"}); };
+    EXPECT_EQ(run_program(first).exit_code, 130);
+    return other;
+  }();
+  EXPECT_EQ(second.exit_code, 4);
+  EXPECT_NE(second.err.find("another run is writing into this directory"), std::string::npos) << second.err;
+}
+
+// The measurement lies where the run would write its own inspection points.
+TEST(OutputDirectory, AnInputThatTheRunWouldReplaceIsRefused) {
+  const TestDir dir;
+  ASSERT_EQ(run_program({"surface", kQuick, "--out", dir / "out", "--quiet"}).exit_code, 0);
+  std::string measured = file_text(dir / "out/inspection.csv");
+  measured = std::regex_replace(measured, std::regex("\n"), ",1.0\n");
+  measured.replace(0, measured.find('\n'), "zone,flank,row,column,x,y,z,i,j,k,deviation_um");
+  write_file(dir / "out/inspection.csv", measured);
+  const Finished run = run_program({"correct", kQuick, "--measured", dir / "out/inspection.csv", "--out", dir / "out"});
+  EXPECT_EQ(run.exit_code, 2) << run.err;
+  EXPECT_NE(run.err.find("inspection.csv: error: this input lies where the command writes its own inspection.csv"), std::string::npos) << run.err;
+  EXPECT_EQ(file_text(dir / "out/inspection.csv"), measured);
+  EXPECT_EQ(names_in(dir / "out"), kSurfaceFiles);
 }
 
 TEST(Machine, APartThatDoesNotFitIsRefusedWithBothNumbers) {
@@ -199,9 +307,14 @@ TEST(Run, ASmallGearGoesTheWholeWay) {
   for (const char* name : {"program.ngc", "cl.csv", "gear.stl", "tooth.vtp", "inspection.csv", "limits.json", "setup.html"})
     EXPECT_EQ(file_text(dir / (std::string("1/") + name)), file_text(dir / (std::string("2/") + name))) << name;
 
-  // A refused run into the same directory takes every one of its files.
-  EXPECT_EQ(run_program({"run", kBadJobs + "/module_negative.toml", "--out", dir / "2"}).exit_code, 3);
-  EXPECT_EQ(names_in(dir / "2"), std::vector<std::string>{});
+  // A refused run into the same directory leaves every one of its files, and says whose they are.
+  const auto text_before = file_text(dir / "2/report.json");
+  const Finished refused = run_program({"run", kBadJobs + "/module_negative.toml", "--out", dir / "2", "--quiet"});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_EQ(names_in(dir / "2"), names);
+  EXPECT_EQ(file_text(dir / "2/report.json"), text_before);
+  const std::string sha = report["program"]["sha256"].get<std::string>().substr(0, 12);
+  EXPECT_TRUE(std::regex_search(refused.err, std::regex("\nnote: .*/2 stays as it was: run \"spur-quick\" of 20.*, program.ngc \\(sha256 " + sha + "\\)\n$"))) << refused.err;
 }
 
 // Every control has its own names of work offsets: written, read back, and refused where the control has none of that name.

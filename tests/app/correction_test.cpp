@@ -10,6 +10,7 @@
 #include "app/measured_file.h"
 #include "cam/swept_path.h"
 #include "program.h"
+#include "postproc/controls/of_machine.h"
 #include "tests/support/inspection_points.h"
 
 namespace toothpath::test {
@@ -56,7 +57,7 @@ Case read_case(const std::string& file) {
 class CutFlanks {
  public:
   CutFlanks(const Case& c, const std::string& program) {
-    const auto control = control_of(c.machine, *c.job.setup, c.job.tools);
+    const auto control = controls::control_of(c.machine, *c.job.setup, c.job.tools);
     EXPECT_TRUE(control);
     const int teeth = c.gear->parameters().teeth;
     const auto read = read_back(program, "program.ngc", *control, c.machine, *c.job.setup, {.teeth = teeth, .keep_all = false});
@@ -96,7 +97,7 @@ std::string measured_csv(const std::vector<InspectionPoint>& grid, const std::fu
 TEST(Correction, TwentyMicrometresAreGoneAfterOneLoop) {
   const TestDir dir;
   write_file(dir / "job.toml", quick_job());
-  CommandRequest request;
+  RunRequest request;
   request.job_file = dir / "job.toml";
   request.out_dir = dir / "first";
   request.quiet = true;

@@ -18,6 +18,7 @@
 #include "cam/finger_check.h"
 #include "cam/finger_milling.h"
 #include "cam/plan.h"
+#include "postproc/controls/of_machine.h"
 #include "postproc/nc_reader.h"
 #include "postproc/nc_writer.h"
 #include "postproc/shaper_gearbox_program.h"
@@ -151,6 +152,7 @@ Machine machine_with(const Machine& of_sample, const Form& form, int fanuc_decim
     m.post.tcp_on.clear();
     m.post.tcp_off.clear();
   }
+  if (m.dialect == "heidenhain") m.post.coolant[Coolant::mist] = {"M7", "M9"};  // the control has no word of its own
   return m;
 }
 
@@ -199,10 +201,11 @@ void expect_golden(const fs::path& file, const std::string& text) {
 
 /// The program meets its path: records to the rounding of the words, rapids clear of the blank.
 void expect_round_trip(const std::string& text, const AxisProgram& program, const Planned& planned, const Job& job, const Machine& m) {
-  const auto control = control_of(m, *job.setup, job.tools);
+  const auto control = controls::control_of(m, *job.setup, job.tools);
   ASSERT_TRUE(control);
   const auto back = read_back(text, "p", *control, m, *job.setup, {.teeth = planned.teeth});
   ASSERT_TRUE(back) << back.error().text();
+  EXPECT_EQ(back->mixed_rapid, 0);
   std::vector<ToolMotion> motions;
   for (const auto& trace : back->operations) {
     const auto part = tool_motions(trace, back->copies, *control, m, *job.setup, planned.teeth, 1e-4, 1e-4);
@@ -212,6 +215,11 @@ void expect_round_trip(const std::string& text, const AxisProgram& program, cons
     const auto clear = check_rapids(trace, *control, m, *job.setup, planned.body);
     EXPECT_TRUE(clear) << (clear ? "" : clear.error().message);
   }
+  if (job.bevel_gear() == nullptr)
+    for (const auto& stretch : back->between) {
+      const auto clear = check_rapids(stretch, *control, m, *job.setup, planned.body);
+      EXPECT_TRUE(clear) << (clear ? "" : clear.error().message);
+    }
   std::vector<const ClPath*> list;
   for (const auto& p : planned.paths) list.push_back(&p);
   const double bound = program.rounding_bound_mm + program.chord_bound_mm;
@@ -240,9 +248,9 @@ TEST_P(GoldenPrograms, ByteForByteAndOnTheirPath) {
   for (const Form& form : kForms) {
     SCOPED_TRACE(form.file);
     const Machine m = machine_with(std::get<0>(loaded), form, c.fanuc_decimals);
-    const auto dialect = dialect_of(m);
+    const auto dialect = controls::dialect_of(m);
     ASSERT_TRUE(dialect) << dialect.error().message;
-    const auto program = build_axis_program(planned.checked, job.tools, *job.setup, m, planned.teeth, planned.body, axis_options(*dialect, m));
+    const auto program = build_axis_program(planned.checked, job.tools, *job.setup, m, planned.teeth, planned.body, controls::axis_options(*dialect, m));
     if (!program) {  // the control cannot do it: why, word for word
       expect_golden(kGolden / c.sample / (std::string(form.file) + ".refused"), program.error().message + "\n");
       continue;
@@ -251,7 +259,7 @@ TEST_P(GoldenPrograms, ByteForByteAndOnTheirPath) {
     header.job_name = job.name + ", coarse";
     header.machine_name = m.name;
     if (m.assumed) header.assumed = m.assumed_keys;
-    header.coolant = job.coolant != Coolant::off;
+    header.coolant = job.coolant;
     const auto text = write_nc(*program, *dialect, header);
     ASSERT_TRUE(text) << text.error().message;
     expect_golden(kGolden / c.sample / form.file, folded(text->text));

@@ -16,7 +16,7 @@ class Ledger : public testing::TestWithParam<const char*> {};
 TEST_P(Ledger, CoversWhatIsMeasured) {
   const auto out = std::filesystem::temp_directory_path() / (std::string("toothpath_ledger_") + GetParam());
   std::filesystem::remove_all(out);
-  CommandRequest request;
+  RunRequest request;
   request.job_file = std::string(TOOTHPATH_SOURCE_DIR) + "/samples/" + GetParam() + ".toml";
   request.out_dir = out.string();
   request.quiet = true;

@@ -17,8 +17,8 @@ std::set<std::string> stages_of(const CommandOutcome& outcome) {
   return names;
 }
 
-CommandRequest request_for(const std::string& job, const std::string& out) {
-  CommandRequest request;
+JobRequest request_for(const std::string& job, const std::string& out) {
+  JobRequest request;
   request.job_file = job;
   request.out_dir = out;
   request.quiet = true;

@@ -1,6 +1,8 @@
 // What `machine show` says of the senses is what the kinematics do; every shipped machine is shown, wrong files are refused.
 #include <gtest/gtest.h>
 
+#include <nlohmann/json.hpp>
+
 #include "app/report/machine_sheet.h"
 #include "machines/machine_file.h"
 #include "program.h"
@@ -88,6 +90,25 @@ TEST(MachineShow, WritesPageAndDrawingOnlyWhereAsked) {
   EXPECT_EQ(job.exit_code, 3) << job.err;
 }
 
+TEST(MachineList, EveryInstalledMachineHasItsLine) {
+  const Finished run = run_program({"machine", "list"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(static_cast<std::size_t>(std::count(run.out.begin(), run.out.end(), '\n')), installed_machines().size() + 1) << run.out;
+  for (const auto& name : kShipped) {
+    const Machine m = shipped(name);
+    const auto at = run.out.find(name);
+    ASSERT_NE(at, std::string::npos) << name;
+    const std::string line = run.out.substr(at, run.out.find('\n', at) - at);
+    for (const std::string& word : {m.name, m.dialect, m.assumed_keys.empty() ? std::string("-") : std::to_string(m.assumed_keys.size())})
+      EXPECT_NE(line.find(word), std::string::npos) << line;
+  }
+  const auto json = nlohmann::json::parse(run_program({"machine", "list", "--json"}).out);
+  EXPECT_EQ(json["command"], "machine list");
+  EXPECT_EQ(json["report"]["machines"].size(), installed_machines().size());
+  EXPECT_EQ(run_program({"machine", "show", "t600s"}).exit_code, 0) << "without its ending";
+  EXPECT_NE(run_program({"machine", "show", "t600"}).err.find("did you mean \"t600s.toml\"?"), std::string::npos);
+}
+
 TEST(MachineTest, WritesAProvenProgramForEveryShippedMachine) {
   for (const auto& name : kShipped) {
     const TestDir dir;
@@ -103,35 +124,37 @@ TEST(MachineTest, WritesAProvenProgramForEveryShippedMachine) {
   }
 }
 
-// A page of the machine that was there before does not outlive a refusal of the one that is there now.
-TEST(MachineShow, RefusalsTakeTheOldFilesAway) {
+// A page that stands there stays until there is a new one, and the refusal says what stands there.
+TEST(MachineShow, RefusalsLeaveTheOldFiles) {
   const TestDir dir;
   const std::string machine = dir / "m.toml", good = file_text(find_machine_file("xyzac_trt.toml", ".").value());
-  const auto shown = [&] {
-    write_file(machine, good);
-    EXPECT_EQ(run_program({"machine", "show", machine, "--out", dir / "out"}).exit_code, 0);
-    EXPECT_EQ(names_in(dir / "out"), (std::vector<std::string>{"machine.html", "machine.svg"}));
-  };
-  shown();
+  write_file(machine, good);
+  ASSERT_EQ(run_program({"machine", "show", machine, "--out", dir / "out"}).exit_code, 0);
+  const std::string page = file_text(dir / "out/machine.html");
   write_file(machine, good + "\nspeed = 1\n");
-  EXPECT_EQ(run_program({"machine", "show", machine, "--out", dir / "out"}).exit_code, 3);
-  EXPECT_TRUE(names_in(dir / "out").empty());
-  shown();
-  EXPECT_EQ(run_program({"machine", "show", "no_such_machine.toml", "--out", dir / "out"}).exit_code, 4);
-  EXPECT_TRUE(names_in(dir / "out").empty());
+  for (const auto& [file, code] : {std::pair{machine, 3}, {std::string("no_such_machine.toml"), 4}}) {
+    const Finished refused = run_program({"machine", "show", file, "--out", dir / "out"});
+    EXPECT_EQ(refused.exit_code, code);
+    EXPECT_NE(refused.err.find("stays as it was: machine.html of 20"), std::string::npos) << refused.err;
+    EXPECT_EQ(names_in(dir / "out"), (std::vector<std::string>{"machine.html", "machine.svg"}));
+    EXPECT_EQ(file_text(dir / "out/machine.html"), page);
+  }
 }
 
-TEST(MachineTest, RefusalsLeaveNothing) {
+TEST(MachineTest, NoProgramThatIsNotProven) {
   const TestDir dir;
   const Finished shaper = run_program({"machine", "test", "y514.toml", "--out", dir / "t"});
   EXPECT_EQ(shaper.exit_code, 3);
+  EXPECT_FALSE(std::filesystem::exists(dir / "t"));
   EXPECT_EQ(run_program({"machine", "test", "t600s.toml", "--out", dir / "u"}).exit_code, 0);
+  const auto files = names_in(dir / "u");
   EXPECT_EQ(run_program({"machine", "test", "no_such_machine.toml", "--out", dir / "u"}).exit_code, 4);
-  EXPECT_TRUE(names_in(dir / "u").empty());
+  EXPECT_EQ(names_in(dir / "u"), files) << "refused before anything was planned";
   const Finished length = run_program({"machine", "test", "t600s.toml", "--tool-length", "2000", "--out", dir / "u"});
   EXPECT_EQ(length.exit_code, 1);
   EXPECT_NE(length.err.find("no point near the table"), std::string::npos) << length.err;
-  EXPECT_TRUE(names_in(dir / "u").empty());
+  EXPECT_EQ(names_in(dir / "u"), std::vector<std::string>{"previous_machine_test"});
+  EXPECT_EQ(names_in(dir / "u/previous_machine_test"), files);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <sys/stat.h>
 
-#include "app/sha256.h"
+#include "geometry/base/hash.h"
 #include "program.h"
 
 namespace toothpath::test {
@@ -64,6 +64,122 @@ TEST(OutputDir, LeftoversOfAKilledRunAreRemoved) {
   write_file(dir / "out/.toothpath-999999999-program.ngc", "half");
   { const auto output = OutputDir::open(dir / "out", {}); }
   EXPECT_TRUE(names_in(dir / "out").empty());
+}
+
+/// Old results with a program, and somebody's notes; returns the directory.
+std::string finished_run(const TestDir& dir) {
+  const std::string out = dir / "out";
+  std::filesystem::create_directories(out);
+  write_file(out + "/program.ngc", "G1");
+  write_file(out + "/report.json", R"({"command":"run","job":"bad\u001bname","program":{"file":"program.ngc","sha256":"0123456789abcdef"}})");
+  write_file(out + "/my notes.txt", "mine");
+  return out;
+}
+
+const std::vector<std::string> kRun = {"program.", "report.json", "setup.html"};
+
+TEST(OutputDir, OpeningChangesNothingAndSaysWhoseResultsStandThere) {
+  const TestDir dir;
+  const std::string out = finished_run(dir);
+  { const auto output = OutputDir::open(out, kRun, {}, kPrevious); }
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"my notes.txt", "program.ngc", "report.json"}));
+  const std::string note = OutputDir::closing_note();
+  EXPECT_TRUE(note.starts_with(out + " stays as it was: run \"badname\" of 20")) << note;
+  EXPECT_TRUE(note.ends_with(", program.ngc (sha256 0123456789ab)")) << note;
+}
+
+TEST(OutputDir, EarlierResultsMoveAsideOneGeneration) {
+  const TestDir dir;
+  const std::string out = finished_run(dir);
+  {
+    auto output = OutputDir::open(out, kRun, {}, kPrevious);
+    ASSERT_TRUE(output && output->set_aside());
+    EXPECT_EQ(names_in(out), (std::vector<std::string>{".toothpath-lock", "my notes.txt", "previous"})) << "before anything is written";
+  }
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"my notes.txt", "previous"})) << "a run that writes nothing puts nothing back";
+  EXPECT_EQ(names_in(out + "/previous"), (std::vector<std::string>{"program.ngc", "report.json"}));
+  EXPECT_TRUE(OutputDir::closing_note().starts_with("what stood in " + out + " is in " + out + "/previous: run")) << OutputDir::closing_note();
+  {  // nothing stands there: the folder keeps what it has
+    auto output = OutputDir::open(out, kRun, {}, kPrevious);
+    ASSERT_TRUE(output && output->set_aside() && output->write("report.json", "unverified") && output->commit());
+  }
+  {  // results without a program are none worth keeping in the place of a program
+    auto output = OutputDir::open(out, kRun, {}, kPrevious);
+    ASSERT_TRUE(output && output->set_aside());
+    EXPECT_EQ(file_text(out + "/report.json"), "unverified");
+    ASSERT_TRUE(output->write("program.nc", "G2") && output->write("setup.html", "sheet") && output->commit());
+  }
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"my notes.txt", "previous", "program.nc", "setup.html"})) << "the old report gave way";
+  EXPECT_EQ(file_text(out + "/previous/program.ngc"), "G1");
+  {
+    auto output = OutputDir::open(out, kRun, {}, kPrevious);
+    ASSERT_TRUE(output && output->set_aside());
+  }
+  EXPECT_EQ(names_in(out + "/previous"), (std::vector<std::string>{"program.nc", "setup.html"})) << "no mix of two generations";
+}
+
+TEST(OutputDir, PreviousMustBeAFolderThatCanBeWritten) {
+  for (const bool link : {false, true}) {
+    const TestDir dir;
+    const std::string out = finished_run(dir);
+    std::filesystem::create_directories(dir / "elsewhere");
+    if (link) std::filesystem::create_directory_symlink(dir / "elsewhere", out + "/previous");
+    else write_file(out + "/previous", "mine");
+    const auto output = OutputDir::open(out, kRun, {}, kPrevious);
+    ASSERT_FALSE(output);
+    EXPECT_EQ(output.error().kind, DiagnosticKind::file_access);
+    EXPECT_EQ(output.error().position.file, out + "/previous");
+    EXPECT_EQ(names_in(out).size(), 4u);
+    EXPECT_EQ(file_text(out + "/program.ngc"), "G1");
+  }
+  if (::geteuid() == 0) return;  // root may write everywhere
+  const TestDir dir;
+  const std::string out = finished_run(dir);
+  std::filesystem::create_directories(out + "/previous");
+  std::filesystem::permissions(out + "/previous", std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  EXPECT_FALSE(OutputDir::open(out, kRun, {}, kPrevious));
+  std::filesystem::permissions(out + "/previous", std::filesystem::perms::owner_all);
+}
+
+TEST(OutputDir, OneRunAtATime) {
+  const TestDir dir;
+  {
+    const auto first = OutputDir::open(dir / "out", kRun);
+    ASSERT_TRUE(first);
+    const auto second = OutputDir::open(dir / "out", {"other.txt"});
+    ASSERT_FALSE(second);
+    EXPECT_EQ(second.error().kind, DiagnosticKind::file_access);
+    EXPECT_NE(second.error().message.find("another run"), std::string::npos);
+    EXPECT_EQ(names_in(dir / "out"), std::vector<std::string>{".toothpath-lock"});
+  }
+  write_file(dir / ".toothpath-lock", "");  // left by a run that was killed: nobody holds it
+  EXPECT_TRUE(OutputDir::open(dir.path(), kRun));
+  EXPECT_TRUE(names_in(dir.path()).empty());
+}
+
+TEST(OutputDir, AnInputThatWouldBeReplacedIsRefused) {
+  const TestDir dir;
+  const std::string out = finished_run(dir);
+  std::filesystem::create_directories(out + "/previous");
+  write_file(out + "/previous/report.json", "old");
+  std::filesystem::create_symlink(out + "/report.json", dir / "link");
+  for (const std::string& input : {out + "/report.json", out + "/../out/program.ngc", dir / "link", out + "/previous/report.json"}) {
+    const auto refused = OutputDir::open(out, kRun, {"missing", input}, kPrevious);
+    ASSERT_FALSE(refused) << input;
+    EXPECT_EQ(refused.error().kind, DiagnosticKind::usage);
+    EXPECT_EQ(refused.error().position.file, input);
+  }
+  EXPECT_TRUE(OutputDir::open(out, {"report.html"}, {out + "/program.ngc"})) << "not its own";
+  EXPECT_TRUE(OutputDir::open(out, kRun, {out + "/my notes.txt"}));
+}
+
+TEST(OutputDir, ProgramsGetTheirNamesLast) {
+  const TestDir dir;
+  auto output = OutputDir::open(dir / "out", kRun);
+  ASSERT_TRUE(output && output->write("program.ngc", "G1") && output->write("report.json", "{}"));
+  std::filesystem::create_directories(dir / "out/report.json/occupied");
+  ASSERT_FALSE(output->commit());
+  EXPECT_EQ(names_in(dir / "out"), std::vector<std::string>{"report.json"});
 }
 
 // FIPS 180-4: one block, two blocks, and a million letters.

@@ -4,13 +4,13 @@
 
 #include <cstdlib>
 
+#include "geometry/base/angle.h"
 #include "tests/app/pole_job.h"
 
 namespace toothpath::test {
 namespace {
 
 using Json = nlohmann::json;
-constexpr double kDegree = 0.017453292519943295;
 // The ball centre: the tip inside a block (0.5 um) and the axis there (0.001 rad at the ball radius of 0.5 mm), the rounding of words (0.09 um), and
 // the sag between two records of the plan whose axis turns (0.12 um).
 constexpr double kCentreBound = 5e-4 + 1e-3 * kBall + 9e-5 + 1.2e-4;

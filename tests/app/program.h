@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,8 @@ struct Launch {
   rlim_t largest_file = RLIM_INFINITY;
   int signal_number = 0;        ///< sent after `signal_after_ms`
   int signal_after_ms = 0;
+  std::string signal_when;      ///< instead: when this file or folder is there (at most a minute is waited)
+  std::function<void()> before_signal = [] {};
 };
 
 inline Finished run_program(const Launch& launch) {
@@ -55,6 +58,8 @@ inline Finished run_program(const Launch& launch) {
   }
   if (launch.signal_number != 0) {
     ::usleep(static_cast<useconds_t>(launch.signal_after_ms) * 1000);
+    for (int k = 0; k < 60'000 && !launch.signal_when.empty() && ::access(launch.signal_when.c_str(), F_OK) != 0; ++k) ::usleep(1000);
+    launch.before_signal();
     ::kill(child, launch.signal_number);
   }
   int status = 0;

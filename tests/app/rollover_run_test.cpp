@@ -10,20 +10,20 @@ namespace {
 
 using Json = nlohmann::json;
 
-struct Case {
+struct RolloverCase {
   const char* machine;
   const char* extension;
   const char* word;  ///< rotary words of C, the number as the first group
   const char* note;  ///< in the header
 };
-std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.machine; }
+std::ostream& operator<<(std::ostream& out, const RolloverCase& c) { return out << c.machine; }
 
-class RolloverRun : public ::testing::TestWithParam<Case> {};
+class RolloverRun : public ::testing::TestWithParam<RolloverCase> {};
 INSTANTIATE_TEST_SUITE_P(Run, RolloverRun,
-                         ::testing::Values(Case{"xyzac_large", "ngc", R"( C-?\[\[#1\+([\d.]+)\] MOD 360\])", "(C ROLLS OVER: [AXIS_C] WRAPPED_ROTARY = 1)"},
-                                           Case{"fanuc_ac", "nc", R"( C(-?[\d.]+))", "(C ROLLS OVER: PARAMETERS 1008#0 ROA=1, 1008#1 RAB=0, 1260=360.)"},
-                                           Case{"siemens_ac", "mpf", R"( C=DC\(ABS\(R2\+([\d.]+)-360\*TRUNC)", ";C ROLLS OVER: MODULO AXIS, 30310=1, 30330=360"},
-                                           Case{"heidenhain_ac", "h", R"( C([+-][\d.]+))", "; C ROLLS OVER: MODULO AXIS, DISPLAY BELOW 360"}));
+                         ::testing::Values(RolloverCase{"xyzac_large", "ngc", R"( C-?\[\[#1\+([\d.]+)\] MOD 360\])", "(C ROLLS OVER: [AXIS_C] WRAPPED_ROTARY = 1)"},
+                                           RolloverCase{"fanuc_ac", "nc", R"( C(-?[\d.]+))", "(C ROLLS OVER: PARAMETERS 1008#0 ROA=1, 1008#1 RAB=0, 1260=360.)"},
+                                           RolloverCase{"siemens_ac", "mpf", R"( C=DC\(ABS\(R2\+([\d.]+)-360\*TRUNC)", ";C ROLLS OVER: MODULO AXIS, 30310=1, 30330=360"},
+                                           RolloverCase{"heidenhain_ac", "h", R"( C([+-][\d.]+))", "; C ROLLS OVER: MODULO AXIS, DISPLAY BELOW 360"}));
 
 /// A machine that ships, its C without ends.
 std::string without_ends(const std::string& machine) {
@@ -34,7 +34,7 @@ std::string without_ends(const std::string& machine) {
 }
 
 TEST_P(RolloverRun, IsVerifiedAndReadBack) {
-  const Case& c = GetParam();
+  const RolloverCase& c = GetParam();
   const TestDir dir;
   write_file(dir / (std::string(c.machine) + "_endless.toml"), without_ends(c.machine));
   PoleJob job;

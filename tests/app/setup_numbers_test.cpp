@@ -5,6 +5,7 @@
 
 #include "app/report/length_tolerance.h"
 #include "app/report/part_swing.h"
+#include "app/report/setup_sheet.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
@@ -63,6 +64,23 @@ TEST(PartSwing, HoldsEveryPointOfTheBlank) {
     EXPECT_GE(swing.bottom_mm, bottom - 1);
     EXPECT_EQ(swing_section(swing).rows.size(), 4u);
   }
+}
+
+// The operator reads which coolant is meant, and in which words the program switches it.
+TEST(SetupSheet, NamesTheCoolantAndItsWords) {
+  Job job;
+  job.setup.emplace();
+  Machine m = trunnion_machine(0, 0, 0, 0, 1);
+  m.dialect = "linuxcnc";
+  const auto sheet = [&] { return setup_sheet(job, PartOutline{40, 60, 0, -5, -20}, m, RunReport{}); };
+  EXPECT_NE(sheet().find("<tr><td>coolant</td><td>off</td>"), std::string::npos);
+  job.coolant = Coolant::mist;
+  EXPECT_NE(sheet().find("<tr><td>coolant</td><td>mist: on with M7, off with M9</td>"), std::string::npos) << sheet();
+  m.post.coolant[Coolant::through_spindle] = {"M150", "M151"};
+  job.coolant = Coolant::through_spindle;
+  EXPECT_NE(sheet().find("through_spindle: on with M150, off with M151"), std::string::npos);
+  job.gear = BevelGearParameters{};
+  EXPECT_NE(sheet().find("bevel gear, z"), std::string::npos);
 }
 
 // A ball that touches a surface everywhere, moved along its axis: no place is cut deeper than the share says.

@@ -4,12 +4,11 @@
 #include <cmath>
 #include <sstream>
 
+#include "geometry/base/angle.h"
 #include "tests/app/program.h"
 
 namespace toothpath::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846, kDegree = kPi / 180;
 
 struct Record {
   int operation = 0;

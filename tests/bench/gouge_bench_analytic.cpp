@@ -9,7 +9,7 @@
 #include "tests/bench/thread_seconds.h"
 #include "tests/support/sample_gears.h"
 #include "tests/support/sample_tools.h"
-#include "cam/gear_distance.h"
+#include "cam/body_tree.h"
 
 namespace toothpath::bench {
 namespace {
@@ -37,30 +37,30 @@ std::vector<Pose> poses_of(const FaceGear& gear, const GearDistance& part, const
   return poses;
 }
 
-constexpr double kWithin = 0.5, kMarch = 1e-3, kBodies = 0.02;
+constexpr double kAnalyticWithin = 0.5, kMarch = 1e-3, kBodies = 0.02;
 
 struct Answer {
-  double cutter = kWithin, gap = kWithin;
+  double cutter = kAnalyticWithin, gap = kAnalyticWithin;
 };
 
-Answer exact(const GearDistance& part, const ToolAssembly& tool, const Pose& pose) {
+Answer exact(const GearDistance& part, const BodyTree& tree, const ToolAssembly& tool, const Pose& pose) {
   const double R = tool.radius_mm(), top = tool.flute_length_mm - R;
   Answer a;
   for (double h = 0; h <= top;) {
-    const double d = part.nearest(pose.centre + h * pose.axis, R + kWithin).distance - R;
+    const double d = part.nearest(pose.centre + h * pose.axis, R + kAnalyticWithin).distance - R;
     a.cutter = std::min(a.cutter, d);
     if ((pose.centre + h * pose.axis).z() - R > part.gear().blank_top()) break;
     h += std::max(d - a.cutter, 0.0) + kMarch;
   }
   for (const auto& body : shank_and_holder(tool))
-    a.gap = std::min(a.gap, body_gap(part, body, pose.centre - R * pose.axis, pose.axis, a.gap, kBodies).gap);
+    a.gap = std::min(a.gap, tree.gap(body, pose.centre - R * pose.axis, pose.axis, a.gap, kBodies));
   return a;
 }
 
 Answer marched(const CgalTree& tree, const ToolAssembly& tool, const Pose& pose) {
   const double R = tool.radius_mm();
   Answer a;
-  a.cutter = tree.cutting_part(pose.centre, pose.axis, tool.flute_length_mm - R, R, kWithin, kMarch);
+  a.cutter = tree.cutting_part(pose.centre, pose.axis, tool.flute_length_mm - R, R, kAnalyticWithin, kMarch);
   for (const auto& body : shank_and_holder(tool)) a.gap = std::min(a.gap, tree.frustum(body, pose.centre - R * pose.axis, pose.axis, a.gap, kBodies));
   return a;
 }
@@ -71,6 +71,7 @@ void analytic_rows() {
   const FaceGear gear = test::made(test::quarter_dhfg());
   const ToolAssembly tool = test::ball_mill(0.5, 3.2, 0.46, 14, 10);
   const GearDistance part(gear, 1.0);
+  const BodyTree bodies(part);
   const auto poses = poses_of(gear, part, tool);
   std::printf("\nanalytic engine of a face gear (180 teeth, two rings; ball R0.25; random poses in contact), the mesh is its own within the sag\n");
   std::printf("%-28s %9s %8s %12s %12s %8s %11s\n", "question", "triangles", "sag mm", "ours 1/s", "CGAL 1/s", "ratio", "largest dif");
@@ -78,7 +79,7 @@ void analytic_rows() {
                          for (const auto& p : poses) keep(part.nearest(p.centre, tool.radius_mm() + 0.12).distance);
                        }, 3);
   const double tools = double(poses.size()) / thread_seconds([&] {
-                         for (const auto& p : poses) keep(exact(part, tool, p).gap);
+                         for (const auto& p : poses) keep(exact(part, bodies, tool, p).gap);
                        }, 2);
   for (const double sag : {5e-3, 5e-4}) {
     const auto mesh = mesh_gear(gear, sag);
@@ -95,7 +96,7 @@ void analytic_rows() {
     for (const auto& p : poses)
       ball_difference = std::max(ball_difference, std::abs(tree.distance(p.centre) - part.nearest(p.centre, tool.radius_mm() + 0.12).distance));
     for (std::size_t k = 0; k < few; ++k)
-      difference = std::max(difference, std::abs(marched(tree, tool, poses[k]).cutter - exact(part, tool, poses[k]).cutter));
+      difference = std::max(difference, std::abs(marched(tree, tool, poses[k]).cutter - exact(part, bodies, tool, poses[k]).cutter));
     std::printf("%-28s %9zu %8g %12.0f %12.0f %7.1fx %11.2e\n", "ball, analytic", mesh->triangles.size(), sag, balls, cgal_balls, balls / cgal_balls, ball_difference);
     std::printf("%-28s %9zu %8g %12.0f %12.0f %7.1fx %11.2e\n", "assembly, analytic", mesh->triangles.size(), sag, tools, cgal_tools, tools / cgal_tools, difference);
     std::fflush(stdout);

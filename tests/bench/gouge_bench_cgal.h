@@ -11,6 +11,7 @@
 
 #include "cam/tool_body.h"
 #include "geometry/triangle_mesh.h"
+#include "tests/support/plain_frustum.h"
 
 namespace toothpath::bench {
 
@@ -59,7 +60,7 @@ class CgalTree {
 
   double look(const Frustum& f, const Vec3& tip, const Vec3& axis, const Vec3& x, double& best) const {
     const Vec3 q = closest(x);
-    best = std::min(best, distance_to_frustum(q, f, tip, axis));
+    best = std::min(best, test::distance_to_frustum(q, f, tip, axis));
     return (q - x).norm();
   }
   void slice(const Frustum& f, const Vec3& tip, const Vec3& axis, double h0, double h1, double resolution, double& best) const {
@@ -83,7 +84,7 @@ class CgalTree {
            double& best) const {
     const Vec3 x = tip + c.x() * e + c.y() * g + c.z() * axis;
     const double reach = half.norm();
-    if (best <= 0 || distance_to_frustum(x, f, tip, axis) > reach) return;
+    if (best <= 0 || test::distance_to_frustum(x, f, tip, axis) > reach) return;
     if (look(f, tip, axis, x, best) - reach >= best - resolution || reach < 0.25 * resolution) return;
     Eigen::Index k = 0;
     half.maxCoeff(&k);

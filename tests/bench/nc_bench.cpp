@@ -131,9 +131,9 @@ Job job_of(const Post& post, int steps = 50000) {
   j.machine.post.tcp_on = post.tcp != TcpMode::none && std::string(post.dialect) == "linuxcnc" ? std::vector<std::string>{"M428"} : std::vector<std::string>{};
   if (!j.machine.post.tcp_on.empty()) j.machine.post.tcp_off = {"M429"};
   j.path = test::sample_path(0.3, 0.4, steps);
-  j.dialect = *dialect_of(j.machine);
+  j.dialect = *controls::dialect_of(j.machine);
   j.program = *AxisProgramTestAccess::build(std::vector{j.path}, test::tools(), test::standing(), j.machine, 1, test::kBody,
-                                            axis_options(j.dialect, j.machine));
+                                            controls::axis_options(j.dialect, j.machine));
   j.text = write_nc(j.program, j.dialect, {})->text;
   return j;
 }
@@ -152,7 +152,7 @@ void write_blocks(benchmark::State& state, const Post& post) {
 
 void read_blocks(benchmark::State& state, const Post& post) {
   const Job j = job_of(post);
-  const auto control = control_of(j.machine, test::standing(), test::tools());
+  const auto control = controls::control_of(j.machine, test::standing(), test::tools());
   std::size_t blocks = 0;
   for (auto _ : state) {
     blocks = 0;

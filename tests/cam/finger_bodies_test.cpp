@@ -5,6 +5,7 @@
 
 #include "tests/cam/finger_jobs.h"
 #include "tests/cam/mesh_shapes.h"
+#include "tests/support/plain_frustum.h"
 
 namespace toothpath {
 namespace {
@@ -30,7 +31,7 @@ TEST(FingerBodies, PiecesEncloseTheCutterClosely) {
       const double height = random(-1, tool.flute_length_mm - 0.5), rho = random(0, 1.5 * gear.cutter().rho_D);
       const double truth = std::max(0.0, solid.signed_distance(height - d.p.dedendum_mm, rho));
       double pieces = INFINITY;
-      for (const auto& f : bodies[0].pieces) pieces = std::min(pieces, distance_to_frustum(Vec3(rho, 0, height), f, Vec3::Zero(), Vec3::UnitZ()));
+      for (const auto& f : bodies[0].pieces) pieces = std::min(pieces, test::distance_to_frustum(Vec3(rho, 0, height), f, Vec3::Zero(), Vec3::UnitZ()));
       EXPECT_LE(pieces, truth + 1e-12) << height << " " << rho;
       most = std::max(most, truth - pieces);
     }

@@ -9,7 +9,7 @@ namespace {
 
 using namespace bevel_test;
 
-const FingerCheckOptions kQuick{.columns = 2, .rows = 2, .ridge_columns = 2, .ridge_rows = 3};
+const FingerCheckOptions kClearanceQuick{.columns = 2, .rows = 2, .ridge_columns = 2, .ridge_rows = 3};
 
 /// Points of the face cone that the nominal passes leave within one pitch, by brute force.
 std::vector<Vec3> land_points(const BevelGear& gear, const BruteFinger& brute) {
@@ -40,7 +40,7 @@ TEST_P(FingerClearances, AgainstDenseLands) {
   for (const bool struck : {false, true}) {
     if (struck)
       for (ToolMotion& m : job.motions) m.tip_from -= m.axis_from, m.tip_to -= m.axis_to;
-    const FingerGougeCheck check(job.gear, job.tools, job.ops, {}, kQuick);
+    const FingerGougeCheck check(job.gear, job.tools, job.ops, {}, kClearanceQuick);
     const GougeResult v = check.verify(job.motions).gouge;
     EXPECT_GE(v.clearance_measured_mm, v.clearance_mm) << "the blank is more than the part";
     const DenseFinger dense(job.gear, job.tools[0]);

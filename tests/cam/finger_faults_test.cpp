@@ -10,13 +10,13 @@ namespace {
 
 using namespace bevel_test;
 
-const FingerCheckOptions kQuick{.columns = 5, .rows = 5, .ridge_columns = 4, .ridge_rows = 9};
+const FingerCheckOptions kFaultsQuick{.columns = 5, .rows = 5, .ridge_columns = 4, .ridge_rows = 9};
 
 class FingerFaults : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     clean_ = new Milled(mill_all(w3(), 0.9));
-    check_ = new FingerGougeCheck(clean_->gear, clean_->tools, clean_->ops, Tolerances{}, kQuick);
+    check_ = new FingerGougeCheck(clean_->gear, clean_->tools, clean_->ops, Tolerances{}, kFaultsQuick);
   }
   static void TearDownTestSuite() {
     delete check_;
@@ -159,7 +159,7 @@ TEST_F(FingerFaults, HubAndShaftStandInTheWay) {
     p.shaft_diameter_mm = c.shaft;
     p.shaft_length_mm = c.shaft > 0 ? 30 : 0;
     const BevelGear gear = made(p, pinion_mill());
-    const FingerGougeCheck with_bodies(gear, clean().tools, clean().ops, Tolerances{}, kQuick);
+    const FingerGougeCheck with_bodies(gear, clean().tools, clean().ops, Tolerances{}, kFaultsQuick);
     bool clear = true;
     std::string message;
     for (const auto& plan : clean().plans)
@@ -179,7 +179,7 @@ TEST_F(FingerFaults, HolderAgainstShaft) {
   const BevelGear gear = made(p, pinion_mill());
   auto tools = clean().tools;
   tools[0].holder = {{320, 320, 40}};
-  const FingerGougeCheck with_shaft(gear, tools, clean().ops, Tolerances{}, kQuick);
+  const FingerGougeCheck with_shaft(gear, tools, clean().ops, Tolerances{}, kFaultsQuick);
   const auto v = with_shaft.verify(clean().motions);
   EXPECT_LT(v.gouge.clearance_mm, 0.05);
   ASSERT_FALSE(v.gouge.worst.empty());

@@ -14,14 +14,14 @@ using namespace bevel_test;
 
 constexpr double kDepth = 0.002, kWithin = 2e-4, kAway = 0.1;
 
-const FingerCheckOptions kQuick{.columns = 3, .rows = 3, .ridge_columns = 2, .ridge_rows = 3};
+const FingerCheckOptions kPlantedQuick{.columns = 3, .rows = 3, .ridge_columns = 2, .ridge_rows = 3};
 
 class FingerPlanted : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     clean_ = new Milled(mill_all(w3(), 0.9));
     brute_ = new BruteFinger(clean_->gear);
-    check_ = new FingerGougeCheck(clean_->gear, clean_->tools, clean_->ops, limits(), kQuick);
+    check_ = new FingerGougeCheck(clean_->gear, clean_->tools, clean_->ops, limits(), kPlantedQuick);
   }
   static void TearDownTestSuite() {
     delete check_;
@@ -250,7 +250,7 @@ TEST_F(FingerPlanted, InOneSpaceOnly) {
 TEST_F(FingerPlanted, CleanProgramsShowNone) {
   for (const Designed& d : {Designed{w3(), pinion_mill()}, Designed{w4(), wheel_mill()}, design(20, 30, 2, 30, 0.25, -1)}) {
     const Milled job = mill_all(d);
-    const FingerGougeCheck check(job.gear, job.tools, job.ops, limits(), kQuick);
+    const FingerGougeCheck check(job.gear, job.tools, job.ops, limits(), kPlantedQuick);
     const auto v = check.verify(job.motions);
     EXPECT_LE(v.gouge.bound_mm, limits().gouge_mm);
     EXPECT_GE(v.gouge.bound_mm, v.gouge.measured_mm);

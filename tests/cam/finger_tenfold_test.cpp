@@ -13,15 +13,15 @@ namespace {
 
 using namespace bevel_test;
 
-constexpr double kDepth = 0.002, kWithin = 2e-4;
+constexpr double kTenfoldDepth = 0.002, kTenfoldWithin = 2e-4;
 constexpr std::size_t kEvery = 16;  // of the motions of a program: the quick form has fewer motions, each as densely sampled
 constexpr DenseBody kBodies[] = {DenseBody::cutter, DenseBody::shank, DenseBody::holder};
-const FingerCheckOptions kQuick{.columns = 2, .rows = 2, .ridge_columns = 2, .ridge_rows = 3};
+const FingerCheckOptions kTenfoldQuick{.columns = 2, .rows = 2, .ridge_columns = 2, .ridge_rows = 3};
 
 /// A program with the tool that is checked and sampled.
 struct Sample {
   Sample(Milled milled, double stick_out_mm)
-      : job(with_stick_out(std::move(milled), stick_out_mm)), dense(job.gear, job.tools[0]), check(job.gear, job.tools, job.ops, {}, kQuick) {}
+      : job(with_stick_out(std::move(milled), stick_out_mm)), dense(job.gear, job.tools[0]), check(job.gear, job.tools, job.ops, {}, kTenfoldQuick) {}
   [[nodiscard]] GougeResult verdict(const ToolMotion& m) const { return check.verify(std::span(&m, 1)).gouge; }
   static Milled with_stick_out(Milled milled, double stick_out_mm) {
     milled.tools[0].stick_out_mm = stick_out_mm;
@@ -108,20 +108,20 @@ TEST_P(FingerTenfold, AFaultOfTheCutterIsFound) {
   for (int n = 0; n < 3; ++n) {
     ToolMotion m = some_block(1);
     const Vec3 aside = vector(1).normalized();
-    double size = kDepth;
+    double size = kTenfoldDepth;
     for (int round = 0; round < 4; ++round) {
       ToolMotion planted = m;
       planted.tip_to += size * aside;
       const DenseGap g = s_.dense.least(planted, DenseBody::cutter);
       if (round < 3) {
-        size *= std::clamp(kDepth / std::max(-g.gap, 1e-5), 0.2, 3.0);
+        size *= std::clamp(kTenfoldDepth / std::max(-g.gap, 1e-5), 0.2, 3.0);
         continue;
       }
-      EXPECT_NEAR(g.gap, -kDepth, 5e-4);
+      EXPECT_NEAR(g.gap, -kTenfoldDepth, 5e-4);
       const GougeResult v = s_.verdict(planted);
       EXPECT_GE(v.bound_mm, -g.gap - 1e-7) << n;
       EXPECT_GE(v.measured_mm, -g.gap - 2e-5) << n << " " << g.part;
-      EXPECT_LE(v.measured_mm, -g.gap + kWithin) << n << " " << g.part << ": wall points are 0.2 mm apart";
+      EXPECT_LE(v.measured_mm, -g.gap + kTenfoldWithin) << n << " " << g.part << ": wall points are 0.2 mm apart";
     }
   }
 }
@@ -139,14 +139,14 @@ TEST_P(FingerTenfold, AFaultOfShankOrHolderIsFound) {
       const ToolMotion start = m;
       double sunk = 0, step = 0;
       DenseGap g = tool.dense.least(m, body), before;
-      for (int round = 0; round < 12 && std::abs(g.gap + kDepth) > 1e-6; ++round) {
+      for (int round = 0; round < 12 && std::abs(g.gap + kTenfoldDepth) > 1e-6; ++round) {
         const double slope = round == 0 ? 1 : std::clamp((before.gap - g.gap) / step, 0.1, 2.0);
-        sunk += step = (g.gap + kDepth) / slope;
+        sunk += step = (g.gap + kTenfoldDepth) / slope;
         before = g;
         m.tip_from = start.tip_from - sunk * start.axis_from, m.tip_to = start.tip_to - sunk * start.axis_to;
         g = tool.dense.least(m, body);
       }
-      ASSERT_NEAR(g.gap, -kDepth, 1e-4) << name_of(body) << " " << n;
+      ASSERT_NEAR(g.gap, -kTenfoldDepth, 1e-4) << name_of(body) << " " << n;
       const GougeResult v = tool.verdict(m);
       EXPECT_LE(v.clearance_mm, g.gap + 1e-7);
       const auto named = std::find_if(v.worst.begin(), v.worst.end(), [&](const WorstPlace& w) { return w.body == name_of(body) && w.patch == g.part; });
@@ -157,12 +157,12 @@ TEST_P(FingerTenfold, AFaultOfShankOrHolderIsFound) {
       // The check tells how far both must be moved apart, which is more than the depth of a place where edges meet, and may be most at another moment.
       double apart = tool.dense.overlap(g, m, body).depth;
       EXPECT_GE(named->depth_mm, apart - 5e-5) << "sampled circles and directions are that coarse";
-      for (int k = 0; k <= 16 && named->depth_mm > apart + kWithin; ++k) {
+      for (int k = 0; k <= 16 && named->depth_mm > apart + kTenfoldWithin; ++k) {
         DenseGap at = g;
         at.t = k / 16.0;
         apart = std::max(apart, tool.dense.overlap(at, m, body).depth);
       }
-      EXPECT_LE(named->depth_mm, apart + kWithin) << name_of(body) << " " << n;
+      EXPECT_LE(named->depth_mm, apart + kTenfoldWithin) << name_of(body) << " " << n;
       ++found;
     }
     EXPECT_EQ(found, 3);

@@ -1,8 +1,6 @@
 // The gouge check of whole programs: clean ones pass and nothing between the samples is deeper than the bound, wrong ones are refused.
 #include "cam/gouge_check.h"
 
-#include <tbb/global_control.h>
-
 #include "tests/cam/gouge_case.h"
 #include "tests/support/brute_force_gear_solid.h"
 
@@ -158,30 +156,6 @@ TEST(WrongPrograms, ShankAndHolder) {
   const auto refused = checker.check_path(job.plan.paths.back());
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("holder"), std::string::npos) << refused.error().message;
-}
-
-TEST(Proof, TheSameOnOneAndTwoThreads) {
-  const auto& job = job_named("spur");
-  auto path = job.plan.paths.back();
-  for (std::size_t k = 50; k < path.records.size(); k += 97) path.records[k].tip.z() -= 0.02;
-  const auto motions = GougeCheck::motions_of(path);
-  std::vector<GougeResult> results;
-  for (const std::size_t threads : {1, 2}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    results.push_back(check(job, motions));
-  }
-  const auto &a = results[0], &b = results[1];
-  EXPECT_EQ(a.measured_mm, b.measured_mm);
-  EXPECT_EQ(a.bound_mm, b.bound_mm);
-  EXPECT_EQ(a.clearance_mm, b.clearance_mm);
-  EXPECT_EQ(a.distance_queries, b.distance_queries);
-  ASSERT_EQ(a.worst.size(), b.worst.size());
-  EXPECT_FALSE(a.worst.empty());
-  for (std::size_t k = 0; k < a.worst.size(); ++k) {
-    EXPECT_EQ(a.worst[k].depth_mm, b.worst[k].depth_mm);
-    EXPECT_EQ(a.worst[k].line, b.worst[k].line);
-    EXPECT_EQ(a.worst[k].point, b.worst[k].point);
-  }
 }
 
 }  // namespace

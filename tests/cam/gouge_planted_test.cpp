@@ -3,6 +3,7 @@
 // sampling of the gear (tests/support/brute_force_bodies.h).
 #include "cam/cutter_sweep.h"
 #include "cam/gouge_check.h"
+#include "cam/motion_blend.h"
 #include "tests/cam/face_gear_jobs.h"
 #include "tests/support/brute_force_bodies.h"
 

@@ -10,6 +10,7 @@
 #include "cam/frustum_triangle.h"
 #include "cam/mesh_assembly.h"
 #include "tests/cam/mesh_shapes.h"
+#include "tests/support/plain_frustum.h"
 #include "tests/support/sample_tools.h"
 
 namespace toothpath {
@@ -48,7 +49,7 @@ double brute_distance(const TriangleMesh& mesh, const Vec3& p) {
 /// Least distance between a triangle and a convex body, by halving the triangle; within `resolution`.
 double halved(const Vec3& a, const Vec3& b, const Vec3& c, const Frustum& f, const Vec3& tip, const Vec3& axis, double best, double resolution) {
   const Vec3 m = (a + b + c) / 3;
-  const double size = std::max({(a - m).norm(), (b - m).norm(), (c - m).norm()}), d = distance_to_frustum(m, f, tip, axis);
+  const double size = std::max({(a - m).norm(), (b - m).norm(), (c - m).norm()}), d = test::distance_to_frustum(m, f, tip, axis);
   best = std::min(best, d);
   if (best <= resolution || d - size >= best - resolution) return best;
   const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
@@ -165,7 +166,7 @@ TEST(MeshDistance, FrustumAndTriangleAreBoundedFromBothSides) {
       widest = std::max(widest, gap.above - gap.distance);
       ASSERT_LE(gap.distance, brute + 1e-10) << k;
       ASSERT_GE(gap.above, brute - 2.1e-3) << k;
-      ASSERT_NEAR(distance_to_frustum(gap.foot, f, tip, axis), gap.above, 1e-9 + gap.above - gap.distance);
+      ASSERT_NEAR(test::distance_to_frustum(gap.foot, f, tip, axis), gap.above, 1e-9 + gap.above - gap.distance);
     } else {
       ++touching;
       ASSERT_LE(brute, 2e-3) << k;
@@ -194,7 +195,7 @@ TEST(MeshDistance, FrustumAgainstMeshAgreesWithBruteForce) {
     ASSERT_NEAR(place.distance, std::min(brute, 5.0), 2.1e-3);
     ASSERT_LE(place.distance, brute + 1e-9);
     if (brute < 5 && brute > 2e-3) {
-      EXPECT_NEAR(distance_to_frustum(place.foot, f, tip, axis), place.distance, 1e-6);
+      EXPECT_NEAR(test::distance_to_frustum(place.foot, f, tip, axis), place.distance, 1e-6);
     }
   }
 }

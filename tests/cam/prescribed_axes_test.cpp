@@ -3,11 +3,11 @@
 
 #include "tests/cam/face_gear_jobs.h"
 #include "tests/support/brute_force_gear_solid.h"
+#include "tests/support/plain_frustum.h"
 
 namespace toothpath {
 namespace {
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 ToolAxisKey key(double radius, double outwards_deg, double aside_deg) { return {radius, radians(outwards_deg), radians(aside_deg)}; }
 
 FaceGearParameters narrow_spur() {
@@ -184,7 +184,7 @@ TEST(PrescribedAxes, RefusalsNameThePlaceTheBodyAndTheLimit) {
         for (int i = 0; i <= 10; ++i)
           for (int j = 0; j <= 10; ++j) {
             const Vec3 p = FaceGearSurface<double>::turned(brute.point(0, patch, i / 10.0, j / 10.0), tooth * gear.pitch());
-            least = std::min(least, distance_to_frustum(p, body, tip, axis));
+            least = std::min(least, test::distance_to_frustum(p, body, tip, axis));
           }
   EXPECT_EQ(least, 0) << "it is inside";
 

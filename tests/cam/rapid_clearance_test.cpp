@@ -1,7 +1,7 @@
 // Rapids that turn the rotary axes: clear of a ring, near it and through it, against dense sampling of the whole tool.
 #include "cam/rapid_clearance.h"
 
-#include "cam/cutter_sweep.h"
+#include "cam/motion_blend.h"
 #include "cam/tool_body.h"
 #include "tests/cam/face_gear_jobs.h"
 

@@ -4,6 +4,7 @@
 #include "cam/tool_body.h"
 #include "tests/cam/face_gear_jobs.h"
 #include "tests/support/brute_force_gear_solid.h"
+#include "tests/support/plain_frustum.h"
 
 namespace toothpath {
 namespace {
@@ -64,6 +65,7 @@ TEST(Body, GapAgainstSampledSurfaces) {
     const FaceGear gear = test::made(test::gear_named(name));
     const double m = gear.parameters().module_mm;
     const GearDistance part(gear, m);
+    const BodyTree tree(part);
     const test::BruteForceGearSolid brute(gear);
     std::vector<Vec3> samples;
     for (int zone = 0; zone < part.zones(); ++zone)
@@ -81,15 +83,15 @@ TEST(Body, GapAgainstSampledSurfaces) {
       double truth = INFINITY;
       for (int tooth = -3; tooth <= 3; ++tooth) {
         const Vec3 t = FaceGearSurface<double>::turned(tip, -tooth * gear.pitch()), u = FaceGearSurface<double>::turned(axis, -tooth * gear.pitch());
-        for (const auto& p : samples) truth = std::min(truth, distance_to_frustum(p, f, t, u));
+        for (const auto& p : samples) truth = std::min(truth, test::distance_to_frustum(p, f, t, u));
       }
       const double enough = 0.6 * m;
-      const auto gap = body_gap(part, f, tip, axis, enough, 0.01);
+      const double gap = tree.gap(f, tip, axis, enough, 0.01);
       close += truth < enough;
       // Never above the sampled distance; below it by no more than resolution, sag and the step of the samples.
-      EXPECT_LE(gap.gap, std::min(truth, enough) + 1e-9) << name << " " << k;
-      if (gap.gap < enough && lowest_z(f, tip, axis) <= gear.blank_top()) {
-        EXPECT_GE(gap.gap, std::min(truth, enough) - 0.01 - 2 * part.cell_sag_mm() - 0.05) << name << " " << k;
+      EXPECT_LE(gap, std::min(truth, enough) + 1e-9) << name << " " << k;
+      if (gap < enough && lowest_z(f, tip, axis) <= gear.blank_top()) {
+        EXPECT_GE(gap, std::min(truth, enough) - 0.01 - 2 * part.cell_sag_mm() - 0.05) << name << " " << k;
       }
     }
     EXPECT_GE(close, 10) << name;
@@ -112,7 +114,7 @@ TEST(Body, DistanceToAFrustumAgainstItsSampledSurface) {
     }
   for (int k = 0; k < 100; ++k) {
     const Vec3 p = tip + 3 * axis + Vec3(random(-4, 4), random(-4, 4), random(-4, 4));
-    const double d = distance_to_frustum(p, f, tip, axis);
+    const double d = test::distance_to_frustum(p, f, tip, axis);
     if (d == 0) continue;
     double truth = INFINITY;
     for (const auto& q : surface) truth = std::min(truth, (q - p).norm());

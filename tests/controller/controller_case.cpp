@@ -15,6 +15,7 @@
 
 #include "app/gear_of_job.h"
 #include "app/job_file.h"
+#include "postproc/controls/of_machine.h"
 #include "postproc/nc_reader.h"
 #include "tests/controller/joint_record.h"
 
@@ -207,7 +208,7 @@ struct Expected {
 
 /// Blocks that turn are cut into pieces: with TCP the tip goes straight and not the joints, without it the other way round.
 Result<Expected> expected_path(const Case& c, const std::string& text) {
-  const auto control = control_of(c.machine, *c.job.setup, c.job.tools);
+  const auto control = controls::control_of(c.machine, *c.job.setup, c.job.tools);
   if (!control) return control.error();
   const KinematicChain& chain = c.machine.chain;
   Expected out;

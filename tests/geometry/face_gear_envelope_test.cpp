@@ -97,10 +97,9 @@ TEST_P(Envelope, FilletAndRootAreWhereMaterialBegins) {
   }
 }
 
-std::string name_of(const testing::TestParamInfo<FaceGearCase>& info) { return info.param.name; }
 
-INSTANTIATE_TEST_SUITE_P(Extreme, Envelope, testing::ValuesIn(extreme_cases()), name_of);
-INSTANTIATE_TEST_SUITE_P(Random, Envelope, testing::ValuesIn(random_cases(20240607, 8)), name_of);
+INSTANTIATE_TEST_SUITE_P(Extreme, Envelope, testing::ValuesIn(extreme_cases()), name_of_case);
+INSTANTIATE_TEST_SUITE_P(Random, Envelope, testing::ValuesIn(random_cases(20240607, 8)), name_of_case);
 
 /// Above R1c the fillet joins the flank; below it, its beginning is cut away by the other sheet or does not exist.
 TEST(EnvelopeLimits, BelowTheUndercutRadiusTheBeginningOfTheFilletIsCutAway) {

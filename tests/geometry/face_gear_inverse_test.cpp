@@ -110,8 +110,7 @@ TEST_P(Inverse, FilletSectionAtARadius) {
   }
 }
 
-std::string name_of(const testing::TestParamInfo<FaceGearCase>& info) { return info.param.name; }
-INSTANTIATE_TEST_SUITE_P(Gears, Inverse, testing::ValuesIn(all_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(Gears, Inverse, testing::ValuesIn(all_cases()), name_of_case);
 
 /// T16. Towards the cusp the parameters become uncertain, the position does not.
 TEST(FaceGearInverse, PositionStaysExactTowardsTheCusp) {

@@ -83,8 +83,7 @@ TEST_P(Limits, FilletLineLiesOnTheRadius) {
   }
 }
 
-std::string name_of(const testing::TestParamInfo<FaceGearCase>& info) { return info.param.name; }
-INSTANTIATE_TEST_SUITE_P(Extreme, Limits, testing::ValuesIn(extreme_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(Extreme, Limits, testing::ValuesIn(extreme_cases()), name_of_case);
 
 /// Spur, right angle: i^2 theta cos^3 B [theta cos B - s (E/r_b + sin B)] = sin^2 B.
 TEST(FaceGearLimits, SpurCuspSolvesTheClosedForm) {

@@ -10,7 +10,7 @@ namespace toothpath::test {
 namespace {
 
 TEST(FlankBatch, SineAndCosineAreGoodToRounding) {
-  using F50 = boost::multiprecision::cpp_bin_float_50;
+  using Reference = boost::multiprecision::cpp_bin_float_50;
   std::vector<double> x;
   for (int k = -2000; k <= 2000; ++k) x.push_back(0.05 * k + 1e-3 * (k % 7));
   for (int k = -40; k <= 40; ++k)
@@ -20,8 +20,8 @@ TEST(FlankBatch, SineAndCosineAreGoodToRounding) {
   sine_cosine(x, s, c);
   double worst = 0;
   for (std::size_t k = 0; k < x.size(); ++k) {
-    worst = std::max(worst, std::abs(static_cast<double>(sin(F50(x[k])) - F50(s[k]))));
-    worst = std::max(worst, std::abs(static_cast<double>(cos(F50(x[k])) - F50(c[k]))));
+    worst = std::max(worst, std::abs(static_cast<double>(sin(Reference(x[k])) - Reference(s[k]))));
+    worst = std::max(worst, std::abs(static_cast<double>(cos(Reference(x[k])) - Reference(c[k]))));
   }
   EXPECT_LT(worst, 4e-16);
   RecordProperty("worst", std::to_string(worst * 1e16) + "e-16");

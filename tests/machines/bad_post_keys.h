@@ -26,6 +26,14 @@ inline constexpr PostKeys kPostKeys[] = {
     {"smoothing of an M80", "mitsubishi_m80", "smoothing_on = [\"G61.4\"]\nsmoothing_off = [\"G64\"]\nsmoothing_tolerance = 1\n", ""},
     {"corner tolerance of LinuxCNC", "linuxcnc", "corner_tolerance = 0.1\n", ""},
 
+    {"coolants of the builder", "fanuc", "coolant_mist = [\"M7\", \"M9\"]\ncoolant_through_spindle = [\"M88\", \"M89\"]\n", ""},
+    {"coolant is text", "fanuc", "coolant_air = \"M51\"\n", "m.toml:18:15: error: post.coolant_air must be a list, is a text\n"},
+    {"coolant without its end", "fanuc", "coolant_air = [\"M51\"]\n", "m.toml:18:15: error: post.coolant_air has 1 words, must have 2: on and off\n"},
+    {"coolant that is always on", "fanuc", "coolant_flood = [\"M8\", \"M8\"]\n", "m.toml:18:17: error: post.coolant_flood: M8 cannot mean both on and off\n"},
+    {"coolant with a second line", "fanuc", "coolant_flood = [\"M8\\nM3\", \"M9\"]\n",
+     "m.toml:18:18: error: post.coolant_flood[0] contains byte 0x0a; only printable ASCII is allowed\n"},
+    {"coolant off", "fanuc", "coolant_off = [\"M9\", \"M8\"]\n", "m.toml:18:1: error: unknown key post.coolant_off\n"},
+
     {"smoothing_on is text", "fanuc", "smoothing_on = \"G5.1 Q1\"\nsmoothing_off = [\"G5.1 Q0\"]\nsmoothing_tolerance = 0.01\n",
      "m.toml:18:16: error: post.smoothing_on must be a list, is a text\n"},
     {"smoothing_on holds a number", "fanuc", "smoothing_on = [5.1]\nsmoothing_off = [\"G5.1 Q0\"]\nsmoothing_tolerance = 0.01\n",

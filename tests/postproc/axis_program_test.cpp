@@ -31,7 +31,7 @@ TrunnionPose pose(const std::array<double, 5>& j, const toothpath::Setup& setup,
   return t;
 }
 
-Vec3 turned(const Vec3& v, double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitZ()) * v; }
+Vec3 about_z(const Vec3& v, double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitZ()) * v; }
 
 // The published kinematics of LinuxCNC, values from its binaries.
 TEST(TrunnionKinematics, GoldenValues) {
@@ -59,8 +59,8 @@ TEST(AxisProgram, EndsOfBlocksAreTheTurnedRecords) {
           const auto& r = path.records[static_cast<std::size_t>(b.record)];
           const double index = expand ? 0 : program->index_sign * 360.0 * k / z;
           const auto p = pose(joints_of(*program, op, b, index), standing(), op.tool_length_mm);
-          ASSERT_LT((p.tip - turned(r.tip, 2 * kPi * k / z)).norm(), program->rounding_bound_mm) << k << " " << b.record;
-          ASSERT_LT((p.axis - turned(r.axis, 2 * kPi * k / z)).norm(), 2e-7);
+          ASSERT_LT((p.tip - about_z(r.tip, 2 * kPi * k / z)).norm(), program->rounding_bound_mm) << k << " " << b.record;
+          ASSERT_LT((p.axis - about_z(r.axis, 2 * kPi * k / z)).norm(), 2e-7);
           met[static_cast<std::size_t>(b.record)] = 1;
         }
         for (std::size_t i = 0; i + 1 < met.size(); ++i) EXPECT_EQ(met[i], 1) << i;
@@ -214,7 +214,7 @@ TEST(AxisProgram, PoleAndIndexSense) {
           r.axis = -r.axis;
         }
       const auto program = AxisProgramTestAccess::build(std::vector{path}, tools(), s, m, 9,
-                                                        ClearanceBody{120, -5, 5}, axis_options(linuxcnc_dialect(), m));
+                                                        ClearanceBody{120, -5, 5}, axis_options(words_of("linuxcnc"), m));
       ASSERT_TRUE(program) << program.error().message;
       EXPECT_TRUE(program->loop);
       EXPECT_EQ(program->index_sign, sign * (up ? 1 : -1));
@@ -240,7 +240,7 @@ TEST(AxisProgram, EccentricGearIsWrittenOut) {
     for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
       if (blocks[i].kind != BlockKind::feed || blocks[i + 1].record == blocks[i].record) continue;
       const auto p = pose(joints_of(*program, op, blocks[i]), s, 95);
-      ASSERT_LT((p.tip - turned(path.records[static_cast<std::size_t>(blocks[i].record)].tip, 2 * kPi * k / 5)).norm(), 1e-4);
+      ASSERT_LT((p.tip - about_z(path.records[static_cast<std::size_t>(blocks[i].record)].tip, 2 * kPi * k / 5)).norm(), 1e-4);
     }
   }
 }

@@ -28,6 +28,7 @@ inline const std::vector<Post>& all_posts() {
                                           {"fanuc_tcp", "fanuc", TcpMode::angles, true},
                                           {"mitsubishi_joints", "mitsubishi_m80", TcpMode::none, false},
                                           {"mitsubishi_joints_teeth", "mitsubishi_m80", TcpMode::none, true},
+                                          {"haas_joints_teeth", "haas", TcpMode::none, true},
                                           {"siemens_joints", "siemens", TcpMode::none, false},
                                           {"siemens_joints_teeth", "siemens", TcpMode::none, true},
                                           {"siemens_tcp", "siemens", TcpMode::angles, false},
@@ -44,9 +45,19 @@ inline const std::vector<Post>& all_posts() {
 
 inline Machine machine_of(const Post& p) { return trunnion_with(p.dialect, p.tcp); }
 
+/// What the control would do with a text; a text that it refuses fails the test.
+inline std::vector<ExecutedMove> executed(const Post& p, const std::string& text, const Machine& m) {
+  const auto control = control_of(m, standing(), tools());
+  std::vector<ExecutedMove> moves;
+  const auto done = execute_nc(text, "p", *control, [&](const ExecutedMove& e) { moves.push_back(e); });
+  EXPECT_TRUE(done) << p.name << ": " << (done ? "" : done.error().text());
+  return moves;
+}
+inline std::vector<ExecutedMove> executed(const Post& p, const std::string& text) { return executed(p, text, machine_of(p)); }
+
 /// Rotaries may move in a cut. Heidenhain without TCP has no feed for it.
 inline bool may_turn(const Post& p) { return p.tcp != TcpMode::none || std::string(p.dialect) != "heidenhain"; }
-inline bool is_iso_point(const Post& p) { return std::string(p.dialect) == "fanuc" || std::string(p.dialect) == "mitsubishi_m80"; }
+inline bool is_iso_point(const Post& p) { return std::string(p.dialect) == "fanuc" || std::string(p.dialect) == "mitsubishi_m80" || std::string(p.dialect) == "haas"; }
 
 /// A ball at (100, 0, -3) .. as sample_path, at a lean in the plane of the trunnion: A = lean exactly and C = 0.
 inline ClPath upright_path(double lean, int operation, int tool, int steps = 6) {

@@ -175,7 +175,7 @@ TEST_F(DangerModes, SmoothingHasItsToleranceAndEnds) {
 TEST_F(DangerModes, UnitCodeIsPrintedAndInchesAreRefused) {
   every_post([&] {
     const std::map<std::string, std::pair<std::string, std::string>> codes = {
-        {"linuxcnc", {"G21", "G20"}}, {"fanuc", {"G21", "G20"}},          {"mitsubishi_m80", {"G21", "G20"}},
+        {"linuxcnc", {"G21", "G20"}}, {"fanuc", {"G21", "G20"}},          {"mitsubishi_m80", {"G21", "G20"}}, {"haas", {"G21", "G20"}},
         {"siemens", {"G710", "G700"}}, {"heidenhain", {" MM\n", " INCH\n"}}, {"apt", {"UNITS/MM", "UNITS/INCHES"}}};
     const auto& [mm, inch] = codes.at(post().dialect);
     const Machine m = machine_of(post());

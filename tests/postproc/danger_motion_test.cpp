@@ -14,15 +14,6 @@ namespace {
 using namespace test;
 using JointValues = std::array<double, 5>;  // X Y Z C A
 
-std::vector<ExecutedMove> executed(const Post& p, const std::string& text, const Machine& m) {
-  const auto control = control_of(m, standing(), tools());
-  std::vector<ExecutedMove> moves;
-  const auto done = execute_nc(text, "p", *control, [&](const ExecutedMove& e) { moves.push_back(e); });
-  EXPECT_TRUE(done) << p.name << ": " << (done ? "" : done.error().text());
-  return moves;
-}
-std::vector<ExecutedMove> executed(const Post& p, const std::string& text) { return executed(p, text, machine_of(p)); }
-
 double length_of(int tool) { return tool == 1 ? tools()[0].length_mm : tools()[1].length_mm; }
 
 /// Tip and axis in the gear frame.

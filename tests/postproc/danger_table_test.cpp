@@ -49,7 +49,7 @@ TEST(DangersTable, EveryRowNamesTestsThatExist) {
     for (std::sregex_iterator it(cells[3].begin(), cells[3].end(), file), end; it != end; ++it) {
       const std::string name = (*it)[1];
       bool there = false;
-      for (const char* folder : {"", "postproc/", "postproc/dialects/", "app/", "app/commands/"}) there = there || fs::exists(fs::path(TOOTHPATH_SOURCE_DIR) / folder / name);
+      for (const char* folder : {"", "postproc/", "postproc/controls/linuxcnc/", "postproc/controls/heidenhain/", "app/", "app/commands/"}) there = there || fs::exists(fs::path(TOOTHPATH_SOURCE_DIR) / folder / name);
       EXPECT_TRUE(there) << "row " << row << ": " << name;
     }
   }

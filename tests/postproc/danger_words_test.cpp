@@ -22,14 +22,6 @@ std::vector<std::string> lines_of(const std::string& text) {
 }
 
 /// Executed moves of a program.
-std::vector<ExecutedMove> executed(const Post& p, const std::string& text) {
-  const auto control = control_of(machine_of(p), standing(), tools());
-  std::vector<ExecutedMove> moves;
-  const auto done = execute_nc(text, "p", *control, [&](const ExecutedMove& e) { moves.push_back(e); });
-  EXPECT_TRUE(done) << p.name << ": " << done.error().text();
-  return moves;
-}
-
 class DangerWords : public EveryPost {};
 
 // 4: on Fanuc and Mitsubishi every value has its point, whatever the job; no dialect prints -0, an exponent, NaN or Inf.

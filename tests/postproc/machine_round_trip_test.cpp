@@ -114,7 +114,7 @@ TEST_P(MachineRoundTrip, MeetsEveryRecordWithinTheRounding) {
   ASSERT_TRUE(program) << program.error().message;
   NcHeader header;
   header.job_name = "round trip";
-  header.coolant = true;
+  header.coolant = Coolant::flood;
   const auto text = write_nc(*program, *dialect, header);
   ASSERT_TRUE(text) << text.error().message;
 

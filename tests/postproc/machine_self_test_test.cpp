@@ -1,4 +1,5 @@
 // The dry-run program's poses: the tip stands still on the machine that was described, and does not on a machine that differs.
+#include "postproc/controls/of_machine.h"
 #include "postproc/machine_self_test.h"
 
 #include <gtest/gtest.h>
@@ -72,7 +73,7 @@ TEST_P(SelfTestOf, WrongMachineIsSeen) {
 
 /// The program's text, as `machine test` writes it.
 std::string text_of(const SelfTest& test, const Machine& m) {
-  const auto dialect = dialect_of(m);
+  const auto dialect = controls::dialect_of(m);
   EXPECT_TRUE(dialect) << dialect.error().message;
   NcHeader header;
   header.job_name = "self test";

@@ -6,11 +6,18 @@
 #include <vector>
 
 #include "geometry/base/angle.h"
+#include "postproc/controls/of_machine.h"
+#include "postproc/controls/registry.h"
 #include "postproc/nc_reader.h"
 #include "postproc/nc_writer.h"
 #include "tests/support/trunnion_kinematics.h"
 
 namespace toothpath::test {
+
+using controls::axis_options, controls::control_of, controls::dialect_of;
+
+/// The words of a control, without a machine.
+inline const NcDialect& words_of(const char* control) { return controls::find(control)->words; }
 
 inline constexpr TrunnionGeometry kTrunnion{.px = 3, .py = -2, .pz = 0, .dy = 14.5, .z_offset = -31.25};
 
@@ -112,7 +119,7 @@ inline Result<NcText> nc_text(const std::vector<ClPath>& paths, const Machine& m
   NcHeader header;
   header.job_name = "sample";
   header.machine_name = machine.name;
-  header.coolant = true;
+  header.coolant = Coolant::flood;
   return write_nc(*program, *dialect_of(machine), header);
 }
 

@@ -97,7 +97,7 @@ TEST_P(RoundTrip, MeetsEveryRecord) {
     EXPECT_NEAR(o.back.greatest[a], r.max * scale, 1e-3) << r.letter;
   }
   for (const auto& motion : o.motions) {
-    EXPECT_LE(motion.deviation_mm, (motion.rapid ? 50 : 1) * 2e-4 * 1.2 + (motion.rapid ? 0 : linuxcnc_dialect().exact_path_mm) + 1e-8);
+    EXPECT_LE(motion.deviation_mm, (motion.rapid ? 50 : 1) * 2e-4 * 1.2 + (motion.rapid ? 0 : words_of("linuxcnc").exact_path_mm) + 1e-8);
     EXPECT_GE(motion.tooth, 0);
     EXPECT_LT(motion.tooth, 6);
   }

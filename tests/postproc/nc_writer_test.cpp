@@ -175,7 +175,7 @@ TEST(NcWriter, CommentsAreFiltered) {
     header.machine_name = header.job_name;
     header.assumed = {header.job_name};
     const auto p = axis_program({sample_path(0, 0, 2)}, trunnion(), standing(), 2);
-    const auto t = write_nc(*p, linuxcnc_dialect(), header);
+    const auto t = write_nc(*p, words_of("linuxcnc"), header);
     ASSERT_TRUE(t);
     for (const char c : t->text) ASSERT_TRUE(c == '\n' || (c >= ' ' && c <= '~'));
     const auto head = lines(t->text);
@@ -279,7 +279,7 @@ TEST(NcWriter, TinyLinearStepsKeepTheirTime) {
   m.chain.table[0].max_speed = radians(60);
   const auto p = axis_program({path}, m, standing(), 1);
   ASSERT_TRUE(p) << p.error().message;
-  const auto t = write_nc(*p, linuxcnc_dialect(), {});
+  const auto t = write_nc(*p, words_of("linuxcnc"), {});
   ASSERT_TRUE(t);
   const auto control = control_of(m, standing(), tools());
   std::vector<double> expected, got;
@@ -296,17 +296,17 @@ TEST(NcWriter, TinyLinearStepsKeepTheirTime) {
 TEST(NcWriter, FeedBeyondTheControlIsAnErrorNotAClamp) {
   auto p = axis_program({sample_path(0, 0)}, with_dialect(trunnion(), "fanuc"), standing(), 3);
   ASSERT_TRUE(p);
-  EXPECT_TRUE(write_nc(*p, fanuc_dialect(), {}));
+  EXPECT_TRUE(write_nc(*p, words_of("fanuc"), {}));
   p->operations[0].teeth[0].blocks[10].minutes = 1e-5;
-  const auto refused = write_nc(*p, fanuc_dialect(), {});
+  const auto refused = write_nc(*p, words_of("fanuc"), {});
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("exceeds 9999.999"), std::string::npos) << refused.error().message;
 }
 
 TEST(NcWriter, UnknownDialect) {
-  const auto d = find_dialect("grbl");
+  const auto d = dialect_of(with_dialect(trunnion(), "grbl"));
   ASSERT_FALSE(d);
-  EXPECT_EQ(d.error().message, "dialect = \"grbl\" is not one of \"linuxcnc\", \"fanuc\", \"siemens\", \"heidenhain\", \"apt\", \"mitsubishi_m80\"");
+  EXPECT_EQ(d.error().message, "dialect = \"grbl\" is not one of " + controls::list_of_names());
 }
 
 }  // namespace

@@ -12,7 +12,6 @@ namespace {
 
 using namespace test;
 
-double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 Vec3 blend(const Vec3& a, const Vec3& b, double t) {
   const double w = angle_between(a, b);
   return w < 1e-12 ? a : Vec3((std::sin((1 - t) * w) * a + std::sin(t * w) * b) / std::sin(w));

@@ -47,7 +47,8 @@ inline const std::vector<PostForm>& post_forms() {
   static const std::vector<PostForm> forms = {
       {"linuxcnc", TcpMode::none, 0.1, false},     {"linuxcnc", TcpMode::none, 0.1, true},      {"linuxcnc", TcpMode::angles, 0.1, true},
       {"fanuc", TcpMode::none, 0, false},          {"fanuc", TcpMode::none, 0.1, true},         {"fanuc", TcpMode::angles, 0.1, true},
-      {"mitsubishi_m80", TcpMode::none, 0, false}, {"siemens", TcpMode::none, 0.1, false},      {"siemens", TcpMode::angles, 0.1, false},
+      {"mitsubishi_m80", TcpMode::none, 0, false}, {"haas", TcpMode::none, 0.1, true},          {"siemens", TcpMode::none, 0.1, false},
+      {"siemens", TcpMode::angles, 0.1, false},
       {"siemens", TcpMode::vectors, 0.1, false},   {"siemens", TcpMode::vectors, 0.1, true},    {"heidenhain", TcpMode::none, 0, false},
       {"heidenhain", TcpMode::angles, 0, false},   {"heidenhain", TcpMode::vectors, 0.1, true}, {"apt", TcpMode::vectors, 0.1, true}};
   static const std::vector<PostForm> all = [] {
@@ -86,7 +87,7 @@ inline Result<NcText> text_of(const PostForm& f, const AxisProgram& program) {
   NcHeader header;
   header.job_name = "sample";
   header.machine_name = "trunnion";
-  header.coolant = true;
+  header.coolant = Coolant::flood;
   return write_nc(program, *dialect_of(machine_of(f)), header);
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 using namespace test;
 
-constexpr int kTeeth = 5;
+constexpr int kRolloverTeeth = 5;
 
 /// Moves of a text; a refusal fails the test.
 std::vector<ExecutedMove> executed(const PostForm& f, const std::string& text) {
@@ -32,7 +32,7 @@ std::string refusal(const PostForm& f, const std::string& text) {
   return done ? "" : done.error().text();
 }
 
-std::string text_of(const PostForm& f, const std::vector<ClPath>& paths, int teeth = kTeeth, int stride = 1) {
+std::string text_of(const PostForm& f, const std::vector<ClPath>& paths, int teeth = kRolloverTeeth, int stride = 1) {
   const auto program = program_of(f, paths, teeth, stride);
   EXPECT_TRUE(program) << program.error().message;
   const auto text = program ? text_of(f, *program) : Result<NcText>(program.error());
@@ -76,12 +76,12 @@ TEST_P(Rollover, CutsWhatTheContinuousAxisCuts) {
   endless.chain.table[0].max_rad = 1e6;
   const std::vector<ClPath> paths = {sample_path(0.3, f.swing, 8), sample_path(0.5, f.swing, 6, 1)};
   for (const int stride : {1, 2}) {
-    const auto rolled = executed(f, text_of(f, paths, kTeeth, stride));
+    const auto rolled = executed(f, text_of(f, paths, kRolloverTeeth, stride));
     auto dialect = dialect_of(endless);
     AxisOptions o = axis_options(*dialect, endless);
     o.expand_teeth = f.expand;
     o.tooth_stride = stride;
-    const auto program = AxisProgramTestAccess::build(paths, tools(), standing(), endless, kTeeth, kBody, o);
+    const auto program = AxisProgramTestAccess::build(paths, tools(), standing(), endless, kRolloverTeeth, kBody, o);
     ASSERT_TRUE(program) << program.error().message;
     NcHeader header;
     const auto text = write_nc(*program, *dialect, header);

@@ -85,4 +85,11 @@ inline ShaperFacts facts_of(const ShaperWork& w, double relief, double strokes_p
   return f;
 }
 
+/// Lines as one text.
+inline std::string joined(const std::vector<std::string>& lines) {
+  std::string out;
+  for (const auto& l : lines) out += l + "\n";
+  return out;
+}
+
 }  // namespace toothpath::test

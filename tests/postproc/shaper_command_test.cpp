@@ -84,7 +84,7 @@ class ShaperCommand : public ::testing::Test {
   CommandOutcome run(const std::string& job, const std::string& machine = kMachine, const std::string& out = "out") {
     write_file(folder_ / "job.toml", job);
     write_file(folder_ / "shaper.toml", machine);
-    CommandRequest request;
+    JobRequest request;
     request.job_file = folder_ / "job.toml";
     request.out_dir = folder_ / out;
     request.quiet = true;
@@ -116,13 +116,14 @@ TEST_F(ShaperCommand, WritesEveryFileAndTheSameBytesAgain) {
         << stage;
 }
 
-TEST_F(ShaperCommand, RefusalsHaveAPlaceAndLeaveNoFile) {
+TEST_F(ShaperCommand, RefusalsHaveAPlaceAndChangeNoFile) {
   struct Case {
     const char *what, *by;
     int line;
     const char* message;
   };
-  ASSERT_EQ(run(kJob).exit_code, ExitCode::ok);  // the files of an earlier run must go as well
+  ASSERT_EQ(run(kJob).exit_code, ExitCode::ok);
+  const auto earlier = file_text(fs::path(folder_ / "out") / "shaper_program.ngc");
   for (const auto& c : std::vector<Case>{
            {"outer_radius = 147.0", "outer_radius = 152.0", 18, "R2 = 151.5833"},
            {"inner_radius = 130.5", "inner_radius = 129.0", 17, "R1c = 129.7965 mm of flank side -1"},
@@ -138,7 +139,8 @@ TEST_F(ShaperCommand, RefusalsHaveAPlaceAndLeaveNoFile) {
        }) {
     const auto outcome = run(replaced(kJob, c.what, c.by));
     EXPECT_EQ(outcome.exit_code, ExitCode::refused) << c.by;
-    EXPECT_EQ(files(), 0u) << c.by;
+    EXPECT_EQ(files(), 5u) << c.by;
+    EXPECT_EQ(file_text(fs::path(folder_ / "out") / "shaper_program.ngc"), earlier) << c.by;
     bool found = false;
     for (const auto& e : outcome.errors) found = found || (e.message.find(c.message) != std::string::npos && e.position.line == c.line);
     EXPECT_TRUE(found) << c.by << ":\n" << to_text(outcome.errors);

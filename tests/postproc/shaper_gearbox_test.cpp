@@ -16,11 +16,6 @@ ShaperMachine installed(const std::string& dialect) {
   EXPECT_TRUE(reading.machine) << to_text(reading.errors);
   return *reading.machine;
 }
-std::string joined(const std::vector<std::string>& lines) {
-  std::string out;
-  for (const auto& l : lines) out += l + "\n";
-  return out;
-}
 GearboxWords words_of(const ShaperMachine& m) {
   return {m.dialect == "siemens", m.gearbox->cutter_axis, m.gearbox->work_axis, m.gearbox->relief_on, m.gearbox->relief_off, m.gearbox->pulses_per_turn};
 }

@@ -18,12 +18,6 @@ namespace {
 std::vector<std::string> faults_in(const std::string& text, const ShaperFacts& facts) {
   return shaper_program_faults(read_shaper_program(text), facts);
 }
-std::string joined(const std::vector<std::string>& lines) {
-  std::string out;
-  for (const auto& l : lines) out += l + "\n";
-  return out;
-}
-
 TEST(ShaperProgram, KeepsEveryRule) {
   const auto w = shaper_work();
   const auto facts = facts_of(w, 0.5, 359, +1);

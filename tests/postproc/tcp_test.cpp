@@ -81,7 +81,7 @@ TEST_P(TcpRoundTrip, MeetsEveryRecord) {
   EXPECT_GT(o->comparison.fastest_ratio, 0.9);
   for (const auto& motion : o->motions)
     if (!motion.rapid) {
-      EXPECT_LE(motion.deviation_mm, linuxcnc_dialect().exact_path_mm + 1e-8);
+      EXPECT_LE(motion.deviation_mm, words_of("linuxcnc").exact_path_mm + 1e-8);
       const bool cuts = (motion.tip_to - motion.tip_from).norm() > 1e-6;  // a turn above the part is cut by the bound of its whole
       EXPECT_LE(motion.axis_deviation, cuts ? 1.05e-4 : 1e-3);
     }

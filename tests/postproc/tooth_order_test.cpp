@@ -162,7 +162,7 @@ TEST(ToothOrder, LinuxcncAgrees) {
   ASSERT_TRUE(program && program->loop);
   AxisProgram spread = *program;
   spread.tooth_stride = stride;
-  const auto written = write_nc(spread, linuxcnc_dialect(), {});
+  const auto written = write_nc(spread, words_of("linuxcnc"), {});
   ASSERT_TRUE(written);
   for (const int first : {0, 17}) {
     const auto out = interpret(std::regex_replace(written->text, std::regex("\n#1=0\n"), fmt::format("\n#1={}\n", first)), "order");

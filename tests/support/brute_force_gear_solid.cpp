@@ -17,7 +17,7 @@ double lookup(const std::vector<double>& y, double share) {
   return y[k] + (t - double(k)) * (y[k + 1] - y[k]);
 }
 
-Vec3 turned(const Vec3& p, double angle) { return FaceGearSurface<double>::turned(p, angle); }
+Vec3 about_z(const Vec3& p, double angle) { return FaceGearSurface<double>::turned(p, angle); }
 double azimuth(const Vec3& p) { return std::atan2(p.y(), p.x()); }
 
 /// Section Z whose root circle has radius r.
@@ -95,7 +95,7 @@ Vec3 BruteForceGearSolid::at(const Ring& ring, int patch, double x, double y) co
       const double tip = lookup(ring.theta_tip[n], y), theta = tip + share * (w.theta_t - tip);
       const auto B = flank_B_at_radius(f, side, theta, r, lookup(ring.B_mid[n], y));
       if (!B) throw std::runtime_error("the flank ends inside the ring");
-      return turned(f.flank(side, theta, *B).p, n == 0 ? 0.0 : pitch_);
+      return about_z(f.flank(side, theta, *B).p, n == 0 ? 0.0 : pitch_);
     }
     case 1:
     case 3: {
@@ -104,7 +104,7 @@ Vec3 BruteForceGearSolid::at(const Ring& ring, int patch, double x, double y) co
       const double A = w.A_t + share * (w.A_e - w.A_t);
       const auto Z = fillet_Z_at_radius(f, side, A, r, lookup(ring.Z_root, y));
       if (!Z) throw std::runtime_error("the fillet ends inside the ring");
-      return turned(f.fillet(side, A, *Z).p, patch == 1 ? 0.0 : pitch_);
+      return about_z(f.fillet(side, A, *Z).p, patch == 1 ? 0.0 : pitch_);
     }
     case 2: {
       const double Z = root_section(f, r), a = f.root_edge_azimuth(1, Z), b = f.root_edge_azimuth(-1, Z);
@@ -184,7 +184,7 @@ BruteNearest BruteForceGearSolid::nearest(const Vec3& asked) const {
   const double about = azimuth(rings_[0].samples[2][std::size_t(columns_ / 2)]);
   const int nearest_pitch = int(std::lround(std::remainder(azimuth(asked) - about, 6.283185307179586) / pitch_));
   for (int turn = nearest_pitch - 1; turn <= nearest_pitch + 1; ++turn) {
-    const Vec3 c = turned(asked, -turn * pitch_);
+    const Vec3 c = about_z(asked, -turn * pitch_);
     for (std::size_t zone = 0; zone < rings_.size(); ++zone) {
       for (int patch = 0; patch < kPatches; ++patch) {
         const auto& s = rings_[zone].samples[std::size_t(patch)];
@@ -209,7 +209,7 @@ BruteNearest BruteForceGearSolid::nearest(const Vec3& asked) const {
   for (const auto& seed : seeds) {
     if (std::sqrt(seed.d) > best.distance + slack) break;
     const auto& ring = rings_[seed.zone];
-    const Vec3 c = turned(asked, -seed.turn * pitch_);
+    const Vec3 c = about_z(asked, -seed.turn * pitch_);
     // Coordinate search with a step of its own in each direction: a root land may be a thousand times longer than wide.
     double at_xy[2] = {double(seed.i) / rows_, double(seed.j) / columns_}, step[2] = {0.5 / rows_, 0.5 / columns_};
     Vec3 foot = at(ring, seed.patch, at_xy[0], at_xy[1]);
@@ -233,7 +233,7 @@ BruteNearest BruteForceGearSolid::nearest(const Vec3& asked) const {
         step[axis] = std::max(step[axis], 2e-10);
       }
     }
-    if (d < best.distance) best = {d, name(seed.patch), turned(foot, seed.turn * pitch_)};
+    if (d < best.distance) best = {d, name(seed.patch), about_z(foot, seed.turn * pitch_)};
   }
   return best;
 }

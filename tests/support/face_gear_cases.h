@@ -44,6 +44,8 @@ struct FaceGearCase {
     return make_surface<S>(parameters(), beta());
   }
 };
+/// Name of a parameterized test.
+inline constexpr auto name_of_case = [](const auto& info) { return info.param.name; };
 
 inline std::ostream& operator<<(std::ostream& out, const FaceGearCase& c) { return out << c.name; }
 

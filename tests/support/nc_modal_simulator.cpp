@@ -113,7 +113,7 @@ Language apt() {
   Language l;
   l.lines = {{R"(PARTNO/.*)", "-", ""}, {"UNITS/MM", "units", "mm"}, {"UNITS/INCHES", "units", "inch"}, {"MULTAX/ON", "axes", "all"},
              {R"(LOADTL/\d+,LENGTH,[0-9.]+)", "-", "tool change"}, {R"(SPINDL/RPM,\d+,CLW)", "spindle", "on"}, {"SPINDL/OFF", "spindle", "off"},
-             {"COOLNT/ON", "coolant", "on"}, {"COOLNT/OFF", "coolant", "off"}, {"RAPID", "next", "rapid"}, {R"(FEDRAT/[0-9.]+,MMPM)", "feed", "per minute"},
+             {"COOLNT/ON|COOLNT/FLOOD|COOLNT/MIST", "coolant", "on"}, {"COOLNT/OFF", "coolant", "off"}, {"RAPID", "next", "rapid"}, {R"(FEDRAT/[0-9.]+,MMPM)", "feed", "per minute"},
              {R"(GOTO/.*)", "-", ""}, {"END", "-", "end"}, {"FINI", "-", ""}};
   l.comment = '$';  // "$$"; one alone goes on in the next line
   l.axis = "";
@@ -125,7 +125,7 @@ Language apt() {
 
 const Language& language(const std::string& dialect) {
   static const std::map<std::string, Language> all = [] {
-    std::map<std::string, Language> m = {{"linuxcnc", linuxcnc()}, {"fanuc", fanuc()},           {"mitsubishi_m80", fanuc()},
+    std::map<std::string, Language> m = {{"linuxcnc", linuxcnc()}, {"fanuc", fanuc()},           {"mitsubishi_m80", fanuc()}, {"haas", fanuc()},
                                          {"siemens", siemens()},   {"heidenhain", heidenhain()}, {"apt", apt()}};
     for (auto& [name, l] : m) {
       for (const auto& s : l.lines) l.patterns.emplace_back(s.word);

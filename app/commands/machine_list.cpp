@@ -1,0 +1,75 @@
+// `toothpath machine list`: the installed machines, a line each.
+#include <nlohmann/json.hpp>
+
+#include "app/commands/command.h"
+#include "app/report/html_text.h"
+#include "app/report/study_page.h"
+#include "machines/machine_file.h"
+#include "machines/shaper_machine.h"
+
+namespace toothpath {
+namespace {
+
+std::string letters_of(const std::vector<RotaryAxis>& axes) {
+  std::string letters;
+  for (const auto& axis : axes) letters += std::string(letters.empty() ? "" : " ") + axis.letter;
+  return letters.empty() ? "-" : letters;
+}
+
+/// One machine: its cells, the same in JSON, or what is wrong with its file.
+struct Listed {
+  std::vector<std::string> cells;
+  nlohmann::ordered_json json;
+  std::vector<Diagnostic> errors;
+};
+
+Listed listed(const std::string& file, const std::string& name, const char* kind, const std::string& control, const std::string& table, const std::string& head,
+              std::size_t assumed) {
+  Listed out;
+  out.cells = {file, name, kind, table, head, control, assumed == 0 ? "-" : std::to_string(assumed)};
+  out.json = {{"file", file}, {"name", valid_utf8(name)}, {"kind", kind}, {"table", table}, {"head", head}, {"dialect", control}, {"assumed", assumed}};
+  return out;
+}
+
+Listed read_installed(const std::string& file) {
+  const auto path = find_machine_file(file, "/");
+  if (!path) return {{}, {}, {path.error()}};
+  const auto kind = machine_kind_of(*path);
+  if (!kind) return {{}, {}, {kind.error()}};
+  if (*kind == MachineKind::gear_shaper) {
+    auto reading = read_shaper_machine_file(*path);
+    if (!reading.machine) return {{}, {}, std::move(reading.errors)};
+    return listed(file, reading.machine->name, "gear_shaper", reading.machine->dialect, "-", "-", reading.machine->assumed_keys.size());
+  }
+  auto reading = read_machine_file(*path);
+  if (!reading.machine) return {{}, {}, std::move(reading.errors)};
+  const Machine& m = *reading.machine;
+  return listed(file, m.name, "five_axis", m.dialect, letters_of(m.chain.table), letters_of(m.chain.head), m.assumed_keys.size());
+}
+
+/// Every machine that can be read is listed; the files that cannot are errors.
+CommandOutcome list_machines(const CommonRequest&) {
+  PageTable table{"", {"file", "machine", "kind", "table", "head", "control", "assumed"}, {}, ""};
+  nlohmann::ordered_json json = {{"schema", 1}, {"command", "machine list"}, {"machines", nlohmann::ordered_json::array()}};
+  std::vector<Diagnostic> errors;
+  for (const auto& file : installed_machines()) {
+    Listed machine = read_installed(file);
+    errors.insert(errors.end(), machine.errors.begin(), machine.errors.end());
+    if (!machine.errors.empty()) continue;
+    table.rows.push_back(std::move(machine.cells));
+    json["machines"].push_back(std::move(machine.json));
+  }
+  CommandOutcome outcome;
+  if (!errors.empty()) outcome = failed(std::move(errors));
+  outcome.summary = table_text(table);
+  outcome.report_json = json.dump(2) + "\n";
+  return outcome;
+}
+
+}  // namespace
+
+void add_machine_list(Commands& commands) {
+  commands.push_back(command_of<CommonRequest>("list", "the installed machines, a line each", [](OptionSet&, CommonRequest&) {}, list_machines, &kMachines));
+}
+
+}  // namespace toothpath

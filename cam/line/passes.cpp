@@ -1,0 +1,421 @@
+#include "cam/line/passes.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "cam/line/smooth.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath::line {
+namespace {
+
+constexpr double kBeyond = 2.6;      // modules: stations beyond the ends of the ring
+constexpr double kFull = 0.85;       // share of the height from which a station counts as full
+constexpr double kEndSlopes[] = {0.7, 0.3, 1.0, 1.4};  // shares of the slope at the last full station with which angles go on beyond it
+constexpr double kShortest = 1e-3;   // of a module: shortest block
+constexpr double kGougeCounts = 4;   // times as much as what is left: a block may sink by a quarter of the chord tolerance
+constexpr double kCorner = 1e-5;     // mm: place of the records at which the ring begins and ends
+constexpr double kEndBends[] = {radians(0.01), radians(0.03), radians(0.1)};  // or are bent, from station to station 0.1 m apart
+constexpr double kEpsBend = 0.05;        // as much of that in eps
+constexpr double kLeastCovered = 0.1;    // share of the height below which a station has no say
+constexpr double kStiffness[] = {1e4, 1e2, 1, 0};
+constexpr double kWorse = 1.02, kWorseMm = 2e-5;  // by which a stiffer pass may be worse than the best one
+
+/// Best poses of all stations, and which of them lie over (nearly) the whole height.
+struct Stations {
+  std::vector<std::optional<StationPose>> poses;
+  std::size_t first = 0, last = 0;  ///< of the full ones
+  bool enough = false;              ///< four at least, none missing between
+};
+
+/// Everything about one pass that its steps share.
+class PassPlanner {
+ public:
+  PassPlanner(const LineFit& fit, const PassOptions& o, double law_end) : fit_(fit), o_(o), law_end_(law_end), m_(fit.flank().module_mm) {
+    const auto& f = fit.flank();
+    step_ = o.station * m_;
+    const double middle = 0.5 * (f.inner_radius + f.outer_radius);
+    const int half = int(std::ceil((0.5 * (f.outer_radius - f.inner_radius) + kBeyond * m_) / step_));
+    start_ = middle - half * step_;
+    count_ = std::size_t(2 * half + 1);
+    lift_.assign(count_, 0.0);
+    pass_.zone = f.zone;
+    pass_.side = f.side;
+  }
+
+  Result<LinePass> run() {
+    if (auto s = stations(); !s) return s.error();
+    if (pass_.best_mm > o_.enough_mm) {
+      pass_.misfit_mm = pass_.best_mm;
+      return std::move(pass_);
+    }
+    if (auto s = smooth(); !s) return s.error();
+    if (auto s = extent(); !s) return s.error();
+    lifts();
+    if (auto s = corners(); !s) return s.error();
+    if (auto s = records(); !s) return s.error();
+    figures();
+    return std::move(pass_);
+  }
+
+ private:
+  [[nodiscard]] double radius(std::size_t k) const { return start_ + double(k) * step_; }
+  [[nodiscard]] std::size_t middle() const { return count_ / 2; }
+
+  [[nodiscard]] Stations best_of_all() const {
+    Stations out;
+    out.poses.resize(count_);
+    tbb::parallel_for(std::size_t{0}, count_, [&](std::size_t k) { out.poses[k] = fit_.best(radius(k), condition_); });
+    const auto full = [&](std::size_t k) { return out.poses[k] && out.poses[k]->covered >= kFull; };
+    // Outwards from the middle: what lies beyond a missing station is another piece of flank.
+    out.first = out.last = middle();
+    while (out.first > 0 && full(out.first - 1)) --out.first;
+    while (out.last + 1 < count_ && full(out.last + 1)) ++out.last;
+    out.enough = full(middle()) && out.last >= out.first + 3;
+    return out;
+  }
+
+  /// Best poses of all stations, and the condition on the axis that makes the worst of them least.
+  Status stations() {
+    best_ = best_of_all();
+    if (o_.rotaries != Rotaries::both && best_.enough && worst_best() <= o_.enough_mm) {
+      condition_ = best_condition();
+      best_ = best_of_all();
+    }
+    const auto& f = fit_.flank();
+    if (!best_.enough)
+      return fail("zone {}: flank {:+d} has no four stations {:.3f} mm apart about radius {:.3f} mm with a line over its whole height", f.zone, f.side, step_,
+                  radius(middle()));
+    for (std::size_t k = best_.first; k <= best_.last; ++k) {
+      const auto& p = *best_.poses[k];
+      if (p.tilt() > kMostTilt)
+        return fail("zone {}: flank {:+d} at radius {:.3f} mm asks for a tool tilted by {:.2f} deg from the gear axis; at most {:.0f} deg are planned", f.zone,
+                    f.side, radius(k), degrees(p.tilt()), degrees(kMostTilt));
+      if (p.gap.ring_to > law_end_)
+        return fail("zone {}: flank {:+d} at radius {:.3f} mm is touched up to {:.3f} mm above the centre of the ball end, the flutes cut up to {:.3f} mm: "
+                    "flute_length must be {:.3f} mm longer", f.zone, f.side, radius(k), p.gap.ring_to, law_end_, p.gap.ring_to - law_end_);
+    }
+    pass_.best_mm = worst_best();
+    return Ok{};
+  }
+  /// Worst misfit of the poses alone, over the full stations.
+  [[nodiscard]] double worst_best() const {
+    double worst = 0;
+    for (std::size_t k = best_.first; k <= best_.last; ++k) worst = std::max(worst, best_.poses[k]->gap.misfit());
+    return worst;
+  }
+
+  /// The worst misfit falls towards one value of the standing angle and rises after it: golden section to a hundredth of a degree.
+  [[nodiscard]] AxisCondition best_condition() const {
+    const bool tilt = o_.rotaries == Rotaries::tilt_stands;
+    const auto condition = [&](double x) { return tilt ? tilt_stands(x) : azimuth_stands(x); };
+    const Vec3 a_0 = best_.poses[middle()]->axis.a;
+    const double about = std::atan2(a_0.y(), a_0.x());
+    std::vector<double> angle;
+    for (std::size_t k = best_.first; k <= best_.last; ++k) {
+      const auto& a = best_.poses[k]->axis.a;
+      angle.push_back(tilt ? std::acos(a.z()) : about + std::remainder(std::atan2(a.y(), a.x()) - about, 2 * kPi));
+    }
+    const auto worst = [&](double x) {
+      std::vector<double> misfit(angle.size(), 0);
+      tbb::parallel_for(std::size_t{0}, misfit.size(), [&](std::size_t k) {
+        if (k % 3 != 0 && k + 1 != misfit.size()) return;
+        const auto pose = fit_.best(radius(best_.first + k), condition(x));
+        misfit[k] = pose && pose->gap.in_ring() ? pose->gap.misfit() : INFINITY;
+      });
+      return *std::max_element(misfit.begin(), misfit.end());
+    };
+    const double golden = 0.5 * (std::sqrt(5.0) - 1);
+    double a = *std::min_element(angle.begin(), angle.end()), b = *std::max_element(angle.begin(), angle.end());
+    double p = b - golden * (b - a), q = a + golden * (b - a), fp = worst(p), fq = worst(q);
+    while (b - a > radians(0.01)) {
+      if (fp <= fq) {
+        b = q, q = p, fq = fp;
+        p = b - golden * (b - a), fp = worst(p);
+      } else {
+        a = p, p = q, fp = fq;
+        q = a + golden * (b - a), fq = worst(q);
+      }
+    }
+    return condition(0.5 * (a + b));
+  }
+
+  /// How psi(r) and eps(r) are made from the best poses.
+  struct Choice {
+    double stiffness = 0;
+    std::array<double, 2> slopes = {kEndSlopes[0], kEndSlopes[0]};  ///< beyond the full stations at the inner, the outer end
+    std::array<double, 2> bends = {0, 0};                          ///< or: bent there towards the best, by so much a station (rad); 0: straight on
+    double worst = INFINITY;  ///< misfit
+  };
+
+  /// Values on all stations from those of the full ones, beyond them straight on.
+  [[nodiscard]] std::vector<double> values(const Choice& c, double PoseAngles<double>::*angle) const {
+    std::vector<double> full;
+    for (std::size_t k = best_.first; k <= best_.last; ++k) full.push_back(best_.poses[k]->angles.*angle);
+    full = smoothed(full, c.stiffness);
+    const std::size_t n = full.size(), reach = std::min<std::size_t>(n - 1, 4);
+    const double low = c.slopes[0] * (full[reach] - full[0]) / double(reach), high = c.slopes[1] * (full[n - 1] - full[n - 1 - reach]) / double(reach);
+    std::vector<double> y(count_);
+    for (std::size_t k = 0; k < count_; ++k)
+      y[k] = k < best_.first  ? full[0] - low * double(best_.first - k)
+             : k > best_.last ? full[n - 1] + high * double(k - best_.last)
+                                : full[k - best_.first];
+    return y;
+  }
+  /// From a full station outwards: each next station is the best one near where the two before it point.
+  void bend(std::size_t full, int sense, double most, std::vector<double>& psi, std::vector<double>& eps) const {
+    for (std::ptrdiff_t k = std::ptrdiff_t(full) + sense; k >= 0 && k < std::ptrdiff_t(count_); k += sense) {
+      const auto at = std::size_t(k), one = std::size_t(k - sense), two = std::size_t(k - 2 * sense);
+      const Neighbourhood about{2 * psi[one] - psi[two], 2 * eps[one] - eps[two], most, kEpsBend * most};
+      const auto p = fit_.best(radius(at), condition_, about);
+      const bool counts = p && p->gap.in_ring() && p->covered > kLeastCovered;
+      psi[at] = counts ? p->angles.psi : about.psi;
+      eps[at] = counts ? p->angles.eps : about.eps;
+    }
+  }
+  void take(const Choice& c) {
+    auto psi = values(c, &PoseAngles<double>::psi), eps = values(c, &PoseAngles<double>::eps);
+    if (c.bends[0] > 0) bend(best_.first, -1, c.bends[0], psi, eps);
+    if (c.bends[1] > 0) bend(best_.last, 1, c.bends[1], psi, eps);
+    psi_ = StationCurve(start_, step_, std::move(psi));
+    eps_ = StationCurve(start_, step_, std::move(eps));
+  }
+  /// The same choice with its worst misfit measured on the stations from .. to.
+  [[nodiscard]] Choice tried(Choice c, std::size_t from, std::size_t to) {
+    take(c);
+    c.worst = worst_misfit(from, to);
+    return c;
+  }
+
+  [[nodiscard]] std::optional<StationPose> pose(double r) const { return pose(r, o_.bias_mm); }
+  [[nodiscard]] std::optional<StationPose> pose(double r, std::optional<double> bias) const {
+    const double psi = psi_.at(r), delta = r < radius(middle()) ? delta_inner_ : delta_outer_;
+    double eps = 0;
+    if (condition_) {
+      const auto under = fit_.eps_under(r, psi, best_.poses[middle()]->angles.t_m, *condition_);
+      if (!under) return {};
+      eps = *under;
+    } else {
+      eps = eps_.at(r);
+    }
+    return fit_.place(r, psi, eps, delta, lift_at(r), bias);
+  }
+
+  /// Largest misfit over the stations from .. to that have a foot in the ring; infinite where a full one has no pose. Which delta a pose has
+  /// does not matter to it, but for the cosine between the normals of the line.
+  [[nodiscard]] double worst_misfit(std::size_t from, std::size_t to) const {
+    std::vector<double> misfit(to + 1 - from, 0);
+    tbb::parallel_for(from, to + 1, [&](std::size_t k) {
+      const auto p = pose(radius(k), {});
+      if (p && p->gap.in_ring()) misfit[k - from] = p->gap.misfit();
+      if (!p && inside_full(k)) misfit[k - from] = INFINITY;
+    });
+    return *std::max_element(misfit.begin(), misfit.end());
+  }
+
+  /// psi(r) and eps(r): the stiffest whose worst misfit over the full stations is hardly above the least. Then each end goes on in the way
+  /// that is best for it.
+  Status smooth() {
+    delta_inner_ = best_.poses[best_.first]->angles.delta;
+    delta_outer_ = best_.poses[best_.last]->angles.delta;
+    std::vector<Choice> choices;
+    for (const double stiffness : kStiffness) {
+      Choice c;
+      c.stiffness = stiffness;
+      choices.push_back(tried(c, best_.first, best_.last));
+    }
+    double least = INFINITY;
+    for (const auto& c : choices) least = std::min(least, c.worst);
+    if (!(least < INFINITY))
+      return fail("zone {}: flank {:+d}: no pose along the whole pass while {}", fit_.flank().zone, fit_.flank().side, to_string(o_.rotaries));
+    Choice taken = *std::find_if(choices.begin(), choices.end(), [&](const Choice& c) { return c.worst <= kWorse * least + kWorseMm; });
+    for (const std::size_t end : {0, 1}) {
+      const std::size_t from = end == 0 ? 0 : best_.last, to = end == 0 ? best_.first : count_ - 1;
+      taken.worst = INFINITY;
+      std::vector<Choice> ways;
+      for (const double slope : kEndSlopes) ways.emplace_back(taken).slopes[end] = slope;
+      for (const double most : kEndBends) ways.emplace_back(taken).bends[end] = most * o_.station / 0.1;
+      for (const auto& way : ways)
+        if (const auto c = tried(way, from, to); c.worst < taken.worst - kWorseMm) taken = c;
+    }
+    take(taken);
+    return Ok{};
+  }
+
+  /// From the middle outwards until no foot is near the ring any more.
+  Status extent() {
+    placed_.assign(count_, {});
+    tbb::parallel_for(std::size_t{0}, count_, [&](std::size_t k) { placed_[k] = pose(radius(k)); });
+    const auto go = [&](int sense, double& delta, std::size_t& end) -> Status {
+      for (std::size_t k = middle();; k = std::size_t(std::ptrdiff_t(k) + sense)) {
+        const auto& p = placed_[k];
+        if (!p || (!inside_full(k) && o_.is_clear && !o_.is_clear(p->axis))) {
+          if (p || k == 0 || k + 1 == count_) {
+            pass_.shortened_mm += step_;
+            return Ok{};
+          }
+          return fail("zone {}: flank {:+d} ends for the anchors at radius {:.3f} mm, before its corner at the {} end is reached", fit_.flank().zone,
+                      fit_.flank().side, radius(k), sense > 0 ? "outer" : "inner");
+        }
+        if (p->gap.in_ring()) delta = p->angles.delta;
+        end = k;
+        if (p->gap.beyond_ring >= o_.overrun * m_) return Ok{};
+        if (k == 0 || k + 1 == count_)
+          return fail("zone {}: flank {:+d}: a foot is still within the ring {:.3f} mm beyond its {} end", fit_.flank().zone, fit_.flank().side, kBeyond * m_,
+                      sense > 0 ? "outer" : "inner");
+      }
+    };
+    if (auto s = go(-1, delta_inner_, from_); !s) return s;
+    return go(1, delta_outer_, to_);
+  }
+  [[nodiscard]] bool inside_full(std::size_t k) const { return k >= best_.first && k <= best_.last; }
+
+  /// The ball end is lifted out of what lies beyond an end: as far as its foot asks for one station nearer to the middle (so that the lift
+  /// begins when the corner is passed for certain), and no faster than the slope allows.
+  void lifts() {
+    const auto& f = fit_.flank();
+    const auto raise = [&](int sense, double r_most) {
+      double had = 0, asked = 0;
+      for (std::ptrdiff_t k = std::ptrdiff_t(middle()) + sense; k >= 0 && k < std::ptrdiff_t(count_); k += sense) {
+        const auto &p = placed_[std::size_t(k)], &before = placed_[std::size_t(k - sense)];
+        if (p && before) {
+          had = std::min(asked, had + o_.lift_slope * (p->anchor - before->anchor).norm());
+          asked = fit_.lift_to(*p, r_most, sense);
+        }
+        lift_[std::size_t(k)] = had;
+      }
+    };
+    if (o_.lift_inner) raise(-1, f.inner_radius - o_.lift_margin * m_);
+    if (o_.lift_outer) raise(1, f.outer_radius + o_.lift_margin * m_);
+  }
+  /// Straight between stations: it never overshoots.
+  [[nodiscard]] double lift_at(double r) const {
+    const double u = std::clamp((r - start_) / step_, 0.0, double(count_ - 1));
+    const std::size_t k = std::min(std::size_t(u), count_ - 2);
+    return lift_[k] + (u - double(k)) * (lift_[k + 1] - lift_[k]);
+  }
+
+  /// Where exactly the first and the last foot of the pass lie in the ring. There the gap is held by the corner alone; beyond it delta stays.
+  Status corners() {
+    const auto in_ring = [&](double r) {
+      const auto p = pose(r);
+      return p && p->gap.in_ring();
+    };
+    const auto find = [&](double in, double out, double& delta) {
+      for (int k = 0; k < 60 && std::abs(out - in) > kCorner; ++k) {
+        const double r = 0.5 * (in + out);
+        (in_ring(r) ? in : out) = r;
+      }
+      if (const auto p = pose(in)) delta = p->angles.delta;
+      return in;
+    };
+    std::size_t inner = from_, outer = to_;
+    while (inner < to_ && !in_ring(radius(inner))) ++inner;
+    while (outer > from_ && !in_ring(radius(outer))) --outer;
+    if (inner >= outer) return lost(radius(inner));
+    if (inner > from_) stops_.push_back(find(radius(inner), radius(inner - 1), delta_inner_));
+    if (outer < to_) stops_.push_back(find(radius(outer), radius(outer + 1), delta_outer_));
+    stops_.push_back(radius(to_));
+    return Ok{};
+  }
+
+  /// How far the blend of two poses strays from what its neighbourhood leaves, over its whole domain.
+  [[nodiscard]] double stray(const StationPose& a, const StationPose& b, double w) const {
+    const double r_0 = fit_.law().r_0;
+    const Vec3 tip = (1 - w) * (a.axis.c_0 - r_0 * a.axis.a) + w * (b.axis.c_0 - r_0 * b.axis.a);
+    AxisLine<double> blend;
+    blend.a = ((1 - w) * a.axis.a + w * b.axis.a).normalized();
+    blend.c_0 = tip + r_0 * blend.a;
+    const double t = std::max(0.0, (1 - w) * a.angles.t_m + w * b.angles.t_m);
+    const auto gap = fit_.gap_along(blend, t, {(1 - w) * a.at.theta + w * b.at.theta, (1 - w) * a.at.B + w * b.at.B});
+    if (!gap) return INFINITY;
+    if (!gap->in_ring()) return 0;
+    const double most = std::max({a.gap.most, b.gap.most, o_.bias_mm});
+    return std::max(kGougeCounts * (o_.bias_mm - gap->least), gap->most - most);
+  }
+
+  Status records() {
+    auto here = pose(radius(from_));
+    const double longest = o_.longest * m_;
+    double step = longest;
+    if (!here) return lost(radius(from_));
+    add(*here);
+    for (std::size_t stop = 0; stop < stops_.size();) {
+      const double end = stops_[stop];
+      const double pieces = std::ceil((end - here->r) / step - 1e-9);  // even ones up to the stop
+      const double r = pieces <= 1 ? end : here->r + (end - here->r) / pieces;
+      const auto next = pose(r);
+      if (!next) return lost(r);
+      const double worst = std::max({stray(*here, *next, 0.25), stray(*here, *next, 0.5), stray(*here, *next, 0.75)});
+      if (worst > o_.chord_mm && step > kShortest * m_) {
+        step *= 0.5;
+        continue;
+      }
+      if (worst > o_.chord_mm)
+        return fail("zone {}: flank {:+d} at radius {:.4f} mm: blocks of {:.4f} mm still stray by {:.3f} um, more than the chord tolerance {:.3f} um",
+                    fit_.flank().zone, fit_.flank().side, r, step, 1e3 * worst, 1e3 * o_.chord_mm);
+      pass_.chord_mm = std::max(pass_.chord_mm, worst);
+      here = next;
+      add(*here);
+      if (r == end) ++stop;
+      step = std::min(longest, 2 * step);
+    }
+    return Ok{};
+  }
+  [[nodiscard]] Diagnostic lost(double r) const {
+    return fail("zone {}: flank {:+d}: no pose at radius {:.4f} mm", fit_.flank().zone, fit_.flank().side, r);
+  }
+  void add(const StationPose& p) {
+    if (p.gap.in_ring()) pass_.misfit_mm = std::max(pass_.misfit_mm, p.gap.misfit());
+    LineRecord record{p.r, p.axis, p.anchor, p.gap.most, p.lift, 1};
+    const double r_0 = fit_.law().r_0;
+    if (!pass_.records.empty()) {
+      const auto& before = pass_.records.back();
+      const double way = (p.anchor - before.anchor).norm();
+      record.contact_ratio = (p.axis.c_0 - r_0 * p.axis.a - before.axis.c_0 + r_0 * before.axis.a).norm() / way;
+      pass_.contact_mm += way;
+    }
+    pass_.records.push_back(record);
+  }
+
+  void figures() {
+    for (std::size_t k = from_; k <= to_; ++k) {
+      const auto p = pose(radius(k));
+      if (!p || !p->gap.in_ring()) continue;
+      pass_.stations.push_back({p->r, p->angles.psi, p->angles.eps, p->tilt(), p->covered, best_.poses[k] ? best_.poses[k]->gap.misfit() : 0, p->gap.misfit()});
+      pass_.misfit_mm = std::max(pass_.misfit_mm, p->gap.misfit());
+      pass_.contact_top_mm = std::max(pass_.contact_top_mm, fit_.law().r_0 + p->gap.ring_to);
+    }
+  }
+
+  const LineFit& fit_;
+  const PassOptions& o_;
+  double law_end_, m_, step_ = 0, start_ = 0;
+  std::size_t count_ = 0, from_ = 0, to_ = 0;
+  Stations best_;
+  std::vector<std::optional<StationPose>> placed_;
+  std::optional<AxisCondition> condition_;
+  StationCurve psi_, eps_;
+  std::vector<double> lift_;
+  double delta_inner_ = 0, delta_outer_ = 0;
+  std::vector<double> stops_;  ///< radii that have a record: the ring's ends as the pass meets them, and the last
+  LinePass pass_;
+};
+
+}  // namespace
+
+const char* to_string(Rotaries rotaries) {
+  switch (rotaries) {
+    case Rotaries::both: return "both";
+    case Rotaries::tilt_stands: return "the tilt stands";
+    case Rotaries::azimuth_stands: return "the azimuth stands";
+  }
+  return "";
+}
+
+Result<LinePass> plan_pass(const LineFit& fit, const PassOptions& options, double law_end) { return PassPlanner(fit, options, law_end).run(); }
+
+}  // namespace toothpath::line

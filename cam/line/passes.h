@@ -1,0 +1,69 @@
+// One pass of a mill's side along one strip of a flank: stations, smoothed angles, ends, and records as sparse as the chord allows.
+//
+// Gear frame, tooth 0, mm, rad. The pass runs from the inner to the outer end. Derivation: docs/line_milling.md, sections 5 and 6.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "cam/line/pose.h"
+
+namespace toothpath::line {
+
+/// Which rotaries may move while a pass cuts.
+enum class Rotaries { both, tilt_stands, azimuth_stands };
+[[nodiscard]] const char* to_string(Rotaries rotaries);
+
+struct PassOptions {
+  Rotaries rotaries = Rotaries::both;
+  double chord_mm = 5e-4;   ///< by how much a block may rise above the largest gap of its ends; it sinks below the least by a quarter of that at most
+  double bias_mm = 0;       ///< least gap that every pose keeps over the domain: takes up what follows (verification, rounding)
+  double station = 0.1;     ///< stations, in modules
+  double longest = 0.1;     ///< longest block along the anchors, in modules
+  double overrun = 0.12;    ///< how far beyond the ends of the ring the last foot is carried, in modules
+  /// Is there something across the inner, the outer end (the other ring, a groove)? There the ball end is lifted out of the way.
+  bool lift_inner = false, lift_outer = false;
+  double lift_margin = 0.08;  ///< the lift begins where the ball end's foot is so far beyond the end, in modules
+  double lift_slope = 1;      ///< mm of lift per mm of contact, at most
+  double enough_mm = INFINITY;  ///< give up where the best pose of a station alone leaves more than this: a pass without records
+  /// Is a pose free of everything but its own flank? Where it is not, beyond the last full station, the pass ends; empty: it always is.
+  std::function<bool(const AxisLine<double>&)> is_clear;
+};
+
+/// What a report draws of a pass.
+struct StationFigures {
+  double r = 0;
+  double lean = 0, eps = 0, tilt = 0;  ///< rad
+  double covered = 0;                  ///< share of the height in the ring
+  double best = 0;                     ///< misfit of the best pose of this station alone, mm
+  double misfit = 0;                   ///< largest gap over the strip less the least, as it is cut, mm
+};
+
+struct LineRecord {
+  double r = 0;
+  AxisLine<double> axis;       ///< ball end's centre and direction
+  Vec3 anchor = Vec3::Zero();  ///< of the contact, for feeds
+  double most = 0;             ///< largest gap over the strip
+  double lift = 0;
+  double contact_ratio = 1;    ///< way of the tip from the record before, over the way of the contact
+};
+
+struct LinePass {
+  int zone = 0, side = 1, strip = 0;
+  std::vector<StationFigures> stations;  ///< those with a foot in the ring
+  std::vector<LineRecord> records;
+  double misfit_mm = 0;   ///< worst of all stations and records, smoothing included, bias not
+  double best_mm = 0;     ///< worst of the poses alone, over the full stations
+  double chord_mm = 0;    ///< worst seen within a block, as `PassOptions::chord_mm` counts
+  double contact_mm = 0;  ///< way of the contact
+  double contact_top_mm = 0;  ///< highest height of a contact above the tip, along the axis: the flutes must reach it
+  double shortened_mm = 0;  ///< lost at ends that are not clear
+};
+
+/// Plans a pass. Refused, with quantity, value and limit: a tilt above 60 deg, flutes that end below the contact (`law_end`), fewer than
+/// four full stations, an axis condition that no lean fulfils, a flank whose ends are not reached.
+/// @param law_end  highest usable t of the tool
+[[nodiscard]] Result<LinePass> plan_pass(const LineFit& fit, const PassOptions& options, double law_end);
+
+}  // namespace toothpath::line

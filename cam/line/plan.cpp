@@ -1,0 +1,164 @@
+#include "cam/line/plan.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cam/tool_body.h"
+
+namespace toothpath::line {
+namespace {
+
+constexpr double kBodySag = 0.01;  // mm: how far bodies may stand out of the tool where only rapids ask for them
+
+AxisLine<double> turned(const AxisLine<double>& axis, double angle) {
+  return {FaceGearSurface<double>::turned(axis.c_0, angle), FaceGearSurface<double>::turned(axis.a, angle)};
+}
+
+/// All passes for one choice of strips and rotaries.
+struct Choice {
+  int strips = 1;
+  Rotaries rotaries = Rotaries::both;
+};
+Result<std::vector<LinePass>> passes_of(const std::vector<FlankTask>& flanks, const tool::Profile& tool, const LineOperation& o, const Choice& choice,
+                                        int rings) {
+  const std::size_t n = flanks.size() * std::size_t(choice.strips);
+  std::vector<std::optional<Result<LinePass>>> found(n);
+  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) {
+    const auto& flank = flanks[k / std::size_t(choice.strips)];
+    const auto strip = k % std::size_t(choice.strips);
+    PassOptions p;
+    p.rotaries = choice.rotaries;
+    p.chord_mm = o.chord_tolerance_mm;
+    p.bias_mm = o.bias_mm;
+    p.lift_inner = flank.zone > 0;
+    p.lift_outer = flank.zone + 1 < rings;
+    p.is_clear = o.is_clear;
+    p.enough_mm = o.left_mm.value_or(INFINITY);
+    found[k].emplace(plan_pass(LineFit(flank, *tool.law(), strips_of(flank, choice.strips)[strip]), p, tool.law_end()));
+    if (*found[k]) (*found[k])->strip = int(strip);
+  });
+  std::vector<LinePass> out;
+  for (auto& pass : found) {
+    if (!*pass) return pass->error();
+    out.push_back(std::move(**pass));
+  }
+  return out;
+}
+
+double worst_of(const std::vector<LinePass>& passes) {
+  double worst = 0;
+  for (const auto& p : passes) worst = std::max(worst, p.misfit_mm);
+  return worst;
+}
+
+std::vector<Choice> choices_of(const LineOperation& o) {
+  std::vector<Rotaries> rotaries{Rotaries::both};
+  if (o.rotaries) rotaries = {*o.rotaries};
+  else if (o.left_mm) rotaries = {Rotaries::tilt_stands, Rotaries::both};
+  std::vector<Choice> out;
+  const int from = o.strips.value_or(1), to = o.strips ? *o.strips : o.left_mm ? kMostStrips : 1;
+  for (int n = from; n <= to; ++n)
+    for (const auto r : rotaries) out.push_back({n, r});
+  return out;
+}
+
+/// Appends passes to a path: in and out along the tool axis, which only ever frees a tool that widens upwards.
+class PathWriter {
+ public:
+  PathWriter(const tool::Profile& tool, const LineOperation& o, ClPath& path) : o_(o), path_(path), r_0_(tool.law()->r_0), bodies_(tool.proof_bodies(kBodySag)) {}
+
+  void add(const FlankTask& flank, const LinePass& pass, int number) {
+    const double turn = flank.side > 0 ? 0 : flank.surface.pitch;  // space 0 lies between flank +1 of tooth 0 and flank -1 of tooth 1
+    std::vector<LineRecord> records = pass.records;
+    for (auto& r : records) {
+      r.axis = turned(with_allowance(flank, r.axis, o_.allowance_mm), turn);
+      r.anchor = FaceGearSurface<double>::turned(r.anchor, turn);
+    }
+    if (climbs(records, flank, turn) != o_.climb) std::reverse(records.begin(), records.end());
+    zone_ = flank.zone;
+    pass_ = number;
+    record(above(records.front().axis), records.front().axis.a, MoveKind::rapid, 0);
+    record(tip(records.front().axis), records.front().axis.a, MoveKind::engage, o_.feed_mm_min);
+    for (std::size_t k = 1; k < records.size(); ++k) {
+      const double contact = (records[k].anchor - records[k - 1].anchor).norm();
+      const double way = (tip(records[k].axis) - tip(records[k - 1].axis)).norm();
+      record(tip(records[k].axis), records[k].axis.a, MoveKind::feed, o_.feed_mm_min * way / contact);
+    }
+    record(above(records.back().axis), records.back().axis.a, MoveKind::retract, o_.feed_mm_min);
+  }
+
+ private:
+  [[nodiscard]] Vec3 tip(const AxisLine<double>& axis) const { return axis.c_0 - r_0_ * axis.a; }
+  /// Along the axis until ball, flutes, shank and holder are above the clearance height.
+  [[nodiscard]] Vec3 above(const AxisLine<double>& axis) const {
+    double lowest = axis.c_0.z() - bodies_.ball_radius_mm;
+    for (const auto& f : bodies_.frustums) lowest = std::min(lowest, lowest_z(f, tip(axis), axis.a));
+    return tip(axis) + std::max(0.0, (o_.clearance_height_mm - lowest) / axis.a.z()) * axis.a;
+  }
+  /// Is the material to the right of the feed, seen from the holder?
+  [[nodiscard]] bool climbs(const std::vector<LineRecord>& records, const FlankTask& flank, double turn) const {
+    const std::size_t k = records.size() / 2;
+    const Vec3 feed = records[k].anchor - records[k - 1].anchor, right = feed.cross(records[k].axis.a);
+    const Vec3 at = FaceGearSurface<double>::turned(records[k].anchor, -turn);
+    const auto on = invert_flank(flank.surface, flank.side, at.head<2>().norm(), at.z());
+    return on && FaceGearSurface<double>::turned(flank.surface.flank(flank.side, on->theta, on->B).n, turn).dot(right) < 0;
+  }
+  void record(const Vec3& tip, const Vec3& axis, MoveKind kind, double feed) { path_.records.push_back({tip, axis, feed, kind, zone_, pass_}); }
+
+  const LineOperation& o_;
+  ClPath& path_;
+  double r_0_;
+  tool::ProofBodies bodies_;
+  int zone_ = 0, pass_ = 0;
+};
+
+}  // namespace
+
+AxisLine<double> with_allowance(const FlankTask& flank, const AxisLine<double>& axis, double allowance_mm) {
+  return turned(axis, flank.side * allowance_mm / flank.surface.M2);
+}
+
+Result<LinePlan> plan_line_milling(const FaceGear& gear, const tool::Profile& tool, const LineOperation& o) {
+  if (!tool.law()) return fail("line milling needs a tool with a ball end and a side: flat and bull nose cutters have none");
+  if (o.strips && (*o.strips < 1 || *o.strips > kMostStrips)) return fail("strips = {} lies outside 1 .. {}", *o.strips, kMostStrips);
+  std::vector<FlankTask> flanks;
+  for (int zone = 0; zone < int(gear.rings().size()); ++zone)
+    for (const int side : {1, -1}) {
+      auto task = flank_task(gear, zone, side);
+      if (!task) return task.error();
+      flanks.push_back(*task);
+    }
+  LinePlan plan;
+  double least = INFINITY;
+  for (const auto& choice : choices_of(o)) {
+    auto passes = passes_of(flanks, tool, o, choice, int(gear.rings().size()));
+    if (!passes) {
+      if (choice.rotaries != Rotaries::both && !o.rotaries) continue;  // the standing tilt was our own idea
+      return passes.error();
+    }
+    plan.misfit_mm = worst_of(*passes);
+    least = std::min(least, plan.misfit_mm);
+    if (o.left_mm && plan.misfit_mm > *o.left_mm) continue;
+    plan.passes = std::move(*passes);
+    plan.strips = choice.strips;
+    plan.rotaries = choice.rotaries;
+    break;
+  }
+  if (plan.passes.empty())
+    return fail("left = {:.3f} um cannot be met: the side of this tool leaves {:.3f} um at best with {} strip(s); cut the rest with the ball end or allow more",
+                1e3 * o.left_mm.value_or(0), 1e3 * least, o.strips.value_or(kMostStrips));
+  plan.path.operation = o.operation;
+  plan.path.operation_type = "line_milling";
+  plan.path.tool = o.tool;
+  plan.path.spindle_rpm = o.speed_rpm;
+  PathWriter writer(tool, o, plan.path);
+  for (std::size_t k = 0; k < plan.passes.size(); ++k) {
+    const auto flank = k / std::size_t(plan.strips);
+    writer.add(flanks[flank], plan.passes[k], int(k % std::size_t(2 * plan.strips)));
+  }
+  return plan;
+}
+
+}  // namespace toothpath::line

@@ -1,0 +1,50 @@
+// Line milling of one tooth space: every flank of every ring in the fewest strips and with the fewest rotaries that leave little enough.
+//
+// Asks a face gear, a tool profile and an operation; answers a path (CL records of space 0) and what a report draws of each pass.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "cam/cl_path.h"
+#include "cam/line/passes.h"
+#include "cam/tool/profile.h"
+
+namespace toothpath::line {
+
+inline constexpr int kMostStrips = 4;
+
+/// What is asked. Lengths mm.
+struct LineOperation {
+  int operation = 0;                     ///< index in the job
+  int tool = 0;                          ///< index into the job's list of tools
+  double speed_rpm = 0;
+  double feed_mm_min = 0;                ///< of the contact
+  double allowance_mm = 0;               ///< stock that is left, exactly parallel; 0: finishing
+  std::optional<int> strips;             ///< 1 .. 4; none: the least number that meets `left`
+  std::optional<double> left_mm;         ///< largest misfit of a pass; none: whatever one strip with both rotaries leaves
+  std::optional<Rotaries> rotaries;      ///< none: the tilt stands where that meets `left`, else both
+  double chord_tolerance_mm = 5e-4;
+  double bias_mm = 0;                    ///< see PassOptions
+  bool climb = true;                     ///< spindle M3, material to the right of the feed seen from the holder
+  double clearance_height_mm = 0;        ///< z above which every part of the tool is for rapids
+  std::function<bool(const AxisLine<double>&)> is_clear;  ///< in the frame of the flank's own tooth 0; see PassOptions
+};
+
+struct LinePlan {
+  ClPath path;
+  std::vector<LinePass> passes;  ///< in the order of the path: zones from the inside, flank +1 then -1, strips from the tip down
+  int strips = 1;
+  Rotaries rotaries = Rotaries::both;
+  double misfit_mm = 0;          ///< worst of the passes
+};
+
+/// Plans one operation. Refused, with quantity, value and limit: a tool without a ball end and a side; everything that `flank_task` and
+/// `plan_pass` refuse; a `left` that no admitted choice meets (the message tells the best one).
+[[nodiscard]] Result<LinePlan> plan_line_milling(const FaceGear& gear, const tool::Profile& tool, const LineOperation& operation);
+
+/// A pose in the gear frame for flank `side` of tooth 0 turned so that `allowance` stays: by side * allowance / M2 about z. Exact, because
+/// parallel surfaces are rotations.
+[[nodiscard]] AxisLine<double> with_allowance(const FlankTask& flank, const AxisLine<double>& axis, double allowance_mm);
+
+}  // namespace toothpath::line

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "postproc/nc_reader.h"
+
+namespace toothpath::controls {
+
+/// Executes cutter location data (APT), the subset that we write; everything else is refused where it stands.
+[[nodiscard]] Status execute_apt(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
+
+}  // namespace toothpath::controls

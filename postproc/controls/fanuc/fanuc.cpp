@@ -1,0 +1,65 @@
+// Fanuc and compatible controls, IS-B (3 decimals): every value has a point, G43 stands with Z, G49 only in the block of a
+// machine-coordinate retract, the largest F in G93 is 9999.999. TCP is G43.4: its block moves Z alone, at rotary zero, where
+// the table frame is frozen.
+#include "postproc/controls/fanuc/fanuc.h"
+
+#include "postproc/work_offset.h"
+
+namespace toothpath::controls {
+namespace {
+
+constexpr int kLastExtended = 300;  // G54.1 P
+
+bool has_offset(std::string_view name) {
+  const int n = extended_offset(name, "G54.1 P");
+  return basic_offset(name) > 0 || (n >= 1 && n <= kLastExtended);
+}
+
+Status execute(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+  static const IsoLanguage language = fanuc_language();
+  return execute_iso(text, file, control, sink, language);
+}
+
+}  // namespace
+
+NcDialect fanuc_words() {
+  NcDialect d;
+  d.name = "fanuc";
+  d.extension = ".nc";
+  d.format = {.linear_decimals = 3, .rotary_decimals = 3};
+  d.point_always = true;
+  d.max_inverse_time = 9999.999;
+  d.max_line = 80;
+  d.frame_begin = {"%", "O{number} ({name})"};
+  d.safe_start = {"G21 G17 G90 G94 G40 G80 G69"};
+  d.start = {"{safe_start}", "{offset}"};
+  d.retract = {"G0 G49 G53 Z{top}"};
+  d.tool_change = {"T{tool} M6", "{safe_start}", "{offset}", "S{speed} M3"};
+  d.compensation = {"G0 G43 H{tool} Z{work_top}"};
+  d.operation_end = {"G94 F{free}"};
+  d.body_end = {"M30"};
+  d.frame_end = {"%"};
+  d.tcp_on = {"G0 G43.4 H{tool} Z{z}"};
+  d.tcp_off = d.retract;
+  d.tcp_starts_at_zero = true;
+  d.tcp_note = "TCP G43.4 FROM ROTARY ZERO, PARAMETERS 19696#5 WKP=0, 1401#1 LRP=1";
+  d.takes_smoothing = true;  // G5.1 Q1 and the like state no bound of their own
+  d.loop.form = NcLoop::Form::stretches;
+  d.rollover.way = NcRollover::Way::shortest;
+  d.rollover.note = "{axis} ROLLS OVER: PARAMETERS 1008#0 ROA=1, 1008#1 RAB=0, 1260=360.";
+  return d;
+}
+
+IsoLanguage fanuc_language() {
+  IsoLanguage l;
+  l.g_tenths = {434, 690};
+  l.extended = {.tenths = 541, .last = kLastExtended};
+  l.rules.tcp_needs_zero = true;
+  return l;
+}
+
+WorkOffsets fanuc_offsets() { return {"G54 to G59 and G54.1 P1 to P300", has_offset}; }
+
+Control fanuc() { return {fanuc_words(), {}, fanuc_offsets(), execute}; }
+
+}  // namespace toothpath::controls

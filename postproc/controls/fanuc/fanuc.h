@@ -1,0 +1,15 @@
+// The words and the language of Fanuc, from which compatible controls are made.
+#pragma once
+
+#include "postproc/controls/control.h"
+#include "postproc/nc_interpreter.h"
+
+namespace toothpath::controls {
+
+[[nodiscard]] NcDialect fanuc_words();
+[[nodiscard]] IsoLanguage fanuc_language();
+
+/// G54 to G59 and G54.1 P1 to P300.
+[[nodiscard]] WorkOffsets fanuc_offsets();
+
+}  // namespace toothpath::controls

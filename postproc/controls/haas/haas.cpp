@@ -1,0 +1,50 @@
+// Haas NGC: the words of Fanuc with G154 for further work offsets and M88, M89 for coolant through the spindle. Teeth are written out: what M98
+// finds depends on settings of the control. G234 and rotaries that roll over are left out; their jobs are refused.
+#include "postproc/controls/fanuc/fanuc.h"
+#include "postproc/work_offset.h"
+
+namespace toothpath::controls {
+namespace {
+
+constexpr int kLastExtended = 99;  // G154 P
+
+NcDialect words() {
+  NcDialect d = fanuc_words();
+  d.name = "haas";
+  d.frame_begin = {"%", "O0{number} ({name})"};  // five digits
+  d.tcp_on.clear();
+  d.tcp_off.clear();
+  d.tcp_starts_at_zero = false;
+  d.tcp_note.clear();
+  d.loop = {};
+  d.rollover = {};
+  d.coolant = {{Coolant::flood, {"M8", "M9"}}, {Coolant::through_spindle, {"M88", "M89"}}};
+  d.own_m = {{0, 6}, {10, 19}, {30, 49}, {75, 82}, {85, 87}, {95, 199}};
+  return d;
+}
+
+const IsoLanguage& language() {
+  static const IsoLanguage l = [] {
+    IsoLanguage haas;
+    haas.g_tenths = {690};
+    haas.coolant_m = {8, 9, 88, 89};
+    haas.extended = {.tenths = 1540, .last = kLastExtended};
+    return haas;
+  }();
+  return l;
+}
+
+Status execute(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+  return execute_iso(text, file, control, sink, language());
+}
+
+bool has_offset(std::string_view name) {
+  const int n = extended_offset(name, "G154 P");
+  return basic_offset(name) > 0 || (n >= 1 && n <= kLastExtended);
+}
+
+}  // namespace
+
+Control haas() { return {words(), {}, {"G54 to G59 and G154 P1 to P99", has_offset}, execute}; }
+
+}  // namespace toothpath::controls

@@ -1,0 +1,73 @@
+// Heidenhain TNC 640, plain text. There is no inverse time feed, so that blocks in which rotaries move need TCPM; without it
+// the tilt is fixed in every pass. Cycle 32 bounds the blending of the corners (T: the tip, TA: the rotaries with TCPM). The teeth run in a
+// section that is jumped back to (a count of repetitions would not follow a changed first tooth); a word takes no arithmetic, so that
+// the index angle is a Q parameter, set ahead of each rotary block. The remainder of the spread order is made with INT, half a unit
+// away from where it could fall on the wrong side.
+#include "postproc/controls/control.h"
+#include "postproc/controls/heidenhain/heidenhain_reader.h"
+#include "postproc/controls/heidenhain/presets.h"
+#include "postproc/work_offset.h"
+
+namespace toothpath::controls {
+
+namespace {
+
+NcDialect words() {
+  NcDialect d;
+  d.name = "heidenhain";
+  d.extension = ".h";
+  d.format = {.linear_decimals = 4, .rotary_decimals = 4};
+  d.sign_always = true;
+  d.rapid = d.feed = "L";
+  d.motion_is_modal = false;
+  d.rapid_end = " R0 FMAX";
+  d.max_line = 120;
+  d.inverse_time = false;
+  d.comment_open = "; ";
+  d.comment_close = "";
+  d.block_numbers = true;
+  d.frame_begin = {"BEGIN PGM {id} MM"};
+  d.frame_end = {"M30", "END PGM {id} MM"};
+  d.safe_start = {"PLANE RESET STAY", "FUNCTION RESET TCPM", "TRANS DATUM RESET", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+0"};
+  d.start = {"{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M126", "CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1 T{blend}",
+             "CYCL DEF 32.2 HSC-MODE:0 TA{blend_axis}"};
+  d.datum = preset_number;
+  d.retract = {"L Z{top} R0 FMAX M91"};
+  d.tool_change = {"TOOL CALL {tool} Z S{speed}", "{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M3"};
+  d.coolant = {{Coolant::flood, {"M8", "M9"}}};  // M7 is none of its own
+  d.own_m = {{0, 6}, {13, 14}, {19, 19}, {30, 30}, {89, 299}};
+  d.end = {"CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1", "M127"};
+  d.blend = d.blend_axis = true;
+  d.tcp_on = {"FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS"};
+  d.tcp_off = {"FUNCTION RESET TCPM"};
+  d.vector_words = {"TX", "TY", "TZ"};
+  d.vector_feed = "LN";
+  d.loop.form = NcLoop::Form::in_line;
+  d.loop.before = {"{first_tooth}", "Q1 = {first}", "LBL {label}", "{pick}", "Q2 = {turns} * 360 / {teeth}"};
+  d.loop.after = {"Q1 = Q1 + 1", "FN 12: IF +Q1 LT +{teeth} GOTO LBL {label}"};
+  d.loop.pick = {"Q6 = ( Q1 * {stride} + 0.5 ) / {teeth}", "Q6 = INT Q6", "Q4 = Q1 * {stride} - Q6 * {teeth}"};
+  d.loop.place = "Q1";
+  d.loop.tooth = "Q4";
+  d.loop.index_line = "FN 1: Q5 = +Q2 + {angle}";
+  d.loop.index = "+Q5";
+  d.rollover.way = NcRollover::Way::shortest;  // M126
+  d.rollover.index_lines = {"Q6 = Q5 / 360", "Q6 = INT Q6", "Q5 = Q5 - Q6 * 360"};
+  d.rollover.backwards = "( {teeth} - {tooth} )";
+  d.rollover.note = "{axis} ROLLS OVER: MODULO AXIS, DISPLAY BELOW 360";
+  d.loop.frame_on = {"Q3 = {frame_sign}{tooth} * 360 / {teeth}", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+Q3"};
+  d.loop.frame_off = {"CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+0"};
+  return d;
+}
+
+bool has_offset(std::string_view name) {
+  const int preset = whole_number(name);
+  return basic_offset(name) > 0 || tenth_offset(name) > 0 || (preset >= 1 && preset <= 99);
+}
+
+}  // namespace
+
+Control heidenhain() {
+  return {words(), {}, {"the presets 1 to 99, or G54 for preset 1 to G59 for 6, G59.1 for 7 to G59.3 for 9", has_offset}, execute_heidenhain};
+}
+
+}  // namespace toothpath::controls

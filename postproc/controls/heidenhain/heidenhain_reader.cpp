@@ -1,0 +1,344 @@
+// Executes the subset of Heidenhain plain text that a gear program needs: L and LN blocks, TCPM, rotation cycle, datum cycle,
+// tolerance cycle, Q parameters, repeated sections, a jump to a label. Everything else is refused where it stands.
+#include "postproc/controls/heidenhain/heidenhain_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "geometry/base/angle.h"
+#include "postproc/controls/heidenhain/presets.h"
+#include "postproc/nc_execution.h"
+#include "postproc/nc_scanner.h"
+
+namespace toothpath::controls {
+namespace {
+
+constexpr std::size_t kLongestHeidenhainLine = 256;
+
+class Heidenhain {
+ public:
+  Heidenhain(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink)
+      : file_(file), control_(control), lines_(lines_of(text)), execution_(control, {.turns_need_axis_blend = true}, sink) {
+    execution_.set_feed_mode(NcExecution::Feed::per_minute);
+  }
+
+  Status run() {
+    if (auto bad = find_labels()) return *bad;
+    std::size_t steps = 0;
+    while (!ended_) {
+      if (pc_ >= lines_.size()) return place(lines_.size(), 0, "the program ends without END PGM");
+      if (++steps > control_.max_steps) return place(pc_ + 1, 0, fmt::format("more than {} executed blocks", control_.max_steps));
+      line_ = pc_++;
+      if (auto bad = execute(lines_[line_])) return *bad;
+    }
+    if (pc_ < lines_.size()) return place(pc_ + 1, 1, "text behind END PGM");
+    return Ok{};
+  }
+
+ private:
+  using Problem = std::optional<Diagnostic>;
+
+  Diagnostic place(std::size_t line, int column, std::string message) const {
+    return {DiagnosticKind::refused_input, {file_, static_cast<int>(line), column}, std::move(message)};
+  }
+  Diagnostic here(int column, std::string message) const { return place(line_ + 1, column, std::move(message)); }
+  Problem placed(int column, NcExecution::Problem problem) const {
+    if (!problem) return std::nullopt;
+    return here(column, std::move(*problem));
+  }
+
+  /// Block numbers count up from 0; labels occur once.
+  Problem find_labels() {
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      if (lines_[i].size() > kLongestHeidenhainLine) return place(i + 1, static_cast<int>(kLongestHeidenhainLine), fmt::format("line of {} characters exceeds {}", lines_[i].size(), kLongestHeidenhainLine));
+      NcScanner s(lines_[i]);
+      const auto n = s.number();
+      if (!n || *n != static_cast<double>(i) || (s.at() != ' ' && s.at() != '\0')) return place(i + 1, 1, fmt::format("block number {} expected", i));
+      s.skip_blanks();
+      if (!s.take("LBL ")) continue;
+      const auto label = s.number();
+      if (!label || !s.done()) return place(i + 1, s.column(), "LBL needs a number");
+      if (!labels_.emplace(*label, i).second) return place(i + 1, s.column(), fmt::format("LBL {} occurs twice", *label));
+    }
+    return std::nullopt;
+  }
+
+  Problem execute(std::string_view text) {
+    NcScanner s(text);
+    (void)s.number();
+    if (s.done()) return std::nullopt;
+    if (s.at() == ';') {
+      const std::string_view comment = s.rest().substr(1);
+      if (const int op = comment_label(comment, "OP "); op >= 0) execution_.begin_operation(op);
+      if (const int tooth = comment_label(comment, "TOOTH "); tooth >= 0) execution_.begin_tooth(tooth);
+      return std::nullopt;
+    }
+    if (started_ == s.take("BEGIN PGM ")) return here(s.column(), started_ ? "BEGIN PGM inside the program" : "the program does not begin with BEGIN PGM");
+    if (!started_) {
+      started_ = true;
+      name_ = s.rest();
+      if (name_.size() < 4 || name_.substr(name_.size() - 3) != " MM") return here(s.column(), "a program in MM with a name expected");
+      execution_.set_unit();
+      execution_.set_absolute();  // increments have words of their own
+      return std::nullopt;
+    }
+    if (ready_to_end_ && !s.take("END PGM ")) return here(s.column(), "END PGM expected behind M30");
+    if (ready_to_end_) {
+      ended_ = true;
+      return s.rest() == name_ ? Problem{} : here(s.column(), "END PGM names another program");
+    }
+    if (s.take("LN ")) return straight(s, true);
+    if (s.take("L ")) return straight(s, false);
+    const int column = s.column();
+    auto bad = statement(s, column);
+    if (!bad && !s.done()) return here(s.column(), "words that do not belong to the block");
+    return bad;
+  }
+
+  Problem statement(NcScanner& s, int column) {
+    if (s.take("LBL ")) return (void)s.number(), std::nullopt;
+    if (s.take("CALL LBL ")) return repeat(s);
+    if (s.take("FN 12: IF ")) return jump_if_less(s);
+    if (s.at() == 'Q' || s.take("FN 0: ") || s.take("FN 1: ")) return assign(s);
+    if (s.take("TOOL CALL ")) return tool_call(s, column);
+    if (s.take("CYCL DEF ")) return cycle(s, column);
+    if (s.take("PLANE RESET STAY") || s.take("TRANS DATUM RESET")) return std::nullopt;
+    if (s.take("FUNCTION RESET TCPM")) return placed(column, execution_.tcp_off());
+    if (s.take("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS")) return placed(column, execution_.tcp_on());
+    if (s.at() == 'M') return function(s, column);
+    return here(column, "the block is not in the subset");
+  }
+
+  // Parameters.
+  std::optional<int> parameter_number(NcScanner& s) const {
+    if (!s.take("Q")) return std::nullopt;
+    int n = 0;
+    const std::string_view rest = s.rest();
+    const auto r = std::from_chars(rest.data(), rest.data() + rest.size(), n);
+    if (r.ec != std::errc{} || n < 0 || n > 1999) return std::nullopt;
+    s.advance(static_cast<std::size_t>(r.ptr - rest.data()));
+    return n;
+  }
+  Result<double> expression(NcScanner& s) {
+    const int column = s.column();
+    s.set_functions("INT");
+    auto v = s.expression([this](NcScanner& p) -> const double* {
+      const auto n = parameter_number(p);
+      const auto found = n ? parameters_.find(*n) : parameters_.end();
+      return found == parameters_.end() ? nullptr : &found->second;
+    });
+    if (!v) return here(column, v.error().message);
+    if (!std::isfinite(*v) || std::abs(*v) > 1e9) return here(column, "value is not a number below 1e9");
+    return v;
+  }
+  Problem assign(NcScanner& s) {
+    const int column = s.column();
+    const auto n = parameter_number(s);
+    s.skip_blanks();
+    if (!n || !s.take("=")) return here(column, "Q parameter and = expected");
+    const auto v = expression(s);
+    if (!v) return v.error();
+    parameters_[*n] = *v;
+    return std::nullopt;
+  }
+  /// A signed number or a signed parameter.
+  Result<double> word_value(NcScanner& s) {
+    const char sign = s.at();
+    if ((sign == '+' || sign == '-') && s.ahead() == 'Q') {
+      s.advance(1);
+      const int column = s.column();
+      const auto n = parameter_number(s);
+      const auto found = n ? parameters_.find(*n) : parameters_.end();
+      if (found == parameters_.end()) return here(column, "a parameter that was never set");
+      return sign == '-' ? -found->second : found->second;
+    }
+    if (const auto n = s.number(); n && std::abs(*n) < 1e9) return *n;
+    return here(s.column(), "number expected");
+  }
+
+  // Sections.
+  Problem repeat(NcScanner& s) {
+    const int column = s.column();
+    const auto label = s.number();
+    s.skip_blanks();
+    const auto found = label ? labels_.find(*label) : labels_.end();
+    if (found == labels_.end()) return here(column, "CALL LBL of a label that does not exist");
+    if (!s.take("REP") || found->second >= line_) return here(column, "only a section that stands ahead can be repeated, with REP");
+    s.skip_blanks();
+    const auto count = s.number();
+    if (!count || *count < 1 || *count != std::floor(*count)) return here(s.column(), "REP needs a whole number");
+    const auto [entry, first] = repeats_.emplace(line_, *count);
+    (void)first;
+    if (entry->second > 0) {
+      entry->second -= 1;
+      pc_ = found->second + 1;
+    } else {
+      repeats_.erase(entry);
+    }
+    return std::nullopt;
+  }
+
+  /// IF value LT value GOTO LBL number
+  Problem jump_if_less(NcScanner& s) {
+    const auto a = word_value(s);
+    if (!a) return a.error();
+    s.skip_blanks();
+    if (!s.take("LT ")) return here(s.column(), "LT expected");
+    const auto b = word_value(s);
+    if (!b) return b.error();
+    s.skip_blanks();
+    if (!s.take("GOTO LBL ")) return here(s.column(), "GOTO LBL expected");
+    const int column = s.column();
+    const auto label = s.number();
+    const auto found = label ? labels_.find(*label) : labels_.end();
+    if (found == labels_.end()) return here(column, "GOTO LBL of a label that does not exist");
+    if (*a < *b) pc_ = found->second + 1;
+    return std::nullopt;
+  }
+
+  // Modes.
+  Problem function(NcScanner& s, int column) {
+    s.advance(1);
+    const auto m = s.number();
+    if (!m) return here(column, "number expected");
+    if (*m == 3) return placed(column, execution_.spindle_on());
+    if (*m == 128) return placed(column, execution_.tcp_on());
+    if (*m == 129) return placed(column, execution_.tcp_off());
+    if (*m == 5) execution_.spindle_off();
+    else if (*m == 30) {
+      ready_to_end_ = true;
+      return placed(column, execution_.end_program(!repeats_.empty()));
+    } else if (*m == 126 || *m == 127) {
+      nearer_way_ = *m == 126;
+    } else if (*m != 0 && *m != 8 && *m != 9 && !control_.switches_coolant(fmt::format("M{}", *m)))
+      return here(column, fmt::format("M{} is not in the subset", *m));
+    return std::nullopt;
+  }
+
+  Problem tool_call(NcScanner& s, int column) {
+    const auto n = s.number();
+    s.skip_blanks();
+    if (!n || !s.take("Z S")) return here(s.column(), "TOOL CALL needs number, Z and S");
+    const auto speed = s.number();
+    if (!speed) return here(s.column(), "number expected");
+    if (auto bad = placed(column, execution_.set_speed(*speed))) return bad;
+    if (auto bad = placed(column, execution_.choose_tool(*n))) return bad;
+    if (auto bad = placed(column, execution_.change_tool())) return bad;
+    return placed(column, execution_.set_length(execution_.tool()));
+  }
+
+  Problem cycle(NcScanner& s, int column) {
+    if (s.take("10.0 ROTATION") || s.take("32.0 TOLERANCE")) return std::nullopt;
+    if (s.take("10.1 ROT")) {
+      const auto v = word_value(s);
+      if (!v) return v.error();
+      execution_.turn_frame(*v);
+      return std::nullopt;
+    }
+    if (s.take("32.1")) {
+      s.skip_blanks();
+      double blend = 0;
+      if (s.take("T")) {
+        const auto v = s.number();
+        if (!v || !(*v >= 0)) return here(s.column(), "T must not be negative");
+        blend = *v;
+      }
+      execution_.set_blend(blend);
+      execution_.set_blend_axis({});  // the block that follows may say it
+      return std::nullopt;
+    }
+    if (s.take("32.2 HSC-MODE:")) {
+      if (!s.take("0 TA") && !s.take("1 TA")) return here(s.column(), "HSC-MODE:0 or 1 and TA expected");
+      const auto v = s.number();
+      if (!v || !(*v >= 0 && *v <= 10)) return here(s.column(), "TA must be 0 to 10 deg");
+      execution_.set_blend_axis(radians(*v));
+      return std::nullopt;
+    }
+    if (s.take("247 DATUM SETTING Q339=")) {
+      const auto n = word_value(s);
+      if (!n) return n.error();
+      for (const auto& offset : control_.work_offsets)
+        if (preset_number(offset.first) == *n) return placed(column, execution_.select_offset(offset.first));
+      return here(column, fmt::format("datum {} is not defined", *n));
+    }
+    return here(column, "the cycle is not in the subset");
+  }
+
+  // Straight lines.
+  Problem straight(NcScanner& s, bool vector) {
+    NcExecution::Move m;
+    bool fmax = false, m91 = false;
+    Vec3 axis = Vec3::Zero();
+    int components = 0;
+    const int first = s.column();
+    while (!s.done()) {
+      const int column = s.column();
+      const char c = s.at();
+      if (s.take("R0")) continue;
+      if (s.take("FMAX")) {
+        fmax = true;
+        continue;
+      }
+      if (s.take("M91")) {
+        m91 = true;
+        continue;
+      }
+      if (c == 'F') {
+        s.advance(1);
+        const auto f = s.number();
+        if (!f) return here(column, "number expected");
+        if (auto bad = placed(column, execution_.set_feed(*f))) return bad;
+        m.own_feed = true;
+        continue;
+      }
+      if (vector && c == 'T' && s.ahead() >= 'X' && s.ahead() <= 'Z') {
+        const int k = s.ahead() - 'X';
+        s.advance(2);
+        const auto v = word_value(s);
+        if (!v) return v.error();
+        if ((components & (1 << k)) != 0) return here(column, "a component of the vector occurs twice");
+        components |= 1 << k;
+        axis[k] = *v;
+        continue;
+      }
+      std::size_t a = 0;
+      while (a < 5 && (control_.letters[a] != c || c == '\0')) ++a;
+      if (a == 5) return here(column, "a word that is not in the subset or no axis of the machine");
+      if (m.has[a]) return here(column, fmt::format("two {} words in a block", c));
+      s.advance(1);
+      const auto v = word_value(s);
+      if (!v) return v.error();
+      if (control_.rollover[a] && !nearer_way_) return here(column, fmt::format("{} rolls over: which way it turns is said by M126 alone", c));
+      m.has[a] = true;
+      m.axis[a] = *v;
+    }
+    if (vector && (components != 7 || m.has[3] || m.has[4])) return here(first, "LN needs TX TY TZ and no rotary words");
+    if (vector) m.vector = axis;
+    if (!vector && std::none_of(m.has.begin(), m.has.end(), [](bool h) { return h; })) return here(first, "L without an axis word");
+    if (fmax && m.own_feed) return here(first, "F and FMAX in a block");
+    m.rapid = fmax;
+    m.machine_frame = m91;
+    return placed(first, execution_.move(m, static_cast<std::int32_t>(line_) + 1));
+  }
+
+  const std::string& file_;
+  const NcControl& control_;
+  std::vector<std::string_view> lines_;
+  NcExecution execution_;
+  std::unordered_map<double, std::size_t> labels_;
+  std::unordered_map<std::size_t, double> repeats_;  // CALL LBL -> what is left
+  std::unordered_map<int, double> parameters_;
+  std::string_view name_;
+  std::size_t pc_ = 0, line_ = 0;
+  bool nearer_way_ = false;  // M126
+  bool started_ = false, ready_to_end_ = false, ended_ = false;
+};
+
+}  // namespace
+
+Status execute_heidenhain(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+  return Heidenhain(text, file, control, sink).run();
+}
+
+}  // namespace toothpath::controls

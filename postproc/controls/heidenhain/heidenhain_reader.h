@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "postproc/nc_reader.h"
+
+namespace toothpath::controls {
+
+/// Executes Heidenhain plain text, the subset that we write; everything else is refused where it stands.
+[[nodiscard]] Status execute_heidenhain(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
+
+}  // namespace toothpath::controls

@@ -1,0 +1,81 @@
+// LinuxCNC 2.8 and later. G92.1 clears offsets that an earlier program left. G61: what G64 P leaves of a corner is more than P, does
+// not hold for rotaries and saves no time (docs/dialects.md). Blocks that hardly move X, Y, Z lose their time in G93 before 2.9.0, so
+// they are printed in G94 with the exact feed. The codes of TCP are remaps of the site: machine data.
+#include <cmath>
+
+#include "postproc/controls/control.h"
+#include "postproc/nc_interpreter.h"
+#include "postproc/work_offset.h"
+
+namespace toothpath::controls {
+namespace {
+
+NcDialect words() {
+  NcDialect d;
+  d.name = "linuxcnc";
+  d.extension = ".ngc";
+  d.format = {.linear_decimals = 4, .rotary_decimals = 5};
+  d.min_feed_product = 0.2;
+  d.max_line = 252;
+  d.safe_start = {"G21 G17 G90 G94 G40 G49 G80", "G92.1"};
+  d.start = {"{safe_start}", "{offset}", "G61"};
+  d.retract = {"G53 G0 Z{top}"};
+  d.tool_change = {"T{tool} M6", "{safe_start}", "{offset}", "S{speed} M3"};
+  d.compensation = d.tcp_compensation = {"G43 H{tool}"};
+  d.operation_end = {"G94 F{free}"};
+  d.end = {"G61", "G49"};
+  d.frame_end = {"M2"};
+  d.own_m = {{0, 6}, {19, 19}, {30, 30}, {48, 53}, {60, 73}, {98, 99}};
+  d.exact_path_mm = 0.0005;  // unless the machine says otherwise
+  d.tcp_codes_of_site = true;
+  d.loop.form = NcLoop::Form::sub_program;
+  d.loop.before = {"o{label} sub"};
+  d.loop.after = {"o{label} endsub"};
+  d.loop.call = {"{first_tooth}", "#1={first}", "o{label+1} while [#1 LT {teeth}]", "{pick}", "o{label} call [{turns}*360/{teeth}]",
+                 "#1=[#1+1]", "o{label+1} endwhile"};
+  d.loop.pick = {"#2=[[#1*{stride}] MOD {teeth}]"};
+  d.loop.place = "#1";
+  d.loop.tooth = "#2";
+  d.loop.index = "#1";
+  d.loop.index_brackets = true;
+  d.rollover.way = NcRollover::Way::sign;
+  d.rollover.index = "[{word} MOD 360]";
+  d.rollover.backwards = "[{teeth}-{tooth}]";
+  d.rollover.note = "{axis} ROLLS OVER: [AXIS_{axis}] WRAPPED_ROTARY = 1";
+  return d;
+}
+
+/// What its motion controller leaves of a corner under G64 P, mm. The next block begins a servo period early at worst, and the samples are
+/// smoothed and joined by chords: docs/dialects.md. The machine says what its acceleration leaves under G61, a T^2 / 4.
+double corner_of_g64(double p_mm, double q_mm, double exact_mm) {
+  constexpr double kUnequal = 1.06;  // blocks next to a corner that is passed without a stop accelerate by a tenth less
+  const double early = std::sqrt(0.5 * exact_mm);  // (T / 2) sqrt(a / 2)
+  const double root = std::sqrt(kUnequal * p_mm) + early;
+  return root * root + 1.2 * exact_mm + q_mm;
+}
+
+const IsoLanguage& language() {
+  static const IsoLanguage l = [] {
+    IsoLanguage linuxcnc;
+    linuxcnc.o_words = linuxcnc.codes_of_site = true;
+    linuxcnc.point_needed = false;
+    linuxcnc.g_tenths = {591, 592, 593, 610, 611, 640, 921};
+    linuxcnc.corner_of_g64 = corner_of_g64;
+    linuxcnc.rules.least_rate = 0.1;  // before 2.9.0 the rate of a G93 block is raised to this
+    linuxcnc.rules.per_minute_turns = linuxcnc.rules.sign_is_sense = true;
+    return linuxcnc;
+  }();
+  return l;
+}
+
+Status execute(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+  return execute_iso(text, file, control, sink, language());
+}
+
+bool has_offset(std::string_view name) { return basic_offset(name) > 0 || tenth_offset(name) > 0; }
+
+}  // namespace
+
+Control linuxcnc() { return {words(), {}, {"G54 to G59 and G59.1 to G59.3", has_offset}, execute}; }
+
+}  // namespace toothpath::controls

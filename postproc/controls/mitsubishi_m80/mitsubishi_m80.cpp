@@ -1,0 +1,30 @@
+// Mitsubishi M80: the Fanuc words with four decimals, a larger greatest F in G93, F behind every return to G94, no TCP. Made
+// as docs/dialects.md tells: the words of Fanuc with what the manual of the control says differently.
+#include "postproc/controls/fanuc/fanuc.h"
+
+namespace toothpath::controls {
+namespace {
+
+NcDialect words() {
+  NcDialect d = fanuc_words();
+  d.name = "mitsubishi_m80";
+  d.format = {.linear_decimals = 4, .rotary_decimals = 4};
+  d.max_inverse_time = 999999.999;
+  d.tcp_on.clear();
+  d.tcp_off.clear();
+  d.tcp_starts_at_zero = false;
+  d.tcp_note.clear();
+  d.rollover.note = "{axis} ROLLS OVER: SHORTCUT OF THE ROTARY AXIS VALID, 8213=1";
+  return d;
+}
+
+Status execute(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+  static const IsoLanguage language = fanuc_language();
+  return execute_iso(text, file, control, sink, language);
+}
+
+}  // namespace
+
+Control mitsubishi_m80() { return {words(), {"mitsubishi", "m80"}, fanuc_offsets(), execute}; }
+
+}  // namespace toothpath::controls

@@ -1,0 +1,200 @@
+#include "postproc/controls/of_machine.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "geometry/base/angle.h"
+#include "postproc/controls/registry.h"
+
+namespace toothpath::controls {
+namespace {
+
+/// n of "Mn", one to three digits without a leading zero; -1: another text.
+int m_number(std::string_view word) {
+  int n = -1;
+  if (word.size() < 2 || word.size() > 4 || word[0] != 'M' || (word[1] == '0' && word.size() > 2)) return -1;
+  const auto [end, error] = std::from_chars(word.data() + 1, word.data() + word.size(), n);
+  return error == std::errc() && end == word.data() + word.size() && n >= 0 ? n : -1;
+}
+
+/// Judges a machine file by the words of its control, key by key.
+class Judge {
+ public:
+  Judge(const Machine& machine, const NcDialect& words) : machine_(machine), words_(words) {}
+
+  std::vector<Diagnostic> errors() && {
+    digits();
+    corners();
+    tcp();
+    rollover();
+    coolants();
+    return std::move(errors_);
+  }
+
+ private:
+  template <typename... Args>
+  void refuse(std::string_view key, fmt::format_string<Args...> text, Args&&... args) {
+    errors_.push_back(fail_at(machine_.where(key), text, std::forward<Args>(args)...));
+  }
+
+  void digits() {
+    const auto look = [this](const char* key, const std::optional<int>& given) {
+      if (given && (*given < 1 || *given > 7)) refuse(key, "{} = {}: 1 to 7 decimals are possible in a word", key, *given);
+    };
+    look("post.linear_decimals", machine_.post.linear_decimals);
+    look("post.rotary_decimals", machine_.post.rotary_decimals);
+  }
+
+  void corners() {
+    const PostSettings& post = machine_.post;
+    if (post.corner_tolerance_mm && !(words_.exact_path_mm > 0)) {
+      std::string takers;
+      for (const Control* c : all())
+        if (c->words.exact_path_mm > 0) takers += fmt::format("{}\"{}\"", takers.empty() ? "" : ", ", c->words.name);
+      refuse("post.corner_tolerance", "post.corner_tolerance belongs to dialect {}, this is \"{}\"", takers, words_.name);
+    }
+    if (!post.smoothing_on.empty() && !words_.takes_smoothing)
+      refuse("post.smoothing_on", "post.smoothing_on: dialect \"{}\" has its own words for what may be left of corners", words_.name);
+  }
+
+  void tcp() {
+    if (machine_.tcp == TcpMode::none) return;
+    const PostSettings& post = machine_.post;
+    const bool on = !post.tcp_on.empty() || !words_.tcp_on.empty(), off = !post.tcp_off.empty() || !words_.tcp_off.empty();
+    if (words_.tcp_codes_of_site && !(on && off))
+      refuse("tcp", "tcp with dialect \"{}\" needs post.tcp_on and post.tcp_off: its codes are site data", words_.name);
+    else if (!(on && off))
+      refuse("tcp", "dialect \"{}\" has no TCP: tcp = \"none\" (joint output) is supported", words_.name);
+    else if (machine_.tcp == TcpMode::vectors && words_.vector_words[0].empty())
+      refuse("tcp", "dialect \"{}\" has no tool vectors: tcp = \"none\" and \"angles\" are supported", words_.name);
+  }
+
+  void rollover() {
+    if (words_.rollover.way != NcRollover::Way::none || words_.write != nullptr) return;
+    for (std::size_t k = 0; k < machine_.chain.rotary_count(); ++k)
+      if (const RotaryAxis& axis = machine_.chain.rotary(k); axis.rollover)
+        refuse(fmt::format("axes.{}.rollover", axis.letter), "axes.{}.rollover: dialect \"{}\" has no words for an axis that rolls over", axis.letter, words_.name);
+  }
+
+  /// What is wrong with a word of the builder; nothing: it can switch a coolant.
+  [[nodiscard]] std::optional<std::string> fault_of(const std::string& word) const {
+    const int n = m_number(word);
+    if (n < 0) return fmt::format("\"{}\" is no M word such as M7", word);
+    for (const auto& [first, last] : words_.own_m)
+      if (n >= first && n <= last) return fmt::format("{} means something else to dialect \"{}\"", word, words_.name);
+    const PostSettings& post = machine_.post;
+    for (const auto* codes : {&post.tcp_on, &post.tcp_off, &post.smoothing_on, &post.smoothing_off})
+      if (std::find(codes->begin(), codes->end(), word) != codes->end()) return fmt::format("{} is a code of TCP or smoothing in this file", word);
+    return std::nullopt;
+  }
+
+  void coolants() {
+    auto merged = words_.coolant;
+    for (const auto& [coolant, given] : machine_.post.coolant) merged[coolant] = given;
+    for (const auto& [coolant, given] : machine_.post.coolant) {
+      const std::string key = fmt::format("post.coolant_{}", to_string(coolant));
+      if (!words_.takes_coolant) {
+        refuse(key, "{}: dialect \"{}\" has words of its own and no others", key, words_.name);
+        continue;
+      }
+      for (const std::string& word : {given.on, given.off})
+        if (const auto fault = fault_of(word)) refuse(key, "{}: {}", key, *fault);
+      for (const auto& [other, used] : merged)
+        if (given.on == used.off) {
+          refuse(key, "{}: {} switches {} off", key, given.on, to_string(other));
+          break;
+        }
+    }
+  }
+
+  const Machine& machine_;
+  const NcDialect& words_;
+  std::vector<Diagnostic> errors_;
+};
+
+}  // namespace
+
+std::vector<Diagnostic> judge(const Machine& machine) {
+  if (const Control* control = find(machine.dialect)) return Judge(machine, control->words).errors();
+  return {fail_at(machine.where("dialect"), "dialect = \"{}\" is not one of {}", machine.dialect, list_of_names())};
+}
+
+MachineReading read_machine(const std::string& path) { return read_machine_file(path, judge); }
+
+MachineReading read_machine_of_text(std::string_view text, const std::string& file) { return read_machine_text(text, file, judge); }
+
+Result<NcDialect> dialect_of(const Machine& machine) {
+  if (auto errors = judge(machine); !errors.empty()) return std::move(errors.front());
+  NcDialect d = find(machine.dialect)->words;
+  const PostSettings& post = machine.post;
+  d.format.linear_decimals = post.linear_decimals.value_or(d.format.linear_decimals);
+  d.format.rotary_decimals = post.rotary_decimals.value_or(d.format.rotary_decimals);
+  if (d.exact_path_mm > 0) d.exact_path_mm = machine.exact_corner_mm();
+  if (!post.tcp_on.empty()) d.tcp_on = post.tcp_on;
+  if (!post.tcp_off.empty()) {
+    d.tcp_off = post.tcp_off;
+    if (!d.tcp_starts_at_zero) d.safe_start.insert(d.safe_start.end(), d.tcp_off.begin(), d.tcp_off.end());
+  }
+  if (!post.smoothing_on.empty()) {
+    if (post.smoothing_off.empty() || !post.smoothing_tolerance_mm)  // a file without them is refused by its reader
+      return fail_at(machine.where("post.smoothing_on"), "post.smoothing_on needs post.smoothing_off and post.smoothing_tolerance");
+    d.smoothing_on = post.smoothing_on;
+    d.smoothing_off = post.smoothing_off;
+    d.smoothing_mm = *post.smoothing_tolerance_mm;
+    d.smoothing_axis_rad = post.smoothing_axis_tolerance_rad;
+    d.blend = false;
+    std::erase_if(d.start, [](const std::string& line) { return line.find("{blend}") != std::string::npos; });
+  }
+  for (const auto& [coolant, words] : post.coolant) d.coolant[coolant] = words;
+  return d;
+}
+
+AxisOptions axis_options(const NcDialect& words, const Machine& machine) {
+  AxisOptions options;
+  options.format = words.format;
+  options.max_inverse_time = words.max_inverse_time;
+  options.loop_needs_constant_index = words.loop.form == NcLoop::Form::stretches || !words.loop.index_line.empty();
+  options.expand_teeth = !machine.post.index_loop.value_or(true) || words.loop.form == NcLoop::Form::none;
+  options.tcp_starts_at_zero = words.tcp_starts_at_zero;
+  options.tcp_loop = !words.loop.frame_on.empty();
+  return options;
+}
+
+Result<NcControl> control_of(const Machine& machine, const Setup& setup, std::span<const ToolAssembly> tools) {
+  const Control* control = find(machine.dialect);
+  if (control == nullptr) return fail("dialect \"{}\" cannot be read back: {} can", machine.dialect, list_of_names());
+  NcControl c;
+  c.execute = control->execute;
+  c.rotary_rounding_deg = 0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(control->words.format.rotary_decimals));
+  if (machine.tcp != TcpMode::none) c.chain = machine.chain;
+  c.top_mm = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
+  c.exact_path_mm = machine.exact_corner_mm();
+  c.tcp_on = machine.post.tcp_on;
+  c.tcp_off = machine.post.tcp_off;
+  c.smoothing_on = machine.post.smoothing_on;
+  c.smoothing_off = machine.post.smoothing_off;
+  c.smoothing_mm = machine.post.smoothing_tolerance_mm.value_or(0);
+  c.smoothing_axis_rad = machine.post.smoothing_axis_tolerance_rad;
+  for (const auto& [coolant, words] : machine.post.coolant) c.coolant_words.insert(c.coolant_words.end(), {words.on, words.off});
+  c.letters = {'X', 'Y', 'Z', 0, 0};
+  for (std::size_t i = 0; i < 3; ++i) c.rapid_speed[i] = machine.chain.linear[i].max_speed;
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
+    c.letters[3 + k] = machine.chain.rotary(k).letter;
+    c.rapid_speed[3 + k] = degrees(machine.chain.rotary(k).max_speed);
+    c.rollover[3 + k] = machine.chain.rotary(k).rollover;
+  }
+  for (const auto& t : tools)
+    if (!c.tool_length_mm.emplace(t.number, t.length_mm).second) return fail("tool number {} occurs twice", t.number);
+  c.work_offsets[setup.work_offset] = setup.work_offset_at_mm;
+  return c;
+}
+
+std::optional<std::string> other_work_offsets(const Machine& machine, std::string_view name) {
+  const Control* control = find(machine.dialect);
+  if (control == nullptr) return fmt::format("none that is known: \"{}\" is not one of {}", machine.dialect, list_of_names());
+  if (control->offsets.has(name)) return std::nullopt;
+  return control->offsets.names;
+}
+
+}  // namespace toothpath::controls

@@ -1,0 +1,69 @@
+// Siemens 840D sl. TRAORI and TRAFOOF may drop the frames (machine data 10602), so that the work offset stands behind each of
+// them. G641 ADIS is the way ahead of and behind a corner within which the axes may leave the path; where cuts turn a
+// rotary the text names the axes whose travel is the way. The compressor stays off. The teeth run in a
+// FOR loop of the control; with TRAORI the programmable frame ROT turns with them. MOD is for whole variables only there, so that the
+// remainder of the spread order is made with TRUNC, half a unit away from where it could fall on the wrong side. ORIAXES: the rotaries are linear between
+// the blocks, also where a block carries the tool vector A3 B3 C3.
+#include "postproc/controls/control.h"
+#include "postproc/controls/siemens/siemens_reader.h"
+#include "postproc/work_offset.h"
+
+namespace toothpath::controls {
+
+namespace {
+
+NcDialect words() {
+  NcDialect d;
+  d.name = "siemens";
+  d.extension = ".mpf";
+  d.format = {.linear_decimals = 5, .rotary_decimals = 6};
+  d.rotary_equals = "=";
+  d.comment_open = ";";
+  d.comment_close = "";
+  d.max_line = 240;
+  d.safe_start = {"G17 G40 G90 G94 G710", "TRAFOOF", "ROT", "COMPOF"};
+  d.start = {"{safe_start}", "{offset}", "G641 ADIS={blend}"};
+  d.retract = {"SUPA G0 Z{top} D0"};
+  d.tool_change = {"T=\"T{tool}\"", "M6", "{safe_start}", "{offset}", "S{speed} M3"};
+  d.compensation = d.tcp_compensation = {"D1"};
+  d.operation_end = {"G94 F{free}"};
+  d.end = {"G60", "{path_group_end}"};
+  d.frame_end = {"M30"};
+  d.blend = d.blend_is_way = true;
+  d.takes_smoothing = true;  // CYCLE832 in place of G641
+  d.path_group = "FGROUP({axes})";
+  d.path_radius = "FGREF[{axis}]={radius}";
+  d.path_group_end = "FGROUP()";
+  d.tcp_on = {"TRAORI", "{offset}", "ORIWKS", "ORIAXES"};
+  d.tcp_off = {"TRAFOOF", "{offset}"};
+  d.vector_words = {"A3=", "B3=", "C3="};
+  d.loop.form = NcLoop::Form::in_line;
+  d.loop.before = {"{first_tooth}", "FOR R1={first} TO {last}", "{pick}", "R2={turns}*360/{teeth}"};
+  d.loop.pick = {"R4=R1*{stride}-{teeth}*TRUNC((R1*{stride}+0.5)/{teeth})"};
+  d.loop.place = "R1";
+  d.loop.tooth = "R4";
+  d.loop.after = {"ENDFOR"};
+  d.loop.index = "R2";
+  d.rollover.way = NcRollover::Way::shortest;
+  d.rollover.open = "DC(";
+  d.rollover.close = ")";
+  d.rollover.index = "ABS({word}-360*TRUNC(({word})/360))";  // ABS: the quotient may be rounded up to a whole number
+  d.rollover.backwards = "({teeth}-{tooth})";
+  d.rollover.note = "{axis} ROLLS OVER: MODULO AXIS, 30310=1, 30330=360";
+  d.loop.frame_on = {"R3={frame_sign}{tooth}*360/{teeth}", "ROT Z=R3"};
+  d.loop.frame_off = {"ROT"};
+  return d;
+}
+
+bool has_offset(std::string_view name) {
+  const int n = !name.empty() && name[0] == 'G' ? whole_number(name.substr(1)) : -1;
+  return (n >= 54 && n <= 57) || (n >= 505 && n <= 599);
+}
+
+}  // namespace
+
+Control siemens() {
+  return {words(), {"sinumerik"}, {"G54 to G57 and G505 to G599 (G58 and G59 shift single axes)", has_offset}, execute_siemens};
+}
+
+}  // namespace toothpath::controls

@@ -1,0 +1,391 @@
+// Executes the subset of Siemens 840D text that a gear program needs: G words, TRAORI with rotary words or A3 B3 C3, ROT about
+// Z, R parameters, FOR loops. Everything else is refused where it stands.
+#include "postproc/controls/siemens/siemens_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <unordered_map>
+
+#include "postproc/controls/siemens/path_group.h"
+#include "postproc/nc_execution.h"
+#include "postproc/nc_scanner.h"
+
+namespace toothpath::controls {
+namespace {
+
+constexpr std::size_t kDeepestLoop = 8;
+constexpr std::size_t kLongestSiemensLine = 512;
+
+class Siemens {
+ public:
+  Siemens(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink)
+      : file_(file), control_(control), lines_(lines_of(text)), execution_(control, {}, sink), path_(control.letters) {}
+
+  Status run() {
+    if (auto bad = find_loops()) return *bad;
+    std::size_t steps = 0;
+    while (!ended_) {
+      if (pc_ >= lines_.size()) return place(lines_.size(), 0, "the program ends without M30");
+      if (++steps > control_.max_steps) return place(pc_ + 1, 0, fmt::format("more than {} executed blocks", control_.max_steps));
+      line_ = pc_++;
+      if (auto bad = execute(lines_[line_])) return *bad;
+    }
+    for (std::size_t i = line_ + 1; i < lines_.size(); ++i) {
+      NcScanner rest(lines_[i]);
+      if (!rest.done() && rest.at() != ';') return place(i + 1, rest.column(), "text behind the end of the program is not executed");
+    }
+    return Ok{};
+  }
+
+ private:
+  using Problem = std::optional<Diagnostic>;
+  struct Loop {
+    std::size_t head = 0;
+    int parameter = 0;
+    double last = 0;
+  };
+  /// What one line asks for.
+  struct Request {
+    NcExecution::Move move;
+    std::optional<double> f, s, adis;
+    int motion = -1, feed_mode = -1, column = 1, m = -1, d = -1;
+    bool supa = false, g641 = false, g60 = false, traori = false, trafoof = false, rot = false;
+    double rot_deg = 0;
+    std::string offset, tool;
+    std::array<double, 3> vector{};
+    int vector_words = 0;
+    unsigned groups = 0;
+  };
+
+  Diagnostic place(std::size_t line, int column, std::string message) const {
+    return {DiagnosticKind::refused_input, {file_, static_cast<int>(line), column}, std::move(message)};
+  }
+  Diagnostic here(int column, std::string message) const { return place(line_ + 1, column, std::move(message)); }
+  Problem placed(int column, NcExecution::Problem problem) const {
+    if (!problem) return std::nullopt;
+    return here(column, std::move(*problem));
+  }
+
+  // Loops.
+  Problem find_loops() {
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < lines_.size(); ++i) {
+      NcScanner s(lines_[i]);
+      s.skip_blanks();
+      if (s.take("FOR ")) open.push_back(i);
+      else if (s.take("ENDFOR")) {
+        if (open.empty()) return place(i + 1, s.column(), "ENDFOR closes nothing");
+        ends_[open.back()] = i;
+        open.pop_back();
+      }
+      if (open.size() > kDeepestLoop) return place(i + 1, 1, fmt::format("loops nest deeper than {}", kDeepestLoop));
+    }
+    if (!open.empty()) return place(open.back() + 1, 1, "FOR is never closed");
+    return std::nullopt;
+  }
+
+  Result<double> expression(NcScanner& s) {
+    const int column = s.column();
+    s.set_functions("TRUNC", "ABS");
+    auto v = s.expression([this](NcScanner& p) { return parameter(p); });
+    if (!v) return here(column, v.error().message);
+    if (!std::isfinite(*v) || std::abs(*v) > 1e9) return here(column, "value is not a number below 1e9");
+    return v;
+  }
+  std::optional<int> parameter_number(NcScanner& s) const {
+    if (s.at() != 'R' || !NcScanner::is_digit(s.ahead())) return std::nullopt;
+    int n = 0;
+    const std::string_view rest = s.rest().substr(1);
+    const auto r = std::from_chars(rest.data(), rest.data() + rest.size(), n);
+    if (r.ec != std::errc{} || n > 999) return std::nullopt;
+    s.advance(1 + static_cast<std::size_t>(r.ptr - rest.data()));
+    return n;
+  }
+  const double* parameter(NcScanner& s) const {
+    const auto n = parameter_number(s);
+    if (!n) return nullptr;
+    const auto found = parameters_.find(*n);
+    return found == parameters_.end() ? nullptr : &found->second;
+  }
+
+  Problem loop_head(NcScanner& s) {
+    const int column = s.column();
+    const auto n = parameter_number(s);
+    if (!n || !s.take("=")) return here(column, "FOR needs an R parameter and its first value");
+    const auto first = expression(s);
+    if (!first) return first.error();
+    s.skip_blanks();
+    if (!s.take("TO ")) return here(s.column(), "TO expected");
+    const auto last = expression(s);
+    if (!last) return last.error();
+    if (!s.done()) return here(s.column(), "words behind FOR");
+    if (*first > *last) {
+      pc_ = ends_.at(line_) + 1;
+      return std::nullopt;
+    }
+    parameters_[*n] = *first;
+    loops_.push_back({line_, *n, *last});
+    return std::nullopt;
+  }
+  Problem loop_end(NcScanner& s) {
+    if (!s.done()) return here(s.column(), "words behind ENDFOR");
+    if (loops_.empty() || ends_.at(loops_.back().head) != line_) return here(1, "ENDFOR of a loop that is not running");
+    Loop& l = loops_.back();
+    double& value = parameters_[l.parameter];
+    value += 1;
+    if (value <= l.last) pc_ = l.head + 1;
+    else loops_.pop_back();
+    return std::nullopt;
+  }
+
+  // Lines.
+  Problem execute(std::string_view text) {
+    if (text.size() > kLongestSiemensLine) return here(static_cast<int>(kLongestSiemensLine), fmt::format("line of {} characters exceeds {}", text.size(), kLongestSiemensLine));
+    const std::size_t semicolon = text.find(';');
+    if (semicolon != std::string_view::npos) {
+      const std::string_view comment = text.substr(semicolon + 1);
+      if (const int op = comment_label(comment, "OP "); op >= 0) execution_.begin_operation(op);
+      if (const int tooth = comment_label(comment, "TOOTH "); tooth >= 0) execution_.begin_tooth(tooth);
+      text = text.substr(0, semicolon);
+    }
+    NcScanner s(text);
+    if (s.done() || execution_.site_smoothing(text)) return std::nullopt;
+    if (s.take("FOR ")) return loop_head(s);
+    if (s.take("ENDFOR")) return loop_end(s);
+    if (s.at() == 'R' && NcScanner::is_digit(s.ahead())) {
+      const auto n = parameter_number(s);
+      if (!n || !s.take("=")) return here(1, "an R parameter must be set with =");
+      const auto v = expression(s);
+      if (!v) return v.error();
+      if (!s.done()) return here(s.column(), "words behind an assignment");
+      parameters_[*n] = *v;
+      return std::nullopt;
+    }
+    Request r;
+    while (!s.done())
+      if (auto bad = word(s, r)) return bad;
+    return apply(r);
+  }
+
+  Problem word(NcScanner& s, Request& r) {
+    const int column = s.column();
+    const char c = s.at();
+    if (!NcScanner::is_letter(c)) return here(column, fmt::format("character 0x{:02x} is no part of a word", static_cast<unsigned char>(c)));
+    if (NcScanner::is_letter(s.ahead())) return keyword(s, r);
+    // Vector: A3= B3= C3=
+    if (c >= 'A' && c <= 'C' && s.ahead() == '3' && s.rest().substr(2, 1) == "=") {
+      const int k = c - 'A';
+      if ((r.vector_words & (1 << k)) != 0) return here(column, fmt::format("two {}3 words in a block", c));
+      s.advance(3);
+      const auto v = expression(s);
+      if (!v) return v.error();
+      r.vector[static_cast<std::size_t>(k)] = *v;
+      r.vector_words |= 1 << k;
+      r.column = column;
+      return std::nullopt;
+    }
+    s.advance(1);
+    for (std::size_t a = 0; a < 5; ++a) {
+      if (control_.letters[a] != c) continue;
+      if (r.move.has[a]) return here(column, fmt::format("two {} words in a block", c));
+      const bool equals = s.take("=");
+      if (const bool direct = equals && s.rest().starts_with("DC("); direct != control_.rollover[a])
+        return here(column, direct ? fmt::format("DC() of {}, which does not roll over", c)
+                                   : fmt::format("{} rolls over: which way it turns is said by DC() alone", c));
+      else if (direct) s.advance(2);
+      const auto v = equals ? expression(s) : literal(s, column);
+      if (!v) return v.error();
+      if (control_.rollover[a] && !(*v >= 0 && *v < 360)) return here(column, fmt::format("{}=DC({}) is outside 0 .. 360", c, *v));
+      r.move.has[a] = true;
+      r.move.axis[a] = *v;
+      r.column = column;
+      return std::nullopt;
+    }
+    if (c == 'T') {
+      if (!s.take("=\"T")) return here(column, "T needs the name of a tool of the list: T=\"T1\"");
+      const auto n = literal(s, column);
+      if (!n) return n.error();
+      if (!s.take("\"")) return here(s.column(), "\" expected");
+      if (auto bad = placed(column, execution_.choose_tool(*n))) return bad;
+      r.column = column;
+      return std::nullopt;
+    }
+    const auto v = literal(s, column);
+    if (!v) return v.error();
+    switch (c) {
+      case 'N': return std::nullopt;
+      case 'F': return once(r.f, *v, c, column);
+      case 'S': return once(r.s, *v, c, column);
+      case 'G': return g_word(r, *v, column);
+      case 'D':
+        if (*v != 0 && *v != 1) return here(column, fmt::format("D{} is not in the subset", *v));
+        r.d = static_cast<int>(*v);
+        return std::nullopt;
+      case 'M': {
+        static constexpr int known[] = {0, 3, 5, 6, 7, 8, 9, 30};
+        if (std::find(std::begin(known), std::end(known), *v) == std::end(known) && !control_.switches_coolant(fmt::format("M{}", *v))) return here(column, fmt::format("M{} is not in the subset", *v));
+        if (r.m >= 0) return here(column, "two M words in a block");
+        r.m = static_cast<int>(*v);
+        r.column = column;
+        return std::nullopt;
+      }
+      default: return here(column, fmt::format("word {} is not in the subset or no axis of the machine", c));
+    }
+  }
+
+  Result<double> literal(NcScanner& s, int column) const {
+    if (const auto n = s.number(); n && std::abs(*n) < 1e9) return *n;
+    return here(column, "number expected");
+  }
+  Problem once(std::optional<double>& slot, double v, char letter, int column) {
+    if (slot) return here(column, fmt::format("two {} words in a block", letter));
+    slot = v;
+    return std::nullopt;
+  }
+
+  Problem keyword(NcScanner& s, Request& r) {
+    const int column = s.column();
+    const std::string_view name = s.letters();
+    if (name == "TRAORI") r.traori = true;
+    else if (name == "TRAFOOF") r.trafoof = true;
+    else if (name == "SUPA") r.supa = true;
+    else if (name == "ORIWKS" || name == "ORIAXES" || name == "COMPOF") return std::nullopt;
+    else if (name == "FGROUP" || name == "FGREF") return path_group(s, name == "FGREF");
+    else if (name == "ADIS") {
+      if (!s.take("=")) return here(s.column(), "= expected");
+      const auto v = expression(s);
+      if (!v) return v.error();
+      if (!(*v >= 0)) return here(column, "ADIS must not be negative");
+      r.adis = *v;
+    } else if (name == "ROT") {
+      r.rot = true;
+      s.skip_blanks();
+      if (s.take("Z=")) {
+        const auto v = expression(s);
+        if (!v) return v.error();
+        r.rot_deg = *v;
+      }
+      if (!s.done()) return here(s.column(), "ROT takes an angle about Z alone");
+    } else {
+      return here(column, fmt::format("{} is not in the subset", name));
+    }
+    r.column = column;
+    return std::nullopt;
+  }
+
+  Problem path_group(NcScanner& s, bool radius) {
+    const int column = s.column();
+    if (!radius) {
+      if (auto bad = path_.group(s); !bad.empty()) return here(s.column(), std::move(bad));
+    } else {
+      const auto rotary = path_.rotary(s);
+      if (!rotary) return here(column, "FGREF needs a rotary axis of the machine in brackets, and =");
+      const auto v = expression(s);
+      if (!v) return v.error();
+      if (!(*v > 0)) return here(column, "FGREF must be above 0");
+      path_.set_radius(*rotary, *v);
+    }
+    execution_.set_path_weights(path_.weights());
+    return std::nullopt;
+  }
+
+  Problem g_word(Request& r, double v, int column) {
+    unsigned group = 0;
+    const int g = v == std::floor(v) ? static_cast<int>(v) : -1;
+    switch (g >= 505 && g <= 599 ? 505 : g) {
+      case 0: case 1: group = 1; r.motion = g; break;
+      case 17: group = 6; break;
+      case 40: group = 7; break;
+      case 54: case 55: case 56: case 57: case 505: group = 8; r.offset = fmt::format("G{}", g); break;
+      case 60: group = 10; r.g60 = true; break;
+      case 641: group = 10; r.g641 = true; break;
+      case 90: group = 14; execution_.set_absolute(); break;
+      case 93: case 94: group = 15; r.feed_mode = g; break;
+      case 710: group = 13; execution_.set_unit(); break;
+      default: return here(column, fmt::format("G{} is not in the subset", v));
+    }
+    if ((r.groups & (1U << group)) != 0) return here(column, "two G words of one modal group in a block");
+    r.groups |= 1U << group;
+    if (r.column == 1) r.column = column;
+    return std::nullopt;
+  }
+
+  Problem apply(Request& r) {
+    if (r.adis.has_value() != r.g641) return here(r.column, "G641 and ADIS belong together");
+    if (r.g641) execution_.set_corner_way(*r.adis);
+    if (r.g60) execution_.set_blend(0);
+    if (r.feed_mode == 93) execution_.set_feed_mode(NcExecution::Feed::inverse_time);
+    if (r.feed_mode == 94) execution_.set_feed_mode(NcExecution::Feed::per_minute);
+    if (r.f)
+      if (auto bad = placed(r.column, execution_.set_feed(*r.f))) return bad;
+    if (r.s)
+      if (auto bad = placed(r.column, execution_.set_speed(*r.s))) return bad;
+    if (r.trafoof)
+      if (auto bad = placed(r.column, execution_.tcp_off())) return bad;
+    if (!r.offset.empty())
+      if (auto bad = placed(r.column, execution_.select_offset(r.offset))) return bad;
+    if (r.d == 0 && execution_.tcp()) return here(r.column, "D0 with TRAORI on");
+    if (r.d == 0) execution_.drop_length();
+    if (r.d == 1)
+      if (auto bad = placed(r.column, execution_.set_length(tool_))) return bad;
+    if (r.traori)
+      if (auto bad = placed(r.column, execution_.tcp_on())) return bad;
+    if (r.rot) execution_.turn_frame(r.rot_deg);
+    if (auto bad = machine_function(r)) return bad;
+    if (r.motion >= 0) motion_ = r.motion;
+    return move(r);
+  }
+
+  Problem machine_function(const Request& r) {
+    switch (r.m) {
+      case 3: return placed(r.column, execution_.spindle_on());
+      case 5: execution_.spindle_off(); return std::nullopt;
+      case 6: {
+        if (auto bad = placed(r.column, execution_.change_tool())) return bad;
+        tool_ = execution_.tool();
+        return std::nullopt;
+      }
+      case 30:
+        ended_ = true;
+        return placed(r.column, execution_.end_program(!loops_.empty()));
+      default: return std::nullopt;
+    }
+  }
+
+  Problem move(Request& r) {
+    const bool moves = std::any_of(r.move.has.begin(), r.move.has.end(), [](bool h) { return h; });
+    if (r.supa && !moves) return here(r.column, "SUPA without an axis word");
+    if (r.vector_words != 0 && r.vector_words != 7) return here(r.column, "A3, B3 and C3 belong together");
+    if (!moves && r.vector_words == 0) return std::nullopt;
+    if (r.vector_words == 7) {
+      if (r.move.has[3] || r.move.has[4]) return here(r.column, "rotary words and a vector in a block");
+      r.move.vector = Vec3(r.vector[0], r.vector[1], r.vector[2]);
+    }
+    if (motion_ < 0) return here(r.column, "axis word before G0 or G1");
+    if (r.supa && motion_ != 0) return here(r.column, "SUPA with G1");
+    r.move.rapid = motion_ == 0;
+    r.move.machine_frame = r.supa;
+    r.move.own_feed = r.f.has_value();
+    return placed(r.column, execution_.move(r.move, static_cast<std::int32_t>(line_) + 1));
+  }
+
+  const std::string& file_;
+  const NcControl& control_;
+  std::vector<std::string_view> lines_;
+  NcExecution execution_;
+  std::unordered_map<std::size_t, std::size_t> ends_;  // FOR -> ENDFOR
+  std::unordered_map<int, double> parameters_;
+  std::vector<Loop> loops_;
+  std::size_t pc_ = 0, line_ = 0;
+  NcPathGroup path_;
+  int motion_ = -1, tool_ = -1;
+  bool ended_ = false;
+};
+
+}  // namespace
+
+Status execute_siemens(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+  return Siemens(text, file, control, sink).run();
+}
+
+}  // namespace toothpath::controls

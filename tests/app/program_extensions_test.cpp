@@ -1,0 +1,33 @@
+// Every control's program is a program: no command leaves one of an earlier run where a new one may appear.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "app/output_dir.h"
+#include "postproc/controls/registry.h"
+#include "program.h"
+
+namespace toothpath::test {
+namespace {
+
+TEST(ProgramExtensions, OldProgramsOfEveryControlGo) {
+  const auto extensions = controls::program_extensions();
+  ASSERT_GE(extensions.size(), 5u);
+  for (const auto* control : controls::all())
+    EXPECT_EQ(std::count(extensions.begin(), extensions.end(), control->words.extension), 1) << control->words.name;
+  const TestDir dir;
+  std::filesystem::create_directory(dir / "out");
+  for (const auto& extension : extensions) {
+    EXPECT_EQ(extension.front(), '.');
+    write_file(dir / ("out/program" + extension), "old");
+  }
+  write_file(dir / "out/program.txt", "mine");
+  const auto output = OutputDir::open(dir / "out", {"program."});
+  ASSERT_TRUE(output) << output.error().text();
+  for (const auto& extension : extensions) EXPECT_FALSE(std::filesystem::exists(dir / ("out/program" + extension))) << extension;
+  EXPECT_TRUE(std::filesystem::exists(dir / "out/program.txt"));
+}
+
+}  // namespace
+}  // namespace toothpath::test

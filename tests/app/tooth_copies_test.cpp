@@ -1,0 +1,118 @@
+// Teeth that are written out one by one: which are the first one again, and what the first one then stands for.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <set>
+
+#include "app/commands/tooth_copies.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath {
+namespace {
+
+constexpr int kTeeth = 12;
+constexpr double kTolerance = 5e-4;
+
+Vec3 turned(const Vec3& v, double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitZ()) * v; }
+
+/// A block of a tooth in pieces of equal time along a bend.
+void add_block(std::vector<ToolMotion>& out, int operation, int tooth, int line, int pieces, const Vec3& off = Vec3::Zero()) {
+  const double angle = 2 * kPi * tooth / kTeeth;
+  const auto at = [&](double t) -> Vec3 {
+    const double u = 0.1 * line + 0.1 * t;
+    return turned(Vec3(50 + u, 3 * u, -u), angle) + off;
+  };
+  for (int k = 0; k < pieces; ++k) {
+    ToolMotion m;
+    m.tip_from = at(static_cast<double>(k) / pieces);
+    m.tip_to = at(static_cast<double>(k + 1) / pieces);
+    m.axis_from = m.axis_to = turned(Vec3(0.6, 0, 0.8), angle);
+    m.deviation_mm = 1e-5 * (tooth + 1);
+    m.axis_deviation = 1e-6 * (tooth + 1);
+    m.minutes = 0.01 / pieces;
+    m.operation = operation;
+    m.tooth = tooth;
+    m.line = 1000 * (operation * kTeeth + tooth) + line;
+    out.push_back(m);
+  }
+}
+
+std::vector<ToolMotion> program(int operations, int pieces_of_copies) {
+  std::vector<ToolMotion> out;
+  for (int op = 0; op < operations; ++op)
+    for (int tooth = 0; tooth < kTeeth; ++tooth)
+      for (int line = 1; line <= 6; ++line) add_block(out, op, tooth, line, tooth == 0 ? 2 : pieces_of_copies);
+  return out;
+}
+
+std::set<int> teeth_of(const std::vector<ToolMotion>& motions) {
+  std::set<int> teeth;
+  for (const auto& m : motions) teeth.insert(m.tooth);
+  return teeth;
+}
+
+TEST(ToothCopies, TheFirstToothStandsForAllHoweverTheirBlocksAreCut) {
+  for (const int pieces : {1, 2, 3, 7}) {
+    const auto kept = without_copies(program(2, pieces), kTeeth, kTolerance);
+    EXPECT_EQ(teeth_of(kept), std::set<int>{0}) << pieces;
+    for (const auto& m : kept) {
+      EXPECT_GE(m.deviation_mm, 1e-5 * kTeeth) << "as far as the last tooth may stray";
+      EXPECT_LT(m.deviation_mm, 1e-5 * kTeeth + 1e-9);
+      EXPECT_DOUBLE_EQ(m.axis_deviation, 1e-6 * kTeeth);
+    }
+  }
+}
+
+TEST(ToothCopies, TheirDistanceIsAdded) {
+  auto motions = program(1, 3);
+  std::vector<ToolMotion> moved;
+  for (const auto& m : motions)
+    if (m.tooth != 4) moved.push_back(m);
+  for (int line = 1; line <= 6; ++line) add_block(moved, 0, 4, line, 3, line == 3 ? Vec3(0, 0, 4e-4) : Vec3::Zero());
+  const auto kept = without_copies(moved, kTeeth, kTolerance);
+  EXPECT_EQ(teeth_of(kept), std::set<int>{0});
+  for (const auto& m : kept) EXPECT_GE(m.deviation_mm, 4e-4 + 1e-5 * 5 - 1e-12);
+}
+
+TEST(ToothCopies, WhatDiffersAnywhereIsKeptWithAllItsOperations) {
+  const auto with_tooth_4 = [](const std::function<void(std::vector<ToolMotion>&)>& change) {
+    std::vector<ToolMotion> motions;
+    for (const auto& m : program(2, 3))
+      if (m.tooth != 4 || m.operation != 1) motions.push_back(m);
+    change(motions);
+    return teeth_of(without_copies(motions, kTeeth, kTolerance));
+  };
+  const std::set<int> first{0}, both{0, 4};
+  const auto blocks = [](std::vector<ToolMotion>& motions, int line_moved, const Vec3& off, int lines) {
+    for (int line = 1; line <= lines; ++line) add_block(motions, 1, 4, line, 3, line == line_moved ? off : Vec3::Zero());
+  };
+  EXPECT_EQ(with_tooth_4([&](auto& m) { blocks(m, 0, Vec3::Zero(), 6); }), first);
+  EXPECT_EQ(with_tooth_4([&](auto& m) { blocks(m, 5, Vec3(0, 6e-4, 0), 6); }), both) << "one block beside its place";
+  EXPECT_EQ(with_tooth_4([&](auto& m) { blocks(m, 0, Vec3::Zero(), 5); }), both) << "a block is missing";
+  EXPECT_EQ(with_tooth_4([&](auto& m) { blocks(m, 0, Vec3::Zero(), 7); }), both) << "a block more";
+  EXPECT_EQ(with_tooth_4([](auto&) {}), both) << "an operation does not cut it";
+  // A place between the ends of the pieces of the first tooth.
+  EXPECT_EQ(with_tooth_4([&](auto& m) {
+              blocks(m, 0, Vec3::Zero(), 6);
+              ToolMotion &a = m[m.size() - 3], &b = m[m.size() - 2];
+              a.tip_to.z() += 6e-4;
+              b.tip_from.z() += 6e-4;
+            }), both);
+  // The axis alone: at the holder it counts a thousandfold.
+  EXPECT_EQ(with_tooth_4([&](auto& m) {
+              blocks(m, 0, Vec3::Zero(), 6);
+              m.back().axis_to = (m.back().axis_to + Vec3(0, 1e-6, 0)).normalized();
+            }), both);
+}
+
+TEST(ToothCopies, RapidsAreKept) {
+  auto motions = program(1, 2);
+  for (auto& m : motions)
+    if (m.line % 1000 == 1) m.rapid = true;
+  const auto kept = without_copies(motions, kTeeth, kTolerance);
+  EXPECT_EQ(teeth_of(kept).size(), std::size_t{kTeeth});
+  EXPECT_EQ(kept.size(), std::size_t{2 * kTeeth + 10});
+}
+
+}  // namespace
+}  // namespace toothpath
