@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "app/output_dir.h"
+#include "app/base/output_dir.h"
 #include "postproc/controls/registry.h"
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace toothpath::test {
 namespace {
@@ -23,7 +23,7 @@ TEST(ProgramExtensions, OldProgramsOfEveryControlGo) {
     write_file(dir / ("out/program" + extension), "old");
   }
   write_file(dir / "out/program.txt", "mine");
-  const auto output = OutputDir::open(dir / "out", {"program."});
+  const auto output = app::OutputDir::open(dir / "out", {"program."});
   ASSERT_TRUE(output) << output.error().text();
   for (const auto& extension : extensions) EXPECT_FALSE(std::filesystem::exists(dir / ("out/program" + extension))) << extension;
   EXPECT_TRUE(std::filesystem::exists(dir / "out/program.txt"));
