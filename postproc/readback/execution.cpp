@@ -191,7 +191,7 @@ NcExecution::Problem NcExecution::goal_of(const Move& m, std::array<double, 5>& 
     joints[a] = m.axis[a];
     if (a >= 3 || m.machine_frame) continue;
     if (!offset_) return "axis word before a work offset";
-    if (frame_deg_ != 0) return "a turned_deg frame without TCP";
+    if (frame_deg_ != 0) return "a turned frame without TCP";
     joints[a] += (*offset_)[static_cast<int>(a)];
     if (a != 2) continue;
     if (!length_) return "Z word without tool length compensation";

@@ -75,7 +75,6 @@ TEST(Folders, TablesListEveryFileAndNoOther) {
     const auto entries = listed_in(kRoot / folder / "README.md");
     EXPECT_FALSE(entries.empty()) << folder;
     const auto files = sources_of(kRoot / folder);
-    EXPECT_FALSE(files.empty()) << folder;
     for (const auto& file : files)
       EXPECT_TRUE(std::any_of(entries.begin(), entries.end(), [&](const std::string& e) { return stands_for(e, file); }))
           << folder << "/README.md lacks " << file;
