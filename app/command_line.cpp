@@ -13,8 +13,8 @@
 #include <thread>
 
 #include "app/commands/command.h"
-#include "app/output_dir.h"
-#include "app/report/html_text.h"
+#include "app/base/output_dir.h"
+#include "app/report/svg/html_text.h"
 
 namespace toothpath {
 namespace {
@@ -43,50 +43,50 @@ bool print(std::string_view text) {
   return std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
 }
 
-std::string outcome_json(const std::string& command, const CommandOutcome& outcome) {
+std::string outcome_json(const std::string& command, const commands::CommandOutcome& outcome) {
   nlohmann::ordered_json json;
   json["schema"] = 1;
   json["command"] = command;
   json["exit_code"] = static_cast<int>(outcome.exit_code);
   json["errors"] = nlohmann::ordered_json::array();
   for (const auto& error : outcome.errors)
-    json["errors"].push_back({{"file", valid_utf8(error.position.file)},
+    json["errors"].push_back({{"file", svg::valid_utf8(error.position.file)},
                               {"line", error.position.line},
                               {"column", error.position.column},
-                              {"message", valid_utf8(error.message)}});
-  if (const std::string note = OutputDir::closing_note(); !note.empty()) json["note"] = valid_utf8(note);
+                              {"message", svg::valid_utf8(error.message)}});
+  if (const std::string note = app::OutputDir::closing_note(); !note.empty()) json["note"] = svg::valid_utf8(note);
   if (!outcome.report_json.empty()) json["report"] = nlohmann::ordered_json::parse(outcome.report_json);
   return json.dump() + "\n";
 }
 
 /// Errors to stderr, the result to stdout.
-int present(const std::string& command, const CommandOutcome& outcome, const GlobalOptions& options) {
+int present(const std::string& command, const commands::CommandOutcome& outcome, const GlobalOptions& options) {
   const bool color = wants_color(options.color, STDERR_FILENO);
   for (const auto& error : outcome.errors)
     std::fprintf(stderr, "%s%s%s\n", color ? "\033[31m" : "", error.text().c_str(), color ? "\033[0m" : "");
-  if (const std::string note = OutputDir::closing_note(); !note.empty() && (!options.quiet || outcome.exit_code != ExitCode::ok))
+  if (const std::string note = app::OutputDir::closing_note(); !note.empty() && (!options.quiet || outcome.exit_code != app::ExitCode::ok))
     std::fprintf(stderr, "note: %s\n", note.c_str());
   std::fflush(stderr);
   bool printed = true;
   if (options.json) printed = print(outcome_json(command, outcome));
   else if (!options.quiet) printed = print(outcome.summary);
-  if (!printed && outcome.exit_code == ExitCode::ok) {
+  if (!printed && outcome.exit_code == app::ExitCode::ok) {
     std::fputs("error: cannot write to the standard output\n", stderr);
-    return static_cast<int>(ExitCode::file_access);
+    return static_cast<int>(app::ExitCode::file_access);
   }
   return static_cast<int>(outcome.exit_code);
 }
 
-CommandOutcome internal_error(std::string message) {
+commands::CommandOutcome internal_error(std::string message) {
   Diagnostic error;
   error.message = std::move(message);
-  CommandOutcome outcome;
-  outcome.exit_code = ExitCode::internal;
+  commands::CommandOutcome outcome;
+  outcome.exit_code = app::ExitCode::internal;
   outcome.errors.push_back(std::move(error));
   return outcome;
 }
 
-CommandOutcome guarded(const Command::Action& action, const CommonRequest& request) {
+commands::CommandOutcome guarded(const commands::Command::Action& action, const commands::CommonRequest& request) {
   try {
     return action(request);
   } catch (const std::bad_alloc&) {
@@ -108,10 +108,10 @@ std::string check_threads(const std::string& text) {
 struct Subcommand {
   CLI::App* app = nullptr;
   std::string name;  ///< as the user writes it: "study stability"
-  Command::Action action;
+  commands::Command::Action action;
 };
 
-CLI::App* add_group(CLI::App& app, const CommandGroup& group) {
+CLI::App* add_group(CLI::App& app, const commands::CommandGroup& group) {
   CLI::App* added = app.add_subcommand(group.name, group.description);
   added->fallthrough();
   added->require_subcommand(1);
@@ -121,7 +121,7 @@ CLI::App* add_group(CLI::App& app, const CommandGroup& group) {
 std::vector<Subcommand> add_commands(CLI::App& app) {
   std::vector<Subcommand> added;
   std::map<std::string, CLI::App*> groups;
-  for (const Command& command : all_commands()) {
+  for (const commands::Command& command : commands::all_commands()) {
     CLI::App* parent = &app;
     std::string name = command.name;
     if (command.group) {
@@ -132,7 +132,7 @@ std::vector<Subcommand> add_commands(CLI::App& app) {
     }
     CLI::App* sub = parent->add_subcommand(command.name, command.description);
     sub->fallthrough();
-    OptionSet options(*sub);
+    commands::OptionSet options(*sub);
     added.push_back({sub, std::move(name), command.set_up(options)});
   }
   return added;
@@ -163,16 +163,16 @@ int run_command_line(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     const bool help = error.get_exit_code() == 0 && argc > 1;
     app.exit(error);
-    return static_cast<int>(help ? ExitCode::ok : ExitCode::usage);
+    return static_cast<int>(help ? app::ExitCode::ok : app::ExitCode::usage);
   }
 
-  const CommonRequest request{options.quiet || options.json, wants_color(options.color, STDOUT_FILENO)};
+  const commands::CommonRequest request{options.quiet || options.json, wants_color(options.color, STDOUT_FILENO)};
   std::optional<tbb::global_control> threads;
   if (options.threads > 0)
     threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
   for (const auto& [sub, name, action] : commands)
     if (sub->parsed()) return present(name, guarded(action, request), options);
-  return static_cast<int>(ExitCode::internal);
+  return static_cast<int>(app::ExitCode::internal);
 }
 
 }  // namespace toothpath

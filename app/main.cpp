@@ -1,8 +1,8 @@
 #include "app/command_line.h"
-#include "app/interruption.h"
+#include "app/base/interruption.h"
 
 int main(int argc, char** argv) {
-  toothpath::handle_signals();
-  toothpath::set_last_line("interrupted: nothing was written");
+  toothpath::app::handle_signals();
+  toothpath::app::set_last_line("interrupted: nothing was written");
   return toothpath::run_command_line(argc, argv);
 }

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-namespace toothpath {
+namespace toothpath::machines {
 
 enum class Coolant : std::uint8_t { off, mist, flood, air, through_spindle };
 
@@ -29,4 +29,4 @@ struct CoolantWords {
   std::string on, off;
 };
 
-}  // namespace toothpath
+}  // namespace toothpath::machines

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-namespace toothpath {
+namespace toothpath::machines {
 namespace {
 
 /// An axis this close to the first rotary axis leaves that rotary free: any angle then errs by at most twice this.
@@ -283,4 +283,4 @@ Status check_chain(const KinematicChain& chain) {
   return Ok{};
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::machines

@@ -19,7 +19,7 @@
 #include "geometry/base/result.h"
 #include "geometry/base/vec.h"
 
-namespace toothpath {
+namespace toothpath::machines {
 
 struct LinearAxis {
   double min_mm = 0.0;
@@ -150,4 +150,4 @@ struct KinematicChain {
 /// rotary axes, a second rotary axis parallel to the spindle (it turns the tool about itself and cannot tilt it).
 [[nodiscard]] Status check_chain(const KinematicChain& chain);
 
-}  // namespace toothpath
+}  // namespace toothpath::machines

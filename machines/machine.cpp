@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace toothpath {
+namespace toothpath::machines {
 
 bool Machine::has_acceleration() const {
   for (const auto& axis : chain.linear)
@@ -34,4 +34,4 @@ Status check_part_fits(const Machine& machine, double part_diameter_mm) {
               machine.largest_part_mm(), machine.name);
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::machines

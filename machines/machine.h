@@ -12,7 +12,7 @@
 #include "machines/coolant.h"
 #include "machines/kinematic_chain.h"
 
-namespace toothpath {
+namespace toothpath::machines {
 
 enum class MachineKind { five_axis, gear_shaper };
 
@@ -86,4 +86,4 @@ struct Machine {
 /// Refuses a part whose outside diameter [mm] does not fit the machine.
 [[nodiscard]] Status check_part_fits(const Machine& machine, double part_diameter_mm);
 
-}  // namespace toothpath
+}  // namespace toothpath::machines

@@ -8,7 +8,7 @@
 
 #include "machines/machine_table.h"
 
-namespace toothpath {
+namespace toothpath::machines {
 namespace {
 
 // Plausible ranges; a value outside them is a typing error or another unit.
@@ -27,16 +27,16 @@ struct NamedAxis {
   SourcePosition position;
 };
 
-std::vector<NamedAxis> read_letters(TableReader& chain, std::string_view key) {
-  const TomlValue* list = chain.required(key);
+std::vector<NamedAxis> read_letters(toml::TableReader& chain, std::string_view key) {
+  const toml::TomlValue* list = chain.required(key);
   std::vector<NamedAxis> letters;
   if (!list) return letters;
-  const TomlArray* array = list->array();
+  const toml::TomlArray* array = list->array();
   if (!array) {
     chain.refuse_at(list->position, "{} must be a list of axis letters", chain.name(key));
     return letters;
   }
-  for (const TomlValue& item : array->values) {
+  for (const toml::TomlValue& item : array->values) {
     const std::string* text = item.text();
     if (text && (*text == "A" || *text == "B" || *text == "C"))
       letters.push_back({text->front(), item.position});
@@ -47,7 +47,7 @@ std::vector<NamedAxis> read_letters(TableReader& chain, std::string_view key) {
 }
 
 /// `min` and `max` of an axis in the units of the file, reversed limits refused.
-std::optional<std::pair<double, double>> read_range(TableReader& axis, double largest, const char* unit) {
+std::optional<std::pair<double, double>> read_range(toml::TableReader& axis, double largest, const char* unit) {
   const auto lo = axis.number("min", {-largest, largest, unit});
   const auto hi = axis.number("max", {-largest, largest, unit});
   if (!lo || !hi) return std::nullopt;
@@ -59,7 +59,7 @@ std::optional<std::pair<double, double>> read_range(TableReader& axis, double la
 }
 
 /// An axis that rolls over is counted from 0 to 360 deg for ever: it has neither `min` nor `max`.
-void refuse_ends(TableReader& axis) {
+void refuse_ends(toml::TableReader& axis) {
   for (const char* end : {"min", "max"})
     if (axis.has(end)) {
       (void)axis.value(end);
@@ -67,17 +67,17 @@ void refuse_ends(TableReader& axis) {
     }
 }
 
-double read_speed(TableReader& axis, const char* unit) {
-  return axis.number("max_speed", Range::positive(kLargestSpeed, unit)).value_or(0.0);
+double read_speed(toml::TableReader& axis, const char* unit) {
+  return axis.number("max_speed", toml::Range::positive(kLargestSpeed, unit)).value_or(0.0);
 }
 
 /// `max_acceleration`, per second squared in the file, per minute squared here; 0 where it is left out.
-double read_acceleration(TableReader& axis, const char* unit) {
+double read_acceleration(toml::TableReader& axis, const char* unit) {
   if (!axis.has("max_acceleration")) return 0.0;
-  return 3600.0 * axis.number("max_acceleration", Range::positive(kLargestAcceleration, unit)).value_or(0.0);
+  return 3600.0 * axis.number("max_acceleration", toml::Range::positive(kLargestAcceleration, unit)).value_or(0.0);
 }
 
-LinearAxis read_linear(TableReader axis, const LimitMargin& margin) {
+LinearAxis read_linear(toml::TableReader axis, const LimitMargin& margin) {
   LinearAxis out;
   if (const auto range = read_range(axis, kLargestLength, " mm")) {
     out.min_mm = range->first;
@@ -93,7 +93,7 @@ LinearAxis read_linear(TableReader axis, const LimitMargin& margin) {
   return out;
 }
 
-Vec3 read_direction(TableReader& axis) {
+Vec3 read_direction(toml::TableReader& axis) {
   const auto direction = read_vector(axis, "direction", kLargestLength);
   if (!direction) return Vec3::UnitZ();
   const double length = direction->norm();
@@ -106,7 +106,7 @@ Vec3 read_direction(TableReader& axis) {
 }
 
 /// Where a head axis lies, seen from the gauge point: lateral offset in `point`, height in `pivot_length`.
-Vec3 read_head_point(TableReader& axis, const Vec3& direction) {
+Vec3 read_head_point(toml::TableReader& axis, const Vec3& direction) {
   Vec3 point = Vec3::Zero();
   if (axis.has("point")) {
     point = read_vector(axis, "point", kLargestLength).value_or(Vec3::Zero());
@@ -125,7 +125,7 @@ Vec3 read_head_point(TableReader& axis, const Vec3& direction) {
   return point;
 }
 
-RotaryAxis read_rotary(TableReader axis, char letter, bool in_table, const LimitMargin& margin) {
+RotaryAxis read_rotary(toml::TableReader axis, char letter, bool in_table, const LimitMargin& margin) {
   RotaryAxis out;
   out.letter = letter;
   out.direction = read_direction(axis);
@@ -158,7 +158,7 @@ RotaryAxis read_rotary(TableReader axis, char letter, bool in_table, const Limit
 
 /// Where every offset of the table's axes is below a millimetre although one is more than what is left of axes that should
 /// meet, the file is in metres. Whoever means it can give the point elsewhere on its axis.
-void refuse_offsets_in_metres(TableReader& axes, const Machine& machine) {
+void refuse_offsets_in_metres(toml::TableReader& axes, const Machine& machine) {
   double largest = 0;
   const RotaryAxis* at = nullptr;
   for (const RotaryAxis& axis : machine.chain.table)
@@ -173,7 +173,7 @@ void refuse_offsets_in_metres(TableReader& axes, const Machine& machine) {
 }
 
 /// One axis of the chain: its table is missing, or read.
-void read_chain(TableReader& root, Machine& machine) {
+void read_chain(toml::TableReader& root, Machine& machine) {
   auto chain = root.required_table("chain");
   auto axes = root.required_table("axes");
   if (!chain || !axes) return;
@@ -209,7 +209,7 @@ void read_chain(TableReader& root, Machine& machine) {
           .push_back(read_rotary(*axis, all[k].letter, in_table, machine.limit_margin));
   }
   refuse_offsets_in_metres(*axes, machine);
-  for (const TomlEntry& entry : axes->entries())
+  for (const toml::TomlEntry& entry : axes->entries())
     if (entry.key == "A" || entry.key == "B" || entry.key == "C") {
       if (std::none_of(all.begin(), all.end(), [&entry](const NamedAxis& a) { return a.letter == entry.key[0]; }))
         root.refuse_at(entry.key_position, "axes.{} is named in neither chain.table nor chain.head", entry.key);
@@ -218,15 +218,15 @@ void read_chain(TableReader& root, Machine& machine) {
     }
 }
 
-void read_limits(TableReader limits, Machine& machine) {
+void read_limits(toml::TableReader limits, Machine& machine) {
   const auto diameter = [&limits](std::string_view key) {
-    return limits.number(key, Range::positive(kLargestLength, " mm"));
+    return limits.number(key, toml::Range::positive(kLargestLength, " mm"));
   };
-  machine.max_cutting_feed = limits.number("cutting_feed", Range::positive(kLargestSpeed, " mm/min")).value_or(0.0);
+  machine.max_cutting_feed = limits.number("cutting_feed", toml::Range::positive(kLargestSpeed, " mm/min")).value_or(0.0);
   machine.table_diameter_mm = diameter("table_diameter").value_or(0.0);
   machine.min_block_ms = limits.number("min_block_ms", {0.0, 1e4, " ms"}).value_or(0.0);
   if (limits.has("part_diameter")) machine.part_diameter_mm = diameter("part_diameter");
-  if (limits.has("part_mass")) machine.max_part_mass_kg = limits.number("part_mass", Range::positive(1e6, " kg"));
+  if (limits.has("part_mass")) machine.max_part_mass_kg = limits.number("part_mass", toml::Range::positive(1e6, " kg"));
   if (limits.has("limit_margin"))
     machine.limit_margin.linear_mm = limits.number("limit_margin", {0.0, 100.0, " mm"}).value_or(0.0);
   if (limits.has("limit_margin_angle"))
@@ -235,7 +235,7 @@ void read_limits(TableReader limits, Machine& machine) {
 }
 
 /// Smoothing is stated whole: its blocks, and how far the tip leaves the path while it is on.
-void read_smoothing(TableReader& post, PostSettings& settings) {
+void read_smoothing(toml::TableReader& post, PostSettings& settings) {
   if (!post.has("smoothing_on")) {
     for (const char* key : {"smoothing_off", "smoothing_tolerance", "smoothing_axis_tolerance"})
       if (post.value(key)) post.refuse(key, "{} needs {}", post.name(key), post.name("smoothing_on"));
@@ -248,13 +248,13 @@ void read_smoothing(TableReader& post, PostSettings& settings) {
   };
   settings.smoothing_on = blocks("smoothing_on");
   settings.smoothing_off = blocks("smoothing_off");
-  settings.smoothing_tolerance_mm = post.number("smoothing_tolerance", Range::positive(1.0, " mm"));
+  settings.smoothing_tolerance_mm = post.number("smoothing_tolerance", toml::Range::positive(1.0, " mm"));
   if (post.has("smoothing_axis_tolerance"))
-    if (const auto angle = post.number("smoothing_axis_tolerance", Range::positive(1.0, " deg"))) settings.smoothing_axis_tolerance_rad = radians(*angle);
+    if (const auto angle = post.number("smoothing_axis_tolerance", toml::Range::positive(1.0, " deg"))) settings.smoothing_axis_tolerance_rad = radians(*angle);
 }
 
 /// What the builder switches a coolant with: the word that does it, and the one that ends it.
-void read_coolant_words(TableReader& post, PostSettings& settings) {
+void read_coolant_words(toml::TableReader& post, PostSettings& settings) {
   for (const Coolant coolant : kCoolants) {
     const std::string key = fmt::format("coolant_{}", to_string(coolant));
     const auto words = post.if_present(key, [&] { return post.ascii_list(key); });
@@ -265,13 +265,13 @@ void read_coolant_words(TableReader& post, PostSettings& settings) {
   }
 }
 
-void read_post(TableReader post, PostSettings& settings) {
+void read_post(toml::TableReader post, PostSettings& settings) {
   if (post.has("linear_decimals")) settings.linear_decimals = post.integer("linear_decimals", {0, 9});
   if (post.has("rotary_decimals")) settings.rotary_decimals = post.integer("rotary_decimals", {0, 9});
   if (post.has("index_loop")) settings.index_loop = post.boolean("index_loop");
   if (post.has("tcp_on")) settings.tcp_on = post.ascii_list("tcp_on").value_or(std::vector<std::string>{});
   if (post.has("tcp_off")) settings.tcp_off = post.ascii_list("tcp_off").value_or(std::vector<std::string>{});
-  if (post.has("corner_tolerance")) settings.corner_tolerance_mm = post.number("corner_tolerance", Range::positive(0.1, " mm"));
+  if (post.has("corner_tolerance")) settings.corner_tolerance_mm = post.number("corner_tolerance", toml::Range::positive(0.1, " mm"));
   read_smoothing(post, settings);
   read_coolant_words(post, settings);
   if (post.has("length_reference"))
@@ -283,23 +283,23 @@ void read_post(TableReader post, PostSettings& settings) {
       settings.pole = static_cast<PoleOption>(std::find(words.begin(), words.end(), *word) - words.begin());
   }
   if (post.has("pole_angle"))
-    if (const auto angle = post.number("pole_angle", Range::positive(kLargestPoleAngle, " deg"))) settings.pole_angle_rad = radians(*angle);
+    if (const auto angle = post.number("pole_angle", toml::Range::positive(kLargestPoleAngle, " deg"))) settings.pole_angle_rad = radians(*angle);
   post.finish();
 }
 
 /// Where the direction of the last rotary axis stands: that of a pair that cannot work together.
-SourcePosition direction_position(const TomlValue& tree, const KinematicChain& chain) {
-  const auto inside = [](const TomlEntry* entry, std::string_view key) {
-    const TomlTable* table = entry ? entry->value.table() : nullptr;
+SourcePosition direction_position(const toml::TomlValue& tree, const KinematicChain& chain) {
+  const auto inside = [](const toml::TomlEntry* entry, std::string_view key) {
+    const toml::TomlTable* table = entry ? entry->value.table() : nullptr;
     return table ? table->find(key) : nullptr;
   };
   const char letter = chain.rotary(chain.rotary_count() - 1).letter;
-  const TomlEntry* direction = inside(inside(tree.table()->find("axes"), letter_name(letter)), "direction");
+  const toml::TomlEntry* direction = inside(inside(tree.table()->find("axes"), letter_name(letter)), "direction");
   return direction ? direction->value.position : tree.position;
 }
 
 /// A time with some axes that stop at once and some that do not would mean nothing.
-void check_accelerations(TableReader& root, const Machine& machine) {
+void check_accelerations(toml::TableReader& root, const Machine& machine) {
   if (machine.has_acceleration()) return;
   bool any = false;
   std::string lacking;
@@ -312,8 +312,8 @@ void check_accelerations(TableReader& root, const Machine& machine) {
   if (any) root.refuse("axes", "max_acceleration stands at some axes and is missing at {}: every axis has one, or none", lacking);
 }
 
-Machine read_machine_tree(const TomlValue& tree, const std::string& file, const MachineJudge& judge, ReaderFindings& findings) {
-  TableReader root(tree, "", findings);
+Machine read_machine_tree(const toml::TomlValue& tree, const std::string& file, const MachineJudge& judge, toml::ReaderFindings& findings) {
+  toml::TableReader root(tree, "", findings);
   Machine machine;
   machine.file = file;
   (void)root.integer("schema", {1, 1});
@@ -330,7 +330,7 @@ Machine read_machine_tree(const TomlValue& tree, const std::string& file, const 
   machine.assumed = !machine.assumed_keys.empty();
   machine.max_simultaneous_axes = root.integer("max_simultaneous_axes", {3, 9}).value_or(0);
   if (auto spindle = root.required_table("spindle")) {
-    machine.max_spindle_speed = spindle->number("max_speed", Range::positive(kLargestSpeed, " 1/min")).value_or(0.0);
+    machine.max_spindle_speed = spindle->number("max_speed", toml::Range::positive(kLargestSpeed, " 1/min")).value_or(0.0);
     spindle->finish();
   }
   if (const auto limits = root.required_table("limits")) read_limits(*limits, machine);
@@ -353,7 +353,7 @@ Machine read_machine_tree(const TomlValue& tree, const std::string& file, const 
 }  // namespace
 
 MachineReading read_machine_text(std::string_view text, const std::string& file, const MachineJudge& judge) {
-  return read_machine_as<MachineReading>(text, file, [&judge](const TomlValue& tree, const std::string& name, ReaderFindings& findings) {
+  return read_machine_as<MachineReading>(text, file, [&judge](const toml::TomlValue& tree, const std::string& name, toml::ReaderFindings& findings) {
     return read_machine_tree(tree, name, judge, findings);
   });
 }
@@ -367,11 +367,11 @@ Result<MachineKind> machine_kind_of(const std::string& path) {
   if (!text) return text.error();
   const auto tree = parse_machine_toml(*text, path);
   if (!tree) return tree.error();
-  ReaderFindings findings(machine_words());
-  TableReader root(*tree, "", findings);
+  toml::ReaderFindings findings(machine_words());
+  toml::TableReader root(*tree, "", findings);
   const auto kind = read_kind(root);
   if (!kind) return findings.errors.front();
   return *kind == "five_axis" ? MachineKind::five_axis : MachineKind::gear_shaper;
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::machines

@@ -13,7 +13,7 @@
 
 #include "machines/machine.h"
 
-namespace toothpath {
+namespace toothpath::machines {
 
 /// Of the keys pole_angle, deg.
 inline constexpr double kLargestPoleAngle = 45.0;
@@ -49,4 +49,4 @@ using MachineJudge = std::function<std::vector<Diagnostic>(const Machine&)>;
 /// Errors (file_access): found nowhere; the message proposes a near name and lists the installed machines.
 [[nodiscard]] Result<std::string> find_machine_file(const std::string& name, const std::string& job_directory);
 
-}  // namespace toothpath
+}  // namespace toothpath::machines

@@ -5,7 +5,7 @@
 #include "machines/machine_file.h"
 #include "machines/toml/near_name.h"
 
-namespace toothpath {
+namespace toothpath::machines {
 namespace {
 
 namespace fs = std::filesystem;
@@ -17,9 +17,9 @@ bool is_there(const fs::path& path) {
 
 /// "; did you mean ...?" for a name that is like one of these, with its ending or without.
 std::string hint_for(const std::string& name, const std::vector<std::string>& installed) {
-  std::string_view near = near_name(name, installed);
+  std::string_view near = toml::near_name(name, installed);
   const std::string whole = name + ".toml";
-  if (near.empty()) near = near_name(whole, installed);
+  if (near.empty()) near = toml::near_name(whole, installed);
   return near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);
 }
 
@@ -69,4 +69,4 @@ Result<std::string> find_machine_file(const std::string& name, const std::string
                  fmt::join(installed, ", "));
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::machines

@@ -5,23 +5,23 @@
 
 #include "machines/toml/regular_file.h"
 
-namespace toothpath {
+namespace toothpath::machines {
 namespace {
 
-const char* type_name(TomlType type) {
+const char* type_name(toml::TomlType type) {
   switch (type) {
-    case TomlType::boolean: return "a boolean";
-    case TomlType::integer: return "a whole number";
-    case TomlType::real: return "a number";
-    case TomlType::text: return "a text";
-    case TomlType::date: return "a date or time";
-    case TomlType::array: return "a list";
-    case TomlType::table: return "a table";
+    case toml::TomlType::boolean: return "a boolean";
+    case toml::TomlType::integer: return "a whole number";
+    case toml::TomlType::real: return "a number";
+    case toml::TomlType::text: return "a text";
+    case toml::TomlType::date: return "a date or time";
+    case toml::TomlType::array: return "a list";
+    case toml::TomlType::table: return "a table";
   }
   return "";
 }
 
-class MachineWords final : public TableWords {
+class MachineWords final : public toml::TableWords {
  public:
   std::string name(const std::string& path, std::string_view key) const override {
     return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
@@ -35,17 +35,17 @@ class MachineWords final : public TableWords {
     return fmt::format("unknown key {}", name(path, key));
   }
 
-  std::string wrong_type(const std::string& name, TomlType wanted, TomlType found) const override {
-    return fmt::format("{} must be {}, is {}", name, wanted == TomlType::boolean ? "true or false" : type_name(wanted), type_name(found));
+  std::string wrong_type(const std::string& name, toml::TomlType wanted, toml::TomlType found) const override {
+    return fmt::format("{} must be {}, is {}", name, wanted == toml::TomlType::boolean ? "true or false" : type_name(wanted), type_name(found));
   }
 
-  std::string no_table(const std::string& path, std::string_view key, bool many, TomlType found) const override {
-    return wrong_type(name(path, key), many ? TomlType::array : TomlType::table, found);
+  std::string no_table(const std::string& path, std::string_view key, bool many, toml::TomlType found) const override {
+    return wrong_type(name(path, key), many ? toml::TomlType::array : toml::TomlType::table, found);
   }
 
-  std::string not_numbers(const std::string& name, std::size_t count, const TomlValue& found) const override {
-    const TomlArray* array = found.array();
-    if (!array) return wrong_type(name, TomlType::array, found.type());
+  std::string not_numbers(const std::string& name, std::size_t count, const toml::TomlValue& found) const override {
+    const toml::TomlArray* array = found.array();
+    if (!array) return wrong_type(name, toml::TomlType::array, found.type());
     return fmt::format("{} has {} numbers, must have {}", name, array->values.size(), count);
   }
 
@@ -53,12 +53,12 @@ class MachineWords final : public TableWords {
     return fmt::format("{} = {} must be finite", name, number);
   }
 
-  std::string outside(const std::string& name, double number, const Range& range) const override {
+  std::string outside(const std::string& name, double number, const toml::Range& range) const override {
     if (number > range.high) return fmt::format("{} = {} exceeds {}{}", name, number, range.high, range.unit);
     return fmt::format("{} = {} {} {}{}", name, number, range.open_low ? "must be above" : "is below", range.low, range.unit);
   }
 
-  std::string integer_outside(const std::string& name, std::int64_t number, const Range& range) const override {
+  std::string integer_outside(const std::string& name, std::int64_t number, const toml::Range& range) const override {
     if (range.low == range.high) return fmt::format("{} = {} must be {}", name, number, range.low);
     return fmt::format("{} = {} is outside {} to {}", name, number, range.low, range.high);
   }
@@ -79,10 +79,10 @@ class MachineWords final : public TableWords {
 };
 
 /// Dotted names of all values below a table.
-void collect_names(const TomlTable& table, const std::string& prefix, std::vector<std::string>& names) {
-  for (const TomlEntry& entry : table.entries) {
+void collect_names(const toml::TomlTable& table, const std::string& prefix, std::vector<std::string>& names) {
+  for (const toml::TomlEntry& entry : table.entries) {
     const std::string name = prefix + entry.key;
-    if (const TomlTable* inner = entry.value.table()) collect_names(*inner, name + ".", names);
+    if (const toml::TomlTable* inner = entry.value.table()) collect_names(*inner, name + ".", names);
     else names.push_back(name);
   }
 }
@@ -102,20 +102,20 @@ Result<std::string> read_machine_bytes(const std::string& path) {
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   if (!error && bytes > kMaxMachineFileBytes)
     return refuse(fmt::format("has more than {} bytes, the largest machine file allowed", kMaxMachineFileBytes));
-  auto text = read_regular_file(path, kMaxMachineFileBytes);
+  auto text = toml::read_regular_file(path, kMaxMachineFileBytes);
   if (!text) return refuse("cannot be opened for reading");
   return text;
 }
 
-Result<TomlValue> parse_machine_toml(std::string_view text, const std::string& file) { return parse_toml(text, file, {}); }
+Result<toml::TomlValue> parse_machine_toml(std::string_view text, const std::string& file) { return toml::parse_toml(text, file, {}); }
 
-const TableWords& machine_words() {
+const toml::TableWords& machine_words() {
   static const MachineWords words;
   return words;
 }
 
-int read_sense(TableReader& table, std::string_view key) {
-  const TomlValue* value = table.required(key);
+int read_sense(toml::TableReader& table, std::string_view key) {
+  const toml::TomlValue* value = table.required(key);
   if (!value) return 1;
   const auto* sense = std::get_if<std::int64_t>(&value->data);
   if (sense && (*sense == 1 || *sense == -1)) return static_cast<int>(*sense);
@@ -124,28 +124,28 @@ int read_sense(TableReader& table, std::string_view key) {
   return 1;
 }
 
-std::optional<Vec3> read_vector(TableReader& table, std::string_view key, double largest_mm) {
+std::optional<Vec3> read_vector(toml::TableReader& table, std::string_view key, double largest_mm) {
   const auto xyz = table.numbers(key, 3, {-largest_mm, largest_mm});
   return xyz ? std::optional(Vec3((*xyz)[0], (*xyz)[1], (*xyz)[2])) : std::nullopt;
 }
 
-std::optional<std::string> read_kind(TableReader& root) { return root.word("kind", {"five_axis", "gear_shaper"}); }
+std::optional<std::string> read_kind(toml::TableReader& root) { return root.word("kind", {"five_axis", "gear_shaper"}); }
 
-std::vector<std::string> read_assumed(TableReader& root, const TomlValue& tree) {
-  const TomlValue* value = root.required("assumed");
+std::vector<std::string> read_assumed(toml::TableReader& root, const toml::TomlValue& tree) {
+  const toml::TomlValue* value = root.required("assumed");
   if (!value) return {};
   std::vector<std::string> all;
   collect_names(*tree.table(), "", all);
   std::erase_if(all, [](const std::string& n) { return n == "schema" || n == "name" || n == "kind" || n == "assumed"; });
   if (const auto* every = std::get_if<bool>(&value->data)) return *every ? all : std::vector<std::string>{};
-  const TomlArray* list = value->array();
+  const toml::TomlArray* list = value->array();
   if (!list) {
     root.refuse("assumed", "assumed must be true, false or a list of key names, is {}", type_name(value->type()));
     return {};
   }
   std::vector<std::string> names;
   for (std::size_t i = 0; i < list->values.size(); ++i) {
-    const TomlValue& item = list->values[i];
+    const toml::TomlValue& item = list->values[i];
     const std::string* text = item.text();
     if (!text) {
       root.refuse_at(item.position, "assumed[{}] must be a text, is {}", i, type_name(item.type()));
@@ -158,4 +158,4 @@ std::vector<std::string> read_assumed(TableReader& root, const TomlValue& tree) 
   return names;
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::machines

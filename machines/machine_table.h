@@ -5,7 +5,7 @@
 #include "geometry/base/vec.h"
 #include "machines/toml/table_reader.h"
 
-namespace toothpath {
+namespace toothpath::machines {
 
 /// Largest machine file that is opened.
 inline constexpr std::size_t kMaxMachineFileBytes = 1u << 20;
@@ -18,23 +18,23 @@ inline constexpr double kLargestAngle = 1e7;   ///< deg: 27000 turns
 [[nodiscard]] Result<std::string> read_machine_bytes(const std::string& path);
 
 /// Errors: the first syntax error with its place; NUL bytes and nesting deeper than 16 levels are refused.
-[[nodiscard]] Result<TomlValue> parse_machine_toml(std::string_view text, const std::string& file);
+[[nodiscard]] Result<toml::TomlValue> parse_machine_toml(std::string_view text, const std::string& file);
 
 /// Keys with the dotted name of their table: "axes.A.sign".
-[[nodiscard]] const TableWords& machine_words();
+[[nodiscard]] const toml::TableWords& machine_words();
 
 /// 1 or -1; 1 after an error.
-[[nodiscard]] int read_sense(TableReader& table, std::string_view key);
+[[nodiscard]] int read_sense(toml::TableReader& table, std::string_view key);
 
 /// Three numbers, each at most `largest_mm` either way.
-[[nodiscard]] std::optional<Vec3> read_vector(TableReader& table, std::string_view key, double largest_mm);
+[[nodiscard]] std::optional<Vec3> read_vector(toml::TableReader& table, std::string_view key, double largest_mm);
 
 /// `kind`, whatever it is.
-[[nodiscard]] std::optional<std::string> read_kind(TableReader& root);
+[[nodiscard]] std::optional<std::string> read_kind(toml::TableReader& root);
 
 /// The `assumed` key of a machine file: true (every value but `schema`, `name`, `kind` and itself), false (none) or a list of
 /// dotted names, each of a value or a table of this file. Returns the names; records an error for a name that the file does not have.
-[[nodiscard]] std::vector<std::string> read_assumed(TableReader& root, const TomlValue& tree);
+[[nodiscard]] std::vector<std::string> read_assumed(toml::TableReader& root, const toml::TomlValue& tree);
 
 /// A machine, or everything that is wrong with its file in the order of the file.
 /// @param Reading    has `machine`, an optional, and `errors`
@@ -47,10 +47,10 @@ template <typename Reading, typename ReadTree>
     reading.errors.push_back(tree.error());
     return reading;
   }
-  ReaderFindings findings(machine_words());
+  toml::ReaderFindings findings(machine_words());
   auto machine = read_tree(*tree, file, findings);
   reading.errors = std::move(findings.errors);
-  sort_by_position(reading.errors);
+  toml::sort_by_position(reading.errors);
   if (reading.errors.empty()) reading.machine = std::move(machine);
   return reading;
 }
@@ -65,4 +65,4 @@ template <typename Reading, typename ReadText>
   return reading;
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::machines

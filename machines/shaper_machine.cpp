@@ -5,13 +5,13 @@
 #include "geometry/base/angle.h"
 #include "machines/machine_table.h"
 
-namespace toothpath {
+namespace toothpath::machines {
 namespace {
 
 constexpr int kMostTeeth = 1000;         // of a change gear
 constexpr int kLargestConstant = 1000000;
 
-Ratio read_ratio(TableReader table) {
+Ratio read_ratio(toml::TableReader table) {
   Ratio ratio;
   if (const auto pair = table.integer_list("constant", {1, kLargestConstant})) {
     if (pair->size() == 2)
@@ -23,8 +23,8 @@ Ratio read_ratio(TableReader table) {
   return ratio;
 }
 
-void read_stroke(TableReader stroke, ShaperMachine& machine) {
-  if (const auto steps = stroke.number_list("steps", Range::positive(1e5, " 1/min"))) {
+void read_stroke(toml::TableReader stroke, ShaperMachine& machine) {
+  if (const auto steps = stroke.number_list("steps", toml::Range::positive(1e5, " 1/min"))) {
     machine.stroke_steps = *steps;
     if (steps->empty()) stroke.refuse("steps", "{} is empty, must have at least 1 step", stroke.name("steps"));
     for (std::size_t i = 1; i < steps->size(); ++i)
@@ -32,12 +32,12 @@ void read_stroke(TableReader stroke, ShaperMachine& machine) {
         stroke.refuse("steps", "{}[{}] = {} must exceed the step before it, {}", stroke.name("steps"), i,
                       (*steps)[i], (*steps)[i - 1]);
   }
-  machine.max_stroke_mm = stroke.number("max_length", Range::positive(kLargestLength, " mm")).value_or(0.0);
-  machine.relief_mm = stroke.number("relief", Range::positive(100.0, " mm")).value_or(0.0);
+  machine.max_stroke_mm = stroke.number("max_length", toml::Range::positive(kLargestLength, " mm")).value_or(0.0);
+  machine.relief_mm = stroke.number("relief", toml::Range::positive(100.0, " mm")).value_or(0.0);
   stroke.finish();
 }
 
-void read_gears(TableReader gears, ShaperMachine& machine) {
+void read_gears(toml::TableReader gears, ShaperMachine& machine) {
   if (const auto teeth = gears.integer_list("teeth", {5, kMostTeeth})) {
     machine.gears = *teeth;
     if (teeth->size() < 2)
@@ -54,7 +54,7 @@ void read_gears(TableReader gears, ShaperMachine& machine) {
 }
 
 /// An M code: M and one to four digits.
-std::string read_m_code(TableReader& table, const char* key) {
+std::string read_m_code(toml::TableReader& table, const char* key) {
   const auto code = table.text(key, true);
   if (!code) return "";
   const bool right = code->size() >= 2 && code->size() <= 5 && code->front() == 'M' &&
@@ -64,7 +64,7 @@ std::string read_m_code(TableReader& table, const char* key) {
 }
 
 /// An axis name: one capital letter and at most two digits.
-std::string read_axis_name(TableReader& table, const char* key) {
+std::string read_axis_name(toml::TableReader& table, const char* key) {
   const auto name = table.text(key, true);
   if (!name) return "";
   const bool right = !name->empty() && name->size() <= 3 && name->front() >= 'A' && name->front() <= 'Z' &&
@@ -73,7 +73,7 @@ std::string read_axis_name(TableReader& table, const char* key) {
   return *name;
 }
 
-void read_gearbox(TableReader table, ShaperMachine& machine) {
+void read_gearbox(toml::TableReader table, ShaperMachine& machine) {
   ElectronicGearbox box;
   box.relief_on = read_m_code(table, "relief_on");
   box.relief_off = read_m_code(table, "relief_off");
@@ -89,7 +89,7 @@ void read_gearbox(TableReader table, ShaperMachine& machine) {
   machine.gearbox = std::move(box);
 }
 
-ShaperAxis read_axis(TableReader axis, bool rotary) {
+ShaperAxis read_axis(toml::TableReader axis, bool rotary) {
   const double scale = rotary ? radians(1.0) : 1.0;
   const double largest = rotary ? kLargestAngle : kLargestLength;
   const char* unit = rotary ? " deg" : " mm";
@@ -101,14 +101,14 @@ ShaperAxis read_axis(TableReader axis, bool rotary) {
   out.min = lo.value_or(0.0) * scale;
   out.max = hi.value_or(0.0) * scale;
   out.max_speed =
-      axis.number("max_speed", Range::positive(kLargestSpeed, rotary ? " deg/min" : " mm/min")).value_or(0.0) * scale;
+      axis.number("max_speed", toml::Range::positive(kLargestSpeed, rotary ? " deg/min" : " mm/min")).value_or(0.0) * scale;
   if (rotary && axis.has("sign")) out.sign = read_sense(axis, "sign");
   axis.finish();
   return out;
 }
 
-ShaperMachine read_shaper_tree(const TomlValue& tree, const std::string& file, ReaderFindings& findings) {
-  TableReader root(tree, "", findings);
+ShaperMachine read_shaper_tree(const toml::TomlValue& tree, const std::string& file, toml::ReaderFindings& findings) {
+  toml::TableReader root(tree, "", findings);
   ShaperMachine machine;
   machine.file = file;
   (void)root.integer("schema", {1, 1});
@@ -148,4 +148,4 @@ ShaperMachineReading read_shaper_machine_file(const std::string& path) {
   return read_machine_file_as<ShaperMachineReading>(path, read_shaper_machine_text);
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::machines

@@ -10,7 +10,7 @@
 
 #include "geometry/base/diagnostic.h"
 
-namespace toothpath {
+namespace toothpath::machines {
 
 /// A ratio of whole numbers, both > 0, as written (not reduced).
 struct Ratio {
@@ -65,4 +65,4 @@ struct ShaperMachineReading {
 /// The same from text; `file` is the name in the messages.
 [[nodiscard]] ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file);
 
-}  // namespace toothpath
+}  // namespace toothpath::machines

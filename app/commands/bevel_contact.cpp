@@ -5,14 +5,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/commands/bevel_run.h"
-#include "app/job_file.h"
-#include "app/report/study_page.h"
-#include "app/report/svg_contact_pattern.h"
+#include "app/process/bevel_run.h"
+#include "app/job/file.h"
+#include "app/report/page/study_page.h"
+#include "app/report/svg/contact_pattern.h"
 #include "geometry/base/angle.h"
-#include "geometry/bevel_contact.h"
+#include "geometry/contact/bevel_contact.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 namespace {
 
 /// Everything that was found about the pair.
@@ -20,20 +20,20 @@ struct PairAnalysis {
   std::string name, mate;
   bool job_is_pinion = true;
   int pinion_teeth = 0, wheel_teeth = 0;
-  BevelAssembly assembly;
+  contact::BevelAssembly assembly;
   double compound_mm = 0.006;
-  std::vector<BevelContact> walls;  ///< L, U
-  std::vector<MismatchChange> changes;
+  std::vector<contact::BevelContact> walls;  ///< L, U
+  std::vector<contact::MismatchChange> changes;
 };
 
 constexpr std::array<const char*, 2> kWall = {"L", "U"};
 
-PageTable wall_table(const PairAnalysis& a) {
-  PageTable t{"Walls", {"wall", "transmission error um", "urad of the pinion", "mismatch least um", "greatest um", "rms um", "pairs marking", "marked"}, {},
+page::PageTable wall_table(const PairAnalysis& a) {
+  page::PageTable t{"Walls", {"wall", "transmission error um", "urad of the pinion", "mismatch least um", "greatest um", "rms um", "pairs marking", "marked"}, {},
               "Transmission error: peak to peak over one pitch, um at the mean pitch circle. Mismatch: normal distance of the flanks at the exact ratio; 0 "
               "everywhere only for conjugate flanks."};
   for (std::size_t w = 0; w < a.walls.size(); ++w) {
-    const BevelContact& c = a.walls[w];
+    const contact::BevelContact& c = a.walls[w];
     std::string marked;
     for (const auto& g : c.patterns) marked += fmt::format("{}{:.0f} %", marked.empty() ? "" : ", ", g.marked_share * 100);
     t.rows.push_back({kWall[w], fmt::format("{:.2f}", c.error_range_mm * 1000), fmt::format("{:.1f}", c.error_range_rad * 1e6), fmt::format("{:.2f}", c.mismatch_min_mm * 1000),
@@ -43,8 +43,8 @@ PageTable wall_table(const PairAnalysis& a) {
   return t;
 }
 
-PageTable change_table(const PairAnalysis& a) {
-  PageTable t{"What would bring the flanks closer", {"change", "best amount", "unit", "rms before um", "after um", ""}, {},
+page::PageTable change_table(const PairAnalysis& a) {
+  page::PageTable t{"What would bring the flanks closer", {"change", "best amount", "unit", "rms before um", "after um", ""}, {},
               "Both walls together, a constant of each wall (play) left out. One change at a time: first order. Sets: rolled again with the changed pinion. "
               "Convex and concave name the walls by their shape at the large end."};
   for (const auto& c : a.changes)
@@ -64,12 +64,12 @@ std::string finding(const PairAnalysis& a) {
                      rms * 1000, range * 1000, before * 1000, best * 1000);
 }
 
-std::vector<LineChart> charts_of(const PairAnalysis& a) {
-  LineChart error{"Transmission error over one pitch", "turn of the wheel [deg]", "pinion ahead of the exact ratio [urad]", {}, {}, false, false, false,
+std::vector<svg::LineChart> charts_of(const PairAnalysis& a) {
+  svg::LineChart error{"Transmission error over one pitch", "turn of the wheel [deg]", "pinion ahead of the exact ratio [urad]", {}, {}, false, false, false,
                   "The pinion stops at the first pair that touches; jumps of the slope are changes of the pair."};
-  LineChart pairs{"Pairs within the compound", "turn of the wheel [deg]", "pairs", {}, {}, false, false, true, ""};
+  svg::LineChart pairs{"Pairs within the compound", "turn of the wheel [deg]", "pairs", {}, {}, false, false, true, ""};
   for (std::size_t w = 0; w < a.walls.size(); ++w) {
-    ChartSeries e{std::string("wall ") + kWall[w], {}, {}}, n{e.name, {}, {}};
+    svg::ChartSeries e{std::string("wall ") + kWall[w], {}, {}}, n{e.name, {}, {}};
     for (const auto& at : a.walls[w].cycle) {
       e.x.push_back(degrees(at.phi_2));
       e.y.push_back((at.error_rad - a.walls[w].error_mean_rad) * 1e6);
@@ -82,19 +82,19 @@ std::vector<LineChart> charts_of(const PairAnalysis& a) {
   return {error, pairs};
 }
 
-std::vector<StudyPage::Figure> figures_of(const PairAnalysis& a) {
-  std::vector<StudyPage::Figure> figures;
+std::vector<page::StudyPage::Figure> figures_of(const PairAnalysis& a) {
+  std::vector<page::StudyPage::Figure> figures;
   for (std::size_t w = 0; w < a.walls.size(); ++w)
     for (const auto& g : a.walls[w].patterns) {
       const std::string where = fmt::format("wall {} of the wheel{}", kWall[w], a.walls[w].patterns.size() > 1 ? g.half == 0 ? ", inner half" : ", outer half" : "");
-      PatternDrawing pattern;
+      svg::PatternDrawing pattern;
       pattern.title = "contact pattern, " + where;
       pattern.x_label = "cone distance [mm]";
       pattern.y_label = "height [mm]";
       pattern.rows = g.rows;
       pattern.columns = g.columns;
       pattern.compound_um = a.compound_mm * 1000;
-      FlankFieldDrawing field{"mismatch, " + where, "cone distance [mm]", "height [mm]", "um", g.rows, g.columns, {}, {}, {}, 0};
+      svg::FlankFieldDrawing field{"mismatch, " + where, "cone distance [mm]", "height [mm]", "um", g.rows, g.columns, {}, {}, {}, 0};
       for (std::size_t k = 0; k < g.places.size(); ++k) {
         pattern.x.push_back(g.places[k].ell);
         pattern.y.push_back(g.places[k].height);
@@ -105,18 +105,18 @@ std::vector<StudyPage::Figure> figures_of(const PairAnalysis& a) {
       for (const auto& at : a.walls[w].cycle)
         if (at.half == g.half) pattern.path.emplace_back(at.ell, at.height);
       std::sort(pattern.path.begin(), pattern.path.end());
-      figures.push_back({"Contact pattern, " + where, svg_contact_pattern(pattern), fmt::format("Compound {:g} um; line: places that touch first.", a.compound_mm * 1000)});
-      figures.push_back({"Mismatch at the exact ratio, " + where, svg_flank_field(field), "Red: a gap; blue: the flanks would overlap and lift the other pairs off. White also "
+      figures.push_back({"Contact pattern, " + where, svg::svg_contact_pattern(pattern), fmt::format("Compound {:g} um; line: places that touch first.", a.compound_mm * 1000)});
+      figures.push_back({"Mismatch at the exact ratio, " + where, svg::svg_flank_field(field), "Red: a gap; blue: the flanks would overlap and lift the other pairs off. White also "
                                                                                          "where the pinion's flank has ended."});
     }
   return figures;
 }
 
 std::string page_of(const PairAnalysis& a) {
-  StudyPage page;
+  page::StudyPage page;
   page.title = a.name + ": contact of the pair";
   page.subtitle = fmt::format("pinion of {} teeth, wheel of {} teeth; mate: {}", a.pinion_teeth, a.wheel_teeth, a.mate);
-  const BevelAssembly& m = a.assembly;
+  const contact::BevelAssembly& m = a.assembly;
   if (m.offset_mm != 0 || m.pinion_axial_mm != 0 || m.wheel_axial_mm != 0 || m.shaft_angle_rad != 0)
     page.subtitle += fmt::format("; offset {:+g} mm, shaft angle {:+g} deg, pinion axial {:+g} mm, wheel axial {:+g} mm", m.offset_mm, degrees(m.shaft_angle_rad), m.pinion_axial_mm,
                                  m.wheel_axial_mm);
@@ -164,7 +164,7 @@ std::string json_of(const PairAnalysis& a) {
   json["assembly"] = {{"offset_mm", a.assembly.offset_mm}, {"shaft_angle_deg", degrees(a.assembly.shaft_angle_rad)}, {"pinion_axial_mm", a.assembly.pinion_axial_mm},
                       {"wheel_axial_mm", a.assembly.wheel_axial_mm}};
   for (std::size_t w = 0; w < a.walls.size(); ++w) {
-    const BevelContact& c = a.walls[w];
+    const contact::BevelContact& c = a.walls[w];
     nlohmann::ordered_json wall = {{"wall", kWall[w]}, {"transmission_error_urad", c.error_range_rad * 1e6}, {"transmission_error_um", c.error_range_mm * 1000},
                                    {"mismatch_least_um", c.mismatch_min_mm * 1000}, {"mismatch_greatest_um", c.mismatch_max_mm * 1000}, {"mismatch_rms_um", c.mismatch_rms_mm * 1000},
                                    {"pairs_marking", c.marking_ratio}, {"pairs_least", c.least_marking}, {"pairs_most", c.most_marking}};
@@ -178,36 +178,36 @@ std::string json_of(const PairAnalysis& a) {
 }
 
 /// The gear that the job's gear runs with.
-ValueOrErrors<BevelGear> mate_of(const ContactRequest& request, const Job& job, const BevelGear& gear, std::string& name) {
+process::ValueOrErrors<bevel_gear::BevelGear> mate_of(const ContactRequest& request, const job::Job& job, const bevel_gear::BevelGear& gear, std::string& name) {
   if (request.other_job.empty()) {
-    auto mate = bevel_mate(gear);
-    if (!mate) return std::vector{located(job, "gear.mate_teeth", mate.error())};
+    auto mate = contact::bevel_mate(gear);
+    if (!mate) return std::vector{process::located(job, "gear.mate_teeth", mate.error())};
     name = "by the rules of the pair, cut with the same mill";
     return std::move(mate.value());
   }
-  auto read = read_job_file(request.other_job);
-  if (auto* errors = std::get_if<1>(&read)) return std::move(*errors);
-  const Job& other = std::get<0>(read);
+  auto read = job::read_job_file(request.other_job);
+  if (auto* errors = read.refused()) return std::move(*errors);
+  const job::Job& other = read.value();
   if (other.bevel_gear() == nullptr) return std::vector{fail_at(other.where("gear.type"), "the mate is no equal-base-circle bevel gear")};
   name = request.other_job;
-  return make_bevel_gear(other);
+  return process::make_bevel_gear(other);
 }
 
 }  // namespace
 
-CommandOutcome run_bevel_contact(const ContactRequest& request, const Job& job, OutputDir& output) {
-  Progress progress(request.quiet);
-  StageClock clock(progress);
-  auto made = clock.run("gear", [&] { return make_bevel_gear(job); });
-  if (auto* errors = std::get_if<1>(&made)) return failed(std::move(*errors));
-  const BevelGear& gear = std::get<0>(made);
+CommandOutcome run_bevel_contact(const ContactRequest& request, const job::Job& job, app::OutputDir& output) {
+  app::Progress progress(request.quiet);
+  app::StageClock clock(progress);
+  auto made = clock.run("gear", [&] { return process::make_bevel_gear(job); });
+  if (auto* errors = made.refused()) return failed(std::move(*errors));
+  const bevel_gear::BevelGear& gear = made.value();
   PairAnalysis a;
   a.name = job.name;
   auto mated = clock.run("mate", [&] { return mate_of(request, job, gear, a.mate); });
-  if (auto* errors = std::get_if<1>(&mated)) return failed(std::move(*errors));
-  const BevelGear& mate = std::get<0>(mated);
+  if (auto* errors = mated.refused()) return failed(std::move(*errors));
+  const bevel_gear::BevelGear& mate = mated.value();
   a.job_is_pinion = gear.parameters().teeth <= mate.parameters().teeth;
-  const BevelGear &pinion = a.job_is_pinion ? gear : mate, &wheel = a.job_is_pinion ? mate : gear;
+  const bevel_gear::BevelGear &pinion = a.job_is_pinion ? gear : mate, &wheel = a.job_is_pinion ? mate : gear;
   a.pinion_teeth = pinion.parameters().teeth;
   a.wheel_teeth = wheel.parameters().teeth;
   a.assembly.offset_mm = request.offset_error_mm.value_or(0);
@@ -215,17 +215,17 @@ CommandOutcome run_bevel_contact(const ContactRequest& request, const Job& job, 
   a.assembly.wheel_axial_mm = request.wheel_axial_error_mm.value_or(0);
   a.assembly.shaft_angle_rad = radians(request.angle_error_deg.value_or(0));
   a.compound_mm = request.compound_um.value_or(6) / 1000;
-  const auto pair = BevelPair::make(pinion, wheel, a.assembly);
-  if (!pair) return failed(located(job, "gear", pair.error()));
-  BevelContactOptions options;
+  const auto pair = contact::BevelPair::make(pinion, wheel, a.assembly);
+  if (!pair) return failed(process::located(job, "gear", pair.error()));
+  contact::BevelContactOptions options;
   options.compound_mm = a.compound_mm;
   for (const int sigma : {1, -1}) {
-    auto contact = clock.run("contact", [&] { return bevel_contact(*pair, sigma, options); });
-    if (!contact) return failed(located(job, "gear", contact.error()));
+    auto contact = clock.run("contact", [&] { return contact::bevel_contact(*pair, sigma, options); });
+    if (!contact) return failed(process::located(job, "gear", contact.error()));
     a.walls.push_back(std::move(contact.value()));
   }
-  auto changes = clock.run("changes", [&] { return mismatch_changes(pinion, wheel, {11, 9, 24, a.compound_mm}); });
-  if (!changes) return failed(located(job, "gear", changes.error()));
+  auto changes = clock.run("changes", [&] { return contact::mismatch_changes(pinion, wheel, {11, 9, 24, a.compound_mm}); });
+  if (!changes) return failed(process::located(job, "gear", changes.error()));
   a.changes = std::move(changes.value());
 
   CommandOutcome outcome;
@@ -235,8 +235,8 @@ CommandOutcome run_bevel_contact(const ContactRequest& request, const Job& job, 
     if (const auto written = output.write(name, content); !written) return failed(written.error());
   progress.clear();
   if (const auto committed = output.commit(); !committed) return failed(committed.error());
-  outcome.summary = fmt::format("{}: pinion {} teeth, wheel {} teeth\n{}\n{}\n{}\n", a.name, a.pinion_teeth, a.wheel_teeth, table_text(wall_table(a)), finding(a), table_text(change_table(a)));
+  outcome.summary = fmt::format("{}: pinion {} teeth, wheel {} teeth\n{}\n{}\n{}\n", a.name, a.pinion_teeth, a.wheel_teeth, page::table_text(wall_table(a)), finding(a), page::table_text(change_table(a)));
   return outcome;
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

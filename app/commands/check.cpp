@@ -5,26 +5,26 @@
 #include <optional>
 #include <sstream>
 
-#include "app/commands/bevel_check.h"
-#include "app/commands/bevel_run.h"
-#include "app/commands/program_report.h"
-#include "app/commands/proof.h"
-#include "app/commands/scene.h"
-#include "app/gear_of_job.h"
-#include "app/job_file.h"
-#include "app/measured_file.h"
-#include "app/output_dir.h"
+#include "app/process/bevel_check.h"
+#include "app/process/bevel_run.h"
+#include "app/process/program_report.h"
+#include "app/process/proof.h"
+#include "app/process/scene.h"
+#include "app/process/gear_of_job.h"
+#include "app/job/file.h"
+#include "app/job/measured_file.h"
+#include "app/base/output_dir.h"
 #include "app/report/deviation_vtp.h"
-#include "app/report/motion_charts.h"
-#include "app/report/page_of_run.h"
+#include "app/report/page/motion_charts.h"
+#include "app/report/page/page_of_run.h"
 #include "geometry/base/angle.h"
-#include "cam/plan.h"
+#include "cam/ball/plan.h"
 #include "geometry/base/hash.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 namespace {
 
-void fill(RunReport& report, const FaceGearProof& proof, const Machine& machine) {
+void fill(report::RunReport& report, const process::FaceGearProof& proof, const machines::Machine& machine) {
   report.gouge = proof.gouge;
   report.reasons = proof.reasons;
   report.excess = proof.surface.operations;
@@ -34,7 +34,7 @@ void fill(RunReport& report, const FaceGearProof& proof, const Machine& machine)
   report.blocks = proof.read.executed;
   report.feed_minutes = proof.read.feed_minutes;
   report.total_minutes = proof.read.minutes;
-  report.axes = ranges_of(proof.read, machine);
+  report.axes = process::ranges_of(proof.read, machine);
   report.verified = report.reasons.empty();
 }
 
@@ -43,88 +43,88 @@ void fill(RunReport& report, const FaceGearProof& proof, const Machine& machine)
 CommandOutcome check_program(const CheckRequest& request) {
   std::vector<std::string> inputs = {request.job_file, request.program_file};
   for (const auto* more : {&request.stock_files, &request.fixture_files, &request.measured_files}) inputs.insert(inputs.end(), more->begin(), more->end());
-  auto output = OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"}, inputs);
+  auto output = app::OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"}, inputs);
   if (!output) return failed(output.error());
-  if (const auto bevel = bevel_job(request.job_file)) return check_bevel_program(request, *bevel, *output);
-  Progress progress(request.quiet);
-  StageClock clock(progress);
-  auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
-  if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
-  const Job job = std::move(std::get<0>(read));
-  auto made = clock.run("gear", [&] { return make_face_gear(job); });
-  if (auto* refused = std::get_if<1>(&made)) return failed(std::move(*refused));
-  FaceGear gear = std::move(std::get<0>(made));
+  if (const auto bevel = process::bevel_job(request.job_file)) return process::check_bevel_program(request, *bevel, *output);
+  app::Progress progress(request.quiet);
+  app::StageClock clock(progress);
+  auto read = clock.run("job", [&] { return job::read_job_file(request.job_file); });
+  if (auto* errors = read.refused()) return failed(std::move(*errors));
+  const job::Job job = std::move(read).value();
+  auto made = clock.run("gear", [&] { return process::make_face_gear(job); });
+  if (auto* refused = made.refused()) return failed(std::move(*refused));
+  face_gear::FaceGear gear = std::move(made).value();
   if (!request.measured_files.empty()) {
-    auto corrected = clock.run("correction", [&] { return correct_gear(gear, request.measured_files); });
+    auto corrected = clock.run("correction", [&] { return job::correct_gear(gear, request.measured_files); });
     if (!corrected) return failed(corrected.error());
     gear = std::move(corrected->gear);
   }
-  auto loaded = clock.run("machine", [&] { return load_machine(job); });
-  if (auto* refused = std::get_if<1>(&loaded)) return failed(std::move(*refused));
-  const Machine machine = std::move(std::get<0>(loaded));
+  auto loaded = clock.run("machine", [&] { return process::load_machine(job); });
+  if (auto* refused = loaded.refused()) return failed(std::move(*refused));
+  const machines::Machine machine = std::move(loaded).value();
   if (!job.setup) return failed(fail_at(job.where("setup"), "the job lacks a [setup]: where the gear stands is not known"));
-  auto text = read_program_file(request.program_file);
+  auto text = process::read_program_file(request.program_file);
   if (!text) return failed(text.error());
 
-  std::optional<Scene> scene;
-  if (wants_scene(request)) {
-    auto meshes = clock.run("stock and fixture meshes", [&] { return load_scene(request, 2 * gear.outer_radius()); });
+  std::optional<process::Scene> scene;
+  if (process::wants_scene(request)) {
+    auto meshes = clock.run("stock and fixture meshes", [&] { return process::load_scene(request, 2 * gear.outer_radius()); });
     if (!meshes) return failed(meshes.error());
     scene = std::move(meshes.value());
   }
 
-  const GearDistance part = clock.run("distance index", [&] { return GearDistance(gear, reach_of(job.tools)); });
-  GougeCheckOptions options;
+  const analytic::GearDistance part = clock.run("distance index", [&] { return analytic::GearDistance(gear, ball::reach_of(job.tools)); });
+  analytic::GougeCheckOptions options;
   options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
   options.proof_mm = std::min(options.proof_mm, 0.1 * job.verify.gouge_tolerance_mm);
-  options.clearance_mm = job.verify.clearance_mm.value_or(PlanOptions{}.clearance_mm);
+  options.clearance_mm = job.verify.clearance_mm.value_or(ball::PlanOptions{}.clearance_mm);
   options.rapid_height_mm = gear.blank_top();
-  const GougeCheck gouge_check(part, job.tools, options);
-  FaceGearCheck face(job, machine, part, gouge_check);
-  auto proof = prove_face_gear({*text, request.program_file, job, machine}, {}, face, clock);
+  const analytic::GougeCheck gouge_check(part, job.tools, options);
+  process::FaceGearCheck face(job, machine, part, gouge_check);
+  auto proof = process::prove_face_gear({*text, request.program_file, job, machine}, {}, face, clock);
   if (!proof) {
     progress.clear();
     return failed(proof.error());
   }
-  RunReport report = report_of("check", job, machine, gear.warnings());
+  report::RunReport report = process::report_of("check", job, machine, gear.warnings());
   report.program_file = request.program_file;
   if (scene) {
     auto verdicts = clock.run("stock and fixture", [&] {
       return check_scene(*scene, *text, request.program_file, job, machine, proof->read,
-                         scene_of_face_gear(job, gear.parameters().teeth, options.clearance_mm));
+                         process::scene_of_face_gear(job, gear.parameters().teeth, options.clearance_mm));
     });
     if (!verdicts) {
       progress.clear();
       return failed(verdicts.error());
     }
-    add_scene(*verdicts, proof->reasons, proof->gouge, report);
+    process::add_scene(*verdicts, proof->reasons, proof->gouge, report);
   }
   report.program_sha256 = sha256_hex(*text);
   report.program_bytes = text->size();
   fill(report, *proof, machine);
 
   CommandOutcome outcome;
-  outcome.exit_code = report.verified ? ExitCode::ok : ExitCode::unverified;
-  outcome.errors = errors_of(report.reasons, request.program_file);
-  const auto vtp = deviation_vtp(proof->surface.grids);
+  outcome.exit_code = report.verified ? app::ExitCode::ok : app::ExitCode::unverified;
+  outcome.errors = process::errors_of(report.reasons, request.program_file);
+  const auto vtp = report::deviation_vtp(proof->surface.grids);
   if (!vtp) return failed(vtp.error());
   if (const auto s = output->write("tooth.vtp", *vtp); !s) return failed(s.error());
   report.files = {"tooth.vtp", "report.html", "report.json"};
   report.stages = clock.seconds();
   const auto page = clock.run("report page", [&] {
-    ReportPage content = page_of_run(job, report, {}, *text);
+    page::ReportPage content = page::page_of_run(job, report, {}, *text);
     content.surface = proof->surface.grids;
-    content.motion = motion_charts(proof->read, proof->motions, machine);
+    content.motion = page::motion_charts(proof->read, proof->motions, machine);
     return render_report_page(content);
   });
   if (!page) return failed(page.error());
   if (const auto s = output->write("report.html", *page); !s) return failed(s.error());
   report.stages = clock.seconds();
-  outcome.report_json = report_json(report);
+  outcome.report_json = report::report_json(report);
   if (const auto s = output->write("report.json", outcome.report_json); !s) return failed(s.error());
   progress.clear();
   if (const auto committed = output->commit(); !committed) return failed(committed.error());
-  outcome.summary = summary_table(report, request.color) + table_of_worst(proof->gouge);
+  outcome.summary = report::summary_table(report, request.color) + process::table_of_worst(proof->gouge);
   return outcome;
 }
 
@@ -143,4 +143,4 @@ void add_check(Commands& commands) {
       check_program));
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

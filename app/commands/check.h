@@ -2,11 +2,11 @@
 #pragma once
 
 #include "app/commands/command.h"
-#include "app/commands/scene.h"
+#include "app/process/scene.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 
-struct CheckRequest : JobRequest, SceneFiles {
+struct CheckRequest : JobRequest, process::SceneFiles {
   std::string program_file;
   std::vector<std::string> measured_files;  ///< measured deviations that the program answers, in the order of the cuts
 };
@@ -15,4 +15,4 @@ struct CheckRequest : JobRequest, SceneFiles {
 /// Writes report.json, report.html and tooth.vtp; the program itself is never touched. Exit: verified or unverified.
 [[nodiscard]] CommandOutcome check_program(const CheckRequest& request);
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

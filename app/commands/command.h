@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "app/commands/option_set.h"
-#include "app/exit_code.h"
-#include "app/stage_clock.h"
+#include "app/base/exit_code.h"
+#include "app/base/stage_clock.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 
 /// What every command gets, whatever its own options.
 struct CommonRequest {
@@ -34,7 +34,7 @@ struct JobRequest : CommonRequest {
 };
 
 struct CommandOutcome {
-  ExitCode exit_code = ExitCode::ok;
+  app::ExitCode exit_code = app::ExitCode::ok;
   std::vector<Diagnostic> errors;
   std::string summary;      ///< for people, on stdout
   std::string report_json;  ///< the report as one JSON object; empty where there is none
@@ -43,7 +43,7 @@ struct CommandOutcome {
 /// An outcome from refusals: the exit code is that of the first.
 [[nodiscard]] inline CommandOutcome failed(std::vector<Diagnostic> errors) {
   CommandOutcome outcome;
-  outcome.exit_code = errors.empty() ? ExitCode::internal : exit_code_of(errors.front().kind);
+  outcome.exit_code = errors.empty() ? app::ExitCode::internal : app::exit_code_of(errors.front().kind);
   outcome.errors = std::move(errors);
   return outcome;
 }
@@ -90,4 +90,4 @@ inline void job_options(OptionSet& set, JobRequest& request) {
 /// All commands in the order of the list in app/CMakeLists.txt, which makes the text of this function.
 [[nodiscard]] Commands all_commands();
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

@@ -5,17 +5,17 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/contact.h"
-#include "app/commands/opening_and_end.h"
-#include "app/contact_analysis.h"
-#include "app/job_file.h"
-#include "app/report/html_text.h"
+#include "app/process/opening_and_end.h"
+#include "app/process/contact_analysis.h"
+#include "app/job/file.h"
+#include "app/report/svg/html_text.h"
 #include "app/report/run_report.h"
-#include "app/report/study_page.h"
-#include "app/report/svg_contact_pattern.h"
-#include "app/units.h"
+#include "app/report/page/study_page.h"
+#include "app/report/svg/contact_pattern.h"
+#include "app/base/units.h"
 #include "geometry/base/angle.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 namespace {
 
 const std::vector<std::string> kCompareOutputs = {"compare.csv", "compare.json", "compare.html"};
@@ -24,24 +24,24 @@ constexpr int kCompareRows = 121, kCompareColumns = 33;
 constexpr double kSameSurface = 1e-9;
 
 struct Side {
-  Job job;
-  std::optional<FaceGear> gear;
+  job::Job job;
+  std::optional<face_gear::FaceGear> gear;
 };
 
 std::vector<Diagnostic> read_side(const std::string& file, Side& side) {
-  auto read = read_job_file(file);
-  if (auto* errors = std::get_if<1>(&read)) return std::move(*errors);
-  side.job = std::move(std::get<0>(read));
-  auto made = make_face_gear(side.job);
-  if (auto* errors = std::get_if<1>(&made)) return std::move(*errors);
-  side.gear = std::move(std::get<0>(made));
+  auto read = job::read_job_file(file);
+  if (auto* errors = read.refused()) return std::move(*errors);
+  side.job = std::move(read).value();
+  auto made = process::make_face_gear(side.job);
+  if (auto* errors = made.refused()) return std::move(*errors);
+  side.gear = std::move(made).value();
   return {};
 }
 
 /// Everything that decides the flanks must agree; each difference is named at its place in the milled job.
 std::vector<Diagnostic> differences(const Side& shaped, const Side& milled) {
   std::vector<Diagnostic> found;
-  const FaceGearParameters &a = shaped.gear->parameters(), &b = milled.gear->parameters();
+  const face_gear::FaceGearParameters &a = shaped.gear->parameters(), &b = milled.gear->parameters();
   const auto compare = [&](const std::string& key, double x, double y) {
     if (std::abs(x - y) <= kSameSurface * std::max(1.0, std::abs(x))) return;
     found.push_back(fail_at(milled.job.where("gear." + key), "{} = {:g} differs from {:g} of {}: not the same gear", key, y, x, shaped.job.file));
@@ -78,19 +78,19 @@ Figures figures_of(const std::vector<double>& um) {
 
 /// One flank by both routes, um.
 struct ComparedFlank {
-  const CutFlanks::Flank* places = nullptr;
+  const process::CutFlanks::Flank* places = nullptr;
   std::vector<double> shaped_um, milled_um, difference_um;
   Figures shaped, milled, difference;
 };
 
-std::vector<ComparedFlank> compared(const CutFlanks& shaped, const CutFlanks& milled) {
+std::vector<ComparedFlank> compared(const process::CutFlanks& shaped, const process::CutFlanks& milled) {
   std::vector<ComparedFlank> flanks;
   for (std::size_t n = 0; n < milled.flanks.size(); ++n) {
     ComparedFlank f;
     f.places = &milled.flanks[n];
     for (std::size_t k = 0; k < f.places->nominal.size(); ++k) {
-      f.shaped_um.push_back(shaped.flanks[n].deviation_mm[k] * kUm);
-      f.milled_um.push_back(milled.flanks[n].deviation_mm[k] * kUm);
+      f.shaped_um.push_back(shaped.flanks[n].deviation_mm[k] * app::kUm);
+      f.milled_um.push_back(milled.flanks[n].deviation_mm[k] * app::kUm);
       f.difference_um.push_back(f.milled_um.back() - f.shaped_um.back());
     }
     f.shaped = figures_of(f.shaped_um);
@@ -113,8 +113,8 @@ std::string csv_of(const std::vector<ComparedFlank>& flanks) {
   return out;
 }
 
-PageTable deviation_table(const std::vector<ComparedFlank>& flanks) {
-  PageTable table{"Deviation of the flanks", {"flank", "ring", "route", "least um", "greatest um", "rms um"}, {},
+page::PageTable deviation_table(const std::vector<ComparedFlank>& flanks) {
+  page::PageTable table{"Deviation of the flanks", {"flank", "ring", "route", "least um", "greatest um", "rms um"}, {},
                   "Along the normal of the exact flank, material left positive, on the same places."};
   for (const auto& f : flanks)
     for (const auto& [route, v] : {std::pair<std::string, Figures>{"shaped", f.shaped}, {"milled", f.milled}, {"milled - shaped", f.difference}})
@@ -123,8 +123,8 @@ PageTable deviation_table(const std::vector<ComparedFlank>& flanks) {
   return table;
 }
 
-PageTable time_table(const CutFlanks& shaped, const CutFlanks& milled) {
-  PageTable table{"Times on the machine", {"route", "cutting min", "all min", "verified"}, {},
+page::PageTable time_table(const process::CutFlanks& shaped, const process::CutFlanks& milled) {
+  page::PageTable table{"Times on the machine", {"route", "cutting min", "all min", "verified"}, {},
                   "Shaped: double strokes of infeed and one full turn. Milled: feed, and feed with rapids, of all teeth and operations of the job; "
                   "without tool changes and clamping."};
   table.rows.push_back({"shaped", fmt::format("{:.2f}", shaped.cutting_minutes), fmt::format("{:.2f}", shaped.total_minutes), "strokes simulated"});
@@ -132,8 +132,8 @@ PageTable time_table(const CutFlanks& shaped, const CutFlanks& milled) {
   return table;
 }
 
-std::vector<StudyPage::Figure> maps_of(const std::vector<ComparedFlank>& flanks) {
-  std::vector<StudyPage::Figure> figures;
+std::vector<page::StudyPage::Figure> maps_of(const std::vector<ComparedFlank>& flanks) {
+  std::vector<page::StudyPage::Figure> figures;
   for (const auto& f : flanks) {
     double largest = 0;
     for (const auto* values : {&f.shaped_um, &f.milled_um})
@@ -145,7 +145,7 @@ std::vector<StudyPage::Figure> maps_of(const std::vector<ComparedFlank>& flanks)
     std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() * 99 / 100), sizes.end());
     const double shown = std::min(largest, 1.2 * sizes[sizes.size() * 99 / 100]);
     for (const auto& [name, values] : {std::pair<std::string, const std::vector<double>*>{"shaped", &f.shaped_um}, {"milled", &f.milled_um}, {"milled less shaped", &f.difference_um}}) {
-      FlankFieldDrawing d;
+      svg::FlankFieldDrawing d;
       d.title = fmt::format("{}, flank {:+}", name, f.places->side);
       d.x_label = "radius from the gear's axis [mm]";
       d.y_label = "height z [mm]";
@@ -155,7 +155,7 @@ std::vector<StudyPage::Figure> maps_of(const std::vector<ComparedFlank>& flanks)
       for (const Vec3& p : f.places->nominal) d.x.push_back(std::hypot(p.x(), p.y())), d.y.push_back(p.z());
       d.value = *values;
       d.largest = shown;
-      figures.push_back({fmt::format("Flank {:+}: {}", f.places->side, name), svg_flank_field(d),
+      figures.push_back({fmt::format("Flank {:+}: {}", f.places->side, name), svg::svg_flank_field(d),
                          name == "shaped" ? "Feed marks of the strokes: flats of the cutter's profile between two strokes." :
                          name == "milled" ? "Cusps between the passes of the ball." : "Where the milled flank stands higher (red) or lower (blue)."});
     }
@@ -168,9 +168,9 @@ nlohmann::ordered_json figures_json(const Figures& f) { return {{"min_um", f.lea
 }  // namespace
 
 CommandOutcome run_compare(const CompareRequest& request) {
-  Progress progress(request.quiet);
-  StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kCompareOutputs, {request.job_file, request.other_job});
+  app::Progress progress(request.quiet);
+  app::StageClock clock(progress);
+  auto output = app::OutputDir::open(request.out_dir, kCompareOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
   Side shaped_side, milled_side;
   std::vector<Diagnostic> errors = read_side(request.job_file, shaped_side);
@@ -181,27 +181,27 @@ CommandOutcome run_compare(const CompareRequest& request) {
   if (milled_side.job.operations.empty()) return failed(fail_at(milled_side.job.where(""), "the job lacks an [[operation]]: nothing is milled"));
   if (auto found = differences(shaped_side, milled_side); !found.empty()) return failed(std::move(found));
 
-  auto milled_or = clock.run("milled", [&] { return cut_flanks(milled_side.job, *milled_side.gear, kCompareRows, kCompareColumns, *output, request.quiet); });
-  if (auto* e = std::get_if<1>(&milled_or)) return failed(std::move(*e));
-  const CutFlanks& milled = std::get<0>(milled_or);
-  auto shaped_or = clock.run("shaped", [&] { return shaped_flanks(shaped_side.job, *shaped_side.gear, milled.flanks); });
-  if (auto* e = std::get_if<1>(&shaped_or)) return failed(std::move(*e));
-  const CutFlanks& shaped = std::get<0>(shaped_or);
+  auto milled_or = clock.run("milled", [&] { return process::cut_flanks(milled_side.job, *milled_side.gear, kCompareRows, kCompareColumns, *output, request.quiet); });
+  if (auto* e = milled_or.refused()) return failed(std::move(*e));
+  const process::CutFlanks& milled = milled_or.value();
+  auto shaped_or = clock.run("shaped", [&] { return process::shaped_flanks(shaped_side.job, *shaped_side.gear, milled.flanks); });
+  if (auto* e = shaped_or.refused()) return failed(std::move(*e));
+  const process::CutFlanks& shaped = shaped_or.value();
   const auto flanks = compared(shaped, milled);
 
   // Both flanks under the same pinion: what the deviations mean in the mesh.
-  const ContactSettings settings = contact_settings(milled_side.job, {});
-  PageTable contact{"Under the same pinion", {"flank", "route", "transmission error um", "within compound", "pattern %"}, {}, ""};
+  const job::ContactSettings settings = contact_settings(milled_side.job, {});
+  page::PageTable contact{"Under the same pinion", {"flank", "route", "transmission error um", "within compound", "pattern %"}, {}, ""};
   nlohmann::ordered_json contact_rows = nlohmann::ordered_json::array();
-  for (const CutFlanks* cut : {&shaped, &milled}) {
-    auto analysed = clock.run("contact", [&] { return analyse_contact(milled_side.job, *milled_side.gear, settings, cut); });
-    if (auto* e = std::get_if<1>(&analysed)) return failed(std::move(*e));
-    const auto& a = std::get<0>(analysed);
+  for (const process::CutFlanks* cut : {&shaped, &milled}) {
+    auto analysed = clock.run("contact", [&] { return process::analyse_contact(milled_side.job, *milled_side.gear, settings, cut); });
+    if (auto* e = analysed.refused()) return failed(std::move(*e));
+    const auto& a = analysed.value();
     contact.note = fmt::format("Pinion of {} teeth, rigid and unloaded; peak to peak at the pitch radius {:.3f} mm; compound {:g} um.", a.pinion_teeth,
-                               a.pitch_radius_mm, a.settings.compound_mm * kUm);
+                               a.pitch_radius_mm, a.settings.compound_mm * app::kUm);
     for (const auto& side : a.sides) {
       if (!side.as_cut) continue;
-      const double um = side.roll.error_range_rad * a.pitch_radius_mm * kUm, share = side.roll.patterns.front().marked_share;
+      const double um = side.roll.error_range_rad * a.pitch_radius_mm * app::kUm, share = side.roll.patterns.front().marked_share;
       contact.rows.push_back({fmt::format("{:+}", side.side), cut->route, fmt::format("{:.3f}", um),
                               fmt::format("{} to {}", side.roll.least_marking, side.roll.most_marking), fmt::format("{:.1f}", share * 100)});
       contact_rows.push_back({{"route", cut->route}, {"flank", side.side}, {"error_range_um", um}, {"error_range_urad", side.roll.error_range_rad * 1e6},
@@ -221,7 +221,7 @@ CommandOutcome run_compare(const CompareRequest& request) {
                               {"milled", figures_json(f.milled)}, {"difference", figures_json(f.difference)}});
   json["contact"] = contact_rows;
 
-  StudyPage page;
+  page::StudyPage page;
   page.title = milled_side.job.name + ": shaped and milled";
   page.subtitle = fmt::format("{} against {}, {} x {} places a flank", shaped_side.job.file, milled_side.job.file, kCompareRows, kCompareColumns);
   page.good = milled.verified;
@@ -239,11 +239,11 @@ CommandOutcome run_compare(const CompareRequest& request) {
   CommandOutcome outcome;
   outcome.report_json = json.dump(2) + "\n";
   outcome.summary = page.title + "\n";
-  for (const auto& table : page.tables) outcome.summary += "\n" + table_text(table);
+  for (const auto& table : page.tables) outcome.summary += "\n" + page::table_text(table);
   outcome.summary += "\nfiles in " + request.out_dir + "\n";
-  const NamedFiles files = {{"compare.csv", csv_of(flanks)}, {"compare.json", outcome.report_json}, {"compare.html", study_page_html(page)}};
+  const process::NamedFiles files = {{"compare.csv", csv_of(flanks)}, {"compare.json", outcome.report_json}, {"compare.html", page::study_page_html(page)}};
   progress.clear();
-  return finished(*output, files, std::move(outcome));
+  return process::finished(*output, files, std::move(outcome));
 }
 
 void add_compare(Commands& commands) {
@@ -257,4 +257,4 @@ void add_compare(Commands& commands) {
       run_compare));
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

@@ -3,7 +3,7 @@
 
 #include "app/commands/command.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 
 struct CompareRequest : JobRequest {
   std::string other_job;
@@ -14,4 +14,4 @@ struct CompareRequest : JobRequest {
 /// differ, with key and both values.
 [[nodiscard]] CommandOutcome run_compare(const CompareRequest& request);
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

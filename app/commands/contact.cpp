@@ -1,14 +1,14 @@
 #include "app/commands/contact.h"
 
 #include "app/commands/bevel_contact.h"
-#include "app/commands/bevel_run.h"
-#include "app/commands/opening_and_end.h"
-#include "app/contact_analysis.h"
-#include "app/report/contact_figures.h"
-#include "app/report/study_page.h"
+#include "app/process/bevel_run.h"
+#include "app/process/opening_and_end.h"
+#include "app/process/contact_analysis.h"
+#include "app/report/page/contact_figures.h"
+#include "app/report/page/study_page.h"
 #include "geometry/base/angle.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 namespace {
 
 const std::vector<std::string> kContactOutputs = {"contact.csv", "transmission.csv", "contact.json", "contact.html"};
@@ -29,11 +29,11 @@ std::optional<Diagnostic> out_of_range(const ContactRequest& r) {
   return std::nullopt;
 }
 
-std::string page_of(const ContactAnalysis& a) {
-  StudyPage page;
+std::string page_of(const process::ContactAnalysis& a) {
+  page::StudyPage page;
   page.title = a.job_name + ": contact";
   page.subtitle = fmt::format("pinion of {} teeth, gear of {} teeth, compound {:g} um", a.pinion_teeth, a.gear_teeth, a.settings.compound_mm * 1000);
-  const Misalignment& moved = a.settings.moved;
+  const contact::Misalignment& moved = a.settings.moved;
   if (moved.offset_mm != 0 || moved.axial_mm != 0 || moved.angle_rad != 0)
     page.subtitle += fmt::format("; offset {:+g} mm, shaft angle {:+g} deg, axial {:+g} mm", moved.offset_mm, degrees(moved.angle_rad), moved.axial_mm);
   bool edge = false;
@@ -46,16 +46,16 @@ std::string page_of(const ContactAnalysis& a) {
       "A pinion with fewer teeth than the shaper touches the exact flank in one point that runs along a straight line of the housing; a pinion that is the "
       "shaper touches along lines. In both cases the transmission error is a constant, aligned or not, as long as contact stays inside the flank."};
   for (const auto& note : a.notes) page.introduction.push_back(note);
-  page.charts = contact_charts(a);
-  for (auto& f : contact_patterns(a)) page.figures.push_back({std::move(f.caption), std::move(f.svg), std::move(f.note)});
-  page.tables = {contact_table(a)};
+  page.charts = page::contact_charts(a);
+  for (auto& f : page::contact_patterns(a)) page.figures.push_back({std::move(f.caption), std::move(f.svg), std::move(f.note)});
+  page.tables = {page::contact_table(a)};
   return study_page_html(page);
 }
 
 }  // namespace
 
-ContactSettings contact_settings(const Job& job, const ContactRequest& request) {
-  ContactSettings s = job.contact.value_or(ContactSettings{});
+job::ContactSettings contact_settings(const job::Job& job, const ContactRequest& request) {
+  job::ContactSettings s = job.contact.value_or(job::ContactSettings{});
   if (request.pinion_teeth) s.pinion_teeth = *request.pinion_teeth;
   if (request.offset_error_mm) s.moved.offset_mm = *request.offset_error_mm;
   if (request.axial_error_mm) s.moved.axial_mm = *request.axial_error_mm;
@@ -65,38 +65,38 @@ ContactSettings contact_settings(const Job& job, const ContactRequest& request) 
 }
 
 CommandOutcome run_contact(const ContactRequest& request) {
-  Progress progress(request.quiet);
-  StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kContactOutputs, {request.job_file, request.other_job});
+  app::Progress progress(request.quiet);
+  app::StageClock clock(progress);
+  auto output = app::OutputDir::open(request.out_dir, kContactOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
   if (auto error = out_of_range(request)) return failed(std::move(*error));
-  if (const auto bevel = bevel_job(request.job_file)) return run_bevel_contact(request, *bevel, *output);
-  auto read = read_face_gear_job(request.job_file, clock);
-  if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
-  const auto& [job, gear] = std::get<0>(read);
-  std::optional<CutFlanks> cut;
+  if (const auto bevel = process::bevel_job(request.job_file)) return run_bevel_contact(request, *bevel, *output);
+  auto read = process::read_face_gear_job(request.job_file, clock);
+  if (auto* errors = read.refused()) return failed(std::move(*errors));
+  const auto& [job, gear] = read.value();
+  std::optional<process::CutFlanks> cut;
   if (request.as_cut) {
-    auto flanks = cut_flanks(job, gear, kCutRows, kCutColumns, *output, request.quiet);
-    if (auto* errors = std::get_if<1>(&flanks)) return failed(std::move(*errors));
-    cut = std::move(std::get<0>(flanks));
+    auto flanks = process::cut_flanks(job, gear, kCutRows, kCutColumns, *output, request.quiet);
+    if (auto* errors = flanks.refused()) return failed(std::move(*errors));
+    cut = std::move(flanks).value();
   }
-  auto analysed = clock.run("contact", [&] { return analyse_contact(job, gear, contact_settings(job, request), cut ? &*cut : nullptr); });
-  if (auto* errors = std::get_if<1>(&analysed)) return failed(std::move(*errors));
-  ContactAnalysis& analysis = std::get<0>(analysed);
+  auto analysed = clock.run("contact", [&] { return process::analyse_contact(job, gear, contact_settings(job, request), cut ? &*cut : nullptr); });
+  if (auto* errors = analysed.refused()) return failed(std::move(*errors));
+  process::ContactAnalysis& analysis = analysed.value();
   if (cut) {
     if (!cut->verified) analysis.notes.push_back("the program of the cut surface is not verified");
     for (const auto& assumed : cut->assumed) analysis.notes.push_back("assumed: " + assumed);
   }
 
   CommandOutcome outcome;
-  outcome.report_json = contact_json(analysis);
-  outcome.summary = contact_summary(analysis) + "  files in " + request.out_dir + "\n";
-  const NamedFiles files = {{"contact.csv", contact_csv(analysis)},
-                            {"transmission.csv", transmission_csv(analysis)},
+  outcome.report_json = process::contact_json(analysis);
+  outcome.summary = process::contact_summary(analysis) + "  files in " + request.out_dir + "\n";
+  const process::NamedFiles files = {{"contact.csv", process::contact_csv(analysis)},
+                            {"transmission.csv", process::transmission_csv(analysis)},
                             {"contact.json", outcome.report_json},
                             {"contact.html", page_of(analysis)}};
   progress.clear();
-  return finished(*output, files, std::move(outcome));
+  return process::finished(*output, files, std::move(outcome));
 }
 
 void add_contact(Commands& commands) {
@@ -116,4 +116,4 @@ void add_contact(Commands& commands) {
       run_contact));
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "app/commands/command.h"
-#include "app/job.h"
+#include "app/job/job.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 
 /// What stands here comes instead of the keys of [contact].
 struct ContactRequest : JobRequest {
@@ -18,10 +18,10 @@ struct ContactRequest : JobRequest {
 };
 
 /// Settings of [contact] with what the command line says instead.
-[[nodiscard]] ContactSettings contact_settings(const Job& job, const ContactRequest& request);
+[[nodiscard]] job::ContactSettings contact_settings(const job::Job& job, const ContactRequest& request);
 
 /// Writes contact.csv, transmission.csv, contact.json and contact.html. With `as_cut` the job's route is run as well (`run`, or the strokes of
 /// `shaper`) and its surface is rolled beside the exact one. A bevel gear: see commands/bevel_contact.h. Refused: a pinion that cannot run; options out of range.
 [[nodiscard]] CommandOutcome run_contact(const ContactRequest& request);
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

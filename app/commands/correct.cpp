@@ -1,7 +1,7 @@
 // `toothpath correct JOB --measured FILE --out DIR`: `run` again, with flanks that answer a measurement.
 #include "app/commands/run.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 
 void add_correct(Commands& commands) {
   commands.push_back(command_of<RunRequest>(
@@ -13,4 +13,4 @@ void add_correct(Commands& commands) {
       run_job));
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

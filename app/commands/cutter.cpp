@@ -2,17 +2,17 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/commands/opening_and_end.h"
-#include "app/gear_of_job.h"
-#include "app/job_file.h"
-#include "app/report/cutter_sheet.h"
-#include "app/report/study_page.h"
-#include "cam/finger_milling.h"
+#include "app/process/opening_and_end.h"
+#include "app/process/gear_of_job.h"
+#include "app/job/file.h"
+#include "app/report/sheet/cutter_sheet.h"
+#include "app/report/page/study_page.h"
+#include "cam/finger/milling.h"
 #include "geometry/base/angle.h"
-#include "geometry/bevel_forces.h"
-#include "geometry/bevel_limits.h"
+#include "geometry/bevel_gear/forces.h"
+#include "geometry/bevel_gear/limits.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 namespace {
 
 const std::vector<std::string> kCutterOutputs = {"cutter.csv", "cutter.svg", "cutter.dxf", "cutter.html", "cutter.json"};
@@ -20,22 +20,22 @@ constexpr double kDxfChord = 2e-4;  // mm
 constexpr double kCsvChord = 1e-5;  // mm
 
 /// Design for the gear of a job; refusals with their place. What speaks of the designed mill belongs to the gear.
-ValueOrErrors<FingerCutterDesign> design_for(const Job& job) {
-  const BevelGearParameters* p = job.bevel_gear();
-  if (!p) return std::vector{fail_at(job.where("gear.type"), "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear", gear_type(job))};
-  auto made = design_finger_cutter(*p);
-  if (auto* design = std::get_if<FingerCutterDesign>(&made)) return std::move(*design);
+process::ValueOrErrors<bevel_gear::FingerCutterDesign> design_for(const job::Job& job) {
+  const bevel_gear::BevelGearParameters* p = job.bevel_gear();
+  if (!p) return std::vector{fail_at(job.where("gear.type"), "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear", process::gear_type(job))};
+  auto made = bevel_gear::design_finger_cutter(*p);
+  if (auto* design = made.value_if()) return std::move(*design);
   std::vector<Diagnostic> errors;
-  for (auto& refusal : std::get<1>(made)) {
+  for (auto& refusal : made.error()) {
     const bool mill = refusal.key.starts_with("tool.");
-    Diagnostic d = located(job, mill ? "gear" : "gear." + refusal.key, std::move(refusal.diagnostic));
+    Diagnostic d = process::located(job, mill ? "gear" : "gear." + refusal.key, std::move(refusal.diagnostic));
     if (mill) d.message = "no finger mill by the design rules: " + d.message;
     errors.push_back(std::move(d));
   }
   return errors;
 }
 
-nlohmann::ordered_json json_of(const JudgedCutter& cutter) {
+nlohmann::ordered_json json_of(const sheet::JudgedCutter& cutter) {
   const auto& j = cutter.judgement;
   const auto& c = j.profile;
   nlohmann::ordered_json out = {{"name", cutter.name},
@@ -68,7 +68,7 @@ nlohmann::ordered_json json_of(const JudgedCutter& cutter) {
   return out;
 }
 
-std::string gear_line(const BevelGear& g) {
+std::string gear_line(const bevel_gear::BevelGear& g) {
   const auto& p = g.parameters();
   const char* hand = p.hand > 0 ? "right" : "left";
   return fmt::format("z {}{}, m_te {:g}, alpha_n {:g}\u00b0, beta_e {:g}\u00b0, b {:g}, pitch angle {:.4f}\u00b0, {}", p.teeth, p.mate_teeth > 0 ? fmt::format("/{}", p.mate_teeth) : "",
@@ -77,26 +77,26 @@ std::string gear_line(const BevelGear& g) {
 }
 
 /// Mills of the job, and those of another job with the profile that its own gear gives them.
-std::vector<JudgedCutter> judge_mills(const BevelGear& gear, const Job& job, const Job* other) {
-  std::vector<JudgedCutter> mills;
+std::vector<sheet::JudgedCutter> judge_mills(const bevel_gear::BevelGear& gear, const job::Job& job, const job::Job* other) {
+  std::vector<sheet::JudgedCutter> mills;
   for (const auto& tool : job.tools)
-    if (tool.type == CutterType::finger_mill) mills.push_back({fmt::format("tool {}", tool.number), judge_finger_cutter(gear, finger_cutter_data(tool))});
+    if (tool.type == tool::CutterType::finger_mill) mills.push_back({fmt::format("tool {}", tool.number), bevel_gear::judge_finger_cutter(gear, finger::finger_cutter_data(tool))});
   if (!other) return mills;
-  const BevelGearParameters& p = *other->bevel_gear();
-  const double delta = bevel_pitch_angle(p), R_e = p.teeth * p.outer_transverse_module_mm / (2 * std::sin(delta));
+  const bevel_gear::BevelGearParameters& p = *other->bevel_gear();
+  const double delta = bevel_gear::bevel_pitch_angle(p), R_e = p.teeth * p.outer_transverse_module_mm / (2 * std::sin(delta));
   const double R_0 = R_e / std::pow(std::cos(p.outer_spiral_angle_rad), 2), kappa_v = std::abs(delta - kPi / 2) < 1e-15 ? 0.0 : std::cos(delta) / (R_0 * std::sin(delta));
   for (const auto& tool : other->tools) {
-    if (tool.type != CutterType::finger_mill) continue;
-    const FingerCutterData d = finger_cutter_data(tool);
+    if (tool.type != tool::CutterType::finger_mill) continue;
+    const bevel_gear::FingerCutterData d = finger::finger_cutter_data(tool);
     mills.push_back({fmt::format("tool {} of {}", tool.number, other->name),
-                     judge_finger_profile(gear, d, make_finger_profile<double>(p.pressure_angle_rad, kappa_v, p.dedendum_mm, d.module_mm, d.tip_radius_mm, d.rack_depth_mm,
+                     judge_finger_profile(gear, d, bevel_gear::make_finger_profile<double>(p.pressure_angle_rad, kappa_v, p.dedendum_mm, d.module_mm, d.tip_radius_mm, d.rack_depth_mm,
                                                                               d.profile_height_mm))});
   }
   return mills;
 }
 
-PageTable summary_table_of(const std::vector<JudgedCutter>& mills) {
-  PageTable table{"Mills", {"mill", "m_nj", "r_t", "h_C", "x_D", "walls [um]", "small end [um]", "ridge [mm]", "verdict"}, {}, ""};
+page::PageTable summary_table_of(const std::vector<sheet::JudgedCutter>& mills) {
+  page::PageTable table{"Mills", {"mill", "m_nj", "r_t", "h_C", "x_D", "walls [um]", "small end [um]", "ridge [mm]", "verdict"}, {}, ""};
   for (const auto& m : mills) {
     const auto& j = m.judgement;
     table.rows.push_back({m.name, fmt::format("{:.4f}", j.data.module_mm), fmt::format("{:.4f}", j.data.tip_radius_mm), fmt::format("{:.4f}", j.data.rack_depth_mm),
@@ -109,25 +109,25 @@ PageTable summary_table_of(const std::vector<JudgedCutter>& mills) {
 }  // namespace
 
 CommandOutcome run_cutter(const CutterRequest& request) {
-  Progress progress(request.quiet);
-  StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, kCutterOutputs, {request.job_file, request.other_job});
+  app::Progress progress(request.quiet);
+  app::StageClock clock(progress);
+  auto output = app::OutputDir::open(request.out_dir, kCutterOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
-  auto read = clock.run("job", [&] { return read_job_file(request.job_file); });
-  if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
-  const Job& job = std::get<0>(read);
-  std::optional<Job> other;
+  auto read = clock.run("job", [&] { return job::read_job_file(request.job_file); });
+  if (auto* errors = read.refused()) return failed(std::move(*errors));
+  const job::Job& job = read.value();
+  std::optional<job::Job> other;
   if (!request.other_job.empty()) {
-    auto second = clock.run("job", [&] { return read_job_file(request.other_job); });
-    if (auto* errors = std::get_if<1>(&second)) return failed(std::move(*errors));
-    other = std::move(std::get<0>(second));
-    if (!other->bevel_gear()) return failed(fail_at(other->where("gear.type"), "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear", gear_type(*other)));
+    auto second = clock.run("job", [&] { return job::read_job_file(request.other_job); });
+    if (auto* errors = second.refused()) return failed(std::move(*errors));
+    other = std::move(second).value();
+    if (!other->bevel_gear()) return failed(fail_at(other->where("gear.type"), "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear", process::gear_type(*other)));
   }
   auto made = clock.run("design", [&] { return design_for(job); });
-  if (auto* errors = std::get_if<1>(&made)) return failed(std::move(*errors));
-  const FingerCutterDesign& design = std::get<0>(made);
+  if (auto* errors = made.refused()) return failed(std::move(*errors));
+  const bevel_gear::FingerCutterDesign& design = made.value();
 
-  std::vector<JudgedCutter> mills = {{"designed", judge_finger_cutter(design.gear, design.data)}};
+  std::vector<sheet::JudgedCutter> mills = {{"designed", bevel_gear::judge_finger_cutter(design.gear, design.data)}};
   for (auto& mill : clock.run("judgement", [&] { return judge_mills(design.gear, job, other ? &*other : nullptr); })) mills.push_back(std::move(mill));
   std::size_t drawn = 0;
   if (request.tool_number != 0) {
@@ -137,7 +137,7 @@ CommandOutcome run_cutter(const CutterRequest& request) {
     if (mills[drawn].judgement.walls.empty()) return failed(fail_at(job.where("tool"), "tool {} cannot be drawn: its profile is impossible", request.tool_number));
   }
 
-  CutterSheet sheet;
+  sheet::CutterSheet sheet;
   sheet.job_name = job.name;
   sheet.job_file = job.file;
   sheet.gear_line = gear_line(design.gear);
@@ -149,7 +149,7 @@ CommandOutcome run_cutter(const CutterRequest& request) {
   const auto& profile = sheet.drawn.judgement.profile;
   sheet.length_mm = profile.h_f + profile.x_D + 0.5 * profile.rho_D;
   const auto& data = sheet.drawn.judgement.data;
-  const CutterDxf dxf = cutter_dxf(profile, sheet.length_mm,
+  const sheet::CutterDxf dxf = sheet::cutter_dxf(profile, sheet.length_mm,
                                    {fmt::format("finger mill ({}), job {}", sheet.drawn.name, job.name),
                                     fmt::format("module {:.6g}, tip radius {:.6g}, rack depth {:.6g}, profile height {:.6g}", data.module_mm, data.tip_radius_mm, data.rack_depth_mm,
                                                 data.profile_height_mm)},
@@ -163,7 +163,7 @@ CommandOutcome run_cutter(const CutterRequest& request) {
   std::string balance;
   if (design.gear.herringbone()) {
     const auto& g = design.gear;
-    if (const auto R_J = balanced_apex_distance(g.R_i(), g.R_e(), g.R_0(), g.parameters().relief_half_width_mm)) {
+    if (const auto R_J = bevel_gear::balanced_apex_distance(g.R_i(), g.R_e(), g.R_0(), g.parameters().relief_half_width_mm)) {
       json["balanced_apex_cone_distance"] = *R_J;
       balance = fmt::format("axial force is the same in both senses at apex_cone_distance = {:.4f} (now {:.4f}; uniform line load)\n", *R_J, g.R_ref());
     }
@@ -172,22 +172,22 @@ CommandOutcome run_cutter(const CutterRequest& request) {
 
   CommandOutcome outcome;
   outcome.report_json = json.dump(2) + "\n";
-  std::optional<FingerProfile<double>> compared;
+  std::optional<bevel_gear::FingerProfile<double>> compared;
   if (!sheet.others.empty()) compared = sheet.others.front().judgement.profile;
-  const std::string svg = cutter_svg(profile, sheet.length_mm, cutter_drawing_scale(profile, sheet.length_mm, 160, 240), compared, true);
-  const NamedFiles files = {{"cutter.csv", cutter_csv(profile, kCsvChord)},
+  const std::string svg = sheet::cutter_svg(profile, sheet.length_mm, sheet::cutter_drawing_scale(profile, sheet.length_mm, 160, 240), compared, true);
+  const process::NamedFiles files = {{"cutter.csv", sheet::cutter_csv(profile, kCsvChord)},
                             {"cutter.svg", svg},
                             {"cutter.dxf", dxf.text},
-                            {"cutter.html", cutter_sheet_html(sheet)},
+                            {"cutter.html", sheet::cutter_sheet_html(sheet)},
                             {"cutter.json", outcome.report_json}};
-  outcome.summary = table_text(summary_table_of(mills));
+  outcome.summary = page::table_text(summary_table_of(mills));
   for (const auto& mill : mills)
     for (const auto& c : mill.judgement.conditions)
-      if (c.verdict != Verdict::met) outcome.summary += fmt::format("{}: {}\n", mill.name, c.text());
+      if (c.verdict != bevel_gear::Verdict::met) outcome.summary += fmt::format("{}: {}\n", mill.name, c.text());
   for (const auto& warning : sheet.warnings) outcome.summary += "warning: " + warning + "\n";
   outcome.summary += balance + "files in " + request.out_dir + "\n";
   progress.clear();
-  return finished(*output, files, std::move(outcome));
+  return process::finished(*output, files, std::move(outcome));
 }
 
 void add_cutter(Commands& commands) {
@@ -201,4 +201,4 @@ void add_cutter(Commands& commands) {
       run_cutter));
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

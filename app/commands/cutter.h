@@ -3,7 +3,7 @@
 
 #include "app/commands/command.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 
 struct CutterRequest : JobRequest {
   int tool_number = 0;    ///< 0: the designed mill
@@ -16,4 +16,4 @@ struct CutterRequest : JobRequest {
 /// that no mill of the design rules makes, a tool number that the job lacks.
 [[nodiscard]] CommandOutcome run_cutter(const CutterRequest& request);
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

@@ -4,12 +4,12 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "app/commands/opening_and_end.h"
-#include "app/report/study_page.h"
+#include "app/process/opening_and_end.h"
+#include "app/report/page/study_page.h"
 #include "geometry/base/angle.h"
-#include "geometry/bevel_forces.h"
+#include "geometry/bevel_gear/forces.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 namespace {
 
 const std::vector<std::string> kForcesOutputs = {"forces.csv", "forces.json", "forces.html"};
@@ -17,7 +17,7 @@ constexpr int kForceSteps = 72;  // of R_J over the face
 
 struct Member {
   std::string name;
-  BevelForceMember data;
+  bevel_gear::BevelForceMember data;
   double torque_Nmm = 0;
   int hand = 1;  ///< of its inner half
 };
@@ -28,7 +28,7 @@ struct Pair {
   std::vector<Member> members;
 };
 
-Pair pair_of(const BevelGear& g, double torque_Nm) {
+Pair pair_of(const bevel_gear::BevelGear& g, double torque_Nm) {
   const auto& p = g.parameters();
   Pair pair{g.R_i(), g.R_e(), g.R_ref(), g.R_m(), g.herringbone() ? p.relief_half_width_mm : 0.0, g.herringbone(), {}};
   pair.members.push_back({"gear", {p.pressure_angle_rad, g.delta(), g.R_0()}, 1000 * torque_Nm, p.hand});
@@ -37,11 +37,11 @@ Pair pair_of(const BevelGear& g, double torque_Nm) {
   return pair;
 }
 
-const char* name_of(LoadSplit split) {
+const char* name_of(bevel_gear::LoadSplit split) {
   switch (split) {
-    case LoadSplit::line_load: return "uniform line load";
-    case LoadSplit::line_load_middles: return "uniform line load, halves at their middles";
-    case LoadSplit::equal_torque: return "equal torque";
+    case bevel_gear::LoadSplit::line_load: return "uniform line load";
+    case bevel_gear::LoadSplit::line_load_middles: return "uniform line load, halves at their middles";
+    case bevel_gear::LoadSplit::equal_torque: return "equal torque";
   }
   return "";
 }
@@ -52,16 +52,16 @@ struct Row {
   double R_J = 0;
   int sigma = 1;
   std::string member;
-  BevelForce force;
+  bevel_gear::BevelForce force;
   double torque_Nmm = 0;
 };
 
-void add_rows(std::vector<Row>& rows, const Pair& pair, const std::string& arrangement, double R_J, LoadSplit split) {
+void add_rows(std::vector<Row>& rows, const Pair& pair, const std::string& arrangement, double R_J, bevel_gear::LoadSplit split) {
   for (const int sigma : {1, -1})
     for (const auto& m : pair.members) {
-      const auto faces = herringbone_faces(pair.R_i, R_J, pair.R_e, pair.relief, m.hand);
-      const auto forces = bevel_face_forces(m.data, faces, sigma, m.torque_Nmm, split);
-      BevelForce sum;
+      const auto faces = bevel_gear::herringbone_faces(pair.R_i, R_J, pair.R_e, pair.relief, m.hand);
+      const auto forces = bevel_gear::bevel_face_forces(m.data, faces, sigma, m.torque_Nmm, split);
+      bevel_gear::BevelForce sum;
       for (std::size_t i = 0; i < forces.size(); ++i) {
         rows.push_back({arrangement, name_of(split), i == 0 ? "inner half" : "outer half", R_J, sigma, m.name, forces[i], m.torque_Nmm});
         sum += forces[i];
@@ -74,19 +74,19 @@ std::vector<Row> cases(const Pair& pair, const std::optional<double>& balanced) 
   std::vector<Row> rows;
   for (const int sigma : {1, -1})
     for (const auto& m : pair.members)
-      rows.push_back({"single hand", "at R_m", "sum", pair.R_m, sigma, m.name, bevel_point_force(m.data, pair.R_m, sigma * m.hand, m.torque_Nmm), m.torque_Nmm});
+      rows.push_back({"single hand", "at R_m", "sum", pair.R_m, sigma, m.name, bevel_gear::bevel_point_force(m.data, pair.R_m, sigma * m.hand, m.torque_Nmm), m.torque_Nmm});
   if (pair.herringbone)
-    for (const LoadSplit split : {LoadSplit::line_load, LoadSplit::line_load_middles, LoadSplit::equal_torque}) add_rows(rows, pair, "herringbone", pair.R_J, split);
+    for (const bevel_gear::LoadSplit split : {bevel_gear::LoadSplit::line_load, bevel_gear::LoadSplit::line_load_middles, bevel_gear::LoadSplit::equal_torque}) add_rows(rows, pair, "herringbone", pair.R_J, split);
   if (balanced)
-    for (const LoadSplit split : {LoadSplit::line_load, LoadSplit::equal_torque}) add_rows(rows, pair, "herringbone, balanced R_J", *balanced, split);
+    for (const bevel_gear::LoadSplit split : {bevel_gear::LoadSplit::line_load, bevel_gear::LoadSplit::equal_torque}) add_rows(rows, pair, "herringbone, balanced R_J", *balanced, split);
   return rows;
 }
 
 /// Three decimals of a kN; what rounds to nothing has no sign.
 std::string kN(double newton) { return fmt::format("{:.3f}", std::abs(newton) < 0.5 ? 0.0 : newton / 1000); }
 
-PageTable table_of(const std::vector<Row>& rows, bool halves) {
-  PageTable table{halves ? "Every half" : "Sums",
+page::PageTable table_of(const std::vector<Row>& rows, bool halves) {
+  page::PageTable table{halves ? "Every half" : "Sums",
                   {"arrangement", "load sharing", "R_J [mm]", "loaded wall", "member", "part", "F_t [kN]", "F_a [kN]", "F_r [kN]", "F_a pressure part", "F_a spiral part", "F_a per torque [N/(N m)]"},
                   {},
                   "F_a > 0: away from the apex; F_r > 0: towards the axis. For the single hand the column R_J holds R_m."};
@@ -99,10 +99,10 @@ PageTable table_of(const std::vector<Row>& rows, bool halves) {
 }
 
 /// Force over R_J, NaN where that sharing has no meaning (a half without a face).
-double over_apex(const Pair& pair, const Member& m, double R_J, int sigma, LoadSplit split, bool axial) {
-  const auto faces = herringbone_faces(pair.R_i, R_J, pair.R_e, pair.relief, m.hand);
-  if (faces.empty() || (split == LoadSplit::equal_torque && faces.size() < 2)) return std::numeric_limits<double>::quiet_NaN();
-  const auto f = bevel_total_force(m.data, faces, sigma, m.torque_Nmm, split);
+double over_apex(const Pair& pair, const Member& m, double R_J, int sigma, bevel_gear::LoadSplit split, bool axial) {
+  const auto faces = bevel_gear::herringbone_faces(pair.R_i, R_J, pair.R_e, pair.relief, m.hand);
+  if (faces.empty() || (split == bevel_gear::LoadSplit::equal_torque && faces.size() < 2)) return std::numeric_limits<double>::quiet_NaN();
+  const auto f = bevel_gear::bevel_total_force(m.data, faces, sigma, m.torque_Nmm, split);
   return axial ? f.axial() : f.radial();
 }
 
@@ -111,11 +111,11 @@ std::string csv_over_apex(const Pair& pair) {
   for (int k = 0; k <= kForceSteps; ++k) {
     const double R_J = pair.R_i + (pair.R_e - pair.R_i) * k / kForceSteps;
     for (const auto& m : pair.members)
-      for (const LoadSplit split : {LoadSplit::line_load, LoadSplit::equal_torque}) {
-        const auto faces = herringbone_faces(pair.R_i, R_J, pair.R_e, pair.relief, m.hand);
-        if (faces.empty() || (split == LoadSplit::equal_torque && faces.size() < 2)) continue;
+      for (const bevel_gear::LoadSplit split : {bevel_gear::LoadSplit::line_load, bevel_gear::LoadSplit::equal_torque}) {
+        const auto faces = bevel_gear::herringbone_faces(pair.R_i, R_J, pair.R_e, pair.relief, m.hand);
+        if (faces.empty() || (split == bevel_gear::LoadSplit::equal_torque && faces.size() < 2)) continue;
         for (const int sigma : {1, -1}) {
-          const auto f = bevel_total_force(m.data, faces, sigma, m.torque_Nmm, split);
+          const auto f = bevel_gear::bevel_total_force(m.data, faces, sigma, m.torque_Nmm, split);
           out += fmt::format("{:.6f},{},{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}\n", R_J, m.name, name_of(split), sigma > 0 ? 'L' : 'U', f.tangential, f.axial(), f.radial(),
                              f.axial_pressure, f.axial_spiral);
         }
@@ -124,15 +124,15 @@ std::string csv_over_apex(const Pair& pair) {
   return out;
 }
 
-LineChart chart_of(const Pair& pair, const Member& m, bool axial) {
-  LineChart chart;
+svg::LineChart chart_of(const Pair& pair, const Member& m, bool axial) {
+  svg::LineChart chart;
   chart.title = fmt::format("{} force on the {} over the apex cone distance", axial ? "Axial" : "Radial", m.name);
   chart.x_label = "R_J [mm]";
   chart.y_label = axial ? "F_a [kN]" : "F_r [kN]";
-  for (const LoadSplit split : {LoadSplit::line_load, LoadSplit::equal_torque})
+  for (const bevel_gear::LoadSplit split : {bevel_gear::LoadSplit::line_load, bevel_gear::LoadSplit::equal_torque})
     for (const int sigma : {1, -1}) {
-      ChartSeries series;
-      series.name = fmt::format("{}, wall {} loaded", split == LoadSplit::line_load ? "line load" : "equal torque", sigma > 0 ? 'L' : 'U');
+      svg::ChartSeries series;
+      series.name = fmt::format("{}, wall {} loaded", split == bevel_gear::LoadSplit::line_load ? "line load" : "equal torque", sigma > 0 ? 'L' : 'U');
       for (int k = 0; k <= kForceSteps; ++k) {
         const double R_J = pair.R_i + (pair.R_e - pair.R_i) * k / kForceSteps;
         series.x.push_back(R_J);
@@ -141,14 +141,14 @@ LineChart chart_of(const Pair& pair, const Member& m, bool axial) {
       chart.series.push_back(std::move(series));
     }
   for (const int sigma : {1, -1}) {
-    const auto f = bevel_point_force(m.data, pair.R_m, sigma * m.hand, m.torque_Nmm);
+    const auto f = bevel_gear::bevel_point_force(m.data, pair.R_m, sigma * m.hand, m.torque_Nmm);
     chart.limits.push_back({fmt::format("single hand, wall {}", sigma > 0 ? 'L' : 'U'), (axial ? f.axial() : f.radial()) / 1000});
   }
   return chart;
 }
 
-StudyPage page_of(const Pair& pair, const Job& job, const std::vector<Row>& rows, const std::optional<double>& balanced) {
-  StudyPage page;
+page::StudyPage page_of(const Pair& pair, const job::Job& job, const std::vector<Row>& rows, const std::optional<double>& balanced) {
+  page::StudyPage page;
   page.title = "Tooth forces";
   page.subtitle = fmt::format("{}: {:.6g} N m on the gear{}", job.name, pair.members[0].torque_Nmm / 1000,
                               pair.members.size() > 1 ? fmt::format(", {:.6g} N m on the mate", pair.members[1].torque_Nmm / 1000) : "");
@@ -172,7 +172,7 @@ StudyPage page_of(const Pair& pair, const Job& job, const std::vector<Row>& rows
 std::string json_of(const Pair& pair, const std::string& job_file, const std::vector<Row>& rows, const std::optional<double>& balanced) {
   nlohmann::ordered_json json = {{"schema", 1}, {"command", "forces"}, {"job", job_file}};
   if (balanced) json["balanced_apex_cone_distance"] = *balanced;
-  if (const auto whole = balanced_apex_distance(pair.R_i, pair.R_e, pair.members[0].data.R_0)) json["balanced_without_groove"] = *whole;
+  if (const auto whole = bevel_gear::balanced_apex_distance(pair.R_i, pair.R_e, pair.members[0].data.R_0)) json["balanced_without_groove"] = *whole;
   for (const auto& m : pair.members) json["torque_" + m.name + "_Nm"] = m.torque_Nmm / 1000;
   json["cases"] = nlohmann::ordered_json::array();
   for (const auto& r : rows)
@@ -186,32 +186,32 @@ std::string json_of(const Pair& pair, const std::string& job_file, const std::ve
 }  // namespace
 
 CommandOutcome run_forces(const ForcesRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kForcesOutputs, {request.job_file});
+  auto output = app::OutputDir::open(request.out_dir, kForcesOutputs, {request.job_file});
   if (!output) return failed(output.error());
-  Progress progress(request.quiet);
-  StageClock clock(progress);
-  auto read = read_bevel_gear_job(request.job_file, clock);
-  if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
-  const auto& [job, gear] = std::get<0>(read);
+  app::Progress progress(request.quiet);
+  app::StageClock clock(progress);
+  auto read = process::read_bevel_gear_job(request.job_file, clock);
+  if (auto* errors = read.refused()) return failed(std::move(*errors));
+  const auto& [job, gear] = read.value();
   const auto torque = request.torque_Nm ? request.torque_Nm : job.torque_Nm;
   if (!torque) return failed(fail_at(job.where(""), "no torque: give --torque or the table [load] with the key \"torque\" (N m on this gear)"));
   const Pair pair = pair_of(gear, *torque);
-  const auto balanced = balanced_apex_distance(pair.R_i, pair.R_e, gear.R_0(), pair.relief);
+  const auto balanced = bevel_gear::balanced_apex_distance(pair.R_i, pair.R_e, gear.R_0(), pair.relief);
   const auto rows = cases(pair, balanced);
 
   CommandOutcome outcome;
   outcome.report_json = json_of(pair, job.file, rows, balanced);
-  PageTable screen = table_of(rows, false);
+  page::PageTable screen = table_of(rows, false);
   for (auto& row : screen.rows) row.erase(row.begin() + 5);
   screen.columns.erase(screen.columns.begin() + 5);
-  outcome.summary = table_text(screen);
+  outcome.summary = page::table_text(screen);
   outcome.summary += balanced ? fmt::format("same axial force in both senses at R_J = {:.4f} mm (uniform line load, groove +-{:.4g} mm left out)\n", *balanced, pair.relief)
                               : std::string("no R_J balances this face\n");
   outcome.summary += "files in " + request.out_dir + "\n";
-  const NamedFiles files = {
-      {"forces.csv", csv_over_apex(pair)}, {"forces.html", study_page_html(page_of(pair, job, rows, balanced))}, {"forces.json", outcome.report_json}};
+  const process::NamedFiles files = {
+      {"forces.csv", csv_over_apex(pair)}, {"forces.html", page::study_page_html(page_of(pair, job, rows, balanced))}, {"forces.json", outcome.report_json}};
   progress.clear();
-  return finished(*output, files, std::move(outcome));
+  return process::finished(*output, files, std::move(outcome));
 }
 
 void add_forces(Commands& commands) {
@@ -224,4 +224,4 @@ void add_forces(Commands& commands) {
       run_forces));
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

@@ -5,7 +5,7 @@
 
 #include "app/commands/command.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 
 struct ForcesRequest : JobRequest {
   std::optional<double> torque_Nm;  ///< on the gear of the job
@@ -15,4 +15,4 @@ struct ForcesRequest : JobRequest {
 /// forces.json and forces.html. Refused: a face gear and what BevelGear::make refuses.
 [[nodiscard]] CommandOutcome run_forces(const ForcesRequest& request);
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <optional>
 
-#include "app/commands/opening_and_end.h"
-#include "app/output_dir.h"
-#include "app/report/machine_sheet.h"
-#include "app/report/study_page.h"
+#include "app/process/opening_and_end.h"
+#include "app/base/output_dir.h"
+#include "app/report/sheet/machine_sheet.h"
+#include "app/report/page/study_page.h"
 #include "geometry/base/angle.h"
 #include "machines/machine_file.h"
 #include "postproc/controls/of_machine.h"
-#include "postproc/machine_self_test.h"
-#include "postproc/nc_writer.h"
+#include "postproc/self_test/self_test.h"
+#include "postproc/text/writer.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 namespace {
 
 const std::vector<std::string> kShowOutputs = {"machine.html", "machine.svg"};
@@ -25,46 +25,46 @@ struct Shown {
 };
 
 /// Text, page and drawing of a machine of either kind.
-std::variant<Shown, std::vector<Diagnostic>> show(const std::string& path) {
-  const auto kind = machine_kind_of(path);
+Expected<Shown, std::vector<Diagnostic>> show(const std::string& path) {
+  const auto kind = machines::machine_kind_of(path);
   if (!kind) return std::vector{kind.error()};
-  if (*kind == MachineKind::gear_shaper) {
-    auto reading = read_shaper_machine_file(path);
+  if (*kind == machines::MachineKind::gear_shaper) {
+    auto reading = machines::read_shaper_machine_file(path);
     if (!reading.machine) return std::move(reading.errors);
-    return Shown{machine_text(*reading.machine), machine_page(*reading.machine), {}};
+    return Shown{sheet::machine_text(*reading.machine), sheet::machine_page(*reading.machine), {}};
   }
   auto reading = controls::read_machine(path);
   if (!reading.machine) return std::move(reading.errors);
-  return Shown{machine_text(*reading.machine), machine_page(*reading.machine), machine_drawing_svg(*reading.machine)};
+  return Shown{sheet::machine_text(*reading.machine), sheet::machine_page(*reading.machine), sheet::machine_drawing_svg(*reading.machine)};
 }
 
 }  // namespace
 
 CommandOutcome show_machine(const MachineRequest& request) {
-  std::optional<OutputDir> output;
+  std::optional<app::OutputDir> output;
   if (!request.out_dir.empty()) {
-    auto opened = OutputDir::open(request.out_dir, kShowOutputs, {request.machine_file});
+    auto opened = app::OutputDir::open(request.out_dir, kShowOutputs, {request.machine_file});
     if (!opened) return failed(opened.error());
     output.emplace(std::move(opened).value());
   }
-  const auto path = find_machine_file(request.machine_file, ".");
+  const auto path = machines::find_machine_file(request.machine_file, ".");
   if (!path) return failed(path.error());
   auto result = show(*path);
-  if (auto* errors = std::get_if<1>(&result)) return failed(std::move(*errors));
-  const Shown& machine = std::get<0>(result);
+  if (auto* errors = result.refused()) return failed(std::move(*errors));
+  const Shown& machine = result.value();
   CommandOutcome outcome;
   outcome.summary = machine.text;
   if (!output) return outcome;
-  NamedFiles files = {{"machine.html", machine.page}};
+  process::NamedFiles files = {{"machine.html", machine.page}};
   if (!machine.drawing.empty()) files.emplace_back("machine.svg", machine.drawing);
-  return finished(*output, files, std::move(outcome));
+  return process::finished(*output, files, std::move(outcome));
 }
 
 namespace {
 
 /// What the machinist reads beside the machine.
-std::string test_page(const Machine& machine, const SelfTest& test, const SelfTestProof& proof, const std::string& program) {
-  StudyPage page;
+std::string test_page(const machines::Machine& machine, const self_test::SelfTest& test, const self_test::SelfTestProof& proof, const std::string& program) {
+  page::StudyPage page;
   page.title = machine.name + ": dry run of signs and pivots";
   page.subtitle = fmt::format("{}, {}", program, machine.file);
   page.good = machine.assumed_keys.empty();
@@ -81,10 +81,10 @@ std::string test_page(const Machine& machine, const SelfTest& test, const SelfTe
                   "shows millimetres, a pivot that is off by half a millimetre more than two tenths. A reading that grows with one axis alone belongs to its pivot.",
                   proof.worst_mm)};
   for (const auto& key : machine.assumed_keys) page.introduction.push_back("Assumed and not measured: " + key);
-  PageTable stations{"Stations", {"station", "axes", "indicator mm", "direction right"}, {}, "The last two columns are filled in at the machine."};
+  page::PageTable stations{"Stations", {"station", "axes", "indicator mm", "direction right"}, {}, "The last two columns are filled in at the machine."};
   for (std::size_t k = 0; k < test.stations.size(); ++k) stations.rows.push_back({fmt::format("{}", k + 1), test.stations[k].remark, "", ""});
-  PageTable senses{"What a positive command turns", {"axis", "seen"}, {}, ""};
-  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) senses.rows.push_back({std::string(1, machine.chain.rotary(k).letter), positive_turn(machine.chain, k)});
+  page::PageTable senses{"What a positive command turns", {"axis", "seen"}, {}, ""};
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) senses.rows.push_back({std::string(1, machine.chain.rotary(k).letter), sheet::positive_turn(machine.chain, k)});
   page.tables = {senses, stations};
   return study_page_html(page);
 }
@@ -95,13 +95,13 @@ constexpr const char* kPreviousTest = "previous_machine_test";
 }  // namespace
 
 CommandOutcome test_machine(const MachineRequest& request) {
-  auto output = OutputDir::open(request.out_dir, kTestOutputs, {request.machine_file}, kPreviousTest);
+  auto output = app::OutputDir::open(request.out_dir, kTestOutputs, {request.machine_file}, kPreviousTest);
   if (!output) return failed(output.error());
-  const auto path = find_machine_file(request.machine_file, ".");
+  const auto path = machines::find_machine_file(request.machine_file, ".");
   if (!path) return failed(path.error());
   auto reading = controls::read_machine(*path);
   if (!reading.machine) return failed(std::move(reading.errors));
-  const Machine& machine = *reading.machine;
+  const machines::Machine& machine = *reading.machine;
   const auto at_file = [&](Diagnostic error) {
     if (error.position.file.empty()) error.position.file = *path;
     return failed(std::move(error));
@@ -109,22 +109,22 @@ CommandOutcome test_machine(const MachineRequest& request) {
   const auto dialect = controls::dialect_of(machine);
   if (!dialect) return at_file(dialect.error());
   if (const auto aside = output->set_aside(); !aside) return failed(aside.error());
-  SelfTestOptions options;
+  self_test::SelfTestOptions options;
   options.tool_length_mm = request.tool_length_mm;
-  const auto test = plan_self_test(machine, options);
+  const auto test = self_test::plan_self_test(machine, options);
   if (!test) return at_file(test.error());
-  NcHeader header;
+  text::NcHeader header;
   header.job_name = "self test " + machine.name;
   header.machine_name = machine.name;
   for (const auto& key : machine.assumed_keys) header.assumed.push_back(key);
   header.program_number = 1900;
-  const auto text = write_nc(self_test_program(*test, machine, *dialect), in_air(*dialect), header);
+  const auto text = text::write_nc(self_test::self_test_program(*test, machine, *dialect), self_test::in_air(*dialect), header);
   if (!text) return at_file(text.error());
   const std::string name = "machine_test" + dialect->extension;
   if (const auto s = output->write(name, text->text); !s) return failed(s.error());
   const auto bytes = output->read_back(name);
   if (!bytes) return failed(bytes.error());
-  const auto proof = prove_self_test(*bytes, output->final_path(name), *test, machine);
+  const auto proof = self_test::prove_self_test(*bytes, output->final_path(name), *test, machine);
   if (!proof) return failed(proof.error());
   if (const auto s = output->write("machine_test.html", test_page(machine, *test, *proof, name)); !s) return failed(s.error());
   if (const auto s = output->commit(); !s) return failed(s.error());
@@ -155,4 +155,4 @@ void add_machine(Commands& commands) {
       test_machine, &kMachines));
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

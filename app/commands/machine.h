@@ -6,7 +6,7 @@
 
 #include "app/commands/command.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 
 struct MachineRequest : CommonRequest {
   std::string machine_file;  ///< or the name of an installed machine
@@ -23,4 +23,4 @@ struct MachineRequest : CommonRequest {
 /// Refused: gear shapers; machines without rotary axes; no place near the table that the travels allow; a dialect without axes.
 [[nodiscard]] CommandOutcome test_machine(const MachineRequest& request);
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

@@ -2,15 +2,15 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/command.h"
-#include "app/report/html_text.h"
-#include "app/report/study_page.h"
+#include "app/report/svg/html_text.h"
+#include "app/report/page/study_page.h"
 #include "machines/machine_file.h"
 #include "machines/shaper_machine.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 namespace {
 
-std::string letters_of(const std::vector<RotaryAxis>& axes) {
+std::string letters_of(const std::vector<machines::RotaryAxis>& axes) {
   std::string letters;
   for (const auto& axis : axes) letters += std::string(letters.empty() ? "" : " ") + axis.letter;
   return letters.empty() ? "-" : letters;
@@ -27,32 +27,32 @@ Listed listed(const std::string& file, const std::string& name, const char* kind
               std::size_t assumed) {
   Listed out;
   out.cells = {file, name, kind, table, head, control, assumed == 0 ? "-" : std::to_string(assumed)};
-  out.json = {{"file", file}, {"name", valid_utf8(name)}, {"kind", kind}, {"table", table}, {"head", head}, {"dialect", control}, {"assumed", assumed}};
+  out.json = {{"file", file}, {"name", svg::valid_utf8(name)}, {"kind", kind}, {"table", table}, {"head", head}, {"dialect", control}, {"assumed", assumed}};
   return out;
 }
 
 Listed read_installed(const std::string& file) {
-  const auto path = find_machine_file(file, "/");
+  const auto path = machines::find_machine_file(file, "/");
   if (!path) return {{}, {}, {path.error()}};
-  const auto kind = machine_kind_of(*path);
+  const auto kind = machines::machine_kind_of(*path);
   if (!kind) return {{}, {}, {kind.error()}};
-  if (*kind == MachineKind::gear_shaper) {
-    auto reading = read_shaper_machine_file(*path);
+  if (*kind == machines::MachineKind::gear_shaper) {
+    auto reading = machines::read_shaper_machine_file(*path);
     if (!reading.machine) return {{}, {}, std::move(reading.errors)};
     return listed(file, reading.machine->name, "gear_shaper", reading.machine->dialect, "-", "-", reading.machine->assumed_keys.size());
   }
-  auto reading = read_machine_file(*path);
+  auto reading = machines::read_machine_file(*path);
   if (!reading.machine) return {{}, {}, std::move(reading.errors)};
-  const Machine& m = *reading.machine;
+  const machines::Machine& m = *reading.machine;
   return listed(file, m.name, "five_axis", m.dialect, letters_of(m.chain.table), letters_of(m.chain.head), m.assumed_keys.size());
 }
 
 /// Every machine that can be read is listed; the files that cannot are errors.
 CommandOutcome list_machines(const CommonRequest&) {
-  PageTable table{"", {"file", "machine", "kind", "table", "head", "control", "assumed"}, {}, ""};
+  page::PageTable table{"", {"file", "machine", "kind", "table", "head", "control", "assumed"}, {}, ""};
   nlohmann::ordered_json json = {{"schema", 1}, {"command", "machine list"}, {"machines", nlohmann::ordered_json::array()}};
   std::vector<Diagnostic> errors;
-  for (const auto& file : installed_machines()) {
+  for (const auto& file : machines::installed_machines()) {
     Listed machine = read_installed(file);
     errors.insert(errors.end(), machine.errors.begin(), machine.errors.end());
     if (!machine.errors.empty()) continue;
@@ -61,7 +61,7 @@ CommandOutcome list_machines(const CommonRequest&) {
   }
   CommandOutcome outcome;
   if (!errors.empty()) outcome = failed(std::move(errors));
-  outcome.summary = table_text(table);
+  outcome.summary = page::table_text(table);
   outcome.report_json = json.dump(2) + "\n";
   return outcome;
 }
@@ -72,4 +72,4 @@ void add_machine_list(Commands& commands) {
   commands.push_back(command_of<CommonRequest>("list", "the installed machines, a line each", [](OptionSet&, CommonRequest&) {}, list_machines, &kMachines));
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace toothpath {
+namespace toothpath::commands {
 
 void OptionSet::file(const char* name, std::string& value, const char* help) { app_.add_option(name, value, help)->required()->type_name("FILE"); }
 
@@ -25,4 +25,4 @@ void OptionSet::number(const char* name, std::optional<double>& value, const cha
   app_.add_option(name, value, help)->check(CLI::Range(least, most));
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

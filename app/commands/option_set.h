@@ -9,7 +9,7 @@ namespace CLI {
 class App;
 }
 
-namespace toothpath {
+namespace toothpath::commands {
 
 /// Options in the order in which the help lists them. Every value is filled in when the command line has been read, and must live until then. `type`
 /// stands behind the option in the help.
@@ -39,4 +39,4 @@ class OptionSet {
   CLI::App& app_;
 };
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

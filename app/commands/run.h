@@ -2,13 +2,13 @@
 #pragma once
 
 #include "app/commands/command.h"
-#include "app/job.h"
-#include "app/output_dir.h"
-#include "app/report/report_page.h"
+#include "app/job/job.h"
+#include "app/base/output_dir.h"
+#include "app/report/page/report_page.h"
 #include "app/report/run_report.h"
-#include "cam/cut_surface.h"
+#include "cam/analytic/cut_surface.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 
 /// Of `run` and `correct`.
 struct RunRequest : JobRequest {
@@ -22,10 +22,10 @@ struct RunRequest : JobRequest {
 
 /// What the stages of a run found out about a face gear job.
 struct StagesOutcome {
-  RunReport report;                ///< with its stages' seconds; `reasons` says why the program is not verified
+  report::RunReport report;                ///< with its stages' seconds; `reasons` says why the program is not verified
   std::vector<Diagnostic> errors;  ///< the job, gear or machine is refused: the report is not filled in
-  std::vector<SurfaceGrid> surface;  ///< the cut surface of tooth space 0; empty where the run did not get so far
-  std::optional<ReportPage> page;    ///< what report.html of this run shows; only when asked for
+  std::vector<proof::SurfaceGrid> surface;  ///< the cut surface of tooth space 0; empty where the run did not get so far
+  std::optional<page::ReportPage> page;    ///< what report.html of this run shows; only when asked for
 };
 
 /// The stages of `run` on a job that has been read (and perhaps changed): the same code, without the files for people. The program
@@ -33,7 +33,7 @@ struct StagesOutcome {
 /// @param proof_mm how far the bound of a move may lie above what was measured at its ends (GougeCheckOptions)
 /// @param grid     rows and columns of the grid on which the cut surface is measured
 /// @param with_page whether the content of the report page is handed back, too (it holds a second copy of paths and surface)
-[[nodiscard]] StagesOutcome run_stages(const Job& job, double proof_mm, OutputDir& scratch, bool quiet, const CutSurfaceOptions& grid = {},
+[[nodiscard]] StagesOutcome run_stages(const job::Job& job, double proof_mm, app::OutputDir& scratch, bool quiet, const analytic::CutSurfaceOptions& grid = {},
                                        bool with_page = false);
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

@@ -5,32 +5,32 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/opening_and_end.h"
-#include "app/report/limits_json.h"
+#include "app/process/opening_and_end.h"
+#include "app/report/limits/json.h"
 #include "app/report/run_report.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/hash.h"
 #include "machines/machine_file.h"
 #include "machines/shaper_machine.h"
-#include "postproc/shaper_gearbox_program.h"
-#include "postproc/shaper_gearbox_proof.h"
-#include "postproc/shaper_program.h"
-#include "postproc/shaper_setup.h"
-#include "postproc/shaper_sheet.h"
+#include "postproc/shaper/gearbox_program.h"
+#include "postproc/shaper/gearbox_proof.h"
+#include "postproc/shaper/program.h"
+#include "postproc/shaper/setup.h"
+#include "postproc/shaper/sheet.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 namespace {
 
 /// The gear shaper of the job; refusals carry the place of the key that caused them.
-ValueOrErrors<ShaperMachine> load_shaper_machine(const Job& job) {
+process::ValueOrErrors<machines::ShaperMachine> load_shaper_machine(const job::Job& job) {
   if (job.machine.file.empty()) return std::vector{fail_at(job.where(""), "the job lacks the table [machine]")};
-  const auto path = find_machine_file(job.machine.file, std::filesystem::path(job.file).parent_path().string());
-  if (!path) return std::vector{located(job, "machine.file", path.error())};
-  const auto kind = machine_kind_of(*path);
-  if (!kind) return std::vector{located(job, "machine.file", kind.error())};
-  if (*kind != MachineKind::gear_shaper)
+  const auto path = machines::find_machine_file(job.machine.file, std::filesystem::path(job.file).parent_path().string());
+  if (!path) return std::vector{process::located(job, "machine.file", path.error())};
+  const auto kind = machines::machine_kind_of(*path);
+  if (!kind) return std::vector{process::located(job, "machine.file", kind.error())};
+  if (*kind != machines::MachineKind::gear_shaper)
     return std::vector{fail_at(job.where("machine.file"), "{} is a milling machine, but this command needs a gear shaper", job.machine.file)};
-  auto reading = read_shaper_machine_file(*path);
+  auto reading = machines::read_shaper_machine_file(*path);
   if (!reading.machine) return std::move(reading.errors);
   if (reading.machine->assumed && !job.machine.accept_assumed) {
     std::string names;
@@ -41,21 +41,21 @@ ValueOrErrors<ShaperMachine> load_shaper_machine(const Job& job) {
   return std::move(*reading.machine);
 }
 
-ValueOrErrors<ShaperSetup> plan_setup(const Job& job, const FaceGear& gear, const ShaperMachine& machine) {
+process::ValueOrErrors<shaper::ShaperSetup> plan_setup(const job::Job& job, const face_gear::FaceGear& gear, const machines::ShaperMachine& machine) {
   if (!job.shaping) return std::vector{fail_at(job.where(""), "the job lacks the table [shaping]")};
-  ShaperWork work;
+  shaper::ShaperWork work;
   work.job_name = job.name;
   work.machine_file = job.machine.file;
   work.gear = gear.parameters();
   work.shaping = *job.shaping;
-  auto planned = plan_shaper_setup(work, machine);
-  if (auto* setup = std::get_if<ShaperSetup>(&planned)) return std::move(*setup);
+  auto planned = shaper::plan_shaper_setup(work, machine);
+  if (auto* setup = planned.value_if()) return std::move(*setup);
   std::vector<Diagnostic> errors;
-  for (auto& refusal : std::get<1>(planned)) errors.push_back(located(job, refusal.key, std::move(refusal.diagnostic)));
+  for (auto& refusal : planned.error()) errors.push_back(process::located(job, refusal.key, std::move(refusal.diagnostic)));
   return errors;
 }
 
-std::string summary_of(const ShaperSetup& s, const std::string& folder) {
+std::string summary_of(const shaper::ShaperSetup& s, const std::string& folder) {
   std::string out = fmt::format("shaper set-up of {} on {}\n", s.job_name, s.machine.name);
   out += fmt::format("  offset slide {:.4f} mm ({:.4f} deg by tan, {:.4f} deg by sin)\n", s.slide_mm, degrees(s.angle_tan_rad),
                      degrees(s.angle_sin_rad));
@@ -84,36 +84,36 @@ const std::vector<std::string>& shaper_outputs() {
 }
 
 CommandOutcome run_shaper(const JobRequest& request) {
-  Progress progress(request.quiet);
-  StageClock clock(progress);
-  auto output = OutputDir::open(request.out_dir, shaper_outputs(), {request.job_file}, kPreviousShaper);
+  app::Progress progress(request.quiet);
+  app::StageClock clock(progress);
+  auto output = app::OutputDir::open(request.out_dir, shaper_outputs(), {request.job_file}, kPreviousShaper);
   if (!output) return failed(output.error());
-  auto read = read_face_gear_job(request.job_file, clock);
-  if (auto* errors = std::get_if<1>(&read)) return failed(std::move(*errors));
-  const auto& [job, gear] = std::get<0>(read);
+  auto read = process::read_face_gear_job(request.job_file, clock);
+  if (auto* errors = read.refused()) return failed(std::move(*errors));
+  const auto& [job, gear] = read.value();
   auto loaded = clock.run("machine", [&] { return load_shaper_machine(job); });
-  if (auto* errors = std::get_if<1>(&loaded)) return failed(std::move(*errors));
-  const ShaperMachine& machine = std::get<0>(loaded);
+  if (auto* errors = loaded.refused()) return failed(std::move(*errors));
+  const machines::ShaperMachine& machine = loaded.value();
   auto planned = clock.run("shaper set-up", [&] { return plan_setup(job, gear, machine); });
-  if (auto* errors = std::get_if<1>(&planned)) return failed(std::move(*errors));
-  ShaperSetup& setup = std::get<0>(planned);
+  if (auto* errors = planned.refused()) return failed(std::move(*errors));
+  shaper::ShaperSetup& setup = planned.value();
   if (const auto aside = output->set_aside(); !aside) return failed(aside.error());
   setup.warnings.insert(setup.warnings.begin(), gear.warnings().begin(), gear.warnings().end());
   setup.warnings.insert(setup.warnings.begin(), job.warnings.begin(), job.warnings.end());
-  const auto study = clock.run("stroke simulation", [&] { return feed_study(setup, compared_feeds(setup)); });
-  const std::string program_name = std::string("shaper_program") + shaper_program_extension(machine);
-  const std::string program = clock.run("shaper program", [&] { return machine.gearbox ? shaper_gearbox_text(setup) : shaper_program_text(setup); });
+  const auto study = clock.run("stroke simulation", [&] { return shaper::feed_study(setup, shaper::compared_feeds(setup)); });
+  const std::string program_name = std::string("shaper_program") + shaper::shaper_program_extension(machine);
+  const std::string program = clock.run("shaper program", [&] { return machine.gearbox ? shaper::shaper_gearbox_text(setup) : shaper::shaper_program_text(setup); });
   if (const auto written = output->write(program_name, program); !written) return failed(written.error());
   const auto bytes = output->read_back(program_name);
   if (!bytes) return failed(bytes.error());
   if (machine.gearbox) {
-    const auto faults = clock.run("read back", [&] { return gearbox_program_faults(*bytes, setup); });
+    const auto faults = clock.run("read back", [&] { return shaper::gearbox_program_faults(*bytes, setup); });
     std::vector<Diagnostic> errors;
     for (const auto& fault : faults) errors.push_back(fail_as(DiagnosticKind::verification, "{}: {}", program_name, fault));
     if (!errors.empty()) return failed(std::move(errors));
   }
 
-  RunReport report;
+  report::RunReport report;
   report.command = "shaper";
   report.job_name = job.name;
   report.job_file = job.file;
@@ -131,25 +131,25 @@ CommandOutcome run_shaper(const JobRequest& request) {
     report.files.push_back(name);
     return output->write(name, content);
   };
-  for (const auto& [name, content] : {std::pair<std::string, std::string>{"limits.json", limits_json(gear)},
-                                      {"shaper.json", shaper_json(setup, study)},
-                                      {"shaper.html", shaper_html(setup, study)}})
+  for (const auto& [name, content] : {std::pair<std::string, std::string>{"limits.json", limits::limits_json(gear)},
+                                      {"shaper.json", shaper::shaper_json(setup, study)},
+                                      {"shaper.html", shaper::shaper_html(setup, study)}})
     if (const auto written = write(name, content); !written) return failed(written.error());
   report.files.push_back(program_name);
   progress.clear();
-  CommandOutcome outcome = finished_report(*output, clock, std::move(report), request.color);
-  if (outcome.exit_code == ExitCode::ok) outcome.summary = summary_of(setup, request.out_dir);
+  CommandOutcome outcome = process::finished_report(*output, clock, std::move(report), request.color);
+  if (outcome.exit_code == app::ExitCode::ok) outcome.summary = summary_of(setup, request.out_dir);
   return outcome;
 }
 
-ValueOrErrors<ShaperSetup> shaper_setup_of(const Job& job, const FaceGear& gear) {
+process::ValueOrErrors<shaper::ShaperSetup> shaper_setup_of(const job::Job& job, const face_gear::FaceGear& gear) {
   auto loaded = load_shaper_machine(job);
-  if (auto* errors = std::get_if<1>(&loaded)) return std::move(*errors);
-  return plan_setup(job, gear, std::get<0>(loaded));
+  if (auto* errors = loaded.refused()) return std::move(*errors);
+  return plan_setup(job, gear, loaded.value());
 }
 
 void add_shaper(Commands& commands) {
   commands.push_back(command_of<JobRequest>("shaper", "limits and gear-shaper set-up: sheet and stroke program", job_options, run_shaper));
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

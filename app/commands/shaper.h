@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "app/commands/command.h"
-#include "app/gear_of_job.h"
-#include "postproc/shaper_setup.h"
+#include "app/process/gear_of_job.h"
+#include "postproc/shaper/setup.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 
 /// Files that the command owns in its output directory.
 [[nodiscard]] const std::vector<std::string>& shaper_outputs();
@@ -18,6 +18,6 @@ namespace toothpath {
 [[nodiscard]] CommandOutcome run_shaper(const JobRequest& request);
 
 /// Set-up of the job's gear on the job's gear shaper, as `shaper` plans it; refusals carry the place of the key that caused them.
-[[nodiscard]] ValueOrErrors<ShaperSetup> shaper_setup_of(const Job& job, const FaceGear& gear);
+[[nodiscard]] process::ValueOrErrors<shaper::ShaperSetup> shaper_setup_of(const job::Job& job, const face_gear::FaceGear& gear);
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

@@ -2,13 +2,13 @@
 #pragma once
 
 #include "app/commands/command.h"
-#include "app/job.h"
+#include "app/job/job.h"
 
-namespace toothpath {
+namespace toothpath::commands {
 
 /// Files that the command owns in its output directory.
 [[nodiscard]] const std::vector<std::string>& surface_outputs();
 
 [[nodiscard]] CommandOutcome run_surface(const JobRequest& request);
 
-}  // namespace toothpath
+}  // namespace toothpath::commands

@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-namespace toothpath {
+namespace toothpath::report {
 
-BlockTimes block_times_of(const AxisProgram& program) {
+BlockTimes block_times_of(const joints::AxisProgram& program) {
   BlockTimes out;
   std::vector<double> ms;
   for (const auto& operation : program.operations) {
     if (operation.teeth.empty()) continue;
     for (const auto& block : operation.teeth.front().blocks)
-      if (block.kind == BlockKind::feed) ms.push_back(block.minutes * 60000);
+      if (block.kind == joints::BlockKind::feed) ms.push_back(block.minutes * 60000);
   }
   for (std::size_t i = 0; i < program.time_rulers.size() && i < program.time_ruled.size(); ++i)
     if (program.time_ruled[i] > 0) out.ruled.emplace_back(program.time_rulers[i], program.time_ruled[i]);
@@ -28,9 +28,9 @@ BlockTimes block_times_of(const AxisProgram& program) {
   return out;
 }
 
-HistogramChart block_time_chart(const BlockTimes& times) {
+svg::HistogramChart block_time_chart(const BlockTimes& times) {
   return {fmt::format("Cutting blocks of one tooth: least {:.3g} ms, median {:.3g} ms", times.least_ms, times.median_ms),
           "time of a block [ms, decimal logarithm]", times.from_log_ms, times.step_log_ms, times.counts, {}};
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::report

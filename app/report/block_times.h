@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "app/report/chart.h"
-#include "postproc/axis_program.h"
+#include "app/report/svg/chart.h"
+#include "postproc/joints/program.h"
 
-namespace toothpath {
+namespace toothpath::report {
 
 /// Times of the feed blocks of one tooth of every operation, as the program is made and as it reads back.
 struct BlockTimes {
@@ -21,9 +21,9 @@ struct BlockTimes {
 };
 
 /// Empty counts where nothing is cut.
-[[nodiscard]] BlockTimes block_times_of(const AxisProgram& program);
+[[nodiscard]] BlockTimes block_times_of(const joints::AxisProgram& program);
 
 /// For the report page.
-[[nodiscard]] HistogramChart block_time_chart(const BlockTimes& times);
+[[nodiscard]] svg::HistogramChart block_time_chart(const BlockTimes& times);
 
-}  // namespace toothpath
+}  // namespace toothpath::report

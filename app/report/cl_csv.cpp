@@ -4,7 +4,7 @@
 
 #include <iterator>
 
-namespace toothpath {
+namespace toothpath::report {
 namespace {
 
 /// A coordinate whose printed digits are all zero loses its sign.
@@ -12,11 +12,11 @@ double without_negative_zero(double value, double half_step) { return value < 0 
 
 }  // namespace
 
-std::string cl_csv(std::span<const ClPath* const> paths) {
+std::string cl_csv(std::span<const path::ClPath* const> paths) {
   fmt::memory_buffer out;
   fmt::format_to(std::back_inserter(out), "op,tooth,zone,pass,x,y,z,i,j,k,feed,kind\n");
-  for (const ClPath* path : paths)
-    for (const ClRecord& record : path->records) {
+  for (const path::ClPath* path : paths)
+    for (const path::ClRecord& record : path->records) {
       fmt::format_to(std::back_inserter(out), "{},0,{},{}", path->operation, record.zone, record.pass);
       for (const double x : record.tip) fmt::format_to(std::back_inserter(out), ",{:.7f}", without_negative_zero(x, 0.5e-7));
       for (const double x : record.axis) fmt::format_to(std::back_inserter(out), ",{:.9f}", without_negative_zero(x, 0.5e-9));
@@ -25,4 +25,4 @@ std::string cl_csv(std::span<const ClPath* const> paths) {
   return fmt::to_string(out);
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::report

@@ -2,12 +2,12 @@
 
 #include <sstream>
 
-#include "geometry/mesh_file.h"
+#include "geometry/mesh/file.h"
 
-namespace toothpath {
+namespace toothpath::report {
 
-Result<std::string> deviation_vtp(const std::vector<SurfaceGrid>& grids) {
-  TriangleMesh mesh;
+Result<std::string> deviation_vtp(const std::vector<proof::SurfaceGrid>& grids) {
+  mesh::TriangleMesh mesh;
   std::size_t operations = 0;
   for (const auto& g : grids) operations = std::max(operations, g.excess_um.size());
   std::vector<std::vector<double>> deviation(operations);
@@ -41,14 +41,14 @@ Result<std::string> deviation_vtp(const std::vector<SurfaceGrid>& grids) {
     reachable.insert(reachable.end(), g.reachable.begin(), g.reachable.end());
     zone.insert(zone.end(), g.points.size(), double(g.zone));
   }
-  std::vector<PointField> fields;
+  std::vector<mesh::PointField> fields;
   if (operations > 0) fields.push_back({"deviation_um", deviation.back()});
   for (std::size_t n = 0; n < operations; ++n) fields.push_back({"deviation_um_op" + std::to_string(n), deviation[n]});
   fields.push_back({"reachable", reachable});
   fields.push_back({"zone", zone});
   std::ostringstream out;
-  if (const auto written = write_vtp(out, mesh, fields); !written) return written.error();
+  if (const auto written = mesh::write_vtp(out, mesh, fields); !written) return written.error();
   return std::move(out).str();
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::report

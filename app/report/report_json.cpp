@@ -1,12 +1,12 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/report/html_text.h"
+#include "app/report/svg/html_text.h"
 #include "app/report/run_report.h"
-#include "app/units.h"
+#include "app/base/units.h"
 #include "geometry/base/angle.h"
 
-namespace toothpath {
+namespace toothpath::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -14,48 +14,48 @@ using Json = nlohmann::ordered_json;
 
 Json text_list(const std::vector<std::string>& texts) {
   Json list = Json::array();
-  for (const auto& text : texts) list.push_back(valid_utf8(text));
+  for (const auto& text : texts) list.push_back(svg::valid_utf8(text));
   return list;
 }
 
 Json vector_json(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
-Json excess_json(const ExcessResult& e, bool with_operation) {
+Json excess_json(const proof::ExcessResult& e, bool with_operation) {
   Json json;
   if (with_operation) json["op"] = e.operation;
-  json["max"] = um(e.max_mm);
-  json["min"] = um(e.min_mm);
-  json["rms"] = um(e.rms_mm);
-  json["bound"] = um(e.bound_mm);
+  json["max"] = app::um(e.max_mm);
+  json["min"] = app::um(e.min_mm);
+  json["rms"] = app::um(e.rms_mm);
+  json["bound"] = app::um(e.bound_mm);
   json["points"] = e.points;
   return json;
 }
 
-Json place_json(const WorstPlace& place) {
-  return {{"depth_um", um(place.depth_mm)}, {"body", place.body},           {"patch", place.patch},
+Json place_json(const proof::WorstPlace& place) {
+  return {{"depth_um", app::um(place.depth_mm)}, {"body", place.body},           {"patch", place.patch},
           {"op", place.operation},          {"tooth", place.tooth},         {"zone", place.zone},
           {"line", place.line},             {"radius", place.radius_mm},    {"height", place.height_mm},
           {"point", vector_json(place.point)}};
 }
 
 /// What was left is told only where an operation finishes.
-Json unreached_json(const UnreachedResult& u) {
-  Json json = {{"points", u.points}, {"max_height_um", um(u.max_height_mm)}};
+Json unreached_json(const proof::UnreachedResult& u) {
+  Json json = {{"points", u.points}, {"max_height_um", app::um(u.max_height_mm)}};
   if (u.ball_mm <= 0) return json;
   json["ball_mm"] = u.ball_mm;
-  json["limit_um"] = um(u.limit_mm);
+  json["limit_um"] = app::um(u.limit_mm);
   json["share_percent"] = 100 * u.share;
-  json["height_um"] = um(u.height_mm);
+  json["height_um"] = app::um(u.height_mm);
   json["largest_ball_mm"] = u.left() ? Json(u.largest_ball_mm) : Json(nullptr);
   json["active_flank"] = nullptr;
   if (const auto& a = u.active)
-    json["active_flank"] = {{"height_um", um(a->height_mm)}, {"patch", a->patch}, {"zone", a->zone}, {"radius", a->radius_mm}, {"height", a->z_mm}};
+    json["active_flank"] = {{"height_um", app::um(a->height_mm)}, {"patch", a->patch}, {"zone", a->zone}, {"radius", a->radius_mm}, {"height", a->z_mm}};
   return json;
 }
 
 void add_proof(Json& json, const RunReport& r) {
   if (r.gouge) {
-    json["gouge_um"] = {{"measured", um(r.gouge->measured_mm)}, {"bound", um(r.gouge->bound_mm)}, {"tolerance", um(r.gouge_tolerance_mm)}};
+    json["gouge_um"] = {{"measured", app::um(r.gouge->measured_mm)}, {"bound", app::um(r.gouge->bound_mm)}, {"tolerance", app::um(r.gouge_tolerance_mm)}};
     json["clearance"] = {{"least", r.gouge->clearance_mm},
                          {"measured", r.gouge->clearance_measured_mm},
                          {"required", r.gouge->required_clearance_mm},
@@ -73,15 +73,15 @@ void add_proof(Json& json, const RunReport& r) {
     json["excess_um"] = std::move(excess);
   }
   if (r.scallop)
-    json["scallop_um"] = {{"requested", um(r.scallop->requested_mm)},
-                          {"reached_min", um(r.scallop->reached_min_mm)},
-                          {"reached_max", um(r.scallop->reached_max_mm)},
+    json["scallop_um"] = {{"requested", app::um(r.scallop->requested_mm)},
+                          {"reached_min", app::um(r.scallop->reached_min_mm)},
+                          {"reached_max", app::um(r.scallop->reached_max_mm)},
                           {"share_within", r.scallop->share_within},
-                          {"fillet_max", um(r.scallop->fillet_max_mm)}};
+                          {"fillet_max", app::um(r.scallop->fillet_max_mm)}};
   if (r.unreached) json["unreached"] = unreached_json(*r.unreached);
 }
 
-Json meeting_json(const MeshMeeting& m) {
+Json meeting_json(const clearance::MeshMeeting& m) {
   const bool inside = !std::isfinite(m.measured_mm);
   return {{"gap", std::max(m.gap_mm, 0.0)}, {"touches", m.gap_mm <= 0}, {"inside", inside}, {"body", m.body}, {"rapid", m.rapid},
           {"op", m.operation}, {"tooth", m.tooth}, {"line", m.line}, {"file", m.mesh}, {"point", vector_json(m.place)}};
@@ -114,7 +114,7 @@ void add_directions(Json& json, const RunReport& r) {
                   {"axis", vector_json(d.axis)},
                   {"lean_deg", degrees(d.lean_rad)},
                   {"clearance", d.clearance_mm},
-                  {"explanation", valid_utf8(d.explanation)}};
+                  {"explanation", svg::valid_utf8(d.explanation)}};
     if (!d.fixed && d.passes > 0) {
       entry["lean_from_pitch_normal_deg"] = {{"min", degrees(d.least_lean_rad)}, {"max", degrees(d.greatest_lean_rad)}};
       entry["turn_deg_per_mm"] = degrees(d.greatest_turn_rad_per_mm);
@@ -164,10 +164,10 @@ void add_motion(Json& json, const RunReport& r) {
     json["poles"] = {{"passages_per_tooth", r.poles->passages},
                      {"option", r.poles->option},
                      {"axis_change_deg", degrees(r.poles->axis_rad)},
-                     {"tip_change_um", um(r.poles->tip_mm)}};
+                     {"tip_change_um", app::um(r.poles->tip_mm)}};
   json["acceleration_in_times"] = r.has_acceleration;
   if (r.travel_room) {
-    const TravelOffer& offer = r.travel_room->offer;
+    const joints::TravelOffer& offer = r.travel_room->offer;
     json["travel_room"] = {{"now", offer.room_now_mm},
                            {"most", offer.room_then_mm},
                            {"origin", vector_json(r.travel_room->origin_mm)},
@@ -190,14 +190,14 @@ std::string report_json(const RunReport& r) {
   Json json;
   json["schema"] = 1;
   json["command"] = r.command;
-  json["job"] = valid_utf8(r.job_name);
-  json["job_file"] = valid_utf8(r.job_file);
+  json["job"] = svg::valid_utf8(r.job_name);
+  json["job_file"] = svg::valid_utf8(r.job_file);
   const bool proves = r.command != "surface";
   if (proves) {
     json["verified"] = r.verified;
     json["verdict"] = verdict_text(r);
     json["reasons"] = text_list(r.reasons);
-    json["machine"] = {{"name", valid_utf8(r.machine_name)}, {"file", valid_utf8(r.machine_file)}, {"dialect", r.dialect}};
+    json["machine"] = {{"name", svg::valid_utf8(r.machine_name)}, {"file", svg::valid_utf8(r.machine_file)}, {"dialect", r.dialect}};
   }
   if (!r.program_file.empty())
     json["program"] = {{"file", r.program_file}, {"sha256", r.program_sha256}, {"bytes", r.program_bytes}};
@@ -235,4 +235,4 @@ std::string report_json(const RunReport& r) {
   return json.dump(2) + "\n";
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::report

@@ -8,12 +8,12 @@
 
 #include "app/report/block_times.h"
 #include "app/report/scene_report.h"
-#include "cam/verification.h"
-#include "geometry/flank_correction.h"
-#include "postproc/axis_program.h"
-#include "postproc/restart_menu.h"
+#include "cam/proof/verification.h"
+#include "geometry/face_gear/flank_correction.h"
+#include "postproc/joints/program.h"
+#include "postproc/restart/menu.h"
 
-namespace toothpath {
+namespace toothpath::report {
 
 /// One operation as the machinist sees it.
 struct OperationReport {
@@ -28,7 +28,7 @@ struct OperationReport {
 /// A flank that was corrected by a measurement.
 struct CorrectionRow {
   int zone = 0, side = 1;
-  CorrectionResidual fit;
+  face_gear::CorrectionResidual fit;
 };
 
 /// How wrong the length of a tool may be before a proven program leaves its limits (docs/setup_sheet.md).
@@ -61,7 +61,7 @@ struct SheetSection {
 
 /// Where the part has the most room, and set-up origin and work offset there.
 struct TravelRoom {
-  TravelOffer offer;
+  joints::TravelOffer offer;
   Vec3 origin_mm = Vec3::Zero(), work_offset_at_mm = Vec3::Zero();
 };
 
@@ -75,27 +75,27 @@ struct RunReport {
   std::size_t program_bytes = 0;
 
   double gouge_tolerance_mm = 0;
-  std::optional<GougeResult> gouge;
-  std::vector<ExcessResult> excess;          ///< one an operation
-  std::optional<ExcessResult> finished;      ///< the finished surface, over the points that the finishing ball reaches
-  std::optional<UnreachedResult> unreached;
-  std::optional<ScallopResult> scallop;
+  std::optional<proof::GougeResult> gouge;
+  std::vector<proof::ExcessResult> excess;          ///< one an operation
+  std::optional<proof::ExcessResult> finished;      ///< the finished surface, over the points that the finishing ball reaches
+  std::optional<proof::UnreachedResult> unreached;
+  std::optional<proof::ScallopResult> scallop;
 
   std::size_t cl_points = 0, blocks = 0;
   double feed_minutes = 0, total_minutes = 0;  ///< all teeth; tool changes left out
   std::vector<OperationReport> operations;
-  std::vector<DirectionChoice> directions;
-  std::vector<AxisRange> axes;
+  std::vector<proof::DirectionChoice> directions;
+  std::vector<joints::AxisRange> axes;
   std::optional<PolesReport> poles;                      ///< none where the program comes to no pole
   std::optional<TravelRoom> travel_room;                 ///< none where it was not looked for
   bool has_acceleration = false;                         ///< the times above hold the accelerations of the axes
   std::optional<BlockTimes> block_times;                 ///< none where no program was posted
   int teeth = 0, tooth_stride = 1;                       ///< of the program: place n cuts tooth n * stride mod teeth
-  std::optional<ProgramRestart> restart;                 ///< the program begins there
-  std::optional<RestartMenu> restart_menu;               ///< where it can be taken up again
+  std::optional<joints::ProgramRestart> restart;                 ///< the program begins there
+  std::optional<restart::RestartMenu> restart_menu;               ///< where it can be taken up again
   std::vector<LengthTolerance> length_tolerances;
   std::vector<SheetSection> sheet_sections;              ///< stand behind the axis ranges
-  std::vector<LedgerEntry> ledger;
+  std::vector<proof::LedgerEntry> ledger;
   std::vector<SceneVerdict> scene;                       ///< fixture and stock, where meshes of them were given
   std::vector<CorrectionRow> correction;                 ///< empty: the nominal flanks are the target
   std::vector<std::string> assumed, warnings;
@@ -116,4 +116,4 @@ struct RunReport {
 /// "1 h 23 min", "4 min 05 s".
 [[nodiscard]] std::string readable_minutes(double minutes);
 
-}  // namespace toothpath
+}  // namespace toothpath::report

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "cam/mesh_clearance.h"
+#include "cam/clearance/clearance.h"
 
-namespace toothpath {
+namespace toothpath::report {
 
 /// One kind of mesh: all files given for it.
 struct SceneVerdict {
@@ -16,12 +16,12 @@ struct SceneVerdict {
   std::size_t facets = 0;
   double required_mm = 0;          ///< clearance that was asked for
   double look_mm = 0;              ///< gaps larger than this were not told apart
-  std::optional<MeshMeeting> nearest;  ///< the least margin of the whole program; none: nothing comes nearer than look_mm
-  std::vector<MeshMeeting> worst;  ///< what does not pass, worst first, at most 20
+  std::optional<clearance::MeshMeeting> nearest;  ///< the least margin of the whole program; none: nothing comes nearer than look_mm
+  std::vector<clearance::MeshMeeting> worst;  ///< what does not pass, worst first, at most 20
   std::size_t failed = 0;          ///< stretches of the program that do not pass
   std::size_t motions = 0;         ///< judged
   std::size_t unjudged = 0;        ///< blocks that move from an unknown position or without a tool of the job
   [[nodiscard]] bool clear() const { return failed == 0; }
 };
 
-}  // namespace toothpath
+}  // namespace toothpath::report

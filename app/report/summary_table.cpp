@@ -3,10 +3,10 @@
 
 #include "app/report/run_report.h"
 #include "app/report/unreached_text.h"
-#include "app/units.h"
+#include "app/base/units.h"
 #include "geometry/base/angle.h"
 
-namespace toothpath {
+namespace toothpath::report {
 namespace {
 
 
@@ -60,10 +60,10 @@ std::string summary_table(const RunReport& report, bool color) {
   for (const auto& reason : report.reasons) row(out, "  because", reason);
   if (left) row(out, "not finished", unreached_text(*report.unreached));
   if (report.gouge)
-    row(out, "worst gouge", fmt::format("{:.2f} um, proven below {:.2f} um (tolerance {:.2f} um)", std::max(0.0, report.gouge->measured_mm) * kUm,
-                                        std::max(0.0, report.gouge->bound_mm) * kUm, report.gouge_tolerance_mm * kUm));
+    row(out, "worst gouge", fmt::format("{:.2f} um, proven below {:.2f} um (tolerance {:.2f} um)", std::max(0.0, report.gouge->measured_mm) * app::kUm,
+                                        std::max(0.0, report.gouge->bound_mm) * app::kUm, report.gouge_tolerance_mm * app::kUm));
   if (report.finished)
-    row(out, "worst left material", fmt::format("{:.2f} um, proven below {:.2f} um", report.finished->max_mm * kUm, report.finished->bound_mm * kUm));
+    row(out, "worst left material", fmt::format("{:.2f} um, proven below {:.2f} um", report.finished->max_mm * app::kUm, report.finished->bound_mm * app::kUm));
   if (report.gouge) row(out, "least clearance", fmt::format("{:.3f} mm (neck, shank, holder)", report.gouge->clearance_mm));
   for (const auto& v : report.scene) {
     const std::string place = v.nearest ? fmt::format("{}, op {}, tooth {}, line {}", v.nearest->body, v.nearest->operation, v.nearest->tooth, v.nearest->line) : "";
@@ -92,8 +92,8 @@ std::string summary_table(const RunReport& report, bool color) {
   if (!report.program_file.empty()) row(out, "program", fmt::format("{}, {} blocks", report.program_file, report.blocks));
   for (const auto& c : report.correction)
     row(out, "correction", fmt::format("zone {}, flank {:+}: measured max {:.2f} um, rms {:.2f} um; not followed max {:.2f} um, rms {:.2f} um", c.zone,
-                                       c.side, c.fit.measured_max_mm * kUm, c.fit.measured_rms_mm * kUm, c.fit.residual_max_mm * kUm,
-                                       c.fit.residual_rms_mm * kUm));
+                                       c.side, c.fit.measured_max_mm * app::kUm, c.fit.measured_rms_mm * app::kUm, c.fit.residual_max_mm * app::kUm,
+                                       c.fit.residual_rms_mm * app::kUm));
   for (const auto& warning : report.warnings) row(out, "warning", warning);
   if (report.command == "surface")
     for (const auto& file : report.files) row(out, "written", file);
@@ -103,4 +103,9 @@ std::string summary_table(const RunReport& report, bool color) {
   return out;
 }
 
-}  // namespace toothpath
+std::string poles_text(const PolesReport& poles) {
+  return fmt::format("Poles passed: {} a tooth (pole = \"{}\"); the tool axis moves by at most {:.4f} deg for it, the tip by {:.4f} mm about the centre of the ball.",
+                     poles.passages, poles.option, degrees(poles.axis_rad), poles.tip_mm);
+}
+
+}  // namespace toothpath::report

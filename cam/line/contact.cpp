@@ -8,8 +8,8 @@ namespace {
 using Along = Dual<double, 1>;  // value and derivative along the axis
 
 /// The same surface in another scalar.
-FaceGearSurface<Along> with_slopes(const FaceGearSurface<double>& f) {
-  FaceGearSurface<Along> g;
+face_gear::FaceGearSurface<Along> with_slopes(const face_gear::FaceGearSurface<double>& f) {
+  face_gear::FaceGearSurface<Along> g;
   const auto& w = f.shaper;
   g.shaper = {w.teeth, w.m_t, w.alpha_t, w.r_p, w.r_b, w.r_a, w.kappa, w.beta_b, w.sin_bb, w.cos_bb, w.T,
               w.theta_0, w.rho, w.r_c, w.theta_t, w.A_t, w.A_e, w.psi_c, w.h_a, w.h_f};
@@ -26,7 +26,7 @@ FaceGearSurface<Along> with_slopes(const FaceGearSurface<double>& f) {
 
 }  // namespace
 
-std::optional<double> distance_third(const FaceGearSurface<double>& f, int side, const AxisLine<double>& axis, double t,
+std::optional<double> distance_third(const face_gear::FaceGearSurface<double>& f, int side, const AxisLine<double>& axis, double t,
                                      const Place<double>& start) {
   const auto near = flank_foot<double>(f, side, axis.at(t), start);
   if (!near) return {};

@@ -13,8 +13,8 @@
 #include <optional>
 
 #include "cam/tool/radius_law.h"
-#include "geometry/face_gear_inverse.h"
-#include "geometry/face_gear_surface.h"
+#include "geometry/face_gear/inverse.h"
+#include "geometry/face_gear/surface.h"
 
 namespace toothpath::line {
 
@@ -45,7 +45,7 @@ TangentFrame<S> tangent_frame(int side, const Vec3T<S>& n) {
 
 /// theta of the parallel surface at `distance` above the flank place (theta, B); B stays.
 template <typename S>
-S theta_at_distance(const FaceGearSurface<S>& f, const S& theta, const S& distance) {
+S theta_at_distance(const face_gear::FaceGearSurface<S>& f, const S& theta, const S& distance) {
   return theta - distance * f.shaper.cos_bb / f.shaper.r_b;
 }
 
@@ -57,7 +57,7 @@ struct ZeroDirections {
   bool ok = false;
 };
 template <typename S>
-ZeroDirections<S> zero_directions(const typename FaceGearSurface<S>::ShapeOperator& H) {
+ZeroDirections<S> zero_directions(const typename face_gear::FaceGearSurface<S>::ShapeOperator& H) {
   using std::sqrt;
   const S k2 = H.el * H.el - H.ee * H.ll;
   if (!(k2 > S(0))) return {};
@@ -71,7 +71,7 @@ ZeroDirections<S> zero_directions(const typename FaceGearSurface<S>::ShapeOperat
 /// Nothing where J <= 0 at the flank or on the parallel surface: beyond the undercut edge.
 /// Error <= 1e-12 rad for J > 1e-3 m^2.
 template <typename S>
-std::optional<S> lean(const FaceGearSurface<S>& f, int side, const Place<S>& at, const S& distance) {
+std::optional<S> lean(const face_gear::FaceGearSurface<S>& f, int side, const Place<S>& at, const S& distance) {
   using std::atan2, std::sqrt;
   const S theta = theta_at_distance(f, at.theta, distance);
   if (!(f.flank_J(side, theta, at.B) > S(0)) || !(f.flank_J(side, at.theta, at.B) > S(0))) return {};
@@ -143,7 +143,7 @@ struct FlankFoot {
 /// Converges quadratically; stops after a step below 1e-3 sqrt(eps) in both parameters, at least one step is taken (so that dual numbers
 /// carry their derivatives).
 template <typename S>
-std::optional<FlankFoot<S>> flank_foot(const FaceGearSurface<S>& f, int side, const Vec3T<S>& x, const Place<S>& start) {
+std::optional<FlankFoot<S>> flank_foot(const face_gear::FaceGearSurface<S>& f, int side, const Vec3T<S>& x, const Place<S>& start) {
   using std::atan2, std::sqrt;
   constexpr int kSteps = 30;
   const auto size = [](const S& v) { return v < S(0) ? S(-v) : v; };
@@ -183,7 +183,7 @@ std::optional<FlankFoot<S>> flank_foot(const FaceGearSurface<S>& f, int side, co
 
 /// d'' along the unit direction a at a place with this foot: a^T (Hess d) a, the shape operator of the parallel surface.
 template <typename S>
-S distance_bend(const FaceGearSurface<S>& f, int side, const FlankFoot<S>& foot, const Vec3T<S>& a) {
+S distance_bend(const face_gear::FaceGearSurface<S>& f, int side, const FlankFoot<S>& foot, const Vec3T<S>& a) {
   const auto H = f.flank_shape(side, foot.at.theta, foot.at.B);
   const auto basis = f.flank_basis(side, foot.at.theta, foot.at.B);
   const S e = a.dot(f.turned(basis.e, foot.turn)), l = a.dot(f.turned(basis.l, foot.turn));
@@ -192,7 +192,7 @@ S distance_bend(const FaceGearSurface<S>& f, int side, const FlankFoot<S>& foot,
 
 /// d''' along the axis at height t, from dual numbers through `flank_foot` and `distance_bend`. 1/mm^2.
 /// @param start  parameters near the foot of that place
-[[nodiscard]] std::optional<double> distance_third(const FaceGearSurface<double>& f, int side, const AxisLine<double>& axis, double t,
+[[nodiscard]] std::optional<double> distance_third(const face_gear::FaceGearSurface<double>& f, int side, const AxisLine<double>& axis, double t,
                                                    const Place<double>& start);
 
 /// What the best pose leaves of a gap with this third derivative over a line of half length h along the axis: |D3| h^3 / 12, the

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cam/tool_body.h"
+#include "cam/tool/body.h"
 
 namespace toothpath::line {
 namespace {
@@ -13,7 +13,7 @@ namespace {
 constexpr double kBodySag = 0.01;  // mm: how far bodies may stand out of the tool where only rapids ask for them
 
 AxisLine<double> turned(const AxisLine<double>& axis, double angle) {
-  return {FaceGearSurface<double>::turned(axis.c_0, angle), FaceGearSurface<double>::turned(axis.a, angle)};
+  return {face_gear::FaceGearSurface<double>::turned(axis.c_0, angle), face_gear::FaceGearSurface<double>::turned(axis.a, angle)};
 }
 
 /// All passes for one choice of strips and rotaries.
@@ -67,26 +67,26 @@ std::vector<Choice> choices_of(const LineOperation& o) {
 /// Appends passes to a path: in and out along the tool axis, which only ever frees a tool that widens upwards.
 class PathWriter {
  public:
-  PathWriter(const tool::Profile& tool, const LineOperation& o, ClPath& path) : o_(o), path_(path), r_0_(tool.law()->r_0), bodies_(tool.proof_bodies(kBodySag)) {}
+  PathWriter(const tool::Profile& tool, const LineOperation& o, path::ClPath& path) : o_(o), path_(path), r_0_(tool.law()->r_0), bodies_(tool.proof_bodies(kBodySag)) {}
 
   void add(const FlankTask& flank, const LinePass& pass, int number) {
     const double turn = flank.side > 0 ? 0 : flank.surface.pitch;  // space 0 lies between flank +1 of tooth 0 and flank -1 of tooth 1
     std::vector<LineRecord> records = pass.records;
     for (auto& r : records) {
       r.axis = turned(with_allowance(flank, r.axis, o_.allowance_mm), turn);
-      r.anchor = FaceGearSurface<double>::turned(r.anchor, turn);
+      r.anchor = face_gear::FaceGearSurface<double>::turned(r.anchor, turn);
     }
     if (climbs(records, flank, turn) != o_.climb) std::reverse(records.begin(), records.end());
     zone_ = flank.zone;
     pass_ = number;
-    record(above(records.front().axis), records.front().axis.a, MoveKind::rapid, 0);
-    record(tip(records.front().axis), records.front().axis.a, MoveKind::engage, o_.feed_mm_min);
+    record(above(records.front().axis), records.front().axis.a, path::MoveKind::rapid, 0);
+    record(tip(records.front().axis), records.front().axis.a, path::MoveKind::engage, o_.feed_mm_min);
     for (std::size_t k = 1; k < records.size(); ++k) {
       const double contact = (records[k].anchor - records[k - 1].anchor).norm();
       const double way = (tip(records[k].axis) - tip(records[k - 1].axis)).norm();
-      record(tip(records[k].axis), records[k].axis.a, MoveKind::feed, o_.feed_mm_min * way / contact);
+      record(tip(records[k].axis), records[k].axis.a, path::MoveKind::feed, o_.feed_mm_min * way / contact);
     }
-    record(above(records.back().axis), records.back().axis.a, MoveKind::retract, o_.feed_mm_min);
+    record(above(records.back().axis), records.back().axis.a, path::MoveKind::retract, o_.feed_mm_min);
   }
 
  private:
@@ -94,21 +94,21 @@ class PathWriter {
   /// Along the axis until ball, flutes, shank and holder are above the clearance height.
   [[nodiscard]] Vec3 above(const AxisLine<double>& axis) const {
     double lowest = axis.c_0.z() - bodies_.ball_radius_mm;
-    for (const auto& f : bodies_.frustums) lowest = std::min(lowest, lowest_z(f, tip(axis), axis.a));
+    for (const auto& f : bodies_.frustums) lowest = std::min(lowest, tool::lowest_z(f, tip(axis), axis.a));
     return tip(axis) + std::max(0.0, (o_.clearance_height_mm - lowest) / axis.a.z()) * axis.a;
   }
   /// Is the material to the right of the feed, seen from the holder?
   [[nodiscard]] bool climbs(const std::vector<LineRecord>& records, const FlankTask& flank, double turn) const {
     const std::size_t k = records.size() / 2;
     const Vec3 feed = records[k].anchor - records[k - 1].anchor, right = feed.cross(records[k].axis.a);
-    const Vec3 at = FaceGearSurface<double>::turned(records[k].anchor, -turn);
-    const auto on = invert_flank(flank.surface, flank.side, at.head<2>().norm(), at.z());
-    return on && FaceGearSurface<double>::turned(flank.surface.flank(flank.side, on->theta, on->B).n, turn).dot(right) < 0;
+    const Vec3 at = face_gear::FaceGearSurface<double>::turned(records[k].anchor, -turn);
+    const auto on = face_gear::invert_flank(flank.surface, flank.side, at.head<2>().norm(), at.z());
+    return on && face_gear::FaceGearSurface<double>::turned(flank.surface.flank(flank.side, on->theta, on->B).n, turn).dot(right) < 0;
   }
-  void record(const Vec3& tip, const Vec3& axis, MoveKind kind, double feed) { path_.records.push_back({tip, axis, feed, kind, zone_, pass_}); }
+  void record(const Vec3& tip, const Vec3& axis, path::MoveKind kind, double feed) { path_.records.push_back({tip, axis, feed, kind, zone_, pass_}); }
 
   const LineOperation& o_;
-  ClPath& path_;
+  path::ClPath& path_;
   double r_0_;
   tool::ProofBodies bodies_;
   int zone_ = 0, pass_ = 0;
@@ -120,7 +120,7 @@ AxisLine<double> with_allowance(const FlankTask& flank, const AxisLine<double>& 
   return turned(axis, flank.side * allowance_mm / flank.surface.M2);
 }
 
-Result<LinePlan> plan_line_milling(const FaceGear& gear, const tool::Profile& tool, const LineOperation& o) {
+Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::Profile& tool, const LineOperation& o) {
   if (!tool.law()) return fail("line milling needs a tool with a ball end and a side: flat and bull nose cutters have none");
   if (o.strips && (*o.strips < 1 || *o.strips > kMostStrips)) return fail("strips = {} lies outside 1 .. {}", *o.strips, kMostStrips);
   std::vector<FlankTask> flanks;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "cam/cl_path.h"
+#include "cam/path/cl_path.h"
 #include "cam/line/passes.h"
 #include "cam/tool/profile.h"
 
@@ -32,7 +32,7 @@ struct LineOperation {
 };
 
 struct LinePlan {
-  ClPath path;
+  path::ClPath path;
   std::vector<LinePass> passes;  ///< in the order of the path: zones from the inside, flank +1 then -1, strips from the tip down
   int strips = 1;
   Rotaries rotaries = Rotaries::both;
@@ -41,7 +41,7 @@ struct LinePlan {
 
 /// Plans one operation. Refused, with quantity, value and limit: a tool without a ball end and a side; everything that `flank_task` and
 /// `plan_pass` refuse; a `left` that no admitted choice meets (the message tells the best one).
-[[nodiscard]] Result<LinePlan> plan_line_milling(const FaceGear& gear, const tool::Profile& tool, const LineOperation& operation);
+[[nodiscard]] Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::Profile& tool, const LineOperation& operation);
 
 /// A pose in the gear frame for flank `side` of tooth 0 turned so that `allowance` stays: by side * allowance / M2 about z. Exact, because
 /// parallel surfaces are rotations.

@@ -37,7 +37,7 @@ double vertex(const GapNode& a, const GapNode& b, const GapNode& c) {
 
 }  // namespace
 
-Result<FlankTask> flank_task(const FaceGear& gear, int zone, int side) {
+Result<FlankTask> flank_task(const face_gear::FaceGear& gear, int zone, int side) {
   const auto& ring = gear.rings()[std::size_t(zone)];
   const auto& p = gear.parameters();
   if (std::abs(p.shaft_angle_rad - kPi / 2) > 1e-12)
@@ -53,7 +53,7 @@ Result<FlankTask> flank_task(const FaceGear& gear, int zone, int side) {
   const double middle = 0.5 * (t.inner_radius + t.outer_radius);
   t.z_tip = ring.surface.z_tip(middle);
   t.theta_end = ring.surface.shaper.theta_t;
-  const auto z_end = fillet_line_height(ring.surface, side, middle);
+  const auto z_end = face_gear::fillet_line_height(ring.surface, side, middle);
   if (!z_end || !(*z_end < t.z_tip)) return fail("zone {}: flank {:+d} has no fillet line below the tips at radius {:.3f} mm", zone, side, middle);
   t.z_end = *z_end;
   t.module_mm = p.module_mm;
@@ -75,7 +75,7 @@ std::vector<Strip> strips_of(const FlankTask& flank, int n) {
 }
 
 std::optional<LineFit::Anchor> LineFit::anchor(double r) const {
-  const auto at = invert_flank(flank_.surface, flank_.side, r, strip_.anchor);
+  const auto at = face_gear::invert_flank(flank_.surface, flank_.side, r, strip_.anchor);
   if (!at || !(at->J > 0)) return {};
   const auto on = flank_.surface.flank(flank_.side, at->theta, at->B);
   return Anchor{{at->theta, at->B}, on.p, tangent_frame<double>(flank_.side, on.n)};

@@ -10,13 +10,13 @@
 
 #include "cam/line/contact.h"
 #include "geometry/base/result.h"
-#include "geometry/face_gear.h"
+#include "geometry/face_gear/gear.h"
 
 namespace toothpath::line {
 
 /// One flank of one ring, as far as it is finished by line contact. Shaft angle 90 deg: the tip surface is a plane.
 struct FlankTask {
-  FaceGearSurface<double> surface;
+  face_gear::FaceGearSurface<double> surface;
   int zone = 0, side = 1;
   double inner_radius = 0, outer_radius = 0;
   double z_tip = 0;
@@ -27,7 +27,7 @@ struct FlankTask {
 
 /// The flank of one side of a ring. Refused: a shaft angle other than 90 deg, corrected flanks (their distance is not closed form), a
 /// ring whose flank has no fillet line at its middle.
-[[nodiscard]] Result<FlankTask> flank_task(const FaceGear& gear, int zone, int side);
+[[nodiscard]] Result<FlankTask> flank_task(const face_gear::FaceGear& gear, int zone, int side);
 
 /// A strip of the flank between two heights; without `bottom` it ends at the fillet line.
 struct Strip {

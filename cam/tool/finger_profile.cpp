@@ -5,7 +5,7 @@
 namespace toothpath::tool {
 namespace {
 
-Vec2 place(const FingerProfile<double>& c, double p) {
+Vec2 place(const bevel_gear::FingerProfile<double>& c, double p) {
   const auto q = c.at(p);
   return {q.x + c.h_f, q.rho};
 }
@@ -18,7 +18,7 @@ MeridianPiece through(const Vec2& a, const Vec2& b, const Vec2& c) {
 }
 
 /// Arcs from p0 to p1, halved until the quarter points lie within the sag.
-void involute_arcs(const FingerProfile<double>& c, double p0, double p1, double sag_mm, std::vector<MeridianPiece>& out) {
+void involute_arcs(const bevel_gear::FingerProfile<double>& c, double p0, double p1, double sag_mm, std::vector<MeridianPiece>& out) {
   const auto arc = through(place(c, p0), place(c, 0.5 * (p0 + p1)), place(c, p1));
   double off = 0;
   for (const double share : {0.2, 0.8}) {
@@ -35,7 +35,7 @@ void involute_arcs(const FingerProfile<double>& c, double p0, double p1, double 
 
 }  // namespace
 
-Meridian finger_meridian(const FingerProfile<double>& c, double flute_end_mm, double sag_mm) {
+Meridian finger_meridian(const bevel_gear::FingerProfile<double>& c, double flute_end_mm, double sag_mm) {
   std::vector<MeridianPiece> pieces;
   const Vec2 A(0, c.rho_o), B(c.x_B + c.h_f, c.rho_B), C = place(c, c.p_C), D = place(c, c.p_D);
   if (A[1] > 0) pieces.push_back({Vec2::Zero(), A, 0});

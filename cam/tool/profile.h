@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
-#include "cam/cutter.h"
-#include "cam/frustum_distance.h"
+#include "cam/tool/assembly.h"
+#include "cam/tool/frustum_distance.h"
 #include "cam/tool/radius_law.h"
 #include "geometry/base/result.h"
 #include "geometry/base/vec.h"

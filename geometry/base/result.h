@@ -1,4 +1,4 @@
-// Result<T>: a value or a Diagnostic. What a job, machine file or mesh can cause travels this way;
+// Result<T>: a value or a Diagnostic; Expected<T, E>: a value or an E. What a job, machine file or mesh can cause travels this way;
 // a broken promise between our own functions is an assertion.
 #pragma once
 
@@ -12,27 +12,41 @@
 
 namespace toothpath {
 
-template <typename T>
-class [[nodiscard]] Result {
+/// A value, or what stands in its place: a diagnostic, or the list of all refusals.
+template <typename T, typename E>
+class [[nodiscard]] Expected {
  public:
-  Result(T value) : state_(std::in_place_index<0>, std::move(value)) {}             // NOLINT
-  Result(Diagnostic error) : state_(std::in_place_index<1>, std::move(error)) {}    // NOLINT
+  Expected(T value) : state_(std::in_place_index<kValue>, std::move(value)) {}  // NOLINT
+  Expected(E error) : state_(std::in_place_index<kError>, std::move(error)) {}  // NOLINT
 
-  [[nodiscard]] bool has_value() const { return state_.index() == 0; }
+  [[nodiscard]] bool has_value() const { return state_.index() == kValue; }
   explicit operator bool() const { return has_value(); }
 
-  [[nodiscard]] T& value() & { assert(has_value()); return std::get<0>(state_); }
-  [[nodiscard]] const T& value() const& { assert(has_value()); return std::get<0>(state_); }
-  [[nodiscard]] T&& value() && { assert(has_value()); return std::get<0>(std::move(state_)); }
+  [[nodiscard]] T& value() & { assert(has_value()); return *std::get_if<kValue>(&state_); }
+  [[nodiscard]] const T& value() const& { assert(has_value()); return *std::get_if<kValue>(&state_); }
+  [[nodiscard]] T&& value() && { assert(has_value()); return std::move(*std::get_if<kValue>(&state_)); }
   T& operator*() & { return value(); }
   const T& operator*() const& { return value(); }
+  T&& operator*() && { return std::move(*this).value(); }
   T* operator->() { return &value(); }
   const T* operator->() const { return &value(); }
-  [[nodiscard]] const Diagnostic& error() const { assert(!has_value()); return std::get<1>(state_); }
+  [[nodiscard]] E& error() & { assert(!has_value()); return *std::get_if<kError>(&state_); }
+  [[nodiscard]] const E& error() const& { assert(!has_value()); return *std::get_if<kError>(&state_); }
+  [[nodiscard]] E&& error() && { assert(!has_value()); return std::move(*std::get_if<kError>(&state_)); }
+  /// Why there is no value; null where there is one: `if (auto* errors = made.refused()) return failed(std::move(*errors));`
+  [[nodiscard]] E* refused() { return std::get_if<kError>(&state_); }
+  [[nodiscard]] const E* refused() const { return std::get_if<kError>(&state_); }
+  /// The value; null where there is none.
+  [[nodiscard]] T* value_if() { return std::get_if<kValue>(&state_); }
+  [[nodiscard]] const T* value_if() const { return std::get_if<kValue>(&state_); }
 
  private:
-  std::variant<T, Diagnostic> state_;
+  static constexpr std::size_t kValue = 0, kError = 1;
+  std::variant<T, E> state_;
 };
+
+template <typename T>
+using Result = Expected<T, Diagnostic>;
 
 /// Success without a value.
 struct Ok {};

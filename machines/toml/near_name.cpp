@@ -4,7 +4,7 @@
 #include <numeric>
 #include <vector>
 
-namespace toothpath {
+namespace toothpath::toml {
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -21,4 +21,4 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::toml

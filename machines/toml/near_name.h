@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace toothpath {
+namespace toothpath::toml {
 
 /// Number of insertions, deletions and replacements of letters that turn a into b.
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
@@ -26,4 +26,4 @@ template <typename Names>
   return best;
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::toml

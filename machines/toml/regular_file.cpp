@@ -7,7 +7,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace toothpath {
+namespace toothpath::toml {
 
 Result<std::string> read_regular_file(const std::string& path, std::size_t max_bytes) {
   const auto cannot = [&](const char* what) {
@@ -37,4 +37,4 @@ Result<std::string> read_regular_file(const std::string& path, std::size_t max_b
   }
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::toml

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace toothpath {
+namespace toothpath::toml {
 
 TableReader::TableReader(const TomlValue& table, std::string path, ReaderFindings& findings)
     : table_(*table.table()), position_(table.position), path_(std::move(path)), findings_(&findings) {
@@ -210,4 +210,4 @@ void sort_by_position(std::vector<Diagnostic>& errors) {
   });
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::toml

@@ -12,7 +12,7 @@
 
 #include "machines/toml/toml_tree.h"
 
-namespace toothpath {
+namespace toothpath::toml {
 
 /// What a number may be. The unit stands in messages only: " mm", " deg", "" for counts.
 struct Range {
@@ -140,4 +140,4 @@ class TableReader {
 /// Into the order of the file.
 void sort_by_position(std::vector<Diagnostic>& errors);
 
-}  // namespace toothpath
+}  // namespace toothpath::toml

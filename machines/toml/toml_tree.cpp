@@ -5,7 +5,7 @@
 
 #include <toml++/toml.h>
 
-namespace toothpath {
+namespace toothpath::toml {
 namespace {
 
 /// Looks for what could make the parser or its tree recurse without bound. Strings cannot span lines here, so the state of
@@ -70,7 +70,7 @@ Status check_nul(std::string_view text, const std::string& file) {
   return fail_at({file, static_cast<int>(line), static_cast<int>(column)}, "NUL byte; this is not a text file");
 }
 
-SourcePosition position_of(const toml::source_region& region, const std::string& file) {
+SourcePosition position_of(const ::toml::source_region& region, const std::string& file) {
   return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
@@ -79,7 +79,7 @@ class Copier {
  public:
   Copier(const std::string& file, int max_nesting) : file_(file), max_nesting_(max_nesting) {}
 
-  TomlValue copy(const toml::node& node, int depth = 0) {
+  TomlValue copy(const ::toml::node& node, int depth = 0) {
     TomlValue result;
     result.position = position_of(node.source(), file_);
     if (depth > max_nesting_) {
@@ -107,7 +107,7 @@ class Copier {
   [[nodiscard]] const std::optional<SourcePosition>& too_deep() const { return too_deep_; }
 
  private:
-  TomlTable copy_table(const toml::table& table, int depth) {
+  TomlTable copy_table(const ::toml::table& table, int depth) {
     TomlTable result;
     for (const auto& [key, value] : table) {
       TomlEntry& entry = result.entries.emplace_back(TomlEntry{std::string(key.str()), position_of(key.source(), file_), copy(value, depth + 1)});
@@ -154,17 +154,17 @@ Result<TomlValue> parse_toml(std::string_view text, const std::string& file, con
   const Status checked = syntax.one_line_strings ? check_lines(text, file, syntax.max_nesting) : check_nul(text, file);
   if (!checked) return checked.error();
   try {
-    const toml::table table = toml::parse(text, std::string_view{file});
+    const ::toml::table table = ::toml::parse(text, std::string_view{file});
     // Where the brackets have been counted, the depth is bounded already.
     Copier copier(file, syntax.one_line_strings ? std::numeric_limits<int>::max() : syntax.max_nesting);
     TomlValue root = copier.copy(table);
     if (copier.too_deep()) return fail_at(*copier.too_deep(), "nested deeper than {} levels", syntax.max_nesting);
     root.position = {file, 1, 1};
     return root;
-  } catch (const toml::parse_error& error) {
+  } catch (const ::toml::parse_error& error) {
     const std::string_view what = error.description();
     return fail_at(position_of(error.source(), file), "{}", syntax.ascii_messages ? printable(what) : std::string(what));
   }
 }
 
-}  // namespace toothpath
+}  // namespace toothpath::toml

@@ -10,7 +10,7 @@
 
 #include "geometry/base/result.h"
 
-namespace toothpath {
+namespace toothpath::toml {
 
 struct TomlValue;
 struct TomlEntry;
@@ -61,4 +61,4 @@ struct TomlSyntax {
 /// does not take.
 [[nodiscard]] Result<TomlValue> parse_toml(std::string_view text, const std::string& file, const TomlSyntax& syntax);
 
-}  // namespace toothpath
+}  // namespace toothpath::toml

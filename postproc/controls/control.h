@@ -6,8 +6,8 @@
 #include <string_view>
 #include <vector>
 
-#include "postproc/nc_dialect.h"
-#include "postproc/nc_reader.h"
+#include "postproc/text/dialect.h"
+#include "postproc/readback/reader.h"
 
 namespace toothpath::controls {
 
@@ -20,10 +20,11 @@ struct WorkOffsets {
 struct Control {
   /// Name, file extension, words, coolants, corners, rotaries that roll over; what it takes of a machine file follows from them:
   /// `exact_path_mm` corner_tolerance, `takes_smoothing` smoothing_*, `takes_coolant` coolant_*, `tcp_codes_of_site` tcp_on and tcp_off.
-  NcDialect words;
+  text::NcDialect words;
   std::vector<std::string> aliases;     ///< other names that a machine file may use
   WorkOffsets offsets;
-  NcExecute execute = nullptr;          ///< executes its text; shares nothing with what writes it
+  readback::NcExecute execute = nullptr;          ///< executes its text; shares nothing with what writes it
+  bool cutter_locations = false;        ///< the text has places of the tool; in which order the axes move is the business of a post processor
 };
 
 }  // namespace toothpath::controls

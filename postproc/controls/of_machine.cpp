@@ -21,7 +21,7 @@ int m_number(std::string_view word) {
 /// Judges a machine file by the words of its control, key by key.
 class Judge {
  public:
-  Judge(const Machine& machine, const NcDialect& words) : machine_(machine), words_(words) {}
+  Judge(const machines::Machine& machine, const text::NcDialect& words) : machine_(machine), words_(words) {}
 
   std::vector<Diagnostic> errors() && {
     digits();
@@ -47,7 +47,7 @@ class Judge {
   }
 
   void corners() {
-    const PostSettings& post = machine_.post;
+    const machines::PostSettings& post = machine_.post;
     if (post.corner_tolerance_mm && !(words_.exact_path_mm > 0)) {
       std::string takers;
       for (const Control* c : all())
@@ -59,21 +59,21 @@ class Judge {
   }
 
   void tcp() {
-    if (machine_.tcp == TcpMode::none) return;
-    const PostSettings& post = machine_.post;
+    if (machine_.tcp == machines::TcpMode::none) return;
+    const machines::PostSettings& post = machine_.post;
     const bool on = !post.tcp_on.empty() || !words_.tcp_on.empty(), off = !post.tcp_off.empty() || !words_.tcp_off.empty();
     if (words_.tcp_codes_of_site && !(on && off))
       refuse("tcp", "tcp with dialect \"{}\" needs post.tcp_on and post.tcp_off: its codes are site data", words_.name);
     else if (!(on && off))
       refuse("tcp", "dialect \"{}\" has no TCP: tcp = \"none\" (joint output) is supported", words_.name);
-    else if (machine_.tcp == TcpMode::vectors && words_.vector_words[0].empty())
+    else if (machine_.tcp == machines::TcpMode::vectors && words_.vector_words[0].empty())
       refuse("tcp", "dialect \"{}\" has no tool vectors: tcp = \"none\" and \"angles\" are supported", words_.name);
   }
 
   void rollover() {
-    if (words_.rollover.way != NcRollover::Way::none || words_.write != nullptr) return;
+    if (words_.rollover.way != text::NcRollover::Way::none || words_.write != nullptr) return;
     for (std::size_t k = 0; k < machine_.chain.rotary_count(); ++k)
-      if (const RotaryAxis& axis = machine_.chain.rotary(k); axis.rollover)
+      if (const machines::RotaryAxis& axis = machine_.chain.rotary(k); axis.rollover)
         refuse(fmt::format("axes.{}.rollover", axis.letter), "axes.{}.rollover: dialect \"{}\" has no words for an axis that rolls over", axis.letter, words_.name);
   }
 
@@ -83,7 +83,7 @@ class Judge {
     if (n < 0) return fmt::format("\"{}\" is no M word such as M7", word);
     for (const auto& [first, last] : words_.own_m)
       if (n >= first && n <= last) return fmt::format("{} means something else to dialect \"{}\"", word, words_.name);
-    const PostSettings& post = machine_.post;
+    const machines::PostSettings& post = machine_.post;
     for (const auto* codes : {&post.tcp_on, &post.tcp_off, &post.smoothing_on, &post.smoothing_off})
       if (std::find(codes->begin(), codes->end(), word) != codes->end()) return fmt::format("{} is a code of TCP or smoothing in this file", word);
     return std::nullopt;
@@ -108,26 +108,26 @@ class Judge {
     }
   }
 
-  const Machine& machine_;
-  const NcDialect& words_;
+  const machines::Machine& machine_;
+  const text::NcDialect& words_;
   std::vector<Diagnostic> errors_;
 };
 
 }  // namespace
 
-std::vector<Diagnostic> judge(const Machine& machine) {
+std::vector<Diagnostic> judge(const machines::Machine& machine) {
   if (const Control* control = find(machine.dialect)) return Judge(machine, control->words).errors();
   return {fail_at(machine.where("dialect"), "dialect = \"{}\" is not one of {}", machine.dialect, list_of_names())};
 }
 
-MachineReading read_machine(const std::string& path) { return read_machine_file(path, judge); }
+machines::MachineReading read_machine(const std::string& path) { return machines::read_machine_file(path, judge); }
 
-MachineReading read_machine_of_text(std::string_view text, const std::string& file) { return read_machine_text(text, file, judge); }
+machines::MachineReading read_machine_of_text(std::string_view text, const std::string& file) { return machines::read_machine_text(text, file, judge); }
 
-Result<NcDialect> dialect_of(const Machine& machine) {
+Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
   if (auto errors = judge(machine); !errors.empty()) return std::move(errors.front());
-  NcDialect d = find(machine.dialect)->words;
-  const PostSettings& post = machine.post;
+  text::NcDialect d = find(machine.dialect)->words;
+  const machines::PostSettings& post = machine.post;
   d.format.linear_decimals = post.linear_decimals.value_or(d.format.linear_decimals);
   d.format.rotary_decimals = post.rotary_decimals.value_or(d.format.rotary_decimals);
   if (d.exact_path_mm > 0) d.exact_path_mm = machine.exact_corner_mm();
@@ -150,24 +150,25 @@ Result<NcDialect> dialect_of(const Machine& machine) {
   return d;
 }
 
-AxisOptions axis_options(const NcDialect& words, const Machine& machine) {
-  AxisOptions options;
+joints::AxisOptions axis_options(const text::NcDialect& words, const machines::Machine& machine) {
+  joints::AxisOptions options;
   options.format = words.format;
   options.max_inverse_time = words.max_inverse_time;
-  options.loop_needs_constant_index = words.loop.form == NcLoop::Form::stretches || !words.loop.index_line.empty();
-  options.expand_teeth = !machine.post.index_loop.value_or(true) || words.loop.form == NcLoop::Form::none;
+  options.loop_needs_constant_index = words.loop.form == text::NcLoop::Form::stretches || !words.loop.index_line.empty();
+  options.expand_teeth = !machine.post.index_loop.value_or(true) || words.loop.form == text::NcLoop::Form::none;
   options.tcp_starts_at_zero = words.tcp_starts_at_zero;
   options.tcp_loop = !words.loop.frame_on.empty();
   return options;
 }
 
-Result<NcControl> control_of(const Machine& machine, const Setup& setup, std::span<const ToolAssembly> tools) {
+Result<readback::NcControl> control_of(const machines::Machine& machine, const joints::Setup& setup, std::span<const tool::ToolAssembly> tools) {
   const Control* control = find(machine.dialect);
   if (control == nullptr) return fail("dialect \"{}\" cannot be read back: {} can", machine.dialect, list_of_names());
-  NcControl c;
+  readback::NcControl c;
   c.execute = control->execute;
+  c.cutter_locations = control->cutter_locations;
   c.rotary_rounding_deg = 0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(control->words.format.rotary_decimals));
-  if (machine.tcp != TcpMode::none) c.chain = machine.chain;
+  if (machine.tcp != machines::TcpMode::none) c.chain = machine.chain;
   c.top_mm = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
   c.exact_path_mm = machine.exact_corner_mm();
   c.tcp_on = machine.post.tcp_on;
@@ -190,7 +191,7 @@ Result<NcControl> control_of(const Machine& machine, const Setup& setup, std::sp
   return c;
 }
 
-std::optional<std::string> other_work_offsets(const Machine& machine, std::string_view name) {
+std::optional<std::string> other_work_offsets(const machines::Machine& machine, std::string_view name) {
   const Control* control = find(machine.dialect);
   if (control == nullptr) return fmt::format("none that is known: \"{}\" is not one of {}", machine.dialect, list_of_names());
   if (control->offsets.has(name)) return std::nullopt;

@@ -2,7 +2,7 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace toothpath::test {
 namespace {

@@ -1,5 +1,5 @@
 // Every file in tests/bad_jobs is refused with exactly the diagnostic in its first line, exit code 3, and no file is left.
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace toothpath::test {
 namespace {

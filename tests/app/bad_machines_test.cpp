@@ -1,7 +1,7 @@
 // Every bad machine file of tests/machines through the program, as a user meets it: exit code 3, the exact messages with their place,
 // nothing written. `machine show` reads the file by itself; `run` meets it by way of a job.
 #include "postproc/controls/registry.h"
-#include "program.h"
+#include "tests/app/program.h"
 #include "tests/machines/bad_machine_files.h"
 #include "tests/machines/bad_post_keys.h"
 #include "tests/machines/example_files.h"

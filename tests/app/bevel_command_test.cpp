@@ -2,7 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace toothpath::test {
 namespace {

@@ -1,17 +1,17 @@
 // `toothpath check` of a bevel gear with meshes of fixture and stock: planted collisions of every body are found, clean scenes pass.
 #include <gtest/gtest.h>
 
-#include "app/commands/bevel_run.h"
-#include "app/job_file.h"
-#include "cam/finger_milling.h"
+#include "app/process/bevel_run.h"
+#include "app/job/file.h"
+#include "cam/finger/milling.h"
 #include "tests/app/check_scene.h"
 
 namespace toothpath::test {
 namespace {
 
 /// A solid turned about z from a closed outline (r, z), clockwise in that plane.
-TriangleMesh turned(const std::vector<Vec2>& outline, int n = 90) {
-  TriangleMesh mesh;
+mesh::TriangleMesh turned(const std::vector<Vec2>& outline, int n = 90) {
+  mesh::TriangleMesh mesh;
   const auto m = int(outline.size());
   for (int k = 0; k < n; ++k)
     for (const Vec2& q : outline) mesh.vertices.push_back({q.x() * std::cos(2 * M_PI * k / n), q.x() * std::sin(2 * M_PI * k / n), q.y()});
@@ -30,26 +30,26 @@ class BevelScene : public CheckScene {
  protected:
   static void SetUpTestSuite() {
     run_sample("bevel_trunnion.toml");
-    auto read = read_job_file(job_);
-    gear_.emplace(std::get<0>(make_bevel_gear(std::get<0>(read))));
+    auto read = job::read_job_file(job_);
+    gear_.emplace(process::make_bevel_gear(read.value()).value());
   }
   /// (r, z) at a cone distance and a height above the pitch cone.
   static Vec2 place(double ell, double height) {
     return {ell * gear_->sin_delta() + height * gear_->cos_delta(), ell * gear_->cos_delta() - height * gear_->sin_delta()};
   }
   /// The turned blank with its face cone at a height above the pitch cone.
-  static TriangleMesh blank(double height) {
+  static mesh::TriangleMesh blank(double height) {
     const Vec2 front = place(gear_->R_i(), height), back = place(gear_->R_e(), height), foot = place(gear_->R_e(), -4);
     return turned({Vec2(2, front.y()), Vec2(2, foot.y()), foot, back, front});
   }
   /// A cube about a point of the middle of a tooth space, `up` above the root along the tool axis.
-  static TriangleMesh cube(double ell, int tooth, double up, double half) {
+  static mesh::TriangleMesh cube(double ell, int tooth, double up, double half) {
     const auto& trace = gear_->halves().back().walls[0].trace;
     const double e = trace.middle(trace.beta(std::min(ell, gear_->R_e()))).e + tooth * gear_->pitch();
     const Vec3 c = gear_->tip(ell, e, up);
     return box(c - Vec3::Constant(half), c + Vec3::Constant(half));
   }
-  static inline std::optional<BevelGear> gear_;
+  static inline std::optional<bevel_gear::BevelGear> gear_;
 };
 
 TEST_F(BevelScene, WithoutMeshesNothingIsLoaded) { expect_nothing_loaded_without_meshes(); }
@@ -103,7 +103,7 @@ TEST_F(BevelScene, ProfileOfTheCutterOnlyAndOneToothOnly) {
 TEST_F(BevelScene, TheProfileAndNotACylinderIsJudged) {
   // A thin ring over the teeth at the large end, just outside the tapering profile but inside the largest radius: no pass of this
   // program comes nearer than the taper leaves.
-  const FingerSolid solid(gear_->cutter());
+  const bevel_gear::FingerSolid solid(gear_->cutter());
   const double h_f = gear_->parameters().dedendum_mm, low = solid.radius(-h_f + 0.3), wide = solid.largest_radius();
   ASSERT_GT(wide - low, 0.3);
   const double run_out = gear_->R_e() + wide + 1.0;  // the passes end here
@@ -127,7 +127,7 @@ TEST_F(BevelScene, RapidOnly) {
 
 TEST_F(BevelScene, StockInTheWayOfRapidsAndOfTheShank) {
   // A bar along the tool axis, from above the holder of every feed: only rapids come there.
-  TriangleMesh bar = box(Vec3(-1, -1, 75), Vec3(1, 1, 130));
+  mesh::TriangleMesh bar = box(Vec3(-1, -1, 75), Vec3(1, 1, 130));
   const Vec3 u = gear_->axis(0), across = Vec3::UnitY(), along = across.cross(u);
   for (Vec3& v : bar.vertices) v = Vec3(gear_->tip(25.45, 0, 0) + v.x() * along + v.y() * across + v.z() * u);
   EXPECT_EQ(check({"--stock", stl("bar.stl", bar)}).exit_code, 1);

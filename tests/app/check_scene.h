@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "geometry/mesh_file.h"
+#include "geometry/mesh/file.h"
 #include "tests/app/program.h"
-#include "tests/cam/mesh_shapes.h"
+#include "tests/cam/clearance/shapes.h"
 
 namespace toothpath::test {
 
@@ -24,9 +24,9 @@ class CheckScene : public ::testing::Test {
   static void TearDownTestSuite() { dir_.reset(); }
 
   /// The mesh as a file; its path.
-  static std::string stl(const std::string& name, const TriangleMesh& mesh) {
+  static std::string stl(const std::string& name, const mesh::TriangleMesh& mesh) {
     std::ofstream out(*dir_ / name, std::ios::binary);
-    EXPECT_TRUE(write_stl(out, mesh, name));
+    EXPECT_TRUE(mesh::write_stl(out, mesh, name));
     return *dir_ / name;
   }
   /// Checks the program of the sample; its report is in `report_`, empty where there is none.

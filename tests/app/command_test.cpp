@@ -3,7 +3,7 @@
 #include <regex>
 #include <tuple>
 
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace toothpath::test {
 namespace {

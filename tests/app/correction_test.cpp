@@ -3,13 +3,13 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "app/commands/proof.h"
+#include "app/process/proof.h"
 #include "app/commands/run.h"
-#include "app/gear_of_job.h"
-#include "app/job_file.h"
-#include "app/measured_file.h"
-#include "cam/swept_path.h"
-#include "program.h"
+#include "app/process/gear_of_job.h"
+#include "app/job/file.h"
+#include "app/job/measured_file.h"
+#include "cam/analytic/swept_path.h"
+#include "tests/app/program.h"
 #include "postproc/controls/of_machine.h"
 #include "tests/support/inspection_points.h"
 
@@ -39,17 +39,17 @@ double process_error(int side, double x, double y) {
 }
 
 struct Case {
-  Job job;
-  Machine machine;
-  std::optional<FaceGear> gear;
+  job::Job job;
+  machines::Machine machine;
+  std::optional<face_gear::FaceGear> gear;
 };
 Case read_case(const std::string& file) {
   Case c;
-  auto job = read_job_file(file);
-  EXPECT_EQ(job.index(), 0u);
-  c.job = std::get<0>(job);
-  c.gear = std::get<0>(make_face_gear(c.job));
-  c.machine = std::get<0>(load_machine(c.job));
+  auto job = job::read_job_file(file);
+  EXPECT_TRUE(job.has_value());
+  c.job = job.value();
+  c.gear = process::make_face_gear(c.job).value();
+  c.machine = process::load_machine(c.job).value();
   return c;
 }
 
@@ -60,30 +60,30 @@ class CutFlanks {
     const auto control = controls::control_of(c.machine, *c.job.setup, c.job.tools);
     EXPECT_TRUE(control);
     const int teeth = c.gear->parameters().teeth;
-    const auto read = read_back(program, "program.ngc", *control, c.machine, *c.job.setup, {.teeth = teeth, .keep_all = false});
+    const auto read = readback::read_back(program, "program.ngc", *control, c.machine, *c.job.setup, {.teeth = teeth, .keep_all = false});
     EXPECT_TRUE(read) << read.error().text();
     const double R = c.job.tools[0].radius_mm();
-    std::vector<BallMove> moves;
+    std::vector<analytic::BallMove> moves;
     for (const auto& trace : read->operations) {
-      const auto motions = tool_motions(trace, read->copies, *control, c.machine, *c.job.setup, teeth, 1e-5, 1e-5);
+      const auto motions = readback::tool_motions(trace, read->copies, *control, c.machine, *c.job.setup, teeth, 1e-5, 1e-5);
       EXPECT_TRUE(motions);
       for (const auto& m : *motions)
         if (!m.rapid && m.tooth == 0) moves.push_back({m.tip_from + R * m.axis_from, m.tip_to + R * m.axis_to});
     }
     EXPECT_GT(moves.size(), 1000u);
-    swept_ = std::make_unique<SweptPath>(std::move(moves), R);
+    swept_ = std::make_unique<analytic::SweptPath>(std::move(moves), R);
   }
   /// The flank of side -1 that space 0 sees is that of tooth 1.
-  [[nodiscard]] double at(const InspectionPoint& p, double pitch) const {
-    return swept_->excess(p.side > 0 ? p.p : FaceGearSurface<double>::turned(p.p, pitch), 1.0);
+  [[nodiscard]] double at(const inspection::InspectionPoint& p, double pitch) const {
+    return swept_->excess(p.side > 0 ? p.p : face_gear::FaceGearSurface<double>::turned(p.p, pitch), 1.0);
   }
 
  private:
-  std::unique_ptr<SweptPath> swept_;
+  std::unique_ptr<analytic::SweptPath> swept_;
 };
 
-std::string measured_csv(const std::vector<InspectionPoint>& grid, const std::function<double(const InspectionPoint&)>& deviation_mm) {
-  const std::string nominal = inspection_csv(grid);
+std::string measured_csv(const std::vector<inspection::InspectionPoint>& grid, const std::function<double(const inspection::InspectionPoint&)>& deviation_mm) {
+  const std::string nominal = inspection::inspection_csv(grid);
   std::istringstream in(nominal);
   std::string line, out = "zone,flank,row,column,x,y,z,i,j,k,deviation_um\n";
   std::getline(in, line);
@@ -97,22 +97,22 @@ std::string measured_csv(const std::vector<InspectionPoint>& grid, const std::fu
 TEST(Correction, TwentyMicrometresAreGoneAfterOneLoop) {
   const TestDir dir;
   write_file(dir / "job.toml", quick_job());
-  RunRequest request;
+  commands::RunRequest request;
   request.job_file = dir / "job.toml";
   request.out_dir = dir / "first";
   request.quiet = true;
-  const auto first = run_job(request);
-  ASSERT_EQ(first.exit_code, ExitCode::ok) << to_text(first.errors);
+  const auto first = commands::run_job(request);
+  ASSERT_EQ(first.exit_code, app::ExitCode::ok) << to_text(first.errors);
   const Case c = read_case(dir / "job.toml");
   const double pitch = c.gear->pitch();
   const CutFlanks before(c, file_text(dir / "first/program.ngc"));
 
   const auto grid = grid_of(*c.gear, 5, 9);
-  const auto share = [](const InspectionPoint& p, int rows, int columns) {
+  const auto share = [](const inspection::InspectionPoint& p, int rows, int columns) {
     return process_error(p.side, double(p.row) / (rows - 1), double(p.column) / (columns - 1));
   };
   double worst = 0;
-  const std::string csv = measured_csv(grid, [&](const InspectionPoint& p) {
+  const std::string csv = measured_csv(grid, [&](const inspection::InspectionPoint& p) {
     const double d = before.at(p, pitch) + share(p, 5, 9);
     worst = std::max(worst, std::abs(d));
     return d;
@@ -122,8 +122,8 @@ TEST(Correction, TwentyMicrometresAreGoneAfterOneLoop) {
 
   request.out_dir = dir / "second";
   request.measured_files = {dir / "measured.csv"};
-  const auto second = run_job(request);
-  ASSERT_EQ(second.exit_code, ExitCode::ok) << to_text(second.errors);
+  const auto second = commands::run_job(request);
+  ASSERT_EQ(second.exit_code, app::ExitCode::ok) << to_text(second.errors);
   const auto report = nlohmann::json::parse(second.report_json);
   EXPECT_TRUE(report["verified"]);
   EXPECT_EQ(report["command"], "correct");
@@ -150,8 +150,8 @@ TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
   write_file(dir / "job.toml", quick_job());
   const Case c = read_case(dir / "job.toml");
   const auto grid = grid_of(*c.gear, 5, 9);
-  const std::string good = measured_csv(grid, [](const InspectionPoint& p) { return process_error(p.side, p.row / 4.0, p.column / 8.0); });
-  ASSERT_TRUE(parse_measured(good, "m.csv", *c.gear));
+  const std::string good = measured_csv(grid, [](const inspection::InspectionPoint& p) { return process_error(p.side, p.row / 4.0, p.column / 8.0); });
+  ASSERT_TRUE(job::parse_measured(good, "m.csv", *c.gear));
   const auto lines = [&] {
     std::vector<std::string> out;
     std::istringstream in(good);
@@ -164,9 +164,9 @@ TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
     return out;
   };
   const auto scaled = [&](double place, double deviation) {
-    std::vector<InspectionPoint> other = grid;
+    std::vector<inspection::InspectionPoint> other = grid;
     for (auto& p : other) p.p *= place;
-    return measured_csv(other, [&](const InspectionPoint& p) { return deviation * process_error(p.side, p.row / 4.0, p.column / 8.0); });
+    return measured_csv(other, [&](const inspection::InspectionPoint& p) { return deviation * process_error(p.side, p.row / 4.0, p.column / 8.0); });
   };
   const auto edited = [&](const std::function<void(std::vector<std::string>&)>& edit) {
     auto copy = lines;
@@ -178,7 +178,7 @@ TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
   };
   const std::vector<Wrong> cases = {
       {"", "m.csv:1:1: error: no measured point; one line for each point of inspection.csv is needed"},
-      {inspection_csv(grid),
+      {inspection::inspection_csv(grid),
        "m.csv:1:1: error: the header is \"zone,flank,row,column,x,y,z,i,j,k\", must be \"zone,flank,row,column,x,y,z,i,j,k,deviation_um\""},
       {scaled(1 / 25.4, 1), "m.csv:2:9: error: x, y, z are those of the inspection grid, but 25.4 times too small: in inch; mm are needed"},
       {scaled(25.4, 1), "m.csv:2:9: error: x, y, z are those of the inspection grid, but 25.4 times too large: an inch file was multiplied twice; mm are needed"},
@@ -198,7 +198,7 @@ TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
        "m.csv:6:9: error: zone 0, flank 1, row 0, column 4 lies"},
   };
   for (const auto& wrong : cases) {
-    const auto read = parse_measured(wrong.text, "m.csv", *c.gear);
+    const auto read = job::parse_measured(wrong.text, "m.csv", *c.gear);
     ASSERT_FALSE(read) << wrong.message;
     EXPECT_NE(read.error().text().find(wrong.message), std::string::npos) << read.error().text();
   }

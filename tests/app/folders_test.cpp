@@ -10,7 +10,7 @@
 #include <set>
 #include <sstream>
 
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace toothpath::test {
 namespace {
@@ -59,13 +59,22 @@ bool stands_for(const std::string& entry, const fs::path& file) {
   return entry == whole || entry == stem;
 }
 
+/// Folders whose README has a table of files.
+std::vector<std::string> folders_with_tables() {
+  std::vector<std::string> out = {"samples"};
+  for (const char* top : {"geometry", "cam", "machines", "postproc", "app"}) {
+    out.push_back(top);
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / top))
+      if (entry.is_directory() && fs::exists(entry.path() / "README.md")) out.push_back(fs::relative(entry.path(), kRoot).generic_string());
+  }
+  return out;
+}
+
 TEST(Folders, TablesListEveryFileAndNoOther) {
-  for (const char* folder :
-       {"geometry", "cam", "cam/tool", "cam/line", "machines", "machines/toml", "postproc", "postproc/controls", "app", "samples"}) {
+  for (const std::string& folder : folders_with_tables()) {
     const auto entries = listed_in(kRoot / folder / "README.md");
     EXPECT_FALSE(entries.empty()) << folder;
     const auto files = sources_of(kRoot / folder);
-    EXPECT_FALSE(files.empty()) << folder;
     for (const auto& file : files)
       EXPECT_TRUE(std::any_of(entries.begin(), entries.end(), [&](const std::string& e) { return stands_for(e, file); }))
           << folder << "/README.md lacks " << file;
@@ -75,29 +84,77 @@ TEST(Folders, TablesListEveryFileAndNoOther) {
   }
 }
 
-TEST(Folders, IncludeOnlyWhatLiesBelow) {
-  const std::map<std::string, std::vector<std::string>> allowed = {{"geometry", {"geometry/"}},
-                                                                   {"cam", {"cam/", "geometry/"}},
-                                                                   {"machines", {"machines/", "geometry/base/"}},
-                                                                   {"postproc", {"postproc/", "cam/", "machines/", "geometry/"}},
-                                                                   {"app", {"app/", "postproc/", "cam/", "machines/", "geometry/"}}};
+/// The room of a file: its folder; every control stands in the room of the controls.
+std::string room_of(const fs::path& file) {
+  const std::string folder = file.parent_path().generic_string();
+  return folder.starts_with("postproc/controls") ? "postproc/controls" : folder;
+}
+
+/// docs/rooms.md: room -> rooms that it may include.
+std::map<std::string, std::set<std::string>> edges_of_the_plan() {
+  std::map<std::string, std::set<std::string>> out;
+  std::istringstream in(file_text((kRoot / "docs/rooms.md").string()));
+  const std::regex quoted("`([^`]+)`");
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with("| `")) continue;
+    std::vector<std::string> names;
+    for (auto it = std::sregex_iterator(line.begin(), line.end(), quoted); it != std::sregex_iterator(); ++it) names.push_back((*it)[1]);
+    out[names.front()] = {names.begin() + 1, names.end()};
+  }
+  return out;
+}
+
+TEST(Folders, RoomsIncludeOnlyWhatThePlanSays) {
+  const auto plan = edges_of_the_plan();
+  ASSERT_GT(plan.size(), 25u);
+  std::map<std::string, std::set<std::string>> used;
   const std::regex include("#include \"([^\"]+)\"");
-  for (const auto& [folder, below] : allowed) {
-    int seen = 0;
-    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder)) {
+  for (const char* top : {"geometry", "cam", "machines", "postproc", "app"})
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / top)) {
       if (!is_source(entry.path())) continue;
+      const std::string room = room_of(fs::relative(entry.path(), kRoot));
+      ASSERT_TRUE(plan.contains(room)) << "docs/rooms.md lacks " << room;
+      used[room];
       std::istringstream in(file_text(entry.path().string()));
       std::smatch match;
       for (std::string line; std::getline(in, line);) {
         if (!std::regex_match(line, match, include)) continue;
-        ++seen;
-        const std::string included = match[1];
-        EXPECT_TRUE(std::any_of(below.begin(), below.end(), [&](const std::string& b) { return included.starts_with(b); }))
-            << entry.path() << " includes " << included;
+        const std::string other = room_of(fs::path(match[1].str()));
+        if (other == room) continue;
+        used[room].insert(other);
+        EXPECT_TRUE(plan.at(room).contains(other)) << entry.path() << " includes " << match[1];
       }
     }
-    EXPECT_GT(seen, 10) << folder;
+  EXPECT_EQ(used, plan) << "docs/rooms.md names rooms or edges that are not there";
+}
+
+TEST(Folders, NoRoomBelowAppIsInACircle) {
+  const auto plan = edges_of_the_plan();
+  for (const auto& [room, first] : plan) {
+    if (room.starts_with("app")) continue;
+    std::set<std::string> reached;
+    std::vector<std::string> open(first.begin(), first.end());
+    while (!open.empty()) {
+      const std::string next = open.back();
+      open.pop_back();
+      EXPECT_FALSE(next.starts_with("app")) << room << " reaches " << next;
+      if (!reached.insert(next).second) continue;
+      const auto& more = plan.at(next);
+      open.insert(open.end(), more.begin(), more.end());
+    }
+    EXPECT_FALSE(reached.contains(room)) << room;
   }
+}
+
+TEST(Folders, ARoomIsANamespace) {
+  for (const char* top : {"geometry", "cam", "machines", "postproc", "app"})
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / top)) {
+      if (!is_source(entry.path())) continue;
+      const std::string room = room_of(fs::relative(entry.path(), kRoot)), name = fs::path(room).filename().string(), text = file_text(entry.path().string());
+      if (text.find("namespace toothpath") == std::string::npos || room == "app" || room == "app/base") continue;
+      const std::string wanted = room == "geometry/base" ? "namespace toothpath {" : "namespace toothpath::" + name;
+      EXPECT_NE(text.find(wanted), std::string::npos) << entry.path() << " is not in " << wanted;
+    }
 }
 
 }  // namespace

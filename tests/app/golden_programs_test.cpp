@@ -8,21 +8,21 @@
 #include <filesystem>
 #include <sstream>
 
-#include "app/commands/bevel_files.h"
-#include "app/commands/bevel_proof.h"
-#include "app/commands/bevel_run.h"
-#include "app/commands/proof.h"
+#include "app/process/bevel_files.h"
+#include "app/process/bevel_proof.h"
+#include "app/process/bevel_run.h"
+#include "app/process/proof.h"
 #include "app/commands/shaper.h"
-#include "app/gear_of_job.h"
-#include "app/job_file.h"
-#include "cam/finger_check.h"
-#include "cam/finger_milling.h"
-#include "cam/plan.h"
+#include "app/process/gear_of_job.h"
+#include "app/job/file.h"
+#include "cam/finger/check.h"
+#include "cam/finger/milling.h"
+#include "cam/ball/plan.h"
 #include "postproc/controls/of_machine.h"
-#include "postproc/nc_reader.h"
-#include "postproc/nc_writer.h"
-#include "postproc/shaper_gearbox_program.h"
-#include "postproc/shaper_program.h"
+#include "postproc/readback/reader.h"
+#include "postproc/text/writer.h"
+#include "postproc/shaper/gearbox_program.h"
+#include "postproc/shaper/program.h"
 #include "tests/support/files.h"
 
 namespace toothpath {
@@ -47,27 +47,27 @@ void PrintTo(const Coarse& c, std::ostream* out) { *out << c.sample; }
 struct Form {
   const char* file;
   const char* dialect;
-  TcpMode tcp;
+  machines::TcpMode tcp;
 };
-constexpr Form kForms[] = {{"linuxcnc.ngc", "linuxcnc", TcpMode::none},        {"fanuc.nc", "fanuc", TcpMode::none},
-                           {"fanuc_tcp.nc", "fanuc", TcpMode::angles},         {"siemens.mpf", "siemens", TcpMode::angles},
-                           {"heidenhain.h", "heidenhain", TcpMode::angles},    {"cutter_location.apt", "apt", TcpMode::vectors},
-                           {"mitsubishi_m80.nc", "mitsubishi_m80", TcpMode::none}};
+constexpr Form kForms[] = {{"linuxcnc.ngc", "linuxcnc", machines::TcpMode::none},        {"fanuc.nc", "fanuc", machines::TcpMode::none},
+                           {"fanuc_tcp.nc", "fanuc", machines::TcpMode::angles},         {"siemens.mpf", "siemens", machines::TcpMode::angles},
+                           {"heidenhain.h", "heidenhain", machines::TcpMode::angles},    {"cutter_location.apt", "apt", machines::TcpMode::vectors},
+                           {"mitsubishi_m80.nc", "mitsubishi_m80", machines::TcpMode::none}};
 
-Job job_of(const std::string& sample) {
-  auto read = read_job_file(std::string(TOOTHPATH_SOURCE_DIR) + "/samples/" + sample + ".toml");
-  if (const auto* errors = std::get_if<1>(&read)) {
+job::Job job_of(const std::string& sample) {
+  auto read = job::read_job_file(std::string(TOOTHPATH_SOURCE_DIR) + "/samples/" + sample + ".toml");
+  if (const auto* errors = read.refused()) {
     ADD_FAILURE() << errors->front().text();
     return {};
   }
-  return std::move(std::get<0>(read));
+  return std::move(read).value();
 }
 
-Job coarse_job(const Coarse& c) {
-  Job job = job_of(c.sample);
-  std::vector<MillingOperation> kept;
+job::Job coarse_job(const Coarse& c) {
+  job::Job job = job_of(c.sample);
+  std::vector<path::MillingOperation> kept;
   for (const std::size_t i : c.operations) {
-    MillingOperation o = job.operations.at(i);
+    path::MillingOperation o = job.operations.at(i);
     o.step_down_mm = c.step_down;
     o.step_over_mm = c.step_over;
     o.scallop_mm = c.scallop;
@@ -82,65 +82,65 @@ Job coarse_job(const Coarse& c) {
 
 /// A gear's checked paths, and what the post needs beside them.
 struct Planned {
-  std::vector<CheckedClPath> checked;
-  std::vector<ClPath> paths;
-  ClearanceBody body;
+  std::vector<proof::CheckedClPath> checked;
+  std::vector<path::ClPath> paths;
+  joints::ClearanceBody body;
   int teeth = 0;
   std::string error;
 };
 
-Planned plan_face(const Job& job) {
+Planned plan_face(const job::Job& job) {
   Planned out;
-  auto made = make_face_gear(job);
-  if (const auto* errors = std::get_if<1>(&made)) return out.error = errors->front().text(), out;
-  const FaceGear& gear = std::get<0>(made);
-  const GearDistance part(gear, reach_of(job.tools));
-  PlanOptions options;
+  auto made = process::make_face_gear(job);
+  if (const auto* errors = made.refused()) return out.error = errors->front().text(), out;
+  const face_gear::FaceGear& gear = made.value();
+  const analytic::GearDistance part(gear, ball::reach_of(job.tools));
+  ball::PlanOptions options;
   if (job.verify.clearance_mm) options.clearance_mm = *job.verify.clearance_mm;
   options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
-  auto planned = plan_face_gear(part, job.tools, job.operations, options);
-  if (const auto* refusal = std::get_if<PlanRefusal>(&planned)) return out.error = refusal->diagnostic.message, out;
-  out.paths = std::get<FaceGearPlan>(planned).paths;
-  GougeCheckOptions check;
+  auto planned = ball::plan_face_gear(part, job.tools, job.operations, options);
+  if (const auto* refusal = planned.refused()) return out.error = refusal->diagnostic.message, out;
+  out.paths = planned.value().paths;
+  analytic::GougeCheckOptions check;
   check.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
   check.proof_mm = 0.1 * check.gouge_tolerance_mm;
   check.clearance_mm = options.clearance_mm;
   check.rapid_height_mm = gear.blank_top();
-  const GougeCheck gouge(part, job.tools, check);
+  const analytic::GougeCheck gouge(part, job.tools, check);
   for (const auto& path : out.paths) {
     auto passed = gouge.check_path(path);
     if (!passed) return out.error = passed.error().message, out;
     out.checked.push_back(std::move(*passed));
   }
-  out.body = clearance_body(gear);
+  out.body = process::clearance_body(gear);
   out.teeth = gear.parameters().teeth;
   return out;
 }
 
-Planned plan_bevel(const Job& job) {
+Planned plan_bevel(const job::Job& job) {
   Planned out;
-  auto made = make_bevel_gear(job);
-  if (const auto* errors = std::get_if<1>(&made)) return out.error = errors->front().text(), out;
-  const BevelGear& gear = std::get<0>(made);
-  const Tolerances tolerances = proof_tolerances(job);
-  const FingerGougeCheck gouge(gear, job.tools, job.operations, tolerances);
+  auto made = process::make_bevel_gear(job);
+  if (const auto* errors = made.refused()) return out.error = errors->front().text(), out;
+  const bevel_gear::BevelGear& gear = made.value();
+  const Tolerances tolerances = process::proof_tolerances(job);
+  const finger::FingerGougeCheck gouge(gear, job.tools, job.operations, tolerances);
   for (std::size_t i = 0; i < job.operations.size(); ++i) {
     const auto& o = job.operations[i];
-    auto plan = plan_finger_operation(gear, job.tools[static_cast<std::size_t>(o.tool)], o, static_cast<int>(i), tolerances);
+    auto plan = finger::plan_finger_operation(gear, job.tools[static_cast<std::size_t>(o.tool)], o, static_cast<int>(i), tolerances);
     if (!plan) return out.error = plan.error().message, out;
     auto passed = gouge.approve(plan->path);
     if (!passed) return out.error = passed.error().message, out;
     out.paths.push_back(plan->path);
     out.checked.push_back(std::move(*passed));
   }
-  out.body = bevel_clearance_body(gear);
+  out.body = process::bevel_clearance_body(gear);
   out.teeth = gear.parameters().teeth;
   return out;
 }
 
 /// The sample's machine as if it had this control.
-Machine machine_with(const Machine& of_sample, const Form& form, int fanuc_decimals) {
-  Machine m = of_sample;
+machines::Machine machine_with(const machines::Machine& of_sample, const Form& form, int fanuc_decimals) {
+  machines::Machine m = of_sample;
   const bool own = m.dialect == form.dialect;
   m.dialect = form.dialect;
   m.tcp = form.tcp;
@@ -152,7 +152,7 @@ Machine machine_with(const Machine& of_sample, const Form& form, int fanuc_decim
     m.post.tcp_on.clear();
     m.post.tcp_off.clear();
   }
-  if (m.dialect == "heidenhain") m.post.coolant[Coolant::mist] = {"M7", "M9"};  // the control has no word of its own
+  if (m.dialect == "heidenhain") m.post.coolant[machines::Coolant::mist] = {"M7", "M9"};  // the control has no word of its own
   return m;
 }
 
@@ -200,30 +200,30 @@ void expect_golden(const fs::path& file, const std::string& text) {
 }
 
 /// The program meets its path: records to the rounding of the words, rapids clear of the blank.
-void expect_round_trip(const std::string& text, const AxisProgram& program, const Planned& planned, const Job& job, const Machine& m) {
+void expect_round_trip(const std::string& text, const joints::AxisProgram& program, const Planned& planned, const job::Job& job, const machines::Machine& m) {
   const auto control = controls::control_of(m, *job.setup, job.tools);
   ASSERT_TRUE(control);
-  const auto back = read_back(text, "p", *control, m, *job.setup, {.teeth = planned.teeth});
+  const auto back = readback::read_back(text, "p", *control, m, *job.setup, {.teeth = planned.teeth});
   ASSERT_TRUE(back) << back.error().text();
   EXPECT_EQ(back->mixed_rapid, 0);
-  std::vector<ToolMotion> motions;
+  std::vector<path::ToolMotion> motions;
   for (const auto& trace : back->operations) {
-    const auto part = tool_motions(trace, back->copies, *control, m, *job.setup, planned.teeth, 1e-4, 1e-4);
+    const auto part = readback::tool_motions(trace, back->copies, *control, m, *job.setup, planned.teeth, 1e-4, 1e-4);
     ASSERT_TRUE(part) << part.error().text();
     motions.insert(motions.end(), part->begin(), part->end());
     if (job.bevel_gear() != nullptr) continue;  // its rapids pass beside the cone, inside that cylinder: judged by the finger check
-    const auto clear = check_rapids(trace, *control, m, *job.setup, planned.body);
+    const auto clear = readback::check_rapids(trace, *control, m, *job.setup, planned.body);
     EXPECT_TRUE(clear) << (clear ? "" : clear.error().message);
   }
   if (job.bevel_gear() == nullptr)
     for (const auto& stretch : back->between) {
-      const auto clear = check_rapids(stretch, *control, m, *job.setup, planned.body);
+      const auto clear = readback::check_rapids_outside(stretch, *control, m, *job.setup, planned.body, job.tools);
       EXPECT_TRUE(clear) << (clear ? "" : clear.error().message);
     }
-  std::vector<const ClPath*> list;
+  std::vector<const path::ClPath*> list;
   for (const auto& p : planned.paths) list.push_back(&p);
   const double bound = program.rounding_bound_mm + program.chord_bound_mm;
-  const auto met = compare_with_cl(motions, list, bound + 2e-4, program.axis_bound_rad + 2e-3);
+  const auto met = readback::compare_with_cl(motions, list, bound + 2e-4, program.axis_bound_rad + 2e-3);
   EXPECT_TRUE(met.complete) << met.message;
   EXPECT_LE(met.worst_mm, program.rounding_bound_mm + 1e-6);
   EXPECT_LT(met.fastest_ratio, 1.05);
@@ -239,28 +239,28 @@ INSTANTIATE_TEST_SUITE_P(Samples, GoldenPrograms,
 
 TEST_P(GoldenPrograms, ByteForByteAndOnTheirPath) {
   const Coarse& c = GetParam();
-  const Job job = coarse_job(c);
+  const job::Job job = coarse_job(c);
   ASSERT_TRUE(job.setup);
   const Planned planned = job.bevel_gear() != nullptr ? plan_bevel(job) : plan_face(job);
   ASSERT_EQ(planned.error, "");
-  auto loaded = load_machine(job);
-  ASSERT_EQ(loaded.index(), 0u) << std::get<1>(loaded).front().text();
+  auto loaded = process::load_machine(job);
+  ASSERT_TRUE(loaded.has_value()) << loaded.error().front().text();
   for (const Form& form : kForms) {
     SCOPED_TRACE(form.file);
-    const Machine m = machine_with(std::get<0>(loaded), form, c.fanuc_decimals);
+    const machines::Machine m = machine_with(loaded.value(), form, c.fanuc_decimals);
     const auto dialect = controls::dialect_of(m);
     ASSERT_TRUE(dialect) << dialect.error().message;
-    const auto program = build_axis_program(planned.checked, job.tools, *job.setup, m, planned.teeth, planned.body, controls::axis_options(*dialect, m));
+    const auto program = joints::build_axis_program(planned.checked, job.tools, *job.setup, m, planned.teeth, planned.body, controls::axis_options(*dialect, m));
     if (!program) {  // the control cannot do it: why, word for word
       expect_golden(kGolden / c.sample / (std::string(form.file) + ".refused"), program.error().message + "\n");
       continue;
     }
-    NcHeader header;
+    text::NcHeader header;
     header.job_name = job.name + ", coarse";
     header.machine_name = m.name;
     if (m.assumed) header.assumed = m.assumed_keys;
     header.coolant = job.coolant;
-    const auto text = write_nc(*program, *dialect, header);
+    const auto text = text::write_nc(*program, *dialect, header);
     ASSERT_TRUE(text) << text.error().message;
     expect_golden(kGolden / c.sample / form.file, folded(text->text));
     expect_round_trip(text->text, *program, planned, job, m);
@@ -269,18 +269,18 @@ TEST_P(GoldenPrograms, ByteForByteAndOnTheirPath) {
 
 // The shaped gear on its three shapers.
 TEST(GoldenShaper, ByteForByte) {
-  Job job = job_of("offset_shaped");
-  auto made = make_face_gear(job);
-  ASSERT_EQ(made.index(), 0u);
+  job::Job job = job_of("offset_shaped");
+  auto made = process::make_face_gear(job);
+  ASSERT_TRUE(made.has_value());
   const std::pair<const char*, const char*> files[] = {
       {"y514.toml", "strokes.ngc"}, {"shaper_siemens.toml", "gearbox.mpf"}, {"shaper_fanuc.toml", "gearbox.nc"}};
   for (const auto& [machine, file] : files) {
     SCOPED_TRACE(file);
     job.machine.file = machine;
-    auto planned = shaper_setup_of(job, std::get<0>(made));
-    ASSERT_EQ(planned.index(), 0u) << std::get<1>(planned).front().text();
-    const ShaperSetup& setup = std::get<0>(planned);
-    expect_golden(kGolden / "offset_shaped" / file, folded(setup.machine.gearbox ? shaper_gearbox_text(setup) : shaper_program_text(setup)));
+    auto planned = commands::shaper_setup_of(job, made.value());
+    ASSERT_TRUE(planned.has_value()) << planned.error().front().text();
+    const shaper::ShaperSetup& setup = planned.value();
+    expect_golden(kGolden / "offset_shaped" / file, folded(setup.machine.gearbox ? shaper::shaper_gearbox_text(setup) : shaper::shaper_program_text(setup)));
   }
 }
 

@@ -1,5 +1,5 @@
 // The job reader: every sample is read with the numbers that it states, and nothing that is wrong is read at all.
-#include "app/job_file.h"
+#include "app/job/file.h"
 
 #include <gtest/gtest.h>
 
@@ -15,18 +15,18 @@ namespace {
 
 const std::string kSamples = TOOTHPATH_SOURCE_DIR "/samples";
 
-Job read(const std::string& name) {
-  auto result = read_job_file(kSamples + "/" + name);
-  if (auto* errors = std::get_if<1>(&result)) {
+job::Job read(const std::string& name) {
+  auto result = job::read_job_file(kSamples + "/" + name);
+  if (auto* errors = result.refused()) {
     ADD_FAILURE() << to_text(*errors);
     return {};
   }
-  return std::get<0>(std::move(result));
+  return std::move(result).value();
 }
 
 std::vector<Diagnostic> errors_of(const std::string& text) {
-  auto result = parse_job(text, "job.toml");
-  if (auto* errors = std::get_if<1>(&result)) return *errors;
+  auto result = job::parse_job(text, "job.toml");
+  if (auto* errors = result.refused()) return *errors;
   return {};
 }
 
@@ -34,20 +34,20 @@ TEST(JobFile, EverySampleIsRead) {
   int count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(kSamples)) {
     if (entry.path().extension() != ".toml") continue;
-    const auto result = read_job_file(entry.path().string());
-    EXPECT_EQ(result.index(), 0u) << to_text(std::get_if<1>(&result) ? std::get<1>(result) : std::vector<Diagnostic>{});
+    const auto result = job::read_job_file(entry.path().string());
+    EXPECT_TRUE(result.has_value()) << to_text(result.refused() ? result.error() : std::vector<Diagnostic>{});
     ++count;
   }
   EXPECT_GE(count, 5);
 }
 
 TEST(JobFile, NumbersAreThoseOfTheFile) {
-  const Job job = read("dhfg_paper.toml");
+  const job::Job job = read("dhfg_paper.toml");
   const auto* gear = job.face_gear();
   ASSERT_NE(gear, nullptr);
   EXPECT_EQ(gear->teeth, 180);
   EXPECT_EQ(gear->shaper_teeth, 30);
-  EXPECT_EQ(gear->module_plane, ModulePlane::transverse);
+  EXPECT_EQ(gear->module_plane, face_gear::ModulePlane::transverse);
   EXPECT_EQ(gear->reference_radius_mm, 472.0);
   ASSERT_EQ(gear->zones.size(), 2u);
   EXPECT_EQ(gear->zones[0].helix_angle_rad, radians(-30.0));
@@ -57,19 +57,19 @@ TEST(JobFile, NumbersAreThoseOfTheFile) {
   EXPECT_EQ(job.tools[0].holder.size(), 2u);
   EXPECT_EQ(job.tools[0].holder[1].height_mm, 30.0);
   ASSERT_EQ(job.operations.size(), 4u);
-  EXPECT_EQ(job.operations[3].type, OperationType::finishing);
+  EXPECT_EQ(job.operations[3].type, path::OperationType::finishing);
   EXPECT_EQ(job.operations[3].tool, 1);
   EXPECT_EQ(job.operations[3].chord_tolerance_mm, 0.001);
   EXPECT_TRUE(job.setup->axis_up);
   EXPECT_EQ(job.setup->origin_mm, Vec3(3, -2, 150));
-  EXPECT_EQ(job.coolant, Coolant::flood);
+  EXPECT_EQ(job.coolant, machines::Coolant::flood);
 }
 
 TEST(JobFile, ShapingIsRead) {
-  const Job job = read("offset_shaped.toml");
+  const job::Job job = read("offset_shaped.toml");
   ASSERT_TRUE(job.shaping.has_value());
   EXPECT_EQ(job.shaping->cutting_speed_m_min, 20.0);
-  EXPECT_EQ(job.shaping->offset_reference, Shaping::OffsetReference::outer_radius);
+  EXPECT_EQ(job.shaping->offset_reference, shaper::Shaping::OffsetReference::outer_radius);
   EXPECT_TRUE(job.machine.accept_assumed);
   EXPECT_EQ(job.face_gear()->offset_mm, 15.0);
 }
@@ -92,16 +92,16 @@ relief_half_width = 3.2
 addendum = 4.1
 dedendum = 5.1
 )";
-  const auto result = parse_job(text, "b.toml");
-  ASSERT_EQ(result.index(), 0u) << to_text(std::get<1>(result));
-  const auto* gear = std::get<0>(result).bevel_gear();
+  const auto result = job::parse_job(text, "b.toml");
+  ASSERT_TRUE(result.has_value()) << to_text(result.error());
+  const auto* gear = result.value().bevel_gear();
   ASSERT_NE(gear, nullptr);
   EXPECT_EQ(gear->hand, -1);
   EXPECT_NEAR(std::tan(gear->pitch_angle_rad), 18.0 / 37.0, 1e-15);  // shaft angle 90 deg: tan delta = z1 / z2
 }
 
 TEST(JobFile, KeysKeepTheirPlace) {
-  const Job job = read("dhfg_paper.toml");
+  const job::Job job = read("dhfg_paper.toml");
   const std::string text = file_text(kSamples + "/dhfg_paper.toml");
   std::istringstream lines(text);
   std::string line;
@@ -133,9 +133,9 @@ TEST(JobFile, EveryFindingIsReportedInTheOrderOfTheFile) {
 }
 
 TEST(JobFile, NegativeZeroIsZero) {
-  const auto result = parse_job(replaced(file_text(kSamples + "/spur_quick.toml"), "helix_angle = 0.0", "helix_angle = -0.0"), "j.toml");
-  ASSERT_EQ(result.index(), 0u);
-  EXPECT_FALSE(std::signbit(std::get<0>(result).face_gear()->zones[0].helix_angle_rad));
+  const auto result = job::parse_job(replaced(file_text(kSamples + "/spur_quick.toml"), "helix_angle = 0.0", "helix_angle = -0.0"), "j.toml");
+  ASSERT_TRUE(result.has_value());
+  EXPECT_FALSE(std::signbit(result.value().face_gear()->zones[0].helix_angle_rad));
 }
 
 TEST(JobFile, LineEndsAndByteOrderMarkDoNotMatter) {
@@ -172,8 +172,8 @@ TEST(JobFile, ResourceBombsAreRefused) {
 
 TEST(JobFile, FilesThatAreNoFilesAreRefused) {
   for (const char* path : {"/dev/zero", "/dev/null", "/", "/nonexistent/job.toml"}) {
-    const auto result = read_job_file(path);
-    ASSERT_EQ(result.index(), 1u) << path;
+    const auto result = job::read_job_file(path);
+    ASSERT_FALSE(result.has_value()) << path;
   }
 }
 
@@ -182,8 +182,8 @@ TEST(JobFile, DamagedTextGivesAJobOrFindings) {
   const std::string text = file_text(kSamples + "/dhfg_paper.toml");
   std::mt19937 random(42);
   for (int i = 0; i < 3000; ++i) {
-    const auto result = parse_job(damaged(text, random, 1, "0123456789.-=[]\"\n"), "d.toml");
-    if (const auto* errors = std::get_if<1>(&result)) {
+    const auto result = job::parse_job(damaged(text, random, 1, "0123456789.-=[]\"\n"), "d.toml");
+    if (const auto* errors = result.refused()) {
       ASSERT_FALSE(errors->empty());
       for (const auto& error : *errors) ASSERT_EQ(error.text().find('\n'), std::string::npos);
     }

@@ -16,11 +16,11 @@ class Ledger : public testing::TestWithParam<const char*> {};
 TEST_P(Ledger, CoversWhatIsMeasured) {
   const auto out = std::filesystem::temp_directory_path() / (std::string("toothpath_ledger_") + GetParam());
   std::filesystem::remove_all(out);
-  RunRequest request;
+  commands::RunRequest request;
   request.job_file = std::string(TOOTHPATH_SOURCE_DIR) + "/samples/" + GetParam() + ".toml";
   request.out_dir = out.string();
   request.quiet = true;
-  const auto outcome = run_job(request);
+  const auto outcome = commands::run_job(request);
   ASSERT_TRUE(outcome.errors.empty()) << outcome.errors.front().message;
   const auto report = nlohmann::json::parse(outcome.report_json);
   std::filesystem::remove_all(out);

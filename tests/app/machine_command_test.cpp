@@ -3,9 +3,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/report/machine_sheet.h"
+#include "app/report/sheet/machine_sheet.h"
 #include "machines/machine_file.h"
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace toothpath::test {
 namespace {
@@ -13,19 +13,19 @@ namespace {
 const std::vector<std::string> kShipped = {"t600s.toml",       "xyzac_large.toml", "xyzac_trt.toml", "xyzbc_trt.toml", "head_table_bc.toml",
                                            "head_head_ca.toml", "fanuc_ac.toml",    "siemens_ac.toml", "heidenhain_ac.toml"};
 
-Machine shipped(const std::string& name) { return *read_machine_file(find_machine_file(name, ".").value()).machine; }
+machines::Machine shipped(const std::string& name) { return *machines::read_machine_file(machines::find_machine_file(name, ".").value()).machine; }
 
 // The words of the table against the motion of a point: 1 degree more of one axis, all others at zero.
 TEST(MachineShow, SensesAreThoseOfTheKinematics) {
   int tables = 0, heads = 0;
   for (const auto& name : kShipped) {
-    const Machine m = shipped(name);
+    const machines::Machine m = shipped(name);
     for (std::size_t k = 0; k < m.chain.rotary_count(); ++k) {
-      const std::string said = positive_turn(m.chain, k);
-      const RotaryAxis& axis = m.chain.rotary(k);
-      Joints zero;
+      const std::string said = sheet::positive_turn(m.chain, k);
+      const machines::RotaryAxis& axis = m.chain.rotary(k);
+      machines::Joints zero;
       for (std::size_t j = 0; j < m.chain.rotary_count(); ++j) zero.rotary_rad[j] = m.chain.rotary(j).zero_rad;
-      Joints turned = zero;
+      machines::Joints turned = zero;
       turned.rotary_rad[k] += radians(1);
       if (m.chain.in_table(k)) {
         ++tables;
@@ -66,8 +66,8 @@ TEST(MachineShow, SensesAreThoseOfTheKinematics) {
 
 TEST(MachineShow, EveryAssumedKeyIsNamed) {
   for (const auto& name : kShipped) {
-    const Machine m = shipped(name);
-    const std::string text = machine_text(m);
+    const machines::Machine m = shipped(name);
+    const std::string text = sheet::machine_text(m);
     EXPECT_NE(text.find(m.assumed_keys.empty() ? "No value is assumed" : std::to_string(m.assumed_keys.size()) + " values are assumed"), std::string::npos);
     for (const auto& key : m.assumed_keys) EXPECT_NE(text.find(key.substr(key.rfind('.') + 1)), std::string::npos) << key;
   }
@@ -93,9 +93,9 @@ TEST(MachineShow, WritesPageAndDrawingOnlyWhereAsked) {
 TEST(MachineList, EveryInstalledMachineHasItsLine) {
   const Finished run = run_program({"machine", "list"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(static_cast<std::size_t>(std::count(run.out.begin(), run.out.end(), '\n')), installed_machines().size() + 1) << run.out;
+  EXPECT_EQ(static_cast<std::size_t>(std::count(run.out.begin(), run.out.end(), '\n')), machines::installed_machines().size() + 1) << run.out;
   for (const auto& name : kShipped) {
-    const Machine m = shipped(name);
+    const machines::Machine m = shipped(name);
     const auto at = run.out.find(name);
     ASSERT_NE(at, std::string::npos) << name;
     const std::string line = run.out.substr(at, run.out.find('\n', at) - at);
@@ -104,7 +104,7 @@ TEST(MachineList, EveryInstalledMachineHasItsLine) {
   }
   const auto json = nlohmann::json::parse(run_program({"machine", "list", "--json"}).out);
   EXPECT_EQ(json["command"], "machine list");
-  EXPECT_EQ(json["report"]["machines"].size(), installed_machines().size());
+  EXPECT_EQ(json["report"]["machines"].size(), machines::installed_machines().size());
   EXPECT_EQ(run_program({"machine", "show", "t600s"}).exit_code, 0) << "without its ending";
   EXPECT_NE(run_program({"machine", "show", "t600"}).err.find("did you mean \"t600s.toml\"?"), std::string::npos);
 }
@@ -127,7 +127,7 @@ TEST(MachineTest, WritesAProvenProgramForEveryShippedMachine) {
 // A page that stands there stays until there is a new one, and the refusal says what stands there.
 TEST(MachineShow, RefusalsLeaveTheOldFiles) {
   const TestDir dir;
-  const std::string machine = dir / "m.toml", good = file_text(find_machine_file("xyzac_trt.toml", ".").value());
+  const std::string machine = dir / "m.toml", good = file_text(machines::find_machine_file("xyzac_trt.toml", ".").value());
   write_file(machine, good);
   ASSERT_EQ(run_program({"machine", "show", machine, "--out", dir / "out"}).exit_code, 0);
   const std::string page = file_text(dir / "out/machine.html");

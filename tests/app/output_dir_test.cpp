@@ -1,17 +1,17 @@
 // The output directory and the hash: all files or none.
-#include "app/output_dir.h"
+#include "app/base/output_dir.h"
 
 #include <sys/stat.h>
 
 #include "geometry/base/hash.h"
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace toothpath::test {
 namespace {
 
 TEST(OutputDir, FilesAppearAtCommitOnly) {
   const TestDir dir;
-  auto output = OutputDir::open(dir / "out", {"a.txt"});
+  auto output = app::OutputDir::open(dir / "out", {"a.txt"});
   ASSERT_TRUE(output.has_value());
   ASSERT_TRUE(output->write("a.txt", "one").has_value());
   EXPECT_FALSE(std::filesystem::exists(dir / "out/a.txt"));
@@ -25,7 +25,7 @@ TEST(OutputDir, FilesAppearAtCommitOnly) {
 TEST(OutputDir, WithoutCommitNothingIsLeftNotEvenTheDirectories) {
   const TestDir dir;
   {
-    auto output = OutputDir::open(dir / "x/y/z", {"a.txt"});
+    auto output = app::OutputDir::open(dir / "x/y/z", {"a.txt"});
     ASSERT_TRUE(output.has_value());
     ASSERT_TRUE(output->write("a.txt", "one").has_value());
   }
@@ -34,7 +34,7 @@ TEST(OutputDir, WithoutCommitNothingIsLeftNotEvenTheDirectories) {
 
 TEST(OutputDir, WhenOneFileCannotGetItsNameNoneDoes) {
   const TestDir dir;
-  auto output = OutputDir::open(dir / "out", {"a.txt", "b.txt"});
+  auto output = app::OutputDir::open(dir / "out", {"a.txt", "b.txt"});
   ASSERT_TRUE(output.has_value());
   ASSERT_TRUE(output->write("a.txt", "one").has_value());
   ASSERT_TRUE(output->write("b.txt", "two").has_value());
@@ -50,7 +50,7 @@ TEST(OutputDir, ASymbolicLinkIsReplacedNotFollowed) {
   std::filesystem::create_directories(dir / "out");
   write_file(dir / "elsewhere", "mine");
   std::filesystem::create_symlink(dir / "elsewhere", dir / "out/a.txt");
-  auto output = OutputDir::open(dir / "out", {});
+  auto output = app::OutputDir::open(dir / "out", {});
   ASSERT_TRUE(output.has_value());
   ASSERT_TRUE(output->write("a.txt", "ours").has_value());
   ASSERT_TRUE(output->commit().has_value());
@@ -62,7 +62,7 @@ TEST(OutputDir, LeftoversOfAKilledRunAreRemoved) {
   const TestDir dir;
   std::filesystem::create_directories(dir / "out");
   write_file(dir / "out/.toothpath-999999999-program.ngc", "half");
-  { const auto output = OutputDir::open(dir / "out", {}); }
+  { const auto output = app::OutputDir::open(dir / "out", {}); }
   EXPECT_TRUE(names_in(dir / "out").empty());
 }
 
@@ -81,9 +81,9 @@ const std::vector<std::string> kRun = {"program.", "report.json", "setup.html"};
 TEST(OutputDir, OpeningChangesNothingAndSaysWhoseResultsStandThere) {
   const TestDir dir;
   const std::string out = finished_run(dir);
-  { const auto output = OutputDir::open(out, kRun, {}, kPrevious); }
+  { const auto output = app::OutputDir::open(out, kRun, {}, app::kPrevious); }
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"my notes.txt", "program.ngc", "report.json"}));
-  const std::string note = OutputDir::closing_note();
+  const std::string note = app::OutputDir::closing_note();
   EXPECT_TRUE(note.starts_with(out + " stays as it was: run \"badname\" of 20")) << note;
   EXPECT_TRUE(note.ends_with(", program.ngc (sha256 0123456789ab)")) << note;
 }
@@ -92,19 +92,19 @@ TEST(OutputDir, EarlierResultsMoveAsideOneGeneration) {
   const TestDir dir;
   const std::string out = finished_run(dir);
   {
-    auto output = OutputDir::open(out, kRun, {}, kPrevious);
+    auto output = app::OutputDir::open(out, kRun, {}, app::kPrevious);
     ASSERT_TRUE(output && output->set_aside());
     EXPECT_EQ(names_in(out), (std::vector<std::string>{".toothpath-lock", "my notes.txt", "previous"})) << "before anything is written";
   }
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"my notes.txt", "previous"})) << "a run that writes nothing puts nothing back";
   EXPECT_EQ(names_in(out + "/previous"), (std::vector<std::string>{"program.ngc", "report.json"}));
-  EXPECT_TRUE(OutputDir::closing_note().starts_with("what stood in " + out + " is in " + out + "/previous: run")) << OutputDir::closing_note();
+  EXPECT_TRUE(app::OutputDir::closing_note().starts_with("what stood in " + out + " is in " + out + "/previous: run")) << app::OutputDir::closing_note();
   {  // nothing stands there: the folder keeps what it has
-    auto output = OutputDir::open(out, kRun, {}, kPrevious);
+    auto output = app::OutputDir::open(out, kRun, {}, app::kPrevious);
     ASSERT_TRUE(output && output->set_aside() && output->write("report.json", "unverified") && output->commit());
   }
   {  // results without a program are none worth keeping in the place of a program
-    auto output = OutputDir::open(out, kRun, {}, kPrevious);
+    auto output = app::OutputDir::open(out, kRun, {}, app::kPrevious);
     ASSERT_TRUE(output && output->set_aside());
     EXPECT_EQ(file_text(out + "/report.json"), "unverified");
     ASSERT_TRUE(output->write("program.nc", "G2") && output->write("setup.html", "sheet") && output->commit());
@@ -112,7 +112,7 @@ TEST(OutputDir, EarlierResultsMoveAsideOneGeneration) {
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"my notes.txt", "previous", "program.nc", "setup.html"})) << "the old report gave way";
   EXPECT_EQ(file_text(out + "/previous/program.ngc"), "G1");
   {
-    auto output = OutputDir::open(out, kRun, {}, kPrevious);
+    auto output = app::OutputDir::open(out, kRun, {}, app::kPrevious);
     ASSERT_TRUE(output && output->set_aside());
   }
   EXPECT_EQ(names_in(out + "/previous"), (std::vector<std::string>{"program.nc", "setup.html"})) << "no mix of two generations";
@@ -125,7 +125,7 @@ TEST(OutputDir, PreviousMustBeAFolderThatCanBeWritten) {
     std::filesystem::create_directories(dir / "elsewhere");
     if (link) std::filesystem::create_directory_symlink(dir / "elsewhere", out + "/previous");
     else write_file(out + "/previous", "mine");
-    const auto output = OutputDir::open(out, kRun, {}, kPrevious);
+    const auto output = app::OutputDir::open(out, kRun, {}, app::kPrevious);
     ASSERT_FALSE(output);
     EXPECT_EQ(output.error().kind, DiagnosticKind::file_access);
     EXPECT_EQ(output.error().position.file, out + "/previous");
@@ -137,23 +137,23 @@ TEST(OutputDir, PreviousMustBeAFolderThatCanBeWritten) {
   const std::string out = finished_run(dir);
   std::filesystem::create_directories(out + "/previous");
   std::filesystem::permissions(out + "/previous", std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
-  EXPECT_FALSE(OutputDir::open(out, kRun, {}, kPrevious));
+  EXPECT_FALSE(app::OutputDir::open(out, kRun, {}, app::kPrevious));
   std::filesystem::permissions(out + "/previous", std::filesystem::perms::owner_all);
 }
 
 TEST(OutputDir, OneRunAtATime) {
   const TestDir dir;
   {
-    const auto first = OutputDir::open(dir / "out", kRun);
+    const auto first = app::OutputDir::open(dir / "out", kRun);
     ASSERT_TRUE(first);
-    const auto second = OutputDir::open(dir / "out", {"other.txt"});
+    const auto second = app::OutputDir::open(dir / "out", {"other.txt"});
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().kind, DiagnosticKind::file_access);
     EXPECT_NE(second.error().message.find("another run"), std::string::npos);
     EXPECT_EQ(names_in(dir / "out"), std::vector<std::string>{".toothpath-lock"});
   }
   write_file(dir / ".toothpath-lock", "");  // left by a run that was killed: nobody holds it
-  EXPECT_TRUE(OutputDir::open(dir.path(), kRun));
+  EXPECT_TRUE(app::OutputDir::open(dir.path(), kRun));
   EXPECT_TRUE(names_in(dir.path()).empty());
 }
 
@@ -164,18 +164,18 @@ TEST(OutputDir, AnInputThatWouldBeReplacedIsRefused) {
   write_file(out + "/previous/report.json", "old");
   std::filesystem::create_symlink(out + "/report.json", dir / "link");
   for (const std::string& input : {out + "/report.json", out + "/../out/program.ngc", dir / "link", out + "/previous/report.json"}) {
-    const auto refused = OutputDir::open(out, kRun, {"missing", input}, kPrevious);
+    const auto refused = app::OutputDir::open(out, kRun, {"missing", input}, app::kPrevious);
     ASSERT_FALSE(refused) << input;
     EXPECT_EQ(refused.error().kind, DiagnosticKind::usage);
     EXPECT_EQ(refused.error().position.file, input);
   }
-  EXPECT_TRUE(OutputDir::open(out, {"report.html"}, {out + "/program.ngc"})) << "not its own";
-  EXPECT_TRUE(OutputDir::open(out, kRun, {out + "/my notes.txt"}));
+  EXPECT_TRUE(app::OutputDir::open(out, {"report.html"}, {out + "/program.ngc"})) << "not its own";
+  EXPECT_TRUE(app::OutputDir::open(out, kRun, {out + "/my notes.txt"}));
 }
 
 TEST(OutputDir, ProgramsGetTheirNamesLast) {
   const TestDir dir;
-  auto output = OutputDir::open(dir / "out", kRun);
+  auto output = app::OutputDir::open(dir / "out", kRun);
   ASSERT_TRUE(output && output->write("program.ngc", "G1") && output->write("report.json", "{}"));
   std::filesystem::create_directories(dir / "out/report.json/occupied");
   ASSERT_FALSE(output->commit());

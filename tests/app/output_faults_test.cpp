@@ -19,7 +19,7 @@
 #include <random>
 #include <sstream>
 
-#include "app/output_dir.h"
+#include "app/base/output_dir.h"
 
 namespace {
 
@@ -139,7 +139,7 @@ const std::vector<std::string> kOwn = {"program.", "report.json", "setup.html"};
 
 /// A run: what an earlier one left moves aside (`aside`) or is replaced, the files are written, the program read back, all named.
 Status session(const std::string& path, int version, bool aside, std::size_t bytes = 30'000) {
-  auto output = OutputDir::open(path, kOwn, {}, "previous");
+  auto output = app::OutputDir::open(path, kOwn, {}, "previous");
   if (!output) return output.error();
   if (aside)
     if (const auto s = output->set_aside(); !s) return s;
@@ -153,7 +153,7 @@ Status session(const std::string& path, int version, bool aside, std::size_t byt
 
 /// The directory is opened and left again: what a run that was killed left is put in order.
 Status opened(const std::string& path) {
-  const auto output = OutputDir::open(path, kOwn, {}, "previous");
+  const auto output = app::OutputDir::open(path, kOwn, {}, "previous");
   return output ? Status(Ok{}) : Status(output.error());
 }
 

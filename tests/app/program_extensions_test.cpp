@@ -1,12 +1,12 @@
-// Every control's program is a program: no command leaves one of an earlier run where a new one may appear.
+// Every control's program is a program: none of an earlier run stays where a new one may appear.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "app/output_dir.h"
+#include "app/base/output_dir.h"
 #include "postproc/controls/registry.h"
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace toothpath::test {
 namespace {
@@ -23,9 +23,14 @@ TEST(ProgramExtensions, OldProgramsOfEveryControlGo) {
     write_file(dir / ("out/program" + extension), "old");
   }
   write_file(dir / "out/program.txt", "mine");
-  const auto output = OutputDir::open(dir / "out", {"program."});
+  auto output = app::OutputDir::open(dir / "out", {"program."}, {}, "previous");
   ASSERT_TRUE(output) << output.error().text();
-  for (const auto& extension : extensions) EXPECT_FALSE(std::filesystem::exists(dir / ("out/program" + extension))) << extension;
+  const auto set_aside = output->set_aside();
+  ASSERT_TRUE(set_aside) << set_aside.error().text();
+  for (const auto& extension : extensions) {
+    EXPECT_FALSE(std::filesystem::exists(dir / ("out/program" + extension))) << extension;
+    EXPECT_TRUE(std::filesystem::exists(dir / ("out/previous/program" + extension))) << extension;
+  }
   EXPECT_TRUE(std::filesystem::exists(dir / "out/program.txt"));
 }
 

@@ -80,14 +80,14 @@ std::string bevel_job_text(test::Random& random) {
 void expect_covered(std::uint64_t seed, std::string (*make_job)(test::Random&), const std::vector<const char*>& sources) {
   test::Random random(seed);
   const test::TestDir dir;
-  CommandRequest request;
+  commands::RunRequest request;
   request.job_file = dir / "job.toml";
   request.out_dir = dir / "out";
   request.quiet = true;
   for (int k = 0; k < kMostTries; ++k) {
     const std::string job = make_job(random);
     test::write_file(request.job_file, job);
-    const auto outcome = run_job(request);
+    const auto outcome = commands::run_job(request);
     if (outcome.report_json.empty()) continue;
     const auto report = nlohmann::json::parse(outcome.report_json);
     // A ball far too wide may leave active flank: that program is refused with this reason, and its ledger holds all the same.

@@ -1,7 +1,7 @@
 // `run --restart` and the order of the teeth from outside: what the files say, what `check` says of the part alone, what is refused.
 #include <nlohmann/json.hpp>
 
-#include "program.h"
+#include "tests/app/program.h"
 
 namespace toothpath::test {
 namespace {

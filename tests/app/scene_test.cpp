@@ -14,8 +14,8 @@ class SceneTest : public CheckScene {
  protected:
   static void SetUpTestSuite() { run_sample("spur_quick.toml"); }
   /// A block between two radii at a tooth; the spaces are cut half a pitch further on.
-  static TriangleMesh block(double tooth, double r0, double r1, double half, double z0, double z1) {
-    TriangleMesh mesh = box(Vec3(r0, -half, z0), Vec3(r1, half, z1));
+  static mesh::TriangleMesh block(double tooth, double r0, double r1, double half, double z0, double z1) {
+    mesh::TriangleMesh mesh = box(Vec3(r0, -half, z0), Vec3(r1, half, z1));
     const double angle = 2 * M_PI * tooth / 60;
     for (auto& v : mesh.vertices) v = Vec3(std::cos(angle) * v.x() - std::sin(angle) * v.y(), std::sin(angle) * v.x() + std::cos(angle) * v.y(), v.z());
     return mesh;

@@ -3,22 +3,22 @@
 
 #include <random>
 
-#include "app/report/length_tolerance.h"
-#include "app/report/part_swing.h"
-#include "app/report/setup_sheet.h"
+#include "app/report/sheet/length_tolerance.h"
+#include "app/report/sheet/part_swing.h"
+#include "app/report/sheet/setup_sheet.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
 namespace {
 
-Machine trunnion_machine(double px, double py, double tilt_y, double tilt_z, int sign) {
-  Machine m;
+machines::Machine trunnion_machine(double px, double py, double tilt_y, double tilt_z, int sign) {
+  machines::Machine m;
   m.part_diameter_mm = 400;
-  RotaryAxis c;
+  machines::RotaryAxis c;
   c.letter = 'C';
   c.point_mm = Vec3(px, py, 0);
   c.sign = sign;
-  RotaryAxis a;
+  machines::RotaryAxis a;
   a.letter = 'A';
   a.direction = Vec3::UnitX();
   a.point_mm = Vec3(0, tilt_y, tilt_z);
@@ -31,14 +31,14 @@ TEST(PartSwing, HoldsEveryPointOfTheBlank) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(-1, 1);
   for (int trial = 0; trial < 20; ++trial) {
-    const Machine m = trunnion_machine(10 * u(random), 10 * u(random), 30 * u(random), 60 * u(random), trial % 2 == 0 ? 1 : -1);
-    toothpath::Setup setup;
+    const machines::Machine m = trunnion_machine(10 * u(random), 10 * u(random), 30 * u(random), 60 * u(random), trial % 2 == 0 ? 1 : -1);
+    toothpath::joints::Setup setup;
     setup.axis_up = trial % 3 != 0;
     setup.origin_mm = Vec3(m.chain.table[0].point_mm.x() + 5 * u(random), m.chain.table[0].point_mm.y(), 80 + 40 * u(random));
-    const BlankCylinder blank{80 + 50 * u(random), -30, 12};
+    const sheet::BlankCylinder blank{80 + 50 * u(random), -30, 12};
     const double from = radians(-70 + 20 * u(random)), to = radians(10 + 20 * u(random));
-    const std::vector<AxisRange> axes = {{'Z', false, 200, 400, 0, 500}, {'C', true, -10, 10, -20, 20}, {'A', true, from, to, -2, 2}};
-    const PartSwing swing = part_swing(blank, setup, m, axes);
+    const std::vector<joints::AxisRange> axes = {{'Z', false, 200, 400, 0, 500}, {'C', true, -10, 10, -20, 20}, {'A', true, from, to, -2, 2}};
+    const sheet::PartSwing swing = sheet::part_swing(blank, setup, m, axes);
     ASSERT_EQ(swing.axes.size(), 2u);
     EXPECT_EQ(swing.axes[0].limit_mm, 200);
     EXPECT_FALSE(swing.axes[1].limit_mm);
@@ -62,41 +62,41 @@ TEST(PartSwing, HoldsEveryPointOfTheBlank) {
     EXPECT_LE(swing.top_mm, top + 1);
     EXPECT_LE(swing.bottom_mm, bottom);
     EXPECT_GE(swing.bottom_mm, bottom - 1);
-    EXPECT_EQ(swing_section(swing).rows.size(), 4u);
+    EXPECT_EQ(sheet::swing_section(swing).rows.size(), 4u);
   }
 }
 
 // The operator reads which coolant is meant, and in which words the program switches it.
 TEST(SetupSheet, NamesTheCoolantAndItsWords) {
-  Job job;
+  job::Job job;
   job.setup.emplace();
-  Machine m = trunnion_machine(0, 0, 0, 0, 1);
+  machines::Machine m = trunnion_machine(0, 0, 0, 0, 1);
   m.dialect = "linuxcnc";
-  const auto sheet = [&] { return setup_sheet(job, PartOutline{40, 60, 0, -5, -20}, m, RunReport{}); };
+  const auto sheet = [&] { return sheet::setup_sheet(job, sheet::PartOutline{40, 60, 0, -5, -20}, m, report::RunReport{}); };
   EXPECT_NE(sheet().find("<tr><td>coolant</td><td>off</td>"), std::string::npos);
-  job.coolant = Coolant::mist;
+  job.coolant = machines::Coolant::mist;
   EXPECT_NE(sheet().find("<tr><td>coolant</td><td>mist: on with M7, off with M9</td>"), std::string::npos) << sheet();
-  m.post.coolant[Coolant::through_spindle] = {"M150", "M151"};
-  job.coolant = Coolant::through_spindle;
+  m.post.coolant[machines::Coolant::through_spindle] = {"M150", "M151"};
+  job.coolant = machines::Coolant::through_spindle;
   EXPECT_NE(sheet().find("through_spindle: on with M150, off with M151"), std::string::npos);
-  job.gear = BevelGearParameters{};
+  job.gear = bevel_gear::BevelGearParameters{};
   EXPECT_NE(sheet().find("bevel gear, z"), std::string::npos);
 }
 
 // A ball that touches a surface everywhere, moved along its axis: no place is cut deeper than the share says.
 TEST(LengthTolerance, NoPlaceIsMovedByMoreThanItsShare) {
-  Job job;
-  ToolAssembly tool;
+  job::Job job;
+  tool::ToolAssembly tool;
   tool.number = 3;
   tool.diameter_mm = 2;
   job.tools = {tool};
-  MillingOperation finishing;
-  finishing.type = OperationType::finishing;
+  path::MillingOperation finishing;
+  finishing.type = path::OperationType::finishing;
   finishing.scallop_mm = 0.004;
   finishing.chord_tolerance_mm = 0.002;
   job.operations = {finishing};
   // A valley: normals from 20 to 160 deg about the y axis.
-  SurfaceGrid grid;
+  proof::SurfaceGrid grid;
   grid.patch = "flank +1";
   for (int i = 0; i <= 60; ++i) {
     const double angle = radians(20 + i);  // one flank: to 80 deg
@@ -105,19 +105,19 @@ TEST(LengthTolerance, NoPlaceIsMovedByMoreThanItsShare) {
     grid.reachable.push_back(1);
   }
   const Vec3 axis = Vec3(0.3, 0, 1).normalized();
-  ClPath path;
-  path.records.push_back({Vec3::Zero(), axis, 0, MoveKind::rapid, 0, 0});
-  path.records.push_back({Vec3(1, 0, 0), axis, 100, MoveKind::feed, 0, 0});
-  RunReport report;
+  path::ClPath path;
+  path.records.push_back({Vec3::Zero(), axis, 0, path::MoveKind::rapid, 0, 0});
+  path.records.push_back({Vec3(1, 0, 0), axis, 100, path::MoveKind::feed, 0, 0});
+  report::RunReport report;
   report.gouge_tolerance_mm = 0.002;
-  report.gouge = GougeResult{};
+  report.gouge = proof::GougeResult{};
   report.gouge->bound_mm = 0.0005;
-  report.finished = ExcessResult{};
+  report.finished = proof::ExcessResult{};
   report.finished->bound_mm = 0.004;
-  const ClPath* list[] = {&path};
-  const auto found = length_tolerances(job, report, list, {grid}, {});
+  const path::ClPath* list[] = {&path};
+  const auto found = sheet::length_tolerances(job, report, list, {grid}, {});
   ASSERT_EQ(found.size(), 1u);
-  const LengthTolerance& t = found[0];
+  const report::LengthTolerance& t = found[0];
   EXPECT_EQ(t.tool_number, 3);
   EXPECT_EQ(t.share, t.flank_share);
   const double R = tool.radius_mm();
@@ -136,18 +136,18 @@ TEST(LengthTolerance, NoPlaceIsMovedByMoreThanItsShare) {
   grid.normals.push_back(axis);
   grid.points.push_back(Vec3::Zero());
   grid.reachable.push_back(0);
-  EXPECT_EQ(length_tolerances(job, report, list, {grid}, {})[0].share, t.share);
-  EXPECT_EQ(length_tolerances(job, report, list, {grid}, {})[0].flank_share, 0);
+  EXPECT_EQ(sheet::length_tolerances(job, report, list, {grid}, {})[0].share, t.share);
+  EXPECT_EQ(sheet::length_tolerances(job, report, list, {grid}, {})[0].flank_share, 0);
   grid.reachable.back() = 1;
-  EXPECT_NEAR(length_tolerances(job, report, list, {grid}, {})[0].share, 1, 1e-12);
-  EXPECT_EQ(length_tolerances(job, report, list, {grid}, {1}).front().share, 1);
+  EXPECT_NEAR(sheet::length_tolerances(job, report, list, {grid}, {})[0].share, 1, 1e-12);
+  EXPECT_EQ(sheet::length_tolerances(job, report, list, {grid}, {1}).front().share, 1);
   // Stock that an operation leaves is eaten before the part is.
-  job.operations[0].type = OperationType::roughing;
+  job.operations[0].type = path::OperationType::roughing;
   job.operations[0].allowance_mm = 0.1;
-  ExcessResult after;
+  proof::ExcessResult after;
   after.min_mm = 0.09;
   report.excess = {after};
-  const auto rough = length_tolerances(job, report, list, {grid}, {1});
+  const auto rough = sheet::length_tolerances(job, report, list, {grid}, {1});
   EXPECT_NEAR(rough[0].too_long_mm, 0.09 + 0.0015, 1e-12);
   EXPECT_FALSE(rough[0].too_short_mm);
 }

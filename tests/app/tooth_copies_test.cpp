@@ -4,7 +4,7 @@
 #include <functional>
 #include <set>
 
-#include "app/commands/tooth_copies.h"
+#include "app/process/tooth_copies.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath {
@@ -16,14 +16,14 @@ constexpr double kTolerance = 5e-4;
 Vec3 turned(const Vec3& v, double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitZ()) * v; }
 
 /// A block of a tooth in pieces of equal time along a bend.
-void add_block(std::vector<ToolMotion>& out, int operation, int tooth, int line, int pieces, const Vec3& off = Vec3::Zero()) {
+void add_block(std::vector<path::ToolMotion>& out, int operation, int tooth, int line, int pieces, const Vec3& off = Vec3::Zero()) {
   const double angle = 2 * kPi * tooth / kTeeth;
   const auto at = [&](double t) -> Vec3 {
     const double u = 0.1 * line + 0.1 * t;
     return turned(Vec3(50 + u, 3 * u, -u), angle) + off;
   };
   for (int k = 0; k < pieces; ++k) {
-    ToolMotion m;
+    path::ToolMotion m;
     m.tip_from = at(static_cast<double>(k) / pieces);
     m.tip_to = at(static_cast<double>(k + 1) / pieces);
     m.axis_from = m.axis_to = turned(Vec3(0.6, 0, 0.8), angle);
@@ -37,15 +37,15 @@ void add_block(std::vector<ToolMotion>& out, int operation, int tooth, int line,
   }
 }
 
-std::vector<ToolMotion> program(int operations, int pieces_of_copies) {
-  std::vector<ToolMotion> out;
+std::vector<path::ToolMotion> program(int operations, int pieces_of_copies) {
+  std::vector<path::ToolMotion> out;
   for (int op = 0; op < operations; ++op)
     for (int tooth = 0; tooth < kTeeth; ++tooth)
       for (int line = 1; line <= 6; ++line) add_block(out, op, tooth, line, tooth == 0 ? 2 : pieces_of_copies);
   return out;
 }
 
-std::set<int> teeth_of(const std::vector<ToolMotion>& motions) {
+std::set<int> teeth_of(const std::vector<path::ToolMotion>& motions) {
   std::set<int> teeth;
   for (const auto& m : motions) teeth.insert(m.tooth);
   return teeth;
@@ -53,7 +53,7 @@ std::set<int> teeth_of(const std::vector<ToolMotion>& motions) {
 
 TEST(ToothCopies, TheFirstToothStandsForAllHoweverTheirBlocksAreCut) {
   for (const int pieces : {1, 2, 3, 7}) {
-    const auto kept = without_copies(program(2, pieces), kTeeth, kTolerance);
+    const auto kept = process::without_copies(program(2, pieces), kTeeth, kTolerance);
     EXPECT_EQ(teeth_of(kept), std::set<int>{0}) << pieces;
     for (const auto& m : kept) {
       EXPECT_GE(m.deviation_mm, 1e-5 * kTeeth) << "as far as the last tooth may stray";
@@ -65,25 +65,25 @@ TEST(ToothCopies, TheFirstToothStandsForAllHoweverTheirBlocksAreCut) {
 
 TEST(ToothCopies, TheirDistanceIsAdded) {
   auto motions = program(1, 3);
-  std::vector<ToolMotion> moved;
+  std::vector<path::ToolMotion> moved;
   for (const auto& m : motions)
     if (m.tooth != 4) moved.push_back(m);
   for (int line = 1; line <= 6; ++line) add_block(moved, 0, 4, line, 3, line == 3 ? Vec3(0, 0, 4e-4) : Vec3::Zero());
-  const auto kept = without_copies(moved, kTeeth, kTolerance);
+  const auto kept = process::without_copies(moved, kTeeth, kTolerance);
   EXPECT_EQ(teeth_of(kept), std::set<int>{0});
   for (const auto& m : kept) EXPECT_GE(m.deviation_mm, 4e-4 + 1e-5 * 5 - 1e-12);
 }
 
 TEST(ToothCopies, WhatDiffersAnywhereIsKeptWithAllItsOperations) {
-  const auto with_tooth_4 = [](const std::function<void(std::vector<ToolMotion>&)>& change) {
-    std::vector<ToolMotion> motions;
+  const auto with_tooth_4 = [](const std::function<void(std::vector<path::ToolMotion>&)>& change) {
+    std::vector<path::ToolMotion> motions;
     for (const auto& m : program(2, 3))
       if (m.tooth != 4 || m.operation != 1) motions.push_back(m);
     change(motions);
-    return teeth_of(without_copies(motions, kTeeth, kTolerance));
+    return teeth_of(process::without_copies(motions, kTeeth, kTolerance));
   };
   const std::set<int> first{0}, both{0, 4};
-  const auto blocks = [](std::vector<ToolMotion>& motions, int line_moved, const Vec3& off, int lines) {
+  const auto blocks = [](std::vector<path::ToolMotion>& motions, int line_moved, const Vec3& off, int lines) {
     for (int line = 1; line <= lines; ++line) add_block(motions, 1, 4, line, 3, line == line_moved ? off : Vec3::Zero());
   };
   EXPECT_EQ(with_tooth_4([&](auto& m) { blocks(m, 0, Vec3::Zero(), 6); }), first);
@@ -94,7 +94,7 @@ TEST(ToothCopies, WhatDiffersAnywhereIsKeptWithAllItsOperations) {
   // A place between the ends of the pieces of the first tooth.
   EXPECT_EQ(with_tooth_4([&](auto& m) {
               blocks(m, 0, Vec3::Zero(), 6);
-              ToolMotion &a = m[m.size() - 3], &b = m[m.size() - 2];
+              path::ToolMotion &a = m[m.size() - 3], &b = m[m.size() - 2];
               a.tip_to.z() += 6e-4;
               b.tip_from.z() += 6e-4;
             }), both);
@@ -109,7 +109,7 @@ TEST(ToothCopies, RapidsAreKept) {
   auto motions = program(1, 2);
   for (auto& m : motions)
     if (m.line % 1000 == 1) m.rapid = true;
-  const auto kept = without_copies(motions, kTeeth, kTolerance);
+  const auto kept = process::without_copies(motions, kTeeth, kTolerance);
   EXPECT_EQ(teeth_of(kept).size(), std::size_t{kTeeth});
   EXPECT_EQ(kept.size(), std::size_t{2 * kTeeth + 10});
 }

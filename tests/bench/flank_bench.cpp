@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "geometry/flank_batch.h"
+#include "geometry/face_gear/flank_batch.h"
 #include "tests/support/face_gear_cases.h"
 
 namespace {
@@ -15,10 +15,10 @@ using test::case_named;
 
 /// The double helical sample's outer half; side -1 has no fold, so that Newton for lambda arrives everywhere.
 struct Work {
-  FaceGearSurface<double> f = case_named("dhfg_normal").surface();
+  face_gear::FaceGearSurface<double> f = case_named("dhfg_normal").surface();
   int side;
   std::vector<double> theta, B, phi, r, z;
-  FlankPoints exact;
+  face_gear::FlankPoints exact;
 
   explicit Work(int s) : side(s) {
     const auto samples = test::trimmed_flank(f, 5, 64, 64);
@@ -34,11 +34,11 @@ struct Work {
     exact.resize(theta.size());
     for (std::size_t k = 0; k < theta.size(); ++k) store(exact, k, f.flank(side, theta[k], B[k]));
   }
-  static void store(FlankPoints& to, std::size_t k, const SurfacePointT<double>& q) {
+  static void store(face_gear::FlankPoints& to, std::size_t k, const face_gear::SurfacePointT<double>& q) {
     to.x[k] = q.p[0]; to.y[k] = q.p[1]; to.z[k] = q.p[2];
     to.nx[k] = q.n[0]; to.ny[k] = q.n[1]; to.nz[k] = q.n[2];
   }
-  void report(benchmark::State& state, const FlankPoints& got) const {
+  void report(benchmark::State& state, const face_gear::FlankPoints& got) const {
     double deviation = 0;
     int wrong = 0;
     for (std::size_t k = 0; k < theta.size(); ++k) {
@@ -55,7 +55,7 @@ struct Work {
 
 void closed_form(benchmark::State& state) {
   const Work w(int(state.range(0)));
-  FlankPoints out;
+  face_gear::FlankPoints out;
   out.resize(w.theta.size());
   for (auto _ : state) {
     for (std::size_t k = 0; k < w.theta.size(); ++k) Work::store(out, k, w.f.flank(w.side, w.theta[k], w.B[k]));
@@ -68,7 +68,7 @@ BENCHMARK(closed_form)->Arg(-1);
 
 void closed_form_vectorised(benchmark::State& state) {
   const Work w(int(state.range(0)));
-  FlankPoints out;
+  face_gear::FlankPoints out;
   for (auto _ : state) {
     evaluate_flank(w.f, w.side, w.theta, w.B, out);
     benchmark::DoNotOptimize(out.x.data());
@@ -83,7 +83,7 @@ void newton_theta_phi(benchmark::State& state) {
   const Work w(int(state.range(0)));
   const auto& f = w.f;
   const double kappa = f.shaper.kappa, T = f.shaper.T, r_b = f.shaper.r_b, s = w.side;
-  FlankPoints out;
+  face_gear::FlankPoints out;
   out.resize(w.theta.size());
   for (auto _ : state) {
     for (std::size_t k = 0; k < w.theta.size(); ++k) {
@@ -111,11 +111,11 @@ BENCHMARK(newton_theta_phi)->Arg(-1)->Arg(1);
 /// Given (r, z), as an inspection grid does: Newton for both parameters, from the pitch point each time.
 void newton_radius_height(benchmark::State& state) {
   const Work w(int(state.range(0)));
-  FlankPoints out;
+  face_gear::FlankPoints out;
   out.resize(w.theta.size());
   for (auto _ : state) {
     for (std::size_t k = 0; k < w.theta.size(); ++k) {
-      const auto at = invert_flank(w.f, w.side, w.r[k], w.z[k]);
+      const auto at = face_gear::invert_flank(w.f, w.side, w.r[k], w.z[k]);
       if (at) Work::store(out, k, w.f.flank(w.side, at->theta, at->B));
     }
     benchmark::DoNotOptimize(out.x.data());

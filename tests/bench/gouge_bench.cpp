@@ -35,10 +35,10 @@ struct Row {
   }
 };
 
-std::vector<double> by_marching(const CgalTree& tree, const ToolAssembly& tool, std::span<const ToolPose> poses, double resolution) {
+std::vector<double> by_marching(const CgalTree& tree, const tool::ToolAssembly& tool, std::span<const clearance::ToolPose> poses, double resolution) {
   std::vector<double> gaps;
   const double R = tool.radius_mm();
-  const auto bodies = shank_and_holder(tool);
+  const auto bodies = tool::shank_and_holder(tool);
   for (const auto& p : poses) {
     gaps.push_back(tree.cutting_part(p.tip + R * p.axis, p.axis, tool.flute_length_mm - R, R, kWithin, resolution));
     for (const auto& body : bodies) gaps.push_back(tree.frustum(body, p.tip, p.axis, kWithin, resolution));
@@ -57,17 +57,17 @@ void compare(const std::vector<double>& ours, const std::vector<double>& theirs,
   }
 }
 
-void assembly(const MeshDistance& mesh, const CgalTree& tree, bool long_tool, double resolution) {
-  const ToolAssembly tool = ball_mill(long_tool);
+void assembly(const clearance::MeshDistance& mesh, const CgalTree& tree, bool long_tool, double resolution) {
+  const tool::ToolAssembly tool = ball_mill(long_tool);
   const auto poses = flank_passes(35, false), sunk = flank_passes(2, true);
-  const std::span<const ToolPose> theirs(poses.data(), poses.size());
-  MeshAssembly engine(mesh, tool, kWithin);
+  const std::span<const clearance::ToolPose> theirs(poses.data(), poses.size());
+  clearance::MeshAssembly engine(mesh, tool, kWithin);
   const std::size_t n = engine.bodies();
   std::vector<double> gaps(poses.size() * n), marched;
   Row row{long_tool ? "assembly, long" : "assembly, short", mesh.tree().triangles(), resolution};
   row.ours = double(poses.size()) / thread_seconds([&] { engine.gaps(poses, gaps); }, 5);
   // Whole passes, one in five.
-  std::vector<ToolPose> few;
+  std::vector<clearance::ToolPose> few;
   std::vector<double> few_gaps;
   const std::size_t pass = poses.size() / 35;
   for (std::size_t k = 0; k < poses.size(); ++k)
@@ -83,7 +83,7 @@ void assembly(const MeshDistance& mesh, const CgalTree& tree, bool long_tool, do
   row.print();
 }
 
-void ball(const MeshDistance& mesh, const CgalTree& tree) {
+void ball(const clearance::MeshDistance& mesh, const CgalTree& tree) {
   std::vector<Vec3> centres;
   for (const auto& p : flank_passes(35, false)) centres.push_back(p.tip + 2 * p.axis);
   std::vector<double> ours(centres.size()), theirs(centres.size());
@@ -101,11 +101,11 @@ void ball(const MeshDistance& mesh, const CgalTree& tree) {
 }
 
 void run() {
-  std::printf("inner loops: %s; one thread; gaps up to %g mm; poses 0.1 mm apart on flank passes, ball R2\n", mesh_kernels().name, kWithin);
+  std::printf("inner loops: %s; one thread; gaps up to %g mm; poses 0.1 mm apart on flank passes, ball R2\n", clearance::mesh_kernels().name, kWithin);
   heading();
   for (const auto& [across, along] : {std::pair{24, 34}, std::pair{54, 77}}) {
-    const TriangleMesh mesh = ring_mesh(across, along);
-    const MeshDistance distance(mesh);
+    const mesh::TriangleMesh mesh = ring_mesh(across, along);
+    const clearance::MeshDistance distance(mesh);
     const CgalTree tree(mesh);
     ball(distance, tree);
     for (const bool long_tool : {true, false}) {

@@ -4,12 +4,12 @@
 #include <random>
 
 #include "geometry/base/angle.h"
-#include "geometry/tooth_mesh.h"
+#include "geometry/mesh/tooth_mesh.h"
 #include "tests/bench/gouge_bench_cgal.h"
 #include "tests/bench/thread_seconds.h"
 #include "tests/support/sample_gears.h"
 #include "tests/support/sample_tools.h"
-#include "cam/body_tree.h"
+#include "cam/ball/body_tree.h"
 
 namespace toothpath::bench {
 namespace {
@@ -19,7 +19,7 @@ struct Pose {
 };
 
 /// Ball centres 0.1 um off flanks and fillets of any tooth, tool upright or nearly so.
-std::vector<Pose> poses_of(const FaceGear& gear, const GearDistance& part, const ToolAssembly& tool) {
+std::vector<Pose> poses_of(const face_gear::FaceGear& gear, const analytic::GearDistance& part, const tool::ToolAssembly& tool) {
   std::mt19937_64 generator(1);
   const auto uniform = [&](double a, double b) { return a + (b - a) * double(generator() >> 11) * 0x1p-53; };
   std::vector<Pose> poses;
@@ -32,7 +32,7 @@ std::vector<Pose> poses_of(const FaceGear& gear, const GearDistance& part, const
     if (!q) continue;
     const double lean = uniform(0, 0.05), to = uniform(0, 6.28), turn = gear.pitch() * double(generator() % 180);
     const Vec3 axis(std::sin(lean) * std::cos(to), std::sin(lean) * std::sin(to), std::cos(lean));
-    poses.push_back({FaceGearSurface<double>::turned(Vec3(q->p + (tool.radius_mm() + 1e-4) * q->n), turn), axis});
+    poses.push_back({face_gear::FaceGearSurface<double>::turned(Vec3(q->p + (tool.radius_mm() + 1e-4) * q->n), turn), axis});
   }
   return poses;
 }
@@ -43,7 +43,7 @@ struct Answer {
   double cutter = kAnalyticWithin, gap = kAnalyticWithin;
 };
 
-Answer exact(const GearDistance& part, const BodyTree& tree, const ToolAssembly& tool, const Pose& pose) {
+Answer exact(const analytic::GearDistance& part, const ball::BodyTree& tree, const tool::ToolAssembly& tool, const Pose& pose) {
   const double R = tool.radius_mm(), top = tool.flute_length_mm - R;
   Answer a;
   for (double h = 0; h <= top;) {
@@ -52,26 +52,26 @@ Answer exact(const GearDistance& part, const BodyTree& tree, const ToolAssembly&
     if ((pose.centre + h * pose.axis).z() - R > part.gear().blank_top()) break;
     h += std::max(d - a.cutter, 0.0) + kMarch;
   }
-  for (const auto& body : shank_and_holder(tool))
+  for (const auto& body : tool::shank_and_holder(tool))
     a.gap = std::min(a.gap, tree.gap(body, pose.centre - R * pose.axis, pose.axis, a.gap, kBodies));
   return a;
 }
 
-Answer marched(const CgalTree& tree, const ToolAssembly& tool, const Pose& pose) {
+Answer marched(const CgalTree& tree, const tool::ToolAssembly& tool, const Pose& pose) {
   const double R = tool.radius_mm();
   Answer a;
   a.cutter = tree.cutting_part(pose.centre, pose.axis, tool.flute_length_mm - R, R, kAnalyticWithin, kMarch);
-  for (const auto& body : shank_and_holder(tool)) a.gap = std::min(a.gap, tree.frustum(body, pose.centre - R * pose.axis, pose.axis, a.gap, kBodies));
+  for (const auto& body : tool::shank_and_holder(tool)) a.gap = std::min(a.gap, tree.frustum(body, pose.centre - R * pose.axis, pose.axis, a.gap, kBodies));
   return a;
 }
 
 }  // namespace
 
 void analytic_rows() {
-  const FaceGear gear = test::made(test::quarter_dhfg());
-  const ToolAssembly tool = test::ball_mill(0.5, 3.2, 0.46, 14, 10);
-  const GearDistance part(gear, 1.0);
-  const BodyTree bodies(part);
+  const face_gear::FaceGear gear = test::made(test::quarter_dhfg());
+  const tool::ToolAssembly tool = test::ball_mill(0.5, 3.2, 0.46, 14, 10);
+  const analytic::GearDistance part(gear, 1.0);
+  const ball::BodyTree bodies(part);
   const auto poses = poses_of(gear, part, tool);
   std::printf("\nanalytic engine of a face gear (180 teeth, two rings; ball R0.25; random poses in contact), the mesh is its own within the sag\n");
   std::printf("%-28s %9s %8s %12s %12s %8s %11s\n", "question", "triangles", "sag mm", "ours 1/s", "CGAL 1/s", "ratio", "largest dif");
@@ -82,7 +82,7 @@ void analytic_rows() {
                          for (const auto& p : poses) keep(exact(part, bodies, tool, p).gap);
                        }, 2);
   for (const double sag : {5e-3, 5e-4}) {
-    const auto mesh = mesh_gear(gear, sag);
+    const auto mesh = mesh::mesh_gear(gear, sag);
     if (!mesh) continue;
     const CgalTree tree(*mesh);
     double ball_difference = 0, difference = 0;

@@ -9,15 +9,15 @@
 #include <cmath>
 #include <vector>
 
-#include "cam/tool_body.h"
-#include "geometry/triangle_mesh.h"
+#include "cam/tool/body.h"
+#include "geometry/mesh/triangle_mesh.h"
 #include "tests/support/plain_frustum.h"
 
 namespace toothpath::bench {
 
 class CgalTree {
  public:
-  explicit CgalTree(const TriangleMesh& mesh) {
+  explicit CgalTree(const mesh::TriangleMesh& mesh) {
     triangles_.reserve(mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       triangles_.push_back({point(mesh.corner(t, 0)), point(mesh.corner(t, 1)), point(mesh.corner(t, 2))});
@@ -45,7 +45,7 @@ class CgalTree {
 
   /// Distance to a solid frustum, up to `within` and to `resolution` from above. Balls about points of the axis clear slices; what
   /// they leave is divided into boxes. Every closest point bounds the distance from above.
-  [[nodiscard]] double frustum(const Frustum& f, const Vec3& tip, const Vec3& axis, double within, double resolution) const {
+  [[nodiscard]] double frustum(const tool::Frustum& f, const Vec3& tip, const Vec3& axis, double within, double resolution) const {
     double best = within;
     slice(f, tip, axis, f.from, f.to, resolution, best);
     return best;
@@ -58,12 +58,12 @@ class CgalTree {
   using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::iterator>;
   static Kernel::Point_3 point(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
-  double look(const Frustum& f, const Vec3& tip, const Vec3& axis, const Vec3& x, double& best) const {
+  double look(const tool::Frustum& f, const Vec3& tip, const Vec3& axis, const Vec3& x, double& best) const {
     const Vec3 q = closest(x);
     best = std::min(best, test::distance_to_frustum(q, f, tip, axis));
     return (q - x).norm();
   }
-  void slice(const Frustum& f, const Vec3& tip, const Vec3& axis, double h0, double h1, double resolution, double& best) const {
+  void slice(const tool::Frustum& f, const Vec3& tip, const Vec3& axis, double h0, double h1, double resolution, double& best) const {
     const auto radius = [&](double h) { return f.radius_from + (f.radius_to - f.radius_from) * (h - f.from) / (f.to - f.from); };
     const double r0 = radius(h0), r1 = radius(h1), widest = std::max(r0, r1), middle = 0.5 * (h0 + h1);
     // Centres farther up see a slice over a flat surface as well as ever smaller boxes would.
@@ -80,7 +80,7 @@ class CgalTree {
     const Vec3 e = axis.unitOrthogonal(), g = axis.cross(e);
     box(f, tip, axis, e, g, Vec3(0, 0, middle), Vec3(widest, widest, 0.5 * (h1 - h0)), resolution, best);
   }
-  void box(const Frustum& f, const Vec3& tip, const Vec3& axis, const Vec3& e, const Vec3& g, const Vec3& c, const Vec3& half, double resolution,
+  void box(const tool::Frustum& f, const Vec3& tip, const Vec3& axis, const Vec3& e, const Vec3& g, const Vec3& c, const Vec3& half, double resolution,
            double& best) const {
     const Vec3 x = tip + c.x() * e + c.y() * g + c.z() * axis;
     const double reach = half.norm();

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "cam/mesh_assembly.h"
+#include "cam/clearance/assembly_gaps.h"
 
 namespace toothpath::bench {
 
@@ -34,8 +34,8 @@ inline Vec3 ring_point(double u, double r, int tooth) {
 }
 
 /// The closed ring: `across` facets over a pitch, `along` over the width; the underside is a flat ring 12 mm below the roots.
-inline TriangleMesh ring_mesh(int across, int along) {
-  TriangleMesh mesh;
+inline mesh::TriangleMesh ring_mesh(int across, int along) {
+  mesh::TriangleMesh mesh;
   const int n = kTeeth * across;
   const auto at = [&](int i, int k) { return std::int32_t(i * n + (k % n)); };
   for (int i = 0; i <= along; ++i)
@@ -56,24 +56,24 @@ inline TriangleMesh ring_mesh(int across, int along) {
   return mesh;
 }
 
-inline ToolAssembly ball_mill(bool long_tool) {
-  ToolAssembly t;
+inline tool::ToolAssembly ball_mill(bool long_tool) {
+  tool::ToolAssembly t;
   t.diameter_mm = 4;
   t.flute_length_mm = 8;
   t.shank_diameter_mm = 3.8;
   t.length_mm = 100;
   t.stick_out_mm = long_tool ? 25 : 10;
-  t.holder = long_tool ? std::vector<HolderSegment>{{10, 40, 8}, {40, 40, 40}} : std::vector<HolderSegment>{{8, 24, 6}, {24, 24, 30}};
+  t.holder = long_tool ? std::vector<tool::HolderSegment>{{10, 40, 8}, {40, 40, 40}} : std::vector<tool::HolderSegment>{{8, 24, 6}, {24, 24, 30}};
   return t;
 }
 
 /// Flank passes, poses 0.1 mm apart along the width; the ball's gap to the surface differs from pass to pass, some cut. `planted`: each pose
 /// is sunk along the axis by up to 8 mm, so that every body strikes somewhere.
-inline std::vector<ToolPose> flank_passes(int passes, bool planted) {
+inline std::vector<clearance::ToolPose> flank_passes(int passes, bool planted) {
   std::mt19937_64 generator(7);
   const auto uniform = [&](double a, double b) { return a + (b - a) * double(generator() >> 11) * 0x1p-53; };
   const double R = 2, gaps[] = {0, 0.05, -0.003, 0.3, 0.0005};
-  std::vector<ToolPose> poses;
+  std::vector<clearance::ToolPose> poses;
   for (int pass = 0; pass < passes; ++pass) {
     const int tooth = int(generator() % kTeeth);
     const double u = 0.5 + (pass % 2 ? 0.5 : -0.5) * (0.36 + 0.34 * (pass % 7) / 6.0), gap = gaps[pass % 5], lean = uniform(0, 0.06);

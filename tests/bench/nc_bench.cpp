@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
-#include "postproc/fixed_point.h"
-#include "postproc/nc_reader.h"
-#include "postproc/nc_writer.h"
-#include "tests/postproc/nc_case.h"
+#include "postproc/numbers/fixed_point.h"
+#include "postproc/readback/reader.h"
+#include "postproc/text/writer.h"
+#include "tests/postproc/readback/nc_case.h"
 
 namespace {
 
@@ -57,11 +57,11 @@ void print_fixed(std::string& out, const std::vector<Line>& lines) {
   for (const auto& l : lines) {
     for (int i = 0; i < 5; ++i) {
       out += " XYZAC"[i + 1];
-      append_fixed(out, to_fixed(l.word[i], i < 3 ? kLinear : kRotary), i < 3 ? kLinear : kRotary, false);
+      toothpath::numbers::append_fixed(out, numbers::to_fixed(l.word[i], i < 3 ? kLinear : kRotary), i < 3 ? kLinear : kRotary, false);
       out += ' ';
     }
     out += 'F';
-    append_fixed(out, to_fixed_down(l.feed, 3), 3, false);
+    toothpath::numbers::append_fixed(out, numbers::to_fixed_down(l.feed, 3), 3, false);
     out += '\n';
   }
 }
@@ -109,32 +109,32 @@ void run(benchmark::State& state) {
 struct Post {
   const char* name;
   const char* dialect;
-  TcpMode tcp;
+  machines::TcpMode tcp;
 };
-constexpr Post kPosts[] = {{"linuxcnc", "linuxcnc", TcpMode::none},          {"linuxcnc_tcp", "linuxcnc", TcpMode::angles},
-                           {"fanuc", "fanuc", TcpMode::none},                {"fanuc_tcp", "fanuc", TcpMode::angles},
-                           {"siemens", "siemens", TcpMode::none},            {"siemens_tcp", "siemens", TcpMode::angles},
-                           {"heidenhain_tcp", "heidenhain", TcpMode::angles}, {"apt", "apt", TcpMode::vectors}};
+constexpr Post kPosts[] = {{"linuxcnc", "linuxcnc", machines::TcpMode::none},          {"linuxcnc_tcp", "linuxcnc", machines::TcpMode::angles},
+                           {"fanuc", "fanuc", machines::TcpMode::none},                {"fanuc_tcp", "fanuc", machines::TcpMode::angles},
+                           {"siemens", "siemens", machines::TcpMode::none},            {"siemens_tcp", "siemens", machines::TcpMode::angles},
+                           {"heidenhain_tcp", "heidenhain", machines::TcpMode::angles}, {"apt", "apt", machines::TcpMode::vectors}};
 
 /// A long pass with a moving tool axis, one tooth.
 struct Job {
-  Machine machine;
-  ClPath path;
-  AxisProgram program;
-  NcDialect dialect;
+  machines::Machine machine;
+  path::ClPath path;
+  joints::AxisProgram program;
+  text::NcDialect dialect;
   std::string text;
 };
 Job job_of(const Post& post, int steps = 50000) {
   Job j;
   j.machine = test::with_dialect(test::trunnion(), post.dialect);
   j.machine.tcp = post.tcp;
-  j.machine.post.tcp_on = post.tcp != TcpMode::none && std::string(post.dialect) == "linuxcnc" ? std::vector<std::string>{"M428"} : std::vector<std::string>{};
+  j.machine.post.tcp_on = post.tcp != machines::TcpMode::none && std::string(post.dialect) == "linuxcnc" ? std::vector<std::string>{"M428"} : std::vector<std::string>{};
   if (!j.machine.post.tcp_on.empty()) j.machine.post.tcp_off = {"M429"};
   j.path = test::sample_path(0.3, 0.4, steps);
   j.dialect = *controls::dialect_of(j.machine);
-  j.program = *AxisProgramTestAccess::build(std::vector{j.path}, test::tools(), test::standing(), j.machine, 1, test::kBody,
+  j.program = *joints::AxisProgramTestAccess::build(std::vector{j.path}, test::tools(), test::standing(), j.machine, 1, test::kBody,
                                             controls::axis_options(j.dialect, j.machine));
-  j.text = write_nc(j.program, j.dialect, {})->text;
+  j.text = text::write_nc(j.program, j.dialect, {})->text;
   return j;
 }
 
@@ -142,7 +142,7 @@ void write_blocks(benchmark::State& state, const Post& post) {
   const Job j = job_of(post);
   std::size_t blocks = 0;
   for (auto _ : state) {
-    const auto text = write_nc(j.program, j.dialect, {});
+    const auto text = text::write_nc(j.program, j.dialect, {});
     blocks = text->blocks;
     benchmark::DoNotOptimize(text->text.data());
   }
@@ -156,16 +156,16 @@ void read_blocks(benchmark::State& state, const Post& post) {
   std::size_t blocks = 0;
   for (auto _ : state) {
     blocks = 0;
-    const auto done = execute_nc(j.text, "p", *control, [&](const ExecutedMove&) { ++blocks; });
+    const auto done = readback::execute_nc(j.text, "p", *control, [&](const readback::ExecutedMove&) { ++blocks; });
     if (!done) state.SkipWithError(done.error().message.c_str());
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(blocks));
   // Accuracy on steps well above the last digit; what is timed above is finer than any path.
   const Job wide = job_of(post, 300);
-  const auto back = read_back(wide.text, "p", *control, wide.machine, test::standing(), {.teeth = 1});
-  const auto motions = tool_motions(back->operations[0], back->copies, *control, wide.machine, test::standing(), 1, 1e-3, 1e-3);
-  const std::vector<const ClPath*> paths = {&wide.path};
-  state.counters["worst_mm"] = compare_with_cl(*motions, paths, 5e-3, 1e-3).worst_mm;
+  const auto back = readback::read_back(wide.text, "p", *control, wide.machine, test::standing(), {.teeth = 1});
+  const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, wide.machine, test::standing(), 1, 1e-3, 1e-3);
+  const std::vector<const path::ClPath*> paths = {&wide.path};
+  state.counters["worst_mm"] = readback::compare_with_cl(*motions, paths, 5e-3, 1e-3).worst_mm;
 }
 
 }  // namespace

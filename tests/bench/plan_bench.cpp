@@ -12,8 +12,8 @@
 #include <thread>
 #include <utility>
 
-#include "cam/gouge_check.h"
-#include "cam/plan.h"
+#include "cam/analytic/gouge_check.h"
+#include "cam/ball/plan.h"
 #include "tests/support/sample_gears.h"
 #include "tests/support/sample_tools.h"
 #include "tests/support/threads.h"
@@ -24,13 +24,13 @@ using namespace toothpath;
 
 struct Case {
   const char* name;
-  FaceGearParameters gear;
-  std::vector<ToolAssembly> tools;
-  std::vector<MillingOperation> operations;
+  face_gear::FaceGearParameters gear;
+  std::vector<tool::ToolAssembly> tools;
+  std::vector<path::MillingOperation> operations;
 };
 
-MillingOperation finishing(int tool, double scallop_mm) {
-  MillingOperation op;
+path::MillingOperation finishing(int tool, double scallop_mm) {
+  path::MillingOperation op;
   op.tool = tool;
   op.speed_rpm = 20000;
   op.feed_mm_min = 300;
@@ -39,9 +39,9 @@ MillingOperation finishing(int tool, double scallop_mm) {
   return op;
 }
 
-MillingOperation roughing(int tool, double step_mm) {
-  MillingOperation op = finishing(tool, 0);
-  op.type = OperationType::roughing;
+path::MillingOperation roughing(int tool, double step_mm) {
+  path::MillingOperation op = finishing(tool, 0);
+  op.type = path::OperationType::roughing;
   op.step_down_mm = step_mm;
   op.step_over_mm = 1.6 * step_mm;
   op.allowance_mm = 0.08;
@@ -77,41 +77,41 @@ class Clock {
   double inner_ = 0;
 };
 
-bool same(const ClRecord& a, const ClRecord& b) {
+bool same(const path::ClRecord& a, const path::ClRecord& b) {
   return std::memcmp(a.tip.data(), b.tip.data(), sizeof(double) * 3) == 0 && std::memcmp(a.axis.data(), b.axis.data(), sizeof(double) * 3) == 0 &&
          a.feed_mm_min == b.feed_mm_min && a.kind == b.kind;
 }
 
 /// One row; the records of all operations.
-std::vector<ClRecord> row(const Case& c, int threads) {
-  const FaceGear gear = test::made(c.gear);
+std::vector<path::ClRecord> row(const Case& c, int threads) {
+  const face_gear::FaceGear gear = test::made(c.gear);
   Clock clock;
-  std::unique_ptr<GearDistance> part;
-  clock.run("distance index", [&] { part = std::make_unique<GearDistance>(gear, reach_of(c.tools)); });
-  PlanOptions options;
+  std::unique_ptr<analytic::GearDistance> part;
+  clock.run("distance index", [&] { part = std::make_unique<analytic::GearDistance>(gear, ball::reach_of(c.tools)); });
+  ball::PlanOptions options;
   options.stage = [&](const std::string& name, const std::function<void()>& work) { clock.run(name, work); };
-  FaceGearPlan plan;
+  ball::FaceGearPlan plan;
   clock.run("rest", [&] {
-    auto planned = plan_face_gear(*part, c.tools, c.operations, options);
-    if (const auto* refusal = std::get_if<PlanRefusal>(&planned)) {
+    auto planned = ball::plan_face_gear(*part, c.tools, c.operations, options);
+    if (const auto* refusal = planned.refused()) {
       std::fprintf(stderr, "%s: %s\n", c.name, refusal->diagnostic.message.c_str());
       std::exit(1);
     }
-    plan = std::move(std::get<FaceGearPlan>(planned));
+    plan = std::move(planned.value());
   });
-  GougeCheckOptions check_options;
+  analytic::GougeCheckOptions check_options;
   check_options.rapid_height_mm = gear.blank_top();
-  const GougeCheck check(*part, c.tools, check_options);
-  std::vector<ToolMotion> motions;
+  const analytic::GougeCheck check(*part, c.tools, check_options);
+  std::vector<path::ToolMotion> motions;
   std::vector<int> tools;
-  std::vector<ClRecord> records;
+  std::vector<path::ClRecord> records;
   for (const auto& path : plan.paths) {
-    const auto more = GougeCheck::motions_of(path);
+    const auto more = analytic::GougeCheck::motions_of(path);
     motions.insert(motions.end(), more.begin(), more.end());
     records.insert(records.end(), path.records.begin(), path.records.end());
     tools.push_back(path.tool);
   }
-  GougeResult proof;
+  proof::GougeResult proof;
   clock.run("gouge check", [&] { proof = check.check(motions, tools); });
   double chord = 0, cusp = 0, tilt_gap = INFINITY;
   for (const auto& o : plan.operations) chord = std::max(chord, o.chord_mm), cusp = std::max(cusp, o.scallop_max_mm);

@@ -11,8 +11,8 @@
 #include <string>
 #include <variant>
 
-#include "cam/gouge_check.h"
-#include "cam/plan.h"
+#include "cam/analytic/gouge_check.h"
+#include "cam/ball/plan.h"
 #include "tests/support/sample_gears.h"
 #include "tests/support/sample_tools.h"
 
@@ -20,9 +20,9 @@ namespace {
 
 using namespace toothpath;
 
-FaceGearParameters spur(int teeth) { return test::transverse_gear(teeth, 18, 2, 0.6, {{0, teeth + 1.3, teeth + 3.3}}); }
+face_gear::FaceGearParameters spur(int teeth) { return test::transverse_gear(teeth, 18, 2, 0.6, {{0, teeth + 1.3, teeth + 3.3}}); }
 
-ToolAssembly mill() { return test::ball_mill(1, 6, 0.95, 16, 10); }
+tool::ToolAssembly mill() { return test::ball_mill(1, 6, 0.95, 16, 10); }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -35,17 +35,17 @@ double peak_megabytes() {
 }
 
 struct Planned {
-  FaceGear gear;
-  std::vector<ToolAssembly> tools{mill()};
-  GearDistance part{gear, reach_of(tools)};
-  ClPath path;
+  face_gear::FaceGear gear;
+  std::vector<tool::ToolAssembly> tools{mill()};
+  analytic::GearDistance part{gear, ball::reach_of(tools)};
+  path::ClPath path;
 };
 
 /// A finishing path of about `records` records: the cusp height decides. Passes repeat where the planner's own number is not reached.
 std::unique_ptr<Planned> plan(int teeth, std::size_t records) {
-  auto job = std::make_unique<Planned>(Planned{test::made(spur(teeth)), {mill()}, GearDistance(test::made(spur(teeth)), 1.3), {}});
-  MillingOperation op;
-  op.type = OperationType::finishing;
+  auto job = std::make_unique<Planned>(Planned{test::made(spur(teeth)), {mill()}, analytic::GearDistance(test::made(spur(teeth)), 1.3), {}});
+  path::MillingOperation op;
+  op.type = path::OperationType::finishing;
   op.speed_rpm = 20000;
   op.feed_mm_min = 300;
   // Both spacings shrink alike: twice as many passes, twice as many points on each.
@@ -53,12 +53,12 @@ std::unique_ptr<Planned> plan(int teeth, std::size_t records) {
   for (int round = 0; round < 4; ++round) {
     op.scallop_mm = 0.01 * share;
     op.chord_tolerance_mm = 5e-4 * share;
-    auto planned = plan_face_gear(job->part, job->tools, {op}, {});
-    if (auto* refusal = std::get_if<PlanRefusal>(&planned)) {
+    auto planned = ball::plan_face_gear(job->part, job->tools, {op}, {});
+    if (auto* refusal = planned.refused()) {
       std::fprintf(stderr, "%s\n", refusal->diagnostic.message.c_str());
       std::exit(1);
     }
-    job->path = std::move(std::get<FaceGearPlan>(planned).paths.front());
+    job->path = std::move(planned.value().paths.front());
     const double ratio = double(job->path.records.size()) / double(records);
     if (ratio > 0.9 && ratio < 1.15) break;
     share *= ratio;
@@ -71,11 +71,11 @@ double row(const char* what, int teeth, std::size_t records) {
   const auto start = std::chrono::steady_clock::now();
   const auto job = plan(teeth, records);
   const double planning = seconds_since(start);
-  GougeCheckOptions options;
+  analytic::GougeCheckOptions options;
   options.rapid_height_mm = job->gear.blank_top();
-  const GougeCheck check(job->part, job->tools, options);
+  const analytic::GougeCheck check(job->part, job->tools, options);
   const auto begin = std::chrono::steady_clock::now();
-  const auto r = check.check(GougeCheck::motions_of(job->path), {0});
+  const auto r = check.check(analytic::GougeCheck::motions_of(job->path), {0});
   const double spent = seconds_since(begin), each = spent / double(job->path.records.size());
   std::printf("%-14s %4d teeth %8zu records  plan %7.2f s  check %7.2f s  %6.2f us/record  %5.2f distances/record  "
               "measured %7.3f um  bound %7.3f um  %s  peak %6.0f MB\n",

@@ -13,10 +13,10 @@
 #include <regex>
 #include <sstream>
 
-#include "app/gear_of_job.h"
-#include "app/job_file.h"
+#include "app/process/gear_of_job.h"
+#include "app/job/file.h"
 #include "postproc/controls/of_machine.h"
-#include "postproc/nc_reader.h"
+#include "postproc/readback/reader.h"
 #include "tests/controller/joint_record.h"
 
 namespace toothpath {
@@ -31,8 +31,8 @@ constexpr double kGiveUp = 1.0;             // mm: beyond this the record does n
 constexpr double kPiece = 0.02;             // deg: moves with TCP are cut into pieces that turn by no more than this
 
 struct Case {
-  Job job;
-  Machine machine;
+  job::Job job;
+  machines::Machine machine;
   char tilt = 'A';
 };
 
@@ -42,13 +42,13 @@ std::string read(const fs::path& file) {
 }
 
 Result<Case> read_case(const std::string& job_file) {
-  auto read = read_job_file(job_file);
-  if (auto* errors = std::get_if<1>(&read)) return errors->front();
-  Case c{std::move(std::get<0>(read)), {}, 'A'};
-  auto machine = load_machine(c.job);
-  if (auto* errors = std::get_if<1>(&machine)) return errors->front();
-  c.machine = std::move(std::get<0>(machine));
-  const KinematicChain& chain = c.machine.chain;
+  auto read = job::read_job_file(job_file);
+  if (auto* errors = read.refused()) return errors->front();
+  Case c{std::move(read).value(), {}, 'A'};
+  auto machine = process::load_machine(c.job);
+  if (auto* errors = machine.refused()) return errors->front();
+  c.machine = std::move(machine).value();
+  const machines::KinematicChain& chain = c.machine.chain;
   if (c.machine.dialect != "linuxcnc" || chain.table.size() != 2 || chain.table[0].letter != 'C' || chain.table[0].sign != -1 ||
       chain.table[1].sign != -1)
     return fail("{} is no machine for xyzac-trt or xyzbc-trt: C on A or B in the table, both senses reversed, dialect linuxcnc", c.machine.file);
@@ -65,15 +65,15 @@ struct Settings {
 };
 
 std::string ini(const Case& c, const Settings& settings) {
-  const KinematicChain& chain = c.machine.chain;
+  const machines::KinematicChain& chain = c.machine.chain;
   struct Joint {
     double least, greatest, speed;
     bool angular;
   };
   std::vector<Joint> joints;
-  for (const LinearAxis& a : chain.linear) joints.push_back({a.min_mm, a.max_mm, a.max_speed / 60, false});
+  for (const machines::LinearAxis& a : chain.linear) joints.push_back({a.min_mm, a.max_mm, a.max_speed / 60, false});
   for (const std::size_t k : {1u, 0u}) {
-    const RotaryAxis& a = chain.rotary(k);
+    const machines::RotaryAxis& a = chain.rotary(k);
     joints.push_back({degrees(a.min_rad), degrees(a.max_rad), degrees(a.max_speed) / 60, true});
   }
   double fastest = 0;
@@ -186,7 +186,7 @@ Status prepare(const Case& c, const std::string& program, const fs::path& folder
   const auto part = shortened(text, teeth, corners);
   if (!part) return part.error();
   std::string tools, offsets;
-  for (const ToolAssembly& t : c.job.tools) tools += fmt::format("T{0} P{0} Z{1} D{2}\n", t.number, t.length_mm, t.diameter_mm);
+  for (const tool::ToolAssembly& t : c.job.tools) tools += fmt::format("T{0} P{0} Z{1} D{2}\n", t.number, t.length_mm, t.diameter_mm);
   if (!c.job.setup || c.job.setup->work_offset != "G54") return fail("the job must stand in G54");
   const Vec3 at = c.job.setup->work_offset_at_mm;
   offsets = fmt::format("5220\t1\n5221\t{}\n5222\t{}\n5223\t{}\n", at.x(), at.y(), at.z());
@@ -210,18 +210,18 @@ struct Expected {
 Result<Expected> expected_path(const Case& c, const std::string& text) {
   const auto control = controls::control_of(c.machine, *c.job.setup, c.job.tools);
   if (!control) return control.error();
-  const KinematicChain& chain = c.machine.chain;
+  const machines::KinematicChain& chain = c.machine.chain;
   Expected out;
   const auto add = [&out](const std::array<double, 5>& j, int line) { out.path.push_back({{j[0], j[1], j[2], j[4], j[3]}, line}); };
   bool begun = false;
-  ExecutedMove last;
-  const Status s = execute_nc(text, "program.ngc", *control, [&](const ExecutedMove& e) {
+  readback::ExecutedMove last;
+  const Status s = readback::execute_nc(text, "program.ngc", *control, [&](const readback::ExecutedMove& e) {
     if (std::any_of(e.joints.begin(), e.joints.end(), [](double v) { return std::isnan(v); })) return;
     out.blend_mm = std::max(out.blend_mm, static_cast<double>(e.blend_mm));
     ++out.blocks;
     if (begun) {
       const double length = out.tool_length_mm = control->tool_length_mm.at(e.tool);
-      const auto tip_of = [&](const ExecutedMove& m) {
+      const auto tip_of = [&](const readback::ExecutedMove& m) {
         return chain.forward({{m.joints[0], m.joints[1], m.joints[2]}, {radians(m.joints[3]), radians(m.joints[4])}}, length).tip_mm;
       };
       const Vec3 from = tip_of(last), to = tip_of(e);
@@ -249,7 +249,7 @@ Result<Expected> expected_path(const Case& c, const std::string& text) {
 
 /// Tip in the table frame [mm] and the two small components of the tool axis [degrees], in the place of joints.
 JointVector pose_of(const Case& c, const JointVector& j, double tool_length_mm, bool with_axis) {
-  const TablePose pose = c.machine.chain.forward({{j[0], j[1], j[2]}, {radians(j[4]), radians(j[3])}}, tool_length_mm);
+  const machines::TablePose pose = c.machine.chain.forward({{j[0], j[1], j[2]}, {radians(j[4]), radians(j[3])}}, tool_length_mm);
   return {pose.tip_mm.x(), pose.tip_mm.y(), pose.tip_mm.z(), with_axis ? degrees(pose.axis.x()) : 0, with_axis ? degrees(pose.axis.y()) : 0};
 }
 

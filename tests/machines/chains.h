@@ -8,8 +8,8 @@
 
 namespace toothpath::test {
 
-inline RotaryAxis rotary(char letter, const Vec3& direction, const Vec3& point = Vec3::Zero()) {
-  RotaryAxis axis;
+inline machines::RotaryAxis rotary(char letter, const Vec3& direction, const Vec3& point = Vec3::Zero()) {
+  machines::RotaryAxis axis;
   axis.letter = letter;
   axis.direction = direction;
   axis.point_mm = point;
@@ -17,43 +17,43 @@ inline RotaryAxis rotary(char letter, const Vec3& direction, const Vec3& point =
   return axis;
 }
 
-inline KinematicChain with_linear(KinematicChain chain = {}) {
+inline machines::KinematicChain with_linear(machines::KinematicChain chain = {}) {
   for (auto& axis : chain.linear) axis = {-1e5, 1e5, 10000};
   return chain;
 }
 
 /// T1 = C, T2 = A.
-inline KinematicChain ac_table(const Vec3& on_c = Vec3::Zero(), const Vec3& on_a = Vec3::Zero()) {
-  KinematicChain chain = with_linear();
+inline machines::KinematicChain ac_table(const Vec3& on_c = Vec3::Zero(), const Vec3& on_a = Vec3::Zero()) {
+  machines::KinematicChain chain = with_linear();
   chain.table = {rotary('C', Vec3::UnitZ(), on_c), rotary('A', Vec3::UnitX(), on_a)};
   return chain;
 }
 
 /// T1 = C, T2 = B.
-inline KinematicChain bc_table(const Vec3& on_c = Vec3::Zero(), const Vec3& on_b = Vec3::Zero()) {
-  KinematicChain chain = with_linear();
+inline machines::KinematicChain bc_table(const Vec3& on_c = Vec3::Zero(), const Vec3& on_b = Vec3::Zero()) {
+  machines::KinematicChain chain = with_linear();
   chain.table = {rotary('C', Vec3::UnitZ(), on_c), rotary('B', Vec3::UnitY(), on_b)};
   return chain;
 }
 
 /// T1 = A, T2 = B.
-inline KinematicChain ab_table() {
-  KinematicChain chain = with_linear();
+inline machines::KinematicChain ab_table() {
+  machines::KinematicChain chain = with_linear();
   chain.table = {rotary('A', Vec3::UnitX()), rotary('B', Vec3::UnitY())};
   return chain;
 }
 
 /// C in the table, `tilt` ('A' or 'B') in the head.
-inline KinematicChain head_table(char tilt) {
-  KinematicChain chain = with_linear();
+inline machines::KinematicChain head_table(char tilt) {
+  machines::KinematicChain chain = with_linear();
   chain.table = {rotary('C', Vec3::UnitZ())};
   chain.head = {rotary(tilt, tilt == 'A' ? Vec3::UnitX() : Vec3::UnitY())};
   return chain;
 }
 
 /// H1 = C, H2 = `tilt`.
-inline KinematicChain head_head(char tilt) {
-  KinematicChain chain = with_linear();
+inline machines::KinematicChain head_head(char tilt) {
+  machines::KinematicChain chain = with_linear();
   chain.head = {rotary('C', Vec3::UnitZ()), rotary(tilt, tilt == 'A' ? Vec3::UnitX() : Vec3::UnitY())};
   return chain;
 }
@@ -64,9 +64,9 @@ inline Vec3 random_axis(std::mt19937_64& rng) {
 }
 
 /// Every class in turn: two, one or no rotary axis; axes orthogonal or at any angle; random points, signs and zeros.
-inline KinematicChain random_chain_kinds(std::mt19937_64& rng, int i) {
+inline machines::KinematicChain random_chain_kinds(std::mt19937_64& rng, int i) {
   std::uniform_real_distribution<double> mm(-200, 200), angle(-3, 3);
-  KinematicChain chain;
+  machines::KinematicChain chain;
   switch (i % 7) {
     case 0: chain = ac_table(); break;
     case 1: chain = bc_table(); break;
@@ -80,7 +80,7 @@ inline KinematicChain random_chain_kinds(std::mt19937_64& rng, int i) {
       if (i % 3 == 2) chain.table.pop_back();
   }
   for (auto* side : {&chain.table, &chain.head})
-    for (RotaryAxis& axis : *side) {
+    for (machines::RotaryAxis& axis : *side) {
       axis.point_mm = Vec3(mm(rng), mm(rng), mm(rng));
       axis.sign = mm(rng) > 0 ? 1 : -1;
       axis.zero_rad = angle(rng);
@@ -88,7 +88,7 @@ inline KinematicChain random_chain_kinds(std::mt19937_64& rng, int i) {
   if (i % 7 == 5)
     do {
       for (auto* side : {&chain.table, &chain.head})
-        for (RotaryAxis& axis : *side) axis.direction = random_axis(rng);
+        for (machines::RotaryAxis& axis : *side) axis.direction = random_axis(rng);
     } while (chain.rotary(0).direction.cross(chain.rotary(1).direction).norm() < 0.3);
   return chain;
 }

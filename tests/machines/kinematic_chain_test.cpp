@@ -13,18 +13,18 @@ namespace {
 using test::ac_table, test::bc_table, test::random_axis, test::random_chain_kinds;
 
 /// LinuxCNC's trunnion, written as 2.2 reads it: rotation point, offsets, both rotaries reversed.
-KinematicChain linuxcnc_trunnion(char tilt) {
+machines::KinematicChain linuxcnc_trunnion(char tilt) {
   const Vec3 point(1.5, -2.5, -40.0);
   const Vec3 offset = tilt == 'A' ? Vec3(0, 3.25, -7.5) : Vec3(3.25, 0, -7.5);
-  KinematicChain chain = tilt == 'A' ? ac_table(point, point + offset) : bc_table(point, point + offset);
-  for (RotaryAxis& axis : chain.table) axis.sign = -1;
+  machines::KinematicChain chain = tilt == 'A' ? ac_table(point, point + offset) : bc_table(point, point + offset);
+  for (machines::RotaryAxis& axis : chain.table) axis.sign = -1;
   return chain;
 }
 
 /// Pose that LinuxCNC reports: the tool offset is still in its z.
-Vec3 linuxcnc_pose(const KinematicChain& chain, const Vec3& xyz, double tilt_deg, double c_deg) {
+Vec3 linuxcnc_pose(const machines::KinematicChain& chain, const Vec3& xyz, double tilt_deg, double c_deg) {
   const double tool_offset = 101.2;
-  const TablePose pose = chain.forward({xyz, {radians(c_deg), radians(tilt_deg)}}, tool_offset);
+  const machines::TablePose pose = chain.forward({xyz, {radians(c_deg), radians(tilt_deg)}}, tool_offset);
   return pose.tip_mm + Vec3(0, 0, tool_offset);
 }
 
@@ -56,9 +56,9 @@ TEST(LinuxcncKinematics, PrintedFormulasOnRandomJoints) {
                   -s * (X - q.x()) + k * C * v + k * S * w + k * lateral + q.y(), -S * v + C * w + dz + q.z());
     const Vec3 bc(k * C * h + s * (Y - q.y()) - k * S * w + k * lateral + q.x(),
                   -s * C * h + k * (Y - q.y()) + s * S * w - s * lateral + q.y(), S * h + C * w + dz + q.z());
-    KinematicChain a = ac_table(q, q + Vec3(0, lateral, up)), b = bc_table(q, q + Vec3(lateral, 0, up));
+    machines::KinematicChain a = ac_table(q, q + Vec3(0, lateral, up)), b = bc_table(q, q + Vec3(lateral, 0, up));
     for (auto* chain : {&a, &b})
-      for (RotaryAxis& axis : chain->table) axis.sign = -1;
+      for (machines::RotaryAxis& axis : chain->table) axis.sign = -1;
     ASSERT_LE((a.forward({j, {c, t}}, L).tip_mm + Vec3(0, 0, L) - ac).norm(), 1e-11 * 2000);
     ASSERT_LE((b.forward({j, {c, t}}, L).tip_mm + Vec3(0, 0, L) - bc).norm(), 1e-11 * 2000);
   }
@@ -66,11 +66,11 @@ TEST(LinuxcncKinematics, PrintedFormulasOnRandomJoints) {
 
 double wrapped(double angle) { return std::remainder(angle, 2 * kPi); }
 
-void expect_row(const KinematicChain& chain, const Vec3& u, double first, double second, int pair) {
+void expect_row(const machines::KinematicChain& chain, const Vec3& u, double first, double second, int pair) {
   const auto solutions = chain.rotary_solutions(u);
   ASSERT_TRUE(solutions);
   ASSERT_EQ(solutions->size(), 2u);
-  const JointSolution& s = (*solutions)[static_cast<std::size_t>(pair - 1)];
+  const machines::JointSolution& s = (*solutions)[static_cast<std::size_t>(pair - 1)];
   EXPECT_EQ(s.pair, pair);
   EXPECT_EQ(s.free_rotary, -1);
   EXPECT_NEAR(wrapped(s.joints.rotary_rad[0] - first), 0, 1e-12) << u.transpose();
@@ -83,11 +83,11 @@ TEST(RotarySolutions, TableRows) {
   for (int i = 0; i < 5000; ++i) {
     const Vec3 u = random_axis(rng);
     const double a = std::atan2(std::hypot(u.x(), u.y()), u.z());
-    for (const KinematicChain& chain : {test::ac_table(), test::head_table('A'), test::head_head('A')}) {
+    for (const machines::KinematicChain& chain : {test::ac_table(), test::head_table('A'), test::head_head('A')}) {
       expect_row(chain, u, std::atan2(u.x(), -u.y()), a, 1);
       expect_row(chain, u, std::atan2(u.x(), -u.y()) + kPi, -a, 2);
     }
-    for (const KinematicChain& chain : {test::bc_table(), test::head_table('B'), test::head_head('B')}) {
+    for (const machines::KinematicChain& chain : {test::bc_table(), test::head_table('B'), test::head_head('B')}) {
       expect_row(chain, u, std::atan2(u.y(), u.x()), a, 1);
       expect_row(chain, u, std::atan2(u.y(), u.x()) + kPi, -a, 2);
     }
@@ -118,7 +118,7 @@ TEST(RotarySolutions, PoleLeavesTheFirstRotaryFree) {
     EXPECT_EQ(s->front().free_rotary, 0);
     EXPECT_NEAR(s->front().joints.rotary_rad[1], tilt, 1e-12);
     for (const double any : {-2.0, 0.3, 3.0}) {  // every angle of the free axis gives the same tool axis
-      const TablePose pose = chain.forward({Vec3::Zero(), {any, s->front().joints.rotary_rad[1]}}, 100);
+      const machines::TablePose pose = chain.forward({Vec3::Zero(), {any, s->front().joints.rotary_rad[1]}}, 100);
       EXPECT_LE((pose.axis - pole).norm(), 1e-15 * 4);
     }
   }
@@ -126,8 +126,8 @@ TEST(RotarySolutions, PoleLeavesTheFirstRotaryFree) {
 
 // A rotary that a pole leaves free stands at its zero; asked for with limits, it takes the wanted angle or the limit nearest to it.
 TEST(RotarySolutions, FreeRotaryStandsAtItsZeroAndInsideItsLimits) {
-  for (KinematicChain chain : {ac_table(), bc_table(), test::head_table('B'), test::head_head('A')}) {
-    RotaryAxis& first = chain.table.empty() ? chain.head.front() : chain.table.front();
+  for (machines::KinematicChain chain : {ac_table(), bc_table(), test::head_table('B'), test::head_head('A')}) {
+    machines::RotaryAxis& first = chain.table.empty() ? chain.head.front() : chain.table.front();
     first.zero_rad = 0.7;
     const auto s = chain.rotary_solutions(Vec3::UnitZ());
     ASSERT_TRUE(s);
@@ -135,7 +135,7 @@ TEST(RotarySolutions, FreeRotaryStandsAtItsZeroAndInsideItsLimits) {
     EXPECT_EQ(s->front().joints.rotary_rad[0], 0.7);
     first.min_rad = -1;
     first.max_rad = 2;
-    const LimitMargin margin{0, 0.25};
+    const machines::LimitMargin margin{0, 0.25};
     for (const double wanted : {-9.0, -1.0, 0.1, 1.9, 40.0}) {
       const auto found = chain.candidates({Vec3(10, 20, 30), Vec3::UnitZ()}, 100, margin, wanted);
       ASSERT_TRUE(found) << found.error().message;
@@ -149,11 +149,11 @@ TEST(RotarySolutions, FreeRotaryStandsAtItsZeroAndInsideItsLimits) {
 
 // An axis beyond the reach is served by the nearest one as far as text rounds it, and no farther.
 TEST(RotarySolutions, ReachEndsWithTheRoundingOfText) {
-  KinematicChain nutating = bc_table();
+  machines::KinematicChain nutating = bc_table();
   nutating.table[1].direction = Vec3(0, 1, 1).normalized();
-  KinematicChain tilt_only = test::head_table('B');
+  machines::KinematicChain tilt_only = test::head_table('B');
   tilt_only.table.clear();
-  KinematicChain turntable = ac_table();
+  machines::KinematicChain turntable = ac_table();
   turntable.table.pop_back();
   for (const double beyond : {5e-11, 1e-9, 1e-6}) {
     const bool served = beyond < 1e-10;
@@ -166,7 +166,7 @@ TEST(RotarySolutions, ReachEndsWithTheRoundingOfText) {
 
 // Nutating table at 45 deg: the tilt reaches 90 deg and no further; at the end of reach both pairs meet.
 TEST(RotarySolutions, NutatingAxisEndsAtItsCone) {
-  KinematicChain chain = bc_table();
+  machines::KinematicChain chain = bc_table();
   chain.table[1].direction = Vec3(0, 1, 1).normalized();
   for (const double tilt : {0.0, 1e-7, 0.3, 1.0, kPi / 2 - 1e-9}) {
     const Vec3 u(std::sin(tilt), 0, std::cos(tilt));
@@ -182,7 +182,7 @@ TEST(RotarySolutions, NutatingAxisEndsAtItsCone) {
 
 // 79, 80: an axis without direction or of another length is no axis, on any chain.
 TEST(RotarySolutions, AxisMustBeAUnitVector) {
-  for (const KinematicChain& chain : {ac_table(), test::with_linear(), test::head_head('B')}) {
+  for (const machines::KinematicChain& chain : {ac_table(), test::with_linear(), test::head_head('B')}) {
     EXPECT_EQ(chain.rotary_solutions(Vec3::Zero()).error().message,
               "tool axis (0.000000, 0.000000, 0.000000) has length 0.000000000, must be 1");
     EXPECT_EQ(chain.rotary_solutions({0, 0, 1.5}).error().message,
@@ -197,20 +197,20 @@ TEST(Inverse, RoundTripOverRandomChains) {
   std::uniform_real_distribution<double> mm(-500, 500), length(10, 300), small(-14, 0);
   int tested = 0, two = 0;
   for (int i = 0; i < 60000; ++i) {
-    const KinematicChain chain = random_chain_kinds(rng, i);
+    const machines::KinematicChain chain = random_chain_kinds(rng, i);
     std::uniform_real_distribution<double> turn(-kPi, kPi);
     // A pose that the chain reaches, sometimes next to a pole: second angle 10^-14 .. 1 rad.
     const double second = i % 3 == 0 ? std::pow(10.0, small(rng)) : turn(rng);
     const double L = length(rng);
-    Joints start{Vec3(mm(rng), mm(rng), mm(rng)), {0, 0}};
+    machines::Joints start{Vec3(mm(rng), mm(rng), mm(rng)), {0, 0}};
     for (std::size_t k = 0; k < chain.rotary_count(); ++k)
       start.rotary_rad[k] = chain.rotary(k).zero_rad + (k == 1 ? second : turn(rng));
-    const TablePose pose = chain.forward(start, L);
+    const machines::TablePose pose = chain.forward(start, L);
     const auto solutions = chain.inverse(pose, L);
     ASSERT_TRUE(solutions) << solutions.error().message;
     bool found = false;
-    for (const JointSolution& s : *solutions) {
-      const TablePose back = chain.forward(s.joints, L);
+    for (const machines::JointSolution& s : *solutions) {
+      const machines::TablePose back = chain.forward(s.joints, L);
       ASSERT_LE((back.axis - pose.axis).norm(), 1e-12) << i;
       ASSERT_LE((back.tip_mm - pose.tip_mm).norm(), 1e-9) << i;
       double off = 0;
@@ -233,7 +233,7 @@ TEST(Inverse, RoundTripOverRandomChains) {
 }
 
 TEST(Inverse, ThreeAxesReachOnlyTheVertical) {
-  KinematicChain chain;
+  machines::KinematicChain chain;
   for (auto& axis : chain.linear) axis = {-100, 100, 1000};
   const auto up = chain.inverse({Vec3(1, 2, 3), Vec3::UnitZ()}, 50);
   ASSERT_TRUE(up);
@@ -245,7 +245,7 @@ TEST(Inverse, ThreeAxesReachOnlyTheVertical) {
 }
 
 TEST(Inverse, TurntableIsFreeAndCannotTilt) {
-  KinematicChain chain = ac_table(Vec3(5, 0, 0));
+  machines::KinematicChain chain = ac_table(Vec3(5, 0, 0));
   chain.table.pop_back();
   const auto up = chain.inverse({Vec3(1, 2, 3), Vec3::UnitZ()}, 50);
   ASSERT_TRUE(up);
@@ -257,29 +257,29 @@ TEST(Inverse, TurntableIsFreeAndCannotTilt) {
 TEST(Forward, PlantedFaultsShow) {
   std::mt19937_64 rng(4);
   for (int i = 0; i < 200; ++i) {
-    KinematicChain chain = random_chain_kinds(rng, i);
+    machines::KinematicChain chain = random_chain_kinds(rng, i);
     if (chain.rotary_count() == 0) continue;
-    const Joints joints{Vec3(40, -30, 20), {0.7, 0.4}};
-    const TablePose good = chain.forward(joints, 100);
+    const machines::Joints joints{Vec3(40, -30, 20), {0.7, 0.4}};
+    const machines::TablePose good = chain.forward(joints, 100);
     for (std::size_t k = 0; k < chain.rotary_count(); ++k) {
-      KinematicChain bad = chain;
+      machines::KinematicChain bad = chain;
       (bad.in_table(k) ? bad.table[k] : bad.head[k - bad.table.size()]).sign *= -1;
-      const TablePose pose = bad.forward(joints, 100);
+      const machines::TablePose pose = bad.forward(joints, 100);
       EXPECT_GT((pose.tip_mm - good.tip_mm).norm() + 100 * (pose.axis - good.axis).norm(), 1e-3) << i << ' ' << k;
     }
-    const TablePose longer = chain.forward(joints, 100.25);
+    const machines::TablePose longer = chain.forward(joints, 100.25);
     EXPECT_LE((longer.tip_mm - (good.tip_mm - 0.25 * good.axis)).norm(), 1e-12);
   }
 }
 
 // One head axis: the nose swings on a circle of the pivot length (h = P e_z - P u_M).
 TEST(Forward, HeadAxisSwingsAboutItsPivot) {
-  KinematicChain chain = test::head_table('B');
+  machines::KinematicChain chain = test::head_table('B');
   chain.head[0].point_mm = Vec3(0, 0, 180);
   for (const double b : {-1.2, 0.0, 0.5}) {
     const Vec3 u(std::sin(b), 0, std::cos(b));
     const Vec3 expected = Vec3(10, 20, 30) + 180 * Vec3::UnitZ() - 180 * u - 75 * u;
-    const TablePose pose = chain.forward({Vec3(10, 20, 30), {0, b}}, 75);
+    const machines::TablePose pose = chain.forward({Vec3(10, 20, 30), {0, b}}, 75);
     EXPECT_LE((pose.tip_mm - expected).norm(), 1e-12 * 300);
     EXPECT_LE((pose.axis - u).norm(), 1e-15 * 4);
   }
@@ -287,47 +287,47 @@ TEST(Forward, HeadAxisSwingsAboutItsPivot) {
 
 // A positive command turns the tool positively about the axis relative to the work, in table and head alike.
 TEST(Forward, SenseOfIso841) {
-  for (const KinematicChain& chain : {ac_table(), test::head_head('A')}) {
-    const TablePose a = chain.forward({Vec3::Zero(), {0, 0.1}}, 100);
+  for (const machines::KinematicChain& chain : {ac_table(), test::head_head('A')}) {
+    const machines::TablePose a = chain.forward({Vec3::Zero(), {0, 0.1}}, 100);
     EXPECT_NEAR(a.axis.y(), -std::sin(0.1), 1e-15);  // Rot(x, +0.1) e_z
-    const TablePose c = chain.forward({Vec3::Zero(), {0.2, 0.1}}, 100);
+    const machines::TablePose c = chain.forward({Vec3::Zero(), {0.2, 0.1}}, 100);
     EXPECT_NEAR(std::atan2(c.axis.y(), c.axis.x()) - std::atan2(a.axis.y(), a.axis.x()), 0.2, 1e-14);
   }
 }
 
 TEST(Windings, EveryTurnInsideTheLimits) {
-  RotaryAxis c;
+  machines::RotaryAxis c;
   c.min_rad = radians(-720);
   c.max_rad = radians(370);
-  const auto all = windings(c, radians(5));
+  const auto all = machines::windings(c, radians(5));
   ASSERT_EQ(all.size(), 4u);
   for (std::size_t k = 0; k < all.size(); ++k) EXPECT_NEAR(degrees(all[k]), -715 + 360.0 * static_cast<double>(k), 1e-9);
-  EXPECT_EQ(windings(c, radians(5), radians(6)).size(), 2u);   // -715 and 365 lie within 6 deg of a limit
-  EXPECT_TRUE(windings(c, std::nan("")).empty());
+  EXPECT_EQ(machines::windings(c, radians(5), radians(6)).size(), 2u);   // -715 and 365 lie within 6 deg of a limit
+  EXPECT_TRUE(machines::windings(c, std::nan("")).empty());
   c.max_rad = radians(-721);
-  EXPECT_TRUE(windings(c, 0.0).empty());
+  EXPECT_TRUE(machines::windings(c, 0.0).empty());
 }
 
 TEST(Candidates, AllBranchesAndTurnsInsideTheLimitsAndNoOther) {
   std::mt19937_64 rng(5);
-  KinematicChain chain = ac_table(Vec3(3, -2, 0), Vec3(0, 12.5, -31.25));
+  machines::KinematicChain chain = ac_table(Vec3(3, -2, 0), Vec3(0, 12.5, -31.25));
   chain.table[0].min_rad = radians(-800), chain.table[0].max_rad = radians(700);
   chain.table[1].min_rad = radians(-110), chain.table[1].max_rad = radians(30);
   for (int i = 0; i < 2000; ++i) {
-    const TablePose pose{Vec3(20, 10, 5), random_axis(rng)};
+    const machines::TablePose pose{Vec3(20, 10, 5), random_axis(rng)};
     const auto found = chain.candidates(pose, 90);
     std::size_t expected = 0;
     const auto branches = chain.inverse(pose, 90);
-    for (const JointSolution& s : *branches)
+    for (const machines::JointSolution& s : *branches)
       for (int p = -5; p <= 5; ++p)
         for (int q = -5; q <= 5; ++q) {
-          Joints j = s.joints;
+          machines::Joints j = s.joints;
           j.rotary_rad[0] += 2 * kPi * p, j.rotary_rad[1] += 2 * kPi * q;
           if (chain.violations(j).empty()) ++expected;
         }
     ASSERT_EQ(found ? found->size() : 0u, expected);
     if (found)
-      for (const JointSolution& s : *found) {
+      for (const machines::JointSolution& s : *found) {
         EXPECT_TRUE(chain.violations(s.joints).empty());
         EXPECT_LE((chain.forward(s.joints, 90).tip_mm - pose.tip_mm).norm(), 1e-9);
       }
@@ -336,7 +336,7 @@ TEST(Candidates, AllBranchesAndTurnsInsideTheLimitsAndNoOther) {
 
 // What no branch reaches is named with value and limits, for both pairs.
 TEST(Candidates, UnreachablePoseNamesAxisValueAndLimit) {
-  KinematicChain chain = ac_table();
+  machines::KinematicChain chain = ac_table();
   chain.table[0].min_rad = radians(-360), chain.table[0].max_rad = radians(360);
   chain.table[1].min_rad = radians(-120), chain.table[1].max_rad = radians(30);
   const double a = radians(131.2);
@@ -352,20 +352,20 @@ TEST(Candidates, UnreachablePoseNamesAxisValueAndLimit) {
 }
 
 TEST(CheckChain, RefusesWhatNoInverseCanServe) {
-  KinematicChain chain = ac_table();
-  EXPECT_TRUE(check_chain(chain));
+  machines::KinematicChain chain = ac_table();
+  EXPECT_TRUE(machines::check_chain(chain));
   chain.table[1].direction = Vec3(0, 0, 2);
-  EXPECT_EQ(check_chain(chain).error().message, "direction of axis A has length 2, must be 1");
+  EXPECT_EQ(machines::check_chain(chain).error().message, "direction of axis A has length 2, must be 1");
   chain.table[1].direction = Vec3(0, 1e-9, -1).normalized();
-  EXPECT_EQ(check_chain(chain).error().message,
+  EXPECT_EQ(machines::check_chain(chain).error().message,
             "rotary axes C and A are parallel: the angle between them is 0.000000 deg, must be above 0.000057 deg");
   std::swap(chain.table[0], chain.table[1]);
   chain.table[0].direction = Vec3::UnitX();
-  EXPECT_EQ(check_chain(chain).error().message,
+  EXPECT_EQ(machines::check_chain(chain).error().message,
             "rotary axis C is parallel to the spindle and cannot tilt the tool: its angle to Z is 0.000000 deg, must be "
             "above 0.000057 deg");
-  chain.head = {RotaryAxis{}};
-  EXPECT_EQ(check_chain(chain).error().message, "a chain has at most 2 rotary axes, this one has 3");
+  chain.head = {machines::RotaryAxis{}};
+  EXPECT_EQ(machines::check_chain(chain).error().message, "a chain has at most 2 rotary axes, this one has 3");
 }
 
 }  // namespace

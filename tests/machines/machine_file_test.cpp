@@ -17,10 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 using test::damaged, test::replaced, test::kMachine, test::kMaxBytesForTest, test::TestDir;
 
-std::vector<std::string> shipped(MachineKind kind) {
+std::vector<std::string> shipped(machines::MachineKind kind) {
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(fs::path(TOOTHPATH_SOURCE_DIR) / "machines" / "data")) {
-    const auto found = machine_kind_of(entry.path().string());
+    const auto found = machines::machine_kind_of(entry.path().string());
     EXPECT_TRUE(found) << entry.path();
     if (found && *found == kind) files.push_back(entry.path().string());
   }
@@ -28,36 +28,36 @@ std::vector<std::string> shipped(MachineKind kind) {
   return files;
 }
 
-Machine load(const std::string& path) {
-  MachineReading reading = read_machine_file(path);
+machines::Machine load(const std::string& path) {
+  machines::MachineReading reading = machines::read_machine_file(path);
   EXPECT_TRUE(reading.machine) << to_text(reading.errors);
-  return reading.machine.value_or(Machine{});
+  return reading.machine.value_or(machines::Machine{});
 }
 
 TEST(ShippedMachines, EveryFileLoadsAndRoundTrips) {
-  const auto files = shipped(MachineKind::five_axis);
+  const auto files = shipped(machines::MachineKind::five_axis);
   ASSERT_GE(files.size(), 7u);
   std::mt19937_64 rng(11);
   for (const std::string& file : files) {
-    const Machine machine = load(file);
-    const KinematicChain& chain = machine.chain;
+    const machines::Machine machine = load(file);
+    const machines::KinematicChain& chain = machine.chain;
     EXPECT_EQ(chain.rotary_count(), 2u) << file;
     int reached = 0;
     for (int i = 0; i < 300; ++i) {
       // A pose inside the limits, then every solution for it.
-      Joints joints;
+      machines::Joints joints;
       std::uniform_real_distribution<double> unit(0.01, 0.99);
       for (std::size_t k = 0; k < 3; ++k)
         joints.linear_mm[static_cast<Eigen::Index>(k)] =
             chain.linear[k].min_mm + unit(rng) * (chain.linear[k].max_mm - chain.linear[k].min_mm);
       for (std::size_t k = 0; k < 2; ++k)
         joints.rotary_rad[k] = chain.rotary(k).min_rad + unit(rng) * (chain.rotary(k).max_rad - chain.rotary(k).min_rad);
-      const TablePose pose = chain.forward(joints, 110);
+      const machines::TablePose pose = chain.forward(joints, 110);
       const auto found = chain.candidates(pose, 110, machine.limit_margin);
       ASSERT_TRUE(found) << file << ": " << found.error().message;
       bool same = false;
-      for (const JointSolution& s : *found) {
-        const TablePose back = chain.forward(s.joints, 110);
+      for (const machines::JointSolution& s : *found) {
+        const machines::TablePose back = chain.forward(s.joints, 110);
         ASSERT_LE((back.axis - pose.axis).norm(), 1e-12);
         ASSERT_LE((back.tip_mm - pose.tip_mm).norm(), 1e-9);
         same = same || (std::abs(s.joints.rotary_rad[0] - joints.rotary_rad[0]) < 1e-7 &&
@@ -70,10 +70,10 @@ TEST(ShippedMachines, EveryFileLoadsAndRoundTrips) {
 }
 
 TEST(ShippedMachines, LargeTrunnionIsWhatItsFileSays) {
-  const Machine m = load(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml");
+  const machines::Machine m = load(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml");
   EXPECT_EQ(m.name, "XYZAC trunnion, large");
   EXPECT_EQ(m.dialect, "linuxcnc");
-  EXPECT_EQ(m.tcp, TcpMode::none);
+  EXPECT_EQ(m.tcp, machines::TcpMode::none);
   EXPECT_FALSE(m.assumed);
   EXPECT_EQ(m.max_simultaneous_axes, 5);
   EXPECT_EQ(m.max_spindle_speed, 24000);
@@ -95,25 +95,25 @@ TEST(ShippedMachines, LargeTrunnionIsWhatItsFileSays) {
 
 // Every value of the T-600S is a guess, and its report must be able to name each of them.
 TEST(ShippedMachines, T600sNamesEveryValueAsAssumed) {
-  const Machine m = load(TOOTHPATH_SOURCE_DIR "/machines/data/t600s.toml");
+  const machines::Machine m = load(TOOTHPATH_SOURCE_DIR "/machines/data/t600s.toml");
   EXPECT_TRUE(m.assumed);
   for (const char* key : {"dialect", "tcp", "max_simultaneous_axes", "spindle.max_speed", "limits.part_diameter",
                           "chain.table", "axes.X.min", "axes.A.point", "axes.C.point", "axes.A.sign"})
     EXPECT_EQ(std::count(m.assumed_keys.begin(), m.assumed_keys.end(), key), 1) << key;
-  EXPECT_EQ(check_part_fits(m, 900).error().message,
+  EXPECT_EQ(machines::check_part_fits(m, 900).error().message,
             "part diameter = 900.0000 mm exceeds 250.0000 mm, the largest that turns on T-600S");
-  EXPECT_TRUE(check_part_fits(m, 248));
+  EXPECT_TRUE(machines::check_part_fits(m, 248));
 }
 
 // Trunnion with ISO signs and its plate on top: a gear of 248 mm is reached all round with a vertical tool.
 TEST(ShippedMachines, T600sReachesAGearOf248mmAllRound) {
-  const Machine m = load(TOOTHPATH_SOURCE_DIR "/machines/data/t600s.toml");
+  const machines::Machine m = load(TOOTHPATH_SOURCE_DIR "/machines/data/t600s.toml");
   const Vec3 origin(0, 0, -240);  // gear frame on the C axis
   for (const double L : {100.0, 125.0, 150.0})
     for (const double z : {-21.0, -17.0, 40.0})
       for (int k = 0; k < 360; ++k) {
         const double t = 2 * kPi * k / 360;
-        const TablePose pose{origin + Vec3(126 * std::cos(t), 126 * std::sin(t), z), Vec3::UnitZ()};
+        const machines::TablePose pose{origin + Vec3(126 * std::cos(t), 126 * std::sin(t), z), Vec3::UnitZ()};
         for (const double c : {0.0, t}) {  // C at rest, or turning the place to the front
           const auto found = m.chain.candidates(pose, L, m.limit_margin, c);
           ASSERT_TRUE(found) << found.error().message;
@@ -123,7 +123,7 @@ TEST(ShippedMachines, T600sReachesAGearOf248mmAllRound) {
 }
 
 std::string messages(const std::string& text) {
-  const MachineReading reading = read_machine_text(text, "m.toml");
+  const machines::MachineReading reading = machines::read_machine_text(text, "m.toml");
   EXPECT_EQ(reading.machine.has_value(), reading.errors.empty());
   return to_text(reading.errors);
 }
@@ -146,14 +146,14 @@ INSTANTIATE_TEST_SUITE_P(Checklist, BadMachineFile, testing::ValuesIn(test::kBad
 // Which controls there are, and what they take, is the business of whoever judges the file: asked with what could be read, his complaints
 // stand in their place among those of the reader.
 TEST(MachineFile, AJudgeIsAskedAboutTheControl) {
-  const MachineJudge judge = [](const Machine& m) {
+  const machines::MachineJudge judge = [](const machines::Machine& m) {
     EXPECT_EQ(m.dialect, "any");
     return std::vector{fail_at(m.where("dialect"), "no"), fail_at(m.where("axes.C.max"), "too far")};
   };
   const std::string text = replaced(kMachine, "\"linuxcnc\"", "\"any\"");
   EXPECT_EQ(messages(text), "");
-  EXPECT_EQ(to_text(read_machine_text(text, "m.toml", judge).errors), "m.toml:4:11: error: no\nm.toml:49:7: error: too far\n");
-  EXPECT_EQ(to_text(read_machine_text(replaced(text, "max_speed = 24000", "max_speed = 0"), "m.toml", judge).errors),
+  EXPECT_EQ(to_text(machines::read_machine_text(text, "m.toml", judge).errors), "m.toml:4:11: error: no\nm.toml:49:7: error: too far\n");
+  EXPECT_EQ(to_text(machines::read_machine_text(replaced(text, "max_speed = 24000", "max_speed = 0"), "m.toml", judge).errors),
             "m.toml:4:11: error: no\nm.toml:10:13: error: spindle.max_speed = 0 must be above 0 1/min\nm.toml:49:7: error: too far\n");
 }
 
@@ -164,7 +164,7 @@ TEST(MachineFile, NulByteIsNoText) {
 }
 
 TEST(MachineFile, EmptyFileLacksEveryRequiredKey) {
-  const auto reading = read_machine_text("", "m.toml");
+  const auto reading = machines::read_machine_text("", "m.toml");
   ASSERT_EQ(reading.errors.size(), 11u) << to_text(reading.errors);
   EXPECT_EQ(reading.errors.front().text(), "m.toml:1:1: error: schema is missing");
 }
@@ -175,7 +175,7 @@ TEST(MachineFile, PivotInMetres) {
   text = replaced(text, "point = [0.0, 0.0, -285.0]", "pivot_length = 0.25");
   EXPECT_EQ(messages(text),
             "m.toml:38:16: error: axes.A.pivot_length = 0.25 mm is below 1 mm; lengths are in mm, not metres\n");
-  const auto good = read_machine_text(replaced(text, "0.25", "250"), "m.toml");
+  const auto good = machines::read_machine_text(replaced(text, "0.25", "250"), "m.toml");
   ASSERT_TRUE(good.machine);
   EXPECT_EQ(good.machine->chain.head.at(0).pivot_length_mm(), 250);
 }
@@ -183,10 +183,10 @@ TEST(MachineFile, PivotInMetres) {
 // The file of a shaper is refused as such, not for the keys that it cannot have.
 TEST(MachineFile, KindDecidesBeforeTheKeys) {
   const std::string data = TOOTHPATH_SOURCE_DIR "/machines/data/";
-  const auto shaper = read_machine_file(data + "y514.toml");
+  const auto shaper = machines::read_machine_file(data + "y514.toml");
   ASSERT_EQ(shaper.errors.size(), 1u);
   EXPECT_EQ(shaper.errors[0].message, "kind = \"gear_shaper\" is no milling machine; \"five_axis\" is needed here");
-  const auto mill = read_shaper_machine_file(data + "t600s.toml");
+  const auto mill = machines::read_shaper_machine_file(data + "t600s.toml");
   ASSERT_EQ(mill.errors.size(), 1u);
   EXPECT_EQ(mill.errors[0].message, "kind = \"five_axis\" is no gear shaper; \"gear_shaper\" is needed here");
 }
@@ -202,16 +202,16 @@ TEST(MachineFile, EveryComplaintIsCollected) {
 }
 
 TEST(MachineFile, AssumedMayBeAListOfKeysOrTables) {
-  const auto reading = read_machine_text(replaced(kMachine, "assumed = false", "assumed = [\"axes.A.point\", \"limits\"]"), "m");
+  const auto reading = machines::read_machine_text(replaced(kMachine, "assumed = false", "assumed = [\"axes.A.point\", \"limits\"]"), "m");
   ASSERT_TRUE(reading.machine) << to_text(reading.errors);
   EXPECT_TRUE(reading.machine->assumed);
   EXPECT_EQ(reading.machine->assumed_keys, (std::vector<std::string>{"axes.A.point", "limits"}));
-  const auto none = read_machine_text(replaced(kMachine, "assumed = false", "assumed = []"), "m");
+  const auto none = machines::read_machine_text(replaced(kMachine, "assumed = false", "assumed = []"), "m");
   EXPECT_FALSE(none.machine->assumed);
 }
 
 TEST(MachineFile, DirectionsAreNormalised) {
-  const auto reading = read_machine_text(replaced(kMachine, "direction = [1.0, 0.0, 0.0]", "direction = [0, 3, 3]"), "m");
+  const auto reading = machines::read_machine_text(replaced(kMachine, "direction = [1.0, 0.0, 0.0]", "direction = [0, 3, 3]"), "m");
   ASSERT_TRUE(reading.machine) << to_text(reading.errors);
   EXPECT_LE((reading.machine->chain.table[1].direction - Vec3(0, 1, 1).normalized()).norm(), 1e-15);
 }
@@ -219,7 +219,7 @@ TEST(MachineFile, DirectionsAreNormalised) {
 TEST(MachineFile, FilesThatCannotBeRead) {
   const TestDir dir;
   const auto error_of = [](const std::string& path) {
-    const auto reading = read_machine_file(path);
+    const auto reading = machines::read_machine_file(path);
     EXPECT_EQ(reading.errors.size(), 1u);
     EXPECT_EQ(reading.errors[0].kind, DiagnosticKind::file_access);
     return reading.errors[0].message;
@@ -240,28 +240,28 @@ TEST(MachineFile, DamagedFilesNeverCrash) {
   int refused = 0;
   for (int i = 0; i < 4000; ++i) {
     const std::string text = damaged(good, rng, 1 + i % 6, "0123456789.-=[]\"\n");
-    const auto reading = read_machine_text(text, "m.toml");
+    const auto reading = machines::read_machine_text(text, "m.toml");
     ASSERT_EQ(reading.machine.has_value(), reading.errors.empty());
     for (const Diagnostic& d : reading.errors) ASSERT_FALSE(d.message.empty());
     refused += !reading.errors.empty();
-    (void)read_shaper_machine_text(text, "m.toml");
+    (void)machines::read_shaper_machine_text(text, "m.toml");
   }
   EXPECT_GT(refused, 2000);
 }
 
 TEST(FindMachineFile, BesideTheJobFirstThenInstalled) {
   const TestDir dir;
-  const auto installed = find_machine_file("t600s.toml", dir.path());
+  const auto installed = machines::find_machine_file("t600s.toml", dir.path());
   ASSERT_TRUE(installed) << installed.error().message;
   EXPECT_TRUE(fs::equivalent(*installed, TOOTHPATH_SOURCE_DIR "/machines/data/t600s.toml"));
-  const auto in_folder = find_machine_file("machines/xyzac_large.toml", dir.path());
+  const auto in_folder = machines::find_machine_file("machines/xyzac_large.toml", dir.path());
   ASSERT_TRUE(in_folder);
   EXPECT_TRUE(fs::equivalent(*in_folder, TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml"));
   std::ofstream(dir / "t600s.toml") << "schema = 1\n";
-  const auto beside = find_machine_file("t600s.toml", dir.path());
+  const auto beside = machines::find_machine_file("t600s.toml", dir.path());
   ASSERT_TRUE(beside);
   EXPECT_TRUE(fs::equivalent(*beside, dir / "t600s.toml"));
-  const auto none = find_machine_file("no_such.toml", dir.path());
+  const auto none = machines::find_machine_file("no_such.toml", dir.path());
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().kind, DiagnosticKind::file_access);
   std::vector<std::string> files;
@@ -272,16 +272,16 @@ TEST(FindMachineFile, BesideTheJobFirstThenInstalled) {
   EXPECT_EQ(list.find("apt_free.toml, fanuc_ac.toml, "), 0u);
   EXPECT_EQ(none.error().message, "machine file \"no_such.toml\" is neither beside the job nor installed; installed are: " + list);
   // The ending may be left out, and a misspelt name brings the near one.
-  const auto plain = find_machine_file("xyzac_trt", dir.path());
+  const auto plain = machines::find_machine_file("xyzac_trt", dir.path());
   ASSERT_TRUE(plain) << plain.error().message;
   EXPECT_TRUE(fs::equivalent(*plain, TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_trt.toml"));
   for (const auto& [wrong, meant] : {std::pair{"t600.toml", "t600s.toml"}, {"fanuc_ca", "fanuc_ac.toml"}}) {
-    const auto refused = find_machine_file(wrong, dir.path());
+    const auto refused = machines::find_machine_file(wrong, dir.path());
     ASSERT_FALSE(refused) << wrong;
     EXPECT_NE(refused.error().message.find(std::string("installed; did you mean \"") + meant + "\"?; installed are: apt_free.toml,"), std::string::npos)
         << refused.error().message;
   }
-  EXPECT_FALSE(find_machine_file("../data/t600s.toml", dir.path()));  // installed files have plain names
+  EXPECT_FALSE(machines::find_machine_file("../data/t600s.toml", dir.path()));  // installed files have plain names
 }
 
 }  // namespace

@@ -18,14 +18,14 @@ const std::string kFile = TOOTHPATH_SOURCE_DIR "/machines/data/y514.toml";
 
 std::string text_of_y514() { return test::file_text(kFile); }
 
-ShaperMachine y514() {
-  const auto reading = read_shaper_machine_file(kFile);
+machines::ShaperMachine y514() {
+  const auto reading = machines::read_shaper_machine_file(kFile);
   EXPECT_TRUE(reading.machine) << to_text(reading.errors);
-  return reading.machine.value_or(ShaperMachine{});
+  return reading.machine.value_or(machines::ShaperMachine{});
 }
 
 TEST(ShaperMachine, Y514IsWhatItsFileSays) {
-  const ShaperMachine m = y514();
+  const machines::ShaperMachine m = y514();
   EXPECT_EQ(m.stroke_steps, (std::vector<double>{125, 179, 253, 359}));
   EXPECT_EQ(m.index_constant.numerator, 12);
   EXPECT_EQ(m.index_constant.denominator, 5);
@@ -41,7 +41,7 @@ TEST(ShaperMachine, Y514IsWhatItsFileSays) {
 
 // 12/5 * 25/88 = 15/22 must be met exactly by four wheels that mesh, each used once.
 TEST(ShaperMachine, Y514IndexesTheSampleGearExactly) {
-  const ShaperMachine m = y514();
+  const machines::ShaperMachine m = y514();
   const std::int64_t top = m.index_constant.numerator * 25, bottom = m.index_constant.denominator * 88;
   int exact = 0;
   bool textbook = false;
@@ -61,7 +61,7 @@ TEST(ShaperMachine, Y514IndexesTheSampleGearExactly) {
 
 // The sample: strokes along the cutter axis between sqrt(R^2 - E^2) -+ over-run, at the deepest and at full retract.
 TEST(ShaperMachine, Y514HoldsTheSampleGear) {
-  const ShaperMachine m = y514();
+  const machines::ShaperMachine m = y514();
   const double E = 15, over_run = 2.5, depth = 2.25 * 3;
   const double start = std::sqrt(147.0 * 147 - E * E) + over_run, end = std::sqrt(130.5 * 130.5 - E * E) - over_run;
   EXPECT_LE(start - end, m.max_stroke_mm);
@@ -83,7 +83,7 @@ TEST(ShaperMachine, Y514NamesItsAssumptions) {
 TEST(ShaperMachine, BadFilesAreRefusedWithTheirPlace) {
   const std::string good = text_of_y514();
   const auto message = [&good](const std::string& from, const std::string& to) {
-    return to_text(read_shaper_machine_text(replaced(good, from, to), "s.toml").errors);
+    return to_text(machines::read_shaper_machine_text(replaced(good, from, to), "s.toml").errors);
   };
   EXPECT_EQ(message("[125, 179", "[179, 125"),
             "s.toml:11:9: error: stroke.steps[1] = 125 must exceed the step before it, 179\n");

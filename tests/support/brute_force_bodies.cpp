@@ -10,8 +10,8 @@ Vec3 turned(const Vec3& p, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
 }
-Vec3 tip_of(const ToolMotion& m, double t) { return (1 - t) * m.tip_from + t * m.tip_to; }
-Vec3 axis_of(const ToolMotion& m, double t) { return ((1 - t) * m.axis_from + t * m.axis_to).normalized(); }
+Vec3 tip_of(const path::ToolMotion& m, double t) { return (1 - t) * m.tip_from + t * m.tip_to; }
+Vec3 axis_of(const path::ToolMotion& m, double t) { return ((1 - t) * m.axis_from + t * m.axis_to).normalized(); }
 
 double to_segment(const Vec2& q, const Vec2& a, const Vec2& b) {
   const Vec2 d = b - a;
@@ -32,7 +32,7 @@ double depth_in_body(const Vec3& p, const BruteBody& b, const Vec3& tip, const V
   return inside ? border : -border;
 }
 
-BruteForceBodies::BruteForceBodies(const FaceGear& gear, int rows, int columns) : gear_(gear), solid_(gear, 20, 20) {
+BruteForceBodies::BruteForceBodies(const face_gear::FaceGear& gear, int rows, int columns) : gear_(gear), solid_(gear, 20, 20) {
   const int zones = int(gear.rings().size());
   for (int zone = 0; zone < zones; ++zone)
     for (int patch = 0; patch < 9; ++patch) {
@@ -45,7 +45,7 @@ BruteForceBodies::BruteForceBodies(const FaceGear& gear, int rows, int columns) 
     }
 }
 
-std::vector<BruteDepth> BruteForceBodies::seeds(const BruteBody& body, const ToolMotion& m, int moments) const {
+std::vector<BruteDepth> BruteForceBodies::seeds(const BruteBody& body, const path::ToolMotion& m, int moments) const {
   // The teeth near the lower part of the tool; a body that leans reaches farther.
   const double pitch = gear_.pitch();
   const Vec3 low = tip_of(m, 0.5) + body.from * axis_of(m, 0.5);
@@ -69,12 +69,12 @@ std::vector<BruteDepth> BruteForceBodies::seeds(const BruteBody& body, const Too
   return seeds;
 }
 
-BruteDepth BruteForceBodies::sampled(const BruteBody& body, const ToolMotion& m, int moments) const {
+BruteDepth BruteForceBodies::sampled(const BruteBody& body, const path::ToolMotion& m, int moments) const {
   const auto all = seeds(body, m, moments);
   return all.empty() ? BruteDepth{} : all.front();
 }
 
-BruteDepth BruteForceBodies::deepest(const BruteBody& body, const ToolMotion& m, int moments, std::size_t most_starts) const {
+BruteDepth BruteForceBodies::deepest(const BruteBody& body, const path::ToolMotion& m, int moments, std::size_t most_starts) const {
   const auto all = seeds(body, m, moments);
   if (all.empty()) return {};
   // The best few, of different patches and teeth first.
@@ -92,7 +92,7 @@ BruteDepth BruteForceBodies::deepest(const BruteBody& body, const ToolMotion& m,
   return out;
 }
 
-BruteDepth BruteForceBodies::improved(const BruteBody& body, const ToolMotion& m, BruteDepth best, double first_step) const {
+BruteDepth BruteForceBodies::improved(const BruteBody& body, const path::ToolMotion& m, BruteDepth best, double first_step) const {
   const double pitch = gear_.pitch();
   const auto at = [&](double x, double y, double t) {
     BruteDepth d = best;

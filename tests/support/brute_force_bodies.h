@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "cam/tool_motion.h"
+#include "cam/path/tool_motion.h"
 #include "tests/support/brute_force_gear_solid.h"
 
 namespace toothpath::test {
@@ -26,15 +26,15 @@ struct BruteDepth {
 class BruteForceBodies {
  public:
   /// `rows` x `columns` boundary points a patch.
-  explicit BruteForceBodies(const FaceGear& gear, int rows = 16, int columns = 16);
+  explicit BruteForceBodies(const face_gear::FaceGear& gear, int rows = 16, int columns = 16);
 
   /// Deepest place over the whole motion, over `moments` + 1 moments and the teeth near the tool; the pattern search starts from up
   /// to `most_starts` places.
-  [[nodiscard]] BruteDepth deepest(const BruteBody& body, const ToolMotion& motion, int moments = 6, std::size_t most_starts = 8) const;
+  [[nodiscard]] BruteDepth deepest(const BruteBody& body, const path::ToolMotion& motion, int moments = 6, std::size_t most_starts = 8) const;
   /// Only the deepest sample, at `moments` + 1 moments: quick, and too shallow by what lies between the samples.
-  [[nodiscard]] BruteDepth sampled(const BruteBody& body, const ToolMotion& motion, int moments = 1) const;
+  [[nodiscard]] BruteDepth sampled(const BruteBody& body, const path::ToolMotion& motion, int moments = 1) const;
   /// The same from one place on: only the pattern search.
-  [[nodiscard]] BruteDepth improved(const BruteBody& body, const ToolMotion& motion, BruteDepth start, double first_step = 0.05) const;
+  [[nodiscard]] BruteDepth improved(const BruteBody& body, const path::ToolMotion& motion, BruteDepth start, double first_step = 0.05) const;
   [[nodiscard]] const BruteForceGearSolid& solid() const { return solid_; }
 
  private:
@@ -44,8 +44,8 @@ class BruteForceBodies {
     double x, y;
   };
   /// The deepest samples of every zone, patch, tooth and moment.
-  [[nodiscard]] std::vector<BruteDepth> seeds(const BruteBody& body, const ToolMotion& motion, int moments) const;
-  const FaceGear& gear_;
+  [[nodiscard]] std::vector<BruteDepth> seeds(const BruteBody& body, const path::ToolMotion& motion, int moments) const;
+  const face_gear::FaceGear& gear_;
   BruteForceGearSolid solid_;
   std::vector<Sample> samples_;
 };

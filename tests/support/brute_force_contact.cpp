@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/face_gear_inverse.h"
-#include "geometry/face_gear_limits.h"
+#include "geometry/face_gear/inverse.h"
+#include "geometry/face_gear/limits.h"
 
 namespace toothpath::test {
 namespace {
@@ -13,9 +13,9 @@ constexpr double kPiHere = 3.14159265358979323846;
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
-BruteForceContact::BruteForceContact(const FaceGear& gear, int zone, int side, int pinion_teeth, const Misalignment& moved)
+BruteForceContact::BruteForceContact(const face_gear::FaceGear& gear, int zone, int side, int pinion_teeth, const contact::Misalignment& moved)
     : side_(side), pinion_teeth_(pinion_teeth) {
-  const FaceGearRing& ring = gear.rings().at(std::size_t(zone));
+  const face_gear::FaceGearRing& ring = gear.rings().at(std::size_t(zone));
   const auto& f = ring.surface;
   const auto& parameters = gear.parameters();
   pitch_ = 2 * kPiHere / parameters.teeth;
@@ -28,13 +28,13 @@ BruteForceContact::BruteForceContact(const FaceGear& gear, int zone, int side, i
   azimuth_.resize(std::size_t(columns_ * rows_));
   for (int c = 0; c < columns_; ++c) {
     const double r = r_in_ + (r_out_ - r_in_) * c / (columns_ - 1);
-    low_.push_back(*fillet_line_height(f, side, r));
+    low_.push_back(*face_gear::fillet_line_height(f, side, r));
     top_.push_back(f.z_tip(r));
-    std::optional<FlankCoordinates> near;
+    std::optional<face_gear::FlankCoordinates> near;
     for (int k = 0; k < rows_; ++k) {
       const double z = low_.back() + (top_.back() - low_.back()) * k / (rows_ - 1);
-      near = invert_flank(f, side, r, z, near);
-      azimuth_[std::size_t(c * rows_ + k)] = near && near->theta >= 0 ? flank_azimuth(f, side, *near) : kNan;
+      near = face_gear::invert_flank(f, side, r, z, near);
+      azimuth_[std::size_t(c * rows_ + k)] = near && near->theta >= 0 ? face_gear::flank_azimuth(f, side, *near) : kNan;
     }
   }
 

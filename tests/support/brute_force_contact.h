@@ -4,14 +4,14 @@
 
 #include <vector>
 
-#include "geometry/face_gear.h"
-#include "geometry/pinion.h"
+#include "geometry/face_gear/gear.h"
+#include "geometry/contact/pinion.h"
 
 namespace toothpath::test {
 
 class BruteForceContact {
  public:
-  BruteForceContact(const FaceGear& gear, int zone, int side, int pinion_teeth, const Misalignment& moved = {});
+  BruteForceContact(const face_gear::FaceGear& gear, int zone, int side, int pinion_teeth, const contact::Misalignment& moved = {});
 
   /// Turn of the gear at which it lies on the pinion that has turned by phi_1: extreme over all points of both clouds and over the
   /// neighbouring teeth. Error about the sag of the clouds' meshes, 1e-7 rad.

@@ -10,13 +10,13 @@ namespace toothpath::test {
 
 using std::numbers::pi;
 
-BruteForceFaceGear::BruteForceFaceGear(const FaceGearParameters& gear, double beta) {
+BruteForceFaceGear::BruteForceFaceGear(const face_gear::FaceGearParameters& gear, double beta) {
   shaper_teeth_ = gear.shaper_teeth;
   ratio_ = double(gear.shaper_teeth) / gear.teeth;
   offset_ = gear.offset_mm;
   sin_gamma_ = std::sin(gear.shaft_angle_rad);
   cos_gamma_ = std::cos(gear.shaft_angle_rad);
-  const bool normal = gear.module_plane == ModulePlane::normal;
+  const bool normal = gear.module_plane == face_gear::ModulePlane::normal;
   const double m_t = normal ? gear.module_mm / std::cos(beta) : gear.module_mm;
   const double alpha_t = normal ? std::atan2(std::tan(gear.pressure_angle_rad), std::cos(beta)) : gear.pressure_angle_rad;
   const double r_p = 0.5 * m_t * gear.shaper_teeth;

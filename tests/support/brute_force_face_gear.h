@@ -3,13 +3,13 @@
 #pragma once
 
 #include "geometry/base/vec.h"
-#include "geometry/face_gear_parameters.h"
+#include "geometry/face_gear/parameters.h"
 
 namespace toothpath::test {
 
 class BruteForceFaceGear {
  public:
-  BruteForceFaceGear(const FaceGearParameters& gear, double helix_angle_rad);
+  BruteForceFaceGear(const face_gear::FaceGearParameters& gear, double helix_angle_rad);
 
   /// Distance of a point to the shaper at roll angle phi in the shaper's transverse plane, positive outside the shaper.
   /// Exact near the involute and the rounding; elsewhere of the right sign.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "geometry/face_gear_inverse.h"
+#include "geometry/face_gear/inverse.h"
 
 namespace toothpath::test {
 namespace {
@@ -17,11 +17,11 @@ double lookup(const std::vector<double>& y, double share) {
   return y[k] + (t - double(k)) * (y[k + 1] - y[k]);
 }
 
-Vec3 about_z(const Vec3& p, double angle) { return FaceGearSurface<double>::turned(p, angle); }
+Vec3 about_z(const Vec3& p, double angle) { return face_gear::FaceGearSurface<double>::turned(p, angle); }
 double azimuth(const Vec3& p) { return std::atan2(p.y(), p.x()); }
 
 /// Section Z whose root circle has radius r.
-double root_section(const FaceGearSurface<double>& f, double r) {
+double root_section(const face_gear::FaceGearSurface<double>& f, double r) {
   double lo = 1e-3, hi = 4 * r;
   for (int k = 0; k < 200 && hi - lo > 1e-14 * r; ++k) {
     const double m = 0.5 * (lo + hi);
@@ -37,21 +37,21 @@ const char* BruteForceGearSolid::name(int patch) {
   return names[patch];
 }
 
-BruteForceGearSolid::BruteForceGearSolid(const FaceGear& gear, int rows, int columns)
+BruteForceGearSolid::BruteForceGearSolid(const face_gear::FaceGear& gear, int rows, int columns)
     : gear_(gear), rows_(rows), columns_(columns), pitch_(gear.pitch()) {
   for (const auto& source : gear.rings()) {
     Ring ring{source, source.zone.inner_radius_mm, source.zone.outer_radius_mm, {}, {}, {}, {}, {}, {}};
     const auto& f = source.surface;
-    std::optional<FlankCoordinates> last[2];
+    std::optional<face_gear::FlankCoordinates> last[2];
     for (int k = 0; k < kTable; ++k) {
       const double r = ring.r_in + (ring.r_out - ring.r_in) * k / (kTable - 1);
       for (int n = 0; n < 2; ++n) {
         const int side = n == 0 ? 1 : -1;
-        last[n] = invert_flank(f, side, r, f.z_tip(r), last[n]);
+        last[n] = face_gear::invert_flank(f, side, r, f.z_tip(r), last[n]);
         if (!last[n]) throw std::runtime_error("the flank does not reach the tip");
         ring.theta_tip[n].push_back(last[n]->theta);
         ring.B_mid[n].push_back(last[n]->B);
-        ring.az_tip[n].push_back(flank_azimuth(f, side, *last[n]) + (n == 0 ? 0 : pitch_));
+        ring.az_tip[n].push_back(face_gear::flank_azimuth(f, side, *last[n]) + (n == 0 ? 0 : pitch_));
       }
       ring.Z_root.push_back(root_section(f, r));
     }
@@ -93,7 +93,7 @@ Vec3 BruteForceGearSolid::at(const Ring& ring, int patch, double x, double y) co
       const int n = patch == 0 ? 0 : 1, side = n == 0 ? 1 : -1;
       const double share = patch == 0 ? x : 1 - x;  // from the tip to the fillet
       const double tip = lookup(ring.theta_tip[n], y), theta = tip + share * (w.theta_t - tip);
-      const auto B = flank_B_at_radius(f, side, theta, r, lookup(ring.B_mid[n], y));
+      const auto B = face_gear::flank_B_at_radius(f, side, theta, r, lookup(ring.B_mid[n], y));
       if (!B) throw std::runtime_error("the flank ends inside the ring");
       return about_z(f.flank(side, theta, *B).p, n == 0 ? 0.0 : pitch_);
     }
@@ -102,7 +102,7 @@ Vec3 BruteForceGearSolid::at(const Ring& ring, int patch, double x, double y) co
       const int side = patch == 1 ? 1 : -1;
       const double share = patch == 1 ? x : 1 - x;
       const double A = w.A_t + share * (w.A_e - w.A_t);
-      const auto Z = fillet_Z_at_radius(f, side, A, r, lookup(ring.Z_root, y));
+      const auto Z = face_gear::fillet_Z_at_radius(f, side, A, r, lookup(ring.Z_root, y));
       if (!Z) throw std::runtime_error("the fillet ends inside the ring");
       return about_z(f.fillet(side, A, *Z).p, patch == 1 ? 0.0 : pitch_);
     }

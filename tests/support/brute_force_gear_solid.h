@@ -1,11 +1,11 @@
 // The finished face gear once more, the plain way: every surface sampled densely, the nearest sample improved by a pattern
-// search that only evaluates points. Shares the kernels of geometry/face_gear_surface.h with the program, and nothing of cam.
+// search that only evaluates points. Shares the kernels of geometry/face_gear/surface.h with the program, and nothing of cam.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "geometry/face_gear.h"
+#include "geometry/face_gear/gear.h"
 
 namespace toothpath::test {
 
@@ -19,7 +19,7 @@ struct BruteNearest {
 class BruteForceGearSolid {
  public:
   /// `rows` x `columns` samples a patch.
-  explicit BruteForceGearSolid(const FaceGear& gear, int rows = 40, int columns = 60);
+  explicit BruteForceGearSolid(const face_gear::FaceGear& gear, int rows = 40, int columns = 60);
 
   [[nodiscard]] BruteNearest nearest(const Vec3& c) const;
   /// Is c inside the material? Decided on the profile at its radius; not to be trusted within 1e-4 mm of the surface.
@@ -35,7 +35,7 @@ class BruteForceGearSolid {
  private:
   static constexpr int kTable = 2049;
   struct Ring {
-    FaceGearRing ring;
+    face_gear::FaceGearRing ring;
     double r_in = 0, r_out = 0;
     std::vector<double> theta_tip[2];   // over r: roll parameter at the tip surface, +1 of tooth 0 and -1
     std::vector<double> az_tip[2];      // over r: azimuths of the tip edges of space 0
@@ -47,7 +47,7 @@ class BruteForceGearSolid {
   [[nodiscard]] Vec3 at(const Ring& ring, int patch, double x, double y) const;
   [[nodiscard]] std::vector<Vec2> profile_at(const Ring& ring, double r, int count) const;
 
-  const FaceGear& gear_;
+  const face_gear::FaceGear& gear_;
   int rows_, columns_;
   double pitch_;
   std::vector<Ring> rings_;

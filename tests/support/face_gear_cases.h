@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "geometry/base/angle.h"
-#include "geometry/face_gear_inverse.h"
-#include "geometry/face_gear_limits.h"
+#include "geometry/face_gear/inverse.h"
+#include "geometry/face_gear/limits.h"
 
 namespace toothpath::test {
 
@@ -25,12 +25,12 @@ struct FaceGearCase {
   double involute_start[2] = {};  // R1b
   double pointing = 0, land = 0;  // R2, R2'
 
-  [[nodiscard]] FaceGearParameters parameters() const {
-    FaceGearParameters g;
+  [[nodiscard]] face_gear::FaceGearParameters parameters() const {
+    face_gear::FaceGearParameters g;
     g.teeth = teeth;
     g.shaper_teeth = shaper_teeth;
     g.module_mm = module_mm;
-    g.module_plane = transverse ? ModulePlane::transverse : ModulePlane::normal;
+    g.module_plane = transverse ? face_gear::ModulePlane::transverse : face_gear::ModulePlane::normal;
     g.pressure_angle_rad = radians(alpha_deg);
     g.addendum_coefficient = addendum;
     g.shaft_angle_rad = radians(gamma_deg);
@@ -40,8 +40,8 @@ struct FaceGearCase {
   }
   [[nodiscard]] double beta() const { return radians(beta_deg); }
   template <typename S = double>
-  [[nodiscard]] FaceGearSurface<S> surface() const {
-    return make_surface<S>(parameters(), beta());
+  [[nodiscard]] face_gear::FaceGearSurface<S> surface() const {
+    return face_gear::make_surface<S>(parameters(), beta());
   }
 };
 /// Name of a parameterized test.
@@ -91,21 +91,21 @@ struct FlankSample {
 };
 
 /// Points of both flanks between the limits (R1 .. R2'), fillet line and tip surface, edges left out by a hair.
-inline std::vector<FlankSample> trimmed_flank(const FaceGearSurface<double>& f, double module_mm, int radii, int heights) {
+inline std::vector<FlankSample> trimmed_flank(const face_gear::FaceGearSurface<double>& f, double module_mm, int radii, int heights) {
   std::vector<FlankSample> samples;
-  const auto limits = zone_limits(f, module_mm);
+  const auto limits = face_gear::zone_limits(f, module_mm);
   if (!limits.land_radius || *limits.land_radius <= limits.inner_limit) return samples;
   const double hair = 1e-3 * module_mm;
   for (int n = 0; n < radii; ++n) {
     const double t = radii > 1 ? double(n) / (radii - 1) : 0.5;
     const double r = (limits.inner_limit + hair) * (1 - t) + *limits.land_radius * t;
     for (const int side : {1, -1}) {
-      const auto low = fillet_line_height(f, side, r);
+      const auto low = face_gear::fillet_line_height(f, side, r);
       if (!low) continue;
       const double top = f.z_tip(r);
       for (int k = 0; k < heights; ++k) {
         const double z = *low + hair + (top - *low - hair) * (heights > 1 ? double(k) / (heights - 1) : 0.5);
-        if (const auto at = invert_flank(f, side, r, z)) samples.push_back({side, at->theta, at->B});
+        if (const auto at = face_gear::invert_flank(f, side, r, z)) samples.push_back({side, at->theta, at->B});
       }
     }
   }
@@ -130,10 +130,10 @@ inline std::vector<FaceGearCase> random_cases(unsigned seed, int count) {
     c.transverse = generator() % 2 == 0;
     c.offset_mm = between(-0.12, 0.12) * c.module_mm * c.teeth;
     const auto p = c.parameters();
-    if (!check_shaper(p, c.beta())) continue;
+    if (!face_gear::check_shaper(p, c.beta())) continue;
     c.tip_radius_mm = between(0, 0.8) * largest_tip_radius(p, c.beta());
     const auto f = c.surface();
-    const auto limits = zone_limits(f, c.module_mm);
+    const auto limits = face_gear::zone_limits(f, c.module_mm);
     if (!limits.land_radius || *limits.land_radius < limits.inner_limit + c.module_mm) continue;
     c.name = "random_" + std::to_string(seed) + "_" + std::to_string(cases.size());
     cases.push_back(c);

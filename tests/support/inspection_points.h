@@ -3,14 +3,14 @@
 
 #include <vector>
 
-#include "geometry/face_gear.h"
-#include "geometry/inspection_grid.h"
+#include "geometry/face_gear/gear.h"
+#include "geometry/inspection/grid.h"
 
 namespace toothpath::test {
 
 /// rows x columns points of every flank.
-inline std::vector<InspectionPoint> grid_of(const FaceGear& gear, int rows, int columns) {
-  InspectionOptions options;
+inline std::vector<inspection::InspectionPoint> grid_of(const face_gear::FaceGear& gear, int rows, int columns) {
+  inspection::InspectionOptions options;
   options.rows = rows;
   options.columns = columns;
   return *inspection_grid(gear, options);

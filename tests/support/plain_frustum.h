@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cam/tool_body.h"
+#include "cam/tool/body.h"
 
 namespace toothpath::test {
 
 /// Distance from a point to a solid frustum with its tip at `tip` and unit axis `axis`; 0 inside.
-inline double distance_to_frustum(const Vec3& point, const Frustum& f, const Vec3& tip, const Vec3& axis) {
+inline double distance_to_frustum(const Vec3& point, const tool::Frustum& f, const Vec3& tip, const Vec3& axis) {
   const Vec3 d = point - tip;
   const double h = d.dot(axis), rho = (d - h * axis).norm();
   // In the half plane (rho, h): a convex quadrilateral between the axis and the generator.
@@ -29,7 +29,7 @@ inline double distance_to_frustum(const Vec3& point, const Frustum& f, const Vec
 
 /// Least distance between a triangle and a frustum, from below, or `best` where that is less: the triangle is halved until its size is
 /// `resolution` or can matter no more. A triangle that cuts in: -resolution.
-inline double triangle_gap(const Vec3& a, const Vec3& b, const Vec3& c, const Frustum& f, const Vec3& tip, const Vec3& axis, double best,
+inline double triangle_gap(const Vec3& a, const Vec3& b, const Vec3& c, const tool::Frustum& f, const Vec3& tip, const Vec3& axis, double best,
                            double resolution, int depth) {
   if (best <= -resolution) return best;  // inside: how deep does not matter
   const Vec3 centre = (a + b + c) / 3;

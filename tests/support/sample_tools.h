@@ -1,13 +1,13 @@
 // Tools that tests and benches share.
 #pragma once
 
-#include "cam/cutter.h"
+#include "cam/tool/assembly.h"
 
 namespace toothpath::test {
 
 /// Tool 1, a ball mill 80 mm long; its holder is a cylinder of 30 mm under a wider one.
-inline ToolAssembly ball_mill(double diameter, double flute, double shank, double stick_out, double holder) {
-  ToolAssembly t;
+inline tool::ToolAssembly ball_mill(double diameter, double flute, double shank, double stick_out, double holder) {
+  tool::ToolAssembly t;
   t.number = 1;
   t.diameter_mm = diameter;
   t.flute_length_mm = flute;
@@ -19,8 +19,8 @@ inline ToolAssembly ball_mill(double diameter, double flute, double shank, doubl
 }
 
 /// A ball of 2 mm whose holder begins in a cone 9 mm above the tip: near meshes every body of it counts.
-inline ToolAssembly stubby_mill() {
-  ToolAssembly t;
+inline tool::ToolAssembly stubby_mill() {
+  tool::ToolAssembly t;
   t.diameter_mm = 2;
   t.flute_length_mm = 4;
   t.shank_diameter_mm = 1.8;

@@ -8,9 +8,9 @@
 #include "geometry/base/hash.h"
 #include "postproc/controls/apt/apt_reader.h"
 #include "postproc/controls/control.h"
-#include "postproc/fixed_point.h"
-#include "postproc/nc_lines.h"
-#include "postproc/nc_writer.h"
+#include "postproc/numbers/fixed_point.h"
+#include "postproc/text/lines.h"
+#include "postproc/text/writer.h"
 
 namespace toothpath::controls {
 namespace {
@@ -20,18 +20,18 @@ constexpr std::size_t kLongestTip = 34;  // 72 characters less the longest axis
 
 class AptWriter {
  public:
-  AptWriter(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) : program_(program), dialect_(dialect), out_(dialect), header_(header) {}
+  AptWriter(const joints::AxisProgram& program, const text::NcDialect& dialect, const text::NcHeader& header) : program_(program), dialect_(dialect), out_(dialect), header_(header) {}
 
-  Result<NcText> write() {
-    if (header_.coolant != Coolant::off) {
-      auto words = coolant_words(dialect_, header_.coolant);
+  Result<text::NcText> write() {
+    if (header_.coolant != machines::Coolant::off) {
+      auto words = text::coolant_words(dialect_, header_.coolant);
       if (!words) return words.error();
       coolant_ = std::move(*words);
     }
     out_.line("MULTAX/ON");
     for (const auto& op : program_.operations) {
       out_.comment(fmt::format("OP {} {}", op.operation, op.type));
-      out_.line(fmt::format("LOADTL/{},LENGTH,{}", op.tool_number, number(to_fixed(op.tool_length_mm, 4), 4)));
+      out_.line(fmt::format("LOADTL/{},LENGTH,{}", op.tool_number, number(numbers::to_fixed(op.tool_length_mm, 4), 4)));
       out_.line(fmt::format("SPINDL/RPM,{},CLW", std::llround(op.spindle_rpm)));
       if (coolant_) out_.line(coolant_->on);
       feed_ = -1;
@@ -51,13 +51,13 @@ class AptWriter {
  private:
   static std::string number(std::int64_t scaled, int decimals) {
     std::string s;
-    append_fixed(s, scaled, decimals, true);
+    numbers::append_fixed(s, scaled, decimals, true);
     return s;
   }
 
-  void block(const AxisBlock& b) {
+  void block(const joints::AxisBlock& b) {
     if (!b.tip) return;  // before the tool is over the part, and after it has left
-    if (b.kind == BlockKind::feed)
+    if (b.kind == joints::BlockKind::feed)
       feedrate(b);
     else
       out_.line("RAPID");
@@ -65,7 +65,7 @@ class AptWriter {
     std::size_t begin = text.size();
     text += "GOTO/";
     for (std::size_t i = 0; i < 3; ++i) {
-      append_fixed(text, b.words[i], program_.format.linear_decimals, true);
+      numbers::append_fixed(text, b.words[i], program_.format.linear_decimals, true);
       text += ',';
     }
     if (text.size() - begin > kLongestTip) {  // 72 characters: the axis goes on in the next line
@@ -74,36 +74,36 @@ class AptWriter {
       begin = text.size();
     }
     for (int i = 0; i < 3; ++i) {
-      append_fixed(text, to_fixed(b.axis[i], kAxisDecimals), kAxisDecimals, true);
+      numbers::append_fixed(text, numbers::to_fixed(b.axis[i], kAxisDecimals), kAxisDecimals, true);
       if (i < 2) text += ',';
     }
     out_.end_line(begin, true);
   }
 
-  void feedrate(const AxisBlock& b) {
-    const std::int64_t scaled = b.per_minute < 9e8 ? to_fixed_down(b.per_minute * (1 + 1e-12), 6) : 0;
+  void feedrate(const joints::AxisBlock& b) {
+    const std::int64_t scaled = b.per_minute < 9e8 ? numbers::to_fixed_down(b.per_minute * (1 + 1e-12), 6) : 0;
     if (scaled == feed_ && scaled > 0) return;
     if (scaled <= 0) error_ = fail("record {}: feed {} cannot be printed", b.record, b.per_minute);
     feed_ = scaled;
     out_.line(fmt::format("FEDRAT/{},MMPM", number(scaled, 6)));
   }
 
-  Result<NcText> assemble() {
-    NcText result;
+  Result<text::NcText> assemble() {
+    text::NcText result;
     result.body_hash = fnv1a(out_.text());
     result.blocks = out_.blocks() + 4;
     const std::string body = std::move(out_.text());
     out_.text().clear();
-    out_.line(fmt::format("PARTNO/{}", program_id(header_.job_name)));
+    out_.line(fmt::format("PARTNO/{}", text::program_id(header_.job_name)));
     out_.line("UNITS/MM");
-    out_.comment(comment_text("JOB " + header_.job_name));
-    out_.comment(comment_text("MACHINE " + header_.machine_name));
+    out_.comment(text::comment_text("JOB " + header_.job_name));
+    out_.comment(text::comment_text("MACHINE " + header_.machine_name));
     const std::string hash = fmt::format("HASH {:016X} BLOCKS {}", result.body_hash, result.blocks);
     out_.comment(hash);
     out_.comment("TIP AND TOOL AXIS IN WORK COORDINATES");
-    for (const auto& line : order_comments(program_)) out_.comment(line);
+    for (const auto& line : text::order_comments(program_)) out_.comment(line);
     if (!header_.assumed.empty()) out_.comment("WARNING, ASSUMED AND NOT MEASURED:");
-    for (const auto& a : header_.assumed) out_.comment(comment_text("ASSUMED " + a));
+    for (const auto& a : header_.assumed) out_.comment(text::comment_text("ASSUMED " + a));
     out_.text() += body;
     out_.comment(hash);
     out_.line("END");
@@ -113,21 +113,21 @@ class AptWriter {
     return result;
   }
 
-  const AxisProgram& program_;
-  const NcDialect& dialect_;
-  NcLines out_;
-  const NcHeader& header_;
-  std::optional<CoolantWords> coolant_;
+  const joints::AxisProgram& program_;
+  const text::NcDialect& dialect_;
+  text::NcLines out_;
+  const text::NcHeader& header_;
+  std::optional<machines::CoolantWords> coolant_;
   std::int64_t feed_ = -1;
   std::optional<Diagnostic> error_;
 };
 
-Result<NcText> write_apt(const AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
+Result<text::NcText> write_apt(const joints::AxisProgram& program, const text::NcDialect& dialect, const text::NcHeader& header) {
   return AptWriter(program, dialect, header).write();
 }
 
-NcDialect words() {
-  NcDialect d;
+text::NcDialect words() {
+  text::NcDialect d;
   d.name = "apt";
   d.extension = ".apt";
   d.format = {.linear_decimals = 6, .rotary_decimals = 7};
@@ -137,7 +137,7 @@ NcDialect words() {
   d.tcp_on = d.tcp_off = {"MULTAX/ON"};
   d.tcp_starts_at_zero = true;
   d.vector_words = {"I", "J", "K"};
-  d.coolant = {{Coolant::mist, {"COOLNT/MIST", "COOLNT/OFF"}}, {Coolant::flood, {"COOLNT/FLOOD", "COOLNT/OFF"}}};
+  d.coolant = {{machines::Coolant::mist, {"COOLNT/MIST", "COOLNT/OFF"}}, {machines::Coolant::flood, {"COOLNT/FLOOD", "COOLNT/OFF"}}};
   d.takes_coolant = false;
   d.write = write_apt;
   return d;
@@ -148,6 +148,6 @@ bool has_offset(std::string_view) { return true; }
 
 }  // namespace
 
-Control apt() { return {words(), {"cldata"}, {"any: the data do not name it", has_offset}, execute_apt}; }
+Control apt() { return {words(), {"cldata"}, {"any: the data do not name it", has_offset}, execute_apt, true}; }
 
 }  // namespace toothpath::controls

@@ -4,17 +4,17 @@
 
 #include <cmath>
 
-#include "postproc/nc_execution.h"
-#include "postproc/nc_scanner.h"
+#include "postproc/readback/execution.h"
+#include "postproc/readback/scanner.h"
 
 namespace toothpath::controls {
 namespace {
 
 class AptReader {
  public:
-  AptReader(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink)
-      : file_(file), control_(control), lines_(lines_of(text)), execution_(control, {}, sink) {
-    execution_.set_feed_mode(NcExecution::Feed::per_minute);
+  AptReader(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink)
+      : file_(file), control_(control), lines_(readback::lines_of(text)), execution_(control, {}, sink) {
+    execution_.set_feed_mode(readback::NcExecution::Feed::per_minute);
   }
 
   Status run() {
@@ -34,17 +34,17 @@ class AptReader {
     return {DiagnosticKind::refused_input, {file_, static_cast<int>(line), column}, std::move(message)};
   }
   Diagnostic here(int column, std::string message) const { return place(line_ + 1, column, std::move(message)); }
-  Problem placed(NcExecution::Problem problem) const {
+  Problem placed(readback::NcExecution::Problem problem) const {
     if (!problem) return std::nullopt;
     return here(1, std::move(*problem));
   }
 
   Problem execute(std::string_view text) {
-    NcScanner s(text);
+    readback::NcScanner s(text);
     if (s.done()) return std::nullopt;
     if (s.take("$$")) {
-      if (const int op = comment_label(s.rest(), "OP "); op >= 0) execution_.begin_operation(op);
-      if (const int tooth = comment_label(s.rest(), "TOOTH "); tooth >= 0) execution_.begin_tooth(tooth);
+      if (const int op = readback::comment_label(s.rest(), "OP "); op >= 0) execution_.begin_operation(op);
+      if (const int tooth = readback::comment_label(s.rest(), "TOOTH "); tooth >= 0) execution_.begin_tooth(tooth);
       return std::nullopt;
     }
     if (s.take("PARTNO/")) return std::nullopt;
@@ -54,7 +54,7 @@ class AptReader {
     return bad;
   }
 
-  Problem statement(NcScanner& s, int column) {
+  Problem statement(readback::NcScanner& s, int column) {
     if (s.take("GOTO/")) return go_to(s);
     if (s.take("RAPID")) return rapid_ = true, std::nullopt;
     if (s.take("FEDRAT/")) return feedrate(s, column);
@@ -76,14 +76,14 @@ class AptReader {
     return here(column, "the statement is not in the subset");
   }
 
-  Problem feedrate(NcScanner& s, int column) {
+  Problem feedrate(readback::NcScanner& s, int column) {
     const auto v = s.number();
     if (!v || !s.take(",MMPM")) return here(s.column(), "FEDRAT/feed,MMPM expected");
     if (!(*v > 0)) return here(column, "FEDRAT must be above 0");
     return placed(execution_.set_feed(*v));
   }
 
-  Problem load(NcScanner& s, int column) {
+  Problem load(readback::NcScanner& s, int column) {
     const auto n = s.number();
     if (!n || !s.take(",LENGTH,")) return here(s.column(), "LOADTL/number,LENGTH,length expected");
     const auto length = s.number();
@@ -93,7 +93,7 @@ class AptReader {
       return here(column, fmt::format("LENGTH {} differs from {}, the tool's in the job", *length, known->second));
     if (control_.work_offsets.size() != 1) return here(column, "one work offset is needed");
     if (auto bad = placed(execution_.tcp_off())) return bad;
-    NcExecution::Move top;
+    readback::NcExecution::Move top;
     top.rapid = top.machine_frame = true;
     top.has.fill(true);
     top.axis[2] = control_.top_mm;
@@ -107,7 +107,7 @@ class AptReader {
     return placed(execution_.tcp_on());
   }
 
-  Problem go_to(NcScanner& s) {
+  Problem go_to(readback::NcScanner& s) {
     std::array<double, 6> v{};
     for (std::size_t i = 0; i < 6; ++i) {
       const auto n = s.number();
@@ -117,10 +117,10 @@ class AptReader {
       if (s.at() != '$') continue;
       s.advance(1);
       if (!s.done() || line_ + 1 >= lines_.size()) return here(s.column(), "nothing may stand behind $, and a line must follow");
-      s = NcScanner(lines_[++line_]);
+      s = readback::NcScanner(lines_[++line_]);
     }
     if (!execution_.tcp()) return here(1, "GOTO before LOADTL");
-    NcExecution::Move m;
+    readback::NcExecution::Move m;
     for (std::size_t a = 0; a < 3; ++a) {
       m.has[a] = true;
       m.axis[a] = v[a];
@@ -130,19 +130,19 @@ class AptReader {
     rapid_ = false;
     return move(m);
   }
-  Problem move(const NcExecution::Move& m) { return placed(execution_.move(m, static_cast<std::int32_t>(line_) + 1)); }
+  Problem move(const readback::NcExecution::Move& m) { return placed(execution_.move(m, static_cast<std::int32_t>(line_) + 1)); }
 
   const std::string& file_;
-  const NcControl& control_;
+  const readback::NcControl& control_;
   std::vector<std::string_view> lines_;
-  NcExecution execution_;
+  readback::NcExecution execution_;
   std::size_t line_ = 0;
   bool rapid_ = false, ended_ = false;
 };
 
 }  // namespace
 
-Status execute_apt(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+Status execute_apt(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
   return AptReader(text, file, control, sink).run();
 }
 

@@ -3,7 +3,7 @@
 // the table frame is frozen.
 #include "postproc/controls/fanuc/fanuc.h"
 
-#include "postproc/work_offset.h"
+#include "postproc/controls/work_offset.h"
 
 namespace toothpath::controls {
 namespace {
@@ -15,15 +15,15 @@ bool has_offset(std::string_view name) {
   return basic_offset(name) > 0 || (n >= 1 && n <= kLastExtended);
 }
 
-Status execute(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
-  static const IsoLanguage language = fanuc_language();
+Status execute(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
+  static const readback::IsoLanguage language = fanuc_language();
   return execute_iso(text, file, control, sink, language);
 }
 
 }  // namespace
 
-NcDialect fanuc_words() {
-  NcDialect d;
+text::NcDialect fanuc_words() {
+  text::NcDialect d;
   d.name = "fanuc";
   d.extension = ".nc";
   d.format = {.linear_decimals = 3, .rotary_decimals = 3};
@@ -44,14 +44,14 @@ NcDialect fanuc_words() {
   d.tcp_starts_at_zero = true;
   d.tcp_note = "TCP G43.4 FROM ROTARY ZERO, PARAMETERS 19696#5 WKP=0, 1401#1 LRP=1";
   d.takes_smoothing = true;  // G5.1 Q1 and the like state no bound of their own
-  d.loop.form = NcLoop::Form::stretches;
-  d.rollover.way = NcRollover::Way::shortest;
+  d.loop.form = text::NcLoop::Form::stretches;
+  d.rollover.way = text::NcRollover::Way::shortest;
   d.rollover.note = "{axis} ROLLS OVER: PARAMETERS 1008#0 ROA=1, 1008#1 RAB=0, 1260=360.";
   return d;
 }
 
-IsoLanguage fanuc_language() {
-  IsoLanguage l;
+readback::IsoLanguage fanuc_language() {
+  readback::IsoLanguage l;
   l.g_tenths = {434, 690};
   l.extended = {.tenths = 541, .last = kLastExtended};
   l.rules.tcp_needs_zero = true;

@@ -1,15 +1,15 @@
 // Haas NGC: the words of Fanuc with G154 for further work offsets and M88, M89 for coolant through the spindle. Teeth are written out: what M98
 // finds depends on settings of the control. G234 and rotaries that roll over are left out; their jobs are refused.
 #include "postproc/controls/fanuc/fanuc.h"
-#include "postproc/work_offset.h"
+#include "postproc/controls/work_offset.h"
 
 namespace toothpath::controls {
 namespace {
 
 constexpr int kLastExtended = 99;  // G154 P
 
-NcDialect words() {
-  NcDialect d = fanuc_words();
+text::NcDialect words() {
+  text::NcDialect d = fanuc_words();
   d.name = "haas";
   d.frame_begin = {"%", "O0{number} ({name})"};  // five digits
   d.tcp_on.clear();
@@ -18,14 +18,14 @@ NcDialect words() {
   d.tcp_note.clear();
   d.loop = {};
   d.rollover = {};
-  d.coolant = {{Coolant::flood, {"M8", "M9"}}, {Coolant::through_spindle, {"M88", "M89"}}};
+  d.coolant = {{machines::Coolant::flood, {"M8", "M9"}}, {machines::Coolant::through_spindle, {"M88", "M89"}}};
   d.own_m = {{0, 6}, {10, 19}, {30, 49}, {75, 82}, {85, 87}, {95, 199}};
   return d;
 }
 
-const IsoLanguage& language() {
-  static const IsoLanguage l = [] {
-    IsoLanguage haas;
+const readback::IsoLanguage& language() {
+  static const readback::IsoLanguage l = [] {
+    readback::IsoLanguage haas;
     haas.g_tenths = {690};
     haas.coolant_m = {8, 9, 88, 89};
     haas.extended = {.tenths = 1540, .last = kLastExtended};
@@ -34,7 +34,7 @@ const IsoLanguage& language() {
   return l;
 }
 
-Status execute(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+Status execute(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
   return execute_iso(text, file, control, sink, language());
 }
 

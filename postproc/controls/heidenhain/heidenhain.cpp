@@ -6,14 +6,14 @@
 #include "postproc/controls/control.h"
 #include "postproc/controls/heidenhain/heidenhain_reader.h"
 #include "postproc/controls/heidenhain/presets.h"
-#include "postproc/work_offset.h"
+#include "postproc/controls/work_offset.h"
 
 namespace toothpath::controls {
 
 namespace {
 
-NcDialect words() {
-  NcDialect d;
+text::NcDialect words() {
+  text::NcDialect d;
   d.name = "heidenhain";
   d.extension = ".h";
   d.format = {.linear_decimals = 4, .rotary_decimals = 4};
@@ -34,7 +34,7 @@ NcDialect words() {
   d.datum = preset_number;
   d.retract = {"L Z{top} R0 FMAX M91"};
   d.tool_change = {"TOOL CALL {tool} Z S{speed}", "{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M3"};
-  d.coolant = {{Coolant::flood, {"M8", "M9"}}};  // M7 is none of its own
+  d.coolant = {{machines::Coolant::flood, {"M8", "M9"}}};  // M7 is none of its own
   d.own_m = {{0, 6}, {13, 14}, {19, 19}, {30, 30}, {89, 299}};
   d.end = {"CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1", "M127"};
   d.blend = d.blend_axis = true;
@@ -42,7 +42,7 @@ NcDialect words() {
   d.tcp_off = {"FUNCTION RESET TCPM"};
   d.vector_words = {"TX", "TY", "TZ"};
   d.vector_feed = "LN";
-  d.loop.form = NcLoop::Form::in_line;
+  d.loop.form = text::NcLoop::Form::in_line;
   d.loop.before = {"{first_tooth}", "Q1 = {first}", "LBL {label}", "{pick}", "Q2 = {turns} * 360 / {teeth}"};
   d.loop.after = {"Q1 = Q1 + 1", "FN 12: IF +Q1 LT +{teeth} GOTO LBL {label}"};
   d.loop.pick = {"Q6 = ( Q1 * {stride} + 0.5 ) / {teeth}", "Q6 = INT Q6", "Q4 = Q1 * {stride} - Q6 * {teeth}"};
@@ -50,7 +50,7 @@ NcDialect words() {
   d.loop.tooth = "Q4";
   d.loop.index_line = "FN 1: Q5 = +Q2 + {angle}";
   d.loop.index = "+Q5";
-  d.rollover.way = NcRollover::Way::shortest;  // M126
+  d.rollover.way = text::NcRollover::Way::shortest;  // M126
   d.rollover.index_lines = {"Q6 = Q5 / 360", "Q6 = INT Q6", "Q5 = Q5 - Q6 * 360"};
   d.rollover.backwards = "( {teeth} - {tooth} )";
   d.rollover.note = "{axis} ROLLS OVER: MODULO AXIS, DISPLAY BELOW 360";

@@ -8,8 +8,8 @@
 
 #include "geometry/base/angle.h"
 #include "postproc/controls/heidenhain/presets.h"
-#include "postproc/nc_execution.h"
-#include "postproc/nc_scanner.h"
+#include "postproc/readback/execution.h"
+#include "postproc/readback/scanner.h"
 
 namespace toothpath::controls {
 namespace {
@@ -18,9 +18,9 @@ constexpr std::size_t kLongestHeidenhainLine = 256;
 
 class Heidenhain {
  public:
-  Heidenhain(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink)
-      : file_(file), control_(control), lines_(lines_of(text)), execution_(control, {.turns_need_axis_blend = true}, sink) {
-    execution_.set_feed_mode(NcExecution::Feed::per_minute);
+  Heidenhain(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink)
+      : file_(file), control_(control), lines_(readback::lines_of(text)), execution_(control, {.turns_need_axis_blend = true}, sink) {
+    execution_.set_feed_mode(readback::NcExecution::Feed::per_minute);
   }
 
   Status run() {
@@ -43,7 +43,7 @@ class Heidenhain {
     return {DiagnosticKind::refused_input, {file_, static_cast<int>(line), column}, std::move(message)};
   }
   Diagnostic here(int column, std::string message) const { return place(line_ + 1, column, std::move(message)); }
-  Problem placed(int column, NcExecution::Problem problem) const {
+  Problem placed(int column, readback::NcExecution::Problem problem) const {
     if (!problem) return std::nullopt;
     return here(column, std::move(*problem));
   }
@@ -52,7 +52,7 @@ class Heidenhain {
   Problem find_labels() {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       if (lines_[i].size() > kLongestHeidenhainLine) return place(i + 1, static_cast<int>(kLongestHeidenhainLine), fmt::format("line of {} characters exceeds {}", lines_[i].size(), kLongestHeidenhainLine));
-      NcScanner s(lines_[i]);
+      readback::NcScanner s(lines_[i]);
       const auto n = s.number();
       if (!n || *n != static_cast<double>(i) || (s.at() != ' ' && s.at() != '\0')) return place(i + 1, 1, fmt::format("block number {} expected", i));
       s.skip_blanks();
@@ -65,13 +65,13 @@ class Heidenhain {
   }
 
   Problem execute(std::string_view text) {
-    NcScanner s(text);
+    readback::NcScanner s(text);
     (void)s.number();
     if (s.done()) return std::nullopt;
     if (s.at() == ';') {
       const std::string_view comment = s.rest().substr(1);
-      if (const int op = comment_label(comment, "OP "); op >= 0) execution_.begin_operation(op);
-      if (const int tooth = comment_label(comment, "TOOTH "); tooth >= 0) execution_.begin_tooth(tooth);
+      if (const int op = readback::comment_label(comment, "OP "); op >= 0) execution_.begin_operation(op);
+      if (const int tooth = readback::comment_label(comment, "TOOTH "); tooth >= 0) execution_.begin_tooth(tooth);
       return std::nullopt;
     }
     if (started_ == s.take("BEGIN PGM ")) return here(s.column(), started_ ? "BEGIN PGM inside the program" : "the program does not begin with BEGIN PGM");
@@ -96,7 +96,7 @@ class Heidenhain {
     return bad;
   }
 
-  Problem statement(NcScanner& s, int column) {
+  Problem statement(readback::NcScanner& s, int column) {
     if (s.take("LBL ")) return (void)s.number(), std::nullopt;
     if (s.take("CALL LBL ")) return repeat(s);
     if (s.take("FN 12: IF ")) return jump_if_less(s);
@@ -111,7 +111,7 @@ class Heidenhain {
   }
 
   // Parameters.
-  std::optional<int> parameter_number(NcScanner& s) const {
+  std::optional<int> parameter_number(readback::NcScanner& s) const {
     if (!s.take("Q")) return std::nullopt;
     int n = 0;
     const std::string_view rest = s.rest();
@@ -120,10 +120,10 @@ class Heidenhain {
     s.advance(static_cast<std::size_t>(r.ptr - rest.data()));
     return n;
   }
-  Result<double> expression(NcScanner& s) {
+  Result<double> expression(readback::NcScanner& s) {
     const int column = s.column();
     s.set_functions("INT");
-    auto v = s.expression([this](NcScanner& p) -> const double* {
+    auto v = s.expression([this](readback::NcScanner& p) -> const double* {
       const auto n = parameter_number(p);
       const auto found = n ? parameters_.find(*n) : parameters_.end();
       return found == parameters_.end() ? nullptr : &found->second;
@@ -132,7 +132,7 @@ class Heidenhain {
     if (!std::isfinite(*v) || std::abs(*v) > 1e9) return here(column, "value is not a number below 1e9");
     return v;
   }
-  Problem assign(NcScanner& s) {
+  Problem assign(readback::NcScanner& s) {
     const int column = s.column();
     const auto n = parameter_number(s);
     s.skip_blanks();
@@ -143,7 +143,7 @@ class Heidenhain {
     return std::nullopt;
   }
   /// A signed number or a signed parameter.
-  Result<double> word_value(NcScanner& s) {
+  Result<double> word_value(readback::NcScanner& s) {
     const char sign = s.at();
     if ((sign == '+' || sign == '-') && s.ahead() == 'Q') {
       s.advance(1);
@@ -158,7 +158,7 @@ class Heidenhain {
   }
 
   // Sections.
-  Problem repeat(NcScanner& s) {
+  Problem repeat(readback::NcScanner& s) {
     const int column = s.column();
     const auto label = s.number();
     s.skip_blanks();
@@ -180,7 +180,7 @@ class Heidenhain {
   }
 
   /// IF value LT value GOTO LBL number
-  Problem jump_if_less(NcScanner& s) {
+  Problem jump_if_less(readback::NcScanner& s) {
     const auto a = word_value(s);
     if (!a) return a.error();
     s.skip_blanks();
@@ -198,7 +198,7 @@ class Heidenhain {
   }
 
   // Modes.
-  Problem function(NcScanner& s, int column) {
+  Problem function(readback::NcScanner& s, int column) {
     s.advance(1);
     const auto m = s.number();
     if (!m) return here(column, "number expected");
@@ -216,7 +216,7 @@ class Heidenhain {
     return std::nullopt;
   }
 
-  Problem tool_call(NcScanner& s, int column) {
+  Problem tool_call(readback::NcScanner& s, int column) {
     const auto n = s.number();
     s.skip_blanks();
     if (!n || !s.take("Z S")) return here(s.column(), "TOOL CALL needs number, Z and S");
@@ -228,7 +228,7 @@ class Heidenhain {
     return placed(column, execution_.set_length(execution_.tool()));
   }
 
-  Problem cycle(NcScanner& s, int column) {
+  Problem cycle(readback::NcScanner& s, int column) {
     if (s.take("10.0 ROTATION") || s.take("32.0 TOLERANCE")) return std::nullopt;
     if (s.take("10.1 ROT")) {
       const auto v = word_value(s);
@@ -266,8 +266,8 @@ class Heidenhain {
   }
 
   // Straight lines.
-  Problem straight(NcScanner& s, bool vector) {
-    NcExecution::Move m;
+  Problem straight(readback::NcScanner& s, bool vector) {
+    readback::NcExecution::Move m;
     bool fmax = false, m91 = false;
     Vec3 axis = Vec3::Zero();
     int components = 0;
@@ -323,9 +323,9 @@ class Heidenhain {
   }
 
   const std::string& file_;
-  const NcControl& control_;
+  const readback::NcControl& control_;
   std::vector<std::string_view> lines_;
-  NcExecution execution_;
+  readback::NcExecution execution_;
   std::unordered_map<double, std::size_t> labels_;
   std::unordered_map<std::size_t, double> repeats_;  // CALL LBL -> what is left
   std::unordered_map<int, double> parameters_;
@@ -337,7 +337,7 @@ class Heidenhain {
 
 }  // namespace
 
-Status execute_heidenhain(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+Status execute_heidenhain(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
   return Heidenhain(text, file, control, sink).run();
 }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "postproc/work_offset.h"
+#include "postproc/controls/work_offset.h"
 
 namespace toothpath::controls {
 

@@ -4,14 +4,14 @@
 #include <cmath>
 
 #include "postproc/controls/control.h"
-#include "postproc/nc_interpreter.h"
-#include "postproc/work_offset.h"
+#include "postproc/readback/interpreter.h"
+#include "postproc/controls/work_offset.h"
 
 namespace toothpath::controls {
 namespace {
 
-NcDialect words() {
-  NcDialect d;
+text::NcDialect words() {
+  text::NcDialect d;
   d.name = "linuxcnc";
   d.extension = ".ngc";
   d.format = {.linear_decimals = 4, .rotary_decimals = 5};
@@ -28,7 +28,7 @@ NcDialect words() {
   d.own_m = {{0, 6}, {19, 19}, {30, 30}, {48, 53}, {60, 73}, {98, 99}};
   d.exact_path_mm = 0.0005;  // unless the machine says otherwise
   d.tcp_codes_of_site = true;
-  d.loop.form = NcLoop::Form::sub_program;
+  d.loop.form = text::NcLoop::Form::sub_program;
   d.loop.before = {"o{label} sub"};
   d.loop.after = {"o{label} endsub"};
   d.loop.call = {"{first_tooth}", "#1={first}", "o{label+1} while [#1 LT {teeth}]", "{pick}", "o{label} call [{turns}*360/{teeth}]",
@@ -38,7 +38,7 @@ NcDialect words() {
   d.loop.tooth = "#2";
   d.loop.index = "#1";
   d.loop.index_brackets = true;
-  d.rollover.way = NcRollover::Way::sign;
+  d.rollover.way = text::NcRollover::Way::sign;
   d.rollover.index = "[{word} MOD 360]";
   d.rollover.backwards = "[{teeth}-{tooth}]";
   d.rollover.note = "{axis} ROLLS OVER: [AXIS_{axis}] WRAPPED_ROTARY = 1";
@@ -54,9 +54,9 @@ double corner_of_g64(double p_mm, double q_mm, double exact_mm) {
   return root * root + 1.2 * exact_mm + q_mm;
 }
 
-const IsoLanguage& language() {
-  static const IsoLanguage l = [] {
-    IsoLanguage linuxcnc;
+const readback::IsoLanguage& language() {
+  static const readback::IsoLanguage l = [] {
+    readback::IsoLanguage linuxcnc;
     linuxcnc.o_words = linuxcnc.codes_of_site = true;
     linuxcnc.point_needed = false;
     linuxcnc.g_tenths = {591, 592, 593, 610, 611, 640, 921};
@@ -68,7 +68,7 @@ const IsoLanguage& language() {
   return l;
 }
 
-Status execute(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+Status execute(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
   return execute_iso(text, file, control, sink, language());
 }
 

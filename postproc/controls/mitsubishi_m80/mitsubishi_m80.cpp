@@ -5,8 +5,8 @@
 namespace toothpath::controls {
 namespace {
 
-NcDialect words() {
-  NcDialect d = fanuc_words();
+text::NcDialect words() {
+  text::NcDialect d = fanuc_words();
   d.name = "mitsubishi_m80";
   d.format = {.linear_decimals = 4, .rotary_decimals = 4};
   d.max_inverse_time = 999999.999;
@@ -18,8 +18,8 @@ NcDialect words() {
   return d;
 }
 
-Status execute(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
-  static const IsoLanguage language = fanuc_language();
+Status execute(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
+  static const readback::IsoLanguage language = fanuc_language();
   return execute_iso(text, file, control, sink, language);
 }
 

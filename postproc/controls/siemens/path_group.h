@@ -7,7 +7,7 @@
 #include <string>
 
 #include "geometry/base/angle.h"
-#include "postproc/nc_scanner.h"
+#include "postproc/readback/scanner.h"
 
 namespace toothpath::controls {
 
@@ -17,7 +17,7 @@ class NcPathGroup {
   explicit NcPathGroup(const std::array<char, 5>& letters) : letters_(letters) {}
 
   /// Behind FGROUP: (X,Y,Z) names the axes, () those of the machine data. @returns what is wrong; empty: nothing
-  std::string group(NcScanner& s) {
+  std::string group(readback::NcScanner& s) {
     if (!s.take("(")) return "( expected";
     named_.fill(false);
     while (!s.take(")")) {
@@ -29,7 +29,7 @@ class NcPathGroup {
     return {};
   }
   /// Behind FGREF: [C]= and then the radius, which the caller reads. @returns the rotary; nothing: another text stands there
-  std::optional<std::size_t> rotary(NcScanner& s) const {
+  std::optional<std::size_t> rotary(readback::NcScanner& s) const {
     const auto a = s.take("[") ? axis(s) : std::nullopt;
     return a && *a >= 3 && s.take("]=") ? a : std::nullopt;
   }
@@ -45,7 +45,7 @@ class NcPathGroup {
 
  private:
   [[nodiscard]] bool any() const { return std::find(named_.begin(), named_.end(), true) != named_.end(); }
-  std::optional<std::size_t> axis(NcScanner& s) const {
+  std::optional<std::size_t> axis(readback::NcScanner& s) const {
     for (std::size_t a = 0; a < 5; ++a)
       if (letters_[a] != 0 && s.at() == letters_[a]) return s.advance(1), a;
     return std::nullopt;

@@ -6,14 +6,14 @@
 // the blocks, also where a block carries the tool vector A3 B3 C3.
 #include "postproc/controls/control.h"
 #include "postproc/controls/siemens/siemens_reader.h"
-#include "postproc/work_offset.h"
+#include "postproc/controls/work_offset.h"
 
 namespace toothpath::controls {
 
 namespace {
 
-NcDialect words() {
-  NcDialect d;
+text::NcDialect words() {
+  text::NcDialect d;
   d.name = "siemens";
   d.extension = ".mpf";
   d.format = {.linear_decimals = 5, .rotary_decimals = 6};
@@ -37,14 +37,14 @@ NcDialect words() {
   d.tcp_on = {"TRAORI", "{offset}", "ORIWKS", "ORIAXES"};
   d.tcp_off = {"TRAFOOF", "{offset}"};
   d.vector_words = {"A3=", "B3=", "C3="};
-  d.loop.form = NcLoop::Form::in_line;
+  d.loop.form = text::NcLoop::Form::in_line;
   d.loop.before = {"{first_tooth}", "FOR R1={first} TO {last}", "{pick}", "R2={turns}*360/{teeth}"};
   d.loop.pick = {"R4=R1*{stride}-{teeth}*TRUNC((R1*{stride}+0.5)/{teeth})"};
   d.loop.place = "R1";
   d.loop.tooth = "R4";
   d.loop.after = {"ENDFOR"};
   d.loop.index = "R2";
-  d.rollover.way = NcRollover::Way::shortest;
+  d.rollover.way = text::NcRollover::Way::shortest;
   d.rollover.open = "DC(";
   d.rollover.close = ")";
   d.rollover.index = "ABS({word}-360*TRUNC(({word})/360))";  // ABS: the quotient may be rounded up to a whole number

@@ -7,8 +7,8 @@
 #include <unordered_map>
 
 #include "postproc/controls/siemens/path_group.h"
-#include "postproc/nc_execution.h"
-#include "postproc/nc_scanner.h"
+#include "postproc/readback/execution.h"
+#include "postproc/readback/scanner.h"
 
 namespace toothpath::controls {
 namespace {
@@ -18,8 +18,8 @@ constexpr std::size_t kLongestSiemensLine = 512;
 
 class Siemens {
  public:
-  Siemens(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink)
-      : file_(file), control_(control), lines_(lines_of(text)), execution_(control, {}, sink), path_(control.letters) {}
+  Siemens(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink)
+      : file_(file), control_(control), lines_(readback::lines_of(text)), execution_(control, {}, sink), path_(control.letters) {}
 
   Status run() {
     if (auto bad = find_loops()) return *bad;
@@ -31,7 +31,7 @@ class Siemens {
       if (auto bad = execute(lines_[line_])) return *bad;
     }
     for (std::size_t i = line_ + 1; i < lines_.size(); ++i) {
-      NcScanner rest(lines_[i]);
+      readback::NcScanner rest(lines_[i]);
       if (!rest.done() && rest.at() != ';') return place(i + 1, rest.column(), "text behind the end of the program is not executed");
     }
     return Ok{};
@@ -46,7 +46,7 @@ class Siemens {
   };
   /// What one line asks for.
   struct Request {
-    NcExecution::Move move;
+    readback::NcExecution::Move move;
     std::optional<double> f, s, adis;
     int motion = -1, feed_mode = -1, column = 1, m = -1, d = -1;
     bool supa = false, g641 = false, g60 = false, traori = false, trafoof = false, rot = false;
@@ -61,7 +61,7 @@ class Siemens {
     return {DiagnosticKind::refused_input, {file_, static_cast<int>(line), column}, std::move(message)};
   }
   Diagnostic here(int column, std::string message) const { return place(line_ + 1, column, std::move(message)); }
-  Problem placed(int column, NcExecution::Problem problem) const {
+  Problem placed(int column, readback::NcExecution::Problem problem) const {
     if (!problem) return std::nullopt;
     return here(column, std::move(*problem));
   }
@@ -70,7 +70,7 @@ class Siemens {
   Problem find_loops() {
     std::vector<std::size_t> open;
     for (std::size_t i = 0; i < lines_.size(); ++i) {
-      NcScanner s(lines_[i]);
+      readback::NcScanner s(lines_[i]);
       s.skip_blanks();
       if (s.take("FOR ")) open.push_back(i);
       else if (s.take("ENDFOR")) {
@@ -84,16 +84,16 @@ class Siemens {
     return std::nullopt;
   }
 
-  Result<double> expression(NcScanner& s) {
+  Result<double> expression(readback::NcScanner& s) {
     const int column = s.column();
     s.set_functions("TRUNC", "ABS");
-    auto v = s.expression([this](NcScanner& p) { return parameter(p); });
+    auto v = s.expression([this](readback::NcScanner& p) { return parameter(p); });
     if (!v) return here(column, v.error().message);
     if (!std::isfinite(*v) || std::abs(*v) > 1e9) return here(column, "value is not a number below 1e9");
     return v;
   }
-  std::optional<int> parameter_number(NcScanner& s) const {
-    if (s.at() != 'R' || !NcScanner::is_digit(s.ahead())) return std::nullopt;
+  std::optional<int> parameter_number(readback::NcScanner& s) const {
+    if (s.at() != 'R' || !readback::NcScanner::is_digit(s.ahead())) return std::nullopt;
     int n = 0;
     const std::string_view rest = s.rest().substr(1);
     const auto r = std::from_chars(rest.data(), rest.data() + rest.size(), n);
@@ -101,14 +101,14 @@ class Siemens {
     s.advance(1 + static_cast<std::size_t>(r.ptr - rest.data()));
     return n;
   }
-  const double* parameter(NcScanner& s) const {
+  const double* parameter(readback::NcScanner& s) const {
     const auto n = parameter_number(s);
     if (!n) return nullptr;
     const auto found = parameters_.find(*n);
     return found == parameters_.end() ? nullptr : &found->second;
   }
 
-  Problem loop_head(NcScanner& s) {
+  Problem loop_head(readback::NcScanner& s) {
     const int column = s.column();
     const auto n = parameter_number(s);
     if (!n || !s.take("=")) return here(column, "FOR needs an R parameter and its first value");
@@ -127,7 +127,7 @@ class Siemens {
     loops_.push_back({line_, *n, *last});
     return std::nullopt;
   }
-  Problem loop_end(NcScanner& s) {
+  Problem loop_end(readback::NcScanner& s) {
     if (!s.done()) return here(s.column(), "words behind ENDFOR");
     if (loops_.empty() || ends_.at(loops_.back().head) != line_) return here(1, "ENDFOR of a loop that is not running");
     Loop& l = loops_.back();
@@ -144,15 +144,15 @@ class Siemens {
     const std::size_t semicolon = text.find(';');
     if (semicolon != std::string_view::npos) {
       const std::string_view comment = text.substr(semicolon + 1);
-      if (const int op = comment_label(comment, "OP "); op >= 0) execution_.begin_operation(op);
-      if (const int tooth = comment_label(comment, "TOOTH "); tooth >= 0) execution_.begin_tooth(tooth);
+      if (const int op = readback::comment_label(comment, "OP "); op >= 0) execution_.begin_operation(op);
+      if (const int tooth = readback::comment_label(comment, "TOOTH "); tooth >= 0) execution_.begin_tooth(tooth);
       text = text.substr(0, semicolon);
     }
-    NcScanner s(text);
+    readback::NcScanner s(text);
     if (s.done() || execution_.site_smoothing(text)) return std::nullopt;
     if (s.take("FOR ")) return loop_head(s);
     if (s.take("ENDFOR")) return loop_end(s);
-    if (s.at() == 'R' && NcScanner::is_digit(s.ahead())) {
+    if (s.at() == 'R' && readback::NcScanner::is_digit(s.ahead())) {
       const auto n = parameter_number(s);
       if (!n || !s.take("=")) return here(1, "an R parameter must be set with =");
       const auto v = expression(s);
@@ -167,11 +167,11 @@ class Siemens {
     return apply(r);
   }
 
-  Problem word(NcScanner& s, Request& r) {
+  Problem word(readback::NcScanner& s, Request& r) {
     const int column = s.column();
     const char c = s.at();
-    if (!NcScanner::is_letter(c)) return here(column, fmt::format("character 0x{:02x} is no part of a word", static_cast<unsigned char>(c)));
-    if (NcScanner::is_letter(s.ahead())) return keyword(s, r);
+    if (!readback::NcScanner::is_letter(c)) return here(column, fmt::format("character 0x{:02x} is no part of a word", static_cast<unsigned char>(c)));
+    if (readback::NcScanner::is_letter(s.ahead())) return keyword(s, r);
     // Vector: A3= B3= C3=
     if (c >= 'A' && c <= 'C' && s.ahead() == '3' && s.rest().substr(2, 1) == "=") {
       const int k = c - 'A';
@@ -233,7 +233,7 @@ class Siemens {
     }
   }
 
-  Result<double> literal(NcScanner& s, int column) const {
+  Result<double> literal(readback::NcScanner& s, int column) const {
     if (const auto n = s.number(); n && std::abs(*n) < 1e9) return *n;
     return here(column, "number expected");
   }
@@ -243,7 +243,7 @@ class Siemens {
     return std::nullopt;
   }
 
-  Problem keyword(NcScanner& s, Request& r) {
+  Problem keyword(readback::NcScanner& s, Request& r) {
     const int column = s.column();
     const std::string_view name = s.letters();
     if (name == "TRAORI") r.traori = true;
@@ -273,7 +273,7 @@ class Siemens {
     return std::nullopt;
   }
 
-  Problem path_group(NcScanner& s, bool radius) {
+  Problem path_group(readback::NcScanner& s, bool radius) {
     const int column = s.column();
     if (!radius) {
       if (auto bad = path_.group(s); !bad.empty()) return here(s.column(), std::move(bad));
@@ -314,8 +314,8 @@ class Siemens {
     if (r.adis.has_value() != r.g641) return here(r.column, "G641 and ADIS belong together");
     if (r.g641) execution_.set_corner_way(*r.adis);
     if (r.g60) execution_.set_blend(0);
-    if (r.feed_mode == 93) execution_.set_feed_mode(NcExecution::Feed::inverse_time);
-    if (r.feed_mode == 94) execution_.set_feed_mode(NcExecution::Feed::per_minute);
+    if (r.feed_mode == 93) execution_.set_feed_mode(readback::NcExecution::Feed::inverse_time);
+    if (r.feed_mode == 94) execution_.set_feed_mode(readback::NcExecution::Feed::per_minute);
     if (r.f)
       if (auto bad = placed(r.column, execution_.set_feed(*r.f))) return bad;
     if (r.s)
@@ -370,9 +370,9 @@ class Siemens {
   }
 
   const std::string& file_;
-  const NcControl& control_;
+  const readback::NcControl& control_;
   std::vector<std::string_view> lines_;
-  NcExecution execution_;
+  readback::NcExecution execution_;
   std::unordered_map<std::size_t, std::size_t> ends_;  // FOR -> ENDFOR
   std::unordered_map<int, double> parameters_;
   std::vector<Loop> loops_;
@@ -384,7 +384,7 @@ class Siemens {
 
 }  // namespace
 
-Status execute_siemens(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+Status execute_siemens(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
   return Siemens(text, file, control, sink).run();
 }
 

@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   if (kind == "below") options = {4000, false, false, false, false};
   if (kind == "awkward") options = {2000, true, false, true, true};
   if (kind == "large") options = {300000, true, false, false, true};
-  ReportPage page = test::synthetic_page(options);
+  page::ReportPage page = test::synthetic_page(options);
   if (kind == "below")  // the same work, turned by 180 degrees about x
     for (auto& path : page.paths)
       for (auto& record : path.cl.records)
@@ -34,7 +34,7 @@ int main(int argc, char** argv) {
     page.listing.clear();
     page.directions.clear();
   }
-  const Status status = write_report_page(page, argv[2]);
+  const Status status = page::write_report_page(page, argv[2]);
   if (!status) fmt::print(stderr, "{}\n", status.error().text());
   return status ? 0 : 1;
 }

@@ -1,4 +1,4 @@
-#include "app/report/packed_data.h"
+#include "app/report/page/packed_data.h"
 
 #include <gtest/gtest.h>
 
@@ -12,12 +12,12 @@ namespace {
 TEST(PackedData, ComesBackWithinHalfAStep) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> anywhere(-120, 120);
-  for (const int steps : {1, 255, 1023, kPackedSteps}) {
+  for (const int steps : {1, 255, 1023, page::kPackedSteps}) {
     for (const std::size_t n : {std::size_t{0}, std::size_t{1}, std::size_t{2}, std::size_t{5000}}) {
       std::vector<std::vector<double>> columns(3);
       for (auto& column : columns)
         for (std::size_t i = 0; i < n; ++i) column.push_back(anywhere(random));
-      const auto back = unpack(pack(columns, steps));
+      const auto back = page::unpack(page::pack(columns, steps));
       ASSERT_EQ(back.size(), 3U);
       for (std::size_t c = 0; c < 3; ++c) {
         ASSERT_EQ(back[c].size(), n);
@@ -32,14 +32,14 @@ TEST(PackedData, WholeNumbersAreExactWithOneStepAUnit) {
   for (int i = 0; i < 40000; ++i) column.push_back((i * 7919) % 32768);
   column.push_back(0);
   column.push_back(32767);
-  const auto back = unpack(pack(std::span(&column, 1), 32767));
+  const auto back = page::unpack(page::pack(std::span(&column, 1), 32767));
   for (std::size_t i = 0; i < column.size(); ++i) ASSERT_EQ(std::lround(back[0][i]), std::lround(column[i]));
 }
 
 TEST(PackedData, NothingStaysNothing) {
   const double inf = std::numeric_limits<double>::infinity(), nan = std::nan("");
   const std::vector<std::vector<double>> columns = {{1, nan, 3, inf, -inf}, {nan, nan, nan, nan, nan}};
-  const auto back = unpack(pack(columns));
+  const auto back = page::unpack(page::pack(columns));
   EXPECT_DOUBLE_EQ(back[0][0], 1);
   EXPECT_DOUBLE_EQ(back[0][2], 3);
   for (const std::size_t i : {std::size_t{1}, std::size_t{3}, std::size_t{4}}) EXPECT_TRUE(std::isnan(back[0][i]));
@@ -52,7 +52,7 @@ TEST(PackedData, SmoothPathsBecomeShort) {
     const double t = i * 1e-3;
     columns[0].push_back(70 + 10 * std::sin(t)), columns[1].push_back(3 * std::cos(0.7 * t)), columns[2].push_back(-5 + 0.01 * t);
   }
-  EXPECT_LT(pack(columns).base64.size(), 100000U * 2);  // float32 as base64 takes 16 bytes a point
+  EXPECT_LT(page::pack(columns).base64.size(), 100000U * 2);  // float32 as base64 takes 16 bytes a point
 }
 
 TEST(PackedData, Base64AsInRfc4648) {
@@ -60,8 +60,8 @@ TEST(PackedData, Base64AsInRfc4648) {
   for (const auto& [plain, text] : cases) {
     const std::string s = plain;
     const std::vector<std::uint8_t> bytes(s.begin(), s.end());
-    EXPECT_EQ(base64_encode(bytes), text);
-    EXPECT_EQ(base64_decode(text), bytes);
+    EXPECT_EQ(page::base64_encode(bytes), text);
+    EXPECT_EQ(page::base64_decode(text), bytes);
   }
 }
 

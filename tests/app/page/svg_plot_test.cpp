@@ -1,11 +1,11 @@
-#include "app/report/svg_plot.h"
+#include "app/report/svg/plot.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <regex>
 
-#include "app/report/svg_canvas.h"
+#include "app/report/svg/canvas.h"
 
 namespace toothpath {
 namespace {
@@ -26,18 +26,18 @@ std::pair<double, double> vertical_extent(const std::string& svg) {
 
 TEST(SvgPlot, TicksAreRoundAndInside) {
   for (const auto& [low, high] : {std::pair{0.0, 1.0}, std::pair{-3.7, 18.2}, std::pair{1e-7, 3e-7}, std::pair{999.2, 1003.9}, std::pair{-5e6, 2e6}}) {
-    const auto ticks = nice_ticks(low, high, 5);
+    const auto ticks = svg::nice_ticks(low, high, 5);
     ASSERT_GE(ticks.size(), 2U);
     ASSERT_LE(ticks.size(), 11U);
     for (const double t : ticks) EXPECT_TRUE(t >= low - 1e-9 * (high - low) && t <= high + 1e-9 * (high - low));
     const double step = ticks[1] - ticks[0], digit = step / std::pow(10, std::floor(std::log10(step) + 1e-6));
     EXPECT_TRUE(std::abs(digit - 1) < 1e-6 || std::abs(digit - 2) < 1e-6 || std::abs(digit - 5) < 1e-6) << step;
   }
-  EXPECT_TRUE(nice_ticks(1, 1, 5).empty());
+  EXPECT_TRUE(svg::nice_ticks(1, 1, 5).empty());
 }
 
 TEST(SvgPlot, ALogarithmicScaleTurnsRatiosIntoLengths) {
-  const Scale s{0.01, 100, 0, 400, true};
+  const svg::Scale s{0.01, 100, 0, 400, true};
   EXPECT_NEAR(s(0.1) - s(0.01), 100, 1e-9);
   EXPECT_NEAR(s(100) - s(10), 100, 1e-9);
 }
@@ -45,12 +45,12 @@ TEST(SvgPlot, ALogarithmicScaleTurnsRatiosIntoLengths) {
 // One sample in a hundred thousand is a peak: thinning must not lose it.
 TEST(SvgPlot, ThinningKeepsEveryPeak) {
   for (const std::size_t place : {std::size_t{1}, std::size_t{4711}, std::size_t{50000}, std::size_t{99998}}) {
-    LineChart chart{"t", "time [s]", "v", {{"v", {}, {}}}, {}, false, false, false, ""};
+    svg::LineChart chart{"t", "time [s]", "v", {{"v", {}, {}}}, {}, false, false, false, ""};
     for (std::size_t i = 0; i < 100000; ++i) {
       chart.series[0].x.push_back(static_cast<double>(i));
       chart.series[0].y.push_back(i == place ? 10 : 0);
     }
-    const std::string svg = svg_line_chart(chart);
+    const std::string svg = svg::svg_line_chart(chart);
     EXPECT_LT(svg.size(), 40000U);
     const auto [low, high] = vertical_extent(svg);
     EXPECT_GT(high - low, 150) << place;  // the peak spans most of the 200 px of the plot
@@ -58,19 +58,19 @@ TEST(SvgPlot, ThinningKeepsEveryPeak) {
 }
 
 TEST(SvgPlot, NothingToDrawIsEmpty) {
-  EXPECT_TRUE(svg_line_chart({}).empty());
-  LineChart chart{"t", "x", "y", {{"a", {1, 2}, {-1, std::nan("")}}}, {}, true, true, false, ""};
-  EXPECT_TRUE(svg_line_chart(chart).empty());
-  EXPECT_TRUE(svg_histogram({}).empty());
-  EXPECT_TRUE(svg_paired_bars({}).empty());
-  EXPECT_TRUE(svg_direction_map({}).empty());
-  EXPECT_TRUE(svg_bars({}, "s").empty());
+  EXPECT_TRUE(svg::svg_line_chart({}).empty());
+  svg::LineChart chart{"t", "x", "y", {{"a", {1, 2}, {-1, std::nan("")}}}, {}, true, true, false, ""};
+  EXPECT_TRUE(svg::svg_line_chart(chart).empty());
+  EXPECT_TRUE(svg::svg_histogram({}).empty());
+  EXPECT_TRUE(svg::svg_paired_bars({}).empty());
+  EXPECT_TRUE(svg::svg_direction_map({}).empty());
+  EXPECT_TRUE(svg::svg_bars({}, "s").empty());
 }
 
 TEST(SvgPlot, NoNumberIsNan) {
-  LineChart chart{"t", "x", "y", {{"a", {0, 1, 2, 3}, {1, std::nan(""), 1e308, -1e308}}, {"b", {1}, {1}}}, {{"l", std::nan("")}}, false, false, true, ""};
-  PairedBarChart bars{"t", "x", "p", "m", {{"a", 0, 0}, {"b", -1, std::nan("")}}};
-  for (const std::string& svg : {svg_line_chart(chart), svg_paired_bars(bars), svg_bars({{"a", std::nan("")}, {"b", 0}}, "s")}) {
+  svg::LineChart chart{"t", "x", "y", {{"a", {0, 1, 2, 3}, {1, std::nan(""), 1e308, -1e308}}, {"b", {1}, {1}}}, {{"l", std::nan("")}}, false, false, true, ""};
+  svg::PairedBarChart bars{"t", "x", "p", "m", {{"a", 0, 0}, {"b", -1, std::nan("")}}};
+  for (const std::string& svg : {svg::svg_line_chart(chart), svg::svg_paired_bars(bars), svg::svg_bars({{"a", std::nan("")}, {"b", 0}}, "s")}) {
     EXPECT_FALSE(svg.empty());
     EXPECT_EQ(svg.find("\"nan"), std::string::npos);
     EXPECT_EQ(svg.find("\"-nan"), std::string::npos);
@@ -79,8 +79,8 @@ TEST(SvgPlot, NoNumberIsNan) {
 }
 
 TEST(SvgPlot, NamesAreEscaped) {
-  LineChart chart{"<t>", "x<", "y&", {{"<a>", {0, 1}, {0, 1}}, {"b", {0, 1}, {1, 0}}}, {}, false, false, true, ""};
-  const std::string svg = svg_line_chart(chart);
+  svg::LineChart chart{"<t>", "x<", "y&", {{"<a>", {0, 1}, {0, 1}}, {"b", {0, 1}, {1, 0}}}, {}, false, false, true, ""};
+  const std::string svg = svg::svg_line_chart(chart);
   EXPECT_EQ(svg.find("<a>"), std::string::npos);
   EXPECT_NE(svg.find("&lt;a&gt;"), std::string::npos);
 }

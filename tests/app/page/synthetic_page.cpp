@@ -61,8 +61,8 @@ Foot surface(int patch, double t, double r) {
 constexpr const char* kPatches[] = {"flank -1", "fillet -1", "root", "fillet +1", "flank +1"};
 constexpr double kZone[2][2] = {{66, 76}, {80, 90}};
 
-SurfaceGrid grid(int zone, int patch, int fields) {
-  SurfaceGrid g;
+proof::SurfaceGrid grid(int zone, int patch, int fields) {
+  proof::SurfaceGrid g;
   g.zone = zone;
   g.patch = kPatches[patch];
   g.rows = patch == 2 ? 9 : patch == 1 || patch == 3 ? 11 : 31;
@@ -88,15 +88,15 @@ SurfaceGrid grid(int zone, int patch, int fields) {
 }
 
 /// Passes along the space, one way, with a lift between them. `offset`: stock left by the operation [mm].
-PagePath operation(int index, const std::string& type, int tool, double ball, double offset, int passes, int records_per_pass) {
-  PagePath path;
+page::PagePath operation(int index, const std::string& type, int tool, double ball, double offset, int passes, int records_per_pass) {
+  page::PagePath path;
   path.cl.operation = index;
   path.cl.operation_type = type;
   path.cl.tool = tool;
   path.cl.spindle_rpm = 12000;
   int line = 40 + 100000 * index;
-  const auto add = [&](const Vec3& tip, const Vec3& axis, MoveKind kind, int zone, int pass) {
-    path.cl.records.push_back({tip, axis, kind == MoveKind::rapid ? 0.0 : kind == MoveKind::feed ? 900.0 : 400.0, kind, zone, pass});
+  const auto add = [&](const Vec3& tip, const Vec3& axis, path::MoveKind kind, int zone, int pass) {
+    path.cl.records.push_back({tip, axis, kind == path::MoveKind::rapid ? 0.0 : kind == path::MoveKind::feed ? 900.0 : 400.0, kind, zone, pass});
     path.nc_lines.push_back(line++);
   };
   for (int zone = 0; zone < 2; ++zone)
@@ -115,35 +115,35 @@ PagePath operation(int index, const std::string& type, int tool, double ball, do
           first = last;
           Vec3 above = first;
           above.z() = 6;
-          add(above, axis, MoveKind::rapid, zone, pass);
-          add(first, axis, MoveKind::engage, zone, pass);
+          add(above, axis, path::MoveKind::rapid, zone, pass);
+          add(first, axis, path::MoveKind::engage, zone, pass);
         } else {
-          add(last, axis, MoveKind::feed, zone, pass);
+          add(last, axis, path::MoveKind::feed, zone, pass);
         }
       }
       Vec3 above = last;
       above.z() = 6;
-      add(above, axis, MoveKind::retract, zone, pass);
+      add(above, axis, path::MoveKind::retract, zone, pass);
     }
   return path;
 }
 
-PageTool ball_tool(const std::string& name, double radius, double stick_out) {
-  PageToolBody ball{"ball", {}, true}, flute{"flute", {{radius, radius}, {radius, radius + 5}}, true};
+page::PageTool ball_tool(const std::string& name, double radius, double stick_out) {
+  page::PageToolBody ball{"ball", {}, true}, flute{"flute", {{radius, radius}, {radius, radius + 5}}, true};
   for (int k = 0; k <= 16; ++k) {
     const double a = kPi / 2 * k / 16;
     ball.profile.emplace_back(radius * std::sin(a), radius - radius * std::cos(a));
   }
-  PageToolBody shank{"shank", {{radius, radius + 5}, {radius + 0.8, radius + 9}, {radius + 0.8, stick_out}}, false};
-  PageToolBody holder{"holder", {{7, stick_out}, {8, stick_out + 1}, {11, stick_out + 24}, {16, stick_out + 24}, {16, stick_out + 36}}, false};
+  page::PageToolBody shank{"shank", {{radius, radius + 5}, {radius + 0.8, radius + 9}, {radius + 0.8, stick_out}}, false};
+  page::PageToolBody holder{"holder", {{7, stick_out}, {8, stick_out + 1}, {11, stick_out + 24}, {16, stick_out + 24}, {16, stick_out + 36}}, false};
   return {name, {ball, flute, shank, holder}};
 }
 
-ExcessResult excess(const ReportPage& page, int operation, std::size_t field) {
-  ExcessResult e;
+proof::ExcessResult excess(const page::ReportPage& page, int operation, std::size_t field) {
+  proof::ExcessResult e;
   e.operation = operation;
   std::vector<double> values;
-  for (const SurfaceGrid& g : page.surface)
+  for (const proof::SurfaceGrid& g : page.surface)
     for (std::size_t i = 0; i < g.points.size(); ++i)
       if (g.reachable[i] != 0) values.push_back(g.excess_um[field][i] * 1e-3);
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
@@ -158,8 +158,8 @@ ExcessResult excess(const ReportPage& page, int operation, std::size_t field) {
   return e;
 }
 
-DirectionChoice direction(int operation, int zone) {
-  DirectionChoice c;
+proof::DirectionChoice direction(int operation, int zone) {
+  proof::DirectionChoice c;
   c.operation = operation, c.zone = zone;
   c.axis = Vec3(0.12, 0.02, 1).normalized();
   c.lean_rad = std::acos(c.axis.z());
@@ -167,7 +167,7 @@ DirectionChoice direction(int operation, int zone) {
   c.explanation = "largest gap of all clear directions; 3 mm flute needs a lean below 19 deg";
   for (int ring = 0; ring <= 10; ++ring)
     for (int k = 0; k < std::max(1, 6 * ring); ++k) {
-      DirectionChoice::Candidate d;
+      proof::DirectionChoice::Candidate d;
       d.lean_rad = ring * 3 * kPi / 180;
       d.azimuth_rad = 2 * kPi * k / std::max(1, 6 * ring);
       const double x = d.lean_rad * std::cos(d.azimuth_rad), y = d.lean_rad * std::sin(d.azimuth_rad);
@@ -179,16 +179,16 @@ DirectionChoice direction(int operation, int zone) {
   return c;
 }
 
-std::vector<LineChart> motion() {
-  LineChart position{"Axis positions", "time [s]", "position [mm]", {}, {}, false, false, false, ""};
-  LineChart turn{"Rotary axes", "time [s]", "position [\u00b0]", {}, {{"limit of A", 25}}, false, false, false, ""};
-  LineChart speed{"Axis speeds", "time [s]", "speed [mm/min]", {}, {}, false, false, false, "Rotary axes at 50 mm from their centre."};
-  LineChart feed{"Feed", "time [s]", "feed [mm/min]", {}, {{"commanded", 900}}, false, false, false, ""};
+std::vector<svg::LineChart> motion() {
+  svg::LineChart position{"Axis positions", "time [s]", "position [mm]", {}, {}, false, false, false, ""};
+  svg::LineChart turn{"Rotary axes", "time [s]", "position [\u00b0]", {}, {{"limit of A", 25}}, false, false, false, ""};
+  svg::LineChart speed{"Axis speeds", "time [s]", "speed [mm/min]", {}, {}, false, false, false, "Rotary axes at 50 mm from their centre."};
+  svg::LineChart feed{"Feed", "time [s]", "feed [mm/min]", {}, {{"commanded", 900}}, false, false, false, ""};
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0, 6);
   const char* const names[] = {"X", "Y", "Z"};
   for (int axis = 0; axis < 3; ++axis) {
-    ChartSeries p{names[axis], {}, {}}, v{names[axis], {}, {}};
+    svg::ChartSeries p{names[axis], {}, {}}, v{names[axis], {}, {}};
     for (int i = 0; i < 20000; ++i) {
       const double t = i * 0.02, saw = std::fmod(t, 8) / 8;
       p.x.push_back(t), v.x.push_back(t);
@@ -197,7 +197,7 @@ std::vector<LineChart> motion() {
     }
     position.series.push_back(p), speed.series.push_back(v);
   }
-  ChartSeries a{"A", {}, {}}, c{"C", {}, {}}, f{"feed", {}, {}};
+  svg::ChartSeries a{"A", {}, {}}, c{"C", {}, {}}, f{"feed", {}, {}};
   for (int i = 0; i < 4000; ++i) {
     const double t = i * 0.1, saw = std::fmod(t, 8) / 8;
     a.x.push_back(t), a.y.push_back(7 + 4 * std::sin(t / 50));
@@ -208,10 +208,10 @@ std::vector<LineChart> motion() {
   return {position, turn, speed, feed};
 }
 
-std::vector<LineChart> study() {
-  LineChart error{"Error against run time", "run time [s]", "deviation [\u00b5m]", {}, {}, true, true, true, "Each point is one run of the job."};
-  LineChart stages{"Run time of the stages", "scallop asked for [\u00b5m]", "run time [s]", {}, {}, true, true, true, ""};
-  ChartSeries worst{"worst", {}, {}}, rms{"rms", {}, {}}, bound{"bound", {}, {}}, plan{"plan", {}, {}}, check{"check", {}, {}};
+std::vector<svg::LineChart> study() {
+  svg::LineChart error{"Error against run time", "run time [s]", "deviation [\u00b5m]", {}, {}, true, true, true, "Each point is one run of the job."};
+  svg::LineChart stages{"Run time of the stages", "scallop asked for [\u00b5m]", "run time [s]", {}, {}, true, true, true, ""};
+  svg::ChartSeries worst{"worst", {}, {}}, rms{"rms", {}, {}}, bound{"bound", {}, {}}, plan{"plan", {}, {}}, check{"check", {}, {}};
   for (const double scallop : {0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
     const double seconds = 0.4 + 9 / std::sqrt(scallop);
     for (auto* s : {&worst, &rms, &bound}) s->x.push_back(seconds);
@@ -223,19 +223,19 @@ std::vector<LineChart> study() {
   return {error, stages};
 }
 
-GougeResult gouge(const ReportPage& page, bool gouged) {
-  GougeResult g;
+proof::GougeResult gouge(const page::ReportPage& page, bool gouged) {
+  proof::GougeResult g;
   g.motions = 0;
-  for (const PagePath& p : page.paths) g.motions += p.cl.records.size();
+  for (const page::PagePath& p : page.paths) g.motions += p.cl.records.size();
   g.clearance_mm = 0.62, g.required_clearance_mm = 0.3;
   g.measured_mm = gouged ? 0.0064 : -0.00021;
   g.bound_mm = gouged ? 0.0069 : 0.0004;
-  const PagePath& finishing = page.paths.back();
+  const page::PagePath& finishing = page.paths.back();
   for (int k = 0; gouged && k < 7; ++k) {
     const int patch = k % 2 == 0 ? 4 : 0;
     const double r = kZone[k % 2][0] + 1.0 + 1.2 * k;
     const Foot f = surface(patch, 0.25 + 0.1 * k, r);
-    WorstPlace place;
+    proof::WorstPlace place;
     place.depth_mm = 0.0064 - 0.0006 * k;
     place.body = k == 5 ? "shank" : "ball";
     place.patch = kPatches[patch];
@@ -251,13 +251,13 @@ GougeResult gouge(const ReportPage& page, bool gouged) {
   return g;
 }
 
-std::vector<NcExcerpt> listing(const ReportPage& page) {
-  std::vector<NcExcerpt> excerpts;
+std::vector<page::NcExcerpt> listing(const page::ReportPage& page) {
+  std::vector<page::NcExcerpt> excerpts;
   std::vector<int> lines;
-  for (const WorstPlace& w : page.gouge->worst) lines.push_back(w.line);
+  for (const proof::WorstPlace& w : page.gouge->worst) lines.push_back(w.line);
   std::sort(lines.begin(), lines.end());
   for (const int line : lines) {
-    NcExcerpt e{line - 5, {}};
+    page::NcExcerpt e{line - 5, {}};
     for (int i = line - 5; i <= line + 5; ++i)
       e.lines.push_back(fmt::format("N{} G1 X{:.4f} Y{:.4f} Z{:.4f} A{:.4f} C{:.4f} F{:.1f}", i, 71.2 + 0.11 * (i - line), -3.1 + 0.02 * i / 7, -4.2 + 0.013 * (i - line), 6.8421,
                                     -12.4402 + 0.004 * (i - line), 912.5));
@@ -268,8 +268,8 @@ std::vector<NcExcerpt> listing(const ReportPage& page) {
 
 }  // namespace
 
-ReportPage synthetic_page(const SyntheticPageOptions& options) {
-  ReportPage page;
+page::ReportPage synthetic_page(const SyntheticPageOptions& options) {
+  page::ReportPage page;
   page.title = "dhfg_synthetic";
   page.subtitle = "Double helical face gear, module 3, 41 teeth, five-axis mill with table A and C";
   page.verified = !options.gouged;
@@ -295,7 +295,7 @@ ReportPage synthetic_page(const SyntheticPageOptions& options) {
   page.gouge_tolerance_mm = 0.002;
   page.nc_file = "program.ngc";
   page.listing = listing(page);
-  using State = KeyFigure::State;
+  using State = page::KeyFigure::State;
   page.figures = {{"worst gouge", options.gouged ? "6.40" : "\u22120.21", "\u00b5m", options.gouged ? "bound 6.90, tolerance 2.00" : "bound 0.40, tolerance 2.00",
                    options.gouged ? State::bad : State::good},
                   {"material left", "3.10", "\u00b5m", "bound 3.50", State::plain}, {"scallop", "2.84", "\u00b5m", "3.00 asked for", State::plain},
@@ -303,7 +303,7 @@ ReportPage synthetic_page(const SyntheticPageOptions& options) {
                   {"cutting time", "148", "min", "all teeth", State::plain}, {"run time", "3.9", "s", "2 threads", State::plain}};
   page.ledger = {{"flank solve", 0.00002, 0.000004, ""}, {"chord", 0.5, 0.41, ""}, {"scallop", 3.0, 2.84, ""}, {"orientation", 0, 0, ""},
                  {"axis linearisation", 0.2, 0.034, ""}, {"rounding", 0.09, 0.062, ""}, {"verification", 0.15, 0.02, ""}};
-  for (const PagePath& p : page.paths)
+  for (const page::PagePath& p : page.paths)
     for (int zone = 0; zone < 2; ++zone) page.directions.push_back(direction(p.cl.operation, zone));
   page.motion = motion();
   if (options.study) page.work_precision = study();

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "app/report/report_page.h"
+#include "app/report/page/report_page.h"
 
 namespace toothpath::test {
 
@@ -15,6 +15,6 @@ struct SyntheticPageOptions {
   bool study = true;                ///< with a work-precision table
 };
 
-[[nodiscard]] ReportPage synthetic_page(const SyntheticPageOptions& options);
+[[nodiscard]] page::ReportPage synthetic_page(const SyntheticPageOptions& options);
 
 }  // namespace toothpath::test

@@ -7,7 +7,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 
-#include "line_cases.h"
+#include "tests/cam/line/line_cases.h"
 #include "tests/support/brute_force_face_gear.h"
 #include "tests/support/brute_force_gear_solid.h"
 #include "tests/support/random.h"
@@ -18,12 +18,12 @@ namespace {
 using namespace line;
 using F50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
-FlankTask task_of(const WorkedPose& w) { return *flank_task(made(w.gear), w.zone, w.side); }
-AxisLine<double> axis_of(const WorkedPose& w) { return {w.tip + w.r_0 * w.axis, w.axis}; }
+line::FlankTask task_of(const WorkedPose& w) { return *line::flank_task(made(w.gear), w.zone, w.side); }
+line::AxisLine<double> axis_of(const WorkedPose& w) { return {w.tip + w.r_0 * w.axis, w.axis}; }
 /// Parameters near the foot of the middle of the worked axis.
-Place<double> start_of(const FlankTask& f, const WorkedPose& w) {
-  const auto at = invert_flank(f.surface, w.side, w.r, w.z);
-  return {theta_at_distance(f.surface, at->theta, w.r_0), at->B};
+Place<double> start_of(const line::FlankTask& f, const WorkedPose& w) {
+  const auto at = face_gear::invert_flank(f.surface, w.side, w.r, w.z);
+  return {line::theta_at_distance(f.surface, at->theta, w.r_0), at->B};
 }
 
 class Worked : public testing::TestWithParam<WorkedPose> {};
@@ -31,24 +31,24 @@ class Worked : public testing::TestWithParam<WorkedPose> {};
 TEST_P(Worked, AnchorAndLeans) {
   const auto& w = GetParam();
   const auto f = task_of(w);
-  const auto at = invert_flank(f.surface, w.side, w.r, w.z);
+  const auto at = face_gear::invert_flank(f.surface, w.side, w.r, w.z);
   ASSERT_TRUE(at);
   EXPECT_NEAR(at->theta, w.theta, 1e-9);
   EXPECT_NEAR(at->B, w.B, 1e-9);
   EXPECT_NEAR(f.surface.flank_J(w.side, at->theta, at->B), w.J, 2e-6);
-  EXPECT_NEAR(degrees(*lean<double>(f.surface, w.side, {at->theta, at->B}, 0)), w.lean_surface, 1e-6);
-  EXPECT_NEAR(degrees(*lean<double>(f.surface, w.side, {at->theta, at->B}, 0.5)), w.lean_half, 1e-6);
+  EXPECT_NEAR(degrees(*line::lean<double>(f.surface, w.side, {at->theta, at->B}, 0)), w.lean_surface, 1e-6);
+  EXPECT_NEAR(degrees(*line::lean<double>(f.surface, w.side, {at->theta, at->B}, 0.5)), w.lean_half, 1e-6);
 }
 
 TEST_P(Worked, PoseGivesItsLeanAndItsGap) {
   const auto& w = GetParam();
   const auto f = task_of(w);
   const auto law = tapered(w.r_0);
-  const auto at = invert_flank(f.surface, w.side, w.r, w.z);
-  const auto frame = tangent_frame<double>(w.side, f.surface.flank(w.side, at->theta, at->B).n);
+  const auto at = face_gear::invert_flank(f.surface, w.side, w.r, w.z);
+  const auto frame = line::tangent_frame<double>(w.side, f.surface.flank(w.side, at->theta, at->B).n);
   EXPECT_NEAR(degrees(std::atan2(w.axis.dot(frame.o), w.axis.dot(frame.p))), w.lean, 1e-4);
   EXPECT_NEAR(degrees(std::asin(w.axis.dot(frame.n))) - 5, w.eps, 1e-4);
-  const LineFit fit(f, law, strips_of(f, 1)[0]);
+  const line::LineFit fit(f, law, line::strips_of(f, 1)[0]);
   const auto axis = axis_of(w);
   for (std::size_t k = 0; k < 5; ++k) {
     const auto q = fit.gap_at(axis, 0.25 * double(k) * w.length, start_of(f, w));
@@ -61,11 +61,11 @@ TEST_P(Worked, PoseGivesItsLeanAndItsGap) {
 TEST_P(Worked, AnglesMakeTheAxis) {
   const auto& w = GetParam();
   const auto f = task_of(w);
-  const auto at = invert_flank(f.surface, w.side, w.r, w.z);
+  const auto at = face_gear::invert_flank(f.surface, w.side, w.r, w.z);
   const auto on = f.surface.flank(w.side, at->theta, at->B);
-  const auto frame = tangent_frame<double>(w.side, on.n);
+  const auto frame = line::tangent_frame<double>(w.side, on.n);
   const auto law = tapered(w.r_0);
-  PoseAngles<double> pose;
+  line::PoseAngles<double> pose;
   pose.psi = std::atan2(w.axis.dot(frame.o), w.axis.dot(frame.p));
   pose.eps = std::asin(w.axis.dot(frame.n)) - radians(5);
   const Vec3 c_0 = w.tip + w.r_0 * w.axis;
@@ -84,7 +84,7 @@ TEST_P(Worked, GapAgainstTheSweptShaper) {
   const auto& w = GetParam();
   const auto f = task_of(w);
   const BruteForceFaceGear brute(w.gear, w.gear.zones[std::size_t(w.zone)].helix_angle_rad);
-  const LineFit fit(f, tapered(w.r_0), strips_of(f, 1)[0]);
+  const line::LineFit fit(f, tapered(w.r_0), line::strips_of(f, 1)[0]);
   const auto axis = axis_of(w);
   int compared = 0;
   for (int k = 0; k <= 40; ++k) {
@@ -107,7 +107,7 @@ TEST_P(Worked, GapAgainstTheWholeSolid) {
   const auto gear = made(w.gear);
   const auto f = task_of(w);
   const BruteForceGearSolid solid(gear, 24, 36);
-  const LineFit fit(f, tapered(w.r_0), strips_of(f, 1)[0]);
+  const line::LineFit fit(f, tapered(w.r_0), line::strips_of(f, 1)[0]);
   const auto axis = axis_of(w);
   for (const double t : {0.0, 0.01, 0.1, 0.25 * w.length, 0.6 * w.length, 0.97 * w.length}) {
     const auto q = fit.gap_at(axis, t, start_of(f, w));
@@ -121,7 +121,7 @@ TEST_P(Worked, GapAgainstTheWholeSolid) {
 TEST_P(Worked, EstimateOfWhatIsLeft) {
   const auto& w = GetParam();
   const auto f = task_of(w);
-  const auto third = distance_third(f.surface, w.side, axis_of(w), 0.5 * w.length, start_of(f, w));
+  const auto third = line::distance_third(f.surface, w.side, axis_of(w), 0.5 * w.length, start_of(f, w));
   ASSERT_TRUE(third);
   EXPECT_NEAR(1e3 * left_estimate(*third, 0.5 * w.length), w.estimate, 0.01 * w.estimate);
 }
@@ -130,13 +130,13 @@ INSTANTIATE_TEST_SUITE_P(Section11, Worked, testing::ValuesIn(worked_poses()), [
 
 /// A random place of a flank between the limits of a task, inside of its edges.
 struct RandomPlace {
-  Place<double> at;
+  line::Place<double> at;
   double r, z;
 };
-RandomPlace random_place(const FlankTask& f, Random& random) {
+RandomPlace random_place(const line::FlankTask& f, Random& random) {
   for (;;) {
     const double r = random(f.inner_radius, f.outer_radius), z = random(f.z_end, f.z_tip);
-    const auto at = invert_flank(f.surface, f.side, r, z);
+    const auto at = face_gear::invert_flank(f.surface, f.side, r, z);
     if (at && at->J > 0 && at->theta < f.theta_end) return {{at->theta, at->B}, r, z};
   }
 }
@@ -151,7 +151,7 @@ TEST(LineContact, FrameIsOrthonormalAndPointsUpAndOutwards) {
     for (int k = 0; k < 50; ++k) {
       const auto q = random_place(f, random);
       const auto on = f.surface.flank(f.side, q.at.theta, q.at.B);
-      const auto frame = tangent_frame<double>(f.side, on.n);
+      const auto frame = line::tangent_frame<double>(f.side, on.n);
       EXPECT_LE(std::abs(frame.p.dot(frame.o)) + std::abs(frame.p.dot(frame.n)) + std::abs(frame.o.dot(frame.n)), 1e-15);
       EXPECT_NEAR(frame.p.norm(), 1, 1e-15);
       EXPECT_NEAR(frame.o.norm(), 1, 1e-15);
@@ -166,21 +166,21 @@ TEST(LineContact, LeanIsTheZeroOfASecondDifference) {
   Random random(8);
   for (const auto& c : line_cases()) {
     const auto f = c.task();
-    const auto surface = make_surface<F50>(c.gear, c.gear.zones[std::size_t(c.zone)].helix_angle_rad);
+    const auto surface = face_gear::make_surface<F50>(c.gear, c.gear.zones[std::size_t(c.zone)].helix_angle_rad);
     for (int k = 0; k < 6; ++k) {
       const auto q = random_place(f, random);
       const F50 distance = F50(c.r_0) * F50(random(1, 2));
-      const Place<F50> at{F50(q.at.theta), F50(q.at.B)};
-      const auto psi = lean<F50>(surface, c.side, at, distance);
+      const line::Place<F50> at{F50(q.at.theta), F50(q.at.B)};
+      const auto psi = line::lean<F50>(surface, c.side, at, distance);
       ASSERT_TRUE(psi);
       const auto on = surface.flank(c.side, at.theta, at.B);
-      const auto frame = tangent_frame<F50>(c.side, on.n);
+      const auto frame = line::tangent_frame<F50>(c.side, on.n);
       const Vec3T<F50> x = on.p + on.n * distance;
-      const Place<F50> start{theta_at_distance(surface, at.theta, distance), at.B};
+      const line::Place<F50> start{line::theta_at_distance(surface, at.theta, distance), at.B};
       const auto second = [&](const F50& lean_angle) {
         const F50 h("1e-8");
-        const Vec3T<F50> u = axis_direction<F50>(frame, lean_angle, F50(0));
-        const auto d = [&](const F50& t) { return flank_foot<F50>(surface, c.side, Vec3T<F50>(x + u * t), start)->d; };
+        const Vec3T<F50> u = line::axis_direction<F50>(frame, lean_angle, F50(0));
+        const auto d = [&](const F50& t) { return line::flank_foot<F50>(surface, c.side, Vec3T<F50>(x + u * t), start)->d; };
         return F50((d(h) + d(-h) - F50(2) * d(F50(0))) / (h * h));
       };
       // A secant from nearby, so that the zero is found by the differences alone.
@@ -191,7 +191,7 @@ TEST(LineContact, LeanIsTheZeroOfASecondDifference) {
         if (abs(b - a) < F50("1e-12")) break;
       }
       EXPECT_LT(double(abs(b - *psi)), 1e-10) << c.name;
-      const auto in_double = lean<double>(f.surface, c.side, q.at, double(distance));
+      const auto in_double = line::lean<double>(f.surface, c.side, q.at, double(distance));
       EXPECT_NEAR(*in_double, double(*psi), 1e-12) << c.name;
     }
   }
@@ -199,15 +199,15 @@ TEST(LineContact, LeanIsTheZeroOfASecondDifference) {
 
 // L3: at the surface itself the lean of distance rho has the normal curvature |K| rho (Cayley-Hamilton), not zero. 50 digits and double.
 template <typename S>
-S relative_lack(const FaceGearParameters& gear, int zone, int side, const Place<S>& at, const S& rho) {
+S relative_lack(const face_gear::FaceGearParameters& gear, int zone, int side, const line::Place<S>& at, const S& rho) {
   using std::abs, std::sqrt;
-  const auto surface = make_surface<S>(gear, gear.zones[std::size_t(zone)].helix_angle_rad);
-  const S psi = *lean<S>(surface, side, at, rho);
+  const auto surface = face_gear::make_surface<S>(gear, gear.zones[std::size_t(zone)].helix_angle_rad);
+  const S psi = *line::lean<S>(surface, side, at, rho);
   const auto on = surface.flank(side, at.theta, at.B);
-  const Vec3T<S> u = axis_direction<S>(tangent_frame<S>(side, on.n), psi, S(0));
-  const FlankFoot<S> foot{at, S(0), S(0), at.theta, on.n};
+  const Vec3T<S> u = line::axis_direction<S>(line::tangent_frame<S>(side, on.n), psi, S(0));
+  const line::FlankFoot<S> foot{at, S(0), S(0), at.theta, on.n};
   const auto H = surface.flank_shape(side, at.theta, at.B);
-  return abs(S(distance_bend<S>(surface, side, foot, u) - abs(H.gauss()) * rho)) / sqrt(S(abs(H.gauss())));
+  return abs(S(line::distance_bend<S>(surface, side, foot, u) - abs(H.gauss()) * rho)) / sqrt(S(abs(H.gauss())));
 }
 TEST(LineContact, CurvatureAlongTheLineIsGaussTimesRho) {
   Random random(9);
@@ -228,16 +228,16 @@ TEST(LineContact, FootAgainstFiftyDigits) {
   Random random(10);
   for (const auto& c : line_cases()) {
     const auto f = c.task();
-    const auto surface = make_surface<F50>(c.gear, c.gear.zones[std::size_t(c.zone)].helix_angle_rad);
+    const auto surface = face_gear::make_surface<F50>(c.gear, c.gear.zones[std::size_t(c.zone)].helix_angle_rad);
     for (int k = 0; k < 10; ++k) {
       const auto q = random_place(f, random);
       const auto on = f.surface.flank(c.side, q.at.theta, q.at.B);
       const double distance = random(0, 2) * c.r_0;
       const Vec3 x = on.p + distance * on.n;
-      const Place<double> near{q.at.theta + random(-0.02, 0.02), q.at.B + random(-0.02, 0.02)};
-      const auto foot = flank_foot<double>(f.surface, c.side, x, near);
+      const line::Place<double> near{q.at.theta + random(-0.02, 0.02), q.at.B + random(-0.02, 0.02)};
+      const auto foot = line::flank_foot<double>(f.surface, c.side, x, near);
       ASSERT_TRUE(foot);
-      const auto exact = flank_foot<F50>(surface, c.side, cast<F50>(x), {F50(near.theta), F50(near.B)});
+      const auto exact = line::flank_foot<F50>(surface, c.side, cast<F50>(x), {F50(near.theta), F50(near.B)});
       EXPECT_NEAR(foot->d, double(exact->d), 1e-13 * q.r) << c.name;
       EXPECT_NEAR(foot->d, distance, 2e-13 * q.r) << c.name;
       EXPECT_NEAR(foot->theta_foot, q.at.theta, 1e-10) << c.name;
@@ -253,13 +253,13 @@ TEST(LineContact, ThirdDerivativeAgainstDifferences) {
     const auto axis = axis_of(w);
     const double t = 0.4 * w.length, h = 1e-3 * w.length;
     const auto bend = [&](double at) {
-      const auto foot = flank_foot<double>(f.surface, w.side, axis.at(at), start_of(f, w));
-      return distance_bend<double>(f.surface, w.side, *foot, axis.a);
+      const auto foot = line::flank_foot<double>(f.surface, w.side, axis.at(at), start_of(f, w));
+      return line::distance_bend<double>(f.surface, w.side, *foot, axis.a);
     };
-    const double third = *distance_third(f.surface, w.side, axis, t, start_of(f, w));
+    const double third = *line::distance_third(f.surface, w.side, axis, t, start_of(f, w));
     EXPECT_NEAR(third, (bend(t + h) - bend(t - h)) / (2 * h), 1e-5 * std::abs(third)) << w.name;
     // And the second one against differences of the distance itself.
-    const auto d = [&](double at) { return flank_foot<double>(f.surface, w.side, axis.at(at), start_of(f, w))->d; };
+    const auto d = [&](double at) { return line::flank_foot<double>(f.surface, w.side, axis.at(at), start_of(f, w))->d; };
     const double g = 1e-2 * w.length;
     EXPECT_NEAR(bend(t), (d(t + g) + d(t - g) - 2 * d(t)) / (g * g), 1e-6) << w.name;
   }
@@ -272,9 +272,9 @@ TEST(LineContact, LeanIsContinuousInTheHelix) {
       auto gear = small_spur();
       gear.offset_mm = offset;
       const auto lean_at = [&](double beta) {
-        const auto surface = make_surface<double>(gear, beta);
-        const auto at = invert_flank(surface, side, 63, -20);
-        return *lean<double>(surface, side, {at->theta, at->B}, 0.5);
+        const auto surface = face_gear::make_surface<double>(gear, beta);
+        const auto at = face_gear::invert_flank(surface, side, 63, -20);
+        return *line::lean<double>(surface, side, {at->theta, at->B}, 0.5);
       };
       const double spur = lean_at(0);
       for (const double beta : {1e-12, 1e-9, 1e-6, 1e-4})
@@ -287,17 +287,17 @@ TEST(LineContact, LeanIsContinuousInTheHelix) {
 // Beyond the undercut edge, and where the ball does not fit between flank and edge, there is no lean.
 TEST(LineContact, NothingBeyondTheUndercutEdge) {
   const auto gear = quarter_dhfg();
-  const auto surface = make_surface<double>(gear, gear.zones[0].helix_angle_rad);
-  const auto limits = zone_limits(surface, gear.module_mm);
+  const auto surface = face_gear::make_surface<double>(gear, gear.zones[0].helix_angle_rad);
+  const auto limits = face_gear::zone_limits(surface, gear.module_mm);
   const auto& flank = limits.flanks[1];
   ASSERT_TRUE(flank.undercut_B);
   const double theta = surface.shaper.theta_t;
   int with = 0, without = 0;
   for (const double off : {0.05, 0.01, 1e-3, 1e-5, -1e-5, -1e-3, -0.01}) {
-    const Place<double> at{theta, *flank.undercut_B - off};  // larger |B| on side -1: outwards
+    const line::Place<double> at{theta, *flank.undercut_B - off};  // larger |B| on side -1: outwards
     const bool regular = surface.flank_J(-1, at.theta, at.B) > 0;
     EXPECT_EQ(regular, off > 0);
-    EXPECT_EQ(lean<double>(surface, -1, at, 0.0).has_value(), regular) << off;
+    EXPECT_EQ(line::lean<double>(surface, -1, at, 0.0).has_value(), regular) << off;
     (regular ? with : without) += 1;
   }
   EXPECT_GE(with, 3);

@@ -25,7 +25,7 @@ inline tool::RadiusLaw<double> tapered(double r_0, double half_angle_deg = 5) {
 /// left and gouge of the swept pass.
 struct LineCase {
   std::string name;
-  FaceGearParameters gear;
+  face_gear::FaceGearParameters gear;
   int zone = 0, side = 1;
   double r_0 = 0;
   double best = 0, left = 0, gouge = 0;
@@ -52,7 +52,7 @@ inline const std::vector<LineCase>& line_cases() {
 /// gap at five even heights of the line, um.
 struct WorkedPose {
   std::string name;
-  FaceGearParameters gear;
+  face_gear::FaceGearParameters gear;
   int zone, side;
   double r, z, theta, B, J, lean_surface, lean_half;
   double r_0;

@@ -11,7 +11,7 @@
 
 #include "cam/line/plan.h"
 #include "cam/line/smooth.h"
-#include "line_cases.h"
+#include "tests/cam/line/line_cases.h"
 #include "tests/support/brute_force_bodies.h"
 #include "tests/support/brute_force_line.h"
 #include "tests/support/random.h"
@@ -21,8 +21,8 @@ namespace {
 
 using namespace line;
 
-PassOptions options_of(const LineCase& c, Rotaries rotaries = Rotaries::both) {
-  PassOptions o;
+line::PassOptions options_of(const LineCase& c, line::Rotaries rotaries = line::Rotaries::both) {
+  line::PassOptions o;
   o.rotaries = rotaries;
   o.lift_inner = c.zone > 0;
   o.lift_outer = c.zone + 1 < int(c.gear.zones.size());
@@ -30,14 +30,14 @@ PassOptions options_of(const LineCase& c, Rotaries rotaries = Rotaries::both) {
   return o;
 }
 
-LinePass pass_of(const LineCase& c, const PassOptions& o) {
+line::LinePass pass_of(const LineCase& c, const line::PassOptions& o) {
   const auto task = c.task();
-  const auto pass = plan_pass(LineFit(task, tapered(c.r_0), strips_of(task, 1)[0]), o, 100);
+  const auto pass = line::plan_pass(line::LineFit(task, tapered(c.r_0), line::strips_of(task, 1)[0]), o, 100);
   if (!pass) throw std::runtime_error(pass.error().message);
   return *pass;
 }
 
-std::vector<BrutePose> way_of(const LinePass& pass, double r_0) {
+std::vector<BrutePose> way_of(const line::LinePass& pass, double r_0) {
   std::vector<BrutePose> way;
   for (const auto& r : pass.records) way.push_back({r.axis.c_0 - r_0 * r.axis.a, r.axis.a});
   return way;
@@ -47,8 +47,8 @@ std::vector<Vec3> points_between(const LineCase& c, double r_from, double r_to, 
   const auto f = c.task();
   const BruteForceFaceGear brute(c.gear, c.gear.zones[std::size_t(c.zone)].helix_angle_rad);
   return swept_flank(
-      brute, std::max(r_from, f.inner_radius), std::min(r_to, f.outer_radius), [&](double r) { return *fillet_line_height(f.surface, c.side, r); }, f.z_tip,
-      [&](double r, double z) { return flank_azimuth(f.surface, c.side, *invert_flank(f.surface, c.side, r, z)); }, columns, rows);
+      brute, std::max(r_from, f.inner_radius), std::min(r_to, f.outer_radius), [&](double r) { return *face_gear::fillet_line_height(f.surface, c.side, r); }, f.z_tip,
+      [&](double r, double z) { return face_gear::flank_azimuth(f.surface, c.side, *face_gear::invert_flank(f.surface, c.side, r, z)); }, columns, rows);
 }
 
 /// The flank of a case as swept points: 25 radii by 17 heights, borders included.
@@ -99,14 +99,14 @@ const LineCase& case_of(const std::string& name) {
 class Planted : public testing::TestWithParam<const char*> {
  protected:
   const LineCase& c = case_of(GetParam());
-  LinePass pass = pass_of(c, options_of(c));
+  line::LinePass pass = pass_of(c, options_of(c));
   std::vector<BrutePose> way = way_of(pass, c.r_0);
-  FlankTask task = c.task();
+  line::FlankTask task = c.task();
   BruteSwept measured(const BruteConicalMill& mill) const { return swept(flank_points(c), mill, way); }
   /// Out of the material at the anchor of a record.
   [[nodiscard]] Vec3 normal(std::size_t k) const {
     const Vec3& p = pass.records[k].anchor;
-    const auto at = invert_flank(task.surface, c.side, p.head<2>().norm(), p.z());
+    const auto at = face_gear::invert_flank(task.surface, c.side, p.head<2>().norm(), p.z());
     return task.surface.flank(c.side, at->theta, at->B).n;
   }
   static constexpr double kFault = 2e-3;
@@ -195,7 +195,7 @@ TEST(LinePassRoom, NothingElseIsCut) {
     const BruteBody ball{c.r_0, c.r_0, c.r_0, c.r_0, true}, cone{low, top, r_low, r_low + (top - low) * std::tan(tau), false};
     double deepest = -INFINITY;
     for (std::size_t k = 0; k + 1 < way.size(); k += 3) {
-      ToolMotion m;
+      path::ToolMotion m;
       m.tip_from = way[k].tip;
       m.tip_to = way[k + 1].tip;
       m.axis_from = way[k].axis;
@@ -213,7 +213,7 @@ TEST(LinePassRotaries, TheTiltStands) {
   const std::map<std::string, double> study = {{"inner_plus", 1.3}, {"inner_minus", 3.3}, {"outer_plus", 0.28}, {"outer_minus", 0.28}};
   for (const auto& [name, best] : study) {
     const auto& c = case_of(name);
-    const auto pass = pass_of(c, options_of(c, Rotaries::tilt_stands));
+    const auto pass = pass_of(c, options_of(c, line::Rotaries::tilt_stands));
     for (const auto& r : pass.records) EXPECT_NEAR(r.axis.a.z(), pass.records.front().axis.a.z(), 1e-12);
     EXPECT_LT(1e3 * pass.best_mm, 1.1 * best) << name;
     const auto result = swept(flank_points(c), mill_of(c), way_of(pass, c.r_0));
@@ -222,7 +222,7 @@ TEST(LinePassRotaries, TheTiltStands) {
     EXPECT_LT(result.gouge, 0.25 * pass.chord_mm + 2e-5);
   }
   const auto& spur = case_of("spur_plus");
-  const auto pass = pass_of(spur, options_of(spur, Rotaries::azimuth_stands));
+  const auto pass = pass_of(spur, options_of(spur, line::Rotaries::azimuth_stands));
   const Vec3 first = pass.records.front().axis.a;
   for (const auto& r : pass.records) EXPECT_NEAR(std::remainder(std::atan2(r.axis.a.y(), r.axis.a.x()) - std::atan2(first.y(), first.x()), 2 * kPi), 0, 1e-12);
   EXPECT_LT(1e3 * pass.best_mm, 1.1 * 2.8);
@@ -245,10 +245,10 @@ TEST(LinePassShape, ContactGoesOnSteadilyAndLiftsAreGradual) {
     EXPECT_NEAR(pass.contact_mm, contact, 1e-9);
     // Both ends lie beyond the ring with every foot.
     const auto task = c.task();
-    const LineFit fit(task, tapered(c.r_0), strips_of(task, 1)[0]);
+    const line::LineFit fit(task, tapered(c.r_0), line::strips_of(task, 1)[0]);
     for (const auto* r : {&pass.records.front(), &pass.records.back()}) {
-      const auto at = invert_flank(task.surface, c.side, r->anchor.head<2>().norm(), r->anchor.z());
-      const auto gap = fit.gap_along(r->axis, 0.5 * pass.contact_top_mm, {theta_at_distance(task.surface, at->theta, c.r_0), at->B});
+      const auto at = face_gear::invert_flank(task.surface, c.side, r->anchor.head<2>().norm(), r->anchor.z());
+      const auto gap = fit.gap_along(r->axis, 0.5 * pass.contact_top_mm, {line::theta_at_distance(task.surface, at->theta, c.r_0), at->B});
       ASSERT_TRUE(gap);
       EXPECT_GT(gap->beyond_ring, 0.1 * c.gear.module_mm);
     }
@@ -261,7 +261,7 @@ TEST(LinePassShape, EndsWhereItIsNotClear) {
   auto o = options_of(c);
   const auto whole = pass_of(c, o);
   const double limit = whole.records.back().axis.c_0.head<2>().norm() - 0.4;
-  o.is_clear = [limit](const AxisLine<double>& axis) { return axis.c_0.head<2>().norm() < limit; };
+  o.is_clear = [limit](const line::AxisLine<double>& axis) { return axis.c_0.head<2>().norm() < limit; };
   const auto cut = pass_of(c, o);
   EXPECT_LT(cut.records.back().r, whole.records.back().r - 0.1);
   EXPECT_GT(cut.shortened_mm, 0);
@@ -281,8 +281,8 @@ tool::Profile mill(double diameter, double half_angle_deg, double flute, double 
   return std::get<tool::Profile>(tool::Profile::make(d));
 }
 
-LineOperation finishing() {
-  LineOperation o;
+line::LineOperation finishing() {
+  line::LineOperation o;
   o.speed_rpm = 20000;
   o.feed_mm_min = 300;
   o.clearance_height_mm = -15;
@@ -295,10 +295,10 @@ TEST(LinePlans, PathOfTheQuarterGear) {
   const auto tool = mill(0.5, 5, 4, 4, 22);
   auto o = finishing();
   o.left_mm = 0.002;
-  const auto plan = plan_line_milling(gear, tool, o);
+  const auto plan = line::plan_line_milling(gear, tool, o);
   ASSERT_TRUE(plan) << plan.error().message;
   EXPECT_EQ(plan->strips, 1);
-  EXPECT_EQ(plan->rotaries, Rotaries::both);  // the inner flank -1 leaves more than 2 um with the tilt standing
+  EXPECT_EQ(plan->rotaries, line::Rotaries::both);  // the inner flank -1 leaves more than 2 um with the tilt standing
   EXPECT_LE(plan->misfit_mm, 0.002);
   ASSERT_EQ(plan->passes.size(), 4u);
   EXPECT_EQ(plan->path.operation_type, "line_milling");
@@ -307,28 +307,28 @@ TEST(LinePlans, PathOfTheQuarterGear) {
   std::size_t k = 0;
   for (const auto& pass : plan->passes) {
     const double turn = pass.side > 0 ? 0 : gear.pitch();
-    ASSERT_EQ(records[k].kind, MoveKind::rapid);
-    ASSERT_EQ(records[k + 1].kind, MoveKind::engage);
+    ASSERT_EQ(records[k].kind, path::MoveKind::rapid);
+    ASSERT_EQ(records[k + 1].kind, path::MoveKind::engage);
     EXPECT_GE(records[k].tip.z(), -15);
     EXPECT_LE((records[k].axis - records[k + 1].axis).norm(), 0);
     EXPECT_LE((records[k + 1].tip - records[k].tip).cross(records[k].axis).norm(), 1e-9);  // in along the axis
     ++rapids, ++engages;
     const std::size_t first = k + 1, count = pass.records.size();
     EXPECT_EQ(records[first].zone, pass.zone);
-    const bool forwards = (FaceGearSurface<double>::turned(pass.records.front().axis.a, turn) - records[first].axis).norm() < 1e-12;
+    const bool forwards = (face_gear::FaceGearSurface<double>::turned(pass.records.front().axis.a, turn) - records[first].axis).norm() < 1e-12;
     double minutes = 0, contact = 0;
     for (std::size_t n = 1; n < count; ++n) {
       const auto& r = records[first + n];
-      EXPECT_EQ(r.kind, MoveKind::feed);
+      EXPECT_EQ(r.kind, path::MoveKind::feed);
       minutes += (r.tip - records[first + n - 1].tip).norm() / r.feed_mm_min;
       const auto& a = pass.records[forwards ? n : count - 1 - n];
       const auto& b = pass.records[forwards ? n - 1 : count - n];
       contact += (a.anchor - b.anchor).norm();
-      EXPECT_LE((FaceGearSurface<double>::turned(a.axis.c_0 - 0.25 * a.axis.a, turn) - r.tip).norm(), 1e-12);
+      EXPECT_LE((face_gear::FaceGearSurface<double>::turned(a.axis.c_0 - 0.25 * a.axis.a, turn) - r.tip).norm(), 1e-12);
     }
     EXPECT_NEAR(contact / minutes, 300, 1e-6);
     k = first + count;
-    EXPECT_EQ(records[k].kind, MoveKind::retract);
+    EXPECT_EQ(records[k].kind, path::MoveKind::retract);
     EXPECT_GE(records[k].tip.z(), -15);
     ++k;
   }
@@ -342,11 +342,11 @@ TEST(LinePlans, ClimbMilling) {
   for (const bool climb : {true, false}) {
     auto o = finishing();
     o.climb = climb;
-    const auto plan = plan_line_milling(gear, tool, o);
+    const auto plan = line::plan_line_milling(gear, tool, o);
     ASSERT_TRUE(plan) << plan.error().message;
     for (std::size_t k = 2; k + 1 < plan->path.records.size(); ++k) {
       const auto &a = plan->path.records[k - 1], &b = plan->path.records[k];
-      if (b.kind != MoveKind::feed) continue;
+      if (b.kind != path::MoveKind::feed) continue;
       // The space's middle lies on the other side of the flank: the material is away from the azimuth half a pitch on.
       const double azimuth = std::atan2(b.tip.y(), b.tip.x());
       const Vec3 material = (azimuth < 0.5 * gear.pitch() ? -1 : 1) * Vec3(-std::sin(azimuth), std::cos(azimuth), 0);
@@ -360,9 +360,9 @@ TEST(LinePlans, AllowanceStandsParallel) {
   const auto gear = made(quarter_dhfg());
   const auto tool = mill(0.5, 5, 4, 4, 22);
   auto o = finishing();
-  const auto clean = plan_line_milling(gear, tool, o);
+  const auto clean = line::plan_line_milling(gear, tool, o);
   o.allowance_mm = 0.05;
-  const auto stock = plan_line_milling(gear, tool, o);
+  const auto stock = line::plan_line_milling(gear, tool, o);
   ASSERT_TRUE(clean && stock);
   for (const char* name : {"inner_plus", "outer_minus"}) {
     const auto& c = case_of(name);
@@ -371,7 +371,7 @@ TEST(LinePlans, AllowanceStandsParallel) {
       auto way = way_of(clean->passes[k], c.r_0);
       const auto without = swept(flank_points(c), mill_of(c), way);
       for (auto& p : way) {
-        const auto turned = with_allowance(c.task(), {p.tip, p.axis}, 0.05);
+        const auto turned = line::with_allowance(c.task(), {p.tip, p.axis}, 0.05);
         p = {turned.c_0, turned.a};
       }
       const auto with = swept(flank_points(c), mill_of(c), way);
@@ -387,40 +387,40 @@ TEST(LinePlans, ChoosesFewestRotariesThenFewestStrips) {
   const auto tool = mill(0.5, 5, 4, 4, 22);
   auto o = finishing();
   o.left_mm = 0.008;
-  const auto loose = plan_line_milling(gear, tool, o);
+  const auto loose = line::plan_line_milling(gear, tool, o);
   ASSERT_TRUE(loose) << loose.error().message;
-  EXPECT_EQ(loose->rotaries, Rotaries::tilt_stands);
+  EXPECT_EQ(loose->rotaries, line::Rotaries::tilt_stands);
   EXPECT_EQ(loose->strips, 1);
   o.left_mm = 0.0011;
-  const auto tight = plan_line_milling(gear, tool, o);
+  const auto tight = line::plan_line_milling(gear, tool, o);
   ASSERT_TRUE(tight) << tight.error().message;
   EXPECT_EQ(tight->strips, 2);
   EXPECT_LE(tight->misfit_mm, 0.0011);
   o.left_mm = 1e-6;
   o.strips = 1;
-  const auto none = plan_line_milling(gear, tool, o);
+  const auto none = line::plan_line_milling(gear, tool, o);
   ASSERT_FALSE(none);
   EXPECT_NE(none.error().message.find("left = 0.001 um cannot be met"), std::string::npos) << none.error().message;
 }
 
 TEST(LinePlans, Refusals) {
   const auto gear = made(quarter_dhfg());
-  const auto refused = [&](const Result<LinePlan>& plan, const char* text) {
+  const auto refused = [&](const Result<line::LinePlan>& plan, const char* text) {
     ASSERT_FALSE(plan) << text;
     EXPECT_NE(plan.error().message.find(text), std::string::npos) << plan.error().message;
   };
-  refused(plan_line_milling(gear, mill(0.5, 5, 2.5, 4, 22), finishing()), "flute_length must be");
+  refused(line::plan_line_milling(gear, mill(0.5, 5, 2.5, 4, 22), finishing()), "flute_length must be");
   tool::CutterData flat;
   flat.shape = tool::CutterShape::flat;
   flat.diameter_mm = 1;
   flat.flute_length_mm = 4;
   flat.shank_diameter_mm = 4;
   flat.stick_out_mm = flat.length_mm = 20;
-  refused(plan_line_milling(gear, std::get<tool::Profile>(tool::Profile::make(flat)), finishing()), "needs a tool with a ball end");
+  refused(line::plan_line_milling(gear, std::get<tool::Profile>(tool::Profile::make(flat)), finishing()), "needs a tool with a ball end");
   auto o = finishing();
   o.strips = 9;
-  refused(plan_line_milling(gear, mill(0.5, 5, 4, 4, 22), o), "strips = 9 lies outside 1 .. 4");
-  refused(plan_line_milling(made(conical_gear()), mill(0.5, 5, 4, 4, 22), finishing()), "shaft_angle");
+  refused(line::plan_line_milling(gear, mill(0.5, 5, 4, 4, 22), o), "strips = 9 lies outside 1 .. 4");
+  refused(line::plan_line_milling(made(conical_gear()), mill(0.5, 5, 4, 4, 22), finishing()), "shaft_angle");
 }
 
 // The same bits with one thread and with several; the time is printed, for busy machines cannot promise it.
@@ -429,12 +429,12 @@ TEST(LinePlans, SameAnswerWithOneThread) {
   const auto tool = mill(2, 5, 15, 8, 32);
   auto o = finishing();
   o.clearance_height_mm = -60;
-  o.rotaries = Rotaries::both;
+  o.rotaries = line::Rotaries::both;
   const auto start = std::chrono::steady_clock::now();
-  const auto a = plan_line_milling(gear, tool, o);
+  const auto a = line::plan_line_milling(gear, tool, o);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const auto b = plan_line_milling(gear, tool, o);
+  const auto b = line::plan_line_milling(gear, tool, o);
   ASSERT_TRUE(a && b);
   std::printf("paper's gear planned in %.2f s, %zu records\n", seconds, a->path.records.size());
   ASSERT_EQ(a->path.records.size(), b->path.records.size());
@@ -451,7 +451,7 @@ TEST(Smooth, KeepsParabolasAndCalmsNoise) {
     parabola.push_back(1 + 0.3 * k - 0.01 * k * k);
     noisy.push_back(parabola.back() + random(-0.1, 0.1));
   }
-  const auto same = smoothed(parabola, 1e4), calm = smoothed(noisy, 1e4);
+  const auto same = line::smoothed(parabola, 1e4), calm = line::smoothed(noisy, 1e4);
   double off = 0, before = 0;
   for (std::size_t k = 0; k < parabola.size(); ++k) {
     EXPECT_NEAR(same[k], parabola[k], 1e-8);
@@ -459,8 +459,8 @@ TEST(Smooth, KeepsParabolasAndCalmsNoise) {
     before += std::pow(noisy[k] - parabola[k], 2);
   }
   EXPECT_LT(off, 0.3 * before);
-  EXPECT_EQ(smoothed(noisy, 0), noisy);
-  const StationCurve curve(5, 0.5, parabola);
+  EXPECT_EQ(line::smoothed(noisy, 0), noisy);
+  const line::StationCurve curve(5, 0.5, parabola);
   for (int k = 2; k < 30; ++k) {
     EXPECT_DOUBLE_EQ(curve.at(5 + 0.5 * k), parabola[std::size_t(k)]);
     EXPECT_NEAR(curve.at(5 + 0.5 * (k + 0.5)), 1 + 0.3 * (k + 0.5) - 0.01 * (k + 0.5) * (k + 0.5), 1e-12);

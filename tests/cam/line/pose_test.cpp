@@ -8,7 +8,7 @@
 
 #include "cam/line/minimax.h"
 #include "cam/line/plan.h"
-#include "line_cases.h"
+#include "tests/cam/line/line_cases.h"
 #include "tests/support/random.h"
 
 namespace toothpath::test {
@@ -16,14 +16,14 @@ namespace {
 
 using namespace line;
 
-LineFit fit_of(const LineCase& c, int strips = 1, int strip = 0) {
+line::LineFit fit_of(const LineCase& c, int strips = 1, int strip = 0) {
   const auto task = c.task();
-  return {task, tapered(c.r_0), strips_of(task, strips)[std::size_t(strip)]};
+  return {task, tapered(c.r_0), line::strips_of(task, strips)[std::size_t(strip)]};
 }
-double middle(const FlankTask& f) { return 0.5 * (f.inner_radius + f.outer_radius); }
+double middle(const line::FlankTask& f) { return 0.5 * (f.inner_radius + f.outer_radius); }
 
 /// Worst misfit over the stations with a line over 85 % of the height, um.
-double worst_best(const LineFit& fit, double from, double to, double step, const std::optional<AxisCondition>& condition = {}) {
+double worst_best(const line::LineFit& fit, double from, double to, double step, const std::optional<line::AxisCondition>& condition = {}) {
   double worst = 0;
   for (double r = from; r <= to; r += step) {
     const auto p = fit.best(r, condition);
@@ -44,7 +44,7 @@ TEST(Minimax, AnswerIsFeasibleAndLeast) {
       rows.push_back({Unknowns(-g[0], -g[1], -g[2], 1), e});
     }
     const Unknowns box(2, 2, 2, 50);
-    const auto x = least_last(rows, box);
+    const auto x = line::least_last(rows, box);
     if (!x) continue;  // not every random set has e >= 0 within the box; checked below
     const auto holds = [&](const Unknowns& y) {
       for (const auto& row : rows)
@@ -69,13 +69,13 @@ TEST(Minimax, FitsACubicAsChebyshevDoes) {
     rows.push_back({g, -t * t * t});
     rows.push_back({Unknowns(-1, -t, -t * t, 1), t * t * t});
   }
-  const auto x = least_last(rows, Unknowns(10, 10, 10, 10));
+  const auto x = line::least_last(rows, Unknowns(10, 10, 10, 10));
   ASSERT_TRUE(x);
   EXPECT_NEAR((*x)[3], 0.5, 1e-12);
 }
 
 TEST(Minimax, TellsThatNothingFits) {
-  EXPECT_FALSE(least_last({{Unknowns(1, 0, 0, 0), 1}, {Unknowns(-1, 0, 0, 0), 1}}, Unknowns(5, 5, 5, 5)));
+  EXPECT_FALSE(line::least_last({{Unknowns(1, 0, 0, 0), 1}, {Unknowns(-1, 0, 0, 0), 1}}, Unknowns(5, 5, 5, 5)));
 }
 
 class LinePoses : public testing::TestWithParam<LineCase> {};
@@ -102,9 +102,9 @@ TEST_P(LinePoses, EstimateWithinATenth) {
   const auto p = fit.best(middle(fit.flank()));
   ASSERT_TRUE(p);
   const double half = 0.5 * (p->gap.ring_to - p->gap.ring_from);
-  const auto third = distance_third(fit.flank().surface, fit.flank().side, p->axis, half, p->at);
+  const auto third = line::distance_third(fit.flank().surface, fit.flank().side, p->axis, half, p->at);
   ASSERT_TRUE(third);
-  EXPECT_NEAR(left_estimate(*third, half), p->gap.misfit(), 0.1 * p->gap.misfit());
+  EXPECT_NEAR(line::left_estimate(*third, half), p->gap.misfit(), 0.1 * p->gap.misfit());
 }
 
 // No neighbour in (psi, eps) is better: the linear programme against a search that knows nothing of derivatives.
@@ -148,7 +148,7 @@ TEST_P(LinePoses, AllowanceIsATurn) {
   const auto p = fit.best(middle(fit.flank()));
   ASSERT_TRUE(p);
   for (const double q : {0.005, 0.05, 0.3}) {
-    const auto turned = with_allowance(fit.flank(), p->axis, q);
+    const auto turned = line::with_allowance(fit.flank(), p->axis, q);
     for (int k = 0; k <= 20; ++k) {
       const double t = p->gap.t_to * k / 20;
       const auto a = fit.gap_at(p->axis, t, p->at), b = fit.gap_at(turned, t, p->at);
@@ -169,8 +169,8 @@ TEST(LinePose, MirrorImages) {
   minus.zones[0].helix_angle_rad = -plus.zones[0].helix_angle_rad;
   minus.offset_mm = -plus.offset_mm;
   for (const int side : {1, -1}) {
-    const auto a = *flank_task(made(plus), 0, side), b = *flank_task(made(minus), 0, -side);
-    const LineFit fa(a, tapered(0.8), strips_of(a, 1)[0]), fb(b, tapered(0.8), strips_of(b, 1)[0]);
+    const auto a = *line::flank_task(made(plus), 0, side), b = *line::flank_task(made(minus), 0, -side);
+    const line::LineFit fa(a, tapered(0.8), line::strips_of(a, 1)[0]), fb(b, tapered(0.8), line::strips_of(b, 1)[0]);
     for (const double r : {139.0, 140.5, 142.0}) {
       const auto pa = fa.start(r), pb = fb.start(r);
       ASSERT_TRUE(pa && pb);
@@ -188,8 +188,8 @@ TEST(LinePose, MirrorImages) {
 TEST(LinePose, ScalesWithTheModule) {
   for (const int side : {1, -1})
     for (const int zone : {0, 1}) {
-      const auto a = *flank_task(made(quarter_dhfg()), zone, side), b = *flank_task(made(double_helical_parameters()), zone, side);
-      const LineFit fa(a, tapered(0.25), strips_of(a, 1)[0]), fb(b, tapered(1.0), strips_of(b, 1)[0]);
+      const auto a = *line::flank_task(made(quarter_dhfg()), zone, side), b = *line::flank_task(made(double_helical_parameters()), zone, side);
+      const line::LineFit fa(a, tapered(0.25), line::strips_of(a, 1)[0]), fb(b, tapered(1.0), line::strips_of(b, 1)[0]);
       const double r = middle(a);
       const auto pa = fa.start(r), pb = fb.start(4 * r);
       ASSERT_TRUE(pa && pb);
@@ -235,7 +235,7 @@ TEST(LinePose, OneRotary) {
     const auto& f = fit.flank();
     const auto free = fit.best(middle(f));
     ASSERT_TRUE(free);
-    const auto condition = spur ? azimuth_stands(std::atan2(free->axis.a.y(), free->axis.a.x())) : tilt_stands(free->tilt());
+    const auto condition = spur ? line::azimuth_stands(std::atan2(free->axis.a.y(), free->axis.a.x())) : line::tilt_stands(free->tilt());
     int full = 0;
     for (double r = f.inner_radius + 0.3; r < f.outer_radius - 0.3; r += 0.25) {
       const auto p = fit.best(r, condition), both = fit.best(r);
@@ -263,8 +263,8 @@ TEST(LinePose, MeasuredMeridianIsPlannedWith) {
       crown.f.push_back(0.010 * (1 - u * u));
     }
     law.error = std::make_shared<tool::MeridianError>(crown);
-    const auto strip = strips_of(task, 1)[0];
-    const LineFit known(task, law, strip), nominal(task, tapered(c.r_0), strip);
+    const auto strip = line::strips_of(task, 1)[0];
+    const line::LineFit known(task, law, strip), nominal(task, tapered(c.r_0), strip);
     const auto with = known.best(middle(task)), without = nominal.best(middle(task));
     ASSERT_TRUE(with && without);
     EXPECT_LT(1e3 * with->gap.misfit(), 3.3) << c.name;
@@ -276,7 +276,7 @@ TEST(LinePose, MeasuredMeridianIsPlannedWith) {
 }
 
 TEST(LinePose, RefusesWhatItDoesNotKnow) {
-  const auto conical = flank_task(made(conical_gear()), 0, 1);
+  const auto conical = line::flank_task(made(conical_gear()), 0, 1);
   ASSERT_FALSE(conical);
   EXPECT_NE(conical.error().message.find("shaft_angle = 75.0000 deg"), std::string::npos) << conical.error().message;
 }

@@ -7,13 +7,14 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 
-#include "cam/finger_bodies.h"
+#include "cam/finger/bodies.h"
 #include "cam/tool/finger_profile.h"
 #include "geometry/base/angle.h"
-#include "tests/cam/finger_jobs.h"
+#include "tests/cam/finger/jobs.h"
 #include "tests/support/brute_force_line.h"
 #include "tests/support/random.h"
 #include "tests/support/sample_tools.h"
+#include "tests/support/plain_frustum.h"
 
 namespace toothpath::test {
 namespace {
@@ -21,9 +22,9 @@ namespace {
 using namespace tool;
 using F50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
-CutterData tapered(double r_0 = 0.25, double half_angle_deg = 5) {
-  CutterData d;
-  d.shape = CutterShape::tapered_ball;
+tool::CutterData tapered(double r_0 = 0.25, double half_angle_deg = 5) {
+  tool::CutterData d;
+  d.shape = tool::CutterShape::tapered_ball;
   d.diameter_mm = 2 * r_0;
   d.half_angle_rad = radians(half_angle_deg);
   d.flute_length_mm = 4;
@@ -33,8 +34,8 @@ CutterData tapered(double r_0 = 0.25, double half_angle_deg = 5) {
   d.holder = {{10, 10, 30}, {12, 32, 30}};
   return d;
 }
-CutterData shaped(CutterShape shape, double half_angle_deg = 0, double meridian_radius = 0) {
-  CutterData d = tapered(0.5, half_angle_deg);
+tool::CutterData shaped(tool::CutterShape shape, double half_angle_deg = 0, double meridian_radius = 0) {
+  tool::CutterData d = tapered(0.5, half_angle_deg);
   d.shape = shape;
   d.diameter_mm = 3;
   d.corner_radius_mm = 0.4;
@@ -42,21 +43,21 @@ CutterData shaped(CutterShape shape, double half_angle_deg = 0, double meridian_
   d.shank_diameter_mm = 8;
   return d;
 }
-Profile made_of(const CutterData& d) {
-  auto p = Profile::make(d);
-  if (auto* refused = std::get_if<std::vector<ProfileRefusal>>(&p)) throw std::runtime_error(refused->front().diagnostic.message);
-  return std::get<Profile>(std::move(p));
+tool::Profile made_of(const tool::CutterData& d) {
+  auto p = tool::Profile::make(d);
+  if (auto* refused = std::get_if<std::vector<tool::ProfileRefusal>>(&p)) throw std::runtime_error(refused->front().diagnostic.message);
+  return std::get<tool::Profile>(std::move(p));
 }
-std::vector<CutterData> shapes() {
-  return {shaped(CutterShape::ball), shaped(CutterShape::tapered_ball, 5),       shaped(CutterShape::tapered_ball, 10), shaped(CutterShape::flat),
-          shaped(CutterShape::bull_nose), shaped(CutterShape::barrel, 8, 60), shaped(CutterShape::barrel, 5, -50)};
+std::vector<tool::CutterData> shapes() {
+  return {shaped(tool::CutterShape::ball), shaped(tool::CutterShape::tapered_ball, 5),       shaped(tool::CutterShape::tapered_ball, 10), shaped(tool::CutterShape::flat),
+          shaped(tool::CutterShape::bull_nose), shaped(tool::CutterShape::barrel, 8, 60), shaped(tool::CutterShape::barrel, 5, -50)};
 }
 
 // The ball mill of an assembly: ball and flute are a capsule, shank and holder the frustums that the proofs use.
 TEST(Profile, BallMillOfAnAssembly) {
   Random random(1);
-  for (const ToolAssembly& assembly : {ball_mill(0.5, 3.2, 0.46, 14, 10), ball_mill(1.6, 8, 1.5, 14, 10), stubby_mill()}) {
-    const Profile p = made_of(cutter_data(assembly));
+  for (const tool::ToolAssembly& assembly : {ball_mill(0.5, 3.2, 0.46, 14, 10), ball_mill(1.6, 8, 1.5, 14, 10), stubby_mill()}) {
+    const tool::Profile p = made_of(tool::cutter_data(assembly));
     const double R = assembly.radius_mm(), flute = assembly.flute_length_mm;
     for (int k = 0; k < 3000; ++k) {
       const Vec3 x = random.vector(8) + Vec3(0, 0, 6);
@@ -70,14 +71,14 @@ TEST(Profile, BallMillOfAnAssembly) {
       EXPECT_NEAR(std::max(0.0, ours_cutting), std::max(0.0, capsule), 1e-13);
       EXPECT_EQ(ours_cutting < -1e-12, capsule < -1e-12);
       double frustums = INFINITY, ours = INFINITY;
-      for (const auto& f : shank_and_holder(assembly)) frustums = std::min(frustums, distance_to_frustum(x, f, Vec3::Zero(), Vec3::UnitZ()));
-      for (const Meridian* m : {&p.shank(), &p.holder()}) ours = std::min(ours, std::max(0.0, m->distance<double>(x.z(), r).distance));
+      for (const auto& f : tool::shank_and_holder(assembly)) frustums = std::min(frustums, distance_to_frustum(x, f, Vec3::Zero(), Vec3::UnitZ()));
+      for (const tool::Meridian* m : {&p.shank(), &p.holder()}) ours = std::min(ours, std::max(0.0, m->distance<double>(x.z(), r).distance));
       EXPECT_NEAR(ours, frustums, 1e-13);
     }
     const auto bodies = p.proof_bodies(0.01);
     EXPECT_EQ(bodies.ball_height_mm, R);
     EXPECT_EQ(bodies.ball_radius_mm, R);
-    EXPECT_EQ(bodies.frustums.size(), 1 + shank_and_holder(assembly).size());
+    EXPECT_EQ(bodies.frustums.size(), 1 + tool::shank_and_holder(assembly).size());
   }
 }
 
@@ -86,14 +87,14 @@ TEST(Profile, FingerMill) {
   using namespace bevel_test;
   Random random(2);
   for (const Designed& d : {Designed{w3(), pinion_mill()}, Designed{w4(), wheel_mill()}, design(9, 40, 3, 20, 0.25), design(30, 30, 1, 35, 0.2)}) {
-    const BevelGear gear = gear_of(d);
-    const FingerSolid solid(gear.cutter());
-    ToolAssembly assembly = mill(d.c);
+    const bevel_gear::BevelGear gear = gear_of(d);
+    const bevel_gear::FingerSolid solid(gear.cutter());
+    tool::ToolAssembly assembly = mill(d.c);
     assembly.flute_length_mm = d.p.dedendum_mm + d.c.profile_height_mm + 1;
-    const double sag = 1e-5, flute = finger_flute_end(gear.cutter(), assembly), rho_D = gear.cutter().rho_D;
-    const Meridian m = tool::finger_meridian(gear.cutter(), flute, sag);
+    const double sag = 1e-5, flute = finger::finger_flute_end(gear.cutter(), assembly), rho_D = gear.cutter().rho_D;
+    const tool::Meridian m = tool::finger_meridian(gear.cutter(), flute, sag);
     EXPECT_EQ(m.to(), flute);
-    EXPECT_LT(2 * m.pieces().size(), toothpath::finger_meridian(gear.cutter(), assembly, sag).size());  // arcs follow the involute better than chords
+    EXPECT_LT(2 * m.pieces().size(), toothpath::finger::finger_meridian(gear.cutter(), assembly, sag).size());  // arcs follow the involute better than chords
     EXPECT_NEAR(m.largest_radius(), rho_D, 1e-12);
     EXPECT_FALSE(m.convex());           // the flank is hollow
     const auto frustums = m.enclosing_frustums(1e-3, "cutter");
@@ -115,10 +116,10 @@ TEST(Profile, FingerMill) {
 
 // rho(t) is the distance from the axis to the side, for every shape; 50 digits and double.
 template <typename S>
-S worst_law(const CutterData& d) {
+S worst_law(const tool::CutterData& d) {
   using std::abs, std::sqrt;
-  const Profile p = made_of(d);
-  RadiusLaw<S> law;
+  const tool::Profile p = made_of(d);
+  tool::RadiusLaw<S> law;
   law.r_0 = S(p.law()->r_0);
   law.sin_tau = S(p.law()->sin_tau);
   law.cos_tau = S(p.law()->cos_tau);
@@ -129,7 +130,7 @@ S worst_law(const CutterData& d) {
     const Vec2T<S> centre(law.r_0 + t, S(0));
     S nearest(1e9);  // place of the meridian; the disc at the end of the flutes is no part of the side
     for (const auto& piece : p.cutting().pieces()) {
-      const Vec2T<S> way = nearest_on_piece<S>(piece, centre) - centre;
+      const Vec2T<S> way = tool::nearest_on_piece<S>(piece, centre) - centre;
       nearest = std::min(nearest, S(sqrt(S(way.dot(way)))));
     }
     const S off = abs(S(nearest - law.rho(t)));
@@ -145,7 +146,7 @@ S worst_law(const CutterData& d) {
 }
 TEST(RadiusLaw, IsTheDistanceFromAxisToSide) {
   for (const auto& d : shapes()) {
-    if (d.shape == CutterShape::flat || d.shape == CutterShape::bull_nose) {
+    if (d.shape == tool::CutterShape::flat || d.shape == tool::CutterShape::bull_nose) {
       EXPECT_FALSE(made_of(d).law());
       continue;
     }
@@ -158,7 +159,7 @@ TEST(RadiusLaw, IsTheDistanceFromAxisToSide) {
 TEST(Profile, UnionOfBalls) {
   Random random(4);
   for (const auto& d : shapes()) {
-    const Profile p = made_of(d);
+    const tool::Profile p = made_of(d);
     if (!p.law()) continue;
     for (int k = 0; k < 400; ++k) {
       const Vec3 x = random.vector(3) + Vec3(0, 0, 1.5);
@@ -185,7 +186,7 @@ TEST(Profile, UnionOfBalls) {
 TEST(Profile, GradientIsThatOfTheDistance) {
   Random random(5);
   for (const auto& d : shapes()) {
-    const Profile p = made_of(d);
+    const tool::Profile p = made_of(d);
     for (int k = 0; k < 300; ++k) {
       const Vec3 x = random.vector(3) + Vec3(0, 0, 1);
       const auto q = p.cutting_distance(x);
@@ -199,7 +200,7 @@ TEST(Profile, GradientIsThatOfTheDistance) {
     }
     // On the boundary itself the normal of the piece stands in: at the places of the meridian.
     for (const auto& piece : p.cutting().pieces()) {
-      const Vec2 middle = nearest_on_piece<double>(piece, 0.5 * (piece.from + piece.to));
+      const Vec2 middle = tool::nearest_on_piece<double>(piece, 0.5 * (piece.from + piece.to));
       const auto at = p.cutting().distance<double>(middle[0], middle[1]);
       const auto out = p.cutting().distance<double>(middle[0] + 1e-3 * piece_normal<double>(piece, middle)[0], middle[1] + 1e-3 * piece_normal<double>(piece, middle)[1]);
       EXPECT_NEAR(at.distance, 0, 1e-13);
@@ -211,7 +212,7 @@ TEST(Profile, GradientIsThatOfTheDistance) {
 // A tapered mill against the plain union of balls that the swept tests use: two texts, one tool.
 TEST(Profile, TaperedMillAgainstBruteForce) {
   Random random(6);
-  const Profile p = made_of(tapered());
+  const tool::Profile p = made_of(tapered());
   const BruteConicalMill brute{0.25, radians(5)};
   for (int k = 0; k < 2000; ++k) {
     const Vec3 x = random.vector(1) + Vec3(0, 0, 1.2);
@@ -230,16 +231,16 @@ TEST(Profile, TaperedMillAgainstBruteForce) {
 
 TEST(Profile, Convexity) {
   for (const auto& d : shapes()) EXPECT_EQ(made_of(d).cutting().convex(), !(d.meridian_radius_mm < 0)) << int(d.shape);
-  const Profile p = made_of(tapered());
+  const tool::Profile p = made_of(tapered());
   EXPECT_TRUE(p.shank().convex() || p.shank().pieces().size() > 1);
-  EXPECT_FALSE(Meridian({{Vec2(0, 1), Vec2(1, 1), 0}, {Vec2(1, 1), Vec2(1, 2), 0}, {Vec2(1, 2), Vec2(2, 2), 0}}).convex());  // a shoulder above
+  EXPECT_FALSE(tool::Meridian({{Vec2(0, 1), Vec2(1, 1), 0}, {Vec2(1, 1), Vec2(1, 2), 0}, {Vec2(1, 2), Vec2(2, 2), 0}}).convex());  // a shoulder above
 }
 
 // Bodies for proofs contain the tool and stand out of it by no more than the sag.
 TEST(Profile, ProofBodiesEnclose) {
   Random random(7);
   for (const auto& d : shapes()) {
-    const Profile p = made_of(d);
+    const tool::Profile p = made_of(d);
     const double sag = 2e-3;
     const auto bodies = p.proof_bodies(sag);
     double most = 0;
@@ -247,7 +248,7 @@ TEST(Profile, ProofBodiesEnclose) {
       const Vec3 x = random.vector(6) + Vec3(0, 0, 3);
       const double r = x.head<2>().norm();
       double truth = INFINITY, enclosed = INFINITY;
-      for (const Meridian* m : {&p.cutting(), &p.shank(), &p.holder()}) truth = std::min(truth, std::max(0.0, m->distance<double>(x.z(), r).distance));
+      for (const tool::Meridian* m : {&p.cutting(), &p.shank(), &p.holder()}) truth = std::min(truth, std::max(0.0, m->distance<double>(x.z(), r).distance));
       for (const auto& f : bodies.frustums) enclosed = std::min(enclosed, distance_to_frustum(x, f, Vec3::Zero(), Vec3::UnitZ()));
       if (bodies.ball_radius_mm > 0) enclosed = std::min(enclosed, std::max(0.0, (x - Vec3(0, 0, bodies.ball_height_mm)).norm() - bodies.ball_radius_mm));
       EXPECT_LE(enclosed, truth + 1e-12) << int(d.shape);
@@ -261,13 +262,13 @@ TEST(Profile, ProofBodiesEnclose) {
 TEST(Profile, MeasuredMeridian) {
   Random random(8);
   auto d = tapered();
-  MeridianError table;
+  tool::MeridianError table;
   for (int k = 0; k <= 20; ++k) {
     table.t.push_back(0.2 * k);
     table.f.push_back(0.004 * std::sin(0.9 * table.t.back()) - 0.001);
   }
   d.meridian = table;
-  const Profile p = made_of(d);
+  const tool::Profile p = made_of(d);
   ASSERT_TRUE(p.law()->error);
   for (std::size_t k = 0; k < table.t.size(); ++k) EXPECT_NEAR(p.law()->rho(table.t[k]), 0.25 + table.t[k] * std::sin(radians(5)) + table.f[k], 1e-15);
   EXPECT_NEAR(p.law()->slope(1.03), (p.law()->rho(1.03 + 1e-6) - p.law()->rho(1.03 - 1e-6)) / 2e-6, 1e-8);
@@ -289,40 +290,40 @@ TEST(Profile, MeasuredMeridian) {
 }
 
 TEST(Profile, RefusesWhatMakesNoBody) {
-  const auto refused = [](CutterData d, const std::string& key, const std::string& text) {
-    const auto p = Profile::make(d);
-    const auto* list = std::get_if<std::vector<ProfileRefusal>>(&p);
+  const auto refused = [](tool::CutterData d, const std::string& key, const std::string& text) {
+    const auto p = tool::Profile::make(d);
+    const auto* list = std::get_if<std::vector<tool::ProfileRefusal>>(&p);
     ASSERT_TRUE(list) << key;
     EXPECT_EQ(list->front().key, key);
     EXPECT_NE(list->front().diagnostic.message.find(text), std::string::npos) << list->front().diagnostic.message;
   };
   const auto with = [](auto change) {
-    CutterData d = tapered();
+    tool::CutterData d = tapered();
     change(d);
     return d;
   };
   for (const double angle : {0.0, -5.0, 45.0, 80.0}) refused(tapered(0.25, angle), "half_angle", "lies above 0 and below 45 deg");
-  refused(with([](CutterData& d) { d.half_angle_rad = NAN; }), "half_angle", "half_angle");
-  refused(with([](CutterData& d) { d.diameter_mm = 0; }), "diameter", "diameter = 0.0000 mm");
-  refused(with([](CutterData& d) { d.diameter_mm = INFINITY; }), "diameter", "diameter");
-  refused(with([](CutterData& d) { d.flute_length_mm = 0.2; }), "flute_length", "flute_length = 0.2000 mm is below 0.2500 mm");
-  refused(with([](CutterData& d) { d.shank_diameter_mm = 0.4; }), "shank_diameter", "thinner than the end of the flutes");
-  refused(with([](CutterData& d) { d.shank_diameter_mm = 1.1; }), "shank_diameter", "1.1581 mm");
-  refused(with([](CutterData& d) { d.stick_out_mm = 3; }), "stick_out", "stick_out = 3.0000 mm is below the flute_length 4.0000 mm");
-  refused(with([](CutterData& d) { d.holder.push_back({10, 0, 5}); }), "holder", "holder segment [10, 0, 5]");
-  refused(with([](CutterData& d) { d.shape = CutterShape::bull_nose; d.corner_radius_mm = 0.3; }), "corner_radius", "no more than 0.2500 mm");
-  refused(with([](CutterData& d) { d.shape = CutterShape::bull_nose; d.corner_radius_mm = 0; }), "corner_radius", "above 0");
-  refused(with([](CutterData& d) { d.shape = CutterShape::barrel; d.meridian_radius_mm = 0.2; }), "meridian_radius", "more than the ball's radius");
-  refused(with([](CutterData& d) { d.shape = CutterShape::barrel; d.meridian_radius_mm = 20; }), "meridian_radius", "it must not narrow");
-  const auto table = [&](std::vector<double> t, std::vector<double> f) { return with([&](CutterData& d) { d.meridian = MeridianError{t, f}; }); };
+  refused(with([](tool::CutterData& d) { d.half_angle_rad = NAN; }), "half_angle", "half_angle");
+  refused(with([](tool::CutterData& d) { d.diameter_mm = 0; }), "diameter", "diameter = 0.0000 mm");
+  refused(with([](tool::CutterData& d) { d.diameter_mm = INFINITY; }), "diameter", "diameter");
+  refused(with([](tool::CutterData& d) { d.flute_length_mm = 0.2; }), "flute_length", "flute_length = 0.2000 mm is below 0.2500 mm");
+  refused(with([](tool::CutterData& d) { d.shank_diameter_mm = 0.4; }), "shank_diameter", "thinner than the end of the flutes");
+  refused(with([](tool::CutterData& d) { d.shank_diameter_mm = 1.1; }), "shank_diameter", "1.1581 mm");
+  refused(with([](tool::CutterData& d) { d.stick_out_mm = 3; }), "stick_out", "stick_out = 3.0000 mm is below the flute_length 4.0000 mm");
+  refused(with([](tool::CutterData& d) { d.holder.push_back({10, 0, 5}); }), "holder", "holder segment [10, 0, 5]");
+  refused(with([](tool::CutterData& d) { d.shape = tool::CutterShape::bull_nose; d.corner_radius_mm = 0.3; }), "corner_radius", "no more than 0.2500 mm");
+  refused(with([](tool::CutterData& d) { d.shape = tool::CutterShape::bull_nose; d.corner_radius_mm = 0; }), "corner_radius", "above 0");
+  refused(with([](tool::CutterData& d) { d.shape = tool::CutterShape::barrel; d.meridian_radius_mm = 0.2; }), "meridian_radius", "more than the ball's radius");
+  refused(with([](tool::CutterData& d) { d.shape = tool::CutterShape::barrel; d.meridian_radius_mm = 20; }), "meridian_radius", "it must not narrow");
+  const auto table = [&](std::vector<double> t, std::vector<double> f) { return with([&](tool::CutterData& d) { d.meridian = tool::MeridianError{t, f}; }); };
   refused(table({0}, {0}), "meridian", "two points at least");
   refused(table({0.5, 1}, {0, 0}), "meridian", "must begin at the centre of the ball");
   refused(table({0, 1, 1}, {0, 0, 0}), "meridian", "heights ascend");
   refused(table({0, 1}, {0, 3.0}), "meridian", "is it in micrometres?");
-  CutterData all = tapered(0.25, 60);
+  tool::CutterData all = tapered(0.25, 60);
   all.flute_length_mm = -1;
   all.shank_diameter_mm = 0;
-  EXPECT_EQ(std::get<std::vector<ProfileRefusal>>(Profile::make(all)).size(), 3u);
+  EXPECT_EQ(std::get<std::vector<tool::ProfileRefusal>>(tool::Profile::make(all)).size(), 3u);
 }
 
 }  // namespace

@@ -1,0 +1,100 @@
+#include "app/job/file.h"
+
+#include <algorithm>
+
+#include "app/job/tables.h"
+#include "app/job/words.h"
+#include "machines/toml/regular_file.h"
+
+namespace toothpath::job {
+namespace {
+
+void read_gear(toml::TableReader& root, Job& job) {
+  auto gear = root.table("gear");
+  auto stock = root.table("stock");
+  if (!gear) {
+    if (!root.has("gear")) root.refuse("gear", "the job lacks the table [gear]");
+    return;
+  }
+  const auto type = gear->word("type", {"face_gear", "equal_base_circle_bevel_gear"});
+  if (!type) return;  // which keys belong here is unknown
+  if (*type == "face_gear") {
+    job.gear = read_face_gear(*gear, stock ? &*stock : nullptr, job.warnings);
+  } else {
+    job.gear = read_bevel_gear(*gear);
+    if (stock) root.refuse("stock", "[stock] belongs to face gears; this gear is {}", *type);
+  }
+}
+
+void read_tools(toml::TableReader& root, Job& job) {
+  for (auto& table : root.tables("tool")) {
+    tool::ToolAssembly tool = read_tool(table, job.bevel_gear());
+    const auto same = [&](const tool::ToolAssembly& other) { return other.number == tool.number && tool.number > 0; };
+    if (std::any_of(job.tools.begin(), job.tools.end(), same)) table.refuse("number", "number = {} is used by two tools", tool.number);
+    job.tools.push_back(std::move(tool));
+  }
+}
+
+/// The tables that milling needs when there is something to mill.
+void check_milling(toml::TableReader& root, const Job& job) {
+  if (job.operations.empty()) return;
+  for (const auto& [key, title] : {std::pair("machine", "[machine]"), {"setup", "[setup]"}, {"tool", "[[tool]]"}})
+    if (!root.has(key)) root.refuse(key, "the job has operations but lacks the table {}", title);
+}
+
+}  // namespace
+
+SourcePosition Job::where(std::string_view key) const {
+  std::string path(key);
+  while (true) {
+    if (const auto found = positions.find(path); found != positions.end()) return found->second;
+    const auto cut = path.find_last_of(".[");
+    if (path.empty()) return {file, 0, 0};
+    path.resize(cut == std::string::npos ? 0 : cut);
+  }
+}
+
+JobOrErrors parse_job(std::string_view text, const std::string& file) {
+  const auto document = toml::parse_toml(text, file, kJobSyntax);
+  if (!document) return std::vector<Diagnostic>{document.error()};
+
+  Job job;
+  job.file = file;
+  toml::ReaderFindings findings(job_words());
+  toml::TableReader root(*document, "", findings);
+  (void)root.integer("schema", {1, 1});
+  job.name = root.text("name").value_or("");
+  read_gear(root, job);
+  if (auto table = root.table("machine")) job.machine = read_machine_choice(*table);
+  if (auto table = root.table("setup")) job.setup = read_setup(*table);
+  if (auto table = root.table("shaping")) job.shaping = read_shaping(*table);
+  if (auto table = root.table("contact")) job.contact = read_contact(*table);
+  if (auto table = root.table("coolant")) job.coolant = read_coolant(*table);
+  if (auto table = root.table("verify")) job.verify = read_verify(*table, job.bevel_gear() != nullptr);
+  if (auto table = root.table("program")) job.program = read_program_settings(*table);
+  if (auto table = root.table("load")) {
+    job.torque_Nm = table->number("torque", {0, 1e9, " N m", true});
+    table->finish();
+  }
+  read_tools(root, job);
+  auto operations = root.tables("operation");
+  if (operations.size() > 100) root.refuse("operation", "{} operations exceed the limit 100", operations.size());
+  for (auto& table : operations) job.operations.push_back(read_operation(table, job.tools, job.bevel_gear() != nullptr));
+  check_milling(root, job);
+  root.finish();
+
+  if (!findings.errors.empty()) {
+    toml::sort_by_position(findings.errors);
+    return std::move(findings.errors);
+  }
+  job.positions = std::move(findings.positions);
+  return job;
+}
+
+JobOrErrors read_job_file(const std::string& path) {
+  const auto text = toml::read_regular_file(path, kMaxJobBytes);
+  if (!text) return std::vector<Diagnostic>{text.error()};
+  return parse_job(*text, path);
+}
+
+}  // namespace toothpath::job

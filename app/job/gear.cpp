@@ -1,0 +1,152 @@
+// [gear], [[gear.zone]] and [stock]. What the geometry itself limits (undercut, pointing) is refused by geometry; here stand
+// the bounds of what a number of this kind can mean at all.
+#include <cmath>
+
+#include "app/job/tables.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath::job {
+namespace {
+
+constexpr toml::Range kTeeth{2, 5000};
+constexpr toml::Range kMateTeeth{1, 5000};
+constexpr toml::Range kModule{0.01, 100, " mm"};
+constexpr toml::Range kPressureAngle{5, 40, " deg"};  // below 5: most likely radians
+constexpr toml::Range kHelixAngle{-60, 60, " deg"};
+constexpr toml::Range kShaftAngle{20, 160, " deg"};
+constexpr toml::Range kRadius{0, 10000, " mm", true};
+constexpr toml::Range kSignedLength{-10000, 10000, " mm"};
+constexpr toml::Range kLength{0, 10000, " mm", true};
+constexpr toml::Range kLengthOrZero{0, 10000, " mm"};
+
+/// Absent optional numbers leave the target as it is.
+void optional_number(toml::TableReader& table, std::string_view key, const toml::Range& range, double& target, double factor = 1.0) {
+  if (const auto value = table.if_present(key, [&] { return table.number(key, range); })) target = *value * factor;
+}
+
+
+/// NAME_diameter and NAME_length: both or none.
+void optional_cylinder(toml::TableReader& gear, const std::string& name, double& diameter, double& length) {
+  const std::string wide = name + "_diameter", tall = name + "_length";
+  const bool has_diameter = gear.has(wide), has_length = gear.has(tall);
+  optional_number(gear, wide, kLength, diameter);
+  optional_number(gear, tall, kLength, length);
+  if (has_diameter && !has_length) gear.refuse(wide, "{} = {} mm needs {} as well", wide, diameter, tall);
+  if (has_length && !has_diameter) gear.refuse(tall, "{} = {} mm needs {} as well", tall, length, wide);
+}
+
+void read_zones(toml::TableReader& gear, face_gear::FaceGearParameters& result, std::vector<std::string>& warnings) {
+  auto zones = gear.tables("zone");
+  if (!gear.has("zone")) gear.refuse("zone", "[gear] lacks its teeth: at least one [[gear.zone]]");
+  if (zones.size() > 2) gear.refuse("zone", "{} zones exceed the limit 2", zones.size());
+  for (auto& table : zones) {
+    face_gear::FaceGearZone zone;
+    if (const auto angle = table.number("helix_angle", kHelixAngle)) {
+      zone.helix_angle_rad = radians(*angle);
+      if (std::abs(*angle) > 1e-3 && std::abs(*angle) < 1.1) {
+        const auto at = table.where("helix_angle");
+        warnings.push_back(fmt::format("{}:{}:{}: warning: helix_angle = {} deg; were {:.3f} deg meant (radians)?", at.file,
+                                       at.line, at.column, *angle, degrees(*angle)));
+      }
+    }
+    const auto inner = table.number("inner_radius", kRadius);
+    const auto outer = table.number("outer_radius", kRadius);
+    zone.inner_radius_mm = inner.value_or(0);
+    zone.outer_radius_mm = outer.value_or(0);
+    if (inner && outer && *outer <= *inner)
+      table.refuse("outer_radius", "outer_radius = {} mm is not above inner_radius = {} mm", *outer, *inner);
+    else if (inner && !result.zones.empty() && *inner <= result.zones.back().outer_radius_mm)
+      table.refuse("inner_radius", "inner_radius = {} mm is not above {} mm, the outer_radius of the zone before", *inner,
+                   result.zones.back().outer_radius_mm);
+    table.finish();
+    result.zones.push_back(zone);
+  }
+}
+
+}  // namespace
+
+face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::TableReader* stock, std::vector<std::string>& warnings) {
+  face_gear::FaceGearParameters p;
+  p.teeth = gear.integer("teeth", kTeeth).value_or(0);
+  p.shaper_teeth = gear.integer("shaper_teeth", {3, 1000}).value_or(0);
+  p.mate_teeth = gear.if_present("mate_teeth", [&] { return gear.integer("mate_teeth", {3, 1000}); }).value_or(0);
+  const auto module = gear.number("module", kModule);
+  p.module_mm = module.value_or(0);
+  if (const auto plane = gear.word("module_plane", {"normal", "transverse"}))
+    p.module_plane = *plane == "normal" ? face_gear::ModulePlane::normal : face_gear::ModulePlane::transverse;
+  p.pressure_angle_rad = radians(gear.number("pressure_angle", kPressureAngle).value_or(0));
+  optional_number(gear, "addendum_coefficient", {0.1, 2}, p.addendum_coefficient);
+  optional_number(gear, "clearance_coefficient", {0, 1}, p.clearance_coefficient);
+  optional_number(gear, "shaft_angle", kShaftAngle, p.shaft_angle_rad, kDegree);
+  optional_number(gear, "offset", kSignedLength, p.offset_mm);
+  p.reference_radius_mm = gear.if_present("reference_radius", [&] { return gear.number("reference_radius", kRadius); });
+  optional_number(gear, "shaper_tip_radius", kLengthOrZero, p.shaper_tip_radius_mm);
+  optional_number(gear, "backlash", kLengthOrZero, p.backlash_mm);
+  if (module && p.backlash_mm >= *module)
+    gear.refuse("backlash", "backlash = {} mm is not below module = {} mm", p.backlash_mm, *module);
+  if (module && p.shaper_tip_radius_mm >= *module)
+    gear.refuse("shaper_tip_radius", "shaper_tip_radius = {} mm is not below module = {} mm", p.shaper_tip_radius_mm, *module);
+  double land = 0;
+  optional_number(gear, "least_land", kLengthOrZero, land);
+  if (land > 0) p.least_land_mm = land;
+  if (module && land >= *module) gear.refuse("least_land", "least_land = {} mm is not below module = {} mm", land, *module);
+  read_zones(gear, p, warnings);
+  if (!p.zones.empty() && p.zones.front().inner_radius_mm > 0 && std::abs(p.offset_mm) >= p.zones.front().inner_radius_mm)
+    gear.refuse("offset", "offset = {} mm reaches the inner radius {} mm", p.offset_mm, p.zones.front().inner_radius_mm);
+  gear.finish();
+  if (stock) {
+    optional_number(*stock, "allowance_top", {0, 1000, " mm"}, p.allowance_top_mm);
+    optional_number(*stock, "groove_depth", kLength, p.groove_depth_mm);
+    stock->finish();
+  }
+  return p;
+}
+
+bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear) {
+  bevel_gear::BevelGearParameters p;
+  p.teeth = gear.integer("teeth", kTeeth).value_or(0);
+  const bool mate = gear.has("mate_teeth"), angle = gear.has("pitch_angle");
+  optional_number(gear, "shaft_angle", kShaftAngle, p.shaft_angle_rad, kDegree);
+  p.mate_teeth = gear.if_present("mate_teeth", [&] { return gear.integer("mate_teeth", kMateTeeth); }).value_or(0);
+  optional_number(gear, "pitch_angle", {0.01, 90, " deg"}, p.pitch_angle_rad, kDegree);
+  if (mate && angle) gear.refuse("pitch_angle", "pitch_angle contradicts mate_teeth: give one of the two");
+  if (!mate && !angle) gear.refuse("mate_teeth", "[gear] lacks the key \"mate_teeth\" (or \"pitch_angle\")");
+  if (mate && p.mate_teeth > 0 && p.teeth > 0) {
+    const double sigma = p.shaft_angle_rad;
+    p.pitch_angle_rad = std::atan2(std::sin(sigma), double(p.mate_teeth) / p.teeth + std::cos(sigma));
+  }
+  const auto module = gear.number("outer_transverse_module", kModule);
+  p.outer_transverse_module_mm = module.value_or(0);
+  p.pressure_angle_rad = radians(gear.number("pressure_angle", kPressureAngle).value_or(0));
+  p.outer_spiral_angle_rad = radians(gear.number("outer_spiral_angle", {0, 60, " deg"}).value_or(0));
+  p.face_width_mm = gear.number("face_width", kLength).value_or(0);
+  const auto form = gear.word("form", {"herringbone", "single"});
+  if (form) p.form = *form == "single" ? bevel_gear::BevelForm::single : bevel_gear::BevelForm::herringbone;
+  if (const auto hand = gear.word("hand", {"right", "left"})) p.hand = *hand == "right" ? 1 : -1;
+  const bool herringbone = p.form == bevel_gear::BevelForm::herringbone;
+  if (herringbone || gear.has("apex_cone_distance"))
+    p.apex_cone_distance_mm = gear.number("apex_cone_distance", kRadius).value_or(0);
+  else (void)gear.value("apex_cone_distance");
+  if (herringbone) p.relief_half_width_mm = gear.number("relief_half_width", kLength).value_or(0);
+  else if (gear.value("relief_half_width"))
+    gear.refuse("relief_half_width", "relief_half_width contradicts form = \"single\": one hand has no relief groove");
+  p.addendum_mm = gear.number("addendum", kLength).value_or(0);
+  p.dedendum_mm = gear.number("dedendum", kLength).value_or(0);
+  optional_number(gear, "backlash", kLengthOrZero, p.backlash_mm);
+  if (module && p.backlash_mm >= *module)
+    gear.refuse("backlash", "backlash = {} mm is not below outer_transverse_module = {} mm", p.backlash_mm, *module);
+  optional_cylinder(gear, "hub", p.hub_diameter_mm, p.hub_length_mm);
+  optional_cylinder(gear, "shaft", p.shaft_diameter_mm, p.shaft_length_mm);
+  if (p.face_width_mm > 0 && p.pitch_angle_rad > 0 && module && p.teeth > 0) {
+    const double outer = *module * p.teeth / (2 * std::sin(p.pitch_angle_rad));
+    if (p.face_width_mm >= outer)
+      gear.refuse("face_width", "face_width = {} mm is not below the outer cone distance {:.4f} mm", p.face_width_mm, outer);
+    const double inner = outer - p.face_width_mm, apex = p.apex_cone_distance_mm;
+    if (apex > 0 && (apex <= inner || apex > outer || (herringbone && apex >= outer)))
+      gear.refuse("apex_cone_distance", "apex_cone_distance = {} mm lies outside the face, {:.4f} to {:.4f} mm", apex, inner, outer);
+  }
+  gear.finish();
+  return p;
+}
+
+}  // namespace toothpath::job

@@ -1,0 +1,318 @@
+// [machine], [setup], [[tool]], [[operation]], [coolant], [verify], [program], [shaping] and [contact].
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <regex>
+
+#include "app/job/tables.h"
+#include "geometry/base/angle.h"
+#include "machines/machine_file.h"
+
+namespace toothpath::job {
+namespace {
+
+constexpr toml::Range kToolLength{0, 2000, " mm", true};
+constexpr toml::Range kToolDiameter{0.01, 500, " mm"};
+constexpr toml::Range kSpeed{1, 500000, " 1/min"};
+constexpr toml::Range kFeed{0, 100000, " mm/min", true};
+constexpr toml::Range kStep{0.001, 100, " mm"};
+constexpr toml::Range kAllowance{0, 50, " mm"};
+constexpr toml::Range kScallop{1e-5, 1, " mm"};
+constexpr toml::Range kChordTolerance{1e-5, 0.1, " mm"};
+constexpr toml::Range kPosition{-100000, 100000, " mm"};
+constexpr double kMostAxisLean = 60;  // deg
+constexpr double kAxisKeyGap = 0.01;  // mm between two keys of a tool axis
+constexpr std::size_t kMostAxisKeys = 1000;
+
+std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
+  std::vector<tool::HolderSegment> result;
+  const toml::TomlValue* value = table.value("holder");
+  if (!value) {
+    table.refuse("holder", "[{}] lacks the key \"holder\"", table.path());
+    return result;
+  }
+  const auto wrong = [&] {
+    table.refuse("holder", "holder must be an array of [lower diameter, upper diameter, height] in mm, each above 0 and at most 2000");
+    return std::vector<tool::HolderSegment>{};
+  };
+  const toml::TomlArray* segments = value->array();
+  if (!segments || segments->values.empty() || segments->values.size() > 100) return wrong();
+  for (const auto& segment : segments->values) {
+    const toml::TomlArray* numbers = segment.array();
+    if (!numbers || numbers->values.size() != 3) return wrong();
+    double read[3] = {};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& data = numbers->values[i].data;
+      if (const auto* real = std::get_if<double>(&data)) read[i] = *real;
+      else if (const auto* whole = std::get_if<std::int64_t>(&data)) read[i] = static_cast<double>(*whole);
+      if (!(read[i] > 0 && read[i] <= 2000)) return wrong();
+    }
+    result.push_back({read[0], read[1], read[2]});
+  }
+  return result;
+}
+
+void read_finger_profile(toml::TableReader& table, const bevel_gear::BevelGearParameters* bevel, tool::ToolAssembly& tool) {
+  tool.module_mm = table.number("module", {0.01, 100, " mm"}).value_or(0);
+  tool.tip_radius_mm = table.number("tip_radius", {0, 100, " mm"}).value_or(0);
+  tool.rack_depth_mm = table.number("rack_depth", kToolLength).value_or(0);
+  tool.profile_height_mm = table.number("profile_height", kToolLength).value_or(0);
+  tool.flute_length_mm = (bevel ? bevel->dedendum_mm : 0) + tool.profile_height_mm;
+  if (const auto flute = table.if_present("flute_length", [&] { return table.number("flute_length", kToolLength); }))
+    tool.flute_length_mm = *flute;
+  if (table.value("diameter"))
+    table.refuse("diameter", "diameter contradicts type = \"finger_mill\": its width follows from module and profile_height");
+}
+
+/// Three finite numbers of an array; nothing where it is something else.
+std::optional<std::array<double, 3>> three_numbers(const toml::TomlValue& value) {
+  const toml::TomlArray* array = value.array();
+  if (!array || array->values.size() != 3) return std::nullopt;
+  std::array<double, 3> out{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& data = array->values[i].data;
+    if (const auto* real = std::get_if<double>(&data)) out[i] = *real;
+    else if (const auto* whole = std::get_if<std::int64_t>(&data)) out[i] = static_cast<double>(*whole);
+    else return std::nullopt;
+    if (!std::isfinite(out[i])) return std::nullopt;
+  }
+  return out;
+}
+
+/// A list of [radius, lean outwards, lean aside], radii ascending; empty and recorded where it is something else.
+std::vector<path::ToolAxisKey> read_axis_keys(toml::TableReader& table, std::string_view key) {
+  std::vector<path::ToolAxisKey> keys;
+  const toml::TomlValue* value = table.value(key);
+  if (!value) return keys;
+  const toml::TomlArray* list = value->array();
+  if (!list || list->values.empty() || list->values.size() > kMostAxisKeys) {
+    table.refuse(key, "{} must be an array of 1 to {} keys [radius in mm, lean outwards in deg, lean aside in deg]", key, kMostAxisKeys);
+    return {};
+  }
+  for (std::size_t k = 0; k < list->values.size(); ++k) {
+    const auto numbers = three_numbers(list->values[k]);
+    if (!numbers) {
+      table.refuse(key, "{}[{}] must be [radius in mm, lean outwards in deg, lean aside in deg]", key, k);
+      return {};
+    }
+    const auto [radius, outwards, aside] = *numbers;
+    if (!(radius > 0)) table.refuse(key, "{}[{}]: radius = {} mm is not above 0 mm", key, k, radius);
+    else if (!keys.empty() && radius < keys.back().radius_mm + kAxisKeyGap)
+      table.refuse(key, "{}[{}]: radius = {} mm is not {} mm beyond {} mm, the radius of the key before it", key, k, radius, kAxisKeyGap, keys.back().radius_mm);
+    else if (std::abs(outwards) > kMostAxisLean) table.refuse(key, "{}[{}]: lean outwards = {} deg is outside -{} to {} deg", key, k, outwards, kMostAxisLean, kMostAxisLean);
+    else if (std::abs(aside) > kMostAxisLean) table.refuse(key, "{}[{}]: lean aside = {} deg is outside -{} to {} deg", key, k, aside, kMostAxisLean, kMostAxisLean);
+    else {
+      keys.push_back({radius, radians(outwards), radians(aside)});
+      continue;
+    }
+    return {};
+  }
+  return keys;
+}
+
+/// Prescribed tool axes: one list for all passes, or one for each flank.
+void read_tool_axis(toml::TableReader& table, path::MillingOperation& operation) {
+  const bool both = table.value("tool_axis") != nullptr, plus = table.has("tool_axis_plus"), minus = table.has("tool_axis_minus");
+  operation.axis_plus = read_axis_keys(table, both ? "tool_axis" : "tool_axis_plus");
+  operation.axis_minus = both ? operation.axis_plus : read_axis_keys(table, "tool_axis_minus");
+  if (both)
+    for (const char* key : {"tool_axis_plus", "tool_axis_minus"}) {
+      if (table.value(key)) table.refuse(key, "{} contradicts tool_axis, which holds for both flanks", key);
+    }
+  else if (plus != minus) table.refuse(plus ? "tool_axis_plus" : "tool_axis_minus", "tool_axis_plus and tool_axis_minus stand together: the other is missing");
+}
+
+path::MillingOperation read_ball_operation(toml::TableReader& table, path::OperationType type) {
+  path::MillingOperation operation;
+  if (type == path::OperationType::roughing) {
+    operation.step_down_mm = table.number("step_down", kStep).value_or(0);
+    operation.step_over_mm = table.number("step_over", kStep).value_or(0);
+  } else {
+    operation.scallop_mm = table.number("scallop", kScallop).value_or(0);
+    read_tool_axis(table, operation);
+  }
+  if (type != path::OperationType::finishing) operation.allowance_mm = table.number("allowance", kAllowance).value_or(0);
+  if (const auto climb = table.if_present("climb", [&] { return table.boolean("climb"); })) operation.climb = *climb;
+  return operation;
+}
+
+/// Cutting steps and cusps larger than the tool itself cannot be meant.
+void compare_with_tool(toml::TableReader& table, const path::MillingOperation& operation, const tool::ToolAssembly& tool) {
+  const double diameter = tool.diameter_mm;
+  if (diameter <= 0) return;
+  if (operation.step_over_mm > diameter)
+    table.refuse("step_over", "step_over = {} mm exceeds {} mm, the diameter of tool {}", operation.step_over_mm, diameter, tool.number);
+  if (operation.scallop_mm >= diameter / 2)
+    table.refuse("scallop", "scallop = {} mm is not below {} mm, the radius of tool {}", operation.scallop_mm, diameter / 2, tool.number);
+  if (tool.flute_length_mm > 0 && operation.step_down_mm > tool.flute_length_mm)
+    table.refuse("step_down", "step_down = {} mm exceeds {} mm, the flute_length of tool {}", operation.step_down_mm,
+                 tool.flute_length_mm, tool.number);
+}
+
+}  // namespace
+
+tool::ToolAssembly read_tool(toml::TableReader& table, const bevel_gear::BevelGearParameters* bevel) {
+  tool::ToolAssembly tool;
+  tool.number = table.integer("number", {1, 9999}).value_or(0);
+  const auto type = table.word("type", {"ball_end_mill", "finger_mill"});
+  tool.shank_diameter_mm = table.number("shank_diameter", kToolDiameter).value_or(0);
+  const auto length = table.number("length", kToolLength);
+  const auto stick_out = table.number("stick_out", kToolLength);
+  tool.length_mm = length.value_or(0);
+  tool.stick_out_mm = stick_out.value_or(0);
+  tool.holder = read_holder(table);
+  if (const auto teeth = table.if_present("teeth", [&] { return table.integer("teeth", {1, 100}); })) tool.teeth = *teeth;
+  if (length && stick_out && *stick_out > *length)
+    table.refuse("stick_out", "stick_out = {} mm exceeds length = {} mm", *stick_out, *length);
+  if (!type) return tool;  // which other keys belong here is unknown
+  if (*type == "finger_mill") {
+    tool.type = tool::CutterType::finger_mill;
+    read_finger_profile(table, bevel, tool);
+  } else {
+    const auto diameter = table.number("diameter", kToolDiameter);
+    const auto flute = table.number("flute_length", kToolLength);
+    tool.diameter_mm = diameter.value_or(0);
+    tool.flute_length_mm = flute.value_or(0);
+    if (diameter && flute && *flute < *diameter / 2)
+      table.refuse("flute_length", "flute_length = {} mm is below {} mm, half the diameter", *flute, *diameter / 2);
+  }
+  if (stick_out && tool.flute_length_mm > *stick_out)
+    table.refuse(table.has("flute_length") ? "flute_length" : "stick_out", "flute_length = {} mm exceeds stick_out = {} mm",
+                 tool.flute_length_mm, *stick_out);
+  table.finish();
+  return tool;
+}
+
+path::MillingOperation read_operation(toml::TableReader& table, const std::vector<tool::ToolAssembly>& tools, bool bevel_gear) {
+  const auto name = bevel_gear ? table.word("type", {"finger_roughing", "finger_finishing"})
+                               : table.word("type", {"roughing", "semi_finishing", "finishing"});
+  path::MillingOperation operation;
+  const tool::ToolAssembly* tool = nullptr;
+  if (const auto number = table.integer("tool", {1, 9999})) {
+    const auto found = std::find_if(tools.begin(), tools.end(), [&](const auto& t) { return t.number == *number; });
+    if (found == tools.end()) table.refuse("tool", "tool = {} is not the number of any [[tool]]", *number);
+    else tool = &*found;
+  }
+  const double speed = table.number("speed", kSpeed).value_or(0);
+  const double feed = table.number("feed", kFeed).value_or(0);
+  double chord = operation.chord_tolerance_mm;
+  if (const auto given = table.if_present("chord_tolerance", [&] { return table.number("chord_tolerance", kChordTolerance); }))
+    chord = *given;
+  if (!name) return operation;
+  if (*name == "finger_roughing" || *name == "finger_finishing") {
+    operation.type = *name == "finger_roughing" ? path::OperationType::finger_roughing : path::OperationType::finger_finishing;
+    if (operation.type == path::OperationType::finger_roughing)
+      operation.ridge_mm = table.number("ridge", {0.001, 10, " mm"}).value_or(0);
+  } else {
+    const auto type = *name == "roughing"         ? path::OperationType::roughing
+                      : *name == "semi_finishing" ? path::OperationType::semi_finishing
+                                                  : path::OperationType::finishing;
+    operation = read_ball_operation(table, type);
+    operation.type = type;
+  }
+  operation.speed_rpm = speed;
+  operation.feed_mm_min = feed;
+  operation.chord_tolerance_mm = chord;
+  if (tool) {
+    operation.tool = static_cast<int>(tool - tools.data());
+    const bool finger = tool->type == tool::CutterType::finger_mill;
+    if (finger != bevel_gear)
+      table.refuse("tool", "tool = {} is a {}, but {} needs a {}", tool->number, finger ? "finger_mill" : "ball_end_mill", *name,
+                   finger ? "ball_end_mill" : "finger_mill");
+    else compare_with_tool(table, operation, *tool);
+  }
+  table.finish();
+  return operation;
+}
+
+joints::Setup read_setup(toml::TableReader& table) {
+  joints::Setup setup;
+  if (const auto origin = table.numbers("origin", 3, kPosition)) setup.origin_mm = Vec3((*origin)[0], (*origin)[1], (*origin)[2]);
+  if (const auto axis = table.word("axis", {"up", "down"})) setup.axis_up = *axis == "up";
+  if (const auto name = table.text("work_offset")) {
+    static const std::regex kOffset("[A-Z]?[0-9]{1,4}(\\.[0-9])?( ?P[0-9]{1,3})?");
+    if (std::regex_match(*name, kOffset)) setup.work_offset = *name;
+    else table.refuse("work_offset", "work_offset = \"{}\" is not the name of a work offset such as G54, G59.1 or G54.1 P3", *name);
+  }
+  if (const auto at = table.numbers("work_offset_at", 3, kPosition)) setup.work_offset_at_mm = Vec3((*at)[0], (*at)[1], (*at)[2]);
+  table.finish();
+  return setup;
+}
+
+shaper::Shaping read_shaping(toml::TableReader& table) {
+  shaper::Shaping s;
+  s.cutting_speed_m_min = table.number("cutting_speed", {0, 1000, " m/min", true}).value_or(0);
+  if (const auto basis = table.word("speed_basis", {"mean", "peak"}))
+    s.speed_basis = *basis == "mean" ? shaper::Shaping::SpeedBasis::mean : shaper::Shaping::SpeedBasis::peak;
+  s.circular_feed_mm = table.number("circular_feed", {0, 100, " mm", true}).value_or(0);
+  s.radial_feed_mm = table.number("radial_feed", {0, 100, " mm", true}).value_or(0);
+  s.over_run_mm = table.number("over_run", {0, 1000, " mm"}).value_or(0);
+  const toml::TomlValue* reference = table.value("offset_reference");
+  if (reference && !std::holds_alternative<std::string>(reference->data)) {
+    s.offset_reference = shaper::Shaping::OffsetReference::given;
+    s.offset_reference_mm = table.number("offset_reference", {0, 10000, " mm", true}).value_or(0);
+  } else if (const auto name = table.word("offset_reference", {"outer_radius", "mean_radius"})) {
+    s.offset_reference = *name == "outer_radius" ? shaper::Shaping::OffsetReference::outer_radius : shaper::Shaping::OffsetReference::mean_radius;
+  }
+  table.finish();
+  return s;
+}
+
+ContactSettings read_contact(toml::TableReader& table) {
+  ContactSettings c;
+  const auto number = [&](const char* key, const toml::Range& range) { return table.if_present(key, [&] { return table.number(key, range); }); };
+  if (const auto teeth = table.if_present("pinion_teeth", [&] { return table.integer("pinion_teeth", {5, 1000}); })) c.pinion_teeth = *teeth;
+  if (const auto offset = number("offset_error", {-5, 5, " mm"})) c.moved.offset_mm = *offset;
+  if (const auto axial = number("axial_error", {-5, 5, " mm"})) c.moved.axial_mm = *axial;
+  if (const auto angle = number("angle_error", {-1, 1, " deg"})) c.moved.angle_rad = radians(*angle);
+  if (const auto compound = number("compound", {1e-4, 0.1, " mm"})) c.compound_mm = *compound;
+  table.finish();
+  return c;
+}
+
+VerifySettings read_verify(toml::TableReader& table, bool bevel) {
+  VerifySettings verify;
+  if (const auto gouge = table.if_present("gouge_tolerance", [&] { return table.number("gouge_tolerance", {1e-5, 0.1, " mm"}); }))
+    verify.gouge_tolerance_mm = *gouge;
+  if (const auto teeth = table.if_present("teeth", [&] { return table.word("teeth", {"one", "all"}); }))
+    verify.all_teeth = *teeth == "all";
+  verify.clearance_mm = table.if_present("clearance", [&] { return table.number("clearance", {0, 50, " mm"}); });
+  verify.unreached_mm = table.if_present("unreached", [&] { return table.number("unreached", {0, 50, " mm"}); });
+  if (bevel && verify.unreached_mm) table.refuse("unreached", "unreached is asked of the ball that finishes a face gear: what a finger mill leaves is its ridge");
+  table.finish();
+  return verify;
+}
+
+ProgramSettings read_program_settings(toml::TableReader& table) {
+  ProgramSettings program;
+  if (const auto order = table.if_present("tooth_order", [&] { return table.word("tooth_order", {"sequence", "spread"}); }))
+    program.spread_teeth = *order == "spread";
+  constexpr std::pair<std::string_view, machines::PoleOption> kPoles[] = {{"error", machines::PoleOption::error}, {"tilt", machines::PoleOption::tilt},       {"hold", machines::PoleOption::hold},
+                                                                {"through", machines::PoleOption::through}, {"slow", machines::PoleOption::slow}, {"retract", machines::PoleOption::retract}};
+  if (const auto word = table.if_present("pole", [&] { return table.word("pole", {"error", "tilt", "hold", "through", "slow", "retract"}); }))
+    for (const auto& [name, option] : kPoles)
+      if (*word == name) program.pole = option;
+  if (const auto angle = table.if_present("pole_angle", [&] { return table.number("pole_angle", {0, machines::kLargestPoleAngle, " deg", true}); }))
+    program.pole_angle_rad = radians(*angle);
+  table.finish();
+  return program;
+}
+
+MachineChoice read_machine_choice(toml::TableReader& table) {
+  MachineChoice machine;
+  machine.file = table.text("file").value_or("");
+  if (const auto accept = table.if_present("accept_assumed", [&] { return table.boolean("accept_assumed"); }))
+    machine.accept_assumed = *accept;
+  table.finish();
+  return machine;
+}
+
+machines::Coolant read_coolant(toml::TableReader& table) {
+  const auto mode = table.word("mode", {"off", "mist", "flood", "air", "through_spindle"});
+  table.finish();
+  for (const machines::Coolant coolant : machines::kCoolants)
+    if (mode && *mode == to_string(coolant)) return coolant;
+  return machines::Coolant::off;
+}
+
+}  // namespace toothpath::job

@@ -1,0 +1,31 @@
+// The tables of a job file, one function each. Findings go to the reader; what could not be read keeps its default.
+#pragma once
+
+#include "app/job/job.h"
+#include "machines/toml/table_reader.h"
+
+namespace toothpath::job {
+
+/// [gear] with type = "face_gear", its [[gear.zone]] tables, and [stock] where there is one.
+[[nodiscard]] face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::TableReader* stock, std::vector<std::string>& warnings);
+
+/// [gear] with type = "equal_base_circle_bevel_gear".
+[[nodiscard]] bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear);
+
+/// One [[tool]].
+/// @param bevel  the gear, when it is a bevel gear: a finger mill's flute length defaults to dedendum + profile height
+[[nodiscard]] tool::ToolAssembly read_tool(toml::TableReader& table, const bevel_gear::BevelGearParameters* bevel);
+
+/// One [[operation]]; its `tool` becomes an index into `tools`.
+/// @param bevel_gear  which operations fit: finger operations for bevel gears, ball operations for face gears
+[[nodiscard]] path::MillingOperation read_operation(toml::TableReader& table, const std::vector<tool::ToolAssembly>& tools, bool bevel_gear);
+
+[[nodiscard]] joints::Setup read_setup(toml::TableReader& table);
+[[nodiscard]] shaper::Shaping read_shaping(toml::TableReader& table);
+[[nodiscard]] ContactSettings read_contact(toml::TableReader& table);
+[[nodiscard]] VerifySettings read_verify(toml::TableReader& table, bool bevel);
+[[nodiscard]] ProgramSettings read_program_settings(toml::TableReader& table);
+[[nodiscard]] MachineChoice read_machine_choice(toml::TableReader& table);
+[[nodiscard]] machines::Coolant read_coolant(toml::TableReader& table);
+
+}  // namespace toothpath::job

@@ -1,0 +1,101 @@
+#include "app/process/gear_of_job.h"
+
+#include <filesystem>
+
+#include "machines/machine_file.h"
+#include "postproc/controls/of_machine.h"
+
+namespace toothpath::process {
+namespace {
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+// As in job files. A type of gear without its word does not compile.
+const char* type_word(const face_gear::FaceGearParameters&) { return "face_gear"; }
+const char* type_word(const bevel_gear::BevelGearParameters&) { return "equal_base_circle_bevel_gear"; }
+
+void check_speeds(const job::Job& job, const machines::Machine& machine, std::vector<Diagnostic>& errors) {
+  for (std::size_t i = 0; i < job.operations.size(); ++i) {
+    const auto& operation = job.operations[i];
+    const std::string path = fmt::format("operation[{}]", i);
+    if (operation.speed_rpm > machine.max_spindle_speed)
+      errors.push_back(fail_at(job.where(path + ".speed"), "speed = {} 1/min exceeds {} 1/min, the spindle of {}",
+                               operation.speed_rpm, machine.max_spindle_speed, machine.name));
+    if (operation.feed_mm_min > machine.max_cutting_feed)
+      errors.push_back(fail_at(job.where(path + ".feed"), "feed = {} mm/min exceeds {} mm/min, the cutting feed of {}",
+                               operation.feed_mm_min, machine.max_cutting_feed, machine.name));
+  }
+}
+
+}  // namespace
+
+Diagnostic located(const job::Job& job, std::string_view key, Diagnostic diagnostic) {
+  if (diagnostic.position.file.empty()) diagnostic.position = job.where(key);
+  return diagnostic;
+}
+
+const char* gear_type(const job::Job& job) { return std::visit([](const auto& gear) { return type_word(gear); }, job.gear); }
+
+ValueOrErrors<face_gear::FaceGear> make_face_gear(const job::Job& job) {
+  const face_gear::FaceGearParameters* parameters = job.face_gear();
+  if (!parameters)
+    return std::vector{fail_at(job.where("gear.type"), "type = \"{}\", but this command needs a face_gear", gear_type(job))};
+  auto made = face_gear::FaceGear::make(*parameters);
+  if (auto* gear = made.value_if()) return std::move(*gear);
+  std::vector<Diagnostic> errors;
+  for (auto& refusal : made.error()) {
+    // The stock of the blank stands in its own table.
+    const bool stock = refusal.key.starts_with("stock.");
+    errors.push_back(located(job, (stock ? "" : "gear.") + refusal.key, std::move(refusal.diagnostic)));
+  }
+  return errors;
+}
+
+ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional<double> part_diameter_mm) {
+  if (job.machine.file.empty()) return std::vector{fail_at(job.where(""), "the job lacks the table [machine]")};
+  const std::string directory = std::filesystem::path(job.file).parent_path().string();
+  const auto path = machines::find_machine_file(job.machine.file, directory);
+  if (!path) return std::vector{located(job, "machine.file", path.error())};
+  const auto kind = machines::machine_kind_of(*path);
+  if (!kind) return std::vector{located(job, "machine.file", kind.error())};
+  if (*kind != machines::MachineKind::five_axis)
+    return std::vector{fail_at(job.where("machine.file"), "{} is a gear shaper, but this command needs a milling machine", job.machine.file)};
+  auto reading = controls::read_machine(*path);
+  if (!reading.machine) return reading.errors;
+  machines::Machine machine = std::move(*reading.machine);
+  if (job.program.pole) machine.post.pole = *job.program.pole;
+  if (job.program.pole_angle_rad) machine.post.pole_angle_rad = *job.program.pole_angle_rad;
+  std::vector<Diagnostic> errors;
+  if (part_diameter_mm)
+    if (const auto fits = check_part_on_machine(job, machine, *part_diameter_mm); !fits) errors.push_back(fits.error());
+  if (machine.assumed && !job.machine.accept_assumed)
+    errors.push_back(fail_at(job.where("machine.file"),
+                             "{} has assumed values ({}); measure them, or accept them with accept_assumed = true", job.machine.file,
+                             joined(machine.assumed_keys)));
+  check_speeds(job, machine, errors);
+  if (job.setup)
+    if (const auto others = controls::other_work_offsets(machine, job.setup->work_offset))
+      errors.push_back(fail_at(job.where("setup.work_offset"), "work_offset = \"{}\" is none of {}: it has {}", job.setup->work_offset, machine.name, *others));
+  const auto dialect = controls::dialect_of(machine);
+  if (!dialect) errors.push_back(located(job, "machine.file", dialect.error()));
+  else if (job.coolant != machines::Coolant::off)
+    if (const auto words = text::coolant_words(*dialect, job.coolant); !words) errors.push_back(located(job, "coolant.mode", words.error()));
+  if (!errors.empty()) return errors;
+  return machine;
+}
+
+Status check_part_on_machine(const job::Job& job, const machines::Machine& machine, double part_diameter_mm) {
+  const auto fits = machines::check_part_fits(machine, part_diameter_mm);
+  if (!fits) {
+    Diagnostic error = fits.error();
+    error.position = job.where("machine.file");
+    return error;
+  }
+  return Ok{};
+}
+
+}  // namespace toothpath::process

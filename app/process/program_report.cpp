@@ -1,0 +1,193 @@
+#include "app/process/program_report.h"
+
+#include <algorithm>
+
+#include "app/process/gear_of_job.h"
+#include "app/report/sheet/setup_travel.h"
+#include "geometry/base/angle.h"
+#include "geometry/base/hash.h"
+#include "machines/toml/regular_file.h"
+#include "postproc/joints/time.h"
+#include "postproc/controls/of_machine.h"
+#include "postproc/controls/registry.h"
+#include "postproc/text/writer.h"
+#include "postproc/joints/tooth_order.h"
+
+namespace toothpath::process {
+namespace {
+
+constexpr std::size_t kMostBytes = std::size_t(1) << 30;
+constexpr double kLeastAxisBlend = 0.0001;  // deg: the last digit of a tolerance of the rotaries
+constexpr double kBlendShare = 0.15;      // of the gouge tolerance that the control may round corners by
+
+/// The words of `pole`, in the order of PoleOption.
+constexpr const char* kPoleWords[] = {"error", "tilt", "hold", "through", "slow", "retract"};
+
+double shown(const joints::AxisRange& axis, double value) { return axis.rotary ? degrees(value) : value; }
+
+}  // namespace
+
+report::RunReport report_of(const std::string& command, const job::Job& job, const machines::Machine& machine, const std::vector<std::string>& gear_warnings) {
+  report::RunReport report;
+  report.command = command;
+  report.job_name = job.name;
+  report.job_file = job.file;
+  report.machine_name = machine.name;
+  report.machine_file = job.machine.file;
+  report.dialect = machine.dialect;
+  report.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
+  if (machine.assumed)
+    for (const auto& key : machine.assumed_keys) report.assumed.push_back(fmt::format("{}: {}", job.machine.file, key));
+  if (!machine.post.smoothing_on.empty() && machine.post.smoothing_tolerance_mm)
+    report.assumed.push_back(fmt::format("{}: post.smoothing_tolerance = {:g} mm, what \"{}\" leaves of the path", job.machine.file,
+                                         *machine.post.smoothing_tolerance_mm, machine.post.smoothing_on.front()));
+  if (!machine.post.smoothing_on.empty() && machine.post.smoothing_axis_tolerance_rad)
+    report.assumed.push_back(fmt::format("{}: post.smoothing_axis_tolerance = {:g} deg", job.machine.file, degrees(*machine.post.smoothing_axis_tolerance_rad)));
+  report.warnings = job.warnings;
+  report.warnings.insert(report.warnings.end(), gear_warnings.begin(), gear_warnings.end());
+  return report;
+}
+
+void note_axis_program(report::RunReport& report, const job::Job& job, const machines::Machine& machine, std::span<const path::ClPath* const> paths, const joints::AxisProgram& program) {
+  report.axes = program.ranges;
+  const bool timed = program.has_acceleration;
+  report.has_acceleration = timed;
+  report.feed_minutes = timed ? program.accelerated.feed : program.feed_minutes;
+  report.total_minutes = timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes;
+  if (job.setup && program.offer)
+    report.travel_room = report::TravelRoom{*program.offer, job.setup->origin_mm + program.offer->shift_mm, job.setup->work_offset_at_mm + program.offer->shift_mm};
+  if (job.setup && program.offer) report.sheet_sections.push_back(sheet::travel_section(program, *job.setup));
+  if (program.pole_passages > 0)
+    report.poles = report::PolesReport{program.pole_passages, kPoleWords[static_cast<std::size_t>(machine.post.pole)], program.pole_axis_rad, program.pole_tip_mm};
+  report.sheet_sections.push_back(sheet::time_section(program, report.poles));
+  report.block_times = report::block_times_of(program);
+  for (const joints::AxisOperation& o : program.operations) {
+    const auto& asked = job.operations[static_cast<std::size_t>(o.operation)];
+    report::OperationReport operation{o.operation, o.type, o.tool_number, asked.speed_rpm, asked.feed_mm_min, 0, timed ? o.accelerated.feed : o.feed_minutes,
+                              timed ? o.accelerated.rapid : o.rapid_minutes};
+    for (const path::ClPath* path : paths)
+      if (path->operation == o.operation) operation.cl_points += path->records.size();
+    report.operations.push_back(operation);
+  }
+}
+
+std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& program, std::span<const path::ClPath* const> paths) {
+  if (program.followed.empty()) return {paths.begin(), paths.end()};
+  std::vector<const path::ClPath*> followed;
+  for (const path::ClPath& path : program.followed) followed.push_back(&path);
+  return followed;
+}
+
+Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, const job::Job& job, const std::string& title, const machines::Machine& machine, int teeth,
+                                   const joints::ClearanceBody& body, const std::vector<std::string>& assumed, app::OutputDir& output, app::StageClock& clock,
+                                   const std::optional<joints::ProgramRestart>& restart) {
+  const auto dialect = controls::dialect_of(machine);
+  if (!dialect) return located(job, "machine.file", dialect.error());
+  auto program = clock.run("axis program", [&] {
+    joints::AxisOptions options = controls::axis_options(*dialect, machine);
+    if (job.program.spread_teeth) options.tooth_stride = joints::spread_stride(teeth);
+    return build_axis_program(paths, job.tools, *job.setup, machine, teeth, body, options);
+  });
+  if (!program) return located(job, "setup", program.error());
+  PostedProgram posted;
+  posted.axes = std::move(program.value());
+
+  text::NcHeader header;
+  header.job_name = title;
+  header.machine_name = machine.name;
+  header.assumed = assumed;
+  header.coolant = job.coolant;
+  header.blend_mm = std::min(header.blend_mm, kBlendShare * job.verify.gouge_tolerance_mm);
+  double radius = 0;  // a lean of the tool moves the centre of its ball by no more than a corner does
+  for (const auto& tool : job.tools) radius = std::max(radius, tool.radius_mm());
+  if (radius > 0) header.blend_axis_deg = std::max(kLeastAxisBlend, std::min(header.blend_axis_deg, degrees(header.blend_mm / (2 * radius))));
+  auto text = clock.run("NC text", [&] { return text::write_nc(posted.axes, *dialect, header); });
+  if (!text) return located(job, "machine.file", text.error());
+  posted.blocks = text->blocks;
+  posted.blend_mm = text::granted_blend_mm(posted.axes, *dialect, header) + radius * granted_blend_rad(posted.axes, *dialect, header);
+  posted.file = "program" + dialect->extension;
+  std::string whole = std::move(text->text);
+  if (restart) {
+    auto part = joints::program_from(posted.axes, restart->operation, restart->tooth);
+    if (!part) return part.error();
+    posted.restarted = std::move(part.value());
+    estimate_times(*posted.restarted, machine);
+    text = text::write_nc(*posted.restarted, *dialect, header);
+    if (!text) return located(job, "machine.file", text.error());
+    posted.blocks = text->blocks;
+  }
+  if (const auto written = output.write(posted.file, restart ? text->text : whole); !written) return written.error();
+  auto bytes = output.read_back(posted.file);
+  if (!bytes) return bytes.error();
+  posted.text = std::move(restart ? whole : bytes.value());
+  if (restart) posted.restart_text = std::move(bytes.value());
+  return posted;
+}
+
+void discard_program(app::OutputDir& output) {
+  for (const auto& extension : controls::program_extensions()) output.discard("program" + extension);
+}
+
+Result<std::string> read_program_file(const std::string& path) { return toml::read_regular_file(path, kMostBytes); }
+
+std::vector<joints::AxisRange> ranges_of(const readback::ReadBack& read, const machines::Machine& machine) {
+  std::vector<joints::AxisRange> out;
+  for (std::size_t k = 0; k < 3; ++k)
+    out.push_back({"XYZ"[k], false, read.least[k], read.greatest[k], machine.chain.linear[k].min_mm, machine.chain.linear[k].max_mm});
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
+    const auto& axis = machine.chain.rotary(k);
+    out.push_back({axis.letter, true, radians(read.least[3 + k]), radians(read.greatest[3 + k]), axis.min_rad, axis.max_rad});
+  }
+  return out;
+}
+
+void judge_travels(std::span<const joints::AxisRange> axes, std::vector<std::string>& reasons) {
+  for (const auto& a : axes) {
+    if (a.min < a.lower_limit - 1e-9) reasons.push_back(fmt::format("travel: {} = {:.4f} is below {:.4f}", a.letter, shown(a, a.min), shown(a, a.lower_limit)));
+    if (a.max > a.upper_limit + 1e-9) reasons.push_back(fmt::format("travel: {} = {:.4f} exceeds {:.4f}", a.letter, shown(a, a.max), shown(a, a.upper_limit)));
+  }
+}
+
+std::string table_of_worst(const proof::GougeResult& gouge) {
+  if (gouge.worst.empty()) return {};
+  std::string out = "  worst places\n    line  op  tooth  zone  patch        body        r mm      z mm       um\n";
+  for (const auto& w : gouge.worst)
+    out += fmt::format("    {:5} {:3} {:6} {:5}  {:<12} {:<7} {:9.3f} {:9.3f} {:8.2f}\n", w.line, w.operation, w.tooth, w.zone, w.patch, w.body,
+                       w.radius_mm, w.height_mm, w.depth_mm * 1000);
+  return out;
+}
+
+std::vector<Diagnostic> errors_of(std::span<const std::string> reasons, const std::string& file) {
+  std::vector<Diagnostic> errors;
+  for (const auto& reason : reasons) {
+    Diagnostic error = fail_as(DiagnosticKind::verification, "{}", reason);
+    error.position.file = file;
+    errors.push_back(std::move(error));
+  }
+  return errors;
+}
+
+void note_verified(report::RunReport& report, const std::string& file, std::string_view text) {
+  report.verified = true;
+  report.program_file = file;
+  report.program_sha256 = sha256_hex(text);
+  report.program_bytes = text.size();
+  report.files.push_back(file);
+}
+
+commands::CommandOutcome verdict_of(report::RunReport& report, const std::optional<Diagnostic>& stopped, const std::string& job_file, app::OutputDir& output) {
+  commands::CommandOutcome outcome;
+  if (stopped) {
+    report.reasons.push_back(stopped->message);
+    outcome.errors.push_back(*stopped);
+  } else {
+    outcome.errors = errors_of(report.reasons, job_file);
+  }
+  if (!report.verified) {
+    discard_program(output);
+    outcome.exit_code = app::ExitCode::unverified;
+  }
+  return outcome;
+}
+
+}  // namespace toothpath::process

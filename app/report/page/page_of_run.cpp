@@ -1,0 +1,114 @@
+#include "app/report/page/page_of_run.h"
+
+#include <algorithm>
+
+#include "app/report/svg/html_text.h"
+#include "app/report/page/tool_body.h"
+#include "app/report/unreached_text.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath::page {
+namespace {
+
+std::vector<KeyFigure> key_figures(const report::RunReport& r) {
+  using State = KeyFigure::State;
+  std::vector<KeyFigure> figures;
+  const auto um = [](double mm) { return fmt::format("{:.2f}", mm * 1000); };
+  if (r.gouge)
+    figures.push_back({"worst gouge", um(std::max(0.0, r.gouge->measured_mm)), "\u00b5m",
+                       fmt::format("bound {}, tolerance {}", um(std::max(0.0, r.gouge->bound_mm)), um(r.gouge_tolerance_mm)),
+                       r.gouge->bound_mm <= r.gouge_tolerance_mm ? State::good : State::bad});
+  if (r.finished) figures.push_back({"worst left material", um(r.finished->max_mm), "\u00b5m", "bound " + um(r.finished->bound_mm), State::plain});
+  if (r.unreached && r.unreached->left())
+    figures.push_back({"surface not reached", report::unreached_share_text(*r.unreached), "", fmt::format("up to {:.3f} mm high; {}", r.unreached->height_mm, report::largest_ball_text(*r.unreached)),
+                       State::bad});
+  if (r.gouge)
+    figures.push_back({"least clearance", fmt::format("{:.3f}", r.gouge->clearance_mm), "mm",
+                       fmt::format("required {:.3f}", r.gouge->required_clearance_mm),
+                       r.gouge->clearance_mm >= r.gouge->required_clearance_mm ? State::good : State::bad});
+  if (!r.operations.empty()) {
+    figures.push_back({"cutting time", report::readable_minutes(r.feed_minutes), "", "with rapids " + report::readable_minutes(r.total_minutes), State::plain});
+    figures.push_back({"NC blocks", std::to_string(r.blocks), "", fmt::format("{} CL points a tooth", r.cl_points), State::plain});
+  }
+  return figures;
+}
+
+PageTable axis_table(const report::RunReport& r) {
+  PageTable table{"Axes", {"axis", "least", "greatest", "lower limit", "upper limit", "unit"}, {}, "Machine coordinates, over the whole program."};
+  for (const auto& axis : r.axes) {
+    const double f = axis.rotary ? degrees(1.0) : 1.0;
+    const auto number = [&](double value) { return fmt::format("{:.3f}", value * f); };
+    const auto limit = [&](double value) { return axis.endless() ? "rolls over" : number(value); };
+    table.rows.push_back({std::string(1, axis.letter), number(axis.min), number(axis.max), limit(axis.lower_limit), limit(axis.upper_limit),
+                          axis.rotary ? "deg" : "mm"});
+  }
+  if (r.poles) table.note += " " + report::poles_text(*r.poles);
+  return table;
+}
+
+std::string readable_type(std::string type) {
+  std::replace(type.begin(), type.end(), '_', ' ');
+  return type;
+}
+
+PageTable operation_table(const report::RunReport& r) {
+  PageTable table{"Operations", {"op", "type", "tool", "S 1/min", "feed mm/min", "CL points", "cutting min", "rapid min"}, {}, ""};
+  for (const auto& o : r.operations)
+    table.rows.push_back({std::to_string(o.operation), readable_type(o.type), fmt::format("T{}", o.tool_number), fmt::format("{:g}", o.speed_rpm),
+                          fmt::format("{:g}", o.feed_mm_min), std::to_string(o.cl_points), fmt::format("{:.2f}", o.feed_minutes),
+                          fmt::format("{:.2f}", o.rapid_minutes)});
+  return table;
+}
+
+PageTable correction_table(const report::RunReport& r) {
+  PageTable table{"Correction", {"zone", "flank", "measured max um", "measured rms um", "not followed max um", "not followed rms um", "degrees"}, {},
+                  "The target of this program: nominal flanks moved by minus the smooth part of the measured deviations (products of "
+                  "Chebyshev polynomials along profile and face). Deviations in this report are from that target."};
+  for (const auto& c : r.correction)
+    table.rows.push_back({std::to_string(c.zone), fmt::format("{:+}", c.side), fmt::format("{:.2f}", c.fit.measured_max_mm * 1000),
+                          fmt::format("{:.2f}", c.fit.measured_rms_mm * 1000), fmt::format("{:.2f}", c.fit.residual_max_mm * 1000),
+                          fmt::format("{:.2f}", c.fit.residual_rms_mm * 1000), fmt::format("{} x {}", c.fit.profile_degree, c.fit.lead_degree)});
+  return table;
+}
+
+// A type of gear without its subtitle does not compile.
+std::string subtitle_of(const face_gear::FaceGearParameters& gear, const std::string& machine) {
+  return fmt::format("face gear {}/{}, module {} mm, {}", gear.shaper_teeth, gear.teeth, svg::short_number(gear.module_mm), machine);
+}
+std::string subtitle_of(const bevel_gear::BevelGearParameters&, const std::string&) { return {}; }  // its page makes its own
+
+}  // namespace
+
+ReportPage page_of_run(const job::Job& job, const report::RunReport& r, const std::vector<path::ClPath>& paths, std::string_view program) {
+  ReportPage page;
+  page.title = r.job_name;
+  page.subtitle = std::visit([&](const auto& gear) { return subtitle_of(gear, r.machine_name); }, job.gear);
+  page.verified = r.verified;
+  if (r.unreached) page.unfinished = report::unreached_text(*r.unreached);
+  page.reasons = r.reasons;
+  page.warnings = r.warnings;
+  page.assumed = r.assumed;
+  page.figures = key_figures(r);
+  page.summary = {{"job", r.job_file}, {"machine", fmt::format("{} ({})", r.machine_name, r.machine_file)}, {"control", r.dialect}};
+  if (!r.program_sha256.empty()) page.summary.emplace_back("SHA-256 of the program", r.program_sha256);
+  for (const auto& path : paths) page.paths.push_back({path, {}});
+  for (const auto& tool : job.tools) page.tools.push_back(page_ball_mill(tool));
+  page.gouge = r.gouge;
+  page.gouge_tolerance_mm = r.gouge_tolerance_mm;
+  page.nc_file = r.program_file;
+  if (r.gouge && !program.empty()) {
+    std::vector<int> lines;
+    for (const auto& place : r.gouge->worst) lines.push_back(place.line);
+    page.listing = nc_excerpts(program, lines);
+  }
+  if (r.block_times) page.block_times = report::block_time_chart(*r.block_times);
+  page.excess = r.excess;
+  page.ledger = r.ledger;
+  page.directions = r.directions;
+  page.stage_seconds = r.stages;
+  if (!r.operations.empty()) page.tables = {operation_table(r), axis_table(r)};
+  if (!r.correction.empty()) page.tables.push_back(correction_table(r));
+  return page;
+}
+
+}  // namespace toothpath::page

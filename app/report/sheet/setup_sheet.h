@@ -1,0 +1,25 @@
+// setup.html: what the machinist needs at the machine, on A4 paper.
+#pragma once
+
+#include <string>
+
+#include "app/job/job.h"
+#include "app/report/run_report.h"
+#include "geometry/face_gear/gear.h"
+#include "machines/machine.h"
+
+namespace toothpath::sheet {
+
+/// The part as the sketch shows it: a ring of teeth on a body, gear frame, mm.
+struct PartOutline {
+  double inner_radius = 0, outer_radius = 0;
+  double tooth_top = 0, root = 0, bottom = 0;  ///< z
+};
+
+/// Machine, work offset, tools with lengths and run times, operations, axis ranges, every assumed value, warnings, and a sketch of the
+/// part in the machine as inline SVG. One self-contained page without script. The job has a set-up.
+[[nodiscard]] std::string setup_sheet(const job::Job& job, const face_gear::FaceGear& gear, const machines::Machine& machine, const report::RunReport& report);
+/// The same for any part.
+[[nodiscard]] std::string setup_sheet(const job::Job& job, const PartOutline& part, const machines::Machine& machine, const report::RunReport& report);
+
+}  // namespace toothpath::sheet

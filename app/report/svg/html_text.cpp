@@ -1,0 +1,88 @@
+#include "app/report/svg/html_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstddef>
+
+namespace toothpath::svg {
+namespace {
+
+constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
+
+/// Length of the valid UTF-8 sequence at `i`, 0 where there is none (overlong forms and surrogates are invalid).
+std::size_t sequence_length(std::string_view s, std::size_t i) {
+  const auto at = [&](std::size_t k) { return k < s.size() ? static_cast<unsigned char>(s[k]) : 0U; };
+  const auto tail = [&](std::size_t k) { return (at(k) & 0xC0U) == 0x80U; };
+  const unsigned a = at(i), b = at(i + 1);
+  if (a < 0x80U) return 1;
+  if (a >= 0xC2U && a <= 0xDFU) return tail(i + 1) ? 2 : 0;
+  if (a >= 0xE0U && a <= 0xEFU) {
+    if ((a == 0xE0U && b < 0xA0U) || (a == 0xEDU && b > 0x9FU)) return 0;
+    return tail(i + 1) && tail(i + 2) ? 3 : 0;
+  }
+  if (a >= 0xF0U && a <= 0xF4U) {
+    if ((a == 0xF0U && b < 0x90U) || (a == 0xF4U && b > 0x8FU)) return 0;
+    return tail(i + 1) && tail(i + 2) && tail(i + 3) ? 4 : 0;
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::string valid_utf8(std::string_view text) {
+  std::string out;
+  out.reserve(text.size());
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = sequence_length(text, i);
+    out += length == 0 ? kReplacement : text.substr(i, length);
+    i += length == 0 ? 1 : length;
+  }
+  return out;
+}
+
+std::string html_escape(std::string_view text) {
+  std::string out;
+  out.reserve(text.size() + text.size() / 8);
+  for (const char c : valid_utf8(text)) {
+    switch (c) {
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      case '\'': out += "&#39;"; break;
+      default: {
+        const auto code = static_cast<unsigned char>(c);
+        const bool control = (code < 0x20U && c != '\n' && c != '\t') || code == 0x7FU;
+        if (control) out += kReplacement;
+        else out += c;
+      }
+    }
+  }
+  return out;
+}
+
+std::string script_safe_json(std::string_view json) {
+  std::string out;
+  out.reserve(json.size());
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (c == '<') out += "\\u003c";
+    else if (c == '>') out += "\\u003e";
+    else if (c == '&') out += "\\u0026";
+    else if (json.substr(i, 3) == "\xE2\x80\xA8") out += "\\u2028", i += 2;
+    else if (json.substr(i, 3) == "\xE2\x80\xA9") out += "\\u2029", i += 2;
+    else out += c;
+  }
+  return out;
+}
+
+std::string short_number(double value, int digits) {
+  if (!std::isfinite(value)) return "\xE2\x80\x93";
+  std::string text = fmt::format("{:.{}g}", value, digits);
+  const double rounded = std::abs(value);
+  if (rounded >= 1e-4 && rounded < 1e6 && text.find('e') != std::string::npos) text = fmt::format("{:.0f}", value);
+  return text == "-0" ? "0" : text;
+}
+
+}  // namespace toothpath::svg

@@ -1,0 +1,34 @@
+// Shank and holder along their motions: the least gap to the part that was found, and the gap that is proven for every moment
+// between the blocks.
+//
+// The signed distance to a convex body is a convex function. Seen from the tool, a quad of the part that moves past lies in the hull of
+// its corners at both ends of the motion, up to the sag of its patch and the arc of an axis that turns; a tangent plane of the
+// distance at any point of the hull therefore bounds the gap of the whole quad over the whole motion. Quads and motions are halved, the
+// quads on their exact patches, until the bound is close to what was found. Every gap that is told is that of a place of the surface.
+#pragma once
+
+#include "cam/tool/frustum_distance.h"
+#include "cam/analytic/gear_distance.h"
+#include "cam/path/tool_motion.h"
+
+namespace toothpath::analytic {
+
+struct SweptGap {
+  double proven_mm = 0;    ///< no place of the motion comes nearer; negative: a cut
+  double measured_mm = 0;  ///< least gap found, at a place of the finished surface
+  int zone = 0;
+  const char* patch = "tooth";
+  Vec3 place = Vec3::Zero();  ///< where, turned to tooth space 0
+};
+
+struct SweptGapOptions {
+  double enough_mm = 0.5;         ///< gaps above this are returned as this
+  double contact_mm = 0;           ///< below this ...
+  double contact_proof_mm = 2e-4;  ///< ... the bound lies within this of the least gap that was found, but for the motion's own deviations
+  double proof_mm = 0.01;          ///< else within this
+};
+
+/// Least gap of one body over one motion. All teeth are seen.
+[[nodiscard]] SweptGap swept_gap(const GearDistance& part, const tool::Frustum& body, const path::ToolMotion& motion, const SweptGapOptions& options);
+
+}  // namespace toothpath::analytic

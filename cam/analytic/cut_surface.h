@@ -1,0 +1,43 @@
+// What a program leaves on the finished surface: excess or gouge at a dense grid of every patch, after every operation,
+// computed from the path as it was read back. Exact in double on candidates of a spatial index.
+#pragma once
+
+#include <vector>
+
+#include "cam/tool/assembly.h"
+#include "cam/analytic/gear_distance.h"
+#include "cam/path/operation.h"
+#include "cam/path/tool_motion.h"
+#include "cam/proof/verification.h"
+
+namespace toothpath::analytic {
+
+struct CutSurfaceOptions {
+  int flank_rows = 40, fillet_rows = 14, root_rows = 7, columns = 33;
+  int scallop_lines = 9;       ///< lines across each flank on which cusps are counted
+  double cap_mm = 0;           ///< excess above this is reported as this; 0: one module
+};
+
+/// Rounding, axis motion and the grid of the measurement, beside cusps and chords.
+inline constexpr double kExcessMargin = 1e-3;  // mm
+/// What an operation may leave above its allowance on every place that its ball can reach.
+[[nodiscard]] inline double most_left_mm(const path::MillingOperation& o) { return o.scallop_mm + o.chord_tolerance_mm + kExcessMargin; }
+
+/// The cut surface of tooth space 0.
+struct CutSurface {
+  std::vector<proof::SurfaceGrid> grids;           ///< every patch of every zone
+  std::vector<proof::ExcessResult> operations;     ///< after each operation, over all points
+  proof::ExcessResult finished;                    ///< after the last one, over the points that its ball can reach
+  proof::UnreachedResult unreached;
+  double solve_residual_mm = 0;             ///< greatest difference between a radius and the distance from a centre that far above the grid
+  proof::ScallopResult scallop;                    ///< cusps of the last operation; requested 0: it has none
+};
+
+/// `motions`: those of tooth 0 are used. Excess at a point p: the least, over all moves so far, of (distance from p to the
+/// ball-centre path - ball radius); > 0 material left, < 0 a gouge. `finished.bound_mm` adds to the greatest value seen
+/// what a cusp can rise between two samples of a scallop line and the asked chord tolerance.
+[[nodiscard]] CutSurface measure_cut_surface(const GearDistance& part, const std::vector<path::ToolMotion>& motions,
+                                             const std::vector<path::MillingOperation>& operations,
+                                             const std::vector<tool::ToolAssembly>& tools, const CutSurfaceOptions& options = {});
+
+}  // namespace toothpath::analytic

@@ -1,0 +1,195 @@
+#include "cam/analytic/cutter_sweep.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "cam/path/motion_blend.h"
+
+namespace toothpath::analytic {
+namespace {
+
+constexpr double kCutterLook = 0.12;        // mm beyond the ball within which distances are wanted exactly, at least
+constexpr double kLookShare = 0.2;    // and this share of its radius
+constexpr double kSearchPad = 1e-4;   // mm: sag of edges, by which two distances may disagree
+constexpr double kWreckShare = 0.5;        // a ball whose centre is this near, in radii, is bounded by all that can be asked for
+constexpr int kCutterHalvings = 24;
+constexpr double kShortestPiece = 1e-6;    // mm: shorter pieces are not halved
+
+/// Heights of the flute in ball radii: close above the centre first, where the flute leaves the contact slowly.
+std::vector<double> heights(double R, double top) {
+  std::vector<double> out;
+  double h = 0.3 * R, step = 0.4 * R;
+  for (; h < top; h += step, step = std::min(step * 1.4, 1.2 * R)) out.push_back(h);
+  if (top > 0) out.push_back(top);
+  return out;
+}
+
+}  // namespace
+
+double least_between(double d0, double d1, double length) {
+  const double steep = 0.5 * (d0 + d1 - length);  // slope of 1 from both ends
+  if (d0 <= 0 || d1 <= 0 || length <= 0) return std::min({d0, d1, std::max(steep, std::min(d0, d1) - length)});
+  const double g0 = d0 * d0, g1 = d1 * d1;
+  const double s = std::clamp(0.5 * (length - (g1 - g0) / length), 0.0, length);
+  const double g = g0 + (g1 - g0) * s / length - s * (length - s);
+  return std::min({d0, d1, std::max(g > 0 ? std::sqrt(g) : -INFINITY, steep)});
+}
+
+CutterSweep::CutterSweep(const GearDistance& part, const tool::ToolAssembly& tool, double proof_mm, double tolerance_mm)
+    : part_(part), R_(tool.radius_mm()), top_(tool.flute_length_mm - R_), proof_(proof_mm), tolerance_(tolerance_mm), within_(R_ + std::max(kCutterLook, kLookShare * R_)), known_(256) {
+  for (const double h : heights(R_, top_)) rows_.push_back({h, false, Vec3::Zero(), 0});
+}
+
+Vec3 CutterSweep::place(double t, double height) const { return path::tip_at(*m_, t) + (R_ + height) * path::axis_at(*m_, t); }
+
+NearestPlace CutterSweep::query(const Vec3& p, double most) {
+  ++queries_;
+  if (most + kSearchPad < within_) return part_.nearest(p, most + kSearchPad);
+  std::size_t key = 0;
+  for (const double x : {p.x(), p.y(), p.z()}) key = (key ^ std::bit_cast<std::uint64_t>(x)) * 0x9e3779b97f4a7c15u;
+  Known& known = known_[key >> 56];
+  if (known.at != p) known = {p, part_.nearest(p, within_)};
+  return known.nearest;
+}
+
+void CutterSweep::note(const NearestPlace& q, const char* body) {
+  const double depth = R_ - q.distance;
+  if (depth <= found_.measured_mm) return;
+  found_.measured_mm = depth;
+  found_.deepest = q;
+  found_.body = body;
+  worst_ = std::max(worst_, std::min(depth, tolerance_ - proof_));
+}
+
+/// Is a proven least distance good enough? Where it is free; where it is no deeper than what was found before; where it is
+/// close to what is seen here. A wreck need not be followed to a fraction of a micrometre. @param arm from the tip: what the deviation of
+/// the axis does there is not made smaller by halving.
+bool CutterSweep::settled(double least, double seen, double slack, double arm) const {
+  const double deepest = R_ - least + slack;
+  const double here = std::max(seen, deepest <= tolerance_ ? worst_ : 0);  // beyond the tolerance its own place is wanted
+  const double leeway = here > 50 * tolerance_ ? 0.25 * here : 0;
+  return deepest <= 0 || deepest <= here + proof_ + leeway + m_->deviation_mm + arm * m_->axis_deviation;
+}
+
+CutterFinding CutterSweep::check(const path::ToolMotion& motion) {
+  m_ = &motion;
+  found_ = {};
+  const Vec3 a = place(0, 0), b = place(1, 0);
+  const double length = (b - a).norm();
+  const NearestPlace qa = chained_ && a == last_centre_ ? last_ : query(a, within_);
+  const NearestPlace qb = query(b, qa.distance + length);
+  note(qa, "ball");
+  note(qb, "ball");
+  if (const double height = height_above(); height > 0)
+    found_.bound_mm = std::max(-height, found_.measured_mm);
+  else
+    flute(ball(0, 1, qa, qb, kCutterHalvings));
+  chained_ = true;
+  last_centre_ = b;
+  last_ = qb;
+  return found_;
+}
+
+/// How far the whole cutting part stays above the part.
+double CutterSweep::height_above() const {
+  double low = INFINITY;
+  for (const double t : {0.0, 1.0})
+    for (const double h : {0.0, top_}) low = std::min(low, place(t, h).z());
+  return low - R_ - path::line_slack(*m_, R_ + std::max(top_, 0.0), 1) - part_.gear().blank_top();
+}
+
+/// Follows the ball centre; returns its least distance, proven.
+double CutterSweep::ball(double t0, double t1, const NearestPlace& q0, const NearestPlace& q1, int depth) {
+  const Vec3 a = place(t0, 0), b = place(t1, 0);
+  const double L = (b - a).norm(), slack = path::line_slack(*m_, R_, t1 - t0);
+  const double low = std::min(q0.distance, q1.distance);
+  if (low < kWreckShare * R_) {
+    found_.bound_mm = R_ + within_;
+    return -within_;
+  }
+  const double least = least_between(q0.distance, q1.distance, L);
+  if (settled(least, R_ - low, slack, R_) || depth == 0 || L + slack < kShortestPiece) {
+    found_.bound_mm = std::max(found_.bound_mm, R_ - least + slack);
+    return least - slack;
+  }
+  const double t = 0.5 * (t0 + t1);
+  const Vec3 c = place(t, 0);
+  const auto q = query(c, std::min(q0.distance + (c - a).norm(), q1.distance + (c - b).norm()));
+  note(q, "ball");
+  const double first = ball(t0, t, q0, q, depth - 1);
+  return std::min(first, ball(t, t1, q, q1, depth - 1));
+}
+
+/// Lower bound of the distance at a height over the whole motion, from where it was asked last.
+double CutterSweep::remembered(const Row& row) const {
+  if (!row.known) return -INFINITY;
+  const double away = std::max((place(0, row.height) - row.at).norm(), (place(1, row.height) - row.at).norm());
+  return row.distance - away - path::line_slack(*m_, R_ + row.height, 1);
+}
+
+double CutterSweep::fresh(Row& row) {
+  const Vec3 a = place(0, row.height), b = place(1, row.height);
+  const double L = (b - a).norm();
+  const auto qb = query(b, within_);
+  double d0 = row.known ? row.distance - (a - row.at).norm() : -INFINITY;
+  if (!(row.known && a == row.at) && least_between(d0, qb.distance, L) < R_ + 0.5 * (within_ - R_)) d0 = query(a, qb.distance + L).distance;
+  row = {row.height, true, b, qb.distance};
+  return least_between(d0, qb.distance, L) - path::line_slack(*m_, R_ + row.height, 1);
+}
+
+/// The flute, height by height. At every moment the axis is a straight line: between two heights whose least distances are
+/// proven, the same parabola bounds what lies between them.
+void CutterSweep::flute(double low) {
+  if (low <= -within_) return;  // a wreck, bounded already
+  double h = 0;
+  const double roof = part_.gear().blank_top();
+  for (Row& row : rows_) {
+    if (m_->axis_from.z() >= 0 && m_->axis_to.z() >= 0 &&
+        std::min(place(0, h).z(), place(1, h).z()) - R_ - path::line_slack(*m_, R_ + row.height, 1) > roof)
+      return;  // above the part from here on
+    const double H = row.height - h;
+    double high = remembered(row);
+    const auto good = [&] { return settled(least_between(low, high, H), worst_, 0, R_); };
+    if (!good()) high = std::max(high, fresh(row));
+    const double least = least_between(low, high, H);
+    if (good())
+      found_.bound_mm = std::max(found_.bound_mm, R_ - least);
+    else
+      patch(0, 1, h, row.height, at(0, h), at(1, h), at(0, row.height), at(1, row.height), kCutterHalvings);
+    low = high;
+    h = row.height;
+  }
+}
+
+double CutterSweep::at(double t, double height) {
+  const auto q = query(place(t, height), within_);
+  note(q, height > 0 ? "flute" : "ball");
+  return q.distance;
+}
+
+/// The axis from t0 to t1 and between two heights, from the distances d_th at its four corners.
+void CutterSweep::patch(double t0, double t1, double h0, double h1, double d00, double d10, double d01, double d11, int depth) {
+  const double L0 = (place(t1, h0) - place(t0, h0)).norm(), L1 = (place(t1, h1) - place(t0, h1)).norm(), H = h1 - h0;
+  const double slack = path::line_slack(*m_, R_ + h1, t1 - t0);
+  const double low = least_between(d00, d10, L0), high = least_between(d01, d11, L1);
+  const double least = least_between(low, high, H), corner = std::min({d00, d10, d01, d11});
+  if (settled(least, R_ - corner, slack, R_ + h0) || depth == 0 || std::max({L0, L1, H}) + slack < kShortestPiece) {
+    found_.bound_mm = std::max(found_.bound_mm, R_ - least + slack);
+    return;
+  }
+  // Halve what costs more: the way between the heights, or the way along the motion. The deviation of the axis differs by height alone.
+  const double lean = m_->axis_deviation, along = slack - m_->deviation_mm - (R_ + h1) * lean;
+  if (std::min(low, high) - least + H * lean > corner - std::min(low, high) + along) {
+    const double h = 0.5 * (h0 + h1), a = at(t0, h), b = at(t1, h);
+    patch(t0, t1, h0, h, d00, d10, a, b, depth - 1);
+    patch(t0, t1, h, h1, a, b, d01, d11, depth - 1);
+  } else {
+    const double t = 0.5 * (t0 + t1), a = at(t, h0), b = at(t, h1);
+    patch(t0, t, h0, h1, d00, a, d01, b, depth - 1);
+    patch(t, t1, h0, h1, a, d10, b, d11, depth - 1);
+  }
+}
+
+}  // namespace toothpath::analytic

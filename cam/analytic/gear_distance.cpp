@@ -1,0 +1,278 @@
+#include "cam/analytic/gear_distance.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <variant>
+
+#include "cam/analytic/gear_ring.h"
+#include "cam/analytic/swept_path.h"
+#include "geometry/base/angle.h"
+#include "geometry/face_gear/inverse.h"
+
+namespace toothpath::analytic {
+namespace {
+
+constexpr double kBorder = 1e-9;         // a foot this far beyond the border of a piece (in its parameter) still counts
+// Corrected pieces share their normals to 1e-5 only; a foot so little beyond is about 1e-6 mm wrong.
+constexpr double kCorrectedBorder = 3e-5;
+
+
+}  // namespace
+
+double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return ap.norm();
+  const Vec3 bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return bp.norm();
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return (ap - ab * (d1 / (d1 - d3))).norm();
+  const Vec3 cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return cp.norm();
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - ac * (d2 / (d2 - d6))).norm();
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+    return (bp - (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)))).norm();
+  const Vec3 n = ab.cross(ac);
+  return std::abs(ap.dot(n)) / n.norm();
+}
+
+struct GearDistance::Impl {
+  face_gear::FaceGear gear;
+  std::vector<std::unique_ptr<GearRing>> rings;
+  double pitch = 0;
+  double sag = 0;
+  double groove_floor = 0;  ///< where there are two rings
+  std::optional<face_gear::FaceGearRefusal> refusal;
+  int half_turn = 0;                             ///< teeth
+  std::vector<std::pair<double, double>> turns;  ///< cosine and sine of the turn of every tooth back to space 0, from -half_turn on
+
+  explicit Impl(const face_gear::FaceGear& g) : gear(g), pitch(g.pitch()), half_turn(g.parameters().teeth / 2 + 1) {
+    for (int k = -half_turn; k <= half_turn; ++k) turns.emplace_back(std::cos(-double(k) * pitch), std::sin(-double(k) * pitch));
+  }
+  [[nodiscard]] Vec3 to_space_0(const Vec3& p, double tooth) const {
+    const auto& [c, s] = turns[std::size_t(int(tooth) + half_turn)];
+    return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
+  }
+  class Question;
+};
+
+GearDistance::GearDistance(const face_gear::FaceGear& gear, double reach_mm) : impl_(std::make_unique<Impl>(gear)) {
+  std::vector<std::optional<Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal>>> made(gear.rings().size());
+  tbb::parallel_for(std::size_t(0), made.size(), [&](std::size_t zone) { made[zone] = GearRing::make(gear, int(zone), reach_mm); });
+  for (auto& ring : made) {
+    if (auto* refusal = (*ring).refused()) {
+      impl_->refusal = std::move(*refusal);
+      impl_->rings.clear();
+      return;
+    }
+    impl_->rings.push_back(std::move((*ring).value()));
+    impl_->sag = std::max(impl_->sag, impl_->rings.back()->sag);
+  }
+  if (impl_->rings.size() > 1) impl_->groove_floor = gear.groove_floor();
+}
+
+GearDistance::~GearDistance() = default;
+GearDistance::GearDistance(GearDistance&&) noexcept = default;
+
+const std::vector<GearDistance::Cell>& GearDistance::cells(int zone) const { return impl_->rings[std::size_t(zone)]->cells; }
+const std::vector<std::array<Vec3, 3>>& GearDistance::triangles(int zone) const { return impl_->rings[std::size_t(zone)]->triangles; }
+const std::optional<face_gear::FaceGearRefusal>& GearDistance::refusal() const { return impl_->refusal; }
+const SpatialIndex& GearDistance::cell_index(int zone) const { return *impl_->rings[std::size_t(zone)]->index; }
+const face_gear::SpaceSheet& GearDistance::space(int zone) const { return impl_->rings[std::size_t(zone)]->space; }
+const BodyPatches& GearDistance::patches(int zone) const { return *impl_->rings[std::size_t(zone)]->patches; }
+std::size_t GearDistance::unproven() const {
+  std::size_t sum = 0;
+  for (const auto& ring : impl_->rings) sum += ring->patches->sampled_blocks() + ring->unproven_edges;
+  return sum;
+}
+double GearDistance::cell_sag_mm() const { return impl_->sag; }
+const face_gear::FaceGear& GearDistance::gear() const { return impl_->gear; }
+int GearDistance::zones() const { return int(impl_->rings.size()); }
+double GearDistance::space_azimuth(int zone, double r) const {
+  const auto& ring = *impl_->rings[std::size_t(zone)];
+  return ring.lookup(ring.mid, r);
+}
+
+/// One point asked: every ring in turn offers what lies nearest of its sheet, its edges, its ends and lands.
+class GearDistance::Impl::Question {
+ public:
+  Question(const Impl& part, const Vec3& asked, double within) : part_(part), asked_(asked), within_(within), r_(radius(asked)), z_(asked.z()) {
+    best_.distance = within;
+    best_.point = asked;
+  }
+
+  NearestPlace answer() {
+    if (part_.refusal) {
+      best_.distance = -within_;
+      best_.patch = "inside";
+      return best_;
+    }
+    for (std::size_t zone = 0; zone < part_.rings.size(); ++zone) ask(zone);
+    grooves();
+    return best_;
+  }
+
+ private:
+  /// The point as one ring sees it.
+  struct View {
+    const GearRing& ring;
+    int zone;
+    Vec3 c;  ///< turned to space 0
+    double azimuth, z_tip, gap_r;
+    [[nodiscard]] bool beside() const { return gap_r > 0; }
+    [[nodiscard]] bool in_air() const { return beside() || c.z() >= z_tip; }  ///< certainly: neither between the radii of the ring and below its tip
+  };
+  /// The nearest cell of every band of every piece, apart for whole cells and for those that reach beyond the ring: the nearest point of
+  /// such a one may not exist, and must not hide a farther one that does.
+  struct Seed {
+    double d = INFINITY;
+    std::size_t cell = 0;
+  };
+  struct Seeds {
+    std::array<Seed, 2 * face_gear::kSpacePieces * kBands> of_band;
+    double d_mesh = INFINITY;  ///< to whole cells
+    double search = 0, slack = 0;
+  };
+
+  void take(double d, bool exact, int zone, const char* patch, const Vec3& foot, const Vec3& at) {
+    if (d < best_.distance) best_ = {d, exact, zone, patch, foot, at};
+  }
+
+  void ask(std::size_t zone) {
+    const auto& ring = *part_.rings[zone];
+    const double gap_r = std::max({ring.r_in - r_, r_ - ring.r_out, 0.0});
+    if (gap_r >= best_.distance) return;
+    const double z_tip = ring.space.surface().z_tip(std::clamp(r_, ring.r_in, ring.r_out));
+    if (z_ - z_tip >= best_.distance * 1.5 && std::abs(ring.space.surface().Cg) < 0.5) return;
+    // The space whose opening lies next: its root may stand off the middle of its opening by a good part of a pitch.
+    const double middle = ring.lookup(ring.opening, r_);
+    const double away = std::remainder(std::atan2(asked_.y(), asked_.x()) - middle, kTwoPi);
+    const double index = std::round(away / part_.pitch);
+    const View at{ring, int(zone), part_.to_space_0(asked_, index), middle + away - index * part_.pitch, z_tip, gap_r};
+    const Seeds seeds = seeds_of(at);
+    const bool found = sheet(at, seeds);
+    edges(at);
+    // Newton must agree with the facets; where it does not, the facets decide with their sag.
+    if (best_.distance > seeds.d_mesh + 2 * ring.sag + 1e-9) take(seeds.d_mesh - ring.sag, false, at.zone, "flank", at.c, at.c);
+    end_faces(at);
+    land_or_inside(at, found);
+  }
+
+  [[nodiscard]] Seeds seeds_of(const View& at) const {
+    const auto& ring = at.ring;
+    const Vec3& c = at.c;
+    Seeds s;
+    s.search = std::min(within_, best_.distance) + ring.sag;
+    s.slack = 4 * ring.sag + 0.02;  // a facet farther than the nearest by this cannot hold the nearest point
+    ring.index->near(c, s.search, [&](std::size_t k, double r_query) {
+      const auto& cell = ring.cells[k];
+      if (!cell.sheet || (c - cell.centre).norm() - cell.radius > std::min(s.d_mesh + s.slack, s.search)) return r_query;
+      const double d = std::min(distance_to_triangle(c, cell.corner[0], cell.corner[1], cell.corner[2]),
+                                distance_to_triangle(c, cell.corner[1], cell.corner[2], cell.corner[3]));
+      const bool border = ring.border[k];
+      if (!border) s.d_mesh = std::min(s.d_mesh, d);
+      const std::size_t band = (std::size_t(cell.piece) * kBands + std::size_t(cell.band)) * 2 + border;
+      auto& seed = s.of_band[band];
+      if (d < seed.d || (d == seed.d && k < seed.cell)) seed = {d, k};
+      return std::min(r_query, s.d_mesh + s.slack);
+    });
+    return s;
+  }
+
+  /// Newton from every seed that can win. Did it find the sheet, on the ring or on its continuation?
+  bool sheet(const View& at, const Seeds& seeds) {
+    const auto& ring = at.ring;
+    bool found = false;
+    double accepted = INFINITY;                        // the best foot on the ring
+    double beyond = INFINITY, beyond_seed = INFINITY;  // signed distance to the continuation
+    for (const auto& seed : seeds.of_band) {
+      // A seed whose facet is farther than the best exact distance cannot win.
+      if (!(seed.d <= std::min(seeds.d_mesh + seeds.slack, seeds.search))) continue;
+      if (seed.d - ring.sag > accepted) continue;
+      const auto& cell = ring.cells[seed.cell];
+      const auto foot = ring.space.foot(cell.piece, at.c, cell.u, cell.v);
+      if (!foot || !on_piece(ring, cell.piece, foot->u)) continue;
+      if (foot->distance < 0 && at.in_air()) continue;  // seen through an end of the ring or the tip
+      found = true;
+      if (ring.on_ring(foot->at.p)) {
+        accepted = std::min(accepted, foot->distance);
+        take(foot->distance, true, at.zone, to_string(cell.piece), foot->at.p, at.c);
+      } else if (seed.d < beyond_seed) {
+        beyond = foot->distance;
+        beyond_seed = seed.d;
+      }
+    }
+    // Inside the material beside an end or below a tip edge: the nearest surface is that end or land.
+    if (beyond < 0 && accepted == INFINITY) take(beyond, false, at.zone, "inside", at.c, at.c);
+    return found;
+  }
+
+  /// Does a foot lie on its piece, not on the continuation beyond its borders?
+  [[nodiscard]] static bool on_piece(const GearRing& ring, face_gear::SpacePiece piece, double u) {
+    const auto& w = ring.space.surface().shaper;
+    const double slack = ring.space.ring().correction ? kCorrectedBorder : kBorder;
+    switch (piece) {
+      case face_gear::SpacePiece::flank_plus:
+      case face_gear::SpacePiece::flank_minus: return u <= w.theta_t + slack;
+      case face_gear::SpacePiece::root: return u >= -slack && u <= 1 + slack;
+      case face_gear::SpacePiece::fillet_plus:
+      case face_gear::SpacePiece::fillet_minus: return u >= w.A_t - slack && u <= w.A_e + slack;
+    }
+    return false;
+  }
+
+  void edges(const View& at) {
+    const auto& ring = at.ring;
+    const double look = std::min(within_, best_.distance) + ring.edge_sag;
+    if (!(look > 0)) return;
+    ring.edge_index->near(at.c, look, [&](std::size_t k, double r_query) {
+      const auto& e = ring.edges[k];
+      take(distance_to_segment(at.c, e.a, e.b) - e.sag, false, at.zone, e.patch, e.a, at.c);
+      return r_query;
+    });
+  }
+
+  void end_faces(const View& at) {
+    if (!at.beside()) return;
+    const auto& profile = r_ < at.ring.r_in ? at.ring.end_in : at.ring.end_out;
+    if (profile.size() > 2 && in_material(profile, at.azimuth, z_, at.z_tip)) take(at.gap_r, true, at.zone, "end", at.c, at.c);
+  }
+
+  void land_or_inside(const View& at, bool found) {
+    const auto& ring = at.ring;
+    if (z_ >= at.z_tip) {
+      double foot = 0;
+      const double d = ring.to_tip_meridian(r_, z_, foot);
+      if (ring.over_land(at.azimuth, foot))
+        take(d, ring.tip_sag == 0, at.zone, "tip", Vec3(at.c.x() * foot / r_, at.c.y() * foot / r_, ring.space.surface().z_tip(foot)), at.c);
+    } else if (!at.beside() && !found) {
+      // No surface near: either free in a wide space or deep inside the material.
+      if (ring.over_land(at.azimuth, r_) || ring.in_material_at(r_, at.azimuth, z_, at.z_tip)) take(-within_, false, at.zone, "inside", at.c, at.c);
+    }
+  }
+
+  void grooves() {
+    const auto& rings = part_.rings;
+    if (rings.size() < 2) return;
+    const double floor_z = part_.groove_floor;
+    for (std::size_t zone = 0; zone + 1 < rings.size(); ++zone) {
+      const double gap = std::max({rings[zone]->r_out - r_, r_ - rings[zone + 1]->r_in, 0.0});
+      if (gap == 0) take(z_ - floor_z, true, int(zone), "groove", Vec3(asked_.x(), asked_.y(), floor_z), asked_);
+    }
+  }
+
+  const Impl& part_;
+  const Vec3& asked_;
+  double within_, r_, z_;
+  NearestPlace best_;
+};
+
+NearestPlace GearDistance::nearest(const Vec3& asked, double within) const { return Impl::Question(*impl_, asked, within).answer(); }
+
+}  // namespace toothpath::analytic

@@ -1,0 +1,399 @@
+#include "cam/analytic/gear_ring.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "cam/analytic/gear_cells.h"
+#include "cam/analytic/ring_edges.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath::analytic {
+namespace {
+
+constexpr double kCellLength = 0.45;  // mm along the tooth
+constexpr int kEndPoints = 3000;      // on the profile at an end of the ring
+constexpr int kBands = GearDistance::kBands;
+constexpr int kTable = 257;           // places over the radius
+constexpr std::size_t kLandStep = 4;  // of them, along a cell of a land
+constexpr int kLandParts = 4;         // cells across a land
+constexpr int kFloorStrips = 48;      // of the groove floor over a pitch
+
+
+/// Makes one ring, step by step.
+class Maker {
+ public:
+  Maker(const face_gear::FaceGear& gear, int zone, const face_gear::SpaceSheet& space, GearRing& ring) : gear_(gear), zone_(zone), space_(space), R(ring), bounds_(gear.parameters(), space) {}
+
+  void make() {
+    sheet_cells();
+    end_line(R.r_in, R.end_in, places_[0]);
+    end_line(R.r_out, R.end_out, places_[1]);
+    tables();
+    end_edges();
+    for (std::size_t n = 0; n < 2; ++n) {
+      tip_bend_[n] = tip_bends(bounds_, n == 0 ? 1 : -1, tip_[n], R.table_r);
+      add_edge(n == 0 ? plus_line_ : minus_line_, tip_edge_sags(bounds_, tip_bend_[n], R.table_r), "tip edge");
+    }
+    R.edge_index = std::make_unique<SpatialIndex>(edge_boxes_);
+    land_cells();
+    end_cells();
+    floor_cells();
+    cut_triangles();
+    R.index = std::make_unique<SpatialIndex>(boxes_);
+    body_patches();
+  }
+
+ private:
+  void sheet_cells() {
+    const auto& st = R.sheet.stations();
+    for (std::size_t j = 0; j + 1 < st.size(); ++j) {
+      for (std::size_t k = 0; k + 1 < st[j].nodes.size(); ++k) {
+        const auto &n00 = st[j].nodes[k], &n01 = st[j].nodes[k + 1], &n10 = st[j + 1].nodes[k], &n11 = st[j + 1].nodes[k + 1];
+        if (n00.at.piece != n01.at.piece) continue;
+        GearRing::Cell cell;
+        cell.corner = {n00.at.contact.p, n01.at.contact.p, n10.at.contact.p, n11.at.contact.p};
+        // The sheet goes on beyond the ends and the tip; what lies wholly there is no part of the gear.
+        const auto all = [&](auto&& test) { return std::all_of(cell.corner.begin(), cell.corner.end(), test); };
+        const auto above_tip = [&](const Vec3& p) { return p.z() > space_.surface().z_tip(radius(p)) + kCellLength; };
+        if (all([&](const Vec3& p) { return radius(p) < R.r_in; }) || all([&](const Vec3& p) { return radius(p) > R.r_out; }) ||
+            all(above_tip))
+          continue;
+        cell.zone = zone_;
+        cell.piece = n00.at.piece;
+        cell.band = std::clamp(int((0.5 * (n00.sigma + n01.sigma) - std::floor(n00.sigma)) * kBands), 0, kBands - 1);
+        cell.u = 0.25 * (n00.at.u + n01.at.u + n10.at.u + n11.at.u);
+        cell.v = 0.25 * (n00.at.v + n01.at.v + n10.at.v + n11.at.v);
+        cell.centre = 0.25 * (cell.corner[0] + cell.corner[1] + cell.corner[2] + cell.corner[3]);
+        if (const auto q = space_.point(cell.piece, cell.u, cell.v)) {
+          const double gap = std::min(distance_to_triangle(q->p, cell.corner[0], cell.corner[1], cell.corner[2]),
+                                      distance_to_triangle(q->p, cell.corner[1], cell.corner[2], cell.corner[3]));
+          R.sag = std::max(R.sag, gap);
+        }
+        R.border.push_back(!all([&](const Vec3& p) { return R.on_ring(p); }));
+        station_.push_back({j, k});
+        add_cell(cell);
+      }
+    }
+    for (const auto& station : st) {
+      std::vector<Vec2> profile;
+      for (const auto& node : station.nodes)
+        profile.push_back({std::atan2(node.at.contact.p.y(), node.at.contact.p.x()), node.at.contact.p.z()});
+      R.profiles.push_back(std::move(profile));
+    }
+    for (std::size_t j = 0; j + 1 < R.profiles.size(); ++j) {
+      std::vector<Vec2> steps;
+      for (std::size_t k = 0; k < R.profiles[j].size(); ++k) {
+        const Vec2 step = R.profiles[j + 1][k] - R.profiles[j][k];
+        steps.emplace_back(std::remainder(step.x(), 2 * kPi), step.y());
+      }
+      R.profile_steps.push_back(std::move(steps));
+    }
+    R.sag *= 2;  // the middle of a cell shows about the largest sag
+    for (auto& cell : R.cells) cell.radius += R.sag;
+  }
+
+  void add_cell(GearRing::Cell& cell) {
+    Box box;
+    for (const auto& p : cell.corner) {
+      box.add(p);
+      cell.radius = std::max(cell.radius, (p - cell.centre).norm());
+    }
+    if (!cell.sheet) cell.radius += R.sag;
+    boxes_.push_back(box);
+    R.cells.push_back(cell);
+  }
+
+  /// `sags`: of the segments; below 0: not known.
+  void add_edge(const std::vector<Vec3>& line, const std::vector<double>& sags, const char* patch) {
+    double shown = 0;
+    const std::size_t first = R.edges.size();
+    for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+      if ((line[k + 1] - line[k]).norm() < 1e-12) continue;
+      R.edges.push_back({line[k], line[k + 1], patch, k < sags.size() ? sags[k] : -1});
+      Box b;
+      b.add(line[k]);
+      b.add(line[k + 1]);
+      edge_boxes_.push_back(b);
+      if (k > 0 && k + 2 < line.size()) {
+        // Sag of a chord, estimated from the turn between neighbours.
+        const Vec3 u = (line[k] - line[k - 1]), v = (line[k + 1] - line[k]);
+        if (u.norm() > 1e-9 && v.norm() > 1e-9)
+          shown = std::max(shown, 0.125 * v.norm() * u.normalized().cross(v.normalized()).norm());
+      }
+    }
+    for (std::size_t k = first; k < R.edges.size(); ++k) {
+      double& sag = R.edges[k].sag;
+      if (sag < 0) {
+        ++R.unproven_edges;
+        sag = 2 * shown;
+      }
+      R.edge_sag = std::max(R.edge_sag, sag);
+    }
+  }
+
+  /// The sheet at an end of the ring, from tip to tip.
+  void end_line(double r, std::vector<Vec2>& profile, std::vector<EndPlace>& places) {
+    const double z_tip = space_.surface().z_tip(r);
+    for (int k = 0; k <= kEndPoints; ++k) {
+      const auto q = R.sheet.raw(5.0 * k / kEndPoints, r);
+      if (!q || q->contact.p.z() > z_tip) continue;
+      places.push_back({q->piece, q->u, q->v, q->contact.p});
+      profile.push_back({std::atan2(q->contact.p.y(), q->contact.p.x()), q->contact.p.z()});
+    }
+    // The corners where the flanks leave through the tip surface.
+    for (const int side : {1, -1}) {
+      const auto c = space_.tip(side, r);
+      if (!c) continue;
+      const auto piece = side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus;
+      const auto q = space_.point(piece, c->at.theta, c->at.B);
+      if (!q) continue;
+      const Vec2 corner(std::atan2(q->p.y(), q->p.x()), z_tip);
+      const EndPlace place{piece, c->at.theta, c->at.B, q->p};
+      places.insert(side > 0 ? places.begin() : places.end(), place);
+      profile.insert(side > 0 ? profile.begin() : profile.end(), corner);
+    }
+  }
+
+  void tables() {
+    const auto start_of = [](const std::optional<face_gear::TipPlace>& last) { return last ? std::optional(last->at) : std::nullopt; };
+    std::optional<face_gear::TipPlace> last_plus, last_minus;
+    for (int k = 0; k < kTable; ++k) {
+      const double r = R.r_in + (R.r_out - R.r_in) * k / (kTable - 1);
+      const double z_tip = space_.surface().z_tip(r), pitch = gear_.pitch();
+      last_plus = space_.tip(1, r, start_of(last_plus));
+      last_minus = space_.tip(-1, r, start_of(last_minus));
+      const auto root = space_.point(face_gear::SpacePiece::root, 0.5, std::sqrt(r * r - space_.surface().E * space_.surface().E) / space_.surface().Sg);
+      R.table_r.push_back(r);
+      R.mid.push_back(std::atan2(root->p.y(), root->p.x()));
+      R.tip_plus.push_back(last_plus ? last_plus->azimuth : R.mid.back() - pitch / 2);
+      R.tip_minus.push_back(last_minus ? last_minus->azimuth + pitch : R.mid.back() + pitch / 2);
+      plus_line_.push_back({r * std::cos(R.tip_plus.back()), r * std::sin(R.tip_plus.back()), z_tip});
+      minus_line_.push_back({r * std::cos(R.tip_minus.back()), r * std::sin(R.tip_minus.back()), z_tip});
+      tip_[0].push_back(last_plus);
+      tip_[1].push_back(last_minus);
+    }
+    for (std::size_t k = 0; k < R.tip_plus.size(); ++k) R.opening.push_back(0.5 * (R.tip_plus[k] + R.tip_minus[k]));
+    R.z_tip_in = space_.surface().z_tip(R.r_in);
+    R.z_tip_out = space_.surface().z_tip(R.r_out);
+    for (int k = 1; k < 64; ++k) {
+      const double t = k / 64.0, z = space_.surface().z_tip(R.r_in + t * (R.r_out - R.r_in));
+      R.tip_sag = std::max(R.tip_sag, 1.01 * std::abs(z - R.z_tip_in - t * (R.z_tip_out - R.z_tip_in)) - 1e-12);
+    }
+  }
+
+  void end_edges() {
+    for (std::size_t n = 0; n < 2; ++n) {
+      std::vector<Vec3> line;
+      for (const auto& place : places_[n]) line.push_back(place.p);
+      const std::size_t first = R.edges.size();
+      add_edge(line, end_edge_sags(bounds_, places_[n]), "end edge");
+      for (std::size_t k = first; k < R.edges.size(); ++k) border_sag_[n] = std::max(border_sag_[n], R.edges[k].sag);
+    }
+  }
+
+  /// The top land of tooth 0, which ends space 0 on its low side: bodies wider than a space may stand on it.
+  void land_cells() {
+    for (std::size_t k = 0; k + kLandStep < plus_line_.size(); k += kLandStep) {
+      for (int part = 0; part < kLandParts; ++part) {
+        GearRing::Cell cell;
+        cell.sheet = false;
+        cell.zone = zone_;
+        for (int corner = 0; corner < 4; ++corner) {
+          const std::size_t at = k + (corner / 2 ? kLandStep : 0);
+          const Vec3 &a = plus_line_[at], b = turned(minus_line_[at], -gear_.pitch());
+          cell.corner[std::size_t(corner)] = b + (a - b) * ((part + corner % 2) / double(kLandParts));
+        }
+        cell.centre = 0.25 * (cell.corner[0] + cell.corner[1] + cell.corner[2] + cell.corner[3]);
+        others_.push_back({R.cells.size(), BodySurface::land, Vec2(part / double(kLandParts), R.table_r[k]),
+                           Vec2((part + 1) / double(kLandParts), R.table_r[k + kLandStep])});
+        add_cell(cell);
+        R.border.push_back(true);
+      }
+    }
+  }
+
+  void add_flat(const std::array<Vec3, 4>& corner, BodySurface surface, const Vec2& low, const Vec2& high) {
+    GearRing::Cell cell;
+    cell.sheet = false;
+    cell.zone = zone_;
+    cell.corner = corner;
+    cell.centre = 0.25 * (corner[0] + corner[1] + corner[2] + corner[3]);
+    others_.push_back({R.cells.size(), surface, low, high});
+    add_cell(cell);
+  }
+
+  [[nodiscard]] bool grooved() const { return gear_.rings().size() > 1; }
+  [[nodiscard]] double base() const { return std::min(gear_.lowest_root(), grooved() ? gear_.groove_floor() : INFINITY) - 0.5; }
+  [[nodiscard]] EndFace end_face(bool outer) const {
+    const double r = outer ? R.r_out : R.r_in;
+    return {r, outer, space_.surface().z_tip(r), R.lookup(R.opening, r) - gear_.pitch() / 2, gear_.pitch(), base()};
+  }
+
+  /// A strip of an end face ends at the lower of its two edges: the sheet itself stands for the rest.
+  void end_cells() {
+    for (const bool outer : {false, true})
+      for (const auto& quad : end_face_quads(end_face(outer), outer ? R.end_out : R.end_in))
+        add_flat(quad.corner, outer ? BodySurface::outer_end : BodySurface::inner_end, {quad.from, quad.low}, {quad.to, quad.high});
+  }
+
+  void floor_cells() {
+    if (!grooved() || zone_ != 0) return;
+    const auto at = [&](double r, double azimuth) { return Vec3(r * std::cos(azimuth), r * std::sin(azimuth), gear_.groove_floor()); };
+    const double next = gear_.rings()[1].zone.inner_radius_mm, pitch = gear_.pitch(), from = R.lookup(R.mid, R.r_out) - pitch / 2;
+    const int rows = std::max(1, int(std::ceil((next - R.r_out) / 1.0)));
+    for (int k = 0; k < kFloorStrips; ++k)
+      for (int q = 0; q < rows; ++q) {
+        const double a = from + pitch * k / kFloorStrips, b = from + pitch * (k + 1) / kFloorStrips;
+        const double r0 = R.r_out + (next - R.r_out) * q / rows, r1 = R.r_out + (next - R.r_out) * (q + 1) / rows;
+        add_flat({at(r0, a), at(r0, b), at(r1, a), at(r1, b)}, BodySurface::floor, {a, r0}, {b, r1});
+      }
+  }
+
+  void cut_triangles() {
+    for (auto& cell : R.cells) {
+      cell.first_triangle = std::uint32_t(R.triangles.size());
+      for (const std::size_t first : {0, 1}) {
+        Facet facet;
+        for (std::size_t k = first; k < first + 3; ++k) facet.add({cell.corner[k], Vec2::Zero(), true});
+        if (cell.sheet) facet = on_ring(space_, facet, R.sag);
+        for (std::size_t k = 1; k + 1 < facet.count; ++k) R.triangles.push_back({facet.corner[0].p, facet.corner[k].p, facet.corner[k + 1].p});
+      }
+      cell.triangles = std::uint32_t(R.triangles.size()) - cell.first_triangle;
+    }
+  }
+
+  void body_patches() {
+    BodyRing ring;
+    ring.r_in = R.r_in;
+    ring.r_out = R.r_out;
+    ring.base_mm = base();
+    ring.floor_mm = grooved() ? gear_.groove_floor() : 0;
+    ring.table_r = R.table_r;
+    ring.tip = tip_;
+    ring.tip_bend = tip_bend_;
+    ring.edge = {R.tip_plus, R.tip_minus};
+    for (double& azimuth : ring.edge[1]) azimuth -= gear_.pitch();
+    ring.border = {end_border(end_face(false), R.end_in), end_border(end_face(true), R.end_out)};
+    ring.border_sag = border_sag_;
+    R.patches = std::make_unique<BodyPatches>(gear_.parameters(), space_, std::move(ring), R.cells.size());
+    // Blocks of the sheet: fillets bend quickly across, and slowly along the tooth.
+    std::map<std::array<std::size_t, 3>, std::vector<BodyPatches::SheetCell>> blocks;
+    const auto& st = R.sheet.stations();
+    const std::size_t first_row = station_.empty() ? 0 : station_.front().row;
+    for (std::size_t n = 0; n < station_.size(); ++n) {
+      const auto [j, k] = station_[n];
+      const auto piece = R.cells[n].piece;
+      const bool fillet = piece == face_gear::SpacePiece::fillet_plus || piece == face_gear::SpacePiece::fillet_minus;
+      BodyPatches::SheetCell cell;
+      cell.index = n;
+      const std::array<const face_gear::OffsetSheet::Node*, 4> nodes{&st[j].nodes[k], &st[j].nodes[k + 1], &st[j + 1].nodes[k + 1], &st[j + 1].nodes[k]};
+      for (std::size_t c = 0; c < 4; ++c) {
+        cell.uv[c] = {nodes[c]->at.u, nodes[c]->at.v};
+        cell.corner[c] = nodes[c]->at.contact.p;
+      }
+      blocks[{(j - first_row) / (fillet ? 8 : 4), std::size_t(piece), fillet ? k : k / 4}].push_back(cell);
+    }
+    for (const auto& [key, cells] : blocks) R.patches->add_block(face_gear::SpacePiece(key[1]), cells);
+    for (const auto& other : others_) R.patches->add(other.index, other.surface, other.low, other.high, R.cells[other.index].corner);
+  }
+
+  struct Station {
+    std::size_t row, node;
+  };
+  struct Other {
+    std::size_t index;
+    BodySurface surface;
+    Vec2 low, high;
+  };
+  const face_gear::FaceGear& gear_;
+  int zone_;
+  const face_gear::SpaceSheet& space_;
+  GearRing& R;
+  PatchBounds bounds_;
+  std::vector<Box> boxes_, edge_boxes_;
+  std::vector<Station> station_;  // of the cells of the sheet
+  std::vector<Other> others_;
+  std::array<std::vector<EndPlace>, 2> places_;
+  std::array<std::vector<std::optional<face_gear::TipPlace>>, 2> tip_;
+  std::vector<Vec3> plus_line_, minus_line_;
+  std::array<double, 2> border_sag_{};
+  std::array<std::vector<std::optional<CurveBend>>, 2> tip_bend_;
+};
+
+}  // namespace
+
+Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal> GearRing::make(const face_gear::FaceGear& gear, int zone, double reach_mm) {
+  const auto& ring = gear.rings()[std::size_t(zone)];
+  const double r_in = ring.zone.inner_radius_mm, r_out = ring.zone.outer_radius_mm;
+  const double beyond = std::min(reach_mm, 0.25 * (r_out - r_in) + 1.0);
+  const int stations = std::clamp(int((r_out - r_in + 2 * beyond) / kCellLength) + 2, 9, 400);
+  const face_gear::SpaceSheet space(gear.parameters(), ring);
+  auto out = std::make_unique<GearRing>(space, face_gear::OffsetSheet(space, 0.0, r_in - beyond, r_out + beyond, stations));
+  out->r_in = r_in;
+  out->r_out = r_out;
+  const auto& sheet = out->sheet;
+  const std::string key = "zone[" + std::to_string(zone) + "]";
+  if (sheet.empty())
+    return face_gear::FaceGearRefusal{key, fail("zone {}: the flanks and fillets of the tooth space are found at no radius between {:.4f} and {:.4f} mm", zone,
+                                     r_in - beyond, r_out + beyond)};
+  if (sheet.r_from() > r_in || sheet.r_to() < r_out)
+    return face_gear::FaceGearRefusal{key, fail("zone {}: the flanks and fillets of the tooth space are found from radius {:.4f} to {:.4f} mm only, the ring "
+                                     "is {:.4f} to {:.4f} mm", zone, sheet.r_from(), sheet.r_to(), r_in, r_out)};
+  Maker(gear, zone, out->space, *out).make();
+  return out;
+}
+
+bool GearRing::on_ring(const Vec3& p) const {
+  const double rp = radius(p);
+  return rp >= r_in - 1e-9 && rp <= r_out + 1e-9 && p.z() <= space.surface().z_tip(rp) + 1e-9;
+}
+
+bool GearRing::over_land(double azimuth, double r) const { return azimuth <= lookup(tip_plus, r) || azimuth >= lookup(tip_minus, r); }
+
+double GearRing::to_tip_meridian(double r, double z, double& foot) const {
+  const double dr = r_out - r_in, dz = z_tip_out - z_tip_in;
+  const double t = std::clamp(((r - r_in) * dr + (z - z_tip_in) * dz) / (dr * dr + dz * dz), 0.0, 1.0);
+  foot = r_in + t * dr;
+  return std::hypot(r - foot, z - z_tip_in - t * dz) - tip_sag;
+}
+
+double GearRing::lookup(const std::vector<double>& y, double r) const {
+  const double t = std::clamp((r - table_r.front()) / (table_r.back() - table_r.front()), 0.0, 1.0) * double(y.size() - 1);
+  const auto k = std::min(std::size_t(t), y.size() - 2);
+  return y[k] + (t - double(k)) * (y[k + 1] - y[k]);
+}
+
+namespace {
+
+/// The profile runs from tip to tip; `point(k)` is a place of it, k < count.
+template <typename Point>
+bool inside_profile(std::size_t count, const Point& point, double azimuth, double z, double z_tip) {
+  if (z >= z_tip) return false;
+  Vec2 a = point(0);
+  if (azimuth <= a.x() || azimuth >= point(count - 1).x()) return true;
+  // Straight up from a place in the material the profile is crossed an odd number of times, also where a flank leans back.
+  bool inside = false;
+  for (std::size_t k = 1; k < count; ++k) {
+    const Vec2 b = point(k);
+    if ((a.x() <= azimuth) != (b.x() <= azimuth) && z < a.y() + (azimuth - a.x()) / (b.x() - a.x()) * (b.y() - a.y())) inside = !inside;
+    a = b;
+  }
+  return inside;
+}
+
+}  // namespace
+
+bool GearRing::in_material_at(double r, double azimuth, double z, double z_tip) const {
+  const auto& st = sheet.stations();
+  const double last = double(st.size() - 1), t = std::clamp((r - st.front().r) / (st.back().r - st.front().r) * last, 0.0, last);
+  const std::size_t j = std::min(std::size_t(t), st.size() - 2);
+  const auto &at = profiles[j], &step = profile_steps[j];
+  return inside_profile(at.size(), [&, x = t - double(j)](std::size_t k) -> Vec2 { return at[k] + x * step[k]; }, azimuth, z, z_tip);
+}
+
+bool in_material(const std::vector<Vec2>& profile, double azimuth, double z, double z_tip) {
+  return inside_profile(profile.size(), [&](std::size_t k) { return profile[k]; }, azimuth, z, z_tip);
+}
+
+}  // namespace toothpath::analytic

@@ -1,0 +1,192 @@
+#include "cam/analytic/gouge_check.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "cam/analytic/body_sweep.h"
+#include "cam/analytic/cutter_sweep.h"
+#include "cam/proof/gouge_merge.h"
+#include "cam/path/motion_blend.h"
+#include "cam/path/motions.h"
+#include "cam/proof/rapid_clearance.h"
+
+namespace toothpath::analytic {
+namespace {
+
+constexpr std::size_t kChunk = 256;     // motions that one thread checks one after another; the same on any number of threads
+constexpr double kBodyLook = 0.3;           // mm: gaps of shank and holder are followed this far beyond the clearance
+constexpr double kAhead = 0.4;          // mm: and this much farther where a body is looked at anew, so that later motions need not
+constexpr double kContact = 0.005;  // mm: smaller gaps of shank and holder are followed to proof_mm
+constexpr double kGapStep = 0.02;       // mm: to which the least gap is told
+
+proof::WorstPlace place_of(const NearestPlace& q, const path::ToolMotion& m, double depth, const char* body) {
+  proof::WorstPlace w;
+  w.depth_mm = depth;
+  w.body = body;
+  w.patch = q.patch;
+  w.operation = m.operation;
+  w.tooth = m.tooth;
+  w.zone = q.zone;
+  w.line = m.line;
+  w.radius_mm = std::hypot(q.foot.x(), q.foot.y());
+  w.height_mm = q.foot.z();
+  w.point = q.foot;
+  return w;
+}
+
+proof::WorstPlace place_of(const SweptGap& gap, const path::ToolMotion& m, const char* body) {
+  NearestPlace q;
+  q.zone = gap.zone;
+  q.patch = gap.patch;
+  q.foot = gap.place;
+  return place_of(q, m, -gap.measured_mm, body);
+}
+
+/// Motions that follow one another, checked by one thread.
+class Chunk {
+ public:
+  Chunk(const GearDistance& part, const std::vector<tool::ToolAssembly>& tools, const GougeCheckOptions& options)
+      : part_(part), tools_(tools), o_(options), out_(proof::no_motion_yet(options.clearance_mm)) {}
+
+  void check(const path::ToolMotion& m, int tool) {
+    if (tool != tool_) take(tool);
+    const auto& assembly = tools_[std::size_t(tool)];
+    const auto cut = cutter_->check(m);
+    if (cut.measured_mm > out_.measured_mm) {
+      out_.measured_mm = cut.measured_mm;
+      note_deepest(out_, place_of(cut.deepest, m, cut.measured_mm, cut.body));
+    }
+    if (cut.bound_mm > out_.bound_mm) {
+      out_.bound_mm = cut.bound_mm;
+      out_.bound_line = m.line;
+    }
+    if (const double depth = std::max(cut.measured_mm, cut.bound_mm); depth > o_.gouge_tolerance_mm)
+      add_worst(out_, place_of(cut.deepest, m, depth, cut.body));
+    for (Body& body : bodies_) clearance(body, m);
+    if (m.rapid) {
+      const auto proof = proof::prove_rapid(m, assembly,
+                                     {part_.gear().outer_radius(), part_.gear().inner_radius(), o_.rapid_height_mm,
+                                      -std::numeric_limits<double>::infinity()});
+      if (!proof.clear) {
+        out_.rapids_clear = false;
+        proof::WorstPlace w = place_of(cut.deepest, m, 0, "rapid");
+        w.patch = "blank";
+        w.radius_mm = proof.tip.head<2>().norm();
+        w.height_mm = proof.tip.z();
+        add_worst(out_, std::move(w));
+      }
+    }
+    ++out_.motions;
+  }
+
+  proof::GougeResult finish() {
+    take(-1);
+    return std::move(out_);
+  }
+
+ private:
+  struct Body {
+    tool::Frustum frustum;
+    bool known = false;
+    Vec3 tip = Vec3::Zero(), axis = Vec3::UnitZ();  // where it was looked at last,
+    double gap = 0;                                 // and its proven gap there
+  };
+
+  void take(int tool) {
+    if (cutter_) out_.distance_queries += cutter_->queries();
+    cutter_.reset();
+    bodies_.clear();
+    tool_ = tool;
+    if (tool < 0) return;
+    const auto& assembly = tools_[std::size_t(tool)];
+    cutter_.emplace(part_, assembly, o_.proof_mm, o_.gouge_tolerance_mm);
+    for (const auto& f : tool::shank_and_holder(assembly)) bodies_.push_back({f, false, Vec3::Zero(), Vec3::UnitZ(), 0});
+  }
+
+  void clearance(Body& body, const path::ToolMotion& m) {
+    const double enough = o_.clearance_mm + kBodyLook, arm = std::hypot(body.frustum.to, std::max(body.frustum.radius_from, body.frustum.radius_to));
+    if (body.known) {
+      const auto away = [&](const Vec3& tip, const Vec3& axis) { return (tip - body.tip).norm() + arm * (axis - body.axis).norm(); };
+      const double left = body.gap - std::max(away(m.tip_from, m.axis_from), away(m.tip_to, m.axis_to)) - path::line_slack(m, arm, 1);
+      if (left >= o_.clearance_mm && left >= std::min(enough, out_.clearance_measured_mm - kGapStep)) {
+        out_.clearance_mm = std::min({out_.clearance_mm, left, enough});
+        out_.clearance_measured_mm = std::min(out_.clearance_measured_mm, enough);
+        return;
+      }
+    }
+    SweptGapOptions look;
+    look.enough_mm = enough + kAhead;
+    look.contact_mm = kContact;
+    look.contact_proof_mm = o_.proof_mm;
+    look.proof_mm = 0.5 * kGapStep;
+    const auto gap = swept_gap(part_, body.frustum, m, look);
+    body = {body.frustum, true, m.tip_to, m.axis_to, gap.proven_mm};
+    out_.clearance_measured_mm = std::min({out_.clearance_measured_mm, gap.measured_mm, enough});
+    if (gap.proven_mm < out_.clearance_mm) out_.closest = place_of(gap, m, body.frustum.name);
+    out_.clearance_mm = std::min({out_.clearance_mm, gap.proven_mm, enough});
+    if (gap.proven_mm < o_.clearance_mm) add_worst(out_, place_of(gap, m, body.frustum.name));
+  }
+
+  const GearDistance& part_;
+  const std::vector<tool::ToolAssembly>& tools_;
+  const GougeCheckOptions& o_;
+  proof::GougeResult out_;
+  int tool_ = -1;
+  std::optional<CutterSweep> cutter_;
+  std::vector<Body> bodies_;
+};
+
+}  // namespace
+
+GougeCheck::GougeCheck(const GearDistance& part, std::vector<tool::ToolAssembly> tools, GougeCheckOptions options)
+    : part_(part), tools_(std::move(tools)), options_(options) {}
+
+proof::GougeResult GougeCheck::check(const std::vector<path::ToolMotion>& motions, const std::vector<int>& tool_of_operation) const {
+  std::vector<proof::GougeResult> chunks((motions.size() + kChunk - 1) / kChunk);
+  tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t n) {
+    Chunk chunk(part_, tools_, options_);
+    for (std::size_t k = n * kChunk; k < std::min(motions.size(), (n + 1) * kChunk); ++k)
+      chunk.check(motions[k], tool_of_operation[std::size_t(motions[k].operation)]);
+    chunks[n] = chunk.finish();
+  });
+  proof::GougeResult out = proof::no_motion_yet(options_.clearance_mm);
+  for (const auto& chunk : chunks) proof::add_result(out, chunk);
+  return out;
+}
+
+bool GougeCheck::passes(const proof::GougeResult& r) const {
+  return r.bound_mm <= options_.gouge_tolerance_mm && r.measured_mm <= options_.gouge_tolerance_mm &&
+         r.clearance_mm >= options_.clearance_mm && r.rapids_clear;
+}
+
+std::vector<path::ToolMotion> GougeCheck::motions_of(const path::ClPath& path) { return toothpath::path::motions_of(path); }
+
+Result<proof::CheckedClPath> GougeCheck::check_path(path::ClPath path) const {
+  std::vector<int> tool_of_operation(std::size_t(path.operation) + 1, path.tool);
+  const auto r = check(path::motions_of(path), tool_of_operation);
+  if (passes(r)) return proof::CheckedClPath(std::move(path));
+  if (!r.worst.empty()) {
+    const auto& w = r.worst.front();
+    if (w.body == "rapid")
+      return fail_as(DiagnosticKind::verification, "operation {} ({}): the rapid to CL record {} runs through the blank",
+                     path.operation, path.operation_type, w.line);
+    if (w.body == "shank" || w.body == "holder")
+      return fail_as(DiagnosticKind::verification,
+                     "operation {} ({}), CL record {}: the {} of tool {} comes within {:.4f} mm of the teeth at radius {:.3f}, "
+                     "height {:.3f}; the clearance is {:.4f}",
+                     path.operation, path.operation_type, w.line, w.body, tools_[std::size_t(path.tool)].number, -w.depth_mm,
+                     w.radius_mm, w.height_mm, options_.clearance_mm);
+    return fail_as(DiagnosticKind::verification,
+                   "operation {} ({}), CL record {}: the {} cuts {:.4f} mm (bound) into {} of zone {} at radius {:.3f}, height "
+                   "{:.3f}; the gouge tolerance is {:.4f}",
+                   path.operation, path.operation_type, w.line, w.body, w.depth_mm, w.patch, w.zone, w.radius_mm, w.height_mm,
+                   options_.gouge_tolerance_mm);
+  }
+  return fail_as(DiagnosticKind::verification, "operation {} ({}) is not proven free of gouges", path.operation,
+                 path.operation_type);
+}
+
+}  // namespace toothpath::analytic

@@ -1,0 +1,46 @@
+// The gouge check of ball mills on a face gear: what every body of the tool was found to do along every motion, and a proven
+// bound for every moment between the blocks. Ball and flute: cam/analytic/cutter_sweep.h. Shank and holder: cam/analytic/body_sweep.h.
+// Rapids: cam/proof/rapid_clearance.h. Why the bounds hold: docs/proof.md.
+#pragma once
+
+#include <vector>
+
+#include "cam/proof/checked_cl_path.h"
+#include "cam/tool/assembly.h"
+#include "cam/analytic/gear_distance.h"
+#include "cam/path/tool_motion.h"
+#include "cam/proof/verification.h"
+#include "geometry/base/result.h"
+
+namespace toothpath::analytic {
+
+struct GougeCheckOptions {
+  double gouge_tolerance_mm = 0.002;  ///< deepest proven cut into the finished surface that is accepted
+  double proof_mm = 0.0002;           ///< how far the bound may lie above the measured value of a move
+  double clearance_mm = 0.05;         ///< least gap of shank and holder
+  double rapid_height_mm = 0;         ///< rapids must keep every body above this z, or radially off the rings
+};
+
+class GougeCheck {
+ public:
+  GougeCheck(const GearDistance& part, std::vector<tool::ToolAssembly> tools, GougeCheckOptions options);
+
+  /// Checks motions; `tool_of_operation[op]` is an index into the tools. Runs on all threads; same bytes on any number.
+  [[nodiscard]] proof::GougeResult check(const std::vector<path::ToolMotion>& motions, const std::vector<int>& tool_of_operation) const;
+
+  /// Is everything within the options?
+  [[nodiscard]] bool passes(const proof::GougeResult& result) const;
+
+  /// The only maker of a CheckedClPath. On failure a verification diagnostic with the deepest place.
+  [[nodiscard]] Result<proof::CheckedClPath> check_path(path::ClPath path) const;
+
+  /// The motions of a CL path in the order of its records.
+  static std::vector<path::ToolMotion> motions_of(const path::ClPath& path);
+
+ private:
+  const GearDistance& part_;
+  std::vector<tool::ToolAssembly> tools_;
+  GougeCheckOptions options_;
+};
+
+}  // namespace toothpath::analytic

@@ -1,0 +1,79 @@
+#include "cam/analytic/ring_edges.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toothpath::analytic {
+namespace {
+
+constexpr double kSag = 5e-6;         // mm: where a proven sag is larger, smaller boxes are tried
+constexpr std::size_t kStretch = 60;  // segments that are bounded together, at most
+
+/// Segments from .. to, whose places are all of one piece, but perhaps the last.
+void prove(const PatchBounds& bounds, const std::vector<EndPlace>& places, std::size_t from, std::size_t to, std::vector<double>& sags) {
+  const std::size_t last = places[to].piece == places[from].piece ? to : to - 1;
+  const std::size_t back = last > from || from == 0 ? from : from - 1;
+  if (places[back].piece != places[from].piece || last == back) return;
+  // The coordinate a runs along the stretch, b along the parameter v.
+  const Vec2 x(places[back].u, places[back].v), y(places[last].u, places[last].v);
+  const PatchFrame frame{0.5 * (x + y), 0.5 * (y - x), Vec2(0, 1)};
+  double off = 0, step = last == from ? 2 : 0;
+  for (std::size_t k = from; k <= last; ++k) {
+    const Vec2 ab = frame.ab({places[k].u, places[k].v});
+    off = std::max(off, std::abs(ab.y()));
+    if (k > from) step = std::max(step, std::abs(ab.x() - frame.ab({places[k - 1].u, places[k - 1].v}).x()));
+  }
+  const double half_a = last == to ? 1 : 1 + 1.01 * step;  // the border to the next piece is a step farther
+  bool good = false;
+  for (double half_b = 2 * off + 1e-6; half_b < 1; half_b *= 5) {
+    const auto bend = bounds.bend_at_radius(places[from].piece, frame, half_a, half_b);
+    if (!bend) continue;
+    good = true;
+    for (std::size_t k = from; k < to; ++k) {  // only what leads away from the chord counts
+      const Vec3 chord = (places[k + 1].p - places[k].p).normalized();
+      sags[k] = 0.125 * step * step * ((bend->middle - chord.dot(bend->middle) * chord).norm() + bend->spread);
+      good = good && sags[k] <= kSag;
+    }
+    break;
+  }
+  if (good || to - from < 2) return;
+  const std::size_t middle = (from + to) / 2;
+  prove(bounds, places, from, middle, sags);
+  prove(bounds, places, middle, to, sags);
+}
+
+}  // namespace
+
+std::vector<double> end_edge_sags(const PatchBounds& bounds, const std::vector<EndPlace>& places) {
+  std::vector<double> sags(places.size(), -1);
+  for (std::size_t from = 0, to = 0; from + 1 < places.size(); from = to) {
+    to = from + 1;
+    while (to + 1 < places.size() && to < from + kStretch && places[to].piece == places[from].piece) ++to;
+    prove(bounds, places, from, to, sags);
+  }
+  return sags;
+}
+
+std::vector<std::optional<CurveBend>> tip_bends(const PatchBounds& bounds, int side, const std::vector<std::optional<face_gear::TipPlace>>& places,
+                                                const std::vector<double>& radii) {
+  std::vector<std::optional<CurveBend>> bends;
+  for (std::size_t k = 0; k + 1 < places.size(); ++k)
+    bends.push_back(places[k] && places[k + 1] ? bounds.tip_azimuth(side, *places[k], radii[k], *places[k + 1], radii[k + 1]) : std::nullopt);
+  return bends;
+}
+
+std::vector<double> tip_edge_sags(const PatchBounds& bounds, const std::vector<std::optional<CurveBend>>& bends, const std::vector<double>& radii) {
+  std::vector<double> sags;
+  for (std::size_t k = 0; k < bends.size(); ++k) {
+    if (!bends[k]) {
+      sags.push_back(-1);
+      continue;
+    }
+    // (r cos A, r sin A, z): second derivatives -r A'^2 outwards, 2 A' + r A'' along the circle, z'' upwards.
+    const double r = radii[k + 1], step = r - radii[k], a1 = bends[k]->slope.magnitude(), a2 = bends[k]->bend.magnitude();
+    sags.push_back(0.125 * step * step * std::hypot(r * a1 * a1, 2 * a1 + r * a2, bounds.tip_surface_bend(radii[k], r).magnitude()));
+  }
+  return sags;
+}
+
+}  // namespace toothpath::analytic

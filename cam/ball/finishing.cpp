@@ -1,0 +1,476 @@
+#include "cam/ball/finishing.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <type_traits>
+
+#include "cam/ball/pass_count.h"
+
+namespace toothpath::ball {
+namespace {
+
+constexpr double kLongestRunOut = 1.5;  // way of a run-out along the sheet, of the straight line between its ends
+constexpr double kRootBegin = 2, kRootEnd = 3;  // the root land on the sheet; below it plus fillet and flank, above it minus
+constexpr int kDrawRounds = 6;  // how often all passes are laid anew, closer where a cusp is too high
+
+/// Cubic through equally spaced values (Catmull-Rom), value at t in [0, n - 1].
+double smooth(const std::vector<double>& y, double t) {
+  const int n = int(y.size());
+  const int k = std::clamp(int(t), 0, n - 2);
+  const double x = t - k;
+  const auto v = [&](int j) { return y[std::size_t(std::clamp(j, 0, n - 1))]; };
+  const double y0 = k > 0 ? v(k - 1) : 2 * v(0) - v(1), y1 = v(k), y2 = v(k + 1);
+  const double y3 = k + 2 < n ? v(k + 2) : 2 * v(n - 1) - v(n - 2);
+  return y1 + 0.5 * x * (y2 - y0 + x * (2 * y0 - 5 * y1 + 4 * y2 - y3 + x * (3 * (y1 - y2) + y3 - y0)));
+}
+
+class FinishingPlanner {
+ public:
+  FinishingPlanner(const face_gear::OffsetSheet& sheet, const FinishingOptions& options) : sheet_(sheet), o_(options), count_(sheet, options) {}
+
+  Result<FinishingPasses> run() {
+    if (sheet_.has_gaps()) passes_between_corners();
+    else passes_over_all();
+    if (auto ok = make_passes(); !ok) return ok.error();
+    return std::move(out_);
+  }
+
+ private:
+  /// Neighbouring passes, each as sigma over the centre radius.
+  using Chain = std::vector<std::function<double(double)>>;
+
+  struct MadePass {
+    BallPass pass;
+    double worst_chord_mm = 0;
+  };
+
+  /// The whole sheet as one: from both tips downwards, in turn, so that a climbing pass on one flank leads to a climbing pass
+  /// on the other. (Counts of single flanks vary more along the tooth than the count of the whole space does.)
+  void passes_over_all() {
+    Chain chain = drawn_together<1>([this] { return std::array{chain_over_all()}; })[0];
+    note_cusps(chain);
+    const std::size_t all = chain.size(), on_plus = passes_of_plus(chain);
+    for (std::size_t i = 0; i < std::max(on_plus, all - on_plus); ++i) {
+      if (i < on_plus) add_pass(chain[i], true);
+      if (i < all - on_plus) add_pass(chain[all - 1 - i], false);
+    }
+  }
+
+  [[nodiscard]] Chain chain_over_all() const {
+    const auto& totals = count_.totals();
+    const int passes = std::max(2, int(std::ceil(most_on_ring(totals) - 1e-9)));
+    Chain chain;
+    for (int index = 0; index < passes; ++index) {
+      const double share = (index + 0.5) / passes;
+      std::vector<double> sigma;
+      for (std::size_t j = 0; j < totals.size(); ++j) sigma.push_back(count_.sigma_at(j, share * totals[j]));
+      chain.push_back([this, sigma](double r) { return smooth(sigma, station_coordinate(r)); });
+    }
+    return chain;
+  }
+
+  /// How many passes of the chain are fed as those of the plus flank: none that touches the minus fillet, and all that touch the plus fillet
+  /// or flank, so that material lies on the asked side of every one. The root land takes either feed: there the middle of the chain divides.
+  [[nodiscard]] std::size_t passes_of_plus(const Chain& chain) const {
+    std::size_t clear_of_minus = 0, touching_plus = 0;
+    for (const auto& sigma : chain) {
+      double least = INFINITY, most = -INFINITY;
+      for (const auto& station : sheet_.stations()) {
+        least = std::min(least, sigma(station.r));
+        most = std::max(most, sigma(station.r));
+      }
+      if (most <= kRootEnd) ++clear_of_minus;
+      if (least < kRootBegin) ++touching_plus;
+    }
+    const auto [low, high] = std::minmax(clear_of_minus, touching_plus);
+    return std::clamp((chain.size() + 1) / 2, low, high);
+  }
+
+  [[nodiscard]] int samples() const { return 2 * int(sheet_.stations().size()); }
+  [[nodiscard]] double sample_radius(int k) const { return sheet_.r_from() + (sheet_.r_to() - sheet_.r_from()) * k / samples(); }
+  /// The pass as its neighbours see it at every sample radius between the ends of the sheet; nothing where the sheet has no point.
+  [[nodiscard]] std::vector<std::optional<PassLine>> lines_of(const std::function<double(double)>& sigma) const {
+    std::vector<std::optional<face_gear::SheetPoint>> places;
+    for (int k = 0; k <= samples(); ++k) places.push_back(sheet_.at(sigma(sample_radius(k)), sample_radius(k)));
+    const auto centre = [&](std::size_t k) { return places[k] ? std::optional(places[k]->centre) : std::nullopt; };
+    std::vector<std::optional<PassLine>> lines(places.size());
+    for (std::size_t k = 1; k + 1 < places.size(); ++k)
+      if (places[k] && (places[k - 1] || places[k + 1])) lines[k] = PassLine(sigma(sample_radius(int(k))), *places[k], centre(k - 1), centre(k + 1));
+    return lines;
+  }
+
+  /// The cusps between the passes of a chain that are higher than `above` on the ring, also between the stations; one list a pair.
+  [[nodiscard]] std::vector<std::vector<HighCusp>> cusps_above(const Chain& chain, double above) const {
+    std::vector<std::vector<std::optional<PassLine>>> lines(chain.size());
+    tbb::parallel_for(std::size_t(0), chain.size(), [&](std::size_t i) { lines[i] = lines_of(chain[i]); });
+    std::vector<std::vector<HighCusp>> out(chain.size() - 1);  // a chain has one pass at least
+    tbb::parallel_for(std::size_t(0), chain.size() - 1, [&](std::size_t i) {
+      for (int k = 1; k < samples(); ++k) {
+        const auto &a = lines[i][std::size_t(k)], &b = lines[i + 1][std::size_t(k)];
+        if (!a || !b || !on_ring(*a, *b)) continue;
+        const bool flat = std::max(a->sigma, b->sigma) < 0.9 || std::min(a->sigma, b->sigma) > 4.1;
+        if (flat && k % 2 != 0) continue;  // the flanks bend slowly
+        const double r = sample_radius(k);
+        const Crest crest = count_.cusp(*a, *b, r, sheet_.gaps(r));
+        if (crest.height_mm > above) out[i].push_back({r, std::min(a->sigma, b->sigma), std::max(a->sigma, b->sigma), crest});
+      }
+    });
+    return out;
+  }
+  /// Does the crest between two passes stand on the ring, or hardly beyond its ends?
+  [[nodiscard]] bool on_ring(const PassLine& a, const PassLine& b) const {
+    const auto [low, high] = std::minmax({radius(a.at.contact.p), radius(b.at.contact.p)});
+    const double beyond = high - low + 0.02 * o_.ball_radius_mm;
+    const auto& ring = sheet_.space().ring().zone;
+    return high > ring.inner_radius_mm - beyond && low < ring.outer_radius_mm + beyond;
+  }
+
+  /// Of one value a station, the greatest where some contact of the station lies on the ring: beyond its ends no cusp counts.
+  [[nodiscard]] double most_on_ring(const std::vector<double>& values) const {
+    const auto& ring = sheet_.space().ring().zone;
+    double most = 0;
+    for (std::size_t j = 0; j < values.size(); ++j) {
+      const auto& nodes = sheet_.stations()[j].nodes;
+      const bool on = std::any_of(nodes.begin(), nodes.end(), [&](const face_gear::OffsetSheet::Node& n) {
+        const double r = radius(n.at.contact.p);
+        return r >= ring.inner_radius_mm && r <= ring.outer_radius_mm;
+      });
+      if (on) most = std::max(most, values[j]);
+    }
+    return most;
+  }
+
+  /// Lays chains with `lay`, draws the passes together where a cusp is too high and lays them anew. A place where the surface bends
+  /// sharply would draw all passes together along the whole tooth: of all rounds the one with the fewest passes is taken, those counted that
+  /// must then stand between two others.
+  template <std::size_t N, typename Lay>
+  [[nodiscard]] std::array<Chain, N> drawn_together(const Lay& lay) {
+    std::array<Chain, N> best;
+    std::size_t fewest = SIZE_MAX;
+    for (int round = 0; round <= kDrawRounds; ++round) {
+      std::array<Chain, N> chains = lay();
+      std::vector<HighCusp> high;
+      std::size_t passes = 0;
+      for (const Chain& chain : chains) {
+        passes += chain.size();
+        for (const auto& pair : cusps_above(chain, o_.scallop_mm)) {
+          passes += pair.empty() ? 0 : 1;
+          high.insert(high.end(), pair.begin(), pair.end());
+        }
+      }
+      if (passes < fewest) {
+        fewest = passes;
+        best = std::move(chains);
+      }
+      if (high.empty()) break;
+      count_.draw_together(high);
+    }
+    for (Chain& chain : best) close_gaps(chain);
+    return best;
+  }
+
+  [[nodiscard]] std::vector<HighCusp> high_cusps(const Chain& chain) const {
+    std::vector<HighCusp> all;
+    for (const auto& pair : cusps_above(chain, o_.scallop_mm)) all.insert(all.end(), pair.begin(), pair.end());
+    return all;
+  }
+  void note_cusps(const Chain& chain) {
+    for (const auto& pair : cusps_above(chain, 0))
+      for (const auto& c : pair) {
+        out_.scallop_max_mm = std::max(out_.scallop_max_mm, c.crest.height_mm);
+        out_.crest_lean = std::max(out_.crest_lean, c.crest.lean);
+      }
+  }
+
+  /// Where passes that were drawn together still leave a cusp that is too high, one more pass.
+  void close_gaps(Chain& chain) const {
+    for (int round = 0; round < 3; ++round)
+      if (!close_gaps_once(chain)) return;
+  }
+  [[nodiscard]] bool close_gaps_once(Chain& chain) const {
+    const auto high = cusps_above(chain, o_.scallop_mm);
+    Chain closed;
+    for (std::size_t i = 0; i < chain.size(); ++i) {
+      closed.push_back(chain[i]);
+      if (i + 1 == chain.size() || high[i].empty()) continue;
+      closed.push_back([a = chain[i], b = chain[i + 1]](double r) { return 0.5 * (a(r) + b(r)); });
+    }
+    const bool grown = closed.size() > chain.size();
+    chain = std::move(closed);
+    return grown;
+  }
+
+  /// Asks for a pass; `make_passes` makes all of them. What the curves refer to must live until then.
+  template <typename Sigma>
+  void add_pass(const Sigma& sigma, bool plus, double r_low = -INFINITY, double r_high = INFINITY) {
+    asked_.push_back([=, this] { return make_pass(sigma, sigma, plus, r_low, r_high); });
+  }
+  /// Along a corner: the ball touches at `sigma` and at `other`, and the pass is as long as either of the two contacts lies on the ring.
+  template <typename Sigma, typename Other>
+  void add_pass(const Sigma& sigma, const Other& other, bool plus, double r_low, double r_high) {
+    asked_.push_back([=, this] { return make_pass(sigma, other, plus, r_low, r_high); });
+  }
+  /// On all threads; kept in the order in which they were asked for.
+  Status make_passes() {
+    std::vector<std::optional<Result<MadePass>>> made(asked_.size());
+    tbb::parallel_for(std::size_t(0), made.size(), [&](std::size_t k) { made[k] = asked_[k](); });
+    for (auto& pass : made) {
+      if (!*pass) return pass->error();
+      out_.worst_chord_mm = std::max(out_.worst_chord_mm, (*pass)->worst_chord_mm);
+      if ((*pass)->pass.points.size() > 1) out_.passes.push_back(std::move((*pass)->pass));
+    }
+    return Ok{};
+  }
+
+  /// Where the ball touches two walls of a corner at once. The plus corner lies on the plus side of the root land, the minus
+  /// corner on the other; where the ball does not reach the root land at all they are one.
+  struct CornerPlace {
+    double from = 0, to = 0;
+    bool one = false;  ///< both corners in one
+  };
+  static std::optional<CornerPlace> find_corner(const std::vector<face_gear::SheetGap>& gaps, bool plus) {
+    for (const auto& g : gaps) {
+      const face_gear::SheetCorner which = face_gear::corner_of(g);
+      if (which == face_gear::SheetCorner::both || which == (plus ? face_gear::SheetCorner::plus : face_gear::SheetCorner::minus)) return CornerPlace{g.from, g.to, which == face_gear::SheetCorner::both};
+    }
+    return {};
+  }
+  /// Where a corner was seen at the station nearest to r: stands for it where it is not there.
+  [[nodiscard]] CornerPlace nearest_corner(double r, bool plus) const {
+    double best = INFINITY;
+    CornerPlace place{plus ? kRootBegin : kRootEnd, plus ? kRootBegin : kRootEnd, false};
+    for (const auto& s : sheet_.stations())
+      if (const auto c = find_corner(s.gaps, plus); c && !c->one && std::abs(s.r - r) < best) {
+        best = std::abs(s.r - r);
+        place.from = place.to = 0.5 * (c->from + c->to);
+      }
+    return place;
+  }
+  /// The corner at any radius. Between two stations of which one has none it is on the straight line between its places there: next to
+  /// where it opens, both walls cross so flatly that its own place jumps.
+  [[nodiscard]] CornerPlace corner_at(double r, bool plus) const {
+    const auto& stations = sheet_.stations();
+    const double t = std::clamp(station_coordinate(r), 0.0, double(stations.size() - 1));
+    const std::size_t j = std::min(std::size_t(t), stations.size() - 2);
+    const auto before = find_corner(stations[j].gaps, plus), after = find_corner(stations[j + 1].gaps, plus);
+    if (before && after)
+      if (const auto c = find_corner(sheet_.gaps(r), plus)) return *c;
+    const CornerPlace a = before ? *before : nearest_corner(stations[j].r, plus), b = after ? *after : nearest_corner(stations[j + 1].r, plus);
+    const double y = t - double(j);
+    return {(1 - y) * a.from + y * b.from, (1 - y) * a.to + y * b.to, y < 0.5 ? a.one : b.one};
+  }
+
+  /// Both corners at every station.
+  struct Corners {
+    std::vector<CornerPlace> plus, minus;
+  };
+  /// The passes of the plus flank and of the minus flank, each from its tip down to its corner, which is the last one.
+  [[nodiscard]] std::array<Chain, 2> chains_to_corners(const Corners& corners) const {
+    const std::size_t n = sheet_.stations().size();
+    const auto& totals = count_.totals();
+    std::vector<double> a(n), c(n);  // counts of the plus flank and of the minus flank, tip to corner
+    for (std::size_t j = 0; j < n; ++j) {
+      a[j] = count_.count_at(j, corners.plus[j].from);
+      c[j] = totals[j] - count_.count_at(j, corners.minus[j].to);
+    }
+    const int passes_a = std::max(1, int(std::ceil(most_on_ring(a) - 0.5)));
+    const int passes_c = std::max(1, int(std::ceil(most_on_ring(c) - 0.5)));
+    std::array<Chain, 2> chains;
+    auto& [on_plus, on_minus] = chains;
+    for (int i = 0; i < passes_a; ++i) {
+      const double share = (i + 0.5) / (passes_a + 0.5);
+      std::vector<double> sigma(n);
+      for (std::size_t j = 0; j < n; ++j) sigma[j] = count_.sigma_at(j, share * a[j]);
+      on_plus.push_back(beside_corner(std::move(sigma), share, corners.plus, true));
+    }
+    for (int i = 0; i < passes_c; ++i) {
+      const double share = (i + 0.5) / (passes_c + 0.5);
+      std::vector<double> sigma(n);
+      for (std::size_t j = 0; j < n; ++j) sigma[j] = count_.sigma_at(j, totals[j] - share * c[j]);
+      on_minus.push_back(beside_corner(std::move(sigma), share, corners.minus, false));
+    }
+    on_plus.push_back([this](double r) { return corner_at(r, true).from; });
+    on_minus.push_back([this](double r) { return corner_at(r, false).to; });
+    return chains;
+  }
+
+  /// A pass of a flank, smooth through its places at the stations. Between them the corner may leave the smooth curve through its own places:
+  /// the passes follow it by their share of the way from tip to corner, so that they keep their distances.
+  [[nodiscard]] std::function<double(double)> beside_corner(std::vector<double> sigma, double share, const std::vector<CornerPlace>& corner, bool plus) const {
+    std::vector<double> edge;
+    for (const auto& c : corner) edge.push_back(plus ? c.from : c.to);
+    return [this, sigma = std::move(sigma), share, edge = std::move(edge), plus](double r) {
+      const double t = station_coordinate(r);
+      const CornerPlace c = corner_at(r, plus);
+      return smooth(sigma, t) + share * ((plus ? c.from : c.to) - smooth(edge, t));
+    };
+  }
+
+  /// With corners: each flank has its own passes down to its corner, one pass follows every corner, and where the ball reaches
+  /// the root land its passes lie between the corners. No pass crosses a corner.
+  void passes_between_corners() {
+    Corners corners;
+    for (const auto& station : sheet_.stations()) {
+      corners.plus.push_back(corner_at(station.r, true));
+      corners.minus.push_back(corner_at(station.r, false));
+    }
+    auto [on_plus, on_minus] = drawn_together<2>([&] { return chains_to_corners(corners); });
+    note_cusps(on_plus);
+    note_cusps(on_minus);
+    on_minus.pop_back();  // the minus corner comes below, where it is apart from the plus corner
+    for (std::size_t i = 0; i < std::max(on_plus.size(), on_minus.size()); ++i) {
+      if (i + 1 == on_plus.size())  // along the corner
+        add_pass(on_plus[i], [this](double r) { return corner_at(r, true).to; }, true, -INFINITY, INFINITY);
+      else if (i < on_plus.size())
+        add_pass(on_plus[i], true);
+      if (i < on_minus.size()) add_pass(on_minus[i], false);
+    }
+    out_.corner_passes = true;
+    passes_on_root_land(corners);
+  }
+
+  /// From corner to corner over the root land, both of them included; where the corners are one, that one.
+  [[nodiscard]] Chain land_chain(int between) const {
+    Chain land;
+    for (int i = 0; i <= between; ++i)
+      land.push_back([this, i, between](double r) {
+        const CornerPlace p = corner_at(r, true), m = corner_at(r, false);
+        if (p.one) return p.from;
+        return p.to + (m.from - p.to) * i / std::max(between, 1);
+      });
+    return land;
+  }
+
+  /// The minus corner and the root land, over every stretch where they are apart from the plus corner.
+  void passes_on_root_land(const Corners& corners) {
+    const auto& stations = sheet_.stations();
+    const std::size_t n = stations.size();
+    for (std::size_t j = 0; j < n;) {
+      if (corners.plus[j].one) {
+        ++j;
+        continue;
+      }
+      std::size_t end = j;
+      while (end + 1 < n && !corners.plus[end + 1].one) ++end;
+      const double r_low = j > 0 ? stations[j - 1].r : -INFINITY, r_high = end + 1 < n ? stations[end + 1].r : INFINITY;
+      add_pass([this](double r) { return corner_at(r, false).to; }, [this](double r) { return corner_at(r, false).from; }, false, r_low, r_high);
+      double most = 0;
+      for (std::size_t k = j; k <= end; ++k) most = std::max(most, count_.count_at(k, corners.minus[k].from) - count_.count_at(k, corners.plus[k].to));
+      int between = int(std::ceil(most - 1e-9));
+      Chain land = land_chain(between);
+      for (int round = 0; round < kDrawRounds && !high_cusps(land).empty(); ++round) land = land_chain(++between);
+      note_cusps(land);
+      for (int i = 1; i < between; ++i) add_pass(land[std::size_t(i)], 2 * i < between, r_low, r_high);
+      j = end + 1;
+    }
+  }
+
+  [[nodiscard]] double station_coordinate(double r) const {
+    return (r - sheet_.r_from()) / (sheet_.r_to() - sheet_.r_from()) * double(sheet_.stations().size() - 1);
+  }
+
+  /// The piece of the curve whose contact (one of the two, along a corner) lies on the ring, with the run-out at both ends.
+  template <typename Sigma, typename Other>
+  Result<MadePass> make_pass(const Sigma& sigma, const Other& other, bool plus, double r_low, double r_high) const {
+    const auto& ring = sheet_.space().ring().zone;
+    const auto contact_radius = [&](double at, double r) -> double {
+      const auto s = sheet_.at(at, r);
+      return s ? radius(s->contact.p) : NAN;
+    };
+    const auto solve = [&](const auto& curve, double target) -> double {
+      double a = sheet_.r_from(), b = sheet_.r_to();
+      if (contact_radius(curve(a), a) > target || contact_radius(curve(b), b) < target) return NAN;
+      for (int k = 0; k < 60 && b - a > 1e-9; ++k) {
+        const double m = 0.5 * (a + b);
+        (contact_radius(curve(m), m) < target ? a : b) = m;
+      }
+      return 0.5 * (a + b);
+    };
+    double from = solve(sigma, ring.inner_radius_mm), to = solve(sigma, ring.outer_radius_mm);
+    if constexpr (!std::is_same_v<Sigma, Other>) {
+      from = std::min(from, solve(other, ring.inner_radius_mm));
+      to = std::max(to, solve(other, ring.outer_radius_mm));
+    }
+    if (std::isnan(from) || std::isnan(to))
+      return fail("the flank ends inside the ring: ball centres reach contact radii {:.4f} to {:.4f}, the ring is "
+                  "{:.4f} to {:.4f}",
+                  contact_radius(sigma(sheet_.r_from()), sheet_.r_from()), contact_radius(sigma(sheet_.r_to()), sheet_.r_to()),
+                  ring.inner_radius_mm, ring.outer_radius_mm);
+    // A corner that begins or ends inside the ring: the pass is as long as the corner.
+    const double begin = std::max(from, r_low), end = std::min(to, r_high);
+    if (!(end > begin)) return MadePass{};
+    const auto on_sheet = [&](double r) -> std::optional<BallPass::Point> {
+      const auto s = sheet_.at(sigma(r), r);
+      if (!s) return {};
+      return BallPass::Point{s->centre, s->contact.p, true};
+    };
+    const auto curve = sample_curve(on_sheet, begin, end, o_.chord_mm, 4.0 * o_.ball_radius_mm);
+    if (!curve) return fail("the ball-centre surface cannot be followed between radii {:.4f} and {:.4f}", from, to);
+    BallPass pass;
+    pass.points = curve->points;
+    add_run_out(pass, on_sheet, from, to, begin == from, end == to);
+    pass.outward = plus == o_.climb;
+    if (!pass.outward) std::reverse(pass.points.begin(), pass.points.end());
+    return MadePass{std::move(pass), curve->worst_chord_mm};
+  }
+
+  /// Not to and fro: its way is that of a curve, not many times the straight line between its ends.
+  static bool keeps_on(const std::vector<BallPass::Point>& points) {
+    double way = 0;
+    for (std::size_t k = 1; k < points.size(); ++k) way += (points[k].centre - points[k - 1].centre).norm();
+    return way <= kLongestRunOut * (points.back().centre - points.front().centre).norm();
+  }
+
+  /// Goes on beyond the ends of the ring: along the sheet where that is there and smooth, else straight on. Out there the ball may come to
+  /// a corner that the ring does not have, and the sheet jumps from one wall of it to the other.
+  template <typename Curve>
+  void add_run_out(BallPass& pass, const Curve& on_sheet, double from, double to, bool inside, bool outside) const {
+    const auto extend = [&](double end, double sense) {
+      const double target = std::clamp(end + sense * o_.run_out_mm, sheet_.r_from(), sheet_.r_to());
+      std::vector<BallPass::Point> out;
+      if (std::abs(target - end) > 0.3 * o_.run_out_mm)
+        if (const auto line = sample_curve(on_sheet, end, target, o_.chord_mm, 4.0 * o_.ball_radius_mm); line && keeps_on(line->points)) {
+          out.assign(line->points.begin() + 1, line->points.end());
+          for (auto& p : out) p.touching = false;
+          return out;
+        }
+      const auto a = on_sheet(end), b = on_sheet(end - sense * 1e-4);
+      if (!a || !b) return out;
+      const Vec3 tangent = (a->centre - b->centre).normalized();
+      const double rate = std::abs(radius(a->centre + tangent * 1e-3) - radius(a->centre)) / 1e-3;
+      out.push_back({a->centre + tangent * (o_.run_out_mm / std::max(rate, 0.2)), a->contact, false});
+      return out;
+    };
+    if (inside) {
+      const auto points = extend(from, -1);
+      pass.points.insert(pass.points.begin(), points.rbegin(), points.rend());
+    }
+    if (outside) {
+      const auto points = extend(to, 1);
+      pass.points.insert(pass.points.end(), points.begin(), points.end());
+    }
+  }
+
+  const face_gear::OffsetSheet& sheet_;
+  FinishingOptions o_;
+  PassCount count_;
+  std::vector<std::function<Result<MadePass>()>> asked_;
+  FinishingPasses out_;
+};
+
+}  // namespace
+
+Result<FinishingPasses> plan_finishing(const face_gear::OffsetSheet& sheet, const FinishingOptions& options) {
+  const auto& ring = sheet.space().ring().zone;
+  if (sheet.empty() || sheet.r_from() >= sheet.r_to())
+    return fail("the ball centres of a {:.4f} mm ball find no surface between the radii {:.4f} and {:.4f}",
+                options.ball_radius_mm, ring.inner_radius_mm, ring.outer_radius_mm);
+  return FinishingPlanner(sheet, options).run();
+}
+
+}  // namespace toothpath::ball

@@ -1,0 +1,54 @@
+// Finishing and semi-finishing of one tooth space with a ball: passes along the tooth, iso-scallop across it.
+#pragma once
+
+#include <vector>
+
+#include "geometry/face_gear/offset_sheet.h"
+
+namespace toothpath::ball {
+
+/// One pass: ball centres on the sheet from the inner to the outer end of the ring, contact points beside them.
+struct BallPass {
+  struct Point {
+    Vec3 centre = Vec3::Zero();
+    Vec3 contact = Vec3::Zero();
+    bool touching = true;  ///< false in the run-out beyond the ends of the ring
+  };
+  std::vector<Point> points;  ///< in feed direction
+  bool outward = true;        ///< feed from the inner to the outer end
+};
+
+struct FinishingOptions {
+  double ball_radius_mm = 0;
+  double allowance_mm = 0;
+  double scallop_mm = 0;
+  double chord_mm = 0;
+  double run_out_mm = 0;    ///< how far the ball centre goes on beyond the last contact
+  bool climb = true;
+};
+
+struct FinishingPasses {
+  std::vector<BallPass> passes;     ///< in cutting order
+  double scallop_max_mm = 0;        ///< highest cusp found between two passes, flanks, fillets and root
+  double crest_lean = 0;            ///< greatest lean of a crest (cam/pass_count.h)
+  double worst_chord_mm = 0;        ///< largest sag found while placing points
+  bool corner_passes = false;       ///< the ball is too large for the fillet: extra passes run along the corners
+};
+
+/// Passes over the whole sheet. Step-over: the cusp between two neighbours is w^2 / (8 R (1 + k R)) for centres w apart
+/// across the pass, k the normal curvature of the machined surface across the pass, convex positive.
+/// Fails if the sheet does not cover the ring (undercut: the surfaces end inside it).
+[[nodiscard]] Result<FinishingPasses> plan_finishing(const face_gear::OffsetSheet& sheet, const FinishingOptions& options);
+
+/// Points of a curve r -> place, as sparse as the chord tolerance allows. Shared by finishing and roughing.
+struct SampledCurve {
+  std::vector<BallPass::Point> points;
+  double worst_chord_mm = 0;
+};
+template <typename Curve>
+std::optional<SampledCurve> sample_curve(const Curve& curve, double r_begin, double r_end, double chord_mm,
+                                         double longest_mm);
+
+}  // namespace toothpath::ball
+
+#include "cam/ball/sample_curve.inl"

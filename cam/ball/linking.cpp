@@ -1,0 +1,107 @@
+#include "cam/ball/linking.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toothpath::ball {
+namespace {
+
+class Linker {
+ public:
+  Linker(const LinkingOptions& o, const HopIsClear& clear, const BodiesAreClear& bodies, std::vector<path::ClRecord>& out)
+      : o_(o), clear_(clear), bodies_are_clear_(bodies), out_(out) {}
+
+  void run(const std::vector<BallPass>& passes) {
+    int number = 0;
+    for (std::size_t p = 0; p < passes.size(); ++p) {
+      const auto& points = passes[p].points;
+      if (points.empty()) continue;
+      const auto axis = [&](std::size_t k) { return o_.axes.empty() ? o_.axis : o_.axes[p][k]; };
+      pass_ = number++;
+      approach(points.front().centre, axis(0));
+      for (std::size_t k = 1; k < points.size(); ++k) feed(points[k - 1], axis(k - 1), points[k], axis(k));
+      last_ = points.back().centre;
+      last_axis_ = axis(points.size() - 1);
+      engaged_ = true;
+    }
+    if (engaged_) leave();
+  }
+
+ private:
+  [[nodiscard]] Vec3 tip(const Vec3& centre, const Vec3& axis) const { return centre - o_.ball_radius_mm * axis; }
+  /// The centre lifted along the axis until tip, shank and holder are above the clearance height.
+  [[nodiscard]] Vec3 above(const Vec3& centre, const Vec3& axis) const {
+    double lowest = -o_.ball_radius_mm * axis.z();  // under the centre
+    for (const auto& f : o_.bodies) lowest = std::min(lowest, tool::lowest_z(f, -o_.ball_radius_mm * axis, axis));
+    const double lift = (o_.clearance_height_mm - lowest - centre.z()) / axis.z();
+    return centre + std::max(lift, 0.0) * axis;
+  }
+  void add(const Vec3& centre, const Vec3& axis, path::MoveKind kind, double feed) {
+    out_.push_back({tip(centre, axis), axis, kind == path::MoveKind::rapid ? 0.0 : feed, kind, o_.zone, pass_});
+  }
+
+  void approach(const Vec3& start, const Vec3& axis) {
+    if (engaged_) {
+      const Vec3 a = last_ + o_.hop_mm * last_axis_, b = start + o_.hop_mm * axis;
+      if ((b - a).norm() <= o_.longest_hop_mm && clear_(last_, a) && clear_(a, b) && clear_(b, start) && turns_clear(a, b, axis)) {
+        add(a, last_axis_, path::MoveKind::retract, o_.feed_mm_min);
+        hop(a, b, axis);
+        add(start, axis, path::MoveKind::engage, o_.feed_mm_min);
+        return;
+      }
+      leave();
+    }
+    add(above(start, axis), axis, path::MoveKind::rapid, 0);
+    add(start, axis, path::MoveKind::engage, o_.feed_mm_min);
+  }
+
+  void leave() { add(above(last_, last_axis_), last_axis_, path::MoveKind::retract, o_.feed_mm_min); }
+
+  // Hops between two directions: even steps, the centre straight.
+  [[nodiscard]] double turn_to(const Vec3& axis) const { return std::atan2(last_axis_.cross(axis).norm(), last_axis_.dot(axis)); }
+  [[nodiscard]] int steps_of(const Vec3& axis) const { return std::max(1, int(std::ceil(turn_to(axis) / (0.95 * kMostTurnOfHopRecord)))); }
+  [[nodiscard]] Vec3 blended(const Vec3& axis, double t) const { return ((1 - t) * last_axis_ + t * axis).normalized(); }
+  [[nodiscard]] bool turns_clear(const Vec3& a, const Vec3& b, const Vec3& axis) const {
+    if (axis == last_axis_) return true;
+    if (!bodies_are_clear_ || turn_to(axis) > kMostTurnOfHop) return false;
+    const int checks = std::max(2 * steps_of(axis), int(std::ceil((b - a).norm() / 0.5)));
+    for (int k = 0; k <= checks; ++k) {
+      const double t = double(k) / checks;
+      if (!bodies_are_clear_(a + t * (b - a), blended(axis, t))) return false;
+    }
+    return true;
+  }
+  void hop(const Vec3& a, const Vec3& b, const Vec3& axis) {
+    const int steps = axis == last_axis_ ? 1 : steps_of(axis);
+    for (int k = 1; k < steps; ++k) {
+      const double t = double(k) / steps;
+      add(a + t * (b - a), blended(axis, t), path::MoveKind::engage, o_.feed_mm_min);
+    }
+    add(b, axis, path::MoveKind::engage, o_.feed_mm_min);
+  }
+
+  void feed(const BallPass::Point& from, const Vec3& from_axis, const BallPass::Point& to, const Vec3& to_axis) {
+    const double way = from_axis == to_axis ? (to.centre - from.centre).norm() : (tip(to.centre, to_axis) - tip(from.centre, from_axis)).norm();
+    const double contact = (to.contact - from.contact).norm();
+    double speed = o_.feed_mm_min;
+    if (from.touching && to.touching && contact > 0) speed *= std::min(way / contact, 1.2);
+    add(to.centre, to_axis, path::MoveKind::feed, speed);
+  }
+
+  const LinkingOptions& o_;
+  const HopIsClear& clear_;
+  const BodiesAreClear& bodies_are_clear_;
+  std::vector<path::ClRecord>& out_;
+  int pass_ = 0;
+  bool engaged_ = false;
+  Vec3 last_ = Vec3::Zero(), last_axis_ = Vec3::UnitZ();
+};
+
+}  // namespace
+
+void link_passes(const std::vector<BallPass>& passes, const LinkingOptions& options, const HopIsClear& hop_is_clear,
+                 std::vector<path::ClRecord>& records, const BodiesAreClear& bodies_are_clear) {
+  Linker(options, hop_is_clear, bodies_are_clear, records).run(passes);
+}
+
+}  // namespace toothpath::ball

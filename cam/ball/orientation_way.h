@@ -1,0 +1,61 @@
+// One pass as a line of stations with a lean each, and the two searches for it: one lean that is clear everywhere, else the cheapest
+// way through the clear leans. Knows nothing of tools: what is clear is asked.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "cam/ball/finishing.h"
+#include "geometry/base/vec.h"
+
+namespace toothpath::ball {
+
+/// Weights of the cost, which is the integral along the pass of
+///   kLeanWeight |q|^2 + kNearWeight |q - q of the pass beside it|^2 + kTurnWeight |dq/ds|^2,
+/// q being the lean as two tangents (outwards, aside) against the pitch normal, s in mm.
+inline constexpr double kLeanWeight = 0.1, kNearWeight = 0.5, kTurnWeight = 20;
+
+/// Leans on a square grid inside a disc, least lean first.
+struct LeanGrid {
+  double step = 0;  ///< tangent
+  int half = 0;     ///< columns to each side of upright
+  std::vector<Vec2> leans;
+  std::vector<std::pair<int, int>> cells;
+  /// 0.04: 2.3 deg.
+  explicit LeanGrid(double widest_tangent, double step_tangent = 0.04);
+};
+
+struct OrientationWay {
+  std::vector<double> s, r;              ///< mm along the pass, and radius about the gear axis, of every station
+  std::vector<BallPass::Point> points;
+  std::vector<Vec2> lean;                ///< one a station
+  std::vector<std::size_t> near;         ///< passes beside it, nearest first
+  bool constant = false, solved = false;
+
+  /// Lean at a radius, straight between the stations, constant beyond the ends.
+  [[nodiscard]] Vec2 lean_at(double radius) const;
+  /// Lean at s. Smooth: a cubic with limited slopes, which has a continuous derivative and never leaves the box of its two stations.
+  [[nodiscard]] Vec2 lean_along(double at, bool smooth) const;
+};
+
+using LeanReference = std::function<Vec2(std::size_t station)>;
+using LeanIsClear = std::function<bool(std::size_t station, const Vec2& lean)>;
+/// Clear half-way between a station and the next one, with their leans?
+using HalfWayIsClear = std::function<bool(std::size_t station, const Vec2& lean, const Vec2& next)>;
+
+/// The cheapest lean of the grid that is clear at every station; false if there is none.
+[[nodiscard]] bool find_constant(OrientationWay& way, const LeanGrid& grid, const LeanReference& reference, const LeanIsClear& clear);
+
+struct WayFound {
+  bool found = false;
+  std::size_t blocked_at = 0;  ///< first station that is not reached
+  bool none_clear = false;     ///< no lean at all is clear there; else some are, but none that is reached
+};
+
+/// The cheapest way through the clear leans by dynamic programming over stations and grid; between two stations the lean turns by at
+/// most 0.25 rad/mm. Looks near the reference first, then at the whole grid.
+[[nodiscard]] WayFound find_way(OrientationWay& way, const LeanGrid& grid, const LeanReference& reference, const LeanIsClear& clear,
+                                const HalfWayIsClear& half_way);
+
+}  // namespace toothpath::ball

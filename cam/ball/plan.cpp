@@ -1,0 +1,428 @@
+#include "cam/ball/plan.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "cam/ball/corner_ends.h"
+#include "cam/ball/linking.h"
+#include "cam/ball/prescribed_axes.h"
+#include "cam/ball/roughing.h"
+#include "cam/ball/tool_direction.h"
+#include "cam/ball/tool_orientation.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath::ball {
+namespace {
+
+/// Of the chord tolerance, this share is spent on placing points; the rest covers the rounding of words and the proof.
+constexpr double kChordShare = 0.6;
+
+/// Of that tolerance, the share for ball centres that leave the pass because the axis turns.
+constexpr double kTurnShare = 0.1;
+
+/// Hops in which the axis turns keep this much more than the clearance, mm: they are looked at in steps.
+constexpr double kTurnMargin = 0.02;
+
+/// Roughing works on tables of the offset walls: this covers the sag between their entries, mm.
+constexpr double kRoughingPad = 0.004;
+
+double lower_bound_between(double d0, double d1, double length) {
+  const double g = std::min(d0 * d0, d1 * d1) - length * length / 4;
+  return g > 0 ? std::sqrt(g) : 0;
+}
+
+/// Ball centres of everything that cuts: feed, engage and retract moves.
+std::vector<analytic::BallMove> ball_moves(const path::ClPath& path, double radius) {
+  std::vector<analytic::BallMove> out;
+  for (std::size_t k = 1; k < path.records.size(); ++k) {
+    const auto &a = path.records[k - 1], &b = path.records[k];
+    if (b.kind != path::MoveKind::rapid) out.push_back({a.tip + radius * a.axis, b.tip + radius * b.axis});
+  }
+  return out;
+}
+
+class JobPlanner {
+ public:
+  JobPlanner(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools, const std::vector<path::MillingOperation>& operations,
+             const PlanOptions& options, const PlanProgress& progress)
+      : part_(part), tools_(tools), operations_(operations), o_(options), progress_(progress) {}
+
+  Expected<FaceGearPlan, PlanRefusal> run() {
+    if (const auto& refusal = part_.refusal()) return PlanRefusal{"gear." + refusal->key, refusal->diagnostic};
+    for (std::size_t n = 0; n < operations_.size(); ++n) {
+      const auto& op = operations_[n];
+      path::ClPath path;
+      path.operation = int(n);
+      path.operation_type = to_string(op.type);
+      path.tool = op.tool;
+      path.spindle_rpm = op.speed_rpm;
+      OperationPlan summary;
+      summary.operation = int(n);
+      if (progress_) progress_(to_string(op.type));
+      // Rings know nothing of each other's passes; directions and links follow in order, each on all threads.
+      std::vector<std::optional<Expected<ZonePasses, PlanRefusal>>> zones(std::size_t(part_.zones()));
+      as_stage("tool passes", [&] {
+        tbb::parallel_for(std::size_t(0), zones.size(), [&](std::size_t zone) { zones[zone] = plan_passes(int(n), int(zone)); });
+      });
+      for (std::size_t zone = 0; zone < zones.size(); ++zone) {
+        if (const auto* refusal = (*zones[zone]).refused()) return *refusal;
+        if (auto refusal = lead_tool(int(n), int(zone), (*zones[zone]).value(), path, summary)) return *refusal;
+      }
+      if (n + 1 < operations_.size()) {
+        const double radius = tools_[std::size_t(op.tool)].radius_mm();
+        cleared_.push_back(std::make_unique<analytic::SweptPath>(ball_moves(path, radius), radius));
+      }
+      plan_.paths.push_back(std::move(path));
+      plan_.operations.push_back(summary);
+    }
+    return std::move(plan_);
+  }
+
+ private:
+  /// What an operation does in one zone, before the tool has a direction.
+  struct ZonePasses {
+    face_gear::OffsetSheet sheet;
+    std::vector<BallPass> passes;
+    OperationPlan summary;  ///< of this zone alone
+  };
+  [[nodiscard]] static std::string key_of(int n) { return "operation[" + std::to_string(n) + "]"; }
+  [[nodiscard]] const path::MillingOperation& operation(int n) const { return operations_[std::size_t(n)]; }
+  [[nodiscard]] const tool::ToolAssembly& tool_of(int n) const { return tools_[std::size_t(operation(n).tool)]; }
+
+  [[nodiscard]] Expected<ZonePasses, PlanRefusal> plan_passes(int n, int zone) const {
+    const auto& op = operation(n);
+    const auto& tool = tool_of(n);
+    const double R = tool.radius_mm(), delta = R + op.allowance_mm;
+    const auto& ring = part_.space(zone).ring().zone;
+    const bool roughing = op.type == path::OperationType::roughing;
+    // How far the ball may go beyond the ends: free into the air, limited where the other ring of teeth stands.
+    const double wanted = roughing ? 0.6 * delta + 0.1 : 0.5 * R, room = room_beyond(zone, roughing, R, delta, wanted);
+    if (room < 0.05 * wanted)
+      return PlanRefusal{key_of(n) + ".tool", fail("a ball of {:.4f} mm has no room to run out into the relief groove of zone {}: the way "
+                                                   "left is {:.4f} mm, at least {:.4f} mm is needed",
+                                                   2 * R, zone, room, 0.05 * wanted)};
+    const double margin = std::max(delta, room) + 0.1;
+    ZonePasses out{face_gear::OffsetSheet(part_.space(zone), roughing ? delta + kRoughingPad : delta, ring.inner_radius_mm - margin,
+                               ring.outer_radius_mm + margin, roughing ? 65 : 33),
+                   {}, {}};
+    if (auto refusal = check_width(out.sheet, key_of(n), zone, tool)) return *refusal;
+    if (auto refusal = roughing ? rough(n, room, out) : finish(n, zone, room, out)) return *refusal;
+    out.summary.passes = int(out.passes.size());
+    return out;
+  }
+
+  /// Way that a ball has beyond the ends of a zone, at most `wanted`. mm
+  [[nodiscard]] double room_beyond(int zone, bool roughing, double R, double delta, double wanted) const {
+    const auto& ring = part_.space(zone).ring().zone;
+    double room = wanted;
+    for (const auto& other : part_.gear().rings()) {
+      const double gap = std::max(other.zone.inner_radius_mm - ring.outer_radius_mm, ring.inner_radius_mm - other.zone.outer_radius_mm);
+      if (gap <= 0) continue;
+      // The centre of a ball in contact at the end lies at most 0.7 delta beyond it.
+      room = std::min(room, roughing ? gap - R - 0.1 : gap - 1.7 * delta - 0.05);
+    }
+    return room;
+  }
+
+  [[nodiscard]] std::optional<PlanRefusal> rough(int n, double room, ZonePasses& out) const {
+    const auto& op = operation(n);
+    RoughingOptions r;
+    r.ball_radius_mm = tool_of(n).radius_mm();
+    r.allowance_mm = op.allowance_mm;
+    r.step_down_mm = op.step_down_mm;
+    r.step_over_mm = op.step_over_mm;
+    r.chord_mm = std::min(kChordShare * op.chord_tolerance_mm, chord_room(op));
+    r.overrun_mm = room;
+    r.blank_top_mm = part_.gear().blank_top();
+    r.climb = op.climb;
+    std::vector<const analytic::SweptPath*> cleared;
+    for (const auto& c : cleared_) cleared.push_back(c.get());
+    auto planned = plan_roughing(out.sheet, r, cleared);
+    if (!planned) return PlanRefusal{key_of(n) + ".tool", planned.error()};
+    out.passes = std::move(planned->passes);
+    out.summary.layers = planned->layers;
+    out.summary.skipped_passes = planned->skipped;
+    out.summary.chord_mm = r.chord_mm;
+    return {};
+  }
+
+  [[nodiscard]] std::optional<PlanRefusal> finish(int n, int zone, double room, ZonePasses& out) const {
+    const auto& op = operation(n);
+    const auto& tool = tool_of(n);
+    FinishingOptions f;
+    f.ball_radius_mm = tool.radius_mm();
+    f.allowance_mm = op.allowance_mm;
+    f.scallop_mm = op.scallop_mm;
+    f.chord_mm = kChordShare * op.chord_tolerance_mm;
+    f.chord_mm = std::min(f.chord_mm, chord_room(op));
+    f.run_out_mm = room;
+    f.climb = op.climb;
+    auto planned = plan_finishing(out.sheet, f);
+    if (!planned) return PlanRefusal{key_of(n) + ".tool", planned.error()};
+    out.passes = std::move(planned->passes);
+    const auto distance = [&](const Vec3& centre) { return part_.nearest(centre, f.ball_radius_mm + op.allowance_mm + 0.01).distance; };
+    for (auto& pass : plan_corner_ends(out.sheet, f, distance)) out.passes.push_back(std::move(pass));
+    out.summary.scallop_max_mm = planned->scallop_max_mm;
+    out.summary.crest_lean = planned->crest_lean;
+    out.summary.chord_mm = planned->worst_chord_mm;
+    out.summary.corner_passes = planned->corner_passes;
+    if (auto refusal = check_passes(out.passes, tool, key_of(n), zone)) return refusal;
+    trim_run_outs(out.passes, f.ball_radius_mm, op.allowance_mm);
+    return {};
+  }
+
+  static void add(OperationPlan& all, const OperationPlan& zone, bool finishing) {
+    all.layers = std::max(all.layers, zone.layers);
+    all.skipped_passes += zone.skipped_passes;
+    all.chord_mm = std::max(all.chord_mm, zone.chord_mm);
+    all.corner_passes = all.corner_passes || zone.corner_passes;
+    all.passes += zone.passes;
+    if (!finishing) return;
+    all.scallop_max_mm = std::max(all.scallop_max_mm, zone.scallop_max_mm);
+    all.crest_lean = std::max(all.crest_lean, zone.crest_lean);
+  }
+
+  /// Tool directions for the passes of a zone, and the links between them: its records.
+  [[nodiscard]] std::optional<PlanRefusal> lead_tool(int n, int zone, ZonePasses& made, path::ClPath& path, OperationPlan& summary) {
+    add(summary, made.summary, operation(n).type != path::OperationType::roughing);
+    if (made.passes.empty()) return {};
+    LinkingOptions link;
+    proof::DirectionChoice direction;
+    if (auto refusal = direct(n, zone, made, direction, link.axes)) return refusal;
+    plan_.directions.push_back(direction);
+    const auto& op = operation(n);
+    const double R = tool_of(n).radius_mm();
+    const auto& ring = part_.space(zone).ring().zone;
+    link.ball_radius_mm = R;
+    link.axis = direction.axis;
+    link.clearance_height_mm = part_.gear().blank_top() + o_.rapid_clearance_mm;
+    link.hop_mm = 0.2 * R + op.allowance_mm;
+    link.longest_hop_mm = 1.5 * part_.gear().pitch() * ring.outer_radius_mm;
+    link.feed_mm_min = op.feed_mm_min;
+    link.inner_radius_mm = ring.inner_radius_mm;
+    link.outer_radius_mm = ring.outer_radius_mm;
+    link.zone = zone;
+    link.bodies = tool::shank_and_holder(tool_of(n));
+    const auto bodies_are_clear = [&](const Vec3& centre, const Vec3& axis) {
+      return bodies_->clear(link.bodies, centre - R * axis, axis, o_.clearance_mm + kTurnMargin, 0.01);
+    };
+    as_stage("links", [&] {
+      link_passes(made.passes, link, [&](const Vec3& a, const Vec3& b) { return hop_is_clear(a, b, R, op.allowance_mm); }, path.records,
+                  bodies_are_clear);
+    });
+    return {};
+  }
+
+  /// One direction for the whole zone, or axes for every point: as prescribed, or where no fixed direction is clear.
+  [[nodiscard]] std::optional<PlanRefusal> direct(int n, int zone, ZonePasses& made, proof::DirectionChoice& direction, std::vector<std::vector<Vec3>>& axes) {
+    const auto& op = operation(n);
+    const auto& tool = tool_of(n);
+    OrientationOptions turning;
+    turning.clearance_mm = o_.clearance_mm;
+    turning.least_tilt_rad = o_.least_tilt_rad;
+    turning.chord_mm = kTurnShare * std::min(op.chord_tolerance_mm, chord_room(op));
+    const bool prescribed = !op.axis_plus.empty();
+    as_stage("tool direction", [&] {
+      if (!bodies_) bodies_ = std::make_unique<BodyTree>(part_);
+      if (!prescribed) direction = choose_direction(part_, *bodies_, zone, made.sheet, made.passes, tool, {o_.clearance_mm, 0.01});
+    });
+    direction.operation = n;
+    direction.zone = zone;
+    if (prescribed) {
+      auto oriented = prescribe(zone, tool, op, turning, made.passes);
+      if (const auto* refusal = oriented.refused())
+        return PlanRefusal{key_of(n) + ".tool_axis", fail("tool {} in zone {}: {}", tool.number, zone, refusal->reason)};
+      describe_prescribed(oriented.value(), direction);
+      axes = std::move(oriented.value().axes);
+    } else if (!direction.fixed) {
+      auto oriented = orient(zone, tool, turning, made.passes);
+      if (const auto* refusal = oriented.refused()) {
+        plan_.directions.push_back(direction);
+        return PlanRefusal{key_of(n) + ".tool", fail("tool {} in zone {}: {}; {}", tool.number, zone, direction.explanation, refusal->reason)};
+      }
+      describe(oriented.value(), direction);
+      axes = std::move(oriented.value().axes);
+    }
+    return {};
+  }
+
+  /// Simultaneous axes for one zone.
+  [[nodiscard]] Expected<Orientation, OrientationRefusal> orient(int zone, const tool::ToolAssembly& tool, const OrientationOptions& options,
+                                                                     std::vector<BallPass>& passes) const {
+    std::optional<Expected<Orientation, OrientationRefusal>> result;
+    as_stage("five-axis orientation", [&] { result.emplace(orient_passes(part_, *bodies_, zone, tool, options, passes)); });
+    return std::move(*result);
+  }
+  /// The same with the axes that the operation prescribes.
+  [[nodiscard]] Expected<Orientation, OrientationRefusal> prescribe(int zone, const tool::ToolAssembly& tool, const path::MillingOperation& op,
+                                                                        const OrientationOptions& options, std::vector<BallPass>& passes) const {
+    std::optional<Expected<Orientation, OrientationRefusal>> result;
+    as_stage("five-axis orientation", [&] { result.emplace(prescribe_axes(part_, *bodies_, zone, tool, op, options, passes)); });
+    return std::move(*result);
+  }
+  void as_stage(const char* name, const std::function<void()>& work) const {
+    if (o_.stage) o_.stage(name, work);
+    else work();
+  }
+
+  static void measure(const Orientation& o, proof::DirectionChoice& d) {
+    Vec3 sum = Vec3::Zero();
+    for (const auto& pass : o.axes)
+      for (const auto& axis : pass) sum += axis;
+    d.axis = sum.normalized();
+    d.lean_rad = std::atan2(std::hypot(d.axis.x(), d.axis.y()), d.axis.z());
+    d.clearance_mm = o.clearance_mm;
+    d.least_lean_rad = o.least_lean_rad;
+    d.greatest_lean_rad = o.greatest_lean_rad;
+    d.greatest_turn_rad_per_mm = o.greatest_turn_rad_per_mm;
+    d.greatest_step_rad = o.greatest_step_rad;
+    d.passes = int(o.axes.size());
+    d.turning_passes = o.turning_passes;
+  }
+  static void describe(const Orientation& o, proof::DirectionChoice& d) {
+    measure(o, d);
+    d.explanation = fmt::format("{}; so the axis turns: lean {:.1f} to {:.1f} deg from the normal of the pitch surface, inside {} of {} passes, "
+                                "by at most {:.2f} deg/mm; shank and holder keep {:.3f} mm",
+                                d.explanation, degrees(o.least_lean_rad), degrees(o.greatest_lean_rad), o.turning_passes, o.axes.size(),
+                                degrees(o.greatest_turn_rad_per_mm), o.clearance_mm);
+  }
+  static void describe_prescribed(const Orientation& o, proof::DirectionChoice& d) {
+    measure(o, d);
+    d.fixed = std::all_of(o.axes.begin(), o.axes.end(), [&](const auto& pass) {
+      return std::all_of(pass.begin(), pass.end(), [&](const Vec3& axis) { return axis == o.axes.front().front(); });
+    });
+    d.explanation = d.fixed ? fmt::format("prescribed: leans {:.2f} deg from the normal of the pitch surface; shank and holder keep {:.3f} mm",
+                                          degrees(o.greatest_lean_rad), o.clearance_mm)
+                            : fmt::format("prescribed: lean {:.2f} to {:.2f} deg from the normal of the pitch surface, the axis turns inside {} of {} passes, by at most "
+                                          "{:.2f} deg/mm; shank and holder keep {:.3f} mm",
+                                          degrees(o.least_lean_rad), degrees(o.greatest_lean_rad), o.turning_passes, o.axes.size(),
+                                          degrees(o.greatest_turn_rad_per_mm), o.clearance_mm);
+  }
+
+  /// Sag that an operation may have: a tenth of the stock that it leaves, and less than half of what may be gouged.
+  [[nodiscard]] double chord_room(const path::MillingOperation& op) const {
+    return 0.1 * op.allowance_mm + 0.4 * o_.gouge_tolerance_mm;
+  }
+
+  /// A planned place at which the ball would cut deeper than may be gouged is refused before any motion is made of it.
+  [[nodiscard]] std::optional<PlanRefusal> check_passes(const std::vector<BallPass>& passes, const tool::ToolAssembly& tool,
+                                                        const std::string& key, int zone) const {
+    const double R = tool.radius_mm();
+    struct Deep {
+      const BallPass::Point* point = nullptr;
+      double cut = 0;
+    };
+    std::vector<Deep> first(passes.size());  // in every pass
+    tbb::parallel_for(std::size_t(0), passes.size(), [&](std::size_t k) {
+      for (const auto& p : passes[k].points) {
+        if (!p.touching) continue;
+        const double cut = R - part_.nearest(p.centre, R + 0.01).distance;
+        if (cut <= o_.gouge_tolerance_mm) continue;
+        first[k] = {&p, cut};
+        return;
+      }
+    });
+    for (const auto& [point, cut] : first)
+      if (point)
+        return PlanRefusal{key + ".tool", fail("tool {} in zone {}: its ball of radius {:.4f} mm would cut {:.4f} mm into the finished surface with its "
+                                               "centre at radius {:.4f}, height {:.4f}; the limit is {:.4f} mm",
+                                               tool.number, zone, R, cut, std::hypot(point->centre.x(), point->centre.y()), point->centre.z(),
+                                               o_.gouge_tolerance_mm)};
+    return {};
+  }
+
+  /// Run-outs go straight on beyond the ends of the ring; where the end of a tooth stands in the way (close to an undercut)
+  /// the pass ends with its last contact instead.
+  void trim_run_outs(std::vector<BallPass>& passes, double R, double allowance) const {
+    tbb::parallel_for(std::size_t(0), passes.size(), [&](std::size_t n) {
+      auto& q = passes[n].points;
+      const auto contact = [](const BallPass::Point& p) { return p.touching; };
+      const auto last = std::find_if(q.rbegin(), q.rend(), contact);
+      if (last == q.rend()) return;
+      for (auto k = std::size_t(q.rend() - last); k < q.size(); ++k)
+        if (!segment_is_clear(q[k - 1].centre, q[k].centre, R, allowance)) {
+          q.resize(k);
+          break;
+        }
+      for (auto k = std::size_t(std::find_if(q.begin(), q.end(), contact) - q.begin()); k > 0; --k)
+        if (!segment_is_clear(q[k].centre, q[k - 1].centre, R, allowance)) {
+          q.erase(q.begin(), q.begin() + long(k));
+          break;
+        }
+    });
+  }
+
+  [[nodiscard]] bool segment_is_clear(const Vec3& a, const Vec3& b, double R, double allowance) const {
+    const int steps = std::max(4, int(std::ceil((b - a).norm() / (0.05 * R))));
+    for (int k = 0; k <= steps; ++k) {
+      const double d = part_.nearest(a + (b - a) * (double(k) / steps), R + allowance + 0.05).distance;
+      if (d < R + 0.8 * allowance - 0.4 * o_.gouge_tolerance_mm) return false;
+    }
+    return true;
+  }
+
+  /// A ball that does not fit between the flanks is refused with the width that it finds.
+  static std::optional<PlanRefusal> check_width(const face_gear::OffsetSheet& sheet, const std::string& key, int zone,
+                                                const tool::ToolAssembly& tool) {
+    const auto& ring = sheet.space().ring().zone;
+    if (sheet.empty() || sheet.r_to() - sheet.r_from() < 0.5 * (ring.outer_radius_mm - ring.inner_radius_mm))
+      return PlanRefusal{key + ".tool",
+                         fail("the ball-centre surface of tool {} (ball of {:.4f} mm) does not reach over zone {}: the flank "
+                              "ends (undercut) or is hollower than the ball",
+                              tool.number, tool.diameter_mm, zone)};
+    for (const auto& s : sheet.stations()) {
+      const auto &a = s.nodes.front(), &b = s.nodes.back();
+      const double width = (b.azimuth - a.azimuth) * s.r;
+      if (width <= 0)
+        return PlanRefusal{key + ".tool",
+                           fail("tool {} (ball of {:.4f} mm) is wider than the tooth space of zone {}: at radius {:.3f} its centre "
+                                "has {:.4f} mm of room between the flanks at the tip, it needs more than 0",
+                                tool.number, tool.diameter_mm, zone, s.r, width)};
+    }
+    return {};
+  }
+
+  [[nodiscard]] bool hop_is_clear(const Vec3& a, const Vec3& b, double R, double allowance) const {
+    const double length = (b - a).norm();
+    const int steps = std::max(1, int(std::ceil(length / (0.25 * R))));
+    const double look = R + 0.2;
+    double previous = part_.nearest(a, look).distance;
+    for (int k = 1; k <= steps; ++k) {
+      const double d = part_.nearest(a + (b - a) * (double(k) / steps), look).distance;
+      // Both ends of a hop touch the finished surface (or keep the allowance); in between there must be air.
+      const double least = R + 0.5 * allowance - 1e-3;
+      if (d < least || previous < least) return false;
+      if (k > 1 && k < steps && lower_bound_between(previous, d, length / steps) < 0.9 * R) return false;
+      previous = d;
+    }
+    return true;
+  }
+
+  const analytic::GearDistance& part_;
+  const std::vector<tool::ToolAssembly>& tools_;
+  const std::vector<path::MillingOperation>& operations_;
+  const PlanOptions& o_;
+  const PlanProgress& progress_;
+  std::vector<std::unique_ptr<analytic::SweptPath>> cleared_;
+  std::unique_ptr<BodyTree> bodies_;  ///< built with the first zone
+  FaceGearPlan plan_;
+};
+
+}  // namespace
+
+Expected<FaceGearPlan, PlanRefusal> plan_face_gear(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
+                                                       const std::vector<path::MillingOperation>& operations,
+                                                       const PlanOptions& options, const PlanProgress& progress) {
+  return JobPlanner(part, tools, operations, options, progress).run();
+}
+
+double reach_of(const std::vector<tool::ToolAssembly>& tools) {
+  double most = 0.5;
+  for (const auto& t : tools) most = std::max(most, t.radius_mm());
+  return 1.3 * most + 0.6;
+}
+
+}  // namespace toothpath::ball

@@ -1,0 +1,213 @@
+#include "cam/ball/roughing.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toothpath::ball {
+namespace {
+
+
+/// Directions on the lower half of a ball: where it cuts.
+std::vector<Vec3> lower_directions() {
+  std::vector<Vec3> out{Vec3(0, 0, -1)};
+  for (int ring = 1; ring <= 4; ++ring) {
+    const double polar = ring * 0.39;
+    for (int k = 0; k < 6 * ring; ++k) {
+      const double a = 1.0471975511965976 * k / ring;
+      out.push_back({std::sin(polar) * std::cos(a), std::sin(polar) * std::sin(a), -std::cos(polar)});
+    }
+  }
+  return out;
+}
+
+/// The walls of the trimmed offset at one station, as tables from the tip down to the bottom. Heights are above the
+/// offset root surface.
+struct Walls {
+  std::vector<double> plus_height, plus_azimuth, minus_height, minus_azimuth;  // heights descending
+  double root_z = 0;         // centre of a ball that touches the root surface, whether or not the walls let it
+  double bottom_height = 0;  // lowest centre that the walls allow
+};
+
+double at_height(const std::vector<double>& height, const std::vector<double>& azimuth, double h) {
+  if (h >= height.front()) return azimuth.front();
+  for (std::size_t k = 1; k < height.size(); ++k)
+    if (h >= height[k]) {
+      const double span = height[k - 1] - height[k];
+      const double t = span > 0 ? (height[k - 1] - h) / span : 1.0;
+      return azimuth[k - 1] + t * (azimuth[k] - azimuth[k - 1]);
+    }
+  return azimuth.back();
+}
+
+Walls walls_of(const face_gear::OffsetSheet& sheet, const face_gear::OffsetSheet::Station& station) {
+  Walls w;
+  const face_gear::SheetGap* across = nullptr;
+  for (const auto& g : station.gaps)
+    if (face_gear::corner_of(g) == face_gear::SheetCorner::both) across = &g;
+  for (const auto& node : station.nodes)
+    if (node.sigma == 2.5) w.root_z = node.at.centre.z();
+  struct Place {
+    double sigma, height, azimuth;
+  };
+  std::vector<Place> places;
+  for (const auto& node : station.nodes) {
+    const auto inside = [&](const face_gear::SheetGap& g) { return node.sigma > g.from && node.sigma < g.to; };
+    if (std::none_of(station.gaps.begin(), station.gaps.end(), inside))
+      places.push_back({node.sigma, node.at.centre.z() - w.root_z, node.azimuth});
+  }
+  // The corners themselves, where the ball touches both of their walls: between the nodes beside them a blend would cut in.
+  for (const auto& g : station.gaps)
+    for (const double sigma : {g.from, g.to})
+      if (const auto s = sheet.raw(sigma, station.r)) {
+        const double reference = station.nodes[station.nodes.size() / 2].azimuth;
+        const double azimuth = reference + std::remainder(std::atan2(s->centre.y(), s->centre.x()) - reference, 6.283185307179586);
+        places.push_back({sigma, s->centre.z() - w.root_z, azimuth});
+      }
+  std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.sigma < b.sigma; });
+  for (const auto& p : places) {
+    const bool plus = across ? p.sigma <= across->from : p.sigma <= 2.0;
+    const bool minus = across ? p.sigma >= across->to : p.sigma >= 3.0;
+    if (plus) {
+      w.plus_height.push_back(p.height);
+      w.plus_azimuth.push_back(p.azimuth);
+    }
+    if (minus) {
+      w.minus_height.insert(w.minus_height.begin(), p.height);
+      w.minus_azimuth.insert(w.minus_azimuth.begin(), p.azimuth);
+    }
+  }
+  w.bottom_height = across ? std::max(w.plus_height.back(), w.minus_height.back()) : 0.0;
+  return w;
+}
+
+class RoughingPlanner {
+ public:
+  RoughingPlanner(const face_gear::OffsetSheet& sheet, const RoughingOptions& o, const std::vector<const analytic::SweptPath*>& cleared)
+      : sheet_(sheet), o_(o), cleared_(cleared) {}
+
+  Result<RoughingPasses> run() {
+    const auto& ring = sheet_.space().ring().zone;
+    if (sheet_.empty())
+      return fail("a ball of {:.4f} mm with {:.4f} mm allowance finds no surface between the radii {:.4f} and {:.4f}",
+                  2 * o_.ball_radius_mm, o_.allowance_mm, ring.inner_radius_mm, ring.outer_radius_mm);
+    from_ = std::max(sheet_.r_from(), ring.inner_radius_mm - o_.overrun_mm);
+    to_ = std::min(sheet_.r_to(), ring.outer_radius_mm + o_.overrun_mm);
+    double lowest = INFINITY;
+    for (const auto& s : sheet_.stations()) {
+      walls_.push_back(walls_of(sheet_, s));
+      lowest = std::min(lowest, walls_.back().bottom_height);
+      out_.reaches_root = out_.reaches_root && walls_.back().bottom_height == 0;
+    }
+    const double top = o_.blank_top_mm + o_.ball_radius_mm - walls_[walls_.size() / 2].root_z;
+    for (double height = top - o_.step_down_mm;; height -= o_.step_down_mm) {
+      // The last layer follows the bottom: the root land, or the corner between both walls where the ball is too wide.
+      const bool last = height <= lowest + 1e-6;
+      if (auto ok = add_layer(last ? 0.0 : height); !ok) return ok.error();
+      ++out_.layers;
+      if (last) break;
+    }
+    return std::move(out_);
+  }
+
+ private:
+  struct Width {
+    double plus = 0, minus = 0, z = 0;  // azimuths of the extreme centres and their height
+  };
+  /// Between two stations everything is blended: the sheet of a roughing pass is made with a pad for that.
+  [[nodiscard]] Width width(double height, double r) const {
+    const double t = std::clamp((r - sheet_.r_from()) / (sheet_.r_to() - sheet_.r_from()), 0.0, 1.0) * double(walls_.size() - 1);
+    const auto j = std::min(std::size_t(t), walls_.size() - 2);
+    const double x = t - double(j);
+    Width w;
+    for (const std::size_t k : {j, j + 1}) {
+      const auto& s = walls_[k];
+      const double share = k == j ? 1 - x : x, h = std::max(height, s.bottom_height);
+      w.plus += share * at_height(s.plus_height, s.plus_azimuth, h);
+      w.minus += share * at_height(s.minus_height, s.minus_azimuth, h);
+      w.z += share * (s.root_z + h);
+    }
+    if (w.minus < w.plus) w.plus = w.minus = 0.5 * (w.plus + w.minus);
+    return w;
+  }
+
+  Status add_layer(double height) {
+    double widest = 0;
+    for (int k = 0; k <= 8; ++k) {
+      const double r = from_ + (to_ - from_) * k / 8;
+      const auto w = width(height, r);
+      widest = std::max(widest, r * (w.minus - w.plus));
+    }
+    const int count = widest < 1e-6 ? 1 : 1 + std::max(1, int(std::ceil(widest / o_.step_over_mm)));
+    std::vector<double> shares;
+    for (int k = 0; k < count; ++k) shares.push_back(count == 1 ? 0.5 : double(k) / (count - 1));
+    // From the middle to the walls, in turn, so that both walls are cut climbing.
+    std::stable_sort(shares.begin(), shares.end(), [](double a, double b) {
+      const double da = std::abs(a - 0.5), db = std::abs(b - 0.5);
+      return da != db ? da < db - 1e-12 : a < b;
+    });
+    for (double share : shares) {
+      const auto curve = [&](double r) -> std::optional<BallPass::Point> {
+        const auto w = width(height, r);
+        const double azimuth = w.plus + share * (w.minus - w.plus);
+        BallPass::Point p;
+        p.centre = {r * std::cos(azimuth), r * std::sin(azimuth), w.z};
+        p.contact = p.centre;
+        return p;
+      };
+      const auto line = sample_curve(curve, from_, to_, o_.chord_mm, 2.0 * o_.ball_radius_mm);
+      if (!line) return fail("the layer {:.4f} mm above the root cannot be followed", height);
+      if (!cuts(line->points)) {
+        ++out_.skipped;
+        continue;
+      }
+      BallPass pass;
+      pass.points = line->points;
+      pass.outward = (share <= 0.5) == o_.climb;
+      if (!pass.outward) std::reverse(pass.points.begin(), pass.points.end());
+      out_.passes.push_back(std::move(pass));
+    }
+    return Ok{};
+  }
+
+  /// Would a ball along these centres remove anything that the earlier operations left?
+  [[nodiscard]] bool cuts(const std::vector<BallPass::Point>& points) const {
+    if (cleared_.empty()) return true;
+    static const std::vector<Vec3> directions = lower_directions();
+    const auto& ring = sheet_.space().ring().zone;
+    constexpr double kWorthCutting = 0.01;  // mm: a thinner skin is not worth a roughing pass
+    Vec3 last = Vec3::Constant(INFINITY);
+    for (const auto& point : points) {
+      if ((point.centre - last).norm() < 0.4 * o_.ball_radius_mm) continue;
+      last = point.centre;
+      for (const auto& direction : directions) {
+        const Vec3 q = point.centre + o_.ball_radius_mm * direction;
+        const double r = radius(q);
+        if (r < ring.inner_radius_mm || r > ring.outer_radius_mm || q.z() > o_.blank_top_mm) continue;
+        bool left = true;
+        for (const auto* path : cleared_)
+          if (path->excess(q, kWorthCutting) < kWorthCutting) {
+            left = false;
+            break;
+          }
+        if (left) return true;
+      }
+    }
+    return false;
+  }
+
+  const face_gear::OffsetSheet& sheet_;
+  RoughingOptions o_;
+  const std::vector<const analytic::SweptPath*>& cleared_;
+  double from_ = 0, to_ = 0;
+  std::vector<Walls> walls_;  ///< one a station
+  RoughingPasses out_;
+};
+
+}  // namespace
+
+Result<RoughingPasses> plan_roughing(const face_gear::OffsetSheet& sheet, const RoughingOptions& options,
+                                     const std::vector<const analytic::SweptPath*>& cleared) {
+  return RoughingPlanner(sheet, options, cleared).run();
+}
+
+}  // namespace toothpath::ball

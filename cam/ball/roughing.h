@@ -1,0 +1,33 @@
+// Roughing of one tooth space with a ball: layers parallel to the root, passes along the tooth, climb on both walls.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "cam/ball/finishing.h"
+#include "cam/analytic/swept_path.h"
+
+namespace toothpath::ball {
+
+struct RoughingOptions {
+  double ball_radius_mm = 0;
+  double allowance_mm = 0;
+  double step_down_mm = 0;
+  double step_over_mm = 0;
+  double chord_mm = 0;
+  double overrun_mm = 0;      ///< beyond both ends of the ring, for the ball centre
+  double blank_top_mm = 0;    ///< z of the blank at the middle of the ring
+  bool climb = true;
+};
+
+struct RoughingPasses {
+  std::vector<BallPass> passes;  ///< in cutting order, from the top layer down
+  int layers = 0, skipped = 0;   ///< passes left out because an earlier operation had cleared them
+  bool reaches_root = true;      ///< false: the ball is too wide and stops in the corners between both walls
+};
+
+/// `cleared` are the volumes removed by earlier operations: a pass that would cut nothing is left out.
+[[nodiscard]] Result<RoughingPasses> plan_roughing(const face_gear::OffsetSheet& sheet, const RoughingOptions& options,
+                                                   const std::vector<const analytic::SweptPath*>& cleared);
+
+}  // namespace toothpath::ball

@@ -1,0 +1,8 @@
+// The kernels for processors with AVX2. This file alone is compiled for them.
+#include "cam/clearance/kernels.h"
+
+namespace toothpath::clearance::avx2 {
+#include "cam/clearance/kernels_body.h"
+extern const MeshKernels kKernels;
+const MeshKernels kKernels = {"AVX2", nearest, gather, nearest_in, beside_flute, frustum_to_boxes, frustum_to_triangles};
+}  // namespace toothpath::clearance::avx2

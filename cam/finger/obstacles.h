@@ -1,0 +1,51 @@
+// What else of the workpiece a finger mill can meet: the blank above its teeth, the hub behind it and the shaft before it.
+//
+// Both sides are sets of circles, so the gap along a direction n is exact: n . tool - n . part over the rims. Any direction
+// gives a lower bound of the distance of the convex hulls, hence of the bodies; the best one is searched.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "cam/tool/assembly.h"
+#include "cam/path/tool_motion.h"
+#include "geometry/bevel_gear/gear.h"
+
+namespace toothpath::finger {
+
+/// A convex body of revolution about the gear axis, by its rims: (r, z) [mm], gear frame.
+struct CoaxialBody {
+  std::string name;  ///< "hub", "shaft"
+  std::vector<Vec2> rims;
+};
+/// Hub and shaft of the gear; empty where it has none.
+[[nodiscard]] std::vector<CoaxialBody> bodies_beside_teeth(const bevel_gear::BevelGear& gear);
+
+/// The blank: teeth up to the face cone and the ring below them.
+[[nodiscard]] CoaxialBody blank_body(const bevel_gear::BevelGear& gear);
+
+/// A convex hull of one body of the tool, by its rims: (height above the tip, radius) [mm].
+struct ToolHull {
+  std::string name;  ///< "flute", "shank", "holder"
+  std::vector<Vec2> rims;
+};
+/// Flute (its corner arc circumscribed), shank and holder.
+[[nodiscard]] std::vector<ToolHull> tool_hulls(const bevel_gear::FingerProfile<double>& cutter, const tool::ToolAssembly& tool);
+
+/// Where a tool body and a body about the gear axis come nearest.
+struct ObstacleGap {
+  double gap = 0;             ///< never above the true one [mm]; negative: how far they must be moved apart at least
+  Vec3 place = Vec3::Zero();  ///< on the body of the gear
+};
+/// Over a whole motion. Between the ends the tip is straight and the axis the normalised blend; deviations of the motion are taken off.
+/// Gaps below 0.5 mm are true to 1e-5 mm where the axis does not turn; larger ones may be told too small.
+[[nodiscard]] ObstacleGap nearest_obstacle(const ToolHull& tool, const CoaxialBody& body, const path::ToolMotion& m);
+[[nodiscard]] inline double body_gap(const ToolHull& tool, const CoaxialBody& body, const path::ToolMotion& m) { return nearest_obstacle(tool, body, m).gap; }
+
+/// Largest n . p of the blank (teeth and the ring below them) in direction n.
+[[nodiscard]] double blank_support(const bevel_gear::BevelGear& gear, const Vec3& n);
+/// The place on the face cone of the blank that reaches farthest in direction n; where a whole line does, the one next to `near`.
+[[nodiscard]] Vec3 blank_place(const bevel_gear::BevelGear& gear, const Vec3& n, const Vec3& near);
+
+}  // namespace toothpath::finger

@@ -1,0 +1,68 @@
+#include "cam/finger/ridge.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace toothpath::finger {
+
+RidgeResult highest_ridge(const bevel_gear::BevelGear& gear, std::span<const FingerCut> cuts, const FingerTool& reference, int columns, int rows_across) {
+  RidgeResult out;
+  const double sd = gear.sin_delta(), cd = gear.cos_delta(), h_f = gear.parameters().dedendum_mm;
+  struct Row {
+    double height = 0, azimuth = 0, ell = 0;
+    std::size_t points = 0;
+  };
+  std::vector<double> stations;
+  for (const auto& half : gear.halves()) {
+    const int n = std::max(2, static_cast<int>(columns / gear.halves().size()));
+    for (int i = 0; i < n; ++i) stations.push_back(half.ell_from + (half.ell_to - half.ell_from) * i / (n - 1));
+  }
+  std::vector<Row> rows(stations.size());
+  tbb::parallel_for(std::size_t{0}, stations.size(), [&](std::size_t i) {
+    const double ell = stations[i];
+    std::vector<FingerCut> near;
+    for (const FingerCut& cut : cuts) {
+      const double a = cone_pose(gear, cut.motion->tip_from, cut.motion->axis_from, 0.0).R_c;
+      const double b = cone_pose(gear, cut.motion->tip_to, cut.motion->axis_to, 0.0).R_c;
+      if (std::min(a, b) < ell + reference.solid.largest_radius() && std::max(a, b) > ell - reference.solid.largest_radius())
+        near.push_back(cut);
+    }
+    const double e_L = reference.walls[0].theta_at(ell) / sd, e_U = reference.walls[1].theta_at(ell) / sd;
+    const auto left = [&](double e) {
+      const Vec3 foot = bevel_gear::blank_point(ell, -h_f, e, sd, cd), normal = gear.axis(e);
+      double best = gear.parameters().addendum_mm + h_f;
+      for (const FingerCut& cut : near) best = covering_height(*cut.tool, foot, normal, *cut.motion, best);
+      return best;
+    };
+    Row& row = rows[i];
+    row.ell = ell;
+    double at = 0;
+    const int n = rows_across;
+    for (int j = 0; j < n; ++j) {
+      const double e = e_L + (e_U - e_L) * j / (n - 1), h = left(e);
+      ++row.points;
+      if (j == 0 || h > row.height) row.height = h, at = j;
+    }
+    // A ridge is a kink: narrow down on it.
+    double a = e_L + (e_U - e_L) * std::max(0.0, at - 1) / (n - 1), b = e_L + (e_U - e_L) * std::min(n - 1.0, at + 1) / (n - 1);
+    constexpr double gold = 0.6180339887498949;
+    double x1 = b - gold * (b - a), x2 = a + gold * (b - a), f1 = left(x1), f2 = left(x2);
+    row.azimuth = e_L + (e_U - e_L) * at / (n - 1);
+    for (int k = 0; k < 22; ++k) {
+      if (f1 > f2) b = x2, x2 = x1, f2 = f1, x1 = b - gold * (b - a), f1 = left(x1);
+      else a = x1, x1 = x2, f1 = f2, x2 = a + gold * (b - a), f2 = left(x2);
+    }
+    if (std::max(f1, f2) > row.height) row.height = std::max(f1, f2), row.azimuth = f1 > f2 ? x1 : x2;
+    row.points += 24;
+  });
+  for (const auto& row : rows) {
+    out.points += row.points;
+    if (row.height > out.reached_mm) out.reached_mm = row.height, out.cone_distance_mm = row.ell, out.azimuth_rad = row.azimuth;
+  }
+  return out;
+}
+
+}  // namespace toothpath::finger

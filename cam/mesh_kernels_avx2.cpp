@@ -1,8 +1,0 @@
-// The kernels for processors with AVX2. This file alone is compiled for them.
-#include "cam/mesh_kernels.h"
-
-namespace toothpath::avx2 {
-#include "cam/mesh_kernels_body.h"
-extern const MeshKernels kKernels;
-const MeshKernels kKernels = {"AVX2", nearest, gather, nearest_in, beside_flute, frustum_to_boxes, frustum_to_triangles};
-}  // namespace toothpath::avx2

@@ -1,0 +1,109 @@
+#include "cam/proof/rapid_clearance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "cam/path/motion_blend.h"
+#include "cam/tool/body.h"
+
+namespace toothpath::proof {
+namespace {
+
+constexpr double kBlankTouch = 1e-6;    // mm: a rapid at the very height of the blank is clear
+constexpr double kSmallestRapid = 1e-4; // mm
+
+/// A stretch of the tool axis with the largest radius about it.
+struct RapidStretch {
+  double from = 0, to = 0, radius = 0;
+  const char* name = "ball";
+};
+
+class Rapid {
+ public:
+  Rapid(const path::ToolMotion& m, const tool::ToolAssembly& tool, const RapidObstacle& o) : m_(m), o_(o) {
+    const double R = tool.radius_mm();
+    frustums_.push_back({R, std::max(tool.flute_length_mm, R), R, R, "ball"});
+    ball_radius_ = R;
+    for (const auto& body : tool::shank_and_holder(tool)) frustums_.push_back(body);
+    for (const auto& f : frustums_) {
+      const double widest = std::max(f.radius_from, f.radius_to);
+      stretches_.push_back({f.from, f.to, widest, f.name});
+      arm_ = std::max(arm_, std::hypot(f.to, widest));
+    }
+    stretches_.front().from = 0;
+  }
+
+  RapidProof run() {
+    RapidProof proof;
+    proof.clear = clear(0, 1, 0, proof);
+    return proof;
+  }
+
+ private:
+  /// How far any point of the tool strays from its place at the middle of [t0, t1] beyond the straight way of the tip.
+  [[nodiscard]] double stray(double t0, double t1) const {
+    return arm_ * ((path::axis_at(m_, t1) - path::axis_at(m_, t0)).norm() + m_.axis_deviation) + m_.deviation_mm;
+  }
+
+  [[nodiscard]] double lowest(const Vec3& tip, const Vec3& axis, const char*& body) const {
+    double low = (tip + ball_radius_ * axis).z() - ball_radius_;
+    body = "ball";
+    for (const auto& f : frustums_)
+      if (const double z = tool::lowest_z(f, tip, axis); z < low) {
+        low = z;
+        body = f.name;
+      }
+    return low;
+  }
+  [[nodiscard]] double highest(const Vec3& tip, const Vec3& axis) const {
+    double high = (tip + ball_radius_ * axis).z() + ball_radius_;
+    for (const auto& f : frustums_) high = std::max(high, -tool::lowest_z(f, -tip, -axis));
+    return high;
+  }
+  /// Least and greatest distance of the tool from the gear axis.
+  [[nodiscard]] std::pair<double, double> radii(const Vec3& tip, const Vec3& axis) const {
+    double least = INFINITY, most = 0;
+    for (const auto& s : stretches_) {
+      const Vec2 a = (tip + s.from * axis).head<2>(), b = (tip + s.to * axis).head<2>(), d = b - a;
+      const double t = d.squaredNorm() > 0 ? std::clamp(-a.dot(d) / d.squaredNorm(), 0.0, 1.0) : 0.0;
+      least = std::min(least, (a + t * d).norm() - s.radius);
+      most = std::max({most, a.norm() + s.radius, b.norm() + s.radius});
+    }
+    return {least, most};
+  }
+
+  bool clear(double t0, double t1, int depth, RapidProof& proof) {
+    const Vec3 tip_0 = path::tip_at(m_, t0), tip_1 = path::tip_at(m_, t1), tip = 0.5 * (tip_0 + tip_1), axis = path::axis_at(m_, 0.5 * (t0 + t1));
+    const Vec3 half = 0.5 * (tip_1 - tip_0);
+    const double turning = stray(t0, t1), rise = std::abs(half.z()) + turning, run = half.head<2>().norm() + turning;
+    const char* body = "";
+    const auto [least, most] = radii(tip, axis);
+    if (lowest(tip, axis, body) - rise >= o_.top_mm - kBlankTouch) return true;
+    if (least - run >= o_.outer_radius_mm) return true;
+    if (o_.inner_radius_mm > 0 && most + run <= o_.inner_radius_mm) return true;
+    if (highest(tip, axis) + rise <= o_.bottom_mm) return true;
+    if (run + rise < kSmallestRapid + 2 * (m_.deviation_mm + arm_ * m_.axis_deviation) || depth > 40) {
+      proof.t = 0.5 * (t0 + t1);
+      proof.tip = tip;
+      proof.body = body;
+      return false;
+    }
+    const double t = 0.5 * (t0 + t1);
+    return clear(t0, t, depth + 1, proof) && clear(t, t1, depth + 1, proof);
+  }
+
+  const path::ToolMotion& m_;
+  const RapidObstacle& o_;
+  std::vector<tool::Frustum> frustums_;
+  std::vector<RapidStretch> stretches_;
+  double arm_ = 0, ball_radius_ = 0;
+};
+
+}  // namespace
+
+RapidProof prove_rapid(const path::ToolMotion& motion, const tool::ToolAssembly& tool, const RapidObstacle& obstacle) {
+  return Rapid(motion, tool, obstacle).run();
+}
+
+}  // namespace toothpath::proof

@@ -1,0 +1,32 @@
+// Rapids run at an unknown speed on each axis and must never meet the blank: ball, flute, shank and holder stay above it, below
+// it, outside its outer or inside its inner radius at every moment of the motion, not only at samples.
+#pragma once
+
+#include <limits>
+
+#include "cam/tool/assembly.h"
+#include "cam/path/tool_motion.h"
+
+namespace toothpath::proof {
+
+/// What a rapid must keep clear of: a ring about the gear axis, mm.
+struct RapidObstacle {
+  double outer_radius_mm = 0;
+  double inner_radius_mm = 0;  ///< 0: a full cylinder
+  double top_mm = 0;
+  double bottom_mm = -std::numeric_limits<double>::infinity();
+};
+
+struct RapidProof {
+  bool clear = false;
+  double t = 0;                 ///< where it is not: share of the motion
+  Vec3 tip = Vec3::Zero();
+  const char* body = "";        ///< what is lowest there: "ball", "shank" or "holder"
+};
+
+/// Proves that the whole tool keeps clear of the obstacle (touching is allowed up to 1e-6 mm). The motion is halved until one
+/// of the four ways of being clear holds for a whole piece, with what the bodies can move in it subtracted; a piece of 1e-4 mm that
+/// is still open counts as not clear.
+[[nodiscard]] RapidProof prove_rapid(const path::ToolMotion& motion, const tool::ToolAssembly& tool, const RapidObstacle& obstacle);
+
+}  // namespace toothpath::proof

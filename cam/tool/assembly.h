@@ -1,0 +1,35 @@
+// A tool assembly: cutter, neck or shank, holder. Lengths mm, measured along the axis from the tip.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace toothpath::tool {
+
+enum class CutterType { ball_end_mill, finger_mill };
+
+/// A conical or cylindrical piece of a holder, from the tip side.
+struct HolderSegment {
+  double lower_diameter_mm = 0, upper_diameter_mm = 0, height_mm = 0;
+};
+
+struct ToolAssembly {
+  int number = 0;  ///< T word
+  CutterType type = CutterType::ball_end_mill;
+  double diameter_mm = 0;        ///< of the ball; a finger mill has none
+  double flute_length_mm = 0;    ///< tip to the end of the cutting part; shank above it
+  double shank_diameter_mm = 0;
+  double length_mm = 0;          ///< gauge line to tip
+  std::vector<HolderSegment> holder;
+  double stick_out_mm = 0;       ///< tip to the lower face of the holder
+  int teeth = 2;                 ///< cutting edges
+  // Finger mill only.
+  double module_mm = 0;          ///< m_nj
+  double tip_radius_mm = 0;      ///< r_t
+  double rack_depth_mm = 0;      ///< h_C
+  double profile_height_mm = 0;  ///< x_D
+
+  [[nodiscard]] double radius_mm() const { return diameter_mm / 2; }
+};
+
+}  // namespace toothpath::tool

@@ -1,0 +1,266 @@
+#include "geometry/contact/bevel_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "geometry/base/angle.h"
+
+namespace toothpath::contact {
+namespace {
+
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+
+
+/// One wall of the pair on a grid of the wheel.
+class Roll {
+ public:
+  Roll(const BevelPair& pair, int sigma, const BevelContactOptions& options) : pair_(pair), sigma_(sigma), options_(options) {
+    tau_ = pair.wheel().pitch();
+    step_ = tau_ / options.steps;
+    for (std::size_t h = 0; h < pair.wheel().halves().size(); ++h) patterns_.push_back(grid(static_cast<int>(h)));
+  }
+
+  Result<BevelContact> run() {
+    meet();
+    if (first_ > last_) return fail("the walls of sigma = {:+d} never meet", sigma_);
+    BevelContact out;
+    out.sigma = sigma_;
+    pair_error();
+    cycle(out);
+    gaps(out);
+    mismatch(out);
+    out.patterns = std::move(patterns_);
+    return out;
+  }
+
+ private:
+  struct Meeting {
+    int first = 0;               ///< index of the first position [steps from 0]
+    std::vector<double> error;   ///< sigma (phi_1 - nominal) at every position; NaN: not on the pinion's flank
+    double least = kNothing;     ///< over all turns of the wheel, between the positions too
+    double at = 0;               ///< turn of the wheel there
+  };
+  struct Least {
+    double error = std::numeric_limits<double>::infinity();
+    int half = 0;
+    double ell = 0, height = 0;
+  };
+
+  BevelPattern grid(int half) const {
+    BevelPattern g;
+    g.half = half;
+    g.rows = options_.rows;
+    g.columns = options_.columns;
+    const auto& h = pair_.wheel().halves()[static_cast<std::size_t>(half)];
+    for (int i = 0; i < g.rows; ++i)
+      for (int j = 0; j < g.columns; ++j) {
+        const double height = pair_.lowest(half) + (pair_.highest() - pair_.lowest(half)) * i / (g.rows - 1);
+        const double ell = h.ell_from + (h.ell_to - h.ell_from) * j / (g.columns - 1);
+        const auto place = pair_.wheel_place(half, sigma_, ell, height);
+        g.places.push_back(place ? *place : BevelPlace{ell, height, Vec3::Constant(kNothing), Vec3::Constant(kNothing)});
+      }
+    return g;
+  }
+
+  std::optional<double> error(int half, const Vec3& point, double phi_2, bevel_gear::BevelInverse& start) const {
+    const auto turn = pair_.turn_at(half, sigma_, point, phi_2, start);
+    if (!turn) return std::nullopt;
+    return sigma_ * wrapped(*turn - pair_.nominal_turn(phi_2));
+  }
+
+  /// When and how far from the pinion every place is: about the turn at which it passes the pitch plane.
+  void meet() {
+    const int window = static_cast<int>(std::ceil(1.4 * options_.steps));
+    for (const BevelPattern& g : patterns_) {
+      std::vector<Meeting> of_places;
+      for (const BevelPlace& place : g.places) {
+        Meeting m;
+        if (place.point.allFinite()) {
+          const int middle = static_cast<int>(std::lround(-std::atan2(place.point.y(), place.point.x()) / step_));
+          m.first = middle - window;
+          bevel_gear::BevelInverse start;
+          for (int k = m.first; k <= middle + window; ++k) m.error.push_back(error(g.half, place.point, k * step_, start).value_or(kNothing));
+          refine(g, place, m);
+          first_ = std::min(first_, m.first);
+          last_ = std::max(last_, middle + window);
+        }
+        of_places.push_back(std::move(m));
+      }
+      meetings_.push_back(std::move(of_places));
+    }
+  }
+
+  /// Least error over all turns: golden section about the best position. Nothing where the pinion's flank ends before.
+  void refine(const BevelPattern& g, const BevelPlace& place, Meeting& m) const {
+    std::size_t best = m.error.size();
+    for (std::size_t k = 0; k < m.error.size(); ++k)
+      if (!std::isnan(m.error[k]) && (best == m.error.size() || m.error[k] < m.error[best])) best = k;
+    if (best == m.error.size()) return;
+    m.at = (m.first + static_cast<int>(best)) * step_;
+    if (best == 0 || best + 1 == m.error.size() || std::isnan(m.error[best - 1]) || std::isnan(m.error[best + 1])) return;
+    constexpr double kGolden = 0.6180339887498949;
+    double low = m.at - step_, high = m.at + step_;
+    bevel_gear::BevelInverse start;
+    const auto ask = [&](double s) { return error(g.half, place.point, s, start).value_or(std::numeric_limits<double>::infinity()); };
+    double a = high - kGolden * (high - low), b = low + kGolden * (high - low), at_a = ask(a), at_b = ask(b);
+    while (high - low > 1e-7 * step_) {
+      if (at_a < at_b) {
+        high = b, b = a, at_b = at_a;
+        a = high - kGolden * (high - low), at_a = ask(a);
+      } else {
+        low = a, a = b, at_a = at_b;
+        b = low + kGolden * (high - low), at_b = ask(b);
+      }
+    }
+    m.least = std::min(at_a, at_b);
+    m.at = at_a < at_b ? a : b;
+  }
+
+  /// Least error of one pair at every position: grid, then downhill between the grid's places.
+  void pair_error() {
+    for (int k = first_; k <= last_; ++k) {
+      Least best;
+      for (std::size_t h = 0; h < meetings_.size(); ++h)
+        for (std::size_t p = 0; p < meetings_[h].size(); ++p) {
+          const Meeting& m = meetings_[h][p];
+          const int at = k - m.first;
+          if (at < 0 || at >= static_cast<int>(m.error.size())) continue;
+          const double e = m.error[static_cast<std::size_t>(at)];
+          if (!(e < best.error)) continue;
+          best = {e, static_cast<int>(h), patterns_[h].places[p].ell, patterns_[h].places[p].height};
+        }
+      pair_least_.push_back(std::isinf(best.error) ? best : downhill(best, k * step_));
+    }
+  }
+
+  Least downhill(Least at, double phi_2) const {
+    const auto& h = pair_.wheel().halves()[static_cast<std::size_t>(at.half)];
+    const double low = pair_.lowest(at.half), high = pair_.highest();
+    double along = (h.ell_to - h.ell_from) / (options_.columns - 1), up = (high - low) / (options_.rows - 1);
+    bevel_gear::BevelInverse start;
+    for (int n = 0; n < 14; ++n, along *= 0.5, up *= 0.5)
+      for (bool moved = true; moved;) {
+        moved = false;
+        const Least centre = at;
+        for (int i = -1; i <= 1; ++i)
+          for (int j = -1; j <= 1; ++j) {
+            if (i == 0 && j == 0) continue;
+            const double ell = std::clamp(centre.ell + j * along, h.ell_from, h.ell_to), height = std::clamp(centre.height + i * up, low, high);
+            const auto place = pair_.wheel_place(at.half, sigma_, ell, height);
+            if (!place) continue;
+            const auto e = error(at.half, place->point, phi_2, start);
+            if (e && *e < at.error - 1e-14) {
+              at.error = *e, at.ell = ell, at.height = height;
+              moved = true;
+            }
+          }
+      }
+    return at;
+  }
+
+  [[nodiscard]] const Least* pair_at(int k) const {
+    if (k < first_ || k > last_) return nullptr;
+    const Least& l = pair_least_[static_cast<std::size_t>(k - first_)];
+    return std::isinf(l.error) ? nullptr : &l;
+  }
+
+  /// All pairs: pair j stands where pair 0 stands j pitches later.
+  void cycle(BevelContact& out) {
+    const double lever = mean_lever();
+    double low = std::numeric_limits<double>::infinity(), high = -low, sum = 0, marking = 0;
+    out.least_marking = std::numeric_limits<int>::max();
+    for (int k = 0; k < options_.steps; ++k) {
+      BevelPosition at;
+      at.error_rad = std::numeric_limits<double>::infinity();
+      const int most = (last_ - first_) / options_.steps + 2;
+      for (int j = -most; j <= most; ++j)
+        if (const Least* l = pair_at(k + j * options_.steps); l && l->error < at.error_rad) {
+          at.error_rad = l->error, at.half = l->half, at.tooth = j, at.ell = l->ell, at.height = l->height;
+        }
+      for (int j = -most; j <= most; ++j)
+        if (const Least* l = pair_at(k + j * options_.steps); l && (l->error - at.error_rad) * lever <= options_.compound_mm) ++at.marking;
+      at.phi_2 = k * step_;
+      at.phi_1 = pair_.nominal_turn(at.phi_2) + sigma_ * at.error_rad;
+      low = std::min(low, at.error_rad), high = std::max(high, at.error_rad);
+      sum += at.error_rad, marking += at.marking;
+      out.least_marking = std::min(out.least_marking, at.marking);
+      out.most_marking = std::max(out.most_marking, at.marking);
+      out.cycle.push_back(at);
+    }
+    out.error_range_rad = high - low;
+    out.error_mean_rad = sum / options_.steps;
+    out.error_range_mm = out.error_range_rad * pair_.pinion().R_m() * pair_.pinion().sin_delta();
+    out.marking_ratio = marking / options_.steps;
+  }
+
+  double mean_lever() const {
+    const auto& g = patterns_.front();
+    const auto& place = g.places[g.places.size() / 2];
+    return pair_.lever(place, -std::atan2(place.point.y(), place.point.x()));
+  }
+
+  void gaps(const BevelContact& out) {
+    for (std::size_t h = 0; h < patterns_.size(); ++h) {
+      BevelPattern& g = patterns_[h];
+      std::size_t marked = 0;
+      for (std::size_t p = 0; p < g.places.size(); ++p) {
+        const Meeting& m = meetings_[h][p];
+        double least = kNothing;
+        for (std::size_t k = 0; k < m.error.size(); ++k) {
+          if (std::isnan(m.error[k])) continue;
+          const int at = (((m.first + static_cast<int>(k)) % options_.steps) + options_.steps) % options_.steps;
+          const double gap = m.error[k] - out.cycle[static_cast<std::size_t>(at)].error_rad;
+          if (!(gap > least)) least = gap;
+        }
+        if (!std::isnan(least)) least = std::max(0.0, least) * pair_.lever(g.places[p], m.at);
+        g.gap_mm.push_back(least);
+        if (least <= options_.compound_mm) ++marked;
+      }
+      g.marked_share = static_cast<double>(marked) / static_cast<double>(g.places.size());
+    }
+  }
+
+  void mismatch(BevelContact& out) {
+    double sum = 0, square = 0;
+    std::size_t count = 0;
+    for (std::size_t h = 0; h < patterns_.size(); ++h)
+      for (std::size_t p = 0; p < patterns_[h].places.size(); ++p) {
+        const Meeting& m = meetings_[h][p];
+        const double value = std::isnan(m.least) ? kNothing : m.least * pair_.lever(patterns_[h].places[p], m.at);
+        patterns_[h].mismatch_mm.push_back(value);
+        if (!std::isnan(value)) sum += value, ++count;
+      }
+    const double mean = sum / static_cast<double>(std::max<std::size_t>(count, 1));
+    out.mismatch_min_mm = std::numeric_limits<double>::infinity();
+    out.mismatch_max_mm = -out.mismatch_min_mm;
+    for (auto& g : patterns_)
+      for (double& value : g.mismatch_mm) {
+        value -= mean;
+        if (std::isnan(value)) continue;
+        out.mismatch_min_mm = std::min(out.mismatch_min_mm, value);
+        out.mismatch_max_mm = std::max(out.mismatch_max_mm, value);
+        square += value * value;
+      }
+    out.mismatch_rms_mm = std::sqrt(square / static_cast<double>(std::max<std::size_t>(count, 1)));
+  }
+
+  const BevelPair& pair_;
+  int sigma_;
+  BevelContactOptions options_;
+  double tau_ = 0, step_ = 0;
+  std::vector<BevelPattern> patterns_;
+  std::vector<std::vector<Meeting>> meetings_;
+  int first_ = std::numeric_limits<int>::max(), last_ = std::numeric_limits<int>::min();
+  std::vector<Least> pair_least_;
+};
+
+}  // namespace
+
+Result<BevelContact> bevel_contact(const BevelPair& pair, int sigma, const BevelContactOptions& options) {
+  if (options.rows < 3 || options.columns < 3 || options.steps < 4)
+    return fail("grid of {} x {} places and {} positions: at least 3 x 3 and 4 are needed", options.rows, options.columns, options.steps);
+  return Roll(pair, sigma, options).run();
+}
+
+}  // namespace toothpath::contact

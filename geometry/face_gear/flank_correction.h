@@ -1,0 +1,68 @@
+// Corrected flanks: the nominal ones moved along their normals by a smooth field that answers a measurement.
+//
+// A field lives on (theta, r) of one flank. Profile coordinate s = (theta_t - theta)/(theta_t - top(r)), 0 at the fillet line and 1 at the
+// tip; lead coordinate r. Both are mapped to [-1, 1] over the measured points, where the field is a sum of products of Chebyshev
+// polynomials; outside, every polynomial goes on along its tangent, so the field is C1 everywhere and does not run away.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "geometry/base/result.h"
+
+namespace toothpath::face_gear {
+
+/// One measured point of a flank.
+struct FlankDeviation {
+  int row = 0, column = 0;   ///< of the inspection grid
+  double theta = 0;          ///< roll parameter of the nominal point
+  double radius_mm = 0;      ///< of the nominal point
+  double deviation_mm = 0;   ///< along the normal, positive: material left
+};
+
+/// Highest degrees of the fit; the grid allows at most rows - 2 and columns - 3.
+struct CorrectionDegrees {
+  int profile = 3, lead = 6;
+};
+
+/// How well the field follows the measured points of one flank.
+struct CorrectionResidual {
+  std::size_t points = 0;
+  int profile_degree = 0, lead_degree = 0;
+  double measured_max_mm = 0, measured_rms_mm = 0;  ///< of the deviations, sizes
+  double residual_max_mm = 0, residual_rms_mm = 0;  ///< deviation minus fit
+};
+
+class FlankCorrection {
+ public:
+  /// Least squares over the points of one flank; the target is moved by minus the fit.
+  /// @param theta_t roll parameter at the fillet line
+  /// Errors: too few rows or columns (5 and 9), values that are not finite.
+  [[nodiscard]] static Result<FlankCorrection> fit(std::span<const FlankDeviation> points, double theta_t, CorrectionDegrees most = {});
+
+  /// Offset of the target from the nominal flank, mm along its normal, with derivatives.
+  struct Offset {
+    double value = 0, d_theta = 0, d_radius = 0;
+  };
+  [[nodiscard]] Offset at(double theta, double radius_mm) const;
+  [[nodiscard]] const CorrectionResidual& residual() const { return residual_; }
+
+ private:
+  [[nodiscard]] double top(double r, double* slope) const;
+  double theta_t_ = 0;
+  double s_mid_ = 0, s_half_ = 1, r_mid_ = 0, r_half_ = 1;
+  std::array<double, 4> top_{};           ///< theta at the tip, a cubic in the mapped radius
+  int profile_ = 0, lead_ = 0;
+  std::vector<double> coefficients_;      ///< (profile + 1) x (lead + 1), row-major, mm; of the offset
+  CorrectionResidual residual_;
+};
+
+/// Both flanks of one ring.
+struct RingCorrection {
+  FlankCorrection plus, minus;  ///< sides +1 and -1
+  [[nodiscard]] const FlankCorrection& side(int s) const { return s > 0 ? plus : minus; }
+};
+
+}  // namespace toothpath::face_gear

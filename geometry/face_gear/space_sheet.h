@@ -1,0 +1,84 @@
+// The working surface of one tooth space as one smooth sheet: flank and fillet of tooth 0, root land, fillet and flank of
+// tooth 1. Every piece has two parameters (u, v), exact first derivatives of point and normal, and a nearest-point search.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "geometry/base/dual.h"
+#include "geometry/face_gear/gear.h"
+#include "geometry/face_gear/inverse.h"
+#include "geometry/face_gear/fillet_blend.h"
+
+namespace toothpath::face_gear {
+
+/// From tooth 0 through the root to tooth 1. "plus": side +1 of tooth 0, "minus": side -1 of tooth 1.
+enum class SpacePiece { flank_plus, fillet_plus, root, fillet_minus, flank_minus };
+inline constexpr int kSpacePieces = 5;
+[[nodiscard]] const char* to_string(SpacePiece piece);
+
+/// A point of a piece with derivatives. Gear frame, mm; n is the unit normal out of the material.
+struct PatchPoint {
+  Vec3 p = Vec3::Zero(), n = Vec3::Zero();
+  Vec3 pu = Vec3::Zero(), pv = Vec3::Zero();  ///< dp/du, dp/dv
+  Vec3 nu = Vec3::Zero(), nv = Vec3::Zero();  ///< dn/du, dn/dv
+};
+
+/// Nearest point of a piece (continued beyond its borders) to some point c:  c = p + distance n.
+struct PatchFoot {
+  double u = 0, v = 0, distance = 0;
+  PatchPoint at;
+};
+
+/// Where a flank leaves the tooth through the tip surface.
+struct TipPlace {
+  FlankCoordinates at;
+  double azimuth = 0;  ///< of the flank's own tooth, unwrapped, rad
+};
+
+/// Parameters: flanks (theta, B), fillets (A, Z), root (fraction from the plus to the minus edge, Z).
+///
+/// A ring with a correction gives the corrected flanks: points displaced along the nominal normals, with their own normals; the fillets
+/// carry the displacement on and let it fade. Derivatives of the normals are then differences of the normals (1e-8 relative): they serve
+/// the steps of Newton and the step-over, not a place.
+class SpaceSheet {
+ public:
+  explicit SpaceSheet(const FaceGearParameters& gear, const FaceGearRing& ring);
+
+  [[nodiscard]] const FaceGearRing& ring() const { return ring_; }
+  [[nodiscard]] const FaceGearSurface<double>& surface() const { return ring_.surface; }
+
+  /// Point and derivatives; nothing where the piece has no contact (fillet out of its domain, J <= 0 on a flank).
+  [[nodiscard]] std::optional<PatchPoint> at(SpacePiece piece, double u, double v) const;
+  /// The same without derivatives (pu, pv, nu, nv are left unset).
+  [[nodiscard]] std::optional<PatchPoint> point(SpacePiece piece, double u, double v) const;
+
+  /// Newton from (u, v) to the local nearest point; nothing if it does not converge (1e-12 mm) in 30 steps.
+  /// The point may lie beyond the borders of the piece.
+  [[nodiscard]] std::optional<PatchFoot> foot(SpacePiece piece, const Vec3& c, double u, double v) const;
+
+  /// Where the flank of `side` meets the tip surface at radius r; `start` as in invert_flank.
+  [[nodiscard]] std::optional<TipPlace> tip(int side, double r, const std::optional<FlankCoordinates>& start = {}) const;
+
+  /// Normal curvature in the tangential direction of `along`, convex positive, 1/mm.
+  static double normal_curvature(const PatchPoint& at, const Vec3& along);
+
+  /// Range of u of a piece: flanks theta up to theta_t (the start depends on the radius), fillets [A_t, A_e], root [0, 1].
+  [[nodiscard]] double u_end() const { return ring_.surface.shaper.theta_t; }
+
+ private:
+  using Dual2 = Dual<double, 2>;
+  template <typename S>
+  [[nodiscard]] SurfacePointT<S> root_point(const FaceGearSurface<S>& f, const S& fraction, const S& Z) const;
+  /// The nominal piece before it is turned to its tooth.
+  [[nodiscard]] std::optional<PatchPoint> nominal(SpacePiece piece, double u, double v) const;
+  /// Moves a point by the correction of its piece.
+  void displace(SpacePiece piece, double u, double v, PatchPoint& q) const;
+
+  FaceGearRing ring_;
+  FaceGearSurface<Dual2> dual_;
+  std::array<std::shared_ptr<const FilletBlend>, 2> blends_;  ///< sides +1 and -1; empty: nominal
+};
+
+}  // namespace toothpath::face_gear

@@ -1,0 +1,61 @@
+// The vertices and triangles of one angular pitch on a given grid, and how far its facets sag.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "geometry/mesh/tooth_grid.h"
+#include "geometry/mesh/tooth_mesh.h"
+#include "geometry/mesh/tooth_section.h"
+
+namespace toothpath::mesh {
+
+/// Builds the pitch row by row: the toothed surface of every ring, its end faces, the groove floors, the body below. Holds references to
+/// gear and grid.
+class PitchBuilder {
+ public:
+  PitchBuilder(const face_gear::FaceGear& gear, const ToothGrid& grid, double tolerance_mm)
+      : gear_(gear), grid_(grid), columns_(grid_columns(grid)) {
+    out_.teeth = gear.parameters().teeth;
+    out_.tolerance_mm = tolerance_mm;
+  }
+
+  /// Refused: a section that does not close (undercut, pointed), a place where the tooth overhangs an end face.
+  Status build();
+  /// Largest distance [mm] of exact points to the mesh with a margin of 15 %, by patch; n x n points a cell. After `build`.
+  Result<std::array<double, kPatchCount>> measure_sag(int n) const;
+  ToothMesh take() { return std::move(out_); }
+
+ private:
+  /// A row of vertices across the pitch, on one cylinder.
+  struct Row {
+    std::vector<std::int32_t> index;
+    std::vector<Vec2> uv;  ///< by slot; empty for the rows below the teeth
+  };
+  /// The toothed surface of one ring: its rows and the way each cell is cut in two.
+  struct RingRows {
+    std::vector<Row> rows;
+    std::vector<std::vector<char>> falling;  ///< [strip][column]: the diagonal runs (i + 1, j) to (i, j + 1)
+  };
+
+  Result<std::vector<SectionPoint>> exact_row(const ToothSection& section, double shift) const;
+  Result<RingRows> add_ring(const face_gear::FaceGearRing& ring, const std::vector<double>& radii);
+  Row add_row(std::vector<Vec3> points, const Row* shared = nullptr, double shared_z = 0);
+  Row row_below(const Row& profile, double z);
+  void add_triangle(std::int32_t a, std::int32_t b, std::int32_t c, const TriangleTag& tag);
+  void add_surface_strip(const RingRows& ring, std::size_t strip, std::uint8_t zone);
+  void add_plain_strip(const Row& from, const Row& to, Patch patch, std::uint8_t zone, bool v_is_z);
+  Status check_no_overhang(const Row& row, double r) const;
+  double distance_near(const RingRows& ring, std::size_t strip, std::size_t column, const Vec3& p, double enough) const;
+  const Vec3& at(const Row& row, std::size_t j) const { return out_.mesh.vertices[std::size_t(row.index[j])]; }
+
+  const face_gear::FaceGear& gear_;
+  const ToothGrid& grid_;
+  std::vector<GridColumn> columns_;
+  std::vector<RingRows> rings_;
+  ToothMesh out_;
+  double cylinder_sag_ = 0;
+};
+
+}  // namespace toothpath::mesh

@@ -1,0 +1,24 @@
+// How the workpiece stands in the machine: the [setup] table of a job.
+#pragma once
+
+#include <string>
+
+#include "geometry/base/vec.h"
+
+namespace toothpath::joints {
+
+struct Setup {
+  Vec3 origin_mm = Vec3::Zero();          ///< of the gear frame, machine coordinates, all rotaries at zero
+  bool axis_up = true;                    ///< gear z along machine +Z, x along +X; else turned by 180 deg about X
+  std::string work_offset = "G54";
+  Vec3 work_offset_at_mm = Vec3::Zero();  ///< origin of the work coordinate system, machine coordinates
+
+  /// Directions of the gear frame's axes in the machine, as columns.
+  [[nodiscard]] Mat3 rotation() const {
+    Mat3 r = Mat3::Identity();
+    if (!axis_up) r.diagonal() = Vec3(1, -1, -1);
+    return r;
+  }
+};
+
+}  // namespace toothpath::joints

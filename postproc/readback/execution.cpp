@@ -1,0 +1,363 @@
+#include "postproc/readback/execution.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "geometry/base/angle.h"
+#include "postproc/joints/solution.h"
+
+namespace toothpath::readback {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kTipStill = 1e-9;       // mm: round-off of a tip that does not move
+constexpr double kZeroRotary = 1e-9;  // deg
+constexpr double kFullTurn = 360;         // deg
+constexpr double kHalfTurn = 180 - 1e-6;  // deg: from here on round-off decides which way is the nearer one
+constexpr double kBelowZero = 1e-9;   // deg: round-off of a remainder
+constexpr double kFlip = 170;         // deg: a tool vector that turns further in one block leaves the plane of the turn open
+
+bool known(const std::array<double, 5>& joints) {
+  return std::none_of(joints.begin(), joints.end(), [](double v) { return std::isnan(v); });
+}
+
+std::uint64_t print_of(const Vec3& v) {
+  std::uint64_t h = 14695981039346656037ULL;
+  for (int i = 0; i < 3; ++i) {
+    const auto bits = std::bit_cast<std::uint64_t>(v[i]);
+    for (int k = 0; k < 64; k += 8) h = (h ^ ((bits >> k) & 0xff)) * 1099511628211ULL;
+  }
+  return h;
+}
+
+/// A place within one turn, on a grid of 2^-30 deg: with whole turns added it stays the same number.
+double on_grid(double deg) { return std::ldexp(std::nearbyint(std::ldexp(deg, 30)), -30); }
+
+/// The same place as `deg`, in the turn nearest to `now`.
+double turned_on(double deg, double now) {
+  const double place = on_grid(std::remainder(deg, kFullTurn));
+  return place + kFullTurn * std::round((now - place) / kFullTurn);
+}
+
+/// Where LinuxCNC takes an axis that rolls over and stands at `now` (published source, 2.9): the sign is the sense.
+double by_sign(double word, double now) {
+  const double to = std::abs(word) + std::floor(now / kFullTurn) * kFullTurn;
+  if (!std::signbit(word) && to < now) return to + kFullTurn;
+  if (std::signbit(word) && to > now) return to - kFullTurn;
+  return to;
+}
+
+Vec3 turned_deg(const Vec3& v, double deg) {
+  if (deg == 0) return v;
+  const double c = std::cos(radians(deg)), s = std::sin(radians(deg));
+  return {c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z()};
+}
+
+}  // namespace
+
+NcExecution::NcExecution(const NcControl& control, const NcRules& rules, const std::function<void(const ExecutedMove&)>& sink)
+    : control_(control), rules_(rules), sink_(sink) {
+  joints_.fill(kUnknown);
+  rolled_.fill(kUnknown);
+  for (std::size_t a = 0; a < 5; ++a)
+    if (control.letters[a] == 0) joints_[a] = 0;
+}
+
+void NcExecution::begin_operation(int operation) {
+  operation_ = operation;
+  spindle_set_ = false;
+  tooth_ = -1;
+}
+
+void NcExecution::set_feed_mode(Feed mode) {
+  if (feed_mode_ != mode) feed_.reset();
+  feed_mode_ = mode;
+}
+
+NcExecution::Problem NcExecution::set_feed(double f) {
+  if (!(f > 0)) return "F must be above 0";
+  feed_ = f;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::set_speed(double s) {
+  if (!(s > 0)) return "S must be above 0";
+  spindle_set_ = true;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::choose_tool(double number) {
+  if (!(std::abs(number) < 1e6) || number != std::floor(number) || control_.tool_length_mm.count(static_cast<int>(number)) == 0)
+    return fmt::format("tool {} is not in the tool list", number);
+  next_tool_ = static_cast<int>(number);
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::change_tool() {
+  if (spindle_) return "tool change while the spindle turns";
+  if (feed_mode_ == Feed::inverse_time) return "tool change in G93";
+  if (tcp_) return "tool change with TCP on";
+  if (!retracted_) return "tool change without a machine retract before it";
+  if (next_tool_ < 0) return "tool change without a T word";
+  tool_ = next_tool_;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::spindle_on() {
+  if (!spindle_set_ || operation_ < 0) return "M3 without an S word of this operation";
+  spindle_ = true;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::select_offset(const std::string& name) {
+  const auto found = control_.work_offsets.find(name);
+  if (found == control_.work_offsets.end()) return fmt::format("work offset {} is not defined", name);
+  if (tcp_ && offset_ != found->second) return "another work offset with TCP on";
+  offset_ = found->second;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::set_length(int tool) {
+  const auto found = control_.tool_length_mm.find(tool);
+  if (found == control_.tool_length_mm.end()) return fmt::format("tool length {} is not in the tool list", tool);
+  length_ = found->second;
+  return std::nullopt;
+}
+
+bool NcExecution::site_smoothing(std::string_view line) {
+  while (!line.empty() && line.front() == ' ') line.remove_prefix(1);
+  while (!line.empty() && line.back() == ' ') line.remove_suffix(1);
+  const auto is = [line](const std::vector<std::string>& list) { return std::find(list.begin(), list.end(), line) != list.end(); };
+  const bool on = is(control_.smoothing_on);
+  if (line.empty() || (!on && !is(control_.smoothing_off))) return false;
+  set_blend(on ? control_.smoothing_mm : 0);
+  blend_axis_rad_ = on ? control_.smoothing_axis_rad : std::nullopt;
+  site_smoothing_ = on;
+  return true;
+}
+
+NcExecution::Problem NcExecution::tcp_on() {
+  if (!control_.chain) return "TCP on a machine without TCP (tcp = \"none\")";
+  if (tcp_) return "TCP is on already";
+  if (!length_ || !offset_) return "TCP without tool length compensation or work offset";
+  if (!known(joints_)) return "TCP at a position that the program did not set";
+  if (rules_.tcp_needs_zero && !(at_zero(3) && at_zero(4)))
+    return "TCP starts with the rotaries away from zero: the table frame would be frozen there";
+  tip_ = tip_of(joints_);
+  tcp_ = true;
+  return std::nullopt;
+}
+
+bool NcExecution::at_zero(std::size_t axis) const {
+  return std::abs(control_.rollover[axis] ? std::remainder(joints_[axis], kFullTurn) : joints_[axis]) <= kZeroRotary;
+}
+
+NcExecution::Problem NcExecution::tcp_off() {
+  tcp_ = false;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::end_program(bool inside_call) {
+  if (feed_mode_ == Feed::inverse_time) return "program end in G93";
+  if (spindle_) return "program end while the spindle turns";
+  if (tcp_) return "program end with TCP on";
+  if (inside_call) return "program end inside a sub-program or loop";
+  return std::nullopt;
+}
+
+/// Angles of rotaries, deg, for the kinematics [rad]: of those that roll over the place within the turn, so that whole turns change no digit.
+std::array<double, 2> NcExecution::angles_of(double r0, double r1) const {
+  const auto angle = [this](std::size_t axis, double deg) { return radians(control_.rollover[axis] ? deg - kFullTurn * std::floor(deg / kFullTurn) : deg); };
+  return {angle(3, r0), angle(4, r1)};
+}
+
+Vec3 NcExecution::tip_of(const std::array<double, 5>& j) const {
+  return control_.chain->forward({Vec3(j[0], j[1], j[2]), angles_of(j[3], j[4])}, *length_).tip_mm;
+}
+
+std::array<double, 5> NcExecution::joints_for(const Vec3& tip, double r0, double r1) const {
+  const machines::Joints j = control_.chain->linear_for(tip, angles_of(r0, r1), *length_);
+  return {j.linear_mm.x(), j.linear_mm.y(), j.linear_mm.z(), r0, r1};
+}
+
+/// Joint words.
+NcExecution::Problem NcExecution::goal_of(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const {
+  if (m.vector) return "a tool vector without TCP";
+  for (std::size_t a = 0; a < 5; ++a) {
+    if (!m.has[a]) continue;
+    commanded = static_cast<std::uint8_t>(commanded | (1U << a));
+    joints[a] = m.axis[a];
+    if (a >= 3 || m.machine_frame) continue;
+    if (!offset_) return "axis word before a work offset";
+    if (frame_deg_ != 0) return "a turned frame without TCP";
+    joints[a] += (*offset_)[static_cast<int>(a)];
+    if (a != 2) continue;
+    if (!length_) return "Z word without tool length compensation";
+    joints[a] += *length_;
+  }
+  tip = Vec3::Zero();
+  return std::nullopt;
+}
+
+/// Words of the tip and rotary words or a vector.
+NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const {
+  Vec3 words = turned_deg(tip_ - *offset_, -frame_deg_);
+  const Vec3 before = words;
+  for (std::size_t a = 0; a < 5; ++a) {
+    if (!m.has[a]) continue;
+    commanded = static_cast<std::uint8_t>(commanded | (1U << a));
+    if (a < 3) words[static_cast<int>(a)] = m.axis[a];
+    else joints[a] = m.axis[a];
+  }
+  tip = words == before ? tip_ : Vec3(*offset_ + turned_deg(words, frame_deg_));
+  if (m.vector) {
+    const double size = m.vector->norm();
+    if (!(std::abs(size - 1) < 1e-5)) return fmt::format("a tool vector of length {:.6f}", size);
+    const Vec3 axis = turned_deg(*m.vector / size, frame_deg_);
+    const auto list = control_.chain->rotary_solutions(axis);
+    if (!list) return list.error().message;
+    double nearest = std::numeric_limits<double>::infinity();
+    const std::array<double, 2> now = {radians(joints[3]), radians(joints[4])};
+    const Vec3 from = control_.chain->forward({Vec3::Zero(), now}, 1.0).axis;
+    const double turn = degrees(std::atan2(from.cross(axis).norm(), from.dot(axis)));
+    if (!m.rapid && turn > kFlip + 1e-4)
+      return fmt::format("the tool axis turns by {:.4f} deg in one block, limit {:g}: which way is not said", turn, kFlip);
+    for (const auto& s : *list) {
+      std::array<double, 2> angles{};
+      double distance = 0;
+      for (std::size_t k = 0; k < control_.chain->rotary_count(); ++k) {
+        angles[k] = s.free_rotary == static_cast<int>(k) ? now[k] : joints::nearest_turn(s.joints.rotary_rad[k], now[k]);
+        distance = std::max(distance, std::abs(angles[k] - now[k]));
+      }
+      if (distance >= nearest) continue;
+      nearest = distance;
+      for (std::size_t k = 0; k < 2; ++k) joints[3 + k] = control_.rollover[3 + k] ? turned_on(degrees(angles[k]), joints_[3 + k]) : degrees(angles[k]);
+    }
+    commanded = static_cast<std::uint8_t>(commanded | 0x18U);
+  }
+  joints = joints_for(tip, joints[3], joints[4]);
+  return std::nullopt;
+}
+
+/// Words of rotaries that roll over become positions that go on beyond a turn.
+NcExecution::Problem NcExecution::roll(Move& m) {
+  for (std::size_t a = 3; a < 5; ++a) {
+    if (!control_.rollover[a] || !m.has[a]) continue;
+    const double word = m.axis[a], now = joints_[a];
+    const double least = rules_.sign_is_sense ? -kFullTurn : -kBelowZero;
+    if (!(word > least && word < kFullTurn))
+      return fmt::format("{} = {} of an axis that rolls over is outside {} 360", control_.letters[a], word, rules_.sign_is_sense ? "-360 .." : "0 ..");
+    double turns = 0;
+    if (rules_.sign_is_sense) {
+      rolled_[a] = std::isnan(rolled_[a]) ? std::abs(word) : by_sign(word, rolled_[a]);
+      turns = std::round((rolled_[a] - std::abs(word)) / kFullTurn);
+    } else if (!std::isnan(now)) {
+      turns = std::round((now - word) / kFullTurn);
+    }
+    m.axis[a] = kFullTurn * turns + on_grid(std::abs(word));
+    const double turn = std::abs(m.axis[a] - now);
+    if (turn >= kHalfTurn && !(rules_.sign_is_sense && m.rapid))
+      return fmt::format("{} turns by {:.6f} deg in one block, limit 180: {}", control_.letters[a], turn,
+                         rules_.sign_is_sense ? "a cut is not meant to" : "which way is not said");
+  }
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::move(const Move& m, std::int32_t line) {
+  if (!control_.rollover[3] && !control_.rollover[4]) return move_to(m, line);
+  Move rolled = m;
+  if (auto bad = roll(rolled)) return bad;
+  return move_to(rolled, line);
+}
+
+NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
+  std::array<double, 5> goal = joints_;
+  Vec3 tip = Vec3::Zero();
+  ExecutedMove e;
+  if (!unit_) return "axis words ahead of the unit code: whether they are mm would depend on the last program";
+  if (!absolute_) return "axis words ahead of G90: whether they are positions would depend on the last program";
+  if (tcp_ && m.machine_frame) return "machine coordinates with TCP on";
+  if (auto bad = tcp_ ? tip_goal(m, goal, tip, e.commanded) : goal_of(m, goal, tip, e.commanded)) return bad;
+  e.joints = goal;
+  e.tip = tip;
+  if (m.vector) e.vector_print = print_of(*m.vector);
+  e.tcp = tcp_;
+  e.known = known(goal) && known(joints_);
+  e.line = line;
+  e.operation = static_cast<std::int16_t>(operation_);
+  e.tool = static_cast<std::int16_t>(tool_);
+  e.rapid = m.rapid;
+  if (!m.rapid && e.known)
+    if (auto bad = corners(goal, tip, e)) return bad;
+  e.tooth = static_cast<std::int16_t>(tooth_);
+  e.machine = m.machine_frame || m.compensation;
+  if (m.rapid) {
+    for (std::size_t a = 0; a < 5; ++a)
+      if ((m.has[a] || tcp_) && e.known && control_.rapid_speed[a] > 0)
+        e.minutes = std::max(e.minutes, std::abs(goal[a] - joints_[a]) / control_.rapid_speed[a]);
+  } else if (auto bad = feed_minutes(m, goal, tip, e.minutes)) {
+    return bad;
+  }
+  retracted_ = m.machine_frame && m.has[2];
+  joints_ = goal;
+  tip_ = tip;
+  sink_(e);
+  return std::nullopt;
+}
+
+/// How far the control may leave the corners at both ends of a feed block.
+NcExecution::Problem NcExecution::corners(const std::array<double, 5>& goal, const Vec3& tip, ExecutedMove& e) const {
+  const bool turns = std::abs(goal[3] - joints_[3]) > kTipStill || std::abs(goal[4] - joints_[4]) > kTipStill;
+  if (turns && blend_is_linear_) return "G64 bounds X, Y and Z alone, this G1 turns a rotary axis: G61 or G61.1 is needed";
+  if (turns && tcp_ && rules_.turns_need_axis_blend && !blend_axis_rad_)
+    return "this block turns a rotary axis and no TA says how far the control may leave its way: CYCL DEF 32.2 is needed";
+  if (turns && site_smoothing_ && !blend_axis_rad_)
+    return "this block turns a rotary axis under smoothing that the machine file states, without post.smoothing_axis_tolerance";
+  e.blend_mm = static_cast<float>(blend_mm_);
+  if (site_smoothing_) e.blend_axis_rad = static_cast<float>(blend_axis_rad_.value_or(0));
+  for (std::size_t a = 3; a < 5 && tcp_ && blend_axis_rad_ && !site_smoothing_; ++a)  // a tolerance of each rotary
+    if (control_.letters[a] != 0) e.blend_axis_rad += static_cast<float>(*blend_axis_rad_);
+  if (!corner_way_) return std::nullopt;
+  if (tcp_ && path_weights_) return "FGROUP with TRAORI is not in the subset";
+  if (!tcp_ && turns && !path_weights_)
+    return "this G1 turns a rotary axis and no FGROUP says what ADIS is measured over";
+  double way = 0;
+  if (tcp_) way = (tip - tip_).norm();
+  else
+    for (std::size_t a = 0; a < 5; ++a) way = std::hypot(way, (path_weights_ ? (*path_weights_)[a] : a < 3 ? 1.0 : 0.0) * (goal[a] - joints_[a]));
+  e.corner_path_mm = static_cast<float>(*corner_way_);
+  if (*corner_way_ > 0) e.corner_share = *corner_way_ < 0.5 * way ? static_cast<float>(*corner_way_ / way * (1 + 1e-6)) : 0.5F;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::feed_minutes(const Move& m, const std::array<double, 5>& goal, const Vec3& tip,
+                                               double& minutes) const {
+  if (!spindle_ && !control_.dry_run) return "G1 while the spindle stands";
+  if (tool_ < 0) return "G1 without a tool";
+  if (feed_mode_ == Feed::inverse_time && !m.own_feed) return "G1 in G93 without F";
+  if (m.machine_frame) return "machine coordinates with G1";
+  double linear = 0, rotary = 0;
+  for (std::size_t a = 0; a < 5; ++a) {
+    const double d = goal[a] - joints_[a];
+    if (std::isnan(d)) return "G1 from a position that the program did not set";
+    (a < 3 ? linear : rotary) += d * d;
+  }
+  linear = tcp_ ? (tip - tip_).norm() : std::sqrt(linear);
+  if (tcp_ && linear < kTipStill) linear = 0;
+  rotary = std::sqrt(rotary);
+  const double length = linear > 0 ? linear : rotary;
+  if (feed_mode_ == Feed::inverse_time) {
+    if (length == 0) minutes = 1 / *feed_;
+    else minutes = length / std::max(rules_.least_rate, length * *feed_);
+    return std::nullopt;
+  }
+  if (feed_mode_ != Feed::per_minute || !feed_) return "G1 without F";
+  if (!tcp_ && !rules_.per_minute_turns && rotary > 0) return "G94 with a rotary word";
+  if (!tcp_ && linear > 0 && rotary > 0 && !m.own_feed) return "G94 with rotary and linear words and no F of its own";
+  minutes = length / *feed_;
+  return std::nullopt;
+}
+
+}  // namespace toothpath::readback

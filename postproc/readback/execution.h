@@ -1,0 +1,123 @@
+// What a control does with a block once it is understood: modes, tools, offsets, TCP, and where the joints stand. The same
+// for every dialect; the readers of the dialects turn text into calls of this and give errors their place.
+//
+// With TCP the linear words are the tip in the table frame (seen from the work offset, and turned with it where the program
+// turns its frame); the tip goes straight, the rotaries are linear in time, the other joints follow.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "postproc/readback/reader.h"
+
+namespace toothpath::readback {
+
+/// How a control differs in what it does, not in how it is written.
+struct NcRules {
+  bool tcp_needs_zero = false;     ///< TCP may be switched on with the rotaries at zero only
+  double least_rate = 0;           ///< G93 blocks are raised to this rate, mm/min or deg/min
+  bool per_minute_turns = false;   ///< G94 with rotary words without TCP has a defined time
+  bool sign_is_sense = false;      ///< the sign of a word says which way a rotary that rolls over turns; else the nearer way is taken
+  bool turns_need_axis_blend = false;  ///< a tolerance of the tip leaves that of the rotaries to the machine: it must be said too
+};
+
+class NcExecution {
+ public:
+  using Problem = std::optional<std::string>;
+
+  struct Move {
+    std::array<double, 5> axis{};        ///< words, mm and deg
+    std::array<bool, 5> has{};
+    std::optional<Vec3> vector;          ///< tool axis instead of rotary words, work frame
+    bool rapid = false;
+    bool machine_frame = false;          ///< words are joints: no offset, no tool length
+    bool compensation = false;           ///< the block switches tool length compensation on
+    bool own_feed = false;               ///< F stands in the block
+  };
+
+  NcExecution(const NcControl& control, const NcRules& rules, const std::function<void(const ExecutedMove&)>& sink);
+
+  // Place in the program.
+  void begin_operation(int operation);
+  void begin_tooth(int tooth) { tooth_ = tooth; }
+  [[nodiscard]] int operation() const { return operation_; }
+  [[nodiscard]] int tool() const { return tool_; }  ///< in the spindle; -1: none
+
+  // Modes.
+  void set_unit() { unit_ = true; }          ///< the program has said that its words are mm
+  void set_absolute() { absolute_ = true; }  ///< the program has said that its words are positions
+  enum class Feed { none, inverse_time, per_minute };
+  void set_feed_mode(Feed mode);
+  [[nodiscard]] Feed feed_mode() const { return feed_mode_; }
+  Problem set_feed(double f);
+  Problem set_speed(double s);
+  Problem choose_tool(double number);
+  Problem change_tool();
+  Problem spindle_on();
+  void spindle_off() { spindle_ = false; }
+  Problem select_offset(const std::string& name);
+  Problem set_length(int tool);      ///< tool length compensation with the length of this tool
+  void drop_length() { length_.reset(); }
+  /// The control may leave corners by this. @param linear_only it does not hold for rotaries: feed blocks must not turn them
+  void set_blend(double mm, bool linear_only = false) {
+    blend_mm_ = mm;
+    blend_is_linear_ = linear_only;
+    corner_way_.reset();
+  }
+  /// Every axis may leave the path within this way ahead of and behind a corner, mm (G641).
+  void set_corner_way(double mm) {
+    set_blend(0);
+    corner_way_ = mm;
+  }
+  /// What the way is measured over: mm for each mm or degree of an axis. Nothing: what the machine data say.
+  void set_path_weights(std::optional<std::array<double, 5>> weights) { path_weights_ = weights; }
+  /// How far the control may turn a rotary off its way with TCP, rad. Nothing: not said.
+  void set_blend_axis(std::optional<double> rad) { blend_axis_rad_ = rad; }
+  /// A line that the machine file states for the control's own smoothing, blanks around it left out: takes its effect. @returns it is one
+  bool site_smoothing(std::string_view line);
+  Problem tcp_on();
+  Problem tcp_off();
+  [[nodiscard]] bool tcp() const { return tcp_; }
+  /// Turns the frame of the words by this angle about Z through the work offset.
+  void turn_frame(double degrees) { frame_deg_ = degrees; }
+  Problem end_program(bool inside_call);
+
+  /// A block with axis words; `line` from 1.
+  Problem move(const Move& m, std::int32_t line);
+
+ private:
+  Problem move_to(const Move& m, std::int32_t line);
+  Problem roll(Move& m);
+  [[nodiscard]] bool at_zero(std::size_t axis) const;
+  Problem goal_of(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const;
+  Problem tip_goal(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const;
+  Problem corners(const std::array<double, 5>& goal, const Vec3& tip, ExecutedMove& e) const;
+  Problem feed_minutes(const Move& m, const std::array<double, 5>& joints, const Vec3& tip, double& minutes) const;
+  [[nodiscard]] std::array<double, 2> angles_of(double r0, double r1) const;
+  [[nodiscard]] Vec3 tip_of(const std::array<double, 5>& joints) const;
+  [[nodiscard]] std::array<double, 5> joints_for(const Vec3& tip, double r0, double r1) const;
+
+  const NcControl& control_;
+  NcRules rules_;
+  const std::function<void(const ExecutedMove&)>& sink_;
+  std::array<double, 5> joints_{};
+  Vec3 tip_ = Vec3::Zero();  // with TCP: table frame
+  bool tcp_ = false;
+  std::array<double, 5> rolled_{};  // rotaries that roll over by the sign of their words: as the control adds them up
+  double frame_deg_ = 0;
+  int operation_ = -1, tooth_ = -1, tool_ = -1, next_tool_ = -1;
+  Feed feed_mode_ = Feed::none;
+  std::optional<double> feed_, length_;
+  std::optional<Vec3> offset_;
+  double blend_mm_ = 0;
+  bool blend_is_linear_ = false, site_smoothing_ = false;
+  std::optional<double> corner_way_, blend_axis_rad_;
+  std::optional<std::array<double, 5>> path_weights_;
+  bool spindle_ = false, spindle_set_ = false, retracted_ = false;
+  bool unit_ = false, absolute_ = false;
+};
+
+}  // namespace toothpath::readback

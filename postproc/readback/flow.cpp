@@ -1,0 +1,275 @@
+#include "postproc/readback/flow.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toothpath::readback {
+namespace {
+constexpr std::size_t kDeepestCall = 8;
+}
+
+NcFlow::NcFlow(std::string_view text, const std::string& file, bool o_words, std::size_t max_steps)
+    : file_(file), o_words_(o_words), max_steps_(max_steps) {
+  split(text);
+  parameters_.assign(5001, 0);
+  parameter_set_.assign(5001, false);
+}
+
+Status NcFlow::run(const Words& words) {
+  if (auto bad = find_labels()) return *bad;
+  std::size_t steps = 0;
+  while (!ended_) {
+    if (pc_ >= lines_.size())
+      return at(lines_.size(), 0, o_words_ ? "the program ends without M2 or M30" : "the program ends without M30");
+    if (++steps > max_steps_) return at(pc_ + 1, 0, fmt::format("more than {} executed blocks", max_steps_));
+    line_ = pc_++;
+    const auto [block, problem] = fetch(line_);
+    if (block == nullptr) return problem;
+    const NcBlock& b = *block;
+    std::optional<Diagnostic> bad;
+    if (b.percent) {
+      if (line_ != 0) return here(1, "the program ends without M2 or M30");
+    } else if (b.o_word != OWord::none) {
+      bad = o_word(b);
+    } else if (!b.words.empty() && b.words.front().letter == '#') {
+      bad = assign(b);
+    } else {
+      bad = words(b);
+    }
+    if (bad) return *bad;
+  }
+  return after_end();
+}
+
+Diagnostic NcFlow::at(std::size_t line, int column, std::string message) const {
+  return {DiagnosticKind::refused_input, {file_, static_cast<int>(line), column}, std::move(message)};
+}
+
+std::optional<Diagnostic> NcFlow::call_program(std::int64_t number) {
+  if (frames_.size() >= kDeepestCall) return here(1, fmt::format("calls nest deeper than {}", kDeepestCall));
+  Frame f;
+  f.kind = OWord::program;
+  f.begin = pc_;
+  frames_.push_back(f);
+  pc_ = labels_.at(number) + 1;
+  return std::nullopt;
+}
+
+std::optional<Diagnostic> NcFlow::return_from_program(int column) {
+  if (frames_.empty()) return here(column, "M99 outside a sub-program");
+  pc_ = frames_.back().begin;
+  frames_.pop_back();
+  return std::nullopt;
+}
+
+void NcFlow::split(std::string_view text) {
+  std::size_t begin = 0;
+  while (begin < text.size()) {
+    std::size_t end = text.find('\n', begin);
+    if (end == std::string_view::npos) end = text.size();
+    std::string_view line = text.substr(begin, end - begin);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    lines_.push_back(line);
+    begin = end + 1;
+  }
+}
+/// Parsed line; lines of sub-programs and loops are parsed once.
+std::pair<const NcBlock*, Diagnostic> NcFlow::fetch(std::size_t line) {
+  if (const auto found = cache_.find(line); found != cache_.end()) return {&found->second, {}};
+  auto block = parse_nc_block(lines_[line], o_words_);
+  if (!block) {
+    Diagnostic d = block.error();
+    d.position.file = file_;
+    d.position.line = static_cast<int>(line) + 1;
+    return {nullptr, d};
+  }
+  if (frames_.empty()) {
+    once_ = std::move(*block);
+    return {&once_, {}};
+  }
+  return {&cache_.emplace(line, std::move(*block)).first->second, {}};
+}
+
+std::optional<Diagnostic> NcFlow::find_labels() {
+  std::vector<std::pair<OWord, std::int64_t>> open;
+  std::vector<std::size_t> open_line;
+  bool percent_first = false;
+  for (std::size_t i = 0; i < lines_.size(); ++i) {
+    const auto first = lines_[i].find_first_not_of(" \t");
+    if (first == std::string_view::npos) continue;
+    const char c = lines_[i][first];
+    if (c == '%') {
+      percents_.push_back(i);
+      percent_first = percent_first || i == 0;
+    }
+    if (c != 'o' && c != 'O') continue;
+    auto block = parse_nc_block(lines_[i], o_words_);
+    if (!block) {
+      Diagnostic d = block.error();
+      d.position.file = file_;
+      d.position.line = static_cast<int>(i) + 1;
+      return d;
+    }
+    const auto closes = [&](OWord head) -> std::optional<Diagnostic> {
+      if (open.empty() || open.back() != std::pair{head, block->o_number})
+        return at(i + 1, 1, fmt::format("o{} closes nothing", block->o_number));
+      ends_[open_line.back()] = i;
+      open.pop_back();
+      open_line.pop_back();
+      return std::nullopt;
+    };
+    switch (block->o_word) {
+      case OWord::program:
+        if (!labels_.emplace(block->o_number, i).second) return at(i + 1, 1, fmt::format("O{} occurs twice", block->o_number));
+        break;
+      case OWord::sub:
+        if (!open.empty()) return at(i + 1, 1, "sub inside another o-word");
+        if (!labels_.emplace(block->o_number, i).second) return at(i + 1, 1, fmt::format("o{} occurs twice", block->o_number));
+        [[fallthrough]];
+      case OWord::loop_while:
+      case OWord::repeat:
+        open.emplace_back(block->o_word, block->o_number);
+        open_line.push_back(i);
+        break;
+      case OWord::endsub:
+        if (auto bad = closes(OWord::sub)) return bad;
+        break;
+      case OWord::endwhile:
+        if (auto bad = closes(OWord::loop_while)) return bad;
+        break;
+      case OWord::endrepeat:
+        if (auto bad = closes(OWord::repeat)) return bad;
+        break;
+      default: break;
+    }
+  }
+  if (!open.empty()) return at(open_line.back() + 1, 1, fmt::format("o{} is never closed", open.back().second));
+  if (percents_.size() == 1 || percents_.size() > 2 || (percents_.size() == 2 && !percent_first))
+    return at(percents_.back() + 1, 1, "% must stand in the first and in the last line");
+  if (!o_words_ && percents_.size() != 2) return at(1, 1, "the program does not stand between % and %");
+  return std::nullopt;
+}
+
+/// Behind the end there may be comments and, on Fanuc, sub-programs.
+Status NcFlow::after_end() {
+  if (!o_words_) return Ok{};
+  for (std::size_t i = line_ + 1; i < lines_.size(); ++i) {
+    auto block = parse_nc_block(lines_[i], true);
+    if (!block || !block->words.empty() || block->o_word != OWord::none)
+      return at(i + 1, 1, "text behind the end of the program is not executed");
+  }
+  return Ok{};
+}
+
+const double* NcFlow::parameter(int n) const {
+  return parameter_set_[static_cast<std::size_t>(n)] ? &parameters_[static_cast<std::size_t>(n)] : nullptr;
+}
+Result<double> NcFlow::value(const NcBlock& b, const NcValue& v, int column) const {
+  auto r = evaluate(b, v, [this](int n) { return parameter(n); });
+  if (!r) return here(column, r.error().message);
+  if (!std::isfinite(*r) || std::abs(*r) > 1e9) return here(column, "value is not a number below 1e9");
+  return r;
+}
+
+std::optional<Diagnostic> NcFlow::assign(const NcBlock& b) {
+  for (const auto& w : b.words) {
+    if (w.letter != '#') return here(w.column, "a word in a line of assignments");
+    const auto v = value(b, w.value, w.column);
+    if (!v) return v.error();
+    parameters_[static_cast<std::size_t>(w.index)] = *v;
+    parameter_set_[static_cast<std::size_t>(w.index)] = true;
+  }
+  return std::nullopt;
+}
+
+std::optional<Diagnostic> NcFlow::o_word(const NcBlock& b) {
+  switch (b.o_word) {
+    case OWord::program:
+      if (started_) return here(1, "the program runs into a sub-program");
+      started_ = true;
+      return std::nullopt;
+    case OWord::sub:
+      pc_ = ends_.at(line_) + 1;  // a definition is stepped over
+      return std::nullopt;
+    case OWord::endsub: return end_call();
+    case OWord::call: return call(b);
+    case OWord::loop_while:
+    case OWord::repeat: return loop_head(b);
+    case OWord::endwhile:
+    case OWord::endrepeat:
+      if (frames_.empty() || frames_.back().number != b.o_number) return here(1, "end of a loop that is not running");
+      pc_ = frames_.back().begin;
+      return std::nullopt;
+    case OWord::none: break;
+  }
+  return std::nullopt;
+}
+
+std::optional<Diagnostic> NcFlow::call(const NcBlock& b) {
+  const auto label = labels_.find(b.o_number);
+  if (label == labels_.end()) return here(1, fmt::format("o{} is not defined", b.o_number));
+  if (frames_.size() >= kDeepestCall) return here(1, fmt::format("calls and loops nest deeper than {}", kDeepestCall));
+  if (label->second >= line_) return here(1, fmt::format("o{} is called before it is defined", b.o_number));
+  Frame f;
+  f.kind = OWord::call;
+  f.number = b.o_number;
+  f.begin = pc_;
+  for (std::size_t i = 0; i < 30; ++i) {
+    f.saved[i] = parameters_[i + 1];
+    f.saved_set[i] = parameter_set_[i + 1];
+  }
+  std::array<double, 30> arguments{};
+  for (std::size_t i = 0; i < b.arguments.size(); ++i) {
+    const auto v = value(b, b.arguments[i], 1);
+    if (!v) return v.error();
+    arguments[i] = *v;
+  }
+  for (std::size_t i = 0; i < 30; ++i) {
+    parameters_[i + 1] = arguments[i];
+    parameter_set_[i + 1] = i < b.arguments.size();
+  }
+  frames_.push_back(f);
+  pc_ = label->second + 1;
+  return std::nullopt;
+}
+
+std::optional<Diagnostic> NcFlow::end_call() {
+  if (frames_.empty() || frames_.back().kind != OWord::call) return here(1, "end of a sub-program that is not running");
+  const Frame& f = frames_.back();
+  for (std::size_t i = 0; i < 30; ++i) {
+    parameters_[i + 1] = f.saved[i];
+    parameter_set_[i + 1] = f.saved_set[i];
+  }
+  pc_ = f.begin;
+  frames_.pop_back();
+  return std::nullopt;
+}
+
+std::optional<Diagnostic> NcFlow::loop_head(const NcBlock& b) {
+  const auto v = value(b, b.arguments.front(), 1);
+  if (!v) return v.error();
+  const bool running = !frames_.empty() && frames_.back().kind == b.o_word && frames_.back().begin == line_;
+  bool again = false;
+  if (b.o_word == OWord::loop_while) {
+    again = *v != 0;
+  } else {
+    if (!running && (*v < 0 || *v != std::floor(*v))) return here(1, "repeat needs a whole number of turns");
+    again = running ? --frames_.back().repeats > 0 : *v > 0;
+  }
+  if (again && !running) {
+    if (frames_.size() >= kDeepestCall) return here(1, fmt::format("calls and loops nest deeper than {}", kDeepestCall));
+    Frame f;
+    f.kind = b.o_word;
+    f.number = b.o_number;
+    f.begin = line_;
+    f.repeats = *v;
+    frames_.push_back(f);
+  }
+  if (!again) {
+    if (running) frames_.pop_back();
+    pc_ = ends_.at(line_) + 1;
+  }
+  return std::nullopt;
+}
+
+}  // namespace toothpath::readback

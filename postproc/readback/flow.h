@@ -1,0 +1,81 @@
+// The flow of control of an ISO program: lines, o-words, loops, sub-programs, parameters. What a block does is the business
+// of whoever runs it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "postproc/readback/block.h"
+
+namespace toothpath::readback {
+
+class NcFlow {
+ public:
+  /// What a block of words does: a located error, or nothing.
+  using Words = std::function<std::optional<Diagnostic>(const NcBlock&)>;
+
+  /// @param o_words LinuxCNC: o-words and text without %; else M98 and a program between % and %
+  NcFlow(std::string_view text, const std::string& file, bool o_words, std::size_t max_steps);
+
+  /// Executes to the end of the program. `words` sees every block that is no o-word and no assignment, empty ones too.
+  [[nodiscard]] Status run(const Words& words);
+
+  /// A diagnostic in the line that is being executed.
+  [[nodiscard]] Diagnostic here(int column, std::string message) const { return at(line_ + 1, column, std::move(message)); }
+  [[nodiscard]] std::string_view text() const { return lines_[line_]; }  ///< of the line that is being executed
+  [[nodiscard]] std::int32_t line() const { return static_cast<std::int32_t>(line_) + 1; }
+  [[nodiscard]] Result<double> value(const NcBlock& b, const NcValue& v, int column) const;
+
+  /// M98, M99, M2.
+  [[nodiscard]] bool has_program(std::int64_t number) const { return labels_.count(number) != 0; }
+  [[nodiscard]] std::optional<Diagnostic> call_program(std::int64_t number);
+  [[nodiscard]] std::optional<Diagnostic> return_from_program(int column);
+  [[nodiscard]] bool inside_call() const { return !frames_.empty(); }
+  void end() { ended_ = true; }
+
+ private:
+  struct Frame {  // of a call or a loop
+    OWord kind = OWord::none;
+    std::int64_t number = 0;
+    std::size_t begin = 0;   // line of the loop's head, or where to go on after a call
+    double repeats = 0;
+    std::array<double, 30> saved{};
+    std::array<bool, 30> saved_set{};
+  };
+
+  void split(std::string_view text);
+  [[nodiscard]] Diagnostic at(std::size_t line, int column, std::string message) const;
+  std::pair<const NcBlock*, Diagnostic> fetch(std::size_t line);
+  std::optional<Diagnostic> find_labels();
+  Status after_end();
+  [[nodiscard]] const double* parameter(int n) const;
+  std::optional<Diagnostic> assign(const NcBlock& b);
+  std::optional<Diagnostic> o_word(const NcBlock& b);
+  std::optional<Diagnostic> call(const NcBlock& b);
+  std::optional<Diagnostic> end_call();
+  std::optional<Diagnostic> loop_head(const NcBlock& b);
+
+  const std::string& file_;
+  bool o_words_;
+  std::size_t max_steps_;
+  std::vector<std::string_view> lines_;
+  std::vector<std::size_t> percents_;
+  std::unordered_map<std::size_t, std::size_t> ends_;          // head line -> end line
+  std::unordered_map<std::int64_t, std::size_t> labels_;       // sub-program -> line
+  std::unordered_map<std::size_t, NcBlock> cache_;
+  NcBlock once_;
+  std::vector<Frame> frames_;
+  std::size_t pc_ = 0, line_ = 0;
+  bool ended_ = false, started_ = false;
+  std::vector<double> parameters_;
+  std::vector<bool> parameter_set_;
+};
+
+}  // namespace toothpath::readback

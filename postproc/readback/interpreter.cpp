@@ -1,0 +1,273 @@
+#include "postproc/readback/interpreter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "postproc/readback/flow.h"
+
+namespace toothpath::readback {
+namespace {
+
+constexpr unsigned kOffsets = 12;  // modal group
+
+class Interpreter {
+ public:
+  Interpreter(std::string_view text, const std::string& file, const NcControl& control,
+              const MoveSink& sink, const IsoLanguage& language)
+      : control_(control), language_(language), flow_(text, file, language.o_words, control.max_steps), execution_(control, language.rules, sink) {}
+
+  Status run() {
+    return flow_.run([this](const NcBlock& b) { return block(b); });
+  }
+
+ private:
+  using Problem = std::optional<Diagnostic>;
+  Diagnostic here(int column, std::string message) const { return flow_.here(column, std::move(message)); }
+  /// A problem of the execution, in its place.
+  Problem placed(int column, NcExecution::Problem problem) const {
+    if (!problem) return std::nullopt;
+    return here(column, std::move(*problem));
+  }
+
+  Problem block(const NcBlock& b) {
+    if (b.operation >= 0) execution_.begin_operation(b.operation);
+    if (b.tooth >= 0) execution_.begin_tooth(b.tooth);
+    if (b.words.empty() || execution_.site_smoothing(flow_.text())) return std::nullopt;
+    return words(b);
+  }
+
+  // Words of one block, sorted by meaning before anything happens.
+  struct Request {
+    NcExecution::Move move;
+    int motion = -1;           // G0 G1 in this block
+    int feed_mode = -1;        // 93 94
+    bool g53 = false, g43 = false, tcp = false, g49 = false, g64 = false, g61 = false;
+    bool extended = false;     // G54.1, its number in P
+    std::string offset;
+    std::vector<int> m;
+    int switch_tcp = -1;       // 1 on, 0 off: a code of the site
+    std::optional<double> f, s, h, t, p, q, l;
+    int column = 1;
+    int p_column = 1;
+    unsigned groups = 0;
+  };
+
+  Problem words(const NcBlock& b) {
+    Request r;
+    for (const auto& w : b.words) {
+      if (w.letter == '#') return here(w.column, "an assignment in a line of words");
+      const auto v = flow_.value(b, w.value, w.column);
+      if (!v) return v.error();
+      if (auto bad = take(r, w, *v)) return bad;
+    }
+    return apply(r);
+  }
+
+  /// Codes of the machine file that switch TCP.
+  bool site_code(Request& r, const std::string& code) const {
+    const auto is = [&](const std::vector<std::string>& list) { return std::find(list.begin(), list.end(), code) != list.end(); };
+    if (!is(control_.tcp_on) && !is(control_.tcp_off)) return false;
+    r.switch_tcp = is(control_.tcp_on) ? 1 : 0;
+    return true;
+  }
+
+  Problem once(std::optional<double>& slot, const NcWord& w, double v) {
+    if (slot) return here(w.column, fmt::format("two {} words in a block", w.letter));
+    slot = v;
+    return std::nullopt;
+  }
+
+  [[nodiscard]] bool has_m(int m) const {
+    static constexpr std::array<int, 6> common = {0, 2, 3, 5, 6, 30};
+    const bool call = m == 98 || m == 99;
+    return std::find(common.begin(), common.end(), m) != common.end() || (call && !language_.o_words) ||
+           std::find(language_.coolant_m.begin(), language_.coolant_m.end(), m) != language_.coolant_m.end();
+  }
+  [[nodiscard]] bool has_g(int tenths) const { return std::find(language_.g_tenths.begin(), language_.g_tenths.end(), tenths) != language_.g_tenths.end(); }
+
+  Problem take(Request& r, const NcWord& w, double v) {
+    switch (w.letter) {
+      case 'G': return take_g(r, w, v);
+      case 'M': {
+        const int m = static_cast<int>(std::lround(v));
+        if (v == m && language_.codes_of_site && site_code(r, fmt::format("M{}", m))) return std::nullopt;
+        if (v != m || !(has_m(m) || control_.switches_coolant(fmt::format("M{}", m)))) return here(w.column, fmt::format("M{} is not in the subset", v));
+        if (!r.m.empty()) return here(w.column, "two M words in a block");
+        r.m.push_back(m);
+        return std::nullopt;
+      }
+      case 'N': return std::nullopt;
+      case 'F': return once(r.f, w, v);
+      case 'S': return once(r.s, w, v);
+      case 'H': return once(r.h, w, v);
+      case 'T': return once(r.t, w, v);
+      case 'P': r.p_column = w.column; return once(r.p, w, v);
+      case 'Q': return once(r.q, w, v);
+      case 'L': return once(r.l, w, v);
+      default: break;
+    }
+    for (std::size_t a = 0; a < 5; ++a) {
+      if (control_.letters[a] != w.letter) continue;
+      if (r.move.has[a]) return here(w.column, fmt::format("two {} words in a block", w.letter));
+      if (language_.point_needed && !w.point) return here(w.column, fmt::format("{} without a decimal point", w.letter));
+      r.move.has[a] = true;
+      r.move.axis[a] = v;
+      r.column = w.column;
+      return std::nullopt;
+    }
+    return here(w.column, fmt::format("word {} is not in the subset or no axis of the machine", w.letter));
+  }
+
+  static std::string g_word(int tenths) {
+    return tenths % 10 == 0 ? fmt::format("G{}", tenths / 10) : fmt::format("G{}.{}", tenths / 10, tenths % 10);
+  }
+
+  /// Takes a G code of the family and gives its modal group; 0: it is none.
+  unsigned group_of(Request& r, int tenths) {
+    switch (tenths) {
+      case 0: case 10: r.motion = tenths / 10; return 1;
+      case 170: return 2;
+      case 900: execution_.set_absolute(); return 3;
+      case 930: case 940: r.feed_mode = tenths / 10; return 4;
+      case 210: execution_.set_unit(); return 5;
+      case 400: return 6;
+      case 430: r.g43 = true; return 7;
+      case 434: r.g43 = r.tcp = true; return 7;
+      case 490: r.g49 = true; return 7;
+      case 800: return 8;
+      case 530: r.g53 = true; return 9;
+      case 610: case 611: case 640:
+        r.g64 = tenths == 640;
+        r.g61 = !r.g64;
+        return 10;
+      case 921: return 11;
+      case 690: return 13;
+      case 540: case 550: case 560: case 570: case 580: case 590: case 591: case 592: case 593:
+        r.offset = g_word(tenths);
+        return kOffsets;
+      default: return 0;
+    }
+  }
+
+  Problem take_g(Request& r, const NcWord& w, double v) {
+    const int tenths = static_cast<int>(std::lround(v * 10));
+    const bool extended = tenths > 0 && tenths == language_.extended.tenths;
+    const unsigned group = extended ? kOffsets : group_of(r, tenths);
+    r.extended = r.extended || extended;
+    if (group == 0 || std::abs(v * 10 - tenths) > 1e-6) return here(w.column, fmt::format("G{} is not in the subset", v));
+    const bool special = tenths == 434 || tenths == 690 || tenths == 921 || tenths == 610 || tenths == 611 || tenths == 640 || (tenths > 590 && tenths < 600);
+    if (special && !has_g(tenths)) return here(w.column, fmt::format("G{} is not in the dialect", v));
+    if ((r.groups & (1U << group)) != 0) return here(w.column, "two G words of one modal group in a block");
+    r.groups |= 1U << group;
+    if (r.column == 1) r.column = w.column;
+    return std::nullopt;
+  }
+
+  Problem apply(Request& r) {
+    if (r.extended) {
+      const std::string code = g_word(language_.extended.tenths);
+      const int last = language_.extended.last;
+      if (!r.p || *r.p != std::floor(*r.p) || !(*r.p >= 1 && *r.p <= last)) return here(r.column, fmt::format("{} needs P1 to P{}", code, last));
+      r.offset = fmt::format("{} P{}", code, static_cast<int>(*r.p));
+      r.p.reset();
+    }
+    if ((r.p || r.q) && !r.g64 && (r.m.empty() || r.m.front() != 98)) return here(r.p_column, "P or Q without G64 or M98");
+    if (r.l) return here(r.column, "L is not in the subset");
+    if (r.g64 && (!r.p || *r.p == 0)) return here(r.column, fmt::format("G64 {} leaves the path without limit", r.p ? "P0" : "without P"));
+    if (r.g64 && (*r.p < 0 || r.q.value_or(0) < 0)) return here(r.column, "P and Q of G64 must not be negative");
+    // Without Q the lines that are joined may be off by P.
+    corners_said_ = corners_said_ || r.g64 || r.g61;
+    if (r.g64) execution_.set_blend(language_.corner_of_g64(*r.p, r.q.value_or(*r.p), control_.exact_path_mm), true);
+    if (r.g61) execution_.set_blend(control_.exact_path_mm);  // a stop leaves as much
+    if (r.feed_mode == 93) execution_.set_feed_mode(NcExecution::Feed::inverse_time);
+    if (r.feed_mode == 94) execution_.set_feed_mode(NcExecution::Feed::per_minute);
+    if (r.f)
+      if (auto bad = placed(r.column, execution_.set_feed(*r.f))) return bad;
+    if (r.s)
+      if (auto bad = placed(r.column, execution_.set_speed(*r.s))) return bad;
+    if (r.t)
+      if (auto bad = placed(r.column, execution_.choose_tool(*r.t))) return bad;
+    if (!r.offset.empty())
+      if (auto bad = placed(r.column, execution_.select_offset(r.offset))) return bad;
+    if (auto bad = length(r)) return bad;
+    for (const int m : r.m)
+      if (auto bad = machine_function(m, r)) return bad;
+    if (r.switch_tcp >= 0)
+      if (auto bad = placed(r.column, r.switch_tcp == 1 ? execution_.tcp_on() : execution_.tcp_off())) return bad;
+    if (r.motion >= 0) motion_ = r.motion;
+    if (r.g53 && !moves(r)) return here(r.column, "G53 without an axis word");
+    if (moves(r)) return move(r);
+    return std::nullopt;
+  }
+  static bool moves(const Request& r) {
+    return std::any_of(r.move.has.begin(), r.move.has.end(), [](bool h) { return h; });
+  }
+
+  Problem length(const Request& r) {
+    if (r.g49) {
+      // With G43.4 in force this is the end of TCP: it stands with a machine-coordinate move of Z.
+      if (has_g(434) && execution_.tcp()) {
+        if (!r.g53) return here(r.column, "G49 ends TCP and must stand with G53");
+        if (auto bad = placed(r.column, execution_.tcp_off())) return bad;
+      }
+      if (execution_.tcp()) return here(r.column, "G49 with TCP on");
+      execution_.drop_length();
+    }
+    if (r.h && !r.g43) return here(r.column, "H without G43");
+    if (!r.g43) return std::nullopt;
+    if (!r.h || *r.h != std::floor(*r.h) || !(*r.h >= 0 && *r.h < 1e6)) return here(r.column, "G43 needs the H of a tool in the list");
+    return placed(r.column, execution_.set_length(static_cast<int>(*r.h)));
+  }
+
+  Problem machine_function(int m, const Request& r) {
+    switch (m) {
+      case 3: return placed(r.column, execution_.spindle_on());
+      case 5: execution_.spindle_off(); break;
+      case 6: return placed(r.column, execution_.change_tool());
+      case 2:
+      case 30:
+        flow_.end();
+        return placed(r.column, execution_.end_program(flow_.inside_call()));
+      case 98: {
+        const std::int64_t p = r.p && std::abs(*r.p) < 1e9 ? static_cast<std::int64_t>(*r.p) : -1;
+        if (moves(r) || !flow_.has_program(p)) return here(r.column, "M98 needs the P of a sub-program in this file and no axis word");
+        return flow_.call_program(p);
+      }
+      case 99: return flow_.return_from_program(r.column);
+      default: break;  // coolants
+    }
+    return std::nullopt;
+  }
+
+  Problem move(Request& r) {
+    if (motion_ < 0) return here(r.column, "axis word before G0 or G1");
+    if (r.g53 && motion_ != 0) return here(r.column, "G53 with G1");
+    if (language_.corner_of_g64 != nullptr && motion_ == 1 && !corners_said_)
+      return here(r.column, "G1 ahead of G61, G61.1 or G64 P: how far the control leaves the path would depend on the last program");
+    r.move.rapid = motion_ == 0;
+    r.move.machine_frame = r.g53;
+    r.move.compensation = r.g43 && !r.tcp;
+    r.move.own_feed = r.f.has_value();
+    const auto& has = r.move.has;
+    if (r.tcp && (has[0] || has[1] || has[3] || has[4] || motion_ != 0))
+      return here(r.column, "G43.4 moves Z alone, with G0");
+    if (auto bad = placed(r.column, execution_.move(r.move, flow_.line()))) return bad;
+    return r.tcp ? placed(r.column, execution_.tcp_on()) : std::nullopt;
+  }
+
+  const NcControl& control_;
+  const IsoLanguage& language_;
+  NcFlow flow_;
+  NcExecution execution_;
+  int motion_ = -1;
+  bool corners_said_ = false;  // G61, G61.1 or G64 P
+};
+
+}  // namespace
+
+Status execute_iso(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink, const IsoLanguage& language) {
+  return Interpreter(text, file, control, sink, language).run();
+}
+
+}  // namespace toothpath::readback

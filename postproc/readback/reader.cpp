@@ -1,0 +1,282 @@
+#include "postproc/readback/reader.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "geometry/base/angle.h"
+#include "postproc/readback/operation_moves.h"
+
+namespace toothpath::readback {
+namespace {
+
+constexpr double kReadCoincident = 1e-9;  // mm
+constexpr double kReadParallel = 1e-12;
+constexpr double kSameTip = 1e-9;           // mm: round-off of a turned frame
+constexpr float kSameShare = 1e-6F;         // of a block: its length with the round-off of a turned frame
+constexpr double kReadTipStep = radians(0.5);   // joints follow a straight tip: looked at in such steps of the rotaries
+
+bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
+
+/// Compares the teeth of a program as they are executed.
+class CopyCheck {
+ public:
+  CopyCheck(const std::map<int, OperationMoves>& counts, const NcControl& control, const joints::Setup& setup, int teeth, int index_sign)
+      : counts_(counts), control_(control), setup_(setup), teeth_(teeth), sign_(index_sign) {
+    result_.copies = true;
+    for (const auto& [op, c] : counts) {
+      if (op < 0) continue;
+      const auto z = static_cast<std::size_t>(teeth);
+      if (c.teeth() == 0 || c.teeth() % z != 0)
+        differ(0, fmt::format("operation {}: {} moves are not {} equal teeth", op, c.teeth(), teeth));
+      else
+        state_[op].per_tooth = c.teeth() / z;
+    }
+    if (index_sign == 0 && teeth > 1) differ(0, "the gear axis is not the axis of the rotary that carries the work");
+  }
+
+  void operator()(const ExecutedMove& m) {
+    if (m.operation < 0) return;
+    State& s = state_[m.operation];
+    const OperationMoves& c = counts_.at(m.operation);
+    const std::size_t i = s.seen++;
+    if (i < c.lead || i >= c.total - c.trail) {
+      if (i < c.lead) s.kept.push_back(m);
+      return;
+    }
+    if (!result_.copies) return;
+    const std::size_t copy = (i - c.lead) / s.per_tooth, position = (i - c.lead) % s.per_tooth;
+    if (copy == 0) {
+      if (position == 0) s.turns.push_back(0);
+      s.kept.push_back(m);
+      return;
+    }
+    if (position == 0) {
+      s.commanded = 0;
+      s.turn_known = false;
+    }
+    s.commanded = static_cast<std::uint8_t>(s.commanded | m.commanded);
+    if (copy == 1 && m.rapid && s.kept.size() == c.lead + s.per_tooth + position) s.kept.push_back(m);  // link to the second
+    const ExecutedMove first = s.kept[c.lead + position];
+    compare(m, s, first);
+  }
+
+  TurnedCopies finish() {
+    for (auto& [op, s] : state_) {
+      std::vector<bool> met(static_cast<std::size_t>(teeth_), false);
+      for (const int k : s.turns) {
+        if (result_.copies && met[static_cast<std::size_t>(k)]) differ(0, fmt::format("operation {}: tooth {} twice", op, k));
+        met[static_cast<std::size_t>(k)] = true;
+      }
+      result_.operations.push_back({op, s.per_tooth, s.turns});
+    }
+    return result_;
+  }
+  std::vector<ExecutedMove> take(int operation) { return std::move(state_[operation].kept); }
+
+ private:
+  struct State {
+    std::size_t per_tooth = 0, seen = 0;
+    std::uint8_t commanded = 0;  // axes with a word since this copy began
+    bool turn_known = false;
+    int turn = 0;  // of this copy, whole index steps, not reduced
+    std::vector<int> turns;
+    std::vector<ExecutedMove> kept;
+  };
+
+  void compare(const ExecutedMove& m, State& s, const ExecutedMove& first) {
+    // An axis without a word so far still stands where the tooth before left it; nothing is cut like that.
+    const auto set = [&](std::size_t a) { return control_.letters[a] == 0 || (s.commanded & (1U << a)) != 0; };
+    if (m.commanded != first.commanded) return differ(m.line, "other axes are named than in the first tooth");
+    for (std::size_t a = 0; a < 5; ++a) {
+      if (!m.rapid && !set(a)) return differ(m.line, fmt::format("the tooth cuts before it has set {}", control_.letters[a]));
+      if (a == 3 || !set(a) || (m.tcp && a < 3)) continue;
+      if (!same(m.joints[a], first.joints[a]))
+        return differ(m.line, fmt::format("{} = {} where the first tooth has {}", control_.letters[a], m.joints[a], first.joints[a]));
+    }
+    const double pitch = 360.0 / teeth_;
+    const double turned = sign_ * (m.joints[3] - first.joints[3]);
+    if (set(3) && !s.turn_known) {
+      s.turn_known = true;
+      const int k = static_cast<int>(std::lround(turned / pitch));
+      s.turn = k;
+      s.turns.push_back(((k % teeth_) + teeth_) % teeth_);
+    }
+    if (!set(3)) return;
+    const double error = std::abs(turned - s.turn * 360.0 / teeth_);
+    result_.worst_shift_deg = std::max(result_.worst_shift_deg, error);
+    if (!(error <= control_.rotary_rounding_deg * (1 + 1e-6) + 1e-9))
+      return differ(m.line, fmt::format("{} is turned by {} deg where {} * 360 / {} is expected", control_.letters[3], turned,
+                                        s.turn, teeth_));
+    if (m.tcp != first.tcp || (m.tcp && (m.tip - turned_tip(first.tip, s.turn)).norm() > kSameTip))
+      return differ(m.line, "the tip is not that of the first tooth, turned");
+    if (m.blend_mm != first.blend_mm || m.blend_axis_rad != first.blend_axis_rad || m.corner_path_mm != first.corner_path_mm ||
+        std::abs(m.corner_share - first.corner_share) > kSameShare)
+      return differ(m.line, "the control may leave corners otherwise than in the first tooth");
+    if (m.rapid != first.rapid || m.tool != first.tool) return differ(m.line, "rapid and feed or tool differ");
+    if (!m.rapid && std::abs(m.minutes - first.minutes) > 1e-9 * first.minutes + 1e-12)
+      return differ(m.line, fmt::format("block takes {} min where the first tooth has {}", m.minutes, first.minutes));
+  }
+  /// Without TCP bit for bit; with it the joints behind a cut follow from a turned tip, with its round-off.
+  bool same(double a, double b) const { return same_bits(a, b) || (control_.chain && std::abs(a - b) <= kSameTip); }
+  /// A point of the table, turned by whole index steps about the gear axis.
+  Vec3 turned_tip(const Vec3& p, int turn) const {
+    const Vec3 axis = setup_.rotation().col(2);
+    return setup_.origin_mm + Eigen::AngleAxisd(2 * kPi * turn / teeth_, axis) * (p - setup_.origin_mm);
+  }
+  void differ(int line, std::string what) {
+    if (!result_.copies) return;
+    result_.copies = false;
+    result_.line = line;
+    result_.difference = std::move(what);
+  }
+
+  const std::map<int, OperationMoves>& counts_;
+  const NcControl& control_;
+  const joints::Setup& setup_;
+  int teeth_, sign_;
+  std::map<int, State> state_;
+  TurnedCopies result_;
+};
+
+/// Collects the moves that stand in no trace of an operation, with the moves that they start from.
+class Between {
+ public:
+  /// @param trails  of operations: kept by no trace where the teeth are copies
+  Between(const std::map<int, OperationMoves>& counts, bool trails) : counts_(counts), trails_(trails) {}
+
+  void operator()(const ExecutedMove& m) {
+    const OperationMoves& c = counts_.at(m.operation);
+    const std::size_t i = seen_[m.operation]++;
+    const bool outside = m.operation < 0 || i == 0 || (trails_ && i >= c.total - c.trail);
+    if (!outside) {
+      open_ = false;
+    } else {
+      if (!open_ || made_.back().operation != m.operation || made_.back().tool != m.tool) begin(m);
+      made_.back().moves.push_back(m);
+    }
+    before_ = m;
+  }
+  std::vector<OperationTrace> take() { return std::move(made_); }
+
+ private:
+  /// With the tool of the stretch: it is changed where the gauge line stands.
+  void begin(const ExecutedMove& m) {
+    OperationTrace t;
+    t.operation = m.operation;
+    t.tool = m.tool;
+    t.moves.push_back(before_);
+    t.moves.front().tool = m.tool;
+    made_.push_back(std::move(t));
+    open_ = true;
+  }
+
+  const std::map<int, OperationMoves>& counts_;
+  bool trails_, open_ = false;
+  std::map<int, std::size_t> seen_;
+  ExecutedMove before_;
+  std::vector<OperationTrace> made_;
+};
+
+/// +1, -1: word of the index rotary per turn of the gear; 0: the gear is not turned about its own axis.
+int index_sign(const machines::Machine& machine, const joints::Setup& setup) {
+  if (machine.chain.table.empty()) return 0;
+  const machines::RotaryAxis& c = machine.chain.table[0];
+  const Vec3 g = setup.rotation().col(2);
+  if (c.direction.cross(g).norm() > kReadParallel) return 0;
+  if ((setup.origin_mm - c.point_mm).cross(c.direction).norm() > kReadCoincident) return 0;
+  return c.direction.dot(g) > 0 ? c.sign : -c.sign;
+}
+
+}  // namespace
+
+void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcControl& control, const machines::KinematicChain& chain,
+                const std::function<void(const std::array<double, 5>&)>& sink) {
+  const auto length = control.tool_length_mm.find(to.tool);
+  const double turn = radians(std::abs(to.joints[3] - from.joints[3]) + std::abs(to.joints[4] - from.joints[4]));
+  if (turn == 0 || length == control.tool_length_mm.end() || !std::isfinite(turn)) return;
+  const auto& j = from.joints;
+  const Vec3 start = from.tcp ? from.tip : chain.forward({Vec3(j[0], j[1], j[2]), {radians(j[3]), radians(j[4])}}, length->second).tip_mm;
+  const int n = static_cast<int>(std::min(1e5, std::ceil(turn / kReadTipStep))) + 3;
+  for (int i = 1; i < n; ++i) {
+    const double t = static_cast<double>(i) / n;
+    const double r0 = (1 - t) * j[3] + t * to.joints[3], r1 = (1 - t) * j[4] + t * to.joints[4];
+    const Vec3 x = chain.linear_for((1 - t) * start + t * to.tip, {radians(r0), radians(r1)}, length->second).linear_mm;
+    sink({x.x(), x.y(), x.z(), r0, r1});
+  }
+}
+
+Status execute_nc(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
+  if (control.execute == nullptr) return fail("a control without a reader: its programs cannot be read back");
+  return control.execute(text, file, control, sink);
+}
+
+Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control, const machines::Machine& machine,
+                           const joints::Setup& setup, const ReadBackOptions& options) {
+  ReadBack result;
+  result.least.fill(std::numeric_limits<double>::infinity());
+  result.greatest.fill(-std::numeric_limits<double>::infinity());
+  std::map<int, OperationMoves> counts;
+  const auto reach = [&result](const std::array<double, 5>& joints) {
+    for (std::size_t a = 0; a < 5; ++a) {  // NaN (not yet known) passes neither comparison
+      if (joints[a] < result.least[a]) result.least[a] = joints[a];
+      if (joints[a] > result.greatest[a]) result.greatest[a] = joints[a];
+    }
+  };
+  ExecutedMove before;
+  const auto count = [&](const ExecutedMove& m) {
+    ++result.executed;
+    result.minutes += m.minutes;
+    if (!m.rapid) result.feed_minutes += m.minutes;
+    if (m.tcp && m.known) follow_tip(before, m, control, machine.chain, reach);
+    if (!control.cutter_locations && result.mixed_rapid == 0 && mixes_axis_groups(before, m)) result.mixed_rapid = m.line;
+    before = m;
+    reach(m.joints);
+    counts[m.operation].add(m);
+  };
+  if (auto s = execute_nc(text, file, control, count); !s) return s.error();
+
+  CopyCheck check(counts, control, setup, options.teeth, index_sign(machine, setup));
+  Between between(counts, true);
+  const auto look = [&](const ExecutedMove& m) {
+    check(m);
+    between(m);
+  };
+  if (auto s = execute_nc(text, file, control, look); !s) return s.error();
+  result.between = between.take();
+  result.copies = check.finish();
+
+  const bool all = options.keep_all || !result.copies.copies;
+  std::map<int, OperationTrace> traces;
+  if (all) {
+    if (result.executed > options.max_kept) {
+      Diagnostic error = fail("{} moves would have to be kept, more than {}: the teeth are not turned copies of the first one ({})", result.executed,
+                              options.max_kept, result.copies.copies ? "all are asked for" : result.copies.difference);
+      error.position = {file, result.copies.line, 0};
+      return error;
+    }
+    for (const auto& [op, c] : counts) traces[op].moves.reserve(c.total);
+    Between gaps(counts, false);
+    const auto keep = [&](const ExecutedMove& m) {
+      traces[m.operation].moves.push_back(m);
+      gaps(m);
+    };
+    if (auto s = execute_nc(text, file, control, keep); !s) return s.error();
+    result.between = gaps.take();
+  } else {
+    for (const auto& [op, c] : counts)
+      if (op >= 0) traces[op].moves = check.take(op);
+  }
+  for (auto& [op, t] : traces) {
+    if (op < 0) continue;
+    t.operation = op;
+    t.lead = counts[op].lead;
+    t.kept_teeth = all ? static_cast<std::size_t>(options.teeth) : 1;
+    t.tool = t.moves.empty() ? 0 : t.moves.back().tool;
+    result.operations.push_back(std::move(t));
+  }
+  return result;
+}
+
+}  // namespace toothpath::readback

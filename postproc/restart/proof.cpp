@@ -1,0 +1,162 @@
+#include "postproc/restart/proof.h"
+
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "postproc/readback/operation_moves.h"
+
+namespace toothpath::restart {
+namespace {
+
+/// Moves of a text, and those of one operation.
+struct Count {
+  std::size_t total = 0;
+  readback::OperationMoves operation;
+};
+
+Result<Count> count_moves(std::string_view text, const std::string& file, const readback::NcControl& control, int operation) {
+  Count c;
+  const auto sink = [&](const readback::ExecutedMove& m) {
+    ++c.total;
+    if (m.operation == operation) c.operation.add(m);
+  };
+  if (auto s = readback::execute_nc(text, file, control, sink); !s) return s.error();
+  return c;
+}
+
+/// A move as a number, without the axes that had no word since the first tooth began. Two moves that differ have the same number
+/// once in 2^64.
+class Fingerprint {
+ public:
+  explicit Fingerprint(const readback::NcControl& control) : control_(control) {}
+
+  std::uint64_t of(const readback::ExecutedMove& m) {
+    set_ = static_cast<std::uint8_t>(set_ | m.commanded);
+    h_ = 14695981039346656037ULL;
+    add(static_cast<std::uint64_t>(m.operation) << 32 | static_cast<std::uint32_t>(m.tool));
+    add(static_cast<std::uint64_t>(m.tooth) << 16 | static_cast<std::uint64_t>(m.commanded) << 4 | (m.rapid ? 1U : 0U) | (m.tcp ? 2U : 0U) |
+        (m.machine ? 4U : 0U));
+    // A vector stands for the rotaries: which of their positions has it follows from where they stood.
+    add(m.vector_print);
+    for (std::size_t a = m.tcp ? 3 : 0; a < 5; ++a)
+      if ((set_ & (1U << a)) != 0 && m.vector_print == 0) add_joint(m, a);
+    if (m.tcp)
+      for (int i = 0; i < 3; ++i) add(std::bit_cast<std::uint64_t>(m.tip[i]));
+    if (!m.rapid) add(std::bit_cast<std::uint64_t>(m.minutes));
+    for (const float v : {m.blend_mm, m.blend_axis_rad, m.corner_path_mm, m.corner_share}) add(std::bit_cast<std::uint32_t>(v));
+    return h_;
+  }
+  /// Every axis of the machine has had its word.
+  [[nodiscard]] bool all_set(const readback::NcControl& control) const {
+    for (std::size_t a = 0; a < 5; ++a)
+      if (control.letters[a] != 0 && (set_ & (1U << a)) == 0) return false;
+    return true;
+  }
+
+ private:
+  /// A rotary that rolls over counts by its place within the turn, where it has a word.
+  void add_joint(const readback::ExecutedMove& m, std::size_t a) {
+    double v = m.joints[a];
+    if (control_.rollover[a] && (m.commanded & (1U << a)) == 0) return;
+    if (control_.rollover[a]) v -= 360 * std::floor(v / 360);
+    add(std::bit_cast<std::uint64_t>(v));
+  }
+  void add(std::uint64_t v) {
+    h_ = (h_ ^ v) * 1099511628211ULL;
+    h_ ^= h_ >> 32;
+  }
+  const readback::NcControl& control_;
+  std::uint8_t set_ = 0;
+  std::uint64_t h_ = 0;
+};
+
+struct Kept {
+  std::uint64_t print = 0;
+  std::int32_t line = 0;
+};
+
+}  // namespace
+
+Result<RestartProof> prove_restart(std::string_view whole, std::string_view restart, const std::string& file, const readback::NcControl& control, int operation,
+                                   int tooth, int place, int teeth) {
+  const auto all = count_moves(whole, file, control, operation);
+  if (!all) return all.error();
+  const auto part = count_moves(restart, file, control, operation);
+  if (!part) return part.error();
+  RestartProof proof;
+  proof.least.fill(std::numeric_limits<double>::infinity());
+  proof.greatest.fill(-std::numeric_limits<double>::infinity());
+  const auto differs = [&](int line, int whole_line, std::string what) {
+    if (proof.difference.empty()) {
+      proof.line = line;
+      proof.whole_line = whole_line;
+      proof.difference = std::move(what);
+    }
+  };
+  const auto z = static_cast<std::size_t>(teeth), left = static_cast<std::size_t>(teeth - place);
+  // Where no comment names the teeth their number of moves does.
+  const readback::OperationMoves &in_all = all->operation, &in_part = part->operation;
+  if (!in_all.labelled && in_part.teeth() * z != in_all.teeth() * left)
+    differs(0, 0, fmt::format("operation {} has {} moves from tooth {} on, not {} of {} teeth of the {} of the whole program", operation,
+                              in_part.teeth(), tooth, left, teeth, in_all.teeth()));
+  const std::size_t tail = part->total - in_part.lead;
+  if (tail > all->total) differs(0, 0, "the restart has more moves than the whole program");
+  if (!proof.difference.empty()) return proof;
+
+  std::vector<Kept> kept;
+  kept.reserve(tail);
+  std::size_t i = 0;
+  Fingerprint print(control);
+  readback::ExecutedMove before;
+  auto s = readback::execute_nc(whole, file, control, [&](const readback::ExecutedMove& m) {
+    if (i++ < all->total - tail) {
+      before = m;
+      return;
+    }
+    if (kept.empty() && m.tooth >= 0 && before.operation == operation && before.tooth == m.tooth && !before.machine)
+      differs(0, m.line, "the restart begins inside a tooth");
+    if (kept.empty() && (m.operation != operation || (m.tooth >= 0 && m.tooth != tooth)))
+      differs(0, m.line, fmt::format("the whole program is at operation {} tooth {} there", m.operation, m.tooth));
+    kept.push_back({print.of(m), m.line});
+  });
+  if (!s) return s.error();
+
+  i = 0;
+  Fingerprint own(control);
+  bool cut = false;
+  const auto reach = [&proof](const std::array<double, 5>& joints) {
+    for (std::size_t a = 0; a < 5; ++a) {  // NaN (not yet known) passes neither comparison
+      if (joints[a] < proof.least[a]) proof.least[a] = joints[a];
+      if (joints[a] > proof.greatest[a]) proof.greatest[a] = joints[a];
+    }
+  };
+  readback::ExecutedMove last;
+  s = readback::execute_nc(restart, file, control, [&](const readback::ExecutedMove& m) {
+    reach(m.joints);
+    if (m.tcp && m.known && control.chain) readback::follow_tip(last, m, control, *control.chain, reach);
+    last = m;
+    if (!cut) proof.approach.moves.push_back(m);
+    cut = cut || !m.rapid;
+    const std::size_t n = i++;
+    if (n < in_part.lead) {
+      if (!m.machine) differs(m.line, 0, "a move ahead of the first tooth is no machine move");
+      return;
+    }
+    const Kept& k = kept[n - in_part.lead];
+    if (own.of(m) != k.print) differs(m.line, k.line, "another move than in the whole program");
+    if (!m.rapid && !own.all_set(control)) differs(m.line, k.line, "a cut before every axis has had its word");
+    proof.line_of.emplace(k.line, m.line);
+  });
+  if (!s) return s.error();
+  proof.moves = i - in_part.lead;
+  proof.approach.operation = operation;
+  proof.approach.lead = in_part.lead;
+  proof.approach.tool = proof.approach.moves.empty() ? 0 : proof.approach.moves.back().tool;
+  proof.approach.kept_teeth = 1;
+  proof.same = proof.difference.empty();
+  return proof;
+}
+
+}  // namespace toothpath::restart

@@ -1,0 +1,212 @@
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "cam/tool/assembly.h"
+#include "postproc/controls/of_machine.h"
+#include "postproc/joints/words.h"
+#include "postproc/numbers/fixed_point.h"
+#include "postproc/self_test/self_test.h"
+#include "postproc/readback/reader.h"
+
+namespace toothpath::self_test {
+namespace {
+
+constexpr double kFeed = 500;       // mm/min of the tip on the way down and up
+constexpr double kTurnSpeed = 720;  // deg/min: slow enough to watch
+
+class SelfTestBuilder {
+ public:
+  SelfTestBuilder(const SelfTest& test, const machines::Machine& machine, const text::NcDialect& dialect)
+      : test_(test), machine_(machine), words_(machine.chain, dialect.format, test.point_mm) {
+    words_.set_length(test.tool_length_mm);
+    joints::AxisProgram& p = program_;
+    p.format = dialect.format;
+    p.letters = {'X', 'Y', 'Z', 0, 0};
+    for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
+      p.letters[3 + k] = machine.chain.rotary(k).letter;
+      p.rollover[3 + k] = machine.chain.rotary(k).rollover;
+    }
+    p.tcp = machine.tcp == machines::TcpMode::none ? machines::TcpMode::none : machines::TcpMode::angles;
+    p.tcp_starts_at_zero = dialect.tcp_starts_at_zero;
+    const double unit = static_cast<double>(numbers::power_of_ten(dialect.format.linear_decimals));
+    p.retract_z_mm = std::floor((machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm) * unit + 1e-6) / unit;
+    p.work_offset_at_mm = test.point_mm;
+    p.assumed = machine.assumed_keys;
+  }
+
+  joints::AxisProgram build() && {
+    program_.turns_in_cuts = true;
+    for (std::size_t k = 0; k < machine_.chain.rotary_count(); ++k)
+      program_.tip_reach_mm = std::max(program_.tip_reach_mm, (machine_.chain.rotary(k).point_mm - test_.point_mm).norm() + test_.tool_length_mm);
+    joints::AxisOperation op;
+    op.type = "self_test";
+    op.tool_number = 1;
+    op.tool_length_mm = test_.tool_length_mm;
+    op.tool_name = "TEST BAR";
+    op.spindle_rpm = 100;  // stands where a control wants it with the tool; nothing starts the spindle
+    std::size_t next = 1;
+    for (std::size_t s = 0; s < test_.stations.size(); ++s) {
+      joints::ToothBlocks part;
+      part.tooth = static_cast<int>(s);
+      part.remark = fmt::format("STATION {} OF {}: {}", s + 1, test_.stations.size(), test_.stations[s].remark);
+      part.pause = true;
+      if (s == 0) approach(part);
+      for (; next < test_.moves.size() && s > 0; ++next) {
+        turn(part, test_.moves[next].joints);
+        if (test_.moves[next].station >= 0) {
+          ++next;
+          break;
+        }
+      }
+      if (!part.blocks.empty()) part.blocks.front().forced = true;
+      op.teeth.push_back(std::move(part));
+    }
+    joints::ToothBlocks last;
+    last.tooth = static_cast<int>(test_.stations.size());
+    last.remark = "AWAY FROM THE POINT";
+    leave(last);
+    op.teeth.push_back(std::move(last));
+    program_.operations.push_back(std::move(op));
+    return std::move(program_);
+  }
+
+ private:
+  [[nodiscard]] bool tcp() const { return program_.tcp != machines::TcpMode::none; }
+  /// The point, or a place above it, with the rotaries as given.
+  joints::AxisBlock at(joints::BlockKind kind, double height, const std::array<double, 2>& rotaries, bool tip) const {
+    joints::AxisBlock b;
+    b.kind = kind;
+    const Vec3 place = test_.point_mm + Vec3(0, 0, height);
+    if (tip) words_.set_tip(b, place, rotaries);
+    else words_.set_joints(b, machine_.chain.linear_for(place, rotaries, test_.tool_length_mm).linear_mm, rotaries);
+    b.axis = machine_.chain.forward({Vec3::Zero(), rotaries}, test_.tool_length_mm).axis;
+    return b;
+  }
+  void straight(joints::ToothBlocks& part, double height, double length, const std::array<double, 2>& rotaries) const {
+    joints::AxisBlock b = at(joints::BlockKind::feed, height, rotaries, tcp());
+    b.minutes = length / kFeed;
+    b.per_minute = kFeed;
+    part.blocks.push_back(b);
+  }
+  void approach(joints::ToothBlocks& part) const {
+    const auto& zero = test_.stations.front().rotary_rad;
+    for (const joints::BlockKind kind : {joints::BlockKind::rapid_rotary, joints::BlockKind::rapid_xy, joints::BlockKind::rapid_z}) {
+      // Where TCP starts at its own block with Z, that block comes down.
+      if (kind == joints::BlockKind::rapid_z && tcp() && program_.tcp_starts_at_zero) continue;
+      joints::AxisBlock b = at(kind, test_.approach_mm, zero, false);
+      b.forced = true;
+      part.blocks.push_back(b);
+    }
+    if (tcp()) part.blocks.push_back(at(joints::BlockKind::tcp_on, test_.approach_mm, zero, true));
+    straight(part, 0, test_.approach_mm, zero);
+  }
+  /// To the next pose; with TCP the control itself keeps the tip on the point.
+  void turn(joints::ToothBlocks& part, const machines::Joints& to) {
+    const auto before = words_.rounded(at_);
+    const auto after = words_.rounded(to.rotary_rad);
+    at_ = to.rotary_rad;
+    const double angle = std::max(std::abs(degrees(after[0] - before[0])), std::abs(degrees(after[1] - before[1])));
+    if (angle == 0) return;
+    joints::AxisBlock b = at(tcp() ? joints::BlockKind::turn : joints::BlockKind::feed, 0, after, tcp());
+    b.minutes = angle / kTurnSpeed;
+    b.per_minute = kTurnSpeed;
+    part.blocks.push_back(b);
+  }
+  void leave(joints::ToothBlocks& part) const {
+    const auto& zero = test_.stations.back().rotary_rad;
+    straight(part, test_.approach_mm, test_.approach_mm, zero);
+    part.blocks.front().forced = true;
+    if (tcp()) part.blocks.push_back(at(joints::BlockKind::tcp_off, test_.approach_mm, zero, false));
+  }
+
+  const SelfTest& test_;
+  const machines::Machine& machine_;
+  joints::AxisWords words_;
+  joints::AxisProgram program_;
+  std::array<double, 2> at_ = test_.stations.front().rotary_rad;
+};
+
+}  // namespace
+
+joints::AxisProgram self_test_program(const SelfTest& test, const machines::Machine& machine, const text::NcDialect& dialect) {
+  return SelfTestBuilder(test, machine, dialect).build();
+}
+
+text::NcDialect in_air(text::NcDialect dialect) {
+  // Everything but the start of the spindle: the machinist stands beside the indicator.
+  std::erase_if(dialect.tool_change, [](const std::string& line) { return line == "M3" || line.ends_with(" M3"); });
+  dialect.smoothing_on.clear();  // nothing is cut
+  dialect.smoothing_off.clear();
+  return dialect;
+}
+
+Result<SelfTestProof> prove_self_test(std::string_view text, const std::string& file, const SelfTest& test, const machines::Machine& machine) {
+  tool::ToolAssembly bar;
+  bar.number = 1;
+  bar.length_mm = test.tool_length_mm;
+  joints::Setup setup;
+  setup.work_offset_at_mm = test.point_mm;
+  auto control = controls::control_of(machine, setup, std::span(&bar, 1));
+  if (!control) return control.error();
+  control->dry_run = true;
+  const double allowed = test.tip_bound_mm + 0.003;
+  SelfTestProof proof;
+  std::size_t next = 0;  // station that comes next
+  bool on_point = false;
+  std::optional<Diagnostic> error;
+  machines::Joints before;
+  const auto joints_of = [](const readback::ExecutedMove& m) {
+    machines::Joints j;
+    for (int i = 0; i < 3; ++i) j.linear_mm[i] = m.joints[static_cast<std::size_t>(i)];
+    for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = radians(m.joints[3 + k]);
+    return j;
+  };
+  const auto fault = [&](const readback::ExecutedMove& m, std::string what) {
+    if (error) return;
+    error = fail_as(DiagnosticKind::verification, "{}", what);
+    error->position = {file, m.line, 0};
+  };
+  const auto status = readback::execute_nc(text, file, *control, [&](const readback::ExecutedMove& m) {
+    proof.minutes += m.minutes;
+    if (!m.known || error) return;
+    const machines::Joints now = joints_of(m);
+    const auto outside = machine.chain.violations(now, machine.limit_margin);
+    if (!outside.empty()) fault(m, outside.front().text());
+    const auto distance = [&](const machines::Joints& j) { return (machine.chain.forward(j, test.tool_length_mm).tip_mm - test.point_mm).norm(); };
+    const double off = distance(now);
+    if (on_point && next < test.stations.size()) {
+      ++proof.moves;
+      for (int s = 1; s <= 4; ++s) {
+        // With TCP the control holds the tip on its chord; else every joint is linear.
+        machines::Joints j;
+        const double t = s / 4.0;
+        j.linear_mm = before.linear_mm + t * (now.linear_mm - before.linear_mm);
+        for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = before.rotary_rad[k] + t * (now.rotary_rad[k] - before.rotary_rad[k]);
+        proof.worst_mm = std::max(proof.worst_mm, m.tcp ? off : distance(j));
+      }
+      if (proof.worst_mm > allowed) fault(m, fmt::format("the tip leaves the point by {:.4f} mm, allowed {:.4f}", proof.worst_mm, allowed));
+    }
+    if (!on_point && !m.rapid && off <= 0.003) on_point = true;
+    if (on_point && next < test.stations.size()) {
+      double turn = 0;
+      for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
+        const double off_station = now.rotary_rad[k] - test.stations[next].rotary_rad[k];
+        turn = std::max(turn, std::abs(machine.chain.rotary(k).rollover ? std::remainder(off_station, 2 * kPi) : off_station));
+      }
+      if (turn <= radians(0.001)) ++next;
+    }
+    before = now;
+  });
+  if (!status) {
+    Diagnostic refused = status.error();
+    refused.kind = DiagnosticKind::verification;
+    return refused;
+  }
+  if (error) return *error;
+  if (next < test.stations.size())
+    return fail_as(DiagnosticKind::verification, "station {} of {} ({}) is not met", next + 1, test.stations.size(), test.stations[next].remark);
+  return proof;
+}
+
+}  // namespace toothpath::self_test

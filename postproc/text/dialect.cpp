@@ -1,0 +1,16 @@
+#include "postproc/text/dialect.h"
+
+namespace toothpath::text {
+
+Result<machines::CoolantWords> coolant_words(const NcDialect& dialect, machines::Coolant coolant) {
+  const auto found = dialect.coolant.find(coolant);
+  if (found != dialect.coolant.end()) return found->second;
+  std::string list;
+  for (const auto& [other, words] : dialect.coolant) list += (list.empty() ? "" : ", ") + std::string(to_string(other));
+  const std::string help = dialect.takes_coolant ? fmt::format("; post.coolant_{} = [\"M..\", \"M..\"] in the machine file gives those of the builder, on and off",
+                                                               to_string(coolant))
+                                                 : std::string();
+  return fail("mode = \"{}\": dialect \"{}\" has words for {} alone{}", to_string(coolant), dialect.name, list, help);
+}
+
+}  // namespace toothpath::text

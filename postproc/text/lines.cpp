@@ -1,0 +1,195 @@
+#include "postproc/text/lines.h"
+
+#include <cmath>
+
+#include "postproc/numbers/fixed_point.h"
+#include "postproc/text/corners.h"
+#include "postproc/text/writer.h"
+
+namespace toothpath::text {
+namespace {
+
+constexpr double kFreeFeed = 1000;  // F that goes with G94 where nothing is cut, mm/min
+
+}  // namespace
+
+NcLines::Values program_values(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
+  const auto unsigned_value = [&](double v, int decimals) {
+    std::string s;
+    numbers::append_fixed(s, numbers::to_fixed(v, decimals), decimals, dialect.point_always);
+    return s;
+  };
+  NcLines::Values values;
+  values["number"] = std::to_string(header.program_number);
+  values["name"] = comment_text(header.job_name).substr(0, 32);
+  values["id"] = program_id(header.job_name);
+  values["offset"] = program.work_offset;
+  if (dialect.datum != nullptr) values["datum"] = std::to_string(dialect.datum(program.work_offset));
+  const CornerWords corners = corner_words(program, dialect, header);
+  values["blend"] = unsigned_value(corners.blend_mm, 6);
+  values["blend_axis"] = unsigned_value(std::floor(header.blend_axis_deg * 1e4 + 1e-6) * 1e-4, 4);
+  values["radius"] = unsigned_value(corners.radius_mm, 0);
+  for (const char letter : program.letters)
+    if (letter != 0) values["axes"] += (values["axes"].empty() ? "" : ",") + std::string(1, letter);
+  values["free"] = unsigned_value(kFreeFeed, 0);
+  values["teeth"] = std::to_string(program.teeth);
+  values["last"] = std::to_string(program.teeth - 1);
+  values["stride"] = std::to_string(program.tooth_stride);
+  values["tooth"] = program.tooth_stride == 1 ? dialect.loop.place : dialect.loop.tooth;
+  values["sign"] = program.index_sign < 0 ? "0-" : "";
+  const bool rolls_back = program.index_axis >= 0 && program.rollover[static_cast<std::size_t>(program.index_axis)] && program.index_sign < 0;
+  if (!rolls_back) values["turns"] = values["sign"] + values["tooth"];
+  else if (const auto turns = expanded(dialect.rollover.backwards, values); turns && !turns->empty()) values["turns"] = *turns;
+  values["frame_sign"] = program.frame_sign < 0 ? "0-" : "";
+  return values;
+}
+
+std::vector<std::string> header_comments(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header,
+                                         std::string_view hash) {
+  std::vector<std::string> out = {comment_text("JOB " + header.job_name)};
+  if (!header.job_hash.empty()) out.push_back(comment_text("JOB FILE " + header.job_hash));
+  out.push_back(comment_text("MACHINE " + header.machine_name));
+  out.emplace_back(hash);
+  out.emplace_back("TOOL LENGTHS RUN FROM THE GAUGE LINE TO THE TIP");
+  const auto at = [&](int i) {
+    const std::int64_t scaled = numbers::to_fixed(program.work_offset_at_mm[i], 4);
+    std::string s = dialect.sign_always && scaled >= 0 ? "+" : "";
+    numbers::append_fixed(s, scaled, 4, dialect.point_always);
+    return s;
+  };
+  out.push_back(fmt::format("WORK OFFSET {} AT X{} Y{} Z{} MM MACHINE", program.work_offset, at(0), at(1), at(2)));
+  if (!dialect.blend && dialect.exact_path_mm > 0) {
+    const std::int64_t corner = numbers::to_fixed(dialect.exact_path_mm, 6);
+    std::string within, product;
+    numbers::append_fixed(within, corner, 6, false);
+    numbers::append_fixed(product, 4 * corner, 6, false);
+    out.push_back(fmt::format("CORNERS WITHIN {} MM: TOOL ACCELERATION X SERVO PERIOD SQUARED IS AT MOST {} MM", within, product));
+  }
+  if (program.tcp != machines::TcpMode::none && !dialect.tcp_note.empty()) out.push_back(comment_text(dialect.tcp_note));
+  for (std::size_t a = 3; a < 5; ++a)
+    if (program.rollover[a]) {
+      const auto note = expanded(dialect.rollover.note, {{"axis", std::string(1, program.letters[a])}});
+      out.push_back(comment_text(note.value_or(dialect.rollover.note)));  // a name that does not exist stays visible
+    }
+  for (auto& line : order_comments(program)) out.push_back(std::move(line));
+  if (!header.assumed.empty()) out.emplace_back("WARNING, ASSUMED AND NOT MEASURED:");
+  for (const auto& a : header.assumed) out.push_back(comment_text("ASSUMED " + a));
+  return out;
+}
+
+std::vector<std::string> order_comments(const joints::AxisProgram& program) {
+  std::vector<std::string> out;
+  if (program.tooth_stride != 1)
+    out.push_back(fmt::format("TOOTH ORDER SPREAD: PLACE N CUTS TOOTH N * {} MOD {}", program.tooth_stride, program.teeth));
+  if (program.restart) {
+    out.push_back(fmt::format("RESTART AT OPERATION {} TOOTH {}", program.restart->operation, program.restart->tooth));
+    out.emplace_back("WHAT THE WHOLE PROGRAM CUTS BEFORE THAT IS TAKEN AS DONE");
+    const bool timed = program.has_acceleration;
+    out.push_back(fmt::format("RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING", timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes,
+                              timed ? program.accelerated.feed : program.feed_minutes));
+  }
+  return out;
+}
+
+std::string first_tooth_comment(const joints::AxisProgram& program) {
+  if (program.tooth_stride == 1) return fmt::format("FIRST TOOTH, 0 TO {}", program.teeth - 1);
+  return fmt::format("FIRST TOOTH BY ITS PLACE, 0 TO {}: TOOTH = PLACE * {} MOD {}", program.teeth - 1, program.tooth_stride, program.teeth);
+}
+
+void NcLines::line(std::string_view text) {
+  text_ += text;
+  end_line(text_.size() - text.size(), true);
+}
+
+void NcLines::comment(std::string_view text) {
+  const std::size_t begin = text_.size();
+  text_ += dialect_.comment_open;
+  text_ += text.substr(0, dialect_.max_line - dialect_.comment_open.size() - dialect_.comment_close.size());
+  text_ += dialect_.comment_close;
+  end_line(begin, false);
+}
+
+std::optional<std::string> expanded(std::string_view pattern, const NcLines::Values& values) {
+  std::string text;
+  for (std::size_t i = 0; i < pattern.size();) {
+    const std::size_t open = pattern.find('{', i);
+    if (open == std::string_view::npos) return text.append(pattern.substr(i));
+    text.append(pattern.substr(i, open - i));
+    const std::size_t close = pattern.find('}', open);
+    const auto found = close == std::string_view::npos ? values.end() : values.find(pattern.substr(open + 1, close - open - 1));
+    if (found == values.end()) return std::nullopt;
+    text += found->second;
+    i = close + 1;
+  }
+  return text;
+}
+
+void NcLines::fill(const NcLinesOfText& templates, const Values& values) {
+  for (const std::string& pattern : templates) {
+    const auto text = expanded(pattern, values);
+    if (text) line(*text);
+    else if (!error_) error_ = fail("dialect {}: \"{}\" names a value that does not exist here", dialect_.name, pattern);
+  }
+}
+
+void NcLines::end_line(std::size_t begin, bool block) {
+  if (text_.size() - begin > dialect_.max_line && !error_)
+    error_ = fail("block of {} characters exceeds {}, the longest line of {}", text_.size() - begin, dialect_.max_line,
+                  dialect_.name);
+  text_ += '\n';
+  if (block) ++blocks_;
+}
+
+void NcLines::number(std::int64_t scaled, int decimals) {
+  if (dialect_.sign_always && scaled >= 0) text_ += '+';
+  numbers::append_fixed(text_, scaled, decimals, dialect_.point_always);
+}
+
+std::string NcLines::value(std::int64_t scaled, int decimals) const {
+  std::string s;
+  if (dialect_.sign_always && scaled >= 0) s += '+';
+  numbers::append_fixed(s, scaled, decimals, dialect_.point_always);
+  return s;
+}
+
+std::string NcLines::numbered(std::string_view text) {
+  std::string out;
+  out.reserve(text.size() + text.size() / 4);
+  std::int64_t n = 0;
+  for (std::size_t begin = 0; begin < text.size(); ++n) {
+    std::size_t end = text.find('\n', begin);
+    if (end == std::string_view::npos) end = text.size() - 1;
+    numbers::append_integer(out, n);
+    out += ' ';
+    out += text.substr(begin, end + 1 - begin);
+    begin = end + 1;
+  }
+  return out;
+}
+
+std::string comment_text(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    if (c >= 'a' && c <= 'z')
+      out += static_cast<char>(c - 'a' + 'A');
+    else if (c == '(' || c == ')')
+      out += c == '(' ? '[' : ']';
+    else if (c == '%' || c == ';' || c < ' ' || c > '~')
+      out += '?';
+    else
+      out += c;
+  }
+  return out;
+}
+
+std::string program_id(std::string_view text) {
+  std::string out;
+  for (const char c : comment_text(text).substr(0, 24)) {
+    const bool letter = c >= 'A' && c <= 'Z', digit = c >= '0' && c <= '9';
+    out += letter || digit ? c : '_';
+  }
+  if (out.empty() || out[0] < 'A' || out[0] > 'Z') out.insert(0, "P");
+  return out.substr(0, 24);
+}
+
+}  // namespace toothpath::text

@@ -1,0 +1,371 @@
+#include "postproc/text/writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "geometry/base/hash.h"
+#include "postproc/numbers/fixed_point.h"
+#include "postproc/text/axis_words.h"
+#include "postproc/text/corners.h"
+#include "postproc/text/lines.h"
+#include "postproc/text/stretches.h"
+#include "postproc/joints/tooth_order.h"
+
+namespace toothpath::text {
+namespace {
+
+constexpr int kFirstSubprogram = 2001;  // O numbers of the sub-programs of a main program; labels count from 100
+constexpr int kFirstLabel = 100;
+constexpr int kVectorDecimals = 8;
+
+class Writer {
+ public:
+  Writer(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header)
+      : program_(program), dialect_(dialect), header_(header), corners_(corner_words(program, dialect, header)), out_(dialect), words_(program, dialect, out_), tcp_(program.tcp != machines::TcpMode::none) {}
+
+  Result<NcText> write() {
+    if (header_.coolant != machines::Coolant::off) {
+      auto words = coolant_words(dialect_, header_.coolant);
+      if (!words) return words.error();
+      coolant_ = std::move(*words);
+    }
+    values_ = program_values(program_, dialect_, header_);
+    values_["top"] = linear(program_.retract_z_mm);
+    fill(dialect_.start);
+    for (std::size_t i = 0; i < program_.operations.size(); ++i) {
+      operation(program_.operations[i], static_cast<int>(i));
+      if (error_) return *error_;
+      if (out_.error()) return *out_.error();
+    }
+    fill(dialect_.end);
+    return assemble();
+  }
+
+ private:
+  // Lines.
+  void fill(const NcLinesOfText& templates) {
+    for (const auto& t : templates)
+      if (t == "{safe_start}")
+        out_.fill(dialect_.safe_start, values_);
+      else if (t == "{pick}")
+        out_.fill(program_.tooth_stride == 1 ? NcLinesOfText{} : dialect_.loop.pick, values_);
+      else if (t == "{first_tooth}")
+        out_.comment(first_tooth_comment(program_));
+      else if (t.find("{blend}") != std::string::npos)
+        corner_line(t);
+      else if (t == "{path_group_end}")
+        out_.fill(corners_.group ? NcLinesOfText{dialect_.path_group_end} : NcLinesOfText{}, values_);
+      else
+        out_.fill({t}, values_);
+  }
+  /// The line with {blend}: as it stands, or behind the axes of the path.
+  void corner_line(const std::string& pattern) {
+    if (corners_.group) out_.fill({dialect_.path_group}, values_);
+    for (std::size_t a = 3; a < 5 && corners_.group; ++a)
+      if (program_.letters[a] != 0) {
+        values_["axis"] = program_.letters[a];
+        out_.fill({dialect_.path_radius}, values_);
+      }
+    out_.fill({pattern}, values_);
+  }
+  std::string linear(double mm) const {
+    return out_.value(numbers::to_fixed(mm, program_.format.linear_decimals), program_.format.linear_decimals);
+  }
+  void forget() {
+    words_.forget();
+    motion_ = -1;
+    feed_ = -1;
+  }
+
+  void machine_retract() {
+    fill(dialect_.retract);
+    forget();
+  }
+
+  void operation(const joints::AxisOperation& op, int position) {
+    values_["tool"] = std::to_string(op.tool_number);
+    values_["speed"] = std::to_string(std::llround(op.spindle_rpm));
+    values_["label"] = std::to_string(kFirstLabel + 2 * position);
+    values_["label+1"] = std::to_string(kFirstLabel + 2 * position + 1);
+    values_["first"] = std::to_string(op.first_place);
+    values_["work_top"] = linear(program_.retract_z_mm - op.tool_length_mm - program_.work_offset_at_mm.z());
+    out_.comment(fmt::format("OP {} {}", op.operation, op.type));  // as in the job, in every dialect: programs look for it
+    out_.comment(comment_text(fmt::format("T{} {} LENGTH {} MM TO THE TIP", op.tool_number, op.tool_name,
+                                          out_.value(numbers::to_fixed(op.tool_length_mm, 4), 4))));
+    const NcLoop& loop = dialect_.loop;
+    if (program_.loop && loop.form == NcLoop::Form::sub_program) loop_body(op);
+    machine_retract();
+    fill(dialect_.tool_change);
+    fill(tcp_ ? dialect_.tcp_compensation : dialect_.compensation);
+    forget();
+    if (coolant_) out_.line(coolant_->on);
+    for (const auto& line : dialect_.smoothing_on) out_.line(line);
+    if (!program_.loop) {
+      for (const auto& tooth : op.teeth) {
+        out_.comment(tooth.remark.empty() ? fmt::format("TOOTH {}", tooth.tooth) : comment_text(tooth.remark));
+        forget();
+        blocks(tooth.blocks, {0, tooth.blocks.size()}, IndexWord::literal);
+        if (tooth.pause) fill(dialect_.pause);
+      }
+    } else if (loop.form == NcLoop::Form::stretches) {
+      stretch_calls(op);
+    } else if (loop.form == NcLoop::Form::sub_program) {
+      fill(loop.call);
+    } else {
+      loop_body(op);
+    }
+    for (const auto& line : dialect_.smoothing_off) out_.line(line);
+    fill(dialect_.operation_end);
+    if (coolant_) out_.line(coolant_->off);
+    fill(dialect_.spindle_off);
+    machine_retract();
+  }
+
+  /// One tooth, its index angle given by the control's arithmetic.
+  void loop_body(const joints::AxisOperation& op) {
+    fill(dialect_.loop.before);
+    forget();
+    const auto& tooth = op.teeth.front().blocks;
+    words_.enter_loop(tooth);
+    blocks(tooth, {0, tooth.size()}, IndexWord::shifted);
+    fill(dialect_.loop.after);
+  }
+
+  // A sub-program for every stretch with one index angle, called after an explicit rotary block.
+  void stretch_calls(const joints::AxisOperation& op) {
+    const auto& tooth = op.teeth.front().blocks;
+    const auto segments = stretches_of(tooth, program_.index_axis, dialect_.name);
+    if (!segments) {
+      error_ = segments.error();
+      return;
+    }
+    const int first = kFirstSubprogram + static_cast<int>(subprograms_.size());
+    for (const auto& s : *segments) subprograms_.push_back({&op, s});
+    const auto index = static_cast<std::size_t>(program_.index_axis);
+    for (int n = op.first_place; n < program_.teeth; ++n) {
+      const int k = joints::tooth_of_place(n, program_.tooth_stride, program_.teeth);
+      for (std::size_t i = 0; i < segments->size(); ++i) {
+        joints::AxisBlock turn = tooth[(*segments)[i].first];
+        turn.words[index] += numbers::ratio_to_fixed(std::int64_t{360} * k * program_.index_sign, program_.teeth,
+                                            program_.format.rotary_decimals);
+        turn.forced = true;
+        forget();
+        rapid(turn, IndexWord::literal);
+        out_.line(fmt::format("M98 P{}", first + static_cast<int>(i)));
+      }
+    }
+    forget();
+  }
+  void write_subprograms() {
+    for (std::size_t i = 0; i < subprograms_.size() && !error_; ++i) {
+      const auto& [op, s] = subprograms_[i];
+      out_.line(fmt::format("O{} (OPERATION {} PART {})", kFirstSubprogram + static_cast<int>(i), op->operation, i));
+      forget();
+      blocks(op->teeth.front().blocks, {s.first + 1, s.last}, IndexWord::left_out);
+      out_.line("M99");
+    }
+  }
+
+  // Blocks of one stretch; begins and ends in G94.
+  void blocks(const std::vector<joints::AxisBlock>& list, NcStretch s, IndexWord index) {
+    inverse_time_ = false;
+    for (std::size_t i = s.first; i < s.last && !error_; ++i) {
+      const joints::AxisBlock& b = list[i];
+      if (i > s.first) note_unwinding(list[i - 1], b);
+      switch (b.kind) {
+        case joints::BlockKind::feed:
+        case joints::BlockKind::turn:
+          if (b.tip)
+            tip_feed(b, index);
+          else
+            joint_feed(b, index);
+          break;
+        case joints::BlockKind::tcp_on:
+        case joints::BlockKind::tcp_off: switch_tcp(b, index); break;
+        default: rapid(b, index); break;
+      }
+    }
+    if (inverse_time_) out_.line(fmt::format("G94 F{}", values_["free"]));
+    inverse_time_ = false;
+  }
+
+  /// A reposition of a rotary by a whole turn or more is said in the text.
+  void note_unwinding(const joints::AxisBlock& from, const joints::AxisBlock& to) {
+    if (to.kind != joints::BlockKind::rapid_rotary && to.kind != joints::BlockKind::turn) return;
+    for (std::size_t a = 3; a < 5; ++a)
+      if (const auto turns = std::abs(to.words[a] - from.words[a]) / words_.turn_word(); turns >= 1)
+        out_.comment(fmt::format("{} UNWINDS BY {} TURN{}", program_.letters[a], turns, turns == 1 ? "" : "S"));
+  }
+
+  void switch_tcp(const joints::AxisBlock& b, IndexWord index) {
+    if (inverse_time_) out_.line(fmt::format("G94 F{}", values_["free"]));
+    inverse_time_ = false;
+    values_["z"] = out_.value(b.words[2], words_.decimals(2));
+    const bool on = b.kind == joints::BlockKind::tcp_on;
+    const bool turned = program_.loop && index == IndexWord::shifted;
+    if (!on && turned) fill(dialect_.loop.frame_off);
+    fill(on ? dialect_.tcp_on : dialect_.tcp_off);
+    if (on && turned) fill(dialect_.loop.frame_on);
+    forget();
+  }
+
+  void motion(const std::string& word, int code) {
+    if (motion_ != code || !dialect_.motion_is_modal) out_.text() += word;
+    motion_ = code;
+  }
+
+  void rapid(const joints::AxisBlock& b, IndexWord index) {
+    const auto [from, to] = b.kind == joints::BlockKind::rapid_z     ? std::pair<std::size_t, std::size_t>{2, 3}
+                            : b.kind == joints::BlockKind::rapid_xy  ? std::pair<std::size_t, std::size_t>{0, 2}
+                            : b.kind == joints::BlockKind::rapid_tip ? std::pair<std::size_t, std::size_t>{0, 3}
+                                                             : std::pair<std::size_t, std::size_t>{3, 5};
+    if (to == 5) words_.shift_line(b, index, values_);
+    const std::size_t begin = out_.size();
+    out_.text() += dialect_.rapid;
+    motion_ = 0;
+    const std::size_t without_words = out_.size();
+    for (std::size_t a = from; a < to; ++a) words_.print(b, a, index);
+    if (out_.size() == without_words) {
+      out_.text().resize(begin);
+      return;
+    }
+    out_.text() += dialect_.rapid_end;
+    out_.end_line(begin, true);
+  }
+
+  void joint_feed(const joints::AxisBlock& b, IndexWord index) {
+    const double rate = 1 / b.minutes;
+    if (!(b.minutes > 0) ||
+        (dialect_.inverse_time && dialect_.max_inverse_time > 0 && rate > dialect_.max_inverse_time * (1 + 1e-9))) {
+      error_ = fail("record {}: F {:.3f} of a block exceeds {:.3f}, the greatest that {} takes", b.record, rate,
+                    dialect_.max_inverse_time, dialect_.name);
+      return;
+    }
+    const bool turns = words_.turns(b);
+    if (!dialect_.inverse_time && turns) {
+      error_ = fail("record {}: rotaries move in a cutting block, and {} has no inverse time feed for it: tcp = \"angles\" is "
+                    "supported, or a tilt that is fixed in every pass",
+                    b.record, dialect_.name);
+      return;
+    }
+    const double length = words_.length(b);
+    const bool exact = dialect_.inverse_time && dialect_.min_feed_product > 0 && rate * length < dialect_.min_feed_product;
+    const bool per_minute = exact || !dialect_.inverse_time;
+    if (!per_minute && !inverse_time_) out_.line("G93");
+    if (per_minute && inverse_time_) out_.line("G94");
+    inverse_time_ = !per_minute;
+    const std::size_t begin = out_.size();
+    motion(dialect_.feed, 1);
+    for (std::size_t a = 0; a < 5; ++a) words_.print(b, a, index);
+    if (dialect_.inverse_time)
+      feed_number(per_minute ? length / b.minutes : rate, dialect_.point_always ? 3 : per_minute ? 9 : rate < 10 ? 6 : 3, b.record, begin);
+    else
+      modal_feed(length / b.minutes, b.record, begin);
+    finish_block(begin);
+  }
+
+  /// With TCP: feed of the tip, or of the rotaries where nothing linear moves.
+  void tip_feed(const joints::AxisBlock& b, IndexWord index) {
+    const std::size_t begin = out_.size();
+    const bool vectors = program_.tcp == machines::TcpMode::vectors && b.kind == joints::BlockKind::feed;
+    if (vectors && !dialect_.vector_feed.empty()) motion(dialect_.vector_feed, 1);
+    else motion(dialect_.feed, 1);
+    for (std::size_t a = b.kind == joints::BlockKind::turn ? 3 : 0; a < (vectors ? 3U : 5U); ++a) words_.print(b, a, index);
+    if (vectors) vector(b);
+    words_.stand(b);
+    modal_feed(b.per_minute, b.record, begin);
+    finish_block(begin);
+  }
+
+  void vector(const joints::AxisBlock& b) {
+    const Vec3& axis = b.axis;
+    for (int i = 0; i < 3; ++i) {
+      out_.text() += ' ';
+      out_.text() += dialect_.vector_words[static_cast<std::size_t>(i)];
+      out_.number(numbers::to_fixed(axis[i], kVectorDecimals), kVectorDecimals);
+    }
+  }
+
+  void finish_block(std::size_t begin) {
+    std::string& text = out_.text();
+    if (text.size() > begin && text[begin] == ' ') text.erase(begin, 1);
+    out_.end_line(begin, true);
+  }
+
+  /// F on change. Rounded down but for round-off, never 0.
+  void modal_feed(double f, std::int32_t record, std::size_t begin) {
+    const int digits = dialect_.point_always || f >= 10 ? 3 : 6;
+    const double kept = f * (1 + 1e-12);
+    const std::int64_t scaled = kept < 9e9 ? numbers::to_fixed_down(kept, digits) : 0;
+    const std::int64_t common = scaled * numbers::power_of_ten(6 - digits);
+    if (common == feed_ && scaled > 0) return;
+    feed_number(kept, digits, record, begin);
+    feed_ = common;
+  }
+
+  /// Rounded down, never 0.
+  void feed_number(double f, int digits, std::int32_t record, std::size_t begin) {
+    out_.text() += out_.size() == begin ? "F" : " F";
+    const std::int64_t scaled = f < 9e5 * 1e4 ? numbers::to_fixed_down(f, digits) : 0;
+    if (scaled <= 0 && !error_) error_ = fail("record {}: F {} cannot be printed with {} decimals", record, f, digits);
+    numbers::append_fixed(out_.text(), scaled, digits, dialect_.point_always);
+  }
+
+  Result<NcText> assemble() {
+    fill(dialect_.body_end);
+    write_subprograms();
+    if (error_) return *error_;
+    if (out_.error()) return *out_.error();
+    NcText result;
+    result.body_hash = fnv1a(out_.text());
+    result.blocks = out_.blocks();
+    for (const auto& l : dialect_.frame_end) result.blocks += l == "%" ? 0 : 1;
+    const std::string hash = fmt::format("HASH {:016X} BLOCKS {}", result.body_hash, result.blocks);
+    std::string body = std::move(out_.text());
+    out_.text().clear();
+    fill(dialect_.frame_begin);
+    for (const auto& line : header_comments(program_, dialect_, header_, hash)) out_.comment(line);
+    out_.text() += body;
+    out_.comment(hash);
+    fill(dialect_.frame_end);
+    if (out_.error()) return *out_.error();
+    result.text = dialect_.block_numbers ? NcLines::numbered(out_.text()) : std::move(out_.text());
+    return result;
+  }
+
+  const joints::AxisProgram& program_;
+  const NcDialect& dialect_;
+  const NcHeader& header_;
+  CornerWords corners_;
+  NcLines out_;
+  NcAxisWords words_;
+  NcLines::Values values_;
+  bool tcp_;
+  std::optional<machines::CoolantWords> coolant_;
+  std::optional<Diagnostic> error_;
+  int motion_ = -1;         // 0, 1; -1: to be printed
+  std::int64_t feed_ = -1;  // F per minute in force, millionths; -1: to be printed
+  bool inverse_time_ = false;
+  std::vector<std::pair<const joints::AxisOperation*, NcStretch>> subprograms_;
+};
+
+}  // namespace
+
+Result<NcText> write_nc(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {
+  if (program.format.linear_decimals != dialect.format.linear_decimals ||
+      program.format.rotary_decimals != dialect.format.rotary_decimals)
+    return fail("the axis program has {} and {} decimals, the dialect {} and {}", program.format.linear_decimals,
+                program.format.rotary_decimals, dialect.format.linear_decimals, dialect.format.rotary_decimals);
+  if (program.turns_in_cuts && !dialect.smoothing_on.empty() && !dialect.smoothing_axis_rad)
+    return fail("cuts turn a rotary axis: post.smoothing_on needs post.smoothing_axis_tolerance beside post.smoothing_tolerance");
+  if (program.loop && dialect.write == nullptr && dialect.loop.form == NcLoop::Form::none)
+    return fail("{} has no loop for the teeth: they must be written out", dialect.name);
+  if (dialect.write != nullptr) return dialect.write(program, dialect, header);
+  return Writer(program, dialect, header).write();
+}
+
+}  // namespace toothpath::text

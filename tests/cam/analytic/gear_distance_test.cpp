@@ -1,0 +1,150 @@
+// The distance to the finished gear against dense sampling of its exact surfaces.
+#include "cam/analytic/gear_distance.h"
+
+#include "tests/cam/ball/face_gear_jobs.h"
+#include "tests/support/brute_force_gear_solid.h"
+
+namespace toothpath {
+namespace {
+
+using test::BruteForceGearSolid;
+
+class Distance : public testing::TestWithParam<std::string> {
+ protected:
+  face_gear::FaceGear gear = test::made(test::gear_named(GetParam()));
+  double reach = 0.9 * gear.parameters().module_mm;
+  analytic::GearDistance part{gear, reach};
+  BruteForceGearSolid brute{gear};
+};
+
+/// What a query may differ: facets decide where nothing else does, and edges are polylines.
+void expect_agreement(const analytic::GearDistance& part, const analytic::NearestPlace& q, const test::BruteNearest& truth, double within, const char* where) {
+  SCOPED_TRACE(fmt::format("{}: ({:.9f}, {:.9f}, {:.9f}), nearest {} at {:.9f}, brute force {} at {:.9f}", where, q.point.x(), q.point.y(),
+                           q.point.z(), q.patch, q.distance, truth.patch, truth.distance));
+  const double target = std::min(truth.distance, within);
+  EXPECT_LE(q.distance, target + 2e-7);  // never above the truth
+  EXPECT_GE(q.distance, target - (q.exact ? 2e-6 : 1e-4 + 2 * part.cell_sag_mm()));
+}
+
+TEST_P(Distance, PointsOverEveryPatch) {
+  test::Random random(7);
+  const double within = reach;
+  for (int zone = 0; zone < part.zones(); ++zone) {
+    for (int patch = 0; patch < 9; ++patch) {
+      if (patch == 8 && zone + 1 == part.zones()) continue;
+      for (int k = 0; k < 24; ++k) {
+        // A third of the points above borders and corners of the patch.
+        double x = random(0, 1), y = random(0, 1);
+        if (k % 3 == 1) y = random(0, 1) < 0.5 ? 0 : 1;
+        if (k % 3 == 2) x = random(0, 1) < 0.5 ? 0 : 1;
+        if (patch == 6 || patch == 7) y *= 0.6;  // the samples of an end stop some way below the root
+        const double d = std::pow(10.0, random(-5, 0)) * within;
+        Vec3 n = brute.normal(zone, patch, x, y);
+        if (k % 4 == 3) n = (n + 0.7 * Vec3(random(-1, 1), random(-1, 1), random(-1, 1))).normalized();
+        const Vec3 c = brute.point(zone, patch, x, y) + d * n;
+        if (brute.inside(c)) continue;
+        const auto truth = brute.nearest(c);
+        if (truth.distance < 1e-7) continue;  // on another surface: inside or outside is a matter of rounding
+        expect_agreement(part, part.nearest(c, within), truth, within, BruteForceGearSolid::name(patch));
+      }
+    }
+  }
+}
+
+TEST_P(Distance, FreeSpace) {
+  test::Random random(11);
+  const double h = gear.parameters().module_mm;
+  int asked = 0;
+  for (int k = 0; k < 400 && asked < 150; ++k) {
+    const double r = random(gear.inner_radius() - 0.8 * h, gear.outer_radius() + 0.8 * h), a = random(-3.1415, 3.1415);
+    const double z = random(gear.lowest_root(), gear.blank_top() + 0.7 * h);
+    const Vec3 c(r * std::cos(a), r * std::sin(a), z);
+    if (brute.inside(c)) continue;
+    ++asked;
+    expect_agreement(part, part.nearest(c, reach), brute.nearest(c), reach, "free space");
+  }
+  EXPECT_GE(asked, 50);
+}
+
+TEST_P(Distance, InsideIsNegative) {
+  test::Random random(13);
+  const double h = gear.parameters().module_mm;
+  int deep = 0;
+  for (int k = 0; k < 600; ++k) {
+    const double r = random(gear.inner_radius() - 0.1 * h, gear.outer_radius() + 0.1 * h), a = random(-0.1, 0.1);
+    const Vec3 c(r * std::cos(a), r * std::sin(a), random(gear.lowest_root() - 0.3 * h, gear.blank_top()));
+    const bool inside = brute.inside(c);
+    const auto q = part.nearest(c, reach);
+    if (inside) {
+      const auto truth = brute.nearest(c);
+      if (truth.distance < 2e-4) continue;
+      ++deep;
+      EXPECT_LT(q.distance, 0) << c.transpose() << " truth " << truth.distance << " " << truth.patch << " said " << q.patch;
+    } else if (q.distance < 0) {
+      const auto truth = brute.nearest(c);
+      EXPECT_LT(truth.distance, 2e-4) << c.transpose() << " is free, " << truth.patch << " said " << q.distance << " " << q.patch;
+    }
+  }
+  EXPECT_GE(deep, 50);
+}
+
+TEST_P(Distance, DepthBelowTheSurface) {
+  test::Random random(17);
+  for (int zone = 0; zone < part.zones(); ++zone)
+    for (int patch = 0; patch < 5; ++patch)
+      for (int k = 0; k < 20; ++k) {
+        const double x = random(0.05, 0.95), y = random(0.1, 0.9), d = std::pow(10.0, random(-5, -2)) * reach;
+        const Vec3 c = brute.point(zone, patch, x, y) - d * brute.normal(zone, patch, x, y);
+        EXPECT_NEAR(part.nearest(c, reach).distance, -d, 2e-6) << BruteForceGearSolid::name(patch);
+      }
+}
+
+// A conical root rises along the tooth: a short look that sees no surface must still tell air from material at every radius.
+TEST(DistanceOnACone, ShortLooksTellAirFromMaterial) {
+  face_gear::FaceGearParameters p;
+  p.teeth = 79;
+  p.shaper_teeth = 21;
+  p.module_mm = 1.26;
+  p.pressure_angle_rad = radians(20);
+  p.shaft_angle_rad = radians(60);
+  p.shaper_tip_radius_mm = 0.2306;
+  p.reference_radius_mm = 54.81;
+  p.zones = {{0, 54.81, 56.07}};
+  const auto gear = test::made(p);
+  const analytic::GearDistance part(gear, 1.25);
+  test::Random random(23);
+  int free = 0, inside = 0;
+  for (int k = 0; k < 6000; ++k) {
+    const double r = random(gear.inner_radius(), gear.outer_radius()), a = random(0, gear.pitch());
+    const double root = face_gear::root_height(gear.rings()[0].surface, r).value();
+    const Vec3 c(r * std::cos(a), r * std::sin(a), root + random(-0.3, 1.0) * p.module_mm);
+    const double within = random(0.02, 0.1), truth = part.nearest(c, 1.2).distance, said = part.nearest(c, within).distance;
+    if (truth > within + 1e-3) {
+      ++free;
+      EXPECT_EQ(said, within) << c.transpose() << " is " << truth << " away";
+    } else if (truth < -1e-3) {
+      ++inside;
+      EXPECT_LT(said, 0) << c.transpose() << " is " << -truth << " deep";
+    }
+  }
+  EXPECT_GT(free, 1000);
+  EXPECT_GT(inside, 1000);
+}
+
+TEST_P(Distance, TheSameAtEveryTooth) {
+  test::Random random(19);
+  const int teeth = gear.parameters().teeth;
+  for (int k = 0; k < teeth; ++k) {
+    const int zone = int(random.index(std::size_t(part.zones()))), patch = int(random.index(6));
+    const double x = random(0, 1), y = random(0, 1), d = random(0, reach);
+    const Vec3 c = brute.point(zone, patch, x, y) + d * brute.normal(zone, patch, x, y);
+    const Vec3 turned = face_gear::FaceGearSurface<double>::turned(c, k * gear.pitch());
+    const auto q = part.nearest(c, reach), t = part.nearest(turned, reach);
+    EXPECT_NEAR(q.distance, t.distance, q.exact && t.exact ? 1e-10 : 2e-5) << k << " " << q.patch << " " << t.patch;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Gears, Distance, testing::ValuesIn(test::gear_names()), [](const auto& gear_case) { return gear_case.param; });
+
+}  // namespace
+}  // namespace toothpath

@@ -1,0 +1,162 @@
+// The gouge check of whole programs: clean ones pass and nothing between the samples is deeper than the bound, wrong ones are refused.
+#include "cam/analytic/gouge_check.h"
+
+#include "tests/cam/analytic/gouge_case.h"
+#include "tests/support/brute_force_gear_solid.h"
+
+namespace toothpath::test {
+namespace {
+
+class Clean : public testing::TestWithParam<std::string> {};
+
+TEST_P(Clean, PassesWithItsBoundAboveWhatWasMeasured) {
+  const auto& job = job_named(GetParam());
+  const analytic::GougeCheck checker(*job.part, job.tools, job.check_options());
+  for (const auto& path : job.plan.paths) {
+    const auto r = checker.check(analytic::GougeCheck::motions_of(path), job.tool_of_operation());
+    EXPECT_TRUE(r.worst.empty());
+    EXPECT_TRUE(checker.passes(r)) << path.operation << " measured " << r.measured_mm << " bound " << r.bound_mm << " clearance " << r.clearance_mm
+                                   << " " << r.deepest.patch << " at " << r.deepest.radius_mm;
+    EXPECT_GE(r.bound_mm, r.measured_mm);
+    EXPECT_LE(r.bound_mm, std::max(r.measured_mm, 0.0) + 2.5e-4);
+    EXPECT_TRUE(r.rapids_clear);
+    EXPECT_TRUE(checker.check_path(path));
+    if (job.operations[std::size_t(path.operation)].allowance_mm == 0) {
+      EXPECT_GE(r.measured_mm, -1e-6);  // it does touch
+    }
+  }
+}
+
+TEST_P(Clean, TenfoldSamplingStaysBelowTheBound) {
+  const auto& job = job_named(GetParam());
+  const BruteForceGearSolid brute(job.gear);
+  Random random(31);
+  for (const auto& path : job.plan.paths) {
+    const auto motions = analytic::GougeCheck::motions_of(path);
+    const auto r = check(job, motions);
+    const double R = job.tool(path.operation).radius_mm();
+    // Every move at ten places; a hundred places of them against the sampled surfaces themselves.
+    EXPECT_LE(sampled(job, motions, R, 10).depth, r.bound_mm + 1e-9);
+    for (int k = 0; k < 60; ++k) {
+      const auto& m = motions[random.index(motions.size())];
+      const double t = random(0, 1);
+      const Vec3 c = (1 - t) * m.tip_from + t * m.tip_to + R * ((1 - t) * m.axis_from + t * m.axis_to).normalized();
+      EXPECT_LE(R - brute.nearest(c).distance, r.bound_mm + 1e-7);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Jobs, Clean, testing::Values("dhfg", "offset", "conical", "spur"), [](const auto& job_case) {
+  std::string name = job_case.param;
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+});
+
+TEST(WrongPrograms, ShiftedZone) {
+  const auto& job = job_named("dhfg");
+  auto path = job.plan.paths.back();
+  for (auto& r : path.records)
+    if (r.zone == 1) r.tip = face_gear::FaceGearSurface<double>::turned(r.tip, 0.005 / 121);  // 5 um along the circle
+  const auto r = check(job, analytic::GougeCheck::motions_of(path));
+  EXPECT_FALSE(passes(job, r));
+  EXPECT_EQ(r.deepest.zone, 1);
+  EXPECT_GE(r.measured_mm, 0.002);
+}
+
+TEST(WrongPrograms, SwappedSign) {
+  const auto& job = job_named("dhfg");
+  for (int axis = 0; axis < 2; ++axis) {
+    auto path = job.plan.paths.back();
+    for (auto& r : path.records) r.tip[axis] = -r.tip[axis];
+    EXPECT_FALSE(passes(job, check(job, analytic::GougeCheck::motions_of(path)))) << axis;
+  }
+}
+
+TEST(WrongPrograms, WrongBallRadius) {
+  const auto& job = job_named("spur");
+  auto tools = job.tools;
+  tools[0].diameter_mm += 0.01;
+  const auto r = check(job, analytic::GougeCheck::motions_of(job.plan.paths.back()), tools);
+  EXPECT_FALSE(passes(job, r));
+  // The tip stays: the ball grows by 5 um and rises by 5 um, which leaves 5 (1 - n.axis) um on a flank.
+  EXPECT_GE(r.measured_mm, 0.005 * (1 - std::sin(radians(20))));
+}
+
+TEST(WrongPrograms, WrongToolLength) {
+  const auto& job = job_named("offset");
+  auto path = job.plan.paths.back();
+  for (auto& r : path.records) r.tip -= 0.005 * r.axis;
+  const auto r = check(job, analytic::GougeCheck::motions_of(path));
+  EXPECT_FALSE(passes(job, r));
+  EXPECT_NEAR(r.measured_mm, 0.005, 5e-4);  // on the root land the whole of it
+}
+
+TEST(WrongPrograms, OneToothOnly) {
+  const auto& job = job_named("spur");
+  auto motions = analytic::GougeCheck::motions_of(job.plan.paths.back());
+  const double pitch = job.gear.pitch();
+  for (auto& m : motions) {
+    m.tooth = 17;
+    m.tip_from = face_gear::FaceGearSurface<double>::turned(m.tip_from, 17 * pitch);
+    m.tip_to = face_gear::FaceGearSurface<double>::turned(m.tip_to, 17 * pitch);
+  }
+  EXPECT_TRUE(passes(job, check(job, motions)));
+  for (auto& m : motions) {
+    m.tip_from = face_gear::FaceGearSurface<double>::turned(m.tip_from, 0.005 / 62);
+    m.tip_to = face_gear::FaceGearSurface<double>::turned(m.tip_to, 0.005 / 62);
+  }
+  const auto r = check(job, motions);
+  EXPECT_FALSE(passes(job, r));
+  ASSERT_FALSE(r.worst.empty());
+  EXPECT_EQ(r.worst.front().tooth, 17);
+}
+
+TEST(WrongPrograms, RapidThroughTheBlank) {
+  for (const char* name : {"dhfg", "spur", "conical"}) {
+    const auto& job = job_named(name);
+    const auto& path = job.plan.paths.front();
+    // Back from the last place to the first one, at the clearance height: allowed. Lower, it meets the blank.
+    path::ToolMotion rapid;
+    rapid.rapid = true;
+    rapid.tip_from = path.records.back().tip;
+    rapid.tip_to = path.records.front().tip;
+    rapid.axis_from = path.records.back().axis;
+    rapid.axis_to = path.records.front().axis;
+    EXPECT_TRUE(check(job, {rapid}).rapids_clear) << name;
+    for (const bool first : {true, false}) {
+      auto low = rapid;
+      (first ? low.tip_from : low.tip_to).z() = job.gear.blank_top() - 0.02;
+      const auto r = check(job, {low});
+      EXPECT_FALSE(r.rapids_clear) << name;
+      EXPECT_FALSE(passes(job, r));
+    }
+  }
+}
+
+TEST(WrongPrograms, ShankAndHolder) {
+  const auto& job = job_named("spur");
+  const auto motions = analytic::GougeCheck::motions_of(job.plan.paths.back());
+  auto fat = job.tools;
+  fat[0].shank_diameter_mm = 2.4;
+  fat[0].flute_length_mm = 2.0;
+  auto r = check(job, motions, fat);
+  EXPECT_FALSE(passes(job, r));
+  ASSERT_FALSE(r.worst.empty());
+  const auto worst_is = [&](const char* body) {
+    return std::any_of(r.worst.begin(), r.worst.end(), [&](const proof::WorstPlace& w) { return w.body == body; });
+  };
+  EXPECT_TRUE(worst_is("shank"));
+  auto stubby = job.tools;
+  stubby[0].flute_length_mm = 3;
+  stubby[0].stick_out_mm = 3.5;
+  r = check(job, motions, stubby);
+  EXPECT_FALSE(passes(job, r));
+  EXPECT_TRUE(worst_is("holder"));
+  const analytic::GougeCheck checker(*job.part, stubby, job.check_options());
+  const auto refused = checker.check_path(job.plan.paths.back());
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find("holder"), std::string::npos) << refused.error().message;
+}
+
+}  // namespace
+}  // namespace toothpath::test

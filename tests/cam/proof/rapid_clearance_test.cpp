@@ -1,0 +1,98 @@
+// Rapids that turn the rotary axes: clear of a ring, near it and through it, against dense sampling of the whole tool.
+#include "cam/proof/rapid_clearance.h"
+
+#include "cam/path/motion_blend.h"
+#include "cam/tool/body.h"
+#include "tests/cam/ball/face_gear_jobs.h"
+
+namespace toothpath {
+namespace {
+
+tool::ToolAssembly long_tool() { return test::ball_mill(2, 8, 1.9, 20, 12); }
+constexpr proof::RapidObstacle kRing{60, 30, 5, -20};
+
+/// The least height of the tool above the ring's top where it stands over the ring, and whether it is inside anywhere, at many moments.
+bool sampled_clear(const path::ToolMotion& m, const tool::ToolAssembly& tool, double margin) {
+  std::vector<tool::Frustum> bodies = tool::shank_and_holder(tool);
+  const double R = tool.radius_mm();
+  bodies.push_back({0.3 * R, tool.flute_length_mm, 0.7 * R, R, "flute"});
+  for (int step = 0; step <= 80; ++step) {
+    const Vec3 tip = path::tip_at(m, step / 80.0), axis = path::axis_at(m, step / 80.0), u = axis.unitOrthogonal(), v = axis.cross(u);
+    for (const auto& body : bodies)
+      for (int i = 0; i <= 8; ++i)
+        for (int j = 0; j < 16; ++j) {
+          const double h = body.from + (body.to - body.from) * i / 8, radius = body.radius_from + (body.radius_to - body.radius_from) * i / 8;
+          const Vec3 p = tip + h * axis + radius * (std::cos(j * kPi / 8) * u + std::sin(j * kPi / 8) * v);
+          const double r = p.head<2>().norm();
+          if (r < kRing.outer_radius_mm - margin && r > kRing.inner_radius_mm + margin && p.z() < kRing.top_mm - margin && p.z() > kRing.bottom_mm + margin)
+            return false;
+        }
+  }
+  return true;
+}
+
+path::ToolMotion turning(const Vec3& tip, double from, double to, double azimuth, const Vec3& travel = Vec3::Zero()) {
+  const auto leaning = [&](double lean) { return Vec3(std::sin(lean) * std::cos(azimuth), std::sin(lean) * std::sin(azimuth), std::cos(lean)); };
+  path::ToolMotion m;
+  m.rapid = true;
+  m.axis_from = leaning(from);
+  m.axis_to = leaning(to);
+  m.tip_from = tip;
+  m.tip_to = tip + travel;
+  return m;
+}
+
+TEST(TurningRapid, HighAboveIsClear) {
+  const auto proof = proof::prove_rapid(turning(Vec3(45, 0, 30), -0.8, 0.8, 0.4), long_tool(), kRing);
+  EXPECT_TRUE(proof.clear);
+}
+
+TEST(TurningRapid, TheHolderSwingsIntoTheRing) {
+  // Both ends are clear: upright above the ring, and lying beside it; on the way the holder comes down on the ring.
+  const auto tool = long_tool();
+  const auto m = turning(Vec3(61.5, 0, 5.5), 0, -1.5, 0);
+  path::ToolMotion start = m;
+  start.axis_to = start.axis_from;
+  EXPECT_TRUE(proof::prove_rapid(start, tool, kRing).clear);
+  const auto proof = proof::prove_rapid(m, tool, kRing);
+  EXPECT_FALSE(proof.clear);
+  EXPECT_FALSE(sampled_clear(m, tool, 0));
+  // The same swing away from the gear is clear.
+  EXPECT_TRUE(proof::prove_rapid(turning(Vec3(61.5, 0, 5.5), 0, 1.4, 0), tool, kRing).clear);
+}
+
+TEST(TurningRapid, OnlyTheMiddleOfTheTurnIsTooLow) {
+  // The axis passes a deep lean half way: neither end shows it.
+  const auto tool = long_tool();
+  path::ToolMotion m = turning(Vec3(45, 0, 5.8), 0, 0, 0);
+  m.axis_from = Vec3(1, 0, 0.45).normalized();
+  m.axis_to = Vec3(-1, 0.02, 0.45).normalized();
+  m.tip_from = Vec3(90, 0, 5.8);
+  m.tip_to = Vec3(20, 0, 5.8);
+  EXPECT_EQ(proof::prove_rapid(m, tool, kRing).clear, sampled_clear(m, tool, 1e-4));
+}
+
+TEST(TurningRapid, NeverCallsATouchClear) {
+  test::Random random(12);
+  const auto tool = long_tool();
+  int clear = 0, hit = 0, near = 0;
+  for (int k = 0; k < 300; ++k) {
+    const double r = random(25, 75), phi = random(-3.1, 3.1);
+    const auto m = turning(Vec3(r * std::cos(phi), r * std::sin(phi), random(3, 13)), random(-1.3, 1.3), random(-1.3, 1.3), random(-3.1, 3.1),
+                           k % 2 == 0 ? Vec3::Zero().eval() : Vec3(random(-3, 3), random(-3, 3), random(-3, 3)));
+    const bool proven = proof::prove_rapid(m, tool, kRing).clear;
+    const bool free = sampled_clear(m, tool, 1e-6), wide = sampled_clear(m, tool, -0.5);
+    clear += proven;
+    hit += !free;
+    near += free && !wide;
+    if (proven) {
+      EXPECT_TRUE(free) << k;
+    }
+  }
+  EXPECT_GE(clear, 40);
+  EXPECT_GE(hit, 30);
+  EXPECT_GE(near, 2);
+}
+
+}  // namespace
+}  // namespace toothpath
