@@ -7,14 +7,13 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <type_traits>
 
 #include "cam/ball/pass_count.h"
+#include "cam/ball/sheet_pass.h"
 
 namespace toothpath::ball {
 namespace {
 
-constexpr double kLongestRunOut = 1.5;  // way of a run-out along the sheet, of the straight line between its ends
 constexpr double kRootBegin = 2, kRootEnd = 3;  // the root land on the sheet; below it plus fillet and flank, above it minus
 constexpr int kDrawRounds = 6;  // how often all passes are laid anew, closer where a cusp is too high
 
@@ -41,13 +40,8 @@ class FinishingPlanner {
   }
 
  private:
-  /// Neighbouring passes, each as sigma over the centre radius.
-  using Chain = std::vector<std::function<double(double)>>;
-
-  struct MadePass {
-    BallPass pass;
-    double worst_chord_mm = 0;
-  };
+  using Place = std::function<double(double)>;  ///< sigma over the centre radius
+  using Chain = std::vector<Place>;             ///< neighbouring passes
 
   /// The whole sheet as one: from both tips downwards, in turn, so that a climbing pass on one flank leads to a climbing pass
   /// on the other. (Counts of single flanks vary more along the tooth than the count of the whole space does.)
@@ -94,7 +88,7 @@ class FinishingPlanner {
   [[nodiscard]] int samples() const { return 2 * int(sheet_.stations().size()); }
   [[nodiscard]] double sample_radius(int k) const { return sheet_.r_from() + (sheet_.r_to() - sheet_.r_from()) * k / samples(); }
   /// The pass as its neighbours see it at every sample radius between the ends of the sheet; nothing where the sheet has no point.
-  [[nodiscard]] std::vector<std::optional<PassLine>> lines_of(const std::function<double(double)>& sigma) const {
+  [[nodiscard]] std::vector<std::optional<PassLine>> lines_of(const Place& sigma) const {
     std::vector<std::optional<face_gear::SheetPoint>> places;
     for (int k = 0; k <= samples(); ++k) places.push_back(sheet_.at(sigma(sample_radius(k)), sample_radius(k)));
     const auto centre = [&](std::size_t k) { return places[k] ? std::optional(places[k]->centre) : std::nullopt; };
@@ -206,19 +200,17 @@ class FinishingPlanner {
   }
 
   /// Asks for a pass; `make_passes` makes all of them. What the curves refer to must live until then.
-  template <typename Sigma>
-  void add_pass(const Sigma& sigma, bool plus, double r_low = -INFINITY, double r_high = INFINITY) {
-    asked_.push_back([=, this] { return make_pass(sigma, sigma, plus, r_low, r_high); });
+  void add_pass(Place sigma, bool plus, double r_low = -INFINITY, double r_high = INFINITY) {
+    asked_.push_back({std::move(sigma), {}, plus, r_low, r_high});
   }
-  /// Along a corner: the ball touches at `sigma` and at `other`, and the pass is as long as either of the two contacts lies on the ring.
-  template <typename Sigma, typename Other>
-  void add_pass(const Sigma& sigma, const Other& other, bool plus, double r_low, double r_high) {
-    asked_.push_back([=, this] { return make_pass(sigma, other, plus, r_low, r_high); });
+  /// Along a corner: the ball touches at `sigma` and at `other`.
+  void add_corner_pass(Place sigma, Place other, bool plus, double r_low, double r_high) {
+    asked_.push_back({std::move(sigma), std::move(other), plus, r_low, r_high});
   }
   /// On all threads; kept in the order in which they were asked for.
   Status make_passes() {
-    std::vector<std::optional<Result<MadePass>>> made(asked_.size());
-    tbb::parallel_for(std::size_t(0), made.size(), [&](std::size_t k) { made[k] = asked_[k](); });
+    std::vector<std::optional<Result<SheetPass>>> made(asked_.size());
+    tbb::parallel_for(std::size_t(0), made.size(), [&](std::size_t k) { made[k] = make_sheet_pass(sheet_, o_, asked_[k]); });
     for (auto& pass : made) {
       if (!*pass) return pass->error();
       out_.worst_chord_mm = std::max(out_.worst_chord_mm, (*pass)->worst_chord_mm);
@@ -301,7 +293,7 @@ class FinishingPlanner {
 
   /// A pass of a flank, smooth through its places at the stations. Between them the corner may leave the smooth curve through its own places:
   /// the passes follow it by their share of the way from tip to corner, so that they keep their distances.
-  [[nodiscard]] std::function<double(double)> beside_corner(std::vector<double> sigma, double share, const std::vector<CornerPlace>& corner, bool plus) const {
+  [[nodiscard]] Place beside_corner(std::vector<double> sigma, double share, const std::vector<CornerPlace>& corner, bool plus) const {
     std::vector<double> edge;
     for (const auto& c : corner) edge.push_back(plus ? c.from : c.to);
     return [this, sigma = std::move(sigma), share, edge = std::move(edge), plus](double r) {
@@ -325,7 +317,7 @@ class FinishingPlanner {
     on_minus.pop_back();  // the minus corner comes below, where it is apart from the plus corner
     for (std::size_t i = 0; i < std::max(on_plus.size(), on_minus.size()); ++i) {
       if (i + 1 == on_plus.size())  // along the corner
-        add_pass(on_plus[i], [this](double r) { return corner_at(r, true).to; }, true, -INFINITY, INFINITY);
+        add_corner_pass(on_plus[i], [this](double r) { return corner_at(r, true).to; }, true, -INFINITY, INFINITY);
       else if (i < on_plus.size())
         add_pass(on_plus[i], true);
       if (i < on_minus.size()) add_pass(on_minus[i], false);
@@ -358,7 +350,7 @@ class FinishingPlanner {
       std::size_t end = j;
       while (end + 1 < n && !corners.plus[end + 1].one) ++end;
       const double r_low = j > 0 ? stations[j - 1].r : -INFINITY, r_high = end + 1 < n ? stations[end + 1].r : INFINITY;
-      add_pass([this](double r) { return corner_at(r, false).to; }, [this](double r) { return corner_at(r, false).from; }, false, r_low, r_high);
+      add_corner_pass([this](double r) { return corner_at(r, false).to; }, [this](double r) { return corner_at(r, false).from; }, false, r_low, r_high);
       double most = 0;
       for (std::size_t k = j; k <= end; ++k) most = std::max(most, count_.count_at(k, corners.minus[k].from) - count_.count_at(k, corners.plus[k].to));
       int between = int(std::ceil(most - 1e-9));
@@ -374,92 +366,10 @@ class FinishingPlanner {
     return (r - sheet_.r_from()) / (sheet_.r_to() - sheet_.r_from()) * double(sheet_.stations().size() - 1);
   }
 
-  /// The piece of the curve whose contact (one of the two, along a corner) lies on the ring, with the run-out at both ends.
-  template <typename Sigma, typename Other>
-  Result<MadePass> make_pass(const Sigma& sigma, const Other& other, bool plus, double r_low, double r_high) const {
-    const auto& ring = sheet_.space().ring().zone;
-    const auto contact_radius = [&](double at, double r) -> double {
-      const auto s = sheet_.at(at, r);
-      return s ? radius(s->contact.p) : NAN;
-    };
-    const auto solve = [&](const auto& curve, double target) -> double {
-      double a = sheet_.r_from(), b = sheet_.r_to();
-      if (contact_radius(curve(a), a) > target || contact_radius(curve(b), b) < target) return NAN;
-      for (int k = 0; k < 60 && b - a > 1e-9; ++k) {
-        const double m = 0.5 * (a + b);
-        (contact_radius(curve(m), m) < target ? a : b) = m;
-      }
-      return 0.5 * (a + b);
-    };
-    double from = solve(sigma, ring.inner_radius_mm), to = solve(sigma, ring.outer_radius_mm);
-    if constexpr (!std::is_same_v<Sigma, Other>) {
-      from = std::min(from, solve(other, ring.inner_radius_mm));
-      to = std::max(to, solve(other, ring.outer_radius_mm));
-    }
-    if (std::isnan(from) || std::isnan(to))
-      return fail("the flank ends inside the ring: ball centres reach contact radii {:.4f} to {:.4f}, the ring is "
-                  "{:.4f} to {:.4f}",
-                  contact_radius(sigma(sheet_.r_from()), sheet_.r_from()), contact_radius(sigma(sheet_.r_to()), sheet_.r_to()),
-                  ring.inner_radius_mm, ring.outer_radius_mm);
-    // A corner that begins or ends inside the ring: the pass is as long as the corner.
-    const double begin = std::max(from, r_low), end = std::min(to, r_high);
-    if (!(end > begin)) return MadePass{};
-    const auto on_sheet = [&](double r) -> std::optional<BallPass::Point> {
-      const auto s = sheet_.at(sigma(r), r);
-      if (!s) return {};
-      return BallPass::Point{s->centre, s->contact.p, true};
-    };
-    const auto curve = sample_curve(on_sheet, begin, end, o_.chord_mm, 4.0 * o_.ball_radius_mm);
-    if (!curve) return fail("the ball-centre surface cannot be followed between radii {:.4f} and {:.4f}", from, to);
-    BallPass pass;
-    pass.points = curve->points;
-    add_run_out(pass, on_sheet, from, to, begin == from, end == to);
-    pass.outward = plus == o_.climb;
-    if (!pass.outward) std::reverse(pass.points.begin(), pass.points.end());
-    return MadePass{std::move(pass), curve->worst_chord_mm};
-  }
-
-  /// Not to and fro: its way is that of a curve, not many times the straight line between its ends.
-  static bool keeps_on(const std::vector<BallPass::Point>& points) {
-    double way = 0;
-    for (std::size_t k = 1; k < points.size(); ++k) way += (points[k].centre - points[k - 1].centre).norm();
-    return way <= kLongestRunOut * (points.back().centre - points.front().centre).norm();
-  }
-
-  /// Goes on beyond the ends of the ring: along the sheet where that is there and smooth, else straight on. Out there the ball may come to
-  /// a corner that the ring does not have, and the sheet jumps from one wall of it to the other.
-  template <typename Curve>
-  void add_run_out(BallPass& pass, const Curve& on_sheet, double from, double to, bool inside, bool outside) const {
-    const auto extend = [&](double end, double sense) {
-      const double target = std::clamp(end + sense * o_.run_out_mm, sheet_.r_from(), sheet_.r_to());
-      std::vector<BallPass::Point> out;
-      if (std::abs(target - end) > 0.3 * o_.run_out_mm)
-        if (const auto line = sample_curve(on_sheet, end, target, o_.chord_mm, 4.0 * o_.ball_radius_mm); line && keeps_on(line->points)) {
-          out.assign(line->points.begin() + 1, line->points.end());
-          for (auto& p : out) p.touching = false;
-          return out;
-        }
-      const auto a = on_sheet(end), b = on_sheet(end - sense * 1e-4);
-      if (!a || !b) return out;
-      const Vec3 tangent = (a->centre - b->centre).normalized();
-      const double rate = std::abs(radius(a->centre + tangent * 1e-3) - radius(a->centre)) / 1e-3;
-      out.push_back({a->centre + tangent * (o_.run_out_mm / std::max(rate, 0.2)), a->contact, false});
-      return out;
-    };
-    if (inside) {
-      const auto points = extend(from, -1);
-      pass.points.insert(pass.points.begin(), points.rbegin(), points.rend());
-    }
-    if (outside) {
-      const auto points = extend(to, 1);
-      pass.points.insert(pass.points.end(), points.begin(), points.end());
-    }
-  }
-
   const face_gear::OffsetSheet& sheet_;
   FinishingOptions o_;
   PassCount count_;
-  std::vector<std::function<Result<MadePass>()>> asked_;
+  std::vector<SheetPassAsked> asked_;
   FinishingPasses out_;
 };
 

@@ -1,0 +1,113 @@
+#include "cam/ball/sheet_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "geometry/base/angle.h"
+
+namespace toothpath::ball {
+namespace {
+
+constexpr double kLongestRunOut = 1.5;  // way of a run-out along the sheet, of the straight line between its ends
+
+/// Not to and fro: its way is that of a curve, not many times the straight line between its ends.
+bool keeps_on(const std::vector<BallPass::Point>& points) {
+  double way = 0;
+  for (std::size_t k = 1; k < points.size(); ++k) way += (points[k].centre - points[k - 1].centre).norm();
+  return way <= kLongestRunOut * (points.back().centre - points.front().centre).norm();
+}
+
+class PassMaker {
+ public:
+  PassMaker(const face_gear::OffsetSheet& sheet, const FinishingOptions& options, const SheetPassAsked& asked) : sheet_(sheet), o_(options), asked_(asked) {}
+
+  [[nodiscard]] Result<SheetPass> run() const {
+    const auto& ring = sheet_.space().ring().zone;
+    double from = radius_of_contact_at(asked_.sigma, ring.inner_radius_mm), to = radius_of_contact_at(asked_.sigma, ring.outer_radius_mm);
+    if (asked_.other) {
+      from = std::min(from, radius_of_contact_at(asked_.other, ring.inner_radius_mm));
+      to = std::max(to, radius_of_contact_at(asked_.other, ring.outer_radius_mm));
+    }
+    if (std::isnan(from) || std::isnan(to))
+      return fail("the flank ends inside the ring: ball centres reach contact radii {:.4f} to {:.4f}, the ring is "
+                  "{:.4f} to {:.4f}",
+                  contact_radius(asked_.sigma(sheet_.r_from()), sheet_.r_from()), contact_radius(asked_.sigma(sheet_.r_to()), sheet_.r_to()),
+                  ring.inner_radius_mm, ring.outer_radius_mm);
+    const double begin = std::max(from, asked_.r_low), end = std::min(to, asked_.r_high);
+    if (!(end > begin)) return SheetPass{};
+    const auto curve = sample_curve([this](double r) { return on_sheet(r); }, begin, end, o_.chord_mm, longest());
+    if (!curve) return fail("the ball-centre surface cannot be followed between radii {:.4f} and {:.4f}", from, to);
+    SheetPass out{{curve->points, asked_.plus == o_.climb}, curve->worst_chord_mm};
+    add_run_outs(out.pass, from, to, begin == from, end == to);
+    if (!out.pass.outward) std::reverse(out.pass.points.begin(), out.pass.points.end());
+    return out;
+  }
+
+ private:
+  [[nodiscard]] double longest() const { return 4.0 * o_.ball_radius_mm; }
+
+  [[nodiscard]] double contact_radius(double sigma, double r) const {
+    const auto s = sheet_.at(sigma, r);
+    return s ? radius(s->contact.p) : NAN;
+  }
+
+  /// Radius of the ball centre where the contact of a curve lies at the radius `target`; not a number where it never does.
+  [[nodiscard]] double radius_of_contact_at(const std::function<double(double)>& curve, double target) const {
+    double a = sheet_.r_from(), b = sheet_.r_to();
+    if (contact_radius(curve(a), a) > target || contact_radius(curve(b), b) < target) return NAN;
+    for (int k = 0; k < 60 && b - a > 1e-9; ++k) {
+      const double m = 0.5 * (a + b);
+      (contact_radius(curve(m), m) < target ? a : b) = m;
+    }
+    return 0.5 * (a + b);
+  }
+
+  [[nodiscard]] std::optional<BallPass::Point> on_sheet(double r) const {
+    const auto s = sheet_.at(asked_.sigma(r), r);
+    if (!s) return {};
+    return BallPass::Point{s->centre, s->contact.p, true};
+  }
+
+  /// Points beyond `end`, outwards (sense 1) or inwards (-1): along the sheet where that is there and smooth, else straight on. Out there the
+  /// ball may come to a corner that the ring does not have, and the sheet jumps from one wall of it to the other.
+  [[nodiscard]] std::vector<BallPass::Point> run_out(double end, double sense) const {
+    const double target = std::clamp(end + sense * o_.run_out_mm, sheet_.r_from(), sheet_.r_to());
+    std::vector<BallPass::Point> out;
+    if (std::abs(target - end) > 0.3 * o_.run_out_mm)
+      if (const auto line = sample_curve([this](double r) { return on_sheet(r); }, end, target, o_.chord_mm, longest()); line && keeps_on(line->points)) {
+        out.assign(line->points.begin() + 1, line->points.end());
+        for (auto& p : out) p.touching = false;
+        return out;
+      }
+    const auto a = on_sheet(end), b = on_sheet(end - sense * 1e-4);
+    if (!a || !b) return out;
+    const Vec3 tangent = (a->centre - b->centre).normalized();
+    const double rate = std::abs(radius(a->centre + tangent * 1e-3) - radius(a->centre)) / 1e-3;
+    out.push_back({a->centre + tangent * (o_.run_out_mm / std::max(rate, 0.2)), a->contact, false});
+    return out;
+  }
+
+  void add_run_outs(BallPass& pass, double from, double to, bool inside, bool outside) const {
+    if (inside) {
+      const auto points = run_out(from, -1);
+      pass.points.insert(pass.points.begin(), points.rbegin(), points.rend());
+    }
+    if (outside) {
+      const auto points = run_out(to, 1);
+      pass.points.insert(pass.points.end(), points.begin(), points.end());
+    }
+  }
+
+  const face_gear::OffsetSheet& sheet_;
+  const FinishingOptions& o_;
+  const SheetPassAsked& asked_;
+};
+
+}  // namespace
+
+Result<SheetPass> make_sheet_pass(const face_gear::OffsetSheet& sheet, const FinishingOptions& options, const SheetPassAsked& asked) {
+  return PassMaker(sheet, options, asked).run();
+}
+
+}  // namespace toothpath::ball
