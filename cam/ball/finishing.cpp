@@ -123,8 +123,8 @@ class FinishingPlanner {
       const double ra = radius(pa->contact.p);
       const auto& ring = sheet_.space().ring().zone;
       if (ra < ring.inner_radius_mm - o_.ball_radius_mm || ra > ring.outer_radius_mm + o_.ball_radius_mm) continue;
-      const Vec3 fa = (na->centre - pa->centre).normalized(), fb = (nb->centre - pb->centre).normalized();
-      if (count_.cusp(sigma_a, *pa, fa, sigma_b, *pb, fb, r, sheet_.gaps(r)) > kHighestCusp * o_.scallop_mm) return true;
+      const PassPlace lower{sigma_a, *pa, (na->centre - pa->centre).normalized()}, upper{sigma_b, *pb, (nb->centre - pb->centre).normalized()};
+      if (count_.cusp(lower, upper, r, sheet_.gaps(r)) > kHighestCusp * o_.scallop_mm) return true;
     }
     return false;
   }

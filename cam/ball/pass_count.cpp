@@ -124,26 +124,21 @@ std::vector<double> PassCount::sharpened(std::size_t j) const {
   const auto& p = profiles_[j];
   const double r = sheet_.stations()[j].r, total = totals_[j];
   const auto gaps = sheet_.gaps(r);
-  struct Line {
-    double count, sigma;
-    face_gear::SheetPoint at;
-    Vec3 feed;
-  };
   const auto on_flank = [](double sigma) { return sigma < 0.96 || sigma > 4.04; };
   std::vector<double> grow(p.sigma.size(), 1.0);
   const auto try_pairs = [&](double begin, double end, double step, std::size_t apart) {
-    std::vector<Line> lines;
+    std::vector<PassPlace> lines;
     for (double c = begin; c <= end; c += step) {
       const double sigma = sigma_at(j, c);
       const auto s = sheet_.at(sigma, r);
       if (!s) return;
-      lines.push_back({c, sigma, *s, direction_at(j, sigma, c / total)});
+      lines.push_back({sigma, *s, direction_at(j, sigma, c / total)});
     }
     for (std::size_t i = 0; i + apart < lines.size(); ++i) {
       const auto &a = lines[i], &b = lines[i + apart];
       const auto between = [&](const face_gear::SheetGap& g) { return a.sigma <= g.from && b.sigma >= g.to; };
       if (std::any_of(gaps.begin(), gaps.end(), between)) continue;  // a pass will run along the corner between them
-      const double height = cusp(a.sigma, a.at, a.feed, b.sigma, b.at, b.feed, r, gaps);
+      const double height = cusp(a, b, r, gaps);
       const double ratio = std::clamp(height / ((on_flank(a.sigma) && on_flank(b.sigma) ? kFlankAim : kCornerAim) * o_.scallop_mm), 1.0, 4.0);
       if (ratio == 1.0) continue;
       for (std::size_t k = 1; k < p.sigma.size(); ++k)
@@ -172,20 +167,19 @@ Vec3 PassCount::direction_at(std::size_t j, double sigma, double share) const {
 }
 
 /// Highest place of the surface between two passes, above what both balls leave. Allowance left out.
-double PassCount::cusp(double sigma_a, const face_gear::SheetPoint& a, const Vec3& feed_a, double sigma_b, const face_gear::SheetPoint& b, const Vec3& feed_b,
-                       double r, const std::vector<face_gear::SheetGap>& gaps) const {
+double PassCount::cusp(const PassPlace& a, const PassPlace& b, double r, const std::vector<face_gear::SheetGap>& gaps) const {
   const auto from_line = [](const Vec3& p, const Vec3& q, const Vec3& feed) { return (p - q).cross(feed).norm(); };
   double worst = 0;
   constexpr int kSamples = 8;
   for (int k = 1; k < kSamples; ++k) {
-    const double sigma = sigma_a + (sigma_b - sigma_a) * k / kSamples;
+    const double sigma = a.sigma + (b.sigma - a.sigma) * k / kSamples;
     bool hidden = false;
     for (const auto& g : gaps) hidden = hidden || (sigma > g.from && sigma < g.to);
     if (hidden) continue;  // a corner that the ball cannot reach has its own pass
     const auto s = sheet_.raw(sigma, r);
     if (!s) continue;
     const Vec3 p = s->contact.p + o_.allowance_mm * s->contact.n;
-    worst = std::max(worst, std::min(from_line(p, a.centre, feed_a), from_line(p, b.centre, feed_b)) - o_.ball_radius_mm);
+    worst = std::max(worst, std::min(from_line(p, a.at.centre, a.feed), from_line(p, b.at.centre, b.feed)) - o_.ball_radius_mm);
   }
   return worst;
 }

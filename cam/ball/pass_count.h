@@ -9,6 +9,13 @@
 
 namespace toothpath::ball {
 
+/// Where a pass crosses a profile: its place there, and the unit direction in which it goes on.
+struct PassPlace {
+  double sigma = 0;
+  face_gear::SheetPoint at;
+  Vec3 feed = Vec3::Zero();
+};
+
 /// Counts by the curvature across the passes first; then every cusp is measured between its two passes, and the passes are drawn
 /// together where it is higher than asked. Holds a reference to the sheet, which must have a station.
 class PassCount {
@@ -21,10 +28,9 @@ class PassCount {
   [[nodiscard]] double count_at(std::size_t j, double sigma) const;
   [[nodiscard]] double sigma_at(std::size_t j, double count) const;
 
-  /// Highest place [mm] of the surface at centre radius r between two passes with unit directions `feed`, above what both balls leave.
+  /// Highest place [mm] of the surface at centre radius r between two passes, above what both balls leave.
   /// The allowance is left out, and so are places behind `gaps`: a corner that the ball does not reach has a pass of its own.
-  [[nodiscard]] double cusp(double sigma_a, const face_gear::SheetPoint& a, const Vec3& feed_a, double sigma_b, const face_gear::SheetPoint& b, const Vec3& feed_b, double r,
-                            const std::vector<face_gear::SheetGap>& gaps) const;
+  [[nodiscard]] double cusp(const PassPlace& a, const PassPlace& b, double r, const std::vector<face_gear::SheetGap>& gaps) const;
 
  private:
   struct Profile {
