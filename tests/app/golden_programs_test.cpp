@@ -208,7 +208,7 @@ void expect_round_trip(const std::string& text, const joints::AxisProgram& progr
   EXPECT_EQ(back->mixed_rapid, 0);
   std::vector<path::ToolMotion> motions;
   for (const auto& trace : back->operations) {
-    const auto part = readback::tool_motions(trace, back->copies, *control, m, *job.setup, planned.teeth, 1e-4, 1e-4);
+    const auto part = readback::tool_motions(trace, back->copies, *control, m, *job.setup, planned.teeth, {1e-4, 1e-4});
     ASSERT_TRUE(part) << part.error().text();
     motions.insert(motions.end(), part->begin(), part->end());
     if (job.bevel_gear() != nullptr) continue;  // its rapids pass beside the cone, inside that cylinder: judged by the finger check
