@@ -21,7 +21,7 @@
 #include "postproc/controls/of_machine.h"
 #include "postproc/readback/reader.h"
 #include "postproc/text/writer.h"
-#include "postproc/shaper/gearbox_program.h"
+#include "postproc/shaper/control.h"
 #include "postproc/shaper/program.h"
 #include "tests/support/files.h"
 
@@ -280,7 +280,7 @@ TEST(GoldenShaper, ByteForByte) {
     auto planned = commands::shaper_setup_of(job, made.value());
     ASSERT_TRUE(planned.has_value()) << planned.error().front().text();
     const shaper::ShaperSetup& setup = planned.value();
-    expect_golden(kGolden / "offset_shaped" / file, folded(setup.machine.gearbox ? shaper::shaper_gearbox_text(setup) : shaper::shaper_program_text(setup)));
+    expect_golden(kGolden / "offset_shaped" / file, folded(shaper::shaper_program(setup)));
   }
 }
 
