@@ -51,7 +51,7 @@ struct Form {
 };
 constexpr Form kForms[] = {{"linuxcnc.ngc", "linuxcnc", machines::TcpMode::none},        {"fanuc.nc", "fanuc", machines::TcpMode::none},
                            {"fanuc_tcp.nc", "fanuc", machines::TcpMode::angles},         {"siemens.mpf", "siemens", machines::TcpMode::angles},
-                           {"heidenhain.h", "heidenhain", machines::TcpMode::angles},    {"cutter_location.apt", "apt", machines::TcpMode::vectors},
+                           {"heidenhain.h.txt", "heidenhain", machines::TcpMode::angles},    {"cutter_location.apt", "apt", machines::TcpMode::vectors},
                            {"mitsubishi_m80.nc", "mitsubishi_m80", machines::TcpMode::none}};
 
 job::Job job_of(const std::string& sample) {
