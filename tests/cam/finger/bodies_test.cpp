@@ -49,7 +49,7 @@ TEST(FingerBodies, ProvenGapAgainstDenseSampling) {
   tool.stick_out_mm = 22;
   tool.holder = {{16, 20, 10}};
   const auto bodies = finger::finger_bodies(gear.cutter(), tool);
-  const double h_f = gear.parameters().dedendum_mm, flute = finger::finger_flute_end(gear.cutter(), tool);
+  const double h_f = gear.parameters().dedendum_mm, flute = tool::finger_flute_end(gear.cutter(), tool);
   /// Signed in the cutting part below its top, beyond that the cylinder ends.
   const auto gap_of = [&](const Vec3& p, const Vec3& tip, const Vec3& axis) {
     const double x = (p - tip).dot(axis), rho = (p - tip - x * axis).norm();
@@ -119,7 +119,7 @@ TEST(FingerBodies, DrawnBackTheMillPassesWhereItWas) {
   const bevel_gear::BevelGear gear = made(w3(), pinion_mill());
   const tool::ToolAssembly tool = mill(pinion_mill());
   const auto bodies = finger::finger_bodies(gear.cutter(), tool);
-  const double top = finger::finger_flute_end(gear.cutter(), tool);  // 9.9
+  const double top = tool::finger_flute_end(gear.cutter(), tool);  // 9.9
   const clearance::MeshDistance plate(test::box(Vec3(-20, -20, 1), Vec3(20, 20, top - 2))), lid(test::box(Vec3(-20, -20, top + 1), Vec3(20, 20, top + 1.5)));
   path::ToolMotion back;
   back.tip_to = Vec3(0, 0, 5);

@@ -7,7 +7,6 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 
-#include "cam/finger/bodies.h"
 #include "cam/tool/finger_profile.h"
 #include "geometry/base/angle.h"
 #include "tests/cam/finger/jobs.h"
@@ -91,10 +90,10 @@ TEST(Profile, FingerMill) {
     const bevel_gear::FingerSolid solid(gear.cutter());
     tool::ToolAssembly assembly = mill(d.c);
     assembly.flute_length_mm = d.p.dedendum_mm + d.c.profile_height_mm + 1;
-    const double sag = 1e-5, flute = finger::finger_flute_end(gear.cutter(), assembly), rho_D = gear.cutter().rho_D;
+    const double sag = 1e-5, flute = tool::finger_flute_end(gear.cutter(), assembly), rho_D = gear.cutter().rho_D;
     const tool::Meridian m = tool::finger_meridian(gear.cutter(), flute, sag);
     EXPECT_EQ(m.to(), flute);
-    EXPECT_LT(2 * m.pieces().size(), toothpath::finger::finger_meridian(gear.cutter(), assembly, sag).size());  // arcs follow the involute better than chords
+    EXPECT_LT(2 * m.pieces().size(), tool::finger_profile(gear.cutter(), assembly, sag).cutting().pieces().size());  // arcs follow the involute better than chords
     EXPECT_NEAR(m.largest_radius(), rho_D, 1e-12);
     EXPECT_FALSE(m.convex());           // the flank is hollow
     const auto frustums = m.enclosing_frustums(1e-3, "cutter");
