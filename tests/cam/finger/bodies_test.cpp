@@ -1,5 +1,6 @@
 // Finger mills against meshes: the truncated cones enclose the cutter closely, and no sampling of a motion comes nearer than what is proven.
 #include "cam/finger/bodies.h"
+#include "cam/finger/obstacles.h"
 
 #include <algorithm>
 
@@ -37,6 +38,26 @@ TEST(FingerBodies, PiecesEncloseTheCutterClosely) {
     }
     EXPECT_LE(most, std::max(d.c.tip_radius_mm / 800, 1e-3)) << d.p.teeth;
     EXPECT_LE(bodies[0].pieces.size(), 50u);
+  }
+}
+
+// Hulls and cones are of one profile: without a holder both end at the gauge line.
+TEST(FingerBodies, HullsAndConesEndAtTheSamePlaces) {
+  const bevel_gear::BevelGear gear = made(w3(), pinion_mill());
+  for (const bool held : {true, false}) {
+    tool::ToolAssembly tool = mill(pinion_mill());
+    tool.stick_out_mm = 22;
+    tool.length_mm = 60;
+    tool.holder.clear();
+    if (held) tool.holder = {{16, 20, 10}, {20, 24, 5}};
+    const tool::Profile profile = tool::finger_profile(gear.cutter(), tool, 1e-3);
+    const auto hulls = finger::tool_hulls(profile);
+    const auto cones = tool::shank_and_holder(profile);
+    ASSERT_EQ(hulls.size(), held ? 3u : 2u);
+    EXPECT_EQ(hulls[0].rims.back().x(), tool::finger_flute_end(gear.cutter(), tool));
+    EXPECT_EQ(hulls[1].rims.back().x(), held ? 22 : 60);
+    EXPECT_EQ(hulls.back().rims.back(), Vec2(cones.back().to, cones.back().radius_to));
+    EXPECT_EQ(cones.size(), held ? 3u : 1u);
   }
 }
 
