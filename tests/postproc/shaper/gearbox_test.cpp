@@ -1,6 +1,8 @@
 // Programs for electronic gearboxes, read back: the coupling as an equality of whole numbers, strokes, infeed, turns, order; planted faults.
+#include <algorithm>
 #include <functional>
 #include <numeric>
+#include <set>
 #include <sstream>
 
 #include "postproc/shaper/control.h"
@@ -131,6 +133,7 @@ TEST_P(Gearbox, PlantedFaultsAreFound) {
                                  {"work moved by a word", "G94 G1 C1=", "G94 G1 C2=5 C1="},
                                  {"not clear", "SUPA G0 X7.25", "SUPA G0 X5"},
                                  {"turn too short", "G94 G1 C1=13", "G94 G1 C1=12"},
+                                 {"waits for another axis", "WAITP(Z)", "WAITP(X)"},
                                  {"first motion is no clearing", "SUPA G0 X7.25 D0\n", ""}});
   } else {
     faults.insert(faults.end(), {{"pulses of one turn too many", "P31680000", "P32040000"},
@@ -172,6 +175,22 @@ TEST_P(Gearbox, PlantedFaultsAreFound) {
     if (lines[k].starts_with("G1 X6.75")) continue;
     EXPECT_FALSE(faulty.empty()) << "dropped: " << lines[k];
   }
+}
+
+TEST(ShaperControls, AreWholeAndDiffer) {
+  std::set<std::string> names;
+  for (const shaper::ShaperControl& c : shaper::shaper_controls()) {
+    EXPECT_TRUE(names.insert(c.dialect.name).second) << c.dialect.name;
+    EXPECT_TRUE(c.extension.starts_with('.')) << c.dialect.name;
+    EXPECT_NE(c.program, nullptr) << c.dialect.name;
+    const bool gearbox = c.dialect.gears != machines::ShaperGears::change_gears;
+    EXPECT_EQ(c.read != nullptr, gearbox) << c.dialect.name << ": what couples is read back";
+    EXPECT_EQ(!c.coupling_words.empty(), gearbox) << c.dialect.name;
+  }
+  const auto refused = shaper::read_shaper_machine_of_text("schema = 1\nname = \"s\"\nkind = \"gear_shaper\"\ndialect = \"fagor\"\n", "s.toml");
+  const auto told = std::find_if(refused.errors.begin(), refused.errors.end(), [](const Diagnostic& d) { return d.position.line == 4; });
+  ASSERT_NE(told, refused.errors.end());
+  for (const auto& name : names) EXPECT_NE(told->message.find(name), std::string::npos) << told->message;
 }
 
 INSTANTIATE_TEST_SUITE_P(Dialects, Gearbox, ::testing::Values("siemens", "fanuc"), [](const auto& p) { return p.param; });
