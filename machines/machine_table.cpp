@@ -73,7 +73,7 @@ class MachineWords final : public toml::TableWords {
     return std::nullopt;
   }
 
-  std::string not_one_of(const std::string& name, const std::string& text, std::initializer_list<std::string_view> words) const override {
+  std::string not_one_of(const std::string& name, const std::string& text, std::span<const std::string_view> words) const override {
     return fmt::format("{} = \"{}\" is not one of {}", name, text, fmt::join(words, ", "));
   }
 };

@@ -73,11 +73,11 @@ std::string read_axis_name(toml::TableReader& table, const char* key) {
   return *name;
 }
 
-void read_gearbox(toml::TableReader table, ShaperMachine& machine) {
+void read_gearbox(toml::TableReader table, ShaperGears gears, ShaperMachine& machine) {
   ElectronicGearbox box;
   box.relief_on = read_m_code(table, "relief_on");
   box.relief_off = read_m_code(table, "relief_off");
-  if (machine.dialect == "siemens") {
+  if (gears == ShaperGears::named_axes) {
     box.cutter_axis = read_axis_name(table, "cutter_axis");
     box.work_axis = read_axis_name(table, "work_axis");
     if (box.cutter_axis == box.work_axis)
@@ -107,7 +107,7 @@ ShaperAxis read_axis(toml::TableReader axis, bool rotary) {
   return out;
 }
 
-ShaperMachine read_shaper_tree(const toml::TomlValue& tree, const std::string& file, toml::ReaderFindings& findings) {
+ShaperMachine read_shaper_tree(const toml::TomlValue& tree, const std::string& file, const std::vector<ShaperDialect>& dialects, toml::ReaderFindings& findings) {
   toml::TableReader root(tree, "", findings);
   ShaperMachine machine;
   machine.file = file;
@@ -117,12 +117,17 @@ ShaperMachine read_shaper_tree(const toml::TomlValue& tree, const std::string& f
     root.refuse("kind", "kind = \"{}\" is no gear shaper; \"gear_shaper\" is needed here", *kind);
     return machine;
   }
-  machine.dialect = root.word("dialect", {"fanuc", "linuxcnc", "siemens"}).value_or("");
+  std::vector<std::string_view> names;
+  for (const auto& dialect : dialects) names.push_back(dialect.name);
+  machine.dialect = root.word("dialect", names).value_or("");
+  ShaperGears coupled_by = ShaperGears::change_gears;
+  for (const auto& dialect : dialects)
+    if (dialect.name == machine.dialect) coupled_by = dialect.gears;
   machine.assumed_keys = read_assumed(root, tree);
   machine.assumed = !machine.assumed_keys.empty();
   if (const auto stroke = root.required_table("stroke")) read_stroke(*stroke, machine);
-  if (machine.dialect == "siemens" || machine.dialect == "fanuc") {
-    if (const auto box = root.required_table("gearbox")) read_gearbox(*box, machine);
+  if (coupled_by != ShaperGears::change_gears) {
+    if (const auto box = root.required_table("gearbox")) read_gearbox(*box, coupled_by, machine);
   } else {
     if (const auto index = root.required_table("index")) machine.index_constant = read_ratio(*index);
     if (const auto feed = root.required_table("feed")) machine.feed_constant = read_ratio(*feed);
@@ -140,12 +145,15 @@ ShaperMachine read_shaper_tree(const toml::TomlValue& tree, const std::string& f
 
 }  // namespace
 
-ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file) {
-  return read_machine_as<ShaperMachineReading>(text, file, read_shaper_tree);
+ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file, const std::vector<ShaperDialect>& dialects) {
+  return read_machine_as<ShaperMachineReading>(text, file, [&](const toml::TomlValue& tree, const std::string& name, toml::ReaderFindings& findings) {
+    return read_shaper_tree(tree, name, dialects, findings);
+  });
 }
 
-ShaperMachineReading read_shaper_machine_file(const std::string& path) {
-  return read_machine_file_as<ShaperMachineReading>(path, read_shaper_machine_text);
+ShaperMachineReading read_shaper_machine_file(const std::string& path, const std::vector<ShaperDialect>& dialects) {
+  return read_machine_file_as<ShaperMachineReading>(
+      path, [&](std::string_view text, const std::string& file) { return read_shaper_machine_text(text, file, dialects); });
 }
 
 }  // namespace toothpath::machines

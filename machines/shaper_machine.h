@@ -27,18 +27,28 @@ struct ShaperAxis {
   int sign = 1;  ///< A and C: +1 turns about the axes of the gear frame, -1 reverses the words
 };
 
+/// What couples the work to the cutter, as the machine files of a control say it: change gears ([index], [feed], [gears]); or [gearbox],
+/// with the names of its axes or with the pulses of one turn.
+enum class ShaperGears { change_gears, named_axes, pulses };
+
+/// A control that a machine file may name. Which ones exist is the post's business.
+struct ShaperDialect {
+  std::string name;
+  ShaperGears gears = ShaperGears::change_gears;
+};
+
 /// An electronic gearbox in place of change gears: the control couples the work to the cutter by a ratio of whole numbers.
 struct ElectronicGearbox {
-  std::string cutter_axis = "A";         ///< words of the leading axis; Siemens: a machine axis name as C1
+  std::string cutter_axis = "A";         ///< words of the leading axis: a letter, or a machine axis name as C1
   std::string work_axis = "C";           ///< words of the following axis
   std::string relief_on, relief_off;     ///< M codes of the lift on the back stroke, as "M61"
-  std::int64_t pulses_per_turn = 0;      ///< Fanuc: pulses of one turn of the cutter axis; 0: not given
+  std::int64_t pulses_per_turn = 0;      ///< pulses of one turn of the cutter axis; 0: not given
 };
 
 struct ShaperMachine {
   std::string name;
   std::string file;     ///< path as it was opened
-  std::string dialect;  ///< "linuxcnc": every stroke written out; "siemens", "fanuc": electronic gearbox
+  std::string dialect;  ///< name of the control
   bool assumed = false;
   std::vector<std::string> assumed_keys;  ///< dotted names; of `assumed = true`, every value of the file
 
@@ -59,10 +69,10 @@ struct ShaperMachineReading {
   std::vector<Diagnostic> errors;
 };
 
-/// Reads the file at `path`. Errors: every refusal with its place, unreadable files with kind file_access.
-[[nodiscard]] ShaperMachineReading read_shaper_machine_file(const std::string& path);
+/// Reads the file at `path`, whose control is one of `dialects`. Errors: every refusal with its place, unreadable files with kind file_access.
+[[nodiscard]] ShaperMachineReading read_shaper_machine_file(const std::string& path, const std::vector<ShaperDialect>& dialects);
 
 /// The same from text; `file` is the name in the messages.
-[[nodiscard]] ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file);
+[[nodiscard]] ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file, const std::vector<ShaperDialect>& dialects);
 
 }  // namespace toothpath::machines

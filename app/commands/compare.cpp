@@ -165,50 +165,47 @@ std::vector<page::StudyPage::Figure> maps_of(const std::vector<ComparedFlank>& f
 
 nlohmann::ordered_json figures_json(const Figures& f) { return {{"min_um", f.least}, {"max_um", f.greatest}, {"rms_um", f.rms}}; }
 
-}  // namespace
-
-CommandOutcome run_compare(const CompareRequest& request) {
-  app::Progress progress(request.quiet);
-  app::StageClock clock(progress);
-  auto output = app::OutputDir::open(request.out_dir, kCompareOutputs, {request.job_file, request.other_job});
-  if (!output) return failed(output.error());
-  Side shaped_side, milled_side;
-  std::vector<Diagnostic> errors = read_side(request.job_file, shaped_side);
-  auto more = read_side(request.other_job, milled_side);
+/// Both jobs and their gears; refused: all that is wrong with either, or that they are not one gear by two routes.
+std::vector<Diagnostic> read_sides(const CompareRequest& request, Side& shaped, Side& milled) {
+  std::vector<Diagnostic> errors = read_side(request.job_file, shaped);
+  auto more = read_side(request.other_job, milled);
   errors.insert(errors.end(), more.begin(), more.end());
-  if (!errors.empty()) return failed(std::move(errors));
-  if (!shaped_side.job.shaping) return failed(fail_at(shaped_side.job.where(""), "the job lacks the table [shaping]"));
-  if (milled_side.job.operations.empty()) return failed(fail_at(milled_side.job.where(""), "the job lacks an [[operation]]: nothing is milled"));
-  if (auto found = differences(shaped_side, milled_side); !found.empty()) return failed(std::move(found));
+  if (!errors.empty()) return errors;
+  if (!shaped.job.shaping) return {fail_at(shaped.job.where(""), "the job lacks the table [shaping]")};
+  if (milled.job.operations.empty()) return {fail_at(milled.job.where(""), "the job lacks an [[operation]]: nothing is milled")};
+  return differences(shaped, milled);
+}
 
-  auto milled_or = clock.run("milled", [&] { return process::cut_flanks(milled_side.job, *milled_side.gear, kCompareRows, kCompareColumns, *output, request.quiet); });
-  if (auto* e = milled_or.refused()) return failed(std::move(*e));
-  const process::CutFlanks& milled = milled_or.value();
-  auto shaped_or = clock.run("shaped", [&] { return process::shaped_flanks(shaped_side.job, *shaped_side.gear, milled.flanks); });
-  if (auto* e = shaped_or.refused()) return failed(std::move(*e));
-  const process::CutFlanks& shaped = shaped_or.value();
-  const auto flanks = compared(shaped, milled);
+/// Both flanks under the same pinion: what the deviations mean in the mesh.
+struct ComparedContact {
+  page::PageTable table{"Under the same pinion", {"flank", "route", "transmission error um", "within compound", "pattern %"}, {}, ""};
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+};
 
-  // Both flanks under the same pinion: what the deviations mean in the mesh.
+process::ValueOrErrors<ComparedContact> compared_contact(const Side& milled_side, const process::CutFlanks& shaped, const process::CutFlanks& milled,
+                                                         app::StageClock& clock) {
   const job::ContactSettings settings = contact_settings(milled_side.job, {});
-  page::PageTable contact{"Under the same pinion", {"flank", "route", "transmission error um", "within compound", "pattern %"}, {}, ""};
-  nlohmann::ordered_json contact_rows = nlohmann::ordered_json::array();
+  ComparedContact out;
   for (const process::CutFlanks* cut : {&shaped, &milled}) {
     auto analysed = clock.run("contact", [&] { return process::analyse_contact(milled_side.job, *milled_side.gear, settings, cut); });
-    if (auto* e = analysed.refused()) return failed(std::move(*e));
+    if (auto* e = analysed.refused()) return std::move(*e);
     const auto& a = analysed.value();
-    contact.note = fmt::format("Pinion of {} teeth, rigid and unloaded; peak to peak at the pitch radius {:.3f} mm; compound {:g} um.", a.pinion_teeth,
-                               a.pitch_radius_mm, a.settings.compound_mm * app::kUm);
+    out.table.note = fmt::format("Pinion of {} teeth, rigid and unloaded; peak to peak at the pitch radius {:.3f} mm; compound {:g} um.", a.pinion_teeth,
+                                 a.pitch_radius_mm, a.settings.compound_mm * app::kUm);
     for (const auto& side : a.sides) {
       if (!side.as_cut) continue;
       const double um = side.roll.error_range_rad * a.pitch_radius_mm * app::kUm, share = side.roll.patterns.front().marked_share;
-      contact.rows.push_back({fmt::format("{:+}", side.side), cut->route, fmt::format("{:.3f}", um),
-                              fmt::format("{} to {}", side.roll.least_marking, side.roll.most_marking), fmt::format("{:.1f}", share * 100)});
-      contact_rows.push_back({{"route", cut->route}, {"flank", side.side}, {"error_range_um", um}, {"error_range_urad", side.roll.error_range_rad * 1e6},
-                              {"pattern_share", share}});
+      out.table.rows.push_back({fmt::format("{:+}", side.side), cut->route, fmt::format("{:.3f}", um),
+                                fmt::format("{} to {}", side.roll.least_marking, side.roll.most_marking), fmt::format("{:.1f}", share * 100)});
+      out.rows.push_back({{"route", cut->route}, {"flank", side.side}, {"error_range_um", um}, {"error_range_urad", side.roll.error_range_rad * 1e6},
+                          {"pattern_share", share}});
     }
   }
+  return out;
+}
 
+nlohmann::ordered_json comparison_json(const Side& shaped_side, const Side& milled_side, const process::CutFlanks& shaped, const process::CutFlanks& milled,
+                                       const std::vector<ComparedFlank>& flanks) {
   nlohmann::ordered_json json;
   json["schema"] = 1;
   json["command"] = "compare";
@@ -219,8 +216,11 @@ CommandOutcome run_compare(const CompareRequest& request) {
   for (const auto& f : flanks)
     json["flanks"].push_back({{"zone", f.places->zone}, {"flank", f.places->side}, {"points", f.shaped_um.size()}, {"shaped", figures_json(f.shaped)},
                               {"milled", figures_json(f.milled)}, {"difference", figures_json(f.difference)}});
-  json["contact"] = contact_rows;
+  return json;
+}
 
+/// Verdict and what is to be known before the figures are read; figures and tables are the caller's.
+page::StudyPage page_about(const Side& shaped_side, const Side& milled_side, const process::CutFlanks& shaped, const process::CutFlanks& milled) {
   page::StudyPage page;
   page.title = milled_side.job.name + ": shaped and milled";
   page.subtitle = fmt::format("{} against {}, {} x {} places a flank", shaped_side.job.file, milled_side.job.file, kCompareRows, kCompareColumns);
@@ -229,12 +229,39 @@ CommandOutcome run_compare(const CompareRequest& request) {
   page.introduction = {"The same flanks by two routes, each judged on what it cuts: the strokes of the shaper as straight sweeps of the cutter's profile, the "
                        "milled surface from the program as it was read back. Both deviations are taken on the same places along the same normals.",
                        "Feed, depth of cut and tolerances are those of the two jobs: the figures compare these jobs, not the processes in general."};
-  if (shaped_side.gear->parameters().shaper_tip_radius_mm != milled_side.gear->parameters().shaper_tip_radius_mm)
+  const double shaped_tip = shaped_side.gear->parameters().shaper_tip_radius_mm, milled_tip = milled_side.gear->parameters().shaper_tip_radius_mm;
+  if (shaped_tip != milled_tip)
     page.introduction.push_back(fmt::format("The shapers' tip radii differ ({:g} and {:g} mm), so the fillets do; the flanks above the higher fillet line are the same.",
-                                            shaped_side.gear->parameters().shaper_tip_radius_mm, milled_side.gear->parameters().shaper_tip_radius_mm));
+                                            shaped_tip, milled_tip));
   for (const auto& a : shaped.assumed) page.introduction.push_back("Assumed: " + a);
+  return page;
+}
+
+}  // namespace
+
+CommandOutcome run_compare(const CompareRequest& request) {
+  app::Progress progress(request.quiet);
+  app::StageClock clock(progress);
+  auto output = app::OutputDir::open(request.out_dir, kCompareOutputs, {request.job_file, request.other_job});
+  if (!output) return failed(output.error());
+  Side shaped_side, milled_side;
+  if (auto errors = read_sides(request, shaped_side, milled_side); !errors.empty()) return failed(std::move(errors));
+
+  auto milled_or = clock.run("milled", [&] { return process::cut_flanks(milled_side.job, *milled_side.gear, kCompareRows, kCompareColumns, *output, request.quiet); });
+  if (auto* e = milled_or.refused()) return failed(std::move(*e));
+  const process::CutFlanks& milled = milled_or.value();
+  auto shaped_or = clock.run("shaped", [&] { return process::shaped_flanks(shaped_side.job, *shaped_side.gear, milled.flanks); });
+  if (auto* e = shaped_or.refused()) return failed(std::move(*e));
+  const process::CutFlanks& shaped = shaped_or.value();
+  const auto flanks = compared(shaped, milled);
+  auto contact = compared_contact(milled_side, shaped, milled, clock);
+  if (auto* e = contact.refused()) return failed(std::move(*e));
+
+  nlohmann::ordered_json json = comparison_json(shaped_side, milled_side, shaped, milled, flanks);
+  json["contact"] = contact.value().rows;
+  page::StudyPage page = page_about(shaped_side, milled_side, shaped, milled);
   page.figures = maps_of(flanks);
-  page.tables = {time_table(shaped, milled), deviation_table(flanks), contact};
+  page.tables = {time_table(shaped, milled), deviation_table(flanks), contact.value().table};
 
   CommandOutcome outcome;
   outcome.report_json = json.dump(2) + "\n";

@@ -106,6 +106,67 @@ page::PageTable summary_table_of(const std::vector<sheet::JudgedCutter>& mills) 
   return table;
 }
 
+/// The other job whose mills are judged, if one is named.
+process::ValueOrErrors<std::optional<job::Job>> read_other(const CutterRequest& request, app::StageClock& clock) {
+  if (request.other_job.empty()) return std::optional<job::Job>();
+  auto read = clock.run("job", [&] { return job::read_job_file(request.other_job); });
+  if (auto* errors = read.refused()) return std::move(*errors);
+  job::Job& other = read.value();
+  if (!other.bevel_gear())
+    return std::vector{fail_at(other.where("gear.type"), "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear", process::gear_type(other))};
+  return std::optional<job::Job>(std::move(other));
+}
+
+/// Index of the mill that the sheet describes: the designed one, or the tool that is asked for.
+Result<std::size_t> drawn_mill(int tool_number, const std::vector<sheet::JudgedCutter>& mills, const job::Job& job) {
+  if (tool_number == 0) return std::size_t{0};
+  const std::string name = fmt::format("tool {}", tool_number);
+  std::size_t drawn = 0;
+  while (drawn < mills.size() && mills[drawn].name != name) ++drawn;
+  if (drawn == mills.size()) return fail_at(job.where("tool"), "--tool = {} is not a finger mill of the job", tool_number);
+  if (mills[drawn].judgement.walls.empty()) return fail_at(job.where("tool"), "tool {} cannot be drawn: its profile is impossible", tool_number);
+  return drawn;
+}
+
+sheet::CutterSheet sheet_about(const job::Job& job, const bevel_gear::BevelGear& gear, const std::vector<sheet::JudgedCutter>& mills, std::size_t drawn) {
+  sheet::CutterSheet sheet;
+  sheet.job_name = job.name;
+  sheet.job_file = job.file;
+  sheet.gear_line = gear_line(gear);
+  sheet.warnings = job.warnings;
+  sheet.warnings.insert(sheet.warnings.end(), gear.warnings().begin(), gear.warnings().end());
+  for (std::size_t i = 0; i < mills.size(); ++i)
+    if (i != drawn) sheet.others.push_back(mills[i]);
+  sheet.drawn = mills[drawn];
+  const auto& profile = sheet.drawn.judgement.profile;
+  sheet.length_mm = profile.h_f + profile.x_D + 0.5 * profile.rho_D;
+  return sheet;
+}
+
+sheet::CutterDxf dxf_of(const sheet::CutterSheet& sheet) {
+  const auto& data = sheet.drawn.judgement.data;
+  return sheet::cutter_dxf(sheet.drawn.judgement.profile, sheet.length_mm,
+                           {fmt::format("finger mill ({}), job {}", sheet.drawn.name, sheet.job_name),
+                            fmt::format("module {:.6g}, tip radius {:.6g}, rack depth {:.6g}, profile height {:.6g}", data.module_mm, data.tip_radius_mm,
+                                        data.rack_depth_mm, data.profile_height_mm)},
+                           kDxfChord);
+}
+
+/// Where the axial force of a herringbone gear does not change with its sense.
+std::optional<double> balanced_apex_distance_of(const bevel_gear::BevelGear& g) {
+  if (!g.herringbone()) return std::nullopt;
+  return bevel_gear::balanced_apex_distance(g.R_i(), g.R_e(), g.R_0(), g.parameters().relief_half_width_mm);
+}
+
+std::string mills_summary(const std::vector<sheet::JudgedCutter>& mills, const std::vector<std::string>& warnings) {
+  std::string out = page::table_text(summary_table_of(mills));
+  for (const auto& mill : mills)
+    for (const auto& c : mill.judgement.conditions)
+      if (c.verdict != bevel_gear::Verdict::met) out += fmt::format("{}: {}\n", mill.name, c.text());
+  for (const auto& warning : warnings) out += "warning: " + warning + "\n";
+  return out;
+}
+
 }  // namespace
 
 CommandOutcome run_cutter(const CutterRequest& request) {
@@ -116,58 +177,28 @@ CommandOutcome run_cutter(const CutterRequest& request) {
   auto read = clock.run("job", [&] { return job::read_job_file(request.job_file); });
   if (auto* errors = read.refused()) return failed(std::move(*errors));
   const job::Job& job = read.value();
-  std::optional<job::Job> other;
-  if (!request.other_job.empty()) {
-    auto second = clock.run("job", [&] { return job::read_job_file(request.other_job); });
-    if (auto* errors = second.refused()) return failed(std::move(*errors));
-    other = std::move(second).value();
-    if (!other->bevel_gear()) return failed(fail_at(other->where("gear.type"), "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear", process::gear_type(*other)));
-  }
+  auto other = read_other(request, clock);
+  if (auto* errors = other.refused()) return failed(std::move(*errors));
   auto made = clock.run("design", [&] { return design_for(job); });
   if (auto* errors = made.refused()) return failed(std::move(*errors));
   const bevel_gear::FingerCutterDesign& design = made.value();
 
   std::vector<sheet::JudgedCutter> mills = {{"designed", bevel_gear::judge_finger_cutter(design.gear, design.data)}};
-  for (auto& mill : clock.run("judgement", [&] { return judge_mills(design.gear, job, other ? &*other : nullptr); })) mills.push_back(std::move(mill));
-  std::size_t drawn = 0;
-  if (request.tool_number != 0) {
-    const std::string name = fmt::format("tool {}", request.tool_number);
-    while (drawn < mills.size() && mills[drawn].name != name) ++drawn;
-    if (drawn == mills.size()) return failed(fail_at(job.where("tool"), "--tool = {} is not a finger mill of the job", request.tool_number));
-    if (mills[drawn].judgement.walls.empty()) return failed(fail_at(job.where("tool"), "tool {} cannot be drawn: its profile is impossible", request.tool_number));
-  }
-
-  sheet::CutterSheet sheet;
-  sheet.job_name = job.name;
-  sheet.job_file = job.file;
-  sheet.gear_line = gear_line(design.gear);
-  sheet.warnings = job.warnings;
-  sheet.warnings.insert(sheet.warnings.end(), design.gear.warnings().begin(), design.gear.warnings().end());
-  for (std::size_t i = 0; i < mills.size(); ++i)
-    if (i != drawn) sheet.others.push_back(mills[i]);
-  sheet.drawn = mills[drawn];
+  const job::Job* mills_of = other.value() ? &*other.value() : nullptr;
+  for (auto& mill : clock.run("judgement", [&] { return judge_mills(design.gear, job, mills_of); })) mills.push_back(std::move(mill));
+  const auto drawn = drawn_mill(request.tool_number, mills, job);
+  if (!drawn) return failed(drawn.error());
+  sheet::CutterSheet sheet = sheet_about(job, design.gear, mills, *drawn);
   const auto& profile = sheet.drawn.judgement.profile;
-  sheet.length_mm = profile.h_f + profile.x_D + 0.5 * profile.rho_D;
-  const auto& data = sheet.drawn.judgement.data;
-  const sheet::CutterDxf dxf = sheet::cutter_dxf(profile, sheet.length_mm,
-                                   {fmt::format("finger mill ({}), job {}", sheet.drawn.name, job.name),
-                                    fmt::format("module {:.6g}, tip radius {:.6g}, rack depth {:.6g}, profile height {:.6g}", data.module_mm, data.tip_radius_mm, data.rack_depth_mm,
-                                                data.profile_height_mm)},
-                                   kDxfChord);
+  const sheet::CutterDxf dxf = dxf_of(sheet);
   sheet.dxf_chord_mm = dxf.chord_error_mm;
 
   nlohmann::ordered_json json = {{"schema", 1}, {"command", "cutter"}, {"job", job.file}, {"drawn", sheet.drawn.name}};
   json["dxf"] = {{"chord_error_um", 1000 * dxf.chord_error_mm}, {"involute_vertices", dxf.vertices}};
   json["mills"] = nlohmann::ordered_json::array();
   for (const auto& mill : mills) json["mills"].push_back(json_of(mill));
-  std::string balance;
-  if (design.gear.herringbone()) {
-    const auto& g = design.gear;
-    if (const auto R_J = bevel_gear::balanced_apex_distance(g.R_i(), g.R_e(), g.R_0(), g.parameters().relief_half_width_mm)) {
-      json["balanced_apex_cone_distance"] = *R_J;
-      balance = fmt::format("axial force is the same in both senses at apex_cone_distance = {:.4f} (now {:.4f}; uniform line load)\n", *R_J, g.R_ref());
-    }
-  }
+  const auto R_J = balanced_apex_distance_of(design.gear);
+  if (R_J) json["balanced_apex_cone_distance"] = *R_J;
   json["warnings"] = sheet.warnings;
 
   CommandOutcome outcome;
@@ -176,16 +207,14 @@ CommandOutcome run_cutter(const CutterRequest& request) {
   if (!sheet.others.empty()) compared = sheet.others.front().judgement.profile;
   const std::string svg = sheet::cutter_svg(profile, sheet.length_mm, sheet::cutter_drawing_scale(profile, sheet.length_mm, 160, 240), compared, true);
   const process::NamedFiles files = {{"cutter.csv", sheet::cutter_csv(profile, kCsvChord)},
-                            {"cutter.svg", svg},
-                            {"cutter.dxf", dxf.text},
-                            {"cutter.html", sheet::cutter_sheet_html(sheet)},
-                            {"cutter.json", outcome.report_json}};
-  outcome.summary = page::table_text(summary_table_of(mills));
-  for (const auto& mill : mills)
-    for (const auto& c : mill.judgement.conditions)
-      if (c.verdict != bevel_gear::Verdict::met) outcome.summary += fmt::format("{}: {}\n", mill.name, c.text());
-  for (const auto& warning : sheet.warnings) outcome.summary += "warning: " + warning + "\n";
-  outcome.summary += balance + "files in " + request.out_dir + "\n";
+                                     {"cutter.svg", svg},
+                                     {"cutter.dxf", dxf.text},
+                                     {"cutter.html", sheet::cutter_sheet_html(sheet)},
+                                     {"cutter.json", outcome.report_json}};
+  outcome.summary = mills_summary(mills, sheet.warnings);
+  if (R_J)
+    outcome.summary += fmt::format("axial force is the same in both senses at apex_cone_distance = {:.4f} (now {:.4f}; uniform line load)\n", *R_J, design.gear.R_ref());
+  outcome.summary += "files in " + request.out_dir + "\n";
   progress.clear();
   return process::finished(*output, files, std::move(outcome));
 }

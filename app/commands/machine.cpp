@@ -13,6 +13,7 @@
 #include "machines/machine_file.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/self_test/self_test.h"
+#include "postproc/shaper/control.h"
 #include "postproc/text/writer.h"
 
 namespace toothpath::commands {
@@ -29,7 +30,7 @@ Expected<Shown, std::vector<Diagnostic>> show(const std::string& path) {
   const auto kind = machines::machine_kind_of(path);
   if (!kind) return std::vector{kind.error()};
   if (*kind == machines::MachineKind::gear_shaper) {
-    auto reading = machines::read_shaper_machine_file(path);
+    auto reading = shaper::read_shaper_machine(path);
     if (!reading.machine) return std::move(reading.errors);
     return Shown{sheet::machine_text(*reading.machine), sheet::machine_page(*reading.machine), {}};
   }

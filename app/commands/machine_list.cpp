@@ -5,7 +5,7 @@
 #include "app/report/svg/html_text.h"
 #include "app/report/page/study_page.h"
 #include "machines/machine_file.h"
-#include "machines/shaper_machine.h"
+#include "postproc/shaper/control.h"
 
 namespace toothpath::commands {
 namespace {
@@ -37,7 +37,7 @@ Listed read_installed(const std::string& file) {
   const auto kind = machines::machine_kind_of(*path);
   if (!kind) return {{}, {}, {kind.error()}};
   if (*kind == machines::MachineKind::gear_shaper) {
-    auto reading = machines::read_shaper_machine_file(*path);
+    auto reading = shaper::read_shaper_machine(*path);
     if (!reading.machine) return {{}, {}, std::move(reading.errors)};
     return listed(file, reading.machine->name, "gear_shaper", reading.machine->dialect, "-", "-", reading.machine->assumed_keys.size());
   }

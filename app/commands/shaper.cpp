@@ -12,9 +12,8 @@
 #include "geometry/base/hash.h"
 #include "machines/machine_file.h"
 #include "machines/shaper_machine.h"
-#include "postproc/shaper/gearbox_program.h"
+#include "postproc/shaper/control.h"
 #include "postproc/shaper/gearbox_proof.h"
-#include "postproc/shaper/program.h"
 #include "postproc/shaper/setup.h"
 #include "postproc/shaper/sheet.h"
 
@@ -30,7 +29,7 @@ process::ValueOrErrors<machines::ShaperMachine> load_shaper_machine(const job::J
   if (!kind) return std::vector{process::located(job, "machine.file", kind.error())};
   if (*kind != machines::MachineKind::gear_shaper)
     return std::vector{fail_at(job.where("machine.file"), "{} is a milling machine, but this command needs a gear shaper", job.machine.file)};
-  auto reading = machines::read_shaper_machine_file(*path);
+  auto reading = shaper::read_shaper_machine(*path);
   if (!reading.machine) return std::move(reading.errors);
   if (reading.machine->assumed && !job.machine.accept_assumed) {
     std::string names;
@@ -101,12 +100,13 @@ CommandOutcome run_shaper(const JobRequest& request) {
   setup.warnings.insert(setup.warnings.begin(), gear.warnings().begin(), gear.warnings().end());
   setup.warnings.insert(setup.warnings.begin(), job.warnings.begin(), job.warnings.end());
   const auto study = clock.run("stroke simulation", [&] { return shaper::feed_study(setup, shaper::compared_feeds(setup)); });
-  const std::string program_name = std::string("shaper_program") + shaper::shaper_program_extension(machine);
-  const std::string program = clock.run("shaper program", [&] { return machine.gearbox ? shaper::shaper_gearbox_text(setup) : shaper::shaper_program_text(setup); });
+  const shaper::ShaperControl& control = shaper::shaper_control(machine);
+  const std::string program_name = "shaper_program" + control.extension;
+  const std::string program = clock.run("shaper program", [&] { return control.program(setup); });
   if (const auto written = output->write(program_name, program); !written) return failed(written.error());
   const auto bytes = output->read_back(program_name);
   if (!bytes) return failed(bytes.error());
-  if (machine.gearbox) {
+  if (control.read) {
     const auto faults = clock.run("read back", [&] { return shaper::gearbox_program_faults(*bytes, setup); });
     std::vector<Diagnostic> errors;
     for (const auto& fault : faults) errors.push_back(fail_as(DiagnosticKind::verification, "{}: {}", program_name, fault));

@@ -83,7 +83,7 @@ class JobWords final : public toml::TableWords {
     return std::nullopt;
   }
 
-  std::string not_one_of(const std::string& name, const std::string& text, std::initializer_list<std::string_view> words) const override {
+  std::string not_one_of(const std::string& name, const std::string& text, std::span<const std::string_view> words) const override {
     std::string list;
     for (const auto word : words) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", word);
     return fmt::format("{} = \"{}\" is not one of {}", name, shown(text), list);

@@ -88,7 +88,7 @@ double BevelGearCheck::motion_tolerance() const { return kFingerMotionTolerance;
 
 /// Against the cone of the blank, hub and shaft: engaging rapids pass beside the cone, inside the cylinder that links avoid.
 Status BevelGearCheck::rapids_clear(const readback::OperationTrace& trace, const readback::NcControl& control) const {
-  auto motions = readback::tool_motions(trace, {}, control, machine_, *job_.setup, teeth(), kFingerMotionTolerance, kFingerMotionTolerance);
+  auto motions = readback::tool_motions(trace, {}, control, machine_, *job_.setup, teeth(), {kFingerMotionTolerance, kFingerMotionTolerance});
   if (!motions) return motions.error();
   int operation = trace.operation;  // below 0: ahead of the first one, where only the tool is known
   for (std::size_t k = 0; k < job_.operations.size() && operation < 0; ++k)

@@ -26,7 +26,7 @@ Result<ProgramProof> read_program(const ProgramText& program, const GearCheck& g
     if (const auto count = static_cast<int>(job.operations.size()); trace.operation >= count)
       return fail_at({program.file, trace.moves.empty() ? 0 : trace.moves.front().line, 0}, "operation {}: the job has the operations 0 to {}", trace.operation, count - 1);
     const auto part = clock.run("read back", [&] {
-      return tool_motions(trace, out.read.copies, out.control, program.machine, *job.setup, gear.teeth(), gear.motion_tolerance(), gear.motion_tolerance());
+      return tool_motions(trace, out.read.copies, out.control, program.machine, *job.setup, gear.teeth(), {gear.motion_tolerance(), gear.motion_tolerance()});
     });
     if (!part) return part.error();
     out.motions.insert(out.motions.end(), part->begin(), part->end());

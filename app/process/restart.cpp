@@ -33,7 +33,7 @@ Status prove(report::RunReport& report, const PostedProgram& posted, const std::
   const joints::ProgramRestart at = *posted.restarted->restart;
   const int place = joints::place_of_tooth(at.tooth, posted.axes.tooth_stride, posted.axes.teeth);
   const auto proof = clock.run("proof of the restart", [&] {
-    return restart::prove_restart(posted.text, posted.restart_text, file, control, at.operation, at.tooth, place, posted.axes.teeth);
+    return restart::prove_restart(posted.text, posted.restart_text, file, control, {at.operation, at.tooth, place, posted.axes.teeth});
   });
   if (!proof) return of_our_own(proof.error());
   if (!proof->same)

@@ -134,7 +134,7 @@ class SceneWalk {
     const bool named = moves_.back().tooth >= 0;
     trace.moves = std::move(moves_);
     moves_ = {};
-    auto motions = readback::tool_motions(trace, {}, control_, machine_, *job_.setup, gear_.teeth, kTip, kAxis);
+    auto motions = readback::tool_motions(trace, {}, control_, machine_, *job_.setup, gear_.teeth, {kTip, kAxis});
     if (!motions) {
       error_ = motions.error();
       return;

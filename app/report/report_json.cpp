@@ -167,7 +167,7 @@ void add_motion(Json& json, const RunReport& r) {
                      {"tip_change_um", app::um(r.poles->tip_mm)}};
   json["acceleration_in_times"] = r.has_acceleration;
   if (r.travel_room) {
-    const joints::TravelOffer& offer = r.travel_room->offer;
+    const choice::TravelOffer& offer = r.travel_room->offer;
     json["travel_room"] = {{"now", offer.room_now_mm},
                            {"most", offer.room_then_mm},
                            {"origin", vector_json(r.travel_room->origin_mm)},

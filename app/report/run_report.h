@@ -61,7 +61,7 @@ struct SheetSection {
 
 /// Where the part has the most room, and set-up origin and work offset there.
 struct TravelRoom {
-  joints::TravelOffer offer;
+  choice::TravelOffer offer;
   Vec3 origin_mm = Vec3::Zero(), work_offset_at_mm = Vec3::Zero();
 };
 

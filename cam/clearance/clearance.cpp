@@ -127,9 +127,17 @@ class BodyWatch {
 
 }  // namespace
 
-std::vector<MeshBody> mesh_bodies(const tool::ToolAssembly& tool) {
-  const double R = tool.radius_mm();
-  std::vector<MeshBody> bodies{{"cutter", {{0, tool.flute_length_mm, R, R, "cutter"}}, R}};
+std::vector<MeshBody> mesh_bodies(const tool::ToolAssembly& tool) { return mesh_bodies(tool::Profile::of_ball_mill(tool)); }
+
+std::vector<MeshBody> mesh_bodies(const tool::Profile& tool, double sag_mm) {
+  MeshBody cutter{"cutter", {}, 0};
+  if (tool.plain_ball()) {
+    cutter.ball_mm = tool.law()->r_0;
+    cutter.pieces = {{0, tool.cutting().to(), cutter.ball_mm, cutter.ball_mm, "cutter"}};
+  } else {
+    cutter.pieces = tool.cutting().enclosing_frustums(sag_mm, "cutter");
+  }
+  std::vector<MeshBody> bodies{std::move(cutter)};
   for (const tool::Frustum& f : tool::shank_and_holder(tool)) bodies.push_back({f.name, {f}, 0});
   return bodies;
 }

@@ -11,6 +11,7 @@
 
 #include "cam/clearance/distance.h"
 #include "cam/path/tool_motion.h"
+#include "cam/tool/profile.h"
 
 namespace toothpath::clearance {
 
@@ -33,7 +34,10 @@ struct MeshBody {
   [[nodiscard]] bool cuts() const { return name == "cutter"; }
   [[nodiscard]] double top_mm() const { return pieces.back().to; }
 };
-/// Cutting part, shank and holder of a ball mill, from below.
+/// Cutting part, shank and holder of any cutter, from below. A plain ball mill keeps its ball; else the cutting part is enclosed in cones that stand
+/// out of it by no more than `sag_mm`.
+[[nodiscard]] std::vector<MeshBody> mesh_bodies(const tool::Profile& tool, double sag_mm = 1e-3);
+/// The same of a ball mill.
 [[nodiscard]] std::vector<MeshBody> mesh_bodies(const tool::ToolAssembly& tool);
 
 /// Which bodies must keep which distance.

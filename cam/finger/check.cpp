@@ -6,7 +6,6 @@
 #include <cmath>
 #include <optional>
 
-#include "cam/finger/bodies.h"
 #include "cam/finger/clearance.h"
 #include "cam/finger/deepest.h"
 #include "cam/finger/milling.h"
@@ -14,6 +13,7 @@
 #include "cam/finger/poses.h"
 #include "cam/finger/walls.h"
 #include "cam/proof/gouge_merge.h"
+#include "cam/tool/finger_profile.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::finger {
@@ -116,9 +116,8 @@ struct FingerGougeCheck::State {
         continue;
       }
       states[index] = std::make_unique<FingerTool>(*own, gear, tools[index]);
-      hulls[index] = tool_hulls(own->cutter(), tools[index]);
-      tool::ToolAssembly whole = tools[index];
-      whole.flute_length_mm = finger_flute_end(own->cutter(), whole);
+      const tool::Profile whole = tool::finger_profile(own->cutter(), tools[index], kOneChord);
+      hulls[index] = tool_hulls(whole);
       shank_holder[index] = tool::shank_and_holder(whole);
     }
     points = wall_points(gear, opt.rows, opt.columns);

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cam/finger/bodies.h"
 #include "cam/finger/tool.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::finger {
 namespace {
 
-constexpr double kOneChord = 1e9;  // mm: the hull of a hollow flank needs no more
 constexpr int kDirections = 48;
 constexpr int kMostHalvings = 7;
 constexpr double kNear = 0.5;    // mm: a smaller gap is looked for in all directions
@@ -170,18 +168,10 @@ std::vector<CoaxialBody> bodies_beside_teeth(const bevel_gear::BevelGear& g) {
   return bodies;
 }
 
-std::vector<ToolHull> tool_hulls(const bevel_gear::FingerProfile<double>& c, const tool::ToolAssembly& tool) {
-  ToolHull flute{"flute", finger_meridian(c, tool, kOneChord)}, shank{"shank", {}}, holder{"holder", {}};
-  const double shank_from = finger_flute_end(c, tool);
-  shank.rims = {Vec2(shank_from, tool.shank_diameter_mm / 2), Vec2(tool.stick_out_mm, tool.shank_diameter_mm / 2)};
-  double z = tool.stick_out_mm;
-  for (const auto& part : tool.holder) {
-    holder.rims.emplace_back(z, part.lower_diameter_mm / 2);
-    z += part.height_mm;
-    holder.rims.emplace_back(z, part.upper_diameter_mm / 2);
-  }
-  std::vector<ToolHull> hulls{std::move(flute), std::move(shank)};
-  if (!holder.rims.empty()) hulls.push_back(std::move(holder));
+std::vector<ToolHull> tool_hulls(const tool::Profile& tool) {
+  std::vector<ToolHull> hulls;
+  for (const auto& [name, part] : {std::pair{"flute", &tool.cutting()}, std::pair{"shank", &tool.shank()}, std::pair{"holder", &tool.holder()}})
+    if (!part->empty()) hulls.push_back({name, part->corners()});
   return hulls;
 }
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "cam/tool/assembly.h"
 #include "cam/path/tool_motion.h"
+#include "cam/tool/profile.h"
 #include "geometry/bevel_gear/gear.h"
 
 namespace toothpath::finger {
@@ -30,8 +30,10 @@ struct ToolHull {
   std::string name;  ///< "flute", "shank", "holder"
   std::vector<Vec2> rims;
 };
-/// Flute (its corner arc circumscribed), shank and holder.
-[[nodiscard]] std::vector<ToolHull> tool_hulls(const bevel_gear::FingerProfile<double>& cutter, const tool::ToolAssembly& tool);
+/// Flute, shank and holder of a profile of lines (`tool::finger_profile`); parts that it lacks are left out.
+[[nodiscard]] std::vector<ToolHull> tool_hulls(const tool::Profile& tool);
+/// A sag for profiles of which only hulls are made [mm]: the hull of a hollow flank needs no more than one chord.
+inline constexpr double kOneChord = 1e9;
 
 /// Where a tool body and a body about the gear axis come nearest.
 struct ObstacleGap {

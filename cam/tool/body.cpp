@@ -3,19 +3,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cam/tool/profile.h"
+
 namespace toothpath::tool {
-std::vector<Frustum> shank_and_holder(const ToolAssembly& tool) {
-  std::vector<Frustum> out;
-  const double end = tool.holder.empty() ? tool.length_mm : tool.stick_out_mm;
-  if (end > tool.flute_length_mm)
-    out.push_back({tool.flute_length_mm, end, tool.shank_diameter_mm / 2, tool.shank_diameter_mm / 2, "shank"});
-  double height = tool.stick_out_mm;
-  for (const auto& h : tool.holder) {
-    out.push_back({height, height + h.height_mm, h.lower_diameter_mm / 2, h.upper_diameter_mm / 2, "holder"});
-    height += h.height_mm;
-  }
+
+namespace {
+
+/// Both consist of lines: cones are exact.
+std::vector<Frustum> cones_of(const Meridian& shank, const Meridian& holder) {
+  std::vector<Frustum> out = shank.enclosing_frustums(0, "shank");
+  for (const Frustum& f : holder.enclosing_frustums(0, "holder")) out.push_back(f);
   return out;
 }
+
+}  // namespace
+
+std::vector<Frustum> shank_and_holder(const ToolAssembly& tool) { return cones_of(shank_of(tool), holder_of(tool)); }
+std::vector<Frustum> shank_and_holder(const Profile& profile) { return cones_of(profile.shank(), profile.holder()); }
 
 double lowest_z(const Frustum& f, const Vec3& tip, const Vec3& axis) {
   const double flat = std::sqrt(std::max(0.0, 1 - axis.z() * axis.z()));

@@ -8,6 +8,8 @@
 
 namespace toothpath::tool {
 
+class Profile;
+
 /// A truncated cone about the tool axis. Heights from the tip, mm.
 struct Frustum {
   double from = 0, to = 0;              ///< heights
@@ -15,8 +17,9 @@ struct Frustum {
   const char* name = "";                ///< "flute", "shank", "holder"
 };
 
-/// Shank and holder of a ball mill, from below. The flute (same radius as the ball) is not among them.
+/// Shank and holder, from below; the cutting part is not among them. Of an assembly the shank begins at its flute length.
 [[nodiscard]] std::vector<Frustum> shank_and_holder(const ToolAssembly& tool);
+[[nodiscard]] std::vector<Frustum> shank_and_holder(const Profile& profile);
 
 /// Lowest z of a frustum.
 [[nodiscard]] double lowest_z(const Frustum& f, const Vec3& tip, const Vec3& axis);

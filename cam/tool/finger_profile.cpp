@@ -1,9 +1,14 @@
 #include "cam/tool/finger_profile.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "geometry/base/angle.h"
 
 namespace toothpath::tool {
 namespace {
+
+constexpr int kTangents = 16;  // around the corner arc
 
 Vec2 place(const bevel_gear::FingerProfile<double>& c, double p) {
   const auto q = c.at(p);
@@ -44,6 +49,34 @@ Meridian finger_meridian(const bevel_gear::FingerProfile<double>& c, double flut
   involute_arcs(c, c.p_C, c.p_D, sag_mm, pieces);
   if (flute_end_mm > D[0]) pieces.push_back({Vec2(D[0], c.rho_D), Vec2(flute_end_mm, c.rho_D), 0});
   return Meridian(std::move(pieces));
+}
+
+double finger_flute_end(const bevel_gear::FingerProfile<double>& c, const ToolAssembly& tool) {
+  return tool.flute_length_mm > 0 ? tool.flute_length_mm : c.h_f + c.x_D;
+}
+
+Profile finger_profile(const bevel_gear::FingerProfile<double>& c, const ToolAssembly& tool, double sag_mm) {
+  std::vector<Vec2> line;
+  // Corners of tangents around the arc, from the flat (psi = 90 deg) to the straight (phi).
+  const double step = (kPi / 2 - c.phi) / kTangents, out = c.r_t / std::cos(0.5 * step);
+  for (int k = 0; k < kTangents; ++k) {
+    const double psi = kPi / 2 - (k + 0.5) * step;
+    line.emplace_back(std::max(0.0, c.x_o - out * std::sin(psi) + c.h_f), c.rho_o + out * std::cos(psi));
+  }
+  // The flank is hollow: its chords enclose it. The sag of a chord over dp is its arc length times its turn, an eighth of dS dpsi.
+  const auto end = c.involute(c.p_D);
+  const double bend = end.dS * end.dpsi / 8;
+  const int chords = std::max(1, int(std::ceil((c.p_D - c.p_C) * std::sqrt(bend / sag_mm))));
+  for (int k = 0; k <= chords; ++k) {
+    const auto q = c.involute(c.p_C + (c.p_D - c.p_C) * k / chords);
+    line.emplace_back(q.x + c.h_f, q.rho);
+  }
+  ToolAssembly whole = tool;
+  whole.flute_length_mm = finger_flute_end(c, tool);
+  if (whole.flute_length_mm > line.back().x()) line.emplace_back(whole.flute_length_mm, c.rho_D);
+  std::vector<MeridianPiece> pieces;
+  for (std::size_t k = 1; k < line.size(); ++k) pieces.push_back({line[k - 1], line[k], 0});
+  return {Meridian(std::move(pieces)), shank_of(whole), holder_of(whole)};
 }
 
 }  // namespace toothpath::tool

@@ -198,6 +198,13 @@ bool Meridian::convex() const {
   return true;
 }
 
+std::vector<Vec2> Meridian::corners() const {
+  std::vector<Vec2> out;
+  if (!pieces_.empty()) out.push_back(pieces_.front().from);
+  for (const auto& p : pieces_) out.push_back(p.to);
+  return out;
+}
+
 std::vector<Frustum> Meridian::enclosing_frustums(double sag_mm, const char* name) const {
   std::vector<Frustum> out;
   for (const auto& p : pieces_) {
@@ -219,10 +226,26 @@ CutterData cutter_data(const ToolAssembly& t) {
   return d;
 }
 
+Meridian shank_of(const ToolAssembly& tool) {
+  const CutterData data = cutter_data(tool);
+  return Maker(data).shank();
+}
+Meridian holder_of(const ToolAssembly& tool) {
+  const CutterData data = cutter_data(tool);
+  return Maker(data).holder();
+}
+
 std::variant<Profile, std::vector<ProfileRefusal>> Profile::make(const CutterData& data) {
   Maker maker(data);
   maker.check();
   if (!maker.refusals.empty()) return std::move(maker.refusals);
+  return unchecked(data);
+}
+
+Profile Profile::of_ball_mill(const ToolAssembly& tool) { return unchecked(cutter_data(tool)); }
+
+Profile Profile::unchecked(const CutterData& data) {
+  const Maker maker(data);
   Profile p;
   p.cutting_ = maker.cutting();
   p.shank_ = maker.shank();

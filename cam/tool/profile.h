@@ -87,6 +87,8 @@ class Meridian {
   /// Pieces from below, each beginning where the one before it ends; heights never fall, radii never negative.
   explicit Meridian(std::vector<MeridianPiece> pieces) : pieces_(std::move(pieces)) {}
   [[nodiscard]] const std::vector<MeridianPiece>& pieces() const { return pieces_; }
+  /// Ends of the pieces from below, (h, r): a polyline where all of them are lines.
+  [[nodiscard]] std::vector<Vec2> corners() const;
   [[nodiscard]] bool empty() const { return pieces_.empty(); }
   [[nodiscard]] double from() const { return pieces_.front().from[0]; }
   [[nodiscard]] double to() const { return pieces_.back().to[0]; }
@@ -161,8 +163,12 @@ struct CutterData {
   std::vector<HolderSegment> holder;
   std::optional<MeridianError> meridian;  ///< measured: error of rho along t
 };
-/// The ball mill of an assembly as cutter data. Finger mills: `cam/tool/finger_profile.h`.
+/// The ball mill of an assembly as cutter data.
 [[nodiscard]] CutterData cutter_data(const ToolAssembly& ball_mill);
+
+/// What is above the cutting part of any assembly, as its numbers say; empty where they leave no room for it.
+[[nodiscard]] Meridian shank_of(const ToolAssembly& tool);
+[[nodiscard]] Meridian holder_of(const ToolAssembly& tool);
 
 /// What a tool consists of where gaps are proven: convex bodies whose union contains it.
 struct ProofBodies {
@@ -183,6 +189,8 @@ class Profile {
   /// or ball that does not fit under the flutes; a shank of a tapered mill thinner than its flutes; a barrel whose flutes pass its widest
   /// place; a stick-out below the flutes; a measured meridian that begins above the ball's centre, is not ascending, or errs by more than r_0/10.
   static std::variant<Profile, std::vector<ProfileRefusal>> make(const CutterData& data);
+  /// The ball mill of an assembly that a job reader has accepted; nothing is checked again. Finger mills: cam/tool/finger_profile.h.
+  static Profile of_ball_mill(const ToolAssembly& tool);
   /// A body from pieces, for cutters whose form is made elsewhere. `shank` and `holder` may be empty. No law.
   Profile(Meridian cutting, Meridian shank, Meridian holder) : cutting_(std::move(cutting)), shank_(std::move(shank)), holder_(std::move(holder)) {}
 
@@ -196,6 +204,8 @@ class Profile {
   /// Height t above the ball's centre whose ball touches at the end of the teeth, or where the measured meridian ends if that is lower.
   [[nodiscard]] double law_end() const { return law_end_; }
   [[nodiscard]] double half_angle_rad() const { return half_angle_; }
+  /// A ball with a cylinder above it, as nominal: its distance is that of the ball's centre.
+  [[nodiscard]] bool plain_ball() const { return law_ && half_angle_ == 0 && law_->R_m == 0 && !law_->error; }
   /// Signed distance from a point of T to the cutting part as it was measured, with its gradient: the nominal one less the error at the
   /// height of its foot. Without a measured meridian exact; with one the error is below f'^2 times the foot's distance from the axis.
   [[nodiscard]] FrustumSlope cutting_distance(const Vec3& point_T) const;
@@ -205,6 +215,7 @@ class Profile {
 
  private:
   Profile() : cutting_({}), shank_({}), holder_({}) {}
+  static Profile unchecked(const CutterData& data);
   Meridian cutting_, shank_, holder_;
   std::optional<RadiusLaw<double>> law_;
   double law_end_ = 0, half_angle_ = 0;

@@ -78,46 +78,44 @@ double bevel_top_land(const BevelGear& g, double R) {
   return (1 + k * h) * (s - 2 * tan_minus_angle_difference(alpha_a, p.pressure_angle_rad) / k);
 }
 
-void check_bevel_cutter(const BevelGear& g, const FingerProfile<double>& c, BevelLimits& lim, std::vector<BevelRefusal>& list,
-                        std::vector<std::string>& warnings) {
+namespace {
+
+/// False, with a refusal: the face is so wide that the widest cutter that fits the small end has no tip left.
+bool tip_is_left(const BevelGear& g, const BevelLimits& lim, std::vector<BevelRefusal>& list) {
   const auto& p = g.parameters();
   const auto& d = g.cutter_data();
-  const double m_i = g.normal_module(g.R_i());
-  lim.module_at_small_end_mm = m_i;
-  lim.module_limit_mm = 0.99 * m_i;
-  lim.space_width_mm = 2 * g.R_i() * g.e_h() * g.sin_delta() * std::sqrt(g.R_i() / g.R_0());
-  lim.top_land_mm = bevel_top_land(g, g.R_i());
-  lim.tip_flat_mm = c.rho_o;
-  lim.line_angle_rad = c.phi;
-  lim.tip_radius_limit_mm = largest_tip_radius(c);
-  lim.largest_face_width_mm = face_width_for_module(g, d.module_mm / 0.99);
-
-  // A face so wide that the widest cutter that fits the small end has no tip left.
   const auto tip_of = [&](double module) {
     return make_finger_profile<double>(p.pressure_angle_rad, g.kappa_v(), p.dedendum_mm, module, 0.0, d.rack_depth_mm,
                                        d.profile_height_mm).line_radius(-p.dedendum_mm);
   };
-  if (!(tip_of(lim.module_limit_mm) > 0)) {
-    double low = lim.module_limit_mm, high = 4 * p.outer_transverse_module_mm;
-    for (int k = 0; k < 200; ++k) {
-      const double mid = 0.5 * (low + high);
-      (tip_of(mid) > 0 ? high : low) = mid;
-    }
-    refuse(list, "face_width", "face_width = {:.4f} makes the cutter pointed: the space at the small end is too narrow for "
-           "dedendum = {:.4f}; the largest possible face width is {:.4f}", p.face_width_mm, p.dedendum_mm,
-           face_width_for_module(g, high / 0.99));
-    return;
+  if (tip_of(lim.module_limit_mm) > 0) return true;
+  double low = lim.module_limit_mm, high = 4 * p.outer_transverse_module_mm;
+  for (int k = 0; k < 200; ++k) {
+    const double mid = 0.5 * (low + high);
+    (tip_of(mid) > 0 ? high : low) = mid;
   }
-  if (d.module_mm > lim.module_limit_mm) {
-    const double over = 0.5 * kPi * (d.module_mm - m_i);
-    if (over > 0)
-      refuse(list, "tool.module", "module = {:.4f} exceeds {:.4f} (0.99 of the normal module {:.4f} at the small end): the cutter "
-             "over-cuts the small end by {:.1f} um; the largest face width for it is {:.4f}", d.module_mm, lim.module_limit_mm, m_i,
-             1000 * over, lim.largest_face_width_mm);
-    else
-      refuse(list, "tool.module", "module = {:.4f} exceeds {:.4f} (0.99 of the normal module {:.4f} at the small end); the largest "
-             "face width for it is {:.4f}", d.module_mm, lim.module_limit_mm, m_i, lim.largest_face_width_mm);
-  }
+  refuse(list, "face_width", "face_width = {:.4f} makes the cutter pointed: the space at the small end is too narrow for "
+         "dedendum = {:.4f}; the largest possible face width is {:.4f}", p.face_width_mm, p.dedendum_mm,
+         face_width_for_module(g, high / 0.99));
+  return false;
+}
+
+void check_module(const BevelGear& g, const BevelLimits& lim, std::vector<BevelRefusal>& list) {
+  const auto& d = g.cutter_data();
+  if (!(d.module_mm > lim.module_limit_mm)) return;
+  const double m_i = lim.module_at_small_end_mm, over = 0.5 * kPi * (d.module_mm - m_i);
+  if (over > 0)
+    refuse(list, "tool.module", "module = {:.4f} exceeds {:.4f} (0.99 of the normal module {:.4f} at the small end): the cutter "
+           "over-cuts the small end by {:.1f} um; the largest face width for it is {:.4f}", d.module_mm, lim.module_limit_mm, m_i,
+           1000 * over, lim.largest_face_width_mm);
+  else
+    refuse(list, "tool.module", "module = {:.4f} exceeds {:.4f} (0.99 of the normal module {:.4f} at the small end); the largest "
+           "face width for it is {:.4f}", d.module_mm, lim.module_limit_mm, m_i, lim.largest_face_width_mm);
+}
+
+/// Depth, tip and corner of the profile, each by itself.
+void check_form(const BevelGear& g, const FingerProfile<double>& c, const BevelLimits& lim, std::vector<BevelRefusal>& list, std::vector<std::string>& warnings) {
+  const auto& d = g.cutter_data();
   if (c.phi < 0)
     refuse(list, "tool.rack_depth", "rack_depth = {:.4f}: the straight of the cutter leans inwards ({:.4f} deg, must not be "
            "negative), so it could not be retracted along its axis", d.rack_depth_mm, degrees(c.phi));
@@ -133,6 +131,10 @@ void check_bevel_cutter(const BevelGear& g, const FingerProfile<double>& c, Beve
   if (c.base_circle_clips_C)
     warnings.push_back(fmt::format("point C of the cutter sits on the base circle: rack_depth = {:.4f} is not reached, only {:.4f}",
                                    d.rack_depth_mm, -c.x_C));
+}
+
+void check_top_land(const BevelGear& g, const BevelLimits& lim, std::vector<BevelRefusal>& list, std::vector<std::string>& warnings) {
+  const auto& p = g.parameters();
   const double land = lim.top_land_mm;
   if (land < 0) {
     // The land shrinks by (r_v + h_a)/r_v * R cos(beta)/(2 R_e) per mm of backlash.
@@ -142,9 +144,29 @@ void check_bevel_cutter(const BevelGear& g, const FingerProfile<double>& c, Beve
       refuse(list, "backlash", "backlash = {:.4f} eats the top land at the small end ({:.4f}); it must be below {:.4f}", p.backlash_mm, land, limit);
     else
       refuse(list, "addendum", "addendum = {:.4f}: the tooth is pointed at the small end (top land {:.4f}, must be positive)", p.addendum_mm, land);
-  } else if (land < 0.2 * m_i) {
-    warnings.push_back(fmt::format("top land at the small end is {:.4f} mm, below 0.2 of the normal module {:.4f}", land, m_i));
+  } else if (land < 0.2 * lim.module_at_small_end_mm) {
+    warnings.push_back(fmt::format("top land at the small end is {:.4f} mm, below 0.2 of the normal module {:.4f}", land, lim.module_at_small_end_mm));
   }
+}
+
+}  // namespace
+
+void check_bevel_cutter(const BevelGear& g, const FingerProfile<double>& c, BevelLimits& lim, std::vector<BevelRefusal>& list,
+                        std::vector<std::string>& warnings) {
+  const double m_i = g.normal_module(g.R_i());
+  lim.module_at_small_end_mm = m_i;
+  lim.module_limit_mm = 0.99 * m_i;
+  lim.space_width_mm = 2 * g.R_i() * g.e_h() * g.sin_delta() * std::sqrt(g.R_i() / g.R_0());
+  lim.top_land_mm = bevel_top_land(g, g.R_i());
+  lim.tip_flat_mm = c.rho_o;
+  lim.line_angle_rad = c.phi;
+  lim.tip_radius_limit_mm = largest_tip_radius(c);
+  lim.largest_face_width_mm = face_width_for_module(g, g.cutter_data().module_mm / 0.99);
+
+  if (!tip_is_left(g, lim, list)) return;
+  check_module(g, lim, list);
+  check_form(g, c, lim, list, warnings);
+  check_top_land(g, lim, list, warnings);
 }
 
 void check_bevel_cusp(const BevelGear& g, std::vector<BevelRefusal>& list, std::vector<std::string>& warnings) {

@@ -3,6 +3,8 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <span>
+#include <string>
 
 #include "geometry/base/angle.h"
 
@@ -55,55 +57,44 @@ const std::vector<Trial>& trials_of_pair() {
   return trials;
 }
 
-}  // namespace
-
-Result<std::vector<MismatchChange>> mismatch_changes(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel, const BevelContactOptions& options) {
-  const std::vector<Trial>& trials = trials_of_pair();
-  const auto base = field_of(pinion, wheel, {}, {}, options);
-  if (!base) return base.error();
-  std::vector<Field> columns;
-  for (const Trial& t : trials) {
-    BevelAssembly assembly;
-    PinionChange change;
-    t.move(t.step, change, assembly);
-    auto moved = field_of(pinion, wheel, assembly, change, options);
-    if (!moved) return moved.error();
-    for (std::size_t k = 0; k < moved->size(); ++k) (*moved)[k] = ((*moved)[k] - (*base)[k]) / t.step;
-    columns.push_back(std::move(*moved));
-  }
-  // Places that every trial knows; the mean of each wall is taken off.
-  const std::size_t half = base->size() / 2;
-  const auto vector_of = [&](const Field& f, const std::vector<bool>& kept) {
-    std::vector<double> v;
-    for (int wall = 0; wall < 2; ++wall) {
-      double sum = 0;
-      std::size_t count = 0;
-      for (std::size_t k = 0; k < half; ++k)
-        if (kept[wall * half + k]) sum += f[wall * half + k], ++count;
-      for (std::size_t k = 0; k < half; ++k)
-        if (kept[wall * half + k]) v.push_back(f[wall * half + k] - sum / static_cast<double>(count));
+/// What every trial does to the mismatch of a pair, linear in its amount: mismatch = base + sum of amount * column.
+class LinearModel {
+ public:
+  static Result<LinearModel> of(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel, const BevelContactOptions& options) {
+    LinearModel model(pinion, wheel, options);
+    auto base = field_of(pinion, wheel, {}, {}, options);
+    if (!base) return base.error();
+    model.base_ = std::move(*base);
+    std::vector<Field> columns;
+    for (const Trial& t : trials_of_pair()) {
+      auto column = model.difference(t);
+      if (!column) return column.error();
+      columns.push_back(std::move(*column));
     }
-    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size())));
-  };
-  std::vector<bool> kept(base->size());
-  for (std::size_t k = 0; k < base->size(); ++k)
-    kept[k] = !std::isnan((*base)[k]) && std::none_of(columns.begin(), columns.end(), [&](const Field& c) { return std::isnan(c[k]); });
-  if (std::count(kept.begin(), kept.end(), true) < 12) return fail("the flanks share too few places to compare changes");
-  const Eigen::VectorXd b = vector_of(*base, kept);
-  const auto rms = [](const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); };
-  std::vector<MismatchChange> out;
-  Eigen::MatrixXd A(b.size(), static_cast<Eigen::Index>(trials.size()));
-  for (std::size_t k = 0; k < trials.size(); ++k) {
-    const auto column = static_cast<Eigen::Index>(k);
-    A.col(column) = vector_of(columns[k], kept);
-    const double amount = -A.col(column).dot(b) / A.col(column).squaredNorm();
-    out.push_back({trials[k].name, trials[k].unit, amount / trials[k].per_unit, rms(b), rms(b + amount * A.col(column)), false});
+    model.kept_.resize(model.base_.size());
+    for (std::size_t k = 0; k < model.base_.size(); ++k)
+      model.kept_[k] = !std::isnan(model.base_[k]) && std::none_of(columns.begin(), columns.end(), [&](const Field& c) { return std::isnan(c[k]); });
+    if (std::count(model.kept_.begin(), model.kept_.end(), true) < 12) return fail("the flanks share too few places to compare changes");
+    model.b_ = vector_of(model.base_, model.kept_);
+    model.A_.resize(model.b_.size(), static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t k = 0; k < columns.size(); ++k) model.A_.col(static_cast<Eigen::Index>(k)) = vector_of(columns[k], model.kept_);
+    return model;
   }
-  // Several at once, then rolled again with the changed pinion.
-  const auto together = [&](const auto& chosen, const std::string& title) -> Status {
-    Eigen::MatrixXd own(b.size(), static_cast<Eigen::Index>(chosen.size()));
-    for (std::size_t k = 0; k < chosen.size(); ++k) own.col(static_cast<Eigen::Index>(k)) = A.col(static_cast<Eigen::Index>(chosen[k]));
-    const Eigen::VectorXd best = -own.colPivHouseholderQr().solve(b);
+
+  /// The best amount of one trial, and what it leaves.
+  [[nodiscard]] MismatchChange alone(std::size_t trial) const {
+    const Trial& t = trials_of_pair()[trial];
+    const auto column = A_.col(static_cast<Eigen::Index>(trial));
+    const double amount = -column.dot(b_) / column.squaredNorm();
+    return {t.name, t.unit, amount / t.per_unit, rms(b_), rms(b_ + amount * column), false};
+  }
+
+  /// Several at once, then rolled again with the changed pinion.
+  [[nodiscard]] Result<std::vector<MismatchChange>> together(std::span<const std::size_t> chosen, const std::string& title) const {
+    const std::vector<Trial>& trials = trials_of_pair();
+    Eigen::MatrixXd own(b_.size(), static_cast<Eigen::Index>(chosen.size()));
+    for (std::size_t k = 0; k < chosen.size(); ++k) own.col(static_cast<Eigen::Index>(k)) = A_.col(static_cast<Eigen::Index>(chosen[k]));
+    const Eigen::VectorXd best = -own.colPivHouseholderQr().solve(b_);
     PinionChange change;
     BevelAssembly assembly;
     for (std::size_t k = 0; k < chosen.size(); ++k) {
@@ -115,19 +106,71 @@ Result<std::vector<MismatchChange>> mismatch_changes(const bevel_gear::BevelGear
         change.spiral_angle_rad[w] += one.spiral_angle_rad[w];
       }
     }
-    const auto after = field_of(pinion, wheel, {}, change, options);
+    const auto after = field_of(pinion_, wheel_, {}, change, options_);
     if (!after) return after.error();
-    std::vector<bool> both = kept;
+    std::vector<bool> both = kept_;
     for (std::size_t k = 0; k < both.size(); ++k) both[k] = both[k] && !std::isnan((*after)[k]);
-    const double left = rms(vector_of(*after, both)), before = rms(vector_of(*base, both));
+    const double left = rms(vector_of(*after, both)), before = rms(vector_of(base_, both));
+    std::vector<MismatchChange> out;
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       const Trial& t = trials[chosen[k]];
       out.push_back({title + ": " + t.name, t.unit, best[static_cast<Eigen::Index>(k)] / t.per_unit, before, left, true});
     }
-    return Ok{};
-  };
-  if (const auto s = together(kOneMill, "one mill"); !s) return s.error();
-  if (const auto s = together(kTwoMills, "two mills"); !s) return s.error();
+    return out;
+  }
+
+ private:
+  LinearModel(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel, const BevelContactOptions& options)
+      : pinion_(pinion), wheel_(wheel), options_(options) {}
+
+  /// Change of the mismatch by one trial, per step.
+  [[nodiscard]] Result<Field> difference(const Trial& t) const {
+    BevelAssembly assembly;
+    PinionChange change;
+    t.move(t.step, change, assembly);
+    auto moved = field_of(pinion_, wheel_, assembly, change, options_);
+    if (!moved) return moved;
+    for (std::size_t k = 0; k < moved->size(); ++k) (*moved)[k] = ((*moved)[k] - base_[k]) / t.step;
+    return moved;
+  }
+
+  /// The places kept; the mean of each wall is taken off.
+  static Eigen::VectorXd vector_of(const Field& f, const std::vector<bool>& kept) {
+    const std::size_t half = f.size() / 2;
+    std::vector<double> v;
+    for (std::size_t wall = 0; wall < 2; ++wall) {
+      double sum = 0;
+      std::size_t count = 0;
+      for (std::size_t k = 0; k < half; ++k)
+        if (kept[wall * half + k]) sum += f[wall * half + k], ++count;
+      for (std::size_t k = 0; k < half; ++k)
+        if (kept[wall * half + k]) v.push_back(f[wall * half + k] - sum / static_cast<double>(count));
+    }
+    return Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size()));
+  }
+  static double rms(const Eigen::VectorXd& v) { return std::sqrt(v.squaredNorm() / static_cast<double>(v.size())); }
+
+  const bevel_gear::BevelGear &pinion_, &wheel_;
+  const BevelContactOptions& options_;
+  Field base_;
+  std::vector<bool> kept_;  ///< places that every trial knows
+  Eigen::VectorXd b_;
+  Eigen::MatrixXd A_;
+};
+
+}  // namespace
+
+Result<std::vector<MismatchChange>> mismatch_changes(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel, const BevelContactOptions& options) {
+  const auto model = LinearModel::of(pinion, wheel, options);
+  if (!model) return model.error();
+  std::vector<MismatchChange> out;
+  for (std::size_t k = 0; k < trials_of_pair().size(); ++k) out.push_back(model->alone(k));
+  const auto one = model->together(kOneMill, "one mill");
+  if (!one) return one.error();
+  const auto two = model->together(kTwoMills, "two mills");
+  if (!two) return two.error();
+  out.insert(out.end(), one->begin(), one->end());
+  out.insert(out.end(), two->begin(), two->end());
   return out;
 }
 

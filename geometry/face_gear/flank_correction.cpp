@@ -63,53 +63,56 @@ Result<FlankCorrection> FlankCorrection::fit(std::span<const FlankDeviation> poi
   f.r_mid_ = radii.middle();
   f.r_half_ = radii.half();
 
-  // theta at the tip over the radius: the top row of the grid, which keeps a margin; the scale of s takes that up.
-  const int top_row = *rows.rbegin();
+  f.fit_top(points, *rows.rbegin());
+
+  Range s;
+  for (const auto& p : points) s.add(f.profile_at(p));
+  f.s_mid_ = s.middle();
+  f.s_half_ = s.half();
+  f.profile_ = std::clamp(most.profile, 0, int(rows.size()) - 2);
+  f.lead_ = std::clamp(most.lead, 0, int(columns.size()) - 3);
+
+  f.fit_series(points);
+  return f;
+}
+
+double FlankCorrection::profile_at(const FlankDeviation& p) const { return (theta_t_ - p.theta) / (theta_t_ - top(p.radius_mm, nullptr)); }
+
+/// theta at the tip over the radius: the top row of the grid, which keeps a margin; the scale of s takes that up.
+void FlankCorrection::fit_top(std::span<const FlankDeviation> points, int top_row) {
   std::vector<const FlankDeviation*> tops;
   for (const auto& p : points)
     if (p.row == top_row) tops.push_back(&p);
   Eigen::MatrixXd V(Eigen::Index(tops.size()), 4);
   Eigen::VectorXd w(Eigen::Index(tops.size()));
   for (Eigen::Index k = 0; k < V.rows(); ++k) {
-    const double y = (tops[std::size_t(k)]->radius_mm - f.r_mid_) / f.r_half_;
+    const double y = (tops[std::size_t(k)]->radius_mm - r_mid_) / r_half_;
     V.row(k) << 1, y, y * y, y * y * y;
     w[k] = tops[std::size_t(k)]->theta;
   }
   const Eigen::VectorXd line = V.colPivHouseholderQr().solve(w);
-  for (std::size_t k = 0; k < 4; ++k) f.top_[k] = line[Eigen::Index(k)];
+  for (std::size_t k = 0; k < 4; ++k) top_[k] = line[Eigen::Index(k)];
+}
 
-  const auto profile_at = [&](const FlankDeviation& p) { return (theta_t - p.theta) / (theta_t - f.top(p.radius_mm, nullptr)); };
-  Range s;
-  for (const auto& p : points) s.add(profile_at(p));
-  f.s_mid_ = s.middle();
-  f.s_half_ = s.half();
-  f.profile_ = std::clamp(most.profile, 0, int(rows.size()) - 2);
-  f.lead_ = std::clamp(most.lead, 0, int(columns.size()) - 3);
-
-  const auto n = Eigen::Index(points.size()), width = Eigen::Index((f.profile_ + 1) * (f.lead_ + 1));
+void FlankCorrection::fit_series(std::span<const FlankDeviation> points) {
+  const auto n = Eigen::Index(points.size()), width = Eigen::Index((profile_ + 1) * (lead_ + 1));
   Eigen::MatrixXd A(n, width);
   Eigen::VectorXd b(n);
   std::vector<double> X, dX, Y, dY;
   for (Eigen::Index k = 0; k < n; ++k) {
     const auto& p = points[std::size_t(k)];
-    chebyshev((profile_at(p) - f.s_mid_) / f.s_half_, f.profile_, X, dX);
-    chebyshev((p.radius_mm - f.r_mid_) / f.r_half_, f.lead_, Y, dY);
+    chebyshev((profile_at(p) - s_mid_) / s_half_, profile_, X, dX);
+    chebyshev((p.radius_mm - r_mid_) / r_half_, lead_, Y, dY);
     Eigen::Index column = 0;
     for (const double x : X)
       for (const double y : Y) A(k, column++) = x * y;
     b[k] = -p.deviation_mm;
   }
   const Eigen::VectorXd c = A.colPivHouseholderQr().solve(b);
-  f.coefficients_.assign(c.data(), c.data() + c.size());
+  coefficients_.assign(c.data(), c.data() + c.size());
   const Eigen::VectorXd left = b - A * c;
-  f.residual_ = {points.size(),
-                 f.profile_,
-                 f.lead_,
-                 b.cwiseAbs().maxCoeff(),
-                 std::sqrt(b.squaredNorm() / double(n)),
-                 left.cwiseAbs().maxCoeff(),
-                 std::sqrt(left.squaredNorm() / double(n))};
-  return f;
+  residual_ = {points.size(), profile_, lead_, b.cwiseAbs().maxCoeff(), std::sqrt(b.squaredNorm() / double(n)), left.cwiseAbs().maxCoeff(),
+               std::sqrt(left.squaredNorm() / double(n))};
 }
 
 FlankCorrection::Offset FlankCorrection::at(double theta, double radius_mm) const {

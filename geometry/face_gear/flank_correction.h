@@ -51,6 +51,9 @@ class FlankCorrection {
 
  private:
   [[nodiscard]] double top(double r, double* slope) const;
+  [[nodiscard]] double profile_at(const FlankDeviation& p) const;  ///< 0 at the tip, 1 at the fillet line
+  void fit_top(std::span<const FlankDeviation> points, int top_row);
+  void fit_series(std::span<const FlankDeviation> points);
   double theta_t_ = 0;
   double s_mid_ = 0, s_half_ = 1, r_mid_ = 0, r_half_ = 1;
   std::array<double, 4> top_{};           ///< theta at the tip, a cubic in the mapped radius

@@ -102,7 +102,7 @@ std::optional<std::string> TableReader::text(std::string_view key, bool ascii) {
   return found ? to_text(*found, name(key), ascii) : std::nullopt;
 }
 
-std::optional<std::string> TableReader::word(std::string_view key, std::initializer_list<std::string_view> allowed) {
+std::optional<std::string> TableReader::word(std::string_view key, std::span<const std::string_view> allowed) {
   auto found = text(key);
   if (!found || std::find(allowed.begin(), allowed.end(), *found) != allowed.end()) return found;
   record(where(key), words().not_one_of(name(key), *found, allowed));

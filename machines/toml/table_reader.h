@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,7 +47,7 @@ class TableWords {
   /// What a text may not be in this format; nothing when it is right. `ascii`: it goes into NC text.
   [[nodiscard]] virtual std::optional<std::string> text_fault(const std::string& name, const std::string& text, bool ascii) const = 0;
   [[nodiscard]] virtual std::string not_one_of(const std::string& name, const std::string& text,
-                                               std::initializer_list<std::string_view> words) const = 0;
+                                               std::span<const std::string_view> words) const = 0;
 };
 
 /// What all tables of one file share.
@@ -76,7 +77,8 @@ class TableReader {
   std::optional<double> number(std::string_view key, const Range& range);
   std::optional<int> integer(std::string_view key, const Range& range);
   std::optional<std::string> text(std::string_view key, bool ascii = false);
-  std::optional<std::string> word(std::string_view key, std::initializer_list<std::string_view> allowed);
+  std::optional<std::string> word(std::string_view key, std::span<const std::string_view> allowed);
+  std::optional<std::string> word(std::string_view key, std::initializer_list<std::string_view> allowed) { return word(key, std::span(allowed.begin(), allowed.size())); }
   std::optional<bool> boolean(std::string_view key);
   /// Exactly `count` finite numbers.
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, const Range& range);

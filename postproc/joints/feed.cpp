@@ -16,7 +16,6 @@ Vec3 slerp(const Vec3& a, const Vec3& b, double t) {
   return (std::sin((1 - t) * angle) * a + std::sin(t * angle) * b) / std::sin(angle);
 }
 
-
 }  // namespace
 
 void ToothBuilder::feed_to(const machines::TablePose& from, const RotaryPair& from_angles, const machines::TablePose& to, const RotaryPair& to_angles,
@@ -96,7 +95,7 @@ std::optional<RotaryPair> ToothBuilder::angles_between(const Vec3& axis, const R
     double distance = 0;
     for (std::size_t k = 0; k < chain_.rotary_count(); ++k) {
       const double middle = 0.5 * (a[k] + b[k]);
-      angles[k] = s.free_rotary == static_cast<int>(k) ? middle : nearest_turn(s.joints.rotary_rad[k], middle);
+      angles[k] = s.free_rotary == static_cast<int>(k) ? middle : choice::nearest_turn(s.joints.rotary_rad[k], middle);
       distance = std::max(distance, std::abs(angles[k] - middle));
     }
     if (!best || distance < best_distance) {
@@ -139,15 +138,6 @@ void ToothBuilder::push_feed(const machines::TablePose& target, const RotaryPair
     words_.set_joints(b, chain_.linear_for(target.tip_mm, rotaries, words_.length()).linear_mm, rotaries);
   b.record = record_;
   b.forced = broken_;
-  const machines::Joints from = words_.joints(last_), to = words_.joints(b);
-  const double tip_path = (words_.tip(b) - words_.tip(last_)).norm();
-  const machines::Machine& machine = job_.machine;
-  double times[kTimeTerms] = {tip_path / feed,
-                              machine.max_cutting_feed > 0 ? tip_path / machine.max_cutting_feed : 0,
-                              0,
-                              0,
-                              machine.min_block_ms / 60000,
-                              !tcp_ && job_.options.max_inverse_time > 0 ? 1 / job_.options.max_inverse_time : 0};
   if (b.words == last_.words) {
     ++program_.dropped_blocks;
     if (!blocks_->empty() && blocks_->back().kind == BlockKind::feed) blocks_->back().record = record_;
@@ -155,6 +145,37 @@ void ToothBuilder::push_feed(const machines::TablePose& target, const RotaryPair
   }
   const AxisBlock before = last_;
   push(b);
+  AxisBlock& pushed = blocks_->back();
+  set_time(pushed, before, feed);
+  if (error_) return;
+  const machines::Joints from = words_.joints(before), to = words_.joints(b);
+  int moving = 0;
+  for (int i = 0; i < 3; ++i) moving += std::abs(to.linear_mm[i] - from.linear_mm[i]) > 1e-9 ? 1 : 0;
+  for (std::size_t k = 0; k < 2; ++k) moving += to.rotary_rad[k] != from.rotary_rad[k] ? 1 : 0;
+  const int together = job_.machine.max_simultaneous_axes;
+  if (together > 0 && moving > together) {
+    error_ = fail("operation {} record {}: {} axes move in one block, the control interpolates {} (keep the tilt fixed in "
+                  "a pass)",
+                  operation_->operation, record_, moving, together);
+    return;
+  }
+  operation_->feed_minutes += pushed.minutes * copies();
+  last_ = pushed;
+  broken_ = false;
+}
+
+/// Time of a block that was pushed behind `before`: the longest of what feed, axes and control ask for. With TCP its feed word and axis too.
+void ToothBuilder::set_time(AxisBlock& pushed, const AxisBlock& before, double feed) {
+  const AxisBlock b = pushed;
+  const machines::Joints from = words_.joints(before), to = words_.joints(b);
+  const double tip_path = (words_.tip(b) - words_.tip(before)).norm();
+  const machines::Machine& machine = job_.machine;
+  double times[kTimeTerms] = {tip_path / feed,
+                              machine.max_cutting_feed > 0 ? tip_path / machine.max_cutting_feed : 0,
+                              0,
+                              0,
+                              machine.min_block_ms / 60000,
+                              !tcp_ && job_.options.max_inverse_time > 0 ? 1 / job_.options.max_inverse_time : 0};
   if (tcp_) {
     const TipTimes tip = follow_tip(before, b);
     times[kLinearSpeed] = tip.linear;
@@ -166,31 +187,17 @@ void ToothBuilder::push_feed(const machines::TablePose& target, const RotaryPair
   }
   const auto ruler = std::max_element(times, times + kTimeTerms) - times;
   ++program_.time_ruled[static_cast<std::size_t>(ruler)];
-  AxisBlock& pushed = blocks_->back();
   pushed.ruler = static_cast<std::uint8_t>(ruler);
   pushed.minutes = times[ruler];
   if (!(pushed.minutes > 0)) {
     error_ = fail("operation {} record {}: a block takes no time", operation_->operation, record_);
     return;
   }
-  if (tcp_) {
-    const double turned = degrees(std::hypot(to.rotary_rad[0] - from.rotary_rad[0], to.rotary_rad[1] - from.rotary_rad[1]));
-    const bool stands = b.words[0] == before.words[0] && b.words[1] == before.words[1] && b.words[2] == before.words[2];
-    pushed.per_minute = (stands ? turned : tip_path) / pushed.minutes;
-    pushed.axis = chain_.forward(to, words_.length()).axis;
-  }
-  int moving = 0;
-  for (int i = 0; i < 3; ++i) moving += std::abs(to.linear_mm[i] - from.linear_mm[i]) > 1e-9 ? 1 : 0;
-  for (std::size_t k = 0; k < 2; ++k) moving += to.rotary_rad[k] != from.rotary_rad[k] ? 1 : 0;
-  if (machine.max_simultaneous_axes > 0 && moving > machine.max_simultaneous_axes) {
-    error_ = fail("operation {} record {}: {} axes move in one block, the control interpolates {} (keep the tilt fixed in "
-                  "a pass)",
-                  operation_->operation, record_, moving, machine.max_simultaneous_axes);
-    return;
-  }
-  operation_->feed_minutes += pushed.minutes * copies();
-  last_ = pushed;
-  broken_ = false;
+  if (!tcp_) return;
+  const double turned = degrees(std::hypot(to.rotary_rad[0] - from.rotary_rad[0], to.rotary_rad[1] - from.rotary_rad[1]));
+  const bool stands = b.words[0] == before.words[0] && b.words[1] == before.words[1] && b.words[2] == before.words[2];
+  pushed.per_minute = (stands ? turned : tip_path) / pushed.minutes;
+  pushed.axis = chain_.forward(to, words_.length()).axis;
 }
 
 }  // namespace toothpath::joints

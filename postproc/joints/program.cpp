@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "geometry/base/angle.h"
+#include "postproc/choice/solution.h"
 #include "postproc/joints/clearance.h"
 #include "postproc/joints/inputs.h"
 #include "postproc/joints/rollover.h"
-#include "postproc/joints/solution.h"
 #include "postproc/joints/time.h"
 #include "postproc/joints/tooth.h"
 #include "postproc/joints/travel.h"
@@ -78,7 +78,7 @@ class ProgramBuilder {
   }
   /// Only for a program that is refused as it stands: it takes as long as the program itself.
   void try_offer() {
-    TravelOffer& offer = *program_.offer;
+    choice::TravelOffer& offer = *program_.offer;
     if (*std::min_element(offer.room_then_mm.begin(), offer.room_then_mm.end()) < 0) return;
     Setup there = setup_;
     there.origin_mm += offer.shift_mm;
@@ -91,7 +91,7 @@ class ProgramBuilder {
   Diagnostic with_offer(Diagnostic bad) {
     if (!program_.offer) return bad;
     try_offer();
-    const TravelOffer& offer = *program_.offer;
+    const choice::TravelOffer& offer = *program_.offer;
     const auto& room = offer.room_then_mm;
     const Vec3 at = setup_.origin_mm + offer.shift_mm, work = setup_.work_offset_at_mm + offer.shift_mm;
     if (offer.posted)
@@ -163,8 +163,8 @@ class ProgramBuilder {
   }
 
   // Angles.
-  std::array<RotaryRange, 2> ranges(bool leave_room_for_index) const {
-    std::array<RotaryRange, 2> out{};
+  std::array<choice::RotaryRange, 2> ranges(bool leave_room_for_index) const {
+    std::array<choice::RotaryRange, 2> out{};
     for (std::size_t k = 0; k < chain_.rotary_count(); ++k) {
       const auto& axis = chain_.rotary(k);
       out[k] = {axis.min_rad + machine_.limit_margin.rotary_rad, axis.max_rad - machine_.limit_margin.rotary_rad};
@@ -193,7 +193,7 @@ class ProgramBuilder {
       program_.pole_axis_rad = std::max(program_.pole_axis_rad, rules.change_rad);
       program_.pole_tip_mm = std::max(program_.pole_tip_mm, 2 * rules.ball_radius_mm * std::sin(rules.change_rad / 2));
     }
-    auto angles = choose_rotaries(out.path(), rotation, chain_, ranges(leave_room_for_index), machine_.post.pole,
+    auto angles = choice::choose_rotaries(out.path(), rotation, chain_, ranges(leave_room_for_index), machine_.post.pole,
                                   out.changed ? out.changed->switches : std::vector<char>{});
     if (!angles) return angles.error();
     out.angles = std::move(*angles);
@@ -369,7 +369,7 @@ class ProgramBuilder {
   bool loop_is_entered_ = true;
   std::optional<Diagnostic> error_;
   TravelRecord placed_;
-  std::optional<TravelPoses> poses_;
+  std::optional<choice::TravelPoses> poses_;
 };
 
 Result<AxisProgram> build_from(std::span<const path::ClPath* const> paths, std::span<const tool::ToolAssembly> tools, const Setup& setup,

@@ -20,6 +20,7 @@
 #include "cam/tool/assembly.h"
 #include "geometry/base/result.h"
 #include "machines/machine.h"
+#include "postproc/choice/travel_offer.h"
 #include "postproc/joints/setup.h"
 
 namespace toothpath::joints {
@@ -116,14 +117,6 @@ struct ProgramRestart {
   int operation = 0, tooth = 0;
 };
 
-/// Where the part would stand with the most room in the travels of X Y Z.
-struct TravelOffer {
-  Vec3 shift_mm = Vec3::Zero();        ///< of set-up origin and work offset, machine axes
-  std::array<double, 3> room_now_mm{}, room_then_mm{};  ///< X Y Z: distance to the nearer limit, limit_margin taken off; < 0: beyond
-  bool on_index_axis = false;          ///< the gear stays on the axis that turns it: only shifts along it were looked at
-  bool posted = false;                 ///< a program was built there and fits; tried only where this one exceeds a travel
-};
-
 struct AxisProgram {
   WordFormat format;
   std::array<char, 5> letters{};            ///< X Y Z and the two rotaries; 0: no such axis
@@ -157,7 +150,7 @@ struct AxisProgram {
   double pole_tip_mm = 0;                   ///< .. and the tip, about the centre of the ball, which stays
   bool has_acceleration = false;            ///< the machine states them: `accelerated` is filled in
   TimedMinutes accelerated;                 ///< over all operations
-  std::optional<TravelOffer> offer;         ///< empty: not looked for, or too many directions of the part
+  std::optional<choice::TravelOffer> offer;         ///< empty: not looked for, or too many directions of the part
   std::size_t inserted_blocks = 0;          ///< by the subdivision
   std::size_t dropped_blocks = 0;           ///< all words equal to those before
 };

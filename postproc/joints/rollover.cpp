@@ -21,7 +21,7 @@ void roll_to(const machines::KinematicChain& chain, const RotaryPair& from, std:
   if (angles.empty()) return;
   for (std::size_t k = 0; k < chain.rotary_count(); ++k) {
     if (!chain.rotary(k).rollover) continue;
-    const double shift = whole_turns(angles.front()[k], from[k]);
+    const double shift = choice::whole_turns(angles.front()[k], from[k]);
     if (shift != 0)
       for (auto& a : angles) a[k] += shift;
   }

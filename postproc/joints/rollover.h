@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "postproc/choice/solution.h"
 #include "postproc/joints/program.h"
-#include "postproc/joints/solution.h"
 #include "postproc/joints/words.h"
 
 namespace toothpath::joints {

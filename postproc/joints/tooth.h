@@ -110,6 +110,7 @@ class ToothBuilder {
   std::optional<RotaryPair> angles_between(const Vec3& axis, const RotaryPair& a, const RotaryPair& b);
   void note_bounds(const machines::Joints& a, const machines::Joints& b, const machines::TablePose& from, const machines::TablePose& to, double axis_error);
   void push_feed(const machines::TablePose& to, const RotaryPair& rotaries, double feed);
+  void set_time(AxisBlock& pushed, const AxisBlock& before, double feed);
 
   const AxisJob& job_;
   const machines::KinematicChain& chain_;

@@ -10,9 +10,9 @@
 
 #include "geometry/base/result.h"
 #include "machines/machine.h"
+#include "postproc/choice/travel_offer.h"
 #include "postproc/joints/program.h"
 #include "postproc/joints/setup.h"
-#include "postproc/joints/travel_offer.h"
 
 namespace toothpath::joints {
 
@@ -24,7 +24,7 @@ class TravelRecord {
             const machines::LimitMargin& margin);
 
   /// Poses that move with the part go to `poses`, too.
-  void collect(TravelPoses* poses) { poses_ = poses; }
+  void collect(choice::TravelPoses* poses) { poses_ = poses; }
 
   [[nodiscard]] const std::array<double, 5>& least() const { return least_; }
   [[nodiscard]] const std::array<double, 5>& greatest() const { return greatest_; }
@@ -39,7 +39,7 @@ class TravelRecord {
   std::array<double, 3> shift_low_{-kFar, -kFar, -kFar}, shift_high_{kFar, kFar, kFar};
   std::size_t count_ = 0;
   bool rotary_outside_ = false;
-  TravelPoses* poses_ = nullptr;
+  choice::TravelPoses* poses_ = nullptr;
   std::vector<std::string> first_;
 };
 

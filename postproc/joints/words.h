@@ -4,10 +4,12 @@
 
 #include <cstdint>
 
+#include "postproc/choice/solution.h"
 #include "postproc/joints/program.h"
-#include "postproc/joints/solution.h"
 
 namespace toothpath::joints {
+
+using choice::RotaryPair;
 
 class AxisWords {
  public:

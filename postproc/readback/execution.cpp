@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "geometry/base/angle.h"
-#include "postproc/joints/solution.h"
+#include "postproc/choice/solution.h"
 
 namespace toothpath::readback {
 namespace {
@@ -228,7 +228,7 @@ NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>&
       std::array<double, 2> angles{};
       double distance = 0;
       for (std::size_t k = 0; k < control_.chain->rotary_count(); ++k) {
-        angles[k] = s.free_rotary == static_cast<int>(k) ? now[k] : joints::nearest_turn(s.joints.rotary_rad[k], now[k]);
+        angles[k] = s.free_rotary == static_cast<int>(k) ? now[k] : choice::nearest_turn(s.joints.rotary_rad[k], now[k]);
         distance = std::max(distance, std::abs(angles[k] - now[k]));
       }
       if (distance >= nearest) continue;

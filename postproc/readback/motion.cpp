@@ -118,95 +118,127 @@ int nearest_tooth(const Vec3& tip, double reference, int teeth) {
   return k < 0 ? k + teeth : k;
 }
 
-}  // namespace
+/// The moves of one trace, one by one, as motions in W.
+class TraceFollower {
+ public:
+  TraceFollower(const OperationTrace& trace, const TurnedCopies& copies, const NcControl& control, const machines::Machine& machine, const joints::Setup& setup,
+                int teeth, const MotionTolerances& tolerances)
+      : trace_(trace), copies_(copies), control_(control), machine_(machine), kinematics_(machine.chain, setup), teeth_(teeth), tolerances_(tolerances),
+        // Teeth that were not kept stand where their index words put them: rounded, so off the exact turn by up to this.
+        shift_(copies.copies && trace.kept_teeth == 1 ? radians(copies.worst_shift_deg) : 0), reference_(first_cut_angle()) {
+    for (const auto& o : copies.operations)
+      if (o.operation == trace.operation) operation_ = &o;
+  }
 
-Result<std::vector<path::ToolMotion>> tool_motions(const OperationTrace& trace, const TurnedCopies& copies, const NcControl& control,
-                                             const machines::Machine& machine, const joints::Setup& setup, int teeth, double tolerance_mm,
-                                             double axis_tolerance_rad) {
-  if (!(tolerance_mm > 0) || !(axis_tolerance_rad > 0)) return fail("tolerances of the read-back must be above 0");
-  const Motions kinematics(machine.chain, setup);
-  const TurnedCopies::Operation* op = nullptr;
-  for (const auto& o : copies.operations)
-    if (o.operation == trace.operation) op = &o;
-  const auto length_of = [&](int tool) -> const double* {
-    const auto found = control.tool_length_mm.find(tool);
-    return found == control.tool_length_mm.end() ? nullptr : &found->second;
-  };
-  double reference = 0;
-  for (const auto& m : trace.moves)
-    if (m.known && !m.rapid && length_of(m.tool) != nullptr) {
-      const Vec3 tip = kinematics.place(kinematics.joints(m.joints), *length_of(m.tool)).tip;
-      reference = std::atan2(tip.y(), tip.x());
-      break;
+  Result<std::vector<path::ToolMotion>> run() {
+    out_.reserve(trace_.moves.size() + 64);
+    for (std::size_t i = 1; i < trace_.moves.size(); ++i) {
+      if (!trace_.moves[i].known) continue;  // a change of tool moves nothing: the new one starts where the gauge line stands
+      if (auto s = follow(i); !s) return s.error();
     }
+    return std::move(out_);
+  }
 
-  // Teeth that were not kept stand where their index words put them: rounded, so off the exact turn by up to this.
-  const double shift = copies.copies && trace.kept_teeth == 1 ? radians(copies.worst_shift_deg) : 0;
+ private:
+  [[nodiscard]] const double* length_of(int tool) const {
+    const auto found = control_.tool_length_mm.find(tool);
+    return found == control_.tool_length_mm.end() ? nullptr : &found->second;
+  }
+  /// Where the first cut stands about the gear axis: tooth space 0 is there.
+  [[nodiscard]] double first_cut_angle() const {
+    for (const auto& m : trace_.moves)
+      if (m.known && !m.rapid && length_of(m.tool) != nullptr) {
+        const Vec3 tip = kinematics_.place(kinematics_.joints(m.joints), *length_of(m.tool)).tip;
+        return std::atan2(tip.y(), tip.x());
+      }
+    return 0;
+  }
+  /// Tooth space of move i: named in the program, known from the copies, or the nearest.
+  [[nodiscard]] int tooth_of(std::size_t i, const Vec3& tip) const {
+    const int named = trace_.moves[i].tooth;
+    if (named >= 0) return named;
+    if (!copies_.copies || operation_ == nullptr || operation_->moves_per_tooth == 0 || operation_->turns.empty()) return nearest_tooth(tip, reference_, teeth_);
+    const std::size_t copy = i < trace_.lead ? 0 : (i - trace_.lead) / operation_->moves_per_tooth;
+    return operation_->turns[std::min(copy, operation_->turns.size() - 1)];
+  }
+  /// What the corners at both ends of move i may leave, mm and rad.
+  [[nodiscard]] std::pair<double, double> corners(std::size_t i, double length) const {
+    const auto& moves = trace_.moves;
+    double most_mm = 0, most_rad = 0;
+    const auto corner = [&](std::size_t k) {
+      const auto [tip_off, axis_off] = kinematics_.corner(moves[k - 1], moves[k], k + 1 < moves.size() ? &moves[k + 1] : nullptr, length);
+      most_mm = std::max(most_mm, tip_off);
+      most_rad = std::max(most_rad, axis_off);
+    };
+    if (moves[i].corner_share > 0) corner(i);
+    if (moves[i].corner_share > 0 && i > 1 && moves[i - 1].known) corner(i - 1);
+    return {most_mm, most_rad};
+  }
+  /// A place within a move; with TCP the linear joints follow from the tip.
+  [[nodiscard]] Placed between(const Placed& from, const Placed& to, double t, bool tcp, double length) const {
+    machines::Joints j;
+    j.linear_mm = (1 - t) * from.joints.linear_mm + t * to.joints.linear_mm;
+    for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = (1 - t) * from.joints.rotary_rad[k] + t * to.joints.rotary_rad[k];
+    if (tcp) j = machine_.chain.linear_for((1 - t) * from.table.tip_mm + t * to.table.tip_mm, j.rotary_rad, length);
+    return kinematics_.place(j, length);
+  }
 
-  std::vector<path::ToolMotion> out;
-  out.reserve(trace.moves.size() + 64);
-  for (std::size_t i = 1; i < trace.moves.size(); ++i) {
-    const ExecutedMove& m = trace.moves[i];
-    if (!m.known) continue;  // a change of tool moves nothing: the new one starts where the gauge line stands
+  Status follow(std::size_t i) {
+    const ExecutedMove& m = trace_.moves[i];
     const double* length = length_of(m.tool);
     if (length == nullptr) return fail("line {}: tool {} is not in the tool list", m.line, m.tool);
-    const Placed from = kinematics.place(kinematics.joints(trace.moves[i - 1].joints), *length);
-    const Placed to = kinematics.place(kinematics.joints(m.joints), *length);
+    const Placed from = kinematics_.place(kinematics_.joints(trace_.moves[i - 1].joints), *length);
+    const Placed to = kinematics_.place(kinematics_.joints(m.joints), *length);
     const double factor = m.rapid ? kRapidFactor : 1;
-    auto [tip_bound, axis_bound] = kinematics.bounds(from, to, *length);
+    auto [tip_bound, axis_bound] = kinematics_.bounds(from, to, *length);
     if (m.tcp) tip_bound = 0;
-    const double pieces = std::ceil(std::sqrt(std::max(tip_bound / (factor * tolerance_mm), axis_bound / (factor * axis_tolerance_rad))));
-    if (pieces > kMostPieces) return fail("line {}: move turns too far to be followed within {} mm", m.line, tolerance_mm);
+    const double pieces = std::ceil(std::sqrt(std::max(tip_bound / (factor * tolerances_.tip_mm), axis_bound / (factor * tolerances_.axis_rad))));
+    if (pieces > kMostPieces) return fail("line {}: move turns too far to be followed within {} mm", m.line, tolerances_.tip_mm);
     const int n = std::max(1, static_cast<int>(pieces));
-    int tooth = m.tooth;
-    if (tooth < 0 && copies.copies && op != nullptr && op->moves_per_tooth > 0 && !op->turns.empty()) {
-      const std::size_t copy = i < trace.lead ? 0 : (i - trace.lead) / op->moves_per_tooth;
-      tooth = op->turns[std::min(copy, op->turns.size() - 1)];
-    } else if (tooth < 0) {
-      tooth = nearest_tooth(to.tip, reference, teeth);
-    }
-    // The corners at both ends.
-    double corner_mm = 0, corner_rad = 0;
-    const auto corner = [&](std::size_t k) {
-      const auto [tip_off, axis_off] =
-          kinematics.corner(trace.moves[k - 1], trace.moves[k], k + 1 < trace.moves.size() ? &trace.moves[k + 1] : nullptr, *length);
-      corner_mm = std::max(corner_mm, tip_off);
-      corner_rad = std::max(corner_rad, axis_off);
-    };
-    if (m.corner_share > 0) corner(i);
-    if (m.corner_share > 0 && i > 1 && trace.moves[i - 1].known) corner(i - 1);
+    const int tooth = tooth_of(i, to.tip);
+    const auto [corner_mm, corner_rad] = corners(i, *length);
     Placed start = from;
     for (int piece = 1; piece <= n; ++piece) {
-      Placed end = to;
-      if (piece < n) {
-        const double t = static_cast<double>(piece) / n;
-        machines::Joints j;
-        j.linear_mm = (1 - t) * from.joints.linear_mm + t * to.joints.linear_mm;
-        for (std::size_t k = 0; k < 2; ++k)
-          j.rotary_rad[k] = (1 - t) * from.joints.rotary_rad[k] + t * to.joints.rotary_rad[k];
-        if (m.tcp)  // the linear joints follow from the tip
-          j = machine.chain.linear_for((1 - t) * from.table.tip_mm + t * to.table.tip_mm, j.rotary_rad, *length);
-        end = kinematics.place(j, *length);
-      }
-      const auto [tip_left, axis_left] = kinematics.bounds(start, end, *length);
+      const Placed end = piece < n ? between(from, to, static_cast<double>(piece) / n, m.tcp, *length) : to;
+      const auto [tip_left, axis_left] = kinematics_.bounds(start, end, *length);
       path::ToolMotion motion;
       motion.tip_from = start.tip;
       motion.tip_to = end.tip;
       motion.axis_from = start.axis;
       motion.axis_to = end.axis;
       motion.deviation_mm = (m.tcp ? 0 : tip_left) + kRoundOff + double(m.blend_mm) + corner_mm +
-                            shift * std::max(motion.tip_from.head<2>().norm(), motion.tip_to.head<2>().norm());
-      motion.axis_deviation = axis_left + shift + double(m.blend_axis_rad) + corner_rad;
+                            shift_ * std::max(motion.tip_from.head<2>().norm(), motion.tip_to.head<2>().norm());
+      motion.axis_deviation = axis_left + shift_ + double(m.blend_axis_rad) + corner_rad;
       motion.minutes = m.minutes / n;
       motion.rapid = m.rapid;
       motion.operation = m.operation;
       motion.tooth = tooth;
       motion.line = m.line;
-      out.push_back(motion);
+      out_.push_back(motion);
       start = end;
     }
+    return Ok{};
   }
-  return out;
+
+  const OperationTrace& trace_;
+  const TurnedCopies& copies_;
+  const NcControl& control_;
+  const machines::Machine& machine_;
+  const Motions kinematics_;
+  int teeth_;
+  MotionTolerances tolerances_;
+  double shift_, reference_;
+  const TurnedCopies::Operation* operation_ = nullptr;
+  std::vector<path::ToolMotion> out_;
+};
+
+}  // namespace
+
+Result<std::vector<path::ToolMotion>> tool_motions(const OperationTrace& trace, const TurnedCopies& copies, const NcControl& control,
+                                                   const machines::Machine& machine, const joints::Setup& setup, int teeth,
+                                                   const MotionTolerances& tolerances) {
+  if (!(tolerances.tip_mm > 0) || !(tolerances.axis_rad > 0)) return fail("tolerances of the read-back must be above 0");
+  return TraceFollower(trace, copies, control, machine, setup, teeth, tolerances).run();
 }
 
 }  // namespace toothpath::readback

@@ -37,7 +37,7 @@ Status check_axis_groups(const OperationTrace& trace) {
 
 Status check_rapids_outside(const OperationTrace& trace, const NcControl& control, const machines::Machine& machine, const joints::Setup& setup,
                             const joints::ClearanceBody& body, std::span<const tool::ToolAssembly> tools) {
-  const auto motions = tool_motions(trace, {}, control, machine, setup, 1, 0.001, 1e-3);
+  const auto motions = tool_motions(trace, {}, control, machine, setup, 1, {0.001, 1e-3});
   if (!motions) return motions.error();
   const auto found = std::find_if(tools.begin(), tools.end(), [&](const tool::ToolAssembly& t) { return t.number == trace.tool; });
   const tool::ToolAssembly tool = found != tools.end() ? *found : bare_tip(trace.tool);

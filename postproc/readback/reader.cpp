@@ -212,71 +212,105 @@ Status execute_nc(std::string_view text, const std::string& file, const NcContro
   return control.execute(text, file, control, sink);
 }
 
-Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control, const machines::Machine& machine,
-                           const joints::Setup& setup, const ReadBackOptions& options) {
-  ReadBack result;
-  result.least.fill(std::numeric_limits<double>::infinity());
-  result.greatest.fill(-std::numeric_limits<double>::infinity());
-  std::map<int, OperationMoves> counts;
-  const auto reach = [&result](const std::array<double, 5>& joints) {
-    for (std::size_t a = 0; a < 5; ++a) {  // NaN (not yet known) passes neither comparison
-      if (joints[a] < result.least[a]) result.least[a] = joints[a];
-      if (joints[a] > result.greatest[a]) result.greatest[a] = joints[a];
+namespace {
+
+/// Executes a program as often as it takes and keeps what proofs ask for.
+class ReadBackRun {
+ public:
+  ReadBackRun(std::string_view text, const std::string& file, const NcControl& control, const machines::Machine& machine)
+      : text_(text), file_(file), control_(control), machine_(machine) {
+    result_.least.fill(std::numeric_limits<double>::infinity());
+    result_.greatest.fill(-std::numeric_limits<double>::infinity());
+  }
+
+  Result<ReadBack> run(const joints::Setup& setup, const ReadBackOptions& options) {
+    if (auto s = count(); !s) return s.error();
+    CopyCheck check(counts_, control_, setup, options.teeth, index_sign(machine_, setup));
+    if (auto s = compare(check); !s) return s.error();
+    const bool all = options.keep_all || !result_.copies.copies;
+    if (all) {
+      if (auto s = keep_all(options); !s) return s.error();
+    } else {
+      for (const auto& [op, c] : counts_)
+        if (op >= 0) traces_[op].moves = check.take(op);
     }
-  };
-  ExecutedMove before;
-  const auto count = [&](const ExecutedMove& m) {
-    ++result.executed;
-    result.minutes += m.minutes;
-    if (!m.rapid) result.feed_minutes += m.minutes;
-    if (m.tcp && m.known) follow_tip(before, m, control, machine.chain, reach);
-    if (!control.cutter_locations && result.mixed_rapid == 0 && mixes_axis_groups(before, m)) result.mixed_rapid = m.line;
-    before = m;
-    reach(m.joints);
-    counts[m.operation].add(m);
-  };
-  if (auto s = execute_nc(text, file, control, count); !s) return s.error();
+    for (auto& [op, t] : traces_) {
+      if (op < 0) continue;
+      t.operation = op;
+      t.lead = counts_[op].lead;
+      t.kept_teeth = all ? static_cast<std::size_t>(options.teeth) : 1;
+      t.tool = t.moves.empty() ? 0 : t.moves.back().tool;
+      result_.operations.push_back(std::move(t));
+    }
+    return std::move(result_);
+  }
 
-  CopyCheck check(counts, control, setup, options.teeth, index_sign(machine, setup));
-  Between between(counts, true);
-  const auto look = [&](const ExecutedMove& m) {
-    check(m);
-    between(m);
-  };
-  if (auto s = execute_nc(text, file, control, look); !s) return s.error();
-  result.between = between.take();
-  result.copies = check.finish();
-
-  const bool all = options.keep_all || !result.copies.copies;
-  std::map<int, OperationTrace> traces;
-  if (all) {
-    if (result.executed > options.max_kept) {
-      Diagnostic error = fail("{} moves would have to be kept, more than {}: the teeth are not turned copies of the first one ({})", result.executed,
-                              options.max_kept, result.copies.copies ? "all are asked for" : result.copies.difference);
-      error.position = {file, result.copies.line, 0};
+ private:
+  /// First time: times, reach of the joints, moves of every operation, rapids that mix groups of axes.
+  Status count() {
+    const auto reach = [this](const std::array<double, 5>& joints) {
+      for (std::size_t a = 0; a < 5; ++a) {  // NaN (not yet known) passes neither comparison
+        if (joints[a] < result_.least[a]) result_.least[a] = joints[a];
+        if (joints[a] > result_.greatest[a]) result_.greatest[a] = joints[a];
+      }
+    };
+    ExecutedMove before;
+    return execute_nc(text_, file_, control_, [&](const ExecutedMove& m) {
+      ++result_.executed;
+      result_.minutes += m.minutes;
+      if (!m.rapid) result_.feed_minutes += m.minutes;
+      if (m.tcp && m.known) follow_tip(before, m, control_, machine_.chain, reach);
+      if (!control_.cutter_locations && result_.mixed_rapid == 0 && mixes_axis_groups(before, m)) result_.mixed_rapid = m.line;
+      before = m;
+      reach(m.joints);
+      counts_[m.operation].add(m);
+    });
+  }
+  /// Second time: are the teeth turned copies, and what stands between the operations.
+  Status compare(CopyCheck& check) {
+    Between between(counts_, true);
+    auto s = execute_nc(text_, file_, control_, [&](const ExecutedMove& m) {
+      check(m);
+      between(m);
+    });
+    if (!s) return s;
+    result_.between = between.take();
+    result_.copies = check.finish();
+    return Ok{};
+  }
+  /// Third time, where every tooth is kept.
+  Status keep_all(const ReadBackOptions& options) {
+    if (result_.executed > options.max_kept) {
+      Diagnostic error = fail("{} moves would have to be kept, more than {}: the teeth are not turned copies of the first one ({})", result_.executed,
+                              options.max_kept, result_.copies.copies ? "all are asked for" : result_.copies.difference);
+      error.position = {file_, result_.copies.line, 0};
       return error;
     }
-    for (const auto& [op, c] : counts) traces[op].moves.reserve(c.total);
-    Between gaps(counts, false);
-    const auto keep = [&](const ExecutedMove& m) {
-      traces[m.operation].moves.push_back(m);
+    for (const auto& [op, c] : counts_) traces_[op].moves.reserve(c.total);
+    Between gaps(counts_, false);
+    auto s = execute_nc(text_, file_, control_, [&](const ExecutedMove& m) {
+      traces_[m.operation].moves.push_back(m);
       gaps(m);
-    };
-    if (auto s = execute_nc(text, file, control, keep); !s) return s.error();
-    result.between = gaps.take();
-  } else {
-    for (const auto& [op, c] : counts)
-      if (op >= 0) traces[op].moves = check.take(op);
+    });
+    if (!s) return s;
+    result_.between = gaps.take();
+    return Ok{};
   }
-  for (auto& [op, t] : traces) {
-    if (op < 0) continue;
-    t.operation = op;
-    t.lead = counts[op].lead;
-    t.kept_teeth = all ? static_cast<std::size_t>(options.teeth) : 1;
-    t.tool = t.moves.empty() ? 0 : t.moves.back().tool;
-    result.operations.push_back(std::move(t));
-  }
-  return result;
+
+  std::string_view text_;
+  const std::string& file_;
+  const NcControl& control_;
+  const machines::Machine& machine_;
+  ReadBack result_;
+  std::map<int, OperationMoves> counts_;
+  std::map<int, OperationTrace> traces_;
+};
+
+}  // namespace
+
+Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control, const machines::Machine& machine,
+                           const joints::Setup& setup, const ReadBackOptions& options) {
+  return ReadBackRun(text, file, control, machine).run(setup, options);
 }
 
 }  // namespace toothpath::readback

@@ -139,13 +139,17 @@ struct ReadBackOptions {
 [[nodiscard]] Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control,
                                          const machines::Machine& machine, const joints::Setup& setup, const ReadBackOptions& options);
 
+/// How far the motion of a cut may leave the straight one that stands for it; 50 times as far in rapids.
+struct MotionTolerances {
+  double tip_mm = 0, axis_rad = 0;  ///< above 0
+};
+
 /// Moves of a trace as straight motions of the tip in W. Moves that turn the axes are cut until the proven distance
-/// from the straight motion is at most `tolerance_mm` (tip) and `axis_tolerance_rad`; the bound stands in each motion.
-/// Rapids are cut to 50 times these tolerances. `tool_length_mm` by T number. Moves whose start is not known (before the machine was positioned) are left out.
+/// from the straight motion is within the tolerances; the bound stands in each motion. `tool_length_mm` by T number. Moves whose start is not known (before the machine was positioned) are left out.
 [[nodiscard]] Result<std::vector<path::ToolMotion>> tool_motions(const OperationTrace& trace, const TurnedCopies& copies,
                                                            const NcControl& control, const machines::Machine& machine,
-                                                           const joints::Setup& setup, int teeth, double tolerance_mm,
-                                                           double axis_tolerance_rad);
+                                                           const joints::Setup& setup, int teeth,
+                                                           const MotionTolerances& tolerances);
 
 /// Every CL record of tooth space 0 met in order by the motions of tooth 0 of the same operation.
 struct ClComparison {

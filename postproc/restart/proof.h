@@ -24,9 +24,16 @@ struct RestartProof {
   std::size_t moves = 0;          ///< of the restart, that were compared
 };
 
-/// Executes both texts twice and compares. `place` is the first place of the tooth order, `tooth` the tooth there.
-/// Errors: what the reader refuses in either text.
+/// Where a restart begins.
+struct RestartPlace {
+  int operation = 0;
+  int tooth = 0;  ///< tooth space cut first
+  int place = 0;  ///< its place in the order of the teeth, 0 .. teeth - 1
+  int teeth = 1;  ///< of the gear
+};
+
+/// Executes both texts twice and compares. Errors: what the reader refuses in either text.
 [[nodiscard]] Result<RestartProof> prove_restart(std::string_view whole, std::string_view restart, const std::string& file, const readback::NcControl& control,
-                                                 int operation, int tooth, int place, int teeth);
+                                                 const RestartPlace& from);
 
 }  // namespace toothpath::restart

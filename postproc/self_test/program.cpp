@@ -127,6 +127,77 @@ class SelfTestBuilder {
   std::array<double, 2> at_ = test_.stations.front().rotary_rad;
 };
 
+/// Watches the executed moves of a self test: travel, the tip on its point, the stations in their order.
+class SelfTestWatch {
+ public:
+  SelfTestWatch(const std::string& file, const SelfTest& test, const machines::Machine& machine) : file_(file), test_(test), machine_(machine) {}
+
+  void operator()(const readback::ExecutedMove& m) {
+    proof_.minutes += m.minutes;
+    if (!m.known || error_) return;
+    const machines::Joints now = joints_of(m);
+    const auto outside = machine_.chain.violations(now, machine_.limit_margin);
+    if (!outside.empty()) fault(m, outside.front().text());
+    if (on_point_ && next_ < test_.stations.size()) stay(m, now);
+    if (!on_point_ && !m.rapid && distance(now) <= kOnPoint) on_point_ = true;
+    if (on_point_ && next_ < test_.stations.size() && at_station(now, test_.stations[next_])) ++next_;
+    before_ = now;
+  }
+
+  Result<SelfTestProof> finish() const {
+    if (error_) return *error_;
+    if (next_ < test_.stations.size())
+      return fail_as(DiagnosticKind::verification, "station {} of {} ({}) is not met", next_ + 1, test_.stations.size(), test_.stations[next_].remark);
+    return proof_;
+  }
+
+ private:
+  static constexpr double kOnPoint = 0.003;  // mm
+
+  static machines::Joints joints_of(const readback::ExecutedMove& m) {
+    machines::Joints j;
+    for (int i = 0; i < 3; ++i) j.linear_mm[i] = m.joints[static_cast<std::size_t>(i)];
+    for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = radians(m.joints[3 + k]);
+    return j;
+  }
+  [[nodiscard]] double distance(const machines::Joints& j) const { return (machine_.chain.forward(j, test_.tool_length_mm).tip_mm - test_.point_mm).norm(); }
+  void fault(const readback::ExecutedMove& m, std::string what) {
+    if (error_) return;
+    error_ = fail_as(DiagnosticKind::verification, "{}", what);
+    error_->position = {file_, m.line, 0};
+  }
+  /// With TCP the control holds the tip on its chord; else every joint is linear.
+  void stay(const readback::ExecutedMove& m, const machines::Joints& now) {
+    const double allowed = test_.tip_bound_mm + kOnPoint;
+    ++proof_.moves;
+    for (int s = 1; s <= 4; ++s) {
+      machines::Joints j;
+      const double t = s / 4.0;
+      j.linear_mm = before_.linear_mm + t * (now.linear_mm - before_.linear_mm);
+      for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = before_.rotary_rad[k] + t * (now.rotary_rad[k] - before_.rotary_rad[k]);
+      proof_.worst_mm = std::max(proof_.worst_mm, distance(m.tcp ? now : j));
+    }
+    if (proof_.worst_mm > allowed) fault(m, fmt::format("the tip leaves the point by {:.4f} mm, allowed {:.4f}", proof_.worst_mm, allowed));
+  }
+  [[nodiscard]] bool at_station(const machines::Joints& now, const SelfTestStation& station) const {
+    double turn = 0;
+    for (std::size_t k = 0; k < machine_.chain.rotary_count(); ++k) {
+      const double off = now.rotary_rad[k] - station.rotary_rad[k];
+      turn = std::max(turn, std::abs(machine_.chain.rotary(k).rollover ? std::remainder(off, 2 * kPi) : off));
+    }
+    return turn <= radians(0.001);
+  }
+
+  const std::string& file_;
+  const SelfTest& test_;
+  const machines::Machine& machine_;
+  SelfTestProof proof_;
+  std::size_t next_ = 0;  ///< station that comes next
+  bool on_point_ = false;
+  std::optional<Diagnostic> error_;
+  machines::Joints before_;
+};
+
 }  // namespace
 
 joints::AxisProgram self_test_program(const SelfTest& test, const machines::Machine& machine, const text::NcDialect& dialect) {
@@ -150,63 +221,14 @@ Result<SelfTestProof> prove_self_test(std::string_view text, const std::string& 
   auto control = controls::control_of(machine, setup, std::span(&bar, 1));
   if (!control) return control.error();
   control->dry_run = true;
-  const double allowed = test.tip_bound_mm + 0.003;
-  SelfTestProof proof;
-  std::size_t next = 0;  // station that comes next
-  bool on_point = false;
-  std::optional<Diagnostic> error;
-  machines::Joints before;
-  const auto joints_of = [](const readback::ExecutedMove& m) {
-    machines::Joints j;
-    for (int i = 0; i < 3; ++i) j.linear_mm[i] = m.joints[static_cast<std::size_t>(i)];
-    for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = radians(m.joints[3 + k]);
-    return j;
-  };
-  const auto fault = [&](const readback::ExecutedMove& m, std::string what) {
-    if (error) return;
-    error = fail_as(DiagnosticKind::verification, "{}", what);
-    error->position = {file, m.line, 0};
-  };
-  const auto status = readback::execute_nc(text, file, *control, [&](const readback::ExecutedMove& m) {
-    proof.minutes += m.minutes;
-    if (!m.known || error) return;
-    const machines::Joints now = joints_of(m);
-    const auto outside = machine.chain.violations(now, machine.limit_margin);
-    if (!outside.empty()) fault(m, outside.front().text());
-    const auto distance = [&](const machines::Joints& j) { return (machine.chain.forward(j, test.tool_length_mm).tip_mm - test.point_mm).norm(); };
-    const double off = distance(now);
-    if (on_point && next < test.stations.size()) {
-      ++proof.moves;
-      for (int s = 1; s <= 4; ++s) {
-        // With TCP the control holds the tip on its chord; else every joint is linear.
-        machines::Joints j;
-        const double t = s / 4.0;
-        j.linear_mm = before.linear_mm + t * (now.linear_mm - before.linear_mm);
-        for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = before.rotary_rad[k] + t * (now.rotary_rad[k] - before.rotary_rad[k]);
-        proof.worst_mm = std::max(proof.worst_mm, m.tcp ? off : distance(j));
-      }
-      if (proof.worst_mm > allowed) fault(m, fmt::format("the tip leaves the point by {:.4f} mm, allowed {:.4f}", proof.worst_mm, allowed));
-    }
-    if (!on_point && !m.rapid && off <= 0.003) on_point = true;
-    if (on_point && next < test.stations.size()) {
-      double turn = 0;
-      for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
-        const double off_station = now.rotary_rad[k] - test.stations[next].rotary_rad[k];
-        turn = std::max(turn, std::abs(machine.chain.rotary(k).rollover ? std::remainder(off_station, 2 * kPi) : off_station));
-      }
-      if (turn <= radians(0.001)) ++next;
-    }
-    before = now;
-  });
+  SelfTestWatch watch(file, test, machine);
+  const auto status = readback::execute_nc(text, file, *control, [&](const readback::ExecutedMove& m) { watch(m); });
   if (!status) {
     Diagnostic refused = status.error();
     refused.kind = DiagnosticKind::verification;
     return refused;
   }
-  if (error) return *error;
-  if (next < test.stations.size())
-    return fail_as(DiagnosticKind::verification, "station {} of {} ({}) is not met", next + 1, test.stations.size(), test.stations[next].remark);
-  return proof;
+  return watch.finish();
 }
 
 }  // namespace toothpath::self_test

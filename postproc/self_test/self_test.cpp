@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "postproc/joints/solution.h"
+#include "postproc/choice/solution.h"
 
 namespace toothpath::self_test {
 namespace {
@@ -74,7 +74,7 @@ std::vector<SelfTestStation> stations_for(const machines::Machine& machine, doub
   // A rotary that rolls over goes on from where it stands.
   for (std::size_t s = 1; s < stations.size(); ++s)
     for (std::size_t k = 0; k < chain.rotary_count(); ++k)
-      if (chain.rotary(k).rollover) stations[s].rotary_rad[k] = joints::nearest_turn(stations[s].rotary_rad[k], stations[s - 1].rotary_rad[k]);
+      if (chain.rotary(k).rollover) stations[s].rotary_rad[k] = choice::nearest_turn(stations[s].rotary_rad[k], stations[s - 1].rotary_rad[k]);
   return stations;
 }
 

@@ -4,8 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "postproc/shaper/gearbox_reader.h"
-#include "postproc/shaper/setup.h"
+#include "postproc/shaper/control.h"
 
 namespace toothpath::shaper {
 namespace {
@@ -16,8 +15,7 @@ constexpr double kTime = 2e-3;     // relative
 
 std::vector<std::string> gearbox_program_faults(std::string_view text, const ShaperSetup& s) {
   const auto& box = *s.machine.gearbox;
-  const auto r = read_gearbox_program(
-      text, {s.machine.dialect == "siemens", box.cutter_axis, box.work_axis, box.relief_on, box.relief_off, box.pulses_per_turn});
+  const auto r = shaper_control(s.machine).read(text, {box.cutter_axis, box.work_axis, box.relief_on, box.relief_off, box.pulses_per_turn});
   std::vector<std::string> faults = r.problems;
   const auto wrong = [&]<typename... A>(fmt::format_string<A...> format, A&&... a) { faults.push_back(fmt::format(format, std::forward<A>(a)...)); };
   if (!r.ratio) {

@@ -34,11 +34,8 @@ Json machine_json(const ShaperSetup& s) {
   return json;
 }
 
-}  // namespace
-
-std::string shaper_json(const ShaperSetup& s, const std::vector<FeedStudyRow>& study) {
-  const bool mean = s.shaping.speed_basis == Shaping::SpeedBasis::mean;
-  Json passes = Json::array(), feeds = Json::array();
+Json passes_json(const ShaperSetup& s) {
+  Json passes = Json::array();
   for (const auto& p : s.passes)
     passes.push_back({{"stroke", p.stroke},
                       {"x", p.x_mm},
@@ -46,11 +43,23 @@ std::string shaper_json(const ShaperSetup& s, const std::vector<FeedStudyRow>& s
                       {"minutes", p.minutes},
                       {"tooth_thickness", p.tooth_thickness_mm},
                       {"space_width", p.space_width_mm}});
+  return passes;
+}
+
+Json feeds_json(const std::vector<FeedStudyRow>& study) {
+  Json feeds = Json::array();
   for (const auto& f : study)
     feeds.push_back({{"circular_feed", f.circular_feed_mm},
                      {"minutes", f.minutes},
                      {"max_um", f.deviation.max_left_um},
                      {"rms_um", f.deviation.rms_um}});
+  return feeds;
+}
+
+}  // namespace
+
+std::string shaper_json(const ShaperSetup& s, const std::vector<FeedStudyRow>& study) {
+  const bool mean = s.shaping.speed_basis == Shaping::SpeedBasis::mean;
   const Json json = {
       {"schema", 1},
       {"job", s.job_name},
@@ -101,9 +110,9 @@ std::string shaper_json(const ShaperSetup& s, const std::vector<FeedStudyRow>& s
         {"strokes_turn", s.strokes_turn},
         {"strokes_total", s.strokes_total()},
         {"relief", s.machine.relief_mm}}},
-      {"inspection", {{"radius", s.inspection_radius_mm}, {"passes", passes}}},
+      {"inspection", {{"radius", s.inspection_radius_mm}, {"passes", passes_json(s)}}},
       {"back_stroke", {{"flank_clearance", s.relief.flank_mm}, {"stock_clearance", s.relief.stock_mm}}},
-      {"feed_study", feeds},
+      {"feed_study", feeds_json(study)},
       {"warnings", s.warnings}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "geometry/base/angle.h"
-#include "postproc/shaper/gearbox_program.h"
+#include "postproc/shaper/control.h"
 
 namespace toothpath::shaper {
 namespace {
@@ -135,7 +135,8 @@ void set_gears(ShaperSetup& s, Refusals& refusals) {
     s.index_target = s.generating;
     s.feed_target = s.shaping.circular_feed_mm / s.pitch_diameter_mm;
     s.circular_feed_set_mm = s.shaping.circular_feed_mm;
-    if (const auto fits = check_gearbox(m, s.cutter_teeth, s.work_teeth); !fits) refuse(refusals, "gear.shaper_teeth", "{}", fits.error().message);
+    if (const auto& control = shaper_control(m); control.accepts)
+      if (const auto fits = control.accepts(m, s.cutter_teeth, s.work_teeth); !fits) refuse(refusals, "gear.shaper_teeth", "{}", fits.error().message);
     return;
   }
   const WheelSet wheels{m.gears, m.mesh_margin};

@@ -8,7 +8,7 @@
 
 #include "geometry/base/angle.h"
 #include "postproc/shaper/chart.h"
-#include "postproc/shaper/gearbox_program.h"
+#include "postproc/shaper/control.h"
 
 namespace toothpath::shaper {
 namespace {
@@ -112,7 +112,7 @@ std::string steps(const ShaperSetup& s) {
     out += step(fmt::format("Electronic gearbox{}: work axis {} follows cutter axis {}, work turns : cutter turns = {}{}/{}, exact whole numbers ({}). Lift on the back "
                             "stroke by {}, off by {}.",
                             mark(s, "gearbox"), box->work_axis, box->cutter_axis, s.sense < 0 ? "-" : "", s.generating.numerator,
-                            s.generating.denominator, s.machine.dialect == "siemens" ? "EGDEF, EGON, EGOFS" : "G81.5, G80.5", box->relief_on,
+                            s.generating.denominator, shaper_control(s.machine).coupling_words, box->relief_on,
                             box->relief_off));
   else
     out += step(fmt::format("Index gears {} &nbsp;(a/b&middot;c/d = {}/{} &times; {}/{} = {}/{}, exact; constant{}, wheels{}).", gears_text(s.index_gears),
@@ -139,7 +139,7 @@ std::string steps(const ShaperSetup& s) {
                           "double stroke, {} double strokes.", value(s.depth_mm, 3, "mm"), value(s.infeed_per_stroke_mm, 5, "mm"),
                           s.strokes_infeed));
   out += step(fmt::format("At full depth stop the infeed and let the work make one whole turn ({} double strokes), then withdraw. CNC shaper: "
-                          "shaper_program{} does the same; work offsets must be zero.", s.strokes_turn, shaper_program_extension(s.machine)));
+                          "shaper_program{} does the same; work offsets must be zero.", s.strokes_turn, shaper_control(s.machine).extension));
   return out + "</ol>\n";
 }
 

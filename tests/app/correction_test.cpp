@@ -65,7 +65,7 @@ class CutFlanks {
     const double R = c.job.tools[0].radius_mm();
     std::vector<analytic::BallMove> moves;
     for (const auto& trace : read->operations) {
-      const auto motions = readback::tool_motions(trace, read->copies, *control, c.machine, *c.job.setup, teeth, 1e-5, 1e-5);
+      const auto motions = readback::tool_motions(trace, read->copies, *control, c.machine, *c.job.setup, teeth, {1e-5, 1e-5});
       EXPECT_TRUE(motions);
       for (const auto& m : *motions)
         if (!m.rapid && m.tooth == 0) moves.push_back({m.tip_from + R * m.axis_from, m.tip_to + R * m.axis_to});

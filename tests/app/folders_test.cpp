@@ -84,10 +84,12 @@ TEST(Folders, TablesListEveryFileAndNoOther) {
   }
 }
 
-/// The room of a file: its folder; every control stands in the room of the controls.
+/// The room of a file: its folder; every control stands in the room of the controls, of mills or of shapers.
 std::string room_of(const fs::path& file) {
   const std::string folder = file.parent_path().generic_string();
-  return folder.starts_with("postproc/controls") ? "postproc/controls" : folder;
+  for (const char* room : {"postproc/controls", "postproc/shaper"})
+    if (folder.starts_with(room)) return room;
+  return folder;
 }
 
 /// docs/rooms.md: room -> rooms that it may include.

@@ -21,7 +21,7 @@
 #include "postproc/controls/of_machine.h"
 #include "postproc/readback/reader.h"
 #include "postproc/text/writer.h"
-#include "postproc/shaper/gearbox_program.h"
+#include "postproc/shaper/control.h"
 #include "postproc/shaper/program.h"
 #include "tests/support/files.h"
 
@@ -51,7 +51,7 @@ struct Form {
 };
 constexpr Form kForms[] = {{"linuxcnc.ngc", "linuxcnc", machines::TcpMode::none},        {"fanuc.nc", "fanuc", machines::TcpMode::none},
                            {"fanuc_tcp.nc", "fanuc", machines::TcpMode::angles},         {"siemens.mpf", "siemens", machines::TcpMode::angles},
-                           {"heidenhain.h", "heidenhain", machines::TcpMode::angles},    {"cutter_location.apt", "apt", machines::TcpMode::vectors},
+                           {"heidenhain.h.txt", "heidenhain", machines::TcpMode::angles},    {"cutter_location.apt", "apt", machines::TcpMode::vectors},
                            {"mitsubishi_m80.nc", "mitsubishi_m80", machines::TcpMode::none}};
 
 job::Job job_of(const std::string& sample) {
@@ -208,7 +208,7 @@ void expect_round_trip(const std::string& text, const joints::AxisProgram& progr
   EXPECT_EQ(back->mixed_rapid, 0);
   std::vector<path::ToolMotion> motions;
   for (const auto& trace : back->operations) {
-    const auto part = readback::tool_motions(trace, back->copies, *control, m, *job.setup, planned.teeth, 1e-4, 1e-4);
+    const auto part = readback::tool_motions(trace, back->copies, *control, m, *job.setup, planned.teeth, {1e-4, 1e-4});
     ASSERT_TRUE(part) << part.error().text();
     motions.insert(motions.end(), part->begin(), part->end());
     if (job.bevel_gear() != nullptr) continue;  // its rapids pass beside the cone, inside that cylinder: judged by the finger check
@@ -280,7 +280,7 @@ TEST(GoldenShaper, ByteForByte) {
     auto planned = commands::shaper_setup_of(job, made.value());
     ASSERT_TRUE(planned.has_value()) << planned.error().front().text();
     const shaper::ShaperSetup& setup = planned.value();
-    expect_golden(kGolden / "offset_shaped" / file, folded(setup.machine.gearbox ? shaper::shaper_gearbox_text(setup) : shaper::shaper_program_text(setup)));
+    expect_golden(kGolden / "offset_shaped" / file, folded(shaper::shaper_program(setup)));
   }
 }
 

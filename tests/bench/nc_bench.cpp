@@ -163,7 +163,7 @@ void read_blocks(benchmark::State& state, const Post& post) {
   // Accuracy on steps well above the last digit; what is timed above is finer than any path.
   const Job wide = job_of(post, 300);
   const auto back = readback::read_back(wide.text, "p", *control, wide.machine, test::standing(), {.teeth = 1});
-  const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, wide.machine, test::standing(), 1, 1e-3, 1e-3);
+  const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, wide.machine, test::standing(), 1, {1e-3, 1e-3});
   const std::vector<const path::ClPath*> paths = {&wide.path};
   state.counters["worst_mm"] = readback::compare_with_cl(*motions, paths, 5e-3, 1e-3).worst_mm;
 }

@@ -186,7 +186,7 @@ TEST(MachineFile, KindDecidesBeforeTheKeys) {
   const auto shaper = machines::read_machine_file(data + "y514.toml");
   ASSERT_EQ(shaper.errors.size(), 1u);
   EXPECT_EQ(shaper.errors[0].message, "kind = \"gear_shaper\" is no milling machine; \"five_axis\" is needed here");
-  const auto mill = machines::read_shaper_machine_file(data + "t600s.toml");
+  const auto mill = machines::read_shaper_machine_file(data + "t600s.toml", {{"linuxcnc"}});
   ASSERT_EQ(mill.errors.size(), 1u);
   EXPECT_EQ(mill.errors[0].message, "kind = \"five_axis\" is no gear shaper; \"gear_shaper\" is needed here");
 }
@@ -244,7 +244,7 @@ TEST(MachineFile, DamagedFilesNeverCrash) {
     ASSERT_EQ(reading.machine.has_value(), reading.errors.empty());
     for (const Diagnostic& d : reading.errors) ASSERT_FALSE(d.message.empty());
     refused += !reading.errors.empty();
-    (void)machines::read_shaper_machine_text(text, "m.toml");
+    (void)machines::read_shaper_machine_text(text, "m.toml", {{"linuxcnc"}, {"fanuc", machines::ShaperGears::pulses}, {"siemens", machines::ShaperGears::named_axes}});
   }
   EXPECT_GT(refused, 2000);
 }

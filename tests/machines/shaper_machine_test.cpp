@@ -14,12 +14,14 @@ namespace {
 
 using test::replaced;
 
+const std::vector<machines::ShaperDialect> kDialects = {
+    {"fanuc", machines::ShaperGears::pulses}, {"linuxcnc", machines::ShaperGears::change_gears}, {"siemens", machines::ShaperGears::named_axes}};
 const std::string kFile = TOOTHPATH_SOURCE_DIR "/machines/data/y514.toml";
 
 std::string text_of_y514() { return test::file_text(kFile); }
 
 machines::ShaperMachine y514() {
-  const auto reading = machines::read_shaper_machine_file(kFile);
+  const auto reading = machines::read_shaper_machine_file(kFile, kDialects);
   EXPECT_TRUE(reading.machine) << to_text(reading.errors);
   return reading.machine.value_or(machines::ShaperMachine{});
 }
@@ -83,7 +85,7 @@ TEST(ShaperMachine, Y514NamesItsAssumptions) {
 TEST(ShaperMachine, BadFilesAreRefusedWithTheirPlace) {
   const std::string good = text_of_y514();
   const auto message = [&good](const std::string& from, const std::string& to) {
-    return to_text(machines::read_shaper_machine_text(replaced(good, from, to), "s.toml").errors);
+    return to_text(machines::read_shaper_machine_text(replaced(good, from, to), "s.toml", kDialects).errors);
   };
   EXPECT_EQ(message("[125, 179", "[179, 125"),
             "s.toml:11:9: error: stroke.steps[1] = 125 must exceed the step before it, 179\n");

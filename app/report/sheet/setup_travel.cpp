@@ -7,7 +7,7 @@
 #include "geometry/base/angle.h"
 
 namespace toothpath::sheet {
-std::string riser_text(const joints::TravelOffer& offer) {
+std::string riser_text(const choice::TravelOffer& offer) {
   const double z = offer.shift_mm.z();
   if (std::abs(z) < 5e-4) return {};
   return z > 0 ? fmt::format("needs a riser of {:.3f} mm under the part", z) : fmt::format("needs the part {:.3f} mm lower: a lower fixture, or none", -z);
@@ -17,7 +17,7 @@ report::SheetSection travel_section(const joints::AxisProgram& program, const jo
   report::SheetSection section;
   section.title = "Room in the travels";
   if (!program.offer) return section;
-  const joints::TravelOffer& offer = *program.offer;
+  const choice::TravelOffer& offer = *program.offer;
   section.columns = {"axis", "room now, mm", "most room, mm", "gear origin there", setup.work_offset + " there", "shift, mm"};
   for (int i = 0; i < 3; ++i) {
     const auto k = static_cast<std::size_t>(i);

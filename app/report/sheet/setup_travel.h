@@ -18,6 +18,6 @@ namespace toothpath::sheet {
 [[nodiscard]] report::SheetSection time_section(const joints::AxisProgram& program, const std::optional<report::PolesReport>& poles);
 
 /// What a place means for the fixture: "needs a riser of 12.000 mm", "needs the part 3.000 mm lower", or nothing.
-[[nodiscard]] std::string riser_text(const joints::TravelOffer& offer);
+[[nodiscard]] std::string riser_text(const choice::TravelOffer& offer);
 
 }  // namespace toothpath::sheet

@@ -16,30 +16,52 @@ namespace {
 constexpr double kMapWidth = 480, kRadius = 150;
 constexpr int kGapClasses = 4;  ///< clear directions are shaded in so many steps of their gap
 
+/// What the colours and rings of a map stand for.
+struct MapScale {
+  double widest_degrees = 5, greatest_gap = 0;  ///< mm
+  bool any_clear = false;
+  std::vector<std::string> bodies;  ///< in the way of some direction, each once, sorted
+};
+
+MapScale scale_of(const proof::DirectionChoice& choice) {
+  MapScale s;
+  double widest = choice.lean_rad;
+  for (const auto& c : choice.candidates) {
+    widest = std::max(widest, c.lean_rad);
+    if (c.clear) s.any_clear = true, s.greatest_gap = std::max(s.greatest_gap, c.gap_mm);
+    else if (std::find(s.bodies.begin(), s.bodies.end(), c.worst_body) == s.bodies.end()) s.bodies.push_back(c.worst_body);
+  }
+  std::sort(s.bodies.begin(), s.bodies.end());
+  s.widest_degrees = std::max(5.0, widest / kDegree * 1.02);
+  return s;
+}
+
+std::vector<LegendEntry> legend_of(const MapScale& scale, bool fixed) {
+  std::vector<LegendEntry> legend;
+  for (int k = 0; scale.any_clear && k < kGapClasses; ++k) {
+    const double from = scale.greatest_gap * k / kGapClasses, to = scale.greatest_gap * (k + 1) / kGapClasses;
+    legend.push_back({fmt::format("clear, gap {}\u2013{} mm", short_number(from, 2), short_number(to, 2)), fmt::format("gap g{}", k), true});
+  }
+  for (std::size_t i = 0; i < scale.bodies.size(); ++i)
+    legend.push_back({(scale.bodies[i].empty() ? "another body" : scale.bodies[i]) + " in the way", fmt::format("block b{}", i % 4), true});
+  legend.push_back({fixed ? "chosen" : "mean of the path", "chosen", true});
+  return legend;
+}
+
+std::string shade_of(const proof::DirectionChoice::Candidate& c, const MapScale& scale) {
+  if (!c.clear) return fmt::format("block b{}", (std::find(scale.bodies.begin(), scale.bodies.end(), c.worst_body) - scale.bodies.begin()) % 4);
+  const double share = scale.greatest_gap > 0 ? c.gap_mm / scale.greatest_gap : 0;
+  return fmt::format("gap g{}", std::clamp(static_cast<int>(share * kGapClasses), 0, kGapClasses - 1));
+}
+
 }  // namespace
 
 std::string svg_direction_map(const proof::DirectionChoice& choice) {
   if (choice.candidates.empty()) return {};
-  double widest = choice.lean_rad, greatest_gap = 0;
-  std::vector<std::string> bodies;
-  bool any_clear = false;
-  for (const auto& c : choice.candidates) {
-    widest = std::max(widest, c.lean_rad);
-    if (c.clear) any_clear = true, greatest_gap = std::max(greatest_gap, c.gap_mm);
-    else if (std::find(bodies.begin(), bodies.end(), c.worst_body) == bodies.end()) bodies.push_back(c.worst_body);
-  }
-  std::sort(bodies.begin(), bodies.end());
-  const std::vector<double> rings = nice_ticks(0, std::max(5.0, widest / kDegree * 1.02), 4);
-  const double outer_degrees = std::max(std::max(5.0, widest / kDegree * 1.02), rings.back());
-
-  std::vector<LegendEntry> legend;
-  for (int k = 0; any_clear && k < kGapClasses; ++k) {
-    const double from = greatest_gap * k / kGapClasses, to = greatest_gap * (k + 1) / kGapClasses;
-    legend.push_back({fmt::format("clear, gap {}\u2013{} mm", short_number(from, 2), short_number(to, 2)), fmt::format("gap g{}", k), true});
-  }
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    legend.push_back({(bodies[i].empty() ? "another body" : bodies[i]) + " in the way", fmt::format("block b{}", i % 4), true});
-  legend.push_back({choice.fixed ? "chosen" : "mean of the path", "chosen", true});
+  const MapScale scale = scale_of(choice);
+  const std::vector<double> rings = nice_ticks(0, scale.widest_degrees, 4);
+  const double outer_degrees = std::max(scale.widest_degrees, rings.back());
+  const std::vector<LegendEntry> legend = legend_of(scale, choice.fixed);
 
   SvgCanvas probe(1, 1, "");
   const double legend_height = draw_legend(probe, legend, 10, 0, kMapWidth - 20);
@@ -61,15 +83,7 @@ std::string svg_direction_map(const proof::DirectionChoice& choice) {
   const double size = std::clamp(0.95 * kRadius / std::sqrt(static_cast<double>(choice.candidates.size())), 1.6, 7.0);
   for (const auto& c : choice.candidates) {
     const double x = cx + radius_of(c.lean_rad) * std::cos(c.azimuth_rad), y = cy - radius_of(c.lean_rad) * std::sin(c.azimuth_rad);
-    std::string css_class;
-    if (c.clear) {
-      const double share = greatest_gap > 0 ? c.gap_mm / greatest_gap : 0;
-      css_class = fmt::format("gap g{}", std::clamp(static_cast<int>(share * kGapClasses), 0, kGapClasses - 1));
-    } else {
-      const auto body = std::find(bodies.begin(), bodies.end(), c.worst_body) - bodies.begin();
-      css_class = fmt::format("block b{}", body % 4);
-    }
-    canvas.circle(x, y, size, css_class,
+    canvas.circle(x, y, size, shade_of(c, scale),
                   fmt::format("lean {}\u00b0, azimuth {}\u00b0: gap {} mm ({})", short_number(c.lean_rad / kDegree, 3),
                               short_number(c.azimuth_rad / kDegree, 3), short_number(c.gap_mm, 3), c.worst_body));
   }

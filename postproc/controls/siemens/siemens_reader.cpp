@@ -172,44 +172,11 @@ class Siemens {
     const char c = s.at();
     if (!readback::NcScanner::is_letter(c)) return here(column, fmt::format("character 0x{:02x} is no part of a word", static_cast<unsigned char>(c)));
     if (readback::NcScanner::is_letter(s.ahead())) return keyword(s, r);
-    // Vector: A3= B3= C3=
-    if (c >= 'A' && c <= 'C' && s.ahead() == '3' && s.rest().substr(2, 1) == "=") {
-      const int k = c - 'A';
-      if ((r.vector_words & (1 << k)) != 0) return here(column, fmt::format("two {}3 words in a block", c));
-      s.advance(3);
-      const auto v = expression(s);
-      if (!v) return v.error();
-      r.vector[static_cast<std::size_t>(k)] = *v;
-      r.vector_words |= 1 << k;
-      r.column = column;
-      return std::nullopt;
-    }
+    if (c >= 'A' && c <= 'C' && s.ahead() == '3' && s.rest().substr(2, 1) == "=") return vector_word(s, r);
+    for (std::size_t a = 0; a < 5; ++a)
+      if (control_.letters[a] == c) return axis_word(s, r, a);
     s.advance(1);
-    for (std::size_t a = 0; a < 5; ++a) {
-      if (control_.letters[a] != c) continue;
-      if (r.move.has[a]) return here(column, fmt::format("two {} words in a block", c));
-      const bool equals = s.take("=");
-      if (const bool direct = equals && s.rest().starts_with("DC("); direct != control_.rollover[a])
-        return here(column, direct ? fmt::format("DC() of {}, which does not roll over", c)
-                                   : fmt::format("{} rolls over: which way it turns is said by DC() alone", c));
-      else if (direct) s.advance(2);
-      const auto v = equals ? expression(s) : literal(s, column);
-      if (!v) return v.error();
-      if (control_.rollover[a] && !(*v >= 0 && *v < 360)) return here(column, fmt::format("{}=DC({}) is outside 0 .. 360", c, *v));
-      r.move.has[a] = true;
-      r.move.axis[a] = *v;
-      r.column = column;
-      return std::nullopt;
-    }
-    if (c == 'T') {
-      if (!s.take("=\"T")) return here(column, "T needs the name of a tool of the list: T=\"T1\"");
-      const auto n = literal(s, column);
-      if (!n) return n.error();
-      if (!s.take("\"")) return here(s.column(), "\" expected");
-      if (auto bad = placed(column, execution_.choose_tool(*n))) return bad;
-      r.column = column;
-      return std::nullopt;
-    }
+    if (c == 'T') return tool_word(s, r, column);
     const auto v = literal(s, column);
     if (!v) return v.error();
     switch (c) {
@@ -217,20 +184,66 @@ class Siemens {
       case 'F': return once(r.f, *v, c, column);
       case 'S': return once(r.s, *v, c, column);
       case 'G': return g_word(r, *v, column);
+      case 'M': return m_word(r, *v, column);
       case 'D':
         if (*v != 0 && *v != 1) return here(column, fmt::format("D{} is not in the subset", *v));
         r.d = static_cast<int>(*v);
         return std::nullopt;
-      case 'M': {
-        static constexpr int known[] = {0, 3, 5, 6, 7, 8, 9, 30};
-        if (std::find(std::begin(known), std::end(known), *v) == std::end(known) && !control_.switches_coolant(fmt::format("M{}", *v))) return here(column, fmt::format("M{} is not in the subset", *v));
-        if (r.m >= 0) return here(column, "two M words in a block");
-        r.m = static_cast<int>(*v);
-        r.column = column;
-        return std::nullopt;
-      }
       default: return here(column, fmt::format("word {} is not in the subset or no axis of the machine", c));
     }
+  }
+
+  /// A3= B3= C3=
+  Problem vector_word(readback::NcScanner& s, Request& r) {
+    const int column = s.column(), k = s.at() - 'A';
+    if ((r.vector_words & (1 << k)) != 0) return here(column, fmt::format("two {}3 words in a block", s.at()));
+    s.advance(3);
+    const auto v = expression(s);
+    if (!v) return v.error();
+    r.vector[static_cast<std::size_t>(k)] = *v;
+    r.vector_words |= 1 << k;
+    r.column = column;
+    return std::nullopt;
+  }
+
+  /// Of axis `a`: X1.5, X=expression, and C=DC(expression) of a rotary that rolls over.
+  Problem axis_word(readback::NcScanner& s, Request& r, std::size_t a) {
+    const int column = s.column();
+    const char c = s.at();
+    s.advance(1);
+    if (r.move.has[a]) return here(column, fmt::format("two {} words in a block", c));
+    const bool equals = s.take("=");
+    if (const bool direct = equals && s.rest().starts_with("DC("); direct != control_.rollover[a])
+      return here(column, direct ? fmt::format("DC() of {}, which does not roll over", c)
+                                 : fmt::format("{} rolls over: which way it turns is said by DC() alone", c));
+    else if (direct) s.advance(2);
+    const auto v = equals ? expression(s) : literal(s, column);
+    if (!v) return v.error();
+    if (control_.rollover[a] && !(*v >= 0 && *v < 360)) return here(column, fmt::format("{}=DC({}) is outside 0 .. 360", c, *v));
+    r.move.has[a] = true;
+    r.move.axis[a] = *v;
+    r.column = column;
+    return std::nullopt;
+  }
+
+  Problem tool_word(readback::NcScanner& s, Request& r, int column) {
+    if (!s.take("=\"T")) return here(column, "T needs the name of a tool of the list: T=\"T1\"");
+    const auto n = literal(s, column);
+    if (!n) return n.error();
+    if (!s.take("\"")) return here(s.column(), "\" expected");
+    if (auto bad = placed(column, execution_.choose_tool(*n))) return bad;
+    r.column = column;
+    return std::nullopt;
+  }
+
+  Problem m_word(Request& r, double v, int column) {
+    static constexpr int known[] = {0, 3, 5, 6, 7, 8, 9, 30};
+    if (std::find(std::begin(known), std::end(known), v) == std::end(known) && !control_.switches_coolant(fmt::format("M{}", v)))
+      return here(column, fmt::format("M{} is not in the subset", v));
+    if (r.m >= 0) return here(column, "two M words in a block");
+    r.m = static_cast<int>(v);
+    r.column = column;
+    return std::nullopt;
   }
 
   Result<double> literal(readback::NcScanner& s, int column) const {

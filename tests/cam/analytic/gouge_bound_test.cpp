@@ -166,7 +166,7 @@ TEST_P(RandomBodies, TenfoldSamplingNeverExceedsTheBound) {
   test::Random random(123);
   const double roof = job.gear.blank_top();
   int near = 0, cutting = 0, turning = 0;
-  for (int k = 0; k < 16; ++k) {
+  for (int k = 0; k < 24; ++k) {
     const auto& record = path.records[2 + random.index(path.records.size() - 4)];
     const auto wander = [&](double size) { return Vec3(random(-size, size), random(-size, size), random(-size, size)); };
     const double above = std::max(roof - record.tip.z(), 0.0), R = job.tool(path.operation).radius_mm();

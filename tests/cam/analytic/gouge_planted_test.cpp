@@ -137,7 +137,8 @@ TEST_P(EveryBody, IsFoundWithinAFifthOfAMicrometre) {
       ADD_FAILURE() << "not reported";
       continue;
     }
-    const double depth = body == "flute" ? r.measured_mm : -r.clearance_measured_mm;
+    // Where the lean brings another body deeper into the gear, the planted one is judged by its own place.
+    const double depth = body == "flute" ? r.measured_mm : named->depth_mm;
     const double bound = body == "flute" ? r.bound_mm : -r.clearance_mm;
     // Where the check names a deeper place than the samples showed, that place is judged: on the gear, and as deep as it says.
     const auto depth_at_named = [&] {

@@ -1,5 +1,6 @@
 // Finger mills against meshes: the truncated cones enclose the cutter closely, and no sampling of a motion comes nearer than what is proven.
 #include "cam/finger/bodies.h"
+#include "cam/finger/obstacles.h"
 
 #include <algorithm>
 
@@ -40,6 +41,26 @@ TEST(FingerBodies, PiecesEncloseTheCutterClosely) {
   }
 }
 
+// Hulls and cones are of one profile: without a holder both end at the gauge line.
+TEST(FingerBodies, HullsAndConesEndAtTheSamePlaces) {
+  const bevel_gear::BevelGear gear = made(w3(), pinion_mill());
+  for (const bool held : {true, false}) {
+    tool::ToolAssembly tool = mill(pinion_mill());
+    tool.stick_out_mm = 22;
+    tool.length_mm = 60;
+    tool.holder.clear();
+    if (held) tool.holder = {{16, 20, 10}, {20, 24, 5}};
+    const tool::Profile profile = tool::finger_profile(gear.cutter(), tool, 1e-3);
+    const auto hulls = finger::tool_hulls(profile);
+    const auto cones = tool::shank_and_holder(profile);
+    ASSERT_EQ(hulls.size(), held ? 3u : 2u);
+    EXPECT_EQ(hulls[0].rims.back().x(), tool::finger_flute_end(gear.cutter(), tool));
+    EXPECT_EQ(hulls[1].rims.back().x(), held ? 22 : 60);
+    EXPECT_EQ(hulls.back().rims.back(), Vec2(cones.back().to, cones.back().radius_to));
+    EXPECT_EQ(cones.size(), held ? 3u : 1u);
+  }
+}
+
 // Brute force that knows the cutter as a solid and the mesh as points of its surface.
 TEST(FingerBodies, ProvenGapAgainstDenseSampling) {
   Random random(12);
@@ -49,7 +70,7 @@ TEST(FingerBodies, ProvenGapAgainstDenseSampling) {
   tool.stick_out_mm = 22;
   tool.holder = {{16, 20, 10}};
   const auto bodies = finger::finger_bodies(gear.cutter(), tool);
-  const double h_f = gear.parameters().dedendum_mm, flute = finger::finger_flute_end(gear.cutter(), tool);
+  const double h_f = gear.parameters().dedendum_mm, flute = tool::finger_flute_end(gear.cutter(), tool);
   /// Signed in the cutting part below its top, beyond that the cylinder ends.
   const auto gap_of = [&](const Vec3& p, const Vec3& tip, const Vec3& axis) {
     const double x = (p - tip).dot(axis), rho = (p - tip - x * axis).norm();
@@ -119,7 +140,7 @@ TEST(FingerBodies, DrawnBackTheMillPassesWhereItWas) {
   const bevel_gear::BevelGear gear = made(w3(), pinion_mill());
   const tool::ToolAssembly tool = mill(pinion_mill());
   const auto bodies = finger::finger_bodies(gear.cutter(), tool);
-  const double top = finger::finger_flute_end(gear.cutter(), tool);  // 9.9
+  const double top = tool::finger_flute_end(gear.cutter(), tool);  // 9.9
   const clearance::MeshDistance plate(test::box(Vec3(-20, -20, 1), Vec3(20, 20, top - 2))), lid(test::box(Vec3(-20, -20, top + 1), Vec3(20, 20, top + 1.5)));
   path::ToolMotion back;
   back.tip_to = Vec3(0, 0, 5);

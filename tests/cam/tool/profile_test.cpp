@@ -7,7 +7,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <boost/multiprecision/eigen.hpp>
 
-#include "cam/finger/bodies.h"
+#include "cam/clearance/clearance.h"
 #include "cam/tool/finger_profile.h"
 #include "geometry/base/angle.h"
 #include "tests/cam/finger/jobs.h"
@@ -82,6 +82,52 @@ TEST(Profile, BallMillOfAnAssembly) {
   }
 }
 
+// Numbers of an assembly by hand: shank from the flutes to the holder, a shoulder between two segments, the gauge line where there is no holder.
+TEST(Profile, ShankAndHolderOfAnAssembly) {
+  tool::ToolAssembly a = ball_mill(1.6, 8, 1.5, 14, 10);
+  a.shank_diameter_mm = 3;
+  a.length_mm = 60;
+  a.stick_out_mm = 25;
+  a.holder = {{20, 24, 10}, {40, 40, 5}};
+  const auto same = [](const tool::Frustum& f, double from, double to, double radius_from, double radius_to, const std::string& name) {
+    return f.from == from && f.to == to && f.radius_from == radius_from && f.radius_to == radius_to && f.name == name;
+  };
+  const auto held = tool::shank_and_holder(a);
+  ASSERT_EQ(held.size(), 3u);
+  EXPECT_TRUE(same(held[0], a.flute_length_mm, 25, 1.5, 1.5, "shank"));
+  EXPECT_TRUE(same(held[1], 25, 35, 10, 12, "holder"));
+  EXPECT_TRUE(same(held[2], 35, 40, 20, 20, "holder"));
+  a.holder.clear();
+  const auto bare = tool::shank_and_holder(a);
+  ASSERT_EQ(bare.size(), 1u);
+  EXPECT_TRUE(same(bare[0], a.flute_length_mm, 60, 1.5, 1.5, "shank"));
+}
+
+// Bodies for meshes of any cutter: a plain ball keeps its ball, the others are enclosed by no more than the sag.
+TEST(Profile, MeshBodiesEncloseEveryCutter) {
+  Random random(21);
+  constexpr double kSag = 1e-3;
+  for (const tool::CutterData& d : shapes()) {
+    const tool::Profile p = made_of(d);
+    const auto bodies = clearance::mesh_bodies(p, kSag);
+    EXPECT_EQ(bodies.size(), 1 + tool::shank_and_holder(p).size());
+    EXPECT_EQ(bodies[0].ball_mm > 0, d.shape == tool::CutterShape::ball);
+    EXPECT_EQ(bodies[0].top_mm(), d.flute_length_mm);
+    if (bodies[0].ball_mm > 0) {
+      EXPECT_EQ(bodies[0].ball_mm, d.diameter_mm / 2);
+      continue;
+    }
+    for (int k = 0; k < 500; ++k) {
+      const double h = random(-1, d.flute_length_mm + 1), r = random(0, 3);
+      double cones = INFINITY;
+      for (const auto& f : bodies[0].pieces) cones = std::min(cones, distance_to_frustum(Vec3(r, 0, h), f, Vec3::Zero(), Vec3::UnitZ()));
+      const double truth = std::max(0.0, p.cutting().distance<double>(h, r).distance);
+      EXPECT_LE(cones, truth + 1e-12) << h << " " << r;
+      EXPECT_GE(cones, truth - 1.01 * kSag) << h << " " << r;
+    }
+  }
+}
+
 // The finger mill: its solid's signed distance within the sag of the arcs, and the truncated cones that meshes are checked with.
 TEST(Profile, FingerMill) {
   using namespace bevel_test;
@@ -91,10 +137,10 @@ TEST(Profile, FingerMill) {
     const bevel_gear::FingerSolid solid(gear.cutter());
     tool::ToolAssembly assembly = mill(d.c);
     assembly.flute_length_mm = d.p.dedendum_mm + d.c.profile_height_mm + 1;
-    const double sag = 1e-5, flute = finger::finger_flute_end(gear.cutter(), assembly), rho_D = gear.cutter().rho_D;
+    const double sag = 1e-5, flute = tool::finger_flute_end(gear.cutter(), assembly), rho_D = gear.cutter().rho_D;
     const tool::Meridian m = tool::finger_meridian(gear.cutter(), flute, sag);
     EXPECT_EQ(m.to(), flute);
-    EXPECT_LT(2 * m.pieces().size(), toothpath::finger::finger_meridian(gear.cutter(), assembly, sag).size());  // arcs follow the involute better than chords
+    EXPECT_LT(2 * m.pieces().size(), tool::finger_profile(gear.cutter(), assembly, sag).cutting().pieces().size());  // arcs follow the involute better than chords
     EXPECT_NEAR(m.largest_radius(), rho_D, 1e-12);
     EXPECT_FALSE(m.convex());           // the flank is hollow
     const auto frustums = m.enclosing_frustums(1e-3, "cutter");

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "postproc/joints/solution.h"
+#include "postproc/choice/solution.h"
 #include "postproc/joints/words.h"
 #include "tests/postproc/readback/nc_case.h"
 #include "tests/postproc/restart/tooth_comparison.h"
@@ -81,7 +81,7 @@ TEST_P(KinematicClass, EndToEnd) {
       ASSERT_TRUE(control);
       const auto back = readback::read_back(text->text, "p", *control, m, standing(), {.teeth = 3, .keep_all = true});
       ASSERT_TRUE(back) << back.error().text();
-      const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, m, standing(), 3, 1e-4, 1e-4);
+      const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, m, standing(), 3, {1e-4, 1e-4});
       ASSERT_TRUE(motions);
       for (int k = 0; k < 3; ++k) {
         const auto met = compare_tooth(*motions, k, 3, path, program->rounding_bound_mm + program->chord_bound_mm + 1e-4, 2e-3);
@@ -160,7 +160,7 @@ TEST_P(KinematicPole, ThroughIt) {
 }
 
 // Which solution a path takes: postproc 2.5.
-joints::RotaryRange range(double low, double high) { return {radians(low), radians(high)}; }
+choice::RotaryRange range(double low, double high) { return {radians(low), radians(high)}; }
 
 path::ClPath around(double from_deg, double to_deg, int steps) {
   path::ClPath path = sample_path(0.3, 0, 1);
@@ -178,8 +178,8 @@ TEST(SolutionChoice, NoFlipAcrossHalfOrWholeTurns) {
   const machines::Machine m = trunnion();
   for (const auto& [from, to] : {std::pair{170.0, 190.0}, {190.0, 170.0}, {-190.0, -170.0}, {350.0, 370.0}, {370.0, 350.0}, {80.0, 100.0}, {260.0, 280.0}, {-10.0, 10.0}})
     for (const bool positive : {true, false}) {
-      const std::array<joints::RotaryRange, 2> ranges = {range(-3600, 3600), positive ? range(1, 60) : range(-110, -1)};
-      const auto angles = joints::choose_rotaries(around(from, to, 20), Mat3::Identity(), m.chain, ranges, machines::PoleOption::error);
+      const std::array<choice::RotaryRange, 2> ranges = {range(-3600, 3600), positive ? range(1, 60) : range(-110, -1)};
+      const auto angles = choice::choose_rotaries(around(from, to, 20), Mat3::Identity(), m.chain, ranges, machines::PoleOption::error);
       ASSERT_TRUE(angles) << angles.error().message;
       for (std::size_t i = 1; i < angles->size(); ++i) {
         EXPECT_LE(std::abs((*angles)[i][0] - (*angles)[i - 1][0]), radians(1.01));
@@ -191,7 +191,7 @@ TEST(SolutionChoice, NoFlipAcrossHalfOrWholeTurns) {
 
 // 1: no candidate: both solutions and the range are named.
 TEST(SolutionChoice, NoCandidateNamesBoth) {
-  const auto refused = joints::choose_rotaries(around(0, 10, 5), Mat3::Identity(), trunnion().chain, {range(-3600, 3600), range(-10, 10)}, machines::PoleOption::error);
+  const auto refused = choice::choose_rotaries(around(0, 10, 5), Mat3::Identity(), trunnion().chain, {range(-3600, 3600), range(-10, 10)}, machines::PoleOption::error);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("A = "), std::string::npos);
   EXPECT_NE(refused.error().message.find("outside [-10.0000, 10.0000]; the other solution A = "), std::string::npos) << refused.error().message;
@@ -205,7 +205,7 @@ TEST(SolutionChoice, PairsMayChangeBetweenPasses) {
   path::ClPath path = around(0, 20, 10);
   const path::ClPath opposite = around(180, 200, 10);
   path.records.insert(path.records.end(), opposite.records.begin(), opposite.records.end());
-  const auto angles = joints::choose_rotaries(path, Mat3::Identity(), m.chain, {range(-3600, 3600), range(-110, 60)}, machines::PoleOption::error);
+  const auto angles = choice::choose_rotaries(path, Mat3::Identity(), m.chain, {range(-3600, 3600), range(-110, 60)}, machines::PoleOption::error);
   ASSERT_TRUE(angles);
   EXPECT_LT((*angles)[5][1] * (*angles)[17][1], 0) << "A goes to the other side, C hardly moves";
   EXPECT_LT(std::abs((*angles)[12][0] - (*angles)[11][0]), radians(25));
@@ -220,8 +220,8 @@ TEST(SolutionChoice, FortyTurnsAreUnwoundAtRetracts) {
     const path::ClPath turn = around(0, 360, 36);
     path.records.insert(path.records.end(), turn.records.begin(), turn.records.end());
   }
-  const std::array<joints::RotaryRange, 2> ranges = {range(-1800, 1800), range(-110, -1)};  // one pair alone: whole turns
-  const auto angles = joints::choose_rotaries(path, Mat3::Identity(), trunnion().chain, ranges, machines::PoleOption::error);
+  const std::array<choice::RotaryRange, 2> ranges = {range(-1800, 1800), range(-110, -1)};  // one pair alone: whole turns
+  const auto angles = choice::choose_rotaries(path, Mat3::Identity(), trunnion().chain, ranges, machines::PoleOption::error);
   ASSERT_TRUE(angles) << angles.error().message;
   int unwound = 0;
   double way = 0;

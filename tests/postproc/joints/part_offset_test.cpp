@@ -3,8 +3,8 @@
 
 #include <random>
 
+#include "postproc/choice/travel_offer.h"
 #include "postproc/numbers/small_linear_program.h"
-#include "postproc/joints/travel_offer.h"
 #include "tests/postproc/readback/nc_case.h"
 
 namespace toothpath {
@@ -58,7 +58,7 @@ TEST(PartOffset, BruteForceNeverBeatsIt) {
   for (int trial = 0; trial < 12; ++trial) {
     const machines::Machine m = trunnion();
     const std::optional<Vec3> axis = trial % 3 == 2 ? std::optional(Vec3(Vec3::UnitZ())) : std::nullopt;
-    joints::TravelPoses poses(m.chain, m.limit_margin, axis);
+    choice::TravelPoses poses(m.chain, m.limit_margin, axis);
     std::vector<machines::Joints> list;
     const int n = 3 + 40 * (trial % 4);
     for (int i = 0; i < n; ++i) {
@@ -106,7 +106,7 @@ TEST(PartOffset, EveryAxisIsCentred) {
   machines::Machine m = trunnion();
   m.chain.table.clear();
   m.chain.linear = {machines::LinearAxis{-300, 300, 1000}, machines::LinearAxis{-200, 200, 1000}, machines::LinearAxis{-400, 0, 1000}};
-  joints::TravelPoses poses(m.chain, m.limit_margin, std::nullopt);
+  choice::TravelPoses poses(m.chain, m.limit_margin, std::nullopt);
   for (const Vec3& p : {Vec3(10, -60, -350), Vec3(110, 60, -320), Vec3(40, 0, -390)}) poses.note({p, {0, 0}});
   const auto offer = poses.best();
   ASSERT_TRUE(offer);
@@ -178,7 +178,7 @@ TEST(PartOffset, LowerOnlyWhereItMust) {
   m.chain.table.clear();
   m.chain.linear = {machines::LinearAxis{-300, 300, 1000}, machines::LinearAxis{-200, 200, 1000}, machines::LinearAxis{-400, 0, 1000}};
   for (const double top : {-20.0, 12.0}) {
-    joints::TravelPoses poses(m.chain, m.limit_margin, std::nullopt);
+    choice::TravelPoses poses(m.chain, m.limit_margin, std::nullopt);
     poses.note({Vec3(0, 0, top), {0, 0}});
     poses.note({Vec3(0, 0, top - 40), {0, 0}});
     const auto offer = poses.best();

@@ -226,7 +226,7 @@ ReadAgain read_again(const joints::AxisProgram& program, const machines::Machine
   EXPECT_TRUE(back) << (back ? "" : back.error().text());
   if (!back) return out;
   out.feed_minutes = back->feed_minutes;
-  out.motions = *readback::tool_motions(back->operations[0], back->copies, *control, m, standing(), 1, 1e-4, 1e-4);
+  out.motions = *readback::tool_motions(back->operations[0], back->copies, *control, m, standing(), 1, {1e-4, 1e-4});
   const path::ClPath& followed = program.followed.empty() ? plan : program.followed[0];
   const std::vector<const path::ClPath*> list = {&followed};
   out.met = readback::compare_with_cl(out.motions, list, program.rounding_bound_mm + program.chord_bound_mm + program.pole_tip_mm + 1e-4, 2e-3);

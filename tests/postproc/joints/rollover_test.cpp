@@ -161,7 +161,7 @@ TEST_P(Rollover, StepsAcrossZeroBothWays) {
     const auto control = controls::control_of(m, standing(), tools());
     const auto read = readback::read_back(text, "p", *control, m, standing(), {.teeth = 1});
     ASSERT_TRUE(read) << read.error().text();
-    const auto motions = readback::tool_motions(read->operations[0], read->copies, *control, m, standing(), 1, 1e-4, 1e-5);
+    const auto motions = readback::tool_motions(read->operations[0], read->copies, *control, m, standing(), 1, {1e-4, 1e-5});
     ASSERT_TRUE(motions);
     const std::vector<const path::ClPath*> want = {&path};
     const auto same = readback::compare_with_cl(*motions, want, 4e-3, 1e-3);

@@ -113,7 +113,7 @@ TEST_P(SpreadOrder, IsExecutedInEveryDialect) {
   ASSERT_EQ(back->operations.size(), 2u);
   std::vector<path::ToolMotion> all;
   for (const auto& trace : back->operations) {
-    const auto motions = readback::tool_motions(trace, back->copies, *control, m, standing(), teeth, 2e-4, 1e-4);
+    const auto motions = readback::tool_motions(trace, back->copies, *control, m, standing(), teeth, {2e-4, 1e-4});
     ASSERT_TRUE(motions) << motions.error().message;
     const auto clear = readback::check_rapids(trace, *control, m, standing(), kBody);
     EXPECT_TRUE(clear) << (clear ? "" : clear.error().message);

@@ -126,7 +126,7 @@ TEST_P(MachineRoundTrip, MeetsEveryRecordWithinTheRounding) {
     EXPECT_TRUE(back->copies.copies) << back->copies.line << ": " << back->copies.difference;
   }
   ASSERT_EQ(back->operations.size(), 1u);
-  const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, m, setup, teeth, 1e-4, 1e-4);
+  const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, m, setup, teeth, {1e-4, 1e-4});
   ASSERT_TRUE(motions) << motions.error().message;
   const auto rapids = readback::check_rapids(back->operations[0], *control, m, setup, kSmallBody);
   EXPECT_TRUE(rapids) << (rapids ? "" : rapids.error().message);
@@ -169,7 +169,7 @@ TEST(TcpTeeth, EveryToothIsTheTurnedPath) {
     const auto control = controls::control_of(m, setup, short_tool());
     const auto back = readback::read_back(text->text, "p", *control, m, setup, {.teeth = 4, .keep_all = true});
     ASSERT_TRUE(back) << back.error().text();
-    const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, m, setup, 4, 1e-4, 1e-4);
+    const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, m, setup, 4, {1e-4, 1e-4});
     for (int k = 0; k < 4; ++k) {
       const auto met = compare_tooth(*motions, k, 4, path, program->rounding_bound_mm + 1e-6, 1e-3);
       EXPECT_TRUE(met.complete) << file << " tooth " << k << ": " << met.message;
@@ -214,7 +214,7 @@ TEST(PlantedFaultOfEveryDialect, IsSeen) {
     const auto control = controls::control_of(m, setup, short_tool());
     const auto back = readback::read_back(text, "p", *control, m, setup, {.teeth = 3});
     if (!back) continue;  // refused: seen as well
-    const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, m, setup, 3, 1e-4, 1e-4);
+    const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, m, setup, 3, {1e-4, 1e-4});
     const std::vector<const path::ClPath*> list = {&path};
     const auto met = readback::compare_with_cl(*motions, list, program->rounding_bound_mm + program->chord_bound_mm + 1e-4, 2e-3);
     EXPECT_TRUE(!met.complete || !back->copies.copies) << p.name();

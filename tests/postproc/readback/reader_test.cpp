@@ -34,7 +34,7 @@ Outcome examine(const std::string& text, const std::vector<path::ClPath>& paths,
   }
   out.back = std::move(*back);
   for (const auto& trace : out.back.operations) {
-    auto motions = readback::tool_motions(trace, out.back.copies, *control, m, setup, teeth, 2e-4, 1e-4);
+    auto motions = readback::tool_motions(trace, out.back.copies, *control, m, setup, teeth, {2e-4, 1e-4});
     if (!motions) {
       out.error = motions.error().text();
       return out;
@@ -141,7 +141,7 @@ TEST(ToolMotions, DeviationIsABound) {
     for (std::size_t i = 0; i < 5; ++i) b.joints[i] = a.joints[i] + (i < 3 ? 5 : 4) * u(random);
     trace.moves = {a, b};
     for (const double tolerance : {0.05, 1e-3}) {
-      const auto motions = readback::tool_motions(trace, {}, *control, m, standing(), 1, tolerance, 1e-3);
+      const auto motions = readback::tool_motions(trace, {}, *control, m, standing(), 1, {tolerance, 1e-3});
       ASSERT_TRUE(motions);
       const auto n = static_cast<int>(motions->size());
       for (int i = 0; i < n; ++i) {
@@ -246,8 +246,8 @@ TEST_F(PlantedFault, ToolLongerByAQuarter) {  // danger 16: appears as 0.25 mm a
   auto control = controls::control_of(machine_, standing(), tools());
   const auto back = readback::read_back(text_, "p", *control, machine_, standing(), {.teeth = 5});
   auto other = controls::control_of(machine_, standing(), longer);
-  const auto a = readback::tool_motions(back->operations[0], back->copies, *control, machine_, standing(), 5, 1e-3, 1e-3);
-  const auto b = readback::tool_motions(back->operations[0], back->copies, *other, machine_, standing(), 5, 1e-3, 1e-3);
+  const auto a = readback::tool_motions(back->operations[0], back->copies, *control, machine_, standing(), 5, {1e-3, 1e-3});
+  const auto b = readback::tool_motions(back->operations[0], back->copies, *other, machine_, standing(), 5, {1e-3, 1e-3});
   ASSERT_EQ(a->size(), b->size());
   for (std::size_t i = 0; i < a->size(); ++i)
     EXPECT_NEAR(((*a)[i].tip_to - (*b)[i].tip_to).dot((*a)[i].axis_to), 0.25, 1e-9);

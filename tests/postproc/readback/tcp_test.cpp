@@ -37,7 +37,7 @@ Result<TcpOutcome> examine(const std::string& text, const std::vector<path::ClPa
   if (!back) return back.error();
   out.back = std::move(*back);
   for (const auto& trace : out.back.operations) {
-    auto motions = readback::tool_motions(trace, out.back.copies, *control, m, setup, teeth, 2e-4, 1e-4);
+    auto motions = readback::tool_motions(trace, out.back.copies, *control, m, setup, teeth, {2e-4, 1e-4});
     if (!motions) return motions.error();
     out.motions.insert(out.motions.end(), motions->begin(), motions->end());
     if (const auto clear = readback::check_rapids(trace, *control, m, setup, kBody); !clear) return clear.error();
@@ -113,7 +113,7 @@ TEST(TcpMotions, BoundHoldsForTheStraightTip) {
     const Vec3 x = m.chain.linear_for(b.tip, {radians(r0), radians(r1)}, 95).linear_mm;
     b.joints = {x.x(), x.y(), x.z(), r0, r1};
     trace.moves = {a, b};
-    const auto motions = readback::tool_motions(trace, {}, *control, m, standing(), 1, 1e-4, 2e-4);
+    const auto motions = readback::tool_motions(trace, {}, *control, m, standing(), 1, {1e-4, 2e-4});
     ASSERT_TRUE(motions);
     const auto n = static_cast<int>(motions->size());
     for (int i = 0; i < n; ++i) {

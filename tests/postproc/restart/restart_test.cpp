@@ -62,7 +62,7 @@ class Restart : public testing::TestWithParam<RestartCase> {
     control = *made;
   }
   Result<restart::RestartProof> prove(const std::string& text, int operation, int place) const {
-    return restart::prove_restart(whole, text, "p", control, operation, joints::tooth_of_place(place, GetParam().stride, kTeeth), place, kTeeth);
+    return restart::prove_restart(whole, text, "p", control, {operation, joints::tooth_of_place(place, GetParam().stride, kTeeth), place, kTeeth});
   }
   machines::Machine machine;
   joints::AxisProgram program;

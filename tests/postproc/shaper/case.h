@@ -7,7 +7,7 @@
 #include <string>
 
 #include "geometry/base/angle.h"
-#include "machines/shaper_machine.h"
+#include "postproc/shaper/control.h"
 #include "postproc/shaper/setup.h"
 #include "tests/support/sample_gears.h"
 #include "tests/support/shaper_program_reader.h"
@@ -25,7 +25,7 @@ inline machines::ShaperMachine shaper_machine(const std::string& sign_a = "1", c
       "[axes.Z]\nmin = -500.0\nmax = 500.0\nmax_speed = 120000\n"
       "[axes.A]\nsign = " + sign_a + "\nmin = -360000.0\nmax = 360000.0\nmax_speed = 7200\n"
       "[axes.C]\nsign = " + sign_c + "\nmin = -36000.0\nmax = 36000.0\nmax_speed = 7200\n";
-  auto reading = machines::read_shaper_machine_text(text, "test_shaper.toml");
+  auto reading = shaper::read_shaper_machine_of_text(text, "test_shaper.toml");
   EXPECT_TRUE(reading.machine) << to_text(reading.errors);
   return *reading.machine;
 }

@@ -1,23 +1,29 @@
 // Programs for electronic gearboxes, read back: the coupling as an equality of whole numbers, strokes, infeed, turns, order; planted faults.
+#include <algorithm>
 #include <functional>
 #include <numeric>
+#include <set>
 #include <sstream>
 
-#include "postproc/shaper/gearbox_program.h"
+#include "postproc/shaper/control.h"
 #include "postproc/shaper/gearbox_proof.h"
-#include "postproc/shaper/gearbox_reader.h"
 #include "tests/postproc/shaper/case.h"
 
 namespace toothpath::test {
 namespace {
 
 machines::ShaperMachine installed(const std::string& dialect) {
-  auto reading = machines::read_shaper_machine_file(TOOTHPATH_SOURCE_DIR "/machines/data/shaper_" + dialect + ".toml");
+  auto reading = shaper::read_shaper_machine(TOOTHPATH_SOURCE_DIR "/machines/data/shaper_" + dialect + ".toml");
   EXPECT_TRUE(reading.machine) << to_text(reading.errors);
   return *reading.machine;
 }
 shaper::GearboxWords words_of(const machines::ShaperMachine& m) {
-  return {m.dialect == "siemens", m.gearbox->cutter_axis, m.gearbox->work_axis, m.gearbox->relief_on, m.gearbox->relief_off, m.gearbox->pulses_per_turn};
+  return {m.gearbox->cutter_axis, m.gearbox->work_axis, m.gearbox->relief_on, m.gearbox->relief_off, m.gearbox->pulses_per_turn};
+}
+
+Status accepted(const std::string& dialect, int cutter_teeth, int work_teeth) {
+  const auto machine = installed(dialect);
+  return shaper::shaper_control(machine).accepts(machine, cutter_teeth, work_teeth);
 }
 
 class Gearbox : public ::testing::TestWithParam<std::string> {};
@@ -32,9 +38,9 @@ TEST_P(Gearbox, MachineFileIsAllAssumed) {
 TEST_P(Gearbox, ProgramIsProvenByItsReader) {
   const auto machine = installed(GetParam());
   const auto setup = shaper_setup(shaper_work(), machine);
-  const auto text = shaper::shaper_gearbox_text(setup);
+  const auto text = shaper::shaper_program(setup);
   EXPECT_EQ(joined(shaper::gearbox_program_faults(text, setup)), "") << text;
-  const auto r = shaper::read_gearbox_program(text, words_of(machine));
+  const auto r = shaper::shaper_control(machine).read(text, words_of(machine));
   ASSERT_TRUE(r.ratio);
   EXPECT_EQ(r.ratio->work_turns * 88, r.ratio->cutter_turns * 25);
   // From the job's own numbers: edges at sqrt(R^2 - E^2), over-run 2.5, depth 6.75.
@@ -45,7 +51,7 @@ TEST_P(Gearbox, ProgramIsProvenByItsReader) {
   EXPECT_EQ(r.moves.back().x_to_mm, 0);
   // Text: ASCII, no tabs, same bytes again; every motion word of Fanuc carries its point.
   for (const char ch : text) EXPECT_TRUE(ch == '\n' || (ch >= ' ' && ch <= '~'));
-  EXPECT_EQ(text, shaper::shaper_gearbox_text(shaper_setup(shaper_work(), machine)));
+  EXPECT_EQ(text, shaper::shaper_program(shaper_setup(shaper_work(), machine)));
 }
 
 TEST_P(Gearbox, OtherJobsSensesAndRatios) {
@@ -62,9 +68,9 @@ TEST_P(Gearbox, OtherJobsSensesAndRatios) {
         machine.axes['C'].sign = sense;
         const auto setup = shaper_setup(w, machine);
         EXPECT_EQ(setup.sense, sense);
-        const auto text = shaper::shaper_gearbox_text(setup);
+        const auto text = shaper::shaper_program(setup);
         EXPECT_EQ(joined(shaper::gearbox_program_faults(text, setup)), "") << cutter << "/" << work << " " << sense << "\n" << text;
-        const auto r = shaper::read_gearbox_program(text, words_of(machine));
+        const auto r = shaper::shaper_control(machine).read(text, words_of(machine));
         EXPECT_EQ(r.ratio->work_turns * work, sense * r.ratio->cutter_turns * cutter);
         EXPECT_EQ(std::gcd(r.ratio->work_turns, r.ratio->cutter_turns), 1);
         // The reader is not content with the other sense.
@@ -77,10 +83,10 @@ TEST_P(Gearbox, OtherJobsSensesAndRatios) {
 TEST(FanucGearbox, TAndLWhereTheyFitElsePulses) {
   const auto machine = installed("fanuc");
   auto w = shaper_work();
-  EXPECT_NE(shaper::shaper_gearbox_text(shaper_setup(w, machine)).find("G81.5 P31680000 C9000.\n"), std::string::npos);  // 88 turns of 360000, 25 turns
+  EXPECT_NE(shaper::shaper_program(shaper_setup(w, machine)).find("G81.5 P31680000 C9000.\n"), std::string::npos);  // 88 turns of 360000, 25 turns
   w.gear.shaper_teeth = 20;
   w.gear.zones = {{0, 131, 145}};
-  EXPECT_NE(shaper::shaper_gearbox_text(shaper_setup(w, machine)).find("G81.5 T22 C0. L5\n"), std::string::npos);
+  EXPECT_NE(shaper::shaper_program(shaper_setup(w, machine)).find("G81.5 T22 C0. L5\n"), std::string::npos);
 }
 
 TEST(FanucGearbox, RatiosBeyondItsWordsAreRefusedWithTheNumbers) {
@@ -88,14 +94,14 @@ TEST(FanucGearbox, RatiosBeyondItsWordsAreRefusedWithTheNumbers) {
   machine.gearbox->pulses_per_turn = 36000000;
   EXPECT_EQ(refusal(shaper_work(), machine, "gear.shaper_teeth"),
             "the ratio 25/88 needs P = 3168000000 pulses for 88 turns of the cutter axis, G81.5 of CNC gear shaper, Fanuc 31i takes 999999999");
-  EXPECT_EQ(shaper::check_gearbox(installed("fanuc"), 281, 997).error().message,
+  EXPECT_EQ(accepted("fanuc", 281, 997).error().message,
             "the ratio 281/997 needs C = 101160 deg for 281 turns of the work, G81.5 of CNC gear shaper, Fanuc 31i takes 99999");
-  EXPECT_TRUE(shaper::check_gearbox(installed("siemens"), 281, 997));
+  EXPECT_FALSE(shaper::shaper_control(installed("siemens")).accepts);  // any ratio
 }
 
 TEST_P(Gearbox, PlantedFaultsAreFound) {
   const auto setup = shaper_setup(shaper_work(), installed(GetParam()));
-  const auto good = shaper::shaper_gearbox_text(setup);
+  const auto good = shaper::shaper_program(setup);
   const bool siemens = GetParam() == "siemens";
   struct Planted {
     std::string name, what, by;
@@ -127,6 +133,7 @@ TEST_P(Gearbox, PlantedFaultsAreFound) {
                                  {"work moved by a word", "G94 G1 C1=", "G94 G1 C2=5 C1="},
                                  {"not clear", "SUPA G0 X7.25", "SUPA G0 X5"},
                                  {"turn too short", "G94 G1 C1=13", "G94 G1 C1=12"},
+                                 {"waits for another axis", "WAITP(Z)", "WAITP(X)"},
                                  {"first motion is no clearing", "SUPA G0 X7.25 D0\n", ""}});
   } else {
     faults.insert(faults.end(), {{"pulses of one turn too many", "P31680000", "P32040000"},
@@ -168,6 +175,22 @@ TEST_P(Gearbox, PlantedFaultsAreFound) {
     if (lines[k].starts_with("G1 X6.75")) continue;
     EXPECT_FALSE(faulty.empty()) << "dropped: " << lines[k];
   }
+}
+
+TEST(ShaperControls, AreWholeAndDiffer) {
+  std::set<std::string> names;
+  for (const shaper::ShaperControl& c : shaper::shaper_controls()) {
+    EXPECT_TRUE(names.insert(c.dialect.name).second) << c.dialect.name;
+    EXPECT_TRUE(c.extension.starts_with('.')) << c.dialect.name;
+    EXPECT_NE(c.program, nullptr) << c.dialect.name;
+    const bool gearbox = c.dialect.gears != machines::ShaperGears::change_gears;
+    EXPECT_EQ(c.read != nullptr, gearbox) << c.dialect.name << ": what couples is read back";
+    EXPECT_EQ(!c.coupling_words.empty(), gearbox) << c.dialect.name;
+  }
+  const auto refused = shaper::read_shaper_machine_of_text("schema = 1\nname = \"s\"\nkind = \"gear_shaper\"\ndialect = \"fagor\"\n", "s.toml");
+  const auto told = std::find_if(refused.errors.begin(), refused.errors.end(), [](const Diagnostic& d) { return d.position.line == 4; });
+  ASSERT_NE(told, refused.errors.end());
+  for (const auto& name : names) EXPECT_NE(told->message.find(name), std::string::npos) << told->message;
 }
 
 INSTANTIATE_TEST_SUITE_P(Dialects, Gearbox, ::testing::Values("siemens", "fanuc"), [](const auto& p) { return p.param; });

@@ -36,7 +36,7 @@ std::vector<path::ToolMotion> motions_of(const std::vector<readback::ExecutedMov
   trace.tool = 1;
   trace.kept_teeth = 1;
   trace.moves = moves;
-  const auto motions = readback::tool_motions(trace, {}, *controls::control_of(m, standing(), tools()), m, standing(), 1, 1e4, 10);  // coarse: one motion a move
+  const auto motions = readback::tool_motions(trace, {}, *controls::control_of(m, standing(), tools()), m, standing(), 1, {1e4, 10});  // coarse: one motion a move
   return motions ? *motions : std::vector<path::ToolMotion>{};
 }
 

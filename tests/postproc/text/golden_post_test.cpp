@@ -33,18 +33,18 @@ INSTANTIATE_TEST_SUITE_P(Files, GoldenPost,
                                          Golden{"siemens_joints.mpf", "siemens", machines::TcpMode::none, 0.1, false},
                                          Golden{"siemens_tcp.mpf", "siemens", machines::TcpMode::angles, 0.1, false},
                                          Golden{"siemens_vectors.mpf", "siemens", machines::TcpMode::vectors, 0.1, false},
-                                         Golden{"heidenhain_joints.h", "heidenhain", machines::TcpMode::none, 0, false},
-                                         Golden{"heidenhain_tcp.h", "heidenhain", machines::TcpMode::angles, 0, false},
-                                         Golden{"heidenhain_vectors.h", "heidenhain", machines::TcpMode::vectors, 0.1, true},
+                                         Golden{"heidenhain_joints.h.txt", "heidenhain", machines::TcpMode::none, 0, false},
+                                         Golden{"heidenhain_tcp.h.txt", "heidenhain", machines::TcpMode::angles, 0, false},
+                                         Golden{"heidenhain_vectors.h.txt", "heidenhain", machines::TcpMode::vectors, 0.1, true},
                                          Golden{"cutter_location.apt", "apt", machines::TcpMode::vectors, 0.1, true},
                                          Golden{"linuxcnc_spread.ngc", "linuxcnc", machines::TcpMode::none, 0.1, false, 5, 2, 1},
                                          Golden{"fanuc_spread.nc", "fanuc", machines::TcpMode::none, 0, false, 5, 2, 1},
                                          Golden{"siemens_spread.mpf", "siemens", machines::TcpMode::angles, 0.1, false, 5, 2, 1},
-                                         Golden{"heidenhain_spread.h", "heidenhain", machines::TcpMode::angles, 0, false, 5, 2, 1},
+                                         Golden{"heidenhain_spread.h.txt", "heidenhain", machines::TcpMode::angles, 0, false, 5, 2, 1},
                                          Golden{"linuxcnc_rollover.ngc", "linuxcnc", machines::TcpMode::none, 0.1, false, 5, 1, 1, -1},
                                          Golden{"fanuc_rollover.nc", "fanuc", machines::TcpMode::none, 0, false, 5, 1, 1, -1},
                                          Golden{"siemens_rollover.mpf", "siemens", machines::TcpMode::angles, 0.1, false, 5, 1, 1, -1},
-                                         Golden{"heidenhain_rollover.h", "heidenhain", machines::TcpMode::angles, 0, false, 5, 1, 1, -1}));
+                                         Golden{"heidenhain_rollover.h.txt", "heidenhain", machines::TcpMode::angles, 0, false, 5, 1, 1, -1}));
 
 TEST_P(GoldenPost, ByteForByte) {
   const Golden& g = GetParam();

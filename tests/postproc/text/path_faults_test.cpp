@@ -58,7 +58,7 @@ TEST(PathFaults, Nr81RepeatedPoints) {
   const auto control = controls::control_of(trunnion(), setup, tools());
   const auto back = readback::read_back(text->text, "p", *control, trunnion(), setup, {.teeth = 3});
   ASSERT_TRUE(back) << back.error().text();
-  const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, trunnion(), setup, 3, 1e-3, 1e-3);
+  const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, trunnion(), setup, 3, {1e-3, 1e-3});
   ASSERT_TRUE(motions);
   const path::ClPath* asked[] = {&path};
   const auto met = readback::compare_with_cl(*motions, asked, 1e-3, 1e-3);

@@ -13,9 +13,16 @@
 #include <vector>
 
 #include "machines/machine.h"
-#include "postproc/joints/program.h"
 
-namespace toothpath::joints {
+namespace toothpath::choice {
+
+/// Where the part would stand with the most room in the travels of X Y Z.
+struct TravelOffer {
+  Vec3 shift_mm = Vec3::Zero();        ///< of set-up origin and work offset, machine axes
+  std::array<double, 3> room_now_mm{}, room_then_mm{};  ///< X Y Z: distance to the nearer limit, limit_margin taken off; < 0: beyond
+  bool on_index_axis = false;          ///< the gear stays on the axis that turns it: only shifts along it were looked at
+  bool posted = false;                 ///< a program was built there and fits; tried only where this one exceeds a travel
+};
 
 class TravelPoses {
  public:
@@ -32,6 +39,7 @@ class TravelPoses {
   [[nodiscard]] std::optional<TravelOffer> best() const;
 
  private:
+  class RoomProgram;
   [[nodiscard]] std::optional<TravelOffer> best(bool only_up) const;
   struct Extremes {
     Mat3 turn;  ///< machine from table
@@ -49,4 +57,4 @@ class TravelPoses {
   std::unordered_map<std::array<std::uint64_t, 2>, std::size_t, KeyHash> index_;
 };
 
-}  // namespace toothpath::joints
+}  // namespace toothpath::choice

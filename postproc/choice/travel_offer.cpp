@@ -1,4 +1,4 @@
-#include "postproc/joints/travel_offer.h"
+#include "postproc/choice/travel_offer.h"
 
 #include <algorithm>
 #include <bit>
@@ -7,7 +7,7 @@
 
 #include "postproc/numbers/small_linear_program.h"
 
-namespace toothpath::joints {
+namespace toothpath::choice {
 namespace {
 
 constexpr std::size_t kMostPairs = std::size_t{1} << 21;
@@ -70,83 +70,106 @@ std::optional<TravelOffer> TravelPoses::best() const {
   return best(false);
 }
 
-std::optional<TravelOffer> TravelPoses::best(bool only_up) const {
-  const int shifts = keep_on_ ? 1 : 3, n = shifts + 1;
-  const auto room_at = static_cast<std::size_t>(shifts);
-  const auto shift_of = [&](const numbers::LinearPoint& x) -> Vec3 { return keep_on_ ? Vec3(x[0] * *keep_on_) : Vec3(x[0], x[1], x[2]); };
-  // Joint i keeps its fixed room, or the room that is a variable, or (-inf) nothing.
-  std::array<double, 3> fixed{};
-  enum class Kind { variable, kept };
-  std::array<Kind, 3> kind = {Kind::variable, Kind::variable, Kind::variable};
-  const auto most_broken = [&](const numbers::LinearPoint& x) {
+/// The linear program of one offer, joint by joint: the least room of all, then what the others can still have.
+class TravelPoses::RoomProgram {
+ public:
+  RoomProgram(const TravelPoses& poses, bool only_up)
+      : poses_(poses), only_up_(only_up), shifts_(poses.keep_on_ ? 1 : 3), room_at_(static_cast<std::size_t>(shifts_)) {}
+
+  /// Shift and last room; nothing where not even the first program has a solution.
+  std::optional<numbers::LinearPoint> solve() {
+    std::optional<numbers::LinearPoint> found;
+    for (int left = 3; left > 0;) {
+      const auto x = greatest_room();
+      if (!x) break;
+      found = x;
+      const double least = (*x)[room_at_];
+      const std::array<bool, 3> tight = tight_at(least);
+      const bool none = std::count(tight.begin(), tight.end(), true) == 0;
+      for (std::size_t j = 0; j < 3; ++j)
+        if (!kept_[j] && (tight[j] || none)) {
+          keep(j, least);
+          --left;
+        }
+    }
+    return found;
+  }
+  [[nodiscard]] Vec3 shift_of(const numbers::LinearPoint& x) const { return poses_.keep_on_ ? Vec3(x[0] * *poses_.keep_on_) : Vec3(x[0], x[1], x[2]); }
+
+ private:
+  void keep(std::size_t joint, double room) {
+    kept_[joint] = true;
+    fixed_[joint] = room - kSlack;
+  }
+  [[nodiscard]] std::optional<numbers::LinearPoint> greatest_room() const {
+    numbers::LinearPoint objective{};
+    objective[room_at_] = 1;
+    return numbers::maximize(shifts_ + 1, objective, kFarthest, [&](const numbers::LinearPoint& x) { return most_broken(x); });
+  }
+  /// Which joints cannot have more than that, whatever the others give up down to it?
+  std::array<bool, 3> tight_at(double least) {
+    const auto kept_before = kept_;
+    const auto fixed_before = fixed_;
+    std::array<bool, 3> tight{};
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (kept_before[j]) continue;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (!kept_before[k] && k != j) keep(k, least);
+      const auto more = greatest_room();
+      kept_ = kept_before;
+      fixed_ = fixed_before;
+      tight[j] = !more || (*more)[room_at_] <= least + kEqual;
+    }
+    return tight;
+  }
+  /// The row that x breaks most: joint i keeps its fixed room, or the room that is a variable.
+  [[nodiscard]] numbers::LinearRow most_broken(const numbers::LinearPoint& x) const {
     numbers::LinearRow worst;
     double greatest = -std::numeric_limits<double>::infinity();
     const Vec3 d = shift_of(x);
-    if (only_up) {
+    const auto& keep_on = poses_.keep_on_;
+    if (only_up_) {
       greatest = -d.z();
-      if (keep_on_) worst.a[0] = -keep_on_->z();
+      if (keep_on) worst.a[0] = -keep_on->z();
       else worst.a[2] = -1;
     }
-    for (const auto& e : list_) {
+    for (const auto& e : poses_.list_) {
       const Vec3 moved = e.turn * d;
       for (int i = 0; i < 3; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        const double asked = kind[k] == Kind::variable ? x[room_at] : fixed[k];
+        const double asked = kept_[k] ? fixed_[k] : x[room_at_];
         for (const double side : {1.0, -1.0}) {
-          const double free = side > 0 ? high_[k] - e.greatest[i] : e.least[i] - low_[k];
+          const double free = side > 0 ? poses_.high_[k] - e.greatest[i] : e.least[i] - poses_.low_[k];
           const double excess = side * moved[i] + asked - free;
           if (excess <= greatest) continue;
           greatest = excess;
           worst = {};
-          if (keep_on_) worst.a[0] = side * e.turn.row(i).dot(*keep_on_);
+          if (keep_on) worst.a[0] = side * e.turn.row(i).dot(*keep_on);
           else
             for (int m = 0; m < 3; ++m) worst.a[static_cast<std::size_t>(m)] = side * e.turn(i, m);
           worst.b = free;
-          if (kind[k] == Kind::variable) worst.a[room_at] = 1;
-          else worst.b -= fixed[k];
+          if (kept_[k]) worst.b -= fixed_[k];
+          else worst.a[room_at_] = 1;
         }
       }
     }
     return worst;
-  };
-  numbers::LinearPoint objective{};
-  objective[room_at] = 1;
-  std::optional<numbers::LinearPoint> found;
-  for (int left = 3; left > 0;) {
-    const auto x = numbers::maximize(n, objective, kFarthest, most_broken);
-    if (!x) break;
-    found = x;
-    const double least = (*x)[room_at];
-    // Which joints cannot have more than that, whatever the others give up down to it?
-    const auto before = kind;
-    const auto before_fixed = fixed;
-    std::array<bool, 3> tight{};
-    int tight_count = 0;
-    for (std::size_t j = 0; j < 3; ++j) {
-      if (before[j] == Kind::kept) continue;
-      for (std::size_t k = 0; k < 3; ++k)
-        if (before[k] == Kind::variable && k != j) {
-          kind[k] = Kind::kept;
-          fixed[k] = least - kSlack;
-        }
-      const auto more = numbers::maximize(n, objective, kFarthest, most_broken);
-      kind = before;
-      fixed = before_fixed;
-      if (!more || (*more)[room_at] <= least + kEqual) {
-        tight[j] = true;
-        ++tight_count;
-      }
-    }
-    for (std::size_t j = 0; j < 3; ++j)
-      if (before[j] == Kind::variable && (tight[j] || tight_count == 0)) {
-        kind[j] = Kind::kept;
-        fixed[j] = least - kSlack;
-        --left;
-      }
   }
+
+  const TravelPoses& poses_;
+  bool only_up_;
+  int shifts_;
+  std::size_t room_at_;
+  std::array<bool, 3> kept_{};
+  std::array<double, 3> fixed_{};  ///< room of the joints that are kept
+};
+
+std::optional<TravelOffer> TravelPoses::best(bool only_up) const {
+  RoomProgram program(*this, only_up);
+  const auto found = program.solve();
   if (!found) return std::nullopt;
   TravelOffer offer;
-  for (int m = 0; m < 3; ++m) offer.shift_mm[m] = std::round(shift_of(*found)[m] * 1e3) / 1e3;
+  for (int m = 0; m < 3; ++m) offer.shift_mm[m] = std::round(program.shift_of(*found)[m] * 1e3) / 1e3;
   if (keep_on_) offer.shift_mm = std::round((*found)[0] * 1e3) / 1e3 * *keep_on_;
   if (offer.shift_mm.z() == 0) offer.shift_mm.z() = 0;  // no -0
   offer.on_index_axis = keep_on_.has_value();
@@ -155,4 +178,4 @@ std::optional<TravelOffer> TravelPoses::best(bool only_up) const {
   return offer;
 }
 
-}  // namespace toothpath::joints
+}  // namespace toothpath::choice

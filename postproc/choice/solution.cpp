@@ -1,4 +1,4 @@
-#include "postproc/joints/solution.h"
+#include "postproc/choice/solution.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "geometry/base/angle.h"
 
-namespace toothpath::joints {
+namespace toothpath::choice {
 namespace {
 
 constexpr double kLargestStep = radians(170);   // beyond it the sense of a turn is ambiguous on a rollover axis
@@ -263,4 +263,4 @@ Result<std::vector<RotaryPair>> choose_rotaries(const path::ClPath& path, const 
   return Chooser(path, table_from_gear, chain, ranges, pole, switches).choose();
 }
 
-}  // namespace toothpath::joints
+}  // namespace toothpath::choice

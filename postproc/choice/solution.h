@@ -9,7 +9,7 @@
 #include "geometry/base/result.h"
 #include "machines/machine.h"
 
-namespace toothpath::joints {
+namespace toothpath::choice {
 
 using RotaryPair = std::array<double, 2>;
 
@@ -39,4 +39,4 @@ struct RotaryRange {
 /// angle + whole turns, nearest to `reference`.
 [[nodiscard]] double nearest_turn(double angle, double reference);
 
-}  // namespace toothpath::joints
+}  // namespace toothpath::choice
