@@ -27,7 +27,8 @@ struct PassOptions {
   double lift_margin = 0.08;  ///< the lift begins where the ball end's foot is so far beyond the end, in modules
   double lift_slope = 1;      ///< mm of lift per mm of contact, at most
   double enough_mm = INFINITY;  ///< give up where the best pose of a station alone leaves more than this: a pass without records
-  /// Is a pose free of everything but its own flank? Where it is not, beyond the last full station, the pass ends; empty: it always is.
+  /// Is a pose free of everything but its own flank (cam/line/room.h)? Where it is not, beyond the last full station, the pass ends; empty: it
+  /// always is.
   std::function<bool(const AxisLine<double>&)> is_clear;
 };
 
@@ -57,11 +58,11 @@ struct LinePass {
   double best_mm = 0;     ///< worst of the poses alone, over the full stations
   double chord_mm = 0;    ///< worst seen within a block, as `PassOptions::chord_mm` counts
   double contact_mm = 0;  ///< way of the contact
-  double contact_top_mm = 0;  ///< highest height of a contact above the tip, along the axis: the flutes must reach it
-  double shortened_mm = 0;  ///< lost at ends that are not clear
+  double contact_top_mm = 0;  ///< highest height of a contact above the tip, along the axis, lifts included: the flutes must reach it
+  double shortened_mm = 0;  ///< lost at ends that are not clear before the last foot has left the ring
 };
 
-/// Plans a pass. Refused, with quantity, value and limit: a tilt above 60 deg, flutes that end below the contact (`law_end`), fewer than
+/// Plans a pass. Refused, with quantity, value and limit: a tilt above 60 deg, flutes that end below a contact of any pose, lifted ones too (`law_end`), fewer than
 /// four full stations, an axis condition that no lean fulfils, a flank whose ends are not reached.
 /// @param law_end  highest usable t of the tool
 [[nodiscard]] Result<LinePass> plan_pass(const LineFit& fit, const PassOptions& options, double law_end);

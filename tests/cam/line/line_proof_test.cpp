@@ -8,6 +8,7 @@
 #include "cam/analytic/gouge_check.h"
 #include "cam/analytic/profile_sweep.h"
 #include "cam/line/plan.h"
+#include "cam/line/room.h"
 #include "cam/path/motions.h"
 #include "cam/tool/proof_tool.h"
 #include "tests/cam/line/line_cases.h"
@@ -44,9 +45,12 @@ Planned planned(const char* name, const face_gear::FaceGearParameters& p, const 
   o.feed_mm_min = 300;
   o.bias_mm = bias;
   o.clearance_height_mm = gear.blank_top() + 1;
+  auto part = std::make_unique<analytic::GearDistance>(gear, 5);
+  o.is_clear = line::room_of(*part, tool);
   auto plan = line::plan_line_milling(gear, tool, o);
   if (!plan) throw std::runtime_error(plan.error().message);
-  return {name, gear, tool, *plan, std::make_unique<analytic::GearDistance>(gear, 5)};
+  for (const auto& pass : plan->passes) std::printf("%s zone %d side %+d: %zu records, misfit %.2f um, shortened %.3f mm\n", name, pass.zone, pass.side, pass.records.size(), 1e3 * pass.misfit_mm, pass.shortened_mm);
+  return {name, gear, tool, *plan, std::move(part)};
 }
 
 TEST(LineProof, CleanPlans) {
