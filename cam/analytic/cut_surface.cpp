@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "cam/analytic/swept_path.h"
+#include "cam/analytic/swept_tool.h"
 
 namespace toothpath::analytic {
 namespace {
@@ -15,6 +16,7 @@ namespace {
 constexpr double kReachTolerance = 1e-4;
 constexpr double kSamePlace = 1e-6;  // a foot this near to a place of the grid is that place, mm
 constexpr int kHistogramBins = 40;
+constexpr double kSharpEnd = 0.02;  // mm: diameter of the ball that stands for the corner of a flat cutter
 
 struct Sample {
   Vec3 p, n;
@@ -67,6 +69,24 @@ class ZonePlaces {
   face_gear::OffsetSheet sheet_;
 };
 
+/// What one operation has removed, with a ball mill or any other, and what others did of the same allowance.
+class Removed {
+ public:
+  Removed(std::vector<BallMove> moves, double radius) : balls_(std::make_unique<SweptPath>(std::move(moves), radius)) {}
+  Removed(std::vector<path::ToolMotion> motions, const tool::ProofTool& tool, double top) : tool_(std::make_unique<SweptTool>(std::move(motions), tool.cutting, top)) {}
+  void also(const Removed* other) { others_.push_back(other); }
+  [[nodiscard]] double excess(const Vec3& p, double cap) const {
+    double e = balls_ ? balls_->excess(p, cap) : tool_->excess(p, cap);
+    for (const Removed* other : others_) e = other->excess(p, e);
+    return e;
+  }
+
+ private:
+  std::unique_ptr<SweptPath> balls_;  // one of the two
+  std::unique_ptr<SweptTool> tool_;
+  std::vector<const Removed*> others_;
+};
+
 class Meter {
  public:
   Meter(const GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
@@ -79,8 +99,22 @@ class Meter {
       for (const auto& m : motions)
         if (m.operation == int(n) && m.tooth == 0 && !m.rapid)
           moves.push_back({m.tip_from + R * m.axis_from, m.tip_to + R * m.axis_to});
-      paths_.push_back(std::make_unique<SweptPath>(std::move(moves), R));
+      paths_.push_back(std::make_unique<Removed>(std::move(moves), R));
     }
+  }
+  /// @param bodies  of the same tools
+  Meter(const GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
+        const std::vector<tool::ToolAssembly>& tools, const std::vector<tool::ProofTool>& bodies, const CutSurfaceOptions& options)
+      : Meter(part, {}, operations, tools, options) {
+    paths_.clear();
+    for (std::size_t n = 0; n < operations.size(); ++n) {
+      std::vector<path::ToolMotion> cuts;
+      for (const auto& m : motions)
+        if (m.operation == int(n) && m.tooth == 0 && !m.rapid) cuts.push_back(m);
+      paths_.push_back(std::make_unique<Removed>(std::move(cuts), bodies[std::size_t(operations[n].tool)], part.gear().blank_top()));
+    }
+    for (std::size_t n = 0; n + 1 < operations.size(); ++n)
+      if (operations[n].allowance_mm == operations.back().allowance_mm && operations[n].type != path::OperationType::roughing) paths_.back()->also(paths_[n].get());
   }
 
   CutSurface run() {
@@ -257,7 +291,7 @@ class Meter {
   const std::vector<path::MillingOperation>& operations_;
   const std::vector<tool::ToolAssembly>& tools_;
   CutSurfaceOptions o_;
-  std::vector<std::unique_ptr<SweptPath>> paths_;
+  std::vector<std::unique_ptr<Removed>> paths_;
   std::vector<double> cusps_;
   double line_step_ = 0, line_max_ = 0;
   CutSurface out_;
@@ -269,6 +303,16 @@ CutSurface measure_cut_surface(const GearDistance& part, const std::vector<path:
                                const std::vector<path::MillingOperation>& operations, const std::vector<tool::ToolAssembly>& tools,
                                const CutSurfaceOptions& options) {
   return Meter(part, motions, operations, tools, options).run();
+}
+
+CutSurface measure_cut_surface(const GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
+                               const std::vector<tool::ProofTool>& tools, const CutSurfaceOptions& options) {
+  std::vector<tool::ToolAssembly> balls;
+  for (const auto& t : tools) {
+    balls.push_back(t.ball_mill.value_or(tool::ToolAssembly{}));
+    if (!t.ball_mill) balls.back().diameter_mm = std::max(kSharpEnd, t.cutting.empty() ? 0.0 : 2 * t.cutting.front().round);
+  }
+  return Meter(part, motions, operations, balls, tools, options).run();
 }
 
 }  // namespace toothpath::analytic

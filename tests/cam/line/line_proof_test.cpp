@@ -4,20 +4,27 @@
 
 #include <chrono>
 #include <cstdio>
+#include <memory>
 
+#include "cam/analytic/cut_surface.h"
 #include "cam/analytic/gouge_check.h"
 #include "cam/analytic/profile_sweep.h"
+#include "cam/analytic/swept_tool.h"
 #include "cam/line/plan.h"
 #include "cam/line/room.h"
 #include "cam/path/motions.h"
 #include "cam/tool/proof_tool.h"
 #include "tests/cam/line/line_cases.h"
+#include "tests/support/brute_force_bodies.h"
+#include "tests/support/brute_force_line.h"
 #include "tests/support/random.h"
 
 namespace toothpath::test {
 namespace {
 
-tool::Profile mill(double diameter, double half_angle_deg, double flute, double shank, double stick_out) {
+constexpr double kFault = 2e-3;
+
+tool::CutterData tapered_mill(double diameter, double half_angle_deg, double flute, double shank, double stick_out) {
   tool::CutterData d;
   d.shape = tool::CutterShape::tapered_ball;
   d.diameter_mm = diameter;
@@ -27,52 +34,330 @@ tool::Profile mill(double diameter, double half_angle_deg, double flute, double 
   d.stick_out_mm = stick_out;
   d.length_mm = 92;
   d.holder = {{10, 10, 30}, {32, 32, 30}};
-  return std::get<tool::Profile>(tool::Profile::make(d));
+  return d;
+}
+tool::Profile profile_of(const tool::CutterData& d) {
+  auto made = tool::Profile::make(d);
+  if (auto* refused = std::get_if<1>(&made)) throw std::runtime_error(refused->front().diagnostic.message);
+  return std::get<tool::Profile>(std::move(made));
 }
 
-/// A gear, its mill and the plan of all flanks of one space.
+/// A gear and its mill.
+struct LineJob {
+  std::string name;
+  face_gear::FaceGearParameters parameters;
+  tool::CutterData tool;
+};
+const std::vector<LineJob>& line_jobs() {
+  static const std::vector<LineJob> jobs = {{"dhfg", quarter_dhfg(), tapered_mill(0.5, 5, 4, 4, 22)},
+                                            {"dhfg_7deg", quarter_dhfg(), tapered_mill(0.5, 7, 4, 6, 20)},
+                                            {"paper", double_helical_parameters(), tapered_mill(2, 5, 15, 8, 32)},
+                                            {"offset", offset_gear(), tapered_mill(1.6, 5, 9, 6, 25)},
+                                            {"spur", small_spur(), tapered_mill(0.8, 5, 6, 6, 20)}};
+  return jobs;
+}
+std::ostream& operator<<(std::ostream& out, const LineJob& job) { return out << job.name; }
+
+/// A job planned, all flanks of one space.
 struct Planned {
-  const char* name;
   face_gear::FaceGear gear;
   tool::Profile tool;
-  line::LinePlan plan;
   std::unique_ptr<analytic::GearDistance> part;
+  line::LinePlan plan;
+  [[nodiscard]] std::vector<path::ToolMotion> motions() const { return path::motions_of(plan.path); }
 };
-Planned planned(const char* name, const face_gear::FaceGearParameters& p, const tool::Profile& tool, double bias = 3e-4) {
-  const auto gear = made(p);
+Planned planned(const LineJob& job, double bias) {
+  const auto gear = made(job.parameters);
+  const auto tool = profile_of(job.tool);
+  auto part = std::make_unique<analytic::GearDistance>(gear, 5);
   line::LineOperation o;
   o.speed_rpm = 20000;
   o.feed_mm_min = 300;
   o.bias_mm = bias;
   o.clearance_height_mm = gear.blank_top() + 1;
-  auto part = std::make_unique<analytic::GearDistance>(gear, 5);
   o.is_clear = line::room_of(*part, tool);
   auto plan = line::plan_line_milling(gear, tool, o);
   if (!plan) throw std::runtime_error(plan.error().message);
-  for (const auto& pass : plan->passes) std::printf("%s zone %d side %+d: %zu records, misfit %.2f um, shortened %.3f mm\n", name, pass.zone, pass.side, pass.records.size(), 1e3 * pass.misfit_mm, pass.shortened_mm);
-  return {name, gear, tool, *plan, std::move(part)};
+  return {gear, tool, std::move(part), *plan};
 }
 
-TEST(LineProof, CleanPlans) {
-  for (const auto& p : {planned("dhfg 1.25", quarter_dhfg(), mill(0.5, 5, 4, 4, 22)), planned("dhfg 5", double_helical_parameters(), mill(2, 5, 15, 8, 32)),
-                        planned("offset", offset_gear(), mill(1.6, 5, 9, 6, 25)), planned("spur", small_spur(), mill(0.8, 5, 6, 6, 20))}) {
-    analytic::GougeCheckOptions o;
-    o.rapid_height_mm = p.gear.blank_top();
-    const analytic::GougeCheck check(*p.part, {tool::proof_tool(p.tool, 1)}, o);
-    const auto motions = path::motions_of(p.plan.path);
-    const auto start = std::chrono::steady_clock::now();
-    const auto r = check.check(motions, {0});
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    std::printf("%-10s %zu motions: measured %.3f um, bound %.3f um, %zu pieces, clearance %.4f, %.2f ms a motion, deepest %s of %s\n", p.name, motions.size(),
-                1e3 * r.measured_mm, 1e3 * r.bound_mm, r.distance_queries, r.clearance_mm, 1e3 * seconds / double(motions.size()), r.deepest.body.c_str(),
-                r.deepest.patch.c_str());
-    for (const auto& w : r.worst) {
-      const auto& m = motions[std::size_t(w.line - 1)];
-      std::printf("   %s %s zone %d r %.3f z %.3f depth %.2f um line %d pass zone %d/%d kind %d tip r %.3f z %.3f axis %.3f %.3f %.3f\n", w.body.c_str(), w.patch.c_str(), w.zone, w.radius_mm, w.height_mm, 1e3 * w.depth_mm, w.line, p.plan.path.records[std::size_t(w.line)].zone, p.plan.path.records[std::size_t(w.line)].pass, int(p.plan.path.records[std::size_t(w.line)].kind), m.tip_to.head<2>().norm(), m.tip_to.z(), m.axis_to.x(), m.axis_to.y(), m.axis_to.z());
-    }
-    EXPECT_TRUE(check.passes(r)) << p.name;
-    EXPECT_LT(r.bound_mm, 3e-4);
+proof::GougeResult checked(const Planned& p, const std::vector<path::ToolMotion>& motions, const tool::Profile& tool) {
+  analytic::GougeCheckOptions o;
+  o.rapid_height_mm = p.gear.blank_top();
+  return analytic::GougeCheck(*p.part, {tool::proof_tool(tool, 1)}, o).check(motions, {0});
+}
+
+/// Flank `side` of a zone by sweeping the shaper, turned to where the path of space 0 cuts it.
+std::vector<Vec3> flank_points(const Planned& p, const face_gear::FaceGearParameters& gear, int zone, int side, int columns, int rows) {
+  const auto f = *line::flank_task(p.gear, zone, side);
+  const BruteForceFaceGear brute(gear, gear.zones[std::size_t(zone)].helix_angle_rad);
+  auto points = swept_flank(
+      brute, f.inner_radius, f.outer_radius, [&](double r) { return *face_gear::fillet_line_height(f.surface, side, r); }, f.z_tip,
+      [&](double r, double z) { return face_gear::flank_azimuth(f.surface, side, *face_gear::invert_flank(f.surface, side, r, z)); }, columns, rows);
+  if (side < 0)
+    for (auto& q : points) q = face_gear::FaceGearSurface<double>::turned(q, p.gear.pitch());
+  return points;
+}
+
+/// The cutting motions of one flank, and their way.
+struct Pass {
+  std::vector<path::ToolMotion> motions;
+  std::vector<BrutePose> way;
+};
+Pass pass_of(const Planned& p, int zone, int side) {
+  Pass pass;
+  for (std::size_t k = 1; k < p.plan.path.records.size(); ++k) {
+    const auto& r = p.plan.path.records[k];
+    if (r.kind != path::MoveKind::feed || r.zone != zone || (r.pass == 0 ? 1 : -1) != side) continue;
+    const auto& before = p.plan.path.records[k - 1];
+    if (pass.way.empty()) pass.way.push_back({before.tip, before.axis});
+    pass.way.push_back({r.tip, r.axis});
+    path::ToolMotion m;
+    m.tip_from = before.tip, m.tip_to = r.tip, m.axis_from = before.axis, m.axis_to = r.axis;
+    m.line = int(k);
+    pass.motions.push_back(m);
   }
+  return pass;
+}
+std::vector<path::ToolMotion> motions_along(const std::vector<BrutePose>& way) {
+  std::vector<path::ToolMotion> out;
+  for (std::size_t k = 1; k < way.size(); ++k) {
+    path::ToolMotion m;
+    m.tip_from = way[k - 1].tip, m.tip_to = way[k].tip, m.axis_from = way[k - 1].axis, m.axis_to = way[k].axis;
+    m.line = int(k);
+    out.push_back(m);
+  }
+  return out;
+}
+
+class LineProof : public testing::TestWithParam<LineJob> {};
+
+// Whole plans with their leads: clean, close, and neck, shank and holder clear.
+TEST_P(LineProof, CleanPlan) {
+  const auto p = planned(GetParam(), line::kBias);
+  const auto motions = p.motions();
+  const auto start = std::chrono::steady_clock::now();
+  const auto r = checked(p, motions, p.tool);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::printf("%-10s %zu motions: found %.3f um, bound %.3f um, %.0f quads and %.2f ms a motion, clearance %.4f mm, deepest %s on %s\n", GetParam().name.c_str(),
+              motions.size(), 1e3 * r.measured_mm, 1e3 * r.bound_mm, double(r.distance_queries) / double(motions.size()), 1e3 * seconds / double(motions.size()),
+              r.clearance_mm, r.deepest.body.c_str(), r.deepest.patch.c_str());
+  EXPECT_LT(r.measured_mm, 1e-4);
+  EXPECT_LT(r.bound_mm, 2.5e-4);
+  EXPECT_GE(r.bound_mm, r.measured_mm);
+  EXPECT_LT(r.bound_mm, r.measured_mm + 5e-4);
+  EXPECT_GT(r.clearance_mm, 0.05);
+  EXPECT_TRUE(r.rapids_clear);
+  double shortened = 0;
+  for (const auto& pass : p.plan.passes) shortened += pass.shortened_mm;
+  std::printf("%-10s shortened by %.3f mm\n", GetParam().name.c_str(), shortened);
+  if (GetParam().name != "dhfg_7deg") {
+    EXPECT_EQ(shortened, 0);
+  }
+}
+
+// What the proof finds is what dense points of the flank see of the blended motion, and its bound covers that. No bias: depths are depths.
+TEST_P(LineProof, FindsWhatTheSweptFlankShows) {
+  const auto p = planned(GetParam(), 0);
+  const double tau = GetParam().tool.half_angle_rad, r_0 = 0.5 * GetParam().tool.diameter_mm;
+  for (int zone = 0; zone < p.part->zones(); ++zone)
+    for (const int side : {1, -1}) {
+      const auto pass = pass_of(p, zone, side);
+      const auto truth = swept(flank_points(p, GetParam().parameters, zone, side, 31, 17), {r_0, tau, 0, 0}, pass.way);
+      const auto r = checked(p, pass.motions, p.tool);
+      std::printf("%-10s zone %d side %+d: swept %.3f um, found %.3f um (%s), bound %.3f um\n", GetParam().name.c_str(), zone, side, 1e3 * truth.gouge,
+                  1e3 * r.measured_mm, r.deepest.patch.c_str(), 1e3 * r.bound_mm);
+      EXPECT_GE(r.bound_mm, truth.gouge);
+      EXPECT_GE(r.measured_mm, truth.gouge - 1e-4);
+      EXPECT_LE(r.bound_mm, std::max(r.measured_mm, 0.0) + 2.5e-4);
+    }
+}
+
+// 2 um by the whole pass, one record, a tilt of 2 um at the tips, a half angle and a ball radius that are larger than stated. Every one is found.
+TEST_P(LineProof, PlantedErrorsAreFound) {
+  const auto& job = GetParam();
+  const auto p = planned(job, 0);
+  const double r_0 = 0.5 * job.tool.diameter_mm;
+  Random random(5);
+  for (const auto& pass : p.plan.passes) {
+    const auto clean = pass_of(p, pass.zone, pass.side);
+    const auto f = *line::flank_task(p.gear, pass.zone, pass.side);
+    const double turn = pass.side > 0 ? 0 : p.gear.pitch(), length = pass.contact_top_mm - r_0;
+    const bool forwards = (face_gear::FaceGearSurface<double>::turned(pass.records.front().axis.a, turn) - clean.way.front().axis).norm() < 1e-12;
+    const auto normal = [&](std::size_t k) {
+      const Vec3& a = pass.records[forwards ? k : pass.records.size() - 1 - k].anchor;
+      const auto at = face_gear::invert_flank(f.surface, f.side, a.head<2>().norm(), a.z());
+      return at ? face_gear::FaceGearSurface<double>::turned(f.surface.flank(f.side, at->theta, at->B).n, turn) : Vec3(Vec3::Zero());
+    };
+    const auto expect = [&](const char* what, const std::vector<BrutePose>& way, const tool::Profile& tool, double least) {
+      const auto r = checked(p, motions_along(way), tool);
+      std::printf("%-10s zone %d side %+d %-11s found %.3f um on %s, bound %.3f um\n", job.name.c_str(), pass.zone, pass.side, what, 1e3 * r.measured_mm,
+                  r.deepest.patch.c_str(), 1e3 * r.bound_mm);
+      EXPECT_GT(r.measured_mm, least) << what;
+      EXPECT_LT(r.measured_mm, 3e-3) << what;
+      EXPECT_GE(r.bound_mm, r.measured_mm) << what;
+      EXPECT_LT(r.bound_mm, r.measured_mm + 2.5e-4) << what;
+    };
+    auto way = clean.way;
+    for (std::size_t k = 0; k < way.size(); ++k) way[k].tip -= kFault * normal(k);
+    expect("whole pass", way, p.tool, 1.8e-3);
+    way = clean.way;
+    const std::size_t one = way.size() / 4 + random.index(way.size() / 2);
+    way[one].tip -= kFault * normal(one);
+    expect("one record", way, p.tool, 1.8e-3);
+    way = clean.way;
+    for (std::size_t k = 0; k < way.size(); ++k) {
+      const Vec3 centre = way[k].tip + r_0 * way[k].axis;
+      way[k].axis = (way[k].axis - kFault / length * normal(k)).normalized();
+      way[k].tip = centre - r_0 * way[k].axis;
+    }
+    expect("tilt", way, p.tool, 1.4e-3);
+    auto data = job.tool;
+    data.half_angle_rad += kFault / length;
+    expect("half angle", clean.way, profile_of(data), 1.6e-3);
+    data = job.tool;
+    data.diameter_mm += 2 * kFault;
+    way = clean.way;
+    for (auto& q : way) q.tip -= kFault * q.axis;  // the centre stays
+    expect("tip radius", way, profile_of(data), 1.8e-3);
+  }
+}
+
+// The cut surface of all four flanks: what the brute force finds left, and nothing gouged.
+TEST_P(LineProof, CutSurface) {
+  const auto p = planned(GetParam(), line::kBias);
+  path::MillingOperation op;
+  op.chord_tolerance_mm = 5e-4;
+  const auto start = std::chrono::steady_clock::now();
+  const auto cut = analytic::measure_cut_surface(*p.part, p.motions(), {op}, std::vector<tool::ProofTool>{tool::proof_tool(p.tool, 1)});
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double tau = GetParam().tool.half_angle_rad, r_0 = 0.5 * GetParam().tool.diameter_mm;
+  for (const auto& g : cut.grids) {
+    if (g.patch.rfind("flank", 0) != 0) continue;
+    const int side = g.patch == "flank +1" ? 1 : -1;
+    double most = -INFINITY, least = INFINITY;
+    for (std::size_t k = 0; k < g.points.size(); ++k) {
+      if (g.normals[k] == Vec3::Zero()) continue;
+      most = std::max(most, double(g.excess_um[0][k]));
+      least = std::min(least, double(g.excess_um[0][k]));
+    }
+    const auto truth = swept(flank_points(p, GetParam().parameters, g.zone, side, 25, 17), {r_0, tau, 0, 0}, pass_of(p, g.zone, side).way);
+    std::printf("%-10s zone %d %s: left %.3f um (brute force %.3f), least %.3f um (%.3f), %.2f s\n", GetParam().name.c_str(), g.zone, g.patch.c_str(), most,
+                1e3 * truth.left, least, -1e3 * truth.gouge, seconds);
+    EXPECT_NEAR(most, 1e3 * truth.left, 0.15);
+    EXPECT_NEAR(least, -1e3 * truth.gouge, 0.15);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Jobs, LineProof, testing::ValuesIn(line_jobs()), [](const auto& i) { return i.param.name; });
+
+/// The meridian of a cutting part as dense points, written out from what it is ordered by.
+std::vector<Vec2> dense_meridian(const tool::CutterData& d) {
+  constexpr int kArc = 160;
+  const double R = 0.5 * d.diameter_mm, tau = d.half_angle_rad;
+  std::vector<Vec2> m;
+  if (d.shape == tool::CutterShape::flat) {
+    m = {{0, 0}, {0, R}};
+  } else {
+    const double r = d.shape == tool::CutterShape::bull_nose ? d.corner_radius_mm : R;
+    m.push_back({0, 0});
+    for (int k = 0; k <= kArc; ++k) {
+      const double a = (kPi / 2 - tau) * k / kArc;  // from the tip
+      m.push_back({r - r * std::cos(a), R - r + r * std::sin(a)});
+    }
+  }
+  const Vec2 side = m.back();
+  m.push_back({d.flute_length_mm, side[1] + (d.flute_length_mm - side[0]) * std::tan(tau)});
+  return m;
+}
+
+struct RandomJob {
+  std::string name;
+  face_gear::FaceGearParameters gear;
+  std::vector<tool::CutterData> tools;
+};
+
+/// Random gears of double helical, straight and offset kind, each with mills of every shape.
+RandomJob random_job(Random& random, int k) {
+  RandomJob job;
+  const double m = random(1, 4);
+  auto& g = job.gear;
+  if (k % 3 == 0) {
+    g = double_helical_parameters(m / 5);
+    job.name = "double helical";
+  } else {
+    const int shaper = 20 + int(random.index(8)), teeth = int(shaper * random(2.6, 3.8));
+    const double r = 0.5 * m * teeth;
+    g = transverse_gear(teeth, shaper, m, 0.3 * m, {{0, 1.0 * r, 1.07 * r}});
+    g.offset_mm = k % 3 == 1 ? 0 : random(1, 5) * m / 3;
+    job.name = k % 3 == 1 ? "spur" : "offset";
+  }
+  tool::CutterData d = tapered_mill(0.4 * m, random(3, 7), 3.4 * m, 6 * m, 12 * m);
+  d.length_mm = 20 * m + 60;
+  job.tools.push_back(d);
+  d.shape = tool::CutterShape::ball;
+  d.half_angle_rad = 0;
+  d.shank_diameter_mm = d.diameter_mm;
+  job.tools.push_back(d);
+  d.shape = tool::CutterShape::bull_nose;
+  d.diameter_mm = 0.5 * m;
+  d.corner_radius_mm = random(0.05, 0.2) * m;
+  job.tools.push_back(d);
+  d.shape = tool::CutterShape::flat;
+  job.tools.push_back(d);
+  return job;
+}
+
+// Poses near contact, half of them turning, in spaces of random gears: the deepest place of dense samples stays below the bound, and the
+// bound comes close to what was found.
+TEST(RandomPoses, TheBoundCoversDenseSampling) {
+  Random random(77);
+  double widest = 0, deepest_missed = -INFINITY, most_over = 0;
+  int near = 0;
+  for (int k = 0; k < 6; ++k) {
+    const auto job = random_job(random, k);
+    const auto gear = made(job.gear);
+    const analytic::GearDistance part(gear, 5);
+    const BruteForceBodies brute(gear, 14, 14);
+    const double m_n = job.gear.module_mm;
+    for (const auto& data : job.tools) {
+      const auto tool = tool::proof_tool(profile_of(data), 1);
+      const auto body = brute_body(dense_meridian(data));
+      for (int run = 0; run < 3; ++run) {
+        const int zone = int(random.index(std::size_t(part.zones())));
+        const auto& ring = part.space(zone).ring().zone;
+        const double r = random(ring.inner_radius_mm, ring.outer_radius_mm), azimuth = part.space_azimuth(zone, r);
+        path::ToolMotion m;
+        m.axis_from = (Vec3::UnitZ() + random.vector(0.35)).normalized();
+        m.axis_to = run % 2 == 0 ? Vec3((m.axis_from + random.vector(0.02)).normalized()) : m.axis_from;
+        m.tip_from = Vec3(r * std::cos(azimuth), r * std::sin(azimuth), gear.lowest_root() + random(0.3, 1.2) * m_n) + random.vector(0.1 * m_n);
+        m.tip_to = m.tip_from + random.vector(0.08 * m_n);
+        // Moved aside until it nearly touches.
+        const Vec3 aside = Vec3(-std::sin(azimuth), std::cos(azimuth), 0) * (random(-1, 1) > 0 ? 1 : -1);
+        for (int n = 0; n < 12; ++n) {
+          const double gap = -brute.deepest(body, m, 2, 4).depth;
+          if (std::abs(gap) < 2e-3) break;
+          const Vec3 step = std::clamp(gap, -0.3 * m_n, 0.3 * m_n) * 0.9 * aside;
+          m.tip_from += step;
+          m.tip_to += step;
+        }
+        analytic::ProfileSweep sweep(part, tool, 2e-4, 0.002);
+        const auto found = sweep.check(m);
+        const double truth = brute.deepest(body, m, 10, 24).depth;
+        near += std::abs(found.measured_mm) < 0.02;
+        EXPECT_GE(found.bound_mm, truth - 1e-9) << job.name << " shape " << int(data.shape) << " run " << run;
+        EXPECT_GE(found.bound_mm, found.measured_mm);
+        if (found.measured_mm > -0.1) {
+          widest = std::max(widest, found.bound_mm - std::max(found.measured_mm, 0.0));
+          most_over = std::max(most_over, found.measured_mm - truth);
+          deepest_missed = std::max(deepest_missed, truth - found.measured_mm);
+        }
+      }
+    }
+  }
+  std::printf("%d near contact: bound above what was found by %.3f um at most; brute force deeper by %.3f um at most, shallower by %.3f um\n", near, 1e3 * widest,
+              1e3 * deepest_missed, 1e3 * most_over);
+  EXPECT_GE(near, 30);
 }
 
 }  // namespace
