@@ -21,6 +21,7 @@ constexpr double kRoundOff = 1 + 1e-9;
 constexpr int kTangents = 8;     // planes by which a touching body is brought near to a hull
 constexpr int kSecants = 4;      // of the way to each
 constexpr double kFlat = 0.02;   // share of the first slope at which a way ends
+constexpr double kTimeMatters = 0.1;  // of the contact's proof
 constexpr double kLongWay = 4;   // sizes of a quad that it may pass by undivided
 
 
@@ -334,11 +335,12 @@ class Sweep {
     note(target, tool::rounded_distance(x, body_), *p, x.z());
   }
 
-  /// Which half costs less: in time where the arc of the axis or the way of the corners loses more than the bend of the surface.
+  /// Is time halved, or the quad? Time where the arc of the axis or the turn between the corners loses more than the bend of the surface, and enough to
+  /// matter; and where the quad passes by far. What else a bound lacks, corners beyond the ring or a plane that is not the best, goes with the quad.
   [[nodiscard]] bool in_time(const Piece& piece, const Seen& s, double size, double over) const {
     const double dt = piece.t1 - piece.t0, arcs = slack(s.arm, dt) - m_.deviation_mm - m_.axis_deviation * s.arm;
     const double twist = 0.25 * dt * turn_rate_ * size;  // between the corners, out of one plane
-    return arcs + twist > over || s.moved > kLongWay * size;
+    return arcs + twist > std::max(over, kTimeMatters * o_.contact_proof_mm) || s.moved > kLongWay * size;
   }
 
   /// The gap of a corner, where it can be the least: of a place of the surface only.

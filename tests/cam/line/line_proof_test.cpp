@@ -193,6 +193,16 @@ TEST_P(LineProof, PlantedErrorsAreFound) {
       const auto r = checked(p, motions_along(way), tool);
       std::printf("%-10s zone %d side %+d %-11s found %.3f um on %s, bound %.3f um\n", job.name.c_str(), pass.zone, pass.side, what, 1e3 * r.measured_mm,
                   r.deepest.patch.c_str(), 1e3 * r.bound_mm);
+      if (r.bound_mm > r.measured_mm + 1e-3) {
+        analytic::ProfileSweep sweep(*p.part, tool::proof_tool(tool, 1), 2e-4, 0.002);
+        std::size_t before = 0;
+        for (const auto& m : motions_along(way)) {
+          const auto one = sweep.check(m);
+          std::printf("DBG line %d of %zu: found %.3f bound %.3f quads %zu on %s r %.4f z %.4f; way %.4f turn %.5f\n", m.line, way.size(), 1e3 * one.measured_mm, 1e3 * one.bound_mm, sweep.queries() - before, one.deepest.patch,
+                      one.deepest.foot.head<2>().norm(), one.deepest.foot.z(), (m.tip_to - m.tip_from).norm(), (m.axis_to - m.axis_from).norm());
+          before = sweep.queries();
+        }
+      }
       EXPECT_GT(r.measured_mm, least) << what;
       EXPECT_LT(r.measured_mm, 3e-3) << what;
       EXPECT_GE(r.bound_mm, r.measured_mm) << what;
