@@ -55,7 +55,7 @@ class PassPlanner {
     if (auto s = smooth(); !s) return s.error();
     if (auto s = extent(); !s) return s.error();
     lifts();
-    room();
+    if (auto s = room(); !s) return s.error();
     if (auto s = corners(); !s) return s.error();
     if (auto s = records(); !s) return s.error();
     figures();
@@ -278,11 +278,20 @@ class PassPlanner {
                     sense > 0 ? "outer" : "inner");
     }
   }
-  /// Beyond the full stations the pass ends where its lifted tool is not clear of everything else.
-  void room() {
-    if (!o_.is_clear) return;
+  /// The full stations must have their room; beyond them the pass ends where its lifted tool has none.
+  Status room() {
+    if (!o_.room) return Ok{};
+    std::vector<std::optional<Blocked>> blocked(best_.last + 1 - best_.first);
+    tbb::parallel_for(std::size_t{0}, blocked.size(), [&](std::size_t k) {
+      if (const auto p = pose(radius(best_.first + k))) blocked[k] = o_.room(p->axis);
+    });
+    for (std::size_t k = 0; k < blocked.size(); ++k)
+      if (const auto& b = blocked[k])
+        return fail("zone {}: flank {:+d} at radius {:.3f} mm: the {} has a gap of {:.4f} mm to the {}, {:.4f} mm is the least; a thinner or longer tool, or another "
+                    "half_angle", fit_.flank().zone, fit_.flank().side, radius(best_.first + k), b->body, b->gap_mm, b->patch, b->least_mm);
     room(-1, best_.first, from_, r_from_);
     room(1, best_.last, to_, r_to_);
+    return Ok{};
   }
   void room(int sense, std::size_t full, std::size_t& end, double& r_end) {
     for (std::size_t k = full; k != end;) {
@@ -299,7 +308,7 @@ class PassPlanner {
   }
   [[nodiscard]] bool clear(double r) const {
     const auto p = pose(r);
-    return p && o_.is_clear(p->axis);
+    return p && !o_.room(p->axis);
   }
   /// Last radius on the way from a clear pose to one that is not, to a 32nd of a station.
   [[nodiscard]] double last_clear(double in, double out) const {

@@ -34,7 +34,7 @@ Result<std::vector<LinePass>> passes_of(const std::vector<FlankTask>& flanks, co
     p.bias_mm = o.bias_mm;
     p.lift_inner = flank.zone > 0;
     p.lift_outer = flank.zone + 1 < rings;
-    p.is_clear = o.is_clear;
+    if (o.room) p.room = [&](const AxisLine<double>& axis) { return o.room(with_allowance(flank, axis, o.allowance_mm)); };
     p.enough_mm = o.left_mm.value_or(INFINITY);
     found[k].emplace(plan_pass(LineFit(flank, *tool.law(), strips_of(flank, choice.strips)[strip]), p, tool.law_end()));
     if (*found[k]) (*found[k])->strip = int(strip);

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <vector>
 
@@ -42,7 +41,7 @@ struct LineOperation {
   FeedLimits limits;
   bool climb = true;                     ///< spindle M3, material to the right of the feed seen from the holder
   double clearance_height_mm = 0;        ///< z above which every part of the tool is for rapids
-  std::function<bool(const AxisLine<double>&)> is_clear;  ///< in the frame of the flank's own tooth 0; see PassOptions
+  Room room;                             ///< cam/line/room.h; asked where the tool stands with its allowance
 };
 
 struct LinePlan {

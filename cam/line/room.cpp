@@ -1,6 +1,7 @@
 #include "cam/line/room.h"
 
 #include <memory>
+#include <optional>
 
 #include "cam/analytic/body_sweep.h"
 #include "cam/tool/proof_tool.h"
@@ -19,10 +20,10 @@ path::ToolMotion standing(const AxisLine<double>& axis, double r_0) {
 
 }  // namespace
 
-std::function<bool(const AxisLine<double>&)> room_of(const analytic::GearDistance& part, const tool::Profile& profile, const RoomOptions& options) {
+Room room_of(const analytic::GearDistance& part, const tool::Profile& profile, const RoomOptions& options) {
   const auto tool = std::make_shared<const tool::ProofTool>(tool::proof_tool(profile, 0));
   const double r_0 = profile.law() ? profile.law()->r_0 : 0;
-  return [&part, tool, r_0, options](const AxisLine<double>& axis) {
+  return [&part, tool, r_0, options](const AxisLine<double>& axis) -> std::optional<Blocked> {
     const auto m = standing(axis, r_0);
     analytic::SweptGapOptions cutting;
     cutting.touching = true;
@@ -31,13 +32,15 @@ std::function<bool(const AxisLine<double>&)> room_of(const analytic::GearDistanc
     cutting.contact_proof_mm = kTouchProof;
     cutting.settled_mm = -options.touch_mm;
     for (const auto& body : tool->cutting)
-      if (analytic::swept_gap(part, body, m, cutting).proven_mm < -options.touch_mm) return false;
+      if (const auto gap = analytic::swept_gap(part, body, m, cutting); gap.proven_mm < -options.touch_mm)
+        return Blocked{body.core.name, gap.patch, gap.measured_mm, -options.touch_mm};
     analytic::SweptGapOptions beside;
     beside.enough_mm = options.clearance_mm + 0.01;
     beside.settled_mm = options.clearance_mm;
     for (const auto& body : tool->bodies)
-      if (analytic::swept_gap(part, body, m, beside).proven_mm < options.clearance_mm) return false;
-    return true;
+      if (const auto gap = analytic::swept_gap(part, body, m, beside); gap.proven_mm < options.clearance_mm)
+        return Blocked{body.name, gap.patch, gap.measured_mm, options.clearance_mm};
+    return {};
   };
 }
 

@@ -1,10 +1,8 @@
 // The room of a mill at a flank: is the whole tool clear of the finished gear where it stands?
 #pragma once
 
-#include <functional>
-
 #include "cam/analytic/gear_distance.h"
-#include "cam/line/contact.h"
+#include "cam/line/passes.h"
 #include "cam/tool/profile.h"
 
 namespace toothpath::line {
@@ -17,6 +15,6 @@ struct RoomOptions {
 /// Answers for any pose of the tool in the gear frame, on flanks of any tooth: neither does the cutting part cut, nor do shank and holder come
 /// nearer than the clearance, all proven as for motions (cam/analytic/profile_sweep.h, cam/analytic/body_sweep.h). Asked from several threads at
 /// once. `part` must outlive it.
-[[nodiscard]] std::function<bool(const AxisLine<double>&)> room_of(const analytic::GearDistance& part, const tool::Profile& tool, const RoomOptions& options = {});
+[[nodiscard]] Room room_of(const analytic::GearDistance& part, const tool::Profile& tool, const RoomOptions& options = {});
 
 }  // namespace toothpath::line

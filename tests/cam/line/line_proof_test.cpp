@@ -75,7 +75,7 @@ Planned planned(const LineJob& job, double bias) {
   o.feed_mm_min = 300;
   o.bias_mm = bias;
   o.clearance_height_mm = gear.blank_top() + 1;
-  o.is_clear = line::room_of(*part, tool);
+  o.room = line::room_of(*part, tool);
   auto plan = line::plan_line_milling(gear, tool, o);
   if (!plan) throw std::runtime_error(plan.error().message);
   return {gear, tool, std::move(part), *plan};
@@ -453,6 +453,28 @@ TEST(ContactFeed, LimitsOfTipAxisAndBlock) {
 }
 
 // A cone too thick for the groove: the two flanks that lean over it end early and say so, and nothing is cut.
+TEST(Room, IsRefusedWhereAFullStationHasNone) {
+  const auto gear = made(quarter_dhfg());
+  const analytic::GearDistance part(gear, 5);
+  const auto refused = [&](const tool::CutterData& data, double allowance, const char* text) {
+    const auto tool = profile_of(data);
+    line::LineOperation o;
+    o.speed_rpm = 20000;
+    o.feed_mm_min = 300;
+    o.allowance_mm = allowance;
+    o.clearance_height_mm = gear.blank_top() + 1;
+    o.room = line::room_of(part, tool);
+    const auto plan = line::plan_line_milling(gear, tool, o);
+    ASSERT_FALSE(plan) << text;
+    EXPECT_NE(plan.error().message.find(text), std::string::npos) << plan.error().message;
+  };
+  refused(tapered_mill(0.8, 5, 4, 4, 22), 0, "the flute has a gap of -0.");  // the opposite flank
+  refused(tapered_mill(0.5, 5, 4, 4, 22), 0.3, "the flute has a gap of -0.");  // so much stock here leans it into that
+  auto low = tapered_mill(0.5, 5, 4, 4, 4.2);
+  low.holder = {{30, 30, 20}};
+  refused(low, 0, "the holder has a gap of");
+}
+
 TEST(Room, AThickConeEndsEarly) {
   LineJob job{"dhfg 10 deg", quarter_dhfg(), tapered_mill(0.5, 10, 4, 6, 16)};
   const auto p = planned(job, line::kBias);

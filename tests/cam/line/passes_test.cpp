@@ -261,7 +261,9 @@ TEST(LinePassShape, EndsWhereItIsNotClear) {
   auto o = options_of(c);
   const auto whole = pass_of(c, o);
   const double limit = whole.records.back().axis.c_0.head<2>().norm() - 0.4;
-  o.is_clear = [limit](const line::AxisLine<double>& axis) { return axis.c_0.head<2>().norm() < limit; };
+  o.room = [limit](const line::AxisLine<double>& axis) {
+    return axis.c_0.head<2>().norm() < limit ? std::nullopt : std::optional(line::Blocked{"flute", "tip", -1, 0});
+  };
   const auto cut = pass_of(c, o);
   EXPECT_LT(cut.records.back().r, whole.records.back().r - 0.1);
   EXPECT_GT(cut.shortened_mm, 0);
