@@ -69,24 +69,6 @@ class ZonePlaces {
   face_gear::OffsetSheet sheet_;
 };
 
-/// What one operation has removed, with a ball mill or any other, and what others did of the same allowance.
-class Removed {
- public:
-  Removed(std::vector<BallMove> moves, double radius) : balls_(std::make_unique<SweptPath>(std::move(moves), radius)) {}
-  Removed(std::vector<path::ToolMotion> motions, const tool::ProofTool& tool, double top) : tool_(std::make_unique<SweptTool>(std::move(motions), tool.cutting, top)) {}
-  void also(const Removed* other) { others_.push_back(other); }
-  [[nodiscard]] double excess(const Vec3& p, double cap) const {
-    double e = balls_ ? balls_->excess(p, cap) : tool_->excess(p, cap);
-    for (const Removed* other : others_) e = other->excess(p, e);
-    return e;
-  }
-
- private:
-  std::unique_ptr<SweptPath> balls_;  // one of the two
-  std::unique_ptr<SweptTool> tool_;
-  std::vector<const Removed*> others_;
-};
-
 class Meter {
  public:
   Meter(const GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,

@@ -78,4 +78,10 @@ double SweptTool::excess(const Vec3& p, double cap) const {
   return best;
 }
 
+double Removed::excess(const Vec3& p, double cap) const {
+  double e = balls_ ? balls_->excess(p, cap) : tool_->excess(p, cap);
+  for (const Removed* other : others_) e = other->excess(p, e);
+  return e;
+}
+
 }  // namespace toothpath::analytic

@@ -1,9 +1,12 @@
 // What a mill of any profile has removed: the volume swept by its cutting bodies along a path. Exact in double on candidates of a spatial index.
 #pragma once
 
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "cam/analytic/spatial_index.h"
+#include "cam/analytic/swept_path.h"
 #include "cam/path/tool_motion.h"
 #include "cam/tool/proof_tool.h"
 
@@ -27,6 +30,24 @@ class SweptTool {
   std::vector<path::ToolMotion> motions_;
   std::vector<tool::RoundedFrustum> cutting_;
   SpatialIndex index_;
+};
+
+/// What one operation has removed, with a ball mill or any other, and what others have beside it.
+class Removed {
+ public:
+  Removed(std::vector<BallMove> moves, double ball_radius_mm) : balls_(std::make_unique<SweptPath>(std::move(moves), ball_radius_mm)) {}
+  /// @param top_mm  as of `SweptTool`
+  Removed(std::vector<path::ToolMotion> motions, const tool::ProofTool& tool, double top_mm)
+      : tool_(std::make_unique<SweptTool>(std::move(motions), tool.cutting, top_mm)) {}
+  /// Counts another one in; it must outlive this one.
+  void also(const Removed* other) { others_.push_back(other); }
+  /// As `SweptPath::excess`.
+  [[nodiscard]] double excess(const Vec3& p, double cap) const;
+
+ private:
+  std::unique_ptr<SweptPath> balls_;  // one of the two
+  std::unique_ptr<SweptTool> tool_;
+  std::vector<const Removed*> others_;
 };
 
 }  // namespace toothpath::analytic

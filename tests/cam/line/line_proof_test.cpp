@@ -1,6 +1,7 @@
 // The proof of line-milled programs: what the mill is found to cut and what it is proven not to exceed, on clean plans, on random poses near
 // contact and with planted errors; against dense sampling of the mill and the gear that shares no code with it.
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <chrono>
 #include <cstdio>
@@ -453,6 +454,39 @@ TEST(ContactFeed, LimitsOfTipAxisAndBlock) {
 }
 
 // A cone too thick for the groove: the two flanks that lean over it end early and say so, and nothing is cut.
+// The same bits with one thread and with several, through the whole check and the cut surface.
+TEST(LineProofThreads, SameAnswerWithOneThread) {
+  const auto p = planned(line_jobs().front(), line::kBias);
+  const auto motions = p.motions();
+  path::MillingOperation op;
+  const auto surface = [&] { return analytic::measure_cut_surface(*p.part, motions, {op}, std::vector<tool::ProofTool>{tool::proof_tool(p.tool, 1)}); };
+  const auto many = checked(p, motions, p.tool);
+  const auto cut = surface();
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const auto single = checked(p, motions, p.tool);
+  EXPECT_EQ(many.measured_mm, single.measured_mm);
+  EXPECT_EQ(many.bound_mm, single.bound_mm);
+  EXPECT_EQ(many.clearance_mm, single.clearance_mm);
+  EXPECT_EQ(many.distance_queries, single.distance_queries);
+  EXPECT_EQ(many.deepest.point, single.deepest.point);
+  const auto again = surface();
+  for (std::size_t k = 0; k < cut.grids.size(); ++k) EXPECT_EQ(cut.grids[k].excess_um, again.grids[k].excess_um);
+}
+
+// A path is accepted, or refused with body and place.
+TEST(LineProofPaths, CheckedPath) {
+  auto p = planned(line_jobs().back(), line::kBias);
+  analytic::GougeCheckOptions o;
+  o.rapid_height_mm = p.gear.blank_top();
+  const analytic::GougeCheck check(*p.part, {tool::proof_tool(p.tool, 7)}, o);
+  EXPECT_TRUE(check.check_path(p.plan.path));
+  for (auto& r : p.plan.path.records)
+    if (r.kind == path::MoveKind::feed) r.tip.z() -= 0.02;
+  const auto refused = check.check_path(p.plan.path);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().message.find(" cuts 0.0"), std::string::npos) << refused.error().message;
+}
+
 TEST(Room, IsRefusedWhereAFullStationHasNone) {
   const auto gear = made(quarter_dhfg());
   const analytic::GearDistance part(gear, 5);
