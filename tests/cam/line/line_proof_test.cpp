@@ -25,18 +25,6 @@ namespace {
 
 constexpr double kFault = 2e-3;
 
-tool::CutterData tapered_mill(double diameter, double half_angle_deg, double flute, double shank, double stick_out) {
-  tool::CutterData d;
-  d.shape = tool::CutterShape::tapered_ball;
-  d.diameter_mm = diameter;
-  d.half_angle_rad = radians(half_angle_deg);
-  d.flute_length_mm = flute;
-  d.shank_diameter_mm = shank;
-  d.stick_out_mm = stick_out;
-  d.length_mm = 92;
-  d.holder = {{10, 10, 30}, {32, 32, 30}};
-  return d;
-}
 tool::Profile profile_of(const tool::CutterData& d) {
   auto made = tool::Profile::make(d);
   if (auto* refused = std::get_if<1>(&made)) throw std::runtime_error(refused->front().diagnostic.message);
@@ -320,6 +308,28 @@ RandomJob random_job(Random& random, int k) {
   return job;
 }
 
+/// A random way through a space of a random gear that nearly touches: moved aside until it does.
+path::ToolMotion grazing(Random& random, const face_gear::FaceGear& gear, const analytic::GearDistance& part, const BruteForceBodies& brute,
+                                        const BruteBody& body, double module_mm, bool turns) {
+  const int zone = int(random.index(std::size_t(part.zones())));
+  const auto& ring = part.space(zone).ring().zone;
+  const double r = random(ring.inner_radius_mm, ring.outer_radius_mm), azimuth = part.space_azimuth(zone, r);
+  path::ToolMotion m;
+  m.axis_from = (Vec3::UnitZ() + random.vector(0.35)).normalized();
+  m.axis_to = turns ? Vec3((m.axis_from + random.vector(0.02)).normalized()) : m.axis_from;
+  m.tip_from = Vec3(r * std::cos(azimuth), r * std::sin(azimuth), gear.lowest_root() + random(0.3, 1.2) * module_mm) + random.vector(0.1 * module_mm);
+  m.tip_to = m.tip_from + random.vector(0.08 * module_mm);
+  const Vec3 aside = Vec3(-std::sin(azimuth), std::cos(azimuth), 0) * (random(-1, 1) > 0 ? 1 : -1);
+  for (int n = 0; n < 12; ++n) {
+    const double gap = -brute.deepest(body, m, 2, 4).depth;
+    if (std::abs(gap) < 2e-3) return m;
+    const Vec3 step = std::clamp(gap, -0.3 * module_mm, 0.3 * module_mm) * 0.9 * aside;
+    m.tip_from += step;
+    m.tip_to += step;
+  }
+  return m;
+}
+
 // Poses near contact, half of them turning, in spaces of random gears: the deepest place of dense samples stays below the bound, and the
 // bound comes close to what was found.
 TEST(RandomPoses, TheBoundCoversDenseSampling) {
@@ -336,23 +346,7 @@ TEST(RandomPoses, TheBoundCoversDenseSampling) {
       const auto tool = tool::proof_tool(profile_of(data), 1);
       const auto body = brute_body(dense_meridian(data));
       for (int run = 0; run < 3; ++run) {
-        const int zone = int(random.index(std::size_t(part.zones())));
-        const auto& ring = part.space(zone).ring().zone;
-        const double r = random(ring.inner_radius_mm, ring.outer_radius_mm), azimuth = part.space_azimuth(zone, r);
-        path::ToolMotion m;
-        m.axis_from = (Vec3::UnitZ() + random.vector(0.35)).normalized();
-        m.axis_to = run % 2 == 0 ? Vec3((m.axis_from + random.vector(0.02)).normalized()) : m.axis_from;
-        m.tip_from = Vec3(r * std::cos(azimuth), r * std::sin(azimuth), gear.lowest_root() + random(0.3, 1.2) * m_n) + random.vector(0.1 * m_n);
-        m.tip_to = m.tip_from + random.vector(0.08 * m_n);
-        // Moved aside until it nearly touches.
-        const Vec3 aside = Vec3(-std::sin(azimuth), std::cos(azimuth), 0) * (random(-1, 1) > 0 ? 1 : -1);
-        for (int n = 0; n < 12; ++n) {
-          const double gap = -brute.deepest(body, m, 2, 4).depth;
-          if (std::abs(gap) < 2e-3) break;
-          const Vec3 step = std::clamp(gap, -0.3 * m_n, 0.3 * m_n) * 0.9 * aside;
-          m.tip_from += step;
-          m.tip_to += step;
-        }
+        const auto m = grazing(random, gear, part, brute, body, m_n, run % 2 == 0);
         analytic::ProfileSweep sweep(part, tool, 2e-4, 0.002);
         const auto found = sweep.check(m);
         const double truth = brute.deepest(body, m, 10, 24).depth;
@@ -372,6 +366,76 @@ TEST(RandomPoses, TheBoundCoversDenseSampling) {
   EXPECT_GE(near, 30);
   EXPECT_LT(widest, 2.5e-4);
   EXPECT_LT(deepest_missed, 1.5e-4);
+}
+
+// Motions that state how far they may stray: wherever the tool then goes, it is no deeper than the bound.
+TEST(RandomPoses, TheBoundCoversStatedDeviations) {
+  Random random(78);
+  double closest = INFINITY;
+  for (int k = 0; k < 3; ++k) {
+    const auto job = random_job(random, k);
+    const auto gear = made(job.gear);
+    const analytic::GearDistance part(gear, 5);
+    const BruteForceBodies brute(gear, 14, 14);
+    const auto& data = job.tools[0];
+    const auto tool = tool::proof_tool(profile_of(data), 1);
+    const auto body = brute_body(dense_meridian(data));
+    for (int run = 0; run < 4; ++run) {
+      auto m = grazing(random, gear, part, brute, body, job.gear.module_mm, run % 2 == 0);
+      m.deviation_mm = 1e-3;
+      m.axis_deviation = 5e-4;
+      analytic::ProfileSweep sweep(part, tool, 2e-4, 0.002);
+      const double bound = sweep.check(m).bound_mm;
+      const auto straight = brute.deepest(body, m, 10, 24);
+      for (int n = 0; n < 12; ++n) {
+        auto strayed = m;
+        const Vec3 off = m.deviation_mm * random.vector(1).normalized(), lean = m.axis_deviation * random.vector(1).normalized();
+        strayed.tip_from += off;
+        strayed.tip_to += off;
+        strayed.axis_from = (m.axis_from + lean - lean.dot(m.axis_from) * m.axis_from).normalized();
+        strayed.axis_to = (m.axis_to + lean - lean.dot(m.axis_to) * m.axis_to).normalized();
+        const double truth = brute.improved(body, strayed, straight).depth;
+        EXPECT_GE(bound, truth) << job.name << " run " << run;
+        closest = std::min(closest, bound - truth);
+      }
+    }
+  }
+  std::printf("stated deviations: the bound lies %.3f um above the deepest strayed pose at least\n", 1e3 * closest);
+}
+
+// Line plans on random gears: what the swept flank shows is found, and bounded as closely as on the gears of the project.
+TEST(RandomGears, LinePlans) {
+  Random random(31);
+  int plans = 0;
+  for (int k = 0; k < 9 && plans < 6; ++k) {
+    const auto drawn = random_job(random, k);
+    LineJob job{drawn.name, drawn.gear, drawn.tools.front()};
+    job.tool.diameter_mm = 0.36 * job.parameters.module_mm;
+    job.tool.half_angle_rad = radians(5);
+    job.tool.flute_length_mm = 4.2 * job.parameters.module_mm;
+    std::optional<Planned> p;
+    try {
+      p.emplace(planned(job, 0));
+    } catch (const std::runtime_error& refused) {
+      std::printf("%s, m %.2f refused: %s\n", job.name.c_str(), job.parameters.module_mm, refused.what());
+      continue;
+    }
+    ++plans;
+    for (const auto& planned_pass : p->plan.passes) {
+      const auto pass = pass_of(*p, planned_pass.zone, planned_pass.side);
+      const auto truth = swept(flank_points(*p, job.parameters, planned_pass.zone, planned_pass.side, 15, 9),
+                               {0.5 * job.tool.diameter_mm, job.tool.half_angle_rad, 0, 0}, pass.way);
+      const auto r = checked(*p, pass.motions, p->tool);
+      std::printf("%-14s m %.2f zone %d side %+d: misfit %.2f um, swept %.3f um, found %.3f um on %s, bound %.3f um, shortened %.3f mm\n", job.name.c_str(),
+                  job.parameters.module_mm, planned_pass.zone, planned_pass.side, 1e3 * planned_pass.misfit_mm, 1e3 * truth.gouge, 1e3 * r.measured_mm,
+                  r.deepest.patch.c_str(), 1e3 * r.bound_mm, planned_pass.shortened_mm);
+      EXPECT_GE(r.bound_mm, truth.gouge);
+      EXPECT_GE(r.measured_mm, truth.gouge - 1e-4);
+      EXPECT_LE(r.bound_mm, std::max(r.measured_mm, 0.0) + 2.5e-4);
+      EXPECT_LT(r.bound_mm, 6e-4);
+    }
+  }
+  EXPECT_GE(plans, 4);
 }
 
 // Bodies of the proof against the dense meridian: nowhere inside of it, and no farther outside than they say.
