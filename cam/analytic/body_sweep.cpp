@@ -212,18 +212,19 @@ class Sweep {
   /// A tangent plane of the signed distance at a place of the hull, and the corner that lies deepest under it.
   struct Tangent {
     Vec3 at = Vec3::Zero(), gradient = Vec3::Zero();
-    double distance = 0, least = INFINITY;
+    double distance = 0, fall = INFINITY;  ///< there, and from there to the deepest corner
     std::size_t deepest = 0;
+    /// Bound over the hull, less what it may stand above the surface and what the motion leaves of it.
+    [[nodiscard]] double least(double over = 0, double lost = 0) const { return fall + (distance - over - lost); }
   };
   [[nodiscard]] Tangent tangent(const Seen& s, const Vec3& at) const {
     const auto [d, g] = tool::rounded_slope(at, body_);
     Tangent t{at, g, d, INFINITY, 0};
     for (std::size_t k = 0; k < s.count(); ++k)
-      if (const double low = g.dot(s.x[k] - at); low < t.least) {
-        t.least = low;
+      if (const double fall = g.dot(s.x[k] - at); fall < t.fall) {
+        t.fall = fall;
         t.deepest = k;
       }
-    t.least += d;
     return t;
   }
 
@@ -236,7 +237,7 @@ class Sweep {
     Tangent best = first;
     last = first;
     for (std::size_t k = 0; k < s.count(); ++k) shares[k] = 1.0 / double(s.count());
-    for (int k = 0; k < kTangents && best.least < enough && last.distance >= enough; ++k) {
+    for (int k = 0; k < kTangents && best.least() < enough && last.distance >= enough; ++k) {
       const Vec3 from = last.at, way = s.x[last.deepest] - from;
       const double slope = last.gradient.dot(way);
       if (!(slope < 0)) break;
@@ -244,12 +245,12 @@ class Sweep {
       // The zero of the slope along the way, by false position that keeps its bracket (Illinois).
       double a = 0, fa = slope, b = 1, x = 1;
       Tangent t = tangent(s, s.x[corner]);
-      if (t.least > best.least) best = t;
+      if (t.least() > best.least()) best = t;
       double fb = t.gradient.dot(way);
       for (int n = 0; n < kSecants && fb > 0; ++n) {
         x = a + (b - a) * fa / (fa - fb);
         t = tangent(s, from + x * way);
-        if (t.least > best.least) best = t;
+        if (t.least() > best.least()) best = t;
         const double f = t.gradient.dot(way);
         if (std::abs(f) < kFlat * -slope) break;
         if (f < 0) {
@@ -287,7 +288,7 @@ class Sweep {
       // The tangent plane at the middle, under every corner, less what the surface and the motion leave of the hull.
       const Tangent middle = tangent(s, s.centre);
       const double sag = turns_ ? patches.sag(target.cell, piece.quad) : 0, lost = slack(s.arm + sag, dt);
-      double over = above(piece, target, middle.gradient), least = middle.least - over - lost;
+      double over = above(piece, target, middle.gradient), least = middle.least(over, lost);
       const double fixed = m_.deviation_mm + m_.axis_deviation * s.arm;
       if (o_.touching && least < std::min(best_, o_.enough_mm)) least = std::max(least, touched(piece, target, s, middle, over, lost, fixed));
       if (least >= std::min(best_, o_.enough_mm)) {
@@ -318,7 +319,7 @@ class Sweep {
     const Tangent best = nearest_tangent(s, middle, wanted + over + lost, last, shares);
     if (last.distance - over < best_) look_between(piece, target, s, shares);
     over = above(piece, target, best.gradient);
-    return best.least - over - lost;
+    return best.least(over, lost);
   }
 
   /// The place of the surface with these shares of the corners, at the moment with the shares of both ends.

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kFreeAhead = 0.4;    // mm: so much farther a body in the open is looked at, so that later motions need not
 constexpr double kClose = 0.01;       // mm: smaller gaps are followed to proof_mm,
+constexpr double kUnknownDepth = 1;   // mm: told where the surfaces of the part cannot be followed
 constexpr double kApartProof = 0.004;  // mm: larger ones to this
 
 }  // namespace
@@ -55,6 +56,11 @@ void ProfileSweep::look(Body& body, const path::ToolMotion& m) {
 CutterFinding ProfileSweep::check(const path::ToolMotion& m) {
   found_ = {};
   found_.body = ball_top_ > 0 ? "ball" : "flute";
+  if (part_.refusal()) {  // nothing is known of where the part is
+    found_.measured_mm = found_.bound_mm = kUnknownDepth;
+    found_.deepest.patch = "inside";
+    return found_;
+  }
   for (Body& body : bodies_) {
     if (left_of(body, m) < kProfileLook) {
       look(body, m);

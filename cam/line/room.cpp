@@ -1,5 +1,6 @@
 #include "cam/line/room.h"
 
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -24,6 +25,7 @@ Room room_of(const analytic::GearDistance& part, const tool::Profile& profile, c
   const auto tool = std::make_shared<const tool::ProofTool>(tool::proof_tool(profile, 0));
   const double r_0 = profile.law() ? profile.law()->r_0 : 0;
   return [&part, tool, r_0, options](const AxisLine<double>& axis) -> std::optional<Blocked> {
+    if (part.refusal()) return Blocked{"flute", "inside", -INFINITY, 0};
     const auto m = standing(axis, r_0);
     analytic::SweptGapOptions cutting;
     cutting.touching = true;
