@@ -18,6 +18,11 @@ constexpr double kSmallestQuad = 1e-5;  // mm: smaller quads are not halved
 constexpr std::size_t kMostPieces = 200000;
 constexpr int kTeeth = 1 << 20;       // a gear has fewer
 constexpr double kRoundOff = 1 + 1e-9;
+constexpr int kTangents = 8;     // planes by which a touching body is brought near to a hull
+constexpr int kSecants = 4;      // of the way to each
+constexpr double kFlat = 0.02;   // share of the first slope at which a way ends
+constexpr double kTimeMatters = 0.1;  // of the contact's proof
+constexpr double kLongWay = 4;   // sizes of a quad that it may pass by undivided
 
 
 /// A quad of the part during a stretch of the motion.
@@ -34,6 +39,7 @@ struct Target {
   double cosine = 1, sine = 0;  ///< of the turn from space 0
   double found = INFINITY;
   Vec3 at = Vec3::Zero();  ///< in space 0
+  double height = 0;       ///< above the tip
 
   [[nodiscard]] Vec3 placed(const Vec3& p) const { return {cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y(), p.z()}; }
   [[nodiscard]] Vec3 back(const Vec3& p) const { return {cosine * p.x() + sine * p.y(), cosine * p.y() - sine * p.x(), p.z()}; }
@@ -51,8 +57,8 @@ struct View {
 
 class Sweep {
  public:
-  Sweep(const GearDistance& part, const tool::Frustum& body, const path::ToolMotion& m, const SweptGapOptions& options)
-      : part_(part), f_(body), m_(m), o_(options), widest_(std::max(body.radius_from, body.radius_to)), arm_(std::hypot(body.to, widest_)) {
+  Sweep(const GearDistance& part, const tool::RoundedFrustum& body, const path::ToolMotion& m, const SweptGapOptions& options)
+      : part_(part), body_(body), f_(body.core), m_(m), o_(options), widest_(body.widest()), arm_(std::hypot(body.core.to + body.round, widest_)) {
     const Vec3 cross = m.axis_from.cross(m.axis_to);
     turns_ = m.axis_from != m.axis_to;
     normal_ = cross.norm() > 0 ? Vec3(cross.normalized()) : Vec3(m.axis_from.unitOrthogonal());
@@ -68,6 +74,7 @@ class Sweep {
     if (above >= o_.enough_mm) return out;
     gather();
     prove();
+    out.pieces = examined_;
     out.proven_mm = std::max(std::min(o_.enough_mm, proven_), above);
     const Target* best = nullptr;
     for (const auto& t : targets_)
@@ -76,6 +83,7 @@ class Sweep {
     out.measured_mm = std::max(best->found, out.proven_mm);
     out.zone = best->zone;
     out.place = best->at;
+    out.height_mm = best->height;
     out.patch = part_.patches(best->zone).name(best->cell);
     return out;
   }
@@ -83,7 +91,7 @@ class Sweep {
  private:
   /// Lowest height of the body over the whole motion.
   [[nodiscard]] double least_height() const {
-    const double ends = std::min(tool::lowest_z(f_, m_.tip_from, m_.axis_from), tool::lowest_z(f_, m_.tip_to, m_.axis_to));
+    const double ends = std::min(tool::lowest_z(body_, m_.tip_from, m_.axis_from), tool::lowest_z(body_, m_.tip_to, m_.axis_to));
     return ends - arm_ * ((m_.axis_to - m_.axis_from).norm() + m_.axis_deviation) - m_.deviation_mm;
   }
   [[nodiscard]] View view(double t) const {
@@ -97,21 +105,29 @@ class Sweep {
     return m_.deviation_mm + m_.axis_deviation * arm + (T * T * std::sqrt(1 + T * T) * arm + 2 * T * travel_) * dt * dt / 8;
   }
 
+  /// Largest radius between two heights.
+  [[nodiscard]] double widest_between(double low, double high) const {
+    const auto at = [&](double h) { return f_.radius_from + std::clamp((h - f_.from) / (f_.to - f_.from), 0.0, 1.0) * (f_.radius_to - f_.radius_from); };
+    return std::max(at(low - body_.round), at(high + body_.round)) + body_.round;
+  }
+
   /// Cells that may come near at any moment, each once: zone, tooth, cell in order.
   [[nodiscard]] std::vector<std::uint64_t> near_cells(double enough) const {
     const double way = travel_ + arm_ * (m_.axis_to - m_.axis_from).norm();
     const int parts = std::clamp(int(std::ceil(way / (widest_ + o_.enough_mm))), 1, 4096);
-    const int links = std::max(1, int(std::ceil((f_.to - f_.from) / std::max(widest_, 0.5))));
-    const double half = 0.5 * (f_.to - f_.from) / links, pitch = part_.gear().pitch();
+    const double low = f_.from - body_.round, length = f_.to - f_.from + 2 * body_.round;
+    const int links = std::max(1, int(std::ceil(length / std::max(widest_, 0.5))));
+    const double half = 0.5 * length / links, pitch = part_.gear().pitch();
     std::vector<std::uint64_t> keys;
     for (int zone = 0; zone < part_.zones(); ++zone) {
       const auto& ring = part_.space(zone).ring().zone;
-      const double reach = std::hypot(widest_, half) + enough + 0.5 * way / parts + part_.patches(zone).search_margin();
+      const double beyond = enough + 0.5 * way / parts + part_.patches(zone).search_margin();
       const double end = zone + 1 < part_.zones() ? part_.space(zone + 1).ring().zone.inner_radius_mm : ring.outer_radius_mm;
       for (int q = 0; q < parts; ++q)
         for (int k = 0; k < links; ++k) {
-          const double t = (q + 0.5) / parts;
-          const Vec3 x = path::tip_at(m_, t) + path::axis_at(m_, t) * (f_.from + (2 * k + 1) * half);
+          const double widest = o_.touching ? widest_between(low + 2 * k * half, low + (2 * k + 2) * half) : widest_;
+          const double t = (q + 0.5) / parts, reach = std::hypot(widest, half) + beyond;
+          const Vec3 x = path::tip_at(m_, t) + path::axis_at(m_, t) * (low + (2 * k + 1) * half);
           if (x.z() - reach > part_.gear().blank_top()) continue;
           const double r = std::hypot(x.x(), x.y());
           if (r + reach < ring.inner_radius_mm || r - reach > end) continue;
@@ -144,8 +160,8 @@ class Sweep {
       const double arm = std::sqrt(std::max(a.squaredNorm(), b.squaredNorm()));
       const double away = 0.5 * (b - a).norm() + slack(arm, 1) + patches.radius(cell.cell);
       const Vec3 middle = 0.5 * (a + b);
-      if (in_T.beyond(middle, (enough + away) * kRoundOff)) continue;
-      const double least = tool::frustum_distance(middle, f_) - away;
+      if (in_T.beyond(middle, (enough + away + body_.round) * kRoundOff)) continue;
+      const double least = tool::rounded_distance(middle, body_) - away;
       if (least <= enough) order.push_back({least, cell});
     }
     // The nearest comes last and is looked at first.
@@ -156,11 +172,12 @@ class Sweep {
     }
   }
 
-  void note(Target& target, double gap, const Vec3& place) {
+  void note(Target& target, double gap, const Vec3& place, double height) {
     best_ = std::min(best_, gap);
     if (gap >= target.found) return;
     target.found = gap;
     target.at = place;
+    target.height = height;
   }
 
   /// How far below a gap that was found the bound of a piece may lie.
@@ -168,9 +185,97 @@ class Sweep {
     return gap >= o_.contact_mm ? o_.proof_mm : std::max(0.5 * o_.contact_proof_mm, -0.1 * (gap + kWreckDepth));
   }
 
+  /// The corners of a piece at both ends of its time, as the tool sees them.
+  struct Seen {
+    BodyHull hull;
+    View from, to;
+    std::array<Vec3, 2 * std::tuple_size_v<decltype(BodyHull::corner)>> x;
+    double arm = 0, moved = 0;
+    Vec3 centre = Vec3::Zero();
+    [[nodiscard]] std::size_t count() const { return 2 * hull.count; }
+  };
+  [[nodiscard]] Seen seen(const Piece& piece, const Target& target, const BodyHull& hull) const {
+    Seen s{hull, view(piece.t0), view(piece.t1), {}, 0, 0, Vec3::Zero()};
+    for (std::size_t k = 0; k < hull.count; ++k) {
+      const Vec3 p = target.placed(hull.corner[k].p);
+      const Vec3 &a = s.x[2 * k] = s.from(p), &b = s.x[2 * k + 1] = s.to(p);
+      s.arm = std::max({s.arm, a.squaredNorm(), b.squaredNorm()});
+      s.moved = std::max(s.moved, (b - a).squaredNorm());
+      s.centre += a + b;
+    }
+    s.arm = std::sqrt(s.arm);
+    s.moved = std::sqrt(s.moved);
+    s.centre /= double(s.count());
+    return s;
+  }
+
+  /// A tangent plane of the signed distance at a place of the hull, and the corner that lies deepest under it.
+  struct Tangent {
+    Vec3 at = Vec3::Zero(), gradient = Vec3::Zero();
+    double distance = 0, fall = INFINITY;  ///< there, and from there to the deepest corner
+    std::size_t deepest = 0;
+    /// Bound over the hull, less what it may stand above the surface and what the motion leaves of it.
+    [[nodiscard]] double least(double over = 0, double lost = 0) const { return fall + (distance - over - lost); }
+  };
+  [[nodiscard]] Tangent tangent(const Seen& s, const Vec3& at) const {
+    const auto [d, g] = tool::rounded_slope(at, body_);
+    Tangent t{at, g, d, INFINITY, 0};
+    for (std::size_t k = 0; k < s.count(); ++k)
+      if (const double fall = g.dot(s.x[k] - at); fall < t.fall) {
+        t.fall = fall;
+        t.deepest = k;
+      }
+    return t;
+  }
+
+  /// Shares of the corners in a place of the hull.
+  using Shares = std::array<double, 2 * std::tuple_size_v<decltype(BodyHull::corner)>>;
+
+  /// Nearer to where the body comes nearest to the hull (Frank and Wolfe: towards the corner that lies deepest under the tangent, as far as the
+  /// distance falls), until the plane there bounds enough, or nothing could. The best plane met; `shares` of the last place.
+  [[nodiscard]] Tangent nearest_tangent(const Seen& s, const Tangent& first, double enough, Tangent& last, Shares& shares) const {
+    Tangent best = first;
+    last = first;
+    for (std::size_t k = 0; k < s.count(); ++k) shares[k] = 1.0 / double(s.count());
+    for (int k = 0; k < kTangents && best.least() < enough && last.distance >= enough; ++k) {
+      const Vec3 from = last.at, way = s.x[last.deepest] - from;
+      const double slope = last.gradient.dot(way);
+      if (!(slope < 0)) break;
+      const std::size_t corner = last.deepest;
+      // The zero of the slope along the way, by false position that keeps its bracket (Illinois).
+      double a = 0, fa = slope, b = 1, x = 1;
+      Tangent t = tangent(s, s.x[corner]);
+      if (t.least() > best.least()) best = t;
+      double fb = t.gradient.dot(way);
+      for (int n = 0; n < kSecants && fb > 0; ++n) {
+        x = a + (b - a) * fa / (fa - fb);
+        t = tangent(s, from + x * way);
+        if (t.least() > best.least()) best = t;
+        const double f = t.gradient.dot(way);
+        if (std::abs(f) < kFlat * -slope) break;
+        if (f < 0) {
+          a = x, fa = f, fb *= 0.5;
+        } else {
+          b = x, fb = f, fa *= 0.5;
+        }
+      }
+      last = t;
+      for (std::size_t n = 0; n < s.count(); ++n) shares[n] *= 1 - x;
+      shares[corner] += x;
+    }
+    return best;
+  }
+
+  /// What surface and motion may leave of the hull along the gradient of a plane.
+  [[nodiscard]] double above(const Piece& piece, const Target& target, const Vec3& g) const {
+    const auto& patches = part_.patches(target.zone);
+    const double sag = turns_ ? patches.sag(target.cell, piece.quad) : 0;  // g turns with the tool
+    return patches.above(target.cell, piece.quad, target.back(view(0.5 * (piece.t0 + piece.t1)).direction(g))) +
+           0.5 * (piece.t1 - piece.t0) * turn_rate_ * sag;
+  }
+
   void prove() {
     best_ = o_.enough_mm;
-    std::size_t examined = 0;
     while (!pieces_.empty()) {
       const Piece piece = pieces_.back();
       pieces_.pop_back();
@@ -178,57 +283,77 @@ class Sweep {
       const auto& patches = part_.patches(target.zone);
       const BodyHull hull = patches.outline(target.cell, piece.quad);
       if (hull.count == 0) continue;  // wholly beyond the ring
-      const double t = 0.5 * (piece.t0 + piece.t1), dt = piece.t1 - piece.t0;
-      const View from = view(piece.t0), to = view(piece.t1);
-      std::array<Vec3, 2 * std::tuple_size_v<decltype(hull.corner)>> x;
-      double arm = 0, moved = 0;
-      Vec3 centre = Vec3::Zero();
-      for (std::size_t k = 0; k < hull.count; ++k) {
-        const Vec3 p = target.placed(hull.corner[k].p);
-        const Vec3 &a = x[2 * k] = from(p), &b = x[2 * k + 1] = to(p);
-        arm = std::max({arm, a.squaredNorm(), b.squaredNorm()});
-        moved = std::max(moved, (b - a).squaredNorm());
-        centre += a + b;
-      }
-      arm = std::sqrt(arm);
-      moved = std::sqrt(moved);
-      centre /= double(2 * hull.count);
+      const double dt = piece.t1 - piece.t0;
+      const Seen s = seen(piece, target, hull);
       // The tangent plane at the middle, under every corner, less what the surface and the motion leave of the hull.
-      const auto [d, g] = tool::frustum_slope(centre, f_);
-      double least = INFINITY;
-      for (std::size_t k = 0; k < 2 * hull.count; ++k) least = std::min(least, g.dot(x[k] - centre));
-      const double sag = turns_ ? patches.sag(target.cell, piece.quad) : 0;  // g turns with the tool
-      const double above = patches.above(target.cell, piece.quad, target.back(view(t).direction(g))) + 0.5 * dt * turn_rate_ * sag;
-      least += d - above - slack(arm + sag, dt);
+      const Tangent middle = tangent(s, s.centre);
+      const double sag = turns_ ? patches.sag(target.cell, piece.quad) : 0, lost = slack(s.arm + sag, dt);
+      double over = above(piece, target, middle.gradient), least = middle.least(over, lost);
+      const double fixed = m_.deviation_mm + m_.axis_deviation * s.arm;
+      if (o_.touching && least < std::min(best_, o_.enough_mm)) least = std::max(least, touched(piece, target, s, middle, over, lost, fixed));
       if (least >= std::min(best_, o_.enough_mm)) {
         proven_ = std::min(proven_, least);
         continue;
       }
-      for (std::size_t k = 0; k < 2 * hull.count; ++k) look(target, patches, hull.corner[k / 2], x[k], k % 2 == 0 ? from : to);
+      for (std::size_t k = 0; k < s.count(); ++k) look(target, patches, s.hull.corner[k / 2], s.x[k], k % 2 == 0 ? s.from : s.to);
       if (best_ < -std::max(0.25, 0.1 * widest_)) {
         proven_ = -widest_;  // no place lies deeper in a body than its radius
         return;
       }
-      const double fixed = m_.deviation_mm + m_.axis_deviation * arm;
       double size = 0;
       for (std::size_t k = 0; k < 4; ++k) size = std::max(size, (piece.quad.corner[k] - piece.quad.corner[(k + 1) % 4]).norm());
-      if (least + fixed >= best_ - leeway(std::min(best_, least + fixed)) || std::max(size, moved) < kSmallestQuad || ++examined > kMostPieces ||
-          !std::isfinite(least)) {
+      if (least + fixed >= best_ - leeway(std::min(best_, least + fixed)) || least + fixed >= o_.settled_mm || std::max(size, s.moved) < kSmallestQuad ||
+          ++examined_ > kMostPieces || !std::isfinite(least)) {
         proven_ = std::min(proven_, std::isfinite(least) ? least : -widest_);
         continue;
       }
-      halve(piece, patches, target.cell, moved + dt * turn_rate_ * arm > size);
+      halve(piece, patches, target.cell, o_.touching ? in_time(piece, s, size, over) : s.moved + dt * turn_rate_ * s.arm > size);
     }
+  }
+
+  /// The bound of a piece by planes where the body comes nearest, and what is found there. @param over what the surface leaves along the first plane
+  double touched(const Piece& piece, Target& target, const Seen& s, const Tangent& middle, double& over, double lost, double fixed) {
+    const double wanted = std::min(best_ - leeway(best_), o_.settled_mm) - fixed;
+    Tangent last;
+    Shares shares{};
+    const Tangent best = nearest_tangent(s, middle, wanted + over + lost, last, shares);
+    if (last.distance - over < best_) look_between(piece, target, s, shares);
+    over = above(piece, target, best.gradient);
+    return best.least(over, lost);
+  }
+
+  /// The place of the surface with these shares of the corners, at the moment with the shares of both ends.
+  void look_between(const Piece& piece, Target& target, const Seen& s, const Shares& shares) {
+    Vec2 at = Vec2::Zero();
+    double later = 0;
+    for (std::size_t k = 0; k < s.count(); ++k) {
+      at += shares[k] * s.hull.corner[k / 2].at;
+      if (k % 2 == 1) later += shares[k];
+    }
+    const auto p = part_.patches(target.zone).settled(target.cell, at);
+    if (!p) return;
+    const Vec3 x = view(piece.t0 + later * (piece.t1 - piece.t0))(target.placed(*p));
+    note(target, tool::rounded_distance(x, body_), *p, x.z());
+  }
+
+  /// Is time halved, or the quad? Time where the arc of the axis or the turn between the corners loses more than the bend of the surface, and enough to
+  /// matter; and where the quad passes by far. What else a bound lacks, corners beyond the ring or a plane that is not the best, goes with the quad.
+  [[nodiscard]] bool in_time(const Piece& piece, const Seen& s, double size, double over) const {
+    const double dt = piece.t1 - piece.t0, arcs = slack(s.arm, dt) - m_.deviation_mm - m_.axis_deviation * s.arm;
+    const double twist = 0.25 * dt * turn_rate_ * size;  // between the corners, out of one plane
+    return arcs + twist > std::max(over, kTimeMatters * o_.contact_proof_mm) || s.moved > kLongWay * size;
   }
 
   /// The gap of a corner, where it can be the least: of a place of the surface only.
   void look(Target& target, const BodyPatches& patches, const FacetCorner& corner, const Vec3& seen, const View& at) {
-    const double gap = tool::frustum_distance(seen, f_);
+    const double gap = tool::rounded_distance(seen, body_);
     if (corner.stands) {
-      note(target, gap, corner.p);
+      note(target, gap, corner.p, seen.z());
     } else if (gap < best_) {
       const auto p = patches.settled(target.cell, corner.at);
-      if (p) note(target, tool::frustum_distance(at(target.placed(*p)), f_), *p);
+      if (!p) return;
+      const Vec3 x = at(target.placed(*p));
+      note(target, tool::rounded_distance(x, body_), *p, x.z());
     }
   }
 
@@ -246,6 +371,7 @@ class Sweep {
   }
 
   const GearDistance& part_;
+  const tool::RoundedFrustum& body_;
   const tool::Frustum& f_;
   const path::ToolMotion& m_;
   const SweptGapOptions& o_;
@@ -256,12 +382,17 @@ class Sweep {
   std::vector<Piece> pieces_;
   double proven_ = INFINITY;
   double best_ = INFINITY;  // least gap found
+  std::size_t examined_ = 0;
 };
 
 }  // namespace
 
-SweptGap swept_gap(const GearDistance& part, const tool::Frustum& body, const path::ToolMotion& motion, const SweptGapOptions& options) {
+SweptGap swept_gap(const GearDistance& part, const tool::RoundedFrustum& body, const path::ToolMotion& motion, const SweptGapOptions& options) {
   return Sweep(part, body, motion, options).run();
+}
+
+SweptGap swept_gap(const GearDistance& part, const tool::Frustum& body, const path::ToolMotion& motion, const SweptGapOptions& options) {
+  return swept_gap(part, tool::RoundedFrustum{body, 0}, motion, options);
 }
 
 }  // namespace toothpath::analytic

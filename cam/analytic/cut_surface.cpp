@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "cam/analytic/swept_path.h"
+#include "cam/analytic/swept_tool.h"
 #include "cam/analytic/unreached.h"
 #include "cam/analytic/zone_places.h"
 #include "geometry/face_gear/shaper.h"
@@ -19,6 +20,7 @@ constexpr double kReachTolerance = 1e-4;
 constexpr double kSamePlace = 1e-6;  // a foot this near to a place of the grid is that place, mm
 constexpr int kHistogramBins = 40;
 constexpr int kCrestSteps = 10;  // of a golden section: a hundredth of what the samples leave
+constexpr double kSharpEnd = 0.02;  // mm: diameter of the ball that stands for the corner of a flat cutter
 
 /// A line across the tooth space: the excess above the allowance from tip to tip.
 struct LinePoint {
@@ -40,8 +42,22 @@ class Meter {
       for (const auto& m : motions)
         if (m.operation == int(n) && m.tooth == 0 && !m.rapid)
           moves.push_back({m.tip_from + R * m.axis_from, m.tip_to + R * m.axis_to});
-      paths_.push_back(std::make_unique<SweptPath>(std::move(moves), R));
+      paths_.push_back(std::make_unique<Removed>(std::move(moves), R));
     }
+  }
+  /// @param bodies  of the same tools
+  Meter(const GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
+        const std::vector<tool::ToolAssembly>& tools, const std::vector<tool::ProofTool>& bodies, const CutSurfaceOptions& options)
+      : Meter(part, {}, operations, tools, options) {
+    paths_.clear();
+    for (std::size_t n = 0; n < operations.size(); ++n) {
+      std::vector<path::ToolMotion> cuts;
+      for (const auto& m : motions)
+        if (m.operation == int(n) && m.tooth == 0 && !m.rapid) cuts.push_back(m);
+      paths_.push_back(std::make_unique<Removed>(std::move(cuts), bodies[std::size_t(operations[n].tool)], part.gear().blank_top()));
+    }
+    for (std::size_t n = 0; n + 1 < operations.size(); ++n)
+      if (operations[n].allowance_mm == operations.back().allowance_mm && operations[n].type != path::OperationType::roughing) paths_.back()->also(paths_[n].get());
   }
 
   CutSurface run() {
@@ -308,7 +324,7 @@ class Meter {
   const std::vector<path::MillingOperation>& operations_;
   const std::vector<tool::ToolAssembly>& tools_;
   CutSurfaceOptions o_;
-  std::vector<std::unique_ptr<SweptPath>> paths_;
+  std::vector<std::unique_ptr<Removed>> paths_;
   std::vector<double> cusps_;
   std::vector<double> active_end_;  ///< roll parameter at the end of the active flank, a zone each
   double line_step_ = 0, line_max_ = 0, fillet_cusp_ = 0;
@@ -321,6 +337,16 @@ CutSurface measure_cut_surface(const GearDistance& part, const std::vector<path:
                                const std::vector<path::MillingOperation>& operations, const std::vector<tool::ToolAssembly>& tools,
                                const CutSurfaceOptions& options) {
   return Meter(part, motions, operations, tools, options).run();
+}
+
+CutSurface measure_cut_surface(const GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
+                               const std::vector<tool::ProofTool>& tools, const CutSurfaceOptions& options) {
+  std::vector<tool::ToolAssembly> balls;
+  for (const auto& t : tools) {
+    balls.push_back(t.ball_mill.value_or(tool::ToolAssembly{}));
+    if (!t.ball_mill) balls.back().diameter_mm = std::max(kSharpEnd, t.cutting.empty() ? 0.0 : 2 * t.cutting.front().round);
+  }
+  return Meter(part, motions, operations, balls, tools, options).run();
 }
 
 }  // namespace toothpath::analytic

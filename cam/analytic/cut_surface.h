@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cam/tool/assembly.h"
+#include "cam/tool/proof_tool.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/path/operation.h"
 #include "cam/path/tool_motion.h"
@@ -39,5 +40,12 @@ struct CutSurface {
 [[nodiscard]] CutSurface measure_cut_surface(const GearDistance& part, const std::vector<path::ToolMotion>& motions,
                                              const std::vector<path::MillingOperation>& operations,
                                              const std::vector<tool::ToolAssembly>& tools, const CutSurfaceOptions& options = {});
+
+/// The same for any mills: the excess is that of their cutting bodies. Operations that finish different regions (the same allowance as the last
+/// one) count together where cusps are looked for. A place counts as reachable where the ball end of the last tool fits, or a ball of the
+/// corner radius of a bull nose; everywhere for a flat cutter.
+[[nodiscard]] CutSurface measure_cut_surface(const GearDistance& part, const std::vector<path::ToolMotion>& motions,
+                                             const std::vector<path::MillingOperation>& operations, const std::vector<tool::ProofTool>& tools,
+                                             const CutSurfaceOptions& options = {});
 
 }  // namespace toothpath::analytic

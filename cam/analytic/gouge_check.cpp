@@ -8,6 +8,7 @@
 
 #include "cam/analytic/body_sweep.h"
 #include "cam/analytic/cutter_sweep.h"
+#include "cam/analytic/profile_sweep.h"
 #include "cam/proof/gouge_merge.h"
 #include "cam/path/motion_blend.h"
 #include "cam/path/motions.h"
@@ -48,13 +49,12 @@ proof::WorstPlace place_of(const SweptGap& gap, const path::ToolMotion& m, const
 /// Motions that follow one another, checked by one thread.
 class Chunk {
  public:
-  Chunk(const GearDistance& part, const std::vector<tool::ToolAssembly>& tools, const GougeCheckOptions& options)
+  Chunk(const GearDistance& part, const std::vector<tool::ProofTool>& tools, const GougeCheckOptions& options)
       : part_(part), tools_(tools), o_(options), out_(proof::no_motion_yet(options.clearance_mm)) {}
 
   void check(const path::ToolMotion& m, int tool) {
     if (tool != tool_) take(tool);
-    const auto& assembly = tools_[std::size_t(tool)];
-    const auto cut = cutter_->check(m);
+    const auto cut = ball_ ? ball_->check(m) : profile_->check(m);
     if (cut.measured_mm > out_.measured_mm) {
       out_.measured_mm = cut.measured_mm;
       note_deepest(out_, place_of(cut.deepest, m, cut.measured_mm, cut.body));
@@ -67,9 +67,9 @@ class Chunk {
       add_worst(out_, place_of(cut.deepest, m, depth, cut.body));
     for (Body& body : bodies_) clearance(body, m);
     if (m.rapid) {
-      const auto proof = proof::prove_rapid(m, assembly,
-                                     {part_.gear().outer_radius(), part_.gear().inner_radius(), o_.rapid_height_mm,
-                                      -std::numeric_limits<double>::infinity()});
+      const proof::RapidObstacle blank{part_.gear().outer_radius(), part_.gear().inner_radius(), o_.rapid_height_mm, -std::numeric_limits<double>::infinity()};
+      const auto& used = tools_[std::size_t(tool)];
+      const auto proof = used.ball_mill ? proof::prove_rapid(m, *used.ball_mill, blank) : proof::prove_rapid(m, used, blank);
       if (!proof.clear) {
         out_.rapids_clear = false;
         proof::WorstPlace w = place_of(cut.deepest, m, 0, "rapid");
@@ -96,14 +96,17 @@ class Chunk {
   };
 
   void take(int tool) {
-    if (cutter_) out_.distance_queries += cutter_->queries();
-    cutter_.reset();
+    if (ball_) out_.distance_queries += ball_->queries();
+    if (profile_) out_.distance_queries += profile_->queries();
+    ball_.reset();
+    profile_.reset();
     bodies_.clear();
     tool_ = tool;
     if (tool < 0) return;
-    const auto& assembly = tools_[std::size_t(tool)];
-    cutter_.emplace(part_, assembly, o_.proof_mm, o_.gouge_tolerance_mm);
-    for (const auto& f : tool::shank_and_holder(assembly)) bodies_.push_back({f, false, Vec3::Zero(), Vec3::UnitZ(), 0});
+    const auto& taken = tools_[std::size_t(tool)];
+    if (taken.ball_mill) ball_.emplace(part_, *taken.ball_mill, o_.proof_mm, o_.gouge_tolerance_mm);
+    else profile_.emplace(part_, taken, o_.proof_mm, o_.gouge_tolerance_mm);
+    for (const auto& f : taken.bodies) bodies_.push_back({f, false, Vec3::Zero(), Vec3::UnitZ(), 0});
   }
 
   void clearance(Body& body, const path::ToolMotion& m) {
@@ -131,17 +134,22 @@ class Chunk {
   }
 
   const GearDistance& part_;
-  const std::vector<tool::ToolAssembly>& tools_;
+  const std::vector<tool::ProofTool>& tools_;
   const GougeCheckOptions& o_;
   proof::GougeResult out_;
   int tool_ = -1;
-  std::optional<CutterSweep> cutter_;
+  std::optional<CutterSweep> ball_;       // one of the two
+  std::optional<ProfileSweep> profile_;
   std::vector<Body> bodies_;
 };
 
 }  // namespace
 
-GougeCheck::GougeCheck(const GearDistance& part, std::vector<tool::ToolAssembly> tools, GougeCheckOptions options)
+GougeCheck::GougeCheck(const GearDistance& part, const std::vector<tool::ToolAssembly>& tools, GougeCheckOptions options) : part_(part), options_(options) {
+  for (const auto& t : tools) tools_.push_back(tool::proof_tool(t));
+}
+
+GougeCheck::GougeCheck(const GearDistance& part, std::vector<tool::ProofTool> tools, GougeCheckOptions options)
     : part_(part), tools_(std::move(tools)), options_(options) {}
 
 proof::GougeResult GougeCheck::check(const std::vector<path::ToolMotion>& motions, const std::vector<int>& tool_of_operation) const {

@@ -1,5 +1,6 @@
-// The gouge check of ball mills on a face gear: what every body of the tool was found to do along every motion, and a proven
-// bound for every moment between the blocks. Ball and flute: cam/analytic/cutter_sweep.h. Shank and holder: cam/analytic/body_sweep.h.
+// The gouge check of mills on a face gear: what every body of the tool was found to do along every motion, and a proven
+// bound for every moment between the blocks. Ball and flute: cam/analytic/cutter_sweep.h. Cutting parts of any profile: cam/analytic/profile_sweep.h.
+// Shank and holder: cam/analytic/body_sweep.h.
 // Rapids: cam/proof/rapid_clearance.h. Why the bounds hold: docs/proof.md.
 #pragma once
 
@@ -7,6 +8,7 @@
 
 #include "cam/proof/checked_cl_path.h"
 #include "cam/tool/assembly.h"
+#include "cam/tool/proof_tool.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/path/tool_motion.h"
 #include "cam/proof/verification.h"
@@ -23,7 +25,10 @@ struct GougeCheckOptions {
 
 class GougeCheck {
  public:
-  GougeCheck(const GearDistance& part, std::vector<tool::ToolAssembly> tools, GougeCheckOptions options);
+  /// Ball mills.
+  GougeCheck(const GearDistance& part, const std::vector<tool::ToolAssembly>& tools, GougeCheckOptions options);
+  /// Any mills.
+  GougeCheck(const GearDistance& part, std::vector<tool::ProofTool> tools, GougeCheckOptions options);
 
   /// Checks motions; `tool_of_operation[op]` is an index into the tools. Runs on all threads; same bytes on any number.
   [[nodiscard]] proof::GougeResult check(const std::vector<path::ToolMotion>& motions, const std::vector<int>& tool_of_operation) const;
@@ -39,7 +44,7 @@ class GougeCheck {
 
  private:
   const GearDistance& part_;
-  std::vector<tool::ToolAssembly> tools_;
+  std::vector<tool::ProofTool> tools_;
   GougeCheckOptions options_;
 };
 

@@ -55,6 +55,7 @@ class PassPlanner {
     if (auto s = smooth(); !s) return s.error();
     if (auto s = extent(); !s) return s.error();
     lifts();
+    if (auto s = room(); !s) return s.error();
     if (auto s = corners(); !s) return s.error();
     if (auto s = records(); !s) return s.error();
     figures();
@@ -94,12 +95,17 @@ class PassPlanner {
       if (p.tilt() > kMostTilt)
         return fail("zone {}: flank {:+d} at radius {:.3f} mm asks for a tool tilted by {:.2f} deg from the gear axis; at most {:.0f} deg are planned", f.zone,
                     f.side, radius(k), degrees(p.tilt()), degrees(kMostTilt));
-      if (p.gap.ring_to > law_end_)
-        return fail("zone {}: flank {:+d} at radius {:.3f} mm is touched up to {:.3f} mm above the centre of the ball end, the flutes cut up to {:.3f} mm: "
-                    "flute_length must be {:.3f} mm longer", f.zone, f.side, radius(k), p.gap.ring_to, law_end_, p.gap.ring_to - law_end_);
+      if (auto s = reached(p); !s) return s.error();
     }
     pass_.best_mm = worst_best();
     return Ok{};
+  }
+  /// Do the teeth end above the highest contact?
+  [[nodiscard]] Status reached(const StationPose& p) const {
+    if (p.gap.nodes.empty() || p.gap.t_to <= law_end_) return Ok{};
+    const auto& f = fit_.flank();
+    return fail("zone {}: flank {:+d} at radius {:.3f} mm is touched up to {:.3f} mm above the centre of the ball end, the flutes cut up to {:.3f} mm: "
+                "flute_length must be {:.3f} mm longer", f.zone, f.side, p.r, p.gap.t_to, law_end_, p.gap.t_to - law_end_);
   }
   /// Worst misfit of the poses alone, over the full stations.
   [[nodiscard]] double worst_best() const {
@@ -249,27 +255,68 @@ class PassPlanner {
   Status extent() {
     placed_.assign(count_, {});
     tbb::parallel_for(std::size_t{0}, count_, [&](std::size_t k) { placed_[k] = pose(radius(k)); });
-    const auto go = [&](int sense, double& delta, std::size_t& end) -> Status {
-      for (std::size_t k = middle();; k = std::size_t(std::ptrdiff_t(k) + sense)) {
-        const auto& p = placed_[k];
-        if (!p || (!inside_full(k) && o_.is_clear && !o_.is_clear(p->axis))) {
-          if (p || k == 0 || k + 1 == count_) {
-            pass_.shortened_mm += step_;
-            return Ok{};
-          }
-          return fail("zone {}: flank {:+d} ends for the anchors at radius {:.3f} mm, before its corner at the {} end is reached", fit_.flank().zone,
-                      fit_.flank().side, radius(k), sense > 0 ? "outer" : "inner");
-        }
-        if (p->gap.in_ring()) delta = p->angles.delta;
-        end = k;
-        if (p->gap.beyond_ring >= o_.overrun * m_) return Ok{};
-        if (k == 0 || k + 1 == count_)
-          return fail("zone {}: flank {:+d}: a foot is still within the ring {:.3f} mm beyond its {} end", fit_.flank().zone, fit_.flank().side, kBeyond * m_,
-                      sense > 0 ? "outer" : "inner");
+    if (auto s = extent(-1, delta_inner_, from_, r_from_); !s) return s;
+    return extent(1, delta_outer_, to_, r_to_);
+  }
+  /// @param end  last station that the pass reaches
+  Status extent(int sense, double& delta, std::size_t& end, double& r_end) {
+    for (std::size_t k = middle();; k = std::size_t(std::ptrdiff_t(k) + sense)) {
+      const auto& p = placed_[k];
+      if (!p && (k == 0 || k + 1 == count_)) {
+        pass_.shortened_mm += step_;
+        return Ok{};
       }
-    };
-    if (auto s = go(-1, delta_inner_, from_); !s) return s;
-    return go(1, delta_outer_, to_);
+      if (!p)
+        return fail("zone {}: flank {:+d} ends for the anchors at radius {:.3f} mm, before its corner at the {} end is reached", fit_.flank().zone,
+                    fit_.flank().side, radius(k), sense > 0 ? "outer" : "inner");
+      if (p->gap.in_ring()) delta = p->angles.delta;
+      end = k;
+      r_end = radius(k);
+      if (p->gap.beyond_ring >= o_.overrun * m_) return Ok{};
+      if (k == 0 || k + 1 == count_)
+        return fail("zone {}: flank {:+d}: a foot is still within the ring {:.3f} mm beyond its {} end", fit_.flank().zone, fit_.flank().side, kBeyond * m_,
+                    sense > 0 ? "outer" : "inner");
+    }
+  }
+  /// The full stations must have their room; beyond them the pass ends where its lifted tool has none.
+  Status room() {
+    if (!o_.room) return Ok{};
+    std::vector<std::optional<Blocked>> blocked(best_.last + 1 - best_.first);
+    tbb::parallel_for(std::size_t{0}, blocked.size(), [&](std::size_t k) {
+      if (const auto p = pose(radius(best_.first + k))) blocked[k] = o_.room(p->axis);
+    });
+    for (std::size_t k = 0; k < blocked.size(); ++k)
+      if (const auto& b = blocked[k])
+        return fail("zone {}: flank {:+d} at radius {:.3f} mm: the {} has a gap of {:.4f} mm to the {}, {:.4f} mm is the least; a thinner or longer tool, or another "
+                    "half_angle", fit_.flank().zone, fit_.flank().side, radius(best_.first + k), b->body, b->gap_mm, b->patch, b->least_mm);
+    room(-1, best_.first, from_, r_from_);
+    room(1, best_.last, to_, r_to_);
+    return Ok{};
+  }
+  void room(int sense, std::size_t full, std::size_t& end, double& r_end) {
+    for (std::size_t k = full; k != end;) {
+      const std::size_t next = std::size_t(std::ptrdiff_t(k) + sense);
+      if (!clear(radius(next))) {
+        end = k;
+        r_end = last_clear(radius(k), radius(next));
+        const auto last = pose(r_end);
+        if (!last || last->gap.in_ring()) pass_.shortened_mm += std::abs(radius(next) - r_end);
+        return;
+      }
+      k = next;
+    }
+  }
+  [[nodiscard]] bool clear(double r) const {
+    const auto p = pose(r);
+    return p && !o_.room(p->axis);
+  }
+  /// Last radius on the way from a clear pose to one that is not, to a 32nd of a station.
+  [[nodiscard]] double last_clear(double in, double out) const {
+    for (int k = 0; k < 5; ++k) {
+      const double r = 0.5 * (in + out);
+      (clear(r) ? in : out) = r;
+    }
+    return in;
   }
   [[nodiscard]] bool inside_full(std::size_t k) const { return k >= best_.first && k <= best_.last; }
 
@@ -316,9 +363,10 @@ class PassPlanner {
     while (inner < to_ && !in_ring(radius(inner))) ++inner;
     while (outer > from_ && !in_ring(radius(outer))) --outer;
     if (inner >= outer) return lost(radius(inner));
-    if (inner > from_) stops_.push_back(find(radius(inner), radius(inner - 1), delta_inner_));
-    if (outer < to_) stops_.push_back(find(radius(outer), radius(outer + 1), delta_outer_));
-    stops_.push_back(radius(to_));
+    const double before = inner > from_ ? radius(inner - 1) : r_from_, after = outer < to_ ? radius(outer + 1) : r_to_;
+    if (before < radius(inner) && !in_ring(before)) stops_.push_back(find(radius(inner), before, delta_inner_));
+    if (after > radius(outer) && !in_ring(after)) stops_.push_back(find(radius(outer), after, delta_outer_));
+    if (stops_.empty() || r_to_ > stops_.back()) stops_.push_back(r_to_);
     return Ok{};
   }
 
@@ -338,11 +386,11 @@ class PassPlanner {
   }
 
   Status records() {
-    auto here = pose(radius(from_));
+    auto here = pose(r_from_);
     const double longest = o_.longest * m_;
     double step = longest;
-    if (!here) return lost(radius(from_));
-    add(*here);
+    if (!here) return lost(r_from_);
+    if (auto s = add(*here); !s) return s;
     for (std::size_t stop = 0; stop < stops_.size();) {
       const double end = stops_[stop];
       const double pieces = std::ceil((end - here->r) / step - 1e-9);  // even ones up to the stop
@@ -359,7 +407,7 @@ class PassPlanner {
                     fit_.flank().zone, fit_.flank().side, r, step, 1e3 * worst, 1e3 * o_.chord_mm);
       pass_.chord_mm = std::max(pass_.chord_mm, worst);
       here = next;
-      add(*here);
+      if (auto s = add(*here); !s) return s;
       if (r == end) ++stop;
       step = std::min(longest, 2 * step);
     }
@@ -368,7 +416,8 @@ class PassPlanner {
   [[nodiscard]] Diagnostic lost(double r) const {
     return fail("zone {}: flank {:+d}: no pose at radius {:.4f} mm", fit_.flank().zone, fit_.flank().side, r);
   }
-  void add(const StationPose& p) {
+  Status add(const StationPose& p) {
+    if (auto s = reached(p); !s) return s;
     if (p.gap.in_ring()) pass_.misfit_mm = std::max(pass_.misfit_mm, p.gap.misfit());
     LineRecord record{p.r, p.axis, p.anchor, p.gap.most, p.lift, 1};
     const double r_0 = fit_.law().r_0;
@@ -378,7 +427,9 @@ class PassPlanner {
       record.contact_ratio = (p.axis.c_0 - r_0 * p.axis.a - before.axis.c_0 + r_0 * before.axis.a).norm() / way;
       pass_.contact_mm += way;
     }
+    if (p.gap.in_ring()) pass_.contact_top_mm = std::max(pass_.contact_top_mm, r_0 + p.gap.ring_to);
     pass_.records.push_back(record);
+    return Ok{};
   }
 
   void figures() {
@@ -395,6 +446,7 @@ class PassPlanner {
   const PassOptions& o_;
   double law_end_, m_, step_ = 0, start_ = 0;
   std::size_t count_ = 0, from_ = 0, to_ = 0;
+  double r_from_ = 0, r_to_ = 0;  ///< where the pass begins and ends
   Stations best_;
   std::vector<std::optional<StationPose>> placed_;
   std::optional<AxisCondition> condition_;

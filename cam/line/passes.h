@@ -5,6 +5,8 @@
 
 #include <cmath>
 #include <functional>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "cam/line/pose.h"
@@ -14,6 +16,15 @@ namespace toothpath::line {
 /// Which rotaries may move while a pass cuts.
 enum class Rotaries { both, tilt_stands, azimuth_stands };
 [[nodiscard]] const char* to_string(Rotaries rotaries);
+
+/// What does not leave a pose its room: a body of the tool, and what of the gear it meets.
+struct Blocked {
+  std::string body, patch;
+  double gap_mm = 0;   ///< least gap found; negative: it cuts
+  double least_mm = 0;  ///< that it must keep
+};
+/// Nothing where a pose, in the frame of the flank's own tooth 0, is free.
+using Room = std::function<std::optional<Blocked>(const AxisLine<double>&)>;
 
 struct PassOptions {
   Rotaries rotaries = Rotaries::both;
@@ -27,8 +38,9 @@ struct PassOptions {
   double lift_margin = 0.08;  ///< the lift begins where the ball end's foot is so far beyond the end, in modules
   double lift_slope = 1;      ///< mm of lift per mm of contact, at most
   double enough_mm = INFINITY;  ///< give up where the best pose of a station alone leaves more than this: a pass without records
-  /// Is a pose free of everything but its own flank? Where it is not, beyond the last full station, the pass ends; empty: it always is.
-  std::function<bool(const AxisLine<double>&)> is_clear;
+  /// What stands in the way of a pose (cam/line/room.h)? Beyond the last full station the pass ends there; at a full one it is refused. Empty:
+  /// nothing does.
+  Room room;
 };
 
 /// What a report draws of a pass.
@@ -57,12 +69,12 @@ struct LinePass {
   double best_mm = 0;     ///< worst of the poses alone, over the full stations
   double chord_mm = 0;    ///< worst seen within a block, as `PassOptions::chord_mm` counts
   double contact_mm = 0;  ///< way of the contact
-  double contact_top_mm = 0;  ///< highest height of a contact above the tip, along the axis: the flutes must reach it
-  double shortened_mm = 0;  ///< lost at ends that are not clear
+  double contact_top_mm = 0;  ///< highest height of a contact above the tip, along the axis, lifts included: the flutes must reach it
+  double shortened_mm = 0;  ///< lost at ends that are not clear before the last foot has left the ring
 };
 
-/// Plans a pass. Refused, with quantity, value and limit: a tilt above 60 deg, flutes that end below the contact (`law_end`), fewer than
-/// four full stations, an axis condition that no lean fulfils, a flank whose ends are not reached.
+/// Plans a pass. Refused, with quantity, value and limit: a tilt above 60 deg, flutes that end below a contact of any pose, lifted ones too (`law_end`), a full
+/// station without room, fewer than four full stations, an axis condition that no lean fulfils, a flank whose ends are not reached.
 /// @param law_end  highest usable t of the tool
 [[nodiscard]] Result<LinePass> plan_pass(const LineFit& fit, const PassOptions& options, double law_end);
 

@@ -34,7 +34,7 @@ Result<std::vector<LinePass>> passes_of(const std::vector<FlankTask>& flanks, co
     p.bias_mm = o.bias_mm;
     p.lift_inner = flank.zone > 0;
     p.lift_outer = flank.zone + 1 < rings;
-    p.is_clear = o.is_clear;
+    if (o.room) p.room = [&](const AxisLine<double>& axis) { return o.room(with_allowance(flank, axis, o.allowance_mm)); };
     p.enough_mm = o.left_mm.value_or(INFINITY);
     found[k].emplace(plan_pass(LineFit(flank, *tool.law(), strips_of(flank, choice.strips)[strip]), p, tool.law_end()));
     if (*found[k]) (*found[k])->strip = int(strip);
@@ -83,11 +83,14 @@ class PathWriter {
     record(tip(records.front().axis), records.front().axis.a, path::MoveKind::engage, o_.feed_mm_min);
     for (std::size_t k = 1; k < records.size(); ++k) {
       const double contact = (records[k].anchor - records[k - 1].anchor).norm();
-      const double way = (tip(records[k].axis) - tip(records[k - 1].axis)).norm();
-      record(tip(records[k].axis), records[k].axis.a, path::MoveKind::feed, o_.feed_mm_min * way / contact);
+      const Vec3 from = tip(records[k - 1].axis), to = tip(records[k].axis);
+      const double feed = contact_feed(o_.feed_mm_min, o_.limits, contact, from, records[k - 1].axis.a, to, records[k].axis.a);
+      least_feed_ = std::min(least_feed_, feed);
+      record(to, records[k].axis.a, path::MoveKind::feed, feed * (to - from).norm() / contact);
     }
     record(above(records.back().axis), records.back().axis.a, path::MoveKind::retract, o_.feed_mm_min);
   }
+  [[nodiscard]] double least_feed() const { return least_feed_; }
 
  private:
   [[nodiscard]] Vec3 tip(const AxisLine<double>& axis) const { return axis.c_0 - r_0_ * axis.a; }
@@ -109,7 +112,7 @@ class PathWriter {
 
   const LineOperation& o_;
   path::ClPath& path_;
-  double r_0_;
+  double r_0_, least_feed_ = INFINITY;
   tool::ProofBodies bodies_;
   int zone_ = 0, pass_ = 0;
 };
@@ -118,6 +121,20 @@ class PathWriter {
 
 AxisLine<double> with_allowance(const FlankTask& flank, const AxisLine<double>& axis, double allowance_mm) {
   return turned(axis, flank.side * allowance_mm / flank.surface.M2);
+}
+
+double contact_feed(double feed_mm_min, const FeedLimits& limits, double contact_mm, const Vec3& tip_from, const Vec3& axis_from, const Vec3& tip_to,
+                    const Vec3& axis_to) {
+  double feed = feed_mm_min;
+  const auto limit = [&](double way, double most) {
+    if (way > 0) feed = std::min(feed, most * contact_mm / way);
+  };
+  limit((tip_to - tip_from).norm(), limits.tip_mm_min);
+  limit(std::abs(std::acos(std::clamp(axis_to.z(), -1.0, 1.0)) - std::acos(std::clamp(axis_from.z(), -1.0, 1.0))), limits.tilt_rad_min);
+  limit(std::abs(std::atan2(axis_from.x() * axis_to.y() - axis_from.y() * axis_to.x(), axis_from.x() * axis_to.x() + axis_from.y() * axis_to.y())),
+        limits.azimuth_rad_min);
+  limit(limits.block_s / 60, 1.0);
+  return feed;
 }
 
 Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::Profile& tool, const LineOperation& o) {
@@ -158,6 +175,7 @@ Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::
     const auto flank = k / std::size_t(plan.strips);
     writer.add(flanks[flank], plan.passes[k], int(k % std::size_t(2 * plan.strips)));
   }
+  plan.least_feed_mm_min = writer.least_feed();
   return plan;
 }
 

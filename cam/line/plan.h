@@ -3,6 +3,7 @@
 // Asks a face gear, a tool profile and an operation; answers a path (CL records of space 0) and what a report draws of each pass.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -13,6 +14,17 @@
 namespace toothpath::line {
 
 inline constexpr int kMostStrips = 4;
+/// Gap that the poses keep by default, mm: what the proof may stand above what it finds (2e-4) and the rounding of axes to 1e-4 mm and deg.
+inline constexpr double kBias = 3e-4;
+
+/// What else than the job limits the feed of the contact, as far as it is known before the machine is. A posture that runs through the axes
+/// of a machine is slowed once more where its own axes ask for it.
+struct FeedLimits {
+  double tip_mm_min = INFINITY;       ///< way of the tip in the gear frame
+  double tilt_rad_min = INFINITY;     ///< turn of the axis from the gear axis
+  double azimuth_rad_min = INFINITY;  ///< turn of the axis about the gear axis
+  double block_s = 0;                 ///< least time of a block
+};
 
 /// What is asked. Lengths mm.
 struct LineOperation {
@@ -25,10 +37,11 @@ struct LineOperation {
   std::optional<double> left_mm;         ///< largest misfit of a pass; none: whatever one strip with both rotaries leaves
   std::optional<Rotaries> rotaries;      ///< none: the tilt stands where that meets `left`, else both
   double chord_tolerance_mm = 5e-4;
-  double bias_mm = 0;                    ///< see PassOptions
+  double bias_mm = kBias;                ///< see PassOptions; coarser axes ask for more: 8e-4 for 0.001 mm and deg
+  FeedLimits limits;
   bool climb = true;                     ///< spindle M3, material to the right of the feed seen from the holder
   double clearance_height_mm = 0;        ///< z above which every part of the tool is for rapids
-  std::function<bool(const AxisLine<double>&)> is_clear;  ///< in the frame of the flank's own tooth 0; see PassOptions
+  Room room;                             ///< cam/line/room.h; asked where the tool stands with its allowance
 };
 
 struct LinePlan {
@@ -37,7 +50,13 @@ struct LinePlan {
   int strips = 1;
   Rotaries rotaries = Rotaries::both;
   double misfit_mm = 0;          ///< worst of the passes
+  double least_feed_mm_min = 0;  ///< of the contact, in the slowest block
 };
+
+/// Feed of the contact in a block: the job's, or what the limits leave of it. mm/min
+/// @param contact_mm  way of the contact
+[[nodiscard]] double contact_feed(double feed_mm_min, const FeedLimits& limits, double contact_mm, const Vec3& tip_from, const Vec3& axis_from, const Vec3& tip_to,
+                                  const Vec3& axis_to);
 
 /// Plans one operation. Refused, with quantity, value and limit: a tool without a ball end and a side; everything that `flank_task` and
 /// `plan_pass` refuse; a `left` that no admitted choice meets (the message tells the best one).

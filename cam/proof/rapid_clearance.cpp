@@ -23,15 +23,14 @@ class Rapid {
  public:
   Rapid(const path::ToolMotion& m, const tool::ToolAssembly& tool, const RapidObstacle& o) : m_(m), o_(o) {
     const double R = tool.radius_mm();
-    frustums_.push_back({R, std::max(tool.flute_length_mm, R), R, R, "ball"});
+    add({R, std::max(tool.flute_length_mm, R), R, R, "ball"}, 0);
     ball_radius_ = R;
-    for (const auto& body : tool::shank_and_holder(tool)) frustums_.push_back(body);
-    for (const auto& f : frustums_) {
-      const double widest = std::max(f.radius_from, f.radius_to);
-      stretches_.push_back({f.from, f.to, widest, f.name});
-      arm_ = std::max(arm_, std::hypot(f.to, widest));
-    }
+    for (const auto& body : tool::shank_and_holder(tool)) add(body, 0);
     stretches_.front().from = 0;
+  }
+  Rapid(const path::ToolMotion& m, const tool::ProofTool& tool, const RapidObstacle& o) : m_(m), o_(o) {
+    for (const auto& body : tool.cutting) add(body.core, body.round);
+    for (const auto& body : tool.bodies) add(body, 0);
   }
 
   RapidProof run() {
@@ -41,6 +40,12 @@ class Rapid {
   }
 
  private:
+  void add(const tool::Frustum& core, double round) {
+    const double widest = std::max(core.radius_from, core.radius_to) + round;
+    frustums_.push_back({core, round});
+    stretches_.push_back({core.from - round, core.to + round, widest, core.name});
+    arm_ = std::max(arm_, std::hypot(core.to + round, widest));
+  }
   /// How far any point of the tool strays from its place at the middle of [t0, t1] beyond the straight way of the tip.
   [[nodiscard]] double stray(double t0, double t1) const {
     return arm_ * ((path::axis_at(m_, t1) - path::axis_at(m_, t0)).norm() + m_.axis_deviation) + m_.deviation_mm;
@@ -52,7 +57,7 @@ class Rapid {
     for (const auto& f : frustums_)
       if (const double z = tool::lowest_z(f, tip, axis); z < low) {
         low = z;
-        body = f.name;
+        body = f.core.name;
       }
     return low;
   }
@@ -95,7 +100,7 @@ class Rapid {
 
   const path::ToolMotion& m_;
   const RapidObstacle& o_;
-  std::vector<tool::Frustum> frustums_;
+  std::vector<tool::RoundedFrustum> frustums_;
   std::vector<RapidStretch> stretches_;
   double arm_ = 0, ball_radius_ = 0;
 };
@@ -103,6 +108,10 @@ class Rapid {
 }  // namespace
 
 RapidProof prove_rapid(const path::ToolMotion& motion, const tool::ToolAssembly& tool, const RapidObstacle& obstacle) {
+  return Rapid(motion, tool, obstacle).run();
+}
+
+RapidProof prove_rapid(const path::ToolMotion& motion, const tool::ProofTool& tool, const RapidObstacle& obstacle) {
   return Rapid(motion, tool, obstacle).run();
 }
 

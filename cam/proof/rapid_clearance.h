@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cam/tool/assembly.h"
+#include "cam/tool/proof_tool.h"
 #include "cam/path/tool_motion.h"
 
 namespace toothpath::proof {
@@ -28,5 +29,7 @@ struct RapidProof {
 /// of the four ways of being clear holds for a whole piece, with what the bodies can move in it subtracted; a piece of 1e-4 mm that
 /// is still open counts as not clear.
 [[nodiscard]] RapidProof prove_rapid(const path::ToolMotion& motion, const tool::ToolAssembly& tool, const RapidObstacle& obstacle);
+/// The same for any tool: its cutting part is told as "flute".
+[[nodiscard]] RapidProof prove_rapid(const path::ToolMotion& motion, const tool::ProofTool& tool, const RapidObstacle& obstacle);
 
 }  // namespace toothpath::proof

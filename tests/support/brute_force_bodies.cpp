@@ -19,11 +19,33 @@ double to_segment(const Vec2& q, const Vec2& a, const Vec2& b) {
   return (q - a - t * d).norm();
 }
 
+/// q = (radius, height). Places farther than half a millimetre are told as that.
+double depth_below_meridian(const Vec2& q, const BruteBody& b) {
+  constexpr double kFar = 0.5;
+  const auto& m = b.meridian;
+  if (q.y() < b.from - kFar || q.y() > b.to + kFar || q.x() > std::max(b.radius_from, b.radius_to) + kFar) return -kFar;
+  double least = to_segment(q, Vec2(0, m.back()[0]), Vec2(m.back()[1], m.back()[0])), wide = -1;
+  for (std::size_t k = 1; k < m.size(); ++k) {
+    const Vec2 low(m[k - 1][1], m[k - 1][0]), high(m[k][1], m[k][0]);
+    least = std::min(least, to_segment(q, low, high));
+    if (q.y() > low.y() && q.y() <= high.y()) wide = low.x() + (high.x() - low.x()) * (q.y() - low.y()) / (high.y() - low.y());
+  }
+  return q.x() < wide ? least : -least;
+}
+
 }  // namespace
+
+BruteBody brute_body(std::vector<Vec2> meridian) {
+  double widest = 0;
+  for (const Vec2& p : meridian) widest = std::max(widest, p[1]);
+  const double low = meridian.front()[0], high = meridian.back()[0];
+  return {low, high, widest, widest, false, std::move(meridian)};
+}
 
 double depth_in_body(const Vec3& p, const BruteBody& b, const Vec3& tip, const Vec3& axis) {
   const double h = (p - tip).dot(axis);
   const Vec2 q((p - tip - h * axis).norm(), h);
+  if (!b.meridian.empty()) return depth_below_meridian(q, b);
   if (b.round) return b.radius_from - to_segment(q, Vec2(0, b.from), Vec2(0, b.to));
   const Vec2 lower(b.radius_from, b.from), upper(b.radius_to, b.to);
   const double border = std::min({to_segment(q, Vec2(0, b.from), lower), to_segment(q, lower, upper), to_segment(q, upper, Vec2(0, b.to))});

@@ -9,12 +9,15 @@
 
 namespace toothpath::test {
 
-/// A body about the tool axis: a truncated cone, or a capsule (cylinder with round ends) where `round`.
+/// A body about the tool axis: a truncated cone, a capsule (cylinder with round ends) where `round`, or what lies below a meridian of many points.
 struct BruteBody {
   double from = 0, to = 0;                    ///< heights above the tip, mm
   double radius_from = 0, radius_to = 0;
   bool round = false;
+  std::vector<Vec2> meridian = {};            ///< (height, radius) from the tip upwards, dense; then the other numbers only say how far it reaches
 };
+/// The body of a meridian.
+[[nodiscard]] BruteBody brute_body(std::vector<Vec2> meridian);
 
 struct BruteDepth {
   double depth = -INFINITY;  ///< > 0: cuts; < 0: the least gap

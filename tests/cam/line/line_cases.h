@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cam/line/pose.h"
+#include "cam/tool/profile.h"
 #include "geometry/base/angle.h"
 #include "tests/support/sample_gears.h"
 
@@ -19,6 +20,20 @@ inline tool::RadiusLaw<double> tapered(double r_0, double half_angle_deg = 5) {
   law.sin_tau = std::sin(radians(half_angle_deg));
   law.cos_tau = std::cos(radians(half_angle_deg));
   return law;
+}
+
+/// A tapered mill as it is ordered, in a slim holder.
+inline tool::CutterData tapered_mill(double diameter, double half_angle_deg, double flute, double shank, double stick_out) {
+  tool::CutterData d;
+  d.shape = tool::CutterShape::tapered_ball;
+  d.diameter_mm = diameter;
+  d.half_angle_rad = radians(half_angle_deg);
+  d.flute_length_mm = flute;
+  d.shank_diameter_mm = shank;
+  d.stick_out_mm = stick_out;
+  d.length_mm = 92;
+  d.holder = {{10, 10, 30}, {32, 32, 30}};
+  return d;
 }
 
 /// One flank of one gear and the ball radius of its mill, 5 deg; then what the independent study found, um: misfit of the best poses,

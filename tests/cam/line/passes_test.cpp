@@ -261,7 +261,9 @@ TEST(LinePassShape, EndsWhereItIsNotClear) {
   auto o = options_of(c);
   const auto whole = pass_of(c, o);
   const double limit = whole.records.back().axis.c_0.head<2>().norm() - 0.4;
-  o.is_clear = [limit](const line::AxisLine<double>& axis) { return axis.c_0.head<2>().norm() < limit; };
+  o.room = [limit](const line::AxisLine<double>& axis) {
+    return axis.c_0.head<2>().norm() < limit ? std::nullopt : std::optional(line::Blocked{"flute", "tip", -1, 0});
+  };
   const auto cut = pass_of(c, o);
   EXPECT_LT(cut.records.back().r, whole.records.back().r - 0.1);
   EXPECT_GT(cut.shortened_mm, 0);
@@ -269,16 +271,7 @@ TEST(LinePassShape, EndsWhereItIsNotClear) {
 }
 
 tool::Profile mill(double diameter, double half_angle_deg, double flute, double shank, double stick_out) {
-  tool::CutterData d;
-  d.shape = tool::CutterShape::tapered_ball;
-  d.diameter_mm = diameter;
-  d.half_angle_rad = radians(half_angle_deg);
-  d.flute_length_mm = flute;
-  d.shank_diameter_mm = shank;
-  d.stick_out_mm = stick_out;
-  d.length_mm = 92;
-  d.holder = {{10, 10, 30}, {32, 32, 30}};
-  return std::get<tool::Profile>(tool::Profile::make(d));
+  return std::get<tool::Profile>(tool::Profile::make(tapered_mill(diameter, half_angle_deg, flute, shank, stick_out)));
 }
 
 line::LineOperation finishing() {

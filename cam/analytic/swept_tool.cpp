@@ -1,0 +1,87 @@
+#include "cam/analytic/swept_tool.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toothpath::analytic {
+namespace {
+
+constexpr int kMomentSteps = 40;          // of the bracket of a moment; each at least halves it every second time
+constexpr double kMoment = 1e-12;   // share of a motion
+
+/// The distance at a moment and its rate.
+struct AtMoment {
+  double distance = 0, rate = 0;
+};
+AtMoment at_moment(const Vec3& p, const tool::RoundedFrustum& body, const path::ToolMotion& m, double t) {
+  const Vec3 blend = (1 - t) * m.axis_from + t * m.axis_to, a = t == 0 ? m.axis_from : t == 1 ? m.axis_to : Vec3(blend.normalized());
+  const Vec3 d = p - path::tip_at(m, t);
+  const double h = d.dot(a);
+  const Vec3 across = d - h * a;
+  const double rho = across.norm();
+  const auto s = tool::rounded_slope(Vec3(rho, 0, h), body);
+  // d(h) and d(rho) along the motion; the tip moves straight, the axis turns about it.
+  const Vec3 v = m.tip_to - m.tip_from, step = m.axis_to - m.axis_from, turn = (step - step.dot(a) * a) / blend.norm();
+  const double dh = d.dot(turn) - v.dot(a), drho = rho > 0 ? (-v.dot(across) - h * turn.dot(across)) / rho : 0;
+  return {s.distance, s.gradient.x() * drho + s.gradient.z() * dh};
+}
+
+/// Where the cutting part may be during a motion, below `top`.
+std::vector<Box> boxes_of(const std::vector<path::ToolMotion>& motions, const std::vector<tool::RoundedFrustum>& cutting, double top) {
+  std::vector<Box> boxes(motions.size());
+  for (std::size_t k = 0; k < motions.size(); ++k) {
+    const auto& m = motions[k];
+    for (const auto& body : cutting)
+      for (const auto& [tip, axis] : {std::pair{m.tip_from, m.axis_from}, std::pair{m.tip_to, m.axis_to}})
+        for (const double h : {body.core.from, body.core.to}) {
+          const double arc = 0.125 * (m.axis_to - m.axis_from).squaredNorm() * h;  // of an axis that turns
+          const Vec3 c = tip + h * axis, r = Vec3::Constant(body.widest() + arc);
+          boxes[k].add(c - r);
+          boxes[k].add(c + r);
+        }
+    boxes[k].high.z() = std::max(std::min(boxes[k].high.z(), top), boxes[k].low.z());
+  }
+  return boxes;
+}
+
+}  // namespace
+
+double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const path::ToolMotion& m, double enough) {
+  const AtMoment first = at_moment(p, body, m, 0), last = at_moment(p, body, m, 1);
+  double least = std::min(first.distance, last.distance);
+  if (first.rate >= 0 || last.rate <= 0) return least;
+  // A tangent from either end bounds it from below, but for what turns; half a micrometre stands for that.
+  const double meet = (last.distance - last.rate - first.distance) / (first.rate - last.rate);
+  if (first.distance + first.rate * meet - 5e-4 > enough) return least;
+  double a = 0, fa = first.rate, b = 1, fb = last.rate;
+  for (int k = 0; k < kMomentSteps && b - a > kMoment; ++k) {
+    double x = k % 3 == 2 ? 0.5 * (a + b) : a + (b - a) * fa / (fa - fb);
+    x = std::clamp(x, a, b);
+    const AtMoment q = at_moment(p, body, m, x);
+    least = std::min(least, q.distance);
+    if (std::abs(q.rate) * (b - a) < 1e-10) break;
+    (q.rate < 0 ? a : b) = x;
+    (q.rate < 0 ? fa : fb) = q.rate;
+  }
+  return least;
+}
+
+SweptTool::SweptTool(std::vector<path::ToolMotion> motions, std::vector<tool::RoundedFrustum> cutting, double top_mm)
+    : motions_(std::move(motions)), cutting_(std::move(cutting)), index_(boxes_of(motions_, cutting_, top_mm)) {}
+
+double SweptTool::excess(const Vec3& p, double cap) const {
+  double best = cap;
+  index_.near(p, std::max(cap, 0.0), [&](std::size_t k, double) {
+    for (const auto& body : cutting_) best = std::min(best, least_distance(p, body, motions_[k], best));
+    return std::max(best, 0.0);
+  });
+  return best;
+}
+
+double Removed::excess(const Vec3& p, double cap) const {
+  double e = balls_ ? balls_->excess(p, cap) : tool_->excess(p, cap);
+  for (const Removed* other : others_) e = other->excess(p, e);
+  return e;
+}
+
+}  // namespace toothpath::analytic
