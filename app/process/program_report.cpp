@@ -71,6 +71,16 @@ void note_axis_program(report::RunReport& report, const job::Job& job, const mac
   }
 }
 
+void note_proof(report::RunReport& report, const ProgramProof& proof) {
+  report.gouge = proof.gouge;
+  report.excess = proof.excess;
+  report.finished = proof.finished;
+  report.unreached = proof.unreached;
+  report.findings = proof.findings;
+  if (!proof.directions.empty()) report.directions = proof.directions;
+  report.reasons = proof.reasons;
+}
+
 std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& program, std::span<const path::ClPath* const> paths) {
   if (program.followed.empty()) return {paths.begin(), paths.end()};
   std::vector<const path::ClPath*> followed;
@@ -175,8 +185,8 @@ void note_verified(report::RunReport& report, const std::string& file, std::stri
   report.files.push_back(file);
 }
 
-commands::CommandOutcome verdict_of(report::RunReport& report, const std::optional<Diagnostic>& stopped, const std::string& job_file, app::OutputDir& output) {
-  commands::CommandOutcome outcome;
+app::CommandOutcome verdict_of(report::RunReport& report, const std::optional<Diagnostic>& stopped, const std::string& job_file, app::OutputDir& output) {
+  app::CommandOutcome outcome;
   if (stopped) {
     report.reasons.push_back(stopped->message);
     outcome.errors.push_back(*stopped);

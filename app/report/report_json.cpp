@@ -57,12 +57,21 @@ void add_proof(Json& json, const RunReport& r) {
     if (r.finished) excess["finished"] = excess_json(*r.finished, false);
     json["excess_um"] = std::move(excess);
   }
-  if (r.scallop)
-    json["scallop_um"] = {{"requested", app::um(r.scallop->requested_mm)},
-                          {"reached_min", app::um(r.scallop->reached_min_mm)},
-                          {"reached_max", app::um(r.scallop->reached_max_mm)},
-                          {"share_within", r.scallop->share_within}};
   if (r.unreached) json["unreached"] = {{"points", r.unreached->points}, {"max_height_um", app::um(r.unreached->max_height_mm)}};
+}
+
+void add_findings(Json& json, const RunReport& r) {
+  for (const Finding& f : r.findings)
+    for (const auto& [name, detail] : f.details) {
+      Json& at = json[f.key][name];
+      std::visit([&](const auto& value) { at = value; }, detail);
+    }
+}
+
+/// Of one tooth space.
+void add_passes(Json& json, const RunReport& r) {
+  for (const PassReport& p : r.passes)
+    json["passes"].push_back({{"op", p.operation}, {"zone", p.zone}, {"pass", p.pass}, {"name", p.name}, {"length", p.length_mm}, {"points", p.points}});
 }
 
 Json meeting_json(const clearance::MeshMeeting& m) {
@@ -188,6 +197,8 @@ std::string report_json(const RunReport& r) {
   add_scene(json, r);
   add_motion(json, r);
   add_directions(json, r);
+  add_findings(json, r);
+  add_passes(json, r);
   if (proves) {
     Json ledger = Json::object();
     for (const auto& entry : r.ledger) {

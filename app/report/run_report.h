@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/report/block_times.h"
+#include "app/report/finding.h"
 #include "app/report/scene_report.h"
 #include "cam/proof/verification.h"
 #include "geometry/face_gear/flank_correction.h"
@@ -59,6 +60,15 @@ struct SheetSection {
   std::string note;  ///< below the table
 };
 
+/// One pass of an operation in one zone.
+struct PassReport {
+  int operation = 0, zone = 0, pass = 0;
+  std::string name;      ///< "middle", "wall L"
+  bool outward = false;  ///< away from the apex
+  double length_mm = 0;
+  std::size_t points = 0;
+};
+
 /// Where the part has the most room, and set-up origin and work offset there.
 struct TravelRoom {
   joints::TravelOffer offer;
@@ -79,12 +89,13 @@ struct RunReport {
   std::vector<proof::ExcessResult> excess;          ///< one an operation
   std::optional<proof::ExcessResult> finished;      ///< the finished surface, over the points that the finishing ball reaches
   std::optional<proof::UnreachedResult> unreached;
-  std::optional<proof::ScallopResult> scallop;
+  std::vector<Finding> findings;                    ///< what else there is to say about the part
 
   std::size_t cl_points = 0, blocks = 0;
   double feed_minutes = 0, total_minutes = 0;  ///< all teeth; tool changes left out
   std::vector<OperationReport> operations;
   std::vector<proof::DirectionChoice> directions;
+  std::vector<PassReport> passes;                        ///< of one tooth space, where the plan tells them
   std::vector<joints::AxisRange> axes;
   std::optional<PolesReport> poles;                      ///< none where the program comes to no pole
   std::optional<TravelRoom> travel_room;                 ///< none where it was not looked for

@@ -8,11 +8,10 @@
 #include <filesystem>
 #include <sstream>
 
-#include "app/process/bevel_files.h"
-#include "app/process/bevel_proof.h"
-#include "app/process/bevel_run.h"
-#include "app/process/proof.h"
-#include "app/commands/shaper.h"
+#include "app/process/bevel/files.h"
+#include "app/process/bevel/proof.h"
+#include "app/process/face/proof.h"
+#include "app/process/face/shaper_setup.h"
 #include "app/process/gear_of_job.h"
 #include "app/job/file.h"
 #include "cam/finger/check.h"
@@ -112,7 +111,7 @@ Planned plan_face(const job::Job& job) {
     if (!passed) return out.error = passed.error().message, out;
     out.checked.push_back(std::move(*passed));
   }
-  out.body = process::clearance_body(gear);
+  out.body = face::clearance_body(gear);
   out.teeth = gear.parameters().teeth;
   return out;
 }
@@ -122,7 +121,7 @@ Planned plan_bevel(const job::Job& job) {
   auto made = process::make_bevel_gear(job);
   if (const auto* errors = made.refused()) return out.error = errors->front().text(), out;
   const bevel_gear::BevelGear& gear = made.value();
-  const Tolerances tolerances = process::proof_tolerances(job);
+  const Tolerances tolerances = bevel::proof_tolerances(job);
   const finger::FingerGougeCheck gouge(gear, job.tools, job.operations, tolerances);
   for (std::size_t i = 0; i < job.operations.size(); ++i) {
     const auto& o = job.operations[i];
@@ -133,7 +132,7 @@ Planned plan_bevel(const job::Job& job) {
     out.paths.push_back(plan->path);
     out.checked.push_back(std::move(*passed));
   }
-  out.body = process::bevel_clearance_body(gear);
+  out.body = bevel::clearance_body(gear);
   out.teeth = gear.parameters().teeth;
   return out;
 }
@@ -277,7 +276,7 @@ TEST(GoldenShaper, ByteForByte) {
   for (const auto& [machine, file] : files) {
     SCOPED_TRACE(file);
     job.machine.file = machine;
-    auto planned = commands::shaper_setup_of(job, made.value());
+    auto planned = face::shaper_setup_of(job, made.value());
     ASSERT_TRUE(planned.has_value()) << planned.error().front().text();
     const shaper::ShaperSetup& setup = planned.value();
     expect_golden(kGolden / "offset_shaped" / file, folded(setup.machine.gearbox ? shaper::shaper_gearbox_text(setup) : shaper::shaper_program_text(setup)));

@@ -168,12 +168,6 @@ void table_section(Sheet& sheet, const report::SheetSection& section) {
 
 }  // namespace
 
-std::string setup_sheet(const job::Job& job, const face_gear::FaceGear& gear, const machines::Machine& machine, const report::RunReport& report) {
-  const double root = gear.lowest_root();
-  return setup_sheet(job, PartOutline{gear.inner_radius(), gear.outer_radius(), gear.blank_top(), root, root - 2.5 * gear.parameters().module_mm},
-                     machine, report);
-}
-
 std::string setup_sheet(const job::Job& job, const PartOutline& part, const machines::Machine& machine, const report::RunReport& report) {
   Sheet sheet;
   const std::string title = svg::html_escape(job.name);
