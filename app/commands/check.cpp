@@ -6,11 +6,11 @@
 #include "app/job/file.h"
 #include "app/process/flow/stages.h"
 #include "app/process/program_report.h"
+#include "app/process/proof_limits.h"
 #include "app/report/deviation_vtp.h"
 #include "app/report/page/motion_charts.h"
 #include "app/report/page/page_of_run.h"
 #include "geometry/base/hash.h"
-#include "geometry/base/tolerances.h"
 
 namespace toothpath::commands {
 namespace {
@@ -21,6 +21,7 @@ struct Check {
   app::Progress progress;
   app::StageClock clock{progress};
   job::Job job;
+  proof::ProofLimits limits;
   flow::GearToCut gear;
   machines::Machine machine;
   std::string text;  ///< of the program
@@ -38,6 +39,7 @@ std::vector<Diagnostic> read_inputs(Check& check) {
   auto read = check.clock.run("job", [&] { return job::read_job_file(request.job_file); });
   if (auto* errors = read.refused()) return std::move(*errors);
   check.job = std::move(read).value();
+  check.limits = process::proof_limits(check.job);
   auto gear = flow::make_gear(check.job, request.measured_files, check.clock);
   if (auto* errors = gear.refused()) return std::move(*errors);
   check.gear = std::move(gear).value();
@@ -59,7 +61,7 @@ std::vector<Diagnostic> read_inputs(Check& check) {
 Status judge_scene(Check& check) {
   if (!check.scene) return Ok{};
   auto verdicts = check.clock.run("stock and fixture", [&]() -> Result<std::vector<report::SceneVerdict>> {
-    const auto around = check.gear.process->scene(check.proof->gouge.required_clearance_mm);
+    const auto around = check.gear.process->scene(check.limits.clearance_mm);
     if (!around) return around.error();
     return process::check_scene(*check.scene, check.text, check.request.program_file, check.job, check.machine, check.proof->read, *around);
   });
@@ -70,7 +72,7 @@ Status judge_scene(Check& check) {
 
 /// Everything that is asked of the program. Errors: what the reader refuses; a program that is read but not safe is none.
 Status prove(Check& check) {
-  check.milling = check.gear.process->milling(check.machine, Tolerances{}.proof_mm, {}, check.clock);
+  check.milling = check.gear.process->milling(check.machine, check.limits, {}, check.clock);
   auto proof = process::prove_program({check.text, check.request.program_file, check.job, check.machine}, {}, check.milling->check(), check.clock);
   if (!proof) return proof.error();
   check.proof = std::move(proof.value());

@@ -2,9 +2,9 @@
 
 #include "app/job/file.h"
 #include "app/process/program_report.h"
+#include "app/process/proof_limits.h"
 #include "app/report/cl_csv.h"
 #include "app/report/sheet/setup_sheet.h"
-#include "geometry/base/tolerances.h"
 
 namespace toothpath::commands {
 namespace {
@@ -72,7 +72,7 @@ CommandOutcome run_job(const RunRequest& request) {
     return failed(std::move(errors));
   }
   if (const auto aside = output->set_aside(); !aside) return failed(aside.error());
-  const auto stopped = flow::plan_post_and_prove(run, *output, Tolerances{}.proof_mm);
+  const auto stopped = flow::plan_post_and_prove(run, *output, process::proof_limits(run.job));
   if (stopped && stopped->kind != DiagnosticKind::verification) {
     run.progress.clear();
     return failed(*stopped);

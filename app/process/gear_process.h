@@ -25,6 +25,7 @@
 #include "app/report/sheet/length_tolerance.h"
 #include "app/report/sheet/setup_sheet.h"
 #include "cam/proof/checked_cl_path.h"
+#include "cam/proof/limits.h"
 #include "machines/machine.h"
 #include "postproc/joints/program.h"
 
@@ -112,9 +113,8 @@ class GearProcess {
   [[nodiscard]] virtual Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface, const std::vector<std::string>& assumed, app::StageClock& clock,
                                            std::vector<std::string>& files) const = 0;
 
-  /// To mill it on this machine.
-  /// @param proof_mm how far a proven bound may lie above what was measured
-  [[nodiscard]] virtual std::unique_ptr<GearMilling> milling(const machines::Machine& machine, double proof_mm, const FlankGrid& grid, app::StageClock& clock) const = 0;
+  /// To mill it on this machine within these limits. The machine must outlive it.
+  [[nodiscard]] virtual std::unique_ptr<GearMilling> milling(const machines::Machine& machine, const proof::ProofLimits& limits, const FlankGrid& grid, app::StageClock& clock) const = 0;
 
   /// Its flanks as the strokes of the job's gear shaper leave them. Refused: what `shaper` refuses; a gear type that is not shaped.
   [[nodiscard]] virtual ValueOrErrors<CutFlanks> shaped(const FlankGrid& grid) const = 0;

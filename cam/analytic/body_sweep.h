@@ -10,6 +10,7 @@
 #include "cam/tool/frustum_distance.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/path/tool_motion.h"
+#include "cam/proof/limits.h"
 
 namespace toothpath::analytic {
 
@@ -24,7 +25,7 @@ struct SweptGap {
 struct SweptGapOptions {
   double enough_mm = 0.5;         ///< gaps above this are returned as this
   double contact_mm = 0;           ///< below this ...
-  double contact_proof_mm = 2e-4;  ///< ... the bound lies within this of the least gap that was found, but for the motion's own deviations
+  double contact_proof_mm = proof::ProofLimits{}.proof_mm;  ///< ... the bound lies within this of the least gap that was found, but for the motion's own deviations
   double proof_mm = 0.01;          ///< else within this
 };
 

@@ -49,7 +49,7 @@ proof::WorstPlace place_of(const SweptGap& gap, const path::ToolMotion& m, const
 class Chunk {
  public:
   Chunk(const GearDistance& part, const std::vector<tool::ToolAssembly>& tools, const GougeCheckOptions& options)
-      : part_(part), tools_(tools), o_(options), out_(proof::no_motion_yet(options.clearance_mm)) {}
+      : part_(part), tools_(tools), o_(options), out_(proof::no_motion_yet(options.limits.clearance_mm)) {}
 
   void check(const path::ToolMotion& m, int tool) {
     if (tool != tool_) take(tool);
@@ -63,7 +63,7 @@ class Chunk {
       out_.bound_mm = cut.bound_mm;
       out_.bound_line = m.line;
     }
-    if (const double depth = std::max(cut.measured_mm, cut.bound_mm); depth > o_.gouge_tolerance_mm)
+    if (const double depth = std::max(cut.measured_mm, cut.bound_mm); depth > o_.limits.gouge_mm)
       add_worst(out_, place_of(cut.deepest, m, depth, cut.body));
     for (Body& body : bodies_) clearance(body, m);
     if (m.rapid) {
@@ -102,16 +102,16 @@ class Chunk {
     tool_ = tool;
     if (tool < 0) return;
     const auto& assembly = tools_[std::size_t(tool)];
-    cutter_.emplace(part_, assembly, o_.proof_mm, o_.gouge_tolerance_mm);
+    cutter_.emplace(part_, assembly, o_.limits.proof_mm, o_.limits.gouge_mm);
     for (const auto& f : tool::shank_and_holder(assembly)) bodies_.push_back({f, false, Vec3::Zero(), Vec3::UnitZ(), 0});
   }
 
   void clearance(Body& body, const path::ToolMotion& m) {
-    const double enough = o_.clearance_mm + kBodyLook, arm = std::hypot(body.frustum.to, std::max(body.frustum.radius_from, body.frustum.radius_to));
+    const double enough = o_.limits.clearance_mm + kBodyLook, arm = std::hypot(body.frustum.to, std::max(body.frustum.radius_from, body.frustum.radius_to));
     if (body.known) {
       const auto away = [&](const Vec3& tip, const Vec3& axis) { return (tip - body.tip).norm() + arm * (axis - body.axis).norm(); };
       const double left = body.gap - std::max(away(m.tip_from, m.axis_from), away(m.tip_to, m.axis_to)) - path::line_slack(m, arm, 1);
-      if (left >= o_.clearance_mm && left >= std::min(enough, out_.clearance_measured_mm - kGapStep)) {
+      if (left >= o_.limits.clearance_mm && left >= std::min(enough, out_.clearance_measured_mm - kGapStep)) {
         out_.clearance_mm = std::min({out_.clearance_mm, left, enough});
         out_.clearance_measured_mm = std::min(out_.clearance_measured_mm, enough);
         return;
@@ -120,14 +120,14 @@ class Chunk {
     SweptGapOptions look;
     look.enough_mm = enough + kAhead;
     look.contact_mm = kContact;
-    look.contact_proof_mm = o_.proof_mm;
+    look.contact_proof_mm = o_.limits.proof_mm;
     look.proof_mm = 0.5 * kGapStep;
     const auto gap = swept_gap(part_, body.frustum, m, look);
     body = {body.frustum, true, m.tip_to, m.axis_to, gap.proven_mm};
     out_.clearance_measured_mm = std::min({out_.clearance_measured_mm, gap.measured_mm, enough});
     if (gap.proven_mm < out_.clearance_mm) out_.closest = place_of(gap, m, body.frustum.name);
     out_.clearance_mm = std::min({out_.clearance_mm, gap.proven_mm, enough});
-    if (gap.proven_mm < o_.clearance_mm) add_worst(out_, place_of(gap, m, body.frustum.name));
+    if (gap.proven_mm < o_.limits.clearance_mm) add_worst(out_, place_of(gap, m, body.frustum.name));
   }
 
   const GearDistance& part_;
@@ -152,14 +152,14 @@ proof::GougeResult GougeCheck::check(const std::vector<path::ToolMotion>& motion
       chunk.check(motions[k], tool_of_operation[std::size_t(motions[k].operation)]);
     chunks[n] = chunk.finish();
   });
-  proof::GougeResult out = proof::no_motion_yet(options_.clearance_mm);
+  proof::GougeResult out = proof::no_motion_yet(options_.limits.clearance_mm);
   for (const auto& chunk : chunks) proof::add_result(out, chunk);
   return out;
 }
 
 bool GougeCheck::passes(const proof::GougeResult& r) const {
-  return r.bound_mm <= options_.gouge_tolerance_mm && r.measured_mm <= options_.gouge_tolerance_mm &&
-         r.clearance_mm >= options_.clearance_mm && r.rapids_clear;
+  return r.bound_mm <= options_.limits.gouge_mm && r.measured_mm <= options_.limits.gouge_mm &&
+         r.clearance_mm >= options_.limits.clearance_mm && r.rapids_clear;
 }
 
 std::vector<path::ToolMotion> GougeCheck::motions_of(const path::ClPath& path) { return toothpath::path::motions_of(path); }
@@ -178,12 +178,12 @@ Result<proof::CheckedClPath> GougeCheck::check_path(path::ClPath path) const {
                      "operation {} ({}), CL record {}: the {} of tool {} comes within {:.4f} mm of the teeth at radius {:.3f}, "
                      "height {:.3f}; the clearance is {:.4f}",
                      path.operation, path.operation_type, w.line, w.body, tools_[std::size_t(path.tool)].number, -w.depth_mm,
-                     w.radius_mm, w.height_mm, options_.clearance_mm);
+                     w.radius_mm, w.height_mm, options_.limits.clearance_mm);
     return fail_as(DiagnosticKind::verification,
                    "operation {} ({}), CL record {}: the {} cuts {:.4f} mm (bound) into {} of zone {} at radius {:.3f}, height "
                    "{:.3f}; the gouge tolerance is {:.4f}",
                    path.operation, path.operation_type, w.line, w.body, w.depth_mm, w.patch, w.zone, w.radius_mm, w.height_mm,
-                   options_.gouge_tolerance_mm);
+                   options_.limits.gouge_mm);
   }
   return fail_as(DiagnosticKind::verification, "operation {} ({}) is not proven free of gouges", path.operation,
                  path.operation_type);

@@ -90,7 +90,7 @@ struct FingerGougeCheck::State {
   bevel_gear::BevelGear gear;
   std::vector<tool::ToolAssembly> tools;
   std::vector<path::MillingOperation> operations;
-  Tolerances tol;
+  proof::ProofLimits tol;
   FingerCheckOptions opt;
   std::vector<std::unique_ptr<FingerTool>> states;  // by tool index, only those in use
   std::vector<std::vector<ToolHull>> hulls;         // the same
@@ -101,9 +101,9 @@ struct FingerGougeCheck::State {
   std::optional<Diagnostic> error;
   std::vector<WallPoint> points;
 
-  State(const bevel_gear::BevelGear& g, std::span<const tool::ToolAssembly> t, std::span<const path::MillingOperation> o, const Tolerances& tolerances,
+  State(const bevel_gear::BevelGear& g, std::span<const tool::ToolAssembly> t, std::span<const path::MillingOperation> o, const proof::ProofLimits& limits,
         const FingerCheckOptions& options)
-      : gear(g), tools(t.begin(), t.end()), operations(o.begin(), o.end()), tol(tolerances), opt(options), part(g), blank(blank_body(g)), beside(bodies_beside_teeth(g)) {
+      : gear(g), tools(t.begin(), t.end()), operations(o.begin(), o.end()), tol(limits), opt(options), part(g), blank(blank_body(g)), beside(bodies_beside_teeth(g)) {
     states.resize(tools.size());
     hulls.resize(tools.size());
     shank_holder.resize(tools.size());
@@ -334,9 +334,9 @@ struct FingerGougeCheck::State {
 };
 
 FingerGougeCheck::FingerGougeCheck(const bevel_gear::BevelGear& gear, std::span<const tool::ToolAssembly> tools,
-                                   std::span<const path::MillingOperation> operations, const Tolerances& tolerances,
+                                   std::span<const path::MillingOperation> operations, const proof::ProofLimits& limits,
                                    const FingerCheckOptions& options)
-    : state_(std::make_unique<State>(gear, tools, operations, tolerances, options)) {}
+    : state_(std::make_unique<State>(gear, tools, operations, limits, options)) {}
 
 FingerGougeCheck::~FingerGougeCheck() = default;
 

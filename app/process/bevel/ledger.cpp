@@ -6,11 +6,13 @@
 #include "app/base/units.h"
 #include "app/process/ledger_sources.h"
 #include "cam/finger/reference.h"
+#include "cam/proof/limits.h"
 #include "geometry/base/tolerances.h"
 
 namespace toothpath::bevel {
 namespace {
 
+constexpr double kVerification = proof::ProofLimits{}.proof_mm;  // poses between samples
 constexpr double kOnPath = 1e-4;  // mm: a centre this near to a wall's path belongs to it
 
 struct Planned {
@@ -63,7 +65,7 @@ std::vector<proof::LedgerEntry> ledger(const bevel_gear::BevelGear& gear, std::s
   double path = 0;
   for (const auto& e : out)
     if (e.source != "ridge") path += e.predicted_um / app::kUm;
-  out.push_back(process::entry("verification", Tolerances{}.proof_mm + path + stated.tip_mm + depth * stated.axis_rad, proof.gouge.bound_mm - proof.gouge.measured_mm,
+  out.push_back(process::entry("verification", kVerification + path + stated.tip_mm + depth * stated.axis_rad, proof.gouge.bound_mm - proof.gouge.measured_mm,
                          "the bound counts every pose of the cutter, the measurement the points of a grid"));
   return out;
 }

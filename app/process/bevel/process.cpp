@@ -35,15 +35,15 @@ finger::FingerCheckOptions check_options(const process::FlankGrid& grid) {
 
 class BevelMilling final : public process::GearMilling {
  public:
-  BevelMilling(const job::Job& job, const machines::Machine& machine, const bevel_gear::BevelGear& gear, const process::FlankGrid& grid)
-      : job_(job), gear_(gear), tolerances_(proof_tolerances(job)), gouge_(gear, job.tools, job.operations, tolerances_, check_options(grid)),
-        check_(job, machine, gear, gouge_) {}
+  BevelMilling(const job::Job& job, const machines::Machine& machine, const bevel_gear::BevelGear& gear, const proof::ProofLimits& limits, const process::FlankGrid& grid)
+      : job_(job), gear_(gear), limits_(limits), gouge_(gear, job.tools, job.operations, limits, check_options(grid)),
+        check_(job, machine, limits, gear, gouge_) {}
 
   [[nodiscard]] Status plan(app::StageClock& clock, app::Progress&) override {
     for (std::size_t i = 0; i < job_.operations.size(); ++i) {
       const auto& operation = job_.operations[i];
       const auto& tool = job_.tools[static_cast<std::size_t>(operation.tool)];
-      auto plan = clock.run("plan", [&] { return finger::plan_finger_operation(gear_, tool, operation, static_cast<int>(i), tolerances_); });
+      auto plan = clock.run("plan", [&] { return finger::plan_finger_operation(gear_, tool, operation, static_cast<int>(i), limits_); });
       if (!plan) return process::located(job_, fmt::format("operation[{}]", i), plan.error());
       plans_.push_back(std::move(plan).value());
     }
@@ -71,7 +71,7 @@ class BevelMilling final : public process::GearMilling {
  private:
   const job::Job& job_;
   const bevel_gear::BevelGear& gear_;
-  Tolerances tolerances_;
+  proof::ProofLimits limits_;
   finger::FingerGougeCheck gouge_;
   BevelGearCheck check_;
   std::vector<finger::FingerPlan> plans_;
@@ -114,8 +114,8 @@ class BevelProcess final : public process::GearProcess {
                                    std::vector<std::string>& files) const override {
     return write_surface_files(output, gear_, job_.name, surface, clock, files);
   }
-  [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine, double, const process::FlankGrid& grid, app::StageClock&) const override {
-    return std::make_unique<BevelMilling>(job_, machine, gear_, grid);
+  [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine, const proof::ProofLimits& limits, const process::FlankGrid& grid, app::StageClock&) const override {
+    return std::make_unique<BevelMilling>(job_, machine, gear_, limits, grid);
   }
   [[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped(const process::FlankGrid&) const override { return std::vector{process::needs_face_gear(job_)}; }
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {

@@ -13,26 +13,17 @@ namespace {
 /// mm and rad: proven distance of a read-back motion from its straight line. Half of a face gear's: it counts in the bound of the gouge and in that
 /// of the material left, which has 1.5 um above the chords; a face gear's left material is measured and does not contain it.
 constexpr double kFingerMotionTolerance = 5e-5;
-constexpr double kWallAllowance = 1.5e-3;  // mm above the chord tolerance that a finished wall may stand proud
 constexpr double kRoundedLinear = 2.5e-3;  // mm and deg: an axis that changes less stands still (words of three decimals)
 constexpr double kAlongAxis = 0.05;        // a move with less across the axis, as a share, is an engage or retract
-
-/// Chord tolerance of the walls: of the last finishing operation.
-std::optional<double> finishing_chord(const job::Job& job) {
-  std::optional<double> chord;
-  for (const auto& operation : job.operations)
-    if (operation.type == path::OperationType::finger_finishing) chord = operation.chord_tolerance_mm;
-  return chord;
-}
 
 std::string told(const proof::WorstPlace& p) {
   return fmt::format("{} against {}, operation {}, tooth {}, line {}, r {:.3f} mm, z {:.3f} mm", p.body, p.patch, p.operation, p.tooth, p.line, p.radius_mm,
                      p.height_mm);
 }
 
-void judge_teeth(const job::Job& job, const finger::FingerCheckResult& v, std::vector<std::string>& reasons) {
+void judge_teeth(const proof::ProofLimits& limits, const finger::FingerCheckResult& v, std::vector<std::string>& reasons) {
   const proof::GougeResult& g = v.gouge;
-  const double tolerance = job.verify.gouge_tolerance_mm;
+  const double tolerance = limits.gouge_mm;
   const proof::WorstPlace& place = g.worst.empty() ? g.deepest : g.worst.front();
   const std::string where = told(place);
   if (!(g.bound_mm <= tolerance))
@@ -43,9 +34,9 @@ void judge_teeth(const job::Job& job, const finger::FingerCheckResult& v, std::v
   if (v.ridge.requested_mm > 0 && !(v.ridge.reached_mm <= v.ridge.requested_mm))
     reasons.push_back(fmt::format("ridge: {:.4f} mm is left on the root at cone distance {:.3f} mm, asked {:.4f} mm", v.ridge.reached_mm,
                                   v.ridge.cone_distance_mm, v.ridge.requested_mm));
-  if (const auto chord = finishing_chord(job); chord && !(v.finished.bound_mm <= *chord + kWallAllowance))
+  if (limits.left_mm && !(v.finished.bound_mm <= *limits.left_mm))
     reasons.push_back(fmt::format("material left on the walls: {:.2f} um measured, {:.2f} um proven, limit {:.2f} um", v.finished.max_mm * 1000,
-                                  v.finished.bound_mm * 1000, (*chord + kWallAllowance) * 1000));
+                                  v.finished.bound_mm * 1000, *limits.left_mm * 1000));
 }
 
 MovingAxes moving_axes(const readback::ReadBack& read, const std::vector<path::ToolMotion>& motions, const readback::NcControl& control) {
@@ -119,15 +110,8 @@ bool finishes(const job::Job& job) {
 
 }  // namespace
 
-Tolerances proof_tolerances(const job::Job& job) {
-  Tolerances tolerances;
-  tolerances.gouge_mm = job.verify.gouge_tolerance_mm;
-  if (job.verify.clearance_mm) tolerances.clearance_mm = *job.verify.clearance_mm;
-  return tolerances;
-}
-
-BevelGearCheck::BevelGearCheck(const job::Job& job, const machines::Machine& machine, const bevel_gear::BevelGear& gear, const finger::FingerGougeCheck& check)
-    : job_(job), machine_(machine), gear_(gear), check_(check) {}
+BevelGearCheck::BevelGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const bevel_gear::BevelGear& gear, const finger::FingerGougeCheck& check)
+    : job_(job), machine_(machine), limits_(limits), gear_(gear), check_(check) {}
 
 int BevelGearCheck::teeth() const { return gear_.parameters().teeth; }
 
@@ -153,7 +137,7 @@ void BevelGearCheck::meet(const process::ProgramProof& whole) { moving_ = moving
 
 void BevelGearCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
   result = clock.run("proof of the program", [&] { return finger::verify_teeth(check_, program.motions); });
-  judge_teeth(job_, result, program.reasons);
+  judge_teeth(limits_, result, program.reasons);
   program.gouge = result.gouge;
   program.excess = result.operations;
   if (finishes(job_)) program.finished = result.finished;

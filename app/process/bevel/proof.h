@@ -6,6 +6,7 @@
 
 #include "app/process/program_proof.h"
 #include "cam/finger/check.h"
+#include "cam/proof/limits.h"
 
 namespace toothpath::bevel {
 
@@ -18,7 +19,7 @@ struct MovingAxes {
 /// Everything that it is made of must outlive it.
 class BevelGearCheck final : public process::GearCheck {
  public:
-  BevelGearCheck(const job::Job& job, const machines::Machine& machine, const bevel_gear::BevelGear& gear, const finger::FingerGougeCheck& check);
+  BevelGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const bevel_gear::BevelGear& gear, const finger::FingerGougeCheck& check);
 
   [[nodiscard]] int teeth() const override;
   [[nodiscard]] double motion_tolerance() const override;
@@ -31,12 +32,10 @@ class BevelGearCheck final : public process::GearCheck {
  private:
   const job::Job& job_;
   const machines::Machine& machine_;
+  proof::ProofLimits limits_;
   const bevel_gear::BevelGear& gear_;
   const finger::FingerGougeCheck& check_;
   MovingAxes moving_;  // of the program met last
 };
-
-/// Tolerances of the proof that a job asks for.
-[[nodiscard]] Tolerances proof_tolerances(const job::Job& job);
 
 }  // namespace toothpath::bevel

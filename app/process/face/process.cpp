@@ -15,22 +15,10 @@
 #include "cam/analytic/cut_surface.h"
 #include "cam/analytic/gouge_check.h"
 #include "cam/ball/plan.h"
-#include "geometry/base/tolerances.h"
 #include "postproc/joints/pole.h"
 
 namespace toothpath::face {
 namespace {
-
-double clearance_of(const job::Job& job) { return job.verify.clearance_mm.value_or(ball::PlanOptions{}.clearance_mm); }
-
-analytic::GougeCheckOptions check_options(const job::Job& job, const face_gear::FaceGear& gear, double proof_mm) {
-  analytic::GougeCheckOptions options;
-  options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
-  options.proof_mm = std::min(proof_mm, 0.1 * job.verify.gouge_tolerance_mm);
-  options.clearance_mm = clearance_of(job);
-  options.rapid_height_mm = gear.blank_top();
-  return options;
-}
 
 analytic::CutSurfaceOptions surface_options(const process::FlankGrid& grid) {
   analytic::CutSurfaceOptions options;
@@ -39,10 +27,9 @@ analytic::CutSurfaceOptions surface_options(const process::FlankGrid& grid) {
   return options;
 }
 
-ball::PlanOptions plan_options(const job::Job& job, const machines::Machine& machine) {
+ball::PlanOptions plan_options(const proof::ProofLimits& limits, const machines::Machine& machine) {
   ball::PlanOptions options;
-  options.clearance_mm = clearance_of(job);
-  options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
+  options.limits = limits;
   // `tilt` keeps what it asks between two records, too, where the axis dips by less than this margin.
   if (machine.post.pole == machines::PoleOption::tilt)
     options.least_tilt_rad = std::max(options.least_tilt_rad, machine.post.pole_angle_rad.value_or(joints::kLeastPoleTilt) + 1e-3);
@@ -51,12 +38,12 @@ ball::PlanOptions plan_options(const job::Job& job, const machines::Machine& mac
 
 class FaceMilling final : public process::GearMilling {
  public:
-  FaceMilling(const job::Job& job, const machines::Machine& machine, const face_gear::FaceGear& gear, double proof_mm, const process::FlankGrid& grid)
-      : job_(job), machine_(machine), options_(check_options(job, gear, proof_mm)), part_(gear, ball::reach_of(job.tools)), gouge_(part_, job.tools, options_),
-        check_(job, machine, part_, gouge_, surface_options(grid)) {}
+  FaceMilling(const job::Job& job, const machines::Machine& machine, const face_gear::FaceGear& gear, const proof::ProofLimits& limits, const process::FlankGrid& grid)
+      : job_(job), machine_(machine), limits_(limits), part_(gear, ball::reach_of(job.tools)), gouge_(part_, job.tools, {limits, gear.blank_top()}),
+        check_(job, machine, limits, part_, gouge_, surface_options(grid)) {}
 
   [[nodiscard]] Status plan(app::StageClock& clock, app::Progress& progress) override {
-    ball::PlanOptions options = plan_options(job_, machine_);
+    ball::PlanOptions options = plan_options(limits_, machine_);
     options.stage = [&](const std::string& name, const std::function<void()>& work) { clock.run(name, work); };
     auto planned = clock.run("plan", [&] {
       return ball::plan_face_gear(part_, job_.tools, job_.operations, options, [&](const std::string& text) { progress.show(text); });
@@ -75,14 +62,14 @@ class FaceMilling final : public process::GearMilling {
   [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override { return gouge_.check_path(path); }
   [[nodiscard]] process::GearCheck& check() override { return check_; }
   [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program, const process::ProgramProof& proof, double blend_mm) const override {
-    return face::ledger(part_, plan_, job_.tools, program, proof, check_.surface, blend_mm, options_.proof_mm);
+    return face::ledger(part_, plan_, job_.tools, program, proof, check_.surface, blend_mm, limits_.proof_mm);
   }
   [[nodiscard]] sheet::OtherSurface beside_the_grid() const override { return {}; }
 
  private:
   const job::Job& job_;
   const machines::Machine& machine_;
-  analytic::GougeCheckOptions options_;
+  proof::ProofLimits limits_;
   analytic::GearDistance part_;
   analytic::GougeCheck gouge_;
   FaceGearCheck check_;
@@ -127,8 +114,8 @@ class FaceProcess final : public process::GearProcess {
                                    std::vector<std::string>& files) const override {
     return write_surface_files(output, gear_, job_.name, surface, assumed, clock, files);
   }
-  [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine, double proof_mm, const process::FlankGrid& grid, app::StageClock& clock) const override {
-    return clock.run("distance index", [&] { return std::make_unique<FaceMilling>(job_, machine, gear_, proof_mm, grid); });
+  [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine, const proof::ProofLimits& limits, const process::FlankGrid& grid, app::StageClock& clock) const override {
+    return clock.run("distance index", [&] { return std::make_unique<FaceMilling>(job_, machine, gear_, limits, grid); });
   }
   [[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped(const process::FlankGrid& grid) const override {
     auto places = places_on(job_, gear_, grid.rows, grid.columns);

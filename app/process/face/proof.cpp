@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "app/base/units.h"
+#include "app/process/proof_limits.h"
 
 namespace toothpath::face {
 namespace {
 
 constexpr double kBallMotionTolerance = 1e-4;  // mm and rad: proven distance of a read-back motion from its straight line
-constexpr double kExcessMargin = 1e-3;  // mm: rounding, axis motion and the grid of the measurement
 
 void judge_gouge(const proof::GougeResult& gouge, const analytic::GougeCheck& check, double tolerance, std::vector<std::string>& reasons) {
   if (check.passes(gouge)) return;
@@ -31,20 +31,18 @@ void judge_gouge(const proof::GougeResult& gouge, const analytic::GougeCheck& ch
 constexpr double kLeastAllowance = 0.8;
 
 /// What a finishing operation may leave, on every point that its ball can reach: the cusps, the chords and a micrometre.
-void judge_surface(const analytic::CutSurface& surface, const job::Job& job, std::vector<std::string>& reasons) {
+void judge_surface(const analytic::CutSurface& surface, const job::Job& job, const proof::ProofLimits& limits, std::vector<std::string>& reasons) {
   for (const proof::ExcessResult& after : surface.operations) {
     const double allowance = job.operations[static_cast<std::size_t>(after.operation)].allowance_mm;
     if (allowance > 0 && after.points > 0 && after.min_mm < kLeastAllowance * allowance)
       reasons.push_back(fmt::format("operation {}: the least stock left is {:.4f} mm, below {:.4f} mm ({} of the allowance {:.4f})", after.operation,
                                     after.min_mm, kLeastAllowance * allowance, kLeastAllowance, allowance));
   }
+  if (!limits.left_mm || surface.finished.max_mm <= *limits.left_mm) return;
   const path::MillingOperation& last = job.operations.back();
-  if (last.type != path::OperationType::finishing) return;
-  const double limit = last.scallop_mm + last.chord_tolerance_mm + kExcessMargin;
-  if (surface.finished.max_mm <= limit) return;
   reasons.push_back(fmt::format("left material: {:.2f} um after the last operation, limit {:.2f} um (scallop {:.2f}, chord {:.2f}, margin {:.2f})",
-                                surface.finished.max_mm * 1000, limit * 1000, last.scallop_mm * 1000, last.chord_tolerance_mm * 1000,
-                                kExcessMargin * 1000));
+                                surface.finished.max_mm * 1000, *limits.left_mm * 1000, last.scallop_mm * 1000, last.chord_tolerance_mm * 1000,
+                                process::kBallMargin * 1000));
 }
 
 report::Finding scallop_of(const proof::ScallopResult& scallop) {
@@ -63,8 +61,8 @@ joints::ClearanceBody clearance_body(const face_gear::FaceGear& gear) {
   return {gear.outer_radius(), lowest - 2.5 * gear.parameters().module_mm, gear.blank_top()};
 }
 
-FaceGearCheck::FaceGearCheck(const job::Job& job, const machines::Machine& machine, const analytic::GearDistance& part, const analytic::GougeCheck& check, const analytic::CutSurfaceOptions& grid)
-    : job_(job), machine_(machine), part_(part), check_(check), grid_(grid) {}
+FaceGearCheck::FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const analytic::GearDistance& part, const analytic::GougeCheck& check, const analytic::CutSurfaceOptions& grid)
+    : job_(job), machine_(machine), limits_(limits), part_(part), check_(check), grid_(grid) {}
 
 int FaceGearCheck::teeth() const { return part_.gear().parameters().teeth; }
 
@@ -81,9 +79,9 @@ void FaceGearCheck::judge(process::ProgramProof& program, app::StageClock& clock
   std::vector<int> tool_of_operation;
   for (const auto& operation : job_.operations) tool_of_operation.push_back(operation.tool);
   program.gouge = clock.run("proof of the program", [&] { return check_.check(program.motions, tool_of_operation); });
-  judge_gouge(program.gouge, check_, job_.verify.gouge_tolerance_mm, program.reasons);
+  judge_gouge(program.gouge, check_, limits_.gouge_mm, program.reasons);
   surface = clock.run("cut surface", [&] { return analytic::measure_cut_surface(part_, program.motions, job_.operations, job_.tools, grid_); });
-  judge_surface(surface, job_, program.reasons);
+  judge_surface(surface, job_, limits_, program.reasons);
   program.excess = surface.operations;
   program.finished = surface.finished;
   program.unreached = surface.unreached;

@@ -4,6 +4,7 @@
 #include "app/process/program_proof.h"
 #include "cam/analytic/cut_surface.h"
 #include "cam/analytic/gouge_check.h"
+#include "cam/proof/limits.h"
 
 namespace toothpath::face {
 
@@ -11,7 +12,7 @@ namespace toothpath::face {
 class FaceGearCheck final : public process::GearCheck {
  public:
   /// @param grid  on which the cut surface is measured
-  FaceGearCheck(const job::Job& job, const machines::Machine& machine, const analytic::GearDistance& part, const analytic::GougeCheck& check, const analytic::CutSurfaceOptions& grid = {});
+  FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const analytic::GearDistance& part, const analytic::GougeCheck& check, const analytic::CutSurfaceOptions& grid = {});
 
   [[nodiscard]] int teeth() const override;
   [[nodiscard]] double motion_tolerance() const override;
@@ -24,6 +25,7 @@ class FaceGearCheck final : public process::GearCheck {
  private:
   const job::Job& job_;
   const machines::Machine& machine_;
+  proof::ProofLimits limits_;
   const analytic::GearDistance& part_;
   const analytic::GougeCheck& check_;
   analytic::CutSurfaceOptions grid_;

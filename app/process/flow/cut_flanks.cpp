@@ -2,7 +2,7 @@
 
 #include "app/process/flow/registry.h"
 #include "app/process/flow/stages.h"
-#include "geometry/base/tolerances.h"
+#include "app/process/proof_limits.h"
 
 namespace toothpath::flow {
 
@@ -14,7 +14,7 @@ process::ValueOrErrors<process::CutFlanks> cut_flanks(const job::Job& job, const
     if (auto* errors = made.refused()) return std::move(*errors);
     return made.value()->shaped(grid);
   }
-  auto done = run_stages(job, Tolerances{}.proof_mm, scratch, quiet, grid);
+  auto done = run_stages(job, process::proof_limits(job), scratch, quiet, grid);
   if (!done.errors.empty()) return std::move(done.errors);
   process::CutFlanks cut;
   cut.route = "milled";

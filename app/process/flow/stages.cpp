@@ -40,7 +40,7 @@ std::optional<Diagnostic> plan_and_check(Run& run) {
 }
 
 /// What the proof found goes to the report; what the files need later is kept.
-void keep_proof(Run& run, process::ProgramProof& proof, const std::vector<const path::ClPath*>& paths) {
+void keep_proof(Run& run, const proof::ProofLimits& limits, process::ProgramProof& proof, const std::vector<const path::ClPath*>& paths) {
   process::note_proof(run.report, proof);
   if (run.report.unreached && run.report.unreached->points > 0)
     run.report.warnings.push_back(fmt::format("the finishing ball does not reach every corner: up to {:.3f} mm stay (measured up to one module)",
@@ -48,11 +48,11 @@ void keep_proof(Run& run, process::ProgramProof& proof, const std::vector<const 
   run.surface = std::move(proof.surface);
   run.motion = page::motion_charts(proof.read, proof.motions, run.machine);
   for (const path::ClPath* path : paths) run.lines.push_back(page::lines_of_records(*path, proof.motions, proof.path_tolerance_mm));
-  run.report.length_tolerances = sheet::length_tolerances(run.job, run.report, paths, run.surface, run.milling->beside_the_grid());
+  run.report.length_tolerances = sheet::length_tolerances(run.job, limits, run.report, paths, run.surface, run.milling->beside_the_grid());
 }
 
 /// Axis program, NC text on the disk, proof of those bytes. Nothing: done, and `report.reasons` says whether it is safe.
-std::optional<Diagnostic> post_and_prove(Run& run, app::OutputDir& output) {
+std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& limits, app::OutputDir& output) {
   const process::GearProcess& gear = *run.gear.process;
   const auto paths = run.paths();
   auto posted = process::post_program(run.checked, run.job, run.job.name + (run.gear.correction ? ", corrected" : ""), run.machine, gear.part().teeth,
@@ -71,7 +71,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, app::OutputDir& output) {
     error.kind = DiagnosticKind::verification;  // our own program must be readable
     return error;
   }
-  keep_proof(run, *proof, paths);
+  keep_proof(run, limits, *proof, paths);
   if (auto done = note_restart(run.report, *posted, file, run.job, run.machine, run.milling->check(), run.lines, run.clock); !done) return done.error();
   run.program_text = std::move(posted->restarted ? posted->restart_text : posted->text);
   run.report.ledger = run.milling->ledger(program, *proof, posted->blend_mm);
@@ -109,11 +109,11 @@ std::vector<Diagnostic> prepare(Run& run, const RunAsked& asked) {
   return {};
 }
 
-std::optional<Diagnostic> plan_post_and_prove(Run& run, app::OutputDir& output, double proof_mm, const process::FlankGrid& grid) {
+std::optional<Diagnostic> plan_post_and_prove(Run& run, app::OutputDir& output, const proof::ProofLimits& limits, const process::FlankGrid& grid) {
   begin_report(run);
-  run.milling = run.gear.process->milling(run.machine, proof_mm, grid, run.clock);
+  run.milling = run.gear.process->milling(run.machine, limits, grid, run.clock);
   if (auto stopped = plan_and_check(run)) return stopped;
-  return post_and_prove(run, output);
+  return post_and_prove(run, limits, output);
 }
 
 page::ReportPage page_content(Run& run) {
@@ -128,13 +128,13 @@ page::ReportPage page_content(Run& run) {
   return page;
 }
 
-StagesOutcome run_stages(const job::Job& job, double proof_mm, app::OutputDir& scratch, bool quiet, const process::FlankGrid& grid, bool with_page) {
+StagesOutcome run_stages(const job::Job& job, const proof::ProofLimits& limits, app::OutputDir& scratch, bool quiet, const process::FlankGrid& grid, bool with_page) {
   Run run(quiet);
   run.job = job;
   StagesOutcome outcome;
   outcome.errors = prepare(run, {});
   if (!outcome.errors.empty()) return outcome;
-  if (const auto stopped = plan_post_and_prove(run, scratch, proof_mm, grid)) {
+  if (const auto stopped = plan_post_and_prove(run, scratch, limits, grid)) {
     if (stopped->kind != DiagnosticKind::verification) outcome.errors.push_back(*stopped);
     run.report.reasons.push_back(stopped->message);
     run.report.verified = false;

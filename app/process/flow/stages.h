@@ -59,7 +59,7 @@ struct Run {
 
 /// From the prepared inputs to the proof. Nothing: done, and `report.reasons` says whether the program is safe. A diagnostic of kind
 /// verification: the job is right, its program is not safe.
-[[nodiscard]] std::optional<Diagnostic> plan_post_and_prove(Run& run, app::OutputDir& output, double proof_mm, const process::FlankGrid& grid = {});
+[[nodiscard]] std::optional<Diagnostic> plan_post_and_prove(Run& run, app::OutputDir& output, const proof::ProofLimits& limits, const process::FlankGrid& grid = {});
 
 /// What the report page shows of the run as far as it got.
 [[nodiscard]] page::ReportPage page_content(Run& run);
@@ -74,9 +74,8 @@ struct StagesOutcome {
 
 /// The stages of `run` on a job that has been read (and perhaps changed): the same code, without the files for people. The program
 /// goes through a temporary file of `scratch`, as in a run, and is dropped afterwards.
-/// @param proof_mm how far the bound of a move may lie above what was measured at its ends
 /// @param grid     on which the flanks of the cut surface are measured
 /// @param with_page whether the content of the report page is handed back, too (it holds a second copy of paths and surface)
-[[nodiscard]] StagesOutcome run_stages(const job::Job& job, double proof_mm, app::OutputDir& scratch, bool quiet, const process::FlankGrid& grid = {}, bool with_page = false);
+[[nodiscard]] StagesOutcome run_stages(const job::Job& job, const proof::ProofLimits& limits, app::OutputDir& scratch, bool quiet, const process::FlankGrid& grid = {}, bool with_page = false);
 
 }  // namespace toothpath::flow

@@ -68,7 +68,7 @@ TEST_P(CleanPrograms, NoneIsReported) {
     if (worst > tolerance - 3e-4) continue;
     ++clean;
     auto options = job.check_options();
-    options.gouge_tolerance_mm = tolerance;
+    options.limits.gouge_mm = tolerance;
     options.rapid_height_mm = roof;
     const analytic::GougeCheck check(*job.part, {tool}, options);
     const auto r = check.check(analytic::GougeCheck::motions_of(*path), {0});
@@ -104,7 +104,7 @@ TEST_P(RandomMotions, TenfoldSamplingNeverExceedsTheBound) {
     m.tip_from = record.tip + wander(0.02) + Vec3(0, 0, random(0, 0.2));
     m.tip_to = m.tip_from + wander(k % 3 == 0 ? 2.0 : 0.3);
     turning += m.axis_from != m.axis_to;
-    analytic::CutterSweep sweep(*job.part, tool, options.proof_mm, options.gouge_tolerance_mm);
+    analytic::CutterSweep sweep(*job.part, tool, options.limits.proof_mm, options.limits.gouge_mm);
     const auto found = sweep.check(m);
     EXPECT_GE(found.bound_mm, found.measured_mm);
     const int steps = 10 * int(std::max<std::size_t>(20, std::min<std::size_t>(sweep.queries(), 60)));
@@ -133,7 +133,7 @@ TEST_P(RandomMotions, AWideToleranceOfTheAxisIsBoundedInFewDistances) {
   const double R = tool.radius_mm();
   const auto options = job.check_options();
   for (const double lean : {1e-4, 3e-3, 2e-2}) {
-    analytic::CutterSweep sweep(*job.part, tool, options.proof_mm, options.gouge_tolerance_mm);
+    analytic::CutterSweep sweep(*job.part, tool, options.limits.proof_mm, options.limits.gouge_mm);
     double margin = INFINITY;
     for (int k = 0; k < 40; ++k) {
       const std::size_t i = 2 + random.index(path.records.size() - 4);

@@ -119,7 +119,7 @@ TEST_P(EveryBody, IsFoundWithinAFifthOfAMicrometre) {
     ++planted;
     turning += fault->motion.axis_from != fault->motion.axis_to;
     auto options = job.check_options();
-    options.gouge_tolerance_mm = 0.0015;
+    options.limits.gouge_mm = 0.0015;
     std::vector<tool::ToolAssembly> tools(job.tools.size(), fault->tool);
     const analytic::GougeCheck check(*job.part, tools, options);
     const auto r = check.check({fault->motion}, job.tool_of_operation());

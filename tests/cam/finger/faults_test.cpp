@@ -16,7 +16,7 @@ class FingerFaults : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     clean_ = new Milled(mill_all(w3(), 0.9));
-    check_ = new finger::FingerGougeCheck(clean_->gear, clean_->tools, clean_->ops, Tolerances{}, kFaultsQuick);
+    check_ = new finger::FingerGougeCheck(clean_->gear, clean_->tools, clean_->ops, proof::ProofLimits{}, kFaultsQuick);
   }
   static void TearDownTestSuite() {
     delete check_;
@@ -159,7 +159,7 @@ TEST_F(FingerFaults, HubAndShaftStandInTheWay) {
     p.shaft_diameter_mm = c.shaft;
     p.shaft_length_mm = c.shaft > 0 ? 30 : 0;
     const bevel_gear::BevelGear gear = made(p, pinion_mill());
-    const finger::FingerGougeCheck with_bodies(gear, clean().tools, clean().ops, Tolerances{}, kFaultsQuick);
+    const finger::FingerGougeCheck with_bodies(gear, clean().tools, clean().ops, proof::ProofLimits{}, kFaultsQuick);
     bool clear = true;
     std::string message;
     for (const auto& plan : clean().plans)
@@ -179,7 +179,7 @@ TEST_F(FingerFaults, HolderAgainstShaft) {
   const bevel_gear::BevelGear gear = made(p, pinion_mill());
   auto tools = clean().tools;
   tools[0].holder = {{320, 320, 40}};
-  const finger::FingerGougeCheck with_shaft(gear, tools, clean().ops, Tolerances{}, kFaultsQuick);
+  const finger::FingerGougeCheck with_shaft(gear, tools, clean().ops, proof::ProofLimits{}, kFaultsQuick);
   const auto v = with_shaft.verify(clean().motions);
   EXPECT_LT(v.gouge.clearance_mm, 0.05);
   ASSERT_FALSE(v.gouge.worst.empty());

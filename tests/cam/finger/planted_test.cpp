@@ -28,8 +28,8 @@ class FingerPlanted : public ::testing::Test {
     delete brute_;
     delete clean_;
   }
-  static Tolerances limits() {
-    Tolerances t;
+  static proof::ProofLimits limits() {
+    proof::ProofLimits t;
     t.gouge_mm = 0.0015;
     return t;
   }
