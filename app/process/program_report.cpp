@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "app/process/gear_of_job.h"
-#include "app/report/sheet/setup_travel.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/hash.h"
 #include "machines/toml/regular_file.h"
@@ -56,10 +55,8 @@ void note_axis_program(report::RunReport& report, const job::Job& job, const mac
   report.total_minutes = timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes;
   if (job.setup && program.offer)
     report.travel_room = report::TravelRoom{*program.offer, job.setup->origin_mm + program.offer->shift_mm, job.setup->work_offset_at_mm + program.offer->shift_mm};
-  if (job.setup && program.offer) report.sheet_sections.push_back(sheet::travel_section(program, *job.setup));
   if (program.pole_passages > 0)
     report.poles = report::PolesReport{program.pole_passages, kPoleWords[static_cast<std::size_t>(machine.post.pole)], program.pole_axis_rad, program.pole_tip_mm};
-  report.sheet_sections.push_back(sheet::time_section(program, report.poles));
   report.block_times = report::block_times_of(program);
   for (const joints::AxisOperation& o : program.operations) {
     const auto& asked = job.operations[static_cast<std::size_t>(o.operation)];

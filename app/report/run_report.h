@@ -9,6 +9,7 @@
 #include "app/report/block_times.h"
 #include "app/report/finding.h"
 #include "app/report/scene_report.h"
+#include "app/report/section.h"
 #include "cam/proof/verification.h"
 #include "geometry/face_gear/flank_correction.h"
 #include "postproc/joints/program.h"
@@ -51,14 +52,6 @@ struct PolesReport {
 
 /// The same in one line, for page and set-up sheet.
 [[nodiscard]] std::string poles_text(const PolesReport& poles);
-
-/// A table of the set-up sheet that is made elsewhere.
-struct SheetSection {
-  std::string title;
-  std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;
-  std::string note;  ///< below the table
-};
 
 /// One pass of an operation in one zone.
 struct PassReport {
@@ -105,7 +98,7 @@ struct RunReport {
   std::optional<joints::ProgramRestart> restart;                 ///< the program begins there
   std::optional<restart::RestartMenu> restart_menu;               ///< where it can be taken up again
   std::vector<LengthTolerance> length_tolerances;
-  std::vector<SheetSection> sheet_sections;              ///< stand behind the axis ranges
+  std::vector<Section> sections;                         ///< tables for page and set-up sheet: app/report/sections
   std::vector<proof::LedgerEntry> ledger;
   std::vector<SceneVerdict> scene;                       ///< fixture and stock, where meshes of them were given
   std::vector<CorrectionRow> correction;                 ///< empty: the nominal flanks are the target

@@ -7,6 +7,7 @@
 #include "app/process/program_report.h"
 #include "app/report/page/motion_charts.h"
 #include "app/report/page/page_of_run.h"
+#include "app/report/sections/sections.h"
 #include "app/report/sheet/length_tolerance.h"
 
 namespace toothpath::flow {
@@ -75,6 +76,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
   if (auto done = note_restart(run.report, *posted, file, run.job, run.machine, run.milling->check(), run.lines, run.clock); !done) return done.error();
   run.program_text = std::move(posted->restarted ? posted->restart_text : posted->text);
   run.report.ledger = run.milling->ledger(program, *proof, posted->blend_mm);
+  run.report.sections = sections::sections_of({run.job, run.report, posted->restarted ? *posted->restarted : program, paths});
   if (!run.report.reasons.empty()) return std::nullopt;
   process::note_verified(run.report, posted->file, run.program_text);
   return std::nullopt;

@@ -114,6 +114,8 @@ ReportPage page_of_run(const GearOnPage& gear, const report::RunReport& r, std::
   page.ledger = r.ledger;
   page.directions = r.directions;
   page.stage_seconds = r.stages;
+  for (const report::Section& section : r.sections)
+    if (!section.id.empty()) page.sections.push_back(section);
   if (!r.operations.empty()) page.tables = {operation_table(r), axis_table(r)};
   if (!r.correction.empty()) page.tables.push_back(correction_table(r));
   if (!r.passes.empty()) page.tables.push_back(pass_table(r));

@@ -239,6 +239,10 @@ std::string work_precision_section(const ReportPage& page) {
 
 std::string contact_section(const ReportPage& page) { return section("contact", "Contact with the pinion", page.contact); }
 
+std::string section_of_the_report(const report::Section& s) {
+  return section(s.id, svg::html_escape(s.title), table({"", s.columns, s.rows, s.note}));
+}
+
 std::string stages_section(const ReportPage& page) {
   if (page.stage_seconds.empty()) return {};
   double total = 0;

@@ -158,7 +158,7 @@ void operation_section(Sheet& sheet, const report::RunReport& report) {
   sheet.end_table();
 }
 
-void table_section(Sheet& sheet, const report::SheetSection& section) {
+void table_section(Sheet& sheet, const report::Section& section) {
   sheet.heading(section.title);
   sheet.begin_table(section.columns);
   for (const auto& row : section.rows) sheet.row(row);
@@ -190,7 +190,7 @@ std::string setup_sheet(const job::Job& job, const PartOutline& part, const mach
   restart_section(sheet, job, report);
   const BlankCylinder blank{part.outer_radius, std::min(part.bottom, part.tooth_top), std::max(part.bottom, part.tooth_top)};
   if (!report.axes.empty()) table_section(sheet, swing_section(part_swing(blank, *job.setup, machine, report.axes)));
-  for (const auto& section : report.sheet_sections) table_section(sheet, section);
+  for (const auto& section : report.sections) table_section(sheet, section);
   if (!report.assumed.empty()) {
     sheet.heading("Assumed values: measure before the first cut");
     sheet.list(report.assumed, "assumed");
