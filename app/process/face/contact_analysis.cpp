@@ -59,6 +59,39 @@ std::string words_of(const contact::FlankPattern& p) {
   return text + (ends.empty() ? "; keeps off all edges" : "; runs out at: " + ends);
 }
 
+using Json = nlohmann::ordered_json;
+
+/// Path of contact and pattern in one ring.
+Json zone_json(const ContactOfSide& side, std::size_t m) {
+  const contact::FlankPattern& p = side.roll.patterns[m];
+  Json zone;
+  zone["zone"] = side.members[m].flank.zone;
+  if (const auto& path = side.paths[m]) {
+    zone["path"] = {{"line_contact", path->line_contact}, {"B_deg", degrees(path->B)}, {"error_urad", path->error() * app::kMicro}};
+    if (const auto& range = side.ranges[m]) {
+      const Vec3 from = path->point(range->theta_1_from), to = path->point(range->theta_1_to);
+      zone["path"]["ratio"] = range->ratio;
+      zone["path"]["from"] = {{"r", std::hypot(from.x(), from.y())}, {"z", from.z()}};
+      zone["path"]["to"] = {{"r", std::hypot(to.x(), to.y())}, {"z", to.z()}};
+    }
+  } else {
+    zone["path"] = nullptr;
+  }
+  zone["pattern"] = {{"words", words_of(p)},
+                     {"share", p.marked_share},
+                     {"r", {p.inner_mm, p.outer_mm}},
+                     {"z", {p.low_mm, p.high_mm}},
+                     {"centre", {{"r", p.centre_radius_mm}, {"z", p.centre_height_mm}}},
+                     {"inclination_deg", degrees(p.inclination_rad)},
+                     {"length_mm", p.length_mm},
+                     {"width_mm", p.width_mm},
+                     {"at_inner_end", p.at_inner_end},
+                     {"at_outer_end", p.at_outer_end},
+                     {"at_tip", p.at_tip},
+                     {"at_fillet_line", p.at_fillet}};
+  return zone;
+}
+
 }  // namespace
 
 process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, const face_gear::FaceGear& gear, const job::ContactSettings& asked, const process::CutFlanks* cut,
@@ -147,7 +180,6 @@ std::string transmission_csv(const ContactAnalysis& a) {
 }
 
 std::string contact_json(const ContactAnalysis& a) {
-  using Json = nlohmann::ordered_json;
   Json json;
   json["schema"] = 1;
   json["command"] = "contact";
@@ -174,35 +206,7 @@ std::string contact_json(const ContactAnalysis& a) {
     s["pairs_within_compound"] = {r.least_marking, r.most_marking};
     s["ratio_within_compound"] = r.marking_ratio;
     s["zones"] = Json::array();
-    for (std::size_t m = 0; m < side.members.size(); ++m) {
-      const contact::FlankPattern& p = r.patterns[m];
-      Json zone;
-      zone["zone"] = side.members[m].flank.zone;
-      if (const auto& path = side.paths[m]) {
-        zone["path"] = {{"line_contact", path->line_contact}, {"B_deg", degrees(path->B)}, {"error_urad", path->error() * app::kMicro}};
-        if (const auto& range = side.ranges[m]) {
-          const Vec3 from = path->point(range->theta_1_from), to = path->point(range->theta_1_to);
-          zone["path"]["ratio"] = range->ratio;
-          zone["path"]["from"] = {{"r", std::hypot(from.x(), from.y())}, {"z", from.z()}};
-          zone["path"]["to"] = {{"r", std::hypot(to.x(), to.y())}, {"z", to.z()}};
-        }
-      } else {
-        zone["path"] = nullptr;
-      }
-      zone["pattern"] = {{"words", words_of(p)},
-                         {"share", p.marked_share},
-                         {"r", {p.inner_mm, p.outer_mm}},
-                         {"z", {p.low_mm, p.high_mm}},
-                         {"centre", {{"r", p.centre_radius_mm}, {"z", p.centre_height_mm}}},
-                         {"inclination_deg", degrees(p.inclination_rad)},
-                         {"length_mm", p.length_mm},
-                         {"width_mm", p.width_mm},
-                         {"at_inner_end", p.at_inner_end},
-                         {"at_outer_end", p.at_outer_end},
-                         {"at_tip", p.at_tip},
-                         {"at_fillet_line", p.at_fillet}};
-      s["zones"].push_back(std::move(zone));
-    }
+    for (std::size_t m = 0; m < side.members.size(); ++m) s["zones"].push_back(zone_json(side, m));
     json["flanks"].push_back(std::move(s));
   }
   json["notes"] = a.notes;
