@@ -20,8 +20,8 @@ double blend_read_back(const readback::ReadBack& read) {
 
 }  // namespace
 
-proof::LedgerEntry entry(std::string source, double predicted_mm, double measured_mm, std::string note) {
-  return {std::move(source), predicted_mm * app::kUm, measured_mm * app::kUm, std::move(note)};
+proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double measured_mm, std::string note) {
+  return {source, predicted_mm * app::kUm, measured_mm * app::kUm, std::move(note)};
 }
 
 double rotary_rounding(const joints::AxisProgram& program) {
@@ -43,11 +43,11 @@ void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::
                          double blend_mm) {
   const double worst = met ? met->worst_mm : 0, extra = met ? met->worst_extra_mm : 0;
   const bool turns = program.chord_bound_mm > 0;
-  ledger.push_back(entry("axis linearisation", program.chord_bound_mm, turns ? std::max(0.0, extra - worst) : 0,
+  ledger.push_back(entry(proof::ErrorSource::axis_linearisation, program.chord_bound_mm, turns ? std::max(0.0, extra - worst) : 0,
                          turns ? "blocks against the chords of the path, rounding taken off" : "no rotary axis turns while the tool cuts"));
-  ledger.push_back(entry("rounding", program.rounding_bound_mm, worst, "records against the motions that were read back"));
+  ledger.push_back(entry(proof::ErrorSource::rounding, program.rounding_bound_mm, worst, "records against the motions that were read back"));
   // In single precision, as the moves that are read back carry it.
-  ledger.push_back(entry("path blending", double(float(blend_mm)), blend_read_back(read),
+  ledger.push_back(entry(proof::ErrorSource::path_blending, double(float(blend_mm)), blend_read_back(read),
                          blend_mm > 0 ? "the tolerance that the text grants the control" : "the text grants the control none"));
 }
 

@@ -15,7 +15,7 @@
 
 namespace toothpath::process {
 
-[[nodiscard]] proof::LedgerEntry entry(std::string source, double predicted_mm, double measured_mm, std::string note = {});
+[[nodiscard]] proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double measured_mm, std::string note = {});
 
 /// Largest error of the tool axis from rounding the words of both rotaries, rad.
 [[nodiscard]] double rotary_rounding(const joints::AxisProgram& program);

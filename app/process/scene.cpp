@@ -173,7 +173,7 @@ class SceneWalk {
   }
   static void note(report::SceneVerdict& v, const std::optional<clearance::MeshMeeting>& found, const clearance::MeshRule& rule) {
     if (!found) return;
-    const double required = found->body == "cutter" ? rule.cutter_mm : rule.others_mm;
+    const double required = tool::cuts(found->body) ? rule.cutter_mm : rule.others_mm;
     if (!v.nearest || found->gap_mm < v.nearest->gap_mm) v.nearest = found;
     if (found->gap_mm > 0 && found->gap_mm >= required) return;
     ++v.failed;

@@ -32,7 +32,7 @@ Json excess_json(const proof::ExcessResult& e, bool with_operation) {
 }
 
 Json place_json(const proof::WorstPlace& place) {
-  return {{"depth_um", app::um(place.depth_mm)}, {"body", place.body},           {"patch", place.patch},
+  return {{"depth_um", app::um(place.depth_mm)}, {"body", to_string(place.body)},           {"patch", place.patch},
           {"op", place.operation},          {"tooth", place.tooth},         {"zone", place.zone},
           {"line", place.line},             {"radius", place.radius_mm},    {"height", place.height_mm},
           {"point", vector_json(place.point)}};
@@ -76,7 +76,7 @@ void add_passes(Json& json, const RunReport& r) {
 
 Json meeting_json(const clearance::MeshMeeting& m) {
   const bool inside = !std::isfinite(m.measured_mm);
-  return {{"gap", std::max(m.gap_mm, 0.0)}, {"touches", m.gap_mm <= 0}, {"inside", inside}, {"body", m.body}, {"rapid", m.rapid},
+  return {{"gap", std::max(m.gap_mm, 0.0)}, {"touches", m.gap_mm <= 0}, {"inside", inside}, {"body", to_string(m.body)}, {"rapid", m.rapid},
           {"op", m.operation}, {"tooth", m.tooth}, {"line", m.line}, {"file", m.mesh}, {"point", vector_json(m.place)}};
 }
 
@@ -202,8 +202,9 @@ std::string report_json(const RunReport& r) {
   if (proves) {
     Json ledger = Json::object();
     for (const auto& entry : r.ledger) {
-      ledger[entry.source] = {{"predicted", entry.predicted_um}, {"measured", entry.measured_um}};
-      if (!entry.note.empty()) ledger[entry.source]["note"] = entry.note;
+      Json& source = ledger[to_string(entry.source)];
+      source = {{"predicted", entry.predicted_um}, {"measured", entry.measured_um}};
+      if (!entry.note.empty()) source["note"] = entry.note;
     }
     json["ledger"] = std::move(ledger);
     json["assumed"] = text_list(r.assumed);

@@ -22,7 +22,7 @@ constexpr double kAhead = 0.4;          // mm: and this much farther where a bod
 constexpr double kContact = 0.005;  // mm: smaller gaps of shank and holder are followed to proof_mm
 constexpr double kGapStep = 0.02;       // mm: to which the least gap is told
 
-proof::WorstPlace place_of(const NearestPlace& q, const path::ToolMotion& m, double depth, const char* body) {
+proof::WorstPlace place_of(const NearestPlace& q, const path::ToolMotion& m, double depth, tool::Body body) {
   proof::WorstPlace w;
   w.depth_mm = depth;
   w.body = body;
@@ -37,7 +37,7 @@ proof::WorstPlace place_of(const NearestPlace& q, const path::ToolMotion& m, dou
   return w;
 }
 
-proof::WorstPlace place_of(const SweptGap& gap, const path::ToolMotion& m, const char* body) {
+proof::WorstPlace place_of(const SweptGap& gap, const path::ToolMotion& m, tool::Body body) {
   NearestPlace q;
   q.zone = gap.zone;
   q.patch = gap.patch;
@@ -72,7 +72,7 @@ class Chunk {
                                       -std::numeric_limits<double>::infinity()});
       if (!proof.clear) {
         out_.rapids_clear = false;
-        proof::WorstPlace w = place_of(cut.deepest, m, 0, "rapid");
+        proof::WorstPlace w = place_of(cut.deepest, m, 0, tool::Body::any);
         w.patch = "blank";
         w.radius_mm = proof.tip.head<2>().norm();
         w.height_mm = proof.tip.z();
@@ -125,9 +125,9 @@ class Chunk {
     const auto gap = swept_gap(part_, body.frustum, m, look);
     body = {body.frustum, true, m.tip_to, m.axis_to, gap.proven_mm};
     out_.clearance_measured_mm = std::min({out_.clearance_measured_mm, gap.measured_mm, enough});
-    if (gap.proven_mm < out_.clearance_mm) out_.closest = place_of(gap, m, body.frustum.name);
+    if (gap.proven_mm < out_.clearance_mm) out_.closest = place_of(gap, m, body.frustum.body);
     out_.clearance_mm = std::min({out_.clearance_mm, gap.proven_mm, enough});
-    if (gap.proven_mm < o_.limits.clearance_mm) add_worst(out_, place_of(gap, m, body.frustum.name));
+    if (gap.proven_mm < o_.limits.clearance_mm) add_worst(out_, place_of(gap, m, body.frustum.body));
   }
 
   const GearDistance& part_;
@@ -170,10 +170,10 @@ Result<proof::CheckedClPath> GougeCheck::check_path(path::ClPath path) const {
   if (passes(r)) return proof::CheckedClPath(std::move(path));
   if (!r.worst.empty()) {
     const auto& w = r.worst.front();
-    if (w.body == "rapid")
+    if (w.body == tool::Body::any)
       return fail_as(DiagnosticKind::verification, "operation {} ({}): the rapid to CL record {} runs through the blank",
                      path.operation, path.operation_type, w.line);
-    if (w.body == "shank" || w.body == "holder")
+    if (!cuts(w.body))
       return fail_as(DiagnosticKind::verification,
                      "operation {} ({}), CL record {}: the {} of tool {} comes within {:.4f} mm of the teeth at radius {:.3f}, "
                      "height {:.3f}; the clearance is {:.4f}",

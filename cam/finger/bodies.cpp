@@ -40,13 +40,13 @@ std::vector<Vec2> finger_meridian(const bevel_gear::FingerProfile<double>& c, co
 }
 
 std::vector<clearance::MeshBody> finger_bodies(const bevel_gear::FingerProfile<double>& c, const tool::ToolAssembly& tool) {
-  clearance::MeshBody cutter{"cutter", {}, 0};
+  clearance::MeshBody cutter{tool::Body::cutter, {}, 0};
   const auto line = finger_meridian(c, tool, kSag);
-  for (std::size_t k = 1; k < line.size(); ++k) cutter.pieces.push_back({line[k - 1].x(), line[k].x(), line[k - 1].y(), line[k].y(), "cutter"});
+  for (std::size_t k = 1; k < line.size(); ++k) cutter.pieces.push_back({line[k - 1].x(), line[k].x(), line[k - 1].y(), line[k].y(), tool::Body::cutter});
   std::vector<clearance::MeshBody> bodies{std::move(cutter)};
   tool::ToolAssembly whole = tool;
   whole.flute_length_mm = finger_flute_end(c, tool);
-  for (const tool::Frustum& f : tool::shank_and_holder(whole)) bodies.push_back({f.name, {f}, 0});
+  for (const tool::Frustum& f : tool::shank_and_holder(whole)) bodies.push_back({f.body, {f}, 0});
   return bodies;
 }
 

@@ -171,7 +171,7 @@ std::vector<CoaxialBody> bodies_beside_teeth(const bevel_gear::BevelGear& g) {
 }
 
 std::vector<ToolHull> tool_hulls(const bevel_gear::FingerProfile<double>& c, const tool::ToolAssembly& tool) {
-  ToolHull flute{"flute", finger_meridian(c, tool, kOneChord)}, shank{"shank", {}}, holder{"holder", {}};
+  ToolHull flute{tool::Body::flute, finger_meridian(c, tool, kOneChord)}, shank{tool::Body::shank, {}}, holder{tool::Body::holder, {}};
   const double shank_from = finger_flute_end(c, tool);
   shank.rims = {Vec2(shank_from, tool.shank_diameter_mm / 2), Vec2(tool.stick_out_mm, tool.shank_diameter_mm / 2)};
   double z = tool.stick_out_mm;

@@ -8,10 +8,10 @@ std::vector<Frustum> shank_and_holder(const ToolAssembly& tool) {
   std::vector<Frustum> out;
   const double end = tool.holder.empty() ? tool.length_mm : tool.stick_out_mm;
   if (end > tool.flute_length_mm)
-    out.push_back({tool.flute_length_mm, end, tool.shank_diameter_mm / 2, tool.shank_diameter_mm / 2, "shank"});
+    out.push_back({tool.flute_length_mm, end, tool.shank_diameter_mm / 2, tool.shank_diameter_mm / 2, Body::shank});
   double height = tool.stick_out_mm;
   for (const auto& h : tool.holder) {
-    out.push_back({height, height + h.height_mm, h.lower_diameter_mm / 2, h.upper_diameter_mm / 2, "holder"});
+    out.push_back({height, height + h.height_mm, h.lower_diameter_mm / 2, h.upper_diameter_mm / 2, Body::holder});
     height += h.height_mm;
   }
   return out;

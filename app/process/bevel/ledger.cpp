@@ -55,17 +55,17 @@ std::vector<proof::LedgerEntry> ledger(const bevel_gear::BevelGear& gear, std::s
   const Planned planned = measure_planned(gear, plans);
   const double depth = gear.parameters().addendum_mm + gear.parameters().dedendum_mm;
   std::vector<proof::LedgerEntry> out;
-  out.push_back(process::entry("flank solve", Tolerances{}.flank_mm, planned.solve_mm, "centres of the records against the paths of the walls"));
-  out.push_back(process::entry("chord", chord, planned.chord_mm, "middles of the blocks along the walls"));
-  out.push_back(process::entry("ridge", ridge, found.ridge.reached_mm, "stands on the root: no part of the sum on the walls"));
-  out.push_back(process::entry("orientation", depth * (program.axis_bound_rad + process::rotary_rounding(program)), depth * found.tilt_rad,
+  out.push_back(process::entry(proof::ErrorSource::flank_solve, Tolerances{}.flank_mm, planned.solve_mm, "centres of the records against the paths of the walls"));
+  out.push_back(process::entry(proof::ErrorSource::chord, chord, planned.chord_mm, "middles of the blocks along the walls"));
+  out.push_back(process::entry(proof::ErrorSource::ridge, ridge, found.ridge.reached_mm, "stands on the root: no part of the sum on the walls"));
+  out.push_back(process::entry(proof::ErrorSource::orientation, depth * (program.axis_bound_rad + process::rotary_rounding(program)), depth * found.tilt_rad,
                          "lean of the axis against the normal of the pitch cone, over the tooth depth"));
   process::add_machine_sources(out, program, proof.comparison, proof.read, blend_mm);
   const process::Stated stated = process::stated_deviation(proof.motions);
   double path = 0;
   for (const auto& e : out)
-    if (e.source != "ridge") path += e.predicted_um / app::kUm;
-  out.push_back(process::entry("verification", kVerification + path + stated.tip_mm + depth * stated.axis_rad, proof.gouge.bound_mm - proof.gouge.measured_mm,
+    if (e.source != proof::ErrorSource::ridge) path += e.predicted_um / app::kUm;
+  out.push_back(process::entry(proof::ErrorSource::verification, kVerification + path + stated.tip_mm + depth * stated.axis_rad, proof.gouge.bound_mm - proof.gouge.measured_mm,
                          "the bound counts every pose of the cutter, the measurement the points of a grid"));
   return out;
 }

@@ -49,17 +49,17 @@ std::vector<proof::LedgerEntry> ledger(const analytic::GearDistance& part, const
   const auto& scallop = surface.scallop;
   const process::Stated stated = process::stated_deviation(proof.motions);
   std::vector<proof::LedgerEntry> out;
-  out.push_back(process::entry("flank solve", Tolerances{}.flank_mm, std::max(planned.solve_mm, surface.solve_residual_mm),
+  out.push_back(process::entry(proof::ErrorSource::flank_solve, Tolerances{}.flank_mm, std::max(planned.solve_mm, surface.solve_residual_mm),
                          "feet of the touching records and of the measured grid"));
-  out.push_back(process::entry("chord", plan.operations.back().chord_mm, planned.chord_mm, "middles of the blocks between touching records"));
-  out.push_back(process::entry("scallop", std::max(plan.operations.back().scallop_max_mm, scallop.requested_mm),
+  out.push_back(process::entry(proof::ErrorSource::chord, plan.operations.back().chord_mm, planned.chord_mm, "middles of the blocks between touching records"));
+  out.push_back(process::entry(proof::ErrorSource::scallop, std::max(plan.operations.back().scallop_max_mm, scallop.requested_mm),
                          scallop.requested_mm > 0 ? scallop.reached_max_mm : 0,
                          scallop.requested_mm > 0 ? "cusps of the cut surface" : "the last operation asks for no cusp height"));
   // The tip is what the words give; the ball's centre stands a radius along the axis.
-  out.push_back(process::entry("orientation", radius * (program.axis_bound_rad + process::rotary_rounding(program)),
+  out.push_back(process::entry(proof::ErrorSource::orientation, radius * (program.axis_bound_rad + process::rotary_rounding(program)),
                          proof.comparison ? radius * proof.comparison->worst_axis_rad : 0, "axis of the records against the axis that was read back"));
   process::add_machine_sources(out, program, proof.comparison, proof.read, blend_mm);
-  out.push_back(process::entry("verification", proof_mm + stated.tip_mm + radius * stated.axis_rad, proof.gouge.bound_mm - proof.gouge.measured_mm,
+  out.push_back(process::entry(proof::ErrorSource::verification, proof_mm + stated.tip_mm + radius * stated.axis_rad, proof.gouge.bound_mm - proof.gouge.measured_mm,
                          "the proven bound above the deepest place found"));
   return out;
 }

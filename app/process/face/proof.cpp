@@ -13,7 +13,7 @@ constexpr double kBallMotionTolerance = 1e-4;  // mm and rad: proven distance of
 void judge_gouge(const proof::GougeResult& gouge, const analytic::GougeCheck& check, double tolerance, std::vector<std::string>& reasons) {
   if (check.passes(gouge)) return;
   // Where the tool cuts too deep, or else where it may.
-  const auto cuts = std::find_if(gouge.worst.begin(), gouge.worst.end(), [](const proof::WorstPlace& w) { return w.body == "ball" || w.body == "flute"; });
+  const auto cuts = std::find_if(gouge.worst.begin(), gouge.worst.end(), [](const proof::WorstPlace& w) { return tool::cuts(w.body); });
   const bool seen = gouge.measured_mm > tolerance || cuts == gouge.worst.end();
   const proof::WorstPlace &place = seen ? gouge.deepest : *cuts, &body = gouge.closest;
   if (gouge.bound_mm > tolerance)

@@ -26,7 +26,7 @@ std::string svg_direction_map(const proof::DirectionChoice& choice) {
   for (const auto& c : choice.candidates) {
     widest = std::max(widest, c.lean_rad);
     if (c.clear) any_clear = true, greatest_gap = std::max(greatest_gap, c.gap_mm);
-    else if (std::find(bodies.begin(), bodies.end(), c.worst_body) == bodies.end()) bodies.push_back(c.worst_body);
+    else if (std::find(bodies.begin(), bodies.end(), to_string(c.worst_body)) == bodies.end()) bodies.emplace_back(to_string(c.worst_body));
   }
   std::sort(bodies.begin(), bodies.end());
   const std::vector<double> rings = nice_ticks(0, std::max(5.0, widest / kDegree * 1.02), 4);
@@ -66,7 +66,7 @@ std::string svg_direction_map(const proof::DirectionChoice& choice) {
       const double share = greatest_gap > 0 ? c.gap_mm / greatest_gap : 0;
       css_class = fmt::format("gap g{}", std::clamp(static_cast<int>(share * kGapClasses), 0, kGapClasses - 1));
     } else {
-      const auto body = std::find(bodies.begin(), bodies.end(), c.worst_body) - bodies.begin();
+      const auto body = std::find(bodies.begin(), bodies.end(), to_string(c.worst_body)) - bodies.begin();
       css_class = fmt::format("block b{}", body % 4);
     }
     canvas.circle(x, y, size, css_class,

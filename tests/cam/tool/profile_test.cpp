@@ -97,7 +97,7 @@ TEST(Profile, FingerMill) {
     EXPECT_LT(2 * m.pieces().size(), toothpath::finger::finger_meridian(gear.cutter(), assembly, sag).size());  // arcs follow the involute better than chords
     EXPECT_NEAR(m.largest_radius(), rho_D, 1e-12);
     EXPECT_FALSE(m.convex());           // the flank is hollow
-    const auto frustums = m.enclosing_frustums(1e-3, "cutter");
+    const auto frustums = m.enclosing_frustums(1e-3, tool::Body::cutter);
     double most = 0;
     for (int k = 0; k < 4000; ++k) {
       const double h = random(-1, flute - 0.5), rho = random(0, 1.5 * rho_D), truth = solid.signed_distance(h - d.p.dedendum_mm, rho);
