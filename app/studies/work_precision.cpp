@@ -227,6 +227,7 @@ commands::CommandOutcome study_work_precision(const WorkPrecisionRequest& reques
   auto read = job::read_job_file(request.job_file);
   if (auto* errors = read.refused()) return commands::failed(std::move(*errors));
   const job::Job& job = read.value();
+  if (!job.face_gear()) return commands::failed(process::needs_face_gear(job));  // its tolerances are those of ball mills
 
   std::vector<StudyRun> runs;
   if (auto refused = add_run(job, {"job", false, false, false}, "job", 1, *output, request.quiet, runs); !refused.empty()) return commands::failed(std::move(refused));
