@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "app/commands/option_set.h"
-#include "app/base/exit_code.h"
+#include "app/base/outcome.h"
 #include "app/base/stage_clock.h"
 
 namespace toothpath::commands {
@@ -33,21 +33,8 @@ struct JobRequest : CommonRequest {
   std::string out_dir;
 };
 
-struct CommandOutcome {
-  app::ExitCode exit_code = app::ExitCode::ok;
-  std::vector<Diagnostic> errors;
-  std::string summary;      ///< for people, on stdout
-  std::string report_json;  ///< the report as one JSON object; empty where there is none
-};
-
-/// An outcome from refusals: the exit code is that of the first.
-[[nodiscard]] inline CommandOutcome failed(std::vector<Diagnostic> errors) {
-  CommandOutcome outcome;
-  outcome.exit_code = errors.empty() ? app::ExitCode::internal : app::exit_code_of(errors.front().kind);
-  outcome.errors = std::move(errors);
-  return outcome;
-}
-[[nodiscard]] inline CommandOutcome failed(Diagnostic error) { return failed(std::vector{std::move(error)}); }
+using app::CommandOutcome;
+using app::failed;
 
 /// Commands below a command: `study stability`.
 struct CommandGroup {

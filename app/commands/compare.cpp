@@ -4,9 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/commands/contact.h"
 #include "app/process/opening_and_end.h"
-#include "app/process/contact_analysis.h"
+#include "app/process/face/contact.h"
+#include "app/process/face/shaped_flanks.h"
+#include "app/process/flow/cut_flanks.h"
 #include "app/job/file.h"
 #include "app/report/svg/html_text.h"
 #include "app/report/run_report.h"
@@ -181,13 +182,12 @@ struct ComparedContact {
   page::PageTable table{"Under the same pinion", {"flank", "route", "transmission error um", "within compound", "pattern %"}, {}, ""};
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
 };
-
 process::ValueOrErrors<ComparedContact> compared_contact(const Side& milled_side, const process::CutFlanks& shaped, const process::CutFlanks& milled,
                                                          app::StageClock& clock) {
-  const job::ContactSettings settings = contact_settings(milled_side.job, {});
+  const job::ContactSettings settings = face::contact_settings(milled_side.job, {});
   ComparedContact out;
   for (const process::CutFlanks* cut : {&shaped, &milled}) {
-    auto analysed = clock.run("contact", [&] { return process::analyse_contact(milled_side.job, *milled_side.gear, settings, cut); });
+    auto analysed = clock.run("contact", [&] { return face::analyse_contact(milled_side.job, *milled_side.gear, settings, cut); });
     if (auto* e = analysed.refused()) return std::move(*e);
     const auto& a = analysed.value();
     out.table.note = fmt::format("Pinion of {} teeth, rigid and unloaded; peak to peak at the pitch radius {:.3f} mm; compound {:g} um.", a.pinion_teeth,
@@ -247,10 +247,10 @@ CommandOutcome run_compare(const CompareRequest& request) {
   Side shaped_side, milled_side;
   if (auto errors = read_sides(request, shaped_side, milled_side); !errors.empty()) return failed(std::move(errors));
 
-  auto milled_or = clock.run("milled", [&] { return process::cut_flanks(milled_side.job, *milled_side.gear, kCompareRows, kCompareColumns, *output, request.quiet); });
+  auto milled_or = clock.run("milled", [&] { return flow::cut_flanks(milled_side.job, {kCompareRows, kCompareColumns}, *output, request.quiet); });
   if (auto* e = milled_or.refused()) return failed(std::move(*e));
   const process::CutFlanks& milled = milled_or.value();
-  auto shaped_or = clock.run("shaped", [&] { return process::shaped_flanks(shaped_side.job, *shaped_side.gear, milled.flanks); });
+  auto shaped_or = clock.run("shaped", [&] { return face::shaped_flanks(shaped_side.job, *shaped_side.gear, milled.flanks); });
   if (auto* e = shaped_or.refused()) return failed(std::move(*e));
   const process::CutFlanks& shaped = shaped_or.value();
   const auto flanks = compared(shaped, milled);

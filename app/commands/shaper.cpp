@@ -1,16 +1,15 @@
 #include "app/commands/shaper.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include <fmt/format.h>
 
+#include "app/process/face/shaper_setup.h"
 #include "app/process/opening_and_end.h"
 #include "app/report/limits/json.h"
 #include "app/report/run_report.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/hash.h"
-#include "machines/machine_file.h"
 #include "machines/shaper_machine.h"
 #include "postproc/shaper/control.h"
 #include "postproc/shaper/gearbox_proof.h"
@@ -19,40 +18,6 @@
 
 namespace toothpath::commands {
 namespace {
-
-/// The gear shaper of the job; refusals carry the place of the key that caused them.
-process::ValueOrErrors<machines::ShaperMachine> load_shaper_machine(const job::Job& job) {
-  if (job.machine.file.empty()) return std::vector{fail_at(job.where(""), "the job lacks the table [machine]")};
-  const auto path = machines::find_machine_file(job.machine.file, std::filesystem::path(job.file).parent_path().string());
-  if (!path) return std::vector{process::located(job, "machine.file", path.error())};
-  const auto kind = machines::machine_kind_of(*path);
-  if (!kind) return std::vector{process::located(job, "machine.file", kind.error())};
-  if (*kind != machines::MachineKind::gear_shaper)
-    return std::vector{fail_at(job.where("machine.file"), "{} is a milling machine, but this command needs a gear shaper", job.machine.file)};
-  auto reading = shaper::read_shaper_machine(*path);
-  if (!reading.machine) return std::move(reading.errors);
-  if (reading.machine->assumed && !job.machine.accept_assumed) {
-    std::string names;
-    for (const auto& name : reading.machine->assumed_keys) names += (names.empty() ? "" : ", ") + name;
-    return std::vector{fail_at(job.where("machine.file"),
-                               "{} has assumed values ({}); measure them, or accept them with accept_assumed = true", job.machine.file, names)};
-  }
-  return std::move(*reading.machine);
-}
-
-process::ValueOrErrors<shaper::ShaperSetup> plan_setup(const job::Job& job, const face_gear::FaceGear& gear, const machines::ShaperMachine& machine) {
-  if (!job.shaping) return std::vector{fail_at(job.where(""), "the job lacks the table [shaping]")};
-  shaper::ShaperWork work;
-  work.job_name = job.name;
-  work.machine_file = job.machine.file;
-  work.gear = gear.parameters();
-  work.shaping = *job.shaping;
-  auto planned = shaper::plan_shaper_setup(work, machine);
-  if (auto* setup = planned.value_if()) return std::move(*setup);
-  std::vector<Diagnostic> errors;
-  for (auto& refusal : planned.error()) errors.push_back(process::located(job, refusal.key, std::move(refusal.diagnostic)));
-  return errors;
-}
 
 std::string summary_of(const shaper::ShaperSetup& s, const std::string& folder) {
   std::string out = fmt::format("shaper set-up of {} on {}\n", s.job_name, s.machine.name);
@@ -90,10 +55,10 @@ CommandOutcome run_shaper(const JobRequest& request) {
   auto read = process::read_face_gear_job(request.job_file, clock);
   if (auto* errors = read.refused()) return failed(std::move(*errors));
   const auto& [job, gear] = read.value();
-  auto loaded = clock.run("machine", [&] { return load_shaper_machine(job); });
+  auto loaded = clock.run("machine", [&] { return face::load_shaper_machine(job); });
   if (auto* errors = loaded.refused()) return failed(std::move(*errors));
   const machines::ShaperMachine& machine = loaded.value();
-  auto planned = clock.run("shaper set-up", [&] { return plan_setup(job, gear, machine); });
+  auto planned = clock.run("shaper set-up", [&] { return face::plan_shaper(job, gear, machine); });
   if (auto* errors = planned.refused()) return failed(std::move(*errors));
   shaper::ShaperSetup& setup = planned.value();
   if (const auto aside = output->set_aside(); !aside) return failed(aside.error());
@@ -140,12 +105,6 @@ CommandOutcome run_shaper(const JobRequest& request) {
   CommandOutcome outcome = process::finished_report(*output, clock, std::move(report), request.color);
   if (outcome.exit_code == app::ExitCode::ok) outcome.summary = summary_of(setup, request.out_dir);
   return outcome;
-}
-
-process::ValueOrErrors<shaper::ShaperSetup> shaper_setup_of(const job::Job& job, const face_gear::FaceGear& gear) {
-  auto loaded = load_shaper_machine(job);
-  if (auto* errors = loaded.refused()) return std::move(*errors);
-  return plan_setup(job, gear, loaded.value());
 }
 
 void add_shaper(Commands& commands) {

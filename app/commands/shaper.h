@@ -5,8 +5,6 @@
 #include <vector>
 
 #include "app/commands/command.h"
-#include "app/process/gear_of_job.h"
-#include "postproc/shaper/setup.h"
 
 namespace toothpath::commands {
 
@@ -16,8 +14,5 @@ namespace toothpath::commands {
 /// Writes limits.json, shaper.json, shaper.html, shaper_program.ngc and report.json. Refused, with the place in the job: what the gear, the
 /// set-up or the machine does not allow; assumed values of the machine that the job does not accept. Then no file is written.
 [[nodiscard]] CommandOutcome run_shaper(const JobRequest& request);
-
-/// Set-up of the job's gear on the job's gear shaper, as `shaper` plans it; refusals carry the place of the key that caused them.
-[[nodiscard]] process::ValueOrErrors<shaper::ShaperSetup> shaper_setup_of(const job::Job& job, const face_gear::FaceGear& gear);
 
 }  // namespace toothpath::commands

@@ -1,7 +1,8 @@
 #include "app/commands/surface.h"
 
+#include "app/job/file.h"
+#include "app/process/flow/stages.h"
 #include "app/process/opening_and_end.h"
-#include "app/process/surface_files.h"
 
 namespace toothpath::commands {
 
@@ -15,13 +16,14 @@ CommandOutcome run_surface(const JobRequest& request) {
   app::StageClock clock(progress);
   auto output = app::OutputDir::open(request.out_dir, surface_outputs(), {request.job_file});
   if (!output) return failed(output.error());
-  if (const auto bevel = process::bevel_job(request.job_file)) return process::run_bevel_surface(request, *bevel, *output);
-  auto read = process::read_face_gear_job(request.job_file, clock);
+  auto read = clock.run("job", [&] { return job::read_job_file(request.job_file); });
   if (auto* errors = read.refused()) return failed(std::move(*errors));
-  const auto& [job, gear] = read.value();
-  report::RunReport report = process::surface_report(job, gear.warnings());
-  if (const auto written = process::write_surface_files(*output, gear, job.name, clock, report.files); !written)
-    return failed(process::located(job, "gear", written.error()));
+  const job::Job& job = read.value();
+  auto made = flow::make_gear(job, {}, clock);
+  if (auto* errors = made.refused()) return failed(std::move(*errors));
+  const process::GearProcess& gear = *made.value().process;
+  report::RunReport report = process::surface_report(job, gear.part().warnings);
+  if (const auto written = gear.write_files(*output, {}, {}, clock, report.files); !written) return failed(process::located(job, "gear", written.error()));
   progress.clear();
   return process::finished_report(*output, clock, std::move(report), request.color);
 }

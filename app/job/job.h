@@ -10,6 +10,7 @@
 
 #include "cam/tool/assembly.h"
 #include "cam/path/operation.h"
+#include "cam/proof/limits.h"
 #include "geometry/base/diagnostic.h"
 #include "geometry/bevel_gear/parameters.h"
 #include "geometry/face_gear/parameters.h"
@@ -32,7 +33,7 @@ struct MachineChoice {
 
 /// The [verify] table.
 struct VerifySettings {
-  double gouge_tolerance_mm = 2e-3;     ///< deepest cut into the finished surface that counts as verified
+  double gouge_tolerance_mm = proof::ProofLimits{}.gouge_mm;  ///< deepest cut into the finished surface that counts as verified
   bool all_teeth = false;               ///< false: one space is proven, the others are turned copies
   std::optional<double> clearance_mm;   ///< least gap of neck, shank and holder; none: the program's default
   std::optional<double> unreached_mm;   ///< surface out of the finishing ball's reach may stand so high; none: it is told, no verdict

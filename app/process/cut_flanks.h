@@ -1,14 +1,12 @@
-// The flanks that a job's operations leave: by its milling operations (the stages of `run`) or by the strokes of its gear shaper.
+// The flanks of one tooth as they were cut, by whichever route.
 #pragma once
 
 #include <string>
-#include <variant>
+#include <utility>
 #include <vector>
 
-#include "app/process/gear_of_job.h"
-#include "app/base/output_dir.h"
-#include "app/report/run_report.h"
 #include "cam/proof/verification.h"
+#include "geometry/base/vec.h"
 
 namespace toothpath::process {
 
@@ -30,12 +28,5 @@ struct CutFlanks {
 
 /// Flank patches of a cut surface after the last operation.
 [[nodiscard]] std::vector<CutFlanks::Flank> flanks_of(const std::vector<proof::SurfaceGrid>& surface);
-
-/// Runs the job's own route. Milled: plan, post, read back, cut surface on `rows` x `columns`. Refused: what `run` and `shaper` refuse; a job
-/// with neither operations nor [shaping]; a run that does not get as far as a surface.
-[[nodiscard]] ValueOrErrors<CutFlanks> cut_flanks(const job::Job& job, const face_gear::FaceGear& gear, int rows, int columns, app::OutputDir& scratch, bool quiet);
-
-/// The strokes of a job's gear shaper at given places: one turn of the work at full depth.
-[[nodiscard]] ValueOrErrors<CutFlanks> shaped_flanks(const job::Job& job, const face_gear::FaceGear& gear, std::vector<CutFlanks::Flank> places);
 
 }  // namespace toothpath::process

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "cam/finger/milling.h"
 #include "machines/machine_file.h"
 #include "postproc/controls/of_machine.h"
 
@@ -40,10 +41,13 @@ Diagnostic located(const job::Job& job, std::string_view key, Diagnostic diagnos
 
 const char* gear_type(const job::Job& job) { return std::visit([](const auto& gear) { return type_word(gear); }, job.gear); }
 
+Diagnostic needs_face_gear(const job::Job& job) {
+  return fail_at(job.where("gear.type"), "type = \"{}\", but this command needs a face_gear", gear_type(job));
+}
+
 ValueOrErrors<face_gear::FaceGear> make_face_gear(const job::Job& job) {
   const face_gear::FaceGearParameters* parameters = job.face_gear();
-  if (!parameters)
-    return std::vector{fail_at(job.where("gear.type"), "type = \"{}\", but this command needs a face_gear", gear_type(job))};
+  if (!parameters) return std::vector{needs_face_gear(job)};
   auto made = face_gear::FaceGear::make(*parameters);
   if (auto* gear = made.value_if()) return std::move(*gear);
   std::vector<Diagnostic> errors;
@@ -51,6 +55,25 @@ ValueOrErrors<face_gear::FaceGear> make_face_gear(const job::Job& job) {
     // The stock of the blank stands in its own table.
     const bool stock = refusal.key.starts_with("stock.");
     errors.push_back(located(job, (stock ? "" : "gear.") + refusal.key, std::move(refusal.diagnostic)));
+  }
+  return errors;
+}
+
+ValueOrErrors<bevel_gear::BevelGear> make_bevel_gear(const job::Job& job) {
+  const bevel_gear::BevelGearParameters* parameters = job.bevel_gear();
+  if (!parameters) return std::vector{fail_at(job.where("gear.type"), "type = \"{}\", but a bevel gear is needed here", gear_type(job))};
+  std::optional<std::size_t> tool;
+  for (std::size_t i = job.tools.size(); i-- > 0;)
+    if (job.tools[i].type == tool::CutterType::finger_mill) tool = i;
+  for (const auto& operation : job.operations)
+    if (operation.type == path::OperationType::finger_finishing) tool = static_cast<std::size_t>(operation.tool);
+  if (!tool) return std::vector{fail_at(job.where("tool"), "the job lacks a [[tool]] of type \"finger_mill\": it makes the flanks of this gear")};
+  auto made = bevel_gear::BevelGear::make(*parameters, finger::finger_cutter_data(job.tools[*tool]));
+  if (auto* gear = made.value_if()) return std::move(*gear);
+  std::vector<Diagnostic> errors;
+  for (auto& refusal : made.error()) {
+    const std::string key = refusal.key.starts_with("tool.") ? fmt::format("tool[{}].{}", *tool, refusal.key.substr(5)) : "gear." + refusal.key;
+    errors.push_back(located(job, key, std::move(refusal.diagnostic)));
   }
   return errors;
 }
@@ -71,7 +94,10 @@ ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional
   if (job.program.pole_angle_rad) machine.post.pole_angle_rad = *job.program.pole_angle_rad;
   std::vector<Diagnostic> errors;
   if (part_diameter_mm)
-    if (const auto fits = check_part_on_machine(job, machine, *part_diameter_mm); !fits) errors.push_back(fits.error());
+    if (const auto fits = machines::check_part_fits(machine, *part_diameter_mm); !fits) {
+      errors.push_back(fits.error());
+      errors.back().position = job.where("machine.file");
+    }
   if (machine.assumed && !job.machine.accept_assumed)
     errors.push_back(fail_at(job.where("machine.file"),
                              "{} has assumed values ({}); measure them, or accept them with accept_assumed = true", job.machine.file,
@@ -86,16 +112,6 @@ ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional
     if (const auto words = text::coolant_words(*dialect, job.coolant); !words) errors.push_back(located(job, "coolant.mode", words.error()));
   if (!errors.empty()) return errors;
   return machine;
-}
-
-Status check_part_on_machine(const job::Job& job, const machines::Machine& machine, double part_diameter_mm) {
-  const auto fits = machines::check_part_fits(machine, part_diameter_mm);
-  if (!fits) {
-    Diagnostic error = fits.error();
-    error.position = job.where("machine.file");
-    return error;
-  }
-  return Ok{};
 }
 
 }  // namespace toothpath::process

@@ -1,4 +1,4 @@
-// From a job to the face gear and the machine that it asks for; refusals get the place of the key that caused them.
+// From a job to the gear and the machine that it asks for; refusals get the place of the key that caused them.
 #pragma once
 
 #include <optional>
@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/job/job.h"
+#include "geometry/bevel_gear/gear.h"
 #include "geometry/face_gear/gear.h"
 #include "machines/machine.h"
 
@@ -20,13 +21,17 @@ using ValueOrErrors = Expected<T, std::vector<Diagnostic>>;
 /// The face gear of the job. Refused: a bevel gear; everything that FaceGear::make refuses, all of it, each with its place.
 [[nodiscard]] ValueOrErrors<face_gear::FaceGear> make_face_gear(const job::Job& job);
 
+/// The bevel gear of the job, as its finishing mill makes it (the tool of the last finger_finishing; without one the first
+/// finger mill). Refused: a face gear; everything that BevelGear::make refuses, each with its place.
+[[nodiscard]] ValueOrErrors<bevel_gear::BevelGear> make_bevel_gear(const job::Job& job);
+
+/// What a face gear alone can do is refused to a gear of another type.
+[[nodiscard]] Diagnostic needs_face_gear(const job::Job& job);
+
 /// The milling machine of the job. Refused: no [machine], a file that is missing or wrong, a gear shaper, assumed values that
 /// the job does not accept, an operation that is faster than the spindle or the cutting feed of the machine, a work offset or a coolant
 /// that its control does not have; with a part diameter [mm] also a part that does not lie on it.
 [[nodiscard]] ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional<double> part_diameter_mm = {});
-
-/// Does a part of this diameter [mm] lie on the machine? Refused at the place of machine.file, with diameter and limit.
-[[nodiscard]] Status check_part_on_machine(const job::Job& job, const machines::Machine& machine, double part_diameter_mm);
 
 /// The diagnostic with the place of a key of the job, where it has none yet.
 [[nodiscard]] Diagnostic located(const job::Job& job, std::string_view key, Diagnostic diagnostic);

@@ -25,10 +25,10 @@ ValueOrErrors<GearJob<bevel_gear::BevelGear>> read_bevel_gear_job(const std::str
   return read_gear_job<bevel_gear::BevelGear>(job_file, clock, make_bevel_gear);
 }
 
-commands::CommandOutcome finished(app::OutputDir& output, const NamedFiles& files, commands::CommandOutcome outcome) {
+app::CommandOutcome finished(app::OutputDir& output, const NamedFiles& files, app::CommandOutcome outcome) {
   for (const auto& [name, content] : files)
-    if (const auto written = output.write(name, content); !written) return commands::failed(written.error());
-  if (const auto committed = output.commit(); !committed) return commands::failed(committed.error());
+    if (const auto written = output.write(name, content); !written) return app::failed(written.error());
+  if (const auto committed = output.commit(); !committed) return app::failed(committed.error());
   return outcome;
 }
 
@@ -42,10 +42,10 @@ report::RunReport surface_report(const job::Job& job, const std::vector<std::str
   return report;
 }
 
-commands::CommandOutcome finished_report(app::OutputDir& output, app::StageClock& clock, report::RunReport report, bool color) {
+app::CommandOutcome finished_report(app::OutputDir& output, app::StageClock& clock, report::RunReport report, bool color) {
   report.files.push_back("report.json");
   report.stages = clock.seconds();
-  commands::CommandOutcome outcome;
+  app::CommandOutcome outcome;
   outcome.report_json = report::report_json(report);
   outcome.summary = report::summary_table(report, color);
   const std::string json = outcome.report_json;

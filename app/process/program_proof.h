@@ -12,6 +12,8 @@
 
 #include "app/job/job.h"
 #include "app/base/stage_clock.h"
+#include "app/report/finding.h"
+#include "cam/proof/verification.h"
 #include "machines/machine.h"
 #include "postproc/readback/reader.h"
 
@@ -31,7 +33,7 @@ struct AskedPaths {
   double mm = 0, rad = 0;  ///< bounds of the axis program; what reading back adds is added
 };
 
-/// What is found about a program of any gear; each gear adds its own.
+/// What is found about a program of any gear. The first half is read from the text, the second is what the gear says of it.
 struct ProgramProof {
   readback::NcControl control;
   readback::ReadBack read;
@@ -39,6 +41,13 @@ struct ProgramProof {
   std::optional<readback::ClComparison> comparison;  ///< only where there is a path to compare with
   double path_tolerance_mm = 0;            ///< of that comparison
   std::vector<std::string> reasons;        ///< why the program is not proven; empty: it is
+
+  proof::GougeResult gouge;
+  std::vector<proof::ExcessResult> excess;          ///< one an operation
+  std::optional<proof::ExcessResult> finished;      ///< the finished surface; none: no operation finishes it
+  std::vector<proof::SurfaceGrid> surface;          ///< the cut surface of one tooth space
+  std::vector<proof::DirectionChoice> directions;   ///< as the program was seen to do it; empty: not looked at
+  std::vector<report::Finding> findings;            ///< what else there is to say
 };
 
 /// What a gear type adds to the proof of a program.
@@ -53,8 +62,8 @@ class GearCheck {
   [[nodiscard]] virtual Status rapids_clear(const readback::OperationTrace& trace, const readback::NcControl& control) const = 0;
   /// Sees the program as it was read, with all teeth that were kept, before copies among them are left out.
   virtual void meet(const ProgramProof& whole) = 0;
-  /// Gouge, clearance, material left: what `program.motions` do to the part, in stages of the gear's own. What is not within its limit joins
-  /// `program.reasons`.
+  /// Gouge, clearance, material left: what `program.motions` do to the part, in stages of the gear's own, goes into the second half of `program`.
+  /// What is not within its limit joins `program.reasons`.
   virtual void judge(ProgramProof& program, app::StageClock& clock) = 0;
 };
 

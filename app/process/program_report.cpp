@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "app/process/gear_of_job.h"
-#include "app/report/sheet/setup_travel.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/hash.h"
 #include "machines/toml/regular_file.h"
@@ -56,10 +55,8 @@ void note_axis_program(report::RunReport& report, const job::Job& job, const mac
   report.total_minutes = timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes;
   if (job.setup && program.offer)
     report.travel_room = report::TravelRoom{*program.offer, job.setup->origin_mm + program.offer->shift_mm, job.setup->work_offset_at_mm + program.offer->shift_mm};
-  if (job.setup && program.offer) report.sheet_sections.push_back(sheet::travel_section(program, *job.setup));
   if (program.pole_passages > 0)
     report.poles = report::PolesReport{program.pole_passages, kPoleWords[static_cast<std::size_t>(machine.post.pole)], program.pole_axis_rad, program.pole_tip_mm};
-  report.sheet_sections.push_back(sheet::time_section(program, report.poles));
   report.block_times = report::block_times_of(program);
   for (const joints::AxisOperation& o : program.operations) {
     const auto& asked = job.operations[static_cast<std::size_t>(o.operation)];
@@ -69,6 +66,15 @@ void note_axis_program(report::RunReport& report, const job::Job& job, const mac
       if (path->operation == o.operation) operation.cl_points += path->records.size();
     report.operations.push_back(operation);
   }
+}
+
+void note_proof(report::RunReport& report, const ProgramProof& proof) {
+  report.gouge = proof.gouge;
+  report.excess = proof.excess;
+  report.finished = proof.finished;
+  report.findings = proof.findings;
+  if (!proof.directions.empty()) report.directions = proof.directions;
+  report.reasons = proof.reasons;
 }
 
 std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& program, std::span<const path::ClPath* const> paths) {
@@ -175,8 +181,8 @@ void note_verified(report::RunReport& report, const std::string& file, std::stri
   report.files.push_back(file);
 }
 
-commands::CommandOutcome verdict_of(report::RunReport& report, const std::optional<Diagnostic>& stopped, const std::string& job_file, app::OutputDir& output) {
-  commands::CommandOutcome outcome;
+app::CommandOutcome verdict_of(report::RunReport& report, const std::optional<Diagnostic>& stopped, const std::string& job_file, app::OutputDir& output) {
+  app::CommandOutcome outcome;
   if (stopped) {
     report.reasons.push_back(stopped->message);
     outcome.errors.push_back(*stopped);

@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "app/commands/command.h"
+#include "app/base/outcome.h"
 #include "app/job/job.h"
 #include "app/base/output_dir.h"
+#include "app/process/program_proof.h"
 #include "app/report/run_report.h"
 #include "cam/proof/checked_cl_path.h"
 #include "machines/machine.h"
@@ -22,6 +23,9 @@ namespace toothpath::process {
 
 /// Axis ranges, times, poles and operations. `paths`: one an operation.
 void note_axis_program(report::RunReport& report, const job::Job& job, const machines::Machine& machine, std::span<const path::ClPath* const> paths, const joints::AxisProgram& program);
+
+/// What the proof found, and its reasons.
+void note_proof(report::RunReport& report, const ProgramProof& proof);
 
 /// The paths that the program follows: those given, or where poles were handled those that were made of them.
 [[nodiscard]] std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& program, std::span<const path::ClPath* const> paths);
@@ -63,6 +67,6 @@ void note_verified(report::RunReport& report, const std::string& file, std::stri
 
 /// The end of a run whose inputs were right, as far as the verdict goes: reasons as errors, the exit code, and no program left that is not
 /// verified. `stopped`: what kept the run from its proof; joins the reasons.
-[[nodiscard]] commands::CommandOutcome verdict_of(report::RunReport& report, const std::optional<Diagnostic>& stopped, const std::string& job_file, app::OutputDir& output);
+[[nodiscard]] app::CommandOutcome verdict_of(report::RunReport& report, const std::optional<Diagnostic>& stopped, const std::string& job_file, app::OutputDir& output);
 
 }  // namespace toothpath::process

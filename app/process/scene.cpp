@@ -6,9 +6,6 @@
 #include <cmath>
 #include <map>
 
-#include "app/process/gear_of_job.h"
-#include "cam/finger/bodies.h"
-#include "cam/finger/milling.h"
 #include "geometry/base/angle.h"
 #include "geometry/mesh/file.h"
 #include "postproc/controls/of_machine.h"
@@ -176,7 +173,7 @@ class SceneWalk {
   }
   static void note(report::SceneVerdict& v, const std::optional<clearance::MeshMeeting>& found, const clearance::MeshRule& rule) {
     if (!found) return;
-    const double required = found->body == "cutter" ? rule.cutter_mm : rule.others_mm;
+    const double required = tool::cuts(found->body) ? rule.cutter_mm : rule.others_mm;
     if (!v.nearest || found->gap_mm < v.nearest->gap_mm) v.nearest = found;
     if (found->gap_mm > 0 && found->gap_mm >= required) return;
     ++v.failed;
@@ -227,14 +224,6 @@ proof::WorstPlace worst_place(const clearance::MeshMeeting& m, const std::string
   return w;
 }
 
-/// How far the middle of a tooth space has wound about the axis at a tip, from the reference cone distance on.
-double space_azimuth(const bevel_gear::BevelGear& gear, const Vec3& tip) {
-  const double ell = std::clamp(bevel_gear::cone_point(tip, gear.sin_delta(), gear.cos_delta()).ell, gear.R_i(), gear.R_e());
-  const bevel_gear::BevelHalf& half = ell > gear.R_ref() ? gear.halves().back() : gear.halves().front();
-  const auto& trace = half.walls[0].trace;
-  return trace.middle(trace.beta(ell)).e;
-}
-
 }  // namespace
 
 Result<Scene> load_scene(const SceneFiles& request, double gear_diameter_mm) {
@@ -254,27 +243,6 @@ Result<std::vector<report::SceneVerdict>> check_scene(const Scene& scene, std::s
   if (const auto s = readback::execute_nc(text, file, *control, [&](const readback::ExecutedMove& m) { walk(m); }); !s) return s.error();
   return walk.finish();
 }
-
-SceneGear scene_of_face_gear(const job::Job& job, int teeth, double clearance_mm) {
-  SceneGear out{teeth, clearance_mm, {}, [](const Vec3& tip) { return std::atan2(tip.y(), tip.x()); }};
-  for (const auto& tool : job.tools) out.bodies.push_back(clearance::mesh_bodies(tool));
-  return out;
-}
-
-Result<SceneGear> scene_of_bevel_gear(const job::Job& job, const bevel_gear::BevelGear& gear, double clearance_mm) {
-  SceneGear out{gear.parameters().teeth, clearance_mm, {}, [gear](const Vec3& tip) { return std::atan2(tip.y(), tip.x()) - space_azimuth(gear, tip); }};
-  out.bodies.resize(job.tools.size());
-  for (const auto& operation : job.operations) {
-    const auto k = std::size_t(operation.tool);
-    if (!out.bodies[k].empty()) continue;
-    const auto own = finger::gear_for_finger_mill(gear, job.tools[k]);
-    if (!own) return located(job, fmt::format("tool[{}]", k), own.error());
-    out.bodies[k] = finger::finger_bodies(own->cutter(), job.tools[k]);
-  }
-  return out;
-}
-
-double outer_diameter(const bevel_gear::BevelGear& gear) { return 2 * (gear.R_e() * gear.sin_delta() + gear.parameters().addendum_mm * gear.cos_delta()); }
 
 std::vector<std::string> reasons_of(const std::vector<report::SceneVerdict>& verdicts) {
   std::vector<std::string> out;

@@ -7,14 +7,12 @@
 #include <string_view>
 #include <vector>
 
-#include "app/commands/command.h"
 #include "app/job/job.h"
 #include "app/report/run_report.h"
 #include "app/report/scene_report.h"
 #include "app/base/stage_clock.h"
 #include "cam/clearance/distance.h"
 #include "cam/proof/verification.h"
-#include "geometry/bevel_gear/gear.h"
 #include "machines/machine.h"
 #include "postproc/readback/reader.h"
 
@@ -47,13 +45,6 @@ struct SceneGear {
   std::vector<std::vector<clearance::MeshBody>> bodies;        ///< of every tool, by index in the job; empty: a tool that no operation uses
   std::function<double(const Vec3& tip)> azimuth;   ///< of a tip in W, less that of the tooth space there: names teeth that no index tells apart
 };
-/// Ball mills on a face gear, whose spaces are radial enough to count teeth by the tip's azimuth.
-[[nodiscard]] SceneGear scene_of_face_gear(const job::Job& job, int teeth, double clearance_mm);
-/// Finger mills on a bevel gear: W stands in the pitch apex. Errors: a mill that does not fit the gear, at its place in the job.
-[[nodiscard]] Result<SceneGear> scene_of_bevel_gear(const job::Job& job, const bevel_gear::BevelGear& gear, double clearance_mm);
-/// Largest diameter of the finished teeth of a bevel gear, mm.
-[[nodiscard]] double outer_diameter(const bevel_gear::BevelGear& gear);
-
 /// Executes the program once more and judges every move of every tooth, in the order in which the machine makes them, with the tool that is
 /// in the spindle:
 /// - fixture: every body, on feeds and rapids, keeps the clearance (proven between the blocks);

@@ -32,25 +32,10 @@ Json excess_json(const proof::ExcessResult& e, bool with_operation) {
 }
 
 Json place_json(const proof::WorstPlace& place) {
-  return {{"depth_um", app::um(place.depth_mm)}, {"body", place.body},           {"patch", place.patch},
+  return {{"depth_um", app::um(place.depth_mm)}, {"body", to_string(place.body)},           {"patch", place.patch},
           {"op", place.operation},          {"tooth", place.tooth},         {"zone", place.zone},
           {"line", place.line},             {"radius", place.radius_mm},    {"height", place.height_mm},
           {"point", vector_json(place.point)}};
-}
-
-/// What was left is told only where an operation finishes.
-Json unreached_json(const proof::UnreachedResult& u) {
-  Json json = {{"points", u.points}, {"max_height_um", app::um(u.max_height_mm)}};
-  if (u.ball_mm <= 0) return json;
-  json["ball_mm"] = u.ball_mm;
-  json["limit_um"] = app::um(u.limit_mm);
-  json["share_percent"] = 100 * u.share;
-  json["height_um"] = app::um(u.height_mm);
-  json["largest_ball_mm"] = u.left() ? Json(u.largest_ball_mm) : Json(nullptr);
-  json["active_flank"] = nullptr;
-  if (const auto& a = u.active)
-    json["active_flank"] = {{"height_um", app::um(a->height_mm)}, {"patch", a->patch}, {"zone", a->zone}, {"radius", a->radius_mm}, {"height", a->z_mm}};
-  return json;
 }
 
 void add_proof(Json& json, const RunReport& r) {
@@ -72,18 +57,25 @@ void add_proof(Json& json, const RunReport& r) {
     if (r.finished) excess["finished"] = excess_json(*r.finished, false);
     json["excess_um"] = std::move(excess);
   }
-  if (r.scallop)
-    json["scallop_um"] = {{"requested", app::um(r.scallop->requested_mm)},
-                          {"reached_min", app::um(r.scallop->reached_min_mm)},
-                          {"reached_max", app::um(r.scallop->reached_max_mm)},
-                          {"share_within", r.scallop->share_within},
-                          {"fillet_max", app::um(r.scallop->fillet_max_mm)}};
-  if (r.unreached) json["unreached"] = unreached_json(*r.unreached);
+}
+
+void add_findings(Json& json, const RunReport& r) {
+  for (const Finding& f : r.findings)
+    for (const auto& [name, detail] : f.details) {
+      Json& at = json[f.key][name];
+      std::visit([&](const auto& value) { at = value; }, detail);
+    }
+}
+
+/// Of one tooth space.
+void add_passes(Json& json, const RunReport& r) {
+  for (const PassReport& p : r.passes)
+    json["passes"].push_back({{"op", p.operation}, {"zone", p.zone}, {"pass", p.pass}, {"name", p.name}, {"length", p.length_mm}, {"points", p.points}});
 }
 
 Json meeting_json(const clearance::MeshMeeting& m) {
   const bool inside = !std::isfinite(m.measured_mm);
-  return {{"gap", std::max(m.gap_mm, 0.0)}, {"touches", m.gap_mm <= 0}, {"inside", inside}, {"body", m.body}, {"rapid", m.rapid},
+  return {{"gap", std::max(m.gap_mm, 0.0)}, {"touches", m.gap_mm <= 0}, {"inside", inside}, {"body", to_string(m.body)}, {"rapid", m.rapid},
           {"op", m.operation}, {"tooth", m.tooth}, {"line", m.line}, {"file", m.mesh}, {"point", vector_json(m.place)}};
 }
 
@@ -205,11 +197,14 @@ std::string report_json(const RunReport& r) {
   add_scene(json, r);
   add_motion(json, r);
   add_directions(json, r);
+  add_findings(json, r);
+  add_passes(json, r);
   if (proves) {
     Json ledger = Json::object();
     for (const auto& entry : r.ledger) {
-      ledger[entry.source] = {{"predicted", entry.predicted_um}, {"measured", entry.measured_um}};
-      if (!entry.note.empty()) ledger[entry.source]["note"] = entry.note;
+      Json& source = ledger[to_string(entry.source)];
+      source = {{"predicted", entry.predicted_um}, {"measured", entry.measured_um}};
+      if (!entry.note.empty()) source["note"] = entry.note;
     }
     json["ledger"] = std::move(ledger);
     json["assumed"] = text_list(r.assumed);

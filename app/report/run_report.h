@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "app/report/block_times.h"
+#include "app/report/finding.h"
 #include "app/report/scene_report.h"
+#include "app/report/section.h"
 #include "cam/proof/verification.h"
 #include "geometry/face_gear/flank_correction.h"
 #include "postproc/joints/program.h"
@@ -51,12 +53,13 @@ struct PolesReport {
 /// The same in one line, for page and set-up sheet.
 [[nodiscard]] std::string poles_text(const PolesReport& poles);
 
-/// A table of the set-up sheet that is made elsewhere.
-struct SheetSection {
-  std::string title;
-  std::vector<std::string> columns;
-  std::vector<std::vector<std::string>> rows;
-  std::string note;  ///< below the table
+/// One pass of an operation in one zone.
+struct PassReport {
+  int operation = 0, zone = 0, pass = 0;
+  std::string name;      ///< "middle", "wall L"
+  bool outward = false;  ///< away from the apex
+  double length_mm = 0;
+  std::size_t points = 0;
 };
 
 /// Where the part has the most room, and set-up origin and work offset there.
@@ -78,13 +81,13 @@ struct RunReport {
   std::optional<proof::GougeResult> gouge;
   std::vector<proof::ExcessResult> excess;          ///< one an operation
   std::optional<proof::ExcessResult> finished;      ///< the finished surface, over the points that the finishing ball reaches
-  std::optional<proof::UnreachedResult> unreached;
-  std::optional<proof::ScallopResult> scallop;
+  std::vector<Finding> findings;                    ///< what else there is to say about the part
 
   std::size_t cl_points = 0, blocks = 0;
   double feed_minutes = 0, total_minutes = 0;  ///< all teeth; tool changes left out
   std::vector<OperationReport> operations;
   std::vector<proof::DirectionChoice> directions;
+  std::vector<PassReport> passes;                        ///< of one tooth space, where the plan tells them
   std::vector<joints::AxisRange> axes;
   std::optional<PolesReport> poles;                      ///< none where the program comes to no pole
   std::optional<TravelRoom> travel_room;                 ///< none where it was not looked for
@@ -94,7 +97,7 @@ struct RunReport {
   std::optional<joints::ProgramRestart> restart;                 ///< the program begins there
   std::optional<restart::RestartMenu> restart_menu;               ///< where it can be taken up again
   std::vector<LengthTolerance> length_tolerances;
-  std::vector<SheetSection> sheet_sections;              ///< stand behind the axis ranges
+  std::vector<Section> sections;                         ///< tables for page and set-up sheet: app/report/sections
   std::vector<proof::LedgerEntry> ledger;
   std::vector<SceneVerdict> scene;                       ///< fixture and stock, where meshes of them were given
   std::vector<CorrectionRow> correction;                 ///< empty: the nominal flanks are the target
@@ -108,6 +111,8 @@ struct RunReport {
 
 /// "verified", "verified, root not finished" (surface that the finishing ball does not reach was left) or "not verified".
 [[nodiscard]] std::string verdict_text(const RunReport& report);
+/// What the program leaves though it is verified; empty: nothing.
+[[nodiscard]] std::string unfinished_text(const RunReport& report);
 
 /// The table on the screen: verified or not, worst gouge, worst left material, cutting time, tools, axis ranges, every assumed
 /// value. Plain text; with `color` the verdict is green, amber or red.

@@ -2,13 +2,11 @@
 #include <cmath>
 
 #include "app/report/run_report.h"
-#include "app/report/unreached_text.h"
 #include "app/base/units.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::report {
 namespace {
-
 
 void row(std::string& out, std::string_view name, const std::string& value) { out += fmt::format("  {:<20}{}\n", name, value); }
 
@@ -46,24 +44,32 @@ std::string readable_minutes(double minutes) {
   return fmt::format("{} min {:02} s", seconds / 60, seconds % 60);
 }
 
+std::string unfinished_text(const RunReport& report) {
+  for (const Finding& f : report.findings)
+    if (!f.unfinished.empty()) return f.unfinished;
+  return {};
+}
+
 std::string verdict_text(const RunReport& report) {
   if (!report.verified) return "not verified";
-  return report.unreached && report.unreached->left() ? "verified, root not finished" : "verified";
+  return unfinished_text(report).empty() ? "verified" : "verified, root not finished";
 }
 
 std::string summary_table(const RunReport& report, bool color) {
   std::string out = report.job_name + "\n";
-  const bool left = report.unreached && report.unreached->left();
-  const char* verdict = !report.verified ? "NO" : left ? "yes, root not finished" : "yes";
-  const char* paint = !report.verified ? "\033[31m" : left ? "\033[33m" : "\033[32m";
+  const std::string left = unfinished_text(report);
+  const char* verdict = !report.verified ? "NO" : !left.empty() ? "yes, root not finished" : "yes";
+  const char* paint = !report.verified ? "\033[31m" : !left.empty() ? "\033[33m" : "\033[32m";
   if (report.command != "surface") row(out, "verified", color ? fmt::format("{}{}\033[0m", paint, verdict) : std::string(verdict));
   for (const auto& reason : report.reasons) row(out, "  because", reason);
-  if (left) row(out, "not finished", unreached_text(*report.unreached));
+  if (!left.empty()) row(out, "not finished", left);
   if (report.gouge)
     row(out, "worst gouge", fmt::format("{:.2f} um, proven below {:.2f} um (tolerance {:.2f} um)", std::max(0.0, report.gouge->measured_mm) * app::kUm,
                                         std::max(0.0, report.gouge->bound_mm) * app::kUm, report.gouge_tolerance_mm * app::kUm));
   if (report.finished)
     row(out, "worst left material", fmt::format("{:.2f} um, proven below {:.2f} um", report.finished->max_mm * app::kUm, report.finished->bound_mm * app::kUm));
+  for (const Finding& f : report.findings)
+    if (!f.label.empty()) row(out, f.label, f.row_text());
   if (report.gouge) row(out, "least clearance", fmt::format("{:.3f} mm (neck, shank, holder)", report.gouge->clearance_mm));
   for (const auto& v : report.scene) {
     const std::string place = v.nearest ? fmt::format("{}, op {}, tooth {}, line {}", v.nearest->body, v.nearest->operation, v.nearest->tooth, v.nearest->line) : "";

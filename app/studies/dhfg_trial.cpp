@@ -85,7 +85,7 @@ MillingTime mill(const DhfgStudy& study, const face_gear::FaceGear& gear) {
   }
   const analytic::GearDistance part(gear, ball::reach_of(study.tools));
   ball::PlanOptions options;
-  options.gouge_tolerance_mm = 1.0;  // paths are timed, not cut: coarse chords are no refusal
+  options.limits.gouge_mm = 1.0;  // paths are timed, not cut: coarse chords are no refusal
   const auto planned = ball::plan_face_gear(part, study.tools, study.operations, options);
   if (const auto* refusal = planned.refused()) {
     time.refusal = refusal->key + ": " + refusal->diagnostic.message;

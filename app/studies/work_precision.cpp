@@ -6,11 +6,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/process/opening_and_end.h"
-#include "app/commands/run.h"
+#include "app/process/proof_limits.h"
+#include "app/process/flow/stages.h"
 #include "app/job/file.h"
 #include "app/report/svg/html_text.h"
 #include "app/report/page/study_page.h"
-#include "cam/analytic/gouge_check.h"
 
 namespace toothpath::studies {
 namespace {
@@ -77,9 +77,9 @@ std::vector<Diagnostic> add_run(const job::Job& job, const Sweep& sweep, const c
   StudyRun run;
   run.varied = name;
   run.factor = factor;
-  run.proof_mm = analytic::GougeCheckOptions{}.proof_mm * (sweep.proof ? factor : 1);
+  run.proof_mm = proof::ProofLimits{}.proof_mm * (sweep.proof ? factor : 1);
   asked(varied, run);
-  auto outcome = commands::run_stages(varied, run.proof_mm, output, quiet);
+  auto outcome = flow::run_stages(varied, process::proof_limits(varied, run.proof_mm), output, quiet);
   run.report = std::move(outcome.report);
   if (!outcome.errors.empty()) {
     if (factor == 1) return outcome.errors;  // not the study's doing
@@ -197,7 +197,7 @@ std::string json_of(const job::Job& job, const page::PageTable& table) {
 
 /// The report page of the job as it stands, its own gouge tolerance and all, the plots of the study among its sections.
 Result<std::string> report_page_text(const job::Job& job, app::OutputDir& output, bool quiet, const std::vector<svg::LineChart>& charts) {
-  auto own = commands::run_stages(job, analytic::GougeCheckOptions{}.proof_mm, output, quiet, {}, true);
+  auto own = flow::run_stages(job, process::proof_limits(job), output, quiet, {}, true);
   if (!own.errors.empty()) return own.errors.front();
   assert(own.page);
   own.page->work_precision = charts;
@@ -227,6 +227,7 @@ commands::CommandOutcome study_work_precision(const WorkPrecisionRequest& reques
   auto read = job::read_job_file(request.job_file);
   if (auto* errors = read.refused()) return commands::failed(std::move(*errors));
   const job::Job& job = read.value();
+  if (!job.face_gear()) return commands::failed(process::needs_face_gear(job));  // its tolerances are those of ball mills
 
   std::vector<StudyRun> runs;
   if (auto refused = add_run(job, {"job", false, false, false}, "job", 1, *output, request.quiet, runs); !refused.empty()) return commands::failed(std::move(refused));

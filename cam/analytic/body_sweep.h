@@ -16,6 +16,7 @@
 #include "cam/tool/rounded_frustum.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/path/tool_motion.h"
+#include "cam/proof/limits.h"
 
 namespace toothpath::analytic {
 
@@ -32,7 +33,7 @@ struct SweptGap {
 struct SweptGapOptions {
   double enough_mm = 0.5;         ///< gaps above this are returned as this
   double contact_mm = 0;           ///< below this ...
-  double contact_proof_mm = 2e-4;  ///< ... the bound lies within this of the least gap that was found, but for the motion's own deviations
+  double contact_proof_mm = proof::ProofLimits{}.proof_mm;  ///< ... the bound lies within this of the least gap that was found, but for the motion's own deviations
   double proof_mm = 0.01;          ///< else within this
   bool touching = false;           ///< the body may touch: tangent planes where it comes nearest
   double settled_mm = INFINITY;    ///< a bound above this is good enough, however much larger the least gap is

@@ -10,6 +10,7 @@
 #include "cam/analytic/swept_tool.h"
 #include "cam/analytic/unreached.h"
 #include "cam/analytic/zone_places.h"
+#include "cam/proof/limits.h"
 #include "geometry/face_gear/shaper.h"
 
 namespace toothpath::analytic {
@@ -218,7 +219,7 @@ class Meter {
   /// Excess above which a place that the ball does not reach was left; no place is where the last operation does not finish.
   [[nodiscard]] double unreached_limit() const {
     if (operations_.empty() || operations_.back().type != path::OperationType::finishing) return INFINITY;
-    return most_left_mm(operations_.back());
+    return proof::most_left_mm(operations_.back());
   }
 
   void note_unreached(const face_gear::SheetPoint& s, int zone, double height) {

@@ -19,11 +19,6 @@ struct CutSurfaceOptions {
   double cap_mm = 0;           ///< excess above this is reported as this; 0: one module
 };
 
-/// Rounding, axis motion and the grid of the measurement, beside cusps and chords.
-inline constexpr double kExcessMargin = 1e-3;  // mm
-/// What an operation may leave above its allowance on every place that its ball can reach.
-[[nodiscard]] inline double most_left_mm(const path::MillingOperation& o) { return o.scallop_mm + o.chord_tolerance_mm + kExcessMargin; }
-
 /// The cut surface of tooth space 0.
 struct CutSurface {
   std::vector<proof::SurfaceGrid> grids;           ///< every patch of every zone

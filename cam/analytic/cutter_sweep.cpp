@@ -54,7 +54,7 @@ NearestPlace CutterSweep::query(const Vec3& p, double most) {
   return known.nearest;
 }
 
-void CutterSweep::note(const NearestPlace& q, const char* body) {
+void CutterSweep::note(const NearestPlace& q, tool::Body body) {
   const double depth = R_ - q.distance;
   if (depth <= found_.measured_mm) return;
   found_.measured_mm = depth;
@@ -80,8 +80,8 @@ CutterFinding CutterSweep::check(const path::ToolMotion& motion) {
   const double length = (b - a).norm();
   const NearestPlace qa = chained_ && a == last_centre_ ? last_ : query(a, within_);
   const NearestPlace qb = query(b, qa.distance + length);
-  note(qa, "ball");
-  note(qb, "ball");
+  note(qa, tool::Body::ball);
+  note(qb, tool::Body::ball);
   if (const double height = height_above(); height > 0)
     found_.bound_mm = std::max(-height, found_.measured_mm);
   else
@@ -117,7 +117,7 @@ double CutterSweep::ball(double t0, double t1, const NearestPlace& q0, const Nea
   const double t = 0.5 * (t0 + t1);
   const Vec3 c = place(t, 0);
   const auto q = query(c, std::min(q0.distance + (c - a).norm(), q1.distance + (c - b).norm()));
-  note(q, "ball");
+  note(q, tool::Body::ball);
   const double first = ball(t0, t, q0, q, depth - 1);
   return std::min(first, ball(t, t1, q, q1, depth - 1));
 }
@@ -165,7 +165,7 @@ void CutterSweep::flute(double low) {
 
 double CutterSweep::at(double t, double height) {
   const auto q = query(place(t, height), within_);
-  note(q, height > 0 ? "flute" : "ball");
+  note(q, height > 0 ? tool::Body::flute : tool::Body::ball);
   return q.distance;
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cam/tool/assembly.h"
+#include "cam/tool/body.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/path/tool_motion.h"
 
@@ -26,7 +27,7 @@ struct CutterFinding {
   double measured_mm = -INFINITY;  ///< deepest place found; negative: the least gap
   double bound_mm = -INFINITY;     ///< proven: no place of the motion is deeper
   NearestPlace deepest;
-  const char* body = "ball";       ///< or "flute"
+  tool::Body body = tool::Body::ball;  ///< or the flute
 };
 
 /// Checks motions one after another; each starts from what the one before it found, so that a chain of short motions costs
@@ -55,7 +56,7 @@ class CutterSweep {
   };
   [[nodiscard]] Vec3 place(double t, double height) const;
   NearestPlace query(const Vec3& p, double most);
-  void note(const NearestPlace& q, const char* body);
+  void note(const NearestPlace& q, tool::Body body);
   [[nodiscard]] bool settled(double least, double seen, double slack, double arm) const;
   [[nodiscard]] double height_above() const;
   double ball(double t0, double t1, const NearestPlace& q0, const NearestPlace& q1, int depth);

@@ -23,7 +23,7 @@ constexpr double kAhead = 0.4;          // mm: and this much farther where a bod
 constexpr double kContact = 0.005;  // mm: smaller gaps of shank and holder are followed to proof_mm
 constexpr double kGapStep = 0.02;       // mm: to which the least gap is told
 
-proof::WorstPlace place_of(const NearestPlace& q, const path::ToolMotion& m, double depth, const char* body) {
+proof::WorstPlace place_of(const NearestPlace& q, const path::ToolMotion& m, double depth, tool::Body body) {
   proof::WorstPlace w;
   w.depth_mm = depth;
   w.body = body;
@@ -38,7 +38,7 @@ proof::WorstPlace place_of(const NearestPlace& q, const path::ToolMotion& m, dou
   return w;
 }
 
-proof::WorstPlace place_of(const SweptGap& gap, const path::ToolMotion& m, const char* body) {
+proof::WorstPlace place_of(const SweptGap& gap, const path::ToolMotion& m, tool::Body body) {
   NearestPlace q;
   q.zone = gap.zone;
   q.patch = gap.patch;
@@ -50,7 +50,7 @@ proof::WorstPlace place_of(const SweptGap& gap, const path::ToolMotion& m, const
 class Chunk {
  public:
   Chunk(const GearDistance& part, const std::vector<tool::ProofTool>& tools, const GougeCheckOptions& options)
-      : part_(part), tools_(tools), o_(options), out_(proof::no_motion_yet(options.clearance_mm)) {}
+      : part_(part), tools_(tools), o_(options), out_(proof::no_motion_yet(options.limits.clearance_mm)) {}
 
   void check(const path::ToolMotion& m, int tool) {
     if (tool != tool_) take(tool);
@@ -63,7 +63,7 @@ class Chunk {
       out_.bound_mm = cut.bound_mm;
       out_.bound_line = m.line;
     }
-    if (const double depth = std::max(cut.measured_mm, cut.bound_mm); depth > o_.gouge_tolerance_mm)
+    if (const double depth = std::max(cut.measured_mm, cut.bound_mm); depth > o_.limits.gouge_mm)
       add_worst(out_, place_of(cut.deepest, m, depth, cut.body));
     for (Body& body : bodies_) clearance(body, m);
     if (m.rapid) {
@@ -72,7 +72,7 @@ class Chunk {
       const auto proof = used.ball_mill ? proof::prove_rapid(m, *used.ball_mill, blank) : proof::prove_rapid(m, used, blank);
       if (!proof.clear) {
         out_.rapids_clear = false;
-        proof::WorstPlace w = place_of(cut.deepest, m, 0, "rapid");
+        proof::WorstPlace w = place_of(cut.deepest, m, 0, tool::Body::any);
         w.patch = "blank";
         w.radius_mm = proof.tip.head<2>().norm();
         w.height_mm = proof.tip.z();
@@ -104,17 +104,17 @@ class Chunk {
     tool_ = tool;
     if (tool < 0) return;
     const auto& taken = tools_[std::size_t(tool)];
-    if (taken.ball_mill) ball_.emplace(part_, *taken.ball_mill, o_.proof_mm, o_.gouge_tolerance_mm);
-    else profile_.emplace(part_, taken, o_.proof_mm, o_.gouge_tolerance_mm);
+    if (taken.ball_mill) ball_.emplace(part_, *taken.ball_mill, o_.limits.proof_mm, o_.limits.gouge_mm);
+    else profile_.emplace(part_, taken, o_.limits.proof_mm, o_.limits.gouge_mm);
     for (const auto& f : taken.bodies) bodies_.push_back({f, false, Vec3::Zero(), Vec3::UnitZ(), 0});
   }
 
   void clearance(Body& body, const path::ToolMotion& m) {
-    const double enough = o_.clearance_mm + kBodyLook, arm = std::hypot(body.frustum.to, std::max(body.frustum.radius_from, body.frustum.radius_to));
+    const double enough = o_.limits.clearance_mm + kBodyLook, arm = std::hypot(body.frustum.to, std::max(body.frustum.radius_from, body.frustum.radius_to));
     if (body.known) {
       const auto away = [&](const Vec3& tip, const Vec3& axis) { return (tip - body.tip).norm() + arm * (axis - body.axis).norm(); };
       const double left = body.gap - std::max(away(m.tip_from, m.axis_from), away(m.tip_to, m.axis_to)) - path::line_slack(m, arm, 1);
-      if (left >= o_.clearance_mm && left >= std::min(enough, out_.clearance_measured_mm - kGapStep)) {
+      if (left >= o_.limits.clearance_mm && left >= std::min(enough, out_.clearance_measured_mm - kGapStep)) {
         out_.clearance_mm = std::min({out_.clearance_mm, left, enough});
         out_.clearance_measured_mm = std::min(out_.clearance_measured_mm, enough);
         return;
@@ -123,14 +123,14 @@ class Chunk {
     SweptGapOptions look;
     look.enough_mm = enough + kAhead;
     look.contact_mm = kContact;
-    look.contact_proof_mm = o_.proof_mm;
+    look.contact_proof_mm = o_.limits.proof_mm;
     look.proof_mm = 0.5 * kGapStep;
     const auto gap = swept_gap(part_, body.frustum, m, look);
     body = {body.frustum, true, m.tip_to, m.axis_to, gap.proven_mm};
     out_.clearance_measured_mm = std::min({out_.clearance_measured_mm, gap.measured_mm, enough});
-    if (gap.proven_mm < out_.clearance_mm) out_.closest = place_of(gap, m, body.frustum.name);
+    if (gap.proven_mm < out_.clearance_mm) out_.closest = place_of(gap, m, body.frustum.body);
     out_.clearance_mm = std::min({out_.clearance_mm, gap.proven_mm, enough});
-    if (gap.proven_mm < o_.clearance_mm) add_worst(out_, place_of(gap, m, body.frustum.name));
+    if (gap.proven_mm < o_.limits.clearance_mm) add_worst(out_, place_of(gap, m, body.frustum.body));
   }
 
   const GearDistance& part_;
@@ -160,14 +160,14 @@ proof::GougeResult GougeCheck::check(const std::vector<path::ToolMotion>& motion
       chunk.check(motions[k], tool_of_operation[std::size_t(motions[k].operation)]);
     chunks[n] = chunk.finish();
   });
-  proof::GougeResult out = proof::no_motion_yet(options_.clearance_mm);
+  proof::GougeResult out = proof::no_motion_yet(options_.limits.clearance_mm);
   for (const auto& chunk : chunks) proof::add_result(out, chunk);
   return out;
 }
 
 bool GougeCheck::passes(const proof::GougeResult& r) const {
-  return r.bound_mm <= options_.gouge_tolerance_mm && r.measured_mm <= options_.gouge_tolerance_mm &&
-         r.clearance_mm >= options_.clearance_mm && r.rapids_clear;
+  return r.bound_mm <= options_.limits.gouge_mm && r.measured_mm <= options_.limits.gouge_mm &&
+         r.clearance_mm >= options_.limits.clearance_mm && r.rapids_clear;
 }
 
 std::vector<path::ToolMotion> GougeCheck::motions_of(const path::ClPath& path) { return toothpath::path::motions_of(path); }
@@ -178,20 +178,20 @@ Result<proof::CheckedClPath> GougeCheck::check_path(path::ClPath path) const {
   if (passes(r)) return proof::CheckedClPath(std::move(path));
   if (!r.worst.empty()) {
     const auto& w = r.worst.front();
-    if (w.body == "rapid")
+    if (w.body == tool::Body::any)
       return fail_as(DiagnosticKind::verification, "operation {} ({}): the rapid to CL record {} runs through the blank",
                      path.operation, path.operation_type, w.line);
-    if (w.body == "shank" || w.body == "holder")
+    if (!cuts(w.body))
       return fail_as(DiagnosticKind::verification,
                      "operation {} ({}), CL record {}: the {} of tool {} comes within {:.4f} mm of the teeth at radius {:.3f}, "
                      "height {:.3f}; the clearance is {:.4f}",
                      path.operation, path.operation_type, w.line, w.body, tools_[std::size_t(path.tool)].number, -w.depth_mm,
-                     w.radius_mm, w.height_mm, options_.clearance_mm);
+                     w.radius_mm, w.height_mm, options_.limits.clearance_mm);
     return fail_as(DiagnosticKind::verification,
                    "operation {} ({}), CL record {}: the {} cuts {:.4f} mm (bound) into {} of zone {} at radius {:.3f}, height "
                    "{:.3f}; the gouge tolerance is {:.4f}",
                    path.operation, path.operation_type, w.line, w.body, w.depth_mm, w.patch, w.zone, w.radius_mm, w.height_mm,
-                   options_.gouge_tolerance_mm);
+                   options_.limits.gouge_mm);
   }
   return fail_as(DiagnosticKind::verification, "operation {} ({}) is not proven free of gouges", path.operation,
                  path.operation_type);

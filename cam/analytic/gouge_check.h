@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cam/proof/checked_cl_path.h"
+#include "cam/proof/limits.h"
 #include "cam/tool/assembly.h"
 #include "cam/tool/proof_tool.h"
 #include "cam/analytic/gear_distance.h"
@@ -17,10 +18,8 @@
 namespace toothpath::analytic {
 
 struct GougeCheckOptions {
-  double gouge_tolerance_mm = 0.002;  ///< deepest proven cut into the finished surface that is accepted
-  double proof_mm = 0.0002;           ///< how far the bound may lie above the measured value of a move
-  double clearance_mm = 0.05;         ///< least gap of shank and holder
-  double rapid_height_mm = 0;         ///< rapids must keep every body above this z, or radially off the rings
+  proof::ProofLimits limits;   ///< what stands against them is refused
+  double rapid_height_mm = 0;  ///< rapids must keep every body above this z, or radially off the rings
 };
 
 class GougeCheck {

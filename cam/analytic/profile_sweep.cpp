@@ -49,13 +49,13 @@ void ProfileSweep::look(Body& body, const path::ToolMotion& m) {
   found_.deepest.zone = gap.zone;
   found_.deepest.patch = gap.patch;
   found_.deepest.foot = found_.deepest.point = gap.place;
-  found_.body = ball_top_ > 0 && gap.height_mm < ball_top_ ? "ball" : "flute";
+  found_.body = ball_top_ > 0 && gap.height_mm < ball_top_ ? tool::Body::ball : tool::Body::flute;
   worst_ = std::max(worst_, std::min(depth, tolerance_ - proof_));
 }
 
 CutterFinding ProfileSweep::check(const path::ToolMotion& m) {
   found_ = {};
-  found_.body = ball_top_ > 0 ? "ball" : "flute";
+  found_.body = ball_top_ > 0 ? tool::Body::ball : tool::Body::flute;
   if (part_.refusal()) {  // nothing is known of where the part is
     found_.measured_mm = found_.bound_mm = kUnknownDepth;
     found_.deepest.patch = "inside";

@@ -207,7 +207,7 @@ class JobPlanner {
     link.zone = zone;
     link.bodies = tool::shank_and_holder(tool_of(n));
     const auto bodies_are_clear = [&](const Vec3& centre, const Vec3& axis) {
-      return bodies_->clear(link.bodies, centre - R * axis, axis, o_.clearance_mm + kTurnMargin, 0.01);
+      return bodies_->clear(link.bodies, centre - R * axis, axis, o_.limits.clearance_mm + kTurnMargin, 0.01);
     };
     as_stage("links", [&] {
       link_passes(made.passes, link, [&](const Vec3& a, const Vec3& b) { return hop_is_clear(a, b, R, op.allowance_mm); }, path.records,
@@ -221,13 +221,13 @@ class JobPlanner {
     const auto& op = operation(n);
     const auto& tool = tool_of(n);
     OrientationOptions turning;
-    turning.clearance_mm = o_.clearance_mm;
+    turning.clearance_mm = o_.limits.clearance_mm;
     turning.least_tilt_rad = o_.least_tilt_rad;
     turning.chord_mm = kTurnShare * std::min(op.chord_tolerance_mm, chord_room(op));
     const bool prescribed = !op.axis_plus.empty();
     as_stage("tool direction", [&] {
       if (!bodies_) bodies_ = std::make_unique<BodyTree>(part_);
-      if (!prescribed) direction = choose_direction(part_, *bodies_, zone, made.sheet, made.passes, tool, {o_.clearance_mm, 0.01});
+      if (!prescribed) direction = choose_direction(part_, *bodies_, zone, made.sheet, made.passes, tool, {o_.limits.clearance_mm, 0.01});
     });
     direction.operation = n;
     direction.zone = zone;
@@ -304,7 +304,7 @@ class JobPlanner {
 
   /// Sag that an operation may have: a tenth of the stock that it leaves, and less than half of what may be gouged.
   [[nodiscard]] double chord_room(const path::MillingOperation& op) const {
-    return 0.1 * op.allowance_mm + 0.4 * o_.gouge_tolerance_mm;
+    return 0.1 * op.allowance_mm + 0.4 * o_.limits.gouge_mm;
   }
 
   /// A planned place at which the ball would cut deeper than may be gouged is refused before any motion is made of it.
@@ -320,7 +320,7 @@ class JobPlanner {
       for (const auto& p : passes[k].points) {
         if (!p.touching) continue;
         const double cut = R - part_.nearest(p.centre, R + 0.01).distance;
-        if (cut <= o_.gouge_tolerance_mm) continue;
+        if (cut <= o_.limits.gouge_mm) continue;
         first[k] = {&p, cut};
         return;
       }
@@ -330,7 +330,7 @@ class JobPlanner {
         return PlanRefusal{key + ".tool", fail("tool {} in zone {}: its ball of radius {:.4f} mm would cut {:.4f} mm into the finished surface with its "
                                                "centre at radius {:.4f}, height {:.4f}; the limit is {:.4f} mm",
                                                tool.number, zone, R, cut, std::hypot(point->centre.x(), point->centre.y()), point->centre.z(),
-                                               o_.gouge_tolerance_mm)};
+                                               o_.limits.gouge_mm)};
     return {};
   }
 
@@ -359,7 +359,7 @@ class JobPlanner {
     const int steps = std::max(4, int(std::ceil((b - a).norm() / (0.05 * R))));
     for (int k = 0; k <= steps; ++k) {
       const double d = part_.nearest(a + (b - a) * (double(k) / steps), R + allowance + 0.05).distance;
-      if (d < R + 0.8 * allowance - 0.4 * o_.gouge_tolerance_mm) return false;
+      if (d < R + 0.8 * allowance - 0.4 * o_.limits.gouge_mm) return false;
     }
     return true;
   }

@@ -9,14 +9,14 @@
 #include "cam/tool/assembly.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/path/operation.h"
+#include "cam/proof/limits.h"
 #include "cam/proof/verification.h"
 #include "geometry/base/result.h"
 
 namespace toothpath::ball {
 
 struct PlanOptions {
-  double clearance_mm = 0.05;        ///< least gap of shank and holder
-  double gouge_tolerance_mm = 0.002; ///< of the finished surface: chords of any operation may use a part of it
+  proof::ProofLimits limits;         ///< of shank and holder the clearance; chords of any operation may use a part of the gouge tolerance
   double rapid_clearance_mm = 2.0;   ///< height of rapids above the blank
   double least_tilt_rad = 0.035;     ///< of a tool axis that turns in a pass, from the gear axis: the pole of a rotary that carries the work
   /// Runs a stage under its name; empty: just runs it. Called on the thread of the caller, for "tool passes", "tool direction" and "links",

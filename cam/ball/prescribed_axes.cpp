@@ -74,8 +74,8 @@ class Prover {
       const double by = gap > 0 ? o_.clearance_mm - gap : o_.clearance_mm + depth;
       if (by <= s.by) continue;
       s.by = by;
-      s.words = gap > 0 ? fmt::format("its {} keeps {:.3f} mm, the clearance is {:.3f} mm", body.name, gap, o_.clearance_mm)
-                        : fmt::format("its {} cuts in by {}{:.3f} mm, the clearance is {:.3f} mm", body.name, depth >= kPrescribedDeepest ? "more than " : "", depth,
+      s.words = gap > 0 ? fmt::format("its {} keeps {:.3f} mm, the clearance is {:.3f} mm", body.body, gap, o_.clearance_mm)
+                        : fmt::format("its {} cuts in by {}{:.3f} mm, the clearance is {:.3f} mm", body.body, depth >= kPrescribedDeepest ? "more than " : "", depth,
                                       o_.clearance_mm);
     }
   }

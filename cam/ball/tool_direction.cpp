@@ -23,7 +23,7 @@ constexpr double kFluteSkin = 0.03;   // mm: the flute grazes the walls that it 
 std::optional<tool::Frustum> flute_body(const tool::ToolAssembly& tool) {
   const double R = tool.radius_mm(), skin = std::min(kFluteSkin, 0.1 * R);
   if (tool.flute_length_mm - R < skin) return std::nullopt;
-  return tool::Frustum{R + skin, tool.flute_length_mm, R - skin, R - skin, "flute"};
+  return tool::Frustum{R + skin, tool.flute_length_mm, R - skin, R - skin, tool::Body::flute};
 }
 
 std::vector<Vec3> some_centres(const std::vector<BallPass>& passes, std::size_t count) {
@@ -99,7 +99,7 @@ class Search {
   }
 
   /// Least gap of shank and holder over the centres; of a body that cuts in: minus its `depth`.
-  [[nodiscard]] double gap(const Vec3& axis, const std::vector<Vec3>& centres, std::string& worst) const {
+  [[nodiscard]] double gap(const Vec3& axis, const std::vector<Vec3>& centres, tool::Body& worst) const {
     std::vector<Vec3> tips;
     for (const Vec3& c : centres) tips.push_back(c - tool_.radius_mm() * axis);
     double least = kEnough;
@@ -108,7 +108,7 @@ class Search {
       if (here < 0) here = -tree_.depth(body, tips, axis, kDirectionDeepest, kDirectionResolution);
       if (here >= least) continue;
       least = here;
-      worst = body.name;
+      worst = body.body;
     }
     return least;
   }
@@ -140,7 +140,7 @@ class Search {
     std::stable_sort(best.begin(), best.end(), [](const auto& a, const auto& b) { return a.gap_mm > b.gap_mm; });
     best.resize(std::min<std::size_t>(best.size(), 3));
     for (auto at : best) {
-      if (at.worst_body == "ball") continue;
+      if (at.worst_body == tool::Body::ball) continue;
       for (double step = radians(2.5); step > radians(0.5) && !choice_.fixed; step *= 0.5)
         for (bool better = true; better && !choice_.fixed;) {
           better = false;
@@ -175,7 +175,7 @@ class Search {
     const Vec3 axis = axis_at(lean.by, lean.azimuth);
     m.least_draft = draft(axis);
     if (m.least_draft < o_.least_draft) {
-      c.worst_body = "ball";
+      c.worst_body = tool::Body::ball;
       c.gap_mm = m.least_draft < 0 ? -1 : 0;
     } else {
       c.gap_mm = gap(axis, few_, c.worst_body);
@@ -190,7 +190,7 @@ class Search {
       if (c.gap_mm >= o_.clearance_mm && !choice_.fixed) c.gap_mm = gap(axis, many_, c.worst_body);
       if (c.gap_mm >= o_.clearance_mm && flute_ && flute_cuts(axis)) {
         c.gap_mm = 0;
-        c.worst_body = flute_->name;
+        c.worst_body = flute_->body;
       }
       c.clear = c.gap_mm >= o_.clearance_mm;
       if (c.clear && !choice_.fixed) take(axis, c, m.least_draft);
@@ -228,7 +228,7 @@ class Search {
   void explain_failure() {
     const proof::DirectionChoice::Candidate* best = &choice_.candidates.front();
     // Directions in which the shank, not the ball, would cut are no near miss: a body in the way tells more.
-    const auto stands = [](const proof::DirectionChoice::Candidate& c) { return c.worst_body != "ball"; };
+    const auto stands = [](const proof::DirectionChoice::Candidate& c) { return c.worst_body != tool::Body::ball; };
     for (const auto& c : choice_.candidates)
       if (stands(c) > stands(*best) || (stands(c) == stands(*best) && c.gap_mm > best->gap_mm)) best = &c;
     choice_.explanation =

@@ -7,12 +7,13 @@
 #include "cam/tool/assembly.h"
 #include "cam/ball/finishing.h"
 #include "cam/analytic/gear_distance.h"
+#include "cam/proof/limits.h"
 #include "cam/proof/verification.h"
 
 namespace toothpath::ball {
 
 struct DirectionOptions {
-  double clearance_mm = 0.05;  ///< least gap of shank and holder
+  double clearance_mm = proof::ProofLimits{}.clearance_mm;  ///< least gap of shank and holder
   double least_draft = 0.01;   ///< least cosine between the tool axis and the normals of the surface: the ball, not its shank, cuts
 };
 

@@ -212,17 +212,17 @@ class Orienter {
   [[nodiscard]] OrientationRefusal blocked(const OrientationWay& way, std::size_t station) const {
     const auto& point = way.points[station];
     double best = -INFINITY, lean = 0;
-    std::string body = "flute";
+    tool::Body body = tool::Body::flute;
     std::vector<Vec3> usable;  // directions in which the ball cuts, whatever stands above it
     for (const auto& q : grid_.leans) {
       const Vec3 axis = check_.frame().axis(q.x(), q.y());
       if (!check_.cutting(point, axis)) continue;
       usable.push_back(axis);
       double gap = o_.clearance_mm;
-      std::string worst;
+      tool::Body worst = tool::Body::none;
       for (const auto& f : check_.bodies()) {
         const double g = tree_.gap(f, point.centre - tool_.radius_mm() * axis, axis, gap, kGapResolution);
-        if (g < gap) gap = g, worst = f.name;
+        if (g < gap) gap = g, worst = f.body;
       }
       if (gap > best) best = gap, lean = angle_between(axis, check_.frame().up), body = worst;
     }

@@ -12,11 +12,12 @@
 
 #include "cam/ball/axis_records.h"
 #include "cam/ball/tool_direction.h"
+#include "cam/proof/limits.h"
 
 namespace toothpath::ball {
 
 struct OrientationOptions {
-  double clearance_mm = 0.05;    ///< least gap of shank and holder
+  double clearance_mm = proof::ProofLimits{}.clearance_mm;    ///< least gap of shank and holder
   double margin_mm = 0.02;       ///< kept beyond it at the stations, for what lies between them
   double least_draft = 0.02;     ///< least cosine between the axis and the normal at the contact
   double least_tilt_rad = 0.035; ///< kept from the gear axis: a rotary that carries the work has its pole there

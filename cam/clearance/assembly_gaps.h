@@ -22,7 +22,7 @@ class MeshAssembly {
 
   /// Bodies: 0 the cutting part (ball and flute), then shank and holder from below.
   [[nodiscard]] std::size_t bodies() const { return 1 + free_.size(); }
-  [[nodiscard]] const char* name(std::size_t body) const { return body == 0 ? "cutter" : frustums_[body - 1].name; }
+  [[nodiscard]] tool::Body body(std::size_t index) const { return index == 0 ? tool::Body::cutter : frustums_[index - 1].body; }
 
   /// gaps[bodies() * pose + body], mm. Cutting part: distance of its axis to the surface less its radius, so that a cut is
   /// negative and as deep as it is. Other bodies: their distance, 0 when they touch. A body wholly inside the solid: -infinity.

@@ -84,7 +84,7 @@ class BodyWatch {
   }
   void note(const MeshStretch& s, const MeshPlace& place, double measured, double proven) {
     if (worst && worst->gap_mm <= proven) return;
-    worst = MeshMeeting{proven, measured, body_.name, s.motion->operation, s.motion->tooth, s.motion->line, s.motion->rapid, index_, place.foot};
+    worst = MeshMeeting{proven, measured, body_.body, s.motion->operation, s.motion->tooth, s.motion->line, s.motion->rapid, index_, place.foot};
   }
   /// A body that the surface does not come near is inside or outside as a whole.
   [[nodiscard]] bool inside(const MeshStretch& s) const {
@@ -130,15 +130,15 @@ class BodyWatch {
 std::vector<MeshBody> mesh_bodies(const tool::ToolAssembly& tool) { return mesh_bodies(tool::Profile::of_ball_mill(tool)); }
 
 std::vector<MeshBody> mesh_bodies(const tool::Profile& tool, double sag_mm) {
-  MeshBody cutter{"cutter", {}, 0};
+  MeshBody cutter{tool::Body::cutter, {}, 0};
   if (tool.plain_ball()) {
     cutter.ball_mm = tool.law()->r_0;
-    cutter.pieces = {{0, tool.cutting().to(), cutter.ball_mm, cutter.ball_mm, "cutter"}};
+    cutter.pieces = {{0, tool.cutting().to(), cutter.ball_mm, cutter.ball_mm, tool::Body::cutter}};
   } else {
-    cutter.pieces = tool.cutting().enclosing_frustums(sag_mm, "cutter");
+    cutter.pieces = tool.cutting().enclosing_frustums(sag_mm, tool::Body::cutter);
   }
   std::vector<MeshBody> bodies{std::move(cutter)};
-  for (const tool::Frustum& f : tool::shank_and_holder(tool)) bodies.push_back({f.name, {f}, 0});
+  for (const tool::Frustum& f : tool::shank_and_holder(tool)) bodies.push_back({f.body, {f}, 0});
   return bodies;
 }
 
@@ -151,7 +151,7 @@ std::optional<MeshMeeting> MeshClearance::nearest(std::span<const path::ToolMoti
       const double least = body.cuts() ? rule.cutter_mm : rule.others_mm;
       BodyWatch w(*meshes_[k], k, body, least, options_, withdrawal);
       w.motions(motions);
-      if (w.worst && (!worst || w.worst->gap_mm - least < worst->gap_mm - (worst->body == "cutter" ? rule.cutter_mm : rule.others_mm))) worst = w.worst;
+      if (w.worst && (!worst || w.worst->gap_mm - least < worst->gap_mm - (tool::cuts(worst->body) ? rule.cutter_mm : rule.others_mm))) worst = w.worst;
     }
   return worst;
 }

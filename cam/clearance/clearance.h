@@ -19,7 +19,7 @@ namespace toothpath::clearance {
 struct MeshMeeting {
   double gap_mm = 0;        ///< proven there: nothing on that stretch of the program is nearer; <= 0: touches or may touch
   double measured_mm = 0;   ///< found there; -infinity: the body is wholly inside
-  std::string body;         ///< "cutter", "shank", "holder"
+  tool::Body body = tool::Body::none;  ///< cutter, shank or holder
   int operation = 0, tooth = 0, line = 0;
   bool rapid = false;
   std::size_t mesh = 0;     ///< index of the mesh
@@ -28,10 +28,10 @@ struct MeshMeeting {
 
 /// One body of a tool: a union of truncated cones about its axis, or a ball mill's cutting part.
 struct MeshBody {
-  std::string name;              ///< "cutter", "shank", "holder"
+  tool::Body body = tool::Body::cutter;  ///< or shank, holder
   std::vector<tool::Frustum> pieces;   ///< joined, from below; of a ball mill's cutting part: the cylinder over its whole length
   double ball_mm = 0;            ///< > 0: the lower end is a ball of this radius that touches the tip
-  [[nodiscard]] bool cuts() const { return name == "cutter"; }
+  [[nodiscard]] bool cuts() const { return tool::cuts(body); }
   [[nodiscard]] double top_mm() const { return pieces.back().to; }
 };
 /// Cutting part, shank and holder of any cutter, from below. A plain ball mill keeps its ball; else the cutting part is enclosed in cones that stand

@@ -35,7 +35,7 @@ path::ToolMotion turned(const path::ToolMotion& m, double pitch) {
   return out;
 }
 
-proof::WorstPlace place_of(const bevel_gear::BevelGear& gear, const path::ToolMotion& m, const Vec3& point, double depth, const std::string& body, const std::string& patch) {
+proof::WorstPlace place_of(const bevel_gear::BevelGear& gear, const path::ToolMotion& m, const Vec3& point, double depth, tool::Body body, const std::string& patch) {
   proof::WorstPlace w;
   w.depth_mm = depth;
   w.body = body;
@@ -90,7 +90,7 @@ struct FingerGougeCheck::State {
   bevel_gear::BevelGear gear;
   std::vector<tool::ToolAssembly> tools;
   std::vector<path::MillingOperation> operations;
-  Tolerances tol;
+  proof::ProofLimits tol;
   FingerCheckOptions opt;
   std::vector<std::unique_ptr<FingerTool>> states;  // by tool index, only those in use
   std::vector<std::vector<ToolHull>> hulls;         // the same
@@ -101,9 +101,9 @@ struct FingerGougeCheck::State {
   std::optional<Diagnostic> error;
   std::vector<WallPoint> points;
 
-  State(const bevel_gear::BevelGear& g, std::span<const tool::ToolAssembly> t, std::span<const path::MillingOperation> o, const Tolerances& tolerances,
+  State(const bevel_gear::BevelGear& g, std::span<const tool::ToolAssembly> t, std::span<const path::MillingOperation> o, const proof::ProofLimits& limits,
         const FingerCheckOptions& options)
-      : gear(g), tools(t.begin(), t.end()), operations(o.begin(), o.end()), tol(tolerances), opt(options), part(g), blank(blank_body(g)), beside(bodies_beside_teeth(g)) {
+      : gear(g), tools(t.begin(), t.end()), operations(o.begin(), o.end()), tol(limits), opt(options), part(g), blank(blank_body(g)), beside(bodies_beside_teeth(g)) {
     states.resize(tools.size());
     hulls.resize(tools.size());
     shank_holder.resize(tools.size());
@@ -145,7 +145,7 @@ struct FingerGougeCheck::State {
     BodiesVerdict out;
     const AxialGap above = axial_gap(gear, m);
     const Vec3 tip = motion_tip(m, above.at), axis = motion_axis(m, above.at);
-    const auto need_clearance = [&](double gap, const Vec3& place, const std::string& body, const std::string& patch) {
+    const auto need_clearance = [&](double gap, const Vec3& place, tool::Body body, const std::string& patch) {
       if (gap < std::min(out.clearance_mm, g.clearance_mm)) g.closest = place_of(gear, m, place, -gap, body, patch);
       out.clearance_mm = std::min(out.clearance_mm, gap);
       if (gap < tol.clearance_mm) note_worst(g, place_of(gear, m, place, -gap, body, patch), -1e300);
@@ -157,15 +157,15 @@ struct FingerGougeCheck::State {
         const auto [gap, place] = nearest_obstacle(hull, blank, m);
         if (gap >= 0) continue;
         g.rapids_clear = false;
-        note_worst(g, place_of(gear, m, place, -gap, hull.name, "blank, by a rapid"), -1e300);
+        note_worst(g, place_of(gear, m, place, -gap, hull.body, "blank, by a rapid"), -1e300);
       }
     for (const ToolHull& hull : bodies) {
-      if (m.rapid || hull.name == "flute") continue;
+      if (m.rapid || hull.body == tool::Body::flute) continue;
       // Along the axis the gap costs nothing; where it is too small, an axis that leans may still leave more.
-      ObstacleGap least{above.gap + (hull.name == "shank" ? tool.shank_from_mm : tool.holder_from_mm), blank_place(gear, axis, tip)};
+      ObstacleGap least{above.gap + (hull.body == tool::Body::shank ? tool.shank_from_mm : tool.holder_from_mm), blank_place(gear, axis, tip)};
       if (least.gap < tol.clearance_mm)
         if (const ObstacleGap whole = nearest_obstacle(hull, blank, m); whole.gap > least.gap) least = whole;
-      need_clearance(least.gap, least.place, hull.name, "blank");
+      need_clearance(least.gap, least.place, hull.body, "blank");
     }
     for (const CoaxialBody& body : beside)
       for (const ToolHull& hull : bodies) {
@@ -173,13 +173,13 @@ struct FingerGougeCheck::State {
         if (m.rapid) {
           if (gap >= 0) continue;
           g.rapids_clear = false;
-          note_worst(g, place_of(gear, m, place, -gap, hull.name, body.name + ", by a rapid"), -1e300);
-        } else if (hull.name != "flute") {
-          need_clearance(gap, place, hull.name, body.name);
+          note_worst(g, place_of(gear, m, place, -gap, hull.body, std::string(body.name) + ", by a rapid"), -1e300);
+        } else if (hull.body != tool::Body::flute) {
+          need_clearance(gap, place, hull.body, body.name);
         } else if (gap < 0) {
           g.bound_mm = std::max(g.bound_mm, -gap);
           g.measured_mm = std::max(g.measured_mm, -gap);
-          note_worst(g, place_of(gear, m, place, -gap, hull.name, body.name), tol.gouge_mm);
+          note_worst(g, place_of(gear, m, place, -gap, hull.body, body.name), tol.gouge_mm);
         }
       }
     g.clearance_mm = std::min(g.clearance_mm, out.clearance_mm);
@@ -267,7 +267,7 @@ struct FingerGougeCheck::State {
       const MotionDepth& d = depths[order[k]];
       const bool in_wall = found[k].depth_mm >= d.dip_mm;
       const double depth = std::max(found[k].depth_mm, d.dip_mm);
-      proof::WorstPlace w = place_of(gear, m, in_wall ? found[k].point : d.lowest, depth, "flute", in_wall ? wall_name(found[k].wall) : "root");
+      proof::WorstPlace w = place_of(gear, m, in_wall ? found[k].point : d.lowest, depth, tool::Body::flute, in_wall ? wall_name(found[k].wall) : "root");
       if (in_wall) w.zone = found[k].half;
       g.measured_mm = std::max(g.measured_mm, depth);
       note_worst(g, std::move(w), d.bound_mm > tol.gouge_mm ? -1e300 : tol.gouge_mm);
@@ -285,7 +285,7 @@ struct FingerGougeCheck::State {
       const double depth = -excess.after.back()[at];
       g.measured_mm = std::max(g.measured_mm, depth);
       if (depth > tol.gouge_mm || depth > g.deepest.depth_mm) {
-        proof::WorstPlace w = place_of(gear, *excess.deepest[at], points[at].p, depth, "flute", wall_name(points[at].wall));
+        proof::WorstPlace w = place_of(gear, *excess.deepest[at], points[at].p, depth, tool::Body::flute, wall_name(points[at].wall));
         w.zone = points[at].half;
         note_worst(g, std::move(w), tol.gouge_mm);
       }
@@ -333,9 +333,9 @@ struct FingerGougeCheck::State {
 };
 
 FingerGougeCheck::FingerGougeCheck(const bevel_gear::BevelGear& gear, std::span<const tool::ToolAssembly> tools,
-                                   std::span<const path::MillingOperation> operations, const Tolerances& tolerances,
+                                   std::span<const path::MillingOperation> operations, const proof::ProofLimits& limits,
                                    const FingerCheckOptions& options)
-    : state_(std::make_unique<State>(gear, tools, operations, tolerances, options)) {}
+    : state_(std::make_unique<State>(gear, tools, operations, limits, options)) {}
 
 FingerGougeCheck::~FingerGougeCheck() = default;
 

@@ -16,7 +16,7 @@
 #include "cam/path/operation.h"
 #include "cam/path/motions.h"
 #include "cam/proof/verification.h"
-#include "geometry/base/tolerances.h"
+#include "cam/proof/limits.h"
 
 namespace toothpath::finger {
 
@@ -42,7 +42,7 @@ class FingerGougeCheck {
  public:
   /// @param gear made with the finishing mill; operations in the order of the job, their tools are indices into `tools`
   FingerGougeCheck(const bevel_gear::BevelGear& gear, std::span<const tool::ToolAssembly> tools, std::span<const path::MillingOperation> operations,
-                   const Tolerances& tolerances, const FingerCheckOptions& options = {});
+                   const proof::ProofLimits& limits, const FingerCheckOptions& options = {});
   ~FingerGougeCheck();
   FingerGougeCheck(const FingerGougeCheck&) = delete;
   FingerGougeCheck& operator=(const FingerGougeCheck&) = delete;

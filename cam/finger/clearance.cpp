@@ -100,9 +100,8 @@ FingerClearance::FingerClearance(const bevel_gear::BevelGear& gear) : gear_(gear
       if (h + 1 == edges_.size()) add({.kind = Patch::Kind::end, .name = "end", .half = h, .tooth = tooth, .a = Vec2(edges_[h].to, 0)});
     }
   for (const CoaxialBody& body : bodies_beside_teeth(gear_)) {
-    const char* name = body.name == "hub" ? "hub" : "shaft";
-    add({.name = name, .a = body.rims[0], .b = body.rims[1]});
-    for (const Vec2& rim : body.rims) add({.name = name, .a = Vec2(0, rim.y()), .b = rim});
+    add({.name = body.name, .a = body.rims[0], .b = body.rims[1]});
+    for (const Vec2& rim : body.rims) add({.name = body.name, .a = Vec2(0, rim.y()), .b = rim});
   }
 }
 

@@ -22,7 +22,7 @@ using Centre = bevel_gear::CutterCentre<double>;
 
 class FingerPlanner {
  public:
-  FingerPlanner(const bevel_gear::BevelGear& gear, const path::MillingOperation& op, int index, const Tolerances& tol)
+  FingerPlanner(const bevel_gear::BevelGear& gear, const path::MillingOperation& op, int index, const proof::ProofLimits& tol)
       : gear_(gear), op_(op), sd_(gear.sin_delta()), cd_(gear.cos_delta()) {
     // The other half is for what posts and proof add. The proof counts a shift of the centre with its leverage.
     chord_ = std::min(op.chord_tolerance_mm, 0.5 * tol.gouge_mm / centre_leverage(gear));
@@ -218,13 +218,13 @@ Result<bevel_gear::BevelGear> gear_for_finger_mill(const bevel_gear::BevelGear& 
 }
 
 Result<FingerPlan> plan_finger_operation(const bevel_gear::BevelGear& gear, const tool::ToolAssembly& tool, const path::MillingOperation& operation,
-                                         int operation_index, const Tolerances& tolerances) {
+                                         int operation_index, const proof::ProofLimits& limits) {
   if (tool.type != tool::CutterType::finger_mill) return fail("tool {} is not a finger mill", tool.number);
   auto own = gear_for_finger_mill(gear, tool);
   if (!own) return own.error();
   if (operation.type == path::OperationType::finger_roughing && !(operation.ridge_mm > 0))
     return fail("ridge = {:.4f} must be positive", operation.ridge_mm);
-  return FingerPlanner(*own, operation, operation_index, tolerances).plan();
+  return FingerPlanner(*own, operation, operation_index, limits).plan();
 }
 
 }  // namespace toothpath::finger

@@ -14,7 +14,7 @@
 #include "cam/tool/assembly.h"
 #include "cam/finger/passes.h"
 #include "cam/path/operation.h"
-#include "geometry/base/tolerances.h"
+#include "cam/proof/limits.h"
 #include "geometry/bevel_gear/gear.h"
 
 namespace toothpath::finger {
@@ -46,6 +46,6 @@ struct FingerPlan {
 /// the speed of the cutter centre on the pitch cone; a record carries the tip speed that belongs to it.
 [[nodiscard]] Result<FingerPlan> plan_finger_operation(const bevel_gear::BevelGear& gear, const tool::ToolAssembly& tool,
                                                        const path::MillingOperation& operation, int operation_index,
-                                                       const Tolerances& tolerances);
+                                                       const proof::ProofLimits& limits);
 
 }  // namespace toothpath::finger

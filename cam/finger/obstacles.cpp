@@ -170,8 +170,8 @@ std::vector<CoaxialBody> bodies_beside_teeth(const bevel_gear::BevelGear& g) {
 
 std::vector<ToolHull> tool_hulls(const tool::Profile& tool) {
   std::vector<ToolHull> hulls;
-  for (const auto& [name, part] : {std::pair{"flute", &tool.cutting()}, std::pair{"shank", &tool.shank()}, std::pair{"holder", &tool.holder()}})
-    if (!part->empty()) hulls.push_back({name, part->corners()});
+  for (const auto& [body, part] : {std::pair{tool::Body::flute, &tool.cutting()}, std::pair{tool::Body::shank, &tool.shank()}, std::pair{tool::Body::holder, &tool.holder()}})
+    if (!part->empty()) hulls.push_back({body, part->corners()});
   return hulls;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "cam/tool/body.h"
 #include "cam/path/tool_motion.h"
 #include "cam/tool/profile.h"
 #include "geometry/bevel_gear/gear.h"
@@ -16,7 +17,7 @@ namespace toothpath::finger {
 
 /// A convex body of revolution about the gear axis, by its rims: (r, z) [mm], gear frame.
 struct CoaxialBody {
-  std::string name;  ///< "hub", "shaft"
+  const char* name = "";  ///< "blank", "hub", "shaft"
   std::vector<Vec2> rims;
 };
 /// Hub and shaft of the gear; empty where it has none.
@@ -27,7 +28,7 @@ struct CoaxialBody {
 
 /// A convex hull of one body of the tool, by its rims: (height above the tip, radius) [mm].
 struct ToolHull {
-  std::string name;  ///< "flute", "shank", "holder"
+  tool::Body body = tool::Body::flute;  ///< or shank, holder
   std::vector<Vec2> rims;
 };
 /// Flute, shank and holder of a profile of lines (`tool::finger_profile`); parts that it lacks are left out.

@@ -35,13 +35,13 @@ Room room_of(const analytic::GearDistance& part, const tool::Profile& profile, c
     cutting.settled_mm = -options.touch_mm;
     for (const auto& body : tool->cutting)
       if (const auto gap = analytic::swept_gap(part, body, m, cutting); gap.proven_mm < -options.touch_mm)
-        return Blocked{body.core.name, gap.patch, gap.measured_mm, -options.touch_mm};
+        return Blocked{to_string(body.core.body), gap.patch, gap.measured_mm, -options.touch_mm};
     analytic::SweptGapOptions beside;
     beside.enough_mm = options.clearance_mm + 0.01;
     beside.settled_mm = options.clearance_mm;
     for (const auto& body : tool->bodies)
       if (const auto gap = analytic::swept_gap(part, body, m, beside); gap.proven_mm < options.clearance_mm)
-        return Blocked{body.name, gap.patch, gap.measured_mm, options.clearance_mm};
+        return Blocked{to_string(body.body), gap.patch, gap.measured_mm, options.clearance_mm};
     return {};
   };
 }

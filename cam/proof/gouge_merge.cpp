@@ -33,11 +33,11 @@ void add_worst(GougeResult& result, WorstPlace place) {
 }
 
 void note_deepest(GougeResult& result, const WorstPlace& place) {
-  if (result.deepest.body.empty() || place.depth_mm > result.deepest.depth_mm) result.deepest = place;
+  if (result.deepest.body == tool::Body::none || place.depth_mm > result.deepest.depth_mm) result.deepest = place;
 }
 
 void add_result(GougeResult& all, const GougeResult& later) {
-  if (!later.deepest.body.empty()) note_deepest(all, later.deepest);
+  if (later.deepest.body != tool::Body::none) note_deepest(all, later.deepest);
   all.measured_mm = std::max(all.measured_mm, later.measured_mm);
   if (later.bound_mm > all.bound_mm) {
     all.bound_mm = later.bound_mm;

@@ -16,14 +16,14 @@ constexpr double kSmallestRapid = 1e-4; // mm
 /// A stretch of the tool axis with the largest radius about it.
 struct RapidStretch {
   double from = 0, to = 0, radius = 0;
-  const char* name = "ball";
+  tool::Body body = tool::Body::ball;
 };
 
 class Rapid {
  public:
   Rapid(const path::ToolMotion& m, const tool::ToolAssembly& tool, const RapidObstacle& o) : m_(m), o_(o) {
     const double R = tool.radius_mm();
-    add({R, std::max(tool.flute_length_mm, R), R, R, "ball"}, 0);
+    add({R, std::max(tool.flute_length_mm, R), R, R, tool::Body::ball}, 0);
     ball_radius_ = R;
     for (const auto& body : tool::shank_and_holder(tool)) add(body, 0);
     stretches_.front().from = 0;
@@ -43,7 +43,7 @@ class Rapid {
   void add(const tool::Frustum& core, double round) {
     const double widest = std::max(core.radius_from, core.radius_to) + round;
     frustums_.push_back({core, round});
-    stretches_.push_back({core.from - round, core.to + round, widest, core.name});
+    stretches_.push_back({core.from - round, core.to + round, widest, core.body});
     arm_ = std::max(arm_, std::hypot(core.to + round, widest));
   }
   /// How far any point of the tool strays from its place at the middle of [t0, t1] beyond the straight way of the tip.
@@ -51,13 +51,13 @@ class Rapid {
     return arm_ * ((path::axis_at(m_, t1) - path::axis_at(m_, t0)).norm() + m_.axis_deviation) + m_.deviation_mm;
   }
 
-  [[nodiscard]] double lowest(const Vec3& tip, const Vec3& axis, const char*& body) const {
+  [[nodiscard]] double lowest(const Vec3& tip, const Vec3& axis, tool::Body& body) const {
     double low = (tip + ball_radius_ * axis).z() - ball_radius_;
-    body = "ball";
+    body = tool::Body::ball;
     for (const auto& f : frustums_)
       if (const double z = tool::lowest_z(f, tip, axis); z < low) {
         low = z;
-        body = f.core.name;
+        body = f.core.body;
       }
     return low;
   }
@@ -82,7 +82,7 @@ class Rapid {
     const Vec3 tip_0 = path::tip_at(m_, t0), tip_1 = path::tip_at(m_, t1), tip = 0.5 * (tip_0 + tip_1), axis = path::axis_at(m_, 0.5 * (t0 + t1));
     const Vec3 half = 0.5 * (tip_1 - tip_0);
     const double turning = stray(t0, t1), rise = std::abs(half.z()) + turning, run = half.head<2>().norm() + turning;
-    const char* body = "";
+    tool::Body body = tool::Body::none;
     const auto [least, most] = radii(tip, axis);
     if (lowest(tip, axis, body) - rise >= o_.top_mm - kBlankTouch) return true;
     if (least - run >= o_.outer_radius_mm) return true;

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cam/tool/assembly.h"
+#include "cam/tool/body.h"
 #include "cam/tool/proof_tool.h"
 #include "cam/path/tool_motion.h"
 
@@ -22,7 +23,7 @@ struct RapidProof {
   bool clear = false;
   double t = 0;                 ///< where it is not: share of the motion
   Vec3 tip = Vec3::Zero();
-  const char* body = "";        ///< what is lowest there: "ball", "shank" or "holder"
+  tool::Body body = tool::Body::none;  ///< what is lowest there: ball, shank or holder
 };
 
 /// Proves that the whole tool keeps clear of the obstacle (touching is allowed up to 1e-6 mm). The motion is halved until one

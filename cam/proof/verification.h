@@ -1,10 +1,12 @@
 // What the proof of a program returns: gouge, clearance, what is left, and the ledger of errors. All lengths mm.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cam/tool/body.h"
 #include "geometry/base/vec.h"
 
 namespace toothpath::proof {
@@ -12,7 +14,7 @@ namespace toothpath::proof {
 /// A place where a body of the tool comes deepest into (or nearest to) the part.
 struct WorstPlace {
   double depth_mm = 0;   ///< > 0: cut into the finished part
-  std::string body;      ///< "ball", "flute", "shank" or "holder"
+  tool::Body body = tool::Body::none;
   std::string patch;     ///< "flank +1", "fillet -1", "root", "tip", "groove", ...
   int operation = 0, tooth = 0, zone = 0;
   int line = 0;          ///< of the NC program
@@ -82,8 +84,25 @@ struct SurfaceGrid {
   std::vector<unsigned char> reachable;       ///< 0: a corner that the finishing ball cannot reach
 };
 
+/// Where a deviation comes from.
+enum class ErrorSource : std::uint8_t { flank_solve, chord, scallop, ridge, orientation, axis_linearisation, rounding, path_blending, verification };
+[[nodiscard]] constexpr const char* to_string(ErrorSource source) {
+  switch (source) {
+    case ErrorSource::flank_solve: return "flank solve";
+    case ErrorSource::chord: return "chord";
+    case ErrorSource::scallop: return "scallop";
+    case ErrorSource::ridge: return "ridge";
+    case ErrorSource::orientation: return "orientation";
+    case ErrorSource::axis_linearisation: return "axis linearisation";
+    case ErrorSource::rounding: return "rounding";
+    case ErrorSource::path_blending: return "path blending";
+    case ErrorSource::verification: return "verification";
+  }
+  return "";
+}
+
 struct LedgerEntry {
-  std::string source;  ///< "flank solve", "chord", "scallop", "orientation", "axis linearisation", "rounding", "verification"
+  ErrorSource source = ErrorSource::flank_solve;
   double predicted_um = 0, measured_um = 0;
   std::string note;    ///< what was measured, or why the source does not occur
 };
@@ -104,7 +123,7 @@ struct DirectionChoice {
   /// Map of the directions tried: lean and azimuth [rad], least gap [mm], worst body.
   struct Candidate {
     double lean_rad = 0, azimuth_rad = 0, gap_mm = 0;
-    std::string worst_body;
+    tool::Body worst_body = tool::Body::none;
     bool clear = false;
   };
   std::vector<Candidate> candidates;

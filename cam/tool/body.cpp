@@ -11,8 +11,8 @@ namespace {
 
 /// Both consist of lines: cones are exact.
 std::vector<Frustum> cones_of(const Meridian& shank, const Meridian& holder) {
-  std::vector<Frustum> out = shank.enclosing_frustums(0, "shank");
-  for (const Frustum& f : holder.enclosing_frustums(0, "holder")) out.push_back(f);
+  std::vector<Frustum> out = shank.enclosing_frustums(0, Body::shank);
+  for (const Frustum& f : holder.enclosing_frustums(0, Body::holder)) out.push_back(f);
   return out;
 }
 

@@ -1,7 +1,11 @@
 // The bodies of a tool assembly as frustums about its axis.
 #pragma once
 
+#include <cstdint>
+#include <string_view>
 #include <vector>
+
+#include <fmt/format.h>
 
 #include "cam/tool/assembly.h"
 #include "geometry/base/vec.h"
@@ -10,11 +14,28 @@ namespace toothpath::tool {
 
 class Profile;
 
+/// The bodies of a tool, as messages and reports name them. `cutter`: ball and flute in one; `any`: of a rapid, whichever comes first.
+enum class Body : std::uint8_t { none, ball, flute, cutter, shank, holder, any };
+[[nodiscard]] constexpr const char* to_string(Body body) {
+  switch (body) {
+    case Body::none: return "";
+    case Body::ball: return "ball";
+    case Body::flute: return "flute";
+    case Body::cutter: return "cutter";
+    case Body::shank: return "shank";
+    case Body::holder: return "holder";
+    case Body::any: return "rapid";
+  }
+  return "";
+}
+/// Does it cut? What it does to the part is a gouge, not a lack of clearance.
+[[nodiscard]] constexpr bool cuts(Body body) { return body == Body::ball || body == Body::flute || body == Body::cutter; }
+
 /// A truncated cone about the tool axis. Heights from the tip, mm.
 struct Frustum {
   double from = 0, to = 0;              ///< heights
   double radius_from = 0, radius_to = 0;
-  const char* name = "";                ///< "flute", "shank", "holder"
+  Body body = Body::none;
 };
 
 /// Shank and holder, from below; the cutting part is not among them. Of an assembly the shank begins at its flute length.
@@ -25,3 +46,12 @@ struct Frustum {
 [[nodiscard]] double lowest_z(const Frustum& f, const Vec3& tip, const Vec3& axis);
 
 }  // namespace toothpath::tool
+
+/// Bodies in formatted text.
+template <>
+struct fmt::formatter<toothpath::tool::Body> : fmt::formatter<std::string_view> {
+  template <typename Context>
+  auto format(toothpath::tool::Body body, Context& context) const {
+    return fmt::formatter<std::string_view>::format(to_string(body), context);
+  }
+};

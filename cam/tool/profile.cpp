@@ -205,12 +205,12 @@ std::vector<Vec2> Meridian::corners() const {
   return out;
 }
 
-std::vector<Frustum> Meridian::enclosing_frustums(double sag_mm, const char* name) const {
+std::vector<Frustum> Meridian::enclosing_frustums(double sag_mm, Body body) const {
   std::vector<Frustum> out;
   for (const auto& p : pieces_) {
     const auto line = p.bend > 0 ? tangent_corners(p, sag_mm) : p.bend < 0 ? chord_points(p, sag_mm) : std::vector<Vec2>{p.from, p.to};
     for (std::size_t k = 1; k < line.size(); ++k)
-      if (line[k][0] > line[k - 1][0]) out.push_back({line[k - 1][0], line[k][0], line[k - 1][1], line[k][1], name});
+      if (line[k][0] > line[k - 1][0]) out.push_back({line[k - 1][0], line[k][0], line[k - 1][1], line[k][1], body});
   }
   return out;
 }
@@ -289,14 +289,14 @@ ProofBodies Profile::proof_bodies(double sag_mm) const {
     out.ball_radius_mm = law_->r_0 + grown;
     flute = Meridian({cutting_.pieces().begin() + 1, cutting_.pieces().end()});
   }
-  out.frustums = flute.enclosing_frustums(sag_mm, "flute");
+  out.frustums = flute.enclosing_frustums(sag_mm, Body::flute);
   for (auto& f : out.frustums) {
     const double slant = std::hypot(1.0, (f.radius_to - f.radius_from) / (f.to - f.from)) * grown;
     f.radius_from += slant;
     f.radius_to += slant;
   }
-  for (const auto& [body, name] : {std::pair{&shank_, "shank"}, std::pair{&holder_, "holder"}})
-    for (const auto& f : body->enclosing_frustums(sag_mm, name)) out.frustums.push_back(f);
+  for (const auto& [meridian, body] : {std::pair{&shank_, Body::shank}, std::pair{&holder_, Body::holder}})
+    for (const auto& f : meridian->enclosing_frustums(sag_mm, body)) out.frustums.push_back(f);
   return out;
 }
 

@@ -141,7 +141,7 @@ class Meridian {
 
   /// Truncated cones that enclose the body, from below: lines as they are, hollow arcs in chords, bulging arcs in tangents that leave it by
   /// no more than `sag_mm`. Together their union contains the body and lies within sag_mm of it.
-  [[nodiscard]] std::vector<Frustum> enclosing_frustums(double sag_mm, const char* name) const;
+  [[nodiscard]] std::vector<Frustum> enclosing_frustums(double sag_mm, Body body) const;
 
  private:
   std::vector<MeridianPiece> pieces_;

@@ -15,8 +15,8 @@ constexpr double kShortestLink = 1e-6;  // mm
 RoundedFrustum hull_of_balls(double h_0, double rho_0, double h_1, double rho_1) {
   const double rise = rho_1 - rho_0, length = h_1 - h_0, sin_tau = std::abs(rise) / length, cos_tau = std::sqrt(std::max(0.0, 1 - sin_tau * sin_tau));
   const double foot = std::abs(rise) * sin_tau, radius = std::abs(rise) * cos_tau;  // where the cone touches the larger ball less the smaller
-  if (rise >= 0) return {{h_0, h_1 - foot, 0, radius, "flute"}, rho_0};
-  return {{h_0 + foot, h_1, radius, 0, "flute"}, rho_1};
+  if (rise >= 0) return {{h_0, h_1 - foot, 0, radius, Body::flute}, rho_0};
+  return {{h_0 + foot, h_1, radius, 0, Body::flute}, rho_1};
 }
 
 /// Bound of |rho''| between two heights: of the nominal arc, greatest where it is nearest to its centre, and of the measured table, whose second
@@ -57,7 +57,7 @@ std::vector<RoundedFrustum> chain(const RadiusLaw<double>& law, double t_end, do
 /// The one body of a ball end with a straight side.
 RoundedFrustum straight(const RadiusLaw<double>& law, double flute_end) {
   const double to = std::max(flute_end + law.r_0 * law.sin_tau, law.r_0 + kShortestLink), tan_tau = law.sin_tau / law.cos_tau;
-  return {{law.r_0, to, 0, (to - law.r_0) * tan_tau, "flute"}, law.r_0};
+  return {{law.r_0, to, 0, (to - law.r_0) * tan_tau, Body::flute}, law.r_0};
 }
 
 /// Flat and bull nose: flat, corner arc, straight; nothing where the meridian is not of that form.
@@ -70,7 +70,7 @@ std::optional<RoundedFrustum> bull_nose(const Meridian& cutting) {
   const double radius = flat + corner;
   if (k < p.size() && (p[k].bend != 0 || p[k].from[1] != radius || p[k].to[1] != radius)) return {};
   if (k + 1 < p.size() || !(radius > 0)) return {};
-  return RoundedFrustum{{corner, std::max(cutting.to(), corner + kShortestLink), flat, flat, "flute"}, corner};
+  return RoundedFrustum{{corner, std::max(cutting.to(), corner + kShortestLink), flat, flat, Body::flute}, corner};
 }
 
 }  // namespace
@@ -79,7 +79,7 @@ ProofTool proof_tool(const ToolAssembly& t) {
   ProofTool out;
   out.number = t.number;
   const double R = t.radius_mm();
-  out.cutting = {{{R, std::max(t.flute_length_mm, R + kShortestLink), 0, 0, "flute"}, R}};
+  out.cutting = {{{R, std::max(t.flute_length_mm, R + kShortestLink), 0, 0, Body::flute}, R}};
   out.ball_top_mm = R;
   out.bodies = shank_and_holder(t);
   out.ball_mill = t;
@@ -105,10 +105,10 @@ ProofTool proof_tool(const Profile& profile, int number, double sag_mm) {
   } else if (const auto body = bull_nose(profile.cutting())) {
     out.cutting = {*body};
   } else {
-    for (const auto& f : profile.cutting().enclosing_frustums(sag_mm, "flute")) out.cutting.push_back({f, 0});
+    for (const auto& f : profile.cutting().enclosing_frustums(sag_mm, Body::flute)) out.cutting.push_back({f, 0});
   }
-  for (const auto& [body, name] : {std::pair{&profile.shank(), "shank"}, std::pair{&profile.holder(), "holder"}})
-    for (const auto& f : body->enclosing_frustums(sag_mm, name)) out.bodies.push_back(f);
+  for (const auto& [meridian, body] : {std::pair{&profile.shank(), Body::shank}, std::pair{&profile.holder(), Body::holder}})
+    for (const auto& f : meridian->enclosing_frustums(sag_mm, body)) out.bodies.push_back(f);
   return out;
 }
 

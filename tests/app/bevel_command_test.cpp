@@ -1,4 +1,5 @@
 // Bevel gears from outside: run, then check of the program as it is and with planted faults.
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <regex>
 
@@ -92,6 +93,26 @@ TEST_F(BevelCommand, CheckSaysTheSameOfTheProgram) {
     EXPECT_NEAR(again["gouge_um"][key].get<double>(), (*report_)["gouge_um"][key].get<double>(), 1e-6) << key;
   EXPECT_NEAR(again["ridge_mm"]["reached"].get<double>(), (*report_)["ridge_mm"]["reached"].get<double>(), 1e-9);
   EXPECT_TRUE(std::filesystem::exists(*dir_ / "same/report.html"));
+}
+
+// What only a face gear can do is refused at the gear's type, whichever command asks for it; it was ignored by some.
+TEST_F(BevelCommand, WhatOnlyAFaceGearCanDoIsRefused) {
+  const std::string measured = *dir_ / "run/inspection.csv", program = *dir_ / "run/program.ngc", out = *dir_ / "refused";
+  const std::string at = ": error: type = \"equal_base_circle_bevel_gear\", but ";
+  const std::pair<std::vector<std::string>, std::string> asked[] = {{{"correct", kTrunnion, "--measured", measured}, "this command needs a face_gear"},
+                                                                    {{"check", kTrunnion, program, "--measured", measured}, "this command needs a face_gear"},
+                                                                    {{"contact", kTrunnion, "--as-cut"}, "--as-cut needs a face_gear"},
+                                                                    {{"contact", kTrunnion, "--pinion-teeth", "20"}, "--pinion-teeth needs a face_gear"}};
+  for (auto [words, said] : asked) {
+    words.insert(words.end(), {"--out", out});
+    const Finished done = run_program(words);
+    EXPECT_EQ(done.exit_code, 3) << said;
+    EXPECT_NE(done.err.find(at + said), std::string::npos) << done.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(out));
+  const Finished mate = run_program({"contact", kSamples + "/spur_quick.toml", "--mate", kTrunnion, "--out", out});
+  EXPECT_EQ(mate.exit_code, 3);
+  EXPECT_NE(mate.err.find("type = \"face_gear\", but --mate needs an equal_base_circle_bevel_gear"), std::string::npos) << mate.err;
 }
 
 TEST_F(BevelCommand, WallPassesAloneLeaveARidge) {

@@ -1,7 +1,7 @@
 // `toothpath check` of a bevel gear with meshes of fixture and stock: planted collisions of every body are found, clean scenes pass.
 #include <gtest/gtest.h>
 
-#include "app/process/bevel_run.h"
+#include "app/process/gear_of_job.h"
 #include "app/job/file.h"
 #include "cam/finger/milling.h"
 #include "tests/app/check_scene.h"

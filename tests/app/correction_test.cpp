@@ -3,7 +3,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "app/process/proof.h"
+#include "app/process/face/proof.h"
 #include "app/commands/run.h"
 #include "app/process/gear_of_job.h"
 #include "app/job/file.h"

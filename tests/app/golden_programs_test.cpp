@@ -8,12 +8,11 @@
 #include <filesystem>
 #include <sstream>
 
-#include "app/process/bevel_files.h"
-#include "app/process/bevel_proof.h"
-#include "app/process/bevel_run.h"
-#include "app/process/proof.h"
-#include "app/commands/shaper.h"
+#include "app/process/bevel/files.h"
+#include "app/process/face/proof.h"
+#include "app/process/face/shaper_setup.h"
 #include "app/process/gear_of_job.h"
+#include "app/process/proof_limits.h"
 #include "app/job/file.h"
 #include "cam/finger/check.h"
 #include "cam/finger/milling.h"
@@ -95,24 +94,19 @@ Planned plan_face(const job::Job& job) {
   if (const auto* errors = made.refused()) return out.error = errors->front().text(), out;
   const face_gear::FaceGear& gear = made.value();
   const analytic::GearDistance part(gear, ball::reach_of(job.tools));
+  const proof::ProofLimits limits = process::proof_limits(job, 1);
   ball::PlanOptions options;
-  if (job.verify.clearance_mm) options.clearance_mm = *job.verify.clearance_mm;
-  options.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
+  options.limits = limits;
   auto planned = ball::plan_face_gear(part, job.tools, job.operations, options);
   if (const auto* refusal = planned.refused()) return out.error = refusal->diagnostic.message, out;
   out.paths = planned.value().paths;
-  analytic::GougeCheckOptions check;
-  check.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
-  check.proof_mm = 0.1 * check.gouge_tolerance_mm;
-  check.clearance_mm = options.clearance_mm;
-  check.rapid_height_mm = gear.blank_top();
-  const analytic::GougeCheck gouge(part, job.tools, check);
+  const analytic::GougeCheck gouge(part, job.tools, {limits, gear.blank_top()});
   for (const auto& path : out.paths) {
     auto passed = gouge.check_path(path);
     if (!passed) return out.error = passed.error().message, out;
     out.checked.push_back(std::move(*passed));
   }
-  out.body = process::clearance_body(gear);
+  out.body = face::clearance_body(gear);
   out.teeth = gear.parameters().teeth;
   return out;
 }
@@ -122,18 +116,18 @@ Planned plan_bevel(const job::Job& job) {
   auto made = process::make_bevel_gear(job);
   if (const auto* errors = made.refused()) return out.error = errors->front().text(), out;
   const bevel_gear::BevelGear& gear = made.value();
-  const Tolerances tolerances = process::proof_tolerances(job);
-  const finger::FingerGougeCheck gouge(gear, job.tools, job.operations, tolerances);
+  const proof::ProofLimits limits = process::proof_limits(job);
+  const finger::FingerGougeCheck gouge(gear, job.tools, job.operations, limits);
   for (std::size_t i = 0; i < job.operations.size(); ++i) {
     const auto& o = job.operations[i];
-    auto plan = finger::plan_finger_operation(gear, job.tools[static_cast<std::size_t>(o.tool)], o, static_cast<int>(i), tolerances);
+    auto plan = finger::plan_finger_operation(gear, job.tools[static_cast<std::size_t>(o.tool)], o, static_cast<int>(i), limits);
     if (!plan) return out.error = plan.error().message, out;
     auto passed = gouge.approve(plan->path);
     if (!passed) return out.error = passed.error().message, out;
     out.paths.push_back(plan->path);
     out.checked.push_back(std::move(*passed));
   }
-  out.body = process::bevel_clearance_body(gear);
+  out.body = bevel::clearance_body(gear);
   out.teeth = gear.parameters().teeth;
   return out;
 }
@@ -277,7 +271,7 @@ TEST(GoldenShaper, ByteForByte) {
   for (const auto& [machine, file] : files) {
     SCOPED_TRACE(file);
     job.machine.file = machine;
-    auto planned = commands::shaper_setup_of(job, made.value());
+    auto planned = face::shaper_setup_of(job, made.value());
     ASSERT_TRUE(planned.has_value()) << planned.error().front().text();
     const shaper::ShaperSetup& setup = planned.value();
     expect_golden(kGolden / "offset_shaped" / file, folded(shaper::shaper_program(setup)));

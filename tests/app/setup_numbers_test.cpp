@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "app/process/proof_limits.h"
 #include "app/report/sheet/length_tolerance.h"
 #include "app/report/sheet/part_swing.h"
 #include "app/report/sheet/setup_sheet.h"
@@ -115,7 +116,7 @@ TEST(LengthTolerance, NoPlaceIsMovedByMoreThanItsShare) {
   report.finished = proof::ExcessResult{};
   report.finished->bound_mm = 0.004;
   const path::ClPath* list[] = {&path};
-  const auto found = sheet::length_tolerances(job, report, list, {grid}, {});
+  const auto found = sheet::length_tolerances(job, process::proof_limits(job), report, list, {grid}, {});
   ASSERT_EQ(found.size(), 1u);
   const report::LengthTolerance& t = found[0];
   EXPECT_EQ(t.tool_number, 3);
@@ -136,18 +137,18 @@ TEST(LengthTolerance, NoPlaceIsMovedByMoreThanItsShare) {
   grid.normals.push_back(axis);
   grid.points.push_back(Vec3::Zero());
   grid.reachable.push_back(0);
-  EXPECT_EQ(sheet::length_tolerances(job, report, list, {grid}, {})[0].share, t.share);
-  EXPECT_EQ(sheet::length_tolerances(job, report, list, {grid}, {})[0].flank_share, 0);
+  EXPECT_EQ(sheet::length_tolerances(job, process::proof_limits(job), report, list, {grid}, {})[0].share, t.share);
+  EXPECT_EQ(sheet::length_tolerances(job, process::proof_limits(job), report, list, {grid}, {})[0].flank_share, 0);
   grid.reachable.back() = 1;
-  EXPECT_NEAR(sheet::length_tolerances(job, report, list, {grid}, {})[0].share, 1, 1e-12);
-  EXPECT_EQ(sheet::length_tolerances(job, report, list, {grid}, {1}).front().share, 1);
+  EXPECT_NEAR(sheet::length_tolerances(job, process::proof_limits(job), report, list, {grid}, {})[0].share, 1, 1e-12);
+  EXPECT_EQ(sheet::length_tolerances(job, process::proof_limits(job), report, list, {grid}, {1}).front().share, 1);
   // Stock that an operation leaves is eaten before the part is.
   job.operations[0].type = path::OperationType::roughing;
   job.operations[0].allowance_mm = 0.1;
   proof::ExcessResult after;
   after.min_mm = 0.09;
   report.excess = {after};
-  const auto rough = sheet::length_tolerances(job, report, list, {grid}, {1});
+  const auto rough = sheet::length_tolerances(job, process::proof_limits(job), report, list, {grid}, {1});
   EXPECT_NEAR(rough[0].too_long_mm, 0.09 + 0.0015, 1e-12);
   EXPECT_FALSE(rough[0].too_short_mm);
 }

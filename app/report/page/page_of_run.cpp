@@ -4,11 +4,19 @@
 
 #include "app/report/svg/html_text.h"
 #include "app/report/page/tool_body.h"
-#include "app/report/unreached_text.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::page {
 namespace {
+
+KeyFigure::State state_of(const report::Finding& f) {
+  switch (f.state) {
+    case report::Finding::State::plain: return KeyFigure::State::plain;
+    case report::Finding::State::good: return KeyFigure::State::good;
+    case report::Finding::State::bad: return KeyFigure::State::bad;
+  }
+  return KeyFigure::State::plain;
+}
 
 std::vector<KeyFigure> key_figures(const report::RunReport& r) {
   using State = KeyFigure::State;
@@ -19,9 +27,6 @@ std::vector<KeyFigure> key_figures(const report::RunReport& r) {
                        fmt::format("bound {}, tolerance {}", um(std::max(0.0, r.gouge->bound_mm)), um(r.gouge_tolerance_mm)),
                        r.gouge->bound_mm <= r.gouge_tolerance_mm ? State::good : State::bad});
   if (r.finished) figures.push_back({"worst left material", um(r.finished->max_mm), "\u00b5m", "bound " + um(r.finished->bound_mm), State::plain});
-  if (r.unreached && r.unreached->left())
-    figures.push_back({"surface not reached", report::unreached_share_text(*r.unreached), "", fmt::format("up to {:.3f} mm high; {}", r.unreached->height_mm, report::largest_ball_text(*r.unreached)),
-                       State::bad});
   if (r.gouge)
     figures.push_back({"least clearance", fmt::format("{:.3f}", r.gouge->clearance_mm), "mm",
                        fmt::format("required {:.3f}", r.gouge->required_clearance_mm),
@@ -30,6 +35,8 @@ std::vector<KeyFigure> key_figures(const report::RunReport& r) {
     figures.push_back({"cutting time", report::readable_minutes(r.feed_minutes), "", "with rapids " + report::readable_minutes(r.total_minutes), State::plain});
     figures.push_back({"NC blocks", std::to_string(r.blocks), "", fmt::format("{} CL points a tooth", r.cl_points), State::plain});
   }
+  for (const report::Finding& f : r.findings)
+    if (!f.label.empty()) figures.push_back({f.label, f.value_text(), f.unit, f.limit_text(), state_of(f)});
   return figures;
 }
 
@@ -71,28 +78,30 @@ PageTable correction_table(const report::RunReport& r) {
   return table;
 }
 
-// A type of gear without its subtitle does not compile.
-std::string subtitle_of(const face_gear::FaceGearParameters& gear, const std::string& machine) {
-  return fmt::format("face gear {}/{}, module {} mm, {}", gear.shaper_teeth, gear.teeth, svg::short_number(gear.module_mm), machine);
+PageTable pass_table(const report::RunReport& r) {
+  PageTable table{"Passes", {"op", "zone", "pass", "name", "direction", "length mm", "points"}, {}, "One tooth space; the convex side of a herringbone is one pass through both zones."};
+  for (const auto& p : r.passes)
+    table.rows.push_back({std::to_string(p.operation), std::to_string(p.zone), std::to_string(p.pass), p.name, p.outward ? "outwards" : "inwards",
+                          fmt::format("{:.3f}", p.length_mm), std::to_string(p.points)});
+  return table;
 }
-std::string subtitle_of(const bevel_gear::BevelGearParameters&, const std::string&) { return {}; }  // its page makes its own
 
 }  // namespace
 
-ReportPage page_of_run(const job::Job& job, const report::RunReport& r, const std::vector<path::ClPath>& paths, std::string_view program) {
+ReportPage page_of_run(const GearOnPage& gear, const report::RunReport& r, std::span<const path::ClPath* const> paths, std::string_view program) {
   ReportPage page;
   page.title = r.job_name;
-  page.subtitle = std::visit([&](const auto& gear) { return subtitle_of(gear, r.machine_name); }, job.gear);
+  page.subtitle = gear.subtitle;
   page.verified = r.verified;
-  if (r.unreached) page.unfinished = report::unreached_text(*r.unreached);
+  page.unfinished = report::unfinished_text(r);
   page.reasons = r.reasons;
   page.warnings = r.warnings;
   page.assumed = r.assumed;
   page.figures = key_figures(r);
   page.summary = {{"job", r.job_file}, {"machine", fmt::format("{} ({})", r.machine_name, r.machine_file)}, {"control", r.dialect}};
   if (!r.program_sha256.empty()) page.summary.emplace_back("SHA-256 of the program", r.program_sha256);
-  for (const auto& path : paths) page.paths.push_back({path, {}});
-  for (const auto& tool : job.tools) page.tools.push_back(page_ball_mill(tool));
+  for (const path::ClPath* path : paths) page.paths.push_back({*path, {}});
+  page.tools = gear.tools;
   page.gouge = r.gouge;
   page.gouge_tolerance_mm = r.gouge_tolerance_mm;
   page.nc_file = r.program_file;
@@ -106,8 +115,11 @@ ReportPage page_of_run(const job::Job& job, const report::RunReport& r, const st
   page.ledger = r.ledger;
   page.directions = r.directions;
   page.stage_seconds = r.stages;
+  for (const report::Section& section : r.sections)
+    if (!section.id.empty()) page.sections.push_back(section);
   if (!r.operations.empty()) page.tables = {operation_table(r), axis_table(r)};
   if (!r.correction.empty()) page.tables.push_back(correction_table(r));
+  if (!r.passes.empty()) page.tables.push_back(pass_table(r));
   return page;
 }
 

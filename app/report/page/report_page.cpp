@@ -1,7 +1,6 @@
 #include "app/report/page/report_page.h"
 
 #include <algorithm>
-#include <array>
 #include <fstream>
 #include <system_error>
 
@@ -35,15 +34,34 @@ std::string filled(std::string_view text, const std::vector<Part>& parts) {
   return out;
 }
 
+/// A section of the page: its anchor, its link at the top, and what it says; empty where it has nothing to say.
+struct Shown {
+  std::string id, link, text;
+};
+
+/// Everything below the 3D view, in its order.
+std::vector<Shown> sections_of(const ReportPage& page) {
+  std::vector<Shown> out = {{"job", "Job", job_section(page)},
+                            {"gouge", "Gouge", gouge_section(page)},
+                            {"deviation", "Deviation", deviation_section(page)},
+                            {"ledger", "Ledger", ledger_section(page)},
+                            {"direction", "Tool direction", direction_section(page)},
+                            {"motion", "Axes", motion_section(page)},
+                            {"contact", "Contact", contact_section(page)},
+                            {"limits", "Limits", limits_section(page)},
+                            {"work-precision", "Error against run time", work_precision_section(page)}};
+  for (const report::Section& s : page.sections) out.push_back({s.id, svg::html_escape(s.title), section_of_the_report(s)});
+  out.push_back({"stages", "Computing time", stages_section(page)});
+  out.push_back({"tables", "Tables", tables_section(page)});
+  return out;
+}
+
 /// Links to the sections that are there.
-std::string contents(std::string_view sections, bool view) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 11> kNames{{{"job", "Job"}, {"gouge", "Gouge"}, {"deviation", "Deviation"},
-      {"ledger", "Ledger"}, {"direction", "Tool direction"}, {"motion", "Axes"}, {"contact", "Contact"}, {"limits", "Limits"}, {"work-precision", "Error against run time"},
-      {"stages", "Computing time"}, {"tables", "Tables"}}};
+std::string contents(const std::vector<Shown>& sections, bool view) {
   std::string out = "<nav>";
   if (view) out += "<a href=\"#space\">3D view</a>";
-  for (const auto& [id, name] : kNames)
-    if (sections.find(fmt::format("<section id=\"{}\">", id)) != std::string_view::npos) out += fmt::format("<a href=\"#{}\">{}</a>", id, name);
+  for (const Shown& s : sections)
+    if (!s.text.empty()) out += fmt::format("<a href=\"#{}\">{}</a>", s.id, s.link);
   return out + "</nav>\n";
 }
 
@@ -82,14 +100,15 @@ Result<std::string> render_report_page(const ReportPage& page) {
   if (auto status = check_report_page(page); !status) return status.error();
   const bool view = std::any_of(page.surface.begin(), page.surface.end(), [](const proof::SurfaceGrid& g) { return g.rows > 1 && g.columns > 1; }) ||
                     std::any_of(page.paths.begin(), page.paths.end(), [](const PagePath& p) { return !p.cl.records.empty(); });
-  const std::string sections = job_section(page) + gouge_section(page) + deviation_section(page) + ledger_section(page) + direction_section(page) +
-                               motion_section(page) + contact_section(page) + limits_section(page) + work_precision_section(page) + stages_section(page) + tables_section(page);
+  const std::vector<Shown> sections = sections_of(page);
+  std::string text;
+  for (const Shown& s : sections) text += s.text;
   return filled(kReportTemplate, {{"TITLE", svg::html_escape(page.title)},
                                   {"STYLE", std::string(kReportStyle)},
                                   {"HEADER", page_header(page) + contents(sections, view)},
                                   {"OVERVIEW", overview_section(page)},
                                   {"VIEW_HIDDEN", view ? "" : " hidden"},
-                                  {"SECTIONS", sections},
+                                  {"SECTIONS", text},
                                   {"FOOTER", "<footer>Toothpath report. Lengths in mm and \u00b5m in the gear frame; tooth space 0.</footer>"},
                                   {"DATA", report_data_json(page)},
                                   {"VIEW", std::string(kReportView)},

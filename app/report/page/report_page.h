@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/report/section.h"
 #include "app/report/svg/chart.h"
 #include "cam/path/cl_path.h"
 #include "cam/proof/verification.h"
@@ -90,6 +91,7 @@ struct ReportPage {
   std::vector<svg::LineChart> work_precision;  ///< from the study, when there is one
   std::string contact;  ///< body of the section on contact with the pinion, finished markup; may be empty
   std::vector<std::pair<std::string, double>> stage_seconds;
+  std::vector<report::Section> sections;  ///< those with an id; a section of the page each
   std::vector<PageTable> tables;
 };
 

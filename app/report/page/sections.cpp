@@ -82,7 +82,7 @@ std::string worst_row(const proof::WorstPlace& place, std::size_t k, const Repor
   return fmt::format("<tr data-row=\"{0}\"><td><a class=\"pin\" href=\"#space\" data-gouge=\"{0}\">{1}</a></td><td class=\"n\">{2}</td><td>{3}</td>"
                      "<td>{4}</td><td>{5}</td><td class=\"n\">{6}</td><td class=\"n\">{7}</td><td class=\"n\">{8}</td><td class=\"n\">{9}</td>"
                      "<td class=\"n\">{10}</td></tr>\n",
-                     k, k + 1, um_text(place.depth_mm), svg::html_escape(place.body), svg::html_escape(place.patch),
+                     k, k + 1, um_text(place.depth_mm), to_string(place.body), svg::html_escape(place.patch),
                      svg::html_escape(operation_name(page, place.operation)), place.tooth, place.zone,
                      decimal(place.radius_mm, 3), decimal(place.height_mm, 3), line);
 }
@@ -198,8 +198,8 @@ std::string ledger_section(const ReportPage& page) {
   double predicted = 0, measured = 0;
   const auto share = [](double m, double p) { return p > 0 && m > 0 && m < 0.005 * p ? std::string("< 0.01") : p > 0 ? fmt::format("{:.2f}", m / p) : std::string("\u2013"); };
   for (const proof::LedgerEntry& e : page.ledger) {
-    chart.rows.push_back({e.source, e.predicted_um, e.measured_um});
-    t.rows.push_back({e.source, svg::short_number(e.predicted_um), svg::short_number(e.measured_um), share(e.measured_um, e.predicted_um)});
+    chart.rows.push_back({to_string(e.source), e.predicted_um, e.measured_um});
+    t.rows.push_back({to_string(e.source), svg::short_number(e.predicted_um), svg::short_number(e.measured_um), share(e.measured_um, e.predicted_um)});
     predicted += e.predicted_um;
     measured += e.measured_um;
   }
@@ -241,6 +241,10 @@ std::string work_precision_section(const ReportPage& page) {
 }
 
 std::string contact_section(const ReportPage& page) { return section("contact", "Contact with the pinion", page.contact); }
+
+std::string section_of_the_report(const report::Section& s) {
+  return section(s.id, svg::html_escape(s.title), table({"", s.columns, s.rows, s.note}));
+}
 
 std::string stages_section(const ReportPage& page) {
   if (page.stage_seconds.empty()) return {};

@@ -26,6 +26,8 @@ namespace toothpath::page {
 [[nodiscard]] std::string work_precision_section(const ReportPage& page);
 /// What `page.contact` holds.
 [[nodiscard]] std::string contact_section(const ReportPage& page);
+/// One of `page.sections`.
+[[nodiscard]] std::string section_of_the_report(const report::Section& section);
 [[nodiscard]] std::string stages_section(const ReportPage& page);
 [[nodiscard]] std::string tables_section(const ReportPage& page);
 

@@ -9,8 +9,6 @@ namespace {
 
 constexpr double kSameAxis = 5e-3;      // rad: axes nearer than this to one that was kept are counted as that one
 constexpr double kLeastShare = 1e-3;    // a tool that cuts with its side alone: its length hardly matters, and its tolerance ends here
-constexpr double kBallMargin = 1e-3;    // mm: as the proofs allow beyond scallop and chord
-constexpr double kFingerMargin = 1.5e-3;
 
 /// Axes of the feed records, by zone.
 std::map<int, std::vector<Vec3>> axes_of(const path::ClPath& path) {
@@ -35,7 +33,7 @@ double largest_share(const std::vector<Vec3>& axes, const proof::SurfaceGrid& gr
 
 }  // namespace
 
-std::vector<report::LengthTolerance> length_tolerances(const job::Job& job, const report::RunReport& report, std::span<const path::ClPath* const> paths,
+std::vector<report::LengthTolerance> length_tolerances(const job::Job& job, const proof::ProofLimits& limits, const report::RunReport& report, std::span<const path::ClPath* const> paths,
                                                const std::vector<proof::SurfaceGrid>& grids, const OtherSurface& other) {
   std::vector<report::LengthTolerance> out;
   if (!report.gouge || grids.empty()) return out;
@@ -63,9 +61,8 @@ std::vector<report::LengthTolerance> length_tolerances(const job::Job& job, cons
     t.too_long_mm = std::max(0.0, spare + stock) / by;
     const bool last = path->operation + 1 == static_cast<int>(job.operations.size());
     const bool finishes = operation.type == path::OperationType::finishing || operation.type == path::OperationType::finger_finishing;
-    if (last && finishes && report.finished) {
-      const double limit = operation.scallop_mm + operation.chord_tolerance_mm +
-                           (operation.type == path::OperationType::finishing ? kBallMargin : kFingerMargin);
+    if (last && finishes && report.finished && limits.left_mm) {
+      const double limit = *limits.left_mm;
       const double left = limit - report.finished->bound_mm;
       t.too_short_mm = std::max(0.0, left > 0 ? left : limit - report.finished->max_mm) / by;
     }

@@ -13,6 +13,7 @@
 #include "app/job/job.h"
 #include "app/report/run_report.h"
 #include "cam/path/cl_path.h"
+#include "cam/proof/limits.h"
 
 namespace toothpath::sheet {
 
@@ -24,7 +25,7 @@ struct OtherSurface {
 /// One an operation that cuts. The axes are those of the feed records of each zone; the normals those of the reachable grid points of the
 /// cut surface of that zone. Axes within `kSameAxis` are taken as one, and that angle is added: the share is an upper bound.
 /// `report` must hold gouge, excess and finished of the proven program. Empty where it lacks them.
-[[nodiscard]] std::vector<report::LengthTolerance> length_tolerances(const job::Job& job, const report::RunReport& report, std::span<const path::ClPath* const> paths,
+[[nodiscard]] std::vector<report::LengthTolerance> length_tolerances(const job::Job& job, const proof::ProofLimits& limits, const report::RunReport& report, std::span<const path::ClPath* const> paths,
                                                              const std::vector<proof::SurfaceGrid>& grids, const OtherSurface& other);
 
 }  // namespace toothpath::sheet

@@ -87,8 +87,8 @@ PartSwing part_swing(const BlankCylinder& blank, const joints::Setup& setup, con
   return out;
 }
 
-report::SheetSection swing_section(const PartSwing& swing) {
-  report::SheetSection s;
+report::Section swing_section(const PartSwing& swing) {
+  report::Section s;
   s.title = "Swing and height of the part";
   s.columns = {"what", "mm", "limit", "left"};
   const auto mm = [](double v) { return fmt::format("{:.1f}", v); };

@@ -30,6 +30,6 @@ struct PartSwing {
 [[nodiscard]] PartSwing part_swing(const BlankCylinder& blank, const joints::Setup& setup, const machines::Machine& machine, const std::vector<joints::AxisRange>& axes);
 
 /// As a table of the set-up sheet.
-[[nodiscard]] report::SheetSection swing_section(const PartSwing& swing);
+[[nodiscard]] report::Section swing_section(const PartSwing& swing);
 
 }  // namespace toothpath::sheet

@@ -7,7 +7,6 @@
 #include "app/report/sheet/restart_section.h"
 #include "app/report/sheet/setup_drawings.h"
 #include "app/report/sheet/sheet_html.h"
-#include "app/report/unreached_text.h"
 #include "geometry/base/angle.h"
 #include "postproc/controls/of_machine.h"
 
@@ -159,7 +158,7 @@ void operation_section(Sheet& sheet, const report::RunReport& report) {
   sheet.end_table();
 }
 
-void table_section(Sheet& sheet, const report::SheetSection& section) {
+void table_section(Sheet& sheet, const report::Section& section) {
   sheet.heading(section.title);
   sheet.begin_table(section.columns);
   for (const auto& row : section.rows) sheet.row(row);
@@ -169,18 +168,12 @@ void table_section(Sheet& sheet, const report::SheetSection& section) {
 
 }  // namespace
 
-std::string setup_sheet(const job::Job& job, const face_gear::FaceGear& gear, const machines::Machine& machine, const report::RunReport& report) {
-  const double root = gear.lowest_root();
-  return setup_sheet(job, PartOutline{gear.inner_radius(), gear.outer_radius(), gear.blank_top(), root, root - 2.5 * gear.parameters().module_mm},
-                     machine, report);
-}
-
 std::string setup_sheet(const job::Job& job, const PartOutline& part, const machines::Machine& machine, const report::RunReport& report) {
   Sheet sheet;
   const std::string title = svg::html_escape(job.name);
   sheet.raw(fmt::format("<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport content='width=device-width'><title>Set-up sheet: {}</title>"
                         "<style>{}</style></head><body>\n<h1>Set-up sheet: {}</h1>\n", title, kSetupStyle, title));
-  const std::string left = report.unreached ? report::unreached_text(*report.unreached) : std::string();
+  const std::string left = report::unfinished_text(report);
   if (report.verified && report.gouge)
     sheet.raw(fmt::format("<div class={}>{}: worst gouge {:.2f} um, proven below {:.2f} um, tolerance {:.2f} um.{}</div>\n", left.empty() ? "yes" : "part",
                           left.empty() ? "Verified" : "Verified, root not finished", std::max(0.0, report.gouge->measured_mm) * 1000, std::max(0.0, report.gouge->bound_mm) * 1000,
@@ -198,7 +191,7 @@ std::string setup_sheet(const job::Job& job, const PartOutline& part, const mach
   restart_section(sheet, job, report);
   const BlankCylinder blank{part.outer_radius, std::min(part.bottom, part.tooth_top), std::max(part.bottom, part.tooth_top)};
   if (!report.axes.empty()) table_section(sheet, swing_section(part_swing(blank, *job.setup, machine, report.axes)));
-  for (const auto& section : report.sheet_sections) table_section(sheet, section);
+  for (const auto& section : report.sections) table_section(sheet, section);
   if (!report.assumed.empty()) {
     sheet.heading("Assumed values: measure before the first cut");
     sheet.list(report.assumed, "assumed");

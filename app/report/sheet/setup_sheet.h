@@ -5,7 +5,6 @@
 
 #include "app/job/job.h"
 #include "app/report/run_report.h"
-#include "geometry/face_gear/gear.h"
 #include "machines/machine.h"
 
 namespace toothpath::sheet {
@@ -18,8 +17,6 @@ struct PartOutline {
 
 /// Machine, work offset, tools with lengths and run times, operations, axis ranges, every assumed value, warnings, and a sketch of the
 /// part in the machine as inline SVG. One self-contained page without script. The job has a set-up.
-[[nodiscard]] std::string setup_sheet(const job::Job& job, const face_gear::FaceGear& gear, const machines::Machine& machine, const report::RunReport& report);
-/// The same for any part.
 [[nodiscard]] std::string setup_sheet(const job::Job& job, const PartOutline& part, const machines::Machine& machine, const report::RunReport& report);
 
 }  // namespace toothpath::sheet

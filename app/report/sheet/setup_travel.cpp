@@ -13,8 +13,8 @@ std::string riser_text(const choice::TravelOffer& offer) {
   return z > 0 ? fmt::format("needs a riser of {:.3f} mm under the part", z) : fmt::format("needs the part {:.3f} mm lower: a lower fixture, or none", -z);
 }
 
-report::SheetSection travel_section(const joints::AxisProgram& program, const joints::Setup& setup) {
-  report::SheetSection section;
+report::Section travel_section(const joints::AxisProgram& program, const joints::Setup& setup) {
+  report::Section section;
   section.title = "Room in the travels";
   if (!program.offer) return section;
   const choice::TravelOffer& offer = *program.offer;
@@ -33,8 +33,8 @@ report::SheetSection travel_section(const joints::AxisProgram& program, const jo
   return section;
 }
 
-report::SheetSection time_section(const joints::AxisProgram& program, const std::optional<report::PolesReport>& poles) {
-  report::SheetSection section;
+report::Section time_section(const joints::AxisProgram& program, const std::optional<report::PolesReport>& poles) {
+  report::Section section;
   section.title = "Run time";
   section.columns = {"what", "cutting, min", "rapids, min"};
   section.rows.push_back({"as the program asks", fmt::format("{:.3f}", program.feed_minutes), fmt::format("{:.3f}", program.minutes - program.feed_minutes)});

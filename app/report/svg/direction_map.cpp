@@ -29,7 +29,7 @@ MapScale scale_of(const proof::DirectionChoice& choice) {
   for (const auto& c : choice.candidates) {
     widest = std::max(widest, c.lean_rad);
     if (c.clear) s.any_clear = true, s.greatest_gap = std::max(s.greatest_gap, c.gap_mm);
-    else if (std::find(s.bodies.begin(), s.bodies.end(), c.worst_body) == s.bodies.end()) s.bodies.push_back(c.worst_body);
+    else if (std::find(s.bodies.begin(), s.bodies.end(), to_string(c.worst_body)) == s.bodies.end()) s.bodies.emplace_back(to_string(c.worst_body));
   }
   std::sort(s.bodies.begin(), s.bodies.end());
   s.widest_degrees = std::max(5.0, widest / kDegree * 1.02);
@@ -49,7 +49,7 @@ std::vector<LegendEntry> legend_of(const MapScale& scale, bool fixed) {
 }
 
 std::string shade_of(const proof::DirectionChoice::Candidate& c, const MapScale& scale) {
-  if (!c.clear) return fmt::format("block b{}", (std::find(scale.bodies.begin(), scale.bodies.end(), c.worst_body) - scale.bodies.begin()) % 4);
+  if (!c.clear) return fmt::format("block b{}", (std::find(scale.bodies.begin(), scale.bodies.end(), to_string(c.worst_body)) - scale.bodies.begin()) % 4);
   const double share = scale.greatest_gap > 0 ? c.gap_mm / scale.greatest_gap : 0;
   return fmt::format("gap g{}", std::clamp(static_cast<int>(share * kGapClasses), 0, kGapClasses - 1));
 }

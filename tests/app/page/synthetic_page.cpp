@@ -173,7 +173,7 @@ proof::DirectionChoice direction(int operation, int zone) {
       const double x = d.lean_rad * std::cos(d.azimuth_rad), y = d.lean_rad * std::sin(d.azimuth_rad);
       d.gap_mm = 0.7 - 8 * ((x - 0.12) * (x - 0.12) + 5 * y * y) - (zone == 0 && x < -0.1 ? 0.4 : 0);
       d.clear = d.gap_mm > 0.1;
-      d.worst_body = std::abs(y) > 0.2 ? "holder" : x < 0 ? "shank" : "flute";
+      d.worst_body = std::abs(y) > 0.2 ? tool::Body::holder : x < 0 ? tool::Body::shank : tool::Body::flute;
       c.candidates.push_back(d);
     }
   return c;
@@ -237,7 +237,7 @@ proof::GougeResult gouge(const page::ReportPage& page, bool gouged) {
     const Foot f = surface(patch, 0.25 + 0.1 * k, r);
     proof::WorstPlace place;
     place.depth_mm = 0.0064 - 0.0006 * k;
-    place.body = k == 5 ? "shank" : "ball";
+    place.body = k == 5 ? tool::Body::shank : tool::Body::ball;
     place.patch = kPatches[patch];
     place.operation = finishing.cl.operation;
     place.tooth = 3 * k, place.zone = k % 2;
@@ -247,7 +247,7 @@ proof::GougeResult gouge(const page::ReportPage& page, bool gouged) {
     g.worst.push_back(place);
   }
   if (gouged) g.deepest = g.worst.front();
-  else g.deepest.depth_mm = g.measured_mm, g.deepest.body = "ball", g.deepest.patch = "flank +1", g.deepest.tooth = 11, g.deepest.line = 4711;
+  else g.deepest.depth_mm = g.measured_mm, g.deepest.body = tool::Body::ball, g.deepest.patch = "flank +1", g.deepest.tooth = 11, g.deepest.line = 4711;
   return g;
 }
 
@@ -301,8 +301,8 @@ page::ReportPage synthetic_page(const SyntheticPageOptions& options) {
                   {"material left", "3.10", "\u00b5m", "bound 3.50", State::plain}, {"scallop", "2.84", "\u00b5m", "3.00 asked for", State::plain},
                   {"path points", std::to_string(page.gouge->motions), "", "41 spaces in the program", State::plain},
                   {"cutting time", "148", "min", "all teeth", State::plain}, {"run time", "3.9", "s", "2 threads", State::plain}};
-  page.ledger = {{"flank solve", 0.00002, 0.000004, ""}, {"chord", 0.5, 0.41, ""}, {"scallop", 3.0, 2.84, ""}, {"orientation", 0, 0, ""},
-                 {"axis linearisation", 0.2, 0.034, ""}, {"rounding", 0.09, 0.062, ""}, {"verification", 0.15, 0.02, ""}};
+  page.ledger = {{proof::ErrorSource::flank_solve, 0.00002, 0.000004, ""}, {proof::ErrorSource::chord, 0.5, 0.41, ""}, {proof::ErrorSource::scallop, 3.0, 2.84, ""}, {proof::ErrorSource::orientation, 0, 0, ""},
+                 {proof::ErrorSource::axis_linearisation, 0.2, 0.034, ""}, {proof::ErrorSource::rounding, 0.09, 0.062, ""}, {proof::ErrorSource::verification, 0.15, 0.02, ""}};
   for (const page::PagePath& p : page.paths)
     for (int zone = 0; zone < 2; ++zone) page.directions.push_back(direction(p.cl.operation, zone));
   page.motion = motion();
@@ -322,14 +322,10 @@ page::ReportPage synthetic_page(const SyntheticPageOptions& options) {
     for (auto& g : page.surface) g.patch = nasty;
     for (auto& p : page.paths) p.cl.operation_type = nasty;
     for (auto& t : page.tools) t.name = nasty;
-    for (auto& w : page.gouge->worst) w.body = w.patch = nasty;
+    for (auto& w : page.gouge->worst) w.patch = nasty;
     for (auto& e : page.listing)
       for (auto& l : e.lines) l = nasty;
-    for (auto& l : page.ledger) l.source = nasty;
-    for (auto& d : page.directions) {
-      d.explanation = nasty;
-      for (auto& c : d.candidates) c.worst_body = nasty;
-    }
+    for (auto& d : page.directions) d.explanation = nasty;
     for (auto& c : page.motion) c.title = c.x_label = c.y_label = c.note = c.series[0].name = nasty;
     for (auto& s : page.stage_seconds) s.first = nasty;
     for (auto& t : page.tables) t.title = t.note = t.columns[0] = t.rows[0][0] = nasty;

@@ -115,11 +115,11 @@ TEST(WideBall, LeavesTheCornerAndCutsNothing) {
   EXPECT_GT(cut.unreached.points, 10u);
   EXPECT_GT(cut.unreached.max_height_mm, 0.005);
   EXPECT_TRUE(job.plan.operations.back().corner_passes);
-  const analytic::GougeCheckOptions options{.rapid_height_mm = job.part->gear().blank_top()};
+  const analytic::GougeCheckOptions options{.limits = {}, .rapid_height_mm = job.part->gear().blank_top()};
   const analytic::GougeCheck check(*job.part, job.tools, options);
   const auto gouge = check.check(job.motions(), job.tool_of_operation());
   EXPECT_GE(gouge.bound_mm, -cut.operations.back().min_mm);
-  EXPECT_LE(gouge.bound_mm, options.gouge_tolerance_mm);
+  EXPECT_LE(gouge.bound_mm, options.limits.gouge_mm);
   EXPECT_TRUE(check.passes(gouge));
   EXPECT_EQ(surface(job_named("spur"), job_named("spur").motions()).unreached.points, 0u);
 }

@@ -68,7 +68,7 @@ TEST_P(CleanPrograms, NoneIsReported) {
     if (worst > tolerance - 3e-4) continue;
     ++clean;
     auto options = job.check_options();
-    options.gouge_tolerance_mm = tolerance;
+    options.limits.gouge_mm = tolerance;
     options.rapid_height_mm = roof;
     const analytic::GougeCheck check(*job.part, {tool}, options);
     const auto r = check.check(analytic::GougeCheck::motions_of(*path), {0});
@@ -104,7 +104,7 @@ TEST_P(RandomMotions, TenfoldSamplingNeverExceedsTheBound) {
     m.tip_from = record.tip + wander(0.02) + Vec3(0, 0, random(0, 0.2));
     m.tip_to = m.tip_from + wander(k % 3 == 0 ? 2.0 : 0.3);
     turning += m.axis_from != m.axis_to;
-    analytic::CutterSweep sweep(*job.part, tool, options.proof_mm, options.gouge_tolerance_mm);
+    analytic::CutterSweep sweep(*job.part, tool, options.limits.proof_mm, options.limits.gouge_mm);
     const auto found = sweep.check(m);
     EXPECT_GE(found.bound_mm, found.measured_mm);
     const int steps = 10 * int(std::max<std::size_t>(20, std::min<std::size_t>(sweep.queries(), 60)));
@@ -133,7 +133,7 @@ TEST_P(RandomMotions, AWideToleranceOfTheAxisIsBoundedInFewDistances) {
   const double R = tool.radius_mm();
   const auto options = job.check_options();
   for (const double lean : {1e-4, 3e-3, 2e-2}) {
-    analytic::CutterSweep sweep(*job.part, tool, options.proof_mm, options.gouge_tolerance_mm);
+    analytic::CutterSweep sweep(*job.part, tool, options.limits.proof_mm, options.limits.gouge_mm);
     double margin = INFINITY;
     for (int k = 0; k < 40; ++k) {
       const std::size_t i = 2 + random.index(path.records.size() - 4);
@@ -172,7 +172,7 @@ TEST_P(RandomBodies, TenfoldSamplingNeverExceedsTheBound) {
     const double above = std::max(roof - record.tip.z(), 0.0), R = job.tool(path.operation).radius_mm();
     const double low = k % 2 == 0 ? R + random(0.1, 1.0) : above + random(-0.15, 0.2);
     const double r0 = k % 2 == 0 ? R * random(0.8, 1.0) : random(2, 6), r1 = k % 2 == 0 ? r0 : r0 * random(1.0, 1.3);
-    const tool::Frustum body{low, low + random(3, 12), r0, r1, k % 2 == 0 ? "shank" : "holder"};
+    const tool::Frustum body{low, low + random(3, 12), r0, r1, k % 2 == 0 ? tool::Body::shank : tool::Body::holder};
     path::ToolMotion m;
     m.axis_from = (record.axis + wander(0.12)).normalized();
     m.axis_to = k % 4 < 2 ? m.axis_from : Vec3((m.axis_from + wander(0.1)).normalized());
@@ -183,7 +183,7 @@ TEST_P(RandomBodies, TenfoldSamplingNeverExceedsTheBound) {
     options.contact_mm = 0.005;
     const auto found = analytic::swept_gap(*job.part, body, m, options);
     const auto truth = brute.deepest({body.from, body.to, r0, r1, false}, m, 60, 6);
-    EXPECT_LE(found.proven_mm, std::min(-truth.depth, options.enough_mm) + 1e-9) << k << " " << body.name;
+    EXPECT_LE(found.proven_mm, std::min(-truth.depth, options.enough_mm) + 1e-9) << k << " " << to_string(body.body);
     EXPECT_LE(found.proven_mm, found.measured_mm) << k;
     if (found.measured_mm < options.enough_mm) {
       near += 1;

@@ -143,7 +143,7 @@ TEST(WrongPrograms, ShankAndHolder) {
   EXPECT_FALSE(passes(job, r));
   ASSERT_FALSE(r.worst.empty());
   const auto worst_is = [&](const char* body) {
-    return std::any_of(r.worst.begin(), r.worst.end(), [&](const proof::WorstPlace& w) { return w.body == body; });
+    return std::any_of(r.worst.begin(), r.worst.end(), [&](const proof::WorstPlace& w) { return to_string(w.body) == body; });
   };
   EXPECT_TRUE(worst_is("shank"));
   auto stubby = job.tools;

@@ -119,12 +119,12 @@ TEST_P(EveryBody, IsFoundWithinAFifthOfAMicrometre) {
     ++planted;
     turning += fault->motion.axis_from != fault->motion.axis_to;
     auto options = job.check_options();
-    options.gouge_tolerance_mm = 0.0015;
+    options.limits.gouge_mm = 0.0015;
     std::vector<tool::ToolAssembly> tools(job.tools.size(), fault->tool);
     const analytic::GougeCheck check(*job.part, tools, options);
     const auto r = check.check({fault->motion}, job.tool_of_operation());
     EXPECT_FALSE(check.passes(r));
-    const auto named = std::find_if(r.worst.begin(), r.worst.end(), [&](const proof::WorstPlace& w) { return w.body == body; });
+    const auto named = std::find_if(r.worst.begin(), r.worst.end(), [&](const proof::WorstPlace& w) { return to_string(w.body) == body; });
     const auto list = [&] {
       std::string text;
       for (const auto& w : r.worst) text += fmt::format(" {} {:.6f}", w.body, w.depth_mm);

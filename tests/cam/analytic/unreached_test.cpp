@@ -107,7 +107,7 @@ TEST(Unreached, AWideBallIsTold) {
   const auto u = surface(job).unreached;
   EXPECT_TRUE(u.left());
   EXPECT_DOUBLE_EQ(u.ball_mm, 1.6);
-  EXPECT_DOUBLE_EQ(u.limit_mm, 0.02 + 0.002 + analytic::kExcessMargin);
+  EXPECT_DOUBLE_EQ(u.limit_mm, 0.02 + 0.002 + proof::kBallMargin);
   EXPECT_GT(u.height_mm, u.limit_mm);
   EXPECT_GE(u.height_mm, u.max_height_mm);
   EXPECT_GT(u.share, 0.02);

@@ -76,7 +76,7 @@ TEST(Body, GapAgainstSampledSurfaces) {
     int close = 0;
     for (int k = 0; k < 60; ++k) {
       const double r = random(gear.inner_radius(), gear.outer_radius()), a = part.space_azimuth(0, r) + random(-0.5, 0.5) * gear.pitch();
-      const tool::Frustum f{random(0.2, 1) * m, random(2, 6) * m, random(0.1, 0.5) * m, random(0.1, 2) * m, "shank"};
+      const tool::Frustum f{random(0.2, 1) * m, random(2, 6) * m, random(0.1, 0.5) * m, random(0.1, 2) * m, tool::Body::shank};
       const double lean = random(0, 0.5), to = random(0, 6.28);
       const Vec3 axis(std::sin(lean) * std::cos(to), std::sin(lean) * std::sin(to), std::cos(lean));
       const Vec3 tip(r * std::cos(a), r * std::sin(a), random(gear.lowest_root(), gear.blank_top() + 0.3 * m));
@@ -100,7 +100,7 @@ TEST(Body, GapAgainstSampledSurfaces) {
 
 TEST(Body, DistanceToAFrustumAgainstItsSampledSurface) {
   test::Random random(43);
-  const tool::Frustum f{1, 4, 0.5, 1.5, "holder"};
+  const tool::Frustum f{1, 4, 0.5, 1.5, tool::Body::holder};
   const Vec3 tip(1, 2, 3), axis = Vec3(0.2, -0.3, 0.9).normalized();
   const Vec3 side = axis.cross(Vec3::UnitX()).normalized(), other = axis.cross(side);
   std::vector<Vec3> surface;

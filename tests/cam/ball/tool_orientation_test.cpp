@@ -81,7 +81,7 @@ TEST(BodyTree, AgreesWithTheFlatSearchAndWithSamples) {
     int close = 0;
     for (int k = 0; k < 100; ++k) {
       const double r = random(gear.inner_radius(), gear.outer_radius()), a = part.space_azimuth(0, r) + random(-0.5, 0.5) * gear.pitch();
-      const tool::Frustum f{random(0.2, 1) * m, random(2, 6) * m, random(0.1, 0.5) * m, random(0.1, 2) * m, "shank"};
+      const tool::Frustum f{random(0.2, 1) * m, random(2, 6) * m, random(0.1, 0.5) * m, random(0.1, 2) * m, tool::Body::shank};
       const double lean = random(0, 0.6), to = random(0, 6.28);
       const Vec3 axis(std::sin(lean) * std::cos(to), std::sin(lean) * std::sin(to), std::cos(lean));
       const Vec3 tip(r * std::cos(a), r * std::sin(a), random(gear.lowest_root(), gear.blank_top() + 0.3 * m));
@@ -236,7 +236,7 @@ TEST(Orientation, ShortToolNeedsItAndIsProven) {
   EXPECT_GE(d.candidates.size(), 200u);
   for (const auto& c : d.candidates) {
     EXPECT_FALSE(c.clear);
-    EXPECT_FALSE(c.worst_body.empty());
+    EXPECT_NE(c.worst_body, tool::Body::none);
     EXPECT_LT(c.gap_mm, 0.05);
   }
   EXPECT_GE(d.turning_passes, 1);

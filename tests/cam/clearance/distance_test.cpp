@@ -83,7 +83,7 @@ TEST(MeshDistance, EmptyMeshIsFarAway) {
   const clearance::MeshDistance distance{mesh::TriangleMesh{}};
   EXPECT_EQ(distance.nearest(Vec3::Zero(), 7).distance, 7);
   EXPECT_FALSE(distance.inside(Vec3::Zero()));
-  EXPECT_EQ(distance.to_frustum({0, 1, 1, 1, "shank"}, Vec3::Zero(), Vec3::UnitZ(), 3).distance, 3);
+  EXPECT_EQ(distance.to_frustum({0, 1, 1, 1, tool::Body::shank}, Vec3::Zero(), Vec3::UnitZ(), 3).distance, 3);
 }
 
 TEST(MeshDistance, SliversAndPointsAreNoExceptions) {
@@ -157,7 +157,7 @@ TEST(MeshDistance, FrustumAndTriangleAreBoundedFromBothSides) {
     const Vec3 a = random.vector(6);
     const double size = std::pow(10.0, random(-3, 1.5));
     const clearance::TriangleCorners t{a, a + random.vector(size), k % 7 == 0 ? Vec3(a + random.vector(1e-9)) : Vec3(a + random.vector(size))};
-    const tool::Frustum f{random(0, 2), random(2.1, 9), random(0.1, 4), random(0.1, 4), "holder"};
+    const tool::Frustum f{random(0, 2), random(2.1, 9), random(0.1, 4), random(0.1, 4), tool::Body::holder};
     const Vec3 tip = random.vector(3), axis = random.vector(1).normalized();
     const clearance::FrustumGap gap = clearance::frustum_to_triangle(f, tip, axis, t, INFINITY);
     const double brute = halved(t.a, t.b, t.c, f, tip, axis, INFINITY, 2e-3);
@@ -186,7 +186,7 @@ TEST(MeshDistance, FrustumAgainstMeshAgreesWithBruteForce) {
   const mesh::TriangleMesh mesh = test::scattered(random, 300, 20, 3);
   const clearance::MeshDistance distance(mesh);
   for (int k = 0; k < 120; ++k) {
-    const tool::Frustum f{random(0, 2), random(2.1, 9), random(0.1, 4), random(0.1, 4), "holder"};
+    const tool::Frustum f{random(0, 2), random(2.1, 9), random(0.1, 4), random(0.1, 4), tool::Body::holder};
     const Vec3 tip = random.vector(25), axis = random.vector(1).normalized();
     double brute = INFINITY;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -238,7 +238,7 @@ TEST(MeshDistance, KernelsAgreeBitForBit) {
     ASSERT_EQ(fast.beside_flute(tree, window.groups(), window.size(), s, 4, u.data(), u.size()),
               plain.beside_flute(tree, window.groups(), window.size(), s, 4, v.data(), v.size()));
     ASSERT_EQ(u, v);
-    const clearance::FrustumView f = clearance::frustum_view({1, 5, 1, 3, "holder"}, p, axis);
+    const clearance::FrustumView f = clearance::frustum_view({1, 5, 1, 3, tool::Body::holder}, p, axis);
     alignas(64) double d[clearance::kLanes], e[clearance::kLanes];
     fast.frustum_to_boxes(tree.nodes[0], f, d);
     plain.frustum_to_boxes(tree.nodes[0], f, e);

@@ -129,7 +129,7 @@ TEST(FingerBodies, ProvenGapAgainstDenseSampling) {
     } else {
       ++struck;
     }
-    ++body[found->body == "cutter" ? 0 : found->body == "shank" ? 1 : 2];
+    ++body[found->body == tool::Body::cutter ? 0 : found->body == tool::Body::shank ? 1 : 2];
   }
   EXPECT_GE(near, 10);
   EXPECT_GT(struck, 15);

@@ -72,7 +72,7 @@ TEST_P(FingerClearances, ThePlaceExists) {
   const DenseFinger dense(job.gear, job.tools[0]);
   const finger::FingerClearance part(job.gear);
   const double flute = job.gear.parameters().dedendum_mm + job.tools[0].profile_height_mm, r = job.tools[0].shank_diameter_mm / 2;
-  const tool::Frustum shank{flute, job.tools[0].stick_out_mm, r, r, "shank"};
+  const tool::Frustum shank{flute, job.tools[0].stick_out_mm, r, r, tool::Body::shank};
   int found = 0;
   for (std::size_t k = 3; k < job.motions.size(); k += 40) {
     const path::ToolMotion& m = job.motions[k];

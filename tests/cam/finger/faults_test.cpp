@@ -16,7 +16,7 @@ class FingerFaults : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     clean_ = new Milled(mill_all(w3(), 0.9));
-    check_ = new finger::FingerGougeCheck(clean_->gear, clean_->tools, clean_->ops, Tolerances{}, kFaultsQuick);
+    check_ = new finger::FingerGougeCheck(clean_->gear, clean_->tools, clean_->ops, proof::ProofLimits{}, kFaultsQuick);
   }
   static void TearDownTestSuite() {
     delete check_;
@@ -116,7 +116,7 @@ TEST_F(FingerFaults, TheWorstPlaceIsNamed) {
   EXPECT_EQ(w.operation, 1);
   EXPECT_EQ(w.tooth, 3);
   EXPECT_EQ(w.zone, 0);
-  EXPECT_EQ(w.body, "flute");
+  EXPECT_EQ(w.body, tool::Body::flute);
 }
 
 TEST_F(FingerFaults, WrongToothIsFound) {
@@ -159,7 +159,7 @@ TEST_F(FingerFaults, HubAndShaftStandInTheWay) {
     p.shaft_diameter_mm = c.shaft;
     p.shaft_length_mm = c.shaft > 0 ? 30 : 0;
     const bevel_gear::BevelGear gear = made(p, pinion_mill());
-    const finger::FingerGougeCheck with_bodies(gear, clean().tools, clean().ops, Tolerances{}, kFaultsQuick);
+    const finger::FingerGougeCheck with_bodies(gear, clean().tools, clean().ops, proof::ProofLimits{}, kFaultsQuick);
     bool clear = true;
     std::string message;
     for (const auto& plan : clean().plans)
@@ -179,11 +179,11 @@ TEST_F(FingerFaults, HolderAgainstShaft) {
   const bevel_gear::BevelGear gear = made(p, pinion_mill());
   auto tools = clean().tools;
   tools[0].holder = {{320, 320, 40}};
-  const finger::FingerGougeCheck with_shaft(gear, tools, clean().ops, Tolerances{}, kFaultsQuick);
+  const finger::FingerGougeCheck with_shaft(gear, tools, clean().ops, proof::ProofLimits{}, kFaultsQuick);
   const auto v = with_shaft.verify(clean().motions);
   EXPECT_LT(v.gouge.clearance_mm, 0.05);
   ASSERT_FALSE(v.gouge.worst.empty());
-  EXPECT_EQ(v.gouge.worst.front().body, "holder");
+  EXPECT_EQ(v.gouge.worst.front().body, tool::Body::holder);
   EXPECT_EQ(v.gouge.worst.front().patch, "shaft");
   EXPECT_LE(v.gouge.bound_mm, 2e-3) << "no cut";
 }
@@ -193,7 +193,7 @@ TEST(FingerObstacles, GapAgainstSampledPoints) {
   std::mt19937 random(77);
   const auto uniform = [&](double a, double b) { return a + (b - a) * static_cast<double>(random()) / 4294967295.0; };
   for (int n = 0; n < 24; ++n) {
-    const finger::ToolHull tool{"holder", {Vec2(10, uniform(3, 9)), Vec2(30, uniform(3, 15))}};
+    const finger::ToolHull tool{tool::Body::holder, {Vec2(10, uniform(3, 9)), Vec2(30, uniform(3, 15))}};
     const finger::CoaxialBody body{"hub", {Vec2(uniform(5, 20), 0), Vec2(uniform(5, 20), 25)}};
     path::ToolMotion m;
     const double lean = uniform(-1.2, 1.2);

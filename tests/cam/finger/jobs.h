@@ -47,7 +47,7 @@ struct Milled {
 inline Milled mill_all(const Designed& d, double chord = 5e-4, double ridge = 0.3) {
   Milled r{made(d.p, d.c), {mill(d.c)}, operations(chord, ridge), {}, {}};
   for (std::size_t i = 0; i < r.ops.size(); ++i) {
-    auto plan = finger::plan_finger_operation(r.gear, r.tools[0], r.ops[i], static_cast<int>(i), Tolerances{});
+    auto plan = finger::plan_finger_operation(r.gear, r.tools[0], r.ops[i], static_cast<int>(i), proof::ProofLimits{});
     if (!plan) {
       ADD_FAILURE() << plan.error().message;
       continue;
@@ -81,7 +81,7 @@ inline Milled mill_trunnion(double chord = 5e-4) {
 
 /// Passes of approve and verify with everything within its limit.
 inline void expect_good(const Milled& r, double chord, double ridge, const finger::FingerCheckOptions& options = {}) {
-  const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, Tolerances{}, options);
+  const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, proof::ProofLimits{}, options);
   for (const auto& plan : r.plans) {
     const auto ok = check.approve(plan.path);
     EXPECT_TRUE(ok) << ok.error().message;

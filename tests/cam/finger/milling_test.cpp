@@ -47,7 +47,7 @@ double left_by_brute_force(const Milled& r, double ell, double azimuth) {
 TEST(FingerMilling, TwoWallPassesAloneLeaveTheRidge) {
   Milled r = mill_all(w1(), 0.9);
   r.motions = path::motions_of(r.plans[1].path);
-  const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, Tolerances{});
+  const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, proof::ProofLimits{});
   const finger::RidgeResult ridge = check.ridge(r.motions);
   EXPECT_GT(ridge.reached_mm, 2.8);  // about 3 mm at the large end of W1, ten times what is asked
   EXPECT_NEAR(ridge.cone_distance_mm, r.gear.R_e(), 1.0);
@@ -71,13 +71,13 @@ TEST(FingerMilling, RidgeIsAsPredicted) {
     Milled r{gear.value(), {mill(d.c)}, operations(2e-3, ridge), {}, {}};
     double predicted = 0;
     for (std::size_t i = 0; i < r.ops.size(); ++i) {
-      const auto plan = finger::plan_finger_operation(r.gear, r.tools[0], r.ops[i], static_cast<int>(i), Tolerances{});
+      const auto plan = finger::plan_finger_operation(r.gear, r.tools[0], r.ops[i], static_cast<int>(i), proof::ProofLimits{});
       ASSERT_TRUE(plan) << plan.error().message;
       if (i == 0) predicted = plan->ridge_predicted_mm, fills += plan->passes.size() > 1;
       const auto m = path::motions_of(plan->path);
       r.motions.insert(r.motions.end(), m.begin(), m.end());
     }
-    const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, Tolerances{}, {.columns = 3, .rows = 3, .ridge_columns = 6, .ridge_rows = 17});
+    const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, proof::ProofLimits{}, {.columns = 3, .rows = 3, .ridge_columns = 6, .ridge_rows = 17});
     const double reached = check.ridge(r.motions).reached_mm;
     EXPECT_LE(predicted, ridge) << n;
     EXPECT_LE(reached, 1.0001 * predicted) << n;
@@ -96,11 +96,11 @@ TEST(FingerMilling, ChordLeavesTheProofItsLeverage) {
     const bevel_gear::BevelGear gear = made(d.p, d.c);
     const double leverage = finger::centre_leverage(gear);
     EXPECT_EQ(leverage, finger::WallReference(gear, 1).leverage());
-    Tolerances job;
+    proof::ProofLimits job;
     job.gouge_mm = 3e-3;
     const auto tool = mill(d.c);
     const auto ops = operations(2e-3);
-    Tolerances half = job;
+    proof::ProofLimits half = job;
     half.gouge_mm = 0.6 * job.gouge_mm;
     const finger::FingerGougeCheck check(gear, std::vector{tool}, ops, half, {.columns = 3, .rows = 3, .ridge_columns = 2, .ridge_rows = 3});
     for (std::size_t i = 0; i < ops.size(); ++i) {
@@ -135,7 +135,7 @@ TEST(FingerMilling, FeedIsConstantOnThePitchCone) {
 // A place on a wall pass moved 5 um into the wall: the check names it, and no program type can be made of it.
 TEST(FingerMilling, PlantedGougesAreFound) {
   const Milled r = mill_all(w3(), 0.9);
-  const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, Tolerances{});
+  const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, proof::ProofLimits{});
   unsigned seed = 12345;
   int planted = 0;
   for (int n = 0; n < 12; ++n) {
@@ -165,7 +165,7 @@ TEST(FingerMilling, PlantedGougesAreFound) {
 // Over-run at the small end gouges the opposite wall (46 um on W3, section 6.2 of the page).
 TEST(FingerMilling, OverrunAtTheSmallEndIsFound) {
   const Milled r = mill_all(w3(), 0.9);
-  const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, Tolerances{});
+  const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, proof::ProofLimits{});
   const auto& half = r.gear.halves()[0];
   const auto& t = half.wall(-1).trace;
   path::ClPath path = r.plans[1].path;
@@ -197,7 +197,7 @@ TEST(FingerMilling, OverrunAtTheSmallEndIsFound) {
 
 TEST(FingerMilling, DeepPlungeShankAndRapidAreFound) {
   const Milled r = mill_all(w3(), 0.9);
-  const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, Tolerances{});
+  const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, proof::ProofLimits{});
   path::ClPath deep = r.plans[0].path;
   for (auto& record : deep.records) record.tip -= 0.004 * record.axis;
   EXPECT_FALSE(check.approve(deep));
@@ -207,7 +207,7 @@ TEST(FingerMilling, DeepPlungeShankAndRapidAreFound) {
   EXPECT_FALSE(check.approve(low));
   auto tools = r.tools;
   tools[0].stick_out_mm = 9.0;  // holder into the tips
-  const finger::FingerGougeCheck short_tool(r.gear, tools, r.ops, Tolerances{});
+  const finger::FingerGougeCheck short_tool(r.gear, tools, r.ops, proof::ProofLimits{});
   EXPECT_FALSE(short_tool.approve(r.plans[0].path));
 }
 

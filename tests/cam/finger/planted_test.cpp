@@ -28,8 +28,8 @@ class FingerPlanted : public ::testing::Test {
     delete brute_;
     delete clean_;
   }
-  static Tolerances limits() {
-    Tolerances t;
+  static proof::ProofLimits limits() {
+    proof::ProofLimits t;
     t.gouge_mm = 0.0015;
     return t;
   }
@@ -254,7 +254,7 @@ TEST_F(FingerPlanted, CleanProgramsShowNone) {
     const auto v = check.verify(job.motions);
     EXPECT_LE(v.gouge.bound_mm, limits().gouge_mm);
     EXPECT_GE(v.gouge.bound_mm, v.gouge.measured_mm);
-    EXPECT_TRUE(v.gouge.worst.empty()) << v.gouge.worst.front().body << " " << v.gouge.worst.front().depth_mm;
+    EXPECT_TRUE(v.gouge.worst.empty()) << to_string(v.gouge.worst.front().body) << " " << v.gouge.worst.front().depth_mm;
     EXPECT_TRUE(v.gouge.rapids_clear);
   }
 }
@@ -315,7 +315,7 @@ TEST_F(FingerPlanted, ShankAndHolderInBlankHubAndShaft) {
     const finger::FingerGougeCheck check(g, tools, clean_->ops, limits(), {.columns = 2, .rows = 2, .ridge_columns = 2, .ridge_rows = 3});
     const auto v = check.verify(std::span(&m, 1));
     SCOPED_TRACE(fmt::format("{} in {}, case {}, true {:.6f}", pair.body, pair.patch, n, truth.depth));
-    const auto named = std::find_if(v.gouge.worst.begin(), v.gouge.worst.end(), [&](const proof::WorstPlace& w) { return w.body == pair.body && w.patch == pair.patch; });
+    const auto named = std::find_if(v.gouge.worst.begin(), v.gouge.worst.end(), [&](const proof::WorstPlace& w) { return to_string(w.body) == pair.body && w.patch == pair.patch; });
     if (named == v.gouge.worst.end()) {
       ADD_FAILURE() << "not reported";
       continue;

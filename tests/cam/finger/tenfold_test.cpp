@@ -149,7 +149,7 @@ TEST_P(FingerTenfold, AFaultOfShankOrHolderIsFound) {
       ASSERT_NEAR(g.gap, -kTenfoldDepth, 1e-4) << name_of(body) << " " << n;
       const proof::GougeResult v = tool.verdict(m);
       EXPECT_LE(v.clearance_mm, g.gap + 1e-7);
-      const auto named = std::find_if(v.worst.begin(), v.worst.end(), [&](const proof::WorstPlace& w) { return w.body == name_of(body) && w.patch == g.part; });
+      const auto named = std::find_if(v.worst.begin(), v.worst.end(), [&](const proof::WorstPlace& w) { return std::string(to_string(w.body)) == name_of(body) && w.patch == g.part; });
       if (named == v.worst.end()) {
         ADD_FAILURE() << name_of(body) << " in " << g.part << " is not named, case " << n;
         continue;

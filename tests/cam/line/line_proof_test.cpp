@@ -130,7 +130,7 @@ TEST_P(LineProof, CleanPlan) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   std::printf("%-10s %zu motions: found %.3f um, bound %.3f um, %.0f quads and %.2f ms a motion, clearance %.4f mm, deepest %s on %s\n", GetParam().name.c_str(),
               motions.size(), 1e3 * r.measured_mm, 1e3 * r.bound_mm, double(r.distance_queries) / double(motions.size()), 1e3 * seconds / double(motions.size()),
-              r.clearance_mm, r.deepest.body.c_str(), r.deepest.patch.c_str());
+              r.clearance_mm, to_string(r.deepest.body), r.deepest.patch.c_str());
   const auto milliseconds = [&](auto&& sweep) {
     const auto from = std::chrono::steady_clock::now();
     for (const auto& m : motions) (void)sweep.check(m);

@@ -16,7 +16,7 @@ proof::GougeResult finding(std::mt19937& random, int line) {
   proof::GougeResult r = proof::no_motion_yet(0.05);
   proof::WorstPlace w;
   w.line = line;
-  w.body = "flute";
+  w.body = tool::Body::flute;
   w.depth_mm = 1e-3 * depth(random);
   r.measured_mm = w.depth_mm;
   r.bound_mm = w.depth_mm + 1e-4;

@@ -15,7 +15,7 @@ constexpr proof::RapidObstacle kRing{60, 30, 5, -20};
 bool sampled_clear(const path::ToolMotion& m, const tool::ToolAssembly& tool, double margin) {
   std::vector<tool::Frustum> bodies = tool::shank_and_holder(tool);
   const double R = tool.radius_mm();
-  bodies.push_back({0.3 * R, tool.flute_length_mm, 0.7 * R, R, "flute"});
+  bodies.push_back({0.3 * R, tool.flute_length_mm, 0.7 * R, R, tool::Body::flute});
   for (int step = 0; step <= 80; ++step) {
     const Vec3 tip = path::tip_at(m, step / 80.0), axis = path::axis_at(m, step / 80.0), u = axis.unitOrthogonal(), v = axis.cross(u);
     for (const auto& body : bodies)

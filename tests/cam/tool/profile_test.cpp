@@ -89,18 +89,18 @@ TEST(Profile, ShankAndHolderOfAnAssembly) {
   a.length_mm = 60;
   a.stick_out_mm = 25;
   a.holder = {{20, 24, 10}, {40, 40, 5}};
-  const auto same = [](const tool::Frustum& f, double from, double to, double radius_from, double radius_to, const std::string& name) {
-    return f.from == from && f.to == to && f.radius_from == radius_from && f.radius_to == radius_to && f.name == name;
+  const auto same = [](const tool::Frustum& f, double from, double to, double radius_from, double radius_to, Body name) {
+    return f.from == from && f.to == to && f.radius_from == radius_from && f.radius_to == radius_to && f.body == name;
   };
   const auto held = tool::shank_and_holder(a);
   ASSERT_EQ(held.size(), 3u);
-  EXPECT_TRUE(same(held[0], a.flute_length_mm, 25, 1.5, 1.5, "shank"));
-  EXPECT_TRUE(same(held[1], 25, 35, 10, 12, "holder"));
-  EXPECT_TRUE(same(held[2], 35, 40, 20, 20, "holder"));
+  EXPECT_TRUE(same(held[0], a.flute_length_mm, 25, 1.5, 1.5, Body::shank));
+  EXPECT_TRUE(same(held[1], 25, 35, 10, 12, Body::holder));
+  EXPECT_TRUE(same(held[2], 35, 40, 20, 20, Body::holder));
   a.holder.clear();
   const auto bare = tool::shank_and_holder(a);
   ASSERT_EQ(bare.size(), 1u);
-  EXPECT_TRUE(same(bare[0], a.flute_length_mm, 60, 1.5, 1.5, "shank"));
+  EXPECT_TRUE(same(bare[0], a.flute_length_mm, 60, 1.5, 1.5, Body::shank));
 }
 
 // Bodies for meshes of any cutter: a plain ball keeps its ball, the others are enclosed by no more than the sag.
@@ -143,7 +143,7 @@ TEST(Profile, FingerMill) {
     EXPECT_LT(2 * m.pieces().size(), tool::finger_profile(gear.cutter(), assembly, sag).cutting().pieces().size());  // arcs follow the involute better than chords
     EXPECT_NEAR(m.largest_radius(), rho_D, 1e-12);
     EXPECT_FALSE(m.convex());           // the flank is hollow
-    const auto frustums = m.enclosing_frustums(1e-3, "cutter");
+    const auto frustums = m.enclosing_frustums(1e-3, tool::Body::cutter);
     double most = 0;
     for (int k = 0; k < 4000; ++k) {
       const double h = random(-1, flute - 0.5), rho = random(0, 1.5 * rho_D), truth = solid.signed_distance(h - d.p.dedendum_mm, rho);

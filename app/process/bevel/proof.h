@@ -1,0 +1,41 @@
+// What a bevel gear adds to the proof of a program (program_proof.h): walls, root and ridges, blank, hub and shaft.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/process/program_proof.h"
+#include "cam/finger/check.h"
+#include "cam/proof/limits.h"
+
+namespace toothpath::bevel {
+
+/// Axes that change in blocks along the path; moves along the tool axis (engage, retract) are left out.
+struct MovingAxes {
+  std::string letters;           ///< every axis that moves in any of them: "YC"
+  std::size_t simultaneous = 0;  ///< most axes that one block moves
+};
+
+/// Everything that it is made of must outlive it.
+class BevelGearCheck final : public process::GearCheck {
+ public:
+  BevelGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const bevel_gear::BevelGear& gear, const finger::FingerGougeCheck& check);
+
+  [[nodiscard]] int teeth() const override;
+  [[nodiscard]] double motion_tolerance() const override;
+  [[nodiscard]] Status rapids_clear(const readback::OperationTrace& trace, const readback::NcControl& control) const override;
+  void meet(const process::ProgramProof& whole) override;
+  void judge(process::ProgramProof& program, app::StageClock& clock) override;
+
+  finger::FingerCheckResult result;  ///< of the program judged last, for the ledger; its grids stand in the proof
+
+ private:
+  const job::Job& job_;
+  const machines::Machine& machine_;
+  proof::ProofLimits limits_;
+  const bevel_gear::BevelGear& gear_;
+  const finger::FingerGougeCheck& check_;
+  MovingAxes moving_;  // of the program met last
+};
+
+}  // namespace toothpath::bevel

@@ -1,0 +1,37 @@
+// What a face gear adds to the proof of a program (program_proof.h): gouge, shank and holder, rapids about the blank, the cut surface.
+#pragma once
+
+#include "app/process/program_proof.h"
+#include "cam/analytic/cut_surface.h"
+#include "cam/analytic/gouge_check.h"
+#include "cam/proof/limits.h"
+
+namespace toothpath::face {
+
+/// Everything that it is made of must outlive it.
+class FaceGearCheck final : public process::GearCheck {
+ public:
+  /// @param grid  on which the cut surface is measured
+  FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const analytic::GearDistance& part, const analytic::GougeCheck& check, const analytic::CutSurfaceOptions& grid = {});
+
+  [[nodiscard]] int teeth() const override;
+  [[nodiscard]] double motion_tolerance() const override;
+  [[nodiscard]] Status rapids_clear(const readback::OperationTrace& trace, const readback::NcControl& control) const override;
+  void meet(const process::ProgramProof& whole) override;
+  void judge(process::ProgramProof& program, app::StageClock& clock) override;
+
+  analytic::CutSurface surface;  ///< of the program judged last, for the ledger; its grids stand in the proof
+
+ private:
+  const job::Job& job_;
+  const machines::Machine& machine_;
+  proof::ProofLimits limits_;
+  const analytic::GearDistance& part_;
+  const analytic::GougeCheck& check_;
+  analytic::CutSurfaceOptions grid_;
+};
+
+/// The blank as a cylinder about the gear axis: from the underside of the mesh to the top of the stock.
+[[nodiscard]] joints::ClearanceBody clearance_body(const face_gear::FaceGear& gear);
+
+}  // namespace toothpath::face

@@ -1,0 +1,21 @@
+#include "app/process/flow/registry.h"
+
+#include "app/process/bevel/process.h"
+#include "app/process/face/process.h"
+
+namespace toothpath::flow {
+namespace {
+
+using Made = process::ValueOrErrors<std::unique_ptr<process::GearProcess>>;
+
+// A line a gear type: the parameters in the job, and who works on them. A type of gear without its line does not compile.
+Made process_of(const face_gear::FaceGearParameters&, const job::Job& job) { return face::make_process(job); }
+Made process_of(const bevel_gear::BevelGearParameters&, const job::Job& job) { return bevel::make_process(job); }
+
+}  // namespace
+
+Made make_process(const job::Job& job) {
+  return std::visit([&](const auto& gear) { return process_of(gear, job); }, job.gear);
+}
+
+}  // namespace toothpath::flow

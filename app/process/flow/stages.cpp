@@ -1,0 +1,153 @@
+#include "app/process/flow/stages.h"
+
+#include <algorithm>
+
+#include "app/process/flow/registry.h"
+#include "app/process/flow/restart.h"
+#include "app/process/program_report.h"
+#include "app/report/page/motion_charts.h"
+#include "app/report/page/page_of_run.h"
+#include "app/report/sections/sections.h"
+#include "app/report/sheet/length_tolerance.h"
+
+namespace toothpath::flow {
+namespace {
+
+void begin_report(Run& run) {
+  run.report = process::report_of(run.gear.correction ? "correct" : "run", run.job, run.machine, run.gear.process->part().warnings);
+  report::RunReport& report = run.report;
+  if (!run.gear.correction) return;
+  report.correction = run.gear.correction->rows;
+  double most = 0;
+  for (const auto& row : report.correction) most = std::max(most, row.fit.measured_max_mm);
+  report.warnings.push_back(fmt::format("the flanks to cut answer measured deviations of up to {:.2f} um (correction.json): gouge and left material are "
+                                        "counted from them, not from the nominal flanks", most * 1000));
+}
+
+/// Plans every operation and lets the gouge check pass each path. Nothing: done.
+std::optional<Diagnostic> plan_and_check(Run& run) {
+  const Status planned = run.milling->plan(run.clock, run.progress);
+  const auto paths = run.paths();
+  run.report.directions = run.milling->directions();
+  run.report.passes = run.milling->passes();
+  for (const path::ClPath* path : paths) run.report.cl_points += path->records.size();
+  if (!planned) return planned.error();
+  for (const path::ClPath* path : paths) {
+    auto passed = run.clock.run("gouge check", [&] { return run.milling->approve(*path); });
+    if (!passed) return process::located(run.job, fmt::format("operation[{}]", path->operation), passed.error());
+    run.checked.push_back(std::move(passed.value()));
+  }
+  return std::nullopt;
+}
+
+/// What the proof found goes to the report; what the files need later is kept.
+void keep_proof(Run& run, const proof::ProofLimits& limits, process::ProgramProof& proof, const std::vector<const path::ClPath*>& paths) {
+  process::note_proof(run.report, proof);
+  run.surface = std::move(proof.surface);
+  run.motion = page::motion_charts(proof.read, proof.motions, run.machine);
+  for (const path::ClPath* path : paths) run.lines.push_back(page::lines_of_records(*path, proof.motions, proof.path_tolerance_mm));
+  run.report.length_tolerances = sheet::length_tolerances(run.job, limits, run.report, paths, run.surface, run.milling->beside_the_grid());
+}
+
+/// Axis program, NC text on the disk, proof of those bytes. Nothing: done, and `report.reasons` says whether it is safe.
+std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& limits, app::OutputDir& output) {
+  const process::GearProcess& gear = *run.gear.process;
+  const auto paths = run.paths();
+  auto posted = process::post_program(run.checked, run.job, run.job.name + (run.gear.correction ? ", corrected" : ""), run.machine, gear.part().teeth,
+                                      gear.link_body(run.machine), run.report.assumed, output, run.clock, run.restart);
+  if (!posted) return posted.error();
+  const joints::AxisProgram& program = posted->axes;
+  process::note_axis_program(run.report, run.job, run.machine, paths, posted->restarted ? *posted->restarted : program);
+  run.report.blocks = posted->blocks;
+
+  const std::vector<const path::ClPath*> asked = process::paths_to_meet(program, paths);
+  const std::string file = output.final_path(posted->file);
+  auto proof = process::prove_program({posted->text, file, run.job, run.machine},
+                                      {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad}, run.milling->check(), run.clock);
+  if (!proof) {
+    Diagnostic error = proof.error();
+    error.kind = DiagnosticKind::verification;  // our own program must be readable
+    return error;
+  }
+  keep_proof(run, limits, *proof, paths);
+  if (auto done = note_restart(run.report, *posted, file, run.job, run.machine, run.milling->check(), run.lines, run.clock); !done) return done.error();
+  run.program_text = std::move(posted->restarted ? posted->restart_text : posted->text);
+  run.report.ledger = run.milling->ledger(program, *proof, posted->blend_mm);
+  run.report.sections = sections::sections_of({run.job, run.report, posted->restarted ? *posted->restarted : program, paths});
+  if (!run.report.reasons.empty()) return std::nullopt;
+  process::note_verified(run.report, posted->file, run.program_text);
+  return std::nullopt;
+}
+
+}  // namespace
+
+process::ValueOrErrors<GearToCut> make_gear(const job::Job& job, const std::vector<std::string>& measured_files, app::StageClock& clock) {
+  auto made = clock.run("gear", [&] { return make_process(job); });
+  if (auto* errors = made.refused()) return std::move(*errors);
+  GearToCut gear{std::move(made).value(), std::nullopt};
+  if (measured_files.empty()) return gear;
+  auto corrected = gear.process->correct(measured_files, clock);
+  if (!corrected) return std::vector{corrected.error()};
+  gear.correction = std::move(corrected.value());
+  return gear;
+}
+
+std::vector<Diagnostic> prepare(Run& run, const RunAsked& asked) {
+  if (run.job.operations.empty()) return {fail_at(run.job.where("operation"), "the job lacks an [[operation]]: there is nothing to run")};
+  std::vector<Diagnostic> errors;
+  auto gear = make_gear(run.job, asked.measured_files, run.clock);
+  if (auto* refused = gear.refused()) errors = std::move(*refused);
+  else run.gear = std::move(gear).value();
+  auto loaded = run.clock.run("machine", [&] { return process::load_machine(run.job, run.gear.process ? std::optional(run.gear.process->part().swing_diameter_mm) : std::nullopt); });
+  if (auto* refused = loaded.refused()) errors.insert(errors.end(), refused->begin(), refused->end());
+  else run.machine = std::move(loaded).value();
+  if (!errors.empty()) return errors;
+  auto restart = read_restart(asked.restart, run.job, run.gear.process->part().teeth);
+  if (!restart) return {restart.error()};
+  run.restart = *restart;
+  return {};
+}
+
+std::optional<Diagnostic> plan_post_and_prove(Run& run, app::OutputDir& output, const proof::ProofLimits& limits, const process::FlankGrid& grid) {
+  begin_report(run);
+  run.milling = run.gear.process->milling(run.machine, limits, grid, run.clock);
+  if (auto stopped = plan_and_check(run)) return stopped;
+  return post_and_prove(run, limits, output);
+}
+
+page::ReportPage page_content(Run& run) {
+  const process::GearProcess& gear = *run.gear.process;
+  const std::string contact = gear.contact_section(run.surface, run.report.warnings);  // first: it may add a warning
+  page::ReportPage page = page::page_of_run(gear.on_page(run.report.machine_name), run.report, run.paths(), run.program_text);
+  page.surface = run.surface;
+  page.contact = contact;
+  page.gear_limits = gear.limit_charts();
+  page.motion = run.motion;
+  for (std::size_t k = 0; k < run.lines.size(); ++k) page.paths[k].nc_lines = run.lines[k];
+  return page;
+}
+
+StagesOutcome run_stages(const job::Job& job, const proof::ProofLimits& limits, app::OutputDir& scratch, bool quiet, const process::FlankGrid& grid, bool with_page) {
+  Run run(quiet);
+  run.job = job;
+  StagesOutcome outcome;
+  outcome.errors = prepare(run, {});
+  if (!outcome.errors.empty()) return outcome;
+  if (const auto stopped = plan_post_and_prove(run, scratch, limits, grid)) {
+    if (stopped->kind != DiagnosticKind::verification) outcome.errors.push_back(*stopped);
+    run.report.reasons.push_back(stopped->message);
+    run.report.verified = false;
+  }
+  process::discard_program(scratch);
+  run.report.stages = run.clock.seconds();
+  if (with_page) {
+    outcome.page = page_content(run);
+    outcome.page->nc_file.clear();  // dropped: the listing on the page is what stays of it
+  }
+  run.progress.clear();
+  outcome.report = std::move(run.report);
+  outcome.surface = std::move(run.surface);
+  return outcome;
+}
+
+}  // namespace toothpath::flow

@@ -1,0 +1,54 @@
+#include "app/process/ledger_sources.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/base/units.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath::process {
+namespace {
+
+/// Largest tolerance of path blending that the text asks for while cutting.
+double blend_read_back(const readback::ReadBack& read) {
+  double most = 0;
+  for (const auto& trace : read.operations)
+    for (const auto& move : trace.moves)
+      if (!move.rapid) most = std::max({most, double(move.blend_mm), double(move.corner_path_mm)});
+  return most;
+}
+
+}  // namespace
+
+proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double measured_mm, std::string note) {
+  return {source, predicted_mm * app::kUm, measured_mm * app::kUm, std::move(note)};
+}
+
+double rotary_rounding(const joints::AxisProgram& program) {
+  const double one = radians(0.5 * std::pow(10.0, -program.format.rotary_decimals));
+  return (program.letters[3] != 0 ? one : 0) + (program.letters[4] != 0 ? one : 0);
+}
+
+Stated stated_deviation(std::span<const path::ToolMotion> motions) {
+  Stated out;
+  for (const auto& m : motions)
+    if (!m.rapid) {
+      out.tip_mm = std::max(out.tip_mm, m.deviation_mm);
+      out.axis_rad = std::max(out.axis_rad, m.axis_deviation);
+    }
+  return out;
+}
+
+void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::AxisProgram& program, const std::optional<readback::ClComparison>& met, const readback::ReadBack& read,
+                         double blend_mm) {
+  const double worst = met ? met->worst_mm : 0, extra = met ? met->worst_extra_mm : 0;
+  const bool turns = program.chord_bound_mm > 0;
+  ledger.push_back(entry(proof::ErrorSource::axis_linearisation, program.chord_bound_mm, turns ? std::max(0.0, extra - worst) : 0,
+                         turns ? "blocks against the chords of the path, rounding taken off" : "no rotary axis turns while the tool cuts"));
+  ledger.push_back(entry(proof::ErrorSource::rounding, program.rounding_bound_mm, worst, "records against the motions that were read back"));
+  // In single precision, as the moves that are read back carry it.
+  ledger.push_back(entry(proof::ErrorSource::path_blending, double(float(blend_mm)), blend_read_back(read),
+                         blend_mm > 0 ? "the tolerance that the text grants the control" : "the text grants the control none"));
+}
+
+}  // namespace toothpath::process

@@ -1,0 +1,4 @@
+// Every section, in the order of the set-up sheet: the name of its file and of the function in it.
+SECTION(travels)
+SECTION(times)
+SECTION(tool_work)
