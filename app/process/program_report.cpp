@@ -84,9 +84,24 @@ std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& progra
   return followed;
 }
 
-Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, const job::Job& job, const std::string& title, const machines::Machine& machine, int teeth,
-                                   const joints::ClearanceBody& body, const std::vector<std::string>& assumed, app::OutputDir& output, app::StageClock& clock,
-                                   const std::optional<joints::ProgramRestart>& restart) {
+namespace {
+
+text::NcHeader header_of(const PostRequest& request, const std::vector<std::string>& assumed, double radius) {
+  text::NcHeader header;
+  header.job_name = request.title;
+  header.machine_name = request.machine.name;
+  header.assumed = assumed;
+  header.coolant = request.job.coolant;
+  header.blend_mm = std::min(header.blend_mm, kBlendShare * request.job.verify.gouge_tolerance_mm);
+  if (radius > 0) header.blend_axis_deg = std::max(kLeastAxisBlend, std::min(header.blend_axis_deg, degrees(header.blend_mm / (2 * radius))));
+  return header;
+}
+
+}  // namespace
+
+Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, const PostRequest& request, const std::vector<std::string>& assumed, app::OutputDir& output,
+                                   app::StageClock& clock) {
+  const auto& [job, title, machine, teeth, body, restart] = request;
   const auto dialect = controls::dialect_of(machine);
   if (!dialect) return located(job, "machine.file", dialect.error());
   auto program = clock.run("axis program", [&] {
@@ -98,15 +113,9 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   PostedProgram posted;
   posted.axes = std::move(program.value());
 
-  text::NcHeader header;
-  header.job_name = title;
-  header.machine_name = machine.name;
-  header.assumed = assumed;
-  header.coolant = job.coolant;
-  header.blend_mm = std::min(header.blend_mm, kBlendShare * job.verify.gouge_tolerance_mm);
   double radius = 0;  // a lean of the tool moves the centre of its ball by no more than a corner does
   for (const auto& tool : job.tools) radius = std::max(radius, tool.radius_mm());
-  if (radius > 0) header.blend_axis_deg = std::max(kLeastAxisBlend, std::min(header.blend_axis_deg, degrees(header.blend_mm / (2 * radius))));
+  const text::NcHeader header = header_of(request, assumed, radius);
   auto text = clock.run("NC text", [&] { return text::write_nc(posted.axes, *dialect, header); });
   if (!text) return located(job, "machine.file", text.error());
   posted.blocks = text->blocks;

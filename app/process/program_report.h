@@ -40,11 +40,19 @@ struct PostedProgram {
   std::string restart_text;              ///< the bytes of that file as read back
   double blend_mm = 0;   ///< how far the control may leave the corners; 0: the dialect has no such word
 };
-/// Axis program, NC text, the file, its bytes. Errors carry their place in the job. `title`: of the job, at the top of the text.
-/// With `restart` the file holds the program from there on.
-[[nodiscard]] Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, const job::Job& job, const std::string& title, const machines::Machine& machine, int teeth,
-                                                 const joints::ClearanceBody& body, const std::vector<std::string>& assumed, app::OutputDir& output,
-                                                 app::StageClock& clock, const std::optional<joints::ProgramRestart>& restart = std::nullopt);
+/// What a program is made for. Everything named must outlive the call.
+struct PostRequest {
+  const job::Job& job;
+  std::string title;  ///< of the job, at the top of the text
+  const machines::Machine& machine;
+  int teeth = 0;
+  joints::ClearanceBody body;  ///< that links keep clear of
+  std::optional<joints::ProgramRestart> restart;  ///< the file holds the program from there on
+};
+/// Axis program, NC text, the file, its bytes. Errors carry their place in the job.
+/// @param assumed values that the text names at its top
+[[nodiscard]] Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, const PostRequest& request, const std::vector<std::string>& assumed,
+                                                 app::OutputDir& output, app::StageClock& clock);
 /// Takes every program file out of the directory again.
 void discard_program(app::OutputDir& output);
 

@@ -7,7 +7,6 @@
 #include <variant>
 
 #include "cam/analytic/gear_ring.h"
-#include "cam/analytic/swept_path.h"
 #include "geometry/base/angle.h"
 #include "geometry/face_gear/inverse.h"
 

@@ -35,8 +35,8 @@ double lower_bound_between(double d0, double d1, double length) {
 }
 
 /// Ball centres of everything that cuts: feed, engage and retract moves.
-std::vector<analytic::BallMove> ball_moves(const path::ClPath& path, double radius) {
-  std::vector<analytic::BallMove> out;
+std::vector<cut::BallMove> ball_moves(const path::ClPath& path, double radius) {
+  std::vector<cut::BallMove> out;
   for (std::size_t k = 1; k < path.records.size(); ++k) {
     const auto &a = path.records[k - 1], &b = path.records[k];
     if (b.kind != path::MoveKind::rapid) out.push_back({a.tip + radius * a.axis, b.tip + radius * b.axis});
@@ -73,7 +73,7 @@ class JobPlanner {
       }
       if (n + 1 < operations_.size()) {
         const double radius = tools_[std::size_t(op.tool)].radius_mm();
-        cleared_.push_back(std::make_unique<analytic::SweptPath>(ball_moves(path, radius), radius));
+        cleared_.push_back(std::make_unique<cut::SweptPath>(ball_moves(path, radius), radius));
       }
       plan_.paths.push_back(std::move(path));
       plan_.operations.push_back(summary);
@@ -138,7 +138,7 @@ class JobPlanner {
     r.overrun_mm = room;
     r.blank_top_mm = part_.gear().blank_top();
     r.climb = op.climb;
-    std::vector<const analytic::SweptPath*> cleared;
+    std::vector<const cut::SweptPath*> cleared;
     for (const auto& c : cleared_) cleared.push_back(c.get());
     auto planned = plan_roughing(out.sheet, r, cleared);
     if (!planned) return PlanRefusal{key_of(n) + ".tool", planned.error()};
@@ -226,7 +226,7 @@ class JobPlanner {
     turning.chord_mm = kTurnShare * std::min(op.chord_tolerance_mm, chord_room(op));
     const bool prescribed = !op.axis_plus.empty();
     as_stage("tool direction", [&] {
-      if (!bodies_) bodies_ = std::make_unique<BodyTree>(part_);
+      if (!bodies_) bodies_ = std::make_unique<analytic::BodyTree>(part_);
       if (!prescribed) direction = choose_direction(part_, *bodies_, zone, made.sheet, made.passes, tool, {o_.limits.clearance_mm, 0.01});
     });
     direction.operation = n;
@@ -406,8 +406,8 @@ class JobPlanner {
   const std::vector<path::MillingOperation>& operations_;
   const PlanOptions& o_;
   const PlanProgress& progress_;
-  std::vector<std::unique_ptr<analytic::SweptPath>> cleared_;
-  std::unique_ptr<BodyTree> bodies_;  ///< built with the first zone
+  std::vector<std::unique_ptr<cut::SweptPath>> cleared_;
+  std::unique_ptr<analytic::BodyTree> bodies_;  ///< built with the first zone
   FaceGearPlan plan_;
 };
 

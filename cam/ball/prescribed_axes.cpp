@@ -37,7 +37,7 @@ struct Shortfall {
 
 class Prover {
  public:
-  Prover(const analytic::GearDistance& part, const BodyTree& tree, int zone, const tool::ToolAssembly& tool, const OrientationOptions& o)
+  Prover(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const tool::ToolAssembly& tool, const OrientationOptions& o)
       : part_(part), tree_(tree), tool_(tool), o_(o), check_(part, tree, zone, tool, o) {}
 
   [[nodiscard]] const OrientationCheck& check() const { return check_; }
@@ -103,7 +103,7 @@ class Prover {
   }
 
   const analytic::GearDistance& part_;
-  const BodyTree& tree_;
+  const analytic::BodyTree& tree_;
   const tool::ToolAssembly& tool_;
   const OrientationOptions& o_;
   OrientationCheck check_;
@@ -132,7 +132,7 @@ Vec2 PrescribedLean::at(double r) const {
   return a + t * (m0 + t * (3 * rise - 2 * m0 - m1 + t * (m0 + m1 - 2 * rise)));
 }
 
-Expected<Orientation, OrientationRefusal> prescribe_axes(const analytic::GearDistance& part, const BodyTree& tree, int zone, const tool::ToolAssembly& tool,
+Expected<Orientation, OrientationRefusal> prescribe_axes(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const tool::ToolAssembly& tool,
                                                              const path::MillingOperation& operation, OrientationOptions options,
                                                              std::vector<BallPass>& passes) {
   options.least_tilt_rad = 0;

@@ -29,7 +29,7 @@ class PrescribedLean {
 /// Refuses where shank or holder keep less than `clearance_mm`, the flute would cut, or the draft is less than `least_draft`: the worst
 /// place, with the body, its gap or depth, and the limit. Looked at are all records and places between them at most 0.3 mm apart. The ball
 /// stays on its pass. How near the axis comes to the pole of a machine is not asked here: that is for the post.
-[[nodiscard]] Expected<Orientation, OrientationRefusal> prescribe_axes(const analytic::GearDistance& part, const BodyTree& tree, int zone,
+[[nodiscard]] Expected<Orientation, OrientationRefusal> prescribe_axes(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone,
                                                                            const tool::ToolAssembly& tool, const path::MillingOperation& operation,
                                                                            OrientationOptions options, std::vector<BallPass>& passes);
 

@@ -82,7 +82,7 @@ Walls walls_of(const face_gear::OffsetSheet& sheet, const face_gear::OffsetSheet
 
 class RoughingPlanner {
  public:
-  RoughingPlanner(const face_gear::OffsetSheet& sheet, const RoughingOptions& o, const std::vector<const analytic::SweptPath*>& cleared)
+  RoughingPlanner(const face_gear::OffsetSheet& sheet, const RoughingOptions& o, const std::vector<const cut::SweptPath*>& cleared)
       : sheet_(sheet), o_(o), cleared_(cleared) {}
 
   Result<RoughingPasses> run() {
@@ -197,7 +197,7 @@ class RoughingPlanner {
 
   const face_gear::OffsetSheet& sheet_;
   RoughingOptions o_;
-  const std::vector<const analytic::SweptPath*>& cleared_;
+  const std::vector<const cut::SweptPath*>& cleared_;
   double from_ = 0, to_ = 0;
   std::vector<Walls> walls_;  ///< one a station
   RoughingPasses out_;
@@ -206,7 +206,7 @@ class RoughingPlanner {
 }  // namespace
 
 Result<RoughingPasses> plan_roughing(const face_gear::OffsetSheet& sheet, const RoughingOptions& options,
-                                     const std::vector<const analytic::SweptPath*>& cleared) {
+                                     const std::vector<const cut::SweptPath*>& cleared) {
   return RoughingPlanner(sheet, options, cleared).run();
 }
 

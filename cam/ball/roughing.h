@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cam/ball/finishing.h"
-#include "cam/analytic/swept_path.h"
+#include "cam/cut/swept_path.h"
 
 namespace toothpath::ball {
 
@@ -28,6 +28,6 @@ struct RoughingPasses {
 
 /// `cleared` are the volumes removed by earlier operations: a pass that would cut nothing is left out.
 [[nodiscard]] Result<RoughingPasses> plan_roughing(const face_gear::OffsetSheet& sheet, const RoughingOptions& options,
-                                                   const std::vector<const analytic::SweptPath*>& cleared);
+                                                   const std::vector<const cut::SweptPath*>& cleared);
 
 }  // namespace toothpath::ball

@@ -39,7 +39,7 @@ std::vector<Vec3> some_centres(const std::vector<BallPass>& passes, std::size_t 
 /// One zone and tool: what a direction is worth.
 class Search {
  public:
-  Search(const analytic::GearDistance& part, const BodyTree& tree, int zone, const face_gear::OffsetSheet& sheet, const std::vector<BallPass>& passes,
+  Search(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const face_gear::OffsetSheet& sheet, const std::vector<BallPass>& passes,
          const tool::ToolAssembly& tool, const DirectionOptions& options)
       : tree_(tree), sheet_(sheet), tool_(tool), o_(options), few_(some_centres(passes, 24)), many_(some_centres(passes, 400)),
         frame_(pitch_frame(part, zone)), beside_ring_(part.zones() > 1) {
@@ -240,7 +240,7 @@ class Search {
                           choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm, o_.clearance_mm);
   }
 
-  const BodyTree& tree_;
+  const analytic::BodyTree& tree_;
   const face_gear::OffsetSheet& sheet_;
   const tool::ToolAssembly& tool_;
   const DirectionOptions& o_;
@@ -264,7 +264,7 @@ PitchFrame pitch_frame(const analytic::GearDistance& part, int zone) {
   return frame;
 }
 
-proof::DirectionChoice choose_direction(const analytic::GearDistance& part, const BodyTree& tree, int zone, const face_gear::OffsetSheet& sheet,
+proof::DirectionChoice choose_direction(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const face_gear::OffsetSheet& sheet,
                                  const std::vector<BallPass>& passes, const tool::ToolAssembly& tool,
                                  const DirectionOptions& options) {
   return Search(part, tree, zone, sheet, passes, tool, options).run();

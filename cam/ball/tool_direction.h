@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "cam/ball/body_tree.h"
+#include "cam/analytic/body_tree.h"
 #include "cam/tool/assembly.h"
 #include "cam/ball/finishing.h"
 #include "cam/analytic/gear_distance.h"
@@ -31,7 +31,7 @@ struct PitchFrame {
 /// stands beside the zone, the gear axis comes first, and a direction in which the flute cuts the teeth is not clear. `fixed` is false and
 /// the axis meaningless when none is clear; then the map holds every direction tried with the body in the way and its gap.
 /// A gap below 0 says by how much the body would have to be slimmer and begin higher to cut nowhere (followed to -3 mm).
-[[nodiscard]] proof::DirectionChoice choose_direction(const analytic::GearDistance& part, const BodyTree& tree, int zone, const face_gear::OffsetSheet& sheet,
+[[nodiscard]] proof::DirectionChoice choose_direction(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const face_gear::OffsetSheet& sheet,
                                                const std::vector<BallPass>& passes, const tool::ToolAssembly& tool,
                                                const DirectionOptions& options);
 

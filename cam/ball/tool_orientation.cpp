@@ -26,7 +26,7 @@ constexpr double kLongestStickOut = 60; // mm: how much longer a tool is looked 
 
 class Orienter {
  public:
-  Orienter(const analytic::GearDistance& part, const BodyTree& tree, int zone, const tool::ToolAssembly& tool, const OrientationOptions& o,
+  Orienter(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const tool::ToolAssembly& tool, const OrientationOptions& o,
            std::vector<BallPass>& passes)
       : tree_(tree), tool_(tool), o_(o), passes_(passes), check_(part, tree, zone, tool, o), grid_(std::tan(o.widest_lean_rad)) {}
 
@@ -258,7 +258,7 @@ class Orienter {
     return "a slimmer shank is needed";
   }
 
-  const BodyTree& tree_;
+  const analytic::BodyTree& tree_;
   const tool::ToolAssembly& tool_;
   const OrientationOptions& o_;
   std::vector<BallPass>& passes_;
@@ -273,7 +273,7 @@ class Orienter {
 
 }  // namespace
 
-OrientationCheck::OrientationCheck(const analytic::GearDistance& part, const BodyTree& tree, int zone, const tool::ToolAssembly& tool,
+OrientationCheck::OrientationCheck(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const tool::ToolAssembly& tool,
                                    const OrientationOptions& options)
     : part_(part), tree_(tree), tool_(tool), o_(options), frame_(pitch_frame(part, zone)), bodies_(tool::shank_and_holder(tool)) {}
 
@@ -301,7 +301,7 @@ bool OrientationCheck::clear(const BallPass::Point& point, const Vec3& axis, dou
          flute_is_free(point, axis);
 }
 
-Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& check, const BodyTree& tree, const tool::ToolAssembly& tool,
+Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& check, const analytic::BodyTree& tree, const tool::ToolAssembly& tool,
                       std::vector<BallPass>& passes) {
   Orientation out;
   out.least_lean_rad = INFINITY;
@@ -332,7 +332,7 @@ Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& che
   return out;
 }
 
-Expected<Orientation, OrientationRefusal> orient_passes(const analytic::GearDistance& part, const BodyTree& tree, int zone,
+Expected<Orientation, OrientationRefusal> orient_passes(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone,
                                                             const tool::ToolAssembly& tool, const OrientationOptions& options,
                                                             std::vector<BallPass>& passes) {
   ++runs;

@@ -42,7 +42,7 @@ struct OrientationRefusal {
 /// Which directions keep the ball cutting and every body clear at one place of the ball.
 class OrientationCheck {
  public:
-  OrientationCheck(const analytic::GearDistance& part, const BodyTree& tree, int zone, const tool::ToolAssembly& tool, const OrientationOptions& options);
+  OrientationCheck(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const tool::ToolAssembly& tool, const OrientationOptions& options);
   /// With the ball centre at `point`. `clearance_mm`: of shank and holder.
   [[nodiscard]] bool clear(const BallPass::Point& point, const Vec3& axis, double clearance_mm) const;
   /// The part of it that concerns the cutting: draft at the contact, flute free of the part, away from the gear axis.
@@ -55,7 +55,7 @@ class OrientationCheck {
   [[nodiscard]] bool flute_is_free(const BallPass::Point& point, const Vec3& axis) const;
 
   const analytic::GearDistance& part_;
-  const BodyTree& tree_;
+  const analytic::BodyTree& tree_;
   const tool::ToolAssembly& tool_;
   const OrientationOptions& o_;
   PitchFrame frame_;
@@ -63,12 +63,12 @@ class OrientationCheck {
 };
 
 /// Axes for all passes of one zone; inserts points into the passes where the axis turns. Deterministic on any number of threads.
-[[nodiscard]] Expected<Orientation, OrientationRefusal> orient_passes(const analytic::GearDistance& part, const BodyTree& tree, int zone,
+[[nodiscard]] Expected<Orientation, OrientationRefusal> orient_passes(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone,
                                                                           const tool::ToolAssembly& tool, const OrientationOptions& options,
                                                                           std::vector<BallPass>& passes);
 
 /// Puts the records into their passes and measures them: leans, turns, least gap of shank and holder.
-[[nodiscard]] Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& check, const BodyTree& tree, const tool::ToolAssembly& tool,
+[[nodiscard]] Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& check, const analytic::BodyTree& tree, const tool::ToolAssembly& tool,
                                     std::vector<BallPass>& passes);
 
 /// How often `orient_passes` has run in this process: a job whose zones all have a fixed direction leaves it alone.

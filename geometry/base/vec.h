@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 namespace toothpath {
@@ -27,6 +28,13 @@ using Mat3 = Eigen::Matrix3d;
 [[nodiscard]] inline Vec3 turned(const Vec3& p, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
   return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
+}
+/// Distance from a point to a segment.
+[[nodiscard]] inline double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+  const Vec3 ab = b - a;
+  const double l2 = ab.squaredNorm();
+  const double t = l2 > 0 ? std::clamp((p - a).dot(ab) / l2, 0.0, 1.0) : 0.0;
+  return (p - a - t * ab).norm();
 }
 /// Angle between two directions of any length, in [0, pi], with all digits at both ends.
 [[nodiscard]] inline double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }

@@ -10,14 +10,6 @@ namespace {
 
 constexpr double kStillTip = 1e-6;  // mm
 
-
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 d = b - a;
-  const double l2 = d.squaredNorm();
-  const double t = l2 > 0 ? std::clamp((p - a).dot(d) / l2, 0.0, 1.0) : 0.0;
-  return (p - a - t * d).norm();
-}
-
 /// Walks along the motions of one operation, record by record.
 class Walk {
  public:

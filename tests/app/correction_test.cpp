@@ -8,7 +8,7 @@
 #include "app/process/gear_of_job.h"
 #include "app/job/file.h"
 #include "app/job/measured_file.h"
-#include "cam/analytic/swept_path.h"
+#include "cam/cut/swept_path.h"
 #include "tests/app/program.h"
 #include "postproc/controls/of_machine.h"
 #include "tests/support/inspection_points.h"
@@ -63,7 +63,7 @@ class CutFlanks {
     const auto read = readback::read_back(program, "program.ngc", *control, c.machine, *c.job.setup, {.teeth = teeth, .keep_all = false});
     EXPECT_TRUE(read) << read.error().text();
     const double R = c.job.tools[0].radius_mm();
-    std::vector<analytic::BallMove> moves;
+    std::vector<cut::BallMove> moves;
     for (const auto& trace : read->operations) {
       const auto motions = readback::tool_motions(trace, read->copies, *control, c.machine, *c.job.setup, teeth, {1e-5, 1e-5});
       EXPECT_TRUE(motions);
@@ -71,7 +71,7 @@ class CutFlanks {
         if (!m.rapid && m.tooth == 0) moves.push_back({m.tip_from + R * m.axis_from, m.tip_to + R * m.axis_to});
     }
     EXPECT_GT(moves.size(), 1000u);
-    swept_ = std::make_unique<analytic::SweptPath>(std::move(moves), R);
+    swept_ = std::make_unique<cut::SweptPath>(std::move(moves), R);
   }
   /// The flank of side -1 that space 0 sees is that of tooth 1.
   [[nodiscard]] double at(const inspection::InspectionPoint& p, double pitch) const {
@@ -79,7 +79,7 @@ class CutFlanks {
   }
 
  private:
-  std::unique_ptr<analytic::SweptPath> swept_;
+  std::unique_ptr<cut::SweptPath> swept_;
 };
 
 std::string measured_csv(const std::vector<inspection::InspectionPoint>& grid, const std::function<double(const inspection::InspectionPoint&)>& deviation_mm) {

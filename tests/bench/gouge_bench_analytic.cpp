@@ -9,7 +9,7 @@
 #include "tests/bench/thread_seconds.h"
 #include "tests/support/sample_gears.h"
 #include "tests/support/sample_tools.h"
-#include "cam/ball/body_tree.h"
+#include "cam/analytic/body_tree.h"
 
 namespace toothpath::bench {
 namespace {
@@ -43,7 +43,7 @@ struct Answer {
   double cutter = kAnalyticWithin, gap = kAnalyticWithin;
 };
 
-Answer exact(const analytic::GearDistance& part, const ball::BodyTree& tree, const tool::ToolAssembly& tool, const Pose& pose) {
+Answer exact(const analytic::GearDistance& part, const analytic::BodyTree& tree, const tool::ToolAssembly& tool, const Pose& pose) {
   const double R = tool.radius_mm(), top = tool.flute_length_mm - R;
   Answer a;
   for (double h = 0; h <= top;) {
@@ -71,7 +71,7 @@ void analytic_rows() {
   const face_gear::FaceGear gear = test::made(test::quarter_dhfg());
   const tool::ToolAssembly tool = test::ball_mill(0.5, 3.2, 0.46, 14, 10);
   const analytic::GearDistance part(gear, 1.0);
-  const ball::BodyTree bodies(part);
+  const analytic::BodyTree bodies(part);
   const auto poses = poses_of(gear, part, tool);
   std::printf("\nanalytic engine of a face gear (180 teeth, two rings; ball R0.25; random poses in contact), the mesh is its own within the sag\n");
   std::printf("%-28s %9s %8s %12s %12s %8s %11s\n", "question", "triangles", "sag mm", "ours 1/s", "CGAL 1/s", "ratio", "largest dif");

@@ -48,12 +48,14 @@ double cusp_of_moved_passes(double height, double moved, double lean) {
 
 }  // namespace
 
-std::vector<proof::LedgerEntry> ledger(const analytic::GearDistance& part, const ball::FaceGearPlan& plan, std::span<const tool::ToolAssembly> tools,
-                                          const joints::AxisProgram& program, const process::ProgramProof& proof, const analytic::CutSurface& surface, double blend_mm, double proof_mm) {
+std::vector<proof::LedgerEntry> ledger(const MilledGear& milled, const joints::AxisProgram& program, const process::ProgramProof& proof, double blend_mm,
+                                       double proof_mm) {
+  const ball::FaceGearPlan& plan = milled.plan;
+  const cut::CutSurface& surface = milled.surface;
   if (plan.paths.empty()) return {};
   const path::ClPath& path = plan.paths.back();
-  const double radius = tools[std::size_t(path.tool)].radius_mm();
-  const Planned planned = measure_planned(part, path, radius);
+  const double radius = milled.tools[std::size_t(path.tool)].radius_mm();
+  const Planned planned = measure_planned(milled.part, path, radius);
   const auto& scallop = surface.scallop;
   const process::Stated stated = process::stated_deviation(proof.motions);
   std::vector<proof::LedgerEntry> out;

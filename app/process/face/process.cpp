@@ -12,7 +12,7 @@
 #include "app/report/limits/chart.h"
 #include "app/report/page/tool_body.h"
 #include "app/report/svg/html_text.h"
-#include "cam/analytic/cut_surface.h"
+#include "cam/cut/cut_surface.h"
 #include "cam/analytic/gouge_check.h"
 #include "cam/ball/plan.h"
 #include "postproc/joints/pole.h"
@@ -20,8 +20,8 @@
 namespace toothpath::face {
 namespace {
 
-analytic::CutSurfaceOptions surface_options(const process::FlankGrid& grid) {
-  analytic::CutSurfaceOptions options;
+cut::CutSurfaceOptions surface_options(const process::FlankGrid& grid) {
+  cut::CutSurfaceOptions options;
   if (grid.rows > 0) options.flank_rows = grid.rows;
   if (grid.columns > 0) options.columns = grid.columns;
   return options;
@@ -62,7 +62,7 @@ class FaceMilling final : public process::GearMilling {
   [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override { return gouge_.check_path(path); }
   [[nodiscard]] process::GearCheck& check() override { return check_; }
   [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program, const process::ProgramProof& proof, double blend_mm) const override {
-    return face::ledger(part_, plan_, job_.tools, program, proof, check_.surface, blend_mm, limits_.proof_mm);
+    return face::ledger({part_, plan_, job_.tools, check_.surface}, program, proof, blend_mm, limits_.proof_mm);
   }
   [[nodiscard]] sheet::OtherSurface beside_the_grid() const override { return {}; }
 

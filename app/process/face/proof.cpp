@@ -31,7 +31,7 @@ void judge_gouge(const proof::GougeResult& gouge, const analytic::GougeCheck& ch
 constexpr double kLeastAllowance = 0.8;
 
 /// What a finishing operation may leave, on every point that its ball can reach: the cusps, the chords and a micrometre.
-void judge_surface(const analytic::CutSurface& surface, const job::Job& job, const proof::ProofLimits& limits, std::vector<std::string>& reasons) {
+void judge_surface(const cut::CutSurface& surface, const job::Job& job, const proof::ProofLimits& limits, std::vector<std::string>& reasons) {
   for (const proof::ExcessResult& after : surface.operations) {
     const double allowance = job.operations[static_cast<std::size_t>(after.operation)].allowance_mm;
     if (allowance > 0 && after.points > 0 && after.min_mm < kLeastAllowance * allowance)
@@ -61,7 +61,7 @@ joints::ClearanceBody clearance_body(const face_gear::FaceGear& gear) {
   return {gear.outer_radius(), lowest - 2.5 * gear.parameters().module_mm, gear.blank_top()};
 }
 
-FaceGearCheck::FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const analytic::GearDistance& part, const analytic::GougeCheck& check, const analytic::CutSurfaceOptions& grid)
+FaceGearCheck::FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const analytic::GearDistance& part, const analytic::GougeCheck& check, const cut::CutSurfaceOptions& grid)
     : job_(job), machine_(machine), limits_(limits), part_(part), check_(check), grid_(grid) {}
 
 int FaceGearCheck::teeth() const { return part_.gear().parameters().teeth; }
@@ -80,7 +80,7 @@ void FaceGearCheck::judge(process::ProgramProof& program, app::StageClock& clock
   for (const auto& operation : job_.operations) tool_of_operation.push_back(operation.tool);
   program.gouge = clock.run("proof of the program", [&] { return check_.check(program.motions, tool_of_operation); });
   judge_gouge(program.gouge, check_, limits_.gouge_mm, program.reasons);
-  surface = clock.run("cut surface", [&] { return analytic::measure_cut_surface(part_, program.motions, job_.operations, job_.tools, grid_); });
+  surface = clock.run("cut surface", [&] { return cut::measure_cut_surface(part_, program.motions, job_.operations, job_.tools, grid_); });
   judge_surface(surface, job_, limits_, program.reasons);
   judge_unreached(surface.unreached, job_.verify.unreached_mm, program.reasons);
   program.excess = surface.operations;

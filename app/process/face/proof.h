@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/process/program_proof.h"
-#include "cam/analytic/cut_surface.h"
+#include "cam/cut/cut_surface.h"
 #include "cam/analytic/gouge_check.h"
 #include "cam/proof/limits.h"
 
@@ -12,7 +12,7 @@ namespace toothpath::face {
 class FaceGearCheck final : public process::GearCheck {
  public:
   /// @param grid  on which the cut surface is measured
-  FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const analytic::GearDistance& part, const analytic::GougeCheck& check, const analytic::CutSurfaceOptions& grid = {});
+  FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const analytic::GearDistance& part, const analytic::GougeCheck& check, const cut::CutSurfaceOptions& grid = {});
 
   [[nodiscard]] int teeth() const override;
   [[nodiscard]] double motion_tolerance() const override;
@@ -20,7 +20,7 @@ class FaceGearCheck final : public process::GearCheck {
   void meet(const process::ProgramProof& whole) override;
   void judge(process::ProgramProof& program, app::StageClock& clock) override;
 
-  analytic::CutSurface surface;  ///< of the program judged last, for the ledger; its grids stand in the proof
+  cut::CutSurface surface;  ///< of the program judged last, for the ledger; its grids stand in the proof
 
  private:
   const job::Job& job_;
@@ -28,7 +28,7 @@ class FaceGearCheck final : public process::GearCheck {
   proof::ProofLimits limits_;
   const analytic::GearDistance& part_;
   const analytic::GougeCheck& check_;
-  analytic::CutSurfaceOptions grid_;
+  cut::CutSurfaceOptions grid_;
 };
 
 /// The blank as a cylinder about the gear axis: from the underside of the mesh to the top of the stock.

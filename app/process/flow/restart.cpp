@@ -77,17 +77,17 @@ Result<std::optional<joints::ProgramRestart>> read_restart(const std::string& te
   return std::optional(joints::ProgramRestart{*operation, *tooth});
 }
 
-Status note_restart(report::RunReport& report, const process::PostedProgram& posted, const std::string& file, const job::Job& job, const machines::Machine& machine,
-                    const process::GearCheck& gear, std::vector<std::vector<int>>& lines, app::StageClock& clock) {
-  const auto control = controls::control_of(machine, *job.setup, job.tools);
+Status note_restart(report::RunReport& report, const process::PostedProgram& posted, const process::ProgramText& program, const process::GearCheck& gear,
+                    std::vector<std::vector<int>>& lines, app::StageClock& clock) {
+  const auto control = controls::control_of(program.machine, *program.job.setup, program.job.tools);
   if (!control) return control.error();
   report.teeth = posted.axes.teeth;
   report.tooth_stride = posted.axes.tooth_stride;
   if (posted.restarted)
-    if (auto done = prove(report, posted, file, *control, gear, lines, clock); !done) return done;
+    if (auto done = prove(report, posted, program.file, *control, gear, lines, clock); !done) return done;
   const bool part = posted.restarted.has_value();
   auto menu = clock.run("restart points", [&] {
-    return restart::restart_menu(part ? posted.restart_text : posted.text, file, *control, part ? *posted.restarted : posted.axes);
+    return restart::restart_menu(part ? posted.restart_text : posted.text, program.file, *control, part ? *posted.restarted : posted.axes);
   });
   if (!menu) return of_our_own(menu.error());
   report.restart_menu = std::move(menu.value());

@@ -16,10 +16,10 @@ namespace toothpath::flow {
 [[nodiscard]] Result<std::optional<joints::ProgramRestart>> read_restart(const std::string& text, const job::Job& job, int teeth);
 
 /// What the program on the disk adds to the report: order of the teeth, restart points, and where it begins in the middle the proof that
-/// it does what the proven whole program does from there on. `file` stands in messages.
+/// it does what the proven whole program does from there on. `program`: the whole one.
 /// @param lines lines of the whole program for records of paths; made those of the file, 0 where it has none
 /// Errors: what the reader refuses in our own text (kind verification).
-[[nodiscard]] Status note_restart(report::RunReport& report, const process::PostedProgram& posted, const std::string& file, const job::Job& job, const machines::Machine& machine,
-                                  const process::GearCheck& gear, std::vector<std::vector<int>>& lines, app::StageClock& clock);
+[[nodiscard]] Status note_restart(report::RunReport& report, const process::PostedProgram& posted, const process::ProgramText& program, const process::GearCheck& gear,
+                                  std::vector<std::vector<int>>& lines, app::StageClock& clock);
 
 }  // namespace toothpath::flow

@@ -53,8 +53,9 @@ void keep_proof(Run& run, const proof::ProofLimits& limits, process::ProgramProo
 std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& limits, app::OutputDir& output) {
   const process::GearProcess& gear = *run.gear.process;
   const auto paths = run.paths();
-  auto posted = process::post_program(run.checked, run.job, run.job.name + (run.gear.correction ? ", corrected" : ""), run.machine, gear.part().teeth,
-                                      gear.link_body(run.machine), run.report.assumed, output, run.clock, run.restart);
+  auto posted = process::post_program(
+      run.checked, {run.job, run.job.name + (run.gear.correction ? ", corrected" : ""), run.machine, gear.part().teeth, gear.link_body(run.machine), run.restart},
+      run.report.assumed, output, run.clock);
   if (!posted) return posted.error();
   const joints::AxisProgram& program = posted->axes;
   process::note_axis_program(run.report, run.job, run.machine, paths, posted->restarted ? *posted->restarted : program);
@@ -62,15 +63,15 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
 
   const std::vector<const path::ClPath*> asked = process::paths_to_meet(program, paths);
   const std::string file = output.final_path(posted->file);
-  auto proof = process::prove_program({posted->text, file, run.job, run.machine},
-                                      {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad}, run.milling->check(), run.clock);
+  const process::ProgramText whole{posted->text, file, run.job, run.machine};
+  auto proof = process::prove_program(whole, {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad}, run.milling->check(), run.clock);
   if (!proof) {
     Diagnostic error = proof.error();
     error.kind = DiagnosticKind::verification;  // our own program must be readable
     return error;
   }
   keep_proof(run, limits, *proof, paths);
-  if (auto done = note_restart(run.report, *posted, file, run.job, run.machine, run.milling->check(), run.lines, run.clock); !done) return done.error();
+  if (auto done = note_restart(run.report, *posted, whole, run.milling->check(), run.lines, run.clock); !done) return done.error();
   run.program_text = std::move(posted->restarted ? posted->restart_text : posted->text);
   run.report.ledger = run.milling->ledger(program, *proof, posted->blend_mm);
   run.report.sections = sections::sections_of({run.job, run.report, posted->restarted ? *posted->restarted : program, paths});

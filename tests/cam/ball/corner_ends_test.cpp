@@ -1,7 +1,7 @@
 // A ball wider than the fillet touches two walls of a corner at two radii: where its passes begin and end, and what it reaches past the crossing.
 #include "cam/ball/corner_ends.h"
 
-#include "cam/analytic/cut_surface.h"
+#include "cam/cut/cut_surface.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
 namespace toothpath {
@@ -46,11 +46,11 @@ std::vector<ball::BallPass> ends_of(const analytic::GearDistance& part, const fa
 
 TEST(CornerEnds, NothingThatTheBallReachesStaysHigherThanTheCusp) {
   const auto& job = leaning_job();
-  analytic::CutSurfaceOptions dense;
+  cut::CutSurfaceOptions dense;
   dense.flank_rows = 12;
   dense.fillet_rows = 50;
   dense.columns = 49;
-  const auto whole = analytic::measure_cut_surface(*job.part, job.motions(), job.operations, job.tools, dense);
+  const auto whole = cut::measure_cut_surface(*job.part, job.motions(), job.operations, job.tools, dense);
   EXPECT_GT(whole.unreached.points, 100u);
   EXPECT_LE(whole.finished.max_mm, job.operations[0].scallop_mm + 0.0005);
 
@@ -61,7 +61,7 @@ TEST(CornerEnds, NothingThatTheBallReachesStaysHigherThanTheCusp) {
   int passes = 0;
   for (const auto& r : plan.paths[0].records) passes = std::max(passes, r.pass + 1);
   std::erase_if(plan.paths[0].records, [&](const path::ClRecord& r) { return r.pass >= passes - int(ends.size()); });
-  const auto less = analytic::measure_cut_surface(*job.part, analytic::GougeCheck::motions_of(plan.paths[0]), job.operations, job.tools, dense);
+  const auto less = cut::measure_cut_surface(*job.part, analytic::GougeCheck::motions_of(plan.paths[0]), job.operations, job.tools, dense);
   EXPECT_GT(less.finished.max_mm, job.operations[0].scallop_mm + 0.0015);
 }
 
@@ -150,7 +150,7 @@ class WideBall : public testing::TestWithParam<WideBallCase> {};
 TEST_P(WideBall, LeavesNoMoreThanTheCuspOnBothWallsAndCutsNothing) {
   const auto& [name, gear, ball, scallop] = GetParam();
   const auto job = test::planned(gear, {test::ball_mill(2 * ball, 5, 1.8 * ball, 20, 10)}, {test::finishing(0, scallop, 0.002)});
-  const auto cut = analytic::measure_cut_surface(*job.part, job.motions(), job.operations, job.tools);
+  const auto cut = cut::measure_cut_surface(*job.part, job.motions(), job.operations, job.tools);
   EXPECT_TRUE(job.plan.operations[0].corner_passes);
   EXPECT_LE(cut.finished.max_mm, scallop + 0.001);
   const analytic::GougeCheck check(*job.part, job.tools, job.check_options());

@@ -1,6 +1,6 @@
 // Paths for corrected flanks: what they leave against the corrected target, and with the process error that they answer against the nominal one.
-#include "cam/analytic/cut_surface.h"
-#include "cam/analytic/swept_path.h"
+#include "cam/cut/cut_surface.h"
+#include "cam/cut/swept_path.h"
 #include "geometry/face_gear/flank_correction.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/support/inspection_points.h"
@@ -53,10 +53,10 @@ TEST(CorrectedPath, PlannedAndProvenAgainstTheCorrectedFlanksAndWrongForTheOther
   EXPECT_LT(other.measured_mm, 0.030);
 
   // The process adds its error to what the path leaves of the nominal flank: almost nothing stays.
-  std::vector<analytic::BallMove> moves;
+  std::vector<cut::BallMove> moves;
   for (const auto& m : motions)
     if (!m.rapid) moves.push_back({m.tip_from + 0.5 * m.axis_from, m.tip_to + 0.5 * m.axis_to});
-  const analytic::SweptPath swept(std::move(moves), 0.5);
+  const cut::SweptPath swept(std::move(moves), 0.5);
   for (const auto& [rows, columns] : {std::pair{5, 9}, std::pair{13, 25}}) {
     double left = 0;
     for (const auto& p : grid_of(nominal, rows, columns)) {

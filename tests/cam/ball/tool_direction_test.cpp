@@ -65,7 +65,7 @@ TEST(Body, GapAgainstSampledSurfaces) {
     const face_gear::FaceGear gear = test::made(test::gear_named(name));
     const double m = gear.parameters().module_mm;
     const analytic::GearDistance part(gear, m);
-    const ball::BodyTree tree(part);
+    const analytic::BodyTree tree(part);
     const test::BruteForceGearSolid brute(gear);
     std::vector<Vec3> samples;
     for (int zone = 0; zone < part.zones(); ++zone)

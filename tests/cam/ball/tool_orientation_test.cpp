@@ -76,7 +76,7 @@ TEST(BodyTree, AgreesWithTheFlatSearchAndWithSamples) {
     const face_gear::FaceGear gear = test::made(test::gear_named(name));
     const double m = gear.parameters().module_mm, enough = 0.6 * m;
     const analytic::GearDistance part(gear, m);
-    const ball::BodyTree tree(part);
+    const analytic::BodyTree tree(part);
     test::Random random(71);
     int close = 0;
     for (int k = 0; k < 100; ++k) {
@@ -105,7 +105,7 @@ TEST(BodyTree, AgreesWithTheFlatSearchAndWithSamples) {
 // A direction that is called clear keeps its gap from every sampled point; one that is not has a point within it.
 TEST(Orientation, ClearDirectionsAgainstSampledSurfaces) {
   const auto& job = short_job();
-  const ball::BodyTree tree(*job.part);
+  const analytic::BodyTree tree(*job.part);
   const ball::OrientationOptions options;
   const ball::OrientationCheck check(*job.part, tree, 0, job.tools[0], options);
   const auto samples = sampled(job.gear);

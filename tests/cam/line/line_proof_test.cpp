@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <memory>
 
-#include "cam/analytic/cut_surface.h"
+#include "cam/cut/cut_surface.h"
 #include "cam/analytic/gouge_check.h"
 #include "cam/analytic/profile_sweep.h"
-#include "cam/analytic/swept_tool.h"
+#include "cam/cut/swept_tool.h"
 #include "cam/line/plan.h"
 #include "cam/line/room.h"
 #include "cam/path/motions.h"
@@ -229,7 +229,7 @@ TEST_P(LineProof, CutSurface) {
   path::MillingOperation op;
   op.chord_tolerance_mm = 5e-4;
   const auto start = std::chrono::steady_clock::now();
-  const auto cut = analytic::measure_cut_surface(*p.part, p.motions(), {op}, std::vector<tool::ProofTool>{tool::proof_tool(p.tool, 1)});
+  const auto cut = cut::measure_cut_surface(*p.part, p.motions(), {op}, std::vector<tool::ProofTool>{tool::proof_tool(p.tool, 1)});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double tau = GetParam().tool.half_angle_rad, r_0 = 0.5 * GetParam().tool.diameter_mm;
   for (const auto& g : cut.grids) {
@@ -489,7 +489,7 @@ TEST(SweptTools, ExcessOfRandomPoints) {
     m.axis_to = (m.axis_from + random.vector(k % 2 == 0 ? 0 : 0.03)).normalized();
     const Vec3 p = path::tip_at(m, 0.5) + random(0, 3.5) * path::axis_at(m, 0.5) + random.vector(0.6);
     const double truth = test::least_distance(p, mill, {{m.tip_from, m.axis_from}, {m.tip_to, m.axis_to}});
-    const double found = analytic::least_distance(p, tool.cutting[0], m, INFINITY);
+    const double found = cut::least_distance(p, tool.cutting[0], m, INFINITY);
     if (truth > 0.5 || (p - path::tip_at(m, 0.5)).dot(path::axis_at(m, 0.5)) > 3.6) continue;
     worst = std::max(worst, std::abs(found - truth));
   }
@@ -523,7 +523,7 @@ TEST(LineProofThreads, SameAnswerWithOneThread) {
   const auto p = planned(line_jobs().front(), line::kBias);
   const auto motions = p.motions();
   path::MillingOperation op;
-  const auto surface = [&] { return analytic::measure_cut_surface(*p.part, motions, {op}, std::vector<tool::ProofTool>{tool::proof_tool(p.tool, 1)}); };
+  const auto surface = [&] { return cut::measure_cut_surface(*p.part, motions, {op}, std::vector<tool::ProofTool>{tool::proof_tool(p.tool, 1)}); };
   const auto many = checked(p, motions, p.tool);
   const auto cut = surface();
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);

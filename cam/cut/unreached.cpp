@@ -1,13 +1,13 @@
-#include "cam/analytic/unreached.h"
+#include "cam/cut/unreached.h"
 
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "cam/analytic/zone_places.h"
+#include "cam/cut/zone_places.h"
 
-namespace toothpath::analytic {
+namespace toothpath::cut {
 namespace {
 
 constexpr int kColumns = 33;
@@ -21,7 +21,7 @@ constexpr double kFinest = 1e-5;    // of the pattern search, in sigma and in sh
 
 class BallSearch {
  public:
-  BallSearch(const GearDistance& part, int zone, double most) : part_(part), places_(part, zone), zone_(zone), most_(most) {}
+  BallSearch(const analytic::GearDistance& part, int zone, double most) : part_(part), places_(part, zone), zone_(zone), most_(most) {}
 
   /// Radius of the largest ball that touches the surface at a place; nothing where there is no surface.
   [[nodiscard]] std::optional<double> radius(double sigma, double share) const {
@@ -98,7 +98,7 @@ class BallSearch {
     return ball;
   }
 
-  const GearDistance& part_;
+  const analytic::GearDistance& part_;
   ZonePlaces places_;
   int zone_;
   double most_;
@@ -115,7 +115,7 @@ double concave_curvature(const face_gear::PatchPoint& at) {
   return std::isfinite(least) ? std::max(0.0, -least) : 0.0;
 }
 
-LargestBall largest_reaching_ball(const GearDistance& part, double most_mm) {
+LargestBall largest_reaching_ball(const analytic::GearDistance& part, double most_mm) {
   LargestBall least;
   least.radius_mm = most_mm;
   for (int zone = 0; zone < part.zones(); ++zone)
@@ -123,4 +123,4 @@ LargestBall largest_reaching_ball(const GearDistance& part, double most_mm) {
   return least;
 }
 
-}  // namespace toothpath::analytic
+}  // namespace toothpath::cut

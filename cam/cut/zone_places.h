@@ -6,13 +6,13 @@
 
 #include "cam/analytic/gear_distance.h"
 
-namespace toothpath::analytic {
+namespace toothpath::cut {
 
 /// Between tip edge and tip edge of one zone, from its inner to its outer radius; sigma as in cam/offset_sheet.h.
 class ZonePlaces {
  public:
   /// Holds a reference to `part`, which must have the zone.
-  ZonePlaces(const GearDistance& part, int zone);
+  ZonePlaces(const analytic::GearDistance& part, int zone);
 
   /// Contact radius [mm] at a share of the face width, 0 at the inner end. Clamped to where the surfaces exist.
   [[nodiscard]] double radius(double share) const;
@@ -28,4 +28,4 @@ class ZonePlaces {
   face_gear::OffsetSheet sheet_;
 };
 
-}  // namespace toothpath::analytic
+}  // namespace toothpath::cut

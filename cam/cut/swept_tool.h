@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "cam/analytic/spatial_index.h"
-#include "cam/analytic/swept_path.h"
+#include "cam/cut/swept_path.h"
 #include "cam/path/tool_motion.h"
 #include "cam/tool/proof_tool.h"
 
-namespace toothpath::analytic {
+namespace toothpath::cut {
 
 /// Least signed distance from a point to a body over all moments of a motion (straight in the tip, normalised linear in the axis), negative inside.
 /// The distance is convex along a motion whose axis stands and, up to the square of the turn, along one that turns; its least is found to 1e-9 mm
@@ -29,7 +29,7 @@ class SweptTool {
  private:
   std::vector<path::ToolMotion> motions_;
   std::vector<tool::RoundedFrustum> cutting_;
-  SpatialIndex index_;
+  analytic::SpatialIndex index_;
 };
 
 /// What one operation has removed, with a ball mill or any other, and what others have beside it.
@@ -50,4 +50,4 @@ class Removed {
   std::vector<const Removed*> others_;
 };
 
-}  // namespace toothpath::analytic
+}  // namespace toothpath::cut

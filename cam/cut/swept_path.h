@@ -5,15 +5,12 @@
 
 #include "cam/analytic/spatial_index.h"
 
-namespace toothpath::analytic {
+namespace toothpath::cut {
 
 /// A straight move of a ball centre.
 struct BallMove {
   Vec3 from = Vec3::Zero(), to = Vec3::Zero();
 };
-
-/// Distance from a point to a segment.
-[[nodiscard]] double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b);
 
 class SweptPath {
  public:
@@ -28,7 +25,7 @@ class SweptPath {
  private:
   std::vector<BallMove> moves_;
   double radius_;
-  SpatialIndex index_;
+  analytic::SpatialIndex index_;
 };
 
-}  // namespace toothpath::analytic
+}  // namespace toothpath::cut

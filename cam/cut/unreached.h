@@ -3,7 +3,7 @@
 
 #include "cam/analytic/gear_distance.h"
 
-namespace toothpath::analytic {
+namespace toothpath::cut {
 
 /// Where a ball of more than `radius_mm` can no longer touch the surface without cutting elsewhere.
 struct LargestBall {
@@ -17,9 +17,9 @@ struct LargestBall {
 /// in its normal is limited by the greatest concave curvature there and by everything else that it meets; the tightest place of the grid is
 /// then followed to its bottom. A ball larger than `most_mm` (radius; at most the reach of `part`) is not looked for: then that is returned.
 /// Accuracy: 1e-4 mm where smooth walls decide, against dense sampling (unreached_test).
-[[nodiscard]] LargestBall largest_reaching_ball(const GearDistance& part, double most_mm);
+[[nodiscard]] LargestBall largest_reaching_ball(const analytic::GearDistance& part, double most_mm);
 
 /// The greatest concave principal curvature of a patch [1/mm], > 0; 0 where it is flat or convex in every direction.
 [[nodiscard]] double concave_curvature(const face_gear::PatchPoint& at);
 
-}  // namespace toothpath::analytic
+}  // namespace toothpath::cut

@@ -1,4 +1,4 @@
-#include "cam/ball/body_tree.h"
+#include "cam/analytic/body_tree.h"
 
 #include <tbb/parallel_for.h>
 
@@ -8,7 +8,7 @@
 
 #include "cam/tool/frustum_distance.h"
 
-namespace toothpath::ball {
+namespace toothpath::analytic {
 namespace {
 
 constexpr std::uint32_t kLeaf = 4;     // cells
@@ -127,7 +127,7 @@ class BodyTree::Search {
   double radius_;
 };
 
-BodyTree::BodyTree(const analytic::GearDistance& part) : roof_(part.gear().blank_top()), sag_(part.cell_sag_mm()), pitch_(part.gear().pitch()) {
+BodyTree::BodyTree(const GearDistance& part) : roof_(part.gear().blank_top()), sag_(part.cell_sag_mm()), pitch_(part.gear().pitch()) {
   for (int z = 0; z < part.zones(); ++z) {
     Zone zone;
     const auto& triangles = part.triangles(z);
@@ -232,4 +232,4 @@ double BodyTree::depth(const tool::Frustum& body, std::span<const Vec3> tips, co
   return deepest_mm * free / steps;
 }
 
-}  // namespace toothpath::ball
+}  // namespace toothpath::analytic

@@ -11,7 +11,7 @@
 #include "cam/path/tool_motion.h"
 #include "cam/proof/verification.h"
 
-namespace toothpath::analytic {
+namespace toothpath::cut {
 
 struct CutSurfaceOptions {
   int flank_rows = 40, fillet_rows = 14, root_rows = 7, columns = 33;
@@ -32,15 +32,15 @@ struct CutSurface {
 /// `motions`: those of tooth 0 are used. Excess at a point p: the least, over all moves so far, of (distance from p to the
 /// ball-centre path - ball radius); > 0 material left, < 0 a gouge. `finished.bound_mm` adds to the greatest value seen
 /// what a cusp can rise between two samples of a scallop line and the asked chord tolerance.
-[[nodiscard]] CutSurface measure_cut_surface(const GearDistance& part, const std::vector<path::ToolMotion>& motions,
+[[nodiscard]] CutSurface measure_cut_surface(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
                                              const std::vector<path::MillingOperation>& operations,
                                              const std::vector<tool::ToolAssembly>& tools, const CutSurfaceOptions& options = {});
 
 /// The same for any mills: the excess is that of their cutting bodies. Operations that finish different regions (the same allowance as the last
 /// one) count together where cusps are looked for. A place counts as reachable where the ball end of the last tool fits, or a ball of the
 /// corner radius of a bull nose; everywhere for a flat cutter.
-[[nodiscard]] CutSurface measure_cut_surface(const GearDistance& part, const std::vector<path::ToolMotion>& motions,
+[[nodiscard]] CutSurface measure_cut_surface(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
                                              const std::vector<path::MillingOperation>& operations, const std::vector<tool::ProofTool>& tools,
                                              const CutSurfaceOptions& options = {});
 
-}  // namespace toothpath::analytic
+}  // namespace toothpath::cut

@@ -14,11 +14,11 @@
 #include "cam/analytic/gear_distance.h"
 #include "cam/tool/body.h"
 
-namespace toothpath::ball {
+namespace toothpath::analytic {
 
 class BodyTree {
  public:
-  explicit BodyTree(const analytic::GearDistance& part);
+  explicit BodyTree(const GearDistance& part);
 
   /// Least gap between a frustum and the finished teeth, from below: no more than `resolution_mm` and the sag of the cells under the
   /// true one; gaps above `enough` are returned as `enough`. A body that cuts in: -resolution_mm.
@@ -65,4 +65,4 @@ class BodyTree {
   std::vector<std::pair<double, double>> turns_;  ///< cosine and sine of every tooth's index angle
 };
 
-}  // namespace toothpath::ball
+}  // namespace toothpath::analytic

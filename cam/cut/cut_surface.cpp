@@ -1,4 +1,4 @@
-#include "cam/analytic/cut_surface.h"
+#include "cam/cut/cut_surface.h"
 
 #include <tbb/parallel_for.h>
 
@@ -6,14 +6,14 @@
 #include <cmath>
 #include <memory>
 
-#include "cam/analytic/swept_path.h"
-#include "cam/analytic/swept_tool.h"
-#include "cam/analytic/unreached.h"
-#include "cam/analytic/zone_places.h"
+#include "cam/cut/swept_path.h"
+#include "cam/cut/swept_tool.h"
+#include "cam/cut/unreached.h"
+#include "cam/cut/zone_places.h"
 #include "cam/proof/limits.h"
 #include "geometry/face_gear/shaper.h"
 
-namespace toothpath::analytic {
+namespace toothpath::cut {
 namespace {
 
 // A point counts as reached when a ball that touches it comes no closer than this to anything else, mm.
@@ -33,7 +33,7 @@ bool is_flank(face_gear::SpacePiece piece) { return piece == face_gear::SpacePie
 
 class Meter {
  public:
-  Meter(const GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
+  Meter(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
         const std::vector<tool::ToolAssembly>& tools, const CutSurfaceOptions& options)
       : part_(part), operations_(operations), tools_(tools), o_(options) {
     if (o_.cap_mm <= 0) o_.cap_mm = part.gear().parameters().module_mm;
@@ -47,7 +47,7 @@ class Meter {
     }
   }
   /// @param bodies  of the same tools
-  Meter(const GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
+  Meter(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
         const std::vector<tool::ToolAssembly>& tools, const std::vector<tool::ProofTool>& bodies, const CutSurfaceOptions& options)
       : Meter(part, {}, operations, tools, options) {
     paths_.clear();
@@ -321,7 +321,7 @@ class Meter {
     if (u.left()) u.largest_ball_mm = 2 * largest_reaching_ball(part_, R).radius_mm;
   }
 
-  const GearDistance& part_;
+  const analytic::GearDistance& part_;
   const std::vector<path::MillingOperation>& operations_;
   const std::vector<tool::ToolAssembly>& tools_;
   CutSurfaceOptions o_;
@@ -334,13 +334,13 @@ class Meter {
 
 }  // namespace
 
-CutSurface measure_cut_surface(const GearDistance& part, const std::vector<path::ToolMotion>& motions,
+CutSurface measure_cut_surface(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
                                const std::vector<path::MillingOperation>& operations, const std::vector<tool::ToolAssembly>& tools,
                                const CutSurfaceOptions& options) {
   return Meter(part, motions, operations, tools, options).run();
 }
 
-CutSurface measure_cut_surface(const GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
+CutSurface measure_cut_surface(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
                                const std::vector<tool::ProofTool>& tools, const CutSurfaceOptions& options) {
   std::vector<tool::ToolAssembly> balls;
   for (const auto& t : tools) {
@@ -350,4 +350,4 @@ CutSurface measure_cut_surface(const GearDistance& part, const std::vector<path:
   return Meter(part, motions, operations, balls, tools, options).run();
 }
 
-}  // namespace toothpath::analytic
+}  // namespace toothpath::cut

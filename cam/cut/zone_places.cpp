@@ -1,10 +1,10 @@
-#include "cam/analytic/zone_places.h"
+#include "cam/cut/zone_places.h"
 
 #include <algorithm>
 
-namespace toothpath::analytic {
+namespace toothpath::cut {
 
-ZonePlaces::ZonePlaces(const GearDistance& part, int zone)
+ZonePlaces::ZonePlaces(const analytic::GearDistance& part, int zone)
     : space_(part.space(zone)),
       sheet_(space_, 0.0, space_.ring().zone.inner_radius_mm, space_.ring().zone.outer_radius_mm, 49) {}
 
@@ -40,4 +40,4 @@ std::pair<double, double> ZonePlaces::range(face_gear::SpacePiece piece, double 
   return {0, 0};
 }
 
-}  // namespace toothpath::analytic
+}  // namespace toothpath::cut

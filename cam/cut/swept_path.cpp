@@ -1,12 +1,12 @@
-#include "cam/analytic/swept_path.h"
+#include "cam/cut/swept_path.h"
 
 #include <algorithm>
 
-namespace toothpath::analytic {
+namespace toothpath::cut {
 namespace {
 
-std::vector<Box> boxes_of(const std::vector<BallMove>& moves) {
-  std::vector<Box> boxes(moves.size());
+std::vector<analytic::Box> boxes_of(const std::vector<BallMove>& moves) {
+  std::vector<analytic::Box> boxes(moves.size());
   for (std::size_t k = 0; k < moves.size(); ++k) {
     boxes[k].add(moves[k].from);
     boxes[k].add(moves[k].to);
@@ -15,13 +15,6 @@ std::vector<Box> boxes_of(const std::vector<BallMove>& moves) {
 }
 
 }  // namespace
-
-double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
-  const Vec3 ab = b - a;
-  const double length2 = ab.squaredNorm();
-  const double t = length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
-  return (p - a - t * ab).norm();
-}
 
 SweptPath::SweptPath(std::vector<BallMove> moves, double ball_radius_mm)
     : moves_(std::move(moves)), radius_(ball_radius_mm), index_(boxes_of(moves_)) {}
@@ -35,4 +28,4 @@ double SweptPath::excess(const Vec3& p, double cap) const {
   return best;
 }
 
-}  // namespace toothpath::analytic
+}  // namespace toothpath::cut

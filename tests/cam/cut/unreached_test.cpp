@@ -1,8 +1,8 @@
 // Surface that the finishing ball does not reach: the largest ball that reaches everything against dense pairs of points, and what is told of
 // the surface that was left.
-#include "cam/analytic/unreached.h"
+#include "cam/cut/unreached.h"
 
-#include "cam/analytic/cut_surface.h"
+#include "cam/cut/cut_surface.h"
 #include "geometry/face_gear/shaper.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/support/brute_force_gear_solid.h"
@@ -49,7 +49,7 @@ TEST_P(LargestBallOf, AgreesWithDensePairs) {
   const face_gear::FaceGear gear = test::made(test::gear_named(GetParam()));
   const double most = gear.parameters().module_mm;
   const analytic::GearDistance part(gear, most);
-  const auto ball = analytic::largest_reaching_ball(part, most);
+  const auto ball = cut::largest_reaching_ball(part, most);
   const double pairs = least_ball_of_pairs(gear, most);
   EXPECT_LE(ball.radius_mm, pairs * 1.001);
   EXPECT_GE(ball.radius_mm, pairs * 0.98);
@@ -60,7 +60,7 @@ TEST_P(LargestBallOf, TouchesEverythingAndALargerOneDoesNot) {
   const face_gear::FaceGear gear = test::made(test::gear_named(GetParam()));
   const double most = gear.parameters().module_mm;
   const analytic::GearDistance part(gear, most);
-  const double R = analytic::largest_reaching_ball(part, most).radius_mm;
+  const double R = cut::largest_reaching_ball(part, most).radius_mm;
   const test::BruteForceGearSolid solid(gear);
   for (const double radius : {R, 1.05 * R}) {
     double deepest = 0;
@@ -79,7 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Gears, LargestBallOf, testing::Values("spur", "offset",
 TEST(LargestBall, IsNotLookedForAboveTheOneThatFits) {
   const face_gear::FaceGear gear = test::made(test::small_spur());
   const analytic::GearDistance part(gear, 1);
-  EXPECT_DOUBLE_EQ(analytic::largest_reaching_ball(part, 0.3).radius_mm, 0.3);
+  EXPECT_DOUBLE_EQ(cut::largest_reaching_ball(part, 0.3).radius_mm, 0.3);
 }
 
 TEST(ConcaveCurvature, OfASaddleAndABall) {
@@ -89,18 +89,18 @@ TEST(ConcaveCurvature, OfASaddleAndABall) {
   q.n = Vec3::UnitZ();
   q.nu = -4 * q.pu;
   q.nv = 2 * q.pv;
-  EXPECT_DOUBLE_EQ(analytic::concave_curvature(q), 4);
+  EXPECT_DOUBLE_EQ(cut::concave_curvature(q), 4);
   q.nu = 3 * q.pu;
-  EXPECT_DOUBLE_EQ(analytic::concave_curvature(q), 0);
+  EXPECT_DOUBLE_EQ(cut::concave_curvature(q), 0);
   // The same saddle in skew parameters.
   q.pu = Vec3(1, 1, 0);
   q.pv = Vec3(0, 2, 0);
   q.nu = Vec3(-4, 2, 0);
   q.nv = Vec3(0, 4, 0);
-  EXPECT_NEAR(analytic::concave_curvature(q), 4, 1e-12);
+  EXPECT_NEAR(cut::concave_curvature(q), 4, 1e-12);
 }
 
-analytic::CutSurface surface(const test::PlannedJob& job) { return analytic::measure_cut_surface(*job.part, job.motions(), job.operations, job.tools); }
+cut::CutSurface surface(const test::PlannedJob& job) { return cut::measure_cut_surface(*job.part, job.motions(), job.operations, job.tools); }
 
 TEST(Unreached, AWideBallIsTold) {
   const auto& job = test::job_named("spur wide");
@@ -112,7 +112,7 @@ TEST(Unreached, AWideBallIsTold) {
   EXPECT_GE(u.height_mm, u.max_height_mm);
   EXPECT_GT(u.share, 0.02);
   EXPECT_LT(u.share, 0.5);
-  EXPECT_NEAR(u.largest_ball_mm, 2 * largest_reaching_ball(*job.part, 0.8).radius_mm, 1e-12);
+  EXPECT_NEAR(u.largest_ball_mm, 2 * cut::largest_reaching_ball(*job.part, 0.8).radius_mm, 1e-12);
   EXPECT_LT(u.largest_ball_mm, 1.6);
   EXPECT_FALSE(u.active) << u.active->height_mm;
 }
@@ -125,7 +125,7 @@ TEST(Unreached, NothingIsToldWhereTheBallFitsOrNothingFinishes) {
   EXPECT_EQ(u.largest_ball_mm, 0);
   auto roughed = job.operations;
   roughed.resize(1);
-  const auto r = analytic::measure_cut_surface(*job.part, job.motions(), roughed, job.tools).unreached;
+  const auto r = cut::measure_cut_surface(*job.part, job.motions(), roughed, job.tools).unreached;
   EXPECT_FALSE(r.left());
   EXPECT_EQ(r.ball_mm, 0);
 }

@@ -1,5 +1,5 @@
 // What the programs leave: the measured cut surface against dense sampling, and the promises of the planner.
-#include "cam/analytic/cut_surface.h"
+#include "cam/cut/cut_surface.h"
 
 #include "tests/cam/ball/face_gear_jobs.h"
 
@@ -9,19 +9,19 @@ namespace {
 using test::PlannedJob;
 using test::job_named;
 
-analytic::CutSurface surface(const PlannedJob& job, const std::vector<path::ToolMotion>& motions) {
-  return measure_cut_surface(*job.part, motions, job.operations, job.tools);
+cut::CutSurface surface(const PlannedJob& job, const std::vector<path::ToolMotion>& motions) {
+  return cut::measure_cut_surface(*job.part, motions, job.operations, job.tools);
 }
 
 TEST(CutSurface, AgreesWithDenselySampledTubes) {
   const auto& job = job_named("spur");
-  analytic::CutSurfaceOptions few;
+  cut::CutSurfaceOptions few;
   few.flank_rows = 6;
   few.fillet_rows = 4;
   few.root_rows = 3;
   few.columns = 4;
   const auto motions = job.motions();
-  const auto cut = measure_cut_surface(*job.part, motions, job.operations, job.tools, few);
+  const auto cut = cut::measure_cut_surface(*job.part, motions, job.operations, job.tools, few);
   const double cap = job.gear.parameters().module_mm;
   for (const auto& g : cut.grids)
     for (std::size_t k = 0; k < g.points.size(); ++k) {
@@ -64,7 +64,7 @@ TEST(CutSurface, ASmallerBallShowsUp) {
   const auto& job = job_named("spur");
   auto tools = job.tools;
   tools[0].diameter_mm -= 0.02;
-  const auto smaller = measure_cut_surface(*job.part, job.motions(), job.operations, tools);
+  const auto smaller = cut::measure_cut_surface(*job.part, job.motions(), job.operations, tools);
   EXPECT_GT(smaller.finished.min_mm + 1e-6, surface(job, job.motions()).finished.min_mm);
   EXPECT_GT(smaller.finished.max_mm, surface(job, job.motions()).finished.max_mm + 0.004);
 }
@@ -84,7 +84,7 @@ TEST(CutSurface, SolversAreComparedAtOnePlaceOnly) {
   const auto gear = test::made(g);
   const analytic::GearDistance part(gear, 1.0);
   // The residual needs the tool, not its path.
-  const auto cut = measure_cut_surface(part, {}, {test::finishing(0, 0.0087, 0.005, 0.0104)}, {test::ball_mill(0.29, 1, 0.29, 8, 10)});
+  const auto cut = cut::measure_cut_surface(part, {}, {test::finishing(0, 0.0087, 0.005, 0.0104)}, {test::ball_mill(0.29, 1, 0.29, 8, 10)});
   EXPECT_LE(cut.solve_residual_mm, 1e-9);
   EXPECT_GT(cut.solve_residual_mm, 0);
 }

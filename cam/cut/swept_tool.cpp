@@ -1,9 +1,9 @@
-#include "cam/analytic/swept_tool.h"
+#include "cam/cut/swept_tool.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace toothpath::analytic {
+namespace toothpath::cut {
 namespace {
 
 constexpr int kMomentSteps = 40;          // of the bracket of a moment; each at least halves it every second time
@@ -27,8 +27,8 @@ AtMoment at_moment(const Vec3& p, const tool::RoundedFrustum& body, const path::
 }
 
 /// Where the cutting part may be during a motion, below `top`.
-std::vector<Box> boxes_of(const std::vector<path::ToolMotion>& motions, const std::vector<tool::RoundedFrustum>& cutting, double top) {
-  std::vector<Box> boxes(motions.size());
+std::vector<analytic::Box> boxes_of(const std::vector<path::ToolMotion>& motions, const std::vector<tool::RoundedFrustum>& cutting, double top) {
+  std::vector<analytic::Box> boxes(motions.size());
   for (std::size_t k = 0; k < motions.size(); ++k) {
     const auto& m = motions[k];
     for (const auto& body : cutting)
@@ -84,4 +84,4 @@ double Removed::excess(const Vec3& p, double cap) const {
   return e;
 }
 
-}  // namespace toothpath::analytic
+}  // namespace toothpath::cut
