@@ -69,7 +69,7 @@ std::string summary_table(const RunReport& report, bool color) {
   if (report.finished)
     row(out, "worst left material", fmt::format("{:.2f} um, proven below {:.2f} um", report.finished->max_mm * app::kUm, report.finished->bound_mm * app::kUm));
   for (const Finding& f : report.findings)
-    if (!f.label.empty()) row(out, f.label, f.row_text());
+    if (!f.label.empty() && f.unfinished.empty()) row(out, f.label, f.row_text());
   if (report.gouge) row(out, "least clearance", fmt::format("{:.3f} mm (neck, shank, holder)", report.gouge->clearance_mm));
   for (const auto& v : report.scene) {
     const std::string place = v.nearest ? fmt::format("{}, op {}, tooth {}, line {}", v.nearest->body, v.nearest->operation, v.nearest->tooth, v.nearest->line) : "";
