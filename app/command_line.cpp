@@ -12,8 +12,8 @@
 #include <optional>
 #include <thread>
 
-#include "app/commands/command.h"
 #include "app/base/output_dir.h"
+#include "app/commands/command.h"
 #include "app/report/svg/html_text.h"
 
 namespace toothpath {
@@ -64,7 +64,8 @@ int present(const std::string& command, const commands::CommandOutcome& outcome,
   const bool color = wants_color(options.color, STDERR_FILENO);
   for (const auto& error : outcome.errors)
     std::fprintf(stderr, "%s%s%s\n", color ? "\033[31m" : "", error.text().c_str(), color ? "\033[0m" : "");
-  if (const std::string note = app::OutputDir::closing_note(); !note.empty() && (!options.quiet || outcome.exit_code != app::ExitCode::ok))
+  if (const std::string note = app::OutputDir::closing_note();
+      !note.empty() && (!options.quiet || outcome.exit_code != app::ExitCode::ok))
     std::fprintf(stderr, "note: %s\n", note.c_str());
   std::fflush(stderr);
   bool printed = true;
@@ -89,9 +90,7 @@ commands::CommandOutcome internal_error(std::string message) {
 commands::CommandOutcome guarded(const commands::Command::Action& action, const commands::CommonRequest& request) {
   try {
     return action(request);
-  } catch (const std::bad_alloc&) {
-    return internal_error("out of memory");
-  } catch (const std::exception& error) {
+  } catch (const std::bad_alloc&) { return internal_error("out of memory"); } catch (const std::exception& error) {
     return internal_error(fmt::format("internal error: {}", error.what()));
   }
 }
@@ -142,7 +141,8 @@ void add_global_options(CLI::App& app, GlobalOptions& options) {
   app.set_version_flag("--version", kVersion);
   app.add_flag("--json", options.json, "print one JSON object on stdout");
   app.add_flag("--quiet", options.quiet, "print errors only");
-  app.add_option("--threads", options.threads, "number of threads (default: all)")->check(CLI::Validator(check_threads, "N", "threads"));
+  app.add_option("--threads", options.threads, "number of threads (default: all)")
+      ->check(CLI::Validator(check_threads, "N", "threads"));
   app.add_option("--color", options.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}));
 }
 
@@ -152,8 +152,10 @@ int run_command_line(int argc, char** argv) {
   CLI::App app{"Tool paths for gear teeth, from gear parameters to a checked NC program.", "toothpath"};
   GlobalOptions options;
   add_global_options(app, options);
-  app.footer("Exit codes: 0 done and verified, 1 not verified (no program is left), 2 usage, 3 an input file is refused, 4 a file cannot be read or\n"
-             "written, 70 internal error, 130 interrupted. `toothpath COMMAND --help` lists the options of a command.");
+  app.footer(
+      "Exit codes: 0 done and verified, 1 not verified (no program is left), 2 usage, 3 an input file is refused, 4 a "
+      "file cannot be read or\n"
+      "written, 70 internal error, 130 interrupted. `toothpath COMMAND --help` lists the options of a command.");
   app.require_subcommand(0, 1);
   const auto commands = add_commands(app);
 

@@ -1,5 +1,5 @@
-#include "app/command_line.h"
 #include "app/base/interruption.h"
+#include "app/command_line.h"
 
 int main(int argc, char** argv) {
   toothpath::app::handle_signals();

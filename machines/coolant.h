@@ -10,7 +10,8 @@ namespace toothpath::machines {
 enum class Coolant : std::uint8_t { off, mist, flood, air, through_spindle };
 
 /// All that can be switched on.
-inline constexpr std::array<Coolant, 4> kCoolants = {Coolant::mist, Coolant::flood, Coolant::air, Coolant::through_spindle};
+inline constexpr std::array<Coolant, 4> kCoolants = {Coolant::mist, Coolant::flood, Coolant::air,
+                                                     Coolant::through_spindle};
 
 /// As in job files, and behind `coolant_` in machine files.
 [[nodiscard]] constexpr const char* to_string(Coolant coolant) {

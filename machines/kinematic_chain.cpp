@@ -96,7 +96,8 @@ Joints KinematicChain::linear_for(const Vec3& tip_mm, const std::array<double, 2
 Result<std::vector<JointSolution>> KinematicChain::rotary_solutions(const Vec3& axis) const {
   const Vec3 p = Vec3::UnitZ();
   if (const double length = axis.norm(); !(std::abs(length - 1.0) <= kUnitTolerance))
-    return fail("tool axis ({:.6f}, {:.6f}, {:.6f}) has length {:.9f}, must be 1", axis.x(), axis.y(), axis.z(), length);
+    return fail("tool axis ({:.6f}, {:.6f}, {:.6f}) has length {:.9f}, must be 1", axis.x(), axis.y(), axis.z(),
+                length);
   if (rotary_count() == 0) {
     const double gap = angle_between(axis, p);
     if (!(gap <= kReachTolerance))
@@ -175,8 +176,7 @@ Result<std::vector<JointSolution>> KinematicChain::inverse(const TablePose& pose
 }
 
 Result<std::vector<JointSolution>> KinematicChain::candidates(const TablePose& pose, double tool_length_mm,
-                                                              const LimitMargin& margin,
-                                                              double free_angle_rad) const {
+                                                              const LimitMargin& margin, double free_angle_rad) const {
   const auto branches = rotary_solutions(pose.axis);
   if (!branches) return branches.error();
 
@@ -193,8 +193,7 @@ Result<std::vector<JointSolution>> KinematicChain::candidates(const TablePose& p
       const double lo = axis.min_rad + margin.rotary_rad, hi = axis.max_rad - margin.rotary_rad;
       if (branch.free_rotary == static_cast<int>(k))
         angles[k] = lo <= hi ? std::vector<double>{std::clamp(free_angle_rad, lo, hi)} : std::vector<double>{};
-      else
-        angles[k] = windings(axis, branch.joints.rotary_rad[k], margin.rotary_rad);
+      else angles[k] = windings(axis, branch.joints.rotary_rad[k], margin.rotary_rad);
       if (angles[k].empty() && reachable) {
         reject(branch, fmt::format("{} = {:.4f} deg outside [{:.4f}, {:.4f}]", axis.letter,
                                    degrees(branch.joints.rotary_rad[k]), degrees(lo), degrees(hi)));
@@ -258,8 +257,7 @@ std::vector<double> windings(const RotaryAxis& axis, double command_rad, double 
 }
 
 Status check_chain(const KinematicChain& chain) {
-  if (chain.rotary_count() > 2)
-    return fail("a chain has at most 2 rotary axes, this one has {}", chain.rotary_count());
+  if (chain.rotary_count() > 2) return fail("a chain has at most 2 rotary axes, this one has {}", chain.rotary_count());
   for (std::size_t k = 0; k < chain.rotary_count(); ++k) {
     const double length = chain.rotary(k).direction.norm();
     if (!(std::abs(length - 1.0) <= 1e-12))
@@ -277,8 +275,10 @@ Status check_chain(const KinematicChain& chain) {
       return fail("rotary axes {} and {} are parallel: the angle between them is {:.6f} deg, must be above {:.6f} deg",
                   first.letter, second.letter, degrees(angle), limit);
     if (const double angle = line_angle(second.direction, Vec3::UnitZ()); angle < kParallelSine)
-      return fail("rotary axis {} is parallel to the spindle and cannot tilt the tool: its angle to Z is {:.6f} deg, "
-                  "must be above {:.6f} deg", second.letter, degrees(angle), limit);
+      return fail(
+          "rotary axis {} is parallel to the spindle and cannot tilt the tool: its angle to Z is {:.6f} deg, must be "
+          "above {:.6f} deg",
+          second.letter, degrees(angle), limit);
   }
   return Ok{};
 }

@@ -6,8 +6,8 @@
 // at its zero. The gauge point G is the centre of the spindle nose; the tool tip lies L below it along the spindle.
 // A rotary command theta turns the tool relative to the work by Rot(direction, sign * (theta - zero)): sign = +1 is
 // the sense of ISO 841, for table and head axes alike; -1 is reversed (LinuxCNC's trt kinematics).
-// Source: R. M. Murray, Z. Li, S. S. Sastry, A Mathematical Introduction to Robotic Manipulation, 1994, 3.2 (Paden-Kahan
-// subproblems), in a form that keeps its digits at the pole.
+// Source: R. M. Murray, Z. Li, S. S. Sastry, A Mathematical Introduction to Robotic Manipulation, 1994, 3.2
+// (Paden-Kahan subproblems), in a form that keeps its digits at the pole.
 #pragma once
 
 #include <array>
@@ -24,22 +24,22 @@ namespace toothpath::machines {
 struct LinearAxis {
   double min_mm = 0.0;
   double max_mm = 0.0;
-  double max_speed = 0.0;  ///< mm/min
+  double max_speed = 0.0;         ///< mm/min
   double max_acceleration = 0.0;  ///< mm/min^2; 0: not stated
 };
 
 struct RotaryAxis {
-  char letter = 'C';                  ///< A, B or C
-  Vec3 direction = Vec3::UnitZ();     ///< unit vector, machine axes, all rotaries at zero
-  Vec3 point_mm = Vec3::Zero();       ///< on the axis. Table: machine coordinates. Head: from the gauge point, all rotaries
-                                      ///< at zero; its z is the pivot length (pivot above the gauge point)
-  int sign = 1;                       ///< +1: ISO sense; -1: reversed
-  double zero_rad = 0.0;              ///< command at which the axis stands at its zero
+  char letter = 'C';               ///< A, B or C
+  Vec3 direction = Vec3::UnitZ();  ///< unit vector, machine axes, all rotaries at zero
+  Vec3 point_mm = Vec3::Zero();  ///< on the axis. Table: machine coordinates. Head: from the gauge point, all rotaries
+                                 ///< at zero; its z is the pivot length (pivot above the gauge point)
+  int sign = 1;                  ///< +1: ISO sense; -1: reversed
+  double zero_rad = 0.0;         ///< command at which the axis stands at its zero
   double min_rad = 0.0;
   double max_rad = 0.0;
-  bool rollover = false;              ///< the control counts it within one turn and it has no ends: min and max are infinite
-  double max_speed = 0.0;             ///< rad/min
-  double max_acceleration = 0.0;      ///< rad/min^2; 0: not stated
+  bool rollover = false;   ///< the control counts it within one turn and it has no ends: min and max are infinite
+  double max_speed = 0.0;  ///< rad/min
+  double max_acceleration = 0.0;  ///< rad/min^2; 0: not stated
 
   [[nodiscard]] double pivot_length_mm() const { return point_mm.z(); }  ///< head axes only
   /// Rot(direction, sign * (command - zero)).
@@ -54,24 +54,25 @@ struct TablePose {
 
 /// Commanded axis positions. `rotary_rad[k]` belongs to `KinematicChain::rotary(k)`; unused entries are 0.
 struct Joints {
-  Vec3 linear_mm = Vec3::Zero();                 ///< X Y Z of the gauge point, machine coordinates
+  Vec3 linear_mm = Vec3::Zero();  ///< X Y Z of the gauge point, machine coordinates
   std::array<double, 2> rotary_rad = {0.0, 0.0};
 };
 
 /// One branch of the inverse. Angles lie within half a turn of the axis' zero; `windings` gives the other turns.
 struct JointSolution {
   Joints joints;
-  int pair = 1;           ///< 1 or 2, the columns "pair 1" and "pair 2" of an AC, BC or AB machine; see rotary_solutions
-  int free_rotary = -1;   ///< index of the rotary axis that this pose leaves free (a pole); it is set to its zero. -1: none
+  int pair = 1;  ///< 1 or 2, the columns "pair 1" and "pair 2" of an AC, BC or AB machine; see rotary_solutions
+  int free_rotary =
+      -1;  ///< index of the rotary axis that this pose leaves free (a pole); it is set to its zero. -1: none
 };
 
 /// A joint outside its range.
 struct LimitViolation {
   char letter = 'X';
   bool rotary = false;
-  double value = 0.0;   ///< mm or rad
-  double limit = 0.0;   ///< the limit that is exceeded, margin already subtracted; mm or rad
-  bool above = true;    ///< value lies above the limit; else below it
+  double value = 0.0;  ///< mm or rad
+  double limit = 0.0;  ///< the limit that is exceeded, margin already subtracted; mm or rad
+  bool above = true;   ///< value lies above the limit; else below it
   /// "Y = 212.4183 mm exceeds 200.0000" or "A = 131.2000 deg is below -120.0000".
   [[nodiscard]] std::string text() const;
 };
@@ -84,8 +85,8 @@ struct LimitMargin {
 
 struct KinematicChain {
   std::array<LinearAxis, 3> linear{};  ///< X, Y, Z
-  std::vector<RotaryAxis> table;     ///< from the work outwards: T1, T2
-  std::vector<RotaryAxis> head;      ///< from the ram outwards: H1, H2
+  std::vector<RotaryAxis> table;       ///< from the work outwards: T1, T2
+  std::vector<RotaryAxis> head;        ///< from the ram outwards: H1, H2
 
   /// Number of rotary axes, 0 to 2.
   [[nodiscard]] std::size_t rotary_count() const { return table.size() + head.size(); }
@@ -111,25 +112,27 @@ struct KinematicChain {
 
   /// Rotary angles that give the tool this axis, limits ignored: 1 or 2 solutions, closed form.
   ///
-  /// Pair 1 is the one with positive tilt when the spindle can be parallel to the plane of both rotary axes (AC, BC), else the
-  /// one on the spindle's own side of that plane (AB: |b| <= 90 deg). Exact to 1e-12 rad against the closed forms of AC, BC
-  /// and AB; no digits are lost at the pole. At a pole (axis within 1e-13 rad of the first rotary axis) one
-  /// solution per tilt, `free_rotary` set. `joints.linear_mm` is not filled in.
+  /// Pair 1 is the one with positive tilt when the spindle can be parallel to the plane of both rotary axes (AC, BC),
+  /// else the one on the spindle's own side of that plane (AB: |b| <= 90 deg). Exact to 1e-12 rad against the closed
+  /// forms of AC, BC and AB; no digits are lost at the pole. At a pole (axis within 1e-13 rad of the first rotary axis)
+  /// one solution per tilt, `free_rotary` set. `joints.linear_mm` is not filled in.
   /// @param axis unit vector, table frame
-  /// Errors: the axis is no unit vector (to 1e-9); no angle reaches it; the message names the rotary axis and the angle by which it is missed.
+  /// Errors: the axis is no unit vector (to 1e-9); no angle reaches it; the message names the rotary axis and the angle
+  /// by which it is missed.
   [[nodiscard]] Result<std::vector<JointSolution>> rotary_solutions(const Vec3& axis) const;
 
   /// Joints for a tip position, the rotary angles given (any winding, any branch).
-  [[nodiscard]] Joints linear_for(const Vec3& tip_mm, const std::array<double, 2>& rotary_rad, double tool_length_mm) const;
+  [[nodiscard]] Joints linear_for(const Vec3& tip_mm, const std::array<double, 2>& rotary_rad,
+                                  double tool_length_mm) const;
 
   /// All solutions for a pose, limits ignored, windings not expanded. forward(inverse) is the identity to 1e-12 rad and
   /// 1e-9 mm (coordinates up to 1 m). Errors: as rotary_solutions.
   [[nodiscard]] Result<std::vector<JointSolution>> inverse(const TablePose& pose, double tool_length_mm) const;
 
-  /// inverse with every winding of 360 deg inside the rotary limits (`windings`), joints outside their limits left out; ordered by
-  /// pair, then by angle. A free rotary axis stands at the allowed angle nearest to `free_angle_rad` and is not wound.
-  /// An empty list does not occur. Errors: as inverse; no candidate inside the limits (the message names axis, value, limit
-  /// and the value of the other solution).
+  /// inverse with every winding of 360 deg inside the rotary limits (`windings`), joints outside their limits left out;
+  /// ordered by pair, then by angle. A free rotary axis stands at the allowed angle nearest to `free_angle_rad` and is
+  /// not wound. An empty list does not occur. Errors: as inverse; no candidate inside the limits (the message names
+  /// axis, value, limit and the value of the other solution).
   [[nodiscard]] Result<std::vector<JointSolution>> candidates(const TablePose& pose, double tool_length_mm,
                                                               const LimitMargin& margin = {},
                                                               double free_angle_rad = 0.0) const;
@@ -142,12 +145,13 @@ struct KinematicChain {
   Result<std::vector<JointSolution>> one_rotary(const Vec3& axis) const;
 };
 
-/// command_rad + k * 360 deg for every whole k that lies in the limits minus margin, ascending; empty when there is none. Of an axis
-/// that rolls over: the one within half a turn of its zero.
+/// command_rad + k * 360 deg for every whole k that lies in the limits minus margin, ascending; empty when there is
+/// none. Of an axis that rolls over: the one within half a turn of its zero.
 [[nodiscard]] std::vector<double> windings(const RotaryAxis& axis, double command_rad, double margin_rad = 0.0);
 
-/// Refuses chains that no inverse can serve: more than two rotary axes, a direction that is no unit vector, two parallel
-/// rotary axes, a second rotary axis parallel to the spindle (it turns the tool about itself and cannot tilt it).
+/// Refuses chains that no inverse can serve: more than two rotary axes, a direction that is no unit vector, two
+/// parallel rotary axes, a second rotary axis parallel to the spindle (it turns the tool about itself and cannot tilt
+/// it).
 [[nodiscard]] Status check_chain(const KinematicChain& chain);
 
 }  // namespace toothpath::machines

@@ -23,7 +23,8 @@ double Machine::exact_corner_mm() const {
   double square = 0;
   for (const auto& axis : chain.linear) square += axis.max_acceleration * axis.max_acceleration;
   double turning = 0;  // with TCP the words of X, Y and Z are the tip
-  for (std::size_t k = 0; k < chain.rotary_count() && tcp == TcpMode::none; ++k) turning += chain.rotary(k).max_acceleration;
+  for (std::size_t k = 0; k < chain.rotary_count() && tcp == TcpMode::none; ++k)
+    turning += chain.rotary(k).max_acceleration;
   const double tip = std::sqrt(square) + turning * largest_part_mm() / 2;
   return post.corner_tolerance_mm.value_or(std::max(kUsual, tip * kPeriod * kPeriod / 4));
 }

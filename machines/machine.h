@@ -36,15 +36,21 @@ struct PostSettings {
   std::optional<bool> index_loop;      ///< tooth indexing as a loop or sub-program (true) or written out (false)
   std::vector<std::string> tcp_on;     ///< blocks that switch TCP on, e.g. {"M428"}
   std::vector<std::string> tcp_off;    ///< and off
-  /// Blocks that switch the control's own smoothing on ahead of the teeth of an operation and off behind them; empty: the dialect's way.
+  /// Blocks that switch the control's own smoothing on ahead of the teeth of an operation and off behind them; empty:
+  /// the dialect's way.
   std::vector<std::string> smoothing_on, smoothing_off;
-  std::optional<double> smoothing_tolerance_mm;        ///< stated by the shop: the tip leaves the path by no more while it is on
-  std::optional<double> smoothing_axis_tolerance_rad;  ///< the same of the tool axis; not stated: no cut may turn a rotary
-  std::optional<double> corner_tolerance_mm;  ///< LinuxCNC: the tip is off a corner of its path by no more in exact path mode
-  std::map<Coolant, CoolantWords> coolant;    ///< words of the builder, instead of those of the control or where it has none
+  std::optional<double>
+      smoothing_tolerance_mm;  ///< stated by the shop: the tip leaves the path by no more while it is on
+  std::optional<double>
+      smoothing_axis_tolerance_rad;  ///< the same of the tool axis; not stated: no cut may turn a rotary
+  std::optional<double>
+      corner_tolerance_mm;  ///< LinuxCNC: the tip is off a corner of its path by no more in exact path mode
+  std::map<Coolant, CoolantWords>
+      coolant;  ///< words of the builder, instead of those of the control or where it has none
   LengthReference length_reference = LengthReference::tip;
   PoleOption pole = PoleOption::error;
-  std::optional<double> pole_angle_rad;  ///< `tilt`: least angle kept from the pole; `hold`, `through`, `retract`: greatest change of the axis
+  std::optional<double> pole_angle_rad;  ///< `tilt`: least angle kept from the pole; `hold`, `through`, `retract`:
+                                         ///< greatest change of the axis
 };
 
 struct Machine {
@@ -53,19 +59,21 @@ struct Machine {
   MachineKind kind = MachineKind::five_axis;
   std::string dialect;  ///< "linuxcnc", "fanuc", ...: lower case; which ones exist is the post's business
   TcpMode tcp = TcpMode::none;
-  bool assumed = false;                    ///< true: at least one value is assumed
-  std::vector<std::string> assumed_keys;   ///< dotted names, `axes.A.point`; of `assumed = true`, every value of the file
-  int max_simultaneous_axes = 5;           ///< axes that the control interpolates in one block
+  bool assumed = false;  ///< true: at least one value is assumed
+  std::vector<std::string>
+      assumed_keys;               ///< dotted names, `axes.A.point`; of `assumed = true`, every value of the file
+  int max_simultaneous_axes = 5;  ///< axes that the control interpolates in one block
 
-  double max_spindle_speed = 0.0;                 ///< 1/min
-  double max_cutting_feed = 0.0;                  ///< mm/min
-  double table_diameter_mm = 0.0;                 ///< largest circle that fits on the table
-  std::optional<double> part_diameter_mm;         ///< largest part that turns on the rotary table, when stated
-  std::optional<double> max_part_mass_kg;         ///< when stated
-  double min_block_ms = 1.0;                      ///< shortest block that the control keeps up with
+  double max_spindle_speed = 0.0;          ///< 1/min
+  double max_cutting_feed = 0.0;           ///< mm/min
+  double table_diameter_mm = 0.0;          ///< largest circle that fits on the table
+  std::optional<double> part_diameter_mm;  ///< largest part that turns on the rotary table, when stated
+  std::optional<double> max_part_mass_kg;  ///< when stated
+  double min_block_ms = 1.0;               ///< shortest block that the control keeps up with
   LimitMargin limit_margin;
 
-  /// Place of every table and key of the file by its dotted name, `post.corner_tolerance`: for those who judge them later.
+  /// Place of every table and key of the file by its dotted name, `post.corner_tolerance`: for those who judge them
+  /// later.
   std::map<std::string, SourcePosition, std::less<>> positions;
 
   KinematicChain chain;
@@ -73,9 +81,9 @@ struct Machine {
 
   /// Place of a key that stands in the file, else the file alone.
   [[nodiscard]] SourcePosition where(std::string_view key) const;
-  /// How far the tip may be off a corner that the control takes exactly [mm]: `post.corner_tolerance` if stated, else 0.0005 or, if the axes
-  /// have accelerations, what those leave at the rim of the largest part and a servo period of 1 ms if that is more (LinuxCNC,
-  /// docs/dialects.md).
+  /// How far the tip may be off a corner that the control takes exactly [mm]: `post.corner_tolerance` if stated, else
+  /// 0.0005 or, if the axes have accelerations, what those leave at the rim of the largest part and a servo period of 1
+  /// ms if that is more (LinuxCNC, docs/dialects.md).
   [[nodiscard]] double exact_corner_mm() const;
   /// Every axis of the chain has an acceleration.
   [[nodiscard]] bool has_acceleration() const;

@@ -12,11 +12,11 @@ namespace toothpath::machines {
 namespace {
 
 // Plausible ranges; a value outside them is a typing error or another unit.
-constexpr double kLargestAcceleration = 1e7; // mm/s^2, deg/s^2
-constexpr double kLeastTravel = 10.0;        // mm; less means metres
-constexpr double kLeastDirection = 1e-3;     // length of a direction as written
-constexpr double kLeastOffset = 1.0;         // mm; the largest offset of all table axes: less may mean metres ...
-constexpr double kMeasuredOffset = 0.1;      // mm; ... but for this little, which is measured on axes that should meet
+constexpr double kLargestAcceleration = 1e7;  // mm/s^2, deg/s^2
+constexpr double kLeastTravel = 10.0;         // mm; less means metres
+constexpr double kLeastDirection = 1e-3;      // length of a direction as written
+constexpr double kLeastOffset = 1.0;          // mm; the largest offset of all table axes: less may mean metres ...
+constexpr double kMeasuredOffset = 0.1;       // mm; ... but for this little, which is measured on axes that should meet
 constexpr std::size_t kMostRotaries = 2;
 
 std::string letter_name(char letter) { return std::string(1, letter); }
@@ -38,10 +38,8 @@ std::vector<NamedAxis> read_letters(toml::TableReader& chain, std::string_view k
   }
   for (const toml::TomlValue& item : array->values) {
     const std::string* text = item.text();
-    if (text && (*text == "A" || *text == "B" || *text == "C"))
-      letters.push_back({text->front(), item.position});
-    else
-      chain.refuse_at(item.position, "{} lists rotary axes: \"A\", \"B\" or \"C\"", chain.name(key));
+    if (text && (*text == "A" || *text == "B" || *text == "C")) letters.push_back({text->front(), item.position});
+    else chain.refuse_at(item.position, "{} lists rotary axes: \"A\", \"B\" or \"C\"", chain.name(key));
   }
   return letters;
 }
@@ -63,7 +61,8 @@ void refuse_ends(toml::TableReader& axis) {
   for (const char* end : {"min", "max"})
     if (axis.has(end)) {
       (void)axis.value(end);
-      axis.refuse(end, "{} of an axis with rollover = true, which turns without end: leave {} out, or rollover", axis.name(end), end);
+      axis.refuse(end, "{} of an axis with rollover = true, which turns without end: leave {} out, or rollover",
+                  axis.name(end), end);
     }
 }
 
@@ -111,15 +110,15 @@ Vec3 read_head_point(toml::TableReader& axis, const Vec3& direction) {
   if (axis.has("point")) {
     point = read_vector(axis, "point", kLargestLength).value_or(Vec3::Zero());
     if (point.z() != 0.0)
-      axis.refuse("point", "{}[2] = {} must be 0: the height of a head axis is its pivot_length",
-                  axis.name("point"), point.z());
+      axis.refuse("point", "{}[2] = {} must be 0: the height of a head axis is its pivot_length", axis.name("point"),
+                  point.z());
   }
   const bool along_spindle = direction.head<2>().norm() == 0.0;  // then its height has no effect
   if (along_spindle && !axis.has("pivot_length")) return point;
   if (const auto pivot = axis.number("pivot_length", {0.0, kLargestLength, " mm"})) {
     if (*pivot > 0.0 && *pivot < 1.0)
-      axis.refuse("pivot_length", "{} = {} mm is below 1 mm; lengths are in mm, not metres",
-                  axis.name("pivot_length"), *pivot);
+      axis.refuse("pivot_length", "{} = {} mm is below 1 mm; lengths are in mm, not metres", axis.name("pivot_length"),
+                  *pivot);
     point.z() = *pivot;
   }
   return point;
@@ -156,8 +155,8 @@ RotaryAxis read_rotary(toml::TableReader axis, char letter, bool in_table, const
   return out;
 }
 
-/// Where every offset of the table's axes is below a millimetre although one is more than what is left of axes that should
-/// meet, the file is in metres. Whoever means it can give the point elsewhere on its axis.
+/// Where every offset of the table's axes is below a millimetre although one is more than what is left of axes that
+/// should meet, the file is in metres. Whoever means it can give the point elsewhere on its axis.
 void refuse_offsets_in_metres(toml::TableReader& axes, const Machine& machine) {
   double largest = 0;
   const RotaryAxis* at = nullptr;
@@ -168,7 +167,9 @@ void refuse_offsets_in_metres(toml::TableReader& axes, const Machine& machine) {
     }
   if (largest < kMeasuredOffset || largest >= kLeastOffset) return;
   if (auto axis = axes.required_table(letter_name(at->letter)))
-    axis->refuse("point", "{} = [{}, {}, {}]: the largest offset of the rotary axes, {} mm, is below {} mm; lengths are in mm, not metres",
+    axis->refuse("point",
+                 "{} = [{}, {}, {}]: the largest offset of the rotary axes, {} mm, is below {} mm; lengths are in mm, "
+                 "not metres",
                  axis->name("point"), at->point_mm.x(), at->point_mm.y(), at->point_mm.z(), largest, kLeastOffset);
 }
 
@@ -195,7 +196,7 @@ void read_chain(toml::TableReader& root, Machine& machine) {
     }
     if (k >= kMostRotaries) {
       root.refuse_at(all[k].position, "axis {} is rotary axis number {}, a chain has at most {}", all[k].letter, k + 1,
-                  kMostRotaries);
+                     kMostRotaries);
       continue;
     }
     const std::string key = letter_name(all[k].letter);
@@ -222,7 +223,8 @@ void read_limits(toml::TableReader limits, Machine& machine) {
   const auto diameter = [&limits](std::string_view key) {
     return limits.number(key, toml::Range::positive(kLargestLength, " mm"));
   };
-  machine.max_cutting_feed = limits.number("cutting_feed", toml::Range::positive(kLargestSpeed, " mm/min")).value_or(0.0);
+  machine.max_cutting_feed =
+      limits.number("cutting_feed", toml::Range::positive(kLargestSpeed, " mm/min")).value_or(0.0);
   machine.table_diameter_mm = diameter("table_diameter").value_or(0.0);
   machine.min_block_ms = limits.number("min_block_ms", {0.0, 1e4, " ms"}).value_or(0.0);
   if (limits.has("part_diameter")) machine.part_diameter_mm = diameter("part_diameter");
@@ -250,7 +252,8 @@ void read_smoothing(toml::TableReader& post, PostSettings& settings) {
   settings.smoothing_off = blocks("smoothing_off");
   settings.smoothing_tolerance_mm = post.number("smoothing_tolerance", toml::Range::positive(1.0, " mm"));
   if (post.has("smoothing_axis_tolerance"))
-    if (const auto angle = post.number("smoothing_axis_tolerance", toml::Range::positive(1.0, " deg"))) settings.smoothing_axis_tolerance_rad = radians(*angle);
+    if (const auto angle = post.number("smoothing_axis_tolerance", toml::Range::positive(1.0, " deg")))
+      settings.smoothing_axis_tolerance_rad = radians(*angle);
 }
 
 /// What the builder switches a coolant with: the word that does it, and the one that ends it.
@@ -260,7 +263,8 @@ void read_coolant_words(toml::TableReader& post, PostSettings& settings) {
     const auto words = post.if_present(key, [&] { return post.ascii_list(key); });
     if (!words) continue;
     if (words->size() != 2) post.refuse(key, "{} has {} words, must have 2: on and off", post.name(key), words->size());
-    else if (words->front() == words->back()) post.refuse(key, "{}: {} cannot mean both on and off", post.name(key), words->front());
+    else if (words->front() == words->back())
+      post.refuse(key, "{}: {} cannot mean both on and off", post.name(key), words->front());
     else settings.coolant[coolant] = {words->front(), words->back()};
   }
 }
@@ -271,7 +275,8 @@ void read_post(toml::TableReader post, PostSettings& settings) {
   if (post.has("index_loop")) settings.index_loop = post.boolean("index_loop");
   if (post.has("tcp_on")) settings.tcp_on = post.ascii_list("tcp_on").value_or(std::vector<std::string>{});
   if (post.has("tcp_off")) settings.tcp_off = post.ascii_list("tcp_off").value_or(std::vector<std::string>{});
-  if (post.has("corner_tolerance")) settings.corner_tolerance_mm = post.number("corner_tolerance", toml::Range::positive(0.1, " mm"));
+  if (post.has("corner_tolerance"))
+    settings.corner_tolerance_mm = post.number("corner_tolerance", toml::Range::positive(0.1, " mm"));
   read_smoothing(post, settings);
   read_coolant_words(post, settings);
   if (post.has("length_reference"))
@@ -283,7 +288,8 @@ void read_post(toml::TableReader post, PostSettings& settings) {
       settings.pole = static_cast<PoleOption>(std::find(words.begin(), words.end(), *word) - words.begin());
   }
   if (post.has("pole_angle"))
-    if (const auto angle = post.number("pole_angle", toml::Range::positive(kLargestPoleAngle, " deg"))) settings.pole_angle_rad = radians(*angle);
+    if (const auto angle = post.number("pole_angle", toml::Range::positive(kLargestPoleAngle, " deg")))
+      settings.pole_angle_rad = radians(*angle);
   post.finish();
 }
 
@@ -308,11 +314,15 @@ void check_accelerations(toml::TableReader& root, const Machine& machine) {
     if (!(acceleration > 0)) lacking += fmt::format("{}axes.{}", lacking.empty() ? "" : ", ", letter);
   };
   for (std::size_t i = 0; i < 3; ++i) look("XYZ"[i], machine.chain.linear[i].max_acceleration);
-  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) look(machine.chain.rotary(k).letter, machine.chain.rotary(k).max_acceleration);
-  if (any) root.refuse("axes", "max_acceleration stands at some axes and is missing at {}: every axis has one, or none", lacking);
+  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k)
+    look(machine.chain.rotary(k).letter, machine.chain.rotary(k).max_acceleration);
+  if (any)
+    root.refuse("axes", "max_acceleration stands at some axes and is missing at {}: every axis has one, or none",
+                lacking);
 }
 
-Machine read_machine_tree(const toml::TomlValue& tree, const std::string& file, const MachineJudge& judge, toml::ReaderFindings& findings) {
+Machine read_machine_tree(const toml::TomlValue& tree, const std::string& file, const MachineJudge& judge,
+                          toml::ReaderFindings& findings) {
   toml::TableReader root(tree, "", findings);
   Machine machine;
   machine.file = file;
@@ -330,7 +340,8 @@ Machine read_machine_tree(const toml::TomlValue& tree, const std::string& file, 
   machine.assumed = !machine.assumed_keys.empty();
   machine.max_simultaneous_axes = root.integer("max_simultaneous_axes", {3, 9}).value_or(0);
   if (auto spindle = root.required_table("spindle")) {
-    machine.max_spindle_speed = spindle->number("max_speed", toml::Range::positive(kLargestSpeed, " 1/min")).value_or(0.0);
+    machine.max_spindle_speed =
+        spindle->number("max_speed", toml::Range::positive(kLargestSpeed, " 1/min")).value_or(0.0);
     spindle->finish();
   }
   if (const auto limits = root.required_table("limits")) read_limits(*limits, machine);
@@ -342,7 +353,8 @@ Machine read_machine_tree(const toml::TomlValue& tree, const std::string& file, 
   machine.positions = findings.positions;
   if (judge && !machine.dialect.empty()) {
     auto complaints = judge(machine);
-    findings.errors.insert(findings.errors.end(), std::make_move_iterator(complaints.begin()), std::make_move_iterator(complaints.end()));
+    findings.errors.insert(findings.errors.end(), std::make_move_iterator(complaints.begin()),
+                           std::make_move_iterator(complaints.end()));
   }
   if (findings.errors.empty())
     if (const Status chain = check_chain(machine.chain); !chain)
@@ -353,13 +365,15 @@ Machine read_machine_tree(const toml::TomlValue& tree, const std::string& file, 
 }  // namespace
 
 MachineReading read_machine_text(std::string_view text, const std::string& file, const MachineJudge& judge) {
-  return read_machine_as<MachineReading>(text, file, [&judge](const toml::TomlValue& tree, const std::string& name, toml::ReaderFindings& findings) {
-    return read_machine_tree(tree, name, judge, findings);
-  });
+  return read_machine_as<MachineReading>(
+      text, file, [&judge](const toml::TomlValue& tree, const std::string& name, toml::ReaderFindings& findings) {
+        return read_machine_tree(tree, name, judge, findings);
+      });
 }
 
 MachineReading read_machine_file(const std::string& path, const MachineJudge& judge) {
-  return read_machine_file_as<MachineReading>(path, [&judge](std::string_view text, const std::string& file) { return read_machine_text(text, file, judge); });
+  return read_machine_file_as<MachineReading>(
+      path, [&judge](std::string_view text, const std::string& file) { return read_machine_text(text, file, judge); });
 }
 
 Result<MachineKind> machine_kind_of(const std::string& path) {

@@ -1,8 +1,8 @@
 // Reads a milling machine from its TOML file, and finds the file that a job names.
 //
-// Keys: README.md of this folder lists them; the files in machines/data are commented examples. Lengths mm, angles deg, speeds
-// mm/min, deg/min and 1/min. Every key that is not known is refused, so a typing error cannot pass as a default. Which controls there are, and
-// which keys each of them takes, is not known here: a `MachineJudge` says it.
+// Keys: README.md of this folder lists them; the files in machines/data are commented examples. Lengths mm, angles deg,
+// speeds mm/min, deg/min and 1/min. Every key that is not known is refused, so a typing error cannot pass as a default.
+// Which controls there are, and which keys each of them takes, is not known here: a `MachineJudge` says it.
 #pragma once
 
 #include <functional>
@@ -24,21 +24,23 @@ struct MachineReading {
   std::vector<Diagnostic> errors;  ///< in the order of the file, each `file:line:column: error: ...`
 };
 
-/// What others have against a machine: those who know its control. Each complaint has the place of its key (Machine::where). Asked even
-/// where other keys are refused: what could not be read has its default.
+/// What others have against a machine: those who know its control. Each complaint has the place of its key
+/// (Machine::where). Asked even where other keys are refused: what could not be read has its default.
 using MachineJudge = std::function<std::vector<Diagnostic>(const Machine&)>;
 
 /// Reads the file at `path`. Errors: see the header of this file; unreadable files have kind file_access.
 [[nodiscard]] MachineReading read_machine_file(const std::string& path, const MachineJudge& judge = {});
 
 /// The same from text; `file` is the name in the messages.
-[[nodiscard]] MachineReading read_machine_text(std::string_view text, const std::string& file, const MachineJudge& judge = {});
+[[nodiscard]] MachineReading read_machine_text(std::string_view text, const std::string& file,
+                                               const MachineJudge& judge = {});
 
-/// Kind of machine that a file describes, without reading the rest. Errors: unreadable, not TOML, `kind` missing or unknown.
+/// Kind of machine that a file describes, without reading the rest. Errors: unreadable, not TOML, `kind` missing or
+/// unknown.
 [[nodiscard]] Result<MachineKind> machine_kind_of(const std::string& path);
 
-/// Directories that hold installed machine files, best first: `share/toothpath/machines` beside the executable's folder, then
-/// the data folder of the source tree this was built from. Only those that exist.
+/// Directories that hold installed machine files, best first: `share/toothpath/machines` beside the executable's
+/// folder, then the data folder of the source tree this was built from. Only those that exist.
 [[nodiscard]] std::vector<std::string> machine_directories();
 
 /// File names of the installed machines, "t600s.toml", in order, each once.

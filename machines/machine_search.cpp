@@ -62,11 +62,13 @@ Result<std::string> find_machine_file(const std::string& name, const std::string
     if (!plain.has_parent_path())
       for (const std::string& directory : machine_directories())
         for (const char* ending : {"", ".toml"})
-          if (const fs::path path = fs::path(directory) / (plain.string() + ending); is_there(path)) return path.string();
+          if (const fs::path path = fs::path(directory) / (plain.string() + ending); is_there(path))
+            return path.string();
   }
   const std::vector<std::string> installed = installed_machines();
-  return fail_as(DiagnosticKind::file_access, "machine file \"{}\" is neither beside the job nor installed{}; installed are: {}", name, hint_for(name, installed),
-                 fmt::join(installed, ", "));
+  return fail_as(DiagnosticKind::file_access,
+                 "machine file \"{}\" is neither beside the job nor installed{}; installed are: {}", name,
+                 hint_for(name, installed), fmt::join(installed, ", "));
 }
 
 }  // namespace toothpath::machines

@@ -36,7 +36,8 @@ class MachineWords final : public toml::TableWords {
   }
 
   std::string wrong_type(const std::string& name, toml::TomlType wanted, toml::TomlType found) const override {
-    return fmt::format("{} must be {}, is {}", name, wanted == toml::TomlType::boolean ? "true or false" : type_name(wanted), type_name(found));
+    return fmt::format("{} must be {}, is {}", name,
+                       wanted == toml::TomlType::boolean ? "true or false" : type_name(wanted), type_name(found));
   }
 
   std::string no_table(const std::string& path, std::string_view key, bool many, toml::TomlType found) const override {
@@ -55,7 +56,8 @@ class MachineWords final : public toml::TableWords {
 
   std::string outside(const std::string& name, double number, const toml::Range& range) const override {
     if (number > range.high) return fmt::format("{} = {} exceeds {}{}", name, number, range.high, range.unit);
-    return fmt::format("{} = {} {} {}{}", name, number, range.open_low ? "must be above" : "is below", range.low, range.unit);
+    return fmt::format("{} = {} {} {}{}", name, number, range.open_low ? "must be above" : "is below", range.low,
+                       range.unit);
   }
 
   std::string integer_outside(const std::string& name, std::int64_t number, const toml::Range& range) const override {
@@ -64,16 +66,19 @@ class MachineWords final : public toml::TableWords {
   }
 
   std::optional<std::string> text_fault(const std::string& name, const std::string& text, bool ascii) const override {
-    if (text.empty() || text.size() > 120) return fmt::format("{} has {} characters, allowed are 1 to 120", name, text.size());
+    if (text.empty() || text.size() > 120)
+      return fmt::format("{} has {} characters, allowed are 1 to 120", name, text.size());
     for (const char c : text) {
       const auto byte = static_cast<unsigned char>(c);
       if (byte < 0x20 || byte == 0x7f || (ascii && byte > 0x7f))
-        return fmt::format("{} contains byte 0x{:02x}; only {} is allowed", name, byte, ascii ? "printable ASCII" : "printable text");
+        return fmt::format("{} contains byte 0x{:02x}; only {} is allowed", name, byte,
+                           ascii ? "printable ASCII" : "printable text");
     }
     return std::nullopt;
   }
 
-  std::string not_one_of(const std::string& name, const std::string& text, std::span<const std::string_view> words) const override {
+  std::string not_one_of(const std::string& name, const std::string& text,
+                         std::span<const std::string_view> words) const override {
     return fmt::format("{} = \"{}\" is not one of {}", name, text, fmt::join(words, ", "));
   }
 };
@@ -107,7 +112,9 @@ Result<std::string> read_machine_bytes(const std::string& path) {
   return text;
 }
 
-Result<toml::TomlValue> parse_machine_toml(std::string_view text, const std::string& file) { return toml::parse_toml(text, file, {}); }
+Result<toml::TomlValue> parse_machine_toml(std::string_view text, const std::string& file) {
+  return toml::parse_toml(text, file, {});
+}
 
 const toml::TableWords& machine_words() {
   static const MachineWords words;
@@ -129,14 +136,17 @@ std::optional<Vec3> read_vector(toml::TableReader& table, std::string_view key, 
   return xyz ? std::optional(Vec3((*xyz)[0], (*xyz)[1], (*xyz)[2])) : std::nullopt;
 }
 
-std::optional<std::string> read_kind(toml::TableReader& root) { return root.word("kind", {"five_axis", "gear_shaper"}); }
+std::optional<std::string> read_kind(toml::TableReader& root) {
+  return root.word("kind", {"five_axis", "gear_shaper"});
+}
 
 std::vector<std::string> read_assumed(toml::TableReader& root, const toml::TomlValue& tree) {
   const toml::TomlValue* value = root.required("assumed");
   if (!value) return {};
   std::vector<std::string> all;
   collect_names(*tree.table(), "", all);
-  std::erase_if(all, [](const std::string& n) { return n == "schema" || n == "name" || n == "kind" || n == "assumed"; });
+  std::erase_if(all,
+                [](const std::string& n) { return n == "schema" || n == "name" || n == "kind" || n == "assumed"; });
   if (const auto* every = std::get_if<bool>(&value->data)) return *every ? all : std::vector<std::string>{};
   const toml::TomlArray* list = value->array();
   if (!list) {
@@ -151,7 +161,8 @@ std::vector<std::string> read_assumed(toml::TableReader& root, const toml::TomlV
       root.refuse_at(item.position, "assumed[{}] must be a text, is {}", i, type_name(item.type()));
       continue;
     }
-    const bool exists = std::any_of(all.begin(), all.end(), [text](const std::string& n) { return n == *text || n.starts_with(*text + "."); });
+    const bool exists = std::any_of(all.begin(), all.end(),
+                                    [text](const std::string& n) { return n == *text || n.starts_with(*text + "."); });
     if (exists) names.push_back(*text);
     else root.refuse_at(item.position, "assumed names \"{}\", which this file does not have", *text);
   }

@@ -1,5 +1,5 @@
-// What the files of milling machines and of gear shapers share: their syntax, the words of their refusals, and the keys that
-// both have.
+// What the files of milling machines and of gear shapers share: their syntax, the words of their refusals, and the keys
+// that both have.
 #pragma once
 
 #include "geometry/base/vec.h"
@@ -14,7 +14,8 @@ inline constexpr double kLargestLength = 1e5;  ///< mm
 inline constexpr double kLargestSpeed = 1e6;   ///< mm/min, deg/min, 1/min
 inline constexpr double kLargestAngle = 1e7;   ///< deg: 27000 turns
 
-/// The bytes of a machine file. Errors (kind file_access): missing, not a regular file, larger than kMaxMachineFileBytes, unreadable.
+/// The bytes of a machine file. Errors (kind file_access): missing, not a regular file, larger than
+/// kMaxMachineFileBytes, unreadable.
 [[nodiscard]] Result<std::string> read_machine_bytes(const std::string& path);
 
 /// Errors: the first syntax error with its place; NUL bytes and nesting deeper than 16 levels are refused.
@@ -32,8 +33,9 @@ inline constexpr double kLargestAngle = 1e7;   ///< deg: 27000 turns
 /// `kind`, whatever it is.
 [[nodiscard]] std::optional<std::string> read_kind(toml::TableReader& root);
 
-/// The `assumed` key of a machine file: true (every value but `schema`, `name`, `kind` and itself), false (none) or a list of
-/// dotted names, each of a value or a table of this file. Returns the names; records an error for a name that the file does not have.
+/// The `assumed` key of a machine file: true (every value but `schema`, `name`, `kind` and itself), false (none) or a
+/// list of dotted names, each of a value or a table of this file. Returns the names; records an error for a name that
+/// the file does not have.
 [[nodiscard]] std::vector<std::string> read_assumed(toml::TableReader& root, const toml::TomlValue& tree);
 
 /// A machine, or everything that is wrong with its file in the order of the file.

@@ -8,16 +8,14 @@
 namespace toothpath::machines {
 namespace {
 
-constexpr int kMostTeeth = 1000;         // of a change gear
+constexpr int kMostTeeth = 1000;  // of a change gear
 constexpr int kLargestConstant = 1000000;
 
 Ratio read_ratio(toml::TableReader table) {
   Ratio ratio;
   if (const auto pair = table.integer_list("constant", {1, kLargestConstant})) {
-    if (pair->size() == 2)
-      ratio = {(*pair)[0], (*pair)[1]};
-    else
-      table.refuse("constant", "{} has {} numbers, must have 2", table.name("constant"), pair->size());
+    if (pair->size() == 2) ratio = {(*pair)[0], (*pair)[1]};
+    else table.refuse("constant", "{} has {} numbers, must have 2", table.name("constant"), pair->size());
   }
   table.finish();
   return ratio;
@@ -29,8 +27,8 @@ void read_stroke(toml::TableReader stroke, ShaperMachine& machine) {
     if (steps->empty()) stroke.refuse("steps", "{} is empty, must have at least 1 step", stroke.name("steps"));
     for (std::size_t i = 1; i < steps->size(); ++i)
       if (!((*steps)[i] > (*steps)[i - 1]))
-        stroke.refuse("steps", "{}[{}] = {} must exceed the step before it, {}", stroke.name("steps"), i,
-                      (*steps)[i], (*steps)[i - 1]);
+        stroke.refuse("steps", "{}[{}] = {} must exceed the step before it, {}", stroke.name("steps"), i, (*steps)[i],
+                      (*steps)[i - 1]);
   }
   machine.max_stroke_mm = stroke.number("max_length", toml::Range::positive(kLargestLength, " mm")).value_or(0.0);
   machine.relief_mm = stroke.number("relief", toml::Range::positive(100.0, " mm")).value_or(0.0);
@@ -45,8 +43,8 @@ void read_gears(toml::TableReader gears, ShaperMachine& machine) {
     for (std::size_t i = 0; i < teeth->size(); ++i) {
       const auto first = std::find(teeth->begin(), teeth->end(), (*teeth)[i]) - teeth->begin();
       if (first != static_cast<std::ptrdiff_t>(i))
-        gears.refuse_at(gears.value("teeth")->array()->values[i].position, "{} lists {} twice; each wheel is there once",
-                     gears.name("teeth"), (*teeth)[i]);
+        gears.refuse_at(gears.value("teeth")->array()->values[i].position,
+                        "{} lists {} twice; each wheel is there once", gears.name("teeth"), (*teeth)[i]);
     }
   }
   machine.mesh_margin = gears.integer("mesh_margin", {0, kMostTeeth}).value_or(0);
@@ -81,7 +79,8 @@ void read_gearbox(toml::TableReader table, ShaperGears gears, ShaperMachine& mac
     box.cutter_axis = read_axis_name(table, "cutter_axis");
     box.work_axis = read_axis_name(table, "work_axis");
     if (box.cutter_axis == box.work_axis)
-      table.refuse("work_axis", "{} = \"{}\" must differ from {}", table.name("work_axis"), box.work_axis, table.name("cutter_axis"));
+      table.refuse("work_axis", "{} = \"{}\" must differ from {}", table.name("work_axis"), box.work_axis,
+                   table.name("cutter_axis"));
   } else {
     box.pulses_per_turn = table.integer("pulses_per_turn", {1, 999999999}).value_or(0);
   }
@@ -101,13 +100,15 @@ ShaperAxis read_axis(toml::TableReader axis, bool rotary) {
   out.min = lo.value_or(0.0) * scale;
   out.max = hi.value_or(0.0) * scale;
   out.max_speed =
-      axis.number("max_speed", toml::Range::positive(kLargestSpeed, rotary ? " deg/min" : " mm/min")).value_or(0.0) * scale;
+      axis.number("max_speed", toml::Range::positive(kLargestSpeed, rotary ? " deg/min" : " mm/min")).value_or(0.0) *
+      scale;
   if (rotary && axis.has("sign")) out.sign = read_sense(axis, "sign");
   axis.finish();
   return out;
 }
 
-ShaperMachine read_shaper_tree(const toml::TomlValue& tree, const std::string& file, const std::vector<ShaperDialect>& dialects, toml::ReaderFindings& findings) {
+ShaperMachine read_shaper_tree(const toml::TomlValue& tree, const std::string& file,
+                               const std::vector<ShaperDialect>& dialects, toml::ReaderFindings& findings) {
   toml::TableReader root(tree, "", findings);
   ShaperMachine machine;
   machine.file = file;
@@ -145,15 +146,18 @@ ShaperMachine read_shaper_tree(const toml::TomlValue& tree, const std::string& f
 
 }  // namespace
 
-ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file, const std::vector<ShaperDialect>& dialects) {
-  return read_machine_as<ShaperMachineReading>(text, file, [&](const toml::TomlValue& tree, const std::string& name, toml::ReaderFindings& findings) {
-    return read_shaper_tree(tree, name, dialects, findings);
-  });
+ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file,
+                                              const std::vector<ShaperDialect>& dialects) {
+  return read_machine_as<ShaperMachineReading>(
+      text, file, [&](const toml::TomlValue& tree, const std::string& name, toml::ReaderFindings& findings) {
+        return read_shaper_tree(tree, name, dialects, findings);
+      });
 }
 
 ShaperMachineReading read_shaper_machine_file(const std::string& path, const std::vector<ShaperDialect>& dialects) {
-  return read_machine_file_as<ShaperMachineReading>(
-      path, [&](std::string_view text, const std::string& file) { return read_shaper_machine_text(text, file, dialects); });
+  return read_machine_file_as<ShaperMachineReading>(path, [&](std::string_view text, const std::string& file) {
+    return read_shaper_machine_text(text, file, dialects);
+  });
 }
 
 }  // namespace toothpath::machines

@@ -27,8 +27,8 @@ struct ShaperAxis {
   int sign = 1;  ///< A and C: +1 turns about the axes of the gear frame, -1 reverses the words
 };
 
-/// What couples the work to the cutter, as the machine files of a control say it: change gears ([index], [feed], [gears]); or [gearbox],
-/// with the names of its axes or with the pulses of one turn.
+/// What couples the work to the cutter, as the machine files of a control say it: change gears ([index], [feed],
+/// [gears]); or [gearbox], with the names of its axes or with the pulses of one turn.
 enum class ShaperGears { change_gears, named_axes, pulses };
 
 /// A control that a machine file may name. Which ones exist is the post's business.
@@ -37,12 +37,13 @@ struct ShaperDialect {
   ShaperGears gears = ShaperGears::change_gears;
 };
 
-/// An electronic gearbox in place of change gears: the control couples the work to the cutter by a ratio of whole numbers.
+/// An electronic gearbox in place of change gears: the control couples the work to the cutter by a ratio of whole
+/// numbers.
 struct ElectronicGearbox {
-  std::string cutter_axis = "A";         ///< words of the leading axis: a letter, or a machine axis name as C1
-  std::string work_axis = "C";           ///< words of the following axis
-  std::string relief_on, relief_off;     ///< M codes of the lift on the back stroke, as "M61"
-  std::int64_t pulses_per_turn = 0;      ///< pulses of one turn of the cutter axis; 0: not given
+  std::string cutter_axis = "A";      ///< words of the leading axis: a letter, or a machine axis name as C1
+  std::string work_axis = "C";        ///< words of the following axis
+  std::string relief_on, relief_off;  ///< M codes of the lift on the back stroke, as "M61"
+  std::int64_t pulses_per_turn = 0;   ///< pulses of one turn of the cutter axis; 0: not given
 };
 
 struct ShaperMachine {
@@ -52,15 +53,15 @@ struct ShaperMachine {
   bool assumed = false;
   std::vector<std::string> assumed_keys;  ///< dotted names; of `assumed = true`, every value of the file
 
-  std::vector<double> stroke_steps;       ///< double strokes per minute, ascending
+  std::vector<double> stroke_steps;  ///< double strokes per minute, ascending
   double max_stroke_mm = 0.0;
-  double relief_mm = 0.0;                 ///< back-off of the cutter on the return stroke
-  Ratio index_constant;                   ///< a/b * c/d = index_constant * N_s/N_2
-  Ratio feed_constant;                    ///< feed gears = feed_constant * s_c/d_s
-  std::vector<int> gears;                 ///< teeth of the change gears; each is there once
-  int mesh_margin = 15;                   ///< a + b >= c + mesh_margin and c + d >= b + mesh_margin
+  double relief_mm = 0.0;                    ///< back-off of the cutter on the return stroke
+  Ratio index_constant;                      ///< a/b * c/d = index_constant * N_s/N_2
+  Ratio feed_constant;                       ///< feed gears = feed_constant * s_c/d_s
+  std::vector<int> gears;                    ///< teeth of the change gears; each is there once
+  int mesh_margin = 15;                      ///< a + b >= c + mesh_margin and c + d >= b + mesh_margin
   std::optional<ElectronicGearbox> gearbox;  ///< then [index], [feed] and [gears] are absent
-  std::map<char, ShaperAxis> axes;        ///< X Y Z A C, all present
+  std::map<char, ShaperAxis> axes;           ///< X Y Z A C, all present
 };
 
 /// A shaper, or everything that is wrong with its file. `machine` is empty if and only if `errors` is not.
@@ -69,10 +70,13 @@ struct ShaperMachineReading {
   std::vector<Diagnostic> errors;
 };
 
-/// Reads the file at `path`, whose control is one of `dialects`. Errors: every refusal with its place, unreadable files with kind file_access.
-[[nodiscard]] ShaperMachineReading read_shaper_machine_file(const std::string& path, const std::vector<ShaperDialect>& dialects);
+/// Reads the file at `path`, whose control is one of `dialects`. Errors: every refusal with its place, unreadable files
+/// with kind file_access.
+[[nodiscard]] ShaperMachineReading read_shaper_machine_file(const std::string& path,
+                                                            const std::vector<ShaperDialect>& dialects);
 
 /// The same from text; `file` is the name in the messages.
-[[nodiscard]] ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file, const std::vector<ShaperDialect>& dialects);
+[[nodiscard]] ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file,
+                                                            const std::vector<ShaperDialect>& dialects);
 
 }  // namespace toothpath::machines

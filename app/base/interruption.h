@@ -1,16 +1,18 @@
-// SIGINT and SIGTERM: leave at once with 130, leave nothing half-written behind, and say what stands in the output directory.
+// SIGINT and SIGTERM: leave at once with 130, leave nothing half-written behind, and say what stands in the output
+// directory.
 #pragma once
 
 #include <string>
 
 namespace toothpath::app {
 
-/// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files registered below, then the registered directories that are
-/// empty, and end the process with exit code 130. SIGPIPE and SIGXFSZ are ignored: writing returns an error instead.
+/// From now on SIGINT, SIGTERM and SIGHUP remove the temporary files registered below, then the registered directories
+/// that are empty, and end the process with exit code 130. SIGPIPE and SIGXFSZ are ignored: writing returns an error
+/// instead.
 void handle_signals();
 
-/// A temporary file or a directory made by this run, removed when a signal ends it. At most 64 of each; more are refused
-/// (false), as are paths beyond 4095 bytes.
+/// A temporary file or a directory made by this run, removed when a signal ends it. At most 64 of each; more are
+/// refused (false), as are paths beyond 4095 bytes.
 [[nodiscard]] bool register_temporary(const std::string& path, bool is_directory);
 void forget_temporary(const std::string& path);
 

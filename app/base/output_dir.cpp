@@ -85,8 +85,8 @@ bool same_file(const struct stat& a, const struct stat& b) { return a.st_dev == 
 OutputDir::OutputDir(std::string path, const std::vector<std::string>& own_names, const std::string& previous)
     : path_(std::move(path)), names_(own_names), previous_(previous), exchange_(path_, names_, previous_) {}
 
-Result<OutputDir> OutputDir::open(const std::string& path, const std::vector<std::string>& own_names, const std::vector<std::string>& inputs,
-                                  const std::string& previous) {
+Result<OutputDir> OutputDir::open(const std::string& path, const std::vector<std::string>& own_names,
+                                  const std::vector<std::string>& inputs, const std::string& previous) {
   OutputDir result(path, own_names, previous);
   say("nothing was written", {});
   auto made = make_directories(path);
@@ -109,15 +109,22 @@ Result<OutputDir> OutputDir::open(const std::string& path, const std::vector<std
 }
 
 OutputDir::OutputDir(OutputDir&& other) noexcept
-    : path_(std::move(other.path_)), names_(std::move(other.names_)), previous_(std::move(other.previous_)), exchange_(std::move(other.exchange_)),
-      made_(std::move(other.made_)), files_(std::move(other.files_)), aside_(std::move(other.aside_)), lock_(std::exchange(other.lock_, -1)), active_(std::exchange(other.active_, false)) {}
+    : path_(std::move(other.path_)),
+      names_(std::move(other.names_)),
+      previous_(std::move(other.previous_)),
+      exchange_(std::move(other.exchange_)),
+      made_(std::move(other.made_)),
+      files_(std::move(other.files_)),
+      aside_(std::move(other.aside_)),
+      lock_(std::exchange(other.lock_, -1)),
+      active_(std::exchange(other.active_, false)) {}
 
 OutputDir::~OutputDir() {
   if (active_) discard_all();
 }
 
-/// A hidden file, locked as long as this run lives: who dies leaves a file without a lock. The file goes with its run, so a lock counts only while
-/// its file stands there.
+/// A hidden file, locked as long as this run lives: who dies leaves a file without a lock. The file goes with its run,
+/// so a lock counts only while its file stands there.
 Status OutputDir::lock() {
   const std::string path = path_ + "/" + kLock;
   for (;;) {
@@ -127,13 +134,16 @@ Status OutputDir::lock() {
     do locked = ::flock(lock_, LOCK_EX | LOCK_NB);
     while (locked != 0 && errno == EINTR);
     const int error = errno;
-    struct stat ours {}, there {};
-    const bool counts = locked == 0 && ::fstat(lock_, &ours) == 0 && ::lstat(path.c_str(), &there) == 0 && same_file(ours, there);
+    struct stat ours {
+    }, there{};
+    const bool counts =
+        locked == 0 && ::fstat(lock_, &ours) == 0 && ::lstat(path.c_str(), &there) == 0 && same_file(ours, there);
     if (counts) break;
     ::close(std::exchange(lock_, -1));
     if (locked == 0) continue;
     if (error == EWOULDBLOCK) {
-      Diagnostic busy = fail_as(DiagnosticKind::file_access, "another run is writing into this directory: wait for its end, or give another --out");
+      Diagnostic busy = fail_as(DiagnosticKind::file_access,
+                                "another run is writing into this directory: wait for its end, or give another --out");
       busy.position.file = path_;
       return busy;
     }
@@ -154,12 +164,15 @@ void OutputDir::unlock() {
 
 Status OutputDir::refuse_replaced_inputs(const std::vector<std::string>& inputs) const {
   for (const auto& input : inputs) {
-    struct stat read {}, replaced {};
+    struct stat read {
+    }, replaced{};
     if (::stat(input.c_str(), &read) != 0) continue;  // who reads it says why
     const auto refuse_in = [&](const std::string& directory) -> Status {
       for (const auto& name : names_.standing_in(directory)) {
         if (::lstat((directory + "/" + name).c_str(), &replaced) != 0 || !same_file(read, replaced)) continue;
-        Diagnostic refusal = fail_as(DiagnosticKind::usage, "this input lies where the command writes its own {}: copy it elsewhere, or give another --out", name);
+        Diagnostic refusal = fail_as(
+            DiagnosticKind::usage,
+            "this input lies where the command writes its own {}: copy it elsewhere, or give another --out", name);
         refusal.position.file = input;
         return refusal;
       }
@@ -181,7 +194,8 @@ void OutputDir::note_standing() const {
 Status OutputDir::set_aside() {
   const auto standing = names_.standing_in(path_);
   if (standing.empty() || !names_.is_program(standing.front())) return Ok{};
-  std::string text = fmt::format("what stood in {} is in {}/{}: {}", path_, path_, previous_, describe_results(path_, standing));
+  std::string text =
+      fmt::format("what stood in {} is in {}/{}: {}", path_, path_, previous_, describe_results(path_, standing));
   const SignalsBlocked blocked;
   if (auto s = exchange_.set_aside(); !s) return s;
   aside_ = std::move(text);
@@ -246,7 +260,9 @@ Status OutputDir::verify() const {
     const auto bytes = toml::read_regular_file(final_path(file.name), std::string().max_size());
     if (!bytes) return bytes.error();
     if (sha256_hex(*bytes) == file.sha256) continue;
-    Diagnostic differs = fail_as(DiagnosticKind::file_access, "the file on the disk differs from what was written; all files of this run are removed");
+    Diagnostic differs =
+        fail_as(DiagnosticKind::file_access,
+                "the file on the disk differs from what was written; all files of this run are removed");
     differs.position.file = final_path(file.name);
     return differs;
   }

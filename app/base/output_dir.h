@@ -1,8 +1,10 @@
-// The output directory: all files of a run appear together at its end, or none does; what stood there before is not lost.
+// The output directory: all files of a run appear together at its end, or none does; what stood there before is not
+// lost.
 //
-// Every file is written to a hidden temporary name beside its final one, flushed to the disk, and renamed by commit(). A run that ends in any
-// other way, by an error or a signal, takes its temporary files with it. What an earlier run of the same command left stays as it is until
-// commit() replaces it, or until set_aside() moves it into a folder below: from then on no old program can be taken for a new one.
+// Every file is written to a hidden temporary name beside its final one, flushed to the disk, and renamed by commit().
+// A run that ends in any other way, by an error or a signal, takes its temporary files with it. What an earlier run of
+// the same command left stays as it is until commit() replaces it, or until set_aside() moves it into a folder below:
+// from then on no old program can be taken for a new one.
 #pragma once
 
 #include <functional>
@@ -20,14 +22,16 @@ inline constexpr const char* kPrevious = "previous";
 
 class OutputDir {
  public:
-  /// Makes `path` (and its parents) where it does not exist, checks that files can be made in it and locks it for this process. Of the files in
-  /// it none is changed; what a run that was killed left half-done is put in order first.
-  /// @param own_names  files of the command; a name that ends in "." stands for every extension of NC programs ("program.")
+  /// Makes `path` (and its parents) where it does not exist, checks that files can be made in it and locks it for this
+  /// process. Of the files in it none is changed; what a run that was killed left half-done is put in order first.
+  /// @param own_names  files of the command; a name that ends in "." stands for every extension of NC programs
+  /// ("program.")
   /// @param inputs     files that the command reads: those that it would replace are refused (kind `usage`)
   /// @param previous   folder for set_aside(); empty: the command does not call it
-  /// Other errors, all `file_access`: not a directory, not writable, another run is writing into it, a directory in the place of an output,
-  /// something else than a writable directory in the place of `previous`.
-  [[nodiscard]] static Result<OutputDir> open(const std::string& path, const std::vector<std::string>& own_names, const std::vector<std::string>& inputs = {},
+  /// Other errors, all `file_access`: not a directory, not writable, another run is writing into it, a directory in the
+  /// place of an output, something else than a writable directory in the place of `previous`.
+  [[nodiscard]] static Result<OutputDir> open(const std::string& path, const std::vector<std::string>& own_names,
+                                              const std::vector<std::string>& inputs = {},
                                               const std::string& previous = {});
 
   OutputDir(OutputDir&& other) noexcept;
@@ -36,8 +40,8 @@ class OutputDir {
   /// Discards what was not committed; a directory that open() made and that is still empty goes too.
   ~OutputDir();
 
-  /// The inputs are accepted, and the work begins: earlier results with a program move into `previous`, whose results go. Results without one stay
-  /// until commit(). Errors: `file_access`; then everything is where it was.
+  /// The inputs are accepted, and the work begins: earlier results with a program move into `previous`, whose results
+  /// go. Results without one stay until commit(). Errors: `file_access`; then everything is where it was.
   Status set_aside();
 
   /// Writes a file under its temporary name. `name` has no slash. Errors: `file_access` (disk full, ...).
@@ -48,13 +52,14 @@ class OutputDir {
   [[nodiscard]] std::string final_path(std::string_view name) const;
   /// Drops a file written before (an NC program that turned out not to be safe).
   void discard(std::string_view name);
-  /// Gives every file its final name, programs last: where one stands, all the rest is there. What stood under the command's names goes. Then every
-  /// file is read under its final name and compared with what was written. When anything fails none of the files is there, and what stood there
-  /// stands there again. Nothing can be written afterwards.
+  /// Gives every file its final name, programs last: where one stands, all the rest is there. What stood under the
+  /// command's names goes. Then every file is read under its final name and compared with what was written. When
+  /// anything fails none of the files is there, and what stood there stands there again. Nothing can be written
+  /// afterwards.
   Status commit();
 
-  /// What became of earlier results, for the end of the process, one line; empty where there is nothing to say. That of the last directory that
-  /// was opened; a signal prints the like.
+  /// What became of earlier results, for the end of the process, one line; empty where there is nothing to say. That of
+  /// the last directory that was opened; a signal prints the like.
   [[nodiscard]] static std::string closing_note();
 
  private:

@@ -20,9 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 // Marks on the disk, in the order in which a move makes them.
-constexpr const char* kAside = ".toothpath-aside";      ///< folder: files on their way out of the directory
-constexpr const char* kJournal = ".toothpath-journal";  ///< kAside is complete; what stands under the names in here is new
-constexpr const char* kDone = ".toothpath-done";        ///< kAside, renamed: the new files stay, those in here go
+constexpr const char* kAside = ".toothpath-aside";  ///< folder: files on their way out of the directory
+constexpr const char* kJournal =
+    ".toothpath-journal";                         ///< kAside is complete; what stands under the names in here is new
+constexpr const char* kDone = ".toothpath-done";  ///< kAside, renamed: the new files stay, those in here go
 // "-" and the name of `previous` follow:
 constexpr const char* kKept = ".toothpath-kept-";    ///< kAside, renamed: complete, becomes `previous`
 constexpr const char* kOlder = ".toothpath-older-";  ///< `previous`, renamed: gives way to kKept
@@ -41,7 +42,8 @@ bool is_folder(const std::string& path) {
 std::vector<std::string> entries_of(const std::string& directory) {
   std::vector<std::string> names;
   std::error_code error;
-  for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error)) names.push_back(it->path().filename().string());
+  for (fs::directory_iterator it(directory, error), end; !error && it != end; it.increment(error))
+    names.push_back(it->path().filename().string());
   return names;
 }
 
@@ -98,14 +100,19 @@ OutputNames::OutputNames(const std::vector<std::string>& names) {
       for (const auto& extension : controls::program_extensions()) programs_.push_back(name + extension.substr(1));
 }
 
-bool OutputNames::is_program(std::string_view name) const { return std::find(programs_.begin(), programs_.end(), name) != programs_.end(); }
+bool OutputNames::is_program(std::string_view name) const {
+  return std::find(programs_.begin(), programs_.end(), name) != programs_.end();
+}
 
-bool OutputNames::contains(std::string_view name) const { return is_program(name) || std::find(others_.begin(), others_.end(), name) != others_.end(); }
+bool OutputNames::contains(std::string_view name) const {
+  return is_program(name) || std::find(others_.begin(), others_.end(), name) != others_.end();
+}
 
 std::vector<std::string> OutputNames::standing_in(const std::string& directory) const {
   std::vector<std::string> standing;
   for (const auto* names : {&programs_, &others_})
-    std::copy_if(names->begin(), names->end(), std::back_inserter(standing), [&](const std::string& name) { return exists(directory + "/" + name); });
+    std::copy_if(names->begin(), names->end(), std::back_inserter(standing),
+                 [&](const std::string& name) { return exists(directory + "/" + name); });
   return standing;
 }
 
@@ -215,7 +222,9 @@ Status OutputExchange::end_previous() const {
   if (!exists(older)) return Ok{};
   for (const auto& name : entries_of(older)) {
     const std::string path = older + "/" + name;
-    if (auto s = names_.contains(name) && !is_folder(path) ? removed(path) : moved(path, at(previous_) + "/" + name); !s) return s;
+    if (auto s = names_.contains(name) && !is_folder(path) ? removed(path) : moved(path, at(previous_) + "/" + name);
+        !s)
+      return s;
   }
   if (::rmdir(older.c_str()) != 0) return cannot("remove", older, errno);
   return Ok{};
@@ -235,7 +244,8 @@ Status OutputExchange::write_journal(const std::vector<NewFile>& files) const {
   return cannot("write", temporary, error);
 }
 
-/// New files go, then the journal, then what they replaced comes back: in this order none of the old ones is taken for a new one.
+/// New files go, then the journal, then what they replaced comes back: in this order none of the old ones is taken for
+/// a new one.
 Status OutputExchange::undo_replace() const {
   const auto journal = toml::read_regular_file(at(kJournal), kMostJournalBytes);
   if (!journal) return journal.error();
@@ -266,7 +276,8 @@ Status OutputExchange::replace(const std::vector<NewFile>& files, const std::fun
   }
   const auto named = [&]() -> Status {
     for (const auto& file : files)
-      if (::rename(file.temporary_path.c_str(), at(file.name).c_str()) != 0) return cannot("write", at(file.name), errno);
+      if (::rename(file.temporary_path.c_str(), at(file.name).c_str()) != 0)
+        return cannot("write", at(file.name), errno);
     flush_directory(directory_);
     if (auto s = verify(); !s) return s;
     return moved(at(kAside), at(kDone));

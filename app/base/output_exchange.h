@@ -1,7 +1,9 @@
-// Sets of result files change their place as a whole: what stands in a directory gives way to what is new, or moves into a folder below it.
+// Sets of result files change their place as a whole: what stands in a directory gives way to what is new, or moves
+// into a folder below it.
 //
-// A set is moved file by file, so every step leaves a mark on the disk (a hidden folder or file, ".toothpath-..."). A process that is killed
-// between two steps loses nothing: recover(), called by the next one, undoes a step that was not complete and finishes one that was.
+// A set is moved file by file, so every step leaves a mark on the disk (a hidden folder or file, ".toothpath-..."). A
+// process that is killed between two steps loses nothing: recover(), called by the next one, undoes a step that was not
+// complete and finishes one that was.
 #pragma once
 
 #include <functional>
@@ -16,7 +18,8 @@ namespace toothpath::app {
 /// Names of the files that a command writes.
 class OutputNames {
  public:
-  /// A name that ends in "." stands for every extension of NC programs ("program."): such files are the programs of the command.
+  /// A name that ends in "." stands for every extension of NC programs ("program."): such files are the programs of the
+  /// command.
   explicit OutputNames(const std::vector<std::string>& names);
   [[nodiscard]] bool is_program(std::string_view name) const;
   [[nodiscard]] bool contains(std::string_view name) const;
@@ -32,20 +35,24 @@ class OutputExchange {
   /// `previous`: name of the folder below `directory` into which set_aside() moves; empty: there is none.
   OutputExchange(std::string directory, OutputNames names, std::string previous);
 
-  /// Undoes or finishes what a killed process left. Errors (`file_access`): a file of ours can be moved neither forth nor back.
+  /// Undoes or finishes what a killed process left. Errors (`file_access`): a file of ours can be moved neither forth
+  /// nor back.
   [[nodiscard]] Status recover() const;
-  /// Errors (`file_access`): a folder in the place of an output; something else than a folder that can be written in the place of `previous`.
+  /// Errors (`file_access`): a folder in the place of an output; something else than a folder that can be written in
+  /// the place of `previous`.
   [[nodiscard]] Status check() const;
 
-  /// Moves what stands in the directory under the names into `previous`, whose files of these names go; files of other names stay where they are.
-  /// At no moment is there a mix of two sets in `previous`. Failed: everything is where it was.
+  /// Moves what stands in the directory under the names into `previous`, whose files of these names go; files of other
+  /// names stay where they are. At no moment is there a mix of two sets in `previous`. Failed: everything is where it
+  /// was.
   [[nodiscard]] Status set_aside() const;
 
   struct NewFile {
     std::string temporary_path, name;
   };
-  /// What stands in the directory under the names gives way to `files`, which get their names in this order; then `verify` looks at them. When
-  /// anything fails, what stood there stands there again, and of `files` those that had got their name are gone.
+  /// What stands in the directory under the names gives way to `files`, which get their names in this order; then
+  /// `verify` looks at them. When anything fails, what stood there stands there again, and of `files` those that had
+  /// got their name are gone.
   [[nodiscard]] Status replace(const std::vector<NewFile>& files, const std::function<Status()>& verify) const;
 
  private:

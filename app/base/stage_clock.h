@@ -23,7 +23,8 @@ class StageClock {
  public:
   explicit StageClock(Progress& progress) : progress_(progress) {}
 
-  /// Runs `work`, adds its wall time to stage `name` and returns what it returns. A stage inside another counts for itself only.
+  /// Runs `work`, adds its wall time to stage `name` and returns what it returns. A stage inside another counts for
+  /// itself only.
   template <typename Work>
   decltype(auto) run(const std::string& name, Work&& work) {
     progress_.show(name);

@@ -41,13 +41,15 @@ std::string describe_results(const std::string& directory, const std::vector<std
   const std::string report_path = directory + "/report.json";
   nlohmann::json report;
   if (std::find(names.begin(), names.end(), "report.json") != names.end())
-    if (const auto text = toml::read_regular_file(report_path, kMostReportBytes)) report = nlohmann::json::parse(*text, nullptr, false);
+    if (const auto text = toml::read_regular_file(report_path, kMostReportBytes))
+      report = nlohmann::json::parse(*text, nullptr, false);
   const std::string job = text_in(report, "job"), command = text_in(report, "command");
   if (job.empty()) return names.front() + time_of(directory + "/" + names.front());
   std::string out = fmt::format("{} \"{}\"{}", command.empty() ? "job" : command, job, time_of(report_path));
   const nlohmann::json program = report.contains("program") ? report["program"] : nlohmann::json();
   const std::string file = text_in(program, "file"), digits = text_in(program, "sha256");
-  if (std::find(names.begin(), names.end(), file) != names.end()) return fmt::format("{}, {} (sha256 {})", out, file, digits.substr(0, kShownDigits));
+  if (std::find(names.begin(), names.end(), file) != names.end())
+    return fmt::format("{}, {} (sha256 {})", out, file, digits.substr(0, kShownDigits));
   return out;
 }
 

@@ -6,8 +6,8 @@
 
 namespace toothpath::app {
 
-/// One line: command, job, time and program with the first digits of its hash, as far as report.json says so; else the first of the files and its
-/// time. Control characters of names are left out. Empty where `names` is.
+/// One line: command, job, time and program with the first digits of its hash, as far as report.json says so; else the
+/// first of the files and its time. Control characters of names are left out. Empty where `names` is.
 /// @param names  files of the results that stand there, programs first
 [[nodiscard]] std::string describe_results(const std::string& directory, const std::vector<std::string>& names);
 

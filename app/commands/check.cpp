@@ -46,12 +46,14 @@ std::vector<Diagnostic> read_inputs(Check& check) {
   auto loaded = check.clock.run("machine", [&] { return process::load_machine(check.job); });
   if (auto* errors = loaded.refused()) return std::move(*errors);
   check.machine = std::move(loaded).value();
-  if (!check.job.setup) return {fail_at(check.job.where("setup"), "the job lacks a [setup]: where the gear stands is not known")};
+  if (!check.job.setup)
+    return {fail_at(check.job.where("setup"), "the job lacks a [setup]: where the gear stands is not known")};
   auto text = process::read_program_file(request.program_file);
   if (!text) return {text.error()};
   check.text = std::move(text.value());
   if (!process::wants_scene(request)) return {};
-  auto meshes = check.clock.run("stock and fixture meshes", [&] { return process::load_scene(request, check.gear.process->part().diameter_mm); });
+  auto meshes = check.clock.run("stock and fixture meshes",
+                                [&] { return process::load_scene(request, check.gear.process->part().diameter_mm); });
   if (!meshes) return {meshes.error()};
   check.scene = std::move(meshes.value());
   return {};
@@ -63,17 +65,20 @@ Status judge_scene(Check& check) {
   auto verdicts = check.clock.run("stock and fixture", [&]() -> Result<std::vector<report::SceneVerdict>> {
     const auto around = check.gear.process->scene(check.limits.clearance_mm);
     if (!around) return around.error();
-    return process::check_scene(*check.scene, check.text, check.request.program_file, check.job, check.machine, check.proof->read, *around);
+    return process::check_scene(*check.scene, check.text, check.request.program_file, check.job, check.machine,
+                                check.proof->read, *around);
   });
   if (!verdicts) return verdicts.error();
   process::add_scene(*verdicts, check.proof->reasons, check.proof->gouge, check.report);
   return Ok{};
 }
 
-/// Everything that is asked of the program. Errors: what the reader refuses; a program that is read but not safe is none.
+/// Everything that is asked of the program. Errors: what the reader refuses; a program that is read but not safe is
+/// none.
 Status prove(Check& check) {
   check.milling = check.gear.process->milling(check.machine, check.limits, {}, check.clock);
-  auto proof = process::prove_program({check.text, check.request.program_file, check.job, check.machine}, {}, check.milling->check(), check.clock);
+  auto proof = process::prove_program({check.text, check.request.program_file, check.job, check.machine}, {},
+                                      check.milling->check(), check.clock);
   if (!proof) return proof.error();
   check.proof = std::move(proof.value());
   report::RunReport& report = check.report;
@@ -100,7 +105,8 @@ Status write_results(Check& check, app::OutputDir& output, std::string& json) {
   report.files = {"tooth.vtp", "report.html", "report.json"};
   report.stages = check.clock.seconds();
   const auto page = check.clock.run("report page", [&] {
-    page::ReportPage content = page::page_of_run(check.gear.process->on_page(report.machine_name), report, {}, check.text);
+    page::ReportPage content =
+        page::page_of_run(check.gear.process->on_page(report.machine_name), report, {}, check.text);
     content.surface = proof.surface;
     content.motion = page::motion_charts(proof.read, proof.motions, check.machine);
     return page::render_report_page(content);
@@ -116,7 +122,8 @@ Status write_results(Check& check, app::OutputDir& output, std::string& json) {
 
 CommandOutcome check_program(const CheckRequest& request) {
   std::vector<std::string> inputs = {request.job_file, request.program_file};
-  for (const auto* more : {&request.stock_files, &request.fixture_files, &request.measured_files}) inputs.insert(inputs.end(), more->begin(), more->end());
+  for (const auto* more : {&request.stock_files, &request.fixture_files, &request.measured_files})
+    inputs.insert(inputs.end(), more->begin(), more->end());
   auto output = app::OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"}, inputs);
   if (!output) return failed(output.error());
   Check check(request);
@@ -144,10 +151,12 @@ void add_check(Commands& commands) {
       [](OptionSet& set, CheckRequest& request) {
         job_options(set, request);
         set.file("PROGRAM", request.program_file, "NC program in the dialect of the job's machine");
-        set.files("--stock", request.stock_files, "closed mesh of the stock before the program (STL or OBJ, mm, gear frame); repeatable");
-        set.files("--fixture", request.fixture_files,
-                  "closed mesh of what holds the work and turns with it (STL or OBJ, mm, gear frame); repeatable. Facets are taken as exact: "
-                  "what they leave out of the true part must lie within the clearance of the job");
+        set.files("--stock", request.stock_files,
+                  "closed mesh of the stock before the program (STL or OBJ, mm, gear frame); repeatable");
+        set.files(
+            "--fixture", request.fixture_files,
+            "closed mesh of what holds the work and turns with it (STL or OBJ, mm, gear frame); repeatable. Facets are "
+            "taken as exact: what they leave out of the true part must lie within the clearance of the job");
         set.files("--measured", request.measured_files, "measured deviations that the program answers (see correct)");
       },
       check_program));

@@ -11,8 +11,9 @@ struct CheckRequest : JobRequest, process::SceneFiles {
   std::vector<std::string> measured_files;  ///< measured deviations that the program answers, in the order of the cuts
 };
 
-/// Reads any NC program in the dialect of the job's machine back and checks it: gouges, clearance, rapids, left material.
-/// Writes report.json, report.html and tooth.vtp; the program itself is never touched. Exit: verified or unverified.
+/// Reads any NC program in the dialect of the job's machine back and checks it: gouges, clearance, rapids, left
+/// material. Writes report.json, report.html and tooth.vtp; the program itself is never touched. Exit: verified or
+/// unverified.
 [[nodiscard]] CommandOutcome check_program(const CheckRequest& request);
 
 }  // namespace toothpath::commands

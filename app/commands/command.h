@@ -1,9 +1,11 @@
-// What a command is: its name, its options, what it does with them and what it gives back. Commands print nothing: app/command_line.cpp does.
+// What a command is: its name, its options, what it does with them and what it gives back. Commands print nothing:
+// app/command_line.cpp does.
 //
 // A command stands in one file of this folder, which ends with
 //
 //     void add_surface(Commands& commands) {
-//       commands.push_back(command_of<JobRequest>("surface", "flanks, limits, inspection grid and mesh of the gear", job_options, run_surface));
+//       commands.push_back(command_of<JobRequest>("surface", "flanks, limits, inspection grid and mesh of the gear",
+//       job_options, run_surface));
 //     }
 //
 // and in the list of commands in app/CMakeLists.txt, where `surface` stands for commands/surface.cpp and add_surface().
@@ -15,9 +17,9 @@
 #include <utility>
 #include <vector>
 
-#include "app/commands/option_set.h"
 #include "app/base/outcome.h"
 #include "app/base/stage_clock.h"
+#include "app/commands/option_set.h"
 
 namespace toothpath::commands {
 
@@ -41,7 +43,8 @@ struct CommandGroup {
   const char* name;
   const char* description;
 };
-inline constexpr CommandGroup kStudies = {"study", "error against run time, extreme cases, section models, double helical gears"};
+inline constexpr CommandGroup kStudies = {
+    "study", "error against run time, extreme cases, section models, double helical gears"};
 inline constexpr CommandGroup kMachines = {"machine", "what a machine file says, and how to prove it"};
 
 struct Command {
@@ -55,9 +58,11 @@ struct Command {
 using Commands = std::vector<Command>;
 
 /// A command whose request is a `Request` (a CommonRequest with more).
-/// @param options  void(OptionSet&, Request&): what the command line fills in;  @param run  CommandOutcome(const Request&)
+/// @param options  void(OptionSet&, Request&): what the command line fills in;  @param run  CommandOutcome(const
+/// Request&)
 template <typename Request, typename Options, typename Run>
-[[nodiscard]] Command command_of(const char* name, const char* description, Options options, Run run, const CommandGroup* group = nullptr) {
+[[nodiscard]] Command command_of(const char* name, const char* description, Options options, Run run,
+                                 const CommandGroup* group = nullptr) {
   return {group, name, description, [options, run](OptionSet& set) -> Command::Action {
             auto request = std::make_shared<Request>();
             options(set, *request);

@@ -15,7 +15,8 @@ const std::vector<std::string> kContactOutputs = {"contact.csv", "transmission.c
 constexpr int kCutRows = 241, kCutColumns = 33;
 
 std::optional<Diagnostic> out_of_range(const ContactRequest& r) {
-  const auto check = [](const char* name, const std::optional<double>& value, double low, double high, const char* unit) -> std::optional<Diagnostic> {
+  const auto check = [](const char* name, const std::optional<double>& value, double low, double high,
+                        const char* unit) -> std::optional<Diagnostic> {
     if (!value || (*value >= low && *value <= high)) return std::nullopt;
     return fail_as(DiagnosticKind::usage, "{} = {:g} is not from {:g} to {:g} {}", name, *value, low, high, unit);
   };
@@ -63,13 +64,16 @@ void add_contact(Commands& commands) {
       "contact", "gear and pinion rolled: contact pattern, transmission error, pairs",
       [](OptionSet& set, ContactRequest& request) {
         job_options(set, request);
-        set.number("--pinion-teeth", request.pinion_teeth, "teeth of the pinion (default: mate_teeth, else the shaper's)");
+        set.number("--pinion-teeth", request.pinion_teeth,
+                   "teeth of the pinion (default: mate_teeth, else the shaper's)");
         set.number("--offset-error", request.offset_error_mm, "pinion axis off its place across the tooth, mm");
         set.number("--angle-error", request.angle_error_deg, "error of the shaft angle, deg");
         set.number("--axial-error", request.axial_error_mm, "pinion off its place along its axis, mm");
         set.number("--compound", request.compound_um, "thickness of the marking compound, um (default 6)");
-        set.text("--mate", request.other_job, "bevel gears: job of the mate (default: by the rules of the pair, same mill)", "JOB");
-        set.number("--wheel-axial-error", request.wheel_axial_error_mm, "bevel gears: wheel off its place along its axis, mm");
+        set.text("--mate", request.other_job,
+                 "bevel gears: job of the mate (default: by the rules of the pair, same mill)", "JOB");
+        set.number("--wheel-axial-error", request.wheel_axial_error_mm,
+                   "bevel gears: wheel off its place along its axis, mm");
         set.flag("--as-cut", request.as_cut, "roll the surface that the job cuts, too");
       },
       run_contact));

@@ -8,7 +8,8 @@ void add_correct(Commands& commands) {
       "correct", "the whole way again, with flanks that answer a measurement",
       [](OptionSet& set, RunRequest& request) {
         job_options(set, request);
-        set.required_files("--measured", request.measured_files, "measured grid: inspection.csv with a column deviation_um; several: one after each cut");
+        set.required_files("--measured", request.measured_files,
+                           "measured grid: inspection.csv with a column deviation_um; several: one after each cut");
       },
       run_job));
 }

@@ -2,11 +2,11 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/process/opening_and_end.h"
-#include "app/process/gear_of_job.h"
 #include "app/job/file.h"
-#include "app/report/sheet/cutter_sheet.h"
+#include "app/process/gear_of_job.h"
+#include "app/process/opening_and_end.h"
 #include "app/report/page/study_page.h"
+#include "app/report/sheet/cutter_sheet.h"
 #include "cam/finger/milling.h"
 #include "geometry/base/angle.h"
 #include "geometry/bevel_gear/forces.h"
@@ -15,14 +15,18 @@
 namespace toothpath::commands {
 namespace {
 
-const std::vector<std::string> kCutterOutputs = {"cutter.csv", "cutter.svg", "cutter.dxf", "cutter.html", "cutter.json"};
+const std::vector<std::string> kCutterOutputs = {"cutter.csv", "cutter.svg", "cutter.dxf", "cutter.html",
+                                                 "cutter.json"};
 constexpr double kDxfChord = 2e-4;  // mm
 constexpr double kCsvChord = 1e-5;  // mm
 
 /// Design for the gear of a job; refusals with their place. What speaks of the designed mill belongs to the gear.
 process::ValueOrErrors<bevel_gear::FingerCutterDesign> design_for(const job::Job& job) {
   const bevel_gear::BevelGearParameters* p = job.bevel_gear();
-  if (!p) return std::vector{fail_at(job.where("gear.type"), "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear", process::gear_type(job))};
+  if (!p)
+    return std::vector{fail_at(job.where("gear.type"),
+                               "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear",
+                               process::gear_type(job))};
   auto made = bevel_gear::design_finger_cutter(*p);
   if (auto* design = made.value_if()) return std::move(*design);
   std::vector<Diagnostic> errors;
@@ -54,12 +58,24 @@ nlohmann::ordered_json json_of(const sheet::JudgedCutter& cutter) {
   auto& conditions = out["conditions"] = nlohmann::ordered_json::array();
   const char* verdicts[] = {"met", "remark", "broken"};
   for (const auto& k : j.conditions)
-    conditions.push_back({{"name", k.name}, {"quantity", k.quantity}, {"value", k.value}, {"limit", k.limit}, {"relation", k.at_least ? ">=" : "<="},
-                          {"unit", k.unit}, {"verdict", verdicts[static_cast<int>(k.verdict)]}, {"meaning", k.meaning}});
+    conditions.push_back({{"name", k.name},
+                          {"quantity", k.quantity},
+                          {"value", k.value},
+                          {"limit", k.limit},
+                          {"relation", k.at_least ? ">=" : "<="},
+                          {"unit", k.unit},
+                          {"verdict", verdicts[static_cast<int>(k.verdict)]},
+                          {"meaning", k.meaning}});
   auto& walls = out["walls"] = nlohmann::ordered_json::array();
   for (const auto& w : j.walls)
-    walls.push_back({{"half", w.half}, {"wall", w.sigma > 0 ? "L" : "U"}, {"least_um", 1000 * w.least_mm}, {"least_at", {w.least_ell, w.least_height}},
-                     {"greatest_um", 1000 * w.greatest_mm}, {"greatest_at", {w.greatest_ell, w.greatest_height}}, {"points", w.points}, {"missing", w.missing}});
+    walls.push_back({{"half", w.half},
+                     {"wall", w.sigma > 0 ? "L" : "U"},
+                     {"least_um", 1000 * w.least_mm},
+                     {"least_at", {w.least_ell, w.least_height}},
+                     {"greatest_um", 1000 * w.greatest_mm},
+                     {"greatest_at", {w.greatest_ell, w.greatest_height}},
+                     {"points", w.points},
+                     {"missing", w.missing}});
   out["small_end_overcut_um"] = 1000 * j.small_end_overcut_mm;
   out["small_end_estimate_um"] = 1000 * j.small_end_estimate_mm;
   out["free_width_small_end"] = j.free_width_small_mm;
@@ -71,37 +87,51 @@ nlohmann::ordered_json json_of(const sheet::JudgedCutter& cutter) {
 std::string gear_line(const bevel_gear::BevelGear& g) {
   const auto& p = g.parameters();
   const char* hand = p.hand > 0 ? "right" : "left";
-  return fmt::format("z {}{}, m_te {:g}, alpha_n {:g}\u00b0, beta_e {:g}\u00b0, b {:g}, pitch angle {:.4f}\u00b0, {}", p.teeth, p.mate_teeth > 0 ? fmt::format("/{}", p.mate_teeth) : "",
-                     p.outer_transverse_module_mm, degrees(p.pressure_angle_rad), degrees(p.outer_spiral_angle_rad), p.face_width_mm, degrees(g.delta()),
-                     g.herringbone() ? fmt::format("herringbone, inner half {}, R_J {:g}", hand, g.R_ref()) : fmt::format("{} hand", hand));
+  return fmt::format("z {}{}, m_te {:g}, alpha_n {:g}\u00b0, beta_e {:g}\u00b0, b {:g}, pitch angle {:.4f}\u00b0, {}",
+                     p.teeth, p.mate_teeth > 0 ? fmt::format("/{}", p.mate_teeth) : "", p.outer_transverse_module_mm,
+                     degrees(p.pressure_angle_rad), degrees(p.outer_spiral_angle_rad), p.face_width_mm,
+                     degrees(g.delta()),
+                     g.herringbone() ? fmt::format("herringbone, inner half {}, R_J {:g}", hand, g.R_ref())
+                                     : fmt::format("{} hand", hand));
 }
 
 /// Mills of the job, and those of another job with the profile that its own gear gives them.
-std::vector<sheet::JudgedCutter> judge_mills(const bevel_gear::BevelGear& gear, const job::Job& job, const job::Job* other) {
+std::vector<sheet::JudgedCutter> judge_mills(const bevel_gear::BevelGear& gear, const job::Job& job,
+                                             const job::Job* other) {
   std::vector<sheet::JudgedCutter> mills;
   for (const auto& tool : job.tools)
-    if (tool.type == tool::CutterType::finger_mill) mills.push_back({fmt::format("tool {}", tool.number), bevel_gear::judge_finger_cutter(gear, finger::finger_cutter_data(tool))});
+    if (tool.type == tool::CutterType::finger_mill)
+      mills.push_back({fmt::format("tool {}", tool.number),
+                       bevel_gear::judge_finger_cutter(gear, finger::finger_cutter_data(tool))});
   if (!other) return mills;
   const bevel_gear::BevelGearParameters& p = *other->bevel_gear();
-  const double delta = bevel_gear::bevel_pitch_angle(p), R_e = p.teeth * p.outer_transverse_module_mm / (2 * std::sin(delta));
-  const double R_0 = R_e / std::pow(std::cos(p.outer_spiral_angle_rad), 2), kappa_v = std::abs(delta - kPi / 2) < 1e-15 ? 0.0 : std::cos(delta) / (R_0 * std::sin(delta));
+  const double delta = bevel_gear::bevel_pitch_angle(p),
+               R_e = p.teeth * p.outer_transverse_module_mm / (2 * std::sin(delta));
+  const double R_0 = R_e / std::pow(std::cos(p.outer_spiral_angle_rad), 2),
+               kappa_v = std::abs(delta - kPi / 2) < 1e-15 ? 0.0 : std::cos(delta) / (R_0 * std::sin(delta));
   for (const auto& tool : other->tools) {
     if (tool.type != tool::CutterType::finger_mill) continue;
     const bevel_gear::FingerCutterData d = finger::finger_cutter_data(tool);
     mills.push_back({fmt::format("tool {} of {}", tool.number, other->name),
-                     judge_finger_profile(gear, d, bevel_gear::make_finger_profile<double>(p.pressure_angle_rad, kappa_v, p.dedendum_mm, d.module_mm, d.tip_radius_mm, d.rack_depth_mm,
-                                                                              d.profile_height_mm))});
+                     judge_finger_profile(gear, d,
+                                          bevel_gear::make_finger_profile<double>(
+                                              p.pressure_angle_rad, kappa_v, p.dedendum_mm, d.module_mm,
+                                              d.tip_radius_mm, d.rack_depth_mm, d.profile_height_mm))});
   }
   return mills;
 }
 
 page::PageTable summary_table_of(const std::vector<sheet::JudgedCutter>& mills) {
-  page::PageTable table{"Mills", {"mill", "m_nj", "r_t", "h_C", "x_D", "walls [um]", "small end [um]", "ridge [mm]", "verdict"}, {}, ""};
+  page::PageTable table{
+      "Mills", {"mill", "m_nj", "r_t", "h_C", "x_D", "walls [um]", "small end [um]", "ridge [mm]", "verdict"}, {}, ""};
   for (const auto& m : mills) {
     const auto& j = m.judgement;
-    table.rows.push_back({m.name, fmt::format("{:.4f}", j.data.module_mm), fmt::format("{:.4f}", j.data.tip_radius_mm), fmt::format("{:.4f}", j.data.rack_depth_mm),
-                          fmt::format("{:.4f}", j.data.profile_height_mm), j.walls.empty() ? "" : fmt::format("{:+.3f} .. {:+.3f}", 1000 * j.deepest_mm(), 1000 * j.proudest_mm()),
-                          fmt::format("{:.2f}", 1000 * j.small_end_overcut_mm), fmt::format("{:.3f}", j.ridge_mm), j.usable() ? "usable" : "not usable"});
+    table.rows.push_back(
+        {m.name, fmt::format("{:.4f}", j.data.module_mm), fmt::format("{:.4f}", j.data.tip_radius_mm),
+         fmt::format("{:.4f}", j.data.rack_depth_mm), fmt::format("{:.4f}", j.data.profile_height_mm),
+         j.walls.empty() ? "" : fmt::format("{:+.3f} .. {:+.3f}", 1000 * j.deepest_mm(), 1000 * j.proudest_mm()),
+         fmt::format("{:.2f}", 1000 * j.small_end_overcut_mm), fmt::format("{:.3f}", j.ridge_mm),
+         j.usable() ? "usable" : "not usable"});
   }
   return table;
 }
@@ -113,7 +143,9 @@ process::ValueOrErrors<std::optional<job::Job>> read_other(const CutterRequest& 
   if (auto* errors = read.refused()) return std::move(*errors);
   job::Job& other = read.value();
   if (!other.bevel_gear())
-    return std::vector{fail_at(other.where("gear.type"), "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear", process::gear_type(other))};
+    return std::vector{fail_at(other.where("gear.type"),
+                               "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear",
+                               process::gear_type(other))};
   return std::optional<job::Job>(std::move(other));
 }
 
@@ -123,12 +155,15 @@ Result<std::size_t> drawn_mill(int tool_number, const std::vector<sheet::JudgedC
   const std::string name = fmt::format("tool {}", tool_number);
   std::size_t drawn = 0;
   while (drawn < mills.size() && mills[drawn].name != name) ++drawn;
-  if (drawn == mills.size()) return fail_at(job.where("tool"), "--tool = {} is not a finger mill of the job", tool_number);
-  if (mills[drawn].judgement.walls.empty()) return fail_at(job.where("tool"), "tool {} cannot be drawn: its profile is impossible", tool_number);
+  if (drawn == mills.size())
+    return fail_at(job.where("tool"), "--tool = {} is not a finger mill of the job", tool_number);
+  if (mills[drawn].judgement.walls.empty())
+    return fail_at(job.where("tool"), "tool {} cannot be drawn: its profile is impossible", tool_number);
   return drawn;
 }
 
-sheet::CutterSheet sheet_about(const job::Job& job, const bevel_gear::BevelGear& gear, const std::vector<sheet::JudgedCutter>& mills, std::size_t drawn) {
+sheet::CutterSheet sheet_about(const job::Job& job, const bevel_gear::BevelGear& gear,
+                               const std::vector<sheet::JudgedCutter>& mills, std::size_t drawn) {
   sheet::CutterSheet sheet;
   sheet.job_name = job.name;
   sheet.job_file = job.file;
@@ -145,11 +180,12 @@ sheet::CutterSheet sheet_about(const job::Job& job, const bevel_gear::BevelGear&
 
 sheet::CutterDxf dxf_of(const sheet::CutterSheet& sheet) {
   const auto& data = sheet.drawn.judgement.data;
-  return sheet::cutter_dxf(sheet.drawn.judgement.profile, sheet.length_mm,
-                           {fmt::format("finger mill ({}), job {}", sheet.drawn.name, sheet.job_name),
-                            fmt::format("module {:.6g}, tip radius {:.6g}, rack depth {:.6g}, profile height {:.6g}", data.module_mm, data.tip_radius_mm,
-                                        data.rack_depth_mm, data.profile_height_mm)},
-                           kDxfChord);
+  return sheet::cutter_dxf(
+      sheet.drawn.judgement.profile, sheet.length_mm,
+      {fmt::format("finger mill ({}), job {}", sheet.drawn.name, sheet.job_name),
+       fmt::format("module {:.6g}, tip radius {:.6g}, rack depth {:.6g}, profile height {:.6g}", data.module_mm,
+                   data.tip_radius_mm, data.rack_depth_mm, data.profile_height_mm)},
+      kDxfChord);
 }
 
 /// Where the axial force of a herringbone gear does not change with its sense.
@@ -185,7 +221,8 @@ CommandOutcome run_cutter(const CutterRequest& request) {
 
   std::vector<sheet::JudgedCutter> mills = {{"designed", bevel_gear::judge_finger_cutter(design.gear, design.data)}};
   const job::Job* mills_of = other.value() ? &*other.value() : nullptr;
-  for (auto& mill : clock.run("judgement", [&] { return judge_mills(design.gear, job, mills_of); })) mills.push_back(std::move(mill));
+  for (auto& mill : clock.run("judgement", [&] { return judge_mills(design.gear, job, mills_of); }))
+    mills.push_back(std::move(mill));
   const auto drawn = drawn_mill(request.tool_number, mills, job);
   if (!drawn) return failed(drawn.error());
   sheet::CutterSheet sheet = sheet_about(job, design.gear, mills, *drawn);
@@ -205,7 +242,8 @@ CommandOutcome run_cutter(const CutterRequest& request) {
   outcome.report_json = json.dump(2) + "\n";
   std::optional<bevel_gear::FingerProfile<double>> compared;
   if (!sheet.others.empty()) compared = sheet.others.front().judgement.profile;
-  const std::string svg = sheet::cutter_svg(profile, sheet.length_mm, sheet::cutter_drawing_scale(profile, sheet.length_mm, 160, 240), compared, true);
+  const std::string svg = sheet::cutter_svg(
+      profile, sheet.length_mm, sheet::cutter_drawing_scale(profile, sheet.length_mm, 160, 240), compared, true);
   const process::NamedFiles files = {{"cutter.csv", sheet::cutter_csv(profile, kCsvChord)},
                                      {"cutter.svg", svg},
                                      {"cutter.dxf", dxf.text},
@@ -213,7 +251,9 @@ CommandOutcome run_cutter(const CutterRequest& request) {
                                      {"cutter.json", outcome.report_json}};
   outcome.summary = mills_summary(mills, sheet.warnings);
   if (R_J)
-    outcome.summary += fmt::format("axial force is the same in both senses at apex_cone_distance = {:.4f} (now {:.4f}; uniform line load)\n", *R_J, design.gear.R_ref());
+    outcome.summary += fmt::format(
+        "axial force is the same in both senses at apex_cone_distance = {:.4f} (now {:.4f}; uniform line load)\n", *R_J,
+        design.gear.R_ref());
   outcome.summary += "files in " + request.out_dir + "\n";
   progress.clear();
   return process::finished(*output, files, std::move(outcome));
@@ -225,7 +265,8 @@ void add_cutter(Commands& commands) {
       [](OptionSet& set, CutterRequest& request) {
         job_options(set, request);
         set.number("--tool", request.tool_number, "draw this tool of the job instead of the designed mill");
-        set.text("--cutter-of", request.other_job, "judge the mills of this other job too, as they were made for its gear", "JOB");
+        set.text("--cutter-of", request.other_job,
+                 "judge the mills of this other job too, as they were made for its gear", "JOB");
       },
       run_cutter));
 }

@@ -14,13 +14,15 @@ struct MachineRequest : CommonRequest {
   std::optional<double> tool_length_mm;  ///< of `machine test`: gauge line to the tip of the test bar
 };
 
-/// Prints the machine of `request.machine_file` (a path, or the name of an installed machine): limits, chain, what a positive command
-/// turns, every assumed value. With an output directory also machine.html and machine.svg (milling machines).
+/// Prints the machine of `request.machine_file` (a path, or the name of an installed machine): limits, chain, what a
+/// positive command turns, every assumed value. With an output directory also machine.html and machine.svg (milling
+/// machines).
 [[nodiscard]] CommandOutcome show_machine(const MachineRequest& request);
 
-/// Writes machine_test.* (NC text in the machine's dialect), machine_test.html (what the machinist does and must see at every
-/// station) and nothing else. The text is read back and proven before it is kept. `request.tool_length_mm`: of the test bar.
-/// Refused: gear shapers; machines without rotary axes; no place near the table that the travels allow; a dialect without axes.
+/// Writes machine_test.* (NC text in the machine's dialect), machine_test.html (what the machinist does and must see at
+/// every station) and nothing else. The text is read back and proven before it is kept. `request.tool_length_mm`: of
+/// the test bar. Refused: gear shapers; machines without rotary axes; no place near the table that the travels allow; a
+/// dialect without axes.
 [[nodiscard]] CommandOutcome test_machine(const MachineRequest& request);
 
 }  // namespace toothpath::commands

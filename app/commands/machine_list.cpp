@@ -2,8 +2,8 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/command.h"
-#include "app/report/svg/html_text.h"
 #include "app/report/page/study_page.h"
+#include "app/report/svg/html_text.h"
 #include "machines/machine_file.h"
 #include "postproc/shaper/control.h"
 
@@ -23,11 +23,14 @@ struct Listed {
   std::vector<Diagnostic> errors;
 };
 
-Listed listed(const std::string& file, const std::string& name, const char* kind, const std::string& control, const std::string& table, const std::string& head,
-              std::size_t assumed) {
+Listed listed(const std::string& file, const std::string& name, const char* kind, const std::string& control,
+              const std::string& table, const std::string& head, std::size_t assumed) {
   Listed out;
   out.cells = {file, name, kind, table, head, control, assumed == 0 ? "-" : std::to_string(assumed)};
-  out.json = {{"file", file}, {"name", svg::valid_utf8(name)}, {"kind", kind}, {"table", table}, {"head", head}, {"dialect", control}, {"assumed", assumed}};
+  out.json = {{"file", file},      {"name", svg::valid_utf8(name)},
+              {"kind", kind},      {"table", table},
+              {"head", head},      {"dialect", control},
+              {"assumed", assumed}};
   return out;
 }
 
@@ -39,18 +42,21 @@ Listed read_installed(const std::string& file) {
   if (*kind == machines::MachineKind::gear_shaper) {
     auto reading = shaper::read_shaper_machine(*path);
     if (!reading.machine) return {{}, {}, std::move(reading.errors)};
-    return listed(file, reading.machine->name, "gear_shaper", reading.machine->dialect, "-", "-", reading.machine->assumed_keys.size());
+    return listed(file, reading.machine->name, "gear_shaper", reading.machine->dialect, "-", "-",
+                  reading.machine->assumed_keys.size());
   }
   auto reading = machines::read_machine_file(*path);
   if (!reading.machine) return {{}, {}, std::move(reading.errors)};
   const machines::Machine& m = *reading.machine;
-  return listed(file, m.name, "five_axis", m.dialect, letters_of(m.chain.table), letters_of(m.chain.head), m.assumed_keys.size());
+  return listed(file, m.name, "five_axis", m.dialect, letters_of(m.chain.table), letters_of(m.chain.head),
+                m.assumed_keys.size());
 }
 
 /// Every machine that can be read is listed; the files that cannot are errors.
 CommandOutcome list_machines(const CommonRequest&) {
   page::PageTable table{"", {"file", "machine", "kind", "table", "head", "control", "assumed"}, {}, ""};
-  nlohmann::ordered_json json = {{"schema", 1}, {"command", "machine list"}, {"machines", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json = {
+      {"schema", 1}, {"command", "machine list"}, {"machines", nlohmann::ordered_json::array()}};
   std::vector<Diagnostic> errors;
   for (const auto& file : machines::installed_machines()) {
     Listed machine = read_installed(file);
@@ -69,7 +75,8 @@ CommandOutcome list_machines(const CommonRequest&) {
 }  // namespace
 
 void add_machine_list(Commands& commands) {
-  commands.push_back(command_of<CommonRequest>("list", "the installed machines, a line each", [](OptionSet&, CommonRequest&) {}, list_machines, &kMachines));
+  commands.push_back(command_of<CommonRequest>(
+      "list", "the installed machines, a line each", [](OptionSet&, CommonRequest&) {}, list_machines, &kMachines));
 }
 
 }  // namespace toothpath::commands

@@ -1,4 +1,5 @@
-// The options of a command as it declares them. Only option_set.cpp and app/command_line.cpp know the library that reads them.
+// The options of a command as it declares them. Only option_set.cpp and app/command_line.cpp know the library that
+// reads them.
 #pragma once
 
 #include <optional>
@@ -11,8 +12,8 @@ class App;
 
 namespace toothpath::commands {
 
-/// Options in the order in which the help lists them. Every value is filled in when the command line has been read, and must live until then. `type`
-/// stands behind the option in the help.
+/// Options in the order in which the help lists them. Every value is filled in when the command line has been read, and
+/// must live until then. `type` stands behind the option in the help.
 class OptionSet {
  public:
   explicit OptionSet(CLI::App& app) : app_(app) {}

@@ -9,9 +9,10 @@
 namespace toothpath::commands {
 namespace {
 
-const std::vector<std::string> kRunOutputs = {"program.",       "cl.csv",         "report.json", "report.html", "setup.html", "gear.stl",     "tooth.vtp",
-                                           "inspection.csv", "inspection.dmi", "limits.json", "limits.html", "limits.svg", "limits_0.svg", "limits_1.svg",
-                                           "correction.json"};
+const std::vector<std::string> kRunOutputs = {"program.",       "cl.csv",       "report.json",    "report.html",
+                                              "setup.html",     "gear.stl",     "tooth.vtp",      "inspection.csv",
+                                              "inspection.dmi", "limits.json",  "limits.html",    "limits.svg",
+                                              "limits_0.svg",   "limits_1.svg", "correction.json"};
 
 /// Job, gear and machine with everything that is wrong with them.
 std::vector<Diagnostic> read_inputs(flow::Run& run, const RunRequest& request) {
@@ -33,7 +34,8 @@ Status write_results(flow::Run& run, app::OutputDir& output, std::string& json) 
     if (const auto s = write("correction.json", run.gear.correction->json); !s) return s;
   if (report.verified) {
     if (const auto s = gear.write_files(output, run.surface, report.assumed, run.clock, report.files); !s) return s;
-    if (const auto s = write("setup.html", sheet::setup_sheet(run.job, gear.outline(), run.machine, report)); !s) return s;
+    if (const auto s = write("setup.html", sheet::setup_sheet(run.job, gear.outline(), run.machine, report)); !s)
+      return s;
   }
   const auto paths = run.paths();
   if (!paths.empty())
@@ -51,7 +53,8 @@ Status write_results(flow::Run& run, app::OutputDir& output, std::string& json) 
 /// The end of a run whose inputs were right: verified, or not and why.
 CommandOutcome finish(flow::Run& run, app::OutputDir& output, const std::optional<Diagnostic>& stopped, bool color) {
   CommandOutcome outcome = process::verdict_of(run.report, stopped, run.job.file, output);
-  if (const auto written = write_results(run, output, outcome.report_json); !written) return failed(process::located(run.job, "gear", written.error()));
+  if (const auto written = write_results(run, output, outcome.report_json); !written)
+    return failed(process::located(run.job, "gear", written.error()));
   run.progress.clear();
   if (const auto committed = output.commit(); !committed) return failed(committed.error());
   outcome.summary = report::summary_table(run.report, color);
@@ -85,7 +88,9 @@ void add_run(Commands& commands) {
       "run", "the whole way from the job to a proven NC program",
       [](OptionSet& set, RunRequest& request) {
         job_options(set, request);
-        set.text("--restart", request.restart, "operation and tooth, both from 0: the program begins there; what comes before is taken as done", "OP:TOOTH");
+        set.text("--restart", request.restart,
+                 "operation and tooth, both from 0: the program begins there; what comes before is taken as done",
+                 "OP:TOOTH");
       },
       run_job));
 }

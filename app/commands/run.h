@@ -9,8 +9,8 @@ namespace toothpath::commands {
 /// Of `run` and `correct`.
 struct RunRequest : JobRequest, flow::RunAsked {};
 
-/// Gear, plan, gouge check, axis program, NC text, read back from the disk, proof, report. A program that is not proven is not
-/// left in the directory; the report is, and says why.
+/// Gear, plan, gouge check, axis program, NC text, read back from the disk, proof, report. A program that is not proven
+/// is not left in the directory; the report is, and says why.
 [[nodiscard]] CommandOutcome run_job(const RunRequest& request);
 
 }  // namespace toothpath::commands

@@ -21,13 +21,16 @@ namespace {
 
 std::string summary_of(const shaper::ShaperSetup& s, const std::string& folder) {
   std::string out = fmt::format("shaper set-up of {} on {}\n", s.job_name, s.machine.name);
-  out += fmt::format("  offset slide {:.4f} mm ({:.4f} deg by tan, {:.4f} deg by sin)\n", s.slide_mm, degrees(s.angle_tan_rad),
-                     degrees(s.angle_sin_rad));
-  out += fmt::format("  stroke {:.3f} mm, {:.3f} .. {:.3f}, {} double strokes/min\n", s.length_mm, s.start_mm, s.end_mm, s.strokes_set);
+  out += fmt::format("  offset slide {:.4f} mm ({:.4f} deg by tan, {:.4f} deg by sin)\n", s.slide_mm,
+                     degrees(s.angle_tan_rad), degrees(s.angle_sin_rad));
+  out += fmt::format("  stroke {:.3f} mm, {:.3f} .. {:.3f}, {} double strokes/min\n", s.length_mm, s.start_mm, s.end_mm,
+                     s.strokes_set);
   if (s.machine.gearbox)
-    out += fmt::format("  electronic gearbox {}{}/{}, read back from the program\n", s.sense < 0 ? "-" : "", s.generating.numerator, s.generating.denominator);
+    out += fmt::format("  electronic gearbox {}{}/{}, read back from the program\n", s.sense < 0 ? "-" : "",
+                       s.generating.numerator, s.generating.denominator);
   else
-    out += fmt::format("  index gears {}, feed gears {} ({:.5f} mm)\n", s.index_gears.text(), s.feed_gears.text(), s.circular_feed_set_mm);
+    out += fmt::format("  index gears {}, feed gears {} ({:.5f} mm)\n", s.index_gears.text(), s.feed_gears.text(),
+                       s.circular_feed_set_mm);
   out += fmt::format("  {} + {} double strokes, {:.1f} min\n", s.strokes_infeed, s.strokes_turn, s.total_min());
   for (const auto& warning : s.warnings) out += "  warning: " + warning + "\n";
   if (!s.machine.assumed_keys.empty()) {
@@ -43,7 +46,8 @@ std::string summary_of(const shaper::ShaperSetup& s, const std::string& folder) 
 constexpr const char* kPreviousShaper = "previous_shaper";
 
 const std::vector<std::string>& shaper_outputs() {
-  static const std::vector<std::string> names = {"limits.json", "shaper.json", "shaper.html", "shaper_program.", "report.json"};
+  static const std::vector<std::string> names = {"limits.json", "shaper.json", "shaper.html", "shaper_program.",
+                                                 "report.json"};
   return names;
 }
 
@@ -64,7 +68,8 @@ CommandOutcome run_shaper(const JobRequest& request) {
   if (const auto aside = output->set_aside(); !aside) return failed(aside.error());
   setup.warnings.insert(setup.warnings.begin(), gear.warnings().begin(), gear.warnings().end());
   setup.warnings.insert(setup.warnings.begin(), job.warnings.begin(), job.warnings.end());
-  const auto study = clock.run("stroke simulation", [&] { return shaper::feed_study(setup, shaper::compared_feeds(setup)); });
+  const auto study =
+      clock.run("stroke simulation", [&] { return shaper::feed_study(setup, shaper::compared_feeds(setup)); });
   const shaper::ShaperControl& control = shaper::shaper_control(machine);
   const std::string program_name = "shaper_program" + control.extension;
   const std::string program = clock.run("shaper program", [&] { return control.program(setup); });
@@ -74,7 +79,8 @@ CommandOutcome run_shaper(const JobRequest& request) {
   if (control.read) {
     const auto faults = clock.run("read back", [&] { return shaper::gearbox_program_faults(*bytes, setup); });
     std::vector<Diagnostic> errors;
-    for (const auto& fault : faults) errors.push_back(fail_as(DiagnosticKind::verification, "{}: {}", program_name, fault));
+    for (const auto& fault : faults)
+      errors.push_back(fail_as(DiagnosticKind::verification, "{}: {}", program_name, fault));
     if (!errors.empty()) return failed(std::move(errors));
   }
 
@@ -108,7 +114,8 @@ CommandOutcome run_shaper(const JobRequest& request) {
 }
 
 void add_shaper(Commands& commands) {
-  commands.push_back(command_of<JobRequest>("shaper", "limits and gear-shaper set-up: sheet and stroke program", job_options, run_shaper));
+  commands.push_back(command_of<JobRequest>("shaper", "limits and gear-shaper set-up: sheet and stroke program",
+                                            job_options, run_shaper));
 }
 
 }  // namespace toothpath::commands

@@ -7,7 +7,9 @@
 namespace toothpath::commands {
 
 const std::vector<std::string>& surface_outputs() {
-  static const std::vector<std::string> names = {"limits.json", "limits.html", "limits.svg", "limits_0.svg", "limits_1.svg", "inspection.csv", "inspection.dmi", "gear.stl", "tooth.vtp", "report.json"};
+  static const std::vector<std::string> names = {"limits.json",  "limits.html",    "limits.svg",     "limits_0.svg",
+                                                 "limits_1.svg", "inspection.csv", "inspection.dmi", "gear.stl",
+                                                 "tooth.vtp",    "report.json"};
   return names;
 }
 
@@ -23,13 +25,15 @@ CommandOutcome run_surface(const JobRequest& request) {
   if (auto* errors = made.refused()) return failed(std::move(*errors));
   const process::GearProcess& gear = *made.value().process;
   report::RunReport report = process::surface_report(job, gear.part().warnings);
-  if (const auto written = gear.write_files(*output, {}, {}, clock, report.files); !written) return failed(process::located(job, "gear", written.error()));
+  if (const auto written = gear.write_files(*output, {}, {}, clock, report.files); !written)
+    return failed(process::located(job, "gear", written.error()));
   progress.clear();
   return process::finished_report(*output, clock, std::move(report), request.color);
 }
 
 void add_surface(Commands& commands) {
-  commands.push_back(command_of<JobRequest>("surface", "flanks, limits, inspection grid and mesh of the gear", job_options, run_surface));
+  commands.push_back(command_of<JobRequest>("surface", "flanks, limits, inspection grid and mesh of the gear",
+                                            job_options, run_surface));
 }
 
 }  // namespace toothpath::commands

@@ -30,7 +30,8 @@ void read_tools(toml::TableReader& root, Job& job) {
   for (auto& table : root.tables("tool")) {
     tool::ToolAssembly tool = read_tool(table, job.bevel_gear());
     const auto same = [&](const tool::ToolAssembly& other) { return other.number == tool.number && tool.number > 0; };
-    if (std::any_of(job.tools.begin(), job.tools.end(), same)) table.refuse("number", "number = {} is used by two tools", tool.number);
+    if (std::any_of(job.tools.begin(), job.tools.end(), same))
+      table.refuse("number", "number = {} is used by two tools", tool.number);
     job.tools.push_back(std::move(tool));
   }
 }
@@ -79,7 +80,8 @@ JobOrErrors parse_job(std::string_view text, const std::string& file) {
   read_tools(root, job);
   auto operations = root.tables("operation");
   if (operations.size() > 100) root.refuse("operation", "{} operations exceed the limit 100", operations.size());
-  for (auto& table : operations) job.operations.push_back(read_operation(table, job.tools, job.bevel_gear() != nullptr));
+  for (auto& table : operations)
+    job.operations.push_back(read_operation(table, job.tools, job.bevel_gear() != nullptr));
   check_milling(root, job);
   root.finish();
 

@@ -1,5 +1,5 @@
-// [gear], [[gear.zone]] and [stock]. What the geometry itself limits (undercut, pointing) is refused by geometry; here stand
-// the bounds of what a number of this kind can mean at all.
+// [gear], [[gear.zone]] and [stock]. What the geometry itself limits (undercut, pointing) is refused by geometry; here
+// stand the bounds of what a number of this kind can mean at all.
 #include <cmath>
 
 #include "app/job/tables.h"
@@ -20,10 +20,10 @@ constexpr toml::Range kLength{0, 10000, " mm", true};
 constexpr toml::Range kLengthOrZero{0, 10000, " mm"};
 
 /// Absent optional numbers leave the target as it is.
-void optional_number(toml::TableReader& table, std::string_view key, const toml::Range& range, double& target, double factor = 1.0) {
+void optional_number(toml::TableReader& table, std::string_view key, const toml::Range& range, double& target,
+                     double factor = 1.0) {
   if (const auto value = table.if_present(key, [&] { return table.number(key, range); })) target = *value * factor;
 }
-
 
 /// NAME_diameter and NAME_length: both or none.
 void optional_cylinder(toml::TableReader& gear, const std::string& name, double& diameter, double& length) {
@@ -45,8 +45,8 @@ void read_zones(toml::TableReader& gear, face_gear::FaceGearParameters& result, 
       zone.helix_angle_rad = radians(*angle);
       if (std::abs(*angle) > 1e-3 && std::abs(*angle) < 1.1) {
         const auto at = table.where("helix_angle");
-        warnings.push_back(fmt::format("{}:{}:{}: warning: helix_angle = {} deg; were {:.3f} deg meant (radians)?", at.file,
-                                       at.line, at.column, *angle, degrees(*angle)));
+        warnings.push_back(fmt::format("{}:{}:{}: warning: helix_angle = {} deg; were {:.3f} deg meant (radians)?",
+                                       at.file, at.line, at.column, *angle, degrees(*angle)));
       }
     }
     const auto inner = table.number("inner_radius", kRadius);
@@ -56,8 +56,8 @@ void read_zones(toml::TableReader& gear, face_gear::FaceGearParameters& result, 
     if (inner && outer && *outer <= *inner)
       table.refuse("outer_radius", "outer_radius = {} mm is not above inner_radius = {} mm", *outer, *inner);
     else if (inner && !result.zones.empty() && *inner <= result.zones.back().outer_radius_mm)
-      table.refuse("inner_radius", "inner_radius = {} mm is not above {} mm, the outer_radius of the zone before", *inner,
-                   result.zones.back().outer_radius_mm);
+      table.refuse("inner_radius", "inner_radius = {} mm is not above {} mm, the outer_radius of the zone before",
+                   *inner, result.zones.back().outer_radius_mm);
     table.finish();
     result.zones.push_back(zone);
   }
@@ -65,7 +65,8 @@ void read_zones(toml::TableReader& gear, face_gear::FaceGearParameters& result, 
 
 }  // namespace
 
-face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::TableReader* stock, std::vector<std::string>& warnings) {
+face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::TableReader* stock,
+                                             std::vector<std::string>& warnings) {
   face_gear::FaceGearParameters p;
   p.teeth = gear.integer("teeth", kTeeth).value_or(0);
   p.shaper_teeth = gear.integer("shaper_teeth", {3, 1000}).value_or(0);
@@ -85,14 +86,18 @@ face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::Tabl
   if (module && p.backlash_mm >= *module)
     gear.refuse("backlash", "backlash = {} mm is not below module = {} mm", p.backlash_mm, *module);
   if (module && p.shaper_tip_radius_mm >= *module)
-    gear.refuse("shaper_tip_radius", "shaper_tip_radius = {} mm is not below module = {} mm", p.shaper_tip_radius_mm, *module);
+    gear.refuse("shaper_tip_radius", "shaper_tip_radius = {} mm is not below module = {} mm", p.shaper_tip_radius_mm,
+                *module);
   double land = 0;
   optional_number(gear, "least_land", kLengthOrZero, land);
   if (land > 0) p.least_land_mm = land;
-  if (module && land >= *module) gear.refuse("least_land", "least_land = {} mm is not below module = {} mm", land, *module);
+  if (module && land >= *module)
+    gear.refuse("least_land", "least_land = {} mm is not below module = {} mm", land, *module);
   read_zones(gear, p, warnings);
-  if (!p.zones.empty() && p.zones.front().inner_radius_mm > 0 && std::abs(p.offset_mm) >= p.zones.front().inner_radius_mm)
-    gear.refuse("offset", "offset = {} mm reaches the inner radius {} mm", p.offset_mm, p.zones.front().inner_radius_mm);
+  if (!p.zones.empty() && p.zones.front().inner_radius_mm > 0 &&
+      std::abs(p.offset_mm) >= p.zones.front().inner_radius_mm)
+    gear.refuse("offset", "offset = {} mm reaches the inner radius {} mm", p.offset_mm,
+                p.zones.front().inner_radius_mm);
   gear.finish();
   if (stock) {
     optional_number(*stock, "allowance_top", {0, 1000, " mm"}, p.allowance_top_mm);
@@ -140,10 +145,12 @@ bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear) {
   if (p.face_width_mm > 0 && p.pitch_angle_rad > 0 && module && p.teeth > 0) {
     const double outer = *module * p.teeth / (2 * std::sin(p.pitch_angle_rad));
     if (p.face_width_mm >= outer)
-      gear.refuse("face_width", "face_width = {} mm is not below the outer cone distance {:.4f} mm", p.face_width_mm, outer);
+      gear.refuse("face_width", "face_width = {} mm is not below the outer cone distance {:.4f} mm", p.face_width_mm,
+                  outer);
     const double inner = outer - p.face_width_mm, apex = p.apex_cone_distance_mm;
     if (apex > 0 && (apex <= inner || apex > outer || (herringbone && apex >= outer)))
-      gear.refuse("apex_cone_distance", "apex_cone_distance = {} mm lies outside the face, {:.4f} to {:.4f} mm", apex, inner, outer);
+      gear.refuse("apex_cone_distance", "apex_cone_distance = {} mm lies outside the face, {:.4f} to {:.4f} mm", apex,
+                  inner, outer);
   }
   gear.finish();
   return p;

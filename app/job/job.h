@@ -8,13 +8,13 @@
 #include <variant>
 #include <vector>
 
-#include "cam/tool/assembly.h"
 #include "cam/path/operation.h"
 #include "cam/proof/limits.h"
+#include "cam/tool/assembly.h"
 #include "geometry/base/diagnostic.h"
 #include "geometry/bevel_gear/parameters.h"
-#include "geometry/face_gear/parameters.h"
 #include "geometry/contact/pinion.h"
+#include "geometry/face_gear/parameters.h"
 #include "machines/coolant.h"
 #include "postproc/joints/setup.h"
 #include "postproc/shaper/shaping.h"
@@ -33,23 +33,24 @@ struct MachineChoice {
 
 /// The [verify] table.
 struct VerifySettings {
-  double gouge_tolerance_mm = proof::ProofLimits{}.gouge_mm;  ///< deepest cut into the finished surface that counts as verified
-  bool all_teeth = false;               ///< false: one space is proven, the others are turned copies
-  std::optional<double> clearance_mm;   ///< least gap of neck, shank and holder; none: the program's default
-  std::optional<double> unreached_mm;   ///< surface out of the finishing ball's reach may stand so high; none: it is told, no verdict
+  double gouge_tolerance_mm =
+      proof::ProofLimits{}.gouge_mm;   ///< deepest cut into the finished surface that counts as verified
+  bool all_teeth = false;              ///< false: one space is proven, the others are turned copies
+  std::optional<double> clearance_mm;  ///< least gap of neck, shank and holder; none: the program's default
+  std::optional<double>
+      unreached_mm;  ///< surface out of the finishing ball's reach may stand so high; none: it is told, no verdict
 };
-
 
 /// The [program] table.
 struct ProgramSettings {
   bool spread_teeth = false;  ///< tooth_order = "spread": neighbours are not cut one after the other; else in sequence
-  std::optional<machines::PoleOption> pole;        ///< instead of post.pole of the machine file
-  std::optional<double> pole_angle_rad;  ///< instead of post.pole_angle
+  std::optional<machines::PoleOption> pole;  ///< instead of post.pole of the machine file
+  std::optional<double> pole_angle_rad;      ///< instead of post.pole_angle
 };
 
 /// The [contact] table: the pinion that runs with the gear, and where it stands.
 struct ContactSettings {
-  int pinion_teeth = 0;        ///< N_p; 0: mate_teeth of the gear
+  int pinion_teeth = 0;  ///< N_p; 0: mate_teeth of the gear
   contact::Misalignment moved;
   double compound_mm = 0.006;  ///< thickness of the marking compound
 };
@@ -63,10 +64,10 @@ struct Job {
   std::string name;
   std::variant<face_gear::FaceGearParameters, bevel_gear::BevelGearParameters> gear;
   MachineChoice machine;
-  std::optional<joints::Setup> setup;            ///< present in every milling job
+  std::optional<joints::Setup> setup;  ///< present in every milling job
   std::vector<tool::ToolAssembly> tools;
-  std::vector<path::MillingOperation> operations;  ///< `tool` is an index into `tools`
-  machines::Coolant coolant = machines::Coolant::off;        ///< mode of [coolant]
+  std::vector<path::MillingOperation> operations;      ///< `tool` is an index into `tools`
+  machines::Coolant coolant = machines::Coolant::off;  ///< mode of [coolant]
   VerifySettings verify;
   ProgramSettings program;
   std::optional<shaper::Shaping> shaping;
@@ -77,8 +78,12 @@ struct Job {
 
   /// Position of a key, of the nearest table above it where the key was not written, or of the file.
   [[nodiscard]] SourcePosition where(std::string_view key) const;
-  [[nodiscard]] const face_gear::FaceGearParameters* face_gear() const { return std::get_if<face_gear::FaceGearParameters>(&gear); }
-  [[nodiscard]] const bevel_gear::BevelGearParameters* bevel_gear() const { return std::get_if<bevel_gear::BevelGearParameters>(&gear); }
+  [[nodiscard]] const face_gear::FaceGearParameters* face_gear() const {
+    return std::get_if<face_gear::FaceGearParameters>(&gear);
+  }
+  [[nodiscard]] const bevel_gear::BevelGearParameters* bevel_gear() const {
+    return std::get_if<bevel_gear::BevelGearParameters>(&gear);
+  }
 };
 
 }  // namespace toothpath::job

@@ -32,7 +32,9 @@ std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
     return result;
   }
   const auto wrong = [&] {
-    table.refuse("holder", "holder must be an array of [lower diameter, upper diameter, height] in mm, each above 0 and at most 2000");
+    table.refuse(
+        "holder",
+        "holder must be an array of [lower diameter, upper diameter, height] in mm, each above 0 and at most 2000");
     return std::vector<tool::HolderSegment>{};
   };
   const toml::TomlArray* segments = value->array();
@@ -52,7 +54,8 @@ std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
   return result;
 }
 
-void read_finger_profile(toml::TableReader& table, const bevel_gear::BevelGearParameters* bevel, tool::ToolAssembly& tool) {
+void read_finger_profile(toml::TableReader& table, const bevel_gear::BevelGearParameters* bevel,
+                         tool::ToolAssembly& tool) {
   tool.module_mm = table.number("module", {0.01, 100, " mm"}).value_or(0);
   tool.tip_radius_mm = table.number("tip_radius", {0, 100, " mm"}).value_or(0);
   tool.rack_depth_mm = table.number("rack_depth", kToolLength).value_or(0);
@@ -61,7 +64,8 @@ void read_finger_profile(toml::TableReader& table, const bevel_gear::BevelGearPa
   if (const auto flute = table.if_present("flute_length", [&] { return table.number("flute_length", kToolLength); }))
     tool.flute_length_mm = *flute;
   if (table.value("diameter"))
-    table.refuse("diameter", "diameter contradicts type = \"finger_mill\": its width follows from module and profile_height");
+    table.refuse("diameter",
+                 "diameter contradicts type = \"finger_mill\": its width follows from module and profile_height");
 }
 
 /// Three finite numbers of an array; nothing where it is something else.
@@ -86,7 +90,8 @@ std::vector<path::ToolAxisKey> read_axis_keys(toml::TableReader& table, std::str
   if (!value) return keys;
   const toml::TomlArray* list = value->array();
   if (!list || list->values.empty() || list->values.size() > kMostAxisKeys) {
-    table.refuse(key, "{} must be an array of 1 to {} keys [radius in mm, lean outwards in deg, lean aside in deg]", key, kMostAxisKeys);
+    table.refuse(key, "{} must be an array of 1 to {} keys [radius in mm, lean outwards in deg, lean aside in deg]",
+                 key, kMostAxisKeys);
     return {};
   }
   for (std::size_t k = 0; k < list->values.size(); ++k) {
@@ -98,9 +103,14 @@ std::vector<path::ToolAxisKey> read_axis_keys(toml::TableReader& table, std::str
     const auto [radius, outwards, aside] = *numbers;
     if (!(radius > 0)) table.refuse(key, "{}[{}]: radius = {} mm is not above 0 mm", key, k, radius);
     else if (!keys.empty() && radius < keys.back().radius_mm + kAxisKeyGap)
-      table.refuse(key, "{}[{}]: radius = {} mm is not {} mm beyond {} mm, the radius of the key before it", key, k, radius, kAxisKeyGap, keys.back().radius_mm);
-    else if (std::abs(outwards) > kMostAxisLean) table.refuse(key, "{}[{}]: lean outwards = {} deg is outside -{} to {} deg", key, k, outwards, kMostAxisLean, kMostAxisLean);
-    else if (std::abs(aside) > kMostAxisLean) table.refuse(key, "{}[{}]: lean aside = {} deg is outside -{} to {} deg", key, k, aside, kMostAxisLean, kMostAxisLean);
+      table.refuse(key, "{}[{}]: radius = {} mm is not {} mm beyond {} mm, the radius of the key before it", key, k,
+                   radius, kAxisKeyGap, keys.back().radius_mm);
+    else if (std::abs(outwards) > kMostAxisLean)
+      table.refuse(key, "{}[{}]: lean outwards = {} deg is outside -{} to {} deg", key, k, outwards, kMostAxisLean,
+                   kMostAxisLean);
+    else if (std::abs(aside) > kMostAxisLean)
+      table.refuse(key, "{}[{}]: lean aside = {} deg is outside -{} to {} deg", key, k, aside, kMostAxisLean,
+                   kMostAxisLean);
     else {
       keys.push_back({radius, radians(outwards), radians(aside)});
       continue;
@@ -112,14 +122,17 @@ std::vector<path::ToolAxisKey> read_axis_keys(toml::TableReader& table, std::str
 
 /// Prescribed tool axes: one list for all passes, or one for each flank.
 void read_tool_axis(toml::TableReader& table, path::MillingOperation& operation) {
-  const bool both = table.value("tool_axis") != nullptr, plus = table.has("tool_axis_plus"), minus = table.has("tool_axis_minus");
+  const bool both = table.value("tool_axis") != nullptr, plus = table.has("tool_axis_plus"),
+             minus = table.has("tool_axis_minus");
   operation.axis_plus = read_axis_keys(table, both ? "tool_axis" : "tool_axis_plus");
   operation.axis_minus = both ? operation.axis_plus : read_axis_keys(table, "tool_axis_minus");
   if (both)
     for (const char* key : {"tool_axis_plus", "tool_axis_minus"}) {
       if (table.value(key)) table.refuse(key, "{} contradicts tool_axis, which holds for both flanks", key);
     }
-  else if (plus != minus) table.refuse(plus ? "tool_axis_plus" : "tool_axis_minus", "tool_axis_plus and tool_axis_minus stand together: the other is missing");
+  else if (plus != minus)
+    table.refuse(plus ? "tool_axis_plus" : "tool_axis_minus",
+                 "tool_axis_plus and tool_axis_minus stand together: the other is missing");
 }
 
 path::MillingOperation read_ball_operation(toml::TableReader& table, path::OperationType type) {
@@ -131,19 +144,23 @@ path::MillingOperation read_ball_operation(toml::TableReader& table, path::Opera
     operation.scallop_mm = table.number("scallop", kScallop).value_or(0);
     read_tool_axis(table, operation);
   }
-  if (type != path::OperationType::finishing) operation.allowance_mm = table.number("allowance", kAllowance).value_or(0);
+  if (type != path::OperationType::finishing)
+    operation.allowance_mm = table.number("allowance", kAllowance).value_or(0);
   if (const auto climb = table.if_present("climb", [&] { return table.boolean("climb"); })) operation.climb = *climb;
   return operation;
 }
 
 /// Cutting steps and cusps larger than the tool itself cannot be meant.
-void compare_with_tool(toml::TableReader& table, const path::MillingOperation& operation, const tool::ToolAssembly& tool) {
+void compare_with_tool(toml::TableReader& table, const path::MillingOperation& operation,
+                       const tool::ToolAssembly& tool) {
   const double diameter = tool.diameter_mm;
   if (diameter <= 0) return;
   if (operation.step_over_mm > diameter)
-    table.refuse("step_over", "step_over = {} mm exceeds {} mm, the diameter of tool {}", operation.step_over_mm, diameter, tool.number);
+    table.refuse("step_over", "step_over = {} mm exceeds {} mm, the diameter of tool {}", operation.step_over_mm,
+                 diameter, tool.number);
   if (operation.scallop_mm >= diameter / 2)
-    table.refuse("scallop", "scallop = {} mm is not below {} mm, the radius of tool {}", operation.scallop_mm, diameter / 2, tool.number);
+    table.refuse("scallop", "scallop = {} mm is not below {} mm, the radius of tool {}", operation.scallop_mm,
+                 diameter / 2, tool.number);
   if (tool.flute_length_mm > 0 && operation.step_down_mm > tool.flute_length_mm)
     table.refuse("step_down", "step_down = {} mm exceeds {} mm, the flute_length of tool {}", operation.step_down_mm,
                  tool.flute_length_mm, tool.number);
@@ -161,7 +178,8 @@ tool::ToolAssembly read_tool(toml::TableReader& table, const bevel_gear::BevelGe
   tool.length_mm = length.value_or(0);
   tool.stick_out_mm = stick_out.value_or(0);
   tool.holder = read_holder(table);
-  if (const auto teeth = table.if_present("teeth", [&] { return table.integer("teeth", {1, 100}); })) tool.teeth = *teeth;
+  if (const auto teeth = table.if_present("teeth", [&] { return table.integer("teeth", {1, 100}); }))
+    tool.teeth = *teeth;
   if (length && stick_out && *stick_out > *length)
     table.refuse("stick_out", "stick_out = {} mm exceeds length = {} mm", *stick_out, *length);
   if (!type) return tool;  // which other keys belong here is unknown
@@ -177,13 +195,14 @@ tool::ToolAssembly read_tool(toml::TableReader& table, const bevel_gear::BevelGe
       table.refuse("flute_length", "flute_length = {} mm is below {} mm, half the diameter", *flute, *diameter / 2);
   }
   if (stick_out && tool.flute_length_mm > *stick_out)
-    table.refuse(table.has("flute_length") ? "flute_length" : "stick_out", "flute_length = {} mm exceeds stick_out = {} mm",
-                 tool.flute_length_mm, *stick_out);
+    table.refuse(table.has("flute_length") ? "flute_length" : "stick_out",
+                 "flute_length = {} mm exceeds stick_out = {} mm", tool.flute_length_mm, *stick_out);
   table.finish();
   return tool;
 }
 
-path::MillingOperation read_operation(toml::TableReader& table, const std::vector<tool::ToolAssembly>& tools, bool bevel_gear) {
+path::MillingOperation read_operation(toml::TableReader& table, const std::vector<tool::ToolAssembly>& tools,
+                                      bool bevel_gear) {
   const auto name = bevel_gear ? table.word("type", {"finger_roughing", "finger_finishing"})
                                : table.word("type", {"roughing", "semi_finishing", "finishing"});
   path::MillingOperation operation;
@@ -196,11 +215,13 @@ path::MillingOperation read_operation(toml::TableReader& table, const std::vecto
   const double speed = table.number("speed", kSpeed).value_or(0);
   const double feed = table.number("feed", kFeed).value_or(0);
   double chord = operation.chord_tolerance_mm;
-  if (const auto given = table.if_present("chord_tolerance", [&] { return table.number("chord_tolerance", kChordTolerance); }))
+  if (const auto given =
+          table.if_present("chord_tolerance", [&] { return table.number("chord_tolerance", kChordTolerance); }))
     chord = *given;
   if (!name) return operation;
   if (*name == "finger_roughing" || *name == "finger_finishing") {
-    operation.type = *name == "finger_roughing" ? path::OperationType::finger_roughing : path::OperationType::finger_finishing;
+    operation.type =
+        *name == "finger_roughing" ? path::OperationType::finger_roughing : path::OperationType::finger_finishing;
     if (operation.type == path::OperationType::finger_roughing)
       operation.ridge_mm = table.number("ridge", {0.001, 10, " mm"}).value_or(0);
   } else {
@@ -217,8 +238,8 @@ path::MillingOperation read_operation(toml::TableReader& table, const std::vecto
     operation.tool = static_cast<int>(tool - tools.data());
     const bool finger = tool->type == tool::CutterType::finger_mill;
     if (finger != bevel_gear)
-      table.refuse("tool", "tool = {} is a {}, but {} needs a {}", tool->number, finger ? "finger_mill" : "ball_end_mill", *name,
-                   finger ? "ball_end_mill" : "finger_mill");
+      table.refuse("tool", "tool = {} is a {}, but {} needs a {}", tool->number,
+                   finger ? "finger_mill" : "ball_end_mill", *name, finger ? "ball_end_mill" : "finger_mill");
     else compare_with_tool(table, operation, *tool);
   }
   table.finish();
@@ -227,14 +248,18 @@ path::MillingOperation read_operation(toml::TableReader& table, const std::vecto
 
 joints::Setup read_setup(toml::TableReader& table) {
   joints::Setup setup;
-  if (const auto origin = table.numbers("origin", 3, kPosition)) setup.origin_mm = Vec3((*origin)[0], (*origin)[1], (*origin)[2]);
+  if (const auto origin = table.numbers("origin", 3, kPosition))
+    setup.origin_mm = Vec3((*origin)[0], (*origin)[1], (*origin)[2]);
   if (const auto axis = table.word("axis", {"up", "down"})) setup.axis_up = *axis == "up";
   if (const auto name = table.text("work_offset")) {
     static const std::regex kOffset("[A-Z]?[0-9]{1,4}(\\.[0-9])?( ?P[0-9]{1,3})?");
     if (std::regex_match(*name, kOffset)) setup.work_offset = *name;
-    else table.refuse("work_offset", "work_offset = \"{}\" is not the name of a work offset such as G54, G59.1 or G54.1 P3", *name);
+    else
+      table.refuse("work_offset",
+                   "work_offset = \"{}\" is not the name of a work offset such as G54, G59.1 or G54.1 P3", *name);
   }
-  if (const auto at = table.numbers("work_offset_at", 3, kPosition)) setup.work_offset_at_mm = Vec3((*at)[0], (*at)[1], (*at)[2]);
+  if (const auto at = table.numbers("work_offset_at", 3, kPosition))
+    setup.work_offset_at_mm = Vec3((*at)[0], (*at)[1], (*at)[2]);
   table.finish();
   return setup;
 }
@@ -252,7 +277,8 @@ shaper::Shaping read_shaping(toml::TableReader& table) {
     s.offset_reference = shaper::Shaping::OffsetReference::given;
     s.offset_reference_mm = table.number("offset_reference", {0, 10000, " mm", true}).value_or(0);
   } else if (const auto name = table.word("offset_reference", {"outer_radius", "mean_radius"})) {
-    s.offset_reference = *name == "outer_radius" ? shaper::Shaping::OffsetReference::outer_radius : shaper::Shaping::OffsetReference::mean_radius;
+    s.offset_reference = *name == "outer_radius" ? shaper::Shaping::OffsetReference::outer_radius
+                                                 : shaper::Shaping::OffsetReference::mean_radius;
   }
   table.finish();
   return s;
@@ -260,8 +286,11 @@ shaper::Shaping read_shaping(toml::TableReader& table) {
 
 ContactSettings read_contact(toml::TableReader& table) {
   ContactSettings c;
-  const auto number = [&](const char* key, const toml::Range& range) { return table.if_present(key, [&] { return table.number(key, range); }); };
-  if (const auto teeth = table.if_present("pinion_teeth", [&] { return table.integer("pinion_teeth", {5, 1000}); })) c.pinion_teeth = *teeth;
+  const auto number = [&](const char* key, const toml::Range& range) {
+    return table.if_present(key, [&] { return table.number(key, range); });
+  };
+  if (const auto teeth = table.if_present("pinion_teeth", [&] { return table.integer("pinion_teeth", {5, 1000}); }))
+    c.pinion_teeth = *teeth;
   if (const auto offset = number("offset_error", {-5, 5, " mm"})) c.moved.offset_mm = *offset;
   if (const auto axial = number("axial_error", {-5, 5, " mm"})) c.moved.axial_mm = *axial;
   if (const auto angle = number("angle_error", {-1, 1, " deg"})) c.moved.angle_rad = radians(*angle);
@@ -272,27 +301,39 @@ ContactSettings read_contact(toml::TableReader& table) {
 
 VerifySettings read_verify(toml::TableReader& table, bool bevel) {
   VerifySettings verify;
-  if (const auto gouge = table.if_present("gouge_tolerance", [&] { return table.number("gouge_tolerance", {1e-5, 0.1, " mm"}); }))
+  if (const auto gouge = table.if_present("gouge_tolerance", [&] {
+        return table.number("gouge_tolerance", {1e-5, 0.1, " mm"});
+      }))
     verify.gouge_tolerance_mm = *gouge;
   if (const auto teeth = table.if_present("teeth", [&] { return table.word("teeth", {"one", "all"}); }))
     verify.all_teeth = *teeth == "all";
   verify.clearance_mm = table.if_present("clearance", [&] { return table.number("clearance", {0, 50, " mm"}); });
   verify.unreached_mm = table.if_present("unreached", [&] { return table.number("unreached", {0, 50, " mm"}); });
-  if (bevel && verify.unreached_mm) table.refuse("unreached", "unreached is asked of the ball that finishes a face gear: what a finger mill leaves is its ridge");
+  if (bevel && verify.unreached_mm)
+    table.refuse("unreached",
+                 "unreached is asked of the ball that finishes a face gear: what a finger mill leaves is its ridge");
   table.finish();
   return verify;
 }
 
 ProgramSettings read_program_settings(toml::TableReader& table) {
   ProgramSettings program;
-  if (const auto order = table.if_present("tooth_order", [&] { return table.word("tooth_order", {"sequence", "spread"}); }))
+  if (const auto order = table.if_present("tooth_order", [&] {
+        return table.word("tooth_order", {"sequence", "spread"});
+      }))
     program.spread_teeth = *order == "spread";
-  constexpr std::pair<std::string_view, machines::PoleOption> kPoles[] = {{"error", machines::PoleOption::error}, {"tilt", machines::PoleOption::tilt},       {"hold", machines::PoleOption::hold},
-                                                                {"through", machines::PoleOption::through}, {"slow", machines::PoleOption::slow}, {"retract", machines::PoleOption::retract}};
-  if (const auto word = table.if_present("pole", [&] { return table.word("pole", {"error", "tilt", "hold", "through", "slow", "retract"}); }))
+  constexpr std::pair<std::string_view, machines::PoleOption> kPoles[] = {
+      {"error", machines::PoleOption::error}, {"tilt", machines::PoleOption::tilt},
+      {"hold", machines::PoleOption::hold},   {"through", machines::PoleOption::through},
+      {"slow", machines::PoleOption::slow},   {"retract", machines::PoleOption::retract}};
+  if (const auto word = table.if_present("pole", [&] {
+        return table.word("pole", {"error", "tilt", "hold", "through", "slow", "retract"});
+      }))
     for (const auto& [name, option] : kPoles)
       if (*word == name) program.pole = option;
-  if (const auto angle = table.if_present("pole_angle", [&] { return table.number("pole_angle", {0, machines::kLargestPoleAngle, " deg", true}); }))
+  if (const auto angle = table.if_present("pole_angle", [&] {
+        return table.number("pole_angle", {0, machines::kLargestPoleAngle, " deg", true});
+      }))
     program.pole_angle_rad = radians(*angle);
   table.finish();
   return program;

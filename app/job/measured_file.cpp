@@ -6,8 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/report/svg/html_text.h"
 #include "app/base/units.h"
+#include "app/report/svg/html_text.h"
 #include "machines/toml/regular_file.h"
 
 namespace toothpath::job {
@@ -54,27 +54,33 @@ Result<Line> parse_line(std::string_view text, int number, const std::string& fi
     ++count;
     begin = k + 1;
   }
-  if (count != kMeasuredColumns) return at(file, number, 0, "{} columns, must be {}: {}", count, kMeasuredColumns, kHeader);
+  if (count != kMeasuredColumns)
+    return at(file, number, 0, "{} columns, must be {}: {}", count, kMeasuredColumns, kHeader);
   const auto names = [](std::size_t k) {
-    static constexpr std::array<const char*, kMeasuredColumns> kNames = {"zone", "flank", "row", "column", "x", "y", "z", "i", "j", "k", "deviation_um"};
+    static constexpr std::array<const char*, kMeasuredColumns> kNames = {
+        "zone", "flank", "row", "column", "x", "y", "z", "i", "j", "k", "deviation_um"};
     return kNames[k];
   };
   std::array<int*, 4> whole = {&line.zone, &line.side, &line.row, &line.place};
   for (std::size_t k = 0; k < 4; ++k)
     if (!parse(line.cell[k], *whole[k]) || (k != 1 && (*whole[k] < 0 || *whole[k] > 999)))
-      return at(file, number, line.column[k], "{} = \"{}\" is no whole number from 0 to 999", names(k), svg::valid_utf8(line.cell[k]));
-  if (line.side != 1 && line.side != -1) return at(file, number, line.column[1], "flank = {} must be 1 or -1", line.side);
+      return at(file, number, line.column[k], "{} = \"{}\" is no whole number from 0 to 999", names(k),
+                svg::valid_utf8(line.cell[k]));
+  if (line.side != 1 && line.side != -1)
+    return at(file, number, line.column[1], "flank = {} must be 1 or -1", line.side);
   double normal = 0;
   for (std::size_t k = 4; k < kMeasuredColumns; ++k) {
     double& value = k < 7 ? line.p[Eigen::Index(k) - 4] : k < 10 ? normal : line.deviation_um;
     if (!parse(line.cell[k], value) || !std::isfinite(value))
-      return at(file, number, line.column[k], "{} = \"{}\" is no finite number", names(k), svg::valid_utf8(line.cell[k]));
+      return at(file, number, line.column[k], "{} = \"{}\" is no finite number", names(k),
+                svg::valid_utf8(line.cell[k]));
   }
   return line;
 }
 
 /// The places of the file against the nominal ones; another unit shows as one common factor.
-std::optional<Diagnostic> compare_places(const std::string& file, const std::vector<const Line*>& lines, const std::vector<inspection::InspectionPoint>& grid) {
+std::optional<Diagnostic> compare_places(const std::string& file, const std::vector<const Line*>& lines,
+                                         const std::vector<inspection::InspectionPoint>& grid) {
   double pg = 0, gg = 0;
   for (std::size_t k = 0; k < grid.size(); ++k) {
     pg += lines[k]->p.dot(grid[k].p);
@@ -85,16 +91,19 @@ std::optional<Diagnostic> compare_places(const std::string& file, const std::vec
     double factor;
     const char* name;
   };
-  for (const Unit unit : {Unit{25.4, "25.4 times too large: an inch file was multiplied twice"}, Unit{1 / 25.4, "25.4 times too small: in inch"},
-                          Unit{1000, "1000 times too large: in um"}, Unit{1e-3, "1000 times too small: in m"}})
+  for (const Unit unit : {Unit{25.4, "25.4 times too large: an inch file was multiplied twice"},
+                          Unit{1 / 25.4, "25.4 times too small: in inch"}, Unit{1000, "1000 times too large: in um"},
+                          Unit{1e-3, "1000 times too small: in m"}})
     if (std::abs(scale / unit.factor - 1) < 1e-3)
-      return at(file, lines[0]->number, lines[0]->column[4], "x, y, z are those of the inspection grid, but {}; mm are needed", unit.name);
+      return at(file, lines[0]->number, lines[0]->column[4],
+                "x, y, z are those of the inspection grid, but {}; mm are needed", unit.name);
   for (std::size_t k = 0; k < grid.size(); ++k) {
     const double off = (lines[k]->p - grid[k].p).norm();
     if (off > kPlaceTolerance)
       return at(file, lines[k]->number, lines[k]->column[4],
-                "zone {}, flank {}, row {}, column {} lies {:.4f} mm off the nominal point ({:.4f}, {:.4f}, {:.4f}), at most {} mm: the grid of "
-                "another job, gear frame or tooth", grid[k].zone, grid[k].side, grid[k].row, grid[k].column, off, grid[k].p.x(), grid[k].p.y(),
+                "zone {}, flank {}, row {}, column {} lies {:.4f} mm off the nominal point ({:.4f}, {:.4f}, {:.4f}), "
+                "at most {} mm: the grid of another job, gear frame or tooth",
+                grid[k].zone, grid[k].side, grid[k].row, grid[k].column, off, grid[k].p.x(), grid[k].p.y(),
                 grid[k].p.z(), kPlaceTolerance);
   }
   return {};
@@ -107,15 +116,16 @@ std::optional<Diagnostic> check_sizes(const std::string& file, const std::vector
   const double size = std::abs(largest->deviation_um);
   if (size > kLargestDeviationUm)
     return at(file, largest->number, largest->column[10],
-              "deviation_um = {:.10g} exceeds {:g} um: is it in nm (1000 times) or in millionths of an inch (39.37 times)? More than {:g} um is "
-              "no correction", largest->deviation_um, kLargestDeviationUm, kLargestDeviationUm);
+              "deviation_um = {:.10g} exceeds {:g} um: is it in nm (1000 times) or in millionths of an inch (39.37 "
+              "times)? More than {:g} um is no correction",
+              largest->deviation_um, kLargestDeviationUm, kLargestDeviationUm);
   if (size < kLeastDeviationUm)
     return at(file, largest->number, largest->column[10],
-              "deviation_um reaches {:.10g} only, below {:g} um: is it in mm (1000 times) or inch (25400 times)? So little needs no correction", size,
-              kLeastDeviationUm);
+              "deviation_um reaches {:.10g} only, below {:g} um: is it in mm (1000 times) or inch (25400 times)? So "
+              "little needs no correction",
+              size, kLeastDeviationUm);
   return {};
 }
-
 
 }  // namespace
 
@@ -130,7 +140,8 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
     if (row.ends_with('\r')) row.remove_suffix(1);
     ++number;
     if (number == 1) {
-      if (row != kHeader) return at(file, 1, 0, "the header is \"{}\", must be \"{}\"", svg::valid_utf8(row.substr(0, 120)), kHeader);
+      if (row != kHeader)
+        return at(file, 1, 0, "the header is \"{}\", must be \"{}\"", svg::valid_utf8(row.substr(0, 120)), kHeader);
       continue;
     }
     if (row.empty()) continue;
@@ -138,7 +149,8 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
     if (!line) return line.error();
     lines.push_back(*line);
   }
-  if (lines.empty()) return at(file, std::max(number, 1), 0, "no measured point; one line for each point of inspection.csv is needed");
+  if (lines.empty())
+    return at(file, std::max(number, 1), 0, "no measured point; one line for each point of inspection.csv is needed");
   inspection::InspectionOptions options{0, 0};
   for (const Line& line : lines) {
     options.rows = std::max(options.rows, line.row + 1);
@@ -149,18 +161,21 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
   std::vector<const Line*> placed(grid->size(), nullptr);
   for (const Line& line : lines) {
     const auto zones = gear.rings().size();
-    if (std::size_t(line.zone) >= zones) return at(file, line.number, line.column[0], "zone = {}, the gear has zones 0 .. {}", line.zone, zones - 1);
-    const std::size_t k = ((std::size_t(line.zone) * 2 + (line.side > 0 ? 0 : 1)) * std::size_t(options.rows) + std::size_t(line.row)) *
-                              std::size_t(options.columns) + std::size_t(line.place);
+    if (std::size_t(line.zone) >= zones)
+      return at(file, line.number, line.column[0], "zone = {}, the gear has zones 0 .. {}", line.zone, zones - 1);
+    const std::size_t k =
+        ((std::size_t(line.zone) * 2 + (line.side > 0 ? 0 : 1)) * std::size_t(options.rows) + std::size_t(line.row)) *
+            std::size_t(options.columns) +
+        std::size_t(line.place);
     if (placed[k])
-      return at(file, line.number, 0, "zone {}, flank {}, row {}, column {} stands in line {} already", line.zone, line.side, line.row, line.place,
-                placed[k]->number);
+      return at(file, line.number, 0, "zone {}, flank {}, row {}, column {} stands in line {} already", line.zone,
+                line.side, line.row, line.place, placed[k]->number);
     placed[k] = &line;
   }
   for (std::size_t k = 0; k < placed.size(); ++k)
     if (!placed[k])
-      return at(file, number, 0, "wrong grid: zone {}, flank {}, row {}, column {} is missing of {} rows x {} columns", (*grid)[k].zone, (*grid)[k].side,
-                (*grid)[k].row, (*grid)[k].column, options.rows, options.columns);
+      return at(file, number, 0, "wrong grid: zone {}, flank {}, row {}, column {} is missing of {} rows x {} columns",
+                (*grid)[k].zone, (*grid)[k].side, (*grid)[k].row, (*grid)[k].column, options.rows, options.columns);
   if (auto off = compare_places(file, placed, *grid)) return *off;
   if (auto size = check_sizes(file, placed)) return *size;
   MeasuredFlanks measured{file, std::move(*grid), {}};
@@ -174,12 +189,14 @@ Result<MeasuredFlanks> read_measured(const std::string& path, const face_gear::F
   return parse_measured(*text, path, gear);
 }
 
-Result<FittedCorrection> fit_correction(const face_gear::FaceGear& gear, const std::vector<MeasuredFlanks>& measurements) {
+Result<FittedCorrection> fit_correction(const face_gear::FaceGear& gear,
+                                        const std::vector<MeasuredFlanks>& measurements) {
   const auto& points = measurements.front().points;
   std::vector<double> sum(points.size(), 0.0);
   for (const auto& m : measurements) {
     if (m.points.size() != points.size())
-      return at(m.file, 1, 0, "{} points, but {} has {}: all measurements need the same grid", m.points.size(), measurements.front().file, points.size());
+      return at(m.file, 1, 0, "{} points, but {} has {}: all measurements need the same grid", m.points.size(),
+                measurements.front().file, points.size());
     for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += m.deviation_mm[k];
   }
   FittedCorrection result;
@@ -189,7 +206,8 @@ Result<FittedCorrection> fit_correction(const face_gear::FaceGear& gear, const s
       std::vector<face_gear::FlankDeviation> flank;
       for (std::size_t k = 0; k < points.size(); ++k)
         if (points[k].zone == int(zone) && points[k].side == side)
-          flank.push_back({points[k].row, points[k].column, points[k].theta, std::hypot(points[k].p.x(), points[k].p.y()), sum[k]});
+          flank.push_back(
+              {points[k].row, points[k].column, points[k].theta, std::hypot(points[k].p.x(), points[k].p.y()), sum[k]});
       auto fit = face_gear::FlankCorrection::fit(flank, gear.rings()[zone].surface.shaper.theta_t);
       if (!fit) return at(measurements.front().file, 1, 0, "zone {}, flank {}: {}", zone, side, fit.error().message);
       result.flanks.push_back({int(zone), side, fit->residual()});
@@ -222,9 +240,11 @@ std::string correction_json(const FittedCorrection& fit, const std::vector<Measu
     Json offsets = Json::array();
     for (const auto& p : measurements.front().points)
       if (p.zone == f.zone && p.side == f.side)
-        offsets.push_back({{"row", p.row},
-                           {"column", p.column},
-                           {"offset_um", app::um(fit.rings[std::size_t(f.zone)]->side(f.side).at(p.theta, std::hypot(p.p.x(), p.p.y())).value)}});
+        offsets.push_back(
+            {{"row", p.row},
+             {"column", p.column},
+             {"offset_um",
+              app::um(fit.rings[std::size_t(f.zone)]->side(f.side).at(p.theta, std::hypot(p.p.x(), p.p.y())).value)}});
     const auto& r = f.residual;
     flanks.push_back({{"zone", f.zone},
                       {"side", f.side},

@@ -6,14 +6,14 @@
 #include <string_view>
 #include <vector>
 
-#include "geometry/face_gear/gear.h"
 #include "geometry/face_gear/flank_correction.h"
+#include "geometry/face_gear/gear.h"
 #include "geometry/inspection/grid.h"
 
 namespace toothpath::job {
 
-/// Deviations beyond this size are not corrected but refused, as are files whose largest deviation is below the least: both
-/// look like another unit.
+/// Deviations beyond this size are not corrected but refused, as are files whose largest deviation is below the least:
+/// both look like another unit.
 inline constexpr double kLargestDeviationUm = 500, kLeastDeviationUm = 0.1;
 
 /// A measured grid: nominal points as `inspection_grid` makes them, and the deviation of each along its normal, mm.
@@ -23,11 +23,12 @@ struct MeasuredFlanks {
   std::vector<double> deviation_mm;
 };
 
-/// Reads lines `zone,flank,row,column,x,y,z,i,j,k,deviation_um` with that header, any order, every point of the grid once; the numbers of
-/// rows (5 or more) and columns (9 or more) are those of the file. Points must be the nominal ones within 0.005 mm.
-/// Refused with line and column: another header, numbers that are none, points off the grid or missing, coordinates in inch, m or um, deviations
-/// whose size speaks of another unit. `file` stands in the messages.
-[[nodiscard]] Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file, const face_gear::FaceGear& gear);
+/// Reads lines `zone,flank,row,column,x,y,z,i,j,k,deviation_um` with that header, any order, every point of the grid
+/// once; the numbers of rows (5 or more) and columns (9 or more) are those of the file. Points must be the nominal ones
+/// within 0.005 mm. Refused with line and column: another header, numbers that are none, points off the grid or
+/// missing, coordinates in inch, m or um, deviations whose size speaks of another unit. `file` stands in the messages.
+[[nodiscard]] Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& file,
+                                                    const face_gear::FaceGear& gear);
 
 /// The same from a file; one that cannot be read is `file_access`.
 [[nodiscard]] Result<MeasuredFlanks> read_measured(const std::string& path, const face_gear::FaceGear& gear);
@@ -42,9 +43,10 @@ struct FittedCorrection {
   std::vector<FittedFlank> flanks;
 };
 
-/// Fits the sum of the measurements: each was taken on a gear cut with the corrections of all before it, so their deviations add up.
-/// Refused: grids of different size.
-[[nodiscard]] Result<FittedCorrection> fit_correction(const face_gear::FaceGear& gear, const std::vector<MeasuredFlanks>& measurements);
+/// Fits the sum of the measurements: each was taken on a gear cut with the corrections of all before it, so their
+/// deviations add up. Refused: grids of different size.
+[[nodiscard]] Result<FittedCorrection> fit_correction(const face_gear::FaceGear& gear,
+                                                      const std::vector<MeasuredFlanks>& measurements);
 
 /// A gear whose target answers measured files.
 struct CorrectedGear {
@@ -53,10 +55,11 @@ struct CorrectedGear {
   std::vector<MeasuredFlanks> measurements;
 };
 /// Reads the files in their order and fits them; errors as above.
-[[nodiscard]] Result<CorrectedGear> correct_gear(const face_gear::FaceGear& nominal, const std::vector<std::string>& files);
+[[nodiscard]] Result<CorrectedGear> correct_gear(const face_gear::FaceGear& nominal,
+                                                 const std::vector<std::string>& files);
 
-/// correction.json: files, and for every flank degrees, sizes measured and left, and the offset of the target at the grid, um. Ends in a
-/// line feed.
+/// correction.json: files, and for every flank degrees, sizes measured and left, and the offset of the target at the
+/// grid, um. Ends in a line feed.
 [[nodiscard]] std::string correction_json(const FittedCorrection& fit, const std::vector<MeasuredFlanks>& measurements);
 
 }  // namespace toothpath::job

@@ -7,7 +7,8 @@
 namespace toothpath::job {
 
 /// [gear] with type = "face_gear", its [[gear.zone]] tables, and [stock] where there is one.
-[[nodiscard]] face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::TableReader* stock, std::vector<std::string>& warnings);
+[[nodiscard]] face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::TableReader* stock,
+                                                           std::vector<std::string>& warnings);
 
 /// [gear] with type = "equal_base_circle_bevel_gear".
 [[nodiscard]] bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear);
@@ -18,7 +19,8 @@ namespace toothpath::job {
 
 /// One [[operation]]; its `tool` becomes an index into `tools`.
 /// @param bevel_gear  which operations fit: finger operations for bevel gears, ball operations for face gears
-[[nodiscard]] path::MillingOperation read_operation(toml::TableReader& table, const std::vector<tool::ToolAssembly>& tools, bool bevel_gear);
+[[nodiscard]] path::MillingOperation read_operation(toml::TableReader& table,
+                                                    const std::vector<tool::ToolAssembly>& tools, bool bevel_gear);
 
 [[nodiscard]] joints::Setup read_setup(toml::TableReader& table);
 [[nodiscard]] shaper::Shaping read_shaping(toml::TableReader& table);

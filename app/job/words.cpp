@@ -45,7 +45,8 @@ class JobWords final : public toml::TableWords {
   }
 
   std::string wrong_type(const std::string& name, toml::TomlType wanted, toml::TomlType found) const override {
-    return fmt::format("{} must be {}, not {}", name, wanted == toml::TomlType::boolean ? "true or false" : type_name(wanted), type_name(found));
+    return fmt::format("{} must be {}, not {}", name,
+                       wanted == toml::TomlType::boolean ? "true or false" : type_name(wanted), type_name(found));
   }
 
   std::string no_table(const std::string& path, std::string_view key, bool many, toml::TomlType found) const override {
@@ -75,15 +76,20 @@ class JobWords final : public toml::TableWords {
   }
 
   std::optional<std::string> text_fault(const std::string& name, const std::string& text, bool ascii) const override {
-    const auto has = [&](auto wrong) { return std::any_of(text.begin(), text.end(), [&](char c) { return wrong(static_cast<unsigned char>(c)); }); };
+    const auto has = [&](auto wrong) {
+      return std::any_of(text.begin(), text.end(), [&](char c) { return wrong(static_cast<unsigned char>(c)); });
+    };
     if (text.empty()) return fmt::format("{} is empty", name);
     if (text.size() > 255) return fmt::format("{} has {} bytes, which exceeds 255", name, text.size());
-    if (has([](unsigned char c) { return c < 0x20 || c == 0x7f; })) return fmt::format("{} contains a control character", name);
-    if (ascii && has([](unsigned char c) { return c > 0x7f; })) return fmt::format("{} contains a character outside ASCII", name);
+    if (has([](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+      return fmt::format("{} contains a control character", name);
+    if (ascii && has([](unsigned char c) { return c > 0x7f; }))
+      return fmt::format("{} contains a character outside ASCII", name);
     return std::nullopt;
   }
 
-  std::string not_one_of(const std::string& name, const std::string& text, std::span<const std::string_view> words) const override {
+  std::string not_one_of(const std::string& name, const std::string& text,
+                         std::span<const std::string_view> words) const override {
     std::string list;
     for (const auto word : words) list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", word);
     return fmt::format("{} = \"{}\" is not one of {}", name, shown(text), list);

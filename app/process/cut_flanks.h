@@ -19,9 +19,9 @@ struct CutFlanks {
     std::vector<double> deviation_mm;    ///< > 0 material left
   };
   std::vector<Flank> flanks;
-  std::string route;                ///< "milled" or "shaped"
+  std::string route;  ///< "milled" or "shaped"
   double cutting_minutes = 0, total_minutes = 0;
-  bool verified = true;             ///< milled: the program was proven; its reasons stand in `warnings` otherwise
+  bool verified = true;  ///< milled: the program was proven; its reasons stand in `warnings` otherwise
   std::vector<std::string> warnings, assumed;
   std::vector<std::pair<std::string, double>> stages;  ///< milled: seconds of the run
 };

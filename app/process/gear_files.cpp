@@ -19,8 +19,12 @@ Result<std::string> stl_of(const Mesh& mesh, const std::string& job_name) {
 
 }  // namespace
 
-Result<std::string> stl_text(const mesh::ToothMesh& pitch, const std::string& job_name) { return stl_of(pitch, job_name); }
-Result<std::string> stl_text(const mesh::TriangleMesh& gear, const std::string& job_name) { return stl_of(gear, job_name); }
+Result<std::string> stl_text(const mesh::ToothMesh& pitch, const std::string& job_name) {
+  return stl_of(pitch, job_name);
+}
+Result<std::string> stl_text(const mesh::TriangleMesh& gear, const std::string& job_name) {
+  return stl_of(gear, job_name);
+}
 
 Result<std::string> vtp_text(const mesh::TriangleMesh& pitch, const std::vector<double>& patches) {
   const std::vector<mesh::PointField> fields = {{"patch", patches}};

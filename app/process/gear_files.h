@@ -1,4 +1,5 @@
-// Files that describe a finished gear, as far as they are made in the same way for every kind: meshes as text, and the list of what was written.
+// Files that describe a finished gear, as far as they are made in the same way for every kind: meshes as text, and the
+// list of what was written.
 #pragma once
 
 #include <string>

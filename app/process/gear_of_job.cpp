@@ -39,7 +39,9 @@ Diagnostic located(const job::Job& job, std::string_view key, Diagnostic diagnos
   return diagnostic;
 }
 
-const char* gear_type(const job::Job& job) { return std::visit([](const auto& gear) { return type_word(gear); }, job.gear); }
+const char* gear_type(const job::Job& job) {
+  return std::visit([](const auto& gear) { return type_word(gear); }, job.gear);
+}
 
 Diagnostic needs_face_gear(const job::Job& job) {
   return fail_at(job.where("gear.type"), "type = \"{}\", but this command needs a face_gear", gear_type(job));
@@ -61,18 +63,23 @@ ValueOrErrors<face_gear::FaceGear> make_face_gear(const job::Job& job) {
 
 ValueOrErrors<bevel_gear::BevelGear> make_bevel_gear(const job::Job& job) {
   const bevel_gear::BevelGearParameters* parameters = job.bevel_gear();
-  if (!parameters) return std::vector{fail_at(job.where("gear.type"), "type = \"{}\", but a bevel gear is needed here", gear_type(job))};
+  if (!parameters)
+    return std::vector{
+        fail_at(job.where("gear.type"), "type = \"{}\", but a bevel gear is needed here", gear_type(job))};
   std::optional<std::size_t> tool;
   for (std::size_t i = job.tools.size(); i-- > 0;)
     if (job.tools[i].type == tool::CutterType::finger_mill) tool = i;
   for (const auto& operation : job.operations)
     if (operation.type == path::OperationType::finger_finishing) tool = static_cast<std::size_t>(operation.tool);
-  if (!tool) return std::vector{fail_at(job.where("tool"), "the job lacks a [[tool]] of type \"finger_mill\": it makes the flanks of this gear")};
+  if (!tool)
+    return std::vector{fail_at(job.where("tool"),
+                               "the job lacks a [[tool]] of type \"finger_mill\": it makes the flanks of this gear")};
   auto made = bevel_gear::BevelGear::make(*parameters, finger::finger_cutter_data(job.tools[*tool]));
   if (auto* gear = made.value_if()) return std::move(*gear);
   std::vector<Diagnostic> errors;
   for (auto& refusal : made.error()) {
-    const std::string key = refusal.key.starts_with("tool.") ? fmt::format("tool[{}].{}", *tool, refusal.key.substr(5)) : "gear." + refusal.key;
+    const std::string key = refusal.key.starts_with("tool.") ? fmt::format("tool[{}].{}", *tool, refusal.key.substr(5))
+                                                             : "gear." + refusal.key;
     errors.push_back(located(job, key, std::move(refusal.diagnostic)));
   }
   return errors;
@@ -86,7 +93,8 @@ ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional
   const auto kind = machines::machine_kind_of(*path);
   if (!kind) return std::vector{located(job, "machine.file", kind.error())};
   if (*kind != machines::MachineKind::five_axis)
-    return std::vector{fail_at(job.where("machine.file"), "{} is a gear shaper, but this command needs a milling machine", job.machine.file)};
+    return std::vector{fail_at(job.where("machine.file"),
+                               "{} is a gear shaper, but this command needs a milling machine", job.machine.file)};
   auto reading = controls::read_machine(*path);
   if (!reading.machine) return reading.errors;
   machines::Machine machine = std::move(*reading.machine);
@@ -100,16 +108,18 @@ ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional
     }
   if (machine.assumed && !job.machine.accept_assumed)
     errors.push_back(fail_at(job.where("machine.file"),
-                             "{} has assumed values ({}); measure them, or accept them with accept_assumed = true", job.machine.file,
-                             joined(machine.assumed_keys)));
+                             "{} has assumed values ({}); measure them, or accept them with accept_assumed = true",
+                             job.machine.file, joined(machine.assumed_keys)));
   check_speeds(job, machine, errors);
   if (job.setup)
     if (const auto others = controls::other_work_offsets(machine, job.setup->work_offset))
-      errors.push_back(fail_at(job.where("setup.work_offset"), "work_offset = \"{}\" is none of {}: it has {}", job.setup->work_offset, machine.name, *others));
+      errors.push_back(fail_at(job.where("setup.work_offset"), "work_offset = \"{}\" is none of {}: it has {}",
+                               job.setup->work_offset, machine.name, *others));
   const auto dialect = controls::dialect_of(machine);
   if (!dialect) errors.push_back(located(job, "machine.file", dialect.error()));
   else if (job.coolant != machines::Coolant::off)
-    if (const auto words = text::coolant_words(*dialect, job.coolant); !words) errors.push_back(located(job, "coolant.mode", words.error()));
+    if (const auto words = text::coolant_words(*dialect, job.coolant); !words)
+      errors.push_back(located(job, "coolant.mode", words.error()));
   if (!errors.empty()) return errors;
   return machine;
 }

@@ -18,20 +18,23 @@ using ValueOrErrors = Expected<T, std::vector<Diagnostic>>;
 /// `gear.type`, as in the job file.
 [[nodiscard]] const char* gear_type(const job::Job& job);
 
-/// The face gear of the job. Refused: a bevel gear; everything that FaceGear::make refuses, all of it, each with its place.
+/// The face gear of the job. Refused: a bevel gear; everything that FaceGear::make refuses, all of it, each with its
+/// place.
 [[nodiscard]] ValueOrErrors<face_gear::FaceGear> make_face_gear(const job::Job& job);
 
-/// The bevel gear of the job, as its finishing mill makes it (the tool of the last finger_finishing; without one the first
-/// finger mill). Refused: a face gear; everything that BevelGear::make refuses, each with its place.
+/// The bevel gear of the job, as its finishing mill makes it (the tool of the last finger_finishing; without one the
+/// first finger mill). Refused: a face gear; everything that BevelGear::make refuses, each with its place.
 [[nodiscard]] ValueOrErrors<bevel_gear::BevelGear> make_bevel_gear(const job::Job& job);
 
 /// What a face gear alone can do is refused to a gear of another type.
 [[nodiscard]] Diagnostic needs_face_gear(const job::Job& job);
 
-/// The milling machine of the job. Refused: no [machine], a file that is missing or wrong, a gear shaper, assumed values that
-/// the job does not accept, an operation that is faster than the spindle or the cutting feed of the machine, a work offset or a coolant
-/// that its control does not have; with a part diameter [mm] also a part that does not lie on it.
-[[nodiscard]] ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional<double> part_diameter_mm = {});
+/// The milling machine of the job. Refused: no [machine], a file that is missing or wrong, a gear shaper, assumed
+/// values that the job does not accept, an operation that is faster than the spindle or the cutting feed of the
+/// machine, a work offset or a coolant that its control does not have; with a part diameter [mm] also a part that does
+/// not lie on it.
+[[nodiscard]] ValueOrErrors<machines::Machine> load_machine(const job::Job& job,
+                                                            std::optional<double> part_diameter_mm = {});
 
 /// The diagnostic with the place of a key of the job, where it has none yet.
 [[nodiscard]] Diagnostic located(const job::Job& job, std::string_view key, Diagnostic diagnostic);

@@ -1,8 +1,10 @@
-// What a gear type tells, so that every command works on it: the way from a job to a verdict is written once, on these two interfaces.
+// What a gear type tells, so that every command works on it: the way from a job to a verdict is written once, on these
+// two interfaces.
 //
-// `GearProcess` is the gear that a job asks for; `GearMilling` is that gear while it is milled and proven. Each is implemented once a gear type
-// (app/process/face, app/process/bevel), and app/process/flow/registry.cpp has a line for each. Virtual calls stand on the cold path only: what
-// is behind them (kernels, planners, checks) knows one gear type and stays apart.
+// `GearProcess` is the gear that a job asks for; `GearMilling` is that gear while it is milled and proven. Each is
+// implemented once a gear type (app/process/face, app/process/bevel), and app/process/flow/registry.cpp has a line for
+// each. Virtual calls stand on the cold path only: what is behind them (kernels, planners, checks) knows one gear type
+// and stays apart.
 #pragma once
 
 #include <memory>
@@ -53,7 +55,8 @@ class GearMilling {
   [[nodiscard]] virtual Status plan(app::StageClock& clock, app::Progress& progress) = 0;
   /// As far as it was planned: one an operation, in the order of the job. They live as long as this.
   [[nodiscard]] virtual std::vector<const path::ClPath*> paths() const = 0;
-  /// Directions of the tool axis that the plan chose, with its reasons; empty where they are read from the program only.
+  /// Directions of the tool axis that the plan chose, with its reasons; empty where they are read from the program
+  /// only.
   [[nodiscard]] virtual std::vector<proof::DirectionChoice> directions() const = 0;
   /// Passes of the plan for page and report.json; empty where the plan has none to tell.
   [[nodiscard]] virtual std::vector<report::PassReport> passes() const = 0;
@@ -63,7 +66,8 @@ class GearMilling {
   /// What this gear adds to the proof of a program.
   [[nodiscard]] virtual GearCheck& check() = 0;
   /// Every source of deviation of the program that check() judged last, predicted by the plan and measured.
-  [[nodiscard]] virtual std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program, const ProgramProof& proof, double blend_mm) const = 0;
+  [[nodiscard]] virtual std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program,
+                                                               const ProgramProof& proof, double blend_mm) const = 0;
   /// Surface that no grid of the cut surface holds, for the tolerances of tool lengths.
   [[nodiscard]] virtual sheet::OtherSurface beside_the_grid() const = 0;
 };
@@ -79,8 +83,8 @@ struct ContactAsked {
   std::optional<int> pinion_teeth;
   std::optional<double> offset_error_mm, angle_error_deg, axial_error_mm, compound_um;
   std::optional<double> wheel_axial_error_mm;  ///< bevel gears
-  std::string other_job;  ///< bevel gears: the mate
-  bool as_cut = false;    ///< face gears: the surface that the job's operations cut, too
+  std::string other_job;                       ///< bevel gears: the mate
+  bool as_cut = false;                         ///< face gears: the surface that the job's operations cut, too
 };
 struct ContactFound {
   NamedFiles files;
@@ -93,9 +97,10 @@ class GearProcess {
   virtual ~GearProcess() = default;
 
   [[nodiscard]] virtual const PartFacts& part() const = 0;
-  /// From now on the flanks to cut answer measured files, in the order of the cuts. Stage "correction". Refused: what they refuse; a gear type
-  /// that cannot.
-  [[nodiscard]] virtual Result<Correction> correct(const std::vector<std::string>& measured_files, app::StageClock& clock) = 0;
+  /// From now on the flanks to cut answer measured files, in the order of the cuts. Stage "correction". Refused: what
+  /// they refuse; a gear type that cannot.
+  [[nodiscard]] virtual Result<Correction> correct(const std::vector<std::string>& measured_files,
+                                                   app::StageClock& clock) = 0;
 
   /// The body that links go around, on this machine.
   [[nodiscard]] virtual joints::ClearanceBody link_body(const machines::Machine& machine) const = 0;
@@ -108,23 +113,31 @@ class GearProcess {
   /// What a check of fixture and stock must know. Errors: a tool that does not fit the gear, at its place in the job.
   [[nodiscard]] virtual Result<SceneGear> scene(double clearance_mm) const = 0;
 
-  /// Limits, inspection points, meshes; with `surface` tooth.vtp is the cut surface with its deviation, without the plain tooth.
+  /// Limits, inspection points, meshes; with `surface` tooth.vtp is the cut surface with its deviation, without the
+  /// plain tooth.
   /// @param assumed values of the machine that nobody measured;  @param files names join it
-  [[nodiscard]] virtual Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface, const std::vector<std::string>& assumed, app::StageClock& clock,
+  [[nodiscard]] virtual Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
+                                           const std::vector<std::string>& assumed, app::StageClock& clock,
                                            std::vector<std::string>& files) const = 0;
 
   /// To mill it on this machine within these limits. The machine must outlive it.
-  [[nodiscard]] virtual std::unique_ptr<GearMilling> milling(const machines::Machine& machine, const proof::ProofLimits& limits, const FlankGrid& grid, app::StageClock& clock) const = 0;
+  [[nodiscard]] virtual std::unique_ptr<GearMilling> milling(const machines::Machine& machine,
+                                                             const proof::ProofLimits& limits, const FlankGrid& grid,
+                                                             app::StageClock& clock) const = 0;
 
-  /// Its flanks as the strokes of the job's gear shaper leave them. Refused: what `shaper` refuses; a gear type that is not shaped.
+  /// Its flanks as the strokes of the job's gear shaper leave them. Refused: what `shaper` refuses; a gear type that is
+  /// not shaped.
   [[nodiscard]] virtual ValueOrErrors<CutFlanks> shaped(const FlankGrid& grid) const = 0;
   /// Refused, at gear.type: what is asked and this gear type does not have.
   [[nodiscard]] virtual Status accepts(const ContactAsked& asked) const = 0;
-  /// The gear and its mate rolled. @param cut flanks as they were cut, beside the exact ones; may be null. Refused: a mate that cannot run.
-  [[nodiscard]] virtual ValueOrErrors<ContactFound> contact(const ContactAsked& asked, const CutFlanks* cut, app::StageClock& clock) const = 0;
-  /// The section on contact of a run's page, for jobs that ask for it with [contact]; else empty, as where the mate cannot run: that joins
-  /// `warnings`. @param surface as it was cut
-  [[nodiscard]] virtual std::string contact_section(const std::vector<proof::SurfaceGrid>& surface, std::vector<std::string>& warnings) const = 0;
+  /// The gear and its mate rolled. @param cut flanks as they were cut, beside the exact ones; may be null. Refused: a
+  /// mate that cannot run.
+  [[nodiscard]] virtual ValueOrErrors<ContactFound> contact(const ContactAsked& asked, const CutFlanks* cut,
+                                                            app::StageClock& clock) const = 0;
+  /// The section on contact of a run's page, for jobs that ask for it with [contact]; else empty, as where the mate
+  /// cannot run: that joins `warnings`. @param surface as it was cut
+  [[nodiscard]] virtual std::string contact_section(const std::vector<proof::SurfaceGrid>& surface,
+                                                    std::vector<std::string>& warnings) const = 0;
 };
 
 }  // namespace toothpath::process

@@ -39,16 +39,21 @@ Stated stated_deviation(std::span<const path::ToolMotion> motions) {
   return out;
 }
 
-void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::AxisProgram& program, const std::optional<readback::ClComparison>& met, const readback::ReadBack& read,
+void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::AxisProgram& program,
+                         const std::optional<readback::ClComparison>& met, const readback::ReadBack& read,
                          double blend_mm) {
   const double worst = met ? met->worst_mm : 0, extra = met ? met->worst_extra_mm : 0;
   const bool turns = program.chord_bound_mm > 0;
-  ledger.push_back(entry(proof::ErrorSource::axis_linearisation, program.chord_bound_mm, turns ? std::max(0.0, extra - worst) : 0,
-                         turns ? "blocks against the chords of the path, rounding taken off" : "no rotary axis turns while the tool cuts"));
-  ledger.push_back(entry(proof::ErrorSource::rounding, program.rounding_bound_mm, worst, "records against the motions that were read back"));
+  ledger.push_back(entry(proof::ErrorSource::axis_linearisation, program.chord_bound_mm,
+                         turns ? std::max(0.0, extra - worst) : 0,
+                         turns ? "blocks against the chords of the path, rounding taken off"
+                               : "no rotary axis turns while the tool cuts"));
+  ledger.push_back(entry(proof::ErrorSource::rounding, program.rounding_bound_mm, worst,
+                         "records against the motions that were read back"));
   // In single precision, as the moves that are read back carry it.
-  ledger.push_back(entry(proof::ErrorSource::path_blending, double(float(blend_mm)), blend_read_back(read),
-                         blend_mm > 0 ? "the tolerance that the text grants the control" : "the text grants the control none"));
+  ledger.push_back(
+      entry(proof::ErrorSource::path_blending, double(float(blend_mm)), blend_read_back(read),
+            blend_mm > 0 ? "the tolerance that the text grants the control" : "the text grants the control none"));
 }
 
 }  // namespace toothpath::process

@@ -1,6 +1,6 @@
-// The ledger of errors, as far as it is the same for every gear: sources from the machine's joints to the words, and how an entry is made.
-// Every source has the bound that was predicted and the value that was measured, um; the sum of the predicted bounds must cover what is measured on
-// the cut surface: docs/proof.md.
+// The ledger of errors, as far as it is the same for every gear: sources from the machine's joints to the words, and
+// how an entry is made. Every source has the bound that was predicted and the value that was measured, um; the sum of
+// the predicted bounds must cover what is measured on the cut surface: docs/proof.md.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,8 @@
 
 namespace toothpath::process {
 
-[[nodiscard]] proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double measured_mm, std::string note = {});
+[[nodiscard]] proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double measured_mm,
+                                       std::string note = {});
 
 /// Largest error of the tool axis from rounding the words of both rotaries, rad.
 [[nodiscard]] double rotary_rounding(const joints::AxisProgram& program);
@@ -28,7 +29,8 @@ struct Stated {
 
 /// Axis linearisation, rounding, path blending.
 /// @param blend_mm how far the control may round the corners of the path; 0: the dialect has no word for it
-void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::AxisProgram& program, const std::optional<readback::ClComparison>& met,
-                         const readback::ReadBack& read, double blend_mm);
+void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::AxisProgram& program,
+                         const std::optional<readback::ClComparison>& met, const readback::ReadBack& read,
+                         double blend_mm);
 
 }  // namespace toothpath::process

@@ -42,7 +42,8 @@ report::RunReport surface_report(const job::Job& job, const std::vector<std::str
   return report;
 }
 
-app::CommandOutcome finished_report(app::OutputDir& output, app::StageClock& clock, report::RunReport report, bool color) {
+app::CommandOutcome finished_report(app::OutputDir& output, app::StageClock& clock, report::RunReport report,
+                                    bool color) {
   report.files.push_back("report.json");
   report.stages = clock.seconds();
   app::CommandOutcome outcome;

@@ -1,7 +1,7 @@
-// From the bytes of an NC program to what is proven about them, whatever the gear: read back through the machine's kinematics, rapids one group
-// of axes at a time and clear of the part, travels kept, teeth that are turned copies left out, what the motions do to the part, and the
-// program against the path that was asked for. What differs from gear to gear is a `GearCheck`: a gear type without one has no proof, and
-// none can leave a step out.
+// From the bytes of an NC program to what is proven about them, whatever the gear: read back through the machine's
+// kinematics, rapids one group of axes at a time and clear of the part, travels kept, teeth that are turned copies left
+// out, what the motions do to the part, and the program against the path that was asked for. What differs from gear to
+// gear is a `GearCheck`: a gear type without one has no proof, and none can leave a step out.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "app/job/job.h"
 #include "app/base/stage_clock.h"
+#include "app/job/job.h"
 #include "app/report/finding.h"
 #include "cam/proof/verification.h"
 #include "machines/machine.h"
@@ -23,31 +23,33 @@ namespace toothpath::process {
 struct ProgramText {
   std::string_view text;
   const std::string& file;  ///< as it stands in messages
-  const job::Job& job;           ///< with its [setup]
+  const job::Job& job;      ///< with its [setup]
   const machines::Machine& machine;
 };
 
-/// The paths that a program must meet, and how far it may be off them: mm, rad. Without paths (a program that somebody else wrote) nothing is compared.
+/// The paths that a program must meet, and how far it may be off them: mm, rad. Without paths (a program that somebody
+/// else wrote) nothing is compared.
 struct AskedPaths {
   std::span<const path::ClPath* const> paths;
   double mm = 0, rad = 0;  ///< bounds of the axis program; what reading back adds is added
 };
 
-/// What is found about a program of any gear. The first half is read from the text, the second is what the gear says of it.
+/// What is found about a program of any gear. The first half is read from the text, the second is what the gear says of
+/// it.
 struct ProgramProof {
   readback::NcControl control;
   readback::ReadBack read;
-  std::vector<path::ToolMotion> motions;         ///< in program order; all teeth that were kept
+  std::vector<path::ToolMotion> motions;             ///< in program order; all teeth that were kept
   std::optional<readback::ClComparison> comparison;  ///< only where there is a path to compare with
-  double path_tolerance_mm = 0;            ///< of that comparison
-  std::vector<std::string> reasons;        ///< why the program is not proven; empty: it is
+  double path_tolerance_mm = 0;                      ///< of that comparison
+  std::vector<std::string> reasons;                  ///< why the program is not proven; empty: it is
 
   proof::GougeResult gouge;
-  std::vector<proof::ExcessResult> excess;          ///< one an operation
-  std::optional<proof::ExcessResult> finished;      ///< the finished surface; none: no operation finishes it
-  std::vector<proof::SurfaceGrid> surface;          ///< the cut surface of one tooth space
-  std::vector<proof::DirectionChoice> directions;   ///< as the program was seen to do it; empty: not looked at
-  std::vector<report::Finding> findings;            ///< what else there is to say
+  std::vector<proof::ExcessResult> excess;         ///< one an operation
+  std::optional<proof::ExcessResult> finished;     ///< the finished surface; none: no operation finishes it
+  std::vector<proof::SurfaceGrid> surface;         ///< the cut surface of one tooth space
+  std::vector<proof::DirectionChoice> directions;  ///< as the program was seen to do it; empty: not looked at
+  std::vector<report::Finding> findings;           ///< what else there is to say
 };
 
 /// What a gear type adds to the proof of a program.
@@ -56,19 +58,23 @@ class GearCheck {
   virtual ~GearCheck() = default;
 
   [[nodiscard]] virtual int teeth() const = 0;
-  /// How near a motion is followed: largest proven distance from its straight line, mm (tip) and rad (axis). Counts in every bound.
+  /// How near a motion is followed: largest proven distance from its straight line, mm (tip) and rad (axis). Counts in
+  /// every bound.
   [[nodiscard]] virtual double motion_tolerance() const = 0;
   /// Do the rapids of this trace keep the whole tool clear of part and blank at every moment? A refusal names the line.
-  [[nodiscard]] virtual Status rapids_clear(const readback::OperationTrace& trace, const readback::NcControl& control) const = 0;
+  [[nodiscard]] virtual Status rapids_clear(const readback::OperationTrace& trace,
+                                            const readback::NcControl& control) const = 0;
   /// Sees the program as it was read, with all teeth that were kept, before copies among them are left out.
   virtual void meet(const ProgramProof& whole) = 0;
-  /// Gouge, clearance, material left: what `program.motions` do to the part, in stages of the gear's own, goes into the second half of `program`.
-  /// What is not within its limit joins `program.reasons`.
+  /// Gouge, clearance, material left: what `program.motions` do to the part, in stages of the gear's own, goes into the
+  /// second half of `program`. What is not within its limit joins `program.reasons`.
   virtual void judge(ProgramProof& program, app::StageClock& clock) = 0;
 };
 
-/// The one proof of a program. Stages "read back", "compare the teeth" (only where teeth are written out), those of the gear, "compare with the path".
-/// Errors: what the reader refuses, located in the file. A program that is read but not safe is no error: see `reasons`.
-[[nodiscard]] Result<ProgramProof> prove_program(const ProgramText& program, const AskedPaths& asked, GearCheck& gear, app::StageClock& clock);
+/// The one proof of a program. Stages "read back", "compare the teeth" (only where teeth are written out), those of the
+/// gear, "compare with the path". Errors: what the reader refuses, located in the file. A program that is read but not
+/// safe is no error: see `reasons`.
+[[nodiscard]] Result<ProgramProof> prove_program(const ProgramText& program, const AskedPaths& asked, GearCheck& gear,
+                                                 app::StageClock& clock);
 
 }  // namespace toothpath::process

@@ -6,18 +6,18 @@
 #include "geometry/base/angle.h"
 #include "geometry/base/hash.h"
 #include "machines/toml/regular_file.h"
-#include "postproc/joints/time.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/controls/registry.h"
-#include "postproc/text/writer.h"
+#include "postproc/joints/time.h"
 #include "postproc/joints/tooth_order.h"
+#include "postproc/text/writer.h"
 
 namespace toothpath::process {
 namespace {
 
 constexpr std::size_t kMostBytes = std::size_t(1) << 30;
 constexpr double kLeastAxisBlend = 0.0001;  // deg: the last digit of a tolerance of the rotaries
-constexpr double kBlendShare = 0.15;      // of the gouge tolerance that the control may round corners by
+constexpr double kBlendShare = 0.15;        // of the gouge tolerance that the control may round corners by
 
 /// The words of `pole`, in the order of PoleOption.
 constexpr const char* kPoleWords[] = {"error", "tilt", "hold", "through", "slow", "retract"};
@@ -26,7 +26,8 @@ double shown(const joints::AxisRange& axis, double value) { return axis.rotary ?
 
 }  // namespace
 
-report::RunReport report_of(const std::string& command, const job::Job& job, const machines::Machine& machine, const std::vector<std::string>& gear_warnings) {
+report::RunReport report_of(const std::string& command, const job::Job& job, const machines::Machine& machine,
+                            const std::vector<std::string>& gear_warnings) {
   report::RunReport report;
   report.command = command;
   report.job_name = job.name;
@@ -38,30 +39,41 @@ report::RunReport report_of(const std::string& command, const job::Job& job, con
   if (machine.assumed)
     for (const auto& key : machine.assumed_keys) report.assumed.push_back(fmt::format("{}: {}", job.machine.file, key));
   if (!machine.post.smoothing_on.empty() && machine.post.smoothing_tolerance_mm)
-    report.assumed.push_back(fmt::format("{}: post.smoothing_tolerance = {:g} mm, what \"{}\" leaves of the path", job.machine.file,
-                                         *machine.post.smoothing_tolerance_mm, machine.post.smoothing_on.front()));
+    report.assumed.push_back(fmt::format("{}: post.smoothing_tolerance = {:g} mm, what \"{}\" leaves of the path",
+                                         job.machine.file, *machine.post.smoothing_tolerance_mm,
+                                         machine.post.smoothing_on.front()));
   if (!machine.post.smoothing_on.empty() && machine.post.smoothing_axis_tolerance_rad)
-    report.assumed.push_back(fmt::format("{}: post.smoothing_axis_tolerance = {:g} deg", job.machine.file, degrees(*machine.post.smoothing_axis_tolerance_rad)));
+    report.assumed.push_back(fmt::format("{}: post.smoothing_axis_tolerance = {:g} deg", job.machine.file,
+                                         degrees(*machine.post.smoothing_axis_tolerance_rad)));
   report.warnings = job.warnings;
   report.warnings.insert(report.warnings.end(), gear_warnings.begin(), gear_warnings.end());
   return report;
 }
 
-void note_axis_program(report::RunReport& report, const job::Job& job, const machines::Machine& machine, std::span<const path::ClPath* const> paths, const joints::AxisProgram& program) {
+void note_axis_program(report::RunReport& report, const job::Job& job, const machines::Machine& machine,
+                       std::span<const path::ClPath* const> paths, const joints::AxisProgram& program) {
   report.axes = program.ranges;
   const bool timed = program.has_acceleration;
   report.has_acceleration = timed;
   report.feed_minutes = timed ? program.accelerated.feed : program.feed_minutes;
   report.total_minutes = timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes;
   if (job.setup && program.offer)
-    report.travel_room = report::TravelRoom{*program.offer, job.setup->origin_mm + program.offer->shift_mm, job.setup->work_offset_at_mm + program.offer->shift_mm};
+    report.travel_room = report::TravelRoom{*program.offer, job.setup->origin_mm + program.offer->shift_mm,
+                                            job.setup->work_offset_at_mm + program.offer->shift_mm};
   if (program.pole_passages > 0)
-    report.poles = report::PolesReport{program.pole_passages, kPoleWords[static_cast<std::size_t>(machine.post.pole)], program.pole_axis_rad, program.pole_tip_mm};
+    report.poles = report::PolesReport{program.pole_passages, kPoleWords[static_cast<std::size_t>(machine.post.pole)],
+                                       program.pole_axis_rad, program.pole_tip_mm};
   report.block_times = report::block_times_of(program);
   for (const joints::AxisOperation& o : program.operations) {
     const auto& asked = job.operations[static_cast<std::size_t>(o.operation)];
-    report::OperationReport operation{o.operation, o.type, o.tool_number, asked.speed_rpm, asked.feed_mm_min, 0, timed ? o.accelerated.feed : o.feed_minutes,
-                              timed ? o.accelerated.rapid : o.rapid_minutes};
+    report::OperationReport operation{o.operation,
+                                      o.type,
+                                      o.tool_number,
+                                      asked.speed_rpm,
+                                      asked.feed_mm_min,
+                                      0,
+                                      timed ? o.accelerated.feed : o.feed_minutes,
+                                      timed ? o.accelerated.rapid : o.rapid_minutes};
     for (const path::ClPath* path : paths)
       if (path->operation == o.operation) operation.cl_points += path->records.size();
     report.operations.push_back(operation);
@@ -77,7 +89,8 @@ void note_proof(report::RunReport& report, const ProgramProof& proof) {
   report.reasons = proof.reasons;
 }
 
-std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& program, std::span<const path::ClPath* const> paths) {
+std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& program,
+                                               std::span<const path::ClPath* const> paths) {
   if (program.followed.empty()) return {paths.begin(), paths.end()};
   std::vector<const path::ClPath*> followed;
   for (const path::ClPath& path : program.followed) followed.push_back(&path);
@@ -93,13 +106,16 @@ text::NcHeader header_of(const PostRequest& request, const std::vector<std::stri
   header.assumed = assumed;
   header.coolant = request.job.coolant;
   header.blend_mm = std::min(header.blend_mm, kBlendShare * request.job.verify.gouge_tolerance_mm);
-  if (radius > 0) header.blend_axis_deg = std::max(kLeastAxisBlend, std::min(header.blend_axis_deg, degrees(header.blend_mm / (2 * radius))));
+  if (radius > 0)
+    header.blend_axis_deg =
+        std::max(kLeastAxisBlend, std::min(header.blend_axis_deg, degrees(header.blend_mm / (2 * radius))));
   return header;
 }
 
 }  // namespace
 
-Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, const PostRequest& request, const std::vector<std::string>& assumed, app::OutputDir& output,
+Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, const PostRequest& request,
+                                   const std::vector<std::string>& assumed, app::OutputDir& output,
                                    app::StageClock& clock) {
   const auto& [job, title, machine, teeth, body, restart] = request;
   const auto dialect = controls::dialect_of(machine);
@@ -119,7 +135,8 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   auto text = clock.run("NC text", [&] { return text::write_nc(posted.axes, *dialect, header); });
   if (!text) return located(job, "machine.file", text.error());
   posted.blocks = text->blocks;
-  posted.blend_mm = text::granted_blend_mm(posted.axes, *dialect, header) + radius * granted_blend_rad(posted.axes, *dialect, header);
+  posted.blend_mm =
+      text::granted_blend_mm(posted.axes, *dialect, header) + radius * granted_blend_rad(posted.axes, *dialect, header);
   posted.file = "program" + dialect->extension;
   std::string whole = std::move(text->text);
   if (restart) {
@@ -148,18 +165,24 @@ Result<std::string> read_program_file(const std::string& path) { return toml::re
 std::vector<joints::AxisRange> ranges_of(const readback::ReadBack& read, const machines::Machine& machine) {
   std::vector<joints::AxisRange> out;
   for (std::size_t k = 0; k < 3; ++k)
-    out.push_back({"XYZ"[k], false, read.least[k], read.greatest[k], machine.chain.linear[k].min_mm, machine.chain.linear[k].max_mm});
+    out.push_back({"XYZ"[k], false, read.least[k], read.greatest[k], machine.chain.linear[k].min_mm,
+                   machine.chain.linear[k].max_mm});
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
     const auto& axis = machine.chain.rotary(k);
-    out.push_back({axis.letter, true, radians(read.least[3 + k]), radians(read.greatest[3 + k]), axis.min_rad, axis.max_rad});
+    out.push_back(
+        {axis.letter, true, radians(read.least[3 + k]), radians(read.greatest[3 + k]), axis.min_rad, axis.max_rad});
   }
   return out;
 }
 
 void judge_travels(std::span<const joints::AxisRange> axes, std::vector<std::string>& reasons) {
   for (const auto& a : axes) {
-    if (a.min < a.lower_limit - 1e-9) reasons.push_back(fmt::format("travel: {} = {:.4f} is below {:.4f}", a.letter, shown(a, a.min), shown(a, a.lower_limit)));
-    if (a.max > a.upper_limit + 1e-9) reasons.push_back(fmt::format("travel: {} = {:.4f} exceeds {:.4f}", a.letter, shown(a, a.max), shown(a, a.upper_limit)));
+    if (a.min < a.lower_limit - 1e-9)
+      reasons.push_back(
+          fmt::format("travel: {} = {:.4f} is below {:.4f}", a.letter, shown(a, a.min), shown(a, a.lower_limit)));
+    if (a.max > a.upper_limit + 1e-9)
+      reasons.push_back(
+          fmt::format("travel: {} = {:.4f} exceeds {:.4f}", a.letter, shown(a, a.max), shown(a, a.upper_limit)));
   }
 }
 
@@ -167,8 +190,8 @@ std::string table_of_worst(const proof::GougeResult& gouge) {
   if (gouge.worst.empty()) return {};
   std::string out = "  worst places\n    line  op  tooth  zone  patch        body        r mm      z mm       um\n";
   for (const auto& w : gouge.worst)
-    out += fmt::format("    {:5} {:3} {:6} {:5}  {:<12} {:<7} {:9.3f} {:9.3f} {:8.2f}\n", w.line, w.operation, w.tooth, w.zone, w.patch, w.body,
-                       w.radius_mm, w.height_mm, w.depth_mm * 1000);
+    out += fmt::format("    {:5} {:3} {:6} {:5}  {:<12} {:<7} {:9.3f} {:9.3f} {:8.2f}\n", w.line, w.operation, w.tooth,
+                       w.zone, w.patch, w.body, w.radius_mm, w.height_mm, w.depth_mm * 1000);
   return out;
 }
 
@@ -190,7 +213,8 @@ void note_verified(report::RunReport& report, const std::string& file, std::stri
   report.files.push_back(file);
 }
 
-app::CommandOutcome verdict_of(report::RunReport& report, const std::optional<Diagnostic>& stopped, const std::string& job_file, app::OutputDir& output) {
+app::CommandOutcome verdict_of(report::RunReport& report, const std::optional<Diagnostic>& stopped,
+                               const std::string& job_file, app::OutputDir& output) {
   app::CommandOutcome outcome;
   if (stopped) {
     report.reasons.push_back(stopped->message);

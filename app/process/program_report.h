@@ -1,5 +1,5 @@
-// What every command that makes or checks an NC program does in the same way, whatever the gear: begin the report, take over the
-// axis program, read a program file, judge travels, print the table of worst places.
+// What every command that makes or checks an NC program does in the same way, whatever the gear: begin the report, take
+// over the axis program, read a program file, judge travels, print the table of worst places.
 #pragma once
 
 #include <optional>
@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "app/base/outcome.h"
-#include "app/job/job.h"
 #include "app/base/output_dir.h"
+#include "app/job/job.h"
 #include "app/process/program_proof.h"
 #include "app/report/run_report.h"
 #include "cam/proof/checked_cl_path.h"
@@ -19,26 +19,30 @@
 namespace toothpath::process {
 
 /// Names of job and machine, assumed values, warnings.
-[[nodiscard]] report::RunReport report_of(const std::string& command, const job::Job& job, const machines::Machine& machine, const std::vector<std::string>& gear_warnings);
+[[nodiscard]] report::RunReport report_of(const std::string& command, const job::Job& job,
+                                          const machines::Machine& machine,
+                                          const std::vector<std::string>& gear_warnings);
 
 /// Axis ranges, times, poles and operations. `paths`: one an operation.
-void note_axis_program(report::RunReport& report, const job::Job& job, const machines::Machine& machine, std::span<const path::ClPath* const> paths, const joints::AxisProgram& program);
+void note_axis_program(report::RunReport& report, const job::Job& job, const machines::Machine& machine,
+                       std::span<const path::ClPath* const> paths, const joints::AxisProgram& program);
 
 /// What the proof found, and its reasons.
 void note_proof(report::RunReport& report, const ProgramProof& proof);
 
 /// The paths that the program follows: those given, or where poles were handled those that were made of them.
-[[nodiscard]] std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& program, std::span<const path::ClPath* const> paths);
+[[nodiscard]] std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& program,
+                                                             std::span<const path::ClPath* const> paths);
 
 /// An NC program that this run has made: on the disk, and what lies there.
 struct PostedProgram {
   joints::AxisProgram axes;
-  std::string file;      ///< name in the output directory
-  std::string text;      ///< the bytes as read back; with a restart the whole program, which is proven but not written
+  std::string file;  ///< name in the output directory
+  std::string text;  ///< the bytes as read back; with a restart the whole program, which is proven but not written
   std::size_t blocks = 0;
   std::optional<joints::AxisProgram> restarted;  ///< of the file, where it begins in the middle
-  std::string restart_text;              ///< the bytes of that file as read back
-  double blend_mm = 0;   ///< how far the control may leave the corners; 0: the dialect has no such word
+  std::string restart_text;                      ///< the bytes of that file as read back
+  double blend_mm = 0;  ///< how far the control may leave the corners; 0: the dialect has no such word
 };
 /// What a program is made for. Everything named must outlive the call.
 struct PostRequest {
@@ -46,12 +50,13 @@ struct PostRequest {
   std::string title;  ///< of the job, at the top of the text
   const machines::Machine& machine;
   int teeth = 0;
-  joints::ClearanceBody body;  ///< that links keep clear of
+  joints::ClearanceBody body;                     ///< that links keep clear of
   std::optional<joints::ProgramRestart> restart;  ///< the file holds the program from there on
 };
 /// Axis program, NC text, the file, its bytes. Errors carry their place in the job.
 /// @param assumed values that the text names at its top
-[[nodiscard]] Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, const PostRequest& request, const std::vector<std::string>& assumed,
+[[nodiscard]] Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths,
+                                                 const PostRequest& request, const std::vector<std::string>& assumed,
                                                  app::OutputDir& output, app::StageClock& clock);
 /// Takes every program file out of the directory again.
 void discard_program(app::OutputDir& output);
@@ -60,7 +65,8 @@ void discard_program(app::OutputDir& output);
 [[nodiscard]] Result<std::string> read_program_file(const std::string& path);
 
 /// Least and greatest position of every axis over all executed moves, against its limits.
-[[nodiscard]] std::vector<joints::AxisRange> ranges_of(const readback::ReadBack& read, const machines::Machine& machine);
+[[nodiscard]] std::vector<joints::AxisRange> ranges_of(const readback::ReadBack& read,
+                                                       const machines::Machine& machine);
 /// A program may use the travels of the machine, not more: adds to `reasons`.
 void judge_travels(std::span<const joints::AxisRange> axes, std::vector<std::string>& reasons);
 
@@ -73,8 +79,9 @@ void judge_travels(std::span<const joints::AxisRange> axes, std::vector<std::str
 /// The program in the file `file`, whose text was proven, is what the run leaves.
 void note_verified(report::RunReport& report, const std::string& file, std::string_view text);
 
-/// The end of a run whose inputs were right, as far as the verdict goes: reasons as errors, the exit code, and no program left that is not
-/// verified. `stopped`: what kept the run from its proof; joins the reasons.
-[[nodiscard]] app::CommandOutcome verdict_of(report::RunReport& report, const std::optional<Diagnostic>& stopped, const std::string& job_file, app::OutputDir& output);
+/// The end of a run whose inputs were right, as far as the verdict goes: reasons as errors, the exit code, and no
+/// program left that is not verified. `stopped`: what kept the run from its proof; joins the reasons.
+[[nodiscard]] app::CommandOutcome verdict_of(report::RunReport& report, const std::optional<Diagnostic>& stopped,
+                                             const std::string& job_file, app::OutputDir& output);
 
 }  // namespace toothpath::process

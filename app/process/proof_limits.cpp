@@ -7,8 +7,8 @@ namespace {
 
 constexpr double kProofShare = 0.1;  // of the gouge tolerance
 
-/// With a ball mill the last operation must be the finishing one; the walls of a finger mill are those of its last finishing operation, whatever
-/// cuts the root afterwards.
+/// With a ball mill the last operation must be the finishing one; the walls of a finger mill are those of its last
+/// finishing operation, whatever cuts the root afterwards.
 std::optional<double> left_limit(const job::Job& job) {
   std::optional<double> left;
   for (const path::MillingOperation& o : job.operations) {

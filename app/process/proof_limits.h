@@ -6,10 +6,12 @@
 
 namespace toothpath::process {
 
-/// mm above the chord tolerance that may stand on a surface finished with a finger mill: rounding, axis motion and the grid of the measurement.
+/// mm above the chord tolerance that may stand on a surface finished with a finger mill: rounding, axis motion and the
+/// grid of the measurement.
 inline constexpr double kFingerMargin = 1.5e-3;
 
-/// @param proof_mm how far a proven bound may lie above what was measured; no more than a tenth of the gouge tolerance is taken
+/// @param proof_mm how far a proven bound may lie above what was measured; no more than a tenth of the gouge tolerance
+/// is taken
 [[nodiscard]] proof::ProofLimits proof_limits(const job::Job& job, double proof_mm = proof::ProofLimits{}.proof_mm);
 
 }  // namespace toothpath::process

@@ -18,7 +18,8 @@ constexpr std::size_t kGroup = 32;                    // motions that are looked
 constexpr double kTip = 1e-4, kAxis = 2e-6;           // mm, rad: motions of feeds; rapids are cut 50 times coarser
 constexpr std::size_t kMostRows = 20;
 
-Status load(const std::vector<std::string>& files, double least_mm, std::vector<std::unique_ptr<clearance::MeshDistance>>& out, std::size_t& facets) {
+Status load(const std::vector<std::string>& files, double least_mm,
+            std::vector<std::unique_ptr<clearance::MeshDistance>>& out, std::size_t& facets) {
   for (const auto& file : files) {
     mesh::MeshImportLimits limits;
     limits.expected_size_mm = least_mm;
@@ -31,9 +32,10 @@ Status load(const std::vector<std::string>& files, double least_mm, std::vector<
     }
     const double size = (high - low).maxCoeff();
     if (size < least_mm) {
-      Diagnostic error = fail("the longest side of the stock, {:.4g} mm, is below {:.4g} mm, the outer diameter of the finished gear; if the file is "
-                              "in inches, it would be {:.4g} mm, in metres {:.4g} mm: mesh files are read as mm",
-                              size, least_mm, 25.4 * size, 1000 * size);
+      Diagnostic error = fail(
+          "the longest side of the stock, {:.4g} mm, is below {:.4g} mm, the outer diameter of the finished gear; if "
+          "the file is in inches, it would be {:.4g} mm, in metres {:.4g} mm: mesh files are read as mm",
+          size, least_mm, 25.4 * size, 1000 * size);
       error.position.file = file;
       return error;
     }
@@ -53,7 +55,8 @@ struct Group {
 /// Follows the program move by move.
 class SceneWalk {
  public:
-  SceneWalk(const Scene& scene, const job::Job& job, const machines::Machine& machine, const readback::NcControl& control, const readback::ReadBack& read, const SceneGear& gear)
+  SceneWalk(const Scene& scene, const job::Job& job, const machines::Machine& machine,
+            const readback::NcControl& control, const readback::ReadBack& read, const SceneGear& gear)
       : job_(job), machine_(machine), control_(control), read_(read), gear_(gear), clearance_(gear.clearance_mm) {
     for (const auto& m : scene.fixture) fixture_.push_back(m.get());
     for (const auto& m : scene.stock) stock_.push_back(m.get());
@@ -63,7 +66,9 @@ class SceneWalk {
 
   void operator()(readback::ExecutedMove m) {
     if (error_) return;
-    if (!moves_.empty() && (m.tool != moves_.back().tool || m.operation != moves_.back().operation || moves_.size() >= kChunk)) flush();
+    if (!moves_.empty() &&
+        (m.tool != moves_.back().tool || m.operation != moves_.back().operation || moves_.size() >= kChunk))
+      flush();
     if (moves_.empty() && last_) {  // a new tool starts where the spindle stands
       moves_.push_back(*last_);
       moves_.back().tool = m.tool;
@@ -78,14 +83,17 @@ class SceneWalk {
     if (error_) return *error_;
     for (auto& v : verdicts_) {
       v.unjudged = unjudged_;
-      std::stable_sort(v.worst.begin(), v.worst.end(), [](const clearance::MeshMeeting& a, const clearance::MeshMeeting& b) { return a.gap_mm < b.gap_mm; });
+      std::stable_sort(
+          v.worst.begin(), v.worst.end(),
+          [](const clearance::MeshMeeting& a, const clearance::MeshMeeting& b) { return a.gap_mm < b.gap_mm; });
       if (v.worst.size() > kMostRows) v.worst.resize(kMostRows);
     }
     return std::move(verdicts_);
   }
 
  private:
-  [[nodiscard]] report::SceneVerdict verdict(const char* name, const std::vector<std::string>& files, std::size_t facets) const {
+  [[nodiscard]] report::SceneVerdict verdict(const char* name, const std::vector<std::string>& files,
+                                             std::size_t facets) const {
     report::SceneVerdict v;
     v.name = name;
     v.files = files;
@@ -100,7 +108,8 @@ class SceneWalk {
     if (!read_.copies.copies || m.tooth >= 0) return;
     for (const auto& op : read_.copies.operations)
       for (const auto& trace : read_.operations)
-        if (op.operation == m.operation && trace.operation == m.operation && op.moves_per_tooth > 0 && !op.turns.empty()) {
+        if (op.operation == m.operation && trace.operation == m.operation && op.moves_per_tooth > 0 &&
+            !op.turns.empty()) {
           const std::size_t copy = i < trace.lead ? 0 : (i - trace.lead) / op.moves_per_tooth;
           m.tooth = std::int16_t(op.turns[std::min(copy, op.turns.size() - 1)]);
         }
@@ -147,8 +156,9 @@ class SceneWalk {
       const path::ToolMotion& m = motions[k];
       if (m.rapid && withdrawal_ && !clearance::draws_back(m, *withdrawal_)) withdrawal_.reset();
       const bool back = m.rapid && withdrawal_.has_value();
-      const bool joins = !groups.empty() && k - groups.back().from < kGroup && groups.back().rapid == m.rapid && groups.back().withdrawal.has_value() == back &&
-                         m.tooth == motions[k - 1].tooth && (m.tip_from - motions[k - 1].tip_to).norm() < 1e-6;
+      const bool joins = !groups.empty() && k - groups.back().from < kGroup && groups.back().rapid == m.rapid &&
+                         groups.back().withdrawal.has_value() == back && m.tooth == motions[k - 1].tooth &&
+                         (m.tip_from - motions[k - 1].tip_to).norm() < 1e-6;
       if (!joins) groups.push_back({k, k, m.rapid, back ? withdrawal_ : std::nullopt});
       groups.back().to = k + 1;
       if (!m.rapid) withdrawal_ = clearance::Withdrawal{m.tip_to, m.axis_to};
@@ -159,7 +169,8 @@ class SceneWalk {
       const clearance::MeshClearance check(stock ? stock_ : fixture_, options_);
       tbb::parallel_for(std::size_t(0), groups.size(), [&](std::size_t k) {
         const Group& g = groups[k];
-        found[k] = check.nearest(std::span(motions).subspan(g.from, g.to - g.from), tool, rule(g, stock), stock ? g.withdrawal : std::nullopt);
+        found[k] = check.nearest(std::span(motions).subspan(g.from, g.to - g.from), tool, rule(g, stock),
+                                 stock ? g.withdrawal : std::nullopt);
       });
       for (std::size_t k = 0; k < groups.size(); ++k) note(v, found[k], rule(groups[k], stock));
       v.motions += motions.size();
@@ -171,14 +182,16 @@ class SceneWalk {
     if (g.withdrawal) return {0, 0};
     return {clearance_, clearance_};
   }
-  static void note(report::SceneVerdict& v, const std::optional<clearance::MeshMeeting>& found, const clearance::MeshRule& rule) {
+  static void note(report::SceneVerdict& v, const std::optional<clearance::MeshMeeting>& found,
+                   const clearance::MeshRule& rule) {
     if (!found) return;
     const double required = tool::cuts(found->body) ? rule.cutter_mm : rule.others_mm;
     if (!v.nearest || found->gap_mm < v.nearest->gap_mm) v.nearest = found;
     if (found->gap_mm > 0 && found->gap_mm >= required) return;
     ++v.failed;
     const auto same = std::find_if(v.worst.begin(), v.worst.end(), [&](const clearance::MeshMeeting& w) {
-      return w.line == found->line && w.tooth == found->tooth && w.operation == found->operation && w.body == found->body;
+      return w.line == found->line && w.tooth == found->tooth && w.operation == found->operation &&
+             w.body == found->body;
     });
     if (same != v.worst.end()) {
       if (found->gap_mm < same->gap_mm) *same = *found;
@@ -206,7 +219,8 @@ class SceneWalk {
 };
 
 std::string where_of(const clearance::MeshMeeting& m) {
-  return fmt::format("{}{}, operation {}, tooth {}, line {}", m.body, m.rapid ? " on a rapid" : "", m.operation, m.tooth, m.line);
+  return fmt::format("{}{}, operation {}, tooth {}, line {}", m.body, m.rapid ? " on a rapid" : "", m.operation,
+                     m.tooth, m.line);
 }
 
 /// A meeting as a row of the table of worst places.
@@ -235,12 +249,15 @@ Result<Scene> load_scene(const SceneFiles& request, double gear_diameter_mm) {
   return scene;
 }
 
-Result<std::vector<report::SceneVerdict>> check_scene(const Scene& scene, std::string_view text, const std::string& file, const job::Job& job, const machines::Machine& machine,
-                                              const readback::ReadBack& read, const SceneGear& gear) {
+Result<std::vector<report::SceneVerdict>> check_scene(const Scene& scene, std::string_view text,
+                                                      const std::string& file, const job::Job& job,
+                                                      const machines::Machine& machine, const readback::ReadBack& read,
+                                                      const SceneGear& gear) {
   const auto control = controls::control_of(machine, *job.setup, job.tools);
   if (!control) return control.error();
   SceneWalk walk(scene, job, machine, *control, read, gear);
-  if (const auto s = readback::execute_nc(text, file, *control, [&](const readback::ExecutedMove& m) { walk(m); }); !s) return s.error();
+  if (const auto s = readback::execute_nc(text, file, *control, [&](const readback::ExecutedMove& m) { walk(m); }); !s)
+    return s.error();
   return walk.finish();
 }
 
@@ -249,19 +266,26 @@ std::vector<std::string> reasons_of(const std::vector<report::SceneVerdict>& ver
   for (const auto& v : verdicts) {
     if (v.clear() || v.worst.empty()) continue;
     const clearance::MeshMeeting& w = v.worst.front();
-    if (w.gap_mm <= 0) out.push_back(fmt::format("{}: {} {} it", v.name, where_of(w), std::isfinite(w.measured_mm) ? "touches" : "is inside"));
-    else out.push_back(fmt::format("{}: {} comes within {:.4f} mm (proven), the clearance is {:.4f} mm", v.name, where_of(w), w.gap_mm, v.required_mm));
+    if (w.gap_mm <= 0)
+      out.push_back(
+          fmt::format("{}: {} {} it", v.name, where_of(w), std::isfinite(w.measured_mm) ? "touches" : "is inside"));
+    else
+      out.push_back(fmt::format("{}: {} comes within {:.4f} mm (proven), the clearance is {:.4f} mm", v.name,
+                                where_of(w), w.gap_mm, v.required_mm));
   }
   return out;
 }
 
-void add_scene(std::vector<report::SceneVerdict>& verdicts, std::vector<std::string>& reasons, proof::GougeResult& gouge, report::RunReport& report) {
+void add_scene(std::vector<report::SceneVerdict>& verdicts, std::vector<std::string>& reasons,
+               proof::GougeResult& gouge, report::RunReport& report) {
   for (auto& reason : reasons_of(verdicts)) reasons.push_back(std::move(reason));
   for (const auto& v : verdicts) {
     for (const auto& m : v.worst) gouge.worst.push_back(worst_place(m, v.name));
     if (v.unjudged > 0)
-      report.warnings.push_back(fmt::format("{}: {} blocks move from a position that the program does not tell, or without a tool of the job; they are not judged",
-                                            v.name, v.unjudged));
+      report.warnings.push_back(
+          fmt::format("{}: {} blocks move from a position that the program does not tell, or without a tool of the "
+                      "job; they are not judged",
+                      v.name, v.unjudged));
   }
   report.scene = std::move(verdicts);
 }

@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
+#include "app/base/stage_clock.h"
 #include "app/job/job.h"
 #include "app/report/run_report.h"
 #include "app/report/scene_report.h"
-#include "app/base/stage_clock.h"
 #include "cam/clearance/distance.h"
 #include "cam/proof/verification.h"
 #include "machines/machine.h"
@@ -18,7 +18,8 @@
 
 namespace toothpath::process {
 
-/// Meshes in the gear frame W, mm: they stand still about the gear, as bolted to the table that turns it. Each file is a solid of its own.
+/// Meshes in the gear frame W, mm: they stand still about the gear, as bolted to the table that turns it. Each file is
+/// a solid of its own.
 struct Scene {
   std::vector<std::string> fixture_files, stock_files;
   std::vector<std::unique_ptr<clearance::MeshDistance>> fixture, stock;
@@ -32,33 +33,42 @@ struct SceneFiles {
 };
 
 /// Does the request name a mesh?
-[[nodiscard]] inline bool wants_scene(const SceneFiles& request) { return !request.stock_files.empty() || !request.fixture_files.empty(); }
+[[nodiscard]] inline bool wants_scene(const SceneFiles& request) {
+  return !request.stock_files.empty() || !request.fixture_files.empty();
+}
 
-/// Loads what the request names; nothing is loaded or built when it names nothing. `gear_diameter_mm`: outer diameter of the finished gear.
-/// Errors: those of load_mesh, located in the file; a stock that is smaller than the gear.
+/// Loads what the request names; nothing is loaded or built when it names nothing. `gear_diameter_mm`: outer diameter
+/// of the finished gear. Errors: those of load_mesh, located in the file; a stock that is smaller than the gear.
 [[nodiscard]] Result<Scene> load_scene(const SceneFiles& request, double gear_diameter_mm);
 
 /// What a check of the meshes must know of gear and tools.
 struct SceneGear {
   int teeth = 0;
   double clearance_mm = 0;
-  std::vector<std::vector<clearance::MeshBody>> bodies;        ///< of every tool, by index in the job; empty: a tool that no operation uses
-  std::function<double(const Vec3& tip)> azimuth;   ///< of a tip in W, less that of the tooth space there: names teeth that no index tells apart
+  std::vector<std::vector<clearance::MeshBody>>
+      bodies;  ///< of every tool, by index in the job; empty: a tool that no operation uses
+  std::function<double(const Vec3& tip)>
+      azimuth;  ///< of a tip in W, less that of the tooth space there: names teeth that no index tells apart
 };
-/// Executes the program once more and judges every move of every tooth, in the order in which the machine makes them, with the tool that is
-/// in the spindle:
+/// Executes the program once more and judges every move of every tooth, in the order in which the machine makes them,
+/// with the tool that is in the spindle:
 /// - fixture: every body, on feeds and rapids, keeps the clearance (proven between the blocks);
-/// - stock, as it stood before the program: shank and holder never touch it; on rapids every body keeps the clearance from it. One removal is
-///   credited: a rapid that draws the tool back along its own axis from where a feed ended is judged without the room that the cutting part
-///   had there.
+/// - stock, as it stood before the program: shank and holder never touch it; on rapids every body keeps the clearance
+/// from it. One removal is
+///   credited: a rapid that draws the tool back along its own axis from where a feed ended is judged without the room
+///   that the cutting part had there.
 /// `read`: of the same text; names the teeth.
-[[nodiscard]] Result<std::vector<report::SceneVerdict>> check_scene(const Scene& scene, std::string_view text, const std::string& file, const job::Job& job,
-                                                            const machines::Machine& machine, const readback::ReadBack& read, const SceneGear& gear);
+[[nodiscard]] Result<std::vector<report::SceneVerdict>> check_scene(const Scene& scene, std::string_view text,
+                                                                    const std::string& file, const job::Job& job,
+                                                                    const machines::Machine& machine,
+                                                                    const readback::ReadBack& read,
+                                                                    const SceneGear& gear);
 
 /// Why a program does not pass, one line a kind of mesh; empty: it does.
 [[nodiscard]] std::vector<std::string> reasons_of(const std::vector<report::SceneVerdict>& verdicts);
 
 /// What the meshes say joins the reasons, the table of the worst places and the report.
-void add_scene(std::vector<report::SceneVerdict>& verdicts, std::vector<std::string>& reasons, proof::GougeResult& gouge, report::RunReport& report);
+void add_scene(std::vector<report::SceneVerdict>& verdicts, std::vector<std::string>& reasons,
+               proof::GougeResult& gouge, report::RunReport& report);
 
 }  // namespace toothpath::process

@@ -11,7 +11,7 @@
 namespace toothpath::process {
 namespace {
 
-constexpr double kReach = 1000;          // mm: the axis also moves shank and holder, less than a metre away
+constexpr double kReach = 1000;  // mm: the axis also moves shank and holder, less than a metre away
 
 /// Motions that one block of the text was cut into: pieces of equal time, indices [first, last).
 struct Block {
@@ -28,7 +28,9 @@ Blocks cutting_blocks(const std::vector<path::ToolMotion>& motions) {
     const path::ToolMotion& m = motions[k];
     if (m.rapid) continue;
     std::vector<Block>& blocks = cuts[{m.operation, m.tooth}];
-    if (!blocks.empty() && blocks.back().last == k && motions[k - 1].line == m.line && motions[k - 1].minutes == m.minutes) ++blocks.back().last;
+    if (!blocks.empty() && blocks.back().last == k && motions[k - 1].line == m.line &&
+        motions[k - 1].minutes == m.minutes)
+      ++blocks.back().last;
     else blocks.push_back({k, k + 1});
   }
   return cuts;
@@ -41,10 +43,12 @@ struct Pose {
 /// The first tooth and one that may be its copy.
 class Turned {
  public:
-  Turned(const std::vector<path::ToolMotion>& motions, double turn) : motions_(motions), c_(std::cos(turn)), s_(std::sin(turn)) {}
+  Turned(const std::vector<path::ToolMotion>& motions, double turn)
+      : motions_(motions), c_(std::cos(turn)), s_(std::sin(turn)) {}
 
-  /// Greatest distance of two blocks, the second one turned back, at the same share of their time. Between two ends of pieces of either both
-  /// are straight, so that it is met at such an end. mm, with what the axes do at the far end of the tool.
+  /// Greatest distance of two blocks, the second one turned back, at the same share of their time. Between two ends of
+  /// pieces of either both are straight, so that it is met at such an end. mm, with what the axes do at the far end of
+  /// the tool.
   [[nodiscard]] double distance(const Block& original, const Block& copy) const {
     const std::size_t n = original.pieces(), m = copy.pieces();
     double most = 0;
@@ -73,7 +77,8 @@ class Turned {
 };
 
 /// Greatest distance of any block of a tooth from that of the first one; nothing where it is no copy.
-std::optional<double> shift_of(const Turned& turned, const std::vector<Block>& originals, const std::vector<Block>& copies, double tolerance_mm) {
+std::optional<double> shift_of(const Turned& turned, const std::vector<Block>& originals,
+                               const std::vector<Block>& copies, double tolerance_mm) {
   if (originals.size() != copies.size()) return std::nullopt;
   double shift = 0;
   for (std::size_t k = 0; k < originals.size(); ++k) {
@@ -108,7 +113,9 @@ std::vector<path::ToolMotion> without_copies(std::vector<path::ToolMotion> motio
   for (const auto& [key, blocks] : cuts) {
     const auto& [operation, tooth] = key;
     const int reference = first_tooth.at(operation);
-    const auto shift = tooth == reference ? std::nullopt : shift_of({motions, -2 * kPi * (tooth - reference) / teeth}, cuts.at({operation, reference}), blocks, tolerance_mm);
+    const auto shift = tooth == reference ? std::nullopt
+                                          : shift_of({motions, -2 * kPi * (tooth - reference) / teeth},
+                                                     cuts.at({operation, reference}), blocks, tolerance_mm);
     const auto known = copied.emplace(tooth, true).first;
     known->second = known->second && shift.has_value();
     if (shift) shifts.emplace(key, *shift);
@@ -121,7 +128,8 @@ std::vector<path::ToolMotion> without_copies(std::vector<path::ToolMotion> motio
     const auto &originals = cuts.at({key.first, first_tooth.at(key.first)}), &copies = cuts.at(key);
     for (std::size_t k = 0; k < originals.size(); ++k) {
       stand_for(motions, originals[k], copies[k], shift);
-      std::fill(drop.begin() + static_cast<std::ptrdiff_t>(copies[k].first), drop.begin() + static_cast<std::ptrdiff_t>(copies[k].last), true);
+      std::fill(drop.begin() + static_cast<std::ptrdiff_t>(copies[k].first),
+                drop.begin() + static_cast<std::ptrdiff_t>(copies[k].last), true);
     }
   }
   std::vector<path::ToolMotion> kept;

@@ -18,8 +18,10 @@ std::string cl_csv(std::span<const path::ClPath* const> paths) {
   for (const path::ClPath* path : paths)
     for (const path::ClRecord& record : path->records) {
       fmt::format_to(std::back_inserter(out), "{},0,{},{}", path->operation, record.zone, record.pass);
-      for (const double x : record.tip) fmt::format_to(std::back_inserter(out), ",{:.7f}", without_negative_zero(x, 0.5e-7));
-      for (const double x : record.axis) fmt::format_to(std::back_inserter(out), ",{:.9f}", without_negative_zero(x, 0.5e-9));
+      for (const double x : record.tip)
+        fmt::format_to(std::back_inserter(out), ",{:.7f}", without_negative_zero(x, 0.5e-7));
+      for (const double x : record.axis)
+        fmt::format_to(std::back_inserter(out), ",{:.9f}", without_negative_zero(x, 0.5e-9));
       fmt::format_to(std::back_inserter(out), ",{:.3f},{}\n", record.feed_mm_min, to_string(record.kind));
     }
   return fmt::to_string(out);

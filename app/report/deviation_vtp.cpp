@@ -16,9 +16,10 @@ Result<std::string> deviation_vtp(const std::vector<proof::SurfaceGrid>& grids) 
     const auto first = mesh.vertices.size();
     const auto index = [&](int row, int column) {
       return static_cast<int>(first + static_cast<std::size_t>(row) * static_cast<std::size_t>(g.columns) +
-                                        static_cast<std::size_t>(column));
+                              static_cast<std::size_t>(column));
     };
-    // Seen from outside the material the corners run counter-clockwise; which way round the rows lie tells the first cell.
+    // Seen from outside the material the corners run counter-clockwise; which way round the rows lie tells the first
+    // cell.
     bool flip = false;
     if (g.rows > 1 && g.columns > 1) {
       const auto c = static_cast<std::size_t>(g.columns);
@@ -27,7 +28,8 @@ Result<std::string> deviation_vtp(const std::vector<proof::SurfaceGrid>& grids) 
     mesh.vertices.insert(mesh.vertices.end(), g.points.begin(), g.points.end());
     for (int row = 0; row + 1 < g.rows; ++row)
       for (int column = 0; column + 1 < g.columns; ++column) {
-        const auto a = index(row, column), b = index(row + 1, column), c = index(row + 1, column + 1), d = index(row, column + 1);
+        const auto a = index(row, column), b = index(row + 1, column), c = index(row + 1, column + 1),
+                   d = index(row, column + 1);
         if (flip) {
           mesh.triangles.push_back({a, c, b});
           mesh.triangles.push_back({a, d, c});

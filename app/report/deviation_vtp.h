@@ -9,8 +9,8 @@
 
 namespace toothpath::report {
 
-/// VTK PolyData text of all grids, mm. Point data: "deviation_um" (after the last operation), "deviation_um_op<n>" for every
-/// operation, "reachable" (1, or 0 where the finishing ball does not come) and "zone".
+/// VTK PolyData text of all grids, mm. Point data: "deviation_um" (after the last operation), "deviation_um_op<n>" for
+/// every operation, "reachable" (1, or 0 where the finishing ball does not come) and "zone".
 [[nodiscard]] Result<std::string> deviation_vtp(const std::vector<proof::SurfaceGrid>& grids);
 
 }  // namespace toothpath::report

@@ -1,16 +1,15 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/report/svg/html_text.h"
-#include "app/report/run_report.h"
 #include "app/base/units.h"
+#include "app/report/run_report.h"
+#include "app/report/svg/html_text.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::report {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
 
 Json text_list(const std::vector<std::string>& texts) {
   Json list = Json::array();
@@ -32,15 +31,23 @@ Json excess_json(const proof::ExcessResult& e, bool with_operation) {
 }
 
 Json place_json(const proof::WorstPlace& place) {
-  return {{"depth_um", app::um(place.depth_mm)}, {"body", to_string(place.body)},           {"patch", place.patch},
-          {"op", place.operation},          {"tooth", place.tooth},         {"zone", place.zone},
-          {"line", place.line},             {"radius", place.radius_mm},    {"height", place.height_mm},
+  return {{"depth_um", app::um(place.depth_mm)},
+          {"body", to_string(place.body)},
+          {"patch", place.patch},
+          {"op", place.operation},
+          {"tooth", place.tooth},
+          {"zone", place.zone},
+          {"line", place.line},
+          {"radius", place.radius_mm},
+          {"height", place.height_mm},
           {"point", vector_json(place.point)}};
 }
 
 void add_proof(Json& json, const RunReport& r) {
   if (r.gouge) {
-    json["gouge_um"] = {{"measured", app::um(r.gouge->measured_mm)}, {"bound", app::um(r.gouge->bound_mm)}, {"tolerance", app::um(r.gouge_tolerance_mm)}};
+    json["gouge_um"] = {{"measured", app::um(r.gouge->measured_mm)},
+                        {"bound", app::um(r.gouge->bound_mm)},
+                        {"tolerance", app::um(r.gouge_tolerance_mm)}};
     json["clearance"] = {{"least", r.gouge->clearance_mm},
                          {"measured", r.gouge->clearance_measured_mm},
                          {"required", r.gouge->required_clearance_mm},
@@ -70,19 +77,36 @@ void add_findings(Json& json, const RunReport& r) {
 /// Of one tooth space.
 void add_passes(Json& json, const RunReport& r) {
   for (const PassReport& p : r.passes)
-    json["passes"].push_back({{"op", p.operation}, {"zone", p.zone}, {"pass", p.pass}, {"name", p.name}, {"length", p.length_mm}, {"points", p.points}});
+    json["passes"].push_back({{"op", p.operation},
+                              {"zone", p.zone},
+                              {"pass", p.pass},
+                              {"name", p.name},
+                              {"length", p.length_mm},
+                              {"points", p.points}});
 }
 
 Json meeting_json(const clearance::MeshMeeting& m) {
   const bool inside = !std::isfinite(m.measured_mm);
-  return {{"gap", std::max(m.gap_mm, 0.0)}, {"touches", m.gap_mm <= 0}, {"inside", inside}, {"body", to_string(m.body)}, {"rapid", m.rapid},
-          {"op", m.operation}, {"tooth", m.tooth}, {"line", m.line}, {"file", m.mesh}, {"point", vector_json(m.place)}};
+  return {{"gap", std::max(m.gap_mm, 0.0)},
+          {"touches", m.gap_mm <= 0},
+          {"inside", inside},
+          {"body", to_string(m.body)},
+          {"rapid", m.rapid},
+          {"op", m.operation},
+          {"tooth", m.tooth},
+          {"line", m.line},
+          {"file", m.mesh},
+          {"point", vector_json(m.place)}};
 }
 
 /// "fixture" and "stock": lengths in mm; "file" counts the files from 0.
 void add_scene(Json& json, const RunReport& r) {
   for (const auto& v : r.scene) {
-    Json entry = {{"files", text_list(v.files)}, {"facets", v.facets}, {"clear", v.clear()}, {"required", v.required_mm}, {"looked", v.look_mm}};
+    Json entry = {{"files", text_list(v.files)},
+                  {"facets", v.facets},
+                  {"clear", v.clear()},
+                  {"required", v.required_mm},
+                  {"looked", v.look_mm}};
     entry["clearance"] = v.nearest ? Json(std::max(v.nearest->gap_mm, 0.0)) : Json(nullptr);
     entry["nearest"] = v.nearest ? meeting_json(*v.nearest) : Json(nullptr);
     entry["worst"] = Json::array();
@@ -139,7 +163,11 @@ void add_motion(Json& json, const RunReport& r) {
   if (r.restart) json["restart"] = {{"op", r.restart->operation}, {"tooth", r.restart->tooth}};
   Json tolerances = Json::array();
   for (const auto& t : r.length_tolerances) {
-    tolerances.push_back({{"op", t.operation}, {"tool", t.tool_number}, {"share", t.share}, {"flank_share", t.flank_share}, {"too_long_um", t.too_long_mm * 1000}});
+    tolerances.push_back({{"op", t.operation},
+                          {"tool", t.tool_number},
+                          {"share", t.share},
+                          {"flank_share", t.flank_share},
+                          {"too_long_um", t.too_long_mm * 1000}});
     if (t.too_short_mm) tolerances.back()["too_short_um"] = *t.too_short_mm * 1000;
   }
   if (!tolerances.empty()) json["length_tolerance"] = std::move(tolerances);
@@ -171,9 +199,11 @@ void add_motion(Json& json, const RunReport& r) {
   const BlockTimes& t = *r.block_times;
   Json bins = Json::array(), ruled = Json::object();
   for (std::size_t i = 0; i < t.counts.size(); ++i)
-    bins.push_back({{"from", std::pow(10.0, t.from_log_ms + t.step_log_ms * static_cast<double>(i))}, {"blocks", t.counts[i]}});
+    bins.push_back(
+        {{"from", std::pow(10.0, t.from_log_ms + t.step_log_ms * static_cast<double>(i))}, {"blocks", t.counts[i]}});
   for (const auto& [what, blocks] : t.ruled) ruled[what] = blocks;
-  json["block_time_ms"] = {{"least", t.least_ms}, {"median", t.median_ms}, {"ruled_by", std::move(ruled)}, {"histogram", std::move(bins)}};
+  json["block_time_ms"] = {
+      {"least", t.least_ms}, {"median", t.median_ms}, {"ruled_by", std::move(ruled)}, {"histogram", std::move(bins)}};
 }
 
 }  // namespace
@@ -189,7 +219,8 @@ std::string report_json(const RunReport& r) {
     json["verified"] = r.verified;
     json["verdict"] = verdict_text(r);
     json["reasons"] = text_list(r.reasons);
-    json["machine"] = {{"name", svg::valid_utf8(r.machine_name)}, {"file", svg::valid_utf8(r.machine_file)}, {"dialect", r.dialect}};
+    json["machine"] = {
+        {"name", svg::valid_utf8(r.machine_name)}, {"file", svg::valid_utf8(r.machine_file)}, {"dialect", r.dialect}};
   }
   if (!r.program_file.empty())
     json["program"] = {{"file", r.program_file}, {"sha256", r.program_sha256}, {"bytes", r.program_bytes}};

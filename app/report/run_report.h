@@ -1,4 +1,5 @@
-// Everything that a run found out, as plain values: the one source of report.json, the set-up sheet and the table on the screen.
+// Everything that a run found out, as plain values: the one source of report.json, the set-up sheet and the table on
+// the screen.
 #pragma once
 
 #include <optional>
@@ -19,11 +20,11 @@ namespace toothpath::report {
 
 /// One operation as the machinist sees it.
 struct OperationReport {
-  int operation = 0;         ///< index in the job
+  int operation = 0;  ///< index in the job
   std::string type;
   int tool_number = 0;
   double speed_rpm = 0, feed_mm_min = 0;
-  std::size_t cl_points = 0;  ///< one tooth space
+  std::size_t cl_points = 0;                   ///< one tooth space
   double feed_minutes = 0, rapid_minutes = 0;  ///< all teeth
 };
 
@@ -36,10 +37,11 @@ struct CorrectionRow {
 /// How wrong the length of a tool may be before a proven program leaves its limits (docs/setup_sheet.md).
 struct LengthTolerance {
   int operation = 0, tool_number = 0;
-  double share = 1;                   ///< proven: the error moves the cut surface along its normal by no more than this times itself
-  double flank_share = 1;             ///< the same on the flanks alone
-  double too_long_mm = 0;             ///< the gouge tolerance is not left
-  std::optional<double> too_short_mm; ///< what a finishing operation may leave is not exceeded; none: another operation cuts there
+  double share = 1;  ///< proven: the error moves the cut surface along its normal by no more than this times itself
+  double flank_share = 1;  ///< the same on the flanks alone
+  double too_long_mm = 0;  ///< the gouge tolerance is not left
+  std::optional<double>
+      too_short_mm;  ///< what a finishing operation may leave is not exceeded; none: another operation cuts there
 };
 
 /// Poles of a rotary that the program passes (docs/axis_motion.md).
@@ -79,43 +81,46 @@ struct RunReport {
 
   double gouge_tolerance_mm = 0;
   std::optional<proof::GougeResult> gouge;
-  std::vector<proof::ExcessResult> excess;          ///< one an operation
-  std::optional<proof::ExcessResult> finished;      ///< the finished surface, over the points that the finishing ball reaches
-  std::vector<Finding> findings;                    ///< what else there is to say about the part
+  std::vector<proof::ExcessResult> excess;  ///< one an operation
+  std::optional<proof::ExcessResult>
+      finished;                   ///< the finished surface, over the points that the finishing ball reaches
+  std::vector<Finding> findings;  ///< what else there is to say about the part
 
   std::size_t cl_points = 0, blocks = 0;
   double feed_minutes = 0, total_minutes = 0;  ///< all teeth; tool changes left out
   std::vector<OperationReport> operations;
   std::vector<proof::DirectionChoice> directions;
-  std::vector<PassReport> passes;                        ///< of one tooth space, where the plan tells them
+  std::vector<PassReport> passes;  ///< of one tooth space, where the plan tells them
   std::vector<joints::AxisRange> axes;
-  std::optional<PolesReport> poles;                      ///< none where the program comes to no pole
-  std::optional<TravelRoom> travel_room;                 ///< none where it was not looked for
-  bool has_acceleration = false;                         ///< the times above hold the accelerations of the axes
-  std::optional<BlockTimes> block_times;                 ///< none where no program was posted
-  int teeth = 0, tooth_stride = 1;                       ///< of the program: place n cuts tooth n * stride mod teeth
-  std::optional<joints::ProgramRestart> restart;                 ///< the program begins there
-  std::optional<restart::RestartMenu> restart_menu;               ///< where it can be taken up again
+  std::optional<PolesReport> poles;                  ///< none where the program comes to no pole
+  std::optional<TravelRoom> travel_room;             ///< none where it was not looked for
+  bool has_acceleration = false;                     ///< the times above hold the accelerations of the axes
+  std::optional<BlockTimes> block_times;             ///< none where no program was posted
+  int teeth = 0, tooth_stride = 1;                   ///< of the program: place n cuts tooth n * stride mod teeth
+  std::optional<joints::ProgramRestart> restart;     ///< the program begins there
+  std::optional<restart::RestartMenu> restart_menu;  ///< where it can be taken up again
   std::vector<LengthTolerance> length_tolerances;
-  std::vector<Section> sections;                         ///< tables for page and set-up sheet: app/report/sections
+  std::vector<Section> sections;  ///< tables for page and set-up sheet: app/report/sections
   std::vector<proof::LedgerEntry> ledger;
-  std::vector<SceneVerdict> scene;                       ///< fixture and stock, where meshes of them were given
-  std::vector<CorrectionRow> correction;                 ///< empty: the nominal flanks are the target
+  std::vector<SceneVerdict> scene;        ///< fixture and stock, where meshes of them were given
+  std::vector<CorrectionRow> correction;  ///< empty: the nominal flanks are the target
   std::vector<std::string> assumed, warnings;
-  std::vector<std::string> files;                        ///< written by this run
-  std::vector<std::pair<std::string, double>> stages;    ///< name and seconds, those that ran
+  std::vector<std::string> files;                      ///< written by this run
+  std::vector<std::pair<std::string, double>> stages;  ///< name and seconds, those that ran
 };
 
-/// report.json, ending in a line feed. Values that a command does not have are left out; lengths in um where the key says so.
+/// report.json, ending in a line feed. Values that a command does not have are left out; lengths in um where the key
+/// says so.
 [[nodiscard]] std::string report_json(const RunReport& report);
 
-/// "verified", "verified, root not finished" (surface that the finishing ball does not reach was left) or "not verified".
+/// "verified", "verified, root not finished" (surface that the finishing ball does not reach was left) or "not
+/// verified".
 [[nodiscard]] std::string verdict_text(const RunReport& report);
 /// What the program leaves though it is verified; empty: nothing.
 [[nodiscard]] std::string unfinished_text(const RunReport& report);
 
-/// The table on the screen: verified or not, worst gouge, worst left material, cutting time, tools, axis ranges, every assumed
-/// value. Plain text; with `color` the verdict is green, amber or red.
+/// The table on the screen: verified or not, worst gouge, worst left material, cutting time, tools, axis ranges, every
+/// assumed value. Plain text; with `color` the verdict is green, amber or red.
 [[nodiscard]] std::string summary_table(const RunReport& report, bool color);
 
 /// "1 h 23 min", "4 min 05 s".

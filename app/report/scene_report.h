@@ -11,16 +11,17 @@ namespace toothpath::report {
 
 /// One kind of mesh: all files given for it.
 struct SceneVerdict {
-  std::string name;                ///< "fixture" or "stock"
+  std::string name;  ///< "fixture" or "stock"
   std::vector<std::string> files;
   std::size_t facets = 0;
-  double required_mm = 0;          ///< clearance that was asked for
-  double look_mm = 0;              ///< gaps larger than this were not told apart
-  std::optional<clearance::MeshMeeting> nearest;  ///< the least margin of the whole program; none: nothing comes nearer than look_mm
+  double required_mm = 0;  ///< clearance that was asked for
+  double look_mm = 0;      ///< gaps larger than this were not told apart
+  std::optional<clearance::MeshMeeting>
+      nearest;  ///< the least margin of the whole program; none: nothing comes nearer than look_mm
   std::vector<clearance::MeshMeeting> worst;  ///< what does not pass, worst first, at most 20
-  std::size_t failed = 0;          ///< stretches of the program that do not pass
-  std::size_t motions = 0;         ///< judged
-  std::size_t unjudged = 0;        ///< blocks that move from an unknown position or without a tool of the job
+  std::size_t failed = 0;                     ///< stretches of the program that do not pass
+  std::size_t motions = 0;                    ///< judged
+  std::size_t unjudged = 0;  ///< blocks that move from an unknown position or without a tool of the job
   [[nodiscard]] bool clear() const { return failed == 0; }
 };
 

@@ -1,4 +1,5 @@
-// A part of the report that is a table: page and set-up sheet show it, each in its own form. Who makes them: app/report/sections.
+// A part of the report that is a table: page and set-up sheet show it, each in its own form. Who makes them:
+// app/report/sections.
 #pragma once
 
 #include <string>

@@ -1,14 +1,16 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/report/run_report.h"
 #include "app/base/units.h"
+#include "app/report/run_report.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::report {
 namespace {
 
-void row(std::string& out, std::string_view name, const std::string& value) { out += fmt::format("  {:<20}{}\n", name, value); }
+void row(std::string& out, std::string_view name, const std::string& value) {
+  out += fmt::format("  {:<20}{}\n", name, value);
+}
 
 std::string tools_text(const RunReport& report) {
   std::string text;
@@ -29,9 +31,11 @@ void axis_rows(std::string& out, const RunReport& report) {
     const double f = axis.rotary ? degrees(1.0) : 1.0;
     const char* unit = axis.rotary ? "deg" : "mm";
     const bool stands = axis.max - axis.min < 1e-9;
-    const std::string moves = stands ? fmt::format("{:>10.3f} {:<16}", axis.min * f, std::string(unit) + ", stands still")
-                                     : fmt::format("{:>10.3f} .. {:>9.3f} {:<3}", axis.min * f, axis.max * f, unit);
-    const std::string limits = axis.endless() ? "rolls over" : fmt::format("limits {:g} .. {:g}", axis.lower_limit * f, axis.upper_limit * f);
+    const std::string moves = stands
+                                  ? fmt::format("{:>10.3f} {:<16}", axis.min * f, std::string(unit) + ", stands still")
+                                  : fmt::format("{:>10.3f} .. {:>9.3f} {:<3}", axis.min * f, axis.max * f, unit);
+    const std::string limits =
+        axis.endless() ? "rolls over" : fmt::format("limits {:g} .. {:g}", axis.lower_limit * f, axis.upper_limit * f);
     row(out, fmt::format("axis {}", axis.letter), fmt::format("{}   {}", moves, limits));
   }
 }
@@ -60,46 +64,65 @@ std::string summary_table(const RunReport& report, bool color) {
   const std::string left = unfinished_text(report);
   const char* verdict = !report.verified ? "NO" : !left.empty() ? "yes, root not finished" : "yes";
   const char* paint = !report.verified ? "\033[31m" : !left.empty() ? "\033[33m" : "\033[32m";
-  if (report.command != "surface") row(out, "verified", color ? fmt::format("{}{}\033[0m", paint, verdict) : std::string(verdict));
+  if (report.command != "surface")
+    row(out, "verified", color ? fmt::format("{}{}\033[0m", paint, verdict) : std::string(verdict));
   for (const auto& reason : report.reasons) row(out, "  because", reason);
   if (!left.empty()) row(out, "not finished", left);
   if (report.gouge)
-    row(out, "worst gouge", fmt::format("{:.2f} um, proven below {:.2f} um (tolerance {:.2f} um)", std::max(0.0, report.gouge->measured_mm) * app::kUm,
-                                        std::max(0.0, report.gouge->bound_mm) * app::kUm, report.gouge_tolerance_mm * app::kUm));
+    row(out, "worst gouge",
+        fmt::format("{:.2f} um, proven below {:.2f} um (tolerance {:.2f} um)",
+                    std::max(0.0, report.gouge->measured_mm) * app::kUm,
+                    std::max(0.0, report.gouge->bound_mm) * app::kUm, report.gouge_tolerance_mm * app::kUm));
   if (report.finished)
-    row(out, "worst left material", fmt::format("{:.2f} um, proven below {:.2f} um", report.finished->max_mm * app::kUm, report.finished->bound_mm * app::kUm));
+    row(out, "worst left material",
+        fmt::format("{:.2f} um, proven below {:.2f} um", report.finished->max_mm * app::kUm,
+                    report.finished->bound_mm * app::kUm));
   for (const Finding& f : report.findings)
     if (!f.label.empty() && f.unfinished.empty()) row(out, f.label, f.row_text());
-  if (report.gouge) row(out, "least clearance", fmt::format("{:.3f} mm (neck, shank, holder)", report.gouge->clearance_mm));
+  if (report.gouge)
+    row(out, "least clearance", fmt::format("{:.3f} mm (neck, shank, holder)", report.gouge->clearance_mm));
   for (const auto& v : report.scene) {
-    const std::string place = v.nearest ? fmt::format("{}, op {}, tooth {}, line {}", v.nearest->body, v.nearest->operation, v.nearest->tooth, v.nearest->line) : "";
-    row(out, v.name, !v.nearest ? fmt::format("clear by more than {:.3f} mm", v.look_mm)
-                                : fmt::format("{}: least gap {:.3f} mm proven ({}), clearance {:.3f} mm", v.clear() ? "clear" : "NOT clear",
-                                              std::max(0.0, v.nearest->gap_mm), place, v.required_mm));
+    const std::string place = v.nearest ? fmt::format("{}, op {}, tooth {}, line {}", v.nearest->body,
+                                                      v.nearest->operation, v.nearest->tooth, v.nearest->line)
+                                        : "";
+    row(out, v.name,
+        !v.nearest
+            ? fmt::format("clear by more than {:.3f} mm", v.look_mm)
+            : fmt::format("{}: least gap {:.3f} mm proven ({}), clearance {:.3f} mm", v.clear() ? "clear" : "NOT clear",
+                          std::max(0.0, v.nearest->gap_mm), place, v.required_mm));
   }
   if (!report.operations.empty()) {
-    row(out, "cutting time", fmt::format("{} (with rapids {})", readable_minutes(report.feed_minutes), readable_minutes(report.total_minutes)) +
-                                (report.has_acceleration ? ", accelerations included" : ""));
+    row(out, "cutting time",
+        fmt::format("{} (with rapids {})", readable_minutes(report.feed_minutes),
+                    readable_minutes(report.total_minutes)) +
+            (report.has_acceleration ? ", accelerations included" : ""));
     row(out, "time by tool", tools_text(report));
   }
   for (const auto& d : report.directions)
     if (!d.fixed && d.passes > 0)
-      row(out, "tool axis", fmt::format("operation {}, zone {}: simultaneous, lean {:.1f} to {:.1f} deg, turns in {} of {} passes", d.operation, d.zone,
-                                        degrees(d.least_lean_rad), degrees(d.greatest_lean_rad), d.turning_passes, d.passes));
+      row(out, "tool axis",
+          fmt::format("operation {}, zone {}: simultaneous, lean {:.1f} to {:.1f} deg, turns in {} of {} passes",
+                      d.operation, d.zone, degrees(d.least_lean_rad), degrees(d.greatest_lean_rad), d.turning_passes,
+                      d.passes));
   axis_rows(out, report);
   if (report.travel_room) {
     const auto& [offer, origin, work] = *report.travel_room;
-    row(out, "room in travels", fmt::format("X {:.1f}  Y {:.1f}  Z {:.1f} mm; most with the origin at [{:.3f}, {:.3f}, {:.3f}]: X {:.1f}  Y {:.1f}  Z {:.1f} mm", offer.room_now_mm[0],
-                                            offer.room_now_mm[1], offer.room_now_mm[2], origin.x(), origin.y(), origin.z(), offer.room_then_mm[0], offer.room_then_mm[1],
-                                            offer.room_then_mm[2]));
+    row(out, "room in travels",
+        fmt::format("X {:.1f}  Y {:.1f}  Z {:.1f} mm; most with the origin at [{:.3f}, {:.3f}, {:.3f}]: X {:.1f}  Y "
+                    "{:.1f}  Z {:.1f} mm",
+                    offer.room_now_mm[0], offer.room_now_mm[1], offer.room_now_mm[2], origin.x(), origin.y(),
+                    origin.z(), offer.room_then_mm[0], offer.room_then_mm[1], offer.room_then_mm[2]));
   }
   if (!report.machine_name.empty()) row(out, "machine", report.machine_name);
   for (const auto& name : report.assumed) row(out, "assumed", name);
-  if (!report.program_file.empty()) row(out, "program", fmt::format("{}, {} blocks", report.program_file, report.blocks));
+  if (!report.program_file.empty())
+    row(out, "program", fmt::format("{}, {} blocks", report.program_file, report.blocks));
   for (const auto& c : report.correction)
-    row(out, "correction", fmt::format("zone {}, flank {:+}: measured max {:.2f} um, rms {:.2f} um; not followed max {:.2f} um, rms {:.2f} um", c.zone,
-                                       c.side, c.fit.measured_max_mm * app::kUm, c.fit.measured_rms_mm * app::kUm, c.fit.residual_max_mm * app::kUm,
-                                       c.fit.residual_rms_mm * app::kUm));
+    row(out, "correction",
+        fmt::format(
+            "zone {}, flank {:+}: measured max {:.2f} um, rms {:.2f} um; not followed max {:.2f} um, rms {:.2f} um",
+            c.zone, c.side, c.fit.measured_max_mm * app::kUm, c.fit.measured_rms_mm * app::kUm,
+            c.fit.residual_max_mm * app::kUm, c.fit.residual_rms_mm * app::kUm));
   for (const auto& warning : report.warnings) row(out, "warning", warning);
   if (report.command == "surface")
     for (const auto& file : report.files) row(out, "written", file);
@@ -110,8 +133,10 @@ std::string summary_table(const RunReport& report, bool color) {
 }
 
 std::string poles_text(const PolesReport& poles) {
-  return fmt::format("Poles passed: {} a tooth (pole = \"{}\"); the tool axis moves by at most {:.4f} deg for it, the tip by {:.4f} mm about the centre of the ball.",
-                     poles.passages, poles.option, degrees(poles.axis_rad), poles.tip_mm);
+  return fmt::format(
+      "Poles passed: {} a tooth (pole = \"{}\"); the tool axis moves by at most {:.4f} deg for it, the tip by {:.4f} "
+      "mm about the centre of the ball.",
+      poles.passages, poles.option, degrees(poles.axis_rad), poles.tip_mm);
 }
 
 }  // namespace toothpath::report

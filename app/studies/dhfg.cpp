@@ -4,10 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "app/process/opening_and_end.h"
 #include "app/job/file.h"
 #include "app/job/tables.h"
 #include "app/job/words.h"
+#include "app/process/opening_and_end.h"
 #include "app/report/page/study_page.h"
 #include "geometry/base/angle.h"
 #include "machines/toml/regular_file.h"
@@ -77,43 +77,70 @@ void coarsen(DhfgStudy& s) {
 std::string minutes(double m) { return fmt::format("{:.0f}", m); }
 
 page::PageTable geometry_table(const std::vector<DhfgTrial>& trials) {
-  page::PageTable t{"Limits and feasible halves", {"trial", "N_p", "N_2", "helix deg", "R1 mm", "governed by", "R2 mm", "R2' mm", "R_in mm", "R_g mm", "R_out mm",
-                                             "half mm", "feasible mm", "remark"}, {}, ""};
-  t.note = "R1: largest inner limit of both flanks; R2: pointed; R2': top land 0.2 m. The halves take the band less the margins on both sides of the groove.";
+  page::PageTable t{"Limits and feasible halves",
+                    {"trial", "N_p", "N_2", "helix deg", "R1 mm", "governed by", "R2 mm", "R2' mm", "R_in mm", "R_g mm",
+                     "R_out mm", "half mm", "feasible mm", "remark"},
+                    {},
+                    ""};
+  t.note =
+      "R1: largest inner limit of both flanks; R2: pointed; R2': top land 0.2 m. The halves take the band less the "
+      "margins on both sides of the groove.";
   for (const auto& r : trials)
-    t.rows.push_back({std::to_string(r.levels.number), std::to_string(r.pinion_teeth), std::to_string(r.teeth), fmt::format("{:g}", degrees(r.helix_angle_rad)),
-                      fmt::format("{:.3f}", r.R1_mm), r.R1_name, fmt::format("{:.3f}", r.R2_mm), fmt::format("{:.3f}", r.land_mm), fmt::format("{:.3f}", r.inner_mm),
-                      fmt::format("{:.3f}", r.groove_mm), fmt::format("{:.3f}", r.outer_mm), fmt::format("{:.3f}", r.half_face_mm),
+    t.rows.push_back({std::to_string(r.levels.number), std::to_string(r.pinion_teeth), std::to_string(r.teeth),
+                      fmt::format("{:g}", degrees(r.helix_angle_rad)), fmt::format("{:.3f}", r.R1_mm), r.R1_name,
+                      fmt::format("{:.3f}", r.R2_mm), fmt::format("{:.3f}", r.land_mm),
+                      fmt::format("{:.3f}", r.inner_mm), fmt::format("{:.3f}", r.groove_mm),
+                      fmt::format("{:.3f}", r.outer_mm), fmt::format("{:.3f}", r.half_face_mm),
                       fmt::format("{:.3f}", r.feasible_mm), r.refusal});
   return t;
 }
 
 page::PageTable mesh_table(const DhfgStudy& s, const std::vector<DhfgTrial>& trials) {
-  page::PageTable t{"Contact and forces", {"trial", "ratio inner", "ratio outer", "ratio V-teeth", "pairs", "error urad", "normal N", "axial single N", "axial halves N",
-                                     "axial balanced N", "axial held N", "held/single %", "radial N", "gear axial N"}, {}, ""};
-  t.note = fmt::format("Torque on the gear {:g} N m. Single: the same torque on one helix. Halves: axial force of each half of the balanced pinion, opposite "
-                       "signs. Held: a pinion that cannot float, {:g} % of the torque on the outer half. Radial: pushes the pinion off the gear; gear axial: "
-                       "presses the gear on its seat; neither is balanced by the second helix.", s.torque_nmm / 1000, s.held_share * 100);
+  page::PageTable t{
+      "Contact and forces",
+      {"trial", "ratio inner", "ratio outer", "ratio V-teeth", "pairs", "error urad", "normal N", "axial single N",
+       "axial halves N", "axial balanced N", "axial held N", "held/single %", "radial N", "gear axial N"},
+      {},
+      ""};
+  t.note = fmt::format(
+      "Torque on the gear {:g} N m. Single: the same torque on one helix. Halves: axial force of each half of the "
+      "balanced pinion, opposite signs. Held: a pinion that cannot float, {:g} % of the torque on the outer half. "
+      "Radial: pushes the pinion off the gear; gear axial: presses the gear on its seat; neither is balanced by the "
+      "second helix.",
+      s.torque_nmm / 1000, s.held_share * 100);
   for (const auto& r : trials) {
     const auto n = [](double v) { return fmt::format("{:.1f}", std::abs(v) < 1e-6 ? 0.0 : v); };
-    t.rows.push_back({std::to_string(r.levels.number), fmt::format("{:.3f}", r.overlap_halves[0]), fmt::format("{:.3f}", r.overlap_halves[1]),
-                      fmt::format("{:.3f}", r.overlap), fmt::format("{} to {}", r.least_pairs, r.most_pairs),
-                      fmt::format("{:.6f}", r.error_range_rad * 1e6), n(r.balanced.inner.normal_n + r.balanced.outer.normal_n), n(r.balanced.single_axial_n),
-                      n(r.balanced.outer.pinion_axial_n), n(r.balanced.axial_n), n(r.held.axial_n),
-                      r.balanced.single_axial_n != 0 ? fmt::format("{:.1f}", 100 * r.held.axial_n / r.balanced.single_axial_n) : "",
-                      n(r.balanced.inner.pinion_radial_n + r.balanced.outer.pinion_radial_n), n(r.balanced.inner.gear_axial_n + r.balanced.outer.gear_axial_n)});
+    t.rows.push_back(
+        {std::to_string(r.levels.number), fmt::format("{:.3f}", r.overlap_halves[0]),
+         fmt::format("{:.3f}", r.overlap_halves[1]), fmt::format("{:.3f}", r.overlap),
+         fmt::format("{} to {}", r.least_pairs, r.most_pairs), fmt::format("{:.6f}", r.error_range_rad * 1e6),
+         n(r.balanced.inner.normal_n + r.balanced.outer.normal_n), n(r.balanced.single_axial_n),
+         n(r.balanced.outer.pinion_axial_n), n(r.balanced.axial_n), n(r.held.axial_n),
+         r.balanced.single_axial_n != 0 ? fmt::format("{:.1f}", 100 * r.held.axial_n / r.balanced.single_axial_n) : "",
+         n(r.balanced.inner.pinion_radial_n + r.balanced.outer.pinion_radial_n),
+         n(r.balanced.inner.gear_axial_n + r.balanced.outer.gear_axial_n)});
   }
   return t;
 }
 
 page::PageTable milling_table(const DhfgStudy& s, const std::vector<DhfgTrial>& trials, bool quick) {
-  page::PageTable t{quick ? "Milling, coarse tolerances" : "Milling", {"trial", "cutting min", "rapid min", "cutting h", "CL points a space", "remark"}, {}, ""};
-  t.note = fmt::format("Planned paths of all teeth at their feeds, rapids at {:g} mm/min; no acceleration, no tool changes, no gouge proof. ", s.rapid_mm_min);
-  if (quick) t.note += fmt::format("Quick form: scallops {:g} times, chord tolerances {:g} times and roughing steps {:g} times those of the study file, so the "
-                                   "times are those of a coarse surface: compare them among the trials, not with a finished gear.", kQuickScallop, kQuickChord, kQuickStep);
+  page::PageTable t{quick ? "Milling, coarse tolerances" : "Milling",
+                    {"trial", "cutting min", "rapid min", "cutting h", "CL points a space", "remark"},
+                    {},
+                    ""};
+  t.note = fmt::format(
+      "Planned paths of all teeth at their feeds, rapids at {:g} mm/min; no acceleration, no tool changes, no gouge "
+      "proof. ",
+      s.rapid_mm_min);
+  if (quick)
+    t.note += fmt::format(
+        "Quick form: scallops {:g} times, chord tolerances {:g} times and roughing steps {:g} times those of the study "
+        "file, so the times are those of a coarse surface: compare them among the trials, not with a finished gear.",
+        kQuickScallop, kQuickChord, kQuickStep);
   for (const auto& r : trials)
-    t.rows.push_back({std::to_string(r.levels.number), minutes(r.milling.cutting_minutes), minutes(r.milling.rapid_minutes),
-                      fmt::format("{:.1f}", r.milling.cutting_minutes / 60), std::to_string(r.milling.cl_points), r.milling.refusal});
+    t.rows.push_back({std::to_string(r.levels.number), minutes(r.milling.cutting_minutes),
+                      minutes(r.milling.rapid_minutes), fmt::format("{:.1f}", r.milling.cutting_minutes / 60),
+                      std::to_string(r.milling.cl_points), r.milling.refusal});
   return t;
 }
 
@@ -129,32 +156,43 @@ constexpr Quantity kQuantities[] = {
     {"cutting min", [](const DhfgTrial& t) { return t.milling.cutting_minutes; }},
 };
 page::PageTable range_table(const DhfgStudy& s, const std::vector<DhfgTrial>& trials) {
-  page::PageTable t{"Means of the levels", {"quantity", "factor", "level 1", "level 2", "level 3", "range"}, {},
-              "Each cell is the mean of the three trials with that level. A range near that of the blank column says nothing about its factor."};
+  page::PageTable t{"Means of the levels",
+                    {"quantity", "factor", "level 1", "level 2", "level 3", "range"},
+                    {},
+                    "Each cell is the mean of the three trials with that level. A range near that of the blank column "
+                    "says nothing about its factor."};
   for (const auto& q : kQuantities)
     for (int factor = 0; factor < 4; ++factor) {
       double mean[3] = {0, 0, 0};
       for (const auto& r : trials) {
-        const int level = factor == 0 ? r.levels.teeth : factor == 1 ? r.levels.ratio : factor == 2 ? r.levels.helix : r.levels.blank;
+        const int level = factor == 0   ? r.levels.teeth
+                          : factor == 1 ? r.levels.ratio
+                          : factor == 2 ? r.levels.helix
+                                        : r.levels.blank;
         mean[level] += q.of(r) / 3;
       }
       const auto name = [&]() -> std::string {
-        const auto levels = [&](const std::vector<double>& v, double f) { return fmt::format(" {:g}/{:g}/{:g}", v[0] * f, v[1] * f, v[2] * f); };
+        const auto levels = [&](const std::vector<double>& v, double f) {
+          return fmt::format(" {:g}/{:g}/{:g}", v[0] * f, v[1] * f, v[2] * f);
+        };
         if (factor == 0) return "pinion teeth" + levels(s.pinion_teeth, 1);
         if (factor == 1) return "ratio" + levels(s.ratio, 1);
         if (factor == 2) return "helix deg" + levels(s.helix_angle_rad, degrees(1));
         return "blank";
       }();
       const auto [low, high] = std::minmax({mean[0], mean[1], mean[2]});
-      t.rows.push_back({q.name, name, fmt::format("{:.3f}", mean[0]), fmt::format("{:.3f}", mean[1]), fmt::format("{:.3f}", mean[2]), fmt::format("{:.3f}", high - low)});
+      t.rows.push_back({q.name, name, fmt::format("{:.3f}", mean[0]), fmt::format("{:.3f}", mean[1]),
+                        fmt::format("{:.3f}", mean[2]), fmt::format("{:.3f}", high - low)});
     }
   return t;
 }
 
 std::vector<svg::LineChart> charts_of(const std::vector<DhfgTrial>& trials) {
-  const auto chart = [&](std::string title, std::string y, std::vector<std::pair<std::string, double (*)(const DhfgTrial&)>> series, std::string note) {
+  const auto chart = [&](std::string title, std::string y,
+                         std::vector<std::pair<std::string, double (*)(const DhfgTrial&)>> series, std::string note) {
     svg::LineChart c;
-    c.title = std::move(title), c.x_label = "trial", c.y_label = std::move(y), c.markers = true, c.note = std::move(note);
+    c.title = std::move(title), c.x_label = "trial", c.y_label = std::move(y), c.markers = true,
+    c.note = std::move(note);
     for (const auto& [name, of] : series) {
       svg::ChartSeries s{name, {}, {}};
       for (const auto& t : trials) s.x.push_back(t.levels.number), s.y.push_back(of(t));
@@ -162,29 +200,41 @@ std::vector<svg::LineChart> charts_of(const std::vector<DhfgTrial>& trials) {
     }
     return c;
   };
-  return {chart("Contact ratio", "pairs (mean)", {{"V-teeth", [](const DhfgTrial& t) { return t.overlap; }}, {"inner half", [](const DhfgTrial& t) { return t.overlap_halves[0]; }},
-                                                  {"outer half", [](const DhfgTrial& t) { return t.overlap_halves[1]; }}},
+  return {chart("Contact ratio", "pairs (mean)",
+                {{"V-teeth", [](const DhfgTrial& t) { return t.overlap; }},
+                 {"inner half", [](const DhfgTrial& t) { return t.overlap_halves[0]; }},
+                 {"outer half", [](const DhfgTrial& t) { return t.overlap_halves[1]; }}},
                 "A V-tooth is in contact while one of its halves is."),
-          chart("Axial force on the pinion", "force [N]", {{"single helix", [](const DhfgTrial& t) { return std::abs(t.balanced.single_axial_n); }},
-                                                         {"held pinion", [](const DhfgTrial& t) { return std::abs(t.held.axial_n); }},
-                                                         {"floating pinion", [](const DhfgTrial& t) { return std::abs(t.balanced.axial_n); }}},
+          chart("Axial force on the pinion", "force [N]",
+                {{"single helix", [](const DhfgTrial& t) { return std::abs(t.balanced.single_axial_n); }},
+                 {"held pinion", [](const DhfgTrial& t) { return std::abs(t.held.axial_n); }},
+                 {"floating pinion", [](const DhfgTrial& t) { return std::abs(t.balanced.axial_n); }}},
                 "Statics of rigid bodies: zero for a pinion that floats."),
-          chart("Face of each half", "radial width [mm]", {{"chosen", [](const DhfgTrial& t) { return t.half_face_mm; }}, {"feasible", [](const DhfgTrial& t) { return t.feasible_mm; }}}, ""),
-          chart("Milling time", "cutting time [min]", {{"all teeth", [](const DhfgTrial& t) { return t.milling.cutting_minutes; }}}, "")};
+          chart("Face of each half", "radial width [mm]",
+                {{"chosen", [](const DhfgTrial& t) { return t.half_face_mm; }},
+                 {"feasible", [](const DhfgTrial& t) { return t.feasible_mm; }}},
+                ""),
+          chart("Milling time", "cutting time [min]",
+                {{"all teeth", [](const DhfgTrial& t) { return t.milling.cutting_minutes; }}}, "")};
 }
 
 std::vector<std::string> introduction_of(const DhfgStudy& s) {
   return {
-      fmt::format("Nine trials of the orthogonal array L9: three levels of pinion teeth, ratio and helix angle, module {:g} mm in the {} reading, as the study of X. Chu "
-                  "and F. Chen (Machines 2025, 13, 912) lists them. Shaper and pinion have the same number of teeth, so the exact flanks touch along lines.",
+      fmt::format("Nine trials of the orthogonal array L9: three levels of pinion teeth, ratio and helix angle, module "
+                  "{:g} mm in the {} reading, as the study of X. Chu and F. Chen (Machines 2025, 13, 912) lists them. "
+                  "Shaper and pinion have the same number of teeth, so the exact flanks touch along lines.",
                   s.base.module_mm, s.base.module_plane == face_gear::ModulePlane::normal ? "normal" : "transverse"),
-      "Everything here is kinematics and statics of rigid bodies without friction: limits, contact ratio, pairs, axial force. The literature took its overlap of "
-      "two to three pairs, mesh stiffness, loaded transmission error, contact stress and an axial force lowered by about 70 % from finite elements with elastic "
-      "teeth and friction; stiffness, stress and loaded transmission error are not computed here.",
-      "What differs by nature: the rigid transmission error is zero in every trial, so it cannot rank them; the rigid axial force of the double helix is zero for a "
-      "floating pinion at any helix angle, so no angle is best. A remainder appears only when the halves share the torque unequally: a remainder of 30 % means a share of 65 to 35.",
-      "Torque is taken on the face gear; the literature does not print face widths, groove, L0 or whose torque it states: here the groove lies in "
-      "the middle of the band, and the halves take all that the limits leave unless the study file gives half_face. Wider halves mean more overlap."};
+      "Everything here is kinematics and statics of rigid bodies without friction: limits, contact ratio, pairs, axial "
+      "force. The literature took its overlap of two to three pairs, mesh stiffness, loaded transmission error, "
+      "contact stress and an axial force lowered by about 70 % from finite elements with elastic teeth and friction; "
+      "stiffness, stress and loaded transmission error are not computed here.",
+      "What differs by nature: the rigid transmission error is zero in every trial, so it cannot rank them; the rigid "
+      "axial force of the double helix is zero for a floating pinion at any helix angle, so no angle is best. A "
+      "remainder appears only when the halves share the torque unequally: a remainder of 30 % means a share of 65 to "
+      "35.",
+      "Torque is taken on the face gear; the literature does not print face widths, groove, L0 or whose torque it "
+      "states: here the groove lies in the middle of the band, and the halves take all that the limits leave unless "
+      "the study file gives half_face. Wider halves mean more overlap."};
 }
 
 nlohmann::ordered_json json_of(const DhfgStudy& s, const std::vector<DhfgTrial>& trials, bool quick) {
@@ -196,15 +246,35 @@ nlohmann::ordered_json json_of(const DhfgStudy& s, const std::vector<DhfgTrial>&
   json["torque_Nm"] = s.torque_nmm / 1000;
   json["trials"] = nlohmann::ordered_json::array();
   for (const auto& r : trials)
-    json["trials"].push_back({{"trial", r.levels.number}, {"pinion_teeth", r.pinion_teeth}, {"teeth", r.teeth}, {"helix_deg", degrees(r.helix_angle_rad)},
-                              {"R1", r.R1_mm}, {"R1_governed_by", r.R1_name}, {"R2", r.R2_mm}, {"R2_land", r.land_mm}, {"R_in", r.inner_mm}, {"R_g", r.groove_mm},
-                              {"R_out", r.outer_mm}, {"half_face", r.half_face_mm}, {"feasible_half_face", r.feasible_mm}, {"refusal", r.refusal},
-                              {"contact_ratio", {{"inner", r.overlap_halves[0]}, {"outer", r.overlap_halves[1]}, {"v_teeth", r.overlap}}},
-                              {"pairs", {r.least_pairs, r.most_pairs}}, {"error_range_urad", r.error_range_rad * 1e6},
-                              {"axial_N", {{"single_helix", r.balanced.single_axial_n}, {"inner_half", r.balanced.inner.pinion_axial_n},
-                                           {"outer_half", r.balanced.outer.pinion_axial_n}, {"balanced", r.balanced.axial_n}, {"held", r.held.axial_n}}},
-                              {"milling", {{"cutting_minutes", r.milling.cutting_minutes}, {"rapid_minutes", r.milling.rapid_minutes},
-                                           {"cl_points", r.milling.cl_points}, {"refusal", r.milling.refusal}}}});
+    json["trials"].push_back(
+        {{"trial", r.levels.number},
+         {"pinion_teeth", r.pinion_teeth},
+         {"teeth", r.teeth},
+         {"helix_deg", degrees(r.helix_angle_rad)},
+         {"R1", r.R1_mm},
+         {"R1_governed_by", r.R1_name},
+         {"R2", r.R2_mm},
+         {"R2_land", r.land_mm},
+         {"R_in", r.inner_mm},
+         {"R_g", r.groove_mm},
+         {"R_out", r.outer_mm},
+         {"half_face", r.half_face_mm},
+         {"feasible_half_face", r.feasible_mm},
+         {"refusal", r.refusal},
+         {"contact_ratio", {{"inner", r.overlap_halves[0]}, {"outer", r.overlap_halves[1]}, {"v_teeth", r.overlap}}},
+         {"pairs", {r.least_pairs, r.most_pairs}},
+         {"error_range_urad", r.error_range_rad * 1e6},
+         {"axial_N",
+          {{"single_helix", r.balanced.single_axial_n},
+           {"inner_half", r.balanced.inner.pinion_axial_n},
+           {"outer_half", r.balanced.outer.pinion_axial_n},
+           {"balanced", r.balanced.axial_n},
+           {"held", r.held.axial_n}}},
+         {"milling",
+          {{"cutting_minutes", r.milling.cutting_minutes},
+           {"rapid_minutes", r.milling.rapid_minutes},
+           {"cl_points", r.milling.cl_points},
+           {"refusal", r.milling.refusal}}}});
   return json;
 }
 
@@ -222,7 +292,8 @@ process::ValueOrErrors<DhfgStudy> parse_dhfg_study(std::string_view text, const 
   if (auto table = root.table("study")) read_study(*table, study);
   else if (!root.has("study")) root.refuse("study", "the study lacks the table [study]");
   for (auto& table : root.tables("tool")) study.tools.push_back(job::read_tool(table, nullptr));
-  for (auto& table : root.tables("operation")) study.operations.push_back(job::read_operation(table, study.tools, false));
+  for (auto& table : root.tables("operation"))
+    study.operations.push_back(job::read_operation(table, study.tools, false));
   root.finish();
   if (!findings.errors.empty()) return std::move(findings.errors);
   return study;
@@ -243,9 +314,11 @@ commands::CommandOutcome study_dhfg(const DhfgRequest& request) {
   }
   if (request.quick) coarsen(study);
   std::vector<DhfgTrial> trials;
-  for (const auto& levels : l9_trials()) trials.push_back(clock.run(fmt::format("trial {}", levels.number), [&] { return dhfg_trial(study, levels); }));
+  for (const auto& levels : l9_trials())
+    trials.push_back(clock.run(fmt::format("trial {}", levels.number), [&] { return dhfg_trial(study, levels); }));
 
-  const std::vector<page::PageTable> tables = {geometry_table(trials), mesh_table(study, trials), milling_table(study, trials, request.quick), range_table(study, trials)};
+  const std::vector<page::PageTable> tables = {geometry_table(trials), mesh_table(study, trials),
+                                               milling_table(study, trials, request.quick), range_table(study, trials)};
   const auto feasible = std::count_if(trials.begin(), trials.end(), [](const auto& t) { return t.refusal.empty(); });
   page::StudyPage page;
   page.title = study.name + ": double helical face gears";
@@ -269,9 +342,12 @@ commands::CommandOutcome study_dhfg(const DhfgRequest& request) {
   commands::CommandOutcome outcome;
   outcome.report_json = json_of(study, trials, request.quick).dump(2) + "\n";
   outcome.summary = page.title + "\n";
-  for (const auto& table : tables) outcome.summary += "\n" + table.title + "\n" + page::table_text(table) + table.note + "\n";
+  for (const auto& table : tables)
+    outcome.summary += "\n" + table.title + "\n" + page::table_text(table) + table.note + "\n";
   for (const auto& paragraph : page.introduction) outcome.summary += "\n" + paragraph + "\n";
-  const process::NamedFiles files = {{"dhfg.csv", page::table_csv(all)}, {"dhfg.json", outcome.report_json}, {"dhfg.html", page::study_page_html(page)}};
+  const process::NamedFiles files = {{"dhfg.csv", page::table_csv(all)},
+                                     {"dhfg.json", outcome.report_json},
+                                     {"dhfg.html", page::study_page_html(page)}};
   progress.clear();
   return process::finished(*output, files, std::move(outcome));
 }
@@ -280,7 +356,8 @@ void add_dhfg(commands::Commands& commands) {
   commands.push_back(commands::command_of<DhfgRequest>(
       "dhfg", "nine orthogonal trials of double helical face gears: limits, contact, forces, milling time",
       [](commands::OptionSet& set, DhfgRequest& request) {
-        set.text("--file", request.study_file, "study file (TOML); without it the literature's levels and no milling", "FILE");
+        set.text("--file", request.study_file, "study file (TOML); without it the literature's levels and no milling",
+                 "FILE");
         set.out_dir(request.out_dir);
         set.flag("--quick", request.quick, "coarse tolerances of the planned paths");
       },

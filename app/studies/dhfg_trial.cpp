@@ -34,7 +34,8 @@ std::optional<face_gear::FaceGear> make_trial_gear(const DhfgStudy& study, DhfgT
   trial.groove_mm = (trial.inner_mm + trial.outer_mm) / 2;
   trial.feasible_mm = (trial.outer_mm - trial.inner_mm - study.groove_width_mm) / 2;
   if (!(trial.feasible_mm > 0)) {
-    trial.refusal = fmt::format("band {:.3f} to {:.3f} mm leaves no room beside a groove of {:g} mm", trial.inner_mm, trial.outer_mm, study.groove_width_mm);
+    trial.refusal = fmt::format("band {:.3f} to {:.3f} mm leaves no room beside a groove of {:g} mm", trial.inner_mm,
+                                trial.outer_mm, study.groove_width_mm);
     return std::nullopt;
   }
   trial.half_face_mm = study.half_face_mm > 0 ? std::min(study.half_face_mm, trial.feasible_mm) : trial.feasible_mm;
@@ -42,7 +43,8 @@ std::optional<face_gear::FaceGear> make_trial_gear(const DhfgStudy& study, DhfgT
   trial.outer_mm = trial.groove_mm + study.groove_width_mm / 2 + trial.half_face_mm;
   p.reference_radius_mm = trial.groove_mm;
   const double w = study.groove_width_mm / 2;
-  p.zones = {{-trial.helix_angle_rad, trial.inner_mm, trial.groove_mm - w}, {trial.helix_angle_rad, trial.groove_mm + w, trial.outer_mm}};
+  p.zones = {{-trial.helix_angle_rad, trial.inner_mm, trial.groove_mm - w},
+             {trial.helix_angle_rad, trial.groove_mm + w, trial.outer_mm}};
   auto made = face_gear::FaceGear::make(p);
   if (auto* refused = made.refused()) {
     trial.refusal = refused->front().diagnostic.message;
@@ -57,7 +59,8 @@ void roll_trial(const face_gear::FaceGear& gear, DhfgTrial& trial) {
     for (const int zone : zones) {
       auto flank = contact::exact_flank(gear, zone, 1, kTrialRows, kTrialColumns);
       if (!flank) return flank.error();
-      members.push_back({std::move(*flank), contact::make_pinion(gear.rings()[static_cast<std::size_t>(zone)].surface, trial.pinion_teeth)});
+      members.push_back({std::move(*flank), contact::make_pinion(gear.rings()[static_cast<std::size_t>(zone)].surface,
+                                                                 trial.pinion_teeth)});
     }
     return roll(members, {.steps = kTrialSteps});
   };
@@ -108,8 +111,9 @@ MillingTime mill(const DhfgStudy& study, const face_gear::FaceGear& gear) {
 }  // namespace
 
 const std::vector<TrialLevels>& l9_trials() {
-  static const std::vector<TrialLevels> trials = {{1, 0, 0, 0, 0}, {2, 0, 1, 1, 1}, {3, 0, 2, 2, 2}, {4, 1, 0, 2, 1}, {5, 1, 1, 0, 2},
-                                                  {6, 1, 2, 1, 0}, {7, 2, 0, 1, 2}, {8, 2, 1, 2, 0}, {9, 2, 2, 0, 1}};
+  static const std::vector<TrialLevels> trials = {{1, 0, 0, 0, 0}, {2, 0, 1, 1, 1}, {3, 0, 2, 2, 2},
+                                                  {4, 1, 0, 2, 1}, {5, 1, 1, 0, 2}, {6, 1, 2, 1, 0},
+                                                  {7, 2, 0, 1, 2}, {8, 2, 1, 2, 0}, {9, 2, 2, 0, 1}};
   return trials;
 }
 
@@ -123,9 +127,11 @@ DhfgTrial dhfg_trial(const DhfgStudy& study, const TrialLevels& levels) {
   if (!gear) return trial;
   roll_trial(*gear, trial);
   const auto &inner = gear->rings()[0].surface, &outer = gear->rings()[1].surface;
-  const auto inner_pinion = contact::make_pinion(inner, trial.pinion_teeth), outer_pinion = contact::make_pinion(outer, trial.pinion_teeth);
+  const auto inner_pinion = contact::make_pinion(inner, trial.pinion_teeth),
+             outer_pinion = contact::make_pinion(outer, trial.pinion_teeth);
   trial.balanced = contact::double_mesh_force(inner, outer, inner_pinion, outer_pinion, 1, study.torque_nmm, 0.5);
-  trial.held = contact::double_mesh_force(inner, outer, inner_pinion, outer_pinion, 1, study.torque_nmm, study.held_share);
+  trial.held =
+      contact::double_mesh_force(inner, outer, inner_pinion, outer_pinion, 1, study.torque_nmm, study.held_share);
   trial.milling = mill(study, *gear);
   return trial;
 }

@@ -11,7 +11,6 @@
 namespace toothpath::studies {
 namespace {
 
-
 struct BevelCase {
   std::string name;
   bevel_gear::BevelGearParameters gear;
@@ -20,7 +19,8 @@ struct BevelCase {
 };
 
 /// A pair of ordinary proportions; the cutter's module is `share` of the normal module at the small end.
-BevelCase pair(std::string name, int teeth, int mate, double module_mm, double spiral_deg, double face_share, double share = 0.96) {
+BevelCase pair(std::string name, int teeth, int mate, double module_mm, double spiral_deg, double face_share,
+               double share = 0.96) {
   BevelCase c;
   c.name = std::move(name);
   auto& p = c.gear;
@@ -50,7 +50,8 @@ BevelCase pitch_angle(std::string name, int teeth, double delta_deg, double modu
   p.pitch_angle_rad = radians(delta_deg);
   const double R_e = module_mm * teeth / (2 * std::sin(p.pitch_angle_rad));
   p.face_width_mm = std::min(0.29 * R_e, 10 * module_mm);
-  const double share = 1 - p.face_width_mm / R_e, m = 0.96 * module_mm * share * std::sqrt(share) * std::cos(radians(30));
+  const double share = 1 - p.face_width_mm / R_e,
+               m = 0.96 * module_mm * share * std::sqrt(share) * std::cos(radians(30));
   c.cutter = {m, 0.2 * m, 1.37 * m, 1.6 * m};
   p.addendum_mm = 1.37 * m;
   p.dedendum_mm = 1.7 * m;
@@ -60,8 +61,10 @@ BevelCase pitch_angle(std::string name, int teeth, double delta_deg, double modu
 std::vector<BevelCase> cases() {
   std::vector<BevelCase> list;
   BevelCase w1{"18/37 m6, spiral 30", {}, {3.0, 0.9, 4.1, 4.8}};
-  w1.gear.teeth = 18, w1.gear.mate_teeth = 37, w1.gear.outer_transverse_module_mm = 6, w1.gear.pressure_angle_rad = radians(20);
-  w1.gear.outer_spiral_angle_rad = radians(30), w1.gear.face_width_mm = 36, w1.gear.form = bevel_gear::BevelForm::single;
+  w1.gear.teeth = 18, w1.gear.mate_teeth = 37, w1.gear.outer_transverse_module_mm = 6,
+  w1.gear.pressure_angle_rad = radians(20);
+  w1.gear.outer_spiral_angle_rad = radians(30), w1.gear.face_width_mm = 36,
+  w1.gear.form = bevel_gear::BevelForm::single;
   w1.gear.addendum_mm = 4.1, w1.gear.dedendum_mm = 5.1;
   list.push_back(w1);
   BevelCase wheel = w1;
@@ -70,7 +73,8 @@ std::vector<BevelCase> cases() {
   list.push_back(wheel);
   BevelCase herringbone = w1;
   herringbone.name = "18/37 m6, herringbone";
-  herringbone.gear.form = bevel_gear::BevelForm::herringbone, herringbone.gear.apex_cone_distance_mm = 104, herringbone.gear.relief_half_width_mm = 3.2;
+  herringbone.gear.form = bevel_gear::BevelForm::herringbone, herringbone.gear.apex_cone_distance_mm = 104,
+  herringbone.gear.relief_half_width_mm = 3.2;
   list.push_back(herringbone);
   list.push_back(pair("spiral 0 at the outer end", 25, 25, 5, 0, 0.22));
   list.push_back(pair("spiral 5 deg", 25, 25, 5, 5, 0.22));
@@ -127,7 +131,8 @@ std::vector<StabilityRow> bevel_gear_rows() {
             const double worst = std::max(compared.position_mm, compared.normal * c.gear.outer_transverse_module_mm);
             row.error_mm = worst <= row.error_mm ? row.error_mm : worst;  // keeps NaN
             const auto at = wall.generatrix(beta, p);
-            if (const auto back = bevel_gear::bevel_inverse(wall, at[0], at[1])) row.iterations = std::max(row.iterations, back->iterations);
+            if (const auto back = bevel_gear::bevel_inverse(wall, at[0], at[1]))
+              row.iterations = std::max(row.iterations, back->iterations);
             ++row.points;
           }
       }

@@ -36,13 +36,15 @@ double condition_of(const face_gear::FaceGearSurface<Exact>& f, const Meridian& 
   const double a = static_cast<double>(Exact(m.r_theta / f.shaper.r_b)), b = static_cast<double>(Exact(m.r_B / m.r));
   const double c = static_cast<double>(Exact(m.z_theta / f.shaper.r_b)), d = static_cast<double>(Exact(m.z_B / m.r));
   const double sum = a * a + b * b + c * c + d * d;
-  const double det = std::abs(static_cast<double>(Exact((m.r_theta * m.z_B - m.r_B * m.z_theta) / (f.shaper.r_b * m.r))));
+  const double det =
+      std::abs(static_cast<double>(Exact((m.r_theta * m.z_B - m.r_B * m.z_theta) / (f.shaper.r_b * m.r))));
   const double large = std::sqrt(0.5 * (sum + std::sqrt(std::max(0.0, (sum - 2 * det) * (sum + 2 * det)))));
   return large * large / det;  // largest over smallest: smallest = det / largest
 }
 
 /// Newton for (theta, B) at (r, z). Short steps: the start is the double solution.
-bool solve(const face_gear::FaceGearSurface<Exact>& f, int side, const Exact& r, const Exact& z, Exact& theta, Exact& B) {
+bool solve(const face_gear::FaceGearSurface<Exact>& f, int side, const Exact& r, const Exact& z, Exact& theta,
+           Exact& B) {
   for (int k = 0; k < kMostSteps; ++k) {
     const Meridian m = meridian(f, side, theta, B);
     const Exact er = r - m.r, ez = z - m.z, det = m.r_theta * m.z_B - m.r_B * m.z_theta;
@@ -79,14 +81,17 @@ ExactFaceGear::ExactFaceGear(const face_gear::FaceGearParameters& gear, double h
 ExactFaceGear::~ExactFaceGear() = default;
 ExactFaceGear::ExactFaceGear(ExactFaceGear&&) noexcept = default;
 
-ExactComparison ExactFaceGear::kernel(const face_gear::FaceGearSurface<double>& surface, int side, double theta, double B) const {
+ExactComparison ExactFaceGear::kernel(const face_gear::FaceGearSurface<double>& surface, int side, double theta,
+                                      double B) const {
   const auto q = surface.flank(side, theta, B);
   const auto x = impl_->f.flank(side, Exact(theta), Exact(B));
   const Meridian m = meridian(impl_->f, side, Exact(theta), Exact(B));
-  return {gap(x.p, q.p), gap(x.n, q.n), condition_of(impl_->f, m), static_cast<double>(impl_->f.flank_J(side, Exact(theta), Exact(B))), theta};
+  return {gap(x.p, q.p), gap(x.n, q.n), condition_of(impl_->f, m),
+          static_cast<double>(impl_->f.flank_J(side, Exact(theta), Exact(B))), theta};
 }
 
-std::optional<ExactComparison> ExactFaceGear::inverse(const face_gear::FaceGearSurface<double>& surface, int side, double r, double z,
+std::optional<ExactComparison> ExactFaceGear::inverse(const face_gear::FaceGearSurface<double>& surface, int side,
+                                                      double r, double z,
                                                       const face_gear::FlankCoordinates& found) const {
   Exact theta(found.theta), B(found.B);
   if (!solve(impl_->f, side, Exact(r), Exact(z), theta, B)) return {};
@@ -102,8 +107,10 @@ double ExactFaceGear::residual_mm(int side, double r, double z, const face_gear:
   return static_cast<double>(sqrt(Exact(dr * dr + dz * dz)));
 }
 
-std::optional<ExactComparison> ExactFaceGear::fillet(const face_gear::FaceGearSurface<double>& surface, int side, double A, double r, double Z) const {
-  // The double A lies within rounding of [A_t, A_e]; the exact ends are a hair away, which the closed form does not mind.
+std::optional<ExactComparison> ExactFaceGear::fillet(const face_gear::FaceGearSurface<double>& surface, int side,
+                                                     double A, double r, double Z) const {
+  // The double A lies within rounding of [A_t, A_e]; the exact ends are a hair away, which the closed form does not
+  // mind.
   const Exact Ax(A), rx(r);
   const auto radius = [&](const Exact& section) {
     const auto p = impl_->f.fillet(side, Ax, section);
@@ -134,7 +141,8 @@ std::optional<double> ExactFaceGear::undercut_error(int side, double B, double r
   return static_cast<double>(Exact(radius_of(f.flank_housing(side, f.shaper.theta_t, B1)) - Exact(radius)));
 }
 
-std::optional<double> ExactFaceGear::land_minus(double r, double land, const face_gear::FlankCoordinates& plus, const face_gear::FlankCoordinates& minus) const {
+std::optional<double> ExactFaceGear::land_minus(double r, double land, const face_gear::FlankCoordinates& plus,
+                                                const face_gear::FlankCoordinates& minus) const {
   const auto& f = impl_->f;
   const Exact rx(r), z = f.z_tip(rx);
   Exact both[2];
@@ -147,21 +155,25 @@ std::optional<double> ExactFaceGear::land_minus(double r, double land, const fac
   return static_cast<double>(Exact(rx * (both[0] - both[1]) - Exact(land)));
 }
 
-ExactComparison exact_bevel_point(const bevel_gear::BevelGear& gear, const bevel_gear::BevelWall<double>& wall, double beta, double p) {
+ExactComparison exact_bevel_point(const bevel_gear::BevelGear& gear, const bevel_gear::BevelWall<double>& wall,
+                                  double beta, double p) {
   const auto& t = wall.trace;
   const auto& c = wall.cutter;
   bevel_gear::BevelWall<Exact> x;
   x.sigma = wall.sigma;
-  x.trace = {Exact(t.R_0), Exact(t.sin_delta), Exact(t.cos_delta), Exact(t.beta_ref), Exact(t.r_0), Exact(t.e_h), t.h, Exact(t.beta_end)};
+  x.trace = {Exact(t.R_0), Exact(t.sin_delta), Exact(t.cos_delta), Exact(t.beta_ref), Exact(t.r_0), Exact(t.e_h),
+             t.h,          Exact(t.beta_end)};
   const bevel_gear::FingerCutterData& data = gear.cutter_data();
-  x.cutter = bevel_gear::make_finger_profile<Exact>(Exact(c.alpha_n), Exact(c.kappa_v), Exact(c.h_f), Exact(data.module_mm), Exact(data.tip_radius_mm),
-                                        Exact(data.rack_depth_mm), Exact(data.profile_height_mm));
+  x.cutter = bevel_gear::make_finger_profile<Exact>(Exact(c.alpha_n), Exact(c.kappa_v), Exact(c.h_f),
+                                                    Exact(data.module_mm), Exact(data.tip_radius_mm),
+                                                    Exact(data.rack_depth_mm), Exact(data.profile_height_mm));
   const auto q = wall.point(beta, p);
   const auto e = x.point(Exact(beta), Exact(p));
   return {gap(e.p, q.p), gap(e.n, q.n), 0, 0, 0};
 }
 
-ExactComparison exact_pose(const machines::KinematicChain& chain, const machines::Joints& joints, double tool_length_mm, const machines::TablePose& wanted) {
+ExactComparison exact_pose(const machines::KinematicChain& chain, const machines::Joints& joints, double tool_length_mm,
+                           const machines::TablePose& wanted) {
   const auto turned = [&](std::size_t k, const Vec3X& v) {
     const machines::RotaryAxis& axis = chain.rotary(k);
     return turn(exact(axis.direction), Exact(axis.sign) * (Exact(joints.rotary_rad[k]) - Exact(axis.zero_rad)), v);

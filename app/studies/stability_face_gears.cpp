@@ -63,7 +63,8 @@ constexpr GearCase kCases[] = {
 double mixed(double a, double b, double t) { return a + t * (b - a); }
 
 /// Flanks of both sides between R1 and R2', fillet line and tip surface.
-StabilityRow flank_row(const GearCase& c, const face_gear::FaceGearSurface<double>& f, const face_gear::ZoneLimits& limits, const ExactFaceGear& exact) {
+StabilityRow flank_row(const GearCase& c, const face_gear::FaceGearSurface<double>& f,
+                       const face_gear::ZoneLimits& limits, const ExactFaceGear& exact) {
   constexpr int kRadii = 7, kHeights = 5;
   StabilityRow row{"face gear flank", c.name};
   const double hair = 1e-3 * c.module_mm;
@@ -81,14 +82,17 @@ StabilityRow flank_row(const GearCase& c, const face_gear::FaceGearSurface<doubl
         const auto at = face_gear::invert_flank(f, side, r, z);
         const auto from_position = at ? exact.inverse(f, side, r, z, *at) : std::nullopt;
         if (!from_position || !(from_position->J > 0) || from_position->theta < -1e-9) {
-          row.error_mm = NAN, row.reason = fmt::format("no flank point at r = {:.4f}, z = {:.4f}, side {:+d}", r, z, side);
+          row.error_mm = NAN,
+          row.reason = fmt::format("no flank point at r = {:.4f}, z = {:.4f}, side {:+d}", r, z, side);
           continue;
         }
         const auto closed = exact.kernel(f, side, at->theta, at->B);
-        row.error_mm = std::max({row.error_mm, closed.position_mm, from_position->position_mm, closed.normal * c.module_mm});
+        row.error_mm =
+            std::max({row.error_mm, closed.position_mm, from_position->position_mm, closed.normal * c.module_mm});
         row.condition = std::max(row.condition, from_position->condition);
         row.iterations = std::max(row.iterations, at->iterations);
-        row.swept_mm = std::max(row.swept_mm, std::abs(face_gear::swept_clearance(f, f.flank(side, at->theta, at->B).p)));
+        row.swept_mm =
+            std::max(row.swept_mm, std::abs(face_gear::swept_clearance(f, f.flank(side, at->theta, at->B).p)));
         ++row.points;
       }
     }
@@ -127,20 +131,25 @@ StabilityRow fillet_row(const GearCase& c) {
   return row;
 }
 
-std::optional<face_gear::FlankCoordinates> on_tip(const face_gear::FaceGearSurface<double>& f, int side, double r) { return face_gear::invert_flank(f, side, r, f.z_tip(r)); }
+std::optional<face_gear::FlankCoordinates> on_tip(const face_gear::FaceGearSurface<double>& f, int side, double r) {
+  return face_gear::invert_flank(f, side, r, f.z_tip(r));
+}
 
 /// R1c, R2 and R2' as radii.
-StabilityRow limits_row(const GearCase& c, const face_gear::FaceGearSurface<double>& f, const face_gear::ZoneLimits& limits, const ExactFaceGear& exact) {
+StabilityRow limits_row(const GearCase& c, const face_gear::FaceGearSurface<double>& f,
+                        const face_gear::ZoneLimits& limits, const ExactFaceGear& exact) {
   StabilityRow row{"face gear limits", c.name};
   row.limit_mm = 1e-9;  // as documented for the limits
   const auto note = [&](const std::optional<double>& error, const char* what) {
-    if (!error || !std::isfinite(*error)) row.error_mm = NAN, row.reason = fmt::format("{} has no counterpart in 50 digits", what);
+    if (!error || !std::isfinite(*error))
+      row.error_mm = NAN, row.reason = fmt::format("{} has no counterpart in 50 digits", what);
     else row.error_mm = std::max(row.error_mm, std::abs(*error));
     ++row.points;
   };
   for (const auto& flank : limits.flanks)
     if (flank.undercut_radius) note(exact.undercut_error(flank.side, *flank.undercut_B, *flank.undercut_radius), "R1c");
-  for (const auto& [radius, land] : {std::pair{limits.pointing_radius, 0.0}, {limits.land_radius, limits.practical_land_mm}}) {
+  for (const auto& [radius, land] :
+       {std::pair{limits.pointing_radius, 0.0}, {limits.land_radius, limits.practical_land_mm}}) {
     if (!radius) continue;
     const auto plus = on_tip(f, 1, *radius), minus = on_tip(f, -1, *radius);
     if (!plus || !minus) {
@@ -148,7 +157,8 @@ StabilityRow limits_row(const GearCase& c, const face_gear::FaceGearSurface<doub
       continue;
     }
     const double step = 1e-3 * c.module_mm;
-    const auto here = exact.land_minus(*radius, land, *plus, *minus), inside = exact.land_minus(*radius - step, land, *plus, *minus);
+    const auto here = exact.land_minus(*radius, land, *plus, *minus),
+               inside = exact.land_minus(*radius - step, land, *plus, *minus);
     if (!here || !inside) note({}, "the top land");
     else note(*here / ((*inside - *here) / step), "the top land");
   }
@@ -182,7 +192,8 @@ void near_undercut(std::vector<StabilityRow>& rows) {
     const double z = B ? f.flank_housing(-1, f.shaper.theta_t, *B).z() : NAN;
     if (const auto at = face_gear::invert_flank(f, -1, r, z)) {
       const auto closed = exact.kernel(f, -1, f.shaper.theta_t, *B);
-      row.error_mm = std::max({closed.position_mm, exact.kernel(f, -1, at->theta, at->B).position_mm, exact.residual_mm(-1, r, z, *at)});
+      row.error_mm = std::max(
+          {closed.position_mm, exact.kernel(f, -1, at->theta, at->B).position_mm, exact.residual_mm(-1, r, z, *at)});
       row.condition = closed.condition;
       row.iterations = at->iterations;
       row.points = 1;
@@ -232,7 +243,11 @@ void refused(std::vector<StabilityRow>& rows) {
       {"pointed shaper", {"", 25, 88, 3, 20, 0, 15, 90, 1.9}, 0, 130, 147},
       {"rounding too large", kOffsetGear, 1.3, 130, 147},
       {"offset beyond the face", {"", 25, 88, 3, 20, 0, 140}, 0, 130, 147},
-      {"undercut that runs outwards", {"", 54, 107, 1.30447, 19.8215, -43.8004, 12.6251, 103.368, 0.847233, true}, 0.307558, 86.748, 88.7},
+      {"undercut that runs outwards",
+       {"", 54, 107, 1.30447, 19.8215, -43.8004, 12.6251, 103.368, 0.847233, true},
+       0.307558,
+       86.748,
+       88.7},
       {"fillet up to the tip, outside", {"", 58, 527, 4, 14.3, 41.9, 322.9, 84.5, 0.335, true}, 2.387, 860, 930},
       {"module nan", {"", 25, 88, NAN, 20}, 0, 130, 147},
   };

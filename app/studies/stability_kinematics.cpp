@@ -11,7 +11,7 @@ namespace toothpath::studies {
 namespace {
 
 constexpr double kStudiedToolLength = 120;  // mm
-constexpr double kAxisAsLength = 100;  // mm: an error of the axis counts with this arm
+constexpr double kAxisAsLength = 100;       // mm: an error of the axis counts with this arm
 
 machines::RotaryAxis rotary(char letter, const Vec3& direction, const Vec3& point) {
   machines::RotaryAxis axis;
@@ -64,7 +64,9 @@ StabilityRow pole_row(const NamedChain& named, double gap) {
     const double worst = std::max(compared.position_mm, kAxisAsLength * compared.normal);
     row.error_mm = worst <= row.error_mm ? row.error_mm : worst;
     ++row.points;
-    if (solution.free_rotary >= 0) row.reason = fmt::format("{} is free and reported so", named.chain.rotary(std::size_t(solution.free_rotary)).letter);
+    if (solution.free_rotary >= 0)
+      row.reason =
+          fmt::format("{} is free and reported so", named.chain.rotary(std::size_t(solution.free_rotary)).letter);
   }
   judge(row, 0);
   return row;
@@ -73,15 +75,16 @@ StabilityRow pole_row(const NamedChain& named, double gap) {
 /// A tool axis that no angle reaches.
 StabilityRow unreachable_row(const NamedChain& named) {
   StabilityRow row{"pole", fmt::format("{}, axis out of reach", named.name)};
-  const auto solutions = named.chain.inverse({Vec3(10, 0, 0), Vec3(std::sin(2.0), 0, std::cos(2.0))}, kStudiedToolLength);
+  const auto solutions =
+      named.chain.inverse({Vec3(10, 0, 0), Vec3(std::sin(2.0), 0, std::cos(2.0))}, kStudiedToolLength);
   judge_refusal(row, Expected::refuse, solutions ? "" : solutions.error().message);
   return row;
 }
 
-
-/// The tip between two blocks without tool centre control: how far it leaves the chord, in double, in 50 digits, and the bound
-/// (w^2 R + 2 w dX)/8 that the axis program uses.
-StabilityRow nonlinear_row(const char* name, const machines::KinematicChain& chain, const machines::Joints& from, const machines::Joints& to) {
+/// The tip between two blocks without tool centre control: how far it leaves the chord, in double, in 50 digits, and
+/// the bound (w^2 R + 2 w dX)/8 that the axis program uses.
+StabilityRow nonlinear_row(const char* name, const machines::KinematicChain& chain, const machines::Joints& from,
+                           const machines::Joints& to) {
   constexpr int kSamples = 64;
   StabilityRow row{"non-linear error", name};
   const machines::TablePose a = chain.forward(from, kStudiedToolLength), b = chain.forward(to, kStudiedToolLength);
@@ -92,7 +95,8 @@ StabilityRow nonlinear_row(const char* name, const machines::KinematicChain& cha
     const double t = double(k) / kSamples;
     machines::Joints j;
     j.linear_mm = from.linear_mm + t * (to.linear_mm - from.linear_mm);
-    for (std::size_t n = 0; n < 2; ++n) j.rotary_rad[n] = from.rotary_rad[n] + t * (to.rotary_rad[n] - from.rotary_rad[n]);
+    for (std::size_t n = 0; n < 2; ++n)
+      j.rotary_rad[n] = from.rotary_rad[n] + t * (to.rotary_rad[n] - from.rotary_rad[n]);
     const machines::TablePose at = chain.forward(j, kStudiedToolLength);
     for (std::size_t n = 0; n < chain.table.size(); ++n) {
       const Vec3 p = n == 0 ? at.tip_mm : chain.table_to_machine(at.tip_mm, j.rotary_rad);
@@ -130,7 +134,8 @@ std::vector<StabilityRow> kinematics_rows() {
     machines::Joints from, to;  // the tip stands still in the machine, the table turns below it
     from.linear_mm = to.linear_mm = Vec3(chain.table[0].point_mm.x() + radius, chain.table[0].point_mm.y(), 50);
     to.rotary_rad[0] = radians(angle);
-    rows.push_back(nonlinear_row(fmt::format("pure turn of {:g} deg, R = {:g} mm", angle, radius).c_str(), chain, from, to));
+    rows.push_back(
+        nonlinear_row(fmt::format("pure turn of {:g} deg, R = {:g} mm", angle, radius).c_str(), chain, from, to));
   }
   machines::Joints from, to;
   from.linear_mm = Vec3(80, 10, 60), from.rotary_rad = {0.3, radians(40)};

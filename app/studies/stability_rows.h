@@ -16,14 +16,16 @@ enum class Expected { accept, refuse };
 /// One extreme case.
 struct StabilityRow {
   std::string group = {}, name = {};
-  double error_mm = 0;     ///< greatest distance of double from 50 digits
-  double limit_mm = 0;     ///< what rounding may do: a multiple of eps times the size of the part
-  double condition = 0;    ///< of the hardest point: relative change of the answer per relative change of the question; 0: none
-  int iterations = 0;      ///< most steps of one solution; 0: closed form
-  double swept_mm = 0;     ///< greatest distance from the swept solid, which knows no equation of meshing; 0: not applicable
+  double error_mm = 0;  ///< greatest distance of double from 50 digits
+  double limit_mm = 0;  ///< what rounding may do: a multiple of eps times the size of the part
+  double condition =
+      0;  ///< of the hardest point: relative change of the answer per relative change of the question; 0: none
+  int iterations = 0;  ///< most steps of one solution; 0: closed form
+  double swept_mm =
+      0;  ///< greatest distance from the swept solid, which knows no equation of meshing; 0: not applicable
   int points = 0;
   bool fine = false;
-  std::string verdict = {};///< "pass", "refused" or "FAIL"
+  std::string verdict = {};  ///< "pass", "refused" or "FAIL"
   std::string reason = {};
 };
 
@@ -34,7 +36,8 @@ struct StabilityRow {
 /// Inverse kinematics at and near the pole, and the path between two blocks without tool centre control.
 [[nodiscard]] std::vector<StabilityRow> kinematics_rows();
 
-/// Sets the verdict of a row whose errors are filled in: fails on NaN, on an error beyond its limit and on points off the swept solid.
+/// Sets the verdict of a row whose errors are filled in: fails on NaN, on an error beyond its limit and on points off
+/// the swept solid.
 void judge(StabilityRow& row, double swept_limit_mm);
 /// The verdict of a case that was refused with `message`, or accepted (empty message).
 void judge_refusal(StabilityRow& row, Expected expected, const std::string& message);

@@ -13,7 +13,9 @@ namespace {
 
 const std::vector<std::string> kTraceModelOutputs = {"trace_model.csv", "trace_model.json", "trace_model.html"};
 
-const char* name_of(bevel_gear::SectionModel model) { return model == bevel_gear::SectionModel::centre_path ? "S1" : "S2"; }
+const char* name_of(bevel_gear::SectionModel model) {
+  return model == bevel_gear::SectionModel::centre_path ? "S1" : "S2";
+}
 
 std::string wall_of(const bevel_gear::BevelGear& g, const bevel_gear::SectionModelMap& m) {
   const int eps = -m.sigma * g.halves()[static_cast<std::size_t>(m.half)].hand;
@@ -27,31 +29,44 @@ std::string points_csv(const std::vector<bevel_gear::SectionModelMap>& maps) {
     for (std::size_t r = 0; r < m.height.size(); ++r)
       for (std::size_t c = 0; c < m.ell.size(); ++c) {
         const double d = m.deviation_mm[r * m.ell.size() + c];
-        out += fmt::format("{},{},{},{:.6f},{:.6f},{}\n", name_of(m.model), m.half, m.sigma > 0 ? 'L' : 'U', m.ell[c], m.height[r],
-                           std::isfinite(d) ? fmt::format("{:.6f}", 1000 * d) : std::string());
+        out += fmt::format("{},{},{},{:.6f},{:.6f},{}\n", name_of(m.model), m.half, m.sigma > 0 ? 'L' : 'U', m.ell[c],
+                           m.height[r], std::isfinite(d) ? fmt::format("{:.6f}", 1000 * d) : std::string());
       }
   return out;
 }
 
 page::PageTable numbers(const bevel_gear::BevelGear& g, const std::vector<bevel_gear::SectionModelMap>& maps) {
-  page::PageTable table{"Normal deviation of the machined wall from the model", {"wall", "model", "least [um]", "greatest [um]", "rms [um]", "least at R [mm]", "height [mm]"}, {}, ""};
+  page::PageTable table{"Normal deviation of the machined wall from the model",
+                        {"wall", "model", "least [um]", "greatest [um]", "rms [um]", "least at R [mm]", "height [mm]"},
+                        {},
+                        ""};
   for (const auto& m : maps)
-    table.rows.push_back({wall_of(g, m), name_of(m.model), fmt::format("{:.3f}", 1000 * m.least_mm), fmt::format("{:.3f}", 1000 * m.greatest_mm),
-                          fmt::format("{:.3f}", 1000 * m.rms_mm), fmt::format("{:.3f}", m.least_ell), fmt::format("{:.3f}", m.least_height)});
+    table.rows.push_back({wall_of(g, m), name_of(m.model), fmt::format("{:.3f}", 1000 * m.least_mm),
+                          fmt::format("{:.3f}", 1000 * m.greatest_mm), fmt::format("{:.3f}", 1000 * m.rms_mm),
+                          fmt::format("{:.3f}", m.least_ell), fmt::format("{:.3f}", m.least_height)});
   return table;
 }
 
-std::string json_of(const bevel_gear::BevelGear& g, const std::string& job_file, const std::vector<bevel_gear::SectionModelMap>& maps) {
-  nlohmann::ordered_json json = {{"schema", 1}, {"command", "study trace-model"}, {"job", job_file}, {"pitch_angle", degrees(g.delta())}};
+std::string json_of(const bevel_gear::BevelGear& g, const std::string& job_file,
+                    const std::vector<bevel_gear::SectionModelMap>& maps) {
+  nlohmann::ordered_json json = {
+      {"schema", 1}, {"command", "study trace-model"}, {"job", job_file}, {"pitch_angle", degrees(g.delta())}};
   json["walls"] = nlohmann::ordered_json::array();
   for (const auto& m : maps)
-    json["walls"].push_back({{"half", m.half}, {"wall", m.sigma > 0 ? "L" : "U"}, {"model", name_of(m.model)}, {"least_um", 1000 * m.least_mm},
-                             {"greatest_um", 1000 * m.greatest_mm}, {"rms_um", 1000 * m.rms_mm}, {"least_at", {m.least_ell, m.least_height}},
-                             {"height_range", {m.height.front(), m.height.back()}}, {"cone_distance_range", {m.ell.front(), m.ell.back()}}});
+    json["walls"].push_back({{"half", m.half},
+                             {"wall", m.sigma > 0 ? "L" : "U"},
+                             {"model", name_of(m.model)},
+                             {"least_um", 1000 * m.least_mm},
+                             {"greatest_um", 1000 * m.greatest_mm},
+                             {"rms_um", 1000 * m.rms_mm},
+                             {"least_at", {m.least_ell, m.least_height}},
+                             {"height_range", {m.height.front(), m.height.back()}},
+                             {"cone_distance_range", {m.ell.front(), m.ell.back()}}});
   return json.dump(2) + "\n";
 }
 
-page::StudyPage page_of(const bevel_gear::BevelGear& g, const job::Job& job, const std::vector<bevel_gear::SectionModelMap>& maps) {
+page::StudyPage page_of(const bevel_gear::BevelGear& g, const job::Job& job,
+                        const std::vector<bevel_gear::SectionModelMap>& maps) {
   page::StudyPage page;
   double worst[2] = {0, 0};
   for (const auto& m : maps) {
@@ -59,14 +74,17 @@ page::StudyPage page_of(const bevel_gear::BevelGear& g, const job::Job& job, con
     w = std::max({w, -m.least_mm, m.greatest_mm});
   }
   page.title = "Trace model against surface model";
-  page.subtitle = fmt::format("{}: {} teeth, pitch angle {:.4f} deg", job.name, g.parameters().teeth, degrees(g.delta()));
+  page.subtitle =
+      fmt::format("{}: {} teeth, pitch angle {:.4f} deg", job.name, g.parameters().teeth, degrees(g.delta()));
   page.verdict = fmt::format("S1 up to {:.2f} um, S2 up to {:.2f} um", 1000 * worst[0], 1000 * worst[1]);
   page.introduction = {
-      "The machined wall is the envelope of the finger mill. Two simpler models sweep the mill's meridian section instead: S1 keeps it normal to the path of the mill's "
-      "centre, S2 sets it on the theoretical tooth trace, in the trace's normal plane, with its pitch point on the trace.",
-      "The maps show how far the machined wall lies from each model, along the wall's normal: negative (blue) where the machined tooth is thinner than the model. "
-      "All maps share one scale a model. The difference grows towards tip and small end with 1/(R tan(delta))^2 and vanishes for a crown wheel, so a sweep model "
-      "is good enough for drawings and wheels, not as the reference of a pinion."};
+      "The machined wall is the envelope of the finger mill. Two simpler models sweep the mill's meridian section "
+      "instead: S1 keeps it normal to the path of the mill's centre, S2 sets it on the theoretical tooth trace, in the "
+      "trace's normal plane, with its pitch point on the trace.",
+      "The maps show how far the machined wall lies from each model, along the wall's normal: negative (blue) where "
+      "the machined tooth is thinner than the model. All maps share one scale a model. The difference grows towards "
+      "tip and small end with 1/(R tan(delta))^2 and vanishes for a crown wheel, so a sweep model is good enough for "
+      "drawings and wheels, not as the reference of a pinion."};
   for (const auto& m : maps) {
     svg::FieldMap map;
     map.title = fmt::format("{}, {}", name_of(m.model), wall_of(g, m));
@@ -77,7 +95,9 @@ page::StudyPage page_of(const bevel_gear::BevelGear& g, const job::Job& job, con
     map.y = m.height;
     for (const double d : m.deviation_mm) map.values.push_back(1000 * d);
     map.largest = 1000 * worst[m.model == bevel_gear::SectionModel::centre_path ? 0 : 1];
-    page.figures.push_back({map.title, svg::svg_field_map(map), fmt::format("{:.3f} .. {:.3f} um, rms {:.3f} um", 1000 * m.least_mm, 1000 * m.greatest_mm, 1000 * m.rms_mm)});
+    page.figures.push_back(
+        {map.title, svg::svg_field_map(map),
+         fmt::format("{:.3f} .. {:.3f} um, rms {:.3f} um", 1000 * m.least_mm, 1000 * m.greatest_mm, 1000 * m.rms_mm)});
   }
   page.tables = {numbers(g, maps)};
   return page;
@@ -94,12 +114,14 @@ commands::CommandOutcome study_trace_model(const TraceModelRequest& request) {
   if (auto* errors = read.refused()) return commands::failed(std::move(*errors));
   const auto& [job, gear] = read.value();
   const auto maps = clock.run("models", [&] {
-    return section_model_maps(gear, request.quick ? bevel_gear::SectionModelOptions{9, 13, 0, 0} : bevel_gear::SectionModelOptions{});
+    return section_model_maps(
+        gear, request.quick ? bevel_gear::SectionModelOptions{9, 13, 0, 0} : bevel_gear::SectionModelOptions{});
   });
   commands::CommandOutcome outcome;
   outcome.report_json = json_of(gear, job.file, maps);
-  const process::NamedFiles files = {
-      {"trace_model.csv", points_csv(maps)}, {"trace_model.html", page::study_page_html(page_of(gear, job, maps))}, {"trace_model.json", outcome.report_json}};
+  const process::NamedFiles files = {{"trace_model.csv", points_csv(maps)},
+                                     {"trace_model.html", page::study_page_html(page_of(gear, job, maps))},
+                                     {"trace_model.json", outcome.report_json}};
   outcome.summary = page::table_text(numbers(gear, maps)) + "files in " + request.out_dir + "\n";
   progress.clear();
   return process::finished(*output, files, std::move(outcome));

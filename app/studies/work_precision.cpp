@@ -5,24 +5,28 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/job/file.h"
+#include "app/process/flow/stages.h"
 #include "app/process/opening_and_end.h"
 #include "app/process/proof_limits.h"
-#include "app/process/flow/stages.h"
-#include "app/job/file.h"
-#include "app/report/svg/html_text.h"
 #include "app/report/page/study_page.h"
+#include "app/report/svg/html_text.h"
 
 namespace toothpath::studies {
 namespace {
 
-const std::vector<std::string> kWorkPrecisionOutputs = {"work_precision.csv", "work_precision.json", "work_precision.html", "work_precision.svg", "report.html"};
+const std::vector<std::string> kWorkPrecisionOutputs = {"work_precision.csv", "work_precision.json",
+                                                        "work_precision.html", "work_precision.svg", "report.html"};
 
 /// Which tolerances a line of the study multiplies.
 struct Sweep {
   const char* name;
   bool chord, scallop, proof;
 };
-constexpr Sweep kSweeps[] = {{"chord", true, false, false}, {"scallop", false, true, false}, {"verification", false, false, true}, {"all", true, true, true}};
+constexpr Sweep kSweeps[] = {{"chord", true, false, false},
+                             {"scallop", false, true, false},
+                             {"verification", false, false, true},
+                             {"all", true, true, true}};
 constexpr double kFactors[] = {0.1, 0.316227766016838, 3.16227766016838, 10.0};  ///< and 1, the job itself
 
 /// A coarse chord must be measured, not refused: the study lifts the gouge tolerance to this many chord tolerances.
@@ -71,8 +75,8 @@ job::Job varied_job(job::Job job, const Sweep& sweep, double factor) {
 }
 
 /// One run, or why the job itself cannot be run.
-std::vector<Diagnostic> add_run(const job::Job& job, const Sweep& sweep, const char* name, double factor, app::OutputDir& output, bool quiet,
-                                std::vector<StudyRun>& runs) {
+std::vector<Diagnostic> add_run(const job::Job& job, const Sweep& sweep, const char* name, double factor,
+                                app::OutputDir& output, bool quiet, std::vector<StudyRun>& runs) {
   const job::Job varied = varied_job(job, sweep, factor);
   StudyRun run;
   run.varied = name;
@@ -88,7 +92,8 @@ std::vector<Diagnostic> add_run(const job::Job& job, const Sweep& sweep, const c
   // The verdict is that of the job, not of the lifted tolerance.
   const bool within = run.report.gouge && run.report.gouge->bound_mm <= job.verify.gouge_tolerance_mm;
   if (run.report.verified && !within)
-    run.report.reasons.push_back(fmt::format("the bound of the gouge exceeds the job's tolerance {:.4f} mm", job.verify.gouge_tolerance_mm));
+    run.report.reasons.push_back(
+        fmt::format("the bound of the gouge exceeds the job's tolerance {:.4f} mm", job.verify.gouge_tolerance_mm));
   run.report.verified = run.report.verified && within;
   runs.push_back(std::move(run));
   return {};
@@ -102,8 +107,12 @@ page::PageTable table_of(const std::vector<StudyRun>& runs) {
   for (const auto& run : runs)
     for (const auto& [name, s] : run.report.stages)
       if (std::find(stages.begin(), stages.end(), name) == stages.end()) stages.push_back(name);
-  page::PageTable table{"Runs", {"varied", "factor", "chord_um", "scallop_um", "verification_um", "cl_points", "blocks", "cutting_minutes", "worst_um", "rms_um",
-                           "left_bound_um", "gouge_um", "gouge_bound_um", "verified", "seconds"}, {}, ""};
+  page::PageTable table{
+      "Runs",
+      {"varied", "factor", "chord_um", "scallop_um", "verification_um", "cl_points", "blocks", "cutting_minutes",
+       "worst_um", "rms_um", "left_bound_um", "gouge_um", "gouge_bound_um", "verified", "seconds"},
+      {},
+      ""};
   for (const auto& name : stages) {
     std::string column = name + "_s";
     std::replace(column.begin(), column.end(), ' ', '_');
@@ -112,10 +121,21 @@ page::PageTable table_of(const std::vector<StudyRun>& runs) {
   table.columns.emplace_back("reason");
   for (const auto& run : runs) {
     const report::RunReport& r = run.report;
-    std::vector<std::string> row = {run.varied, svg::short_number(run.factor), um_text(run.chord_mm), um_text(run.scallop_mm), um_text(run.proof_mm), std::to_string(r.cl_points),
-                                    std::to_string(r.blocks), fmt::format("{:.3f}", r.feed_minutes), um_text(run.worst_mm()), um_text(run.rms_mm()),
-                                    um_text(r.finished ? r.finished->bound_mm : NAN), um_text(r.gouge ? r.gouge->measured_mm : NAN),
-                                    um_text(r.gouge ? r.gouge->bound_mm : NAN), r.verified ? "yes" : "no", seconds_text(run.seconds())};
+    std::vector<std::string> row = {run.varied,
+                                    svg::short_number(run.factor),
+                                    um_text(run.chord_mm),
+                                    um_text(run.scallop_mm),
+                                    um_text(run.proof_mm),
+                                    std::to_string(r.cl_points),
+                                    std::to_string(r.blocks),
+                                    fmt::format("{:.3f}", r.feed_minutes),
+                                    um_text(run.worst_mm()),
+                                    um_text(run.rms_mm()),
+                                    um_text(r.finished ? r.finished->bound_mm : NAN),
+                                    um_text(r.gouge ? r.gouge->measured_mm : NAN),
+                                    um_text(r.gouge ? r.gouge->bound_mm : NAN),
+                                    r.verified ? "yes" : "no",
+                                    seconds_text(run.seconds())};
     for (const auto& name : stages) row.push_back(seconds_text(run.stage(name)));
     row.push_back(r.reasons.empty() ? "" : r.reasons.front());
     table.rows.push_back(std::move(row));
@@ -133,7 +153,8 @@ std::vector<const StudyRun*> line_of(const std::vector<StudyRun>& runs, const st
 }
 
 template <typename X, typename Y>
-void add_series(svg::LineChart& chart, const std::vector<StudyRun>& runs, const Sweep& sweep, const std::string& name, X x, Y y) {
+void add_series(svg::LineChart& chart, const std::vector<StudyRun>& runs, const Sweep& sweep, const std::string& name,
+                X x, Y y) {
   svg::ChartSeries series{name, {}, {}};
   for (const StudyRun* run : line_of(runs, sweep.name)) {
     series.x.push_back(x(*run));
@@ -149,26 +170,37 @@ std::vector<svg::LineChart> charts_of(const std::vector<StudyRun>& runs, double 
     c.log_x = c.log_y = c.markers = true;
     return c;
   };
-  svg::LineChart error = chart("Error against run time", "run time [s]", "deviation of the finished surface [um]",
-                          "Each line multiplies one tolerance (or all) by 0.1 to 10; every dot is a whole run. Right is slower, down is more exact. "
-                          "A line that falls steeply buys accuracy with its time; a flat one only costs. Seconds are wall time: other work on the "
-                          "computer shows as scatter to the right.");
-  svg::LineChart cutting = chart("Error against cutting time", "cutting time [min]", "deviation of the finished surface [um]",
-                            "The same runs with the time on the machine: passes and blocks that the tolerances ask for.");
-  svg::LineChart proof = chart("Sharpness of the proof against its time", "proof of the program [s]", "bound minus measured gouge [um]",
-                          "How far the proven bound stands above what was measured, and the seconds of the check.");
+  svg::LineChart error =
+      chart("Error against run time", "run time [s]", "deviation of the finished surface [um]",
+            "Each line multiplies one tolerance (or all) by 0.1 to 10; every dot is a whole run. Right is slower, down "
+            "is more exact. A line that falls steeply buys accuracy with its time; a flat one only costs. Seconds are "
+            "wall time: other work on the computer shows as scatter to the right.");
+  svg::LineChart cutting =
+      chart("Error against cutting time", "cutting time [min]", "deviation of the finished surface [um]",
+            "The same runs with the time on the machine: passes and blocks that the tolerances ask for.");
+  svg::LineChart proof =
+      chart("Sharpness of the proof against its time", "proof of the program [s]", "bound minus measured gouge [um]",
+            "How far the proven bound stands above what was measured, and the seconds of the check.");
   svg::LineChart points = chart("Size of the program", "factor of the tolerance", "CL points of one tooth space",
-                           "Where one tolerance decides, the slope is -1/2: sag and cusp grow with the square of the step. Where a line gets flat, something else decides.");
+                                "Where one tolerance decides, the slope is -1/2: sag and cusp grow with the square of "
+                                "the step. Where a line gets flat, something else decides.");
   proof.limits.push_back({"gouge tolerance", gouge_tolerance_mm * 1000});
   for (const Sweep& sweep : kSweeps) {
     const auto seconds = [](const StudyRun& r) { return r.seconds(); };
     const std::string name = sweep.name;
     add_series(error, runs, sweep, name + ", worst", seconds, [](const StudyRun& r) { return r.worst_mm() * 1000; });
     add_series(error, runs, sweep, name + ", rms", seconds, [](const StudyRun& r) { return r.rms_mm() * 1000; });
-    add_series(cutting, runs, sweep, name + ", worst", [](const StudyRun& r) { return r.report.feed_minutes; }, [](const StudyRun& r) { return r.worst_mm() * 1000; });
-    add_series(proof, runs, sweep, name, [](const StudyRun& r) { return r.stage("proof of the program"); },
-               [](const StudyRun& r) { return r.report.gouge ? (r.report.gouge->bound_mm - r.report.gouge->measured_mm) * 1000 : NAN; });
-    add_series(points, runs, sweep, name, [](const StudyRun& r) { return r.factor; }, [](const StudyRun& r) { return static_cast<double>(r.report.cl_points); });
+    add_series(
+        cutting, runs, sweep, name + ", worst", [](const StudyRun& r) { return r.report.feed_minutes; },
+        [](const StudyRun& r) { return r.worst_mm() * 1000; });
+    add_series(
+        proof, runs, sweep, name, [](const StudyRun& r) { return r.stage("proof of the program"); },
+        [](const StudyRun& r) {
+          return r.report.gouge ? (r.report.gouge->bound_mm - r.report.gouge->measured_mm) * 1000 : NAN;
+        });
+    add_series(
+        points, runs, sweep, name, [](const StudyRun& r) { return r.factor; },
+        [](const StudyRun& r) { return static_cast<double>(r.report.cl_points); });
   }
   return {error, cutting, proof, points};
 }
@@ -196,12 +228,14 @@ std::string json_of(const job::Job& job, const page::PageTable& table) {
 }
 
 /// The report page of the job as it stands, its own gouge tolerance and all, the plots of the study among its sections.
-Result<std::string> report_page_text(const job::Job& job, app::OutputDir& output, bool quiet, const std::vector<svg::LineChart>& charts) {
+Result<std::string> report_page_text(const job::Job& job, app::OutputDir& output, bool quiet,
+                                     const std::vector<svg::LineChart>& charts) {
   auto own = flow::run_stages(job, process::proof_limits(job), output, quiet, {}, true);
   if (!own.errors.empty()) return own.errors.front();
   assert(own.page);
   own.page->work_precision = charts;
-  own.page->warnings.emplace_back("this page belongs to a study: its program was measured and not kept; `toothpath run` writes it");
+  own.page->warnings.emplace_back(
+      "this page belongs to a study: its program was measured and not kept; `toothpath run` writes it");
   return render_report_page(*own.page);
 }
 
@@ -227,30 +261,39 @@ commands::CommandOutcome study_work_precision(const WorkPrecisionRequest& reques
   auto read = job::read_job_file(request.job_file);
   if (auto* errors = read.refused()) return commands::failed(std::move(*errors));
   const job::Job& job = read.value();
-  if (!job.face_gear()) return commands::failed(process::needs_face_gear(job));  // its tolerances are those of ball mills
+  if (!job.face_gear())
+    return commands::failed(process::needs_face_gear(job));  // its tolerances are those of ball mills
 
   std::vector<StudyRun> runs;
-  if (auto refused = add_run(job, {"job", false, false, false}, "job", 1, *output, request.quiet, runs); !refused.empty()) return commands::failed(std::move(refused));
+  if (auto refused = add_run(job, {"job", false, false, false}, "job", 1, *output, request.quiet, runs);
+      !refused.empty())
+    return commands::failed(std::move(refused));
   for (const Sweep& sweep : kSweeps)
     for (const double factor : kFactors) {
       const bool inner = factor > 0.2 && factor < 5, diagonal = sweep.chord && sweep.proof;
       if (request.quick && (inner || diagonal)) continue;
-      if (auto failure = add_run(job, sweep, sweep.name, factor, *output, request.quiet, runs); !failure.empty()) return commands::failed(std::move(failure));
+      if (auto failure = add_run(job, sweep, sweep.name, factor, *output, request.quiet, runs); !failure.empty())
+        return commands::failed(std::move(failure));
     }
 
   const page::PageTable table = table_of(runs);
   page::StudyPage page;
   page.title = "Error against run time";
-  page.subtitle = fmt::format("{}: chord {} um, scallop {} um, verification {} um at factor 1", job.name, um_text(runs[0].chord_mm), um_text(runs[0].scallop_mm), um_text(runs[0].proof_mm));
+  page.subtitle = fmt::format("{}: chord {} um, scallop {} um, verification {} um at factor 1", job.name,
+                              um_text(runs[0].chord_mm), um_text(runs[0].scallop_mm), um_text(runs[0].proof_mm));
   page.good = runs[0].report.verified;
   page.verdict = page.good ? "job verified" : "job not verified";
   page.introduction = {
-      "Every row is one whole run of the job: planning, gouge check, axis motion, NC text, reading it back, proof and cut surface. The first row is the job "
-      "as it stands; in the others one tolerance, or all of them together, is multiplied by a factor between 0.1 and 10.",
-      "worst and rms: deviation of the finished surface from the exact one, measured on the program as read back, over all points that the finishing ball "
-      "can reach. gouge and its bound: the deepest cut below the finished surface over all operations, measured and proven.",
-      fmt::format("So that coarse settings are measured and not refused, the gouge tolerance of a run is lifted to {:g} chord tolerances where that is more; "
-                  "\"verified\" is the verdict with the job's own tolerance of {:.4f} mm.", kGougePerChord, job.verify.gouge_tolerance_mm)};
+      "Every row is one whole run of the job: planning, gouge check, axis motion, NC text, reading it back, proof and "
+      "cut surface. The first row is the job as it stands; in the others one tolerance, or all of them together, is "
+      "multiplied by a factor between 0.1 and 10.",
+      "worst and rms: deviation of the finished surface from the exact one, measured on the program as read back, over "
+      "all points that the finishing ball can reach. gouge and its bound: the deepest cut below the finished surface "
+      "over all operations, measured and proven.",
+      fmt::format(
+          "So that coarse settings are measured and not refused, the gouge tolerance of a run is lifted to {:g} chord "
+          "tolerances where that is more; \"verified\" is the verdict with the job's own tolerance of {:.4f} mm.",
+          kGougePerChord, job.verify.gouge_tolerance_mm)};
   page.charts = charts_of(runs, job.verify.gouge_tolerance_mm);
   page.tables = {table};
 
@@ -259,10 +302,10 @@ commands::CommandOutcome study_work_precision(const WorkPrecisionRequest& reques
   auto report = report_page_text(job, *output, request.quiet, page.charts);
   if (!report) return commands::failed(report.error());
   const process::NamedFiles files = {{"report.html", std::move(*report)},
-                            {"work_precision.csv", page::table_csv(table)},
-                            {"work_precision.svg", page::standalone_svg(page.charts.front())},
-                            {"work_precision.html", page::study_page_html(page)},
-                            {"work_precision.json", outcome.report_json}};
+                                     {"work_precision.csv", page::table_csv(table)},
+                                     {"work_precision.svg", page::standalone_svg(page.charts.front())},
+                                     {"work_precision.html", page::study_page_html(page)},
+                                     {"work_precision.json", outcome.report_json}};
   outcome.summary = screen_table(table);
   return process::finished(*output, files, std::move(outcome));
 }

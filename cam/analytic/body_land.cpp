@@ -1,14 +1,12 @@
-// The top land of `BodyPatches`: the tip surface between the two tip edges of tooth 0, which are solved at every radius.
+// The top land of `BodyPatches`: the tip surface between the two tip edges of tooth 0, which are solved at every
+// radius.
 #include <algorithm>
 #include <cmath>
 
 #include "cam/analytic/body_patches.h"
 
 namespace toothpath::analytic {
-namespace {
-
-
-}  // namespace
+namespace {}  // namespace
 
 double BodyPatches::edge_azimuth(int which, double r) const {
   const auto& t = ring_.table_r;
@@ -55,10 +53,14 @@ PatchBend BodyPatches::land_bend(double r_from, double r_to) {
   if (proven && edge[0] && edge[1]) {
     // p = (r cos A, r sin A, z(r)) with A = m + s w, w = plus - minus.
     const Interval r(r_from, r_to), w = azimuth[0] - azimuth[1], w1 = edge[0]->slope - edge[1]->slope;
-    const Interval A = hull(azimuth[0], azimuth[1]), A1 = hull(edge[0]->slope, edge[1]->slope), A2 = hull(edge[0]->bend, edge[1]->bend);
+    const Interval A = hull(azimuth[0], azimuth[1]), A1 = hull(edge[0]->slope, edge[1]->slope),
+                   A2 = hull(edge[0]->bend, edge[1]->bend);
     const Interval c = cos(A), s = sin(A), z2 = bounds_.tip_surface_bend(r_from, r_to);
-    const auto placed = [&](const Interval& out, const Interval& side, const Interval& z) { return std::array<Interval, 3>{out * c - side * s, out * s + side * c, z}; };
-    const std::array<std::array<Interval, 3>, 3> second{placed(-r * w * w, 0.0, 0.0), placed(-r * w * A1, w + r * w1, 0.0),
+    const auto placed = [&](const Interval& out, const Interval& side, const Interval& z) {
+      return std::array<Interval, 3>{out * c - side * s, out * s + side * c, z};
+    };
+    const std::array<std::array<Interval, 3>, 3> second{placed(-r * w * w, 0.0, 0.0),
+                                                        placed(-r * w * A1, w + r * w1, 0.0),
                                                         placed(-r * A1 * A1, Interval(2) * A1 + r * A2, z2)};
     if (const auto bend = PatchBend::of(second)) return *bend;
   }
@@ -66,9 +68,12 @@ PatchBend BodyPatches::land_bend(double r_from, double r_to) {
   PatchBend bend;
   const double h = 0.5 * (r_to - r_from), r = 0.5 * (r_from + r_to);
   for (const double s : {0.0, 0.5, 1.0}) {
-    bend.spread_bb = std::max(bend.spread_bb, kSampleDoubt * (land(s, r - h) - 2 * land(s, r) + land(s, r + h)).norm() / (h * h));
+    bend.spread_bb =
+        std::max(bend.spread_bb, kSampleDoubt * (land(s, r - h) - 2 * land(s, r) + land(s, r + h)).norm() / (h * h));
     bend.spread_aa = std::max(bend.spread_aa, kSampleDoubt * 4 * (land(0, r) - 2 * land(0.5, r) + land(1, r)).norm());
-    bend.spread_ab = std::max(bend.spread_ab, kSampleDoubt * (land(1, r + h) - land(1, r - h) - land(0, r + h) + land(0, r - h)).norm() / (2 * h));
+    bend.spread_ab =
+        std::max(bend.spread_ab,
+                 kSampleDoubt * (land(1, r + h) - land(1, r - h) - land(0, r + h) + land(0, r - h)).norm() / (2 * h));
   }
   return bend;
 }

@@ -9,10 +9,10 @@
 namespace toothpath::analytic {
 namespace {
 
-constexpr double kStands = 1e-9;       // mm: a place this far beyond a border still counts
-constexpr double kPlainSag = 0.005;    // mm: cells whose bound is larger are looked at more closely
-constexpr int kClosest = 3;            // halvings each way for that
-constexpr int kSteps = 8;              // of Newton back to a border
+constexpr double kStands = 1e-9;     // mm: a place this far beyond a border still counts
+constexpr double kPlainSag = 0.005;  // mm: cells whose bound is larger are looked at more closely
+constexpr int kClosest = 3;          // halvings each way for that
+constexpr int kSteps = 8;            // of Newton back to a border
 
 /// Extent of the parameters of a quad.
 Vec2 extent(const BodyQuad& q) {
@@ -54,7 +54,8 @@ const char* to_string(BodySurface surface) {
   return "";
 }
 
-BodyPatches::BodyPatches(const face_gear::FaceGearParameters& gear, const face_gear::SpaceSheet& space, BodyRing ring, std::size_t cells)
+BodyPatches::BodyPatches(const face_gear::FaceGearParameters& gear, const face_gear::SpaceSheet& space, BodyRing ring,
+                         std::size_t cells)
     : space_(space), bounds_(gear, space), ring_(std::move(ring)), cells_(cells) {}
 
 const char* BodyPatches::name(std::size_t index) const {
@@ -122,7 +123,8 @@ PatchBend BodyPatches::sheet_bend(const Block& block, double half_a, double half
   return bend;
 }
 
-void BodyPatches::add(std::size_t index, BodySurface surface, const Vec2& low, const Vec2& high, const std::array<Vec3, 4>& found_by) {
+void BodyPatches::add(std::size_t index, BodySurface surface, const Vec2& low, const Vec2& high,
+                      const std::array<Vec3, 4>& found_by) {
   Cell cell;
   cell.surface = surface;
   if (surface == BodySurface::land) {
@@ -152,8 +154,8 @@ void BodyPatches::keep(std::size_t index, Cell cell) {
   search_margin_ = std::max(search_margin_, kept.sag);
 }
 
-/// Where the parameters of a cell bend its quad far along the surface, its halves tell better how far that leaves the hull of the corners: by
-/// their own sag, and by as much as their corners leave it.
+/// Where the parameters of a cell bend its quad far along the surface, its halves tell better how far that leaves the
+/// hull of the corners: by their own sag, and by as much as their corners leave it.
 double BodyPatches::cell_sag(std::size_t index) const {
   const BodyQuad& whole = cells_[index].quad;
   const double plain = sag(index, whole);
@@ -204,13 +206,14 @@ BodyQuad BodyPatches::made(const Cell& cell, const std::array<Vec2, 4>& at) cons
   return q;
 }
 
-/// The straight line between the ends of a stretch of the border, raised so that the stretch lies below it, and lowered where it is the lower
-/// side of a quad; a stretch that leaves its azimuths is held by a rectangle.
+/// The straight line between the ends of a stretch of the border, raised so that the stretch lies below it, and lowered
+/// where it is the lower side of a quad; a stretch that leaves its azimuths is held by a rectangle.
 BodyQuad BodyPatches::end_quad(const Cell& cell, const std::array<Vec2, 4>& at) const {
   const std::size_t n = cell.surface == BodySurface::outer_end ? 1 : 0;
   const double r = n == 1 ? ring_.r_out : ring_.r_in, sag = ring_.border_sag[n], z_tip = space_.surface().z_tip(r);
   auto s = border_stretch(ring_.border[n], at[0].x(), at[1].x());
-  const bool turns_back = s.least_azimuth < std::min(s.from.x(), s.to.x()) || s.most_azimuth > std::max(s.from.x(), s.to.x());
+  const bool turns_back =
+      s.least_azimuth < std::min(s.from.x(), s.to.x()) || s.most_azimuth > std::max(s.from.x(), s.to.x());
   if (turns_back) {
     const double high = std::max(s.from.y(), s.to.y()) + s.above, low = std::min(s.from.y(), s.to.y()) - s.below;
     s.from = {s.least_azimuth, high};
@@ -224,15 +227,16 @@ BodyQuad BodyPatches::end_quad(const Cell& cell, const std::array<Vec2, 4>& at) 
   };
   BodyQuad q;
   q.at = at;
-  q.corner = {place(s.from, at[0].y(), -s.below - sag), place(s.to, at[0].y(), -s.below - sag), place(s.to, at[2].y(), s.above + sag),
-              place(s.from, at[2].y(), s.above + sag)};
+  q.corner = {place(s.from, at[0].y(), -s.below - sag), place(s.to, at[0].y(), -s.below - sag),
+              place(s.to, at[2].y(), s.above + sag), place(s.from, at[2].y(), s.above + sag)};
   return q;
 }
 
 std::array<BodyQuad, 2> BodyPatches::halved(std::size_t index, const BodyQuad& q) const {
-  const auto &c = q.corner;
-  const bool across = (c[1] - c[0]).squaredNorm() + (c[2] - c[3]).squaredNorm() >= (c[3] - c[0]).squaredNorm() + (c[2] - c[1]).squaredNorm();
-  const auto &x = q.at;
+  const auto& c = q.corner;
+  const bool across = (c[1] - c[0]).squaredNorm() + (c[2] - c[3]).squaredNorm() >=
+                      (c[3] - c[0]).squaredNorm() + (c[2] - c[1]).squaredNorm();
+  const auto& x = q.at;
   std::array<std::array<Vec2, 4>, 2> at;
   std::array<std::array<int, 4>, 2> old;  // corners that stay, and -1
   if (across) {
@@ -250,7 +254,8 @@ std::array<BodyQuad, 2> BodyPatches::halved(std::size_t index, const BodyQuad& q
   out[0].at = at[0];
   out[1].at = at[1];
   // Both halves share the two new corners.
-  const BodyQuad fresh = made(cell, across ? std::array<Vec2, 4>{at[0][1], at[0][2], at[0][1], at[0][2]} : std::array<Vec2, 4>{at[0][3], at[0][2], at[0][3], at[0][2]});
+  const BodyQuad fresh = made(cell, across ? std::array<Vec2, 4>{at[0][1], at[0][2], at[0][1], at[0][2]}
+                                           : std::array<Vec2, 4>{at[0][3], at[0][2], at[0][3], at[0][2]});
   for (std::size_t n = 0; n < 2; ++n)
     for (std::size_t k = 0; k < 4; ++k) {
       const int kept = old[n][k];
@@ -307,7 +312,8 @@ std::optional<Vec3> BodyPatches::settled(std::size_t index, const Vec2& at) cons
     case BodySurface::outer_end: {
       const std::size_t n = cell.surface == BodySurface::outer_end ? 1 : 0;
       const Vec2 top = border_place(ring_.border[n], at.x());
-      return on_cylinder(n == 1 ? ring_.r_out : ring_.r_in, top.x(), ring_.base_mm + at.y() * (top.y() - ring_.base_mm));
+      return on_cylinder(n == 1 ? ring_.r_out : ring_.r_in, top.x(),
+                         ring_.base_mm + at.y() * (top.y() - ring_.base_mm));
     }
     case BodySurface::sheet: break;
   }
@@ -327,7 +333,8 @@ std::optional<Vec3> BodyPatches::settled_sheet(const Block& block, Vec2 uv) cons
     const auto d = space_.at(piece, uv.x(), uv.y());
     if (!d) return {};
     const double r = std::hypot(d->p.x(), d->p.y());
-    const double ru = (d->p.x() * d->pu.x() + d->p.y() * d->pu.y()) / r, rv = (d->p.x() * d->pv.x() + d->p.y() * d->pv.y()) / r;
+    const double ru = (d->p.x() * d->pu.x() + d->p.y() * d->pu.y()) / r,
+                 rv = (d->p.x() * d->pv.x() + d->p.y() * d->pv.y()) / r;
     if (std::abs(lack.y()) < 1e-10) {
       uv.y() += lack.x() / rv;
     } else {  // to the tip edge, at the radius where it stands or at the end
@@ -339,7 +346,12 @@ std::optional<Vec3> BodyPatches::settled_sheet(const Block& block, Vec2 uv) cons
   if (!q || lacks(q->p).cwiseAbs().maxCoeff() > 1e-7) return {};
   const auto& w = space_.surface().shaper;
   const bool flank = piece == face_gear::SpacePiece::flank_plus || piece == face_gear::SpacePiece::flank_minus;
-  const double low = flank ? -INFINITY : piece == face_gear::SpacePiece::root ? 0 : w.A_t, high = flank ? w.theta_t : piece == face_gear::SpacePiece::root ? 1 : w.A_e;
+  const double low = flank                                  ? -INFINITY
+                     : piece == face_gear::SpacePiece::root ? 0
+                                                            : w.A_t,
+               high = flank                                  ? w.theta_t
+                      : piece == face_gear::SpacePiece::root ? 1
+                                                             : w.A_e;
   if (uv.x() < low - kStands || uv.x() > high + kStands) return {};
   return q->p;
 }

@@ -1,9 +1,10 @@
-// The surface of one ring, piece by piece, as shank and holder see it: quads in the parameters of the exact patches that can be halved
-// without end. The hull of a quad's corners holds its piece of the surface up to a proven sag, which shrinks with the square of the quad;
-// every place that is told lies on the surface itself.
+// The surface of one ring, piece by piece, as shank and holder see it: quads in the parameters of the exact patches
+// that can be halved without end. The hull of a quad's corners holds its piece of the surface up to a proven sag, which
+// shrinks with the square of the quad; every place that is told lies on the surface itself.
 //
-// Sheet: the analytic patches, bent as cam/analytic/patch_bounds.h proves, cut off at the tip surface and the ends. Land: between the two tip edges of
-// tooth 0, whose azimuths are solved at every radius. Ends: cylinders below the profile of the sheet. Groove floor: a plane.
+// Sheet: the analytic patches, bent as cam/analytic/patch_bounds.h proves, cut off at the tip surface and the ends.
+// Land: between the two tip edges of tooth 0, whose azimuths are solved at every radius. Ends: cylinders below the
+// profile of the sheet. Groove floor: a plane.
 #pragma once
 
 #include <array>
@@ -20,8 +21,9 @@ namespace toothpath::analytic {
 enum class BodySurface : std::uint8_t { sheet, land, inner_end, outer_end, floor };
 [[nodiscard]] const char* to_string(BodySurface surface);
 
-/// A quad of a cell. Parameters: sheet: coordinates of the frame of its block; land: (share from the minus to the plus edge, radius); ends:
-/// (index on the border, share of the height); floor: (azimuth, radius). Corners run around the quad.
+/// A quad of a cell. Parameters: sheet: coordinates of the frame of its block; land: (share from the minus to the plus
+/// edge, radius); ends: (index on the border, share of the height); floor: (azimuth, radius). Corners run around the
+/// quad.
 struct BodyQuad {
   std::array<Vec2, 4> at;
   std::array<Vec3, 4> corner;    ///< places of space 0 whose hull holds the quad's piece up to its sag
@@ -40,11 +42,13 @@ struct BodyRing {
   double base_mm = 0;   ///< lower border of the end faces
   double floor_mm = 0;  ///< height of the groove floor
   std::vector<double> table_r;
-  std::array<std::vector<std::optional<face_gear::TipPlace>>, 2> tip;  ///< plus and minus edge of tooth 0 over `table_r`
-  std::array<std::vector<std::optional<CurveBend>>, 2> tip_bend;  ///< of their azimuths, from place to place; none: not proven
-  std::array<std::vector<double>, 2> edge;                  ///< their azimuths, also where there is no such place
-  std::array<std::vector<Vec2>, 2> border;                  ///< of the inner and the outer end, `end_border`
-  std::array<double, 2> border_sag{};                       ///< how far the surface may leave the border between its points
+  std::array<std::vector<std::optional<face_gear::TipPlace>>, 2>
+      tip;  ///< plus and minus edge of tooth 0 over `table_r`
+  std::array<std::vector<std::optional<CurveBend>>, 2>
+      tip_bend;                             ///< of their azimuths, from place to place; none: not proven
+  std::array<std::vector<double>, 2> edge;  ///< their azimuths, also where there is no such place
+  std::array<std::vector<Vec2>, 2> border;  ///< of the inner and the outer end, `end_border`
+  std::array<double, 2> border_sag{};       ///< how far the surface may leave the border between its points
 };
 
 class BodyPatches {
@@ -55,13 +59,15 @@ class BodyPatches {
     std::array<Vec3, 4> corner;
   };
 
-  BodyPatches(const face_gear::FaceGearParameters& gear, const face_gear::SpaceSheet& space, BodyRing ring, std::size_t cells);
+  BodyPatches(const face_gear::FaceGearParameters& gear, const face_gear::SpaceSheet& space, BodyRing ring,
+              std::size_t cells);
 
   /// Cells of one piece that lie beside each other and share the bound of their second derivatives.
   void add_block(face_gear::SpacePiece piece, const std::vector<SheetCell>& cells);
-  /// A cell of another surface, from the low and high ends of its parameters. `found_by`: the corners by which a search finds it, along both
-  /// parameters: (low, low), (high, low), (low, high), (high, high).
-  void add(std::size_t index, BodySurface surface, const Vec2& low, const Vec2& high, const std::array<Vec3, 4>& found_by);
+  /// A cell of another surface, from the low and high ends of its parameters. `found_by`: the corners by which a search
+  /// finds it, along both parameters: (low, low), (high, low), (low, high), (high, high).
+  void add(std::size_t index, BodySurface surface, const Vec2& low, const Vec2& high,
+           const std::array<Vec3, 4>& found_by);
 
   [[nodiscard]] const BodyQuad& quad(std::size_t cell) const { return cells_[cell].quad; }
   /// How far the cell's piece of the surface may leave the hull of its quad's corners. mm, proven as `above` is
@@ -79,7 +85,8 @@ class BodyPatches {
   /// The most by which the hull can lie above the surface along a unit vector g, and in any direction. mm
   [[nodiscard]] double above(std::size_t cell, const BodyQuad& quad, const Vec3& g) const;
   [[nodiscard]] double sag(std::size_t cell, const BodyQuad& quad) const;
-  /// The place of the surface at some parameters; those of the sheet beyond the tip or an end are moved back to that border.
+  /// The place of the surface at some parameters; those of the sheet beyond the tip or an end are moved back to that
+  /// border.
   [[nodiscard]] std::optional<Vec3> settled(std::size_t cell, const Vec2& at) const;
 
   /// Blocks whose bound is sampled, not proven: those of a corrected ring, and where interval arithmetic finds none.

@@ -13,17 +13,16 @@
 namespace toothpath::analytic {
 namespace {
 
-constexpr double kWreckDepth = 0.05;     // mm: deeper cuts are followed more coarsely
+constexpr double kWreckDepth = 0.05;    // mm: deeper cuts are followed more coarsely
 constexpr double kSmallestQuad = 1e-5;  // mm: smaller quads are not halved
 constexpr std::size_t kMostPieces = 200000;
-constexpr int kTeeth = 1 << 20;       // a gear has fewer
+constexpr int kTeeth = 1 << 20;  // a gear has fewer
 constexpr double kRoundOff = 1 + 1e-9;
-constexpr int kTangents = 8;     // planes by which a touching body is brought near to a hull
-constexpr int kSecants = 4;      // of the way to each
-constexpr double kFlat = 0.02;   // share of the first slope at which a way ends
+constexpr int kTangents = 8;          // planes by which a touching body is brought near to a hull
+constexpr int kSecants = 4;           // of the way to each
+constexpr double kFlat = 0.02;        // share of the first slope at which a way ends
 constexpr double kTimeMatters = 0.1;  // of the contact's proof
-constexpr double kLongWay = 4;   // sizes of a quad that it may pass by undivided
-
+constexpr double kLongWay = 4;        // sizes of a quad that it may pass by undivided
 
 /// A quad of the part during a stretch of the motion.
 struct Piece {
@@ -41,8 +40,12 @@ struct Target {
   Vec3 at = Vec3::Zero();  ///< in space 0
   double height = 0;       ///< above the tip
 
-  [[nodiscard]] Vec3 placed(const Vec3& p) const { return {cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y(), p.z()}; }
-  [[nodiscard]] Vec3 back(const Vec3& p) const { return {cosine * p.x() + sine * p.y(), cosine * p.y() - sine * p.x(), p.z()}; }
+  [[nodiscard]] Vec3 placed(const Vec3& p) const {
+    return {cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y(), p.z()};
+  }
+  [[nodiscard]] Vec3 back(const Vec3& p) const {
+    return {cosine * p.x() + sine * p.y(), cosine * p.y() - sine * p.x(), p.z()};
+  }
 };
 
 /// The frame of the tool at one moment: two directions across the axis, and the axis.
@@ -57,8 +60,15 @@ struct View {
 
 class Sweep {
  public:
-  Sweep(const GearDistance& part, const tool::RoundedFrustum& body, const path::ToolMotion& m, const SweptGapOptions& options)
-      : part_(part), body_(body), f_(body.core), m_(m), o_(options), widest_(body.widest()), arm_(std::hypot(body.core.to + body.round, widest_)) {
+  Sweep(const GearDistance& part, const tool::RoundedFrustum& body, const path::ToolMotion& m,
+        const SweptGapOptions& options)
+      : part_(part),
+        body_(body),
+        f_(body.core),
+        m_(m),
+        o_(options),
+        widest_(body.widest()),
+        arm_(std::hypot(body.core.to + body.round, widest_)) {
     const Vec3 cross = m.axis_from.cross(m.axis_to);
     turns_ = m.axis_from != m.axis_to;
     normal_ = cross.norm() > 0 ? Vec3(cross.normalized()) : Vec3(m.axis_from.unitOrthogonal());
@@ -91,7 +101,8 @@ class Sweep {
  private:
   /// Lowest height of the body over the whole motion.
   [[nodiscard]] double least_height() const {
-    const double ends = std::min(tool::lowest_z(body_, m_.tip_from, m_.axis_from), tool::lowest_z(body_, m_.tip_to, m_.axis_to));
+    const double ends =
+        std::min(tool::lowest_z(body_, m_.tip_from, m_.axis_from), tool::lowest_z(body_, m_.tip_to, m_.axis_to));
     return ends - arm_ * ((m_.axis_to - m_.axis_from).norm() + m_.axis_deviation) - m_.deviation_mm;
   }
   [[nodiscard]] View view(double t) const {
@@ -99,15 +110,19 @@ class Sweep {
     const Vec3 a = path::axis_at(m_, t);
     return {path::tip_at(m_, t), normal_, a.cross(normal_), a};
   }
-  /// What a place at distance `arm` from the tip may leave of the straight line between its two places, seen from the tool.
+  /// What a place at distance `arm` from the tip may leave of the straight line between its two places, seen from the
+  /// tool.
   [[nodiscard]] double slack(double arm, double dt) const {
     const double T = turn_rate_;
-    return m_.deviation_mm + m_.axis_deviation * arm + (T * T * std::sqrt(1 + T * T) * arm + 2 * T * travel_) * dt * dt / 8;
+    return m_.deviation_mm + m_.axis_deviation * arm +
+           (T * T * std::sqrt(1 + T * T) * arm + 2 * T * travel_) * dt * dt / 8;
   }
 
   /// Largest radius between two heights.
   [[nodiscard]] double widest_between(double low, double high) const {
-    const auto at = [&](double h) { return f_.radius_from + std::clamp((h - f_.from) / (f_.to - f_.from), 0.0, 1.0) * (f_.radius_to - f_.radius_from); };
+    const auto at = [&](double h) {
+      return f_.radius_from + std::clamp((h - f_.from) / (f_.to - f_.from), 0.0, 1.0) * (f_.radius_to - f_.radius_from);
+    };
     return std::max(at(low - body_.round), at(high + body_.round)) + body_.round;
   }
 
@@ -122,7 +137,8 @@ class Sweep {
     for (int zone = 0; zone < part_.zones(); ++zone) {
       const auto& ring = part_.space(zone).ring().zone;
       const double beyond = enough + 0.5 * way / parts + part_.patches(zone).search_margin();
-      const double end = zone + 1 < part_.zones() ? part_.space(zone + 1).ring().zone.inner_radius_mm : ring.outer_radius_mm;
+      const double end =
+          zone + 1 < part_.zones() ? part_.space(zone + 1).ring().zone.inner_radius_mm : ring.outer_radius_mm;
       for (int q = 0; q < parts; ++q)
         for (int k = 0; k < links; ++k) {
           const double widest = o_.touching ? widest_between(low + 2 * k * half, low + (2 * k + 2) * half) : widest_;
@@ -131,8 +147,10 @@ class Sweep {
           if (x.z() - reach > part_.gear().blank_top()) continue;
           const double r = std::hypot(x.x(), x.y());
           if (r + reach < ring.inner_radius_mm || r - reach > end) continue;
-          const double azimuth = std::remainder(std::atan2(x.y(), x.x()) - part_.space_azimuth(zone, std::max(r, 1.0)), kTwoPi);
-          const int index = int(std::lround(azimuth / pitch)), wide = 1 + int(std::ceil(reach / (pitch * ring.inner_radius_mm)));
+          const double azimuth =
+              std::remainder(std::atan2(x.y(), x.x()) - part_.space_azimuth(zone, std::max(r, 1.0)), kTwoPi);
+          const int index = int(std::lround(azimuth / pitch)),
+                    wide = 1 + int(std::ceil(reach / (pitch * ring.inner_radius_mm)));
           for (int tooth = index - wide; tooth <= index + wide; ++tooth)
             part_.cell_index(zone).near(turned(x, -tooth * pitch), reach, [&](std::size_t c, double radius) {
               keys.push_back(std::uint64_t(zone) << 56 | std::uint64_t(tooth + kTeeth) << 32 | c);
@@ -153,7 +171,8 @@ class Sweep {
     Target cell{-1, 0, 0, 1, 0};
     for (const auto& key : near_cells(enough)) {
       const int zone = int(key >> 56), tooth = int(key >> 32 & 0xffffff) - kTeeth;
-      if (zone != cell.zone || tooth != cell.tooth) cell = {zone, tooth, 0, std::cos(tooth * pitch), std::sin(tooth * pitch)};
+      if (zone != cell.zone || tooth != cell.tooth)
+        cell = {zone, tooth, 0, std::cos(tooth * pitch), std::sin(tooth * pitch)};
       cell.cell = std::size_t(key & 0xffffffff);
       const auto& patches = part_.patches(zone);
       const Vec3 c = cell.placed(patches.centre(cell.cell)), a = first(c), b = last(c);
@@ -231,9 +250,11 @@ class Sweep {
   /// Shares of the corners in a place of the hull.
   using Shares = std::array<double, 2 * std::tuple_size_v<decltype(BodyHull::corner)>>;
 
-  /// Nearer to where the body comes nearest to the hull (Frank and Wolfe: towards the corner that lies deepest under the tangent, as far as the
-  /// distance falls), until the plane there bounds enough, or nothing could. The best plane met; `shares` of the last place.
-  [[nodiscard]] Tangent nearest_tangent(const Seen& s, const Tangent& first, double enough, Tangent& last, Shares& shares) const {
+  /// Nearer to where the body comes nearest to the hull (Frank and Wolfe: towards the corner that lies deepest under
+  /// the tangent, as far as the distance falls), until the plane there bounds enough, or nothing could. The best plane
+  /// met; `shares` of the last place.
+  [[nodiscard]] Tangent nearest_tangent(const Seen& s, const Tangent& first, double enough, Tangent& last,
+                                        Shares& shares) const {
     Tangent best = first;
     last = first;
     for (std::size_t k = 0; k < s.count(); ++k) shares[k] = 1.0 / double(s.count());
@@ -290,29 +311,35 @@ class Sweep {
       const double sag = turns_ ? patches.sag(target.cell, piece.quad) : 0, lost = slack(s.arm + sag, dt);
       double over = above(piece, target, middle.gradient), least = middle.least(over, lost);
       const double fixed = m_.deviation_mm + m_.axis_deviation * s.arm;
-      if (o_.touching && least < std::min(best_, o_.enough_mm)) least = std::max(least, touched(piece, target, s, middle, over, lost, fixed));
+      if (o_.touching && least < std::min(best_, o_.enough_mm))
+        least = std::max(least, touched(piece, target, s, middle, over, lost, fixed));
       if (least >= std::min(best_, o_.enough_mm)) {
         proven_ = std::min(proven_, least);
         continue;
       }
-      for (std::size_t k = 0; k < s.count(); ++k) look(target, patches, s.hull.corner[k / 2], s.x[k], k % 2 == 0 ? s.from : s.to);
+      for (std::size_t k = 0; k < s.count(); ++k)
+        look(target, patches, s.hull.corner[k / 2], s.x[k], k % 2 == 0 ? s.from : s.to);
       if (best_ < -std::max(0.25, 0.1 * widest_)) {
         proven_ = -widest_;  // no place lies deeper in a body than its radius
         return;
       }
       double size = 0;
-      for (std::size_t k = 0; k < 4; ++k) size = std::max(size, (piece.quad.corner[k] - piece.quad.corner[(k + 1) % 4]).norm());
-      if (least + fixed >= best_ - leeway(std::min(best_, least + fixed)) || least + fixed >= o_.settled_mm || std::max(size, s.moved) < kSmallestQuad ||
-          ++examined_ > kMostPieces || !std::isfinite(least)) {
+      for (std::size_t k = 0; k < 4; ++k)
+        size = std::max(size, (piece.quad.corner[k] - piece.quad.corner[(k + 1) % 4]).norm());
+      if (least + fixed >= best_ - leeway(std::min(best_, least + fixed)) || least + fixed >= o_.settled_mm ||
+          std::max(size, s.moved) < kSmallestQuad || ++examined_ > kMostPieces || !std::isfinite(least)) {
         proven_ = std::min(proven_, std::isfinite(least) ? least : -widest_);
         continue;
       }
-      halve(piece, patches, target.cell, o_.touching ? in_time(piece, s, size, over) : s.moved + dt * turn_rate_ * s.arm > size);
+      halve(piece, patches, target.cell,
+            o_.touching ? in_time(piece, s, size, over) : s.moved + dt * turn_rate_ * s.arm > size);
     }
   }
 
-  /// The bound of a piece by planes where the body comes nearest, and what is found there. @param over what the surface leaves along the first plane
-  double touched(const Piece& piece, Target& target, const Seen& s, const Tangent& middle, double& over, double lost, double fixed) {
+  /// The bound of a piece by planes where the body comes nearest, and what is found there. @param over what the surface
+  /// leaves along the first plane
+  double touched(const Piece& piece, Target& target, const Seen& s, const Tangent& middle, double& over, double lost,
+                 double fixed) {
     const double wanted = std::min(best_ - leeway(best_), o_.settled_mm) - fixed;
     Tangent last;
     Shares shares{};
@@ -336,8 +363,9 @@ class Sweep {
     note(target, tool::rounded_distance(x, body_), *p, x.z());
   }
 
-  /// Is time halved, or the quad? Time where the arc of the axis or the turn between the corners loses more than the bend of the surface, and enough to
-  /// matter; and where the quad passes by far. What else a bound lacks, corners beyond the ring or a plane that is not the best, goes with the quad.
+  /// Is time halved, or the quad? Time where the arc of the axis or the turn between the corners loses more than the
+  /// bend of the surface, and enough to matter; and where the quad passes by far. What else a bound lacks, corners
+  /// beyond the ring or a plane that is not the best, goes with the quad.
   [[nodiscard]] bool in_time(const Piece& piece, const Seen& s, double size, double over) const {
     const double dt = piece.t1 - piece.t0, arcs = slack(s.arm, dt) - m_.deviation_mm - m_.axis_deviation * s.arm;
     const double twist = 0.25 * dt * turn_rate_ * size;  // between the corners, out of one plane
@@ -387,11 +415,13 @@ class Sweep {
 
 }  // namespace
 
-SweptGap swept_gap(const GearDistance& part, const tool::RoundedFrustum& body, const path::ToolMotion& motion, const SweptGapOptions& options) {
+SweptGap swept_gap(const GearDistance& part, const tool::RoundedFrustum& body, const path::ToolMotion& motion,
+                   const SweptGapOptions& options) {
   return Sweep(part, body, motion, options).run();
 }
 
-SweptGap swept_gap(const GearDistance& part, const tool::Frustum& body, const path::ToolMotion& motion, const SweptGapOptions& options) {
+SweptGap swept_gap(const GearDistance& part, const tool::Frustum& body, const path::ToolMotion& motion,
+                   const SweptGapOptions& options) {
   return swept_gap(part, tool::RoundedFrustum{body, 0}, motion, options);
 }
 

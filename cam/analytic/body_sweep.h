@@ -1,22 +1,23 @@
-// Shank and holder along their motions: the least gap to the part that was found, and the gap that is proven for every moment
-// between the blocks.
+// Shank and holder along their motions: the least gap to the part that was found, and the gap that is proven for every
+// moment between the blocks.
 //
-// The signed distance to a convex body is a convex function. Seen from the tool, a quad of the part that moves past lies in the hull of
-// its corners at both ends of the motion, up to the sag of its patch and the arc of an axis that turns; a tangent plane of the
-// distance at any point of the hull therefore bounds the gap of the whole quad over the whole motion. Quads and motions are halved, the
-// quads on their exact patches, until the bound is close to what was found. Every gap that is told is that of a place of the surface.
+// The signed distance to a convex body is a convex function. Seen from the tool, a quad of the part that moves past
+// lies in the hull of its corners at both ends of the motion, up to the sag of its patch and the arc of an axis that
+// turns; a tangent plane of the distance at any point of the hull therefore bounds the gap of the whole quad over the
+// whole motion. Quads and motions are halved, the quads on their exact patches, until the bound is close to what was
+// found. Every gap that is told is that of a place of the surface.
 //
-// A body that is meant to touch is asked for with `touching`: the tangent plane is then laid where the body comes nearest to the hull, so that its
-// roundness costs nothing, and the place of the surface there tells what is found.
+// A body that is meant to touch is asked for with `touching`: the tangent plane is then laid where the body comes
+// nearest to the hull, so that its roundness costs nothing, and the place of the surface there tells what is found.
 #pragma once
 
 #include <cmath>
 #include <cstddef>
 
-#include "cam/tool/rounded_frustum.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/path/tool_motion.h"
 #include "cam/proof/limits.h"
+#include "cam/tool/rounded_frustum.h"
 
 namespace toothpath::analytic {
 
@@ -31,16 +32,19 @@ struct SweptGap {
 };
 
 struct SweptGapOptions {
-  double enough_mm = 0.5;         ///< gaps above this are returned as this
-  double contact_mm = 0;           ///< below this ...
-  double contact_proof_mm = proof::ProofLimits{}.proof_mm;  ///< ... the bound lies within this of the least gap that was found, but for the motion's own deviations
-  double proof_mm = 0.01;          ///< else within this
-  bool touching = false;           ///< the body may touch: tangent planes where it comes nearest
-  double settled_mm = INFINITY;    ///< a bound above this is good enough, however much larger the least gap is
+  double enough_mm = 0.5;                                   ///< gaps above this are returned as this
+  double contact_mm = 0;                                    ///< below this ...
+  double contact_proof_mm = proof::ProofLimits{}.proof_mm;  ///< ... the bound lies within this of the least gap that
+                                                            ///< was found, but for the motion's own deviations
+  double proof_mm = 0.01;                                   ///< else within this
+  bool touching = false;         ///< the body may touch: tangent planes where it comes nearest
+  double settled_mm = INFINITY;  ///< a bound above this is good enough, however much larger the least gap is
 };
 
 /// Least gap of one body over one motion. All teeth are seen.
-[[nodiscard]] SweptGap swept_gap(const GearDistance& part, const tool::RoundedFrustum& body, const path::ToolMotion& motion, const SweptGapOptions& options);
-[[nodiscard]] SweptGap swept_gap(const GearDistance& part, const tool::Frustum& body, const path::ToolMotion& motion, const SweptGapOptions& options);
+[[nodiscard]] SweptGap swept_gap(const GearDistance& part, const tool::RoundedFrustum& body,
+                                 const path::ToolMotion& motion, const SweptGapOptions& options);
+[[nodiscard]] SweptGap swept_gap(const GearDistance& part, const tool::Frustum& body, const path::ToolMotion& motion,
+                                 const SweptGapOptions& options);
 
 }  // namespace toothpath::analytic

@@ -11,9 +11,10 @@
 namespace toothpath::analytic {
 namespace {
 
-constexpr std::uint32_t kLeaf = 4;     // cells
-constexpr int kHalvings = 8;           // of a facet, at most
-constexpr double kTreeRoundOff = 1e-11;    // mm: bounds of a branch and of what lies in it may disagree by less; so no order of search matters
+constexpr std::uint32_t kLeaf = 4;  // cells
+constexpr int kHalvings = 8;        // of a facet, at most
+constexpr double kTreeRoundOff =
+    1e-11;  // mm: bounds of a branch and of what lies in it may disagree by less; so no order of search matters
 
 Vec3 turned_by(const Vec3& p, const std::pair<double, double>& turn) {
   return {turn.first * p.x() - turn.second * p.y(), turn.second * p.x() + turn.first * p.y(), p.z()};
@@ -25,9 +26,17 @@ Vec3 turned_by(const Vec3& p, const std::pair<double, double>& turn) {
 class BodyTree::Search {
  public:
   /// @param stop the search may end where the gap is found to be less
-  Search(const BodyTree& tree, const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double stop, double resolution_mm)
-      : tree_(tree), body_(body), tip_(tip), axis_(axis), best_(enough + tree.sag_), stop_(std::max(stop, 0.0) + tree.sag_), resolution_(resolution_mm),
-        middle_(tip + 0.5 * (body.from + body.to) * axis), radius_(std::hypot(0.5 * (body.to - body.from), std::max(body.radius_from, body.radius_to))) {}
+  Search(const BodyTree& tree, const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double stop,
+         double resolution_mm)
+      : tree_(tree),
+        body_(body),
+        tip_(tip),
+        axis_(axis),
+        best_(enough + tree.sag_),
+        stop_(std::max(stop, 0.0) + tree.sag_),
+        resolution_(resolution_mm),
+        middle_(tip + 0.5 * (body.from + body.to) * axis),
+        radius_(std::hypot(0.5 * (body.to - body.from), std::max(body.radius_from, body.radius_to))) {}
 
   double run() {
     for (const Zone& zone : tree_.zones_) {
@@ -44,7 +53,8 @@ class BodyTree::Search {
   void teeth(const Zone& zone) {
     const Node& root = zone.nodes.front();
     const double reach = best_ + root.radius + radius_ + kTreeRoundOff, dz = middle_.z() - root.centre.z();
-    const double ra = std::hypot(middle_.x(), middle_.y()), rb = std::hypot(root.centre.x(), root.centre.y()), pitch = tree_.pitch_;
+    const double ra = std::hypot(middle_.x(), middle_.y()), rb = std::hypot(root.centre.x(), root.centre.y()),
+                 pitch = tree_.pitch_;
     if (std::hypot(ra - rb, dz) > reach) return;
     const int count = int(tree_.turns_.size());
     const double away = std::atan2(middle_.y(), middle_.x()) - std::atan2(root.centre.y(), root.centre.x());
@@ -98,7 +108,8 @@ class BodyTree::Search {
   }
 
   /// A facet is halved until its size is `resolution` or can matter no more; it stands for the sphere about it.
-  void facet(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& centre, double size, const tool::PlacedFrustum& body, int depth) {
+  void facet(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& centre, double size,
+             const tool::PlacedFrustum& body, int depth) {
     if (ended() || body.beyond(centre, best_ + size + kTreeRoundOff)) return;
     const auto [distance, slope] = body.slope(centre);
     if (distance - size > best_ + kTreeRoundOff) return;
@@ -106,13 +117,16 @@ class BodyTree::Search {
       best_ = std::min(best_, distance <= 0 ? -resolution_ : distance - size);
       return;
     }
-    // The distance is convex: no place of the facet lies below the tangent plane at its middle, no sphere of a piece reaches farther down.
+    // The distance is convex: no place of the facet lies below the tangent plane at its middle, no sphere of a piece
+    // reaches farther down.
     double last = size;
     for (int k = depth; k > 0 && last > resolution_; --k) last *= 0.5;
     const double lowest = distance + std::min({slope.dot(a - centre), slope.dot(b - centre), slope.dot(c - centre)});
     if (lowest - last > best_ + kTreeRoundOff) return;
     const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
-    const auto part = [&](const Vec3& p, const Vec3& q, const Vec3& r) { facet(p, q, r, (p + q + r) / 3, 0.5 * size, body, depth - 1); };
+    const auto part = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
+      facet(p, q, r, (p + q + r) / 3, 0.5 * size, body, depth - 1);
+    };
     part(ab, bc, ca);
     part(a, ab, ca);
     part(ab, b, bc);
@@ -127,13 +141,15 @@ class BodyTree::Search {
   double radius_;
 };
 
-BodyTree::BodyTree(const GearDistance& part) : roof_(part.gear().blank_top()), sag_(part.cell_sag_mm()), pitch_(part.gear().pitch()) {
+BodyTree::BodyTree(const GearDistance& part)
+    : roof_(part.gear().blank_top()), sag_(part.cell_sag_mm()), pitch_(part.gear().pitch()) {
   for (int z = 0; z < part.zones(); ++z) {
     Zone zone;
     const auto& triangles = part.triangles(z);
     for (const auto& [a, b, c] : triangles) {
       const Vec3 centre = (a + b + c) / 3;
-      zone.facets.push_back({{a, b, c}, centre, std::max({(a - centre).norm(), (b - centre).norm(), (c - centre).norm()})});
+      zone.facets.push_back(
+          {{a, b, c}, centre, std::max({(a - centre).norm(), (b - centre).norm(), (c - centre).norm()})});
     }
     for (const auto& cell : part.cells(z)) {
       if (cell.triangles == 0) continue;
@@ -180,28 +196,33 @@ std::uint32_t BodyTree::build(Zone& zone, std::uint32_t first, std::uint32_t cou
   return index;
 }
 
-double BodyTree::least(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double stop, double resolution_mm) const {
+double BodyTree::least(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double stop,
+                       double resolution_mm) const {
   const double above = tool::lowest_z(body, tip, axis) - roof_;
   if (above >= enough) return enough;
   const double found = Search(*this, body, tip, axis, enough, stop, resolution_mm).run();
   return std::max(found, above);  // the whole part lies below: that height is a proven gap too
 }
 
-double BodyTree::gap(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double resolution_mm) const {
+double BodyTree::gap(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough,
+                     double resolution_mm) const {
   const double found = least(body, tip, axis, enough, 0, resolution_mm);
   return found < 0 ? -resolution_mm : found;
 }
 
-bool BodyTree::keeps(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double clearance_mm, double resolution_mm) const {
+bool BodyTree::keeps(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double clearance_mm,
+                     double resolution_mm) const {
   return least(body, tip, axis, clearance_mm, clearance_mm, resolution_mm) >= clearance_mm;
 }
 
 bool BodyTree::clear(const std::vector<tool::Frustum>& bodies, const Vec3& tip, const Vec3& axis, double clearance_mm,
                      double resolution_mm) const {
-  return std::all_of(bodies.begin(), bodies.end(), [&](const tool::Frustum& body) { return keeps(body, tip, axis, clearance_mm, resolution_mm); });
+  return std::all_of(bodies.begin(), bodies.end(),
+                     [&](const tool::Frustum& body) { return keeps(body, tip, axis, clearance_mm, resolution_mm); });
 }
 
-double BodyTree::depth(const tool::Frustum& body, std::span<const Vec3> tips, const Vec3& axis, double deepest_mm, double resolution_mm) const {
+double BodyTree::depth(const tool::Frustum& body, std::span<const Vec3> tips, const Vec3& axis, double deepest_mm,
+                       double resolution_mm) const {
   int steps = 1;  // a power of two
   while (deepest_mm / steps > resolution_mm) steps *= 2;
   const auto cuts = [&](int step, const Vec3& tip) {

@@ -1,9 +1,10 @@
-// Spheres about spheres over the surfaces of one tooth: how far a shank or holder keeps from all teeth, asked many thousand
-// times while a tool direction is searched.
+// Spheres about spheres over the surfaces of one tooth: how far a shank or holder keeps from all teeth, asked many
+// thousand times while a tool direction is searched.
 //
-// The facets of the gear's cells in a binary tree of bounding spheres; a branch is left as soon as its sphere lies farther from the
-// body than the least gap so far, a facet as soon as the tangent plane of the distance at its middle does. All teeth are turned copies of
-// one tree, and only those within reach of the body are asked. Answers do not depend on the order of the search.
+// The facets of the gear's cells in a binary tree of bounding spheres; a branch is left as soon as its sphere lies
+// farther from the body than the least gap so far, a facet as soon as the tangent plane of the distance at its middle
+// does. All teeth are turned copies of one tree, and only those within reach of the body are asked. Answers do not
+// depend on the order of the search.
 #pragma once
 
 #include <array>
@@ -20,19 +21,22 @@ class BodyTree {
  public:
   explicit BodyTree(const GearDistance& part);
 
-  /// Least gap between a frustum and the finished teeth, from below: no more than `resolution_mm` and the sag of the cells under the
-  /// true one; gaps above `enough` are returned as `enough`. A body that cuts in: -resolution_mm.
-  [[nodiscard]] double gap(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double resolution_mm) const;
-
-  /// Is that gap at least `clearance_mm`? Ends at the first facet that stands in the way.
-  [[nodiscard]] bool keeps(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double clearance_mm, double resolution_mm) const;
-  /// The same for every body.
-  [[nodiscard]] bool clear(const std::vector<tool::Frustum>& bodies, const Vec3& tip, const Vec3& axis, double clearance_mm,
+  /// Least gap between a frustum and the finished teeth, from below: no more than `resolution_mm` and the sag of the
+  /// cells under the true one; gaps above `enough` are returned as `enough`. A body that cuts in: -resolution_mm.
+  [[nodiscard]] double gap(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough,
                            double resolution_mm) const;
 
-  /// By how much a body would have to be slimmer, and begin higher, to cut nowhere with the tool's tip at any of `tips`, to `resolution_mm`;
-  /// `deepest_mm` where that is not enough.
-  [[nodiscard]] double depth(const tool::Frustum& body, std::span<const Vec3> tips, const Vec3& axis, double deepest_mm, double resolution_mm) const;
+  /// Is that gap at least `clearance_mm`? Ends at the first facet that stands in the way.
+  [[nodiscard]] bool keeps(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double clearance_mm,
+                           double resolution_mm) const;
+  /// The same for every body.
+  [[nodiscard]] bool clear(const std::vector<tool::Frustum>& bodies, const Vec3& tip, const Vec3& axis,
+                           double clearance_mm, double resolution_mm) const;
+
+  /// By how much a body would have to be slimmer, and begin higher, to cut nowhere with the tool's tip at any of
+  /// `tips`, to `resolution_mm`; `deepest_mm` where that is not enough.
+  [[nodiscard]] double depth(const tool::Frustum& body, std::span<const Vec3> tips, const Vec3& axis, double deepest_mm,
+                             double resolution_mm) const;
 
  private:
   struct Node {
@@ -58,7 +62,8 @@ class BodyTree {
   };
   class Search;
   static std::uint32_t build(Zone& zone, std::uint32_t first, std::uint32_t count);
-  [[nodiscard]] double least(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double stop, double resolution_mm) const;
+  [[nodiscard]] double least(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double enough, double stop,
+                             double resolution_mm) const;
 
   double roof_, sag_, pitch_;
   std::vector<Zone> zones_;

@@ -10,12 +10,13 @@
 namespace toothpath::analytic {
 namespace {
 
-constexpr double kCutterLook = 0.12;        // mm beyond the ball within which distances are wanted exactly, at least
+constexpr double kCutterLook = 0.12;  // mm beyond the ball within which distances are wanted exactly, at least
 constexpr double kLookShare = 0.2;    // and this share of its radius
 constexpr double kSearchPad = 1e-4;   // mm: sag of edges, by which two distances may disagree
-constexpr double kWreckShare = 0.5;        // a ball whose centre is this near, in radii, is bounded by all that can be asked for
+constexpr double kWreckShare =
+    0.5;  // a ball whose centre is this near, in radii, is bounded by all that can be asked for
 constexpr int kCutterHalvings = 24;
-constexpr double kShortestPiece = 1e-6;    // mm: shorter pieces are not halved
+constexpr double kShortestPiece = 1e-6;  // mm: shorter pieces are not halved
 
 /// Heights of the flute in ball radii: close above the centre first, where the flute leaves the contact slowly.
 std::vector<double> heights(double R, double top) {
@@ -38,11 +39,19 @@ double least_between(double d0, double d1, double length) {
 }
 
 CutterSweep::CutterSweep(const GearDistance& part, const tool::ToolAssembly& tool, double proof_mm, double tolerance_mm)
-    : part_(part), R_(tool.radius_mm()), top_(tool.flute_length_mm - R_), proof_(proof_mm), tolerance_(tolerance_mm), within_(R_ + std::max(kCutterLook, kLookShare * R_)), known_(256) {
+    : part_(part),
+      R_(tool.radius_mm()),
+      top_(tool.flute_length_mm - R_),
+      proof_(proof_mm),
+      tolerance_(tolerance_mm),
+      within_(R_ + std::max(kCutterLook, kLookShare * R_)),
+      known_(256) {
   for (const double h : heights(R_, top_)) rows_.push_back({h, false, Vec3::Zero(), 0});
 }
 
-Vec3 CutterSweep::place(double t, double height) const { return path::tip_at(*m_, t) + (R_ + height) * path::axis_at(*m_, t); }
+Vec3 CutterSweep::place(double t, double height) const {
+  return path::tip_at(*m_, t) + (R_ + height) * path::axis_at(*m_, t);
+}
 
 NearestPlace CutterSweep::query(const Vec3& p, double most) {
   ++queries_;
@@ -63,12 +72,13 @@ void CutterSweep::note(const NearestPlace& q, tool::Body body) {
   worst_ = std::max(worst_, std::min(depth, tolerance_ - proof_));
 }
 
-/// Is a proven least distance good enough? Where it is free; where it is no deeper than what was found before; where it is
-/// close to what is seen here. A wreck need not be followed to a fraction of a micrometre. @param arm from the tip: what the deviation of
-/// the axis does there is not made smaller by halving.
+/// Is a proven least distance good enough? Where it is free; where it is no deeper than what was found before; where it
+/// is close to what is seen here. A wreck need not be followed to a fraction of a micrometre. @param arm from the tip:
+/// what the deviation of the axis does there is not made smaller by halving.
 bool CutterSweep::settled(double least, double seen, double slack, double arm) const {
   const double deepest = R_ - least + slack;
-  const double here = std::max(seen, deepest <= tolerance_ ? worst_ : 0);  // beyond the tolerance its own place is wanted
+  const double here =
+      std::max(seen, deepest <= tolerance_ ? worst_ : 0);  // beyond the tolerance its own place is wanted
   const double leeway = here > 50 * tolerance_ ? 0.25 * here : 0;
   return deepest <= 0 || deepest <= here + proof_ + leeway + m_->deviation_mm + arm * m_->axis_deviation;
 }
@@ -82,10 +92,8 @@ CutterFinding CutterSweep::check(const path::ToolMotion& motion) {
   const NearestPlace qb = query(b, qa.distance + length);
   note(qa, tool::Body::ball);
   note(qb, tool::Body::ball);
-  if (const double height = height_above(); height > 0)
-    found_.bound_mm = std::max(-height, found_.measured_mm);
-  else
-    flute(ball(0, 1, qa, qb, kCutterHalvings));
+  if (const double height = height_above(); height > 0) found_.bound_mm = std::max(-height, found_.measured_mm);
+  else flute(ball(0, 1, qa, qb, kCutterHalvings));
   chained_ = true;
   last_centre_ = b;
   last_ = qb;
@@ -134,13 +142,14 @@ double CutterSweep::fresh(Row& row) {
   const double L = (b - a).norm();
   const auto qb = query(b, within_);
   double d0 = row.known ? row.distance - (a - row.at).norm() : -INFINITY;
-  if (!(row.known && a == row.at) && least_between(d0, qb.distance, L) < R_ + 0.5 * (within_ - R_)) d0 = query(a, qb.distance + L).distance;
+  if (!(row.known && a == row.at) && least_between(d0, qb.distance, L) < R_ + 0.5 * (within_ - R_))
+    d0 = query(a, qb.distance + L).distance;
   row = {row.height, true, b, qb.distance};
   return least_between(d0, qb.distance, L) - path::line_slack(*m_, R_ + row.height, 1);
 }
 
-/// The flute, height by height. At every moment the axis is a straight line: between two heights whose least distances are
-/// proven, the same parabola bounds what lies between them.
+/// The flute, height by height. At every moment the axis is a straight line: between two heights whose least distances
+/// are proven, the same parabola bounds what lies between them.
 void CutterSweep::flute(double low) {
   if (low <= -within_) return;  // a wreck, bounded already
   double h = 0;
@@ -154,10 +163,8 @@ void CutterSweep::flute(double low) {
     const auto good = [&] { return settled(least_between(low, high, H), worst_, 0, R_); };
     if (!good()) high = std::max(high, fresh(row));
     const double least = least_between(low, high, H);
-    if (good())
-      found_.bound_mm = std::max(found_.bound_mm, R_ - least);
-    else
-      patch(0, 1, h, row.height, at(0, h), at(1, h), at(0, row.height), at(1, row.height), kCutterHalvings);
+    if (good()) found_.bound_mm = std::max(found_.bound_mm, R_ - least);
+    else patch(0, 1, h, row.height, at(0, h), at(1, h), at(0, row.height), at(1, row.height), kCutterHalvings);
     low = high;
     h = row.height;
   }
@@ -170,7 +177,8 @@ double CutterSweep::at(double t, double height) {
 }
 
 /// The axis from t0 to t1 and between two heights, from the distances d_th at its four corners.
-void CutterSweep::patch(double t0, double t1, double h0, double h1, double d00, double d10, double d01, double d11, int depth) {
+void CutterSweep::patch(double t0, double t1, double h0, double h1, double d00, double d10, double d01, double d11,
+                        int depth) {
   const double L0 = (place(t1, h0) - place(t0, h0)).norm(), L1 = (place(t1, h1) - place(t0, h1)).norm(), H = h1 - h0;
   const double slack = path::line_slack(*m_, R_ + h1, t1 - t0);
   const double low = least_between(d00, d10, L0), high = least_between(d01, d11, L1);
@@ -179,7 +187,8 @@ void CutterSweep::patch(double t0, double t1, double h0, double h1, double d00, 
     found_.bound_mm = std::max(found_.bound_mm, R_ - least + slack);
     return;
   }
-  // Halve what costs more: the way between the heights, or the way along the motion. The deviation of the axis differs by height alone.
+  // Halve what costs more: the way between the heights, or the way along the motion. The deviation of the axis differs
+  // by height alone.
   const double lean = m_->axis_deviation, along = slack - m_->deviation_mm - (R_ + h1) * lean;
   if (std::min(low, high) - least + H * lean > corner - std::min(low, high) + along) {
     const double h = 0.5 * (h0 + h1), a = at(t0, h), b = at(t1, h);

@@ -1,26 +1,27 @@
-// The cutting part of a ball mill, ball and flute, along its motions: how deep it was found in the part, and how deep it can
-// be anywhere between the places that were looked at.
+// The cutting part of a ball mill, ball and flute, along its motions: how deep it was found in the part, and how deep
+// it can be anywhere between the places that were looked at.
 //
 // The bound needs no curvature. For any set, d(x)^2 - |x|^2 is concave along a straight line (it is a minimum of affine
 // functions), so that between two points L apart, at distances d0 and d1 from the set,
 //     d(s)^2 >= (1 - s/L) d0^2 + (s/L) d1^2 - s (L - s).
-// Along the motion this bounds the ball centre (and every other height of the tool axis); along the tool axis, at a fixed
-// time, it bounds the flute between two heights. What the true motion leaves of the straight line is added: docs/proof.md.
+// Along the motion this bounds the ball centre (and every other height of the tool axis); along the tool axis, at a
+// fixed time, it bounds the flute between two heights. What the true motion leaves of the straight line is added:
+// docs/proof.md.
 #pragma once
 
 #include <cmath>
 #include <cstddef>
 #include <vector>
 
-#include "cam/tool/assembly.h"
-#include "cam/tool/body.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/path/tool_motion.h"
+#include "cam/tool/assembly.h"
+#include "cam/tool/body.h"
 
 namespace toothpath::analytic {
 
-/// Least distance to any set on a straight line of length `length`, from lower bounds of the distances at its ends. Negative
-/// distances (inside) are bounded by their slope of 1. mm.
+/// Least distance to any set on a straight line of length `length`, from lower bounds of the distances at its ends.
+/// Negative distances (inside) are bounded by their slope of 1. mm.
 [[nodiscard]] double least_between(double d0, double d1, double length);
 
 struct CutterFinding {
@@ -30,8 +31,8 @@ struct CutterFinding {
   tool::Body body = tool::Body::ball;  ///< or the flute
 };
 
-/// Checks motions one after another; each starts from what the one before it found, so that a chain of short motions costs
-/// about two distances a motion. One object a thread.
+/// Checks motions one after another; each starts from what the one before it found, so that a chain of short motions
+/// costs about two distances a motion. One object a thread.
 class CutterSweep {
  public:
   /// @param proof_mm how far the bound may lie above the deepest place found so far

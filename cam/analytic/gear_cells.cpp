@@ -31,14 +31,16 @@ Facet cut(const Facet& facet, const Vec3& n, double limit) {
 bool on_ring(const face_gear::SpaceSheet& space, const Vec3& p, double slack) {
   const double r = std::hypot(p.x(), p.y());
   const auto& zone = space.ring().zone;
-  return r >= zone.inner_radius_mm - slack && r <= zone.outer_radius_mm + slack && p.z() <= space.surface().z_tip(r) + slack;
+  return r >= zone.inner_radius_mm - slack && r <= zone.outer_radius_mm + slack &&
+         p.z() <= space.surface().z_tip(r) + slack;
 }
 
 Facet on_ring(const face_gear::SpaceSheet& space, const Facet& facet, double sag) {
   const auto& f = space.surface();
   const double r_in = space.ring().zone.inner_radius_mm, r_out = space.ring().zone.outer_radius_mm;
   const auto corners = std::span(facet.corner).first(facet.count);
-  if (std::all_of(corners.begin(), corners.end(), [&](const FacetCorner& c) { return on_ring(space, c.p); })) return facet;
+  if (std::all_of(corners.begin(), corners.end(), [&](const FacetCorner& c) { return on_ring(space, c.p); }))
+    return facet;
   Vec3 centre = Vec3::Zero();
   for (const auto& c : corners) centre += c.p / double(facet.count);
   const Vec3 outwards = Vec3(centre.x(), centre.y(), 0).normalized();
@@ -49,7 +51,8 @@ Facet on_ring(const face_gear::SpaceSheet& space, const Facet& facet, double sag
     low = std::min(low, r);
     high = std::max(high, r);
   }
-  // r lies above r.outwards by at most across / (2 r); a point within the sag of the polygon is a little farther out still.
+  // r lies above r.outwards by at most across / (2 r); a point within the sag of the polygon is a little farther out
+  // still.
   const double round = 1.1 * across / (2 * r_in) + 1e-9;
   // The tip surface over the facet lies below a plane that slopes as it does.
   const double slope = high - low > 1e-9 ? (f.z_tip(high) - f.z_tip(low)) / (high - low) : 0;
@@ -104,15 +107,19 @@ std::vector<EndQuad> end_face_quads(const EndFace& face, const std::vector<Vec2>
     const int pieces = std::max(1, int(std::ceil((high - face.base_mm) / kQuadHeight)));
     const auto z = [&](double top, int q) { return face.base_mm + (top - face.base_mm) * q / pieces; };
     for (int q = 0; q < pieces; ++q)
-      quads.push_back({{at(a.x(), z(a.y(), q)), at(b.x(), z(b.y(), q)), at(a.x(), z(a.y(), q + 1)), at(b.x(), z(b.y(), q + 1))},
-                       from, to, double(q) / pieces, double(q + 1) / pieces});
+      quads.push_back(
+          {{at(a.x(), z(a.y(), q)), at(b.x(), z(b.y(), q)), at(a.x(), z(a.y(), q + 1)), at(b.x(), z(b.y(), q + 1))},
+           from,
+           to,
+           double(q) / pieces,
+           double(q + 1) / pieces});
   };
   // A stretch of land, which is one piece of the border.
   const auto land = [&](double from, double to, double piece) {
     const int strips = std::max(1, int(std::ceil((to - from) / widest)));
     for (int k = 0; to > from && k < strips; ++k)
-      add({from + (to - from) * k / strips, face.z_tip_mm}, {from + (to - from) * (k + 1) / strips, face.z_tip_mm}, piece + double(k) / strips,
-          piece + double(k + 1) / strips);
+      add({from + (to - from) * k / strips, face.z_tip_mm}, {from + (to - from) * (k + 1) / strips, face.z_tip_mm},
+          piece + double(k) / strips, piece + double(k + 1) / strips);
   };
   if (profile.size() < 2) {
     land(face.from, face.from + face.pitch, 0);

@@ -1,5 +1,6 @@
-// What of the cells of a tooth space stands for material: facets cut off at the tip surface and at the ends of the ring, and the end
-// faces below the profile. For bodies (shank, holder), whose gap is asked to a few thousandths of a millimetre.
+// What of the cells of a tooth space stands for material: facets cut off at the tip surface and at the ends of the
+// ring, and the end faces below the profile. For bodies (shank, holder), whose gap is asked to a few thousandths of a
+// millimetre.
 #pragma once
 
 #include <array>
@@ -11,9 +12,12 @@
 namespace toothpath::analytic {
 
 /// A place of the gear frame in cylinder coordinates.
-[[nodiscard]] inline Vec3 on_cylinder(double r, double azimuth, double z) { return {r * std::cos(azimuth), r * std::sin(azimuth), z}; }
+[[nodiscard]] inline Vec3 on_cylinder(double r, double azimuth, double z) {
+  return {r * std::cos(azimuth), r * std::sin(azimuth), z};
+}
 
-/// A corner of a flat polygon, with the parameters of its place on a patch. `stands`: it is a place of the ring's surface.
+/// A corner of a flat polygon, with the parameters of its place on a patch. `stands`: it is a place of the ring's
+/// surface.
 struct FacetCorner {
   Vec3 p = Vec3::Zero();
   Vec2 at = Vec2::Zero();
@@ -29,9 +33,10 @@ struct Facet {
 /// Does a place lie between the two radii of the ring and not above its tip surface?
 [[nodiscard]] bool on_ring(const face_gear::SpaceSheet& space, const Vec3& p, double slack_mm = 0);
 
-/// The part of a triangle (gear frame, mm) that may stand for material of the ring: every point of the surface between the two
-/// radii and below the tip surface that lies within `sag_mm` of the triangle lies within `sag_mm` of what is returned. Nothing
-/// else is kept beyond the ends or above the tip, but for `sag_mm` and what a plane lacks of a cylinder over one facet.
+/// The part of a triangle (gear frame, mm) that may stand for material of the ring: every point of the surface between
+/// the two radii and below the tip surface that lies within `sag_mm` of the triangle lies within `sag_mm` of what is
+/// returned. Nothing else is kept beyond the ends or above the tip, but for `sag_mm` and what a plane lacks of a
+/// cylinder over one facet.
 [[nodiscard]] Facet on_ring(const face_gear::SpaceSheet& space, const Facet& triangle, double sag_mm);
 
 /// Which end of the ring.
@@ -43,18 +48,19 @@ struct EndFace {
   double base_mm = 0;          ///< lower border
 };
 
-/// The upper border of an end face over one pitch: from the middle of a land, along the profile of the tooth space (azimuth, z), from
-/// tip to tip, to the middle of the next land.
+/// The upper border of an end face over one pitch: from the middle of a land, along the profile of the tooth space
+/// (azimuth, z), from tip to tip, to the middle of the next land.
 [[nodiscard]] std::vector<Vec2> end_border(const EndFace& face, const std::vector<Vec2>& profile);
 
-/// A flat quad of an end face. `from`, `to`: places on its border, by index and share; `low`, `high`: shares of the height.
+/// A flat quad of an end face. `from`, `to`: places on its border, by index and share; `low`, `high`: shares of the
+/// height.
 struct EndQuad {
   std::array<Vec3, 4> corner;  ///< low, low, high, high
   double from = 0, to = 0, low = 0, high = 0;
 };
 
-/// Flat quads that cover an end face from its base up to its border. No quad lies inside the material, and none stands out of the
-/// face by more than a few 1e-4 mm.
+/// Flat quads that cover an end face from its base up to its border. No quad lies inside the material, and none stands
+/// out of the face by more than a few 1e-4 mm.
 [[nodiscard]] std::vector<EndQuad> end_face_quads(const EndFace& face, const std::vector<Vec2>& profile);
 
 /// How far a stretch of a border leaves the straight line between its ends: upwards, downwards, and to both sides.

@@ -13,10 +13,9 @@
 namespace toothpath::analytic {
 namespace {
 
-constexpr double kBorder = 1e-9;         // a foot this far beyond the border of a piece (in its parameter) still counts
+constexpr double kBorder = 1e-9;  // a foot this far beyond the border of a piece (in its parameter) still counts
 // Corrected pieces share their normals to 1e-5 only; a foot so little beyond is about 1e-6 mm wrong.
 constexpr double kCorrectedBorder = 3e-5;
-
 
 }  // namespace
 
@@ -35,8 +34,7 @@ double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const V
   const double vb = d5 * d2 - d1 * d6;
   if (vb <= 0 && d2 >= 0 && d6 <= 0) return (ap - ac * (d2 / (d2 - d6))).norm();
   const double va = d3 * d6 - d5 * d4;
-  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
-    return (bp - (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)))).norm();
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return (bp - (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)))).norm();
   const Vec3 n = ab.cross(ac);
   return std::abs(ap.dot(n)) / n.norm();
 }
@@ -48,11 +46,13 @@ struct GearDistance::Impl {
   double sag = 0;
   double groove_floor = 0;  ///< where there are two rings
   std::optional<face_gear::FaceGearRefusal> refusal;
-  int half_turn = 0;                             ///< teeth
-  std::vector<std::pair<double, double>> turns;  ///< cosine and sine of the turn of every tooth back to space 0, from -half_turn on
+  int half_turn = 0;  ///< teeth
+  std::vector<std::pair<double, double>>
+      turns;  ///< cosine and sine of the turn of every tooth back to space 0, from -half_turn on
 
   explicit Impl(const face_gear::FaceGear& g) : gear(g), pitch(g.pitch()), half_turn(g.parameters().teeth / 2 + 1) {
-    for (int k = -half_turn; k <= half_turn; ++k) turns.emplace_back(std::cos(-double(k) * pitch), std::sin(-double(k) * pitch));
+    for (int k = -half_turn; k <= half_turn; ++k)
+      turns.emplace_back(std::cos(-double(k) * pitch), std::sin(-double(k) * pitch));
   }
   [[nodiscard]] Vec3 to_space_0(const Vec3& p, double tooth) const {
     const auto& [c, s] = turns[std::size_t(int(tooth) + half_turn)];
@@ -63,7 +63,8 @@ struct GearDistance::Impl {
 
 GearDistance::GearDistance(const face_gear::FaceGear& gear, double reach_mm) : impl_(std::make_unique<Impl>(gear)) {
   std::vector<std::optional<Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal>>> made(gear.rings().size());
-  tbb::parallel_for(std::size_t(0), made.size(), [&](std::size_t zone) { made[zone] = GearRing::make(gear, int(zone), reach_mm); });
+  tbb::parallel_for(std::size_t(0), made.size(),
+                    [&](std::size_t zone) { made[zone] = GearRing::make(gear, int(zone), reach_mm); });
   for (auto& ring : made) {
     if (auto* refusal = (*ring).refused()) {
       impl_->refusal = std::move(*refusal);
@@ -79,8 +80,12 @@ GearDistance::GearDistance(const face_gear::FaceGear& gear, double reach_mm) : i
 GearDistance::~GearDistance() = default;
 GearDistance::GearDistance(GearDistance&&) noexcept = default;
 
-const std::vector<GearDistance::Cell>& GearDistance::cells(int zone) const { return impl_->rings[std::size_t(zone)]->cells; }
-const std::vector<std::array<Vec3, 3>>& GearDistance::triangles(int zone) const { return impl_->rings[std::size_t(zone)]->triangles; }
+const std::vector<GearDistance::Cell>& GearDistance::cells(int zone) const {
+  return impl_->rings[std::size_t(zone)]->cells;
+}
+const std::vector<std::array<Vec3, 3>>& GearDistance::triangles(int zone) const {
+  return impl_->rings[std::size_t(zone)]->triangles;
+}
 const std::optional<face_gear::FaceGearRefusal>& GearDistance::refusal() const { return impl_->refusal; }
 const SpatialIndex& GearDistance::cell_index(int zone) const { return *impl_->rings[std::size_t(zone)]->index; }
 const face_gear::SpaceSheet& GearDistance::space(int zone) const { return impl_->rings[std::size_t(zone)]->space; }
@@ -101,7 +106,8 @@ double GearDistance::space_azimuth(int zone, double r) const {
 /// One point asked: every ring in turn offers what lies nearest of its sheet, its edges, its ends and lands.
 class GearDistance::Impl::Question {
  public:
-  Question(const Impl& part, const Vec3& asked, double within) : part_(part), asked_(asked), within_(within), r_(radius(asked)), z_(asked.z()) {
+  Question(const Impl& part, const Vec3& asked, double within)
+      : part_(part), asked_(asked), within_(within), r_(radius(asked)), z_(asked.z()) {
     best_.distance = within;
     best_.point = asked;
   }
@@ -125,10 +131,12 @@ class GearDistance::Impl::Question {
     Vec3 c;  ///< turned to space 0
     double azimuth, z_tip, gap_r;
     [[nodiscard]] bool beside() const { return gap_r > 0; }
-    [[nodiscard]] bool in_air() const { return beside() || c.z() >= z_tip; }  ///< certainly: neither between the radii of the ring and below its tip
+    [[nodiscard]] bool in_air() const {
+      return beside() || c.z() >= z_tip;
+    }  ///< certainly: neither between the radii of the ring and below its tip
   };
-  /// The nearest cell of every band of every piece, apart for whole cells and for those that reach beyond the ring: the nearest point of
-  /// such a one may not exist, and must not hide a farther one that does.
+  /// The nearest cell of every band of every piece, apart for whole cells and for those that reach beyond the ring: the
+  /// nearest point of such a one may not exist, and must not hide a farther one that does.
   struct Seed {
     double d = INFINITY;
     std::size_t cell = 0;
@@ -158,7 +166,8 @@ class GearDistance::Impl::Question {
     const bool found = sheet(at, seeds);
     edges(at);
     // Newton must agree with the facets; where it does not, the facets decide with their sag.
-    if (best_.distance > seeds.d_mesh + 2 * ring.sag + 1e-9) take(seeds.d_mesh - ring.sag, false, at.zone, "flank", at.c, at.c);
+    if (best_.distance > seeds.d_mesh + 2 * ring.sag + 1e-9)
+      take(seeds.d_mesh - ring.sag, false, at.zone, "flank", at.c, at.c);
     end_faces(at);
     land_or_inside(at, found);
   }
@@ -171,7 +180,8 @@ class GearDistance::Impl::Question {
     s.slack = 4 * ring.sag + 0.02;  // a facet farther than the nearest by this cannot hold the nearest point
     ring.index->near(c, s.search, [&](std::size_t k, double r_query) {
       const auto& cell = ring.cells[k];
-      if (!cell.sheet || (c - cell.centre).norm() - cell.radius > std::min(s.d_mesh + s.slack, s.search)) return r_query;
+      if (!cell.sheet || (c - cell.centre).norm() - cell.radius > std::min(s.d_mesh + s.slack, s.search))
+        return r_query;
       const double d = std::min(distance_to_triangle(c, cell.corner[0], cell.corner[1], cell.corner[2]),
                                 distance_to_triangle(c, cell.corner[1], cell.corner[2], cell.corner[3]));
       const bool border = ring.border[k];
@@ -240,7 +250,8 @@ class GearDistance::Impl::Question {
   void end_faces(const View& at) {
     if (!at.beside()) return;
     const auto& profile = r_ < at.ring.r_in ? at.ring.end_in : at.ring.end_out;
-    if (profile.size() > 2 && in_material(profile, at.azimuth, z_, at.z_tip)) take(at.gap_r, true, at.zone, "end", at.c, at.c);
+    if (profile.size() > 2 && in_material(profile, at.azimuth, z_, at.z_tip))
+      take(at.gap_r, true, at.zone, "end", at.c, at.c);
   }
 
   void land_or_inside(const View& at, bool found) {
@@ -249,10 +260,12 @@ class GearDistance::Impl::Question {
       double foot = 0;
       const double d = ring.to_tip_meridian(r_, z_, foot);
       if (ring.over_land(at.azimuth, foot))
-        take(d, ring.tip_sag == 0, at.zone, "tip", Vec3(at.c.x() * foot / r_, at.c.y() * foot / r_, ring.space.surface().z_tip(foot)), at.c);
+        take(d, ring.tip_sag == 0, at.zone, "tip",
+             Vec3(at.c.x() * foot / r_, at.c.y() * foot / r_, ring.space.surface().z_tip(foot)), at.c);
     } else if (!at.beside() && !found) {
       // No surface near: either free in a wide space or deep inside the material.
-      if (ring.over_land(at.azimuth, r_) || ring.in_material_at(r_, at.azimuth, z_, at.z_tip)) take(-within_, false, at.zone, "inside", at.c, at.c);
+      if (ring.over_land(at.azimuth, r_) || ring.in_material_at(r_, at.azimuth, z_, at.z_tip))
+        take(-within_, false, at.zone, "inside", at.c, at.c);
     }
   }
 
@@ -272,6 +285,8 @@ class GearDistance::Impl::Question {
   NearestPlace best_;
 };
 
-NearestPlace GearDistance::nearest(const Vec3& asked, double within) const { return Impl::Question(*impl_, asked, within).answer(); }
+NearestPlace GearDistance::nearest(const Vec3& asked, double within) const {
+  return Impl::Question(*impl_, asked, within).answer();
+}
 
 }  // namespace toothpath::analytic

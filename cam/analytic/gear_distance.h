@@ -1,10 +1,10 @@
 // Exact distance from a point to the finished face gear: the question that every gouge check asks.
 //
-// The solid is the rings of teeth (each between its two radii, below its tip surface), the groove floor between two rings and
-// the body below. A grid of cells over the working sheet of one tooth space finds candidates (Embree, float32); Newton on
-// the analytic patches decides in double. Edges (ends of the ring, tip edges) are polylines whose proven sag is subtracted.
-// How the cells are made: cam/analytic/gear_ring.h.
-// All spaces are turned copies: a point is first turned into space 0.
+// The solid is the rings of teeth (each between its two radii, below its tip surface), the groove floor between two
+// rings and the body below. A grid of cells over the working sheet of one tooth space finds candidates (Embree,
+// float32); Newton on the analytic patches decides in double. Edges (ends of the ring, tip edges) are polylines whose
+// proven sag is subtracted. How the cells are made: cam/analytic/gear_ring.h. All spaces are turned copies: a point is
+// first turned into space 0.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "geometry/face_gear/offset_sheet.h"
 #include "cam/analytic/spatial_index.h"
+#include "geometry/face_gear/offset_sheet.h"
 
 namespace toothpath::analytic {
 
@@ -23,24 +23,26 @@ class BodyPatches;
 
 /// What lies nearest to a point.
 struct NearestPlace {
-  double distance = 0;       ///< to the solid, mm; negative inside. A proven lower bound; exact when `exact`
+  double distance = 0;  ///< to the solid, mm; negative inside. A proven lower bound; exact when `exact`
   bool exact = false;
   int zone = 0;
-  const char* patch = "";    ///< "flank +1", "fillet +1", "root", "fillet -1", "flank -1", "tip", "tip edge", "end", "end edge", "groove"
-  Vec3 foot = Vec3::Zero();  ///< nearest point, turned to space 0
-  Vec3 point = Vec3::Zero(); ///< the asked point, turned to space 0
+  const char* patch =
+      "";  ///< "flank +1", "fillet +1", "root", "fillet -1", "flank -1", "tip", "tip edge", "end", "end edge", "groove"
+  Vec3 foot = Vec3::Zero();   ///< nearest point, turned to space 0
+  Vec3 point = Vec3::Zero();  ///< the asked point, turned to space 0
 };
 
 class GearDistance {
  public:
   /// `reach_mm`: largest distance that will ever be asked for (`within`).
-  /// Where the surfaces of a ring cannot be followed over its whole width there is a `refusal()`; such a part has no zones, and
-  /// `nearest` calls every point inside.
+  /// Where the surfaces of a ring cannot be followed over its whole width there is a `refusal()`; such a part has no
+  /// zones, and `nearest` calls every point inside.
   GearDistance(const face_gear::FaceGear& gear, double reach_mm);
   ~GearDistance();
   GearDistance(GearDistance&&) noexcept;
 
-  /// Distance from `c` (gear frame, any tooth) to the solid; distances above `within` are returned as `within`, not exact.
+  /// Distance from `c` (gear frame, any tooth) to the solid; distances above `within` are returned as `within`, not
+  /// exact.
   [[nodiscard]] NearestPlace nearest(const Vec3& c, double within) const;
 
   /// Why there is no distance to this gear: key within [gear] and message; none for a gear that can be asked.
@@ -70,8 +72,9 @@ class GearDistance {
   /// Bounds of sags that are measured and not proven: none on nominal gears. docs/proof.md, What a clean result means.
   [[nodiscard]] std::size_t unproven() const;
 
-  /// Largest distance between a facet of the cells and the exact surface as it showed when the cells were made, doubled, mm: for searches
-  /// of tool directions and for the start places of Newton. What is proven rests on `patches`.
+  /// Largest distance between a facet of the cells and the exact surface as it showed when the cells were made,
+  /// doubled, mm: for searches of tool directions and for the start places of Newton. What is proven rests on
+  /// `patches`.
   [[nodiscard]] double cell_sag_mm() const;
   [[nodiscard]] const face_gear::FaceGear& gear() const;
   [[nodiscard]] int zones() const;

@@ -19,11 +19,11 @@ constexpr std::size_t kLandStep = 4;  // of them, along a cell of a land
 constexpr int kLandParts = 4;         // cells across a land
 constexpr int kFloorStrips = 48;      // of the groove floor over a pitch
 
-
 /// Makes one ring, step by step.
 class Maker {
  public:
-  Maker(const face_gear::FaceGear& gear, int zone, const face_gear::SpaceSheet& space, GearRing& ring) : gear_(gear), zone_(zone), space_(space), R(ring), bounds_(gear.parameters(), space) {}
+  Maker(const face_gear::FaceGear& gear, int zone, const face_gear::SpaceSheet& space, GearRing& ring)
+      : gear_(gear), zone_(zone), space_(space), R(ring), bounds_(gear.parameters(), space) {}
 
   void make() {
     sheet_cells();
@@ -49,15 +49,16 @@ class Maker {
     const auto& st = R.sheet.stations();
     for (std::size_t j = 0; j + 1 < st.size(); ++j) {
       for (std::size_t k = 0; k + 1 < st[j].nodes.size(); ++k) {
-        const auto &n00 = st[j].nodes[k], &n01 = st[j].nodes[k + 1], &n10 = st[j + 1].nodes[k], &n11 = st[j + 1].nodes[k + 1];
+        const auto &n00 = st[j].nodes[k], &n01 = st[j].nodes[k + 1], &n10 = st[j + 1].nodes[k],
+                   &n11 = st[j + 1].nodes[k + 1];
         if (n00.at.piece != n01.at.piece) continue;
         GearRing::Cell cell;
         cell.corner = {n00.at.contact.p, n01.at.contact.p, n10.at.contact.p, n11.at.contact.p};
         // The sheet goes on beyond the ends and the tip; what lies wholly there is no part of the gear.
         const auto all = [&](auto&& test) { return std::all_of(cell.corner.begin(), cell.corner.end(), test); };
         const auto above_tip = [&](const Vec3& p) { return p.z() > space_.surface().z_tip(radius(p)) + kCellLength; };
-        if (all([&](const Vec3& p) { return radius(p) < R.r_in; }) || all([&](const Vec3& p) { return radius(p) > R.r_out; }) ||
-            all(above_tip))
+        if (all([&](const Vec3& p) { return radius(p) < R.r_in; }) ||
+            all([&](const Vec3& p) { return radius(p) > R.r_out; }) || all(above_tip))
           continue;
         cell.zone = zone_;
         cell.piece = n00.at.piece;
@@ -156,14 +157,17 @@ class Maker {
   }
 
   void tables() {
-    const auto start_of = [](const std::optional<face_gear::TipPlace>& last) { return last ? std::optional(last->at) : std::nullopt; };
+    const auto start_of = [](const std::optional<face_gear::TipPlace>& last) {
+      return last ? std::optional(last->at) : std::nullopt;
+    };
     std::optional<face_gear::TipPlace> last_plus, last_minus;
     for (int k = 0; k < kTable; ++k) {
       const double r = R.r_in + (R.r_out - R.r_in) * k / (kTable - 1);
       const double z_tip = space_.surface().z_tip(r), pitch = gear_.pitch();
       last_plus = space_.tip(1, r, start_of(last_plus));
       last_minus = space_.tip(-1, r, start_of(last_minus));
-      const auto root = space_.point(face_gear::SpacePiece::root, 0.5, std::sqrt(r * r - space_.surface().E * space_.surface().E) / space_.surface().Sg);
+      const auto root = space_.point(face_gear::SpacePiece::root, 0.5,
+                                     std::sqrt(r * r - space_.surface().E * space_.surface().E) / space_.surface().Sg);
       R.table_r.push_back(r);
       R.mid.push_back(std::atan2(root->p.y(), root->p.x()));
       R.tip_plus.push_back(last_plus ? last_plus->azimuth : R.mid.back() - pitch / 2);
@@ -224,7 +228,9 @@ class Maker {
   }
 
   [[nodiscard]] bool grooved() const { return gear_.rings().size() > 1; }
-  [[nodiscard]] double base() const { return std::min(gear_.lowest_root(), grooved() ? gear_.groove_floor() : INFINITY) - 0.5; }
+  [[nodiscard]] double base() const {
+    return std::min(gear_.lowest_root(), grooved() ? gear_.groove_floor() : INFINITY) - 0.5;
+  }
   [[nodiscard]] EndFace end_face(bool outer) const {
     const double r = outer ? R.r_out : R.r_in;
     return {r, outer, space_.surface().z_tip(r), R.lookup(R.opening, r) - gear_.pitch() / 2, gear_.pitch(), base()};
@@ -234,13 +240,17 @@ class Maker {
   void end_cells() {
     for (const bool outer : {false, true})
       for (const auto& quad : end_face_quads(end_face(outer), outer ? R.end_out : R.end_in))
-        add_flat(quad.corner, outer ? BodySurface::outer_end : BodySurface::inner_end, {quad.from, quad.low}, {quad.to, quad.high});
+        add_flat(quad.corner, outer ? BodySurface::outer_end : BodySurface::inner_end, {quad.from, quad.low},
+                 {quad.to, quad.high});
   }
 
   void floor_cells() {
     if (!grooved() || zone_ != 0) return;
-    const auto at = [&](double r, double azimuth) { return Vec3(r * std::cos(azimuth), r * std::sin(azimuth), gear_.groove_floor()); };
-    const double next = gear_.rings()[1].zone.inner_radius_mm, pitch = gear_.pitch(), from = R.lookup(R.mid, R.r_out) - pitch / 2;
+    const auto at = [&](double r, double azimuth) {
+      return Vec3(r * std::cos(azimuth), r * std::sin(azimuth), gear_.groove_floor());
+    };
+    const double next = gear_.rings()[1].zone.inner_radius_mm, pitch = gear_.pitch(),
+                 from = R.lookup(R.mid, R.r_out) - pitch / 2;
     const int rows = std::max(1, int(std::ceil((next - R.r_out) / 1.0)));
     for (int k = 0; k < kFloorStrips; ++k)
       for (int q = 0; q < rows; ++q) {
@@ -257,7 +267,8 @@ class Maker {
         Facet facet;
         for (std::size_t k = first; k < first + 3; ++k) facet.add({cell.corner[k], Vec2::Zero(), true});
         if (cell.sheet) facet = on_ring(space_, facet, R.sag);
-        for (std::size_t k = 1; k + 1 < facet.count; ++k) R.triangles.push_back({facet.corner[0].p, facet.corner[k].p, facet.corner[k + 1].p});
+        for (std::size_t k = 1; k + 1 < facet.count; ++k)
+          R.triangles.push_back({facet.corner[0].p, facet.corner[k].p, facet.corner[k + 1].p});
       }
       cell.triangles = std::uint32_t(R.triangles.size()) - cell.first_triangle;
     }
@@ -287,7 +298,8 @@ class Maker {
       const bool fillet = piece == face_gear::SpacePiece::fillet_plus || piece == face_gear::SpacePiece::fillet_minus;
       BodyPatches::SheetCell cell;
       cell.index = n;
-      const std::array<const face_gear::OffsetSheet::Node*, 4> nodes{&st[j].nodes[k], &st[j].nodes[k + 1], &st[j + 1].nodes[k + 1], &st[j + 1].nodes[k]};
+      const std::array<const face_gear::OffsetSheet::Node*, 4> nodes{&st[j].nodes[k], &st[j].nodes[k + 1],
+                                                                     &st[j + 1].nodes[k + 1], &st[j + 1].nodes[k]};
       for (std::size_t c = 0; c < 4; ++c) {
         cell.uv[c] = {nodes[c]->at.u, nodes[c]->at.v};
         cell.corner[c] = nodes[c]->at.contact.p;
@@ -295,7 +307,8 @@ class Maker {
       blocks[{(j - first_row) / (fillet ? 8 : 4), std::size_t(piece), fillet ? k : k / 4}].push_back(cell);
     }
     for (const auto& [key, cells] : blocks) R.patches->add_block(face_gear::SpacePiece(key[1]), cells);
-    for (const auto& other : others_) R.patches->add(other.index, other.surface, other.low, other.high, R.cells[other.index].corner);
+    for (const auto& other : others_)
+      R.patches->add(other.index, other.surface, other.low, other.high, R.cells[other.index].corner);
   }
 
   struct Station {
@@ -323,23 +336,28 @@ class Maker {
 
 }  // namespace
 
-Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal> GearRing::make(const face_gear::FaceGear& gear, int zone, double reach_mm) {
+Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal> GearRing::make(const face_gear::FaceGear& gear,
+                                                                               int zone, double reach_mm) {
   const auto& ring = gear.rings()[std::size_t(zone)];
   const double r_in = ring.zone.inner_radius_mm, r_out = ring.zone.outer_radius_mm;
   const double beyond = std::min(reach_mm, 0.25 * (r_out - r_in) + 1.0);
   const int stations = std::clamp(int((r_out - r_in + 2 * beyond) / kCellLength) + 2, 9, 400);
   const face_gear::SpaceSheet space(gear.parameters(), ring);
-  auto out = std::make_unique<GearRing>(space, face_gear::OffsetSheet(space, 0.0, r_in - beyond, r_out + beyond, stations));
+  auto out =
+      std::make_unique<GearRing>(space, face_gear::OffsetSheet(space, 0.0, r_in - beyond, r_out + beyond, stations));
   out->r_in = r_in;
   out->r_out = r_out;
   const auto& sheet = out->sheet;
   const std::string key = "zone[" + std::to_string(zone) + "]";
   if (sheet.empty())
-    return face_gear::FaceGearRefusal{key, fail("zone {}: the flanks and fillets of the tooth space are found at no radius between {:.4f} and {:.4f} mm", zone,
-                                     r_in - beyond, r_out + beyond)};
+    return face_gear::FaceGearRefusal{
+        key,
+        fail("zone {}: the flanks and fillets of the tooth space are found at no radius between {:.4f} and {:.4f} mm",
+             zone, r_in - beyond, r_out + beyond)};
   if (sheet.r_from() > r_in || sheet.r_to() < r_out)
-    return face_gear::FaceGearRefusal{key, fail("zone {}: the flanks and fillets of the tooth space are found from radius {:.4f} to {:.4f} mm only, the ring "
-                                     "is {:.4f} to {:.4f} mm", zone, sheet.r_from(), sheet.r_to(), r_in, r_out)};
+    return face_gear::FaceGearRefusal{key, fail("zone {}: the flanks and fillets of the tooth space are found from "
+                                                "radius {:.4f} to {:.4f} mm only, the ring is {:.4f} to {:.4f} mm",
+                                                zone, sheet.r_from(), sheet.r_to(), r_in, r_out)};
   Maker(gear, zone, out->space, *out).make();
   return out;
 }
@@ -349,7 +367,9 @@ bool GearRing::on_ring(const Vec3& p) const {
   return rp >= r_in - 1e-9 && rp <= r_out + 1e-9 && p.z() <= space.surface().z_tip(rp) + 1e-9;
 }
 
-bool GearRing::over_land(double azimuth, double r) const { return azimuth <= lookup(tip_plus, r) || azimuth >= lookup(tip_minus, r); }
+bool GearRing::over_land(double azimuth, double r) const {
+  return azimuth <= lookup(tip_plus, r) || azimuth >= lookup(tip_minus, r);
+}
 
 double GearRing::to_tip_meridian(double r, double z, double& foot) const {
   const double dr = r_out - r_in, dz = z_tip_out - z_tip_in;
@@ -359,7 +379,8 @@ double GearRing::to_tip_meridian(double r, double z, double& foot) const {
 }
 
 double GearRing::lookup(const std::vector<double>& y, double r) const {
-  const double t = std::clamp((r - table_r.front()) / (table_r.back() - table_r.front()), 0.0, 1.0) * double(y.size() - 1);
+  const double t =
+      std::clamp((r - table_r.front()) / (table_r.back() - table_r.front()), 0.0, 1.0) * double(y.size() - 1);
   const auto k = std::min(std::size_t(t), y.size() - 2);
   return y[k] + (t - double(k)) * (y[k + 1] - y[k]);
 }
@@ -372,11 +393,13 @@ bool inside_profile(std::size_t count, const Point& point, double azimuth, doubl
   if (z >= z_tip) return false;
   Vec2 a = point(0);
   if (azimuth <= a.x() || azimuth >= point(count - 1).x()) return true;
-  // Straight up from a place in the material the profile is crossed an odd number of times, also where a flank leans back.
+  // Straight up from a place in the material the profile is crossed an odd number of times, also where a flank leans
+  // back.
   bool inside = false;
   for (std::size_t k = 1; k < count; ++k) {
     const Vec2 b = point(k);
-    if ((a.x() <= azimuth) != (b.x() <= azimuth) && z < a.y() + (azimuth - a.x()) / (b.x() - a.x()) * (b.y() - a.y())) inside = !inside;
+    if ((a.x() <= azimuth) != (b.x() <= azimuth) && z < a.y() + (azimuth - a.x()) / (b.x() - a.x()) * (b.y() - a.y()))
+      inside = !inside;
     a = b;
   }
   return inside;
@@ -386,14 +409,17 @@ bool inside_profile(std::size_t count, const Point& point, double azimuth, doubl
 
 bool GearRing::in_material_at(double r, double azimuth, double z, double z_tip) const {
   const auto& st = sheet.stations();
-  const double last = double(st.size() - 1), t = std::clamp((r - st.front().r) / (st.back().r - st.front().r) * last, 0.0, last);
+  const double last = double(st.size() - 1),
+               t = std::clamp((r - st.front().r) / (st.back().r - st.front().r) * last, 0.0, last);
   const std::size_t j = std::min(std::size_t(t), st.size() - 2);
   const auto &at = profiles[j], &step = profile_steps[j];
-  return inside_profile(at.size(), [&, x = t - double(j)](std::size_t k) -> Vec2 { return at[k] + x * step[k]; }, azimuth, z, z_tip);
+  return inside_profile(
+      at.size(), [&, x = t - double(j)](std::size_t k) -> Vec2 { return at[k] + x * step[k]; }, azimuth, z, z_tip);
 }
 
 bool in_material(const std::vector<Vec2>& profile, double azimuth, double z, double z_tip) {
-  return inside_profile(profile.size(), [&](std::size_t k) { return profile[k]; }, azimuth, z, z_tip);
+  return inside_profile(
+      profile.size(), [&](std::size_t k) { return profile[k]; }, azimuth, z, z_tip);
 }
 
 }  // namespace toothpath::analytic

@@ -1,5 +1,6 @@
-// One ring of a finished face gear as it is searched: cells over the working sheet of one tooth space, lands, end faces and groove
-// floor, the polylines of its edges, and tables over the radius. Made once; `GearDistance` and the bodies ask it.
+// One ring of a finished face gear as it is searched: cells over the working sheet of one tooth space, lands, end faces
+// and groove floor, the polylines of its edges, and tables over the radius. Made once; `GearDistance` and the bodies
+// ask it.
 #pragma once
 
 #include <memory>
@@ -8,8 +9,8 @@
 
 #include "cam/analytic/body_patches.h"
 #include "cam/analytic/gear_distance.h"
-#include "geometry/face_gear/offset_sheet.h"
 #include "cam/analytic/spatial_index.h"
+#include "geometry/face_gear/offset_sheet.h"
 
 namespace toothpath::analytic {
 
@@ -30,31 +31,33 @@ struct GearRing {
   std::unique_ptr<SpatialIndex> index;
   std::vector<EdgeSegment> edges;
   std::unique_ptr<SpatialIndex> edge_index;
-  double sag = 0;       ///< of the facets, as it showed, doubled
-  double edge_sag = 0;  ///< greatest of the edges
+  double sag = 0;                  ///< of the facets, as it showed, doubled
+  double edge_sag = 0;             ///< greatest of the edges
   std::size_t unproven_edges = 0;  ///< stretches of an edge for which only the sag that showed is known
-  double tip_sag = 0;   ///< of the tip surface's meridian against the straight line between its ends
+  double tip_sag = 0;              ///< of the tip surface's meridian against the straight line between its ends
   double z_tip_in = 0, z_tip_out = 0;
   std::vector<double> table_r, mid, tip_plus, tip_minus;  ///< azimuths over r
   std::vector<double> opening;                            ///< azimuth of the middle between the tip edges, over r
   std::vector<std::vector<Vec2>> profiles;                ///< (azimuth, z) of the sheet at every station
-  std::vector<std::vector<Vec2>> profile_steps;           ///< from there to the next station, the azimuth the short way round
-  std::vector<Vec2> end_in, end_out;                      ///< the same at the ends, tip to tip
-  std::vector<std::array<Vec3, 3>> triangles;             ///< of the cells, for bodies
-  std::unique_ptr<BodyPatches> patches;                   ///< the same cells on the exact surface
+  std::vector<std::vector<Vec2>> profile_steps;  ///< from there to the next station, the azimuth the short way round
+  std::vector<Vec2> end_in, end_out;             ///< the same at the ends, tip to tip
+  std::vector<std::array<Vec3, 3>> triangles;    ///< of the cells, for bodies
+  std::unique_ptr<BodyPatches> patches;          ///< the same cells on the exact surface
 
   GearRing(const face_gear::SpaceSheet& s, face_gear::OffsetSheet o) : space(s), sheet(std::move(o)) {}
 
-  /// Ring `zone` of the gear, for distances up to `reach_mm`; a refusal where its surfaces cannot be followed over its whole width.
-  static Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal> make(const face_gear::FaceGear& gear, int zone, double reach_mm);
+  /// Ring `zone` of the gear, for distances up to `reach_mm`; a refusal where its surfaces cannot be followed over its
+  /// whole width.
+  static Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal> make(const face_gear::FaceGear& gear, int zone,
+                                                                              double reach_mm);
 
   [[nodiscard]] bool on_ring(const Vec3& p) const;
   /// Is the azimuth over the top land at radius r?
   [[nodiscard]] bool over_land(double azimuth, double r) const;
   /// Distance to the tip surface's meridian in the plane (r, z), from below; `foot` is the radius of its foot.
   [[nodiscard]] double to_tip_meridian(double r, double z, double& foot) const;
-  /// Is the place at radius r inside the material? By the profile across the space there: between the stations, since a conical root
-  /// rises along the tooth.
+  /// Is the place at radius r inside the material? By the profile across the space there: between the stations, since a
+  /// conical root rises along the tooth.
   [[nodiscard]] bool in_material_at(double r, double azimuth, double z, double z_tip) const;
   /// A table over the radius.
   [[nodiscard]] double lookup(const std::vector<double>& y, double r) const;

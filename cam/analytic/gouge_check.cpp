@@ -9,19 +9,21 @@
 #include "cam/analytic/body_sweep.h"
 #include "cam/analytic/cutter_sweep.h"
 #include "cam/analytic/profile_sweep.h"
-#include "cam/proof/gouge_merge.h"
 #include "cam/path/motion_blend.h"
 #include "cam/path/motions.h"
+#include "cam/proof/gouge_merge.h"
 #include "cam/proof/rapid_clearance.h"
 
 namespace toothpath::analytic {
 namespace {
 
-constexpr std::size_t kChunk = 256;     // motions that one thread checks one after another; the same on any number of threads
-constexpr double kBodyLook = 0.3;           // mm: gaps of shank and holder are followed this far beyond the clearance
-constexpr double kAhead = 0.4;          // mm: and this much farther where a body is looked at anew, so that later motions need not
+constexpr std::size_t kChunk =
+    256;  // motions that one thread checks one after another; the same on any number of threads
+constexpr double kBodyLook = 0.3;  // mm: gaps of shank and holder are followed this far beyond the clearance
+constexpr double kAhead =
+    0.4;  // mm: and this much farther where a body is looked at anew, so that later motions need not
 constexpr double kContact = 0.005;  // mm: smaller gaps of shank and holder are followed to proof_mm
-constexpr double kGapStep = 0.02;       // mm: to which the least gap is told
+constexpr double kGapStep = 0.02;   // mm: to which the least gap is told
 
 proof::WorstPlace place_of(const NearestPlace& q, const path::ToolMotion& m, double depth, tool::Body body) {
   proof::WorstPlace w;
@@ -67,9 +69,11 @@ class Chunk {
       add_worst(out_, place_of(cut.deepest, m, depth, cut.body));
     for (Body& body : bodies_) clearance(body, m);
     if (m.rapid) {
-      const proof::RapidObstacle blank{part_.gear().outer_radius(), part_.gear().inner_radius(), o_.rapid_height_mm, -std::numeric_limits<double>::infinity()};
+      const proof::RapidObstacle blank{part_.gear().outer_radius(), part_.gear().inner_radius(), o_.rapid_height_mm,
+                                       -std::numeric_limits<double>::infinity()};
       const auto& used = tools_[std::size_t(tool)];
-      const auto proof = used.ball_mill ? proof::prove_rapid(m, *used.ball_mill, blank) : proof::prove_rapid(m, used, blank);
+      const auto proof =
+          used.ball_mill ? proof::prove_rapid(m, *used.ball_mill, blank) : proof::prove_rapid(m, used, blank);
       if (!proof.clear) {
         out_.rapids_clear = false;
         proof::WorstPlace w = place_of(cut.deepest, m, 0, tool::Body::any);
@@ -110,10 +114,14 @@ class Chunk {
   }
 
   void clearance(Body& body, const path::ToolMotion& m) {
-    const double enough = o_.limits.clearance_mm + kBodyLook, arm = std::hypot(body.frustum.to, std::max(body.frustum.radius_from, body.frustum.radius_to));
+    const double enough = o_.limits.clearance_mm + kBodyLook,
+                 arm = std::hypot(body.frustum.to, std::max(body.frustum.radius_from, body.frustum.radius_to));
     if (body.known) {
-      const auto away = [&](const Vec3& tip, const Vec3& axis) { return (tip - body.tip).norm() + arm * (axis - body.axis).norm(); };
-      const double left = body.gap - std::max(away(m.tip_from, m.axis_from), away(m.tip_to, m.axis_to)) - path::line_slack(m, arm, 1);
+      const auto away = [&](const Vec3& tip, const Vec3& axis) {
+        return (tip - body.tip).norm() + arm * (axis - body.axis).norm();
+      };
+      const double left =
+          body.gap - std::max(away(m.tip_from, m.axis_from), away(m.tip_to, m.axis_to)) - path::line_slack(m, arm, 1);
       if (left >= o_.limits.clearance_mm && left >= std::min(enough, out_.clearance_measured_mm - kGapStep)) {
         out_.clearance_mm = std::min({out_.clearance_mm, left, enough});
         out_.clearance_measured_mm = std::min(out_.clearance_measured_mm, enough);
@@ -138,21 +146,24 @@ class Chunk {
   const GougeCheckOptions& o_;
   proof::GougeResult out_;
   int tool_ = -1;
-  std::optional<CutterSweep> ball_;       // one of the two
+  std::optional<CutterSweep> ball_;  // one of the two
   std::optional<ProfileSweep> profile_;
   std::vector<Body> bodies_;
 };
 
 }  // namespace
 
-GougeCheck::GougeCheck(const GearDistance& part, const std::vector<tool::ToolAssembly>& tools, GougeCheckOptions options) : part_(part), options_(options) {
+GougeCheck::GougeCheck(const GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
+                       GougeCheckOptions options)
+    : part_(part), options_(options) {
   for (const auto& t : tools) tools_.push_back(tool::proof_tool(t));
 }
 
 GougeCheck::GougeCheck(const GearDistance& part, std::vector<tool::ProofTool> tools, GougeCheckOptions options)
     : part_(part), tools_(std::move(tools)), options_(options) {}
 
-proof::GougeResult GougeCheck::check(const std::vector<path::ToolMotion>& motions, const std::vector<int>& tool_of_operation) const {
+proof::GougeResult GougeCheck::check(const std::vector<path::ToolMotion>& motions,
+                                     const std::vector<int>& tool_of_operation) const {
   std::vector<proof::GougeResult> chunks((motions.size() + kChunk - 1) / kChunk);
   tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t n) {
     Chunk chunk(part_, tools_, options_);
@@ -170,7 +181,9 @@ bool GougeCheck::passes(const proof::GougeResult& r) const {
          r.clearance_mm >= options_.limits.clearance_mm && r.rapids_clear;
 }
 
-std::vector<path::ToolMotion> GougeCheck::motions_of(const path::ClPath& path) { return toothpath::path::motions_of(path); }
+std::vector<path::ToolMotion> GougeCheck::motions_of(const path::ClPath& path) {
+  return toothpath::path::motions_of(path);
+}
 
 Result<proof::CheckedClPath> GougeCheck::check_path(path::ClPath path) const {
   std::vector<int> tool_of_operation(std::size_t(path.operation) + 1, path.tool);
@@ -179,19 +192,20 @@ Result<proof::CheckedClPath> GougeCheck::check_path(path::ClPath path) const {
   if (!r.worst.empty()) {
     const auto& w = r.worst.front();
     if (w.body == tool::Body::any)
-      return fail_as(DiagnosticKind::verification, "operation {} ({}): the rapid to CL record {} runs through the blank",
-                     path.operation, path.operation_type, w.line);
+      return fail_as(DiagnosticKind::verification,
+                     "operation {} ({}): the rapid to CL record {} runs through the blank", path.operation,
+                     path.operation_type, w.line);
     if (!cuts(w.body))
       return fail_as(DiagnosticKind::verification,
-                     "operation {} ({}), CL record {}: the {} of tool {} comes within {:.4f} mm of the teeth at radius {:.3f}, "
-                     "height {:.3f}; the clearance is {:.4f}",
-                     path.operation, path.operation_type, w.line, w.body, tools_[std::size_t(path.tool)].number, -w.depth_mm,
-                     w.radius_mm, w.height_mm, options_.limits.clearance_mm);
+                     "operation {} ({}), CL record {}: the {} of tool {} comes within {:.4f} mm of the teeth at radius "
+                     "{:.3f}, height {:.3f}; the clearance is {:.4f}",
+                     path.operation, path.operation_type, w.line, w.body, tools_[std::size_t(path.tool)].number,
+                     -w.depth_mm, w.radius_mm, w.height_mm, options_.limits.clearance_mm);
     return fail_as(DiagnosticKind::verification,
-                   "operation {} ({}), CL record {}: the {} cuts {:.4f} mm (bound) into {} of zone {} at radius {:.3f}, height "
-                   "{:.3f}; the gouge tolerance is {:.4f}",
-                   path.operation, path.operation_type, w.line, w.body, w.depth_mm, w.patch, w.zone, w.radius_mm, w.height_mm,
-                   options_.limits.gouge_mm);
+                   "operation {} ({}), CL record {}: the {} cuts {:.4f} mm (bound) into {} of zone {} at radius "
+                   "{:.3f}, height {:.3f}; the gouge tolerance is {:.4f}",
+                   path.operation, path.operation_type, w.line, w.body, w.depth_mm, w.patch, w.zone, w.radius_mm,
+                   w.height_mm, options_.limits.gouge_mm);
   }
   return fail_as(DiagnosticKind::verification, "operation {} ({}) is not proven free of gouges", path.operation,
                  path.operation_type);

@@ -1,18 +1,18 @@
 // The gouge check of mills on a face gear: what every body of the tool was found to do along every motion, and a proven
-// bound for every moment between the blocks. Ball and flute: cam/analytic/cutter_sweep.h. Cutting parts of any profile: cam/analytic/profile_sweep.h.
-// Shank and holder: cam/analytic/body_sweep.h.
-// Rapids: cam/proof/rapid_clearance.h. Why the bounds hold: docs/proof.md.
+// bound for every moment between the blocks. Ball and flute: cam/analytic/cutter_sweep.h. Cutting parts of any profile:
+// cam/analytic/profile_sweep.h. Shank and holder: cam/analytic/body_sweep.h. Rapids: cam/proof/rapid_clearance.h. Why
+// the bounds hold: docs/proof.md.
 #pragma once
 
 #include <vector>
 
-#include "cam/proof/checked_cl_path.h"
-#include "cam/proof/limits.h"
-#include "cam/tool/assembly.h"
-#include "cam/tool/proof_tool.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/path/tool_motion.h"
+#include "cam/proof/checked_cl_path.h"
+#include "cam/proof/limits.h"
 #include "cam/proof/verification.h"
+#include "cam/tool/assembly.h"
+#include "cam/tool/proof_tool.h"
 #include "geometry/base/result.h"
 
 namespace toothpath::analytic {
@@ -30,7 +30,8 @@ class GougeCheck {
   GougeCheck(const GearDistance& part, std::vector<tool::ProofTool> tools, GougeCheckOptions options);
 
   /// Checks motions; `tool_of_operation[op]` is an index into the tools. Runs on all threads; same bytes on any number.
-  [[nodiscard]] proof::GougeResult check(const std::vector<path::ToolMotion>& motions, const std::vector<int>& tool_of_operation) const;
+  [[nodiscard]] proof::GougeResult check(const std::vector<path::ToolMotion>& motions,
+                                         const std::vector<int>& tool_of_operation) const;
 
   /// Is everything within the options?
   [[nodiscard]] bool passes(const proof::GougeResult& result) const;

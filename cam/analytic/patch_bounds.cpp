@@ -32,7 +32,9 @@ Interval square(const Interval& x) {
 Interval along(const Interval& aa, const Interval& ab, const Interval& bb, const Interval& x, const Interval& y) {
   return aa * square(x) + Interval(2) * ab * x * y + bb * square(y);
 }
-Interval along(const Second& f, const Interval& x, const Interval& y) { return along(f.d[0].d[0], f.d[0].d[1], f.d[1].d[1], x, y); }
+Interval along(const Second& f, const Interval& x, const Interval& y) {
+  return along(f.d[0].d[0], f.d[0].d[1], f.d[1].d[1], x, y);
+}
 
 /// Everything about a piece over a box: place, first and second derivatives (aa, ab, bb) by the coordinates of a frame.
 struct Jet {
@@ -62,7 +64,8 @@ double PatchBend::above(const Vec3& g, double da, double db) const {
 }
 
 double PatchBend::sag(double da, double db) const {
-  return 0.125 * ((aa.norm() + spread_aa) * da * da + 2 * (ab.norm() + spread_ab) * da * db + (bb.norm() + spread_bb) * db * db);
+  return 0.125 * ((aa.norm() + spread_aa) * da * da + 2 * (ab.norm() + spread_ab) * da * db +
+                  (bb.norm() + spread_bb) * db * db);
 }
 
 std::optional<PatchBend> PatchBend::of(const std::array<std::array<Interval, 3>, 3>& second) {
@@ -78,9 +81,11 @@ struct PatchBounds::Kernels {
   [[nodiscard]] Jet over(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a, double half_b) const {
     const Interval a(-half_a, half_a), b(-half_b, half_b);
     const Vec2 &o = frame.origin, &x = frame.along_a, &y = frame.along_b;
-    const Second u = variable(Interval(o[0]) + a * x[0] + b * y[0], x[0], y[0]), v = variable(Interval(o[1]) + a * x[1] + b * y[1], x[1], y[1]);
+    const Second u = variable(Interval(o[0]) + a * x[0] + b * y[0], x[0], y[0]),
+                 v = variable(Interval(o[1]) + a * x[1] + b * y[1], x[1], y[1]);
     const int s = piece == face_gear::SpacePiece::flank_plus || piece == face_gear::SpacePiece::fillet_plus ? 1 : -1;
-    if (piece == face_gear::SpacePiece::fillet_plus || piece == face_gear::SpacePiece::fillet_minus) return fillet(s, u, v);
+    if (piece == face_gear::SpacePiece::fillet_plus || piece == face_gear::SpacePiece::fillet_minus)
+      return fillet(s, u, v);
     Vec3T<Second> p;
     if (piece == face_gear::SpacePiece::root) {
       const Second twist = atan2(Second(-f2.E * f2.Cg), Second(f2.Sg * v)) - f2.shaper.kappa * (v - f2.L0);
@@ -103,8 +108,8 @@ struct PatchBounds::Kernels {
     return jet;
   }
 
-  /// The fillet from its first derivatives. With P the place in the housing frame, e = e(B), A the normal angle and Z the section, any move along the
-  /// patch carries P by
+  /// The fillet from its first derivatives. With P the place in the housing frame, e = e(B), A the normal angle and Z
+  /// the section, any move along the patch carries P by
   ///     rho e dA + (dB - s dA) (y-x rotation about the shaper axis - i k x P) + (a + i kappa k x P) dZ,
   /// which holds the small sliding speed as one factor instead of the difference of two long levers.
   [[nodiscard]] Jet fillet(int side, const Second& A, const Second& Z) const {
@@ -115,8 +120,10 @@ struct PatchBounds::Kernels {
     const Second angle = atan2(Sn, C) + s * acos(Second(D_h / sqrt(Second(Sn * Sn + C * C))));
     const First B = angle.v, sB = sin(B), cB = cos(B), t(side), Z1 = Z.v;
     const First x = h.v * cB + t * g.v * sB, y = h.v * sB - t * g.v * cB;
-    const Vec3T<First> P(First(Z1 * f1.Sg - x * f1.Cg), First(f1.E + y), First(-Z1 * f1.Cg - x * f1.Sg)), kP(First(-P[1]), P[0], First(0));
-    const Vec3T<First> sliding = f1.b() * x - f1.d() * y - kP * f1.i, section = f1.a() + kP * First(f1.i * f1.shaper.kappa);
+    const Vec3T<First> P(First(Z1 * f1.Sg - x * f1.Cg), First(f1.E + y), First(-Z1 * f1.Cg - x * f1.Sg)),
+        kP(First(-P[1]), P[0], First(0));
+    const Vec3T<First> sliding = f1.b() * x - f1.d() * y - kP * f1.i,
+                       section = f1.a() + kP * First(f1.i * f1.shaper.kappa);
     const Vec3T<First> rounding = f1.e(B) * f1.shaper.rho;
     First turn = -f1.i * (B - t * A.v - f1.shaper.kappa * (Z1 - f1.L0));
     if (side < 0) turn += f1.pitch;
@@ -138,17 +145,21 @@ struct PatchBounds::Kernels {
 
 PatchBounds::PatchBounds(const face_gear::FaceGearParameters& gear, const face_gear::SpaceSheet& space)
     : space_(space),
-      kernels_(std::make_unique<Kernels>(Kernels{face_gear::make_surface<Second>(gear, space.ring().zone.helix_angle_rad),
-                                                 face_gear::make_surface<First>(gear, space.ring().zone.helix_angle_rad)})) {}
+      kernels_(
+          std::make_unique<Kernels>(Kernels{face_gear::make_surface<Second>(gear, space.ring().zone.helix_angle_rad),
+                                            face_gear::make_surface<First>(gear, space.ring().zone.helix_angle_rad)})) {
+}
 PatchBounds::~PatchBounds() = default;
 PatchBounds::PatchBounds(PatchBounds&&) noexcept = default;
 
-std::optional<PatchBend> PatchBounds::over(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a, double half_b) const {
+std::optional<PatchBend> PatchBounds::over(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a,
+                                           double half_b) const {
   if (space_.ring().correction && piece != face_gear::SpacePiece::root) return sampled(piece, frame, half_a, half_b);
   return PatchBend::of(kernels_->over(piece, frame, half_a, half_b).second);
 }
 
-std::optional<PatchBend> PatchBounds::sampled(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a, double half_b) const {
+std::optional<PatchBend> PatchBounds::sampled(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a,
+                                              double half_b) const {
   PatchBend bend;
   const double ha = 0.5 * half_a, hb = 0.5 * half_b;
   for (int i = 0; i < kSampled; ++i)
@@ -167,17 +178,21 @@ std::optional<PatchBend> PatchBounds::sampled(face_gear::SpacePiece piece, const
   return bend;
 }
 
-std::optional<CurveBend> PatchBounds::tip_azimuth(int side, const face_gear::TipPlace& from, double r_from, const face_gear::TipPlace& to, double r_to) const {
+std::optional<CurveBend> PatchBounds::tip_azimuth(int side, const face_gear::TipPlace& from, double r_from,
+                                                  const face_gear::TipPlace& to, double r_to) const {
   if (space_.ring().correction) return {};
   const auto& f = kernels_->f2;
   const Second z = f.z_tip(variable(Interval(r_from, r_to), 1, 0));
   const Interval z1 = z.v.d[0];
   for (const double margin : {1.0, 3.0}) {
-    const double du = margin * std::abs(to.at.theta - from.at.theta) + 1e-6, dv = margin * std::abs(to.at.B - from.at.B) + 1e-6;
-    const Second u = variable({std::min(from.at.theta, to.at.theta) - du, std::max(from.at.theta, to.at.theta) + du}, 1, 0);
+    const double du = margin * std::abs(to.at.theta - from.at.theta) + 1e-6,
+                 dv = margin * std::abs(to.at.B - from.at.B) + 1e-6;
+    const Second u =
+        variable({std::min(from.at.theta, to.at.theta) - du, std::max(from.at.theta, to.at.theta) + du}, 1, 0);
     const Second v = variable({std::min(from.at.B, to.at.B) - dv, std::max(from.at.B, to.at.B) + dv}, 0, 1);
     const Vec3T<Second> P = f.flank_housing(side, u, v);
-    const Second r = sqrt(Second(P[0] * P[0] + P[1] * P[1])), azimuth = atan2(P[1], P[0]) - f.i * f.flank_phi(side, u, v);
+    const Second r = sqrt(Second(P[0] * P[0] + P[1] * P[1])),
+                 azimuth = atan2(P[1], P[0]) - f.i * f.flank_phi(side, u, v);
     const Interval ru = r.v.d[0], rv = r.v.d[1], zu = P[2].v.d[0], zv = P[2].v.d[1], det = ru * zv - rv * zu;
     const Interval u1 = (zv - rv * z1) / det, v1 = (ru * z1 - zu) / det;
     // Followed from its first place, the edge cannot leave the box within the step.
@@ -191,7 +206,8 @@ std::optional<CurveBend> PatchBounds::tip_azimuth(int side, const face_gear::Tip
   return {};
 }
 
-std::optional<VectorBound> PatchBounds::bend_at_radius(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a, double half_b) const {
+std::optional<VectorBound> PatchBounds::bend_at_radius(face_gear::SpacePiece piece, const PatchFrame& frame,
+                                                       double half_a, double half_b) const {
   if (space_.ring().correction && piece != face_gear::SpacePiece::root) return {};
   const Jet p = kernels_->over(piece, frame, half_a, half_b);
   const Interval &x = p.place[0], &y = p.place[1], r = sqrt(square(x) + square(y));

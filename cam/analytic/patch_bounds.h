@@ -1,7 +1,9 @@
-// How far a piece of the exact surface can leave the flat facet between its corners: proven bounds of the second derivatives of the
-// analytic patches over boxes of their parameters, by interval arithmetic in the kernels that make the surface.
+// How far a piece of the exact surface can leave the flat facet between its corners: proven bounds of the second
+// derivatives of the analytic patches over boxes of their parameters, by interval arithmetic in the kernels that make
+// the surface.
 //
-// For phi = g.p and corners v_i with weights w_i of a place x of their hull in the plane of the parameters, Taylor about x gives
+// For phi = g.p and corners v_i with weights w_i of a place x of their hull in the plane of the parameters, Taylor
+// about x gives
 //     sum w_i phi(v_i) - phi(x) = 1/2 sum w_i (v_i - x)^T H_i (v_i - x),
 // and sum w_i (a_i - a)^2 <= da^2 / 4 on an interval of length da. docs/proof.md, Facets.
 #pragma once
@@ -15,7 +17,8 @@
 
 namespace toothpath::analytic {
 
-/// Affine coordinates (a, b) in the plane of the parameters (u, v) of a piece: the cells of a sheet are oblique in (u, v).
+/// Affine coordinates (a, b) in the plane of the parameters (u, v) of a piece: the cells of a sheet are oblique in (u,
+/// v).
 struct PatchFrame {
   Vec2 origin = Vec2::Zero(), along_a = Vec2::UnitX(), along_b = Vec2::UnitY();
   [[nodiscard]] Vec2 uv(const Vec2& ab) const { return origin + ab.x() * along_a + ab.y() * along_b; }
@@ -59,24 +62,29 @@ class PatchBounds {
   ~PatchBounds();
   PatchBounds(PatchBounds&&) noexcept;
 
-  /// Over the box |a| <= half_a, |b| <= half_b. Nothing where no bound is found. Nominal surfaces: proven. The flanks and fillets of a
-  /// corrected ring: three times the greatest of 25 second differences, which is measured, not proven.
-  [[nodiscard]] std::optional<PatchBend> over(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a, double half_b) const;
+  /// Over the box |a| <= half_a, |b| <= half_b. Nothing where no bound is found. Nominal surfaces: proven. The flanks
+  /// and fillets of a corrected ring: three times the greatest of 25 second differences, which is measured, not proven.
+  [[nodiscard]] std::optional<PatchBend> over(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a,
+                                              double half_b) const;
 
-  /// The azimuth of the tip edge of `side` as a function of the radius, between two places of it. Proven: the edge cannot leave a box
-  /// about the two places in which its slope is bounded. Nothing where no such box is found, and for a corrected ring.
-  [[nodiscard]] std::optional<CurveBend> tip_azimuth(int side, const face_gear::TipPlace& from, double r_from, const face_gear::TipPlace& to, double r_to) const;
+  /// The azimuth of the tip edge of `side` as a function of the radius, between two places of it. Proven: the edge
+  /// cannot leave a box about the two places in which its slope is bounded. Nothing where no such box is found, and for
+  /// a corrected ring.
+  [[nodiscard]] std::optional<CurveBend> tip_azimuth(int side, const face_gear::TipPlace& from, double r_from,
+                                                     const face_gear::TipPlace& to, double r_to) const;
 
-  /// Second derivative by a of the curve in which a piece meets the cylinder through the origin of the frame, for |a| <= half_a; the curve is
-  /// followed within |b| <= half_b. Proven like the others.
-  [[nodiscard]] std::optional<VectorBound> bend_at_radius(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a, double half_b) const;
+  /// Second derivative by a of the curve in which a piece meets the cylinder through the origin of the frame, for |a|
+  /// <= half_a; the curve is followed within |b| <= half_b. Proven like the others.
+  [[nodiscard]] std::optional<VectorBound> bend_at_radius(face_gear::SpacePiece piece, const PatchFrame& frame,
+                                                          double half_a, double half_b) const;
 
   /// Second derivative of the height of the tip surface by the radius.
   [[nodiscard]] Interval tip_surface_bend(double r_from, double r_to) const;
 
  private:
   struct Kernels;
-  [[nodiscard]] std::optional<PatchBend> sampled(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a, double half_b) const;
+  [[nodiscard]] std::optional<PatchBend> sampled(face_gear::SpacePiece piece, const PatchFrame& frame, double half_a,
+                                                 double half_b) const;
   const face_gear::SpaceSheet& space_;
   std::unique_ptr<Kernels> kernels_;
 };

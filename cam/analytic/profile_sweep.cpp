@@ -8,23 +8,29 @@
 namespace toothpath::analytic {
 namespace {
 
-constexpr double kFreeAhead = 0.4;    // mm: so much farther a body in the open is looked at, so that later motions need not
-constexpr double kClose = 0.01;       // mm: smaller gaps are followed to proof_mm,
-constexpr double kUnknownDepth = 1;   // mm: told where the surfaces of the part cannot be followed
+constexpr double kFreeAhead =
+    0.4;                         // mm: so much farther a body in the open is looked at, so that later motions need not
+constexpr double kClose = 0.01;  // mm: smaller gaps are followed to proof_mm,
+constexpr double kUnknownDepth = 1;    // mm: told where the surfaces of the part cannot be followed
 constexpr double kApartProof = 0.004;  // mm: larger ones to this
 
 }  // namespace
 
 ProfileSweep::ProfileSweep(const GearDistance& part, const tool::ProofTool& tool, double proof_mm, double tolerance_mm)
     : part_(part), ball_top_(tool.ball_top_mm), proof_(proof_mm), tolerance_(tolerance_mm) {
-  for (const auto& shape : tool.cutting) bodies_.push_back({shape, std::hypot(shape.core.to + shape.round, shape.widest()), false, Vec3::Zero(), Vec3::UnitZ(), 0});
+  for (const auto& shape : tool.cutting)
+    bodies_.push_back(
+        {shape, std::hypot(shape.core.to + shape.round, shape.widest()), false, Vec3::Zero(), Vec3::UnitZ(), 0});
 }
 
 /// Gap that is left of the one that was proven where the body was looked at last.
 double ProfileSweep::left_of(const Body& body, const path::ToolMotion& m) const {
   if (!body.known) return -INFINITY;
-  const auto away = [&](const Vec3& tip, const Vec3& axis) { return (tip - body.tip).norm() + body.arm * (axis - body.axis).norm(); };
-  return body.gap - std::max(away(m.tip_from, m.axis_from), away(m.tip_to, m.axis_to)) - path::line_slack(m, body.arm, 1);
+  const auto away = [&](const Vec3& tip, const Vec3& axis) {
+    return (tip - body.tip).norm() + body.arm * (axis - body.axis).norm();
+  };
+  return body.gap - std::max(away(m.tip_from, m.axis_from), away(m.tip_to, m.axis_to)) -
+         path::line_slack(m, body.arm, 1);
 }
 
 void ProfileSweep::look(Body& body, const path::ToolMotion& m) {

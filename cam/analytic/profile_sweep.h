@@ -1,9 +1,11 @@
-// The cutting part of a mill with any convex profile along its motions: how deep it was found in the part, and how deep it can be between.
+// The cutting part of a mill with any convex profile along its motions: how deep it was found in the part, and how deep
+// it can be between.
 //
-// Ball end, side, corner and flat are one convex body or a few (cam/tool/proof_tool.h), and each may touch. Seen from the tool the part moves past
-// in the hulls of its quads (cam/analytic/body_sweep.h); the tangent plane of the body's signed distance is laid where it comes nearest, so that
-// the bound stands above what was found by what surface and motion bend within a quad, and by nothing that the body's roundness does. All of
-// the part is seen alike: flanks, fillets, roots, lands, ends, neighbours, the other ring. docs/proof.md.
+// Ball end, side, corner and flat are one convex body or a few (cam/tool/proof_tool.h), and each may touch. Seen from
+// the tool the part moves past in the hulls of its quads (cam/analytic/body_sweep.h); the tangent plane of the body's
+// signed distance is laid where it comes nearest, so that the bound stands above what was found by what surface and
+// motion bend within a quad, and by nothing that the body's roundness does. All of the part is seen alike: flanks,
+// fillets, roots, lands, ends, neighbours, the other ring. docs/proof.md.
 #pragma once
 
 #include <cmath>
@@ -16,10 +18,12 @@
 
 namespace toothpath::analytic {
 
-/// Checks motions one after another: a motion that stays in what was proven free before needs no look. One object a thread.
+/// Checks motions one after another: a motion that stays in what was proven free before needs no look. One object a
+/// thread.
 class ProfileSweep {
  public:
-  /// @param proof_mm how far the bound may lie above the deepest place found so far, but for the deviations that the motions state
+  /// @param proof_mm how far the bound may lie above the deepest place found so far, but for the deviations that the
+  /// motions state
   /// @param tolerance_mm depth that is accepted: only beyond it the depth of every motion by itself is wanted
   ProfileSweep(const GearDistance& part, const tool::ProofTool& tool, double proof_mm, double tolerance_mm);
 

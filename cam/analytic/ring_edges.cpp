@@ -10,7 +10,8 @@ constexpr double kSag = 5e-6;         // mm: where a proven sag is larger, small
 constexpr std::size_t kStretch = 60;  // segments that are bounded together, at most
 
 /// Segments from .. to, whose places are all of one piece, but perhaps the last.
-void prove(const PatchBounds& bounds, const std::vector<EndPlace>& places, std::size_t from, std::size_t to, std::vector<double>& sags) {
+void prove(const PatchBounds& bounds, const std::vector<EndPlace>& places, std::size_t from, std::size_t to,
+           std::vector<double>& sags) {
   const std::size_t last = places[to].piece == places[from].piece ? to : to - 1;
   const std::size_t back = last > from || from == 0 ? from : from - 1;
   if (places[back].piece != places[from].piece || last == back) return;
@@ -54,15 +55,19 @@ std::vector<double> end_edge_sags(const PatchBounds& bounds, const std::vector<E
   return sags;
 }
 
-std::vector<std::optional<CurveBend>> tip_bends(const PatchBounds& bounds, int side, const std::vector<std::optional<face_gear::TipPlace>>& places,
+std::vector<std::optional<CurveBend>> tip_bends(const PatchBounds& bounds, int side,
+                                                const std::vector<std::optional<face_gear::TipPlace>>& places,
                                                 const std::vector<double>& radii) {
   std::vector<std::optional<CurveBend>> bends;
   for (std::size_t k = 0; k + 1 < places.size(); ++k)
-    bends.push_back(places[k] && places[k + 1] ? bounds.tip_azimuth(side, *places[k], radii[k], *places[k + 1], radii[k + 1]) : std::nullopt);
+    bends.push_back(places[k] && places[k + 1]
+                        ? bounds.tip_azimuth(side, *places[k], radii[k], *places[k + 1], radii[k + 1])
+                        : std::nullopt);
   return bends;
 }
 
-std::vector<double> tip_edge_sags(const PatchBounds& bounds, const std::vector<std::optional<CurveBend>>& bends, const std::vector<double>& radii) {
+std::vector<double> tip_edge_sags(const PatchBounds& bounds, const std::vector<std::optional<CurveBend>>& bends,
+                                  const std::vector<double>& radii) {
   std::vector<double> sags;
   for (std::size_t k = 0; k < bends.size(); ++k) {
     if (!bends[k]) {
@@ -70,8 +75,10 @@ std::vector<double> tip_edge_sags(const PatchBounds& bounds, const std::vector<s
       continue;
     }
     // (r cos A, r sin A, z): second derivatives -r A'^2 outwards, 2 A' + r A'' along the circle, z'' upwards.
-    const double r = radii[k + 1], step = r - radii[k], a1 = bends[k]->slope.magnitude(), a2 = bends[k]->bend.magnitude();
-    sags.push_back(0.125 * step * step * std::hypot(r * a1 * a1, 2 * a1 + r * a2, bounds.tip_surface_bend(radii[k], r).magnitude()));
+    const double r = radii[k + 1], step = r - radii[k], a1 = bends[k]->slope.magnitude(),
+                 a2 = bends[k]->bend.magnitude();
+    sags.push_back(0.125 * step * step *
+                   std::hypot(r * a1 * a1, 2 * a1 + r * a2, bounds.tip_surface_bend(radii[k], r).magnitude()));
   }
   return sags;
 }

@@ -78,8 +78,9 @@ struct SpatialIndex::Impl {
   }
 };
 
-/// A device that is told a number of threads ("threads=1") holds the whole process to it as long as it lives. So it is told none, and the
-/// tree is built in an arena of one thread: the same tree on any machine, and every thread for those who ask.
+/// A device that is told a number of threads ("threads=1") holds the whole process to it as long as it lives. So it is
+/// told none, and the tree is built in an arena of one thread: the same tree on any machine, and every thread for those
+/// who ask.
 SpatialIndex::SpatialIndex(const std::vector<Box>& boxes) : impl_(std::make_unique<Impl>()) {
   ++indices_built;
   impl_->boxes = boxes;

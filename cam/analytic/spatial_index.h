@@ -26,15 +26,16 @@ class SpatialIndex {
   SpatialIndex(SpatialIndex&&) noexcept;
   SpatialIndex& operator=(SpatialIndex&&) noexcept;
 
-  /// Calls `visit(index)` for every box within `radius` of `p` (and perhaps a few more). `visit` returns the radius to go on
-  /// with: smaller values shrink the search.
+  /// Calls `visit(index)` for every box within `radius` of `p` (and perhaps a few more). `visit` returns the radius to
+  /// go on with: smaller values shrink the search.
   using Visit = double (*)(void* context, std::size_t index, double radius);
   void near(const Vec3& p, double radius, Visit visit, void* context) const;
 
   template <typename F>
   void near(const Vec3& p, double radius, F&& visit) const {
-    near(p, radius, [](void* context, std::size_t index, double r) { return (*static_cast<F*>(context))(index, r); },
-         &visit);
+    near(
+        p, radius, [](void* context, std::size_t index, double r) { return (*static_cast<F*>(context))(index, r); },
+        &visit);
   }
 
   /// How many indices have been built in this process: shows that a stage needed none.

@@ -13,7 +13,9 @@ inline constexpr double kMostTurnPerRecord = 0.0175;
 
 /// Ball centre between two records, tips straight and axes blended: this far from the straight line of centres. From
 /// |n - (blend before normalising)| <= 1 - cos(turn / 2) <= turn^2 / 8.
-[[nodiscard]] inline double centre_sag(double ball_radius_mm, double turn_rad) { return ball_radius_mm * turn_rad * turn_rad / 8; }
+[[nodiscard]] inline double centre_sag(double ball_radius_mm, double turn_rad) {
+  return ball_radius_mm * turn_rad * turn_rad / 8;
+}
 
 /// The place at the share t of the way between two points of a pass.
 [[nodiscard]] BallPass::Point blend_points(const BallPass::Point& a, const BallPass::Point& b, double t);
@@ -39,10 +41,10 @@ struct AxisRecords {
   std::vector<Vec3> axes;
 };
 
-/// The points of the pass, and more where the axis turns: between two records by no more than kMostTurnPerRecord, and so little that the
-/// centre leaves the pass by at most `chord_mm` (centre_sag).
+/// The points of the pass, and more where the axis turns: between two records by no more than kMostTurnPerRecord, and
+/// so little that the centre leaves the pass by at most `chord_mm` (centre_sag).
 /// @param axis  unit axis at s mm along the centre
-[[nodiscard]] AxisRecords records_with_axes(const PassTrack& track, const std::function<Vec3(double s)>& axis, double chord_mm,
-                                            double ball_radius_mm);
+[[nodiscard]] AxisRecords records_with_axes(const PassTrack& track, const std::function<Vec3(double s)>& axis,
+                                            double chord_mm, double ball_radius_mm);
 
 }  // namespace toothpath::ball

@@ -7,20 +7,21 @@
 namespace toothpath::ball {
 namespace {
 
-constexpr double kWallTouch = 5e-5;      // a ball this much into the edge of the other wall still counts as touching it, mm
-constexpr double kSearchStep = 0.02; // in sigma: fiftieths of a fillet
-constexpr double kCuspAim = 0.8;     // of the asked cusp
-constexpr double kShortestPass = 1e-3;   // a stretch shorter than this needs no pass, mm
-constexpr double kFeedStep = 1e-4;   // between two places of a pass, for its direction, mm
-constexpr int kMostPasses = 40;      // at one end of one wall
-constexpr int kHeightSamples = 48;         // places of a profile at which the height is measured
-
+constexpr double kWallTouch = 5e-5;  // a ball this much into the edge of the other wall still counts as touching it, mm
+constexpr double kSearchStep = 0.02;    // in sigma: fiftieths of a fillet
+constexpr double kCuspAim = 0.8;        // of the asked cusp
+constexpr double kShortestPass = 1e-3;  // a stretch shorter than this needs no pass, mm
+constexpr double kFeedStep = 1e-4;      // between two places of a pass, for its direction, mm
+constexpr int kMostPasses = 40;         // at one end of one wall
+constexpr int kHeightSamples = 48;      // places of a profile at which the height is measured
 
 /// One wall of one corner at one end of the ring.
 class OpenEnd {
  public:
-  /// `plus`: the corner lies on the plus side of the root land. `upper`: the wall after the gap (in sigma), else the one before it.
-  OpenEnd(const face_gear::OffsetSheet& sheet, const FinishingOptions& o, const PartDistance& distance, bool inner, bool plus, bool upper)
+  /// `plus`: the corner lies on the plus side of the root land. `upper`: the wall after the gap (in sigma), else the
+  /// one before it.
+  OpenEnd(const face_gear::OffsetSheet& sheet, const FinishingOptions& o, const PartDistance& distance, bool inner,
+          bool plus, bool upper)
       : sheet_(sheet), o_(o), distance_(distance), inner_(inner), plus_(plus), upper_(upper) {
     const auto& zone = sheet.space().ring().zone;
     end_radius_ = inner ? zone.inner_radius_mm : zone.outer_radius_mm;
@@ -79,7 +80,8 @@ class OpenEnd {
     const auto s = sheet_.raw(sigma, r);
     return s && distance_(s->centre) >= sheet_.delta() - touch;
   }
-  /// How far past the crossing the ball touches this wall and is free of everything else; the crossing itself where it is not.
+  /// How far past the crossing the ball touches this wall and is free of everything else; the crossing itself where it
+  /// is not.
   [[nodiscard]] double reach(double r, double touch) const {
     const auto g = gap(r);
     if (!g) return NAN;
@@ -98,9 +100,12 @@ class OpenEnd {
     return start + sense * good;
   }
   /// sigma at a share of the way from the crossing to the reach.
-  [[nodiscard]] double place(double share, double r) const { return edge(r) + share * (reach(r, kWallTouch) - edge(r)); }
+  [[nodiscard]] double place(double share, double r) const {
+    return edge(r) + share * (reach(r, kWallTouch) - edge(r));
+  }
 
-  /// Highest place past the crossing above what `count` passes and the pass along the corner leave, in the profile at r.
+  /// Highest place past the crossing above what `count` passes and the pass along the corner leave, in the profile at
+  /// r.
   [[nodiscard]] double left_between(int count, double r) const {
     const double from = edge(r), to = reach(r, 2 * kWallTouch);
     std::vector<face_gear::SheetPoint> lines;
@@ -118,7 +123,8 @@ class OpenEnd {
       if (!s) continue;
       const Vec3 p = s->contact.p + o_.allowance_mm * s->contact.n;
       double least = INFINITY;
-      for (std::size_t i = 0; i < lines.size(); ++i) least = std::min(least, (p - lines[i].centre).cross(feeds[i]).norm() - o_.ball_radius_mm);
+      for (std::size_t i = 0; i < lines.size(); ++i)
+        least = std::min(least, (p - lines[i].centre).cross(feeds[i]).norm() - o_.ball_radius_mm);
       most = std::max(most, least);
     }
     return most;
@@ -160,13 +166,15 @@ class OpenEnd {
 
 }  // namespace
 
-std::vector<BallPass> plan_corner_ends(const face_gear::OffsetSheet& sheet, const FinishingOptions& options, const PartDistance& distance) {
+std::vector<BallPass> plan_corner_ends(const face_gear::OffsetSheet& sheet, const FinishingOptions& options,
+                                       const PartDistance& distance) {
   std::vector<BallPass> out;
   if (sheet.empty() || !sheet.has_gaps()) return out;
   for (const bool inner : {true, false})
     for (const bool plus : {true, false})
       for (const bool upper : {false, true})
-        for (auto& pass : OpenEnd(sheet, options, distance, inner, plus, upper).passes()) out.push_back(std::move(pass));
+        for (auto& pass : OpenEnd(sheet, options, distance, inner, plus, upper).passes())
+          out.push_back(std::move(pass));
   return out;
 }
 

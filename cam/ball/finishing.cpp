@@ -14,7 +14,8 @@
 namespace toothpath::ball {
 namespace {
 
-constexpr double kRootBegin = 2, kRootEnd = 3;  // the root land on the sheet; below it plus fillet and flank, above it minus
+constexpr double kRootBegin = 2,
+                 kRootEnd = 3;  // the root land on the sheet; below it plus fillet and flank, above it minus
 constexpr int kDrawRounds = 6;  // how often all passes are laid anew, closer where a cusp is too high
 
 /// Cubic through equally spaced values (Catmull-Rom), value at t in [0, n - 1].
@@ -30,7 +31,8 @@ double smooth(const std::vector<double>& y, double t) {
 
 class FinishingPlanner {
  public:
-  FinishingPlanner(const face_gear::OffsetSheet& sheet, const FinishingOptions& options) : sheet_(sheet), o_(options), count_(sheet, options) {}
+  FinishingPlanner(const face_gear::OffsetSheet& sheet, const FinishingOptions& options)
+      : sheet_(sheet), o_(options), count_(sheet, options) {}
 
   Result<FinishingPasses> run() {
     if (sheet_.has_gaps()) passes_between_corners();
@@ -43,8 +45,9 @@ class FinishingPlanner {
   using Place = std::function<double(double)>;  ///< sigma over the centre radius
   using Chain = std::vector<Place>;             ///< neighbouring passes
 
-  /// The whole sheet as one: from both tips downwards, in turn, so that a climbing pass on one flank leads to a climbing pass
-  /// on the other. (Counts of single flanks vary more along the tooth than the count of the whole space does.)
+  /// The whole sheet as one: from both tips downwards, in turn, so that a climbing pass on one flank leads to a
+  /// climbing pass on the other. (Counts of single flanks vary more along the tooth than the count of the whole space
+  /// does.)
   void passes_over_all() {
     Chain chain = drawn_together<1>([this] { return std::array{chain_over_all()}; })[0];
     note_cusps(chain);
@@ -68,8 +71,9 @@ class FinishingPlanner {
     return chain;
   }
 
-  /// How many passes of the chain are fed as those of the plus flank: none that touches the minus fillet, and all that touch the plus fillet
-  /// or flank, so that material lies on the asked side of every one. The root land takes either feed: there the middle of the chain divides.
+  /// How many passes of the chain are fed as those of the plus flank: none that touches the minus fillet, and all that
+  /// touch the plus fillet or flank, so that material lies on the asked side of every one. The root land takes either
+  /// feed: there the middle of the chain divides.
   [[nodiscard]] std::size_t passes_of_plus(const Chain& chain) const {
     std::size_t clear_of_minus = 0, touching_plus = 0;
     for (const auto& sigma : chain) {
@@ -86,19 +90,24 @@ class FinishingPlanner {
   }
 
   [[nodiscard]] int samples() const { return 2 * int(sheet_.stations().size()); }
-  [[nodiscard]] double sample_radius(int k) const { return sheet_.r_from() + (sheet_.r_to() - sheet_.r_from()) * k / samples(); }
-  /// The pass as its neighbours see it at every sample radius between the ends of the sheet; nothing where the sheet has no point.
+  [[nodiscard]] double sample_radius(int k) const {
+    return sheet_.r_from() + (sheet_.r_to() - sheet_.r_from()) * k / samples();
+  }
+  /// The pass as its neighbours see it at every sample radius between the ends of the sheet; nothing where the sheet
+  /// has no point.
   [[nodiscard]] std::vector<std::optional<PassLine>> lines_of(const Place& sigma) const {
     std::vector<std::optional<face_gear::SheetPoint>> places;
     for (int k = 0; k <= samples(); ++k) places.push_back(sheet_.at(sigma(sample_radius(k)), sample_radius(k)));
     const auto centre = [&](std::size_t k) { return places[k] ? std::optional(places[k]->centre) : std::nullopt; };
     std::vector<std::optional<PassLine>> lines(places.size());
     for (std::size_t k = 1; k + 1 < places.size(); ++k)
-      if (places[k] && (places[k - 1] || places[k + 1])) lines[k] = PassLine(sigma(sample_radius(int(k))), *places[k], centre(k - 1), centre(k + 1));
+      if (places[k] && (places[k - 1] || places[k + 1]))
+        lines[k] = PassLine(sigma(sample_radius(int(k))), *places[k], centre(k - 1), centre(k + 1));
     return lines;
   }
 
-  /// The cusps between the passes of a chain that are higher than `above` on the ring, also between the stations; one list a pair.
+  /// The cusps between the passes of a chain that are higher than `above` on the ring, also between the stations; one
+  /// list a pair.
   [[nodiscard]] std::vector<std::vector<HighCusp>> cusps_above(const Chain& chain, double above) const {
     std::vector<std::vector<std::optional<PassLine>>> lines(chain.size());
     tbb::parallel_for(std::size_t(0), chain.size(), [&](std::size_t i) { lines[i] = lines_of(chain[i]); });
@@ -111,7 +120,8 @@ class FinishingPlanner {
         if (flat && k % 2 != 0) continue;  // the flanks bend slowly
         const double r = sample_radius(k);
         const Crest crest = count_.cusp(*a, *b, r, sheet_.gaps(r));
-        if (crest.height_mm > above) out[i].push_back({r, std::min(a->sigma, b->sigma), std::max(a->sigma, b->sigma), crest});
+        if (crest.height_mm > above)
+          out[i].push_back({r, std::min(a->sigma, b->sigma), std::max(a->sigma, b->sigma), crest});
       }
     });
     return out;
@@ -124,7 +134,8 @@ class FinishingPlanner {
     return high > ring.inner_radius_mm - beyond && low < ring.outer_radius_mm + beyond;
   }
 
-  /// Of one value a station, the greatest where some contact of the station lies on the ring: beyond its ends no cusp counts.
+  /// Of one value a station, the greatest where some contact of the station lies on the ring: beyond its ends no cusp
+  /// counts.
   [[nodiscard]] double most_on_ring(const std::vector<double>& values) const {
     const auto& ring = sheet_.space().ring().zone;
     double most = 0;
@@ -139,9 +150,9 @@ class FinishingPlanner {
     return most;
   }
 
-  /// Lays chains with `lay`, draws the passes together where a cusp is too high and lays them anew. A place where the surface bends
-  /// sharply would draw all passes together along the whole tooth: of all rounds the one with the fewest passes is taken, those counted that
-  /// must then stand between two others.
+  /// Lays chains with `lay`, draws the passes together where a cusp is too high and lays them anew. A place where the
+  /// surface bends sharply would draw all passes together along the whole tooth: of all rounds the one with the fewest
+  /// passes is taken, those counted that must then stand between two others.
   template <std::size_t N, typename Lay>
   [[nodiscard]] std::array<Chain, N> drawn_together(const Lay& lay) {
     std::array<Chain, N> best;
@@ -210,7 +221,8 @@ class FinishingPlanner {
   /// On all threads; kept in the order in which they were asked for.
   Status make_passes() {
     std::vector<std::optional<Result<SheetPass>>> made(asked_.size());
-    tbb::parallel_for(std::size_t(0), made.size(), [&](std::size_t k) { made[k] = make_sheet_pass(sheet_, o_, asked_[k]); });
+    tbb::parallel_for(std::size_t(0), made.size(),
+                      [&](std::size_t k) { made[k] = make_sheet_pass(sheet_, o_, asked_[k]); });
     for (auto& pass : made) {
       if (!*pass) return pass->error();
       out_.worst_chord_mm = std::max(out_.worst_chord_mm, (*pass)->worst_chord_mm);
@@ -219,8 +231,8 @@ class FinishingPlanner {
     return Ok{};
   }
 
-  /// Where the ball touches two walls of a corner at once. The plus corner lies on the plus side of the root land, the minus
-  /// corner on the other; where the ball does not reach the root land at all they are one.
+  /// Where the ball touches two walls of a corner at once. The plus corner lies on the plus side of the root land, the
+  /// minus corner on the other; where the ball does not reach the root land at all they are one.
   struct CornerPlace {
     double from = 0, to = 0;
     bool one = false;  ///< both corners in one
@@ -228,7 +240,9 @@ class FinishingPlanner {
   static std::optional<CornerPlace> find_corner(const std::vector<face_gear::SheetGap>& gaps, bool plus) {
     for (const auto& g : gaps) {
       const face_gear::SheetCorner which = face_gear::corner_of(g);
-      if (which == face_gear::SheetCorner::both || which == (plus ? face_gear::SheetCorner::plus : face_gear::SheetCorner::minus)) return CornerPlace{g.from, g.to, which == face_gear::SheetCorner::both};
+      if (which == face_gear::SheetCorner::both ||
+          which == (plus ? face_gear::SheetCorner::plus : face_gear::SheetCorner::minus))
+        return CornerPlace{g.from, g.to, which == face_gear::SheetCorner::both};
     }
     return {};
   }
@@ -243,8 +257,8 @@ class FinishingPlanner {
       }
     return place;
   }
-  /// The corner at any radius. Between two stations of which one has none it is on the straight line between its places there: next to
-  /// where it opens, both walls cross so flatly that its own place jumps.
+  /// The corner at any radius. Between two stations of which one has none it is on the straight line between its places
+  /// there: next to where it opens, both walls cross so flatly that its own place jumps.
   [[nodiscard]] CornerPlace corner_at(double r, bool plus) const {
     const auto& stations = sheet_.stations();
     const double t = std::clamp(station_coordinate(r), 0.0, double(stations.size() - 1));
@@ -252,7 +266,8 @@ class FinishingPlanner {
     const auto before = find_corner(stations[j].gaps, plus), after = find_corner(stations[j + 1].gaps, plus);
     if (before && after)
       if (const auto c = find_corner(sheet_.gaps(r), plus)) return *c;
-    const CornerPlace a = before ? *before : nearest_corner(stations[j].r, plus), b = after ? *after : nearest_corner(stations[j + 1].r, plus);
+    const CornerPlace a = before ? *before : nearest_corner(stations[j].r, plus),
+                      b = after ? *after : nearest_corner(stations[j + 1].r, plus);
     const double y = t - double(j);
     return {(1 - y) * a.from + y * b.from, (1 - y) * a.to + y * b.to, y < 0.5 ? a.one : b.one};
   }
@@ -291,9 +306,11 @@ class FinishingPlanner {
     return chains;
   }
 
-  /// A pass of a flank, smooth through its places at the stations. Between them the corner may leave the smooth curve through its own places:
-  /// the passes follow it by their share of the way from tip to corner, so that they keep their distances.
-  [[nodiscard]] Place beside_corner(std::vector<double> sigma, double share, const std::vector<CornerPlace>& corner, bool plus) const {
+  /// A pass of a flank, smooth through its places at the stations. Between them the corner may leave the smooth curve
+  /// through its own places: the passes follow it by their share of the way from tip to corner, so that they keep their
+  /// distances.
+  [[nodiscard]] Place beside_corner(std::vector<double> sigma, double share, const std::vector<CornerPlace>& corner,
+                                    bool plus) const {
     std::vector<double> edge;
     for (const auto& c : corner) edge.push_back(plus ? c.from : c.to);
     return [this, sigma = std::move(sigma), share, edge = std::move(edge), plus](double r) {
@@ -303,8 +320,8 @@ class FinishingPlanner {
     };
   }
 
-  /// With corners: each flank has its own passes down to its corner, one pass follows every corner, and where the ball reaches
-  /// the root land its passes lie between the corners. No pass crosses a corner.
+  /// With corners: each flank has its own passes down to its corner, one pass follows every corner, and where the ball
+  /// reaches the root land its passes lie between the corners. No pass crosses a corner.
   void passes_between_corners() {
     Corners corners;
     for (const auto& station : sheet_.stations()) {
@@ -317,9 +334,9 @@ class FinishingPlanner {
     on_minus.pop_back();  // the minus corner comes below, where it is apart from the plus corner
     for (std::size_t i = 0; i < std::max(on_plus.size(), on_minus.size()); ++i) {
       if (i + 1 == on_plus.size())  // along the corner
-        add_corner_pass(on_plus[i], [this](double r) { return corner_at(r, true).to; }, true, -INFINITY, INFINITY);
-      else if (i < on_plus.size())
-        add_pass(on_plus[i], true);
+        add_corner_pass(
+            on_plus[i], [this](double r) { return corner_at(r, true).to; }, true, -INFINITY, INFINITY);
+      else if (i < on_plus.size()) add_pass(on_plus[i], true);
       if (i < on_minus.size()) add_pass(on_minus[i], false);
     }
     out_.corner_passes = true;
@@ -350,9 +367,11 @@ class FinishingPlanner {
       std::size_t end = j;
       while (end + 1 < n && !corners.plus[end + 1].one) ++end;
       const double r_low = j > 0 ? stations[j - 1].r : -INFINITY, r_high = end + 1 < n ? stations[end + 1].r : INFINITY;
-      add_corner_pass([this](double r) { return corner_at(r, false).to; }, [this](double r) { return corner_at(r, false).from; }, false, r_low, r_high);
+      add_corner_pass([this](double r) { return corner_at(r, false).to; },
+                      [this](double r) { return corner_at(r, false).from; }, false, r_low, r_high);
       double most = 0;
-      for (std::size_t k = j; k <= end; ++k) most = std::max(most, count_.count_at(k, corners.minus[k].from) - count_.count_at(k, corners.plus[k].to));
+      for (std::size_t k = j; k <= end; ++k)
+        most = std::max(most, count_.count_at(k, corners.minus[k].from) - count_.count_at(k, corners.plus[k].to));
       int between = int(std::ceil(most - 1e-9));
       Chain land = land_chain(between);
       for (int round = 0; round < kDrawRounds && !high_cusps(land).empty(); ++round) land = land_chain(++between);

@@ -23,22 +23,23 @@ struct FinishingOptions {
   double allowance_mm = 0;
   double scallop_mm = 0;
   double chord_mm = 0;
-  double run_out_mm = 0;    ///< how far the ball centre goes on beyond the last contact
+  double run_out_mm = 0;  ///< how far the ball centre goes on beyond the last contact
   bool climb = true;
 };
 
 struct FinishingPasses {
-  std::vector<BallPass> passes;     ///< in cutting order
-  double scallop_max_mm = 0;        ///< highest cusp found between two passes, flanks, fillets and root
-  double crest_lean = 0;            ///< greatest lean of a crest (cam/pass_count.h)
-  double worst_chord_mm = 0;        ///< largest sag found while placing points
-  bool corner_passes = false;       ///< the ball is too large for the fillet: extra passes run along the corners
+  std::vector<BallPass> passes;  ///< in cutting order
+  double scallop_max_mm = 0;     ///< highest cusp found between two passes, flanks, fillets and root
+  double crest_lean = 0;         ///< greatest lean of a crest (cam/pass_count.h)
+  double worst_chord_mm = 0;     ///< largest sag found while placing points
+  bool corner_passes = false;    ///< the ball is too large for the fillet: extra passes run along the corners
 };
 
 /// Passes over the whole sheet. Step-over: the cusp between two neighbours is w^2 / (8 R (1 + k R)) for centres w apart
 /// across the pass, k the normal curvature of the machined surface across the pass, convex positive.
 /// Fails if the sheet does not cover the ring (undercut: the surfaces end inside it).
-[[nodiscard]] Result<FinishingPasses> plan_finishing(const face_gear::OffsetSheet& sheet, const FinishingOptions& options);
+[[nodiscard]] Result<FinishingPasses> plan_finishing(const face_gear::OffsetSheet& sheet,
+                                                     const FinishingOptions& options);
 
 /// Points of a curve r -> place, as sparse as the chord tolerance allows. Shared by finishing and roughing.
 struct SampledCurve {

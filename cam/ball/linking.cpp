@@ -8,7 +8,8 @@ namespace {
 
 class Linker {
  public:
-  Linker(const LinkingOptions& o, const HopIsClear& clear, const BodiesAreClear& bodies, std::vector<path::ClRecord>& out)
+  Linker(const LinkingOptions& o, const HopIsClear& clear, const BodiesAreClear& bodies,
+         std::vector<path::ClRecord>& out)
       : o_(o), clear_(clear), bodies_are_clear_(bodies), out_(out) {}
 
   void run(const std::vector<BallPass>& passes) {
@@ -43,7 +44,8 @@ class Linker {
   void approach(const Vec3& start, const Vec3& axis) {
     if (engaged_) {
       const Vec3 a = last_ + o_.hop_mm * last_axis_, b = start + o_.hop_mm * axis;
-      if ((b - a).norm() <= o_.longest_hop_mm && clear_(last_, a) && clear_(a, b) && clear_(b, start) && turns_clear(a, b, axis)) {
+      if ((b - a).norm() <= o_.longest_hop_mm && clear_(last_, a) && clear_(a, b) && clear_(b, start) &&
+          turns_clear(a, b, axis)) {
         add(a, last_axis_, path::MoveKind::retract, o_.feed_mm_min);
         hop(a, b, axis);
         add(start, axis, path::MoveKind::engage, o_.feed_mm_min);
@@ -58,9 +60,15 @@ class Linker {
   void leave() { add(above(last_, last_axis_), last_axis_, path::MoveKind::retract, o_.feed_mm_min); }
 
   // Hops between two directions: even steps, the centre straight.
-  [[nodiscard]] double turn_to(const Vec3& axis) const { return std::atan2(last_axis_.cross(axis).norm(), last_axis_.dot(axis)); }
-  [[nodiscard]] int steps_of(const Vec3& axis) const { return std::max(1, int(std::ceil(turn_to(axis) / (0.95 * kMostTurnOfHopRecord)))); }
-  [[nodiscard]] Vec3 blended(const Vec3& axis, double t) const { return ((1 - t) * last_axis_ + t * axis).normalized(); }
+  [[nodiscard]] double turn_to(const Vec3& axis) const {
+    return std::atan2(last_axis_.cross(axis).norm(), last_axis_.dot(axis));
+  }
+  [[nodiscard]] int steps_of(const Vec3& axis) const {
+    return std::max(1, int(std::ceil(turn_to(axis) / (0.95 * kMostTurnOfHopRecord))));
+  }
+  [[nodiscard]] Vec3 blended(const Vec3& axis, double t) const {
+    return ((1 - t) * last_axis_ + t * axis).normalized();
+  }
   [[nodiscard]] bool turns_clear(const Vec3& a, const Vec3& b, const Vec3& axis) const {
     if (axis == last_axis_) return true;
     if (!bodies_are_clear_ || turn_to(axis) > kMostTurnOfHop) return false;
@@ -81,7 +89,8 @@ class Linker {
   }
 
   void feed(const BallPass::Point& from, const Vec3& from_axis, const BallPass::Point& to, const Vec3& to_axis) {
-    const double way = from_axis == to_axis ? (to.centre - from.centre).norm() : (tip(to.centre, to_axis) - tip(from.centre, from_axis)).norm();
+    const double way = from_axis == to_axis ? (to.centre - from.centre).norm()
+                                            : (tip(to.centre, to_axis) - tip(from.centre, from_axis)).norm();
     const double contact = (to.contact - from.contact).norm();
     double speed = o_.feed_mm_min;
     if (from.touching && to.touching && contact > 0) speed *= std::min(way / contact, 1.2);

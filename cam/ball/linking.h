@@ -4,34 +4,35 @@
 #include <functional>
 #include <vector>
 
-#include "cam/path/cl_path.h"
 #include "cam/ball/finishing.h"
+#include "cam/path/cl_path.h"
 #include "cam/tool/body.h"
 
 namespace toothpath::ball {
 
 struct LinkingOptions {
   double ball_radius_mm = 0;
-  Vec3 axis = Vec3::UnitZ();      ///< fixed tool axis of the zone, tip to holder
-  double clearance_height_mm = 0; ///< z of the tip for rapids: above everything
-  double hop_mm = 0;              ///< lift along the axis between neighbouring passes in the air beside the ring
-  double longest_hop_mm = 0;      ///< passes that end and begin farther apart are linked over the clearance height
-  double feed_mm_min = 0;         ///< of the contact point
+  Vec3 axis = Vec3::UnitZ();       ///< fixed tool axis of the zone, tip to holder
+  double clearance_height_mm = 0;  ///< z of the tip for rapids: above everything
+  double hop_mm = 0;               ///< lift along the axis between neighbouring passes in the air beside the ring
+  double longest_hop_mm = 0;       ///< passes that end and begin farther apart are linked over the clearance height
+  double feed_mm_min = 0;          ///< of the contact point
   double inner_radius_mm = 0, outer_radius_mm = 0;  ///< of the ring
   int zone = 0;
   /// Simultaneous: the axis at every point of every pass; empty: `axis` everywhere.
   std::vector<std::vector<Vec3>> axes;
-  std::vector<tool::Frustum> bodies;    ///< shank and holder: on rapids they stay above the clearance height too
+  std::vector<tool::Frustum> bodies;  ///< shank and holder: on rapids they stay above the clearance height too
 };
 
-/// Greatest turn of the axis between two neighbouring records of a hop, and over a whole hop; beyond it the link goes over the
-/// clearance height. rad.
+/// Greatest turn of the axis between two neighbouring records of a hop, and over a whole hop; beyond it the link goes
+/// over the clearance height. rad.
 inline constexpr double kMostTurnOfHopRecord = 0.0175, kMostTurnOfHop = 0.35;
 
 /// Is a straight move of the ball centre free of the finished part? Asked for hops only.
 using HopIsClear = std::function<bool(const Vec3& from, const Vec3& to)>;
 
-/// Do shank and holder keep their clearance with the ball at a centre and this axis? Asked for hops in which the axis turns.
+/// Do shank and holder keep their clearance with the ball at a centre and this axis? Asked for hops in which the axis
+/// turns.
 using BodiesAreClear = std::function<bool(const Vec3& centre, const Vec3& axis)>;
 
 /// Appends the passes to `records`. Starts and ends with rapids at the clearance height. The tip's feed is the contact

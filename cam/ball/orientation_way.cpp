@@ -22,7 +22,8 @@ class Lattice {
     for (std::size_t k = 0; k < way.s.size(); ++k) reference_.push_back(reference(k));
     const auto width = std::size_t(2 * grid.half + 1);
     index_.assign(width * width, -1);
-    for (std::size_t g = 0; g < grid.cells.size(); ++g) index_[cell(grid.cells[g].first, grid.cells[g].second)] = int(g);
+    for (std::size_t g = 0; g < grid.cells.size(); ++g)
+      index_[cell(grid.cells[g].first, grid.cells[g].second)] = int(g);
   }
 
   /// Asks for all leans within `window` of the reference that are not known yet.
@@ -30,7 +31,8 @@ class Lattice {
     std::vector<std::size_t> open;
     for (std::size_t k = 0; k < way_.s.size(); ++k)
       for (std::size_t g = 0; g < grid_.leans.size(); ++g)
-        if (known_[at(k, g)] == kUnknown && (grid_.leans[g] - reference_[k]).lpNorm<Eigen::Infinity>() <= window) open.push_back(at(k, g));
+        if (known_[at(k, g)] == kUnknown && (grid_.leans[g] - reference_[k]).lpNorm<Eigen::Infinity>() <= window)
+          open.push_back(at(k, g));
     tbb::parallel_for(std::size_t(0), open.size(), [&](std::size_t n) {
       const std::size_t k = open[n] / grid_.leans.size(), g = open[n] % grid_.leans.size();
       known_[open[n]] = clear_(k, grid_.leans[g]) ? kClear : kBlocked;
@@ -38,7 +40,8 @@ class Lattice {
   }
 
   /// Grid indices of the cheapest way; empty, with `reached` the number of stations that are, when there is none.
-  std::vector<std::size_t> cheapest(const std::set<std::pair<std::size_t, std::size_t>>& forbidden, std::size_t& reached) const {
+  std::vector<std::size_t> cheapest(const std::set<std::pair<std::size_t, std::size_t>>& forbidden,
+                                    std::size_t& reached) const {
     const std::size_t n = way_.s.size(), m = grid_.leans.size();
     std::vector<double> cost(n * m, INFINITY);
     std::vector<int> from(n * m, -1);
@@ -49,7 +52,8 @@ class Lattice {
       bool any = false;
       for (std::size_t g = 0; g < m; ++g) {
         if (known_[at(k, g)] != kClear) continue;
-        const double own = ds * (kLeanWeight * grid_.leans[g].squaredNorm() + kNearWeight * (grid_.leans[g] - reference_[k]).squaredNorm());
+        const double own = ds * (kLeanWeight * grid_.leans[g].squaredNorm() +
+                                 kNearWeight * (grid_.leans[g] - reference_[k]).squaredNorm());
         double best = k == 0 ? 0 : INFINITY;
         const auto [x, y] = grid_.cells[g];
         if (k > 0)
@@ -81,11 +85,15 @@ class Lattice {
     const auto begin = known_.begin() + long(at(station, 0));
     return std::find(begin, begin + long(grid_.leans.size()), kClear) != begin + long(grid_.leans.size());
   }
-  [[nodiscard]] std::size_t at(std::size_t station, std::size_t lean) const { return station * grid_.leans.size() + lean; }
+  [[nodiscard]] std::size_t at(std::size_t station, std::size_t lean) const {
+    return station * grid_.leans.size() + lean;
+  }
 
  private:
   static constexpr char kUnknown = 0, kClear = 1, kBlocked = 2;
-  [[nodiscard]] std::size_t cell(int x, int y) const { return std::size_t((x + grid_.half) * (2 * grid_.half + 1) + y + grid_.half); }
+  [[nodiscard]] std::size_t cell(int x, int y) const {
+    return std::size_t((x + grid_.half) * (2 * grid_.half + 1) + y + grid_.half);
+  }
 
   const OrientationWay& way_;
   const LeanGrid& grid_;
@@ -104,7 +112,8 @@ double slope(double left, double right) {
 
 }  // namespace
 
-LeanGrid::LeanGrid(double widest_tangent, double step_tangent) : step(step_tangent), half(int(std::floor(widest_tangent / step_tangent))) {
+LeanGrid::LeanGrid(double widest_tangent, double step_tangent)
+    : step(step_tangent), half(int(std::floor(widest_tangent / step_tangent))) {
   for (int x = -half; x <= half; ++x)
     for (int y = -half; y <= half; ++y)
       if (x * x + y * y <= half * half) cells.emplace_back(x, y);
@@ -134,27 +143,32 @@ Vec2 OrientationWay::lean_along(double at, bool smooth) const {
   Vec2 out;
   for (int i = 0; i < 2; ++i) {
     const double rise = b[i] - a[i];  // over one station; the spacing is even
-    const double m0 = k >= 2 ? slope(a[i] - lean[k - 2][i], rise) : 0, m1 = k + 1 < n ? slope(rise, lean[k + 1][i] - b[i]) : 0;
+    const double m0 = k >= 2 ? slope(a[i] - lean[k - 2][i], rise) : 0,
+                 m1 = k + 1 < n ? slope(rise, lean[k + 1][i] - b[i]) : 0;
     out[i] = a[i] + t * (m0 + t * (3 * rise - 2 * m0 - m1 + t * (m0 + m1 - 2 * rise)));
   }
   return out;
 }
 
-bool find_constant(OrientationWay& way, const LeanGrid& grid, const LeanReference& reference, const LeanIsClear& clear) {
+bool find_constant(OrientationWay& way, const LeanGrid& grid, const LeanReference& reference,
+                   const LeanIsClear& clear) {
   const std::size_t n = way.s.size();
   Vec2 mean(0, 0);
   for (std::size_t k = 0; k < n; ++k) mean += reference(k) / double(n);
   // Up to a constant, the cost of a lean over the whole pass.
   std::vector<std::pair<double, Vec2>> candidates;
-  for (const auto& q : grid.leans) candidates.emplace_back(kLeanWeight * q.squaredNorm() + kNearWeight * (q - mean).squaredNorm(), q);
+  for (const auto& q : grid.leans)
+    candidates.emplace_back(kLeanWeight * q.squaredNorm() + kNearWeight * (q - mean).squaredNorm(), q);
   candidates.emplace_back(kLeanWeight * mean.squaredNorm(), mean);
-  std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
   for (std::size_t from = 0; from < candidates.size(); from += kBatch) {
     const std::size_t count = std::min(kBatch, candidates.size() - from);
     std::vector<char> good(count, 1);
     tbb::parallel_for(std::size_t(0), count, [&](std::size_t c) {
       // Both ends first: they are the most likely to be in the way.
-      for (std::size_t k = 0; k < n && good[c]; ++k) good[c] = clear(k % 2 == 0 ? k / 2 : n - 1 - k / 2, candidates[from + c].second);
+      for (std::size_t k = 0; k < n && good[c]; ++k)
+        good[c] = clear(k % 2 == 0 ? k / 2 : n - 1 - k / 2, candidates[from + c].second);
     });
     const auto first = std::find(good.begin(), good.end(), 1);
     if (first == good.end()) continue;

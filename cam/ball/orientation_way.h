@@ -1,5 +1,5 @@
-// One pass as a line of stations with a lean each, and the two searches for it: one lean that is clear everywhere, else the cheapest
-// way through the clear leans. Knows nothing of tools: what is clear is asked.
+// One pass as a line of stations with a lean each, and the two searches for it: one lean that is clear everywhere, else
+// the cheapest way through the clear leans. Knows nothing of tools: what is clear is asked.
 #pragma once
 
 #include <cstddef>
@@ -27,15 +27,16 @@ struct LeanGrid {
 };
 
 struct OrientationWay {
-  std::vector<double> s, r;              ///< mm along the pass, and radius about the gear axis, of every station
+  std::vector<double> s, r;  ///< mm along the pass, and radius about the gear axis, of every station
   std::vector<BallPass::Point> points;
-  std::vector<Vec2> lean;                ///< one a station
-  std::vector<std::size_t> near;         ///< passes beside it, nearest first
+  std::vector<Vec2> lean;         ///< one a station
+  std::vector<std::size_t> near;  ///< passes beside it, nearest first
   bool constant = false, solved = false;
 
   /// Lean at a radius, straight between the stations, constant beyond the ends.
   [[nodiscard]] Vec2 lean_at(double radius) const;
-  /// Lean at s. Smooth: a cubic with limited slopes, which has a continuous derivative and never leaves the box of its two stations.
+  /// Lean at s. Smooth: a cubic with limited slopes, which has a continuous derivative and never leaves the box of its
+  /// two stations.
   [[nodiscard]] Vec2 lean_along(double at, bool smooth) const;
 };
 
@@ -45,7 +46,8 @@ using LeanIsClear = std::function<bool(std::size_t station, const Vec2& lean)>;
 using HalfWayIsClear = std::function<bool(std::size_t station, const Vec2& lean, const Vec2& next)>;
 
 /// The cheapest lean of the grid that is clear at every station; false if there is none.
-[[nodiscard]] bool find_constant(OrientationWay& way, const LeanGrid& grid, const LeanReference& reference, const LeanIsClear& clear);
+[[nodiscard]] bool find_constant(OrientationWay& way, const LeanGrid& grid, const LeanReference& reference,
+                                 const LeanIsClear& clear);
 
 struct WayFound {
   bool found = false;
@@ -53,9 +55,9 @@ struct WayFound {
   bool none_clear = false;     ///< no lean at all is clear there; else some are, but none that is reached
 };
 
-/// The cheapest way through the clear leans by dynamic programming over stations and grid; between two stations the lean turns by at
-/// most 0.25 rad/mm. Looks near the reference first, then at the whole grid.
-[[nodiscard]] WayFound find_way(OrientationWay& way, const LeanGrid& grid, const LeanReference& reference, const LeanIsClear& clear,
-                                const HalfWayIsClear& half_way);
+/// The cheapest way through the clear leans by dynamic programming over stations and grid; between two stations the
+/// lean turns by at most 0.25 rad/mm. Looks near the reference first, then at the whole grid.
+[[nodiscard]] WayFound find_way(OrientationWay& way, const LeanGrid& grid, const LeanReference& reference,
+                                const LeanIsClear& clear, const HalfWayIsClear& half_way);
 
 }  // namespace toothpath::ball

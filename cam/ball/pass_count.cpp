@@ -41,7 +41,9 @@ void divide(std::vector<double>& sigma, std::vector<double>& count) {
 
 }  // namespace
 
-PassLine::PassLine(double place, const face_gear::SheetPoint& point, const std::optional<Vec3>& before, const std::optional<Vec3>& after) : sigma(place), at(point) {
+PassLine::PassLine(double place, const face_gear::SheetPoint& point, const std::optional<Vec3>& before,
+                   const std::optional<Vec3>& after)
+    : sigma(place), at(point) {
   const Vec3 &c = at.centre, from = before.value_or(c), to = after.value_or(c);
   if (!before || !after) {
     feed = (to - from).normalized();
@@ -55,19 +57,25 @@ PassLine::PassLine(double place, const face_gear::SheetPoint& point, const std::
 
 double PassLine::distance(const Vec3& p) const {
   const Vec3 away = p - at.centre;
-  // One step of Newton from the foot on the straight line; a pass that bends within a ball radius is taken straight for half of it.
+  // One step of Newton from the foot on the straight line; a pass that bends within a ball radius is taken straight for
+  // half of it.
   const double t = away.dot(feed) / std::max(0.5, 1 - 2 * away.dot(bend));
   return (away - t * feed - t * t * bend).norm();
 }
 
-PassCount::PassCount(const face_gear::OffsetSheet& sheet, const FinishingOptions& options) : sheet_(sheet), o_(options) {
+PassCount::PassCount(const face_gear::OffsetSheet& sheet, const FinishingOptions& options)
+    : sheet_(sheet), o_(options) {
   count_profiles();
   for (auto& p : profiles_) divide(p.sigma, p.count);
   for (int round = 0; round < kCuspRounds; ++round) sharpen();
 }
 
-double PassCount::count_at(std::size_t j, double sigma) const { return interpolate(profiles_[j].sigma, profiles_[j].count, sigma); }
-double PassCount::sigma_at(std::size_t j, double count) const { return interpolate(profiles_[j].count, profiles_[j].sigma, count); }
+double PassCount::count_at(std::size_t j, double sigma) const {
+  return interpolate(profiles_[j].sigma, profiles_[j].count, sigma);
+}
+double PassCount::sigma_at(std::size_t j, double count) const {
+  return interpolate(profiles_[j].count, profiles_[j].sigma, count);
+}
 
 /// Centre spacing across the pass for the asked cusp at a contact point.
 double PassCount::spacing(const face_gear::SheetPoint& s, const Vec3& feed) const {
@@ -128,8 +136,8 @@ void PassCount::count_profiles() {
   }
 }
 
-/// The count comes from curvatures at single points; here every cusp is measured between its two passes, and where it is
-/// higher than asked the passes are drawn together.
+/// The count comes from curvatures at single points; here every cusp is measured between its two passes, and where it
+/// is higher than asked the passes are drawn together.
 void PassCount::sharpen() {
   std::vector<std::vector<double>> grow(profiles_.size());
   tbb::parallel_for(std::size_t(0), profiles_.size(), [&](std::size_t j) { grow[j] = growth(j); });
@@ -142,11 +150,13 @@ void PassCount::draw_together(std::span<const HighCusp> cusps) {
   for (std::size_t j = 0; j < profiles_.size(); ++j) grow[j].assign(profiles_[j].sigma.size(), 1.0);
   const double step = (sheet_.r_to() - sheet_.r_from()) / double(stations.size() - 1);
   for (const auto& c : cusps) {
-    const auto before = std::size_t(std::clamp(std::floor((c.r - sheet_.r_from()) / step), 0.0, double(stations.size() - 2)));
+    const auto before =
+        std::size_t(std::clamp(std::floor((c.r - sheet_.r_from()) / step), 0.0, double(stations.size() - 2)));
     const double factor = std::sqrt(std::clamp(c.crest.height_mm / (kCornerAim * o_.scallop_mm), 1.0, 4.0));
     for (const std::size_t j : {before, before + 1})
       for (std::size_t k = 1; k < grow[j].size(); ++k)
-        if (profiles_[j].sigma[k] > c.sigma_a && profiles_[j].sigma[k - 1] < c.sigma_b) grow[j][k] = std::max(grow[j][k], factor);
+        if (profiles_[j].sigma[k] > c.sigma_a && profiles_[j].sigma[k - 1] < c.sigma_b)
+          grow[j][k] = std::max(grow[j][k], factor);
   }
   for (std::size_t j = 0; j < profiles_.size(); ++j) apply(j, grow[j]);
 }
@@ -160,8 +170,8 @@ void PassCount::apply(std::size_t j, const std::vector<double>& grow) {
   totals_[j] = old.back();
 }
 
-/// Factor of every interval of station j. Where the curvature jumps (around the corners) pairs of passes are tried at four phases, since the
-/// final passes of a station fall anywhere; on the flanks one phase is enough.
+/// Factor of every interval of station j. Where the curvature jumps (around the corners) pairs of passes are tried at
+/// four phases, since the final passes of a station fall anywhere; on the flanks one phase is enough.
 std::vector<double> PassCount::growth(std::size_t j) const {
   const auto& p = profiles_[j];
   const double r = sheet_.stations()[j].r, total = totals_[j];
@@ -180,7 +190,8 @@ std::vector<double> PassCount::growth(std::size_t j) const {
       const auto between = [&](const face_gear::SheetGap& g) { return a.sigma <= g.from && b.sigma >= g.to; };
       if (std::any_of(gaps.begin(), gaps.end(), between)) continue;  // a pass will run along the corner between them
       const double height = cusp(a, b, r, gaps).height_mm;
-      const double ratio = std::clamp(height / ((on_flank(a.sigma) && on_flank(b.sigma) ? kFlankAim : kCornerAim) * o_.scallop_mm), 1.0, 4.0);
+      const double ratio = std::clamp(
+          height / ((on_flank(a.sigma) && on_flank(b.sigma) ? kFlankAim : kCornerAim) * o_.scallop_mm), 1.0, 4.0);
       if (ratio == 1.0) continue;
       for (std::size_t k = 1; k < p.sigma.size(); ++k)
         if (p.sigma[k] > a.sigma && p.sigma[k - 1] < b.sigma) grow[k] = std::max(grow[k], std::sqrt(ratio));
@@ -209,16 +220,19 @@ std::optional<PassLine> PassCount::line_at(std::size_t j, double count) const {
   return PassLine(sigma, *here, before, after);
 }
 
-/// The crest stands where both balls leave the same: from one pass to the other the distance to the first grows and that to the second falls,
-/// so that the place between them is enclosed. Allowance left out.
-Crest PassCount::cusp(const PassLine& a, const PassLine& b, double r, const std::vector<face_gear::SheetGap>& gaps) const {
+/// The crest stands where both balls leave the same: from one pass to the other the distance to the first grows and
+/// that to the second falls, so that the place between them is enclosed. Allowance left out.
+Crest PassCount::cusp(const PassLine& a, const PassLine& b, double r,
+                      const std::vector<face_gear::SheetGap>& gaps) const {
   // What both balls leave at a place.
   const auto over = [&](const face_gear::SheetPoint& s) {
     const Vec3 p = s.contact.p + o_.allowance_mm * s.contact.n;
     return std::pair{a.distance(p) - o_.ball_radius_mm, b.distance(p) - o_.ball_radius_mm};
   };
   const auto crest = [&](const face_gear::SheetPoint& s, double height) {
-    const auto lean = [&](const PassLine& pass) { return (s.contact.p - pass.at.centre).normalized().cross(pass.at.contact.n).norm(); };
+    const auto lean = [&](const PassLine& pass) {
+      return (s.contact.p - pass.at.centre).normalized().cross(pass.at.contact.n).norm();
+    };
     return Crest{std::max(0.0, height), std::max(lean(a), lean(b))};
   };
   // Beside a corner that the ball cannot reach, which has its own pass, the surface ends: the higher of the two ends.
@@ -227,19 +241,22 @@ Crest PassCount::cusp(const PassLine& a, const PassLine& b, double r, const std:
       Crest most;
       for (const double end : {g.from, g.to})
         if (const auto s = sheet_.raw(end, r))
-          if (const double height = std::min(over(*s).first, over(*s).second); height > most.height_mm) most = crest(*s, height);
+          if (const double height = std::min(over(*s).first, over(*s).second); height > most.height_mm)
+            most = crest(*s, height);
       return most;
     }
   const auto slope = [](const std::pair<double, double>& h) { return h.first - h.second; };
   double low = a.sigma, high = b.sigma, f_low = slope(over(a.at)), f_high = slope(over(b.at));
   for (int k = 1; k <= kCrestSteps; ++k) {
-    // Where the line through both ends is zero; every third time the middle, so that the bracket shrinks from both sides.
+    // Where the line through both ends is zero; every third time the middle, so that the bracket shrinks from both
+    // sides.
     const bool line = k % 3 != 0 && f_low < 0 && f_high > 0;
     const double sigma = line ? low - f_low * (high - low) / (f_high - f_low) : 0.5 * (low + high);
     const auto s = sheet_.raw(sigma, r);
     if (!s) return {};
     const auto h = over(*s);
-    if (std::abs(slope(h)) < kSameHeight * o_.scallop_mm || k == kCrestSteps) return crest(*s, 0.5 * (h.first + h.second));
+    if (std::abs(slope(h)) < kSameHeight * o_.scallop_mm || k == kCrestSteps)
+      return crest(*s, 0.5 * (h.first + h.second));
     (slope(h) < 0 ? low : high) = sigma;
     (slope(h) < 0 ? f_low : f_high) = slope(h);
   }

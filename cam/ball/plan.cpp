@@ -46,8 +46,9 @@ std::vector<cut::BallMove> ball_moves(const path::ClPath& path, double radius) {
 
 class JobPlanner {
  public:
-  JobPlanner(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools, const std::vector<path::MillingOperation>& operations,
-             const PlanOptions& options, const PlanProgress& progress)
+  JobPlanner(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
+             const std::vector<path::MillingOperation>& operations, const PlanOptions& options,
+             const PlanProgress& progress)
       : part_(part), tools_(tools), operations_(operations), o_(options), progress_(progress) {}
 
   Expected<FaceGearPlan, PlanRefusal> run() {
@@ -65,7 +66,8 @@ class JobPlanner {
       // Rings know nothing of each other's passes; directions and links follow in order, each on all threads.
       std::vector<std::optional<Expected<ZonePasses, PlanRefusal>>> zones(std::size_t(part_.zones()));
       as_stage("tool passes", [&] {
-        tbb::parallel_for(std::size_t(0), zones.size(), [&](std::size_t zone) { zones[zone] = plan_passes(int(n), int(zone)); });
+        tbb::parallel_for(std::size_t(0), zones.size(),
+                          [&](std::size_t zone) { zones[zone] = plan_passes(int(n), int(zone)); });
       });
       for (std::size_t zone = 0; zone < zones.size(); ++zone) {
         if (const auto* refusal = (*zones[zone]).refused()) return *refusal;
@@ -101,13 +103,16 @@ class JobPlanner {
     // How far the ball may go beyond the ends: free into the air, limited where the other ring of teeth stands.
     const double wanted = roughing ? 0.6 * delta + 0.1 : 0.5 * R, room = room_beyond(zone, roughing, R, delta, wanted);
     if (room < 0.05 * wanted)
-      return PlanRefusal{key_of(n) + ".tool", fail("a ball of {:.4f} mm has no room to run out into the relief groove of zone {}: the way "
-                                                   "left is {:.4f} mm, at least {:.4f} mm is needed",
-                                                   2 * R, zone, room, 0.05 * wanted)};
+      return PlanRefusal{key_of(n) + ".tool",
+                         fail("a ball of {:.4f} mm has no room to run out into the relief groove of zone {}: the way "
+                              "left is {:.4f} mm, at least {:.4f} mm is needed",
+                              2 * R, zone, room, 0.05 * wanted)};
     const double margin = std::max(delta, room) + 0.1;
-    ZonePasses out{face_gear::OffsetSheet(part_.space(zone), roughing ? delta + kRoughingPad : delta, ring.inner_radius_mm - margin,
-                               ring.outer_radius_mm + margin, roughing ? 65 : 33),
-                   {}, {}};
+    ZonePasses out{
+        face_gear::OffsetSheet(part_.space(zone), roughing ? delta + kRoughingPad : delta,
+                               ring.inner_radius_mm - margin, ring.outer_radius_mm + margin, roughing ? 65 : 33),
+        {},
+        {}};
     if (auto refusal = check_width(out.sheet, key_of(n), zone, tool)) return *refusal;
     if (auto refusal = roughing ? rough(n, room, out) : finish(n, zone, room, out)) return *refusal;
     out.summary.passes = int(out.passes.size());
@@ -119,7 +124,8 @@ class JobPlanner {
     const auto& ring = part_.space(zone).ring().zone;
     double room = wanted;
     for (const auto& other : part_.gear().rings()) {
-      const double gap = std::max(other.zone.inner_radius_mm - ring.outer_radius_mm, ring.inner_radius_mm - other.zone.outer_radius_mm);
+      const double gap = std::max(other.zone.inner_radius_mm - ring.outer_radius_mm,
+                                  ring.inner_radius_mm - other.zone.outer_radius_mm);
       if (gap <= 0) continue;
       // The centre of a ball in contact at the end lies at most 0.7 delta beyond it.
       room = std::min(room, roughing ? gap - R - 0.1 : gap - 1.7 * delta - 0.05);
@@ -163,7 +169,9 @@ class JobPlanner {
     auto planned = plan_finishing(out.sheet, f);
     if (!planned) return PlanRefusal{key_of(n) + ".tool", planned.error()};
     out.passes = std::move(planned->passes);
-    const auto distance = [&](const Vec3& centre) { return part_.nearest(centre, f.ball_radius_mm + op.allowance_mm + 0.01).distance; };
+    const auto distance = [&](const Vec3& centre) {
+      return part_.nearest(centre, f.ball_radius_mm + op.allowance_mm + 0.01).distance;
+    };
     for (auto& pass : plan_corner_ends(out.sheet, f, distance)) out.passes.push_back(std::move(pass));
     out.summary.scallop_max_mm = planned->scallop_max_mm;
     out.summary.crest_lean = planned->crest_lean;
@@ -186,7 +194,8 @@ class JobPlanner {
   }
 
   /// Tool directions for the passes of a zone, and the links between them: its records.
-  [[nodiscard]] std::optional<PlanRefusal> lead_tool(int n, int zone, ZonePasses& made, path::ClPath& path, OperationPlan& summary) {
+  [[nodiscard]] std::optional<PlanRefusal> lead_tool(int n, int zone, ZonePasses& made, path::ClPath& path,
+                                                     OperationPlan& summary) {
     add(summary, made.summary, operation(n).type != path::OperationType::roughing);
     if (made.passes.empty()) return {};
     LinkingOptions link;
@@ -210,14 +219,16 @@ class JobPlanner {
       return bodies_->clear(link.bodies, centre - R * axis, axis, o_.limits.clearance_mm + kTurnMargin, 0.01);
     };
     as_stage("links", [&] {
-      link_passes(made.passes, link, [&](const Vec3& a, const Vec3& b) { return hop_is_clear(a, b, R, op.allowance_mm); }, path.records,
-                  bodies_are_clear);
+      link_passes(
+          made.passes, link, [&](const Vec3& a, const Vec3& b) { return hop_is_clear(a, b, R, op.allowance_mm); },
+          path.records, bodies_are_clear);
     });
     return {};
   }
 
   /// One direction for the whole zone, or axes for every point: as prescribed, or where no fixed direction is clear.
-  [[nodiscard]] std::optional<PlanRefusal> direct(int n, int zone, ZonePasses& made, proof::DirectionChoice& direction, std::vector<std::vector<Vec3>>& axes) {
+  [[nodiscard]] std::optional<PlanRefusal> direct(int n, int zone, ZonePasses& made, proof::DirectionChoice& direction,
+                                                  std::vector<std::vector<Vec3>>& axes) {
     const auto& op = operation(n);
     const auto& tool = tool_of(n);
     OrientationOptions turning;
@@ -227,21 +238,25 @@ class JobPlanner {
     const bool prescribed = !op.axis_plus.empty();
     as_stage("tool direction", [&] {
       if (!bodies_) bodies_ = std::make_unique<analytic::BodyTree>(part_);
-      if (!prescribed) direction = choose_direction(part_, *bodies_, zone, made.sheet, made.passes, tool, {o_.limits.clearance_mm, 0.01});
+      if (!prescribed)
+        direction =
+            choose_direction(part_, *bodies_, zone, made.sheet, made.passes, tool, {o_.limits.clearance_mm, 0.01});
     });
     direction.operation = n;
     direction.zone = zone;
     if (prescribed) {
       auto oriented = prescribe(zone, tool, op, turning, made.passes);
       if (const auto* refusal = oriented.refused())
-        return PlanRefusal{key_of(n) + ".tool_axis", fail("tool {} in zone {}: {}", tool.number, zone, refusal->reason)};
+        return PlanRefusal{key_of(n) + ".tool_axis",
+                           fail("tool {} in zone {}: {}", tool.number, zone, refusal->reason)};
       describe_prescribed(oriented.value(), direction);
       axes = std::move(oriented.value().axes);
     } else if (!direction.fixed) {
       auto oriented = orient(zone, tool, turning, made.passes);
       if (const auto* refusal = oriented.refused()) {
         plan_.directions.push_back(direction);
-        return PlanRefusal{key_of(n) + ".tool", fail("tool {} in zone {}: {}; {}", tool.number, zone, direction.explanation, refusal->reason)};
+        return PlanRefusal{key_of(n) + ".tool", fail("tool {} in zone {}: {}; {}", tool.number, zone,
+                                                     direction.explanation, refusal->reason)};
       }
       describe(oriented.value(), direction);
       axes = std::move(oriented.value().axes);
@@ -250,17 +265,22 @@ class JobPlanner {
   }
 
   /// Simultaneous axes for one zone.
-  [[nodiscard]] Expected<Orientation, OrientationRefusal> orient(int zone, const tool::ToolAssembly& tool, const OrientationOptions& options,
-                                                                     std::vector<BallPass>& passes) const {
+  [[nodiscard]] Expected<Orientation, OrientationRefusal> orient(int zone, const tool::ToolAssembly& tool,
+                                                                 const OrientationOptions& options,
+                                                                 std::vector<BallPass>& passes) const {
     std::optional<Expected<Orientation, OrientationRefusal>> result;
-    as_stage("five-axis orientation", [&] { result.emplace(orient_passes(part_, *bodies_, zone, tool, options, passes)); });
+    as_stage("five-axis orientation",
+             [&] { result.emplace(orient_passes(part_, *bodies_, zone, tool, options, passes)); });
     return std::move(*result);
   }
   /// The same with the axes that the operation prescribes.
-  [[nodiscard]] Expected<Orientation, OrientationRefusal> prescribe(int zone, const tool::ToolAssembly& tool, const path::MillingOperation& op,
-                                                                        const OrientationOptions& options, std::vector<BallPass>& passes) const {
+  [[nodiscard]] Expected<Orientation, OrientationRefusal> prescribe(int zone, const tool::ToolAssembly& tool,
+                                                                    const path::MillingOperation& op,
+                                                                    const OrientationOptions& options,
+                                                                    std::vector<BallPass>& passes) const {
     std::optional<Expected<Orientation, OrientationRefusal>> result;
-    as_stage("five-axis orientation", [&] { result.emplace(prescribe_axes(part_, *bodies_, zone, tool, op, options, passes)); });
+    as_stage("five-axis orientation",
+             [&] { result.emplace(prescribe_axes(part_, *bodies_, zone, tool, op, options, passes)); });
     return std::move(*result);
   }
   void as_stage(const char* name, const std::function<void()>& work) const {
@@ -284,22 +304,27 @@ class JobPlanner {
   }
   static void describe(const Orientation& o, proof::DirectionChoice& d) {
     measure(o, d);
-    d.explanation = fmt::format("{}; so the axis turns: lean {:.1f} to {:.1f} deg from the normal of the pitch surface, inside {} of {} passes, "
-                                "by at most {:.2f} deg/mm; shank and holder keep {:.3f} mm",
-                                d.explanation, degrees(o.least_lean_rad), degrees(o.greatest_lean_rad), o.turning_passes, o.axes.size(),
-                                degrees(o.greatest_turn_rad_per_mm), o.clearance_mm);
+    d.explanation = fmt::format(
+        "{}; so the axis turns: lean {:.1f} to {:.1f} deg from the normal of the pitch surface, inside {} of {} "
+        "passes, by at most {:.2f} deg/mm; shank and holder keep {:.3f} mm",
+        d.explanation, degrees(o.least_lean_rad), degrees(o.greatest_lean_rad), o.turning_passes, o.axes.size(),
+        degrees(o.greatest_turn_rad_per_mm), o.clearance_mm);
   }
   static void describe_prescribed(const Orientation& o, proof::DirectionChoice& d) {
     measure(o, d);
     d.fixed = std::all_of(o.axes.begin(), o.axes.end(), [&](const auto& pass) {
       return std::all_of(pass.begin(), pass.end(), [&](const Vec3& axis) { return axis == o.axes.front().front(); });
     });
-    d.explanation = d.fixed ? fmt::format("prescribed: leans {:.2f} deg from the normal of the pitch surface; shank and holder keep {:.3f} mm",
-                                          degrees(o.greatest_lean_rad), o.clearance_mm)
-                            : fmt::format("prescribed: lean {:.2f} to {:.2f} deg from the normal of the pitch surface, the axis turns inside {} of {} passes, by at most "
-                                          "{:.2f} deg/mm; shank and holder keep {:.3f} mm",
-                                          degrees(o.least_lean_rad), degrees(o.greatest_lean_rad), o.turning_passes, o.axes.size(),
-                                          degrees(o.greatest_turn_rad_per_mm), o.clearance_mm);
+    d.explanation =
+        d.fixed
+            ? fmt::format(
+                  "prescribed: leans {:.2f} deg from the normal of the pitch surface; shank and holder keep {:.3f} mm",
+                  degrees(o.greatest_lean_rad), o.clearance_mm)
+            : fmt::format(
+                  "prescribed: lean {:.2f} to {:.2f} deg from the normal of the pitch surface, the axis turns inside "
+                  "{} of {} passes, by at most {:.2f} deg/mm; shank and holder keep {:.3f} mm",
+                  degrees(o.least_lean_rad), degrees(o.greatest_lean_rad), o.turning_passes, o.axes.size(),
+                  degrees(o.greatest_turn_rad_per_mm), o.clearance_mm);
   }
 
   /// Sag that an operation may have: a tenth of the stock that it leaves, and less than half of what may be gouged.
@@ -308,8 +333,9 @@ class JobPlanner {
   }
 
   /// A planned place at which the ball would cut deeper than may be gouged is refused before any motion is made of it.
-  [[nodiscard]] std::optional<PlanRefusal> check_passes(const std::vector<BallPass>& passes, const tool::ToolAssembly& tool,
-                                                        const std::string& key, int zone) const {
+  [[nodiscard]] std::optional<PlanRefusal> check_passes(const std::vector<BallPass>& passes,
+                                                        const tool::ToolAssembly& tool, const std::string& key,
+                                                        int zone) const {
     const double R = tool.radius_mm();
     struct Deep {
       const BallPass::Point* point = nullptr;
@@ -327,15 +353,17 @@ class JobPlanner {
     });
     for (const auto& [point, cut] : first)
       if (point)
-        return PlanRefusal{key + ".tool", fail("tool {} in zone {}: its ball of radius {:.4f} mm would cut {:.4f} mm into the finished surface with its "
-                                               "centre at radius {:.4f}, height {:.4f}; the limit is {:.4f} mm",
-                                               tool.number, zone, R, cut, std::hypot(point->centre.x(), point->centre.y()), point->centre.z(),
-                                               o_.limits.gouge_mm)};
+        return PlanRefusal{
+            key + ".tool",
+            fail("tool {} in zone {}: its ball of radius {:.4f} mm would cut {:.4f} mm into the finished surface with "
+                 "its centre at radius {:.4f}, height {:.4f}; the limit is {:.4f} mm",
+                 tool.number, zone, R, cut, std::hypot(point->centre.x(), point->centre.y()), point->centre.z(),
+                 o_.limits.gouge_mm)};
     return {};
   }
 
-  /// Run-outs go straight on beyond the ends of the ring; where the end of a tooth stands in the way (close to an undercut)
-  /// the pass ends with its last contact instead.
+  /// Run-outs go straight on beyond the ends of the ring; where the end of a tooth stands in the way (close to an
+  /// undercut) the pass ends with its last contact instead.
   void trim_run_outs(std::vector<BallPass>& passes, double R, double allowance) const {
     tbb::parallel_for(std::size_t(0), passes.size(), [&](std::size_t n) {
       auto& q = passes[n].points;
@@ -369,18 +397,18 @@ class JobPlanner {
                                                 const tool::ToolAssembly& tool) {
     const auto& ring = sheet.space().ring().zone;
     if (sheet.empty() || sheet.r_to() - sheet.r_from() < 0.5 * (ring.outer_radius_mm - ring.inner_radius_mm))
-      return PlanRefusal{key + ".tool",
-                         fail("the ball-centre surface of tool {} (ball of {:.4f} mm) does not reach over zone {}: the flank "
-                              "ends (undercut) or is hollower than the ball",
-                              tool.number, tool.diameter_mm, zone)};
+      return PlanRefusal{key + ".tool", fail("the ball-centre surface of tool {} (ball of {:.4f} mm) does not reach "
+                                             "over zone {}: the flank ends (undercut) or is hollower than the ball",
+                                             tool.number, tool.diameter_mm, zone)};
     for (const auto& s : sheet.stations()) {
       const auto &a = s.nodes.front(), &b = s.nodes.back();
       const double width = (b.azimuth - a.azimuth) * s.r;
       if (width <= 0)
-        return PlanRefusal{key + ".tool",
-                           fail("tool {} (ball of {:.4f} mm) is wider than the tooth space of zone {}: at radius {:.3f} its centre "
-                                "has {:.4f} mm of room between the flanks at the tip, it needs more than 0",
-                                tool.number, tool.diameter_mm, zone, s.r, width)};
+        return PlanRefusal{
+            key + ".tool",
+            fail("tool {} (ball of {:.4f} mm) is wider than the tooth space of zone {}: at radius {:.3f} its centre "
+                 "has {:.4f} mm of room between the flanks at the tip, it needs more than 0",
+                 tool.number, tool.diameter_mm, zone, s.r, width)};
     }
     return {};
   }
@@ -413,9 +441,10 @@ class JobPlanner {
 
 }  // namespace
 
-Expected<FaceGearPlan, PlanRefusal> plan_face_gear(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
-                                                       const std::vector<path::MillingOperation>& operations,
-                                                       const PlanOptions& options, const PlanProgress& progress) {
+Expected<FaceGearPlan, PlanRefusal> plan_face_gear(const analytic::GearDistance& part,
+                                                   const std::vector<tool::ToolAssembly>& tools,
+                                                   const std::vector<path::MillingOperation>& operations,
+                                                   const PlanOptions& options, const PlanProgress& progress) {
   return JobPlanner(part, tools, operations, options, progress).run();
 }
 

@@ -12,18 +12,20 @@ namespace toothpath::ball {
 namespace {
 
 constexpr double kPrescribedResolution = 0.01;  // mm, of gaps
-constexpr double kPlaces = 0.3;       // mm between the places that are looked at
+constexpr double kPlaces = 0.3;                 // mm between the places that are looked at
 constexpr double kPrescribedDeepest = 3.0;      // mm: how far a body that cuts in is followed
 
-
 /// Lean towards a side, deg, to the digits that are told: no -0.000.
-double lean_deg(const Vec3& axis, const Vec3& side, const Vec3& up) { return std::round(degrees(std::atan2(axis.dot(side), axis.dot(up))) * 1000) / 1000 + 0.0; }
+double lean_deg(const Vec3& axis, const Vec3& side, const Vec3& up) {
+  return std::round(degrees(std::atan2(axis.dot(side), axis.dot(up))) * 1000) / 1000 + 0.0;
+}
 
-/// Slope at a key from the slopes of the stretches beside it (h mm wide): the weighted mean, limited so that the cubic does not overshoot; 0 at
-/// a turning point.
+/// Slope at a key from the slopes of the stretches beside it (h mm wide): the weighted mean, limited so that the cubic
+/// does not overshoot; 0 at a turning point.
 double limited_slope(double left, double h_left, double right, double h_right) {
   if (left * right <= 0) return 0;
-  const double mean = (left * h_right + right * h_left) / (h_left + h_right), most = 3 * std::min(std::abs(left), std::abs(right));
+  const double mean = (left * h_right + right * h_left) / (h_left + h_right),
+               most = 3 * std::min(std::abs(left), std::abs(right));
   return std::copysign(std::min(std::abs(mean), most), mean);
 }
 
@@ -37,7 +39,8 @@ struct Shortfall {
 
 class Prover {
  public:
-  Prover(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const tool::ToolAssembly& tool, const OrientationOptions& o)
+  Prover(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const tool::ToolAssembly& tool,
+         const OrientationOptions& o)
       : part_(part), tree_(tree), tool_(tool), o_(o), check_(part, tree, zone, tool, o) {}
 
   [[nodiscard]] const OrientationCheck& check() const { return check_; }
@@ -50,11 +53,13 @@ class Prover {
       const int pieces = std::max(1, int(std::ceil((points[k].centre - points[k - 1].centre).norm() / kPlaces)));
       for (int j = 1; j <= pieces; ++j) {
         const double t = double(j) / pieces;
-        places.push_back({0, blend_points(points[k - 1], points[k], t), ((1 - t) * axes[k - 1] + t * axes[k]).normalized(), {}});
+        places.push_back(
+            {0, blend_points(points[k - 1], points[k], t), ((1 - t) * axes[k - 1] + t * axes[k]).normalized(), {}});
       }
     }
     tbb::parallel_for(std::size_t(0), places.size(), [&](std::size_t k) { look(places[k]); });
-    const auto most = std::max_element(places.begin(), places.end(), [](const Shortfall& a, const Shortfall& b) { return a.by < b.by; });
+    const auto most = std::max_element(places.begin(), places.end(),
+                                       [](const Shortfall& a, const Shortfall& b) { return a.by < b.by; });
     return *most;
   }
 
@@ -70,13 +75,15 @@ class Prover {
     for (const auto& body : check_.bodies()) {
       const double gap = tree_.gap(body, tip, s.axis, o_.clearance_mm, kPrescribedResolution);
       if (gap >= o_.clearance_mm) continue;
-      const double depth = gap > 0 ? 0 : tree_.depth(body, {&tip, 1}, s.axis, kPrescribedDeepest, kPrescribedResolution);
+      const double depth =
+          gap > 0 ? 0 : tree_.depth(body, {&tip, 1}, s.axis, kPrescribedDeepest, kPrescribedResolution);
       const double by = gap > 0 ? o_.clearance_mm - gap : o_.clearance_mm + depth;
       if (by <= s.by) continue;
       s.by = by;
-      s.words = gap > 0 ? fmt::format("its {} keeps {:.3f} mm, the clearance is {:.3f} mm", body.body, gap, o_.clearance_mm)
-                        : fmt::format("its {} cuts in by {}{:.3f} mm, the clearance is {:.3f} mm", body.body, depth >= kPrescribedDeepest ? "more than " : "", depth,
-                                      o_.clearance_mm);
+      s.words = gap > 0
+                    ? fmt::format("its {} keeps {:.3f} mm, the clearance is {:.3f} mm", body.body, gap, o_.clearance_mm)
+                    : fmt::format("its {} cuts in by {}{:.3f} mm, the clearance is {:.3f} mm", body.body,
+                                  depth >= kPrescribedDeepest ? "more than " : "", depth, o_.clearance_mm);
     }
   }
 
@@ -89,7 +96,9 @@ class Prover {
       const double by = R * (o_.least_draft - draft);
       if (by <= s.by) return;
       s.by = by;
-      s.words = fmt::format("its flute cuts instead of its ball: the cosine between axis and normal is {:.4f}, the least is {:.4f}", draft, o_.least_draft);
+      s.words = fmt::format(
+          "its flute cuts instead of its ball: the cosine between axis and normal is {:.4f}, the least is {:.4f}",
+          draft, o_.least_draft);
       return;
     }
     double deepest = 0, at = 0;
@@ -119,7 +128,8 @@ PrescribedLean::PrescribedLean(const std::vector<path::ToolAxisKey>& keys) {
   slope_.assign(keys.size(), Vec2::Zero());
   for (std::size_t k = 1; k + 1 < keys.size(); ++k) {
     const double h0 = radius_[k] - radius_[k - 1], h1 = radius_[k + 1] - radius_[k];
-    for (int i = 0; i < 2; ++i) slope_[k][i] = limited_slope((lean_[k][i] - lean_[k - 1][i]) / h0, h0, (lean_[k + 1][i] - lean_[k][i]) / h1, h1);
+    for (int i = 0; i < 2; ++i)
+      slope_[k][i] = limited_slope((lean_[k][i] - lean_[k - 1][i]) / h0, h0, (lean_[k + 1][i] - lean_[k][i]) / h1, h1);
   }
 }
 
@@ -132,14 +142,17 @@ Vec2 PrescribedLean::at(double r) const {
   return a + t * (m0 + t * (3 * rise - 2 * m0 - m1 + t * (m0 + m1 - 2 * rise)));
 }
 
-Expected<Orientation, OrientationRefusal> prescribe_axes(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const tool::ToolAssembly& tool,
-                                                             const path::MillingOperation& operation, OrientationOptions options,
-                                                             std::vector<BallPass>& passes) {
+Expected<Orientation, OrientationRefusal> prescribe_axes(const analytic::GearDistance& part,
+                                                         const analytic::BodyTree& tree, int zone,
+                                                         const tool::ToolAssembly& tool,
+                                                         const path::MillingOperation& operation,
+                                                         OrientationOptions options, std::vector<BallPass>& passes) {
   options.least_tilt_rad = 0;
   const Prover prover(part, tree, zone, tool, options);
   const PrescribedLean plus(operation.axis_plus), minus(operation.axis_minus);
   const PitchFrame& frame = prover.check().frame();
-  passes.erase(std::remove_if(passes.begin(), passes.end(), [](const BallPass& p) { return p.points.empty(); }), passes.end());
+  passes.erase(std::remove_if(passes.begin(), passes.end(), [](const BallPass& p) { return p.points.empty(); }),
+               passes.end());
   std::vector<AxisRecords> made;
   Shortfall worst;
   for (const auto& pass : passes) {
@@ -153,9 +166,11 @@ Expected<Orientation, OrientationRefusal> prescribe_axes(const analytic::GearDis
     if (const Shortfall here = prover.worst(made.back()); here.by > worst.by) worst = here;
   }
   if (worst.by > 0)
-    return OrientationRefusal{fmt::format("with the ball at radius {:.3f}, height {:.3f} the prescribed axis leans {:.3f} deg outwards and {:.3f} deg aside, and {}",
-                                          radius(worst.point.centre), worst.point.centre.z(), lean_deg(worst.axis, frame.outwards, frame.up),
-                                          lean_deg(worst.axis, frame.side, frame.up), worst.words)};
+    return OrientationRefusal{
+        fmt::format("with the ball at radius {:.3f}, height {:.3f} the prescribed axis leans {:.3f} deg outwards and "
+                    "{:.3f} deg aside, and {}",
+                    radius(worst.point.centre), worst.point.centre.z(), lean_deg(worst.axis, frame.outwards, frame.up),
+                    lean_deg(worst.axis, frame.side, frame.up), worst.words)};
   return take_axes(std::move(made), prover.check(), tree, tool, passes);
 }
 

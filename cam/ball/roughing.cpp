@@ -6,7 +6,6 @@
 namespace toothpath::ball {
 namespace {
 
-
 /// Directions on the lower half of a ball: where it cuts.
 std::vector<Vec3> lower_directions() {
   std::vector<Vec3> out{Vec3(0, 0, -1)};
@@ -55,12 +54,14 @@ Walls walls_of(const face_gear::OffsetSheet& sheet, const face_gear::OffsetSheet
     if (std::none_of(station.gaps.begin(), station.gaps.end(), inside))
       places.push_back({node.sigma, node.at.centre.z() - w.root_z, node.azimuth});
   }
-  // The corners themselves, where the ball touches both of their walls: between the nodes beside them a blend would cut in.
+  // The corners themselves, where the ball touches both of their walls: between the nodes beside them a blend would cut
+  // in.
   for (const auto& g : station.gaps)
     for (const double sigma : {g.from, g.to})
       if (const auto s = sheet.raw(sigma, station.r)) {
         const double reference = station.nodes[station.nodes.size() / 2].azimuth;
-        const double azimuth = reference + std::remainder(std::atan2(s->centre.y(), s->centre.x()) - reference, 6.283185307179586);
+        const double azimuth =
+            reference + std::remainder(std::atan2(s->centre.y(), s->centre.x()) - reference, 6.283185307179586);
         places.push_back({sigma, s->centre.z() - w.root_z, azimuth});
       }
   std::stable_sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.sigma < b.sigma; });
@@ -82,7 +83,8 @@ Walls walls_of(const face_gear::OffsetSheet& sheet, const face_gear::OffsetSheet
 
 class RoughingPlanner {
  public:
-  RoughingPlanner(const face_gear::OffsetSheet& sheet, const RoughingOptions& o, const std::vector<const cut::SweptPath*>& cleared)
+  RoughingPlanner(const face_gear::OffsetSheet& sheet, const RoughingOptions& o,
+                  const std::vector<const cut::SweptPath*>& cleared)
       : sheet_(sheet), o_(o), cleared_(cleared) {}
 
   Result<RoughingPasses> run() {
@@ -115,7 +117,8 @@ class RoughingPlanner {
   };
   /// Between two stations everything is blended: the sheet of a roughing pass is made with a pad for that.
   [[nodiscard]] Width width(double height, double r) const {
-    const double t = std::clamp((r - sheet_.r_from()) / (sheet_.r_to() - sheet_.r_from()), 0.0, 1.0) * double(walls_.size() - 1);
+    const double t =
+        std::clamp((r - sheet_.r_from()) / (sheet_.r_to() - sheet_.r_from()), 0.0, 1.0) * double(walls_.size() - 1);
     const auto j = std::min(std::size_t(t), walls_.size() - 2);
     const double x = t - double(j);
     Width w;

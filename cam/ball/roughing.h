@@ -15,8 +15,8 @@ struct RoughingOptions {
   double step_down_mm = 0;
   double step_over_mm = 0;
   double chord_mm = 0;
-  double overrun_mm = 0;      ///< beyond both ends of the ring, for the ball centre
-  double blank_top_mm = 0;    ///< z of the blank at the middle of the ring
+  double overrun_mm = 0;    ///< beyond both ends of the ring, for the ball centre
+  double blank_top_mm = 0;  ///< z of the blank at the middle of the ring
   bool climb = true;
 };
 

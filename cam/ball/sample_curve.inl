@@ -35,7 +35,8 @@ std::optional<SampledCurve> sample_curve(const Curve& curve, double r_begin, dou
                three = node(previous->r + 0.75 * gap);
     if (!middle || !quarter || !three) return {};
     const Vec3 &a = previous->at.centre, &b = next.at.centre;
-    const double worst = std::max({sag(a, b, middle->at.centre), sag(a, b, quarter->at.centre), sag(a, b, three->at.centre)});
+    const double worst =
+        std::max({sag(a, b, middle->at.centre), sag(a, b, quarter->at.centre), sag(a, b, three->at.centre)});
     const bool fine = worst <= chord_mm && (b - a).norm() <= longest_mm;
     if (fine || std::abs(gap) < 1e-7) {
       out.worst_chord_mm = std::max(out.worst_chord_mm, worst);

@@ -20,20 +20,23 @@ bool keeps_on(const std::vector<BallPass::Point>& points) {
 
 class PassMaker {
  public:
-  PassMaker(const face_gear::OffsetSheet& sheet, const FinishingOptions& options, const SheetPassAsked& asked) : sheet_(sheet), o_(options), asked_(asked) {}
+  PassMaker(const face_gear::OffsetSheet& sheet, const FinishingOptions& options, const SheetPassAsked& asked)
+      : sheet_(sheet), o_(options), asked_(asked) {}
 
   [[nodiscard]] Result<SheetPass> run() const {
     const auto& ring = sheet_.space().ring().zone;
-    double from = radius_of_contact_at(asked_.sigma, ring.inner_radius_mm), to = radius_of_contact_at(asked_.sigma, ring.outer_radius_mm);
+    double from = radius_of_contact_at(asked_.sigma, ring.inner_radius_mm),
+           to = radius_of_contact_at(asked_.sigma, ring.outer_radius_mm);
     if (asked_.other) {
       from = std::min(from, radius_of_contact_at(asked_.other, ring.inner_radius_mm));
       to = std::max(to, radius_of_contact_at(asked_.other, ring.outer_radius_mm));
     }
     if (std::isnan(from) || std::isnan(to))
-      return fail("the flank ends inside the ring: ball centres reach contact radii {:.4f} to {:.4f}, the ring is "
-                  "{:.4f} to {:.4f}",
-                  contact_radius(asked_.sigma(sheet_.r_from()), sheet_.r_from()), contact_radius(asked_.sigma(sheet_.r_to()), sheet_.r_to()),
-                  ring.inner_radius_mm, ring.outer_radius_mm);
+      return fail(
+          "the flank ends inside the ring: ball centres reach contact radii {:.4f} to {:.4f}, the ring is {:.4f} to "
+          "{:.4f}",
+          contact_radius(asked_.sigma(sheet_.r_from()), sheet_.r_from()),
+          contact_radius(asked_.sigma(sheet_.r_to()), sheet_.r_to()), ring.inner_radius_mm, ring.outer_radius_mm);
     const double begin = std::max(from, asked_.r_low), end = std::min(to, asked_.r_high);
     if (!(end > begin)) return SheetPass{};
     const auto curve = sample_curve([this](double r) { return on_sheet(r); }, begin, end, o_.chord_mm, longest());
@@ -52,7 +55,8 @@ class PassMaker {
     return s ? radius(s->contact.p) : NAN;
   }
 
-  /// Radius of the ball centre where the contact of a curve lies at the radius `target`; not a number where it never does.
+  /// Radius of the ball centre where the contact of a curve lies at the radius `target`; not a number where it never
+  /// does.
   [[nodiscard]] double radius_of_contact_at(const std::function<double(double)>& curve, double target) const {
     double a = sheet_.r_from(), b = sheet_.r_to();
     if (contact_radius(curve(a), a) > target || contact_radius(curve(b), b) < target) return NAN;
@@ -69,13 +73,15 @@ class PassMaker {
     return BallPass::Point{s->centre, s->contact.p, true};
   }
 
-  /// Points beyond `end`, outwards (sense 1) or inwards (-1): along the sheet where that is there and smooth, else straight on. Out there the
-  /// ball may come to a corner that the ring does not have, and the sheet jumps from one wall of it to the other.
+  /// Points beyond `end`, outwards (sense 1) or inwards (-1): along the sheet where that is there and smooth, else
+  /// straight on. Out there the ball may come to a corner that the ring does not have, and the sheet jumps from one
+  /// wall of it to the other.
   [[nodiscard]] std::vector<BallPass::Point> run_out(double end, double sense) const {
     const double target = std::clamp(end + sense * o_.run_out_mm, sheet_.r_from(), sheet_.r_to());
     std::vector<BallPass::Point> out;
     if (std::abs(target - end) > 0.3 * o_.run_out_mm)
-      if (const auto line = sample_curve([this](double r) { return on_sheet(r); }, end, target, o_.chord_mm, longest()); line && keeps_on(line->points)) {
+      if (const auto line = sample_curve([this](double r) { return on_sheet(r); }, end, target, o_.chord_mm, longest());
+          line && keeps_on(line->points)) {
         out.assign(line->points.begin() + 1, line->points.end());
         for (auto& p : out) p.touching = false;
         return out;
@@ -106,7 +112,8 @@ class PassMaker {
 
 }  // namespace
 
-Result<SheetPass> make_sheet_pass(const face_gear::OffsetSheet& sheet, const FinishingOptions& options, const SheetPassAsked& asked) {
+Result<SheetPass> make_sheet_pass(const face_gear::OffsetSheet& sheet, const FinishingOptions& options,
+                                  const SheetPassAsked& asked) {
   return PassMaker(sheet, options, asked).run();
 }
 

@@ -1,4 +1,5 @@
-// One pass of a ball along the tooth: a curve on the sheet of ball centres, from end to end of the ring, with its run-outs.
+// One pass of a ball along the tooth: a curve on the sheet of ball centres, from end to end of the ring, with its
+// run-outs.
 #pragma once
 
 #include <functional>
@@ -7,12 +8,15 @@
 
 namespace toothpath::ball {
 
-/// What is asked of a pass. `sigma`: its place across the sheet over the radius of the ball centre (0 to 5, geometry/face_gear/space_sheet.h).
+/// What is asked of a pass. `sigma`: its place across the sheet over the radius of the ball centre (0 to 5,
+/// geometry/face_gear/space_sheet.h).
 struct SheetPassAsked {
   std::function<double(double)> sigma;
-  std::function<double(double)> other;            ///< along a corner the ball touches here, too: the pass is as long as either contact lies on the ring; may be empty
-  bool plus = true;                               ///< fed as a pass of the plus flank
-  double r_low = -INFINITY, r_high = INFINITY;    ///< a corner that begins or ends inside the ring: the pass is as long as the corner, mm
+  std::function<double(double)> other;  ///< along a corner the ball touches here, too: the pass is as long as either
+                                        ///< contact lies on the ring; may be empty
+  bool plus = true;                     ///< fed as a pass of the plus flank
+  double r_low = -INFINITY,
+         r_high = INFINITY;  ///< a corner that begins or ends inside the ring: the pass is as long as the corner, mm
 };
 
 struct SheetPass {
@@ -20,7 +24,9 @@ struct SheetPass {
   double worst_chord_mm = 0;  ///< largest sag found while placing points
 };
 
-/// The piece of the curve whose contact lies on the ring, with the run-out at both ends. Fails where the flank ends inside the ring (undercut) or the sheet cannot be followed.
-[[nodiscard]] Result<SheetPass> make_sheet_pass(const face_gear::OffsetSheet& sheet, const FinishingOptions& options, const SheetPassAsked& asked);
+/// The piece of the curve whose contact lies on the ring, with the run-out at both ends. Fails where the flank ends
+/// inside the ring (undercut) or the sheet cannot be followed.
+[[nodiscard]] Result<SheetPass> make_sheet_pass(const face_gear::OffsetSheet& sheet, const FinishingOptions& options,
+                                                const SheetPassAsked& asked);
 
 }  // namespace toothpath::ball

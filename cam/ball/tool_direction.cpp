@@ -13,13 +13,13 @@
 namespace toothpath::ball {
 namespace {
 
-constexpr double kEnough = 2.0;   // mm: a gap beyond this is not measured further
-constexpr double kDirectionDeepest = 3.0;  // mm: how far a body in the way is followed
+constexpr double kEnough = 2.0;                // mm: a gap beyond this is not measured further
+constexpr double kDirectionDeepest = 3.0;      // mm: how far a body in the way is followed
 constexpr double kDirectionResolution = 0.02;  // mm
-constexpr double kFluteSkin = 0.03;   // mm: the flute grazes the walls that it cuts; thinner by this it may cut nowhere
+constexpr double kFluteSkin = 0.03;  // mm: the flute grazes the walls that it cuts; thinner by this it may cut nowhere
 
-/// The flute above the ball as a body. It stands on the side that is away from its own walls where these have draft; the other ring of
-/// teeth, across a relief groove, may still be in its way.
+/// The flute above the ball as a body. It stands on the side that is away from its own walls where these have draft;
+/// the other ring of teeth, across a relief groove, may still be in its way.
 std::optional<tool::Frustum> flute_body(const tool::ToolAssembly& tool) {
   const double R = tool.radius_mm(), skin = std::min(kFluteSkin, 0.1 * R);
   if (tool.flute_length_mm - R < skin) return std::nullopt;
@@ -39,10 +39,17 @@ std::vector<Vec3> some_centres(const std::vector<BallPass>& passes, std::size_t 
 /// One zone and tool: what a direction is worth.
 class Search {
  public:
-  Search(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const face_gear::OffsetSheet& sheet, const std::vector<BallPass>& passes,
-         const tool::ToolAssembly& tool, const DirectionOptions& options)
-      : tree_(tree), sheet_(sheet), tool_(tool), o_(options), few_(some_centres(passes, 24)), many_(some_centres(passes, 400)),
-        frame_(pitch_frame(part, zone)), beside_ring_(part.zones() > 1) {
+  Search(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone,
+         const face_gear::OffsetSheet& sheet, const std::vector<BallPass>& passes, const tool::ToolAssembly& tool,
+         const DirectionOptions& options)
+      : tree_(tree),
+        sheet_(sheet),
+        tool_(tool),
+        o_(options),
+        few_(some_centres(passes, 24)),
+        many_(some_centres(passes, 400)),
+        frame_(pitch_frame(part, zone)),
+        beside_ring_(part.zones() > 1) {
     if (beside_ring_) flute_ = flute_body(tool);
     choice_.zone = zone;
     choice_.fixed = false;
@@ -50,12 +57,15 @@ class Search {
 
   proof::DirectionChoice run() {
     // Beside another ring of teeth an axis that leans may bring the flute into it, an upright one never does.
-    if (beside_ring_ && frame_.up.z() < 1 - 1e-9) try_one({std::acos(frame_.up.z()), frame_.outwards.z() > 0 ? 0 : kPi});
+    if (beside_ring_ && frame_.up.z() < 1 - 1e-9)
+      try_one({std::acos(frame_.up.z()), frame_.outwards.z() > 0 ? 0 : kPi});
     try_one({0, 0});
     // A job whose upright tool is clear needs no more of the map than its neighbourhood.
     const int step = choice_.fixed ? 10 : 5, widest = choice_.fixed ? 20 : 45;
     for (int lean_deg = step; lean_deg <= widest; lean_deg += step) {
-      const int sides = choice_.fixed && lean_deg <= 20 && step == 10 ? 8 : std::max(8, 4 * int(std::ceil(std::sin(radians(lean_deg)) * 13)));
+      const int sides = choice_.fixed && lean_deg <= 20 && step == 10
+                            ? 8
+                            : std::max(8, 4 * int(std::ceil(std::sin(radians(lean_deg)) * 13)));
       std::vector<Lean> round;
       for (int k = 0; k < sides; ++k) round.push_back({radians(lean_deg), 2 * kPi * k / sides});
       try_all(round);
@@ -71,7 +81,8 @@ class Search {
   struct Lean {
     double by = 0, azimuth = 0;
   };
-  /// What is measured of a direction, whatever was found before: draft, and the gap at few centres where there is draft.
+  /// What is measured of a direction, whatever was found before: draft, and the gap at few centres where there is
+  /// draft.
   struct Measured {
     proof::DirectionChoice::Candidate candidate;
     double least_draft = 0;
@@ -82,7 +93,8 @@ class Search {
     return lean == 0 ? frame_.up : Vec3((std::cos(lean) * frame_.up + std::sin(lean) * to).normalized());
   }
 
-  /// The search leans from the normal of the pitch surface; the map is about the gear axis, as `axis` and `lean_rad` are.
+  /// The search leans from the normal of the pitch surface; the map is about the gear axis, as `axis` and `lean_rad`
+  /// are.
   void candidates_in_gear_frame() {
     for (auto& c : choice_.candidates) {
       const Vec3 axis = axis_at(c.lean_rad, c.azimuth_rad);
@@ -114,14 +126,14 @@ class Search {
   }
 
   /// Over the tips, on all threads: every one looks only for less than was found so far. Ends where the body cuts in.
-  [[nodiscard]] double least_gap(const tool::Frustum& body, const std::vector<Vec3>& tips, const Vec3& axis, double enough) const {
+  [[nodiscard]] double least_gap(const tool::Frustum& body, const std::vector<Vec3>& tips, const Vec3& axis,
+                                 double enough) const {
     std::atomic<double> least{enough};
     tbb::parallel_for(std::size_t(0), tips.size(), [&](std::size_t k) {
       double seen = least;
       if (seen < 0) return;
       const double here = tree_.gap(body, tips[k], axis, seen, kDirectionResolution);
-      while (here < seen && !least.compare_exchange_weak(seen, here)) {
-      }
+      while (here < seen && !least.compare_exchange_weak(seen, here)) {}
     });
     return least;
   }
@@ -144,7 +156,8 @@ class Search {
       for (double step = radians(2.5); step > radians(0.5) && !choice_.fixed; step *= 0.5)
         for (bool better = true; better && !choice_.fixed;) {
           better = false;
-          const double x = std::tan(at.lean_rad) * std::cos(at.azimuth_rad), y = std::tan(at.lean_rad) * std::sin(at.azimuth_rad);
+          const double x = std::tan(at.lean_rad) * std::cos(at.azimuth_rad),
+                       y = std::tan(at.lean_rad) * std::sin(at.azimuth_rad);
           for (int k = 0; k < 8 && !choice_.fixed; ++k) {
             const double u = x + std::tan(step) * std::cos(kPi / 4 * k), v = y + std::tan(step) * std::sin(kPi / 4 * k);
             try_one({std::atan(std::hypot(u, v)), std::atan2(v, u)});
@@ -207,21 +220,22 @@ class Search {
       choice_.lean_rad = 0;
     }
     choice_.clearance_mm = c.gap_mm;
-    const std::string room = c.gap_mm >= kEnough ? fmt::format("more than {:.0f} mm", kEnough) : fmt::format("{:.3f} mm", c.gap_mm);
+    const std::string room =
+        c.gap_mm >= kEnough ? fmt::format("more than {:.0f} mm", kEnough) : fmt::format("{:.3f} mm", c.gap_mm);
     if (choice_.lean_rad == 0 && c.lean_rad > 0)
       choice_.explanation = fmt::format(
-          "along the gear axis, {:.0f} deg from the normal of the pitch surface: the flute stays clear of the other ring of teeth, every "
-          "flank has draft (least cosine {:.3f}), shank and holder keep {} from the teeth",
+          "along the gear axis, {:.0f} deg from the normal of the pitch surface: the flute stays clear of the other "
+          "ring of teeth, every flank has draft (least cosine {:.3f}), shank and holder keep {} from the teeth",
           degrees(c.lean_rad), least_draft, room);
     else if (c.lean_rad == 0)
       choice_.explanation = fmt::format(
-          "normal to the pitch surface: every flank has draft (least cosine {:.3f}), shank and holder keep {} from the teeth, "
-          "and no axis needs to turn while cutting",
+          "normal to the pitch surface: every flank has draft (least cosine {:.3f}), shank and holder keep {} from the "
+          "teeth, and no axis needs to turn while cutting",
           least_draft, room);
     else
       choice_.explanation = fmt::format(
-          "leans {:.0f} deg from the normal of the pitch surface, the least lean of the directions tried that is clear ({} to "
-          "the teeth)",
+          "leans {:.0f} deg from the normal of the pitch surface, the least lean of the directions tried that is clear "
+          "({} to the teeth)",
           degrees(c.lean_rad), room);
   }
 
@@ -233,11 +247,13 @@ class Search {
       if (stands(c) > stands(*best) || (stands(c) == stands(*best) && c.gap_mm > best->gap_mm)) best = &c;
     choice_.explanation =
         best->gap_mm < 0
-            ? fmt::format("no fixed direction is clear: the best of {} leans {:.1f} deg and its {} cuts in by {}{:.3f} mm",
-                          choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm <= -kDirectionDeepest ? "more than " : "",
-                          -best->gap_mm)
-            : fmt::format("no fixed direction is clear: the best of {} leans {:.1f} deg and its {} keeps {:.3f} of {:.3f} mm",
-                          choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm, o_.clearance_mm);
+            ? fmt::format(
+                  "no fixed direction is clear: the best of {} leans {:.1f} deg and its {} cuts in by {}{:.3f} mm",
+                  choice_.candidates.size(), degrees(best->lean_rad), best->worst_body,
+                  best->gap_mm <= -kDirectionDeepest ? "more than " : "", -best->gap_mm)
+            : fmt::format(
+                  "no fixed direction is clear: the best of {} leans {:.1f} deg and its {} keeps {:.3f} of {:.3f} mm",
+                  choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm, o_.clearance_mm);
   }
 
   const analytic::BodyTree& tree_;
@@ -246,7 +262,7 @@ class Search {
   const DirectionOptions& o_;
   std::vector<Vec3> few_, many_;
   PitchFrame frame_;
-  bool beside_ring_;              ///< a double helical gear: another ring of teeth stands across the groove
+  bool beside_ring_;                    ///< a double helical gear: another ring of teeth stands across the groove
   std::optional<tool::Frustum> flute_;  ///< asked for then
   proof::DirectionChoice choice_;
 };
@@ -258,17 +274,17 @@ PitchFrame pitch_frame(const analytic::GearDistance& part, int zone) {
   const auto& ring = space.ring().zone;
   const double azimuth = part.space_azimuth(zone, 0.5 * (ring.inner_radius_mm + ring.outer_radius_mm));
   PitchFrame frame;
-  frame.up = face_gear::FaceGearSurface<double>::turned(Vec3(-space.surface().d()), space.surface().Cg == 0 ? 0.0 : azimuth);
+  frame.up =
+      face_gear::FaceGearSurface<double>::turned(Vec3(-space.surface().d()), space.surface().Cg == 0 ? 0.0 : azimuth);
   frame.side = frame.up.cross(Vec3(std::cos(azimuth), std::sin(azimuth), 0)).normalized();
   frame.outwards = frame.side.cross(frame.up);
   return frame;
 }
 
-proof::DirectionChoice choose_direction(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const face_gear::OffsetSheet& sheet,
-                                 const std::vector<BallPass>& passes, const tool::ToolAssembly& tool,
-                                 const DirectionOptions& options) {
+proof::DirectionChoice choose_direction(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone,
+                                        const face_gear::OffsetSheet& sheet, const std::vector<BallPass>& passes,
+                                        const tool::ToolAssembly& tool, const DirectionOptions& options) {
   return Search(part, tree, zone, sheet, passes, tool, options).run();
 }
 
 }  // namespace toothpath::ball
-

@@ -15,20 +15,24 @@ namespace {
 
 std::atomic<std::size_t> runs{0};
 
-constexpr double kGapResolution = 0.01;   // mm, of gaps
-constexpr double kStation = 0.7;       // mm between stations, at most
-constexpr int kSweeps = 16;            // of the relaxation
-constexpr double kSettled = 0.002;     // tangent: the relaxation ends when no direction moves by more
-constexpr int kRounds = 3;             // halvings of the stations of a pass that is not clear between them
-constexpr double kFarthestGap = 2.0;   // mm: gaps beyond are not measured
-constexpr double kLongestStickOut = 60; // mm: how much longer a tool is looked for, when a job is refused
-
+constexpr double kGapResolution = 0.01;  // mm, of gaps
+constexpr double kStation = 0.7;         // mm between stations, at most
+constexpr int kSweeps = 16;              // of the relaxation
+constexpr double kSettled = 0.002;       // tangent: the relaxation ends when no direction moves by more
+constexpr int kRounds = 3;               // halvings of the stations of a pass that is not clear between them
+constexpr double kFarthestGap = 2.0;     // mm: gaps beyond are not measured
+constexpr double kLongestStickOut = 60;  // mm: how much longer a tool is looked for, when a job is refused
 
 class Orienter {
  public:
-  Orienter(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const tool::ToolAssembly& tool, const OrientationOptions& o,
-           std::vector<BallPass>& passes)
-      : tree_(tree), tool_(tool), o_(o), passes_(passes), check_(part, tree, zone, tool, o), grid_(std::tan(o.widest_lean_rad)) {}
+  Orienter(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const tool::ToolAssembly& tool,
+           const OrientationOptions& o, std::vector<BallPass>& passes)
+      : tree_(tree),
+        tool_(tool),
+        o_(o),
+        passes_(passes),
+        check_(part, tree, zone, tool, o),
+        grid_(std::tan(o.widest_lean_rad)) {}
 
   Expected<Orientation, OrientationRefusal> run() {
     for (const auto& pass : passes_) {
@@ -80,11 +84,16 @@ class Orienter {
     const OrientationWay* like = nullptr;
     for (const auto q : way.near)
       if (like == nullptr && ways_[q].solved) like = &ways_[q];
-    const auto reference = [&](std::size_t station) { return like != nullptr ? like->lean_at(way.r[station]) : Vec2(0, 0); };
-    const auto clear = [&](std::size_t station, const Vec2& lean) { return clear_at(way.points[station], lean, o_.margin_mm); };
+    const auto reference = [&](std::size_t station) {
+      return like != nullptr ? like->lean_at(way.r[station]) : Vec2(0, 0);
+    };
+    const auto clear = [&](std::size_t station, const Vec2& lean) {
+      return clear_at(way.points[station], lean, o_.margin_mm);
+    };
     if (find_constant(way, grid_, reference, clear)) return true;
     const auto between = [&](std::size_t station, const Vec2& a, const Vec2& b) {
-      return clear_at(blend_points(way.points[station], way.points[station + 1], 0.5), 0.5 * (a + b), 0.5 * o_.margin_mm);
+      return clear_at(blend_points(way.points[station], way.points[station + 1], 0.5), 0.5 * (a + b),
+                      0.5 * o_.margin_mm);
     };
     if (find_way(way, grid_, reference, clear, between).found) return true;
     // A narrow way may slip through a grid of 2 deg.
@@ -96,8 +105,8 @@ class Orienter {
     return false;
   }
 
-  /// Takes the steps of the grid out: every direction towards the mean of its neighbours along and across the passes and of upright,
-  /// as long as it stays clear. Passes are moved at once, each against the state before the sweep.
+  /// Takes the steps of the grid out: every direction towards the mean of its neighbours along and across the passes
+  /// and of upright, as long as it stays clear. Passes are moved at once, each against the state before the sweep.
   void relax() {
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       const std::vector<OrientationWay> before = ways_;
@@ -142,7 +151,8 @@ class Orienter {
         bool good = true;
         for (const std::size_t j : {k - 1, k + 1})
           if (j < n && good)
-            good = clear_at(blend_points(way.points[k], way.points[j], 0.5), 0.5 * (lean + way.lean[j]), 0.5 * o_.margin_mm);
+            good = clear_at(blend_points(way.points[k], way.points[j], 0.5), 0.5 * (lean + way.lean[j]),
+                            0.5 * o_.margin_mm);
         if (!good) continue;
         way.lean[k] = lean;
         most = std::max(most, (lean - from).norm());
@@ -152,8 +162,8 @@ class Orienter {
     return most;
   }
 
-  static void add_neighbours(const OrientationWay& way, std::size_t k, const std::vector<OrientationWay>& all, double ds, Vec2& sum,
-                             double& weight) {
+  static void add_neighbours(const OrientationWay& way, std::size_t k, const std::vector<OrientationWay>& all,
+                             double ds, Vec2& sum, double& weight) {
     weight += kLeanWeight * ds;
     for (const auto q : way.near) {
       sum += kNearWeight * ds / double(way.near.size()) * all[q].lean_at(way.r[k]);
@@ -178,7 +188,8 @@ class Orienter {
         }
         if (!smooth && round == kRounds) {
           const auto& c = records.points[std::size_t(bad - good.begin())].centre;
-          refusal_ = OrientationRefusal{fmt::format("the axis is not clear between its stations at radius {:.3f}, height {:.3f}", radius(c), c.z())};
+          refusal_ = OrientationRefusal{fmt::format(
+              "the axis is not clear between its stations at radius {:.3f}, height {:.3f}", radius(c), c.z())};
           return false;
         }
       }
@@ -203,9 +214,10 @@ class Orienter {
   // Refusals.
   [[nodiscard]] OrientationRefusal parted(const OrientationWay& way, std::size_t station) const {
     const Vec3 c = way.points[station].centre;
-    return {fmt::format("no five-axis motion either: on one pass the clear directions up to radius {:.3f}, height {:.3f} do not join those "
-                        "behind it",
-                        radius(c), c.z())};
+    return {
+        fmt::format("no five-axis motion either: on one pass the clear directions up to radius {:.3f}, height {:.3f} "
+                    "do not join those behind it",
+                    radius(c), c.z())};
   }
 
   /// A place where no direction is clear: the body in the way in the best one, and what more reach would do.
@@ -226,11 +238,12 @@ class Orienter {
       }
       if (gap > best) best = gap, lean = angle_between(axis, check_.frame().up), body = worst;
     }
-    const std::string where = fmt::format("no five-axis motion either: with the ball at radius {:.3f}, height {:.3f}", radius(point.centre), point.centre.z());
+    const std::string where = fmt::format("no five-axis motion either: with the ball at radius {:.3f}, height {:.3f}",
+                                          radius(point.centre), point.centre.z());
     if (usable.empty()) return {where + " its flute would cut in every direction"};
     const std::string how = best < 0 ? "cuts in" : fmt::format("keeps {:.3f} mm", best);
-    return {fmt::format("{} the best direction leans {:.1f} deg and its {} {}, the clearance is {:.3f} mm; {}", where, degrees(lean), body, how,
-                        o_.clearance_mm, advice(point, usable))};
+    return {fmt::format("{} the best direction leans {:.1f} deg and its {} {}, the clearance is {:.3f} mm; {}", where,
+                        degrees(lean), body, how, o_.clearance_mm, advice(point, usable))};
   }
 
   [[nodiscard]] std::string advice(const BallPass::Point& point, const std::vector<Vec3>& usable) const {
@@ -241,7 +254,8 @@ class Orienter {
       if (flute) longer.flute_length_mm += by;
       const auto bodies = tool::shank_and_holder(longer);
       return std::any_of(usable.begin(), usable.end(), [&](const Vec3& axis) {
-        return tree_.clear(bodies, point.centre - tool_.radius_mm() * axis, axis, o_.clearance_mm + o_.margin_mm, kGapResolution);
+        return tree_.clear(bodies, point.centre - tool_.radius_mm() * axis, axis, o_.clearance_mm + o_.margin_mm,
+                           kGapResolution);
       });
     };
     for (const bool flute : {false, true}) {
@@ -253,7 +267,8 @@ class Orienter {
       }
       return flute ? fmt::format("a flute of {:.1f} mm (now {:.1f}) with as much more stick-out would clear this place",
                                  tool_.flute_length_mm + enough, tool_.flute_length_mm)
-                   : fmt::format("a stick-out of {:.1f} mm (now {:.1f}) would clear this place", tool_.stick_out_mm + enough, tool_.stick_out_mm);
+                   : fmt::format("a stick-out of {:.1f} mm (now {:.1f}) would clear this place",
+                                 tool_.stick_out_mm + enough, tool_.stick_out_mm);
     }
     return "a slimmer shank is needed";
   }
@@ -273,11 +288,18 @@ class Orienter {
 
 }  // namespace
 
-OrientationCheck::OrientationCheck(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const tool::ToolAssembly& tool,
-                                   const OrientationOptions& options)
-    : part_(part), tree_(tree), tool_(tool), o_(options), frame_(pitch_frame(part, zone)), bodies_(tool::shank_and_holder(tool)) {}
+OrientationCheck::OrientationCheck(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone,
+                                   const tool::ToolAssembly& tool, const OrientationOptions& options)
+    : part_(part),
+      tree_(tree),
+      tool_(tool),
+      o_(options),
+      frame_(pitch_frame(part, zone)),
+      bodies_(tool::shank_and_holder(tool)) {}
 
-bool OrientationCheck::cutting(const BallPass::Point& point, const Vec3& axis) const { return stands_right(point, axis) && flute_is_free(point, axis); }
+bool OrientationCheck::cutting(const BallPass::Point& point, const Vec3& axis) const {
+  return stands_right(point, axis) && flute_is_free(point, axis);
+}
 
 bool OrientationCheck::stands_right(const BallPass::Point& point, const Vec3& axis) const {
   if (std::atan2(std::hypot(axis.x(), axis.y()), axis.z()) < o_.least_tilt_rad) return false;
@@ -297,12 +319,13 @@ bool OrientationCheck::flute_is_free(const BallPass::Point& point, const Vec3& a
 }
 
 bool OrientationCheck::clear(const BallPass::Point& point, const Vec3& axis, double clearance_mm) const {
-  return stands_right(point, axis) && tree_.clear(bodies_, point.centre - tool_.radius_mm() * axis, axis, clearance_mm, kGapResolution) &&
+  return stands_right(point, axis) &&
+         tree_.clear(bodies_, point.centre - tool_.radius_mm() * axis, axis, clearance_mm, kGapResolution) &&
          flute_is_free(point, axis);
 }
 
-Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& check, const analytic::BodyTree& tree, const tool::ToolAssembly& tool,
-                      std::vector<BallPass>& passes) {
+Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& check, const analytic::BodyTree& tree,
+                      const tool::ToolAssembly& tool, std::vector<BallPass>& passes) {
   Orientation out;
   out.least_lean_rad = INFINITY;
   out.clearance_mm = kFarthestGap;
@@ -311,7 +334,8 @@ Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& che
     std::vector<double> gaps(points.size(), kFarthestGap);
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
       for (const auto& body : check.bodies())
-        gaps[k] = std::min(gaps[k], tree.gap(body, points[k].centre - tool.radius_mm() * axes[k], axes[k], gaps[k], kGapResolution));
+        gaps[k] = std::min(
+            gaps[k], tree.gap(body, points[k].centre - tool.radius_mm() * axes[k], axes[k], gaps[k], kGapResolution));
     });
     double turned = 0;
     for (std::size_t k = 0; k < points.size(); ++k) {
@@ -332,11 +356,14 @@ Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& che
   return out;
 }
 
-Expected<Orientation, OrientationRefusal> orient_passes(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone,
-                                                            const tool::ToolAssembly& tool, const OrientationOptions& options,
-                                                            std::vector<BallPass>& passes) {
+Expected<Orientation, OrientationRefusal> orient_passes(const analytic::GearDistance& part,
+                                                        const analytic::BodyTree& tree, int zone,
+                                                        const tool::ToolAssembly& tool,
+                                                        const OrientationOptions& options,
+                                                        std::vector<BallPass>& passes) {
   ++runs;
-  passes.erase(std::remove_if(passes.begin(), passes.end(), [](const BallPass& p) { return p.points.empty(); }), passes.end());
+  passes.erase(std::remove_if(passes.begin(), passes.end(), [](const BallPass& p) { return p.points.empty(); }),
+               passes.end());
   return Orienter(part, tree, zone, tool, options, passes).run();
 }
 

@@ -1,8 +1,10 @@
-// Simultaneous five-axis: a tool axis for every ball centre of a zone in which no fixed direction keeps shank and holder clear.
+// Simultaneous five-axis: a tool axis for every ball centre of a zone in which no fixed direction keeps shank and
+// holder clear.
 //
-// At stations along every pass the directions on a grid around the pitch normal are clear or not. A pass takes the cheapest way
-// through them (dynamic programming over stations and directions: lean, turn per mm, distance from the pass beside it); all ways are
-// then relaxed together as far as they stay clear, which takes the steps of the grid out, and read as smooth curves.
+// At stations along every pass the directions on a grid around the pitch normal are clear or not. A pass takes the
+// cheapest way through them (dynamic programming over stations and directions: lean, turn per mm, distance from the
+// pass beside it); all ways are then relaxed together as far as they stay clear, which takes the steps of the grid out,
+// and read as smooth curves.
 #pragma once
 
 #include <optional>
@@ -17,21 +19,22 @@
 namespace toothpath::ball {
 
 struct OrientationOptions {
-  double clearance_mm = proof::ProofLimits{}.clearance_mm;    ///< least gap of shank and holder
-  double margin_mm = 0.02;       ///< kept beyond it at the stations, for what lies between them
-  double least_draft = 0.02;     ///< least cosine between the axis and the normal at the contact
-  double least_tilt_rad = 0.035; ///< kept from the gear axis: a rotary that carries the work has its pole there
-  double widest_lean_rad = 0.66; ///< of the grid, from the pitch normal
-  double chord_mm = 0.0002;      ///< how far the ball centre may leave the pass because the axis turns between two records
+  double clearance_mm = proof::ProofLimits{}.clearance_mm;  ///< least gap of shank and holder
+  double margin_mm = 0.02;        ///< kept beyond it at the stations, for what lies between them
+  double least_draft = 0.02;      ///< least cosine between the axis and the normal at the contact
+  double least_tilt_rad = 0.035;  ///< kept from the gear axis: a rotary that carries the work has its pole there
+  double widest_lean_rad = 0.66;  ///< of the grid, from the pitch normal
+  double chord_mm = 0.0002;  ///< how far the ball centre may leave the pass because the axis turns between two records
 };
 
 struct Orientation {
-  std::vector<std::vector<Vec3>> axes;  ///< of every point of every pass; the passes have been given more points where the axis turns
+  std::vector<std::vector<Vec3>>
+      axes;  ///< of every point of every pass; the passes have been given more points where the axis turns
   double least_lean_rad = 0, greatest_lean_rad = 0;  ///< from the pitch normal
-  double greatest_turn_rad_per_mm = 0;  ///< of the axis, along the ball centre
-  double greatest_step_rad = 0;         ///< between neighbouring records
-  double clearance_mm = 0;              ///< least gap found at the records, at most 2
-  int turning_passes = 0;               ///< passes inside which the axis turns; the others keep one direction
+  double greatest_turn_rad_per_mm = 0;               ///< of the axis, along the ball centre
+  double greatest_step_rad = 0;                      ///< between neighbouring records
+  double clearance_mm = 0;                           ///< least gap found at the records, at most 2
+  int turning_passes = 0;  ///< passes inside which the axis turns; the others keep one direction
 };
 
 /// Where and why there is none.
@@ -42,7 +45,8 @@ struct OrientationRefusal {
 /// Which directions keep the ball cutting and every body clear at one place of the ball.
 class OrientationCheck {
  public:
-  OrientationCheck(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone, const tool::ToolAssembly& tool, const OrientationOptions& options);
+  OrientationCheck(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone,
+                   const tool::ToolAssembly& tool, const OrientationOptions& options);
   /// With the ball centre at `point`. `clearance_mm`: of shank and holder.
   [[nodiscard]] bool clear(const BallPass::Point& point, const Vec3& axis, double clearance_mm) const;
   /// The part of it that concerns the cutting: draft at the contact, flute free of the part, away from the gear axis.
@@ -51,7 +55,8 @@ class OrientationCheck {
   [[nodiscard]] const std::vector<tool::Frustum>& bodies() const { return bodies_; }
 
  private:
-  [[nodiscard]] bool stands_right(const BallPass::Point& point, const Vec3& axis) const;  ///< draft, and away from the gear axis
+  [[nodiscard]] bool stands_right(const BallPass::Point& point,
+                                  const Vec3& axis) const;  ///< draft, and away from the gear axis
   [[nodiscard]] bool flute_is_free(const BallPass::Point& point, const Vec3& axis) const;
 
   const analytic::GearDistance& part_;
@@ -62,13 +67,17 @@ class OrientationCheck {
   std::vector<tool::Frustum> bodies_;
 };
 
-/// Axes for all passes of one zone; inserts points into the passes where the axis turns. Deterministic on any number of threads.
-[[nodiscard]] Expected<Orientation, OrientationRefusal> orient_passes(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone,
-                                                                          const tool::ToolAssembly& tool, const OrientationOptions& options,
-                                                                          std::vector<BallPass>& passes);
+/// Axes for all passes of one zone; inserts points into the passes where the axis turns. Deterministic on any number of
+/// threads.
+[[nodiscard]] Expected<Orientation, OrientationRefusal> orient_passes(const analytic::GearDistance& part,
+                                                                      const analytic::BodyTree& tree, int zone,
+                                                                      const tool::ToolAssembly& tool,
+                                                                      const OrientationOptions& options,
+                                                                      std::vector<BallPass>& passes);
 
 /// Puts the records into their passes and measures them: leans, turns, least gap of shank and holder.
-[[nodiscard]] Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& check, const analytic::BodyTree& tree, const tool::ToolAssembly& tool,
+[[nodiscard]] Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& check,
+                                    const analytic::BodyTree& tree, const tool::ToolAssembly& tool,
                                     std::vector<BallPass>& passes);
 
 /// How often `orient_passes` has run in this process: a job whose zones all have a fixed direction leaves it alone.

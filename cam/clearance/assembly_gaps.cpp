@@ -6,21 +6,30 @@
 namespace toothpath::clearance {
 namespace {
 
-constexpr std::size_t kPoseWindow = 16;     // poses that share their candidates
-constexpr double kPoseWindowReach = 1.6;    // mm
-constexpr double kMostAhead = 16;       // mm
+constexpr std::size_t kPoseWindow = 16;   // poses that share their candidates
+constexpr double kPoseWindowReach = 1.6;  // mm
+constexpr double kMostAhead = 16;         // mm
 constexpr double kLeastAhead = 0.25;
 
 /// Bound of the way of any point of a body between two poses: `arm` is the distance of its farthest point from the tip.
-double motion_between(const ToolPose& a, const ToolPose& b, double arm) { return (a.tip - b.tip).norm() + arm * (a.axis - b.axis).norm(); }
+double motion_between(const ToolPose& a, const ToolPose& b, double arm) {
+  return (a.tip - b.tip).norm() + arm * (a.axis - b.axis).norm();
+}
 
-double arm_of(const tool::Frustum& f) { return std::hypot(std::max(std::abs(f.from), std::abs(f.to)), std::max(f.radius_from, f.radius_to)); }
+double arm_of(const tool::Frustum& f) {
+  return std::hypot(std::max(std::abs(f.from), std::abs(f.to)), std::max(f.radius_from, f.radius_to));
+}
 
 }  // namespace
 
 MeshAssembly::MeshAssembly(const MeshDistance& mesh, const tool::ToolAssembly& tool, double within_mm)
-    : mesh_(mesh), radius_(tool.radius_mm()), height_(std::max(0.0, tool.flute_length_mm - tool.radius_mm())), within_(within_mm),
-      frustums_(tool::shank_and_holder(tool)), free_(frustums_.size()), beside_(64) {}
+    : mesh_(mesh),
+      radius_(tool.radius_mm()),
+      height_(std::max(0.0, tool.flute_length_mm - tool.radius_mm())),
+      within_(within_mm),
+      frustums_(tool::shank_and_holder(tool)),
+      free_(frustums_.size()),
+      beside_(64) {}
 
 /// Is the body inside the solid? It has not changed sides unless its way was as long as the room on both ends of it.
 bool MeshAssembly::side(Free& f, const ToolPose& pose, double gap, double motion, const Vec3& inner) {
@@ -61,20 +70,24 @@ void MeshAssembly::cutting_part(std::span<const ToolPose> poses, std::span<doubl
   const auto centre = [&](std::size_t k) -> Vec3 { return poses[k].tip + radius_ * poses[k].axis - origin; };
   for (std::size_t from = 0, to = 0; from < poses.size(); from = to) {
     to = from + 1;
-    while (to < poses.size() && to - from < kPoseWindow && motion_between(poses[from], poses[to], arm) < kPoseWindowReach) ++to;
+    while (to < poses.size() && to - from < kPoseWindow &&
+           motion_between(poses[from], poses[to], arm) < kPoseWindowReach)
+      ++to;
     const ToolPose& middle = poses[from + (to - from) / 2];
     const Vec3 c = centre(from + (to - from) / 2);
     double half = 0;
     for (std::size_t k = from; k < to; ++k) half = std::max(half, motion_between(middle, poses[k], arm));
     near_ = kernels.nearest(tree, c.data(), (within + half) * (within + half), near_);
     const double reach = std::min(near_.block < 0 ? INFINITY : std::sqrt(near_.squared) + 2 * half, within + half);
-    window_.gather(tree, {{c.x(), c.y(), c.z()}, {middle.axis.x(), middle.axis.y(), middle.axis.z()}, height_}, reach + 1e-6);
+    window_.gather(tree, {{c.x(), c.y(), c.z()}, {middle.axis.x(), middle.axis.y(), middle.axis.z()}, height_},
+                   reach + 1e-6);
     ++queries_;
     for (std::size_t k = from; k < to; ++k) {
       const Vec3 p = centre(k);
       double d = within;
       if (window_.size() > 0) {
-        const TriangleHit hit = kernels.nearest_in(tree, window_.groups(), window_.size(), p.data(), within * within, near_);
+        const TriangleHit hit =
+            kernels.nearest_in(tree, window_.groups(), window_.size(), p.data(), within * within, near_);
         double best2 = within * within;
         if (hit.block >= 0) {
           near_ = hit;
@@ -85,10 +98,12 @@ void MeshAssembly::cutting_part(std::span<const ToolPose> poses, std::span<doubl
         const Vec3& axis = poses[k].axis;
         const CapsuleView flute{{p.x(), p.y(), p.z()}, {axis.x(), axis.y(), axis.z()}, height_};
         if (height_ > 0) {
-          std::size_t count = kernels.beside_flute(tree, window_.groups(), window_.size(), flute, best2, beside_.data(), beside_.size());
+          std::size_t count = kernels.beside_flute(tree, window_.groups(), window_.size(), flute, best2, beside_.data(),
+                                                   beside_.size());
           if (count > beside_.size()) {
             beside_.resize(2 * count);
-            count = kernels.beside_flute(tree, window_.groups(), window_.size(), flute, best2, beside_.data(), beside_.size());
+            count = kernels.beside_flute(tree, window_.groups(), window_.size(), flute, best2, beside_.data(),
+                                         beside_.size());
           }
           for (std::size_t n = 0; n < count; ++n) {
             const TriangleCorners t = corners_of(tree.blocks[beside_[n] / kLanes], int(beside_[n] % kLanes));
@@ -100,7 +115,8 @@ void MeshAssembly::cutting_part(std::span<const ToolPose> poses, std::span<doubl
         }
       }
       const Vec3 inner = poses[k].tip + (radius_ + 0.5 * height_) * poses[k].axis;
-      gaps[k * bodies()] = side(cutter_, poses[k], d, motion_between(cutter_.last, poses[k], arm), inner) ? -INFINITY : d - radius_;
+      gaps[k * bodies()] =
+          side(cutter_, poses[k], d, motion_between(cutter_.last, poses[k], arm), inner) ? -INFINITY : d - radius_;
     }
   }
 }

@@ -12,9 +12,9 @@ struct ToolPose {
   Vec3 tip = Vec3::Zero(), axis = Vec3::UnitZ();  ///< tip [mm] and unit axis, tip to holder, in the frame of the mesh
 };
 
-/// Follows one tool along a path. Each pose is answered exactly; what its neighbours have shown is used to find the answer faster:
-/// candidates of the cutting part are gathered once for a window of poses, and a body that was proven free by more than the
-/// motion since is not looked at again. One object a thread.
+/// Follows one tool along a path. Each pose is answered exactly; what its neighbours have shown is used to find the
+/// answer faster: candidates of the cutting part are gathered once for a window of poses, and a body that was proven
+/// free by more than the motion since is not looked at again. One object a thread.
 class MeshAssembly {
  public:
   /// `within_mm`: gaps above it are answered as it.
@@ -22,10 +22,13 @@ class MeshAssembly {
 
   /// Bodies: 0 the cutting part (ball and flute), then shank and holder from below.
   [[nodiscard]] std::size_t bodies() const { return 1 + free_.size(); }
-  [[nodiscard]] tool::Body body(std::size_t index) const { return index == 0 ? tool::Body::cutter : frustums_[index - 1].body; }
+  [[nodiscard]] tool::Body body(std::size_t index) const {
+    return index == 0 ? tool::Body::cutter : frustums_[index - 1].body;
+  }
 
-  /// gaps[bodies() * pose + body], mm. Cutting part: distance of its axis to the surface less its radius, so that a cut is
-  /// negative and as deep as it is. Other bodies: their distance, 0 when they touch. A body wholly inside the solid: -infinity.
+  /// gaps[bodies() * pose + body], mm. Cutting part: distance of its axis to the surface less its radius, so that a cut
+  /// is negative and as deep as it is. Other bodies: their distance, 0 when they touch. A body wholly inside the solid:
+  /// -infinity.
   void gaps(std::span<const ToolPose> poses, std::span<double> gaps);
 
   /// Exact questions to the tree so far (all but those that were skipped).

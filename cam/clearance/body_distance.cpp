@@ -1,19 +1,27 @@
-// Distance between a solid frustum and the triangles of a mesh. Both are convex, so that the distance of their difference set from
-// the origin is found by descending on simplices (Gilbert, Johnson, Keerthi 1988); support planes prove it from below.
+// Distance between a solid frustum and the triangles of a mesh. Both are convex, so that the distance of their
+// difference set from the origin is found by descending on simplices (Gilbert, Johnson, Keerthi 1988); support planes
+// prove it from below.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "cam/clearance/frustum_triangle.h"
 #include "cam/clearance/distance.h"
+#include "cam/clearance/frustum_triangle.h"
 
 namespace toothpath::clearance {
 namespace {
 
 class FrustumSearch {
  public:
-  FrustumSearch(const MeshTree& tree, const TreeView& view, const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double within)
-      : tree_(tree), view_(view), body_(body), tip_(tip), axis_(axis), f_(frustum_view(body, tip, axis)), best_{within, -1, tip} {}
+  FrustumSearch(const MeshTree& tree, const TreeView& view, const tool::Frustum& body, const Vec3& tip,
+                const Vec3& axis, double within)
+      : tree_(tree),
+        view_(view),
+        body_(body),
+        tip_(tip),
+        axis_(axis),
+        f_(frustum_view(body, tip, axis)),
+        best_{within, -1, tip} {}
 
   MeshPlace run() {
     node(0);
@@ -92,8 +100,15 @@ double MeshDistance::frustum_bound(const tool::Frustum& body, const Vec3& tip, c
 
 FrustumView frustum_view(const tool::Frustum& body, const Vec3& tip, const Vec3& axis) {
   const double length = body.to - body.from, slope = length > 0 ? (body.radius_to - body.radius_from) / length : 0;
-  FrustumView f{{tip.x(), tip.y(), tip.z()}, {axis.x(), axis.y(), axis.z()}, body.from, body.to, body.radius_from, body.radius_to,
-                std::max(body.radius_from, body.radius_to), slope, 1 / std::sqrt(1 + slope * slope)};
+  FrustumView f{{tip.x(), tip.y(), tip.z()},
+                {axis.x(), axis.y(), axis.z()},
+                body.from,
+                body.to,
+                body.radius_from,
+                body.radius_to,
+                std::max(body.radius_from, body.radius_to),
+                slope,
+                1 / std::sqrt(1 + slope * slope)};
   if (!(length > 0)) f.cosine = 0;  // a disc: the cone says nothing
   return f;
 }

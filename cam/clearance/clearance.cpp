@@ -12,7 +12,7 @@ constexpr int kMeshHalvings = 40;
 constexpr double kOnAxis = 1e-3;  // mm: a draw back that leaves its axis by less
 
 struct MeshStretch {
-  Vec3 tip, axis;  ///< in its middle
+  Vec3 tip, axis;             ///< in its middle
   double tips = 0, axes = 0;  ///< how far tip [mm] and axis are from there at most
   const path::ToolMotion* motion = nullptr;
   [[nodiscard]] double reach(double arm) const { return tips + arm * axes; }
@@ -41,9 +41,15 @@ MeshStretch stretch_of(std::span<const path::ToolMotion> motions) {
 /// One body of the tool against one mesh along some motions.
 class BodyWatch {
  public:
-  BodyWatch(const MeshDistance& mesh, std::size_t index, const MeshBody& body, double rule, const MeshClearanceOptions& o,
-            const std::optional<Withdrawal>& withdrawal)
-      : mesh_(mesh), index_(index), body_(body), rule_(rule), o_(o), withdrawal_(withdrawal), around_(body.pieces.front()) {
+  BodyWatch(const MeshDistance& mesh, std::size_t index, const MeshBody& body, double rule,
+            const MeshClearanceOptions& o, const std::optional<Withdrawal>& withdrawal)
+      : mesh_(mesh),
+        index_(index),
+        body_(body),
+        rule_(rule),
+        o_(o),
+        withdrawal_(withdrawal),
+        around_(body.pieces.front()) {
     for (const tool::Frustum& f : body.pieces) {
       around_.to = f.to;
       around_.radius_from = std::max({around_.radius_from, f.radius_from, f.radius_to});
@@ -84,7 +90,8 @@ class BodyWatch {
   }
   void note(const MeshStretch& s, const MeshPlace& place, double measured, double proven) {
     if (worst && worst->gap_mm <= proven) return;
-    worst = MeshMeeting{proven, measured, body_.body, s.motion->operation, s.motion->tooth, s.motion->line, s.motion->rapid, index_, place.foot};
+    worst = MeshMeeting{proven,         measured,        body_.body, s.motion->operation, s.motion->tooth,
+                        s.motion->line, s.motion->rapid, index_,     place.foot};
   }
   /// A body that the surface does not come near is inside or outside as a whole.
   [[nodiscard]] bool inside(const MeshStretch& s) const {
@@ -127,7 +134,9 @@ class BodyWatch {
 
 }  // namespace
 
-std::vector<MeshBody> mesh_bodies(const tool::ToolAssembly& tool) { return mesh_bodies(tool::Profile::of_ball_mill(tool)); }
+std::vector<MeshBody> mesh_bodies(const tool::ToolAssembly& tool) {
+  return mesh_bodies(tool::Profile::of_ball_mill(tool));
+}
 
 std::vector<MeshBody> mesh_bodies(const tool::Profile& tool, double sag_mm) {
   MeshBody cutter{tool::Body::cutter, {}, 0};
@@ -142,7 +151,8 @@ std::vector<MeshBody> mesh_bodies(const tool::Profile& tool, double sag_mm) {
   return bodies;
 }
 
-std::optional<MeshMeeting> MeshClearance::nearest(std::span<const path::ToolMotion> motions, std::span<const MeshBody> tool, const MeshRule& rule,
+std::optional<MeshMeeting> MeshClearance::nearest(std::span<const path::ToolMotion> motions,
+                                                  std::span<const MeshBody> tool, const MeshRule& rule,
                                                   const std::optional<Withdrawal>& withdrawal) const {
   std::optional<MeshMeeting> worst;
   for (std::size_t k = 0; k < meshes_.size(); ++k)
@@ -151,7 +161,9 @@ std::optional<MeshMeeting> MeshClearance::nearest(std::span<const path::ToolMoti
       const double least = body.cuts() ? rule.cutter_mm : rule.others_mm;
       BodyWatch w(*meshes_[k], k, body, least, options_, withdrawal);
       w.motions(motions);
-      if (w.worst && (!worst || w.worst->gap_mm - least < worst->gap_mm - (tool::cuts(worst->body) ? rule.cutter_mm : rule.others_mm))) worst = w.worst;
+      if (w.worst && (!worst || w.worst->gap_mm - least <
+                                    worst->gap_mm - (tool::cuts(worst->body) ? rule.cutter_mm : rule.others_mm)))
+        worst = w.worst;
     }
   return worst;
 }

@@ -9,9 +9,9 @@ namespace {
 
 std::atomic<std::size_t> distances_built{0};
 
-constexpr double kBoundPad = 1e-9;              // mm: rounding of bounds
-constexpr std::size_t kPlaceWindow = 16;        // places that share their candidates
-constexpr double kPlaceWindowReach = 1.6;       // mm: a longer window looks at too much
+constexpr double kBoundPad = 1e-9;         // mm: rounding of bounds
+constexpr std::size_t kPlaceWindow = 16;   // places that share their candidates
+constexpr double kPlaceWindowReach = 1.6;  // mm: a longer window looks at too much
 
 /// Crossings of the ray p + t d, t > 0, with the triangles; -1: one of them is too close to an edge to tell.
 class RayParity {
@@ -30,7 +30,8 @@ class RayParity {
     for (int lane = 0; lane < kLanes; ++lane) {
       double from = 0, to = INFINITY;
       for (int k = 0; k < 3; ++k) {
-        const double x = (node.low[k][lane] - kBoundPad - p_[k]) / d_[k], y = (node.high[k][lane] + kBoundPad - p_[k]) / d_[k];
+        const double x = (node.low[k][lane] - kBoundPad - p_[k]) / d_[k],
+                     y = (node.high[k][lane] + kBoundPad - p_[k]) / d_[k];
         from = std::max(from, std::min(x, y));
         to = std::min(to, std::max(x, y));
       }
@@ -78,7 +79,8 @@ class RayParity {
 
 TriangleCorners corners_of(const TriangleBlock& b, int lane) {
   const Vec3 a(b.a[0][lane], b.a[1][lane], b.a[2][lane]);
-  return {a, a + Vec3(b.ab[0][lane], b.ab[1][lane], b.ab[2][lane]), a + Vec3(b.ac[0][lane], b.ac[1][lane], b.ac[2][lane])};
+  return {a, a + Vec3(b.ab[0][lane], b.ab[1][lane], b.ab[2][lane]),
+          a + Vec3(b.ac[0][lane], b.ac[1][lane], b.ac[2][lane])};
 }
 
 Vec3 nearest_on_triangle(const Vec3& p, const TriangleCorners& t) {
@@ -231,7 +233,8 @@ MeshPlace MeshDistance::to_segment(const Vec3& centre, const Vec3& axis, double 
       if (block < 0) continue;
       for (int k = 0; k < kLanes; ++k) {
         Vec3 foot;
-        const double d = segment_to_triangle(local, axis, height, corners_of(tree_.blocks()[std::size_t(block)], k), foot);
+        const double d =
+            segment_to_triangle(local, axis, height, corners_of(tree_.blocks()[std::size_t(block)], k), foot);
         if (d < best) {
           best = d;
           place = {std::sqrt(d), std::ptrdiff_t(tree_.triangle(std::size_t(block), k)), foot + tree_.origin()};
@@ -244,9 +247,10 @@ MeshPlace MeshDistance::to_segment(const Vec3& centre, const Vec3& axis, double 
 bool MeshDistance::inside(const Vec3& p) const {
   if (tree_.triangles() == 0) return false;
   // Directions that no plane of a drawing is likely to hold; the next one where an edge is hit.
-  static const Vec3 directions[] = {Vec3(0.31415, 0.27182, 0.90954).normalized(), Vec3(-0.57721, 0.41421, 0.70375).normalized(),
-                                    Vec3(0.66274, -0.61803, 0.42264).normalized(), Vec3(0.11803, 0.83462, -0.53791).normalized(),
-                                    Vec3(-0.73205, -0.23606, 0.63907).normalized()};
+  static const Vec3 directions[] = {
+      Vec3(0.31415, 0.27182, 0.90954).normalized(), Vec3(-0.57721, 0.41421, 0.70375).normalized(),
+      Vec3(0.66274, -0.61803, 0.42264).normalized(), Vec3(0.11803, 0.83462, -0.53791).normalized(),
+      Vec3(-0.73205, -0.23606, 0.63907).normalized()};
   for (const Vec3& d : directions) {
     const int crossings = RayParity(view(), p - tree_.origin(), d).count();
     if (crossings >= 0) return crossings % 2 == 1;

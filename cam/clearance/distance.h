@@ -1,15 +1,16 @@
 // Exact distance from points, balls and tool assemblies to any triangle mesh: fixtures, stock, imported parts.
 //
-// The mesh is taken as it is: what it leaves out of the true surface (its sag) is the caller's. A tree of eight-wide boxes
-// finds candidates, double decides. A tool wholly inside the solid has no surface near it: `inside` asks by parity.
+// The mesh is taken as it is: what it leaves out of the true surface (its sag) is the caller's. A tree of eight-wide
+// boxes finds candidates, double decides. A tool wholly inside the solid has no surface near it: `inside` asks by
+// parity.
 #pragma once
 
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "cam/tool/assembly.h"
 #include "cam/clearance/tree.h"
+#include "cam/tool/assembly.h"
 #include "cam/tool/body.h"
 #include "geometry/mesh/triangle_mesh.h"
 
@@ -27,19 +28,22 @@ class MeshDistance {
   /// Any triangles; slivers and repeated corners too. Coordinates up to 1e5 mm.
   explicit MeshDistance(const mesh::TriangleMesh& mesh);
 
-  /// Nearest point of the surface, up to `within`. Error below 1e-9 mm at distances above 1e-3 times the largest triangle.
+  /// Nearest point of the surface, up to `within`. Error below 1e-9 mm at distances above 1e-3 times the largest
+  /// triangle.
   [[nodiscard]] MeshPlace nearest(const Vec3& p, double within) const;
 
   /// The same for the places of a path, in order: distances up to `within`. Neighbouring places share their candidates.
   void nearest_along(std::span<const Vec3> path, double within, std::span<double> distances) const;
 
-  /// Is p in the solid? Parity of the crossings of a ray; the mesh must be closed. Points on the surface may give either answer.
+  /// Is p in the solid? Parity of the crossings of a ray; the mesh must be closed. Points on the surface may give
+  /// either answer.
   [[nodiscard]] bool inside(const Vec3& p) const;
 
   /// Distance to a solid frustum, up to `within`: proven from below, at most 1e-9 mm below the true one. 0: touches.
   [[nodiscard]] MeshPlace to_frustum(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double within) const;
 
-  /// A lower bound of the same distance, up to `within`; at most about the size of the triangles nearby below it, and much faster.
+  /// A lower bound of the same distance, up to `within`; at most about the size of the triangles nearby below it, and
+  /// much faster.
   [[nodiscard]] double frustum_bound(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, double within) const;
 
   /// Distance to the axis of the cutting part, from `centre` over `height` along `axis`, up to `within`.
@@ -64,7 +68,8 @@ struct TriangleCorners {
 [[nodiscard]] Vec3 nearest_on_triangle(const Vec3& p, const TriangleCorners& t);
 
 /// Squared distance between the segment a .. a + height * axis (unit) and a triangle; `foot` on the triangle.
-[[nodiscard]] double segment_to_triangle(const Vec3& a, const Vec3& axis, double height, const TriangleCorners& t, Vec3& foot);
+[[nodiscard]] double segment_to_triangle(const Vec3& a, const Vec3& axis, double height, const TriangleCorners& t,
+                                         Vec3& foot);
 
 /// Candidate blocks about a window of poses, with their own boxes beside each other for the kernels.
 class MeshWindow {

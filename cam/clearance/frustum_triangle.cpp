@@ -48,7 +48,8 @@ void on_edge(Nearest& best, const Simplex& s, int i, int j) {
 }
 
 void on_face(Nearest& best, const Simplex& s, int i, int j, int k) {
-  const Vec3 &a = s.corner[std::size_t(i)].difference, &b = s.corner[std::size_t(j)].difference, &c = s.corner[std::size_t(k)].difference;
+  const Vec3 &a = s.corner[std::size_t(i)].difference, &b = s.corner[std::size_t(j)].difference,
+             &c = s.corner[std::size_t(k)].difference;
   const Vec3 u = b - a, w = c - a, n = u.cross(w);
   const double det = n.squaredNorm();
   if (!(det > 0)) return;
@@ -108,7 +109,8 @@ Vec3 farthest_of(const TriangleCorners& t, const Vec3& d) {
 
 }  // namespace
 
-FrustumGap frustum_to_triangle(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, const TriangleCorners& t, double enough) {
+FrustumGap frustum_to_triangle(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, const TriangleCorners& t,
+                               double enough) {
   FrustumGap gap;
   Simplex s;
   const Vec3 middle = tip + 0.5 * (body.from + body.to) * axis;

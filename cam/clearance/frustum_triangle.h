@@ -12,9 +12,10 @@ struct FrustumGap {
   int steps = 0;
 };
 
-/// Descends until the two bounds meet within 1e-10 mm, or as soon as the distance is proven to be at least `enough`. Where rounding
-/// stops the descent first, the bounds say so. Touching or overlapping: 0.
-[[nodiscard]] FrustumGap frustum_to_triangle(const tool::Frustum& body, const Vec3& tip, const Vec3& axis, const TriangleCorners& t, double enough);
+/// Descends until the two bounds meet within 1e-10 mm, or as soon as the distance is proven to be at least `enough`.
+/// Where rounding stops the descent first, the bounds say so. Touching or overlapping: 0.
+[[nodiscard]] FrustumGap frustum_to_triangle(const tool::Frustum& body, const Vec3& tip, const Vec3& axis,
+                                             const TriangleCorners& t, double enough);
 
 [[nodiscard]] FrustumView frustum_view(const tool::Frustum& body, const Vec3& tip, const Vec3& axis);
 

@@ -16,13 +16,13 @@ struct alignas(64) MeshNode {
   std::int32_t child[kLanes];  ///< >= 0: a node; < 0: block ~child
 };
 
-/// Eight triangles. Corner a, edges ab and ac, and what the point distance needs of them; degenerate triangles have zeros
-/// for the inverses, so that their edges decide. Empty lanes repeat the first triangle.
+/// Eight triangles. Corner a, edges ab and ac, and what the point distance needs of them; degenerate triangles have
+/// zeros for the inverses, so that their edges decide. Empty lanes repeat the first triangle.
 struct alignas(64) TriangleBlock {
   double a[3][kLanes], ab[3][kLanes], ac[3][kLanes];
-  double g11[kLanes], g12[kLanes], g22[kLanes];        ///< ab.ab, ab.ac, ac.ac
+  double g11[kLanes], g12[kLanes], g22[kLanes];                       ///< ab.ab, ab.ac, ac.ac
   double inverse_ab[kLanes], inverse_ac[kLanes], inverse_bc[kLanes];  ///< 1 / squared length, 0 for a point
-  double inverse_det[kLanes];                          ///< 1 / (g11 g22 - g12^2), 0 where it is not safely positive
+  double inverse_det[kLanes];  ///< 1 / (g11 g22 - g12^2), 0 where it is not safely positive
 };
 
 /// The box of a block along its own directions: flat where the triangles are.
@@ -55,27 +55,29 @@ struct alignas(64) BoxGroup {
 /// A truncated cone about an axis in the tree's frame, with what the bounds need.
 struct FrustumView {
   double tip[3], axis[3];
-  double from, to;            ///< heights
+  double from, to;  ///< heights
   double radius_from, radius_to, widest;
-  double slope, cosine;       ///< of the generator: dr/dh and 1/sqrt(1 + slope^2)
+  double slope, cosine;  ///< of the generator: dr/dh and 1/sqrt(1 + slope^2)
 };
 
 /// The cutting part: a ball at `centre` and the flute above it.
 struct CapsuleView {
   double centre[3], axis[3];
-  double height;              ///< of the flute above the centre
+  double height;  ///< of the flute above the centre
 };
 
 struct MeshKernels {
   const char* name;
   /// Nearest triangle below `limit2` (squared). `start`: a triangle to begin with, or block -1.
   TriangleHit (*nearest)(const TreeView&, const double* p, double limit2, TriangleHit start);
-  /// Blocks whose node box is within `reach` of the segment p .. p + height * axis. Writes at most `most`, returns how many there are.
+  /// Blocks whose node box is within `reach` of the segment p .. p + height * axis. Writes at most `most`, returns how
+  /// many there are.
   std::size_t (*gather)(const TreeView&, const CapsuleView&, double reach, std::int32_t* out, std::size_t most);
   /// Nearest triangle among the groups of a window.
-  TriangleHit (*nearest_in)(const TreeView&, const BoxGroup*, std::size_t groups, const double* p, double limit2, TriangleHit start);
-  /// Lanes of the window that the flute may come nearer to than sqrt(limit2), though the ball's centre does not: block and
-  /// lane as 8 * block + lane. Writes at most `most`, returns how many there are.
+  TriangleHit (*nearest_in)(const TreeView&, const BoxGroup*, std::size_t groups, const double* p, double limit2,
+                            TriangleHit start);
+  /// Lanes of the window that the flute may come nearer to than sqrt(limit2), though the ball's centre does not: block
+  /// and lane as 8 * block + lane. Writes at most `most`, returns how many there are.
   std::size_t (*beside_flute)(const TreeView&, const BoxGroup*, std::size_t groups, const CapsuleView&, double limit2,
                               std::int64_t* out, std::size_t most);
   /// Lower bounds of the distance between a frustum and the eight boxes of a node, or the eight triangles of a block.

@@ -1,6 +1,6 @@
-// Source of the kernels; included by cam/clearance/kernels_plain.cpp and cam/clearance/kernels_avx2.cpp, each in a namespace of its own. It uses no
-// inline function of any library: code for one processor must not be linked into the program of another.
-// The bit patterns of both are the same: no fused multiply-add, no reordering.
+// Source of the kernels; included by cam/clearance/kernels_plain.cpp and cam/clearance/kernels_avx2.cpp, each in a
+// namespace of its own. It uses no inline function of any library: code for one processor must not be linked into the
+// program of another. The bit patterns of both are the same: no fused multiply-add, no reordering.
 
 using V = double __attribute__((vector_size(32)));     // four lanes
 using M = long long __attribute__((vector_size(32)));  // their masks
@@ -30,8 +30,9 @@ INLINE V to_boxes(const MeshNode& node, const double* p, int half) {
   return sum;
 }
 
-/// Squared distances from p to four triangles: the least of the edges and, where the foot lies inside, of the plane. Every candidate
-/// is the distance to a point of the triangle, so that a sliver can only come out too far, by less than its width.
+/// Squared distances from p to four triangles: the least of the edges and, where the foot lies inside, of the plane.
+/// Every candidate is the distance to a point of the triangle, so that a sliver can only come out too far, by less than
+/// its width.
 INLINE V to_triangles(const TriangleBlock& b, const double* p, int half) {
   const V px = p[0] - at(b.a[0], half), py = p[1] - at(b.a[1], half), pz = p[2] - at(b.a[2], half);
   const V ux = at(b.ab[0], half), uy = at(b.ab[1], half), uz = at(b.ab[2], half);
@@ -107,7 +108,8 @@ TriangleHit nearest(const TreeView& tree, const double* p, double limit2, Triang
   return hit;
 }
 
-/// Lower bounds of the distance between a segment and four boxes: the sphere about each box, then the box of the segment.
+/// Lower bounds of the distance between a segment and four boxes: the sphere about each box, then the box of the
+/// segment.
 INLINE V segment_to_boxes(const MeshNode& node, const CapsuleView& s, int half) {
   V d2 = all(0), along = all(0), far2 = all(0), reach2 = all(0);
   V m[3];
@@ -165,7 +167,8 @@ INLINE V to_own_boxes(const BoxGroup& g, const double* p, int half) {
   return sum;
 }
 
-TriangleHit nearest_in(const TreeView& tree, const BoxGroup* groups, unsigned long count, const double* p, double limit2, TriangleHit start) {
+TriangleHit nearest_in(const TreeView& tree, const BoxGroup* groups, unsigned long count, const double* p,
+                       double limit2, TriangleHit start) {
   TriangleHit hit{limit2, -1, 0};
   if (start.block >= 0) take(tree.blocks[start.block], start.block, p, hit);
   for (unsigned long g = 0; g < count; ++g) {
@@ -184,8 +187,9 @@ TriangleHit nearest_in(const TreeView& tree, const BoxGroup* groups, unsigned lo
   return hit;
 }
 
-/// Lower bounds of the squared distances from the flute's axis to four triangles: across the axis, and from its top for those
-/// that stand above it. Huge where the whole triangle lies below the ball's centre: nothing of it is nearer to the flute.
+/// Lower bounds of the squared distances from the flute's axis to four triangles: across the axis, and from its top for
+/// those that stand above it. Huge where the whole triangle lies below the ball's centre: nothing of it is nearer to
+/// the flute.
 INLINE V beside_axis(const TriangleBlock& b, const CapsuleView& s, const double* e, const double* f, int half) {
   const V x = at(b.a[0], half) - s.centre[0], y = at(b.a[1], half) - s.centre[1], z = at(b.a[2], half) - s.centre[2];
   const V ux = at(b.ab[0], half), uy = at(b.ab[1], half), uz = at(b.ab[2], half);
@@ -211,8 +215,8 @@ INLINE V beside_axis(const TriangleBlock& b, const CapsuleView& s, const double*
   return top > 0 ? d + up * up : all(kHuge);
 }
 
-unsigned long beside_flute(const TreeView& tree, const BoxGroup* groups, unsigned long count, const CapsuleView& s, double limit2,
-                           std::int64_t* out, unsigned long room) {
+unsigned long beside_flute(const TreeView& tree, const BoxGroup* groups, unsigned long count, const CapsuleView& s,
+                           double limit2, std::int64_t* out, unsigned long room) {
   // Two directions across the axis.
   const double ax = s.axis[0] < 0 ? -s.axis[0] : s.axis[0], ay = s.axis[1] < 0 ? -s.axis[1] : s.axis[1];
   double e[3] = {0, 0, 0}, f[3];
@@ -234,16 +238,19 @@ unsigned long beside_flute(const TreeView& tree, const BoxGroup* groups, unsigne
     const BoxGroup& b = groups[g];
     alignas(32) double above[kLanes], gap[kLanes];
     for (int half = 0; half < 2; ++half) {
-      const V x = at(b.centre[0], half) - s.centre[0], y = at(b.centre[1], half) - s.centre[1], z = at(b.centre[2], half) - s.centre[2];
+      const V x = at(b.centre[0], half) - s.centre[0], y = at(b.centre[1], half) - s.centre[1],
+              z = at(b.centre[2], half) - s.centre[2];
       const V h = x * s.axis[0] + y * s.axis[1] + z * s.axis[2];
       V high = all(0), wide = all(0);
       for (int d = 0; d < 3; ++d) {
-        const V along = at(b.axis[d][0], half) * s.axis[0] + at(b.axis[d][1], half) * s.axis[1] + at(b.axis[d][2], half) * s.axis[2];
+        const V along = at(b.axis[d][0], half) * s.axis[0] + at(b.axis[d][1], half) * s.axis[1] +
+                        at(b.axis[d][2], half) * s.axis[2];
         high += size(along) * at(b.half[d], half);
         // Reach of the box towards the axis: its half widths times the share of its directions across.
         const V qe = x - h * s.axis[0], qf = y - h * s.axis[1], qg = z - h * s.axis[2];
         const V rho = root(most(qe * qe + qf * qf + qg * qg, all(1e-200)));
-        const V towards = (at(b.axis[d][0], half) * qe + at(b.axis[d][1], half) * qf + at(b.axis[d][2], half) * qg) / rho;
+        const V towards =
+            (at(b.axis[d][0], half) * qe + at(b.axis[d][1], half) * qf + at(b.axis[d][2], half) * qg) / rho;
         wide += size(towards) * at(b.half[d], half);
       }
       const V q2 = x * x + y * y + z * z - h * h;
@@ -266,7 +273,8 @@ unsigned long beside_flute(const TreeView& tree, const BoxGroup* groups, unsigne
   return found;
 }
 
-/// Lower bound of the distance between a frustum and spheres whose centres stand at height h and distance rho from the axis.
+/// Lower bound of the distance between a frustum and spheres whose centres stand at height h and distance rho from the
+/// axis.
 INLINE V to_frustum(V h, V rho, V radius, const FrustumView& f) {
   // Outside the generator's cone, and outside the cylinder that holds the frustum: both hold it.
   const V cone = (rho - f.radius_from - f.slope * (h - f.from)) * f.cosine;

@@ -10,7 +10,7 @@ namespace toothpath::clearance {
 namespace {
 
 constexpr double kRounding = 1e-9;  // mm: added to the half widths of the blocks' own boxes
-constexpr double kFar = 1e150;       // mm: where empty lanes stand; its square is finite
+constexpr double kFar = 1e150;      // mm: where empty lanes stand; its square is finite
 
 Vec3 any_normal_to(const Vec3& u) {
   Vec3 e = Vec3::Zero();
@@ -100,7 +100,8 @@ std::int32_t MeshTree::build(Range range, Vec3& low, Vec3& high) {
   if (range.to - range.from <= std::size_t(kLanes)) return block_of(range, low, high);
   std::vector<Range> parts = {range};
   while (parts.size() < std::size_t(kLanes)) {  // always the largest part
-    const auto largest = std::max_element(parts.begin(), parts.end(), [](const Range& a, const Range& b) { return a.to - a.from < b.to - b.from; });
+    const auto largest = std::max_element(parts.begin(), parts.end(),
+                                          [](const Range& a, const Range& b) { return a.to - a.from < b.to - b.from; });
     const Range part = *largest;
     if (part.to - part.from <= std::size_t(kLanes)) break;
     const std::size_t middle = split(part);
@@ -176,7 +177,8 @@ std::int32_t MeshTree::block_of(Range range, Vec3& low, Vec3& high) {
   }
   for (std::size_t k = 0; k < count; ++k)
     for (std::size_t c = 0; c < 3; ++c)
-      box.radius = std::max(box.radius, (mesh_->corner(sorted_[range.from + k], c) - origin_ - centre).norm() + kRounding);
+      box.radius =
+          std::max(box.radius, (mesh_->corner(sorted_[range.from + k], c) - origin_ - centre).norm() + kRounding);
   for (int k = 0; k < 3; ++k) box.centre[k] = centre[k];
   boxes_.push_back(box);
   return ~std::int32_t(index);

@@ -1,5 +1,6 @@
-// The triangles of a mesh as an 8-wide tree: boxes of eight children, and leaves of eight triangles in structure-of-arrays
-// form, all in double. The kernels of cam/clearance/kernels.h walk over it. Median splits along the longest extent of the centroids.
+// The triangles of a mesh as an 8-wide tree: boxes of eight children, and leaves of eight triangles in
+// structure-of-arrays form, all in double. The kernels of cam/clearance/kernels.h walk over it. Median splits along the
+// longest extent of the centroids.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,9 @@ class MeshTree {
   [[nodiscard]] const std::vector<TriangleBlock>& blocks() const { return blocks_; }
   [[nodiscard]] const std::vector<BlockBox>& boxes() const { return boxes_; }
   /// Index in the mesh of a lane of a block.
-  [[nodiscard]] std::size_t triangle(std::size_t block, int lane) const { return order_[block * kLanes + std::size_t(lane)]; }
+  [[nodiscard]] std::size_t triangle(std::size_t block, int lane) const {
+    return order_[block * kLanes + std::size_t(lane)];
+  }
   /// Origin of the tree's frame in the frame of the mesh: the middle of its box, so that coordinates are short.
   [[nodiscard]] const Vec3& origin() const { return origin_; }
   [[nodiscard]] std::size_t triangles() const { return count_; }

@@ -20,7 +20,7 @@ namespace {
 constexpr double kReachTolerance = 1e-4;
 constexpr double kSamePlace = 1e-6;  // a foot this near to a place of the grid is that place, mm
 constexpr int kHistogramBins = 40;
-constexpr int kCrestSteps = 10;  // of a golden section: a hundredth of what the samples leave
+constexpr int kCrestSteps = 10;     // of a golden section: a hundredth of what the samples leave
 constexpr double kSharpEnd = 0.02;  // mm: diameter of the ball that stands for the corner of a flat cutter
 
 /// A line across the tooth space: the excess above the allowance from tip to tip.
@@ -29,12 +29,15 @@ struct LinePoint {
   double sigma = 0, left = 0;
 };
 
-bool is_flank(face_gear::SpacePiece piece) { return piece == face_gear::SpacePiece::flank_plus || piece == face_gear::SpacePiece::flank_minus; }
+bool is_flank(face_gear::SpacePiece piece) {
+  return piece == face_gear::SpacePiece::flank_plus || piece == face_gear::SpacePiece::flank_minus;
+}
 
 class Meter {
  public:
-  Meter(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
-        const std::vector<tool::ToolAssembly>& tools, const CutSurfaceOptions& options)
+  Meter(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
+        const std::vector<path::MillingOperation>& operations, const std::vector<tool::ToolAssembly>& tools,
+        const CutSurfaceOptions& options)
       : part_(part), operations_(operations), tools_(tools), o_(options) {
     if (o_.cap_mm <= 0) o_.cap_mm = part.gear().parameters().module_mm;
     for (std::size_t n = 0; n < operations.size(); ++n) {
@@ -47,23 +50,28 @@ class Meter {
     }
   }
   /// @param bodies  of the same tools
-  Meter(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
-        const std::vector<tool::ToolAssembly>& tools, const std::vector<tool::ProofTool>& bodies, const CutSurfaceOptions& options)
+  Meter(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
+        const std::vector<path::MillingOperation>& operations, const std::vector<tool::ToolAssembly>& tools,
+        const std::vector<tool::ProofTool>& bodies, const CutSurfaceOptions& options)
       : Meter(part, {}, operations, tools, options) {
     paths_.clear();
     for (std::size_t n = 0; n < operations.size(); ++n) {
       std::vector<path::ToolMotion> cuts;
       for (const auto& m : motions)
         if (m.operation == int(n) && m.tooth == 0 && !m.rapid) cuts.push_back(m);
-      paths_.push_back(std::make_unique<Removed>(std::move(cuts), bodies[std::size_t(operations[n].tool)], part.gear().blank_top()));
+      paths_.push_back(
+          std::make_unique<Removed>(std::move(cuts), bodies[std::size_t(operations[n].tool)], part.gear().blank_top()));
     }
     for (std::size_t n = 0; n + 1 < operations.size(); ++n)
-      if (operations[n].allowance_mm == operations.back().allowance_mm && operations[n].type != path::OperationType::roughing) paths_.back()->also(paths_[n].get());
+      if (operations[n].allowance_mm == operations.back().allowance_mm &&
+          operations[n].type != path::OperationType::roughing)
+        paths_.back()->also(paths_[n].get());
   }
 
   CutSurface run() {
     const auto& gear = part_.gear().parameters();
-    for (const auto& ring : part_.gear().rings()) active_end_.push_back(face_gear::active_roll_parameter(gear, ring.zone.helix_angle_rad));
+    for (const auto& ring : part_.gear().rings())
+      active_end_.push_back(face_gear::active_roll_parameter(gear, ring.zone.helix_angle_rad));
     for (int zone = 0; zone < part_.zones(); ++zone) {
       const ZonePlaces places(part_, zone);
       for (int piece = 0; piece < face_gear::kSpacePieces; ++piece) grid(places, zone, face_gear::SpacePiece(piece));
@@ -129,8 +137,8 @@ class Meter {
     out_.grids.push_back(std::move(g));
   }
 
-  /// Fine lines across the space, the ends of the ring among them: the greatest excess that a ball could have reached, what it could not
-  /// reach, and the cusps between neighbouring passes.
+  /// Fine lines across the space, the ends of the ring among them: the greatest excess that a ball could have reached,
+  /// what it could not reach, and the cusps between neighbouring passes.
   void fine_lines(const ZonePlaces& places, int zone) {
     for (int line = 0; line <= o_.scallop_lines + 1; ++line) {
       const bool end = line == 0 || line == o_.scallop_lines + 1;
@@ -160,9 +168,11 @@ class Meter {
       const int n = std::max(16, int(1.2 * length / step));
       line_step_ = std::max(line_step_, length / n);
       // Where two pieces join one point is enough.
-      for (int k = points.empty() ? 0 : 1; k <= n; ++k) points.push_back({face_gear::SpacePiece(piece), from + (to - from) * k / n, 0});
+      for (int k = points.empty() ? 0 : 1; k <= n; ++k)
+        points.push_back({face_gear::SpacePiece(piece), from + (to - from) * k / n, 0});
     }
-    tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) { points[k].left = left_at(places, points[k].sigma, r); });
+    tbb::parallel_for(std::size_t(0), points.size(),
+                      [&](std::size_t k) { points[k].left = left_at(places, points[k].sigma, r); });
     return points;
   }
   /// Material of the last operation above its allowance; 0 where there is no surface.
@@ -180,7 +190,8 @@ class Meter {
     for (std::size_t v = 1; v < valleys.size(); ++v) {
       const LinePoint &a = line[valleys[v - 1]], &b = line[valleys[v]];
       const auto first = line.begin() + long(valleys[v - 1]);
-      const auto top = std::max_element(first, line.begin() + long(valleys[v]), [](const auto& p, const auto& q) { return p.left < q.left; });
+      const auto top = std::max_element(first, line.begin() + long(valleys[v]),
+                                        [](const auto& p, const auto& q) { return p.left < q.left; });
       const double valley = 0.5 * (a.left + b.left);
       if (top->left - valley < 0.02 * wanted) continue;  // two samples of one valley
       const auto [sigma, height] = crest(places, r, *(top - 1), *(top + 1));
@@ -192,9 +203,10 @@ class Meter {
     }
   }
 
-  /// Place and height of the one crest between two neighbours of the highest sample: two arcs meet there, and a sample beside it lies up to 7 %
-  /// of the cusp lower.
-  [[nodiscard]] std::pair<double, double> crest(const ZonePlaces& places, double r, const LinePoint& before, const LinePoint& after) const {
+  /// Place and height of the one crest between two neighbours of the highest sample: two arcs meet there, and a sample
+  /// beside it lies up to 7 % of the cusp lower.
+  [[nodiscard]] std::pair<double, double> crest(const ZonePlaces& places, double r, const LinePoint& before,
+                                                const LinePoint& after) const {
     constexpr double kGolden = 0.6180339887498949;
     double a = before.sigma, b = after.sigma;
     double x = b - kGolden * (b - a), y = a + kGolden * (b - a), f = left_at(places, x, r), g = left_at(places, y, r);
@@ -216,7 +228,8 @@ class Meter {
     return f > g ? std::pair{x, f} : std::pair{y, g};
   }
 
-  /// Excess above which a place that the ball does not reach was left; no place is where the last operation does not finish.
+  /// Excess above which a place that the ball does not reach was left; no place is where the last operation does not
+  /// finish.
   [[nodiscard]] double unreached_limit() const {
     if (operations_.empty() || operations_.back().type != path::OperationType::finishing) return INFINITY;
     return proof::most_left_mm(operations_.back());
@@ -310,8 +323,11 @@ class Meter {
         for (std::size_t column = 0; column + 1 < columns; ++column) {
           const std::size_t k = row * columns + column;
           const std::size_t corner[4] = {k, k + 1, k + columns + 1, k + columns};
-          if (std::any_of(std::begin(corner), std::end(corner), [&](std::size_t c) { return g.normals[c] == Vec3::Zero(); })) continue;
-          const double area = 0.5 * (g.points[corner[2]] - g.points[corner[0]]).cross(g.points[corner[3]] - g.points[corner[1]]).norm();
+          if (std::any_of(std::begin(corner), std::end(corner),
+                          [&](std::size_t c) { return g.normals[c] == Vec3::Zero(); }))
+            continue;
+          const double area =
+              0.5 * (g.points[corner[2]] - g.points[corner[0]]).cross(g.points[corner[3]] - g.points[corner[1]]).norm();
           all += area;
           for (const std::size_t c : corner)
             if (!g.reachable[c] && double(g.excess_um.back()[c]) / 1000 > u.limit_mm) left += 0.25 * area;
@@ -335,17 +351,19 @@ class Meter {
 }  // namespace
 
 CutSurface measure_cut_surface(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
-                               const std::vector<path::MillingOperation>& operations, const std::vector<tool::ToolAssembly>& tools,
-                               const CutSurfaceOptions& options) {
+                               const std::vector<path::MillingOperation>& operations,
+                               const std::vector<tool::ToolAssembly>& tools, const CutSurfaceOptions& options) {
   return Meter(part, motions, operations, tools, options).run();
 }
 
-CutSurface measure_cut_surface(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions, const std::vector<path::MillingOperation>& operations,
+CutSurface measure_cut_surface(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
+                               const std::vector<path::MillingOperation>& operations,
                                const std::vector<tool::ProofTool>& tools, const CutSurfaceOptions& options) {
   std::vector<tool::ToolAssembly> balls;
   for (const auto& t : tools) {
     balls.push_back(t.ball_mill.value_or(tool::ToolAssembly{}));
-    if (!t.ball_mill) balls.back().diameter_mm = std::max(kSharpEnd, t.cutting.empty() ? 0.0 : 2 * t.cutting.front().round);
+    if (!t.ball_mill)
+      balls.back().diameter_mm = std::max(kSharpEnd, t.cutting.empty() ? 0.0 : 2 * t.cutting.front().round);
   }
   return Meter(part, motions, operations, balls, tools, options).run();
 }

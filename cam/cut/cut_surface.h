@@ -4,43 +4,48 @@
 
 #include <vector>
 
-#include "cam/tool/assembly.h"
-#include "cam/tool/proof_tool.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/path/operation.h"
 #include "cam/path/tool_motion.h"
 #include "cam/proof/verification.h"
+#include "cam/tool/assembly.h"
+#include "cam/tool/proof_tool.h"
 
 namespace toothpath::cut {
 
 struct CutSurfaceOptions {
   int flank_rows = 40, fillet_rows = 14, root_rows = 7, columns = 33;
-  int scallop_lines = 9;       ///< lines across each flank on which cusps are counted
-  double cap_mm = 0;           ///< excess above this is reported as this; 0: one module
+  int scallop_lines = 9;  ///< lines across each flank on which cusps are counted
+  double cap_mm = 0;      ///< excess above this is reported as this; 0: one module
 };
 
 /// The cut surface of tooth space 0.
 struct CutSurface {
-  std::vector<proof::SurfaceGrid> grids;           ///< every patch of every zone
-  std::vector<proof::ExcessResult> operations;     ///< after each operation, over all points
-  proof::ExcessResult finished;                    ///< after the last one, over the points that its ball can reach
+  std::vector<proof::SurfaceGrid> grids;        ///< every patch of every zone
+  std::vector<proof::ExcessResult> operations;  ///< after each operation, over all points
+  proof::ExcessResult finished;                 ///< after the last one, over the points that its ball can reach
   proof::UnreachedResult unreached;
-  double solve_residual_mm = 0;             ///< greatest difference between a radius and the distance from a centre that far above the grid
-  proof::ScallopResult scallop;                    ///< cusps of the last operation; requested 0: it has none
+  double solve_residual_mm =
+      0;  ///< greatest difference between a radius and the distance from a centre that far above the grid
+  proof::ScallopResult scallop;  ///< cusps of the last operation; requested 0: it has none
 };
 
-/// `motions`: those of tooth 0 are used. Excess at a point p: the least, over all moves so far, of (distance from p to the
-/// ball-centre path - ball radius); > 0 material left, < 0 a gouge. `finished.bound_mm` adds to the greatest value seen
-/// what a cusp can rise between two samples of a scallop line and the asked chord tolerance.
-[[nodiscard]] CutSurface measure_cut_surface(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
+/// `motions`: those of tooth 0 are used. Excess at a point p: the least, over all moves so far, of (distance from p to
+/// the ball-centre path - ball radius); > 0 material left, < 0 a gouge. `finished.bound_mm` adds to the greatest value
+/// seen what a cusp can rise between two samples of a scallop line and the asked chord tolerance.
+[[nodiscard]] CutSurface measure_cut_surface(const analytic::GearDistance& part,
+                                             const std::vector<path::ToolMotion>& motions,
                                              const std::vector<path::MillingOperation>& operations,
-                                             const std::vector<tool::ToolAssembly>& tools, const CutSurfaceOptions& options = {});
+                                             const std::vector<tool::ToolAssembly>& tools,
+                                             const CutSurfaceOptions& options = {});
 
-/// The same for any mills: the excess is that of their cutting bodies. Operations that finish different regions (the same allowance as the last
-/// one) count together where cusps are looked for. A place counts as reachable where the ball end of the last tool fits, or a ball of the
-/// corner radius of a bull nose; everywhere for a flat cutter.
-[[nodiscard]] CutSurface measure_cut_surface(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
-                                             const std::vector<path::MillingOperation>& operations, const std::vector<tool::ProofTool>& tools,
+/// The same for any mills: the excess is that of their cutting bodies. Operations that finish different regions (the
+/// same allowance as the last one) count together where cusps are looked for. A place counts as reachable where the
+/// ball end of the last tool fits, or a ball of the corner radius of a bull nose; everywhere for a flat cutter.
+[[nodiscard]] CutSurface measure_cut_surface(const analytic::GearDistance& part,
+                                             const std::vector<path::ToolMotion>& motions,
+                                             const std::vector<path::MillingOperation>& operations,
+                                             const std::vector<tool::ProofTool>& tools,
                                              const CutSurfaceOptions& options = {});
 
 }  // namespace toothpath::cut

@@ -1,4 +1,5 @@
-// What a ball has removed: the volume swept by a path of ball centres. Exact in double on candidates of a spatial index.
+// What a ball has removed: the volume swept by a path of ball centres. Exact in double on candidates of a spatial
+// index.
 #pragma once
 
 #include <vector>

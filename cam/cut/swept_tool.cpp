@@ -6,15 +6,17 @@
 namespace toothpath::cut {
 namespace {
 
-constexpr int kMomentSteps = 40;          // of the bracket of a moment; each at least halves it every second time
-constexpr double kMoment = 1e-12;   // share of a motion
+constexpr int kMomentSteps = 40;   // of the bracket of a moment; each at least halves it every second time
+constexpr double kMoment = 1e-12;  // share of a motion
 
 /// The distance at a moment and its rate.
 struct AtMoment {
   double distance = 0, rate = 0;
 };
 AtMoment at_moment(const Vec3& p, const tool::RoundedFrustum& body, const path::ToolMotion& m, double t) {
-  const Vec3 blend = (1 - t) * m.axis_from + t * m.axis_to, a = t == 0 ? m.axis_from : t == 1 ? m.axis_to : Vec3(blend.normalized());
+  const Vec3 blend = (1 - t) * m.axis_from + t * m.axis_to, a = t == 0   ? m.axis_from
+                                                                : t == 1 ? m.axis_to
+                                                                         : Vec3(blend.normalized());
   const Vec3 d = p - path::tip_at(m, t);
   const double h = d.dot(a);
   const Vec3 across = d - h * a;
@@ -27,7 +29,8 @@ AtMoment at_moment(const Vec3& p, const tool::RoundedFrustum& body, const path::
 }
 
 /// Where the cutting part may be during a motion, below `top`.
-std::vector<analytic::Box> boxes_of(const std::vector<path::ToolMotion>& motions, const std::vector<tool::RoundedFrustum>& cutting, double top) {
+std::vector<analytic::Box> boxes_of(const std::vector<path::ToolMotion>& motions,
+                                    const std::vector<tool::RoundedFrustum>& cutting, double top) {
   std::vector<analytic::Box> boxes(motions.size());
   for (std::size_t k = 0; k < motions.size(); ++k) {
     const auto& m = motions[k];

@@ -1,4 +1,5 @@
-// What a mill of any profile has removed: the volume swept by its cutting bodies along a path. Exact in double on candidates of a spatial index.
+// What a mill of any profile has removed: the volume swept by its cutting bodies along a path. Exact in double on
+// candidates of a spatial index.
 #pragma once
 
 #include <memory>
@@ -12,18 +13,21 @@
 
 namespace toothpath::cut {
 
-/// Least signed distance from a point to a body over all moments of a motion (straight in the tip, normalised linear in the axis), negative inside.
-/// The distance is convex along a motion whose axis stands and, up to the square of the turn, along one that turns; its least is found to 1e-9 mm
-/// from the middle and both ends. Where `enough` is not undercut anything above it may be returned.
-[[nodiscard]] double least_distance(const Vec3& point, const tool::RoundedFrustum& body, const path::ToolMotion& motion, double enough);
+/// Least signed distance from a point to a body over all moments of a motion (straight in the tip, normalised linear in
+/// the axis), negative inside. The distance is convex along a motion whose axis stands and, up to the square of the
+/// turn, along one that turns; its least is found to 1e-9 mm from the middle and both ends. Where `enough` is not
+/// undercut anything above it may be returned.
+[[nodiscard]] double least_distance(const Vec3& point, const tool::RoundedFrustum& body, const path::ToolMotion& motion,
+                                    double enough);
 
 class SweptTool {
  public:
-  /// `motions`: those that cut; each is taken up to the end of the cutting bodies. Parts above z = `top_mm` are left out of the index.
+  /// `motions`: those that cut; each is taken up to the end of the cutting bodies. Parts above z = `top_mm` are left
+  /// out of the index.
   SweptTool(std::vector<path::ToolMotion> motions, std::vector<tool::RoundedFrustum> cutting, double top_mm);
 
-  /// min over the path of the distance to the cutting part: > 0 material left at p, < 0 removed that deep. Values above `cap` are returned as
-  /// `cap`. mm.
+  /// min over the path of the distance to the cutting part: > 0 material left at p, < 0 removed that deep. Values above
+  /// `cap` are returned as `cap`. mm.
   [[nodiscard]] double excess(const Vec3& p, double cap) const;
 
  private:
@@ -35,7 +39,8 @@ class SweptTool {
 /// What one operation has removed, with a ball mill or any other, and what others have beside it.
 class Removed {
  public:
-  Removed(std::vector<BallMove> moves, double ball_radius_mm) : balls_(std::make_unique<SweptPath>(std::move(moves), ball_radius_mm)) {}
+  Removed(std::vector<BallMove> moves, double ball_radius_mm)
+      : balls_(std::make_unique<SweptPath>(std::move(moves), ball_radius_mm)) {}
   /// @param top_mm  as of `SweptTool`
   Removed(std::vector<path::ToolMotion> motions, const tool::ProofTool& tool, double top_mm)
       : tool_(std::make_unique<SweptTool>(std::move(motions), tool.cutting, top_mm)) {}

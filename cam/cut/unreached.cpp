@@ -12,16 +12,17 @@ namespace {
 
 constexpr int kColumns = 33;
 constexpr int kRows[face_gear::kSpacePieces] = {40, 33, 9, 33, 40};  // places of a piece across the space
-constexpr double kTouch = 1e-7;     // mm: deeper in, a ball counts as stopped by what it meets
-constexpr int kShrinkSteps = 60;    // of one ball; each takes it to the place it met deepest
-constexpr double kBeside = 2e-3;    // of the radius: a foot this near to the place itself
-constexpr double kEdgeSag = 1e-3;   // mm: more than the polylines of edges leave
-constexpr double kSharp = 1e-3;     // mm: a ball smaller than this is none
-constexpr double kFinest = 1e-5;    // of the pattern search, in sigma and in shares of the face
+constexpr double kTouch = 1e-7;    // mm: deeper in, a ball counts as stopped by what it meets
+constexpr int kShrinkSteps = 60;   // of one ball; each takes it to the place it met deepest
+constexpr double kBeside = 2e-3;   // of the radius: a foot this near to the place itself
+constexpr double kEdgeSag = 1e-3;  // mm: more than the polylines of edges leave
+constexpr double kSharp = 1e-3;    // mm: a ball smaller than this is none
+constexpr double kFinest = 1e-5;   // of the pattern search, in sigma and in shares of the face
 
 class BallSearch {
  public:
-  BallSearch(const analytic::GearDistance& part, int zone, double most) : part_(part), places_(part, zone), zone_(zone), most_(most) {}
+  BallSearch(const analytic::GearDistance& part, int zone, double most)
+      : part_(part), places_(part, zone), zone_(zone), most_(most) {}
 
   /// Radius of the largest ball that touches the surface at a place; nothing where there is no surface.
   [[nodiscard]] std::optional<double> radius(double sigma, double share) const {
@@ -48,7 +49,8 @@ class BallSearch {
         }
       }
     });
-    const auto& best = *std::min_element(columns.begin(), columns.end(), [](const Column& a, const Column& b) { return a.radius < b.radius; });
+    const auto& best = *std::min_element(columns.begin(), columns.end(),
+                                         [](const Column& a, const Column& b) { return a.radius < b.radius; });
     return followed(best.radius, best.sigma, best.share);
   }
 
@@ -62,9 +64,11 @@ class BallSearch {
       using Turning = face_gear::FaceGearSurface<double>;
       const double turn = std::atan2(q.point.y(), q.point.x()) - std::atan2(c.y(), c.x());
       const Vec3 across = q.foot - Turning::turned(p, turn);
-      // A foot beside the place is its own curvature, which is known already; one on an edge may be nearer by the sag of the edge's polyline.
+      // A foot beside the place is its own curvature, which is known already; one on an edge may be nearer by the sag
+      // of the edge's polyline.
       if (across.norm() < kBeside * R || (!q.exact && q.distance >= R - kEdgeSag)) return R;
-      const double ahead = across.dot(Turning::turned(n, turn)), next = ahead > 0 ? across.squaredNorm() / (2 * ahead) : R;
+      const double ahead = across.dot(Turning::turned(n, turn)),
+                   next = ahead > 0 ? across.squaredNorm() / (2 * ahead) : R;
       if (!(next < R)) return R;
       R = next;
     }
@@ -75,9 +79,11 @@ class BallSearch {
     double step_sigma = 0.02, step_share = 1.0 / (kColumns - 1);
     while (step_sigma > kFinest || step_share > kFinest) {
       bool better = false;
-      for (const auto& [ds, dr] : {std::pair{step_sigma, 0.0}, {-step_sigma, 0.0}, {0.0, step_share}, {0.0, -step_share}}) {
+      for (const auto& [ds, dr] :
+           {std::pair{step_sigma, 0.0}, {-step_sigma, 0.0}, {0.0, step_share}, {0.0, -step_share}}) {
         const double at = std::clamp(share + dr, 0.0, 1.0), r = places_.radius(at);
-        const double s = std::clamp(sigma + ds, places_.range(face_gear::SpacePiece::flank_plus, r).first, places_.range(face_gear::SpacePiece::flank_minus, r).second);
+        const double s = std::clamp(sigma + ds, places_.range(face_gear::SpacePiece::flank_plus, r).first,
+                                    places_.range(face_gear::SpacePiece::flank_minus, r).second);
         const auto there = radius(s, at);
         if (!there || *there >= R) continue;
         R = *there;
@@ -119,7 +125,8 @@ LargestBall largest_reaching_ball(const analytic::GearDistance& part, double mos
   LargestBall least;
   least.radius_mm = most_mm;
   for (int zone = 0; zone < part.zones(); ++zone)
-    if (const auto ball = BallSearch(part, zone, most_mm).tightest(); zone == 0 || ball.radius_mm < least.radius_mm) least = ball;
+    if (const auto ball = BallSearch(part, zone, most_mm).tightest(); zone == 0 || ball.radius_mm < least.radius_mm)
+      least = ball;
   return least;
 }
 

@@ -10,7 +10,8 @@ ZonePlaces::ZonePlaces(const analytic::GearDistance& part, int zone)
 
 double ZonePlaces::radius(double share) const {
   const auto& z = space_.ring().zone;
-  return std::clamp(z.inner_radius_mm + share * (z.outer_radius_mm - z.inner_radius_mm), sheet_.r_from(), sheet_.r_to());
+  return std::clamp(z.inner_radius_mm + share * (z.outer_radius_mm - z.inner_radius_mm), sheet_.r_from(),
+                    sheet_.r_to());
 }
 
 /// sigma where the flank leaves through the tip surface.

@@ -19,9 +19,10 @@
 namespace toothpath::finger {
 namespace {
 
-constexpr std::size_t kChunk = 64;     // motions that one thread checks one after another; the same on any number of threads
+constexpr std::size_t kChunk =
+    64;  // motions that one thread checks one after another; the same on any number of threads
 constexpr std::size_t kLookedAt = 16;  // motions whose deepest place is searched
-constexpr double kBelievable = 1.0;  // mm: a larger bound of what is left means a path that is not run
+constexpr double kBelievable = 1.0;    // mm: a larger bound of what is left means a path that is not run
 
 /// A motion turned to tooth space 0.
 path::ToolMotion turned(const path::ToolMotion& m, double pitch) {
@@ -35,7 +36,8 @@ path::ToolMotion turned(const path::ToolMotion& m, double pitch) {
   return out;
 }
 
-proof::WorstPlace place_of(const bevel_gear::BevelGear& gear, const path::ToolMotion& m, const Vec3& point, double depth, tool::Body body, const std::string& patch) {
+proof::WorstPlace place_of(const bevel_gear::BevelGear& gear, const path::ToolMotion& m, const Vec3& point,
+                           double depth, tool::Body body, const std::string& patch) {
   proof::WorstPlace w;
   w.depth_mm = depth;
   w.body = body;
@@ -44,7 +46,9 @@ proof::WorstPlace place_of(const bevel_gear::BevelGear& gear, const path::ToolMo
   w.tooth = m.tooth;
   w.line = m.line;
   w.point = point;
-  w.zone = gear.herringbone() && bevel_gear::cone_point(point, gear.sin_delta(), gear.cos_delta()).ell > gear.R_ref() ? 1 : 0;
+  w.zone = gear.herringbone() && bevel_gear::cone_point(point, gear.sin_delta(), gear.cos_delta()).ell > gear.R_ref()
+               ? 1
+               : 0;
   w.radius_mm = std::hypot(point.x(), point.y());
   w.height_mm = point.z();
   return w;
@@ -63,8 +67,8 @@ FingerCheckResult nothing_yet(double required_clearance_mm) {
   return r;
 }
 
-/// Gap between the tip and the blank along the axis, least over a motion and never above the true one. Everything of the tool
-/// above the height x clears the blank by this gap and x.
+/// Gap between the tip and the blank along the axis, least over a motion and never above the true one. Everything of
+/// the tool above the height x clears the blank by this gap and x.
 struct AxialGap {
   double gap = std::numeric_limits<double>::infinity();
   double at = 0;  ///< where on the motion
@@ -92,18 +96,25 @@ struct FingerGougeCheck::State {
   std::vector<path::MillingOperation> operations;
   proof::ProofLimits tol;
   FingerCheckOptions opt;
-  std::vector<std::unique_ptr<FingerTool>> states;  // by tool index, only those in use
-  std::vector<std::vector<ToolHull>> hulls;         // the same
-  std::vector<std::vector<tool::Frustum>> shank_holder;   // the same
+  std::vector<std::unique_ptr<FingerTool>> states;       // by tool index, only those in use
+  std::vector<std::vector<ToolHull>> hulls;              // the same
+  std::vector<std::vector<tool::Frustum>> shank_holder;  // the same
   FingerClearance part;
   CoaxialBody blank;
   std::vector<CoaxialBody> beside;
   std::optional<Diagnostic> error;
   std::vector<WallPoint> points;
 
-  State(const bevel_gear::BevelGear& g, std::span<const tool::ToolAssembly> t, std::span<const path::MillingOperation> o, const proof::ProofLimits& limits,
-        const FingerCheckOptions& options)
-      : gear(g), tools(t.begin(), t.end()), operations(o.begin(), o.end()), tol(limits), opt(options), part(g), blank(blank_body(g)), beside(bodies_beside_teeth(g)) {
+  State(const bevel_gear::BevelGear& g, std::span<const tool::ToolAssembly> t,
+        std::span<const path::MillingOperation> o, const proof::ProofLimits& limits, const FingerCheckOptions& options)
+      : gear(g),
+        tools(t.begin(), t.end()),
+        operations(o.begin(), o.end()),
+        tol(limits),
+        opt(options),
+        part(g),
+        blank(blank_body(g)),
+        beside(bodies_beside_teeth(g)) {
     states.resize(tools.size());
     hulls.resize(tools.size());
     shank_holder.resize(tools.size());
@@ -135,7 +146,7 @@ struct FingerGougeCheck::State {
   }
 
   struct BodiesVerdict {
-    bool among_teeth = false;  ///< a feed that comes lower than the tips
+    bool among_teeth = false;                                       ///< a feed that comes lower than the tips
     double clearance_mm = std::numeric_limits<double>::infinity();  ///< proven, of shank and holder
   };
 
@@ -151,7 +162,8 @@ struct FingerGougeCheck::State {
       if (gap < tol.clearance_mm) note_worst(g, place_of(gear, m, place, -gap, body, patch), -1e300);
     };
     const auto& bodies = hulls[static_cast<std::size_t>(operations[static_cast<std::size_t>(m.operation)].tool)];
-    // A rapid whose blank does not lie wholly behind the tip may still pass beside it: a tool that leans goes over the small end.
+    // A rapid whose blank does not lie wholly behind the tip may still pass beside it: a tool that leans goes over the
+    // small end.
     if (m.rapid && above.gap < 0)
       for (const ToolHull& hull : bodies) {
         const auto [gap, place] = nearest_obstacle(hull, blank, m);
@@ -162,7 +174,8 @@ struct FingerGougeCheck::State {
     for (const ToolHull& hull : bodies) {
       if (m.rapid || hull.body == tool::Body::flute) continue;
       // Along the axis the gap costs nothing; where it is too small, an axis that leans may still leave more.
-      ObstacleGap least{above.gap + (hull.body == tool::Body::shank ? tool.shank_from_mm : tool.holder_from_mm), blank_place(gear, axis, tip)};
+      ObstacleGap least{above.gap + (hull.body == tool::Body::shank ? tool.shank_from_mm : tool.holder_from_mm),
+                        blank_place(gear, axis, tip)};
       if (least.gap < tol.clearance_mm)
         if (const ObstacleGap whole = nearest_obstacle(hull, blank, m); whole.gap > least.gap) least = whole;
       need_clearance(least.gap, least.place, hull.body, "blank");
@@ -187,8 +200,10 @@ struct FingerGougeCheck::State {
     return out;
   }
 
-  /// Shank and holder against the finished part: the motions with the least proven gaps first, until no other can come nearer.
-  void judge_clearance(std::span<const path::ToolMotion> local, std::span<const double> proven, proof::GougeResult& g) const {
+  /// Shank and holder against the finished part: the motions with the least proven gaps first, until no other can come
+  /// nearer.
+  void judge_clearance(std::span<const path::ToolMotion> local, std::span<const double> proven,
+                       proof::GougeResult& g) const {
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < proven.size(); ++k)
       if (std::isfinite(proven[k])) order.push_back(k);
@@ -196,7 +211,8 @@ struct FingerGougeCheck::State {
     FoundGap found;
     for (const std::size_t k : order) {
       if (proven[k] >= found.gap_mm) break;
-      for (const tool::Frustum& body : shank_holder[static_cast<std::size_t>(operations[static_cast<std::size_t>(local[k].operation)].tool)])
+      for (const tool::Frustum& body :
+           shank_holder[static_cast<std::size_t>(operations[static_cast<std::size_t>(local[k].operation)].tool)])
         found = part.least(body, local[k], found);
     }
     g.clearance_measured_mm = found.gap_mm;
@@ -231,8 +247,10 @@ struct FingerGougeCheck::State {
     return out;
   }
 
-  /// Bodies and cutting part along all motions, on all threads: chunks of motions are put together in the order of the program.
-  void judge_motions(std::span<const path::ToolMotion> local, std::span<MotionDepth> depths, std::span<double> clearances, FingerCheckResult& result) const {
+  /// Bodies and cutting part along all motions, on all threads: chunks of motions are put together in the order of the
+  /// program.
+  void judge_motions(std::span<const path::ToolMotion> local, std::span<MotionDepth> depths,
+                     std::span<double> clearances, FingerCheckResult& result) const {
     std::vector<FingerCheckResult> chunks((local.size() + kChunk - 1) / kChunk);
     tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t n) {
       FingerCheckResult chunk = nothing_yet(tol.clearance_mm);
@@ -252,22 +270,28 @@ struct FingerGougeCheck::State {
   }
 
   /// The motions with the greatest bounds, looked at on the walls themselves.
-  void judge_deepest(std::span<const path::ToolMotion> local, std::span<const MotionDepth> depths, FingerCheckResult& result) const {
+  void judge_deepest(std::span<const path::ToolMotion> local, std::span<const MotionDepth> depths,
+                     FingerCheckResult& result) const {
     proof::GougeResult& g = result.gouge;
     std::vector<std::size_t> order;
     for (std::size_t k = 0; k < depths.size(); ++k)
       if (depths[k].bound_mm > 0) order.push_back(k);
-    const auto deeper = [&](std::size_t a, std::size_t b) { return depths[a].bound_mm != depths[b].bound_mm ? depths[a].bound_mm > depths[b].bound_mm : a < b; };
+    const auto deeper = [&](std::size_t a, std::size_t b) {
+      return depths[a].bound_mm != depths[b].bound_mm ? depths[a].bound_mm > depths[b].bound_mm : a < b;
+    };
     const std::size_t n = std::min(order.size(), kLookedAt);
     std::partial_sort(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(n), order.end(), deeper);
     std::vector<DeepestCut> found(n);
-    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) { found[k] = deepest_cut(gear, *tool_of(local[order[k]].operation), local[order[k]]); });
+    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) {
+      found[k] = deepest_cut(gear, *tool_of(local[order[k]].operation), local[order[k]]);
+    });
     for (std::size_t k = 0; k < n; ++k) {
       const path::ToolMotion& m = local[order[k]];
       const MotionDepth& d = depths[order[k]];
       const bool in_wall = found[k].depth_mm >= d.dip_mm;
       const double depth = std::max(found[k].depth_mm, d.dip_mm);
-      proof::WorstPlace w = place_of(gear, m, in_wall ? found[k].point : d.lowest, depth, tool::Body::flute, in_wall ? wall_name(found[k].wall) : "root");
+      proof::WorstPlace w = place_of(gear, m, in_wall ? found[k].point : d.lowest, depth, tool::Body::flute,
+                                     in_wall ? wall_name(found[k].wall) : "root");
       if (in_wall) w.zone = found[k].half;
       g.measured_mm = std::max(g.measured_mm, depth);
       note_worst(g, std::move(w), d.bound_mm > tol.gouge_mm ? -1e300 : tol.gouge_mm);
@@ -279,13 +303,16 @@ struct FingerGougeCheck::State {
     proof::GougeResult& g = result.gouge;
     std::size_t at = points.size();
     for (std::size_t i = 0; i < points.size(); ++i)
-      if (points[i].row >= 0 && excess.deepest[i] && (at == points.size() || excess.after.back()[i] < excess.after.back()[at])) at = i;
+      if (points[i].row >= 0 && excess.deepest[i] &&
+          (at == points.size() || excess.after.back()[i] < excess.after.back()[at]))
+        at = i;
     g.measured_mm = std::max(g.measured_mm, result.root_gouge_mm);
     if (at < points.size()) {
       const double depth = -excess.after.back()[at];
       g.measured_mm = std::max(g.measured_mm, depth);
       if (depth > tol.gouge_mm || depth > g.deepest.depth_mm) {
-        proof::WorstPlace w = place_of(gear, *excess.deepest[at], points[at].p, depth, tool::Body::flute, wall_name(points[at].wall));
+        proof::WorstPlace w =
+            place_of(gear, *excess.deepest[at], points[at].p, depth, tool::Body::flute, wall_name(points[at].wall));
         w.zone = points[at].half;
         note_worst(g, std::move(w), tol.gouge_mm);
       }
@@ -302,9 +329,12 @@ struct FingerGougeCheck::State {
     const auto refuse = [&](const std::string& what) {
       return fail_as(DiagnosticKind::verification, "operation {} record {}: {}", m.operation, m.line, what);
     };
-    if (!g.rapids_clear) return refuse(fmt::format("the rapid goes {:.4f} mm into the {}", g.worst.front().depth_mm, g.worst.front().patch));
+    if (!g.rapids_clear)
+      return refuse(
+          fmt::format("the rapid goes {:.4f} mm into the {}", g.worst.front().depth_mm, g.worst.front().patch));
     if (g.clearance_mm < tol.clearance_mm)
-      return refuse(fmt::format("the {} comes within {:.4f} mm of the {}, less than {:.4f}", g.closest.body, g.clearance_mm, g.closest.patch, tol.clearance_mm));
+      return refuse(fmt::format("the {} comes within {:.4f} mm of the {}, less than {:.4f}", g.closest.body,
+                                g.clearance_mm, g.closest.patch, tol.clearance_mm));
     if (g.bound_mm > tol.gouge_mm)
       return refuse(fmt::format("the cutter goes up to {:.4f} mm into {}, more than {:.4f}", g.bound_mm,
                                 walls.bound_mm >= g.bound_mm ? walls.patch : g.deepest.patch, tol.gouge_mm));
@@ -325,9 +355,11 @@ struct FingerGougeCheck::State {
 
   RidgeResult ridge(std::span<const FingerCut> cuts) const {
     RidgeResult out;
-    if (const FingerTool* tool = reference(); tool && !cuts.empty()) out = highest_ridge(gear, cuts, *tool, opt.ridge_columns, opt.ridge_rows);
+    if (const FingerTool* tool = reference(); tool && !cuts.empty())
+      out = highest_ridge(gear, cuts, *tool, opt.ridge_columns, opt.ridge_rows);
     for (const auto& op : operations)
-      if (op.ridge_mm > 0) out.requested_mm = out.requested_mm > 0 ? std::min(out.requested_mm, op.ridge_mm) : op.ridge_mm;
+      if (op.ridge_mm > 0)
+        out.requested_mm = out.requested_mm > 0 ? std::min(out.requested_mm, op.ridge_mm) : op.ridge_mm;
     return out;
   }
 };
@@ -358,7 +390,8 @@ FingerCheckResult FingerGougeCheck::verify(std::span<const path::ToolMotion> giv
   const std::vector<FingerCut> cuts = s.cuts_of_first_tooth(local);
   std::vector<std::vector<FingerCut>> by_operation(s.operations.size());
   for (const FingerCut& cut : cuts) by_operation[static_cast<std::size_t>(cut.motion->operation)].push_back(cut);
-  const WallExcess excess = measure_walls(s.points, by_operation, s.gear.parameters().addendum_mm + s.gear.parameters().dedendum_mm);
+  const WallExcess excess =
+      measure_walls(s.points, by_operation, s.gear.parameters().addendum_mm + s.gear.parameters().dedendum_mm);
   for (std::size_t op = 0; op < by_operation.size(); ++op)
     result.operations.push_back(summary_of(s.points, excess.after[op], static_cast<int>(op)));
   if (!result.operations.empty()) {
@@ -379,7 +412,8 @@ proof::GougeResult FingerGougeCheck::rapids(std::span<const path::ToolMotion> gi
   const State& s = *state_;
   FingerCheckResult result = nothing_yet(s.tol.clearance_mm);
   for (const auto& m : given)
-    if (const FingerTool* tool = m.rapid ? s.tool_of(m.operation) : nullptr) s.judge_bodies(turned(m, s.gear.pitch()), *tool, result);
+    if (const FingerTool* tool = m.rapid ? s.tool_of(m.operation) : nullptr)
+      s.judge_bodies(turned(m, s.gear.pitch()), *tool, result);
   return result.gouge;
 }
 

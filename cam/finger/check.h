@@ -1,22 +1,23 @@
-// Proof of a finger-milled bevel gear: gouge, clearance, rapids, material left on the walls, ridges on the root. Works on
-// the motions that were read back from the program, in double, with the real (hollow) cutter profile and the exact walls.
+// Proof of a finger-milled bevel gear: gouge, clearance, rapids, material left on the walls, ridges on the root. Works
+// on the motions that were read back from the program, in double, with the real (hollow) cutter profile and the exact
+// walls.
 //
-// Measured: points of the exact walls against the solid cutter along every motion (finger_walls), ridges (finger_ridge).
-// Proven: the centre of the cutter against the nominal wall paths (finger_poses), with everything that lies between samples
-// added; shank, holder and flute against blank, hub and shaft (finger_obstacles).
+// Measured: points of the exact walls against the solid cutter along every motion (finger_walls), ridges
+// (finger_ridge). Proven: the centre of the cutter against the nominal wall paths (finger_poses), with everything that
+// lies between samples added; shank, holder and flute against blank, hub and shaft (finger_obstacles).
 #pragma once
 
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "cam/proof/checked_cl_path.h"
-#include "cam/tool/assembly.h"
 #include "cam/finger/ridge.h"
-#include "cam/path/operation.h"
 #include "cam/path/motions.h"
-#include "cam/proof/verification.h"
+#include "cam/path/operation.h"
+#include "cam/proof/checked_cl_path.h"
 #include "cam/proof/limits.h"
+#include "cam/proof/verification.h"
+#include "cam/tool/assembly.h"
 
 namespace toothpath::finger {
 
@@ -26,23 +27,24 @@ struct FingerCheckResult {
   proof::ExcessResult finished;
   RidgeResult ridge;
   std::vector<proof::SurfaceGrid> walls;
-  double root_gouge_mm = 0;       ///< deepest the tip goes below the root cone
-  double tilt_rad = 0;            ///< largest angle between a cutting axis and the normal of the pitch cone
+  double root_gouge_mm = 0;         ///< deepest the tip goes below the root cone
+  double tilt_rad = 0;              ///< largest angle between a cutting axis and the normal of the pitch cone
   double wall_excess_bound_mm = 0;  ///< what may stand on a wall anywhere, from the distance of the paths
 };
 
 struct FingerCheckOptions {
-  int columns = 25;       ///< of a wall grid, along the face of a half
-  int rows = 21;          ///< along the profile
-  int ridge_columns = 41; ///< along the face of the gear
-  int ridge_rows = 33;    ///< across the space
+  int columns = 25;        ///< of a wall grid, along the face of a half
+  int rows = 21;           ///< along the profile
+  int ridge_columns = 41;  ///< along the face of the gear
+  int ridge_rows = 33;     ///< across the space
 };
 
 class FingerGougeCheck {
  public:
   /// @param gear made with the finishing mill; operations in the order of the job, their tools are indices into `tools`
-  FingerGougeCheck(const bevel_gear::BevelGear& gear, std::span<const tool::ToolAssembly> tools, std::span<const path::MillingOperation> operations,
-                   const proof::ProofLimits& limits, const FingerCheckOptions& options = {});
+  FingerGougeCheck(const bevel_gear::BevelGear& gear, std::span<const tool::ToolAssembly> tools,
+                   std::span<const path::MillingOperation> operations, const proof::ProofLimits& limits,
+                   const FingerCheckOptions& options = {});
   ~FingerGougeCheck();
   FingerGougeCheck(const FingerGougeCheck&) = delete;
   FingerGougeCheck& operator=(const FingerGougeCheck&) = delete;
@@ -52,7 +54,8 @@ class FingerGougeCheck {
   /// place and depth. The walls that the path ought to cut are not judged here.
   [[nodiscard]] Result<proof::CheckedClPath> approve(path::ClPath path) const;
 
-  /// Everything, from motions of any tooth space; runs on all threads, same bytes on any number. The wall and ridge measurements use those of the first tooth present.
+  /// Everything, from motions of any tooth space; runs on all threads, same bytes on any number. The wall and ridge
+  /// measurements use those of the first tooth present.
   [[nodiscard]] FingerCheckResult verify(std::span<const path::ToolMotion> motions) const;
 
   /// The rapids among these motions against blank, hub and shaft; the places that are met stand in `worst`.

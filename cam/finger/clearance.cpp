@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kBodyStations = 128;
 constexpr int kMoments = 4, kBodyAlong = 6, kAcross = 6;  // intervals of the first look
-constexpr double kWindow = kPi / 3;   // rad: of a surface of revolution, to both sides of the body
-constexpr double kBodyFinest = 1e-6;      // mm
+constexpr double kWindow = kPi / 3;                       // rad: of a surface of revolution, to both sides of the body
+constexpr double kBodyFinest = 1e-6;                      // mm
 
 /// Where on a patch and a motion; all three 0 .. 1.
 using At = std::array<double, 3>;
@@ -30,7 +30,8 @@ FingerClearance::Edges FingerClearance::edges_of(const bevel_gear::BevelHalf& ha
     std::array<double, 2> azimuth{};
     bool both = true;
     for (int k = 0; k < 2; ++k) {
-      auto at = near[k] ? bevel_gear::bevel_inverse(half.walls[k], ell, gear_.parameters().addendum_mm, *near[k]) : std::nullopt;
+      auto at = near[k] ? bevel_gear::bevel_inverse(half.walls[k], ell, gear_.parameters().addendum_mm, *near[k])
+                        : std::nullopt;
       if (!at) at = bevel_gear::bevel_inverse(half.walls[k], ell, gear_.parameters().addendum_mm);
       near[k] = at;
       both = both && at;
@@ -55,7 +56,8 @@ std::array<double, 2> FingerClearance::sides(const Edges& e, double ell, bool ex
   } else {
     const double x = (ell - e.from) / (e.to - e.from) * double(e.azimuth.size() - 1);
     const auto i = std::min(std::size_t(std::max(x, 0.0)), e.azimuth.size() - 2);
-    for (std::size_t k = 0; k < 2; ++k) wall[k] = e.azimuth[i][k] + (x - double(i)) * (e.azimuth[i + 1][k] - e.azimuth[i][k]);
+    for (std::size_t k = 0; k < 2; ++k)
+      wall[k] = e.azimuth[i][k] + (x - double(i)) * (e.azimuth[i + 1][k] - e.azimuth[i][k]);
   }
   return {wall[1], wall[0] + gear_.pitch()};
 }
@@ -70,7 +72,8 @@ Vec3 FingerClearance::place(const Patch& p, double u, double w, bool exact) cons
   const double ell = land ? e.from + u * (e.to - e.from) : p.a.x(), h_a = gear_.parameters().addendum_mm;
   const auto side = sides(e, ell, exact);
   const double azimuth = side[0] + w * (side[1] - side[0]) + p.tooth * gear_.pitch();
-  return bevel_gear::blank_point(ell, land ? h_a : h_a - u * (h_a + gear_.parameters().dedendum_mm), azimuth, gear_.sin_delta(), gear_.cos_delta());
+  return bevel_gear::blank_point(ell, land ? h_a : h_a - u * (h_a + gear_.parameters().dedendum_mm), azimuth,
+                                 gear_.sin_delta(), gear_.cos_delta());
 }
 
 void FingerClearance::add(Patch p) {
@@ -96,8 +99,10 @@ FingerClearance::FingerClearance(const bevel_gear::BevelGear& gear) : gear_(gear
   for (std::size_t h = 0; h < edges_.size(); ++h)
     for (int tooth = 0; tooth < gear_.parameters().teeth; ++tooth) {
       add({.kind = Patch::Kind::land, .name = "land", .half = h, .tooth = tooth});
-      if (h == 0) add({.kind = Patch::Kind::end, .name = "end", .half = h, .tooth = tooth, .a = Vec2(edges_[h].from, 0)});
-      if (h + 1 == edges_.size()) add({.kind = Patch::Kind::end, .name = "end", .half = h, .tooth = tooth, .a = Vec2(edges_[h].to, 0)});
+      if (h == 0)
+        add({.kind = Patch::Kind::end, .name = "end", .half = h, .tooth = tooth, .a = Vec2(edges_[h].from, 0)});
+      if (h + 1 == edges_.size())
+        add({.kind = Patch::Kind::end, .name = "end", .half = h, .tooth = tooth, .a = Vec2(edges_[h].to, 0)});
     }
   for (const CoaxialBody& body : bodies_beside_teeth(gear_)) {
     add({.name = body.name, .a = body.rims[0], .b = body.rims[1]});
@@ -126,7 +131,8 @@ FoundGap FingerClearance::least(const tool::Frustum& body, const path::ToolMotio
     for (int i = 0; i <= kMoments; ++i)
       for (int j = 0; j <= kBodyAlong; ++j)
         for (int k = 0; k <= kAcross; ++k)
-          if (const At here{i * step[0], j * step[1], w_from + k * step[2]}; gap(here) < least) least = gap(here), at = here;
+          if (const At here{i * step[0], j * step[1], w_from + k * step[2]}; gap(here) < least)
+            least = gap(here), at = here;
     if (least - step[0] * way - step[1] * p.size_u - step[2] * p.size_w > best.gap_mm) continue;
     const double size = std::max({step[0] * way, step[1] * p.size_u, step[2] * p.size_w});
     for (double share = 1; share * size > kBodyFinest;) {

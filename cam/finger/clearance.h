@@ -1,5 +1,5 @@
-// How near shank and holder come to the finished part itself: a gap that exists at a place of it. The proof keeps both out of the whole blank, so
-// the proven gap is never above this one (cam/finger/obstacles.h).
+// How near shank and holder come to the finished part itself: a gap that exists at a place of it. The proof keeps both
+// out of the whole blank, so the proven gap is never above this one (cam/finger/obstacles.h).
 #pragma once
 
 #include <array>
@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "cam/tool/body.h"
 #include "cam/path/tool_motion.h"
+#include "cam/tool/body.h"
 #include "geometry/bevel_gear/gear.h"
 
 namespace toothpath::finger {
@@ -27,8 +27,8 @@ class FingerClearance {
   FingerClearance(const FingerClearance&) = delete;
   FingerClearance& operator=(const FingerClearance&) = delete;
 
-  /// Least gap found between one body and the part over a motion; `best` where none is less. Searched downhill in place and moment from a look
-  /// at five moments: what is told exists, and a nearer place may be missed.
+  /// Least gap found between one body and the part over a motion; `best` where none is less. Searched downhill in place
+  /// and moment from a look at five moments: what is told exists, and a nearer place may be missed.
   [[nodiscard]] FoundGap least(const tool::Frustum& body, const path::ToolMotion& m, const FoundGap& best) const;
 
  private:
@@ -46,11 +46,12 @@ class FingerClearance {
     int tooth = 0;
     Vec2 a = Vec2::Zero(), b = Vec2::Zero();  ///< turned: a line (r, z). End: its cone distance is a.x
     Vec3 centre = Vec3::Zero();
-    double radius = 0;                        ///< of a sphere about it
-    double size_u = 0, size_w = 0;            ///< mm
+    double radius = 0;              ///< of a sphere about it
+    double size_u = 0, size_w = 0;  ///< mm
   };
   [[nodiscard]] Edges edges_of(const bevel_gear::BevelHalf& half) const;
-  /// Azimuths of both sides of the tooth that follows space 0; `exact`: by Newton, else between the stations. Not a number where the wall has no such place.
+  /// Azimuths of both sides of the tooth that follows space 0; `exact`: by Newton, else between the stations. Not a
+  /// number where the wall has no such place.
   [[nodiscard]] std::array<double, 2> sides(const Edges& edges, double ell, bool exact) const;
   [[nodiscard]] Vec3 place(const Patch& patch, double u, double w, bool exact = false) const;
   void add(Patch patch);

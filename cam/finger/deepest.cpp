@@ -6,15 +6,17 @@
 namespace toothpath::finger {
 namespace {
 
-constexpr double kFar = 2.0;         // mm: walls that the motion does not come near
-constexpr double kPiece = 1.0;       // mm: longer motions are looked at in pieces, on which the distance is a bowl
+constexpr double kFar = 2.0;    // mm: walls that the motion does not come near
+constexpr double kPiece = 1.0;  // mm: longer motions are looked at in pieces, on which the distance is a bowl
 constexpr int kDeepestAlong = 12, kUp = 8;  // intervals of the first look
 constexpr double kDeepestFinest = 1e-4;     // share of a first interval at which the search ends
 
-/// A wall of a half over the rectangle ell_from .. ell_to, 0 .. 1 from the end of the fillet at the root to the tip of the tooth.
+/// A wall of a half over the rectangle ell_from .. ell_to, 0 .. 1 from the end of the fillet at the root to the tip of
+/// the tooth.
 class WallSearch {
  public:
-  WallSearch(const bevel_gear::BevelHalf& half, int wall, double h_a, const FingerTool& tool, const path::ToolMotion& m) : half_(half), wall_(half.walls[wall]), h_a_(h_a), tool_(tool) {
+  WallSearch(const bevel_gear::BevelHalf& half, int wall, double h_a, const FingerTool& tool, const path::ToolMotion& m)
+      : half_(half), wall_(half.walls[wall]), h_a_(h_a), tool_(tool) {
     const int n = std::max(1, int(std::ceil((m.tip_to - m.tip_from).norm() / kPiece)));
     for (int k = 0; k < n; ++k) {
       path::ToolMotion piece = m;
@@ -38,7 +40,14 @@ class WallSearch {
     double along = (to - from) / kDeepestAlong, up = 1.0 / kUp;
     for (double share = 1; share > kDeepestFinest;) {
       const Place before = best;
-      for (const auto& [a, b] : {std::pair{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}, {0.7, 0.7}, {-0.7, 0.7}, {0.7, -0.7}, {-0.7, -0.7}})
+      for (const auto& [a, b] : {std::pair{1.0, 0.0},
+                                 {-1.0, 0.0},
+                                 {0.0, 1.0},
+                                 {0.0, -1.0},
+                                 {0.7, 0.7},
+                                 {-0.7, 0.7},
+                                 {0.7, -0.7},
+                                 {-0.7, -0.7}})
         take(best, before.ell + a * along, before.up + b * up);
       if (best.gap < before.gap - 1e-9) {  // once more the same way
         take(best, 2 * best.ell - before.ell, 2 * best.up - before.up);

@@ -1,4 +1,5 @@
-// The deepest place that one motion of a finger mill cuts into the finished walls: searched on the walls themselves, not on a grid.
+// The deepest place that one motion of a finger mill cuts into the finished walls: searched on the walls themselves,
+// not on a grid.
 #pragma once
 
 #include "cam/finger/tool.h"
@@ -11,9 +12,11 @@ struct DeepestCut {
   int half = 0, wall = 0;
 };
 
-/// @param gear  made with the finishing mill: its walls are the finished ones, up to the ends of the face and the edges of the groove
+/// @param gear  made with the finishing mill: its walls are the finished ones, up to the ends of the face and the edges
+/// of the groove
 /// @param m     in tooth space 0
 /// Depths up to 0.1 mm are true to 2e-5 mm; nothing nearer than 1 mm to a wall: a depth below -1.
-[[nodiscard]] DeepestCut deepest_cut(const bevel_gear::BevelGear& gear, const FingerTool& tool, const path::ToolMotion& m);
+[[nodiscard]] DeepestCut deepest_cut(const bevel_gear::BevelGear& gear, const FingerTool& tool,
+                                     const path::ToolMotion& m);
 
 }  // namespace toothpath::finger

@@ -10,19 +10,20 @@
 namespace toothpath::finger {
 namespace {
 
-constexpr double kLift = 3.0;        // mm, of the tip above the face cone between passes
-// mm: a block with straight joints (R_c, e) stays this close to the straight tip. Posts move the joints; below their own
-// tolerance of 0.5 um they insert nothing, and only two axes move.
+constexpr double kLift = 3.0;  // mm, of the tip above the face cone between passes
+// mm: a block with straight joints (R_c, e) stays this close to the straight tip. Posts move the joints; below their
+// own tolerance of 0.5 um they insert nothing, and only two axes move.
 constexpr double kJointSag = 4e-4;
-constexpr int kPlaces = 8;           // a block is compared with its piece at the ends of so many parts
-constexpr int kMostAttempts = 40;    // each with a twelfth more points
-constexpr int kFine = 96;            // intervals on which the chord error of a piece is measured
+constexpr int kPlaces = 8;         // a block is compared with its piece at the ends of so many parts
+constexpr int kMostAttempts = 40;  // each with a twelfth more points
+constexpr int kFine = 96;          // intervals on which the chord error of a piece is measured
 
 using Centre = bevel_gear::CutterCentre<double>;
 
 class FingerPlanner {
  public:
-  FingerPlanner(const bevel_gear::BevelGear& gear, const path::MillingOperation& op, int index, const proof::ProofLimits& tol)
+  FingerPlanner(const bevel_gear::BevelGear& gear, const path::MillingOperation& op, int index,
+                const proof::ProofLimits& tol)
       : gear_(gear), op_(op), sd_(gear.sin_delta()), cd_(gear.cos_delta()) {
     // The other half is for what posts and proof add. The proof counts a shift of the centre with its leverage.
     chord_ = std::min(op.chord_tolerance_mm, 0.5 * tol.gouge_mm / centre_leverage(gear));
@@ -35,10 +36,8 @@ class FingerPlanner {
   Result<FingerPlan> plan() {
     if (op_.type == path::OperationType::finger_roughing)
       passes_ = roughing_passes(gear_, op_.ridge_mm, plan_.ridge_predicted_mm);
-    else if (op_.type == path::OperationType::finger_finishing)
-      passes_ = wall_passes(gear_, op_.climb);
-    else
-      return fail("a {} operation is not milled by a finger mill", to_string(op_.type));
+    else if (op_.type == path::OperationType::finger_finishing) passes_ = wall_passes(gear_, op_.climb);
+    else return fail("a {} operation is not milled by a finger mill", to_string(op_.type));
     cut_into_blocks();
     write();
     return std::move(plan_);
@@ -51,8 +50,9 @@ class FingerPlanner {
     int half = 0;
   };
 
-  /// How far a block a..b leaves the exact piece at a point c of it in the same share s, as a multiple of what is allowed:
-  /// across the path and down, for a straight tip and for straight joints (R_c, e), and both against each other.
+  /// How far a block a..b leaves the exact piece at a point c of it in the same share s, as a multiple of what is
+  /// allowed: across the path and down, for a straight tip and for straight joints (R_c, e), and both against each
+  /// other.
   double block_error(const Centre& a, const Centre& b, const Centre& c, double s) const {
     const double R_s = a.R_c + s * (b.R_c - a.R_c), e_s = a.e + s * (b.e - a.e);
     const double dR = R_s - c.R_c, dT = a.theta_c + s * (b.theta_c - a.theta_c) - c.theta_c;
@@ -64,13 +64,16 @@ class FingerPlanner {
     return std::max(chord / chord_, (tip - gear_.tip(R_s, e_s)).norm() / kJointSag);
   }
 
-  /// What a block a..b may leave its piece by, whose parameters there are t_a and t_b: the distance from the nearest pose of the piece
-  /// at seven places of the block, for a straight tip and for straight joints, and what may lie between two of them. There the
-  /// distance bends by no more than the path (the turn of its heading, doubled) and the cone under a straight line.
-  double block_bound(const std::function<Centre(double)>& piece, const Centre& a, const Centre& b, double t_a, double t_b) const {
+  /// What a block a..b may leave its piece by, whose parameters there are t_a and t_b: the distance from the nearest
+  /// pose of the piece at seven places of the block, for a straight tip and for straight joints, and what may lie
+  /// between two of them. There the distance bends by no more than the path (the turn of its heading, doubled) and the
+  /// cone under a straight line.
+  double block_bound(const std::function<Centre(double)>& piece, const Centre& a, const Centre& b, double t_a,
+                     double t_b) const {
     const double length = crown_distance(a, b), per_length = (t_b - t_a) / length;
     const Vec3 tip_a = gear_.tip(a.R_c, a.e), tip_b = gear_.tip(b.R_c, b.e);
-    /// Crown-plane and normal distance (along the generatrix, azimuthal, down) of something from a pose -> distance from the path.
+    /// Crown-plane and normal distance (along the generatrix, azimuthal, down) of something from a pose -> distance
+    /// from the path.
     const auto nearest = [&](double s, const auto& seen_from) {
       double t = t_a + s * (t_b - t_a);
       Centre c = piece(t);
@@ -91,13 +94,14 @@ class FingerPlanner {
       if (k == kPlaces) break;
       const Vec3 tip = tip_a + s * (tip_b - tip_a);
       worst = std::max(worst, nearest(s, [&](const Centre& from) {
-        const Vec3 q = bevel_gear::cutter_from_blank<double>(tip, from.R_c, from.e, sd_, cd_);
-        return Vec3(q.z(), q.y(), q.x() + gear_.parameters().dedendum_mm);
-      }));
+                         const Vec3 q = bevel_gear::cutter_from_blank<double>(tip, from.R_c, from.e, sd_, cd_);
+                         return Vec3(q.z(), q.y(), q.x() + gear_.parameters().dedendum_mm);
+                       }));
       const double R = a.R_c + s * (b.R_c - a.R_c), theta = a.theta_c + s * (b.theta_c - a.theta_c);
-      worst = std::max(worst, nearest(s, [&](const Centre& from) {
-        return Vec3(R * std::cos(theta - from.theta_c) - from.R_c, R * std::sin(theta - from.theta_c), 0);
-      }));
+      worst =
+          std::max(worst, nearest(s, [&](const Centre& from) {
+                     return Vec3(R * std::cos(theta - from.theta_c) - from.R_c, R * std::sin(theta - from.theta_c), 0);
+                   }));
     }
     const double cone = 1 / (gear_.R_i() * sd_ - gear_.parameters().dedendum_mm * cd_);
     return worst + (2 * bend + cone) * length * length / (8 * kPlaces * kPlaces);
@@ -108,7 +112,9 @@ class FingerPlanner {
     std::vector<double> sum(kFine + 1, 0.0);
     for (int i = 0; i < kFine; ++i) {
       const double a = static_cast<double>(i) / kFine, b = static_cast<double>(i + 1) / kFine;
-      sum[static_cast<std::size_t>(i) + 1] = sum[static_cast<std::size_t>(i)] + std::sqrt(block_error(piece(a), piece(b), piece(0.5 * (a + b)), 0.5) / 0.9);
+      sum[static_cast<std::size_t>(i) + 1] =
+          sum[static_cast<std::size_t>(i)] +
+          std::sqrt(block_error(piece(a), piece(b), piece(0.5 * (a + b)), 0.5) / 0.9);
     }
     const double length = crown_distance(piece(0), piece(1));
     int n = std::max({1, static_cast<int>(std::ceil(sum.back())), static_cast<int>(std::ceil(length / 10))});
@@ -173,18 +179,21 @@ class FingerPlanner {
       int zone = points.front().half;
       const auto begin = [&](int half) {
         zone = half;
-        plan_.passes.push_back({half, count[static_cast<std::size_t>(half)]++, passes_[i].name, passes_[i].outward, 0, 1});
+        plan_.passes.push_back(
+            {half, count[static_cast<std::size_t>(half)]++, passes_[i].name, passes_[i].outward, 0, 1});
       };
       begin(zone);
       const auto add = [&](const Centre& c, double height, double feed, path::MoveKind kind) {
-        plan_.path.records.push_back({gear_.tip(c.R_c, c.e, height), gear_.axis(c.e), feed, kind, zone, plan_.passes.back().pass});
+        plan_.path.records.push_back(
+            {gear_.tip(c.R_c, c.e, height), gear_.axis(c.e), feed, kind, zone, plan_.passes.back().pass});
       };
       add(points.front().centre, up, 0, path::MoveKind::rapid);
       add(points.front().centre, 0, op_.feed_mm_min, path::MoveKind::engage);
       for (std::size_t k = 1; k < points.size(); ++k) {
         const Centre &from = points[k - 1].centre, &to = points[k].centre;
         if (points[k].half != zone) begin(points[k].half);
-        const double step = crown_distance(from, to), tip = (gear_.tip(to.R_c, to.e) - gear_.tip(from.R_c, from.e)).norm();
+        const double step = crown_distance(from, to),
+                     tip = (gear_.tip(to.R_c, to.e) - gear_.tip(from.R_c, from.e)).norm();
         plan_.passes.back().length_mm += step;
         ++plan_.passes.back().points;
         add(to, 0, op_.feed_mm_min * tip / step, path::MoveKind::feed);
@@ -213,12 +222,14 @@ Result<bevel_gear::BevelGear> gear_for_finger_mill(const bevel_gear::BevelGear& 
   const double flutes = tool::finger_flute_end(made.value().cutter(), tool);
   const double least = gear.parameters().dedendum_mm + gear.parameters().addendum_mm;
   if (flutes < least && tool.shank_diameter_mm > 2 * made.value().cutter().rho_D)
-    return fail("flute_length = {:.4f} is below the tooth depth {:.4f}: the shank would cut the tip of the teeth", flutes, least);
+    return fail("flute_length = {:.4f} is below the tooth depth {:.4f}: the shank would cut the tip of the teeth",
+                flutes, least);
   return std::move(made).value();
 }
 
-Result<FingerPlan> plan_finger_operation(const bevel_gear::BevelGear& gear, const tool::ToolAssembly& tool, const path::MillingOperation& operation,
-                                         int operation_index, const proof::ProofLimits& limits) {
+Result<FingerPlan> plan_finger_operation(const bevel_gear::BevelGear& gear, const tool::ToolAssembly& tool,
+                                         const path::MillingOperation& operation, int operation_index,
+                                         const proof::ProofLimits& limits) {
   if (tool.type != tool::CutterType::finger_mill) return fail("tool {} is not a finger mill", tool.number);
   auto own = gear_for_finger_mill(gear, tool);
   if (!own) return own.error();

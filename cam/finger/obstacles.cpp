@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kDirections = 48;
 constexpr int kMostHalvings = 7;
-constexpr double kNear = 0.5;    // mm: a smaller gap is looked for in all directions
+constexpr double kNear = 0.5;  // mm: a smaller gap is looked for in all directions
 constexpr int kGoldenSteps = 24;
 constexpr double kTie = 2e-4;    // mm: rims that reach as far as each other, to the precision of a direction
 constexpr double kEnough = 5.0;  // mm: a gap that nobody asks to know better
@@ -39,7 +39,8 @@ double farthest(const ToolHull& tool) {
 }
 
 double gap_along(const ToolHull& tool, const CoaxialBody& body, const path::ToolMotion& m, const Vec3& n) {
-  return std::min(lowest(tool, m.tip_from, m.axis_from, n), lowest(tool, m.tip_to, m.axis_to, n)) - support(body.rims, n);
+  return std::min(lowest(tool, m.tip_from, m.axis_from, n), lowest(tool, m.tip_to, m.axis_to, n)) -
+         support(body.rims, n);
 }
 
 /// Place of the greatest value between a and b, of a function that rises and then falls.
@@ -65,7 +66,9 @@ Direction in_axial_plane(const ToolHull& tool, const CoaxialBody& body, const pa
   Vec3 outwards(axis.x(), axis.y(), 0);
   if (outwards.norm() < 1e-9) outwards = Vec3(m.tip_from.x() + m.tip_to.x(), m.tip_from.y() + m.tip_to.y(), 0);
   outwards = outwards.norm() < 1e-9 ? Vec3(1, 0, 0) : Vec3(outwards.normalized());
-  const auto direction = [&](double angle) -> Vec3 { return std::cos(angle) * outwards + std::sin(angle) * Vec3::UnitZ(); };
+  const auto direction = [&](double angle) -> Vec3 {
+    return std::cos(angle) * outwards + std::sin(angle) * Vec3::UnitZ();
+  };
   const auto at = [&](double angle) { return gap_along(tool, body, m, direction(angle)); };
   double best = -std::numeric_limits<double>::infinity(), where = 0;
   const double step = 2 * kPi / kDirections;
@@ -76,9 +79,11 @@ Direction in_axial_plane(const ToolHull& tool, const CoaxialBody& body, const pa
   return {at(where), direction(where)};
 }
 
-/// Best of the directions about `start`. The gap along n is a minimum of linear functions of n; where it is positive, gap / |n| rises and
-/// then falls along every line, and so does its maximum over parallel lines. Bodies that meet are moved apart for the search.
-Direction about(const ToolHull& tool, const CoaxialBody& body, const path::ToolMotion& m, const Direction& start, double range, double least_mm) {
+/// Best of the directions about `start`. The gap along n is a minimum of linear functions of n; where it is positive,
+/// gap / |n| rises and then falls along every line, and so does its maximum over parallel lines. Bodies that meet are
+/// moved apart for the search.
+Direction about(const ToolHull& tool, const CoaxialBody& body, const path::ToolMotion& m, const Direction& start,
+                double range, double least_mm) {
   const Vec3 t1 = start.n.unitOrthogonal(), t2 = start.n.cross(t1);
   const double apart = std::max(0.0, least_mm - start.gap);
   const auto direction = [&](double a, double b) -> Vec3 { return (start.n + a * t1 + b * t2).normalized(); };
@@ -95,7 +100,8 @@ Direction about(const ToolHull& tool, const CoaxialBody& body, const path::ToolM
 
 /// Best of all directions near `start`: in ever smaller circles, ever less apart.
 Direction in_space(const ToolHull& tool, const CoaxialBody& body, const path::ToolMotion& m, Direction best) {
-  for (const auto& [range, apart] : {std::pair{1.0, 0.05}, {0.3, 0.02}, {0.1, 0.005}, {0.03, 0.001}, {0.01, 0.0002}}) best = about(tool, body, m, best, range, apart);
+  for (const auto& [range, apart] : {std::pair{1.0, 0.05}, {0.3, 0.02}, {0.1, 0.005}, {0.03, 0.001}, {0.01, 0.0002}})
+    best = about(tool, body, m, best, range, apart);
   return best;
 }
 
@@ -114,7 +120,8 @@ Vec3 meeting_place(const ToolHull& tool, const CoaxialBody& body, const path::To
   Reach part, low;
   const double across = std::hypot(n.x(), n.y());
   const Vec3 radial = across > 1e-12 ? Vec3(n.x() / across, n.y() / across, 0) : Vec3(0, 0, 0);
-  for (const Vec2& rim : body.rims) part.add(rim.x() * across + rim.y() * n.z(), rim.x() * radial + rim.y() * Vec3::UnitZ());
+  for (const Vec2& rim : body.rims)
+    part.add(rim.x() * across + rim.y() * n.z(), rim.x() * radial + rim.y() * Vec3::UnitZ());
   for (const double t : {0.0, 1.0}) {
     const Vec3 axis = motion_axis(m, t), side = n - n.dot(axis) * axis;
     const Vec3 down = side.norm() > 1e-12 ? Vec3(-side.normalized()) : Vec3(0, 0, 0);
@@ -134,8 +141,10 @@ Vec3 meeting_place(const ToolHull& tool, const CoaxialBody& body, const path::To
   return place;
 }
 
-ObstacleGap gap_by_halves(const ToolHull& tool, const CoaxialBody& body, const path::ToolMotion& m, double off, int depth) {
-  // A point of the tool swings about the tip: it leaves the straight line between its ends by an eighth of the angle's square.
+ObstacleGap gap_by_halves(const ToolHull& tool, const CoaxialBody& body, const path::ToolMotion& m, double off,
+                          int depth) {
+  // A point of the tool swings about the tip: it leaves the straight line between its ends by an eighth of the angle's
+  // square.
   const double swing = 2 * std::asin(std::min(1.0, 0.5 * (m.axis_to - m.axis_from).norm()));
   const double loss = off + farthest(tool) * swing * swing / 8;
   Direction best = in_axial_plane(tool, body, m);
@@ -144,7 +153,8 @@ ObstacleGap gap_by_halves(const ToolHull& tool, const CoaxialBody& body, const p
     path::ToolMotion first = m, second = m;
     first.tip_to = second.tip_from = motion_tip(m, 0.5);
     first.axis_to = second.axis_from = motion_axis(m, 0.5);
-    const ObstacleGap a = gap_by_halves(tool, body, first, off, depth - 1), b = gap_by_halves(tool, body, second, off, depth - 1);
+    const ObstacleGap a = gap_by_halves(tool, body, first, off, depth - 1),
+                      b = gap_by_halves(tool, body, second, off, depth - 1);
     const ObstacleGap& less = a.gap < b.gap ? a : b;
     if (less.gap >= best.gap - loss) return less;
   }
@@ -170,7 +180,9 @@ std::vector<CoaxialBody> bodies_beside_teeth(const bevel_gear::BevelGear& g) {
 
 std::vector<ToolHull> tool_hulls(const tool::Profile& tool) {
   std::vector<ToolHull> hulls;
-  for (const auto& [body, part] : {std::pair{tool::Body::flute, &tool.cutting()}, std::pair{tool::Body::shank, &tool.shank()}, std::pair{tool::Body::holder, &tool.holder()}})
+  for (const auto& [body, part] :
+       {std::pair{tool::Body::flute, &tool.cutting()}, std::pair{tool::Body::shank, &tool.shank()},
+        std::pair{tool::Body::holder, &tool.holder()}})
     if (!part->empty()) hulls.push_back({body, part->corners()});
   return hulls;
 }
@@ -181,18 +193,21 @@ ObstacleGap nearest_obstacle(const ToolHull& tool, const CoaxialBody& body, cons
 }
 
 CoaxialBody blank_body(const bevel_gear::BevelGear& g) {
-  const double h_a = g.parameters().addendum_mm, low = -g.parameters().dedendum_mm - 2 * g.parameters().outer_transverse_module_mm;
+  const double h_a = g.parameters().addendum_mm,
+               low = -g.parameters().dedendum_mm - 2 * g.parameters().outer_transverse_module_mm;
   CoaxialBody blank{"blank", {}};
   for (const double ell : {g.R_i(), g.R_e()})
     for (const double height : {h_a, low})
-      blank.rims.emplace_back(std::max(0.0, ell * g.sin_delta() + height * g.cos_delta()), ell * g.cos_delta() - height * g.sin_delta());
+      blank.rims.emplace_back(std::max(0.0, ell * g.sin_delta() + height * g.cos_delta()),
+                              ell * g.cos_delta() - height * g.sin_delta());
   return blank;
 }
 
 double blank_support(const bevel_gear::BevelGear& g, const Vec3& n) { return support(blank_body(g).rims, n); }
 
 Vec3 blank_place(const bevel_gear::BevelGear& g, const Vec3& n, const Vec3& near) {
-  const double across = std::hypot(n.x(), n.y()), h_a = g.parameters().addendum_mm, sd = g.sin_delta(), cd = g.cos_delta();
+  const double across = std::hypot(n.x(), n.y()), h_a = g.parameters().addendum_mm, sd = g.sin_delta(),
+               cd = g.cos_delta();
   const Vec3 radial = across > 1e-12 ? Vec3(n.x() / across, n.y() / across, 0) : Vec3(0, 0, 0);
   const auto reach = [&](double ell) { return (ell * sd + h_a * cd) * across + (ell * cd - h_a * sd) * n.z(); };
   double ell = std::clamp(bevel_gear::cone_point(near, sd, cd).ell, g.R_i(), g.R_e());

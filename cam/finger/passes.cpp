@@ -12,12 +12,14 @@ namespace {
 
 constexpr double kRidgeShare = 0.85;  // of the allowed ridge that the planner uses
 constexpr double kClearAir = 1.0;     // mm, between cutter and blank beyond the large end
-constexpr int kGapStations = 32;         // intervals along a half on which the gap between passes is looked at
+constexpr int kGapStations = 32;      // intervals along a half on which the gap between passes is looked at
 
 using Centre = bevel_gear::CutterCentre<double>;
 using Trace = bevel_gear::BevelTrace<double>;
 
-const Trace& trace_of(const bevel_gear::BevelGear& gear, std::size_t half) { return gear.halves()[half].walls[0].trace; }
+const Trace& trace_of(const bevel_gear::BevelGear& gear, std::size_t half) {
+  return gear.halves()[half].walls[0].trace;
+}
 
 /// Cone distance at which the cutter has left the blank at the large end.
 double clear_end(const bevel_gear::BevelGear& gear) { return gear.R_e() + gear.cutter().rho_D + kClearAir; }
@@ -35,7 +37,8 @@ void run_out(const bevel_gear::BevelGear& gear, std::size_t half, CentrePass& pa
     if (std::abs(c.R_c - want) < 1e-9) break;
     length += (want - c.R_c) / std::max(0.2, std::cos(c.beta_c));
   }
-  pass.pieces.push_back({static_cast<int>(half), [t, end, length](double s) { return t.run_straight(end, s * length); }});
+  pass.pieces.push_back(
+      {static_cast<int>(half), [t, end, length](double s) { return t.run_straight(end, s * length); }});
 }
 
 /// The pieces of one wall in one half, run-out included.
@@ -44,7 +47,8 @@ void add_wall(const bevel_gear::BevelGear& gear, std::size_t i, int sigma, Centr
   const int k = sigma > 0 ? 0 : 1;
   const Trace t = half.walls[k].trace;
   const auto add = [&](double from, double to) {
-    pass.pieces.push_back({static_cast<int>(i), [t, sigma, from, to](double s) { return t.centre(sigma, from + (to - from) * s); }});
+    pass.pieces.push_back(
+        {static_cast<int>(i), [t, sigma, from, to](double s) { return t.centre(sigma, from + (to - from) * s); }});
   };
   const double from = half.beta_from[k], to = half.beta_to[k];
   // The path changes from curve to tangent at beta_end: a joint between pieces.
@@ -106,9 +110,11 @@ class Space {
     }
     return inside;
   }
-  /// Cone distances between which the room is smooth, of one half: from its begin or the corner to the corner or clear of the large end.
+  /// Cone distances between which the room is smooth, of one half: from its begin or the corner to the corner or clear
+  /// of the large end.
   [[nodiscard]] std::vector<double> smooth(std::size_t half) const {
-    const double from = half == 0 ? begin() : gear_.corner().R_c, to = half + 1 < gear_.halves().size() ? gear_.corner().R_c : clear_end(gear_);
+    const double from = half == 0 ? begin() : gear_.corner().R_c,
+                 to = half + 1 < gear_.halves().size() ? gear_.corner().R_c : clear_end(gear_);
     std::vector<double> ends{from, to};
     for (const WallReference* wall : {&L_, &U_})
       for (const double R : wall->joints())
@@ -132,7 +138,9 @@ CentrePass space_pass(const std::shared_ptr<const Space>& space, std::size_t hal
   pass.name = std::move(name);
   const auto ends = space->smooth(half);
   for (std::size_t k = 1; k < ends.size(); ++k)
-    pass.pieces.push_back({static_cast<int>(half), [space, mu, from = ends[k - 1], to = ends[k]](double s) { return space->at(from + (to - from) * s, mu); }});
+    pass.pieces.push_back({static_cast<int>(half), [space, mu, from = ends[k - 1], to = ends[k]](double s) {
+                             return space->at(from + (to - from) * s, mu);
+                           }});
   return pass;
 }
 
@@ -175,7 +183,8 @@ std::vector<CentrePass> roughing_passes(const bevel_gear::BevelGear& gear, doubl
     int most = 1;
     for (int k = 0; k <= kGapStations; ++k) {
       const double R = from + (to - from) * k / kGapStations;
-      most = std::max(most, static_cast<int>(std::ceil(0.5 * space->width(R) / finger_gap(gear, R, kRidgeShare * ridge_mm))));
+      most = std::max(most,
+                      static_cast<int>(std::ceil(0.5 * space->width(R) / finger_gap(gear, R, kRidgeShare * ridge_mm))));
     }
     passes.push_back(space_pass(space, n, 0, "middle"));
     for (int k = 1; k < most; ++k)

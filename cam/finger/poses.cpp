@@ -22,7 +22,8 @@ PoseDepth pose_depth(const bevel_gear::BevelGear& gear, const FingerTool& tool, 
     out.patch = "tip";
     return out;
   }
-  const bool over_blank = pose.R_c > gear.R_i() - tool.solid.largest_radius() && pose.R_c < gear.R_e() + tool.solid.largest_radius();
+  const bool over_blank =
+      pose.R_c > gear.R_i() - tool.solid.largest_radius() && pose.R_c < gear.R_e() + tool.solid.largest_radius();
   const double dip = over_blank ? std::max(0.0, -pose.lift) : 0.0;
   out.root = dip;
   out.tilt = pose.tilt;
@@ -43,9 +44,11 @@ PoseSampling pose_sampling(const bevel_gear::BevelGear& gear, const FingerTool& 
   const double curvature = std::max(tool.walls[0].largest_curvature(), tool.walls[1].largest_curvature()) +
                            1 / (gear.R_i() * gear.sin_delta());
   PoseSampling out;
-  out.intervals = std::clamp(static_cast<int>(std::ceil(shift * std::sqrt(curvature / (8 * kBetween)))), 1, kMostSamples);
+  out.intervals =
+      std::clamp(static_cast<int>(std::ceil(shift * std::sqrt(curvature / (8 * kBetween)))), 1, kMostSamples);
   const double step = shift / out.intervals;
-  out.extra_mm = curvature * step * step / 8 * tool.walls[0].leverage() + m.deviation_mm + m.axis_deviation * tool.depth_mm;
+  out.extra_mm =
+      curvature * step * step / 8 * tool.walls[0].leverage() + m.deviation_mm + m.axis_deviation * tool.depth_mm;
   return out;
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kNodes = 240;
 constexpr int kEdgePoints = 2048;
-constexpr double kClear = 1e9;  // "no tooth in reach"
+constexpr double kClear = 1e9;           // "no tooth in reach"
 constexpr int kEngagedProfile = 64;      // places of the profile at which the end of the engagement is looked for
 constexpr double kEngagedMargin = 0.01;  // of the cutter's radius: what the contact may reach between them
 
@@ -22,11 +22,13 @@ double slope(const bevel_gear::BevelTrace<double>& t, int sigma, double beta, do
 
 }  // namespace
 
-// A shift of the centre in the crown plane is a turn about the gear's axis and a way along the generator. The way moves every point alike, the
-// turn by its distance from the axis: the farthest point of a circle of radius rho about the cutter axis, square to it, at the height h_a or h_f.
+// A shift of the centre in the crown plane is a turn about the gear's axis and a way along the generator. The way moves
+// every point alike, the turn by its distance from the axis: the farthest point of a circle of radius rho about the
+// cutter axis, square to it, at the height h_a or h_f.
 double centre_leverage(const bevel_gear::BevelGear& gear) {
   const double sd = gear.sin_delta(), cd = gear.cos_delta(), rho = gear.cutter().rho_D;
-  const double from_axis = std::max(1e-9, gear.R_i() - rho) * sd, height = std::max(gear.parameters().addendum_mm, gear.parameters().dedendum_mm);
+  const double from_axis = std::max(1e-9, gear.R_i() - rho) * sd,
+               height = std::max(gear.parameters().addendum_mm, gear.parameters().dedendum_mm);
   const double centre = from_axis + height * cd;
   const bool outermost = centre * sd >= rho * cd * cd;  // the circle's point in the axial plane
   const double farthest = outermost ? centre + rho * sd : std::hypot(centre / cd, rho);
@@ -50,8 +52,10 @@ ConePose cone_pose(const bevel_gear::BevelGear& g, const Vec3& tip, const Vec3& 
   return pose;
 }
 
-/// Points of a wall at one cone distance, from root to tip. The fillet leaves the root at a tangent: its points need heights that begin in squares.
-WallReference::Edge WallReference::edge_points(const bevel_gear::BevelGear& g, const bevel_gear::BevelWall<double>& wall, double ell) {
+/// Points of a wall at one cone distance, from root to tip. The fillet leaves the root at a tangent: its points need
+/// heights that begin in squares.
+WallReference::Edge WallReference::edge_points(const bevel_gear::BevelGear& g,
+                                               const bevel_gear::BevelWall<double>& wall, double ell) {
   Edge edge;
   const double low = -g.parameters().dedendum_mm, high = g.parameters().addendum_mm;
   std::optional<bevel_gear::BevelInverse> at;
@@ -112,7 +116,8 @@ WallReference::WallReference(const bevel_gear::BevelGear& gear, int sigma)
 
 double WallReference::first_engaged(const bevel_gear::BevelGear& gear, int sigma, const Curve& first) {
   const bevel_gear::BevelWall<double>& wall = gear.halves().front().wall(sigma);
-  const double high = gear.parameters().addendum_mm, low = wall.cutter.p_A, step = (wall.cutter.p_D - low) / kEngagedProfile;
+  const double high = gear.parameters().addendum_mm, low = wall.cutter.p_A,
+               step = (wall.cutter.p_D - low) / kEngagedProfile;
   for (std::size_t i = 0; i < first.beta.size(); ++i)
     for (int k = 0; k <= kEngagedProfile; ++k) {
       const auto at = wall.generatrix(first.beta[i], low + k * step);
@@ -154,8 +159,11 @@ bevel_gear::CutterCentre<double> WallReference::place_at(double R_c) const {
     c.beta_c = std::asin(end_.R_c * std::sin(end_.beta_c) / R_c);
     c.theta_c = end_.theta_c + end_.beta_c - c.beta_c;
   } else if (convex_ && R_c > arc_from_ && R_c < arc_to_) {
-    const double turn = sigma_ * std::acos(std::clamp((R_c * R_c + corner_R_ * corner_R_ - r_0_ * r_0_) / (2 * R_c * corner_R_), -1.0, 1.0));
-    const double u = R_c - corner_R_ * std::cos(turn), v = corner_R_ * std::sin(turn);  // from the corner, seen along the ray of the place
+    const double turn =
+        sigma_ *
+        std::acos(std::clamp((R_c * R_c + corner_R_ * corner_R_ - r_0_ * r_0_) / (2 * R_c * corner_R_), -1.0, 1.0));
+    const double u = R_c - corner_R_ * std::cos(turn),
+                 v = corner_R_ * std::sin(turn);  // from the corner, seen along the ray of the place
     c.R_c = R_c;
     c.theta_c = corner_theta_ + turn;
     c.beta_c = std::atan2(-sigma_ * u, sigma_ * v);
@@ -171,7 +179,8 @@ std::vector<double> WallReference::joints() const {
   for (const Curve& c : halves_) {
     if (halves_.size() > 1 && &c == &halves_.front()) at.push_back(c.R_c.back());
     if (halves_.size() > 1 && &c == &halves_.back()) at.push_back(c.R_c.front());
-    if (c.trace.straight(sigma_, c.beta.back()) && !c.trace.straight(sigma_, c.beta.front())) at.push_back(c.trace.centre(sigma_, c.trace.beta_end).R_c);
+    if (c.trace.straight(sigma_, c.beta.back()) && !c.trace.straight(sigma_, c.beta.front()))
+      at.push_back(c.trace.centre(sigma_, c.trace.beta_end).R_c);
   }
   at.push_back(end_.R_c);
   std::sort(at.begin(), at.end());
@@ -181,10 +190,11 @@ std::vector<double> WallReference::joints() const {
 double WallReference::edge_clearance(const Edge& edge, double R_c, double theta) const {
   if (edge.points.empty()) return -kClear;
   double least = kClear;
-  // The nearest place is at half a gap from a point, with room for the bend of the edge. A distance changes by no more than the way along the
-  // edge: far points let the next ones be passed over.
+  // The nearest place is at half a gap from a point, with room for the bend of the edge. A distance changes by no more
+  // than the way along the edge: far points let the next ones be passed over.
   for (std::size_t i = 0; i < edge.points.size();) {
-    const double d = solid_.signed_distance(bevel_gear::cutter_from_blank<double>(edge.points[i], R_c, theta / sin_delta_, sin_delta_, cos_delta_));
+    const double d = solid_.signed_distance(
+        bevel_gear::cutter_from_blank<double>(edge.points[i], R_c, theta / sin_delta_, sin_delta_, cos_delta_));
     least = std::min(least, d - 0.51 * edge.gap[i]);
     i += 1 + static_cast<std::size_t>(std::max(0.0, (d - least) / edge.spacing - 1.51));
   }

@@ -1,8 +1,8 @@
 // Where the centre of a finger mill may be: the crown plane, bounded by the nominal wall paths of one tooth space.
 //
-// The finished walls are the envelopes of the nominal passes, so a pose cuts a wall only as far as its centre lies beyond
-// the wall's path. That turns "does this pose gouge" into a signed distance from a plane curve, which is what the bounds
-// between samples rest on. Proof: docs/bevel_gear.md, section 9.
+// The finished walls are the envelopes of the nominal passes, so a pose cuts a wall only as far as its centre lies
+// beyond the wall's path. That turns "does this pose gouge" into a signed distance from a plane curve, which is what
+// the bounds between samples rest on. Proof: docs/bevel_gear.md, section 9.
 #pragma once
 
 #include <vector>
@@ -21,22 +21,25 @@ struct ConePose {
 /// @param index azimuth of the tooth space
 [[nodiscard]] ConePose cone_pose(const bevel_gear::BevelGear& gear, const Vec3& tip, const Vec3& axis, double index);
 
-/// Greatest displacement of a point of the cutter among the teeth per unit of shift of its centre in the crown plane, for every centre from which
-/// the mill of this gear reaches the face; at least 1.
+/// Greatest displacement of a point of the cutter among the teeth per unit of shift of its centre in the crown plane,
+/// for every centre from which the mill of this gear reaches the face; at least 1.
 [[nodiscard]] double centre_leverage(const bevel_gear::BevelGear& gear);
 
 /// Path of one wall over the whole gear: passes of the halves, the corner between them, the run-out.
 class WallReference {
  public:
   WallReference(const bevel_gear::BevelGear& gear, int sigma);
-  /// Room of a centre before the cutter touches the wall, negative: how far the centre lies beyond [mm]; exact to second
-  /// order in the distance. Beyond the ends of the face only the edge of the wall counts. Large where the cutter reaches no tooth.
+  /// Room of a centre before the cutter touches the wall, negative: how far the centre lies beyond [mm]; exact to
+  /// second order in the distance. Beyond the ends of the face only the edge of the wall counts. Large where the cutter
+  /// reaches no tooth.
   [[nodiscard]] double side(double R_c, double theta) const;
-  /// Distance of a centre from the path alone, which goes on beyond the face as the trace does; positive towards the space.
+  /// Distance of a centre from the path alone, which goes on beyond the face as the trace does; positive towards the
+  /// space.
   [[nodiscard]] double offset(double R_c, double theta) const;
   /// Polar angle of the path at R_c inside the passes.
   [[nodiscard]] double theta_at(double R_c) const;
-  /// The whole path at R_c: curves of both halves, arc of a convex corner, straight run-out; below the small end as the trace goes on.
+  /// The whole path at R_c: curves of both halves, arc of a convex corner, straight run-out; below the small end as the
+  /// trace goes on.
   [[nodiscard]] bevel_gear::CutterCentre<double> place_at(double R_c) const;
   /// Cone distances at which the bend of the path jumps, ascending [mm].
   [[nodiscard]] std::vector<double> joints() const;
@@ -46,7 +49,8 @@ class WallReference {
   /// R_c range of the pass of a half.
   [[nodiscard]] double R_c_from(std::size_t half) const { return halves_[half].R_c.front(); }
   [[nodiscard]] double R_c_to(std::size_t half) const { return halves_[half].R_c.back(); }
-  /// R_c below which the pass runs out of the small end: the cutter touches nothing of the face any more, at most its edge.
+  /// R_c below which the pass runs out of the small end: the cutter touches nothing of the face any more, at most its
+  /// edge.
   [[nodiscard]] double engaged_from() const { return engaged_from_; }
   /// centre_leverage of the gear.
   [[nodiscard]] double leverage() const { return leverage_; }
@@ -69,7 +73,8 @@ class WallReference {
     std::vector<double> gap;  // of every point to the farther one of its neighbours, mm
     double spacing = 1e-9;    // largest of them
   };
-  [[nodiscard]] static Edge edge_points(const bevel_gear::BevelGear& gear, const bevel_gear::BevelWall<double>& wall, double ell);
+  [[nodiscard]] static Edge edge_points(const bevel_gear::BevelGear& gear, const bevel_gear::BevelWall<double>& wall,
+                                        double ell);
   [[nodiscard]] double edge_clearance(const Edge& edge, double R_c, double theta) const;
   Edge inner_edge_, outer_edge_;
   bevel_gear::FingerSolid solid_;

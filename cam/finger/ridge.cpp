@@ -8,7 +8,8 @@
 
 namespace toothpath::finger {
 
-RidgeResult highest_ridge(const bevel_gear::BevelGear& gear, std::span<const FingerCut> cuts, const FingerTool& reference, int columns, int rows_across) {
+RidgeResult highest_ridge(const bevel_gear::BevelGear& gear, std::span<const FingerCut> cuts,
+                          const FingerTool& reference, int columns, int rows_across) {
   RidgeResult out;
   const double sd = gear.sin_delta(), cd = gear.cos_delta(), h_f = gear.parameters().dedendum_mm;
   struct Row {
@@ -27,7 +28,8 @@ RidgeResult highest_ridge(const bevel_gear::BevelGear& gear, std::span<const Fin
     for (const FingerCut& cut : cuts) {
       const double a = cone_pose(gear, cut.motion->tip_from, cut.motion->axis_from, 0.0).R_c;
       const double b = cone_pose(gear, cut.motion->tip_to, cut.motion->axis_to, 0.0).R_c;
-      if (std::min(a, b) < ell + reference.solid.largest_radius() && std::max(a, b) > ell - reference.solid.largest_radius())
+      if (std::min(a, b) < ell + reference.solid.largest_radius() &&
+          std::max(a, b) > ell - reference.solid.largest_radius())
         near.push_back(cut);
     }
     const double e_L = reference.walls[0].theta_at(ell) / sd, e_U = reference.walls[1].theta_at(ell) / sd;
@@ -47,7 +49,8 @@ RidgeResult highest_ridge(const bevel_gear::BevelGear& gear, std::span<const Fin
       if (j == 0 || h > row.height) row.height = h, at = j;
     }
     // A ridge is a kink: narrow down on it.
-    double a = e_L + (e_U - e_L) * std::max(0.0, at - 1) / (n - 1), b = e_L + (e_U - e_L) * std::min(n - 1.0, at + 1) / (n - 1);
+    double a = e_L + (e_U - e_L) * std::max(0.0, at - 1) / (n - 1),
+           b = e_L + (e_U - e_L) * std::min(n - 1.0, at + 1) / (n - 1);
     constexpr double gold = 0.6180339887498949;
     double x1 = b - gold * (b - a), x2 = a + gold * (b - a), f1 = left(x1), f2 = left(x2);
     row.azimuth = e_L + (e_U - e_L) * at / (n - 1);
@@ -60,7 +63,8 @@ RidgeResult highest_ridge(const bevel_gear::BevelGear& gear, std::span<const Fin
   });
   for (const auto& row : rows) {
     out.points += row.points;
-    if (row.height > out.reached_mm) out.reached_mm = row.height, out.cone_distance_mm = row.ell, out.azimuth_rad = row.azimuth;
+    if (row.height > out.reached_mm)
+      out.reached_mm = row.height, out.cone_distance_mm = row.ell, out.azimuth_rad = row.azimuth;
   }
   return out;
 }

@@ -21,9 +21,11 @@ double shape_difference(const bevel_gear::BevelGear& own, const bevel_gear::Beve
           const auto& half = gear.halves()[i];
           const double ell = half.ell_from + (half.ell_to - half.ell_from) * c / 16.0;
           const double height = low + (high - low) * (r + 0.05) / 32.05;
-          const auto ours = bevel_gear::bevel_inverse(half.walls[k], ell, height), theirs = bevel_gear::bevel_inverse(own.halves()[i].walls[k], ell, height);
+          const auto ours = bevel_gear::bevel_inverse(half.walls[k], ell, height),
+                     theirs = bevel_gear::bevel_inverse(own.halves()[i].walls[k], ell, height);
           if (!ours || !theirs) continue;
-          const double lateral = half.walls[k].sigma * (ours->azimuth - theirs->azimuth) * (ell * gear.sin_delta() + height * gear.cos_delta());
+          const double lateral = half.walls[k].sigma * (ours->azimuth - theirs->azimuth) *
+                                 (ell * gear.sin_delta() + height * gear.cos_delta());
           worst = std::max(worst, lateral);
         }
   return worst;
@@ -31,11 +33,14 @@ double shape_difference(const bevel_gear::BevelGear& own, const bevel_gear::Beve
 
 }  // namespace
 
-FingerRadiusTable::FingerRadiusTable(const bevel_gear::FingerSolid& solid) : low_(solid.profile().x_B), high_(solid.profile().x_D) {
+FingerRadiusTable::FingerRadiusTable(const bevel_gear::FingerSolid& solid)
+    : low_(solid.profile().x_B), high_(solid.profile().x_D) {
   const auto n = static_cast<std::size_t>(kCells);
-  for (std::size_t i = 0; i <= n; ++i) radius_[i] = solid.radius(low_ + (high_ - low_) * static_cast<double>(i) / kCells);
+  for (std::size_t i = 0; i <= n; ++i)
+    radius_[i] = solid.radius(low_ + (high_ - low_) * static_cast<double>(i) / kCells);
   double slope = 0;
-  for (std::size_t i = 0; i < n; ++i) slope = std::max(slope, std::atan((radius_[i + 1] - radius_[i]) / ((high_ - low_) / kCells)));
+  for (std::size_t i = 0; i < n; ++i)
+    slope = std::max(slope, std::atan((radius_[i + 1] - radius_[i]) / ((high_ - low_) / kCells)));
   shrink_ = std::cos(slope);
   radius_end_ = solid.largest_radius();
   for (std::size_t i = 0; i <= n; ++i) lower_[i] = solid.lower_surface(radius_end_ * static_cast<double>(i) / kCells);
@@ -51,9 +56,14 @@ double FingerRadiusTable::lower_bound(double x, double rho) const {
   return (rho - radius_[i + 1]) * shrink_;  // the next node: the radius never falls with x
 }
 
-FingerTool::FingerTool(const bevel_gear::BevelGear& own, const bevel_gear::BevelGear& finished, const tool::ToolAssembly& tool)
-    : gear(own), solid(own.cutter()), table(solid), walls{WallReference(own, 1), WallReference(own, -1)},
-      shape_mm(shape_difference(own, finished)), depth_mm(own.parameters().dedendum_mm + own.parameters().addendum_mm),
+FingerTool::FingerTool(const bevel_gear::BevelGear& own, const bevel_gear::BevelGear& finished,
+                       const tool::ToolAssembly& tool)
+    : gear(own),
+      solid(own.cutter()),
+      table(solid),
+      walls{WallReference(own, 1), WallReference(own, -1)},
+      shape_mm(shape_difference(own, finished)),
+      depth_mm(own.parameters().dedendum_mm + own.parameters().addendum_mm),
       shank_from_mm(tool::finger_flute_end(own.cutter(), tool)),
       holder_from_mm(tool.holder.empty() ? 1e6 : tool.stick_out_mm) {}
 
@@ -99,7 +109,8 @@ double least_distance(const Vec3& p, const path::ToolMotion& m, const FingerTool
   return least;
 }
 
-double covering_height(const FingerTool& tool, const Vec3& foot, const Vec3& normal, const path::ToolMotion& m, double best) {
+double covering_height(const FingerTool& tool, const Vec3& foot, const Vec3& normal, const path::ToolMotion& m,
+                       double best) {
   const double h_f = tool.gear.parameters().dedendum_mm, rho_max = tool.solid.largest_radius();
   // Closest approach of the axis to the foot point.
   const Vec3 u = motion_axis(m, 0.5), w = foot - m.tip_from, d = m.tip_to - m.tip_from;

@@ -1,12 +1,12 @@
-// One finger mill in a gear, as the checks need it: its solid with quick bounds, the wall paths that belong to it, and the
-// distance of points from the solid along a motion.
+// One finger mill in a gear, as the checks need it: its solid with quick bounds, the wall paths that belong to it, and
+// the distance of points from the solid along a motion.
 #pragma once
 
 #include <array>
 
-#include "cam/tool/assembly.h"
 #include "cam/finger/reference.h"
 #include "cam/path/tool_motion.h"
+#include "cam/tool/assembly.h"
 #include "geometry/bevel_gear/gear.h"
 
 namespace toothpath::finger {
@@ -27,12 +27,12 @@ class FingerRadiusTable {
 };
 
 struct FingerTool {
-  bevel_gear::BevelGear gear;           ///< made with this tool
+  bevel_gear::BevelGear gear;  ///< made with this tool
   bevel_gear::FingerSolid solid;
   FingerRadiusTable table;
-  WallReference walls[2];   ///< L, U
-  double shape_mm = 0;      ///< how far this tool on its own paths cuts beyond the finished walls
-  double depth_mm;          ///< tip to the height h_a
+  WallReference walls[2];                ///< L, U
+  double shape_mm = 0;                   ///< how far this tool on its own paths cuts beyond the finished walls
+  double depth_mm;                       ///< tip to the height h_a
   double shank_from_mm, holder_from_mm;  ///< above the tip
 
   /// @param own  the gear made with this tool; @param finished  made with the finishing mill
@@ -43,11 +43,13 @@ struct FingerTool {
 [[nodiscard]] Vec3 motion_axis(const path::ToolMotion& m, double t);
 [[nodiscard]] Vec3 motion_tip(const path::ToolMotion& m, double t);
 
-/// Distance from a point of the blank to the cutter, least over one motion [mm], negative inside; `best` where it is not less.
+/// Distance from a point of the blank to the cutter, least over one motion [mm], negative inside; `best` where it is
+/// not less.
 [[nodiscard]] double least_distance(const Vec3& p, const path::ToolMotion& m, const FingerTool& tool, double best);
 
-/// Height of the cutter's lower surface above the root cone on the normal of the pitch cone through `foot`, least over one
-/// motion [mm]; `best` where the cutter does not come lower.
-[[nodiscard]] double covering_height(const FingerTool& tool, const Vec3& foot, const Vec3& normal, const path::ToolMotion& m, double best);
+/// Height of the cutter's lower surface above the root cone on the normal of the pitch cone through `foot`, least over
+/// one motion [mm]; `best` where the cutter does not come lower.
+[[nodiscard]] double covering_height(const FingerTool& tool, const Vec3& foot, const Vec3& normal,
+                                     const path::ToolMotion& m, double best);
 
 }  // namespace toothpath::finger

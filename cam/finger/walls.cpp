@@ -21,7 +21,8 @@ struct Cover {
   double side_mm = kUntouched;
 };
 
-Cover cover_of(const bevel_gear::BevelGear& gear, const FingerTool& tool, const WallReference& wall, const path::ToolMotion& m, double from, double to) {
+Cover cover_of(const bevel_gear::BevelGear& gear, const FingerTool& tool, const WallReference& wall,
+               const path::ToolMotion& m, double from, double to) {
   Cover cover{1e300, -1e300, 0};
   const PoseSampling sampling = pose_sampling(gear, tool, m);
   for (int j = 0; j <= sampling.intervals; ++j) {
@@ -30,7 +31,8 @@ Cover cover_of(const bevel_gear::BevelGear& gear, const FingerTool& tool, const 
     if (pose.lift > 0.05 || pose.R_c < from - 1 || pose.R_c > to + 1) return {};
     cover.from = std::min(cover.from, pose.R_c);
     cover.to = std::max(cover.to, pose.R_c);
-    cover.side_mm = std::max(cover.side_mm, std::abs(wall.offset(pose.R_c, pose.theta)) * wall.leverage() + std::abs(pose.lift));
+    cover.side_mm =
+        std::max(cover.side_mm, std::abs(wall.offset(pose.R_c, pose.theta)) * wall.leverage() + std::abs(pose.lift));
   }
   if (cover.side_mm > 0.2) return {};
   cover.side_mm += sampling.extra_mm;
@@ -70,7 +72,8 @@ std::vector<WallPoint> wall_points(const bevel_gear::BevelGear& gear, int rows, 
   return points;
 }
 
-WallExcess measure_walls(std::span<const WallPoint> points, std::span<const std::vector<FingerCut>> by_operation, double most_mm) {
+WallExcess measure_walls(std::span<const WallPoint> points, std::span<const std::vector<FingerCut>> by_operation,
+                         double most_mm) {
   WallExcess out;
   out.after.assign(by_operation.size(), std::vector<double>(points.size(), most_mm));
   out.deepest.assign(points.size(), nullptr);
@@ -113,7 +116,8 @@ proof::ExcessResult summary_of(std::span<const WallPoint> points, std::span<cons
   return e;
 }
 
-std::vector<proof::SurfaceGrid> wall_grids(std::span<const WallPoint> points, const WallExcess& excess, int rows, int columns) {
+std::vector<proof::SurfaceGrid> wall_grids(std::span<const WallPoint> points, const WallExcess& excess, int rows,
+                                           int columns) {
   std::vector<proof::SurfaceGrid> grids;
   const auto per_wall = static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns);
   for (std::size_t begin = 0; begin + per_wall <= points.size(); begin += per_wall) {
@@ -127,7 +131,8 @@ std::vector<proof::SurfaceGrid> wall_grids(std::span<const WallPoint> points, co
       grid.points.push_back(points[i].p);
       grid.normals.push_back(points[i].n);
       grid.reachable.push_back(points[i].row >= 0 ? 1 : 0);
-      for (std::size_t op = 0; op < excess.after.size(); ++op) grid.excess_um[op].push_back(static_cast<float>(1000 * excess.after[op][i]));
+      for (std::size_t op = 0; op < excess.after.size(); ++op)
+        grid.excess_um[op].push_back(static_cast<float>(1000 * excess.after[op][i]));
     }
     grids.push_back(std::move(grid));
   }
@@ -145,7 +150,8 @@ double left_bound(const bevel_gear::BevelGear& gear, const FingerTool& tool, std
         const Cover cover = cover_of(gear, tool, wall, *cut.motion, from, to);
         if (!(cover.side_mm < kUntouched)) continue;
         // At the end of a pass the wall differs by the square of the slack.
-        const double first = std::ceil((cover.from - kEndSlack - from) / width), last = std::floor((cover.to + kEndSlack - from) / width);
+        const double first = std::ceil((cover.from - kEndSlack - from) / width),
+                     last = std::floor((cover.to + kEndSlack - from) / width);
         for (double b = std::max(0.0, first); b <= std::min(last, static_cast<double>(kBins - 1)); b += 1)
           bin[static_cast<std::size_t>(b)] = std::min(bin[static_cast<std::size_t>(b)], cover.side_mm);
       }

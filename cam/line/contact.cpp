@@ -11,8 +11,8 @@ using Along = Dual<double, 1>;  // value and derivative along the axis
 face_gear::FaceGearSurface<Along> with_slopes(const face_gear::FaceGearSurface<double>& f) {
   face_gear::FaceGearSurface<Along> g;
   const auto& w = f.shaper;
-  g.shaper = {w.teeth, w.m_t, w.alpha_t, w.r_p, w.r_b, w.r_a, w.kappa, w.beta_b, w.sin_bb, w.cos_bb, w.T,
-              w.theta_0, w.rho, w.r_c, w.theta_t, w.A_t, w.A_e, w.psi_c, w.h_a, w.h_f};
+  g.shaper = {w.teeth, w.m_t,     w.alpha_t, w.r_p, w.r_b,     w.r_a, w.kappa, w.beta_b, w.sin_bb, w.cos_bb,
+              w.T,     w.theta_0, w.rho,     w.r_c, w.theta_t, w.A_t, w.A_e,   w.psi_c,  w.h_a,    w.h_f};
   g.i = f.i;
   g.E = f.E;
   g.Sg = f.Sg;
@@ -26,8 +26,8 @@ face_gear::FaceGearSurface<Along> with_slopes(const face_gear::FaceGearSurface<d
 
 }  // namespace
 
-std::optional<double> distance_third(const face_gear::FaceGearSurface<double>& f, int side, const AxisLine<double>& axis, double t,
-                                     const Place<double>& start) {
+std::optional<double> distance_third(const face_gear::FaceGearSurface<double>& f, int side,
+                                     const AxisLine<double>& axis, double t, const Place<double>& start) {
   const auto near = flank_foot<double>(f, side, axis.at(t), start);
   if (!near) return {};
   const Vec3 x = axis.at(t);

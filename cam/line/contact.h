@@ -1,9 +1,11 @@
-// Line contact of a mill's side with a face gear flank: the leaned axis, the gap along it, and what curvature leaves of it.
+// Line contact of a mill's side with a face gear flank: the leaned axis, the gap along it, and what curvature leaves of
+// it.
 //
-// A tool of revolution is the union of balls of radius rho(t) about its axis c_0 + t a. It touches a flank along a whole line exactly as
-// well as the one function e(t) = d(c_0 + t a) - rho(t) is zero; d is the signed distance to the (continued) flank, which a face gear has
-// in closed form: parallel surfaces are rotations of the flank. d is linear along the axis to second order if the axis leans along a
-// direction of zero normal curvature of the parallel surface. Gear frame, mm, rad. Derivation: docs/line_milling.md, sections 2 and 3.
+// A tool of revolution is the union of balls of radius rho(t) about its axis c_0 + t a. It touches a flank along a
+// whole line exactly as well as the one function e(t) = d(c_0 + t a) - rho(t) is zero; d is the signed distance to the
+// (continued) flank, which a face gear has in closed form: parallel surfaces are rotations of the flank. d is linear
+// along the axis to second order if the axis leans along a direction of zero normal curvature of the parallel surface.
+// Gear frame, mm, rad. Derivation: docs/line_milling.md, sections 2 and 3.
 //
 // Kernels are templated on the scalar: double, dual numbers and 50 digits run the same text.
 #pragma once
@@ -24,14 +26,15 @@ struct Place {
   S theta{}, B{};
 };
 
-/// The tangent plane at a flank point: p up along the profile, o along the tooth outwards, n out of the material. Orthonormal.
+/// The tangent plane at a flank point: p up along the profile, o along the tooth outwards, n out of the material.
+/// Orthonormal.
 template <typename S>
 struct TangentFrame {
   Vec3T<S> p, o, n;
 };
 
-/// p is z without its part along n; o = s n x z / | | points outwards because (P x n)_z = s M2 on the whole flank, and the same
-/// keeps 1 - n_z^2 >= M2^2 / r^2: no flank is level, nothing is singular here.
+/// p is z without its part along n; o = s n x z / | | points outwards because (P x n)_z = s M2 on the whole flank, and
+/// the same keeps 1 - n_z^2 >= M2^2 / r^2: no flank is level, nothing is singular here.
 template <typename S>
 TangentFrame<S> tangent_frame(int side, const Vec3T<S>& n) {
   using std::sqrt;
@@ -50,7 +53,8 @@ S theta_at_distance(const face_gear::FaceGearSurface<S>& f, const S& theta, cons
 }
 
 /// Both directions of zero normal curvature of a saddle, in its tangent basis (e, l), not normalised: the roots of
-/// H_ee x^2 + 2 H_el x y + H_ll y^2, written without a quotient, so that neither may be lost. `ok` is false where K >= 0.
+/// H_ee x^2 + 2 H_el x y + H_ll y^2, written without a quotient, so that neither may be lost. `ok` is false where K >=
+/// 0.
 template <typename S>
 struct ZeroDirections {
   Vec2T<S> first, second;
@@ -65,8 +69,9 @@ ZeroDirections<S> zero_directions(const typename face_gear::FaceGearSurface<S>::
   return {Vec2T<S>(H.ll, q), Vec2T<S>(q, H.ee), true};
 }
 
-/// Lean psi of the wanted axis at the flank place (theta, B) for a contact whose axis lies `distance` above the flank: the direction of
-/// zero normal curvature of the parallel surface there, the steeper of the two (nearer to p). psi > 0 leans outwards, on either flank.
+/// Lean psi of the wanted axis at the flank place (theta, B) for a contact whose axis lies `distance` above the flank:
+/// the direction of zero normal curvature of the parallel surface there, the steeper of the two (nearer to p). psi > 0
+/// leans outwards, on either flank.
 /// @param distance  rho of the tool where it touches [mm]; 0: the zero direction of the flank itself
 /// Nothing where J <= 0 at the flank or on the parallel surface: beyond the undercut edge.
 /// Error <= 1e-12 rad for J > 1e-3 m^2.
@@ -96,7 +101,8 @@ std::optional<S> lean(const face_gear::FaceGearSurface<S>& f, int side, const Pl
   return best;
 }
 
-/// A straight tool axis: the ball of radius rho(t) is centred on c_0 + t a; c_0 is the centre of the ball end. mm, a unit, tip to holder.
+/// A straight tool axis: the ball of radius rho(t) is centred on c_0 + t a; c_0 is the centre of the ball end. mm, a
+/// unit, tip to holder.
 template <typename S>
 struct AxisLine {
   Vec3T<S> c_0, a;
@@ -106,10 +112,10 @@ struct AxisLine {
 /// What a pose is made of, seen from its anchor P on the flank.
 template <typename S>
 struct PoseAngles {
-  S psi{};    ///< lean within the tangent plane, rad
-  S eps{0};   ///< turn of the axis away from the flank, beyond the angle of the side, rad
+  S psi{};     ///< lean within the tangent plane, rad
+  S eps{0};    ///< turn of the axis away from the flank, beyond the angle of the side, rad
   S delta{0};  ///< gap at the anchor, mm
-  S t_m{};    ///< height of the contact with the anchor above the centre of the ball end, mm
+  S t_m{};     ///< height of the contact with the anchor above the centre of the ball end, mm
 };
 
 /// a = cos(sigma) u + sin(sigma) n with u = cos(psi) p + sin(psi) o and sigma = asin(rho'(t_m)) + eps.
@@ -122,7 +128,8 @@ Vec3T<S> axis_direction(const TangentFrame<S>& f, const S& psi, const S& sigma) 
 
 /// The axis of a pose: c_0 = P + n (rho(t_m) + delta) - t_m a.
 template <typename S>
-AxisLine<S> axis_of(const Vec3T<S>& P, const TangentFrame<S>& frame, const tool::RadiusLaw<S>& law, const PoseAngles<S>& pose) {
+AxisLine<S> axis_of(const Vec3T<S>& P, const TangentFrame<S>& frame, const tool::RadiusLaw<S>& law,
+                    const PoseAngles<S>& pose) {
   using std::asin;
   const Vec3T<S> a = axis_direction<S>(frame, pose.psi, S(asin(law.slope(pose.t_m)) + pose.eps));
   return {Vec3T<S>(P + frame.n * S(law.rho(pose.t_m) + pose.delta) - a * pose.t_m), a};
@@ -131,19 +138,20 @@ AxisLine<S> axis_of(const Vec3T<S>& P, const TangentFrame<S>& frame, const tool:
 /// A point of space against the continued flank of side s of tooth 0.
 template <typename S>
 struct FlankFoot {
-  Place<S> at;      ///< of the parallel surface through the point; the foot has the same B
-  S turn{};         ///< by which the flank is turned about z onto that parallel surface
-  S d{};            ///< signed distance, positive outside the material: s M2 turn
-  S theta_foot{};   ///< roll parameter of the foot
-  Vec3T<S> n;       ///< grad d: the normal at the foot
+  Place<S> at;     ///< of the parallel surface through the point; the foot has the same B
+  S turn{};        ///< by which the flank is turned about z onto that parallel surface
+  S d{};           ///< signed distance, positive outside the material: s M2 turn
+  S theta_foot{};  ///< roll parameter of the foot
+  Vec3T<S> n;      ///< grad d: the normal at the foot
 };
 
-/// Newton for (theta, B) at the point's (r, z) from `start`, which must be near (a neighbour on the same axis); no continuation, no other
-/// sheet: nothing is returned where it does not arrive within `kSteps` or arrives at J <= 0. Error of d <= 1e-13 r.
-/// Converges quadratically; stops after a step below 1e-3 sqrt(eps) in both parameters, at least one step is taken (so that dual numbers
-/// carry their derivatives).
+/// Newton for (theta, B) at the point's (r, z) from `start`, which must be near (a neighbour on the same axis); no
+/// continuation, no other sheet: nothing is returned where it does not arrive within `kSteps` or arrives at J <= 0.
+/// Error of d <= 1e-13 r. Converges quadratically; stops after a step below 1e-3 sqrt(eps) in both parameters, at least
+/// one step is taken (so that dual numbers carry their derivatives).
 template <typename S>
-std::optional<FlankFoot<S>> flank_foot(const face_gear::FaceGearSurface<S>& f, int side, const Vec3T<S>& x, const Place<S>& start) {
+std::optional<FlankFoot<S>> flank_foot(const face_gear::FaceGearSurface<S>& f, int side, const Vec3T<S>& x,
+                                       const Place<S>& start) {
   using std::atan2, std::sqrt;
   constexpr int kSteps = 30;
   const auto size = [](const S& v) { return v < S(0) ? S(-v) : v; };
@@ -181,7 +189,8 @@ std::optional<FlankFoot<S>> flank_foot(const face_gear::FaceGearSurface<S>& f, i
   return out;
 }
 
-/// d'' along the unit direction a at a place with this foot: a^T (Hess d) a, the shape operator of the parallel surface.
+/// d'' along the unit direction a at a place with this foot: a^T (Hess d) a, the shape operator of the parallel
+/// surface.
 template <typename S>
 S distance_bend(const face_gear::FaceGearSurface<S>& f, int side, const FlankFoot<S>& foot, const Vec3T<S>& a) {
   const auto H = f.flank_shape(side, foot.at.theta, foot.at.B);
@@ -192,11 +201,11 @@ S distance_bend(const face_gear::FaceGearSurface<S>& f, int side, const FlankFoo
 
 /// d''' along the axis at height t, from dual numbers through `flank_foot` and `distance_bend`. 1/mm^2.
 /// @param start  parameters near the foot of that place
-[[nodiscard]] std::optional<double> distance_third(const face_gear::FaceGearSurface<double>& f, int side, const AxisLine<double>& axis, double t,
-                                                   const Place<double>& start);
+[[nodiscard]] std::optional<double> distance_third(const face_gear::FaceGearSurface<double>& f, int side,
+                                                   const AxisLine<double>& axis, double t, const Place<double>& start);
 
-/// What the best pose leaves of a gap with this third derivative over a line of half length h along the axis: |D3| h^3 / 12, the
-/// Chebyshev polynomial T_3 stood on zero. mm
+/// What the best pose leaves of a gap with this third derivative over a line of half length h along the axis: |D3| h^3
+/// / 12, the Chebyshev polynomial T_3 stood on zero. mm
 [[nodiscard]] inline double left_estimate(double third, double half_length) {
   return std::abs(third) * half_length * half_length * half_length / 12;
 }

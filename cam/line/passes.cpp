@@ -12,15 +12,18 @@
 namespace toothpath::line {
 namespace {
 
-constexpr double kBeyond = 2.6;      // modules: stations beyond the ends of the ring
-constexpr double kFull = 0.85;       // share of the height from which a station counts as full
-constexpr double kEndSlopes[] = {0.7, 0.3, 1.0, 1.4};  // shares of the slope at the last full station with which angles go on beyond it
-constexpr double kShortest = 1e-3;   // of a module: shortest block
-constexpr double kGougeCounts = 4;   // times as much as what is left: a block may sink by a quarter of the chord tolerance
-constexpr double kCorner = 1e-5;     // mm: place of the records at which the ring begins and ends
-constexpr double kEndBends[] = {radians(0.01), radians(0.03), radians(0.1)};  // or are bent, from station to station 0.1 m apart
-constexpr double kEpsBend = 0.05;        // as much of that in eps
-constexpr double kLeastCovered = 0.1;    // share of the height below which a station has no say
+constexpr double kBeyond = 2.6;  // modules: stations beyond the ends of the ring
+constexpr double kFull = 0.85;   // share of the height from which a station counts as full
+constexpr double kEndSlopes[] = {
+    0.7, 0.3, 1.0, 1.4};            // shares of the slope at the last full station with which angles go on beyond it
+constexpr double kShortest = 1e-3;  // of a module: shortest block
+constexpr double kGougeCounts =
+    4;                            // times as much as what is left: a block may sink by a quarter of the chord tolerance
+constexpr double kCorner = 1e-5;  // mm: place of the records at which the ring begins and ends
+constexpr double kEndBends[] = {radians(0.01), radians(0.03),
+                                radians(0.1)};  // or are bent, from station to station 0.1 m apart
+constexpr double kEpsBend = 0.05;               // as much of that in eps
+constexpr double kLeastCovered = 0.1;           // share of the height below which a station has no say
 constexpr double kStiffness[] = {1e4, 1e2, 1, 0};
 constexpr double kWorse = 1.02, kWorseMm = 2e-5;  // by which a stiffer pass may be worse than the best one
 
@@ -34,7 +37,8 @@ struct Stations {
 /// Everything about one pass that its steps share.
 class PassPlanner {
  public:
-  PassPlanner(const LineFit& fit, const PassOptions& o, double law_end) : fit_(fit), o_(o), law_end_(law_end), m_(fit.flank().module_mm) {
+  PassPlanner(const LineFit& fit, const PassOptions& o, double law_end)
+      : fit_(fit), o_(o), law_end_(law_end), m_(fit.flank().module_mm) {
     const auto& f = fit.flank();
     step_ = o.station * m_;
     const double middle = 0.5 * (f.inner_radius + f.outer_radius);
@@ -88,13 +92,17 @@ class PassPlanner {
     }
     const auto& f = fit_.flank();
     if (!best_.enough)
-      return fail("zone {}: flank {:+d} has no four stations {:.3f} mm apart about radius {:.3f} mm with a line over its whole height", f.zone, f.side, step_,
-                  radius(middle()));
+      return fail(
+          "zone {}: flank {:+d} has no four stations {:.3f} mm apart about radius {:.3f} mm with a line over its whole "
+          "height",
+          f.zone, f.side, step_, radius(middle()));
     for (std::size_t k = best_.first; k <= best_.last; ++k) {
       const auto& p = *best_.poses[k];
       if (p.tilt() > kMostTilt)
-        return fail("zone {}: flank {:+d} at radius {:.3f} mm asks for a tool tilted by {:.2f} deg from the gear axis; at most {:.0f} deg are planned", f.zone,
-                    f.side, radius(k), degrees(p.tilt()), degrees(kMostTilt));
+        return fail(
+            "zone {}: flank {:+d} at radius {:.3f} mm asks for a tool tilted by {:.2f} deg from the gear axis; at most "
+            "{:.0f} deg are planned",
+            f.zone, f.side, radius(k), degrees(p.tilt()), degrees(kMostTilt));
       if (auto s = reached(p); !s) return s.error();
     }
     pass_.best_mm = worst_best();
@@ -104,8 +112,10 @@ class PassPlanner {
   [[nodiscard]] Status reached(const StationPose& p) const {
     if (p.gap.nodes.empty() || p.gap.t_to <= law_end_) return Ok{};
     const auto& f = fit_.flank();
-    return fail("zone {}: flank {:+d} at radius {:.3f} mm is touched up to {:.3f} mm above the centre of the ball end, the flutes cut up to {:.3f} mm: "
-                "flute_length must be {:.3f} mm longer", f.zone, f.side, p.r, p.gap.t_to, law_end_, p.gap.t_to - law_end_);
+    return fail(
+        "zone {}: flank {:+d} at radius {:.3f} mm is touched up to {:.3f} mm above the centre of the ball end, the "
+        "flutes cut up to {:.3f} mm: flute_length must be {:.3f} mm longer",
+        f.zone, f.side, p.r, p.gap.t_to, law_end_, p.gap.t_to - law_end_);
   }
   /// Worst misfit of the poses alone, over the full stations.
   [[nodiscard]] double worst_best() const {
@@ -114,7 +124,8 @@ class PassPlanner {
     return worst;
   }
 
-  /// The worst misfit falls towards one value of the standing angle and rises after it: golden section to a hundredth of a degree.
+  /// The worst misfit falls towards one value of the standing angle and rises after it: golden section to a hundredth
+  /// of a degree.
   [[nodiscard]] AxisCondition best_condition() const {
     const bool tilt = o_.rotaries == Rotaries::tilt_stands;
     const auto condition = [&](double x) { return tilt ? tilt_stands(x) : azimuth_stands(x); };
@@ -152,9 +163,11 @@ class PassPlanner {
   /// How psi(r) and eps(r) are made from the best poses.
   struct Choice {
     double stiffness = 0;
-    std::array<double, 2> slopes = {kEndSlopes[0], kEndSlopes[0]};  ///< beyond the full stations at the inner, the outer end
-    std::array<double, 2> bends = {0, 0};                          ///< or: bent there towards the best, by so much a station (rad); 0: straight on
-    double worst = INFINITY;  ///< misfit
+    std::array<double, 2> slopes = {kEndSlopes[0],
+                                    kEndSlopes[0]};  ///< beyond the full stations at the inner, the outer end
+    std::array<double, 2> bends = {0,
+                                   0};  ///< or: bent there towards the best, by so much a station (rad); 0: straight on
+    double worst = INFINITY;            ///< misfit
   };
 
   /// Values on all stations from those of the full ones, beyond them straight on.
@@ -163,12 +176,13 @@ class PassPlanner {
     for (std::size_t k = best_.first; k <= best_.last; ++k) full.push_back(best_.poses[k]->angles.*angle);
     full = smoothed(full, c.stiffness);
     const std::size_t n = full.size(), reach = std::min<std::size_t>(n - 1, 4);
-    const double low = c.slopes[0] * (full[reach] - full[0]) / double(reach), high = c.slopes[1] * (full[n - 1] - full[n - 1 - reach]) / double(reach);
+    const double low = c.slopes[0] * (full[reach] - full[0]) / double(reach),
+                 high = c.slopes[1] * (full[n - 1] - full[n - 1 - reach]) / double(reach);
     std::vector<double> y(count_);
     for (std::size_t k = 0; k < count_; ++k)
       y[k] = k < best_.first  ? full[0] - low * double(best_.first - k)
              : k > best_.last ? full[n - 1] + high * double(k - best_.last)
-                                : full[k - best_.first];
+                              : full[k - best_.first];
     return y;
   }
   /// From a full station outwards: each next station is the best one near where the two before it point.
@@ -210,8 +224,8 @@ class PassPlanner {
     return fit_.place(r, psi, eps, delta, lift_at(r), bias);
   }
 
-  /// Largest misfit over the stations from .. to that have a foot in the ring; infinite where a full one has no pose. Which delta a pose has
-  /// does not matter to it, but for the cosine between the normals of the line.
+  /// Largest misfit over the stations from .. to that have a foot in the ring; infinite where a full one has no pose.
+  /// Which delta a pose has does not matter to it, but for the cosine between the normals of the line.
   [[nodiscard]] double worst_misfit(std::size_t from, std::size_t to) const {
     std::vector<double> misfit(to + 1 - from, 0);
     tbb::parallel_for(from, to + 1, [&](std::size_t k) {
@@ -222,8 +236,8 @@ class PassPlanner {
     return *std::max_element(misfit.begin(), misfit.end());
   }
 
-  /// psi(r) and eps(r): the stiffest whose worst misfit over the full stations is hardly above the least. Then each end goes on in the way
-  /// that is best for it.
+  /// psi(r) and eps(r): the stiffest whose worst misfit over the full stations is hardly above the least. Then each end
+  /// goes on in the way that is best for it.
   Status smooth() {
     delta_inner_ = best_.poses[best_.first]->angles.delta;
     delta_outer_ = best_.poses[best_.last]->angles.delta;
@@ -236,8 +250,10 @@ class PassPlanner {
     double least = INFINITY;
     for (const auto& c : choices) least = std::min(least, c.worst);
     if (!(least < INFINITY))
-      return fail("zone {}: flank {:+d}: no pose along the whole pass while {}", fit_.flank().zone, fit_.flank().side, to_string(o_.rotaries));
-    Choice taken = *std::find_if(choices.begin(), choices.end(), [&](const Choice& c) { return c.worst <= kWorse * least + kWorseMm; });
+      return fail("zone {}: flank {:+d}: no pose along the whole pass while {}", fit_.flank().zone, fit_.flank().side,
+                  to_string(o_.rotaries));
+    Choice taken = *std::find_if(choices.begin(), choices.end(),
+                                 [&](const Choice& c) { return c.worst <= kWorse * least + kWorseMm; });
     for (const std::size_t end : {0, 1}) {
       const std::size_t from = end == 0 ? 0 : best_.last, to = end == 0 ? best_.first : count_ - 1;
       taken.worst = INFINITY;
@@ -267,15 +283,16 @@ class PassPlanner {
         return Ok{};
       }
       if (!p)
-        return fail("zone {}: flank {:+d} ends for the anchors at radius {:.3f} mm, before its corner at the {} end is reached", fit_.flank().zone,
-                    fit_.flank().side, radius(k), sense > 0 ? "outer" : "inner");
+        return fail(
+            "zone {}: flank {:+d} ends for the anchors at radius {:.3f} mm, before its corner at the {} end is reached",
+            fit_.flank().zone, fit_.flank().side, radius(k), sense > 0 ? "outer" : "inner");
       if (p->gap.in_ring()) delta = p->angles.delta;
       end = k;
       r_end = radius(k);
       if (p->gap.beyond_ring >= o_.overrun * m_) return Ok{};
       if (k == 0 || k + 1 == count_)
-        return fail("zone {}: flank {:+d}: a foot is still within the ring {:.3f} mm beyond its {} end", fit_.flank().zone, fit_.flank().side, kBeyond * m_,
-                    sense > 0 ? "outer" : "inner");
+        return fail("zone {}: flank {:+d}: a foot is still within the ring {:.3f} mm beyond its {} end",
+                    fit_.flank().zone, fit_.flank().side, kBeyond * m_, sense > 0 ? "outer" : "inner");
     }
   }
   /// The full stations must have their room; beyond them the pass ends where its lifted tool has none.
@@ -287,8 +304,10 @@ class PassPlanner {
     });
     for (std::size_t k = 0; k < blocked.size(); ++k)
       if (const auto& b = blocked[k])
-        return fail("zone {}: flank {:+d} at radius {:.3f} mm: the {} has a gap of {:.4f} mm to the {}, {:.4f} mm is the least; a thinner or longer tool, or another "
-                    "half_angle", fit_.flank().zone, fit_.flank().side, radius(best_.first + k), b->body, b->gap_mm, b->patch, b->least_mm);
+        return fail(
+            "zone {}: flank {:+d} at radius {:.3f} mm: the {} has a gap of {:.4f} mm to the {}, {:.4f} mm is the "
+            "least; a thinner or longer tool, or another half_angle",
+            fit_.flank().zone, fit_.flank().side, radius(best_.first + k), b->body, b->gap_mm, b->patch, b->least_mm);
     room(-1, best_.first, from_, r_from_);
     room(1, best_.last, to_, r_to_);
     return Ok{};
@@ -320,8 +339,8 @@ class PassPlanner {
   }
   [[nodiscard]] bool inside_full(std::size_t k) const { return k >= best_.first && k <= best_.last; }
 
-  /// The ball end is lifted out of what lies beyond an end: as far as its foot asks for one station nearer to the middle (so that the lift
-  /// begins when the corner is passed for certain), and no faster than the slope allows.
+  /// The ball end is lifted out of what lies beyond an end: as far as its foot asks for one station nearer to the
+  /// middle (so that the lift begins when the corner is passed for certain), and no faster than the slope allows.
   void lifts() {
     const auto& f = fit_.flank();
     const auto raise = [&](int sense, double r_most) {
@@ -345,7 +364,8 @@ class PassPlanner {
     return lift_[k] + (u - double(k)) * (lift_[k + 1] - lift_[k]);
   }
 
-  /// Where exactly the first and the last foot of the pass lie in the ring. There the gap is held by the corner alone; beyond it delta stays.
+  /// Where exactly the first and the last foot of the pass lie in the ring. There the gap is held by the corner alone;
+  /// beyond it delta stays.
   Status corners() {
     const auto in_ring = [&](double r) {
       const auto p = pose(r);
@@ -403,8 +423,10 @@ class PassPlanner {
         continue;
       }
       if (worst > o_.chord_mm)
-        return fail("zone {}: flank {:+d} at radius {:.4f} mm: blocks of {:.4f} mm still stray by {:.3f} um, more than the chord tolerance {:.3f} um",
-                    fit_.flank().zone, fit_.flank().side, r, step, 1e3 * worst, 1e3 * o_.chord_mm);
+        return fail(
+            "zone {}: flank {:+d} at radius {:.4f} mm: blocks of {:.4f} mm still stray by {:.3f} um, more than the "
+            "chord tolerance {:.3f} um",
+            fit_.flank().zone, fit_.flank().side, r, step, 1e3 * worst, 1e3 * o_.chord_mm);
       pass_.chord_mm = std::max(pass_.chord_mm, worst);
       here = next;
       if (auto s = add(*here); !s) return s;
@@ -436,7 +458,8 @@ class PassPlanner {
     for (std::size_t k = from_; k <= to_; ++k) {
       const auto p = pose(radius(k));
       if (!p || !p->gap.in_ring()) continue;
-      pass_.stations.push_back({p->r, p->angles.psi, p->angles.eps, p->tilt(), p->covered, best_.poses[k] ? best_.poses[k]->gap.misfit() : 0, p->gap.misfit()});
+      pass_.stations.push_back({p->r, p->angles.psi, p->angles.eps, p->tilt(), p->covered,
+                                best_.poses[k] ? best_.poses[k]->gap.misfit() : 0, p->gap.misfit()});
       pass_.misfit_mm = std::max(pass_.misfit_mm, p->gap.misfit());
       pass_.contact_top_mm = std::max(pass_.contact_top_mm, fit_.law().r_0 + p->gap.ring_to);
     }
@@ -468,6 +491,8 @@ const char* to_string(Rotaries rotaries) {
   return "";
 }
 
-Result<LinePass> plan_pass(const LineFit& fit, const PassOptions& options, double law_end) { return PassPlanner(fit, options, law_end).run(); }
+Result<LinePass> plan_pass(const LineFit& fit, const PassOptions& options, double law_end) {
+  return PassPlanner(fit, options, law_end).run();
+}
 
 }  // namespace toothpath::line

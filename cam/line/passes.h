@@ -1,6 +1,8 @@
-// One pass of a mill's side along one strip of a flank: stations, smoothed angles, ends, and records as sparse as the chord allows.
+// One pass of a mill's side along one strip of a flank: stations, smoothed angles, ends, and records as sparse as the
+// chord allows.
 //
-// Gear frame, tooth 0, mm, rad. The pass runs from the inner to the outer end. Derivation: docs/line_milling.md, sections 5 and 6.
+// Gear frame, tooth 0, mm, rad. The pass runs from the inner to the outer end. Derivation: docs/line_milling.md,
+// sections 5 and 6.
 #pragma once
 
 #include <cmath>
@@ -20,7 +22,7 @@ enum class Rotaries { both, tilt_stands, azimuth_stands };
 /// What does not leave a pose its room: a body of the tool, and what of the gear it meets.
 struct Blocked {
   std::string body, patch;
-  double gap_mm = 0;   ///< least gap found; negative: it cuts
+  double gap_mm = 0;    ///< least gap found; negative: it cuts
   double least_mm = 0;  ///< that it must keep
 };
 /// Nothing where a pose, in the frame of the flank's own tooth 0, is free.
@@ -28,18 +30,22 @@ using Room = std::function<std::optional<Blocked>(const AxisLine<double>&)>;
 
 struct PassOptions {
   Rotaries rotaries = Rotaries::both;
-  double chord_mm = 5e-4;   ///< by how much a block may rise above the largest gap of its ends; it sinks below the least by a quarter of that at most
-  double bias_mm = 0;       ///< least gap that every pose keeps over the domain: takes up what follows (verification, rounding)
-  double station = 0.1;     ///< stations, in modules
-  double longest = 0.1;     ///< longest block along the anchors, in modules
-  double overrun = 0.12;    ///< how far beyond the ends of the ring the last foot is carried, in modules
-  /// Is there something across the inner, the outer end (the other ring, a groove)? There the ball end is lifted out of the way.
+  double chord_mm = 5e-4;  ///< by how much a block may rise above the largest gap of its ends; it sinks below the least
+                           ///< by a quarter of that at most
+  double bias_mm =
+      0;  ///< least gap that every pose keeps over the domain: takes up what follows (verification, rounding)
+  double station = 0.1;   ///< stations, in modules
+  double longest = 0.1;   ///< longest block along the anchors, in modules
+  double overrun = 0.12;  ///< how far beyond the ends of the ring the last foot is carried, in modules
+  /// Is there something across the inner, the outer end (the other ring, a groove)? There the ball end is lifted out of
+  /// the way.
   bool lift_inner = false, lift_outer = false;
   double lift_margin = 0.08;  ///< the lift begins where the ball end's foot is so far beyond the end, in modules
   double lift_slope = 1;      ///< mm of lift per mm of contact, at most
-  double enough_mm = INFINITY;  ///< give up where the best pose of a station alone leaves more than this: a pass without records
-  /// What stands in the way of a pose (cam/line/room.h)? Beyond the last full station the pass ends there; at a full one it is refused. Empty:
-  /// nothing does.
+  double enough_mm =
+      INFINITY;  ///< give up where the best pose of a station alone leaves more than this: a pass without records
+  /// What stands in the way of a pose (cam/line/room.h)? Beyond the last full station the pass ends there; at a full
+  /// one it is refused. Empty: nothing does.
   Room room;
 };
 
@@ -58,7 +64,7 @@ struct LineRecord {
   Vec3 anchor = Vec3::Zero();  ///< of the contact, for feeds
   double most = 0;             ///< largest gap over the strip
   double lift = 0;
-  double contact_ratio = 1;    ///< way of the tip from the record before, over the way of the contact
+  double contact_ratio = 1;  ///< way of the tip from the record before, over the way of the contact
 };
 
 struct LinePass {
@@ -69,12 +75,14 @@ struct LinePass {
   double best_mm = 0;     ///< worst of the poses alone, over the full stations
   double chord_mm = 0;    ///< worst seen within a block, as `PassOptions::chord_mm` counts
   double contact_mm = 0;  ///< way of the contact
-  double contact_top_mm = 0;  ///< highest height of a contact above the tip, along the axis, lifts included: the flutes must reach it
+  double contact_top_mm =
+      0;  ///< highest height of a contact above the tip, along the axis, lifts included: the flutes must reach it
   double shortened_mm = 0;  ///< lost at ends that are not clear before the last foot has left the ring
 };
 
-/// Plans a pass. Refused, with quantity, value and limit: a tilt above 60 deg, flutes that end below a contact of any pose, lifted ones too (`law_end`), a full
-/// station without room, fewer than four full stations, an axis condition that no lean fulfils, a flank whose ends are not reached.
+/// Plans a pass. Refused, with quantity, value and limit: a tilt above 60 deg, flutes that end below a contact of any
+/// pose, lifted ones too (`law_end`), a full station without room, fewer than four full stations, an axis condition
+/// that no lean fulfils, a flank whose ends are not reached.
 /// @param law_end  highest usable t of the tool
 [[nodiscard]] Result<LinePass> plan_pass(const LineFit& fit, const PassOptions& options, double law_end);
 

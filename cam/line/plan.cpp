@@ -13,7 +13,8 @@ namespace {
 constexpr double kBodySag = 0.01;  // mm: how far bodies may stand out of the tool where only rapids ask for them
 
 AxisLine<double> turned(const AxisLine<double>& axis, double angle) {
-  return {face_gear::FaceGearSurface<double>::turned(axis.c_0, angle), face_gear::FaceGearSurface<double>::turned(axis.a, angle)};
+  return {face_gear::FaceGearSurface<double>::turned(axis.c_0, angle),
+          face_gear::FaceGearSurface<double>::turned(axis.a, angle)};
 }
 
 /// All passes for one choice of strips and rotaries.
@@ -21,8 +22,8 @@ struct Choice {
   int strips = 1;
   Rotaries rotaries = Rotaries::both;
 };
-Result<std::vector<LinePass>> passes_of(const std::vector<FlankTask>& flanks, const tool::Profile& tool, const LineOperation& o, const Choice& choice,
-                                        int rings) {
+Result<std::vector<LinePass>> passes_of(const std::vector<FlankTask>& flanks, const tool::Profile& tool,
+                                        const LineOperation& o, const Choice& choice, int rings) {
   const std::size_t n = flanks.size() * std::size_t(choice.strips);
   std::vector<std::optional<Result<LinePass>>> found(n);
   tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) {
@@ -34,7 +35,8 @@ Result<std::vector<LinePass>> passes_of(const std::vector<FlankTask>& flanks, co
     p.bias_mm = o.bias_mm;
     p.lift_inner = flank.zone > 0;
     p.lift_outer = flank.zone + 1 < rings;
-    if (o.room) p.room = [&](const AxisLine<double>& axis) { return o.room(with_allowance(flank, axis, o.allowance_mm)); };
+    if (o.room)
+      p.room = [&](const AxisLine<double>& axis) { return o.room(with_allowance(flank, axis, o.allowance_mm)); };
     p.enough_mm = o.left_mm.value_or(INFINITY);
     found[k].emplace(plan_pass(LineFit(flank, *tool.law(), strips_of(flank, choice.strips)[strip]), p, tool.law_end()));
     if (*found[k]) (*found[k])->strip = int(strip);
@@ -67,10 +69,12 @@ std::vector<Choice> choices_of(const LineOperation& o) {
 /// Appends passes to a path: in and out along the tool axis, which only ever frees a tool that widens upwards.
 class PathWriter {
  public:
-  PathWriter(const tool::Profile& tool, const LineOperation& o, path::ClPath& path) : o_(o), path_(path), r_0_(tool.law()->r_0), bodies_(tool.proof_bodies(kBodySag)) {}
+  PathWriter(const tool::Profile& tool, const LineOperation& o, path::ClPath& path)
+      : o_(o), path_(path), r_0_(tool.law()->r_0), bodies_(tool.proof_bodies(kBodySag)) {}
 
   void add(const FlankTask& flank, const LinePass& pass, int number) {
-    const double turn = flank.side > 0 ? 0 : flank.surface.pitch;  // space 0 lies between flank +1 of tooth 0 and flank -1 of tooth 1
+    const double turn =
+        flank.side > 0 ? 0 : flank.surface.pitch;  // space 0 lies between flank +1 of tooth 0 and flank -1 of tooth 1
     std::vector<LineRecord> records = pass.records;
     for (auto& r : records) {
       r.axis = turned(with_allowance(flank, r.axis, o_.allowance_mm), turn);
@@ -84,7 +88,8 @@ class PathWriter {
     for (std::size_t k = 1; k < records.size(); ++k) {
       const double contact = (records[k].anchor - records[k - 1].anchor).norm();
       const Vec3 from = tip(records[k - 1].axis), to = tip(records[k].axis);
-      const double feed = contact_feed(o_.feed_mm_min, o_.limits, contact, from, records[k - 1].axis.a, to, records[k].axis.a);
+      const double feed =
+          contact_feed(o_.feed_mm_min, o_.limits, contact, from, records[k - 1].axis.a, to, records[k].axis.a);
       least_feed_ = std::min(least_feed_, feed);
       record(to, records[k].axis.a, path::MoveKind::feed, feed * (to - from).norm() / contact);
     }
@@ -106,9 +111,12 @@ class PathWriter {
     const Vec3 feed = records[k].anchor - records[k - 1].anchor, right = feed.cross(records[k].axis.a);
     const Vec3 at = face_gear::FaceGearSurface<double>::turned(records[k].anchor, -turn);
     const auto on = face_gear::invert_flank(flank.surface, flank.side, at.head<2>().norm(), at.z());
-    return on && face_gear::FaceGearSurface<double>::turned(flank.surface.flank(flank.side, on->theta, on->B).n, turn).dot(right) < 0;
+    return on && face_gear::FaceGearSurface<double>::turned(flank.surface.flank(flank.side, on->theta, on->B).n, turn)
+                         .dot(right) < 0;
   }
-  void record(const Vec3& tip, const Vec3& axis, path::MoveKind kind, double feed) { path_.records.push_back({tip, axis, feed, kind, zone_, pass_}); }
+  void record(const Vec3& tip, const Vec3& axis, path::MoveKind kind, double feed) {
+    path_.records.push_back({tip, axis, feed, kind, zone_, pass_});
+  }
 
   const LineOperation& o_;
   path::ClPath& path_;
@@ -123,23 +131,27 @@ AxisLine<double> with_allowance(const FlankTask& flank, const AxisLine<double>& 
   return turned(axis, flank.side * allowance_mm / flank.surface.M2);
 }
 
-double contact_feed(double feed_mm_min, const FeedLimits& limits, double contact_mm, const Vec3& tip_from, const Vec3& axis_from, const Vec3& tip_to,
-                    const Vec3& axis_to) {
+double contact_feed(double feed_mm_min, const FeedLimits& limits, double contact_mm, const Vec3& tip_from,
+                    const Vec3& axis_from, const Vec3& tip_to, const Vec3& axis_to) {
   double feed = feed_mm_min;
   const auto limit = [&](double way, double most) {
     if (way > 0) feed = std::min(feed, most * contact_mm / way);
   };
   limit((tip_to - tip_from).norm(), limits.tip_mm_min);
-  limit(std::abs(std::acos(std::clamp(axis_to.z(), -1.0, 1.0)) - std::acos(std::clamp(axis_from.z(), -1.0, 1.0))), limits.tilt_rad_min);
-  limit(std::abs(std::atan2(axis_from.x() * axis_to.y() - axis_from.y() * axis_to.x(), axis_from.x() * axis_to.x() + axis_from.y() * axis_to.y())),
+  limit(std::abs(std::acos(std::clamp(axis_to.z(), -1.0, 1.0)) - std::acos(std::clamp(axis_from.z(), -1.0, 1.0))),
+        limits.tilt_rad_min);
+  limit(std::abs(std::atan2(axis_from.x() * axis_to.y() - axis_from.y() * axis_to.x(),
+                            axis_from.x() * axis_to.x() + axis_from.y() * axis_to.y())),
         limits.azimuth_rad_min);
   limit(limits.block_s / 60, 1.0);
   return feed;
 }
 
 Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::Profile& tool, const LineOperation& o) {
-  if (!tool.law()) return fail("line milling needs a tool with a ball end and a side: flat and bull nose cutters have none");
-  if (o.strips && (*o.strips < 1 || *o.strips > kMostStrips)) return fail("strips = {} lies outside 1 .. {}", *o.strips, kMostStrips);
+  if (!tool.law())
+    return fail("line milling needs a tool with a ball end and a side: flat and bull nose cutters have none");
+  if (o.strips && (*o.strips < 1 || *o.strips > kMostStrips))
+    return fail("strips = {} lies outside 1 .. {}", *o.strips, kMostStrips);
   std::vector<FlankTask> flanks;
   for (int zone = 0; zone < int(gear.rings().size()); ++zone)
     for (const int side : {1, -1}) {
@@ -164,8 +176,10 @@ Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::
     break;
   }
   if (plan.passes.empty())
-    return fail("left = {:.3f} um cannot be met: the side of this tool leaves {:.3f} um at best with {} strip(s); cut the rest with the ball end or allow more",
-                1e3 * o.left_mm.value_or(0), 1e3 * least, o.strips.value_or(kMostStrips));
+    return fail(
+        "left = {:.3f} um cannot be met: the side of this tool leaves {:.3f} um at best with {} strip(s); cut the rest "
+        "with the ball end or allow more",
+        1e3 * o.left_mm.value_or(0), 1e3 * least, o.strips.value_or(kMostStrips));
   plan.path.operation = o.operation;
   plan.path.operation_type = "line_milling";
   plan.path.tool = o.tool;

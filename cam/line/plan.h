@@ -1,24 +1,27 @@
-// Line milling of one tooth space: every flank of every ring in the fewest strips and with the fewest rotaries that leave little enough.
+// Line milling of one tooth space: every flank of every ring in the fewest strips and with the fewest rotaries that
+// leave little enough.
 //
-// Asks a face gear, a tool profile and an operation; answers a path (CL records of space 0) and what a report draws of each pass.
+// Asks a face gear, a tool profile and an operation; answers a path (CL records of space 0) and what a report draws of
+// each pass.
 #pragma once
 
 #include <cmath>
 #include <optional>
 #include <vector>
 
-#include "cam/path/cl_path.h"
 #include "cam/line/passes.h"
+#include "cam/path/cl_path.h"
 #include "cam/tool/profile.h"
 
 namespace toothpath::line {
 
 inline constexpr int kMostStrips = 4;
-/// Gap that the poses keep by default, mm: what the proof may stand above what it finds (2e-4) and the rounding of axes to 1e-4 mm and deg.
+/// Gap that the poses keep by default, mm: what the proof may stand above what it finds (2e-4) and the rounding of axes
+/// to 1e-4 mm and deg.
 inline constexpr double kBias = 3e-4;
 
-/// What else than the job limits the feed of the contact, as far as it is known before the machine is. A posture that runs through the axes
-/// of a machine is slowed once more where its own axes ask for it.
+/// What else than the job limits the feed of the contact, as far as it is known before the machine is. A posture that
+/// runs through the axes of a machine is slowed once more where its own axes ask for it.
 struct FeedLimits {
   double tip_mm_min = INFINITY;       ///< way of the tip in the gear frame
   double tilt_rad_min = INFINITY;     ///< turn of the axis from the gear axis
@@ -28,25 +31,26 @@ struct FeedLimits {
 
 /// What is asked. Lengths mm.
 struct LineOperation {
-  int operation = 0;                     ///< index in the job
-  int tool = 0;                          ///< index into the job's list of tools
+  int operation = 0;  ///< index in the job
+  int tool = 0;       ///< index into the job's list of tools
   double speed_rpm = 0;
-  double feed_mm_min = 0;                ///< of the contact
-  double allowance_mm = 0;               ///< stock that is left, exactly parallel; 0: finishing
-  std::optional<int> strips;             ///< 1 .. 4; none: the least number that meets `left`
-  std::optional<double> left_mm;         ///< largest misfit of a pass; none: whatever one strip with both rotaries leaves
-  std::optional<Rotaries> rotaries;      ///< none: the tilt stands where that meets `left`, else both
+  double feed_mm_min = 0;            ///< of the contact
+  double allowance_mm = 0;           ///< stock that is left, exactly parallel; 0: finishing
+  std::optional<int> strips;         ///< 1 .. 4; none: the least number that meets `left`
+  std::optional<double> left_mm;     ///< largest misfit of a pass; none: whatever one strip with both rotaries leaves
+  std::optional<Rotaries> rotaries;  ///< none: the tilt stands where that meets `left`, else both
   double chord_tolerance_mm = 5e-4;
-  double bias_mm = kBias;                ///< see PassOptions; coarser axes ask for more: 8e-4 for 0.001 mm and deg
+  double bias_mm = kBias;  ///< see PassOptions; coarser axes ask for more: 8e-4 for 0.001 mm and deg
   FeedLimits limits;
-  bool climb = true;                     ///< spindle M3, material to the right of the feed seen from the holder
-  double clearance_height_mm = 0;        ///< z above which every part of the tool is for rapids
-  Room room;                             ///< cam/line/room.h; asked where the tool stands with its allowance
+  bool climb = true;               ///< spindle M3, material to the right of the feed seen from the holder
+  double clearance_height_mm = 0;  ///< z above which every part of the tool is for rapids
+  Room room;                       ///< cam/line/room.h; asked where the tool stands with its allowance
 };
 
 struct LinePlan {
   path::ClPath path;
-  std::vector<LinePass> passes;  ///< in the order of the path: zones from the inside, flank +1 then -1, strips from the tip down
+  std::vector<LinePass>
+      passes;  ///< in the order of the path: zones from the inside, flank +1 then -1, strips from the tip down
   int strips = 1;
   Rotaries rotaries = Rotaries::both;
   double misfit_mm = 0;          ///< worst of the passes
@@ -55,15 +59,17 @@ struct LinePlan {
 
 /// Feed of the contact in a block: the job's, or what the limits leave of it. mm/min
 /// @param contact_mm  way of the contact
-[[nodiscard]] double contact_feed(double feed_mm_min, const FeedLimits& limits, double contact_mm, const Vec3& tip_from, const Vec3& axis_from, const Vec3& tip_to,
-                                  const Vec3& axis_to);
+[[nodiscard]] double contact_feed(double feed_mm_min, const FeedLimits& limits, double contact_mm, const Vec3& tip_from,
+                                  const Vec3& axis_from, const Vec3& tip_to, const Vec3& axis_to);
 
-/// Plans one operation. Refused, with quantity, value and limit: a tool without a ball end and a side; everything that `flank_task` and
-/// `plan_pass` refuse; a `left` that no admitted choice meets (the message tells the best one).
-[[nodiscard]] Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::Profile& tool, const LineOperation& operation);
+/// Plans one operation. Refused, with quantity, value and limit: a tool without a ball end and a side; everything that
+/// `flank_task` and `plan_pass` refuse; a `left` that no admitted choice meets (the message tells the best one).
+[[nodiscard]] Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::Profile& tool,
+                                                 const LineOperation& operation);
 
-/// A pose in the gear frame for flank `side` of tooth 0 turned so that `allowance` stays: by side * allowance / M2 about z. Exact, because
-/// parallel surfaces are rotations.
-[[nodiscard]] AxisLine<double> with_allowance(const FlankTask& flank, const AxisLine<double>& axis, double allowance_mm);
+/// A pose in the gear frame for flank `side` of tooth 0 turned so that `allowance` stays: by side * allowance / M2
+/// about z. Exact, because parallel surfaces are rotations.
+[[nodiscard]] AxisLine<double> with_allowance(const FlankTask& flank, const AxisLine<double>& axis,
+                                              double allowance_mm);
 
 }  // namespace toothpath::line

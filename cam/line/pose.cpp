@@ -15,7 +15,7 @@ constexpr int kWalkSteps = 14;                     // over the height of the fla
 constexpr double kExactEnd = 1e-9;                 // mm: ends of the domain and heights of the ball end
 constexpr double kStandsStill = 1e-8;              // mm: predicted gain at which the best pose is found
 constexpr int kLinearisations = 30;
-constexpr double kFirstTrust = 0.1;                // rad of lean in one step; a quarter of it in eps
+constexpr double kFirstTrust = 0.1;  // rad of lean in one step; a quarter of it in eps
 
 /// Root of g in [a, b] to `kExactEnd`; ga and gb differ in sign.
 template <typename F>
@@ -41,9 +41,12 @@ Result<FlankTask> flank_task(const face_gear::FaceGear& gear, int zone, int side
   const auto& ring = gear.rings()[std::size_t(zone)];
   const auto& p = gear.parameters();
   if (std::abs(p.shaft_angle_rad - kPi / 2) > 1e-12)
-    return fail("shaft_angle = {:.4f} deg: line milling is known for 90 deg only, where the tips lie in a plane and all that is above it is free",
-                degrees(p.shaft_angle_rad));
-  if (ring.correction) return fail("flanks with corrections cannot be line milled: the distance to them has no closed form");
+    return fail(
+        "shaft_angle = {:.4f} deg: line milling is known for 90 deg only, where the tips lie in a plane and all that "
+        "is above it is free",
+        degrees(p.shaft_angle_rad));
+  if (ring.correction)
+    return fail("flanks with corrections cannot be line milled: the distance to them has no closed form");
   FlankTask t;
   t.surface = ring.surface;
   t.zone = zone;
@@ -54,7 +57,8 @@ Result<FlankTask> flank_task(const face_gear::FaceGear& gear, int zone, int side
   t.z_tip = ring.surface.z_tip(middle);
   t.theta_end = ring.surface.shaper.theta_t;
   const auto z_end = face_gear::fillet_line_height(ring.surface, side, middle);
-  if (!z_end || !(*z_end < t.z_tip)) return fail("zone {}: flank {:+d} has no fillet line below the tips at radius {:.3f} mm", zone, side, middle);
+  if (!z_end || !(*z_end < t.z_tip))
+    return fail("zone {}: flank {:+d} has no fillet line below the tips at radius {:.3f} mm", zone, side, middle);
   t.z_end = *z_end;
   t.module_mm = p.module_mm;
   return t;
@@ -92,7 +96,8 @@ std::optional<GapNode> LineFit::gap_at(const AxisLine<double>& axis, double t, c
 /// How far a foot lies inside the trimmed flank and a rim beyond the ends of the ring; negative outside. mm
 double LineFit::inside(const GapNode& q, double rim) const {
   const double to_fillet = (flank_.theta_end - q.theta_foot) * flank_.surface.shaper.r_b / flank_.surface.shaper.cos_bb;
-  return std::min({to_fillet, flank_.z_tip - q.z_foot, q.r_foot - flank_.inner_radius + rim, flank_.outer_radius + rim - q.r_foot});
+  return std::min(
+      {to_fillet, flank_.z_tip - q.z_foot, q.r_foot - flank_.inner_radius + rim, flank_.outer_radius + rim - q.r_foot});
 }
 
 double LineFit::above_bottom(const GapNode& q) const {
@@ -102,8 +107,8 @@ double LineFit::above_bottom(const GapNode& q) const {
 
 /// Does a foot count for what is left: within the strip and the ring?
 bool LineFit::in_strip(const GapNode& q) const {
-  return q.z_foot <= strip_.top + 10 * kExactEnd && above_bottom(q) >= -10 * kExactEnd && q.r_foot >= flank_.inner_radius - 10 * kExactEnd &&
-         q.r_foot <= flank_.outer_radius + 10 * kExactEnd;
+  return q.z_foot <= strip_.top + 10 * kExactEnd && above_bottom(q) >= -10 * kExactEnd &&
+         q.r_foot >= flank_.inner_radius - 10 * kExactEnd && q.r_foot <= flank_.outer_radius + 10 * kExactEnd;
 }
 
 /// Feet from the ball end up to the first above the tips, in even steps; fewer where the regular sheet ends.
@@ -129,24 +134,30 @@ std::vector<GapNode> LineFit::walk(const AxisLine<double>& axis, double t_start,
 /// Height on the axis between two feet where g of the foot vanishes; it differs in sign at both.
 template <typename F>
 double LineFit::crossing(const AxisLine<double>& axis, const GapNode& a, const GapNode& b, const F& g) const {
-  return root_between([&](double t) {
-    const auto q = gap_at(axis, t, a.at);
-    return q ? g(*q) : NAN;
-  }, a.t, g(a), b.t, g(b));
+  return root_between(
+      [&](double t) {
+        const auto q = gap_at(axis, t, a.at);
+        return q ? g(*q) : NAN;
+      },
+      a.t, g(a), b.t, g(b));
 }
 
-std::optional<GapLine> LineFit::gap_along(const AxisLine<double>& axis, double t_start, const Place<double>& start) const {
+std::optional<GapLine> LineFit::gap_along(const AxisLine<double>& axis, double t_start,
+                                          const Place<double>& start) const {
   const auto feet = walk(axis, t_start, start);
   if (feet.empty()) return {};
   GapLine line;
   const auto to_tip = [&](const GapNode& q) { return flank_.z_tip - q.z_foot; };
-  const auto beyond = [&](const GapNode& q) { return std::max({0.0, flank_.inner_radius - q.r_foot, q.r_foot - flank_.outer_radius}); };
+  const auto beyond = [&](const GapNode& q) {
+    return std::max({0.0, flank_.inner_radius - q.r_foot, q.r_foot - flank_.outer_radius});
+  };
   const bool reaches = feet.size() > 1 && to_tip(feet.back()) <= 0 && to_tip(feet[feet.size() - 2]) > 0;
   line.t_top = reaches ? crossing(axis, feet[feet.size() - 2], feet.back(), to_tip) : feet.back().t;
   line.beyond_ring = INFINITY;
   for (const auto& q : feet)
     if (to_tip(q) >= 0) line.beyond_ring = std::min(line.beyond_ring, beyond(q));
-  if (const auto q = gap_at(axis, line.t_top, feet.back().at); q && reaches) line.beyond_ring = std::min(line.beyond_ring, beyond(*q));
+  if (const auto q = gap_at(axis, line.t_top, feet.back().at); q && reaches)
+    line.beyond_ring = std::min(line.beyond_ring, beyond(*q));
   // The part of the axis whose feet lie in the domain, and of that the part in the ring.
   const auto part = [&](double rim, double& from, double& to) {
     const auto in = [&](const GapNode& q) { return inside(q, rim); };
@@ -165,16 +176,20 @@ std::optional<GapLine> LineFit::gap_along(const AxisLine<double>& axis, double t
   const auto below_top = [&](const GapNode& q) { return strip_.top - q.z_foot; };
   if (strip_.top < flank_.z_tip - kExactEnd)
     for (std::size_t k = 1; k < feet.size(); ++k)
-      if (below_top(feet[k - 1]) > 0 && below_top(feet[k]) <= 0) splits.push_back(std::clamp(crossing(axis, feet[k - 1], feet[k], below_top), line.t_from, line.t_to));
+      if (below_top(feet[k - 1]) > 0 && below_top(feet[k]) <= 0)
+        splits.push_back(std::clamp(crossing(axis, feet[k - 1], feet[k], below_top), line.t_from, line.t_to));
   if (!add_nodes(axis, std::move(splits), first->at, line) || !extremes(axis, line)) return {};
   return line;
 }
 
-/// Chebyshev points over the whole domain and, where the strip ends below the tips, over the strip; all splits are nodes.
-bool LineFit::add_nodes(const AxisLine<double>& axis, std::vector<double> splits, Place<double> start, GapLine& line) const {
+/// Chebyshev points over the whole domain and, where the strip ends below the tips, over the strip; all splits are
+/// nodes.
+bool LineFit::add_nodes(const AxisLine<double>& axis, std::vector<double> splits, Place<double> start,
+                        GapLine& line) const {
   const double top = splits.size() > 4 ? splits.back() : line.t_to;
   const auto points = [&](double a, double b, int count) {
-    for (int k = 1; k + 1 < count; ++k) splits.push_back(0.5 * (a + b) - 0.5 * (b - a) * std::cos(kPi * k / (count - 1)));
+    for (int k = 1; k + 1 < count; ++k)
+      splits.push_back(0.5 * (a + b) - 0.5 * (b - a) * std::cos(kPi * k / (count - 1)));
   };
   points(line.t_from, top, kStripNodes);
   if (top < line.t_to) points(top, line.t_to, kNodesAbove);
@@ -227,7 +242,8 @@ std::optional<double> LineFit::reach_bottom(const Anchor& anchor, PoseAngles<dou
     last = q->at;
     return above_bottom(*q);
   };
-  double low = 0, b_low = height(0), high = 1.3 * (strip_.anchor - (strip_.bottom ? *strip_.bottom : flank_.z_end)), b_high = height(high);
+  double low = 0, b_low = height(0), high = 1.3 * (strip_.anchor - (strip_.bottom ? *strip_.bottom : flank_.z_end)),
+         b_high = height(high);
   if (b_low < 0) return {};
   for (int k = 0; k < 8 && b_high > 0; ++k) {
     low = high;
@@ -242,11 +258,13 @@ bool LineFit::measure(StationPose& pose) const {
   auto line = gap_along(pose.axis, std::max(pose.angles.t_m, 0.0), pose.at);
   if (!line) return false;
   pose.gap = std::move(*line);
-  pose.covered = pose.gap.t_top > 0 ? (pose.gap.ring_to - pose.gap.ring_from) / (pose.gap.t_top + std::max(pose.lift, 0.0)) : 0;
+  pose.covered =
+      pose.gap.t_top > 0 ? (pose.gap.ring_to - pose.gap.ring_from) / (pose.gap.t_top + std::max(pose.lift, 0.0)) : 0;
   return true;
 }
 
-std::optional<StationPose> LineFit::posed(double r, const Anchor& anchor, PoseAngles<double> angles, double lift) const {
+std::optional<StationPose> LineFit::posed(double r, const Anchor& anchor, PoseAngles<double> angles,
+                                          double lift) const {
   const auto t_m = reach_bottom(anchor, angles);
   if (!t_m) return {};
   StationPose pose;
@@ -260,7 +278,8 @@ std::optional<StationPose> LineFit::posed(double r, const Anchor& anchor, PoseAn
   return pose;
 }
 
-/// Shifts delta until the least gap is `bias`, by Newton: moved along n, the gap at a foot changes with the cosine between both normals.
+/// Shifts delta until the least gap is `bias`, by Newton: moved along n, the gap at a foot changes with the cosine
+/// between both normals.
 void LineFit::settle(StationPose& pose, const Anchor& anchor, double bias) const {
   for (int k = 0; k < 12 && !pose.gap.nodes.empty() && std::abs(pose.gap.least - bias) > kExactEnd; ++k) {
     pose.angles.delta += (bias - pose.gap.least) / pose.gap.n_least.dot(anchor.frame.n);
@@ -287,7 +306,8 @@ std::optional<StationPose> LineFit::start(double r) const {
   return pose;
 }
 
-std::optional<StationPose> LineFit::place(double r, double psi, double eps, double delta, double lift, std::optional<double> bias) const {
+std::optional<StationPose> LineFit::place(double r, double psi, double eps, double delta, double lift,
+                                          std::optional<double> bias) const {
   const auto at = anchor(r);
   if (!at) return {};
   auto pose = posed(r, *at, {psi, eps, delta, 0}, lift);
@@ -310,13 +330,16 @@ std::optional<double> LineFit::eps_under(double r, double psi, double t_m, const
   const double A = condition.w.dot(u), C = condition.w.dot(at->frame.n), size = std::hypot(A, C);
   if (!(std::abs(condition.c) <= size)) return {};
   const double middle = std::atan2(C, A), half = std::acos(condition.c / size), of_side = std::asin(law_.slope(t_m));
-  const double one = std::remainder(middle + half - of_side, 2 * kPi), other = std::remainder(middle - half - of_side, 2 * kPi);
+  const double one = std::remainder(middle + half - of_side, 2 * kPi),
+               other = std::remainder(middle - half - of_side, 2 * kPi);
   return std::abs(one) < std::abs(other) ? one : other;
 }
 
 /// One linear programme about a pose: the angles that it proposes, and how much smaller it expects the misfit to be.
-std::optional<PoseAngles<double>> LineFit::step(const StationPose& pose, const Anchor& anchor, const Neighbourhood& about,
-                                                const std::optional<AxisCondition>& condition, double trust, double& gain) const {
+std::optional<PoseAngles<double>> LineFit::step(const StationPose& pose, const Anchor& anchor,
+                                                const Neighbourhood& about,
+                                                const std::optional<AxisCondition>& condition, double trust,
+                                                double& gain) const {
   const double psi = pose.angles.psi, sigma = std::asin(law_.slope(pose.angles.t_m)) + pose.angles.eps;
   const auto& f = anchor.frame;
   const Vec3 u = std::cos(psi) * f.p + std::sin(psi) * f.o, across = std::cos(psi) * f.o - std::sin(psi) * f.p;
@@ -349,7 +372,8 @@ std::optional<PoseAngles<double>> LineFit::step(const StationPose& pose, const A
   return to;
 }
 
-std::optional<StationPose> LineFit::best(double r, const std::optional<AxisCondition>& condition, const std::optional<Neighbourhood>& near) const {
+std::optional<StationPose> LineFit::best(double r, const std::optional<AxisCondition>& condition,
+                                         const std::optional<Neighbourhood>& near) const {
   const auto at = anchor(r);
   auto pose = start(r);
   if (!at || !pose) return {};
@@ -374,10 +398,8 @@ std::optional<StationPose> LineFit::best(double r, const std::optional<AxisCondi
     const auto to = step(*pose, *at, about, condition, trust, gain);
     if (!to || gain < kStandsStill) break;
     auto moved = under(*to);
-    if (moved && !moved->gap.nodes.empty() && moved->gap.misfit() < pose->gap.misfit())
-      pose = std::move(moved);
-    else
-      trust *= 0.3;
+    if (moved && !moved->gap.nodes.empty() && moved->gap.misfit() < pose->gap.misfit()) pose = std::move(moved);
+    else trust *= 0.3;
   }
   if (pose) settle(*pose, *at, 0);
   return pose;
@@ -398,8 +420,12 @@ double LineFit::lift_to(const StationPose& pose, double r_most, int sense) const
     if (!next) break;
     if (beyond(*next) <= 0) {
       const Place<double> near = last->at;
-      return root_between([&](double t) { const auto q = gap_at(pose.axis, t, near); return q ? beyond(*q) : NAN; }, last->t, beyond(*last), next->t,
-                          beyond(*next));
+      return root_between(
+          [&](double t) {
+            const auto q = gap_at(pose.axis, t, near);
+            return q ? beyond(*q) : NAN;
+          },
+          last->t, beyond(*last), next->t, beyond(*next));
     }
     last = next;
   }

@@ -1,7 +1,7 @@
 // Cutter location data: what the planners make, the gouge check proves and the posts print.
 //
-// A record is the tool tip and the unit tool axis (tip to holder) in the workpiece frame W (the gear frame), mm. All our
-// cutters are bodies of revolution. A path holds the records of tooth space 0; the other spaces are turned copies.
+// A record is the tool tip and the unit tool axis (tip to holder) in the workpiece frame W (the gear frame), mm. All
+// our cutters are bodies of revolution. A path holds the records of tooth space 0; the other spaces are turned copies.
 #pragma once
 
 #include <string>
@@ -20,12 +20,13 @@ struct ClRecord {
   Vec3 axis = Vec3::UnitZ();
   double feed_mm_min = 0;  ///< of the tip on the way to this record; 0 for a rapid
   MoveKind kind = MoveKind::rapid;
-  int zone = 0;            ///< ring, from the inside, from 0
-  int pass = 0;            ///< from 0 within the operation and zone
+  int zone = 0;  ///< ring, from the inside, from 0
+  int pass = 0;  ///< from 0 within the operation and zone
 };
 
 /// One operation on one tooth space. The first record is a rapid to a point outside the blank, above everything;
-/// rapids link only such points. Zones follow one another; between two zones the path is at such a point (not in a herringbone corner).
+/// rapids link only such points. Zones follow one another; between two zones the path is at such a point (not in a
+/// herringbone corner).
 struct ClPath {
   int operation = 0;           ///< index in the job, from 0
   std::string operation_type;  ///< "roughing", "finishing", ... as in the job

@@ -8,8 +8,8 @@
 
 namespace toothpath::path {
 
-/// Motions in the order of the records, straight in tip and axis, without deviation; their line is the index of the record where they end. A
-/// rapid takes no time.
+/// Motions in the order of the records, straight in tip and axis, without deviation; their line is the index of the
+/// record where they end. A rapid takes no time.
 [[nodiscard]] std::vector<ToolMotion> motions_of(const ClPath& path);
 
 }  // namespace toothpath::path

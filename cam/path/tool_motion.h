@@ -11,13 +11,14 @@ namespace toothpath::path {
 struct ToolMotion {
   Vec3 tip_from = Vec3::Zero(), tip_to = Vec3::Zero();      ///< W, mm
   Vec3 axis_from = Vec3::UnitZ(), axis_to = Vec3::UnitZ();  ///< W, unit, tip to holder
-  double deviation_mm = 0;   ///< proven: the true tip stays this close to the straight line tip_from..tip_to (same parameter)
-  double axis_deviation = 0; ///< proven: the true axis stays this close to the normalised linear blend, rad
-  double minutes = 0;        ///< time that the machine takes
-  bool rapid = false;        ///< G0
-  int operation = 0;         ///< index in the job
-  int tooth = 0;             ///< tooth space that the program was at (its index angle), from 0
-  int line = 0;              ///< of the NC file, from 1
+  double deviation_mm =
+      0;  ///< proven: the true tip stays this close to the straight line tip_from..tip_to (same parameter)
+  double axis_deviation = 0;  ///< proven: the true axis stays this close to the normalised linear blend, rad
+  double minutes = 0;         ///< time that the machine takes
+  bool rapid = false;         ///< G0
+  int operation = 0;          ///< index in the job
+  int tooth = 0;              ///< tooth space that the program was at (its index angle), from 0
+  int line = 0;               ///< of the NC file, from 1
 };
 
 /// The pose at the share t of a motion, in [0, 1]: linear in the tip, normalised linear in the axis.

@@ -20,7 +20,7 @@ class CheckedClPath {
 
  private:
   explicit CheckedClPath(path::ClPath path) : path_(std::move(path)) {}
-  friend class analytic::GougeCheck;        // ball mills on face gears: cam/analytic/gouge_check.h
+  friend class analytic::GougeCheck;      // ball mills on face gears: cam/analytic/gouge_check.h
   friend class finger::FingerGougeCheck;  // finger mills on bevel gears: cam/finger/check.h
   path::ClPath path_;
 };

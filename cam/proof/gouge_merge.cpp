@@ -12,7 +12,8 @@ constexpr std::size_t kMostWorst = 20;  // places that are listed
 /// The list is in order but for what was put behind its first `ordered` places.
 void keep_worst(std::vector<WorstPlace>& places, std::size_t ordered) {
   const auto deeper = [](const WorstPlace& a, const WorstPlace& b) { return a.depth_mm > b.depth_mm; };
-  std::inplace_merge(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(ordered), places.end(), deeper);  // stable
+  std::inplace_merge(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(ordered), places.end(),
+                     deeper);  // stable
   if (places.size() > kMostWorst) places.resize(kMostWorst);
 }
 

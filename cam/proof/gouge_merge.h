@@ -1,5 +1,5 @@
-// Results of the gouge check put together: of chunks of motions, of teeth, of bodies. The same result for any division of the same motions,
-// when the parts are added in the order of the program.
+// Results of the gouge check put together: of chunks of motions, of teeth, of bodies. The same result for any division
+// of the same motions, when the parts are added in the order of the program.
 #pragma once
 
 #include "cam/proof/verification.h"

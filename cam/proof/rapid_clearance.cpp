@@ -10,8 +10,8 @@
 namespace toothpath::proof {
 namespace {
 
-constexpr double kBlankTouch = 1e-6;    // mm: a rapid at the very height of the blank is clear
-constexpr double kSmallestRapid = 1e-4; // mm
+constexpr double kBlankTouch = 1e-6;     // mm: a rapid at the very height of the blank is clear
+constexpr double kSmallestRapid = 1e-4;  // mm
 
 /// A stretch of the tool axis with the largest radius about it.
 struct RapidStretch {
@@ -79,7 +79,8 @@ class Rapid {
   }
 
   bool clear(double t0, double t1, int depth, RapidProof& proof) {
-    const Vec3 tip_0 = path::tip_at(m_, t0), tip_1 = path::tip_at(m_, t1), tip = 0.5 * (tip_0 + tip_1), axis = path::axis_at(m_, 0.5 * (t0 + t1));
+    const Vec3 tip_0 = path::tip_at(m_, t0), tip_1 = path::tip_at(m_, t1), tip = 0.5 * (tip_0 + tip_1),
+               axis = path::axis_at(m_, 0.5 * (t0 + t1));
     const Vec3 half = 0.5 * (tip_1 - tip_0);
     const double turning = stray(t0, t1), rise = std::abs(half.z()) + turning, run = half.head<2>().norm() + turning;
     tool::Body body = tool::Body::none;

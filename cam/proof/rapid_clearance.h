@@ -1,13 +1,13 @@
-// Rapids run at an unknown speed on each axis and must never meet the blank: ball, flute, shank and holder stay above it, below
-// it, outside its outer or inside its inner radius at every moment of the motion, not only at samples.
+// Rapids run at an unknown speed on each axis and must never meet the blank: ball, flute, shank and holder stay above
+// it, below it, outside its outer or inside its inner radius at every moment of the motion, not only at samples.
 #pragma once
 
 #include <limits>
 
+#include "cam/path/tool_motion.h"
 #include "cam/tool/assembly.h"
 #include "cam/tool/body.h"
 #include "cam/tool/proof_tool.h"
-#include "cam/path/tool_motion.h"
 
 namespace toothpath::proof {
 
@@ -21,16 +21,18 @@ struct RapidObstacle {
 
 struct RapidProof {
   bool clear = false;
-  double t = 0;                 ///< where it is not: share of the motion
+  double t = 0;  ///< where it is not: share of the motion
   Vec3 tip = Vec3::Zero();
   tool::Body body = tool::Body::none;  ///< what is lowest there: ball, shank or holder
 };
 
-/// Proves that the whole tool keeps clear of the obstacle (touching is allowed up to 1e-6 mm). The motion is halved until one
-/// of the four ways of being clear holds for a whole piece, with what the bodies can move in it subtracted; a piece of 1e-4 mm that
-/// is still open counts as not clear.
-[[nodiscard]] RapidProof prove_rapid(const path::ToolMotion& motion, const tool::ToolAssembly& tool, const RapidObstacle& obstacle);
+/// Proves that the whole tool keeps clear of the obstacle (touching is allowed up to 1e-6 mm). The motion is halved
+/// until one of the four ways of being clear holds for a whole piece, with what the bodies can move in it subtracted; a
+/// piece of 1e-4 mm that is still open counts as not clear.
+[[nodiscard]] RapidProof prove_rapid(const path::ToolMotion& motion, const tool::ToolAssembly& tool,
+                                     const RapidObstacle& obstacle);
 /// The same for any tool: its cutting part is told as "flute".
-[[nodiscard]] RapidProof prove_rapid(const path::ToolMotion& motion, const tool::ProofTool& tool, const RapidObstacle& obstacle);
+[[nodiscard]] RapidProof prove_rapid(const path::ToolMotion& motion, const tool::ProofTool& tool,
+                                     const RapidObstacle& obstacle);
 
 }  // namespace toothpath::proof

@@ -13,11 +13,11 @@ namespace toothpath::proof {
 
 /// A place where a body of the tool comes deepest into (or nearest to) the part.
 struct WorstPlace {
-  double depth_mm = 0;   ///< > 0: cut into the finished part
+  double depth_mm = 0;  ///< > 0: cut into the finished part
   tool::Body body = tool::Body::none;
-  std::string patch;     ///< "flank +1", "fillet -1", "root", "tip", "groove", ...
+  std::string patch;  ///< "flank +1", "fillet -1", "root", "tip", "groove", ...
   int operation = 0, tooth = 0, zone = 0;
-  int line = 0;          ///< of the NC program
+  int line = 0;                         ///< of the NC program
   double radius_mm = 0, height_mm = 0;  ///< r and z of the place, gear frame
   Vec3 point = Vec3::Zero();            ///< turned to tooth space 0
 };
@@ -27,13 +27,14 @@ struct GougeResult {
   double measured_mm = 0;  ///< worst penetration found; negative: the least gap
   double bound_mm = 0;     ///< proven: nothing on any path between the samples is deeper
   int bound_line = 0;      ///< line of the move with the greatest bound
-  double clearance_mm = 0;        ///< least proven gap of shank and holder; gaps are followed to 0.3 mm beyond the required one
+  double clearance_mm =
+      0;  ///< least proven gap of shank and holder; gaps are followed to 0.3 mm beyond the required one
   double clearance_measured_mm = 0;  ///< least gap of shank and holder that was found; negative: they cut
   double required_clearance_mm = 0;
   bool rapids_clear = true;       ///< every rapid stays outside the blank, all bodies
   std::vector<WorstPlace> worst;  ///< deepest first, at most 20, only those beyond the tolerance or the clearance
   WorstPlace deepest;             ///< the single deepest place, also when all is well
-  WorstPlace closest;             ///< of shank or holder, where they keep less than is required: the place of the least gap
+  WorstPlace closest;  ///< of shank or holder, where they keep less than is required: the place of the least gap
   std::size_t motions = 0, distance_queries = 0;
 };
 
@@ -47,23 +48,26 @@ struct ExcessResult {
   std::vector<std::size_t> histogram;
 };
 
-/// Corners that no ball of the finishing radius can reach without gouging. What a finished surface may keep anywhere (cusps, chords and a
-/// margin: `limit_mm`) is no corner that was left: `share`, `height_mm` and `active` speak of what stands higher than that.
+/// Corners that no ball of the finishing radius can reach without gouging. What a finished surface may keep anywhere
+/// (cusps, chords and a margin: `limit_mm`) is no corner that was left: `share`, `height_mm` and `active` speak of what
+/// stands higher than that.
 struct UnreachedResult {
-  std::size_t points = 0;       ///< of the grid, whatever stays there
-  double max_height_mm = 0;     ///< greatest excess at these points
-  double ball_mm = 0;           ///< diameter of the finishing ball; 0: the last operation does not finish, nothing below is told
+  std::size_t points = 0;    ///< of the grid, whatever stays there
+  double max_height_mm = 0;  ///< greatest excess at these points
+  double ball_mm = 0;  ///< diameter of the finishing ball; 0: the last operation does not finish, nothing below is told
   double limit_mm = 0;
-  double share = 0;             ///< of the area of the finished surface
-  double height_mm = 0;         ///< greatest height; 0: nothing was left
-  double largest_ball_mm = 0;   ///< diameter of the largest ball that reaches all of the surface; 0 where nothing was left, or no ball does
+  double share = 0;      ///< of the area of the finished surface
+  double height_mm = 0;  ///< greatest height; 0: nothing was left
+  double largest_ball_mm =
+      0;  ///< diameter of the largest ball that reaches all of the surface; 0 where nothing was left, or no ball does
   struct Place {
     double height_mm = 0;
     int zone = 0;
     std::string patch;
     double radius_mm = 0, z_mm = 0;
   };
-  std::optional<Place> active;  ///< the highest place on an active flank: between the tip and what a pinion equal to the shaper touches
+  std::optional<Place>
+      active;  ///< the highest place on an active flank: between the tip and what a pinion equal to the shaper touches
   [[nodiscard]] bool left() const { return height_mm > 0; }
 };
 
@@ -85,7 +89,17 @@ struct SurfaceGrid {
 };
 
 /// Where a deviation comes from.
-enum class ErrorSource : std::uint8_t { flank_solve, chord, scallop, ridge, orientation, axis_linearisation, rounding, path_blending, verification };
+enum class ErrorSource : std::uint8_t {
+  flank_solve,
+  chord,
+  scallop,
+  ridge,
+  orientation,
+  axis_linearisation,
+  rounding,
+  path_blending,
+  verification
+};
 [[nodiscard]] constexpr const char* to_string(ErrorSource source) {
   switch (source) {
     case ErrorSource::flank_solve: return "flank solve";
@@ -104,7 +118,7 @@ enum class ErrorSource : std::uint8_t { flank_solve, chord, scallop, ridge, orie
 struct LedgerEntry {
   ErrorSource source = ErrorSource::flank_solve;
   double predicted_um = 0, measured_um = 0;
-  std::string note;    ///< what was measured, or why the source does not occur
+  std::string note;  ///< what was measured, or why the source does not occur
 };
 
 /// Why the tool stands as it does in one zone of one operation.
@@ -112,8 +126,8 @@ struct DirectionChoice {
   int operation = 0, zone = 0;
   bool fixed = true;
   Vec3 axis = Vec3::UnitZ();
-  double lean_rad = 0;        ///< angle between the axis and the gear axis
-  double clearance_mm = 0;    ///< least gap of shank and holder in that direction
+  double lean_rad = 0;      ///< angle between the axis and the gear axis
+  double clearance_mm = 0;  ///< least gap of shank and holder in that direction
   // Simultaneous (`fixed` is false): `axis` is the mean of the path; leans are from the normal of the pitch surface.
   double least_lean_rad = 0, greatest_lean_rad = 0;
   double greatest_turn_rad_per_mm = 0;  ///< of the axis, along the ball centre

@@ -16,13 +16,13 @@ struct HolderSegment {
 struct ToolAssembly {
   int number = 0;  ///< T word
   CutterType type = CutterType::ball_end_mill;
-  double diameter_mm = 0;        ///< of the ball; a finger mill has none
-  double flute_length_mm = 0;    ///< tip to the end of the cutting part; shank above it
+  double diameter_mm = 0;      ///< of the ball; a finger mill has none
+  double flute_length_mm = 0;  ///< tip to the end of the cutting part; shank above it
   double shank_diameter_mm = 0;
-  double length_mm = 0;          ///< gauge line to tip
+  double length_mm = 0;  ///< gauge line to tip
   std::vector<HolderSegment> holder;
-  double stick_out_mm = 0;       ///< tip to the lower face of the holder
-  int teeth = 2;                 ///< cutting edges
+  double stick_out_mm = 0;  ///< tip to the lower face of the holder
+  int teeth = 2;            ///< cutting edges
   // Finger mill only.
   double module_mm = 0;          ///< m_nj
   double tip_radius_mm = 0;      ///< r_t

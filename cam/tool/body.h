@@ -14,7 +14,8 @@ namespace toothpath::tool {
 
 class Profile;
 
-/// The bodies of a tool, as messages and reports name them. `cutter`: ball and flute in one; `any`: of a rapid, whichever comes first.
+/// The bodies of a tool, as messages and reports name them. `cutter`: ball and flute in one; `any`: of a rapid,
+/// whichever comes first.
 enum class Body : std::uint8_t { none, ball, flute, cutter, shank, holder, any };
 [[nodiscard]] constexpr const char* to_string(Body body) {
   switch (body) {
@@ -29,16 +30,19 @@ enum class Body : std::uint8_t { none, ball, flute, cutter, shank, holder, any }
   return "";
 }
 /// Does it cut? What it does to the part is a gouge, not a lack of clearance.
-[[nodiscard]] constexpr bool cuts(Body body) { return body == Body::ball || body == Body::flute || body == Body::cutter; }
+[[nodiscard]] constexpr bool cuts(Body body) {
+  return body == Body::ball || body == Body::flute || body == Body::cutter;
+}
 
 /// A truncated cone about the tool axis. Heights from the tip, mm.
 struct Frustum {
-  double from = 0, to = 0;              ///< heights
+  double from = 0, to = 0;  ///< heights
   double radius_from = 0, radius_to = 0;
   Body body = Body::none;
 };
 
-/// Shank and holder, from below; the cutting part is not among them. Of an assembly the shank begins at its flute length.
+/// Shank and holder, from below; the cutting part is not among them. Of an assembly the shank begins at its flute
+/// length.
 [[nodiscard]] std::vector<Frustum> shank_and_holder(const ToolAssembly& tool);
 [[nodiscard]] std::vector<Frustum> shank_and_holder(const Profile& profile);
 

@@ -19,11 +19,13 @@ Vec2 place(const bevel_gear::FingerProfile<double>& c, double p) {
 MeridianPiece through(const Vec2& a, const Vec2& b, const Vec2& c) {
   const Vec2 ab = b - a, ac = c - a, bc = c - b;
   const double twice_area = ab[0] * ac[1] - ab[1] * ac[0];
-  return {a, c, -2 * twice_area / (ab.norm() * ac.norm() * bc.norm())};  // b to the left of the way from a to c: bulging
+  return {a, c,
+          -2 * twice_area / (ab.norm() * ac.norm() * bc.norm())};  // b to the left of the way from a to c: bulging
 }
 
 /// Arcs from p0 to p1, halved until the quarter points lie within the sag.
-void involute_arcs(const bevel_gear::FingerProfile<double>& c, double p0, double p1, double sag_mm, std::vector<MeridianPiece>& out) {
+void involute_arcs(const bevel_gear::FingerProfile<double>& c, double p0, double p1, double sag_mm,
+                   std::vector<MeridianPiece>& out) {
   const auto arc = through(place(c, p0), place(c, 0.5 * (p0 + p1)), place(c, p1));
   double off = 0;
   for (const double share : {0.2, 0.8}) {
@@ -63,7 +65,8 @@ Profile finger_profile(const bevel_gear::FingerProfile<double>& c, const ToolAss
     const double psi = kPi / 2 - (k + 0.5) * step;
     line.emplace_back(std::max(0.0, c.x_o - out * std::sin(psi) + c.h_f), c.rho_o + out * std::cos(psi));
   }
-  // The flank is hollow: its chords enclose it. The sag of a chord over dp is its arc length times its turn, an eighth of dS dpsi.
+  // The flank is hollow: its chords enclose it. The sag of a chord over dp is its arc length times its turn, an eighth
+  // of dS dpsi.
   const auto end = c.involute(c.p_D);
   const double bend = end.dS * end.dpsi / 8;
   const int chords = std::max(1, int(std::ceil((c.p_D - c.p_C) * std::sqrt(bend / sag_mm))));

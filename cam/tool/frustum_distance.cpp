@@ -39,7 +39,9 @@ HalfPlane half_plane(double rho, double h, const Frustum& f) {
 
 }  // namespace
 
-double frustum_distance(const Vec3& x, const Frustum& f) { return half_plane(std::sqrt(x.x() * x.x() + x.y() * x.y()), x.z(), f).distance; }
+double frustum_distance(const Vec3& x, const Frustum& f) {
+  return half_plane(std::sqrt(x.x() * x.x() + x.y() * x.y()), x.z(), f).distance;
+}
 
 FrustumSlope frustum_slope(const Vec3& x, const Frustum& f) {
   const double rho = std::sqrt(x.x() * x.x() + x.y() * x.y());

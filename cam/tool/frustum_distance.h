@@ -5,7 +5,8 @@
 
 namespace toothpath::tool {
 
-/// Signed distance to the boundary, negative inside. The axis is no boundary. Convex in the point where both radii are positive.
+/// Signed distance to the boundary, negative inside. The axis is no boundary. Convex in the point where both radii are
+/// positive.
 [[nodiscard]] double frustum_distance(const Vec3& point_T, const Frustum& body);
 
 /// The same with a subgradient, no longer than a unit vector.
@@ -21,7 +22,8 @@ class PlacedFrustum {
   /// With the tool's tip at `tip` and its unit axis `axis`, in the frame of the points that are asked.
   PlacedFrustum(const Frustum& body, const Vec3& tip, const Vec3& axis);
 
-  /// Is the point farther than `distance` from the cylinder about the frustum, and so from the frustum? False may mean either.
+  /// Is the point farther than `distance` from the cylinder about the frustum, and so from the frustum? False may mean
+  /// either.
   [[nodiscard]] bool beyond(const Vec3& point, double distance) const {
     const Vec3 d = point - tip_;
     const double h = d.dot(axis_), along = h < body_.from ? body_.from - h : h > body_.to ? h - body_.to : 0;

@@ -5,7 +5,7 @@
 namespace toothpath::tool {
 namespace {
 
-constexpr double kSharp = 1e-9;  // rad: by which a tangent may turn back at a joint of a convex meridian
+constexpr double kSharp = 1e-9;     // rad: by which a tangent may turn back at a joint of a convex meridian
 constexpr double kMostError = 0.1;  // of the ball's radius, in a measured meridian
 
 /// Inclination of a piece's tangent at a place: pi/2 runs straight outwards, 0 along the axis, -pi/2 straight inwards.
@@ -32,7 +32,8 @@ std::vector<Vec2> tangent_corners(const MeridianPiece& piece, double sag_mm) {
 /// Points of a hollow arc: its chords enclose it.
 std::vector<Vec2> chord_points(const MeridianPiece& piece, double sag_mm) {
   const auto c = circle_of<double>(piece);
-  const double half = std::acos(std::clamp(c.chord_at / c.R, -1.0, 1.0)), most = std::acos(std::max(-1.0, 1 - sag_mm / c.R));
+  const double half = std::acos(std::clamp(c.chord_at / c.R, -1.0, 1.0)),
+               most = std::acos(std::max(-1.0, 1 - sag_mm / c.R));
   const int n = std::max(1, int(std::ceil(half / most)));
   const double middle = std::atan2(c.out[1], c.out[0]);
   std::vector<Vec2> points{piece.from};
@@ -53,13 +54,19 @@ class Maker {
     positive("diameter", d_.diameter_mm);
     positive("flute_length", d_.flute_length_mm);
     positive("shank_diameter", d_.shank_diameter_mm);
-    const bool leaned = d_.shape == CutterShape::tapered_ball || (d_.shape == CutterShape::barrel && d_.half_angle_rad != 0);
+    const bool leaned =
+        d_.shape == CutterShape::tapered_ball || (d_.shape == CutterShape::barrel && d_.half_angle_rad != 0);
     if (leaned && !(d_.half_angle_rad > 0 && d_.half_angle_rad < kPi / 4))
-      refuse("half_angle", "half_angle = {:.4f} deg: the angle between the axis and the side lies above 0 and below 45 deg", degrees(d_.half_angle_rad));
+      refuse("half_angle",
+             "half_angle = {:.4f} deg: the angle between the axis and the side lies above 0 and below 45 deg",
+             degrees(d_.half_angle_rad));
     if (d_.shape == CutterShape::bull_nose && !(d_.corner_radius_mm > 0 && d_.corner_radius_mm <= r_0_))
-      refuse("corner_radius", "corner_radius = {:.4f} mm: it is above 0 and no more than {:.4f} mm, half the diameter", d_.corner_radius_mm, r_0_);
-    if (d_.shape == CutterShape::barrel && !(d_.meridian_radius_mm < 0 || d_.meridian_radius_mm > r_0_) )
-      refuse("meridian_radius", "meridian_radius = {:.4f} mm: a bulging side needs more than the ball's radius {:.4f} mm", d_.meridian_radius_mm, r_0_);
+      refuse("corner_radius", "corner_radius = {:.4f} mm: it is above 0 and no more than {:.4f} mm, half the diameter",
+             d_.corner_radius_mm, r_0_);
+    if (d_.shape == CutterShape::barrel && !(d_.meridian_radius_mm < 0 || d_.meridian_radius_mm > r_0_))
+      refuse("meridian_radius",
+             "meridian_radius = {:.4f} mm: a bulging side needs more than the ball's radius {:.4f} mm",
+             d_.meridian_radius_mm, r_0_);
     if (!refusals.empty()) return;  // what follows divides by these
     lengths();
     table();
@@ -94,7 +101,9 @@ class Maker {
     if (has_ball()) {
       const Vec2 at = tangent();
       pieces.push_back({Vec2::Zero(), at, 1 / r_0_});
-      if (flute > at[0]) pieces.push_back({at, Vec2(flute, flute_end()[0]), d_.shape == CutterShape::barrel ? 1 / d_.meridian_radius_mm : 0});
+      if (flute > at[0])
+        pieces.push_back(
+            {at, Vec2(flute, flute_end()[0]), d_.shape == CutterShape::barrel ? 1 / d_.meridian_radius_mm : 0});
       return Meridian(std::move(pieces));
     }
     const double corner = d_.shape == CutterShape::bull_nose ? d_.corner_radius_mm : 0;
@@ -141,32 +150,45 @@ class Maker {
   void lengths() {
     const double needed = d_.shape == CutterShape::bull_nose ? d_.corner_radius_mm : has_ball() ? r_0_ : 0;
     if (d_.flute_length_mm < needed)
-      refuse("flute_length", "flute_length = {:.4f} mm is below {:.4f} mm, the height of the rounded end", d_.flute_length_mm, needed);
+      refuse("flute_length", "flute_length = {:.4f} mm is below {:.4f} mm, the height of the rounded end",
+             d_.flute_length_mm, needed);
     else if (const Vec2 end = flute_end(); !(end[1] >= 0))
-      refuse("meridian_radius", "meridian_radius = {:.4f} mm: the side is widest below the end of the flutes at {:.4f} mm; it must not narrow",
+      refuse("meridian_radius",
+             "meridian_radius = {:.4f} mm: the side is widest below the end of the flutes at {:.4f} mm; it must not "
+             "narrow",
              d_.meridian_radius_mm, d_.flute_length_mm);
     else if (end[1] > 0 && d_.shank_diameter_mm < 2 * end[0])
-      refuse("shank_diameter", "shank_diameter = {:.4f} mm is thinner than the end of the flutes, {:.4f} mm: a tapered mill is ground from its shank",
+      refuse("shank_diameter",
+             "shank_diameter = {:.4f} mm is thinner than the end of the flutes, {:.4f} mm: a tapered mill is ground "
+             "from its shank",
              d_.shank_diameter_mm, 2 * end[0]);
     const double top = d_.holder.empty() ? d_.length_mm : d_.stick_out_mm;
     if (!(top >= d_.flute_length_mm && top < INFINITY))
-      refuse(d_.holder.empty() ? "length" : "stick_out", "{} = {:.4f} mm is below the flute_length {:.4f} mm", d_.holder.empty() ? "length" : "stick_out", top,
-             d_.flute_length_mm);
+      refuse(d_.holder.empty() ? "length" : "stick_out", "{} = {:.4f} mm is below the flute_length {:.4f} mm",
+             d_.holder.empty() ? "length" : "stick_out", top, d_.flute_length_mm);
     for (const auto& s : d_.holder)
-      if (!(s.height_mm > 0 && s.lower_diameter_mm > 0 && s.upper_diameter_mm > 0 && s.height_mm + s.lower_diameter_mm + s.upper_diameter_mm < INFINITY))
-        refuse("holder", "a holder segment [{}, {}, {}] mm: diameters and height are above 0", s.lower_diameter_mm, s.upper_diameter_mm, s.height_mm);
+      if (!(s.height_mm > 0 && s.lower_diameter_mm > 0 && s.upper_diameter_mm > 0 &&
+            s.height_mm + s.lower_diameter_mm + s.upper_diameter_mm < INFINITY))
+        refuse("holder", "a holder segment [{}, {}, {}] mm: diameters and height are above 0", s.lower_diameter_mm,
+               s.upper_diameter_mm, s.height_mm);
   }
   void table() {
     if (!d_.meridian) return;
     const auto& m = *d_.meridian;
     if (!has_ball()) return refuse("meridian", "a measured meridian is for mills with a ball end");
-    if (m.t.size() < 2 || m.t.size() != m.f.size()) return refuse("meridian", "a measured meridian needs two points at least, {} given", m.t.size());
-    if (!(m.t.front() <= 0)) return refuse("meridian", "the measured meridian begins at t = {:.4f} mm; it must begin at the centre of the ball, t = 0", m.t.front());
+    if (m.t.size() < 2 || m.t.size() != m.f.size())
+      return refuse("meridian", "a measured meridian needs two points at least, {} given", m.t.size());
+    if (!(m.t.front() <= 0))
+      return refuse("meridian",
+                    "the measured meridian begins at t = {:.4f} mm; it must begin at the centre of the ball, t = 0",
+                    m.t.front());
     for (std::size_t k = 0; k < m.t.size(); ++k) {
       if (!std::isfinite(m.t[k]) || !std::isfinite(m.f[k]) || (k > 0 && !(m.t[k] > m.t[k - 1])))
         return refuse("meridian", "point {} of the measured meridian: heights ascend and numbers are finite", k + 1);
       if (std::abs(m.f[k]) > kMostError * r_0_)
-        return refuse("meridian", "the measured error {:.2f} um at t = {:.4f} mm exceeds {:.2f} um, a tenth of the ball's radius: is it in micrometres?",
+        return refuse("meridian",
+                      "the measured error {:.2f} um at t = {:.4f} mm exceeds {:.2f} um, a tenth of the ball's radius: "
+                      "is it in micrometres?",
                       1e3 * m.f[k], m.t[k], 1e3 * kMostError * r_0_);
     }
   }
@@ -208,7 +230,9 @@ std::vector<Vec2> Meridian::corners() const {
 std::vector<Frustum> Meridian::enclosing_frustums(double sag_mm, Body body) const {
   std::vector<Frustum> out;
   for (const auto& p : pieces_) {
-    const auto line = p.bend > 0 ? tangent_corners(p, sag_mm) : p.bend < 0 ? chord_points(p, sag_mm) : std::vector<Vec2>{p.from, p.to};
+    const auto line = p.bend > 0   ? tangent_corners(p, sag_mm)
+                      : p.bend < 0 ? chord_points(p, sag_mm)
+                                   : std::vector<Vec2>{p.from, p.to};
     for (std::size_t k = 1; k < line.size(); ++k)
       if (line[k][0] > line[k - 1][0]) out.push_back({line[k - 1][0], line[k][0], line[k - 1][1], line[k][1], body});
   }

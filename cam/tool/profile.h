@@ -1,7 +1,8 @@
 // A cutter as a profile r(h): its meridian from the tip upwards, made of arcs and lines, turned about the axis.
 //
-// Ball, tapered ball, flat, bull nose, barrel and finger mill are data of one type; planners state which profile they need. T frame:
-// tip at the origin, z the axis towards the holder; in the half plane (h, r) h is the height above the tip, r >= 0 the radius. mm, rad.
+// Ball, tapered ball, flat, bull nose, barrel and finger mill are data of one type; planners state which profile they
+// need. T frame: tip at the origin, z the axis towards the holder; in the half plane (h, r) h is the height above the
+// tip, r >= 0 the radius. mm, rad.
 #pragma once
 
 #include <algorithm>
@@ -22,17 +23,18 @@ namespace toothpath::tool {
 /// One arc or line of a meridian. Heights do not fall from `from` to `to`; a level line is a flat or a shoulder.
 struct MeridianPiece {
   Vec2 from = Vec2::Zero(), to = Vec2::Zero();  ///< (h, r)
-  double bend = 0;                              ///< 1 / radius: > 0 bulges outwards, < 0 hollow, 0 a line; an arc turns at most 180 deg
+  double bend = 0;  ///< 1 / radius: > 0 bulges outwards, < 0 hollow, 0 a line; an arc turns at most 180 deg
 };
 
 /// The point of a body nearest to a place of the half plane.
 template <typename S>
 struct MeridianDistance {
-  S distance{};           ///< negative inside
+  S distance{};                          ///< negative inside
   Vec2T<S> gradient = Vec2T<S>::Zero();  ///< of the distance along (h, r), unit
 };
 
-/// The circle of a bent piece: centre, the unit direction from there to the middle of the arc, radius, and the chord's distance from the centre.
+/// The circle of a bent piece: centre, the unit direction from there to the middle of the arc, radius, and the chord's
+/// distance from the centre.
 template <typename S>
 struct PieceCircle {
   Vec2T<S> centre, out;
@@ -67,7 +69,8 @@ Vec2T<S> nearest_on_piece(const MeridianPiece& piece, const Vec2T<S>& q) {
   const Vec2T<S> v = q - c.centre;
   const S length = sqrt(S(v.dot(v)));
   // On the arc if it lies beyond the chord as seen from the centre.
-  if (!(length > S(0)) || S(v.dot(c.out)) * c.R < length * c.chord_at) return S((q - a).dot(q - a)) < S((q - b).dot(q - b)) ? a : b;
+  if (!(length > S(0)) || S(v.dot(c.out)) * c.R < length * c.chord_at)
+    return S((q - a).dot(q - a)) < S((q - b).dot(q - b)) ? a : b;
   return Vec2T<S>(c.centre + v * S(c.R / length));
 }
 
@@ -139,8 +142,9 @@ class Meridian {
     return {S(sense * d), d > S(0) ? Vec2T<S>((q - foot) * S(sense / d)) : normal};
   }
 
-  /// Truncated cones that enclose the body, from below: lines as they are, hollow arcs in chords, bulging arcs in tangents that leave it by
-  /// no more than `sag_mm`. Together their union contains the body and lies within sag_mm of it.
+  /// Truncated cones that enclose the body, from below: lines as they are, hollow arcs in chords, bulging arcs in
+  /// tangents that leave it by no more than `sag_mm`. Together their union contains the body and lies within sag_mm of
+  /// it.
   [[nodiscard]] std::vector<Frustum> enclosing_frustums(double sag_mm, Body body) const;
 
  private:
@@ -152,14 +156,14 @@ enum class CutterShape { ball, tapered_ball, flat, bull_nose, barrel };
 /// What a tool is ordered by. Lengths mm from the tip, angles rad.
 struct CutterData {
   CutterShape shape = CutterShape::ball;
-  double diameter_mm = 0;        ///< of the ball end; flat and bull nose: of the cutter
-  double half_angle_rad = 0;     ///< tapered ball and barrel: between axis and side where it leaves the ball
-  double corner_radius_mm = 0;   ///< bull nose
+  double diameter_mm = 0;         ///< of the ball end; flat and bull nose: of the cutter
+  double half_angle_rad = 0;      ///< tapered ball and barrel: between axis and side where it leaves the ball
+  double corner_radius_mm = 0;    ///< bull nose
   double meridian_radius_mm = 0;  ///< barrel: > 0 bulging, < 0 hollow
-  double flute_length_mm = 0;    ///< the teeth end here
+  double flute_length_mm = 0;     ///< the teeth end here
   double shank_diameter_mm = 0;
-  double length_mm = 0;          ///< gauge line to tip; the shank ends there where there is no holder
-  double stick_out_mm = 0;       ///< tip to the lower face of the holder
+  double length_mm = 0;     ///< gauge line to tip; the shank ends there where there is no holder
+  double stick_out_mm = 0;  ///< tip to the lower face of the holder
   std::vector<HolderSegment> holder;
   std::optional<MeridianError> meridian;  ///< measured: error of rho along t
 };
@@ -173,44 +177,52 @@ struct CutterData {
 /// What a tool consists of where gaps are proven: convex bodies whose union contains it.
 struct ProofBodies {
   double ball_height_mm = 0, ball_radius_mm = 0;  ///< centre above the tip; radius 0: no ball end
-  std::vector<Frustum> frustums;                   ///< "flute", "shank", "holder", from below
+  std::vector<Frustum> frustums;                  ///< "flute", "shank", "holder", from below
 };
 
 /// A refused number: the key of [[tool]] that it belongs to, so that the reader can add file, line and column.
 struct ProfileRefusal {
-  std::string key;  ///< "diameter", "half_angle", "corner_radius", "meridian_radius", "flute_length", "shank_diameter", "stick_out", "holder", "meridian"
+  std::string key;  ///< "diameter", "half_angle", "corner_radius", "meridian_radius", "flute_length", "shank_diameter",
+                    ///< "stick_out", "holder", "meridian"
   Diagnostic diagnostic;
 };
 
 /// A checked tool: cutting part, shank and holder.
 class Profile {
  public:
-  /// Refuses what makes no body, all reasons at once: numbers that are not finite or not positive; a half angle outside (0, 45) deg; a corner
-  /// or ball that does not fit under the flutes; a shank of a tapered mill thinner than its flutes; a barrel whose flutes pass its widest
-  /// place; a stick-out below the flutes; a measured meridian that begins above the ball's centre, is not ascending, or errs by more than r_0/10.
+  /// Refuses what makes no body, all reasons at once: numbers that are not finite or not positive; a half angle outside
+  /// (0, 45) deg; a corner or ball that does not fit under the flutes; a shank of a tapered mill thinner than its
+  /// flutes; a barrel whose flutes pass its widest place; a stick-out below the flutes; a measured meridian that begins
+  /// above the ball's centre, is not ascending, or errs by more than r_0/10.
   static std::variant<Profile, std::vector<ProfileRefusal>> make(const CutterData& data);
-  /// The ball mill of an assembly that a job reader has accepted; nothing is checked again. Finger mills: cam/tool/finger_profile.h.
+  /// The ball mill of an assembly that a job reader has accepted; nothing is checked again. Finger mills:
+  /// cam/tool/finger_profile.h.
   static Profile of_ball_mill(const ToolAssembly& tool);
   /// A body from pieces, for cutters whose form is made elsewhere. `shank` and `holder` may be empty. No law.
-  Profile(Meridian cutting, Meridian shank, Meridian holder) : cutting_(std::move(cutting)), shank_(std::move(shank)), holder_(std::move(holder)) {}
+  Profile(Meridian cutting, Meridian shank, Meridian holder)
+      : cutting_(std::move(cutting)), shank_(std::move(shank)), holder_(std::move(holder)) {}
 
   /// Tip to the end of the teeth, nominal.
   [[nodiscard]] const Meridian& cutting() const { return cutting_; }
-  /// Above the teeth: of a tapered mill the cone goes on, without teeth, until it is as thick as the shank; then a cylinder.
+  /// Above the teeth: of a tapered mill the cone goes on, without teeth, until it is as thick as the shank; then a
+  /// cylinder.
   [[nodiscard]] const Meridian& shank() const { return shank_; }
   [[nodiscard]] const Meridian& holder() const { return holder_; }
   /// Law of the side about the ball end; none for flat, bull nose and finger mills. Holds up to `law_end()`.
   [[nodiscard]] const std::optional<RadiusLaw<double>>& law() const { return law_; }
-  /// Height t above the ball's centre whose ball touches at the end of the teeth, or where the measured meridian ends if that is lower.
+  /// Height t above the ball's centre whose ball touches at the end of the teeth, or where the measured meridian ends
+  /// if that is lower.
   [[nodiscard]] double law_end() const { return law_end_; }
   [[nodiscard]] double half_angle_rad() const { return half_angle_; }
   /// A ball with a cylinder above it, as nominal: its distance is that of the ball's centre.
   [[nodiscard]] bool plain_ball() const { return law_ && half_angle_ == 0 && law_->R_m == 0 && !law_->error; }
-  /// Signed distance from a point of T to the cutting part as it was measured, with its gradient: the nominal one less the error at the
-  /// height of its foot. Without a measured meridian exact; with one the error is below f'^2 times the foot's distance from the axis.
+  /// Signed distance from a point of T to the cutting part as it was measured, with its gradient: the nominal one less
+  /// the error at the height of its foot. Without a measured meridian exact; with one the error is below f'^2 times the
+  /// foot's distance from the axis.
   [[nodiscard]] FrustumSlope cutting_distance(const Vec3& point_T) const;
 
-  /// Ball and truncated cones that contain the whole tool, no more than `sag_mm` outside of it, and what is measured above the nominal form.
+  /// Ball and truncated cones that contain the whole tool, no more than `sag_mm` outside of it, and what is measured
+  /// above the nominal form.
   [[nodiscard]] ProofBodies proof_bodies(double sag_mm) const;
 
  private:

@@ -8,29 +8,33 @@
 namespace toothpath::tool {
 namespace {
 
-constexpr int kMostLinks = 400;      // of a chain
+constexpr int kMostLinks = 400;         // of a chain
 constexpr double kShortestLink = 1e-6;  // mm
 
 /// The hull of two balls about the axis, centres at heights h_0 < h_1.
 RoundedFrustum hull_of_balls(double h_0, double rho_0, double h_1, double rho_1) {
-  const double rise = rho_1 - rho_0, length = h_1 - h_0, sin_tau = std::abs(rise) / length, cos_tau = std::sqrt(std::max(0.0, 1 - sin_tau * sin_tau));
-  const double foot = std::abs(rise) * sin_tau, radius = std::abs(rise) * cos_tau;  // where the cone touches the larger ball less the smaller
+  const double rise = rho_1 - rho_0, length = h_1 - h_0, sin_tau = std::abs(rise) / length,
+               cos_tau = std::sqrt(std::max(0.0, 1 - sin_tau * sin_tau));
+  const double foot = std::abs(rise) * sin_tau,
+               radius = std::abs(rise) * cos_tau;  // where the cone touches the larger ball less the smaller
   if (rise >= 0) return {{h_0, h_1 - foot, 0, radius, Body::flute}, rho_0};
   return {{h_0 + foot, h_1, radius, 0, Body::flute}, rho_1};
 }
 
-/// Bound of |rho''| between two heights: of the nominal arc, greatest where it is nearest to its centre, and of the measured table, whose second
-/// derivative is linear between its points.
+/// Bound of |rho''| between two heights: of the nominal arc, greatest where it is nearest to its centre, and of the
+/// measured table, whose second derivative is linear between its points.
 double most_bend(const RadiusLaw<double>& law, double t_0, double t_1) {
   const double most = law.R_m == 0 ? 0 : 1 / (std::abs(law.R_m - law.r_0) * law.cos_tau);
   if (!law.error) return most;
   double error = 0;
   const double small = 1e-3 * (t_1 - t_0);
-  for (const double t : {t_0, t_1 - small}) error = std::max(error, std::abs(law.error->at(t + small).slope - law.error->at(t).slope) / small);
+  for (const double t : {t_0, t_1 - small})
+    error = std::max(error, std::abs(law.error->at(t + small).slope - law.error->at(t).slope) / small);
   return most + 1.01 * error;  // the mean over a thousandth of a line is its end within a thousandth of its range
 }
 
-/// Balls of a law at heights so near to each other that the chords of rho leave it by no more than the sag; each grown by what they do leave.
+/// Balls of a law at heights so near to each other that the chords of rho leave it by no more than the sag; each grown
+/// by what they do leave.
 std::vector<RoundedFrustum> chain(const RadiusLaw<double>& law, double t_end, double sag_mm) {
   std::vector<double> stops{t_end};
   if (law.error)
@@ -56,7 +60,8 @@ std::vector<RoundedFrustum> chain(const RadiusLaw<double>& law, double t_end, do
 
 /// The one body of a ball end with a straight side.
 RoundedFrustum straight(const RadiusLaw<double>& law, double flute_end) {
-  const double to = std::max(flute_end + law.r_0 * law.sin_tau, law.r_0 + kShortestLink), tan_tau = law.sin_tau / law.cos_tau;
+  const double to = std::max(flute_end + law.r_0 * law.sin_tau, law.r_0 + kShortestLink),
+               tan_tau = law.sin_tau / law.cos_tau;
   return {{law.r_0, to, 0, (to - law.r_0) * tan_tau, Body::flute}, law.r_0};
 }
 
@@ -66,7 +71,8 @@ std::optional<RoundedFrustum> bull_nose(const Meridian& cutting) {
   std::size_t k = 0;
   double flat = 0, corner = 0;
   if (k < p.size() && p[k].to[0] == p[k].from[0] && p[k].bend == 0) flat = p[k++].to[1];
-  if (k < p.size() && p[k].bend > 0 && std::abs(p[k].bend * (p[k].to[0] - p[k].from[0]) - 1) < 1e-12) corner = 1 / p[k++].bend;
+  if (k < p.size() && p[k].bend > 0 && std::abs(p[k].bend * (p[k].to[0] - p[k].from[0]) - 1) < 1e-12)
+    corner = 1 / p[k++].bend;
   const double radius = flat + corner;
   if (k < p.size() && (p[k].bend != 0 || p[k].from[1] != radius || p[k].to[1] != radius)) return {};
   if (k + 1 < p.size() || !(radius > 0)) return {};
@@ -98,8 +104,11 @@ ProofTool proof_tool(const Profile& profile, int number, double sag_mm) {
       if (law->error) {  // above what was measured
         RadiusLaw<double> nominal = *law;
         nominal.error = nullptr;
-        const double t = profile.law_end(), grown = std::max(0.0, law->error->largest()), end = profile.cutting().to() - law->r_0 * (1 - law->sin_tau);
-        if (end > t + kShortestLink) out.cutting.push_back(hull_of_balls(law->r_0 + t, nominal.rho(t) + grown, law->r_0 + end, nominal.rho(end) + grown));
+        const double t = profile.law_end(), grown = std::max(0.0, law->error->largest()),
+                     end = profile.cutting().to() - law->r_0 * (1 - law->sin_tau);
+        if (end > t + kShortestLink)
+          out.cutting.push_back(
+              hull_of_balls(law->r_0 + t, nominal.rho(t) + grown, law->r_0 + end, nominal.rho(end) + grown));
       }
     }
   } else if (const auto body = bull_nose(profile.cutting())) {
@@ -107,7 +116,8 @@ ProofTool proof_tool(const Profile& profile, int number, double sag_mm) {
   } else {
     for (const auto& f : profile.cutting().enclosing_frustums(sag_mm, Body::flute)) out.cutting.push_back({f, 0});
   }
-  for (const auto& [meridian, body] : {std::pair{&profile.shank(), Body::shank}, std::pair{&profile.holder(), Body::holder}})
+  for (const auto& [meridian, body] :
+       {std::pair{&profile.shank(), Body::shank}, std::pair{&profile.holder(), Body::holder}})
     for (const auto& f : meridian->enclosing_frustums(sag_mm, body)) out.bodies.push_back(f);
   return out;
 }

@@ -1,4 +1,5 @@
-// A tool as proofs ask for it: the convex bodies of its cutting part, which may touch, and those of shank and holder, which may not.
+// A tool as proofs ask for it: the convex bodies of its cutting part, which may touch, and those of shank and holder,
+// which may not.
 #pragma once
 
 #include <optional>
@@ -12,21 +13,21 @@ namespace toothpath::tool {
 class Profile;
 
 struct ProofTool {
-  int number = 0;                      ///< T word
+  int number = 0;                       ///< T word
   std::vector<RoundedFrustum> cutting;  ///< their union contains the cutting part; names "flute"
-  double ball_top_mm = 0;              ///< what touches below this height above the tip is the ball end; 0: there is none
-  std::vector<Frustum> bodies;         ///< "shank" and "holder", from below
+  double ball_top_mm = 0;       ///< what touches below this height above the tip is the ball end; 0: there is none
+  std::vector<Frustum> bodies;  ///< "shank" and "holder", from below
   std::optional<ToolAssembly> ball_mill;  ///< a plain ball mill: its ball and flute are followed by distances of points
 };
 
 /// The tool of a ball mill: everything in `ball_mill`, and the same as bodies.
 [[nodiscard]] ProofTool proof_tool(const ToolAssembly& ball_mill);
 
-/// The tool of a profile. Ball, tapered ball, flat and bull nose cutters: one rounded frustum, exact up to the end of the flutes; above them it goes
-/// on by the ball's or corner's radius times 1 + sin(half angle), where the shank is. Barrels, measured meridians and profiles without a law:
-/// chains of bodies that contain the cutting part and stand out of it by no more than `sag_mm` between their nodes, and by as much as the steeper
-/// of two neighbours stands out of the other where they meet.
-/// Where a measured meridian ends below the flutes its largest error is taken above.
+/// The tool of a profile. Ball, tapered ball, flat and bull nose cutters: one rounded frustum, exact up to the end of
+/// the flutes; above them it goes on by the ball's or corner's radius times 1 + sin(half angle), where the shank is.
+/// Barrels, measured meridians and profiles without a law: chains of bodies that contain the cutting part and stand out
+/// of it by no more than `sag_mm` between their nodes, and by as much as the steeper of two neighbours stands out of
+/// the other where they meet. Where a measured meridian ends below the flutes its largest error is taken above.
 [[nodiscard]] ProofTool proof_tool(const Profile& profile, int number, double sag_mm = 1e-4);
 
 }  // namespace toothpath::tool

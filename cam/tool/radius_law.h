@@ -1,8 +1,8 @@
 // The radius law rho(t) of a mill with a ball end: the balls about its axis whose envelope is its side.
 //
-// t is the height above the centre of the ball end, rho the radius of the ball there that touches the side: the length of the meridian's
-// normal from the axis, not the radius of a section. All laws are tangent to the ball end, rho(0) = r_0 and rho'(0) = sin(tau).
-// Derivation: docs/line_milling.md, section 2.
+// t is the height above the centre of the ball end, rho the radius of the ball there that touches the side: the length
+// of the meridian's normal from the axis, not the radius of a section. All laws are tangent to the ball end, rho(0) =
+// r_0 and rho'(0) = sin(tau). Derivation: docs/line_milling.md, section 2.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,9 @@
 
 namespace toothpath::tool {
 
-/// A measured error f of rho along t: straight through its points, as a cubic with the slope of the neighbours at each point.
-/// Points: t ascending [mm], f [mm], at least two. Asked outside of its range it goes on straight: the planner refuses to use that.
+/// A measured error f of rho along t: straight through its points, as a cubic with the slope of the neighbours at each
+/// point. Points: t ascending [mm], f [mm], at least two. Asked outside of its range it goes on straight: the planner
+/// refuses to use that.
 struct MeridianError {
   std::vector<double> t, f;
 
@@ -58,9 +59,9 @@ struct MeridianError {
 /// Cone (tau > 0), cylinder (tau = 0), or a side whose meridian is an arc. Lengths mm.
 template <typename S>
 struct RadiusLaw {
-  S r_0{};                ///< of the ball end
+  S r_0{};  ///< of the ball end
   S sin_tau{0}, cos_tau{1};
-  S R_m{0};               ///< radius of the meridian: > 0 convex (barrel, R_m > r_0), < 0 hollow, 0 straight
+  S R_m{0};  ///< radius of the meridian: > 0 convex (barrel, R_m > r_0), < 0 hollow, 0 straight
   std::shared_ptr<const MeridianError> error = nullptr;  ///< measured; none: the nominal form
 
   /// rho(t), t >= 0.
@@ -78,7 +79,8 @@ struct RadiusLaw {
   }
 
  private:
-  // Convex with S = R_m - r_0: rho = R_m - hypot(S cos(tau), t - S sin(tau)); hollow is the same with R_m < 0 and the other root.
+  // Convex with S = R_m - r_0: rho = R_m - hypot(S cos(tau), t - S sin(tau)); hollow is the same with R_m < 0 and the
+  // other root.
   [[nodiscard]] bool straight() const { return R_m == S(0); }
   [[nodiscard]] int sense() const { return R_m > S(0) ? 1 : -1; }
   [[nodiscard]] S offset() const { return R_m - r_0; }

@@ -69,11 +69,28 @@ struct Dual {
   friend bool operator>=(const Dual& a, const Dual& b) { return a.v >= b.v; }
   friend bool operator==(const Dual& a, const Dual& b) { return a.v == b.v; }
 
-  friend Dual sin(const Dual& a) { using std::sin, std::cos; return a.chain(sin(a.v), cos(a.v)); }
-  friend Dual cos(const Dual& a) { using std::sin, std::cos; return a.chain(cos(a.v), S(-sin(a.v))); }
-  friend Dual tan(const Dual& a) { using std::tan; const S t = tan(a.v); return a.chain(t, S(S(1) + t * t)); }
-  friend Dual sqrt(const Dual& a) { using std::sqrt; const S r = sqrt(a.v); return a.chain(r, S(S(1) / (S(2) * r))); }
-  friend Dual atan(const Dual& a) { using std::atan; return a.chain(atan(a.v), S(S(1) / (S(1) + a.v * a.v))); }
+  friend Dual sin(const Dual& a) {
+    using std::sin, std::cos;
+    return a.chain(sin(a.v), cos(a.v));
+  }
+  friend Dual cos(const Dual& a) {
+    using std::sin, std::cos;
+    return a.chain(cos(a.v), S(-sin(a.v)));
+  }
+  friend Dual tan(const Dual& a) {
+    using std::tan;
+    const S t = tan(a.v);
+    return a.chain(t, S(S(1) + t * t));
+  }
+  friend Dual sqrt(const Dual& a) {
+    using std::sqrt;
+    const S r = sqrt(a.v);
+    return a.chain(r, S(S(1) / (S(2) * r)));
+  }
+  friend Dual atan(const Dual& a) {
+    using std::atan;
+    return a.chain(atan(a.v), S(S(1) / (S(1) + a.v * a.v)));
+  }
   friend Dual acos(const Dual& a) {
     using std::acos, std::sqrt;
     return a.chain(acos(a.v), S(S(-1) / sqrt(S(S(1) - a.v * a.v))));
@@ -90,7 +107,9 @@ struct Dual {
 
 /// The vector without its derivatives, and its derivative by variable k.
 template <typename S, int N>
-[[nodiscard]] Eigen::Matrix<S, 3, 1> value(const Eigen::Matrix<Dual<S, N>, 3, 1>& x) { return {x[0].v, x[1].v, x[2].v}; }
+[[nodiscard]] Eigen::Matrix<S, 3, 1> value(const Eigen::Matrix<Dual<S, N>, 3, 1>& x) {
+  return {x[0].v, x[1].v, x[2].v};
+}
 template <typename S, int N>
 [[nodiscard]] Eigen::Matrix<S, 3, 1> derivative(const Eigen::Matrix<Dual<S, N>, 3, 1>& x, std::size_t k) {
   return {x[0].d[k], x[1].d[k], x[2].d[k]};
@@ -104,5 +123,13 @@ struct Eigen::NumTraits<toothpath::Dual<S, N>> : Eigen::NumTraits<S> {
   using NonInteger = toothpath::Dual<S, N>;
   using Nested = toothpath::Dual<S, N>;
   using Literal = toothpath::Dual<S, N>;
-  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1, ReadCost = 1, AddCost = N, MulCost = 2 * N };
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 1,
+    ReadCost = 1,
+    AddCost = N,
+    MulCost = 2 * N
+  };
 };

@@ -7,8 +7,9 @@
 
 namespace toothpath {
 
-/// 64 hexadecimal digits, those that the command sha256sum prints: a report names with them the exact bytes it speaks of.
-/// Source: FIPS 180-4, by OpenSSL's libcrypto; throws std::runtime_error where that cannot work (a build of it without SHA-256).
+/// 64 hexadecimal digits, those that the command sha256sum prints: a report names with them the exact bytes it speaks
+/// of. Source: FIPS 180-4, by OpenSSL's libcrypto; throws std::runtime_error where that cannot work (a build of it
+/// without SHA-256).
 [[nodiscard]] std::string sha256_hex(std::string_view bytes);
 
 /// FNV-1a, 64 bits: the line HASH of NC programs, tables in memory.

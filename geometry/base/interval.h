@@ -1,8 +1,8 @@
 // Interval arithmetic with outward rounding: what a formula can become when its arguments range over boxes.
 //
-// Every operation returns an interval that holds the result for every choice of arguments, rounding included: ends are moved outwards by a
-// unit in the last place or more. Sine, cosine, arc functions and roots of the C library are taken as right to two units in the last place.
-// Source: R. E. Moore, Interval Analysis, 1966.
+// Every operation returns an interval that holds the result for every choice of arguments, rounding included: ends are
+// moved outwards by a unit in the last place or more. Sine, cosine, arc functions and roots of the C library are taken
+// as right to two units in the last place. Source: R. E. Moore, Interval Analysis, 1966.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +19,9 @@ struct Interval {
   Interval(double value) : low(value), high(value) {}  // NOLINT: constants mix freely with intervals
   Interval(double from, double to) : low(from), high(to) {}
   /// All numbers: the result where a formula has none.
-  static Interval whole() { return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}; }
+  static Interval whole() {
+    return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  }
   /// [from, to] moved outwards by `units` in the last place of the larger one; everything where an end is no number.
   static Interval outwards(double from, double to, double units = 1) {
     if (std::isnan(from) || std::isnan(to)) return whole();
@@ -62,7 +64,9 @@ struct Interval {
   friend bool operator>=(const Interval& a, const Interval& b) { return a.low >= b.high; }
   friend bool operator==(const Interval& a, const Interval& b) { return a.low == b.low && a.high == b.high; }
 
-  friend Interval hull(const Interval& a, const Interval& b) { return {std::min(a.low, b.low), std::max(a.high, b.high)}; }
+  friend Interval hull(const Interval& a, const Interval& b) {
+    return {std::min(a.low, b.low), std::max(a.high, b.high)};
+  }
   friend Interval sqrt(const Interval& a) {
     if (!(a.low >= 0)) return whole();
     const Interval r = outwards(std::sqrt(a.low), std::sqrt(a.high), 2);
@@ -74,7 +78,9 @@ struct Interval {
     const double c0 = std::cos(a.low), c1 = std::cos(a.high);
     Interval r = outwards(std::min(c0, c1), std::max(c0, c1), 4);
     // A top at 2 k pi, a bottom at (2 k + 1) pi: taken as inside also where it lies 1e-9 beside.
-    const auto passes = [&](double at) { return std::floor((a.high - at + slack) / turn) >= std::ceil((a.low - at - slack) / turn); };
+    const auto passes = [&](double at) {
+      return std::floor((a.high - at + slack) / turn) >= std::ceil((a.low - at - slack) / turn);
+    };
     if (passes(0)) r.high = 1;
     if (passes(0.5 * turn)) r.low = -1;
     return {std::max(r.low, -1.0), std::min(r.high, 1.0)};
@@ -92,7 +98,8 @@ struct Interval {
   /// Boxes that hold the origin or touch the negative x axis have no single angle.
   friend Interval atan2(const Interval& y, const Interval& x) {
     if (!(x.low > 0) && !(y.low > 0) && !(y.high < 0)) return whole();
-    const double p = std::atan2(y.low, x.low), q = std::atan2(y.low, x.high), r = std::atan2(y.high, x.low), s = std::atan2(y.high, x.high);
+    const double p = std::atan2(y.low, x.low), q = std::atan2(y.low, x.high), r = std::atan2(y.high, x.low),
+                 s = std::atan2(y.high, x.high);
     return outwards(std::min({p, q, r, s}), std::max({p, q, r, s}), 4);
   }
 };
@@ -105,5 +112,13 @@ struct Eigen::NumTraits<toothpath::Interval> : Eigen::NumTraits<double> {
   using NonInteger = toothpath::Interval;
   using Nested = toothpath::Interval;
   using Literal = toothpath::Interval;
-  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 1, ReadCost = 1, AddCost = 4, MulCost = 10 };
+  enum {
+    IsComplex = 0,
+    IsInteger = 0,
+    IsSigned = 1,
+    RequireInitialization = 1,
+    ReadCost = 1,
+    AddCost = 4,
+    MulCost = 10
+  };
 };

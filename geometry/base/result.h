@@ -1,5 +1,5 @@
-// Result<T>: a value or a Diagnostic; Expected<T, E>: a value or an E. What a job, machine file or mesh can cause travels this way;
-// a broken promise between our own functions is an assertion.
+// Result<T>: a value or a Diagnostic; Expected<T, E>: a value or an E. What a job, machine file or mesh can cause
+// travels this way; a broken promise between our own functions is an assertion.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,18 +22,37 @@ class [[nodiscard]] Expected {
   [[nodiscard]] bool has_value() const { return state_.index() == kValue; }
   explicit operator bool() const { return has_value(); }
 
-  [[nodiscard]] T& value() & { assert(has_value()); return *std::get_if<kValue>(&state_); }
-  [[nodiscard]] const T& value() const& { assert(has_value()); return *std::get_if<kValue>(&state_); }
-  [[nodiscard]] T&& value() && { assert(has_value()); return std::move(*std::get_if<kValue>(&state_)); }
+  [[nodiscard]] T& value() & {
+    assert(has_value());
+    return *std::get_if<kValue>(&state_);
+  }
+  [[nodiscard]] const T& value() const& {
+    assert(has_value());
+    return *std::get_if<kValue>(&state_);
+  }
+  [[nodiscard]] T&& value() && {
+    assert(has_value());
+    return std::move(*std::get_if<kValue>(&state_));
+  }
   T& operator*() & { return value(); }
   const T& operator*() const& { return value(); }
   T&& operator*() && { return std::move(*this).value(); }
   T* operator->() { return &value(); }
   const T* operator->() const { return &value(); }
-  [[nodiscard]] E& error() & { assert(!has_value()); return *std::get_if<kError>(&state_); }
-  [[nodiscard]] const E& error() const& { assert(!has_value()); return *std::get_if<kError>(&state_); }
-  [[nodiscard]] E&& error() && { assert(!has_value()); return std::move(*std::get_if<kError>(&state_)); }
-  /// Why there is no value; null where there is one: `if (auto* errors = made.refused()) return failed(std::move(*errors));`
+  [[nodiscard]] E& error() & {
+    assert(!has_value());
+    return *std::get_if<kError>(&state_);
+  }
+  [[nodiscard]] const E& error() const& {
+    assert(!has_value());
+    return *std::get_if<kError>(&state_);
+  }
+  [[nodiscard]] E&& error() && {
+    assert(!has_value());
+    return std::move(*std::get_if<kError>(&state_));
+  }
+  /// Why there is no value; null where there is one: `if (auto* errors = made.refused()) return
+  /// failed(std::move(*errors));`
   [[nodiscard]] E* refused() { return std::get_if<kError>(&state_); }
   [[nodiscard]] const E* refused() const { return std::get_if<kError>(&state_); }
   /// The value; null where there is none.

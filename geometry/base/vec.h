@@ -1,4 +1,5 @@
-// Names for the small fixed-size vectors, double or any other scalar, and what they say about the z axis, the axis of every gear.
+// Names for the small fixed-size vectors, double or any other scalar, and what they say about the z axis, the axis of
+// every gear.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,6 +38,8 @@ using Mat3 = Eigen::Matrix3d;
   return (p - a - t * ab).norm();
 }
 /// Angle between two directions of any length, in [0, pi], with all digits at both ends.
-[[nodiscard]] inline double angle_between(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
+[[nodiscard]] inline double angle_between(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
 
 }  // namespace toothpath

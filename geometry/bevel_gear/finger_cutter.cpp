@@ -91,8 +91,8 @@ double FingerSolid::signed_distance(double x, double rho) const {
   // Far from every foot (deep inside, beyond the centre of curvature): the ends of the pieces bound the distance.
   if (!std::isfinite(best) || (edge <= std::abs(best) && x < c_.x_D)) {
     const bool inside = x >= -c_.h_f && rho <= radius(x);
-    const double distance = std::min({edge, std::hypot(x - c_.x_C, rho - c_.rho_C), std::hypot(x - c_.x_B, rho - c_.rho_B),
-                     std::hypot(x + c_.h_f, rho - c_.rho_o)});
+    const double distance = std::min({edge, std::hypot(x - c_.x_C, rho - c_.rho_C),
+                                      std::hypot(x - c_.x_B, rho - c_.rho_B), std::hypot(x + c_.h_f, rho - c_.rho_o)});
     return inside ? -distance : distance;
   }
   return best;

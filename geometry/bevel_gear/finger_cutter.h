@@ -2,9 +2,9 @@
 //
 // Meridian plane (x, rho): x along the cutter axis from the pitch cone towards the shank, rho the radius. From the tip:
 // flat (x = -h_f, rho <= rho_A), corner arc AB (radius r_t), straight BC, involute CD, cylinder from D on. G1 but at D.
-// One running parameter p [mm] covers A..D: on the involute it is the arc parameter with p = 0 on the pitch circle, below
-// C it is plain arc length. psi is the inclination of the profile against the axis. mm and rad.
-// Derivation: docs/bevel_gear.md, section 4.
+// One running parameter p [mm] covers A..D: on the involute it is the arc parameter with p = 0 on the pitch circle,
+// below C it is plain arc length. psi is the inclination of the profile against the axis. mm and rad. Derivation:
+// docs/bevel_gear.md, section 4.
 #pragma once
 
 #include <algorithm>
@@ -97,7 +97,8 @@ struct FingerProfile {
   [[nodiscard]] S line_radius(const S& x) const { return rho_C + (x - x_C) * sin_phi / cos_phi; }
 };
 
-/// Builds the profile. The numbers may be unusable (pointed tip, arc above C): design checks live in geometry/bevel_gear/limits.h.
+/// Builds the profile. The numbers may be unusable (pointed tip, arc above C): design checks live in
+/// geometry/bevel_gear/limits.h.
 /// @param kappa_v 1/r_v of the gear, >= 0;  @param h_f depth of the tip below the pitch cone
 template <typename S>
 FingerProfile<S> make_finger_profile(const S& alpha_n, const S& kappa_v, const S& h_f, const S& m_nj, const S& r_t,
@@ -134,7 +135,9 @@ FingerProfile<S> make_finger_profile(const S& alpha_n, const S& kappa_v, const S
     const ProfilePoint<S> q = c.involute(p);
     const S step = (q.x - x_D) / (q.dS * q.cos_psi);
     p -= step;
-    if (bevel_detail::magnitude(step) <= S(4) * S(std::numeric_limits<S>::epsilon()) * (bevel_detail::magnitude(p) + x_D)) break;
+    if (bevel_detail::magnitude(step) <=
+        S(4) * S(std::numeric_limits<S>::epsilon()) * (bevel_detail::magnitude(p) + x_D))
+      break;
   }
   c.p_D = p;
   c.x_D = x_D;

@@ -34,9 +34,11 @@ FingerCutterData finger_cutter_for(const BevelGearParameters& p) {
   c.module_mm = round_into(kNarrowestShare * m_i, kWidestShare * m_i);
   c.rack_depth_mm = p.addendum_mm;
   c.profile_height_mm = round_into(kHeightShare * p.addendum_mm, 1.15 * p.addendum_mm);
-  const auto bare = make_finger_profile<double>(p.pressure_angle_rad, kappa_v, p.dedendum_mm, c.module_mm, 0.0, c.rack_depth_mm, c.profile_height_mm);
+  const auto bare = make_finger_profile<double>(p.pressure_angle_rad, kappa_v, p.dedendum_mm, c.module_mm, 0.0,
+                                                c.rack_depth_mm, c.profile_height_mm);
   const double largest = largest_tip_radius(bare);
-  c.tip_radius_mm = largest > 0 ? round_into(0.9 * kTipRadiusShare * largest, kTipRadiusShare * largest) : 1e-3 * p.outer_transverse_module_mm;
+  c.tip_radius_mm = largest > 0 ? round_into(0.9 * kTipRadiusShare * largest, kTipRadiusShare * largest)
+                                : 1e-3 * p.outer_transverse_module_mm;
   return c;
 }
 
@@ -66,9 +68,11 @@ std::vector<ProfileSample> sample_profile(const FingerProfile<double>& c, double
   }
   add('S', c.p_B, {c.x_B, c.rho_B, c.sin_phi, c.cos_phi, 0.0, 1.0}, 0);
   add('S', c.p_C, {c.x_C, c.rho_C, c.sin_phi, c.cos_phi, 0.0, 1.0}, 0);
-  // The involute turns by kappa_v per p and has the radius dS/dpsi, largest at D: equal steps of p keep the bound of the last.
+  // The involute turns by kappa_v per p and has the radius dS/dpsi, largest at D: equal steps of p keep the bound of
+  // the last.
   const double length = c.p_D - c.p_C;
-  const int steps = std::max(1, static_cast<int>(std::ceil(length * std::sqrt(c.involute(c.p_D).dS * c.kappa_v / (8 * chord_mm)))));
+  const int steps =
+      std::max(1, static_cast<int>(std::ceil(length * std::sqrt(c.involute(c.p_D).dS * c.kappa_v / (8 * chord_mm)))));
   for (int k = 0; k <= steps; ++k) {
     const double p = k == steps ? c.p_D : c.p_C + length * k / steps;
     const auto q = c.involute(p);

@@ -7,7 +7,9 @@ namespace toothpath::bevel_gear {
 namespace {
 
 /// Spiral angle at cone distance R.
-double spiral(double R, double R_0) { return std::atan2(std::sqrt(std::max(0.0, (R_0 - R) / R_0)), std::sqrt(R / R_0)); }
+double spiral(double R, double R_0) {
+  return std::atan2(std::sqrt(std::max(0.0, (R_0 - R) / R_0)), std::sqrt(R / R_0));
+}
 
 /// The integral of tan(beta) dR is -R_0 G(beta).
 double G(double beta) { return beta - std::sin(beta) * std::cos(beta); }
@@ -33,12 +35,13 @@ BevelForce bevel_point_force(const BevelForceMember& m, double R, int sigma_h, d
   return at(m, torque / (R * std::sin(m.delta_rad)), 1 / std::cos(beta), std::tan(beta), sigma_h);
 }
 
-std::vector<BevelForce> bevel_face_forces(const BevelForceMember& m, const std::vector<LoadedFace>& faces, int sigma, double torque,
-                                          LoadSplit split) {
+std::vector<BevelForce> bevel_face_forces(const BevelForceMember& m, const std::vector<LoadedFace>& faces, int sigma,
+                                          double torque, LoadSplit split) {
   std::vector<BevelForce> forces;
   if (split == LoadSplit::equal_torque) {
     for (const auto& f : faces)
-      forces.push_back(bevel_point_force(m, 0.5 * (f.from + f.to), sigma * f.h, torque / static_cast<double>(faces.size())));
+      forces.push_back(
+          bevel_point_force(m, 0.5 * (f.from + f.to), sigma * f.h, torque / static_cast<double>(faces.size())));
     return forces;
   }
   double moment = 0;  // of a unit line load
@@ -58,7 +61,8 @@ std::vector<BevelForce> bevel_face_forces(const BevelForceMember& m, const std::
   return forces;
 }
 
-BevelForce bevel_total_force(const BevelForceMember& m, const std::vector<LoadedFace>& faces, int sigma, double torque, LoadSplit split) {
+BevelForce bevel_total_force(const BevelForceMember& m, const std::vector<LoadedFace>& faces, int sigma, double torque,
+                             LoadSplit split) {
   BevelForce sum;
   for (const auto& force : bevel_face_forces(m, faces, sigma, torque, split)) sum += force;
   return sum;

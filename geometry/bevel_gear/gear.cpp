@@ -8,9 +8,7 @@ namespace toothpath::bevel_gear {
 
 double BevelGear::pitch() const { return 2 * kPi / parameters_.teeth; }
 
-double BevelGear::normal_module(double R) const {
-  return 2 * sin_delta_ / parameters_.teeth * R * std::sqrt(R / R_0_);
-}
+double BevelGear::normal_module(double R) const { return 2 * sin_delta_ / parameters_.teeth * R * std::sqrt(R / R_0_); }
 
 BevelTrace<double> BevelGear::trace(int h, double r_0) const {
   BevelTrace<double> t;
@@ -29,15 +27,14 @@ Vec3 BevelGear::tip(double R_c, double e, double lift) const {
   return blank_from_cutter<double>(lift - parameters_.dedendum_mm, 0.0, 0.0, R_c, e, sin_delta_, cos_delta_);
 }
 
-Vec3 BevelGear::axis(double e) const {
-  return {cos_delta_ * std::cos(e), cos_delta_ * std::sin(e), -sin_delta_};
-}
+Vec3 BevelGear::axis(double e) const { return {cos_delta_ * std::cos(e), cos_delta_ * std::sin(e), -sin_delta_}; }
 
 std::optional<BevelCorner> bevel_corner(const BevelTrace<double>& inner, const BevelTrace<double>& outer, int sigma,
                                         double R_J) {
   const double beta_J = inner.beta(R_J), shift = inner.r_0 / (2 * inner.R_0 * std::cos(beta_J));
   double b1 = beta_J + shift, b2 = beta_J - shift;
-  // Newton with the closed-form derivatives dR_c/dbeta = -F cos(beta_c) ds/dR.. of both curves, ds/dbeta = -2 R_0 sin(beta).
+  // Newton with the closed-form derivatives dR_c/dbeta = -F cos(beta_c) ds/dR.. of both curves, ds/dbeta = -2 R_0
+  // sin(beta).
   for (int k = 0; k < 50; ++k) {
     if (!(b1 > 0) || !(b2 > 0)) return std::nullopt;
     const auto c1 = inner.curved_centre(sigma, b1), c2 = outer.curved_centre(sigma, b2);
@@ -47,12 +44,14 @@ std::optional<BevelCorner> bevel_corner(const BevelTrace<double>& inner, const B
     const double c = v1 * std::sin(c1.beta_c) / c1.R_c, d = -v2 * std::sin(c2.beta_c) / c2.R_c;
     const double f0 = c1.R_c - c2.R_c, f1 = c1.theta_c - c2.theta_c, det = a * d - b * c;
     if (!(std::abs(det) > 0)) return std::nullopt;
-    const double s1 = std::clamp(-(d * f0 - b * f1) / det, -0.1, 0.1), s2 = std::clamp(-(a * f1 - c * f0) / det, -0.1, 0.1);
+    const double s1 = std::clamp(-(d * f0 - b * f1) / det, -0.1, 0.1),
+                 s2 = std::clamp(-(a * f1 - c * f0) / det, -0.1, 0.1);
     b1 += s1;
     b2 += s2;
     if (std::abs(s1) + std::abs(s2) < 1e-14 && k > 0) {
       const auto at = inner.curved_centre(sigma, b1), other = outer.curved_centre(sigma, b2);
-      if (std::hypot(at.R_c - other.R_c, at.R_c * (at.theta_c - other.theta_c)) > 1e-11 * inner.R_0) return std::nullopt;
+      if (std::hypot(at.R_c - other.R_c, at.R_c * (at.theta_c - other.theta_c)) > 1e-11 * inner.R_0)
+        return std::nullopt;
       return BevelCorner{sigma, b1, b2, at.R_c, at.e};
     }
   }
@@ -126,9 +125,11 @@ class BevelGearBuilder {
     const double R = p.apex_cone_distance_mm;
     g.R_ref_ = p.form == BevelForm::single && R == 0 ? g.R_m() : R;
     if (p.form == BevelForm::herringbone && !(R > g.R_i_ && R < g.R_e_))
-      refuse("apex_cone_distance", "apex_cone_distance = {:.4f} lies outside the face, {:.4f} to {:.4f}", R, g.R_i_, g.R_e_);
+      refuse("apex_cone_distance", "apex_cone_distance = {:.4f} lies outside the face, {:.4f} to {:.4f}", R, g.R_i_,
+             g.R_e_);
     if (p.form == BevelForm::single && !(g.R_ref_ > 0 && g.R_ref_ <= g.R_0_))
-      refuse("apex_cone_distance", "apex_cone_distance = {:.4f} is not on the tooth trace, which ends at R_0 = {:.4f}", R, g.R_0_);
+      refuse("apex_cone_distance", "apex_cone_distance = {:.4f} is not on the tooth trace, which ends at R_0 = {:.4f}",
+             R, g.R_0_);
     g.e_h_ = kPi / (2 * p.teeth) + p.backlash_mm / (4 * g.R_e_ * g.sin_delta_);
   }
 
@@ -136,8 +137,8 @@ class BevelGearBuilder {
     auto& g = gear_;
     const auto& p = g.parameters_;
     const auto& c = g.cutter_;
-    cutter_ = make_finger_profile<double>(p.pressure_angle_rad, g.kappa_v(), p.dedendum_mm, c.module_mm, c.tip_radius_mm,
-                                          c.rack_depth_mm, c.profile_height_mm);
+    cutter_ = make_finger_profile<double>(p.pressure_angle_rad, g.kappa_v(), p.dedendum_mm, c.module_mm,
+                                          c.tip_radius_mm, c.rack_depth_mm, c.profile_height_mm);
     check_bevel_cutter(g, cutter_, g.limits_, refusals_, g.warnings_);
   }
 
@@ -161,8 +162,10 @@ class BevelGearBuilder {
     const int sigma = -p.hand;
     const auto X = bevel_corner(g.halves_[0].wall(sigma).trace, g.halves_[1].wall(sigma).trace, sigma, g.R_ref_);
     if (!X) {
-      refuse("apex_cone_distance", "apex_cone_distance = {:.4f}: the cutter paths of the two halves do not cross on the concave "
-             "side; the cutter is too wide for the corner", g.R_ref_);
+      refuse("apex_cone_distance",
+             "apex_cone_distance = {:.4f}: the cutter paths of the two halves do not cross on the concave side; the "
+             "cutter is too wide for the corner",
+             g.R_ref_);
       return;
     }
     g.corner_ = *X;
@@ -172,15 +175,19 @@ class BevelGearBuilder {
     g.limits_.fillet_reach_mm = reach;
     const double least = 2 * reach, lo = g.R_i_ + least, hi = g.R_e_ - least;
     if (g.R_ref_ < lo || g.R_ref_ > hi) {
-      refuse("apex_cone_distance", "apex_cone_distance = {:.4f} leaves a half narrower than {:.4f}, twice the reach of the "
-             "corner fillet; it must lie between {:.4f} and {:.4f}", g.R_ref_, least, lo, hi);
+      refuse("apex_cone_distance",
+             "apex_cone_distance = {:.4f} leaves a half narrower than {:.4f}, twice the reach of the corner fillet; it "
+             "must lie between {:.4f} and {:.4f}",
+             g.R_ref_, least, lo, hi);
     }
     const double w = p.relief_half_width_mm;
     if (w < reach)
-      refuse("relief_half_width", "relief_half_width = {:.4f} is below {:.4f}, the reach of the corner fillet at the tip", w, reach);
+      refuse("relief_half_width",
+             "relief_half_width = {:.4f} is below {:.4f}, the reach of the corner fillet at the tip", w, reach);
     const double room = std::min(g.R_ref_ - g.R_i_, g.R_e_ - g.R_ref_);
     if (!(w < room))
-      refuse("relief_half_width", "relief_half_width = {:.4f} leaves no face in one half; it must be below {:.4f}", w, room);
+      refuse("relief_half_width", "relief_half_width = {:.4f} leaves no face in one half; it must be below {:.4f}", w,
+             room);
     g.halves_[0].ell_to = g.R_ref_ - w;
     g.halves_[1].ell_from = g.R_ref_ + w;
   }
@@ -210,8 +217,10 @@ class BevelGearBuilder {
           to = concave_corner ? g.corner_.beta_inner : t.beta(half.R_to);
         }
         if (!from || !to) {
-          refuse("face_width", "face_width = {:.4f}: the pass of wall {} cannot run {} of the face; the trace ends at R_0 = {:.4f}",
-                 p.face_width_mm, w.sigma > 0 ? "L" : "U", from ? "out of the large end" : "out of the small end", g.R_0_);
+          refuse("face_width",
+                 "face_width = {:.4f}: the pass of wall {} cannot run {} of the face; the trace ends at R_0 = {:.4f}",
+                 p.face_width_mm, w.sigma > 0 ? "L" : "U", from ? "out of the large end" : "out of the small end",
+                 g.R_0_);
           return;
         }
         half.beta_from[k] = *from;
@@ -240,7 +249,9 @@ class BevelGearBuilder {
       last.ell_to = std::min(last.ell_to, farthest - kRegularMargin * m_te);
     }
     if (!(least_F_ > 0.05))
-      refuse("face_width", "face_width = {:.4f}: the cutter centre path has a cusp inside the face (speed ratio {:.4f}, must exceed 0.05)",
+      refuse("face_width",
+             "face_width = {:.4f}: the cutter centre path has a cusp inside the face (speed ratio {:.4f}, must exceed "
+             "0.05)",
              p.face_width_mm, least_F_);
     check_bevel_cusp(g, refusals_, gear_.warnings_);
   }
@@ -266,8 +277,10 @@ class BevelGearBuilder {
       }
     g.limits_.least_regularity = least;
     if (!(least > 0))
-      refuse("tool.module", "the cutter undercuts the flank at cone distance {:.3f} (regularity {:.4f}, must be positive); "
-             "a smaller module of the cutter or a larger spiral angle is needed", at_R, least);
+      refuse("tool.module",
+             "the cutter undercuts the flank at cone distance {:.3f} (regularity {:.4f}, must be positive); a smaller "
+             "module of the cutter or a larger spiral angle is needed",
+             at_R, least);
   }
 
   BevelGear gear_;
@@ -277,7 +290,7 @@ class BevelGearBuilder {
 };
 
 Expected<BevelGear, std::vector<BevelRefusal>> BevelGear::make(const BevelGearParameters& parameters,
-                                                                   const FingerCutterData& cutter) {
+                                                               const FingerCutterData& cutter) {
   return BevelGearBuilder(parameters, cutter).build();
 }
 

@@ -17,18 +17,18 @@ namespace toothpath::bevel_gear {
 
 /// Numbers that the report and limits.json show; mm and rad.
 struct BevelLimits {
-  double top_land_mm = 0;            ///< at R_i, normal to the tooth, backlash taken off
-  double space_width_mm = 0;         ///< at R_i, normal, pitch cone
-  double module_at_small_end_mm = 0; ///< m_n(R_i)
-  double module_limit_mm = 0;        ///< largest m_nj: 0.99 m_n(R_i)
-  double tip_flat_mm = 0;            ///< rho_A, radius of the flat tip
-  double tip_radius_limit_mm = 0;    ///< largest r_t: tip not pointed, arc below C
-  double line_angle_rad = 0;         ///< phi of the straight BC
-  double fillet_reach_mm = 0;        ///< of the herringbone corner's fillet about R_J at the tip; 0 for a single hand
-  double least_regularity = 0;       ///< smallest J_n over both walls of all halves
-  double cusp_speed_ratio = 0;       ///< smallest F of any pass
-  double cusp_loss_mm = 0;           ///< flank error where a path has to leave the trace before its cusp
-  double largest_face_width_mm = 0;  ///< b at which m_nj = 0.99 m_n(R_i)
+  double top_land_mm = 0;             ///< at R_i, normal to the tooth, backlash taken off
+  double space_width_mm = 0;          ///< at R_i, normal, pitch cone
+  double module_at_small_end_mm = 0;  ///< m_n(R_i)
+  double module_limit_mm = 0;         ///< largest m_nj: 0.99 m_n(R_i)
+  double tip_flat_mm = 0;             ///< rho_A, radius of the flat tip
+  double tip_radius_limit_mm = 0;     ///< largest r_t: tip not pointed, arc below C
+  double line_angle_rad = 0;          ///< phi of the straight BC
+  double fillet_reach_mm = 0;         ///< of the herringbone corner's fillet about R_J at the tip; 0 for a single hand
+  double least_regularity = 0;        ///< smallest J_n over both walls of all halves
+  double cusp_speed_ratio = 0;        ///< smallest F of any pass
+  double cusp_loss_mm = 0;            ///< flank error where a path has to leave the trace before its cusp
+  double largest_face_width_mm = 0;   ///< b at which m_nj = 0.99 m_n(R_i)
 };
 
 /// One hand of teeth, between two cone distances.
@@ -37,8 +37,8 @@ struct BevelHalf {
   double R_from = 0, R_to = 0;      ///< trace of this half
   double ell_from = 0, ell_to = 0;  ///< face that is left after the relief groove, at most up to R_lim
   BevelWall<double> walls[2];       ///< L (sigma = +1), U (sigma = -1)
-  /// Ends of each wall's pass as spiral angles of the trace, at R_from's and R_to's side (6.2 of the page). On the concave
-  /// side of a herringbone the path stops at the crossing.
+  /// Ends of each wall's pass as spiral angles of the trace, at R_from's and R_to's side (6.2 of the page). On the
+  /// concave side of a herringbone the path stops at the crossing.
   double beta_from[2] = {0, 0}, beta_to[2] = {0, 0};
 
   [[nodiscard]] const BevelWall<double>& wall(int sigma) const { return walls[sigma > 0 ? 0 : 1]; }
@@ -46,9 +46,9 @@ struct BevelHalf {
 
 /// Where the offset curves of the concave side of a herringbone cross.
 struct BevelCorner {
-  int sigma = 0;                             ///< wall whose corner is concave: -h of the inner half
-  double beta_inner = 0, beta_outer = 0;     ///< spiral angles of the two traces
-  double R_c = 0, e = 0;                     ///< the crossing
+  int sigma = 0;                          ///< wall whose corner is concave: -h of the inner half
+  double beta_inner = 0, beta_outer = 0;  ///< spiral angles of the two traces
+  double R_c = 0, e = 0;                  ///< the crossing
 };
 
 /// A refused number: the key of the job it belongs to ("face_width", "tool.tip_radius") and what is wrong.
@@ -61,7 +61,7 @@ class BevelGear {
  public:
   /// Checks every limit of section 4, 6 and 11 of the page. `cutter` is the mill that finishes the walls.
   static Expected<BevelGear, std::vector<BevelRefusal>> make(const BevelGearParameters& parameters,
-                                                                 const FingerCutterData& cutter);
+                                                             const FingerCutterData& cutter);
 
   [[nodiscard]] const BevelGearParameters& parameters() const { return parameters_; }
   [[nodiscard]] const FingerCutterData& cutter_data() const { return cutter_; }

@@ -37,7 +37,8 @@ void check_bevel_ranges(const BevelGearParameters& p, const FingerCutterData& c,
   if (list.empty()) {
     const double delta = degrees(bevel_pitch_angle(p));
     if (!(delta >= 0.0099999 && delta <= 90 + 1e-12))
-      refuse(list, p.mate_teeth != 0 ? "shaft_angle" : "pitch_angle", "the pitch angle is {:.6g} deg; it must lie between 0.01 and 90", delta);
+      refuse(list, p.mate_teeth != 0 ? "shaft_angle" : "pitch_angle",
+             "the pitch angle is {:.6g} deg; it must lie between 0.01 and 90", delta);
   }
   range(list, "outer_transverse_module", p.outer_transverse_module_mm, 1e-3, 1e4, "mm");
   range(list, "pressure_angle", degrees(p.pressure_angle_rad), 5, 45, "deg");
@@ -52,7 +53,8 @@ void check_bevel_ranges(const BevelGearParameters& p, const FingerCutterData& c,
   range(list, "tool.tip_radius", c.tip_radius_mm, 1e-4 * m, m, "mm");
   range(list, "tool.rack_depth", c.rack_depth_mm, 1e-3 * m, 3 * m, "mm");
   if (!(c.profile_height_mm >= p.addendum_mm))
-    refuse(list, "tool.profile_height", "profile_height = {:.4f} is below the addendum {:.4f}: the cylinder of the cutter would cut the flank",
+    refuse(list, "tool.profile_height",
+           "profile_height = {:.4f} is below the addendum {:.4f}: the cylinder of the cutter would cut the flank",
            c.profile_height_mm, p.addendum_mm);
 }
 
@@ -86,7 +88,8 @@ bool tip_is_left(const BevelGear& g, const BevelLimits& lim, std::vector<BevelRe
   const auto& d = g.cutter_data();
   const auto tip_of = [&](double module) {
     return make_finger_profile<double>(p.pressure_angle_rad, g.kappa_v(), p.dedendum_mm, module, 0.0, d.rack_depth_mm,
-                                       d.profile_height_mm).line_radius(-p.dedendum_mm);
+                                       d.profile_height_mm)
+        .line_radius(-p.dedendum_mm);
   };
   if (tip_of(lim.module_limit_mm) > 0) return true;
   double low = lim.module_limit_mm, high = 4 * p.outer_transverse_module_mm;
@@ -94,9 +97,10 @@ bool tip_is_left(const BevelGear& g, const BevelLimits& lim, std::vector<BevelRe
     const double mid = 0.5 * (low + high);
     (tip_of(mid) > 0 ? high : low) = mid;
   }
-  refuse(list, "face_width", "face_width = {:.4f} makes the cutter pointed: the space at the small end is too narrow for "
-         "dedendum = {:.4f}; the largest possible face width is {:.4f}", p.face_width_mm, p.dedendum_mm,
-         face_width_for_module(g, high / 0.99));
+  refuse(list, "face_width",
+         "face_width = {:.4f} makes the cutter pointed: the space at the small end is too narrow for dedendum = "
+         "{:.4f}; the largest possible face width is {:.4f}",
+         p.face_width_mm, p.dedendum_mm, face_width_for_module(g, high / 0.99));
   return false;
 }
 
@@ -105,35 +109,46 @@ void check_module(const BevelGear& g, const BevelLimits& lim, std::vector<BevelR
   if (!(d.module_mm > lim.module_limit_mm)) return;
   const double m_i = lim.module_at_small_end_mm, over = 0.5 * kPi * (d.module_mm - m_i);
   if (over > 0)
-    refuse(list, "tool.module", "module = {:.4f} exceeds {:.4f} (0.99 of the normal module {:.4f} at the small end): the cutter "
-           "over-cuts the small end by {:.1f} um; the largest face width for it is {:.4f}", d.module_mm, lim.module_limit_mm, m_i,
-           1000 * over, lim.largest_face_width_mm);
+    refuse(list, "tool.module",
+           "module = {:.4f} exceeds {:.4f} (0.99 of the normal module {:.4f} at the small end): the cutter over-cuts "
+           "the small end by {:.1f} um; the largest face width for it is {:.4f}",
+           d.module_mm, lim.module_limit_mm, m_i, 1000 * over, lim.largest_face_width_mm);
   else
-    refuse(list, "tool.module", "module = {:.4f} exceeds {:.4f} (0.99 of the normal module {:.4f} at the small end); the largest "
-           "face width for it is {:.4f}", d.module_mm, lim.module_limit_mm, m_i, lim.largest_face_width_mm);
+    refuse(list, "tool.module",
+           "module = {:.4f} exceeds {:.4f} (0.99 of the normal module {:.4f} at the small end); the largest face width "
+           "for it is {:.4f}",
+           d.module_mm, lim.module_limit_mm, m_i, lim.largest_face_width_mm);
 }
 
 /// Depth, tip and corner of the profile, each by itself.
-void check_form(const BevelGear& g, const FingerProfile<double>& c, const BevelLimits& lim, std::vector<BevelRefusal>& list, std::vector<std::string>& warnings) {
+void check_form(const BevelGear& g, const FingerProfile<double>& c, const BevelLimits& lim,
+                std::vector<BevelRefusal>& list, std::vector<std::string>& warnings) {
   const auto& d = g.cutter_data();
   if (c.phi < 0)
-    refuse(list, "tool.rack_depth", "rack_depth = {:.4f}: the straight of the cutter leans inwards ({:.4f} deg, must not be "
-           "negative), so it could not be retracted along its axis", d.rack_depth_mm, degrees(c.phi));
+    refuse(list, "tool.rack_depth",
+           "rack_depth = {:.4f}: the straight of the cutter leans inwards ({:.4f} deg, must not be negative), so it "
+           "could not be retracted along its axis",
+           d.rack_depth_mm, degrees(c.phi));
   if (!(c.x_C + c.h_f > 0))
-    refuse(list, "tool.rack_depth", "rack_depth = {:.4f}: the involute reaches {:.4f} below the pitch cone, deeper than the "
-           "dedendum {:.4f}", d.rack_depth_mm, -c.x_C, c.h_f);
+    refuse(list, "tool.rack_depth",
+           "rack_depth = {:.4f}: the involute reaches {:.4f} below the pitch cone, deeper than the dedendum {:.4f}",
+           d.rack_depth_mm, -c.x_C, c.h_f);
   else if (!(c.line_radius(-c.h_f) > 0))
-    refuse(list, "tool.module", "module = {:.4f} makes the cutter pointed above its tip (radius {:.4f} at dedendum = {:.4f}, must be positive)",
-           d.module_mm, c.line_radius(-c.h_f), c.h_f);
+    refuse(
+        list, "tool.module",
+        "module = {:.4f} makes the cutter pointed above its tip (radius {:.4f} at dedendum = {:.4f}, must be positive)",
+        d.module_mm, c.line_radius(-c.h_f), c.h_f);
   else if (d.tip_radius_mm > lim.tip_radius_limit_mm)
-    refuse(list, "tool.tip_radius", "tip_radius = {:.4f} exceeds {:.4f}, where {}", d.tip_radius_mm, lim.tip_radius_limit_mm,
-           c.rho_o < 0 ? "the cutter gets pointed" : "the corner arc reaches the involute");
+    refuse(list, "tool.tip_radius", "tip_radius = {:.4f} exceeds {:.4f}, where {}", d.tip_radius_mm,
+           lim.tip_radius_limit_mm, c.rho_o < 0 ? "the cutter gets pointed" : "the corner arc reaches the involute");
   if (c.base_circle_clips_C)
-    warnings.push_back(fmt::format("point C of the cutter sits on the base circle: rack_depth = {:.4f} is not reached, only {:.4f}",
-                                   d.rack_depth_mm, -c.x_C));
+    warnings.push_back(
+        fmt::format("point C of the cutter sits on the base circle: rack_depth = {:.4f} is not reached, only {:.4f}",
+                    d.rack_depth_mm, -c.x_C));
 }
 
-void check_top_land(const BevelGear& g, const BevelLimits& lim, std::vector<BevelRefusal>& list, std::vector<std::string>& warnings) {
+void check_top_land(const BevelGear& g, const BevelLimits& lim, std::vector<BevelRefusal>& list,
+                    std::vector<std::string>& warnings) {
   const auto& p = g.parameters();
   const double land = lim.top_land_mm;
   if (land < 0) {
@@ -141,18 +156,22 @@ void check_top_land(const BevelGear& g, const BevelLimits& lim, std::vector<Beve
     const double per_mm = (1 + g.kappa_v() * p.addendum_mm) * g.R_i() * std::sqrt(g.R_i() / g.R_0()) / (2 * g.R_e());
     const double limit = p.backlash_mm + land / per_mm;
     if (limit > 0)
-      refuse(list, "backlash", "backlash = {:.4f} eats the top land at the small end ({:.4f}); it must be below {:.4f}", p.backlash_mm, land, limit);
+      refuse(list, "backlash", "backlash = {:.4f} eats the top land at the small end ({:.4f}); it must be below {:.4f}",
+             p.backlash_mm, land, limit);
     else
-      refuse(list, "addendum", "addendum = {:.4f}: the tooth is pointed at the small end (top land {:.4f}, must be positive)", p.addendum_mm, land);
+      refuse(list, "addendum",
+             "addendum = {:.4f}: the tooth is pointed at the small end (top land {:.4f}, must be positive)",
+             p.addendum_mm, land);
   } else if (land < 0.2 * lim.module_at_small_end_mm) {
-    warnings.push_back(fmt::format("top land at the small end is {:.4f} mm, below 0.2 of the normal module {:.4f}", land, lim.module_at_small_end_mm));
+    warnings.push_back(fmt::format("top land at the small end is {:.4f} mm, below 0.2 of the normal module {:.4f}",
+                                   land, lim.module_at_small_end_mm));
   }
 }
 
 }  // namespace
 
-void check_bevel_cutter(const BevelGear& g, const FingerProfile<double>& c, BevelLimits& lim, std::vector<BevelRefusal>& list,
-                        std::vector<std::string>& warnings) {
+void check_bevel_cutter(const BevelGear& g, const FingerProfile<double>& c, BevelLimits& lim,
+                        std::vector<BevelRefusal>& list, std::vector<std::string>& warnings) {
   const double m_i = g.normal_module(g.R_i());
   lim.module_at_small_end_mm = m_i;
   lim.module_limit_mm = 0.99 * m_i;
@@ -176,12 +195,14 @@ void check_bevel_cusp(const BevelGear& g, std::vector<BevelRefusal>& list, std::
   // R_e <= R_lim: R_e = R_0 cos^2(beta_e), so sin(beta_e) >= 0.6 r_0 / R_0.
   const double least = degrees(std::asin(std::min(1.0, 0.6 * r_0 / g.R_0())));
   if (loss > kCuspLossLimit)
-    refuse(list, "outer_spiral_angle", "outer_spiral_angle = {:.4f} puts the cusp of the cutter path inside the face (flank error {:.2f} um, "
-           "limit {:.2f}); it must be at least {:.4f}", degrees(g.parameters().outer_spiral_angle_rad), 1000 * loss,
-           1000 * kCuspLossLimit, least);
+    refuse(list, "outer_spiral_angle",
+           "outer_spiral_angle = {:.4f} puts the cusp of the cutter path inside the face (flank error {:.2f} um, limit "
+           "{:.2f}); it must be at least {:.4f}",
+           degrees(g.parameters().outer_spiral_angle_rad), 1000 * loss, 1000 * kCuspLossLimit, least);
   else
-    warnings.push_back(fmt::format("the cutter path leaves the trace at {:.4f} mm, before its cusp; flank error up to {:.2f} um at the large end",
-                                   g.halves().back().walls[0].trace.R_lim(), 1000 * loss));
+    warnings.push_back(fmt::format(
+        "the cutter path leaves the trace at {:.4f} mm, before its cusp; flank error up to {:.2f} um at the large end",
+        g.halves().back().walls[0].trace.R_lim(), 1000 * loss));
 }
 
 }  // namespace toothpath::bevel_gear

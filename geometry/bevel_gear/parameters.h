@@ -9,20 +9,20 @@ enum class BevelForm { herringbone, single };
 /// Symbols: z, m_te, alpha_n, beta_e, delta, b, R_J, h_a, h_f, j_t.
 struct BevelGearParameters {
   int teeth = 0;
-  int mate_teeth = 0;             ///< 0: no mate, then `pitch_angle_rad` is given
+  int mate_teeth = 0;  ///< 0: no mate, then `pitch_angle_rad` is given
   double shaft_angle_rad = 1.5707963267948966;
-  double pitch_angle_rad = 0;     ///< delta; computed from the mate when there is one
+  double pitch_angle_rad = 0;  ///< delta; computed from the mate when there is one
   double outer_transverse_module_mm = 0;
   double pressure_angle_rad = 0;  ///< alpha_n
   double outer_spiral_angle_rad = 0;
   double face_width_mm = 0;
   BevelForm form = BevelForm::herringbone;
-  int hand = 1;                   ///< +1 right, -1 left; of the inner half, or of the gear when single
-  double apex_cone_distance_mm = 0;   ///< R_J (herringbone) or R_ref (single; 0: R_m)
-  double relief_half_width_mm = 0;    ///< turned groove about R_J, to root depth
+  int hand = 1;                      ///< +1 right, -1 left; of the inner half, or of the gear when single
+  double apex_cone_distance_mm = 0;  ///< R_J (herringbone) or R_ref (single; 0: R_m)
+  double relief_half_width_mm = 0;   ///< turned groove about R_J, to root depth
   double addendum_mm = 0;
   double dedendum_mm = 0;
-  double backlash_mm = 0;         ///< of the pair, circumferential at the outer pitch diameter
+  double backlash_mm = 0;  ///< of the pair, circumferential at the outer pitch diameter
   // What the blank has beside its teeth: cylinders about its axis, 0: none. The tool must not meet them.
   double hub_diameter_mm = 0, hub_length_mm = 0;      ///< behind the root of the large end
   double shaft_diameter_mm = 0, shaft_length_mm = 0;  ///< from the root of the small end towards the apex and beyond

@@ -7,8 +7,8 @@
 
 namespace toothpath::bevel_gear {
 
-/// Spiral angle at which the path of wall `sigma` has the cone distance R_c [mm]; R_c falls with beta along a whole pass. By bisection, to the last
-/// digits. Nothing where the pass has no such place.
+/// Spiral angle at which the path of wall `sigma` has the cone distance R_c [mm]; R_c falls with beta along a whole
+/// pass. By bisection, to the last digits. Nothing where the pass has no such place.
 [[nodiscard]] std::optional<double> beta_at_centre(const BevelTrace<double>& trace, int sigma, double R_c);
 
 }  // namespace toothpath::bevel_gear

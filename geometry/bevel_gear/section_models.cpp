@@ -8,7 +8,8 @@
 namespace toothpath::bevel_gear {
 namespace {
 
-/// The section turned about the centre of the equivalent gear: pitch point at (0, 0), second coordinate towards the wall.
+/// The section turned about the centre of the equivalent gear: pitch point at (0, 0), second coordinate towards the
+/// wall.
 Vec2 turned_section(const FingerProfile<double>& c, double p) {
   const auto q = c.at(p);
   const double tau = c.kappa_v * c.r_0, half = sinc(0.5 * tau);
@@ -26,11 +27,13 @@ Vec3 section_model_point(SectionModel model, const BevelWall<double>& w, double 
   if (model == SectionModel::centre_path) {
     const auto c = t.centre(w.sigma, beta);
     const auto q = w.cutter.at(p);
-    return blank_from_cutter<double>(q.x, -s * q.rho * std::cos(c.beta_c), s * q.rho * std::sin(c.beta_c), c.R_c, c.e, t.sin_delta, t.cos_delta);
+    return blank_from_cutter<double>(q.x, -s * q.rho * std::cos(c.beta_c), s * q.rho * std::sin(c.beta_c), c.R_c, c.e,
+                                     t.sin_delta, t.cos_delta);
   }
   const Vec2 q = turned_section(w.cutter, p);
   const double b = t.h * beta, e = t.theta(beta) / t.sin_delta - s * t.e_h;
-  return blank_from_cutter<double>(q[0], -s * q[1] * std::cos(b), s * q[1] * std::sin(b), t.R(beta), e, t.sin_delta, t.cos_delta);
+  return blank_from_cutter<double>(q[0], -s * q[1] * std::cos(b), s * q[1] * std::sin(b), t.R(beta), e, t.sin_delta,
+                                   t.cos_delta);
 }
 
 double centre_path_estimate(const BevelWall<double>& w, double beta, double p) {
@@ -40,7 +43,8 @@ double centre_path_estimate(const BevelWall<double>& w, double beta, double p) {
   return -0.5 * q.rho * q.cos_psi * turn * turn;
 }
 
-std::optional<double> section_model_deviation(SectionModel model, const BevelWall<double>& w, double ell, double height) {
+std::optional<double> section_model_deviation(SectionModel model, const BevelWall<double>& w, double ell,
+                                              double height) {
   const auto at = bevel_inverse(w, ell, height);
   if (!at) return std::nullopt;
   const double sd = w.trace.sin_delta, cd = w.trace.cos_delta;
@@ -52,7 +56,8 @@ std::optional<double> section_model_deviation(SectionModel model, const BevelWal
     const ConePoint f = cone(beta, p);
     const double f0 = f.ell - ell, f1 = f.height - height;
     if (std::hypot(f0, f1) < 1e-13 * scale) break;
-    const ConePoint b1 = cone(beta + step_b, p), b0 = cone(beta - step_b, p), p1 = cone(beta, p + step_p), p0 = cone(beta, p - step_p);
+    const ConePoint b1 = cone(beta + step_b, p), b0 = cone(beta - step_b, p), p1 = cone(beta, p + step_p),
+                    p0 = cone(beta, p - step_p);
     const double a = (b1.ell - b0.ell) / (2 * step_b), c = (b1.height - b0.height) / (2 * step_b);
     const double b = (p1.ell - p0.ell) / (2 * step_p), d = (p1.height - p0.height) / (2 * step_p), det = a * d - b * c;
     if (!(std::abs(det) > 0)) return std::nullopt;
@@ -72,7 +77,8 @@ std::optional<double> section_model_deviation(SectionModel model, const BevelWal
 std::vector<SectionModelMap> section_model_maps(const BevelGear& g, const SectionModelOptions& options) {
   std::vector<SectionModelMap> maps;
   const bool whole = options.height_from == 0 && options.height_to == 0;
-  const double low = whole ? g.cutter().x_C : options.height_from, high = whole ? g.parameters().addendum_mm : options.height_to;
+  const double low = whole ? g.cutter().x_C : options.height_from,
+               high = whole ? g.parameters().addendum_mm : options.height_to;
   for (std::size_t i = 0; i < g.halves().size(); ++i)
     for (const auto& w : g.halves()[i].walls)
       for (const SectionModel model : {SectionModel::centre_path, SectionModel::tooth_trace}) {

@@ -12,7 +12,8 @@ BevelCurvature bevel_curvature(const BevelWall<double>& w, double beta, double p
   const double sg = std::sin(f.gamma), cg = std::cos(f.gamma);
   const auto& c = f.centre;
   const bool straight = t.straight(w.sigma, beta);
-  const double F = straight ? 1.0 : t.speed_ratio(w.sigma, beta), kappa = straight ? 0.0 : t.kappa(beta), R_c = c.R_c, sb = std::sin(c.beta_c), cb = std::cos(c.beta_c);
+  const double F = straight ? 1.0 : t.speed_ratio(w.sigma, beta), kappa = straight ? 0.0 : t.kappa(beta), R_c = c.R_c,
+               sb = std::sin(c.beta_c), cb = std::cos(c.beta_c);
   const double R_p = F * cb, e_p = F * sb / (R_c * sd), beta_p = kappa - F * sb / R_c;
   const double x_N = q.x + q.rho * q.sin_psi / q.cos_psi, tn = sb / cb;
   const double qq = 1 + x_N * cd / (R_c * sd), q_p = -x_N * R_p * cd / (R_c * R_c * sd);
@@ -59,7 +60,8 @@ std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell
   const double scale = w.trace.R_0, half_pi = std::asin(1.0);
   // Steps are cut back: beta stays inside the trace, p inside the profile (a little beyond D on the involute).
   const double p_low = c.p_A, p_high = c.p_D + 0.25 * (c.p_D - c.p_A);
-  // On the straight end of an eps = +1 path, which goes on for any negative parameter, ell is nearly linear; a unit may be short there.
+  // On the straight end of an eps = +1 path, which goes on for any negative parameter, ell is nearly linear; a unit may
+  // be short there.
   const bool goes_on = w.eps() > 0 && w.trace.beta_end > 0;
   const double lowest = goes_on ? -1e4 : 0.0;
   double beta = start.beta, p = std::clamp(start.p, p_low + 1e-9 * (p_high - p_low), p_high);
@@ -71,7 +73,8 @@ std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell
     if (!(std::abs(det) > 0) || !std::isfinite(det)) return std::nullopt;
     double db = -(d * f0 - b * f1) / det, dp = -(a * f1 - e * f0) / det;
     const bool straight = goes_on && beta < w.trace.beta_end;
-    const double farthest = straight ? 1e3 : 0.2, highest = straight ? w.trace.beta_end + 0.2 : half_pi - 0.5 * (half_pi - beta);
+    const double farthest = straight ? 1e3 : 0.2,
+                 highest = straight ? w.trace.beta_end + 0.2 : half_pi - 0.5 * (half_pi - beta);
     const double next_beta = std::clamp(beta + std::clamp(db, -farthest, farthest), lowest, highest);
     const double widest = 0.3 * (p_high - p_low);
     const double next_p = std::clamp(p + std::clamp(dp, -widest, widest), p_low, p_high);
@@ -85,7 +88,8 @@ std::optional<BevelInverse> bevel_inverse(const BevelWall<double>& w, double ell
       if (std::hypot(at[0] - ell, at[1] - height) > 1e-10 * scale) return std::nullopt;
       const Vec3 q = w.point(beta, p).contact;
       const auto centre = w.trace.centre(w.sigma, beta);
-      const double azimuth = centre.e + std::atan2(q.y(), q.x() * w.trace.cos_delta + (q.z() + centre.R_c) * w.trace.sin_delta);
+      const double azimuth =
+          centre.e + std::atan2(q.y(), q.x() * w.trace.cos_delta + (q.z() + centre.R_c) * w.trace.sin_delta);
       return BevelInverse{beta, p, azimuth, n + 1};
     }
   }
@@ -111,7 +115,8 @@ std::optional<double> bevel_beta_at(const BevelWall<double>& w, double ell, doub
 
 namespace {
 
-/// A start on the branch that the wall lies on, where ell turns back near the end of the trace: the height rises with p at one cone distance.
+/// A start on the branch that the wall lies on, where ell turns back near the end of the trace: the height rises with p
+/// at one cone distance.
 std::optional<BevelInverse> start_by_bisection(const BevelWall<double>& w, double ell, double height) {
   BevelInverse at;
   const auto height_at = [&](double p) -> std::optional<double> {

@@ -1,8 +1,9 @@
 // Flank of the equal-base-circle bevel gear: the envelope of the finger mill, in closed form.
 //
 // The surface normal meets the cutter axis at x_N = x + rho tan(psi); the profile point touches the envelope where that
-// point moves at right angles to the normal. Parameters: beta (where along the trace), p (where on the profile); nothing
-// is iterated. Normals point out of the material, into the tooth space. Derivation: docs/bevel_gear.md, section 5.
+// point moves at right angles to the normal. Parameters: beta (where along the trace), p (where on the profile);
+// nothing is iterated. Normals point out of the material, into the tooth space. Derivation: docs/bevel_gear.md,
+// section 5.
 #pragma once
 
 #include <optional>
@@ -14,23 +15,23 @@ namespace toothpath::bevel_gear {
 
 template <typename S>
 struct BevelFlankPoint {
-  Vec3T<S> p, n;       ///< blank frame
-  Vec3T<S> contact;    ///< cutter frame
+  Vec3T<S> p, n;     ///< blank frame
+  Vec3T<S> contact;  ///< cutter frame
   CutterCentre<S> centre;
-  S gamma{};           ///< azimuth of the contact on the cutter, rad
+  S gamma{};  ///< azimuth of the contact on the cutter, rad
 };
 
 /// Second order of the envelope.
 struct BevelCurvature {
-  double regularity = 0;             ///< J_n: 1 nominal, <= 0 where the envelope is not the boundary (undercut)
-  double kappa_1 = 0, kappa_2 = 0;   ///< principal curvatures, positive: hollow flank; kappa_1 >= kappa_2
-  double asymmetry = 0;              ///< |W_12 - W_21|, rounding only
+  double regularity = 0;            ///< J_n: 1 nominal, <= 0 where the envelope is not the boundary (undercut)
+  double kappa_1 = 0, kappa_2 = 0;  ///< principal curvatures, positive: hollow flank; kappa_1 >= kappa_2
+  double asymmetry = 0;             ///< |W_12 - W_21|, rounding only
 };
 
 /// Generatrix coordinates of a flank point and where it came from.
 struct BevelInverse {
   double beta = 0, p = 0;
-  double azimuth = 0;   ///< of the wall at (ell, height)
+  double azimuth = 0;  ///< of the wall at (ell, height)
   int iterations = 0;
 };
 

@@ -31,7 +31,8 @@ S tan_minus_angle(const S& b) {
   if constexpr (bevel_detail::kSeriesSuffices<S>) {
     if (bevel_detail::magnitude(b) < S(0.05)) {
       const S q = b * b;
-      return b * q * (S(1.0 / 3) + q * (S(2.0 / 15) + q * (S(17.0 / 315) + q * (S(62.0 / 2835) + q * S(1382.0 / 155925)))));
+      return b * q *
+             (S(1.0 / 3) + q * (S(2.0 / 15) + q * (S(17.0 / 315) + q * (S(62.0 / 2835) + q * S(1382.0 / 155925)))));
     }
   }
   return tan(b) - b;
@@ -62,7 +63,7 @@ struct CutterCentre {
 /// One hand of teeth: its trace, and the cutter-centre paths that are parallel to it.
 template <typename S>
 struct BevelTrace {
-  S R_0{};       ///< cone distance where beta = 0: the trace ends here
+  S R_0{};  ///< cone distance where beta = 0: the trace ends here
   S sin_delta{}, cos_delta{};
   S beta_ref{};  ///< spiral angle at R_ref, where theta = 0
   S r_0{};       ///< half width of the cutter at the pitch cone, pi m_nj / 4
@@ -100,13 +101,14 @@ struct BevelTrace {
     using std::sin, std::tan;
     const S sb = sin(beta), t = tan(beta), eps = S(-sigma * h);
     const S num = eps * r_0 * (S(2) * t * t - S(1));
-    if (sb == S(0)) return num < S(0) ? S(-std::numeric_limits<double>::infinity()) : S(std::numeric_limits<double>::infinity());
+    if (sb == S(0))
+      return num < S(0) ? S(-std::numeric_limits<double>::infinity()) : S(std::numeric_limits<double>::infinity());
     return S(1) + num / (S(2) * R_0 * sb);
   }
   /// Does the path of wall sigma run straight at this parameter?
   [[nodiscard]] bool straight(int sigma, const S& beta) const { return -sigma * h > 0 && beta < beta_end; }
-  /// Cutter centre of wall sigma at spiral angle beta of the trace; finite also at beta = 0. Below beta_end (eps = +1) the
-  /// path is the tangent at beta_end in the crown plane, run at the same speed per beta, also for beta < 0.
+  /// Cutter centre of wall sigma at spiral angle beta of the trace; finite also at beta = 0. Below beta_end (eps = +1)
+  /// the path is the tangent at beta_end in the crown plane, run at the same speed per beta, also for beta < 0.
   [[nodiscard]] CutterCentre<S> centre(int sigma, const S& beta) const {
     if (!straight(sigma, beta)) return curved_centre(sigma, beta);
     using std::sin;

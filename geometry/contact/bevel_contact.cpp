@@ -11,11 +11,11 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-
 /// One wall of the pair on a grid of the wheel.
 class Roll {
  public:
-  Roll(const BevelPair& pair, int sigma, const BevelContactOptions& options) : pair_(pair), sigma_(sigma), options_(options) {
+  Roll(const BevelPair& pair, int sigma, const BevelContactOptions& options)
+      : pair_(pair), sigma_(sigma), options_(options) {
     tau_ = pair.wheel().pitch();
     step_ = tau_ / options.steps;
     for (std::size_t h = 0; h < pair.wheel().halves().size(); ++h) patterns_.push_back(grid(static_cast<int>(h)));
@@ -36,10 +36,10 @@ class Roll {
 
  private:
   struct Meeting {
-    int first = 0;               ///< index of the first position [steps from 0]
-    std::vector<double> error;   ///< sigma (phi_1 - nominal) at every position; NaN: not on the pinion's flank
-    double least = kNothing;     ///< over all turns of the wheel, between the positions too
-    double at = 0;               ///< turn of the wheel there
+    int first = 0;              ///< index of the first position [steps from 0]
+    std::vector<double> error;  ///< sigma (phi_1 - nominal) at every position; NaN: not on the pinion's flank
+    double least = kNothing;    ///< over all turns of the wheel, between the positions too
+    double at = 0;              ///< turn of the wheel there
   };
   struct Least {
     double error = std::numeric_limits<double>::infinity();
@@ -58,7 +58,8 @@ class Roll {
         const double height = pair_.lowest(half) + (pair_.highest() - pair_.lowest(half)) * i / (g.rows - 1);
         const double ell = h.ell_from + (h.ell_to - h.ell_from) * j / (g.columns - 1);
         const auto place = pair_.wheel_place(half, sigma_, ell, height);
-        g.places.push_back(place ? *place : BevelPlace{ell, height, Vec3::Constant(kNothing), Vec3::Constant(kNothing)});
+        g.places.push_back(place ? *place
+                                 : BevelPlace{ell, height, Vec3::Constant(kNothing), Vec3::Constant(kNothing)});
       }
     return g;
   }
@@ -80,7 +81,8 @@ class Roll {
           const int middle = static_cast<int>(std::lround(-std::atan2(place.point.y(), place.point.x()) / step_));
           m.first = middle - window;
           bevel_gear::BevelInverse start;
-          for (int k = m.first; k <= middle + window; ++k) m.error.push_back(error(g.half, place.point, k * step_, start).value_or(kNothing));
+          for (int k = m.first; k <= middle + window; ++k)
+            m.error.push_back(error(g.half, place.point, k * step_, start).value_or(kNothing));
           refine(g, place, m);
           first_ = std::min(first_, m.first);
           last_ = std::max(last_, middle + window);
@@ -98,11 +100,14 @@ class Roll {
       if (!std::isnan(m.error[k]) && (best == m.error.size() || m.error[k] < m.error[best])) best = k;
     if (best == m.error.size()) return;
     m.at = (m.first + static_cast<int>(best)) * step_;
-    if (best == 0 || best + 1 == m.error.size() || std::isnan(m.error[best - 1]) || std::isnan(m.error[best + 1])) return;
+    if (best == 0 || best + 1 == m.error.size() || std::isnan(m.error[best - 1]) || std::isnan(m.error[best + 1]))
+      return;
     constexpr double kGolden = 0.6180339887498949;
     double low = m.at - step_, high = m.at + step_;
     bevel_gear::BevelInverse start;
-    const auto ask = [&](double s) { return error(g.half, place.point, s, start).value_or(std::numeric_limits<double>::infinity()); };
+    const auto ask = [&](double s) {
+      return error(g.half, place.point, s, start).value_or(std::numeric_limits<double>::infinity());
+    };
     double a = high - kGolden * (high - low), b = low + kGolden * (high - low), at_a = ask(a), at_b = ask(b);
     while (high - low > 1e-7 * step_) {
       if (at_a < at_b) {
@@ -146,7 +151,8 @@ class Roll {
         for (int i = -1; i <= 1; ++i)
           for (int j = -1; j <= 1; ++j) {
             if (i == 0 && j == 0) continue;
-            const double ell = std::clamp(centre.ell + j * along, h.ell_from, h.ell_to), height = std::clamp(centre.height + i * up, low, high);
+            const double ell = std::clamp(centre.ell + j * along, h.ell_from, h.ell_to),
+                         height = std::clamp(centre.height + i * up, low, high);
             const auto place = pair_.wheel_place(at.half, sigma_, ell, height);
             if (!place) continue;
             const auto e = error(at.half, place->point, phi_2, start);
@@ -179,7 +185,9 @@ class Roll {
           at.error_rad = l->error, at.half = l->half, at.tooth = j, at.ell = l->ell, at.height = l->height;
         }
       for (int j = -most; j <= most; ++j)
-        if (const Least* l = pair_at(k + j * options_.steps); l && (l->error - at.error_rad) * lever <= options_.compound_mm) ++at.marking;
+        if (const Least* l = pair_at(k + j * options_.steps);
+            l && (l->error - at.error_rad) * lever <= options_.compound_mm)
+          ++at.marking;
       at.phi_2 = k * step_;
       at.phi_1 = pair_.nominal_turn(at.phi_2) + sigma_ * at.error_rad;
       low = std::min(low, at.error_rad), high = std::max(high, at.error_rad);
@@ -259,7 +267,8 @@ class Roll {
 
 Result<BevelContact> bevel_contact(const BevelPair& pair, int sigma, const BevelContactOptions& options) {
   if (options.rows < 3 || options.columns < 3 || options.steps < 4)
-    return fail("grid of {} x {} places and {} positions: at least 3 x 3 and 4 are needed", options.rows, options.columns, options.steps);
+    return fail("grid of {} x {} places and {} positions: at least 3 x 3 and 4 are needed", options.rows,
+                options.columns, options.steps);
   return Roll(pair, sigma, options).run();
 }
 

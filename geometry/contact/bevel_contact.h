@@ -1,10 +1,12 @@
-// Unloaded contact of two equal-base-circle bevel gears as their mills leave them: rigid bodies, exact envelopes, no equation of meshing.
+// Unloaded contact of two equal-base-circle bevel gears as their mills leave them: rigid bodies, exact envelopes, no
+// equation of meshing.
 //
-// Nothing proves that the two envelopes are conjugate; here it is measured. For a place on the wheel's wall and a turn of the wheel, the turn
-// at which the pinion's wall passes through that place is closed form but for one inversion (bevel_inverse). The pinion stops at the
-// first of these turns over all places and teeth; the rest are gaps. The least value over a whole mesh, for every place, is the
-// mismatch of the two flanks at the exact ratio: zero everywhere if and only if they are conjugate.
-// Wall L of the pinion runs on wall L of the wheel, U on U. mm and rad. Derivation: docs/bevel_gear.md, section "Contact of the pair".
+// Nothing proves that the two envelopes are conjugate; here it is measured. For a place on the wheel's wall and a turn
+// of the wheel, the turn at which the pinion's wall passes through that place is closed form but for one inversion
+// (bevel_inverse). The pinion stops at the first of these turns over all places and teeth; the rest are gaps. The least
+// value over a whole mesh, for every place, is the mismatch of the two flanks at the exact ratio: zero everywhere if
+// and only if they are conjugate. Wall L of the pinion runs on wall L of the wheel, U on U. mm and rad. Derivation:
+// docs/bevel_gear.md, section "Contact of the pair".
 #pragma once
 
 #include <array>
@@ -18,37 +20,41 @@ namespace toothpath::contact {
 
 /// How the pair stands against its drawing; all zero: both apexes in one point, shafts at their angle.
 struct BevelAssembly {
-  double shaft_angle_rad = 0;     ///< added to the angle between the axes
-  double offset_mm = 0;           ///< wheel axis moved along the pinion's direction of growing azimuth at the pitch line
-  double pinion_axial_mm = 0;     ///< pinion away from its apex
-  double wheel_axial_mm = 0;      ///< wheel away from its apex
+  double shaft_angle_rad = 0;  ///< added to the angle between the axes
+  double offset_mm = 0;        ///< wheel axis moved along the pinion's direction of growing azimuth at the pitch line
+  double pinion_axial_mm = 0;  ///< pinion away from its apex
+  double wheel_axial_mm = 0;   ///< wheel away from its apex
 };
 
 /// How the pinion is cut otherwise than its drawing says: what could bring the pair closer to conjugate flanks.
 struct PinionChange {
-  /// Index 0: walls with eps = -sigma h = -1 ("convex" at the large end), 1: eps = +1. One mill for all walls has equal numbers in both.
+  /// Index 0: walls with eps = -sigma h = -1 ("convex" at the large end), 1: eps = +1. One mill for all walls has equal
+  /// numbers in both.
   std::array<double, 2> pressure_angle_rad{};  ///< added to that of the mill's profile
   std::array<double, 2> equivalent_radius{};   ///< share added to r_v of the mill's profile: its hollow becomes flatter
-  std::array<double, 2> spiral_angle_rad{};    ///< added to beta_e of the trace that the wall follows; theta(R_ref) stays
+  std::array<double, 2> spiral_angle_rad{};  ///< added to beta_e of the trace that the wall follows; theta(R_ref) stays
 };
 
 /// A place on wall sigma of one half of a gear.
 struct BevelPlace {
-  double ell = 0, height = 0;     ///< generatrix coordinates, mm
+  double ell = 0, height = 0;                        ///< generatrix coordinates, mm
   Vec3 point = Vec3::Zero(), normal = Vec3::Zero();  ///< blank frame, space 0; out of the material
 };
 
 /// Two gears in mesh. Keeps references: both gears outlive it.
 class BevelPair {
  public:
-  /// Refused: numbers of teeth that do not fit the pitch angles, cone distances R_0 that differ by more than 2 %, other halves, equal hands.
-  [[nodiscard]] static Result<BevelPair> make(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel, const BevelAssembly& assembly = {},
-                                              const PinionChange& change = {});
+  /// Refused: numbers of teeth that do not fit the pitch angles, cone distances R_0 that differ by more than 2 %, other
+  /// halves, equal hands.
+  [[nodiscard]] static Result<BevelPair> make(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel,
+                                              const BevelAssembly& assembly = {}, const PinionChange& change = {});
 
-  /// Turn of the pinion at which its wall sigma passes through a point of the wheel [wheel's blank frame] when the wheel stands at phi_2.
-  /// Positive turns are right-handed about each gear's own axis; phi_1 = phi_2 = 0: a pinion tooth in the middle of wheel space 0.
-  /// Empty: the point is not within the flank of the pinion's half. @param start of the inversion, updated
-  [[nodiscard]] std::optional<double> turn_at(int half, int sigma, const Vec3& point, double phi_2, bevel_gear::BevelInverse& start) const;
+  /// Turn of the pinion at which its wall sigma passes through a point of the wheel [wheel's blank frame] when the
+  /// wheel stands at phi_2. Positive turns are right-handed about each gear's own axis; phi_1 = phi_2 = 0: a pinion
+  /// tooth in the middle of wheel space 0. Empty: the point is not within the flank of the pinion's half. @param start
+  /// of the inversion, updated
+  [[nodiscard]] std::optional<double> turn_at(int half, int sigma, const Vec3& point, double phi_2,
+                                              bevel_gear::BevelInverse& start) const;
 
   /// Place on the wheel's wall; empty outside of it.
   [[nodiscard]] std::optional<BevelPlace> wheel_place(int half, int sigma, double ell, double height) const;
@@ -89,50 +95,54 @@ struct BevelPattern {
   int half = 0;
   int rows = 0, columns = 0;
   std::vector<BevelPlace> places;
-  /// Along the normal at the exact ratio, mean 0 over the wall; > 0: a gap. NaN: the flanks have no common normal here, because the
-  /// pinion's flank ends before.
+  /// Along the normal at the exact ratio, mean 0 over the wall; > 0: a gap. NaN: the flanks have no common normal here,
+  /// because the pinion's flank ends before.
   std::vector<double> mismatch_mm;
-  std::vector<double> gap_mm;       ///< least gap while the pair rolls; NaN: the pinion never comes
-  double marked_share = 0;          ///< part of the places below the compound
+  std::vector<double> gap_mm;  ///< least gap while the pair rolls; NaN: the pinion never comes
+  double marked_share = 0;     ///< part of the places below the compound
 };
 
 /// One position of the mesh cycle.
 struct BevelPosition {
   double phi_2 = 0, phi_1 = 0;
-  double error_rad = 0;          ///< phi_1 - nominal_turn, times sigma: < 0 the pinion is held back. Of the pinion
-  int half = 0, tooth = 0;       ///< what touches; pair counted from the one in the middle
-  double ell = 0, height = 0;    ///< on the wheel
-  int marking = 0;               ///< pairs within the compound of touching
+  double error_rad = 0;        ///< phi_1 - nominal_turn, times sigma: < 0 the pinion is held back. Of the pinion
+  int half = 0, tooth = 0;     ///< what touches; pair counted from the one in the middle
+  double ell = 0, height = 0;  ///< on the wheel
+  int marking = 0;             ///< pairs within the compound of touching
 };
 
 struct BevelContact {
   int sigma = 1;
-  std::vector<BevelPosition> cycle;     ///< one pitch of the wheel
+  std::vector<BevelPosition> cycle;  ///< one pitch of the wheel
   double error_range_rad = 0, error_mean_rad = 0;
-  double error_range_mm = 0;            ///< at the mean pitch circle of the pinion
-  double marking_ratio = 0;             ///< mean number of pairs within the compound
+  double error_range_mm = 0;  ///< at the mean pitch circle of the pinion
+  double marking_ratio = 0;   ///< mean number of pairs within the compound
   int least_marking = 0, most_marking = 0;
-  double mismatch_max_mm = 0, mismatch_min_mm = 0, mismatch_rms_mm = 0;  ///< over all places of both halves; rms about the mean
-  std::vector<BevelPattern> patterns;   ///< one a half
+  double mismatch_max_mm = 0, mismatch_min_mm = 0,
+         mismatch_rms_mm = 0;          ///< over all places of both halves; rms about the mean
+  std::vector<BevelPattern> patterns;  ///< one a half
 };
 
 /// Rolls wall sigma of the pair through one pitch. Refused: walls that never meet.
-[[nodiscard]] Result<BevelContact> bevel_contact(const BevelPair& pair, int sigma, const BevelContactOptions& options = {});
+[[nodiscard]] Result<BevelContact> bevel_contact(const BevelPair& pair, int sigma,
+                                                 const BevelContactOptions& options = {});
 
 /// What one change does to the mismatch of both walls together; a constant of each wall (play) does not count.
 struct MismatchChange {
   std::string name, unit;
-  double amount = 0;        ///< best in the sense of least squares, in `unit`
+  double amount = 0;  ///< best in the sense of least squares, in `unit`
   double rms_before_mm = 0, rms_after_mm = 0;
-  bool measured = false;    ///< the changed pair was rolled again; else first order
+  bool measured = false;  ///< the changed pair was rolled again; else first order
 };
-/// Changes of the pinion's mill, of its traces and of the assembly one at a time (first order); then the best amounts of mill and
-/// traces together, and of a mill of its own for the walls of each eps with the traces, measured with the changed pinion. Refused: as bevel_contact.
-[[nodiscard]] Result<std::vector<MismatchChange>> mismatch_changes(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel,
-                                                                  const BevelContactOptions& options = {});
+/// Changes of the pinion's mill, of its traces and of the assembly one at a time (first order); then the best amounts
+/// of mill and traces together, and of a mill of its own for the walls of each eps with the traces, measured with the
+/// changed pinion. Refused: as bevel_contact.
+[[nodiscard]] Result<std::vector<MismatchChange>> mismatch_changes(const bevel_gear::BevelGear& pinion,
+                                                                   const bevel_gear::BevelGear& wheel,
+                                                                   const BevelContactOptions& options = {});
 
-/// The mate of a gear by the rules of the pair: teeth exchanged, hands opposite, everything else and the mill equal. Refused: as
-/// BevelGear::make; a gear that names no mate.
+/// The mate of a gear by the rules of the pair: teeth exchanged, hands opposite, everything else and the mill equal.
+/// Refused: as BevelGear::make; a gear that names no mate.
 [[nodiscard]] Result<bevel_gear::BevelGear> bevel_mate(const bevel_gear::BevelGear& gear);
 
 }  // namespace toothpath::contact

@@ -14,8 +14,8 @@ namespace {
 /// Mismatch of both walls, every wall with mean 0 over the places that all columns have.
 using Field = std::vector<double>;
 
-Result<Field> field_of(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel, const BevelAssembly& assembly, const PinionChange& change,
-                       const BevelContactOptions& options) {
+Result<Field> field_of(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel,
+                       const BevelAssembly& assembly, const PinionChange& change, const BevelContactOptions& options) {
   const auto pair = BevelPair::make(pinion, wheel, assembly, change);
   if (!pair) return pair.error();
   Field field;
@@ -41,17 +41,31 @@ constexpr std::array<std::size_t, 6> kTwoMills = {2, 3, 4, 5, 6, 7};
 const std::vector<Trial>& trials_of_pair() {
   constexpr double degree = kPi / 180;
   static const std::vector<Trial> trials = {
-      {"pressure angle of the pinion's mill", "deg", 0.02 * degree, degree, [](double a, PinionChange& c, BevelAssembly&) { c.pressure_angle_rad = {a, a}; }},
-      {"equivalent radius of the pinion's mill", "%", 0.01, 0.01, [](double a, PinionChange& c, BevelAssembly&) { c.equivalent_radius = {a, a}; }},
-      {"pressure angle of the mill for convex walls", "deg", 0.02 * degree, degree, [](double a, PinionChange& c, BevelAssembly&) { c.pressure_angle_rad[0] = a; }},
-      {"pressure angle of the mill for concave walls", "deg", 0.02 * degree, degree, [](double a, PinionChange& c, BevelAssembly&) { c.pressure_angle_rad[1] = a; }},
-      {"equivalent radius of the mill for convex walls", "%", 0.01, 0.01, [](double a, PinionChange& c, BevelAssembly&) { c.equivalent_radius[0] = a; }},
-      {"equivalent radius of the mill for concave walls", "%", 0.01, 0.01, [](double a, PinionChange& c, BevelAssembly&) { c.equivalent_radius[1] = a; }},
-      {"spiral angle of the trace for convex walls", "deg", 0.02 * degree, degree, [](double a, PinionChange& c, BevelAssembly&) { c.spiral_angle_rad[0] = a; }},
-      {"spiral angle of the trace for concave walls", "deg", 0.02 * degree, degree, [](double a, PinionChange& c, BevelAssembly&) { c.spiral_angle_rad[1] = a; }},
-      {"shaft angle", "deg", 0.01 * degree, degree, [](double a, PinionChange&, BevelAssembly& m) { m.shaft_angle_rad = a; }},
+      {"pressure angle of the pinion's mill", "deg", 0.02 * degree, degree,
+       [](double a, PinionChange& c, BevelAssembly&) {
+         c.pressure_angle_rad = {a, a};
+       }},
+      {"equivalent radius of the pinion's mill", "%", 0.01, 0.01,
+       [](double a, PinionChange& c, BevelAssembly&) {
+         c.equivalent_radius = {a, a};
+       }},
+      {"pressure angle of the mill for convex walls", "deg", 0.02 * degree, degree,
+       [](double a, PinionChange& c, BevelAssembly&) { c.pressure_angle_rad[0] = a; }},
+      {"pressure angle of the mill for concave walls", "deg", 0.02 * degree, degree,
+       [](double a, PinionChange& c, BevelAssembly&) { c.pressure_angle_rad[1] = a; }},
+      {"equivalent radius of the mill for convex walls", "%", 0.01, 0.01,
+       [](double a, PinionChange& c, BevelAssembly&) { c.equivalent_radius[0] = a; }},
+      {"equivalent radius of the mill for concave walls", "%", 0.01, 0.01,
+       [](double a, PinionChange& c, BevelAssembly&) { c.equivalent_radius[1] = a; }},
+      {"spiral angle of the trace for convex walls", "deg", 0.02 * degree, degree,
+       [](double a, PinionChange& c, BevelAssembly&) { c.spiral_angle_rad[0] = a; }},
+      {"spiral angle of the trace for concave walls", "deg", 0.02 * degree, degree,
+       [](double a, PinionChange& c, BevelAssembly&) { c.spiral_angle_rad[1] = a; }},
+      {"shaft angle", "deg", 0.01 * degree, degree,
+       [](double a, PinionChange&, BevelAssembly& m) { m.shaft_angle_rad = a; }},
       {"offset of the axes", "mm", 0.01, 1, [](double a, PinionChange&, BevelAssembly& m) { m.offset_mm = a; }},
-      {"pinion along its axis", "mm", 0.01, 1, [](double a, PinionChange&, BevelAssembly& m) { m.pinion_axial_mm = a; }},
+      {"pinion along its axis", "mm", 0.01, 1,
+       [](double a, PinionChange&, BevelAssembly& m) { m.pinion_axial_mm = a; }},
       {"wheel along its axis", "mm", 0.01, 1, [](double a, PinionChange&, BevelAssembly& m) { m.wheel_axial_mm = a; }},
   };
   return trials;
@@ -60,7 +74,8 @@ const std::vector<Trial>& trials_of_pair() {
 /// What every trial does to the mismatch of a pair, linear in its amount: mismatch = base + sum of amount * column.
 class LinearModel {
  public:
-  static Result<LinearModel> of(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel, const BevelContactOptions& options) {
+  static Result<LinearModel> of(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel,
+                                const BevelContactOptions& options) {
     LinearModel model(pinion, wheel, options);
     auto base = field_of(pinion, wheel, {}, {}, options);
     if (!base) return base.error();
@@ -73,11 +88,14 @@ class LinearModel {
     }
     model.kept_.resize(model.base_.size());
     for (std::size_t k = 0; k < model.base_.size(); ++k)
-      model.kept_[k] = !std::isnan(model.base_[k]) && std::none_of(columns.begin(), columns.end(), [&](const Field& c) { return std::isnan(c[k]); });
-    if (std::count(model.kept_.begin(), model.kept_.end(), true) < 12) return fail("the flanks share too few places to compare changes");
+      model.kept_[k] = !std::isnan(model.base_[k]) &&
+                       std::none_of(columns.begin(), columns.end(), [&](const Field& c) { return std::isnan(c[k]); });
+    if (std::count(model.kept_.begin(), model.kept_.end(), true) < 12)
+      return fail("the flanks share too few places to compare changes");
     model.b_ = vector_of(model.base_, model.kept_);
     model.A_.resize(model.b_.size(), static_cast<Eigen::Index>(columns.size()));
-    for (std::size_t k = 0; k < columns.size(); ++k) model.A_.col(static_cast<Eigen::Index>(k)) = vector_of(columns[k], model.kept_);
+    for (std::size_t k = 0; k < columns.size(); ++k)
+      model.A_.col(static_cast<Eigen::Index>(k)) = vector_of(columns[k], model.kept_);
     return model;
   }
 
@@ -90,10 +108,12 @@ class LinearModel {
   }
 
   /// Several at once, then rolled again with the changed pinion.
-  [[nodiscard]] Result<std::vector<MismatchChange>> together(std::span<const std::size_t> chosen, const std::string& title) const {
+  [[nodiscard]] Result<std::vector<MismatchChange>> together(std::span<const std::size_t> chosen,
+                                                             const std::string& title) const {
     const std::vector<Trial>& trials = trials_of_pair();
     Eigen::MatrixXd own(b_.size(), static_cast<Eigen::Index>(chosen.size()));
-    for (std::size_t k = 0; k < chosen.size(); ++k) own.col(static_cast<Eigen::Index>(k)) = A_.col(static_cast<Eigen::Index>(chosen[k]));
+    for (std::size_t k = 0; k < chosen.size(); ++k)
+      own.col(static_cast<Eigen::Index>(k)) = A_.col(static_cast<Eigen::Index>(chosen[k]));
     const Eigen::VectorXd best = -own.colPivHouseholderQr().solve(b_);
     PinionChange change;
     BevelAssembly assembly;
@@ -114,13 +134,15 @@ class LinearModel {
     std::vector<MismatchChange> out;
     for (std::size_t k = 0; k < chosen.size(); ++k) {
       const Trial& t = trials[chosen[k]];
-      out.push_back({title + ": " + t.name, t.unit, best[static_cast<Eigen::Index>(k)] / t.per_unit, before, left, true});
+      out.push_back(
+          {title + ": " + t.name, t.unit, best[static_cast<Eigen::Index>(k)] / t.per_unit, before, left, true});
     }
     return out;
   }
 
  private:
-  LinearModel(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel, const BevelContactOptions& options)
+  LinearModel(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel,
+              const BevelContactOptions& options)
       : pinion_(pinion), wheel_(wheel), options_(options) {}
 
   /// Change of the mismatch by one trial, per step.
@@ -160,7 +182,9 @@ class LinearModel {
 
 }  // namespace
 
-Result<std::vector<MismatchChange>> mismatch_changes(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel, const BevelContactOptions& options) {
+Result<std::vector<MismatchChange>> mismatch_changes(const bevel_gear::BevelGear& pinion,
+                                                     const bevel_gear::BevelGear& wheel,
+                                                     const BevelContactOptions& options) {
   const auto model = LinearModel::of(pinion, wheel, options);
   if (!model) return model.error();
   std::vector<MismatchChange> out;

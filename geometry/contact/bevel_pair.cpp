@@ -16,8 +16,9 @@ void change_wall(bevel_gear::BevelWall<double>& wall, const bevel_gear::BevelGea
   const auto& c = gear.cutter_data();
   const std::size_t w = wall.eps() < 0 ? 0 : 1;
   if (change.pressure_angle_rad[w] != 0 || change.equivalent_radius[w] != 0)
-    wall.cutter = bevel_gear::make_finger_profile<double>(p.pressure_angle_rad + change.pressure_angle_rad[w], gear.kappa_v() / (1 + change.equivalent_radius[w]),
-                                              p.dedendum_mm, c.module_mm, c.tip_radius_mm, c.rack_depth_mm, c.profile_height_mm);
+    wall.cutter = bevel_gear::make_finger_profile<double>(
+        p.pressure_angle_rad + change.pressure_angle_rad[w], gear.kappa_v() / (1 + change.equivalent_radius[w]),
+        p.dedendum_mm, c.module_mm, c.tip_radius_mm, c.rack_depth_mm, c.profile_height_mm);
   const double turn = change.spiral_angle_rad[w];
   if (turn == 0) return;
   const double outer = std::cos(p.outer_spiral_angle_rad + turn);
@@ -27,19 +28,23 @@ void change_wall(bevel_gear::BevelWall<double>& wall, const bevel_gear::BevelGea
 
 }  // namespace
 
-Result<BevelPair> BevelPair::make(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel, const BevelAssembly& assembly, const PinionChange& change) {
+Result<BevelPair> BevelPair::make(const bevel_gear::BevelGear& pinion, const bevel_gear::BevelGear& wheel,
+                                  const BevelAssembly& assembly, const PinionChange& change) {
   const auto &p = pinion.parameters(), &w = wheel.parameters();
   const double ratio = double(w.teeth) / p.teeth;
   if (std::abs(wheel.sin_delta() / pinion.sin_delta() / ratio - 1) > 1e-9)
-    return fail("pitch angles {:.6f} and {:.6f} deg do not fit {} and {} teeth", degrees(pinion.delta()), degrees(wheel.delta()), p.teeth, w.teeth);
+    return fail("pitch angles {:.6f} and {:.6f} deg do not fit {} and {} teeth", degrees(pinion.delta()),
+                degrees(wheel.delta()), p.teeth, w.teeth);
   if (p.mate_teeth > 0 && std::abs(pinion.delta() + wheel.delta() - p.shaft_angle_rad) > 1e-9)
-    return fail("pitch angles {:.6f} and {:.6f} deg do not add up to the shaft angle {:.6f} deg", degrees(pinion.delta()), degrees(wheel.delta()),
-                degrees(p.shaft_angle_rad));
+    return fail("pitch angles {:.6f} and {:.6f} deg do not add up to the shaft angle {:.6f} deg",
+                degrees(pinion.delta()), degrees(wheel.delta()), degrees(p.shaft_angle_rad));
   if (std::abs(wheel.R_0() / pinion.R_0() - 1) > 0.02)
-    return fail("R_0 = {:.4f} mm of the wheel differs from {:.4f} mm of the pinion by more than 2 %", wheel.R_0(), pinion.R_0());
+    return fail("R_0 = {:.4f} mm of the wheel differs from {:.4f} mm of the pinion by more than 2 %", wheel.R_0(),
+                pinion.R_0());
   if (pinion.halves().size() != wheel.halves().size()) return fail("one gear has one hand, the other is a herringbone");
   for (std::size_t k = 0; k < pinion.halves().size(); ++k)
-    if (pinion.halves()[k].hand == wheel.halves()[k].hand) return fail("half {} has the same hand on both gears: a pair needs opposite hands", k);
+    if (pinion.halves()[k].hand == wheel.halves()[k].hand)
+      return fail("half {} has the same hand on both gears: a pair needs opposite hands", k);
   BevelPair pair;
   pair.pinion_ = &pinion;
   pair.wheel_ = &wheel;
@@ -47,29 +52,38 @@ Result<BevelPair> BevelPair::make(const bevel_gear::BevelGear& pinion, const bev
   for (bevel_gear::BevelHalf& half : pair.pinion_halves_)
     for (bevel_gear::BevelWall<double>& wall : half.walls) change_wall(wall, pinion, change);
   pair.ratio_ = ratio;
-  // Common pitch line g, normal m from the pinion into the wheel, t = g x m; the fixed frame is the pinion's blank frame at phi_1 = 0.
+  // Common pitch line g, normal m from the pinion into the wheel, t = g x m; the fixed frame is the pinion's blank
+  // frame at phi_1 = 0.
   const double s1 = pinion.sin_delta(), c1 = pinion.cos_delta(), s2 = wheel.sin_delta(), c2 = wheel.cos_delta();
   const Vec3 g(s1, 0, c1), m(c1, 0, -s1), t(0, 1, 0), g2(s2, 0, c2), m2(c2, 0, -s2);
   const Mat3 nominal = g * g2.transpose() - m * m2.transpose() - t * t.transpose();
   pair.placed_ = Eigen::AngleAxisd(assembly.shaft_angle_rad, t).toRotationMatrix() * nominal;
-  pair.shift_ = assembly.offset_mm * t - assembly.pinion_axial_mm * Vec3::UnitZ() + assembly.wheel_axial_mm * pair.placed_.col(2);
+  pair.shift_ =
+      assembly.offset_mm * t - assembly.pinion_axial_mm * Vec3::UnitZ() + assembly.wheel_axial_mm * pair.placed_.col(2);
   return pair;
 }
 
-Vec3 BevelPair::turned_to_pinion(const Vec3& direction, double phi_2) const { return placed_ * (turn_about_z(phi_2) * direction); }
+Vec3 BevelPair::turned_to_pinion(const Vec3& direction, double phi_2) const {
+  return placed_ * (turn_about_z(phi_2) * direction);
+}
 Vec3 BevelPair::to_pinion(const Vec3& point, double phi_2) const { return turned_to_pinion(point, phi_2) + shift_; }
 
-std::optional<double> BevelPair::turn_at(int half, int sigma, const Vec3& point, double phi_2, bevel_gear::BevelInverse& start) const {
+std::optional<double> BevelPair::turn_at(int half, int sigma, const Vec3& point, double phi_2,
+                                         bevel_gear::BevelInverse& start) const {
   const bevel_gear::BevelHalf& own = pinion_halves_[static_cast<std::size_t>(half)];
-  const bevel_gear::ConePoint q = bevel_gear::cone_point(to_pinion(point, phi_2), pinion_->sin_delta(), pinion_->cos_delta());
+  const bevel_gear::ConePoint q =
+      bevel_gear::cone_point(to_pinion(point, phi_2), pinion_->sin_delta(), pinion_->cos_delta());
   const double edge = kAtEdge * pinion_->R_0();
-  if (q.ell < own.ell_from - edge || q.ell > own.ell_to + edge || q.height > pinion_->parameters().addendum_mm + edge) return std::nullopt;
+  if (q.ell < own.ell_from - edge || q.ell > own.ell_to + edge || q.height > pinion_->parameters().addendum_mm + edge)
+    return std::nullopt;
   const bevel_gear::BevelWall<double>& wall = own.wall(sigma);
-  auto found = start.iterations > 0 ? bevel_gear::bevel_inverse(wall, q.ell, q.height, start) : bevel_gear::bevel_inverse(wall, q.ell, q.height);
+  auto found = start.iterations > 0 ? bevel_gear::bevel_inverse(wall, q.ell, q.height, start)
+                                    : bevel_gear::bevel_inverse(wall, q.ell, q.height);
   if (!found && start.iterations > 0) found = bevel_gear::bevel_inverse(wall, q.ell, q.height);
   if (!found || found->p < wall.cutter.p_A) return std::nullopt;
   start = *found;
-  // Pinion tooth between its spaces -1 and 0, turned by half a pitch to azimuth 0: wall L of space 0, wall U of space -1.
+  // Pinion tooth between its spaces -1 and 0, turned by half a pitch to azimuth 0: wall L of space 0, wall U of space
+  // -1.
   return wrapped(q.azimuth - found->azimuth - sigma * pinion_->pitch() / 2);
 }
 

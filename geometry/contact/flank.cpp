@@ -3,15 +3,16 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
-#include "geometry/face_gear/inverse.h"
 #include "geometry/contact/tooth_contact.h"
+#include "geometry/face_gear/inverse.h"
 
 namespace toothpath::contact {
 
 Status check_pinion(const face_gear::FaceGearParameters& gear, int pinion_teeth) {
   if (pinion_teeth < 5) return fail("pinion_teeth = {} is below 5", pinion_teeth);
   if (pinion_teeth > gear.shaper_teeth)
-    return fail("pinion_teeth = {} exceeds the shaper's {}: such a pinion bears on the ends of the face", pinion_teeth, gear.shaper_teeth);
+    return fail("pinion_teeth = {} exceeds the shaper's {}: such a pinion bears on the ends of the face", pinion_teeth,
+                gear.shaper_teeth);
   return Ok{};
 }
 
@@ -36,7 +37,8 @@ Result<ContactFlank> exact_flank(const face_gear::FaceGear& gear, int zone, int 
   flank.deviation_mm.assign(size, 0.0);
   std::optional<face_gear::FlankCoordinates> near;
   for (int c = 0; c < columns; ++c) {
-    const double r = ring.zone.inner_radius_mm + (ring.zone.outer_radius_mm - ring.zone.inner_radius_mm) * c / (columns - 1);
+    const double r =
+        ring.zone.inner_radius_mm + (ring.zone.outer_radius_mm - ring.zone.inner_radius_mm) * c / (columns - 1);
     const auto low = face_gear::fillet_line_height(ring.surface, side, r);
     auto top = low ? face_gear::invert_flank(ring.surface, side, r, ring.surface.z_tip(r), near) : std::nullopt;
     if (!top) return fail("the flank of side {:+} does not reach from tip to fillet at radius {:.4f} mm", side, r);
@@ -67,8 +69,8 @@ Result<ContactFlank> exact_flank(const face_gear::FaceGear& gear, int zone, int 
   return flank;
 }
 
-Result<ContactFlank> measured_flank(const face_gear::FaceGear& gear, int zone, int side, int rows, int columns, const std::vector<Vec3>& nominal,
-                                    const std::vector<double>& deviation_mm) {
+Result<ContactFlank> measured_flank(const face_gear::FaceGear& gear, int zone, int side, int rows, int columns,
+                                    const std::vector<Vec3>& nominal, const std::vector<double>& deviation_mm) {
   const auto size = static_cast<std::size_t>(std::max(0, rows)) * static_cast<std::size_t>(std::max(0, columns));
   if (rows < 3 || columns < 3) return fail("a flank needs at least 3 x 3 places, not {} x {}", rows, columns);
   if (nominal.size() != size || deviation_mm.size() != size)
@@ -91,10 +93,13 @@ Result<ContactFlank> measured_flank(const face_gear::FaceGear& gear, int zone, i
   std::optional<face_gear::FlankCoordinates> near;
   for (int r = 0; r < rows; ++r)
     for (int c = 0; c < columns; ++c) {
-      const auto from = static_cast<std::size_t>((flip_rows ? rows - 1 - r : r) * columns + (flip_columns ? columns - 1 - c : c));
+      const auto from =
+          static_cast<std::size_t>((flip_rows ? rows - 1 - r : r) * columns + (flip_columns ? columns - 1 - c : c));
       const Vec3& p = nominal[from];
       const auto at = face_gear::invert_flank(flank.surface, side, radius(p), p.z(), near);
-      if (!at) return fail("the point at radius {:.4f} mm, height {:.4f} mm is not on the flank of side {:+}", radius(p), p.z(), side);
+      if (!at)
+        return fail("the point at radius {:.4f} mm, height {:.4f} mm is not on the flank of side {:+}", radius(p),
+                    p.z(), side);
       near = at;
       const std::size_t n = flank.index(r, c);
       flank.theta[n] = at->theta;
@@ -112,7 +117,8 @@ std::optional<PathRange> path_on_flanks(const ContactPath<double>& path, const C
   const auto& f = member.flank;
   const Pinion<double>& pinion = member.pinion;
   const auto first = static_cast<std::size_t>(f.columns - 1);
-  const double r_in = std::hypot(f.points[0].x(), f.points[0].y()), r_out = std::hypot(f.points[first].x(), f.points[first].y());
+  const double r_in = std::hypot(f.points[0].x(), f.points[0].y()),
+               r_out = std::hypot(f.points[first].x(), f.points[first].y());
   const auto inside = [&](double theta_1) {
     const double theta = path.theta(theta_1);
     if (theta < 0 || theta > f.surface.shaper.theta_t) return false;

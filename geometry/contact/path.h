@@ -1,10 +1,10 @@
 // The path of contact of a face gear and an involute pinion in closed form, also misaligned; template on the scalar.
 //
-// Both flanks have normals of constant moment about their own axis. A line that is normal to the pinion's flank is normal to the
-// gear's if it has the gear's moment s M2, its slope against the gear's axis and the height of its foot on that axis. The first
-// is linear in the section Z, the second gives B, the third is one equation for the turned position B_1 of the normal. Its root does not depend
-// on the pinion's turn: the path of contact is one straight line of the housing, and the transmission error is a constant.
-// Derivation: docs/contact.md.
+// Both flanks have normals of constant moment about their own axis. A line that is normal to the pinion's flank is
+// normal to the gear's if it has the gear's moment s M2, its slope against the gear's axis and the height of its foot
+// on that axis. The first is linear in the section Z, the second gives B, the third is one equation for the turned
+// position B_1 of the normal. Its root does not depend on the pinion's turn: the path of contact is one straight line
+// of the housing, and the transmission error is a constant. Derivation: docs/contact.md.
 #pragma once
 
 #include <limits>
@@ -17,14 +17,15 @@ namespace toothpath::contact {
 template <typename S>
 struct ContactPath {
   int side = 1;
-  bool line_contact = false;  ///< pinion and shaper are one: every B_1 is a root, contact is along lines; B = B_1 is one of them
-  S B{}, B_1{};               ///< gear: flank parameter of the path; pinion: turned position of its normal
-  S Z{};                      ///< pinion: section of the normal's base-tangent point
-  S shift{};                  ///< r_b theta = r_b1 theta_1 + shift
-  S turn{};                   ///< of the gear between the shaper's place of the normal and the pinion's
-  Vec3T<S> start, normal;     ///< housing: base-tangent point on the pinion, common normal out of the gear
-  S phi_1_0{}, phi_2_0{};     ///< turns at theta_1 = 0
-  S per_theta{};              ///< -d(phi_1)/d(theta_1) = side/cos^2(beta_b)
+  bool line_contact =
+      false;     ///< pinion and shaper are one: every B_1 is a root, contact is along lines; B = B_1 is one of them
+  S B{}, B_1{};  ///< gear: flank parameter of the path; pinion: turned position of its normal
+  S Z{};         ///< pinion: section of the normal's base-tangent point
+  S shift{};     ///< r_b theta = r_b1 theta_1 + shift
+  S turn{};      ///< of the gear between the shaper's place of the normal and the pinion's
+  Vec3T<S> start, normal;  ///< housing: base-tangent point on the pinion, common normal out of the gear
+  S phi_1_0{}, phi_2_0{};  ///< turns at theta_1 = 0
+  S per_theta{};           ///< -d(phi_1)/d(theta_1) = side/cos^2(beta_b)
   S ratio{}, r_b{}, r_b1{}, cos_bb{};
 
   [[nodiscard]] S theta(const S& theta_1) const { return (r_b1 * theta_1 + shift) / r_b; }
@@ -39,7 +40,8 @@ struct ContactPath {
 
 namespace contact_detail {
 
-/// A line by its point nearest to the gear's axis: height there, distance along the line from the given point, azimuth of its direction.
+/// A line by its point nearest to the gear's axis: height there, distance along the line from the given point, azimuth
+/// of its direction.
 template <typename S>
 struct AxisFoot {
   S height{}, along{}, azimuth{};
@@ -86,8 +88,9 @@ PathTrial<S> try_normal(const face_gear::FaceGearSurface<S>& gear, const Pinion<
 
 }  // namespace contact_detail
 
-/// The path of flank s. Nothing where no common normal lies within 0.6 rad of the pitch point's: contact is then on edges only.
-/// The path may lie outside the flank; whether the flanks reach it is a question of their edges (tooth_contact.h).
+/// The path of flank s. Nothing where no common normal lies within 0.6 rad of the pitch point's: contact is then on
+/// edges only. The path may lie outside the flank; whether the flanks reach it is a question of their edges
+/// (tooth_contact.h).
 template <typename S>
 std::optional<ContactPath<S>> contact_path(const face_gear::FaceGearSurface<S>& gear, const Pinion<S>& pinion, int s) {
   using std::abs;

@@ -1,8 +1,8 @@
 // The involute pinion that runs with a face gear, placed in the housing, also misaligned.
 //
-// Same transverse module, pressure angle and hand as the shaper; fewer teeth or as many. Aligned, its axis is parallel to the
-// shaper's and lower by the difference of the pitch radii: the pitch cylinders touch from within along the pitch line. Side s of the
-// pinion is the flank that runs on side s of the gear. Derivation: docs/contact.md.
+// Same transverse module, pressure angle and hand as the shaper; fewer teeth or as many. Aligned, its axis is parallel
+// to the shaper's and lower by the difference of the pitch radii: the pitch cylinders touch from within along the pitch
+// line. Side s of the pinion is the flank that runs on side s of the gear. Derivation: docs/contact.md.
 #pragma once
 
 #include <cmath>
@@ -22,20 +22,26 @@ struct Misalignment {
 template <typename S>
 struct Pinion {
   int teeth = 0;
-  S r_p{}, r_b{}, r_a{};       ///< pitch, base and tip radius, mm
-  S kappa{};                   ///< twist, rad per mm of axis
-  S theta_0{};                 ///< half tooth-space angle at the base circle (no backlash)
-  S theta_a{};                 ///< roll parameter at the tip circle
-  S cos_bb{}, sin_bb{}, T{};   ///< base helix angle, as the shaper's
-  S L0{};                      ///< section in which flank angles are counted
-  S ratio{};                   ///< N_p / N_2
-  Vec3T<S> a, d, b, foot;      ///< axis, down and across; point of the axis at Z_1 = 0; housing frame
+  S r_p{}, r_b{}, r_a{};      ///< pitch, base and tip radius, mm
+  S kappa{};                  ///< twist, rad per mm of axis
+  S theta_0{};                ///< half tooth-space angle at the base circle (no backlash)
+  S theta_a{};                ///< roll parameter at the tip circle
+  S cos_bb{}, sin_bb{}, T{};  ///< base helix angle, as the shaper's
+  S L0{};                     ///< section in which flank angles are counted
+  S ratio{};                  ///< N_p / N_2
+  Vec3T<S> a, d, b, foot;     ///< axis, down and across; point of the axis at Z_1 = 0; housing frame
 
-  [[nodiscard]] Vec3T<S> e(const S& x) const { using std::cos, std::sin; return d * S(cos(x)) + b * S(sin(x)); }
-  [[nodiscard]] Vec3T<S> t(const S& x) const { using std::cos, std::sin; return b * S(cos(x)) - d * S(sin(x)); }
+  [[nodiscard]] Vec3T<S> e(const S& x) const {
+    using std::cos, std::sin;
+    return d * S(cos(x)) + b * S(sin(x));
+  }
+  [[nodiscard]] Vec3T<S> t(const S& x) const {
+    using std::cos, std::sin;
+    return b * S(cos(x)) - d * S(sin(x));
+  }
 
-  /// Point of flank s of the tooth that meets gear tooth 0, at roll parameter theta and section Z_1, when the pinion has turned by
-  /// phi. Housing frame; the normal points out of the gear's material, that is into the pinion.
+  /// Point of flank s of the tooth that meets gear tooth 0, at roll parameter theta and section Z_1, when the pinion
+  /// has turned by phi. Housing frame; the normal points out of the gear's material, that is into the pinion.
   [[nodiscard]] face_gear::SurfacePointT<S> flank(int s, const S& theta, const S& Z, const S& phi) const {
     const S B = S(s) * (theta_0 + theta) + kappa * (Z - L0) + phi;
     const Vec3T<S> n = (t(B) * cos_bb - a * sin_bb) * S(s);
@@ -65,13 +71,14 @@ struct Pinion {
     return atan2(p.y, p.x) + S(s) * (atan(theta) - theta_0 - theta) - kappa * (p.Z - L0);
   }
 
-  /// Normal distance between a place and flank s when the pinion stands at `phi`: exact, as parallel involute helicoids are turned
-  /// copies. Positive: the flank has not reached the place yet.
+  /// Normal distance between a place and flank s when the pinion stands at `phi`: exact, as parallel involute helicoids
+  /// are turned copies. Positive: the flank has not reached the place yet.
   [[nodiscard]] S gap(int s, const Place& p, const S& phi) const { return S(s) * r_b * cos_bb * (phi - turn_at(s, p)); }
 };
 
 /// @param gear          the flank that the pinion runs on; its shaper gives module, pressure angle, hand, addendum
-/// @param pinion_teeth  N_p, 1 <= N_p; more than the shaper's teeth bear on the ends of the face (refused by `check_pinion`)
+/// @param pinion_teeth  N_p, 1 <= N_p; more than the shaper's teeth bear on the ends of the face (refused by
+/// `check_pinion`)
 template <typename S>
 Pinion<S> make_pinion(const face_gear::FaceGearSurface<S>& gear, int pinion_teeth, const Misalignment& moved = {}) {
   using std::atan, std::cos, std::sin, std::sqrt, std::tan;

@@ -36,7 +36,8 @@ Lattice lattice_of(const std::vector<ContactMember>& members, const RollOptions&
   lattice.step = f.surface.pitch / options.steps;
   lattice.start = f.surface.i * f.surface.flank_phi(f.side, median_of(f, f.theta), median_of(f, f.B));
   const auto reached = [&](int k) {
-    return std::any_of(members.begin(), members.end(), [&](const auto& member) { return TouchSearch(member, lattice.phi_2(k)).any(); });
+    return std::any_of(members.begin(), members.end(),
+                       [&](const auto& member) { return TouchSearch(member, lattice.phi_2(k)).any(); });
   };
   const int widest = options.widest_pitches * options.steps, stride = std::max(1, options.steps / 8);
   int low = 0, high = 0;
@@ -47,7 +48,8 @@ Lattice lattice_of(const std::vector<ContactMember>& members, const RollOptions&
   return lattice;
 }
 
-/// Extent and main axis of the marked part. `s_along`: radius; `s_across`: length along the profile from the fillet line.
+/// Extent and main axis of the marked part. `s_along`: radius; `s_across`: length along the profile from the fillet
+/// line.
 void describe(const ContactFlank& f, double compound, FlankPattern& pattern) {
   double area = 0, marked = 0, mr = 0, mz = 0, mx = 0, my = 0, xx = 0, yy = 0, xy = 0;
   pattern.inner_mm = pattern.low_mm = 1e300;
@@ -222,9 +224,18 @@ FlankPattern pattern_of(const Roll& roll, std::size_t m) {
 
 Result<RollResult> roll(const std::vector<ContactMember>& members, const RollOptions& options) {
   if (members.empty()) return fail("no flank to roll on");
-  if (options.steps < 4 || options.steps > 2000) return fail("{} positions a pitch: 4 to 2000 are possible", options.steps);
+  if (options.steps < 4 || options.steps > 2000)
+    return fail("{} positions a pitch: 4 to 2000 are possible", options.steps);
   const Pinion<double>& pinion = members.front().pinion;
-  Roll work{members, options, lattice_of(members, options), members.front().flank.side, options.steps, 2 * kPi / pinion.teeth, pinion.ratio, {}, {}};
+  Roll work{members,
+            options,
+            lattice_of(members, options),
+            members.front().flank.side,
+            options.steps,
+            2 * kPi / pinion.teeth,
+            pinion.ratio,
+            {},
+            {}};
   work.contact.assign(static_cast<std::size_t>(options.steps), kNever);
   search_touches(work);
   RollResult result;

@@ -1,10 +1,10 @@
 // Unloaded contact of a face gear with a pinion as rigid bodies: transmission error, touching pairs, contact pattern.
 //
-// For a place on the gear's flank the turn at which the pinion's flank reaches it is closed form (Pinion::turn_at). The gear at phi_2 stops
-// the pinion at the first of these turns, over all places and teeth; how far the pinion's flank then is from each place is
-// the gap, and where the least gap of a whole mesh is below the thickness of the marking compound the flank is coloured. No equation of
-// meshing, no search for common normals: contact on edges and on cut surfaces with their deviations is found the same way.
-// Derivation: docs/contact.md.
+// For a place on the gear's flank the turn at which the pinion's flank reaches it is closed form (Pinion::turn_at). The
+// gear at phi_2 stops the pinion at the first of these turns, over all places and teeth; how far the pinion's flank
+// then is from each place is the gap, and where the least gap of a whole mesh is below the thickness of the marking
+// compound the flank is coloured. No equation of meshing, no search for common normals: contact on edges and on cut
+// surfaces with their deviations is found the same way. Derivation: docs/contact.md.
 #pragma once
 
 #include <optional>
@@ -15,15 +15,15 @@
 
 namespace toothpath::contact {
 
-/// One flank of the gear as a grid of exact places with deviations. Row 0 lies at the fillet line, the last row at the tip; column 0
-/// at the inner end of the ring.
+/// One flank of the gear as a grid of exact places with deviations. Row 0 lies at the fillet line, the last row at the
+/// tip; column 0 at the inner end of the ring.
 struct ContactFlank {
   face_gear::FaceGearSurface<double> surface;
   int zone = 0, side = 1;
   int rows = 0, columns = 0;
-  std::vector<double> theta, B;        ///< row-major
-  std::vector<double> deviation_mm;    ///< along the normal, > 0 material left; all 0 on the exact flank
-  std::vector<Vec3> points, normals;   ///< nominal, gear frame, tooth 0
+  std::vector<double> theta, B;       ///< row-major
+  std::vector<double> deviation_mm;   ///< along the normal, > 0 material left; all 0 on the exact flank
+  std::vector<Vec3> points, normals;  ///< nominal, gear frame, tooth 0
 
   [[nodiscard]] std::size_t index(int row, int column) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
@@ -33,12 +33,14 @@ struct ContactFlank {
 
 /// The exact flank of a ring between its radii, from the fillet line (or the end of the involute) to the tip surface.
 /// Refused: fewer than 3 x 3 places; a radius that the flank does not reach.
-[[nodiscard]] Result<ContactFlank> exact_flank(const face_gear::FaceGear& gear, int zone, int side, int rows = 41, int columns = 49);
+[[nodiscard]] Result<ContactFlank> exact_flank(const face_gear::FaceGear& gear, int zone, int side, int rows = 41,
+                                               int columns = 49);
 
-/// A flank from measured places: nominal points in rows along the profile (either way round, any tooth), deviations along the normal.
-/// Refused: sizes that do not fit; a point that is not on the flank.
-[[nodiscard]] Result<ContactFlank> measured_flank(const face_gear::FaceGear& gear, int zone, int side, int rows, int columns,
-                                                  const std::vector<Vec3>& nominal, const std::vector<double>& deviation_mm);
+/// A flank from measured places: nominal points in rows along the profile (either way round, any tooth), deviations
+/// along the normal. Refused: sizes that do not fit; a point that is not on the flank.
+[[nodiscard]] Result<ContactFlank> measured_flank(const face_gear::FaceGear& gear, int zone, int side, int rows,
+                                                  int columns, const std::vector<Vec3>& nominal,
+                                                  const std::vector<double>& deviation_mm);
 
 /// A flank with the pinion that runs on it. Two rings of a double helical gear run with the two halves of one pinion.
 struct ContactMember {
@@ -59,29 +61,30 @@ struct RollPosition {
   double error_rad = 0;         ///< phi_2 - phi_1 N_p/N_2
   int member = 0, tooth = 0;    ///< what touches: index of the member; pair, counted from the one at the pitch point
   double radius_mm = 0, height_mm = 0;  ///< place of contact on the gear
-  int touching = 0;             ///< teeth whose gap is below touch_mm (in any member)
-  int marking = 0;              ///< teeth whose gap is below the compound
+  int touching = 0;                     ///< teeth whose gap is below touch_mm (in any member)
+  int marking = 0;                      ///< teeth whose gap is below the compound
 };
 
 /// What rolling leaves on one flank.
 struct FlankPattern {
-  std::vector<double> gap_mm;                    ///< least gap at every place of the grid; a large number where the pinion never comes
+  std::vector<double> gap_mm;  ///< least gap at every place of the grid; a large number where the pinion never comes
   std::vector<double> pinion_radius_mm, pinion_Z_mm;  ///< place on the pinion at that moment
-  std::vector<RollPosition> path;                ///< contact of one pair through its whole mesh, only while it touches
-  double marked_share = 0;                       ///< part of the flank's area below the compound
+  std::vector<RollPosition> path;  ///< contact of one pair through its whole mesh, only while it touches
+  double marked_share = 0;         ///< part of the flank's area below the compound
   double inner_mm = 0, outer_mm = 0, low_mm = 0, high_mm = 0;  ///< extent of the marked part: radii and heights z
   double centre_radius_mm = 0, centre_height_mm = 0;
   double inclination_rad = 0;  ///< of the pattern's long axis against the tip line, in the plane of radius and profile
   double length_mm = 0, width_mm = 0;  ///< along and across that axis: four times the root of the second moments
-  bool at_inner_end = false, at_outer_end = false, at_tip = false, at_fillet = false;  ///< does the pattern run out there
+  bool at_inner_end = false, at_outer_end = false, at_tip = false,
+       at_fillet = false;  ///< does the pattern run out there
 };
 
 struct RollResult {
-  std::vector<RollPosition> cycle;   ///< one pitch
+  std::vector<RollPosition> cycle;                 ///< one pitch
   double error_mean_rad = 0, error_range_rad = 0;  ///< mean and peak to peak
-  double contact_ratio = 0;          ///< mean number of touching teeth
+  double contact_ratio = 0;                        ///< mean number of touching teeth
   int least_touching = 0, most_touching = 0;
-  double marking_ratio = 0;          ///< the same with the compound's thickness
+  double marking_ratio = 0;  ///< the same with the compound's thickness
   int least_marking = 0, most_marking = 0;
   std::vector<FlankPattern> patterns;  ///< one a member
 };
@@ -89,8 +92,9 @@ struct RollResult {
 /// Rolls the members (same side, same gear) through one pitch. Refused: no position in which they meet.
 [[nodiscard]] Result<RollResult> roll(const std::vector<ContactMember>& members, const RollOptions& options = {});
 
-/// Turn at which the pinion's flank touches the gear's when the gear stands at phi_2, for tooth 0 alone; with the place. Nothing if
-/// the pinion's flank does not reach the tooth. |error| <= 1e-12 rad where contact is inside the flank.
+/// Turn at which the pinion's flank touches the gear's when the gear stands at phi_2, for tooth 0 alone; with the
+/// place. Nothing if the pinion's flank does not reach the tooth. |error| <= 1e-12 rad where contact is inside the
+/// flank.
 struct TouchPlace {
   double phi_1 = 0;
   double row = 0, column = 0;  ///< in the grid
@@ -98,11 +102,12 @@ struct TouchPlace {
 };
 [[nodiscard]] std::optional<TouchPlace> touch(const ContactMember& member, double phi_2);
 
-/// Part of a path of contact that lies on both flanks: inside the ring, below the tip, above the fillet line, on the pinion's involute.
-/// Nothing where the path misses the flank.
+/// Part of a path of contact that lies on both flanks: inside the ring, below the tip, above the fillet line, on the
+/// pinion's involute. Nothing where the path misses the flank.
 struct PathRange {
-  double theta_1_from = 0, theta_1_to = 0;  ///< the pinion's roll parameter, low to high: from the gear's tip to the pinion's
-  double ratio = 0;                         ///< its length in pitches
+  double theta_1_from = 0,
+         theta_1_to = 0;  ///< the pinion's roll parameter, low to high: from the gear's tip to the pinion's
+  double ratio = 0;       ///< its length in pitches
 };
 [[nodiscard]] std::optional<PathRange> path_on_flanks(const ContactPath<double>& path, const ContactMember& member);
 

@@ -1,5 +1,5 @@
-// The first touch of one flank with its pinion at one position of the gear: where on the flank, at which turn of the pinion.
-// Inside of tooth_contact.
+// The first touch of one flank with its pinion at one position of the gear: where on the flank, at which turn of the
+// pinion. Inside of tooth_contact.
 #pragma once
 
 #include <algorithm>
@@ -45,14 +45,16 @@ double golden_place(F&& f, double lo, double hi) {
   return fhi > fm ? hi : m;
 }
 
-/// The search for the first touch on one flank at one position of the gear: the highest asked turn over the grid and between its nodes.
+/// The search for the first touch on one flank at one position of the gear: the highest asked turn over the grid and
+/// between its nodes.
 class TouchSearch {
  public:
   TouchSearch(const ContactMember& member, double phi_2)
       : flank_(member.flank), pinion_(member.pinion), turn_(phi_2), exact_(member.flank.exact()) {
     nodes_.resize(flank_.points.size());
     for (std::size_t k = 0; k < nodes_.size(); ++k) {
-      nodes_[k] = asked_turn(pinion_, flank_.side, turn_(flank_.points[k] + flank_.deviation_mm[k] * flank_.normals[k]));
+      nodes_[k] =
+          asked_turn(pinion_, flank_.side, turn_(flank_.points[k] + flank_.deviation_mm[k] * flank_.normals[k]));
       if (nodes_[k] > kNever) any_ = true;
     }
   }
@@ -71,10 +73,12 @@ class TouchSearch {
     }
     if (best_column < 0) return std::nullopt;
     const auto along = [&](double column) { return value_at(row_of(column, true), column); };
-    // The bracket moves on while the best place lies at its end: neighbouring columns differ by less than their estimates may err.
+    // The bracket moves on while the best place lies at its end: neighbouring columns differ by less than their
+    // estimates may err.
     double column = best_column;
     for (int k = 0; k < flank_.columns; ++k) {
-      const double from = std::max(0.0, std::floor(column) - 1), to = std::min(flank_.columns - 1.0, std::ceil(column) + 1);
+      const double from = std::max(0.0, std::floor(column) - 1),
+                   to = std::min(flank_.columns - 1.0, std::ceil(column) + 1);
       const double next = golden_place(along, from, to);
       const bool at_end = (next == from && from > 0) || (next == to && to < flank_.columns - 1);
       column = next;
@@ -94,7 +98,8 @@ class TouchSearch {
     double u, v;
   };
   [[nodiscard]] Cell cell(double row, double column) const {
-    const int r = std::clamp(static_cast<int>(row), 0, flank_.rows - 2), c = std::clamp(static_cast<int>(column), 0, flank_.columns - 2);
+    const int r = std::clamp(static_cast<int>(row), 0, flank_.rows - 2),
+              c = std::clamp(static_cast<int>(column), 0, flank_.columns - 2);
     const std::size_t k = flank_.index(r, c), w = static_cast<std::size_t>(flank_.columns);
     return {k, k + 1, k + w, k + w + 1, row - r, column - c};
   }
@@ -111,7 +116,8 @@ class TouchSearch {
   [[nodiscard]] double value_at(double row, double column) const {
     return row < 0 ? kNever : asked_turn(pinion_, flank_.side, turn_(point_at(row, column)));
   }
-  /// Highest asked turn of a node column: the parabola through the best node and its neighbours, or the edge of the pinion's involute.
+  /// Highest asked turn of a node column: the parabola through the best node and its neighbours, or the edge of the
+  /// pinion's involute.
   [[nodiscard]] double estimate(int c) const {
     const double row = row_of(c, false);
     if (row < 0) return kNever;

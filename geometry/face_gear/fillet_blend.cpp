@@ -9,7 +9,6 @@ namespace {
 
 constexpr int kEntries = 2049;
 
-
 struct Hermite {
   double v = 0, d = 0;
 };
@@ -22,9 +21,12 @@ Hermite hermite(double t, double v0, double d0, double v1, double d1) {
 
 }  // namespace
 
-FilletBlend::FilletBlend(const FaceGearSurface<double>& f, const FaceGearSurface<Dual2>& dual, const FlankCorrection& flank, int side,
-                         double from_mm, double to_mm)
-    : A_t_(f.shaper.A_t), A_span_(f.shaper.A_e - f.shaper.A_t), from_(from_mm), step_((to_mm - from_mm) / (kEntries - 1)) {
+FilletBlend::FilletBlend(const FaceGearSurface<double>& f, const FaceGearSurface<Dual2>& dual,
+                         const FlankCorrection& flank, int side, double from_mm, double to_mm)
+    : A_t_(f.shaper.A_t),
+      A_span_(f.shaper.A_e - f.shaper.A_t),
+      from_(from_mm),
+      step_((to_mm - from_mm) / (kEntries - 1)) {
   const double theta_t = f.shaper.theta_t;
   const auto entry = [&](double Z) -> std::optional<Entry> {
     const auto g = dual.fillet(side, Dual2::variable(A_t_, 0), Dual2::variable(Z, 1));
@@ -39,7 +41,8 @@ FilletBlend::FilletBlend(const FaceGearSurface<double>& f, const FaceGearSurface
     const auto along_r = [&](const Vec3& x) { return (p.x() * x.x() + p.y() * x.y()) / r; };
     const Vec3 p_u = derivative(k.p, 0), p_v = derivative(k.p, 1), n = value(k.n);
     const double c_u = c.d_theta + c.d_radius * along_r(p_u), c_v = c.d_radius * along_r(p_v);
-    const Vec3 normal = (p_u + c_u * n + c.value * derivative(k.n, 0)).cross(p_v + c_v * n + c.value * derivative(k.n, 1));
+    const Vec3 normal =
+        (p_u + c_u * n + c.value * derivative(k.n, 0)).cross(p_v + c_v * n + c.value * derivative(k.n, 1));
     const double lean = normal.dot(n);
     if (lean == 0) return {};
     const double c_A = -normal.dot(p_A + c.value * derivative(g.n, 0)) / lean;
@@ -67,7 +70,8 @@ FilletBlend::Offset FilletBlend::at(double A, double Z) const {
   const bool outside = Z < from_ || Z > from_ + step_ * (kEntries - 1);
   const auto &a = table_[k], &b = table_[k + 1];
   const double y = place - double(k);
-  Hermite c = hermite(y, a.value, a.d_value, b.value, b.d_value), m = hermite(y, a.slope, a.d_slope, b.slope, b.d_slope);
+  Hermite c = hermite(y, a.value, a.d_value, b.value, b.d_value),
+          m = hermite(y, a.slope, a.d_slope, b.slope, b.d_slope);
   if (outside) c.d = m.d = 0;
   // Before A_t and beyond A_e Newton may look: the flank's tangent, and nothing.
   const double t = (A - A_t_) / A_span_;

@@ -4,8 +4,8 @@
 #include <cassert>
 #include <cstdint>
 
-// The same loop is compiled for several vector widths and the processor's best is taken at load time. Contraction to fused
-// operations is off, so all of them give the same bits.
+// The same loop is compiled for several vector widths and the processor's best is taken at load time. Contraction to
+// fused operations is off, so all of them give the same bits.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__) && \
     !defined(__SANITIZE_ADDRESS__)
 #define TOOTHPATH_VECTOR_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
@@ -20,8 +20,8 @@ struct SineCosine {
   double s, c;
 };
 
-/// Reduces x to [-pi/4, pi/4] by a multiple of pi/2 (in three parts, the products with the first two exact) and sums the
-/// Taylor series: the first terms left out are below 1e-19. Quadrants are chosen with bit masks, without branches.
+/// Reduces x to [-pi/4, pi/4] by a multiple of pi/2 (in three parts, the products with the first two exact) and sums
+/// the Taylor series: the first terms left out are below 1e-19. Quadrants are chosen with bit masks, without branches.
 [[gnu::always_inline]] inline SineCosine sine_cosine_of(double x) {
   constexpr double kMagic = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to an integer held in the low bits
   constexpr double kTwoOverPi = 0.63661977236758134308;
@@ -64,8 +64,8 @@ TOOTHPATH_VECTOR_CLONES
 void evaluate(const Constants& k, std::size_t count, const double* __restrict theta, const double* __restrict B,
               double* __restrict px, double* __restrict py, double* __restrict pz, double* __restrict nx,
               double* __restrict ny, double* __restrict nz) {
-  const double side = k.side, r_b = k.r_b, Sg = k.Sg, Cg = k.Cg, E = k.E, D = k.D, T = k.T, kappa = k.kappa, L0 = k.L0, i = k.i,
-               theta_0 = k.theta_0, cos_bb = k.cos_bb, sin_bb = k.sin_bb;
+  const double side = k.side, r_b = k.r_b, Sg = k.Sg, Cg = k.Cg, E = k.E, D = k.D, T = k.T, kappa = k.kappa, L0 = k.L0,
+               i = k.i, theta_0 = k.theta_0, cos_bb = k.cos_bb, sin_bb = k.sin_bb;
   for (std::size_t n = 0; n < count; ++n) {
     const auto [sB, cB] = sine_cosine_of(B[n]);
     const double w = side * theta[n];
@@ -99,15 +99,15 @@ void FlankPoints::resize(std::size_t count) {
   for (auto* values : {&x, &y, &z, &nx, &ny, &nz}) values->resize(count);
 }
 
-void evaluate_flank(const FaceGearSurface<double>& f, int side, std::span<const double> theta, std::span<const double> B,
-                    FlankPoints& out) {
+void evaluate_flank(const FaceGearSurface<double>& f, int side, std::span<const double> theta,
+                    std::span<const double> B, FlankPoints& out) {
   assert(theta.size() == B.size());
   out.resize(theta.size());
   const auto& w = f.shaper;
-  const Constants k{double(side), w.r_b,  f.Sg, f.Cg,      f.E,      w.r_b * (1 / f.i + f.Cg), w.T, w.kappa, f.L0,
-                    f.i,          w.theta_0, w.cos_bb, w.sin_bb};
-  evaluate(k, theta.size(), theta.data(), B.data(), out.x.data(), out.y.data(), out.z.data(), out.nx.data(), out.ny.data(),
-           out.nz.data());
+  const Constants k{double(side), w.r_b, f.Sg,      f.Cg,     f.E,     w.r_b * (1 / f.i + f.Cg), w.T, w.kappa,
+                    f.L0,         f.i,   w.theta_0, w.cos_bb, w.sin_bb};
+  evaluate(k, theta.size(), theta.data(), B.data(), out.x.data(), out.y.data(), out.z.data(), out.nx.data(),
+           out.ny.data(), out.nz.data());
 }
 
 void sine_cosine(std::span<const double> x, std::span<double> sine, std::span<double> cosine) {

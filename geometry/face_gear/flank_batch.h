@@ -1,5 +1,6 @@
-// Many points of one flank at once: the closed form of geometry/face_gear/surface.h as a plain loop over arrays, which the compiler
-// turns into vector code. Its sine and cosine are its own, because library calls would keep the loop scalar.
+// Many points of one flank at once: the closed form of geometry/face_gear/surface.h as a plain loop over arrays, which
+// the compiler turns into vector code. Its sine and cosine are its own, because library calls would keep the loop
+// scalar.
 #pragma once
 
 #include <cstddef>
@@ -17,13 +18,14 @@ struct FlankPoints {
   void resize(std::size_t count);
 };
 
-/// `out` gets the points (theta[k], B[k]) of the flank of `side`; it is resized. theta and B have the same size, |B| < 80 deg,
-/// all angles below 1e5 rad. Agrees with FaceGearSurface::flank to 4e-15 L_p (flank_batch_test). The same bytes on every
-/// processor: vector widths differ, operations do not.
-void evaluate_flank(const FaceGearSurface<double>& surface, int side, std::span<const double> theta, std::span<const double> B,
-                    FlankPoints& out);
+/// `out` gets the points (theta[k], B[k]) of the flank of `side`; it is resized. theta and B have the same size, |B| <
+/// 80 deg, all angles below 1e5 rad. Agrees with FaceGearSurface::flank to 4e-15 L_p (flank_batch_test). The same bytes
+/// on every processor: vector widths differ, operations do not.
+void evaluate_flank(const FaceGearSurface<double>& surface, int side, std::span<const double> theta,
+                    std::span<const double> B, FlankPoints& out);
 
-/// Sine and cosine of x[k], |x| <= 1e5; absolute error <= 4e-16 for |x| <= 100. The kernel of `evaluate_flank`, for its test.
+/// Sine and cosine of x[k], |x| <= 1e5; absolute error <= 4e-16 for |x| <= 100. The kernel of `evaluate_flank`, for its
+/// test.
 void sine_cosine(std::span<const double> x, std::span<double> sine, std::span<double> cosine);
 
 }  // namespace toothpath::face_gear

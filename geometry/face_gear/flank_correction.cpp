@@ -45,7 +45,8 @@ double FlankCorrection::top(double r, double* slope) const {
   return top_[0] + inside * (top_[1] + inside * (top_[2] + inside * top_[3])) + beyond * d;
 }
 
-Result<FlankCorrection> FlankCorrection::fit(std::span<const FlankDeviation> points, double theta_t, CorrectionDegrees most) {
+Result<FlankCorrection> FlankCorrection::fit(std::span<const FlankDeviation> points, double theta_t,
+                                             CorrectionDegrees most) {
   std::set<int> rows, columns;
   Range radii;
   for (const auto& p : points) {
@@ -56,8 +57,8 @@ Result<FlankCorrection> FlankCorrection::fit(std::span<const FlankDeviation> poi
     radii.add(p.radius_mm);
   }
   if (int(rows.size()) < kLeastRows || int(columns.size()) < kLeastColumns)
-    return fail("{} rows x {} columns are too few to fit, at least {} x {} are needed", rows.size(), columns.size(), kLeastRows,
-                kLeastColumns);
+    return fail("{} rows x {} columns are too few to fit, at least {} x {} are needed", rows.size(), columns.size(),
+                kLeastRows, kLeastColumns);
   FlankCorrection f;
   f.theta_t_ = theta_t;
   f.r_mid_ = radii.middle();
@@ -76,7 +77,9 @@ Result<FlankCorrection> FlankCorrection::fit(std::span<const FlankDeviation> poi
   return f;
 }
 
-double FlankCorrection::profile_at(const FlankDeviation& p) const { return (theta_t_ - p.theta) / (theta_t_ - top(p.radius_mm, nullptr)); }
+double FlankCorrection::profile_at(const FlankDeviation& p) const {
+  return (theta_t_ - p.theta) / (theta_t_ - top(p.radius_mm, nullptr));
+}
 
 /// theta at the tip over the radius: the top row of the grid, which keeps a margin; the scale of s takes that up.
 void FlankCorrection::fit_top(std::span<const FlankDeviation> points, int top_row) {
@@ -111,7 +114,12 @@ void FlankCorrection::fit_series(std::span<const FlankDeviation> points) {
   const Eigen::VectorXd c = A.colPivHouseholderQr().solve(b);
   coefficients_.assign(c.data(), c.data() + c.size());
   const Eigen::VectorXd left = b - A * c;
-  residual_ = {points.size(), profile_, lead_, b.cwiseAbs().maxCoeff(), std::sqrt(b.squaredNorm() / double(n)), left.cwiseAbs().maxCoeff(),
+  residual_ = {points.size(),
+               profile_,
+               lead_,
+               b.cwiseAbs().maxCoeff(),
+               std::sqrt(b.squaredNorm() / double(n)),
+               left.cwiseAbs().maxCoeff(),
                std::sqrt(left.squaredNorm() / double(n))};
 }
 

@@ -1,8 +1,9 @@
 // Corrected flanks: the nominal ones moved along their normals by a smooth field that answers a measurement.
 //
-// A field lives on (theta, r) of one flank. Profile coordinate s = (theta_t - theta)/(theta_t - top(r)), 0 at the fillet line and 1 at the
-// tip; lead coordinate r. Both are mapped to [-1, 1] over the measured points, where the field is a sum of products of Chebyshev
-// polynomials; outside, every polynomial goes on along its tangent, so the field is C1 everywhere and does not run away.
+// A field lives on (theta, r) of one flank. Profile coordinate s = (theta_t - theta)/(theta_t - top(r)), 0 at the
+// fillet line and 1 at the tip; lead coordinate r. Both are mapped to [-1, 1] over the measured points, where the field
+// is a sum of products of Chebyshev polynomials; outside, every polynomial goes on along its tangent, so the field is
+// C1 everywhere and does not run away.
 #pragma once
 
 #include <array>
@@ -16,10 +17,10 @@ namespace toothpath::face_gear {
 
 /// One measured point of a flank.
 struct FlankDeviation {
-  int row = 0, column = 0;   ///< of the inspection grid
-  double theta = 0;          ///< roll parameter of the nominal point
-  double radius_mm = 0;      ///< of the nominal point
-  double deviation_mm = 0;   ///< along the normal, positive: material left
+  int row = 0, column = 0;  ///< of the inspection grid
+  double theta = 0;         ///< roll parameter of the nominal point
+  double radius_mm = 0;     ///< of the nominal point
+  double deviation_mm = 0;  ///< along the normal, positive: material left
 };
 
 /// Highest degrees of the fit; the grid allows at most rows - 2 and columns - 3.
@@ -40,7 +41,8 @@ class FlankCorrection {
   /// Least squares over the points of one flank; the target is moved by minus the fit.
   /// @param theta_t roll parameter at the fillet line
   /// Errors: too few rows or columns (5 and 9), values that are not finite.
-  [[nodiscard]] static Result<FlankCorrection> fit(std::span<const FlankDeviation> points, double theta_t, CorrectionDegrees most = {});
+  [[nodiscard]] static Result<FlankCorrection> fit(std::span<const FlankDeviation> points, double theta_t,
+                                                   CorrectionDegrees most = {});
 
   /// Offset of the target from the nominal flank, mm along its normal, with derivatives.
   struct Offset {
@@ -56,9 +58,9 @@ class FlankCorrection {
   void fit_series(std::span<const FlankDeviation> points);
   double theta_t_ = 0;
   double s_mid_ = 0, s_half_ = 1, r_mid_ = 0, r_half_ = 1;
-  std::array<double, 4> top_{};           ///< theta at the tip, a cubic in the mapped radius
+  std::array<double, 4> top_{};  ///< theta at the tip, a cubic in the mapped radius
   int profile_ = 0, lead_ = 0;
-  std::vector<double> coefficients_;      ///< (profile + 1) x (lead + 1), row-major, mm; of the offset
+  std::vector<double> coefficients_;  ///< (profile + 1) x (lead + 1), row-major, mm; of the offset
   CorrectionResidual residual_;
 };
 

@@ -110,7 +110,9 @@ void Inspection::shaper(std::size_t zone) {
   FaceGearParameters sharp = gear_;
   sharp.shaper_tip_radius_mm = 0;
   const bool without_rounding = bool(check_shaper(sharp, gear_.zones[zone].helix_angle_rad));
-  const std::string key = without_rounding ? "shaper_tip_radius" : gear_.backlash_mm > 0 ? "backlash" : "addendum_coefficient";
+  const std::string key = without_rounding        ? "shaper_tip_radius"
+                          : gear_.backlash_mm > 0 ? "backlash"
+                                                  : "addendum_coefficient";
   const bool said = std::any_of(refusals.begin(), refusals.end(), [&](const auto& r) {
     return r.key == key && r.diagnostic.message == status.error().message;
   });
@@ -128,34 +130,40 @@ void Inspection::ring(std::size_t k, const FaceGearRing& r, std::vector<std::str
   }
   for (const auto& flank : r.limits.flanks) {
     if (flank.undercut_radius && inner < *flank.undercut_radius)
-      refuse(zone_key(k, "inner_radius"), "inner_radius = {:.4f} mm lies inside the undercut limit R1c = {:.4f} mm of flank side {:+d}",
-             inner, *flank.undercut_radius, flank.side);
+      refuse(zone_key(k, "inner_radius"),
+             "inner_radius = {:.4f} mm lies inside the undercut limit R1c = {:.4f} mm of flank side {:+d}", inner,
+             *flank.undercut_radius, flank.side);
     if (flank.flank_start_radius && inner < *flank.flank_start_radius)
       refuse(zone_key(k, "inner_radius"),
-             "inner_radius = {:.4f} mm: inside {:.4f} mm the fillet of flank side {:+d} reaches up to the tip and no involute is left",
+             "inner_radius = {:.4f} mm: inside {:.4f} mm the fillet of flank side {:+d} reaches up to the tip and no "
+             "involute is left",
              inner, *flank.flank_start_radius, flank.side);
     if (flank.flank_end_radius && outer > *flank.flank_end_radius)
       refuse(zone_key(k, "outer_radius"),
-             "outer_radius = {:.4f} mm: outside {:.4f} mm the fillet of flank side {:+d} reaches up to the tip and no involute is left",
+             "outer_radius = {:.4f} mm: outside {:.4f} mm the fillet of flank side {:+d} reaches up to the tip and no "
+             "involute is left",
              outer, *flank.flank_end_radius, flank.side);
     if (flank.involute_start_radius && inner < *flank.involute_start_radius)
-      warnings.push_back(fmt::format("zone {}: inner radius {:.4f} mm lies inside the involute start R1b = {:.4f} mm of flank side "
-                                     "{:+d}; the tip corner there is not conjugate",
-                                     k, inner, *flank.involute_start_radius, flank.side));
+      warnings.push_back(
+          fmt::format("zone {}: inner radius {:.4f} mm lies inside the involute start R1b = {:.4f} mm of flank side "
+                      "{:+d}; the tip corner there is not conjugate",
+                      k, inner, *flank.involute_start_radius, flank.side));
   }
   if (!r.limits.pointing_radius) land_over_zone(k, r);
   else if (outer > *r.limits.pointing_radius)
     refuse(zone_key(k, "outer_radius"), "outer_radius = {:.4f} mm exceeds the pointing limit R2 = {:.4f} mm", outer,
            *r.limits.pointing_radius);
   else if (r.limits.land_radius && outer > *r.limits.land_radius)
-    warnings.push_back(fmt::format("zone {}: outer radius {:.4f} mm exceeds R2' = {:.4f} mm, where the top land is {:.4g} mm", k,
-                                   outer, *r.limits.land_radius, r.limits.practical_land_mm));
+    warnings.push_back(
+        fmt::format("zone {}: outer radius {:.4f} mm exceeds R2' = {:.4f} mm, where the top land is {:.4g} mm", k,
+                    outer, *r.limits.land_radius, r.limits.practical_land_mm));
   const double theta_act = active_roll_parameter(gear_, z.helix_angle_rad);
   if (r.surface.shaper.theta_t < theta_act)
-    warnings.push_back(fmt::format("zone {}: the tip rounding {:.4f} mm shortens the active flank (theta_t = {:.6f} < {:.6f}); "
-                                   "up to {:.4f} mm keeps it",
-                                   k, gear_.shaper_tip_radius_mm, r.surface.shaper.theta_t, theta_act,
-                                   largest_active_tip_radius(gear_, z.helix_angle_rad)));
+    warnings.push_back(
+        fmt::format("zone {}: the tip rounding {:.4f} mm shortens the active flank (theta_t = {:.6f} < {:.6f}); up to "
+                    "{:.4f} mm keeps it",
+                    k, gear_.shaper_tip_radius_mm, r.surface.shaper.theta_t, theta_act,
+                    largest_active_tip_radius(gear_, z.helix_angle_rad)));
 }
 
 /// No pointing radius was found: the top land over the zone itself decides.
@@ -167,16 +175,19 @@ void Inspection::land_over_zone(std::size_t k, const FaceGearRing& r) {
     const auto land = tip_thickness(r.surface, radius);
     if (land && *land > 0) continue;
     if (land)
-      refuse(zone_key(k, "outer_radius"), "outer_radius = {:.4f} mm: the top land at radius {:.4f} mm is {:.4f} mm, limit 0: the tooth is pointed",
+      refuse(zone_key(k, "outer_radius"),
+             "outer_radius = {:.4f} mm: the top land at radius {:.4f} mm is {:.4f} mm, limit 0: the tooth is pointed",
              outer, radius, *land);
     else
-      refuse(zone_key(k, "outer_radius"), "outer_radius = {:.4f} mm: at radius {:.4f} mm a flank does not reach the tip surface", outer, radius);
+      refuse(zone_key(k, "outer_radius"),
+             "outer_radius = {:.4f} mm: at radius {:.4f} mm a flank does not reach the tip surface", outer, radius);
     return;
   }
 }
 
-/// Just outside R1c the corner that the fillet cuts into the flank can run outwards instead of inwards (large offset, helix or
-/// shaft angle far from 90 deg). No closed form says where it ends: the solid shaper decides at the inner end of the zone.
+/// Just outside R1c the corner that the fillet cuts into the flank can run outwards instead of inwards (large offset,
+/// helix or shaft angle far from 90 deg). No closed form says where it ends: the solid shaper decides at the inner end
+/// of the zone.
 void Inspection::swept_flank(std::size_t k, const FaceGearRing& r) {
   constexpr int kHeights = 6;
   const double inner = r.zone.inner_radius_mm, outer = r.zone.outer_radius_mm, z_tip = r.surface.z_tip(inner);
@@ -192,8 +203,8 @@ void Inspection::swept_flank(std::size_t k, const FaceGearRing& r) {
         const double cut = -swept_clearance(r.surface, r.surface.flank(side, at->theta, at->B).p);
         if (cut <= cut_limit) continue;
         refuse(zone_key(k, "inner_radius"),
-               "inner_radius = {:.4f} mm: at radius {:.4f} mm and height {:.4f} mm the shaper cuts {:.4f} mm into flank side {:+d}, "
-               "limit {:.4f} mm: undercut beyond R1c",
+               "inner_radius = {:.4f} mm: at radius {:.4f} mm and height {:.4f} mm the shaper cuts {:.4f} mm into "
+               "flank side {:+d}, limit {:.4f} mm: undercut beyond R1c",
                inner, radius, z, cut, side, cut_limit);
         return;
       }
@@ -216,22 +227,25 @@ double root_in_groove(const std::vector<FaceGearRing>& rings) {
 void Inspection::groove(const std::vector<FaceGearRing>& rings, std::vector<std::string>& warnings) {
   if (rings.size() < 2) {
     if (gear_.groove_depth_mm >= 0)
-      warnings.push_back(fmt::format("groove_depth = {:.4f} mm has no effect: a gear with one zone has no relief groove",
-                                     gear_.groove_depth_mm));
+      warnings.push_back(fmt::format(
+          "groove_depth = {:.4f} mm has no effect: a gear with one zone has no relief groove", gear_.groove_depth_mm));
     return;
   }
   const double r = mid_groove(rings);
   if (gear_.groove_depth_mm >= 0) {
     const double depth = rings[0].surface.z_tip(r) - root_in_groove(rings);
     if (gear_.groove_depth_mm < depth * (1 - 1e-12))
-      refuse("stock.groove_depth", "groove_depth = {:.4f} mm does not reach the root beside the groove, {:.4f} mm below the tip surface at mid-groove",
+      refuse("stock.groove_depth",
+             "groove_depth = {:.4f} mm does not reach the root beside the groove, {:.4f} mm below the tip surface at "
+             "mid-groove",
              gear_.groove_depth_mm, depth);
     if (gear_.groove_depth_mm > 1000)
       refuse("stock.groove_depth", "groove_depth = {:.4f} mm exceeds 1000 mm", gear_.groove_depth_mm);
   }
   if (rings[0].zone.outer_radius_mm == rings[1].zone.inner_radius_mm &&
       rings[0].zone.helix_angle_rad != rings[1].zone.helix_angle_rad)
-    refuse("zone[1].inner_radius", "inner_radius = {:.4f} mm leaves no relief groove: zone 0 of another helix ends at {:.4f} mm",
+    refuse("zone[1].inner_radius",
+           "inner_radius = {:.4f} mm leaves no relief groove: zone 0 of another helix ends at {:.4f} mm",
            rings[1].zone.inner_radius_mm, rings[0].zone.outer_radius_mm);
 }
 
@@ -240,11 +254,12 @@ void warn_sharp_fillet(const FaceGearParameters& gear, const std::vector<FaceGea
   if (gear.shaper_tip_radius_mm > 0) return;
   for (std::size_t k = 0; k < rings.size(); ++k) {
     const auto& f = rings[k].surface;
-    const double r = std::hypot(f.shaper.r_a / f.i, f.E);  // where the tip edge rolls without sliding, shaft angle 90 deg
+    const double r =
+        std::hypot(f.shaper.r_a / f.i, f.E);  // where the tip edge rolls without sliding, shaft angle 90 deg
     if (f.Cg == 0 && r > rings[k].zone.inner_radius_mm && r < rings[k].zone.outer_radius_mm)
-      warnings.push_back(fmt::format("zone {}: the sharp shaper tip leaves a fillet of radius 0 at r = {:.4f} mm, which no ball can "
-                                     "follow",
-                                     k, r));
+      warnings.push_back(fmt::format(
+          "zone {}: the sharp shaper tip leaves a fillet of radius 0 at r = {:.4f} mm, which no ball can follow", k,
+          r));
   }
 }
 
@@ -261,10 +276,12 @@ Expected<FaceGear, std::vector<FaceGearRefusal>> FaceGear::make(const FaceGearPa
   FaceGear gear;
   gear.parameters_ = parameters;
   if (!gear.parameters_.reference_radius_mm)  // one L0 for all rings, else they would be out of phase
-    gear.parameters_.reference_radius_mm = make_surface<double>(parameters, parameters.zones.front().helix_angle_rad).L_p;
+    gear.parameters_.reference_radius_mm =
+        make_surface<double>(parameters, parameters.zones.front().helix_angle_rad).L_p;
   for (const auto& zone : gear.parameters_.zones) {
     const auto surface = make_surface<double>(gear.parameters_, zone.helix_angle_rad);
-    gear.rings_.push_back({zone, surface, zone_limits(surface, parameters.module_mm, parameters.least_land_mm), nullptr});
+    gear.rings_.push_back(
+        {zone, surface, zone_limits(surface, parameters.module_mm, parameters.least_land_mm), nullptr});
     inspection.ring(gear.rings_.size() - 1, gear.rings_.back(), gear.warnings_);
     if (inspection.refusals.empty()) inspection.swept_flank(gear.rings_.size() - 1, gear.rings_.back());
   }
@@ -284,7 +301,8 @@ FaceGear FaceGear::corrected(const std::vector<std::shared_ptr<const RingCorrect
 double FaceGear::blank_top() const {
   double top = -std::numeric_limits<double>::infinity();
   for (const auto& ring : rings_)
-    for (const double r : {ring.zone.inner_radius_mm, ring.zone.outer_radius_mm}) top = std::max(top, ring.surface.z_tip(r));
+    for (const double r : {ring.zone.inner_radius_mm, ring.zone.outer_radius_mm})
+      top = std::max(top, ring.surface.z_tip(r));
   return top + parameters_.allowance_top_mm;
 }
 

@@ -18,12 +18,14 @@ struct FaceGearRing {
   FaceGearZone zone;
   FaceGearSurface<double> surface;
   ZoneLimits limits;
-  std::shared_ptr<const RingCorrection> correction = nullptr;  ///< flanks to aim at instead of the nominal ones; none: the nominal
+  std::shared_ptr<const RingCorrection> correction =
+      nullptr;  ///< flanks to aim at instead of the nominal ones; none: the nominal
 };
 
 /// A refused parameter: which key of the job it belongs to, so that the reader can add file, line and column.
 struct FaceGearRefusal {
-  std::string key;  ///< within [gear] as in the job file: "module", "zone[0].inner_radius"; of [stock]: "stock.groove_depth"
+  std::string
+      key;  ///< within [gear] as in the job file: "module", "zone[0].inner_radius"; of [stock]: "stock.groove_depth"
   Diagnostic diagnostic;
 };
 
@@ -37,13 +39,13 @@ class FaceGear {
   [[nodiscard]] double pitch() const { return rings_.front().surface.pitch; }
   [[nodiscard]] double inner_radius() const { return rings_.front().zone.inner_radius_mm; }
   [[nodiscard]] double outer_radius() const { return rings_.back().zone.outer_radius_mm; }
-  /// The same gear with other flanks to aim at, one correction a ring. Planners and checks then take the corrected flanks for the finished
-  /// surface; limits, blank, meshes and inspection points stay those of the nominal gear.
+  /// The same gear with other flanks to aim at, one correction a ring. Planners and checks then take the corrected
+  /// flanks for the finished surface; limits, blank, meshes and inspection points stay those of the nominal gear.
   [[nodiscard]] FaceGear corrected(const std::vector<std::shared_ptr<const RingCorrection>>& corrections) const;
   /// Highest point of the blank (tip surface plus stock), mm in z.
   [[nodiscard]] double blank_top() const;
-  /// Height z of the relief groove's floor; only with two zones. `groove_depth_mm` is measured from the tip surface of the
-  /// inner ring at mid-groove; without it the floor lies 0.25 m below the lowest root between the two rings.
+  /// Height z of the relief groove's floor; only with two zones. `groove_depth_mm` is measured from the tip surface of
+  /// the inner ring at mid-groove; without it the floor lies 0.25 m below the lowest root between the two rings.
   [[nodiscard]] double groove_floor() const;
   /// Lowest point of the tooth spaces (root surface), over all rings.
   [[nodiscard]] double lowest_root() const;

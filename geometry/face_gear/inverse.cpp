@@ -21,8 +21,7 @@ Meridian meridian(const FaceGearSurface<double>& f, int s, double theta, double 
 }
 
 /// Newton for (theta, B) at (r, z) with short steps; false if it does not arrive.
-bool newton(const FaceGearSurface<double>& f, int s, double r, double z, double& theta, double& B,
-            int& iterations) {
+bool newton(const FaceGearSurface<double>& f, int s, double r, double z, double& theta, double& B, int& iterations) {
   const double goal = 4e-16 * std::max(r, 1.0);
   double best = INFINITY;
   int stalled = 0;
@@ -156,9 +155,10 @@ std::optional<double> fillet_by_bracketing(const FilletRadius& radius, double r)
     if (e1 <= 0) {
       std::uintmax_t steps = 200;
       const auto error = [&](double Z) { return radius(Z) - r; };
-      const auto bracket =
-          boost::math::tools::toms748_solve(error, Z1, Z0, e1, e0, boost::math::tools::eps_tolerance<double>(52), steps);
-      const double Z = std::abs(error(bracket.first)) < std::abs(error(bracket.second)) ? bracket.first : bracket.second;
+      const auto bracket = boost::math::tools::toms748_solve(error, Z1, Z0, e1, e0,
+                                                             boost::math::tools::eps_tolerance<double>(52), steps);
+      const double Z =
+          std::abs(error(bracket.first)) < std::abs(error(bracket.second)) ? bracket.first : bracket.second;
       return std::abs(error(Z)) <= 1e-12 * r ? std::optional(Z) : std::nullopt;
     }
     Z0 = Z1;
@@ -180,8 +180,8 @@ std::optional<FlankCoordinates> invert_flank(const FaceGearSurface<double>& f, i
   int iterations = 0;
   for (int k = 1; k <= steps && ok; ++k) {
     const double t = double(k) / steps;
-    ok = newton(f, side, k == steps ? r : from.r + t * (r - from.r), k == steps ? z : from.z + t * (z - from.z), theta, B,
-                iterations);
+    ok = newton(f, side, k == steps ? r : from.r + t * (r - from.r), k == steps ? z : from.z + t * (z - from.z), theta,
+                B, iterations);
   }
   if (ok) {
     const double J = f.flank_J(side, theta, B);

@@ -11,8 +11,8 @@
 namespace toothpath::face_gear {
 namespace {
 
-constexpr double kFarInside = 0.6;         // the walk for the cusp goes on to s B = -0.6
-constexpr double kScanStep = 0.005;        // of B, rad: far below the distance of two roots of one sign change
+constexpr double kFarInside = 0.6;   // the walk for the cusp goes on to s B = -0.6
+constexpr double kScanStep = 0.005;  // of B, rad: far below the distance of two roots of one sign change
 
 double radius_of(const Vec3& P) { return std::hypot(P.x(), P.y()); }
 
@@ -133,9 +133,9 @@ class TipThickness {
   std::optional<FlankCoordinates> last_[2];
 };
 
-/// Radius at which the tooth on the tip surface is `land` thick. The walk starts far outside, where both involutes are long
-/// and unmistakable, and goes inwards with each flank found from the step before: the continuation of a flank beyond
-/// theta = 0 is the other flank, so near the base circle a cold start can end on the wrong one.
+/// Radius at which the tooth on the tip surface is `land` thick. The walk starts far outside, where both involutes are
+/// long and unmistakable, and goes inwards with each flank found from the step before: the continuation of a flank
+/// beyond theta = 0 is the other flank, so near the base circle a cold start can end on the wrong one.
 std::optional<double> radius_of_thickness(const FaceGearSurface<double>& f, double land) {
   TipThickness thickness(f);
   const double pitch_radius = radius_of(f.flank_housing(1, std::tan(f.shaper.alpha_t), f.shaper.alpha_t));
@@ -152,7 +152,9 @@ std::optional<double> radius_of_thickness(const FaceGearSurface<double>& f, doub
     const auto S1 = thickness(r1);
     if (!S1) return {};
     if (*S1 > land) {
-      const auto spare = [&](double r) { return thickness(r).value_or(std::numeric_limits<double>::quiet_NaN()) - land; };
+      const auto spare = [&](double r) {
+        return thickness(r).value_or(std::numeric_limits<double>::quiet_NaN()) - land;
+      };
       const double r = bracketed_root(spare, r1, *S1 - land, r0, *S0 - land);
       return std::isfinite(r) ? std::optional(r) : std::nullopt;
     }

@@ -11,9 +11,9 @@ namespace {
 // Nodes per piece: flanks bend slowly, fillets turn by more than 60 degrees.
 constexpr int kNodes[kSpacePieces] = {56, 28, 8, 28, 56};
 
-// A crossing closer than this in sigma is one place seen from two pieces, or too small to hold a thousandth of a micrometre.
+// A crossing closer than this in sigma is one place seen from two pieces, or too small to hold a thousandth of a
+// micrometre.
 constexpr double kLeastGap = 0.01;
-
 
 /// Crossing of segments a0 a1 and b0 b1; parameters in [0, 1] or nothing.
 std::optional<std::pair<double, double>> crossing(const Vec2& a0, const Vec2& a1, const Vec2& b0, const Vec2& b1) {
@@ -37,7 +37,7 @@ OffsetSheet::OffsetSheet(const SpaceSheet& space, double delta, double r_from, d
     : space_(space), delta_(delta) {
   const auto& f = space_.surface();
   // theta at the tip surface as a straight line in r that stays at or above the tip on the whole range.
-  const auto tip_line = [&](int side, double (&line)[2]) {
+  const auto tip_line = [&](int side, double(&line)[2]) {
     std::vector<std::pair<double, double>> samples;
     std::optional<FlankCoordinates> last;
     for (int k = 0; k <= 16; ++k) {
@@ -217,7 +217,8 @@ void OffsetSheet::find_gaps(Station& station) const {
   };
   std::size_t k = 0;
   while (k + 1 < n) {
-    // One segment may cross several others: the offset is left at the first place along it, for the farthest of those that meet there.
+    // One segment may cross several others: the offset is left at the first place along it, for the farthest of those
+    // that meet there.
     std::size_t hit = 0;
     std::pair<double, double> at(INFINITY, 0);
     for (std::size_t j = n - 2; j > k + 1; --j) {

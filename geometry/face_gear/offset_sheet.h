@@ -1,9 +1,10 @@
-// The surface of ball centres over one tooth space: the offset of flank, fillet, root, fillet, flank taken as one sheet.
+// The surface of ball centres over one tooth space: the offset of flank, fillet, root, fillet, flank taken as one
+// sheet.
 //
-// A place on the sheet is (sigma, r): sigma in [0, 5] runs across the space (piece + fraction of the piece), r is the radius
-// of the ball CENTRE from the gear axis. Where the ball is too large for the fillet the raw offset crosses itself; the part
-// behind the crossing is cut away (a gap in sigma; both ends of a gap have the same centre), so that the ball touches both
-// walls of the corner at once and gouges neither.
+// A place on the sheet is (sigma, r): sigma in [0, 5] runs across the space (piece + fraction of the piece), r is the
+// radius of the ball CENTRE from the gear axis. Where the ball is too large for the fillet the raw offset crosses
+// itself; the part behind the crossing is cut away (a gap in sigma; both ends of a gap have the same centre), so that
+// the ball touches both walls of the corner at once and gouges neither.
 #pragma once
 
 #include <optional>
@@ -15,7 +16,7 @@ namespace toothpath::face_gear {
 
 struct SheetPoint {
   SpacePiece piece = SpacePiece::root;
-  double u = 0, v = 0;     ///< parameters of the contact point on the piece
+  double u = 0, v = 0;  ///< parameters of the contact point on the piece
   Vec3 centre = Vec3::Zero();
   PatchPoint contact;
 };
@@ -25,8 +26,8 @@ struct SheetGap {
   double from = 0, to = 0;
 };
 
-/// Which corner a gap stands for: between root land and plus wall, between root land and minus wall, or both in one where the ball does not
-/// reach the root land. The two need not meet in the middle of the land.
+/// Which corner a gap stands for: between root land and plus wall, between root land and minus wall, or both in one
+/// where the ball does not reach the root land. The two need not meet in the middle of the land.
 enum class SheetCorner { plus, minus, both };
 [[nodiscard]] SheetCorner corner_of(const SheetGap& gap);
 
@@ -40,8 +41,8 @@ class OffsetSheet {
   };
   struct Station {
     double r = 0;
-    std::vector<Node> nodes;    ///< all, in sigma
-    std::vector<SheetGap> gaps; ///< in sigma, not overlapping
+    std::vector<Node> nodes;     ///< all, in sigma
+    std::vector<SheetGap> gaps;  ///< in sigma, not overlapping
   };
 
   /// Offset by `delta` (ball radius + allowance) for centre radii in [r_from, r_to]. The range shrinks to where the
@@ -62,7 +63,6 @@ class OffsetSheet {
   [[nodiscard]] std::optional<SheetPoint> at(double sigma, double r) const;
   /// Gaps at any centre radius of the range.
   [[nodiscard]] std::vector<SheetGap> gaps(double r) const;
-
 
  private:
   /// Evenly spaced stations over the part of the range in which the surfaces exist; none or at least two.

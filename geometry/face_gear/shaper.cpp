@@ -68,13 +68,15 @@ Status check_shaper(const FaceGearParameters& gear, double helix_angle_rad) {
   const auto sharp = make_shaper<double>(with_tip_radius(gear, 0), helix_angle_rad);
   const double half_pitch = kPi / gear.shaper_teeth;
   if (sharp.psi_c > half_pitch)
-    return fail("the shaper's teeth are pointed: half space angle {:.6f} deg at the tip radius {:.4f} mm exceeds the half "
-                "pitch {:.6f} deg",
-                degrees(sharp.psi_c), sharp.r_a, degrees(half_pitch));
+    return fail(
+        "the shaper's teeth are pointed: half space angle {:.6f} deg at the tip radius {:.4f} mm exceeds the half "
+        "pitch {:.6f} deg",
+        degrees(sharp.psi_c), sharp.r_a, degrees(half_pitch));
   if (sharp.psi_c <= 0)
-    return fail("the shaper has no tooth spaces at its tip: half space angle {:.6f} deg at the tip radius {:.4f} mm, "
-                "limit 0 (backlash {:.4f} mm is too large)",
-                degrees(sharp.psi_c), sharp.r_a, gear.backlash_mm);
+    return fail(
+        "the shaper has no tooth spaces at its tip: half space angle {:.6f} deg at the tip radius {:.4f} mm, limit 0 "
+        "(backlash {:.4f} mm is too large)",
+        degrees(sharp.psi_c), sharp.r_a, gear.backlash_mm);
   if (gear.shaper_tip_radius_mm < 0)
     return fail("shaper tip rounding {:.4f} mm is negative, limit 0", gear.shaper_tip_radius_mm);
   const double largest = largest_tip_radius(gear, helix_angle_rad);

@@ -1,7 +1,8 @@
 // The involute shaper (or pinion) that generates a face gear: its transverse profile as a support function.
 //
-// A profile point of side s (+1, -1) at normal angle A is  h e(sA) - s g t(sA), its normal into the shaper body s t(sA), with
-// e(x) = cos x d + sin x b, t(x) = -sin x d + cos x b in the shaper's transverse plane (d, b). See docs/face_gear.md.
+// A profile point of side s (+1, -1) at normal angle A is  h e(sA) - s g t(sA), its normal into the shaper body s
+// t(sA), with e(x) = cos x d + sin x b, t(x) = -sin x d + cos x b in the shaper's transverse plane (d, b). See
+// docs/face_gear.md.
 #pragma once
 
 #include <cmath>
@@ -14,20 +15,26 @@ namespace toothpath::face_gear {
 template <typename S>
 struct InvoluteShaper {
   int teeth = 0;
-  S m_t{}, alpha_t{};             ///< transverse module and pressure angle
-  S r_p{}, r_b{}, r_a{};          ///< pitch, base and tip radius
-  S kappa{};                      ///< tan(beta)/r_p: twist per mm of axis; 0 for a spur gear
+  S m_t{}, alpha_t{};              ///< transverse module and pressure angle
+  S r_p{}, r_b{}, r_a{};           ///< pitch, base and tip radius
+  S kappa{};                       ///< tan(beta)/r_p: twist per mm of axis; 0 for a spur gear
   S beta_b{}, sin_bb{}, cos_bb{};  ///< base helix angle, signed
-  S T{};                          ///< kappa r_b = tan(beta_b)
-  S theta_0{};                    ///< half tooth-space angle at the base circle
-  S rho{}, r_c{};                 ///< tip rounding and radius of the circle of its centres
-  S theta_t{};                    ///< roll parameter at the end of the involute
-  S A_t{}, A_e{}, psi_c{};        ///< normal angle at start and end of the rounding, polar angle of its centre
-  S h_a{}, h_f{};                 ///< gear: addendum h_a* m; dedendum (h_a* + c*) m
+  S T{};                           ///< kappa r_b = tan(beta_b)
+  S theta_0{};                     ///< half tooth-space angle at the base circle
+  S rho{}, r_c{};                  ///< tip rounding and radius of the circle of its centres
+  S theta_t{};                     ///< roll parameter at the end of the involute
+  S A_t{}, A_e{}, psi_c{};         ///< normal angle at start and end of the rounding, polar angle of its centre
+  S h_a{}, h_f{};                  ///< gear: addendum h_a* m; dedendum (h_a* + c*) m
 
   /// Support h and length g of the tip rounding at normal angle A in [A_t, A_e].
-  [[nodiscard]] S rounding_h(const S& A) const { using std::cos; return r_c * cos(S(A - psi_c)); }
-  [[nodiscard]] S rounding_g(const S& A) const { using std::sin; return rho + r_c * sin(S(A - psi_c)); }
+  [[nodiscard]] S rounding_h(const S& A) const {
+    using std::cos;
+    return r_c * cos(S(A - psi_c));
+  }
+  [[nodiscard]] S rounding_g(const S& A) const {
+    using std::sin;
+    return rho + r_c * sin(S(A - psi_c));
+  }
 };
 
 /// Shaper of one zone. Preconditions (checked by `check_shaper`): r_c >= r_b, psi_c <= pi/N_s.

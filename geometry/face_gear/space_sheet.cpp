@@ -9,10 +9,7 @@ namespace {
 
 using Dual2 = Dual<double, 2>;
 
-int side_of(SpacePiece piece) {
-  return piece == SpacePiece::flank_plus || piece == SpacePiece::fillet_plus ? 1 : -1;
-}
-
+int side_of(SpacePiece piece) { return piece == SpacePiece::flank_plus || piece == SpacePiece::fillet_plus ? 1 : -1; }
 
 PatchPoint from_dual(const Vec3T<Dual2>& p, const Vec3T<Dual2>& n) {
   return {value(p), value(n), derivative(p, 0), derivative(p, 1), derivative(n, 0), derivative(n, 1)};
@@ -127,7 +124,8 @@ std::optional<PatchPoint> SpaceSheet::at(SpacePiece piece, double u, double v) c
   if (!q || piece == SpacePiece::root) return q;
   if (ring_.correction) {
     displace(piece, u, v, *q);
-    // Second derivatives of the field count where a ball hardly fits the fillet: the normals' derivatives by differences of the normals.
+    // Second derivatives of the field count where a ball hardly fits the fillet: the normals' derivatives by
+    // differences of the normals.
     const bool flank = piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus;
     const double h = 1e-5, g = flank ? 1e-5 : 1e-3;  // rad; rad or mm
     const auto normal = [&](double a, double b) -> std::optional<Vec3> {
@@ -159,10 +157,12 @@ std::optional<TipPlace> SpaceSheet::tip(int side, double r, const std::optional<
     const double r_now = std::hypot(q->p.x(), q->p.y());
     const double dr = r - r_now, dz = z - q->p.z();
     if (std::abs(dr) + std::abs(dz) < 1e-11 * r) {
-      place.azimuth += std::atan2(before.x() * q->p.y() - before.y() * q->p.x(), before.x() * q->p.x() + before.y() * q->p.y());
+      place.azimuth +=
+          std::atan2(before.x() * q->p.y() - before.y() * q->p.x(), before.x() * q->p.x() + before.y() * q->p.y());
       return place;
     }
-    const double ru = (q->p.x() * q->pu.x() + q->p.y() * q->pu.y()) / r_now, rv = (q->p.x() * q->pv.x() + q->p.y() * q->pv.y()) / r_now;
+    const double ru = (q->p.x() * q->pu.x() + q->p.y() * q->pu.y()) / r_now,
+                 rv = (q->p.x() * q->pv.x() + q->p.y() * q->pv.y()) / r_now;
     const double zu = q->pu.z(), zv = q->pv.z(), det = ru * zv - rv * zu;
     if (det == 0) return {};
     place.at.theta += (dr * zv - dz * rv) / det;
@@ -226,11 +226,11 @@ std::optional<PatchFoot> SpaceSheet::foot(SpacePiece piece, const Vec3& c, doubl
     J.col(2) = q->n;
     Vec3 step = J.inverse() * residual;
     if (!step.allFinite()) return {};
-    // Roll, normal and base-tangent angles move by at most 0.15 rad, sections and distances by a fraction of a millimetre scale.
+    // Roll, normal and base-tangent angles move by at most 0.15 rad, sections and distances by a fraction of a
+    // millimetre scale.
     const double limit_u = piece == SpacePiece::root ? 0.5 : 0.15;
-    const double limit_v = piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus
-                               ? 0.15
-                               : 2 * ring_.surface.shaper.m_t;
+    const double limit_v =
+        piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus ? 0.15 : 2 * ring_.surface.shaper.m_t;
     const double shrink = std::max({1.0, std::abs(step[0]) / limit_u, std::abs(step[1]) / limit_v});
     step /= shrink;
     f.u += step[0];

@@ -1,5 +1,6 @@
-// The working surface of one tooth space as one smooth sheet: flank and fillet of tooth 0, root land, fillet and flank of
-// tooth 1. Every piece has two parameters (u, v), exact first derivatives of point and normal, and a nearest-point search.
+// The working surface of one tooth space as one smooth sheet: flank and fillet of tooth 0, root land, fillet and flank
+// of tooth 1. Every piece has two parameters (u, v), exact first derivatives of point and normal, and a nearest-point
+// search.
 #pragma once
 
 #include <array>
@@ -7,9 +8,9 @@
 #include <optional>
 
 #include "geometry/base/dual.h"
+#include "geometry/face_gear/fillet_blend.h"
 #include "geometry/face_gear/gear.h"
 #include "geometry/face_gear/inverse.h"
-#include "geometry/face_gear/fillet_blend.h"
 
 namespace toothpath::face_gear {
 
@@ -39,9 +40,9 @@ struct TipPlace {
 
 /// Parameters: flanks (theta, B), fillets (A, Z), root (fraction from the plus to the minus edge, Z).
 ///
-/// A ring with a correction gives the corrected flanks: points displaced along the nominal normals, with their own normals; the fillets
-/// carry the displacement on and let it fade. Derivatives of the normals are then differences of the normals (1e-8 relative): they serve
-/// the steps of Newton and the step-over, not a place.
+/// A ring with a correction gives the corrected flanks: points displaced along the nominal normals, with their own
+/// normals; the fillets carry the displacement on and let it fade. Derivatives of the normals are then differences of
+/// the normals (1e-8 relative): they serve the steps of Newton and the step-over, not a place.
 class SpaceSheet {
  public:
   explicit SpaceSheet(const FaceGearParameters& gear, const FaceGearRing& ring);
@@ -59,12 +60,14 @@ class SpaceSheet {
   [[nodiscard]] std::optional<PatchFoot> foot(SpacePiece piece, const Vec3& c, double u, double v) const;
 
   /// Where the flank of `side` meets the tip surface at radius r; `start` as in invert_flank.
-  [[nodiscard]] std::optional<TipPlace> tip(int side, double r, const std::optional<FlankCoordinates>& start = {}) const;
+  [[nodiscard]] std::optional<TipPlace> tip(int side, double r,
+                                            const std::optional<FlankCoordinates>& start = {}) const;
 
   /// Normal curvature in the tangential direction of `along`, convex positive, 1/mm.
   static double normal_curvature(const PatchPoint& at, const Vec3& along);
 
-  /// Range of u of a piece: flanks theta up to theta_t (the start depends on the radius), fillets [A_t, A_e], root [0, 1].
+  /// Range of u of a piece: flanks theta up to theta_t (the start depends on the radius), fillets [A_t, A_e], root [0,
+  /// 1].
   [[nodiscard]] double u_end() const { return ring_.surface.shaper.theta_t; }
 
  private:

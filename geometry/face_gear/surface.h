@@ -102,7 +102,10 @@ struct FaceGearSurface {
   struct ShapeOperator {
     S ee{}, el{}, ll{};
     /// Larger (more convex) and smaller (more concave) principal curvature, 1/mm.
-    [[nodiscard]] S k1() const { using std::sqrt; return S((ee + ll) / S(2)) + radius(); }
+    [[nodiscard]] S k1() const {
+      using std::sqrt;
+      return S((ee + ll) / S(2)) + radius();
+    }
     [[nodiscard]] S k2() const { return S((ee + ll) / S(2)) - radius(); }
     [[nodiscard]] S gauss() const { return ee * ll - el * el; }
 
@@ -163,7 +166,8 @@ struct FaceGearSurface {
   [[nodiscard]] TangentBasis fillet_basis(int s, const S& A, const S& Z) const;
 
   /// Root surface of revolution (plane z = -r_a for a shaft angle of 90 deg): the point of the shaper's tip cylinder at
-  /// section Z that touches it, in the housing frame; turn it about z for any other azimuth. Normal out of the material.
+  /// section Z that touches it, in the housing frame; turn it about z for any other azimuth. Normal out of the
+  /// material.
   [[nodiscard]] SurfacePointT<S> root_meridian(const S& Z) const;
 
   /// Azimuth at which the root land of the tooth space 0 | 1 begins (side +1) or ends (side -1), at section Z.
@@ -189,8 +193,7 @@ struct FaceGearSurface {
     CurvatureTerms k;
     k.M = ZB * cb + r_b * sb;
     k.X = E * Cg * cB + Z * Sg * sB - w * Cg;
-    k.Y = -E * (sB * sb * Cg + cb * Sg) + Z * sb * Sg * cB - r_b * (sb * Cg + cb * Sg * sB) +
-          w * cb * Sg * cB;
+    k.Y = -E * (sB * sb * Cg + cb * Sg) + Z * sb * Sg * cB - r_b * (sb * Cg + cb * Sg * sB) + w * cb * Sg * cB;
     k.kl = Sg * sB * sb - Cg * cb;
     k.J = k.X * k.M - w * k.Y;
     return k;

@@ -15,7 +15,8 @@ constexpr int kGoldenSteps = 75;  // 0.618^75 of two samples: below rounding
 /// The shaper's solid section, seen from one point of the gear while both turn.
 class ShaperPassing {
  public:
-  ShaperPassing(const FaceGearSurface<double>& surface, const Vec3& point) : f_(surface), w_(surface.shaper), point_(point) {}
+  ShaperPassing(const FaceGearSurface<double>& surface, const Vec3& point)
+      : f_(surface), w_(surface.shaper), point_(point) {}
 
   /// Transverse distance to the shaper at roll angle phi, positive outside it.
   [[nodiscard]] double operator()(double phi) const {
@@ -45,7 +46,8 @@ class ShaperPassing {
 /// Least value between a and b, where one minimum is expected; no smoothness needed.
 double golden_minimum(const ShaperPassing& distance, double a, double b) {
   const double golden = (std::sqrt(5.0) - 1) / 2;
-  double p = b - golden * (b - a), q = a + golden * (b - a), fp = distance(p), fq = distance(q), least = std::min(fp, fq);
+  double p = b - golden * (b - a), q = a + golden * (b - a), fp = distance(p), fq = distance(q),
+         least = std::min(fp, fq);
   for (int k = 0; k < kGoldenSteps; ++k) {
     if (fp <= fq) {
       b = q, q = p, fq = fp;
@@ -79,7 +81,8 @@ double swept_clearance(const FaceGearSurface<double>& f, const Vec3& point) {
   std::sort(minima.begin(), minima.end(), [&](std::size_t a, std::size_t b) { return sampled[a] < sampled[b]; });
   double least = *std::min_element(sampled.begin(), sampled.end());
   for (std::size_t n = 0; n < std::min<std::size_t>(minima.size(), kMinimaRefined); ++n)
-    least = std::min(least, golden_minimum(distance, start + (double(minima[n]) - 1) * step, start + (double(minima[n]) + 1) * step));
+    least = std::min(least, golden_minimum(distance, start + (double(minima[n]) - 1) * step,
+                                           start + (double(minima[n]) + 1) * step));
   return least * f.shaper.cos_bb;
 }
 

@@ -32,17 +32,21 @@ std::string numbers(const Vec3& v, int decimals) {
   return out;
 }
 
-std::string label(const InspectionPoint& p) { return fmt::format("Z{}{}_R{}C{}", p.zone, p.side > 0 ? 'P' : 'M', p.row, p.column); }
+std::string label(const InspectionPoint& p) {
+  return fmt::format("Z{}{}_R{}C{}", p.zone, p.side > 0 ? 'P' : 'M', p.row, p.column);
+}
 
 std::string plain(const std::string& text) {
   std::string out;
-  for (const char c : text.substr(0, 60)) out += c >= ' ' && c <= '~' && c != '\'' && c != '$' && c != '/' && c != ',' ? c : '_';
+  for (const char c : text.substr(0, 60))
+    out += c >= ' ' && c <= '~' && c != '\'' && c != '$' && c != '/' && c != ',' ? c : '_';
   return out;
 }
 
 }  // namespace
 
-std::string inspection_dmis(const face_gear::FaceGear& gear, const std::vector<InspectionPoint>& points, const std::string& job_name) {
+std::string inspection_dmis(const face_gear::FaceGear& gear, const std::vector<InspectionPoint>& points,
+                            const std::string& job_name) {
   const double module = gear.parameters().module_mm, above = gear.blank_top() + 5;
   // A stylus that comes from half a module away and whose way back is as long stays on its own side of the space.
   const double approach = 0.25 * module;
@@ -75,7 +79,8 @@ std::string inspection_dmis(const face_gear::FaceGear& gear, const std::vector<I
       side = p.side;
       column = p.column;
       // A quarter of a pitch beyond the flank at the tip is about the middle of the space.
-      const double r = std::hypot(p.p.x(), p.p.y()), azimuth = std::atan2(p.p.y(), p.p.x()) + p.side * 0.25 * gear.pitch();
+      const double r = std::hypot(p.p.x(), p.p.y()),
+                   azimuth = std::atan2(p.p.y(), p.p.x()) + p.side * 0.25 * gear.pitch();
       over = {r * std::cos(azimuth), r * std::sin(azimuth), above};
       statement(out, "GOTO/CART," + numbers(over, 4));
     }

@@ -24,7 +24,8 @@ Result<std::vector<InspectionPoint>> column_points(const face_gear::FaceGearSurf
                                                    const InspectionOptions& options) {
   const double z_tip = f.z_tip(r), theta_t = f.shaper.theta_t;
   const auto tip = face_gear::invert_flank(f, side, r, z_tip);
-  if (!tip) return fail("flank {:+d} does not reach the tip surface at radius {:.4f} mm (height {:.4f} mm)", side, r, z_tip);
+  if (!tip)
+    return fail("flank {:+d} does not reach the tip surface at radius {:.4f} mm (height {:.4f} mm)", side, r, z_tip);
   const double theta_top = std::max(tip->theta, 0.0);
   if (theta_top >= theta_t) return fail("flank {:+d} has no involute at radius {:.4f} mm", side, r);
   std::vector<InspectionPoint> points(std::size_t(options.rows));
@@ -52,7 +53,8 @@ Result<std::vector<InspectionPoint>> column_points(const face_gear::FaceGearSurf
 
 }  // namespace
 
-Result<std::vector<InspectionPoint>> inspection_grid(const face_gear::FaceGear& gear, const InspectionOptions& options) {
+Result<std::vector<InspectionPoint>> inspection_grid(const face_gear::FaceGear& gear,
+                                                     const InspectionOptions& options) {
   if (options.rows < kLeastInspectedRows || options.rows > kMost)
     return fail("inspection rows = {} is outside {} .. {}", options.rows, kLeastInspectedRows, kMost);
   if (options.columns < kLeastInspectedColumns || options.columns > kMost)
@@ -65,7 +67,8 @@ Result<std::vector<InspectionPoint>> inspection_grid(const face_gear::FaceGear& 
     for (const int side : {1, -1}) {
       const auto first = grid.size();
       for (int column = 0; column < options.columns; ++column) {
-        const double r = inside(ring.zone.inner_radius_mm, ring.zone.outer_radius_mm, options.margin, column, options.columns);
+        const double r =
+            inside(ring.zone.inner_radius_mm, ring.zone.outer_radius_mm, options.margin, column, options.columns);
         auto points = column_points(ring.surface, side, r, options);
         if (!points) return points.error();
         for (InspectionPoint& point : *points) {

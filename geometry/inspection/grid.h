@@ -29,7 +29,8 @@ struct InspectionPoint {
 /// r = const, evenly spaced; on each the rows are even in theta between the fillet line and the tip or, where the tip
 /// lies inside the base circle, the start of the involute. Refused: options outside their range; a radius where the
 /// flank does not reach from tip to fillet.
-[[nodiscard]] Result<std::vector<InspectionPoint>> inspection_grid(const face_gear::FaceGear& gear, const InspectionOptions& options = {});
+[[nodiscard]] Result<std::vector<InspectionPoint>> inspection_grid(const face_gear::FaceGear& gear,
+                                                                   const InspectionOptions& options = {});
 
 /// Lines `zone,flank,row,column,x,y,z,i,j,k` with that header; 13 significant digits; lines end in "\n".
 [[nodiscard]] std::string inspection_csv(const std::vector<InspectionPoint>& points);

@@ -8,12 +8,13 @@ namespace {
 /// One closed or open row of points at one cone distance: azimuths and heights over one pitch.
 struct Section {
   double ell = 0;
-  std::vector<Vec3> points;      ///< of tooth space 0, azimuth growing, the first point of the next pitch left out
+  std::vector<Vec3> points;  ///< of tooth space 0, azimuth growing, the first point of the next pitch left out
   std::vector<double> patch;
 };
 
 /// Wall points at one cone distance from tip (first) to root (last).
-Result<std::vector<Vec3>> wall_points(const bevel_gear::BevelGear& g, const bevel_gear::BevelWall<double>& w, double ell, int rows) {
+Result<std::vector<Vec3>> wall_points(const bevel_gear::BevelGear& g, const bevel_gear::BevelWall<double>& w,
+                                      double ell, int rows) {
   const auto tip = bevel_gear::bevel_inverse(w, ell, g.parameters().addendum_mm);
   if (!tip) return fail("wall {} does not reach the tip at cone distance {:.4f}", w.sigma > 0 ? "L" : "U", ell);
   std::vector<Vec3> points{w.point(tip->beta, tip->p).p};
@@ -27,8 +28,8 @@ Result<std::vector<Vec3>> wall_points(const bevel_gear::BevelGear& g, const beve
   return points;
 }
 
-
-Result<Section> tooth_section(const bevel_gear::BevelGear& g, const bevel_gear::BevelHalf& half, double ell, const BevelMeshOptions& o) {
+Result<Section> tooth_section(const bevel_gear::BevelGear& g, const bevel_gear::BevelHalf& half, double ell,
+                              const BevelMeshOptions& o) {
   const auto L = wall_points(g, half.walls[0], ell, o.rows), U = wall_points(g, half.walls[1], ell, o.rows);
   if (!L) return L.error();
   if (!U) return U.error();
@@ -42,13 +43,17 @@ Result<Section> tooth_section(const bevel_gear::BevelGear& g, const bevel_gear::
   // Azimuths may pass +-180 deg: differences are taken of the shortest way.
   const double from = azimuth(L->back()), across = std::remainder(azimuth(U->back()) - from, 2 * kPi);
   for (int k = 1; k <= o.root_points; ++k)
-    add(bevel_gear::blank_point(ell, -g.parameters().dedendum_mm, from + across * k / (o.root_points + 1), g.sin_delta(), g.cos_delta()), 1);
+    add(bevel_gear::blank_point(ell, -g.parameters().dedendum_mm, from + across * k / (o.root_points + 1),
+                                g.sin_delta(), g.cos_delta()),
+        1);
   for (auto it = U->rbegin(); it != U->rend(); ++it) add(*it, 2);
   const double begin = azimuth(U->front());
   const double land = std::remainder(azimuth(L->front()) + g.pitch() - begin, 2 * kPi);
   if (!(land > 0)) return fail("the teeth are pointed at cone distance {:.4f}", ell);
   for (int k = 1; k <= o.land_points; ++k)
-    add(bevel_gear::blank_point(ell, g.parameters().addendum_mm, begin + land * k / (o.land_points + 1), g.sin_delta(), g.cos_delta()), 3);
+    add(bevel_gear::blank_point(ell, g.parameters().addendum_mm, begin + land * k / (o.land_points + 1), g.sin_delta(),
+                                g.cos_delta()),
+        3);
   return s;
 }
 
@@ -57,7 +62,8 @@ Section flattened(const bevel_gear::BevelGear& g, const Section& s, double ell, 
   Section out;
   out.ell = ell;
   out.patch.assign(s.points.size(), 4);
-  for (const auto& p : s.points) out.points.push_back(bevel_gear::blank_point(ell, height, azimuth(p), g.sin_delta(), g.cos_delta()));
+  for (const auto& p : s.points)
+    out.points.push_back(bevel_gear::blank_point(ell, height, azimuth(p), g.sin_delta(), g.cos_delta()));
   return out;
 }
 
@@ -91,15 +97,17 @@ Result<TriangleMesh> bevel_gear_mesh(const bevel_gear::BevelGear& g, const Bevel
   auto rows = sections(g, o);
   if (!rows) return rows.error();
   // Body: below the root by two modules, but no nearer to the axis than a third of the radius there.
-  const double depth = std::min(2 * g.parameters().outer_transverse_module_mm,
-                                (g.R_i() * g.sin_delta() - g.parameters().dedendum_mm * g.cos_delta()) / (1.5 * std::max(1e-9, g.cos_delta())));
+  const double depth = std::min(
+      2 * g.parameters().outer_transverse_module_mm,
+      (g.R_i() * g.sin_delta() - g.parameters().dedendum_mm * g.cos_delta()) / (1.5 * std::max(1e-9, g.cos_delta())));
   const double under = -g.parameters().dedendum_mm - depth;
   std::vector<Section> loop{flattened(g, rows->front(), g.R_i(), under)};
   for (auto& s : *rows) loop.push_back(std::move(s));
   loop.push_back(flattened(g, loop.back(), g.R_e(), under));
 
   TriangleMesh mesh;
-  const std::size_t n = loop.front().points.size(), teeth = static_cast<std::size_t>(g.parameters().teeth), around = n * teeth;
+  const std::size_t n = loop.front().points.size(), teeth = static_cast<std::size_t>(g.parameters().teeth),
+                    around = n * teeth;
   std::vector<std::vector<std::int32_t>> index(loop.size(), std::vector<std::int32_t>(around));
   for (std::size_t i = 0; i < loop.size(); ++i)
     for (std::size_t k = 0; k < teeth; ++k) {
@@ -128,7 +136,8 @@ Result<TriangleMesh> bevel_gear_mesh(const bevel_gear::BevelGear& g, const Bevel
   return mesh;
 }
 
-Result<TriangleMesh> bevel_pitch_mesh(const bevel_gear::BevelGear& g, std::vector<double>& patch, const BevelMeshOptions& o) {
+Result<TriangleMesh> bevel_pitch_mesh(const bevel_gear::BevelGear& g, std::vector<double>& patch,
+                                      const BevelMeshOptions& o) {
   auto rows = sections(g, o);
   if (!rows) return rows.error();
   TriangleMesh mesh;
@@ -146,14 +155,17 @@ Result<TriangleMesh> bevel_pitch_mesh(const bevel_gear::BevelGear& g, std::vecto
   for (std::size_t i = 0; i + 1 < rows->size(); ++i)
     for (std::size_t j = 0; j + 1 < n; ++j) {
       const auto at = [&](std::size_t r, std::size_t k) { return static_cast<std::int32_t>(r * n + k); };
-      const auto same = [&](std::size_t k) { return (mesh.vertices[i * n + k] - mesh.vertices[(i + 1) * n + k]).norm() < 1e-9; };
+      const auto same = [&](std::size_t k) {
+        return (mesh.vertices[i * n + k] - mesh.vertices[(i + 1) * n + k]).norm() < 1e-9;
+      };
       if (!same(j + 1)) add_triangle(mesh, at(i, j), at(i, j + 1), at(i + 1, j + 1));
       if (!same(j)) add_triangle(mesh, at(i, j), at(i + 1, j + 1), at(i + 1, j));
     }
   return mesh;
 }
 
-Result<std::vector<BevelInspectionPoint>> bevel_inspection_grid(const bevel_gear::BevelGear& g, const BevelInspectionOptions& o) {
+Result<std::vector<BevelInspectionPoint>> bevel_inspection_grid(const bevel_gear::BevelGear& g,
+                                                                const BevelInspectionOptions& o) {
   std::vector<BevelInspectionPoint> out;
   for (std::size_t i = 0; i < g.halves().size(); ++i)
     for (int k = 0; k < 2; ++k) {
@@ -162,10 +174,13 @@ Result<std::vector<BevelInspectionPoint>> bevel_inspection_grid(const bevel_gear
       const double low = w.cutter.x_B + 0.02, high = g.parameters().addendum_mm;
       for (int r = 0; r < o.rows; ++r)
         for (int c = 0; c < o.columns; ++c) {
-          const double u = o.margin + (1 - 2 * o.margin) * r / (o.rows - 1), v = o.margin + (1 - 2 * o.margin) * c / (o.columns - 1);
+          const double u = o.margin + (1 - 2 * o.margin) * r / (o.rows - 1),
+                       v = o.margin + (1 - 2 * o.margin) * c / (o.columns - 1);
           const double height = low + (high - low) * u, ell = half.ell_from + (half.ell_to - half.ell_from) * v;
           const auto at = bevel_gear::bevel_inverse(w, ell, height);
-          if (!at) return fail("wall {} has no point at cone distance {:.4f}, height {:.4f}", w.sigma > 0 ? "L" : "U", ell, height);
+          if (!at)
+            return fail("wall {} has no point at cone distance {:.4f}, height {:.4f}", w.sigma > 0 ? "L" : "U", ell,
+                        height);
           const auto f = w.point(at->beta, at->p);
           out.push_back({static_cast<int>(i), w.sigma, r, c, f.p, f.n});
         }
@@ -176,8 +191,8 @@ Result<std::vector<BevelInspectionPoint>> bevel_inspection_grid(const bevel_gear
 std::string bevel_inspection_csv(const std::vector<BevelInspectionPoint>& points) {
   std::string text = "zone,flank,row,column,x,y,z,i,j,k\n";
   for (const auto& q : points)
-    text += fmt::format("{},{},{},{},{:.13g},{:.13g},{:.13g},{:.13g},{:.13g},{:.13g}\n", q.half, q.sigma > 0 ? 'L' : 'U', q.row, q.column,
-                        q.p.x(), q.p.y(), q.p.z(), q.n.x(), q.n.y(), q.n.z());
+    text += fmt::format("{},{},{},{},{:.13g},{:.13g},{:.13g},{:.13g},{:.13g},{:.13g}\n", q.half,
+                        q.sigma > 0 ? 'L' : 'U', q.row, q.column, q.p.x(), q.p.y(), q.p.z(), q.n.x(), q.n.y(), q.n.z());
   return text;
 }
 

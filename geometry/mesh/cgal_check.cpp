@@ -3,8 +3,8 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/connected_components.h>
 #include <CGAL/Polygon_mesh_processing/measure.h>
-#include <CGAL/Polygon_mesh_processing/orientation.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/orientation.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
@@ -35,7 +35,8 @@ struct PairCounter {
   PairCounter& operator++(int) { return *this; }
   template <typename Pair>
   PairCounter& operator=(const Pair& pair) {
-    if (check->self_intersections++ == 0) check->first_intersection = {std::size_t(pair.first), std::size_t(pair.second)};
+    if (check->self_intersections++ == 0)
+      check->first_intersection = {std::size_t(pair.first), std::size_t(pair.second)};
     if (check->self_intersections >= most) throw Enough{};
     return *this;
   }
@@ -59,9 +60,7 @@ void check_soup(const std::vector<Kernel::Point_3>& points, const Soup& soup, co
   if (!options.self_intersections || !check.manifold) return;
   try {
     pmp::self_intersections(mesh, PairCounter{&check, options.most_pairs});
-  } catch (const Enough&) {
-    return;
-  }
+  } catch (const Enough&) { return; }
 }
 
 }  // namespace
@@ -81,14 +80,13 @@ Result<MeshCheck> check_mesh(const TriangleMesh& mesh, const MeshCheckOptions& o
     for (const auto v : mesh.triangles[t])
       if (v < 0 || std::size_t(v) >= points.size())
         return fail("triangle {} has corner index {}; the mesh has {} vertices", t, v, points.size());
-    soup.push_back({std::size_t(mesh.triangles[t][0]), std::size_t(mesh.triangles[t][1]), std::size_t(mesh.triangles[t][2])});
+    soup.push_back(
+        {std::size_t(mesh.triangles[t][0]), std::size_t(mesh.triangles[t][1]), std::size_t(mesh.triangles[t][2])});
   }
   MeshCheck check;
   try {
     check_soup(points, soup, options, check);
-  } catch (const std::exception& problem) {
-    return fail("the mesh could not be examined: {}", problem.what());
-  }
+  } catch (const std::exception& problem) { return fail("the mesh could not be examined: {}", problem.what()); }
   return check;
 }
 

@@ -24,12 +24,12 @@ struct MeshCheck {
 };
 
 struct MeshCheckOptions {
-  bool self_intersections = true;   ///< look for crossing triangles: the slow part, about 0.3 s for 200 000 triangles
-  std::size_t most_pairs = 1000;    ///< stop counting here
+  bool self_intersections = true;  ///< look for crossing triangles: the slow part, about 0.3 s for 200 000 triangles
+  std::size_t most_pairs = 1000;   ///< stop counting here
 };
 
-/// Checks a mesh whose vertices are already shared (welded). Refused: an index outside the vertices, a coordinate that is
-/// not finite, no triangle at all.
+/// Checks a mesh whose vertices are already shared (welded). Refused: an index outside the vertices, a coordinate that
+/// is not finite, no triangle at all.
 [[nodiscard]] Result<MeshCheck> check_mesh(const TriangleMesh& mesh, const MeshCheckOptions& options = {});
 
 }  // namespace toothpath::mesh

@@ -74,9 +74,12 @@ Result<StlCounts> write_copies(std::ostream& out, const TriangleMesh& mesh, int 
       for (const auto& t : mesh.triangles) use(v[std::size_t(t[0])], v[std::size_t(t[1])], v[std::size_t(t[2])]);
     }
   };
-  for_each_facet([&](const Float3& a, const Float3& b, const Float3& c) { ++(collapsed(a, b, c) ? counts.collapsed : counts.facets); });
+  for_each_facet([&](const Float3& a, const Float3& b, const Float3& c) {
+    ++(collapsed(a, b, c) ? counts.collapsed : counts.facets);
+  });
   if (counts.facets > std::numeric_limits<std::uint32_t>::max())
-    return fail("the mesh has {} facets; a binary STL holds {}", counts.facets, std::numeric_limits<std::uint32_t>::max());
+    return fail("the mesh has {} facets; a binary STL holds {}", counts.facets,
+                std::numeric_limits<std::uint32_t>::max());
   StlStream stl(out);
   stl.header(title, static_cast<std::uint32_t>(counts.facets));
   for_each_facet([&](const Float3& a, const Float3& b, const Float3& c) {
@@ -110,23 +113,29 @@ Status write_vtp(std::ostream& out, const TriangleMesh& mesh, std::span<const Po
   for (const PointField& f : fields) {
     if (f.values.size() != points)
       return fail("field \"{}\" has {} values; the mesh has {} vertices", f.name, f.values.size(), points);
-    if (f.name.find_first_of("<>&\"\n") != std::string::npos) return fail("field name \"{}\" holds a character that XML reserves", f.name);
+    if (f.name.find_first_of("<>&\"\n") != std::string::npos)
+      return fail("field name \"{}\" holds a character that XML reserves", f.name);
   }
   std::uint64_t offset = 0;
   const auto array = [&](std::string_view type, std::string_view name, int components, std::size_t bytes) {
     const std::string text = fmt::format(
-        "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n", type, name,
-        components, offset);
+        "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" offset=\"{}\"/>\n",
+        type, name, components, offset);
     offset += 8 + bytes;
     return text;
   };
   out << "<?xml version=\"1.0\"?>\n"
-         "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <PolyData>\n"
-      << fmt::format("    <Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"{}\">\n",
-                     points, cells)
-      << "      <Points>\n" << array("Float64", "Points", 3, points * 24) << "      </Points>\n      <PointData>\n";
+         "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  "
+         "<PolyData>\n"
+      << fmt::format(
+             "    <Piece NumberOfPoints=\"{}\" NumberOfVerts=\"0\" NumberOfLines=\"0\" NumberOfStrips=\"0\" "
+             "NumberOfPolys=\"{}\">\n",
+             points, cells)
+      << "      <Points>\n"
+      << array("Float64", "Points", 3, points * 24) << "      </Points>\n      <PointData>\n";
   for (const PointField& f : fields) out << array("Float64", f.name, 1, points * 8);
-  out << "      </PointData>\n      <Polys>\n" << array("Int64", "connectivity", 1, cells * 24) << array("Int64", "offsets", 1, cells * 8)
+  out << "      </PointData>\n      <Polys>\n"
+      << array("Int64", "connectivity", 1, cells * 24) << array("Int64", "offsets", 1, cells * 8)
       << "      </Polys>\n    </Piece>\n  </PolyData>\n  <AppendedData encoding=\"raw\">\n_";
 
   const auto raw = [&](const void* data, std::size_t bytes) {

@@ -43,7 +43,8 @@ void keep_stl_and_obj(Assimp::Importer& importer) {
   }
 }
 
-/// Shares vertices whose three 32-bit numbers have equal bits. Open addressing on a table of at least twice the corners.
+/// Shares vertices whose three 32-bit numbers have equal bits. Open addressing on a table of at least twice the
+/// corners.
 class Weld {
  public:
   explicit Weld(std::size_t corners) : table_(std::bit_ceil(2 * corners + 2), -1) {}
@@ -51,7 +52,8 @@ class Weld {
   std::int32_t index(const aiVector3D& p, std::vector<Vec3>& vertices) {
     const std::array<float, 3> key{p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};  // -0 becomes 0
     const auto bytes = std::bit_cast<std::array<char, sizeof key>>(key);
-    for (std::size_t slot = fnv1a({bytes.data(), bytes.size()}) & (table_.size() - 1);; slot = (slot + 1) & (table_.size() - 1)) {
+    for (std::size_t slot = fnv1a({bytes.data(), bytes.size()}) & (table_.size() - 1);;
+         slot = (slot + 1) & (table_.size() - 1)) {
       if (table_[slot] < 0) {
         table_[slot] = static_cast<std::int32_t>(keys_.size());
         keys_.push_back(key);
@@ -76,7 +78,8 @@ Result<TriangleMesh> welded(const aiScene& scene, const SourcePosition& at, cons
   std::size_t facets = 0;
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) facets += scene.mMeshes[m]->mNumFaces;
   if (facets == 0) return fail_at(at, "the file has 0 facets");
-  if (facets > limits.most_facets) return fail_at(at, "the file has {} facets; the limit is {}", facets, limits.most_facets);
+  if (facets > limits.most_facets)
+    return fail_at(at, "the file has {} facets; the limit is {}", facets, limits.most_facets);
   TriangleMesh mesh;
   mesh.triangles.reserve(facets);
   Weld weld(3 * facets);
@@ -89,7 +92,8 @@ Result<TriangleMesh> welded(const aiScene& scene, const SourcePosition& at, cons
       std::array<std::int32_t, 3> t{};
       for (unsigned k = 0; k < 3; ++k) {
         if (face.mIndices[k] >= part.mNumVertices)
-          return fail_at(at, "facet {} names vertex {} of {}", mesh.triangles.size(), face.mIndices[k], part.mNumVertices);
+          return fail_at(at, "facet {} names vertex {} of {}", mesh.triangles.size(), face.mIndices[k],
+                         part.mNumVertices);
         t[k] = weld.index(part.mVertices[face.mIndices[k]], mesh.vertices);
       }
       mesh.triangles.push_back(t);
@@ -113,9 +117,7 @@ Result<TriangleMesh> import(std::string_view bytes, const std::string& ending, c
     const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str() + 1);
     if (!scene) return fail_at(at, "the file is damaged: {}", importer.GetErrorString());
     return welded(*scene, at, limits);
-  } catch (const std::exception& problem) {
-    return fail_at(at, "the file could not be read: {}", problem.what());
-  }
+  } catch (const std::exception& problem) { return fail_at(at, "the file could not be read: {}", problem.what()); }
 }
 
 }  // namespace
@@ -124,7 +126,8 @@ Result<TriangleMesh> parse_mesh(std::string_view bytes, const std::string& name,
   const SourcePosition at{name, 0, 0};
   const std::string ending = lower_ending(name);
   if (ending != ".stl" && ending != ".obj") return fail_at(at, "mesh files end in .stl or .obj, not \"{}\"", ending);
-  if (bytes.size() > limits.most_bytes) return fail_at(at, "the file has {} bytes; the limit is {}", bytes.size(), limits.most_bytes);
+  if (bytes.size() > limits.most_bytes)
+    return fail_at(at, "the file has {} bytes; the limit is {}", bytes.size(), limits.most_bytes);
   if (bytes.empty()) return fail_at(at, "the file is empty");
   std::string text;
   std::size_t stated = 0;

@@ -8,10 +8,10 @@
 namespace toothpath::mesh {
 namespace {
 
-constexpr double kSame_mm = 1e-9;       ///< vertices of one row that are closer are one vertex
-constexpr double kMargin = 1.15;        ///< on the measured sag
-constexpr double kBaseModules = 2.5;    ///< thickness below the lowest point of teeth and groove
-constexpr double kFootModules = 0.25;   ///< how far below the root an end face ends and the body begins
+constexpr double kSame_mm = 1e-9;      ///< vertices of one row that are closer are one vertex
+constexpr double kMargin = 1.15;       ///< on the measured sag
+constexpr double kBaseModules = 2.5;   ///< thickness below the lowest point of teeth and groove
+constexpr double kFootModules = 0.25;  ///< how far below the root an end face ends and the body begins
 
 using Index = std::int32_t;
 
@@ -39,7 +39,8 @@ Result<std::vector<SectionPoint>> PitchBuilder::exact_row(const ToothSection& se
   points.reserve(columns_.size());
   for (const GridColumn& c : columns_) {
     const auto p = section.point(c.segment, shift == 0 ? c.from : c.from + shift * (c.to - c.from));
-    if (!p) return fail("{} is not defined at radius {:.4f} mm", patch_name(segment_patch(c.segment)), section.radius());
+    if (!p)
+      return fail("{} is not defined at radius {:.4f} mm", patch_name(segment_patch(c.segment)), section.radius());
     points.push_back(*p);
   }
   return points;
@@ -75,10 +76,13 @@ PitchBuilder::Row PitchBuilder::row_below(const Row& profile, double z) {
   return add_row(std::move(points), &profile, z);
 }
 
-Result<PitchBuilder::RingRows> PitchBuilder::add_ring(const face_gear::FaceGearRing& ring, const std::vector<double>& radii) {
+Result<PitchBuilder::RingRows> PitchBuilder::add_ring(const face_gear::FaceGearRing& ring,
+                                                      const std::vector<double>& radii) {
   RingRows rows;
   std::optional<ToothSection> near;
-  const auto section_at = [&](double r) { return ToothSection::at(ring.surface, out_.teeth, r, near ? &*near : nullptr); };
+  const auto section_at = [&](double r) {
+    return ToothSection::at(ring.surface, out_.teeth, r, near ? &*near : nullptr);
+  };
   for (std::size_t i = 0; i < radii.size(); ++i) {
     auto section = section_at(radii[i]);
     if (!section) return section.error();
@@ -201,7 +205,8 @@ Status PitchBuilder::build() {
     for (const Row* row : {&end, &next})
       for (std::size_t j = 0; j < row->index.size(); ++j)
         if (at(*row, j).z() < floor - kSame_mm)
-          return fail("groove floor z = {:.4f} mm lies above the tooth space beside it (z = {:.4f} mm)", floor, at(*row, j).z());
+          return fail("groove floor z = {:.4f} mm lies above the tooth space beside it (z = {:.4f} mm)", floor,
+                      at(*row, j).z());
     if (!(std::hypot(at(next, 0).x(), at(next, 0).y()) - std::hypot(at(end, 0).x(), at(end, 0).y()) > kSame_mm))
       return fail("groove width = 0 between ring {} and ring {}: a solid needs a gap", k, k + 1);
     const Row a = row_below(end, floor), b = row_below(next, floor);
@@ -233,8 +238,9 @@ double PitchBuilder::distance_near(const RingRows& ring, std::size_t strip, std:
   const auto to_cell = [&](std::size_t i, std::size_t j) {
     const Vec3 &p00 = at(ring.rows[i], j), &p01 = at(ring.rows[i], j + 1);
     const Vec3 &p10 = at(ring.rows[i + 1], j), &p11 = at(ring.rows[i + 1], j + 1);
-    return ring.falling[i][j] ? std::min(distance_to_triangle(p, p00, p10, p01), distance_to_triangle(p, p10, p11, p01))
-                              : std::min(distance_to_triangle(p, p00, p10, p11), distance_to_triangle(p, p00, p11, p01));
+    return ring.falling[i][j]
+               ? std::min(distance_to_triangle(p, p00, p10, p01), distance_to_triangle(p, p10, p11, p01))
+               : std::min(distance_to_triangle(p, p00, p10, p11), distance_to_triangle(p, p00, p11, p01));
   };
   double best = to_cell(strip, column);
   const std::size_t i_end = std::min(strip + 2, ring.falling.size()), j_end = std::min(column + 2, columns_.size());

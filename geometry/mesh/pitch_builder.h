@@ -11,8 +11,8 @@
 
 namespace toothpath::mesh {
 
-/// Builds the pitch row by row: the toothed surface of every ring, its end faces, the groove floors, the body below. Holds references to
-/// gear and grid.
+/// Builds the pitch row by row: the toothed surface of every ring, its end faces, the groove floors, the body below.
+/// Holds references to gear and grid.
 class PitchBuilder {
  public:
   PitchBuilder(const face_gear::FaceGear& gear, const ToothGrid& grid, double tolerance_mm)
@@ -23,7 +23,8 @@ class PitchBuilder {
 
   /// Refused: a section that does not close (undercut, pointed), a place where the tooth overhangs an end face.
   Status build();
-  /// Largest distance [mm] of exact points to the mesh with a margin of 15 %, by patch; n x n points a cell. After `build`.
+  /// Largest distance [mm] of exact points to the mesh with a margin of 15 %, by patch; n x n points a cell. After
+  /// `build`.
   Result<std::array<double, kPatchCount>> measure_sag(int n) const;
   ToothMesh take() { return std::move(out_); }
 

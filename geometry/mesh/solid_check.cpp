@@ -57,17 +57,20 @@ class SolidCheck {
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t)
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3& p = mesh_.corner(t, k);
-        if (!p.allFinite()) return fail_at(at_, "facet {}: corner {} = ({}, {}, {}) is not finite", t, k, p.x(), p.y(), p.z());
+        if (!p.allFinite())
+          return fail_at(at_, "facet {}: corner {} = ({}, {}, {}) is not finite", t, k, p.x(), p.y(), p.z());
         const double farthest = p.cwiseAbs().maxCoeff();
         if (farthest > limits_.most_coordinate_mm)
-          return fail_at(at_, "facet {}: coordinate {:g} mm is farther than {:g} mm from the origin", t, farthest, limits_.most_coordinate_mm);
+          return fail_at(at_, "facet {}: coordinate {:g} mm is farther than {:g} mm from the origin", t, farthest,
+                         limits_.most_coordinate_mm);
       }
     return Ok{};
   }
 
   [[nodiscard]] std::string unit_hint(double size) const {
     const double expected = limits_.expected_size_mm;
-    if (!(expected > 0)) return size < limits_.least_size_mm ? "; is the file in inches or metres?" : "; is the file in micrometres?";
+    if (!(expected > 0))
+      return size < limits_.least_size_mm ? "; is the file in inches or metres?" : "; is the file in micrometres?";
     const auto fits = [&](double unit) { return std::abs(size * unit / expected - 1) < 0.05; };
     if (fits(kInch_mm)) return fmt::format("; {:g} mm is expected, so the file is probably in inches", expected);
     if (fits(1000)) return fmt::format("; {:g} mm is expected, so the file is probably in metres", expected);
@@ -88,7 +91,8 @@ class SolidCheck {
       return fail_at(at_, "longest side = {:g} mm is above {:g} mm{}", size, limits_.most_size_mm, unit_hint(size));
     const double expected = limits_.expected_size_mm;
     if (expected > 0 && (size < 0.1 * expected || size > 10 * expected))
-      return fail_at(at_, "longest side = {:g} mm is outside {:g} .. {:g} mm{}", size, 0.1 * expected, 10 * expected, unit_hint(size));
+      return fail_at(at_, "longest side = {:g} mm is outside {:g} .. {:g} mm{}", size, 0.1 * expected, 10 * expected,
+                     unit_hint(size));
     return Ok{};
   }
 
@@ -98,7 +102,8 @@ class SolidCheck {
       const double longest2 = std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()});
       const double shape = longest2 > 0 ? mesh_.area_normal(t).norm() / longest2 : 0.0;
       if (!(shape > kLeastShape))
-        return fail_at(at_, "{} is degenerate: its height is {:g} of its longest edge, the limit {:g}", place(t), shape, kLeastShape);
+        return fail_at(at_, "{} is degenerate: its height is {:g} of its longest edge, the limit {:g}", place(t), shape,
+                       kLeastShape);
     }
     return Ok{};
   }
@@ -121,7 +126,8 @@ class SolidCheck {
         for (std::size_t j = i + 1; j < last; ++j)
           if (same_corners(edges[i].facet, edges[j].facet))
             return fail_at(at_, "{} and facet {} have the same three corners", place(edges[i].facet), edges[j].facet);
-      if (uses == 1) return fail_at(at_, "{} has an open edge: used by 1 facet, a closed surface needs 2", place(first));
+      if (uses == 1)
+        return fail_at(at_, "{} has an open edge: used by 1 facet, a closed surface needs 2", place(first));
       if (uses > 2) return fail_at(at_, "{} has an edge used by {} facets; a solid has 2", place(first), uses);
       if (edges[k].rising == edges[k + 1].rising)
         return fail_at(at_, "{} and facet {} run along their common edge in the same direction: one of them is flipped",
@@ -133,7 +139,8 @@ class SolidCheck {
 
   [[nodiscard]] Status volume() const {
     const double v = signed_volume(mesh_);
-    if (!(v > 0)) return fail_at(at_, "enclosed volume = {:g} mm^3 is not above 0: the surface is turned inside out", v);
+    if (!(v > 0))
+      return fail_at(at_, "enclosed volume = {:g} mm^3 is not above 0: the surface is turned inside out", v);
     return Ok{};
   }
 
@@ -141,9 +148,11 @@ class SolidCheck {
     if (!limits_.self_intersections) return Ok{};
     const auto check = check_mesh(mesh_, {true, 1});
     if (!check) return fail_at(at_, "{}", check.error().message);
-    if (!check->manifold) return fail_at(at_, "the surface touches itself at a corner: one corner joins separate fans of facets");
+    if (!check->manifold)
+      return fail_at(at_, "the surface touches itself at a corner: one corner joins separate fans of facets");
     if (check->self_intersections > 0)
-      return fail_at(at_, "{} and facet {} cross each other", place(check->first_intersection[0]), check->first_intersection[1]);
+      return fail_at(at_, "{} and facet {} cross each other", place(check->first_intersection[0]),
+                     check->first_intersection[1]);
     return Ok{};
   }
 

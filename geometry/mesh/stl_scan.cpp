@@ -18,7 +18,8 @@ char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 /// A word of the file, cut short for a message and without control characters.
 std::string shown(std::string_view word) {
   std::string text(word.substr(0, 30));
-  std::replace_if(text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
   return text;
 }
 
@@ -54,7 +55,8 @@ class Words {
     const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
     float value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (word.find(',') != std::string_view::npos) return refuse("facet {}: \"{}\" has a decimal comma", facet, shown(word));
+    if (word.find(',') != std::string_view::npos)
+      return refuse("facet {}: \"{}\" has a decimal comma", facet, shown(word));
     if (error == std::errc::result_out_of_range && std::abs(exponent_of(digits)) > 60)
       return refuse("facet {}: {} does not fit a 32-bit number", facet, shown(word));
     if (error == std::errc::invalid_argument || end != digits.data() + digits.size())
@@ -116,7 +118,8 @@ Result<StlScan> scan_text(std::string_view bytes, const std::string& name, std::
       if (word.empty()) break;
       if (word != "solid") return words.refuse("\"{}\" stands where \"solid\" is expected", shown(word));
       const std::size_t length = words.rest_of_line().size();
-      if (length > kMostName) return words.refuse("the name of the solid has {} characters; the limit is {}", length, kMostName);
+      if (length > kMostName)
+        return words.refuse("the name of the solid has {} characters; the limit is {}", length, kMostName);
       inside = true;
     } else if (word == "facet") {
       if (scan.facets == most_facets) return words.refuse("more than {} facets, the limit", most_facets);
@@ -162,10 +165,12 @@ Result<StlScan> scan_stl(std::string_view bytes, const std::string& name, std::s
   } else if (bytes.size() < kHeader) {
     return fail_at(at, "{} bytes are neither a text STL nor the {} bytes of a binary header", bytes.size(), kHeader);
   } else {
-    return fail_at(at, "binary STL states {} facets, which need {} bytes; the file has {}", stated, needed, bytes.size());
+    return fail_at(at, "binary STL states {} facets, which need {} bytes; the file has {}", stated, needed,
+                   bytes.size());
   }
   if (scan.facets == 0) return fail_at(at, "the file has 0 facets");
-  if (scan.facets > most_facets) return fail_at(at, "the file has {} facets; the limit is {}", scan.facets, most_facets);
+  if (scan.facets > most_facets)
+    return fail_at(at, "the file has {} facets; the limit is {}", scan.facets, most_facets);
   return scan;
 }
 

@@ -89,8 +89,7 @@ Result<GridPlanner> GridPlanner::probe(const face_gear::FaceGear& gear) {
         std::vector<Vec3> line;
         for (std::size_t j = 0; j < kProbes; ++j) {
           const auto point = near->point(s, double(j) / double(kProbes - 1));
-          if (!point)
-            return fail("{} is not defined at radius {:.4f} mm", patch_name(segment_patch(s)), r);
+          if (!point) return fail("{} is not defined at radius {:.4f} mm", patch_name(segment_patch(s)), r);
           line.push_back(point->p);
         }
         lines[s].push_back(std::move(line));
@@ -101,7 +100,8 @@ Result<GridPlanner> GridPlanner::probe(const face_gear::FaceGear& gear) {
       for (std::size_t i = 0; i < kProbes; ++i)
         for (std::size_t j = 0; j < kProbes; ++j) {
           const auto& l = lines[s];
-          const std::size_t jc = std::clamp<std::size_t>(j, 1, kProbes - 2), ic = std::clamp<std::size_t>(i, 1, kProbes - 2);
+          const std::size_t jc = std::clamp<std::size_t>(j, 1, kProbes - 2),
+                            ic = std::clamp<std::size_t>(i, 1, kProbes - 2);
           auto& across = planner.bend_across_[s][j];
           across = std::max(across, bend(l[i][jc - 1], l[i][jc], l[i][jc + 1]));
           along[i] = std::max(along[i], bend(l[ic - 1][j], l[ic][j], l[ic + 1][j]));
@@ -113,7 +113,8 @@ Result<GridPlanner> GridPlanner::probe(const face_gear::FaceGear& gear) {
 
 ToothGrid GridPlanner::grid(double sag_mm) const {
   ToothGrid grid;
-  for (std::size_t s = 0; s < kSegmentCount; ++s) grid.fractions[s] = equal_shares(bend_across_[s], sag_mm, kLeastCells[s]);
+  for (std::size_t s = 0; s < kSegmentCount; ++s)
+    grid.fractions[s] = equal_shares(bend_across_[s], sag_mm, kLeastCells[s]);
   for (std::size_t k = 0; k < span_.size(); ++k) {
     std::vector<double> radii = equal_shares(bend_along_[k], sag_mm, kLeastGridRows);
     for (double& u : radii) u = radius_at(span_[k], u);

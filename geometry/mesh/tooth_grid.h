@@ -1,4 +1,5 @@
-// Where the rows and columns of a tooth mesh stand: dense where the surface bends, from a probe of its second differences.
+// Where the rows and columns of a tooth mesh stand: dense where the surface bends, from a probe of its second
+// differences.
 #pragma once
 
 #include <array>
@@ -39,9 +40,9 @@ class GridPlanner {
 
  private:
   std::array<std::vector<double>, kSegmentCount> bend_across_;  ///< second derivative by fraction, mm
-  std::vector<std::vector<double>> bend_along_;                 ///< the same by the root of the fraction of the face width,
-                                                ///< one list a ring
-  std::vector<std::array<double, 2>> span_;                     ///< inner and outer radius of each ring
+  std::vector<std::vector<double>> bend_along_;  ///< the same by the root of the fraction of the face width,
+                                                 ///< one list a ring
+  std::vector<std::array<double, 2>> span_;      ///< inner and outer radius of each ring
 };
 
 }  // namespace toothpath::mesh

@@ -46,7 +46,8 @@ Vec3 turned_by_pitches(const Vec3& p, int k, int teeth) {
 
 Result<ToothMesh> mesh_tooth_space(const face_gear::FaceGear& gear, double tolerance_mm) {
   if (!(tolerance_mm >= kLeastTolerance_mm && tolerance_mm <= kMostTolerance_mm))
-    return fail("mesh tolerance = {:g} mm is outside {:g} .. {:g} mm", tolerance_mm, kLeastTolerance_mm, kMostTolerance_mm);
+    return fail("mesh tolerance = {:g} mm is outside {:g} .. {:g} mm", tolerance_mm, kLeastTolerance_mm,
+                kMostTolerance_mm);
   const auto planner = GridPlanner::probe(gear);
   if (!planner) return planner.error();
   double aim = 0.45 * tolerance_mm;  // two directions share the sag
@@ -113,11 +114,13 @@ double signed_volume(const TriangleMesh& mesh) {
   return sum / 6;
 }
 
-std::optional<face_gear::SurfacePointT<double>> exact_patch_point(const face_gear::FaceGear& gear, int zone, Patch patch, const Vec2& uv) {
+std::optional<face_gear::SurfacePointT<double>> exact_patch_point(const face_gear::FaceGear& gear, int zone,
+                                                                  Patch patch, const Vec2& uv) {
   const auto& f = gear.rings()[std::size_t(zone)].surface;
   const int teeth = gear.parameters().teeth, s = patch_side(patch);
   const auto placed = [&](const Vec3& p, const Vec3& n) {
-    return face_gear::SurfacePointT<double>{turned_by_pitches(p, s < 0 ? 1 : 0, teeth), turned_by_pitches(n, s < 0 ? 1 : 0, teeth)};
+    return face_gear::SurfacePointT<double>{turned_by_pitches(p, s < 0 ? 1 : 0, teeth),
+                                            turned_by_pitches(n, s < 0 ? 1 : 0, teeth)};
   };
   switch (patch) {
     case Patch::flank_plus:
@@ -136,15 +139,16 @@ std::optional<face_gear::SurfacePointT<double>> exact_patch_point(const face_gea
       const Vec3 right = turned_by_pitches(f.fillet(-1, f.shaper.A_e, uv.y()).p, 1, teeth);
       const Vec3 p = face_gear::FaceGearSurface<double>::turned(left, uv.x() * angle_from_to(left, right));
       const auto meridian = f.root_meridian(uv.y());
-      return face_gear::SurfacePointT<double>{p, face_gear::FaceGearSurface<double>::turned(meridian.n, angle_from_to(meridian.p, p))};
+      return face_gear::SurfacePointT<double>{
+          p, face_gear::FaceGearSurface<double>::turned(meridian.n, angle_from_to(meridian.p, p))};
     }
     case Patch::tip: {
       const double r = uv.y(), Z = std::sqrt(r * r - f.E * f.E), slope = -f.Cg / f.Sg * r / Z;
       const Vec3 radial(std::cos(uv.x()), std::sin(uv.x()), 0);
-      return face_gear::SurfacePointT<double>{r * radial + f.z_tip(r) * Vec3::UnitZ(), (Vec3::UnitZ() - slope * radial).normalized()};
+      return face_gear::SurfacePointT<double>{r * radial + f.z_tip(r) * Vec3::UnitZ(),
+                                              (Vec3::UnitZ() - slope * radial).normalized()};
     }
-    default:
-      return {};
+    default: return {};
   }
 }
 

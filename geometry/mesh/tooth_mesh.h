@@ -2,12 +2,13 @@
 //
 // The pitch runs from the middle of the top land of tooth 0 to the middle of the top land of tooth 1 and holds space 0:
 //
-//        tip | flank_plus \ fillet_plus | root | fillet_minus / flank_minus | tip        (seen along a circle r = const)
+//        tip | flank_plus \ fillet_plus | root | fillet_minus / flank_minus | tip        (seen along a circle r =
+//        const)
 //
 // flank_plus is side +1 of tooth 0, flank_minus side -1 of tooth 1 (tooth 0 turned by one pitch). Every row of vertices
-// lies on one cylinder r = const, so the end faces at the inner and outer radius of a ring are exact in r. Below: groove
-// floor between the rings, inner and outer cylinder and a flat underside 2.5 modules below the lowest point of the teeth
-// and the groove. Gear frame, mm.
+// lies on one cylinder r = const, so the end faces at the inner and outer radius of a ring are exact in r. Below:
+// groove floor between the rings, inner and outer cylinder and a flat underside 2.5 modules below the lowest point of
+// the teeth and the groove. Gear frame, mm.
 #pragma once
 
 #include <optional>
@@ -47,10 +48,11 @@ struct TriangleTag {
 /// One angular pitch. Open along the two borders in the middle of the top lands, where the next pitch joins.
 struct ToothMesh {
   TriangleMesh mesh;
-  std::vector<TriangleTag> tags;           ///< one a triangle
-  std::vector<std::int32_t> turned_from;   ///< one a vertex: the vertex of which it is the copy turned by one pitch; -1: none
-  int teeth = 0;                           ///< N_2
-  double tolerance_mm = 0;                 ///< as asked
+  std::vector<TriangleTag> tags;  ///< one a triangle
+  std::vector<std::int32_t>
+      turned_from;          ///< one a vertex: the vertex of which it is the copy turned by one pitch; -1: none
+  int teeth = 0;            ///< N_2
+  double tolerance_mm = 0;  ///< as asked
   /// Largest distance between the facets of a patch and its exact surface: measured on a dense sample, with a margin
   /// of 15 %. Index with static_cast<std::size_t>(Patch).
   std::array<double, kPatchCount> max_sag_mm{};
@@ -78,7 +80,7 @@ struct ToothMesh {
 
 /// Exact point and normal of a flank, fillet, root or tip patch of space 0 at patch coordinates (u, v); nothing for the
 /// other patches and where the fillet is not defined.
-[[nodiscard]] std::optional<face_gear::SurfacePointT<double>> exact_patch_point(const face_gear::FaceGear& gear, int zone, Patch patch,
-                                                                     const Vec2& uv);
+[[nodiscard]] std::optional<face_gear::SurfacePointT<double>> exact_patch_point(const face_gear::FaceGear& gear,
+                                                                                int zone, Patch patch, const Vec2& uv);
 
 }  // namespace toothpath::mesh

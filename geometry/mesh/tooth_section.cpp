@@ -18,8 +18,8 @@ Vec3 on_circle(double r, double angle, double z) { return {r * std::cos(angle), 
 double mixed(double a, double b, double t) { return a + t * (b - a); }
 
 /// B at `theta` and radius r, by steps in theta from a solved point when one step does not arrive.
-std::optional<double> continued_B(const face_gear::FaceGearSurface<double>& f, int s, double r, double theta_from, double B_from,
-                                  double theta, int steps) {
+std::optional<double> continued_B(const face_gear::FaceGearSurface<double>& f, int s, double r, double theta_from,
+                                  double B_from, double theta, int steps) {
   double B = B_from;
   for (int k = 1; k <= steps; ++k) {
     const auto next = face_gear::flank_B_at_radius(f, s, mixed(theta_from, theta, double(k) / steps), r, B);
@@ -32,12 +32,14 @@ std::optional<double> continued_B(const face_gear::FaceGearSurface<double>& f, i
 }  // namespace
 
 Patch segment_patch(std::size_t segment) {
-  constexpr std::array<Patch, kSegmentCount> kPatches{Patch::tip,          Patch::flank_plus,  Patch::fillet_plus, Patch::root,
-                                                      Patch::fillet_minus, Patch::flank_minus, Patch::tip};
+  constexpr std::array<Patch, kSegmentCount> kPatches{Patch::tip,  Patch::flank_plus,   Patch::fillet_plus,
+                                                      Patch::root, Patch::fillet_minus, Patch::flank_minus,
+                                                      Patch::tip};
   return kPatches[segment];
 }
 
-Result<ToothSection::Side> ToothSection::make_side(const face_gear::FaceGearSurface<double>& f, int s, double r, const Side* near) {
+Result<ToothSection::Side> ToothSection::make_side(const face_gear::FaceGearSurface<double>& f, int s, double r,
+                                                   const Side* near) {
   std::optional<face_gear::FlankCoordinates> start;
   if (near) start = face_gear::FlankCoordinates{near->theta_tip, near->B_tip, 0};
   const double z_tip = f.z_tip(r);
@@ -63,7 +65,8 @@ Result<ToothSection::Side> ToothSection::make_side(const face_gear::FaceGearSurf
   side.Z_t = side.Z_e = *Z_t;
   const int fillet_steps = std::max(4, int(std::ceil((A_e - A_t) / 0.1)));
   for (int k = 1; k <= fillet_steps; ++k) {
-    const auto Z = face_gear::fillet_Z_at_radius(f, s, k == fillet_steps ? A_e : mixed(A_t, A_e, double(k) / fillet_steps), r, side.Z_e);
+    const auto Z = face_gear::fillet_Z_at_radius(
+        f, s, k == fillet_steps ? A_e : mixed(A_t, A_e, double(k) / fillet_steps), r, side.Z_e);
     if (!Z) return fail("fillet {:+d} does not reach the root at radius {:.4f} mm", s, r);
     side.Z_e = *Z;
   }
@@ -83,7 +86,8 @@ Result<ToothSection> ToothSection::at(const face_gear::FaceGearSurface<double>& 
     section.root_edge_[k] = section.placed(surface.fillet(side->s, surface.shaper.A_e, side->Z_e).p, side->s);
   }
   const Side &plus = section.sides_[0], &minus = section.sides_[1];
-  const Vec3 tip_plus = surface.flank(1, plus.theta_tip, plus.B_tip).p, tip_minus = surface.flank(-1, minus.theta_tip, minus.B_tip).p;
+  const Vec3 tip_plus = surface.flank(1, plus.theta_tip, plus.B_tip).p,
+             tip_minus = surface.flank(-1, minus.theta_tip, minus.B_tip).p;
   const double land = angle_from_to(tip_minus, tip_plus);
   if (land * r < -kArcNoise_mm)
     return fail("top land = {:.6f} mm at radius {:.4f} mm is below 0: the tooth is pointed", land * r, r);
@@ -128,14 +132,10 @@ std::optional<SectionPoint> ToothSection::fillet_point(const Side& side, double 
 std::optional<SectionPoint> ToothSection::point(std::size_t segment, double fraction) const {
   const Side &plus = sides_[0], &minus = sides_[1];
   switch (Segment(segment)) {
-    case Segment::flank_plus:
-      return flank_point(plus, fraction);
-    case Segment::fillet_plus:
-      return fillet_point(plus, fraction);
-    case Segment::fillet_minus:
-      return fillet_point(minus, 1 - fraction);
-    case Segment::flank_minus:
-      return flank_point(minus, 1 - fraction);
+    case Segment::flank_plus: return flank_point(plus, fraction);
+    case Segment::fillet_plus: return fillet_point(plus, fraction);
+    case Segment::fillet_minus: return fillet_point(minus, 1 - fraction);
+    case Segment::flank_minus: return flank_point(minus, 1 - fraction);
     case Segment::root: {
       SectionPoint end{root_edge_[fraction < 0.5 ? 0 : 1], {fraction, plus.Z_e}};
       if (fraction > 0 && fraction < 1) {

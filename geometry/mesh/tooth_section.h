@@ -57,10 +57,10 @@ class ToothSection {
   face_gear::FaceGearSurface<double> f_;
   int teeth_ = 0;
   double r_ = 0;
-  std::array<Side, 2> sides_;          ///< +1, -1
-  double mid_azimuth_ = 0;             ///< middle of the land of tooth 0
-  double half_land_ = 0;               ///< half its angle
-  double root_width_ = 0;              ///< angle of the root land
+  std::array<Side, 2> sides_;                                  ///< +1, -1
+  double mid_azimuth_ = 0;                                     ///< middle of the land of tooth 0
+  double half_land_ = 0;                                       ///< half its angle
+  double root_width_ = 0;                                      ///< angle of the root land
   std::array<Vec3, 2> root_edge_{Vec3::Zero(), Vec3::Zero()};  ///< both ends of the root land, placed
 };
 

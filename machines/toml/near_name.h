@@ -9,8 +9,8 @@ namespace toothpath::toml {
 /// Number of insertions, deletions and replacements of letters that turn a into b.
 [[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The known name nearest to `name`, at most two letters from it and with more letters than that; the first of several; empty: none, or a name
-/// of more than 60 letters. The view is into `known`, whose elements are strings.
+/// The known name nearest to `name`, at most two letters from it and with more letters than that; the first of several;
+/// empty: none, or a name of more than 60 letters. The view is into `known`, whose elements are strings.
 template <typename Names>
 [[nodiscard]] std::string_view near_name(std::string_view name, const Names& known) {
   constexpr std::size_t kLongest = 60, kMostLetters = 2;

@@ -11,7 +11,8 @@ namespace toothpath::toml {
 
 Result<std::string> read_regular_file(const std::string& path, std::size_t max_bytes) {
   const auto cannot = [&](const char* what) {
-    return Diagnostic{DiagnosticKind::file_access, {path, 0, 0}, fmt::format("cannot {}: {}", what, std::strerror(errno))};
+    return Diagnostic{
+        DiagnosticKind::file_access, {path, 0, 0}, fmt::format("cannot {}: {}", what, std::strerror(errno))};
   };
   // O_NONBLOCK: opening a pipe must not wait for its writer.
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
@@ -23,7 +24,8 @@ Result<std::string> read_regular_file(const std::string& path, std::size_t max_b
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) return cannot("look at");
   const SourcePosition position{path, 0, 0};
-  if (S_ISDIR(status.st_mode)) return Diagnostic{DiagnosticKind::file_access, position, "cannot read: it is a directory"};
+  if (S_ISDIR(status.st_mode))
+    return Diagnostic{DiagnosticKind::file_access, position, "cannot read: it is a directory"};
   if (!S_ISREG(status.st_mode)) return fail_at(position, "is not a regular file");
   std::string text;
   char block[1 << 16];

@@ -128,20 +128,24 @@ std::optional<std::vector<T>> TableReader::list(std::string_view key, Read read)
   }
   std::vector<T> result;
   for (std::size_t i = 0; i < array->values.size(); ++i)
-    if (auto element = read(array->values[i], fmt::format("{}[{}]", name(key), i))) result.push_back(std::move(*element));
+    if (auto element = read(array->values[i], fmt::format("{}[{}]", name(key), i)))
+      result.push_back(std::move(*element));
   return result.size() == array->values.size() ? std::optional(std::move(result)) : std::nullopt;
 }
 
 std::optional<std::vector<double>> TableReader::number_list(std::string_view key, const Range& range) {
-  return list<double>(key, [&](const TomlValue& value, const std::string& name) { return to_number(value, name, range); });
+  return list<double>(key,
+                      [&](const TomlValue& value, const std::string& name) { return to_number(value, name, range); });
 }
 
 std::optional<std::vector<int>> TableReader::integer_list(std::string_view key, const Range& range) {
-  return list<int>(key, [&](const TomlValue& value, const std::string& name) { return to_integer(value, name, range); });
+  return list<int>(key,
+                   [&](const TomlValue& value, const std::string& name) { return to_integer(value, name, range); });
 }
 
 std::optional<std::vector<std::string>> TableReader::ascii_list(std::string_view key) {
-  return list<std::string>(key, [&](const TomlValue& value, const std::string& name) { return to_text(value, name, true); });
+  return list<std::string>(key,
+                           [&](const TomlValue& value, const std::string& name) { return to_text(value, name, true); });
 }
 
 std::optional<std::vector<double>> TableReader::numbers(std::string_view key, std::size_t count, const Range& range) {
@@ -153,7 +157,8 @@ std::optional<std::vector<double>> TableReader::numbers(std::string_view key, st
   return std::nullopt;
 }
 
-std::optional<std::vector<double>> TableReader::numbers_of(const TomlValue& value, const std::string& name, std::initializer_list<Range> ranges) {
+std::optional<std::vector<double>> TableReader::numbers_of(const TomlValue& value, const std::string& name,
+                                                           std::initializer_list<Range> ranges) {
   const TomlArray* array = value.array();
   if (!array || array->values.size() != ranges.size()) {
     record(value.position, words().not_numbers(name, ranges.size(), value));

@@ -35,17 +35,22 @@ class TableWords {
   /// What a key of a table is called in messages.
   [[nodiscard]] virtual std::string name(const std::string& path, std::string_view key) const = 0;
   [[nodiscard]] virtual std::string missing(const std::string& path, std::string_view key) const = 0;
-  [[nodiscard]] virtual std::string unknown(const std::string& path, const std::string& key, const KnownKeys& known) const = 0;
+  [[nodiscard]] virtual std::string unknown(const std::string& path, const std::string& key,
+                                            const KnownKeys& known) const = 0;
   [[nodiscard]] virtual std::string wrong_type(const std::string& name, TomlType wanted, TomlType found) const = 0;
   /// `found` is no table, or, with `many`, no array of tables.
-  [[nodiscard]] virtual std::string no_table(const std::string& path, std::string_view key, bool many, TomlType found) const = 0;
+  [[nodiscard]] virtual std::string no_table(const std::string& path, std::string_view key, bool many,
+                                             TomlType found) const = 0;
   /// `found` is no array of `count` numbers: another type, or another count.
-  [[nodiscard]] virtual std::string not_numbers(const std::string& name, std::size_t count, const TomlValue& found) const = 0;
+  [[nodiscard]] virtual std::string not_numbers(const std::string& name, std::size_t count,
+                                                const TomlValue& found) const = 0;
   [[nodiscard]] virtual std::string not_finite(const std::string& name, double number) const = 0;
   [[nodiscard]] virtual std::string outside(const std::string& name, double number, const Range& range) const = 0;
-  [[nodiscard]] virtual std::string integer_outside(const std::string& name, std::int64_t number, const Range& range) const = 0;
+  [[nodiscard]] virtual std::string integer_outside(const std::string& name, std::int64_t number,
+                                                    const Range& range) const = 0;
   /// What a text may not be in this format; nothing when it is right. `ascii`: it goes into NC text.
-  [[nodiscard]] virtual std::optional<std::string> text_fault(const std::string& name, const std::string& text, bool ascii) const = 0;
+  [[nodiscard]] virtual std::optional<std::string> text_fault(const std::string& name, const std::string& text,
+                                                              bool ascii) const = 0;
   [[nodiscard]] virtual std::string not_one_of(const std::string& name, const std::string& text,
                                                std::span<const std::string_view> words) const = 0;
 };
@@ -78,12 +83,15 @@ class TableReader {
   std::optional<int> integer(std::string_view key, const Range& range);
   std::optional<std::string> text(std::string_view key, bool ascii = false);
   std::optional<std::string> word(std::string_view key, std::span<const std::string_view> allowed);
-  std::optional<std::string> word(std::string_view key, std::initializer_list<std::string_view> allowed) { return word(key, std::span(allowed.begin(), allowed.size())); }
+  std::optional<std::string> word(std::string_view key, std::initializer_list<std::string_view> allowed) {
+    return word(key, std::span(allowed.begin(), allowed.size()));
+  }
   std::optional<bool> boolean(std::string_view key);
   /// Exactly `count` finite numbers.
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, const Range& range);
   /// The numbers of an array inside a value, one a range; recorded under `name` where they are something else.
-  std::optional<std::vector<double>> numbers_of(const TomlValue& value, const std::string& name, std::initializer_list<Range> ranges);
+  std::optional<std::vector<double>> numbers_of(const TomlValue& value, const std::string& name,
+                                                std::initializer_list<Range> ranges);
   // Arrays of any length.
   std::optional<std::vector<double>> number_list(std::string_view key, const Range& range);
   std::optional<std::vector<int>> integer_list(std::string_view key, const Range& range);

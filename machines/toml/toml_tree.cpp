@@ -8,8 +8,8 @@
 namespace toothpath::toml {
 namespace {
 
-/// Looks for what could make the parser or its tree recurse without bound. Strings cannot span lines here, so the state of
-/// a line does not depend on the lines before it, except for the open brackets.
+/// Looks for what could make the parser or its tree recurse without bound. Strings cannot span lines here, so the state
+/// of a line does not depend on the lines before it, except for the open brackets.
 Status check_lines(std::string_view text, const std::string& file, int max_nesting) {
   int line = 1, column = 0, depth = 0, dots = 0;
   char quote = 0;
@@ -24,11 +24,14 @@ Status check_lines(std::string_view text, const std::string& file, int max_nesti
       comment = false;
       continue;
     }
-    if (c == '\r' && text.substr(i + 1, 1) != "\n") return fail_at({file, line, column}, "a carriage return without a line feed");
+    if (c == '\r' && text.substr(i + 1, 1) != "\n")
+      return fail_at({file, line, column}, "a carriage return without a line feed");
     if (comment) continue;
     if (quote != 0) {
-      if (quote == '"' && c == '\\') { ++i; ++column; }
-      else if (c == quote) quote = 0;
+      if (quote == '"' && c == '\\') {
+        ++i;
+        ++column;
+      } else if (c == quote) quote = 0;
       continue;
     }
     const SourcePosition here{file, line, column};
@@ -36,7 +39,8 @@ Status check_lines(std::string_view text, const std::string& file, int max_nesti
       case '#': comment = true; break;
       case '"':
       case '\'':
-        if (text.substr(i, 3) == std::string(3, c)) return fail_at(here, "multi-line strings are not part of this format");
+        if (text.substr(i, 3) == std::string(3, c))
+          return fail_at(here, "multi-line strings are not part of this format");
         quote = c;
         break;
       case '[':
@@ -60,7 +64,8 @@ Status check_lines(std::string_view text, const std::string& file, int max_nesti
   return Ok{};
 }
 
-/// The library would name a NUL byte as a character of TOML that is not allowed; what it means is that the file is no text.
+/// The library would name a NUL byte as a character of TOML that is not allowed; what it means is that the file is no
+/// text.
 Status check_nul(std::string_view text, const std::string& file) {
   const auto nul = text.find('\0');
   if (nul == std::string_view::npos) return Ok{};
@@ -110,12 +115,14 @@ class Copier {
   TomlTable copy_table(const ::toml::table& table, int depth) {
     TomlTable result;
     for (const auto& [key, value] : table) {
-      TomlEntry& entry = result.entries.emplace_back(TomlEntry{std::string(key.str()), position_of(key.source(), file_), copy(value, depth + 1)});
+      TomlEntry& entry = result.entries.emplace_back(
+          TomlEntry{std::string(key.str()), position_of(key.source(), file_), copy(value, depth + 1)});
       // A table that only its sub-tables name has no place of its own.
       if (entry.value.position.line == 0) entry.value.position = entry.key_position;
     }
     std::stable_sort(result.entries.begin(), result.entries.end(), [](const TomlEntry& a, const TomlEntry& b) {
-      return std::pair(a.key_position.line, a.key_position.column) < std::pair(b.key_position.line, b.key_position.column);
+      return std::pair(a.key_position.line, a.key_position.column) <
+             std::pair(b.key_position.line, b.key_position.column);
     });
     return result;
   }
@@ -163,7 +170,8 @@ Result<TomlValue> parse_toml(std::string_view text, const std::string& file, con
     return root;
   } catch (const ::toml::parse_error& error) {
     const std::string_view what = error.description();
-    return fail_at(position_of(error.source(), file), "{}", syntax.ascii_messages ? printable(what) : std::string(what));
+    return fail_at(position_of(error.source(), file), "{}",
+                   syntax.ascii_messages ? printable(what) : std::string(what));
   }
 }
 

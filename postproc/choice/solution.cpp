@@ -11,12 +11,12 @@
 namespace toothpath::choice {
 namespace {
 
-constexpr double kLargestStep = radians(170);   // beyond it the sense of a turn is ambiguous on a rollover axis
-constexpr double kPoleStep = radians(30);       // C in one block that only a pole explains ..
-constexpr double kPoleStepRatio = 4;                // .. when it is this much more than the axis itself turns
-constexpr double kTiltWeight = 1e-6;            // minutes per rad: decides ties only
+constexpr double kLargestStep = radians(170);  // beyond it the sense of a turn is ambiguous on a rollover axis
+constexpr double kPoleStep = radians(30);      // C in one block that only a pole explains ..
+constexpr double kPoleStepRatio = 4;           // .. when it is this much more than the axis itself turns
+constexpr double kTiltWeight = 1e-6;           // minutes per rad: decides ties only
 constexpr double kTurnWeight = 1e-9;
-constexpr int kNearTurns = 3;                   // whole turns about zero that are always candidates
+constexpr int kNearTurns = 3;  // whole turns about zero that are always candidates
 
 struct Run {
   std::size_t first = 0, last = 0;  // records [first, last)
@@ -47,9 +47,15 @@ std::vector<Run> runs_of(const path::ClPath& path) {
 
 class Chooser {
  public:
-  Chooser(const path::ClPath& path, const Mat3& rotation, const machines::KinematicChain& chain, const std::array<RotaryRange, 2>& ranges,
-          machines::PoleOption pole, const std::vector<char>& switches)
-      : path_(path), rotation_(rotation), chain_(chain), ranges_(ranges), pole_(pole), switches_(switches), count_(chain.rotary_count()) {}
+  Chooser(const path::ClPath& path, const Mat3& rotation, const machines::KinematicChain& chain,
+          const std::array<RotaryRange, 2>& ranges, machines::PoleOption pole, const std::vector<char>& switches)
+      : path_(path),
+        rotation_(rotation),
+        chain_(chain),
+        ranges_(ranges),
+        pole_(pole),
+        switches_(switches),
+        count_(chain.rotary_count()) {}
 
   Result<std::vector<RotaryPair>> choose() {
     const auto runs = runs_of(path_);
@@ -104,8 +110,7 @@ class Chooser {
         const bool is_free = chosen->free_rotary == static_cast<int>(k);
         if (i > run.first && free_until[k] < i)
           angles[k] = is_free ? chain.angles.back()[k] : nearest_turn(angles[k], chain.angles.back()[k]);
-        else if (is_free)
-          free_until[k] = i + 1;
+        else if (is_free) free_until[k] = i + 1;
         else
           for (auto& before : chain.angles) before[k] = angles[k];
       }
@@ -132,11 +137,12 @@ class Chooser {
     for (std::size_t k = 0; k < count_; ++k) {
       const double step = std::abs(b[k] - a[k]);
       if (step >= kLargestStep)
-        return fail("operation {} record {}: {} turns by {:.3f} deg in one block, limit {:.0f}", path_.operation, record,
-                    chain_.rotary(k).letter, degrees(step), degrees(kLargestStep));
+        return fail("operation {} record {}: {} turns by {:.3f} deg in one block, limit {:.0f}", path_.operation,
+                    record, chain_.rotary(k).letter, degrees(step), degrees(kLargestStep));
       if (step > kPoleStep && step > kPoleStepRatio * turn && pole_ != machines::PoleOption::slow)
-        return fail("operation {} record {}: the tool axis passes the pole, {} turns by {:.3f} deg in one block, limit {:.0f}",
-                    path_.operation, record, chain_.rotary(k).letter, degrees(step), degrees(kPoleStep));
+        return fail(
+            "operation {} record {}: the tool axis passes the pole, {} turns by {:.3f} deg in one block, limit {:.0f}",
+            path_.operation, record, chain_.rotary(k).letter, degrees(step), degrees(kPoleStep));
     }
     return std::nullopt;
   }
@@ -158,7 +164,8 @@ class Chooser {
       const auto [low1, high1] = turns(chains[c], 1);
       std::set<int> first;
       const int near_zero = static_cast<int>(std::lround(-chains[c].angles.front()[0] / kTwoPi));
-      for (int t = near_zero - kNearTurns; t <= near_zero + kNearTurns; ++t) first.insert(std::clamp(t, low0, std::max(low0, high0)));
+      for (int t = near_zero - kNearTurns; t <= near_zero + kNearTurns; ++t)
+        first.insert(std::clamp(t, low0, std::max(low0, high0)));
       first.insert({low0, high0});  // the most room to wind up again
       if (before != nullptr)
         for (const auto& s : *before) {
@@ -170,7 +177,9 @@ class Chooser {
         for (const int t0 : first)
           if (t0 >= low0 && t0 <= high0) list.push_back({c, {t0, t1}, 0, -1});
     }
-    const auto start = [&](const State& s, std::size_t k) { return chains[s.chain].angles.front()[k] + kTwoPi * s.turns[k]; };
+    const auto start = [&](const State& s, std::size_t k) {
+      return chains[s.chain].angles.front()[k] + kTwoPi * s.turns[k];
+    };
     std::stable_sort(list.begin(), list.end(), [&](const State& a, const State& b) {
       const double ta = std::abs(start(a, 1)), tb = std::abs(start(b, 1));
       if (std::abs(ta - tb) > 1e-12) return ta < tb;
@@ -187,7 +196,8 @@ class Chooser {
         for (std::size_t k = 0; k < count_; ++k) {
           const double end = (*chains_before)[(*before)[p].chain].angles.back()[k] + kTwoPi * (*before)[p].turns[k];
           const double turn = start(s, k) - end;
-          reposition = std::max(reposition, std::abs(chain_.rotary(k).rollover ? std::remainder(turn, kTwoPi) : turn) / chain_.rotary(k).max_speed);
+          reposition = std::max(reposition, std::abs(chain_.rotary(k).rollover ? std::remainder(turn, kTwoPi) : turn) /
+                                                chain_.rotary(k).max_speed);
         }
         const double cost = (*before)[p].cost + reposition;
         if (cost < best) {
@@ -208,7 +218,8 @@ class Chooser {
         if (low <= high) continue;
         text += text.empty() ? "" : "; the other solution ";
         text += fmt::format("{} = {:.4f} .. {:.4f} deg outside [{:.4f}, {:.4f}]", chain_.rotary(k).letter,
-                            degrees(c.least[k]), degrees(c.greatest[k]), degrees(ranges_[k].lower), degrees(ranges_[k].upper));
+                            degrees(c.least[k]), degrees(c.greatest[k]), degrees(ranges_[k].lower),
+                            degrees(ranges_[k].upper));
         break;
       }
     return fail_as(DiagnosticKind::verification, "operation {} records {} to {}: {}", path_.operation, run.first,
@@ -220,9 +231,9 @@ class Chooser {
     std::vector<RotaryPair> out(path_.records.size());
     if (runs.empty()) return out;
     const auto& last = states.back();
-    int s = static_cast<int>(std::min_element(last.begin(), last.end(),
-                                              [](const State& a, const State& b) { return a.cost < b.cost; }) -
-                             last.begin());
+    int s = static_cast<int>(
+        std::min_element(last.begin(), last.end(), [](const State& a, const State& b) { return a.cost < b.cost; }) -
+        last.begin());
     for (std::size_t r = runs.size(); r-- > 0;) {
       const State& state = states[r][static_cast<std::size_t>(s)];
       for (std::size_t i = runs[r].first; i < runs[r].last; ++i)
@@ -257,7 +268,8 @@ double whole_turns(double angle, double reference) { return kTwoPi * std::round(
 
 double nearest_turn(double angle, double reference) { return angle + whole_turns(angle, reference); }
 
-Result<std::vector<RotaryPair>> choose_rotaries(const path::ClPath& path, const Mat3& table_from_gear, const machines::KinematicChain& chain,
+Result<std::vector<RotaryPair>> choose_rotaries(const path::ClPath& path, const Mat3& table_from_gear,
+                                                const machines::KinematicChain& chain,
                                                 const std::array<RotaryRange, 2>& ranges, machines::PoleOption pole,
                                                 const std::vector<char>& switches) {
   return Chooser(path, table_from_gear, chain, ranges, pole, switches).choose();

@@ -11,13 +11,14 @@ namespace toothpath::choice {
 namespace {
 
 constexpr std::size_t kMostPairs = std::size_t{1} << 21;
-constexpr double kFarthest = 5000;   // mm: shifts and rooms looked at
-constexpr double kEqual = 1e-6;      // mm: two rooms are the same
-constexpr double kSlack = 1e-7;      // mm: by which a room that is fixed may be missed in the next step
+constexpr double kFarthest = 5000;  // mm: shifts and rooms looked at
+constexpr double kEqual = 1e-6;     // mm: two rooms are the same
+constexpr double kSlack = 1e-7;     // mm: by which a room that is fixed may be missed in the next step
 
 }  // namespace
 
-TravelPoses::TravelPoses(const machines::KinematicChain& chain, const machines::LimitMargin& margin, const std::optional<Vec3>& keep_on)
+TravelPoses::TravelPoses(const machines::KinematicChain& chain, const machines::LimitMargin& margin,
+                         const std::optional<Vec3>& keep_on)
     : chain_(chain), keep_on_(keep_on) {
   for (std::size_t i = 0; i < 3; ++i) {
     low_[i] = chain.linear[i].min_mm + margin.linear_mm;
@@ -32,7 +33,8 @@ void TravelPoses::note(const machines::Joints& joints) {
   if (keep_on_) angles[0] = 0;
   for (std::size_t k = 0; k < 2; ++k)
     if (k >= chain_.table.size()) angles[k] = 0;
-  const std::array<std::uint64_t, 2> key = {std::bit_cast<std::uint64_t>(angles[0]), std::bit_cast<std::uint64_t>(angles[1])};
+  const std::array<std::uint64_t, 2> key = {std::bit_cast<std::uint64_t>(angles[0]),
+                                            std::bit_cast<std::uint64_t>(angles[1])};
   const auto [place, added] = index_.try_emplace(key, list_.size());
   if (added) {
     if (list_.size() >= kMostPairs) {
@@ -74,7 +76,10 @@ std::optional<TravelOffer> TravelPoses::best() const {
 class TravelPoses::RoomProgram {
  public:
   RoomProgram(const TravelPoses& poses, bool only_up)
-      : poses_(poses), only_up_(only_up), shifts_(poses.keep_on_ ? 1 : 3), room_at_(static_cast<std::size_t>(shifts_)) {}
+      : poses_(poses),
+        only_up_(only_up),
+        shifts_(poses.keep_on_ ? 1 : 3),
+        room_at_(static_cast<std::size_t>(shifts_)) {}
 
   /// Shift and last room; nothing where not even the first program has a solution.
   std::optional<numbers::LinearPoint> solve() {
@@ -94,7 +99,9 @@ class TravelPoses::RoomProgram {
     }
     return found;
   }
-  [[nodiscard]] Vec3 shift_of(const numbers::LinearPoint& x) const { return poses_.keep_on_ ? Vec3(x[0] * *poses_.keep_on_) : Vec3(x[0], x[1], x[2]); }
+  [[nodiscard]] Vec3 shift_of(const numbers::LinearPoint& x) const {
+    return poses_.keep_on_ ? Vec3(x[0] * *poses_.keep_on_) : Vec3(x[0], x[1], x[2]);
+  }
 
  private:
   void keep(std::size_t joint, double room) {
@@ -104,7 +111,8 @@ class TravelPoses::RoomProgram {
   [[nodiscard]] std::optional<numbers::LinearPoint> greatest_room() const {
     numbers::LinearPoint objective{};
     objective[room_at_] = 1;
-    return numbers::maximize(shifts_ + 1, objective, kFarthest, [&](const numbers::LinearPoint& x) { return most_broken(x); });
+    return numbers::maximize(shifts_ + 1, objective, kFarthest,
+                             [&](const numbers::LinearPoint& x) { return most_broken(x); });
   }
   /// Which joints cannot have more than that, whatever the others give up down to it?
   std::array<bool, 3> tight_at(double least) {

@@ -1,30 +1,33 @@
-// A control as one object: what it wants to read, who reads its text back, and which names of work offsets it has. One folder a control
-// beside this file, one line in registry.inl; everything that must know all controls asks the registry.
+// A control as one object: what it wants to read, who reads its text back, and which names of work offsets it has. One
+// folder a control beside this file, one line in registry.inl; everything that must know all controls asks the
+// registry.
 #pragma once
 
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "postproc/text/dialect.h"
 #include "postproc/readback/reader.h"
+#include "postproc/text/dialect.h"
 
 namespace toothpath::controls {
 
 /// The work offsets of a control.
 struct WorkOffsets {
-  std::string names;                    ///< the ones that it has, for messages: "G54 to G59"
+  std::string names;  ///< the ones that it has, for messages: "G54 to G59"
   bool (*has)(std::string_view name) = nullptr;
 };
 
 struct Control {
-  /// Name, file extension, words, coolants, corners, rotaries that roll over; what it takes of a machine file follows from them:
-  /// `exact_path_mm` corner_tolerance, `takes_smoothing` smoothing_*, `takes_coolant` coolant_*, `tcp_codes_of_site` tcp_on and tcp_off.
+  /// Name, file extension, words, coolants, corners, rotaries that roll over; what it takes of a machine file follows
+  /// from them: `exact_path_mm` corner_tolerance, `takes_smoothing` smoothing_*, `takes_coolant` coolant_*,
+  /// `tcp_codes_of_site` tcp_on and tcp_off.
   text::NcDialect words;
-  std::vector<std::string> aliases;     ///< other names that a machine file may use
+  std::vector<std::string> aliases;  ///< other names that a machine file may use
   WorkOffsets offsets;
-  readback::NcExecute execute = nullptr;          ///< executes its text; shares nothing with what writes it
-  bool cutter_locations = false;        ///< the text has places of the tool; in which order the axes move is the business of a post processor
+  readback::NcExecute execute = nullptr;  ///< executes its text; shares nothing with what writes it
+  bool cutter_locations =
+      false;  ///< the text has places of the tool; in which order the axes move is the business of a post processor
 };
 
 }  // namespace toothpath::controls

@@ -40,7 +40,8 @@ class Judge {
 
   void digits() {
     const auto look = [this](const char* key, const std::optional<int>& given) {
-      if (given && (*given < 1 || *given > 7)) refuse(key, "{} = {}: 1 to 7 decimals are possible in a word", key, *given);
+      if (given && (*given < 1 || *given > 7))
+        refuse(key, "{} = {}: 1 to 7 decimals are possible in a word", key, *given);
     };
     look("post.linear_decimals", machine_.post.linear_decimals);
     look("post.rotary_decimals", machine_.post.rotary_decimals);
@@ -52,16 +53,19 @@ class Judge {
       std::string takers;
       for (const Control* c : all())
         if (c->words.exact_path_mm > 0) takers += fmt::format("{}\"{}\"", takers.empty() ? "" : ", ", c->words.name);
-      refuse("post.corner_tolerance", "post.corner_tolerance belongs to dialect {}, this is \"{}\"", takers, words_.name);
+      refuse("post.corner_tolerance", "post.corner_tolerance belongs to dialect {}, this is \"{}\"", takers,
+             words_.name);
     }
     if (!post.smoothing_on.empty() && !words_.takes_smoothing)
-      refuse("post.smoothing_on", "post.smoothing_on: dialect \"{}\" has its own words for what may be left of corners", words_.name);
+      refuse("post.smoothing_on", "post.smoothing_on: dialect \"{}\" has its own words for what may be left of corners",
+             words_.name);
   }
 
   void tcp() {
     if (machine_.tcp == machines::TcpMode::none) return;
     const machines::PostSettings& post = machine_.post;
-    const bool on = !post.tcp_on.empty() || !words_.tcp_on.empty(), off = !post.tcp_off.empty() || !words_.tcp_off.empty();
+    const bool on = !post.tcp_on.empty() || !words_.tcp_on.empty(),
+               off = !post.tcp_off.empty() || !words_.tcp_off.empty();
     if (words_.tcp_codes_of_site && !(on && off))
       refuse("tcp", "tcp with dialect \"{}\" needs post.tcp_on and post.tcp_off: its codes are site data", words_.name);
     else if (!(on && off))
@@ -74,7 +78,8 @@ class Judge {
     if (words_.rollover.way != text::NcRollover::Way::none || words_.write != nullptr) return;
     for (std::size_t k = 0; k < machine_.chain.rotary_count(); ++k)
       if (const machines::RotaryAxis& axis = machine_.chain.rotary(k); axis.rollover)
-        refuse(fmt::format("axes.{}.rollover", axis.letter), "axes.{}.rollover: dialect \"{}\" has no words for an axis that rolls over", axis.letter, words_.name);
+        refuse(fmt::format("axes.{}.rollover", axis.letter),
+               "axes.{}.rollover: dialect \"{}\" has no words for an axis that rolls over", axis.letter, words_.name);
   }
 
   /// What is wrong with a word of the builder; nothing: it can switch a coolant.
@@ -85,7 +90,8 @@ class Judge {
       if (n >= first && n <= last) return fmt::format("{} means something else to dialect \"{}\"", word, words_.name);
     const machines::PostSettings& post = machine_.post;
     for (const auto* codes : {&post.tcp_on, &post.tcp_off, &post.smoothing_on, &post.smoothing_off})
-      if (std::find(codes->begin(), codes->end(), word) != codes->end()) return fmt::format("{} is a code of TCP or smoothing in this file", word);
+      if (std::find(codes->begin(), codes->end(), word) != codes->end())
+        return fmt::format("{} is a code of TCP or smoothing in this file", word);
     return std::nullopt;
   }
 
@@ -122,7 +128,9 @@ std::vector<Diagnostic> judge(const machines::Machine& machine) {
 
 machines::MachineReading read_machine(const std::string& path) { return machines::read_machine_file(path, judge); }
 
-machines::MachineReading read_machine_of_text(std::string_view text, const std::string& file) { return machines::read_machine_text(text, file, judge); }
+machines::MachineReading read_machine_of_text(std::string_view text, const std::string& file) {
+  return machines::read_machine_text(text, file, judge);
+}
 
 Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
   if (auto errors = judge(machine); !errors.empty()) return std::move(errors.front());
@@ -138,7 +146,8 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
   }
   if (!post.smoothing_on.empty()) {
     if (post.smoothing_off.empty() || !post.smoothing_tolerance_mm)  // a file without them is refused by its reader
-      return fail_at(machine.where("post.smoothing_on"), "post.smoothing_on needs post.smoothing_off and post.smoothing_tolerance");
+      return fail_at(machine.where("post.smoothing_on"),
+                     "post.smoothing_on needs post.smoothing_off and post.smoothing_tolerance");
     d.smoothing_on = post.smoothing_on;
     d.smoothing_off = post.smoothing_off;
     d.smoothing_mm = *post.smoothing_tolerance_mm;
@@ -154,20 +163,23 @@ joints::AxisOptions axis_options(const text::NcDialect& words, const machines::M
   joints::AxisOptions options;
   options.format = words.format;
   options.max_inverse_time = words.max_inverse_time;
-  options.loop_needs_constant_index = words.loop.form == text::NcLoop::Form::stretches || !words.loop.index_line.empty();
+  options.loop_needs_constant_index =
+      words.loop.form == text::NcLoop::Form::stretches || !words.loop.index_line.empty();
   options.expand_teeth = !machine.post.index_loop.value_or(true) || words.loop.form == text::NcLoop::Form::none;
   options.tcp_starts_at_zero = words.tcp_starts_at_zero;
   options.tcp_loop = !words.loop.frame_on.empty();
   return options;
 }
 
-Result<readback::NcControl> control_of(const machines::Machine& machine, const joints::Setup& setup, std::span<const tool::ToolAssembly> tools) {
+Result<readback::NcControl> control_of(const machines::Machine& machine, const joints::Setup& setup,
+                                       std::span<const tool::ToolAssembly> tools) {
   const Control* control = find(machine.dialect);
   if (control == nullptr) return fail("dialect \"{}\" cannot be read back: {} can", machine.dialect, list_of_names());
   readback::NcControl c;
   c.execute = control->execute;
   c.cutter_locations = control->cutter_locations;
-  c.rotary_rounding_deg = 0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(control->words.format.rotary_decimals));
+  c.rotary_rounding_deg =
+      0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(control->words.format.rotary_decimals));
   if (machine.tcp != machines::TcpMode::none) c.chain = machine.chain;
   c.top_mm = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
   c.exact_path_mm = machine.exact_corner_mm();
@@ -177,7 +189,8 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
   c.smoothing_off = machine.post.smoothing_off;
   c.smoothing_mm = machine.post.smoothing_tolerance_mm.value_or(0);
   c.smoothing_axis_rad = machine.post.smoothing_axis_tolerance_rad;
-  for (const auto& [coolant, words] : machine.post.coolant) c.coolant_words.insert(c.coolant_words.end(), {words.on, words.off});
+  for (const auto& [coolant, words] : machine.post.coolant)
+    c.coolant_words.insert(c.coolant_words.end(), {words.on, words.off});
   c.letters = {'X', 'Y', 'Z', 0, 0};
   for (std::size_t i = 0; i < 3; ++i) c.rapid_speed[i] = machine.chain.linear[i].max_speed;
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {
@@ -193,7 +206,8 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
 
 std::optional<std::string> other_work_offsets(const machines::Machine& machine, std::string_view name) {
   const Control* control = find(machine.dialect);
-  if (control == nullptr) return fmt::format("none that is known: \"{}\" is not one of {}", machine.dialect, list_of_names());
+  if (control == nullptr)
+    return fmt::format("none that is known: \"{}\" is not one of {}", machine.dialect, list_of_names());
   if (control->offsets.has(name)) return std::nullopt;
   return control->offsets.names;
 }

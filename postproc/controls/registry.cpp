@@ -33,7 +33,9 @@ const std::vector<const Control*>& all() {
 
 const Control* find(std::string_view name) {
   for (const Control* control : all())
-    if (control->words.name == name || std::find(control->aliases.begin(), control->aliases.end(), name) != control->aliases.end()) return control;
+    if (control->words.name == name ||
+        std::find(control->aliases.begin(), control->aliases.end(), name) != control->aliases.end())
+      return control;
   return nullptr;
 }
 
@@ -52,7 +54,9 @@ std::string list_of_names() {
 std::vector<std::string> program_extensions() {
   std::vector<std::string> extensions;
   for (const Control* control : all())
-    if (const std::string& e = control->words.extension; std::find(extensions.begin(), extensions.end(), e) == extensions.end()) extensions.push_back(e);
+    if (const std::string& e = control->words.extension;
+        std::find(extensions.begin(), extensions.end(), e) == extensions.end())
+      extensions.push_back(e);
   return extensions;
 }
 

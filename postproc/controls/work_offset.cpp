@@ -8,7 +8,9 @@ namespace toothpath::controls {
 int whole_number(std::string_view text) {
   int n = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
-  return error == std::errc() && end == text.data() + text.size() && !text.empty() && text[0] >= '1' && text[0] <= '9' ? n : -1;
+  return error == std::errc() && end == text.data() + text.size() && !text.empty() && text[0] >= '1' && text[0] <= '9'
+             ? n
+             : -1;
 }
 
 int basic_offset(std::string_view name) {

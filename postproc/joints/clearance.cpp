@@ -16,7 +16,9 @@ double distance_to_line(const Vec3& p, const Vec3& on_line, const Vec3& directio
 
 double body_top(const machines::KinematicChain& chain, const GearPlacement& gear, const ClearanceBody& body,
                 const std::array<double, 2>& rotaries) {
-  const auto machine = [&](const Vec3& p_W) { return chain.table_to_machine(gear.rotation * p_W + gear.origin, rotaries); };
+  const auto machine = [&](const Vec3& p_W) {
+    return chain.table_to_machine(gear.rotation * p_W + gear.origin, rotaries);
+  };
   const Vec3 low = machine(Vec3(0, 0, body.z_min_mm)), high = machine(Vec3(0, 0, body.z_max_mm));
   const double g_z = (machine(Vec3::UnitZ()) - machine(Vec3::Zero())).z();
   return std::max(low.z(), high.z()) + body.radius_mm * std::sqrt(std::max(0.0, 1 - g_z * g_z));

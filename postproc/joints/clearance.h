@@ -16,13 +16,14 @@ struct GearPlacement {
 };
 
 /// Highest machine Z of the body with the rotaries at these commands [mm].
-[[nodiscard]] double body_top(const machines::KinematicChain& chain, const GearPlacement& gear, const ClearanceBody& body,
-                              const std::array<double, 2>& rotaries);
+[[nodiscard]] double body_top(const machines::KinematicChain& chain, const GearPlacement& gear,
+                              const ClearanceBody& body, const std::array<double, 2>& rotaries);
 
 /// Upper bound of the same while the rotaries go from one pair of commands to another, each at its own pace: samples on
 /// the rectangle of both angles plus what a point of the body can rise between two samples.
 /// @param index_is_gear_axis the first rotary turns the body about its own axis
-[[nodiscard]] double swept_top(const machines::KinematicChain& chain, const GearPlacement& gear, const ClearanceBody& body,
-                               const std::array<double, 2>& from, const std::array<double, 2>& to, bool index_is_gear_axis);
+[[nodiscard]] double swept_top(const machines::KinematicChain& chain, const GearPlacement& gear,
+                               const ClearanceBody& body, const std::array<double, 2>& from,
+                               const std::array<double, 2>& to, bool index_is_gear_axis);
 
 }  // namespace toothpath::joints

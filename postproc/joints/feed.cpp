@@ -18,8 +18,8 @@ Vec3 slerp(const Vec3& a, const Vec3& b, double t) {
 
 }  // namespace
 
-void ToothBuilder::feed_to(const machines::TablePose& from, const RotaryPair& from_angles, const machines::TablePose& to, const RotaryPair& to_angles,
-                           double feed, int depth) {
+void ToothBuilder::feed_to(const machines::TablePose& from, const RotaryPair& from_angles,
+                           const machines::TablePose& to, const RotaryPair& to_angles, double feed, int depth) {
   if (error_) return;
   const AxisOptions& options = job_.options;
   const RotaryPair a = words_.rounded(from_angles), b = words_.rounded(to_angles);
@@ -48,10 +48,11 @@ void ToothBuilder::feed_to(const machines::TablePose& from, const RotaryPair& fr
     return;
   }
   if (depth >= kDeepestSplit) {
-    error_ = fail("operation {} record {} (tooth {}): after {} halvings the tip still leaves the chord by {:.6f} mm (limit "
-                  "{:.6f}), the axis by {:.6f} deg (limit {:.6f})",
-                  operation_->operation, record_, tooth_, depth, tip_error, options.chord_mm, degrees(axis_error),
-                  degrees(options.axis_rad));
+    error_ = fail(
+        "operation {} record {} (tooth {}): after {} halvings the tip still leaves the chord by {:.6f} mm (limit "
+        "{:.6f}), the axis by {:.6f} deg (limit {:.6f})",
+        operation_->operation, record_, tooth_, depth, tip_error, options.chord_mm, degrees(axis_error),
+        degrees(options.axis_rad));
     return;
   }
   const auto middle = middle_of(from, from_angles, to, to_angles);
@@ -61,9 +62,11 @@ void ToothBuilder::feed_to(const machines::TablePose& from, const RotaryPair& fr
   feed_to(middle->pose, middle->angles, to, to_angles, feed, depth + 1);
 }
 
-/// The mean of the commands keeps a fixed tilt fixed; where its axis is too far from the great circle, the inverse of that. In the
-/// cone about a pole the commands rule and the axis follows from them.
-std::optional<ToothBuilder::Middle> ToothBuilder::middle_of(const machines::TablePose& from, const RotaryPair& from_angles, const machines::TablePose& to,
+/// The mean of the commands keeps a fixed tilt fixed; where its axis is too far from the great circle, the inverse of
+/// that. In the cone about a pole the commands rule and the axis follows from them.
+std::optional<ToothBuilder::Middle> ToothBuilder::middle_of(const machines::TablePose& from,
+                                                            const RotaryPair& from_angles,
+                                                            const machines::TablePose& to,
                                                             const RotaryPair& to_angles) {
   Middle m{{0.5 * (from.tip_mm + to.tip_mm), slerp(from.axis, to.axis, 0.5)},
            {0.5 * (from_angles[0] + to_angles[0]), 0.5 * (from_angles[1] + to_angles[1])}};
@@ -106,11 +109,13 @@ std::optional<RotaryPair> ToothBuilder::angles_between(const Vec3& axis, const R
   return best;
 }
 
-/// Section 3 of the derivation: |p''| / 8 with w the sum of the turns and R the greatest distance of the tip from a rotary
-/// axis. With TCP the control keeps the tip on the chord, and only the axis has a bound.
-void ToothBuilder::note_bounds(const machines::Joints& a, const machines::Joints& b, const machines::TablePose& from, const machines::TablePose& to, double axis_error) {
+/// Section 3 of the derivation: |p''| / 8 with w the sum of the turns and R the greatest distance of the tip from a
+/// rotary axis. With TCP the control keeps the tip on the chord, and only the axis has a bound.
+void ToothBuilder::note_bounds(const machines::Joints& a, const machines::Joints& b, const machines::TablePose& from,
+                               const machines::TablePose& to, double axis_error) {
   const double w = std::abs(b.rotary_rad[0] - a.rotary_rad[0]) + std::abs(b.rotary_rad[1] - a.rotary_rad[1]);
-  program_.axis_bound_rad = std::max({program_.axis_bound_rad, axis_error, std::min(w * w / 4, job_.options.axis_rad * 2)});
+  program_.axis_bound_rad =
+      std::max({program_.axis_bound_rad, axis_error, std::min(w * w / 4, job_.options.axis_rad * 2)});
   if (tcp_) return;
   const double dx = (b.linear_mm - a.linear_mm).norm();
   double reach = 0;
@@ -132,10 +137,8 @@ void ToothBuilder::note_bounds(const machines::Joints& a, const machines::Joints
 void ToothBuilder::push_feed(const machines::TablePose& target, const RotaryPair& rotaries, double feed) {
   AxisBlock b;
   b.kind = BlockKind::feed;
-  if (tcp_)
-    words_.set_tip(b, target.tip_mm, rotaries);
-  else
-    words_.set_joints(b, chain_.linear_for(target.tip_mm, rotaries, words_.length()).linear_mm, rotaries);
+  if (tcp_) words_.set_tip(b, target.tip_mm, rotaries);
+  else words_.set_joints(b, chain_.linear_for(target.tip_mm, rotaries, words_.length()).linear_mm, rotaries);
   b.record = record_;
   b.forced = broken_;
   if (b.words == last_.words) {
@@ -154,9 +157,10 @@ void ToothBuilder::push_feed(const machines::TablePose& target, const RotaryPair
   for (std::size_t k = 0; k < 2; ++k) moving += to.rotary_rad[k] != from.rotary_rad[k] ? 1 : 0;
   const int together = job_.machine.max_simultaneous_axes;
   if (together > 0 && moving > together) {
-    error_ = fail("operation {} record {}: {} axes move in one block, the control interpolates {} (keep the tilt fixed in "
-                  "a pass)",
-                  operation_->operation, record_, moving, together);
+    error_ = fail(
+        "operation {} record {}: {} axes move in one block, the control interpolates {} (keep the tilt fixed in a "
+        "pass)",
+        operation_->operation, record_, moving, together);
     return;
   }
   operation_->feed_minutes += pushed.minutes * copies();
@@ -164,7 +168,8 @@ void ToothBuilder::push_feed(const machines::TablePose& target, const RotaryPair
   broken_ = false;
 }
 
-/// Time of a block that was pushed behind `before`: the longest of what feed, axes and control ask for. With TCP its feed word and axis too.
+/// Time of a block that was pushed behind `before`: the longest of what feed, axes and control ask for. With TCP its
+/// feed word and axis too.
 void ToothBuilder::set_time(AxisBlock& pushed, const AxisBlock& before, double feed) {
   const AxisBlock b = pushed;
   const machines::Joints from = words_.joints(before), to = words_.joints(b);
@@ -194,7 +199,8 @@ void ToothBuilder::set_time(AxisBlock& pushed, const AxisBlock& before, double f
     return;
   }
   if (!tcp_) return;
-  const double turned = degrees(std::hypot(to.rotary_rad[0] - from.rotary_rad[0], to.rotary_rad[1] - from.rotary_rad[1]));
+  const double turned =
+      degrees(std::hypot(to.rotary_rad[0] - from.rotary_rad[0], to.rotary_rad[1] - from.rotary_rad[1]));
   const bool stands = b.words[0] == before.words[0] && b.words[1] == before.words[1] && b.words[2] == before.words[2];
   pushed.per_minute = (stands ? turned : tip_path) / pushed.minutes;
   pushed.axis = chain_.forward(to, words_.length()).axis;

@@ -7,11 +7,13 @@ namespace toothpath::joints {
 namespace {
 
 std::optional<Diagnostic> check_machine(const machines::Machine& machine) {
-  if (machine.kind != machines::MachineKind::five_axis) return fail("machine \"{}\" is not a milling machine", machine.name);
+  if (machine.kind != machines::MachineKind::five_axis)
+    return fail("machine \"{}\" is not a milling machine", machine.name);
   if (machine.post.length_reference != machines::LengthReference::tip)
     return fail("machine \"{}\": length_reference: only \"tip\" is posted", machine.name);
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k)
-    if (!(machine.chain.rotary(k).max_speed > 0)) return fail("axes.{}.max_speed must be above 0", machine.chain.rotary(k).letter);
+    if (!(machine.chain.rotary(k).max_speed > 0))
+      return fail("axes.{}.max_speed must be above 0", machine.chain.rotary(k).letter);
   for (std::size_t i = 0; i < 3; ++i)
     if (!(machine.chain.linear[i].max_speed > 0)) return fail("axes.{}.max_speed must be above 0", "XYZ"[i]);
   return std::nullopt;
@@ -35,8 +37,9 @@ std::optional<Diagnostic> check_records(const path::ClPath& path) {
 
 }  // namespace
 
-std::optional<Diagnostic> check_axis_inputs(std::span<const path::ClPath* const> paths, std::span<const tool::ToolAssembly> tools,
-                                            const machines::Machine& machine, int teeth, const AxisOptions& options) {
+std::optional<Diagnostic> check_axis_inputs(std::span<const path::ClPath* const> paths,
+                                            std::span<const tool::ToolAssembly> tools, const machines::Machine& machine,
+                                            int teeth, const AxisOptions& options) {
   if (auto bad = check_machine(machine)) return bad;
   if (teeth < 1) return fail("teeth = {} is below 1", teeth);
   if (paths.empty()) return fail("there is no operation to post");
@@ -55,14 +58,16 @@ std::optional<Diagnostic> check_axis_inputs(std::span<const path::ClPath* const>
   return std::nullopt;
 }
 
-PoleRules pole_rules_of(const machines::Machine& machine, const AxisOptions& options, const tool::ToolAssembly& tool, const ClearanceBody& body) {
+PoleRules pole_rules_of(const machines::Machine& machine, const AxisOptions& options, const tool::ToolAssembly& tool,
+                        const ClearanceBody& body) {
   const machines::PostSettings& post = machine.post;
   PoleRules rules;
   rules.option = post.pole;
   if (machine.chain.rotary_count() > 0) rules.letter = machine.chain.rotary(0).letter;
   rules.ball = tool.type == tool::CutterType::ball_end_mill;
   rules.ball_radius_mm = rules.ball ? tool.radius_mm() : 0;
-  const bool moves = post.pole == machines::PoleOption::hold || post.pole == machines::PoleOption::through || post.pole == machines::PoleOption::retract;
+  const bool moves = post.pole == machines::PoleOption::hold || post.pole == machines::PoleOption::through ||
+                     post.pole == machines::PoleOption::retract;
   rules.change_rad = moves ? post.pole_angle_rad.value_or(options.axis_rad) : options.axis_rad;
   if (!rules.ball) rules.change_rad = std::min(rules.change_rad, options.axis_rad);
   rules.keep_rad = post.pole == machines::PoleOption::tilt ? post.pole_angle_rad.value_or(kLeastPoleTilt) : 0;

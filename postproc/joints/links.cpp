@@ -18,7 +18,8 @@ double ToothBuilder::tip_height_for_turn(const RotaryPair& to) const {
   const double margin = job_.options.clearance_margin_mm;
   if (from == to && !program_.loop) return body_top(chain_, job_.gear, job_.body, to) + margin;
   if (!chain_.head.empty() && from[1] != to[1]) return retract_height();
-  return std::max(swept_top(chain_, job_.gear, job_.body, from, to, job_.coincident), body_top(chain_, job_.gear, job_.body, to)) +
+  return std::max(swept_top(chain_, job_.gear, job_.body, from, to, job_.coincident),
+                  body_top(chain_, job_.gear, job_.body, to)) +
          margin;
 }
 
@@ -82,7 +83,8 @@ void ToothBuilder::rise_to(double height) {
   AxisBlock b = last_;
   b.kind = BlockKind::rapid_z;
   const machines::Joints j = words_.joints(last_);
-  b.words[2] = std::min(words_.joint_word(j.linear_mm.z() + height - now, 2) + 1, words_.joint_word(program_.retract_z_mm, 2));
+  b.words[2] =
+      std::min(words_.joint_word(j.linear_mm.z() + height - now, 2) + 1, words_.joint_word(program_.retract_z_mm, 2));
   b.record = -1;
   push_rapid(b, true);
   broken_ = true;
@@ -97,7 +99,8 @@ void ToothBuilder::too_low(double height) {
 
 /// The rotaries, in parts where one that rolls over would go half a turn.
 void ToothBuilder::push_rotaries(const AxisBlock& b, bool forced) {
-  for (const AxisBlock& part : blocks_of_turn(chain_, words_, words_.joints(last_).rotary_rad, b)) push_rapid(part, forced);
+  for (const AxisBlock& part : blocks_of_turn(chain_, words_, words_.joints(last_).rotary_rad, b))
+    push_rapid(part, forced);
 }
 
 void ToothBuilder::push_rapid(AxisBlock b, bool forced) {

@@ -9,15 +9,14 @@
 namespace toothpath::joints {
 namespace {
 
-constexpr double kPoleTurn = radians(30);    // of the azimuth in one block, or in one way through the cone
-constexpr double kPoleRatio = 4;             // and more than this multiple of the turn of the tool
-constexpr double kAzimuthStep = radians(20); // of the blocks that are made
-constexpr double kLeastTilt = 1e-7;          // rad from the pole: keeps the azimuth determined
-constexpr double kTurnLength = 20;           // mm per rad: how turns count in the length along the path
-constexpr double kReachable = 1e-9;          // rad: the second rotary takes the tool to the pole
-constexpr double kFlat = 0.3;                // cosine between tool and gear axis below which a retract leaves sideways
+constexpr double kPoleTurn = radians(30);     // of the azimuth in one block, or in one way through the cone
+constexpr double kPoleRatio = 4;              // and more than this multiple of the turn of the tool
+constexpr double kAzimuthStep = radians(20);  // of the blocks that are made
+constexpr double kLeastTilt = 1e-7;           // rad from the pole: keeps the azimuth determined
+constexpr double kTurnLength = 20;            // mm per rad: how turns count in the length along the path
+constexpr double kReachable = 1e-9;           // rad: the second rotary takes the tool to the pole
+constexpr double kFlat = 0.3;                 // cosine between tool and gear axis below which a retract leaves sideways
 constexpr int kBisections = 60;
-
 
 /// A stretch of one pass inside the cone; s counts records, with the fraction of the step.
 struct Stretch {
@@ -28,7 +27,8 @@ struct Stretch {
 
 class Handler {
  public:
-  Handler(const path::ClPath& path, const Vec3& pole, const PoleRules& rules) : path_(path), f_(pole), rules_(rules), cone_(rules.change_rad / 2) {}
+  Handler(const path::ClPath& path, const Vec3& pole, const PoleRules& rules)
+      : path_(path), f_(pole), rules_(rules), cone_(rules.change_rad / 2) {}
 
   /// Appends the records [first, last) of one pass to `out`.
   std::optional<Diagnostic> pass(std::size_t first, std::size_t last, PolePath& out) {
@@ -64,7 +64,9 @@ class Handler {
     return inside;
   }
 
-  static bool steep(const numbers::PoleArc& a) { return std::abs(a.azimuth) > kPoleTurn && std::abs(a.azimuth) > kPoleRatio * a.turn; }
+  static bool steep(const numbers::PoleArc& a) {
+    return std::abs(a.azimuth) > kPoleTurn && std::abs(a.azimuth) > kPoleRatio * a.turn;
+  }
 
   void find() {
     arcs_.clear();
@@ -74,7 +76,8 @@ class Handler {
       arcs_.push_back(a);
       if (a.least > cone_) continue;
       const double base = static_cast<double>(i);
-      const double in = f_.theta(rec(i).axis) <= cone_ ? 0 : crossing(i, a.at, 0), out = f_.theta(rec(i + 1).axis) <= cone_ ? 1 : crossing(i, a.at, 1);
+      const double in = f_.theta(rec(i).axis) <= cone_ ? 0 : crossing(i, a.at, 0),
+                   out = f_.theta(rec(i + 1).axis) <= cone_ ? 1 : crossing(i, a.at, 1);
       if (stretches_.empty() || in > 0 || stretches_.back().s_out < base) {
         stretches_.push_back({});
         stretches_.back().s_in = base + in;
@@ -93,7 +96,8 @@ class Handler {
       }
     }
     for (auto& s : stretches_) {
-      const double across = s.open_in || s.open_out ? 0 : std::abs(wrapped(f_.phi(axis_at(s.s_out)) - f_.phi(axis_at(s.s_in))));
+      const double across =
+          s.open_in || s.open_out ? 0 : std::abs(wrapped(f_.phi(axis_at(s.s_out)) - f_.phi(axis_at(s.s_in))));
       s.turned = std::max(s.turned, across);
     }
     // Ways through the cone that need nothing are left as they are.
@@ -110,43 +114,59 @@ class Handler {
   }
 
   Diagnostic passes(std::size_t i, double least, double turned, const std::string& advice) const {
-    return fail("operation {} record {}: the tool axis passes the pole at {:.4f} deg, {} turns by {:.3f} deg in one block, limit {:.0f}: {}",
-                path_.operation, i, degrees(least), rules_.letter, degrees(turned), degrees(kPoleTurn), advice);
+    return fail(
+        "operation {} record {}: the tool axis passes the pole at {:.4f} deg, {} turns by {:.3f} deg in one block, "
+        "limit {:.0f}: {}",
+        path_.operation, i, degrees(least), rules_.letter, degrees(turned), degrees(kPoleTurn), advice);
   }
 
   /// What helps where `tilt` cannot: the plan is not its own.
   const char* instead_of_tilt() const {
-    return rules_.ball ? "directions that are fixed or prescribed by tool_axis are not moved; change them or lower post.pole_angle, or take \"slow\", \"hold\", "
-                         "\"through\" or \"retract\", or mount the part inclined"
-                       : "the axis of a finger mill follows from its flank and is not moved; \"slow\" (follows it exactly, at the speed of the rotary) and \"retract\" (turns "
-                         "outside the part) serve finger mills, or mount the part inclined";
+    return rules_.ball
+               ? "directions that are fixed or prescribed by tool_axis are not moved; change them or lower "
+                 "post.pole_angle, or take \"slow\", \"hold\", \"through\" or \"retract\", or mount the part inclined"
+               : "the axis of a finger mill follows from its flank and is not moved; \"slow\" (follows it exactly, at "
+                 "the speed of the rotary) and \"retract\" (turns outside the part) serve finger mills, or mount the "
+                 "part inclined";
   }
 
   std::optional<Diagnostic> judge() const {
     if (rules_.option == machines::PoleOption::tilt) {
       std::size_t worst = arcs_.size();
       for (std::size_t k = 0; k < arcs_.size(); ++k)
-        if (arcs_[k].turn > 1e-9 && arcs_[k].least < rules_.keep_rad - 1e-6 && (worst == arcs_.size() || arcs_[k].least < arcs_[worst].least)) worst = k;
+        if (arcs_[k].turn > 1e-9 && arcs_[k].least < rules_.keep_rad - 1e-6 &&
+            (worst == arcs_.size() || arcs_[k].least < arcs_[worst].least))
+          worst = k;
       if (worst < arcs_.size())
-        return fail("operation {} record {}: the tool axis comes to {:.4f} deg of the pole of {}, post.pole = \"tilt\" keeps {:.4f}: {}",
-                    path_.operation, first_ + worst + 1, degrees(arcs_[worst].least), rules_.letter, degrees(rules_.keep_rad), instead_of_tilt());
+        return fail(
+            "operation {} record {}: the tool axis comes to {:.4f} deg of the pole of {}, post.pole = \"tilt\" keeps "
+            "{:.4f}: {}",
+            path_.operation, first_ + worst + 1, degrees(arcs_[worst].least), rules_.letter, degrees(rules_.keep_rad),
+            instead_of_tilt());
     }
-    const bool changes = rules_.option == machines::PoleOption::hold || rules_.option == machines::PoleOption::through || rules_.option == machines::PoleOption::retract;
+    const bool changes = rules_.option == machines::PoleOption::hold ||
+                         rules_.option == machines::PoleOption::through ||
+                         rules_.option == machines::PoleOption::retract;
     const bool refuses = rules_.option == machines::PoleOption::error || rules_.option == machines::PoleOption::tilt;
-    const std::string ways = rules_.ball ? "post.pole = \"slow\", \"hold\", \"through\" or \"retract\" goes past it, or mount the part inclined"
-                                         : "post.pole = \"slow\" or \"retract\" goes past it with a finger mill, or mount the part inclined";
+    const std::string ways =
+        rules_.ball
+            ? "post.pole = \"slow\", \"hold\", \"through\" or \"retract\" goes past it, or mount the part inclined"
+            : "post.pole = \"slow\" or \"retract\" goes past it with a finger mill, or mount the part inclined";
     for (const auto& s : stretches_) {
       const auto i = static_cast<std::size_t>(std::ceil(s.nearest_s));
       if (refuses) return passes(std::max(i, first_ + 1), s.least, std::max(s.greatest_step, s.turned), ways);
-      if ((rules_.option == machines::PoleOption::hold || rules_.option == machines::PoleOption::through) && !rules_.ball)
-        return passes(i, s.least, s.greatest_step, "\"hold\" and \"through\" move the axis of ball tools only; \"slow\" and \"retract\" serve any");
+      if ((rules_.option == machines::PoleOption::hold || rules_.option == machines::PoleOption::through) &&
+          !rules_.ball)
+        return passes(i, s.least, s.greatest_step,
+                      "\"hold\" and \"through\" move the axis of ball tools only; \"slow\" and \"retract\" serve any");
     }
     for (std::size_t k = 0; k < arcs_.size(); ++k) {
       if (!steep(arcs_[k]) || leads_to_cone(k)) continue;
       if (refuses) return passes(first_ + k + 1, arcs_[k].least, std::abs(arcs_[k].azimuth), ways);
       if (changes)
         return passes(first_ + k + 1, arcs_[k].least, std::abs(arcs_[k].azimuth),
-                      fmt::format("post.pole_angle = {:.4f} deg moves the axis from a path within {:.4f} deg of the pole only; \"slow\" follows it exactly",
+                      fmt::format("post.pole_angle = {:.4f} deg moves the axis from a path within {:.4f} deg of the "
+                                  "pole only; \"slow\" follows it exactly",
                                   degrees(rules_.change_rad), degrees(cone_)));
     }
     return std::nullopt;
@@ -166,7 +186,8 @@ class Handler {
     return r;
   }
 
-  /// Exact points between two parameters (both left out) of a steep step, so that the azimuth turns by no more than kAzimuthStep in one.
+  /// Exact points between two parameters (both left out) of a steep step, so that the azimuth turns by no more than
+  /// kAzimuthStep in one.
   void write_between(double s0, double s1, PolePath& out) const {
     const std::size_t i = step_of(s0);
     if (!steep(arcs_[i - first_])) return;
@@ -191,7 +212,8 @@ class Handler {
     nodes.push_back({st.s_out, 0});
     double length = 0;
     for (std::size_t k = 1; k < nodes.size(); ++k) {
-      length += (tip_at(nodes[k].s) - tip_at(nodes[k - 1].s)).norm() + kTurnLength * numbers::angle_between_axes(axis_at(nodes[k].s), axis_at(nodes[k - 1].s)) + 1e-12;
+      length += (tip_at(nodes[k].s) - tip_at(nodes[k - 1].s)).norm() +
+                kTurnLength * numbers::angle_between_axes(axis_at(nodes[k].s), axis_at(nodes[k - 1].s)) + 1e-12;
       nodes[k].f = length;
     }
     for (auto& n : nodes) n.f /= length;
@@ -199,7 +221,8 @@ class Handler {
       for (std::size_t k = 1; k < nodes.size(); ++k)
         if (nodes[k - 1].f < extra_share && nodes[k].f > extra_share) {
           const double t = (extra_share - nodes[k - 1].f) / (nodes[k].f - nodes[k - 1].f);
-          nodes.insert(nodes.begin() + static_cast<std::ptrdiff_t>(k), Node{(1 - t) * nodes[k - 1].s + t * nodes[k].s, extra_share});
+          nodes.insert(nodes.begin() + static_cast<std::ptrdiff_t>(k),
+                       Node{(1 - t) * nodes[k - 1].s + t * nodes[k].s, extra_share});
           break;
         }
     return nodes;
@@ -208,7 +231,8 @@ class Handler {
   static void refine(std::vector<Node>& nodes, double across) {
     std::vector<Node> fine{nodes.front()};
     for (std::size_t k = 1; k < nodes.size(); ++k) {
-      const int n = std::max(1, static_cast<int>(std::ceil(std::abs(across) * (nodes[k].f - nodes[k - 1].f) / kAzimuthStep)));
+      const int n =
+          std::max(1, static_cast<int>(std::ceil(std::abs(across) * (nodes[k].f - nodes[k - 1].f) / kAzimuthStep)));
       for (int j = 1; j <= n; ++j) {
         const double t = static_cast<double>(j) / n;
         fine.push_back({(1 - t) * nodes[k - 1].s + t * nodes[k].s, (1 - t) * nodes[k - 1].f + t * nodes[k].f});
@@ -252,19 +276,22 @@ class Handler {
   void write_through(const Stretch& st, double phi_in, double phi_out, PolePath& out) const {
     const double across = wrapped(phi_out + kPi - phi_in);
     auto nodes = nodes_of(st, 0.5);
-    refine(nodes, 2 * across);  // on the pole itself C keeps the angle of the record before: the step behind it has both turns
+    refine(nodes,
+           2 * across);  // on the pole itself C keeps the angle of the record before: the step behind it has both turns
     const double theta = f_.theta(axis_at(st.s_in));
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       const double side = theta * (1 - 2 * nodes[k].f), phi = phi_in + nodes[k].f * across;
       const bool on_pole = std::abs(nodes[k].f - 0.5) < 1e-12;
-      add_node(out, nodes[k].s, on_pole ? f_.pole : f_.axis(std::abs(side), side >= 0 ? phi : phi + kPi), k > 0, on_pole);
+      add_node(out, nodes[k].s, on_pole ? f_.pole : f_.axis(std::abs(side), side >= 0 ? phi : phi + kPi), k > 0,
+               on_pole);
     }
   }
 
   void write_retract(const Stretch& st, double phi_in, double phi_out, PolePath& out) const {
     auto nodes = nodes_of(st, 0);
     const double s_m = std::clamp(st.nearest_s, st.s_in, st.s_out);
-    for (std::size_t k = 0; k < nodes.size() && nodes[k].s < s_m - 1e-9; ++k) add_node(out, nodes[k].s, on_meridian(nodes[k].s, phi_in), k > 0);
+    for (std::size_t k = 0; k < nodes.size() && nodes[k].s < s_m - 1e-9; ++k)
+      add_node(out, nodes[k].s, on_meridian(nodes[k].s, phi_in), k > 0);
     const Vec3 before = on_meridian(s_m, phi_in), after = on_meridian(s_m, phi_out);
     add_node(out, s_m, before, true);
     const auto outside = [&](const Vec3& axis, path::MoveKind kind) {
@@ -289,7 +316,8 @@ class Handler {
       const double top = axis.z() > 0 ? rules_.body.z_max_mm + margin : rules_.body.z_min_mm - margin;
       return std::max(length, (top - tip.z()) / axis.z());
     }
-    const double r = rules_.body.radius_mm + margin, flat = axis.head<2>().squaredNorm(), b = tip.head<2>().dot(axis.head<2>());
+    const double r = rules_.body.radius_mm + margin, flat = axis.head<2>().squaredNorm(),
+                 b = tip.head<2>().dot(axis.head<2>());
     const double c = tip.head<2>().squaredNorm() - r * r;
     return c < 0 ? std::max(length, (-b + std::sqrt(b * b - flat * c)) / flat) : length;
   }
@@ -310,7 +338,8 @@ class Handler {
     while (s < s1) {
       const double next = std::floor(s) + 1, to = std::min(next, s1);
       if (s >= static_cast<double>(first_)) write_between(s, to, out);
-      if (next < s1 || (next == s1 && with_end)) add(out, rec(static_cast<std::size_t>(next)), static_cast<std::size_t>(next), false);
+      if (next < s1 || (next == s1 && with_end))
+        add(out, rec(static_cast<std::size_t>(next)), static_cast<std::size_t>(next), false);
       s = to;
     }
   }
@@ -349,7 +378,8 @@ std::vector<Vec3> poles_of(const machines::KinematicChain& chain) {
   return poles;
 }
 
-Result<std::optional<PolePath>> handle_poles(const path::ClPath& path, std::span<const Vec3> poles, const PoleRules& rules) {
+Result<std::optional<PolePath>> handle_poles(const path::ClPath& path, std::span<const Vec3> poles,
+                                             const PoleRules& rules) {
   if (poles.empty() || path.records.empty()) return std::optional<PolePath>{};
   PolePath out;
   out.path = path;

@@ -12,24 +12,32 @@
 #include "postproc/joints/rollover.h"
 #include "postproc/joints/time.h"
 #include "postproc/joints/tooth.h"
+#include "postproc/joints/tooth_order.h"
 #include "postproc/joints/travel.h"
 #include "postproc/numbers/fixed_point.h"
-#include "postproc/joints/tooth_order.h"
 
 namespace toothpath::joints {
 namespace {
 
-constexpr double kCoincident = 1e-9;      // mm: the gear axis lies on the index axis
-constexpr double kParallel = 1e-12;       // sine of the angle between gear axis and index axis
+constexpr double kCoincident = 1e-9;             // mm: the gear axis lies on the index axis
+constexpr double kParallel = 1e-12;              // sine of the angle between gear axis and index axis
 constexpr std::size_t kMostBlocks = 20'000'000;  // of 100 bytes in memory, and 50 to 100 bytes of text each
 
 /// Decides about angles, loop and copies; the blocks of a tooth come from ToothBuilder.
 class ProgramBuilder {
  public:
-  ProgramBuilder(std::span<const path::ClPath* const> paths, std::span<const tool::ToolAssembly> tools, const Setup& setup,
-          const machines::Machine& machine, int teeth, const ClearanceBody& body, const AxisOptions& options)
-      : paths_(paths), tools_(tools), setup_(setup), machine_(machine), chain_(machine.chain), options_(options), teeth_(teeth),
-        gear_{setup.rotation(), setup.origin_mm}, words_(machine.chain, options.format, setup.work_offset_at_mm),
+  ProgramBuilder(std::span<const path::ClPath* const> paths, std::span<const tool::ToolAssembly> tools,
+                 const Setup& setup, const machines::Machine& machine, int teeth, const ClearanceBody& body,
+                 const AxisOptions& options)
+      : paths_(paths),
+        tools_(tools),
+        setup_(setup),
+        machine_(machine),
+        chain_(machine.chain),
+        options_(options),
+        teeth_(teeth),
+        gear_{setup.rotation(), setup.origin_mm},
+        words_(machine.chain, options.format, setup.work_offset_at_mm),
         body_(body) {}
 
   Result<AxisProgram> build() {
@@ -46,13 +54,15 @@ class ProgramBuilder {
     if (auto bad = check_size()) return *bad;
     // With TCP the words of the tip differ from tooth to tooth.
     copies_ = !tcp() && !program_.loop && coincident_ && teeth_ > 1 && rounding_of_copies() <= options_.nc_step_mm;
-    program_.rounding_bound_mm =
-        program_.loop ? rounding_of_loop() : copies_ ? rounding_of_copies() : words_.linear_rounding();
+    program_.rounding_bound_mm = program_.loop ? rounding_of_loop()
+                                 : copies_     ? rounding_of_copies()
+                                               : words_.linear_rounding();
     if (program_.rounding_bound_mm > options_.nc_step_mm)
       return fail("rounding the words moves the tip by up to {:.6f} mm, more than {:.6f}", program_.rounding_bound_mm,
                   options_.nc_step_mm);
     if (options_.search_origin) {
-      poses_.emplace(chain_, machine_.limit_margin, coincident_ ? std::optional(chain_.table[0].direction) : std::nullopt);
+      poses_.emplace(chain_, machine_.limit_margin,
+                     coincident_ ? std::optional(chain_.table[0].direction) : std::nullopt);
       placed_.collect(&*poses_);
     }
     const AxisJob job{machine_, body_, options_, teeth_, gear_, coincident_};
@@ -95,12 +105,13 @@ class ProgramBuilder {
     const auto& room = offer.room_then_mm;
     const Vec3 at = setup_.origin_mm + offer.shift_mm, work = setup_.work_offset_at_mm + offer.shift_mm;
     if (offer.posted)
-      bad.message += fmt::format("; most room: set-up origin [{:.3f}, {:.3f}, {:.3f}] with work_offset_at [{:.3f}, {:.3f}, {:.3f}] leaves X {:.3f}, Y {:.3f}, "
-                                 "Z {:.3f} mm",
-                                 at.x(), at.y(), at.z(), work.x(), work.y(), work.z(), room[0], room[1], room[2]);
+      bad.message += fmt::format(
+          "; most room: set-up origin [{:.3f}, {:.3f}, {:.3f}] with work_offset_at [{:.3f}, {:.3f}, {:.3f}] leaves X "
+          "{:.3f}, Y {:.3f}, Z {:.3f} mm",
+          at.x(), at.y(), at.z(), work.x(), work.y(), work.z(), room[0], room[1], room[2]);
     else if (*std::min_element(room.begin(), room.end()) < 0)
-      bad.message += fmt::format("; nowhere{} does the part have room: at best X {:.3f}, Y {:.3f}, Z {:.3f} mm", offer.on_index_axis ? " on the axis that turns it" : "",
-                                 room[0], room[1], room[2]);
+      bad.message += fmt::format("; nowhere{} does the part have room: at best X {:.3f}, Y {:.3f}, Z {:.3f} mm",
+                                 offer.on_index_axis ? " on the axis that turns it" : "", room[0], room[1], room[2]);
     return bad;
   }
 
@@ -153,8 +164,8 @@ class ProgramBuilder {
     for (const path::ClPath* path : paths_) records += path->records.size();
     const std::size_t written = program_.loop ? 1 : static_cast<std::size_t>(teeth_);
     if (records <= kMostBlocks / written) return std::nullopt;
-    return fail("the program would have at least {} blocks ({} records, {} teeth written out), more than {}", records * written, records,
-                written, kMostBlocks);
+    return fail("the program would have at least {} blocks ({} records, {} teeth written out), more than {}",
+                records * written, records, written, kMostBlocks);
   }
 
   double tooth_angle(int k) const { return 2 * kPi * k / teeth_; }
@@ -171,10 +182,8 @@ class ProgramBuilder {
     }
     if (leave_room_for_index) {
       const double span = tooth_angle(teeth_ - 1);
-      if (program_.index_sign > 0)
-        out[0].upper -= span;
-      else
-        out[0].lower += span;
+      if (program_.index_sign > 0) out[0].upper -= span;
+      else out[0].lower += span;
     }
     return out;
   }
@@ -193,8 +202,9 @@ class ProgramBuilder {
       program_.pole_axis_rad = std::max(program_.pole_axis_rad, rules.change_rad);
       program_.pole_tip_mm = std::max(program_.pole_tip_mm, 2 * rules.ball_radius_mm * std::sin(rules.change_rad / 2));
     }
-    auto angles = choice::choose_rotaries(out.path(), rotation, chain_, ranges(leave_room_for_index), machine_.post.pole,
-                                  out.changed ? out.changed->switches : std::vector<char>{});
+    auto angles =
+        choice::choose_rotaries(out.path(), rotation, chain_, ranges(leave_room_for_index), machine_.post.pole,
+                                out.changed ? out.changed->switches : std::vector<char>{});
     if (!angles) return angles.error();
     out.angles = std::move(*angles);
     return out;
@@ -225,7 +235,8 @@ class ProgramBuilder {
   bool index_moves_inside_passes() const {
     for (const auto& f : followed_)
       for (std::size_t i = 1; i < f.angles.size(); ++i)
-        if (f.path().records[i].kind != path::MoveKind::rapid && words_.rotary_word(f.angles[i][0]) != words_.rotary_word(f.angles[i - 1][0]))
+        if (f.path().records[i].kind != path::MoveKind::rapid &&
+            words_.rotary_word(f.angles[i][0]) != words_.rotary_word(f.angles[i - 1][0]))
           return true;
     return false;
   }
@@ -248,9 +259,10 @@ class ProgramBuilder {
       for (auto& r : a) r[0] += shift;
       return turned;
     }
-    return fail_as(DiagnosticKind::verification, "operation {} tooth {}: {} = {:.4f} .. {:.4f} deg outside [{:.4f}, {:.4f}]",
-                   paths_[p]->operation, k, chain_.table[0].letter, degrees(least + index), degrees(greatest + index),
-                   degrees(range.lower), degrees(range.upper));
+    return fail_as(DiagnosticKind::verification,
+                   "operation {} tooth {}: {} = {:.4f} .. {:.4f} deg outside [{:.4f}, {:.4f}]", paths_[p]->operation, k,
+                   chain_.table[0].letter, degrees(least + index), degrees(greatest + index), degrees(range.lower),
+                   degrees(range.upper));
   }
 
   // Rounding. The linear words are computed for the rounded rotary words, so that only their own last digit and, in a
@@ -275,7 +287,7 @@ class ProgramBuilder {
     op.tool_number = tool.number;
     op.tool_length_mm = tool.length_mm;
     op.tool_name = tool.type == tool::CutterType::ball_end_mill ? fmt::format("BALL END MILL D{}", tool.diameter_mm)
-                                                          : fmt::format("FINGER MILL M{}", tool.module_mm);
+                                                                : fmt::format("FINGER MILL M{}", tool.module_mm);
     op.spindle_rpm = path.spindle_rpm;
     builder.begin(op, tool.length_mm);
     const int written = program_.loop ? 1 : teeth_;
@@ -306,16 +318,19 @@ class ProgramBuilder {
       stood_ = words_.joints(op.teeth.back().blocks.back()).rotary_rad;
       (*stood_)[0] += program_.index_sign * tooth_angle(tooth_of_place(teeth_ - 1, options_.tooth_stride, teeth_));
     }
-    if (program_.loop) op.rapid_minutes += tooth_angle(1) * pitches_turned(0, options_.tooth_stride, teeth_) / chain_.table[0].max_speed;
+    if (program_.loop)
+      op.rapid_minutes += tooth_angle(1) * pitches_turned(0, options_.tooth_stride, teeth_) / chain_.table[0].max_speed;
     program_.operations.push_back(std::move(op));
     return std::nullopt;
   }
 
-  /// A loop on a rotary that rolls over: a tooth is entered from the end of the one before, a pitch back, the first one from the end of
-  /// the operation before. No way may reach half a turn: the first gets one block more, with the second there is no loop (false).
+  /// A loop on a rotary that rolls over: a tooth is entered from the end of the one before, a pitch back, the first one
+  /// from the end of the operation before. No way may reach half a turn: the first gets one block more, with the second
+  /// there is no loop (false).
   bool enter_loop(AxisOperation& op) {
     std::vector<AxisBlock>& blocks = op.teeth.front().blocks;
-    auto first = std::find_if(blocks.begin(), blocks.end(), [](const AxisBlock& b) { return b.kind == BlockKind::rapid_rotary; });
+    auto first = std::find_if(blocks.begin(), blocks.end(),
+                              [](const AxisBlock& b) { return b.kind == BlockKind::rapid_rotary; });
     if (first == blocks.end()) return true;
     const auto entry = loop_entry(blocks, program_);
     auto turn = blocks_of_turn(chain_, words_, {words_.word_angle(entry[0]), words_.word_angle(entry[1])}, *first);
@@ -325,7 +340,8 @@ class ProgramBuilder {
     return !stood_ || blocks_of_turn(chain_, words_, *stood_, *first).size() == 1;
   }
 
-  /// Blocks of tooth k where the index rotary turns the gear about its own axis: the same words, the index from integers.
+  /// Blocks of tooth k where the index rotary turns the gear about its own axis: the same words, the index from
+  /// integers.
   void turned_copy(const std::vector<AxisBlock>& first, double shift, int k, std::vector<AxisBlock>& blocks) const {
     const auto turn = std::llround((shift - program_.index_sign * tooth_angle(k)) / (2 * kPi));
     const int digits = options_.format.rotary_decimals;
@@ -372,24 +388,27 @@ class ProgramBuilder {
   std::optional<choice::TravelPoses> poses_;
 };
 
-Result<AxisProgram> build_from(std::span<const path::ClPath* const> paths, std::span<const tool::ToolAssembly> tools, const Setup& setup,
-                               const machines::Machine& machine, int teeth, const ClearanceBody& body, const AxisOptions& options) {
+Result<AxisProgram> build_from(std::span<const path::ClPath* const> paths, std::span<const tool::ToolAssembly> tools,
+                               const Setup& setup, const machines::Machine& machine, int teeth,
+                               const ClearanceBody& body, const AxisOptions& options) {
   return ProgramBuilder(paths, tools, setup, machine, teeth, body, options).build();
 }
 
 }  // namespace
 
-Result<AxisProgram> build_axis_program(std::span<const proof::CheckedClPath> paths, std::span<const tool::ToolAssembly> tools,
-                                       const Setup& setup, const machines::Machine& machine, int teeth, const ClearanceBody& body,
+Result<AxisProgram> build_axis_program(std::span<const proof::CheckedClPath> paths,
+                                       std::span<const tool::ToolAssembly> tools, const Setup& setup,
+                                       const machines::Machine& machine, int teeth, const ClearanceBody& body,
                                        const AxisOptions& options) {
   std::vector<const path::ClPath*> list;
   for (const auto& p : paths) list.push_back(&p.path());
   return build_from(list, tools, setup, machine, teeth, body, options);
 }
 
-Result<AxisProgram> AxisProgramTestAccess::build(std::span<const path::ClPath> paths, std::span<const tool::ToolAssembly> tools,
-                                                 const Setup& setup, const machines::Machine& machine, int teeth,
-                                                 const ClearanceBody& body, const AxisOptions& options) {
+Result<AxisProgram> AxisProgramTestAccess::build(std::span<const path::ClPath> paths,
+                                                 std::span<const tool::ToolAssembly> tools, const Setup& setup,
+                                                 const machines::Machine& machine, int teeth, const ClearanceBody& body,
+                                                 const AxisOptions& options) {
   std::vector<const path::ClPath*> list;
   for (const auto& p : paths) list.push_back(&p);
   return build_from(list, tools, setup, machine, teeth, body, options);

@@ -38,51 +38,54 @@ struct ClearanceBody {
 
 struct AxisOptions {
   WordFormat format;
-  double chord_mm = 5e-4;         ///< greatest distance of the tip from the CL chord inside a block (spec section 3)
-  double axis_rad = 1e-3;         ///< greatest deviation of the tool axis inside a block
-  double nc_step_mm = 2e-3;       ///< greatest error of the tip that rounding the words may cause; else refused
-  double clearance_margin_mm = 5; ///< between the clearance body and the tool tip on rapids
-  double max_inverse_time = 0;    ///< greatest F in G93 that the control takes, 1/min; 0: no limit. Faster blocks are slowed
-  bool loop_needs_constant_index = false;  ///< the dialect cannot shift a word in a sub-program: loop only where it stands still
-  bool search_origin = true;      ///< look for the set-up with the most room in the travels
-  bool expand_teeth = false;      ///< write every tooth out even where the loop would do
-  int tooth_stride = 1;           ///< place n of the order cuts tooth n * stride mod z (tooth_order.h); 1: the sequence
-  bool tcp_starts_at_zero = false;  ///< TCP freezes the table frame where it is switched on: only with the rotaries at zero
-  bool tcp_loop = false;          ///< the dialect can turn the frame of a loop about the gear axis while TCP is on
+  double chord_mm = 5e-4;          ///< greatest distance of the tip from the CL chord inside a block (spec section 3)
+  double axis_rad = 1e-3;          ///< greatest deviation of the tool axis inside a block
+  double nc_step_mm = 2e-3;        ///< greatest error of the tip that rounding the words may cause; else refused
+  double clearance_margin_mm = 5;  ///< between the clearance body and the tool tip on rapids
+  double max_inverse_time =
+      0;  ///< greatest F in G93 that the control takes, 1/min; 0: no limit. Faster blocks are slowed
+  bool loop_needs_constant_index =
+      false;                  ///< the dialect cannot shift a word in a sub-program: loop only where it stands still
+  bool search_origin = true;  ///< look for the set-up with the most room in the travels
+  bool expand_teeth = false;  ///< write every tooth out even where the loop would do
+  int tooth_stride = 1;       ///< place n of the order cuts tooth n * stride mod z (tooth_order.h); 1: the sequence
+  bool tcp_starts_at_zero =
+      false;              ///< TCP freezes the table frame where it is switched on: only with the rotaries at zero
+  bool tcp_loop = false;  ///< the dialect can turn the frame of a loop about the gear axis while TCP is on
 };
 
 enum class BlockKind : std::uint8_t {
-  feed,           ///< G1, all axes; inverse time without TCP, feed of the tip with it
-  rapid_z,        ///< G0, Z alone
-  rapid_xy,       ///< G0, X and Y
-  rapid_rotary,   ///< G0, both rotaries, no linear word
-  tcp_on,         ///< switches TCP on; with `tcp_starts_at_zero` it moves Z to its word, else nothing moves
-  tcp_off,        ///< switches TCP off; with `tcp_starts_at_zero` Z goes to its top, else nothing moves
-  rapid_tip,      ///< G0 with TCP: the tip goes straight, the rotaries stand
-  turn,           ///< G1 with TCP, rotary words alone: the tip stands still on the table
+  feed,          ///< G1, all axes; inverse time without TCP, feed of the tip with it
+  rapid_z,       ///< G0, Z alone
+  rapid_xy,      ///< G0, X and Y
+  rapid_rotary,  ///< G0, both rotaries, no linear word
+  tcp_on,        ///< switches TCP on; with `tcp_starts_at_zero` it moves Z to its word, else nothing moves
+  tcp_off,       ///< switches TCP off; with `tcp_starts_at_zero` Z goes to its top, else nothing moves
+  rapid_tip,     ///< G0 with TCP: the tip goes straight, the rotaries stand
+  turn,          ///< G1 with TCP, rotary words alone: the tip stands still on the table
 };
 
 /// One block. Words: X Y Z [10^-linear_decimals mm, work coordinates with tool length compensation on], then the two
-/// rotaries in the order of the machine's axes [10^-rotary_decimals deg]. In a loop the index rotary is that of tooth 0.
-/// With TCP the linear words are the tip in the table frame, seen from the work offset.
+/// rotaries in the order of the machine's axes [10^-rotary_decimals deg]. In a loop the index rotary is that of tooth
+/// 0. With TCP the linear words are the tip in the table frame, seen from the work offset.
 struct AxisBlock {
   std::array<std::int64_t, 5> words{};
-  double minutes = 0;        ///< that the machine needs or is told, from the rounded words
-  double per_minute = 0;     ///< with TCP: feed of the tip, mm/min; of the rotaries where the tip stands, deg/min
-  Vec3 axis = Vec3::UnitZ(); ///< with TCP: tool axis at the end of the block, table frame
-  std::int32_t record = -1;  ///< index of the CL record that the block goes to; -1: a link
+  double minutes = 0;         ///< that the machine needs or is told, from the rounded words
+  double per_minute = 0;      ///< with TCP: feed of the tip, mm/min; of the rotaries where the tip stands, deg/min
+  Vec3 axis = Vec3::UnitZ();  ///< with TCP: tool axis at the end of the block, table frame
+  std::int32_t record = -1;   ///< index of the CL record that the block goes to; -1: a link
   BlockKind kind = BlockKind::feed;
-  std::uint8_t ruler = 0;    ///< feed blocks: the entry of `time_rulers` that decided the time
-  bool forced = false;       ///< print every word of the kind: first block after a break
-  bool tip = false;          ///< the linear words are the tip in the table frame (TCP is on)
+  std::uint8_t ruler = 0;  ///< feed blocks: the entry of `time_rulers` that decided the time
+  bool forced = false;     ///< print every word of the kind: first block after a break
+  bool tip = false;        ///< the linear words are the tip in the table frame (TCP is on)
 };
 
 /// The blocks of one tooth of one operation. Starts and ends at a height where the rotaries may turn.
 struct ToothBlocks {
   int tooth = 0;  ///< space index; in a loop 0
   std::vector<AxisBlock> blocks;
-  std::string remark = {};   ///< stands in the text instead of "TOOTH k"; empty: that
-  bool pause = false;   ///< the program stops behind the blocks until it is started again
+  std::string remark = {};  ///< stands in the text instead of "TOOTH k"; empty: that
+  bool pause = false;       ///< the program stops behind the blocks until it is started again
 };
 
 /// Run time over all teeth.
@@ -100,7 +103,7 @@ struct AxisOperation {
   std::vector<ToothBlocks> teeth;  ///< one entry in a loop, else one a tooth in the order of the program
   int first_place = 0;             ///< where the order begins; not 0 only in a program that begins in the middle
   double feed_minutes = 0, rapid_minutes = 0;  ///< over all teeth
-  TimedMinutes accelerated;                    ///< the same with the accelerations of the axes, where the machine states them
+  TimedMinutes accelerated;  ///< the same with the accelerations of the axes, where the machine states them
 };
 
 /// Least and greatest position of one axis over all teeth, against its limits [mm or rad, machine coordinates].
@@ -119,40 +122,41 @@ struct ProgramRestart {
 
 struct AxisProgram {
   WordFormat format;
-  std::array<char, 5> letters{};            ///< X Y Z and the two rotaries; 0: no such axis
-  std::array<bool, 5> rollover{};           ///< the control counts the rotary within one turn; words here go on beyond it
+  std::array<char, 5> letters{};   ///< X Y Z and the two rotaries; 0: no such axis
+  std::array<bool, 5> rollover{};  ///< the control counts the rotary within one turn; words here go on beyond it
   int teeth = 1;
-  bool loop = false;                        ///< one tooth is held; the index rotary turns it
-  int tooth_stride = 1;                     ///< as in the options
-  std::optional<ProgramRestart> restart;    ///< the program begins there, not at its beginning
-  int index_axis = -1;                      ///< 3 or 4: which word is shifted by the index
-  int index_sign = 1;                       ///< word of tooth k = word + index_sign * k * 360 / z
-  machines::TcpMode tcp = machines::TcpMode::none;              ///< how the blocks of a cut are meant
-  bool turns_in_cuts = false;               ///< some feed block moves a rotary; the index does not count
-  double tip_reach_mm = 0;                  ///< greatest distance of the tip from a rotary axis in blocks that turn, without TCP
-  bool tcp_starts_at_zero = false;          ///< as in the options
-  int frame_sign = 1;                       ///< loop with TCP: the frame of tooth k is turned by frame_sign * k * 360 / z about +Z
-  double retract_z_mm = 0;                  ///< G53 Z, machine coordinates of the gauge line
+  bool loop = false;                                ///< one tooth is held; the index rotary turns it
+  int tooth_stride = 1;                             ///< as in the options
+  std::optional<ProgramRestart> restart;            ///< the program begins there, not at its beginning
+  int index_axis = -1;                              ///< 3 or 4: which word is shifted by the index
+  int index_sign = 1;                               ///< word of tooth k = word + index_sign * k * 360 / z
+  machines::TcpMode tcp = machines::TcpMode::none;  ///< how the blocks of a cut are meant
+  bool turns_in_cuts = false;                       ///< some feed block moves a rotary; the index does not count
+  double tip_reach_mm = 0;  ///< greatest distance of the tip from a rotary axis in blocks that turn, without TCP
+  bool tcp_starts_at_zero = false;  ///< as in the options
+  int frame_sign = 1;       ///< loop with TCP: the frame of tooth k is turned by frame_sign * k * 360 / z about +Z
+  double retract_z_mm = 0;  ///< G53 Z, machine coordinates of the gauge line
   std::string work_offset = "G54";
   Vec3 work_offset_at_mm = Vec3::Zero();
   std::vector<AxisOperation> operations;
-  std::vector<AxisRange> ranges;            ///< over all teeth and operations, G53 retract included
-  std::vector<std::string> time_rulers;     ///< names of the terms of the block time
-  std::vector<std::size_t> time_ruled;      ///< how many feed blocks each of them decided (one tooth in a loop)
-  std::vector<std::string> assumed;         ///< machine data that nobody measured
-  double minutes = 0, feed_minutes = 0;     ///< over all teeth, tool changes left out
-  double rounding_bound_mm = 0;             ///< proven: rounding the words moves the tip by no more (section 4)
-  double chord_bound_mm = 0;                ///< proven: the tip leaves the CL chord inside a block by no more (section 3)
-  double axis_bound_rad = 0;                ///< the same for the tool axis
-  std::vector<path::ClPath> followed;             ///< the paths where poles were handled by changing them (tooth 0); empty: as given
-  std::size_t pole_passages = 0;            ///< of tooth 0, handled
-  double pole_axis_rad = 0;                 ///< proven: handling poles moves the tool axis by no more ..
-  double pole_tip_mm = 0;                   ///< .. and the tip, about the centre of the ball, which stays
-  bool has_acceleration = false;            ///< the machine states them: `accelerated` is filled in
-  TimedMinutes accelerated;                 ///< over all operations
-  std::optional<choice::TravelOffer> offer;         ///< empty: not looked for, or too many directions of the part
-  std::size_t inserted_blocks = 0;          ///< by the subdivision
-  std::size_t dropped_blocks = 0;           ///< all words equal to those before
+  std::vector<AxisRange> ranges;         ///< over all teeth and operations, G53 retract included
+  std::vector<std::string> time_rulers;  ///< names of the terms of the block time
+  std::vector<std::size_t> time_ruled;   ///< how many feed blocks each of them decided (one tooth in a loop)
+  std::vector<std::string> assumed;      ///< machine data that nobody measured
+  double minutes = 0, feed_minutes = 0;  ///< over all teeth, tool changes left out
+  double rounding_bound_mm = 0;          ///< proven: rounding the words moves the tip by no more (section 4)
+  double chord_bound_mm = 0;             ///< proven: the tip leaves the CL chord inside a block by no more (section 3)
+  double axis_bound_rad = 0;             ///< the same for the tool axis
+  std::vector<path::ClPath>
+      followed;                   ///< the paths where poles were handled by changing them (tooth 0); empty: as given
+  std::size_t pole_passages = 0;  ///< of tooth 0, handled
+  double pole_axis_rad = 0;       ///< proven: handling poles moves the tool axis by no more ..
+  double pole_tip_mm = 0;         ///< .. and the tip, about the centre of the ball, which stays
+  bool has_acceleration = false;  ///< the machine states them: `accelerated` is filled in
+  TimedMinutes accelerated;       ///< over all operations
+  std::optional<choice::TravelOffer> offer;  ///< empty: not looked for, or too many directions of the part
+  std::size_t inserted_blocks = 0;           ///< by the subdivision
+  std::size_t dropped_blocks = 0;            ///< all words equal to those before
 };
 
 /// Builds the program for one set-up. `tools` are indexed by ClPath::tool; `teeth` = z >= 1.
@@ -162,14 +166,14 @@ struct AxisProgram {
 /// reposition with no safe height, no continuous solution inside a pass, rounding coarser than nc_step_mm.
 [[nodiscard]] Result<AxisProgram> build_axis_program(std::span<const proof::CheckedClPath> paths,
                                                      std::span<const tool::ToolAssembly> tools, const Setup& setup,
-                                                     const machines::Machine& machine, int teeth, const ClearanceBody& body,
-                                                     const AxisOptions& options = {});
+                                                     const machines::Machine& machine, int teeth,
+                                                     const ClearanceBody& body, const AxisOptions& options = {});
 
 /// For tests of this folder alone: the same from paths that no check has passed.
 struct AxisProgramTestAccess {
   static Result<AxisProgram> build(std::span<const path::ClPath> paths, std::span<const tool::ToolAssembly> tools,
-                                   const Setup& setup, const machines::Machine& machine, int teeth, const ClearanceBody& body,
-                                   const AxisOptions& options = {});
+                                   const Setup& setup, const machines::Machine& machine, int teeth,
+                                   const ClearanceBody& body, const AxisOptions& options = {});
 };
 
 }  // namespace toothpath::joints

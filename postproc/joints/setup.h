@@ -8,8 +8,8 @@
 namespace toothpath::joints {
 
 struct Setup {
-  Vec3 origin_mm = Vec3::Zero();          ///< of the gear frame, machine coordinates, all rotaries at zero
-  bool axis_up = true;                    ///< gear z along machine +Z, x along +X; else turned by 180 deg about X
+  Vec3 origin_mm = Vec3::Zero();  ///< of the gear frame, machine coordinates, all rotaries at zero
+  bool axis_up = true;            ///< gear z along machine +Z, x along +X; else turned by 180 deg about X
   std::string work_offset = "G54";
   Vec3 work_offset_at_mm = Vec3::Zero();  ///< origin of the work coordinate system, machine coordinates
 

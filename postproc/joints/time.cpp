@@ -10,9 +10,9 @@ namespace toothpath::joints {
 namespace {
 
 constexpr const char* kAcceleration = "acceleration";
-constexpr double kRuled = 1.01;             // a feed block that takes longer than this share of its time is ruled by acceleration
-constexpr double kLeastShare = 1e-9;        // of a corner: two blocks that could not be joined at all
-constexpr double kLeastBlockMs = 1.0;       // of a control that states none
+constexpr double kRuled = 1.01;  // a feed block that takes longer than this share of its time is ruled by acceleration
+constexpr double kLeastShare = 1e-9;   // of a corner: two blocks that could not be joined at all
+constexpr double kLeastBlockMs = 1.0;  // of a control that states none
 
 using Speeds = std::array<double, 5>;
 
@@ -31,7 +31,8 @@ double least_share(const Speeds& acceleration, const Speeds& v) {
   return least;
 }
 
-/// Time of a block of `minutes` whose share of its speed goes from s0 to s1, growing or falling by at most `rate` a minute.
+/// Time of a block of `minutes` whose share of its speed goes from s0 to s1, growing or falling by at most `rate` a
+/// minute.
 double block_time(double minutes, double s0, double s1, double rate) {
   if (!std::isfinite(rate)) return minutes;
   const double peak2 = std::min(1.0, 0.5 * (s0 * s0 + s1 * s1) + rate * minutes);
@@ -48,8 +49,9 @@ double time_from_rest(double distance, double speed, double acceleration) {
   return way * acceleration >= speed * speed ? way / speed + speed / acceleration : 2 * std::sqrt(way / acceleration);
 }
 
-std::vector<double> accelerated_times(const std::vector<AxisBlock>& blocks, const AxisBlock& start, const AxisProgram& program,
-                                      double tool_length_mm, const machines::Machine& machine) {
+std::vector<double> accelerated_times(const std::vector<AxisBlock>& blocks, const AxisBlock& start,
+                                      const AxisProgram& program, double tool_length_mm,
+                                      const machines::Machine& machine) {
   const machines::KinematicChain& chain = machine.chain;
   AxisWords words(chain, program.format, program.work_offset_at_mm);
   words.set_length(tool_length_mm);
@@ -78,7 +80,8 @@ std::vector<double> accelerated_times(const std::vector<AxisBlock>& blocks, cons
     share[i] = corner < kLeastShare ? 0 : corner;
   }
   const auto reach = [&](std::size_t i, double s) {
-    return std::isfinite(rate[i]) ? std::sqrt(s * s + 2 * rate[i] * blocks[i].minutes) : std::numeric_limits<double>::infinity();
+    return std::isfinite(rate[i]) ? std::sqrt(s * s + 2 * rate[i] * blocks[i].minutes)
+                                  : std::numeric_limits<double>::infinity();
   };
   for (std::size_t i = 0; i < n; ++i) share[i + 1] = std::min(share[i + 1], reach(i, share[i]));
   for (std::size_t i = n; i-- > 0;) share[i] = std::min(share[i], reach(i, share[i + 1]));
@@ -93,7 +96,8 @@ void estimate_times(AxisProgram& program, const machines::Machine& machine) {
   program.accelerated = {};
   std::size_t ruled = 0;
   std::fill(program.time_ruled.begin(), program.time_ruled.end(), std::size_t{0});
-  AxisBlock stands;  // rotaries at zero, X and Y where the first block finds them: the first moves of the program are not known
+  AxisBlock stands;  // rotaries at zero, X and Y where the first block finds them: the first moves of the program are
+                     // not known
   bool known = false;
   for (auto& op : program.operations) {
     op.accelerated = {};
@@ -104,7 +108,9 @@ void estimate_times(AxisProgram& program, const machines::Machine& machine) {
       known = true;
       const auto first = accelerated_times(tooth.blocks, stands, program, op.tool_length_mm, machine);
       // In a loop the other teeth begin where the one before has ended; the turn of the index is counted below.
-      const auto times = copies > 1 ? accelerated_times(tooth.blocks, tooth.blocks.back(), program, op.tool_length_mm, machine) : first;
+      const auto times = copies > 1
+                             ? accelerated_times(tooth.blocks, tooth.blocks.back(), program, op.tool_length_mm, machine)
+                             : first;
       for (std::size_t i = 0; i < times.size(); ++i) {
         const AxisBlock& b = tooth.blocks[i];
         (b.kind == BlockKind::feed ? op.accelerated.feed : op.accelerated.rapid) += first[i] + (copies - 1) * times[i];
@@ -122,12 +128,14 @@ void estimate_times(AxisProgram& program, const machines::Machine& machine) {
     if (program.loop && cut > 1 && index > 1e-12) {
       const machines::RotaryAxis& axis = machine.chain.table[0];
       const int turns = cut - 1;
-      op.accelerated.rapid += turns * time_from_rest(index * axis.max_speed / turns, axis.max_speed, axis.max_acceleration);
+      op.accelerated.rapid +=
+          turns * time_from_rest(index * axis.max_speed / turns, axis.max_speed, axis.max_acceleration);
     }
     program.accelerated.feed += op.accelerated.feed;
     program.accelerated.rapid += op.accelerated.rapid;
   }
-  if (program.time_rulers.empty() || program.time_rulers.back() != kAcceleration) {  // else the program is part of one that has been timed
+  if (program.time_rulers.empty() ||
+      program.time_rulers.back() != kAcceleration) {  // else the program is part of one that has been timed
     program.time_rulers.emplace_back(kAcceleration);
     program.time_ruled.push_back(0);
   }

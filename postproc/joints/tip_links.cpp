@@ -1,5 +1,5 @@
-// Links while TCP stays on: straight for the tip, turns with the tip standing still, all above the clearance body as it lies
-// on the table. The tool stands above its tip there, because its axis points up.
+// Links while TCP stays on: straight for the tip, turns with the tip standing still, all above the clearance body as it
+// lies on the table. The tool stands above its tip there, because its axis points up.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,8 @@
 
 namespace toothpath::joints {
 namespace {
-constexpr double kLeastUp = 0.1;  // of the tool axis, seen from the table: a flatter tool would hardly rise along itself
+constexpr double kLeastUp =
+    0.1;  // of the tool axis, seen from the table: a flatter tool would hardly rise along itself
 }
 
 /// Height over the part, table frame.
@@ -59,9 +60,10 @@ void ToothBuilder::tip_link_to(const machines::TablePose& target, const RotaryPa
   words_.set_tip(goal, target.tip_mm, rotaries);
   if (goal.words == last_.words) return;
   if (target.axis.z() < kLeastUp) {
-    error_ = fail("operation {} record {} (tooth {}): the tool axis rises by {:.3f} only, seen from the table; links with TCP "
-                  "need {:.1f}",
-                  operation_->operation, record_, tooth_, target.axis.z(), kLeastUp);
+    error_ = fail(
+        "operation {} record {} (tooth {}): the tool axis rises by {:.3f} only, seen from the table; links with TCP "
+        "need {:.1f}",
+        operation_->operation, record_, tooth_, target.axis.z(), kLeastUp);
     return;
   }
   rise_along_tool();
@@ -84,9 +86,10 @@ void ToothBuilder::rise_along_tool() {
   if (tip.z() >= height - 1e-9) return;
   const Vec3 axis = chain_.forward(words_.joints(last_), words_.length()).axis;
   if (axis.z() < kLeastUp) {
-    error_ = fail("operation {} record {} (tooth {}): the tool axis rises by {:.3f} only, seen from the table; links with TCP "
-                  "need {:.1f}",
-                  operation_->operation, record_, tooth_, axis.z(), kLeastUp);
+    error_ = fail(
+        "operation {} record {} (tooth {}): the tool axis rises by {:.3f} only, seen from the table; links with TCP "
+        "need {:.1f}",
+        operation_->operation, record_, tooth_, axis.z(), kLeastUp);
     return;
   }
   Vec3 above = tip + axis * ((height - tip.z()) / axis.z());
@@ -130,7 +133,8 @@ void ToothBuilder::push_turn(const RotaryPair& rotaries) {
     push_turn_block({words_.word_angle(part.words[3]), words_.word_angle(part.words[4])});
 }
 
-/// The control takes F in deg/min where nothing linear is named; the time is that of the slowest joint that it drags along.
+/// The control takes F in deg/min where nothing linear is named; the time is that of the slowest joint that it drags
+/// along.
 void ToothBuilder::push_turn_block(const RotaryPair& rotaries) {
   AxisBlock b = last_;
   words_.set_tip(b, words_.tip(last_), rotaries);

@@ -7,11 +7,16 @@
 
 namespace toothpath::joints {
 namespace {
-constexpr double kTipStep = radians(0.5);  // a block whose tip goes straight is curved in the joints: followed in such steps
+constexpr double kTipStep =
+    radians(0.5);  // a block whose tip goes straight is curved in the joints: followed in such steps
 }
 
 ToothBuilder::ToothBuilder(const AxisJob& job, AxisProgram& program, TravelRecord& travel, const Vec3& work_offset_mm)
-    : job_(job), chain_(job.machine.chain), program_(program), travel_(travel), words_(chain_, program.format, work_offset_mm) {}
+    : job_(job),
+      chain_(job.machine.chain),
+      program_(program),
+      travel_(travel),
+      words_(chain_, program.format, work_offset_mm) {}
 
 void ToothBuilder::begin(AxisOperation& operation, double tool_length_mm) {
   operation_ = &operation;
@@ -35,10 +40,8 @@ void ToothBuilder::tooth(const FollowedPath& followed, const RotaryPair& next_st
   for (std::size_t i = 0; i < path.records.size() && !error_; ++i) {
     record_ = followed.record(i);
     if (path.records[i].kind == path::MoveKind::rapid) {
-      if (stays_in_tcp)
-        tip_link_to(pose(i), words_.rounded(angles[i]));
-      else
-        rapid_to(pose(i), words_.rounded(angles[i]));
+      if (stays_in_tcp) tip_link_to(pose(i), words_.rounded(angles[i]));
+      else rapid_to(pose(i), words_.rounded(angles[i]));
     } else {
       if (program_.tcp != machines::TcpMode::none && !tcp_) tcp_on();
       cone_ball_ = followed.in_cone(i) ? std::optional(followed.ball_radius_mm) : std::nullopt;
@@ -52,7 +55,9 @@ void ToothBuilder::tooth(const FollowedPath& followed, const RotaryPair& next_st
   rise_to(tip_height_for_turn(words_.rounded(next_start)));
 }
 
-RotaryPair ToothBuilder::start_rotaries() const { return stays_in_tcp() ? zero_rotaries() : words_.joints(last_).rotary_rad; }
+RotaryPair ToothBuilder::start_rotaries() const {
+  return stays_in_tcp() ? zero_rotaries() : words_.joints(last_).rotary_rad;
+}
 
 void ToothBuilder::take_over(const std::vector<AxisBlock>& blocks, int k) {
   tooth_ = k;
@@ -87,7 +92,8 @@ double ToothBuilder::rotary_time(const machines::Joints& a, const machines::Join
 }
 
 void ToothBuilder::note_position(const machines::Joints& j) {
-  const bool at_top = last_.kind != BlockKind::feed && !last_.tip && last_.words[2] == words_.joint_word(program_.retract_z_mm, 2);
+  const bool at_top =
+      last_.kind != BlockKind::feed && !last_.tip && last_.words[2] == words_.joint_word(program_.retract_z_mm, 2);
   // Where the rotaries turn, X Y Z stand where the pose before left them: that one moves with the part.
   const bool turns = last_.kind == BlockKind::rapid_rotary;
   travel_.note(j, !at_top && !turns, operation_->operation, record_, tooth_, chain_, job_.machine.limit_margin);

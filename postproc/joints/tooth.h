@@ -1,10 +1,10 @@
-// The blocks of one tooth: links between the passes with their safe sequences, and the blocks of the cut with subdivision
-// and times. Used by build_axis_program alone, which decides about angles, loop and operations.
+// The blocks of one tooth: links between the passes with their safe sequences, and the blocks of the cut with
+// subdivision and times. Used by build_axis_program alone, which decides about angles, loop and operations.
 //
-// Without TCP every block is straight in the joints. With TCP the blocks of a cut carry the tip, which the control keeps on
-// its chord; links stay in the joints (TCP is switched off before the first of them), except where the control can switch
-// TCP on at rotary zero only: there TCP stays on for the whole tooth, and links rise along the tool axis above the
-// clearance body, turn there with the tip standing still, cross, and go down along the tool axis.
+// Without TCP every block is straight in the joints. With TCP the blocks of a cut carry the tip, which the control
+// keeps on its chord; links stay in the joints (TCP is switched off before the first of them), except where the control
+// can switch TCP on at rotary zero only: there TCP stays on for the whole tooth, and links rise along the tool axis
+// above the clearance body, turn there with the tip standing still, cross, and go down along the tool axis.
 #pragma once
 
 #include <array>
@@ -21,8 +21,9 @@ namespace toothpath::joints {
 
 /// Terms of the block time.
 enum TimeTerm { kFeed, kFeedLimit, kLinearSpeed, kRotarySpeed, kBlockTime, kInverseTime, kTimeTerms };
-inline constexpr const char* kTimeNames[kTimeTerms] = {"feed of the path",       "largest cutting feed", "speed of a linear axis",
-                                                       "speed of a rotary axis", "shortest block",       "largest F"};
+inline constexpr const char* kTimeNames[kTimeTerms] = {"feed of the path",       "largest cutting feed",
+                                                       "speed of a linear axis", "speed of a rotary axis",
+                                                       "shortest block",         "largest F"};
 
 /// What all teeth share.
 struct AxisJob {
@@ -39,10 +40,12 @@ struct FollowedPath {
   const path::ClPath* planned = nullptr;
   std::optional<PolePath> changed;  ///< where poles had to be handled: followed instead
   std::vector<RotaryPair> angles;
-  double ball_radius_mm = 0;        ///< in the cone about a pole the tool turns about this centre
+  double ball_radius_mm = 0;  ///< in the cone about a pole the tool turns about this centre
 
   [[nodiscard]] const path::ClPath& path() const { return changed ? changed->path : *planned; }
-  [[nodiscard]] std::int32_t record(std::size_t i) const { return changed ? changed->source[i] : static_cast<std::int32_t>(i); }
+  [[nodiscard]] std::int32_t record(std::size_t i) const {
+    return changed ? changed->source[i] : static_cast<std::int32_t>(i);
+  }
   [[nodiscard]] bool in_cone(std::size_t i) const { return changed && changed->in_cone[i] != 0; }
 };
 
@@ -52,8 +55,10 @@ class ToothBuilder {
 
   /// A new tool: the machine stands at the top of Z.
   void begin(AxisOperation& operation, double tool_length_mm);
-  /// Blocks of one tooth. @param rotation table frame from the gear frame of this tooth; @param next_start rotaries of the next
-  void tooth(const FollowedPath& path, const RotaryPair& next_start, int k, const Mat3& rotation, std::vector<AxisBlock>& blocks);
+  /// Blocks of one tooth. @param rotation table frame from the gear frame of this tooth; @param next_start rotaries of
+  /// the next
+  void tooth(const FollowedPath& path, const RotaryPair& next_start, int k, const Mat3& rotation,
+             std::vector<AxisBlock>& blocks);
   /// Where the rotaries stand when the links of the next tooth begin [rad].
   [[nodiscard]] RotaryPair start_rotaries() const;
   /// Counts blocks that were made by turning those of another tooth.
@@ -68,7 +73,9 @@ class ToothBuilder {
   [[nodiscard]] double linear_time(const machines::Joints& a, const machines::Joints& b) const;
   [[nodiscard]] double rotary_time(const machines::Joints& a, const machines::Joints& b) const;
   void note_position(const machines::Joints& j);
-  [[nodiscard]] bool stays_in_tcp() const { return program_.tcp != machines::TcpMode::none && program_.tcp_starts_at_zero; }
+  [[nodiscard]] bool stays_in_tcp() const {
+    return program_.tcp != machines::TcpMode::none && program_.tcp_starts_at_zero;
+  }
   [[nodiscard]] int copies() const { return program_.loop ? job_.teeth : 1; }
   /// Joint times of a block whose tip goes straight, and the travel inside it.
   struct TipTimes {
@@ -100,15 +107,17 @@ class ToothBuilder {
   [[nodiscard]] double link_height() const;
 
   // postproc/joints/feed.cpp
-  void feed_to(const machines::TablePose& from, const RotaryPair& from_angles, const machines::TablePose& to, const RotaryPair& to_angles, double feed,
-               int depth);
+  void feed_to(const machines::TablePose& from, const RotaryPair& from_angles, const machines::TablePose& to,
+               const RotaryPair& to_angles, double feed, int depth);
   struct Middle {
     machines::TablePose pose;
     RotaryPair angles;
   };
-  std::optional<Middle> middle_of(const machines::TablePose& from, const RotaryPair& from_angles, const machines::TablePose& to, const RotaryPair& to_angles);
+  std::optional<Middle> middle_of(const machines::TablePose& from, const RotaryPair& from_angles,
+                                  const machines::TablePose& to, const RotaryPair& to_angles);
   std::optional<RotaryPair> angles_between(const Vec3& axis, const RotaryPair& a, const RotaryPair& b);
-  void note_bounds(const machines::Joints& a, const machines::Joints& b, const machines::TablePose& from, const machines::TablePose& to, double axis_error);
+  void note_bounds(const machines::Joints& a, const machines::Joints& b, const machines::TablePose& from,
+                   const machines::TablePose& to, double axis_error);
   void push_feed(const machines::TablePose& to, const RotaryPair& rotaries, double feed);
   void set_time(AxisBlock& pushed, const AxisBlock& before, double feed);
 
@@ -124,8 +133,8 @@ class ToothBuilder {
   int tooth_ = 0;
   std::int32_t record_ = 0;
   bool at_retract_ = true, start_of_tooth_ = true, broken_ = true;
-  bool positioned_ = false;  // X and Y have been commanded
-  bool tcp_ = false;         // switched on
+  bool positioned_ = false;          // X and Y have been commanded
+  bool tcp_ = false;                 // switched on
   std::optional<double> cone_ball_;  // the step lies in the cone about a pole: ball radius, 0 for other tools
 };
 

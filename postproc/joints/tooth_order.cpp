@@ -37,9 +37,7 @@ int spread_stride(int teeth) {
   return best;
 }
 
-int tooth_of_place(int place, int stride, int teeth) {
-  return static_cast<int>(std::int64_t{place} * stride % teeth);
-}
+int tooth_of_place(int place, int stride, int teeth) { return static_cast<int>(std::int64_t{place} * stride % teeth); }
 
 int place_of_tooth(int tooth, int stride, int teeth) {
   for (int n = 0; n < teeth; ++n)
@@ -49,18 +47,21 @@ int place_of_tooth(int tooth, int stride, int teeth) {
 
 double pitches_turned(int first_place, int stride, int teeth) {
   double sum = 0;
-  for (int n = first_place + 1; n < teeth; ++n) sum += std::abs(tooth_of_place(n, stride, teeth) - tooth_of_place(n - 1, stride, teeth));
+  for (int n = first_place + 1; n < teeth; ++n)
+    sum += std::abs(tooth_of_place(n, stride, teeth) - tooth_of_place(n - 1, stride, teeth));
   return sum;
 }
 
 Result<AxisProgram> program_from(AxisProgram program, int operation, int tooth) {
   auto& list = program.operations;
-  const auto found = std::find_if(list.begin(), list.end(), [&](const AxisOperation& o) { return o.operation == operation; });
+  const auto found =
+      std::find_if(list.begin(), list.end(), [&](const AxisOperation& o) { return o.operation == operation; });
   if (found == list.end())
-    return fail_as(DiagnosticKind::usage, "operation {} does not exist: the program has the operations 0 to {}", operation,
-                   list.empty() ? 0 : list.back().operation);
+    return fail_as(DiagnosticKind::usage, "operation {} does not exist: the program has the operations 0 to {}",
+                   operation, list.empty() ? 0 : list.back().operation);
   if (tooth < 0 || tooth >= program.teeth)
-    return fail_as(DiagnosticKind::usage, "tooth {} does not exist: the gear has the teeth 0 to {}", tooth, program.teeth - 1);
+    return fail_as(DiagnosticKind::usage, "tooth {} does not exist: the gear has the teeth 0 to {}", tooth,
+                   program.teeth - 1);
   list.erase(list.begin(), found);
   AxisOperation& op = list.front();
   op.first_place = place_of_tooth(tooth, program.tooth_stride, program.teeth);
@@ -73,12 +74,14 @@ Result<AxisProgram> program_from(AxisProgram program, int operation, int tooth) 
     const double index = std::max(0.0, op.rapid_minutes - blocks * program.teeth);
     const double turns = pitches_turned(0, program.tooth_stride, program.teeth);
     op.feed_minutes *= share;
-    op.rapid_minutes = blocks * (program.teeth - op.first_place) +
-                       (turns > 0 ? index * pitches_turned(op.first_place, program.tooth_stride, program.teeth) / turns : 0);
+    op.rapid_minutes =
+        blocks * (program.teeth - op.first_place) +
+        (turns > 0 ? index * pitches_turned(op.first_place, program.tooth_stride, program.teeth) / turns : 0);
   } else {
     const auto gone = op.teeth.begin() + op.first_place;
     for (auto t = op.teeth.begin(); t != gone; ++t)
-      for (const AxisBlock& b : t->blocks) (b.kind == BlockKind::feed ? op.feed_minutes : op.rapid_minutes) -= b.minutes;
+      for (const AxisBlock& b : t->blocks)
+        (b.kind == BlockKind::feed ? op.feed_minutes : op.rapid_minutes) -= b.minutes;
     op.teeth.erase(op.teeth.begin(), gone);
   }
   op.accelerated = {op.accelerated.feed * share, op.accelerated.rapid * share};

@@ -1,19 +1,21 @@
 // In which order the teeth of an operation are cut, and how a program begins in the middle of it.
 //
-// The order has places 0 .. z - 1; place n cuts tooth n * stride mod z. stride 1 is the sequence. A stride that has no divisor in
-// common with z meets every tooth once. The spread order takes one whose quotients in the continued fraction of z / stride are small,
-// as those of the golden ratio are: after any number of teeth those that are cut divide the circle nearly evenly (three-distance
-// theorem), so that heat does not gather at one place. For z up to 130 the largest gap is never more than 2.5 times the mean one, where
-// the sequence has up to z / 4. Everything is counted in integers; an angle is made from the tooth, never from the angle before it.
+// The order has places 0 .. z - 1; place n cuts tooth n * stride mod z. stride 1 is the sequence. A stride that has no
+// divisor in common with z meets every tooth once. The spread order takes one whose quotients in the continued fraction
+// of z / stride are small, as those of the golden ratio are: after any number of teeth those that are cut divide the
+// circle nearly evenly (three-distance theorem), so that heat does not gather at one place. For z up to 130 the largest
+// gap is never more than 2.5 times the mean one, where the sequence has up to z / 4. Everything is counted in integers;
+// an angle is made from the tooth, never from the angle before it.
 #pragma once
 
 #include "postproc/joints/program.h"
 
 namespace toothpath::joints {
 
-/// Stride of the spread order: among the numbers up to teeth / 2 without a divisor in common with `teeth` the one with the smallest
-/// largest quotient in the continued fraction of teeth / stride (the last quotient counts one less); of several the one nearest to
-/// teeth / phi^2 (phi the golden ratio), then the smallest. 1 for fewer than 5 teeth and for 6, where there is no other.
+/// Stride of the spread order: among the numbers up to teeth / 2 without a divisor in common with `teeth` the one with
+/// the smallest largest quotient in the continued fraction of teeth / stride (the last quotient counts one less); of
+/// several the one nearest to teeth / phi^2 (phi the golden ratio), then the smallest. 1 for fewer than 5 teeth and for
+/// 6, where there is no other.
 /// @param teeth z >= 1
 [[nodiscard]] int spread_stride(int teeth);
 
@@ -25,9 +27,9 @@ namespace toothpath::joints {
 /// Turns of the index rotary from place to place, in pitches, from `first_place` to the end.
 [[nodiscard]] double pitches_turned(int first_place, int stride, int teeth);
 
-/// The same program from one tooth of one operation on: operations and teeth ahead of it are left out, times are those of what is
-/// left. Ranges and bounds stay those of the whole program, which they hold for.
-/// Errors (kind usage): no such operation or tooth, with what there is.
+/// The same program from one tooth of one operation on: operations and teeth ahead of it are left out, times are those
+/// of what is left. Ranges and bounds stay those of the whole program, which they hold for. Errors (kind usage): no
+/// such operation or tooth, with what there is.
 [[nodiscard]] Result<AxisProgram> program_from(AxisProgram program, int operation, int tooth);
 
 }  // namespace toothpath::joints

@@ -11,8 +11,8 @@ constexpr std::size_t kListed = 20;
 constexpr double kStill = 1e-9;  // a joint that a shift of the set-up moves by less per mm is not moved
 }  // namespace
 
-void TravelRecord::note(const machines::Joints& joints, bool moves_with_part, int operation, int record, int tooth, const machines::KinematicChain& chain,
-                        const machines::LimitMargin& margin) {
+void TravelRecord::note(const machines::Joints& joints, bool moves_with_part, int operation, int record, int tooth,
+                        const machines::KinematicChain& chain, const machines::LimitMargin& margin) {
   for (std::size_t i = 0; i < 5; ++i) {
     const double v = i < 3 ? joints.linear_mm[static_cast<int>(i)] : joints.rotary_rad[i - 3];
     least_[i] = std::min(least_[i], v);
@@ -22,7 +22,8 @@ void TravelRecord::note(const machines::Joints& joints, bool moves_with_part, in
     rotary_outside_ = rotary_outside_ || violation.rotary;
     ++count_;
     if (first_.size() < kListed)
-      first_.push_back(fmt::format("operation {} record {} (tooth {}): {}", operation, record, tooth, violation.text()));
+      first_.push_back(
+          fmt::format("operation {} record {} (tooth {}): {}", operation, record, tooth, violation.text()));
   }
   if (!moves_with_part) return;
   if (poses_ != nullptr) poses_->note(joints);
@@ -54,7 +55,8 @@ std::optional<double> TravelRecord::shift_that_fits(int m) const {
   return shift_low_[s] > 0 ? shift_low_[s] : shift_high_[s];
 }
 
-std::optional<Diagnostic> check_travel(AxisProgram& program, const machines::Machine& machine, const TravelRecord& record) {
+std::optional<Diagnostic> check_travel(AxisProgram& program, const machines::Machine& machine,
+                                       const TravelRecord& record) {
   const machines::KinematicChain& chain = machine.chain;
   program.ranges.clear();
   for (std::size_t i = 0; i < 3 + chain.rotary_count(); ++i) {

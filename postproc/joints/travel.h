@@ -20,8 +20,8 @@ namespace toothpath::joints {
 class TravelRecord {
  public:
   /// One end of a block. `moves_with_part`: false where Z stands at its own top, whatever the set-up.
-  void note(const machines::Joints& joints, bool moves_with_part, int operation, int record, int tooth, const machines::KinematicChain& chain,
-            const machines::LimitMargin& margin);
+  void note(const machines::Joints& joints, bool moves_with_part, int operation, int record, int tooth,
+            const machines::KinematicChain& chain, const machines::LimitMargin& margin);
 
   /// Poses that move with the part go to `poses`, too.
   void collect(choice::TravelPoses* poses) { poses_ = poses; }
@@ -43,7 +43,9 @@ class TravelRecord {
   std::vector<std::string> first_;
 };
 
-/// Fills `program.ranges`; the error lists the first 20 violations, their number and the shifts along one axis that would fit.
-[[nodiscard]] std::optional<Diagnostic> check_travel(AxisProgram& program, const machines::Machine& machine, const TravelRecord& record);
+/// Fills `program.ranges`; the error lists the first 20 violations, their number and the shifts along one axis that
+/// would fit.
+[[nodiscard]] std::optional<Diagnostic> check_travel(AxisProgram& program, const machines::Machine& machine,
+                                                     const TravelRecord& record);
 
 }  // namespace toothpath::joints

@@ -7,7 +7,9 @@
 
 namespace toothpath::joints {
 
-std::int64_t AxisWords::rotary_word(double angle_rad) const { return numbers::to_fixed(degrees(angle_rad), format_.rotary_decimals); }
+std::int64_t AxisWords::rotary_word(double angle_rad) const {
+  return numbers::to_fixed(degrees(angle_rad), format_.rotary_decimals);
+}
 
 double AxisWords::word_angle(std::int64_t word) const {
   return radians(static_cast<double>(word) / static_cast<double>(numbers::power_of_ten(format_.rotary_decimals)));
@@ -53,7 +55,8 @@ machines::Joints AxisWords::joints(const AxisBlock& b) const {
   machines::Joints j;
   const double unit = static_cast<double>(numbers::power_of_ten(format_.linear_decimals));
   for (int i = 0; i < 3; ++i)
-    j.linear_mm[i] = static_cast<double>(b.words[static_cast<std::size_t>(i)]) / unit + offset_[i] + (i == 2 ? length_ : 0);
+    j.linear_mm[i] =
+        static_cast<double>(b.words[static_cast<std::size_t>(i)]) / unit + offset_[i] + (i == 2 ? length_ : 0);
   j.rotary_rad = rotaries(b);
   return j;
 }

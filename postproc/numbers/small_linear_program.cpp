@@ -9,10 +9,12 @@ namespace toothpath::numbers {
 namespace {
 
 constexpr int kMostSteps = 400;
-constexpr std::size_t kHeld = 28;      // rows; beyond it those that do not meet in the vertex are let go
+constexpr std::size_t kHeld = 28;  // rows; beyond it those that do not meet in the vertex are let go
 constexpr double kLeastPivot = 1e-10;
 
-double excess(const LinearRow& r, const LinearPoint& x) { return r.a[0] * x[0] + r.a[1] * x[1] + r.a[2] * x[2] + r.a[3] * x[3] - r.b; }
+double excess(const LinearRow& r, const LinearPoint& x) {
+  return r.a[0] * x[0] + r.a[1] * x[1] + r.a[2] * x[2] + r.a[3] * x[3] - r.b;
+}
 
 /// Where `n` rows meet; empty where they do not in one point.
 std::optional<LinearPoint> meet(int n, const std::array<const LinearRow*, 4>& rows) {
@@ -29,7 +31,8 @@ std::optional<LinearPoint> meet(int n, const std::array<const LinearRow*, 4>& ro
 
 class Program {
  public:
-  Program(int n, const LinearPoint& objective, double box, double tolerance) : n_(n), objective_(objective), tolerance_(tolerance) {
+  Program(int n, const LinearPoint& objective, double box, double tolerance)
+      : n_(n), objective_(objective), tolerance_(tolerance) {
     for (int i = 0; i < n; ++i)
       for (const double side : {1.0, -1.0}) {
         LinearRow r;
@@ -37,7 +40,8 @@ class Program {
         r.b = box;
         rows_.push_back(r);
       }
-    for (int i = 0; i < n; ++i) x_[static_cast<std::size_t>(i)] = objective[static_cast<std::size_t>(i)] >= 0 ? box : -box;
+    for (int i = 0; i < n; ++i)
+      x_[static_cast<std::size_t>(i)] = objective[static_cast<std::size_t>(i)] >= 0 ? box : -box;
   }
   const LinearPoint& point() const { return x_; }
 

@@ -18,7 +18,8 @@ class Parser {
   Parser(std::string_view line, bool o_words) : line_(line), o_words_(o_words) {}
 
   Result<NcBlock> parse() {
-    if (line_.size() > kLongestBlock) return error(kLongestBlock, fmt::format("line of {} characters exceeds {}", line_.size(), kLongestBlock));
+    if (line_.size() > kLongestBlock)
+      return error(kLongestBlock, fmt::format("line of {} characters exceeds {}", line_.size(), kLongestBlock));
     skip_blanks();
     if (at() == '%') {
       ++i_;
@@ -32,16 +33,11 @@ class Parser {
       skip_blanks();
       if (i_ >= line_.size()) break;
       const char c = at();
-      if (c == '(')
-        comment();
-      else if (c == ';')
-        break;
-      else if (c == '#')
-        assignment();
-      else if (is_letter(c))
-        word();
-      else
-        stop(i_, fmt::format("character {} is no part of a word", printable(c)));
+      if (c == '(') comment();
+      else if (c == ';') break;
+      else if (c == '#') assignment();
+      else if (is_letter(c)) word();
+      else stop(i_, fmt::format("character {} is no part of a word", printable(c)));
     }
     if (problem_) return *problem_;
     return std::move(block_);
@@ -89,10 +85,8 @@ class Parser {
     const std::size_t unsigned_begin = i_;
     point = false;
     while (is_digit(at()) || (at() == '.' && !point)) {
-      if (at() == '.')
-        point = true;
-      else
-        ++digits;
+      if (at() == '.') point = true;
+      else ++digits;
       ++i_;
     }
     if (digits == 0 || digits > 18) {
@@ -154,12 +148,15 @@ class Parser {
   }
   /// MOD binds as a product does; 0 <= r < abs(b), as LinuxCNC makes it.
   bool modulo_here() const {
-    return i_ + 2 < line_.size() && upper(line_[i_]) == 'M' && upper(line_[i_ + 1]) == 'O' && upper(line_[i_ + 2]) == 'D';
+    return i_ + 2 < line_.size() && upper(line_[i_]) == 'M' && upper(line_[i_ + 1]) == 'O' &&
+           upper(line_[i_ + 2]) == 'D';
   }
   void product(int depth) {
     primary(depth);
     for (skip_blanks(); !problem_ && (at() == '*' || at() == '/' || modulo_here()); skip_blanks()) {
-      const auto kind = at() == '*' ? NcStep::Kind::multiply : at() == '/' ? NcStep::Kind::divide : NcStep::Kind::modulo;
+      const auto kind = at() == '*'   ? NcStep::Kind::multiply
+                        : at() == '/' ? NcStep::Kind::divide
+                                      : NcStep::Kind::modulo;
       i_ += kind == NcStep::Kind::modulo ? 3 : 1;
       if (kind == NcStep::Kind::multiply && at() == '*') return stop(i_, "powers are not in the subset");
       primary(depth);
@@ -183,8 +180,13 @@ class Parser {
     const char a = upper(at()), b = i_ + 1 < line_.size() ? upper(line_[i_ + 1]) : '\0';
     using K = NcStep::Kind;
     const std::string name{a, b};
-    const K kind = name == "LT" ? K::lt : name == "LE" ? K::le : name == "GT" ? K::gt : name == "GE" ? K::ge
-                   : name == "EQ" ? K::eq : name == "NE" ? K::ne : K::number;
+    const K kind = name == "LT"   ? K::lt
+                   : name == "LE" ? K::le
+                   : name == "GT" ? K::gt
+                   : name == "GE" ? K::ge
+                   : name == "EQ" ? K::eq
+                   : name == "NE" ? K::ne
+                                  : K::number;
     if (kind == K::number) return stop(begin, "operator is not in the subset");
     i_ += 2;
     sum(depth);

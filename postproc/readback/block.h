@@ -13,7 +13,22 @@ namespace toothpath::readback {
 
 /// Step of an expression in postfix order.
 struct NcStep {
-  enum class Kind : std::uint8_t { number, parameter, negate, add, subtract, multiply, divide, modulo, lt, le, gt, ge, eq, ne };
+  enum class Kind : std::uint8_t {
+    number,
+    parameter,
+    negate,
+    add,
+    subtract,
+    multiply,
+    divide,
+    modulo,
+    lt,
+    le,
+    gt,
+    ge,
+    eq,
+    ne
+  };
   Kind kind = Kind::number;
   double value = 0;  ///< of a number; index of a parameter
 };
@@ -41,8 +56,8 @@ struct NcBlock {
   std::vector<NcValue> arguments;  ///< of an o-word
   OWord o_word = OWord::none;
   std::int64_t o_number = 0;
-  std::int32_t operation = -1;     ///< n of the comment (OP n type); -1: no such comment
-  std::int32_t tooth = -1;         ///< k of the comment (TOOTH k)
+  std::int32_t operation = -1;  ///< n of the comment (OP n type); -1: no such comment
+  std::int32_t tooth = -1;      ///< k of the comment (TOOTH k)
   bool percent = false;
 };
 

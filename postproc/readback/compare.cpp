@@ -56,8 +56,8 @@ class Walk {
     return measure();
   }
 
-  /// Feed motions up to the one that comes nearest to the record; each must stay on the chord from the record before. Between two
-  /// ends of a block the tip may stray by the tolerance, so that it may also fall back by it on the way.
+  /// Feed motions up to the one that comes nearest to the record; each must stay on the chord from the record before.
+  /// Between two ends of a block the tip may stray by the tolerance, so that it may also fall back by it on the way.
   bool feed() {
     const Vec3 from = path_.records[record_ - 1].tip, to = record().tip;
     double minutes = 0, length = 0;
@@ -111,8 +111,8 @@ class Walk {
     result_.missed_record = record_;
     result_.line = next_ < motions_.size() ? motions_[next_]->line : line_;
     result_.worst_mm = std::max(result_.worst_mm, distance);
-    result_.message = fmt::format("operation {} record {} near line {}: {} (distance {:.6f} mm)", path_.operation, record_,
-                                  result_.line, why, distance);
+    result_.message = fmt::format("operation {} record {} near line {}: {} (distance {:.6f} mm)", path_.operation,
+                                  record_, result_.line, why, distance);
     return false;
   }
 
@@ -128,8 +128,8 @@ class Walk {
 
 }  // namespace
 
-ClComparison compare_with_cl(std::span<const path::ToolMotion> motions, std::span<const path::ClPath* const> paths, double tolerance_mm,
-                             double axis_tolerance_rad) {
+ClComparison compare_with_cl(std::span<const path::ToolMotion> motions, std::span<const path::ClPath* const> paths,
+                             double tolerance_mm, double axis_tolerance_rad) {
   ClComparison result;
   result.complete = true;
   for (const path::ClPath* path : paths) {

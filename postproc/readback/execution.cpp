@@ -12,12 +12,12 @@ namespace toothpath::readback {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTipStill = 1e-9;       // mm: round-off of a tip that does not move
-constexpr double kZeroRotary = 1e-9;  // deg
+constexpr double kTipStill = 1e-9;        // mm: round-off of a tip that does not move
+constexpr double kZeroRotary = 1e-9;      // deg
 constexpr double kFullTurn = 360;         // deg
 constexpr double kHalfTurn = 180 - 1e-6;  // deg: from here on round-off decides which way is the nearer one
-constexpr double kBelowZero = 1e-9;   // deg: round-off of a remainder
-constexpr double kFlip = 170;         // deg: a tool vector that turns further in one block leaves the plane of the turn open
+constexpr double kBelowZero = 1e-9;       // deg: round-off of a remainder
+constexpr double kFlip = 170;  // deg: a tool vector that turns further in one block leaves the plane of the turn open
 
 bool known(const std::array<double, 5>& joints) {
   return std::none_of(joints.begin(), joints.end(), [](double v) { return std::isnan(v); });
@@ -57,7 +57,8 @@ Vec3 turned_deg(const Vec3& v, double deg) {
 
 }  // namespace
 
-NcExecution::NcExecution(const NcControl& control, const NcRules& rules, const std::function<void(const ExecutedMove&)>& sink)
+NcExecution::NcExecution(const NcControl& control, const NcRules& rules,
+                         const std::function<void(const ExecutedMove&)>& sink)
     : control_(control), rules_(rules), sink_(sink) {
   joints_.fill(kUnknown);
   rolled_.fill(kUnknown);
@@ -89,7 +90,8 @@ NcExecution::Problem NcExecution::set_speed(double s) {
 }
 
 NcExecution::Problem NcExecution::choose_tool(double number) {
-  if (!(std::abs(number) < 1e6) || number != std::floor(number) || control_.tool_length_mm.count(static_cast<int>(number)) == 0)
+  if (!(std::abs(number) < 1e6) || number != std::floor(number) ||
+      control_.tool_length_mm.count(static_cast<int>(number)) == 0)
     return fmt::format("tool {} is not in the tool list", number);
   next_tool_ = static_cast<int>(number);
   return std::nullopt;
@@ -129,7 +131,9 @@ NcExecution::Problem NcExecution::set_length(int tool) {
 bool NcExecution::site_smoothing(std::string_view line) {
   while (!line.empty() && line.front() == ' ') line.remove_prefix(1);
   while (!line.empty() && line.back() == ' ') line.remove_suffix(1);
-  const auto is = [line](const std::vector<std::string>& list) { return std::find(list.begin(), list.end(), line) != list.end(); };
+  const auto is = [line](const std::vector<std::string>& list) {
+    return std::find(list.begin(), list.end(), line) != list.end();
+  };
   const bool on = is(control_.smoothing_on);
   if (line.empty() || (!on && !is(control_.smoothing_off))) return false;
   set_blend(on ? control_.smoothing_mm : 0);
@@ -167,9 +171,12 @@ NcExecution::Problem NcExecution::end_program(bool inside_call) {
   return std::nullopt;
 }
 
-/// Angles of rotaries, deg, for the kinematics [rad]: of those that roll over the place within the turn, so that whole turns change no digit.
+/// Angles of rotaries, deg, for the kinematics [rad]: of those that roll over the place within the turn, so that whole
+/// turns change no digit.
 std::array<double, 2> NcExecution::angles_of(double r0, double r1) const {
-  const auto angle = [this](std::size_t axis, double deg) { return radians(control_.rollover[axis] ? deg - kFullTurn * std::floor(deg / kFullTurn) : deg); };
+  const auto angle = [this](std::size_t axis, double deg) {
+    return radians(control_.rollover[axis] ? deg - kFullTurn * std::floor(deg / kFullTurn) : deg);
+  };
   return {angle(3, r0), angle(4, r1)};
 }
 
@@ -183,7 +190,8 @@ std::array<double, 5> NcExecution::joints_for(const Vec3& tip, double r0, double
 }
 
 /// Joint words.
-NcExecution::Problem NcExecution::goal_of(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const {
+NcExecution::Problem NcExecution::goal_of(const Move& m, std::array<double, 5>& joints, Vec3& tip,
+                                          std::uint8_t& commanded) const {
   if (m.vector) return "a tool vector without TCP";
   for (std::size_t a = 0; a < 5; ++a) {
     if (!m.has[a]) continue;
@@ -202,7 +210,8 @@ NcExecution::Problem NcExecution::goal_of(const Move& m, std::array<double, 5>& 
 }
 
 /// Words of the tip and rotary words or a vector.
-NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const {
+NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>& joints, Vec3& tip,
+                                           std::uint8_t& commanded) const {
   Vec3 words = turned_deg(tip_ - *offset_, -frame_deg_);
   const Vec3 before = words;
   for (std::size_t a = 0; a < 5; ++a) {
@@ -223,17 +232,20 @@ NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>&
     const Vec3 from = control_.chain->forward({Vec3::Zero(), now}, 1.0).axis;
     const double turn = degrees(std::atan2(from.cross(axis).norm(), from.dot(axis)));
     if (!m.rapid && turn > kFlip + 1e-4)
-      return fmt::format("the tool axis turns by {:.4f} deg in one block, limit {:g}: which way is not said", turn, kFlip);
+      return fmt::format("the tool axis turns by {:.4f} deg in one block, limit {:g}: which way is not said", turn,
+                         kFlip);
     for (const auto& s : *list) {
       std::array<double, 2> angles{};
       double distance = 0;
       for (std::size_t k = 0; k < control_.chain->rotary_count(); ++k) {
-        angles[k] = s.free_rotary == static_cast<int>(k) ? now[k] : choice::nearest_turn(s.joints.rotary_rad[k], now[k]);
+        angles[k] =
+            s.free_rotary == static_cast<int>(k) ? now[k] : choice::nearest_turn(s.joints.rotary_rad[k], now[k]);
         distance = std::max(distance, std::abs(angles[k] - now[k]));
       }
       if (distance >= nearest) continue;
       nearest = distance;
-      for (std::size_t k = 0; k < 2; ++k) joints[3 + k] = control_.rollover[3 + k] ? turned_on(degrees(angles[k]), joints_[3 + k]) : degrees(angles[k]);
+      for (std::size_t k = 0; k < 2; ++k)
+        joints[3 + k] = control_.rollover[3 + k] ? turned_on(degrees(angles[k]), joints_[3 + k]) : degrees(angles[k]);
     }
     commanded = static_cast<std::uint8_t>(commanded | 0x18U);
   }
@@ -248,7 +260,8 @@ NcExecution::Problem NcExecution::roll(Move& m) {
     const double word = m.axis[a], now = joints_[a];
     const double least = rules_.sign_is_sense ? -kFullTurn : -kBelowZero;
     if (!(word > least && word < kFullTurn))
-      return fmt::format("{} = {} of an axis that rolls over is outside {} 360", control_.letters[a], word, rules_.sign_is_sense ? "-360 .." : "0 ..");
+      return fmt::format("{} = {} of an axis that rolls over is outside {} 360", control_.letters[a], word,
+                         rules_.sign_is_sense ? "-360 .." : "0 ..");
     double turns = 0;
     if (rules_.sign_is_sense) {
       rolled_[a] = std::isnan(rolled_[a]) ? std::abs(word) : by_sign(word, rolled_[a]);
@@ -310,11 +323,14 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
 /// How far the control may leave the corners at both ends of a feed block.
 NcExecution::Problem NcExecution::corners(const std::array<double, 5>& goal, const Vec3& tip, ExecutedMove& e) const {
   const bool turns = std::abs(goal[3] - joints_[3]) > kTipStill || std::abs(goal[4] - joints_[4]) > kTipStill;
-  if (turns && blend_is_linear_) return "G64 bounds X, Y and Z alone, this G1 turns a rotary axis: G61 or G61.1 is needed";
+  if (turns && blend_is_linear_)
+    return "G64 bounds X, Y and Z alone, this G1 turns a rotary axis: G61 or G61.1 is needed";
   if (turns && tcp_ && rules_.turns_need_axis_blend && !blend_axis_rad_)
-    return "this block turns a rotary axis and no TA says how far the control may leave its way: CYCL DEF 32.2 is needed";
+    return "this block turns a rotary axis and no TA says how far the control may leave its way: CYCL DEF 32.2 is "
+           "needed";
   if (turns && site_smoothing_ && !blend_axis_rad_)
-    return "this block turns a rotary axis under smoothing that the machine file states, without post.smoothing_axis_tolerance";
+    return "this block turns a rotary axis under smoothing that the machine file states, without "
+           "post.smoothing_axis_tolerance";
   e.blend_mm = static_cast<float>(blend_mm_);
   if (site_smoothing_) e.blend_axis_rad = static_cast<float>(blend_axis_rad_.value_or(0));
   for (std::size_t a = 3; a < 5 && tcp_ && blend_axis_rad_ && !site_smoothing_; ++a)  // a tolerance of each rotary
@@ -326,9 +342,11 @@ NcExecution::Problem NcExecution::corners(const std::array<double, 5>& goal, con
   double way = 0;
   if (tcp_) way = (tip - tip_).norm();
   else
-    for (std::size_t a = 0; a < 5; ++a) way = std::hypot(way, (path_weights_ ? (*path_weights_)[a] : a < 3 ? 1.0 : 0.0) * (goal[a] - joints_[a]));
+    for (std::size_t a = 0; a < 5; ++a)
+      way = std::hypot(way, (path_weights_ ? (*path_weights_)[a] : a < 3 ? 1.0 : 0.0) * (goal[a] - joints_[a]));
   e.corner_path_mm = static_cast<float>(*corner_way_);
-  if (*corner_way_ > 0) e.corner_share = *corner_way_ < 0.5 * way ? static_cast<float>(*corner_way_ / way * (1 + 1e-6)) : 0.5F;
+  if (*corner_way_ > 0)
+    e.corner_share = *corner_way_ < 0.5 * way ? static_cast<float>(*corner_way_ / way * (1 + 1e-6)) : 0.5F;
   return std::nullopt;
 }
 

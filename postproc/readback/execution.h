@@ -1,8 +1,8 @@
-// What a control does with a block once it is understood: modes, tools, offsets, TCP, and where the joints stand. The same
-// for every dialect; the readers of the dialects turn text into calls of this and give errors their place.
+// What a control does with a block once it is understood: modes, tools, offsets, TCP, and where the joints stand. The
+// same for every dialect; the readers of the dialects turn text into calls of this and give errors their place.
 //
-// With TCP the linear words are the tip in the table frame (seen from the work offset, and turned with it where the program
-// turns its frame); the tip goes straight, the rotaries are linear in time, the other joints follow.
+// With TCP the linear words are the tip in the table frame (seen from the work offset, and turned with it where the
+// program turns its frame); the tip goes straight, the rotaries are linear in time, the other joints follow.
 #pragma once
 
 #include <array>
@@ -17,11 +17,13 @@ namespace toothpath::readback {
 
 /// How a control differs in what it does, not in how it is written.
 struct NcRules {
-  bool tcp_needs_zero = false;     ///< TCP may be switched on with the rotaries at zero only
-  double least_rate = 0;           ///< G93 blocks are raised to this rate, mm/min or deg/min
-  bool per_minute_turns = false;   ///< G94 with rotary words without TCP has a defined time
-  bool sign_is_sense = false;      ///< the sign of a word says which way a rotary that rolls over turns; else the nearer way is taken
-  bool turns_need_axis_blend = false;  ///< a tolerance of the tip leaves that of the rotaries to the machine: it must be said too
+  bool tcp_needs_zero = false;    ///< TCP may be switched on with the rotaries at zero only
+  double least_rate = 0;          ///< G93 blocks are raised to this rate, mm/min or deg/min
+  bool per_minute_turns = false;  ///< G94 with rotary words without TCP has a defined time
+  bool sign_is_sense =
+      false;  ///< the sign of a word says which way a rotary that rolls over turns; else the nearer way is taken
+  bool turns_need_axis_blend =
+      false;  ///< a tolerance of the tip leaves that of the rotaries to the machine: it must be said too
 };
 
 class NcExecution {
@@ -29,13 +31,13 @@ class NcExecution {
   using Problem = std::optional<std::string>;
 
   struct Move {
-    std::array<double, 5> axis{};        ///< words, mm and deg
+    std::array<double, 5> axis{};  ///< words, mm and deg
     std::array<bool, 5> has{};
-    std::optional<Vec3> vector;          ///< tool axis instead of rotary words, work frame
+    std::optional<Vec3> vector;  ///< tool axis instead of rotary words, work frame
     bool rapid = false;
-    bool machine_frame = false;          ///< words are joints: no offset, no tool length
-    bool compensation = false;           ///< the block switches tool length compensation on
-    bool own_feed = false;               ///< F stands in the block
+    bool machine_frame = false;  ///< words are joints: no offset, no tool length
+    bool compensation = false;   ///< the block switches tool length compensation on
+    bool own_feed = false;       ///< F stands in the block
   };
 
   NcExecution(const NcControl& control, const NcRules& rules, const std::function<void(const ExecutedMove&)>& sink);
@@ -59,9 +61,10 @@ class NcExecution {
   Problem spindle_on();
   void spindle_off() { spindle_ = false; }
   Problem select_offset(const std::string& name);
-  Problem set_length(int tool);      ///< tool length compensation with the length of this tool
+  Problem set_length(int tool);  ///< tool length compensation with the length of this tool
   void drop_length() { length_.reset(); }
-  /// The control may leave corners by this. @param linear_only it does not hold for rotaries: feed blocks must not turn them
+  /// The control may leave corners by this. @param linear_only it does not hold for rotaries: feed blocks must not turn
+  /// them
   void set_blend(double mm, bool linear_only = false) {
     blend_mm_ = mm;
     blend_is_linear_ = linear_only;
@@ -76,7 +79,8 @@ class NcExecution {
   void set_path_weights(std::optional<std::array<double, 5>> weights) { path_weights_ = weights; }
   /// How far the control may turn a rotary off its way with TCP, rad. Nothing: not said.
   void set_blend_axis(std::optional<double> rad) { blend_axis_rad_ = rad; }
-  /// A line that the machine file states for the control's own smoothing, blanks around it left out: takes its effect. @returns it is one
+  /// A line that the machine file states for the control's own smoothing, blanks around it left out: takes its effect.
+  /// @returns it is one
   bool site_smoothing(std::string_view line);
   Problem tcp_on();
   Problem tcp_off();

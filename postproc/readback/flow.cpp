@@ -120,11 +120,13 @@ std::optional<Diagnostic> NcFlow::find_labels() {
     };
     switch (block->o_word) {
       case OWord::program:
-        if (!labels_.emplace(block->o_number, i).second) return at(i + 1, 1, fmt::format("O{} occurs twice", block->o_number));
+        if (!labels_.emplace(block->o_number, i).second)
+          return at(i + 1, 1, fmt::format("O{} occurs twice", block->o_number));
         break;
       case OWord::sub:
         if (!open.empty()) return at(i + 1, 1, "sub inside another o-word");
-        if (!labels_.emplace(block->o_number, i).second) return at(i + 1, 1, fmt::format("o{} occurs twice", block->o_number));
+        if (!labels_.emplace(block->o_number, i).second)
+          return at(i + 1, 1, fmt::format("o{} occurs twice", block->o_number));
         [[fallthrough]];
       case OWord::loop_while:
       case OWord::repeat:
@@ -257,7 +259,8 @@ std::optional<Diagnostic> NcFlow::loop_head(const NcBlock& b) {
     again = running ? --frames_.back().repeats > 0 : *v > 0;
   }
   if (again && !running) {
-    if (frames_.size() >= kDeepestCall) return here(1, fmt::format("calls and loops nest deeper than {}", kDeepestCall));
+    if (frames_.size() >= kDeepestCall)
+      return here(1, fmt::format("calls and loops nest deeper than {}", kDeepestCall));
     Frame f;
     f.kind = b.o_word;
     f.number = b.o_number;

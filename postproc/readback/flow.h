@@ -1,5 +1,5 @@
-// The flow of control of an ISO program: lines, o-words, loops, sub-programs, parameters. What a block does is the business
-// of whoever runs it.
+// The flow of control of an ISO program: lines, o-words, loops, sub-programs, parameters. What a block does is the
+// business of whoever runs it.
 #pragma once
 
 #include <array>
@@ -28,7 +28,9 @@ class NcFlow {
   [[nodiscard]] Status run(const Words& words);
 
   /// A diagnostic in the line that is being executed.
-  [[nodiscard]] Diagnostic here(int column, std::string message) const { return at(line_ + 1, column, std::move(message)); }
+  [[nodiscard]] Diagnostic here(int column, std::string message) const {
+    return at(line_ + 1, column, std::move(message));
+  }
   [[nodiscard]] std::string_view text() const { return lines_[line_]; }  ///< of the line that is being executed
   [[nodiscard]] std::int32_t line() const { return static_cast<std::int32_t>(line_) + 1; }
   [[nodiscard]] Result<double> value(const NcBlock& b, const NcValue& v, int column) const;
@@ -44,7 +46,7 @@ class NcFlow {
   struct Frame {  // of a call or a loop
     OWord kind = OWord::none;
     std::int64_t number = 0;
-    std::size_t begin = 0;   // line of the loop's head, or where to go on after a call
+    std::size_t begin = 0;  // line of the loop's head, or where to go on after a call
     double repeats = 0;
     std::array<double, 30> saved{};
     std::array<bool, 30> saved_set{};
@@ -67,8 +69,8 @@ class NcFlow {
   std::size_t max_steps_;
   std::vector<std::string_view> lines_;
   std::vector<std::size_t> percents_;
-  std::unordered_map<std::size_t, std::size_t> ends_;          // head line -> end line
-  std::unordered_map<std::int64_t, std::size_t> labels_;       // sub-program -> line
+  std::unordered_map<std::size_t, std::size_t> ends_;     // head line -> end line
+  std::unordered_map<std::int64_t, std::size_t> labels_;  // sub-program -> line
   std::unordered_map<std::size_t, NcBlock> cache_;
   NcBlock once_;
   std::vector<Frame> frames_;

@@ -13,9 +13,12 @@ constexpr unsigned kOffsets = 12;  // modal group
 
 class Interpreter {
  public:
-  Interpreter(std::string_view text, const std::string& file, const NcControl& control,
-              const MoveSink& sink, const IsoLanguage& language)
-      : control_(control), language_(language), flow_(text, file, language.o_words, control.max_steps), execution_(control, language.rules, sink) {}
+  Interpreter(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink,
+              const IsoLanguage& language)
+      : control_(control),
+        language_(language),
+        flow_(text, file, language.o_words, control.max_steps),
+        execution_(control, language.rules, sink) {}
 
   Status run() {
     return flow_.run([this](const NcBlock& b) { return block(b); });
@@ -40,13 +43,13 @@ class Interpreter {
   // Words of one block, sorted by meaning before anything happens.
   struct Request {
     NcExecution::Move move;
-    int motion = -1;           // G0 G1 in this block
-    int feed_mode = -1;        // 93 94
+    int motion = -1;     // G0 G1 in this block
+    int feed_mode = -1;  // 93 94
     bool g53 = false, g43 = false, tcp = false, g49 = false, g64 = false, g61 = false;
-    bool extended = false;     // G54.1, its number in P
+    bool extended = false;  // G54.1, its number in P
     std::string offset;
     std::vector<int> m;
-    int switch_tcp = -1;       // 1 on, 0 off: a code of the site
+    int switch_tcp = -1;  // 1 on, 0 off: a code of the site
     std::optional<double> f, s, h, t, p, q, l;
     int column = 1;
     int p_column = 1;
@@ -66,7 +69,9 @@ class Interpreter {
 
   /// Codes of the machine file that switch TCP.
   bool site_code(Request& r, const std::string& code) const {
-    const auto is = [&](const std::vector<std::string>& list) { return std::find(list.begin(), list.end(), code) != list.end(); };
+    const auto is = [&](const std::vector<std::string>& list) {
+      return std::find(list.begin(), list.end(), code) != list.end();
+    };
     if (!is(control_.tcp_on) && !is(control_.tcp_off)) return false;
     r.switch_tcp = is(control_.tcp_on) ? 1 : 0;
     return true;
@@ -84,7 +89,9 @@ class Interpreter {
     return std::find(common.begin(), common.end(), m) != common.end() || (call && !language_.o_words) ||
            std::find(language_.coolant_m.begin(), language_.coolant_m.end(), m) != language_.coolant_m.end();
   }
-  [[nodiscard]] bool has_g(int tenths) const { return std::find(language_.g_tenths.begin(), language_.g_tenths.end(), tenths) != language_.g_tenths.end(); }
+  [[nodiscard]] bool has_g(int tenths) const {
+    return std::find(language_.g_tenths.begin(), language_.g_tenths.end(), tenths) != language_.g_tenths.end();
+  }
 
   Problem take(Request& r, const NcWord& w, double v) {
     switch (w.letter) {
@@ -92,7 +99,8 @@ class Interpreter {
       case 'M': {
         const int m = static_cast<int>(std::lround(v));
         if (v == m && language_.codes_of_site && site_code(r, fmt::format("M{}", m))) return std::nullopt;
-        if (v != m || !(has_m(m) || control_.switches_coolant(fmt::format("M{}", m)))) return here(w.column, fmt::format("M{} is not in the subset", v));
+        if (v != m || !(has_m(m) || control_.switches_coolant(fmt::format("M{}", m))))
+          return here(w.column, fmt::format("M{} is not in the subset", v));
         if (!r.m.empty()) return here(w.column, "two M words in a block");
         r.m.push_back(m);
         return std::nullopt;
@@ -110,7 +118,8 @@ class Interpreter {
     for (std::size_t a = 0; a < 5; ++a) {
       if (control_.letters[a] != w.letter) continue;
       if (r.move.has[a]) return here(w.column, fmt::format("two {} words in a block", w.letter));
-      if (language_.point_needed && !w.point) return here(w.column, fmt::format("{} without a decimal point", w.letter));
+      if (language_.point_needed && !w.point)
+        return here(w.column, fmt::format("{} without a decimal point", w.letter));
       r.move.has[a] = true;
       r.move.axis[a] = v;
       r.column = w.column;
@@ -126,10 +135,12 @@ class Interpreter {
   /// Takes a G code of the family and gives its modal group; 0: it is none.
   unsigned group_of(Request& r, int tenths) {
     switch (tenths) {
-      case 0: case 10: r.motion = tenths / 10; return 1;
+      case 0:
+      case 10: r.motion = tenths / 10; return 1;
       case 170: return 2;
       case 900: execution_.set_absolute(); return 3;
-      case 930: case 940: r.feed_mode = tenths / 10; return 4;
+      case 930:
+      case 940: r.feed_mode = tenths / 10; return 4;
       case 210: execution_.set_unit(); return 5;
       case 400: return 6;
       case 430: r.g43 = true; return 7;
@@ -137,15 +148,23 @@ class Interpreter {
       case 490: r.g49 = true; return 7;
       case 800: return 8;
       case 530: r.g53 = true; return 9;
-      case 610: case 611: case 640:
+      case 610:
+      case 611:
+      case 640:
         r.g64 = tenths == 640;
         r.g61 = !r.g64;
         return 10;
       case 921: return 11;
       case 690: return 13;
-      case 540: case 550: case 560: case 570: case 580: case 590: case 591: case 592: case 593:
-        r.offset = g_word(tenths);
-        return kOffsets;
+      case 540:
+      case 550:
+      case 560:
+      case 570:
+      case 580:
+      case 590:
+      case 591:
+      case 592:
+      case 593: r.offset = g_word(tenths); return kOffsets;
       default: return 0;
     }
   }
@@ -155,8 +174,10 @@ class Interpreter {
     const bool extended = tenths > 0 && tenths == language_.extended.tenths;
     const unsigned group = extended ? kOffsets : group_of(r, tenths);
     r.extended = r.extended || extended;
-    if (group == 0 || std::abs(v * 10 - tenths) > 1e-6) return here(w.column, fmt::format("G{} is not in the subset", v));
-    const bool special = tenths == 434 || tenths == 690 || tenths == 921 || tenths == 610 || tenths == 611 || tenths == 640 || (tenths > 590 && tenths < 600);
+    if (group == 0 || std::abs(v * 10 - tenths) > 1e-6)
+      return here(w.column, fmt::format("G{} is not in the subset", v));
+    const bool special = tenths == 434 || tenths == 690 || tenths == 921 || tenths == 610 || tenths == 611 ||
+                         tenths == 640 || (tenths > 590 && tenths < 600);
     if (special && !has_g(tenths)) return here(w.column, fmt::format("G{} is not in the dialect", v));
     if ((r.groups & (1U << group)) != 0) return here(w.column, "two G words of one modal group in a block");
     r.groups |= 1U << group;
@@ -168,13 +189,16 @@ class Interpreter {
     if (r.extended) {
       const std::string code = g_word(language_.extended.tenths);
       const int last = language_.extended.last;
-      if (!r.p || *r.p != std::floor(*r.p) || !(*r.p >= 1 && *r.p <= last)) return here(r.column, fmt::format("{} needs P1 to P{}", code, last));
+      if (!r.p || *r.p != std::floor(*r.p) || !(*r.p >= 1 && *r.p <= last))
+        return here(r.column, fmt::format("{} needs P1 to P{}", code, last));
       r.offset = fmt::format("{} P{}", code, static_cast<int>(*r.p));
       r.p.reset();
     }
-    if ((r.p || r.q) && !r.g64 && (r.m.empty() || r.m.front() != 98)) return here(r.p_column, "P or Q without G64 or M98");
+    if ((r.p || r.q) && !r.g64 && (r.m.empty() || r.m.front() != 98))
+      return here(r.p_column, "P or Q without G64 or M98");
     if (r.l) return here(r.column, "L is not in the subset");
-    if (r.g64 && (!r.p || *r.p == 0)) return here(r.column, fmt::format("G64 {} leaves the path without limit", r.p ? "P0" : "without P"));
+    if (r.g64 && (!r.p || *r.p == 0))
+      return here(r.column, fmt::format("G64 {} leaves the path without limit", r.p ? "P0" : "without P"));
     if (r.g64 && (*r.p < 0 || r.q.value_or(0) < 0)) return here(r.column, "P and Q of G64 must not be negative");
     // Without Q the lines that are joined may be off by P.
     corners_said_ = corners_said_ || r.g64 || r.g61;
@@ -216,7 +240,8 @@ class Interpreter {
     }
     if (r.h && !r.g43) return here(r.column, "H without G43");
     if (!r.g43) return std::nullopt;
-    if (!r.h || *r.h != std::floor(*r.h) || !(*r.h >= 0 && *r.h < 1e6)) return here(r.column, "G43 needs the H of a tool in the list");
+    if (!r.h || *r.h != std::floor(*r.h) || !(*r.h >= 0 && *r.h < 1e6))
+      return here(r.column, "G43 needs the H of a tool in the list");
     return placed(r.column, execution_.set_length(static_cast<int>(*r.h)));
   }
 
@@ -226,12 +251,11 @@ class Interpreter {
       case 5: execution_.spindle_off(); break;
       case 6: return placed(r.column, execution_.change_tool());
       case 2:
-      case 30:
-        flow_.end();
-        return placed(r.column, execution_.end_program(flow_.inside_call()));
+      case 30: flow_.end(); return placed(r.column, execution_.end_program(flow_.inside_call()));
       case 98: {
         const std::int64_t p = r.p && std::abs(*r.p) < 1e9 ? static_cast<std::int64_t>(*r.p) : -1;
-        if (moves(r) || !flow_.has_program(p)) return here(r.column, "M98 needs the P of a sub-program in this file and no axis word");
+        if (moves(r) || !flow_.has_program(p))
+          return here(r.column, "M98 needs the P of a sub-program in this file and no axis word");
         return flow_.call_program(p);
       }
       case 99: return flow_.return_from_program(r.column);
@@ -244,7 +268,9 @@ class Interpreter {
     if (motion_ < 0) return here(r.column, "axis word before G0 or G1");
     if (r.g53 && motion_ != 0) return here(r.column, "G53 with G1");
     if (language_.corner_of_g64 != nullptr && motion_ == 1 && !corners_said_)
-      return here(r.column, "G1 ahead of G61, G61.1 or G64 P: how far the control leaves the path would depend on the last program");
+      return here(
+          r.column,
+          "G1 ahead of G61, G61.1 or G64 P: how far the control leaves the path would depend on the last program");
     r.move.rapid = motion_ == 0;
     r.move.machine_frame = r.g53;
     r.move.compensation = r.g43 && !r.tcp;
@@ -266,7 +292,8 @@ class Interpreter {
 
 }  // namespace
 
-Status execute_iso(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink, const IsoLanguage& language) {
+Status execute_iso(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink,
+                   const IsoLanguage& language) {
   return Interpreter(text, file, control, sink, language).run();
 }
 

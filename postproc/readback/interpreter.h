@@ -1,5 +1,5 @@
-// The family of controls that speak ISO 6983: words of a letter and a number, G and M codes, comments in parentheses. How a member differs is
-// data; the reader of each calls execute_iso with its own.
+// The family of controls that speak ISO 6983: words of a letter and a number, G and M codes, comments in parentheses.
+// How a member differs is data; the reader of each calls execute_iso with its own.
 #pragma once
 
 #include <string>
@@ -13,25 +13,27 @@ namespace toothpath::readback {
 
 /// Work offsets behind one G code with a number: G54.1 P1 to P300.
 struct ExtendedOffsets {
-  int tenths = 0;          ///< of the code: 541 for G54.1; 0: the language has none
-  int last = 0;            ///< greatest P
+  int tenths = 0;  ///< of the code: 541 for G54.1; 0: the language has none
+  int last = 0;    ///< greatest P
 };
 
-/// What a member of the family says beyond G0 G1 G17 G21 G40 G43 G49 G53 G54 to G59 G80 G90 G93 G94, M0 M2 M3 M5 M6 M30.
+/// What a member of the family says beyond G0 G1 G17 G21 G40 G43 G49 G53 G54 to G59 G80 G90 G93 G94, M0 M2 M3 M5 M6
+/// M30.
 struct IsoLanguage {
-  bool o_words = false;                        ///< sub-programs, loops and parameters as o-words; else M98, M99 and a program between % and %
-  bool point_needed = true;                    ///< axis words have a decimal point
-  bool codes_of_site = false;                  ///< M codes of the machine file switch TCP
-  std::vector<int> g_tenths;                   ///< further G codes, in tenths: 434 for G43.4
-  std::vector<int> coolant_m = {7, 8, 9};      ///< M words that switch coolants
+  bool o_words = false;  ///< sub-programs, loops and parameters as o-words; else M98, M99 and a program between % and %
+  bool point_needed = true;                ///< axis words have a decimal point
+  bool codes_of_site = false;              ///< M codes of the machine file switch TCP
+  std::vector<int> g_tenths;               ///< further G codes, in tenths: 434 for G43.4
+  std::vector<int> coolant_m = {7, 8, 9};  ///< M words that switch coolants
   ExtendedOffsets extended;
-  /// What the control leaves of a corner under G64 P Q, mm; `exact_mm`: what the machine leaves where it stops. Null: there is no G64, and
-  /// nothing need be said of corners ahead of G1.
+  /// What the control leaves of a corner under G64 P Q, mm; `exact_mm`: what the machine leaves where it stops. Null:
+  /// there is no G64, and nothing need be said of corners ahead of G1.
   double (*corner_of_g64)(double p_mm, double q_mm, double exact_mm) = nullptr;
   NcRules rules;
 };
 
 /// Executes what we write for a control of the family; everything else is refused where it stands.
-[[nodiscard]] Status execute_iso(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink, const IsoLanguage& language);
+[[nodiscard]] Status execute_iso(std::string_view text, const std::string& file, const NcControl& control,
+                                 const MoveSink& sink, const IsoLanguage& language);
 
 }  // namespace toothpath::readback

@@ -1,14 +1,15 @@
 // Executed joint moves as motions of the tool in the gear frame, with a proven bound on what is left out.
 //
-// A move is straight in the joints. With w = sum of the turns of the rotaries, R = the greatest distance of the tip from a
-// rotary axis and |dX| the linear step, the tip's second derivative is at most w^2 R + 2 w |dX| (nested rotations, each
-// pair of derivatives bounded by the inner arm), so that it stays within an eighth of that from its chord. With TCP the
-// control keeps the tip on its chord; the rotaries are linear in time all the same, and the bound of the axis holds.
+// A move is straight in the joints. With w = sum of the turns of the rotaries, R = the greatest distance of the tip
+// from a rotary axis and |dX| the linear step, the tip's second derivative is at most w^2 R + 2 w |dX| (nested
+// rotations, each pair of derivatives bounded by the inner arm), so that it stays within an eighth of that from its
+// chord. With TCP the control keeps the tip on its chord; the rotaries are linear in time all the same, and the bound
+// of the axis holds.
 //
-// At a corner that the control may leave within a way (G641), each axis stays between its least and its greatest position on the pieces
-// of both blocks: off the corner by the larger of the two pieces, axis by axis. With d of X Y Z, w the sum of the turns and R the distance of
-// the corner's tip from the rotary axes, the tip is off by |d| + w (R + |d| + w R) at most, the tool axis by w. With TCP the pieces are of
-// the tip itself: |d|, w.
+// At a corner that the control may leave within a way (G641), each axis stays between its least and its greatest
+// position on the pieces of both blocks: off the corner by the larger of the two pieces, axis by axis. With d of X Y Z,
+// w the sum of the turns and R the distance of the corner's tip from the rotary axes, the tip is off by |d| + w (R +
+// |d| + w R) at most, the tool axis by w. With TCP the pieces are of the tip itself: |d|, w.
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +21,7 @@ namespace {
 
 constexpr double kRapidFactor = 50;  // rapids are cut this much coarser
 constexpr int kMostPieces = 1 << 16;
-constexpr double kRoundOff = 1e-9;   // mm: of the forward kinematics at 1 m
+constexpr double kRoundOff = 1e-9;  // mm: of the forward kinematics at 1 m
 
 struct Placed {
   machines::Joints joints;
@@ -84,7 +85,8 @@ class Motions {
   }
 
   /// How far tip [mm] and tool axis [rad] leave the corner between two moves, by the shares of their blocks.
-  std::pair<double, double> corner(const ExecutedMove& before, const ExecutedMove& m, const ExecutedMove* next, double length) const {
+  std::pair<double, double> corner(const ExecutedMove& before, const ExecutedMove& m, const ExecutedMove* next,
+                                   double length) const {
     const Placed at = place(joints(m.joints), length);
     std::array<double, 5> off{};
     const auto piece = [&](const ExecutedMove& other, const ExecutedMove& block) {
@@ -92,7 +94,8 @@ class Motions {
       const Placed p = place(joints(other.joints), length);
       const Vec3 way = block.tcp ? p.table.tip_mm - at.table.tip_mm : p.joints.linear_mm - at.joints.linear_mm;
       for (std::size_t a = 0; a < 5; ++a) {
-        const double moved = a < 3 ? way[static_cast<int>(a)] : p.joints.rotary_rad[a - 3] - at.joints.rotary_rad[a - 3];
+        const double moved =
+            a < 3 ? way[static_cast<int>(a)] : p.joints.rotary_rad[a - 3] - at.joints.rotary_rad[a - 3];
         off[a] = std::max(off[a], double(block.corner_share) * std::abs(moved));
       }
     };
@@ -101,7 +104,8 @@ class Motions {
     if (goes_on) piece(*next, *next);
     const double d = Vec3(off[0], off[1], off[2]).norm(), w = off[3] + off[4];
     const bool tcp = m.tcp && (!goes_on || next->tcp || next->corner_share == 0);
-    // The first rotary, which carries the work, moves the tool axis by the sine between them, and the second one may turn it away by off[4].
+    // The first rotary, which carries the work, moves the tool axis by the sine between them, and the second one may
+    // turn it away by off[4].
     const bool table = chain_.head.empty() && !chain_.table.empty();
     const double sine = table ? std::min(1.0, at.table.axis.cross(chain_.table[0].direction).norm() + off[4]) : 1;
     return {tcp ? d : d + w * ((1 + w) * reach_of(at, length) + d), off[3] * sine + off[4]};
@@ -121,11 +125,20 @@ int nearest_tooth(const Vec3& tip, double reference, int teeth) {
 /// The moves of one trace, one by one, as motions in W.
 class TraceFollower {
  public:
-  TraceFollower(const OperationTrace& trace, const TurnedCopies& copies, const NcControl& control, const machines::Machine& machine, const joints::Setup& setup,
-                int teeth, const MotionTolerances& tolerances)
-      : trace_(trace), copies_(copies), control_(control), machine_(machine), kinematics_(machine.chain, setup), teeth_(teeth), tolerances_(tolerances),
-        // Teeth that were not kept stand where their index words put them: rounded, so off the exact turn by up to this.
-        shift_(copies.copies && trace.kept_teeth == 1 ? radians(copies.worst_shift_deg) : 0), reference_(first_cut_angle()) {
+  TraceFollower(const OperationTrace& trace, const TurnedCopies& copies, const NcControl& control,
+                const machines::Machine& machine, const joints::Setup& setup, int teeth,
+                const MotionTolerances& tolerances)
+      : trace_(trace),
+        copies_(copies),
+        control_(control),
+        machine_(machine),
+        kinematics_(machine.chain, setup),
+        teeth_(teeth),
+        tolerances_(tolerances),
+        // Teeth that were not kept stand where their index words put them: rounded, so off the exact turn by up to
+        // this.
+        shift_(copies.copies && trace.kept_teeth == 1 ? radians(copies.worst_shift_deg) : 0),
+        reference_(first_cut_angle()) {
     for (const auto& o : copies.operations)
       if (o.operation == trace.operation) operation_ = &o;
   }
@@ -133,7 +146,8 @@ class TraceFollower {
   Result<std::vector<path::ToolMotion>> run() {
     out_.reserve(trace_.moves.size() + 64);
     for (std::size_t i = 1; i < trace_.moves.size(); ++i) {
-      if (!trace_.moves[i].known) continue;  // a change of tool moves nothing: the new one starts where the gauge line stands
+      if (!trace_.moves[i].known)
+        continue;  // a change of tool moves nothing: the new one starts where the gauge line stands
       if (auto s = follow(i); !s) return s.error();
     }
     return std::move(out_);
@@ -157,7 +171,8 @@ class TraceFollower {
   [[nodiscard]] int tooth_of(std::size_t i, const Vec3& tip) const {
     const int named = trace_.moves[i].tooth;
     if (named >= 0) return named;
-    if (!copies_.copies || operation_ == nullptr || operation_->moves_per_tooth == 0 || operation_->turns.empty()) return nearest_tooth(tip, reference_, teeth_);
+    if (!copies_.copies || operation_ == nullptr || operation_->moves_per_tooth == 0 || operation_->turns.empty())
+      return nearest_tooth(tip, reference_, teeth_);
     const std::size_t copy = i < trace_.lead ? 0 : (i - trace_.lead) / operation_->moves_per_tooth;
     return operation_->turns[std::min(copy, operation_->turns.size() - 1)];
   }
@@ -166,7 +181,8 @@ class TraceFollower {
     const auto& moves = trace_.moves;
     double most_mm = 0, most_rad = 0;
     const auto corner = [&](std::size_t k) {
-      const auto [tip_off, axis_off] = kinematics_.corner(moves[k - 1], moves[k], k + 1 < moves.size() ? &moves[k + 1] : nullptr, length);
+      const auto [tip_off, axis_off] =
+          kinematics_.corner(moves[k - 1], moves[k], k + 1 < moves.size() ? &moves[k + 1] : nullptr, length);
       most_mm = std::max(most_mm, tip_off);
       most_rad = std::max(most_rad, axis_off);
     };
@@ -178,7 +194,8 @@ class TraceFollower {
   [[nodiscard]] Placed between(const Placed& from, const Placed& to, double t, bool tcp, double length) const {
     machines::Joints j;
     j.linear_mm = (1 - t) * from.joints.linear_mm + t * to.joints.linear_mm;
-    for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = (1 - t) * from.joints.rotary_rad[k] + t * to.joints.rotary_rad[k];
+    for (std::size_t k = 0; k < 2; ++k)
+      j.rotary_rad[k] = (1 - t) * from.joints.rotary_rad[k] + t * to.joints.rotary_rad[k];
     if (tcp) j = machine_.chain.linear_for((1 - t) * from.table.tip_mm + t * to.table.tip_mm, j.rotary_rad, length);
     return kinematics_.place(j, length);
   }
@@ -192,8 +209,10 @@ class TraceFollower {
     const double factor = m.rapid ? kRapidFactor : 1;
     auto [tip_bound, axis_bound] = kinematics_.bounds(from, to, *length);
     if (m.tcp) tip_bound = 0;
-    const double pieces = std::ceil(std::sqrt(std::max(tip_bound / (factor * tolerances_.tip_mm), axis_bound / (factor * tolerances_.axis_rad))));
-    if (pieces > kMostPieces) return fail("line {}: move turns too far to be followed within {} mm", m.line, tolerances_.tip_mm);
+    const double pieces = std::ceil(
+        std::sqrt(std::max(tip_bound / (factor * tolerances_.tip_mm), axis_bound / (factor * tolerances_.axis_rad))));
+    if (pieces > kMostPieces)
+      return fail("line {}: move turns too far to be followed within {} mm", m.line, tolerances_.tip_mm);
     const int n = std::max(1, static_cast<int>(pieces));
     const int tooth = tooth_of(i, to.tip);
     const auto [corner_mm, corner_rad] = corners(i, *length);
@@ -234,10 +253,12 @@ class TraceFollower {
 
 }  // namespace
 
-Result<std::vector<path::ToolMotion>> tool_motions(const OperationTrace& trace, const TurnedCopies& copies, const NcControl& control,
-                                                   const machines::Machine& machine, const joints::Setup& setup, int teeth,
+Result<std::vector<path::ToolMotion>> tool_motions(const OperationTrace& trace, const TurnedCopies& copies,
+                                                   const NcControl& control, const machines::Machine& machine,
+                                                   const joints::Setup& setup, int teeth,
                                                    const MotionTolerances& tolerances) {
-  if (!(tolerances.tip_mm > 0) || !(tolerances.axis_rad > 0)) return fail("tolerances of the read-back must be above 0");
+  if (!(tolerances.tip_mm > 0) || !(tolerances.axis_rad > 0))
+    return fail("tolerances of the read-back must be above 0");
   return TraceFollower(trace, copies, control, machine, setup, teeth, tolerances).run();
 }
 

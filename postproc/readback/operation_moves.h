@@ -1,4 +1,5 @@
-// The moves of one operation of an executed program: machine moves ahead of its first tooth, its teeth, machine moves behind the last.
+// The moves of one operation of an executed program: machine moves ahead of its first tooth, its teeth, machine moves
+// behind the last.
 #pragma once
 
 #include <cstddef>

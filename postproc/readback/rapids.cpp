@@ -1,5 +1,6 @@
-// Rapids of a program that was read back: one group of axes a move, and the whole tool clear of the part and its fixture at
-// every moment. A rapid is followed as motions of the tip in W (postproc/readback/motion.cpp); each is proven by cam/proof/rapid_clearance.h.
+// Rapids of a program that was read back: one group of axes a move, and the whole tool clear of the part and its
+// fixture at every moment. A rapid is followed as motions of the tip in W (postproc/readback/motion.cpp); each is
+// proven by cam/proof/rapid_clearance.h.
 #include <algorithm>
 #include <cmath>
 
@@ -26,34 +27,41 @@ tool::ToolAssembly bare_tip(int number) {
 
 }  // namespace
 
-bool mixes_axis_groups(const ExecutedMove& from, const ExecutedMove& to) { return to.rapid && to.known && !to.tcp && mixes_axes(from, to); }
+bool mixes_axis_groups(const ExecutedMove& from, const ExecutedMove& to) {
+  return to.rapid && to.known && !to.tcp && mixes_axes(from, to);
+}
 
 Status check_axis_groups(const OperationTrace& trace) {
   for (std::size_t i = 1; i < trace.moves.size(); ++i)
     if (mixes_axis_groups(trace.moves[i - 1], trace.moves[i]))
-      return fail_as(DiagnosticKind::verification, "line {}: a rapid moves more than one group of axes", trace.moves[i].line);
+      return fail_as(DiagnosticKind::verification, "line {}: a rapid moves more than one group of axes",
+                     trace.moves[i].line);
   return Ok{};
 }
 
-Status check_rapids_outside(const OperationTrace& trace, const NcControl& control, const machines::Machine& machine, const joints::Setup& setup,
-                            const joints::ClearanceBody& body, std::span<const tool::ToolAssembly> tools) {
+Status check_rapids_outside(const OperationTrace& trace, const NcControl& control, const machines::Machine& machine,
+                            const joints::Setup& setup, const joints::ClearanceBody& body,
+                            std::span<const tool::ToolAssembly> tools) {
   const auto motions = tool_motions(trace, {}, control, machine, setup, 1, {0.001, 1e-3});
   if (!motions) return motions.error();
-  const auto found = std::find_if(tools.begin(), tools.end(), [&](const tool::ToolAssembly& t) { return t.number == trace.tool; });
+  const auto found =
+      std::find_if(tools.begin(), tools.end(), [&](const tool::ToolAssembly& t) { return t.number == trace.tool; });
   const tool::ToolAssembly tool = found != tools.end() ? *found : bare_tip(trace.tool);
   const proof::RapidObstacle obstacle{body.radius_mm, 0, body.z_max_mm, body.z_min_mm};
   for (const auto& m : *motions) {
     if (!m.rapid) continue;
     const auto proof = proof::prove_rapid(m, tool, obstacle);
     if (!proof.clear)
-      return fail_as(DiagnosticKind::verification, "line {}: a rapid passes through the part: the {} of the tool, tip at r {:.3f} z {:.3f} mm",
+      return fail_as(DiagnosticKind::verification,
+                     "line {}: a rapid passes through the part: the {} of the tool, tip at r {:.3f} z {:.3f} mm",
                      m.line, proof.body, proof.tip.head<2>().norm(), proof.tip.z());
   }
   return Ok{};
 }
 
-Status check_rapids(const OperationTrace& trace, const NcControl& control, const machines::Machine& machine, const joints::Setup& setup,
-                    const joints::ClearanceBody& body, std::span<const tool::ToolAssembly> tools) {
+Status check_rapids(const OperationTrace& trace, const NcControl& control, const machines::Machine& machine,
+                    const joints::Setup& setup, const joints::ClearanceBody& body,
+                    std::span<const tool::ToolAssembly> tools) {
   if (const auto single = check_axis_groups(trace); !single) return single;
   return check_rapids_outside(trace, control, machine, setup, body, tools);
 }

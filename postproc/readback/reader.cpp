@@ -13,16 +13,17 @@ namespace {
 
 constexpr double kReadCoincident = 1e-9;  // mm
 constexpr double kReadParallel = 1e-12;
-constexpr double kSameTip = 1e-9;           // mm: round-off of a turned frame
-constexpr float kSameShare = 1e-6F;         // of a block: its length with the round-off of a turned frame
-constexpr double kReadTipStep = radians(0.5);   // joints follow a straight tip: looked at in such steps of the rotaries
+constexpr double kSameTip = 1e-9;              // mm: round-off of a turned frame
+constexpr float kSameShare = 1e-6F;            // of a block: its length with the round-off of a turned frame
+constexpr double kReadTipStep = radians(0.5);  // joints follow a straight tip: looked at in such steps of the rotaries
 
 bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
 
 /// Compares the teeth of a program as they are executed.
 class CopyCheck {
  public:
-  CopyCheck(const std::map<int, OperationMoves>& counts, const NcControl& control, const joints::Setup& setup, int teeth, int index_sign)
+  CopyCheck(const std::map<int, OperationMoves>& counts, const NcControl& control, const joints::Setup& setup,
+            int teeth, int index_sign)
       : counts_(counts), control_(control), setup_(setup), teeth_(teeth), sign_(index_sign) {
     result_.copies = true;
     for (const auto& [op, c] : counts) {
@@ -30,8 +31,7 @@ class CopyCheck {
       const auto z = static_cast<std::size_t>(teeth);
       if (c.teeth() == 0 || c.teeth() % z != 0)
         differ(0, fmt::format("operation {}: {} moves are not {} equal teeth", op, c.teeth(), teeth));
-      else
-        state_[op].per_tooth = c.teeth() / z;
+      else state_[op].per_tooth = c.teeth() / z;
     }
     if (index_sign == 0 && teeth > 1) differ(0, "the gear axis is not the axis of the rotary that carries the work");
   }
@@ -57,7 +57,8 @@ class CopyCheck {
       s.turn_known = false;
     }
     s.commanded = static_cast<std::uint8_t>(s.commanded | m.commanded);
-    if (copy == 1 && m.rapid && s.kept.size() == c.lead + s.per_tooth + position) s.kept.push_back(m);  // link to the second
+    if (copy == 1 && m.rapid && s.kept.size() == c.lead + s.per_tooth + position)
+      s.kept.push_back(m);  // link to the second
     const ExecutedMove first = s.kept[c.lead + position];
     compare(m, s, first);
   }
@@ -66,7 +67,8 @@ class CopyCheck {
     for (auto& [op, s] : state_) {
       std::vector<bool> met(static_cast<std::size_t>(teeth_), false);
       for (const int k : s.turns) {
-        if (result_.copies && met[static_cast<std::size_t>(k)]) differ(0, fmt::format("operation {}: tooth {} twice", op, k));
+        if (result_.copies && met[static_cast<std::size_t>(k)])
+          differ(0, fmt::format("operation {}: tooth {} twice", op, k));
         met[static_cast<std::size_t>(k)] = true;
       }
       result_.operations.push_back({op, s.per_tooth, s.turns});
@@ -90,10 +92,12 @@ class CopyCheck {
     const auto set = [&](std::size_t a) { return control_.letters[a] == 0 || (s.commanded & (1U << a)) != 0; };
     if (m.commanded != first.commanded) return differ(m.line, "other axes are named than in the first tooth");
     for (std::size_t a = 0; a < 5; ++a) {
-      if (!m.rapid && !set(a)) return differ(m.line, fmt::format("the tooth cuts before it has set {}", control_.letters[a]));
+      if (!m.rapid && !set(a))
+        return differ(m.line, fmt::format("the tooth cuts before it has set {}", control_.letters[a]));
       if (a == 3 || !set(a) || (m.tcp && a < 3)) continue;
       if (!same(m.joints[a], first.joints[a]))
-        return differ(m.line, fmt::format("{} = {} where the first tooth has {}", control_.letters[a], m.joints[a], first.joints[a]));
+        return differ(m.line, fmt::format("{} = {} where the first tooth has {}", control_.letters[a], m.joints[a],
+                                          first.joints[a]));
     }
     const double pitch = 360.0 / teeth_;
     const double turned = sign_ * (m.joints[3] - first.joints[3]);
@@ -107,12 +111,12 @@ class CopyCheck {
     const double error = std::abs(turned - s.turn * 360.0 / teeth_);
     result_.worst_shift_deg = std::max(result_.worst_shift_deg, error);
     if (!(error <= control_.rotary_rounding_deg * (1 + 1e-6) + 1e-9))
-      return differ(m.line, fmt::format("{} is turned by {} deg where {} * 360 / {} is expected", control_.letters[3], turned,
-                                        s.turn, teeth_));
+      return differ(m.line, fmt::format("{} is turned by {} deg where {} * 360 / {} is expected", control_.letters[3],
+                                        turned, s.turn, teeth_));
     if (m.tcp != first.tcp || (m.tcp && (m.tip - turned_tip(first.tip, s.turn)).norm() > kSameTip))
       return differ(m.line, "the tip is not that of the first tooth, turned");
-    if (m.blend_mm != first.blend_mm || m.blend_axis_rad != first.blend_axis_rad || m.corner_path_mm != first.corner_path_mm ||
-        std::abs(m.corner_share - first.corner_share) > kSameShare)
+    if (m.blend_mm != first.blend_mm || m.blend_axis_rad != first.blend_axis_rad ||
+        m.corner_path_mm != first.corner_path_mm || std::abs(m.corner_share - first.corner_share) > kSameShare)
       return differ(m.line, "the control may leave corners otherwise than in the first tooth");
     if (m.rapid != first.rapid || m.tool != first.tool) return differ(m.line, "rapid and feed or tool differ");
     if (!m.rapid && std::abs(m.minutes - first.minutes) > 1e-9 * first.minutes + 1e-12)
@@ -191,13 +195,15 @@ int index_sign(const machines::Machine& machine, const joints::Setup& setup) {
 
 }  // namespace
 
-void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcControl& control, const machines::KinematicChain& chain,
-                const std::function<void(const std::array<double, 5>&)>& sink) {
+void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcControl& control,
+                const machines::KinematicChain& chain, const std::function<void(const std::array<double, 5>&)>& sink) {
   const auto length = control.tool_length_mm.find(to.tool);
   const double turn = radians(std::abs(to.joints[3] - from.joints[3]) + std::abs(to.joints[4] - from.joints[4]));
   if (turn == 0 || length == control.tool_length_mm.end() || !std::isfinite(turn)) return;
   const auto& j = from.joints;
-  const Vec3 start = from.tcp ? from.tip : chain.forward({Vec3(j[0], j[1], j[2]), {radians(j[3]), radians(j[4])}}, length->second).tip_mm;
+  const Vec3 start =
+      from.tcp ? from.tip
+               : chain.forward({Vec3(j[0], j[1], j[2]), {radians(j[3]), radians(j[4])}}, length->second).tip_mm;
   const int n = static_cast<int>(std::min(1e5, std::ceil(turn / kReadTipStep))) + 3;
   for (int i = 1; i < n; ++i) {
     const double t = static_cast<double>(i) / n;
@@ -217,7 +223,8 @@ namespace {
 /// Executes a program as often as it takes and keeps what proofs ask for.
 class ReadBackRun {
  public:
-  ReadBackRun(std::string_view text, const std::string& file, const NcControl& control, const machines::Machine& machine)
+  ReadBackRun(std::string_view text, const std::string& file, const NcControl& control,
+              const machines::Machine& machine)
       : text_(text), file_(file), control_(control), machine_(machine) {
     result_.least.fill(std::numeric_limits<double>::infinity());
     result_.greatest.fill(-std::numeric_limits<double>::infinity());
@@ -260,7 +267,8 @@ class ReadBackRun {
       result_.minutes += m.minutes;
       if (!m.rapid) result_.feed_minutes += m.minutes;
       if (m.tcp && m.known) follow_tip(before, m, control_, machine_.chain, reach);
-      if (!control_.cutter_locations && result_.mixed_rapid == 0 && mixes_axis_groups(before, m)) result_.mixed_rapid = m.line;
+      if (!control_.cutter_locations && result_.mixed_rapid == 0 && mixes_axis_groups(before, m))
+        result_.mixed_rapid = m.line;
       before = m;
       reach(m.joints);
       counts_[m.operation].add(m);
@@ -281,8 +289,9 @@ class ReadBackRun {
   /// Third time, where every tooth is kept.
   Status keep_all(const ReadBackOptions& options) {
     if (result_.executed > options.max_kept) {
-      Diagnostic error = fail("{} moves would have to be kept, more than {}: the teeth are not turned copies of the first one ({})", result_.executed,
-                              options.max_kept, result_.copies.copies ? "all are asked for" : result_.copies.difference);
+      Diagnostic error = fail(
+          "{} moves would have to be kept, more than {}: the teeth are not turned copies of the first one ({})",
+          result_.executed, options.max_kept, result_.copies.copies ? "all are asked for" : result_.copies.difference);
       error.position = {file_, result_.copies.line, 0};
       return error;
     }
@@ -308,8 +317,9 @@ class ReadBackRun {
 
 }  // namespace
 
-Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control, const machines::Machine& machine,
-                           const joints::Setup& setup, const ReadBackOptions& options) {
+Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control,
+                           const machines::Machine& machine, const joints::Setup& setup,
+                           const ReadBackOptions& options) {
   return ReadBackRun(text, file, control, machine).run(setup, options);
 }
 

@@ -2,8 +2,8 @@
 // the comparison with the path that was asked for. It shares no code with the writer.
 //
 // The interpreter executes every tooth of an index loop; what is kept is the first tooth of each operation when the
-// others are proven to be turned copies (same linear words bit for bit, the index rotary further by k * 360 / z), and the
-// link from the first tooth to the second.
+// others are proven to be turned copies (same linear words bit for bit, the index rotary further by k * 360 / z), and
+// the link from the first tooth to the second.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "cam/path/cl_path.h"
-#include "cam/tool/assembly.h"
 #include "cam/path/tool_motion.h"
+#include "cam/tool/assembly.h"
 #include "geometry/base/result.h"
 #include "machines/machine.h"
 #include "postproc/joints/program.h"
@@ -31,74 +31,78 @@ struct NcControl;
 struct ExecutedMove;
 using MoveSink = std::function<void(const ExecutedMove&)>;
 
-/// Reader of a language: executes `text` and hands every move to `sink`. It shares no code with a writer, and refuses what is not in its
-/// subset with line and column.
-using NcExecute = Status (*)(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
+/// Reader of a language: executes `text` and hands every move to `sink`. It shares no code with a writer, and refuses
+/// what is not in its subset with line and column.
+using NcExecute = Status (*)(std::string_view text, const std::string& file, const NcControl& control,
+                             const MoveSink& sink);
 
 /// What the control knows beside the text. Made by controls::control_of.
 struct NcControl {
-  NcExecute execute = nullptr;                ///< reader of its language
-  bool cutter_locations = false;              ///< the text has places of the tool: a post processor makes the moves of the axes
-  std::array<char, 5> letters{};              ///< X Y Z and the rotaries in the machine's order; 0: none
-  std::array<double, 5> rapid_speed{};        ///< mm/min and deg/min
-  std::array<bool, 5> rollover{};             ///< the control counts this rotary within one turn
-  std::map<int, double> tool_length_mm;       ///< by T and H number
-  std::map<std::string, Vec3> work_offsets;   ///< "G54" -> origin, machine coordinates, mm
-  double rotary_rounding_deg = 0.5e-5;        ///< half the last digit that the dialect prints
-  double linear_rounding_mm = 0.5e-4;         ///< the same of the linear words
-  std::optional<machines::KinematicChain> chain;        ///< of a machine with TCP: the control knows it; empty: TCP is refused
-  double exact_path_mm = 0.0005;              ///< LinuxCNC: the tip is off a corner by no more under G61 and G61.1
-  double top_mm = 0;                          ///< highest Z, machine coordinates of the gauge line
-  std::vector<std::string> tcp_on, tcp_off;   ///< codes of the site that switch TCP (LinuxCNC)
+  NcExecute execute = nullptr;    ///< reader of its language
+  bool cutter_locations = false;  ///< the text has places of the tool: a post processor makes the moves of the axes
+  std::array<char, 5> letters{};  ///< X Y Z and the rotaries in the machine's order; 0: none
+  std::array<double, 5> rapid_speed{};       ///< mm/min and deg/min
+  std::array<bool, 5> rollover{};            ///< the control counts this rotary within one turn
+  std::map<int, double> tool_length_mm;      ///< by T and H number
+  std::map<std::string, Vec3> work_offsets;  ///< "G54" -> origin, machine coordinates, mm
+  double rotary_rounding_deg = 0.5e-5;       ///< half the last digit that the dialect prints
+  double linear_rounding_mm = 0.5e-4;        ///< the same of the linear words
+  std::optional<machines::KinematicChain>
+      chain;                                 ///< of a machine with TCP: the control knows it; empty: TCP is refused
+  double exact_path_mm = 0.0005;             ///< LinuxCNC: the tip is off a corner by no more under G61 and G61.1
+  double top_mm = 0;                         ///< highest Z, machine coordinates of the gauge line
+  std::vector<std::string> tcp_on, tcp_off;  ///< codes of the site that switch TCP (LinuxCNC)
   /// Lines of the machine file that switch the control's own smoothing on and off, and what the shop states for it.
   std::vector<std::string> smoothing_on, smoothing_off;
   double smoothing_mm = 0;
-  std::optional<double> smoothing_axis_rad;   ///< not stated: no cut may turn a rotary while it is on
-  std::vector<std::string> coolant_words;     ///< M words of the builder that switch coolants, on and off
-  bool dry_run = false;                       ///< feed moves with a standing spindle are meant: a program that runs in air
-  std::size_t max_steps = 400'000'000;        ///< executed blocks before the program is refused as endless
+  std::optional<double> smoothing_axis_rad;  ///< not stated: no cut may turn a rotary while it is on
+  std::vector<std::string> coolant_words;    ///< M words of the builder that switch coolants, on and off
+  bool dry_run = false;                 ///< feed moves with a standing spindle are meant: a program that runs in air
+  std::size_t max_steps = 400'000'000;  ///< executed blocks before the program is refused as endless
 
   [[nodiscard]] bool switches_coolant(std::string_view word) const {
     return std::find(coolant_words.begin(), coolant_words.end(), word) != coolant_words.end();
   }
 };
 
-/// End of one executed move: joints in machine coordinates, gauge line (mm) and rotaries as words (deg); those that roll over go on beyond
-/// a turn, the same place in two turns differs by a multiple of 360 exactly.
+/// End of one executed move: joints in machine coordinates, gauge line (mm) and rotaries as words (deg); those that
+/// roll over go on beyond a turn, the same place in two turns differs by a multiple of 360 exactly.
 struct ExecutedMove {
   std::array<double, 5> joints{};
-  Vec3 tip = Vec3::Zero();      ///< with `tcp`: table frame
+  Vec3 tip = Vec3::Zero();  ///< with `tcp`: table frame
   double minutes = 0;
   std::int32_t line = 0;        ///< of the text, from 1
   std::int16_t operation = -1;  ///< from the (OP n type) comment; -1 before the first
   std::int16_t tool = 0;        ///< T in the spindle
   bool rapid = false;
-  bool tcp = false;             ///< the tip goes straight to `tip`, the rotaries are linear, the other joints follow
-  float blend_mm = 0;           ///< the control may leave the corners of the path by this much (G64 P)
-  float blend_axis_rad = 0;     ///< the same of the tool axis (TA of cycle 32)
-  float corner_path_mm = 0;     ///< every axis may leave the path within this way ahead of and behind a corner (G641 ADIS) ..
-  float corner_share = 0;       ///< .. which is this part of the block, a half at most
-  std::uint8_t commanded = 0;   ///< bit a: the block has a word for axis a
-  std::int16_t tooth = -1;      ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
-  bool machine = false;         ///< G53, or the block that switches tool length compensation on
-  bool known = false;           ///< all joints were known before and after
+  bool tcp = false;          ///< the tip goes straight to `tip`, the rotaries are linear, the other joints follow
+  float blend_mm = 0;        ///< the control may leave the corners of the path by this much (G64 P)
+  float blend_axis_rad = 0;  ///< the same of the tool axis (TA of cycle 32)
+  float corner_path_mm =
+      0;  ///< every axis may leave the path within this way ahead of and behind a corner (G641 ADIS) ..
+  float corner_share = 0;          ///< .. which is this part of the block, a half at most
+  std::uint8_t commanded = 0;      ///< bit a: the block has a word for axis a
+  std::int16_t tooth = -1;         ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
+  bool machine = false;            ///< G53, or the block that switches tool length compensation on
+  bool known = false;              ///< all joints were known before and after
   std::uint64_t vector_print = 0;  ///< of the words of a tool vector, FNV-1a over their bytes; 0: rotary words
 };
 
 /// Executes `text` and hands every move to `sink`, in order. Stops with a located error (line and column of `file`) at
 /// anything that is not in the subset, at an undefined tool, offset, label or parameter, at a feed move without F or
 /// without spindle, at G1 in G94 with rotary and linear words whose time is not exact, and beyond max_steps.
-[[nodiscard]] Status execute_nc(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink);
+[[nodiscard]] Status execute_nc(std::string_view text, const std::string& file, const NcControl& control,
+                                const MoveSink& sink);
 
 /// Joints inside a block whose tip goes straight, every half degree of the rotaries.
-void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcControl& control, const machines::KinematicChain& chain,
-                const std::function<void(const std::array<double, 5>&)>& sink);
+void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcControl& control,
+                const machines::KinematicChain& chain, const std::function<void(const std::array<double, 5>&)>& sink);
 
 /// Are the teeth of every operation turned copies of its first one?
 struct TurnedCopies {
   bool copies = false;
-  int line = 0;            ///< first place that differs, of the text; 0 when copies
-  std::string difference;  ///< what differs there
+  int line = 0;                ///< first place that differs, of the text; 0 when copies
+  std::string difference;      ///< what differs there
   double worst_shift_deg = 0;  ///< greatest distance of an index word from k * 360 / z
   struct Operation {
     int operation = 0;
@@ -111,7 +115,7 @@ struct TurnedCopies {
 /// Moves kept of one operation.
 struct OperationTrace {
   int operation = 0;
-  int tool = 0;            ///< T
+  int tool = 0;                ///< T
   std::size_t kept_teeth = 0;  ///< 1 when the others are proven copies, else all
   std::size_t lead = 0;        ///< moves before the first tooth (retracts)
   std::vector<ExecutedMove> moves;
@@ -120,24 +124,27 @@ struct OperationTrace {
 struct ReadBack {
   TurnedCopies copies;
   std::vector<OperationTrace> operations;
-  /// What else is executed: moves ahead of the first operation, from one to the next, and behind the last tooth where the teeth are copies. Each
-  /// stretch begins with where it starts from and has one tool.
+  /// What else is executed: moves ahead of the first operation, from one to the next, and behind the last tooth where
+  /// the teeth are copies. Each stretch begins with where it starts from and has one tool.
   std::vector<OperationTrace> between;
   std::array<double, 5> least{}, greatest{};  ///< joints over all executed moves, mm and deg
   std::size_t executed = 0;
   double minutes = 0, feed_minutes = 0;
-  int mixed_rapid = 0;  ///< line of the first rapid that moves more than one group of axes, of all executed moves; 0: none does, or cutter locations
+  int mixed_rapid = 0;  ///< line of the first rapid that moves more than one group of axes, of all executed moves; 0:
+                        ///< none does, or cutter locations
 };
 
 struct ReadBackOptions {
   int teeth = 1;
   bool keep_all = false;  ///< keep every tooth although they are copies
-  std::size_t max_kept = 20'000'000;  ///< moves of 100 bytes; a program that needs more is refused by their number, before any is kept
+  std::size_t max_kept =
+      20'000'000;  ///< moves of 100 bytes; a program that needs more is refused by their number, before any is kept
 };
 
 /// Executes the program twice (to count, then to compare and keep), a third time where every tooth is kept.
 [[nodiscard]] Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control,
-                                         const machines::Machine& machine, const joints::Setup& setup, const ReadBackOptions& options);
+                                         const machines::Machine& machine, const joints::Setup& setup,
+                                         const ReadBackOptions& options);
 
 /// How far the motion of a cut may leave the straight one that stands for it; 50 times as far in rapids.
 struct MotionTolerances {
@@ -145,39 +152,45 @@ struct MotionTolerances {
 };
 
 /// Moves of a trace as straight motions of the tip in W. Moves that turn the axes are cut until the proven distance
-/// from the straight motion is within the tolerances; the bound stands in each motion. `tool_length_mm` by T number. Moves whose start is not known (before the machine was positioned) are left out.
-[[nodiscard]] Result<std::vector<path::ToolMotion>> tool_motions(const OperationTrace& trace, const TurnedCopies& copies,
-                                                           const NcControl& control, const machines::Machine& machine,
-                                                           const joints::Setup& setup, int teeth,
-                                                           const MotionTolerances& tolerances);
+/// from the straight motion is within the tolerances; the bound stands in each motion. `tool_length_mm` by T number.
+/// Moves whose start is not known (before the machine was positioned) are left out.
+[[nodiscard]] Result<std::vector<path::ToolMotion>> tool_motions(const OperationTrace& trace,
+                                                                 const TurnedCopies& copies, const NcControl& control,
+                                                                 const machines::Machine& machine,
+                                                                 const joints::Setup& setup, int teeth,
+                                                                 const MotionTolerances& tolerances);
 
 /// Every CL record of tooth space 0 met in order by the motions of tooth 0 of the same operation.
 struct ClComparison {
-  bool complete = false;        ///< every record was met
-  double worst_mm = 0;          ///< greatest distance of a record from the motion that meets it
-  double worst_axis_rad = 0;    ///< the same for the axis
-  double worst_extra_mm = 0;    ///< greatest distance of a feed motion from the CL polyline (blocks that nobody asked for)
-  double fastest_ratio = 0;     ///< greatest mean tip speed between two records, as a multiple of the record's feed
-  int missed_operation = -1;    ///< first record that is not met
+  bool complete = false;      ///< every record was met
+  double worst_mm = 0;        ///< greatest distance of a record from the motion that meets it
+  double worst_axis_rad = 0;  ///< the same for the axis
+  double worst_extra_mm =
+      0;                     ///< greatest distance of a feed motion from the CL polyline (blocks that nobody asked for)
+  double fastest_ratio = 0;  ///< greatest mean tip speed between two records, as a multiple of the record's feed
+  int missed_operation = -1;  ///< first record that is not met
   std::size_t missed_record = 0;
-  int line = 0;                 ///< near it
+  int line = 0;  ///< near it
   std::string message;
 };
-[[nodiscard]] ClComparison compare_with_cl(std::span<const path::ToolMotion> motions, std::span<const path::ClPath* const> paths,
-                                           double tolerance_mm, double axis_tolerance_rad);
+[[nodiscard]] ClComparison compare_with_cl(std::span<const path::ToolMotion> motions,
+                                           std::span<const path::ClPath* const> paths, double tolerance_mm,
+                                           double axis_tolerance_rad);
 
-/// A rapid without TCP that moves more than one group of axes (Z, or XY, or rotaries): which arrives first is not known. With TCP the tip goes
-/// straight, whatever the joints do.
+/// A rapid without TCP that moves more than one group of axes (Z, or XY, or rotaries): which arrives first is not
+/// known. With TCP the tip goes straight, whatever the joints do.
 [[nodiscard]] bool mixes_axis_groups(const ExecutedMove& from, const ExecutedMove& to);
 /// No rapid of the trace does that. The refusal names the line.
 [[nodiscard]] Status check_axis_groups(const OperationTrace& trace);
-/// In every rapid of the trace every body of the tool is outside `body` (cylinder about the gear axis in W) at every moment, proven. `tools`: the
-/// job's; without them only the tip is looked at.
-[[nodiscard]] Status check_rapids_outside(const OperationTrace& trace, const NcControl& control, const machines::Machine& machine, const joints::Setup& setup,
+/// In every rapid of the trace every body of the tool is outside `body` (cylinder about the gear axis in W) at every
+/// moment, proven. `tools`: the job's; without them only the tip is looked at.
+[[nodiscard]] Status check_rapids_outside(const OperationTrace& trace, const NcControl& control,
+                                          const machines::Machine& machine, const joints::Setup& setup,
                                           const joints::ClearanceBody& body, std::span<const tool::ToolAssembly> tools);
 
 /// Both of these.
-[[nodiscard]] Status check_rapids(const OperationTrace& trace, const NcControl& control, const machines::Machine& machine, const joints::Setup& setup,
+[[nodiscard]] Status check_rapids(const OperationTrace& trace, const NcControl& control,
+                                  const machines::Machine& machine, const joints::Setup& setup,
                                   const joints::ClearanceBody& body, std::span<const tool::ToolAssembly> tools = {});
 
 }  // namespace toothpath::readback

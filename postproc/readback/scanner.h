@@ -1,5 +1,5 @@
-// Reads one line from left to right: names, numbers, expressions that are evaluated at once. For readers of controls with their
-// own language; errors carry the column.
+// Reads one line from left to right: names, numbers, expressions that are evaluated at once. For readers of controls
+// with their own language; errors carry the column.
 #pragma once
 
 #include <charconv>
@@ -62,14 +62,15 @@ class NcScanner {
     return line_[begin] == '-' ? -v : v;
   }
 
-  /// The control's names for cutting off the digits behind the point, "TRUNC" or "INT", and for the amount, "ABS"; empty: none.
+  /// The control's names for cutting off the digits behind the point, "TRUNC" or "INT", and for the amount, "ABS";
+  /// empty: none.
   void set_functions(std::string_view truncation, std::string_view amount = {}) {
     truncation_ = truncation;
     amount_ = amount;
   }
 
-  /// Sums, products, signs and brackets over numbers and parameters. `parameter(scanner)` reads a name and returns a pointer to
-  /// its value, null where it has none.
+  /// Sums, products, signs and brackets over numbers and parameters. `parameter(scanner)` reads a name and returns a
+  /// pointer to its value, null where it has none.
   template <typename Parameter>
   Result<double> expression(const Parameter& parameter, int depth = 0) {
     auto sum = product(parameter, depth);

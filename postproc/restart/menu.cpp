@@ -4,9 +4,9 @@
 #include <charconv>
 #include <map>
 
-#include "postproc/readback/scanner.h"
-#include "postproc/readback/operation_moves.h"
 #include "postproc/joints/tooth_order.h"
+#include "postproc/readback/operation_moves.h"
+#include "postproc/readback/scanner.h"
 
 namespace toothpath::restart {
 namespace {
@@ -35,10 +35,12 @@ int number_of(std::string_view line) {
   return number;
 }
 
-/// First lines of the teeth as they are executed. A tooth begins with its TOOTH comment, or after as many moves as the others have.
+/// First lines of the teeth as they are executed. A tooth begins with its TOOTH comment, or after as many moves as the
+/// others have.
 class FirstLines {
  public:
-  FirstLines(const std::map<int, readback::OperationMoves>& counts, const std::map<int, std::size_t>& teeth) : counts_(counts), teeth_(teeth) {}
+  FirstLines(const std::map<int, readback::OperationMoves>& counts, const std::map<int, std::size_t>& teeth)
+      : counts_(counts), teeth_(teeth) {}
 
   void operator()(const readback::ExecutedMove& m) {
     if (m.operation < 0) return;
@@ -67,7 +69,8 @@ class FirstLines {
 
 }  // namespace
 
-Result<RestartMenu> restart_menu(std::string_view text, const std::string& file, const readback::NcControl& control, const joints::AxisProgram& program) {
+Result<RestartMenu> restart_menu(std::string_view text, const std::string& file, const readback::NcControl& control,
+                                 const joints::AxisProgram& program) {
   const std::vector<std::string_view> lines = readback::lines_of(text);
   RestartMenu menu;
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -88,25 +91,31 @@ Result<RestartMenu> restart_menu(std::string_view text, const std::string& file,
 
   std::map<int, std::size_t> teeth;
   for (const auto& op : menu.operations) teeth[op.operation] = static_cast<std::size_t>(program.teeth);
-  for (const auto& op : program.operations) teeth[op.operation] = static_cast<std::size_t>(program.teeth - op.first_place);
+  for (const auto& op : program.operations)
+    teeth[op.operation] = static_cast<std::size_t>(program.teeth - op.first_place);
   const auto tooth_at = [&](int place) { return joints::tooth_of_place(place, program.tooth_stride, program.teeth); };
   for (auto& op : menu.operations)
     if (op.first_tooth.line != 0)
-      for (int n = program.teeth - static_cast<int>(teeth[op.operation]); n < program.teeth; ++n) op.teeth.push_back({n, tooth_at(n), {}});
-  if (std::none_of(menu.operations.begin(), menu.operations.end(), [](const auto& op) { return op.first_tooth.line == 0; })) return menu;
+      for (int n = program.teeth - static_cast<int>(teeth[op.operation]); n < program.teeth; ++n)
+        op.teeth.push_back({n, tooth_at(n), {}});
+  if (std::none_of(menu.operations.begin(), menu.operations.end(),
+                   [](const auto& op) { return op.first_tooth.line == 0; }))
+    return menu;
 
   std::map<int, readback::OperationMoves> counts;
   const auto count = [&](const readback::ExecutedMove& m) { counts[m.operation].add(m); };
   if (auto s = readback::execute_nc(text, file, control, count); !s) return s.error();
   for (const auto& [op, c] : counts) teeth.emplace(op, static_cast<std::size_t>(program.teeth));
   FirstLines first(counts, teeth);
-  if (auto s = readback::execute_nc(text, file, control, [&](const readback::ExecutedMove& m) { first(m); }); !s) return s.error();
+  if (auto s = readback::execute_nc(text, file, control, [&](const readback::ExecutedMove& m) { first(m); }); !s)
+    return s.error();
 
   for (auto& op : menu.operations) {
     if (op.first_tooth.line != 0) continue;
     const auto& found = first.of(op.operation);
     if (found.size() != teeth[op.operation])
-      return fail("operation {} has {} teeth in the text where {} are expected", op.operation, found.size(), teeth[op.operation]);
+      return fail("operation {} has {} teeth in the text where {} are expected", op.operation, found.size(),
+                  teeth[op.operation]);
     const int start = program.teeth - static_cast<int>(found.size());
     for (std::size_t n = 0; n < found.size(); ++n) {
       RestartTooth t;
@@ -115,7 +124,9 @@ Result<RestartMenu> restart_menu(std::string_view text, const std::string& file,
       if (found[n].second >= 0 && found[n].second != t.tooth)
         return fail("line {}: tooth {} where tooth {} is expected", found[n].first, found[n].second, t.tooth);
       int line = found[n].first, number = -1;
-      while (found[n].second >= 0 && line > op.at.line && readback::comment_label(comment_of(lines[static_cast<std::size_t>(line) - 1], number), "TOOTH ") < 0) --line;
+      while (found[n].second >= 0 && line > op.at.line &&
+             readback::comment_label(comment_of(lines[static_cast<std::size_t>(line) - 1], number), "TOOTH ") < 0)
+        --line;
       t.at = {line, number_of(lines[static_cast<std::size_t>(line) - 1])};
       op.teeth.push_back(t);
     }

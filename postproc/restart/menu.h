@@ -1,9 +1,10 @@
-// Places of a program where the work can be taken up again after a stop, with their lines in the text as it was written.
+// Places of a program where the work can be taken up again after a stop, with their lines in the text as it was
+// written.
 //
-// An operation is a safe place: from its (OP n type) comment on it retracts in machine coordinates, changes the tool, sets every
-// modal code, the spindle and the work offset. A tooth can be taken up where it has a line of its own (teeth written out, calls of
-// sub-programs): run the opening of the operation, then go on at that line. In a loop of the control the line that names the first
-// tooth is edited instead.
+// An operation is a safe place: from its (OP n type) comment on it retracts in machine coordinates, changes the tool,
+// sets every modal code, the spindle and the work offset. A tooth can be taken up where it has a line of its own (teeth
+// written out, calls of sub-programs): run the opening of the operation, then go on at that line. In a loop of the
+// control the line that names the first tooth is edited instead.
 #pragma once
 
 #include <string>
@@ -39,10 +40,10 @@ struct RestartMenu {
   std::vector<RestartOperation> operations;
 };
 
-/// Finds the places. `program` tells how many teeth an operation has and in which order they come; every line comes from the text, which is
-/// executed where teeth have lines of their own.
-/// Errors: what the reader refuses; an operation whose moves are not its teeth.
-[[nodiscard]] Result<RestartMenu> restart_menu(std::string_view text, const std::string& file, const readback::NcControl& control,
-                                               const joints::AxisProgram& program);
+/// Finds the places. `program` tells how many teeth an operation has and in which order they come; every line comes
+/// from the text, which is executed where teeth have lines of their own. Errors: what the reader refuses; an operation
+/// whose moves are not its teeth.
+[[nodiscard]] Result<RestartMenu> restart_menu(std::string_view text, const std::string& file,
+                                               const readback::NcControl& control, const joints::AxisProgram& program);
 
 }  // namespace toothpath::restart

@@ -16,7 +16,8 @@ struct Count {
   readback::OperationMoves operation;
 };
 
-Result<Count> count_moves(std::string_view text, const std::string& file, const readback::NcControl& control, int operation) {
+Result<Count> count_moves(std::string_view text, const std::string& file, const readback::NcControl& control,
+                          int operation) {
   Count c;
   const auto sink = [&](const readback::ExecutedMove& m) {
     ++c.total;
@@ -26,8 +27,8 @@ Result<Count> count_moves(std::string_view text, const std::string& file, const 
   return c;
 }
 
-/// A move as a number, without the axes that had no word since the first tooth began. Two moves that differ have the same number
-/// once in 2^64.
+/// A move as a number, without the axes that had no word since the first tooth began. Two moves that differ have the
+/// same number once in 2^64.
 class Fingerprint {
  public:
   explicit Fingerprint(const readback::NcControl& control) : control_(control) {}
@@ -36,8 +37,8 @@ class Fingerprint {
     set_ = static_cast<std::uint8_t>(set_ | m.commanded);
     h_ = 14695981039346656037ULL;
     add(static_cast<std::uint64_t>(m.operation) << 32 | static_cast<std::uint32_t>(m.tool));
-    add(static_cast<std::uint64_t>(m.tooth) << 16 | static_cast<std::uint64_t>(m.commanded) << 4 | (m.rapid ? 1U : 0U) | (m.tcp ? 2U : 0U) |
-        (m.machine ? 4U : 0U));
+    add(static_cast<std::uint64_t>(m.tooth) << 16 | static_cast<std::uint64_t>(m.commanded) << 4 | (m.rapid ? 1U : 0U) |
+        (m.tcp ? 2U : 0U) | (m.machine ? 4U : 0U));
     // A vector stands for the rotaries: which of their positions has it follows from where they stood.
     add(m.vector_print);
     for (std::size_t a = m.tcp ? 3 : 0; a < 5; ++a)
@@ -45,7 +46,8 @@ class Fingerprint {
     if (m.tcp)
       for (int i = 0; i < 3; ++i) add(std::bit_cast<std::uint64_t>(m.tip[i]));
     if (!m.rapid) add(std::bit_cast<std::uint64_t>(m.minutes));
-    for (const float v : {m.blend_mm, m.blend_axis_rad, m.corner_path_mm, m.corner_share}) add(std::bit_cast<std::uint32_t>(v));
+    for (const float v : {m.blend_mm, m.blend_axis_rad, m.corner_path_mm, m.corner_share})
+      add(std::bit_cast<std::uint32_t>(v));
     return h_;
   }
   /// Every axis of the machine has had its word.
@@ -79,7 +81,8 @@ struct Kept {
 
 class RestartComparison {
  public:
-  RestartComparison(const std::string& file, const readback::NcControl& control, const RestartPlace& from) : file_(file), control_(control), from_(from) {
+  RestartComparison(const std::string& file, const readback::NcControl& control, const RestartPlace& from)
+      : file_(file), control_(control), from_(from) {
     proof_.least.fill(std::numeric_limits<double>::infinity());
     proof_.greatest.fill(-std::numeric_limits<double>::infinity());
   }
@@ -110,8 +113,10 @@ class RestartComparison {
     const auto z = static_cast<std::size_t>(from_.teeth), left = static_cast<std::size_t>(from_.teeth - from_.place);
     const readback::OperationMoves &in_all = all.operation, &in_part = part.operation;
     if (!in_all.labelled && in_part.teeth() * z != in_all.teeth() * left)
-      differs(0, 0, fmt::format("operation {} has {} moves from tooth {} on, not {} of {} teeth of the {} of the whole program", from_.operation,
-                                in_part.teeth(), from_.tooth, left, from_.teeth, in_all.teeth()));
+      differs(
+          0, 0,
+          fmt::format("operation {} has {} moves from tooth {} on, not {} of {} teeth of the {} of the whole program",
+                      from_.operation, in_part.teeth(), from_.tooth, left, from_.teeth, in_all.teeth()));
     if (part.total - in_part.lead > all.total) differs(0, 0, "the restart has more moves than the whole program");
     return proof_.difference.empty();
   }
@@ -127,7 +132,8 @@ class RestartComparison {
         before = m;
         return;
       }
-      if (kept_.empty() && m.tooth >= 0 && before.operation == from_.operation && before.tooth == m.tooth && !before.machine)
+      if (kept_.empty() && m.tooth >= 0 && before.operation == from_.operation && before.tooth == m.tooth &&
+          !before.machine)
         differs(0, m.line, "the restart begins inside a tooth");
       if (kept_.empty() && (m.operation != from_.operation || (m.tooth >= 0 && m.tooth != from_.tooth)))
         differs(0, m.line, fmt::format("the whole program is at operation {} tooth {} there", m.operation, m.tooth));
@@ -151,7 +157,8 @@ class RestartComparison {
     auto s = readback::execute_nc(restart, file_, control_, [&](const readback::ExecutedMove& m) {
       reach(m.joints);
       if (m.tcp && m.known && control_.chain)
-        readback::follow_tip(last, m, control_, *control_.chain, [this](const std::array<double, 5>& joints) { reach(joints); });
+        readback::follow_tip(last, m, control_, *control_.chain,
+                             [this](const std::array<double, 5>& joints) { reach(joints); });
       last = m;
       if (!cut) proof_.approach.moves.push_back(m);
       cut = cut || !m.rapid;
@@ -183,8 +190,8 @@ class RestartComparison {
 
 }  // namespace
 
-Result<RestartProof> prove_restart(std::string_view whole, std::string_view restart, const std::string& file, const readback::NcControl& control,
-                                   const RestartPlace& from) {
+Result<RestartProof> prove_restart(std::string_view whole, std::string_view restart, const std::string& file,
+                                   const readback::NcControl& control, const RestartPlace& from) {
   return RestartComparison(file, control, from).run(whole, restart);
 }
 

@@ -6,8 +6,8 @@
 #include "postproc/controls/of_machine.h"
 #include "postproc/joints/words.h"
 #include "postproc/numbers/fixed_point.h"
-#include "postproc/self_test/self_test.h"
 #include "postproc/readback/reader.h"
+#include "postproc/self_test/self_test.h"
 
 namespace toothpath::self_test {
 namespace {
@@ -38,7 +38,8 @@ class SelfTestBuilder {
   joints::AxisProgram build() && {
     program_.turns_in_cuts = true;
     for (std::size_t k = 0; k < machine_.chain.rotary_count(); ++k)
-      program_.tip_reach_mm = std::max(program_.tip_reach_mm, (machine_.chain.rotary(k).point_mm - test_.point_mm).norm() + test_.tool_length_mm);
+      program_.tip_reach_mm = std::max(
+          program_.tip_reach_mm, (machine_.chain.rotary(k).point_mm - test_.point_mm).norm() + test_.tool_length_mm);
     joints::AxisOperation op;
     op.type = "self_test";
     op.tool_number = 1;
@@ -91,7 +92,8 @@ class SelfTestBuilder {
   }
   void approach(joints::ToothBlocks& part) const {
     const auto& zero = test_.stations.front().rotary_rad;
-    for (const joints::BlockKind kind : {joints::BlockKind::rapid_rotary, joints::BlockKind::rapid_xy, joints::BlockKind::rapid_z}) {
+    for (const joints::BlockKind kind :
+         {joints::BlockKind::rapid_rotary, joints::BlockKind::rapid_xy, joints::BlockKind::rapid_z}) {
       // Where TCP starts at its own block with Z, that block comes down.
       if (kind == joints::BlockKind::rapid_z && tcp() && program_.tcp_starts_at_zero) continue;
       joints::AxisBlock b = at(kind, test_.approach_mm, zero, false);
@@ -130,7 +132,8 @@ class SelfTestBuilder {
 /// Watches the executed moves of a self test: travel, the tip on its point, the stations in their order.
 class SelfTestWatch {
  public:
-  SelfTestWatch(const std::string& file, const SelfTest& test, const machines::Machine& machine) : file_(file), test_(test), machine_(machine) {}
+  SelfTestWatch(const std::string& file, const SelfTest& test, const machines::Machine& machine)
+      : file_(file), test_(test), machine_(machine) {}
 
   void operator()(const readback::ExecutedMove& m) {
     proof_.minutes += m.minutes;
@@ -147,7 +150,8 @@ class SelfTestWatch {
   Result<SelfTestProof> finish() const {
     if (error_) return *error_;
     if (next_ < test_.stations.size())
-      return fail_as(DiagnosticKind::verification, "station {} of {} ({}) is not met", next_ + 1, test_.stations.size(), test_.stations[next_].remark);
+      return fail_as(DiagnosticKind::verification, "station {} of {} ({}) is not met", next_ + 1, test_.stations.size(),
+                     test_.stations[next_].remark);
     return proof_;
   }
 
@@ -160,7 +164,9 @@ class SelfTestWatch {
     for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = radians(m.joints[3 + k]);
     return j;
   }
-  [[nodiscard]] double distance(const machines::Joints& j) const { return (machine_.chain.forward(j, test_.tool_length_mm).tip_mm - test_.point_mm).norm(); }
+  [[nodiscard]] double distance(const machines::Joints& j) const {
+    return (machine_.chain.forward(j, test_.tool_length_mm).tip_mm - test_.point_mm).norm();
+  }
   void fault(const readback::ExecutedMove& m, std::string what) {
     if (error_) return;
     error_ = fail_as(DiagnosticKind::verification, "{}", what);
@@ -174,10 +180,12 @@ class SelfTestWatch {
       machines::Joints j;
       const double t = s / 4.0;
       j.linear_mm = before_.linear_mm + t * (now.linear_mm - before_.linear_mm);
-      for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = before_.rotary_rad[k] + t * (now.rotary_rad[k] - before_.rotary_rad[k]);
+      for (std::size_t k = 0; k < 2; ++k)
+        j.rotary_rad[k] = before_.rotary_rad[k] + t * (now.rotary_rad[k] - before_.rotary_rad[k]);
       proof_.worst_mm = std::max(proof_.worst_mm, distance(m.tcp ? now : j));
     }
-    if (proof_.worst_mm > allowed) fault(m, fmt::format("the tip leaves the point by {:.4f} mm, allowed {:.4f}", proof_.worst_mm, allowed));
+    if (proof_.worst_mm > allowed)
+      fault(m, fmt::format("the tip leaves the point by {:.4f} mm, allowed {:.4f}", proof_.worst_mm, allowed));
   }
   [[nodiscard]] bool at_station(const machines::Joints& now, const SelfTestStation& station) const {
     double turn = 0;
@@ -200,7 +208,8 @@ class SelfTestWatch {
 
 }  // namespace
 
-joints::AxisProgram self_test_program(const SelfTest& test, const machines::Machine& machine, const text::NcDialect& dialect) {
+joints::AxisProgram self_test_program(const SelfTest& test, const machines::Machine& machine,
+                                      const text::NcDialect& dialect) {
   return SelfTestBuilder(test, machine, dialect).build();
 }
 
@@ -212,7 +221,8 @@ text::NcDialect in_air(text::NcDialect dialect) {
   return dialect;
 }
 
-Result<SelfTestProof> prove_self_test(std::string_view text, const std::string& file, const SelfTest& test, const machines::Machine& machine) {
+Result<SelfTestProof> prove_self_test(std::string_view text, const std::string& file, const SelfTest& test,
+                                      const machines::Machine& machine) {
   tool::ToolAssembly bar;
   bar.number = 1;
   bar.length_mm = test.tool_length_mm;

@@ -11,16 +11,21 @@ namespace {
 
 using Rotaries = std::array<double, 2>;
 
-bool turns_fully(const machines::RotaryAxis& axis, double margin) { return axis.max_rad - axis.min_rad - 2 * margin >= radians(360); }
+bool turns_fully(const machines::RotaryAxis& axis, double margin) {
+  return axis.max_rad - axis.min_rad - 2 * margin >= radians(360);
+}
 
 /// Commands of one axis on its own, zero left out: quarters of a turn, or both sides.
 std::vector<double> commands_of(const machines::RotaryAxis& axis, double tilt, double margin) {
-  std::vector<double> wanted = turns_fully(axis, margin) ? std::vector{radians(90), radians(180), radians(270)} : std::vector{tilt, -tilt};
+  std::vector<double> wanted =
+      turns_fully(axis, margin) ? std::vector{radians(90), radians(180), radians(270)} : std::vector{tilt, -tilt};
   std::vector<double> possible;
   for (const double turn : wanted)
     for (const double w : {turn, turn - 2 * kPi}) {  // 270 or -90: the same place
       const double command = axis.zero_rad + w;
-      if (command < axis.min_rad + margin || command > axis.max_rad - margin || (!turns_fully(axis, margin) && w != turn)) continue;
+      if (command < axis.min_rad + margin || command > axis.max_rad - margin ||
+          (!turns_fully(axis, margin) && w != turn))
+        continue;
       possible.push_back(command);
       break;
     }
@@ -74,11 +79,13 @@ std::vector<SelfTestStation> stations_for(const machines::Machine& machine, doub
   // A rotary that rolls over goes on from where it stands.
   for (std::size_t s = 1; s < stations.size(); ++s)
     for (std::size_t k = 0; k < chain.rotary_count(); ++k)
-      if (chain.rotary(k).rollover) stations[s].rotary_rad[k] = choice::nearest_turn(stations[s].rotary_rad[k], stations[s - 1].rotary_rad[k]);
+      if (chain.rotary(k).rollover)
+        stations[s].rotary_rad[k] = choice::nearest_turn(stations[s].rotary_rad[k], stations[s - 1].rotary_rad[k]);
   return stations;
 }
 
-/// Where the tip may stand: near the table's rotary axis, else in the middle of the travels; nearer to the axis as a second choice.
+/// Where the tip may stand: near the table's rotary axis, else in the middle of the travels; nearer to the axis as a
+/// second choice.
 std::vector<Vec3> points_for(const machines::Machine& machine, double tool_length) {
   const machines::KinematicChain& chain = machine.chain;
   Vec3 low, high;
@@ -89,7 +96,8 @@ std::vector<Vec3> points_for(const machines::Machine& machine, double tool_lengt
   std::vector<Vec3> points;
   if (chain.table.empty()) {
     const Vec3 middle = (low + high) / 2;
-    for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8}) points.push_back({middle.x(), middle.y(), low.z() + share * (high.z() - low.z()) - tool_length});
+    for (const double share : {0.5, 0.35, 0.65, 0.2, 0.8})
+      points.push_back({middle.x(), middle.y(), low.z() + share * (high.z() - low.z()) - tool_length});
     return points;
   }
   const Vec3 centre = chain.table.front().point_mm;
@@ -108,7 +116,8 @@ double swing(const machines::KinematicChain& chain, const Vec3& point, double to
     reach += (arm - arm.dot(axis.direction) * axis.direction).norm();
   }
   // The first table axis moves the point against the second one by no more than the distance of the two.
-  if (chain.table.size() == 2) reach += 2 * (chain.table[0].point_mm - chain.table[1].point_mm).norm() + (point - chain.table[0].point_mm).norm();
+  if (chain.table.size() == 2)
+    reach += 2 * (chain.table[0].point_mm - chain.table[1].point_mm).norm() + (point - chain.table[0].point_mm).norm();
   for (const auto& axis : chain.head) reach += axis.point_mm.norm() + tool_length;
   return reach;
 }
@@ -126,7 +135,8 @@ std::optional<std::string> first_violation(const machines::Machine& machine, con
   return std::nullopt;
 }
 
-SelfTest moved_through(const machines::Machine& machine, const Vec3& point, double tilt, double tool_length, double tip_mm) {
+SelfTest moved_through(const machines::Machine& machine, const Vec3& point, double tilt, double tool_length,
+                       double tip_mm) {
   SelfTest test;
   test.point_mm = point;
   test.tool_length_mm = tool_length;
@@ -134,8 +144,8 @@ SelfTest moved_through(const machines::Machine& machine, const Vec3& point, doub
   test.stations = stations_for(machine, tilt);
   test.tilt_rad = tilt;
   const double reach = swing(machine.chain, point, tool_length);
-  // Joint-linear block that turns by w in all: the tip leaves its place by at most w^2 reach / 8, plus that of the linear axes, which
-  // follow a curve of the same length and are replaced by its chord: the same again.
+  // Joint-linear block that turns by w in all: the tip leaves its place by at most w^2 reach / 8, plus that of the
+  // linear axes, which follow a curve of the same length and are replaced by its chord: the same again.
   const double widest = std::sqrt(4 * tip_mm / std::max(reach, 1e-3));
   Rotaries at = test.stations.front().rotary_rad;
   test.moves.push_back({machine.chain.linear_for(point, at, tool_length), 0});
@@ -147,7 +157,8 @@ SelfTest moved_through(const machines::Machine& machine, const Vec3& point, doub
     for (int i = 1; i <= steps; ++i) {
       const double t = static_cast<double>(i) / steps;
       const Rotaries r = {at[0] + t * (to[0] - at[0]), at[1] + t * (to[1] - at[1])};
-      test.moves.push_back({machine.chain.linear_for(point, i == steps ? to : r, tool_length), i == steps ? static_cast<int>(s) : -1});
+      test.moves.push_back(
+          {machine.chain.linear_for(point, i == steps ? to : r, tool_length), i == steps ? static_cast<int>(s) : -1});
     }
     at = to;
   }
@@ -157,19 +168,24 @@ SelfTest moved_through(const machines::Machine& machine, const Vec3& point, doub
 }  // namespace
 
 Result<SelfTest> plan_self_test(const machines::Machine& machine, const SelfTestOptions& options) {
-  if (options.tool_length_mm && !(*options.tool_length_mm > 0)) return fail("tool length {} mm of the test bar is not positive", *options.tool_length_mm);
-  if (machine.chain.rotary_count() == 0) return fail("machine \"{}\" has no rotary axis: there is no pivot to test", machine.name);
-  const std::vector<double> lengths = options.tool_length_mm ? std::vector{*options.tool_length_mm} : std::vector{100.0, 60.0, 30.0};
+  if (options.tool_length_mm && !(*options.tool_length_mm > 0))
+    return fail("tool length {} mm of the test bar is not positive", *options.tool_length_mm);
+  if (machine.chain.rotary_count() == 0)
+    return fail("machine \"{}\" has no rotary axis: there is no pivot to test", machine.name);
+  const std::vector<double> lengths =
+      options.tool_length_mm ? std::vector{*options.tool_length_mm} : std::vector{100.0, 60.0, 30.0};
   std::string last;
   for (const double tilt_deg : {30.0, 20.0, 10.0, 5.0})
     for (const double length : lengths)
       for (const Vec3& point : points_for(machine, length)) {
-        SelfTest test = moved_through(machine, point, std::min(radians(tilt_deg), options.largest_tilt_rad), length, options.tip_mm);
+        SelfTest test = moved_through(machine, point, std::min(radians(tilt_deg), options.largest_tilt_rad), length,
+                                      options.tip_mm);
         const auto violation = first_violation(machine, test);
         if (!violation) return test;
         last = *violation;
       }
-  return fail_as(DiagnosticKind::verification, "no point near the table can be kept with {:g} deg of tilt and a bar of {:g} mm: {}",
+  return fail_as(DiagnosticKind::verification,
+                 "no point near the table can be kept with {:g} deg of tilt and a bar of {:g} mm: {}",
                  std::min(5.0, degrees(options.largest_tilt_rad)), lengths.back(), last);
 }
 

@@ -1,7 +1,9 @@
-// A program that a machinist runs in air before the first cut: the tip of a test bar stands on one point of the table while the rotary
-// axes go through their range. A wrong sign, pivot, tool length or TCP switch moves the tip off that point.
+// A program that a machinist runs in air before the first cut: the tip of a test bar stands on one point of the table
+// while the rotary axes go through their range. A wrong sign, pivot, tool length or TCP switch moves the tip off that
+// point.
 //
-// Poses only, free of any dialect. Spec of the idea: a dial indicator on the table (or a ball on a magnetic stand) at `point_mm`.
+// Poses only, free of any dialect. Spec of the idea: a dial indicator on the table (or a ball on a magnetic stand) at
+// `point_mm`.
 #pragma once
 
 #include <array>
@@ -33,40 +35,43 @@ struct SelfTest {
     machines::Joints joints;
     int station = -1;
   };
-  std::vector<Move> moves;      ///< from the first station on
-  double tip_bound_mm = 0;      ///< proven: between two blocks, all joints linear, the tip leaves the point by no more
-  double tilt_rad = 0;          ///< largest tilt that is used
+  std::vector<Move> moves;  ///< from the first station on
+  double tip_bound_mm = 0;  ///< proven: between two blocks, all joints linear, the tip leaves the point by no more
+  double tilt_rad = 0;      ///< largest tilt that is used
 };
 
 struct SelfTestOptions {
   std::optional<double> tool_length_mm;  ///< nothing: the first of 100, 60 and 30 mm that the travels allow
-  double tip_mm = 0.005;            ///< how far the tip may leave the point between two blocks
+  double tip_mm = 0.005;                 ///< how far the tip may leave the point between two blocks
   double largest_tilt_rad = radians(30);
 };
 
-/// Chooses the point and the stations: each rotary axis alone (a full turn in quarters where its limits allow one, else to both sides),
-/// then the quarters of one with the other tilted. Point: off the axes so that every sign shows, on the table where there is one.
-/// Errors: no rotary axis; no point near the table from which even 5 degrees of tilt stay inside the travels: the message names axis,
-/// value and limit; a tool length that is not positive.
+/// Chooses the point and the stations: each rotary axis alone (a full turn in quarters where its limits allow one, else
+/// to both sides), then the quarters of one with the other tilted. Point: off the axes so that every sign shows, on the
+/// table where there is one. Errors: no rotary axis; no point near the table from which even 5 degrees of tilt stay
+/// inside the travels: the message names axis, value and limit; a tool length that is not positive.
 [[nodiscard]] Result<SelfTest> plan_self_test(const machines::Machine& machine, const SelfTestOptions& options = {});
 
-/// The poses as an axis program: retract, point, every station with a stop behind it. The work offset stands at the point. With TCP the
-/// blocks turn the rotaries alone and the control is what is tested.
-[[nodiscard]] joints::AxisProgram self_test_program(const SelfTest& test, const machines::Machine& machine, const text::NcDialect& dialect);
+/// The poses as an axis program: retract, point, every station with a stop behind it. The work offset stands at the
+/// point. With TCP the blocks turn the rotaries alone and the control is what is tested.
+[[nodiscard]] joints::AxisProgram self_test_program(const SelfTest& test, const machines::Machine& machine,
+                                                    const text::NcDialect& dialect);
 
 /// The dialect without the line that starts the spindle.
 [[nodiscard]] text::NcDialect in_air(text::NcDialect dialect);
 
 /// What the text of a self-test does, read back through the machine's kinematics.
 struct SelfTestProof {
-  double worst_mm = 0;       ///< greatest distance of the tip from the point, from the first station to the last, inside the blocks too
-  std::size_t moves = 0;     ///< executed between them
-  double minutes = 0;        ///< of the whole program, stops left out
+  double worst_mm =
+      0;  ///< greatest distance of the tip from the point, from the first station to the last, inside the blocks too
+  std::size_t moves = 0;  ///< executed between them
+  double minutes = 0;     ///< of the whole program, stops left out
 };
 
-/// Executes the text with a standing spindle. Errors (verification): what the reader refuses; a station that is not met in its
-/// order; a joint outside its travel; a tip that leaves the point by more than the plan's bound and 3 um of rounding.
-[[nodiscard]] Result<SelfTestProof> prove_self_test(std::string_view text, const std::string& file, const SelfTest& test,
-                                                    const machines::Machine& machine);
+/// Executes the text with a standing spindle. Errors (verification): what the reader refuses; a station that is not met
+/// in its order; a joint outside its travel; a tip that leaves the point by more than the plan's bound and 3 um of
+/// rounding.
+[[nodiscard]] Result<SelfTestProof> prove_self_test(std::string_view text, const std::string& file,
+                                                    const SelfTest& test, const machines::Machine& machine);
 
 }  // namespace toothpath::self_test

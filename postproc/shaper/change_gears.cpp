@@ -36,7 +36,8 @@ bool preferred(const std::vector<int>& p, const std::vector<int>& q) {
   return std::tuple(p.size(), sum(p), p) < std::tuple(q.size(), sum(q), q);
 }
 
-/// Calls `visit(a, b)` for every pair, then `visit(a, b, c, position)` where `position` tells the start of the search for d.
+/// Calls `visit(a, b)` for every pair, then `visit(a, b, c, position)` where `position` tells the start of the search
+/// for d.
 template <typename Pair, typename Triple>
 void for_each_start(const Shelf& shelf, Pair&& on_pair, Triple&& on_triple) {
   const std::size_t n = shelf.teeth.size();
@@ -123,7 +124,10 @@ std::optional<GearTrain> nearest_train(const WheelSet& set, double target) {
     }
   };
   for_each_start(
-      shelf, [&](int a, int b) { offer({a, b}); },
+      shelf,
+      [&](int a, int b) {
+        offer({a, b});
+      },
       [&](int a, int b, int c, const std::vector<int>& left) {
         if (a + b < c + set.mesh_margin) return;
         const double ideal = double(a) * c / (double(b) * target);

@@ -23,14 +23,14 @@ struct WheelSet {
 struct GearTrain {
   std::vector<int> wheels;
   [[nodiscard]] machines::Ratio ratio() const;  ///< in lowest terms
-  [[nodiscard]] std::string text() const;  ///< "30/44" or "25/55 * 60/40"
+  [[nodiscard]] std::string text() const;       ///< "30/44" or "25/55 * 60/40"
 };
 
 /// Does the train consist of wheels of the set, each used no more often than it is there, and does it mesh?
 [[nodiscard]] bool train_fits(const WheelSet& set, const GearTrain& train);
 
-/// A train whose ratio equals the target exactly, in whole numbers. Of several: two wheels before four, then the smallest
-/// sum of teeth, then the smallest a, b, c in turn. Nothing if there is none.
+/// A train whose ratio equals the target exactly, in whole numbers. Of several: two wheels before four, then the
+/// smallest sum of teeth, then the smallest a, b, c in turn. Nothing if there is none.
 [[nodiscard]] std::optional<GearTrain> exact_train(const WheelSet& set, machines::Ratio target);
 
 /// The train nearest to the target (smallest absolute difference); ties as above. Nothing with fewer than two wheels.

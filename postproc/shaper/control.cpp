@@ -30,12 +30,15 @@ const std::vector<ShaperControl>& shaper_controls() {
 
 const ShaperControl& shaper_control(const machines::ShaperMachine& machine) {
   const auto& all = shaper_controls();
-  const auto found = std::find_if(all.begin(), all.end(), [&](const ShaperControl& c) { return c.dialect.name == machine.dialect; });
+  const auto found =
+      std::find_if(all.begin(), all.end(), [&](const ShaperControl& c) { return c.dialect.name == machine.dialect; });
   assert(found != all.end());
   return *found;
 }
 
-machines::ShaperMachineReading read_shaper_machine(const std::string& path) { return machines::read_shaper_machine_file(path, dialects_of_list()); }
+machines::ShaperMachineReading read_shaper_machine(const std::string& path) {
+  return machines::read_shaper_machine_file(path, dialects_of_list());
+}
 machines::ShaperMachineReading read_shaper_machine_of_text(std::string_view text, const std::string& file) {
   return machines::read_shaper_machine_text(text, file, dialects_of_list());
 }

@@ -1,5 +1,5 @@
-// The controls of gear shapers. One is an object: its name, what its machine files say, its words and its reader. The list of them is
-// controls/registry.inl, a line each; whoever must know all of them asks here.
+// The controls of gear shapers. One is an object: its name, what its machine files say, its words and its reader. The
+// list of them is controls/registry.inl, a line each; whoever must know all of them asks here.
 #pragma once
 
 #include <string>
@@ -21,7 +21,8 @@ struct ShaperControl {
   std::string (*program)(const ShaperSetup& setup) = nullptr;
   /// Can it hold N_s/N_2 exactly? Refused with value and limit. Null: any ratio of whole numbers.
   Status (*accepts)(const machines::ShaperMachine& machine, int cutter_teeth, int work_teeth) = nullptr;
-  /// What a program makes the machine do; any text gives a reading. Null: every stroke is written out, nothing is coupled.
+  /// What a program makes the machine do; any text gives a reading. Null: every stroke is written out, nothing is
+  /// coupled.
   GearboxReading (*read)(std::string_view text, const GearboxWords& words) = nullptr;
 };
 
@@ -32,7 +33,8 @@ struct ShaperControl {
 
 /// A shaper from its file or text, with a control of the list. Errors: those of machines/shaper_machine.h.
 [[nodiscard]] machines::ShaperMachineReading read_shaper_machine(const std::string& path);
-[[nodiscard]] machines::ShaperMachineReading read_shaper_machine_of_text(std::string_view text, const std::string& file);
+[[nodiscard]] machines::ShaperMachineReading read_shaper_machine_of_text(std::string_view text,
+                                                                         const std::string& file);
 
 /// The program of a set-up in the words of its machine's control.
 [[nodiscard]] std::string shaper_program(const ShaperSetup& setup);

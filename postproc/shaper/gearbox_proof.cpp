@@ -9,15 +9,18 @@
 namespace toothpath::shaper {
 namespace {
 
-constexpr double kTime = 2e-3;     // relative
+constexpr double kTime = 2e-3;  // relative
 
 }  // namespace
 
 std::vector<std::string> gearbox_program_faults(std::string_view text, const ShaperSetup& s) {
   const auto& box = *s.machine.gearbox;
-  const auto r = shaper_control(s.machine).read(text, {box.cutter_axis, box.work_axis, box.relief_on, box.relief_off, box.pulses_per_turn});
+  const auto r = shaper_control(s.machine).read(
+      text, {box.cutter_axis, box.work_axis, box.relief_on, box.relief_off, box.pulses_per_turn});
   std::vector<std::string> faults = r.problems;
-  const auto wrong = [&]<typename... A>(fmt::format_string<A...> format, A&&... a) { faults.push_back(fmt::format(format, std::forward<A>(a)...)); };
+  const auto wrong = [&]<typename... A>(fmt::format_string<A...> format, A&&... a) {
+    faults.push_back(fmt::format(format, std::forward<A>(a)...));
+  };
   if (!r.ratio) {
     wrong("no coupling");
     return faults;
@@ -48,7 +51,8 @@ std::vector<std::string> gearbox_program_faults(std::string_view text, const Sha
     x = m.x_to_mm;
     if (m.cutter_to < m.cutter_from) wrong("line {}: the cutter turns backwards", m.line);
     if (m.cutter_to == m.cutter_from) {
-      if (std::min(m.x_from_mm, m.x_to_mm) < s.depth_mm - kPlace && m.x_to_mm < m.x_from_mm) wrong("line {}: infeed without turning", m.line);
+      if (std::min(m.x_from_mm, m.x_to_mm) < s.depth_mm - kPlace && m.x_to_mm < m.x_from_mm)
+        wrong("line {}: infeed without turning", m.line);
       continue;
     }
     if (m.x_to_mm > m.x_from_mm) wrong("line {}: the infeed slide goes back while the cutter turns", m.line);
@@ -67,7 +71,8 @@ std::vector<std::string> gearbox_program_faults(std::string_view text, const Sha
   // Work turn = cutter turn * ratio >= 360 deg, in whole numbers of 1e-6 deg.
   const __int128 turned = __int128{at_depth_to - at_depth_from} * std::abs(work), needed = __int128{360000000} * cutter;
   if (turned < needed)
-    wrong("at full depth the work turns {:.6f} deg, must be 360 or more", double(at_depth_to - at_depth_from) * 1e-6 * double(std::abs(work)) / double(cutter));
+    wrong("at full depth the work turns {:.6f} deg, must be 360 or more",
+          double(at_depth_to - at_depth_from) * 1e-6 * double(std::abs(work)) / double(cutter));
   near("minutes of the infeed", infeed_min, s.infeed_min);
   near("minutes at full depth", turn_min, s.generating_min);
   return faults;

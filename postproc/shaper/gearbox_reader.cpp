@@ -69,7 +69,9 @@ GearboxReading GearboxReader::run(std::string_view text) {
   return std::move(out_);
 }
 
-void GearboxReader::problem(const std::string& what) { out_.problems.push_back(fmt::format("line {}: {}", line_, what)); }
+void GearboxReader::problem(const std::string& what) {
+  out_.problems.push_back(fmt::format("line {}: {}", line_, what));
+}
 
 void GearboxReader::block(std::string_view s) {
   if (s.empty() || s.front() == ';' || (s.front() == '(' && s.back() == ')') || frame(s)) return;
@@ -94,7 +96,8 @@ void GearboxReader::set(bool& flag, bool to, const char* what) {
 
 void GearboxReader::start(std::string_view s) {
   for (const std::string_view word : safe_start())
-    if ((" " + std::string(s) + " ").find(" " + std::string(word) + " ") == std::string::npos) problem(fmt::format("{} is missing in the safe start", word));
+    if ((" " + std::string(s) + " ").find(" " + std::string(word) + " ") == std::string::npos)
+      problem(fmt::format("{} is missing in the safe start", word));
   started_ = true;
 }
 
@@ -180,7 +183,8 @@ void GearboxReader::motion(std::string_view s) {
   const Motion m = words_of_motion(s);
   check_order(m);
   if (stroking_ && coupled_) {
-    const double way = m.x != x_ && m.cutter == cutter_ ? std::abs(m.x - x_) : std::abs(double(m.cutter - cutter_)) * 1e-6;
+    const double way =
+        m.x != x_ && m.cutter == cutter_ ? std::abs(m.x - x_) : std::abs(double(m.cutter - cutter_)) * 1e-6;
     if (m.x != x_ && m.cutter != cutter_ && !inverse_) problem("infeed and cutter together need G93");
     const double minutes = m.feed > 0 ? (inverse_ ? 1 / m.feed : way / m.feed) : 0;
     out_.moves.push_back({line_, x_, m.x, cutter_, m.cutter, minutes});

@@ -1,5 +1,5 @@
-// Reads a program for an electronic gearbox back and says what the machine would do: ratio, strokes, infeed, turns, times. Written from the
-// words of the controls; shares no code with the writer.
+// Reads a program for an electronic gearbox back and says what the machine would do: ratio, strokes, infeed, turns,
+// times. Written from the words of the controls; shares no code with the writer.
 #pragma once
 
 #include <cstdint>
@@ -51,7 +51,8 @@ struct GearboxWords {
 /// The words of a block, without what stands between them.
 [[nodiscard]] std::vector<std::string_view> words_of_block(std::string_view block);
 
-/// State of a control while it reads. Any text gives a reading; what is not understood is a problem. A control adds its own words.
+/// State of a control while it reads. Any text gives a reading; what is not understood is a problem. A control adds its
+/// own words.
 class GearboxReader {
  public:
   explicit GearboxReader(const GearboxWords& words) : w_(words) {}

@@ -1,5 +1,5 @@
-// Programs for gear shapers with an electronic gearbox: the control couples the work to the cutter by whole numbers, moves the ram by
-// itself, and the program moves infeed and cutter only.
+// Programs for gear shapers with an electronic gearbox: the control couples the work to the cutter by whole numbers,
+// moves the ram by itself, and the program moves infeed and cutter only.
 #pragma once
 
 #include <cstdint>
@@ -20,10 +20,11 @@ struct GearboxFormat {
 
 /// Writes a program in the order that every control shares; a control says its own words.
 ///
-/// Order: infeed slide clear, offset slide, ram to the start, turns at zero; coupling on while clear and at rest; relief and stroke on; infeed in
-/// parts of at most one minute with the cutter turning (G93, so that the time is exact); the rest of one work turn and more at full depth in
-/// deg/min; stroke off, infeed slide clear, coupling off. Words are machine coordinates, mm and deg: X infeed slide (0 at full depth), Y offset
-/// slide, Z stroke. Precondition: a machine with a gearbox whose control accepts the ratio.
+/// Order: infeed slide clear, offset slide, ram to the start, turns at zero; coupling on while clear and at rest;
+/// relief and stroke on; infeed in parts of at most one minute with the cutter turning (G93, so that the time is
+/// exact); the rest of one work turn and more at full depth in deg/min; stroke off, infeed slide clear, coupling off.
+/// Words are machine coordinates, mm and deg: X infeed slide (0 at full depth), Y offset slide, Z stroke. Precondition:
+/// a machine with a gearbox whose control accepts the ratio.
 class GearboxWriter {
  public:
   GearboxWriter(const ShaperSetup& setup, const GearboxFormat& format);

@@ -19,16 +19,19 @@ Json machine_json(const ShaperSetup& s) {
   Json steps = Json::array();
   for (const double n : s.machine.stroke_steps) steps.push_back(plain(n));
   Json json = {{"name", s.machine.name},
-          {"file", s.machine_file},
-          {"stroke_steps", steps},
-          {"index_constant", ratio(s.machine.index_constant)},
-          {"feed_constant", ratio(s.machine.feed_constant)},
-          {"gears", s.machine.gears},
-          {"mesh_margin", s.machine.mesh_margin},
-          {"relief", s.machine.relief_mm}};
+               {"file", s.machine_file},
+               {"stroke_steps", steps},
+               {"index_constant", ratio(s.machine.index_constant)},
+               {"feed_constant", ratio(s.machine.feed_constant)},
+               {"gears", s.machine.gears},
+               {"mesh_margin", s.machine.mesh_margin},
+               {"relief", s.machine.relief_mm}};
   json["dialect"] = s.machine.dialect;
   if (const auto& box = s.machine.gearbox) {
-    json["gearbox"] = {{"cutter_axis", box->cutter_axis}, {"work_axis", box->work_axis}, {"relief_on", box->relief_on}, {"relief_off", box->relief_off}};
+    json["gearbox"] = {{"cutter_axis", box->cutter_axis},
+                       {"work_axis", box->work_axis},
+                       {"relief_on", box->relief_on},
+                       {"relief_off", box->relief_off}};
     if (box->pulses_per_turn > 0) json["gearbox"]["pulses_per_turn"] = box->pulses_per_turn;
   }
   return json;
@@ -95,10 +98,11 @@ std::string shaper_json(const ShaperSetup& s, const std::vector<FeedStudyRow>& s
         {"cutter_per_stroke", degrees(s.cutter_per_stroke_rad)},
         {"strokes_per_cutter_turn", s.strokes_per_cutter_turn},
         {"strokes_per_work_turn", s.strokes_per_work_turn}}},
-      {"infeed",
-       {{"depth", s.depth_mm}, {"per_stroke", s.infeed_per_stroke_mm}, {"strokes", s.strokes_infeed}}},
+      {"infeed", {{"depth", s.depth_mm}, {"per_stroke", s.infeed_per_stroke_mm}, {"strokes", s.strokes_infeed}}},
       {"index_gears",
-       {{"constant", ratio(s.machine.index_constant)}, {"target", ratio(s.index_target)}, {"gears", s.index_gears.wheels}}},
+       {{"constant", ratio(s.machine.index_constant)},
+        {"target", ratio(s.index_target)},
+        {"gears", s.index_gears.wheels}}},
       {"feed_gears",
        {{"constant", ratio(s.machine.feed_constant)},
         {"target", s.feed_target},

@@ -52,7 +52,8 @@ void write_header(std::string& out, const ShaperSetup& s) {
   out += comment("all words are machine coordinates: the active work offset must be zero in every axis");
   out += comment(fmt::format("x infeed, 0 = full depth {}   y offset {}   z stroke {} .. {}", length(s.depth_mm),
                              length(s.slide_mm), length(s.start_mm), length(s.end_mm)));
-  out += comment(fmt::format("a cutter {} teeth   c work {} teeth   sense {:+}", s.cutter_teeth, s.work_teeth, s.sense));
+  out +=
+      comment(fmt::format("a cutter {} teeth   c work {} teeth   sense {:+}", s.cutter_teeth, s.work_teeth, s.sense));
   out += comment(fmt::format("double strokes {} infeed + {} one turn, {} per minute", s.strokes_infeed, s.strokes_turn,
                              number(s.strokes_set, 6)));
 }

@@ -82,11 +82,12 @@ void set_stroke(ShaperSetup& s, Refusals& refusals) {
   s.end_mm = L_in - o;
   s.length_mm = s.start_mm - s.end_mm;
   if (!(s.length_mm <= s.machine.max_stroke_mm))
-    refuse(refusals, "shaping.over_run", "stroke = {:.4f} mm (face {:.4f} and twice the over-run {:.4f}) exceeds {:.4f}, the "
-           "longest stroke of {}", s.length_mm, s.face_mm, o, s.machine.max_stroke_mm, s.machine.name);
+    refuse(refusals, "shaping.over_run",
+           "stroke = {:.4f} mm (face {:.4f} and twice the over-run {:.4f}) exceeds {:.4f}, the longest stroke of {}",
+           s.length_mm, s.face_mm, o, s.machine.max_stroke_mm, s.machine.name);
   if (!(s.end_mm > -L_in))
-    refuse(refusals, "shaping.over_run", "over_run = {:.4f} drives the stroke through the teeth on the far side; limit {:.4f}",
-           o, 2 * L_in);
+    refuse(refusals, "shaping.over_run",
+           "over_run = {:.4f} drives the stroke through the teeth on the far side; limit {:.4f}", o, 2 * L_in);
 }
 
 void set_speed(ShaperSetup& s, Refusals& refusals) {
@@ -99,8 +100,9 @@ void set_speed(ShaperSetup& s, Refusals& refusals) {
     lowest = lowest == 0 ? step : std::min(lowest, step);
   }
   if (s.strokes_set <= 0) {
-    refuse(refusals, "shaping.cutting_speed", "cutting_speed = {:.4f} m/min asks for {:.4f} strokes/min, below {:.4f}, the "
-           "slowest step of {}", v, s.strokes_wanted, lowest, s.machine.name);
+    refuse(refusals, "shaping.cutting_speed",
+           "cutting_speed = {:.4f} m/min asks for {:.4f} strokes/min, below {:.4f}, the slowest step of {}", v,
+           s.strokes_wanted, lowest, s.machine.name);
     return;
   }
   s.speed_mean_m_min = 2 * l * s.strokes_set / 1000;
@@ -136,7 +138,8 @@ void set_gears(ShaperSetup& s, Refusals& refusals) {
     s.feed_target = s.shaping.circular_feed_mm / s.pitch_diameter_mm;
     s.circular_feed_set_mm = s.shaping.circular_feed_mm;
     if (const auto& control = shaper_control(m); control.accepts)
-      if (const auto fits = control.accepts(m, s.cutter_teeth, s.work_teeth); !fits) refuse(refusals, "gear.shaper_teeth", "{}", fits.error().message);
+      if (const auto fits = control.accepts(m, s.cutter_teeth, s.work_teeth); !fits)
+        refuse(refusals, "gear.shaper_teeth", "{}", fits.error().message);
     return;
   }
   const WheelSet wheels{m.gears, m.mesh_margin};
@@ -149,23 +152,24 @@ void set_gears(ShaperSetup& s, Refusals& refusals) {
                               nearest->ratio().value(), nearest->ratio().value() / s.index_target.value() - 1)
                 : std::string("the machine has fewer than two wheels");
     refuse(refusals, "gear.shaper_teeth", "no exact index gears for {}/{} = {:.9f} among the {} wheels of {}; {}",
-           s.index_target.numerator, s.index_target.denominator, s.index_target.value(), m.gears.size(), m.name,
-           hint);
+           s.index_target.numerator, s.index_target.denominator, s.index_target.value(), m.gears.size(), m.name, hint);
     return;
   }
   s.index_gears = *index;
   s.feed_target = m.feed_constant.value() * s.shaping.circular_feed_mm / s.pitch_diameter_mm;
   const auto feed = nearest_train(without(wheels, s.index_gears), s.feed_target);
   if (!feed) {
-    refuse(refusals, "machine.file", "no two wheels are left for the feed after the index gears {}", s.index_gears.text());
+    refuse(refusals, "machine.file", "no two wheels are left for the feed after the index gears {}",
+           s.index_gears.text());
     return;
   }
   s.feed_gears = *feed;
   s.circular_feed_set_mm = s.pitch_diameter_mm * feed->ratio().value() / m.feed_constant.value();
   const double off = s.circular_feed_set_mm / s.shaping.circular_feed_mm - 1;
   if (std::abs(off) > 0.05)
-    s.warnings.push_back(fmt::format("the nearest feed gears give {:.5f} mm per double stroke, {:+.1f} % off the wanted {:.5f}",
-                                     s.circular_feed_set_mm, 100 * off, s.shaping.circular_feed_mm));
+    s.warnings.push_back(
+        fmt::format("the nearest feed gears give {:.5f} mm per double stroke, {:+.1f} % off the wanted {:.5f}",
+                    s.circular_feed_set_mm, 100 * off, s.shaping.circular_feed_mm));
 }
 
 /// Every position of the program against the travels.
@@ -173,8 +177,8 @@ void check_travel(const ShaperSetup& s, Refusals& refusals) {
   const auto need = [&](char axis, double lo, double hi, const char* key, double unit) {
     const machines::ShaperAxis& a = s.machine.axes.at(axis);
     if (lo < a.min || hi > a.max)
-      refuse(refusals, key, "axis {} needs {:.4f} .. {:.4f}, outside {:.4f} .. {:.4f} of {}", axis, lo * unit, hi * unit,
-             a.min * unit, a.max * unit, s.machine.name);
+      refuse(refusals, key, "axis {} needs {:.4f} .. {:.4f}, outside {:.4f} .. {:.4f} of {}", axis, lo * unit,
+             hi * unit, a.min * unit, a.max * unit, s.machine.name);
   };
   need('X', 0, s.depth_mm + s.machine.relief_mm, "machine.file", 1);
   need('Y', s.slide_mm, s.slide_mm, "gear.offset", 1);
@@ -186,14 +190,17 @@ void check_travel(const ShaperSetup& s, Refusals& refusals) {
   if (s.machine.gearbox) {
     const double ram = kPi * s.length_mm * s.strokes_set, limit = s.machine.axes.at('Z').max_speed;
     if (ram > limit)
-      refuse(refusals, "shaping.cutting_speed", "at {:.4f} double strokes/min the ram needs {:.4f} mm/min at its peak, limit {:.4f} of {}", s.strokes_set,
+      refuse(refusals, "shaping.cutting_speed",
+             "at {:.4f} double strokes/min the ram needs {:.4f} mm/min at its peak, limit {:.4f} of {}", s.strokes_set,
              ram, limit, s.machine.name);
     return;
   }
   const auto choice = choose_timing(s);
   if (choice.least > 1)
-    refuse(refusals, "shaping.cutting_speed", "at {:.4f} double strokes/min axis {} is too slow: the axes need {:.4f} of the time "
-           "of one double stroke, limit 1", s.strokes_set, choice.axis, choice.least);
+    refuse(refusals, "shaping.cutting_speed",
+           "at {:.4f} double strokes/min axis {} is too slow: the axes need {:.4f} of the time of one double stroke, "
+           "limit 1",
+           s.strokes_set, choice.axis, choice.least);
 }
 
 void set_passes(ShaperSetup& s) {
@@ -244,10 +251,11 @@ TimingChoice choose_timing(const ShaperSetup& s) {
   const std::array<std::pair<double, const char*>, 3> cutting = {{{s.length_mm / speed('Z'), "Z"},
                                                                   {(per_stroke_cutter + unit) / speed('A'), "A"},
                                                                   {(per_stroke_work + unit) / speed('C'), "C"}}};
-  const auto slowest = *std::max_element(cutting.begin(), cutting.end(),
-                                         [](const auto& p, const auto& q) { return p.first < q.first; });
+  const auto slowest =
+      *std::max_element(cutting.begin(), cutting.end(), [](const auto& p, const auto& q) { return p.first < q.first; });
   // Parts of the double stroke that the axes need at least.
-  const double cut = slowest.first * n, lift = s.machine.relief_mm / speed('X') * n, back = s.length_mm / speed('Z') * n;
+  const double cut = slowest.first * n, lift = s.machine.relief_mm / speed('X') * n,
+               back = s.length_mm / speed('Z') * n;
   const double approach = (s.machine.relief_mm + s.infeed_per_stroke_mm) / speed('X') * n;
   TimingChoice choice;
   choice.least = cut + lift + back + approach;
@@ -263,7 +271,7 @@ TimingChoice choose_timing(const ShaperSetup& s) {
 }
 
 Expected<ShaperSetup, std::vector<ShaperRefusal>> plan_shaper_setup(const ShaperWork& work,
-                                                                        const machines::ShaperMachine& machine) {
+                                                                    const machines::ShaperMachine& machine) {
   Refusals refusals;
   check_kind(work, refusals);
   if (!refusals.empty()) return refusals;
@@ -293,11 +301,15 @@ Expected<ShaperSetup, std::vector<ShaperRefusal>> plan_shaper_setup(const Shaper
   set_passes(s);
   s.relief = back_stroke_clearance(s, machine.relief_mm);
   if (s.relief.flank_mm <= 0)
-    s.warnings.push_back(fmt::format("the lifted cutter rubs on the finished flanks by {:.4f} mm on the back stroke: {:.4f} mm of "
-                                     "relief are too little", -s.relief.flank_mm, machine.relief_mm));
+    s.warnings.push_back(
+        fmt::format("the lifted cutter rubs on the finished flanks by {:.4f} mm on the back stroke: {:.4f} mm of "
+                    "relief are too little",
+                    -s.relief.flank_mm, machine.relief_mm));
   if (s.relief.stock_mm <= 0)
-    s.warnings.push_back(fmt::format("on the back stroke the lifted cutter touches stock of the next stroke by {:.4f} mm; more relief "
-                                     "or a smaller circular feed spares its edge", -s.relief.stock_mm));
+    s.warnings.push_back(
+        fmt::format("on the back stroke the lifted cutter touches stock of the next stroke by {:.4f} mm; more relief "
+                    "or a smaller circular feed spares its edge",
+                    -s.relief.stock_mm));
   return s;
 }
 

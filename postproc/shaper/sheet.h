@@ -12,8 +12,8 @@ namespace toothpath::shaper {
 /// @param study  error against cutting time for several circular feeds, may be empty
 [[nodiscard]] std::string shaper_json(const ShaperSetup& setup, const std::vector<FeedStudyRow>& study);
 
-/// shaper.html: one A4 side without script: steps in the setter's order, change gears, slide, stroke, pass table with inspection
-/// values, error against cutting time; every assumed value marked "assumed".
+/// shaper.html: one A4 side without script: steps in the setter's order, change gears, slide, stroke, pass table with
+/// inspection values, error against cutting time; every assumed value marked "assumed".
 [[nodiscard]] std::string shaper_html(const ShaperSetup& setup, const std::vector<FeedStudyRow>& study);
 
 /// The circular feeds that the sheet compares: the job's times 1/2, 1, 2, 4, 8, as far as they are sound.

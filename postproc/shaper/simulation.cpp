@@ -85,7 +85,8 @@ double cutter_distance(const face_gear::InvoluteShaper<double>& k, double x, dou
   return across - k.rho;
 }
 
-std::optional<double> stroke_distance(const face_gear::FaceGearSurface<double>& gear, const ShaperStroke& stroke, const Vec3& point) {
+std::optional<double> stroke_distance(const face_gear::FaceGearSurface<double>& gear, const ShaperStroke& stroke,
+                                      const Vec3& point) {
   const double length = stroke.z_to_mm - stroke.z_from_mm;
   const auto work_at = [&](double t) { return stroke.work_from + t * (stroke.work_to - stroke.work_from); };
   // The section of the point hardly moves while the work turns by one feed: each step wins two digits or more.
@@ -100,11 +101,11 @@ std::optional<double> stroke_distance(const face_gear::FaceGearSurface<double>& 
     if (std::hypot(seen.at.x, seen.at.y) > gear.shaper.r_a + 2 * kNear) break;
   }
   if (!(t >= 0 && t <= 1)) return std::nullopt;
-  return turned_cutter_distance(gear.shaper, seen.at,
-                                stroke.cutter_from + t * (stroke.cutter_to - stroke.cutter_from));
+  return turned_cutter_distance(gear.shaper, seen.at, stroke.cutter_from + t * (stroke.cutter_to - stroke.cutter_from));
 }
 
-double swept_distance(const face_gear::FaceGearSurface<double>& gear, const std::vector<ShaperStroke>& strokes, const Vec3& point) {
+double swept_distance(const face_gear::FaceGearSurface<double>& gear, const std::vector<ShaperStroke>& strokes,
+                      const Vec3& point) {
   double least = kFar;
   for (const auto& stroke : strokes)
     if (const auto d = stroke_distance(gear, stroke, point)) least = std::min(least, *d);
@@ -134,8 +135,8 @@ double generated_distance(const face_gear::FaceGearSurface<double>& gear, const 
   return best;
 }
 
-std::vector<FlankSample> flank_samples(const face_gear::FaceGearSurface<double>& gear, double inner_radius, double outer_radius,
-                                       int rows, int columns, int tooth) {
+std::vector<FlankSample> flank_samples(const face_gear::FaceGearSurface<double>& gear, double inner_radius,
+                                       double outer_radius, int rows, int columns, int tooth) {
   std::vector<FlankSample> samples;
   for (const int side : {1, -1})
     for (int c = 0; c < columns; ++c) {
@@ -155,8 +156,8 @@ std::vector<FlankSample> flank_samples(const face_gear::FaceGearSurface<double>&
   return samples;
 }
 
-ShapedDeviation shaped_deviation(const face_gear::FaceGearSurface<double>& gear, const std::vector<ShaperStroke>& strokes,
-                                 const std::vector<FlankSample>& samples) {
+ShapedDeviation shaped_deviation(const face_gear::FaceGearSurface<double>& gear,
+                                 const std::vector<ShaperStroke>& strokes, const std::vector<FlankSample>& samples) {
   ShapedDeviation result;
   result.points = samples.size();
   if (samples.empty()) return result;
@@ -239,7 +240,8 @@ BackStrokeClearance back_stroke_clearance(const ShaperSetup& s, double relief_mm
       if (std::cos(centre) < 0) continue;
       for (int step = 0; step <= kSteps; ++step) {
         const double theta = cutter.theta_t * step / kSteps, x = side * (cutter.theta_0 + theta) + centre;
-        probe(cutter.r_b * (std::cos(x) + side * theta * std::sin(x)), cutter.r_b * (std::sin(x) - side * theta * std::cos(x)));
+        probe(cutter.r_b * (std::cos(x) + side * theta * std::sin(x)),
+              cutter.r_b * (std::sin(x) - side * theta * std::cos(x)));
       }
       for (const double part : {0.0, 0.5, 1.0}) {
         const double psi = centre + side * (cutter.psi_c + part * (tooth / 2 - cutter.psi_c));

@@ -78,7 +78,8 @@ void NcAxisWords::rollover_number(std::size_t axis, std::int64_t word, bool shif
     const auto place_in_turn = expanded(roll.index, {{"word", text.substr(begin)}});
     text.resize(begin);
     if (place_in_turn) text += *place_in_turn;
-    else if (!out_.error()) out_.error() = fail("dialect {}: \"{}\" names a value that does not exist here", dialect_.name, roll.index);
+    else if (!out_.error())
+      out_.error() = fail("dialect {}: \"{}\" names a value that does not exist here", dialect_.name, roll.index);
   }
   text += roll.close;
 }
@@ -87,7 +88,8 @@ double NcAxisWords::length(const joints::AxisBlock& b) const {
   const auto part = [&](std::size_t from, std::size_t to) {
     double sum = 0;
     for (std::size_t a = from; a < to; ++a) {
-      const double d = static_cast<double>(b.words[a] - last_[a]) / static_cast<double>(numbers::power_of_ten(decimals(a)));
+      const double d =
+          static_cast<double>(b.words[a] - last_[a]) / static_cast<double>(numbers::power_of_ten(decimals(a)));
       sum += d * d;
     }
     return std::sqrt(sum);

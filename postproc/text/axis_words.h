@@ -21,7 +21,8 @@ enum class IndexWord {
 
 class NcAxisWords {
  public:
-  NcAxisWords(const joints::AxisProgram& program, const NcDialect& dialect, NcLines& out) : program_(program), dialect_(dialect), out_(out) {}
+  NcAxisWords(const joints::AxisProgram& program, const NcDialect& dialect, NcLines& out)
+      : program_(program), dialect_(dialect), out_(out) {}
 
   /// Appends the word of one axis (0 to 4) with a blank ahead, if the block needs it.
   void print(const joints::AxisBlock& b, std::size_t axis, IndexWord index);
@@ -36,10 +37,14 @@ class NcAxisWords {
   void enter_loop(const std::vector<joints::AxisBlock>& tooth);
 
   /// The block moves a rotary, seen from the words before.
-  [[nodiscard]] bool turns(const joints::AxisBlock& b) const { return b.words[3] != last_[3] || b.words[4] != last_[4]; }
+  [[nodiscard]] bool turns(const joints::AxisBlock& b) const {
+    return b.words[3] != last_[3] || b.words[4] != last_[4];
+  }
   /// Length that the control takes for a feed block: X Y Z if any of them moves, else the rotaries [mm or deg].
   [[nodiscard]] double length(const joints::AxisBlock& b) const;
-  [[nodiscard]] int decimals(std::size_t axis) const { return axis < 3 ? program_.format.linear_decimals : program_.format.rotary_decimals; }
+  [[nodiscard]] int decimals(std::size_t axis) const {
+    return axis < 3 ? program_.format.linear_decimals : program_.format.rotary_decimals;
+  }
   /// 360 deg as a word.
   [[nodiscard]] std::int64_t turn_word() const;
 

@@ -1,7 +1,8 @@
-// With G641 ADIS every axis may leave the path within a way s ahead of and behind a corner; nothing is known of the curve but that each
-// axis stays between its least and its greatest position there. The way is measured over the axes of the path group, a rotary at the
-// radius R. If a piece of the way moves X Y Z by d and the n rotaries by w_k, then d^2 + sum (R w_k)^2 <= s^2; the larger of both pieces,
-// axis by axis, has twice that at most. With R at least the distance of the tip from every rotary axis the tip leaves the corner by
+// With G641 ADIS every axis may leave the path within a way s ahead of and behind a corner; nothing is known of the
+// curve but that each axis stays between its least and its greatest position there. The way is measured over the axes
+// of the path group, a rotary at the radius R. If a piece of the way moves X Y Z by d and the n rotaries by w_k, then
+// d^2 + sum (R w_k)^2 <= s^2; the larger of both pieces, axis by axis, has twice that at most. With R at least the
+// distance of the tip from every rotary axis the tip leaves the corner by
 //   |d| + w (R + |d| + w R) <= s sqrt(2 (1 + n)) (1 + w),   w = sum w_k <= s sqrt(2 n) / R,
 // since a turn by w moves a point by no more than w times its distance, which the steps before have made larger.
 #include "postproc/text/corners.h"
@@ -14,13 +15,15 @@
 namespace toothpath::text {
 namespace {
 
-constexpr double kLeastRadius = 1;     // mm
-constexpr double kBlendDigits = 1e6;   // {blend} is printed with six digits
-constexpr double kAxisDigits = 1e4;    // {blend_axis} with four
+constexpr double kLeastRadius = 1;    // mm
+constexpr double kBlendDigits = 1e6;  // {blend} is printed with six digits
+constexpr double kAxisDigits = 1e4;   // {blend_axis} with four
 
 double rounded_down(double value, double digits) { return std::floor(value * digits + 1e-6) / digits; }
 
-double rotaries_of(const joints::AxisProgram& program) { return (program.letters[3] != 0 ? 1 : 0) + (program.letters[4] != 0 ? 1 : 0); }
+double rotaries_of(const joints::AxisProgram& program) {
+  return (program.letters[3] != 0 ? 1 : 0) + (program.letters[4] != 0 ? 1 : 0);
+}
 
 /// Where the way is measured over the tip, or over X Y Z while the rotaries stand, n = 0.
 CornerWords way_words(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header) {

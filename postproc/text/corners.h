@@ -1,5 +1,5 @@
-// How far a text lets the control leave the corners of the path, and the words that say so: the writer's side. What a reader finds in the
-// text it counts by itself (postproc/readback/motion.cpp).
+// How far a text lets the control leave the corners of the path, and the words that say so: the writer's side. What a
+// reader finds in the text it counts by itself (postproc/readback/motion.cpp).
 #pragma once
 
 #include "postproc/text/writer.h"
@@ -15,6 +15,7 @@ struct CornerWords {
   double radius_mm = 0;    ///< with it: of every rotary
 };
 
-[[nodiscard]] CornerWords corner_words(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
+[[nodiscard]] CornerWords corner_words(const joints::AxisProgram& program, const NcDialect& dialect,
+                                       const NcHeader& header);
 
 }  // namespace toothpath::text

@@ -7,9 +7,12 @@ Result<machines::CoolantWords> coolant_words(const NcDialect& dialect, machines:
   if (found != dialect.coolant.end()) return found->second;
   std::string list;
   for (const auto& [other, words] : dialect.coolant) list += (list.empty() ? "" : ", ") + std::string(to_string(other));
-  const std::string help = dialect.takes_coolant ? fmt::format("; post.coolant_{} = [\"M..\", \"M..\"] in the machine file gives those of the builder, on and off",
-                                                               to_string(coolant))
-                                                 : std::string();
+  const std::string help =
+      dialect.takes_coolant
+          ? fmt::format(
+                "; post.coolant_{} = [\"M..\", \"M..\"] in the machine file gives those of the builder, on and off",
+                to_string(coolant))
+          : std::string();
   return fail("mode = \"{}\": dialect \"{}\" has words for {} alone{}", to_string(coolant), dialect.name, list, help);
 }
 

@@ -1,12 +1,13 @@
-// What differs between controls, as data: numbers, words and the lines that stand at certain places of every program. Made in the folder of
-// the control, postproc/controls; docs/dialects.md says how to add one.
+// What differs between controls, as data: numbers, words and the lines that stand at certain places of every program.
+// Made in the folder of the control, postproc/controls; docs/dialects.md says how to add one.
 //
-// Lines are templates: {offset} G54 .., {datum} 1 for G54 and so on, {tool} number, {speed} 1/min, {top} machine Z of the
-// retract, {work_top} the same as a Z word with this tool's length, {z} Z word of the block that switches TCP on, {blend} mm, {blend_axis} deg,
-// {free} a feed where nothing is cut, {teeth}, {last} = teeth - 1, {label} and {label+1} numbers that belong to the operation
-// alone, {sign} and {frame_sign} "-" or nothing, {turns} the teeth that the index is turned by, {number} and {name} of the program, {id} its name in letters and digits. In the
-// loop over the teeth: {first} place of the order that it begins with, {stride} of the order, {tooth} the variable that holds the
-// tooth. The line "{safe_start}" stands for all lines of `safe_start`, "{pick}" for those of `pick` where the order is spread,
+// Lines are templates: {offset} G54 .., {datum} 1 for G54 and so on, {tool} number, {speed} 1/min, {top} machine Z of
+// the retract, {work_top} the same as a Z word with this tool's length, {z} Z word of the block that switches TCP on,
+// {blend} mm, {blend_axis} deg, {free} a feed where nothing is cut, {teeth}, {last} = teeth - 1, {label} and {label+1}
+// numbers that belong to the operation alone, {sign} and {frame_sign} "-" or nothing, {turns} the teeth that the index
+// is turned by, {number} and {name} of the program, {id} its name in letters and digits. In the loop over the teeth:
+// {first} place of the order that it begins with, {stride} of the order, {tooth} the variable that holds the tooth. The
+// line "{safe_start}" stands for all lines of `safe_start`, "{pick}" for those of `pick` where the order is spread,
 // "{first_tooth}" for the comment that names the line behind it. Values are printed in the format of the dialect.
 #pragma once
 
@@ -39,17 +40,18 @@ struct NcLoop {
   };
   Form form = Form::none;
   NcLinesOfText before, after, call;
-  NcLinesOfText pick;            ///< the tooth from its place in the order, by whole numbers; in sequence the place is the tooth
-  std::string place, tooth;      ///< the variables of place and picked tooth
-  std::string index;             ///< ahead of the number of the index rotary: "R2" prints C=R2+12.5
-  bool index_brackets = false;   ///< "[#1+12.5]"
-  /// Controls without arithmetic in a word: this line ahead of a block that changes the index angle, with {angle}; `index` is
-  /// then the whole word.
+  NcLinesOfText pick;  ///< the tooth from its place in the order, by whole numbers; in sequence the place is the tooth
+  std::string place, tooth;     ///< the variables of place and picked tooth
+  std::string index;            ///< ahead of the number of the index rotary: "R2" prints C=R2+12.5
+  bool index_brackets = false;  ///< "[#1+12.5]"
+  /// Controls without arithmetic in a word: this line ahead of a block that changes the index angle, with {angle};
+  /// `index` is then the whole word.
   std::string index_line;
   NcLinesOfText frame_on, frame_off;  ///< around TCP: turns the frame by the index; empty: no loop with TCP
 };
 
-/// Rotaries that the control counts within one turn (`rollover` in the machine file): words of 0 to 360 deg, and the way that is taken.
+/// Rotaries that the control counts within one turn (`rollover` in the machine file): words of 0 to 360 deg, and the
+/// way that is taken.
 struct NcRollover {
   enum class Way : std::uint8_t {
     none,      ///< the dialect does not know such axes
@@ -57,11 +59,11 @@ struct NcRollover {
     sign,      ///< the sense of the sign: -10 goes to 10 backwards
   };
   Way way = Way::none;
-  std::string open, close;   ///< around the number: "DC(" and ")"
-  std::string index;         ///< in a loop, between these: the place within the turn, from {word}, a sum that is not below 0
-  NcLinesOfText index_lines; ///< the same for controls without arithmetic in a word, behind `NcLoop::index_line`
-  std::string backwards;     ///< in a loop whose index falls, instead of {sign}{tooth}: not below 0 either
-  std::string note;          ///< comment at the top, with {axis}: what the control must be set to
+  std::string open, close;  ///< around the number: "DC(" and ")"
+  std::string index;  ///< in a loop, between these: the place within the turn, from {word}, a sum that is not below 0
+  NcLinesOfText index_lines;  ///< the same for controls without arithmetic in a word, behind `NcLoop::index_line`
+  std::string backwards;      ///< in a loop whose index falls, instead of {sign}{tooth}: not below 0 either
+  std::string note;           ///< comment at the top, with {axis}: what the control must be set to
 };
 
 /// What a control wants to read.
@@ -71,22 +73,22 @@ struct NcDialect {
   joints::WordFormat format;
 
   // Words.
-  bool point_always = false;       ///< "10." and never "10"
-  bool sign_always = false;        ///< "+10"
-  std::string rotary_equals;       ///< between the letter of a rotary and its number
+  bool point_always = false;  ///< "10." and never "10"
+  bool sign_always = false;   ///< "+10"
+  std::string rotary_equals;  ///< between the letter of a rotary and its number
   std::string rapid = "G0", feed = "G1";
-  bool motion_is_modal = true;     ///< G0 and G1 on change only
-  std::string rapid_end;           ///< behind the words of a rapid
-  std::size_t max_line = 252;      ///< characters
+  bool motion_is_modal = true;  ///< G0 and G1 on change only
+  std::string rapid_end;        ///< behind the words of a rapid
+  std::size_t max_line = 252;   ///< characters
 
   // Feed.
-  bool inverse_time = true;        ///< G93 exists; else joint blocks that turn cannot be timed and are refused
-  double max_inverse_time = 0;     ///< greatest F in G93; 0: no limit
-  double min_feed_product = 0;     ///< G93 blocks with F * path below it are printed in G94 (mm/min); 0: none
+  bool inverse_time = true;     ///< G93 exists; else joint blocks that turn cannot be timed and are refused
+  double max_inverse_time = 0;  ///< greatest F in G93; 0: no limit
+  double min_feed_product = 0;  ///< G93 blocks with F * path below it are printed in G94 (mm/min); 0: none
 
   // Comments and block numbers.
   std::string comment_open = "(", comment_close = ")";
-  bool block_numbers = false;      ///< every line, from 0
+  bool block_numbers = false;  ///< every line, from 0
 
   // Lines.
   NcLinesOfText frame_begin, frame_end;  ///< first and last lines of the file
@@ -100,30 +102,36 @@ struct NcDialect {
   NcLinesOfText pause = {"M0"};          ///< waits for the start button
   NcLinesOfText operation_end;           ///< ahead of coolant and spindle off
   NcLinesOfText spindle_off = {"M5"};
-  std::map<machines::Coolant, machines::CoolantWords> coolant = {{machines::Coolant::mist, {"M7", "M9"}}, {machines::Coolant::flood, {"M8", "M9"}}};  ///< those of ISO 6983
-  bool takes_coolant = true;             ///< the machine file may name M words of its builder
-  std::vector<std::pair<int, int>> own_m = {{0, 6}, {19, 19}, {30, 30}, {96, 99}};  ///< M words, first to last, that can be no coolant
-  bool blend = false;                    ///< `start` lets the control leave corners by {blend}: counts as deviation
-  double exact_path_mm = 0;              ///< without `blend`: the tip is off a corner by up to this all the same
-  /// {blend} is not a distance from the path but the way ahead of and behind a corner within which every axis may leave it (G641 ADIS).
+  std::map<machines::Coolant, machines::CoolantWords> coolant = {
+      {machines::Coolant::mist, {"M7", "M9"}}, {machines::Coolant::flood, {"M8", "M9"}}};  ///< those of ISO 6983
+  bool takes_coolant = true;  ///< the machine file may name M words of its builder
+  std::vector<std::pair<int, int>> own_m = {
+      {0, 6}, {19, 19}, {30, 30}, {96, 99}};  ///< M words, first to last, that can be no coolant
+  bool blend = false;        ///< `start` lets the control leave corners by {blend}: counts as deviation
+  double exact_path_mm = 0;  ///< without `blend`: the tip is off a corner by up to this all the same
+  /// {blend} is not a distance from the path but the way ahead of and behind a corner within which every axis may leave
+  /// it (G641 ADIS).
   bool blend_is_way = false;
-  /// With it, where cuts turn a rotary without TCP: all {axes} are the path, a rotary {axis} at the {radius} mm; at the end none is named.
+  /// With it, where cuts turn a rotary without TCP: all {axes} are the path, a rotary {axis} at the {radius} mm; at the
+  /// end none is named.
   std::string path_group, path_radius, path_group_end;
-  bool blend_axis = false;               ///< `start` lets the control lean the tool by {blend_axis} deg while TCP is on
-  bool takes_smoothing = false;          ///< the machine file may state lines that switch the control's own smoothing
-  NcLinesOfText smoothing_on, smoothing_off;  ///< those lines, ahead of the teeth of an operation and behind them; instead of `blend`
-  double smoothing_mm = 0;               ///< what the machine file states: the tip leaves the path by no more
+  bool blend_axis = false;       ///< `start` lets the control lean the tool by {blend_axis} deg while TCP is on
+  bool takes_smoothing = false;  ///< the machine file may state lines that switch the control's own smoothing
+  NcLinesOfText smoothing_on,
+      smoothing_off;        ///< those lines, ahead of the teeth of an operation and behind them; instead of `blend`
+  double smoothing_mm = 0;  ///< what the machine file states: the tip leaves the path by no more
   std::optional<double> smoothing_axis_rad;  ///< the tool axis; not stated: no cut may turn a rotary
 
-  int (*datum)(std::string_view work_offset) = nullptr;  ///< {datum}, the number of a work offset; null: the lines do not use it
+  int (*datum)(std::string_view work_offset) =
+      nullptr;  ///< {datum}, the number of a work offset; null: the lines do not use it
 
   // TCP.
-  bool tcp_codes_of_site = false;               ///< the codes are those of the machine file, there are none else
-  NcLinesOfText tcp_on, tcp_off;                ///< empty: the dialect has no TCP (or its codes are site data)
-  bool tcp_starts_at_zero = false;              ///< the table frame is frozen where TCP starts
-  std::array<std::string, 3> vector_words{};    ///< ahead of the components of the tool axis; empty: no vectors
-  std::string vector_feed;                      ///< instead of `feed` in blocks with a vector
-  std::string tcp_note;                         ///< comment at the top of programs with TCP: what the control must be set to
+  bool tcp_codes_of_site = false;             ///< the codes are those of the machine file, there are none else
+  NcLinesOfText tcp_on, tcp_off;              ///< empty: the dialect has no TCP (or its codes are site data)
+  bool tcp_starts_at_zero = false;            ///< the table frame is frozen where TCP starts
+  std::array<std::string, 3> vector_words{};  ///< ahead of the components of the tool axis; empty: no vectors
+  std::string vector_feed;                    ///< instead of `feed` in blocks with a vector
+  std::string tcp_note;  ///< comment at the top of programs with TCP: what the control must be set to
 
   NcLoop loop;
   NcRollover rollover;

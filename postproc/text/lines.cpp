@@ -37,15 +37,17 @@ NcLines::Values program_values(const joints::AxisProgram& program, const NcDiale
   values["stride"] = std::to_string(program.tooth_stride);
   values["tooth"] = program.tooth_stride == 1 ? dialect.loop.place : dialect.loop.tooth;
   values["sign"] = program.index_sign < 0 ? "0-" : "";
-  const bool rolls_back = program.index_axis >= 0 && program.rollover[static_cast<std::size_t>(program.index_axis)] && program.index_sign < 0;
+  const bool rolls_back = program.index_axis >= 0 && program.rollover[static_cast<std::size_t>(program.index_axis)] &&
+                          program.index_sign < 0;
   if (!rolls_back) values["turns"] = values["sign"] + values["tooth"];
-  else if (const auto turns = expanded(dialect.rollover.backwards, values); turns && !turns->empty()) values["turns"] = *turns;
+  else if (const auto turns = expanded(dialect.rollover.backwards, values); turns && !turns->empty())
+    values["turns"] = *turns;
   values["frame_sign"] = program.frame_sign < 0 ? "0-" : "";
   return values;
 }
 
-std::vector<std::string> header_comments(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header,
-                                         std::string_view hash) {
+std::vector<std::string> header_comments(const joints::AxisProgram& program, const NcDialect& dialect,
+                                         const NcHeader& header, std::string_view hash) {
   std::vector<std::string> out = {comment_text("JOB " + header.job_name)};
   if (!header.job_hash.empty()) out.push_back(comment_text("JOB FILE " + header.job_hash));
   out.push_back(comment_text("MACHINE " + header.machine_name));
@@ -63,9 +65,11 @@ std::vector<std::string> header_comments(const joints::AxisProgram& program, con
     std::string within, product;
     numbers::append_fixed(within, corner, 6, false);
     numbers::append_fixed(product, 4 * corner, 6, false);
-    out.push_back(fmt::format("CORNERS WITHIN {} MM: TOOL ACCELERATION X SERVO PERIOD SQUARED IS AT MOST {} MM", within, product));
+    out.push_back(fmt::format("CORNERS WITHIN {} MM: TOOL ACCELERATION X SERVO PERIOD SQUARED IS AT MOST {} MM", within,
+                              product));
   }
-  if (program.tcp != machines::TcpMode::none && !dialect.tcp_note.empty()) out.push_back(comment_text(dialect.tcp_note));
+  if (program.tcp != machines::TcpMode::none && !dialect.tcp_note.empty())
+    out.push_back(comment_text(dialect.tcp_note));
   for (std::size_t a = 3; a < 5; ++a)
     if (program.rollover[a]) {
       const auto note = expanded(dialect.rollover.note, {{"axis", std::string(1, program.letters[a])}});
@@ -80,12 +84,14 @@ std::vector<std::string> header_comments(const joints::AxisProgram& program, con
 std::vector<std::string> order_comments(const joints::AxisProgram& program) {
   std::vector<std::string> out;
   if (program.tooth_stride != 1)
-    out.push_back(fmt::format("TOOTH ORDER SPREAD: PLACE N CUTS TOOTH N * {} MOD {}", program.tooth_stride, program.teeth));
+    out.push_back(
+        fmt::format("TOOTH ORDER SPREAD: PLACE N CUTS TOOTH N * {} MOD {}", program.tooth_stride, program.teeth));
   if (program.restart) {
     out.push_back(fmt::format("RESTART AT OPERATION {} TOOTH {}", program.restart->operation, program.restart->tooth));
     out.emplace_back("WHAT THE WHOLE PROGRAM CUTS BEFORE THAT IS TAKEN AS DONE");
     const bool timed = program.has_acceleration;
-    out.push_back(fmt::format("RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING", timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes,
+    out.push_back(fmt::format("RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING",
+                              timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes,
                               timed ? program.accelerated.feed : program.feed_minutes));
   }
   return out;
@@ -93,7 +99,8 @@ std::vector<std::string> order_comments(const joints::AxisProgram& program) {
 
 std::string first_tooth_comment(const joints::AxisProgram& program) {
   if (program.tooth_stride == 1) return fmt::format("FIRST TOOTH, 0 TO {}", program.teeth - 1);
-  return fmt::format("FIRST TOOTH BY ITS PLACE, 0 TO {}: TOOTH = PLACE * {} MOD {}", program.teeth - 1, program.tooth_stride, program.teeth);
+  return fmt::format("FIRST TOOTH BY ITS PLACE, 0 TO {}: TOOTH = PLACE * {} MOD {}", program.teeth - 1,
+                     program.tooth_stride, program.teeth);
 }
 
 void NcLines::line(std::string_view text) {
@@ -116,7 +123,8 @@ std::optional<std::string> expanded(std::string_view pattern, const NcLines::Val
     if (open == std::string_view::npos) return text.append(pattern.substr(i));
     text.append(pattern.substr(i, open - i));
     const std::size_t close = pattern.find('}', open);
-    const auto found = close == std::string_view::npos ? values.end() : values.find(pattern.substr(open + 1, close - open - 1));
+    const auto found =
+        close == std::string_view::npos ? values.end() : values.find(pattern.substr(open + 1, close - open - 1));
     if (found == values.end()) return std::nullopt;
     text += found->second;
     i = close + 1;
@@ -128,7 +136,8 @@ void NcLines::fill(const NcLinesOfText& templates, const Values& values) {
   for (const std::string& pattern : templates) {
     const auto text = expanded(pattern, values);
     if (text) line(*text);
-    else if (!error_) error_ = fail("dialect {}: \"{}\" names a value that does not exist here", dialect_.name, pattern);
+    else if (!error_)
+      error_ = fail("dialect {}: \"{}\" names a value that does not exist here", dialect_.name, pattern);
   }
 }
 
@@ -170,14 +179,10 @@ std::string NcLines::numbered(std::string_view text) {
 std::string comment_text(std::string_view text) {
   std::string out;
   for (const char c : text) {
-    if (c >= 'a' && c <= 'z')
-      out += static_cast<char>(c - 'a' + 'A');
-    else if (c == '(' || c == ')')
-      out += c == '(' ? '[' : ']';
-    else if (c == '%' || c == ';' || c < ' ' || c > '~')
-      out += '?';
-    else
-      out += c;
+    if (c >= 'a' && c <= 'z') out += static_cast<char>(c - 'a' + 'A');
+    else if (c == '(' || c == ')') out += c == '(' ? '[' : ']';
+    else if (c == '%' || c == ';' || c < ' ' || c > '~') out += '?';
+    else out += c;
   }
   return out;
 }

@@ -48,11 +48,12 @@ class NcLines {
 [[nodiscard]] std::optional<std::string> expanded(std::string_view pattern, const NcLines::Values& values);
 
 /// Values of the templates that are the same throughout a program.
-[[nodiscard]] NcLines::Values program_values(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
+[[nodiscard]] NcLines::Values program_values(const joints::AxisProgram& program, const NcDialect& dialect,
+                                             const NcHeader& header);
 
 /// Comments at the top of a program. @param hash the line that stands at the end too
-[[nodiscard]] std::vector<std::string> header_comments(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header,
-                                                       std::string_view hash);
+[[nodiscard]] std::vector<std::string> header_comments(const joints::AxisProgram& program, const NcDialect& dialect,
+                                                       const NcHeader& header, std::string_view hash);
 /// Those that tell the order of the teeth and where the program begins, if not as usual.
 [[nodiscard]] std::vector<std::string> order_comments(const joints::AxisProgram& program);
 /// Names the line behind it: where the operator may set another first tooth.

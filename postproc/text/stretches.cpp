@@ -2,7 +2,8 @@
 
 namespace toothpath::text {
 
-Result<std::vector<NcStretch>> stretches_of(const std::vector<joints::AxisBlock>& tooth, int index_axis, std::string_view dialect) {
+Result<std::vector<NcStretch>> stretches_of(const std::vector<joints::AxisBlock>& tooth, int index_axis,
+                                            std::string_view dialect) {
   const auto axis = static_cast<std::size_t>(index_axis);
   std::vector<NcStretch> out;
   for (std::size_t i = 0; i < tooth.size(); ++i) {

@@ -15,6 +15,7 @@ struct NcStretch {
 
 /// Each stretch begins with its rotary block. @param index_axis which word is the index rotary's
 /// Errors: the tooth does not begin with a rotary block, or the index rotary moves elsewhere; names the dialect.
-[[nodiscard]] Result<std::vector<NcStretch>> stretches_of(const std::vector<joints::AxisBlock>& tooth, int index_axis, std::string_view dialect);
+[[nodiscard]] Result<std::vector<NcStretch>> stretches_of(const std::vector<joints::AxisBlock>& tooth, int index_axis,
+                                                          std::string_view dialect);
 
 }  // namespace toothpath::text

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "geometry/base/hash.h"
+#include "postproc/joints/tooth_order.h"
 #include "postproc/numbers/fixed_point.h"
 #include "postproc/text/axis_words.h"
 #include "postproc/text/corners.h"
 #include "postproc/text/lines.h"
 #include "postproc/text/stretches.h"
-#include "postproc/joints/tooth_order.h"
 
 namespace toothpath::text {
 namespace {
@@ -25,7 +25,13 @@ constexpr int kVectorDecimals = 8;
 class Writer {
  public:
   Writer(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header)
-      : program_(program), dialect_(dialect), header_(header), corners_(corner_words(program, dialect, header)), out_(dialect), words_(program, dialect, out_), tcp_(program.tcp != machines::TcpMode::none) {}
+      : program_(program),
+        dialect_(dialect),
+        header_(header),
+        corners_(corner_words(program, dialect, header)),
+        out_(dialect),
+        words_(program, dialect, out_),
+        tcp_(program.tcp != machines::TcpMode::none) {}
 
   Result<NcText> write() {
     if (header_.coolant != machines::Coolant::off) {
@@ -49,18 +55,13 @@ class Writer {
   // Lines.
   void fill(const NcLinesOfText& templates) {
     for (const auto& t : templates)
-      if (t == "{safe_start}")
-        out_.fill(dialect_.safe_start, values_);
-      else if (t == "{pick}")
-        out_.fill(program_.tooth_stride == 1 ? NcLinesOfText{} : dialect_.loop.pick, values_);
-      else if (t == "{first_tooth}")
-        out_.comment(first_tooth_comment(program_));
-      else if (t.find("{blend}") != std::string::npos)
-        corner_line(t);
+      if (t == "{safe_start}") out_.fill(dialect_.safe_start, values_);
+      else if (t == "{pick}") out_.fill(program_.tooth_stride == 1 ? NcLinesOfText{} : dialect_.loop.pick, values_);
+      else if (t == "{first_tooth}") out_.comment(first_tooth_comment(program_));
+      else if (t.find("{blend}") != std::string::npos) corner_line(t);
       else if (t == "{path_group_end}")
         out_.fill(corners_.group ? NcLinesOfText{dialect_.path_group_end} : NcLinesOfText{}, values_);
-      else
-        out_.fill({t}, values_);
+      else out_.fill({t}, values_);
   }
   /// The line with {blend}: as it stands, or behind the axes of the path.
   void corner_line(const std::string& pattern) {
@@ -93,7 +94,8 @@ class Writer {
     values_["label+1"] = std::to_string(kFirstLabel + 2 * position + 1);
     values_["first"] = std::to_string(op.first_place);
     values_["work_top"] = linear(program_.retract_z_mm - op.tool_length_mm - program_.work_offset_at_mm.z());
-    out_.comment(fmt::format("OP {} {}", op.operation, op.type));  // as in the job, in every dialect: programs look for it
+    out_.comment(
+        fmt::format("OP {} {}", op.operation, op.type));  // as in the job, in every dialect: programs look for it
     out_.comment(comment_text(fmt::format("T{} {} LENGTH {} MM TO THE TIP", op.tool_number, op.tool_name,
                                           out_.value(numbers::to_fixed(op.tool_length_mm, 4), 4))));
     const NcLoop& loop = dialect_.loop;
@@ -151,7 +153,7 @@ class Writer {
       for (std::size_t i = 0; i < segments->size(); ++i) {
         joints::AxisBlock turn = tooth[(*segments)[i].first];
         turn.words[index] += numbers::ratio_to_fixed(std::int64_t{360} * k * program_.index_sign, program_.teeth,
-                                            program_.format.rotary_decimals);
+                                                     program_.format.rotary_decimals);
         turn.forced = true;
         forget();
         rapid(turn, IndexWord::literal);
@@ -179,10 +181,8 @@ class Writer {
       switch (b.kind) {
         case joints::BlockKind::feed:
         case joints::BlockKind::turn:
-          if (b.tip)
-            tip_feed(b, index);
-          else
-            joint_feed(b, index);
+          if (b.tip) tip_feed(b, index);
+          else joint_feed(b, index);
           break;
         case joints::BlockKind::tcp_on:
         case joints::BlockKind::tcp_off: switch_tcp(b, index); break;
@@ -222,7 +222,7 @@ class Writer {
     const auto [from, to] = b.kind == joints::BlockKind::rapid_z     ? std::pair<std::size_t, std::size_t>{2, 3}
                             : b.kind == joints::BlockKind::rapid_xy  ? std::pair<std::size_t, std::size_t>{0, 2}
                             : b.kind == joints::BlockKind::rapid_tip ? std::pair<std::size_t, std::size_t>{0, 3}
-                                                             : std::pair<std::size_t, std::size_t>{3, 5};
+                                                                     : std::pair<std::size_t, std::size_t>{3, 5};
     if (to == 5) words_.shift_line(b, index, values_);
     const std::size_t begin = out_.size();
     out_.text() += dialect_.rapid;
@@ -247,13 +247,15 @@ class Writer {
     }
     const bool turns = words_.turns(b);
     if (!dialect_.inverse_time && turns) {
-      error_ = fail("record {}: rotaries move in a cutting block, and {} has no inverse time feed for it: tcp = \"angles\" is "
-                    "supported, or a tilt that is fixed in every pass",
-                    b.record, dialect_.name);
+      error_ = fail(
+          "record {}: rotaries move in a cutting block, and {} has no inverse time feed for it: tcp = \"angles\" is "
+          "supported, or a tilt that is fixed in every pass",
+          b.record, dialect_.name);
       return;
     }
     const double length = words_.length(b);
-    const bool exact = dialect_.inverse_time && dialect_.min_feed_product > 0 && rate * length < dialect_.min_feed_product;
+    const bool exact =
+        dialect_.inverse_time && dialect_.min_feed_product > 0 && rate * length < dialect_.min_feed_product;
     const bool per_minute = exact || !dialect_.inverse_time;
     if (!per_minute && !inverse_time_) out_.line("G93");
     if (per_minute && inverse_time_) out_.line("G94");
@@ -262,9 +264,13 @@ class Writer {
     motion(dialect_.feed, 1);
     for (std::size_t a = 0; a < 5; ++a) words_.print(b, a, index);
     if (dialect_.inverse_time)
-      feed_number(per_minute ? length / b.minutes : rate, dialect_.point_always ? 3 : per_minute ? 9 : rate < 10 ? 6 : 3, b.record, begin);
-    else
-      modal_feed(length / b.minutes, b.record, begin);
+      feed_number(per_minute ? length / b.minutes : rate,
+                  dialect_.point_always ? 3
+                  : per_minute          ? 9
+                  : rate < 10           ? 6
+                                        : 3,
+                  b.record, begin);
+    else modal_feed(length / b.minutes, b.record, begin);
     finish_block(begin);
   }
 
@@ -274,7 +280,8 @@ class Writer {
     const bool vectors = program_.tcp == machines::TcpMode::vectors && b.kind == joints::BlockKind::feed;
     if (vectors && !dialect_.vector_feed.empty()) motion(dialect_.vector_feed, 1);
     else motion(dialect_.feed, 1);
-    for (std::size_t a = b.kind == joints::BlockKind::turn ? 3 : 0; a < (vectors ? 3U : 5U); ++a) words_.print(b, a, index);
+    for (std::size_t a = b.kind == joints::BlockKind::turn ? 3 : 0; a < (vectors ? 3U : 5U); ++a)
+      words_.print(b, a, index);
     if (vectors) vector(b);
     words_.stand(b);
     modal_feed(b.per_minute, b.record, begin);
@@ -361,7 +368,9 @@ Result<NcText> write_nc(const joints::AxisProgram& program, const NcDialect& dia
     return fail("the axis program has {} and {} decimals, the dialect {} and {}", program.format.linear_decimals,
                 program.format.rotary_decimals, dialect.format.linear_decimals, dialect.format.rotary_decimals);
   if (program.turns_in_cuts && !dialect.smoothing_on.empty() && !dialect.smoothing_axis_rad)
-    return fail("cuts turn a rotary axis: post.smoothing_on needs post.smoothing_axis_tolerance beside post.smoothing_tolerance");
+    return fail(
+        "cuts turn a rotary axis: post.smoothing_on needs post.smoothing_axis_tolerance beside "
+        "post.smoothing_tolerance");
   if (program.loop && dialect.write == nullptr && dialect.loop.form == NcLoop::Form::none)
     return fail("{} has no loop for the teeth: they must be written out", dialect.name);
   if (dialect.write != nullptr) return dialect.write(program, dialect, header);

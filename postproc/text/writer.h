@@ -1,5 +1,5 @@
-// NC text of an axis program. What differs from control to control stands in `NcDialect`; the order of things (safe start,
-// operations, teeth, end) is the same for all.
+// NC text of an axis program. What differs from control to control stands in `NcDialect`; the order of things (safe
+// start, operations, teeth, end) is the same for all.
 #pragma once
 
 #include <cstdint>
@@ -15,31 +15,37 @@ namespace toothpath::text {
 
 /// What stands in the comments at the top.
 struct NcHeader {
-  std::string job_name;      ///< made ASCII upper case; parentheses become brackets
-  std::string job_hash;      ///< of the job file, given by the caller; may be empty
+  std::string job_name;  ///< made ASCII upper case; parentheses become brackets
+  std::string job_hash;  ///< of the job file, given by the caller; may be empty
   std::string machine_name;
   std::vector<std::string> assumed;  ///< non-empty: a warning with each of them
-  int program_number = 1001; ///< O word
-  double blend_mm = 0.0003;  ///< how far the control may leave a corner: counts as deviation of the machine in every proof
-  double blend_axis_deg = 0.002;  ///< how far the control may turn a rotary off its way with TCP: counts as deviation of the tool axis
+  int program_number = 1001;         ///< O word
+  double blend_mm =
+      0.0003;  ///< how far the control may leave a corner: counts as deviation of the machine in every proof
+  double blend_axis_deg =
+      0.002;  ///< how far the control may turn a rotary off its way with TCP: counts as deviation of the tool axis
   machines::Coolant coolant = machines::Coolant::off;  ///< with every operation
 };
 
 struct NcText {
-  std::string text;             ///< ASCII, LF, last line ended
-  std::size_t blocks = 0;       ///< lines that are not comments, empty or %
-  std::uint64_t body_hash = 0;  ///< FNV-1a over everything between the header comments and the last comment, without block numbers
+  std::string text;        ///< ASCII, LF, last line ended
+  std::size_t blocks = 0;  ///< lines that are not comments, empty or %
+  std::uint64_t body_hash =
+      0;  ///< FNV-1a over everything between the header comments and the last comment, without block numbers
 };
 
 /// By how much the text lets the control leave corners in this program, mm; what the reader of the dialect counts.
-[[nodiscard]] double granted_blend_mm(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
-/// The same of the tool axis where the text names a tolerance of the rotaries, rad. What a way at the corners (G641) lets the axis do follows
-/// from the blocks and is counted by the reader alone.
-[[nodiscard]] double granted_blend_rad(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
+[[nodiscard]] double granted_blend_mm(const joints::AxisProgram& program, const NcDialect& dialect,
+                                      const NcHeader& header);
+/// The same of the tool axis where the text names a tolerance of the rotaries, rad. What a way at the corners (G641)
+/// lets the axis do follows from the blocks and is counted by the reader alone.
+[[nodiscard]] double granted_blend_rad(const joints::AxisProgram& program, const NcDialect& dialect,
+                                       const NcHeader& header);
 
-/// Prints the program. Errors: an F that the control cannot take, a line that is too long, a number out of its format, joint
-/// blocks that turn on a control without inverse time, teeth as a loop on a control that has none.
-[[nodiscard]] Result<NcText> write_nc(const joints::AxisProgram& program, const NcDialect& dialect, const NcHeader& header);
+/// Prints the program. Errors: an F that the control cannot take, a line that is too long, a number out of its format,
+/// joint blocks that turn on a control without inverse time, teeth as a loop on a control that has none.
+[[nodiscard]] Result<NcText> write_nc(const joints::AxisProgram& program, const NcDialect& dialect,
+                                      const NcHeader& header);
 
 /// Text that may stand in a comment of any dialect: printable ASCII, upper case, ( ) -> [ ], the rest -> '?'.
 [[nodiscard]] std::string comment_text(std::string_view text);

@@ -1,4 +1,5 @@
-// A machine with assumed pivots: no program without `accept_assumed`, and with it a warning on every page and in the program.
+// A machine with assumed pivots: no program without `accept_assumed`, and with it a warning on every page and in the
+// program.
 #include <cctype>
 #include <nlohmann/json.hpp>
 
@@ -11,11 +12,13 @@ namespace {
 class AssumedPivot : public ::testing::Test {
  protected:
   void SetUp() override {
-    write_file(dir / "m.toml", replaced(file_text(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml"), "assumed = false", "assumed = [\"axes.A.point\"]"));
+    write_file(dir / "m.toml", replaced(file_text(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml"),
+                                        "assumed = false", "assumed = [\"axes.A.point\"]"));
   }
   std::string job(const std::string& accept) {
     const std::string path = dir / "job.toml";
-    write_file(path, replaced(file_text(kSamples + "/spur_quick.toml"), "file = \"xyzac_large.toml\"", "file = \"m.toml\"\n" + accept));
+    write_file(path, replaced(file_text(kSamples + "/spur_quick.toml"), "file = \"xyzac_large.toml\"",
+                              "file = \"m.toml\"\n" + accept));
     return path;
   }
   TestDir dir;
@@ -26,7 +29,9 @@ TEST_F(AssumedPivot, NoProgramUnlessTheJobAcceptsIt) {
     const std::string path = job(accept);
     const Finished run = run_program({"run", path, "--out", dir / "out"});
     EXPECT_EQ(run.exit_code, 3);
-    EXPECT_EQ(run.err, path + ":20:8: error: m.toml has assumed values (axes.A.point); measure them, or accept them with accept_assumed = true\n");
+    EXPECT_EQ(run.err, path +
+                           ":20:8: error: m.toml has assumed values (axes.A.point); measure them, or accept them with "
+                           "accept_assumed = true\n");
     EXPECT_TRUE(names_in(dir / "out").empty());
   }
 }
@@ -63,7 +68,8 @@ TEST_F(AssumedPivot, TheDryRunSaysIt) {
   EXPECT_NE(shown.find("1 values assumed"), std::string::npos);
 }
 
-// Danger 29: the report names the bytes that lie there; danger 24: the first lines and the last ones name the same hash and blocks.
+// Danger 29: the report names the bytes that lie there; danger 24: the first lines and the last ones name the same hash
+// and blocks.
 TEST_F(AssumedPivot, TheReportNamesTheBytesOnTheDisk) {
   ASSERT_EQ(run_program({"run", job("accept_assumed = true"), "--out", dir / "out"}).exit_code, 0);
   const auto report = nlohmann::json::parse(file_text(dir / "out/report.json"));

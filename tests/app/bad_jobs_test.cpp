@@ -1,4 +1,5 @@
-// Every file in tests/bad_jobs is refused with exactly the diagnostic in its first line, exit code 3, and no file is left.
+// Every file in tests/bad_jobs is refused with exactly the diagnostic in its first line, exit code 3, and no file is
+// left.
 #include "tests/app/program.h"
 
 namespace toothpath::test {
@@ -28,14 +29,16 @@ class BadJob : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(BadJob, IsRefusedWithItsFirstLine) { expect_first_line("run", kBadJobs, GetParam()); }
 
-INSTANTIATE_TEST_SUITE_P(All, BadJob, ::testing::ValuesIn(bad_jobs(kBadJobs)), [](const auto& job) { return job.param; });
+INSTANTIATE_TEST_SUITE_P(All, BadJob, ::testing::ValuesIn(bad_jobs(kBadJobs)),
+                         [](const auto& job) { return job.param; });
 
 /// Jobs for the gear shaper, refused by `shaper`.
 class BadShaperJob : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(BadShaperJob, IsRefusedWithItsFirstLine) { expect_first_line("shaper", kBadJobs + "/shaper", GetParam()); }
 
-INSTANTIATE_TEST_SUITE_P(All, BadShaperJob, ::testing::ValuesIn(bad_jobs(kBadJobs + "/shaper")), [](const auto& job) { return job.param; });
+INSTANTIATE_TEST_SUITE_P(All, BadShaperJob, ::testing::ValuesIn(bad_jobs(kBadJobs + "/shaper")),
+                         [](const auto& job) { return job.param; });
 
 }  // namespace
 }  // namespace toothpath::test

@@ -1,5 +1,5 @@
-// Every bad machine file of tests/machines through the program, as a user meets it: exit code 3, the exact messages with their place,
-// nothing written. `machine show` reads the file by itself; `run` meets it by way of a job.
+// Every bad machine file of tests/machines through the program, as a user meets it: exit code 3, the exact messages
+// with their place, nothing written. `machine show` reads the file by itself; `run` meets it by way of a job.
 #include "postproc/controls/registry.h"
 #include "tests/app/program.h"
 #include "tests/machines/bad_machine_files.h"
@@ -24,7 +24,8 @@ TEST(BadMachines, ShowRefusesEachWithItsPlace) {
   const TestDir dir;
   const std::string path = dir / "m.toml";
   for (const auto& bad : test::kBadMachineFiles) {
-    if (std::string(bad.to) == "\"gear_shaper\"") continue;  // `machine show` shows shapers, too: their reader complains of other keys
+    if (std::string(bad.to) == "\"gear_shaper\"")
+      continue;  // `machine show` shows shapers, too: their reader complains of other keys
     write_file(path, replaced(kMachine, bad.from, bad.to));
     const Finished shown = run_program({"machine", "show", path, "--out", dir / "out"});
     EXPECT_EQ(shown.exit_code, 3) << bad.what;
@@ -33,7 +34,9 @@ TEST(BadMachines, ShowRefusesEachWithItsPlace) {
   }
   for (const auto& bad : test::kBadControls) {
     write_file(path, replaced(kMachine, bad.from, bad.to));
-    EXPECT_EQ(run_program({"machine", "show", path, "--out", dir / "out"}).err, with_path(with_controls(bad.messages, controls::list_of_names()), path)) << bad.what;
+    EXPECT_EQ(run_program({"machine", "show", path, "--out", dir / "out"}).err,
+              with_path(with_controls(bad.messages, controls::list_of_names()), path))
+        << bad.what;
   }
 }
 

@@ -29,7 +29,10 @@ std::size_t line_with(const std::vector<std::string>& lines, const std::string& 
 }
 
 /// A sample beside the axis of its rotary table: no loop of teeth.
-std::string off_the_axis() { return replaced(file_text(kSamples + "/bevel_pinion.toml"), "origin = [3.0, -2.0, 260.0]", "origin = [8.0, 4.0, 260.0]"); }
+std::string off_the_axis() {
+  return replaced(file_text(kSamples + "/bevel_pinion.toml"), "origin = [3.0, -2.0, 260.0]",
+                  "origin = [8.0, 4.0, 260.0]");
+}
 
 /// One run for all tests of this file.
 class BevelCommand : public ::testing::Test {
@@ -78,7 +81,8 @@ TEST_F(BevelCommand, TwoAxesMoveAndTheReportSaysSo) {
   EXPECT_EQ(tilt["simultaneous_axes"], 2);
   EXPECT_EQ(tilt["moving_axes"], "YC");
   for (const auto& d : tilt["directions"])
-    EXPECT_NE(d["explanation"].get<std::string>().find("two simultaneous axes (YC) plus fixed tilt"), std::string::npos) << d["explanation"];
+    EXPECT_NE(d["explanation"].get<std::string>().find("two simultaneous axes (YC) plus fixed tilt"), std::string::npos)
+        << d["explanation"];
   EXPECT_NE(file_text(*dir_ / "run/report.html").find("two simultaneous axes"), std::string::npos);
 }
 
@@ -97,12 +101,14 @@ TEST_F(BevelCommand, CheckSaysTheSameOfTheProgram) {
 
 // What only a face gear can do is refused at the gear's type, whichever command asks for it; it was ignored by some.
 TEST_F(BevelCommand, WhatOnlyAFaceGearCanDoIsRefused) {
-  const std::string measured = *dir_ / "run/inspection.csv", program = *dir_ / "run/program.ngc", out = *dir_ / "refused";
+  const std::string measured = *dir_ / "run/inspection.csv", program = *dir_ / "run/program.ngc",
+                    out = *dir_ / "refused";
   const std::string at = ": error: type = \"equal_base_circle_bevel_gear\", but ";
-  const std::pair<std::vector<std::string>, std::string> asked[] = {{{"correct", kTrunnion, "--measured", measured}, "this command needs a face_gear"},
-                                                                    {{"check", kTrunnion, program, "--measured", measured}, "this command needs a face_gear"},
-                                                                    {{"contact", kTrunnion, "--as-cut"}, "--as-cut needs a face_gear"},
-                                                                    {{"contact", kTrunnion, "--pinion-teeth", "20"}, "--pinion-teeth needs a face_gear"}};
+  const std::pair<std::vector<std::string>, std::string> asked[] = {
+      {{"correct", kTrunnion, "--measured", measured}, "this command needs a face_gear"},
+      {{"check", kTrunnion, program, "--measured", measured}, "this command needs a face_gear"},
+      {{"contact", kTrunnion, "--as-cut"}, "--as-cut needs a face_gear"},
+      {{"contact", kTrunnion, "--pinion-teeth", "20"}, "--pinion-teeth needs a face_gear"}};
   for (auto [words, said] : asked) {
     words.insert(words.end(), {"--out", out});
     const Finished done = run_program(words);
@@ -112,7 +118,8 @@ TEST_F(BevelCommand, WhatOnlyAFaceGearCanDoIsRefused) {
   EXPECT_FALSE(std::filesystem::exists(out));
   const Finished mate = run_program({"contact", kSamples + "/spur_quick.toml", "--mate", kTrunnion, "--out", out});
   EXPECT_EQ(mate.exit_code, 3);
-  EXPECT_NE(mate.err.find("type = \"face_gear\", but --mate needs an equal_base_circle_bevel_gear"), std::string::npos) << mate.err;
+  EXPECT_NE(mate.err.find("type = \"face_gear\", but --mate needs an equal_base_circle_bevel_gear"), std::string::npos)
+      << mate.err;
 }
 
 TEST_F(BevelCommand, WallPassesAloneLeaveARidge) {
@@ -126,7 +133,8 @@ TEST_F(BevelCommand, WallPassesAloneLeaveARidge) {
   EXPECT_TRUE(named) << report["reasons"];
 }
 
-// One block of a wall pass turned by 0.05 deg one way or the other: one cuts into the wall and is named, the other leaves material.
+// One block of a wall pass turned by 0.05 deg one way or the other: one cuts into the wall and is named, the other
+// leaves material.
 TEST_F(BevelCommand, ATurnedBlockIsFound) {
   const std::regex word("C\\[#1([-+][0-9.]+)\\]");
   bool gouge = false, left = false;
@@ -156,13 +164,14 @@ TEST_F(BevelCommand, ATurnedBlockIsFound) {
   EXPECT_TRUE(left);
 }
 
-// Danger 12: which axis of a diagonal rapid arrives first is not known. Rotaries with X Y, X Y with Z below the safe height, Z with a
-// rotary behind the last tooth: each is a verdict with its line.
+// Danger 12: which axis of a diagonal rapid arrives first is not known. Rotaries with X Y, X Y with Z below the safe
+// height, Z with a rotary behind the last tooth: each is a verdict with its line.
 TEST_F(BevelCommand, DiagonalRapidsAreRefused) {
   const auto refused = [](const std::string& name, const std::vector<std::string>& lines, std::size_t at) {
     const auto report = check(name, lines, 1);
     const std::string reason = "line " + std::to_string(at + 1) + ": a rapid moves more than one group of axes";
-    EXPECT_NE(std::find(report["reasons"].begin(), report["reasons"].end(), reason), report["reasons"].end()) << name << " " << report["reasons"];
+    EXPECT_NE(std::find(report["reasons"].begin(), report["reasons"].end(), reason), report["reasons"].end())
+        << name << " " << report["reasons"];
   };
   const auto clean = program();
   std::size_t second = 0;  // index of the second cut
@@ -180,8 +189,7 @@ TEST_F(BevelCommand, DiagonalRapidsAreRefused) {
   refused("xy_and_z", lines, second + 1);
   lines = clean;
   std::size_t last = lines.size();
-  while (last-- > 0 && !lines[last].starts_with("G53 G0 Z")) {
-  }
+  while (last-- > 0 && !lines[last].starts_with("G53 G0 Z")) {}
   lines[last] += " Y0";
   refused("behind_the_last_tooth", lines, last);
 }
@@ -201,7 +209,8 @@ TEST_F(BevelCommand, MovesBesideTheTeethAreProven) {
     bool named = false;
     for (const auto& reason : report["reasons"]) {
       const auto text = reason.get<std::string>();
-      named = named || (text.starts_with("a rapid passes through the blank") && text.find("line " + std::to_string(at + 2) + ",") != std::string::npos);
+      named = named || (text.starts_with("a rapid passes through the blank") &&
+                        text.find("line " + std::to_string(at + 2) + ",") != std::string::npos);
     }
     EXPECT_TRUE(named) << at << " " << report["reasons"];
   }
@@ -227,12 +236,13 @@ TEST_F(BevelCommand, OneAndTwoThreadsSayTheSame) {
   for (const std::string& job : {kTrunnion, *dir_ / "off.toml"}) {
     EXPECT_EQ(report_on(job, "one", "1"), report_on(job, "two", "2")) << job;
     for (const char* file : {"program.ngc", "tooth.vtp", "setup.html"})
-      EXPECT_EQ(file_text(*dir_ / (std::string("one/") + file)), file_text(*dir_ / (std::string("two/") + file))) << job << " " << file;
+      EXPECT_EQ(file_text(*dir_ / (std::string("one/") + file)), file_text(*dir_ / (std::string("two/") + file)))
+          << job << " " << file;
   }
 }
 
-// Off the axis of the rotary every tooth is written out. Those that are the first one again are not proven again; a fault in one tooth is
-// found there.
+// Off the axis of the rotary every tooth is written out. Those that are the first one again are not proven again; a
+// fault in one tooth is found there.
 TEST_F(BevelCommand, TeethWrittenOutAreCompared) {
   const std::string job = *dir_ / "written.toml";
   write_file(job, off_the_axis());
@@ -274,7 +284,8 @@ TEST_F(BevelCommand, TeethWrittenOutAreCompared) {
   EXPECT_TRUE(gouge);
 }
 
-// The wheel that belongs to the pinion of the trunnion sample, on a machine with words of three decimals and another control.
+// The wheel that belongs to the pinion of the trunnion sample, on a machine with words of three decimals and another
+// control.
 TEST(BevelMate, RunsOnTheT600SAndIsCheckedThere) {
   const TestDir dir;
   std::string job = file_text(kTrunnion);
@@ -297,7 +308,8 @@ TEST(BevelMate, RunsOnTheT600SAndIsCheckedThere) {
   // The ridge is a result: it stands before the times.
   ASSERT_NE(run.out.find("highest ridge"), std::string::npos);
   EXPECT_LT(run.out.find("highest ridge"), run.out.find("cutting time"));
-  const Finished check = run_program({"check", dir / "mate.toml", dir / "run/program.nc", "--out", dir / "check", "--quiet"});
+  const Finished check =
+      run_program({"check", dir / "mate.toml", dir / "run/program.nc", "--out", dir / "check", "--quiet"});
   EXPECT_EQ(check.exit_code, 0) << check.err;
 }
 

@@ -1,8 +1,9 @@
-// `toothpath check` of a bevel gear with meshes of fixture and stock: planted collisions of every body are found, clean scenes pass.
+// `toothpath check` of a bevel gear with meshes of fixture and stock: planted collisions of every body are found, clean
+// scenes pass.
 #include <gtest/gtest.h>
 
-#include "app/process/gear_of_job.h"
 #include "app/job/file.h"
+#include "app/process/gear_of_job.h"
 #include "cam/finger/milling.h"
 #include "tests/app/check_scene.h"
 
@@ -14,7 +15,8 @@ mesh::TriangleMesh turned(const std::vector<Vec2>& outline, int n = 90) {
   mesh::TriangleMesh mesh;
   const auto m = int(outline.size());
   for (int k = 0; k < n; ++k)
-    for (const Vec2& q : outline) mesh.vertices.push_back({q.x() * std::cos(2 * M_PI * k / n), q.x() * std::sin(2 * M_PI * k / n), q.y()});
+    for (const Vec2& q : outline)
+      mesh.vertices.push_back({q.x() * std::cos(2 * M_PI * k / n), q.x() * std::sin(2 * M_PI * k / n), q.y()});
   const auto at = [&](int k, int i) { return std::int32_t((k % n) * m + i % m); };
   for (int k = 0; k < n; ++k)
     for (int i = 0; i < m; ++i) {
@@ -24,8 +26,8 @@ mesh::TriangleMesh turned(const std::vector<Vec2>& outline, int n = 90) {
   return mesh;
 }
 
-// The herringbone pinion of the trunnion sample: 18 teeth, pitch angle 33.7 deg, cone distances 18.45 to 32.45. The cutting part of the mill
-// is 2.9 high, the shank has radius 3, the holder (radius 10) begins 25 above the tip.
+// The herringbone pinion of the trunnion sample: 18 teeth, pitch angle 33.7 deg, cone distances 18.45 to 32.45. The
+// cutting part of the mill is 2.9 high, the shank has radius 3, the holder (radius 10) begins 25 above the tip.
 class BevelScene : public CheckScene {
  protected:
   static void SetUpTestSuite() {
@@ -35,7 +37,8 @@ class BevelScene : public CheckScene {
   }
   /// (r, z) at a cone distance and a height above the pitch cone.
   static Vec2 place(double ell, double height) {
-    return {ell * gear_->sin_delta() + height * gear_->cos_delta(), ell * gear_->cos_delta() - height * gear_->sin_delta()};
+    return {ell * gear_->sin_delta() + height * gear_->cos_delta(),
+            ell * gear_->cos_delta() - height * gear_->sin_delta()};
   }
   /// The turned blank with its face cone at a height above the pitch cone.
   static mesh::TriangleMesh blank(double height) {
@@ -101,15 +104,16 @@ TEST_F(BevelScene, ProfileOfTheCutterOnlyAndOneToothOnly) {
 }
 
 TEST_F(BevelScene, TheProfileAndNotACylinderIsJudged) {
-  // A thin ring over the teeth at the large end, just outside the tapering profile but inside the largest radius: no pass of this
-  // program comes nearer than the taper leaves.
+  // A thin ring over the teeth at the large end, just outside the tapering profile but inside the largest radius: no
+  // pass of this program comes nearer than the taper leaves.
   const bevel_gear::FingerSolid solid(gear_->cutter());
   const double h_f = gear_->parameters().dedendum_mm, low = solid.radius(-h_f + 0.3), wide = solid.largest_radius();
   ASSERT_GT(wide - low, 0.3);
   const double run_out = gear_->R_e() + wide + 1.0;  // the passes end here
   const auto ring = [&](double gap) {
     const double from = run_out + low + gap;
-    return turned({place(from, -h_f - 0.6), place(from + 1, -h_f - 0.6), place(from + 1, -h_f + 0.1), place(from, -h_f + 0.1)});
+    return turned(
+        {place(from, -h_f - 0.6), place(from + 1, -h_f - 0.6), place(from + 1, -h_f + 0.1), place(from, -h_f + 0.1)});
   };
   ASSERT_LT(low + 0.15, wide);
   EXPECT_EQ(check({"--fixture", stl("beside.stl", ring(0.15))}).exit_code, 0);

@@ -1,4 +1,5 @@
-// `toothpath check` of a sample with meshes beside it: the program is made once for all tests of a suite, every test asks with its own meshes.
+// `toothpath check` of a sample with meshes beside it: the program is made once for all tests of a suite, every test
+// asks with its own meshes.
 #pragma once
 
 #include <fstream>

@@ -13,10 +13,14 @@ const std::vector<std::string> kSurfaceFiles = {"gear.stl",    "inspection.csv",
                                                 "limits.json", "limits.svg",     "report.json",    "tooth.vtp"};
 
 TEST(CommandLine, UsageErrorsAreTwo) {
-  for (const std::vector<std::string>& arguments :
-       {std::vector<std::string>{}, {"bogus"}, {"surface"}, {"surface", kQuick}, {"surface", kQuick, "--out", "x", "--bogus"},
-        {"surface", kQuick, "--out", "x", "--threads", "nan"}, {"surface", kQuick, "--out", "x", "--threads", "0"},
-        {"surface", kQuick, "--out", "x", "--color", "pink"}})
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{},
+                                                    {"bogus"},
+                                                    {"surface"},
+                                                    {"surface", kQuick},
+                                                    {"surface", kQuick, "--out", "x", "--bogus"},
+                                                    {"surface", kQuick, "--out", "x", "--threads", "nan"},
+                                                    {"surface", kQuick, "--out", "x", "--threads", "0"},
+                                                    {"surface", kQuick, "--out", "x", "--color", "pink"}})
     EXPECT_EQ(run_program(arguments).exit_code, 2);
 }
 
@@ -47,7 +51,9 @@ TEST(CommandLine, SurfaceWritesItsFilesAndNothingElse) {
   const Finished refused = run_program({"surface", kBadJobs + "/module_negative.toml", "--out", dir / "a/b"});
   EXPECT_EQ(refused.exit_code, 3);
   EXPECT_EQ(names_in(dir / "a/b"), kSurfaceFiles);
-  EXPECT_NE(refused.err.find("note: " + (dir / "a/b") + " stays as it was: surface \"spur-quick\" of 20"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("note: " + (dir / "a/b") + " stays as it was: surface \"spur-quick\" of 20"),
+            std::string::npos)
+      << refused.err;
 }
 
 TEST(CommandLine, JsonIsOneObjectOnStdout) {
@@ -74,9 +80,7 @@ TEST(CommandLine, OneAndTwoThreadsGiveTheSameBytes) {
   ASSERT_EQ(run_program({"surface", kQuick, "--out", dir / "1", "--threads", "1"}).exit_code, 0);
   ASSERT_EQ(run_program({"surface", kQuick, "--out", dir / "2", "--threads", "2"}).exit_code, 0);
   for (const auto& name : kSurfaceFiles)
-    if (name != "report.json") {
-      EXPECT_EQ(file_text(dir / ("1/" + name)), file_text(dir / ("2/" + name))) << name;
-    }
+    if (name != "report.json") { EXPECT_EQ(file_text(dir / ("1/" + name)), file_text(dir / ("2/" + name))) << name; }
 }
 
 TEST(CommandLine, ARunOnOneAndTwoThreadsGivesTheSameBytes) {
@@ -86,7 +90,8 @@ TEST(CommandLine, ARunOnOneAndTwoThreadsGivesTheSameBytes) {
   // The cut surface and the proof are in tooth.vtp and in the reports; those carry run times as well.
   for (const char* name : {"program.ngc", "cl.csv", "tooth.vtp", "inspection.csv", "limits.json"})
     EXPECT_EQ(file_text(dir / (std::string("1/") + name)), file_text(dir / (std::string("2/") + name))) << name;
-  auto one = nlohmann::json::parse(file_text(dir / "1/report.json")), two = nlohmann::json::parse(file_text(dir / "2/report.json"));
+  auto one = nlohmann::json::parse(file_text(dir / "1/report.json")),
+       two = nlohmann::json::parse(file_text(dir / "2/report.json"));
   one.erase("stages");
   two.erase("stages");
   EXPECT_EQ(one, two);
@@ -115,11 +120,13 @@ TEST(CommandLine, InputsThatNeverEndAreRefused) {
 TEST(OutputDirectory, PlacesThatCannotBeWrittenAreFour) {
   const TestDir dir;
   write_file(dir / "file", "mine");
-  for (const std::string& place : {dir / "file", dir / "file/below", std::string("/dev/null/out"), std::string("/proc/out")})
+  for (const std::string& place :
+       {dir / "file", dir / "file/below", std::string("/dev/null/out"), std::string("/proc/out")})
     EXPECT_EQ(run_program({"surface", kQuick, "--out", place}).exit_code, 4) << place;
   EXPECT_EQ(file_text(dir / "file"), "mine");
   std::filesystem::create_directories(dir / "out/gear.stl");
-  EXPECT_EQ(run_program({"surface", kQuick, "--out", dir / "out"}).exit_code, 4) << "a directory in the place of an output";
+  EXPECT_EQ(run_program({"surface", kQuick, "--out", dir / "out"}).exit_code, 4)
+      << "a directory in the place of an output";
   EXPECT_EQ(names_in(dir / "out"), std::vector<std::string>{"gear.stl"});
 }
 
@@ -143,7 +150,8 @@ TEST(OutputDirectory, AFullStdoutIsFour) {
 }
 
 /// What an earlier run of a face gear may have left, and a file of somebody else.
-const std::vector<std::string> kEarlier = {"cl.csv", "my notes.txt", "program.nc", "program.ngc", "report.json", "setup.html"};
+const std::vector<std::string> kEarlier = {"cl.csv",      "my notes.txt", "program.nc",
+                                           "program.ngc", "report.json",  "setup.html"};
 
 void leave_earlier_results(const std::string& out) {
   std::filesystem::create_directories(out);
@@ -154,13 +162,18 @@ TEST(OutputDirectory, ARefusedRunLeavesItAsItWas) {
   const TestDir dir;
   leave_earlier_results(dir / "out");
   const std::string missing = dir / "missing.csv";
-  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"run", kBadJobs + "/module_negative.toml"}, {"run", kQuick, "--restart", "9:0"}, {"run", dir / "none.toml"},
-                                                    {"shaper", kQuick}, {"correct", kQuick, "--measured", missing}, {"contact", kBadJobs + "/module_negative.toml"}}) {
+  for (const std::vector<std::string>& arguments : {std::vector<std::string>{"run", kBadJobs + "/module_negative.toml"},
+                                                    {"run", kQuick, "--restart", "9:0"},
+                                                    {"run", dir / "none.toml"},
+                                                    {"shaper", kQuick},
+                                                    {"correct", kQuick, "--measured", missing},
+                                                    {"contact", kBadJobs + "/module_negative.toml"}}) {
     auto words = arguments;
     words.insert(words.end(), {"--out", dir / "out"});
     EXPECT_NE(run_program(words).exit_code, 0) << arguments.front();
     EXPECT_EQ(names_in(dir / "out"), kEarlier) << arguments.front();
-    for (const auto& name : kEarlier) EXPECT_EQ(file_text(dir / ("out/" + name)), "old") << arguments.front() << " " << name;
+    for (const auto& name : kEarlier)
+      EXPECT_EQ(file_text(dir / ("out/" + name)), "old") << arguments.front() << " " << name;
   }
 }
 
@@ -169,13 +182,17 @@ TEST(OutputDirectory, AnotherRunMovesTheEarlierOneToPrevious) {
   leave_earlier_results(dir / "out");
   const Finished run = run_program({"run", kQuick, "--out", dir / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(run.err.starts_with("note: what stood in " + (dir / "out") + " is in " + (dir / "out/previous") + ": program.ngc of 20")) << run.err;
-  EXPECT_EQ(names_in(dir / "out/previous"), (std::vector<std::string>{"cl.csv", "program.nc", "program.ngc", "report.json", "setup.html"}));
+  EXPECT_TRUE(run.err.starts_with("note: what stood in " + (dir / "out") + " is in " + (dir / "out/previous") +
+                                  ": program.ngc of 20"))
+      << run.err;
+  EXPECT_EQ(names_in(dir / "out/previous"),
+            (std::vector<std::string>{"cl.csv", "program.nc", "program.ngc", "report.json", "setup.html"}));
   EXPECT_EQ(file_text(dir / "out/my notes.txt"), "old");
   const auto first = file_text(dir / "out/program.ngc");
 
   // Not verified: the program moves, the report of the new one stands there alone.
-  write_file(dir / "job.toml", std::regex_replace(file_text(kQuick), std::regex("gouge_tolerance = .*"), "gouge_tolerance = 0.0004"));
+  write_file(dir / "job.toml",
+             std::regex_replace(file_text(kQuick), std::regex("gouge_tolerance = .*"), "gouge_tolerance = 0.0004"));
   const Finished second = run_program({"run", dir / "job.toml", "--out", dir / "out"});
   EXPECT_EQ(second.exit_code, 1) << second.err;
   EXPECT_FALSE(std::filesystem::exists(dir / "out/program.ngc"));
@@ -197,7 +214,8 @@ TEST(OutputDirectory, CommandsThatShareItKeepTheProgram) {
   const auto stroke = file_text(dir / "out/shaper_program.ngc");
   EXPECT_EQ(run_program({"shaper", kSamples + "/offset_shaped.toml", "--out", dir / "out", "--quiet"}).exit_code, 0);
   EXPECT_EQ(file_text(dir / "out/previous_shaper/shaper_program.ngc"), stroke);
-  for (const char* name : {"program.nc", "program.ngc", "setup.html", "cl.csv"}) EXPECT_EQ(file_text(dir / (std::string("out/") + name)), "old") << name;
+  for (const char* name : {"program.nc", "program.ngc", "setup.html", "cl.csv"})
+    EXPECT_EQ(file_text(dir / (std::string("out/") + name)), "old") << name;
 }
 
 TEST(OutputDirectory, ASignalLeavesNothing) {
@@ -225,14 +243,17 @@ TEST(OutputDirectory, ASignalLeavesEarlierResultsInPrevious) {
     launch.signal_when = dir / "out/previous";
     const Finished run = run_program(launch);
     EXPECT_EQ(run.exit_code, number == SIGKILL ? -1 : 130);
-    for (const auto& name : kEarlier) EXPECT_EQ(file_text(dir / ((name == "my notes.txt" ? "out/" : "out/previous/") + name)), "old") << name;
+    for (const auto& name : kEarlier)
+      EXPECT_EQ(file_text(dir / ((name == "my notes.txt" ? "out/" : "out/previous/") + name)), "old") << name;
     const auto names = names_in(dir / "out");
     if (number == SIGKILL) {
       EXPECT_FALSE(std::filesystem::exists(dir / "out/program.ngc"));
       continue;
     }
     EXPECT_EQ(names, (std::vector<std::string>{"my notes.txt", "previous"}));
-    EXPECT_TRUE(run.err.starts_with("interrupted: what stood in " + (dir / "out") + " is in " + (dir / "out/previous") + ": program.n")) << run.err;
+    EXPECT_TRUE(run.err.starts_with("interrupted: what stood in " + (dir / "out") + " is in " + (dir / "out/previous") +
+                                    ": program.n"))
+        << run.err;
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
   }
 }
@@ -263,14 +284,17 @@ TEST(OutputDirectory, AnInputThatTheRunWouldReplaceIsRefused) {
   write_file(dir / "out/inspection.csv", measured);
   const Finished run = run_program({"correct", kQuick, "--measured", dir / "out/inspection.csv", "--out", dir / "out"});
   EXPECT_EQ(run.exit_code, 2) << run.err;
-  EXPECT_NE(run.err.find("inspection.csv: error: this input lies where the command writes its own inspection.csv"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("inspection.csv: error: this input lies where the command writes its own inspection.csv"),
+            std::string::npos)
+      << run.err;
   EXPECT_EQ(file_text(dir / "out/inspection.csv"), measured);
   EXPECT_EQ(names_in(dir / "out"), kSurfaceFiles);
 }
 
 TEST(Machine, APartThatDoesNotFitIsRefusedWithBothNumbers) {
   const TestDir dir;
-  std::string text = replaced(file_text(kSamples + "/dhfg_paper.toml"), "file = \"xyzac_large.toml\"", "file = \"t600s.toml\"\naccept_assumed = true");
+  std::string text = replaced(file_text(kSamples + "/dhfg_paper.toml"), "file = \"xyzac_large.toml\"",
+                              "file = \"t600s.toml\"\naccept_assumed = true");
   write_file(dir / "job.toml", text);
   const Finished run = run_program({"run", dir / "job.toml", "--out", dir / "out"});
   EXPECT_EQ(run.exit_code, 3);
@@ -296,7 +320,8 @@ TEST(Run, ASmallGearGoesTheWholeWay) {
   const Finished run = run_program({"run", kQuick, "--out", dir / "1", "--threads", "1"});
   ASSERT_EQ(run.exit_code, 0) << run.err << run.out;
   const auto names = names_in(dir / "1");
-  for (const char* name : {"cl.csv", "gear.stl", "inspection.csv", "limits.json", "program.ngc", "report.html", "report.json", "setup.html", "tooth.vtp"})
+  for (const char* name : {"cl.csv", "gear.stl", "inspection.csv", "limits.json", "program.ngc", "report.html",
+                           "report.json", "setup.html", "tooth.vtp"})
     EXPECT_TRUE(std::binary_search(names.begin(), names.end(), name)) << name;
   const auto report = nlohmann::json::parse(file_text(dir / "1/report.json"));
   EXPECT_EQ(report["verified"], true);
@@ -304,7 +329,8 @@ TEST(Run, ASmallGearGoesTheWholeWay) {
   EXPECT_LE(report["gouge_um"]["bound"].get<double>(), 2.0);
 
   ASSERT_EQ(run_program({"run", kQuick, "--out", dir / "2", "--threads", "2"}).exit_code, 0);
-  for (const char* name : {"program.ngc", "cl.csv", "gear.stl", "tooth.vtp", "inspection.csv", "limits.json", "setup.html"})
+  for (const char* name :
+       {"program.ngc", "cl.csv", "gear.stl", "tooth.vtp", "inspection.csv", "limits.json", "setup.html"})
     EXPECT_EQ(file_text(dir / (std::string("1/") + name)), file_text(dir / (std::string("2/") + name))) << name;
 
   // A refused run into the same directory leaves every one of its files, and says whose they are.
@@ -314,14 +340,19 @@ TEST(Run, ASmallGearGoesTheWholeWay) {
   EXPECT_EQ(names_in(dir / "2"), names);
   EXPECT_EQ(file_text(dir / "2/report.json"), text_before);
   const std::string sha = report["program"]["sha256"].get<std::string>().substr(0, 12);
-  EXPECT_TRUE(std::regex_search(refused.err, std::regex("\nnote: .*/2 stays as it was: run \"spur-quick\" of 20.*, program.ngc \\(sha256 " + sha + "\\)\n$"))) << refused.err;
+  EXPECT_TRUE(std::regex_search(
+      refused.err,
+      std::regex("\nnote: .*/2 stays as it was: run \"spur-quick\" of 20.*, program.ngc \\(sha256 " + sha + "\\)\n$")))
+      << refused.err;
 }
 
-// Every control has its own names of work offsets: written, read back, and refused where the control has none of that name.
+// Every control has its own names of work offsets: written, read back, and refused where the control has none of that
+// name.
 TEST(WorkOffset, IsThatOfTheControl) {
   const std::string quick = file_text(kQuick);
   const auto job_on = [&](const std::string& machine, const std::string& offset) {
-    std::string job = std::regex_replace(quick, std::regex("file = \"xyzac_large.toml\""), "file = \"" + machine + "\"\naccept_assumed = true");
+    std::string job = std::regex_replace(quick, std::regex("file = \"xyzac_large.toml\""),
+                                         "file = \"" + machine + "\"\naccept_assumed = true");
     job = std::regex_replace(job, std::regex("origin = .*"), "origin = [1.0, 2.0, 40.0]");
     job = std::regex_replace(job, std::regex("work_offset_at = .*"), "work_offset_at = [1.0, 2.0, 30.0]");
     return std::regex_replace(job, std::regex("work_offset = .*"), "work_offset = \"" + offset + "\"");
@@ -330,17 +361,19 @@ TEST(WorkOffset, IsThatOfTheControl) {
     std::string machine, offset, extension, written;
   };
   for (const auto& [machine, offset, extension, written] :
-       {Case{"fanuc_ac.toml", "G54.1 P3", "nc", "\nG54.1 P3\n"}, Case{"siemens_ac.toml", "G505", "mpf", "\nG505\n"}, Case{"heidenhain_ac.toml", "12", "h", "Q339=+12\n"},
-        Case{"heidenhain_ac.toml", "G55", "h", "Q339=+2\n"}}) {
+       {Case{"fanuc_ac.toml", "G54.1 P3", "nc", "\nG54.1 P3\n"}, Case{"siemens_ac.toml", "G505", "mpf", "\nG505\n"},
+        Case{"heidenhain_ac.toml", "12", "h", "Q339=+12\n"}, Case{"heidenhain_ac.toml", "G55", "h", "Q339=+2\n"}}) {
     const TestDir dir;
     write_file(dir / "job.toml", job_on(machine, offset));
     const Finished run = run_program({"run", dir / "job.toml", "--out", dir / "out", "--quiet"});
     EXPECT_EQ(run.exit_code, 0) << machine << " " << offset << " " << run.err;
     if (run.exit_code != 0) continue;
-    EXPECT_NE(file_text(dir / ("out/program." + extension)).find(written), std::string::npos) << machine << " " << offset;
+    EXPECT_NE(file_text(dir / ("out/program." + extension)).find(written), std::string::npos)
+        << machine << " " << offset;
   }
   for (const auto& [machine, offset, named] :
-       {std::tuple{"siemens_ac.toml", "G58", "G505 to G599"}, std::tuple{"fanuc_ac.toml", "G59.1", "G54.1 P1 to P300"}, std::tuple{"xyzac_large.toml", "G54.1 P3", "G59.1 to G59.3"},
+       {std::tuple{"siemens_ac.toml", "G58", "G505 to G599"}, std::tuple{"fanuc_ac.toml", "G59.1", "G54.1 P1 to P300"},
+        std::tuple{"xyzac_large.toml", "G54.1 P3", "G59.1 to G59.3"},
         std::tuple{"heidenhain_ac.toml", "G505", "presets 1 to 99"}}) {
     const TestDir dir;
     write_file(dir / "job.toml", job_on(machine, offset));
@@ -350,8 +383,8 @@ TEST(WorkOffset, IsThatOfTheControl) {
   }
 }
 
-// The pitch angle of 15 deg lays the tool almost flat over the small end of the pinion. With the tip in control, links keep its height: the thick
-// flute reaches 10 mm below it.
+// The pitch angle of 15 deg lays the tool almost flat over the small end of the pinion. With the tip in control, links
+// keep its height: the thick flute reaches 10 mm below it.
 TEST(BevelLinks, AFlatToolPassesOverTheSmallEnd) {
   const TestDir dir;
   write_file(dir / "job.toml", R"(schema = 1

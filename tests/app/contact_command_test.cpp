@@ -11,7 +11,8 @@ namespace {
 using Json = nlohmann::json;
 
 /// Text of a sample with one piece replaced, in a file of the test's directory.
-std::string changed_sample(const TestDir& dir, const std::string& sample, const std::string& from, const std::string& to) {
+std::string changed_sample(const TestDir& dir, const std::string& sample, const std::string& from,
+                           const std::string& to) {
   std::string text = file_text(kSamples + "/" + sample);
   const auto at = text.find(from);
   if (at == std::string::npos) throw std::invalid_argument("no " + from);
@@ -28,12 +29,14 @@ Json contact_of(std::vector<std::string> arguments) {
   return Json::parse(done.out).at("report");
 }
 
-/// The offset sample with a pinion of two teeth less: the printed path, no transmission error, a pattern that keeps off the outer end.
+/// The offset sample with a pinion of two teeth less: the printed path, no transmission error, a pattern that keeps off
+/// the outer end.
 TEST(ContactCommand, OffsetGear) {
   const TestDir dir;
   const std::string out = dir / "out";
   const Json report = contact_of({"contact", kSamples + "/offset_shaped.toml", "--pinion-teeth", "23", "--out", out});
-  EXPECT_EQ(names_in(out), (std::vector<std::string>{"contact.csv", "contact.html", "contact.json", "transmission.csv"}));
+  EXPECT_EQ(names_in(out),
+            (std::vector<std::string>{"contact.csv", "contact.html", "contact.json", "transmission.csv"}));
   EXPECT_EQ(report, Json::parse(file_text(out + "/contact.json")));
   ASSERT_EQ(report.at("flanks").size(), 2u);
   const double tip[] = {134.031, 132.173}, pinion_tip[] = {132.266, 133.759};
@@ -54,19 +57,24 @@ TEST(ContactCommand, OffsetGear) {
   }
   // The drawing has the pattern of both members and both sides.
   const std::string page = file_text(out + "/contact.html");
-  for (const char* words : {"Gear: flank +1, exact", "Pinion: flank +1, exact", "Gear: flank -1, exact", "Pinion: flank -1, exact"})
+  for (const char* words :
+       {"Gear: flank +1, exact", "Pinion: flank +1, exact", "Gear: flank -1, exact", "Pinion: flank -1, exact"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
 }
 
-/// Options stand above the keys of [contact]; a misalignment moves the path; the pinion as shaper marks the whole flank it reaches.
+/// Options stand above the keys of [contact]; a misalignment moves the path; the pinion as shaper marks the whole flank
+/// it reaches.
 TEST(ContactCommand, KeysAndOptions) {
   const TestDir dir;
-  const std::string job = changed_sample(dir, "offset_shaped.toml", "[machine]", "[contact]\npinion_teeth = 23\noffset_error = 0.1\ncompound = 0.01\n\n[machine]");
+  const std::string job =
+      changed_sample(dir, "offset_shaped.toml", "[machine]",
+                     "[contact]\npinion_teeth = 23\noffset_error = 0.1\ncompound = 0.01\n\n[machine]");
   const Json keys = contact_of({"contact", job, "--out", dir / "a"});
   EXPECT_EQ(keys.at("pinion_teeth"), 23);
   EXPECT_NEAR(keys.at("compound_um").get<double>(), 10, 1e-12);
   EXPECT_NEAR(keys.at("flanks")[0].at("zones")[0].at("path").at("B_deg").get<double>(), 21.996, 6e-4);
-  const Json options = contact_of({"contact", job, "--pinion-teeth", "25", "--offset-error", "0", "--compound", "4", "--out", dir / "b"});
+  const Json options = contact_of(
+      {"contact", job, "--pinion-teeth", "25", "--offset-error", "0", "--compound", "4", "--out", dir / "b"});
   EXPECT_EQ(options.at("pinion_teeth"), 25);
   for (const Json& flank : options.at("flanks")) {
     EXPECT_EQ(flank.at("contact"), "line");
@@ -75,12 +83,13 @@ TEST(ContactCommand, KeysAndOptions) {
   }
 }
 
-/// A contact run that fails, however it does, leaves what an earlier one wrote as it was and says so, and nothing half-written; what belongs to
-/// others stays.
+/// A contact run that fails, however it does, leaves what an earlier one wrote as it was and says so, and nothing
+/// half-written; what belongs to others stays.
 TEST(ContactCommand, AFailedRunLeavesEverythingAsItWas) {
   const TestDir dir;
   const std::string out = dir / "out", good = kSamples + "/offset_shaped.toml", bevel = kSamples + "/bevel_pinion.toml";
-  const std::vector<std::string> pages = {"contact.csv", "contact.html", "contact.json", "transmission.csv"}, kept = {"my notes.txt", "program.ngc", "report.html"};
+  const std::vector<std::string> pages = {"contact.csv", "contact.html", "contact.json", "transmission.csv"},
+                                 kept = {"my notes.txt", "program.ngc", "report.html"};
   const auto older = [&] {
     std::filesystem::create_directories(out);
     for (const auto& name : pages) write_file(out + "/" + name, "older");
@@ -136,12 +145,18 @@ TEST(ContactCommand, AFailedRunLeavesEverythingAsItWas) {
 
 TEST(ContactCommand, Refusals) {
   const TestDir dir;
-  const auto many = run_program({"contact", kSamples + "/offset_shaped.toml", "--pinion-teeth", "26", "--out", dir / "a"});
+  const auto many =
+      run_program({"contact", kSamples + "/offset_shaped.toml", "--pinion-teeth", "26", "--out", dir / "a"});
   EXPECT_EQ(many.exit_code, 3);
   EXPECT_NE(many.err.find("pinion_teeth = 26 exceeds the shaper's 25"), std::string::npos) << many.err;
-  EXPECT_EQ(run_program({"contact", kSamples + "/offset_shaped.toml", "--compound", "1000", "--out", dir / "b"}).exit_code, 2);
+  EXPECT_EQ(
+      run_program({"contact", kSamples + "/offset_shaped.toml", "--compound", "1000", "--out", dir / "b"}).exit_code,
+      2);
   EXPECT_EQ(run_program({"contact", kSamples + "/bevel_pinion.toml", "--out", dir / "c"}).exit_code, 3);
-  EXPECT_EQ(run_program({"compare", kSamples + "/offset_milled.toml", kSamples + "/offset_milled.toml", "--out", dir / "d"}).exit_code, 3);
+  EXPECT_EQ(
+      run_program({"compare", kSamples + "/offset_milled.toml", kSamples + "/offset_milled.toml", "--out", dir / "d"})
+          .exit_code,
+      3);
   for (const char* name : {"a", "b", "c", "d"}) EXPECT_TRUE(names_in(dir / name).empty()) << name;
 }
 
@@ -169,7 +184,8 @@ std::string shaped_job(const TestDir& dir, const std::string& name) {
 /// Strokes cut a polygon: the ripple of its flanks shows in the mesh, and stays below their deviation.
 TEST(ContactCommand, SurfaceOfTheStrokes) {
   const TestDir dir;
-  const Json report = contact_of({"contact", shaped_job(dir, "shaped.toml"), "--pinion-teeth", "18", "--as-cut", "--out", dir / "out"});
+  const Json report =
+      contact_of({"contact", shaped_job(dir, "shaped.toml"), "--pinion-teeth", "18", "--as-cut", "--out", dir / "out"});
   EXPECT_EQ(report.at("cut_surface"), "shaped");
   ASSERT_EQ(report.at("flanks").size(), 4u);
   for (const std::size_t k : {2u, 3u}) {
@@ -179,11 +195,13 @@ TEST(ContactCommand, SurfaceOfTheStrokes) {
   }
 }
 
-/// One quick gear by both routes: both deviations are those that the routes' own commands state, their difference is taken place by place.
+/// One quick gear by both routes: both deviations are those that the routes' own commands state, their difference is
+/// taken place by place.
 TEST(CompareCommand, QuickGear) {
   const TestDir dir;
   const std::string out = dir / "out";
-  const auto done = run_program({"compare", shaped_job(dir, "shaped.toml"), kSamples + "/spur_quick.toml", "--out", out, "--json"});
+  const auto done =
+      run_program({"compare", shaped_job(dir, "shaped.toml"), kSamples + "/spur_quick.toml", "--out", out, "--json"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"compare.csv", "compare.html", "compare.json"}));
   const Json report = Json::parse(done.out).at("report");
@@ -197,8 +215,10 @@ TEST(CompareCommand, QuickGear) {
     EXPECT_LT(shaped.at("max_um").get<double>(), 20);
     EXPECT_GT(milled.at("min_um").get<double>(), -2.0);
     EXPECT_LT(milled.at("max_um").get<double>(), 40);
-    EXPECT_LE(difference.at("max_um").get<double>(), milled.at("max_um").get<double>() - shaped.at("min_um").get<double>() + 1e-9);
-    EXPECT_GE(difference.at("min_um").get<double>(), milled.at("min_um").get<double>() - shaped.at("max_um").get<double>() - 1e-9);
+    EXPECT_LE(difference.at("max_um").get<double>(),
+              milled.at("max_um").get<double>() - shaped.at("min_um").get<double>() + 1e-9);
+    EXPECT_GE(difference.at("min_um").get<double>(),
+              milled.at("min_um").get<double>() - shaped.at("max_um").get<double>() - 1e-9);
   }
   // Another gear is refused with key and both values.
   const std::string other = changed_sample(dir, "spur_quick.toml", "teeth = 60", "teeth = 62");
@@ -207,7 +227,8 @@ TEST(CompareCommand, QuickGear) {
   EXPECT_NE(refused.err.find("teeth = 62 differs from 60"), std::string::npos) << refused.err;
 }
 
-/// The levels of the literature without milling: nine rows, balanced axial forces, no transmission error, trends of the overlap.
+/// The levels of the literature without milling: nine rows, balanced axial forces, no transmission error, trends of the
+/// overlap.
 TEST(DhfgStudy, NineTrials) {
   const TestDir dir;
   const std::string out = dir / "out";
@@ -225,9 +246,11 @@ TEST(DhfgStudy, NineTrials) {
     EXPECT_EQ(trial.at("refusal"), "") << trial.at("trial");
     EXPECT_GT(trial.at("half_face").get<double>(), 5);
     EXPECT_NEAR(trial.at("axial_N").at("balanced").get<double>(), 0, 1e-6);
-    EXPECT_NEAR(trial.at("axial_N").at("held").get<double>() / trial.at("axial_N").at("single_helix").get<double>(), 0.3, 1e-9);
+    EXPECT_NEAR(trial.at("axial_N").at("held").get<double>() / trial.at("axial_N").at("single_helix").get<double>(),
+                0.3, 1e-9);
     EXPECT_LT(trial.at("error_range_urad").get<double>(), 1e-6);
-    EXPECT_GE(trial.at("contact_ratio").at("v_teeth").get<double>(), trial.at("contact_ratio").at("outer").get<double>() - 1e-12);
+    EXPECT_GE(trial.at("contact_ratio").at("v_teeth").get<double>(),
+              trial.at("contact_ratio").at("outer").get<double>() - 1e-12);
     EXPECT_GE(trial.at("pairs")[0].get<int>(), 2);
   }
   EXPECT_EQ(teeth_ratio.size(), 9u);

@@ -1,16 +1,17 @@
-// The closed loop: a gear is cut, measured on the inspection grid, and cut again with flanks that answer the measurement. The process error is
-// added to what the program on the disk leaves, as read back through the machine's kinematics; nothing goes through the correction's formula.
+// The closed loop: a gear is cut, measured on the inspection grid, and cut again with flanks that answer the
+// measurement. The process error is added to what the program on the disk leaves, as read back through the machine's
+// kinematics; nothing goes through the correction's formula.
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "app/process/face/proof.h"
 #include "app/commands/run.h"
-#include "app/process/gear_of_job.h"
 #include "app/job/file.h"
 #include "app/job/measured_file.h"
+#include "app/process/face/proof.h"
+#include "app/process/gear_of_job.h"
 #include "cam/cut/swept_path.h"
-#include "tests/app/program.h"
 #include "postproc/controls/of_machine.h"
+#include "tests/app/program.h"
 #include "tests/support/inspection_points.h"
 
 namespace toothpath::test {
@@ -26,16 +27,19 @@ std::string quick_job() {
   };
   replace("outer_radius = 65.0", "outer_radius = 61.0");
   replace("scallop = 0.02\nchord_tolerance = 0.002", "scallop = 0.0003\nchord_tolerance = 0.0003");
-  // The roughing has nothing to do with it: one finishing pass from the full stock would be refused by no check of ours.
+  // The roughing has nothing to do with it: one finishing pass from the full stock would be refused by no check of
+  // ours.
   const auto begin = text.find("[[operation]]"), end = text.find("[[operation]]", begin + 1);
   text.erase(begin, end - begin);
   return text;
 }
 
-/// 20 um of slope, crowning and twist, another on each side; x along the profile, y along the face, both 0 .. 1 within the grid.
+/// 20 um of slope, crowning and twist, another on each side; x along the profile, y along the face, both 0 .. 1 within
+/// the grid.
 double process_error(int side, double x, double y) {
   const double u = 2 * x - 1, v = 2 * y - 1;
-  return side > 0 ? 0.020 * (0.35 * v + 0.4 * u * v - 0.25 * v * v + 0.1 * u * u) : -0.020 * (0.3 * u - 0.4 * v * v * u + 0.3 * v);
+  return side > 0 ? 0.020 * (0.35 * v + 0.4 * u * v - 0.25 * v * v + 0.1 * u * u)
+                  : -0.020 * (0.3 * u - 0.4 * v * v * u + 0.3 * v);
 }
 
 struct Case {
@@ -60,12 +64,14 @@ class CutFlanks {
     const auto control = controls::control_of(c.machine, *c.job.setup, c.job.tools);
     EXPECT_TRUE(control);
     const int teeth = c.gear->parameters().teeth;
-    const auto read = readback::read_back(program, "program.ngc", *control, c.machine, *c.job.setup, {.teeth = teeth, .keep_all = false});
+    const auto read = readback::read_back(program, "program.ngc", *control, c.machine, *c.job.setup,
+                                          {.teeth = teeth, .keep_all = false});
     EXPECT_TRUE(read) << read.error().text();
     const double R = c.job.tools[0].radius_mm();
     std::vector<cut::BallMove> moves;
     for (const auto& trace : read->operations) {
-      const auto motions = readback::tool_motions(trace, read->copies, *control, c.machine, *c.job.setup, teeth, {1e-5, 1e-5});
+      const auto motions =
+          readback::tool_motions(trace, read->copies, *control, c.machine, *c.job.setup, teeth, {1e-5, 1e-5});
       EXPECT_TRUE(motions);
       for (const auto& m : *motions)
         if (!m.rapid && m.tooth == 0) moves.push_back({m.tip_from + R * m.axis_from, m.tip_to + R * m.axis_to});
@@ -82,7 +88,8 @@ class CutFlanks {
   std::unique_ptr<cut::SweptPath> swept_;
 };
 
-std::string measured_csv(const std::vector<inspection::InspectionPoint>& grid, const std::function<double(const inspection::InspectionPoint&)>& deviation_mm) {
+std::string measured_csv(const std::vector<inspection::InspectionPoint>& grid,
+                         const std::function<double(const inspection::InspectionPoint&)>& deviation_mm) {
   const std::string nominal = inspection::inspection_csv(grid);
   std::istringstream in(nominal);
   std::string line, out = "zone,flank,row,column,x,y,z,i,j,k,deviation_um\n";
@@ -128,21 +135,28 @@ TEST(Correction, TwentyMicrometresAreGoneAfterOneLoop) {
   EXPECT_TRUE(report["verified"]);
   EXPECT_EQ(report["command"], "correct");
   for (const auto& flank : report["correction"]) EXPECT_LT(flank["residual_max_um"], 0.4);
-  for (const char* name : {"program.ngc", "cl.csv", "report.html", "setup.html", "gear.stl", "tooth.vtp", "inspection.csv", "limits.json", "correction.json"})
+  for (const char* name : {"program.ngc", "cl.csv", "report.html", "setup.html", "gear.stl", "tooth.vtp",
+                           "inspection.csv", "limits.json", "correction.json"})
     EXPECT_GT(file_text(dir / "second" + std::string("/") + name).size(), 100u) << name;
 
   const std::string program = file_text(dir / "second/program.ngc");
   const CutFlanks after(c, program);
   for (const auto& [rows, columns] : {std::pair{5, 9}, std::pair{13, 25}}) {
     double left = 0;
-    for (const auto& p : grid_of(*c.gear, rows, columns)) left = std::max(left, std::abs(after.at(p, pitch) + share(p, rows, columns)));
-    std::printf("  %2d x %2d points: %.3f um before, %.3f um after one correction\n", rows, columns, worst * 1000, left * 1000);
+    for (const auto& p : grid_of(*c.gear, rows, columns))
+      left = std::max(left, std::abs(after.at(p, pitch) + share(p, rows, columns)));
+    std::printf("  %2d x %2d points: %.3f um before, %.3f um after one correction\n", rows, columns, worst * 1000,
+                left * 1000);
     EXPECT_LT(left, 0.0005);
   }
 
   // The same program against the nominal flanks is a gouge; against the measured ones it is proven.
-  EXPECT_EQ(run_program({"check", dir / "job.toml", dir / "second/program.ngc", "--out", dir / "nominal"}).exit_code, 1);
-  EXPECT_EQ(run_program({"check", dir / "job.toml", dir / "second/program.ngc", "--measured", dir / "measured.csv", "--out", dir / "again"}).exit_code, 0);
+  EXPECT_EQ(run_program({"check", dir / "job.toml", dir / "second/program.ngc", "--out", dir / "nominal"}).exit_code,
+            1);
+  EXPECT_EQ(run_program({"check", dir / "job.toml", dir / "second/program.ngc", "--measured", dir / "measured.csv",
+                         "--out", dir / "again"})
+                .exit_code,
+            0);
 }
 
 TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
@@ -150,7 +164,8 @@ TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
   write_file(dir / "job.toml", quick_job());
   const Case c = read_case(dir / "job.toml");
   const auto grid = grid_of(*c.gear, 5, 9);
-  const std::string good = measured_csv(grid, [](const inspection::InspectionPoint& p) { return process_error(p.side, p.row / 4.0, p.column / 8.0); });
+  const std::string good = measured_csv(
+      grid, [](const inspection::InspectionPoint& p) { return process_error(p.side, p.row / 4.0, p.column / 8.0); });
   ASSERT_TRUE(job::parse_measured(good, "m.csv", *c.gear));
   const auto lines = [&] {
     std::vector<std::string> out;
@@ -166,7 +181,9 @@ TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
   const auto scaled = [&](double place, double deviation) {
     std::vector<inspection::InspectionPoint> other = grid;
     for (auto& p : other) p.p *= place;
-    return measured_csv(other, [&](const inspection::InspectionPoint& p) { return deviation * process_error(p.side, p.row / 4.0, p.column / 8.0); });
+    return measured_csv(other, [&](const inspection::InspectionPoint& p) {
+      return deviation * process_error(p.side, p.row / 4.0, p.column / 8.0);
+    });
   };
   const auto edited = [&](const std::function<void(std::vector<std::string>&)>& edit) {
     auto copy = lines;
@@ -179,22 +196,39 @@ TEST(Correction, WrongFilesAreRefusedAtTheirPlaceAndNothingIsWritten) {
   const std::vector<Wrong> cases = {
       {"", "m.csv:1:1: error: no measured point; one line for each point of inspection.csv is needed"},
       {inspection::inspection_csv(grid),
-       "m.csv:1:1: error: the header is \"zone,flank,row,column,x,y,z,i,j,k\", must be \"zone,flank,row,column,x,y,z,i,j,k,deviation_um\""},
-      {scaled(1 / 25.4, 1), "m.csv:2:9: error: x, y, z are those of the inspection grid, but 25.4 times too small: in inch; mm are needed"},
-      {scaled(25.4, 1), "m.csv:2:9: error: x, y, z are those of the inspection grid, but 25.4 times too large: an inch file was multiplied twice; mm are needed"},
-      {scaled(1e-3, 1), "m.csv:2:9: error: x, y, z are those of the inspection grid, but 1000 times too small: in m; mm are needed"},
-      {scaled(1000, 1), "m.csv:2:9: error: x, y, z are those of the inspection grid, but 1000 times too large: in um; mm are needed"},
+       "m.csv:1:1: error: the header is \"zone,flank,row,column,x,y,z,i,j,k\", must be "
+       "\"zone,flank,row,column,x,y,z,i,j,k,deviation_um\""},
+      {scaled(1 / 25.4, 1),
+       "m.csv:2:9: error: x, y, z are those of the inspection grid, but 25.4 times too small: in inch; mm are needed"},
+      {scaled(25.4, 1),
+       "m.csv:2:9: error: x, y, z are those of the inspection grid, but 25.4 times too large: an inch file was "
+       "multiplied twice; mm are needed"},
+      {scaled(1e-3, 1),
+       "m.csv:2:9: error: x, y, z are those of the inspection grid, but 1000 times too small: in m; mm are needed"},
+      {scaled(1000, 1),
+       "m.csv:2:9: error: x, y, z are those of the inspection grid, but 1000 times too large: in um; mm are needed"},
       {scaled(1, 1e-3), "deviation_um reaches 0.0"},
-      {scaled(1, 1000), "exceeds 500 um: is it in nm (1000 times) or in millionths of an inch (39.37 times)? More than 500 um is no correction"},
-      {edited([](auto& l) { l.erase(l.begin() + 7); }), "m.csv:90:1: error: wrong grid: zone 0, flank 1, row 0, column 6 is missing of 5 rows x 9 columns"},
-      {edited([](auto& l) { std::erase_if(l, [](const std::string& s) { return s.rfind("0,1,4,", 0) == 0 || s.rfind("0,-1,4,", 0) == 0; }); }),
+      {scaled(1, 1000),
+       "exceeds 500 um: is it in nm (1000 times) or in millionths of an inch (39.37 times)? More than 500 um is no "
+       "correction"},
+      {edited([](auto& l) { l.erase(l.begin() + 7); }),
+       "m.csv:90:1: error: wrong grid: zone 0, flank 1, row 0, column 6 is missing of 5 rows x 9 columns"},
+      {edited([](auto& l) {
+         std::erase_if(l, [](const std::string& s) { return s.rfind("0,1,4,", 0) == 0 || s.rfind("0,-1,4,", 0) == 0; });
+       }),
        "error: wrong grid: inspection rows = 4 is outside 5 .. 1000"},
-      {edited([](auto& l) { l.push_back(l[3]); }), "m.csv:92:1: error: zone 0, flank 1, row 0, column 2 stands in line 4 already"},
-      {edited([](auto& l) { l[5] += ",1"; }), "m.csv:6:1: error: 12 columns, must be 11: zone,flank,row,column,x,y,z,i,j,k,deviation_um"},
+      {edited([](auto& l) { l.push_back(l[3]); }),
+       "m.csv:92:1: error: zone 0, flank 1, row 0, column 2 stands in line 4 already"},
+      {edited([](auto& l) { l[5] += ",1"; }),
+       "m.csv:6:1: error: 12 columns, must be 11: zone,flank,row,column,x,y,z,i,j,k,deviation_um"},
       {edited([](auto& l) { l[5].replace(l[5].rfind(','), 9, ",nan"); }), "\"nan\" is no finite number"},
       {edited([](auto& l) { l[5].replace(0, 3, "0,2"); }), "m.csv:6:3: error: flank = 2 must be 1 or -1"},
       {edited([](auto& l) { l[5].replace(0, 1, "1"); }), "error: zone = 1, the gear has zones 0 .. 0"},
-      {edited([](auto& l) { std::swap(l[5], l[6]); l[5].replace(0, 7, "0,1,0,4"); l[6].replace(0, 7, "0,1,0,5"); }),
+      {edited([](auto& l) {
+         std::swap(l[5], l[6]);
+         l[5].replace(0, 7, "0,1,0,4");
+         l[6].replace(0, 7, "0,1,0,5");
+       }),
        "m.csv:6:9: error: zone 0, flank 1, row 0, column 4 lies"},
   };
   for (const auto& wrong : cases) {

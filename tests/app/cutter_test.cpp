@@ -41,7 +41,8 @@ TEST(CutterCommand, DesignsDrawsAndJudges) {
   const std::string out = dir / "out";
   const auto done = run_program({"cutter", kSamples + "/bevel_pinion.toml", "--out", out, "--json"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_EQ(names_in(out), (std::vector<std::string>{"cutter.csv", "cutter.dxf", "cutter.html", "cutter.json", "cutter.svg"}));
+  EXPECT_EQ(names_in(out),
+            (std::vector<std::string>{"cutter.csv", "cutter.dxf", "cutter.html", "cutter.json", "cutter.svg"}));
   const Json report = Json::parse(done.out).at("report");
   EXPECT_EQ(report, Json::parse(file_text(out + "/cutter.json")));
   const Json& designed = report.at("mills").at(0);
@@ -90,7 +91,8 @@ TEST(CutterCommand, DesignsDrawsAndJudges) {
     int joined = 0;
     for (long a = -1; a <= 1; ++a)
       for (long b = -1; b <= 1; ++b)
-        if (const auto found = ends.find({point.first + a, point.second + b}); found != ends.end()) joined += found->second;
+        if (const auto found = ends.find({point.first + a, point.second + b}); found != ends.end())
+          joined += found->second;
     EXPECT_EQ(joined, 2) << point.first << ' ' << point.second;
   }
   EXPECT_LE(report.at("dxf").at("chord_error_um").get<double>(), 0.2);
@@ -142,23 +144,29 @@ TEST(ForcesCommand, BothMembersBothSenses) {
   std::map<std::string, std::map<std::string, const Json*>> pairs;
   for (std::size_t i = 0; i < a.at("cases").size(); ++i) {
     const Json &one = a.at("cases")[i], &two = b.at("cases")[i];
-    EXPECT_NEAR(two.at("F_a_N").get<double>(), 2 * one.at("F_a_N").get<double>(), 1e-6);  // linear in the torque, the option wins
-    const std::string key = one.at("arrangement").get<std::string>() + one.at("load_sharing").get<std::string>() + one.at("part").get<std::string>() + one.at("loaded_wall").get<std::string>();
+    EXPECT_NEAR(two.at("F_a_N").get<double>(), 2 * one.at("F_a_N").get<double>(),
+                1e-6);  // linear in the torque, the option wins
+    const std::string key = one.at("arrangement").get<std::string>() + one.at("load_sharing").get<std::string>() +
+                            one.at("part").get<std::string>() + one.at("loaded_wall").get<std::string>();
     pairs[key][one.at("member").get<std::string>()] = &one;
   }
   // Shaft angle 90 deg: the axial force of one is the radial force of the other.
   for (const auto& [key, members] : pairs) {
     ASSERT_EQ(members.size(), 2u) << key;
-    EXPECT_NEAR(members.at("gear")->at("F_a_N").get<double>(), members.at("mate")->at("F_r_N").get<double>(), 1e-6) << key;
-    EXPECT_NEAR(members.at("gear")->at("F_r_N").get<double>(), members.at("mate")->at("F_a_N").get<double>(), 1e-6) << key;
+    EXPECT_NEAR(members.at("gear")->at("F_a_N").get<double>(), members.at("mate")->at("F_r_N").get<double>(), 1e-6)
+        << key;
+    EXPECT_NEAR(members.at("gear")->at("F_r_N").get<double>(), members.at("mate")->at("F_a_N").get<double>(), 1e-6)
+        << key;
   }
 }
 
 TEST(TraceModelStudy, NumbersOfTheSample) {
   const TestDir dir;
-  const auto done = run_program({"study", "trace-model", kSamples + "/bevel_wheel.toml", "--quick", "--out", dir / "out", "--json"});
+  const auto done =
+      run_program({"study", "trace-model", kSamples + "/bevel_wheel.toml", "--quick", "--out", dir / "out", "--json"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_EQ(names_in(dir / "out"), (std::vector<std::string>{"trace_model.csv", "trace_model.html", "trace_model.json"}));
+  EXPECT_EQ(names_in(dir / "out"),
+            (std::vector<std::string>{"trace_model.csv", "trace_model.html", "trace_model.json"}));
   const Json report = Json::parse(done.out).at("report");
   ASSERT_EQ(report.at("walls").size(), 8u);  // two halves, two walls, two models
   double least = 0;

@@ -1,4 +1,5 @@
-// Rows 9, 26 and 28 of docs/dangers.md, where they are the business of the program around the post: units of a job, times of blocks.
+// Rows 9, 26 and 28 of docs/dangers.md, where they are the business of the program around the post: units of a job,
+// times of blocks.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,15 +12,18 @@
 namespace toothpath {
 namespace {
 
-// There is one unit of length. A job that asks for another is refused at the place where it does: nothing is scaled, so that no angle
-// can be scaled along with a length.
+// There is one unit of length. A job that asks for another is refused at the place where it does: nothing is scaled, so
+// that no angle can be scaled along with a length.
 TEST(DangerUnits, JobsInInchesAreRefused) {
   const std::string good = test::file_text(TOOTHPATH_SOURCE_DIR "/samples/spur_quick.toml");
   ASSERT_TRUE(job::parse_job(good, "j").has_value());
-  const std::pair<std::string, std::string> cases[] = {
-      {"module = 2.0", "module = \"0.0787402 in\""}, {"module = 2.0", "module = 0.0787402in"},   {"teeth = 60", "teeth = 60\nunits = \"inch\""},
-      {"schema = 1", "schema = 1\nunits = \"inch\""}, {"[setup]", "[setup]\nunit = \"inch\""},   {"inner_radius = 60.0", "inner_radius = \"2.36220in\""},
-      {"inner_radius = 60.0", "inner_radius_inch = 2.36220"}};
+  const std::pair<std::string, std::string> cases[] = {{"module = 2.0", "module = \"0.0787402 in\""},
+                                                       {"module = 2.0", "module = 0.0787402in"},
+                                                       {"teeth = 60", "teeth = 60\nunits = \"inch\""},
+                                                       {"schema = 1", "schema = 1\nunits = \"inch\""},
+                                                       {"[setup]", "[setup]\nunit = \"inch\""},
+                                                       {"inner_radius = 60.0", "inner_radius = \"2.36220in\""},
+                                                       {"inner_radius = 60.0", "inner_radius_inch = 2.36220"}};
   for (const auto& [from, to] : cases) {
     const auto read = job::parse_job(test::replaced(good, from, to), "j");
     ASSERT_FALSE(read.has_value()) << to;
@@ -47,7 +51,9 @@ TEST(BlockTimes, HistogramCountsEveryBlock) {
   EXPECT_NEAR(t.least_ms, 1, 1e-9);
   EXPECT_NEAR(t.median_ms, 9.99, 1e-9);
   EXPECT_EQ(std::accumulate(t.counts.begin(), t.counts.end(), std::size_t{0}), 5u);
-  const auto count_at = [&](double ms) { return t.counts.at(static_cast<std::size_t>(std::floor((std::log10(ms) - t.from_log_ms) / t.step_log_ms + 1e-6))); };
+  const auto count_at = [&](double ms) {
+    return t.counts.at(static_cast<std::size_t>(std::floor((std::log10(ms) - t.from_log_ms) / t.step_log_ms + 1e-6)));
+  };
   EXPECT_EQ(count_at(1.05), 2u);
   EXPECT_EQ(count_at(9.0), 1u);
   EXPECT_EQ(count_at(11.0), 1u);

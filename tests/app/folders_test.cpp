@@ -1,5 +1,5 @@
-// The rules of the folders: every file stands in the table of its folder's README, every file named there exists, and no folder includes
-// one that lies above it.
+// The rules of the folders: every file stands in the table of its folder's README, every file named there exists, and
+// no folder includes one that lies above it.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +46,8 @@ std::set<std::string> listed_in(const fs::path& readme) {
     else if (!line.starts_with("|")) inside = false;
     if (!inside) continue;
     const std::string first = line.substr(0, line.find('|', 1));
-    for (auto it = std::sregex_iterator(first.begin(), first.end(), quoted); it != std::sregex_iterator(); ++it) out.insert((*it)[1]);
+    for (auto it = std::sregex_iterator(first.begin(), first.end(), quoted); it != std::sregex_iterator(); ++it)
+      out.insert((*it)[1]);
   }
   return out;
 }
@@ -65,7 +66,8 @@ std::vector<std::string> folders_with_tables() {
   for (const char* top : {"geometry", "cam", "machines", "postproc", "app"}) {
     out.push_back(top);
     for (const auto& entry : fs::recursive_directory_iterator(kRoot / top))
-      if (entry.is_directory() && fs::exists(entry.path() / "README.md")) out.push_back(fs::relative(entry.path(), kRoot).generic_string());
+      if (entry.is_directory() && fs::exists(entry.path() / "README.md"))
+        out.push_back(fs::relative(entry.path(), kRoot).generic_string());
   }
   return out;
 }
@@ -76,10 +78,12 @@ TEST(Folders, TablesListEveryFileAndNoOther) {
     EXPECT_FALSE(entries.empty()) << folder;
     const auto files = sources_of(kRoot / folder);
     for (const auto& file : files)
-      EXPECT_TRUE(std::any_of(entries.begin(), entries.end(), [&](const std::string& e) { return stands_for(e, file); }))
+      EXPECT_TRUE(
+          std::any_of(entries.begin(), entries.end(), [&](const std::string& e) { return stands_for(e, file); }))
           << folder << "/README.md lacks " << file;
     for (const auto& entry : entries)
-      EXPECT_TRUE(fs::exists(kRoot / folder / entry) || std::any_of(files.begin(), files.end(), [&](const fs::path& f) { return stands_for(entry, f); }))
+      EXPECT_TRUE(fs::exists(kRoot / folder / entry) ||
+                  std::any_of(files.begin(), files.end(), [&](const fs::path& f) { return stands_for(entry, f); }))
           << folder << "/README.md names " << entry << ", which is not there";
   }
 }
@@ -100,7 +104,8 @@ std::map<std::string, std::set<std::string>> edges_of_the_plan() {
   for (std::string line; std::getline(in, line);) {
     if (!line.starts_with("| `")) continue;
     std::vector<std::string> names;
-    for (auto it = std::sregex_iterator(line.begin(), line.end(), quoted); it != std::sregex_iterator(); ++it) names.push_back((*it)[1]);
+    for (auto it = std::sregex_iterator(line.begin(), line.end(), quoted); it != std::sregex_iterator(); ++it)
+      names.push_back((*it)[1]);
     out[names.front()] = {names.begin() + 1, names.end()};
   }
   return out;
@@ -151,7 +156,8 @@ TEST(Folders, ARoomIsANamespace) {
   for (const char* top : {"geometry", "cam", "machines", "postproc", "app"})
     for (const auto& entry : fs::recursive_directory_iterator(kRoot / top)) {
       if (!is_source(entry.path())) continue;
-      const std::string room = room_of(fs::relative(entry.path(), kRoot)), name = fs::path(room).filename().string(), text = file_text(entry.path().string());
+      const std::string room = room_of(fs::relative(entry.path(), kRoot)), name = fs::path(room).filename().string(),
+                        text = file_text(entry.path().string());
       if (text.find("namespace toothpath") == std::string::npos || room == "app" || room == "app/base") continue;
       const std::string wanted = room == "geometry/base" ? "namespace toothpath {" : "namespace toothpath::" + name;
       EXPECT_NE(text.find(wanted), std::string::npos) << entry.path() << " is not in " << wanted;

@@ -1,6 +1,7 @@
-// The programs of the samples in every dialect, byte for byte as they stand in tests/golden/samples: each sample's gear and tools with a
-// coarse form of its operations. Long programs are kept folded: the middle as a count of lines and a hash. Every program is also read back
-// and compared with its path. TOOTHPATH_WRITE_GOLDEN=1 writes the files anew: a deliberate act, to be explained in the commit.
+// The programs of the samples in every dialect, byte for byte as they stand in tests/golden/samples: each sample's gear
+// and tools with a coarse form of its operations. Long programs are kept folded: the middle as a count of lines and a
+// hash. Every program is also read back and compared with its path. TOOTHPATH_WRITE_GOLDEN=1 writes the files anew: a
+// deliberate act, to be explained in the commit.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,20 +9,20 @@
 #include <filesystem>
 #include <sstream>
 
+#include "app/job/file.h"
 #include "app/process/bevel/files.h"
 #include "app/process/face/proof.h"
 #include "app/process/face/shaper_setup.h"
 #include "app/process/gear_of_job.h"
 #include "app/process/proof_limits.h"
-#include "app/job/file.h"
+#include "cam/ball/plan.h"
 #include "cam/finger/check.h"
 #include "cam/finger/milling.h"
-#include "cam/ball/plan.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/readback/reader.h"
-#include "postproc/text/writer.h"
 #include "postproc/shaper/control.h"
 #include "postproc/shaper/program.h"
+#include "postproc/text/writer.h"
 #include "tests/support/files.h"
 
 namespace toothpath {
@@ -29,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kWholeBytes = 60000;            // a longer program is folded
+constexpr std::size_t kWholeBytes = 60000;  // a longer program is folded
 constexpr std::size_t kHeadLines = 300, kTailLines = 100;
 constexpr std::uintmax_t kLargestFile = 300'000, kLargestSum = 3'000'000;
 const fs::path kGolden = fs::path(TOOTHPATH_SOURCE_DIR) / "tests/golden/samples";
@@ -48,9 +49,12 @@ struct Form {
   const char* dialect;
   machines::TcpMode tcp;
 };
-constexpr Form kForms[] = {{"linuxcnc.ngc", "linuxcnc", machines::TcpMode::none},        {"fanuc.nc", "fanuc", machines::TcpMode::none},
-                           {"fanuc_tcp.nc", "fanuc", machines::TcpMode::angles},         {"siemens.mpf", "siemens", machines::TcpMode::angles},
-                           {"heidenhain.h.txt", "heidenhain", machines::TcpMode::angles},    {"cutter_location.apt", "apt", machines::TcpMode::vectors},
+constexpr Form kForms[] = {{"linuxcnc.ngc", "linuxcnc", machines::TcpMode::none},
+                           {"fanuc.nc", "fanuc", machines::TcpMode::none},
+                           {"fanuc_tcp.nc", "fanuc", machines::TcpMode::angles},
+                           {"siemens.mpf", "siemens", machines::TcpMode::angles},
+                           {"heidenhain.h.txt", "heidenhain", machines::TcpMode::angles},
+                           {"cutter_location.apt", "apt", machines::TcpMode::vectors},
                            {"mitsubishi_m80.nc", "mitsubishi_m80", machines::TcpMode::none}};
 
 job::Job job_of(const std::string& sample) {
@@ -120,7 +124,8 @@ Planned plan_bevel(const job::Job& job) {
   const finger::FingerGougeCheck gouge(gear, job.tools, job.operations, limits);
   for (std::size_t i = 0; i < job.operations.size(); ++i) {
     const auto& o = job.operations[i];
-    auto plan = finger::plan_finger_operation(gear, job.tools[static_cast<std::size_t>(o.tool)], o, static_cast<int>(i), limits);
+    auto plan = finger::plan_finger_operation(gear, job.tools[static_cast<std::size_t>(o.tool)], o, static_cast<int>(i),
+                                              limits);
     if (!plan) return out.error = plan.error().message, out;
     auto passed = gouge.approve(plan->path);
     if (!passed) return out.error = passed.error().message, out;
@@ -146,7 +151,8 @@ machines::Machine machine_with(const machines::Machine& of_sample, const Form& f
     m.post.tcp_on.clear();
     m.post.tcp_off.clear();
   }
-  if (m.dialect == "heidenhain") m.post.coolant[machines::Coolant::mist] = {"M7", "M9"};  // the control has no word of its own
+  if (m.dialect == "heidenhain")
+    m.post.coolant[machines::Coolant::mist] = {"M7", "M9"};  // the control has no word of its own
   return m;
 }
 
@@ -169,7 +175,8 @@ std::string folded(const std::string& text) {
     }
     for (const char c : lines[i]) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
     if (i + kTailLines + 1 == lines.size())
-      out += fmt::format("..... {} lines are left out here, FNV-1a {:016X} .....\n", lines.size() - kHeadLines - kTailLines, hash);
+      out += fmt::format("..... {} lines are left out here, FNV-1a {:016X} .....\n",
+                         lines.size() - kHeadLines - kTailLines, hash);
   }
   return out;
 }
@@ -194,7 +201,8 @@ void expect_golden(const fs::path& file, const std::string& text) {
 }
 
 /// The program meets its path: records to the rounding of the words, rapids clear of the blank.
-void expect_round_trip(const std::string& text, const joints::AxisProgram& program, const Planned& planned, const job::Job& job, const machines::Machine& m) {
+void expect_round_trip(const std::string& text, const joints::AxisProgram& program, const Planned& planned,
+                       const job::Job& job, const machines::Machine& m) {
   const auto control = controls::control_of(m, *job.setup, job.tools);
   ASSERT_TRUE(control);
   const auto back = readback::read_back(text, "p", *control, m, *job.setup, {.teeth = planned.teeth});
@@ -205,7 +213,8 @@ void expect_round_trip(const std::string& text, const joints::AxisProgram& progr
     const auto part = readback::tool_motions(trace, back->copies, *control, m, *job.setup, planned.teeth, {1e-4, 1e-4});
     ASSERT_TRUE(part) << part.error().text();
     motions.insert(motions.end(), part->begin(), part->end());
-    if (job.bevel_gear() != nullptr) continue;  // its rapids pass beside the cone, inside that cylinder: judged by the finger check
+    if (job.bevel_gear() != nullptr)
+      continue;  // its rapids pass beside the cone, inside that cylinder: judged by the finger check
     const auto clear = readback::check_rapids(trace, *control, m, *job.setup, planned.body);
     EXPECT_TRUE(clear) << (clear ? "" : clear.error().message);
   }
@@ -224,12 +233,13 @@ void expect_round_trip(const std::string& text, const joints::AxisProgram& progr
 }
 
 class GoldenPrograms : public testing::TestWithParam<Coarse> {};
-INSTANTIATE_TEST_SUITE_P(Samples, GoldenPrograms,
-                         testing::Values(Coarse{"dhfg_paper", {0, 3}, 5, 3, 0.08, 0, 4}, Coarse{"dhfg_t600s", {0, 3}, 1.2, 0.8, 0.02, 0, 3},
-                                         Coarse{"offset_milled", {0}, 0, 0, 0.05, 0, 3}, Coarse{"short_tool", {0, 1}, 4, 1.8, 0.3, 0, 3},
-                                         Coarse{"spur_quick", {0, 1}, 2, 0.9, 0.06, 0, 3}, Coarse{"bevel_pinion", {0, 1}, 0, 0, 0, 1.0, 3},
-                                         Coarse{"bevel_wheel", {0, 1}, 0, 0, 0, 1.0, 3}, Coarse{"bevel_trunnion", {0, 1}, 0, 0, 0, 0.3, 3}),
-                         [](const auto& c) { return std::string(c.param.sample); });
+INSTANTIATE_TEST_SUITE_P(
+    Samples, GoldenPrograms,
+    testing::Values(Coarse{"dhfg_paper", {0, 3}, 5, 3, 0.08, 0, 4}, Coarse{"dhfg_t600s", {0, 3}, 1.2, 0.8, 0.02, 0, 3},
+                    Coarse{"offset_milled", {0}, 0, 0, 0.05, 0, 3}, Coarse{"short_tool", {0, 1}, 4, 1.8, 0.3, 0, 3},
+                    Coarse{"spur_quick", {0, 1}, 2, 0.9, 0.06, 0, 3}, Coarse{"bevel_pinion", {0, 1}, 0, 0, 0, 1.0, 3},
+                    Coarse{"bevel_wheel", {0, 1}, 0, 0, 0, 1.0, 3}, Coarse{"bevel_trunnion", {0, 1}, 0, 0, 0, 0.3, 3}),
+    [](const auto& c) { return std::string(c.param.sample); });
 
 TEST_P(GoldenPrograms, ByteForByteAndOnTheirPath) {
   const Coarse& c = GetParam();
@@ -244,7 +254,8 @@ TEST_P(GoldenPrograms, ByteForByteAndOnTheirPath) {
     const machines::Machine m = machine_with(loaded.value(), form, c.fanuc_decimals);
     const auto dialect = controls::dialect_of(m);
     ASSERT_TRUE(dialect) << dialect.error().message;
-    const auto program = joints::build_axis_program(planned.checked, job.tools, *job.setup, m, planned.teeth, planned.body, controls::axis_options(*dialect, m));
+    const auto program = joints::build_axis_program(planned.checked, job.tools, *job.setup, m, planned.teeth,
+                                                    planned.body, controls::axis_options(*dialect, m));
     if (!program) {  // the control cannot do it: why, word for word
       expect_golden(kGolden / c.sample / (std::string(form.file) + ".refused"), program.error().message + "\n");
       continue;
@@ -291,7 +302,8 @@ TEST(GoldenFolder, IsSmallAndExplained) {
       EXPECT_LE(file.file_size(), kLargestFile) << file.path();
       const std::string name = file.path().filename().string();
       if (name != "README.md") {
-        EXPECT_NE(readme.find("`" + name + "`"), std::string::npos) << sample.path().filename() << "/README.md says nothing of " << name;
+        EXPECT_NE(readme.find("`" + name + "`"), std::string::npos)
+            << sample.path().filename() << "/README.md says nothing of " << name;
       }
     }
   }

@@ -114,7 +114,8 @@ TEST(JobFile, KeysKeepTheirPlace) {
   const auto position = job.where("gear.zone[1].inner_radius");
   EXPECT_EQ(position.line, wanted);
   EXPECT_EQ(position.column, 16);
-  EXPECT_EQ(job.where("operation[2].climb").line, job.where("operation[2]").line) << "an absent key is located at its table";
+  EXPECT_EQ(job.where("operation[2].climb").line, job.where("operation[2]").line)
+      << "an absent key is located at its table";
   EXPECT_EQ(job.where("nowhere").line, 1) << "what belongs to no table is located at the file";
 }
 
@@ -133,7 +134,8 @@ TEST(JobFile, EveryFindingIsReportedInTheOrderOfTheFile) {
 }
 
 TEST(JobFile, NegativeZeroIsZero) {
-  const auto result = job::parse_job(replaced(file_text(kSamples + "/spur_quick.toml"), "helix_angle = 0.0", "helix_angle = -0.0"), "j.toml");
+  const auto result = job::parse_job(
+      replaced(file_text(kSamples + "/spur_quick.toml"), "helix_angle = 0.0", "helix_angle = -0.0"), "j.toml");
   ASSERT_TRUE(result.has_value());
   EXPECT_FALSE(std::signbit(result.value().face_gear()->zones[0].helix_angle_rad));
 }
@@ -154,7 +156,8 @@ TEST(JobFile, BytesThatAreNoJobAreRefused) {
   std::string cr = text;
   for (char& c : cr)
     if (c == '\n') c = '\r';
-  for (const auto& bad : {std::string(), utf16, "\xFF\xFE" + utf16, cr, text + '\0', text + "\xFF", text + "# \xE9\n", std::string(1000, '\x01')})
+  for (const auto& bad : {std::string(), utf16, "\xFF\xFE" + utf16, cr, text + '\0', text + "\xFF", text + "# \xE9\n",
+                          std::string(1000, '\x01')})
     EXPECT_FALSE(errors_of(bad).empty());
 }
 

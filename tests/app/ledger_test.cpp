@@ -24,9 +24,11 @@ TEST_P(Ledger, CoversWhatIsMeasured) {
   ASSERT_TRUE(outcome.errors.empty()) << outcome.errors.front().message;
   const auto report = nlohmann::json::parse(outcome.report_json);
   std::filesystem::remove_all(out);
-  // The tools of the samples reach all of their gears: no remark beside the verdict, and no warning of a corner 0.000 mm high.
+  // The tools of the samples reach all of their gears: no remark beside the verdict, and no warning of a corner 0.000
+  // mm high.
   EXPECT_EQ(report["verdict"], "verified");
-  for (const auto& warning : report["warnings"]) EXPECT_EQ(warning.get<std::string>().find("finishing ball"), std::string::npos) << warning;
+  for (const auto& warning : report["warnings"])
+    EXPECT_EQ(warning.get<std::string>().find("finishing ball"), std::string::npos) << warning;
   double sum = 0;
   for (const auto& [source, entry] : report["ledger"].items()) {
     ASSERT_TRUE(entry["predicted"].is_number()) << source;
@@ -37,7 +39,8 @@ TEST_P(Ledger, CoversWhatIsMeasured) {
     EXPECT_LE(entry["measured"].get<double>(), entry["predicted"].get<double>()) << source << ": " << entry["note"];
     if (source != "ridge") sum += entry["predicted"].get<double>();
   }
-  for (const char* source : {"flank solve", "chord", "orientation", "axis linearisation", "rounding", "path blending", "verification"})
+  for (const char* source :
+       {"flank solve", "chord", "orientation", "axis linearisation", "rounding", "path blending", "verification"})
     EXPECT_TRUE(report["ledger"].contains(source)) << source;
   const auto& finished = report["excess_um"]["finished"];
   EXPECT_GE(sum, report["gouge_um"]["measured"].get<double>()) << "gouge";
@@ -45,8 +48,9 @@ TEST_P(Ledger, CoversWhatIsMeasured) {
   EXPECT_GE(sum, finished["max"].get<double>()) << "left material";
 }
 
-INSTANTIATE_TEST_SUITE_P(Samples, Ledger, testing::Values("spur_quick", "offset_milled", "dhfg_t600s", "dhfg_paper", "short_tool", "bevel_pinion", "bevel_trunnion",
-                                                             "bevel_wheel", "tool_axis"),
+INSTANTIATE_TEST_SUITE_P(Samples, Ledger,
+                         testing::Values("spur_quick", "offset_milled", "dhfg_t600s", "dhfg_paper", "short_tool",
+                                         "bevel_pinion", "bevel_trunnion", "bevel_wheel", "tool_axis"),
                          [](const auto& c) { return std::string(c.param); });
 
 }  // namespace

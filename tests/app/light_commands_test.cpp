@@ -1,4 +1,5 @@
-// `surface` and `shaper` do nothing that they do not need: the stages that ran, and no spatial index was built in this process.
+// `surface` and `shaper` do nothing that they do not need: the stages that ran, and no spatial index was built in this
+// process.
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -39,13 +40,15 @@ TEST(LightCommands, ShaperPlansNoPathAndBuildsNoMesh) {
   const auto before = analytic::SpatialIndex::built();
   const auto outcome = commands::run_shaper(request_for(kSamples + "/offset_shaped.toml", dir / "out"));
   ASSERT_EQ(outcome.exit_code, app::ExitCode::ok) << to_text(outcome.errors);
-  EXPECT_EQ(stages_of(outcome), (std::set<std::string>{"job", "gear", "machine", "shaper set-up", "stroke simulation", "shaper program"}));
+  EXPECT_EQ(stages_of(outcome),
+            (std::set<std::string>{"job", "gear", "machine", "shaper set-up", "stroke simulation", "shaper program"}));
   EXPECT_EQ(analytic::SpatialIndex::built(), before);
 }
 
 /// The same job on the two shapers with an electronic gearbox: program by dialect, read back before it is kept.
 TEST(LightCommands, ShaperWithElectronicGearboxReadsItsProgramBack) {
-  for (const auto& [machine, program] : {std::pair{"shaper_siemens.toml", "shaper_program.mpf"}, std::pair{"shaper_fanuc.toml", "shaper_program.nc"}}) {
+  for (const auto& [machine, program] :
+       {std::pair{"shaper_siemens.toml", "shaper_program.mpf"}, std::pair{"shaper_fanuc.toml", "shaper_program.nc"}}) {
     const TestDir dir;
     std::string job = file_text(kSamples + "/offset_shaped.toml");
     job.replace(job.find("y514.toml"), 9, machine);
@@ -53,7 +56,8 @@ TEST(LightCommands, ShaperWithElectronicGearboxReadsItsProgramBack) {
     const auto outcome = commands::run_shaper(request_for(dir / "job.toml", dir / "out"));
     ASSERT_EQ(outcome.exit_code, app::ExitCode::ok) << to_text(outcome.errors);
     EXPECT_TRUE(stages_of(outcome).count("read back"));
-    EXPECT_EQ(names_in(dir / "out"), (std::vector<std::string>{"limits.json", "report.json", "shaper.html", "shaper.json", program}));
+    EXPECT_EQ(names_in(dir / "out"),
+              (std::vector<std::string>{"limits.json", "report.json", "shaper.html", "shaper.json", program}));
     const auto json = nlohmann::json::parse(file_text(dir / "out/shaper.json"));
     EXPECT_EQ(json["generating"]["ratio"], nlohmann::json::array({25, 88}));
     EXPECT_EQ(json["assumed"].size(), 3u);

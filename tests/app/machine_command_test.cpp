@@ -1,4 +1,5 @@
-// What `machine show` says of the senses is what the kinematics do; every shipped machine is shown, wrong files are refused.
+// What `machine show` says of the senses is what the kinematics do; every shipped machine is shown, wrong files are
+// refused.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -10,10 +11,13 @@
 namespace toothpath::test {
 namespace {
 
-const std::vector<std::string> kShipped = {"t600s.toml",       "xyzac_large.toml", "xyzac_trt.toml", "xyzbc_trt.toml", "head_table_bc.toml",
-                                           "head_head_ca.toml", "fanuc_ac.toml",    "siemens_ac.toml", "heidenhain_ac.toml"};
+const std::vector<std::string> kShipped = {"t600s.toml",     "xyzac_large.toml",   "xyzac_trt.toml",
+                                           "xyzbc_trt.toml", "head_table_bc.toml", "head_head_ca.toml",
+                                           "fanuc_ac.toml",  "siemens_ac.toml",    "heidenhain_ac.toml"};
 
-machines::Machine shipped(const std::string& name) { return *machines::read_machine_file(machines::find_machine_file(name, ".").value()).machine; }
+machines::Machine shipped(const std::string& name) {
+  return *machines::read_machine_file(machines::find_machine_file(name, ".").value()).machine;
+}
 
 // The words of the table against the motion of a point: 1 degree more of one axis, all others at zero.
 TEST(MachineShow, SensesAreThoseOfTheKinematics) {
@@ -36,9 +40,12 @@ TEST(MachineShow, SensesAreThoseOfTheKinematics) {
         const struct {
           const char* words;
           double motion;
-        } senses[] = {{"Y+ side up", moved(Vec3::UnitY()).z()},   {"Y+ side down", -moved(Vec3::UnitY()).z()},
-                      {"X+ side up", moved(Vec3::UnitX()).z()},   {"X+ side down", -moved(Vec3::UnitX()).z()},
-                      {"table counter-clockwise", moved(Vec3::UnitX()).y()}, {"table clockwise", -moved(Vec3::UnitX()).y()}};
+        } senses[] = {{"Y+ side up", moved(Vec3::UnitY()).z()},
+                      {"Y+ side down", -moved(Vec3::UnitY()).z()},
+                      {"X+ side up", moved(Vec3::UnitX()).z()},
+                      {"X+ side down", -moved(Vec3::UnitX()).z()},
+                      {"table counter-clockwise", moved(Vec3::UnitX()).y()},
+                      {"table clockwise", -moved(Vec3::UnitX()).y()}};
         int matched = 0;
         for (const auto& sense : senses) {
           if (said.find(sense.words) == std::string::npos) continue;
@@ -68,8 +75,11 @@ TEST(MachineShow, EveryAssumedKeyIsNamed) {
   for (const auto& name : kShipped) {
     const machines::Machine m = shipped(name);
     const std::string text = sheet::machine_text(m);
-    EXPECT_NE(text.find(m.assumed_keys.empty() ? "No value is assumed" : std::to_string(m.assumed_keys.size()) + " values are assumed"), std::string::npos);
-    for (const auto& key : m.assumed_keys) EXPECT_NE(text.find(key.substr(key.rfind('.') + 1)), std::string::npos) << key;
+    EXPECT_NE(text.find(m.assumed_keys.empty() ? "No value is assumed"
+                                               : std::to_string(m.assumed_keys.size()) + " values are assumed"),
+              std::string::npos);
+    for (const auto& key : m.assumed_keys)
+      EXPECT_NE(text.find(key.substr(key.rfind('.') + 1)), std::string::npos) << key;
   }
 }
 
@@ -93,13 +103,16 @@ TEST(MachineShow, WritesPageAndDrawingOnlyWhereAsked) {
 TEST(MachineList, EveryInstalledMachineHasItsLine) {
   const Finished run = run_program({"machine", "list"});
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(static_cast<std::size_t>(std::count(run.out.begin(), run.out.end(), '\n')), machines::installed_machines().size() + 1) << run.out;
+  EXPECT_EQ(static_cast<std::size_t>(std::count(run.out.begin(), run.out.end(), '\n')),
+            machines::installed_machines().size() + 1)
+      << run.out;
   for (const auto& name : kShipped) {
     const machines::Machine m = shipped(name);
     const auto at = run.out.find(name);
     ASSERT_NE(at, std::string::npos) << name;
     const std::string line = run.out.substr(at, run.out.find('\n', at) - at);
-    for (const std::string& word : {m.name, m.dialect, m.assumed_keys.empty() ? std::string("-") : std::to_string(m.assumed_keys.size())})
+    for (const std::string& word :
+         {m.name, m.dialect, m.assumed_keys.empty() ? std::string("-") : std::to_string(m.assumed_keys.size())})
       EXPECT_NE(line.find(word), std::string::npos) << line;
   }
   const auto json = nlohmann::json::parse(run_program({"machine", "list", "--json"}).out);
@@ -119,7 +132,9 @@ TEST(MachineTest, WritesAProvenProgramForEveryShippedMachine) {
     EXPECT_TRUE(files[1].starts_with("machine_test.")) << files[1];
     EXPECT_NE(run.out.find("read back"), std::string::npos);
     if (!shipped(name).assumed_keys.empty()) {
-      EXPECT_NE((file_text(dir / ("t/" + files[0])) + file_text(dir / ("t/" + files[1]))).find("ASSUMED"), std::string::npos) << name;
+      EXPECT_NE((file_text(dir / ("t/" + files[0])) + file_text(dir / ("t/" + files[1]))).find("ASSUMED"),
+                std::string::npos)
+          << name;
     }
   }
 }
@@ -127,7 +142,8 @@ TEST(MachineTest, WritesAProvenProgramForEveryShippedMachine) {
 // A page that stands there stays until there is a new one, and the refusal says what stands there.
 TEST(MachineShow, RefusalsLeaveTheOldFiles) {
   const TestDir dir;
-  const std::string machine = dir / "m.toml", good = file_text(machines::find_machine_file("xyzac_trt.toml", ".").value());
+  const std::string machine = dir / "m.toml",
+                    good = file_text(machines::find_machine_file("xyzac_trt.toml", ".").value());
   write_file(machine, good);
   ASSERT_EQ(run_program({"machine", "show", machine, "--out", dir / "out"}).exit_code, 0);
   const std::string page = file_text(dir / "out/machine.html");

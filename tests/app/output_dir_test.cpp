@@ -71,7 +71,8 @@ std::string finished_run(const TestDir& dir) {
   const std::string out = dir / "out";
   std::filesystem::create_directories(out);
   write_file(out + "/program.ngc", "G1");
-  write_file(out + "/report.json", R"({"command":"run","job":"bad\u001bname","program":{"file":"program.ngc","sha256":"0123456789abcdef"}})");
+  write_file(out + "/report.json",
+             R"({"command":"run","job":"bad\u001bname","program":{"file":"program.ngc","sha256":"0123456789abcdef"}})");
   write_file(out + "/my notes.txt", "mine");
   return out;
 }
@@ -94,11 +95,14 @@ TEST(OutputDir, EarlierResultsMoveAsideOneGeneration) {
   {
     auto output = app::OutputDir::open(out, kRun, {}, app::kPrevious);
     ASSERT_TRUE(output && output->set_aside());
-    EXPECT_EQ(names_in(out), (std::vector<std::string>{".toothpath-lock", "my notes.txt", "previous"})) << "before anything is written";
+    EXPECT_EQ(names_in(out), (std::vector<std::string>{".toothpath-lock", "my notes.txt", "previous"}))
+        << "before anything is written";
   }
-  EXPECT_EQ(names_in(out), (std::vector<std::string>{"my notes.txt", "previous"})) << "a run that writes nothing puts nothing back";
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"my notes.txt", "previous"}))
+      << "a run that writes nothing puts nothing back";
   EXPECT_EQ(names_in(out + "/previous"), (std::vector<std::string>{"program.ngc", "report.json"}));
-  EXPECT_TRUE(app::OutputDir::closing_note().starts_with("what stood in " + out + " is in " + out + "/previous: run")) << app::OutputDir::closing_note();
+  EXPECT_TRUE(app::OutputDir::closing_note().starts_with("what stood in " + out + " is in " + out + "/previous: run"))
+      << app::OutputDir::closing_note();
   {  // nothing stands there: the folder keeps what it has
     auto output = app::OutputDir::open(out, kRun, {}, app::kPrevious);
     ASSERT_TRUE(output && output->set_aside() && output->write("report.json", "unverified") && output->commit());
@@ -109,13 +113,15 @@ TEST(OutputDir, EarlierResultsMoveAsideOneGeneration) {
     EXPECT_EQ(file_text(out + "/report.json"), "unverified");
     ASSERT_TRUE(output->write("program.nc", "G2") && output->write("setup.html", "sheet") && output->commit());
   }
-  EXPECT_EQ(names_in(out), (std::vector<std::string>{"my notes.txt", "previous", "program.nc", "setup.html"})) << "the old report gave way";
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"my notes.txt", "previous", "program.nc", "setup.html"}))
+      << "the old report gave way";
   EXPECT_EQ(file_text(out + "/previous/program.ngc"), "G1");
   {
     auto output = app::OutputDir::open(out, kRun, {}, app::kPrevious);
     ASSERT_TRUE(output && output->set_aside());
   }
-  EXPECT_EQ(names_in(out + "/previous"), (std::vector<std::string>{"program.nc", "setup.html"})) << "no mix of two generations";
+  EXPECT_EQ(names_in(out + "/previous"), (std::vector<std::string>{"program.nc", "setup.html"}))
+      << "no mix of two generations";
 }
 
 TEST(OutputDir, PreviousMustBeAFolderThatCanBeWritten) {
@@ -136,7 +142,8 @@ TEST(OutputDir, PreviousMustBeAFolderThatCanBeWritten) {
   const TestDir dir;
   const std::string out = finished_run(dir);
   std::filesystem::create_directories(out + "/previous");
-  std::filesystem::permissions(out + "/previous", std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
+  std::filesystem::permissions(out + "/previous",
+                               std::filesystem::perms::owner_read | std::filesystem::perms::owner_exec);
   EXPECT_FALSE(app::OutputDir::open(out, kRun, {}, app::kPrevious));
   std::filesystem::permissions(out + "/previous", std::filesystem::perms::owner_all);
 }
@@ -163,7 +170,8 @@ TEST(OutputDir, AnInputThatWouldBeReplacedIsRefused) {
   std::filesystem::create_directories(out + "/previous");
   write_file(out + "/previous/report.json", "old");
   std::filesystem::create_symlink(out + "/report.json", dir / "link");
-  for (const std::string& input : {out + "/report.json", out + "/../out/program.ngc", dir / "link", out + "/previous/report.json"}) {
+  for (const std::string& input :
+       {out + "/report.json", out + "/../out/program.ngc", dir / "link", out + "/previous/report.json"}) {
     const auto refused = app::OutputDir::open(out, kRun, {"missing", input}, app::kPrevious);
     ASSERT_FALSE(refused) << input;
     EXPECT_EQ(refused.error().kind, DiagnosticKind::usage);

@@ -1,5 +1,6 @@
-// Dangers 24 and 29: every call that writes fails in turn, bytes change on the way to the disk, and the process is killed at random
-// moments. Under a final name there is never anything but the whole file. The calls are wrapped by the linker (--wrap).
+// Dangers 24 and 29: every call that writes fails in turn, bytes change on the way to the disk, and the process is
+// killed at random moments. Under a final name there is never anything but the whole file. The calls are wrapped by the
+// linker (--wrap).
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -28,10 +29,10 @@ struct Fault {
   bool armed = false;
   int at = 0, seen = 0;
   int error = ENOSPC;
-  bool half = false;     ///< a write that fails has written half of its bytes before
-  bool damage = false;   ///< instead: a rename gives the file another byte
+  bool half = false;    ///< a write that fails has written half of its bytes before
+  bool damage = false;  ///< instead: a rename gives the file another byte
   bool fired = false;
-  bool kill = false;     ///< instead of failing: the process is killed before the call
+  bool kill = false;  ///< instead of failing: the process is killed before the call
 };
 Fault fault;
 
@@ -137,7 +138,8 @@ std::string content_of(const std::string& name, int version, std::size_t bytes =
 
 const std::vector<std::string> kOwn = {"program.", "report.json", "setup.html"};
 
-/// A run: what an earlier one left moves aside (`aside`) or is replaced, the files are written, the program read back, all named.
+/// A run: what an earlier one left moves aside (`aside`) or is replaced, the files are written, the program read back,
+/// all named.
 Status session(const std::string& path, int version, bool aside, std::size_t bytes = 30'000) {
   auto output = app::OutputDir::open(path, kOwn, {}, "previous");
   if (!output) return output.error();
@@ -165,7 +167,8 @@ Status faulty_session(const std::string& path, int version, bool aside, Fault f)
   return result;
 }
 
-/// Version of the whole set whose names begin with `folder`; 0: none of them is there; -1: a part of one, or parts of two.
+/// Version of the whole set whose names begin with `folder`; 0: none of them is there; -1: a part of one, or parts of
+/// two.
 int version_in(const std::map<std::string, std::string>& files, const std::string& folder) {
   int version = -2;
   for (const auto& name : kNames) {
@@ -193,15 +196,21 @@ void two_generations(const std::string& path) {
   for (const char* folder : {"/", "/previous/"}) std::ofstream(path + folder + kMine) << "mine";
 }
 
-/// What may stand there after a run of version 3 was stopped somewhere: every set whole, none lost but the oldest, and that only for a newer one.
+/// What may stand there after a run of version 3 was stopped somewhere: every set whole, none lost but the oldest, and
+/// that only for a newer one.
 void expect_nothing_lost(const Place& place, bool aside, const std::string& when) {
   const auto files = place.files();
   const std::pair<int, int> now = {version_in(files, ""), version_in(files, "previous/")};
-  const std::vector<std::pair<int, int>> allowed = aside ? std::vector<std::pair<int, int>>{{2, 1}, {0, 2}, {3, 2}} : std::vector<std::pair<int, int>>{{2, 1}, {3, 1}};
-  EXPECT_NE(std::find(allowed.begin(), allowed.end(), now), allowed.end()) << when << ": version " << now.first << ", previous " << now.second;
+  const std::vector<std::pair<int, int>> allowed = aside ? std::vector<std::pair<int, int>>{{2, 1}, {0, 2}, {3, 2}}
+                                                         : std::vector<std::pair<int, int>>{{2, 1}, {3, 1}};
+  EXPECT_NE(std::find(allowed.begin(), allowed.end(), now), allowed.end())
+      << when << ": version " << now.first << ", previous " << now.second;
   EXPECT_EQ(files.count(kMine), 1u) << when;
   // On its way from one "previous" to the next it may lie hidden until the directory is opened again; it is never lost.
-  EXPECT_EQ(files.count(std::string("previous/") + kMine) + files.count(std::string(".toothpath-older-previous/") + kMine), 1u) << when;
+  EXPECT_EQ(
+      files.count(std::string("previous/") + kMine) + files.count(std::string(".toothpath-older-previous/") + kMine),
+      1u)
+      << when;
 }
 
 /// Hidden files and folders but temporary ones, which name the process that wrote them.
@@ -223,7 +232,15 @@ TEST(OutputFaults, EveryCallFailsInTurn) {
       for (;; ++n) {
         two_generations(place.path());
         const std::string when = fmt::format("call {} error {} aside {}", n, error, aside);
-        const Status result = faulty_session(place.path(), 3, aside, {.armed = true, .at = n, .seen = 0, .error = error, .half = half, .damage = false, .fired = false, .kill = false});
+        const Status result = faulty_session(place.path(), 3, aside,
+                                             {.armed = true,
+                                              .at = n,
+                                              .seen = 0,
+                                              .error = error,
+                                              .half = half,
+                                              .damage = false,
+                                              .fired = false,
+                                              .kill = false});
         if (!fault.fired) {
           EXPECT_TRUE(result);
           break;
@@ -247,17 +264,21 @@ TEST(OutputFaults, EveryCallFailsInTurn) {
     }
 }
 
-// Danger 29: what lies under the final name is compared with what was written, after the rename; what stood there comes back.
+// Danger 29: what lies under the final name is compared with what was written, after the rename; what stood there comes
+// back.
 TEST(OutputFaults, BytesThatChangeAtTheRenameAreFound) {
   int found = 0;
   for (int n = 1; n <= 12; ++n) {
     const Place place;
     for (const auto& name : kNames) std::ofstream(place.path() + "/" + name) << content_of(name, 1, 300);
-    const Status result = faulty_session(place.path(), 3, false, {.armed = true, .at = n, .seen = 0, .error = 0, .half = false, .damage = true, .fired = false, .kill = false});
+    const Status result = faulty_session(
+        place.path(), 3, false,
+        {.armed = true, .at = n, .seen = 0, .error = 0, .half = false, .damage = true, .fired = false, .kill = false});
     if (result) continue;  // a rename of an old file or of a mark
     ++found;
     EXPECT_EQ(result.error().kind, DiagnosticKind::file_access);
-    EXPECT_EQ(result.error().message, "the file on the disk differs from what was written; all files of this run are removed");
+    EXPECT_EQ(result.error().message,
+              "the file on the disk differs from what was written; all files of this run are removed");
     EXPECT_EQ(version_in(place.files(), ""), 1) << n;
     EXPECT_TRUE(marks_in(place.path()).empty());
   }
@@ -269,7 +290,8 @@ template <typename Work>
 bool killed_at(int n, Work work) {
   const pid_t child = ::fork();
   if (child == 0) {
-    fault = {.armed = true, .at = n, .seen = 0, .error = 0, .half = false, .damage = false, .fired = false, .kill = true};
+    fault = {
+        .armed = true, .at = n, .seen = 0, .error = 0, .half = false, .damage = false, .fired = false, .kill = true};
     work();
     ::_exit(0);
   }
@@ -278,7 +300,8 @@ bool killed_at(int n, Work work) {
   return WIFSIGNALED(status);
 }
 
-/// While nobody has put it in order: where a program stands, all the rest of its set does, and what stands in "previous" is one set.
+/// While nobody has put it in order: where a program stands, all the rest of its set does, and what stands in
+/// "previous" is one set.
 void expect_no_part(const Place& place, const std::string& when) {
   const auto files = place.files();
   if (files.count("program.ngc")) { EXPECT_GT(version_in(files, ""), 0) << when; }
@@ -302,7 +325,8 @@ TEST(OutputFaults, KilledAtEveryCall) {
       }
       expect_nothing_lost(place, aside, fmt::format("killed at {}, aside {}", n, aside));
       EXPECT_TRUE(marks_in(place.path()).empty()) << n;
-      EXPECT_EQ(place.files().size(), (version_in(place.files(), "") > 0 ? 2 : 1) * kNames.size() + 2) << n << ": temporary files are gone";
+      EXPECT_EQ(place.files().size(), (version_in(place.files(), "") > 0 ? 2 : 1) * kNames.size() + 2)
+          << n << ": temporary files are gone";
     }
     EXPECT_GT(n, aside ? 45 : 30);
     EXPECT_GT(marked, 10);
@@ -316,7 +340,8 @@ TEST(OutputFaults, KilledAtRandomMoments) {
   // How long a run takes here decides when to kill.
   const auto begin = std::chrono::steady_clock::now();
   ASSERT_TRUE(session(place.path(), 0, true));
-  const auto micros = std::max<long>(1000, std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - begin).count());
+  const auto micros = std::max<long>(
+      1000, std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::steady_clock::now() - begin).count());
   int whole = 0, killed = 0;
   for (int trial = 1; trial <= 20; ++trial) {
     const pid_t child = ::fork();
@@ -333,7 +358,8 @@ TEST(OutputFaults, KilledAtRandomMoments) {
       if (path.starts_with(".toothpath-")) continue;
       ++whole;
       const std::string name = fs::path(path).filename().string();
-      ASSERT_TRUE(bytes == content_of(name, trial) || bytes == content_of(name, trial - 1) || bytes == content_of(name, std::max(0, trial - 2)))
+      ASSERT_TRUE(bytes == content_of(name, trial) || bytes == content_of(name, trial - 1) ||
+                  bytes == content_of(name, std::max(0, trial - 2)))
           << trial << " " << path << " of " << bytes.size() << " bytes";
     }
     // The version before stands for the next trial, and nothing else.
@@ -344,7 +370,8 @@ TEST(OutputFaults, KilledAtRandomMoments) {
   EXPECT_GT(whole, 0);
 }
 
-// What may stand in the place of an output: a file that may not be written, a link into nowhere, a link to somebody's file.
+// What may stand in the place of an output: a file that may not be written, a link into nowhere, a link to somebody's
+// file.
 TEST(OutputFaults, WhatStandsInThePlaceOfAnOutput) {
   const Place place;
   const std::string program = place.path() + "/program.ngc", report = place.path() + "/report.json";

@@ -1,5 +1,5 @@
-// Whole runs whose prescribed tool axis comes to the pole of C: every option of `[program] pole`, from the job to the proven bytes, and those
-// bytes against the planned path by kinematics of their own.
+// Whole runs whose prescribed tool axis comes to the pole of C: every option of `[program] pole`, from the job to the
+// proven bytes, and those bytes against the planned path by kinematics of their own.
 #include <nlohmann/json.hpp>
 
 #include <cstdlib>
@@ -11,8 +11,8 @@ namespace toothpath::test {
 namespace {
 
 using Json = nlohmann::json;
-// The ball centre: the tip inside a block (0.5 um) and the axis there (0.001 rad at the ball radius of 0.5 mm), the rounding of words (0.09 um), and
-// the sag between two records of the plan whose axis turns (0.12 um).
+// The ball centre: the tip inside a block (0.5 um) and the axis there (0.001 rad at the ball radius of 0.5 mm), the
+// rounding of words (0.09 um), and the sag between two records of the plan whose axis turns (0.12 um).
 constexpr double kCentreBound = 5e-4 + 1e-3 * kBall + 9e-5 + 1.2e-4;
 
 struct PoleRun {
@@ -34,7 +34,8 @@ PoleRun run_pole(const TestDir& dir, const PoleJob& job, const std::string& exte
 
 /// The feeds of tooth 0 at five places each, against the plan.
 struct Sampled {
-  double centre_mm = 0, axis_rad = 0, c_speed = 0, c_turn = 0, a_least = INFINITY, a_greatest = -INFINITY, nearest_pole = INFINITY, minutes = 0;
+  double centre_mm = 0, axis_rad = 0, c_speed = 0, c_turn = 0, a_least = INFINITY, a_greatest = -INFINITY,
+         nearest_pole = INFINITY, minutes = 0;
   std::size_t away = 0;  ///< motions off the plan
 };
 Sampled sampled(const PoleRun& r) {
@@ -69,9 +70,12 @@ Sampled sampled(const PoleRun& r) {
 }
 
 void print(const char* name, const PoleRun& r, const Sampled& s) {
-  std::printf("%-22s gouge %.3f um, bound %.3f um, %.2f min, C at most %.0f deg/min, %.1f deg a tooth, centre within %.3f um, axis within %.4f deg, pole at %.4f deg\n", name,
-              r.report["gouge_um"]["measured"].get<double>(), r.report["gouge_um"]["bound"].get<double>(), r.report["cutting_minutes"].get<double>(), s.c_speed, s.c_turn,
-              s.centre_mm * 1000, s.axis_rad / kDegree, s.nearest_pole / kDegree);
+  std::printf(
+      "%-22s gouge %.3f um, bound %.3f um, %.2f min, C at most %.0f deg/min, %.1f deg a tooth, centre within %.3f um, "
+      "axis within %.4f deg, pole at %.4f deg\n",
+      name, r.report["gouge_um"]["measured"].get<double>(), r.report["gouge_um"]["bound"].get<double>(),
+      r.report["cutting_minutes"].get<double>(), s.c_speed, s.c_turn, s.centre_mm * 1000, s.axis_rad / kDegree,
+      s.nearest_pole / kDegree);
 }
 
 /// report.json, page and set-up sheet tell the poles that are passed, with the option of the job and what it may move.
@@ -93,7 +97,10 @@ void expect_poles_told(const PoleRun& r, const PoleJob& job, const TestDir& dir)
     ASSERT_NE(at, std::string::npos) << name;
     EXPECT_EQ(page.find("Poles passed: ", at + 1), std::string::npos) << name << " tells them twice";
     const std::string line = page.substr(at, 300);
-    EXPECT_TRUE(line.starts_with(fmt::format("Poles passed: {} a tooth (pole = &quot;{}&quot;); the tool axis moves by at most {:.4f} deg", passages, job.pole, axis_deg))) << line;
+    EXPECT_TRUE(line.starts_with(
+        fmt::format("Poles passed: {} a tooth (pole = &quot;{}&quot;); the tool axis moves by at most {:.4f} deg",
+                    passages, job.pole, axis_deg)))
+        << line;
   }
 }
 
@@ -102,11 +109,14 @@ struct Case {
   double aside_deg;
   std::optional<double> angle_deg;
 };
-std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.pole << (c.aside_deg > 0 ? ", past the pole" : ", through the pole"); }
+std::ostream& operator<<(std::ostream& out, const Case& c) {
+  return out << c.pole << (c.aside_deg > 0 ? ", past the pole" : ", through the pole");
+}
 class PoleOptions : public ::testing::TestWithParam<Case> {};
 INSTANTIATE_TEST_SUITE_P(Run, PoleOptions,
-                         ::testing::Values(Case{"slow", 0, {}}, Case{"hold", 0, {}}, Case{"through", 0, {}}, Case{"retract", 0, {}}, Case{"slow", 0.3, {}},
-                                           Case{"hold", 0.3, 1.0}, Case{"through", 0.3, 1.0}, Case{"retract", 0.3, 1.0}));
+                         ::testing::Values(Case{"slow", 0, {}}, Case{"hold", 0, {}}, Case{"through", 0, {}},
+                                           Case{"retract", 0, {}}, Case{"slow", 0.3, {}}, Case{"hold", 0.3, 1.0},
+                                           Case{"through", 0.3, 1.0}, Case{"retract", 0.3, 1.0}));
 
 TEST_P(PoleOptions, GoesTheWholeWayOnATrunnion) {
   const Case& c = GetParam();
@@ -137,15 +147,12 @@ TEST_P(PoleOptions, GoesTheWholeWayOnATrunnion) {
     EXPECT_GT(s.a_greatest, 2.5);
     EXPECT_LT(s.nearest_pole, 1e-4);
   }
-  if (pole == "slow") {
-    EXPECT_LT(s.axis_rad, 2.5e-3);
-  }
-  if (pole == "slow" || pole == "hold") {
-    EXPECT_GT(s.c_turn, 100) << "C turns to the other side in the cut";
-  }
+  if (pole == "slow") { EXPECT_LT(s.axis_rad, 2.5e-3); }
+  if (pole == "slow" || pole == "hold") { EXPECT_GT(s.c_turn, 100) << "C turns to the other side in the cut"; }
 }
 
-// LinuxCNC's own interpreter on tooth 0 of every program: as many feeds as were counted here, and each ends on the plan.
+// LinuxCNC's own interpreter on tooth 0 of every program: as many feeds as were counted here, and each ends on the
+// plan.
 TEST(PoleRun, LinuxCncExecutesThem) {
   const char* given = std::getenv("TOOTHPATH_RS274");
   const std::string rs274 = given != nullptr ? given : std::string(TOOTHPATH_SOURCE_DIR) + "/.deps/rs274/rs274";
@@ -163,7 +170,8 @@ TEST(PoleRun, LinuxCncExecutesThem) {
     write_file(dir / "p.ngc", text);
     write_file(dir / "t.tbl", "T1 P1 Z0 D1 ;\n");
     write_file(dir / "v.var", "");
-    const std::string command = "cd '" + (dir / "") + "' && HOME=. timeout 60 '" + rs274 + "' -g -t t.tbl -v v.var p.ngc out.txt > log.txt 2>&1";
+    const std::string command = "cd '" + (dir / "") + "' && HOME=. timeout 60 '" + rs274 +
+                                "' -g -t t.tbl -v v.var p.ngc out.txt > log.txt 2>&1";
     ASSERT_EQ(std::system(command.c_str()), 0) << file_text(dir / "log.txt");
     std::istringstream in(file_text(dir / "out.txt"));
     std::size_t feeds = 0, on_plan = 0;
@@ -171,7 +179,8 @@ TEST(PoleRun, LinuxCncExecutesThem) {
       const auto at = line.find("STRAIGHT_FEED(");
       if (at == std::string::npos) continue;
       double x = 0, y = 0, z = 0, a = 0, b = 0, c = 0;
-      ASSERT_EQ(std::sscanf(line.c_str() + at, "STRAIGHT_FEED(%lf, %lf, %lf, %lf, %lf, %lf", &x, &y, &z, &a, &b, &c), 6) << line;
+      ASSERT_EQ(std::sscanf(line.c_str() + at, "STRAIGHT_FEED(%lf, %lf, %lf, %lf, %lf, %lf", &x, &y, &z, &a, &b, &c), 6)
+          << line;
       ++feeds;
       const auto pose = pose_of({{'X', x}, {'Y', y}, {'Z', z}, {'A', a}, {'C', c}});
       const auto off = from_plan(r.plan, pose.tip + kBall * pose.axis, pose.axis);
@@ -192,7 +201,9 @@ TEST(PoleRun, ErrorNamesBlockAngleAndLimit) {
   EXPECT_EQ(r.run.exit_code, 3) << r.run.err;
   EXPECT_NE(r.run.err.find("operation 0 record "), std::string::npos) << r.run.err;
   EXPECT_NE(r.run.err.find("the tool axis passes the pole at 0.0000 deg, C turns by "), std::string::npos) << r.run.err;
-  EXPECT_NE(r.run.err.find("limit 30: post.pole = \"slow\", \"hold\", \"through\" or \"retract\" goes past it"), std::string::npos) << r.run.err;
+  EXPECT_NE(r.run.err.find("limit 30: post.pole = \"slow\", \"hold\", \"through\" or \"retract\" goes past it"),
+            std::string::npos)
+      << r.run.err;
   EXPECT_TRUE(r.program.empty());
 }
 
@@ -202,7 +213,8 @@ TEST(PoleRun, TiltMovesNoPrescribedAxis) {
   job.pole = "tilt";
   const PoleRun r = run_pole(dir, job);
   EXPECT_EQ(r.run.exit_code, 3) << r.run.err;
-  EXPECT_NE(r.run.err.find("comes to 0.0000 deg of the pole of C, post.pole = \"tilt\" keeps 5.0000: directions that are fixed or prescribed by tool_axis are not moved"),
+  EXPECT_NE(r.run.err.find("comes to 0.0000 deg of the pole of C, post.pole = \"tilt\" keeps 5.0000: directions that "
+                           "are fixed or prescribed by tool_axis are not moved"),
             std::string::npos)
       << r.run.err;
   EXPECT_TRUE(r.program.empty());
@@ -213,14 +225,16 @@ TEST(PoleRun, TiltMovesNoPrescribedAxis) {
   const PoleRun far = run_pole(other, job);
   ASSERT_EQ(far.run.exit_code, 0) << far.run.err;
   EXPECT_FALSE(far.report.contains("poles")) << "there is none to pass";
-  for (const char* name : {"report.html", "setup.html"}) EXPECT_EQ(file_text(other / (std::string("out/") + name)).find("Poles passed"), std::string::npos) << name;
+  for (const char* name : {"report.html", "setup.html"})
+    EXPECT_EQ(file_text(other / (std::string("out/") + name)).find("Poles passed"), std::string::npos) << name;
   EXPECT_GT(sampled(far).nearest_pole, 5.9 * kDegree);
 }
 
 // What TCP controls get; the proof reads the bytes back through the kinematics of the machine.
 class PoleControls : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
 INSTANTIATE_TEST_SUITE_P(Run, PoleControls,
-                         ::testing::Combine(::testing::Values("fanuc_ac.toml", "siemens_ac.toml", "heidenhain_ac.toml"), ::testing::Values("slow", "hold", "through", "retract")));
+                         ::testing::Combine(::testing::Values("fanuc_ac.toml", "siemens_ac.toml", "heidenhain_ac.toml"),
+                                            ::testing::Values("slow", "hold", "through", "retract")));
 
 TEST_P(PoleControls, GoesTheWholeWayWithTcp) {
   const auto& [machine, pole] = GetParam();
@@ -230,12 +244,16 @@ TEST_P(PoleControls, GoesTheWholeWayWithTcp) {
   job.pole = pole;
   job.aside_deg = 0.3;
   if (job.pole != "slow") job.angle_deg = 1;
-  const PoleRun r = run_pole(dir, job, job.machine == "fanuc_ac.toml" ? "nc" : job.machine == "siemens_ac.toml" ? "mpf" : "h");
+  const PoleRun r = run_pole(dir, job,
+                             job.machine == "fanuc_ac.toml"     ? "nc"
+                             : job.machine == "siemens_ac.toml" ? "mpf"
+                                                                : "h");
   ASSERT_EQ(r.run.exit_code, 0) << r.run.err << r.run.out;
   EXPECT_EQ(r.report["verified"], true);
   EXPECT_LE(r.report["gouge_um"]["bound"].get<double>(), 3.0);
   EXPECT_FALSE(r.program.empty());
-  std::printf("%s %s: gouge %.3f um, bound %.3f um, %.2f min\n", machine.c_str(), pole.c_str(), r.report["gouge_um"]["measured"].get<double>(), r.report["gouge_um"]["bound"].get<double>(),
+  std::printf("%s %s: gouge %.3f um, bound %.3f um, %.2f min\n", machine.c_str(), pole.c_str(),
+              r.report["gouge_um"]["measured"].get<double>(), r.report["gouge_um"]["bound"].get<double>(),
               r.report["cutting_minutes"].get<double>());
 }
 
@@ -281,7 +299,8 @@ TEST(PoleRun, RefusedAxesAreLocatedInTheJob) {
   write_file(dir / "job.toml", text);
   const Finished run = run_program({"run", dir / "job.toml", "--out", dir / "out"});
   EXPECT_EQ(run.exit_code, 3);
-  const std::string place = fmt::format("job.toml:{}:13: error: tool 1 in zone 0: with the ball at radius", 1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n'));
+  const std::string place = fmt::format("job.toml:{}:13: error: tool 1 in zone 0: with the ball at radius",
+                                        1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n'));
   EXPECT_NE(run.err.find(place), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("28.000 deg aside"), std::string::npos) << run.err;
 }

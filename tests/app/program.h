@@ -29,11 +29,11 @@ struct Finished {
 
 struct Launch {
   std::vector<std::string> arguments;
-  std::string stdout_file;      ///< instead of the captured one: "/dev/full"
+  std::string stdout_file;  ///< instead of the captured one: "/dev/full"
   rlim_t largest_file = RLIM_INFINITY;
-  int signal_number = 0;        ///< sent after `signal_after_ms`
+  int signal_number = 0;  ///< sent after `signal_after_ms`
   int signal_after_ms = 0;
-  std::string signal_when;      ///< instead: when this file or folder is there (at most a minute is waited)
+  std::string signal_when;  ///< instead: when this file or folder is there (at most a minute is waited)
   std::function<void()> before_signal = [] {};
 };
 
@@ -58,7 +58,8 @@ inline Finished run_program(const Launch& launch) {
   }
   if (launch.signal_number != 0) {
     ::usleep(static_cast<useconds_t>(launch.signal_after_ms) * 1000);
-    for (int k = 0; k < 60'000 && !launch.signal_when.empty() && ::access(launch.signal_when.c_str(), F_OK) != 0; ++k) ::usleep(1000);
+    for (int k = 0; k < 60'000 && !launch.signal_when.empty() && ::access(launch.signal_when.c_str(), F_OK) != 0; ++k)
+      ::usleep(1000);
     launch.before_signal();
     ::kill(child, launch.signal_number);
   }
@@ -81,7 +82,8 @@ inline Finished run_program(std::vector<std::string> arguments) {
 inline std::vector<std::string> names_in(const std::string& directory) {
   std::vector<std::string> names;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(directory, error)) names.push_back(entry.path().filename().string());
+  for (const auto& entry : std::filesystem::directory_iterator(directory, error))
+    names.push_back(entry.path().filename().string());
   std::sort(names.begin(), names.end());
   return names;
 }

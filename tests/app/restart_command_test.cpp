@@ -1,4 +1,5 @@
-// `run --restart` and the order of the teeth from outside: what the files say, what `check` says of the part alone, what is refused.
+// `run --restart` and the order of the teeth from outside: what the files say, what `check` says of the part alone,
+// what is refused.
 #include <nlohmann/json.hpp>
 
 #include "tests/app/program.h"
@@ -22,7 +23,8 @@ TEST(RestartCommand, SpreadProgramFromTheMiddleIsProven) {
   EXPECT_NE(run.out.find("this program begins at operation 1, tooth 7"), std::string::npos) << run.out;
   const std::string program = file_text(dir / "out/program.ngc");
   EXPECT_NE(program.find("(TOOTH ORDER SPREAD: PLACE N CUTS TOOTH N * 23 MOD 60)\n(RESTART AT OPERATION 1 TOOTH 7)\n"
-                         "(WHAT THE WHOLE PROGRAM CUTS BEFORE THAT IS TAKEN AS DONE)\n"), std::string::npos);
+                         "(WHAT THE WHOLE PROGRAM CUTS BEFORE THAT IS TAKEN AS DONE)\n"),
+            std::string::npos);
   EXPECT_NE(program.find("(RUN TIME "), std::string::npos);
   EXPECT_EQ(program.find("(OP 0"), std::string::npos);
   EXPECT_NE(program.find("(OP 1 finishing)"), std::string::npos);
@@ -41,7 +43,9 @@ TEST(RestartCommand, SpreadProgramFromTheMiddleIsProven) {
   for (const auto& [letter, axis] : report["axes"].items()) {
     EXPECT_GE(axis["min"].get<double>(), whole["axes"][letter]["min"].get<double>() - 1e-6) << letter;
     EXPECT_LE(axis["max"].get<double>(), whole["axes"][letter]["max"].get<double>() + 1e-6) << letter;
-    narrower = narrower || axis["max"].get<double>() - axis["min"].get<double>() < whole["axes"][letter]["max"].get<double>() - whole["axes"][letter]["min"].get<double>() - 1e-3;
+    narrower =
+        narrower || axis["max"].get<double>() - axis["min"].get<double>() <
+                        whole["axes"][letter]["max"].get<double>() - whole["axes"][letter]["min"].get<double>() - 1e-3;
   }
   EXPECT_TRUE(narrower);
   EXPECT_EQ(report["excess_um"]["operations"].size(), 2u) << "judged as if the earlier part was done";
@@ -73,11 +77,12 @@ TEST(RestartCommand, SpreadProgramFromTheMiddleIsProven) {
 
 TEST(RestartCommand, WhatDoesNotExistIsUsage) {
   const TestDir dir;
-  const std::pair<const char*, const char*> cases[] = {{"2:0", "--restart = 2:0: the job has the operations 0 to 1"},
-                                                       {"0:60", "--restart = 0:60: the gear has the teeth 0 to 59"},
-                                                       {"1", "--restart = 1 is not OP:TOOTH, two whole numbers from 0"},
-                                                       {"1:x", "--restart = 1:x is not OP:TOOTH, two whole numbers from 0"},
-                                                       {"1:-2", "--restart = 1:-2 is not OP:TOOTH, two whole numbers from 0"}};
+  const std::pair<const char*, const char*> cases[] = {
+      {"2:0", "--restart = 2:0: the job has the operations 0 to 1"},
+      {"0:60", "--restart = 0:60: the gear has the teeth 0 to 59"},
+      {"1", "--restart = 1 is not OP:TOOTH, two whole numbers from 0"},
+      {"1:x", "--restart = 1:x is not OP:TOOTH, two whole numbers from 0"},
+      {"1:-2", "--restart = 1:-2 is not OP:TOOTH, two whole numbers from 0"}};
   for (const auto& [restart, message] : cases) {
     const Finished run = run_program({"run", kQuick, "--restart", restart, "--out", dir / "out"});
     EXPECT_EQ(run.exit_code, 2) << restart;

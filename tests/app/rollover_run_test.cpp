@@ -1,4 +1,5 @@
-// Whole runs on machines whose C rolls over, from the job to the proven bytes; the tool axis passes the pole, so that C turns in the cuts.
+// Whole runs on machines whose C rolls over, from the job to the proven bytes; the tool axis passes the pole, so that C
+// turns in the cuts.
 #include <nlohmann/json.hpp>
 
 #include <regex>
@@ -20,16 +21,22 @@ std::ostream& operator<<(std::ostream& out, const RolloverCase& c) { return out 
 
 class RolloverRun : public ::testing::TestWithParam<RolloverCase> {};
 INSTANTIATE_TEST_SUITE_P(Run, RolloverRun,
-                         ::testing::Values(RolloverCase{"xyzac_large", "ngc", R"( C-?\[\[#1\+([\d.]+)\] MOD 360\])", "(C ROLLS OVER: [AXIS_C] WRAPPED_ROTARY = 1)"},
-                                           RolloverCase{"fanuc_ac", "nc", R"( C(-?[\d.]+))", "(C ROLLS OVER: PARAMETERS 1008#0 ROA=1, 1008#1 RAB=0, 1260=360.)"},
-                                           RolloverCase{"siemens_ac", "mpf", R"( C=DC\(ABS\(R2\+([\d.]+)-360\*TRUNC)", ";C ROLLS OVER: MODULO AXIS, 30310=1, 30330=360"},
-                                           RolloverCase{"heidenhain_ac", "h", R"( C([+-][\d.]+))", "; C ROLLS OVER: MODULO AXIS, DISPLAY BELOW 360"}));
+                         ::testing::Values(RolloverCase{"xyzac_large", "ngc", R"( C-?\[\[#1\+([\d.]+)\] MOD 360\])",
+                                                        "(C ROLLS OVER: [AXIS_C] WRAPPED_ROTARY = 1)"},
+                                           RolloverCase{
+                                               "fanuc_ac", "nc", R"( C(-?[\d.]+))",
+                                               "(C ROLLS OVER: PARAMETERS 1008#0 ROA=1, 1008#1 RAB=0, 1260=360.)"},
+                                           RolloverCase{"siemens_ac", "mpf", R"( C=DC\(ABS\(R2\+([\d.]+)-360\*TRUNC)",
+                                                        ";C ROLLS OVER: MODULO AXIS, 30310=1, 30330=360"},
+                                           RolloverCase{"heidenhain_ac", "h", R"( C([+-][\d.]+))",
+                                                        "; C ROLLS OVER: MODULO AXIS, DISPLAY BELOW 360"}));
 
 /// A machine that ships, its C without ends.
 std::string without_ends(const std::string& machine) {
   const std::string text = file_text(std::string(TOOTHPATH_SOURCE_DIR) + "/machines/data/" + machine + ".toml");
   const std::size_t c = text.find("[axes.C]");
-  const std::string rest = std::regex_replace(text.substr(c), std::regex("min = [-\\d.]+\nmax = [-\\d.]+\n"), "rollover = true\n", std::regex_constants::format_first_only);
+  const std::string rest = std::regex_replace(text.substr(c), std::regex("min = [-\\d.]+\nmax = [-\\d.]+\n"),
+                                              "rollover = true\n", std::regex_constants::format_first_only);
   return text.substr(0, c) + rest;
 }
 
@@ -61,8 +68,10 @@ TEST_P(RolloverRun, IsVerifiedAndReadBack) {
   }
   EXPECT_GT(words, 100u);
 
-  if (std::string(c.machine) == "fanuc_ac") return;  // all teeth are written out and proven one by one: the run has done that
-  const auto check = run_program({"check", dir / "job.toml", dir / (std::string("out/program.") + c.extension), "--out", dir / "checked"});
+  if (std::string(c.machine) == "fanuc_ac")
+    return;  // all teeth are written out and proven one by one: the run has done that
+  const auto check = run_program(
+      {"check", dir / "job.toml", dir / (std::string("out/program.") + c.extension), "--out", dir / "checked"});
   EXPECT_EQ(check.exit_code, 0) << check.err << check.out;
 }
 

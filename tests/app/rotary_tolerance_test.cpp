@@ -1,4 +1,5 @@
-// What a control may do with its rotaries (TA of cycle 32) counts over the whole tool: a program with a larger one loses the clearance of its shank.
+// What a control may do with its rotaries (TA of cycle 32) counts over the whole tool: a program with a larger one
+// loses the clearance of its shank.
 #include <nlohmann/json.hpp>
 
 #include "tests/app/pole_job.h"

@@ -8,8 +8,8 @@
 namespace toothpath::test {
 namespace {
 
-// The quick spur job: 60 teeth, radii 60 to 65, tips at z = -18, rapids of the tip at z = -16, deepest cut near z = -22.5; the holder
-// (radius 5, 40 high) begins 16 above the tip, the flute ends 6 above it.
+// The quick spur job: 60 teeth, radii 60 to 65, tips at z = -18, rapids of the tip at z = -16, deepest cut near z =
+// -22.5; the holder (radius 5, 40 high) begins 16 above the tip, the flute ends 6 above it.
 class SceneTest : public CheckScene {
  protected:
   static void SetUpTestSuite() { run_sample("spur_quick.toml"); }
@@ -17,7 +17,9 @@ class SceneTest : public CheckScene {
   static mesh::TriangleMesh block(double tooth, double r0, double r1, double half, double z0, double z1) {
     mesh::TriangleMesh mesh = box(Vec3(r0, -half, z0), Vec3(r1, half, z1));
     const double angle = 2 * M_PI * tooth / 60;
-    for (auto& v : mesh.vertices) v = Vec3(std::cos(angle) * v.x() - std::sin(angle) * v.y(), std::sin(angle) * v.x() + std::cos(angle) * v.y(), v.z());
+    for (auto& v : mesh.vertices)
+      v = Vec3(std::cos(angle) * v.x() - std::sin(angle) * v.y(), std::sin(angle) * v.x() + std::cos(angle) * v.y(),
+               v.z());
     return mesh;
   }
 };

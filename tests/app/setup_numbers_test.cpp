@@ -1,4 +1,5 @@
-// The numbers of the set-up sheet against brute force: swing and heights over random turns, and how a wrong tool length moves the surface.
+// The numbers of the set-up sheet against brute force: swing and heights over random turns, and how a wrong tool length
+// moves the surface.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -32,13 +33,16 @@ TEST(PartSwing, HoldsEveryPointOfTheBlank) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> u(-1, 1);
   for (int trial = 0; trial < 20; ++trial) {
-    const machines::Machine m = trunnion_machine(10 * u(random), 10 * u(random), 30 * u(random), 60 * u(random), trial % 2 == 0 ? 1 : -1);
+    const machines::Machine m =
+        trunnion_machine(10 * u(random), 10 * u(random), 30 * u(random), 60 * u(random), trial % 2 == 0 ? 1 : -1);
     toothpath::joints::Setup setup;
     setup.axis_up = trial % 3 != 0;
-    setup.origin_mm = Vec3(m.chain.table[0].point_mm.x() + 5 * u(random), m.chain.table[0].point_mm.y(), 80 + 40 * u(random));
+    setup.origin_mm =
+        Vec3(m.chain.table[0].point_mm.x() + 5 * u(random), m.chain.table[0].point_mm.y(), 80 + 40 * u(random));
     const sheet::BlankCylinder blank{80 + 50 * u(random), -30, 12};
     const double from = radians(-70 + 20 * u(random)), to = radians(10 + 20 * u(random));
-    const std::vector<joints::AxisRange> axes = {{'Z', false, 200, 400, 0, 500}, {'C', true, -10, 10, -20, 20}, {'A', true, from, to, -2, 2}};
+    const std::vector<joints::AxisRange> axes = {
+        {'Z', false, 200, 400, 0, 500}, {'C', true, -10, 10, -20, 20}, {'A', true, from, to, -2, 2}};
     const sheet::PartSwing swing = sheet::part_swing(blank, setup, m, axes);
     ASSERT_EQ(swing.axes.size(), 2u);
     EXPECT_EQ(swing.axes[0].limit_mm, 200);
@@ -47,7 +51,8 @@ TEST(PartSwing, HoldsEveryPointOfTheBlank) {
     double reach_c = 0, reach_a = 0, top = -1e9, bottom = 1e9;
     for (int i = 0; i < 20000; ++i) {
       const double phi = kPi * u(random), z = i % 2 == 0 ? blank.z_min_mm : blank.z_max_mm;
-      const Vec3 p = setup.origin_mm + setup.rotation() * Vec3(blank.radius_mm * std::cos(phi), blank.radius_mm * std::sin(phi), z);
+      const Vec3 p = setup.origin_mm +
+                     setup.rotation() * Vec3(blank.radius_mm * std::cos(phi), blank.radius_mm * std::sin(phi), z);
       reach_c = std::max(reach_c, (p - m.chain.table[0].point_mm).head<2>().norm());
       const double tilt = i % 5 == 0 ? from : i % 5 == 1 ? to : 0.5 * (from + to) + 0.5 * (to - from) * u(random);
       const Vec3 q = m.chain.table_to_machine(p, {kPi * u(random), tilt});
@@ -73,7 +78,9 @@ TEST(SetupSheet, NamesTheCoolantAndItsWords) {
   job.setup.emplace();
   machines::Machine m = trunnion_machine(0, 0, 0, 0, 1);
   m.dialect = "linuxcnc";
-  const auto sheet = [&] { return sheet::setup_sheet(job, sheet::PartOutline{40, 60, 0, -5, -20}, m, report::RunReport{}); };
+  const auto sheet = [&] {
+    return sheet::setup_sheet(job, sheet::PartOutline{40, 60, 0, -5, -20}, m, report::RunReport{});
+  };
   EXPECT_NE(sheet().find("<tr><td>coolant</td><td>off</td>"), std::string::npos);
   job.coolant = machines::Coolant::mist;
   EXPECT_NE(sheet().find("<tr><td>coolant</td><td>mist: on with M7, off with M9</td>"), std::string::npos) << sheet();

@@ -1,5 +1,5 @@
-// The rules of size: no function body above 60 lines without a reason in its comment, no public function with 8 parameters, no room with
-// more than 25 files. What counts functions is itself tested on text with planted faults.
+// The rules of size: no function body above 60 lines without a reason in its comment, no public function with 8
+// parameters, no room with more than 25 files. What counts functions is itself tested on text with planted faults.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,14 +23,17 @@ constexpr std::string_view kReason = "Long because ";
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-/// The same text with comments, directives, and what stands in strings and characters as blanks: every line and column stays.
+/// The same text with comments, directives, and what stands in strings and characters as blanks: every line and column
+/// stays.
 std::string blanked(std::string_view text) {
   std::string out(text);
   const auto blank = [&](std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < std::min(to, out.size()); ++k)
       if (out[k] != '\n') out[k] = ' ';
   };
-  const auto end_of = [&](std::string_view what, std::size_t from) { return std::min(text.find(what, from), text.size()); };
+  const auto end_of = [&](std::string_view what, std::size_t from) {
+    return std::min(text.find(what, from), text.size());
+  };
   bool line_begins = true;
   for (std::size_t k = 0; k < text.size();) {
     std::size_t end = k + 1;
@@ -62,8 +65,12 @@ std::string_view trimmed(std::string_view s) {
   while (!s.empty() && std::isspace(static_cast<unsigned char>(s.back())) != 0) s.remove_suffix(1);
   return s;
 }
-bool ends_with_word(std::string_view s, std::string_view word) { return s.ends_with(word) && (s.size() == word.size() || !is_word(s[s.size() - word.size() - 1])); }
-int line_of(std::string_view text, std::size_t at) { return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n')); }
+bool ends_with_word(std::string_view s, std::string_view word) {
+  return s.ends_with(word) && (s.size() == word.size() || !is_word(s[s.size() - word.size() - 1]));
+}
+int line_of(std::string_view text, std::size_t at) {
+  return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
+}
 
 /// Is `{` behind this text the beginning of a body (of a function, a lambda, or a block in one)?
 bool begins_body(std::string_view head) {
@@ -71,7 +78,8 @@ bool begins_body(std::string_view head) {
   for (const char* word : {"const", "override", "noexcept", "final", "mutable", "else", "do", "try"})
     if (ends_with_word(head, word)) return true;
   const std::size_t arrow = head.rfind("->");
-  return head.ends_with(')') || head.ends_with(']') || head.ends_with('}') || (arrow != std::string_view::npos && head.find(')', arrow) == std::string_view::npos);
+  return head.ends_with(')') || head.ends_with(']') || head.ends_with('}') ||
+         (arrow != std::string_view::npos && head.find(')', arrow) == std::string_view::npos);
 }
 
 struct Body {
@@ -145,7 +153,9 @@ std::vector<Signature> public_functions(std::string_view text) {
   std::vector<Scope> scopes;
   std::vector<Signature> found;
   std::size_t head = 0;
-  const auto shown = [&] { return std::all_of(scopes.begin(), scopes.end(), [](const Scope& s) { return s.declares && !s.hidden; }); };
+  const auto shown = [&] {
+    return std::all_of(scopes.begin(), scopes.end(), [](const Scope& s) { return s.declares && !s.hidden; });
+  };
   for (std::size_t k = 0; k < bare.size(); ++k) {
     const std::string_view before = std::string_view(bare).substr(head, k - head);
     switch (bare[k]) {
@@ -155,12 +165,15 @@ std::vector<Signature> public_functions(std::string_view text) {
         head = k + 1;
         break;
       case ':':
-        if (!scopes.empty() && (ends_with_word(before, "private") || ends_with_word(before, "protected"))) scopes.back().hidden = true;
+        if (!scopes.empty() && (ends_with_word(before, "private") || ends_with_word(before, "protected")))
+          scopes.back().hidden = true;
         if (!scopes.empty() && ends_with_word(before, "public")) scopes.back().hidden = false;
         break;
       case '{': {
         const std::string_view statement = trimmed(before);
-        const auto has = [&](std::string_view word) { return (" " + std::string(statement)).find(" " + std::string(word) + " ") != std::string::npos; };
+        const auto has = [&](std::string_view word) {
+          return (" " + std::string(statement)).find(" " + std::string(word) + " ") != std::string::npos;
+        };
         const bool names = statement.starts_with("namespace"), type = has("class") || has("struct");
         scopes.push_back({names || (type && !statement.ends_with(')')), has("class")});
         head = k + 1;
@@ -177,7 +190,8 @@ std::vector<Signature> public_functions(std::string_view text) {
         const std::string_view behind = trimmed(before.substr(before.rfind(')') + 1));  // all of it where there is none
         const bool initializer = behind.starts_with(',') || (behind.starts_with(':') && !behind.starts_with("::"));
         if (shown() && !name.empty() && !initializer && before.find('=') == std::string_view::npos)
-          found.push_back({line_of(bare, k), parameters_of(std::string_view(bare).substr(k + 1, end - k - 2)), std::string(name)});
+          found.push_back(
+              {line_of(bare, k), parameters_of(std::string_view(bare).substr(k + 1, end - k - 2)), std::string(name)});
         k = end - 1;
         break;
       }
@@ -199,8 +213,9 @@ std::vector<fs::path> sources() {
 TEST(Sizes, NoLongFunctionWithoutAReason) {
   for (const fs::path& file : sources())
     for (const Body& body : long_bodies(file_text(file.string()), kLongestBody))
-      EXPECT_TRUE(body.explained) << fs::relative(file, kSourceRoot).string() << ":" << body.line << ": a body of " << body.lines << " lines, at most "
-                                  << kLongestBody << " without a comment \"" << kReason << "..\"";
+      EXPECT_TRUE(body.explained) << fs::relative(file, kSourceRoot).string() << ":" << body.line << ": a body of "
+                                  << body.lines << " lines, at most " << kLongestBody << " without a comment \""
+                                  << kReason << "..\"";
 }
 
 TEST(Sizes, NoPublicFunctionWithEightParameters) {
@@ -209,8 +224,9 @@ TEST(Sizes, NoPublicFunctionWithEightParameters) {
     if (file.extension() != ".h") continue;
     for (const Signature& s : public_functions(file_text(file.string()))) {
       ++seen;
-      EXPECT_LE(s.parameters, kMostParameters) << fs::relative(file, kSourceRoot).string() << ":" << s.line << ": " << s.name << " takes " << s.parameters
-                                               << " parameters: give those that belong together a struct";
+      EXPECT_LE(s.parameters, kMostParameters)
+          << fs::relative(file, kSourceRoot).string() << ":" << s.line << ": " << s.name << " takes " << s.parameters
+          << " parameters: give those that belong together a struct";
     }
   }
   EXPECT_GT(seen, 800u) << "the reader of headers sees next to nothing";
@@ -223,7 +239,8 @@ TEST(Sizes, NoRoomWithMoreThan25Files) {
       const auto counts = [](const fs::directory_entry& f) {
         return f.is_regular_file() && f.path().filename() != "README.md" && f.path().filename() != "CMakeLists.txt";
       };
-      EXPECT_LE(std::count_if(fs::directory_iterator(entry.path()), fs::directory_iterator(), counts), kMostFiles) << fs::relative(entry.path(), kSourceRoot);
+      EXPECT_LE(std::count_if(fs::directory_iterator(entry.path()), fs::directory_iterator(), counts), kMostFiles)
+          << fs::relative(entry.path(), kSourceRoot);
     }
 }
 
@@ -237,8 +254,10 @@ std::string repeated(int n, const std::string& one = "  f();\n") {
 
 TEST(BodyCounter, FindsALongBodyWhateverStandsAroundIt) {
   const std::string filling = repeated(9);  // 11 lines with the braces
-  for (const std::string head : {"void f() ", "int C::f(int a, std::vector<int> b = {1, 2}) const ", "C::C(int a) : a_{a}, b_(2) ", "auto f() -> int ", "bool f() const noexcept\n",
-                                 "template <typename T>\nvoid f(T)\n", "const auto f = [&](int a) ", "const auto f = [] "}) {
+  for (const std::string head :
+       {"void f() ", "int C::f(int a, std::vector<int> b = {1, 2}) const ", "C::C(int a) : a_{a}, b_(2) ",
+        "auto f() -> int ", "bool f() const noexcept\n", "template <typename T>\nvoid f(T)\n",
+        "const auto f = [&](int a) ", "const auto f = [] "}) {
     const std::string text = "int before;\n" + head + "{\n" + filling + "}\n";
     const auto found = long_bodies(text, 10);
     ASSERT_EQ(found.size(), 1u) << head;
@@ -250,13 +269,15 @@ TEST(BodyCounter, FindsALongBodyWhateverStandsAroundIt) {
 }
 
 TEST(BodyCounter, ReadsPastStringsAndComments) {
-  for (const char* line : {"  s = \"}}\";\n", "  s = \"\\\"}\";\n", "  c = '}';\n", "  c = '\\'';  // don't }\n", "  /* } */ n = 1'000;\n", "  s = R\"x(}\")\")x\";\n", "#define CLOSE }\n",
-                           "#define LONG \\\n  }\n"})
+  for (const char* line :
+       {"  s = \"}}\";\n", "  s = \"\\\"}\";\n", "  c = '}';\n", "  c = '\\'';  // don't }\n", "  /* } */ n = 1'000;\n",
+        "  s = R\"x(}\")\")x\";\n", "#define CLOSE }\n", "#define LONG \\\n  }\n"})
     EXPECT_EQ(long_bodies("void f() {\n" + repeated(20, line) + "}\nvoid g() {\n}\n", 19).size(), 1u) << line;
 }
 
 TEST(BodyCounter, CountsNoTablesClassesOrNamespaces) {
-  for (const std::string head : {"namespace a ", "struct S ", "class C : public B<int> ", "enum class E : int ", "static const std::vector<int> table = ", "constexpr int kTable[] = "}) {
+  for (const std::string head : {"namespace a ", "struct S ", "class C : public B<int> ", "enum class E : int ",
+                                 "static const std::vector<int> table = ", "constexpr int kTable[] = "}) {
     const std::string text = head + "{\n" + repeated(20, "  {1, 2},\n") + "};\n";
     EXPECT_TRUE(long_bodies(text, 10).empty()) << head;
   }
@@ -270,7 +291,9 @@ TEST(BodyCounter, TellsTheOuterOfTwoAndReadsTheReason) {
   EXPECT_EQ(two[0].line, 1);
   EXPECT_EQ(two[1].line, 26);
   EXPECT_FALSE(two[0].explained || two[1].explained);
-  const auto told = long_bodies("/// Adds. Long because a table reads best in one piece.\nvoid f() {\n" + inner + "}\nvoid g() {\n" + inner + "}\n", 10);
+  const auto told = long_bodies("/// Adds. Long because a table reads best in one piece.\nvoid f() {\n" + inner +
+                                    "}\nvoid g() {\n" + inner + "}\n",
+                                10);
   ASSERT_EQ(told.size(), 2u);
   EXPECT_TRUE(told[0].explained);
   EXPECT_FALSE(told[1].explained);
@@ -279,13 +302,16 @@ TEST(BodyCounter, TellsTheOuterOfTwoAndReadsTheReason) {
 TEST(ParameterCounter, CountsWhatAHeaderOffers) {
   const std::string text =
       "namespace a {\n"
-      "[[nodiscard]] std::map<int, int> f(const std::map<int, std::pair<int, int>>& a, int b = g(1, 2), std::function<void(int, int)> c = {});\n"
-      "class C {\n  void hidden(int a, int b);\n public:\n  C(int a, int b, int c);\n  explicit C(int a) : a_(a), b_{a}, c_(a) { use(1, 2, 3, 4); }\n private:\n  int x = h(1, 2);\n};\n"
+      "[[nodiscard]] std::map<int, int> f(const std::map<int, std::pair<int, int>>& a, int b = g(1, 2), "
+      "std::function<void(int, int)> c = {});\n"
+      "class C {\n  void hidden(int a, int b);\n public:\n  C(int a, int b, int c);\n  explicit C(int a) : a_(a), "
+      "b_{a}, c_(a) { use(1, 2, 3, 4); }\n private:\n  int x = h(1, 2);\n};\n"
       "struct S {\n  void open(int a, int b);\n  double v = h(1, 2);\n};\n"
       "inline int body(int a) { return h(a, a, a); }\n"
       "void none();\n}\n";
   std::vector<std::string> found;
-  for (const Signature& s : public_functions(text)) found.push_back(s.name + std::to_string(s.parameters) + "@" + std::to_string(s.line));
+  for (const Signature& s : public_functions(text))
+    found.push_back(s.name + std::to_string(s.parameters) + "@" + std::to_string(s.line));
   EXPECT_EQ(found, (std::vector<std::string>{"f3@2", "C3@6", "C1@7", "open2@12", "body1@15", "none0@16"}));
 }
 

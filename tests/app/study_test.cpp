@@ -37,14 +37,16 @@ TEST(StudyStability, EveryVerdictIsFine) {
   std::map<std::string, int> groups;
   std::set<std::string> verdicts;
   for (const auto& row : report.at("cases")) {
-    const std::string name = row.at("group").get<std::string>() + ", " + row.at("case").get<std::string>(), verdict = row.at("verdict");
+    const std::string name = row.at("group").get<std::string>() + ", " + row.at("case").get<std::string>(),
+                      verdict = row.at("verdict");
     ++groups[row.at("group")];
     verdicts.insert(verdict);
     EXPECT_TRUE(row.at("fine").get<bool>()) << name;
     ASSERT_TRUE(row.at("error_mm").is_number()) << name;  // NaN would be null
     if (row.at("points").get<int>() > 0) {
       EXPECT_LE(row.at("error_mm").get<double>(), row.at("limit_mm").get<double>()) << name;
-      EXPECT_LT(row.at("limit_mm").get<double>(), 1e-7) << name;  // a limit that forgives everything would prove nothing
+      EXPECT_LT(row.at("limit_mm").get<double>(), 1e-7)
+          << name;  // a limit that forgives everything would prove nothing
     }
     if (verdict == "refused") {
       EXPECT_NE(row.at("reason").get<std::string>().find_first_of("0123456789"), std::string::npos) << name;
@@ -73,9 +75,11 @@ TEST(StudyStability, EveryVerdictIsFine) {
 TEST(StudyWorkPrecision, QuickSweepOfTheSpurSample) {
   const TestDir dir;
   const std::string out = dir / "out";
-  const auto done = run_program({"study", "work-precision", kSamples + "/spur_quick.toml", "--out", out, "--quick", "--json"});
+  const auto done =
+      run_program({"study", "work-precision", kSamples + "/spur_quick.toml", "--out", out, "--quick", "--json"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
-  EXPECT_EQ(names_in(out), (std::vector<std::string>{"report.html", "work_precision.csv", "work_precision.html", "work_precision.json", "work_precision.svg"}));
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"report.html", "work_precision.csv", "work_precision.html",
+                                                     "work_precision.json", "work_precision.svg"}));
   const Json report = Json::parse(done.out).at("report");
   EXPECT_EQ(report, Json::parse(file_text(out + "/work_precision.json")));
   std::map<std::pair<std::string, double>, Json> runs;
@@ -86,7 +90,9 @@ TEST(StudyWorkPrecision, QuickSweepOfTheSpurSample) {
   EXPECT_NEAR(job.at("chord_um").get<double>(), 2, 1e-9);
   EXPECT_NEAR(job.at("scallop_um").get<double>(), 20, 1e-9);
 
-  const auto number = [&](const std::string& varied, double factor, const char* key) { return runs.at({varied, factor}).at(key).get<double>(); };
+  const auto number = [&](const std::string& varied, double factor, const char* key) {
+    return runs.at({varied, factor}).at(key).get<double>();
+  };
   // The scallop is a decade finer: the step-over shrinks by sqrt(10), and the deviation by nearly ten.
   EXPECT_GT(number("scallop", 0.1, "cl_points"), 1.5 * job.at("cl_points").get<double>());
   EXPECT_LT(number("scallop", 0.1, "worst_um"), 0.4 * job.at("worst_um").get<double>());
@@ -118,8 +124,9 @@ TEST(StudyWorkPrecision, QuickSweepOfTheSpurSample) {
   EXPECT_EQ(svg.rfind("<svg xmlns=", 0), 0u);
   EXPECT_NE(file_text(out + "/work_precision.html").find("Error against run time"), std::string::npos);
   const std::string page = file_text(out + "/report.html");  // of the job's own run, the study's plots in it
-  for (const char* part : {"<section id=\"work-precision\">", "Sharpness of the proof against its time", "<section id=\"motion\">", "<section id=\"deviation\">",
-                           "tolerance 2.00", "<p class=\"verdict good\">"})
+  for (const char* part :
+       {"<section id=\"work-precision\">", "Sharpness of the proof against its time", "<section id=\"motion\">",
+        "<section id=\"deviation\">", "tolerance 2.00", "<p class=\"verdict good\">"})
     EXPECT_NE(page.find(part), std::string::npos) << part;
 }
 

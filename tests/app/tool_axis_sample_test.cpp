@@ -1,4 +1,5 @@
-// The sample of prescribed tool axes: the tool leans as the keys of the job say, at every record of its finishing passes.
+// The sample of prescribed tool axes: the tool leans as the keys of the job say, at every record of its finishing
+// passes.
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -48,7 +49,8 @@ TEST(ToolAxisSample, LeansAsItsKeysSay) {
       continue;
     }
     const double outwards = (c * r.i + s * r.j) / r.k, aside = (c * r.j - s * r.i) / r.k;
-    const double radius = std::hypot(r.x + ball * r.i, r.y + ball * r.j), across = c * (r.y + ball * r.j) - s * (r.x + ball * r.i);
+    const double radius = std::hypot(r.x + ball * r.i, r.y + ball * r.j),
+                 across = c * (r.y + ball * r.j) - s * (r.x + ball * r.i);
     EXPECT_NEAR(std::abs(aside), std::tan(2 * kDegree), 2e-8);
     (aside > 0 ? plus : minus) += 1;
     (aside > 0 ? side_plus : side_minus) += across;

@@ -17,7 +17,9 @@ class ToolWork : public ::testing::Test {
     for (int op = 0; op < 3; ++op) {
       path::ClPath& path = paths_[static_cast<std::size_t>(op)];
       path.operation = op;
-      const auto go = [&](double x, double z, path::MoveKind kind) { path.records.push_back({Vec3(x, 0, z), Vec3::UnitZ(), 100, kind, 0, 0}); };
+      const auto go = [&](double x, double z, path::MoveKind kind) {
+        path.records.push_back({Vec3(x, 0, z), Vec3::UnitZ(), 100, kind, 0, 0});
+      };
       go(0, 5, path::MoveKind::rapid);
       go(0, 0, path::MoveKind::engage);
       go(10, 0, path::MoveKind::feed);
@@ -52,7 +54,8 @@ TEST_F(ToolWork, SumsWayTimeAndTurnsOfAllTeeth) {
   for (const auto& row : s->rows) EXPECT_EQ(row.size(), s->columns.size());
   // 2 operations x 30 mm x 10 teeth = 0.6 m in 2 x 2 min at 1000 1/min.
   EXPECT_EQ(s->rows[0], (std::vector<std::string>{"7", "0, 2", "0.60", "4.0", "150", "4.0", ""}));
-  EXPECT_EQ(s->rows[1], (std::vector<std::string>{"3", "1", "0.30", "2.0", "150", "2.0", "line 42, r 0.000 mm, z 0.000 mm: 0.50 um"}));
+  EXPECT_EQ(s->rows[1], (std::vector<std::string>{"3", "1", "0.30", "2.0", "150", "2.0",
+                                                  "line 42, r 0.000 mm, z 0.000 mm: 0.50 um"}));
 }
 
 TEST_F(ToolWork, AProgramThatBeginsInTheMiddleHasNone) {

@@ -16,7 +16,8 @@ constexpr double kTolerance = 5e-4;
 Vec3 turned(const Vec3& v, double angle) { return Eigen::AngleAxisd(angle, Vec3::UnitZ()) * v; }
 
 /// A block of a tooth in pieces of equal time along a bend.
-void add_block(std::vector<path::ToolMotion>& out, int operation, int tooth, int line, int pieces, const Vec3& off = Vec3::Zero()) {
+void add_block(std::vector<path::ToolMotion>& out, int operation, int tooth, int line, int pieces,
+               const Vec3& off = Vec3::Zero()) {
   const double angle = 2 * kPi * tooth / kTeeth;
   const auto at = [&](double t) -> Vec3 {
     const double u = 0.1 * line + 0.1 * t;
@@ -84,7 +85,8 @@ TEST(ToothCopies, WhatDiffersAnywhereIsKeptWithAllItsOperations) {
   };
   const std::set<int> first{0}, both{0, 4};
   const auto blocks = [](std::vector<path::ToolMotion>& motions, int line_moved, const Vec3& off, int lines) {
-    for (int line = 1; line <= lines; ++line) add_block(motions, 1, 4, line, 3, line == line_moved ? off : Vec3::Zero());
+    for (int line = 1; line <= lines; ++line)
+      add_block(motions, 1, 4, line, 3, line == line_moved ? off : Vec3::Zero());
   };
   EXPECT_EQ(with_tooth_4([&](auto& m) { blocks(m, 0, Vec3::Zero(), 6); }), first);
   EXPECT_EQ(with_tooth_4([&](auto& m) { blocks(m, 5, Vec3(0, 6e-4, 0), 6); }), both) << "one block beside its place";
@@ -97,12 +99,14 @@ TEST(ToothCopies, WhatDiffersAnywhereIsKeptWithAllItsOperations) {
               path::ToolMotion &a = m[m.size() - 3], &b = m[m.size() - 2];
               a.tip_to.z() += 6e-4;
               b.tip_from.z() += 6e-4;
-            }), both);
+            }),
+            both);
   // The axis alone: at the holder it counts a thousandfold.
   EXPECT_EQ(with_tooth_4([&](auto& m) {
               blocks(m, 0, Vec3::Zero(), 6);
               m.back().axis_to = (m.back().axis_to + Vec3(0, 1e-6, 0)).normalized();
-            }), both);
+            }),
+            both);
 }
 
 TEST(ToothCopies, RapidsAreKept) {

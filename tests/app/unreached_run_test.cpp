@@ -1,5 +1,5 @@
-// What a run tells of surface that the finishing ball does not reach: beside the verdict everywhere, and as the verdict where the job or the active
-// flank asks for it.
+// What a run tells of surface that the finishing ball does not reach: beside the verdict everywhere, and as the verdict
+// where the job or the active flank asks for it.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -35,7 +35,8 @@ TEST(UnreachedRun, StandsBesideTheVerdictEverywhere) {
   EXPECT_NEAR(u["largest_ball_mm"].get<double>(), 1.2, 0.01);  // a spur fillet: the diameter of the shaper's rounding
   EXPECT_EQ(u["ball_mm"], 1.8);
   EXPECT_TRUE(u["active_flank"].is_null());
-  const std::string height = fmt::format("up to {:.3f} mm high", u["height_um"].get<double>() / 1000), share = fmt::format("{:.1f} %", u["share_percent"].get<double>());
+  const std::string height = fmt::format("up to {:.3f} mm high", u["height_um"].get<double>() / 1000),
+                    share = fmt::format("{:.1f} %", u["share_percent"].get<double>());
   EXPECT_NE(run.out.find("verified            yes, root not finished"), std::string::npos) << run.out;
   for (const std::string& text : {run.out, file_text(dir / "out/report.html"), file_text(dir / "out/setup.html")}) {
     EXPECT_NE(text.find("oot not finished"), std::string::npos);
@@ -55,10 +56,15 @@ TEST(UnreachedRun, IsAVerdictAboveTheKey) {
   const TestDir dir;
   ASSERT_EQ(run_program({"run", job_with(dir, "1.8"), "--out", dir / "out"}).exit_code, 0);
   const double height = report_in(dir)["unreached"]["height_um"].get<double>() / 1000;
-  EXPECT_EQ(run_program({"run", job_with(dir, "1.8", fmt::format("unreached = {:.6f}", height + 2e-6)), "--out", dir / "out"}).exit_code, 0);
-  const auto run = run_program({"run", job_with(dir, "1.8", fmt::format("unreached = {:.6f}", height - 2e-6)), "--out", dir / "out"});
+  EXPECT_EQ(
+      run_program({"run", job_with(dir, "1.8", fmt::format("unreached = {:.6f}", height + 2e-6)), "--out", dir / "out"})
+          .exit_code,
+      0);
+  const auto run = run_program(
+      {"run", job_with(dir, "1.8", fmt::format("unreached = {:.6f}", height - 2e-6)), "--out", dir / "out"});
   EXPECT_EQ(run.exit_code, 1);
-  EXPECT_NE(run.err.find("([verify] unreached); the largest ball that reaches all of it has 1.20"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("([verify] unreached); the largest ball that reaches all of it has 1.20"), std::string::npos)
+      << run.err;
   EXPECT_FALSE(std::filesystem::exists(dir / "out/program.ngc"));
   EXPECT_EQ(report_in(dir)["verdict"], "not verified");
   EXPECT_EQ(run_program({"run", job_with(dir, "1.8", "unreached = 0"), "--out", dir / "out"}).exit_code, 1);
@@ -74,7 +80,10 @@ TEST(UnreachedRun, CheckSaysTheSame) {
   EXPECT_EQ(check.exit_code, 0) << check.err;
   EXPECT_NE(check.out.find("yes, root not finished"), std::string::npos) << check.out;
   EXPECT_EQ(nlohmann::json::parse(file_text(dir / "checked/report.json"))["unreached"], ran);
-  EXPECT_EQ(run_program({"check", job_with(dir, "1.8", "unreached = 0.1"), dir / "out/program.ngc", "--out", dir / "checked"}).exit_code, 1);
+  EXPECT_EQ(
+      run_program({"check", job_with(dir, "1.8", "unreached = 0.1"), dir / "out/program.ngc", "--out", dir / "checked"})
+          .exit_code,
+      1);
 }
 
 TEST(UnreachedRun, TheActiveFlankIsAlwaysAVerdict) {

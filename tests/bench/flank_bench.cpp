@@ -1,6 +1,6 @@
 // Points of a face gear flank per second: closed form, the same vectorised, and two searches that solve every point.
-// Counters: points/s and the largest deviation from the closed form, mm; `wrong` counts points where the search ended on
-// another root of the equation of meshing.
+// Counters: points/s and the largest deviation from the closed form, mm; `wrong` counts points where the search ended
+// on another root of the equation of meshing.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -35,8 +35,12 @@ struct Work {
     for (std::size_t k = 0; k < theta.size(); ++k) store(exact, k, f.flank(side, theta[k], B[k]));
   }
   static void store(face_gear::FlankPoints& to, std::size_t k, const face_gear::SurfacePointT<double>& q) {
-    to.x[k] = q.p[0]; to.y[k] = q.p[1]; to.z[k] = q.p[2];
-    to.nx[k] = q.n[0]; to.ny[k] = q.n[1]; to.nz[k] = q.n[2];
+    to.x[k] = q.p[0];
+    to.y[k] = q.p[1];
+    to.z[k] = q.p[2];
+    to.nx[k] = q.n[0];
+    to.ny[k] = q.n[1];
+    to.nz[k] = q.n[2];
   }
   void report(benchmark::State& state, const face_gear::FlankPoints& got) const {
     double deviation = 0;
@@ -46,7 +50,8 @@ struct Work {
       if (d < 1e-3) deviation = std::max(deviation, d);
       else ++wrong;
     }
-    state.counters["points/s"] = benchmark::Counter(double(theta.size()) * double(state.iterations()), benchmark::Counter::kIsRate);
+    state.counters["points/s"] =
+        benchmark::Counter(double(theta.size()) * double(state.iterations()), benchmark::Counter::kIsRate);
     state.counters["deviation_mm"] = deviation;
     state.counters["wrong"] = wrong;
     state.counters["points"] = double(theta.size());

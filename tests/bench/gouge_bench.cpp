@@ -1,10 +1,12 @@
-// Gouge queries against CGAL's AABB_tree, as a table of ratios: the mesh engine (whole assembly, ball alone) on a ring of teeth of two
-// finenesses, and the analytic engine on a face gear. One thread, its own processor time, the same mesh and the same poses on both sides.
+// Gouge queries against CGAL's AABB_tree, as a table of ratios: the mesh engine (whole assembly, ball alone) on a ring
+// of teeth of two finenesses, and the analytic engine on a face gear. One thread, its own processor time, the same mesh
+// and the same poses on both sides.
 //
-// Both sides answer the same question: for every body of the tool, its distance to the surface up to 0.5 mm (the cutting part: less its
-// radius, so that a cut is negative). We answer exactly; the tree is marched to the resolution in the table, and answers from above.
-// "largest difference" is between the two answers: it may reach the resolution. "missed": places where the tree finds a cut or a touch
-// and we find none, over the passes and over poses sunk by up to 8 mm.
+// Both sides answer the same question: for every body of the tool, its distance to the surface up to 0.5 mm (the
+// cutting part: less its radius, so that a cut is negative). We answer exactly; the tree is marched to the resolution
+// in the table, and answers from above. "largest difference" is between the two answers: it may reach the resolution.
+// "missed": places where the tree finds a cut or a touch and we find none, over the passes and over poses sunk by up to
+// 8 mm.
 #include <cstdio>
 #include <memory>
 
@@ -19,8 +21,8 @@ namespace {
 constexpr double kWithin = 0.5;
 
 void heading() {
-  std::printf("%-28s %9s %8s %12s %12s %8s %11s %6s %6s\n", "question", "triangles", "march mm", "ours 1/s", "CGAL 1/s", "ratio", "largest dif",
-              "hits", "missed");
+  std::printf("%-28s %9s %8s %12s %12s %8s %11s %6s %6s\n", "question", "triangles", "march mm", "ours 1/s", "CGAL 1/s",
+              "ratio", "largest dif", "hits", "missed");
 }
 
 struct Row {
@@ -29,13 +31,14 @@ struct Row {
   double resolution = 0, ours = 0, theirs = 0, difference = 0;
   std::size_t hits = 0, missed = 0;
   void print() const {
-    std::printf("%-28s %9zu %8g %12.0f %12.0f %7.1fx %11.2e %6zu %6zu\n", question.c_str(), triangles, resolution, ours, theirs, ours / theirs,
-                difference, hits, missed);
+    std::printf("%-28s %9zu %8g %12.0f %12.0f %7.1fx %11.2e %6zu %6zu\n", question.c_str(), triangles, resolution, ours,
+                theirs, ours / theirs, difference, hits, missed);
     std::fflush(stdout);
   }
 };
 
-std::vector<double> by_marching(const CgalTree& tree, const tool::ToolAssembly& tool, std::span<const clearance::ToolPose> poses, double resolution) {
+std::vector<double> by_marching(const CgalTree& tree, const tool::ToolAssembly& tool,
+                                std::span<const clearance::ToolPose> poses, double resolution) {
   std::vector<double> gaps;
   const double R = tool.radius_mm();
   const auto bodies = tool::shank_and_holder(tool);
@@ -89,9 +92,12 @@ void ball(const clearance::MeshDistance& mesh, const CgalTree& tree) {
   std::vector<double> ours(centres.size()), theirs(centres.size());
   Row row{"ball", mesh.tree().triangles(), 0};
   row.ours = double(centres.size()) / thread_seconds([&] { mesh.nearest_along(centres, 1e3, ours); }, 5);
-  row.theirs = double(centres.size()) / thread_seconds([&] {
-                 for (std::size_t k = 0; k < centres.size(); ++k) theirs[k] = tree.distance(centres[k]);
-               }, 2);
+  row.theirs = double(centres.size()) / thread_seconds(
+                                            [&] {
+                                              for (std::size_t k = 0; k < centres.size(); ++k)
+                                                theirs[k] = tree.distance(centres[k]);
+                                            },
+                                            2);
   for (std::size_t k = 0; k < ours.size(); ++k) {
     row.difference = std::max(row.difference, std::abs(ours[k] - theirs[k]));
     row.hits += theirs[k] < 2 - 1e-9;
@@ -101,7 +107,8 @@ void ball(const clearance::MeshDistance& mesh, const CgalTree& tree) {
 }
 
 void run() {
-  std::printf("inner loops: %s; one thread; gaps up to %g mm; poses 0.1 mm apart on flank passes, ball R2\n", clearance::mesh_kernels().name, kWithin);
+  std::printf("inner loops: %s; one thread; gaps up to %g mm; poses 0.1 mm apart on flank passes, ball R2\n",
+              clearance::mesh_kernels().name, kWithin);
   heading();
   for (const auto& [across, along] : {std::pair{24, 34}, std::pair{54, 77}}) {
     const mesh::TriangleMesh mesh = ring_mesh(across, along);

@@ -3,13 +3,13 @@
 #include <cstdio>
 #include <random>
 
+#include "cam/analytic/body_tree.h"
 #include "geometry/base/angle.h"
 #include "geometry/mesh/tooth_mesh.h"
 #include "tests/bench/gouge_bench_cgal.h"
 #include "tests/bench/thread_seconds.h"
 #include "tests/support/sample_gears.h"
 #include "tests/support/sample_tools.h"
-#include "cam/analytic/body_tree.h"
 
 namespace toothpath::bench {
 namespace {
@@ -19,7 +19,8 @@ struct Pose {
 };
 
 /// Ball centres 0.1 um off flanks and fillets of any tooth, tool upright or nearly so.
-std::vector<Pose> poses_of(const face_gear::FaceGear& gear, const analytic::GearDistance& part, const tool::ToolAssembly& tool) {
+std::vector<Pose> poses_of(const face_gear::FaceGear& gear, const analytic::GearDistance& part,
+                           const tool::ToolAssembly& tool) {
   std::mt19937_64 generator(1);
   const auto uniform = [&](double a, double b) { return a + (b - a) * double(generator() >> 11) * 0x1p-53; };
   std::vector<Pose> poses;
@@ -32,7 +33,8 @@ std::vector<Pose> poses_of(const face_gear::FaceGear& gear, const analytic::Gear
     if (!q) continue;
     const double lean = uniform(0, 0.05), to = uniform(0, 6.28), turn = gear.pitch() * double(generator() % 180);
     const Vec3 axis(std::sin(lean) * std::cos(to), std::sin(lean) * std::sin(to), std::cos(lean));
-    poses.push_back({face_gear::FaceGearSurface<double>::turned(Vec3(q->p + (tool.radius_mm() + 1e-4) * q->n), turn), axis});
+    poses.push_back(
+        {face_gear::FaceGearSurface<double>::turned(Vec3(q->p + (tool.radius_mm() + 1e-4) * q->n), turn), axis});
   }
   return poses;
 }
@@ -43,7 +45,8 @@ struct Answer {
   double cutter = kAnalyticWithin, gap = kAnalyticWithin;
 };
 
-Answer exact(const analytic::GearDistance& part, const analytic::BodyTree& tree, const tool::ToolAssembly& tool, const Pose& pose) {
+Answer exact(const analytic::GearDistance& part, const analytic::BodyTree& tree, const tool::ToolAssembly& tool,
+             const Pose& pose) {
   const double R = tool.radius_mm(), top = tool.flute_length_mm - R;
   Answer a;
   for (double h = 0; h <= top;) {
@@ -61,7 +64,8 @@ Answer marched(const CgalTree& tree, const tool::ToolAssembly& tool, const Pose&
   const double R = tool.radius_mm();
   Answer a;
   a.cutter = tree.cutting_part(pose.centre, pose.axis, tool.flute_length_mm - R, R, kAnalyticWithin, kMarch);
-  for (const auto& body : tool::shank_and_holder(tool)) a.gap = std::min(a.gap, tree.frustum(body, pose.centre - R * pose.axis, pose.axis, a.gap, kBodies));
+  for (const auto& body : tool::shank_and_holder(tool))
+    a.gap = std::min(a.gap, tree.frustum(body, pose.centre - R * pose.axis, pose.axis, a.gap, kBodies));
   return a;
 }
 
@@ -73,32 +77,49 @@ void analytic_rows() {
   const analytic::GearDistance part(gear, 1.0);
   const analytic::BodyTree bodies(part);
   const auto poses = poses_of(gear, part, tool);
-  std::printf("\nanalytic engine of a face gear (180 teeth, two rings; ball R0.25; random poses in contact), the mesh is its own within the sag\n");
-  std::printf("%-28s %9s %8s %12s %12s %8s %11s\n", "question", "triangles", "sag mm", "ours 1/s", "CGAL 1/s", "ratio", "largest dif");
-  const double balls = double(poses.size()) / thread_seconds([&] {
-                         for (const auto& p : poses) keep(part.nearest(p.centre, tool.radius_mm() + 0.12).distance);
-                       }, 3);
-  const double tools = double(poses.size()) / thread_seconds([&] {
-                         for (const auto& p : poses) keep(exact(part, bodies, tool, p).gap);
-                       }, 2);
+  std::printf(
+      "\nanalytic engine of a face gear (180 teeth, two rings; ball R0.25; random poses in contact), the mesh is its "
+      "own within the sag\n");
+  std::printf("%-28s %9s %8s %12s %12s %8s %11s\n", "question", "triangles", "sag mm", "ours 1/s", "CGAL 1/s", "ratio",
+              "largest dif");
+  const double balls = double(poses.size()) / thread_seconds(
+                                                  [&] {
+                                                    for (const auto& p : poses)
+                                                      keep(part.nearest(p.centre, tool.radius_mm() + 0.12).distance);
+                                                  },
+                                                  3);
+  const double tools = double(poses.size()) / thread_seconds(
+                                                  [&] {
+                                                    for (const auto& p : poses) keep(exact(part, bodies, tool, p).gap);
+                                                  },
+                                                  2);
   for (const double sag : {5e-3, 5e-4}) {
     const auto mesh = mesh::mesh_gear(gear, sag);
     if (!mesh) continue;
     const CgalTree tree(*mesh);
     double ball_difference = 0, difference = 0;
-    const double cgal_balls = double(poses.size()) / thread_seconds([&] {
-                                for (const auto& p : poses) keep(tree.distance(p.centre));
-                              }, 2);
+    const double cgal_balls = double(poses.size()) / thread_seconds(
+                                                         [&] {
+                                                           for (const auto& p : poses) keep(tree.distance(p.centre));
+                                                         },
+                                                         2);
     const std::size_t few = 200;
-    const double cgal_tools = double(few) / thread_seconds([&] {
-                                for (std::size_t k = 0; k < few; ++k) keep(marched(tree, tool, poses[k]).gap);
-                              }, 1);
+    const double cgal_tools = double(few) / thread_seconds(
+                                                [&] {
+                                                  for (std::size_t k = 0; k < few; ++k)
+                                                    keep(marched(tree, tool, poses[k]).gap);
+                                                },
+                                                1);
     for (const auto& p : poses)
-      ball_difference = std::max(ball_difference, std::abs(tree.distance(p.centre) - part.nearest(p.centre, tool.radius_mm() + 0.12).distance));
+      ball_difference = std::max(ball_difference, std::abs(tree.distance(p.centre) -
+                                                           part.nearest(p.centre, tool.radius_mm() + 0.12).distance));
     for (std::size_t k = 0; k < few; ++k)
-      difference = std::max(difference, std::abs(marched(tree, tool, poses[k]).cutter - exact(part, bodies, tool, poses[k]).cutter));
-    std::printf("%-28s %9zu %8g %12.0f %12.0f %7.1fx %11.2e\n", "ball, analytic", mesh->triangles.size(), sag, balls, cgal_balls, balls / cgal_balls, ball_difference);
-    std::printf("%-28s %9zu %8g %12.0f %12.0f %7.1fx %11.2e\n", "assembly, analytic", mesh->triangles.size(), sag, tools, cgal_tools, tools / cgal_tools, difference);
+      difference = std::max(
+          difference, std::abs(marched(tree, tool, poses[k]).cutter - exact(part, bodies, tool, poses[k]).cutter));
+    std::printf("%-28s %9zu %8g %12.0f %12.0f %7.1fx %11.2e\n", "ball, analytic", mesh->triangles.size(), sag, balls,
+                cgal_balls, balls / cgal_balls, ball_difference);
+    std::printf("%-28s %9zu %8g %12.0f %12.0f %7.1fx %11.2e\n", "assembly, analytic", mesh->triangles.size(), sag,
+                tools, cgal_tools, tools / cgal_tools, difference);
     std::fflush(stdout);
   }
 }

@@ -1,4 +1,5 @@
-// The analytic engine of a face gear against CGAL on a mesh of the same ring: random poses in contact with flanks and fillets.
+// The analytic engine of a face gear against CGAL on a mesh of the same ring: random poses in contact with flanks and
+// fillets.
 #pragma once
 
 namespace toothpath::bench {

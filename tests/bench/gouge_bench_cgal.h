@@ -32,8 +32,10 @@ class CgalTree {
   }
   [[nodiscard]] double distance(const Vec3& p) const { return (closest(p) - p).norm(); }
 
-  /// Distance of the axis of the cutting part less its radius, up to `within`: steps along the axis as long as the distance allows.
-  [[nodiscard]] double cutting_part(const Vec3& centre, const Vec3& axis, double height, double radius, double within, double resolution) const {
+  /// Distance of the axis of the cutting part less its radius, up to `within`: steps along the axis as long as the
+  /// distance allows.
+  [[nodiscard]] double cutting_part(const Vec3& centre, const Vec3& axis, double height, double radius, double within,
+                                    double resolution) const {
     double best = within;
     for (double h = 0;;) {
       const double d = distance(centre + h * axis) - radius;
@@ -43,9 +45,10 @@ class CgalTree {
     }
   }
 
-  /// Distance to a solid frustum, up to `within` and to `resolution` from above. Balls about points of the axis clear slices; what
-  /// they leave is divided into boxes. Every closest point bounds the distance from above.
-  [[nodiscard]] double frustum(const tool::Frustum& f, const Vec3& tip, const Vec3& axis, double within, double resolution) const {
+  /// Distance to a solid frustum, up to `within` and to `resolution` from above. Balls about points of the axis clear
+  /// slices; what they leave is divided into boxes. Every closest point bounds the distance from above.
+  [[nodiscard]] double frustum(const tool::Frustum& f, const Vec3& tip, const Vec3& axis, double within,
+                               double resolution) const {
     double best = within;
     slice(f, tip, axis, f.from, f.to, resolution, best);
     return best;
@@ -63,8 +66,11 @@ class CgalTree {
     best = std::min(best, test::distance_to_frustum(q, f, tip, axis));
     return (q - x).norm();
   }
-  void slice(const tool::Frustum& f, const Vec3& tip, const Vec3& axis, double h0, double h1, double resolution, double& best) const {
-    const auto radius = [&](double h) { return f.radius_from + (f.radius_to - f.radius_from) * (h - f.from) / (f.to - f.from); };
+  void slice(const tool::Frustum& f, const Vec3& tip, const Vec3& axis, double h0, double h1, double resolution,
+             double& best) const {
+    const auto radius = [&](double h) {
+      return f.radius_from + (f.radius_to - f.radius_from) * (h - f.from) / (f.to - f.from);
+    };
     const double r0 = radius(h0), r1 = radius(h1), widest = std::max(r0, r1), middle = 0.5 * (h0 + h1);
     // Centres farther up see a slice over a flat surface as well as ever smaller boxes would.
     for (const double c : {middle, h0 + widest, h0 + 3 * widest}) {
@@ -80,8 +86,8 @@ class CgalTree {
     const Vec3 e = axis.unitOrthogonal(), g = axis.cross(e);
     box(f, tip, axis, e, g, Vec3(0, 0, middle), Vec3(widest, widest, 0.5 * (h1 - h0)), resolution, best);
   }
-  void box(const tool::Frustum& f, const Vec3& tip, const Vec3& axis, const Vec3& e, const Vec3& g, const Vec3& c, const Vec3& half, double resolution,
-           double& best) const {
+  void box(const tool::Frustum& f, const Vec3& tip, const Vec3& axis, const Vec3& e, const Vec3& g, const Vec3& c,
+           const Vec3& half, double resolution, double& best) const {
     const Vec3 x = tip + c.x() * e + c.y() * g + c.z() * axis;
     const double reach = half.norm();
     if (best <= 0 || test::distance_to_frustum(x, f, tip, axis) > reach) return;

@@ -12,8 +12,9 @@ namespace toothpath::bench {
 inline constexpr double kInner = 250, kOuter = 300, kDepth = 7, kPi2 = 6.283185307179586;
 inline constexpr int kTeeth = 120;
 
-/// Point of the working surface: u in [0, 1) runs over one pitch from the middle of a tooth's tip, r is the radius. Flanks of about 20 deg
-/// that grow flatter outwards and bulge a little, round roots. The middle of the space is at u = 0.5.
+/// Point of the working surface: u in [0, 1) runs over one pitch from the middle of a tooth's tip, r is the radius.
+/// Flanks of about 20 deg that grow flatter outwards and bulge a little, round roots. The middle of the space is at u =
+/// 0.5.
 inline Vec3 ring_point(double u, double r, int tooth) {
   const double side = u < 0.5 ? -1 : 1, x = std::abs(u - 0.5) * 2;  // 0 middle of the space, 1 middle of the tip
   const double root = 0.33, tip = 0.72;
@@ -33,13 +34,16 @@ inline Vec3 ring_point(double u, double r, int tooth) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-/// The closed ring: `across` facets over a pitch, `along` over the width; the underside is a flat ring 12 mm below the roots.
+/// The closed ring: `across` facets over a pitch, `along` over the width; the underside is a flat ring 12 mm below the
+/// roots.
 inline mesh::TriangleMesh ring_mesh(int across, int along) {
   mesh::TriangleMesh mesh;
   const int n = kTeeth * across;
   const auto at = [&](int i, int k) { return std::int32_t(i * n + (k % n)); };
   for (int i = 0; i <= along; ++i)
-    for (int k = 0; k < n; ++k) mesh.vertices.push_back(ring_point(double(k % across) / across, kInner + (kOuter - kInner) * i / along, k / across));
+    for (int k = 0; k < n; ++k)
+      mesh.vertices.push_back(
+          ring_point(double(k % across) / across, kInner + (kOuter - kInner) * i / along, k / across));
   for (const double r : {kOuter, kInner})
     for (int k = 0; k < n; ++k) {
       Vec3 p = ring_point(double(k % across) / across, r, k / across);
@@ -63,12 +67,13 @@ inline tool::ToolAssembly ball_mill(bool long_tool) {
   t.shank_diameter_mm = 3.8;
   t.length_mm = 100;
   t.stick_out_mm = long_tool ? 25 : 10;
-  t.holder = long_tool ? std::vector<tool::HolderSegment>{{10, 40, 8}, {40, 40, 40}} : std::vector<tool::HolderSegment>{{8, 24, 6}, {24, 24, 30}};
+  t.holder = long_tool ? std::vector<tool::HolderSegment>{{10, 40, 8}, {40, 40, 40}}
+                       : std::vector<tool::HolderSegment>{{8, 24, 6}, {24, 24, 30}};
   return t;
 }
 
-/// Flank passes, poses 0.1 mm apart along the width; the ball's gap to the surface differs from pass to pass, some cut. `planted`: each pose
-/// is sunk along the axis by up to 8 mm, so that every body strikes somewhere.
+/// Flank passes, poses 0.1 mm apart along the width; the ball's gap to the surface differs from pass to pass, some cut.
+/// `planted`: each pose is sunk along the axis by up to 8 mm, so that every body strikes somewhere.
 inline std::vector<clearance::ToolPose> flank_passes(int passes, bool planted) {
   std::mt19937_64 generator(7);
   const auto uniform = [&](double a, double b) { return a + (b - a) * double(generator() >> 11) * 0x1p-53; };
@@ -76,7 +81,8 @@ inline std::vector<clearance::ToolPose> flank_passes(int passes, bool planted) {
   std::vector<clearance::ToolPose> poses;
   for (int pass = 0; pass < passes; ++pass) {
     const int tooth = int(generator() % kTeeth);
-    const double u = 0.5 + (pass % 2 ? 0.5 : -0.5) * (0.36 + 0.34 * (pass % 7) / 6.0), gap = gaps[pass % 5], lean = uniform(0, 0.06);
+    const double u = 0.5 + (pass % 2 ? 0.5 : -0.5) * (0.36 + 0.34 * (pass % 7) / 6.0), gap = gaps[pass % 5],
+                 lean = uniform(0, 0.06);
     for (double r = kInner + 1; r < kOuter - 1; r += 0.1) {
       const double e = 1e-4;
       const Vec3 p = ring_point(u, r, tooth);

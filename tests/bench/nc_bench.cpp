@@ -1,7 +1,8 @@
-// Blocks per second on one core, written and read, for every dialect with and without TCP (nc_write/.., nc_read/..); the counter
-// `rounding_mm` is the proven bound of the printed words, `worst_mm` what the read-back finds at the ends of the blocks.
-// And lines of NC text per second: the project's fixed-point printer, std::to_chars and an output stream, on the same words. The
-// counter `max_error_mm` is the greatest distance of a printed X word from the number that it stands for.
+// Blocks per second on one core, written and read, for every dialect with and without TCP (nc_write/.., nc_read/..);
+// the counter `rounding_mm` is the proven bound of the printed words, `worst_mm` what the read-back finds at the ends
+// of the blocks. And lines of NC text per second: the project's fixed-point printer, std::to_chars and an output
+// stream, on the same words. The counter `max_error_mm` is the greatest distance of a printed X word from the number
+// that it stands for.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -57,7 +58,8 @@ void print_fixed(std::string& out, const std::vector<Line>& lines) {
   for (const auto& l : lines) {
     for (int i = 0; i < 5; ++i) {
       out += " XYZAC"[i + 1];
-      toothpath::numbers::append_fixed(out, numbers::to_fixed(l.word[i], i < 3 ? kLinear : kRotary), i < 3 ? kLinear : kRotary, false);
+      toothpath::numbers::append_fixed(out, numbers::to_fixed(l.word[i], i < 3 ? kLinear : kRotary),
+                                       i < 3 ? kLinear : kRotary, false);
       out += ' ';
     }
     out += 'F';
@@ -87,7 +89,8 @@ void print_stream(std::string& out, const std::vector<Line>& lines) {
   std::ostringstream stream;
   stream << std::fixed;
   for (const auto& l : lines) {
-    for (int i = 0; i < 5; ++i) stream << "XYZAC"[i] << std::setprecision(i < 3 ? kLinear : kRotary) << l.word[i] << ' ';
+    for (int i = 0; i < 5; ++i)
+      stream << "XYZAC"[i] << std::setprecision(i < 3 ? kLinear : kRotary) << l.word[i] << ' ';
     stream << 'F' << std::setprecision(3) << l.feed << '\n';
   }
   out = stream.str();
@@ -111,10 +114,14 @@ struct Post {
   const char* dialect;
   machines::TcpMode tcp;
 };
-constexpr Post kPosts[] = {{"linuxcnc", "linuxcnc", machines::TcpMode::none},          {"linuxcnc_tcp", "linuxcnc", machines::TcpMode::angles},
-                           {"fanuc", "fanuc", machines::TcpMode::none},                {"fanuc_tcp", "fanuc", machines::TcpMode::angles},
-                           {"siemens", "siemens", machines::TcpMode::none},            {"siemens_tcp", "siemens", machines::TcpMode::angles},
-                           {"heidenhain_tcp", "heidenhain", machines::TcpMode::angles}, {"apt", "apt", machines::TcpMode::vectors}};
+constexpr Post kPosts[] = {{"linuxcnc", "linuxcnc", machines::TcpMode::none},
+                           {"linuxcnc_tcp", "linuxcnc", machines::TcpMode::angles},
+                           {"fanuc", "fanuc", machines::TcpMode::none},
+                           {"fanuc_tcp", "fanuc", machines::TcpMode::angles},
+                           {"siemens", "siemens", machines::TcpMode::none},
+                           {"siemens_tcp", "siemens", machines::TcpMode::angles},
+                           {"heidenhain_tcp", "heidenhain", machines::TcpMode::angles},
+                           {"apt", "apt", machines::TcpMode::vectors}};
 
 /// A long pass with a moving tool axis, one tooth.
 struct Job {
@@ -128,12 +135,14 @@ Job job_of(const Post& post, int steps = 50000) {
   Job j;
   j.machine = test::with_dialect(test::trunnion(), post.dialect);
   j.machine.tcp = post.tcp;
-  j.machine.post.tcp_on = post.tcp != machines::TcpMode::none && std::string(post.dialect) == "linuxcnc" ? std::vector<std::string>{"M428"} : std::vector<std::string>{};
+  j.machine.post.tcp_on = post.tcp != machines::TcpMode::none && std::string(post.dialect) == "linuxcnc"
+                              ? std::vector<std::string>{"M428"}
+                              : std::vector<std::string>{};
   if (!j.machine.post.tcp_on.empty()) j.machine.post.tcp_off = {"M429"};
   j.path = test::sample_path(0.3, 0.4, steps);
   j.dialect = *controls::dialect_of(j.machine);
-  j.program = *joints::AxisProgramTestAccess::build(std::vector{j.path}, test::tools(), test::standing(), j.machine, 1, test::kBody,
-                                            controls::axis_options(j.dialect, j.machine));
+  j.program = *joints::AxisProgramTestAccess::build(std::vector{j.path}, test::tools(), test::standing(), j.machine, 1,
+                                                    test::kBody, controls::axis_options(j.dialect, j.machine));
   j.text = text::write_nc(j.program, j.dialect, {})->text;
   return j;
 }
@@ -163,7 +172,8 @@ void read_blocks(benchmark::State& state, const Post& post) {
   // Accuracy on steps well above the last digit; what is timed above is finer than any path.
   const Job wide = job_of(post, 300);
   const auto back = readback::read_back(wide.text, "p", *control, wide.machine, test::standing(), {.teeth = 1});
-  const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, wide.machine, test::standing(), 1, {1e-3, 1e-3});
+  const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, wide.machine,
+                                              test::standing(), 1, {1e-3, 1e-3});
   const std::vector<const path::ClPath*> paths = {&wide.path};
   state.counters["worst_mm"] = readback::compare_with_cl(*motions, paths, 5e-3, 1e-3).worst_mm;
 }

@@ -1,7 +1,7 @@
-// Where the planner's time goes: seconds of the distance index, of every stage of the plan and of the gouge check, once on one thread and once
-// on all, for a double helical gear, a spur gear and a gear that needs five axes. Beside it how good the result is: the largest sag of a block,
-// the cusps that are predicted, the deepest cut measured and proven, the least gap of shank and holder; and whether both runs made the same
-// records to the last bit.
+// Where the planner's time goes: seconds of the distance index, of every stage of the plan and of the gouge check, once
+// on one thread and once on all, for a double helical gear, a spur gear and a gear that needs five axes. Beside it how
+// good the result is: the largest sag of a block, the cusps that are predicted, the deepest cut measured and proven,
+// the least gap of shank and holder; and whether both runs made the same records to the last bit.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -51,7 +51,10 @@ path::MillingOperation roughing(int tool, double step_mm) {
 std::vector<Case> cases() {
   auto stiff = test::ball_mill(2, 6, 7.6, 12, 40);
   stiff.holder = {{40, 40, 40}};
-  return {{"double helical", test::quarter_dhfg(), {test::ball_mill(1, 3.5, 0.95, 16, 10), test::ball_mill(0.5, 3.2, 0.46, 14, 10)}, {roughing(0, 0.25), finishing(1, 0.004)}},
+  return {{"double helical",
+           test::quarter_dhfg(),
+           {test::ball_mill(1, 3.5, 0.95, 16, 10), test::ball_mill(0.5, 3.2, 0.46, 14, 10)},
+           {roughing(0, 0.25), finishing(1, 0.004)}},
           {"spur", test::small_spur(), {test::ball_mill(1, 6, 0.95, 16, 10)}, {finishing(0, 0.004)}},
           {"five axes", test::steep_gear(105, 77.5, 85.5), {stiff}, {finishing(0, 0.05)}}};
 }
@@ -78,8 +81,9 @@ class Clock {
 };
 
 bool same(const path::ClRecord& a, const path::ClRecord& b) {
-  return std::memcmp(a.tip.data(), b.tip.data(), sizeof(double) * 3) == 0 && std::memcmp(a.axis.data(), b.axis.data(), sizeof(double) * 3) == 0 &&
-         a.feed_mm_min == b.feed_mm_min && a.kind == b.kind;
+  return std::memcmp(a.tip.data(), b.tip.data(), sizeof(double) * 3) == 0 &&
+         std::memcmp(a.axis.data(), b.axis.data(), sizeof(double) * 3) == 0 && a.feed_mm_min == b.feed_mm_min &&
+         a.kind == b.kind;
 }
 
 /// One row; the records of all operations.
@@ -116,9 +120,10 @@ std::vector<path::ClRecord> row(const Case& c, int threads) {
   double chord = 0, cusp = 0, tilt_gap = INFINITY;
   for (const auto& o : plan.operations) chord = std::max(chord, o.chord_mm), cusp = std::max(cusp, o.scallop_max_mm);
   for (const auto& d : plan.directions) tilt_gap = std::min(tilt_gap, d.clearance_mm);
-  std::printf("%-15s %2d %8zu %7.3f %7.3f %9.3f %11.3f %6.3f %6.3f %7.3f | %6.3f %7.2f %8.3f %7.3f %7.3f\n", c.name, threads, records.size(), clock["distance index"],
-              clock["tool passes"], clock["tool direction"], clock["five-axis orientation"], clock["links"], clock["rest"], clock["gouge check"], chord * 1000, cusp * 1000,
-              proof.measured_mm * 1000, proof.bound_mm * 1000, tilt_gap);
+  std::printf("%-15s %2d %8zu %7.3f %7.3f %9.3f %11.3f %6.3f %6.3f %7.3f | %6.3f %7.2f %8.3f %7.3f %7.3f\n", c.name,
+              threads, records.size(), clock["distance index"], clock["tool passes"], clock["tool direction"],
+              clock["five-axis orientation"], clock["links"], clock["rest"], clock["gouge check"], chord * 1000,
+              cusp * 1000, proof.measured_mm * 1000, proof.bound_mm * 1000, tilt_gap);
   std::fflush(stdout);
   return records;
 }
@@ -127,11 +132,13 @@ std::vector<path::ClRecord> row(const Case& c, int threads) {
 
 int main() {
   const int all = std::max(2, int(std::thread::hardware_concurrency()));
-  std::printf("%-15s %2s %8s %7s %7s %9s %11s %6s %6s %7s | %6s %7s %8s %7s %7s\n", "seconds", "th", "records", "index", "passes", "direction", "orientation", "links",
-              "rest", "check", "sag um", "cusp um", "meas. um", "bound", "gap mm");
+  std::printf("%-15s %2s %8s %7s %7s %9s %11s %6s %6s %7s | %6s %7s %8s %7s %7s\n", "seconds", "th", "records", "index",
+              "passes", "direction", "orientation", "links", "rest", "check", "sag um", "cusp um", "meas. um", "bound",
+              "gap mm");
   bool equal = true;
   for (const Case& c : cases()) {
-    const auto one = test::on_threads(1, [&] { return row(c, 1); }), many = test::on_threads(all, [&] { return row(c, all); });
+    const auto one = test::on_threads(1, [&] { return row(c, 1); }),
+               many = test::on_threads(all, [&] { return row(c, all); });
     const bool as_one = one.size() == many.size() && std::equal(one.begin(), one.end(), many.begin(), same);
     if (!as_one) std::printf("%s: %d threads made other records than one\n", c.name, all);
     equal = equal && as_one;

@@ -1,5 +1,5 @@
-// How the gouge check grows: CL records from 1e4 to 1e6 on one gear, and 20 against 200 teeth. Prints, for each, records,
-// seconds, distances asked, the worst cut measured and proven, and the greatest memory of the process so far.
+// How the gouge check grows: CL records from 1e4 to 1e6 on one gear, and 20 against 200 teeth. Prints, for each,
+// records, seconds, distances asked, the worst cut measured and proven, and the greatest memory of the process so far.
 //
 // usage: toothpath_scale_bench [largest number of records, 1000000]
 #include <sys/resource.h>
@@ -20,7 +20,9 @@ namespace {
 
 using namespace toothpath;
 
-face_gear::FaceGearParameters spur(int teeth) { return test::transverse_gear(teeth, 18, 2, 0.6, {{0, teeth + 1.3, teeth + 3.3}}); }
+face_gear::FaceGearParameters spur(int teeth) {
+  return test::transverse_gear(teeth, 18, 2, 0.6, {{0, teeth + 1.3, teeth + 3.3}});
+}
 
 tool::ToolAssembly mill() { return test::ball_mill(1, 6, 0.95, 16, 10); }
 
@@ -41,9 +43,11 @@ struct Planned {
   path::ClPath path;
 };
 
-/// A finishing path of about `records` records: the cusp height decides. Passes repeat where the planner's own number is not reached.
+/// A finishing path of about `records` records: the cusp height decides. Passes repeat where the planner's own number
+/// is not reached.
 std::unique_ptr<Planned> plan(int teeth, std::size_t records) {
-  auto job = std::make_unique<Planned>(Planned{test::made(spur(teeth)), {mill()}, analytic::GearDistance(test::made(spur(teeth)), 1.3), {}});
+  auto job = std::make_unique<Planned>(
+      Planned{test::made(spur(teeth)), {mill()}, analytic::GearDistance(test::made(spur(teeth)), 1.3), {}});
   path::MillingOperation op;
   op.type = path::OperationType::finishing;
   op.speed_rpm = 20000;
@@ -77,10 +81,12 @@ double row(const char* what, int teeth, std::size_t records) {
   const auto begin = std::chrono::steady_clock::now();
   const auto r = check.check(analytic::GougeCheck::motions_of(job->path), {0});
   const double spent = seconds_since(begin), each = spent / double(job->path.records.size());
-  std::printf("%-14s %4d teeth %8zu records  plan %7.2f s  check %7.2f s  %6.2f us/record  %5.2f distances/record  "
-              "measured %7.3f um  bound %7.3f um  %s  peak %6.0f MB\n",
-              what, teeth, job->path.records.size(), planning, spent, each * 1e6, double(r.distance_queries) / double(r.motions), r.measured_mm * 1000,
-              r.bound_mm * 1000, check.passes(r) ? "clean" : "REFUSED", peak_megabytes());
+  std::printf(
+      "%-14s %4d teeth %8zu records  plan %7.2f s  check %7.2f s  %6.2f us/record  %5.2f distances/record  measured "
+      "%7.3f um  bound %7.3f um  %s  peak %6.0f MB\n",
+      what, teeth, job->path.records.size(), planning, spent, each * 1e6,
+      double(r.distance_queries) / double(r.motions), r.measured_mm * 1000, r.bound_mm * 1000,
+      check.passes(r) ? "clean" : "REFUSED", peak_megabytes());
   std::fflush(stdout);
   return each;
 }

@@ -1,9 +1,10 @@
-// Makes the folder from which LinuxCNC's motion controller runs a program of a job, and compares what it executed with our
-// read-back of the same text.
+// Makes the folder from which LinuxCNC's motion controller runs a program of a job, and compares what it executed with
+// our read-back of the same text.
 //   toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH CORNERS ACCELERATION PERIOD
 //   toothpath_controller_case compare JOB FOLDER ACCELERATION PERIOD      FOLDER/samples.txt: what halsampler recorded
-// TEETH: teeth per operation, "1,1". CORNERS: "written", or a line like "G61.1" or "G64 P0.0003 Q0" in the place of the program's own.
-// ACCELERATION: of every axis, mm/s^2 and deg/s^2. PERIOD: of the servo thread and of the record, microseconds.
+// TEETH: teeth per operation, "1,1". CORNERS: "written", or a line like "G61.1" or "G64 P0.0003 Q0" in the place of the
+// program's own. ACCELERATION: of every axis, mm/s^2 and deg/s^2. PERIOD: of the servo thread and of the record,
+// microseconds.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,8 +14,8 @@
 #include <regex>
 #include <sstream>
 
-#include "app/process/gear_of_job.h"
 #include "app/job/file.h"
+#include "app/process/gear_of_job.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/readback/reader.h"
 #include "tests/controller/joint_record.h"
@@ -26,9 +27,9 @@ namespace fs = std::filesystem;
 using test::JointVector, test::PathCorner;
 
 // The record is printed with six digits after the point.
-constexpr double kPrinted = 1e-6;           // mm and deg
-constexpr double kGiveUp = 1.0;             // mm: beyond this the record does not follow the path
-constexpr double kPiece = 0.02;             // deg: moves with TCP are cut into pieces that turn by no more than this
+constexpr double kPrinted = 1e-6;  // mm and deg
+constexpr double kGiveUp = 1.0;    // mm: beyond this the record does not follow the path
+constexpr double kPiece = 0.02;    // deg: moves with TCP are cut into pieces that turn by no more than this
 
 struct Case {
   job::Job job;
@@ -49,9 +50,11 @@ Result<Case> read_case(const std::string& job_file) {
   if (auto* errors = machine.refused()) return errors->front();
   c.machine = std::move(machine).value();
   const machines::KinematicChain& chain = c.machine.chain;
-  if (c.machine.dialect != "linuxcnc" || chain.table.size() != 2 || chain.table[0].letter != 'C' || chain.table[0].sign != -1 ||
-      chain.table[1].sign != -1)
-    return fail("{} is no machine for xyzac-trt or xyzbc-trt: C on A or B in the table, both senses reversed, dialect linuxcnc", c.machine.file);
+  if (c.machine.dialect != "linuxcnc" || chain.table.size() != 2 || chain.table[0].letter != 'C' ||
+      chain.table[0].sign != -1 || chain.table[1].sign != -1)
+    return fail(
+        "{} is no machine for xyzac-trt or xyzbc-trt: C on A or B in the table, both senses reversed, dialect linuxcnc",
+        c.machine.file);
   c.tilt = chain.table[1].letter;
   return c;
 }
@@ -78,7 +81,8 @@ std::string ini(const Case& c, const Settings& settings) {
   }
   double fastest = 0;
   for (const Joint& j : joints) fastest = std::max(fastest, j.speed);
-  std::string text = fmt::format(R"([EMC]
+  std::string text =
+      fmt::format(R"([EMC]
 VERSION = 1.1
 MACHINE = toothpath
 NML_FILE = linuxcnc.nml
@@ -112,33 +116,45 @@ CYCLE_TIME = 0.001
 EMCIO = io
 CYCLE_TIME = 0.100
 TOOL_TABLE = tools.tbl
-)", kinematics(c), c.tilt, fastest, fastest, settings.acceleration, settings.period_us * 1000);
+)",
+                  kinematics(c), c.tilt, fastest, fastest, settings.acceleration, settings.period_us * 1000);
   // With TCP the words of an axis are not its joint: only the joints have limits.
   for (std::size_t i = 0; i < 5; ++i)
-    text += fmt::format("[AXIS_{}]\nMIN_LIMIT = -100000\nMAX_LIMIT = 100000\nMAX_VELOCITY = {}\nMAX_ACCELERATION = {}\n",
-                        i == 3 ? c.tilt : "XYZ?C"[i], joints[i].speed, settings.acceleration);
+    text +=
+        fmt::format("[AXIS_{}]\nMIN_LIMIT = -100000\nMAX_LIMIT = 100000\nMAX_VELOCITY = {}\nMAX_ACCELERATION = {}\n",
+                    i == 3 ? c.tilt : "XYZ?C"[i], joints[i].speed, settings.acceleration);
   for (std::size_t i = 0; i < 5; ++i)
-    text += fmt::format("[JOINT_{}]\nTYPE = {}\nHOME = 0\nHOME_SEARCH_VEL = 0\nHOME_SEQUENCE = 0\nMIN_LIMIT = {}\nMAX_LIMIT = {}\nMAX_VELOCITY = {}\n"
-                        "MAX_ACCELERATION = {}\nFERROR = 1\nMIN_FERROR = 1\n",
-                        i, joints[i].angular ? "ANGULAR" : "LINEAR", joints[i].least, joints[i].greatest, joints[i].speed, settings.acceleration);
+    text += fmt::format(
+        "[JOINT_{}]\nTYPE = {}\nHOME = 0\nHOME_SEARCH_VEL = 0\nHOME_SEQUENCE = 0\nMIN_LIMIT = {}\nMAX_LIMIT = "
+        "{}\nMAX_VELOCITY = {}\n"
+        "MAX_ACCELERATION = {}\nFERROR = 1\nMIN_FERROR = 1\n",
+        i, joints[i].angular ? "ANGULAR" : "LINEAR", joints[i].least, joints[i].greatest, joints[i].speed,
+        settings.acceleration);
   return text;
 }
 
 std::string hal(const Case& c, const Settings& settings) {
   const std::string kins = kinematics(c);
   const Vec3 &on_c = c.machine.chain.table[0].point_mm, &on_tilt = c.machine.chain.table[1].point_mm;
-  std::string text = fmt::format("loadrt {} sparm=identityfirst coordinates=XYZ{}C\nloadrt motmod servo_period_nsec={} num_joints=5\n"
-                                 "loadrt sampler depth=60000 cfg=fffff\naddf motion-command-handler servo-thread\n"
-                                 "addf motion-controller servo-thread\naddf sampler.0 servo-thread\n", kins, c.tilt, settings.period_us * 1000);
+  std::string text = fmt::format(
+      "loadrt {} sparm=identityfirst coordinates=XYZ{}C\nloadrt motmod servo_period_nsec={} num_joints=5\n"
+      "loadrt sampler depth=60000 cfg=fffff\naddf motion-command-handler servo-thread\n"
+      "addf motion-controller servo-thread\naddf sampler.0 servo-thread\n",
+      kins, c.tilt, settings.period_us * 1000);
   for (int i = 0; i < 5; ++i)
     text += fmt::format("net joint{} joint.{}.motor-pos-cmd => joint.{}.motor-pos-fb sampler.0.pin.{}\n", i, i, i, i);
-  text += fmt::format("setp {0}.x-rot-point {1}\nsetp {0}.y-rot-point {2}\nsetp {0}.z-rot-point 0\nsetp {0}.{3}-offset {4}\nsetp {0}.z-offset {5}\n",
-                      kins, on_c.x(), on_c.y(), c.tilt == 'A' ? 'y' : 'x', c.tilt == 'A' ? on_tilt.y() - on_c.y() : on_tilt.x() - on_c.x(),
-                      on_tilt.z());
-  text += fmt::format("net tool-offset motion.tooloffset.z => {}.tool-offset\nnet kinstype motion.analog-out-03 => motion.switchkins-type\n"
-                      "net estop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in\n"
-                      "net tool-prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared\n"
-                      "net tool-change iocontrol.0.tool-change => iocontrol.0.tool-changed\n", kins);
+  text += fmt::format(
+      "setp {0}.x-rot-point {1}\nsetp {0}.y-rot-point {2}\nsetp {0}.z-rot-point 0\nsetp {0}.{3}-offset {4}\nsetp "
+      "{0}.z-offset {5}\n",
+      kins, on_c.x(), on_c.y(), c.tilt == 'A' ? 'y' : 'x',
+      c.tilt == 'A' ? on_tilt.y() - on_c.y() : on_tilt.x() - on_c.x(), on_tilt.z());
+  text += fmt::format(
+      "net tool-offset motion.tooloffset.z => {}.tool-offset\nnet kinstype motion.analog-out-03 => "
+      "motion.switchkins-type\n"
+      "net estop iocontrol.0.user-enable-out => iocontrol.0.emc-enable-in\n"
+      "net tool-prepare iocontrol.0.tool-prepare => iocontrol.0.tool-prepared\n"
+      "net tool-change iocontrol.0.tool-change => iocontrol.0.tool-changed\n",
+      kins);
   return text;
 }
 
@@ -147,8 +163,8 @@ std::string remap(int code, int kinematics_type) {
   return fmt::format("o<{0}remap> sub\nM68 E3 Q{1}\nM66 E0 L0\no<{0}remap> endsub\nM2\n", code, kinematics_type);
 }
 
-/// The program with these teeth of every operation instead of all, and with another word for corners where asked. What the controller runs is
-/// what we read. Teeth stand in a loop, or are written out behind (TOOTH k).
+/// The program with these teeth of every operation instead of all, and with another word for corners where asked. What
+/// the controller runs is what we read. Teeth stand in a loop, or are written out behind (TOOTH k).
 Result<std::string> shortened(const std::string& text, const std::string& teeth, const std::string& corners_line) {
   std::vector<std::string> counts;
   std::istringstream list(teeth), in(text);
@@ -159,11 +175,13 @@ Result<std::string> shortened(const std::string& text, const std::string& teeth,
   bool dropped = false;
   for (std::string line; std::getline(in, line);) {
     std::smatch m;
-    if (line.rfind("(OP ", 0) == 0 && ++operations > counts.size()) return fail("the program has more operations than \"{}\"", teeth);
+    if (line.rfind("(OP ", 0) == 0 && ++operations > counts.size())
+      return fail("the program has more operations than \"{}\"", teeth);
     if (std::regex_search(line, m, tooth)) dropped = std::stoi(m[1]) >= std::stoi(counts.at(operations - 1));
     if (line.rfind("G94 F", 0) == 0 || line == "M5") dropped = false;  // the end of the operation
     if (dropped) continue;
-    if (std::regex_search(line, loop)) line = std::regex_replace(line, loop, "[#1 LT " + counts.at(operations - 1) + "]");
+    if (std::regex_search(line, loop))
+      line = std::regex_replace(line, loop, "[#1 LT " + counts.at(operations - 1) + "]");
     if (corners_line != "written") line = std::regex_replace(line, corners, corners_line);
     out += line + "\n";
   }
@@ -179,20 +197,25 @@ Status write(const fs::path& file, const std::string& text) {
   return Ok{};
 }
 
-Status prepare(const Case& c, const std::string& program, const fs::path& folder, const std::string& teeth, const std::string& corners,
-               const Settings& settings) {
+Status prepare(const Case& c, const std::string& program, const fs::path& folder, const std::string& teeth,
+               const std::string& corners, const Settings& settings) {
   const std::string text = read(program);
   if (text.empty()) return fail("{} is missing or empty", program);
   const auto part = shortened(text, teeth, corners);
   if (!part) return part.error();
   std::string tools, offsets;
-  for (const tool::ToolAssembly& t : c.job.tools) tools += fmt::format("T{0} P{0} Z{1} D{2}\n", t.number, t.length_mm, t.diameter_mm);
+  for (const tool::ToolAssembly& t : c.job.tools)
+    tools += fmt::format("T{0} P{0} Z{1} D{2}\n", t.number, t.length_mm, t.diameter_mm);
   if (!c.job.setup || c.job.setup->work_offset != "G54") return fail("the job must stand in G54");
   const Vec3 at = c.job.setup->work_offset_at_mm;
   offsets = fmt::format("5220\t1\n5221\t{}\n5222\t{}\n5223\t{}\n", at.x(), at.y(), at.z());
-  const std::pair<const char*, std::string> files[] = {
-      {"machine.ini", ini(c, settings)}, {"machine.hal", hal(c, settings)}, {"tools.tbl", tools}, {"offsets.var", offsets},
-      {"428remap.ngc", remap(428, 1)}, {"429remap.ngc", remap(429, 0)}, {"program.ngc", *part}};
+  const std::pair<const char*, std::string> files[] = {{"machine.ini", ini(c, settings)},
+                                                       {"machine.hal", hal(c, settings)},
+                                                       {"tools.tbl", tools},
+                                                       {"offsets.var", offsets},
+                                                       {"428remap.ngc", remap(428, 1)},
+                                                       {"429remap.ngc", remap(429, 0)},
+                                                       {"program.ngc", *part}};
   for (const auto& [name, content] : files)
     if (const Status s = write(folder / name, content); !s) return s;
   return Ok{};
@@ -206,13 +229,16 @@ struct Expected {
   std::size_t blocks = 0;
 };
 
-/// Blocks that turn are cut into pieces: with TCP the tip goes straight and not the joints, without it the other way round.
+/// Blocks that turn are cut into pieces: with TCP the tip goes straight and not the joints, without it the other way
+/// round.
 Result<Expected> expected_path(const Case& c, const std::string& text) {
   const auto control = controls::control_of(c.machine, *c.job.setup, c.job.tools);
   if (!control) return control.error();
   const machines::KinematicChain& chain = c.machine.chain;
   Expected out;
-  const auto add = [&out](const std::array<double, 5>& j, int line) { out.path.push_back({{j[0], j[1], j[2], j[4], j[3]}, line}); };
+  const auto add = [&out](const std::array<double, 5>& j, int line) {
+    out.path.push_back({{j[0], j[1], j[2], j[4], j[3]}, line});
+  };
   bool begun = false;
   readback::ExecutedMove last;
   const Status s = readback::execute_nc(text, "program.ngc", *control, [&](const readback::ExecutedMove& e) {
@@ -222,10 +248,14 @@ Result<Expected> expected_path(const Case& c, const std::string& text) {
     if (begun) {
       const double length = out.tool_length_mm = control->tool_length_mm.at(e.tool);
       const auto tip_of = [&](const readback::ExecutedMove& m) {
-        return chain.forward({{m.joints[0], m.joints[1], m.joints[2]}, {radians(m.joints[3]), radians(m.joints[4])}}, length).tip_mm;
+        return chain
+            .forward({{m.joints[0], m.joints[1], m.joints[2]}, {radians(m.joints[3]), radians(m.joints[4])}}, length)
+            .tip_mm;
       };
       const Vec3 from = tip_of(last), to = tip_of(e);
-      const double turn = e.rapid && !e.tcp ? 0 : std::max(std::abs(e.joints[3] - last.joints[3]), std::abs(e.joints[4] - last.joints[4]));
+      const double turn =
+          e.rapid && !e.tcp ? 0
+                            : std::max(std::abs(e.joints[3] - last.joints[3]), std::abs(e.joints[4] - last.joints[4]));
       const int pieces = static_cast<int>(std::ceil(turn / kPiece));
       for (int i = 1; i < pieces; ++i) {
         const double t = static_cast<double>(i) / pieces;
@@ -249,19 +279,25 @@ Result<Expected> expected_path(const Case& c, const std::string& text) {
 
 /// Tip in the table frame [mm] and the two small components of the tool axis [degrees], in the place of joints.
 JointVector pose_of(const Case& c, const JointVector& j, double tool_length_mm, bool with_axis) {
-  const machines::TablePose pose = c.machine.chain.forward({{j[0], j[1], j[2]}, {radians(j[4]), radians(j[3])}}, tool_length_mm);
-  return {pose.tip_mm.x(), pose.tip_mm.y(), pose.tip_mm.z(), with_axis ? degrees(pose.axis.x()) : 0, with_axis ? degrees(pose.axis.y()) : 0};
+  const machines::TablePose pose =
+      c.machine.chain.forward({{j[0], j[1], j[2]}, {radians(j[4]), radians(j[3])}}, tool_length_mm);
+  return {pose.tip_mm.x(), pose.tip_mm.y(), pose.tip_mm.z(), with_axis ? degrees(pose.axis.x()) : 0,
+          with_axis ? degrees(pose.axis.y()) : 0};
 }
 
-/// Greatest acceleration of a point of this space while LinuxCNC runs a block so that every joint keeps its own: of a block with the
-/// steps d_i the joints accelerate by d_i / max(d_i / a_i), the point by its own step in the same proportion.
-double greatest_acceleration(std::span<const PathCorner> joints, std::span<const PathCorner> points, double of_every_axis) {
+/// Greatest acceleration of a point of this space while LinuxCNC runs a block so that every joint keeps its own: of a
+/// block with the steps d_i the joints accelerate by d_i / max(d_i / a_i), the point by its own step in the same
+/// proportion.
+double greatest_acceleration(std::span<const PathCorner> joints, std::span<const PathCorner> points,
+                             double of_every_axis) {
   double most = 0;
   for (std::size_t k = 1; k < joints.size(); ++k) {
     double least_time_squared = 0;
     for (std::size_t i = 0; i < 5; ++i)
-      least_time_squared = std::max(least_time_squared, std::abs(joints[k].joints[i] - joints[k - 1].joints[i]) / of_every_axis);
-    if (least_time_squared > 0) most = std::max(most, test::joint_distance(points[k - 1].joints, points[k].joints) / least_time_squared);
+      least_time_squared =
+          std::max(least_time_squared, std::abs(joints[k].joints[i] - joints[k - 1].joints[i]) / of_every_axis);
+    if (least_time_squared > 0)
+      most = std::max(most, test::joint_distance(points[k - 1].joints, points[k].joints) / least_time_squared);
   }
   return most;
 }
@@ -271,13 +307,18 @@ bool judge(const char* what, std::span<const PathCorner> path, std::span<const J
   using test::Counted;
   const auto both = test::compare_curves(path, record, kGiveUp);
   if (!both.followed) {
-    fmt::print("  {:<12} NOT FOLLOWED: more than {} mm away near line {} of the program, or stopped there\n", what, kGiveUp, both.stuck_line);
+    fmt::print("  {:<12} NOT FOLLOWED: more than {} mm away near line {} of the program, or stopped there\n", what,
+               kGiveUp, both.stuck_line);
     return false;
   }
-  const auto samples = test::compare_curves(path, record, kGiveUp, Counted::samples), corners = test::compare_curves(path, record, kGiveUp, Counted::corners);
+  const auto samples = test::compare_curves(path, record, kGiveUp, Counted::samples),
+             corners = test::compare_curves(path, record, kGiveUp, Counted::corners);
   const bool good = both.worst <= bound;
-  fmt::print("  {:<12} off the path {:.3g} um at line {}, corner not reached {:.3g} um at line {}, together {:.3g} um, bound {:.3g} um: {}\n", what,
-             samples.worst * 1e3, samples.line, corners.worst * 1e3, corners.line, both.worst * 1e3, bound * 1e3, good ? "agree" : "DIFFER");
+  fmt::print(
+      "  {:<12} off the path {:.3g} um at line {}, corner not reached {:.3g} um at line {}, together {:.3g} um, bound "
+      "{:.3g} um: {}\n",
+      what, samples.worst * 1e3, samples.line, corners.worst * 1e3, corners.line, both.worst * 1e3, bound * 1e3,
+      good ? "agree" : "DIFFER");
   return good;
 }
 
@@ -288,7 +329,8 @@ double corner_bound(const std::string& text, double acceleration, double period)
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);)
     if (std::regex_match(line, m, std::regex(R"(G64 P([0-9.]+) Q0)"))) tolerance = std::stod(m[1]);
-  const double filter = acceleration * period * period / 4, late = tolerance > 0 ? period / 2 * std::sqrt(acceleration / 2) : 0;
+  const double filter = acceleration * period * period / 4,
+               late = tolerance > 0 ? period / 2 * std::sqrt(acceleration / 2) : 0;
   return std::pow(std::sqrt(tolerance) + late, 2) + filter;
 }
 
@@ -301,8 +343,8 @@ Result<bool> compare(const Case& c, const fs::path& folder, const Settings& sett
   const auto samples = test::read_samples(in);
   if (!samples) return samples.error();
   const double digits = 0.5 * kPrinted * std::sqrt(3 + 2 * test::kMmPerDegree * test::kMmPerDegree);
-  fmt::print("{} moves, {} samples of {} us, {:g} mm/s^2 and deg/s^2; counted for corners {:.3g} um\n", expected->blocks, samples->size(),
-             settings.period_us, settings.acceleration, expected->blend_mm * 1e3);
+  fmt::print("{} moves, {} samples of {} us, {:g} mm/s^2 and deg/s^2; counted for corners {:.3g} um\n",
+             expected->blocks, samples->size(), settings.period_us, settings.acceleration, expected->blend_mm * 1e3);
   bool good = true;
   const auto look = [&](const char* what, std::span<const PathCorner> path, std::span<const JointVector> record) {
     const double acceleration = greatest_acceleration(expected->path, path, settings.acceleration);
@@ -326,8 +368,9 @@ int run(const std::vector<std::string>& args) {
   Settings settings;
   if (preparing || comparing) settings = {std::atof(args[args.size() - 2].c_str()), std::atoi(args.back().c_str())};
   if (!(settings.acceleration > 0) || settings.period_us <= 0) {
-    fmt::print(stderr, "usage: toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH CORNERS ACCELERATION PERIOD\n"
-                       "       toothpath_controller_case compare JOB FOLDER ACCELERATION PERIOD\n");
+    fmt::print(stderr,
+               "usage: toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH CORNERS ACCELERATION PERIOD\n"
+               "       toothpath_controller_case compare JOB FOLDER ACCELERATION PERIOD\n");
     return 2;
   }
   const auto c = read_case(args[1]);

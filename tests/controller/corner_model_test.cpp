@@ -1,5 +1,6 @@
-// What LinuxCNC's trajectory planner does at a corner between two straight blocks, written from its description in docs/dialects.md, against
-// the bounds that stand there: with a stop at the corner (G61, G61.1) and with a parabolic blend (G64 P).
+// What LinuxCNC's trajectory planner does at a corner between two straight blocks, written from its description in
+// docs/dialects.md, against the bounds that stand there: with a stop at the corner (G61, G61.1) and with a parabolic
+// blend (G64 P).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +24,8 @@ struct Corner {
   double slower = 0;        ///< the first block accelerates by this part less
 };
 
-/// A block under the trapezoidal planner: the speed of the next sample is the largest from which it can still stop at the end.
+/// A block under the trapezoidal planner: the speed of the next sample is the largest from which it can still stop at
+/// the end.
 struct Block {
   double length = 0, acceleration = 0, at = 0, speed = 0;
   bool braking = false;  ///< on its last deceleration
@@ -63,8 +65,10 @@ struct Block {
 double blend_speed(const Corner& c, const Block& first, const Block& second) {
   const auto reachable = [&](const Block& b) { return std::min(std::sqrt(b.acceleration * b.length), c.feed_mm_s); };
   const double v1 = reachable(first), v2 = reachable(second);
-  const double time = std::min(std::min(first.length / v1, second.length / v2), std::max(v1 / first.acceleration, v2 / second.acceleration));
-  return std::min({v1, time * first.acceleration, 2 * std::sqrt(first.acceleration * c.tolerance_mm / std::sin(c.turn_rad / 2))});
+  const double time = std::min(std::min(first.length / v1, second.length / v2),
+                               std::max(v1 / first.acceleration, v2 / second.acceleration));
+  return std::min(
+      {v1, time * first.acceleration, 2 * std::sqrt(first.acceleration * c.tolerance_mm / std::sin(c.turn_rad / 2))});
 }
 
 /// The points that the joints are sent, the corner in the origin.
@@ -94,7 +98,8 @@ std::vector<Point> executed(const Corner& c) {
   }
   std::vector<Point> out;
   for (std::size_t k = 1; k + 1 < planned.size(); ++k)
-    out.push_back({(planned[k - 1].x + 4 * planned[k].x + planned[k + 1].x) / 6, (planned[k - 1].y + 4 * planned[k].y + planned[k + 1].y) / 6});
+    out.push_back({(planned[k - 1].x + 4 * planned[k].x + planned[k + 1].x) / 6,
+                   (planned[k - 1].y + 4 * planned[k].y + planned[k + 1].y) / 6});
   return out;
 }
 
@@ -126,7 +131,8 @@ Left worst(double acceleration, double period, double tolerance) {
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(rng); };
   Left most;
   for (int i = 0; i < 3000; ++i) {
-    const Left l = left_of({uniform(0.02, 1), uniform(0.02, 1), uniform(0.05, 3.1), uniform(1, 60), acceleration, period, tolerance, i % 2 ? 0.1 : 0});
+    const Left l = left_of({uniform(0.02, 1), uniform(0.02, 1), uniform(0.05, 3.1), uniform(1, 60), acceleration,
+                            period, tolerance, i % 2 ? 0.1 : 0});
     most.corner = std::max(most.corner, l.corner);
     most.off = std::max(most.off, l.off);
   }
@@ -136,7 +142,8 @@ Left worst(double acceleration, double period, double tolerance) {
 struct Servo {
   double acceleration, period, tolerance;
 };
-constexpr Servo kServos[] = {{2000, 1e-3, 3e-4}, {2000, 5e-4, 3e-4}, {500, 1e-3, 3e-4}, {5000, 1e-3, 3e-4}, {2000, 1e-3, 2e-3}, {300, 2.5e-4, 1e-3}};
+constexpr Servo kServos[] = {{2000, 1e-3, 3e-4}, {2000, 5e-4, 3e-4}, {500, 1e-3, 3e-4},
+                             {5000, 1e-3, 3e-4}, {2000, 1e-3, 2e-3}, {300, 2.5e-4, 1e-3}};
 
 TEST(CornerModel, AStopLeavesASixthAndIsOffByATwelfth) {
   for (const auto& [a, t, tolerance] : kServos) {
@@ -152,7 +159,8 @@ TEST(CornerModel, AStopLeavesASixthAndIsOffByATwelfth) {
 TEST(CornerModel, AParabolaLeavesMoreThanItsTolerance) {
   for (const auto& [a, t, tolerance] : kServos) {
     const Left l = worst(a, t, tolerance);
-    const double early = std::sqrt(1.06 * tolerance) + t / 2 * std::sqrt(a / 2), bound = early * early + 0.3 * a * t * t;
+    const double early = std::sqrt(1.06 * tolerance) + t / 2 * std::sqrt(a / 2),
+                 bound = early * early + 0.3 * a * t * t;
     EXPECT_LE(std::max(l.corner, l.off), bound) << a << " " << t << " " << tolerance;
     EXPECT_GT(l.corner, 0.7 * bound) << a << " " << t << " " << tolerance;  // the bound is not far off
     EXPECT_GT(l.corner, 1.05 * tolerance) << a << " " << t << " " << tolerance;

@@ -42,15 +42,22 @@ double joint_distance(const JointVector& a, const JointVector& b) {
   return std::sqrt(sum);
 }
 
-// costs[j - first]: the least greatest distance over all walks that stand in segment j (corner j to j + 1) at this sample. Segments
-// whose cost is beyond give_up are dropped at both ends, so the list stays short.
-CurveComparison compare_curves(std::span<const PathCorner> path, std::span<const JointVector> record, double give_up, Counted counted) {
+// costs[j - first]: the least greatest distance over all walks that stand in segment j (corner j to j + 1) at this
+// sample. Segments whose cost is beyond give_up are dropped at both ends, so the list stays short.
+CurveComparison compare_curves(std::span<const PathCorner> path, std::span<const JointVector> record, double give_up,
+                               Counted counted) {
   CurveComparison result;
-  const auto sample = [&](double distance) { return counted == Counted::corners && distance <= give_up ? 0 : distance; };
-  const auto corner = [&](double distance) { return counted == Counted::samples && distance <= give_up ? 0 : distance; };
+  const auto sample = [&](double distance) {
+    return counted == Counted::corners && distance <= give_up ? 0 : distance;
+  };
+  const auto corner = [&](double distance) {
+    return counted == Counted::samples && distance <= give_up ? 0 : distance;
+  };
   if (path.size() < 2) return result;
   const std::size_t last = path.size() - 2;
-  const auto to_segment = [&](const JointVector& p, std::size_t j) { return distance_to_segment(p, path[j].joints, path[j + 1].joints); };
+  const auto to_segment = [&](const JointVector& p, std::size_t j) {
+    return distance_to_segment(p, path[j].joints, path[j + 1].joints);
+  };
 
   std::size_t first = 0, best_j = 0;
   std::vector<Cost> costs, next;
@@ -59,7 +66,8 @@ CurveComparison compare_curves(std::span<const PathCorner> path, std::span<const
   for (std::size_t i = 0; i < record.size(); ++i) {
     const JointVector& s = record[i];
     const JointVector& before = record[i ? i - 1 : 0];
-    // As long as it has not left the first segment behind, the walk may begin at any sample that is at the first corner.
+    // As long as it has not left the first segment behind, the walk may begin at any sample that is at the first
+    // corner.
     const double at_start = corner(joint_distance(s, path[0].joints));
     const bool may_start = first == 0 && at_start <= give_up;
     next.clear();
@@ -67,7 +75,8 @@ CurveComparison compare_curves(std::span<const PathCorner> path, std::span<const
     Cost carry;
     for (std::size_t j = first; j <= last; ++j) {
       // Over the corner j: it lies within the distance of the stretch from the sample before.
-      if (j > first && std::isfinite(carry.value)) carry = raised(carry, corner(distance_to_segment(path[j].joints, before, s)), path[j].line);
+      if (j > first && std::isfinite(carry.value))
+        carry = raised(carry, corner(distance_to_segment(path[j].joints, before, s)), path[j].line);
       if (carry.value > give_up) carry = Cost{};
       if (j < first + costs.size() && costs[j - first].value < carry.value) carry = costs[j - first];
       if (j == 0 && may_start && at_start < carry.value) carry = {at_start, path[0].line};
@@ -105,11 +114,13 @@ Result<std::vector<JointVector>> read_samples(std::istream& in) {
   std::vector<JointVector> samples;
   std::string text;
   for (int line = 1; std::getline(in, text); ++line) {
-    if (text.find("overrun") != std::string::npos) return fail("samples were lost before line {}: the recorder was too slow", line);
+    if (text.find("overrun") != std::string::npos)
+      return fail("samples were lost before line {}: the recorder was too slow", line);
     std::istringstream numbers(text);
     JointVector s{};
     for (double& v : s)
-      if (!(numbers >> v) || !std::isfinite(v)) return fail("line {} of the samples is not five numbers: \"{}\"", line, text.substr(0, 80));
+      if (!(numbers >> v) || !std::isfinite(v))
+        return fail("line {} of the samples is not five numbers: \"{}\"", line, text.substr(0, 80));
     samples.push_back(s);
   }
   if (samples.empty()) return fail("no samples were recorded");

@@ -26,11 +26,11 @@ struct PathCorner {
 };
 
 struct CurveComparison {
-  bool followed = false;     ///< the record runs along the path from its first corner to its last, in order
-  double worst = 0;          ///< greatest distance of the record from the path and of the path's corners from the record [mm]
-  int line = 0;              ///< of the program, where that is
-  int stuck_line = 0;        ///< not followed: the last line that was reached
-  std::size_t samples = 0;   ///< of the record between the first corner and the last
+  bool followed = false;  ///< the record runs along the path from its first corner to its last, in order
+  double worst = 0;    ///< greatest distance of the record from the path and of the path's corners from the record [mm]
+  int line = 0;        ///< of the program, where that is
+  int stuck_line = 0;  ///< not followed: the last line that was reached
+  std::size_t samples = 0;  ///< of the record between the first corner and the last
 };
 
 /// Which distances `worst` is made of.
@@ -40,13 +40,14 @@ enum class Counted {
   corners,  ///< of the path's corners from the record: the motion did not come so far
 };
 
-/// The smallest d for which the record can be walked along the path, never backwards over a corner, with every sample within d
-/// of the path and every corner within d of the record (a Frechet distance for sampled curves).
+/// The smallest d for which the record can be walked along the path, never backwards over a corner, with every sample
+/// within d of the path and every corner within d of the record (a Frechet distance for sampled curves).
 /// @param give_up [mm] a record farther off than this does not follow the path, whatever is counted
-CurveComparison compare_curves(std::span<const PathCorner> path, std::span<const JointVector> record, double give_up, Counted counted = Counted::both);
+CurveComparison compare_curves(std::span<const PathCorner> path, std::span<const JointVector> record, double give_up,
+                               Counted counted = Counted::both);
 
-/// Samples as LinuxCNC's halsampler prints them: five numbers a line. Errors: a line with "overrun" (samples were lost) or
-/// anything else that is not five finite numbers; no line at all.
+/// Samples as LinuxCNC's halsampler prints them: five numbers a line. Errors: a line with "overrun" (samples were lost)
+/// or anything else that is not five finite numbers; no line at all.
 Result<std::vector<JointVector>> read_samples(std::istream& in);
 
 }  // namespace toothpath::test

@@ -30,7 +30,8 @@ std::vector<JointVector> walk(const std::vector<PathCorner>& path, bool stop, do
     double at = stop ? 0 : carry;
     for (; at < length; at += step) {
       JointVector s;
-      for (std::size_t i = 0; i < 5; ++i) s[i] = path[k].joints[i] + at / length * (path[k + 1].joints[i] - path[k].joints[i]);
+      for (std::size_t i = 0; i < 5; ++i)
+        s[i] = path[k].joints[i] + at / length * (path[k + 1].joints[i] - path[k].joints[i]);
       record.push_back(s);
     }
     carry = at - length;
@@ -55,7 +56,8 @@ TEST(JointRecord, SamplingCutsCornersByLessThanAStep) {
   EXPECT_LT(c.worst, 0.05);
 }
 
-// A corner that is cut short is not reached while no sample is off the path by as much; a detour is the other way round.
+// A corner that is cut short is not reached while no sample is off the path by as much; a detour is the other way
+// round.
 TEST(JointRecord, TheTwoDirectionsAreToldApart) {
   std::vector<PathCorner> path{{{0, 0, 0, 0, 0}, 1}, {{10, 0, 0, 0, 0}, 2}, {{10, 10, 0, 0, 0}, 3}};
   const std::vector<JointVector> cut{{0, 0, 0, 0, 0}, {9.99, 0, 0, 0, 0}, {10, 0.01, 0, 0, 0}, {10, 10, 0, 0, 0}};
@@ -66,7 +68,8 @@ TEST(JointRecord, TheTwoDirectionsAreToldApart) {
   EXPECT_NEAR(compare_curves(path, detour, 1.0).worst, 0.02, 1e-12);
   EXPECT_NEAR(compare_curves(path, detour, 1.0, Counted::corners).worst, 0, 1e-12);
   EXPECT_NEAR(compare_curves(path, detour, 1.0, Counted::samples).worst, 0.02, 1e-12);
-  EXPECT_FALSE(compare_curves(path, detour, 0.01, Counted::corners).followed) << "beyond the limit nothing is followed, whatever is counted";
+  EXPECT_FALSE(compare_curves(path, detour, 0.01, Counted::corners).followed)
+      << "beyond the limit nothing is followed, whatever is counted";
 }
 
 TEST(JointRecord, WaitingAtEitherEndIsAllowed) {
@@ -89,13 +92,19 @@ TEST(JointRecord, FindsEveryPlantedFault) {
     const std::size_t axis = rng() % 5;
     const double amount = 3e-3;
     switch (trial % 4) {
-      case 0: executed[at].joints[axis] += amount; break;                                            // one word off
-      case 1: for (std::size_t k = at; k < path.size(); ++k) executed[k].joints[axis] += amount; break;  // an offset from there on
-      case 2: executed.erase(executed.begin() + static_cast<std::ptrdiff_t>(at), executed.begin() + static_cast<std::ptrdiff_t>(at) + 4); break;
+      case 0: executed[at].joints[axis] += amount; break;  // one word off
+      case 1:
+        for (std::size_t k = at; k < path.size(); ++k) executed[k].joints[axis] += amount;
+        break;  // an offset from there on
+      case 2:
+        executed.erase(executed.begin() + static_cast<std::ptrdiff_t>(at),
+                       executed.begin() + static_cast<std::ptrdiff_t>(at) + 4);
+        break;
       default: executed.insert(executed.begin() + static_cast<std::ptrdiff_t>(at), PathCorner{{15, 40, 0, 0, 0}, 0});
     }
     const auto c = compare_curves(path, walk(executed, true), 0.5);
-    // A word of X or of the tilt moves its corner partly along the path, which runs in both: at least 0.6 of it lies across.
+    // A word of X or of the tilt moves its corner partly along the path, which runs in both: at least 0.6 of it lies
+    // across.
     const double least = 0.6 * amount;
     EXPECT_TRUE(!c.followed || c.worst > (trial % 4 == 2 ? 1e-3 : least)) << trial << " " << c.worst;
     if (trial % 4 == 3) { EXPECT_FALSE(c.followed) << trial; }

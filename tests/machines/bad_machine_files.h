@@ -1,5 +1,5 @@
-// Ways to spoil the example machine file, each with the exact messages that must follow. Numbers: postproc checklist of bad
-// inputs (machines 69 to 78, values 1 to 36, files 37 to 51).
+// Ways to spoil the example machine file, each with the exact messages that must follow. Numbers: postproc checklist of
+// bad inputs (machines 69 to 78, values 1 to 36, files 37 to 51).
 #pragma once
 
 #include <string>
@@ -19,7 +19,8 @@ inline constexpr BadFile kBadMachineFiles[] = {
     {"69 limits equal", "max = 0.0", "max = -400.0",
      "m.toml:33:7: error: axes.Z.max = -400 must exceed axes.Z.min = -400\n"},
     {"70 parallel rotary axes", "direction = [1.0, 0.0, 0.0]", "direction = [0.0, 0.0, -1.0]",
-     "m.toml:37:13: error: rotary axes C and A are parallel: the angle between them is 0.000000 deg, must be above 0.000057 deg\n"},
+     "m.toml:37:13: error: rotary axes C and A are parallel: the angle between them is 0.000000 deg, must be above "
+     "0.000057 deg\n"},
     {"71 zero direction", "direction = [1.0, 0.0, 0.0]", "direction = [0.0, 0.0, 0.0]",
      "m.toml:37:13: error: axes.A.direction = [0, 0, 0] has length 0, must be at least 0.001\n"},
     {"72 two axes same letter", "[\"C\", \"A\"]", "[\"C\", \"C\"]",
@@ -36,22 +37,21 @@ inline constexpr BadFile kBadMachineFiles[] = {
     {"73 negative spindle speed", "max_speed = 24000", "max_speed = -24000",
      "m.toml:10:13: error: spindle.max_speed = -24000 must be above 0 1/min\n"},
     {"74 second rotary turns about the spindle", "[\"C\", \"A\"]", "[\"A\", \"C\"]",
-     "m.toml:45:13: error: rotary axis C is parallel to the spindle and cannot tilt the tool: its angle to Z is 0.000000 deg, must be above 0.000057 deg\n"},
+     "m.toml:45:13: error: rotary axis C is parallel to the spindle and cannot tilt the tool: its angle to Z is "
+     "0.000000 deg, must be above 0.000057 deg\n"},
     {"an axis that rolls over has no ends", "max = 30.0", "max = 30.0\nrollover = true",
-     "m.toml:40:7: error: axes.A.min of an axis with rollover = true, which turns without end: leave min out, or rollover\n"
-     "m.toml:41:7: error: axes.A.max of an axis with rollover = true, which turns without end: leave max out, or rollover\n"},
+     "m.toml:40:7: error: axes.A.min of an axis with rollover = true, which turns without end: leave min out, or "
+     "rollover\n"
+     "m.toml:41:7: error: axes.A.max of an axis with rollover = true, which turns without end: leave max out, or "
+     "rollover\n"},
     {"rollover is no number", "max = 30.0", "max = 30.0\nrollover = 360",
      "m.toml:42:12: error: axes.A.rollover must be true or false, is a whole number\n"},
     {"74 range smaller than its margins", "max = 30.0", "max = -109.99",
      "m.toml:41:7: error: axes.A.max - axes.A.min = 0.01 deg leaves nothing between the margins of 0.01 deg\n"},
-    {"75 sign 0", "sign = 1", "sign = 0",
-     "m.toml:39:8: error: axes.A.sign = 0 must be 1 or -1\n"},
-    {"75 sign 2", "sign = 1", "sign = 2",
-     "m.toml:39:8: error: axes.A.sign = 2 must be 1 or -1\n"},
-    {"75 sign missing", "sign = 1\n", "",
-     "m.toml:36:1: error: axes.A.sign is missing\n"},
-    {"75 sign 1.0", "sign = 1", "sign = 1.0",
-     "m.toml:39:8: error: axes.A.sign must be 1 or -1, is a number\n"},
+    {"75 sign 0", "sign = 1", "sign = 0", "m.toml:39:8: error: axes.A.sign = 0 must be 1 or -1\n"},
+    {"75 sign 2", "sign = 1", "sign = 2", "m.toml:39:8: error: axes.A.sign = 2 must be 1 or -1\n"},
+    {"75 sign missing", "sign = 1\n", "", "m.toml:36:1: error: axes.A.sign is missing\n"},
+    {"75 sign 1.0", "sign = 1", "sign = 1.0", "m.toml:39:8: error: axes.A.sign must be 1 or -1, is a number\n"},
     {"77 three rotary axes", "head = []", "head = [\"B\"]",
      "m.toml:19:9: error: axis B is rotary axis number 3, a chain has at most 2\n"},
     {"77 control interpolates no path", "max_simultaneous_axes = 5", "max_simultaneous_axes = 2",
@@ -59,11 +59,13 @@ inline constexpr BadFile kBadMachineFiles[] = {
     {"78 travel in metres", "min = -300.0\nmax = 300.0", "min = -0.3\nmax = 0.3",
      "m.toml:23:7: error: axes.X.max - axes.X.min = 0.6 mm of travel is below 10 mm; lengths are in mm, not metres\n"},
     {"78 table offset in metres", "point = [0.0, 0.0, -285.0]", "point = [0.0, 0.0, -0.285]",
-     "m.toml:38:9: error: axes.A.point = [0, 0, -0.285]: the largest offset of the rotary axes, 0.285 mm, is below 1 mm; lengths are in mm, not metres\n"},
+     "m.toml:38:9: error: axes.A.point = [0, 0, -0.285]: the largest offset of the rotary axes, 0.285 mm, is below 1 "
+     "mm; lengths are in mm, not metres\n"},
     {"69 infinite travel", "min = -300.0\nmax = 300.0", "min = -300.0\nmax = inf",
      "m.toml:23:7: error: axes.X.max = inf must be finite\n"},
     {"70 almost parallel rotary axes", "direction = [1.0, 0.0, 0.0]", "direction = [0.0, 0.0000005, 1.0]",
-     "m.toml:37:13: error: rotary axes C and A are parallel: the angle between them is 0.000029 deg, must be above 0.000057 deg\n"},
+     "m.toml:37:13: error: rotary axes C and A are parallel: the angle between them is 0.000029 deg, must be above "
+     "0.000057 deg\n"},
     {"71 direction that is not a number", "direction = [1.0, 0.0, 0.0]", "direction = [nan, 0.0, 0.0]",
      "m.toml:37:14: error: axes.A.direction[0] = nan must be finite\n"},
     {"71 direction of 1e-9", "direction = [1.0, 0.0, 0.0]", "direction = [1e-9, 0.0, 0.0]",
@@ -74,22 +76,20 @@ inline constexpr BadFile kBadMachineFiles[] = {
      "m.toml:13:16: error: limits.cutting_feed = 0 must be above 0 mm/min\n"},
     {"76 no part fits a table of zero", "table_diameter = 500", "table_diameter = 0",
      "m.toml:14:18: error: limits.table_diameter = 0 must be above 0 mm\n"},
-    {"1 NaN", "-285.0", "nan",
-     "m.toml:38:20: error: axes.A.point[2] = nan must be finite\n"},
-    {"2 Inf", "max = 36000.0", "max = inf",
-     "m.toml:49:7: error: axes.C.max = inf must be finite\n"},
+    {"1 NaN", "-285.0", "nan", "m.toml:38:20: error: axes.A.point[2] = nan must be finite\n"},
+    {"2 Inf", "max = 36000.0", "max = inf", "m.toml:49:7: error: axes.C.max = inf must be finite\n"},
     {"4 1e400", "max = 36000.0", "max = 1e400",
      "m.toml:49:12: error: Error while parsing floating-point: '1e400' could not be interpreted as a value\n"},
     {"6 comma decimal", "max = 36000.0", "max = 36000,0",
      "m.toml:49:12: error: Error while parsing key-value pair: expected a comment or whitespace, saw ','\n"},
     {"8 int overflow", "max = 36000.0", "max = 9223372036854775808",
-     "m.toml:49:26: error: Error while parsing decimal integer: '9223372036854775808' is not representable in 64 bits\n"},
+     "m.toml:49:26: error: Error while parsing decimal integer: '9223372036854775808' is not representable in 64 "
+     "bits\n"},
     {"9 wrong type", "max = 36000.0", "max = \"36000\"",
      "m.toml:49:7: error: axes.C.max must be a number, is a text\n"},
     {"9 date", "max = 36000.0", "max = 2020-01-01",
      "m.toml:49:7: error: axes.C.max must be a number, is a date or time\n"},
-    {"10 missing key", "table_diameter = 500\n", "",
-     "m.toml:12:1: error: limits.table_diameter is missing\n"},
+    {"10 missing key", "table_diameter = 500\n", "", "m.toml:12:1: error: limits.table_diameter is missing\n"},
     {"10 missing axis", "[axes.A]", "[axes.B]",
      "m.toml:21:1: error: axes.A is missing\n"
      "m.toml:36:7: error: axes.B is named in neither chain.table nor chain.head\n"},
@@ -101,8 +101,7 @@ inline constexpr BadFile kBadMachineFiles[] = {
      "m.toml:9:2: error: unknown key spindel\n"},
     {"12 duplicate key", "min = -110.0", "min = -110.0\nmin = -110.0",
      "m.toml:41:7: error: Error while parsing key-value pair: cannot redefine existing floating-point 'min'\n"},
-    {"schema of another version", "schema = 1", "schema = 2",
-     "m.toml:1:10: error: schema = 2 must be 1\n"},
+    {"schema of another version", "schema = 1", "schema = 2", "m.toml:1:10: error: schema = 2 must be 1\n"},
     {"a gear shaper", "\"five_axis\"", "\"gear_shaper\"",
      "m.toml:3:8: error: kind = \"gear_shaper\" is no milling machine; \"five_axis\" is needed here\n"},
     {"pivot length on a table axis", "sign = 1", "sign = 1\npivot_length = 100.0",
@@ -120,14 +119,12 @@ inline constexpr BadFile kBadMachineFiles[] = {
     {"linear axis in the chain", "[\"C\", \"A\"]", "[\"X\", \"A\"]",
      "m.toml:18:10: error: chain.table lists rotary axes: \"A\", \"B\" or \"C\"\n"
      "m.toml:44:7: error: axes.C is named in neither chain.table nor chain.head\n"},
-    {"empty name", "\"example\"", "\"\"",
-     "m.toml:2:8: error: name has 0 characters, allowed are 1 to 120\n"},
+    {"empty name", "\"example\"", "\"\"", "m.toml:2:8: error: name has 0 characters, allowed are 1 to 120\n"},
     {"line break in the name", "\"example\"", "\"a\\nb\"",
      "m.toml:2:8: error: name contains byte 0x0a; only printable text is allowed\n"},
     {"42 truncated", "max_speed = 12000\n", "max_spe",
      "m.toml:50:8: error: Error while parsing key-value pair: encountered end-of-file\n"},
-    {"44 invalid UTF-8", "example", "exam\xffple",
-     "m.toml:2:12: error: Encountered invalid utf-8 sequence\n"},
+    {"44 invalid UTF-8", "example", "exam\xffple", "m.toml:2:12: error: Encountered invalid utf-8 sequence\n"},
     {"45 carriage returns only", "schema = 1\n", "schema = 1\r",
      "m.toml:1:12: error: Error while parsing key-value pair: expected '\\n' after '\\r', saw 'n'\n"},
     {"47 nesting", "assumed = false", "assumed = [[[[[[[[[[[[[[[[[[[[1]]]]]]]]]]]]]]]]]]]]",
@@ -135,8 +132,8 @@ inline constexpr BadFile kBadMachineFiles[] = {
     {"head axis without pivot length", "table = [\"C\", \"A\"]\nhead = []", "table = [\"C\"]\nhead = [\"A\"]",
      "m.toml:36:1: error: axes.A.pivot_length is missing\n"
      "m.toml:38:9: error: axes.A.point[2] = -285 must be 0: the height of a head axis is its pivot_length\n"},
-    {"spindle is no table", "max_simultaneous_axes = 5\n\n[spindle]\nmax_speed = 24000", "max_simultaneous_axes = 5\nspindle = 3",
-     "m.toml:8:11: error: spindle must be a table, is a whole number\n"},
+    {"spindle is no table", "max_simultaneous_axes = 5\n\n[spindle]\nmax_speed = 24000",
+     "max_simultaneous_axes = 5\nspindle = 3", "m.toml:8:11: error: spindle must be a table, is a whole number\n"},
     {"chain of four letters", "[\"C\", \"A\"]", "[\"C\", \"A\", \"B\", \"D\"]",
      "m.toml:18:20: error: axis B is rotary axis number 3, a chain has at most 2\n"
      "m.toml:18:25: error: chain.table lists rotary axes: \"A\", \"B\" or \"C\"\n"},

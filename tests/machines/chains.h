@@ -85,8 +85,7 @@ inline machines::KinematicChain random_chain_kinds(std::mt19937_64& rng, int i) 
       axis.sign = mm(rng) > 0 ? 1 : -1;
       axis.zero_rad = angle(rng);
     }
-  if (i % 7 == 5)
-    do {
+  if (i % 7 == 5) do {
       for (auto* side : {&chain.table, &chain.head})
         for (machines::RotaryAxis& axis : *side) axis.direction = random_axis(rng);
     } while (chain.rotary(0).direction.cross(chain.rotary(1).direction).norm() < 0.3);

@@ -124,7 +124,8 @@ TEST(RotarySolutions, PoleLeavesTheFirstRotaryFree) {
   }
 }
 
-// A rotary that a pole leaves free stands at its zero; asked for with limits, it takes the wanted angle or the limit nearest to it.
+// A rotary that a pole leaves free stands at its zero; asked for with limits, it takes the wanted angle or the limit
+// nearest to it.
 TEST(RotarySolutions, FreeRotaryStandsAtItsZeroAndInsideItsLimits) {
   for (machines::KinematicChain chain : {ac_table(), bc_table(), test::head_table('B'), test::head_head('A')}) {
     machines::RotaryAxis& first = chain.table.empty() ? chain.head.front() : chain.table.front();
@@ -158,7 +159,9 @@ TEST(RotarySolutions, ReachEndsWithTheRoundingOfText) {
   for (const double beyond : {5e-11, 1e-9, 1e-6}) {
     const bool served = beyond < 1e-10;
     EXPECT_EQ(bool(nutating.rotary_solutions({std::cos(beyond), 0, -std::sin(beyond)})), served) << beyond;
-    EXPECT_EQ(bool(tilt_only.rotary_solutions(Vec3(std::sin(0.4), std::sin(beyond), std::cos(0.4)).normalized())), served) << beyond;
+    EXPECT_EQ(bool(tilt_only.rotary_solutions(Vec3(std::sin(0.4), std::sin(beyond), std::cos(0.4)).normalized())),
+              served)
+        << beyond;
     EXPECT_EQ(bool(turntable.rotary_solutions({std::sin(beyond), 0, std::cos(beyond)})), served) << beyond;
     EXPECT_EQ(bool(test::with_linear().rotary_solutions({std::sin(beyond), 0, std::cos(beyond)})), served) << beyond;
   }
@@ -301,8 +304,9 @@ TEST(Windings, EveryTurnInsideTheLimits) {
   c.max_rad = radians(370);
   const auto all = machines::windings(c, radians(5));
   ASSERT_EQ(all.size(), 4u);
-  for (std::size_t k = 0; k < all.size(); ++k) EXPECT_NEAR(degrees(all[k]), -715 + 360.0 * static_cast<double>(k), 1e-9);
-  EXPECT_EQ(machines::windings(c, radians(5), radians(6)).size(), 2u);   // -715 and 365 lie within 6 deg of a limit
+  for (std::size_t k = 0; k < all.size(); ++k)
+    EXPECT_NEAR(degrees(all[k]), -715 + 360.0 * static_cast<double>(k), 1e-9);
+  EXPECT_EQ(machines::windings(c, radians(5), radians(6)).size(), 2u);  // -715 and 365 lie within 6 deg of a limit
   EXPECT_TRUE(machines::windings(c, std::nan("")).empty());
   c.max_rad = radians(-721);
   EXPECT_TRUE(machines::windings(c, 0.0).empty());
@@ -343,8 +347,8 @@ TEST(Candidates, UnreachablePoseNamesAxisValueAndLimit) {
   const auto none = chain.candidates({Vec3::Zero(), Vec3(0, -std::sin(a), std::cos(a))}, 100);
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().message,
-            "no solution inside the limits: pair 1: A = 131.2000 deg outside [-119.9900, 29.9900]; pair 2: A = -131.2000 "
-            "deg outside [-119.9900, 29.9900]");
+            "no solution inside the limits: pair 1: A = 131.2000 deg outside [-119.9900, 29.9900]; pair 2: A = "
+            "-131.2000 deg outside [-119.9900, 29.9900]");
   chain.linear[1] = {-200, 200, 1000};
   const auto far = chain.candidates({Vec3(0, 212.4183, 0), Vec3::UnitZ()}, 100, {0, 0});
   ASSERT_FALSE(far);
@@ -362,8 +366,8 @@ TEST(CheckChain, RefusesWhatNoInverseCanServe) {
   std::swap(chain.table[0], chain.table[1]);
   chain.table[0].direction = Vec3::UnitX();
   EXPECT_EQ(machines::check_chain(chain).error().message,
-            "rotary axis C is parallel to the spindle and cannot tilt the tool: its angle to Z is 0.000000 deg, must be "
-            "above 0.000057 deg");
+            "rotary axis C is parallel to the spindle and cannot tilt the tool: its angle to Z is 0.000000 deg, must "
+            "be above 0.000057 deg");
   chain.head = {machines::RotaryAxis{}};
   EXPECT_EQ(machines::check_chain(chain).error().message, "a chain has at most 2 rotary axes, this one has 3");
 }

@@ -51,7 +51,8 @@ TEST(ShippedMachines, EveryFileLoadsAndRoundTrips) {
         joints.linear_mm[static_cast<Eigen::Index>(k)] =
             chain.linear[k].min_mm + unit(rng) * (chain.linear[k].max_mm - chain.linear[k].min_mm);
       for (std::size_t k = 0; k < 2; ++k)
-        joints.rotary_rad[k] = chain.rotary(k).min_rad + unit(rng) * (chain.rotary(k).max_rad - chain.rotary(k).min_rad);
+        joints.rotary_rad[k] =
+            chain.rotary(k).min_rad + unit(rng) * (chain.rotary(k).max_rad - chain.rotary(k).min_rad);
       const machines::TablePose pose = chain.forward(joints, 110);
       const auto found = chain.candidates(pose, 110, machine.limit_margin);
       ASSERT_TRUE(found) << file << ": " << found.error().message;
@@ -136,15 +137,14 @@ TEST_P(BadMachineFile, IsRefusedWithItsPlace) {
   EXPECT_EQ(messages(replaced(kMachine, GetParam().from, GetParam().to)), std::string(GetParam().messages));
 }
 
-INSTANTIATE_TEST_SUITE_P(Checklist, BadMachineFile, testing::ValuesIn(test::kBadMachineFiles),
-                         [](const auto& place) {
-                           std::string name = "_";
-                           for (const char* c = place.param.what; *c; ++c) name += std::isalnum(static_cast<unsigned char>(*c)) ? *c : '_';
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(Checklist, BadMachineFile, testing::ValuesIn(test::kBadMachineFiles), [](const auto& place) {
+  std::string name = "_";
+  for (const char* c = place.param.what; *c; ++c) name += std::isalnum(static_cast<unsigned char>(*c)) ? *c : '_';
+  return name;
+});
 
-// Which controls there are, and what they take, is the business of whoever judges the file: asked with what could be read, his complaints
-// stand in their place among those of the reader.
+// Which controls there are, and what they take, is the business of whoever judges the file: asked with what could be
+// read, his complaints stand in their place among those of the reader.
 TEST(MachineFile, AJudgeIsAskedAboutTheControl) {
   const machines::MachineJudge judge = [](const machines::Machine& m) {
     EXPECT_EQ(m.dialect, "any");
@@ -152,9 +152,13 @@ TEST(MachineFile, AJudgeIsAskedAboutTheControl) {
   };
   const std::string text = replaced(kMachine, "\"linuxcnc\"", "\"any\"");
   EXPECT_EQ(messages(text), "");
-  EXPECT_EQ(to_text(machines::read_machine_text(text, "m.toml", judge).errors), "m.toml:4:11: error: no\nm.toml:49:7: error: too far\n");
-  EXPECT_EQ(to_text(machines::read_machine_text(replaced(text, "max_speed = 24000", "max_speed = 0"), "m.toml", judge).errors),
-            "m.toml:4:11: error: no\nm.toml:10:13: error: spindle.max_speed = 0 must be above 0 1/min\nm.toml:49:7: error: too far\n");
+  EXPECT_EQ(to_text(machines::read_machine_text(text, "m.toml", judge).errors),
+            "m.toml:4:11: error: no\nm.toml:49:7: error: too far\n");
+  EXPECT_EQ(
+      to_text(
+          machines::read_machine_text(replaced(text, "max_speed = 24000", "max_speed = 0"), "m.toml", judge).errors),
+      "m.toml:4:11: error: no\nm.toml:10:13: error: spindle.max_speed = 0 must be above 0 1/min\nm.toml:49:7: error: "
+      "too far\n");
 }
 
 TEST(MachineFile, NulByteIsNoText) {
@@ -202,7 +206,8 @@ TEST(MachineFile, EveryComplaintIsCollected) {
 }
 
 TEST(MachineFile, AssumedMayBeAListOfKeysOrTables) {
-  const auto reading = machines::read_machine_text(replaced(kMachine, "assumed = false", "assumed = [\"axes.A.point\", \"limits\"]"), "m");
+  const auto reading = machines::read_machine_text(
+      replaced(kMachine, "assumed = false", "assumed = [\"axes.A.point\", \"limits\"]"), "m");
   ASSERT_TRUE(reading.machine) << to_text(reading.errors);
   EXPECT_TRUE(reading.machine->assumed);
   EXPECT_EQ(reading.machine->assumed_keys, (std::vector<std::string>{"axes.A.point", "limits"}));
@@ -211,7 +216,8 @@ TEST(MachineFile, AssumedMayBeAListOfKeysOrTables) {
 }
 
 TEST(MachineFile, DirectionsAreNormalised) {
-  const auto reading = machines::read_machine_text(replaced(kMachine, "direction = [1.0, 0.0, 0.0]", "direction = [0, 3, 3]"), "m");
+  const auto reading =
+      machines::read_machine_text(replaced(kMachine, "direction = [1.0, 0.0, 0.0]", "direction = [0, 3, 3]"), "m");
   ASSERT_TRUE(reading.machine) << to_text(reading.errors);
   EXPECT_LE((reading.machine->chain.table[1].direction - Vec3(0, 1, 1).normalized()).norm(), 1e-15);
 }
@@ -244,7 +250,9 @@ TEST(MachineFile, DamagedFilesNeverCrash) {
     ASSERT_EQ(reading.machine.has_value(), reading.errors.empty());
     for (const Diagnostic& d : reading.errors) ASSERT_FALSE(d.message.empty());
     refused += !reading.errors.empty();
-    (void)machines::read_shaper_machine_text(text, "m.toml", {{"linuxcnc"}, {"fanuc", machines::ShaperGears::pulses}, {"siemens", machines::ShaperGears::named_axes}});
+    (void)machines::read_shaper_machine_text(
+        text, "m.toml",
+        {{"linuxcnc"}, {"fanuc", machines::ShaperGears::pulses}, {"siemens", machines::ShaperGears::named_axes}});
   }
   EXPECT_GT(refused, 2000);
 }
@@ -265,12 +273,14 @@ TEST(FindMachineFile, BesideTheJobFirstThenInstalled) {
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().kind, DiagnosticKind::file_access);
   std::vector<std::string> files;
-  for (const auto& entry : fs::directory_iterator(fs::path(TOOTHPATH_SOURCE_DIR) / "machines" / "data")) files.push_back(entry.path().filename().string());
+  for (const auto& entry : fs::directory_iterator(fs::path(TOOTHPATH_SOURCE_DIR) / "machines" / "data"))
+    files.push_back(entry.path().filename().string());
   std::sort(files.begin(), files.end());
   std::string list;
   for (const auto& file : files) list += (list.empty() ? "" : ", ") + file;
   EXPECT_EQ(list.find("apt_free.toml, fanuc_ac.toml, "), 0u);
-  EXPECT_EQ(none.error().message, "machine file \"no_such.toml\" is neither beside the job nor installed; installed are: " + list);
+  EXPECT_EQ(none.error().message,
+            "machine file \"no_such.toml\" is neither beside the job nor installed; installed are: " + list);
   // The ending may be left out, and a misspelt name brings the near one.
   const auto plain = machines::find_machine_file("xyzac_trt", dir.path());
   ASSERT_TRUE(plain) << plain.error().message;
@@ -278,7 +288,9 @@ TEST(FindMachineFile, BesideTheJobFirstThenInstalled) {
   for (const auto& [wrong, meant] : {std::pair{"t600.toml", "t600s.toml"}, {"fanuc_ca", "fanuc_ac.toml"}}) {
     const auto refused = machines::find_machine_file(wrong, dir.path());
     ASSERT_FALSE(refused) << wrong;
-    EXPECT_NE(refused.error().message.find(std::string("installed; did you mean \"") + meant + "\"?; installed are: apt_free.toml,"), std::string::npos)
+    EXPECT_NE(refused.error().message.find(std::string("installed; did you mean \"") + meant +
+                                           "\"?; installed are: apt_free.toml,"),
+              std::string::npos)
         << refused.error().message;
   }
   EXPECT_FALSE(machines::find_machine_file("../data/t600s.toml", dir.path()));  // installed files have plain names

@@ -28,7 +28,8 @@ double depth_below_meridian(const Vec2& q, const BruteBody& b) {
   for (std::size_t k = 1; k < m.size(); ++k) {
     const Vec2 low(m[k - 1][1], m[k - 1][0]), high(m[k][1], m[k][0]);
     least = std::min(least, to_segment(q, low, high));
-    if (q.y() > low.y() && q.y() <= high.y()) wide = low.x() + (high.x() - low.x()) * (q.y() - low.y()) / (high.y() - low.y());
+    if (q.y() > low.y() && q.y() <= high.y())
+      wide = low.x() + (high.x() - low.x()) * (q.y() - low.y()) / (high.y() - low.y());
   }
   return q.x() < wide ? least : -least;
 }
@@ -48,13 +49,15 @@ double depth_in_body(const Vec3& p, const BruteBody& b, const Vec3& tip, const V
   if (!b.meridian.empty()) return depth_below_meridian(q, b);
   if (b.round) return b.radius_from - to_segment(q, Vec2(0, b.from), Vec2(0, b.to));
   const Vec2 lower(b.radius_from, b.from), upper(b.radius_to, b.to);
-  const double border = std::min({to_segment(q, Vec2(0, b.from), lower), to_segment(q, lower, upper), to_segment(q, upper, Vec2(0, b.to))});
+  const double border = std::min(
+      {to_segment(q, Vec2(0, b.from), lower), to_segment(q, lower, upper), to_segment(q, upper, Vec2(0, b.to))});
   const double wide = b.radius_from + (b.radius_to - b.radius_from) * (h - b.from) / (b.to - b.from);
   const bool inside = h > b.from && h < b.to && q.x() < wide;
   return inside ? border : -border;
 }
 
-BruteForceBodies::BruteForceBodies(const face_gear::FaceGear& gear, int rows, int columns) : gear_(gear), solid_(gear, 20, 20) {
+BruteForceBodies::BruteForceBodies(const face_gear::FaceGear& gear, int rows, int columns)
+    : gear_(gear), solid_(gear, 20, 20) {
   const int zones = int(gear.rings().size());
   for (int zone = 0; zone < zones; ++zone)
     for (int patch = 0; patch < 9; ++patch) {
@@ -71,8 +74,10 @@ std::vector<BruteDepth> BruteForceBodies::seeds(const BruteBody& body, const pat
   // The teeth near the lower part of the tool; a body that leans reaches farther.
   const double pitch = gear_.pitch();
   const Vec3 low = tip_of(m, 0.5) + body.from * axis_of(m, 0.5);
-  const double r = low.head<2>().norm(), reach = std::max(body.radius_from, body.radius_to) + 4 + (m.tip_to - m.tip_from).norm();
-  const int middle = int(std::lround(std::atan2(low.y(), low.x()) / pitch)), wide = 2 + int(std::ceil(reach / (pitch * std::max(r, 1.0))));
+  const double r = low.head<2>().norm(),
+               reach = std::max(body.radius_from, body.radius_to) + 4 + (m.tip_to - m.tip_from).norm();
+  const int middle = int(std::lround(std::atan2(low.y(), low.x()) / pitch)),
+            wide = 2 + int(std::ceil(reach / (pitch * std::max(r, 1.0))));
   std::vector<BruteDepth> seeds;
   for (int tooth = middle - wide; tooth <= middle + wide; ++tooth)
     for (int k = 0; k <= moments; ++k) {
@@ -96,7 +101,8 @@ BruteDepth BruteForceBodies::sampled(const BruteBody& body, const path::ToolMoti
   return all.empty() ? BruteDepth{} : all.front();
 }
 
-BruteDepth BruteForceBodies::deepest(const BruteBody& body, const path::ToolMotion& m, int moments, std::size_t most_starts) const {
+BruteDepth BruteForceBodies::deepest(const BruteBody& body, const path::ToolMotion& m, int moments,
+                                     std::size_t most_starts) const {
   const auto all = seeds(body, m, moments);
   if (all.empty()) return {};
   // The best few, of different patches and teeth first.
@@ -104,7 +110,8 @@ BruteDepth BruteForceBodies::deepest(const BruteBody& body, const path::ToolMoti
   for (const auto& s : all) {
     if (starts.size() >= most_starts || s.depth < all.front().depth - 0.1) break;
     const auto same = [&](const BruteDepth& o) {
-      return o.tooth == s.tooth && o.zone == s.zone && o.patch == s.patch && std::abs(o.x - s.x) + std::abs(o.y - s.y) < 0.3;
+      return o.tooth == s.tooth && o.zone == s.zone && o.patch == s.patch &&
+             std::abs(o.x - s.x) + std::abs(o.y - s.y) < 0.3;
     };
     if (std::none_of(starts.begin(), starts.end(), same)) starts.push_back(s);
   }
@@ -114,7 +121,8 @@ BruteDepth BruteForceBodies::deepest(const BruteBody& body, const path::ToolMoti
   return out;
 }
 
-BruteDepth BruteForceBodies::improved(const BruteBody& body, const path::ToolMotion& m, BruteDepth best, double first_step) const {
+BruteDepth BruteForceBodies::improved(const BruteBody& body, const path::ToolMotion& m, BruteDepth best,
+                                      double first_step) const {
   const double pitch = gear_.pitch();
   const auto at = [&](double x, double y, double t) {
     BruteDepth d = best;

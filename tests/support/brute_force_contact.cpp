@@ -13,7 +13,8 @@ constexpr double kPiHere = 3.14159265358979323846;
 const double kNan = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
-BruteForceContact::BruteForceContact(const face_gear::FaceGear& gear, int zone, int side, int pinion_teeth, const contact::Misalignment& moved)
+BruteForceContact::BruteForceContact(const face_gear::FaceGear& gear, int zone, int side, int pinion_teeth,
+                                     const contact::Misalignment& moved)
     : side_(side), pinion_teeth_(pinion_teeth) {
   const face_gear::FaceGearRing& ring = gear.rings().at(std::size_t(zone));
   const auto& f = ring.surface;
@@ -50,7 +51,8 @@ BruteForceContact::BruteForceContact(const face_gear::FaceGear& gear, int zone, 
     for (int k = 0; k < high; ++k) {
       const double Z = Z_from + (Z_to - Z_from) * n / (along - 1), R = r_b + (r_a - r_b) * k / (high - 1);
       const double roll = std::acos(std::min(1.0, r_b / R));
-      // Half the space grows outwards: on the pitch circle `thickness`, elsewhere plus the difference of the involute functions.
+      // Half the space grows outwards: on the pitch circle `thickness`, elsewhere plus the difference of the involute
+      // functions.
       const double half = thickness + (std::tan(roll) - roll) - (std::tan(alpha) - alpha);
       const double angle = side * half + twist * (Z - f.L0);
       pinion_.emplace_back(R * std::cos(angle), R * std::sin(angle), Z);
@@ -59,7 +61,8 @@ BruteForceContact::BruteForceContact(const face_gear::FaceGear& gear, int zone, 
   a_ = {std::sin(g_moved), 0, -std::cos(g_moved)};
   d_ = {-std::cos(g_moved), 0, -std::sin(g_moved)};
   b_ = {0, 1, 0};
-  foot_ = Vec3(0, parameters.offset_mm + moved.offset_mm, 0) + shift * Vec3(-std::cos(g), 0, -std::sin(g)) + moved.axial_mm * a_;
+  foot_ = Vec3(0, parameters.offset_mm + moved.offset_mm, 0) + shift * Vec3(-std::cos(g), 0, -std::sin(g)) +
+          moved.axial_mm * a_;
 }
 
 double BruteForceContact::azimuth_at(double r, double z) const {

@@ -1,20 +1,21 @@
-// When do a pinion and a face gear touch? Two dense clouds of flank points, turned until the first pair meets. No normals, no
-// parallel-surface theorem, no closed-form turn of the pinion.
+// When do a pinion and a face gear touch? Two dense clouds of flank points, turned until the first pair meets. No
+// normals, no parallel-surface theorem, no closed-form turn of the pinion.
 #pragma once
 
 #include <vector>
 
-#include "geometry/face_gear/gear.h"
 #include "geometry/contact/pinion.h"
+#include "geometry/face_gear/gear.h"
 
 namespace toothpath::test {
 
 class BruteForceContact {
  public:
-  BruteForceContact(const face_gear::FaceGear& gear, int zone, int side, int pinion_teeth, const contact::Misalignment& moved = {});
+  BruteForceContact(const face_gear::FaceGear& gear, int zone, int side, int pinion_teeth,
+                    const contact::Misalignment& moved = {});
 
-  /// Turn of the gear at which it lies on the pinion that has turned by phi_1: extreme over all points of both clouds and over the
-  /// neighbouring teeth. Error about the sag of the clouds' meshes, 1e-7 rad.
+  /// Turn of the gear at which it lies on the pinion that has turned by phi_1: extreme over all points of both clouds
+  /// and over the neighbouring teeth. Error about the sag of the clouds' meshes, 1e-7 rad.
   [[nodiscard]] double gear_turn(double phi_1) const;
 
  private:

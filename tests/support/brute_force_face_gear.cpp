@@ -18,7 +18,8 @@ BruteForceFaceGear::BruteForceFaceGear(const face_gear::FaceGearParameters& gear
   cos_gamma_ = std::cos(gear.shaft_angle_rad);
   const bool normal = gear.module_plane == face_gear::ModulePlane::normal;
   const double m_t = normal ? gear.module_mm / std::cos(beta) : gear.module_mm;
-  const double alpha_t = normal ? std::atan2(std::tan(gear.pressure_angle_rad), std::cos(beta)) : gear.pressure_angle_rad;
+  const double alpha_t =
+      normal ? std::atan2(std::tan(gear.pressure_angle_rad), std::cos(beta)) : gear.pressure_angle_rad;
   const double r_p = 0.5 * m_t * gear.shaper_teeth;
   r_b_ = r_p * std::cos(alpha_t);
   r_a_ = r_p + (gear.addendum_coefficient + gear.clearance_coefficient) * gear.module_mm;
@@ -26,7 +27,8 @@ BruteForceFaceGear::BruteForceFaceGear(const face_gear::FaceGearParameters& gear
   twist_ = std::tan(beta) / r_p;
   cos_base_helix_ = 1 / std::hypot(1.0, std::tan(beta) * std::cos(alpha_t));
   // Half of the tooth space on the pitch circle is a quarter pitch; on the base circle it is less by inv(alpha_t).
-  half_space_ = pi / (2 * shaper_teeth_) - (std::tan(alpha_t) - alpha_t) - gear.backlash_mm / (2 * r_b_ * cos_base_helix_);
+  half_space_ =
+      pi / (2 * shaper_teeth_) - (std::tan(alpha_t) - alpha_t) - gear.backlash_mm / (2 * r_b_ * cos_base_helix_);
   reference_ = gear.reference_radius_mm ? *gear.reference_radius_mm : r_p * (1 / ratio_ + cos_gamma_) / sin_gamma_;
   // The rounding's centre lies rho inside the tip circle and rho behind the involute.
   centre_radius_ = r_a_ - rho_;
@@ -43,7 +45,8 @@ double BruteForceFaceGear::clearance(const Vec3& point, double phi) const {
   const double x = -cos_gamma_ * hx - sin_gamma_ * hz, y = hy - offset_;
   const double R = std::hypot(x, y);
   if (along <= 0) return R + r_a_;  // behind the gear axis: not the cutting side
-  const double w = std::abs(std::remainder(std::atan2(y, x) - phi - twist_ * (along - reference_), 2 * pi / shaper_teeth_));
+  const double w =
+      std::abs(std::remainder(std::atan2(y, x) - phi - twist_ * (along - reference_), 2 * pi / shaper_teeth_));
   const double to_tip = R - r_a_;
   if (R <= r_b_) return std::max(r_b_ * (half_space_ - w), to_tip);
   if (rho_ > 0) {
@@ -79,11 +82,15 @@ double BruteForceFaceGear::least_clearance(const Vec3& point) const {
     double fp = clearance(point, p), fq = clearance(point, q);
     for (int k = 0; k < 75; ++k) {  // no smoothness assumed: the sharp tip edge makes kinks
       if (fp <= fq) {
-        b = q; q = p; fq = fp;
+        b = q;
+        q = p;
+        fq = fp;
         p = b - golden * (b - a);
         fp = clearance(point, p);
       } else {
-        a = p; p = q; fp = fq;
+        a = p;
+        p = q;
+        fp = fq;
         q = a + golden * (b - a);
         fq = clearance(point, q);
       }

@@ -33,7 +33,8 @@ double root_section(const face_gear::FaceGearSurface<double>& f, double r) {
 }  // namespace
 
 const char* BruteForceGearSolid::name(int patch) {
-  static const char* names[kPatches] = {"flank +1", "fillet +1", "root", "fillet -1", "flank -1", "tip", "inner end", "outer end", "groove"};
+  static const char* names[kPatches] = {"flank +1", "fillet +1", "root",      "fillet -1", "flank -1",
+                                        "tip",      "inner end", "outer end", "groove"};
   return names[patch];
 }
 
@@ -124,7 +125,8 @@ Vec3 BruteForceGearSolid::at(const Ring& ring, int patch, double x, double y) co
       const double land = profile.back().x() - pitch_, a = land + x * pitch_;
       double z = f.z_tip(r_end);
       if (a > profile.front().x()) {
-        const auto it = std::lower_bound(profile.begin() + 1, profile.end() - 1, a, [](const Vec2& q, double v) { return q.x() < v; });
+        const auto it = std::lower_bound(profile.begin() + 1, profile.end() - 1, a,
+                                         [](const Vec2& q, double v) { return q.x() < v; });
         const Vec2 &p0 = *(it - 1), &p1 = *it;
         z = p1.x() > p0.x() ? p0.y() + (a - p0.x()) / (p1.x() - p0.x()) * (p1.y() - p0.y()) : p1.y();
       }
@@ -138,12 +140,16 @@ Vec3 BruteForceGearSolid::at(const Ring& ring, int patch, double x, double y) co
   }
 }
 
-Vec3 BruteForceGearSolid::point(int zone, int patch, double x, double y) const { return at(rings_[std::size_t(zone)], patch, x, y); }
+Vec3 BruteForceGearSolid::point(int zone, int patch, double x, double y) const {
+  return at(rings_[std::size_t(zone)], patch, x, y);
+}
 
 Vec3 BruteForceGearSolid::normal(int zone, int patch, double x, double y) const {
   const double h = 1e-5;
-  const double x0 = std::max(x - h, 0.0), x1 = std::min(x + h, 1.0), y0 = std::max(y - h, 0.0), y1 = std::min(y + h, 1.0);
-  const Vec3 dx = point(zone, patch, x1, y) - point(zone, patch, x0, y), dy = point(zone, patch, x, y1) - point(zone, patch, x, y0);
+  const double x0 = std::max(x - h, 0.0), x1 = std::min(x + h, 1.0), y0 = std::max(y - h, 0.0),
+               y1 = std::min(y + h, 1.0);
+  const Vec3 dx = point(zone, patch, x1, y) - point(zone, patch, x0, y),
+             dy = point(zone, patch, x, y1) - point(zone, patch, x, y0);
   Vec3 n = dx.cross(dy).normalized();
   if (patch == 6 || patch == 7) {
     const Vec3 p = point(zone, patch, x, y);
@@ -165,7 +171,8 @@ bool BruteForceGearSolid::inside(const Vec3& c) const {
     const double mid = 0.5 * (profile.front().x() + profile.back().x());
     const double a = mid + std::remainder(azimuth(c) - mid, pitch_);
     if (a <= profile.front().x() || a >= profile.back().x()) return true;
-    const auto it = std::lower_bound(profile.begin() + 1, profile.end() - 1, a, [](const Vec2& q, double v) { return q.x() < v; });
+    const auto it =
+        std::lower_bound(profile.begin() + 1, profile.end() - 1, a, [](const Vec2& q, double v) { return q.x() < v; });
     const Vec2 &p0 = *(it - 1), &p1 = *it;
     const double t = p1.x() > p0.x() ? (a - p0.x()) / (p1.x() - p0.x()) : 0.5;
     return c.z() < p0.y() + t * (p1.y() - p0.y());
@@ -194,8 +201,8 @@ BruteNearest BruteForceGearSolid::nearest(const Vec3& asked) const {
           for (int j = 0; j <= columns_; ++j) {
             const double d = d2(i, j);
             if (d > 4 * best_sample + 0.5) continue;
-            const bool least = (i == 0 || d <= d2(i - 1, j)) && (i == rows_ || d <= d2(i + 1, j)) && (j == 0 || d <= d2(i, j - 1)) &&
-                               (j == columns_ || d <= d2(i, j + 1));
+            const bool least = (i == 0 || d <= d2(i - 1, j)) && (i == rows_ || d <= d2(i + 1, j)) &&
+                               (j == 0 || d <= d2(i, j - 1)) && (j == columns_ || d <= d2(i, j + 1));
             if (!least) continue;
             best_sample = std::min(best_sample, d);
             seeds.push_back({d, zone, patch, i, j, turn});

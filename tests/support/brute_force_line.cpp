@@ -13,15 +13,18 @@ BrutePose blend(const BrutePose& a, const BrutePose& b, double w) {
 
 }  // namespace
 
-std::vector<Vec3> swept_flank(const BruteForceFaceGear& brute, double r_from, double r_to, const std::function<double(double)>& z_low, double z_high,
+std::vector<Vec3> swept_flank(const BruteForceFaceGear& brute, double r_from, double r_to,
+                              const std::function<double(double)>& z_low, double z_high,
                               const std::function<double(double, double)>& azimuth, int columns, int rows) {
   std::vector<Vec3> out;
   for (int i = 0; i < columns; ++i)
     for (int j = 0; j < rows; ++j) {
-      const double r = r_from + (r_to - r_from) * i / (columns - 1), low = z_low(r), z = low + (z_high - low) * j / (rows - 1);
+      const double r = r_from + (r_to - r_from) * i / (columns - 1), low = z_low(r),
+                   z = low + (z_high - low) * j / (rows - 1);
       const auto residual = [&](double a) { return brute.least_clearance({r * std::cos(a), r * std::sin(a), z}); };
       double a = azimuth(r, z) - 1e-4, b = a + 2e-4, fa = residual(a), fb = residual(b);
-      for (int k = 0; k < 30 && std::abs(fb) > 1e-11 && fb != fa; ++k) {  // the clearance is nearly linear in the azimuth: secants arrive at once
+      for (int k = 0; k < 30 && std::abs(fb) > 1e-11 && fb != fa;
+           ++k) {  // the clearance is nearly linear in the azimuth: secants arrive at once
         const double next = b - fb * (b - a) / (fb - fa);
         a = b, fa = fb, b = next, fb = residual(b);
       }
@@ -34,7 +37,8 @@ std::vector<Vec3> swept_flank(const BruteForceFaceGear& brute, double r_from, do
 double BruteConicalMill::distance(const Vec3& q, const BrutePose& pose) const {
   const Vec3 from_centre = q - (pose.tip + r_0 * pose.axis);
   const double h = from_centre.dot(pose.axis), off = (from_centre - h * pose.axis).norm();
-  // |q - c(t)| - rho(t) is convex in t; it is least where its slope vanishes, at t = h + off tan(tau), or at the lowest t there is.
+  // |q - c(t)| - rho(t) is convex in t; it is least where its slope vanishes, at t = h + off tan(tau), or at the lowest
+  // t there is.
   const auto least = [&](double lowest, double extra) {
     const double t = std::max(lowest, h + off * std::tan(half_angle));
     return std::hypot(h - t, off) - r_0 - t * std::sin(half_angle) - extra;

@@ -21,7 +21,9 @@ inline std::string file_text(const std::filesystem::path& path) {
   return std::move(out).str();
 }
 
-inline void write_file(const std::filesystem::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+inline void write_file(const std::filesystem::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
 
 /// A directory of its own for the running test, removed at the end.
 class TestDir {
@@ -51,8 +53,8 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
-/// `text` damaged at some places: bytes changed, taken out, repeated elsewhere, everything behind them cut off. `letters` are what the
-/// text is made of: a letter in place of another often leaves words that can be read.
+/// `text` damaged at some places: bytes changed, taken out, repeated elsewhere, everything behind them cut off.
+/// `letters` are what the text is made of: a letter in place of another often leaves words that can be read.
 template <typename Generator>
 std::string damaged(std::string text, Generator& random, int places, std::string_view letters) {
   for (int k = 0; k < places && !text.empty(); ++k) {

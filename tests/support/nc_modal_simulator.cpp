@@ -8,7 +8,7 @@ namespace toothpath::test {
 namespace {
 
 struct Sets {
-  const char* word;   // a whole word, or for `lines` a regular expression of the whole line
+  const char* word;  // a whole word, or for `lines` a regular expression of the whole line
   const char* group;
   const char* value;
 };
@@ -16,22 +16,42 @@ struct Sets {
 /// How a control is read. A group "-" stands for words without a mode.
 struct Language {
   std::vector<Sets> words, lines;
-  char comment = '(';         // what a comment begins with; "(" ends at ")", the others at the end of the line
-  std::string axis;           // regular expression of an axis or value word: letter, value
+  char comment = '(';  // what a comment begins with; "(" ends at ")", the others at the end of the line
+  std::string axis;    // regular expression of an axis or value word: letter, value
   bool numbered = false;
   ModalState safe, end;
   std::vector<std::regex> patterns = {};  // of `lines`
   std::regex value = {};                  // of `axis`
 };
 
-const std::vector<Sets> kIso = {
-    {"G0", "motion", "rapid"},    {"G1", "motion", "feed"},       {"G17", "plane", "xy"},       {"G18", "plane", "zx"},
-    {"G19", "plane", "yz"},       {"G20", "units", "inch"},       {"G21", "units", "mm"},       {"G90", "distance", "absolute"},
-    {"G91", "distance", "increments"}, {"G93", "feed", "inverse time"}, {"G94", "feed", "per minute"}, {"G95", "feed", "per turn"},
-    {"G40", "radius", "off"},     {"G41", "radius", "on"},        {"G42", "radius", "on"},      {"G49", "length", "off"},
-    {"G43", "length", "on"},      {"G80", "cycle", "off"},        {"G53", "-", "machine"},      {"G54", "offset", "G54"},
-    {"M3", "spindle", "on"},      {"M4", "spindle", "on"},        {"M5", "spindle", "off"},     {"M7", "coolant", "on"},
-    {"M8", "coolant", "on"},      {"M9", "coolant", "off"},       {"M6", "-", "tool change"},   {"M0", "-", "pause"}};
+const std::vector<Sets> kIso = {{"G0", "motion", "rapid"},
+                                {"G1", "motion", "feed"},
+                                {"G17", "plane", "xy"},
+                                {"G18", "plane", "zx"},
+                                {"G19", "plane", "yz"},
+                                {"G20", "units", "inch"},
+                                {"G21", "units", "mm"},
+                                {"G90", "distance", "absolute"},
+                                {"G91", "distance", "increments"},
+                                {"G93", "feed", "inverse time"},
+                                {"G94", "feed", "per minute"},
+                                {"G95", "feed", "per turn"},
+                                {"G40", "radius", "off"},
+                                {"G41", "radius", "on"},
+                                {"G42", "radius", "on"},
+                                {"G49", "length", "off"},
+                                {"G43", "length", "on"},
+                                {"G80", "cycle", "off"},
+                                {"G53", "-", "machine"},
+                                {"G54", "offset", "G54"},
+                                {"M3", "spindle", "on"},
+                                {"M4", "spindle", "on"},
+                                {"M5", "spindle", "off"},
+                                {"M7", "coolant", "on"},
+                                {"M8", "coolant", "on"},
+                                {"M9", "coolant", "off"},
+                                {"M6", "-", "tool change"},
+                                {"M0", "-", "pause"}};
 
 std::vector<Sets> iso_and(std::vector<Sets> more) {
   more.insert(more.end(), kIso.begin(), kIso.end());
@@ -42,11 +62,17 @@ const char* const kPlainWord = R"(([XYZABCFSTHDPQ])(-?\d*\.?\d*|\[.*\]))";
 
 Language linuxcnc() {
   Language l;
-  l.words = iso_and({{"G92.1", "shift", "off"}, {"G61", "smoothing", "off"}, {"G61.1", "smoothing", "off"}, {"G64", "smoothing", "on"}, {"M428", "tcp", "on"}, {"M429", "tcp", "off"},
+  l.words = iso_and({{"G92.1", "shift", "off"},
+                     {"G61", "smoothing", "off"},
+                     {"G61.1", "smoothing", "off"},
+                     {"G64", "smoothing", "on"},
+                     {"M428", "tcp", "on"},
+                     {"M429", "tcp", "off"},
                      {"M2", "-", "end"}});
   l.axis = kPlainWord;
-  l.safe = {{"units", "mm"}, {"plane", "xy"}, {"distance", "absolute"}, {"feed", "per minute"}, {"radius", "off"}, {"length", "off"},
-            {"cycle", "off"}, {"shift", "off"}, {"offset", "G54"}};  // smoothing: on or off by what the cuts turn
+  l.safe = {{"units", "mm"},   {"plane", "xy"},  {"distance", "absolute"}, {"feed", "per minute"}, {"radius", "off"},
+            {"length", "off"}, {"cycle", "off"}, {"shift", "off"},         {"offset", "G54"}};  // smoothing: on or off
+                                                                                                // by what the cuts turn
   l.end = l.safe;
   l.end["smoothing"] = l.end["spindle"] = "off";
   return l;
@@ -54,12 +80,16 @@ Language linuxcnc() {
 
 Language fanuc() {
   Language l;
-  l.words = iso_and({{"G69", "rotation", "off"}, {"G68", "rotation", "on"}, {"G43.4", "length", "on"}, {"M30", "-", "end"}, {"M99", "-", "return"}});
+  l.words = iso_and({{"G69", "rotation", "off"},
+                     {"G68", "rotation", "on"},
+                     {"G43.4", "length", "on"},
+                     {"M30", "-", "end"},
+                     {"M99", "-", "return"}});
   l.lines = {{R"(%|O\d+ ?)", "-", ""}, {R"(.*\bG43\.4\b.*)", "tcp", "on"}, {R"(.*\bG49\b.*)", "tcp", "off"}};
   l.axis = kPlainWord;
   // G49 stands in the block of the first retract: it is that motion which is safe.
-  l.safe = {{"units", "mm"}, {"plane", "xy"}, {"distance", "absolute"}, {"feed", "per minute"}, {"radius", "off"}, {"cycle", "off"},
-            {"rotation", "off"}, {"offset", "G54"}};
+  l.safe = {{"units", "mm"},   {"plane", "xy"},  {"distance", "absolute"}, {"feed", "per minute"},
+            {"radius", "off"}, {"cycle", "off"}, {"rotation", "off"},      {"offset", "G54"}};
   l.end = l.safe;
   l.end["length"] = l.end["tcp"] = l.end["spindle"] = "off";
   return l;
@@ -67,17 +97,33 @@ Language fanuc() {
 
 Language siemens() {
   Language l;
-  l.words = iso_and({{"G710", "units", "mm"}, {"G700", "units", "inch"}, {"SUPA", "-", "machine"}, {"COMPOF", "compressor", "off"},
-                     {"D0", "length", "off"}, {"D1", "length", "on"}, {"G641", "smoothing", "on"}, {"G60", "smoothing", "off"},
-                     {"ORIWKS", "orientation", "work"}, {"ORIAXES", "interpolation", "axes"}, {"M30", "-", "end"}});
+  l.words = iso_and({{"G710", "units", "mm"},
+                     {"G700", "units", "inch"},
+                     {"SUPA", "-", "machine"},
+                     {"COMPOF", "compressor", "off"},
+                     {"D0", "length", "off"},
+                     {"D1", "length", "on"},
+                     {"G641", "smoothing", "on"},
+                     {"G60", "smoothing", "off"},
+                     {"ORIWKS", "orientation", "work"},
+                     {"ORIAXES", "interpolation", "axes"},
+                     {"M30", "-", "end"}});
   // TRAORI and TRAFOOF may drop the frames: the offset counts as lost until it is named again.
-  l.lines = {{"TRAORI", "tcp", "on"}, {"TRAFOOF", "tcp", "off"}, {"TRAORI|TRAFOOF", "offset", "dropped"}, {"ROT", "frame", "zero"},
-             {"ROT Z=R3", "frame", "turned"}, {R"(R\d=.*)", "-", ""}, {R"(FOR .*|ENDFOR)", "-", ""}, {R"re(T="T\d+")re", "-", ""},
-             {R"(FGROUP\([A-Z,]+\))", "path group", "named"}, {R"(FGROUP\(\))", "path group", "machine"}, {R"(FGREF\[[ABC]\]=\d+)", "-", ""}};
+  l.lines = {{"TRAORI", "tcp", "on"},
+             {"TRAFOOF", "tcp", "off"},
+             {"TRAORI|TRAFOOF", "offset", "dropped"},
+             {"ROT", "frame", "zero"},
+             {"ROT Z=R3", "frame", "turned"},
+             {R"(R\d=.*)", "-", ""},
+             {R"(FOR .*|ENDFOR)", "-", ""},
+             {R"re(T="T\d+")re", "-", ""},
+             {R"(FGROUP\([A-Z,]+\))", "path group", "named"},
+             {R"(FGROUP\(\))", "path group", "machine"},
+             {R"(FGREF\[[ABC]\]=\d+)", "-", ""}};
   l.comment = ';';
   l.axis = R"(([XYZ]|[ABC]=|[ABC]3=|F|S|ADIS=)(R2[+-]\d*\.?\d*|-?\d*\.?\d*))";
-  l.safe = {{"units", "mm"}, {"plane", "xy"}, {"distance", "absolute"}, {"feed", "per minute"}, {"radius", "off"}, {"tcp", "off"},
-            {"frame", "zero"}, {"compressor", "off"}, {"offset", "G54"}, {"smoothing", "on"}};
+  l.safe = {{"units", "mm"}, {"plane", "xy"},   {"distance", "absolute"}, {"feed", "per minute"}, {"radius", "off"},
+            {"tcp", "off"},  {"frame", "zero"}, {"compressor", "off"},    {"offset", "G54"},      {"smoothing", "on"}};
   l.end = l.safe;
   l.end["length"] = l.end["smoothing"] = l.end["spindle"] = "off";
   return l;
@@ -85,23 +131,44 @@ Language siemens() {
 
 Language heidenhain() {
   Language l;
-  l.words = {{"L", "-", ""}, {"LN", "-", ""}, {"R0", "radius", "off"}, {"RL", "radius", "on"}, {"RR", "radius", "on"}, {"FMAX", "-", "rapid"},
-             {"M91", "-", "machine"}, {"M126", "travel", "shorter"}, {"M127", "travel", "plain"}, {"M3", "spindle", "on"},
-             {"M5", "spindle", "off"}, {"M8", "coolant", "on"}, {"M9", "coolant", "off"}, {"M0", "-", "pause"}, {"M30", "-", "end"}};
-  l.lines = {{R"(BEGIN PGM \S+ MM)", "units", "mm"}, {R"(BEGIN PGM \S+ INCH)", "units", "inch"}, {R"(END PGM \S+ MM)", "-", ""},
-             {"PLANE RESET STAY", "tilt", "off"}, {"FUNCTION RESET TCPM", "tcp", "off"},
-             {"FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "tcp", "on"}, {"TRANS DATUM RESET", "shift", "off"},
-             {R"(CYCL DEF 10\.0 ROTATION|CYCL DEF 32\.0 TOLERANCE)", "-", ""}, {R"(CYCL DEF 10\.1 ROT\+0)", "frame", "zero"},
-             {R"(CYCL DEF 10\.1 ROT\+Q3)", "frame", "turned"}, {R"(CYCL DEF 247 DATUM SETTING Q339=\+1)", "offset", "G54"},
-             {R"(CYCL DEF 32\.1 T[0-9.]+)", "smoothing", "on"}, {R"(CYCL DEF 32\.1)", "smoothing", "off"},
+  l.words = {{"L", "-", ""},
+             {"LN", "-", ""},
+             {"R0", "radius", "off"},
+             {"RL", "radius", "on"},
+             {"RR", "radius", "on"},
+             {"FMAX", "-", "rapid"},
+             {"M91", "-", "machine"},
+             {"M126", "travel", "shorter"},
+             {"M127", "travel", "plain"},
+             {"M3", "spindle", "on"},
+             {"M5", "spindle", "off"},
+             {"M8", "coolant", "on"},
+             {"M9", "coolant", "off"},
+             {"M0", "-", "pause"},
+             {"M30", "-", "end"}};
+  l.lines = {{R"(BEGIN PGM \S+ MM)", "units", "mm"},
+             {R"(BEGIN PGM \S+ INCH)", "units", "inch"},
+             {R"(END PGM \S+ MM)", "-", ""},
+             {"PLANE RESET STAY", "tilt", "off"},
+             {"FUNCTION RESET TCPM", "tcp", "off"},
+             {"FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "tcp", "on"},
+             {"TRANS DATUM RESET", "shift", "off"},
+             {R"(CYCL DEF 10\.0 ROTATION|CYCL DEF 32\.0 TOLERANCE)", "-", ""},
+             {R"(CYCL DEF 10\.1 ROT\+0)", "frame", "zero"},
+             {R"(CYCL DEF 10\.1 ROT\+Q3)", "frame", "turned"},
+             {R"(CYCL DEF 247 DATUM SETTING Q339=\+1)", "offset", "G54"},
+             {R"(CYCL DEF 32\.1 T[0-9.]+)", "smoothing", "on"},
+             {R"(CYCL DEF 32\.1)", "smoothing", "off"},
              {R"(CYCL DEF 32\.2 HSC-MODE:0 TA[0-9.]+)", "axis smoothing", "on"},
-             {R"(TOOL CALL \d+ Z S\d+)", "length", "on"}, {R"(TOOL CALL \d+ Z S\d+)", "-", "tool change"},
-             {R"(Q\d = .*|FN 1: Q5 = .*)", "-", ""}, {R"(LBL \d+)", "-", ""}};
+             {R"(TOOL CALL \d+ Z S\d+)", "length", "on"},
+             {R"(TOOL CALL \d+ Z S\d+)", "-", "tool change"},
+             {R"(Q\d = .*|FN 1: Q5 = .*)", "-", ""},
+             {R"(LBL \d+)", "-", ""}};
   l.comment = ';';
   l.axis = R"(([XYZABCF]|T[XYZ])([+-]?\d*\.?\d*|\+Q5))";
   l.numbered = true;
-  l.safe = {{"units", "mm"}, {"tilt", "off"}, {"tcp", "off"}, {"shift", "off"}, {"frame", "zero"}, {"offset", "G54"}, {"travel", "shorter"},
-            {"smoothing", "on"}};
+  l.safe = {{"units", "mm"},   {"tilt", "off"},   {"tcp", "off"},        {"shift", "off"},
+            {"frame", "zero"}, {"offset", "G54"}, {"travel", "shorter"}, {"smoothing", "on"}};
   l.end = l.safe;
   l.end["smoothing"] = l.end["spindle"] = "off";
   l.end["travel"] = "plain";
@@ -111,10 +178,20 @@ Language heidenhain() {
 
 Language apt() {
   Language l;
-  l.lines = {{R"(PARTNO/.*)", "-", ""}, {"UNITS/MM", "units", "mm"}, {"UNITS/INCHES", "units", "inch"}, {"MULTAX/ON", "axes", "all"},
-             {R"(LOADTL/\d+,LENGTH,[0-9.]+)", "-", "tool change"}, {R"(SPINDL/RPM,\d+,CLW)", "spindle", "on"}, {"SPINDL/OFF", "spindle", "off"},
-             {"COOLNT/ON|COOLNT/FLOOD|COOLNT/MIST", "coolant", "on"}, {"COOLNT/OFF", "coolant", "off"}, {"RAPID", "next", "rapid"}, {R"(FEDRAT/[0-9.]+,MMPM)", "feed", "per minute"},
-             {R"(GOTO/.*)", "-", ""}, {"END", "-", "end"}, {"FINI", "-", ""}};
+  l.lines = {{R"(PARTNO/.*)", "-", ""},
+             {"UNITS/MM", "units", "mm"},
+             {"UNITS/INCHES", "units", "inch"},
+             {"MULTAX/ON", "axes", "all"},
+             {R"(LOADTL/\d+,LENGTH,[0-9.]+)", "-", "tool change"},
+             {R"(SPINDL/RPM,\d+,CLW)", "spindle", "on"},
+             {"SPINDL/OFF", "spindle", "off"},
+             {"COOLNT/ON|COOLNT/FLOOD|COOLNT/MIST", "coolant", "on"},
+             {"COOLNT/OFF", "coolant", "off"},
+             {"RAPID", "next", "rapid"},
+             {R"(FEDRAT/[0-9.]+,MMPM)", "feed", "per minute"},
+             {R"(GOTO/.*)", "-", ""},
+             {"END", "-", "end"},
+             {"FINI", "-", ""}};
   l.comment = '$';  // "$$"; one alone goes on in the next line
   l.axis = "";
   l.safe = {{"units", "mm"}, {"axes", "all"}};
@@ -125,8 +202,13 @@ Language apt() {
 
 const Language& language(const std::string& dialect) {
   static const std::map<std::string, Language> all = [] {
-    std::map<std::string, Language> m = {{"linuxcnc", linuxcnc()}, {"fanuc", fanuc()},           {"mitsubishi_m80", fanuc()}, {"haas", fanuc()},
-                                         {"siemens", siemens()},   {"heidenhain", heidenhain()}, {"apt", apt()}};
+    std::map<std::string, Language> m = {{"linuxcnc", linuxcnc()},
+                                         {"fanuc", fanuc()},
+                                         {"mitsubishi_m80", fanuc()},
+                                         {"haas", fanuc()},
+                                         {"siemens", siemens()},
+                                         {"heidenhain", heidenhain()},
+                                         {"apt", apt()}};
     for (auto& [name, l] : m) {
       for (const auto& s : l.lines) l.patterns.emplace_back(s.word);
       l.value = std::regex(l.axis);
@@ -219,13 +301,16 @@ class Order {
   std::size_t start_of(std::size_t i, const std::smatch& m) const {
     const std::string& code = lines_[i].code;
     const std::string number = m.size() > 2 && m[2].matched ? m[2].str() : m[1].str();
-    const std::string begin = code == "ENDFOR" ? "FOR " : code.find("LBL") != std::string::npos ? "LBL " + number : "o" + number + " while";
+    const std::string begin = code == "ENDFOR"                        ? "FOR "
+                              : code.find("LBL") != std::string::npos ? "LBL " + number
+                                                                      : "o" + number + " while";
     while (i > 0 && lines_[i].code.rfind(begin, 0) != 0) --i;
     return i;
   }
 
-  inline static const std::regex kSub{R"(o(\d+) sub)"}, kEndSub{R"(o(\d+) endsub)"}, kCall{R"((?:o|M98 P)(\d+)(?: call .*)?)"},
-      kWhile{R"(o(\d+) while .*)"}, kEnd{R"((?:o(\d+) endwhile|ENDFOR))"}, kRepeat{R"((?:CALL LBL (\d+) REP\d+|FN 12: IF \+Q\d LT \+\d+ GOTO LBL (\d+)))"}, kProgram{R"(O(\d+))"};
+  inline static const std::regex kSub{R"(o(\d+) sub)"}, kEndSub{R"(o(\d+) endsub)"},
+      kCall{R"((?:o|M98 P)(\d+)(?: call .*)?)"}, kWhile{R"(o(\d+) while .*)"}, kEnd{R"((?:o(\d+) endwhile|ENDFOR))"},
+      kRepeat{R"((?:CALL LBL (\d+) REP\d+|FN 12: IF \+Q\d LT \+\d+ GOTO LBL (\d+)))"}, kProgram{R"(O(\d+))"};
   const std::vector<Line>& lines_;
   std::map<std::string, std::size_t> subs_;
   std::vector<std::size_t> executed_;
@@ -260,7 +345,8 @@ Meaning read_line(const Language& l, const std::string& code) {
     return out;
   }
   // Statements whose words are no axis words, and assignments.
-  static const std::regex statement(R"(ROT .*|CYCL .*|TOOL .*|FUNCTION .*|PLANE .*|TRANS .*|BEGIN .*|END .*|Q\d .*|FN .*|R\d=.*|FOR .*|LBL .*)"),
+  static const std::regex statement(
+      R"(ROT .*|CYCL .*|TOOL .*|FUNCTION .*|PLANE .*|TRANS .*|BEGIN .*|END .*|Q\d .*|FN .*|R\d=.*|FOR .*|LBL .*)"),
       assignment(R"(#\d=.*)");
   if (line_known && (code.find(' ') == std::string::npos || std::regex_match(code, statement))) return out;
   if (std::regex_match(code, assignment)) return out;
@@ -289,7 +375,8 @@ Meaning read_line(const Language& l, const std::string& code) {
 const Meaning& meaning_of(const std::string& dialect, const std::string& code) {
   static std::map<std::pair<std::string, std::string>, Meaning> all;
   const auto found = all.find({dialect, code});
-  return found != all.end() ? found->second : all.emplace(std::pair{dialect, code}, read_line(language(dialect), code)).first->second;
+  return found != all.end() ? found->second
+                            : all.emplace(std::pair{dialect, code}, read_line(language(dialect), code)).first->second;
 }
 
 /// Returns false where a word is not in the data.

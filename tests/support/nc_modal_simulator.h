@@ -1,6 +1,7 @@
-// Walks through an NC program as a control would and keeps its modes: units, plane, feed mode, length compensation, TCP, spindle,
-// coolant, smoothing .. It knows nothing of kinematics, shares no code with writer or readers, and is data for each control: which
-// words set which mode. Loops are walked through twice, so that what a loop leaves behind meets its own start.
+// Walks through an NC program as a control would and keeps its modes: units, plane, feed mode, length compensation,
+// TCP, spindle, coolant, smoothing .. It knows nothing of kinematics, shares no code with writer or readers, and is
+// data for each control: which words set which mode. Loops are walked through twice, so that what a loop leaves behind
+// meets its own start.
 #pragma once
 
 #include <map>
@@ -13,9 +14,9 @@ using ModalState = std::map<std::string, std::string>;
 
 /// One executed line with its modes before and after it.
 struct ModalBlock {
-  int line = 0;          ///< of the text, from 1
-  std::string code;      ///< without block number and comment
-  std::string comment;   ///< text of the comments of the line
+  int line = 0;                              ///< of the text, from 1
+  std::string code;                          ///< without block number and comment
+  std::string comment;                       ///< text of the comments of the line
   std::map<std::string, std::string> words;  ///< axis words, vector words, F, S: as they stand
   ModalState before, after;
   bool moves = false;    ///< it has axis words
@@ -23,7 +24,7 @@ struct ModalBlock {
   bool machine = false;  ///< its words are machine coordinates
   bool vector = false;   ///< it carries a tool vector
   bool tool_change = false;
-  bool end = false;      ///< the program ends
+  bool end = false;  ///< the program ends
 
   [[nodiscard]] bool has(const std::string& word) const { return words.count(word) != 0; }
   [[nodiscard]] bool linear() const { return has("X") || has("Y") || has("Z"); }

@@ -1,4 +1,5 @@
-// The distance to a truncated cone written out side by side, and the gap to a triangle by halving it: second opinions for the searches of cam.
+// The distance to a truncated cone written out side by side, and the gap to a triangle by halving it: second opinions
+// for the searches of cam.
 #pragma once
 
 #include <algorithm>
@@ -27,10 +28,10 @@ inline double distance_to_frustum(const Vec3& point, const tool::Frustum& f, con
                    to_segment(0, f.to, f.radius_to, f.to)});
 }
 
-/// Least distance between a triangle and a frustum, from below, or `best` where that is less: the triangle is halved until its size is
-/// `resolution` or can matter no more. A triangle that cuts in: -resolution.
-inline double triangle_gap(const Vec3& a, const Vec3& b, const Vec3& c, const tool::Frustum& f, const Vec3& tip, const Vec3& axis, double best,
-                           double resolution, int depth) {
+/// Least distance between a triangle and a frustum, from below, or `best` where that is less: the triangle is halved
+/// until its size is `resolution` or can matter no more. A triangle that cuts in: -resolution.
+inline double triangle_gap(const Vec3& a, const Vec3& b, const Vec3& c, const tool::Frustum& f, const Vec3& tip,
+                           const Vec3& axis, double best, double resolution, int depth) {
   if (best <= -resolution) return best;  // inside: how deep does not matter
   const Vec3 centre = (a + b + c) / 3;
   const double size = std::max({(a - centre).norm(), (b - centre).norm(), (c - centre).norm()});

@@ -26,8 +26,8 @@ Canonical interpret(const std::string& program, const std::string& name, const s
   std::ofstream(dir / "v.var") << "";
   if (!ini.empty()) std::ofstream(dir / "m.ini") << "[RS274NGC]\nPARAMETER_FILE = v.var\n" << ini;
   const std::string d = dir.string();
-  const std::string command = "cd '" + d + "' && HOME='" + d + "' timeout 60 '" + rs274 + "'" + (ini.empty() ? "" : " -i m.ini") +
-                              " -g -t t.tbl -v v.var p.ngc out.txt > log.txt 2>&1";
+  const std::string command = "cd '" + d + "' && HOME='" + d + "' timeout 60 '" + rs274 + "'" +
+                              (ini.empty() ? "" : " -i m.ini") + " -g -t t.tbl -v v.var p.ngc out.txt > log.txt 2>&1";
   const int status = std::system(command.c_str());
   out.exit = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   std::ifstream log(dir / "log.txt");

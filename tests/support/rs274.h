@@ -1,5 +1,5 @@
-// LinuxCNC's stand-alone interpreter as the second opinion on NC text. tools/get_rs274.sh fetches it; the variable TOOTHPATH_RS274 names
-// another copy.
+// LinuxCNC's stand-alone interpreter as the second opinion on NC text. tools/get_rs274.sh fetches it; the variable
+// TOOTHPATH_RS274 names another copy.
 #pragma once
 
 #include <string>

@@ -12,7 +12,9 @@
 namespace toothpath::test {
 
 /// Cut by a shaper of 20 deg, the module in the transverse plane.
-inline face_gear::FaceGearParameters transverse_gear(int teeth, int shaper_teeth, double module_mm, double shaper_tip_radius_mm, std::vector<face_gear::FaceGearZone> zones) {
+inline face_gear::FaceGearParameters transverse_gear(int teeth, int shaper_teeth, double module_mm,
+                                                     double shaper_tip_radius_mm,
+                                                     std::vector<face_gear::FaceGearZone> zones) {
   face_gear::FaceGearParameters g;
   g.teeth = teeth;
   g.shaper_teeth = shaper_teeth;
@@ -24,8 +26,8 @@ inline face_gear::FaceGearParameters transverse_gear(int teeth, int shaper_teeth
   return g;
 }
 
-/// The double helical gear of the DHFG paper (30/180, 20 deg, module 5 in the transverse plane), lengths times `scale`; scale 1/4 is
-/// samples/dhfg_t600s.toml.
+/// The double helical gear of the DHFG paper (30/180, 20 deg, module 5 in the transverse plane), lengths times `scale`;
+/// scale 1/4 is samples/dhfg_t600s.toml.
 inline face_gear::FaceGearParameters double_helical_parameters(double scale = 1) {
   auto g = transverse_gear(180, 30, 5 * scale, 1.5 * scale,
                            {{radians(-30), 449 * scale, 468 * scale}, {radians(30), 476 * scale, 496 * scale}});
@@ -49,9 +51,10 @@ inline face_gear::FaceGearParameters offset_gear() {
 /// 20/60, module 2, short straight teeth: samples/spur_quick.toml.
 inline face_gear::FaceGearParameters small_spur() { return transverse_gear(60, 20, 2, 0.6, {{0, 60, 65}}); }
 
-/// 20/30, module 5, an acute or obtuse shaft angle: at 70 deg the root stands far out along the shaper's axis, at 105 deg a tool along the
-/// gear axis does not fit.
-inline face_gear::FaceGearParameters steep_gear(double shaft_angle_deg, double inner_radius_mm, double outer_radius_mm) {
+/// 20/30, module 5, an acute or obtuse shaft angle: at 70 deg the root stands far out along the shaper's axis, at 105
+/// deg a tool along the gear axis does not fit.
+inline face_gear::FaceGearParameters steep_gear(double shaft_angle_deg, double inner_radius_mm,
+                                                double outer_radius_mm) {
   auto g = transverse_gear(30, 20, 5, 1, {{0, inner_radius_mm, outer_radius_mm}});
   g.shaft_angle_rad = radians(shaft_angle_deg);
   return g;

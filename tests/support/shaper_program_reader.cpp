@@ -7,7 +7,7 @@
 namespace toothpath::test {
 namespace {
 
-constexpr double kWordMm = 1.1e-5;    // a word has at least 5 decimals
+constexpr double kWordMm = 1.1e-5;     // a word has at least 5 decimals
 constexpr double kWordDeg = 0.501e-5;  // half of the fifth decimal
 
 std::string without_comments(const std::string& line) {
@@ -78,8 +78,8 @@ ShaperProgramText read_shaper_program(const std::string& text) {
     for (std::size_t k = 0; k < line.size();) {
       const char letter = line[k++];
       std::size_t stop = k;
-      while (stop < line.size() && (line[stop] == '.' || line[stop] == '-' || line[stop] == '+' ||
-                                    (line[stop] >= '0' && line[stop] <= '9')))
+      while (stop < line.size() &&
+             (line[stop] == '.' || line[stop] == '-' || line[stop] == '+' || (line[stop] >= '0' && line[stop] <= '9')))
         ++stop;
       if (stop == k) {
         problem(std::string("no number after ") + letter);
@@ -171,12 +171,16 @@ std::vector<std::string> shaper_program_faults(const ShaperProgramText& program,
     if (std::abs(cut.from[kZ] - f.start) > kWordMm || std::abs(cut.to[kZ] - f.end) > kWordMm)
       faults.add(cut.line, "stroke ", j, " from Z ", cut.from[kZ], " to ", cut.to[kZ]);
     const double c = f.sense * whole_number_angle(360LL * j, f.strokes_turn);
-    const double a = whole_number_angle(360LL * j * f.work_teeth, static_cast<long long>(f.cutter_teeth) * f.strokes_turn);
-    if (std::abs(cut.to[kC] - c) > kWordDeg) faults.add(cut.line, "work at ", cut.to[kC], " after stroke ", j, ", not ", c);
-    if (std::abs(cut.to[kA] - a) > kWordDeg) faults.add(cut.line, "cutter at ", cut.to[kA], " after stroke ", j, ", not ", a);
+    const double a =
+        whole_number_angle(360LL * j * f.work_teeth, static_cast<long long>(f.cutter_teeth) * f.strokes_turn);
+    if (std::abs(cut.to[kC] - c) > kWordDeg)
+      faults.add(cut.line, "work at ", cut.to[kC], " after stroke ", j, ", not ", c);
+    if (std::abs(cut.to[kA] - a) > kWordDeg)
+      faults.add(cut.line, "cutter at ", cut.to[kA], " after stroke ", j, ", not ", a);
     if (std::abs(lift.to[kX] - (x + f.relief)) > kWordMm || lift.to[kZ] != cut.to[kZ])
       faults.add(lift.line, "no lift by the relief before the return");
-    if (std::abs(back.to[kZ] - f.start) > kWordMm || back.to[kX] != lift.to[kX]) faults.add(back.line, "return is not straight");
+    if (std::abs(back.to[kZ] - f.start) > kWordMm || back.to[kX] != lift.to[kX])
+      faults.add(back.line, "return is not straight");
     if (std::abs(approach.to[kX] - x_next) > kWordMm || approach.to[kZ] != back.to[kZ])
       faults.add(approach.line, "stroke ", j + 1, " would start at X ", approach.to[kX], ", not ", x_next);
     double minutes = 0;

@@ -41,6 +41,7 @@ struct ReadStroke {
 [[nodiscard]] std::vector<ReadStroke> cutting_strokes(const ShaperProgramText& program, const ShaperFacts& facts);
 
 /// Every broken rule, "line n: what"; empty if the program is right. Stops after 20.
-[[nodiscard]] std::vector<std::string> shaper_program_faults(const ShaperProgramText& program, const ShaperFacts& facts);
+[[nodiscard]] std::vector<std::string> shaper_program_faults(const ShaperProgramText& program,
+                                                             const ShaperFacts& facts);
 
 }  // namespace toothpath::test

@@ -1,5 +1,5 @@
-// Forward kinematics of an A/C trunnion as LinuxCNC's xyzac-trt publishes it, written out term by term; shares nothing with
-// the machine model under test.
+// Forward kinematics of an A/C trunnion as LinuxCNC's xyzac-trt publishes it, written out term by term; shares nothing
+// with the machine model under test.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,8 @@ struct TrunnionPose {
 };
 
 /// Joints in mm and degrees, reversed rotaries, gauge-line Z; tool length L from the gauge line to the tip.
-inline TrunnionPose trunnion_forward(const TrunnionGeometry& g, double X, double Y, double Z, double A, double C, double L) {
+inline TrunnionPose trunnion_forward(const TrunnionGeometry& g, double X, double Y, double Z, double A, double C,
+                                     double L) {
   const double deg = std::acos(-1.0) / 180, sA = std::sin(A * deg), cA = std::cos(A * deg), sC = std::sin(C * deg),
                cC = std::cos(C * deg), dz = g.z_offset + L;
   const double x = X - g.px, y = Y - g.dy - g.py, z = Z - dz - g.pz;

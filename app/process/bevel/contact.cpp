@@ -28,14 +28,19 @@ struct PairAnalysis {
 constexpr std::array<const char*, 2> kWall = {"L", "U"};
 
 page::PageTable wall_table(const PairAnalysis& a) {
-  page::PageTable t{"Walls", {"wall", "transmission error um", "urad of the pinion", "mismatch least um", "greatest um", "rms um", "pairs marking", "marked"}, {},
-              "Transmission error: peak to peak over one pitch, um at the mean pitch circle. Mismatch: normal distance of the flanks at the exact ratio; 0 "
-              "everywhere only for conjugate flanks."};
+  page::PageTable t{"Walls",
+                    {"wall", "transmission error um", "urad of the pinion", "mismatch least um", "greatest um",
+                     "rms um", "pairs marking", "marked"},
+                    {},
+                    "Transmission error: peak to peak over one pitch, um at the mean pitch circle. Mismatch: normal "
+                    "distance of the flanks at the exact ratio; 0 everywhere only for conjugate flanks."};
   for (std::size_t w = 0; w < a.walls.size(); ++w) {
     const contact::BevelContact& c = a.walls[w];
     std::string marked;
-    for (const auto& g : c.patterns) marked += fmt::format("{}{:.0f} %", marked.empty() ? "" : ", ", g.marked_share * 100);
-    t.rows.push_back({kWall[w], fmt::format("{:.2f}", c.error_range_mm * 1000), fmt::format("{:.1f}", c.error_range_rad * 1e6), fmt::format("{:.2f}", c.mismatch_min_mm * 1000),
+    for (const auto& g : c.patterns)
+      marked += fmt::format("{}{:.0f} %", marked.empty() ? "" : ", ", g.marked_share * 100);
+    t.rows.push_back({kWall[w], fmt::format("{:.2f}", c.error_range_mm * 1000),
+                      fmt::format("{:.1f}", c.error_range_rad * 1e6), fmt::format("{:.2f}", c.mismatch_min_mm * 1000),
                       fmt::format("{:.2f}", c.mismatch_max_mm * 1000), fmt::format("{:.2f}", c.mismatch_rms_mm * 1000),
                       fmt::format("{:.2f} ({} to {})", c.marking_ratio, c.least_marking, c.most_marking), marked});
   }
@@ -43,12 +48,15 @@ page::PageTable wall_table(const PairAnalysis& a) {
 }
 
 page::PageTable change_table(const PairAnalysis& a) {
-  page::PageTable t{"What would bring the flanks closer", {"change", "best amount", "unit", "rms before um", "after um", ""}, {},
-              "Both walls together, a constant of each wall (play) left out. One change at a time: first order. Sets: rolled again with the changed pinion. "
-              "Convex and concave name the walls by their shape at the large end."};
+  page::PageTable t{
+      "What would bring the flanks closer",
+      {"change", "best amount", "unit", "rms before um", "after um", ""},
+      {},
+      "Both walls together, a constant of each wall (play) left out. One change at a time: first order. Sets: rolled "
+      "again with the changed pinion. Convex and concave name the walls by their shape at the large end."};
   for (const auto& c : a.changes)
-    t.rows.push_back({c.name, fmt::format("{:.4f}", c.amount), c.unit, fmt::format("{:.2f}", c.rms_before_mm * 1000), fmt::format("{:.2f}", c.rms_after_mm * 1000),
-                      c.measured ? "measured" : "first order"});
+    t.rows.push_back({c.name, fmt::format("{:.4f}", c.amount), c.unit, fmt::format("{:.2f}", c.rms_before_mm * 1000),
+                      fmt::format("{:.2f}", c.rms_after_mm * 1000), c.measured ? "measured" : "first order"});
   return t;
 }
 
@@ -57,15 +65,25 @@ std::string finding(const PairAnalysis& a) {
   double range = 0, rms = 0;
   for (const auto& c : a.walls) range = std::max(range, c.error_range_mm), rms = std::max(rms, c.mismatch_rms_mm);
   if (rms < 1e-6) return "The flanks are conjugate: the mismatch is below 0.001 um rms.";
-  const double best = a.changes.empty() ? 0 : a.changes.back().rms_after_mm, before = a.changes.empty() ? 0 : a.changes.back().rms_before_mm;
-  return fmt::format("The flanks are not conjugate: at the exact ratio they miss each other by up to {:.1f} um rms on a wall, and the transmission error is {:.1f} um peak to "
-                     "peak. The best change of the pinion's mills and traces that was tried takes the mismatch of both walls from {:.1f} to {:.1f} um rms.",
-                     rms * 1000, range * 1000, before * 1000, best * 1000);
+  const double best = a.changes.empty() ? 0 : a.changes.back().rms_after_mm,
+               before = a.changes.empty() ? 0 : a.changes.back().rms_before_mm;
+  return fmt::format(
+      "The flanks are not conjugate: at the exact ratio they miss each other by up to {:.1f} um rms on a wall, and the "
+      "transmission error is {:.1f} um peak to peak. The best change of the pinion's mills and traces that was tried "
+      "takes the mismatch of both walls from {:.1f} to {:.1f} um rms.",
+      rms * 1000, range * 1000, before * 1000, best * 1000);
 }
 
 std::vector<svg::LineChart> charts_of(const PairAnalysis& a) {
-  svg::LineChart error{"Transmission error over one pitch", "turn of the wheel [deg]", "pinion ahead of the exact ratio [urad]", {}, {}, false, false, false,
-                  "The pinion stops at the first pair that touches; jumps of the slope are changes of the pair."};
+  svg::LineChart error{"Transmission error over one pitch",
+                       "turn of the wheel [deg]",
+                       "pinion ahead of the exact ratio [urad]",
+                       {},
+                       {},
+                       false,
+                       false,
+                       false,
+                       "The pinion stops at the first pair that touches; jumps of the slope are changes of the pair."};
   svg::LineChart pairs{"Pairs within the compound", "turn of the wheel [deg]", "pairs", {}, {}, false, false, true, ""};
   for (std::size_t w = 0; w < a.walls.size(); ++w) {
     svg::ChartSeries e{std::string("wall ") + kWall[w], {}, {}}, n{e.name, {}, {}};
@@ -85,7 +103,9 @@ std::vector<page::StudyPage::Figure> figures_of(const PairAnalysis& a) {
   std::vector<page::StudyPage::Figure> figures;
   for (std::size_t w = 0; w < a.walls.size(); ++w)
     for (const auto& g : a.walls[w].patterns) {
-      const std::string where = fmt::format("wall {} of the wheel{}", kWall[w], a.walls[w].patterns.size() > 1 ? g.half == 0 ? ", inner half" : ", outer half" : "");
+      const std::string where =
+          fmt::format("wall {} of the wheel{}", kWall[w],
+                      a.walls[w].patterns.size() > 1 ? g.half == 0 ? ", inner half" : ", outer half" : "");
       svg::PatternDrawing pattern;
       pattern.title = "contact pattern, " + where;
       pattern.x_label = "cone distance [mm]";
@@ -93,7 +113,8 @@ std::vector<page::StudyPage::Figure> figures_of(const PairAnalysis& a) {
       pattern.rows = g.rows;
       pattern.columns = g.columns;
       pattern.compound_um = a.compound_mm * 1000;
-      svg::FlankFieldDrawing field{"mismatch, " + where, "cone distance [mm]", "height [mm]", "um", g.rows, g.columns, {}, {}, {}, 0};
+      svg::FlankFieldDrawing field{
+          "mismatch, " + where, "cone distance [mm]", "height [mm]", "um", g.rows, g.columns, {}, {}, {}, 0};
       for (std::size_t k = 0; k < g.places.size(); ++k) {
         pattern.x.push_back(g.places[k].ell);
         pattern.y.push_back(g.places[k].height);
@@ -104,9 +125,11 @@ std::vector<page::StudyPage::Figure> figures_of(const PairAnalysis& a) {
       for (const auto& at : a.walls[w].cycle)
         if (at.half == g.half) pattern.path.emplace_back(at.ell, at.height);
       std::sort(pattern.path.begin(), pattern.path.end());
-      figures.push_back({"Contact pattern, " + where, svg::svg_contact_pattern(pattern), fmt::format("Compound {:g} um; line: places that touch first.", a.compound_mm * 1000)});
-      figures.push_back({"Mismatch at the exact ratio, " + where, svg::svg_flank_field(field), "Red: a gap; blue: the flanks would overlap and lift the other pairs off. White also "
-                                                                                         "where the pinion's flank has ended."});
+      figures.push_back({"Contact pattern, " + where, svg::svg_contact_pattern(pattern),
+                         fmt::format("Compound {:g} um; line: places that touch first.", a.compound_mm * 1000)});
+      figures.push_back({"Mismatch at the exact ratio, " + where, svg::svg_flank_field(field),
+                         "Red: a gap; blue: the flanks would overlap and lift the other pairs off. White also where "
+                         "the pinion's flank has ended."});
     }
   return figures;
 }
@@ -117,13 +140,16 @@ std::string page_of(const PairAnalysis& a) {
   page.subtitle = fmt::format("pinion of {} teeth, wheel of {} teeth; mate: {}", a.pinion_teeth, a.wheel_teeth, a.mate);
   const contact::BevelAssembly& m = a.assembly;
   if (m.offset_mm != 0 || m.pinion_axial_mm != 0 || m.wheel_axial_mm != 0 || m.shaft_angle_rad != 0)
-    page.subtitle += fmt::format("; offset {:+g} mm, shaft angle {:+g} deg, pinion axial {:+g} mm, wheel axial {:+g} mm", m.offset_mm, degrees(m.shaft_angle_rad), m.pinion_axial_mm,
-                                 m.wheel_axial_mm);
+    page.subtitle +=
+        fmt::format("; offset {:+g} mm, shaft angle {:+g} deg, pinion axial {:+g} mm, wheel axial {:+g} mm",
+                    m.offset_mm, degrees(m.shaft_angle_rad), m.pinion_axial_mm, m.wheel_axial_mm);
   double rms = 0;
   for (const auto& c : a.walls) rms = std::max(rms, c.mismatch_rms_mm);
   page.good = rms < 1e-6;
   page.verdict = page.good ? "conjugate" : fmt::format("not conjugate: {:.1f} um rms", rms * 1000);
-  page.introduction = {finding(a), "Both gears are the exact envelopes of their mills and turn as rigid bodies without load. Wall L of the pinion runs on wall L of the wheel, U on U."};
+  page.introduction = {finding(a),
+                       "Both gears are the exact envelopes of their mills and turn as rigid bodies without load. Wall "
+                       "L of the pinion runs on wall L of the wheel, U on U."};
   page.charts = charts_of(a);
   page.figures = figures_of(a);
   page.tables = {wall_table(a), change_table(a)};
@@ -138,7 +164,8 @@ std::string places_csv(const PairAnalysis& a) {
       for (std::size_t k = 0; k < g.places.size(); ++k) {
         const auto& p = g.places[k];
         if (!p.point.allFinite()) continue;
-        out += fmt::format("{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}\n", kWall[w], g.half, p.ell, p.height, p.point.x(), p.point.y(), p.point.z(), um(g.mismatch_mm[k]), um(g.gap_mm[k]));
+        out += fmt::format("{},{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{},{}\n", kWall[w], g.half, p.ell, p.height,
+                           p.point.x(), p.point.y(), p.point.z(), um(g.mismatch_mm[k]), um(g.gap_mm[k]));
       }
   return out;
 }
@@ -147,7 +174,8 @@ std::string transmission_csv(const PairAnalysis& a) {
   std::string out = "wall,phi_2_deg,phi_1_deg,error_urad,half,pair,cone_distance,height,marking\n";
   for (std::size_t w = 0; w < a.walls.size(); ++w)
     for (const auto& at : a.walls[w].cycle)
-      out += fmt::format("{},{:.9f},{:.9f},{:.4f},{},{},{:.6f},{:.6f},{}\n", kWall[w], degrees(at.phi_2), degrees(at.phi_1), at.error_rad * 1e6, at.half, at.tooth, at.ell, at.height, at.marking);
+      out += fmt::format("{},{:.9f},{:.9f},{:.4f},{},{},{:.6f},{:.6f},{}\n", kWall[w], degrees(at.phi_2),
+                         degrees(at.phi_1), at.error_rad * 1e6, at.half, at.tooth, at.ell, at.height, at.marking);
   return out;
 }
 
@@ -160,24 +188,38 @@ std::string json_of(const PairAnalysis& a) {
   json["pinion_teeth"] = a.pinion_teeth;
   json["wheel_teeth"] = a.wheel_teeth;
   json["compound_um"] = a.compound_mm * 1000;
-  json["assembly"] = {{"offset_mm", a.assembly.offset_mm}, {"shaft_angle_deg", degrees(a.assembly.shaft_angle_rad)}, {"pinion_axial_mm", a.assembly.pinion_axial_mm},
+  json["assembly"] = {{"offset_mm", a.assembly.offset_mm},
+                      {"shaft_angle_deg", degrees(a.assembly.shaft_angle_rad)},
+                      {"pinion_axial_mm", a.assembly.pinion_axial_mm},
                       {"wheel_axial_mm", a.assembly.wheel_axial_mm}};
   for (std::size_t w = 0; w < a.walls.size(); ++w) {
     const contact::BevelContact& c = a.walls[w];
-    nlohmann::ordered_json wall = {{"wall", kWall[w]}, {"transmission_error_urad", c.error_range_rad * 1e6}, {"transmission_error_um", c.error_range_mm * 1000},
-                                   {"mismatch_least_um", c.mismatch_min_mm * 1000}, {"mismatch_greatest_um", c.mismatch_max_mm * 1000}, {"mismatch_rms_um", c.mismatch_rms_mm * 1000},
-                                   {"pairs_marking", c.marking_ratio}, {"pairs_least", c.least_marking}, {"pairs_most", c.most_marking}};
+    nlohmann::ordered_json wall = {{"wall", kWall[w]},
+                                   {"transmission_error_urad", c.error_range_rad * 1e6},
+                                   {"transmission_error_um", c.error_range_mm * 1000},
+                                   {"mismatch_least_um", c.mismatch_min_mm * 1000},
+                                   {"mismatch_greatest_um", c.mismatch_max_mm * 1000},
+                                   {"mismatch_rms_um", c.mismatch_rms_mm * 1000},
+                                   {"pairs_marking", c.marking_ratio},
+                                   {"pairs_least", c.least_marking},
+                                   {"pairs_most", c.most_marking}};
     for (const auto& g : c.patterns) wall["marked_share"].push_back(g.marked_share);
     json["walls"].push_back(wall);
   }
   for (const auto& c : a.changes)
-    json["changes"].push_back({{"name", c.name}, {"amount", c.amount}, {"unit", c.unit}, {"rms_before_um", c.rms_before_mm * 1000}, {"rms_after_um", c.rms_after_mm * 1000}, {"measured", c.measured}});
+    json["changes"].push_back({{"name", c.name},
+                               {"amount", c.amount},
+                               {"unit", c.unit},
+                               {"rms_before_um", c.rms_before_mm * 1000},
+                               {"rms_after_um", c.rms_after_mm * 1000},
+                               {"measured", c.measured}});
   json["finding"] = finding(a);
   return json.dump(1) + "\n";
 }
 
 /// The gear that the job's gear runs with.
-process::ValueOrErrors<bevel_gear::BevelGear> mate_of(const process::ContactAsked& request, const job::Job& job, const bevel_gear::BevelGear& gear, std::string& name) {
+process::ValueOrErrors<bevel_gear::BevelGear> mate_of(const process::ContactAsked& request, const job::Job& job,
+                                                      const bevel_gear::BevelGear& gear, std::string& name) {
   if (request.other_job.empty()) {
     auto mate = contact::bevel_mate(gear);
     if (!mate) return std::vector{process::located(job, "gear.mate_teeth", mate.error())};
@@ -187,14 +229,16 @@ process::ValueOrErrors<bevel_gear::BevelGear> mate_of(const process::ContactAske
   auto read = job::read_job_file(request.other_job);
   if (auto* errors = read.refused()) return std::move(*errors);
   const job::Job& other = read.value();
-  if (other.bevel_gear() == nullptr) return std::vector{fail_at(other.where("gear.type"), "the mate is no equal-base-circle bevel gear")};
+  if (other.bevel_gear() == nullptr)
+    return std::vector{fail_at(other.where("gear.type"), "the mate is no equal-base-circle bevel gear")};
   name = request.other_job;
   return process::make_bevel_gear(other);
 }
 
 }  // namespace
 
-process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, const bevel_gear::BevelGear& gear, const process::ContactAsked& asked, app::StageClock& clock) {
+process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, const bevel_gear::BevelGear& gear,
+                                                        const process::ContactAsked& asked, app::StageClock& clock) {
   PairAnalysis a;
   a.name = job.name;
   auto mated = clock.run("mate", [&] { return mate_of(asked, job, gear, a.mate); });
@@ -218,14 +262,21 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
     if (!contact) return std::vector{process::located(job, "gear", contact.error())};
     a.walls.push_back(std::move(contact.value()));
   }
-  auto changes = clock.run("changes", [&] { return contact::mismatch_changes(pinion, wheel, {11, 9, 24, a.compound_mm}); });
+  auto changes = clock.run("changes", [&] {
+    return contact::mismatch_changes(pinion, wheel, {11, 9, 24, a.compound_mm});
+  });
   if (!changes) return std::vector{process::located(job, "gear", changes.error())};
   a.changes = std::move(changes.value());
 
   process::ContactFound found;
   found.json = json_of(a);
-  found.summary = fmt::format("{}: pinion {} teeth, wheel {} teeth\n{}\n{}\n{}\n", a.name, a.pinion_teeth, a.wheel_teeth, page::table_text(wall_table(a)), finding(a), page::table_text(change_table(a)));
-  found.files = {{"contact.csv", places_csv(a)}, {"transmission.csv", transmission_csv(a)}, {"contact.json", found.json}, {"contact.html", page_of(a)}};
+  found.summary =
+      fmt::format("{}: pinion {} teeth, wheel {} teeth\n{}\n{}\n{}\n", a.name, a.pinion_teeth, a.wheel_teeth,
+                  page::table_text(wall_table(a)), finding(a), page::table_text(change_table(a)));
+  found.files = {{"contact.csv", places_csv(a)},
+                 {"transmission.csv", transmission_csv(a)},
+                 {"contact.json", found.json},
+                 {"contact.html", page_of(a)}};
   return found;
 }
 

@@ -38,8 +38,9 @@ Result<std::string> inspection_text(const bevel_gear::BevelGear& gear) {
 joints::ClearanceBody clearance_body(const bevel_gear::BevelGear& g) {
   const auto& p = g.parameters();
   const double below = p.dedendum_mm + 2 * p.outer_transverse_module_mm;
-  joints::ClearanceBody body{g.R_e() * g.sin_delta() + p.addendum_mm * g.cos_delta(), g.R_i() * g.cos_delta() - p.addendum_mm * g.sin_delta(),
-                     g.R_e() * g.cos_delta() + below * g.sin_delta()};
+  joints::ClearanceBody body{g.R_e() * g.sin_delta() + p.addendum_mm * g.cos_delta(),
+                             g.R_i() * g.cos_delta() - p.addendum_mm * g.sin_delta(),
+                             g.R_e() * g.cos_delta() + below * g.sin_delta()};
   for (const finger::CoaxialBody& beside : finger::bodies_beside_teeth(g))
     for (const Vec2& rim : beside.rims) {
       body.radius_mm = std::max(body.radius_mm, rim.x());
@@ -49,7 +50,8 @@ joints::ClearanceBody clearance_body(const bevel_gear::BevelGear& g) {
   return body;
 }
 
-joints::ClearanceBody link_body(const bevel_gear::BevelGear& g, const std::vector<tool::ToolAssembly>& tools, const machines::Machine& machine) {
+joints::ClearanceBody link_body(const bevel_gear::BevelGear& g, const std::vector<tool::ToolAssembly>& tools,
+                                const machines::Machine& machine) {
   joints::ClearanceBody body = clearance_body(g);
   if (machine.tcp == machines::TcpMode::none) return body;
   double below = 0;  // the tip; every axis stands at 90 deg + delta to the gear axis
@@ -58,7 +60,8 @@ joints::ClearanceBody link_body(const bevel_gear::BevelGear& g, const std::vecto
     if (!own) continue;  // its operation is refused
     for (const auto& part : finger::finger_bodies(own->cutter(), tool))
       for (const tool::Frustum& f : part.pieces)
-        below = std::max({below, f.radius_from * g.cos_delta() - f.from * g.sin_delta(), f.radius_to * g.cos_delta() - f.to * g.sin_delta()});
+        below = std::max({below, f.radius_from * g.cos_delta() - f.from * g.sin_delta(),
+                          f.radius_to * g.cos_delta() - f.to * g.sin_delta()});
   }
   body.z_min_mm -= below;
   return body;
@@ -93,13 +96,17 @@ std::string limits_json(const bevel_gear::BevelGear& g) {
   return j.dump(2) + "\n";
 }
 
-Status write_surface_files(app::OutputDir& output, const bevel_gear::BevelGear& gear, const std::string& job_name, const std::vector<proof::SurfaceGrid>& walls,
-                         app::StageClock& clock, std::vector<std::string>& files) {
+Status write_surface_files(app::OutputDir& output, const bevel_gear::BevelGear& gear, const std::string& job_name,
+                           const std::vector<proof::SurfaceGrid>& walls, app::StageClock& clock,
+                           std::vector<std::string>& files) {
   process::GearFiles to(output, files);
   if (const auto s = to.write("limits.json", limits_json(gear)); !s) return s;
-  if (const auto s = to.write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); })); !s) return s;
+  if (const auto s = to.write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); }));
+      !s)
+    return s;
   if (const auto s = to.write("gear.stl", clock.run("mesh", [&] { return gear_text(gear, job_name); })); !s) return s;
-  return to.write("tooth.vtp", clock.run("mesh", [&] { return walls.empty() ? pitch_text(gear) : report::deviation_vtp(walls); }));
+  return to.write("tooth.vtp",
+                  clock.run("mesh", [&] { return walls.empty() ? pitch_text(gear) : report::deviation_vtp(walls); }));
 }
 
 }  // namespace toothpath::bevel

@@ -1,12 +1,13 @@
-// The files that describe a finished bevel gear: limits, inspection points and meshes; and its outline for posts and sheets.
+// The files that describe a finished bevel gear: limits, inspection points and meshes; and its outline for posts and
+// sheets.
 #pragma once
 
 #include <string>
 #include <vector>
 
 #include "app/base/output_dir.h"
-#include "app/report/sheet/setup_sheet.h"
 #include "app/base/stage_clock.h"
+#include "app/report/sheet/setup_sheet.h"
 #include "cam/proof/verification.h"
 #include "geometry/bevel_gear/gear.h"
 #include "postproc/joints/program.h"
@@ -15,18 +16,23 @@ namespace toothpath::bevel {
 
 /// The blank as a cylinder about the gear axis.
 [[nodiscard]] joints::ClearanceBody clearance_body(const bevel_gear::BevelGear& gear);
-/// The same for links: with TCP the tip keeps its height over the part while the tool leans over it, so that the body of the tool reaches below
-/// its tip; the cylinder is longer by that at the small end. Without TCP links go over the top of Z, and it is not.
-[[nodiscard]] joints::ClearanceBody link_body(const bevel_gear::BevelGear& gear, const std::vector<tool::ToolAssembly>& tools, const machines::Machine& machine);
+/// The same for links: with TCP the tip keeps its height over the part while the tool leans over it, so that the body
+/// of the tool reaches below its tip; the cylinder is longer by that at the small end. Without TCP links go over the
+/// top of Z, and it is not.
+[[nodiscard]] joints::ClearanceBody link_body(const bevel_gear::BevelGear& gear,
+                                              const std::vector<tool::ToolAssembly>& tools,
+                                              const machines::Machine& machine);
 /// The same for the sketch of the set-up sheet.
 [[nodiscard]] sheet::PartOutline outline(const bevel_gear::BevelGear& gear);
 
-/// limits.json: top_land, space_width, module_limit, tip_flat, corner_fillet_reach [mm], cutter_line_angle [deg], and more.
+/// limits.json: top_land, space_width, module_limit, tip_flat, corner_fillet_reach [mm], cutter_line_angle [deg], and
+/// more.
 [[nodiscard]] std::string limits_json(const bevel_gear::BevelGear& gear);
 
-/// Writes limits.json, inspection.csv, gear.stl (all teeth) and tooth.vtp (with `walls`: the measured walls and their deviation in
-/// um; without: one pitch with the number of the patch) and appends their names to `files`.
-[[nodiscard]] Status write_surface_files(app::OutputDir& output, const bevel_gear::BevelGear& gear, const std::string& job_name, const std::vector<proof::SurfaceGrid>& walls,
-                                       app::StageClock& clock, std::vector<std::string>& files);
+/// Writes limits.json, inspection.csv, gear.stl (all teeth) and tooth.vtp (with `walls`: the measured walls and their
+/// deviation in um; without: one pitch with the number of the patch) and appends their names to `files`.
+[[nodiscard]] Status write_surface_files(app::OutputDir& output, const bevel_gear::BevelGear& gear,
+                                         const std::string& job_name, const std::vector<proof::SurfaceGrid>& walls,
+                                         app::StageClock& clock, std::vector<std::string>& files);
 
 }  // namespace toothpath::bevel

@@ -16,7 +16,8 @@ constexpr double kVerification = proof::ProofLimits{}.proof_mm;  // poses betwee
 constexpr double kOnPath = 1e-4;  // mm: a centre this near to a wall's path belongs to it
 
 struct Planned {
-  double solve_mm = 0, chord_mm = 0;  // greatest distance of a record from the path of a wall, and of the middle of a block
+  double solve_mm = 0,
+         chord_mm = 0;  // greatest distance of a record from the path of a wall, and of the middle of a block
 };
 
 /// Records and blocks of the finishing passes of a finger mill against the paths of the walls.
@@ -45,8 +46,9 @@ Planned measure_planned(const bevel_gear::BevelGear& gear, std::span<const finge
 
 }  // namespace
 
-std::vector<proof::LedgerEntry> ledger(const bevel_gear::BevelGear& gear, std::span<const finger::FingerPlan> plans, const joints::AxisProgram& program,
-                                       const process::ProgramProof& proof, const finger::FingerCheckResult& found, double blend_mm) {
+std::vector<proof::LedgerEntry> ledger(const bevel_gear::BevelGear& gear, std::span<const finger::FingerPlan> plans,
+                                       const joints::AxisProgram& program, const process::ProgramProof& proof,
+                                       const finger::FingerCheckResult& found, double blend_mm) {
   double chord = 0, ridge = 0;
   for (const auto& plan : plans) {
     chord = std::max(chord, plan.chord_mm);
@@ -55,18 +57,24 @@ std::vector<proof::LedgerEntry> ledger(const bevel_gear::BevelGear& gear, std::s
   const Planned planned = measure_planned(gear, plans);
   const double depth = gear.parameters().addendum_mm + gear.parameters().dedendum_mm;
   std::vector<proof::LedgerEntry> out;
-  out.push_back(process::entry(proof::ErrorSource::flank_solve, Tolerances{}.flank_mm, planned.solve_mm, "centres of the records against the paths of the walls"));
-  out.push_back(process::entry(proof::ErrorSource::chord, chord, planned.chord_mm, "middles of the blocks along the walls"));
-  out.push_back(process::entry(proof::ErrorSource::ridge, ridge, found.ridge.reached_mm, "stands on the root: no part of the sum on the walls"));
-  out.push_back(process::entry(proof::ErrorSource::orientation, depth * (program.axis_bound_rad + process::rotary_rounding(program)), depth * found.tilt_rad,
-                         "lean of the axis against the normal of the pitch cone, over the tooth depth"));
+  out.push_back(process::entry(proof::ErrorSource::flank_solve, Tolerances{}.flank_mm, planned.solve_mm,
+                               "centres of the records against the paths of the walls"));
+  out.push_back(
+      process::entry(proof::ErrorSource::chord, chord, planned.chord_mm, "middles of the blocks along the walls"));
+  out.push_back(process::entry(proof::ErrorSource::ridge, ridge, found.ridge.reached_mm,
+                               "stands on the root: no part of the sum on the walls"));
+  out.push_back(process::entry(
+      proof::ErrorSource::orientation, depth * (program.axis_bound_rad + process::rotary_rounding(program)),
+      depth * found.tilt_rad, "lean of the axis against the normal of the pitch cone, over the tooth depth"));
   process::add_machine_sources(out, program, proof.comparison, proof.read, blend_mm);
   const process::Stated stated = process::stated_deviation(proof.motions);
   double path = 0;
   for (const auto& e : out)
     if (e.source != proof::ErrorSource::ridge) path += e.predicted_um / app::kUm;
-  out.push_back(process::entry(proof::ErrorSource::verification, kVerification + path + stated.tip_mm + depth * stated.axis_rad, proof.gouge.bound_mm - proof.gouge.measured_mm,
-                         "the bound counts every pose of the cutter, the measurement the points of a grid"));
+  out.push_back(process::entry(proof::ErrorSource::verification,
+                               kVerification + path + stated.tip_mm + depth * stated.axis_rad,
+                               proof.gouge.bound_mm - proof.gouge.measured_mm,
+                               "the bound counts every pose of the cutter, the measurement the points of a grid"));
   return out;
 }
 

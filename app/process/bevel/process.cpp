@@ -20,7 +20,8 @@ constexpr double kRootShare = 1;  // the flat tip of the mill faces the root: a 
 
 /// How far the middle of a tooth space has wound about the axis at a tip, from the reference cone distance on.
 double space_azimuth(const bevel_gear::BevelGear& gear, const Vec3& tip) {
-  const double ell = std::clamp(bevel_gear::cone_point(tip, gear.sin_delta(), gear.cos_delta()).ell, gear.R_i(), gear.R_e());
+  const double ell =
+      std::clamp(bevel_gear::cone_point(tip, gear.sin_delta(), gear.cos_delta()).ell, gear.R_i(), gear.R_e());
   const bevel_gear::BevelHalf& half = ell > gear.R_ref() ? gear.halves().back() : gear.halves().front();
   const auto& trace = half.walls[0].trace;
   return trace.middle(trace.beta(ell)).e;
@@ -35,15 +36,20 @@ finger::FingerCheckOptions check_options(const process::FlankGrid& grid) {
 
 class BevelMilling final : public process::GearMilling {
  public:
-  BevelMilling(const job::Job& job, const machines::Machine& machine, const bevel_gear::BevelGear& gear, const proof::ProofLimits& limits, const process::FlankGrid& grid)
-      : job_(job), gear_(gear), limits_(limits), gouge_(gear, job.tools, job.operations, limits, check_options(grid)),
+  BevelMilling(const job::Job& job, const machines::Machine& machine, const bevel_gear::BevelGear& gear,
+               const proof::ProofLimits& limits, const process::FlankGrid& grid)
+      : job_(job),
+        gear_(gear),
+        limits_(limits),
+        gouge_(gear, job.tools, job.operations, limits, check_options(grid)),
         check_(job, machine, limits, gear, gouge_) {}
 
   [[nodiscard]] Status plan(app::StageClock& clock, app::Progress&) override {
     for (std::size_t i = 0; i < job_.operations.size(); ++i) {
       const auto& operation = job_.operations[i];
       const auto& tool = job_.tools[static_cast<std::size_t>(operation.tool)];
-      auto plan = clock.run("plan", [&] { return finger::plan_finger_operation(gear_, tool, operation, static_cast<int>(i), limits_); });
+      auto plan = clock.run(
+          "plan", [&] { return finger::plan_finger_operation(gear_, tool, operation, static_cast<int>(i), limits_); });
       if (!plan) return process::located(job_, fmt::format("operation[{}]", i), plan.error());
       plans_.push_back(std::move(plan).value());
     }
@@ -58,12 +64,18 @@ class BevelMilling final : public process::GearMilling {
   [[nodiscard]] std::vector<report::PassReport> passes() const override {
     std::vector<report::PassReport> out;
     for (const auto& plan : plans_)
-      for (const auto& pass : plan.passes) out.push_back({plan.path.operation, pass.half, pass.pass, pass.name, pass.outward, pass.length_mm, pass.points});
+      for (const auto& pass : plan.passes)
+        out.push_back(
+            {plan.path.operation, pass.half, pass.pass, pass.name, pass.outward, pass.length_mm, pass.points});
     return out;
   }
-  [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override { return gouge_.approve(path); }
+  [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override {
+    return gouge_.approve(path);
+  }
   [[nodiscard]] process::GearCheck& check() override { return check_; }
-  [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program, const process::ProgramProof& proof, double blend_mm) const override {
+  [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program,
+                                                       const process::ProgramProof& proof,
+                                                       double blend_mm) const override {
     return bevel::ledger(gear_, plans_, program, proof, check_.result, blend_mm);
   }
   [[nodiscard]] sheet::OtherSurface beside_the_grid() const override { return {kRootShare}; }
@@ -81,25 +93,34 @@ class BevelProcess final : public process::GearProcess {
  public:
   BevelProcess(const job::Job& job, bevel_gear::BevelGear gear) : job_(job), gear_(std::move(gear)) {
     const auto& p = gear_.parameters();
-    part_ = {p.teeth, 2 * (gear_.R_e() * gear_.sin_delta() + p.addendum_mm * gear_.cos_delta()), 2 * clearance_body(gear_).radius_mm, gear_.warnings()};
+    part_ = {p.teeth, 2 * (gear_.R_e() * gear_.sin_delta() + p.addendum_mm * gear_.cos_delta()),
+             2 * clearance_body(gear_).radius_mm, gear_.warnings()};
   }
 
   [[nodiscard]] const process::PartFacts& part() const override { return part_; }
-  [[nodiscard]] Result<process::Correction> correct(const std::vector<std::string>&, app::StageClock&) override { return process::needs_face_gear(job_); }
-  [[nodiscard]] joints::ClearanceBody link_body(const machines::Machine& machine) const override { return bevel::link_body(gear_, job_.tools, machine); }
+  [[nodiscard]] Result<process::Correction> correct(const std::vector<std::string>&, app::StageClock&) override {
+    return process::needs_face_gear(job_);
+  }
+  [[nodiscard]] joints::ClearanceBody link_body(const machines::Machine& machine) const override {
+    return bevel::link_body(gear_, job_.tools, machine);
+  }
   [[nodiscard]] sheet::PartOutline outline() const override { return bevel::outline(gear_); }
   [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override {
     const auto& p = gear_.parameters();
     page::GearOnPage out;
-    out.subtitle = fmt::format("equal-base-circle bevel gear z {}, outer module {:g} mm, {}, pitch angle {:.4f} deg, {}", p.teeth, p.outer_transverse_module_mm,
-                               gear_.herringbone() ? "herringbone" : "single hand", degrees(gear_.delta()), machine_name);
+    out.subtitle =
+        fmt::format("equal-base-circle bevel gear z {}, outer module {:g} mm, {}, pitch angle {:.4f} deg, {}", p.teeth,
+                    p.outer_transverse_module_mm, gear_.herringbone() ? "herringbone" : "single hand",
+                    degrees(gear_.delta()), machine_name);
     for (const auto& tool : job_.tools) out.tools.push_back(page::page_finger_mill(gear_, tool));
     return out;
   }
   [[nodiscard]] std::vector<svg::LineChart> limit_charts() const override { return {}; }
   [[nodiscard]] Result<process::SceneGear> scene(double clearance_mm) const override {
     // W stands in the pitch apex.
-    process::SceneGear out{part_.teeth, clearance_mm, {}, [gear = gear_](const Vec3& tip) { return std::atan2(tip.y(), tip.x()) - space_azimuth(gear, tip); }};
+    process::SceneGear out{part_.teeth, clearance_mm, {}, [gear = gear_](const Vec3& tip) {
+                             return std::atan2(tip.y(), tip.x()) - space_azimuth(gear, tip);
+                           }};
     out.bodies.resize(job_.tools.size());
     for (const auto& operation : job_.operations) {
       const auto k = std::size_t(operation.tool);
@@ -110,23 +131,37 @@ class BevelProcess final : public process::GearProcess {
     }
     return out;
   }
-  [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface, const std::vector<std::string>&, app::StageClock& clock,
+  [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
+                                   const std::vector<std::string>&, app::StageClock& clock,
                                    std::vector<std::string>& files) const override {
     return write_surface_files(output, gear_, job_.name, surface, clock, files);
   }
-  [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine, const proof::ProofLimits& limits, const process::FlankGrid& grid, app::StageClock&) const override {
+  [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine,
+                                                              const proof::ProofLimits& limits,
+                                                              const process::FlankGrid& grid,
+                                                              app::StageClock&) const override {
     return std::make_unique<BevelMilling>(job_, machine, gear_, limits, grid);
   }
-  [[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped(const process::FlankGrid&) const override { return std::vector{process::needs_face_gear(job_)}; }
+  [[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped(const process::FlankGrid&) const override {
+    return std::vector{process::needs_face_gear(job_)};
+  }
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
-    for (const auto& [given, option] : {std::pair(asked.pinion_teeth.has_value(), "--pinion-teeth"), {asked.as_cut, "--as-cut"}})
-      if (given) return fail_at(job_.where("gear.type"), "type = \"{}\", but {} needs a face_gear", process::gear_type(job_), option);
+    for (const auto& [given, option] :
+         {std::pair(asked.pinion_teeth.has_value(), "--pinion-teeth"), {asked.as_cut, "--as-cut"}})
+      if (given)
+        return fail_at(job_.where("gear.type"), "type = \"{}\", but {} needs a face_gear", process::gear_type(job_),
+                       option);
     return Ok{};
   }
-  [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked, const process::CutFlanks*, app::StageClock& clock) const override {
+  [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked,
+                                                                      const process::CutFlanks*,
+                                                                      app::StageClock& clock) const override {
     return roll_pair(job_, gear_, asked, clock);
   }
-  [[nodiscard]] std::string contact_section(const std::vector<proof::SurfaceGrid>&, std::vector<std::string>&) const override { return {}; }
+  [[nodiscard]] std::string contact_section(const std::vector<proof::SurfaceGrid>&,
+                                            std::vector<std::string>&) const override {
+    return {};
+  }
 
  private:
   const job::Job& job_;

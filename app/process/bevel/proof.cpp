@@ -10,36 +10,41 @@
 namespace toothpath::bevel {
 namespace {
 
-/// mm and rad: proven distance of a read-back motion from its straight line. Half of a face gear's: it counts in the bound of the gouge and in that
-/// of the material left, which has 1.5 um above the chords; a face gear's left material is measured and does not contain it.
+/// mm and rad: proven distance of a read-back motion from its straight line. Half of a face gear's: it counts in the
+/// bound of the gouge and in that of the material left, which has 1.5 um above the chords; a face gear's left material
+/// is measured and does not contain it.
 constexpr double kFingerMotionTolerance = 5e-5;
-constexpr double kRoundedLinear = 2.5e-3;  // mm and deg: an axis that changes less stands still (words of three decimals)
-constexpr double kAlongAxis = 0.05;        // a move with less across the axis, as a share, is an engage or retract
+constexpr double kRoundedLinear =
+    2.5e-3;                          // mm and deg: an axis that changes less stands still (words of three decimals)
+constexpr double kAlongAxis = 0.05;  // a move with less across the axis, as a share, is an engage or retract
 
 std::string told(const proof::WorstPlace& p) {
-  return fmt::format("{} against {}, operation {}, tooth {}, line {}, r {:.3f} mm, z {:.3f} mm", p.body, p.patch, p.operation, p.tooth, p.line, p.radius_mm,
-                     p.height_mm);
+  return fmt::format("{} against {}, operation {}, tooth {}, line {}, r {:.3f} mm, z {:.3f} mm", p.body, p.patch,
+                     p.operation, p.tooth, p.line, p.radius_mm, p.height_mm);
 }
 
-void judge_teeth(const proof::ProofLimits& limits, const finger::FingerCheckResult& v, std::vector<std::string>& reasons) {
+void judge_teeth(const proof::ProofLimits& limits, const finger::FingerCheckResult& v,
+                 std::vector<std::string>& reasons) {
   const proof::GougeResult& g = v.gouge;
   const double tolerance = limits.gouge_mm;
   const proof::WorstPlace& place = g.worst.empty() ? g.deepest : g.worst.front();
   const std::string where = told(place);
   if (!(g.bound_mm <= tolerance))
-    reasons.push_back(fmt::format("gouge: {:.2f} um measured, {:.2f} um proven, limit {:.2f} um; {}", g.measured_mm * 1000, g.bound_mm * 1000,
-                                  tolerance * 1000, where));
+    reasons.push_back(fmt::format("gouge: {:.2f} um measured, {:.2f} um proven, limit {:.2f} um; {}",
+                                  g.measured_mm * 1000, g.bound_mm * 1000, tolerance * 1000, where));
   if (!(g.clearance_mm >= g.required_clearance_mm))
-    reasons.push_back(fmt::format("clearance of shank and holder: {:.4f} mm is below {:.4f} mm; {}", g.clearance_mm, g.required_clearance_mm, told(g.closest)));
+    reasons.push_back(fmt::format("clearance of shank and holder: {:.4f} mm is below {:.4f} mm; {}", g.clearance_mm,
+                                  g.required_clearance_mm, told(g.closest)));
   if (v.ridge.requested_mm > 0 && !(v.ridge.reached_mm <= v.ridge.requested_mm))
-    reasons.push_back(fmt::format("ridge: {:.4f} mm is left on the root at cone distance {:.3f} mm, asked {:.4f} mm", v.ridge.reached_mm,
-                                  v.ridge.cone_distance_mm, v.ridge.requested_mm));
+    reasons.push_back(fmt::format("ridge: {:.4f} mm is left on the root at cone distance {:.3f} mm, asked {:.4f} mm",
+                                  v.ridge.reached_mm, v.ridge.cone_distance_mm, v.ridge.requested_mm));
   if (limits.left_mm && !(v.finished.bound_mm <= *limits.left_mm))
-    reasons.push_back(fmt::format("material left on the walls: {:.2f} um measured, {:.2f} um proven, limit {:.2f} um", v.finished.max_mm * 1000,
-                                  v.finished.bound_mm * 1000, *limits.left_mm * 1000));
+    reasons.push_back(fmt::format("material left on the walls: {:.2f} um measured, {:.2f} um proven, limit {:.2f} um",
+                                  v.finished.max_mm * 1000, v.finished.bound_mm * 1000, *limits.left_mm * 1000));
 }
 
-MovingAxes moving_axes(const readback::ReadBack& read, const std::vector<path::ToolMotion>& motions, const readback::NcControl& control) {
+MovingAxes moving_axes(const readback::ReadBack& read, const std::vector<path::ToolMotion>& motions,
+                       const readback::NcControl& control) {
   std::set<std::pair<int, int>> along_path;  // operation and line
   for (const auto& m : motions) {
     const Vec3 d = m.tip_to - m.tip_from, u = (m.axis_from + m.axis_to).normalized();
@@ -62,7 +67,9 @@ MovingAxes moving_axes(const readback::ReadBack& read, const std::vector<path::T
 }
 
 /// One direction an operation and half: the angle of the axis, and which axes were seen to move.
-std::vector<proof::DirectionChoice> directions_of(const bevel_gear::BevelGear& g, const job::Job& job, const process::ProgramProof& proof, double tilt_rad, const MovingAxes& moving) {
+std::vector<proof::DirectionChoice> directions_of(const bevel_gear::BevelGear& g, const job::Job& job,
+                                                  const process::ProgramProof& proof, double tilt_rad,
+                                                  const MovingAxes& moving) {
   std::vector<proof::DirectionChoice> directions;
   static constexpr const char* kCount[] = {"no", "one", "two", "three", "four", "five"};
   for (const auto& operation : proof.read.operations) {
@@ -74,9 +81,11 @@ std::vector<proof::DirectionChoice> directions_of(const bevel_gear::BevelGear& g
       d.axis = g.axis(0);
       d.lean_rad = kPi / 2 - g.delta();
       d.clearance_mm = proof.gouge.clearance_mm;
-      d.explanation = fmt::format("normal to the pitch cone, {:.4f} deg to the gear axis, to within {:.4f} deg: {} simultaneous axes ({}) plus fixed tilt",
-                                  degrees(d.lean_rad), degrees(tilt_rad), kCount[std::min<std::size_t>(5, moving.simultaneous)],
-                                  moving.letters);
+      d.explanation = fmt::format(
+          "normal to the pitch cone, {:.4f} deg to the gear axis, to within {:.4f} deg: {} simultaneous axes ({}) plus "
+          "fixed tilt",
+          degrees(d.lean_rad), degrees(tilt_rad), kCount[std::min<std::size_t>(5, moving.simultaneous)],
+          moving.letters);
       directions.push_back(std::move(d));
     }
   }
@@ -92,7 +101,10 @@ report::Finding ridge_of(const finger::RidgeResult& ridge) {
   finding.unit = "mm";
   finding.decimals = 4;
   finding.state = ridge.reached_mm <= ridge.requested_mm ? report::Finding::State::good : report::Finding::State::bad;
-  finding.details = {{"requested", ridge.requested_mm}, {"reached", ridge.reached_mm}, {"cone_distance", ridge.cone_distance_mm}, {"azimuth_deg", degrees(ridge.azimuth_rad)}};
+  finding.details = {{"requested", ridge.requested_mm},
+                     {"reached", ridge.reached_mm},
+                     {"cone_distance", ridge.cone_distance_mm},
+                     {"azimuth_deg", degrees(ridge.azimuth_rad)}};
   return finding;
 }
 
@@ -100,40 +112,53 @@ report::Finding ridge_of(const finger::RidgeResult& ridge) {
 report::Finding tilt_of(const bevel_gear::BevelGear& gear, const MovingAxes& moving) {
   report::Finding finding;
   finding.key = "tilt";
-  finding.details = {{"lean_deg", 90 - degrees(gear.delta())}, {"simultaneous_axes", moving.simultaneous}, {"moving_axes", moving.letters}};
+  finding.details = {{"lean_deg", 90 - degrees(gear.delta())},
+                     {"simultaneous_axes", moving.simultaneous},
+                     {"moving_axes", moving.letters}};
   return finding;
 }
 
 bool finishes(const job::Job& job) {
-  return std::any_of(job.operations.begin(), job.operations.end(), [](const path::MillingOperation& o) { return o.type == path::OperationType::finger_finishing; });
+  return std::any_of(job.operations.begin(), job.operations.end(),
+                     [](const path::MillingOperation& o) { return o.type == path::OperationType::finger_finishing; });
 }
 
 }  // namespace
 
-BevelGearCheck::BevelGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const bevel_gear::BevelGear& gear, const finger::FingerGougeCheck& check)
+BevelGearCheck::BevelGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits,
+                               const bevel_gear::BevelGear& gear, const finger::FingerGougeCheck& check)
     : job_(job), machine_(machine), limits_(limits), gear_(gear), check_(check) {}
 
 int BevelGearCheck::teeth() const { return gear_.parameters().teeth; }
 
 double BevelGearCheck::motion_tolerance() const { return kFingerMotionTolerance; }
 
-/// Against the cone of the blank, hub and shaft: engaging rapids pass beside the cone, inside the cylinder that links avoid.
+/// Against the cone of the blank, hub and shaft: engaging rapids pass beside the cone, inside the cylinder that links
+/// avoid.
 Status BevelGearCheck::rapids_clear(const readback::OperationTrace& trace, const readback::NcControl& control) const {
-  auto motions = readback::tool_motions(trace, {}, control, machine_, *job_.setup, teeth(), {kFingerMotionTolerance, kFingerMotionTolerance});
+  auto motions = readback::tool_motions(trace, {}, control, machine_, *job_.setup, teeth(),
+                                        {kFingerMotionTolerance, kFingerMotionTolerance});
   if (!motions) return motions.error();
   int operation = trace.operation;  // below 0: ahead of the first one, where only the tool is known
   for (std::size_t k = 0; k < job_.operations.size() && operation < 0; ++k)
-    if (job_.tools[static_cast<std::size_t>(job_.operations[k].tool)].number == trace.tool) operation = static_cast<int>(k);
+    if (job_.tools[static_cast<std::size_t>(job_.operations[k].tool)].number == trace.tool)
+      operation = static_cast<int>(k);
   for (path::ToolMotion& m : *motions) m.operation = operation;
-  if (operation < 0 && !motions->empty()) return fail_as(DiagnosticKind::verification, "line {}: no operation has tool {}", motions->front().line, trace.tool);
+  if (operation < 0 && !motions->empty())
+    return fail_as(DiagnosticKind::verification, "line {}: no operation has tool {}", motions->front().line,
+                   trace.tool);
   const proof::GougeResult met = check_.rapids(*motions);
   if (met.rapids_clear) return Ok{};
-  const auto first = std::min_element(met.worst.begin(), met.worst.end(), [](const proof::WorstPlace& a, const proof::WorstPlace& b) { return a.line < b.line; });
+  const auto first =
+      std::min_element(met.worst.begin(), met.worst.end(),
+                       [](const proof::WorstPlace& a, const proof::WorstPlace& b) { return a.line < b.line; });
   return fail_as(DiagnosticKind::verification, "a rapid passes through the blank; {}", told(*first));
 }
 
 /// Before copies go: the joints of turned teeth differ where the gear is off the axis of its rotary.
-void BevelGearCheck::meet(const process::ProgramProof& whole) { moving_ = moving_axes(whole.read, whole.motions, whole.control); }
+void BevelGearCheck::meet(const process::ProgramProof& whole) {
+  moving_ = moving_axes(whole.read, whole.motions, whole.control);
+}
 
 void BevelGearCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
   result = clock.run("proof of the program", [&] { return finger::verify_teeth(check_, program.motions); });

@@ -19,11 +19,13 @@ struct MovingAxes {
 /// Everything that it is made of must outlive it.
 class BevelGearCheck final : public process::GearCheck {
  public:
-  BevelGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const bevel_gear::BevelGear& gear, const finger::FingerGougeCheck& check);
+  BevelGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits,
+                 const bevel_gear::BevelGear& gear, const finger::FingerGougeCheck& check);
 
   [[nodiscard]] int teeth() const override;
   [[nodiscard]] double motion_tolerance() const override;
-  [[nodiscard]] Status rapids_clear(const readback::OperationTrace& trace, const readback::NcControl& control) const override;
+  [[nodiscard]] Status rapids_clear(const readback::OperationTrace& trace,
+                                    const readback::NcControl& control) const override;
   void meet(const process::ProgramProof& whole) override;
   void judge(process::ProgramProof& program, app::StageClock& clock) override;
 

@@ -10,22 +10,26 @@ namespace {
 std::string contact_page(const ContactAnalysis& a) {
   page::StudyPage page;
   page.title = a.job_name + ": contact";
-  page.subtitle = fmt::format("pinion of {} teeth, gear of {} teeth, compound {:g} um", a.pinion_teeth, a.gear_teeth, a.settings.compound_mm * 1000);
+  page.subtitle = fmt::format("pinion of {} teeth, gear of {} teeth, compound {:g} um", a.pinion_teeth, a.gear_teeth,
+                              a.settings.compound_mm * 1000);
   const contact::Misalignment& moved = a.settings.moved;
   if (moved.offset_mm != 0 || moved.axial_mm != 0 || moved.angle_rad != 0)
-    page.subtitle += fmt::format("; offset {:+g} mm, shaft angle {:+g} deg, axial {:+g} mm", moved.offset_mm, degrees(moved.angle_rad), moved.axial_mm);
+    page.subtitle += fmt::format("; offset {:+g} mm, shaft angle {:+g} deg, axial {:+g} mm", moved.offset_mm,
+                                 degrees(moved.angle_rad), moved.axial_mm);
   bool edge = false;
   for (const auto& side : a.sides) edge |= side.kind.find("edge") != std::string::npos;
   page.good = !edge;
   page.verdict = edge ? "edge contact" : "contact inside the flanks";
   page.introduction = {
-      "Both members turn as rigid bodies without load, as on a rolling tester. The compound marks every place where the flanks come closer than its "
-      "thickness at any moment of the mesh; the orange line is the path of contact.",
-      "A pinion with fewer teeth than the shaper touches the exact flank in one point that runs along a straight line of the housing; a pinion that is the "
-      "shaper touches along lines. In both cases the transmission error is a constant, aligned or not, as long as contact stays inside the flank."};
+      "Both members turn as rigid bodies without load, as on a rolling tester. The compound marks every place where "
+      "the flanks come closer than its thickness at any moment of the mesh; the orange line is the path of contact.",
+      "A pinion with fewer teeth than the shaper touches the exact flank in one point that runs along a straight line "
+      "of the housing; a pinion that is the shaper touches along lines. In both cases the transmission error is a "
+      "constant, aligned or not, as long as contact stays inside the flank."};
   for (const auto& note : a.notes) page.introduction.push_back(note);
   page.charts = contact_charts(a);
-  for (auto& f : contact_patterns(a)) page.figures.push_back({std::move(f.caption), std::move(f.svg), std::move(f.note)});
+  for (auto& f : contact_patterns(a))
+    page.figures.push_back({std::move(f.caption), std::move(f.svg), std::move(f.note)});
   page.tables = {contact_table(a)};
   return study_page_html(page);
 }
@@ -42,7 +46,8 @@ job::ContactSettings contact_settings(const job::Job& job, const process::Contac
   return s;
 }
 
-process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, const face_gear::FaceGear& gear, const process::ContactAsked& asked,
+process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, const face_gear::FaceGear& gear,
+                                                        const process::ContactAsked& asked,
                                                         const process::CutFlanks* cut, app::StageClock& clock) {
   auto analysed = clock.run("contact", [&] { return analyse_contact(job, gear, contact_settings(job, asked), cut); });
   if (auto* errors = analysed.refused()) return std::move(*errors);
@@ -54,11 +59,15 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
   process::ContactFound found;
   found.json = contact_json(analysis);
   found.summary = contact_summary(analysis);
-  found.files = {{"contact.csv", contact_csv(analysis)}, {"transmission.csv", transmission_csv(analysis)}, {"contact.json", found.json}, {"contact.html", contact_page(analysis)}};
+  found.files = {{"contact.csv", contact_csv(analysis)},
+                 {"transmission.csv", transmission_csv(analysis)},
+                 {"contact.json", found.json},
+                 {"contact.html", contact_page(analysis)}};
   return found;
 }
 
-std::string contact_section(const job::Job& job, const face_gear::FaceGear& gear, const std::vector<proof::SurfaceGrid>& surface, std::vector<std::string>& warnings) {
+std::string contact_section(const job::Job& job, const face_gear::FaceGear& gear,
+                            const std::vector<proof::SurfaceGrid>& surface, std::vector<std::string>& warnings) {
   if (!job.contact) return {};
   process::CutFlanks cut;
   cut.route = "milled";
@@ -70,8 +79,9 @@ std::string contact_section(const job::Job& job, const face_gear::FaceGear& gear
   }
   auto& analysis = analysed.value();
   if (!analysis.route.empty())
-    analysis.notes.emplace_back("The cut surface is taken from the report's grid, which does not resolve every cusp: for its transmission error run "
-                                "`toothpath contact --as-cut`.");
+    analysis.notes.emplace_back(
+        "The cut surface is taken from the report's grid, which does not resolve every cusp: for its transmission "
+        "error run `toothpath contact --as-cut`.");
   return contact_section_body(analysis);
 }
 

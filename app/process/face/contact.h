@@ -12,11 +12,15 @@ namespace toothpath::face {
 [[nodiscard]] job::ContactSettings contact_settings(const job::Job& job, const process::ContactAsked& asked);
 
 /// contact.csv, transmission.csv, contact.json and contact.html. Refused: a pinion that cannot run.
-[[nodiscard]] process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, const face_gear::FaceGear& gear, const process::ContactAsked& asked,
-                                                                      const process::CutFlanks* cut, app::StageClock& clock);
+[[nodiscard]] process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job,
+                                                                      const face_gear::FaceGear& gear,
+                                                                      const process::ContactAsked& asked,
+                                                                      const process::CutFlanks* cut,
+                                                                      app::StageClock& clock);
 
 /// The section on contact of a run's page; see process::GearProcess::contact_section.
-[[nodiscard]] std::string contact_section(const job::Job& job, const face_gear::FaceGear& gear, const std::vector<proof::SurfaceGrid>& surface,
+[[nodiscard]] std::string contact_section(const job::Job& job, const face_gear::FaceGear& gear,
+                                          const std::vector<proof::SurfaceGrid>& surface,
                                           std::vector<std::string>& warnings);
 
 }  // namespace toothpath::face

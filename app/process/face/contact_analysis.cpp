@@ -9,7 +9,8 @@
 namespace toothpath::face {
 namespace {
 
-/// Below this transmission error [rad] contact counts as inside the flank: rounding is a thousand times less, edges far more.
+/// Below this transmission error [rad] contact counts as inside the flank: rounding is a thousand times less, edges far
+/// more.
 constexpr double kNoError = 1e-10;
 
 std::string kind_of(const ContactOfSide& side) {
@@ -23,7 +24,8 @@ std::string kind_of(const ContactOfSide& side) {
   return side.as_cut || side.roll.error_range_rad < kNoError ? "point" : "point and edge";
 }
 
-Result<ContactOfSide> side_of(const face_gear::FaceGear& gear, std::vector<contact::ContactFlank> flanks, const job::ContactSettings& settings, int steps, bool as_cut) {
+Result<ContactOfSide> side_of(const face_gear::FaceGear& gear, std::vector<contact::ContactFlank> flanks,
+                              const job::ContactSettings& settings, int steps, bool as_cut) {
   ContactOfSide side;
   side.side = flanks.front().side;
   side.as_cut = as_cut;
@@ -32,7 +34,9 @@ Result<ContactOfSide> side_of(const face_gear::FaceGear& gear, std::vector<conta
     side.members.push_back({std::move(flank), contact::make_pinion(surface, settings.pinion_teeth, settings.moved)});
     const contact::ContactMember& member = side.members.back();
     side.paths.push_back(contact::contact_path(surface, member.pinion, side.side));
-    side.ranges.push_back(side.paths.back() && !side.paths.back()->line_contact ? contact::path_on_flanks(*side.paths.back(), member) : std::nullopt);
+    side.ranges.push_back(side.paths.back() && !side.paths.back()->line_contact
+                              ? contact::path_on_flanks(*side.paths.back(), member)
+                              : std::nullopt);
   }
   contact::RollOptions options;
   options.steps = steps;
@@ -52,9 +56,13 @@ std::string words_of(const contact::FlankPattern& p) {
   if (p.marked_share > 0.95) text = "whole flank";
   else if (p.length_mm < 1.3 * p.width_mm) text = "patch";
   else text = std::abs(inclination) < 50 ? "longitudinal" : "across the tooth";
-  if (p.marked_share <= 0.95 && p.length_mm >= 1.3 * p.width_mm) text += fmt::format(", inclined {:.1f} deg", inclination);
+  if (p.marked_share <= 0.95 && p.length_mm >= 1.3 * p.width_mm)
+    text += fmt::format(", inclined {:.1f} deg", inclination);
   std::string ends;
-  for (const auto& [there, name] : {std::pair(p.at_inner_end, "inner end"), {p.at_outer_end, "outer end"}, {p.at_tip, "tip"}, {p.at_fillet, "fillet line"}})
+  for (const auto& [there, name] : {std::pair(p.at_inner_end, "inner end"),
+                                    {p.at_outer_end, "outer end"},
+                                    {p.at_tip, "tip"},
+                                    {p.at_fillet, "fillet line"}})
     if (there) ends += (ends.empty() ? "" : ", ") + std::string(name);
   return text + (ends.empty() ? "; keeps off all edges" : "; runs out at: " + ends);
 }
@@ -67,7 +75,8 @@ Json zone_json(const ContactOfSide& side, std::size_t m) {
   Json zone;
   zone["zone"] = side.members[m].flank.zone;
   if (const auto& path = side.paths[m]) {
-    zone["path"] = {{"line_contact", path->line_contact}, {"B_deg", degrees(path->B)}, {"error_urad", path->error() * app::kMicro}};
+    zone["path"] = {
+        {"line_contact", path->line_contact}, {"B_deg", degrees(path->B)}, {"error_urad", path->error() * app::kMicro}};
     if (const auto& range = side.ranges[m]) {
       const Vec3 from = path->point(range->theta_1_from), to = path->point(range->theta_1_to);
       zone["path"]["ratio"] = range->ratio;
@@ -94,17 +103,21 @@ Json zone_json(const ContactOfSide& side, std::size_t m) {
 
 }  // namespace
 
-process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, const face_gear::FaceGear& gear, const job::ContactSettings& asked, const process::CutFlanks* cut,
-                                               const ContactGrid& grid) {
+process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, const face_gear::FaceGear& gear,
+                                                        const job::ContactSettings& asked,
+                                                        const process::CutFlanks* cut, const ContactGrid& grid) {
   ContactAnalysis analysis;
   analysis.job_name = job.name;
   analysis.job_file = job.file;
   analysis.settings = asked;
   const face_gear::FaceGearParameters& p = gear.parameters();
-  const char* key = asked.pinion_teeth > 0 ? "contact.pinion_teeth" : p.mate_teeth > 0 ? "gear.mate_teeth" : "gear.shaper_teeth";
+  const char* key = asked.pinion_teeth > 0 ? "contact.pinion_teeth"
+                    : p.mate_teeth > 0     ? "gear.mate_teeth"
+                                           : "gear.shaper_teeth";
   job::ContactSettings& settings = analysis.settings;
   if (settings.pinion_teeth <= 0) settings.pinion_teeth = p.mate_teeth > 0 ? p.mate_teeth : p.shaper_teeth;
-  if (const auto fits = contact::check_pinion(p, settings.pinion_teeth); !fits) return std::vector{process::located(job, key, fits.error())};
+  if (const auto fits = contact::check_pinion(p, settings.pinion_teeth); !fits)
+    return std::vector{process::located(job, key, fits.error())};
   analysis.pinion_teeth = settings.pinion_teeth;
   analysis.gear_teeth = p.teeth;
   const auto& surface = gear.rings().front().surface;
@@ -114,10 +127,12 @@ process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, con
   analysis.pinion_r_b_mm = pinion.r_b;
   analysis.pinion_r_p_mm = pinion.r_p;
   analysis.pinion_r_a_mm = pinion.r_a;
-  if (p.backlash_mm != 0) analysis.notes.push_back(fmt::format("the gear's backlash {:.4f} mm only adds a constant to phi_2", p.backlash_mm));
+  if (p.backlash_mm != 0)
+    analysis.notes.push_back(fmt::format("the gear's backlash {:.4f} mm only adds a constant to phi_2", p.backlash_mm));
   if (gear.rings().size() > 1 && settings.moved.axial_mm != 0)
-    analysis.notes.push_back("an axial error turns the halves of a double helical pinion against each other: a pinion that floats would take the "
-                             "place without it");
+    analysis.notes.push_back(
+        "an axial error turns the halves of a double helical pinion against each other: a pinion that floats would "
+        "take the place without it");
 
   for (const int s : {1, -1}) {
     std::vector<contact::ContactFlank> flanks;
@@ -158,10 +173,12 @@ std::string contact_csv(const ContactAnalysis& a) {
         for (int c = 0; c < f.columns; ++c) {
           const auto k = f.index(r, c);
           const bool met = p.gap_mm[k] < 1e100;
-          out += fmt::format("{},{},{},{},{},{:.6f},{:.6f},{:.4f},{},{},{},{}\n", side.as_cut ? "cut" : "exact", side.side, f.zone, r, c,
-                             std::hypot(f.points[k].x(), f.points[k].y()), f.points[k].z(), f.deviation_mm[k] * app::kUm,
-                             met ? fmt::format("{:.4f}", std::max(0.0, p.gap_mm[k]) * app::kUm) : "", p.gap_mm[k] <= a.settings.compound_mm ? 1 : 0,
-                             met ? fmt::format("{:.6f}", p.pinion_radius_mm[k]) : "", met ? fmt::format("{:.6f}", p.pinion_Z_mm[k]) : "");
+          out += fmt::format(
+              "{},{},{},{},{},{:.6f},{:.6f},{:.4f},{},{},{},{}\n", side.as_cut ? "cut" : "exact", side.side, f.zone, r,
+              c, std::hypot(f.points[k].x(), f.points[k].y()), f.points[k].z(), f.deviation_mm[k] * app::kUm,
+              met ? fmt::format("{:.4f}", std::max(0.0, p.gap_mm[k]) * app::kUm) : "",
+              p.gap_mm[k] <= a.settings.compound_mm ? 1 : 0, met ? fmt::format("{:.6f}", p.pinion_radius_mm[k]) : "",
+              met ? fmt::format("{:.6f}", p.pinion_Z_mm[k]) : "");
         }
     }
   return out;
@@ -172,8 +189,9 @@ std::string transmission_csv(const ContactAnalysis& a) {
   for (const auto& side : a.sides)
     for (std::size_t k = 0; k < side.roll.cycle.size(); ++k) {
       const contact::RollPosition& p = side.roll.cycle[k];
-      out += fmt::format("{},{},{},{:.9f},{:.9f},{:.6f},{:.6f},{},{},{},{:.5f},{:.5f}\n", side.as_cut ? "cut" : "exact", side.side, k,
-                         degrees(p.phi_1), degrees(p.phi_2), p.error_rad * app::kMicro, p.error_rad * a.pitch_radius_mm * app::kUm, p.touching, p.marking,
+      out += fmt::format("{},{},{},{:.9f},{:.9f},{:.6f},{:.6f},{},{},{},{:.5f},{:.5f}\n", side.as_cut ? "cut" : "exact",
+                         side.side, k, degrees(p.phi_1), degrees(p.phi_2), p.error_rad * app::kMicro,
+                         p.error_rad * a.pitch_radius_mm * app::kUm, p.touching, p.marking,
                          side.members[static_cast<std::size_t>(p.member)].flank.zone, p.radius_mm, p.height_mm);
     }
   return out;
@@ -186,10 +204,13 @@ std::string contact_json(const ContactAnalysis& a) {
   json["job"] = a.job_name;
   json["pinion_teeth"] = a.pinion_teeth;
   json["gear_teeth"] = a.gear_teeth;
-  json["misalignment"] = {{"offset_mm", a.settings.moved.offset_mm}, {"axial_mm", a.settings.moved.axial_mm}, {"angle_deg", degrees(a.settings.moved.angle_rad)}};
+  json["misalignment"] = {{"offset_mm", a.settings.moved.offset_mm},
+                          {"axial_mm", a.settings.moved.axial_mm},
+                          {"angle_deg", degrees(a.settings.moved.angle_rad)}};
   json["compound_um"] = a.settings.compound_mm * app::kUm;
   json["cut_surface"] = a.route.empty() ? Json(nullptr) : Json(a.route);
-  json["pinion"] = {{"base_radius", a.pinion_r_b_mm}, {"pitch_radius", a.pinion_r_p_mm}, {"tip_radius", a.pinion_r_a_mm}};
+  json["pinion"] = {
+      {"base_radius", a.pinion_r_b_mm}, {"pitch_radius", a.pinion_r_p_mm}, {"tip_radius", a.pinion_r_a_mm}};
   json["lever_mm"] = a.pitch_radius_mm;
   json["flanks"] = Json::array();
   for (const auto& side : a.sides) {
@@ -214,27 +235,31 @@ std::string contact_json(const ContactAnalysis& a) {
 }
 
 std::string contact_summary(const ContactAnalysis& a) {
-  std::string out = fmt::format("contact of {} with a pinion of {} teeth (gear {} teeth), compound {:g} um\n", a.job_name, a.pinion_teeth, a.gear_teeth,
-                                a.settings.compound_mm * app::kUm);
+  std::string out = fmt::format("contact of {} with a pinion of {} teeth (gear {} teeth), compound {:g} um\n",
+                                a.job_name, a.pinion_teeth, a.gear_teeth, a.settings.compound_mm * app::kUm);
   const contact::Misalignment& moved = a.settings.moved;
   if (moved.offset_mm != 0 || moved.axial_mm != 0 || moved.angle_rad != 0)
-    out += fmt::format("  misaligned: offset {:+g} mm, angle {:+g} deg, axial {:+g} mm\n", moved.offset_mm, degrees(moved.angle_rad), moved.axial_mm);
+    out += fmt::format("  misaligned: offset {:+g} mm, angle {:+g} deg, axial {:+g} mm\n", moved.offset_mm,
+                       degrees(moved.angle_rad), moved.axial_mm);
   for (const auto& side : a.sides) {
     const contact::RollResult& r = side.roll;
     out += fmt::format("  flank {:+}, {}: {} contact\n", side.side, side.as_cut ? a.route : "exact", side.kind);
-    out += fmt::format("    transmission error: range {:.3g} urad = {:.3g} um at {:.3f} mm, mean {:.4g} urad\n", r.error_range_rad * app::kMicro,
-                       r.error_range_rad * a.pitch_radius_mm * app::kUm, a.pitch_radius_mm, r.error_mean_rad * app::kMicro);
-    out += fmt::format("    contact ratio {:.3f}, pairs in contact {} to {}; within the compound {:.3f}, {} to {}\n", r.contact_ratio,
-                       r.least_touching, r.most_touching, r.marking_ratio, r.least_marking, r.most_marking);
+    out += fmt::format("    transmission error: range {:.3g} urad = {:.3g} um at {:.3f} mm, mean {:.4g} urad\n",
+                       r.error_range_rad * app::kMicro, r.error_range_rad * a.pitch_radius_mm * app::kUm,
+                       a.pitch_radius_mm, r.error_mean_rad * app::kMicro);
+    out += fmt::format("    contact ratio {:.3f}, pairs in contact {} to {}; within the compound {:.3f}, {} to {}\n",
+                       r.contact_ratio, r.least_touching, r.most_touching, r.marking_ratio, r.least_marking,
+                       r.most_marking);
     for (std::size_t m = 0; m < side.members.size(); ++m) {
       const contact::FlankPattern& p = r.patterns[m];
       const std::string zone = side.members.size() > 1 ? fmt::format("zone {}: ", side.members[m].flank.zone) : "";
       if (const auto& range = side.ranges[m]; range && !side.as_cut)
-        out += fmt::format("    {}path at B = {:.4f} deg, ratio {:.3f}, radii {:.3f} (tip) to {:.3f} (pinion tip) mm\n", zone, degrees(side.paths[m]->B),
-                           range->ratio, side.paths[m]->point(range->theta_1_from).head<2>().norm(),
+        out += fmt::format("    {}path at B = {:.4f} deg, ratio {:.3f}, radii {:.3f} (tip) to {:.3f} (pinion tip) mm\n",
+                           zone, degrees(side.paths[m]->B), range->ratio,
+                           side.paths[m]->point(range->theta_1_from).head<2>().norm(),
                            side.paths[m]->point(range->theta_1_to).head<2>().norm());
-      out += fmt::format("    {}pattern: {:.1f} % of the flank, r {:.2f} to {:.2f}, z {:.2f} to {:.2f} mm; {}\n", zone, p.marked_share * 100, p.inner_mm,
-                         p.outer_mm, p.low_mm, p.high_mm, words_of(p));
+      out += fmt::format("    {}pattern: {:.1f} % of the flank, r {:.2f} to {:.2f}, z {:.2f} to {:.2f} mm; {}\n", zone,
+                         p.marked_share * 100, p.inner_mm, p.outer_mm, p.low_mm, p.high_mm, words_of(p));
     }
   }
   for (const auto& note : a.notes) out += "  note: " + note + "\n";

@@ -1,4 +1,5 @@
-// Everything about the contact of one job's gear with its pinion: both flanks, the exact surface and, where it is there, the cut one.
+// Everything about the contact of one job's gear with its pinion: both flanks, the exact surface and, where it is
+// there, the cut one.
 #pragma once
 
 #include <optional>
@@ -39,9 +40,13 @@ struct ContactGrid {
   int steps = 48;               ///< positions a pitch
 };
 
-/// Refused: a pinion that cannot run (place: contact.pinion_teeth or gear.mate_teeth); a flank that is not there; a pinion out of reach.
-[[nodiscard]] process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, const face_gear::FaceGear& gear, const job::ContactSettings& settings,
-                                                             const process::CutFlanks* cut, const ContactGrid& grid = {});
+/// Refused: a pinion that cannot run (place: contact.pinion_teeth or gear.mate_teeth); a flank that is not there; a
+/// pinion out of reach.
+[[nodiscard]] process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job,
+                                                                      const face_gear::FaceGear& gear,
+                                                                      const job::ContactSettings& settings,
+                                                                      const process::CutFlanks* cut,
+                                                                      const ContactGrid& grid = {});
 
 /// contact.csv: every place of every flank with its gap, and its place on the pinion.
 [[nodiscard]] std::string contact_csv(const ContactAnalysis& analysis);

@@ -3,25 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/report/svg/html_text.h"
-#include "app/report/svg/contact_pattern.h"
-#include "app/report/svg/plot.h"
 #include "app/base/units.h"
+#include "app/report/svg/contact_pattern.h"
+#include "app/report/svg/html_text.h"
+#include "app/report/svg/plot.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::face {
 namespace {
-
 
 std::string name_of(const ContactAnalysis& a, const ContactOfSide& side) {
   return fmt::format("flank {:+}, {}", side.side, side.as_cut ? a.route : "exact");
 }
 
 std::string pattern_note(const ContactAnalysis& a, const ContactOfSide& side, const contact::FlankPattern& p) {
-  std::string note = fmt::format("{:.1f} % of the flank carries compound of {:g} um. ", p.marked_share * 100, a.settings.compound_mm * app::kUm);
+  std::string note = fmt::format("{:.1f} % of the flank carries compound of {:g} um. ", p.marked_share * 100,
+                                 a.settings.compound_mm * app::kUm);
   if (p.marked_share > 0 && p.marked_share < 0.95 && p.length_mm >= 1.3 * p.width_mm)
-    note += fmt::format("Long axis {:.1f} mm, inclined {:.1f} deg to the direction of the tooth; {:.1f} mm across. ", p.length_mm,
-                        degrees(p.inclination_rad), p.width_mm);
+    note += fmt::format("Long axis {:.1f} mm, inclined {:.1f} deg to the direction of the tooth; {:.1f} mm across. ",
+                        p.length_mm, degrees(p.inclination_rad), p.width_mm);
   if (side.kind == "edge") note += "The path of contact misses the flank: it bears on an edge. ";
   return note;
 }
@@ -29,7 +29,8 @@ std::string pattern_note(const ContactAnalysis& a, const ContactOfSide& side, co
 /// Every n-th row of a fine grid: the eye does not see more.
 int stride_of(int rows) { return std::max(1, (rows - 1) / 240); }
 
-svg::PatternDrawing drawing(const ContactAnalysis& a, const contact::ContactMember& member, const contact::FlankPattern& p, bool on_pinion) {
+svg::PatternDrawing drawing(const ContactAnalysis& a, const contact::ContactMember& member,
+                            const contact::FlankPattern& p, bool on_pinion) {
   const contact::ContactFlank& f = member.flank;
   svg::PatternDrawing d;
   d.compound_um = a.settings.compound_mm * app::kUm;
@@ -63,8 +64,11 @@ std::vector<ContactFigure> contact_patterns(const ContactAnalysis& a) {
       for (const bool on_pinion : {false, true}) {
         svg::PatternDrawing d = drawing(a, side.members[m], p, on_pinion);
         d.title = fmt::format("contact pattern on the {}, {}{}", on_pinion ? "pinion" : "gear", name_of(a, side), zone);
-        figures.push_back({fmt::format("{}: {}{}", on_pinion ? "Pinion" : "Gear", name_of(a, side), zone), svg::svg_contact_pattern(d),
-                           on_pinion ? "The places of the gear's grid at the moment of their least gap, on the pinion's flank." : pattern_note(a, side, p)});
+        figures.push_back(
+            {fmt::format("{}: {}{}", on_pinion ? "Pinion" : "Gear", name_of(a, side), zone),
+             svg::svg_contact_pattern(d),
+             on_pinion ? "The places of the gear's grid at the moment of their least gap, on the pinion's flank."
+                       : pattern_note(a, side, p)});
       }
     }
   return figures;
@@ -75,13 +79,18 @@ std::vector<svg::LineChart> contact_charts(const ContactAnalysis& a) {
   error.title = "Transmission error over one pitch";
   error.x_label = "gear turn [pitches]";
   error.y_label = "error less its mean [\u00b5rad]";
-  error.note = "The gear's turn beyond that of the gear ratio, phi_2 - phi_1 N_p/N_2. Rigid bodies, no load. On the exact flank the error is a constant wherever contact is inside the flank, also misaligned.";
+  error.note =
+      "The gear's turn beyond that of the gear ratio, phi_2 - phi_1 N_p/N_2. Rigid bodies, no load. On the exact flank "
+      "the error is a constant wherever contact is inside the flank, also misaligned.";
   pairs.title = "Pairs in contact over one pitch";
   pairs.x_label = "gear turn [pitches]";
   pairs.y_label = "pairs";
-  pairs.note = "Touching: gap below a nanometre. Within the compound: gap below its thickness; elastic flanks under load share it among about as many.";
+  pairs.note =
+      "Touching: gap below a nanometre. Within the compound: gap below its thickness; elastic flanks under load share "
+      "it among about as many.";
   for (const auto& side : a.sides) {
-    svg::ChartSeries e{name_of(a, side), {}, {}}, t{name_of(a, side) + (side.as_cut ? ", compound" : ", touching"), {}, {}};
+    svg::ChartSeries e{name_of(a, side), {}, {}},
+        t{name_of(a, side) + (side.as_cut ? ", compound" : ", touching"), {}, {}};
     const double pitch = 2 * kPi / a.gear_teeth, start = side.roll.cycle.front().phi_2;
     for (const auto& p : side.roll.cycle) {
       const double x = (p.phi_2 - start) / pitch;
@@ -106,27 +115,36 @@ std::vector<svg::LineChart> contact_charts(const ContactAnalysis& a) {
 }
 
 page::PageTable contact_table(const ContactAnalysis& a) {
-  page::PageTable table{"Contact", {"flank", "surface", "ring", "contact", "error range urad", "error range um", "error mean urad", "contact ratio", "pairs",
-                              "within compound", "pattern %", "r mm", "z mm"}, {}, ""};
-  table.note = fmt::format("Micrometres at the pitch radius {:.3f} mm. Ratio: mean number of pairs that touch.", a.pitch_radius_mm);
+  page::PageTable table{"Contact",
+                        {"flank", "surface", "ring", "contact", "error range urad", "error range um", "error mean urad",
+                         "contact ratio", "pairs", "within compound", "pattern %", "r mm", "z mm"},
+                        {},
+                        ""};
+  table.note = fmt::format("Micrometres at the pitch radius {:.3f} mm. Ratio: mean number of pairs that touch.",
+                           a.pitch_radius_mm);
   for (const auto& side : a.sides)
     for (std::size_t m = 0; m < side.members.size(); ++m) {
       const contact::RollResult& r = side.roll;
       const contact::FlankPattern& p = r.patterns[m];
-      table.rows.push_back({fmt::format("{:+}", side.side), side.as_cut ? a.route : "exact", std::to_string(side.members[m].flank.zone), side.kind,
-                            svg::short_number(r.error_range_rad * app::kMicro < 1e-5 ? 0 : r.error_range_rad * app::kMicro, 4),
-                            svg::short_number(r.error_range_rad * app::kMicro < 1e-5 ? 0 : r.error_range_rad * a.pitch_radius_mm * app::kUm, 4),
-                            fmt::format("{:.4f}", std::abs(r.error_mean_rad) < 1e-11 ? 0 : r.error_mean_rad * app::kMicro), fmt::format("{:.3f}", r.contact_ratio),
-                            fmt::format("{} to {}", r.least_touching, r.most_touching), fmt::format("{} to {}", r.least_marking, r.most_marking),
-                            fmt::format("{:.1f}", p.marked_share * 100), fmt::format("{:.2f} to {:.2f}", p.inner_mm, p.outer_mm),
-                            fmt::format("{:.2f} to {:.2f}", p.low_mm, p.high_mm)});
+      table.rows.push_back(
+          {fmt::format("{:+}", side.side), side.as_cut ? a.route : "exact", std::to_string(side.members[m].flank.zone),
+           side.kind,
+           svg::short_number(r.error_range_rad * app::kMicro < 1e-5 ? 0 : r.error_range_rad * app::kMicro, 4),
+           svg::short_number(
+               r.error_range_rad * app::kMicro < 1e-5 ? 0 : r.error_range_rad * a.pitch_radius_mm * app::kUm, 4),
+           fmt::format("{:.4f}", std::abs(r.error_mean_rad) < 1e-11 ? 0 : r.error_mean_rad * app::kMicro),
+           fmt::format("{:.3f}", r.contact_ratio), fmt::format("{} to {}", r.least_touching, r.most_touching),
+           fmt::format("{} to {}", r.least_marking, r.most_marking), fmt::format("{:.1f}", p.marked_share * 100),
+           fmt::format("{:.2f} to {:.2f}", p.inner_mm, p.outer_mm),
+           fmt::format("{:.2f} to {:.2f}", p.low_mm, p.high_mm)});
     }
   return table;
 }
 
 std::string contact_section_body(const ContactAnalysis& a) {
-  std::string out = fmt::format("<p>Rolled with a pinion of {} teeth as rigid bodies without load, marking compound of {:g} um.</p>\n", a.pinion_teeth,
-                                a.settings.compound_mm * app::kUm);
+  std::string out = fmt::format(
+      "<p>Rolled with a pinion of {} teeth as rigid bodies without load, marking compound of {:g} um.</p>\n",
+      a.pinion_teeth, a.settings.compound_mm * app::kUm);
   for (const auto& note : a.notes) out += "<p class=\"note\">" + svg::html_escape(note) + "</p>\n";
   const page::PageTable t = contact_table(a);
   out += "<div class=\"table\"><table><thead><tr>";
@@ -137,12 +155,14 @@ std::string contact_section_body(const ContactAnalysis& a) {
     for (const auto& cell : row) out += fmt::format("<td>{}</td>", svg::html_escape(cell));
     out += "</tr>\n";
   }
-  out += fmt::format("</tbody></table></div>\n<p class=\"note\">{}</p>\n<div class=\"plots two\">\n", svg::html_escape(t.note));
+  out += fmt::format("</tbody></table></div>\n<p class=\"note\">{}</p>\n<div class=\"plots two\">\n",
+                     svg::html_escape(t.note));
   for (const auto& chart : contact_charts(a))
-    out += fmt::format("<figure><figcaption>{}</figcaption>{}<p class=\"note\">{}</p></figure>\n", svg::html_escape(chart.title), svg::svg_line_chart(chart),
-                       svg::html_escape(chart.note));
+    out += fmt::format("<figure><figcaption>{}</figcaption>{}<p class=\"note\">{}</p></figure>\n",
+                       svg::html_escape(chart.title), svg::svg_line_chart(chart), svg::html_escape(chart.note));
   for (const auto& f : contact_patterns(a))
-    out += fmt::format("<figure><figcaption>{}</figcaption>{}<p class=\"note\">{}</p></figure>\n", svg::html_escape(f.caption), f.svg, svg::html_escape(f.note));
+    out += fmt::format("<figure><figcaption>{}</figcaption>{}<p class=\"note\">{}</p></figure>\n",
+                       svg::html_escape(f.caption), f.svg, svg::html_escape(f.note));
   return out + "</div>\n";
 }
 

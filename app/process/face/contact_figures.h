@@ -1,4 +1,5 @@
-// The contact of a gear and its pinion for people: patterns drawn on both members, transmission error, pairs in contact.
+// The contact of a gear and its pinion for people: patterns drawn on both members, transmission error, pairs in
+// contact.
 #pragma once
 
 #include <string>

@@ -12,9 +12,9 @@
 #include "app/report/limits/chart.h"
 #include "app/report/page/tool_body.h"
 #include "app/report/svg/html_text.h"
-#include "cam/cut/cut_surface.h"
 #include "cam/analytic/gouge_check.h"
 #include "cam/ball/plan.h"
+#include "cam/cut/cut_surface.h"
 #include "postproc/joints/pole.h"
 
 namespace toothpath::face {
@@ -32,21 +32,28 @@ ball::PlanOptions plan_options(const proof::ProofLimits& limits, const machines:
   options.limits = limits;
   // `tilt` keeps what it asks between two records, too, where the axis dips by less than this margin.
   if (machine.post.pole == machines::PoleOption::tilt)
-    options.least_tilt_rad = std::max(options.least_tilt_rad, machine.post.pole_angle_rad.value_or(joints::kLeastPoleTilt) + 1e-3);
+    options.least_tilt_rad =
+        std::max(options.least_tilt_rad, machine.post.pole_angle_rad.value_or(joints::kLeastPoleTilt) + 1e-3);
   return options;
 }
 
 class FaceMilling final : public process::GearMilling {
  public:
-  FaceMilling(const job::Job& job, const machines::Machine& machine, const face_gear::FaceGear& gear, const proof::ProofLimits& limits, const process::FlankGrid& grid)
-      : job_(job), machine_(machine), limits_(limits), part_(gear, ball::reach_of(job.tools)), gouge_(part_, job.tools, {limits, gear.blank_top()}),
+  FaceMilling(const job::Job& job, const machines::Machine& machine, const face_gear::FaceGear& gear,
+              const proof::ProofLimits& limits, const process::FlankGrid& grid)
+      : job_(job),
+        machine_(machine),
+        limits_(limits),
+        part_(gear, ball::reach_of(job.tools)),
+        gouge_(part_, job.tools, {limits, gear.blank_top()}),
         check_(job, machine, limits, part_, gouge_, surface_options(grid)) {}
 
   [[nodiscard]] Status plan(app::StageClock& clock, app::Progress& progress) override {
     ball::PlanOptions options = plan_options(limits_, machine_);
     options.stage = [&](const std::string& name, const std::function<void()>& work) { clock.run(name, work); };
     auto planned = clock.run("plan", [&] {
-      return ball::plan_face_gear(part_, job_.tools, job_.operations, options, [&](const std::string& text) { progress.show(text); });
+      return ball::plan_face_gear(part_, job_.tools, job_.operations, options,
+                                  [&](const std::string& text) { progress.show(text); });
     });
     if (auto* refusal = planned.refused()) return process::located(job_, refusal->key, std::move(refusal->diagnostic));
     plan_ = std::move(planned).value();
@@ -59,9 +66,13 @@ class FaceMilling final : public process::GearMilling {
   }
   [[nodiscard]] std::vector<proof::DirectionChoice> directions() const override { return plan_.directions; }
   [[nodiscard]] std::vector<report::PassReport> passes() const override { return {}; }
-  [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override { return gouge_.check_path(path); }
+  [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override {
+    return gouge_.check_path(path);
+  }
   [[nodiscard]] process::GearCheck& check() override { return check_; }
-  [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program, const process::ProgramProof& proof, double blend_mm) const override {
+  [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program,
+                                                       const process::ProgramProof& proof,
+                                                       double blend_mm) const override {
     return face::ledger({part_, plan_, job_.tools, check_.surface}, program, proof, blend_mm, limits_.proof_mm);
   }
   [[nodiscard]] sheet::OtherSurface beside_the_grid() const override { return {}; }
@@ -81,7 +92,8 @@ class FaceProcess final : public process::GearProcess {
   FaceProcess(const job::Job& job, face_gear::FaceGear gear) : job_(job), gear_(std::move(gear)) { note_part(); }
 
   [[nodiscard]] const process::PartFacts& part() const override { return part_; }
-  [[nodiscard]] Result<process::Correction> correct(const std::vector<std::string>& measured_files, app::StageClock& clock) override {
+  [[nodiscard]] Result<process::Correction> correct(const std::vector<std::string>& measured_files,
+                                                    app::StageClock& clock) override {
     auto corrected = clock.run("correction", [&] { return job::correct_gear(gear_, measured_files); });
     if (!corrected) return corrected.error();
     gear_ = std::move(corrected->gear);
@@ -91,15 +103,19 @@ class FaceProcess final : public process::GearProcess {
     out.json = job::correction_json(corrected->fit, corrected->measurements);
     return out;
   }
-  [[nodiscard]] joints::ClearanceBody link_body(const machines::Machine&) const override { return clearance_body(gear_); }
+  [[nodiscard]] joints::ClearanceBody link_body(const machines::Machine&) const override {
+    return clearance_body(gear_);
+  }
   [[nodiscard]] sheet::PartOutline outline() const override {
     const double root = gear_.lowest_root();
-    return {gear_.inner_radius(), gear_.outer_radius(), gear_.blank_top(), root, root - 2.5 * gear_.parameters().module_mm};
+    return {gear_.inner_radius(), gear_.outer_radius(), gear_.blank_top(), root,
+            root - 2.5 * gear_.parameters().module_mm};
   }
   [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override {
     const face_gear::FaceGearParameters& p = gear_.parameters();
     page::GearOnPage out;
-    out.subtitle = fmt::format("face gear {}/{}, module {} mm, {}", p.shaper_teeth, p.teeth, svg::short_number(p.module_mm), machine_name);
+    out.subtitle = fmt::format("face gear {}/{}, module {} mm, {}", p.shaper_teeth, p.teeth,
+                               svg::short_number(p.module_mm), machine_name);
     for (const auto& tool : job_.tools) out.tools.push_back(page::page_ball_mill(tool));
     return out;
   }
@@ -110,12 +126,17 @@ class FaceProcess final : public process::GearProcess {
     for (const auto& tool : job_.tools) out.bodies.push_back(clearance::mesh_bodies(tool));
     return out;
   }
-  [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface, const std::vector<std::string>& assumed, app::StageClock& clock,
+  [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
+                                   const std::vector<std::string>& assumed, app::StageClock& clock,
                                    std::vector<std::string>& files) const override {
     return write_surface_files(output, gear_, job_.name, surface, assumed, clock, files);
   }
-  [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine, const proof::ProofLimits& limits, const process::FlankGrid& grid, app::StageClock& clock) const override {
-    return clock.run("distance index", [&] { return std::make_unique<FaceMilling>(job_, machine, gear_, limits, grid); });
+  [[nodiscard]] std::unique_ptr<process::GearMilling> milling(const machines::Machine& machine,
+                                                              const proof::ProofLimits& limits,
+                                                              const process::FlankGrid& grid,
+                                                              app::StageClock& clock) const override {
+    return clock.run("distance index",
+                     [&] { return std::make_unique<FaceMilling>(job_, machine, gear_, limits, grid); });
   }
   [[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped(const process::FlankGrid& grid) const override {
     auto places = places_on(job_, gear_, grid.rows, grid.columns);
@@ -123,19 +144,27 @@ class FaceProcess final : public process::GearProcess {
     return shaped_flanks(job_, gear_, std::move(places).value());
   }
   [[nodiscard]] Status accepts(const process::ContactAsked& asked) const override {
-    for (const auto& [given, option] : {std::pair(!asked.other_job.empty(), "--mate"), {asked.wheel_axial_error_mm.has_value(), "--wheel-axial-error"}})
-      if (given) return fail_at(job_.where("gear.type"), "type = \"{}\", but {} needs an equal_base_circle_bevel_gear", process::gear_type(job_), option);
+    for (const auto& [given, option] : {std::pair(!asked.other_job.empty(), "--mate"),
+                                        {asked.wheel_axial_error_mm.has_value(), "--wheel-axial-error"}})
+      if (given)
+        return fail_at(job_.where("gear.type"), "type = \"{}\", but {} needs an equal_base_circle_bevel_gear",
+                       process::gear_type(job_), option);
     return Ok{};
   }
-  [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked, const process::CutFlanks* cut, app::StageClock& clock) const override {
+  [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked,
+                                                                      const process::CutFlanks* cut,
+                                                                      app::StageClock& clock) const override {
     return roll_pair(job_, gear_, asked, cut, clock);
   }
-  [[nodiscard]] std::string contact_section(const std::vector<proof::SurfaceGrid>& surface, std::vector<std::string>& warnings) const override {
+  [[nodiscard]] std::string contact_section(const std::vector<proof::SurfaceGrid>& surface,
+                                            std::vector<std::string>& warnings) const override {
     return face::contact_section(job_, gear_, surface, warnings);
   }
 
  private:
-  void note_part() { part_ = {gear_.parameters().teeth, 2 * gear_.outer_radius(), 2 * gear_.outer_radius(), gear_.warnings()}; }
+  void note_part() {
+    part_ = {gear_.parameters().teeth, 2 * gear_.outer_radius(), 2 * gear_.outer_radius(), gear_.warnings()};
+  }
 
   const job::Job& job_;
   face_gear::FaceGear gear_;

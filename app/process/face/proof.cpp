@@ -8,21 +8,27 @@
 namespace toothpath::face {
 namespace {
 
-constexpr double kBallMotionTolerance = 1e-4;  // mm and rad: proven distance of a read-back motion from its straight line
+constexpr double kBallMotionTolerance =
+    1e-4;  // mm and rad: proven distance of a read-back motion from its straight line
 
-void judge_gouge(const proof::GougeResult& gouge, const analytic::GougeCheck& check, double tolerance, std::vector<std::string>& reasons) {
+void judge_gouge(const proof::GougeResult& gouge, const analytic::GougeCheck& check, double tolerance,
+                 std::vector<std::string>& reasons) {
   if (check.passes(gouge)) return;
   // Where the tool cuts too deep, or else where it may.
-  const auto cuts = std::find_if(gouge.worst.begin(), gouge.worst.end(), [](const proof::WorstPlace& w) { return tool::cuts(w.body); });
+  const auto cuts = std::find_if(gouge.worst.begin(), gouge.worst.end(),
+                                 [](const proof::WorstPlace& w) { return tool::cuts(w.body); });
   const bool seen = gouge.measured_mm > tolerance || cuts == gouge.worst.end();
   const proof::WorstPlace &place = seen ? gouge.deepest : *cuts, &body = gouge.closest;
   if (gouge.bound_mm > tolerance)
-    reasons.push_back(fmt::format("gouge: {:.2f} um measured, {:.2f} um proven, limit {:.2f} um; {} against {}, operation {}, line {}, r {:.3f} mm, z {:.3f} mm",
-                                  gouge.measured_mm * 1000, gouge.bound_mm * 1000, tolerance * 1000, place.body, place.patch,
-                                  place.operation, place.line, place.radius_mm, place.height_mm));
+    reasons.push_back(
+        fmt::format("gouge: {:.2f} um measured, {:.2f} um proven, limit {:.2f} um; {} against {}, operation {}, line "
+                    "{}, r {:.3f} mm, z {:.3f} mm",
+                    gouge.measured_mm * 1000, gouge.bound_mm * 1000, tolerance * 1000, place.body, place.patch,
+                    place.operation, place.line, place.radius_mm, place.height_mm));
   if (gouge.clearance_mm < gouge.required_clearance_mm)
-    reasons.push_back(fmt::format("clearance of shank and holder: {:.4f} mm is below {:.4f} mm; {} against {}, operation {}, line {}", gouge.clearance_mm,
-                                  gouge.required_clearance_mm, body.body, body.patch, body.operation, body.line));
+    reasons.push_back(
+        fmt::format("clearance of shank and holder: {:.4f} mm is below {:.4f} mm; {} against {}, operation {}, line {}",
+                    gouge.clearance_mm, gouge.required_clearance_mm, body.body, body.patch, body.operation, body.line));
   if (!gouge.rapids_clear) reasons.push_back("a rapid passes through the blank");
   if (reasons.empty()) reasons.push_back("the gouge check does not pass");
 }
@@ -30,26 +36,34 @@ void judge_gouge(const proof::GougeResult& gouge, const analytic::GougeCheck& ch
 /// The least stock after an operation, as a share of its allowance.
 constexpr double kLeastAllowance = 0.8;
 
-/// What a finishing operation may leave, on every point that its ball can reach: the cusps, the chords and a micrometre.
-void judge_surface(const cut::CutSurface& surface, const job::Job& job, const proof::ProofLimits& limits, std::vector<std::string>& reasons) {
+/// What a finishing operation may leave, on every point that its ball can reach: the cusps, the chords and a
+/// micrometre.
+void judge_surface(const cut::CutSurface& surface, const job::Job& job, const proof::ProofLimits& limits,
+                   std::vector<std::string>& reasons) {
   for (const proof::ExcessResult& after : surface.operations) {
     const double allowance = job.operations[static_cast<std::size_t>(after.operation)].allowance_mm;
     if (allowance > 0 && after.points > 0 && after.min_mm < kLeastAllowance * allowance)
-      reasons.push_back(fmt::format("operation {}: the least stock left is {:.4f} mm, below {:.4f} mm ({} of the allowance {:.4f})", after.operation,
-                                    after.min_mm, kLeastAllowance * allowance, kLeastAllowance, allowance));
+      reasons.push_back(
+          fmt::format("operation {}: the least stock left is {:.4f} mm, below {:.4f} mm ({} of the allowance {:.4f})",
+                      after.operation, after.min_mm, kLeastAllowance * allowance, kLeastAllowance, allowance));
   }
   if (!limits.left_mm || surface.finished.max_mm <= *limits.left_mm) return;
   const path::MillingOperation& last = job.operations.back();
-  reasons.push_back(fmt::format("left material: {:.2f} um after the last operation, limit {:.2f} um (scallop {:.2f}, chord {:.2f}, margin {:.2f})",
-                                surface.finished.max_mm * 1000, *limits.left_mm * 1000, last.scallop_mm * 1000, last.chord_tolerance_mm * 1000,
-                                proof::kBallMargin * 1000));
+  reasons.push_back(
+      fmt::format("left material: {:.2f} um after the last operation, limit {:.2f} um (scallop {:.2f}, chord {:.2f}, "
+                  "margin {:.2f})",
+                  surface.finished.max_mm * 1000, *limits.left_mm * 1000, last.scallop_mm * 1000,
+                  last.chord_tolerance_mm * 1000, proof::kBallMargin * 1000));
 }
 
 report::Finding scallop_of(const proof::ScallopResult& scallop) {
   report::Finding finding;
   finding.key = "scallop_um";
-  finding.details = {{"requested", app::um(scallop.requested_mm)}, {"reached_min", app::um(scallop.reached_min_mm)}, {"reached_max", app::um(scallop.reached_max_mm)},
-                     {"share_within", scallop.share_within}, {"fillet_max", app::um(scallop.fillet_max_mm)}};
+  finding.details = {{"requested", app::um(scallop.requested_mm)},
+                     {"reached_min", app::um(scallop.reached_min_mm)},
+                     {"reached_max", app::um(scallop.reached_max_mm)},
+                     {"share_within", scallop.share_within},
+                     {"fillet_max", app::um(scallop.fillet_max_mm)}};
   return finding;
 }
 
@@ -61,7 +75,9 @@ joints::ClearanceBody clearance_body(const face_gear::FaceGear& gear) {
   return {gear.outer_radius(), lowest - 2.5 * gear.parameters().module_mm, gear.blank_top()};
 }
 
-FaceGearCheck::FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const analytic::GearDistance& part, const analytic::GougeCheck& check, const cut::CutSurfaceOptions& grid)
+FaceGearCheck::FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits,
+                             const analytic::GearDistance& part, const analytic::GougeCheck& check,
+                             const cut::CutSurfaceOptions& grid)
     : job_(job), machine_(machine), limits_(limits), part_(part), check_(check), grid_(grid) {}
 
 int FaceGearCheck::teeth() const { return part_.gear().parameters().teeth; }
@@ -73,14 +89,17 @@ Status FaceGearCheck::rapids_clear(const readback::OperationTrace& trace, const 
   return check_rapids_outside(trace, control, machine_, *job_.setup, clearance_body(part_.gear()), job_.tools);
 }
 
-void FaceGearCheck::meet(const process::ProgramProof&) {}  // all that is said of a face gear holds for the teeth that are proven
+void FaceGearCheck::meet(const process::ProgramProof&) {
+}  // all that is said of a face gear holds for the teeth that are proven
 
 void FaceGearCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
   std::vector<int> tool_of_operation;
   for (const auto& operation : job_.operations) tool_of_operation.push_back(operation.tool);
   program.gouge = clock.run("proof of the program", [&] { return check_.check(program.motions, tool_of_operation); });
   judge_gouge(program.gouge, check_, limits_.gouge_mm, program.reasons);
-  surface = clock.run("cut surface", [&] { return cut::measure_cut_surface(part_, program.motions, job_.operations, job_.tools, grid_); });
+  surface = clock.run("cut surface", [&] {
+    return cut::measure_cut_surface(part_, program.motions, job_.operations, job_.tools, grid_);
+  });
   judge_surface(surface, job_, limits_, program.reasons);
   judge_unreached(surface.unreached, job_.verify.unreached_mm, program.reasons);
   program.excess = surface.operations;

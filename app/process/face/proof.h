@@ -1,9 +1,10 @@
-// What a face gear adds to the proof of a program (program_proof.h): gouge, shank and holder, rapids about the blank, the cut surface.
+// What a face gear adds to the proof of a program (program_proof.h): gouge, shank and holder, rapids about the blank,
+// the cut surface.
 #pragma once
 
 #include "app/process/program_proof.h"
-#include "cam/cut/cut_surface.h"
 #include "cam/analytic/gouge_check.h"
+#include "cam/cut/cut_surface.h"
 #include "cam/proof/limits.h"
 
 namespace toothpath::face {
@@ -12,11 +13,14 @@ namespace toothpath::face {
 class FaceGearCheck final : public process::GearCheck {
  public:
   /// @param grid  on which the cut surface is measured
-  FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits, const analytic::GearDistance& part, const analytic::GougeCheck& check, const cut::CutSurfaceOptions& grid = {});
+  FaceGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits,
+                const analytic::GearDistance& part, const analytic::GougeCheck& check,
+                const cut::CutSurfaceOptions& grid = {});
 
   [[nodiscard]] int teeth() const override;
   [[nodiscard]] double motion_tolerance() const override;
-  [[nodiscard]] Status rapids_clear(const readback::OperationTrace& trace, const readback::NcControl& control) const override;
+  [[nodiscard]] Status rapids_clear(const readback::OperationTrace& trace,
+                                    const readback::NcControl& control) const override;
   void meet(const process::ProgramProof& whole) override;
   void judge(process::ProgramProof& program, app::StageClock& clock) override;
 

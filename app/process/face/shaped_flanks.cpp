@@ -14,9 +14,11 @@ namespace {
 /// Strokes of one even turn at full depth about the place where a tooth at azimuth 0 is cut.
 std::vector<shaper::ShaperStroke> strokes_of_one_turn(const shaper::ShaperSetup& s) {
   const double r = s.inner_radius_mm;
-  const double window = std::asin(std::min(1.0, (std::abs(s.surface.E) + s.surface.shaper.r_a) / r)) + 2 * s.surface.pitch;
+  const double window =
+      std::asin(std::min(1.0, (std::abs(s.surface.E) + s.surface.shaper.r_a) / r)) + 2 * s.surface.pitch;
   const int half = static_cast<int>(std::ceil(window / (2 * kPi) * s.strokes_turn));
-  const double step = s.machine.axes.at('A').sign * 2 * kPi / s.strokes_turn, ratio = double(s.work_teeth) / s.cutter_teeth;
+  const double step = s.machine.axes.at('A').sign * 2 * kPi / s.strokes_turn,
+               ratio = double(s.work_teeth) / s.cutter_teeth;
   std::vector<shaper::ShaperStroke> strokes;
   for (int j = -half; j <= half; ++j)
     strokes.push_back({0.0, s.start_mm, s.end_mm, ratio * step * (j - 1), ratio * step * j, step * (j - 1), step * j});
@@ -25,7 +27,9 @@ std::vector<shaper::ShaperStroke> strokes_of_one_turn(const shaper::ShaperSetup&
 
 }  // namespace
 
-process::ValueOrErrors<std::vector<process::CutFlanks::Flank>> places_on(const job::Job& job, const face_gear::FaceGear& gear, int rows, int columns) {
+process::ValueOrErrors<std::vector<process::CutFlanks::Flank>> places_on(const job::Job& job,
+                                                                         const face_gear::FaceGear& gear, int rows,
+                                                                         int columns) {
   std::vector<process::CutFlanks::Flank> places;
   for (int zone = 0; zone < static_cast<int>(gear.rings().size()); ++zone)
     for (const int side : {1, -1}) {
@@ -36,7 +40,8 @@ process::ValueOrErrors<std::vector<process::CutFlanks::Flank>> places_on(const j
   return places;
 }
 
-process::ValueOrErrors<process::CutFlanks> shaped_flanks(const job::Job& job, const face_gear::FaceGear& gear, std::vector<process::CutFlanks::Flank> places) {
+process::ValueOrErrors<process::CutFlanks> shaped_flanks(const job::Job& job, const face_gear::FaceGear& gear,
+                                                         std::vector<process::CutFlanks::Flank> places) {
   auto planned = shaper_setup_of(job, gear);
   if (auto* errors = planned.refused()) return std::move(*errors);
   const shaper::ShaperSetup& setup = planned.value();
@@ -46,7 +51,8 @@ process::ValueOrErrors<process::CutFlanks> shaped_flanks(const job::Job& job, co
   cut.flanks = std::move(places);
   cut.cutting_minutes = cut.total_minutes = setup.total_min();
   cut.warnings = setup.warnings;
-  for (const auto& key : setup.machine.assumed_keys) cut.assumed.push_back(fmt::format("{}: {}", job.machine.file, key));
+  for (const auto& key : setup.machine.assumed_keys)
+    cut.assumed.push_back(fmt::format("{}: {}", job.machine.file, key));
   for (auto& flank : cut.flanks) {
     flank.deviation_mm.assign(flank.nominal.size(), 0.0);
     tbb::parallel_for(std::size_t{0}, flank.nominal.size(), [&](std::size_t k) {
@@ -54,7 +60,8 @@ process::ValueOrErrors<process::CutFlanks> shaped_flanks(const job::Job& job, co
       const Vec3& p = flank.nominal[k];
       const double pitch = setup.surface.pitch, middle = std::atan2(setup.surface.E, setup.surface.L_p);
       const double turn = -pitch * std::round((std::atan2(p.y(), p.x()) - middle) / pitch);
-      flank.deviation_mm[k] = shaper::swept_distance(setup.surface, strokes, face_gear::FaceGearSurface<double>::turned(p, turn));
+      flank.deviation_mm[k] =
+          shaper::swept_distance(setup.surface, strokes, face_gear::FaceGearSurface<double>::turned(p, turn));
     });
   }
   return cut;

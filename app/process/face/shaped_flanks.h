@@ -11,9 +11,14 @@
 namespace toothpath::face {
 
 /// Places of the exact flanks, both sides of every zone, where nothing has been measured yet.
-[[nodiscard]] process::ValueOrErrors<std::vector<process::CutFlanks::Flank>> places_on(const job::Job& job, const face_gear::FaceGear& gear, int rows, int columns);
+[[nodiscard]] process::ValueOrErrors<std::vector<process::CutFlanks::Flank>> places_on(const job::Job& job,
+                                                                                       const face_gear::FaceGear& gear,
+                                                                                       int rows, int columns);
 
-/// The strokes of a job's gear shaper at given places: one turn of the work at full depth. Refused: what `shaper` refuses.
-[[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped_flanks(const job::Job& job, const face_gear::FaceGear& gear, std::vector<process::CutFlanks::Flank> places);
+/// The strokes of a job's gear shaper at given places: one turn of the work at full depth. Refused: what `shaper`
+/// refuses.
+[[nodiscard]] process::ValueOrErrors<process::CutFlanks> shaped_flanks(const job::Job& job,
+                                                                       const face_gear::FaceGear& gear,
+                                                                       std::vector<process::CutFlanks::Flank> places);
 
 }  // namespace toothpath::face

@@ -9,24 +9,28 @@ namespace toothpath::face {
 
 process::ValueOrErrors<machines::ShaperMachine> load_shaper_machine(const job::Job& job) {
   if (job.machine.file.empty()) return std::vector{fail_at(job.where(""), "the job lacks the table [machine]")};
-  const auto path = machines::find_machine_file(job.machine.file, std::filesystem::path(job.file).parent_path().string());
+  const auto path =
+      machines::find_machine_file(job.machine.file, std::filesystem::path(job.file).parent_path().string());
   if (!path) return std::vector{process::located(job, "machine.file", path.error())};
   const auto kind = machines::machine_kind_of(*path);
   if (!kind) return std::vector{process::located(job, "machine.file", kind.error())};
   if (*kind != machines::MachineKind::gear_shaper)
-    return std::vector{fail_at(job.where("machine.file"), "{} is a milling machine, but this command needs a gear shaper", job.machine.file)};
+    return std::vector{fail_at(job.where("machine.file"),
+                               "{} is a milling machine, but this command needs a gear shaper", job.machine.file)};
   auto reading = shaper::read_shaper_machine(*path);
   if (!reading.machine) return std::move(reading.errors);
   if (reading.machine->assumed && !job.machine.accept_assumed) {
     std::string names;
     for (const auto& name : reading.machine->assumed_keys) names += (names.empty() ? "" : ", ") + name;
     return std::vector{fail_at(job.where("machine.file"),
-                               "{} has assumed values ({}); measure them, or accept them with accept_assumed = true", job.machine.file, names)};
+                               "{} has assumed values ({}); measure them, or accept them with accept_assumed = true",
+                               job.machine.file, names)};
   }
   return std::move(*reading.machine);
 }
 
-process::ValueOrErrors<shaper::ShaperSetup> plan_shaper(const job::Job& job, const face_gear::FaceGear& gear, const machines::ShaperMachine& machine) {
+process::ValueOrErrors<shaper::ShaperSetup> plan_shaper(const job::Job& job, const face_gear::FaceGear& gear,
+                                                        const machines::ShaperMachine& machine) {
   if (!job.shaping) return std::vector{fail_at(job.where(""), "the job lacks the table [shaping]")};
   shaper::ShaperWork work;
   work.job_name = job.name;
@@ -36,7 +40,8 @@ process::ValueOrErrors<shaper::ShaperSetup> plan_shaper(const job::Job& job, con
   auto planned = shaper::plan_shaper_setup(work, machine);
   if (auto* setup = planned.value_if()) return std::move(*setup);
   std::vector<Diagnostic> errors;
-  for (auto& refusal : planned.error()) errors.push_back(process::located(job, refusal.key, std::move(refusal.diagnostic)));
+  for (auto& refusal : planned.error())
+    errors.push_back(process::located(job, refusal.key, std::move(refusal.diagnostic)));
   return errors;
 }
 

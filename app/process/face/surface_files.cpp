@@ -17,7 +17,8 @@ constexpr double kStlSag = 0.01, kVtpSag = 0.002;  // mm
 std::vector<double> patch_of_vertices(const mesh::ToothMesh& pitch) {
   std::vector<double> field(pitch.mesh.vertices.size(), static_cast<double>(mesh::kPatchCount));
   for (std::size_t t = pitch.tags.size(); t-- > 0;)
-    for (const auto vertex : pitch.mesh.triangles[t]) field[static_cast<std::size_t>(vertex)] = static_cast<double>(pitch.tags[t].patch);
+    for (const auto vertex : pitch.mesh.triangles[t])
+      field[static_cast<std::size_t>(vertex)] = static_cast<double>(pitch.tags[t].patch);
   return field;
 }
 
@@ -41,20 +42,27 @@ Result<std::string> inspection_text(const face_gear::FaceGear& gear) {
 
 }  // namespace
 
-Status write_surface_files(app::OutputDir& output, const face_gear::FaceGear& gear, const std::string& job_name, const std::vector<proof::SurfaceGrid>& surface,
-                           const std::vector<std::string>& assumed, app::StageClock& clock, std::vector<std::string>& files) {
+Status write_surface_files(app::OutputDir& output, const face_gear::FaceGear& gear, const std::string& job_name,
+                           const std::vector<proof::SurfaceGrid>& surface, const std::vector<std::string>& assumed,
+                           app::StageClock& clock, std::vector<std::string>& files) {
   process::GearFiles to(output, files);
   if (const auto s = to.write("limits.json", limits::limits_json(gear)); !s) return s;
   if (const auto s = to.write("limits.html", limits::limits_page(gear, job_name, assumed)); !s) return s;
   for (std::size_t zone = 0; zone < gear.rings().size(); ++zone)
-    if (const auto s = to.write(gear.rings().size() == 1 ? "limits.svg" : "limits_" + std::to_string(zone) + ".svg", page::standalone_svg(limits::limit_charts(gear)[2 * zone])); !s)
+    if (const auto s = to.write(gear.rings().size() == 1 ? "limits.svg" : "limits_" + std::to_string(zone) + ".svg",
+                                page::standalone_svg(limits::limit_charts(gear)[2 * zone]));
+        !s)
       return s;
   const auto dmis = inspection::inspection_grid(gear);
   if (!dmis) return dmis.error();
   if (const auto s = to.write("inspection.dmi", inspection::inspection_dmis(gear, *dmis, job_name)); !s) return s;
-  if (const auto s = to.write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); })); !s) return s;
+  if (const auto s = to.write("inspection.csv", clock.run("inspection grid", [&] { return inspection_text(gear); }));
+      !s)
+    return s;
   if (const auto s = to.write("gear.stl", clock.run("mesh", [&] { return gear_text(gear, job_name); })); !s) return s;
-  return to.write("tooth.vtp", clock.run("mesh", [&] { return surface.empty() ? pitch_text(gear) : report::deviation_vtp(surface); }));
+  return to.write("tooth.vtp", clock.run("mesh", [&] {
+    return surface.empty() ? pitch_text(gear) : report::deviation_vtp(surface);
+  }));
 }
 
 }  // namespace toothpath::face

@@ -1,4 +1,5 @@
-// Surface that the ball of a finishing operation does not reach: what is said of it, and when it is a verdict (docs/proof.md).
+// Surface that the ball of a finishing operation does not reach: what is said of it, and when it is a verdict
+// (docs/proof.md).
 #pragma once
 
 #include <optional>
@@ -14,6 +15,7 @@ namespace toothpath::face {
 [[nodiscard]] report::Finding unreached_of(const proof::UnreachedResult& unreached);
 
 /// On an active flank always a reason, elsewhere above `limit_mm`, what the job allows; none: it is told, no verdict.
-void judge_unreached(const proof::UnreachedResult& unreached, std::optional<double> limit_mm, std::vector<std::string>& reasons);
+void judge_unreached(const proof::UnreachedResult& unreached, std::optional<double> limit_mm,
+                     std::vector<std::string>& reasons);
 
 }  // namespace toothpath::face

@@ -6,10 +6,12 @@
 
 namespace toothpath::flow {
 
-process::ValueOrErrors<process::CutFlanks> cut_flanks(const job::Job& job, const process::FlankGrid& grid, app::OutputDir& scratch, bool quiet) {
+process::ValueOrErrors<process::CutFlanks> cut_flanks(const job::Job& job, const process::FlankGrid& grid,
+                                                      app::OutputDir& scratch, bool quiet) {
   if (job.operations.empty()) {
     if (!job.shaping)
-      return std::vector{fail_at(job.where(""), "the job has neither an [[operation]] nor the table [shaping]: nothing cuts its flanks")};
+      return std::vector{fail_at(
+          job.where(""), "the job has neither an [[operation]] nor the table [shaping]: nothing cuts its flanks")};
     auto made = make_process(job);
     if (auto* errors = made.refused()) return std::move(*errors);
     return made.value()->shaped(grid);

@@ -8,7 +8,8 @@ namespace {
 
 using Made = process::ValueOrErrors<std::unique_ptr<process::GearProcess>>;
 
-// A line a gear type: the parameters in the job, and who works on them. A type of gear without its line does not compile.
+// A line a gear type: the parameters in the job, and who works on them. A type of gear without its line does not
+// compile.
 Made process_of(const face_gear::FaceGearParameters&, const job::Job& job) { return face::make_process(job); }
 Made process_of(const bevel_gear::BevelGearParameters&, const job::Job& job) { return bevel::make_process(job); }
 

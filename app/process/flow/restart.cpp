@@ -4,8 +4,8 @@
 
 #include "geometry/base/angle.h"
 #include "postproc/controls/of_machine.h"
-#include "postproc/restart/proof.h"
 #include "postproc/joints/tooth_order.h"
+#include "postproc/restart/proof.h"
 
 namespace toothpath::flow {
 namespace {
@@ -28,18 +28,21 @@ int line_in(const std::map<int, int>& line_of, int line) {
 }
 
 /// The restart against the whole program; what it says goes to the report.
-Status prove(report::RunReport& report, const process::PostedProgram& posted, const std::string& file, const readback::NcControl& control, const process::GearCheck& gear,
-             std::vector<std::vector<int>>& lines, app::StageClock& clock) {
+Status prove(report::RunReport& report, const process::PostedProgram& posted, const std::string& file,
+             const readback::NcControl& control, const process::GearCheck& gear, std::vector<std::vector<int>>& lines,
+             app::StageClock& clock) {
   const joints::ProgramRestart at = *posted.restarted->restart;
   const int place = joints::place_of_tooth(at.tooth, posted.axes.tooth_stride, posted.axes.teeth);
   const auto proof = clock.run("proof of the restart", [&] {
-    return restart::prove_restart(posted.text, posted.restart_text, file, control, {at.operation, at.tooth, place, posted.axes.teeth});
+    return restart::prove_restart(posted.text, posted.restart_text, file, control,
+                                  {at.operation, at.tooth, place, posted.axes.teeth});
   });
   if (!proof) return of_our_own(proof.error());
   if (!proof->same)
-    report.reasons.push_back(fmt::format("restart at operation {} tooth {}: {} (line {}, of the whole program {})", at.operation, at.tooth,
-                                         proof->difference, proof->line, proof->whole_line));
-  for (const Status& rapids : {readback::check_axis_groups(proof->approach), gear.rapids_clear(proof->approach, control)})
+    report.reasons.push_back(fmt::format("restart at operation {} tooth {}: {} (line {}, of the whole program {})",
+                                         at.operation, at.tooth, proof->difference, proof->line, proof->whole_line));
+  for (const Status& rapids :
+       {readback::check_axis_groups(proof->approach), gear.rapids_clear(proof->approach, control)})
     if (!rapids) report.reasons.push_back("restart: " + rapids.error().message);
   for (auto& path : lines)
     for (int& line : path) line = line_in(proof->line_of, line);
@@ -56,10 +59,12 @@ Status prove(report::RunReport& report, const process::PostedProgram& posted, co
     axis.max = axis.rotary ? radians(proof->greatest[a]) : proof->greatest[a];
   }
   process::judge_travels(report.axes, report.reasons);
-  report.warnings.insert(report.warnings.begin(),
-                         fmt::format("this program begins at operation {}, tooth {}: what the whole program cuts before that is taken as done. Proven is the "
-                                     "whole program, and that this one makes its {} last moves; gouge and left material are those of all teeth of the whole "
-                                     "program, times those of this one", at.operation, at.tooth, proof->moves));
+  report.warnings.insert(
+      report.warnings.begin(),
+      fmt::format("this program begins at operation {}, tooth {}: what the whole program cuts before that is taken as "
+                  "done. Proven is the whole program, and that this one makes its {} last moves; gouge and left "
+                  "material are those of all teeth of the whole program, times those of this one",
+                  at.operation, at.tooth, proof->moves));
   return Ok{};
 }
 
@@ -70,14 +75,18 @@ Result<std::optional<joints::ProgramRestart>> read_restart(const std::string& te
   const std::size_t colon = text.find(':');
   const auto operation = whole_number(std::string_view(text).substr(0, colon));
   const auto tooth = colon == std::string::npos ? std::nullopt : whole_number(std::string_view(text).substr(colon + 1));
-  if (!operation || !tooth) return fail_as(DiagnosticKind::usage, "--restart = {} is not OP:TOOTH, two whole numbers from 0", text);
+  if (!operation || !tooth)
+    return fail_as(DiagnosticKind::usage, "--restart = {} is not OP:TOOTH, two whole numbers from 0", text);
   const auto count = static_cast<int>(job.operations.size());
-  if (*operation >= count) return fail_as(DiagnosticKind::usage, "--restart = {}: the job has the operations 0 to {}", text, count - 1);
-  if (*tooth >= teeth) return fail_as(DiagnosticKind::usage, "--restart = {}: the gear has the teeth 0 to {}", text, teeth - 1);
+  if (*operation >= count)
+    return fail_as(DiagnosticKind::usage, "--restart = {}: the job has the operations 0 to {}", text, count - 1);
+  if (*tooth >= teeth)
+    return fail_as(DiagnosticKind::usage, "--restart = {}: the gear has the teeth 0 to {}", text, teeth - 1);
   return std::optional(joints::ProgramRestart{*operation, *tooth});
 }
 
-Status note_restart(report::RunReport& report, const process::PostedProgram& posted, const process::ProgramText& program, const process::GearCheck& gear,
+Status note_restart(report::RunReport& report, const process::PostedProgram& posted,
+                    const process::ProgramText& program, const process::GearCheck& gear,
                     std::vector<std::vector<int>>& lines, app::StageClock& clock) {
   const auto control = controls::control_of(program.machine, *program.job.setup, program.job.tools);
   if (!control) return control.error();
@@ -87,7 +96,8 @@ Status note_restart(report::RunReport& report, const process::PostedProgram& pos
     if (auto done = prove(report, posted, program.file, *control, gear, lines, clock); !done) return done;
   const bool part = posted.restarted.has_value();
   auto menu = clock.run("restart points", [&] {
-    return restart::restart_menu(part ? posted.restart_text : posted.text, program.file, *control, part ? *posted.restarted : posted.axes);
+    return restart::restart_menu(part ? posted.restart_text : posted.text, program.file, *control,
+                                 part ? *posted.restarted : posted.axes);
   });
   if (!menu) return of_our_own(menu.error());
   report.restart_menu = std::move(menu.value());

@@ -14,14 +14,17 @@ namespace toothpath::flow {
 namespace {
 
 void begin_report(Run& run) {
-  run.report = process::report_of(run.gear.correction ? "correct" : "run", run.job, run.machine, run.gear.process->part().warnings);
+  run.report = process::report_of(run.gear.correction ? "correct" : "run", run.job, run.machine,
+                                  run.gear.process->part().warnings);
   report::RunReport& report = run.report;
   if (!run.gear.correction) return;
   report.correction = run.gear.correction->rows;
   double most = 0;
   for (const auto& row : report.correction) most = std::max(most, row.fit.measured_max_mm);
-  report.warnings.push_back(fmt::format("the flanks to cut answer measured deviations of up to {:.2f} um (correction.json): gouge and left material are "
-                                        "counted from them, not from the nominal flanks", most * 1000));
+  report.warnings.push_back(
+      fmt::format("the flanks to cut answer measured deviations of up to {:.2f} um (correction.json): gouge and left "
+                  "material are counted from them, not from the nominal flanks",
+                  most * 1000));
 }
 
 /// Plans every operation and lets the gouge check pass each path. Nothing: done.
@@ -41,21 +44,26 @@ std::optional<Diagnostic> plan_and_check(Run& run) {
 }
 
 /// What the proof found goes to the report; what the files need later is kept.
-void keep_proof(Run& run, const proof::ProofLimits& limits, process::ProgramProof& proof, const std::vector<const path::ClPath*>& paths) {
+void keep_proof(Run& run, const proof::ProofLimits& limits, process::ProgramProof& proof,
+                const std::vector<const path::ClPath*>& paths) {
   process::note_proof(run.report, proof);
   run.surface = std::move(proof.surface);
   run.motion = page::motion_charts(proof.read, proof.motions, run.machine);
-  for (const path::ClPath* path : paths) run.lines.push_back(page::lines_of_records(*path, proof.motions, proof.path_tolerance_mm));
-  run.report.length_tolerances = sheet::length_tolerances(run.job, limits, run.report, paths, run.surface, run.milling->beside_the_grid());
+  for (const path::ClPath* path : paths)
+    run.lines.push_back(page::lines_of_records(*path, proof.motions, proof.path_tolerance_mm));
+  run.report.length_tolerances =
+      sheet::length_tolerances(run.job, limits, run.report, paths, run.surface, run.milling->beside_the_grid());
 }
 
-/// Axis program, NC text on the disk, proof of those bytes. Nothing: done, and `report.reasons` says whether it is safe.
+/// Axis program, NC text on the disk, proof of those bytes. Nothing: done, and `report.reasons` says whether it is
+/// safe.
 std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& limits, app::OutputDir& output) {
   const process::GearProcess& gear = *run.gear.process;
   const auto paths = run.paths();
-  auto posted = process::post_program(
-      run.checked, {run.job, run.job.name + (run.gear.correction ? ", corrected" : ""), run.machine, gear.part().teeth, gear.link_body(run.machine), run.restart},
-      run.report.assumed, output, run.clock);
+  auto posted = process::post_program(run.checked,
+                                      {run.job, run.job.name + (run.gear.correction ? ", corrected" : ""), run.machine,
+                                       gear.part().teeth, gear.link_body(run.machine), run.restart},
+                                      run.report.assumed, output, run.clock);
   if (!posted) return posted.error();
   const joints::AxisProgram& program = posted->axes;
   process::note_axis_program(run.report, run.job, run.machine, paths, posted->restarted ? *posted->restarted : program);
@@ -64,17 +72,21 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
   const std::vector<const path::ClPath*> asked = process::paths_to_meet(program, paths);
   const std::string file = output.final_path(posted->file);
   const process::ProgramText whole{posted->text, file, run.job, run.machine};
-  auto proof = process::prove_program(whole, {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad}, run.milling->check(), run.clock);
+  auto proof = process::prove_program(
+      whole, {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad},
+      run.milling->check(), run.clock);
   if (!proof) {
     Diagnostic error = proof.error();
     error.kind = DiagnosticKind::verification;  // our own program must be readable
     return error;
   }
   keep_proof(run, limits, *proof, paths);
-  if (auto done = note_restart(run.report, *posted, whole, run.milling->check(), run.lines, run.clock); !done) return done.error();
+  if (auto done = note_restart(run.report, *posted, whole, run.milling->check(), run.lines, run.clock); !done)
+    return done.error();
   run.program_text = std::move(posted->restarted ? posted->restart_text : posted->text);
   run.report.ledger = run.milling->ledger(program, *proof, posted->blend_mm);
-  run.report.sections = sections::sections_of({run.job, run.report, posted->restarted ? *posted->restarted : program, paths});
+  run.report.sections =
+      sections::sections_of({run.job, run.report, posted->restarted ? *posted->restarted : program, paths});
   if (!run.report.reasons.empty()) return std::nullopt;
   process::note_verified(run.report, posted->file, run.program_text);
   return std::nullopt;
@@ -82,7 +94,8 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
 
 }  // namespace
 
-process::ValueOrErrors<GearToCut> make_gear(const job::Job& job, const std::vector<std::string>& measured_files, app::StageClock& clock) {
+process::ValueOrErrors<GearToCut> make_gear(const job::Job& job, const std::vector<std::string>& measured_files,
+                                            app::StageClock& clock) {
   auto made = clock.run("gear", [&] { return make_process(job); });
   if (auto* errors = made.refused()) return std::move(*errors);
   GearToCut gear{std::move(made).value(), std::nullopt};
@@ -94,12 +107,16 @@ process::ValueOrErrors<GearToCut> make_gear(const job::Job& job, const std::vect
 }
 
 std::vector<Diagnostic> prepare(Run& run, const RunAsked& asked) {
-  if (run.job.operations.empty()) return {fail_at(run.job.where("operation"), "the job lacks an [[operation]]: there is nothing to run")};
+  if (run.job.operations.empty())
+    return {fail_at(run.job.where("operation"), "the job lacks an [[operation]]: there is nothing to run")};
   std::vector<Diagnostic> errors;
   auto gear = make_gear(run.job, asked.measured_files, run.clock);
   if (auto* refused = gear.refused()) errors = std::move(*refused);
   else run.gear = std::move(gear).value();
-  auto loaded = run.clock.run("machine", [&] { return process::load_machine(run.job, run.gear.process ? std::optional(run.gear.process->part().swing_diameter_mm) : std::nullopt); });
+  auto loaded = run.clock.run("machine", [&] {
+    return process::load_machine(
+        run.job, run.gear.process ? std::optional(run.gear.process->part().swing_diameter_mm) : std::nullopt);
+  });
   if (auto* refused = loaded.refused()) errors.insert(errors.end(), refused->begin(), refused->end());
   else run.machine = std::move(loaded).value();
   if (!errors.empty()) return errors;
@@ -109,7 +126,8 @@ std::vector<Diagnostic> prepare(Run& run, const RunAsked& asked) {
   return {};
 }
 
-std::optional<Diagnostic> plan_post_and_prove(Run& run, app::OutputDir& output, const proof::ProofLimits& limits, const process::FlankGrid& grid) {
+std::optional<Diagnostic> plan_post_and_prove(Run& run, app::OutputDir& output, const proof::ProofLimits& limits,
+                                              const process::FlankGrid& grid) {
   begin_report(run);
   run.milling = run.gear.process->milling(run.machine, limits, grid, run.clock);
   if (auto stopped = plan_and_check(run)) return stopped;
@@ -119,7 +137,8 @@ std::optional<Diagnostic> plan_post_and_prove(Run& run, app::OutputDir& output, 
 page::ReportPage page_content(Run& run) {
   const process::GearProcess& gear = *run.gear.process;
   const std::string contact = gear.contact_section(run.surface, run.report.warnings);  // first: it may add a warning
-  page::ReportPage page = page::page_of_run(gear.on_page(run.report.machine_name), run.report, run.paths(), run.program_text);
+  page::ReportPage page =
+      page::page_of_run(gear.on_page(run.report.machine_name), run.report, run.paths(), run.program_text);
   page.surface = run.surface;
   page.contact = contact;
   page.gear_limits = gear.limit_charts();
@@ -128,7 +147,8 @@ page::ReportPage page_content(Run& run) {
   return page;
 }
 
-StagesOutcome run_stages(const job::Job& job, const proof::ProofLimits& limits, app::OutputDir& scratch, bool quiet, const process::FlankGrid& grid, bool with_page) {
+StagesOutcome run_stages(const job::Job& job, const proof::ProofLimits& limits, app::OutputDir& scratch, bool quiet,
+                         const process::FlankGrid& grid, bool with_page) {
   Run run(quiet);
   run.job = job;
   StagesOutcome outcome;

@@ -21,8 +21,10 @@ std::string limits_json(const face_gear::FaceGear& gear) {
     for (const face_gear::FlankLimits& flank : ring.limits.flanks) {
       Json fillet = Json::array();
       for (int k = 0; k < kFilletPoints; ++k) {
-        const double r = ring.zone.inner_radius_mm + (ring.zone.outer_radius_mm - ring.zone.inner_radius_mm) * k / (kFilletPoints - 1);
-        fillet.push_back({{"radius", r}, {"height", radius(face_gear::fillet_line_height(ring.surface, flank.side, r))}});
+        const double r = ring.zone.inner_radius_mm +
+                         (ring.zone.outer_radius_mm - ring.zone.inner_radius_mm) * k / (kFilletPoints - 1);
+        fillet.push_back(
+            {{"radius", r}, {"height", radius(face_gear::fillet_line_height(ring.surface, flank.side, r))}});
       }
       flanks.push_back({{"side", flank.side},
                         {"undercut_radius", radius(flank.undercut_radius)},

@@ -5,8 +5,8 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "app/report/svg/html_text.h"
 #include "app/report/page/packed_data.h"
+#include "app/report/svg/html_text.h"
 
 namespace toothpath::page {
 namespace {
@@ -19,7 +19,11 @@ constexpr int kAxisSteps = 16383;   ///< of a component of a tool axis: 0.01 deg
 constexpr int kLineLow = 32768;     ///< NC lines travel as two numbers below 2^16
 
 json packed_json(const PackedArray& packed) {
-  return {{"count", packed.count}, {"steps", packed.steps}, {"low", packed.low}, {"high", packed.high}, {"data", packed.base64}};
+  return {{"count", packed.count},
+          {"steps", packed.steps},
+          {"low", packed.low},
+          {"high", packed.high},
+          {"data", packed.base64}};
 }
 
 json pack_floats(const Columns& columns, int steps = kPackedSteps) { return packed_json(pack(columns, steps)); }
@@ -41,7 +45,8 @@ Columns columns_of(const std::vector<Vec3>& points) {
 
 json grid_json(const proof::SurfaceGrid& grid) {
   json fields = json::array();
-  for (const auto& field : grid.excess_um) fields.push_back(pack_floats({std::vector<double>(field.begin(), field.end())}));
+  for (const auto& field : grid.excess_um)
+    fields.push_back(pack_floats({std::vector<double>(field.begin(), field.end())}));
   json reachable;
   if (std::find(grid.reachable.begin(), grid.reachable.end(), 0) != grid.reachable.end()) {
     std::vector<double> flags;
@@ -79,9 +84,13 @@ json path_json(const ReportPage& page, const PagePath& path) {
   json axis = json::array();
   if (turning) axis = pack_floats(columns_of(axes), kAxisSteps);
   else if (!axes.empty()) axis = {axes[0].x(), axes[0].y(), axes[0].z()};
-  json out = {{"index", path.cl.operation}, {"name", svg::valid_utf8(operation_name(page, path.cl.operation))},
-              {"tool", page.tools.empty() ? -1 : path.cl.tool}, {"tip", pack_floats(columns_of(tips))},
-              {"axis", axis}, {"feed", pack_floats(feed, 4095)}, {"lines", nullptr}};
+  json out = {{"index", path.cl.operation},
+              {"name", svg::valid_utf8(operation_name(page, path.cl.operation))},
+              {"tool", page.tools.empty() ? -1 : path.cl.tool},
+              {"tip", pack_floats(columns_of(tips))},
+              {"axis", axis},
+              {"feed", pack_floats(feed, 4095)},
+              {"lines", nullptr}};
   json mark_list = json::array();
   for (const auto& mark : marks) mark_list.push_back(pack_integers(mark));
   out["marks"] = mark_list;
@@ -94,7 +103,8 @@ json tool_json(const PageTool& tool) {
   for (const PageToolBody& body : tool.bodies) {
     json profile = json::array();
     for (const Vec2& p : body.profile) profile.push_back({p.x(), p.y()});
-    if (body.profile.size() >= 2) bodies.push_back({{"name", svg::valid_utf8(body.name)}, {"cutting", body.cutting}, {"profile", profile}});
+    if (body.profile.size() >= 2)
+      bodies.push_back({{"name", svg::valid_utf8(body.name)}, {"cutting", body.cutting}, {"profile", profile}});
   }
   return {{"name", svg::valid_utf8(tool.name)}, {"bodies", bodies}};
 }
@@ -104,15 +114,19 @@ bool all_finite(const std::vector<Vec3>& points) {
 }
 
 Status check_grid(const proof::SurfaceGrid& grid, std::size_t index) {
-  if (grid.rows < 0 || grid.columns < 0) return fail("surface grid {} has {} rows and {} columns", index, grid.rows, grid.columns);
+  if (grid.rows < 0 || grid.columns < 0)
+    return fail("surface grid {} has {} rows and {} columns", index, grid.rows, grid.columns);
   const std::size_t n = static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.columns);
-  if (grid.points.size() != n) return fail("surface grid {} has {} points, {} x {} expected", index, grid.points.size(), grid.rows, grid.columns);
-  if (grid.normals.size() != n) return fail("surface grid {} has {} normals, {} expected", index, grid.normals.size(), n);
+  if (grid.points.size() != n)
+    return fail("surface grid {} has {} points, {} x {} expected", index, grid.points.size(), grid.rows, grid.columns);
+  if (grid.normals.size() != n)
+    return fail("surface grid {} has {} normals, {} expected", index, grid.normals.size(), n);
   if (!grid.reachable.empty() && grid.reachable.size() != n)
     return fail("surface grid {} has {} marks of reach, {} expected", index, grid.reachable.size(), n);
   for (const auto& field : grid.excess_um)
     if (field.size() != n) return fail("surface grid {} has a field of {} values, {} expected", index, field.size(), n);
-  if (!all_finite(grid.points) || !all_finite(grid.normals)) return fail("surface grid {} has a point or normal that is not finite", index);
+  if (!all_finite(grid.points) || !all_finite(grid.normals))
+    return fail("surface grid {} has a point or normal that is not finite", index);
   return Ok{};
 }
 
@@ -123,9 +137,11 @@ Status check_path(const ReportPage& page, const PagePath& path) {
   if (!path.nc_lines.empty() && path.nc_lines.size() != cl.records.size())
     return fail("operation {} has {} NC lines for {} records", cl.operation, path.nc_lines.size(), cl.records.size());
   for (const path::ClRecord& r : cl.records) {
-    if (!r.tip.allFinite() || !r.axis.allFinite()) return fail("operation {} has a record that is not finite", cl.operation);
+    if (!r.tip.allFinite() || !r.axis.allFinite())
+      return fail("operation {} has a record that is not finite", cl.operation);
     if (r.zone < 0 || r.pass < 0 || r.zone >= kPackedSteps || r.pass >= kPackedSteps)
-      return fail("operation {} has zone {} and pass {}, both must lie in 0 ... {}", cl.operation, r.zone, r.pass, kPackedSteps - 1);
+      return fail("operation {} has zone {} and pass {}, both must lie in 0 ... {}", cl.operation, r.zone, r.pass,
+                  kPackedSteps - 1);
   }
   for (const int line : path.nc_lines)
     if (line < 0) return fail("operation {} has the NC line {}, below 0", cl.operation, line);
@@ -142,7 +158,8 @@ Status check_report_page(const ReportPage& page) {
   for (const PageTool& tool : page.tools)
     for (const PageToolBody& body : tool.bodies)
       for (const Vec2& p : body.profile)
-        if (!p.allFinite() || p.x() < 0) return fail("tool \"{}\" has the radius {} mm in its profile", tool.name, p.x());
+        if (!p.allFinite() || p.x() < 0)
+          return fail("tool \"{}\" has the radius {} mm in its profile", tool.name, p.x());
   if (page.gouge)
     for (const proof::WorstPlace& place : page.gouge->worst)
       if (!place.point.allFinite()) return fail("the gouge at NC line {} has a point that is not finite", place.line);
@@ -160,8 +177,12 @@ std::string operation_name(const ReportPage& page, int operation) {
 }
 
 std::string report_data_json(const ReportPage& page) {
-  json data = {{"title", svg::valid_utf8(page.title)}, {"fields", json::array()}, {"grids", json::array()}, {"paths", json::array()},
-               {"tools", json::array()}, {"gouges", json::array()}};
+  json data = {{"title", svg::valid_utf8(page.title)},
+               {"fields", json::array()},
+               {"grids", json::array()},
+               {"paths", json::array()},
+               {"tools", json::array()},
+               {"gouges", json::array()}};
   std::size_t fields = 0;
   for (const proof::SurfaceGrid& grid : page.surface) fields = std::max(fields, grid.excess_um.size());
   for (std::size_t k = 0; k < fields; ++k) {
@@ -178,8 +199,8 @@ std::string report_data_json(const ReportPage& page) {
       data["gouges"].push_back({{"point", {place.point.x(), place.point.y(), place.point.z()}},
                                 {"operation", place.operation},
                                 {"line", place.line},
-                                {"text", svg::valid_utf8(fmt::format("{}, {}: {:.2f} \u00b5m, NC line {}", place.body, place.patch,
-                                                                place.depth_mm * 1e3, place.line))}});
+                                {"text", svg::valid_utf8(fmt::format("{}, {}: {:.2f} \u00b5m, NC line {}", place.body,
+                                                                     place.patch, place.depth_mm * 1e3, place.line))}});
   return svg::script_safe_json(data.dump());
 }
 

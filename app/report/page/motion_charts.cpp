@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-constexpr double kRoom = 0.3;          ///< of the range while cutting: rapids that leave it by more are not drawn
-constexpr double kStanding = 1e-6;     ///< mm or deg
+constexpr double kRoom = 0.3;       ///< of the range while cutting: rapids that leave it by more are not drawn
+constexpr double kStanding = 1e-6;  ///< mm or deg
 constexpr double kAxisPlotHeight = 110;
 
 /// Positions of one axis at the ends of the blocks, and its mean speed in the blocks that feed.
@@ -50,7 +50,8 @@ std::array<AxisCurve, 5> curves_of(const readback::ReadBack& read) {
         curve.speed.y.insert(curve.speed.y.end(), 2, speed);
         if (move.rapid) continue;
         curve.fastest = std::max(curve.fastest, speed);
-        for (const double at : {before->joints[a], move.joints[a]}) curve.least = std::min(curve.least, at), curve.greatest = std::max(curve.greatest, at);
+        for (const double at : {before->joints[a], move.joints[a]})
+          curve.least = std::min(curve.least, at), curve.greatest = std::max(curve.greatest, at);
       }
       before = &move;
     }
@@ -59,12 +60,15 @@ std::array<AxisCurve, 5> curves_of(const readback::ReadBack& read) {
   return curves;
 }
 
-/// Position and speed of one axis side by side; nothing for an axis that stands still while cutting: `standing` says where.
-void add_axis(std::vector<svg::LineChart>& charts, AxisCurve& curve, char letter, bool rotary, double limit, std::string& standing) {
+/// Position and speed of one axis side by side; nothing for an axis that stands still while cutting: `standing` says
+/// where.
+void add_axis(std::vector<svg::LineChart>& charts, AxisCurve& curve, char letter, bool rotary, double limit,
+              std::string& standing) {
   const char* unit = rotary ? "deg" : "mm";
   if (!(curve.least <= curve.greatest)) return;
   if (curve.greatest - curve.least < kStanding) {
-    standing += fmt::format("{}{} at {:.3f} {}", standing.empty() ? "Standing while cutting: " : ", ", letter, curve.least, unit);
+    standing += fmt::format("{}{} at {:.3f} {}", standing.empty() ? "Standing while cutting: " : ", ", letter,
+                            curve.least, unit);
     return;
   }
   svg::LineChart position, speed;
@@ -76,12 +80,14 @@ void add_axis(std::vector<svg::LineChart>& charts, AxisCurve& curve, char letter
   position.plot_height = speed.plot_height = kAxisPlotHeight;
   position.series.push_back(std::move(curve.position));
   speed.series.push_back(std::move(curve.speed));
-  if (curve.fastest > 0.2 * limit) speed.limits.push_back({"limit of the axis", limit});  // far away it would press the curve flat
+  if (curve.fastest > 0.2 * limit)
+    speed.limits.push_back({"limit of the axis", limit});  // far away it would press the curve flat
   charts.push_back(std::move(position));
   charts.push_back(std::move(speed));
 }
 
-/// The first tooth of every operation. Its retract from the tool change still stands at the last tooth of the operation before.
+/// The first tooth of every operation. Its retract from the tool change still stands at the last tooth of the operation
+/// before.
 std::map<int, int> first_teeth(const std::vector<path::ToolMotion>& motions) {
   std::map<int, int> first;
   for (const path::ToolMotion& m : motions) {
@@ -92,8 +98,15 @@ std::map<int, int> first_teeth(const std::vector<path::ToolMotion>& motions) {
 }
 
 svg::LineChart feed_chart(const std::vector<path::ToolMotion>& motions, const machines::Machine& machine) {
-  svg::LineChart chart{"Feed of the tool tip", "time [min]", "feed [mm/min]", {{"tip over the work", {}, {}}}, {}, false, false, false,
-                  "Feed moves of the first tooth of every operation; rapids are left out."};
+  svg::LineChart chart{"Feed of the tool tip",
+                       "time [min]",
+                       "feed [mm/min]",
+                       {{"tip over the work", {}, {}}},
+                       {},
+                       false,
+                       false,
+                       false,
+                       "Feed moves of the first tooth of every operation; rapids are left out."};
   double now = 0;
   auto& [name, x, y] = chart.series.front();
   const std::map<int, int> first = first_teeth(motions);
@@ -118,8 +131,10 @@ svg::LineChart feed_chart(const std::vector<path::ToolMotion>& motions, const ma
 
 }  // namespace
 
-std::vector<int> lines_of_records(const path::ClPath& path, const std::vector<path::ToolMotion>& motions, double tolerance_mm) {
-  constexpr std::size_t kAhead = 256;  // feed moves; rapids do not count: the index from the last tooth comes in thousands of pieces
+std::vector<int> lines_of_records(const path::ClPath& path, const std::vector<path::ToolMotion>& motions,
+                                  double tolerance_mm) {
+  constexpr std::size_t kAhead =
+      256;  // feed moves; rapids do not count: the index from the last tooth comes in thousands of pieces
   const std::map<int, int> first = first_teeth(motions);
   std::vector<const path::ToolMotion*> own;
   for (const path::ToolMotion& m : motions)
@@ -148,7 +163,8 @@ std::vector<int> lines_of_records(const path::ClPath& path, const std::vector<pa
   return lines;
 }
 
-std::vector<svg::LineChart> motion_charts(const readback::ReadBack& read, const std::vector<path::ToolMotion>& motions, const machines::Machine& machine) {
+std::vector<svg::LineChart> motion_charts(const readback::ReadBack& read, const std::vector<path::ToolMotion>& motions,
+                                          const machines::Machine& machine) {
   std::vector<svg::LineChart> charts;
   std::array<AxisCurve, 5> curves = curves_of(read);
   if (curves[0].position.x.size() < 2) return charts;
@@ -156,7 +172,8 @@ std::vector<svg::LineChart> motion_charts(const readback::ReadBack& read, const 
   for (std::size_t a = 0; a < 3 + machine.chain.rotary_count(); ++a) {
     const bool rotary = a >= 3;
     const char letter = rotary ? machine.chain.rotary(a - 3).letter : "XYZ"[a];
-    add_axis(charts, curves[a], letter, rotary, rotary ? degrees(machine.chain.rotary(a - 3).max_speed) : machine.chain.linear[a].max_speed, standing);
+    add_axis(charts, curves[a], letter, rotary,
+             rotary ? degrees(machine.chain.rotary(a - 3).max_speed) : machine.chain.linear[a].max_speed, standing);
   }
   charts.push_back(feed_chart(motions, machine));
   if (!standing.empty()) charts.back().note += " " + standing + ".";

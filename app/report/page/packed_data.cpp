@@ -54,7 +54,8 @@ PackedArray pack(std::span<const std::vector<double>> components, int steps) {
     std::uint8_t* const low_bytes = bytes.data() + c * n * 2;
     for (std::size_t i = 0; i < n; ++i) {
       const double v = components[c][i];
-      const auto level = std::isfinite(v) ? static_cast<std::uint16_t>(std::lround((v - low) * per_mm)) : kPackedNothing;
+      const auto level =
+          std::isfinite(v) ? static_cast<std::uint16_t>(std::lround((v - low) * per_mm)) : kPackedNothing;
       const std::uint16_t code = zigzag(static_cast<std::uint16_t>(level - previous));
       previous = level;
       low_bytes[i] = static_cast<std::uint8_t>(code & 0xFFU);
@@ -71,7 +72,8 @@ std::vector<std::vector<double>> unpack(const PackedArray& packed) {
   const std::vector<std::uint8_t> stream = base64_decode(packed.base64);
   auto size = static_cast<uLongf>(bytes.size());
   std::vector<std::vector<double>> out(components);
-  if (uncompress(bytes.data(), &size, stream.data(), static_cast<uLong>(stream.size())) != Z_OK || size != bytes.size()) return out;
+  if (uncompress(bytes.data(), &size, stream.data(), static_cast<uLong>(stream.size())) != Z_OK || size != bytes.size())
+    return out;
   for (std::size_t c = 0; c < components; ++c) {
     const std::uint8_t* const low_bytes = bytes.data() + c * n * 2;
     std::uint16_t level = 0;
@@ -91,7 +93,8 @@ std::string base64_encode(std::span<const std::uint8_t> bytes) {
   text.reserve((bytes.size() + 2) / 3 * 4);
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     const std::size_t rest = bytes.size() - i;
-    const unsigned word = static_cast<unsigned>(bytes[i]) << 16U | (rest > 1 ? static_cast<unsigned>(bytes[i + 1]) << 8U : 0U) |
+    const unsigned word = static_cast<unsigned>(bytes[i]) << 16U |
+                          (rest > 1 ? static_cast<unsigned>(bytes[i + 1]) << 8U : 0U) |
                           (rest > 2 ? static_cast<unsigned>(bytes[i + 2]) : 0U);
     text += kAlphabet[word >> 18U & 63U];
     text += kAlphabet[word >> 12U & 63U];

@@ -24,8 +24,9 @@ struct PackedArray {
   std::string base64;  ///< of a zlib stream
 };
 
-/// Packs arrays of equal length; NaN and infinities become "no value". With `steps` below kPackedSteps the values are coarser and
-/// the text shorter. Layout before deflate: for each component the low bytes of the zigzag differences (mod 65536), then the high bytes.
+/// Packs arrays of equal length; NaN and infinities become "no value". With `steps` below kPackedSteps the values are
+/// coarser and the text shorter. Layout before deflate: for each component the low bytes of the zigzag differences (mod
+/// 65536), then the high bytes.
 [[nodiscard]] PackedArray pack(std::span<const std::vector<double>> components, int steps = kPackedSteps);
 
 /// The reverse of pack(), as the page's script does it; "no value" is NaN. For tests.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "app/report/svg/html_text.h"
 #include "app/report/page/tool_body.h"
+#include "app/report/svg/html_text.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::page {
@@ -23,17 +23,22 @@ std::vector<KeyFigure> key_figures(const report::RunReport& r) {
   std::vector<KeyFigure> figures;
   const auto um = [](double mm) { return fmt::format("{:.2f}", mm * 1000); };
   if (r.gouge)
-    figures.push_back({"worst gouge", um(std::max(0.0, r.gouge->measured_mm)), "\u00b5m",
-                       fmt::format("bound {}, tolerance {}", um(std::max(0.0, r.gouge->bound_mm)), um(r.gouge_tolerance_mm)),
-                       r.gouge->bound_mm <= r.gouge_tolerance_mm ? State::good : State::bad});
-  if (r.finished) figures.push_back({"worst left material", um(r.finished->max_mm), "\u00b5m", "bound " + um(r.finished->bound_mm), State::plain});
+    figures.push_back(
+        {"worst gouge", um(std::max(0.0, r.gouge->measured_mm)), "\u00b5m",
+         fmt::format("bound {}, tolerance {}", um(std::max(0.0, r.gouge->bound_mm)), um(r.gouge_tolerance_mm)),
+         r.gouge->bound_mm <= r.gouge_tolerance_mm ? State::good : State::bad});
+  if (r.finished)
+    figures.push_back(
+        {"worst left material", um(r.finished->max_mm), "\u00b5m", "bound " + um(r.finished->bound_mm), State::plain});
   if (r.gouge)
     figures.push_back({"least clearance", fmt::format("{:.3f}", r.gouge->clearance_mm), "mm",
                        fmt::format("required {:.3f}", r.gouge->required_clearance_mm),
                        r.gouge->clearance_mm >= r.gouge->required_clearance_mm ? State::good : State::bad});
   if (!r.operations.empty()) {
-    figures.push_back({"cutting time", report::readable_minutes(r.feed_minutes), "", "with rapids " + report::readable_minutes(r.total_minutes), State::plain});
-    figures.push_back({"NC blocks", std::to_string(r.blocks), "", fmt::format("{} CL points a tooth", r.cl_points), State::plain});
+    figures.push_back({"cutting time", report::readable_minutes(r.feed_minutes), "",
+                       "with rapids " + report::readable_minutes(r.total_minutes), State::plain});
+    figures.push_back(
+        {"NC blocks", std::to_string(r.blocks), "", fmt::format("{} CL points a tooth", r.cl_points), State::plain});
   }
   for (const report::Finding& f : r.findings)
     if (!f.label.empty()) figures.push_back({f.label, f.value_text(), f.unit, f.limit_text(), state_of(f)});
@@ -41,13 +46,16 @@ std::vector<KeyFigure> key_figures(const report::RunReport& r) {
 }
 
 PageTable axis_table(const report::RunReport& r) {
-  PageTable table{"Axes", {"axis", "least", "greatest", "lower limit", "upper limit", "unit"}, {}, "Machine coordinates, over the whole program."};
+  PageTable table{"Axes",
+                  {"axis", "least", "greatest", "lower limit", "upper limit", "unit"},
+                  {},
+                  "Machine coordinates, over the whole program."};
   for (const auto& axis : r.axes) {
     const double f = axis.rotary ? degrees(1.0) : 1.0;
     const auto number = [&](double value) { return fmt::format("{:.3f}", value * f); };
     const auto limit = [&](double value) { return axis.endless() ? "rolls over" : number(value); };
-    table.rows.push_back({std::string(1, axis.letter), number(axis.min), number(axis.max), limit(axis.lower_limit), limit(axis.upper_limit),
-                          axis.rotary ? "deg" : "mm"});
+    table.rows.push_back({std::string(1, axis.letter), number(axis.min), number(axis.max), limit(axis.lower_limit),
+                          limit(axis.upper_limit), axis.rotary ? "deg" : "mm"});
   }
   if (r.poles) table.note += " " + report::poles_text(*r.poles);
   return table;
@@ -59,36 +67,48 @@ std::string readable_type(std::string type) {
 }
 
 PageTable operation_table(const report::RunReport& r) {
-  PageTable table{"Operations", {"op", "type", "tool", "S 1/min", "feed mm/min", "CL points", "cutting min", "rapid min"}, {}, ""};
+  PageTable table{
+      "Operations", {"op", "type", "tool", "S 1/min", "feed mm/min", "CL points", "cutting min", "rapid min"}, {}, ""};
   for (const auto& o : r.operations)
-    table.rows.push_back({std::to_string(o.operation), readable_type(o.type), fmt::format("T{}", o.tool_number), fmt::format("{:g}", o.speed_rpm),
-                          fmt::format("{:g}", o.feed_mm_min), std::to_string(o.cl_points), fmt::format("{:.2f}", o.feed_minutes),
+    table.rows.push_back({std::to_string(o.operation), readable_type(o.type), fmt::format("T{}", o.tool_number),
+                          fmt::format("{:g}", o.speed_rpm), fmt::format("{:g}", o.feed_mm_min),
+                          std::to_string(o.cl_points), fmt::format("{:.2f}", o.feed_minutes),
                           fmt::format("{:.2f}", o.rapid_minutes)});
   return table;
 }
 
 PageTable correction_table(const report::RunReport& r) {
-  PageTable table{"Correction", {"zone", "flank", "measured max um", "measured rms um", "not followed max um", "not followed rms um", "degrees"}, {},
-                  "The target of this program: nominal flanks moved by minus the smooth part of the measured deviations (products of "
-                  "Chebyshev polynomials along profile and face). Deviations in this report are from that target."};
+  PageTable table{
+      "Correction",
+      {"zone", "flank", "measured max um", "measured rms um", "not followed max um", "not followed rms um", "degrees"},
+      {},
+      "The target of this program: nominal flanks moved by minus the smooth part of the measured deviations (products "
+      "of Chebyshev polynomials along profile and face). Deviations in this report are from that target."};
   for (const auto& c : r.correction)
-    table.rows.push_back({std::to_string(c.zone), fmt::format("{:+}", c.side), fmt::format("{:.2f}", c.fit.measured_max_mm * 1000),
-                          fmt::format("{:.2f}", c.fit.measured_rms_mm * 1000), fmt::format("{:.2f}", c.fit.residual_max_mm * 1000),
-                          fmt::format("{:.2f}", c.fit.residual_rms_mm * 1000), fmt::format("{} x {}", c.fit.profile_degree, c.fit.lead_degree)});
+    table.rows.push_back(
+        {std::to_string(c.zone), fmt::format("{:+}", c.side), fmt::format("{:.2f}", c.fit.measured_max_mm * 1000),
+         fmt::format("{:.2f}", c.fit.measured_rms_mm * 1000), fmt::format("{:.2f}", c.fit.residual_max_mm * 1000),
+         fmt::format("{:.2f}", c.fit.residual_rms_mm * 1000),
+         fmt::format("{} x {}", c.fit.profile_degree, c.fit.lead_degree)});
   return table;
 }
 
 PageTable pass_table(const report::RunReport& r) {
-  PageTable table{"Passes", {"op", "zone", "pass", "name", "direction", "length mm", "points"}, {}, "One tooth space; the convex side of a herringbone is one pass through both zones."};
+  PageTable table{"Passes",
+                  {"op", "zone", "pass", "name", "direction", "length mm", "points"},
+                  {},
+                  "One tooth space; the convex side of a herringbone is one pass through both zones."};
   for (const auto& p : r.passes)
-    table.rows.push_back({std::to_string(p.operation), std::to_string(p.zone), std::to_string(p.pass), p.name, p.outward ? "outwards" : "inwards",
-                          fmt::format("{:.3f}", p.length_mm), std::to_string(p.points)});
+    table.rows.push_back({std::to_string(p.operation), std::to_string(p.zone), std::to_string(p.pass), p.name,
+                          p.outward ? "outwards" : "inwards", fmt::format("{:.3f}", p.length_mm),
+                          std::to_string(p.points)});
   return table;
 }
 
 }  // namespace
 
-ReportPage page_of_run(const GearOnPage& gear, const report::RunReport& r, std::span<const path::ClPath* const> paths, std::string_view program) {
+ReportPage page_of_run(const GearOnPage& gear, const report::RunReport& r, std::span<const path::ClPath* const> paths,
+                       std::string_view program) {
   ReportPage page;
   page.title = r.job_name;
   page.subtitle = gear.subtitle;
@@ -98,7 +118,8 @@ ReportPage page_of_run(const GearOnPage& gear, const report::RunReport& r, std::
   page.warnings = r.warnings;
   page.assumed = r.assumed;
   page.figures = key_figures(r);
-  page.summary = {{"job", r.job_file}, {"machine", fmt::format("{} ({})", r.machine_name, r.machine_file)}, {"control", r.dialect}};
+  page.summary = {
+      {"job", r.job_file}, {"machine", fmt::format("{} ({})", r.machine_name, r.machine_file)}, {"control", r.dialect}};
   if (!r.program_sha256.empty()) page.summary.emplace_back("SHA-256 of the program", r.program_sha256);
   for (const path::ClPath* path : paths) page.paths.push_back({*path, {}});
   page.tools = gear.tools;

@@ -18,6 +18,7 @@ struct GearOnPage {
 };
 
 /// @param program  text of the NC program, for the lines around the worst places; may be empty
-[[nodiscard]] ReportPage page_of_run(const GearOnPage& gear, const report::RunReport& report, std::span<const path::ClPath* const> paths, std::string_view program);
+[[nodiscard]] ReportPage page_of_run(const GearOnPage& gear, const report::RunReport& report,
+                                     std::span<const path::ClPath* const> paths, std::string_view program);
 
 }  // namespace toothpath::page

@@ -4,10 +4,10 @@
 #include <fstream>
 #include <system_error>
 
-#include "app/report/svg/html_text.h"
 #include "app/report/page/assets.h"
 #include "app/report/page/data.h"
 #include "app/report/page/sections.h"
+#include "app/report/svg/html_text.h"
 
 namespace toothpath::page {
 namespace {
@@ -50,7 +50,8 @@ std::vector<Shown> sections_of(const ReportPage& page) {
                             {"contact", "Contact", contact_section(page)},
                             {"limits", "Limits", limits_section(page)},
                             {"work-precision", "Error against run time", work_precision_section(page)}};
-  for (const report::Section& s : page.sections) out.push_back({s.id, svg::html_escape(s.title), section_of_the_report(s)});
+  for (const report::Section& s : page.sections)
+    out.push_back({s.id, svg::html_escape(s.title), section_of_the_report(s)});
   out.push_back({"stages", "Computing time", stages_section(page)});
   out.push_back({"tables", "Tables", tables_section(page)});
   return out;
@@ -80,7 +81,8 @@ std::vector<NcExcerpt> nc_excerpts(std::string_view program, const std::vector<i
   for (const int line : lines)
     if (line > 0) wanted.push_back(line);
   std::sort(wanted.begin(), wanted.end());
-  const auto total = static_cast<int>(std::count(program.begin(), program.end(), '\n')) + (program.empty() || program.back() == '\n' ? 0 : 1);
+  const auto total = static_cast<int>(std::count(program.begin(), program.end(), '\n')) +
+                     (program.empty() || program.back() == '\n' ? 0 : 1);
   std::vector<NcExcerpt> excerpts;
   std::size_t next = 0;
   std::string_view rest = program;
@@ -90,7 +92,8 @@ std::vector<NcExcerpt> nc_excerpts(std::string_view program, const std::vector<i
     if (next == wanted.size()) break;
     if (wanted[next] > total) break;
     if (wanted[next] - number > around) continue;
-    if (excerpts.empty() || excerpts.back().first_line + static_cast<int>(excerpts.back().lines.size()) != number) excerpts.push_back({number, {}});
+    if (excerpts.empty() || excerpts.back().first_line + static_cast<int>(excerpts.back().lines.size()) != number)
+      excerpts.push_back({number, {}});
     excerpts.back().lines.emplace_back(line);
   }
   return excerpts;
@@ -98,21 +101,25 @@ std::vector<NcExcerpt> nc_excerpts(std::string_view program, const std::vector<i
 
 Result<std::string> render_report_page(const ReportPage& page) {
   if (auto status = check_report_page(page); !status) return status.error();
-  const bool view = std::any_of(page.surface.begin(), page.surface.end(), [](const proof::SurfaceGrid& g) { return g.rows > 1 && g.columns > 1; }) ||
-                    std::any_of(page.paths.begin(), page.paths.end(), [](const PagePath& p) { return !p.cl.records.empty(); });
+  const bool view =
+      std::any_of(page.surface.begin(), page.surface.end(),
+                  [](const proof::SurfaceGrid& g) { return g.rows > 1 && g.columns > 1; }) ||
+      std::any_of(page.paths.begin(), page.paths.end(), [](const PagePath& p) { return !p.cl.records.empty(); });
   const std::vector<Shown> sections = sections_of(page);
   std::string text;
   for (const Shown& s : sections) text += s.text;
-  return filled(kReportTemplate, {{"TITLE", svg::html_escape(page.title)},
-                                  {"STYLE", std::string(kReportStyle)},
-                                  {"HEADER", page_header(page) + contents(sections, view)},
-                                  {"OVERVIEW", overview_section(page)},
-                                  {"VIEW_HIDDEN", view ? "" : " hidden"},
-                                  {"SECTIONS", text},
-                                  {"FOOTER", "<footer>Toothpath report. Lengths in mm and \u00b5m in the gear frame; tooth space 0.</footer>"},
-                                  {"DATA", report_data_json(page)},
-                                  {"VIEW", std::string(kReportView)},
-                                  {"SCRIPT", std::string(kReportScript)}});
+  return filled(
+      kReportTemplate,
+      {{"TITLE", svg::html_escape(page.title)},
+       {"STYLE", std::string(kReportStyle)},
+       {"HEADER", page_header(page) + contents(sections, view)},
+       {"OVERVIEW", overview_section(page)},
+       {"VIEW_HIDDEN", view ? "" : " hidden"},
+       {"SECTIONS", text},
+       {"FOOTER", "<footer>Toothpath report. Lengths in mm and \u00b5m in the gear frame; tooth space 0.</footer>"},
+       {"DATA", report_data_json(page)},
+       {"VIEW", std::string(kReportView)},
+       {"SCRIPT", std::string(kReportScript)}});
 }
 
 Status write_report_page(const ReportPage& page, const std::filesystem::path& file) {

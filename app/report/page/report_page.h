@@ -1,7 +1,8 @@
 // The report for people: one self-contained HTML page with a 3D view of the tooth space, plots and tables.
 //
-// The page opens from disk, loads nothing and needs a browser with WebGL2 for the 3D view only; plots and tables are plain
-// SVG and HTML. All points are in the gear frame, tooth space 0. Fields left empty leave their part of the page out.
+// The page opens from disk, loads nothing and needs a browser with WebGL2 for the 3D view only; plots and tables are
+// plain SVG and HTML. All points are in the gear frame, tooth space 0. Fields left empty leave their part of the page
+// out.
 #pragma once
 
 #include <filesystem>
@@ -66,10 +67,10 @@ struct ReportPage {
   std::string title;     ///< job name
   std::string subtitle;  ///< one line: gear, machine, program version; may be empty
   bool verified = false;
-  std::string unfinished;             ///< what a verified program leaves out of its ball's reach; empty: nothing
-  std::vector<std::string> reasons;   ///< why the program is not verified
+  std::string unfinished;            ///< what a verified program leaves out of its ball's reach; empty: nothing
+  std::vector<std::string> reasons;  ///< why the program is not verified
   std::vector<std::string> warnings;
-  std::vector<std::string> assumed;   ///< values that the job did not give
+  std::vector<std::string> assumed;  ///< values that the job did not give
   std::vector<KeyFigure> figures;
   std::vector<std::pair<std::string, std::string>> summary;  ///< name and value
 
@@ -79,14 +80,14 @@ struct ReportPage {
 
   std::optional<proof::GougeResult> gouge;  ///< its `worst` places become markers
   double gouge_tolerance_mm = 0;
-  std::string nc_file;               ///< name of the program, "program.ngc"; empty where none was written
-  std::vector<NcExcerpt> listing;    ///< ascending, without overlap; see nc_excerpts()
+  std::string nc_file;             ///< name of the program, "program.ngc"; empty where none was written
+  std::vector<NcExcerpt> listing;  ///< ascending, without overlap; see nc_excerpts()
 
   std::vector<proof::ExcessResult> excess;  ///< one histogram an operation
   std::vector<proof::LedgerEntry> ledger;
   std::vector<proof::DirectionChoice> directions;
   std::optional<svg::HistogramChart> block_times;  ///< how long the cutting blocks take
-  std::vector<svg::LineChart> motion;          ///< axis positions, speeds and feed over time; any length, thinned by the writer
+  std::vector<svg::LineChart> motion;  ///< axis positions, speeds and feed over time; any length, thinned by the writer
   std::vector<svg::LineChart> gear_limits;     ///< where the flanks of the gear end
   std::vector<svg::LineChart> work_precision;  ///< from the study, when there is one
   std::string contact;  ///< body of the section on contact with the pinion, finished markup; may be empty
@@ -97,10 +98,12 @@ struct ReportPage {
 
 /// Lines of `program` within `around` lines of any of `lines` (counted from 1; 0 and lines beyond the end are ignored),
 /// joined where they touch. CR at line ends is dropped.
-[[nodiscard]] std::vector<NcExcerpt> nc_excerpts(std::string_view program, const std::vector<int>& lines, int around = 8);
+[[nodiscard]] std::vector<NcExcerpt> nc_excerpts(std::string_view program, const std::vector<int>& lines,
+                                                 int around = 8);
 
-/// The page as one HTML text (UTF-8). Same input, same bytes. Fails where lengths contradict each other: a grid whose points,
-/// normals or fields are not rows x columns, a tool index without a tool, line numbers not one a record, a point that is not finite.
+/// The page as one HTML text (UTF-8). Same input, same bytes. Fails where lengths contradict each other: a grid whose
+/// points, normals or fields are not rows x columns, a tool index without a tool, line numbers not one a record, a
+/// point that is not finite.
 [[nodiscard]] Result<std::string> render_report_page(const ReportPage& page);
 
 /// Renders and writes `file`; on failure no file of that name is left behind.

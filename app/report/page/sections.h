@@ -1,4 +1,5 @@
-// The parts of the report page that are plain HTML and SVG. Each function returns markup, empty where there is nothing to say.
+// The parts of the report page that are plain HTML and SVG. Each function returns markup, empty where there is nothing
+// to say.
 #pragma once
 
 #include <string>

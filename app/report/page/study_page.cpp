@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "app/report/svg/html_text.h"
 #include "app/report/page/assets.h"
+#include "app/report/svg/html_text.h"
 #include "app/report/svg/plot.h"
 
 namespace toothpath::page {
@@ -13,18 +13,22 @@ namespace {
 
 /// The light colours of the report page as plain values: viewers of single SVG files do not all know CSS variables.
 constexpr std::string_view kSvgStyle =
-    "<style>text{font:13px sans-serif;fill:#5a6570}.ax{stroke:#5a6570;fill:none}.grid{stroke:#d5dbe0;fill:none}.minor{stroke:#eef1f3}"
-    ".lim{stroke:#a4202c;stroke-dasharray:6 4}.cv{fill:none;stroke-width:1.5}line[class^=s]{stroke-width:3}"
-    ".s0{stroke:#1f6fb2}.s1{stroke:#d0681c}.s2{stroke:#2a8560}.s3{stroke:#8a4c9f}.s4{stroke:#a07c12}.s5{stroke:#b8415b}"
-    ".s6{stroke:#4f6d8a}.s7{stroke:#6b7a1f}.dot{fill:#fff;stroke-width:1.6}</style><rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>";
+    "<style>text{font:13px "
+    "sans-serif;fill:#5a6570}.ax{stroke:#5a6570;fill:none}.grid{stroke:#d5dbe0;fill:none}.minor{stroke:#eef1f3}.lim{"
+    "stroke:#a4202c;stroke-dasharray:6 "
+    "4}.cv{fill:none;stroke-width:1.5}line[class^=s]{stroke-width:3}.s0{stroke:#1f6fb2}.s1{stroke:#d0681c}.s2{stroke:#"
+    "2a8560}.s3{stroke:#8a4c9f}.s4{stroke:#a07c12}.s5{stroke:#b8415b}.s6{stroke:#4f6d8a}.s7{stroke:#6b7a1f}.dot{fill:#"
+    "fff;stroke-width:1.6}</style><rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>";
 
 /// Characters on the screen, not bytes: every byte of UTF-8 that begins a character.
 std::size_t width_of(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 bool numeric(std::string_view cell) {
-  return !cell.empty() && cell.find_first_not_of("0123456789.+-e") == std::string_view::npos && cell.find_first_of("0123456789") != std::string_view::npos;
+  return !cell.empty() && cell.find_first_not_of("0123456789.+-e") == std::string_view::npos &&
+         cell.find_first_of("0123456789") != std::string_view::npos;
 }
 
 std::string csv_cell(const std::string& text) {
@@ -35,12 +39,14 @@ std::string csv_cell(const std::string& text) {
 }
 
 std::string table_html(const PageTable& table) {
-  std::string out = fmt::format("<div class=table><table><caption>{}</caption><thead><tr>", svg::html_escape(table.title));
+  std::string out =
+      fmt::format("<div class=table><table><caption>{}</caption><thead><tr>", svg::html_escape(table.title));
   for (const auto& column : table.columns) out += fmt::format("<th>{}</th>", svg::html_escape(column));
   out += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
     out += "<tr>";
-    for (const auto& cell : row) out += fmt::format("<td{}>{}</td>", numeric(cell) ? " class=n" : "", svg::html_escape(cell));
+    for (const auto& cell : row)
+      out += fmt::format("<td{}>{}</td>", numeric(cell) ? " class=n" : "", svg::html_escape(cell));
     out += "</tr>\n";
   }
   out += "</tbody></table></div>\n";
@@ -51,18 +57,21 @@ std::string table_html(const PageTable& table) {
 }  // namespace
 
 std::string study_page_html(const StudyPage& page) {
-  std::string out = fmt::format("<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport content=\"width=device-width\">"
-                                "<title>{}</title><style>{}</style></head><body>\n",
-                                svg::html_escape(page.title), kReportStyle);
-  out += fmt::format("<header><div class=name><h1>{}</h1><p>{}</p></div><div class=\"verdict {}\">{}</div></header>\n", svg::html_escape(page.title),
-                     svg::html_escape(page.subtitle), page.good ? "good" : "bad", svg::html_escape(page.verdict));
+  std::string out = fmt::format(
+      "<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
+      "content=\"width=device-width\"><title>{}</title><style>{}</style></head><body>\n",
+      svg::html_escape(page.title), kReportStyle);
+  out += fmt::format("<header><div class=name><h1>{}</h1><p>{}</p></div><div class=\"verdict {}\">{}</div></header>\n",
+                     svg::html_escape(page.title), svg::html_escape(page.subtitle), page.good ? "good" : "bad",
+                     svg::html_escape(page.verdict));
   out += "<section>\n";
   for (const auto& paragraph : page.introduction) out += fmt::format("<p>{}</p>\n", svg::html_escape(paragraph));
   out += "</section>\n";
   if (!page.charts.empty() || !page.figures.empty()) {
     out += "<section><div class=plots>\n";
     for (const auto& chart : page.charts) {
-      out += fmt::format("<figure><figcaption>{}</figcaption>{}", svg::html_escape(chart.title), svg::svg_line_chart(chart));
+      out += fmt::format("<figure><figcaption>{}</figcaption>{}", svg::html_escape(chart.title),
+                         svg::svg_line_chart(chart));
       if (!chart.note.empty()) out += fmt::format("<p class=note>{}</p>", svg::html_escape(chart.note));
       out += "</figure>\n";
     }

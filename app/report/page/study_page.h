@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "app/report/svg/chart.h"
 #include "app/report/page/report_page.h"
+#include "app/report/svg/chart.h"
 
 namespace toothpath::page {
 

@@ -10,8 +10,8 @@ namespace toothpath::page {
 /// Ball, flute, shank and holder of a ball end mill.
 [[nodiscard]] PageTool page_ball_mill(const tool::ToolAssembly& tool);
 
-/// Flute, shank and holder of a finger mill; the flute has the profile that it must have for this gear. Without bodies where
-/// no such profile exists.
+/// Flute, shank and holder of a finger mill; the flute has the profile that it must have for this gear. Without bodies
+/// where no such profile exists.
 [[nodiscard]] PageTool page_finger_mill(const bevel_gear::BevelGear& gear, const tool::ToolAssembly& tool);
 
 }  // namespace toothpath::page

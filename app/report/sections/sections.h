@@ -1,4 +1,5 @@
-// The sections of the report that are tables, in one list that page and set-up sheet walk. One file a section and its line in registry.inl.
+// The sections of the report that are tables, in one list that page and set-up sheet walk. One file a section and its
+// line in registry.inl.
 #pragma once
 
 #include <span>
@@ -15,9 +16,9 @@ namespace toothpath::sections {
 /// What a section may look at: a run that got as far as its proof.
 struct SectionInput {
   const job::Job& job;
-  const report::RunReport& report;                ///< complete but for its sections and files
-  const joints::AxisProgram& program;             ///< what lies on the disk
-  std::span<const path::ClPath* const> paths;     ///< one an operation, one tooth space
+  const report::RunReport& report;             ///< complete but for its sections and files
+  const joints::AxisProgram& program;          ///< what lies on the disk
+  std::span<const path::ClPath* const> paths;  ///< one an operation, one tooth space
 };
 
 /// Those that have something to say, in the order of registry.inl.

@@ -62,12 +62,15 @@ struct Dxf {
 void dxf_tables(Dxf& d) {
   d.group(0, "SECTION"), d.group(2, "TABLES");
   d.group(0, "TABLE"), d.group(2, "LTYPE"), d.group(70, "2");
-  d.group(0, "LTYPE"), d.group(2, "CONTINUOUS"), d.group(70, "0"), d.group(3, "Solid line"), d.group(72, "65"), d.group(73, "0"), d.number(40, 0);
-  d.group(0, "LTYPE"), d.group(2, "CENTER"), d.group(70, "0"), d.group(3, "Center ____ _ ____"), d.group(72, "65"), d.group(73, "4"), d.number(40, 5);
+  d.group(0, "LTYPE"), d.group(2, "CONTINUOUS"), d.group(70, "0"), d.group(3, "Solid line"), d.group(72, "65"),
+      d.group(73, "0"), d.number(40, 0);
+  d.group(0, "LTYPE"), d.group(2, "CENTER"), d.group(70, "0"), d.group(3, "Center ____ _ ____"), d.group(72, "65"),
+      d.group(73, "4"), d.number(40, 5);
   d.number(49, 3), d.number(49, -0.75), d.number(49, 0.5), d.number(49, -0.75);
   d.group(0, "ENDTAB");
   d.group(0, "TABLE"), d.group(2, "LAYER"), d.group(70, "4");
-  d.layer("0", 7, "CONTINUOUS"), d.layer("CONTOUR", 7, "CONTINUOUS"), d.layer("AXIS", 1, "CENTER"), d.layer("NOTES", 3, "CONTINUOUS");
+  d.layer("0", 7, "CONTINUOUS"), d.layer("CONTOUR", 7, "CONTINUOUS"), d.layer("AXIS", 1, "CENTER"),
+      d.layer("NOTES", 3, "CONTINUOUS");
   d.group(0, "ENDTAB");
   d.group(0, "ENDSEC");
 }
@@ -86,23 +89,28 @@ double chord_error(const bevel_gear::FingerProfile<double>& c, const std::vector
   return worst;
 }
 
-std::string svg_path(const bevel_gear::FingerProfile<double>& c, double length, double scale, double x_0, double y_0, double shift) {
+std::string svg_path(const bevel_gear::FingerProfile<double>& c, double length, double scale, double x_0, double y_0,
+                     double shift) {
   const auto samples = bevel_gear::sample_profile(c, 1e-3 * c.r_0);
   std::string upper, lower;
-  const auto put = [&](std::string& d, double x, double y) { d += fmt::format("{}{:.3f} {:.3f}", d.empty() ? "M" : "L", x_0 + scale * (x + shift), y_0 - scale * y); };
+  const auto put = [&](std::string& d, double x, double y) {
+    d += fmt::format("{}{:.3f} {:.3f}", d.empty() ? "M" : "L", x_0 + scale * (x + shift), y_0 - scale * y);
+  };
   for (const auto& s : samples) put(upper, s.from_tip, s.rho), put(lower, s.from_tip, -s.rho);
   put(upper, length - shift, c.rho_D), put(lower, length - shift, -c.rho_D);
   return upper + lower;
 }
 
 constexpr const char* kDrawingStyle =
-    "<style>.k{fill:none;stroke:#111;stroke-width:.45;stroke-linejoin:round}.o{fill:none;stroke:#c25a12;stroke-width:.35;stroke-dasharray:2 1.2}"
-    ".a{stroke:#1f6fb2;stroke-width:.22;stroke-dasharray:5 1 1 1;fill:none}.d{stroke:#555;stroke-width:.2;fill:none}.p{fill:#111}"
-    ".t{font:3.1px sans-serif;fill:#222}.u{font:2.7px sans-serif;fill:#555}</style>";
+    "<style>.k{fill:none;stroke:#111;stroke-width:.45;stroke-linejoin:round}.o{fill:none;stroke:#c25a12;stroke-width:."
+    "35;stroke-dasharray:2 1.2}.a{stroke:#1f6fb2;stroke-width:.22;stroke-dasharray:5 1 1 "
+    "1;fill:none}.d{stroke:#555;stroke-width:.2;fill:none}.p{fill:#111}.t{font:3.1px "
+    "sans-serif;fill:#222}.u{font:2.7px sans-serif;fill:#555}</style>";
 
 }  // namespace
 
-CutterDxf cutter_dxf(const bevel_gear::FingerProfile<double>& c, double length, const std::vector<std::string>& notes, double chord_mm) {
+CutterDxf cutter_dxf(const bevel_gear::FingerProfile<double>& c, double length, const std::vector<std::string>& notes,
+                     double chord_mm) {
   std::vector<double> parameters;
   for (const auto& s : bevel_gear::sample_profile(c, chord_mm))
     if (s.part == 'I') parameters.push_back(s.p);
@@ -111,7 +119,9 @@ CutterDxf cutter_dxf(const bevel_gear::FingerProfile<double>& c, double length, 
   out.vertices = static_cast<int>(parameters.size());
   Dxf d;
   for (const auto& note : notes) d.group(999, plain(note));
-  d.group(999, fmt::format("mm, 1:1; X from the tip along the axis, Y radius; involute as polyline, chord error {:.6f} mm", out.chord_error_mm));
+  d.group(999,
+          fmt::format("mm, 1:1; X from the tip along the axis, Y radius; involute as polyline, chord error {:.6f} mm",
+                      out.chord_error_mm));
   d.group(0, "SECTION"), d.group(2, "HEADER");
   d.group(9, "$ACADVER"), d.group(1, "AC1009");
   d.group(9, "$EXTMIN"), d.number(10, 0), d.number(20, -c.rho_D), d.number(30, 0);
@@ -157,12 +167,15 @@ double cutter_drawing_scale(const bevel_gear::FingerProfile<double>& c, double l
   return scale;
 }
 
-std::string cutter_svg(const bevel_gear::FingerProfile<double>& c, double length, double scale, const std::optional<bevel_gear::FingerProfile<double>>& other, bool standalone) {
+std::string cutter_svg(const bevel_gear::FingerProfile<double>& c, double length, double scale,
+                       const std::optional<bevel_gear::FingerProfile<double>>& other, bool standalone) {
   const double widest = std::max(c.rho_D, other ? other->rho_D : 0.0), left = 8, right = 24, top = 9, bottom = 14;
   const double width = left + scale * length + right, height = top + 2 * scale * widest + bottom;
   const double x_0 = left, y_0 = top + scale * widest;
-  std::string s = fmt::format("<svg{} width=\"{:.2f}mm\" height=\"{:.2f}mm\" viewBox=\"0 0 {:.2f} {:.2f}\" role=\"img\" aria-label=\"Section of the finger mill\">",
-                              standalone ? " xmlns=\"http://www.w3.org/2000/svg\"" : "", width, height, width, height);
+  std::string s = fmt::format(
+      "<svg{} width=\"{:.2f}mm\" height=\"{:.2f}mm\" viewBox=\"0 0 {:.2f} {:.2f}\" role=\"img\" aria-label=\"Section "
+      "of the finger mill\">",
+      standalone ? " xmlns=\"http://www.w3.org/2000/svg\"" : "", width, height, width, height);
   s += kDrawingStyle;
   if (standalone) s += "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>";
   const auto X = [&](double from_tip) { return x_0 + scale * from_tip; };
@@ -171,12 +184,14 @@ std::string cutter_svg(const bevel_gear::FingerProfile<double>& c, double length
     s += fmt::format("<path class=\"{}\" d=\"M{:.3f} {:.3f}L{:.3f} {:.3f}\"/>", css, x1, y1, x2, y2);
   };
   const auto text = [&](double x, double y, const std::string& value, const char* anchor, const char* css) {
-    s += fmt::format("<text class=\"{}\" x=\"{:.2f}\" y=\"{:.2f}\" text-anchor=\"{}\">{}</text>", css, x, y, anchor, svg::html_escape(value));
+    s += fmt::format("<text class=\"{}\" x=\"{:.2f}\" y=\"{:.2f}\" text-anchor=\"{}\">{}</text>", css, x, y, anchor,
+                     svg::html_escape(value));
   };
   line(x_0 - 5, y_0, X(length) + 4, y_0, "a");
   line(X(c.h_f), top - 3, X(c.h_f), y_0 + scale * widest + 3, "a");
   text(X(c.h_f) + 1, top - 3, "pitch cone", "start", "u");
-  if (other) s += fmt::format("<path class=\"o\" d=\"{}\"/>", svg_path(*other, length, scale, x_0, y_0, c.h_f - other->h_f));
+  if (other)
+    s += fmt::format("<path class=\"o\" d=\"{}\"/>", svg_path(*other, length, scale, x_0, y_0, c.h_f - other->h_f));
   s += fmt::format("<path class=\"k\" d=\"{}\"/>", svg_path(c, length, scale, x_0, y_0, 0));
   // The closing line of the cylinder is a break, not an edge.
   line(X(length), Y(c.rho_D) - 2, X(length), Y(-c.rho_D) + 2, "d");
@@ -185,8 +200,8 @@ std::string cutter_svg(const bevel_gear::FingerProfile<double>& c, double length
     double x, rho, dx, dy;
     const char* anchor;
   };
-  for (const Mark& m : {Mark{'A', -c.h_f, c.rho_o, -1.2, 1.0, "end"}, Mark{'B', c.x_B, c.rho_B, -0.4, -1.4, "end"}, Mark{'C', c.x_C, c.rho_C, -0.2, -1.6, "end"},
-                        Mark{'D', c.x_D, c.rho_D, 0, -1.6, "middle"}}) {
+  for (const Mark& m : {Mark{'A', -c.h_f, c.rho_o, -1.2, 1.0, "end"}, Mark{'B', c.x_B, c.rho_B, -0.4, -1.4, "end"},
+                        Mark{'C', c.x_C, c.rho_C, -0.2, -1.6, "end"}, Mark{'D', c.x_D, c.rho_D, 0, -1.6, "middle"}}) {
     s += fmt::format("<circle class=\"p\" cx=\"{:.3f}\" cy=\"{:.3f}\" r=\".7\"/>", X(m.x + c.h_f), Y(m.rho));
     text(X(m.x + c.h_f) + m.dx, Y(m.rho) + m.dy, std::string(1, m.name), m.anchor, "t");
   }
@@ -202,7 +217,8 @@ std::string cutter_svg(const bevel_gear::FingerProfile<double>& c, double length
   for (const double x : {0.0, c.h_f, c.h_f + c.x_D}) line(X(x), below - 1.2, X(x), below + 1.2, "d");
   text(X(0.5 * c.h_f), below + 3.6, fmt::format("h_f {:.4f}", c.h_f), "middle", "t");
   text(X(c.h_f + 0.5 * c.x_D), below + 3.6, fmt::format("x_D {:.4f}", c.x_D), "middle", "t");
-  text(x_0, height - 1.2, scale >= 1 ? fmt::format("scale {:g}:1", scale) : fmt::format("scale 1:{:g}", 1 / scale), "start", "u");
+  text(x_0, height - 1.2, scale >= 1 ? fmt::format("scale {:g}:1", scale) : fmt::format("scale 1:{:g}", 1 / scale),
+       "start", "u");
   const double bar = std::pow(10.0, std::floor(std::log10(40 / scale)));
   line(x_0 + 24, height - 2.2, x_0 + 24 + scale * bar, height - 2.2, "k");
   text(x_0 + 26 + scale * bar, height - 1.2, fmt::format("{:g} mm", bar), "start", "u");

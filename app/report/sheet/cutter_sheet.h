@@ -1,5 +1,5 @@
-// The page for the tool grinder: one A4 sheet with order data, section to scale, profile table, conditions, and what the mills
-// of the job would do.
+// The page for the tool grinder: one A4 sheet with order data, section to scale, profile table, conditions, and what
+// the mills of the job would do.
 #pragma once
 
 #include <string>
@@ -17,11 +17,11 @@ struct JudgedCutter {
 
 struct CutterSheet {
   std::string job_name, job_file;
-  std::string gear_line;               ///< teeth, module, hand ... of the gear in one line
-  JudgedCutter drawn;                  ///< the mill that the sheet describes
-  std::vector<JudgedCutter> others;    ///< the other mills, shown with their verdict; the first one is drawn dashed
-  double length_mm = 0;                ///< of the drawn contour, from the tip
-  double dxf_chord_mm = 0;             ///< measured chord error of the DXF
+  std::string gear_line;             ///< teeth, module, hand ... of the gear in one line
+  JudgedCutter drawn;                ///< the mill that the sheet describes
+  std::vector<JudgedCutter> others;  ///< the other mills, shown with their verdict; the first one is drawn dashed
+  double length_mm = 0;              ///< of the drawn contour, from the tip
+  double dxf_chord_mm = 0;           ///< measured chord error of the DXF
   std::vector<std::string> warnings;
 };
 

@@ -7,8 +7,9 @@
 namespace toothpath::sheet {
 namespace {
 
-constexpr double kSameAxis = 5e-3;      // rad: axes nearer than this to one that was kept are counted as that one
-constexpr double kLeastShare = 1e-3;    // a tool that cuts with its side alone: its length hardly matters, and its tolerance ends here
+constexpr double kSameAxis = 5e-3;  // rad: axes nearer than this to one that was kept are counted as that one
+constexpr double kLeastShare =
+    1e-3;  // a tool that cuts with its side alone: its length hardly matters, and its tolerance ends here
 
 /// Axes of the feed records, by zone.
 std::map<int, std::vector<Vec3>> axes_of(const path::ClPath& path) {
@@ -33,8 +34,11 @@ double largest_share(const std::vector<Vec3>& axes, const proof::SurfaceGrid& gr
 
 }  // namespace
 
-std::vector<report::LengthTolerance> length_tolerances(const job::Job& job, const proof::ProofLimits& limits, const report::RunReport& report, std::span<const path::ClPath* const> paths,
-                                               const std::vector<proof::SurfaceGrid>& grids, const OtherSurface& other) {
+std::vector<report::LengthTolerance> length_tolerances(const job::Job& job, const proof::ProofLimits& limits,
+                                                       const report::RunReport& report,
+                                                       std::span<const path::ClPath* const> paths,
+                                                       const std::vector<proof::SurfaceGrid>& grids,
+                                                       const OtherSurface& other) {
   std::vector<report::LengthTolerance> out;
   if (!report.gouge || grids.empty()) return out;
   const double spare = report.gouge_tolerance_mm - std::max(0.0, report.gouge->bound_mm);
@@ -51,7 +55,8 @@ std::vector<report::LengthTolerance> length_tolerances(const job::Job& job, cons
       if (zone == axes.end()) continue;
       const double share = largest_share(zone->second, grid);
       t.share = std::max(t.share, share);
-      if (grid.patch.find("fillet") == std::string::npos && grid.patch.find("root") == std::string::npos) t.flank_share = std::max(t.flank_share, share);
+      if (grid.patch.find("fillet") == std::string::npos && grid.patch.find("root") == std::string::npos)
+        t.flank_share = std::max(t.flank_share, share);
     }
     if (axes.empty()) continue;
     const double by = std::max(kLeastShare, t.share);
@@ -60,7 +65,8 @@ std::vector<report::LengthTolerance> length_tolerances(const job::Job& job, cons
       if (after.operation == path->operation && operation.allowance_mm > 0) stock = std::max(0.0, after.min_mm);
     t.too_long_mm = std::max(0.0, spare + stock) / by;
     const bool last = path->operation + 1 == static_cast<int>(job.operations.size());
-    const bool finishes = operation.type == path::OperationType::finishing || operation.type == path::OperationType::finger_finishing;
+    const bool finishes =
+        operation.type == path::OperationType::finishing || operation.type == path::OperationType::finger_finishing;
     if (last && finishes && report.finished && limits.left_mm) {
       const double limit = *limits.left_mm;
       const double left = limit - report.finished->bound_mm;

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include "app/report/svg/html_text.h"
 #include "app/report/sheet/machine_sheet.h"
+#include "app/report/svg/html_text.h"
 
 namespace toothpath::sheet {
 namespace {
@@ -21,8 +21,12 @@ Vec3 seen(const Vec3& p) {
 class Drawing {
  public:
   /// A polyline in machine coordinates.
-  void line(std::vector<Vec3> points, std::string style, bool arrow = false) { lines_.push_back({std::move(points), std::move(style), arrow}); }
-  void label(const Vec3& at, std::string text, std::string color) { labels_.push_back({at, std::move(text), std::move(color)}); }
+  void line(std::vector<Vec3> points, std::string style, bool arrow = false) {
+    lines_.push_back({std::move(points), std::move(style), arrow});
+  }
+  void label(const Vec3& at, std::string text, std::string color) {
+    labels_.push_back({at, std::move(text), std::move(color)});
+  }
 
   [[nodiscard]] std::string svg(const std::string& name) const {
     Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
@@ -31,25 +35,30 @@ class Drawing {
         low = low.cwiseMin(seen(p));
         high = high.cwiseMax(seen(p));
       }
-    const double scale = std::min((kWidth - 2 * kMargin) / std::max(high.x() - low.x(), 1e-9), (kHeight - 2 * kMargin) / std::max(high.y() - low.y(), 1e-9));
+    const double scale = std::min((kWidth - 2 * kMargin) / std::max(high.x() - low.x(), 1e-9),
+                                  (kHeight - 2 * kMargin) / std::max(high.y() - low.y(), 1e-9));
     const auto place = [&](const Vec3& p) {
       const Vec3 q = seen(p);
-      return Vec3(kWidth / 2 + scale * (q.x() - (low.x() + high.x()) / 2), kHeight / 2 - scale * (q.y() - (low.y() + high.y()) / 2), 0);
+      return Vec3(kWidth / 2 + scale * (q.x() - (low.x() + high.x()) / 2),
+                  kHeight / 2 - scale * (q.y() - (low.y() + high.y()) / 2), 0);
     };
-    std::string out = fmt::format("<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {:.0f} {:.0f}' width='{:.0f}' height='{:.0f}' role='img' "
-                                  "aria-label='chain of {}' font-family='sans-serif' font-size='13'>\n"
-                                  "<rect width='100%' height='100%' fill='#fff'/>\n"
-                                  "<defs><marker id='tip' viewBox='0 0 10 10' refX='8' refY='5' markerWidth='7' markerHeight='7' orient='auto-start-reverse'>"
-                                  "<path d='M0 0L10 5L0 10z' fill='context-stroke'/></marker></defs>\n",
-                                  kWidth, kHeight, kWidth, kHeight, svg::html_escape(name));
+    std::string out = fmt::format(
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {:.0f} {:.0f}' width='{:.0f}' height='{:.0f}' role='img' "
+        "aria-label='chain of {}' font-family='sans-serif' font-size='13'>\n"
+        "<rect width='100%' height='100%' fill='#fff'/>\n"
+        "<defs><marker id='tip' viewBox='0 0 10 10' refX='8' refY='5' markerWidth='7' markerHeight='7' "
+        "orient='auto-start-reverse'><path d='M0 0L10 5L0 10z' fill='context-stroke'/></marker></defs>\n",
+        kWidth, kHeight, kWidth, kHeight, svg::html_escape(name));
     for (const auto& l : lines_) {
       std::string points;
       for (const auto& p : l.points) points += fmt::format("{:.1f},{:.1f} ", place(p).x(), place(p).y());
-      out += fmt::format("<polyline points='{}' fill='none' {}{}/>\n", points, l.style, l.arrow ? " marker-end='url(#tip)'" : "");
+      out += fmt::format("<polyline points='{}' fill='none' {}{}/>\n", points, l.style,
+                         l.arrow ? " marker-end='url(#tip)'" : "");
     }
     for (const auto& l : labels_)
-      out += fmt::format("<text x='{:.1f}' y='{:.1f}' fill='{}' stroke='#fff' stroke-width='3' paint-order='stroke'>{}</text>\n", place(l.at).x() + 5,
-                         place(l.at).y() - 5, l.color, svg::html_escape(l.text));
+      out += fmt::format(
+          "<text x='{:.1f}' y='{:.1f}' fill='{}' stroke='#fff' stroke-width='3' paint-order='stroke'>{}</text>\n",
+          place(l.at).x() + 5, place(l.at).y() - 5, l.color, svg::html_escape(l.text));
     return out + "</svg>\n";
   }
 
@@ -68,7 +77,8 @@ class Drawing {
 };
 
 std::vector<Vec3> arc(const Vec3& centre, const Vec3& axis, double radius, double from, double to) {
-  const Vec3 u = (std::abs(axis.z()) < 0.9 ? Vec3::UnitZ().cross(axis) : Vec3::UnitY().cross(axis)).normalized(), v = axis.cross(u);
+  const Vec3 u = (std::abs(axis.z()) < 0.9 ? Vec3::UnitZ().cross(axis) : Vec3::UnitY().cross(axis)).normalized(),
+             v = axis.cross(u);
   std::vector<Vec3> points;
   for (int i = 0; i <= 48; ++i) {
     const double t = from + (to - from) * i / 48;
@@ -119,18 +129,23 @@ std::string machine_drawing_svg(const machines::Machine& machine) {
   drawing.label(nose, "G, gauge point", "#333");
   if (!chain.table.empty()) {
     const machines::RotaryAxis& work = chain.table.front();
-    drawing.line(arc(work.point_mm, Vec3::UnitZ(), 0.5 * machine.table_diameter_mm, 0, 2 * kPi), "stroke='#555' stroke-width='1.5'");
-    drawing.label(work.point_mm + Vec3(0.5 * machine.table_diameter_mm, 0, 0), fmt::format("table, diameter {:g}", machine.table_diameter_mm), "#555");
+    drawing.line(arc(work.point_mm, Vec3::UnitZ(), 0.5 * machine.table_diameter_mm, 0, 2 * kPi),
+                 "stroke='#555' stroke-width='1.5'");
+    drawing.label(work.point_mm + Vec3(0.5 * machine.table_diameter_mm, 0, 0),
+                  fmt::format("table, diameter {:g}", machine.table_diameter_mm), "#555");
   }
   for (std::size_t k = 0; k < chain.rotary_count(); ++k) {
     const machines::RotaryAxis& axis = chain.rotary(k);
     const bool table = chain.in_table(k);
     const Vec3 at = table ? axis.point_mm : Vec3(nose + axis.point_mm);
     const std::string color = k == 0 ? "#8e44ad" : "#b9770e";
-    drawing.line({at - 1.3 * size * axis.direction, at + 1.5 * size * axis.direction}, fmt::format("stroke='{}' stroke-width='2' stroke-dasharray='12 3 3 3'", color), true);
+    drawing.line({at - 1.3 * size * axis.direction, at + 1.5 * size * axis.direction},
+                 fmt::format("stroke='{}' stroke-width='2' stroke-dasharray='12 3 3 3'", color), true);
     const double sense = table ? -axis.sign : axis.sign;
-    drawing.line(arc(at + 1.1 * size * axis.direction, axis.direction, 0.38 * size, 0, sense * radians(280)), fmt::format("stroke='{}' stroke-width='2.5'", color), true);
-    drawing.label(at + 1.5 * size * axis.direction, fmt::format("+{} turns the {}", axis.letter, table ? "table" : "head"), color);
+    drawing.line(arc(at + 1.1 * size * axis.direction, axis.direction, 0.38 * size, 0, sense * radians(280)),
+                 fmt::format("stroke='{}' stroke-width='2.5'", color), true);
+    drawing.label(at + 1.5 * size * axis.direction,
+                  fmt::format("+{} turns the {}", axis.letter, table ? "table" : "head"), color);
   }
   return drawing.svg(machine.name);
 }

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/report/svg/html_text.h"
 #include "app/report/page/study_page.h"
+#include "app/report/svg/html_text.h"
 
 namespace toothpath::sheet {
 namespace {
@@ -16,7 +16,8 @@ const char* tcp_text(machines::TcpMode mode) {
   switch (mode) {
     case machines::TcpMode::none: return "none: the five joints move linearly in a block";
     case machines::TcpMode::angles: return "angles: the control keeps the tip on the chord";
-    case machines::TcpMode::vectors: return "vectors: the control keeps the tip on the chord and turns the axis in one plane";
+    case machines::TcpMode::vectors:
+      return "vectors: the control keeps the tip on the chord and turns the axis in one plane";
   }
   return "";
 }
@@ -31,7 +32,9 @@ std::string chain_text(const machines::KinematicChain& chain) {
 
 /// Is this key, a table that holds it, or something in it assumed?
 bool assumed(const std::vector<std::string>& keys, const std::string& key) {
-  return std::any_of(keys.begin(), keys.end(), [&](const std::string& k) { return key == k || key.starts_with(k + ".") || k.starts_with(key + "."); });
+  return std::any_of(keys.begin(), keys.end(), [&](const std::string& k) {
+    return key == k || key.starts_with(k + ".") || k.starts_with(key + ".");
+  });
 }
 
 /// The keys of the machine file, a table a row: "axes.A" | "direction, point, sign".
@@ -39,7 +42,8 @@ page::PageTable assumed_table(const std::vector<std::string>& keys) {
   page::PageTable table{"Assumed values", {"table", "keys"}, {}, ""};
   for (const auto& key : keys) {
     const auto dot = key.rfind('.');
-    const std::string name = dot == std::string::npos ? "" : key.substr(0, dot), last = dot == std::string::npos ? key : key.substr(dot + 1);
+    const std::string name = dot == std::string::npos ? "" : key.substr(0, dot),
+                      last = dot == std::string::npos ? key : key.substr(dot + 1);
     if (!table.rows.empty() && table.rows.back()[0] == name) table.rows.back()[1] += ", " + last;
     else table.rows.push_back({name, last});
   }
@@ -68,23 +72,31 @@ Facts facts_of(const machines::Machine& m) {
   if (m.part_diameter_mm) row("largest part", number(*m.part_diameter_mm), "mm", "limits.part_diameter");
   if (m.max_part_mass_kg) row("heaviest part", number(*m.max_part_mass_kg), "kg", "limits.part_mass");
   row("shortest block", number(m.min_block_ms), "ms", "limits.min_block_ms");
-  row("distance kept from limits", fmt::format("{} mm, {} deg", number(m.limit_margin.linear_mm), number(degrees(m.limit_margin.rotary_rad))), "", "limits");
-  row("tool length to", m.post.length_reference == machines::LengthReference::tip ? "tip" : "centre of the ball", "", "post.length_reference");
+  row("distance kept from limits",
+      fmt::format("{} mm, {} deg", number(m.limit_margin.linear_mm), number(degrees(m.limit_margin.rotary_rad))), "",
+      "limits");
+  row("tool length to", m.post.length_reference == machines::LengthReference::tip ? "tip" : "centre of the ball", "",
+      "post.length_reference");
 
   f.axes = {"Axes", {"axis", "in", "direction", "point [mm]", "sign", "range", "speed", "a positive command"}, {}, ""};
   for (std::size_t i = 0; i < 3; ++i) {
     const auto& axis = m.chain.linear[i];
     const std::string letter(1, "XYZ"[i]);
     f.axes.rows.push_back({letter, "", "", "", "", fmt::format("{} .. {} mm", number(axis.min_mm), number(axis.max_mm)),
-                           fmt::format("{} mm/min", number(axis.max_speed)), fmt::format("moves the tool to {}+ against the work", letter)});
+                           fmt::format("{} mm/min", number(axis.max_speed)),
+                           fmt::format("moves the tool to {}+ against the work", letter)});
   }
   for (std::size_t k = 0; k < m.chain.rotary_count(); ++k) {
     const machines::RotaryAxis& axis = m.chain.rotary(k);
-    f.axes.rows.push_back({std::string(1, axis.letter), m.chain.in_table(k) ? "table" : "head", triple(axis.direction), triple(axis.point_mm),
-                           axis.sign > 0 ? "+1, ISO 841" : "-1, reversed", axis.rollover ? "rolls over" : fmt::format("{} .. {} deg", number(degrees(axis.min_rad)), number(degrees(axis.max_rad))),
-                           fmt::format("{} deg/min", number(degrees(axis.max_speed))), positive_turn(m.chain, k)});
+    f.axes.rows.push_back(
+        {std::string(1, axis.letter), m.chain.in_table(k) ? "table" : "head", triple(axis.direction),
+         triple(axis.point_mm), axis.sign > 0 ? "+1, ISO 841" : "-1, reversed",
+         axis.rollover ? "rolls over"
+                       : fmt::format("{} .. {} deg", number(degrees(axis.min_rad)), number(degrees(axis.max_rad))),
+         fmt::format("{} deg/min", number(degrees(axis.max_speed))), positive_turn(m.chain, k)});
   }
-  f.axes.note = "Point of a table axis: machine coordinates. Of a head axis: from the gauge point, its z is the pivot length.";
+  f.axes.note =
+      "Point of a table axis: machine coordinates. Of a head axis: from the gauge point, its z is the pivot length.";
   f.guessed = assumed_table(m.assumed_keys);
   f.assumed = m.assumed_keys.size();
   return f;
@@ -108,13 +120,16 @@ Facts facts_of(const machines::ShaperMachine& m) {
   row("relief on the back stroke", number(m.relief_mm), "mm", "stroke.relief");
   row("index constant", fmt::format("{}/{}", m.index_constant.numerator, m.index_constant.denominator), "", "index");
   row("feed constant", fmt::format("{}/{}", m.feed_constant.numerator, m.feed_constant.denominator), "", "feed");
-  f.general.note = fmt::format("Change gears{}: {} teeth.", assumed(m.assumed_keys, "gears") ? " (assumed)" : "", list(m.gears));
+  f.general.note =
+      fmt::format("Change gears{}: {} teeth.", assumed(m.assumed_keys, "gears") ? " (assumed)" : "", list(m.gears));
   f.axes = {"Axes", {"axis", "range", "speed", "sign"}, {}, ""};
   for (const auto& [letter, axis] : m.axes) {
     const bool rotary = letter == 'A' || letter == 'C';
     const auto value = [&](double v) { return number(rotary ? degrees(v) : v); };
-    f.axes.rows.push_back({std::string(1, letter), fmt::format("{} .. {} {}", value(axis.min), value(axis.max), rotary ? "deg" : "mm"),
-                           fmt::format("{} {}", value(axis.max_speed), rotary ? "deg/min" : "mm/min"), rotary ? fmt::format("{:+d}", axis.sign) : ""});
+    f.axes.rows.push_back({std::string(1, letter),
+                           fmt::format("{} .. {} {}", value(axis.min), value(axis.max), rotary ? "deg" : "mm"),
+                           fmt::format("{} {}", value(axis.max_speed), rotary ? "deg/min" : "mm/min"),
+                           rotary ? fmt::format("{:+d}", axis.sign) : ""});
   }
   f.guessed = assumed_table(m.assumed_keys);
   f.assumed = m.assumed_keys.size();
@@ -122,11 +137,13 @@ Facts facts_of(const machines::ShaperMachine& m) {
 }
 
 std::string text_of(const Facts& f, const std::string& name, const std::string& file) {
-  std::string out = fmt::format("{}  ({})\n\n{}\n{}", name, file, page::table_text(f.general), page::table_text(f.axes));
+  std::string out =
+      fmt::format("{}  ({})\n\n{}\n{}", name, file, page::table_text(f.general), page::table_text(f.axes));
   for (const auto* table : {&f.general, &f.axes})
     if (!table->note.empty()) out += "\n" + table->note + "\n";
   if (f.guessed.rows.empty()) return out + "\nNo value is assumed.\n";
-  return out + fmt::format("\n{} values are assumed; measure them before a part is cut.\n", f.assumed) + page::table_text(f.guessed);
+  return out + fmt::format("\n{} values are assumed; measure them before a part is cut.\n", f.assumed) +
+         page::table_text(f.guessed);
 }
 
 std::string page_of(const Facts& f, const std::string& name, const std::string& file, const std::string& drawing) {
@@ -135,14 +152,17 @@ std::string page_of(const Facts& f, const std::string& name, const std::string& 
   page.subtitle = file;
   page.good = f.guessed.rows.empty();
   page.verdict = page.good ? "nothing assumed" : fmt::format("{} values assumed", f.assumed);
-  page.introduction = {"A program is written as if the tool moved (ISO 841). A table therefore turns the other way: the last column of the axes says what is seen. "
-                       "Run the program of `toothpath machine test` in air before the first part: a wrong sign or pivot shows there."};
+  page.introduction = {
+      "A program is written as if the tool moved (ISO 841). A table therefore turns the other way: the last column of "
+      "the axes says what is seen. Run the program of `toothpath machine test` in air before the first part: a wrong "
+      "sign or pivot shows there."};
   page.tables = {f.general, f.axes};
   if (!f.guessed.rows.empty()) page.tables.push_back(f.guessed);
   std::string html = page::study_page_html(page);
   if (!drawing.empty()) {
     const auto at = html.find("</header>");
-    if (at != std::string::npos) html.insert(at + 9, fmt::format("\n<figure style='margin:0;text-align:center'>{}</figure>\n", drawing));
+    if (at != std::string::npos)
+      html.insert(at + 9, fmt::format("\n<figure style='margin:0;text-align:center'>{}</figure>\n", drawing));
   }
   return html;
 }
@@ -156,9 +176,12 @@ std::string positive_turn(const machines::KinematicChain& chain, std::size_t rot
   int main = 0;
   axis.direction.cwiseAbs().maxCoeff(&main);
   if (axis.direction.cwiseAbs()[main] < 0.999)
-    return fmt::format("turns the {} {}-handed about {}", table ? "table" : "head", sense > 0 ? "right" : "left", triple(axis.direction));
+    return fmt::format("turns the {} {}-handed about {}", table ? "table" : "head", sense > 0 ? "right" : "left",
+                       triple(axis.direction));
   const bool right = sense * axis.direction[main] > 0;  // right-handed about +X, +Y or +Z
-  if (main == 2) return fmt::format("turns the {} {} seen from above", table ? "table" : "head", right ? "counter-clockwise" : "clockwise");
+  if (main == 2)
+    return fmt::format("turns the {} {} seen from above", table ? "table" : "head",
+                       right ? "counter-clockwise" : "clockwise");
   if (table) {
     if (main == 0) return fmt::format("tilts the table, its Y+ side {}", right ? "up" : "down");
     return fmt::format("tilts the table, its X+ side {}", right ? "down" : "up");
@@ -167,10 +190,18 @@ std::string positive_turn(const machines::KinematicChain& chain, std::size_t rot
   return fmt::format("swings the tool tip to X{}", right ? "-" : "+");
 }
 
-std::string machine_text(const machines::Machine& machine) { return text_of(facts_of(machine), machine.name, machine.file); }
-std::string machine_text(const machines::ShaperMachine& machine) { return text_of(facts_of(machine), machine.name, machine.file); }
+std::string machine_text(const machines::Machine& machine) {
+  return text_of(facts_of(machine), machine.name, machine.file);
+}
+std::string machine_text(const machines::ShaperMachine& machine) {
+  return text_of(facts_of(machine), machine.name, machine.file);
+}
 
-std::string machine_page(const machines::Machine& machine) { return page_of(facts_of(machine), machine.name, machine.file, machine_drawing_svg(machine)); }
-std::string machine_page(const machines::ShaperMachine& machine) { return page_of(facts_of(machine), machine.name, machine.file, {}); }
+std::string machine_page(const machines::Machine& machine) {
+  return page_of(facts_of(machine), machine.name, machine.file, machine_drawing_svg(machine));
+}
+std::string machine_page(const machines::ShaperMachine& machine) {
+  return page_of(facts_of(machine), machine.name, machine.file, {});
+}
 
 }  // namespace toothpath::sheet

@@ -9,16 +9,16 @@
 
 namespace toothpath::sheet {
 
-/// What a person at the machine sees when this rotary axis gets a positive command: the body that turns (the table, or the head with the
-/// tool) and the way it goes, seen along the machine axes of ISO 841.
+/// What a person at the machine sees when this rotary axis gets a positive command: the body that turns (the table, or
+/// the head with the tool) and the way it goes, seen along the machine axes of ISO 841.
 [[nodiscard]] std::string positive_turn(const machines::KinematicChain& chain, std::size_t rotary);
 
 /// Limits, chain, senses and every assumed value as text; ends with a newline.
 [[nodiscard]] std::string machine_text(const machines::Machine& machine);
 [[nodiscard]] std::string machine_text(const machines::ShaperMachine& machine);
 
-/// The chain drawn to scale in an oblique view, all rotary axes at zero: travel of the gauge point, table, rotary axes with the sense
-/// in which their bodies turn. A file of its own: white ground, no style sheet.
+/// The chain drawn to scale in an oblique view, all rotary axes at zero: travel of the gauge point, table, rotary axes
+/// with the sense in which their bodies turn. A file of its own: white ground, no style sheet.
 [[nodiscard]] std::string machine_drawing_svg(const machines::Machine& machine);
 
 /// The same as a page that prints on A4.

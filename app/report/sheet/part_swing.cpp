@@ -18,7 +18,8 @@ std::vector<Vec3> rims(const BlankCylinder& blank, const joints::Setup& setup) {
   const double r = blank.radius_mm / std::cos(kPi / kRimPoints);
   for (int i = 0; i < kRimPoints; ++i) {
     const double a = 2 * kPi * i / kRimPoints;
-    for (const double z : {blank.z_min_mm, blank.z_max_mm}) out.push_back(setup.origin_mm + setup.rotation() * Vec3(r * std::cos(a), r * std::sin(a), z));
+    for (const double z : {blank.z_min_mm, blank.z_max_mm})
+      out.push_back(setup.origin_mm + setup.rotation() * Vec3(r * std::cos(a), r * std::sin(a), z));
   }
   return out;
 }
@@ -38,7 +39,8 @@ std::pair<double, double> range_of(const std::vector<joints::AxisRange>& axes, c
 
 }  // namespace
 
-PartSwing part_swing(const BlankCylinder& blank, const joints::Setup& setup, const machines::Machine& machine, const std::vector<joints::AxisRange>& axes) {
+PartSwing part_swing(const BlankCylinder& blank, const joints::Setup& setup, const machines::Machine& machine,
+                     const std::vector<joints::AxisRange>& axes) {
   PartSwing out;
   const auto& table = machine.chain.table;
   std::vector<Vec3> points = rims(blank, setup);
@@ -52,13 +54,15 @@ PartSwing part_swing(const BlankCylinder& blank, const joints::Setup& setup, con
       low = std::min(low, along);
       high = std::max(high, along);
     }
-    out.axes.push_back({table[0].letter, reach, machine.largest_part_mm() > 0 ? std::optional(machine.largest_part_mm() / 2) : std::nullopt});
+    out.axes.push_back({table[0].letter, reach,
+                        machine.largest_part_mm() > 0 ? std::optional(machine.largest_part_mm() / 2) : std::nullopt});
     const Vec3 d = table[0].direction, side = d.unitOrthogonal(), other = d.cross(side);
     points.clear();
     const double r = reach / std::cos(kPi / kRimPoints);
     for (int i = 0; i < kRimPoints; ++i) {
       const double a = 2 * kPi * i / kRimPoints;
-      for (const double z : {low, high}) points.push_back(table[0].point_mm + d * z + r * (std::cos(a) * side + std::sin(a) * other));
+      for (const double z : {low, high})
+        points.push_back(table[0].point_mm + d * z + r * (std::cos(a) * side + std::sin(a) * other));
     }
   }
   out.top_mm = -std::numeric_limits<double>::infinity();
@@ -93,12 +97,17 @@ report::Section swing_section(const PartSwing& swing) {
   s.columns = {"what", "mm", "limit", "left"};
   const auto mm = [](double v) { return fmt::format("{:.1f}", v); };
   for (const auto& a : swing.axes)
-    s.rows.push_back({fmt::format("largest radius about {}", a.letter), mm(a.radius_mm), a.limit_mm ? mm(*a.limit_mm) : "not stated in the machine file",
+    s.rows.push_back({fmt::format("largest radius about {}", a.letter), mm(a.radius_mm),
+                      a.limit_mm ? mm(*a.limit_mm) : "not stated in the machine file",
                       a.limit_mm ? mm(*a.limit_mm - a.radius_mm) : ""});
-  s.rows.push_back({"highest point of the blank over all turns, machine Z", mm(swing.top_mm), mm(swing.lowest_nose_mm), mm(swing.lowest_nose_mm - swing.top_mm)});
-  s.rows.push_back({"lowest point of the blank over all turns, machine Z", mm(swing.bottom_mm), "table: not stated", ""});
-  s.note = "Blank alone, as a cylinder, over the turns of this program; fixture and chuck are not in it. Limit of the highest point: the lowest height of "
-           "the spindle nose. Below zero is left where the nose goes down beside the part; the holder is proven clear of the blank all the same.";
+  s.rows.push_back({"highest point of the blank over all turns, machine Z", mm(swing.top_mm), mm(swing.lowest_nose_mm),
+                    mm(swing.lowest_nose_mm - swing.top_mm)});
+  s.rows.push_back(
+      {"lowest point of the blank over all turns, machine Z", mm(swing.bottom_mm), "table: not stated", ""});
+  s.note =
+      "Blank alone, as a cylinder, over the turns of this program; fixture and chuck are not in it. Limit of the "
+      "highest point: the lowest height of the spindle nose. Below zero is left where the nose goes down beside the "
+      "part; the holder is proven clear of the blank all the same.";
   return s;
 }
 

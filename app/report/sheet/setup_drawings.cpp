@@ -29,15 +29,19 @@ std::string part_sketch(const joints::Setup& setup, const PartOutline& part, con
   const double margin = 0.12 * std::max(*x_max - *x_min, *z_max - *z_min) + 1;
   const double height = *z_max - *z_min + 2 * margin;
   // The view box is as wide as the page, so that lines and letters have the same size on every sheet.
-  const double scale = std::max((*x_max - *x_min + 2 * margin) / kPageWidth, height / kSketchHeight);  // mm of the machine a mm of paper
+  const double scale =
+      std::max((*x_max - *x_min + 2 * margin) / kPageWidth, height / kSketchHeight);  // mm of the machine a mm of paper
   const double width = scale * kPageWidth, unit = 1.1 * scale, left = (width - (*x_max - *x_min)) / 2;
   const auto px = [&](double x) { return x - *x_min + left; };
   const auto py = [&](double z) { return *z_max - z + margin; };
-  std::string svg = fmt::format("<svg viewBox='0 0 {:.3f} {:.3f}' role=img aria-label='part in the machine, X to the right, Z up' "
-                                "style='width:100%;max-height:{:g}mm' font-size='{:.3f}' font-family='sans-serif'>", width, height, kSketchHeight, 2.4 * unit);
+  std::string svg = fmt::format(
+      "<svg viewBox='0 0 {:.3f} {:.3f}' role=img aria-label='part in the machine, X to the right, Z up' "
+      "style='width:100%;max-height:{:g}mm' font-size='{:.3f}' font-family='sans-serif'>",
+      width, height, kSketchHeight, 2.4 * unit);
   const auto body = [&](double x1, double x2, double z1, double z2, const char* fill) {
-    svg += fmt::format("<rect x='{:.3f}' y='{:.3f}' width='{:.3f}' height='{:.3f}' fill='{}' stroke='#333' stroke-width='{:.3f}'/>",
-                       px(x1), py(std::max(z1, z2)), x2 - x1, std::abs(z2 - z1), fill, 0.2 * unit);
+    svg += fmt::format(
+        "<rect x='{:.3f}' y='{:.3f}' width='{:.3f}' height='{:.3f}' fill='{}' stroke='#333' stroke-width='{:.3f}'/>",
+        px(x1), py(std::max(z1, z2)), x2 - x1, std::abs(z2 - z1), fill, 0.2 * unit);
   };
   body(at.x() - r_out, at.x() + r_out, z_of(root), z_of(bottom), "#ddd");
   for (const double side : {-1.0, 1.0}) {
@@ -50,13 +54,16 @@ std::string part_sketch(const joints::Setup& setup, const PartOutline& part, con
   double free = 0;  // names of places at nearly the same height stand below one another
   for (const auto& [p, name] : marks) {
     const double x = px(p.x()), y = py(p.z()), r = 1.4 * unit;
-    svg += fmt::format("<path d='M{0:.3f} {1:.3f}h{2:.3f}M{3:.3f} {4:.3f}v{2:.3f}' stroke='#b00' stroke-width='{5:.3f}'/>", x - r, y, 2 * r, x,
-                       y - r, 0.3 * unit);
+    svg +=
+        fmt::format("<path d='M{0:.3f} {1:.3f}h{2:.3f}M{3:.3f} {4:.3f}v{2:.3f}' stroke='#b00' stroke-width='{5:.3f}'/>",
+                    x - r, y, 2 * r, x, y - r, 0.3 * unit);
     const double line = std::max(y + 0.8 * unit, free);
-    svg += fmt::format("<text x='{:.3f}' y='{:.3f}' fill='#b00'>{}</text>", x + 1.9 * unit, line, svg::html_escape(name));
+    svg +=
+        fmt::format("<text x='{:.3f}' y='{:.3f}' fill='#b00'>{}</text>", x + 1.9 * unit, line, svg::html_escape(name));
     free = line + 2.7 * unit;
   }
-  svg += fmt::format("<text x='{:.3f}' y='{:.3f}'>X right, Z up, outer diameter {:.3f} mm</text></svg>\n", unit, 3 * unit, 2 * r_out);
+  svg += fmt::format("<text x='{:.3f}' y='{:.3f}'>X right, Z up, outer diameter {:.3f} mm</text></svg>\n", unit,
+                     3 * unit, 2 * r_out);
   return svg;
 }
 
@@ -67,11 +74,14 @@ std::string tool_sketch(const tool::ToolAssembly& tool) {
     widest = std::max({widest, segment.lower_diameter_mm, segment.upper_diameter_mm});
   }
   const double height = std::max(tool.length_mm, tool.stick_out_mm + holder_height);
-  std::string svg = fmt::format("<svg viewBox='{:.3f} {:.3f} {:.3f} {:.3f}' style='height:34mm' role=img aria-label='tool {}'>", -widest / 2 - 1,
-                                -height - 1, widest + 2, height + 2, tool.number);
+  std::string svg =
+      fmt::format("<svg viewBox='{:.3f} {:.3f} {:.3f} {:.3f}' style='height:34mm' role=img aria-label='tool {}'>",
+                  -widest / 2 - 1, -height - 1, widest + 2, height + 2, tool.number);
   const auto cone = [&](double z1, double d1, double z2, double d2, const char* fill) {
-    svg += fmt::format("<path d='M{:.3f} {:.3f}L{:.3f} {:.3f}L{:.3f} {:.3f}L{:.3f} {:.3f}Z' fill='{}' stroke='#333' stroke-width='.3'/>", -d1 / 2,
-                       -z1, d1 / 2, -z1, d2 / 2, -z2, -d2 / 2, -z2, fill);
+    svg += fmt::format(
+        "<path d='M{:.3f} {:.3f}L{:.3f} {:.3f}L{:.3f} {:.3f}L{:.3f} {:.3f}Z' fill='{}' stroke='#333' "
+        "stroke-width='.3'/>",
+        -d1 / 2, -z1, d1 / 2, -z1, d2 / 2, -z2, -d2 / 2, -z2, fill);
   };
   // A finger mill is drawn by its widest and its tip.
   const bool finger = tool.type == tool::CutterType::finger_mill;
@@ -79,7 +89,10 @@ std::string tool_sketch(const tool::ToolAssembly& tool) {
   const double r = tool.radius_mm();
   if (!finger) cone(r, 2 * r, tool.flute_length_mm, 2 * r, "#e8c66a");
   if (!finger)
-    svg += fmt::format("<path d='M{0:.3f} {1:.3f}A{2:.3f} {2:.3f} 0 0 0 {2:.3f} {1:.3f}Z' fill='#e8c66a' stroke='#333' stroke-width='.3'/>", -r, -r, r);
+    svg += fmt::format(
+        "<path d='M{0:.3f} {1:.3f}A{2:.3f} {2:.3f} 0 0 0 {2:.3f} {1:.3f}Z' fill='#e8c66a' stroke='#333' "
+        "stroke-width='.3'/>",
+        -r, -r, r);
   cone(tool.flute_length_mm, tool.shank_diameter_mm, tool.stick_out_mm, tool.shank_diameter_mm, "#bbb");
   double z = tool.stick_out_mm;
   for (const auto& part : tool.holder) {

@@ -11,7 +11,8 @@
 namespace toothpath::sheet {
 
 /// Part in the X-Z plane of the machine, with its origin, the work offset and the rotary axes that the table carries.
-[[nodiscard]] std::string part_sketch(const joints::Setup& setup, const PartOutline& part, const machines::Machine& machine);
+[[nodiscard]] std::string part_sketch(const joints::Setup& setup, const PartOutline& part,
+                                      const machines::Machine& machine);
 
 /// Cutter, shank and holder from the side, tip at the bottom.
 [[nodiscard]] std::string tool_sketch(const tool::ToolAssembly& tool);

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
-#include "app/report/svg/html_text.h"
 #include "app/report/sheet/part_swing.h"
 #include "app/report/sheet/restart_section.h"
 #include "app/report/sheet/setup_drawings.h"
 #include "app/report/sheet/sheet_html.h"
+#include "app/report/svg/html_text.h"
 #include "geometry/base/angle.h"
 #include "postproc/controls/of_machine.h"
 
@@ -29,34 +29,40 @@ std::string coordinates(const Vec3& v) {
 
 // What the gear is, in the words of its drawing. A type of gear without these words does not compile.
 std::string gear_words(const bevel_gear::BevelGearParameters& p) {
-  return fmt::format("bevel gear, z {}, {}outer transverse module {:g} mm", p.teeth, p.mate_teeth > 0 ? fmt::format("mate z {}, ", p.mate_teeth) : "",
-                     p.outer_transverse_module_mm);
+  return fmt::format("bevel gear, z {}, {}outer transverse module {:g} mm", p.teeth,
+                     p.mate_teeth > 0 ? fmt::format("mate z {}, ", p.mate_teeth) : "", p.outer_transverse_module_mm);
 }
 
 std::string gear_words(const face_gear::FaceGearParameters& p) {
   const char* plane = p.module_plane == face_gear::ModulePlane::normal ? "normal" : "transverse";
-  std::string text = fmt::format("face gear, z {}, shaper z {}, {} module {:g} mm, pressure angle {:g} deg, shaft angle {:g} deg", p.teeth, p.shaper_teeth, plane,
-                                 p.module_mm, degrees(p.pressure_angle_rad), degrees(p.shaft_angle_rad));
+  std::string text = fmt::format(
+      "face gear, z {}, shaper z {}, {} module {:g} mm, pressure angle {:g} deg, shaft angle {:g} deg", p.teeth,
+      p.shaper_teeth, plane, p.module_mm, degrees(p.pressure_angle_rad), degrees(p.shaft_angle_rad));
   if (p.offset_mm != 0) text += fmt::format(", offset {:g} mm", p.offset_mm);
   for (const auto& zone : p.zones)
-    text += fmt::format("; radius {:g} to {:g} mm, {}", zone.inner_radius_mm, zone.outer_radius_mm,
-                        zone.helix_angle_rad == 0 ? "spur" : fmt::format("shaper helix {:g} deg", degrees(zone.helix_angle_rad)));
+    text += fmt::format(
+        "; radius {:g} to {:g} mm, {}", zone.inner_radius_mm, zone.outer_radius_mm,
+        zone.helix_angle_rad == 0 ? "spur" : fmt::format("shaper helix {:g} deg", degrees(zone.helix_angle_rad)));
   return text;
 }
 
 /// What cools, and the words that the operator finds in the program.
 std::string coolant_text(machines::Coolant coolant, const machines::Machine& machine) {
   const auto dialect = controls::dialect_of(machine);
-  const auto words = dialect && coolant != machines::Coolant::off ? text::coolant_words(*dialect, coolant) : Result<machines::CoolantWords>(Diagnostic{});
-  return words ? fmt::format("{}: on with {}, off with {}", to_string(coolant), words->on, words->off) : to_string(coolant);
+  const auto words = dialect && coolant != machines::Coolant::off ? text::coolant_words(*dialect, coolant)
+                                                                  : Result<machines::CoolantWords>(Diagnostic{});
+  return words ? fmt::format("{}: on with {}, off with {}", to_string(coolant), words->on, words->off)
+               : to_string(coolant);
 }
 
-void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part, const machines::Machine& machine, const report::RunReport& report) {
+void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part, const machines::Machine& machine,
+                     const report::RunReport& report) {
   const joints::Setup& setup = *job.setup;
   sheet.heading("Gear, machine and work offset");
   sheet.begin_table({"what", "value"});
   sheet.row({"gear", std::visit([](const auto& gear) { return gear_words(gear); }, job.gear)});
-  sheet.row({"heights, gear Z", fmt::format("tooth tops {}, deepest root {}, both from the gear origin", millimetres(part.tooth_top), millimetres(part.root))});
+  sheet.row({"heights, gear Z", fmt::format("tooth tops {}, deepest root {}, both from the gear origin",
+                                            millimetres(part.tooth_top), millimetres(part.root))});
   sheet.row({"machine", fmt::format("{} ({})", machine.name, job.machine.file)});
   sheet.row({"control", machine.dialect});
   sheet.row({"program", report.program_file.empty() ? "none: the run is not verified" : report.program_file});
@@ -64,21 +70,23 @@ void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part,
   sheet.row({"work offset", fmt::format("{} = machine {}", setup.work_offset, coordinates(setup.work_offset_at_mm))});
   sheet.row({"gear origin, machine", coordinates(setup.origin_mm)});
   sheet.row({"gear origin, " + setup.work_offset, coordinates(setup.origin_mm - setup.work_offset_at_mm)});
-  sheet.row({"gear axis", setup.axis_up ? "up: teeth towards the spindle, gear X along machine X" : "down: turned by 180 deg about X"});
+  sheet.row({"gear axis", setup.axis_up ? "up: teeth towards the spindle, gear X along machine X"
+                                        : "down: turned by 180 deg about X"});
   sheet.row({"coolant", coolant_text(job.coolant, machine)});
   sheet.end_table();
 }
 
 std::string cutter_name(const tool::ToolAssembly& tool) {
   if (tool.type == tool::CutterType::finger_mill)
-    return fmt::format("finger mill, module {:g}, tip radius {:g}, rack depth {:g}, profile height {:g} mm", tool.module_mm, tool.tip_radius_mm,
-                       tool.rack_depth_mm, tool.profile_height_mm);
+    return fmt::format("finger mill, module {:g}, tip radius {:g}, rack depth {:g}, profile height {:g} mm",
+                       tool.module_mm, tool.tip_radius_mm, tool.rack_depth_mm, tool.profile_height_mm);
   return fmt::format("ball end mill, dia {:g} mm", tool.diameter_mm);
 }
 
 void tool_section(Sheet& sheet, const job::Job& job, const report::RunReport& report) {
   sheet.heading("Tools");
-  sheet.begin_table({"T", "cutter", "length mm: gauge line to tip", "stick-out mm", "flute mm", "shank mm", "teeth", "cutting", "rapids", "total"});
+  sheet.begin_table({"T", "cutter", "length mm: gauge line to tip", "stick-out mm", "flute mm", "shank mm", "teeth",
+                     "cutting", "rapids", "total"});
   int changes = 0, before = -1;
   for (const auto& operation : report.operations) {
     changes += operation.tool_number != before ? 1 : 0;
@@ -91,20 +99,20 @@ void tool_section(Sheet& sheet, const job::Job& job, const report::RunReport& re
       feed += operation.feed_minutes;
       rapid += operation.rapid_minutes;
     }
-    sheet.row({std::to_string(tool.number), cutter_name(tool), millimetres(tool.length_mm),
-               millimetres(tool.stick_out_mm), millimetres(tool.flute_length_mm), fmt::format("dia {:g}", tool.shank_diameter_mm),
-               std::to_string(tool.teeth), report::readable_minutes(feed), report::readable_minutes(rapid), report::readable_minutes(feed + rapid)});
+    sheet.row(
+        {std::to_string(tool.number), cutter_name(tool), millimetres(tool.length_mm), millimetres(tool.stick_out_mm),
+         millimetres(tool.flute_length_mm), fmt::format("dia {:g}", tool.shank_diameter_mm), std::to_string(tool.teeth),
+         report::readable_minutes(feed), report::readable_minutes(rapid), report::readable_minutes(feed + rapid)});
   }
   sheet.end_table();
-  sheet.raw(fmt::format("<p class=small>{} tool change{}, the first tool included; changes are not in the times.</p>\n", changes, changes == 1 ? "" : "s"));
+  sheet.raw(fmt::format("<p class=small>{} tool change{}, the first tool included; changes are not in the times.</p>\n",
+                        changes, changes == 1 ? "" : "s"));
   sheet.raw("<p>");
   for (const auto& tool : job.tools) sheet.raw(fmt::format("T{} {} &nbsp; ", tool.number, tool_sketch(tool)));
   sheet.raw("</p>\n");
 }
 
-std::string microns(double mm) {
-  return mm < 0.1 ? fmt::format("{:.2f} um", mm * 1000) : fmt::format("{:.3f} mm", mm);
-}
+std::string microns(double mm) { return mm < 0.1 ? fmt::format("{:.2f} um", mm * 1000) : fmt::format("{:.3f} mm", mm); }
 
 /// What the flanks could bear if nothing else were cut.
 std::string flanks_alone(const report::LengthTolerance& t) {
@@ -116,15 +124,19 @@ std::string flanks_alone(const report::LengthTolerance& t) {
 void length_section(Sheet& sheet, const report::RunReport& report) {
   if (report.length_tolerances.empty()) return;
   sheet.heading("Tool length: how exactly it must be set");
-  sheet.begin_table({"op", "T", "share of the error", "too long by at most", "too short by at most", "share on the flanks", "flanks alone: long, short"});
+  sheet.begin_table({"op", "T", "share of the error", "too long by at most", "too short by at most",
+                     "share on the flanks", "flanks alone: long, short"});
   for (const auto& t : report.length_tolerances)
-    sheet.row({std::to_string(t.operation), std::to_string(t.tool_number), fmt::format("{:.3f}", t.share), microns(t.too_long_mm),
-               t.too_short_mm ? microns(*t.too_short_mm) : "another operation finishes there", fmt::format("{:.3f}", t.flank_share), flanks_alone(t)});
+    sheet.row({std::to_string(t.operation), std::to_string(t.tool_number), fmt::format("{:.3f}", t.share),
+               microns(t.too_long_mm), t.too_short_mm ? microns(*t.too_short_mm) : "another operation finishes there",
+               fmt::format("{:.3f}", t.flank_share), flanks_alone(t)});
   sheet.end_table();
-  sheet.raw("<p class=small>A length error d moves the cut surface by d (u &middot; n) along its normal n, u being the tool axis; the share is the largest "
-            "|u &middot; n| on what the operation cuts. Too long: what is left of the gouge tolerance beyond the proven bound, and the stock that the operation "
-            "leaves. Too short: what the scallop and chord of the last operation allow beyond what is left. An error of the work offset along the "
-            "tool axis adds to it.</p>\n");
+  sheet.raw(
+      "<p class=small>A length error d moves the cut surface by d (u &middot; n) along its normal n, u being the tool "
+      "axis; the share is the largest |u &middot; n| on what the operation cuts. Too long: what is left of the gouge "
+      "tolerance beyond the proven bound, and the stock that the operation leaves. Too short: what the scallop and "
+      "chord of the last operation allow beyond what is left. An error of the work offset along the tool axis adds to "
+      "it.</p>\n");
 }
 
 /// How the tool axis stands in an operation: with all its zones fixed, or turning in some.
@@ -133,8 +145,9 @@ std::string tilt_of(const report::RunReport& report, int operation) {
   for (const auto& d : report.directions) {
     if (d.operation != operation || d.fixed) continue;
     if (d.passes == 0) return "simultaneous";
-    text += fmt::format("{}zone {}: SIMULTANEOUS, lean {:.1f} to {:.1f} deg, turns in {} of {} passes", text.empty() ? "" : "; ", d.zone,
-                        degrees(d.least_lean_rad), degrees(d.greatest_lean_rad), d.turning_passes, d.passes);
+    text += fmt::format("{}zone {}: SIMULTANEOUS, lean {:.1f} to {:.1f} deg, turns in {} of {} passes",
+                        text.empty() ? "" : "; ", d.zone, degrees(d.least_lean_rad), degrees(d.greatest_lean_rad),
+                        d.turning_passes, d.passes);
   }
   return text.empty() ? "fixed" : text;
 }
@@ -143,17 +156,19 @@ void operation_section(Sheet& sheet, const report::RunReport& report) {
   sheet.heading("Operations");
   sheet.begin_table({"op", "type", "T", "S 1/min", "feed mm/min", "cutting", "rapids", "tool axis"});
   for (const auto& o : report.operations)
-    sheet.row({std::to_string(o.operation), o.type, std::to_string(o.tool_number), fmt::format("{:g}", o.speed_rpm), fmt::format("{:g}", o.feed_mm_min),
-               report::readable_minutes(o.feed_minutes), report::readable_minutes(o.rapid_minutes), tilt_of(report, o.operation)});
-  sheet.row({"", "all", "", "", "", report::readable_minutes(report.feed_minutes), report::readable_minutes(report.total_minutes - report.feed_minutes), ""});
+    sheet.row({std::to_string(o.operation), o.type, std::to_string(o.tool_number), fmt::format("{:g}", o.speed_rpm),
+               fmt::format("{:g}", o.feed_mm_min), report::readable_minutes(o.feed_minutes),
+               report::readable_minutes(o.rapid_minutes), tilt_of(report, o.operation)});
+  sheet.row({"", "all", "", "", "", report::readable_minutes(report.feed_minutes),
+             report::readable_minutes(report.total_minutes - report.feed_minutes), ""});
   sheet.end_table();
   sheet.heading("Axis ranges, machine coordinates");
   sheet.begin_table({"axis", "least", "greatest", "lower limit", "upper limit", "unit"});
   for (const auto& axis : report.axes) {
     const double f = axis.rotary ? degrees(1.0) : 1.0;
     const auto limit = [&](double value) { return axis.endless() ? "rolls over" : millimetres(value * f); };
-    sheet.row({std::string(1, axis.letter), millimetres(axis.min * f), millimetres(axis.max * f), limit(axis.lower_limit), limit(axis.upper_limit),
-               axis.rotary ? "deg" : "mm"});
+    sheet.row({std::string(1, axis.letter), millimetres(axis.min * f), millimetres(axis.max * f),
+               limit(axis.lower_limit), limit(axis.upper_limit), axis.rotary ? "deg" : "mm"});
   }
   sheet.end_table();
 }
@@ -168,28 +183,38 @@ void table_section(Sheet& sheet, const report::Section& section) {
 
 }  // namespace
 
-std::string setup_sheet(const job::Job& job, const PartOutline& part, const machines::Machine& machine, const report::RunReport& report) {
+std::string setup_sheet(const job::Job& job, const PartOutline& part, const machines::Machine& machine,
+                        const report::RunReport& report) {
   Sheet sheet;
   const std::string title = svg::html_escape(job.name);
-  sheet.raw(fmt::format("<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport content='width=device-width'><title>Set-up sheet: {}</title>"
-                        "<style>{}</style></head><body>\n<h1>Set-up sheet: {}</h1>\n", title, kSetupStyle, title));
+  sheet.raw(
+      fmt::format("<!DOCTYPE html>\n<html lang=en><head><meta charset=utf-8><meta name=viewport "
+                  "content='width=device-width'><title>Set-up sheet: "
+                  "{}</title><style>{}</style></head><body>\n<h1>Set-up sheet: {}</h1>\n",
+                  title, kSetupStyle, title));
   const std::string left = report::unfinished_text(report);
   if (report.verified && report.gouge)
-    sheet.raw(fmt::format("<div class={}>{}: worst gouge {:.2f} um, proven below {:.2f} um, tolerance {:.2f} um.{}</div>\n", left.empty() ? "yes" : "part",
-                          left.empty() ? "Verified" : "Verified, root not finished", std::max(0.0, report.gouge->measured_mm) * 1000, std::max(0.0, report.gouge->bound_mm) * 1000,
-                          report.gouge_tolerance_mm * 1000, left.empty() ? "" : fmt::format("<br>Not finished: {}.", svg::html_escape(left))));
+    sheet.raw(
+        fmt::format("<div class={}>{}: worst gouge {:.2f} um, proven below {:.2f} um, tolerance {:.2f} um.{}</div>\n",
+                    left.empty() ? "yes" : "part", left.empty() ? "Verified" : "Verified, root not finished",
+                    std::max(0.0, report.gouge->measured_mm) * 1000, std::max(0.0, report.gouge->bound_mm) * 1000,
+                    report.gouge_tolerance_mm * 1000,
+                    left.empty() ? "" : fmt::format("<br>Not finished: {}.", svg::html_escape(left))));
   else sheet.raw("<div class=no>NOT VERIFIED: do not cut.</div>\n");
   if (!report.reasons.empty()) sheet.list(report.reasons, "no");
   if (report.restart)
-    sheet.raw(fmt::format("<p class=no>This program begins at operation {}, tooth {}. What the whole program cuts before that is taken as done: look before you "
-                          "start.</p>\n", report.restart->operation, report.restart->tooth));
+    sheet.raw(
+        fmt::format("<p class=no>This program begins at operation {}, tooth {}. What the whole program cuts before "
+                    "that is taken as done: look before you start.</p>\n",
+                    report.restart->operation, report.restart->tooth));
   machine_section(sheet, job, part, machine, report);
   sheet.raw(part_sketch(*job.setup, part, machine));
   tool_section(sheet, job, report);
   length_section(sheet, report);
   operation_section(sheet, report);
   restart_section(sheet, job, report);
-  const BlankCylinder blank{part.outer_radius, std::min(part.bottom, part.tooth_top), std::max(part.bottom, part.tooth_top)};
+  const BlankCylinder blank{part.outer_radius, std::min(part.bottom, part.tooth_top),
+                            std::max(part.bottom, part.tooth_top)};
   if (!report.axes.empty()) table_section(sheet, swing_section(part_swing(blank, *job.setup, machine, report.axes)));
   for (const auto& section : report.sections) table_section(sheet, section);
   if (!report.assumed.empty()) {

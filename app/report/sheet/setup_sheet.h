@@ -15,8 +15,9 @@ struct PartOutline {
   double tooth_top = 0, root = 0, bottom = 0;  ///< z
 };
 
-/// Machine, work offset, tools with lengths and run times, operations, axis ranges, every assumed value, warnings, and a sketch of the
-/// part in the machine as inline SVG. One self-contained page without script. The job has a set-up.
-[[nodiscard]] std::string setup_sheet(const job::Job& job, const PartOutline& part, const machines::Machine& machine, const report::RunReport& report);
+/// Machine, work offset, tools with lengths and run times, operations, axis ranges, every assumed value, warnings, and
+/// a sketch of the part in the machine as inline SVG. One self-contained page without script. The job has a set-up.
+[[nodiscard]] std::string setup_sheet(const job::Job& job, const PartOutline& part, const machines::Machine& machine,
+                                      const report::RunReport& report);
 
 }  // namespace toothpath::sheet

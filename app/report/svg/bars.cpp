@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/report/svg/html_text.h"
 #include "app/report/svg/canvas.h"
+#include "app/report/svg/html_text.h"
 #include "app/report/svg/plot.h"
 
 namespace toothpath::svg {
@@ -49,7 +49,8 @@ std::string svg_paired_bars(const PairedBarChart& chart) {
   const double left = label_room(names);
   const double bottom = kBarsTop + kRow * static_cast<double>(chart.rows.size());
   SvgCanvas canvas(kBarsWidth, bottom + 44, chart.title);
-  draw_legend(canvas, {{chart.first_name, "bar s0", true}, {chart.second_name, "bar s1", true}}, left, 2, kBarsWidth - left - kBarsRight);
+  draw_legend(canvas, {{chart.first_name, "bar s0", true}, {chart.second_name, "bar s1", true}}, left, 2,
+              kBarsWidth - left - kBarsRight);
   const Scale x{std::pow(10.0, first), std::pow(10.0, last), left, kBarsWidth - kBarsRight, true};
   for (const Tick& tick : ticks_for(x, 5)) {
     canvas.line(x(tick.value), kBarsTop, x(tick.value), bottom, tick.label.empty() ? "grid minor" : "grid");

@@ -20,7 +20,8 @@ std::string superscript(int exponent) {
 }
 
 std::string decade_label(int exponent) {
-  return exponent >= -3 && exponent <= 4 ? short_number(std::pow(10.0, exponent)) : fmt::format("10{}", superscript(exponent));
+  return exponent >= -3 && exponent <= 4 ? short_number(std::pow(10.0, exponent))
+                                         : fmt::format("10{}", superscript(exponent));
 }
 
 /// Enough decimals to tell neighbouring ticks apart, the same for all of them.
@@ -54,14 +55,18 @@ std::vector<Tick> decade_ticks(const Scale& scale) {
 }  // namespace
 
 SvgCanvas::SvgCanvas(double width, double height, std::string_view label)
-    : body_(fmt::format(R"(<svg class="plot" viewBox="0 0 {} {}" role="img" aria-label="{}">)", px(width), px(height), html_escape(label))) {}
+    : body_(fmt::format(R"(<svg class="plot" viewBox="0 0 {} {}" role="img" aria-label="{}">)", px(width), px(height),
+                        html_escape(label))) {}
 
 void SvgCanvas::line(double x1, double y1, double x2, double y2, std::string_view css_class) {
-  body_ += fmt::format(R"(<line x1="{}" y1="{}" x2="{}" y2="{}" class="{}"/>)", px(x1), px(y1), px(x2), px(y2), css_class);
+  body_ +=
+      fmt::format(R"(<line x1="{}" y1="{}" x2="{}" y2="{}" class="{}"/>)", px(x1), px(y1), px(x2), px(y2), css_class);
 }
 
-void SvgCanvas::rectangle(double x, double y, double width, double height, std::string_view css_class, std::string_view tip) {
-  body_ += fmt::format(R"(<rect x="{}" y="{}" width="{}" height="{}" class="{}")", px(x), px(y), px(width), px(height), css_class);
+void SvgCanvas::rectangle(double x, double y, double width, double height, std::string_view css_class,
+                          std::string_view tip) {
+  body_ += fmt::format(R"(<rect x="{}" y="{}" width="{}" height="{}" class="{}")", px(x), px(y), px(width), px(height),
+                       css_class);
   body_ += tip.empty() ? "/>" : fmt::format("><title>{}</title></rect>", html_escape(tip));
 }
 
@@ -75,12 +80,14 @@ void SvgCanvas::path(std::string_view d, std::string_view css_class) {
 }
 
 void SvgCanvas::text(double x, double y, std::string_view text, std::string_view anchor, std::string_view css_class) {
-  body_ += fmt::format(R"(<text x="{}" y="{}" text-anchor="{}" class="{}">{}</text>)", px(x), px(y), anchor, css_class, html_escape(text));
+  body_ += fmt::format(R"(<text x="{}" y="{}" text-anchor="{}" class="{}">{}</text>)", px(x), px(y), anchor, css_class,
+                       html_escape(text));
 }
 
 void SvgCanvas::text_upwards(double x, double y, std::string_view text, std::string_view css_class) {
-  body_ += fmt::format(R"svg(<text transform="translate({} {}) rotate(-90)" text-anchor="middle" class="{}">{}</text>)svg", px(x), px(y),
-                       css_class, html_escape(text));
+  body_ +=
+      fmt::format(R"svg(<text transform="translate({} {}) rotate(-90)" text-anchor="middle" class="{}">{}</text>)svg",
+                  px(x), px(y), css_class, html_escape(text));
 }
 
 std::string SvgCanvas::finish() && { return std::move(body_) + "</svg>"; }
@@ -96,11 +103,15 @@ std::vector<double> nice_ticks(double low, double high, int wanted) {
   const double decade = std::pow(10.0, std::floor(std::log10(raw)));
   double step = 10 * decade;
   for (const double digit : {1.0, 2.0, 5.0})
-    if (digit * decade >= raw * (1 - 1e-9)) { step = digit * decade; break; }
+    if (digit * decade >= raw * (1 - 1e-9)) {
+      step = digit * decade;
+      break;
+    }
   std::vector<double> ticks;
   const double slack = 1e-9 * (high - low) / step;
   const auto last = static_cast<long>(std::floor(high / step + slack));
-  for (auto k = static_cast<long>(std::ceil(low / step - slack)); k <= last; ++k) ticks.push_back(static_cast<double>(k) * step);
+  for (auto k = static_cast<long>(std::ceil(low / step - slack)); k <= last; ++k)
+    ticks.push_back(static_cast<double>(k) * step);
   return ticks;
 }
 

@@ -1,4 +1,5 @@
-// The pieces that the SVG plots share: shapes as text, scales, axes, a legend. Lengths in SVG units (px of the view box).
+// The pieces that the SVG plots share: shapes as text, scales, axes, a legend. Lengths in SVG units (px of the view
+// box).
 #pragma once
 
 #include <string>
@@ -14,7 +15,8 @@ class SvgCanvas {
   SvgCanvas(double width, double height, std::string_view label);
 
   void line(double x1, double y1, double x2, double y2, std::string_view css_class);
-  void rectangle(double x, double y, double width, double height, std::string_view css_class, std::string_view tip = {});
+  void rectangle(double x, double y, double width, double height, std::string_view css_class,
+                 std::string_view tip = {});
   void circle(double x, double y, double radius, std::string_view css_class, std::string_view tip = {});
   /// `d` as in the SVG path element; see move_to() and line_to().
   void path(std::string_view d, std::string_view css_class);

@@ -26,8 +26,8 @@ struct LineChart {
   std::vector<ChartSeries> series;
   std::vector<ChartLimit> limits;
   bool log_x = false, log_y = false;
-  bool markers = false;  ///< a dot at every point: for tables of few points
-  std::string note;      ///< one sentence below the plot, may be empty
+  bool markers = false;      ///< a dot at every point: for tables of few points
+  std::string note;          ///< one sentence below the plot, may be empty
   double plot_height = 200;  ///< of a plot that is 480 wide
 };
 

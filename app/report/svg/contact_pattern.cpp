@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/report/svg/html_text.h"
 #include "app/report/svg/canvas.h"
+#include "app/report/svg/html_text.h"
 
 namespace toothpath::svg {
 namespace {
@@ -46,10 +46,12 @@ Frame frame_of(const std::vector<double>& xs, const std::vector<double>& ys, dou
 
 /// Coloured bands: a cell has the mean of its corners' values, neighbours of one class in a row are one polygon.
 template <typename Class>
-void fill_cells(SvgCanvas& canvas, const Frame& f, int rows, int columns, const std::vector<double>& x, const std::vector<double>& y,
-                int classes, Class class_at, const std::vector<std::string>& fills) {
+void fill_cells(SvgCanvas& canvas, const Frame& f, int rows, int columns, const std::vector<double>& x,
+                const std::vector<double>& y, int classes, Class class_at, const std::vector<std::string>& fills) {
   std::vector<std::string> paths(static_cast<std::size_t>(classes));
-  const auto at = [&](int r, int c) { return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(c); };
+  const auto at = [&](int r, int c) {
+    return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(c);
+  };
   const auto place = [&](std::size_t k) { return px(f.x(x[k])) + " " + px(f.y(y[k])); };
   for (int r = 0; r + 1 < rows; ++r)
     for (int c = 0; c + 1 < columns;) {
@@ -66,10 +68,13 @@ void fill_cells(SvgCanvas& canvas, const Frame& f, int rows, int columns, const 
       c = end;
     }
   for (std::size_t k = 0; k < paths.size(); ++k)
-    if (!paths[k].empty()) canvas.raw(fmt::format(R"(<path d="{}" fill="{}" stroke="{}" stroke-width="0.4"/>)", paths[k], fills[k], fills[k]));
+    if (!paths[k].empty())
+      canvas.raw(
+          fmt::format(R"(<path d="{}" fill="{}" stroke="{}" stroke-width="0.4"/>)", paths[k], fills[k], fills[k]));
 }
 
-void outline(SvgCanvas& canvas, const Frame& f, int rows, int columns, const std::vector<double>& x, const std::vector<double>& y) {
+void outline(SvgCanvas& canvas, const Frame& f, int rows, int columns, const std::vector<double>& x,
+             const std::vector<double>& y) {
   std::string d;
   const auto add = [&](int r, int c) {
     const auto k = static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(c);
@@ -88,7 +93,9 @@ double key(SvgCanvas& canvas, const std::vector<std::pair<std::string, std::stri
   for (const auto& [fill, text] : entries) {
     const double wide = 24 + text_width(text) + 14;
     if (x + wide > kPatternWidth && x > kPatternLeft) x = kPatternLeft, y += 20;
-    canvas.raw(fmt::format(R"(<rect x="{}" y="{}" width="16" height="12" fill="{}" stroke="#8a949e" stroke-width="0.6"/>)", px(x), px(y), fill));
+    canvas.raw(
+        fmt::format(R"(<rect x="{}" y="{}" width="16" height="12" fill="{}" stroke="#8a949e" stroke-width="0.6"/>)",
+                    px(x), px(y), fill));
     canvas.text(x + 21, y + 10.5, text, "start");
     x += wide;
   }
@@ -118,7 +125,9 @@ std::string svg_contact_pattern(const PatternDrawing& p) {
   SvgCanvas canvas(kPatternWidth, f.height, p.title);
   key(canvas, entries);
   draw_axes(canvas, f.x, f.y, p.x_label, p.y_label);
-  const auto gap = [&](int r, int c) { return p.gap_um[static_cast<std::size_t>(r) * static_cast<std::size_t>(p.columns) + static_cast<std::size_t>(c)]; };
+  const auto gap = [&](int r, int c) {
+    return p.gap_um[static_cast<std::size_t>(r) * static_cast<std::size_t>(p.columns) + static_cast<std::size_t>(c)];
+  };
   fill_cells(canvas, f, p.rows, p.columns, p.x, p.y, kClasses,
              [&](int r, int c) {
                const double corners[] = {gap(r, c), gap(r, c + 1), gap(r + 1, c), gap(r + 1, c + 1)};
@@ -142,13 +151,17 @@ std::string svg_flank_field(const FlankFieldDrawing& p) {
   if (!(largest > 0))
     for (const double v : p.value) largest = std::max(largest, std::abs(v));
   if (!(largest > 0)) largest = 1;
-  static const std::vector<std::string> fills = {"#2b4f9e", "#5f86c8", "#9db9e2", "#d3e0f2", "#f3f3f3", "#f7dccb", "#efb08e", "#dc7650", "#b03a25"};
+  static const std::vector<std::string> fills = {"#2b4f9e", "#5f86c8", "#9db9e2", "#d3e0f2", "#f3f3f3",
+                                                 "#f7dccb", "#efb08e", "#dc7650", "#b03a25"};
   const int classes = static_cast<int>(fills.size());
-  const auto class_of_value = [&](double v) { return std::clamp(static_cast<int>(std::floor((v / largest + 1) / 2 * classes)), 0, classes - 1); };
+  const auto class_of_value = [&](double v) {
+    return std::clamp(static_cast<int>(std::floor((v / largest + 1) / 2 * classes)), 0, classes - 1);
+  };
   std::vector<std::pair<std::string, std::string>> entries;
   for (const int k : {0, 2, 4, 6, 8}) {
     const double middle = ((k + 0.5) * 2 / classes - 1) * largest;
-    entries.emplace_back(fills[static_cast<std::size_t>(k)], k == 4 ? "0" : short_number(middle, 2) + (k == 8 ? " " + p.unit : ""));
+    entries.emplace_back(fills[static_cast<std::size_t>(k)],
+                         k == 4 ? "0" : short_number(middle, 2) + (k == 8 ? " " + p.unit : ""));
   }
   SvgCanvas probe(1, 1, "");
   const double top = key(probe, entries);
@@ -156,9 +169,15 @@ std::string svg_flank_field(const FlankFieldDrawing& p) {
   SvgCanvas canvas(kPatternWidth, f.height, p.title);
   key(canvas, entries);
   draw_axes(canvas, f.x, f.y, p.x_label, p.y_label);
-  const auto value = [&](int r, int c) { return p.value[static_cast<std::size_t>(r) * static_cast<std::size_t>(p.columns) + static_cast<std::size_t>(c)]; };
-  fill_cells(canvas, f, p.rows, p.columns, p.x, p.y, classes,
-             [&](int r, int c) { return class_of_value((value(r, c) + value(r, c + 1) + value(r + 1, c) + value(r + 1, c + 1)) / 4); }, fills);
+  const auto value = [&](int r, int c) {
+    return p.value[static_cast<std::size_t>(r) * static_cast<std::size_t>(p.columns) + static_cast<std::size_t>(c)];
+  };
+  fill_cells(
+      canvas, f, p.rows, p.columns, p.x, p.y, classes,
+      [&](int r, int c) {
+        return class_of_value((value(r, c) + value(r, c + 1) + value(r + 1, c) + value(r + 1, c + 1)) / 4);
+      },
+      fills);
   outline(canvas, f, p.rows, p.columns, p.x, p.y);
   return std::move(canvas).finish();
 }

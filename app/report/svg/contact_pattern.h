@@ -12,18 +12,19 @@ struct PatternDrawing {
   std::string title;             ///< read by screen readers
   std::string x_label, y_label;  ///< "radius [mm]", "height z [mm]"
   int rows = 0, columns = 0;
-  std::vector<double> x, y;      ///< row-major, mm
-  std::vector<double> gap_um;    ///< row-major; beyond 1e6: the mate never comes
+  std::vector<double> x, y;    ///< row-major, mm
+  std::vector<double> gap_um;  ///< row-major; beyond 1e6: the mate never comes
   double compound_um = 6;
-  bool outline = true;           ///< false: only places that the mate meets are drawn, and no edge around them
+  bool outline = true;  ///< false: only places that the mate meets are drawn, and no edge around them
   std::vector<std::pair<double, double>> path;  ///< path of contact, drawn as a line
 };
 
-/// The pattern in three depths of compound, what lies just outside it in grey, the outline of the flank. Drawn to scale unless the flank is
-/// longer than 6 times its height. One <svg>; empty without places.
+/// The pattern in three depths of compound, what lies just outside it in grey, the outline of the flank. Drawn to scale
+/// unless the flank is longer than 6 times its height. One <svg>; empty without places.
 [[nodiscard]] std::string svg_contact_pattern(const PatternDrawing& drawing);
 
-/// A signed quantity on the flank (deviation, difference of two) as colours, blue below zero and red above, -largest .. +largest.
+/// A signed quantity on the flank (deviation, difference of two) as colours, blue below zero and red above, -largest ..
+/// +largest.
 struct FlankFieldDrawing {
   std::string title, x_label, y_label, unit;
   int rows = 0, columns = 0;

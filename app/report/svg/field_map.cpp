@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/report/svg/html_text.h"
 #include "app/report/svg/canvas.h"
+#include "app/report/svg/html_text.h"
 
 namespace toothpath::svg {
 namespace {
@@ -36,7 +36,8 @@ std::string svg_field_map(const FieldMap& map) {
   if (map.x.size() < 2 || map.y.size() < 2 || map.values.size() != map.x.size() * map.y.size()) return {};
   const double largest = map.largest > 0 ? map.largest : 1;
   SvgCanvas canvas(kFieldWidth, kFieldHeight + kFieldTop + kFieldBottom, map.title);
-  const Scale x{map.x.front(), map.x.back(), kFieldLeft, kFieldWidth - 8, false}, y{map.y.front(), map.y.back(), kFieldTop + kFieldHeight, kFieldTop, false};
+  const Scale x{map.x.front(), map.x.back(), kFieldLeft, kFieldWidth - 8, false},
+      y{map.y.front(), map.y.back(), kFieldTop + kFieldHeight, kFieldTop, false};
   draw_axes(canvas, x, y, map.x_label, map.y_label);
   const auto ex = edges(map.x), ey = edges(map.y);
   for (std::size_t r = 0; r < map.y.size(); ++r)
@@ -44,14 +45,15 @@ std::string svg_field_map(const FieldMap& map) {
       const double v = map.values[r * map.x.size() + c];
       if (!std::isfinite(v)) continue;
       // A little overlap: neighbouring cells leave no hair lines.
-      canvas.raw(fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>", x(ex[c]), y(ey[r + 1]), x(ex[c + 1]) - x(ex[c]) + 0.3,
-                             y(ey[r]) - y(ey[r + 1]) + 0.3, colour(v / largest)));
+      canvas.raw(fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"{}\"/>",
+                             x(ex[c]), y(ey[r + 1]), x(ex[c + 1]) - x(ex[c]) + 0.3, y(ey[r]) - y(ey[r + 1]) + 0.3,
+                             colour(v / largest)));
     }
   constexpr int kSteps = 40;
   const double top = kFieldTop + kFieldHeight + 50, left = kFieldLeft, width = kFieldWidth - kFieldLeft - 60;
   for (int k = 0; k < kSteps; ++k)
-    canvas.raw(fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"12\" fill=\"{}\"/>", left + width * k / kSteps, top, width / kSteps + 0.3,
-                           colour(-1 + (2 * k + 1.0) / kSteps)));
+    canvas.raw(fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"12\" fill=\"{}\"/>",
+                           left + width * k / kSteps, top, width / kSteps + 0.3, colour(-1 + (2 * k + 1.0) / kSteps)));
   for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0})
     canvas.text(left + 0.5 * width * (1 + share), top + 28, short_number(share * largest, 3), "middle");
   canvas.text(left + width + 24, top + 11, map.unit, "start");

@@ -6,8 +6,8 @@
 
 namespace toothpath::svg {
 
-/// `&`, `<`, `>`, `"` and `'` as entities; control characters other than tab and newline, and bytes that are not valid UTF-8,
-/// become U+FFFD. For element content and quoted attributes.
+/// `&`, `<`, `>`, `"` and `'` as entities; control characters other than tab and newline, and bytes that are not valid
+/// UTF-8, become U+FFFD. For element content and quoted attributes.
 [[nodiscard]] std::string html_escape(std::string_view text);
 
 /// Valid UTF-8: bytes that are not become U+FFFD. For text that goes into JSON.
@@ -17,8 +17,8 @@ namespace toothpath::svg {
 /// characters occur only inside the strings of a JSON text, where the escapes mean the same.
 [[nodiscard]] std::string script_safe_json(std::string_view json);
 
-/// A number for people: at most `digits` significant digits, no trailing zeros, powers of ten beyond 1e-4 and 1e6. "-0" is "0",
-/// NaN and infinities are an en dash.
+/// A number for people: at most `digits` significant digits, no trailing zeros, powers of ten beyond 1e-4 and 1e6. "-0"
+/// is "0", NaN and infinities are an en dash.
 [[nodiscard]] std::string short_number(double value, int digits = 4);
 
 }  // namespace toothpath::svg

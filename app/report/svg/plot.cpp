@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "app/report/svg/html_text.h"
 #include "app/report/svg/canvas.h"
+#include "app/report/svg/html_text.h"
 
 namespace toothpath::svg {
 namespace {
@@ -40,7 +40,8 @@ struct Point {
   double x = 0, y = 0;
 };
 
-/// First, least, greatest and last point of each column, in order; all points when those of the curve, `total`, are few.
+/// First, least, greatest and last point of each column, in order; all points when those of the curve, `total`, are
+/// few.
 std::vector<Point> thinned(const std::vector<Point>& points, double low, double high, std::size_t total) {
   if (total <= 4 * kColumns) return points;
   const auto column_of = [&](const Point& p) {
@@ -103,7 +104,8 @@ std::string svg_line_chart(const LineChart& chart) {
 
   std::vector<LegendEntry> legend;
   for (std::size_t i = 0; i < chart.series.size(); ++i)
-    if (chart.series.size() > 1 || !chart.limits.empty()) legend.push_back({chart.series[i].name, fmt::format("s{}", i % 8)});
+    if (chart.series.size() > 1 || !chart.limits.empty())
+      legend.push_back({chart.series[i].name, fmt::format("s{}", i % 8)});
   if (!chart.limits.empty()) legend.push_back({chart.limits.size() == 1 ? chart.limits[0].name : "limit", "lim"});
 
   SvgCanvas probe(1, 1, "");  // only to learn how many rows the legend takes
@@ -140,7 +142,8 @@ std::string svg_histogram(const HistogramChart& chart) {
   across.widen(0.02, false);
 
   std::vector<LegendEntry> legend;
-  for (const ChartLimit& limit : chart.limits) legend.push_back({fmt::format("{} {}", limit.name, short_number(limit.y)), "lim"});
+  for (const ChartLimit& limit : chart.limits)
+    legend.push_back({fmt::format("{} {}", limit.name, short_number(limit.y)), "lim"});
   SvgCanvas probe(1, 1, "");
   const double top = kPlotTop + draw_legend(probe, legend, kPlotLeft, 0, kPlotWidth - kPlotLeft - kPlotRight);
   SvgCanvas canvas(kPlotWidth, top + kPlotHeight + kPlotBottom, chart.title);

@@ -1,7 +1,8 @@
-// The plots of the report page as inline SVG: axes with units and ticks, a legend, colours from the style sheet of the page.
+// The plots of the report page as inline SVG: axes with units and ticks, a legend, colours from the style sheet of the
+// page.
 //
-// Every function returns one <svg> element without script. Colours are classes (s0 ... s7, ax, grid, lim), so one text serves light,
-// dark and print. Where there is nothing to draw the result is empty.
+// Every function returns one <svg> element without script. Colours are classes (s0 ... s7, ax, grid, lim), so one text
+// serves light, dark and print. Where there is nothing to draw the result is empty.
 #pragma once
 
 #include <string>
@@ -23,9 +24,9 @@ namespace toothpath::svg {
 /// One bar a name, linear scale from zero.
 [[nodiscard]] std::string svg_bars(const std::vector<std::pair<std::string, double>>& rows, const std::string& x_label);
 
-/// Directions tried for the tool: distance from the centre is the lean against the gear axis, angle the azimuth about it (0 to the
-/// right, counter-clockwise), both of the axis from tip to holder. Clear directions are filled by their gap; the others
-/// carry the colour of the body that is in the way. A ring marks the direction chosen.
+/// Directions tried for the tool: distance from the centre is the lean against the gear axis, angle the azimuth about
+/// it (0 to the right, counter-clockwise), both of the axis from tip to holder. Clear directions are filled by their
+/// gap; the others carry the colour of the body that is in the way. A ring marks the direction chosen.
 [[nodiscard]] std::string svg_direction_map(const proof::DirectionChoice& choice);
 
 /// Ticks at 1, 2 or 5 times a power of ten inside [low, high]; about `wanted` of them. Empty unless low < high.

@@ -1,6 +1,6 @@
 // APT / CLDATA (ISO 3592, words of ISO 4343): cutter location data, no axes. What stands in the file is the tip in work
-// coordinates and the tool axis, tooth after tooth; the axis program is that of a machine whose tool turns freely. A subset:
-// PARTNO UNITS MULTAX LOADTL SPINDL COOLNT RAPID FEDRAT GOTO END FINI.
+// coordinates and the tool axis, tooth after tooth; the axis program is that of a machine whose tool turns freely. A
+// subset: PARTNO UNITS MULTAX LOADTL SPINDL COOLNT RAPID FEDRAT GOTO END FINI.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -20,7 +20,8 @@ constexpr std::size_t kLongestTip = 34;  // 72 characters less the longest axis
 
 class AptWriter {
  public:
-  AptWriter(const joints::AxisProgram& program, const text::NcDialect& dialect, const text::NcHeader& header) : program_(program), dialect_(dialect), out_(dialect), header_(header) {}
+  AptWriter(const joints::AxisProgram& program, const text::NcDialect& dialect, const text::NcHeader& header)
+      : program_(program), dialect_(dialect), out_(dialect), header_(header) {}
 
   Result<text::NcText> write() {
     if (header_.coolant != machines::Coolant::off) {
@@ -57,10 +58,8 @@ class AptWriter {
 
   void block(const joints::AxisBlock& b) {
     if (!b.tip) return;  // before the tool is over the part, and after it has left
-    if (b.kind == joints::BlockKind::feed)
-      feedrate(b);
-    else
-      out_.line("RAPID");
+    if (b.kind == joints::BlockKind::feed) feedrate(b);
+    else out_.line("RAPID");
     std::string& text = out_.text();
     std::size_t begin = text.size();
     text += "GOTO/";
@@ -122,7 +121,8 @@ class AptWriter {
   std::optional<Diagnostic> error_;
 };
 
-Result<text::NcText> write_apt(const joints::AxisProgram& program, const text::NcDialect& dialect, const text::NcHeader& header) {
+Result<text::NcText> write_apt(const joints::AxisProgram& program, const text::NcDialect& dialect,
+                               const text::NcHeader& header) {
   return AptWriter(program, dialect, header).write();
 }
 
@@ -137,7 +137,8 @@ text::NcDialect words() {
   d.tcp_on = d.tcp_off = {"MULTAX/ON"};
   d.tcp_starts_at_zero = true;
   d.vector_words = {"I", "J", "K"};
-  d.coolant = {{machines::Coolant::mist, {"COOLNT/MIST", "COOLNT/OFF"}}, {machines::Coolant::flood, {"COOLNT/FLOOD", "COOLNT/OFF"}}};
+  d.coolant = {{machines::Coolant::mist, {"COOLNT/MIST", "COOLNT/OFF"}},
+               {machines::Coolant::flood, {"COOLNT/FLOOD", "COOLNT/OFF"}}};
   d.takes_coolant = false;
   d.write = write_apt;
   return d;

@@ -1,5 +1,6 @@
-// Reads cutter location data back (APT, the subset that we write): GOTO with tip and axis in work coordinates. The machine is the
-// one of the job, whose axes follow the tool; LOADTL stands for a tool change at the top of Z with the rotaries at zero.
+// Reads cutter location data back (APT, the subset that we write): GOTO with tip and axis in work coordinates. The
+// machine is the one of the job, whose axes follow the tool; LOADTL stands for a tool change at the top of Z with the
+// rotaries at zero.
 #include "postproc/controls/apt/apt_reader.h"
 
 #include <cmath>
@@ -12,7 +13,8 @@ namespace {
 
 class AptReader {
  public:
-  AptReader(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink)
+  AptReader(std::string_view text, const std::string& file, const readback::NcControl& control,
+            const readback::MoveSink& sink)
       : file_(file), control_(control), lines_(readback::lines_of(text)), execution_(control, {}, sink) {
     execution_.set_feed_mode(readback::NcExecution::Feed::per_minute);
   }
@@ -67,7 +69,9 @@ class AptReader {
     }
     if (s.take("SPINDL/OFF")) return execution_.spindle_off(), std::nullopt;
     if (s.take("UNITS/MM")) return execution_.set_unit(), execution_.set_absolute(), std::nullopt;
-    if (s.take("MULTAX/ON") || s.take("COOLNT/ON") || s.take("COOLNT/FLOOD") || s.take("COOLNT/MIST") || s.take("COOLNT/OFF")) return std::nullopt;
+    if (s.take("MULTAX/ON") || s.take("COOLNT/ON") || s.take("COOLNT/FLOOD") || s.take("COOLNT/MIST") ||
+        s.take("COOLNT/OFF"))
+      return std::nullopt;
     if (s.take("END")) {
       if (auto bad = placed(execution_.tcp_off())) return bad;
       return placed(execution_.end_program(false));
@@ -116,7 +120,8 @@ class AptReader {
       if (i < 5 && !s.take(",")) return here(s.column(), ", expected");
       if (s.at() != '$') continue;
       s.advance(1);
-      if (!s.done() || line_ + 1 >= lines_.size()) return here(s.column(), "nothing may stand behind $, and a line must follow");
+      if (!s.done() || line_ + 1 >= lines_.size())
+        return here(s.column(), "nothing may stand behind $, and a line must follow");
       s = readback::NcScanner(lines_[++line_]);
     }
     if (!execution_.tcp()) return here(1, "GOTO before LOADTL");
@@ -130,7 +135,9 @@ class AptReader {
     rapid_ = false;
     return move(m);
   }
-  Problem move(const readback::NcExecution::Move& m) { return placed(execution_.move(m, static_cast<std::int32_t>(line_) + 1)); }
+  Problem move(const readback::NcExecution::Move& m) {
+    return placed(execution_.move(m, static_cast<std::int32_t>(line_) + 1));
+  }
 
   const std::string& file_;
   const readback::NcControl& control_;
@@ -142,7 +149,8 @@ class AptReader {
 
 }  // namespace
 
-Status execute_apt(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
+Status execute_apt(std::string_view text, const std::string& file, const readback::NcControl& control,
+                   const readback::MoveSink& sink) {
   return AptReader(text, file, control, sink).run();
 }
 

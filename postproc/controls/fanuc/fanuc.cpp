@@ -1,6 +1,6 @@
-// Fanuc and compatible controls, IS-B (3 decimals): every value has a point, G43 stands with Z, G49 only in the block of a
-// machine-coordinate retract, the largest F in G93 is 9999.999. TCP is G43.4: its block moves Z alone, at rotary zero, where
-// the table frame is frozen.
+// Fanuc and compatible controls, IS-B (3 decimals): every value has a point, G43 stands with Z, G49 only in the block
+// of a machine-coordinate retract, the largest F in G93 is 9999.999. TCP is G43.4: its block moves Z alone, at rotary
+// zero, where the table frame is frozen.
 #include "postproc/controls/fanuc/fanuc.h"
 
 #include "postproc/controls/work_offset.h"
@@ -15,7 +15,8 @@ bool has_offset(std::string_view name) {
   return basic_offset(name) > 0 || (n >= 1 && n <= kLastExtended);
 }
 
-Status execute(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
+Status execute(std::string_view text, const std::string& file, const readback::NcControl& control,
+               const readback::MoveSink& sink) {
   static const readback::IsoLanguage language = fanuc_language();
   return execute_iso(text, file, control, sink, language);
 }

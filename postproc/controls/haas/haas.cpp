@@ -1,5 +1,6 @@
-// Haas NGC: the words of Fanuc with G154 for further work offsets and M88, M89 for coolant through the spindle. Teeth are written out: what M98
-// finds depends on settings of the control. G234 and rotaries that roll over are left out; their jobs are refused.
+// Haas NGC: the words of Fanuc with G154 for further work offsets and M88, M89 for coolant through the spindle. Teeth
+// are written out: what M98 finds depends on settings of the control. G234 and rotaries that roll over are left out;
+// their jobs are refused.
 #include "postproc/controls/fanuc/fanuc.h"
 #include "postproc/controls/work_offset.h"
 
@@ -34,7 +35,8 @@ const readback::IsoLanguage& language() {
   return l;
 }
 
-Status execute(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
+Status execute(std::string_view text, const std::string& file, const readback::NcControl& control,
+               const readback::MoveSink& sink) {
   return execute_iso(text, file, control, sink, language());
 }
 

@@ -1,8 +1,8 @@
-// Heidenhain TNC 640, plain text. There is no inverse time feed, so that blocks in which rotaries move need TCPM; without it
-// the tilt is fixed in every pass. Cycle 32 bounds the blending of the corners (T: the tip, TA: the rotaries with TCPM). The teeth run in a
-// section that is jumped back to (a count of repetitions would not follow a changed first tooth); a word takes no arithmetic, so that
-// the index angle is a Q parameter, set ahead of each rotary block. The remainder of the spread order is made with INT, half a unit
-// away from where it could fall on the wrong side.
+// Heidenhain TNC 640, plain text. There is no inverse time feed, so that blocks in which rotaries move need TCPM;
+// without it the tilt is fixed in every pass. Cycle 32 bounds the blending of the corners (T: the tip, TA: the rotaries
+// with TCPM). The teeth run in a section that is jumped back to (a count of repetitions would not follow a changed
+// first tooth); a word takes no arithmetic, so that the index angle is a Q parameter, set ahead of each rotary block.
+// The remainder of the spread order is made with INT, half a unit away from where it could fall on the wrong side.
 #include "postproc/controls/control.h"
 #include "postproc/controls/heidenhain/heidenhain_reader.h"
 #include "postproc/controls/heidenhain/presets.h"
@@ -28,9 +28,10 @@ text::NcDialect words() {
   d.block_numbers = true;
   d.frame_begin = {"BEGIN PGM {id} MM"};
   d.frame_end = {"M30", "END PGM {id} MM"};
-  d.safe_start = {"PLANE RESET STAY", "FUNCTION RESET TCPM", "TRANS DATUM RESET", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+0"};
-  d.start = {"{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M126", "CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1 T{blend}",
-             "CYCL DEF 32.2 HSC-MODE:0 TA{blend_axis}"};
+  d.safe_start = {"PLANE RESET STAY", "FUNCTION RESET TCPM", "TRANS DATUM RESET", "CYCL DEF 10.0 ROTATION",
+                  "CYCL DEF 10.1 ROT+0"};
+  d.start = {"{safe_start}",           "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M126", "CYCL DEF 32.0 TOLERANCE",
+             "CYCL DEF 32.1 T{blend}", "CYCL DEF 32.2 HSC-MODE:0 TA{blend_axis}"};
   d.datum = preset_number;
   d.retract = {"L Z{top} R0 FMAX M91"};
   d.tool_change = {"TOOL CALL {tool} Z S{speed}", "{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M3"};
@@ -67,7 +68,10 @@ bool has_offset(std::string_view name) {
 }  // namespace
 
 Control heidenhain() {
-  return {words(), {}, {"the presets 1 to 99, or G54 for preset 1 to G59 for 6, G59.1 for 7 to G59.3 for 9", has_offset}, execute_heidenhain};
+  return {words(),
+          {},
+          {"the presets 1 to 99, or G54 for preset 1 to G59 for 6, G59.1 for 7 to G59.3 for 9", has_offset},
+          execute_heidenhain};
 }
 
 }  // namespace toothpath::controls

@@ -1,5 +1,6 @@
-// Executes the subset of Heidenhain plain text that a gear program needs: L and LN blocks, TCPM, rotation cycle, datum cycle,
-// tolerance cycle, Q parameters, repeated sections, a jump to a label. Everything else is refused where it stands.
+// Executes the subset of Heidenhain plain text that a gear program needs: L and LN blocks, TCPM, rotation cycle, datum
+// cycle, tolerance cycle, Q parameters, repeated sections, a jump to a label. Everything else is refused where it
+// stands.
 #include "postproc/controls/heidenhain/heidenhain_reader.h"
 
 #include <algorithm>
@@ -18,8 +19,12 @@ constexpr std::size_t kLongestHeidenhainLine = 256;
 
 class Heidenhain {
  public:
-  Heidenhain(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink)
-      : file_(file), control_(control), lines_(readback::lines_of(text)), execution_(control, {.turns_need_axis_blend = true}, sink) {
+  Heidenhain(std::string_view text, const std::string& file, const readback::NcControl& control,
+             const readback::MoveSink& sink)
+      : file_(file),
+        control_(control),
+        lines_(readback::lines_of(text)),
+        execution_(control, {.turns_need_axis_blend = true}, sink) {
     execution_.set_feed_mode(readback::NcExecution::Feed::per_minute);
   }
 
@@ -28,7 +33,8 @@ class Heidenhain {
     std::size_t steps = 0;
     while (!ended_) {
       if (pc_ >= lines_.size()) return place(lines_.size(), 0, "the program ends without END PGM");
-      if (++steps > control_.max_steps) return place(pc_ + 1, 0, fmt::format("more than {} executed blocks", control_.max_steps));
+      if (++steps > control_.max_steps)
+        return place(pc_ + 1, 0, fmt::format("more than {} executed blocks", control_.max_steps));
       line_ = pc_++;
       if (auto bad = execute(lines_[line_])) return *bad;
     }
@@ -51,15 +57,19 @@ class Heidenhain {
   /// Block numbers count up from 0; labels occur once.
   Problem find_labels() {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
-      if (lines_[i].size() > kLongestHeidenhainLine) return place(i + 1, static_cast<int>(kLongestHeidenhainLine), fmt::format("line of {} characters exceeds {}", lines_[i].size(), kLongestHeidenhainLine));
+      if (lines_[i].size() > kLongestHeidenhainLine)
+        return place(i + 1, static_cast<int>(kLongestHeidenhainLine),
+                     fmt::format("line of {} characters exceeds {}", lines_[i].size(), kLongestHeidenhainLine));
       readback::NcScanner s(lines_[i]);
       const auto n = s.number();
-      if (!n || *n != static_cast<double>(i) || (s.at() != ' ' && s.at() != '\0')) return place(i + 1, 1, fmt::format("block number {} expected", i));
+      if (!n || *n != static_cast<double>(i) || (s.at() != ' ' && s.at() != '\0'))
+        return place(i + 1, 1, fmt::format("block number {} expected", i));
       s.skip_blanks();
       if (!s.take("LBL ")) continue;
       const auto label = s.number();
       if (!label || !s.done()) return place(i + 1, s.column(), "LBL needs a number");
-      if (!labels_.emplace(*label, i).second) return place(i + 1, s.column(), fmt::format("LBL {} occurs twice", *label));
+      if (!labels_.emplace(*label, i).second)
+        return place(i + 1, s.column(), fmt::format("LBL {} occurs twice", *label));
     }
     return std::nullopt;
   }
@@ -74,11 +84,13 @@ class Heidenhain {
       if (const int tooth = readback::comment_label(comment, "TOOTH "); tooth >= 0) execution_.begin_tooth(tooth);
       return std::nullopt;
     }
-    if (started_ == s.take("BEGIN PGM ")) return here(s.column(), started_ ? "BEGIN PGM inside the program" : "the program does not begin with BEGIN PGM");
+    if (started_ == s.take("BEGIN PGM "))
+      return here(s.column(), started_ ? "BEGIN PGM inside the program" : "the program does not begin with BEGIN PGM");
     if (!started_) {
       started_ = true;
       name_ = s.rest();
-      if (name_.size() < 4 || name_.substr(name_.size() - 3) != " MM") return here(s.column(), "a program in MM with a name expected");
+      if (name_.size() < 4 || name_.substr(name_.size() - 3) != " MM")
+        return here(s.column(), "a program in MM with a name expected");
       execution_.set_unit();
       execution_.set_absolute();  // increments have words of their own
       return std::nullopt;
@@ -164,7 +176,8 @@ class Heidenhain {
     s.skip_blanks();
     const auto found = label ? labels_.find(*label) : labels_.end();
     if (found == labels_.end()) return here(column, "CALL LBL of a label that does not exist");
-    if (!s.take("REP") || found->second >= line_) return here(column, "only a section that stands ahead can be repeated, with REP");
+    if (!s.take("REP") || found->second >= line_)
+      return here(column, "only a section that stands ahead can be repeated, with REP");
     s.skip_blanks();
     const auto count = s.number();
     if (!count || *count < 1 || *count != std::floor(*count)) return here(s.column(), "REP needs a whole number");
@@ -309,13 +322,16 @@ class Heidenhain {
       s.advance(1);
       const auto v = word_value(s);
       if (!v) return v.error();
-      if (control_.rollover[a] && !nearer_way_) return here(column, fmt::format("{} rolls over: which way it turns is said by M126 alone", c));
+      if (control_.rollover[a] && !nearer_way_)
+        return here(column, fmt::format("{} rolls over: which way it turns is said by M126 alone", c));
       m.has[a] = true;
       m.axis[a] = *v;
     }
-    if (vector && (components != 7 || m.has[3] || m.has[4])) return here(first, "LN needs TX TY TZ and no rotary words");
+    if (vector && (components != 7 || m.has[3] || m.has[4]))
+      return here(first, "LN needs TX TY TZ and no rotary words");
     if (vector) m.vector = axis;
-    if (!vector && std::none_of(m.has.begin(), m.has.end(), [](bool h) { return h; })) return here(first, "L without an axis word");
+    if (!vector && std::none_of(m.has.begin(), m.has.end(), [](bool h) { return h; }))
+      return here(first, "L without an axis word");
     if (fmax && m.own_feed) return here(first, "F and FMAX in a block");
     m.rapid = fmax;
     m.machine_frame = m91;
@@ -337,7 +353,8 @@ class Heidenhain {
 
 }  // namespace
 
-Status execute_heidenhain(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
+Status execute_heidenhain(std::string_view text, const std::string& file, const readback::NcControl& control,
+                          const readback::MoveSink& sink) {
   return Heidenhain(text, file, control, sink).run();
 }
 

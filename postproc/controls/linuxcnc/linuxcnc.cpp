@@ -1,11 +1,12 @@
-// LinuxCNC 2.8 and later. G92.1 clears offsets that an earlier program left. G61: what G64 P leaves of a corner is more than P, does
-// not hold for rotaries and saves no time (docs/dialects.md). Blocks that hardly move X, Y, Z lose their time in G93 before 2.9.0, so
-// they are printed in G94 with the exact feed. The codes of TCP are remaps of the site: machine data.
+// LinuxCNC 2.8 and later. G92.1 clears offsets that an earlier program left. G61: what G64 P leaves of a corner is more
+// than P, does not hold for rotaries and saves no time (docs/dialects.md). Blocks that hardly move X, Y, Z lose their
+// time in G93 before 2.9.0, so they are printed in G94 with the exact feed. The codes of TCP are remaps of the site:
+// machine data.
 #include <cmath>
 
 #include "postproc/controls/control.h"
-#include "postproc/readback/interpreter.h"
 #include "postproc/controls/work_offset.h"
+#include "postproc/readback/interpreter.h"
 
 namespace toothpath::controls {
 namespace {
@@ -31,8 +32,13 @@ text::NcDialect words() {
   d.loop.form = text::NcLoop::Form::sub_program;
   d.loop.before = {"o{label} sub"};
   d.loop.after = {"o{label} endsub"};
-  d.loop.call = {"{first_tooth}", "#1={first}", "o{label+1} while [#1 LT {teeth}]", "{pick}", "o{label} call [{turns}*360/{teeth}]",
-                 "#1=[#1+1]", "o{label+1} endwhile"};
+  d.loop.call = {"{first_tooth}",
+                 "#1={first}",
+                 "o{label+1} while [#1 LT {teeth}]",
+                 "{pick}",
+                 "o{label} call [{turns}*360/{teeth}]",
+                 "#1=[#1+1]",
+                 "o{label+1} endwhile"};
   d.loop.pick = {"#2=[[#1*{stride}] MOD {teeth}]"};
   d.loop.place = "#1";
   d.loop.tooth = "#2";
@@ -45,8 +51,9 @@ text::NcDialect words() {
   return d;
 }
 
-/// What its motion controller leaves of a corner under G64 P, mm. The next block begins a servo period early at worst, and the samples are
-/// smoothed and joined by chords: docs/dialects.md. The machine says what its acceleration leaves under G61, a T^2 / 4.
+/// What its motion controller leaves of a corner under G64 P, mm. The next block begins a servo period early at worst,
+/// and the samples are smoothed and joined by chords: docs/dialects.md. The machine says what its acceleration leaves
+/// under G61, a T^2 / 4.
 double corner_of_g64(double p_mm, double q_mm, double exact_mm) {
   constexpr double kUnequal = 1.06;  // blocks next to a corner that is passed without a stop accelerate by a tenth less
   const double early = std::sqrt(0.5 * exact_mm);  // (T / 2) sqrt(a / 2)
@@ -68,7 +75,8 @@ const readback::IsoLanguage& language() {
   return l;
 }
 
-Status execute(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
+Status execute(std::string_view text, const std::string& file, const readback::NcControl& control,
+               const readback::MoveSink& sink) {
   return execute_iso(text, file, control, sink, language());
 }
 

@@ -1,5 +1,5 @@
-// Mitsubishi M80: the Fanuc words with four decimals, a larger greatest F in G93, F behind every return to G94, no TCP. Made
-// as docs/dialects.md tells: the words of Fanuc with what the manual of the control says differently.
+// Mitsubishi M80: the Fanuc words with four decimals, a larger greatest F in G93, F behind every return to G94, no TCP.
+// Made as docs/dialects.md tells: the words of Fanuc with what the manual of the control says differently.
 #include "postproc/controls/fanuc/fanuc.h"
 
 namespace toothpath::controls {
@@ -18,7 +18,8 @@ text::NcDialect words() {
   return d;
 }
 
-Status execute(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
+Status execute(std::string_view text, const std::string& file, const readback::NcControl& control,
+               const readback::MoveSink& sink) {
   static const readback::IsoLanguage language = fanuc_language();
   return execute_iso(text, file, control, sink, language);
 }

@@ -28,7 +28,8 @@ class NcPathGroup {
     }
     return {};
   }
-  /// Behind FGREF: [C]= and then the radius, which the caller reads. @returns the rotary; nothing: another text stands there
+  /// Behind FGREF: [C]= and then the radius, which the caller reads. @returns the rotary; nothing: another text stands
+  /// there
   std::optional<std::size_t> rotary(readback::NcScanner& s) const {
     const auto a = s.take("[") ? axis(s) : std::nullopt;
     return a && *a >= 3 && s.take("]=") ? a : std::nullopt;

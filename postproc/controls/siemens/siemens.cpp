@@ -1,9 +1,9 @@
-// Siemens 840D sl. TRAORI and TRAFOOF may drop the frames (machine data 10602), so that the work offset stands behind each of
-// them. G641 ADIS is the way ahead of and behind a corner within which the axes may leave the path; where cuts turn a
-// rotary the text names the axes whose travel is the way. The compressor stays off. The teeth run in a
-// FOR loop of the control; with TRAORI the programmable frame ROT turns with them. MOD is for whole variables only there, so that the
-// remainder of the spread order is made with TRUNC, half a unit away from where it could fall on the wrong side. ORIAXES: the rotaries are linear between
-// the blocks, also where a block carries the tool vector A3 B3 C3.
+// Siemens 840D sl. TRAORI and TRAFOOF may drop the frames (machine data 10602), so that the work offset stands behind
+// each of them. G641 ADIS is the way ahead of and behind a corner within which the axes may leave the path; where cuts
+// turn a rotary the text names the axes whose travel is the way. The compressor stays off. The teeth run in a FOR loop
+// of the control; with TRAORI the programmable frame ROT turns with them. MOD is for whole variables only there, so
+// that the remainder of the spread order is made with TRUNC, half a unit away from where it could fall on the wrong
+// side. ORIAXES: the rotaries are linear between the blocks, also where a block carries the tool vector A3 B3 C3.
 #include "postproc/controls/control.h"
 #include "postproc/controls/siemens/siemens_reader.h"
 #include "postproc/controls/work_offset.h"
@@ -63,7 +63,10 @@ bool has_offset(std::string_view name) {
 }  // namespace
 
 Control siemens() {
-  return {words(), {"sinumerik"}, {"G54 to G57 and G505 to G599 (G58 and G59 shift single axes)", has_offset}, execute_siemens};
+  return {words(),
+          {"sinumerik"},
+          {"G54 to G57 and G505 to G599 (G58 and G59 shift single axes)", has_offset},
+          execute_siemens};
 }
 
 }  // namespace toothpath::controls

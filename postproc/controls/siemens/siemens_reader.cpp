@@ -1,5 +1,5 @@
-// Executes the subset of Siemens 840D text that a gear program needs: G words, TRAORI with rotary words or A3 B3 C3, ROT about
-// Z, R parameters, FOR loops. Everything else is refused where it stands.
+// Executes the subset of Siemens 840D text that a gear program needs: G words, TRAORI with rotary words or A3 B3 C3,
+// ROT about Z, R parameters, FOR loops. Everything else is refused where it stands.
 #include "postproc/controls/siemens/siemens_reader.h"
 
 #include <algorithm>
@@ -18,21 +18,28 @@ constexpr std::size_t kLongestSiemensLine = 512;
 
 class Siemens {
  public:
-  Siemens(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink)
-      : file_(file), control_(control), lines_(readback::lines_of(text)), execution_(control, {}, sink), path_(control.letters) {}
+  Siemens(std::string_view text, const std::string& file, const readback::NcControl& control,
+          const readback::MoveSink& sink)
+      : file_(file),
+        control_(control),
+        lines_(readback::lines_of(text)),
+        execution_(control, {}, sink),
+        path_(control.letters) {}
 
   Status run() {
     if (auto bad = find_loops()) return *bad;
     std::size_t steps = 0;
     while (!ended_) {
       if (pc_ >= lines_.size()) return place(lines_.size(), 0, "the program ends without M30");
-      if (++steps > control_.max_steps) return place(pc_ + 1, 0, fmt::format("more than {} executed blocks", control_.max_steps));
+      if (++steps > control_.max_steps)
+        return place(pc_ + 1, 0, fmt::format("more than {} executed blocks", control_.max_steps));
       line_ = pc_++;
       if (auto bad = execute(lines_[line_])) return *bad;
     }
     for (std::size_t i = line_ + 1; i < lines_.size(); ++i) {
       readback::NcScanner rest(lines_[i]);
-      if (!rest.done() && rest.at() != ';') return place(i + 1, rest.column(), "text behind the end of the program is not executed");
+      if (!rest.done() && rest.at() != ';')
+        return place(i + 1, rest.column(), "text behind the end of the program is not executed");
     }
     return Ok{};
   }
@@ -140,7 +147,9 @@ class Siemens {
 
   // Lines.
   Problem execute(std::string_view text) {
-    if (text.size() > kLongestSiemensLine) return here(static_cast<int>(kLongestSiemensLine), fmt::format("line of {} characters exceeds {}", text.size(), kLongestSiemensLine));
+    if (text.size() > kLongestSiemensLine)
+      return here(static_cast<int>(kLongestSiemensLine),
+                  fmt::format("line of {} characters exceeds {}", text.size(), kLongestSiemensLine));
     const std::size_t semicolon = text.find(';');
     if (semicolon != std::string_view::npos) {
       const std::string_view comment = text.substr(semicolon + 1);
@@ -170,7 +179,8 @@ class Siemens {
   Problem word(readback::NcScanner& s, Request& r) {
     const int column = s.column();
     const char c = s.at();
-    if (!readback::NcScanner::is_letter(c)) return here(column, fmt::format("character 0x{:02x} is no part of a word", static_cast<unsigned char>(c)));
+    if (!readback::NcScanner::is_letter(c))
+      return here(column, fmt::format("character 0x{:02x} is no part of a word", static_cast<unsigned char>(c)));
     if (readback::NcScanner::is_letter(s.ahead())) return keyword(s, r);
     if (c >= 'A' && c <= 'C' && s.ahead() == '3' && s.rest().substr(2, 1) == "=") return vector_word(s, r);
     for (std::size_t a = 0; a < 5; ++a)
@@ -219,7 +229,8 @@ class Siemens {
     else if (direct) s.advance(2);
     const auto v = equals ? expression(s) : literal(s, column);
     if (!v) return v.error();
-    if (control_.rollover[a] && !(*v >= 0 && *v < 360)) return here(column, fmt::format("{}=DC({}) is outside 0 .. 360", c, *v));
+    if (control_.rollover[a] && !(*v >= 0 && *v < 360))
+      return here(column, fmt::format("{}=DC({}) is outside 0 .. 360", c, *v));
     r.move.has[a] = true;
     r.move.axis[a] = *v;
     r.column = column;
@@ -238,7 +249,8 @@ class Siemens {
 
   Problem m_word(Request& r, double v, int column) {
     static constexpr int known[] = {0, 3, 5, 6, 7, 8, 9, 30};
-    if (std::find(std::begin(known), std::end(known), v) == std::end(known) && !control_.switches_coolant(fmt::format("M{}", v)))
+    if (std::find(std::begin(known), std::end(known), v) == std::end(known) &&
+        !control_.switches_coolant(fmt::format("M{}", v)))
       return here(column, fmt::format("M{} is not in the subset", v));
     if (r.m >= 0) return here(column, "two M words in a block");
     r.m = static_cast<int>(v);
@@ -306,15 +318,42 @@ class Siemens {
     unsigned group = 0;
     const int g = v == std::floor(v) ? static_cast<int>(v) : -1;
     switch (g >= 505 && g <= 599 ? 505 : g) {
-      case 0: case 1: group = 1; r.motion = g; break;
+      case 0:
+      case 1:
+        group = 1;
+        r.motion = g;
+        break;
       case 17: group = 6; break;
       case 40: group = 7; break;
-      case 54: case 55: case 56: case 57: case 505: group = 8; r.offset = fmt::format("G{}", g); break;
-      case 60: group = 10; r.g60 = true; break;
-      case 641: group = 10; r.g641 = true; break;
-      case 90: group = 14; execution_.set_absolute(); break;
-      case 93: case 94: group = 15; r.feed_mode = g; break;
-      case 710: group = 13; execution_.set_unit(); break;
+      case 54:
+      case 55:
+      case 56:
+      case 57:
+      case 505:
+        group = 8;
+        r.offset = fmt::format("G{}", g);
+        break;
+      case 60:
+        group = 10;
+        r.g60 = true;
+        break;
+      case 641:
+        group = 10;
+        r.g641 = true;
+        break;
+      case 90:
+        group = 14;
+        execution_.set_absolute();
+        break;
+      case 93:
+      case 94:
+        group = 15;
+        r.feed_mode = g;
+        break;
+      case 710:
+        group = 13;
+        execution_.set_unit();
+        break;
       default: return here(column, fmt::format("G{} is not in the subset", v));
     }
     if ((r.groups & (1U << group)) != 0) return here(column, "two G words of one modal group in a block");
@@ -358,9 +397,7 @@ class Siemens {
         tool_ = execution_.tool();
         return std::nullopt;
       }
-      case 30:
-        ended_ = true;
-        return placed(r.column, execution_.end_program(!loops_.empty()));
+      case 30: ended_ = true; return placed(r.column, execution_.end_program(!loops_.empty()));
       default: return std::nullopt;
     }
   }
@@ -397,7 +434,8 @@ class Siemens {
 
 }  // namespace
 
-Status execute_siemens(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink) {
+Status execute_siemens(std::string_view text, const std::string& file, const readback::NcControl& control,
+                       const readback::MoveSink& sink) {
   return Siemens(text, file, control, sink).run();
 }
 

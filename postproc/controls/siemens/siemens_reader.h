@@ -8,6 +8,7 @@
 namespace toothpath::controls {
 
 /// Executes Siemens 840D text, the subset that we write; everything else is refused where it stands.
-[[nodiscard]] Status execute_siemens(std::string_view text, const std::string& file, const readback::NcControl& control, const readback::MoveSink& sink);
+[[nodiscard]] Status execute_siemens(std::string_view text, const std::string& file, const readback::NcControl& control,
+                                     const readback::MoveSink& sink);
 
 }  // namespace toothpath::controls

@@ -11,8 +11,9 @@
 namespace toothpath::shaper {
 namespace {
 
-constexpr std::int64_t kMostTurnsT = 1000, kMostTurnsL = 21;           // G81.5 T and L
-constexpr std::int64_t kMostPulses = 999999999, kMostDegrees = 99999;  // G81.5 P, and C with three decimals in eight digits
+constexpr std::int64_t kMostTurnsT = 1000, kMostTurnsL = 21;  // G81.5 T and L
+constexpr std::int64_t kMostPulses = 999999999,
+                       kMostDegrees = 99999;  // G81.5 P, and C with three decimals in eight digits
 
 class FanucWriter : public GearboxWriter {
  public:
@@ -25,14 +26,18 @@ class FanucWriter : public GearboxWriter {
     line("G21 G17 G90 G94 G40 G49 G80 G69");
   }
   [[nodiscard]] std::string clear_block(const std::string& x) const override { return "G53 G0 X" + x; }
-  [[nodiscard]] std::string turn_word(const std::string& axis, const std::string& number) const override { return axis + number; }
+  [[nodiscard]] std::string turn_word(const std::string& axis, const std::string& number) const override {
+    return axis + number;
+  }
   void couple(const char* sign, std::int64_t top, std::int64_t bottom) override {
-    if (bottom <= kMostTurnsT && top <= kMostTurnsL) line(fmt::format("G81.5 T{} {}0. L{}{}", bottom, box_.work_axis, sign, top));
+    if (bottom <= kMostTurnsT && top <= kMostTurnsL)
+      line(fmt::format("G81.5 T{} {}0. L{}{}", bottom, box_.work_axis, sign, top));
     else line(fmt::format("G81.5 P{} {}{}{}.", bottom * box_.pulses_per_turn, box_.work_axis, sign, 360 * top));
   }
   /// Q from the printed start to the printed end.
   void ram_on(double speed) override {
-    const auto from = numbers::to_fixed(s_.start_mm, format_.length_decimals), to = numbers::to_fixed(s_.end_mm, format_.length_decimals);
+    const auto from = numbers::to_fixed(s_.start_mm, format_.length_decimals),
+               to = numbers::to_fixed(s_.end_mm, format_.length_decimals);
     line("G81.1 Z" + length(s_.start_mm) + " Q" + number(to - from, format_.length_decimals) + " R0. F" + feed(speed));
   }
   void ram_off() override { line("G80"); }
@@ -43,16 +48,18 @@ class FanucWriter : public GearboxWriter {
   }
 };
 
-/// `G81.5 T L` with cutter turns up to 1000 and work turns up to 21, else `G81.5 P C` with pulses up to 999999999 and degrees up to 99999.
+/// `G81.5 T L` with cutter turns up to 1000 and work turns up to 21, else `G81.5 P C` with pulses up to 999999999 and
+/// degrees up to 99999.
 Status fanuc_accepts(const machines::ShaperMachine& machine, int cutter_teeth, int work_teeth) {
   const std::int64_t g = std::gcd(cutter_teeth, work_teeth), top = cutter_teeth / g, bottom = work_teeth / g;
   if (bottom <= kMostTurnsT && top <= kMostTurnsL) return Ok{};
   const std::int64_t pulses = bottom * machine.gearbox->pulses_per_turn, turned = 360 * top;
   if (pulses > kMostPulses)
-    return fail("the ratio {}/{} needs P = {} pulses for {} turns of the cutter axis, G81.5 of {} takes {}", top, bottom, pulses, bottom, machine.name,
-                kMostPulses);
+    return fail("the ratio {}/{} needs P = {} pulses for {} turns of the cutter axis, G81.5 of {} takes {}", top,
+                bottom, pulses, bottom, machine.name, kMostPulses);
   if (turned > kMostDegrees)
-    return fail("the ratio {}/{} needs C = {} deg for {} turns of the work, G81.5 of {} takes {}", top, bottom, turned, top, machine.name, kMostDegrees);
+    return fail("the ratio {}/{} needs C = {} deg for {} turns of the work, G81.5 of {} takes {}", top, bottom, turned,
+                top, machine.name, kMostDegrees);
   return Ok{};
 }
 

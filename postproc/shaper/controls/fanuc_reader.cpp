@@ -21,7 +21,9 @@ class FanucGearbox : public GearboxReader {
   void close() override {
     if (percents_ != 2) problem("the program does not stand between two %");
   }
-  [[nodiscard]] std::vector<std::string_view> safe_start() const override { return {"G21", "G17", "G90", "G94", "G40", "G49", "G80", "G69"}; }
+  [[nodiscard]] std::vector<std::string_view> safe_start() const override {
+    return {"G21", "G17", "G90", "G94", "G40", "G49", "G80", "G69"};
+  }
   /// X5. with its point.
   [[nodiscard]] std::optional<MotionWord> split(std::string_view word) const override {
     if (word.find('.') == std::string_view::npos) return {};
@@ -59,7 +61,8 @@ class FanucGearbox : public GearboxReader {
   }
   void ram_on(const Letters& words) {
     std::int64_t z = 0, q = 0, r = 1, f = 0;
-    const bool all = number(words, 'Z', z) && number(words, 'Q', q) && number(words, 'R', r) && number(words, 'F', f) && words.size() == 4;
+    const bool all = number(words, 'Z', z) && number(words, 'Q', q) && number(words, 'R', r) && number(words, 'F', f) &&
+                     words.size() == 4;
     if (!all || r != 0) problem("G81.1 needs Z, Q, R0. and F");
     else stroke(double(z) * 1e-6, double(z + q) * 1e-6, double(f) * 1e-6);
   }
@@ -68,14 +71,15 @@ class FanucGearbox : public GearboxReader {
     const bool has_c = number(words, work(), c);
     if (words.contains('T') && words.contains('L') && words.size() == 3) {
       const auto t = whole(words.at('T')), l = whole(words.at('L'));
-      if (!t || !l || !has_c || c != 0 || *t < 1 || *t > 1000 || *l == 0 || std::abs(*l) > 21) problem("G81.5 T 1..1000, L 1..21 with either sign, C0.");
+      if (!t || !l || !has_c || c != 0 || *t < 1 || *t > 1000 || *l == 0 || std::abs(*l) > 21)
+        problem("G81.5 T 1..1000, L 1..21 with either sign, C0.");
       else couple(*l, *t);
     } else if (words.contains('P') && words.size() == 2) {
       const auto p = whole(words.at('P'));
-      if (!p || *p < 1 || *p > 999999999 || !has_c || w_.pulses_per_turn < 1 || *p % w_.pulses_per_turn != 0 || c % 360000000 != 0)
+      if (!p || *p < 1 || *p > 999999999 || !has_c || w_.pulses_per_turn < 1 || *p % w_.pulses_per_turn != 0 ||
+          c % 360000000 != 0)
         problem("G81.5 P and C must be whole turns of both axes, P up to 999999999");
-      else
-        couple(c / 360000000, *p / w_.pulses_per_turn);
+      else couple(c / 360000000, *p / w_.pulses_per_turn);
     } else {
       problem("G81.5 needs T, C and L, or P and C");
     }
@@ -86,6 +90,8 @@ class FanucGearbox : public GearboxReader {
 
 }  // namespace
 
-GearboxReading read_fanuc_gearbox(std::string_view text, const GearboxWords& words) { return FanucGearbox(words).run(text); }
+GearboxReading read_fanuc_gearbox(std::string_view text, const GearboxWords& words) {
+  return FanucGearbox(words).run(text);
+}
 
 }  // namespace toothpath::shaper

@@ -18,7 +18,9 @@ class SiemensWriter : public GearboxWriter {
     line("G17 G40 G90 G94 G710 G64 G500");
   }
   [[nodiscard]] std::string clear_block(const std::string& x) const override { return "SUPA G0 X" + x + " D0"; }
-  [[nodiscard]] std::string turn_word(const std::string& axis, const std::string& number) const override { return axis + "=" + number; }
+  [[nodiscard]] std::string turn_word(const std::string& axis, const std::string& number) const override {
+    return axis + "=" + number;
+  }
   void couple(const char* sign, std::int64_t top, std::int64_t bottom) override {
     line(fmt::format("EGDEF({},{},1)", box_.work_axis, box_.cutter_axis));
     line(fmt::format("EGON({},\"FINE\",{},{}{},{})", box_.work_axis, box_.cutter_axis, sign, top, bottom));

@@ -25,7 +25,9 @@ class SiemensGearbox : public GearboxReader {
   using GearboxReader::GearboxReader;
 
  private:
-  [[nodiscard]] std::vector<std::string_view> safe_start() const override { return {"G17", "G40", "G90", "G94", "G710", "G500"}; }
+  [[nodiscard]] std::vector<std::string_view> safe_start() const override {
+    return {"G17", "G40", "G90", "G94", "G710", "G500"};
+  }
   [[nodiscard]] bool idle_word(std::string_view word) const override { return word == "D0"; }
   /// C1=5 and X5.
   [[nodiscard]] std::optional<MotionWord> split(std::string_view word) const override {
@@ -38,8 +40,11 @@ class SiemensGearbox : public GearboxReader {
     static constexpr struct {
       std::string_view name;
       void (SiemensGearbox::*read)(const Arguments&);
-    } kCalls[] = {{"EGDEF", &SiemensGearbox::define}, {"EGON", &SiemensGearbox::couple_on}, {"EGOFS", &SiemensGearbox::couple_off},
-                  {"EGDEL", &SiemensGearbox::forget}, {"WAITP", &SiemensGearbox::wait}};
+    } kCalls[] = {{"EGDEF", &SiemensGearbox::define},
+                  {"EGON", &SiemensGearbox::couple_on},
+                  {"EGOFS", &SiemensGearbox::couple_off},
+                  {"EGDEL", &SiemensGearbox::forget},
+                  {"WAITP", &SiemensGearbox::wait}};
     for (const auto& call : kCalls)
       if (const auto arguments = arguments_of(call.name, s)) {
         (this->*call.read)(*arguments);
@@ -63,10 +68,10 @@ class SiemensGearbox : public GearboxReader {
   }
   void couple_on(const Arguments& a) {
     const auto top = a.size() == 5 ? whole(a[3]) : std::nullopt, bottom = a.size() == 5 ? whole(a[4]) : std::nullopt;
-    if (!defined_ || !top || !bottom || *bottom <= 0 || a[0] != w_.work_axis || a[1] != "\"FINE\"" || a[2] != w_.cutter_axis)
+    if (!defined_ || !top || !bottom || *bottom <= 0 || a[0] != w_.work_axis || a[1] != "\"FINE\"" ||
+        a[2] != w_.cutter_axis)
       problem("EGON is not that of the definition before it, with a ratio of whole numbers");
-    else
-      couple(*top, *bottom);
+    else couple(*top, *bottom);
   }
   void couple_off(const Arguments& a) {
     if (a.size() != 1 || a[0] != w_.work_axis) problem("EGOFS of another axis");
@@ -98,8 +103,7 @@ class SiemensGearbox : public GearboxReader {
       const auto value = equals == std::string_view::npos ? std::nullopt : micro(word.substr(equals + 1));
       if (value && (name == "OSP1[Z]" || name == "OSP2[Z]" || name == "FA[Z]" || name == "OSE[Z]"))
         ram_[std::string(name)] = double(*value) * 1e-6;
-      else
-        problem(fmt::format("\"{}\" is not understood", word));
+      else problem(fmt::format("\"{}\" is not understood", word));
     }
   }
 
@@ -109,6 +113,8 @@ class SiemensGearbox : public GearboxReader {
 
 }  // namespace
 
-GearboxReading read_siemens_gearbox(std::string_view text, const GearboxWords& words) { return SiemensGearbox(words).run(text); }
+GearboxReading read_siemens_gearbox(std::string_view text, const GearboxWords& words) {
+  return SiemensGearbox(words).run(text);
+}
 
 }  // namespace toothpath::shaper

@@ -1,4 +1,5 @@
-// make_page KIND FILE: writes a synthetic report page for the browser test. KIND: gouged, clean, awkward, large, plots, below.
+// make_page KIND FILE: writes a synthetic report page for the browser test. KIND: gouged, clean, awkward, large, plots,
+// below.
 #include <fmt/format.h>
 
 #include <cstdio>

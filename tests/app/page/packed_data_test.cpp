@@ -50,13 +50,20 @@ TEST(PackedData, SmoothPathsBecomeShort) {
   std::vector<std::vector<double>> columns(3);
   for (int i = 0; i < 100000; ++i) {
     const double t = i * 1e-3;
-    columns[0].push_back(70 + 10 * std::sin(t)), columns[1].push_back(3 * std::cos(0.7 * t)), columns[2].push_back(-5 + 0.01 * t);
+    columns[0].push_back(70 + 10 * std::sin(t)), columns[1].push_back(3 * std::cos(0.7 * t)),
+        columns[2].push_back(-5 + 0.01 * t);
   }
   EXPECT_LT(page::pack(columns).base64.size(), 100000U * 2);  // float32 as base64 takes 16 bytes a point
 }
 
 TEST(PackedData, Base64AsInRfc4648) {
-  const std::pair<const char*, const char*> cases[] = {{"", ""}, {"f", "Zg=="}, {"fo", "Zm8="}, {"foo", "Zm9v"}, {"foob", "Zm9vYg=="}, {"fooba", "Zm9vYmE="}, {"foobar", "Zm9vYmFy"}};
+  const std::pair<const char*, const char*> cases[] = {{"", ""},
+                                                       {"f", "Zg=="},
+                                                       {"fo", "Zm8="},
+                                                       {"foo", "Zm9v"},
+                                                       {"foob", "Zm9vYg=="},
+                                                       {"fooba", "Zm9vYmE="},
+                                                       {"foobar", "Zm9vYmFy"}};
   for (const auto& [plain, text] : cases) {
     const std::string s = plain;
     const std::vector<std::uint8_t> bytes(s.begin(), s.end());

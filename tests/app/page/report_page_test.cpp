@@ -17,7 +17,8 @@ std::size_t count(const std::string& text, std::string_view part) {
 }
 
 TEST(ReportPage, SameInputSameBytes) {
-  const auto a = page::render_report_page(test::synthetic_page({})), b = page::render_report_page(test::synthetic_page({}));
+  const auto a = page::render_report_page(test::synthetic_page({})),
+             b = page::render_report_page(test::synthetic_page({}));
   ASSERT_TRUE(a && b);
   EXPECT_EQ(*a, *b);
 }
@@ -25,7 +26,8 @@ TEST(ReportPage, SameInputSameBytes) {
 TEST(ReportPage, LoadsNothingFromElsewhere) {
   const auto text = page::render_report_page(test::synthetic_page({}));
   ASSERT_TRUE(text);
-  for (const char* mark : {"http://", "https://", "src=", "@import", "url(", "<link"}) EXPECT_EQ(count(*text, mark), 0U) << mark;
+  for (const char* mark : {"http://", "https://", "src=", "@import", "url(", "<link"})
+    EXPECT_EQ(count(*text, mark), 0U) << mark;
 }
 
 TEST(ReportPage, AwkwardNamesStayText) {
@@ -66,7 +68,8 @@ TEST(ReportPage, EveryWorstPlaceHasItsRowAndItsLine) {
   const page::ReportPage page = test::synthetic_page({});
   const auto text = page::render_report_page(page);
   ASSERT_TRUE(text);
-  for (const proof::WorstPlace& place : page.gouge->worst) EXPECT_EQ(count(*text, fmt::format("<div id=\"L{}\">", place.line)), 1U);
+  for (const proof::WorstPlace& place : page.gouge->worst)
+    EXPECT_EQ(count(*text, fmt::format("<div id=\"L{}\">", place.line)), 1U);
   EXPECT_EQ(count(*text, "<tr data-row="), page.gouge->worst.size());
 }
 
@@ -81,10 +84,12 @@ TEST(ReportPage, RefusesWhatDoesNotFitTogether) {
   EXPECT_TRUE(refused([](page::ReportPage& p) { p.surface[0].rows += 1; }));
   EXPECT_TRUE(refused([](page::ReportPage& p) { p.surface[0].normals.pop_back(); }));
   EXPECT_TRUE(refused([](page::ReportPage& p) { p.surface[1].excess_um[0].pop_back(); }));
-  EXPECT_TRUE(refused([](page::ReportPage& p) { p.surface[0].points[3].x() = std::numeric_limits<double>::quiet_NaN(); }));
+  EXPECT_TRUE(
+      refused([](page::ReportPage& p) { p.surface[0].points[3].x() = std::numeric_limits<double>::quiet_NaN(); }));
   EXPECT_TRUE(refused([](page::ReportPage& p) { p.paths[0].cl.tool = 2; }));
   EXPECT_TRUE(refused([](page::ReportPage& p) { p.paths[0].nc_lines.pop_back(); }));
-  EXPECT_TRUE(refused([](page::ReportPage& p) { p.paths[0].cl.records[5].tip.z() = std::numeric_limits<double>::infinity(); }));
+  EXPECT_TRUE(
+      refused([](page::ReportPage& p) { p.paths[0].cl.records[5].tip.z() = std::numeric_limits<double>::infinity(); }));
   EXPECT_TRUE(refused([](page::ReportPage& p) { p.paths[0].cl.records[5].pass = -1; }));
   EXPECT_TRUE(refused([](page::ReportPage& p) { p.tools[0].bodies[0].profile[0].x() = -1; }));
 }
@@ -100,7 +105,8 @@ TEST(ReportPage, ExcerptsJoinWhereTheyTouch) {
   EXPECT_EQ(excerpts[2].first_line, 98);
   EXPECT_EQ(excerpts[2].lines.back(), "N100");
   for (const page::NcExcerpt& e : excerpts)
-    for (std::size_t i = 0; i < e.lines.size(); ++i) EXPECT_EQ(e.lines[i], fmt::format("N{}", e.first_line + static_cast<int>(i)));
+    for (std::size_t i = 0; i < e.lines.size(); ++i)
+      EXPECT_EQ(e.lines[i], fmt::format("N{}", e.first_line + static_cast<int>(i)));
 }
 
 TEST(ReportPage, WritingToAMissingFolderIsAFileError) {

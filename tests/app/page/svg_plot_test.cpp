@@ -25,7 +25,8 @@ std::pair<double, double> vertical_extent(const std::string& svg) {
 }
 
 TEST(SvgPlot, TicksAreRoundAndInside) {
-  for (const auto& [low, high] : {std::pair{0.0, 1.0}, std::pair{-3.7, 18.2}, std::pair{1e-7, 3e-7}, std::pair{999.2, 1003.9}, std::pair{-5e6, 2e6}}) {
+  for (const auto& [low, high] : {std::pair{0.0, 1.0}, std::pair{-3.7, 18.2}, std::pair{1e-7, 3e-7},
+                                  std::pair{999.2, 1003.9}, std::pair{-5e6, 2e6}}) {
     const auto ticks = svg::nice_ticks(low, high, 5);
     ASSERT_GE(ticks.size(), 2U);
     ASSERT_LE(ticks.size(), 11U);
@@ -68,9 +69,18 @@ TEST(SvgPlot, NothingToDrawIsEmpty) {
 }
 
 TEST(SvgPlot, NoNumberIsNan) {
-  svg::LineChart chart{"t", "x", "y", {{"a", {0, 1, 2, 3}, {1, std::nan(""), 1e308, -1e308}}, {"b", {1}, {1}}}, {{"l", std::nan("")}}, false, false, true, ""};
+  svg::LineChart chart{"t",
+                       "x",
+                       "y",
+                       {{"a", {0, 1, 2, 3}, {1, std::nan(""), 1e308, -1e308}}, {"b", {1}, {1}}},
+                       {{"l", std::nan("")}},
+                       false,
+                       false,
+                       true,
+                       ""};
   svg::PairedBarChart bars{"t", "x", "p", "m", {{"a", 0, 0}, {"b", -1, std::nan("")}}};
-  for (const std::string& svg : {svg::svg_line_chart(chart), svg::svg_paired_bars(bars), svg::svg_bars({{"a", std::nan("")}, {"b", 0}}, "s")}) {
+  for (const std::string& svg :
+       {svg::svg_line_chart(chart), svg::svg_paired_bars(bars), svg::svg_bars({{"a", std::nan("")}, {"b", 0}}, "s")}) {
     EXPECT_FALSE(svg.empty());
     EXPECT_EQ(svg.find("\"nan"), std::string::npos);
     EXPECT_EQ(svg.find("\"-nan"), std::string::npos);

@@ -18,13 +18,14 @@ struct Foot {
   Vec3 point, normal;
 };
 
-/// Cross section of the space in (across, up): a floor, two round corners, two walls that open upwards and bulge a little.
-/// `t` in 0 ... 1 on each of five patches, from the left tip to the right.
+/// Cross section of the space in (across, up): a floor, two round corners, two walls that open upwards and bulge a
+/// little. `t` in 0 ... 1 on each of five patches, from the left tip to the right.
 Foot section(int patch, double t) {
-  const double flare = 0.36;  // slope angle of the wall [rad]
+  const double flare = 0.36;         // slope angle of the wall [rad]
   const auto wall = [&](double s) {  // s: height share above the fillet
     const double up = kFillet * (1 - std::sin(flare)) + s * (kDepth - kFillet);
-    const double across = kRootHalfWidth + kFillet * std::cos(flare) + std::tan(flare) * s * (kDepth - kFillet) - 0.35 * s * (1 - s);
+    const double across =
+        kRootHalfWidth + kFillet * std::cos(flare) + std::tan(flare) * s * (kDepth - kFillet) - 0.35 * s * (1 - s);
     const Vec2 slope(std::tan(flare) - 0.35 * (1 - 2 * s) / (kDepth - kFillet), 1);
     const Vec2 n = Vec2(-slope.y(), slope.x()).normalized();
     return Foot{{across, up, 0}, {n.x(), n.y(), 0}};
@@ -78,17 +79,20 @@ proof::SurfaceGrid grid(int zone, int patch, int fields) {
       const bool corner = (patch == 1 || patch == 3) && s > 0.72 && t > 0.3 && t < 0.8;
       g.reachable.push_back(corner ? 0 : 1);
       const double cusps = 0.5 + 0.5 * std::cos(2 * kPi * 15 * t);
-      const double finish = 0.35 + 2.6 * cusps * cusps - 0.9 * std::exp(-40 * (s - 0.2) * (s - 0.2)) * (patch == 4 ? 1.6 : 0.4) + (corner ? 38 : 0);
+      const double finish = 0.35 + 2.6 * cusps * cusps -
+                            0.9 * std::exp(-40 * (s - 0.2) * (s - 0.2)) * (patch == 4 ? 1.6 : 0.4) + (corner ? 38 : 0);
       const double layers = 260 + 70 * std::abs(std::sin(kPi * 6 * t)) + 25 * s;
       const double semi = 62 + 9 * cusps + 4 * std::sin(9 * s);
       const double by_operation[] = {layers, semi, finish};
-      for (int k = 0; k < fields; ++k) g.excess_um[static_cast<std::size_t>(k)].push_back(static_cast<float>(by_operation[3 - fields + k]));
+      for (int k = 0; k < fields; ++k)
+        g.excess_um[static_cast<std::size_t>(k)].push_back(static_cast<float>(by_operation[3 - fields + k]));
     }
   return g;
 }
 
 /// Passes along the space, one way, with a lift between them. `offset`: stock left by the operation [mm].
-page::PagePath operation(int index, const std::string& type, int tool, double ball, double offset, int passes, int records_per_pass) {
+page::PagePath operation(int index, const std::string& type, int tool, double ball, double offset, int passes,
+                         int records_per_pass) {
   page::PagePath path;
   path.cl.operation = index;
   path.cl.operation_type = type;
@@ -96,7 +100,11 @@ page::PagePath operation(int index, const std::string& type, int tool, double ba
   path.cl.spindle_rpm = 12000;
   int line = 40 + 100000 * index;
   const auto add = [&](const Vec3& tip, const Vec3& axis, path::MoveKind kind, int zone, int pass) {
-    path.cl.records.push_back({tip, axis, kind == path::MoveKind::rapid ? 0.0 : kind == path::MoveKind::feed ? 900.0 : 400.0, kind, zone, pass});
+    path.cl.records.push_back({tip, axis,
+                               kind == path::MoveKind::rapid  ? 0.0
+                               : kind == path::MoveKind::feed ? 900.0
+                                                              : 400.0,
+                               kind, zone, pass});
     path.nc_lines.push_back(line++);
   };
   for (int zone = 0; zone < 2; ++zone)
@@ -134,8 +142,12 @@ page::PageTool ball_tool(const std::string& name, double radius, double stick_ou
     const double a = kPi / 2 * k / 16;
     ball.profile.emplace_back(radius * std::sin(a), radius - radius * std::cos(a));
   }
-  page::PageToolBody shank{"shank", {{radius, radius + 5}, {radius + 0.8, radius + 9}, {radius + 0.8, stick_out}}, false};
-  page::PageToolBody holder{"holder", {{7, stick_out}, {8, stick_out + 1}, {11, stick_out + 24}, {16, stick_out + 24}, {16, stick_out + 36}}, false};
+  page::PageToolBody shank{
+      "shank", {{radius, radius + 5}, {radius + 0.8, radius + 9}, {radius + 0.8, stick_out}}, false};
+  page::PageToolBody holder{
+      "holder",
+      {{7, stick_out}, {8, stick_out + 1}, {11, stick_out + 24}, {16, stick_out + 24}, {16, stick_out + 36}},
+      false};
   return {name, {ball, flute, shank, holder}};
 }
 
@@ -181,8 +193,17 @@ proof::DirectionChoice direction(int operation, int zone) {
 
 std::vector<svg::LineChart> motion() {
   svg::LineChart position{"Axis positions", "time [s]", "position [mm]", {}, {}, false, false, false, ""};
-  svg::LineChart turn{"Rotary axes", "time [s]", "position [\u00b0]", {}, {{"limit of A", 25}}, false, false, false, ""};
-  svg::LineChart speed{"Axis speeds", "time [s]", "speed [mm/min]", {}, {}, false, false, false, "Rotary axes at 50 mm from their centre."};
+  svg::LineChart turn{"Rotary axes", "time [s]", "position [\u00b0]", {}, {{"limit of A", 25}}, false, false,
+                      false,         ""};
+  svg::LineChart speed{"Axis speeds",
+                       "time [s]",
+                       "speed [mm/min]",
+                       {},
+                       {},
+                       false,
+                       false,
+                       false,
+                       "Rotary axes at 50 mm from their centre."};
   svg::LineChart feed{"Feed", "time [s]", "feed [mm/min]", {}, {{"commanded", 900}}, false, false, false, ""};
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0, 6);
@@ -192,8 +213,14 @@ std::vector<svg::LineChart> motion() {
     for (int i = 0; i < 20000; ++i) {
       const double t = i * 0.02, saw = std::fmod(t, 8) / 8;
       p.x.push_back(t), v.x.push_back(t);
-      p.y.push_back(axis == 0 ? 70 + 12 * saw : axis == 1 ? 3 * std::sin(t / 60) + saw : saw > 0.95 ? 4 : -5 + 2 * std::sin(t / 40));
-      v.y.push_back(axis == 0 ? (saw > 0.95 ? -4000 : 880 + noise(random)) : axis == 1 ? 60 * std::cos(t / 60) : saw > 0.95 ? 2500 : 30 + noise(random));
+      p.y.push_back(axis == 0    ? 70 + 12 * saw
+                    : axis == 1  ? 3 * std::sin(t / 60) + saw
+                    : saw > 0.95 ? 4
+                                 : -5 + 2 * std::sin(t / 40));
+      v.y.push_back(axis == 0    ? (saw > 0.95 ? -4000 : 880 + noise(random))
+                    : axis == 1  ? 60 * std::cos(t / 60)
+                    : saw > 0.95 ? 2500
+                                 : 30 + noise(random));
     }
     position.series.push_back(p), speed.series.push_back(v);
   }
@@ -209,9 +236,13 @@ std::vector<svg::LineChart> motion() {
 }
 
 std::vector<svg::LineChart> study() {
-  svg::LineChart error{"Error against run time", "run time [s]", "deviation [\u00b5m]", {}, {}, true, true, true, "Each point is one run of the job."};
-  svg::LineChart stages{"Run time of the stages", "scallop asked for [\u00b5m]", "run time [s]", {}, {}, true, true, true, ""};
-  svg::ChartSeries worst{"worst", {}, {}}, rms{"rms", {}, {}}, bound{"bound", {}, {}}, plan{"plan", {}, {}}, check{"check", {}, {}};
+  svg::LineChart error{
+      "Error against run time",           "run time [s]", "deviation [\u00b5m]", {}, {}, true, true, true,
+      "Each point is one run of the job."};
+  svg::LineChart stages{
+      "Run time of the stages", "scallop asked for [\u00b5m]", "run time [s]", {}, {}, true, true, true, ""};
+  svg::ChartSeries worst{"worst", {}, {}}, rms{"rms", {}, {}}, bound{"bound", {}, {}}, plan{"plan", {}, {}},
+      check{"check", {}, {}};
   for (const double scallop : {0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0}) {
     const double seconds = 0.4 + 9 / std::sqrt(scallop);
     for (auto* s : {&worst, &rms, &bound}) s->x.push_back(seconds);
@@ -247,7 +278,9 @@ proof::GougeResult gouge(const page::ReportPage& page, bool gouged) {
     g.worst.push_back(place);
   }
   if (gouged) g.deepest = g.worst.front();
-  else g.deepest.depth_mm = g.measured_mm, g.deepest.body = tool::Body::ball, g.deepest.patch = "flank +1", g.deepest.tooth = 11, g.deepest.line = 4711;
+  else
+    g.deepest.depth_mm = g.measured_mm, g.deepest.body = tool::Body::ball, g.deepest.patch = "flank +1",
+    g.deepest.tooth = 11, g.deepest.line = 4711;
   return g;
 }
 
@@ -259,7 +292,8 @@ std::vector<page::NcExcerpt> listing(const page::ReportPage& page) {
   for (const int line : lines) {
     page::NcExcerpt e{line - 5, {}};
     for (int i = line - 5; i <= line + 5; ++i)
-      e.lines.push_back(fmt::format("N{} G1 X{:.4f} Y{:.4f} Z{:.4f} A{:.4f} C{:.4f} F{:.1f}", i, 71.2 + 0.11 * (i - line), -3.1 + 0.02 * i / 7, -4.2 + 0.013 * (i - line), 6.8421,
+      e.lines.push_back(fmt::format("N{} G1 X{:.4f} Y{:.4f} Z{:.4f} A{:.4f} C{:.4f} F{:.1f}", i,
+                                    71.2 + 0.11 * (i - line), -3.1 + 0.02 * i / 7, -4.2 + 0.013 * (i - line), 6.8421,
                                     -12.4402 + 0.004 * (i - line), 912.5));
     excerpts.push_back(e);
   }
@@ -273,46 +307,73 @@ page::ReportPage synthetic_page(const SyntheticPageOptions& options) {
   page.title = "dhfg_synthetic";
   page.subtitle = "Double helical face gear, module 3, 41 teeth, five-axis mill with table A and C";
   page.verified = !options.gouged;
-  if (options.gouged) page.reasons = {"gouge 6.40 \u00b5m (bound 6.90 \u00b5m) exceeds gouge_tolerance 2.00 \u00b5m at NC line " "1234, tooth 0, flank +1"};
+  if (options.gouged)
+    page.reasons = {
+        "gouge 6.40 \u00b5m (bound 6.90 \u00b5m) exceeds gouge_tolerance 2.00 \u00b5m at NC line "
+        "1234, tooth 0, flank +1"};
   page.warnings = {"axis C comes within 3.1\u00b0 of its limit"};
   page.assumed = {"backlash = 0 mm", "mate_teeth = 20 (as shaper_teeth)", "chord_tolerance = 0.005 mm for roughing"};
-  page.summary = {{"gear", "face gear, double helical, 41 teeth"}, {"module", "3 mm (normal plane)"}, {"pressure angle", "20\u00b0"}, {"reference radius", "78.0000 mm"},
-                  {"machine", "vertical five-axis mill, table A/C"}, {"blank", "rings 66 to 76 mm and 80 to 90 mm"}};
+  page.summary = {{"gear", "face gear, double helical, 41 teeth"},
+                  {"module", "3 mm (normal plane)"},
+                  {"pressure angle", "20\u00b0"},
+                  {"reference radius", "78.0000 mm"},
+                  {"machine", "vertical five-axis mill, table A/C"},
+                  {"blank", "rings 66 to 76 mm and 80 to 90 mm"}};
   page.tools = {ball_tool("T1 ball 3.0 mm", 1.5, 26), ball_tool("T2 ball 2.0 mm", kBall, 20)};
   const double share = static_cast<double>(options.path_points) / 12000;
   const int per_pass = std::max(20, static_cast<int>(80 * std::sqrt(share)));
-  const int passes = std::max(6, static_cast<int>(static_cast<double>(options.path_points) / 2 / per_pass / (options.one_operation ? 1 : 2.2)));
+  const int passes = std::max(
+      6, static_cast<int>(static_cast<double>(options.path_points) / 2 / per_pass / (options.one_operation ? 1 : 2.2)));
   if (options.one_operation) {
     page.paths = {operation(0, "finishing", 1, kBall, 0, passes, per_pass)};
   } else {
-    page.paths = {operation(0, "roughing", 0, 1.5, 0.3, passes / 2, per_pass), operation(1, "semi_finishing", 1, kBall, 0.06, passes * 7 / 10, per_pass),
+    page.paths = {operation(0, "roughing", 0, 1.5, 0.3, passes / 2, per_pass),
+                  operation(1, "semi_finishing", 1, kBall, 0.06, passes * 7 / 10, per_pass),
                   operation(2, "finishing", 1, kBall, 0, passes, per_pass)};
   }
   for (int zone = 0; zone < 2; ++zone)
-    for (int patch = 0; patch < 5; ++patch) page.surface.push_back(grid(zone, patch, static_cast<int>(page.paths.size())));
-  for (std::size_t k = 0; k < page.paths.size(); ++k) page.excess.push_back(excess(page, page.paths[k].cl.operation, k));
+    for (int patch = 0; patch < 5; ++patch)
+      page.surface.push_back(grid(zone, patch, static_cast<int>(page.paths.size())));
+  for (std::size_t k = 0; k < page.paths.size(); ++k)
+    page.excess.push_back(excess(page, page.paths[k].cl.operation, k));
   page.gouge = gouge(page, options.gouged);
   page.gouge_tolerance_mm = 0.002;
   page.nc_file = "program.ngc";
   page.listing = listing(page);
   using State = page::KeyFigure::State;
-  page.figures = {{"worst gouge", options.gouged ? "6.40" : "\u22120.21", "\u00b5m", options.gouged ? "bound 6.90, tolerance 2.00" : "bound 0.40, tolerance 2.00",
+  page.figures = {{"worst gouge", options.gouged ? "6.40" : "\u22120.21", "\u00b5m",
+                   options.gouged ? "bound 6.90, tolerance 2.00" : "bound 0.40, tolerance 2.00",
                    options.gouged ? State::bad : State::good},
-                  {"material left", "3.10", "\u00b5m", "bound 3.50", State::plain}, {"scallop", "2.84", "\u00b5m", "3.00 asked for", State::plain},
+                  {"material left", "3.10", "\u00b5m", "bound 3.50", State::plain},
+                  {"scallop", "2.84", "\u00b5m", "3.00 asked for", State::plain},
                   {"path points", std::to_string(page.gouge->motions), "", "41 spaces in the program", State::plain},
-                  {"cutting time", "148", "min", "all teeth", State::plain}, {"run time", "3.9", "s", "2 threads", State::plain}};
-  page.ledger = {{proof::ErrorSource::flank_solve, 0.00002, 0.000004, ""}, {proof::ErrorSource::chord, 0.5, 0.41, ""}, {proof::ErrorSource::scallop, 3.0, 2.84, ""}, {proof::ErrorSource::orientation, 0, 0, ""},
-                 {proof::ErrorSource::axis_linearisation, 0.2, 0.034, ""}, {proof::ErrorSource::rounding, 0.09, 0.062, ""}, {proof::ErrorSource::verification, 0.15, 0.02, ""}};
+                  {"cutting time", "148", "min", "all teeth", State::plain},
+                  {"run time", "3.9", "s", "2 threads", State::plain}};
+  page.ledger = {{proof::ErrorSource::flank_solve, 0.00002, 0.000004, ""},
+                 {proof::ErrorSource::chord, 0.5, 0.41, ""},
+                 {proof::ErrorSource::scallop, 3.0, 2.84, ""},
+                 {proof::ErrorSource::orientation, 0, 0, ""},
+                 {proof::ErrorSource::axis_linearisation, 0.2, 0.034, ""},
+                 {proof::ErrorSource::rounding, 0.09, 0.062, ""},
+                 {proof::ErrorSource::verification, 0.15, 0.02, ""}};
   for (const page::PagePath& p : page.paths)
     for (int zone = 0; zone < 2; ++zone) page.directions.push_back(direction(p.cl.operation, zone));
   page.motion = motion();
   if (options.study) page.work_precision = study();
-  page.stage_seconds = {{"surface", 0.21}, {"plan", 1.32}, {"post", 0.44}, {"read back", 0.38}, {"check", 1.51}, {"report", 0.06}};
-  page.tables = {{"Axes", {"Axis", "Least", "Greatest", "Limits", "Fastest"},
-                  {{"X [mm]", "\u2212120.402", "98.114", "\u2212300 / 300", "8000"}, {"Y [mm]", "\u221245.000", "44.203", "\u2212200 / 200", "6100"},
-                   {"Z [mm]", "\u22126.204", "40.000", "\u2212250 / 50", "5000"}, {"A [\u00b0]", "2.914", "11.020", "\u221230 / 110", "310"},
-                   {"C [\u00b0]", "\u221212.440", "356.9", "", "1200"}}, "Speeds in mm/min and \u00b0/min."},
-                 {"Tools", {"Tool", "Diameter [mm]", "Length [mm]", "Stick-out [mm]"}, {{"T1 ball", "3.000", "92.140", "26.0"}, {"T2 ball", "2.000", "88.005", "20.0"}}, ""}};
+  page.stage_seconds = {{"surface", 0.21},   {"plan", 1.32},  {"post", 0.44},
+                        {"read back", 0.38}, {"check", 1.51}, {"report", 0.06}};
+  page.tables = {{"Axes",
+                  {"Axis", "Least", "Greatest", "Limits", "Fastest"},
+                  {{"X [mm]", "\u2212120.402", "98.114", "\u2212300 / 300", "8000"},
+                   {"Y [mm]", "\u221245.000", "44.203", "\u2212200 / 200", "6100"},
+                   {"Z [mm]", "\u22126.204", "40.000", "\u2212250 / 50", "5000"},
+                   {"A [\u00b0]", "2.914", "11.020", "\u221230 / 110", "310"},
+                   {"C [\u00b0]", "\u221212.440", "356.9", "", "1200"}},
+                  "Speeds in mm/min and \u00b0/min."},
+                 {"Tools",
+                  {"Tool", "Diameter [mm]", "Length [mm]", "Stick-out [mm]"},
+                  {{"T1 ball", "3.000", "92.140", "26.0"}, {"T2 ball", "2.000", "88.005", "20.0"}},
+                  ""}};
   if (options.awkward_names) {
     const std::string nasty = "</script><script>document.title='broken'</script><!-- <b>&amp;\"' \xE2\x80\xA8\xFF \xC3";
     page.title = page.subtitle = page.nc_file = nasty;

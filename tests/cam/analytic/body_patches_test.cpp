@@ -1,5 +1,5 @@
-// The bounds that shank and holder are proven with: interval arithmetic holds what it must, and the quads of the body patches hold the
-// surface, by random places of the patches and by an independent sampling of the solid.
+// The bounds that shank and holder are proven with: interval arithmetic holds what it must, and the quads of the body
+// patches hold the surface, by random places of the patches and by an independent sampling of the solid.
 #include "cam/analytic/body_patches.h"
 
 #include "cam/analytic/gear_distance.h"
@@ -21,7 +21,8 @@ TEST(Interval, HoldsEveryFunctionOfItsPoints) {
     const Interval x = some(), y = some();
     const double p = random(x.low, x.high), q = random(y.low, y.high);
     const auto expect = [&](const Interval& r, double value, const char* what) {
-      EXPECT_TRUE(r.holds(value)) << what << " of " << p << ", " << q << " is " << value << ", not in [" << r.low << ", " << r.high << "]";
+      EXPECT_TRUE(r.holds(value)) << what << " of " << p << ", " << q << " is " << value << ", not in [" << r.low
+                                  << ", " << r.high << "]";
     };
     expect(x + y, p + q, "sum");
     expect(x - y, p - q, "difference");
@@ -54,8 +55,8 @@ class Patches : public testing::TestWithParam<std::string> {
 
 TEST_P(Patches, NothingRestsOnSampling) { EXPECT_EQ(part.unproven(), 0U); }
 
-/// A quad, halved at random some times, under a random direction: no place of its piece of the surface lies lower than its corners less
-/// `above`, or farther from the place of the hull with the same weights than `sag`.
+/// A quad, halved at random some times, under a random direction: no place of its piece of the surface lies lower than
+/// its corners less `above`, or farther from the place of the hull with the same weights than `sag`.
 TEST_P(Patches, HullsHoldTheirPieces) {
   test::Random random(23);
   for (int zone = 0; zone < part.zones(); ++zone) {
@@ -64,11 +65,14 @@ TEST_P(Patches, HullsHoldTheirPieces) {
     double least = INFINITY;
     for (int k = 0; k < 3000; ++k) {
       // Lands, ends and the floor come last.
-      const std::size_t cell = k % 3 == 0 ? count - 1 - random.index(std::min<std::size_t>(count, 1500)) : random.index(count);
+      const std::size_t cell =
+          k % 3 == 0 ? count - 1 - random.index(std::min<std::size_t>(count, 1500)) : random.index(count);
       analytic::BodyQuad q = patches.quad(cell);
       for (std::size_t n = random.index(6); n > 0; --n) q = patches.halved(cell, q)[random.index(2)];
       const double a = random(0, 1), b = random(0, 1);
-      const auto mixed = [&](const auto& x) { return ((1 - b) * ((1 - a) * x[0] + a * x[1]) + b * ((1 - a) * x[3] + a * x[2])).eval(); };
+      const auto mixed = [&](const auto& x) {
+        return ((1 - b) * ((1 - a) * x[0] + a * x[1]) + b * ((1 - a) * x[3] + a * x[2])).eval();
+      };
       const auto p = patches.settled(cell, mixed(q.at));
       if (!p) continue;
       const Vec3 g = Vec3(random(-1, 1), random(-1, 1), random(-1, 1)).normalized();
@@ -79,11 +83,10 @@ TEST_P(Patches, HullsHoldTheirPieces) {
       if (cut) continue;  // a place that was moved to a border may belong to a quad beside it
       EXPECT_GE(g.dot(*p), low - patches.above(cell, q, g) - 1e-11) << patches.name(cell) << " " << k;
       least = std::min(least, g.dot(*p) - low + patches.above(cell, q, g));
-      // Bilinear weights stand for the hull; a quad that is no parallelogram lies beside them by less than its second differences.
+      // Bilinear weights stand for the hull; a quad that is no parallelogram lies beside them by less than its second
+      // differences.
       const double skew = 0.25 * (q.corner[0] - q.corner[1] + q.corner[2] - q.corner[3]).norm();
-      if (patches.on_sheet(cell)) {
-        EXPECT_LE((*p - mixed(q.corner)).norm(), patches.sag(cell, q) + 2 * skew + 1e-9);
-      }
+      if (patches.on_sheet(cell)) { EXPECT_LE((*p - mixed(q.corner)).norm(), patches.sag(cell, q) + 2 * skew + 1e-9); }
     }
     EXPECT_LE(least, 1e-3);  // not far off everywhere
   }
@@ -99,7 +102,8 @@ TEST_P(Patches, TheSolidIsCovered) {
     for (int patch = 0; patch < 9; ++patch) {
       if (patch == 8 && zone + 1 == part.zones()) continue;
       for (int k = 0; k < 25; ++k) {
-        const double x = k % 5 == 3 ? std::round(random(0, 1)) : random(0, 1), y = k % 5 == 4 ? std::round(random(0, 1)) : random(0, 1);
+        const double x = k % 5 == 3 ? std::round(random(0, 1)) : random(0, 1),
+                     y = k % 5 == 4 ? std::round(random(0, 1)) : random(0, 1);
         const Vec3 at = brute.point(zone, patch, x, y);
         if (at.z() < gear.lowest_root() - 0.45) continue;  // the ends are followed to 0.5 mm below the lowest root
         bool held = false;
@@ -120,7 +124,8 @@ TEST_P(Patches, TheSolidIsCovered) {
             });
           }
         }
-        EXPECT_TRUE(held) << BruteForceGearSolid::name(patch) << " of zone " << zone << " at " << at.transpose() << " (" << x << ", " << y << ")";
+        EXPECT_TRUE(held) << BruteForceGearSolid::name(patch) << " of zone " << zone << " at " << at.transpose() << " ("
+                          << x << ", " << y << ")";
       }
     }
 }
@@ -133,16 +138,19 @@ TEST_P(Patches, SettledPlacesLieOnTheSolid) {
     const auto& patches = part.patches(zone);
     const std::size_t count = part.cells(zone).size();
     for (int k = 0; k < 40; ++k) {
-      const std::size_t cell = k % 2 == 0 ? count - 1 - random.index(std::min<std::size_t>(count, 1200)) : random.index(count);
+      const std::size_t cell =
+          k % 2 == 0 ? count - 1 - random.index(std::min<std::size_t>(count, 1200)) : random.index(count);
       const auto& q = patches.quad(cell);
       const auto p = patches.settled(cell, 0.25 * (q.at[0] + q.at[1] + q.at[2] + q.at[3]));
-      if (!p || p->z() < gear.lowest_root() - 0.2 * gear.parameters().module_mm) continue;  // far down an end: not sampled there
+      if (!p || p->z() < gear.lowest_root() - 0.2 * gear.parameters().module_mm)
+        continue;  // far down an end: not sampled there
       EXPECT_LE(brute.nearest(*p).distance, 5e-6) << patches.name(cell) << " " << p->transpose();
     }
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Gears, Patches, testing::ValuesIn(test::gear_names()), [](const auto& gear_case) { return gear_case.param; });
+INSTANTIATE_TEST_SUITE_P(Gears, Patches, testing::ValuesIn(test::gear_names()),
+                         [](const auto& gear_case) { return gear_case.param; });
 
 }  // namespace
 }  // namespace toothpath

@@ -18,9 +18,10 @@ class Distance : public testing::TestWithParam<std::string> {
 };
 
 /// What a query may differ: facets decide where nothing else does, and edges are polylines.
-void expect_agreement(const analytic::GearDistance& part, const analytic::NearestPlace& q, const test::BruteNearest& truth, double within, const char* where) {
-  SCOPED_TRACE(fmt::format("{}: ({:.9f}, {:.9f}, {:.9f}), nearest {} at {:.9f}, brute force {} at {:.9f}", where, q.point.x(), q.point.y(),
-                           q.point.z(), q.patch, q.distance, truth.patch, truth.distance));
+void expect_agreement(const analytic::GearDistance& part, const analytic::NearestPlace& q,
+                      const test::BruteNearest& truth, double within, const char* where) {
+  SCOPED_TRACE(fmt::format("{}: ({:.9f}, {:.9f}, {:.9f}), nearest {} at {:.9f}, brute force {} at {:.9f}", where,
+                           q.point.x(), q.point.y(), q.point.z(), q.patch, q.distance, truth.patch, truth.distance));
   const double target = std::min(truth.distance, within);
   EXPECT_LE(q.distance, target + 2e-7);  // never above the truth
   EXPECT_GE(q.distance, target - (q.exact ? 2e-6 : 1e-4 + 2 * part.cell_sag_mm()));
@@ -79,10 +80,12 @@ TEST_P(Distance, InsideIsNegative) {
       const auto truth = brute.nearest(c);
       if (truth.distance < 2e-4) continue;
       ++deep;
-      EXPECT_LT(q.distance, 0) << c.transpose() << " truth " << truth.distance << " " << truth.patch << " said " << q.patch;
+      EXPECT_LT(q.distance, 0) << c.transpose() << " truth " << truth.distance << " " << truth.patch << " said "
+                               << q.patch;
     } else if (q.distance < 0) {
       const auto truth = brute.nearest(c);
-      EXPECT_LT(truth.distance, 2e-4) << c.transpose() << " is free, " << truth.patch << " said " << q.distance << " " << q.patch;
+      EXPECT_LT(truth.distance, 2e-4) << c.transpose() << " is free, " << truth.patch << " said " << q.distance << " "
+                                      << q.patch;
     }
   }
   EXPECT_GE(deep, 50);
@@ -99,7 +102,8 @@ TEST_P(Distance, DepthBelowTheSurface) {
       }
 }
 
-// A conical root rises along the tooth: a short look that sees no surface must still tell air from material at every radius.
+// A conical root rises along the tooth: a short look that sees no surface must still tell air from material at every
+// radius.
 TEST(DistanceOnACone, ShortLooksTellAirFromMaterial) {
   face_gear::FaceGearParameters p;
   p.teeth = 79;
@@ -118,7 +122,8 @@ TEST(DistanceOnACone, ShortLooksTellAirFromMaterial) {
     const double r = random(gear.inner_radius(), gear.outer_radius()), a = random(0, gear.pitch());
     const double root = face_gear::root_height(gear.rings()[0].surface, r).value();
     const Vec3 c(r * std::cos(a), r * std::sin(a), root + random(-0.3, 1.0) * p.module_mm);
-    const double within = random(0.02, 0.1), truth = part.nearest(c, 1.2).distance, said = part.nearest(c, within).distance;
+    const double within = random(0.02, 0.1), truth = part.nearest(c, 1.2).distance,
+                 said = part.nearest(c, within).distance;
     if (truth > within + 1e-3) {
       ++free;
       EXPECT_EQ(said, within) << c.transpose() << " is " << truth << " away";
@@ -144,7 +149,8 @@ TEST_P(Distance, TheSameAtEveryTooth) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Gears, Distance, testing::ValuesIn(test::gear_names()), [](const auto& gear_case) { return gear_case.param; });
+INSTANTIATE_TEST_SUITE_P(Gears, Distance, testing::ValuesIn(test::gear_names()),
+                         [](const auto& gear_case) { return gear_case.param; });
 
 }  // namespace
 }  // namespace toothpath

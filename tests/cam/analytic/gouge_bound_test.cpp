@@ -1,5 +1,5 @@
-// What a clean result and a bound mean: 200 small clean programs pass, a tenfold denser sampling of random motions (turning axes among
-// them) never exceeds the bound.
+// What a clean result and a bound mean: 200 small clean programs pass, a tenfold denser sampling of random motions
+// (turning axes among them) never exceeds the bound.
 #include "cam/analytic/body_sweep.h"
 #include "cam/analytic/cutter_sweep.h"
 #include "cam/analytic/gouge_check.h"
@@ -56,7 +56,8 @@ TEST_P(CleanPrograms, NoneIsReported) {
     const auto path = one_pass(job, random, R, random(0, 0.002));
     if (!path) continue;
     // By construction: the flute is longer than any tooth is high, shank and holder stay above the blank.
-    tool::ToolAssembly tool = test::ball_mill(2 * R, 8 * job.gear.parameters().module_mm, 1.9 * R, 9 * job.gear.parameters().module_mm, 10);
+    tool::ToolAssembly tool =
+        test::ball_mill(2 * R, 8 * job.gear.parameters().module_mm, 1.9 * R, 9 * job.gear.parameters().module_mm, 10);
     // And by brute force: ball and flute against the sampled surfaces.
     double worst = -INFINITY;
     for (std::size_t k = 2; k + 2 < path->records.size(); k += 1 + path->records.size() / 4)
@@ -72,8 +73,9 @@ TEST_P(CleanPrograms, NoneIsReported) {
     options.rapid_height_mm = roof;
     const analytic::GougeCheck check(*job.part, {tool}, options);
     const auto r = check.check(analytic::GougeCheck::motions_of(*path), {0});
-    EXPECT_TRUE(check.passes(r)) << attempt << ": brute force " << worst << " measured " << r.measured_mm << " bound " << r.bound_mm << " limit " << tolerance
-                                 << " clearance " << r.clearance_mm << " rapids " << r.rapids_clear;
+    EXPECT_TRUE(check.passes(r)) << attempt << ": brute force " << worst << " measured " << r.measured_mm << " bound "
+                                 << r.bound_mm << " limit " << tolerance << " clearance " << r.clearance_mm
+                                 << " rapids " << r.rapids_clear;
     EXPECT_TRUE(r.worst.empty());
     EXPECT_GE(r.bound_mm, r.measured_mm);
     EXPECT_GE(r.bound_mm, worst - 1e-6);
@@ -81,7 +83,8 @@ TEST_P(CleanPrograms, NoneIsReported) {
   EXPECT_EQ(clean, 50);
 }
 
-INSTANTIATE_TEST_SUITE_P(Jobs, CleanPrograms, testing::Values("spur", "offset", "conical", "dhfg"), [](const auto& c) { return std::string(c.param); });
+INSTANTIATE_TEST_SUITE_P(Jobs, CleanPrograms, testing::Values("spur", "offset", "conical", "dhfg"),
+                         [](const auto& c) { return std::string(c.param); });
 
 class RandomMotions : public testing::TestWithParam<const char*> {};
 
@@ -97,7 +100,9 @@ TEST_P(RandomMotions, TenfoldSamplingNeverExceedsTheBound) {
   int turning = 0;
   for (int k = 0; k < 60; ++k) {
     const auto& record = path.records[2 + random.index(path.records.size() - 4)];
-    const auto wander = [&](double size) { return Vec3(random(-size, size), random(-size, size), random(-size, size)); };
+    const auto wander = [&](double size) {
+      return Vec3(random(-size, size), random(-size, size), random(-size, size));
+    };
     path::ToolMotion m;
     m.axis_from = (record.axis + wander(0.2)).normalized();
     m.axis_to = k % 2 == 0 ? m.axis_from : Vec3((m.axis_from + wander(0.3)).normalized());
@@ -121,7 +126,8 @@ TEST_P(RandomMotions, TenfoldSamplingNeverExceedsTheBound) {
   EXPECT_GE(turning, 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Jobs, RandomMotions, testing::Values("spur", "conical"), [](const auto& c) { return std::string(c.param); });
+INSTANTIATE_TEST_SUITE_P(Jobs, RandomMotions, testing::Values("spur", "conical"),
+                         [](const auto& c) { return std::string(c.param); });
 
 // A control that may lean the tool by degrees: the bound covers every lean, and the search for it ends.
 TEST_P(RandomMotions, AWideToleranceOfTheAxisIsBoundedInFewDistances) {
@@ -145,8 +151,10 @@ TEST_P(RandomMotions, AWideToleranceOfTheAxisIsBoundedInFewDistances) {
       const auto found = sweep.check(m);
       for (int n = 0; n < 60; ++n) {
         const double t = random(0, 1), h = random(0, tool.flute_length_mm - R);
-        const Vec3 u = path::axis_at(m, t), aside = u.cross(Vec3(random(-1, 1), random(-1, 1), random(-1, 1))).normalized();
-        const auto q = job.part->nearest(path::tip_at(m, t) + (R + h) * (std::cos(lean) * u + std::sin(lean) * aside), R + 0.3);
+        const Vec3 u = path::axis_at(m, t),
+                   aside = u.cross(Vec3(random(-1, 1), random(-1, 1), random(-1, 1))).normalized();
+        const auto q =
+            job.part->nearest(path::tip_at(m, t) + (R + h) * (std::cos(lean) * u + std::sin(lean) * aside), R + 0.3);
         margin = std::min(margin, found.bound_mm - (R - q.distance));
       }
     }
@@ -157,8 +165,9 @@ TEST_P(RandomMotions, AWideToleranceOfTheAxisIsBoundedInFewDistances) {
 
 class RandomBodies : public testing::TestWithParam<const char*> {};
 
-/// Shank and holder of stubby tools in random motions, half of them turning, against the sampled solid at ten times as many moments as the motion
-/// would need to look at: no place comes nearer than the proven gap, and what is measured is a gap that exists.
+/// Shank and holder of stubby tools in random motions, half of them turning, against the sampled solid at ten times as
+/// many moments as the motion would need to look at: no place comes nearer than the proven gap, and what is measured is
+/// a gap that exists.
 TEST_P(RandomBodies, TenfoldSamplingNeverExceedsTheBound) {
   const auto& job = job_named(GetParam());
   const auto& path = job.plan.paths.back();
@@ -168,7 +177,9 @@ TEST_P(RandomBodies, TenfoldSamplingNeverExceedsTheBound) {
   int near = 0, cutting = 0, turning = 0;
   for (int k = 0; k < 24; ++k) {
     const auto& record = path.records[2 + random.index(path.records.size() - 4)];
-    const auto wander = [&](double size) { return Vec3(random(-size, size), random(-size, size), random(-size, size)); };
+    const auto wander = [&](double size) {
+      return Vec3(random(-size, size), random(-size, size), random(-size, size));
+    };
     const double above = std::max(roof - record.tip.z(), 0.0), R = job.tool(path.operation).radius_mm();
     const double low = k % 2 == 0 ? R + random(0.1, 1.0) : above + random(-0.15, 0.2);
     const double r0 = k % 2 == 0 ? R * random(0.8, 1.0) : random(2, 6), r1 = k % 2 == 0 ? r0 : r0 * random(1.0, 1.3);
@@ -194,7 +205,8 @@ TEST_P(RandomBodies, TenfoldSamplingNeverExceedsTheBound) {
         const Vec3 p = face_gear::FaceGearSurface<double>::turned(found.place, tooth * job.gear.pitch());
         if ((p - m.tip_from).norm() > body.to + r1 + 4) continue;
         for (int s = 0; s <= 1000; ++s)
-          there = std::min(there, -test::depth_in_body(p, {body.from, body.to, r0, r1, false}, path::tip_at(m, s / 1000.0), path::axis_at(m, s / 1000.0)));
+          there = std::min(there, -test::depth_in_body(p, {body.from, body.to, r0, r1, false},
+                                                       path::tip_at(m, s / 1000.0), path::axis_at(m, s / 1000.0)));
       }
       EXPECT_NEAR(found.measured_mm, there, 0.002 + 0.3 * std::max(0.0, -found.measured_mm)) << k << " " << found.patch;
     }
@@ -207,7 +219,8 @@ TEST_P(RandomBodies, TenfoldSamplingNeverExceedsTheBound) {
   RecordProperty("cutting", cutting);
 }
 
-INSTANTIATE_TEST_SUITE_P(Jobs, RandomBodies, testing::Values("spur", "conical", "double"), [](const auto& c) { return std::string(c.param); });
+INSTANTIATE_TEST_SUITE_P(Jobs, RandomBodies, testing::Values("spur", "conical", "double"),
+                         [](const auto& c) { return std::string(c.param); });
 
 /// The straight-line bound against sets of random points: the sharpest case that it must cover.
 TEST(LeastBetween, HoldsForEverySet) {

@@ -11,11 +11,14 @@ namespace toothpath::test {
 
 inline Vec3 centre(const path::ClRecord& r, double R) { return r.tip + R * r.axis; }
 
-inline proof::GougeResult check(const PlannedJob& job, const std::vector<path::ToolMotion>& motions, std::vector<tool::ToolAssembly> tools = {}) {
+inline proof::GougeResult check(const PlannedJob& job, const std::vector<path::ToolMotion>& motions,
+                                std::vector<tool::ToolAssembly> tools = {}) {
   const analytic::GougeCheck checker(*job.part, tools.empty() ? job.tools : tools, job.check_options());
   return checker.check(motions, job.tool_of_operation());
 }
-inline bool passes(const PlannedJob& job, const proof::GougeResult& r) { return analytic::GougeCheck(*job.part, job.tools, job.check_options()).passes(r); }
+inline bool passes(const PlannedJob& job, const proof::GougeResult& r) {
+  return analytic::GougeCheck(*job.part, job.tools, job.check_options()).passes(r);
+}
 
 /// The deepest place of the ball on some motions, looked for at `steps` places a motion.
 struct Sampled {

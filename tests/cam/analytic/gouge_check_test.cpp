@@ -1,4 +1,5 @@
-// The gouge check of whole programs: clean ones pass and nothing between the samples is deeper than the bound, wrong ones are refused.
+// The gouge check of whole programs: clean ones pass and nothing between the samples is deeper than the bound, wrong
+// ones are refused.
 #include "cam/analytic/gouge_check.h"
 
 #include "tests/cam/analytic/gouge_case.h"
@@ -15,8 +16,9 @@ TEST_P(Clean, PassesWithItsBoundAboveWhatWasMeasured) {
   for (const auto& path : job.plan.paths) {
     const auto r = checker.check(analytic::GougeCheck::motions_of(path), job.tool_of_operation());
     EXPECT_TRUE(r.worst.empty());
-    EXPECT_TRUE(checker.passes(r)) << path.operation << " measured " << r.measured_mm << " bound " << r.bound_mm << " clearance " << r.clearance_mm
-                                   << " " << r.deepest.patch << " at " << r.deepest.radius_mm;
+    EXPECT_TRUE(checker.passes(r)) << path.operation << " measured " << r.measured_mm << " bound " << r.bound_mm
+                                   << " clearance " << r.clearance_mm << " " << r.deepest.patch << " at "
+                                   << r.deepest.radius_mm;
     EXPECT_GE(r.bound_mm, r.measured_mm);
     EXPECT_LE(r.bound_mm, std::max(r.measured_mm, 0.0) + 2.5e-4);
     EXPECT_TRUE(r.rapids_clear);
@@ -143,7 +145,8 @@ TEST(WrongPrograms, ShankAndHolder) {
   EXPECT_FALSE(passes(job, r));
   ASSERT_FALSE(r.worst.empty());
   const auto worst_is = [&](const char* body) {
-    return std::any_of(r.worst.begin(), r.worst.end(), [&](const proof::WorstPlace& w) { return to_string(w.body) == body; });
+    return std::any_of(r.worst.begin(), r.worst.end(),
+                       [&](const proof::WorstPlace& w) { return to_string(w.body) == body; });
   };
   EXPECT_TRUE(worst_is("shank"));
   auto stubby = job.tools;

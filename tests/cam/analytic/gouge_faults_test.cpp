@@ -1,4 +1,5 @@
-// Gouges of 2 um planted in planned programs, one record or a few at a time: all are found, with their depth and their place.
+// Gouges of 2 um planted in planned programs, one record or a few at a time: all are found, with their depth and their
+// place.
 #include <map>
 #include <optional>
 
@@ -26,7 +27,8 @@ class Planter {
     for (int attempt = 0; attempt < 200; ++attempt) {
       const std::size_t k = 1 + random_.index(path.records.size() - 2);
       if (path.records[k].kind != kind || path.records[k + 1].kind == path::MoveKind::rapid) continue;
-      auto records = std::vector<path::ClRecord>(path.records.begin() + long(k) - 1, path.records.begin() + long(k) + 2);
+      auto records =
+          std::vector<path::ClRecord>(path.records.begin() + long(k) - 1, path.records.begin() + long(k) + 2);
       if (!push_in(records[1], R)) continue;
       return Planted{std::string("moved ") + to_string(kind), motions(path, records, k), path.operation};
     }
@@ -59,7 +61,8 @@ class Planter {
     for (int attempt = 0; attempt < 3000; ++attempt) {
       const std::size_t k = 1 + random_.index(path.records.size() - 2);
       if (path.records[k].kind != path::MoveKind::feed || path.records[k + 1].kind != path::MoveKind::feed) continue;
-      auto records = std::vector<path::ClRecord>(path.records.begin() + long(k) - 1, path.records.begin() + long(k) + 2);
+      auto records =
+          std::vector<path::ClRecord>(path.records.begin() + long(k) - 1, path.records.begin() + long(k) + 2);
       const auto q = job_.part->nearest(centre(records[1], R), R + 0.05);
       if (std::string(q.patch).find(patch) == std::string::npos) continue;
       const auto& zone = job_.gear.rings()[std::size_t(q.zone)].zone;
@@ -78,13 +81,16 @@ class Planter {
       const Vec3 c = centre(record, R);
       const auto q = job_.part->nearest(c, R + 0.1);
       if (!(q.distance < R + 0.1) || q.distance <= 0) return false;
-      const Vec3 foot = face_gear::FaceGearSurface<double>::turned(q.foot, std::remainder(std::atan2(c.y(), c.x()) - std::atan2(q.point.y(), q.point.x()), 2 * kPi));
+      const Vec3 foot = face_gear::FaceGearSurface<double>::turned(
+          q.foot, std::remainder(std::atan2(c.y(), c.x()) - std::atan2(q.point.y(), q.point.x()), 2 * kPi));
       if (std::abs((foot - c).norm() - q.distance) > 1e-5) return false;  // an edge: its foot is only near
       record.tip += (foot - c).normalized() * (q.distance - (R - 0.002));
     }
     return std::abs(R - 0.002 - job_.part->nearest(centre(record, R), R + 0.1).distance) < 1e-6;
   }
-  [[nodiscard]] std::vector<path::ToolMotion> motions(const path::ClPath& path, const std::vector<path::ClRecord>& records, std::size_t line) const {
+  [[nodiscard]] std::vector<path::ToolMotion> motions(const path::ClPath& path,
+                                                      const std::vector<path::ClRecord>& records,
+                                                      std::size_t line) const {
     path::ClPath piece = path;
     piece.records = records;
     auto m = analytic::GougeCheck::motions_of(piece);
@@ -117,8 +123,8 @@ TEST(PlantedGouges, AllAreFoundWithinAFifthOfAMicrometre) {
       const double R = job.tool(fault.operation).radius_mm();
       const auto truth = sampled(job, fault.motions, R, 2000);
       const auto r = check(job, fault.motions);
-      SCOPED_TRACE(fmt::format("{} {}: truth {:.6f} measured {:.6f} bound {:.6f} on {} at line {}", name, fault.what, truth.depth, r.measured_mm,
-                               r.bound_mm, r.deepest.patch, r.deepest.line));
+      SCOPED_TRACE(fmt::format("{} {}: truth {:.6f} measured {:.6f} bound {:.6f} on {} at line {}", name, fault.what,
+                               truth.depth, r.measured_mm, r.bound_mm, r.deepest.patch, r.deepest.line));
       EXPECT_GE(truth.depth, 0.002 - 1e-6);
       EXPECT_NEAR(r.measured_mm, truth.depth, 2.0e-4);
       EXPECT_GE(r.bound_mm, truth.depth - 1e-9);
@@ -131,7 +137,8 @@ TEST(PlantedGouges, AllAreFoundWithinAFifthOfAMicrometre) {
   }
   EXPECT_GE(planted, 200);
   for (const auto& [what, count] : kinds) RecordProperty(what, count);
-  for (const char* what : {"moved feed", "moved engage", "dropped", "fillet", "root", " at an end"}) EXPECT_GE(kinds[what], 4) << what;
+  for (const char* what : {"moved feed", "moved engage", "dropped", "fillet", "root", " at an end"})
+    EXPECT_GE(kinds[what], 4) << what;
 }
 
 TEST(PlantedGouges, InAWholeProgramTheDeepestComesFirst) {

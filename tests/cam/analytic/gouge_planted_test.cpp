@@ -1,6 +1,6 @@
-// Gouges of 2 um planted with every body of the tool: the tool of a clean program leans about its ball until its flute, shank or
-// holder cuts 2 um deep, at a place that the path itself decides, between two blocks. Depth and place are known from dense
-// sampling of the gear (tests/support/brute_force_bodies.h).
+// Gouges of 2 um planted with every body of the tool: the tool of a clean program leans about its ball until its flute,
+// shank or holder cuts 2 um deep, at a place that the path itself decides, between two blocks. Depth and place are
+// known from dense sampling of the gear (tests/support/brute_force_bodies.h).
 #include "cam/analytic/cutter_sweep.h"
 #include "cam/analytic/gouge_check.h"
 #include "cam/path/motion_blend.h"
@@ -12,8 +12,8 @@ namespace {
 
 using test::BruteBody;
 using test::BruteDepth;
-using test::PlannedJob;
 using test::job_named;
+using test::PlannedJob;
 
 constexpr double kDepth = 0.002;
 
@@ -49,7 +49,8 @@ class BodyPlanter {
     if (body == "shank") {
       f.tool.flute_length_mm = R + random_(0.1, 0.4);
       f.tool.shank_diameter_mm = 2 * R * random_(0.9, 1.0);
-      f.shape = {f.tool.flute_length_mm, f.tool.stick_out_mm, f.tool.shank_diameter_mm / 2, f.tool.shank_diameter_mm / 2, false};
+      f.shape = {f.tool.flute_length_mm, f.tool.stick_out_mm, f.tool.shank_diameter_mm / 2,
+                 f.tool.shank_diameter_mm / 2, false};
     } else if (body == "holder") {
       const double depth = job_.gear.blank_top() - a.tip.z();  // of the tip below the lands
       f.tool.stick_out_mm = std::max(depth, 0.0) + random_(0.15, 0.4);
@@ -94,7 +95,9 @@ class BodyPlanter {
     f.motion = leaning(high);
     f.truth = brute_.deepest(f.shape, f.motion, 6, 6);
     if (std::abs(f.truth.depth - kDepth) > 1e-4) return {};  // another place was deeper: not what was meant
-    if (body == "flute" && brute_.deepest({R, f.tool.flute_length_mm, R, R, true}, f.motion, 4, 4).depth > f.truth.depth + 1e-4) return {};
+    if (body == "flute" &&
+        brute_.deepest({R, f.tool.flute_length_mm, R, R, true}, f.motion, 4, 4).depth > f.truth.depth + 1e-4)
+      return {};
     return f;
   }
 
@@ -124,15 +127,18 @@ TEST_P(EveryBody, IsFoundWithinAFifthOfAMicrometre) {
     const analytic::GougeCheck check(*job.part, tools, options);
     const auto r = check.check({fault->motion}, job.tool_of_operation());
     EXPECT_FALSE(check.passes(r));
-    const auto named = std::find_if(r.worst.begin(), r.worst.end(), [&](const proof::WorstPlace& w) { return to_string(w.body) == body; });
+    const auto named = std::find_if(r.worst.begin(), r.worst.end(),
+                                    [&](const proof::WorstPlace& w) { return to_string(w.body) == body; });
     const auto list = [&] {
       std::string text;
       for (const auto& w : r.worst) text += fmt::format(" {} {:.6f}", w.body, w.depth_mm);
       return text;
     };
-    SCOPED_TRACE(fmt::format("{} {}: true depth {:.6f} on zone {} patch {} at t {:.3f}; measured {:.6f} bound {:.6f} gap {:.6f} proven {:.6f};{}",
-                             body, k, fault->truth.depth, fault->truth.zone, test::BruteForceGearSolid::name(fault->truth.patch), fault->truth.t,
-                             r.measured_mm, r.bound_mm, r.clearance_measured_mm, r.clearance_mm, list()));
+    SCOPED_TRACE(
+        fmt::format("{} {}: true depth {:.6f} on zone {} patch {} at t {:.3f}; measured {:.6f} bound {:.6f} gap {:.6f} "
+                    "proven {:.6f};{}",
+                    body, k, fault->truth.depth, fault->truth.zone, test::BruteForceGearSolid::name(fault->truth.patch),
+                    fault->truth.t, r.measured_mm, r.bound_mm, r.clearance_measured_mm, r.clearance_mm, list()));
     if (named == r.worst.end()) {
       ADD_FAILURE() << "not reported";
       continue;
@@ -140,29 +146,35 @@ TEST_P(EveryBody, IsFoundWithinAFifthOfAMicrometre) {
     // Where the lean brings another body deeper into the gear, the planted one is judged by its own place.
     const double depth = body == "flute" ? r.measured_mm : named->depth_mm;
     const double bound = body == "flute" ? r.bound_mm : -r.clearance_mm;
-    // Where the check names a deeper place than the samples showed, that place is judged: on the gear, and as deep as it says.
+    // Where the check names a deeper place than the samples showed, that place is judged: on the gear, and as deep as
+    // it says.
     const auto depth_at_named = [&] {
       double best = -INFINITY;
       for (int tooth = -8; tooth <= 8; ++tooth)
         for (int step = 0; step <= 400; ++step) {
-          const Vec3 p = face_gear::FaceGearSurface<double>::turned(named->point, (fault->truth.tooth + tooth) * job.gear.pitch());
-          best = std::max(best, test::depth_in_body(p, fault->shape, path::tip_at(fault->motion, step / 400.0), path::axis_at(fault->motion, step / 400.0)));
+          const Vec3 p =
+              face_gear::FaceGearSurface<double>::turned(named->point, (fault->truth.tooth + tooth) * job.gear.pitch());
+          best = std::max(best, test::depth_in_body(p, fault->shape, path::tip_at(fault->motion, step / 400.0),
+                                                    path::axis_at(fault->motion, step / 400.0)));
         }
       return best;
     };
     double truth = fault->truth.depth;
     if (depth > truth + 2e-4) {
-      EXPECT_LE(solid.nearest(named->point).distance, 2e-5) << named->patch << " r " << named->radius_mm << " z " << named->height_mm << ", roof " << job.gear.blank_top();
+      EXPECT_LE(solid.nearest(named->point).distance, 2e-5) << named->patch << " r " << named->radius_mm << " z "
+                                                            << named->height_mm << ", roof " << job.gear.blank_top();
       truth = depth_at_named();
       ++deeper;
     }
     EXPECT_NEAR(depth, truth, 2e-4);
     EXPECT_GE(bound, fault->truth.depth - 1e-7);
-    const Vec3 truth_0 = face_gear::FaceGearSurface<double>::turned(fault->truth.place, -fault->truth.tooth * job.gear.pitch());
+    const Vec3 truth_0 =
+        face_gear::FaceGearSurface<double>::turned(fault->truth.place, -fault->truth.tooth * job.gear.pitch());
     // Shifted by whole pitches: a place is told in tooth space 0, a land belongs to two of them.
     double away = INFINITY;
     for (int tooth = -1; tooth <= 1; ++tooth)
-      away = std::min(away, (face_gear::FaceGearSurface<double>::turned(named->point, tooth * job.gear.pitch()) - truth_0).norm());
+      away = std::min(
+          away, (face_gear::FaceGearSurface<double>::turned(named->point, tooth * job.gear.pitch()) - truth_0).norm());
     // Along a line of contact many places are equally deep: then the one that is named must be among them.
     const bool right = away <= 0.1 || depth_at_named() >= truth - 2e-4;
     EXPECT_TRUE(right) << "reported " << named->point.transpose() << " true " << truth_0.transpose();
@@ -177,7 +189,8 @@ TEST_P(EveryBody, IsFoundWithinAFifthOfAMicrometre) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Jobs, EveryBody,
-                         testing::Combine(testing::Values("spur", "conical", "offset", "double"), testing::Values("flute", "shank", "holder")),
+                         testing::Combine(testing::Values("spur", "conical", "offset", "double"),
+                                          testing::Values("flute", "shank", "holder")),
                          [](const auto& c) { return std::string(std::get<0>(c.param)) + "_" + std::get<1>(c.param); });
 
 }  // namespace

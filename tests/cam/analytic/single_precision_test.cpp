@@ -10,11 +10,13 @@ namespace toothpath::test {
 namespace {
 
 /// Distance from a point to a triangle, in single precision throughout.
-float single_distance(const Eigen::Vector3f& c, const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& d) {
+float single_distance(const Eigen::Vector3f& c, const Eigen::Vector3f& a, const Eigen::Vector3f& b,
+                      const Eigen::Vector3f& d) {
   const Eigen::Vector3f n = (b - a).cross(d - a).normalized();
   const float height = (c - a).dot(n);
   const Eigen::Vector3f foot = c - n * height;
-  if ((b - a).cross(foot - a).dot(n) >= 0 && (d - b).cross(foot - b).dot(n) >= 0 && (a - d).cross(foot - d).dot(n) >= 0) return std::abs(height);
+  if ((b - a).cross(foot - a).dot(n) >= 0 && (d - b).cross(foot - b).dot(n) >= 0 && (a - d).cross(foot - d).dot(n) >= 0)
+    return std::abs(height);
   const auto edge = [&](const Eigen::Vector3f& p, const Eigen::Vector3f& q) {
     const float t = std::clamp((c - p).dot(q - p) / (q - p).squaredNorm(), 0.0F, 1.0F);
     return (c - p - t * (q - p)).norm();
@@ -37,7 +39,8 @@ TEST(Proof, SinglePrecisionFacetsWouldMissAMicrometre) {
     const std::size_t t = random.index(pitch->tags.size());
     if (pitch->tags[t].patch != mesh::Patch::flank_plus && pitch->tags[t].patch != mesh::Patch::flank_minus) continue;
     const auto& uv = pitch->tags[t].uv;
-    const auto q = mesh::exact_patch_point(gear, pitch->tags[t].zone, pitch->tags[t].patch, (uv[0] + uv[1] + uv[2]) / 3);
+    const auto q =
+        mesh::exact_patch_point(gear, pitch->tags[t].zone, pitch->tags[t].patch, (uv[0] + uv[1] + uv[2]) / 3);
     if (!q) continue;
     const Vec3 c = q->p + (R - depth) * q->n;
     if (std::abs(part.nearest(c, R + 0.1).distance - (R - depth)) > 1e-9) continue;  // another surface is nearer
@@ -54,8 +57,8 @@ TEST(Proof, SinglePrecisionFacetsWouldMissAMicrometre) {
   RecordProperty("missed", missed);
 }
 
-/// Distance of a ball's centre from the plane of a facet that touches the surface at the foot, all in single precision: no sag of
-/// facets is left, only the arithmetic at 300 mm.
+/// Distance of a ball's centre from the plane of a facet that touches the surface at the foot, all in single precision:
+/// no sag of facets is left, only the arithmetic at 300 mm.
 TEST(SinglePrecision, MissesAGougeAtThreeHundredMillimetres) {
   const face_gear::FaceGear gear = made(transverse_gear(200, 30, 3, 0.9, {{0, 304, 318}}));
   const analytic::GearDistance part(gear, 1.5);

@@ -1,4 +1,5 @@
-// On which side of the feed the material lies: to the right, seen from the holder, when climbing; to the left otherwise. No pass turns back.
+// On which side of the feed the material lies: to the right, seen from the holder, when climbing; to the left
+// otherwise. No pass turns back.
 #include "cam/ball/finishing.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
@@ -6,8 +7,9 @@ namespace toothpath {
 namespace {
 
 struct Sides {
-  double right_mm = 0, left_mm = 0;  ///< way of contacts beside the feed; those within 6 deg of below the ball count as neither
-  int turns = 0;                     ///< points where the feed turns by more than 60 deg
+  double right_mm = 0,
+         left_mm = 0;  ///< way of contacts beside the feed; those within 6 deg of below the ball count as neither
+  int turns = 0;       ///< points where the feed turns by more than 60 deg
 };
 
 /// A tool along the gear axis.
@@ -18,7 +20,8 @@ Sides sides_of(const face_gear::FaceGearParameters& gear, double ball, double sc
   for (std::size_t z = 0; z < gear.zones.size(); ++z) {
     const auto& zone = gear.zones[z];
     const double margin = ball + allowance + 0.1;
-    const face_gear::OffsetSheet sheet(part.space(int(z)), ball + allowance, zone.inner_radius_mm - margin, zone.outer_radius_mm + margin, 33);
+    const face_gear::OffsetSheet sheet(part.space(int(z)), ball + allowance, zone.inner_radius_mm - margin,
+                                       zone.outer_radius_mm + margin, 33);
     ball::FinishingOptions o;
     o.ball_radius_mm = ball;
     o.allowance_mm = allowance;
@@ -35,7 +38,8 @@ Sides sides_of(const face_gear::FaceGearParameters& gear, double ball, double sc
         const Vec3 way = p.centre - pass.points[k - 1].centre;
         if (!p.touching || !pass.points[k - 1].touching) continue;
         const Vec3 right = way.normalized().cross(Vec3::UnitZ());
-        if (k > 1 && way.normalized().dot((pass.points[k - 1].centre - pass.points[k - 2].centre).normalized()) < 0.5) ++out.turns;
+        if (k > 1 && way.normalized().dot((pass.points[k - 1].centre - pass.points[k - 2].centre).normalized()) < 0.5)
+          ++out.turns;
         const double share = (p.contact - p.centre).normalized().dot(right);
         if (share > 0.1) out.right_mm += way.norm();
         if (share < -0.1) out.left_mm += way.norm();

@@ -1,4 +1,5 @@
-// A ball wider than the fillet touches two walls of a corner at two radii: where its passes begin and end, and what it reaches past the crossing.
+// A ball wider than the fillet touches two walls of a corner at two radii: where its passes begin and end, and what it
+// reaches past the crossing.
 #include "cam/ball/corner_ends.h"
 
 #include "cam/cut/cut_surface.h"
@@ -25,7 +26,8 @@ face_gear::FaceGearParameters leaning_gear() {
 constexpr double kBall = 0.35;
 
 const test::PlannedJob& leaning_job() {
-  static const auto job = test::planned(leaning_gear(), {test::ball_mill(2 * kBall, 2.174, 0.63, 9.311, 10)}, {test::finishing(0, 0.004, 3e-4)});
+  static const auto job = test::planned(leaning_gear(), {test::ball_mill(2 * kBall, 2.174, 0.63, 9.311, 10)},
+                                        {test::finishing(0, 0.004, 3e-4)});
   return job;
 }
 ball::FinishingOptions options_of(const path::MillingOperation& op) {
@@ -38,9 +40,11 @@ ball::FinishingOptions options_of(const path::MillingOperation& op) {
 }
 face_gear::OffsetSheet sheet_of(const analytic::GearDistance& part, double ball) {
   const auto& zone = part.space(0).ring().zone;
-  return face_gear::OffsetSheet(part.space(0), ball, zone.inner_radius_mm - ball - 0.1, zone.outer_radius_mm + ball + 0.1);
+  return face_gear::OffsetSheet(part.space(0), ball, zone.inner_radius_mm - ball - 0.1,
+                                zone.outer_radius_mm + ball + 0.1);
 }
-std::vector<ball::BallPass> ends_of(const analytic::GearDistance& part, const face_gear::OffsetSheet& sheet, const ball::FinishingOptions& o) {
+std::vector<ball::BallPass> ends_of(const analytic::GearDistance& part, const face_gear::OffsetSheet& sheet,
+                                    const ball::FinishingOptions& o) {
   return plan_corner_ends(sheet, o, [&](const Vec3& c) { return part.nearest(c, o.ball_radius_mm + 0.01).distance; });
 }
 
@@ -61,7 +65,8 @@ TEST(CornerEnds, NothingThatTheBallReachesStaysHigherThanTheCusp) {
   int passes = 0;
   for (const auto& r : plan.paths[0].records) passes = std::max(passes, r.pass + 1);
   std::erase_if(plan.paths[0].records, [&](const path::ClRecord& r) { return r.pass >= passes - int(ends.size()); });
-  const auto less = cut::measure_cut_surface(*job.part, analytic::GougeCheck::motions_of(plan.paths[0]), job.operations, job.tools, dense);
+  const auto less = cut::measure_cut_surface(*job.part, analytic::GougeCheck::motions_of(plan.paths[0]), job.operations,
+                                             job.tools, dense);
   EXPECT_GT(less.finished.max_mm, job.operations[0].scallop_mm + 0.0015);
 }
 
@@ -83,7 +88,8 @@ TEST(CornerEnds, TouchThePartAndEndInTheCorner) {
     EXPECT_GE(contacts, 2);
     EXPECT_GE(low, zone.inner_radius_mm - 1e-6);
     EXPECT_LE(high, zone.outer_radius_mm + 1e-6);
-    EXPECT_LT(std::min(low - zone.inner_radius_mm, zone.outer_radius_mm - high), 1e-6) << "a pass begins at an end of the ring";
+    EXPECT_LT(std::min(low - zone.inner_radius_mm, zone.outer_radius_mm - high), 1e-6)
+        << "a pass begins at an end of the ring";
     EXPECT_LT(high - low, 0.5 * (zone.outer_radius_mm - zone.inner_radius_mm));
     const auto& inside = pass.points.front().touching ? pass.points.front() : pass.points.back();
     double apart = INFINITY;
@@ -118,7 +124,8 @@ TEST(SheetCorners, AreToldApartByTheRootLandNotByItsMiddle) {
 }
 
 /// One ring, everything read in the normal section.
-face_gear::FaceGearParameters ring_gear(int teeth, int shaper_teeth, double module_mm, double tip_radius_mm, face_gear::FaceGearZone zone) {
+face_gear::FaceGearParameters ring_gear(int teeth, int shaper_teeth, double module_mm, double tip_radius_mm,
+                                        face_gear::FaceGearZone zone) {
   face_gear::FaceGearParameters g;
   g.teeth = teeth;
   g.shaper_teeth = shaper_teeth;
@@ -133,8 +140,9 @@ struct WideBallCase {
   face_gear::FaceGearParameters gear;
   double ball_mm = 0, scallop_mm = 0;
 };
-/// "one_corner": the ball never reaches the root land; its contacts lie 0.6 mm apart along a ring of 0.8 mm. "two_corners": it reaches the
-/// land over a part of the ring, and the two corners meet away from the middle of the land.
+/// "one_corner": the ball never reaches the root land; its contacts lie 0.6 mm apart along a ring of 0.8 mm.
+/// "two_corners": it reaches the land over a part of the ring, and the two corners meet away from the middle of the
+/// land.
 std::vector<WideBallCase> wide_balls() {
   auto one = ring_gear(104, 16, 1.63, 0.489, {radians(-30.55), 102.543, 103.358});
   one.clearance_coefficient = 0.3;
@@ -149,14 +157,16 @@ class WideBall : public testing::TestWithParam<WideBallCase> {};
 
 TEST_P(WideBall, LeavesNoMoreThanTheCuspOnBothWallsAndCutsNothing) {
   const auto& [name, gear, ball, scallop] = GetParam();
-  const auto job = test::planned(gear, {test::ball_mill(2 * ball, 5, 1.8 * ball, 20, 10)}, {test::finishing(0, scallop, 0.002)});
+  const auto job =
+      test::planned(gear, {test::ball_mill(2 * ball, 5, 1.8 * ball, 20, 10)}, {test::finishing(0, scallop, 0.002)});
   const auto cut = cut::measure_cut_surface(*job.part, job.motions(), job.operations, job.tools);
   EXPECT_TRUE(job.plan.operations[0].corner_passes);
   EXPECT_LE(cut.finished.max_mm, scallop + 0.001);
   const analytic::GougeCheck check(*job.part, job.tools, job.check_options());
   EXPECT_TRUE(check.passes(check.check(job.motions(), job.tool_of_operation())));
 }
-INSTANTIATE_TEST_SUITE_P(Gears, WideBall, testing::ValuesIn(wide_balls()), [](const auto& wide) { return wide.param.name; });
+INSTANTIATE_TEST_SUITE_P(Gears, WideBall, testing::ValuesIn(wide_balls()),
+                         [](const auto& wide) { return wide.param.name; });
 
 }  // namespace
 }  // namespace toothpath

@@ -1,4 +1,5 @@
-// Paths for corrected flanks: what they leave against the corrected target, and with the process error that they answer against the nominal one.
+// Paths for corrected flanks: what they leave against the corrected target, and with the process error that they answer
+// against the nominal one.
 #include "cam/cut/cut_surface.h"
 #include "cam/cut/swept_path.h"
 #include "geometry/face_gear/flank_correction.h"
@@ -11,7 +12,8 @@ namespace {
 /// 20 um, another field on each side; x along the profile, y along the face, 0 .. 1 on the grid.
 double process_error(int side, double x, double y) {
   const double u = 2 * x - 1, v = 2 * y - 1;
-  return side > 0 ? 0.020 * (0.35 * v + 0.4 * u * v - 0.25 * v * v + 0.1 * u * u) : -0.020 * (0.3 * u - 0.4 * v * v * u + 0.3 * v);
+  return side > 0 ? 0.020 * (0.35 * v + 0.4 * u * v - 0.25 * v * v + 0.1 * u * u)
+                  : -0.020 * (0.3 * u - 0.4 * v * v * u + 0.3 * v);
 }
 
 face_gear::FaceGearParameters short_spur() {
@@ -26,8 +28,10 @@ face_gear::FaceGear corrected(const face_gear::FaceGear& nominal) {
     std::vector<face_gear::FlankDeviation> points;
     for (const auto& p : grid_of(nominal, 5, 9))
       if (p.side == side)
-        points.push_back({p.row, p.column, p.theta, std::hypot(p.p.x(), p.p.y()), process_error(side, p.row / 4.0, p.column / 8.0)});
-    (side > 0 ? ring.plus : ring.minus) = *face_gear::FlankCorrection::fit(points, nominal.rings()[0].surface.shaper.theta_t);
+        points.push_back(
+            {p.row, p.column, p.theta, std::hypot(p.p.x(), p.p.y()), process_error(side, p.row / 4.0, p.column / 8.0)});
+    (side > 0 ? ring.plus : ring.minus) =
+        *face_gear::FlankCorrection::fit(points, nominal.rings()[0].surface.shaper.theta_t);
   }
   return nominal.corrected({std::make_shared<face_gear::RingCorrection>(ring)});
 }
@@ -61,7 +65,8 @@ TEST(CorrectedPath, PlannedAndProvenAgainstTheCorrectedFlanksAndWrongForTheOther
     double left = 0;
     for (const auto& p : grid_of(nominal, rows, columns)) {
       const Vec3 at = p.side > 0 ? p.p : face_gear::FaceGearSurface<double>::turned(p.p, nominal.pitch());
-      left = std::max(left, std::abs(swept.excess(at, 1.0) + process_error(p.side, double(p.row) / (rows - 1), double(p.column) / (columns - 1))));
+      left = std::max(left, std::abs(swept.excess(at, 1.0) + process_error(p.side, double(p.row) / (rows - 1),
+                                                                           double(p.column) / (columns - 1))));
     }
     std::printf("  %d x %d points: 20 um of error, %.3f um left\n", rows, columns, left * 1000);
     EXPECT_LT(left, 0.0005);

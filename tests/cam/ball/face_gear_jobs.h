@@ -20,7 +20,10 @@ inline const std::vector<std::string>& gear_names() {
   return names;
 }
 inline face_gear::FaceGearParameters gear_named(const std::string& name) {
-  return name == "dhfg" ? quarter_dhfg() : name == "offset" ? offset_gear() : name == "spur" ? small_spur() : conical_gear();
+  return name == "dhfg"     ? quarter_dhfg()
+         : name == "offset" ? offset_gear()
+         : name == "spur"   ? small_spur()
+                            : conical_gear();
 }
 
 inline path::MillingOperation roughing(int tool, double step_down, double step_over, double allowance) {
@@ -72,10 +75,13 @@ struct PlannedJob {
     o.rapid_height_mm = gear.blank_top();
     return o;
   }
-  [[nodiscard]] const tool::ToolAssembly& tool(int operation) const { return tools[std::size_t(operations[std::size_t(operation)].tool)]; }
+  [[nodiscard]] const tool::ToolAssembly& tool(int operation) const {
+    return tools[std::size_t(operations[std::size_t(operation)].tool)];
+  }
 };
 
-inline PlannedJob planned(const face_gear::FaceGearParameters& p, std::vector<tool::ToolAssembly> tools, std::vector<path::MillingOperation> operations) {
+inline PlannedJob planned(const face_gear::FaceGearParameters& p, std::vector<tool::ToolAssembly> tools,
+                          std::vector<path::MillingOperation> operations) {
   PlannedJob job{made(p), std::move(tools), std::move(operations), nullptr, {}};
   job.part = std::make_unique<analytic::GearDistance>(job.gear, ball::reach_of(job.tools));
   auto plan = ball::plan_face_gear(*job.part, job.tools, job.operations, {});
@@ -84,8 +90,8 @@ inline PlannedJob planned(const face_gear::FaceGearParameters& p, std::vector<to
   return job;
 }
 
-/// Planned once a program: "dhfg" (all four operations), "offset", "spur", "conical" (finishing), "double" (a narrow double helical
-/// gear, finishing), and "spur wide": a ball larger than the fillet.
+/// Planned once a program: "dhfg" (all four operations), "offset", "spur", "conical" (finishing), "double" (a narrow
+/// double helical gear, finishing), and "spur wide": a ball larger than the fillet.
 inline const PlannedJob& job_named(const std::string& name) {
   static std::map<std::string, PlannedJob> jobs;
   const auto it = jobs.find(name);
@@ -93,7 +99,8 @@ inline const PlannedJob& job_named(const std::string& name) {
   const auto make = [&]() -> PlannedJob {
     if (name == "dhfg")
       return planned(quarter_dhfg(), {ball_mill(1, 3.5, 0.95, 16, 10), ball_mill(0.5, 3.2, 0.46, 14, 10)},
-                     {roughing(0, 0.25, 0.4, 0.08), roughing(1, 0.12, 0.2, 0.05), finishing(1, 0.008, 0, 0.02), finishing(1, 0.002, 7e-4)});
+                     {roughing(0, 0.25, 0.4, 0.08), roughing(1, 0.12, 0.2, 0.05), finishing(1, 0.008, 0, 0.02),
+                      finishing(1, 0.002, 7e-4)});
     if (name == "double") {
       auto gear = quarter_dhfg();
       gear.zones[0].inner_radius_mm = 114;
@@ -101,9 +108,11 @@ inline const PlannedJob& job_named(const std::string& name) {
       return planned(gear, {ball_mill(0.5, 3.2, 0.46, 14, 10)}, {finishing(0, 0.01, 0.002)});
     }
     if (name == "offset") return planned(offset_gear(), {ball_mill(1.6, 8, 1.5, 14, 10)}, {finishing(0, 0.003, 0.001)});
-    if (name == "conical") return planned(conical_gear(), {ball_mill(0.7, 6, 0.65, 14, 10)}, {finishing(0, 0.004, 0.001)});
+    if (name == "conical")
+      return planned(conical_gear(), {ball_mill(0.7, 6, 0.65, 14, 10)}, {finishing(0, 0.004, 0.001)});
     if (name == "spur wide")
-      return planned(small_spur(), {ball_mill(1.6, 6, 1.5, 16, 10)}, {roughing(0, 0.8, 0.5, 0.1), finishing(0, 0.02, 0.002)});
+      return planned(small_spur(), {ball_mill(1.6, 6, 1.5, 16, 10)},
+                     {roughing(0, 0.8, 0.5, 0.1), finishing(0, 0.02, 0.002)});
     return planned(small_spur(), {ball_mill(1, 6, 0.95, 16, 10)},
                    {roughing(0, 0.8, 0.5, 0.1), finishing(0, 0.02, 0.004, 0.05), finishing(0, 0.01, 0.002)});
   };

@@ -1,4 +1,5 @@
-// Tool axes prescribed by keys: the curve through them, axes and ball centres of a planned job by another route, refusals against samples.
+// Tool axes prescribed by keys: the curve through them, axes and ball centres of a planned job by another route,
+// refusals against samples.
 #include "cam/ball/prescribed_axes.h"
 
 #include "tests/cam/ball/face_gear_jobs.h"
@@ -8,7 +9,9 @@
 namespace toothpath {
 namespace {
 
-path::ToolAxisKey key(double radius, double outwards_deg, double aside_deg) { return {radius, radians(outwards_deg), radians(aside_deg)}; }
+path::ToolAxisKey key(double radius, double outwards_deg, double aside_deg) {
+  return {radius, radians(outwards_deg), radians(aside_deg)};
+}
 
 face_gear::FaceGearParameters narrow_spur() {
   face_gear::FaceGearParameters g = test::small_spur();
@@ -26,7 +29,8 @@ path::MillingOperation with_axes(std::vector<path::ToolAxisKey> plus, std::vecto
 test::PlannedJob planned_with(const std::vector<path::ToolAxisKey>& plus, const std::vector<path::ToolAxisKey>& minus) {
   return test::planned(narrow_spur(), {slim_tool()}, {with_axes(plus, minus)});
 }
-ball::PlanRefusal refused_with(const face_gear::FaceGear& gear, const tool::ToolAssembly& tool, const std::vector<path::ToolAxisKey>& keys) {
+ball::PlanRefusal refused_with(const face_gear::FaceGear& gear, const tool::ToolAssembly& tool,
+                               const std::vector<path::ToolAxisKey>& keys) {
   const analytic::GearDistance part(gear, ball::reach_of({tool}));
   const auto plan = ball::plan_face_gear(part, {tool}, {with_axes(keys, keys)}, {});
   const auto* refusal = plan.refused();
@@ -41,7 +45,9 @@ TEST(PrescribedLean, PassesItsKeysSmoothlyAndStaysInTheirBoxes) {
     const auto count = 2 + random.index(6);
     for (std::size_t k = 0; k < count; ++k) keys.push_back(key(r += random(0.1, 4), random(-30, 30), random(-20, 20)));
     const ball::PrescribedLean lean(keys);
-    const auto tangents = [](const path::ToolAxisKey& k) { return Vec2(std::tan(k.outwards_rad), std::tan(k.aside_rad)); };
+    const auto tangents = [](const path::ToolAxisKey& k) {
+      return Vec2(std::tan(k.outwards_rad), std::tan(k.aside_rad));
+    };
     for (const auto& k : keys) EXPECT_LT((lean.at(k.radius_mm) - tangents(k)).norm(), 1e-12);
     EXPECT_EQ(lean.at(1), tangents(keys.front()));
     EXPECT_EQ(lean.at(1e4), tangents(keys.back()));
@@ -57,7 +63,8 @@ TEST(PrescribedLean, PassesItsKeysSmoothlyAndStaysInTheirBoxes) {
     }
     constexpr double e = 1e-6;
     for (const auto& k : keys) {
-      const Vec2 before = (lean.at(k.radius_mm) - lean.at(k.radius_mm - e)) / e, after = (lean.at(k.radius_mm + e) - lean.at(k.radius_mm)) / e;
+      const Vec2 before = (lean.at(k.radius_mm) - lean.at(k.radius_mm - e)) / e,
+                 after = (lean.at(k.radius_mm + e) - lean.at(k.radius_mm)) / e;
       EXPECT_LT((before - after).norm(), 1e-3);
     }
   }
@@ -70,8 +77,8 @@ TEST(PrescribedLean, TwoKeysTurnTheAxisOnTheGreatCircle) {
   for (double r = 60; r <= 66; r += 0.1) EXPECT_NEAR(axis(r).dot(normal), 0, 1e-14);
 }
 
-// A spur gear at 90 deg: up is z, outwards the radial direction in the middle of the space. The centres are those of the job that is left to the
-// planner; the axis at a radius is read off two keys by hand.
+// A spur gear at 90 deg: up is z, outwards the radial direction in the middle of the space. The centres are those of
+// the job that is left to the planner; the axis at a radius is read off two keys by hand.
 TEST(PrescribedAxes, AxisFollowsTheKeysAndTheBallStaysOnItsPass) {
   const auto free = planned_with({}, {});
   const auto job = planned_with({key(60.8, -3, 0), key(62.2, 3, 0)}, {key(60.8, -3, 0), key(62.2, 3, 0)});
@@ -79,7 +86,8 @@ TEST(PrescribedAxes, AxisFollowsTheKeysAndTheBallStaysOnItsPass) {
   std::vector<std::pair<Vec3, Vec3>> centres;  // straight pieces of the free passes
   const auto& fixed = free.plan.paths[0].records;
   for (std::size_t k = 1; k < fixed.size(); ++k)
-    if (fixed[k].kind == path::MoveKind::feed) centres.emplace_back(fixed[k - 1].tip + R * fixed[k - 1].axis, fixed[k].tip + R * fixed[k].axis);
+    if (fixed[k].kind == path::MoveKind::feed)
+      centres.emplace_back(fixed[k - 1].tip + R * fixed[k - 1].axis, fixed[k].tip + R * fixed[k].axis);
   const auto off = [&](const Vec3& p) {
     double least = INFINITY;
     for (const auto& [a, b] : centres) {
@@ -121,7 +129,8 @@ TEST(PrescribedAxes, AxisFollowsTheKeysAndTheBallStaysOnItsPass) {
   EXPECT_TRUE(check.check_path(job.plan.paths[0]));
 }
 
-// Each flank has its keys: with lean aside 2 deg on flank +1 and -2 deg on flank -1 the tool leans away from the flank that it cuts.
+// Each flank has its keys: with lean aside 2 deg on flank +1 and -2 deg on flank -1 the tool leans away from the flank
+// that it cuts.
 TEST(PrescribedAxes, FlanksHaveTheirOwnKeys) {
   const auto job = planned_with({key(61, 0, 2)}, {key(61, 0, -2)});
   const double R = job.tools[0].radius_mm();
@@ -155,7 +164,8 @@ TEST(PrescribedAxes, OneKeyForBothFlanksIsAFixedDirection) {
   for (const auto& r : job.plan.paths[0].records) EXPECT_LT((r.axis - d.axis).norm(), 1e-12);
 }
 
-// A holder that is too low for a lean aside: the refusal names a place at which sampled points of the teeth are inside it.
+// A holder that is too low for a lean aside: the refusal names a place at which sampled points of the teeth are inside
+// it.
 TEST(PrescribedAxes, RefusalsNameThePlaceTheBodyAndTheLimit) {
   const face_gear::FaceGear gear = test::made(narrow_spur());
   tool::ToolAssembly low = slim_tool();
@@ -167,7 +177,9 @@ TEST(PrescribedAxes, RefusalsNameThePlaceTheBodyAndTheLimit) {
   EXPECT_NE(holder.diagnostic.message.find("the clearance is 0.050 mm"), std::string::npos);
   double r = 0, height = 0, outwards = 0, aside = 0;
   ASSERT_EQ(std::sscanf(holder.diagnostic.message.c_str(),
-                        "tool 1 in zone 0: with the ball at radius %lf, height %lf the prescribed axis leans %lf deg outwards and %lf deg aside", &r, &height, &outwards, &aside),
+                        "tool 1 in zone 0: with the ball at radius %lf, height %lf the prescribed axis leans %lf deg "
+                        "outwards and %lf deg aside",
+                        &r, &height, &outwards, &aside),
             4)
       << holder.diagnostic.message;
   EXPECT_EQ(outwards, 0);
@@ -176,20 +188,23 @@ TEST(PrescribedAxes, RefusalsNameThePlaceTheBodyAndTheLimit) {
   const analytic::GearDistance part(gear, 1);
   const double a = part.space_azimuth(0, 61.5);
   const Vec3 outward(std::cos(a), std::sin(a), 0), side(-outward.y(), outward.x(), 0);
-  const Vec3 axis = std::cos(radians(aside)) * Vec3::UnitZ() + std::sin(radians(aside)) * side, tip = r * outward + height * Vec3::UnitZ() - 0.5 * axis;
+  const Vec3 axis = std::cos(radians(aside)) * Vec3::UnitZ() + std::sin(radians(aside)) * side,
+             tip = r * outward + height * Vec3::UnitZ() - 0.5 * axis;
   double least = INFINITY;
   for (const auto& body : tool::shank_and_holder(low))
     for (int tooth = -6; tooth <= 6; ++tooth)
       for (int patch = 0; patch < 6; ++patch)
         for (int i = 0; i <= 10; ++i)
           for (int j = 0; j <= 10; ++j) {
-            const Vec3 p = face_gear::FaceGearSurface<double>::turned(brute.point(0, patch, i / 10.0, j / 10.0), tooth * gear.pitch());
+            const Vec3 p = face_gear::FaceGearSurface<double>::turned(brute.point(0, patch, i / 10.0, j / 10.0),
+                                                                      tooth * gear.pitch());
             least = std::min(least, test::distance_to_frustum(p, body, tip, axis));
           }
   EXPECT_EQ(least, 0) << "it is inside";
 
   const auto draft = refused_with(gear, slim_tool(), {key(61, 0, 28)});
-  EXPECT_NE(draft.diagnostic.message.find("0.000 deg outwards and 28.000 deg aside"), std::string::npos) << draft.diagnostic.message;
+  EXPECT_NE(draft.diagnostic.message.find("0.000 deg outwards and 28.000 deg aside"), std::string::npos)
+      << draft.diagnostic.message;
   EXPECT_TRUE(refused_with(gear, slim_tool(), {key(61, 0, 5)}).key.empty()) << "clear";
 }
 

@@ -1,5 +1,5 @@
-// Any face gear that is accepted gets passes or a refusal that names its reason: random gears with a fixed seed, and gears that were
-// hard to begin on.
+// Any face gear that is accepted gets passes or a refusal that names its reason: random gears with a fixed seed, and
+// gears that were hard to begin on.
 #include "cam/ball/finishing.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 #include "tests/support/brute_force_face_gear.h"
@@ -12,7 +12,8 @@ struct Asked {
   double ball_radius = 0, scallop = 0, allowance = 0;
 };
 
-/// Shaft angles 60 to 120 deg, offsets of both signs, helices, modules 0.5 to 6, 20 to 200 teeth; balls from slim to wider than the fillet.
+/// Shaft angles 60 to 120 deg, offsets of both signs, helices, modules 0.5 to 6, 20 to 200 teeth; balls from slim to
+/// wider than the fillet.
 Asked random_gear(test::Random& random) {
   Asked a;
   auto& g = a.gear;
@@ -26,7 +27,8 @@ Asked random_gear(test::Random& random) {
   const double pitch_radius = 0.5 * g.module_mm * g.teeth;
   g.offset_mm = random(0, 1) < 0.5 ? 0 : random(-0.15, 0.15) * pitch_radius / std::sin(g.shaft_angle_rad);
   g.shaper_tip_radius_mm = random(0.1, 0.35) * g.module_mm;
-  const double middle = pitch_radius * (1 + double(g.shaper_teeth) / g.teeth * std::cos(g.shaft_angle_rad)) / std::sin(g.shaft_angle_rad);
+  const double middle =
+      pitch_radius * (1 + double(g.shaper_teeth) / g.teeth * std::cos(g.shaft_angle_rad)) / std::sin(g.shaft_angle_rad);
   const double inner = middle + random(-2, 1) * g.module_mm;
   g.zones = {{helix, inner, inner + random(0.5, 5) * g.module_mm}};
   a.ball_radius = random(0.4, 1.5) * g.shaper_tip_radius_mm;
@@ -48,11 +50,14 @@ ball::FinishingOptions options(const Asked& a) {
 Result<ball::FinishingPasses> passes(const analytic::GearDistance& part, const Asked& a) {
   const auto& zone = part.space(0).ring().zone;
   const double margin = a.ball_radius + a.allowance + 0.1;
-  return plan_finishing(face_gear::OffsetSheet(part.space(0), a.ball_radius + a.allowance, zone.inner_radius_mm - margin, zone.outer_radius_mm + margin, 33),
+  return plan_finishing(face_gear::OffsetSheet(part.space(0), a.ball_radius + a.allowance,
+                                               zone.inner_radius_mm - margin, zone.outer_radius_mm + margin, 33),
                         options(a));
 }
 
-bool names_numbers(const std::string& text) { return text.size() > 20 && text.find_first_of("0123456789") != std::string::npos; }
+bool names_numbers(const std::string& text) {
+  return text.size() > 20 && text.find_first_of("0123456789") != std::string::npos;
+}
 
 constexpr double kDeepest = 5e-4;  // of a contact, mm
 
@@ -68,8 +73,8 @@ double end_edge_distance(const face_gear::SpaceSheet& space, const Vec3& c) {
   return least;
 }
 
-/// Deepest cut of the contacts of a plan, mm. The distance to an edge is short by the sag of its polyline: where that alone is too deep, the
-/// edge itself decides.
+/// Deepest cut of the contacts of a plan, mm. The distance to an edge is short by the sag of its polyline: where that
+/// alone is too deep, the edge itself decides.
 double deepest(const analytic::GearDistance& part, const ball::FinishingPasses& plan, const Asked& a) {
   double cut = -INFINITY;
   for (const auto& pass : plan.passes)
@@ -80,7 +85,8 @@ double deepest(const analytic::GearDistance& part, const ball::FinishingPasses& 
       const auto q = part.nearest(p.centre, ball + 0.01);
       if (std::isnan(q.distance)) return INFINITY;
       double d = q.distance;
-      if (!q.exact && ball - d >= kDeepest && std::string_view(q.patch) == "end edge") d = end_edge_distance(part.space(q.zone), p.centre);
+      if (!q.exact && ball - d >= kDeepest && std::string_view(q.patch) == "end edge")
+        d = end_edge_distance(part.space(q.zone), p.centre);
       cut = std::max(cut, ball - d);
     }
   return cut;
@@ -95,7 +101,8 @@ TEST(RandomGears, APlanThatDoesNotCutOrARefusalWithItsReason) {
     auto made = face_gear::FaceGear::make(a.gear);
     if (const auto* refusals = made.refused()) {
       ++refused;
-      for (const auto& r : *refusals) EXPECT_TRUE(!r.key.empty() && names_numbers(r.diagnostic.message)) << r.diagnostic.message;
+      for (const auto& r : *refusals)
+        EXPECT_TRUE(!r.key.empty() && names_numbers(r.diagnostic.message)) << r.diagnostic.message;
       continue;
     }
     const analytic::GearDistance part(made.value(), 1.3 * a.ball_radius + 0.6);
@@ -133,8 +140,9 @@ TEST(SteepGears, EveryRingWithinTheLimitsIsFollowed) {
     const auto plan = passes(part, a);
     ASSERT_TRUE(plan) << plan.error().message;
     EXPECT_LT(deepest(part, *plan, a), kDeepest);
-    // Every tenth contact is a point that the swept shaper just touches. Inside the involute start the tip corner is not conjugate
-    // (the gear's own warning): there the flank may stand a little proud of what the shaper leaves, never below it.
+    // Every tenth contact is a point that the swept shaper just touches. Inside the involute start the tip corner is
+    // not conjugate (the gear's own warning): there the flank may stand a little proud of what the shaper leaves, never
+    // below it.
     const test::BruteForceFaceGear brute(a.gear, 0);
     const auto& ring = gear.rings()[0];
     std::size_t asked = 0;
@@ -164,7 +172,8 @@ TEST(EmptySheet, IsARefusalAndNoPoint) {
   EXPECT_TRUE(names_numbers(plan.error().message)) << plan.error().message;
 }
 
-/// A ball that touches both walls of a root corner, or both flanks: at every ring radius the trimmed centres keep the ball's radius.
+/// A ball that touches both walls of a root corner, or both flanks: at every ring radius the trimmed centres keep the
+/// ball's radius.
 TEST(WideBalls, TrimmedCentresKeepTheRadius) {
   for (const double R : {0.7, 0.75, 0.8, 0.85}) {
     const face_gear::FaceGear gear = test::made(test::small_spur());
@@ -189,8 +198,8 @@ TEST(WideBalls, TrimmedCentresKeepTheRadius) {
   }
 }
 
-// Beyond the end of the ring the ball comes between the walls of a corner that the ring itself does not have. The sheet jumps from one wall
-// to the other there; a run-out that followed it went to and fro hundreds of times.
+// Beyond the end of the ring the ball comes between the walls of a corner that the ring itself does not have. The sheet
+// jumps from one wall to the other there; a run-out that followed it went to and fro hundreds of times.
 TEST(RunOut, NeverTurnsBack) {
   Asked a;
   auto& g = a.gear;
@@ -209,11 +218,13 @@ TEST(RunOut, NeverTurnsBack) {
   const analytic::GearDistance part(gear, a.ball_radius);
   ball::FinishingOptions o = options(a);
   o.chord_mm = 0.0002;
-  const auto plan = plan_finishing(face_gear::OffsetSheet(part.space(0), a.ball_radius, 91.27 - 0.4, 93.27 + 0.4, 33), o);
+  const auto plan =
+      plan_finishing(face_gear::OffsetSheet(part.space(0), a.ball_radius, 91.27 - 0.4, 93.27 + 0.4, 33), o);
   ASSERT_TRUE(plan) << plan.error().message;
   for (const auto& pass : plan->passes) {
     double way = 0, across = (pass.points.back().centre - pass.points.front().centre).norm();
-    for (std::size_t k = 1; k < pass.points.size(); ++k) way += (pass.points[k].centre - pass.points[k - 1].centre).norm();
+    for (std::size_t k = 1; k < pass.points.size(); ++k)
+      way += (pass.points[k].centre - pass.points[k - 1].centre).norm();
     EXPECT_LT(way, 1.05 * across) << pass.points.size() << " points";
   }
 }

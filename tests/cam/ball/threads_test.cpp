@@ -17,7 +17,8 @@ void expect_the_same(const ball::FaceGearPlan& a, const ball::FaceGearPlan& b) {
     const auto &x = a.paths[p].records, &y = b.paths[p].records;
     ASSERT_EQ(x.size(), y.size());
     for (std::size_t k = 0; k < x.size(); ++k)
-      ASSERT_TRUE(same_bytes(x[k].tip, y[k].tip) && same_bytes(x[k].axis, y[k].axis) && x[k].feed_mm_min == y[k].feed_mm_min && x[k].kind == y[k].kind)
+      ASSERT_TRUE(same_bytes(x[k].tip, y[k].tip) && same_bytes(x[k].axis, y[k].axis) &&
+                  x[k].feed_mm_min == y[k].feed_mm_min && x[k].kind == y[k].kind)
           << "path " << p << " record " << k;
   }
   ASSERT_EQ(a.directions.size(), b.directions.size());
@@ -48,8 +49,11 @@ TEST(Threads, AnIndexLeavesThemToEverybody) {
 TEST(Threads, PlansAreTheSameBytes) {
   auto stiff = ball_mill(2, 6, 7.6, 12, 40);
   stiff.holder = {{40, 40, 40}};
-  const auto check = [](const face_gear::FaceGearParameters& gear, const std::vector<tool::ToolAssembly>& tools, const std::vector<path::MillingOperation>& operations) {
-    const auto plan_on = [&](int threads) { return on_threads(threads, [&] { return planned(gear, tools, operations); }); };
+  const auto check = [](const face_gear::FaceGearParameters& gear, const std::vector<tool::ToolAssembly>& tools,
+                        const std::vector<path::MillingOperation>& operations) {
+    const auto plan_on = [&](int threads) {
+      return on_threads(threads, [&] { return planned(gear, tools, operations); });
+    };
     const auto one = plan_on(1);
     expect_the_same(one.plan, plan_on(3).plan);
   };
@@ -67,7 +71,8 @@ TEST(Threads, ProofsAreTheSameBytes) {
   for (std::size_t k = 50; k < path.records.size(); k += 97) path.records[k].tip.z() -= 0.02;
   const analytic::GougeCheck checker(*job.part, job.tools, job.check_options());
   const auto prove_on = [&](int threads) {
-    return on_threads(threads, [&] { return checker.check(analytic::GougeCheck::motions_of(path), job.tool_of_operation()); });
+    return on_threads(threads,
+                      [&] { return checker.check(analytic::GougeCheck::motions_of(path), job.tool_of_operation()); });
   };
   const auto a = prove_on(1);
   EXPECT_FALSE(a.worst.empty());

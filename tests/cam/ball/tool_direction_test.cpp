@@ -36,8 +36,8 @@ TEST(Direction, FatHolderOnAShortToolIsRefusedOrLeansAndSaysWhy) {
   }
 }
 
-// At a shaft angle of 100 deg the normal of the pitch surface leans by 10 deg. Along it the flute of a tool that runs out of one ring would cut
-// into the other, 1.4 mm away; the gear axis keeps clear of it.
+// At a shaft angle of 100 deg the normal of the pitch surface leans by 10 deg. Along it the flute of a tool that runs
+// out of one ring would cut into the other, 1.4 mm away; the gear axis keeps clear of it.
 TEST(Direction, TheFluteStaysOutOfTheOtherRing) {
   face_gear::FaceGearParameters g;
   g.teeth = 244;
@@ -50,7 +50,8 @@ TEST(Direction, TheFluteStaysOutOfTheOtherRing) {
   g.shaper_tip_radius_mm = 0.3745;
   g.reference_radius_mm = 188.073;
   g.zones = {{radians(28.27), 186.017, 187.392}, {radians(-28.27), 188.754, 190.129}};
-  const auto job = test::planned(g, {test::ball_mill(1.25, 3.985, 1.25, 10.548, 10)}, {test::roughing(0, 0.8, 0.6, 0.075)});
+  const auto job =
+      test::planned(g, {test::ball_mill(1.25, 3.985, 1.25, 10.548, 10)}, {test::roughing(0, 0.8, 0.6, 0.075)});
   for (const auto& d : job.plan.directions) {
     EXPECT_TRUE(d.fixed);
     EXPECT_EQ(d.lean_rad, 0);
@@ -75,14 +76,17 @@ TEST(Body, GapAgainstSampledSurfaces) {
     test::Random random(41);
     int close = 0;
     for (int k = 0; k < 60; ++k) {
-      const double r = random(gear.inner_radius(), gear.outer_radius()), a = part.space_azimuth(0, r) + random(-0.5, 0.5) * gear.pitch();
-      const tool::Frustum f{random(0.2, 1) * m, random(2, 6) * m, random(0.1, 0.5) * m, random(0.1, 2) * m, tool::Body::shank};
+      const double r = random(gear.inner_radius(), gear.outer_radius()),
+                   a = part.space_azimuth(0, r) + random(-0.5, 0.5) * gear.pitch();
+      const tool::Frustum f{random(0.2, 1) * m, random(2, 6) * m, random(0.1, 0.5) * m, random(0.1, 2) * m,
+                            tool::Body::shank};
       const double lean = random(0, 0.5), to = random(0, 6.28);
       const Vec3 axis(std::sin(lean) * std::cos(to), std::sin(lean) * std::sin(to), std::cos(lean));
       const Vec3 tip(r * std::cos(a), r * std::sin(a), random(gear.lowest_root(), gear.blank_top() + 0.3 * m));
       double truth = INFINITY;
       for (int tooth = -3; tooth <= 3; ++tooth) {
-        const Vec3 t = face_gear::FaceGearSurface<double>::turned(tip, -tooth * gear.pitch()), u = face_gear::FaceGearSurface<double>::turned(axis, -tooth * gear.pitch());
+        const Vec3 t = face_gear::FaceGearSurface<double>::turned(tip, -tooth * gear.pitch()),
+                   u = face_gear::FaceGearSurface<double>::turned(axis, -tooth * gear.pitch());
         for (const auto& p : samples) truth = std::min(truth, test::distance_to_frustum(p, f, t, u));
       }
       const double enough = 0.6 * m;
@@ -108,7 +112,8 @@ TEST(Body, DistanceToAFrustumAgainstItsSampledSurface) {
     for (int j = 0; j <= 60; ++j) {
       const double a = 2 * kPi * k / 400, t = j / 60.0;
       const Vec3 around = std::cos(a) * side + std::sin(a) * other;
-      surface.push_back(tip + axis * (f.from + t * (f.to - f.from)) + around * (f.radius_from + t * (f.radius_to - f.radius_from)));
+      surface.push_back(tip + axis * (f.from + t * (f.to - f.from)) +
+                        around * (f.radius_from + t * (f.radius_to - f.radius_from)));
       surface.push_back(tip + axis * f.from + around * t * f.radius_from);
       surface.push_back(tip + axis * f.to + around * t * f.radius_to);
     }

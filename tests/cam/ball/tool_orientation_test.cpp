@@ -1,4 +1,5 @@
-// Simultaneous five-axis: clear directions against sampled surfaces, the search against enumeration, a job that needs it, jobs that do not.
+// Simultaneous five-axis: clear directions against sampled surfaces, the search against enumeration, a job that needs
+// it, jobs that do not.
 #include "cam/ball/tool_orientation.h"
 
 #include <set>
@@ -11,7 +12,6 @@
 
 namespace toothpath {
 namespace {
-
 
 face_gear::FaceGearParameters steep_gear() { return test::steep_gear(105, 77.5, 85.5); }
 
@@ -44,29 +44,35 @@ std::vector<Vec3> sampled(const face_gear::FaceGear& gear) {
         const Vec3 p = brute.point(0, patch, i / 40.0, j / 60.0);
         samples.push_back(p);
         if (j == 0 || j == 60)
-          for (double down = 0.25; p.z() - down > gear.lowest_root(); down += 0.25) samples.emplace_back(p.x(), p.y(), p.z() - down);
+          for (double down = 0.25; p.z() - down > gear.lowest_root(); down += 0.25)
+            samples.emplace_back(p.x(), p.y(), p.z() - down);
       }
   return samples;
 }
 
-double sampled_gap(const std::vector<Vec3>& samples, double pitch, const tool::Frustum& f, const Vec3& tip, const Vec3& axis) {
+double sampled_gap(const std::vector<Vec3>& samples, double pitch, const tool::Frustum& f, const Vec3& tip,
+                   const Vec3& axis) {
   double truth = INFINITY;
   for (int tooth = -2; tooth <= 2; ++tooth) {
-    const Vec3 t = face_gear::FaceGearSurface<double>::turned(tip, -tooth * pitch), u = face_gear::FaceGearSurface<double>::turned(axis, -tooth * pitch);
+    const Vec3 t = face_gear::FaceGearSurface<double>::turned(tip, -tooth * pitch),
+               u = face_gear::FaceGearSurface<double>::turned(axis, -tooth * pitch);
     for (const auto& p : samples) truth = std::min(truth, test::distance_to_frustum(p, f, t, u));
   }
   return truth;
 }
 
 /// Every facet of the teeth about space 0, one after another.
-double flat_gap(const analytic::GearDistance& part, const tool::Frustum& f, const Vec3& tip, const Vec3& axis, double enough, double resolution) {
+double flat_gap(const analytic::GearDistance& part, const tool::Frustum& f, const Vec3& tip, const Vec3& axis,
+                double enough, double resolution) {
   const double above = tool::lowest_z(f, tip, axis) - part.gear().blank_top(), sag = part.cell_sag_mm();
   if (above >= enough) return enough;
   double best = enough + sag;
   for (int zone = 0; zone < part.zones(); ++zone)
     for (int tooth = -4; tooth <= 4; ++tooth) {
-      const Vec3 t = face_gear::FaceGearSurface<double>::turned(tip, -tooth * part.gear().pitch()), u = face_gear::FaceGearSurface<double>::turned(axis, -tooth * part.gear().pitch());
-      for (const auto& [a, b, c] : part.triangles(zone)) best = test::triangle_gap(a, b, c, f, t, u, best, resolution, 8);
+      const Vec3 t = face_gear::FaceGearSurface<double>::turned(tip, -tooth * part.gear().pitch()),
+                 u = face_gear::FaceGearSurface<double>::turned(axis, -tooth * part.gear().pitch());
+      for (const auto& [a, b, c] : part.triangles(zone))
+        best = test::triangle_gap(a, b, c, f, t, u, best, resolution, 8);
     }
   return std::max(best - sag, above);
 }
@@ -80,8 +86,10 @@ TEST(BodyTree, AgreesWithTheFlatSearchAndWithSamples) {
     test::Random random(71);
     int close = 0;
     for (int k = 0; k < 100; ++k) {
-      const double r = random(gear.inner_radius(), gear.outer_radius()), a = part.space_azimuth(0, r) + random(-0.5, 0.5) * gear.pitch();
-      const tool::Frustum f{random(0.2, 1) * m, random(2, 6) * m, random(0.1, 0.5) * m, random(0.1, 2) * m, tool::Body::shank};
+      const double r = random(gear.inner_radius(), gear.outer_radius()),
+                   a = part.space_azimuth(0, r) + random(-0.5, 0.5) * gear.pitch();
+      const tool::Frustum f{random(0.2, 1) * m, random(2, 6) * m, random(0.1, 0.5) * m, random(0.1, 2) * m,
+                            tool::Body::shank};
       const double lean = random(0, 0.6), to = random(0, 6.28);
       const Vec3 axis(std::sin(lean) * std::cos(to), std::sin(lean) * std::sin(to), std::cos(lean));
       const Vec3 tip(r * std::cos(a), r * std::sin(a), random(gear.lowest_root(), gear.blank_top() + 0.3 * m));
@@ -120,7 +128,8 @@ TEST(Orientation, ClearDirectionsAgainstSampledSurfaces) {
     const Vec3 axis = check.frame().axis(random(-0.3, 0.3), random(-0.15, 0.15));
     double truth = INFINITY;
     for (const auto& f : check.bodies())
-      truth = std::min(truth, sampled_gap(samples, job.gear.pitch(), f, point.centre - job.tools[0].radius_mm() * axis, axis));
+      truth = std::min(truth,
+                       sampled_gap(samples, job.gear.pitch(), f, point.centre - job.tools[0].radius_mm() * axis, axis));
     if (check.clear(point, axis, 0.05)) {
       ++clear;
       EXPECT_GE(truth, 0.05);
@@ -148,7 +157,8 @@ ball::OrientationWay plain_way(int stations, double spacing) {
 double cost_of(const std::vector<Vec2>& leans, double ds, const ball::LeanReference& reference) {
   double cost = 0;
   for (std::size_t k = 0; k < leans.size(); ++k) {
-    cost += ds * (ball::kLeanWeight * leans[k].squaredNorm() + ball::kNearWeight * (leans[k] - reference(k)).squaredNorm());
+    cost +=
+        ds * (ball::kLeanWeight * leans[k].squaredNorm() + ball::kNearWeight * (leans[k] - reference(k)).squaredNorm());
     if (k > 0) cost += ball::kTurnWeight * (leans[k] - leans[k - 1]).squaredNorm() / ds;
   }
   return cost;
@@ -171,13 +181,16 @@ TEST(OrientationWay, CheapestOfAllWaysOnASmallGrid) {
       return std::size_t(13);
     };
     const auto clear = [&](std::size_t k, const Vec2& q) { return index(q) < 13 && open[13 * k + index(q)]; };
-    const auto found = ball::find_way(way, grid, reference, clear, [](std::size_t, const Vec2&, const Vec2&) { return true; });
+    const auto found =
+        ball::find_way(way, grid, reference, clear, [](std::size_t, const Vec2&, const Vec2&) { return true; });
     double best = INFINITY;
     for (std::size_t n = 0; n < 13 * 13 * 13 * 13; ++n) {
       const std::size_t g[4] = {n % 13, n / 13 % 13, n / 169 % 13, n / 2197};
       bool good = true;
       for (std::size_t k = 0; k < 4 && good; ++k) good = open[13 * k + g[k]];
-      if (good) best = std::min(best, cost_of({grid.leans[g[0]], grid.leans[g[1]], grid.leans[g[2]], grid.leans[g[3]]}, 0.7, reference));
+      if (good)
+        best = std::min(
+            best, cost_of({grid.leans[g[0]], grid.leans[g[1]], grid.leans[g[2]], grid.leans[g[3]]}, 0.7, reference));
     }
     ASSERT_EQ(found.found, best < INFINITY);
     if (!found.found) {
@@ -201,13 +214,13 @@ TEST(OrientationWay, OneLeanWhereOneIsClearAndAWallIsGoneAround) {
   const auto clear = [](std::size_t k, const Vec2& q) { return k < 4 ? q.x() <= -0.1 : k > 7 ? q.x() >= 0.1 : true; };
   auto turning = plain_way(12, 0.7);
   ASSERT_FALSE(ball::find_constant(turning, grid, upright, clear));
-  const auto half = [](std::size_t k, const Vec2& a, const Vec2& b) { return k != 5 || std::abs(0.5 * (a + b).y()) > 0.05; };
+  const auto half = [](std::size_t k, const Vec2& a, const Vec2& b) {
+    return k != 5 || std::abs(0.5 * (a + b).y()) > 0.05;
+  };
   ASSERT_TRUE(ball::find_way(turning, grid, upright, clear, half).found);
   for (std::size_t k = 0; k < 12; ++k) {
     EXPECT_TRUE(clear(k, turning.lean[k]));
-    if (k > 0) {
-      EXPECT_LE((turning.lean[k] - turning.lean[k - 1]).norm(), 0.25 * 0.7 + 1e-9);
-    }
+    if (k > 0) { EXPECT_LE((turning.lean[k] - turning.lean[k - 1]).norm(), 0.25 * 0.7 + 1e-9); }
   }
   EXPECT_TRUE(half(5, turning.lean[5], turning.lean[6]));
   // The cubic passes through its stations, stays in their boxes and has no kink.
@@ -289,7 +302,8 @@ TEST(Orientation, APlantedCollisionIsFound) {
   }
   const auto passed = check.check_path(fixed);
   ASSERT_FALSE(passed);
-  EXPECT_TRUE(passed.error().message.find("shank") != std::string::npos || passed.error().message.find("holder") != std::string::npos)
+  EXPECT_TRUE(passed.error().message.find("shank") != std::string::npos ||
+              passed.error().message.find("holder") != std::string::npos)
       << passed.error().message;
   // One record in the deepest pass leans 8 deg too far to the side.
   std::size_t lowest = 0;

@@ -24,15 +24,18 @@ path::ToolMotion motion(const Vec3& a, const Vec3& b, const Vec3& u = Vec3::Unit
 }
 
 /// Least gap over samples of the motions, every body.
-double sampled(const clearance::MeshDistance& mesh, std::span<const path::ToolMotion> motions, const tool::ToolAssembly& tool, int samples) {
+double sampled(const clearance::MeshDistance& mesh, std::span<const path::ToolMotion> motions,
+               const tool::ToolAssembly& tool, int samples) {
   double least = INFINITY;
   const double R = tool.radius_mm();
   for (const auto& m : motions)
     for (int k = 0; k <= samples; ++k) {
       const double t = double(k) / samples;
       const Vec3 tip = (1 - t) * m.tip_from + t * m.tip_to, axis = ((1 - t) * m.axis_from + t * m.axis_to).normalized();
-      least = std::min(least, std::max(0.0, mesh.to_segment(tip + R * axis, axis, tool.flute_length_mm - R, 100).distance - R));
-      for (const auto& body : tool::shank_and_holder(tool)) least = std::min(least, mesh.to_frustum(body, tip, axis, 100).distance);
+      least = std::min(
+          least, std::max(0.0, mesh.to_segment(tip + R * axis, axis, tool.flute_length_mm - R, 100).distance - R));
+      for (const auto& body : tool::shank_and_holder(tool))
+        least = std::min(least, mesh.to_frustum(body, tip, axis, 100).distance);
     }
   return least;
 }
@@ -96,13 +99,16 @@ TEST(MeshClearance, ToolInsideIsNotClear) {
 
 TEST(MeshClearance, DrawnBackAlongItsAxisTheCutterPassesWhereItWas) {
   // A plate 3 mm thick that the flute (4 mm) has cut into, and a lid above the flute that it has not.
-  const clearance::MeshDistance plate(test::box(Vec3(-20, -20, 0), Vec3(20, 20, 3))), lid(test::box(Vec3(-20, -20, 6), Vec3(20, 20, 7)));
+  const clearance::MeshDistance plate(test::box(Vec3(-20, -20, 0), Vec3(20, 20, 3))),
+      lid(test::box(Vec3(-20, -20, 6), Vec3(20, 20, 7)));
   const path::ToolMotion back[] = {motion(Vec3(0, 0, 0.5), Vec3(0, 0, 4.0))};
   const clearance::Withdrawal w{Vec3(0, 0, 0.5), Vec3::UnitZ()};
   ASSERT_TRUE(clearance::draws_back(back[0], w));
   EXPECT_FALSE(clearance::draws_back(motion(Vec3(0, 0, 0.5), Vec3(0.01, 0, 4)), w)) << "aside";
   EXPECT_FALSE(clearance::draws_back(motion(Vec3(0, 0, 0.5), Vec3(0, 0, 0.2)), w)) << "deeper";
-  EXPECT_FALSE(clearance::draws_back(motion(Vec3(0, 0, 0.5), Vec3(0, 0, 4), Vec3::UnitZ(), Vec3(0.01, 0, 1).normalized()), w)) << "tilted";
+  EXPECT_FALSE(
+      clearance::draws_back(motion(Vec3(0, 0, 0.5), Vec3(0, 0, 4), Vec3::UnitZ(), Vec3(0.01, 0, 1).normalized()), w))
+      << "tilted";
   tool::ToolAssembly tool = stubby_mill();
   tool.stick_out_mm = 30;
   const clearance::MeshRule rule{0, 0};

@@ -1,4 +1,5 @@
-// The mesh distance against brute force over all triangles: random triangles, slivers, solids, and every body of a tool.
+// The mesh distance against brute force over all triangles: random triangles, slivers, solids, and every body of a
+// tool.
 #include "cam/clearance/distance.h"
 
 #include <gtest/gtest.h>
@@ -7,8 +8,8 @@
 #include <cstring>
 #include <random>
 
-#include "cam/clearance/frustum_triangle.h"
 #include "cam/clearance/assembly_gaps.h"
+#include "cam/clearance/frustum_triangle.h"
 #include "tests/cam/clearance/shapes.h"
 #include "tests/support/plain_frustum.h"
 #include "tests/support/sample_tools.h"
@@ -33,7 +34,8 @@ double reference_distance(const Vec3& p, const Vec3& a, const Vec3& b, const Vec
   long double best = std::min({edge(A, B), edge(B, C), edge(C, A)});
   const Long n = (B - A).cross(C - A);
   if (n.squaredNorm() > 0) {
-    const bool inside = (B - A).cross(P - A).dot(n) >= 0 && (C - B).cross(P - B).dot(n) >= 0 && (A - C).cross(P - C).dot(n) >= 0;
+    const bool inside =
+        (B - A).cross(P - A).dot(n) >= 0 && (C - B).cross(P - B).dot(n) >= 0 && (A - C).cross(P - C).dot(n) >= 0;
     if (inside) best = std::min(best, std::abs((P - A).dot(n)) / n.norm());
   }
   return double(best);
@@ -47,9 +49,11 @@ double brute_distance(const mesh::TriangleMesh& mesh, const Vec3& p) {
 }
 
 /// Least distance between a triangle and a convex body, by halving the triangle; within `resolution`.
-double halved(const Vec3& a, const Vec3& b, const Vec3& c, const tool::Frustum& f, const Vec3& tip, const Vec3& axis, double best, double resolution) {
+double halved(const Vec3& a, const Vec3& b, const Vec3& c, const tool::Frustum& f, const Vec3& tip, const Vec3& axis,
+              double best, double resolution) {
   const Vec3 m = (a + b + c) / 3;
-  const double size = std::max({(a - m).norm(), (b - m).norm(), (c - m).norm()}), d = test::distance_to_frustum(m, f, tip, axis);
+  const double size = std::max({(a - m).norm(), (b - m).norm(), (c - m).norm()}),
+               d = test::distance_to_frustum(m, f, tip, axis);
   best = std::min(best, d);
   if (best <= resolution || d - size >= best - resolution) return best;
   const Vec3 ab = 0.5 * (a + b), bc = 0.5 * (b + c), ca = 0.5 * (c + a);
@@ -61,7 +65,8 @@ double halved(const Vec3& a, const Vec3& b, const Vec3& c, const tool::Frustum& 
 
 TEST(MeshDistance, PointsAgreeWithBruteForce) {
   Random random(1);
-  for (const std::size_t count : {std::size_t(1), std::size_t(7), std::size_t(8), std::size_t(9), std::size_t(60), std::size_t(1000)}) {
+  for (const std::size_t count :
+       {std::size_t(1), std::size_t(7), std::size_t(8), std::size_t(9), std::size_t(60), std::size_t(1000)}) {
     const mesh::TriangleMesh mesh = test::scattered(random, count, 20, 4);
     const clearance::MeshDistance distance(mesh);
     for (int k = 0; k < 200; ++k) {
@@ -99,9 +104,9 @@ TEST(MeshDistance, SliversAndPointsAreNoExceptions) {
     const double width = std::pow(10.0, random(-14, -2));
     switch (k % 4) {
       case 0: add(a, a + d, a + random(0, 1) * d + random.vector(width)); break;  // needle
-      case 1: add(a, a + d, a + 2 * d); break;                                             // a line
-      case 2: add(a, a, a + d); break;                                                     // an edge twice
-      default: add(a, a, a);                                                               // a point
+      case 1: add(a, a + d, a + 2 * d); break;                                    // a line
+      case 2: add(a, a, a + d); break;                                            // an edge twice
+      default: add(a, a, a);                                                      // a point
     }
   }
   const clearance::MeshDistance distance(mesh);
@@ -123,7 +128,8 @@ TEST(MeshDistance, PathsGiveWhatSinglePointsGive) {
   }
   std::vector<double> found(path.size());
   distance.nearest_along(path, 2.5, found);
-  for (std::size_t k = 0; k < path.size(); ++k) ASSERT_NEAR(found[k], std::min(2.5, brute_distance(mesh, path[k])), 1e-9) << k;
+  for (std::size_t k = 0; k < path.size(); ++k)
+    ASSERT_NEAR(found[k], std::min(2.5, brute_distance(mesh, path[k])), 1e-9) << k;
 }
 
 TEST(MeshDistance, InsideIsToldByParity) {
@@ -136,12 +142,8 @@ TEST(MeshDistance, InsideIsToldByParity) {
     const bool expected = (p.array() > Eigen::Array3d(-4, -5, -6)).all() && (p.array() < Eigen::Array3d(7, 8, 9)).all();
     EXPECT_EQ(in_box.inside(p), expected);
     const double r = (q - Vec3(3, -2, 5)).norm();
-    if (r < 9.7) {
-      EXPECT_TRUE(in_ball.inside(q));
-    }
-    if (r > 10) {
-      EXPECT_FALSE(in_ball.inside(q));
-    }
+    if (r < 9.7) { EXPECT_TRUE(in_ball.inside(q)); }
+    if (r > 10) { EXPECT_FALSE(in_ball.inside(q)); }
     inside += r < 9.7;
   }
   EXPECT_GT(inside, 500);
@@ -156,7 +158,8 @@ TEST(MeshDistance, FrustumAndTriangleAreBoundedFromBothSides) {
   for (int k = 0; k < 250; ++k) {
     const Vec3 a = random.vector(6);
     const double size = std::pow(10.0, random(-3, 1.5));
-    const clearance::TriangleCorners t{a, a + random.vector(size), k % 7 == 0 ? Vec3(a + random.vector(1e-9)) : Vec3(a + random.vector(size))};
+    const clearance::TriangleCorners t{a, a + random.vector(size),
+                                       k % 7 == 0 ? Vec3(a + random.vector(1e-9)) : Vec3(a + random.vector(size))};
     const tool::Frustum f{random(0, 2), random(2.1, 9), random(0.1, 4), random(0.1, 4), tool::Body::holder};
     const Vec3 tip = random.vector(3), axis = random.vector(1).normalized();
     const clearance::FrustumGap gap = clearance::frustum_to_triangle(f, tip, axis, t, INFINITY);
@@ -172,9 +175,7 @@ TEST(MeshDistance, FrustumAndTriangleAreBoundedFromBothSides) {
       ASSERT_LE(brute, 2e-3) << k;
     }
     const double enough = 0.5 * brute;
-    if (brute > 1e-3) {
-      EXPECT_GE(clearance::frustum_to_triangle(f, tip, axis, t, enough).distance, enough);
-    }
+    if (brute > 1e-3) { EXPECT_GE(clearance::frustum_to_triangle(f, tip, axis, t, enough).distance, enough); }
   }
   EXPECT_LT(widest, 1e-7);
   EXPECT_GT(touching, 15);
@@ -260,7 +261,8 @@ TEST(MeshAssembly, PosesAgreeWithSingleQuestions) {
   for (int pass = 0; pass < 30; ++pass) {
     std::vector<clearance::ToolPose> poses;
     Vec3 tip = random.vector(30), axis = random.vector(1).normalized();
-    const Vec3 step = random.vector(1).normalized() * (pass % 3 == 0 ? 2.0 : 0.1), turn = random.vector(pass % 2 ? 0.0 : 0.01);
+    const Vec3 step = random.vector(1).normalized() * (pass % 3 == 0 ? 2.0 : 0.1),
+               turn = random.vector(pass % 2 ? 0.0 : 0.01);
     for (int k = 0; k < 50; ++k, tip += step, axis = (axis + turn).normalized()) poses.push_back({tip, axis});
     clearance::MeshAssembly assembly(distance, tool, within);
     const std::size_t n = assembly.bodies();
@@ -273,12 +275,12 @@ TEST(MeshAssembly, PosesAgreeWithSingleQuestions) {
       double axis_distance = INFINITY;
       for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         Vec3 foot;
-        axis_distance = std::min(axis_distance, clearance::segment_to_triangle(c, poses[k].axis, height, {mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)}, foot));
+        axis_distance = std::min(axis_distance, clearance::segment_to_triangle(
+                                                    c, poses[k].axis, height,
+                                                    {mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)}, foot));
       }
       const double cutter = std::min(std::sqrt(axis_distance) - tool.radius_mm(), within);
-      if (std::isfinite(gaps[k * n])) {
-        ASSERT_NEAR(gaps[k * n], cutter, 1e-9) << pass << " " << k;
-      }
+      if (std::isfinite(gaps[k * n])) { ASSERT_NEAR(gaps[k * n], cutter, 1e-9) << pass << " " << k; }
       cut += cutter < 0;
       const auto bodies = tool::shank_and_holder(tool);
       for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -302,8 +304,11 @@ TEST(MeshAssembly, ToolInsideTheSolidIsFound) {
   const clearance::MeshDistance distance(mesh);
   clearance::MeshAssembly assembly(distance, stubby_mill(), 0.5);
   const std::size_t n = assembly.bodies();
-  std::vector<clearance::ToolPose> poses = {{Vec3(0, 0, 0), Vec3::UnitZ()}, {Vec3(0.1, 0, 0), Vec3::UnitZ()}, {Vec3(0, 0, 150), Vec3::UnitZ()},
-                                 {Vec3(0, 0, 20), Vec3::UnitZ()}, {Vec3(0, 0, 96.2), Vec3::UnitZ()}};
+  std::vector<clearance::ToolPose> poses = {{Vec3(0, 0, 0), Vec3::UnitZ()},
+                                            {Vec3(0.1, 0, 0), Vec3::UnitZ()},
+                                            {Vec3(0, 0, 150), Vec3::UnitZ()},
+                                            {Vec3(0, 0, 20), Vec3::UnitZ()},
+                                            {Vec3(0, 0, 96.2), Vec3::UnitZ()}};
   std::vector<double> gaps(poses.size() * n);
   assembly.gaps(poses, gaps);
   for (std::size_t b = 0; b < n; ++b) {

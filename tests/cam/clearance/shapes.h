@@ -28,8 +28,10 @@ inline void append(mesh::TriangleMesh& mesh, const mesh::TriangleMesh& other) {
 
 inline mesh::TriangleMesh box(const Vec3& low, const Vec3& high) {
   mesh::TriangleMesh mesh;
-  for (int k = 0; k < 8; ++k) mesh.vertices.push_back({k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(), k & 4 ? high.z() : low.z()});
-  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4}, {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+  for (int k = 0; k < 8; ++k)
+    mesh.vertices.push_back({k & 1 ? high.x() : low.x(), k & 2 ? high.y() : low.y(), k & 4 ? high.z() : low.z()});
+  mesh.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                    {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   return mesh;
 }
 
@@ -41,7 +43,8 @@ inline mesh::TriangleMesh ball(const Vec3& centre, double radius, int n) {
   for (int i = 1; i < n; ++i)
     for (int k = 0; k < m; ++k) {
       const double polar = M_PI * i / n, turn = 2 * M_PI * k / m;
-      mesh.vertices.push_back(centre + radius * Vec3(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), -std::cos(polar)));
+      mesh.vertices.push_back(
+          centre + radius * Vec3(std::sin(polar) * std::cos(turn), std::sin(polar) * std::sin(turn), -std::cos(polar)));
     }
   mesh.vertices.push_back(centre + radius * Vec3::UnitZ());
   const auto at = [&](int i, int k) { return std::int32_t(1 + (i - 1) * m + k % m); };

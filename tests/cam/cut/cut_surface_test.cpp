@@ -6,8 +6,8 @@
 namespace toothpath {
 namespace {
 
-using test::PlannedJob;
 using test::job_named;
+using test::PlannedJob;
 
 cut::CutSurface surface(const PlannedJob& job, const std::vector<path::ToolMotion>& motions) {
   return cut::measure_cut_surface(*job.part, motions, job.operations, job.tools);
@@ -84,7 +84,8 @@ TEST(CutSurface, SolversAreComparedAtOnePlaceOnly) {
   const auto gear = test::made(g);
   const analytic::GearDistance part(gear, 1.0);
   // The residual needs the tool, not its path.
-  const auto cut = cut::measure_cut_surface(part, {}, {test::finishing(0, 0.0087, 0.005, 0.0104)}, {test::ball_mill(0.29, 1, 0.29, 8, 10)});
+  const auto cut = cut::measure_cut_surface(part, {}, {test::finishing(0, 0.0087, 0.005, 0.0104)},
+                                            {test::ball_mill(0.29, 1, 0.29, 8, 10)});
   EXPECT_LE(cut.solve_residual_mm, 1e-9);
   EXPECT_GT(cut.solve_residual_mm, 0);
 }
@@ -105,10 +106,11 @@ TEST_P(Promises, AllowanceStaysAndFinishingLeavesOnlyCusps) {
   if (GetParam() != "dhfg") return;
   EXPECT_GE(cut.scallop.share_within, 0.95) << cut.scallop.reached_min_mm << " .. " << cut.scallop.reached_max_mm;
 }
-INSTANTIATE_TEST_SUITE_P(Jobs, Promises, testing::Values("dhfg", "offset", "conical", "spur"), [](const auto& job_case) { return job_case.param; });
+INSTANTIATE_TEST_SUITE_P(Jobs, Promises, testing::Values("dhfg", "offset", "conical", "spur"),
+                         [](const auto& job_case) { return job_case.param; });
 
-// A ball wider than the fillet leaves the corner. Where both corners of the root become one inside the ring, passes of such a
-// ball may cut too deep; then the check must say so, and no program is written.
+// A ball wider than the fillet leaves the corner. Where both corners of the root become one inside the ring, passes of
+// such a ball may cut too deep; then the check must say so, and no program is written.
 TEST(WideBall, LeavesTheCornerAndCutsNothing) {
   const auto& job = job_named("spur wide");
   const auto cut = surface(job, job.motions());
@@ -135,7 +137,8 @@ TEST(Feed, ClimbsOnBothFlanksAndKeepsTheContactSpeed) {
       if (b.kind != path::MoveKind::feed) continue;
       EXPECT_LE(b.feed_mm_min, 1.2 * asked + 1e-9);
       EXPECT_GT(b.feed_mm_min, 0);
-      const auto qa = job.part->nearest(a.tip + R * a.axis, R + 0.05), qb = job.part->nearest(b.tip + R * b.axis, R + 0.05);
+      const auto qa = job.part->nearest(a.tip + R * a.axis, R + 0.05),
+                 qb = job.part->nearest(b.tip + R * b.axis, R + 0.05);
       if (!qa.exact || !qb.exact || std::string(qa.patch) != qb.patch) continue;
       const bool on_plus = std::string(qb.patch) == "flank +1", on_minus = std::string(qb.patch) == "flank -1";
       if (on_plus || on_minus) {

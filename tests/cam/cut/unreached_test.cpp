@@ -1,5 +1,5 @@
-// Surface that the finishing ball does not reach: the largest ball that reaches everything against dense pairs of points, and what is told of
-// the surface that was left.
+// Surface that the finishing ball does not reach: the largest ball that reaches everything against dense pairs of
+// points, and what is told of the surface that was left.
 #include "cam/cut/unreached.h"
 
 #include "cam/cut/cut_surface.h"
@@ -14,19 +14,22 @@ struct DensePoint {
   Vec3 p, n;
 };
 
-std::vector<DensePoint> points_of(const test::BruteForceGearSolid& solid, int zone, int rows, int columns, bool normals) {
+std::vector<DensePoint> points_of(const test::BruteForceGearSolid& solid, int zone, int rows, int columns,
+                                  bool normals) {
   std::vector<DensePoint> out;
   for (int patch = 0; patch < face_gear::kSpacePieces; ++patch)
     for (int i = 0; i < rows; ++i)
       for (int j = 0; j < columns; ++j) {
         // The normals are differences of points on both sides.
-        const double inside = normals ? 0.001 : 0, x = std::clamp(double(i) / (rows - 1), inside, 1 - inside), y = std::clamp(double(j) / (columns - 1), inside, 1 - inside);
+        const double inside = normals ? 0.001 : 0, x = std::clamp(double(i) / (rows - 1), inside, 1 - inside),
+                     y = std::clamp(double(j) / (columns - 1), inside, 1 - inside);
         out.push_back({solid.point(zone, patch, x, y), normals ? solid.normal(zone, patch, x, y) : Vec3(Vec3::Zero())});
       }
   return out;
 }
 
-/// The ball through p in its normal that also passes through q, least over all pairs: no ball above it touches p and stays out of the material.
+/// The ball through p in its normal that also passes through q, least over all pairs: no ball above it touches p and
+/// stays out of the material.
 double least_ball_of_pairs(const face_gear::FaceGear& gear, double most) {
   const test::BruteForceGearSolid solid(gear);
   double least = most;
@@ -74,7 +77,8 @@ TEST_P(LargestBallOf, TouchesEverythingAndALargerOneDoesNot) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Gears, LargestBallOf, testing::Values("spur", "offset", "conical", "dhfg"), [](const auto& c) { return c.param; });
+INSTANTIATE_TEST_SUITE_P(Gears, LargestBallOf, testing::Values("spur", "offset", "conical", "dhfg"),
+                         [](const auto& c) { return c.param; });
 
 TEST(LargestBall, IsNotLookedForAboveTheOneThatFits) {
   const face_gear::FaceGear gear = test::made(test::small_spur());
@@ -100,7 +104,9 @@ TEST(ConcaveCurvature, OfASaddleAndABall) {
   EXPECT_NEAR(cut::concave_curvature(q), 4, 1e-12);
 }
 
-cut::CutSurface surface(const test::PlannedJob& job) { return cut::measure_cut_surface(*job.part, job.motions(), job.operations, job.tools); }
+cut::CutSurface surface(const test::PlannedJob& job) {
+  return cut::measure_cut_surface(*job.part, job.motions(), job.operations, job.tools);
+}
 
 TEST(Unreached, AWideBallIsTold) {
   const auto& job = test::job_named("spur wide");
@@ -130,10 +136,11 @@ TEST(Unreached, NothingIsToldWhereTheBallFitsOrNothingFinishes) {
   EXPECT_EQ(r.ball_mm, 0);
 }
 
-// The active flank ends where a pinion equal to the shaper ends: a ball that stops above that is named with the place, one that stops below
-// it (`AWideBallIsTold`) is not.
+// The active flank ends where a pinion equal to the shaper ends: a ball that stops above that is named with the place,
+// one that stops below it (`AWideBallIsTold`) is not.
 TEST(Unreached, TheActiveFlankIsNamed) {
-  const auto job = test::planned(test::small_spur(), {test::ball_mill(2.2, 6, 2.1, 16, 10)}, {test::finishing(0, 0.02, 0.002)});
+  const auto job =
+      test::planned(test::small_spur(), {test::ball_mill(2.2, 6, 2.1, 16, 10)}, {test::finishing(0, 0.02, 0.002)});
   const auto u = surface(job).unreached;
   ASSERT_TRUE(u.active);
   EXPECT_GT(u.active->height_mm, u.limit_mm);

@@ -1,11 +1,12 @@
-// Finger mills against meshes: the truncated cones enclose the cutter closely, and no sampling of a motion comes nearer than what is proven.
+// Finger mills against meshes: the truncated cones enclose the cutter closely, and no sampling of a motion comes nearer
+// than what is proven.
 #include "cam/finger/bodies.h"
 #include "cam/finger/obstacles.h"
 
 #include <algorithm>
 
-#include "tests/cam/finger/jobs.h"
 #include "tests/cam/clearance/shapes.h"
+#include "tests/cam/finger/jobs.h"
 #include "tests/support/plain_frustum.h"
 
 namespace toothpath {
@@ -16,7 +17,8 @@ using test::Random;
 
 TEST(FingerBodies, PiecesEncloseTheCutterClosely) {
   Random random(3);
-  for (const Designed& d : {Designed{w3(), pinion_mill()}, Designed{w4(), wheel_mill()}, design(9, 40, 3, 20, 0.25), design(30, 30, 1, 35, 0.2)}) {
+  for (const Designed& d : {Designed{w3(), pinion_mill()}, Designed{w4(), wheel_mill()}, design(9, 40, 3, 20, 0.25),
+                            design(30, 30, 1, 35, 0.2)}) {
     const bevel_gear::BevelGear gear = gear_of(d);
     const bevel_gear::FingerSolid solid(gear.cutter());
     tool::ToolAssembly tool = mill(d.c);
@@ -32,7 +34,8 @@ TEST(FingerBodies, PiecesEncloseTheCutterClosely) {
       const double height = random(-1, tool.flute_length_mm - 0.5), rho = random(0, 1.5 * gear.cutter().rho_D);
       const double truth = std::max(0.0, solid.signed_distance(height - d.p.dedendum_mm, rho));
       double pieces = INFINITY;
-      for (const auto& f : bodies[0].pieces) pieces = std::min(pieces, test::distance_to_frustum(Vec3(rho, 0, height), f, Vec3::Zero(), Vec3::UnitZ()));
+      for (const auto& f : bodies[0].pieces)
+        pieces = std::min(pieces, test::distance_to_frustum(Vec3(rho, 0, height), f, Vec3::Zero(), Vec3::UnitZ()));
       EXPECT_LE(pieces, truth + 1e-12) << height << " " << rho;
       most = std::max(most, truth - pieces);
     }
@@ -78,7 +81,9 @@ TEST(FingerBodies, ProvenGapAgainstDenseSampling) {
     double d = x > flute ? std::hypot(x - flute, std::max(0.0, rho - radius)) : solid.signed_distance(x - h_f, rho);
     const auto cylinder = [&](double from, double to, double r0, double r1) {
       if (x >= from && x <= to && rho <= r0 + (r1 - r0) * (x - from) / (to - from)) d = std::min(d, 0.0);
-      const double share = std::clamp(((x - from) * (to - from) + (rho - r0) * (r1 - r0)) / (std::pow(to - from, 2) + std::pow(r1 - r0, 2)), 0.0, 1.0);
+      const double share = std::clamp(
+          ((x - from) * (to - from) + (rho - r0) * (r1 - r0)) / (std::pow(to - from, 2) + std::pow(r1 - r0, 2)), 0.0,
+          1.0);
       d = std::min(d, std::hypot(x - from - share * (to - from), rho - r0 - share * (r1 - r0)));
       d = std::min(d, std::hypot(x - from, std::max(0.0, rho - r0)));
       d = std::min(d, std::hypot(x - to, std::max(0.0, rho - r1)));
@@ -110,12 +115,14 @@ TEST(FingerBodies, ProvenGapAgainstDenseSampling) {
     for (const auto& t : obstacle.triangles)
       for (int i = 0; i <= 10; ++i)
         for (int j = 0; i + j <= 10; ++j) {
-          const Vec3 &a = obstacle.vertices[std::size_t(t[0])], &b = obstacle.vertices[std::size_t(t[1])], &c = obstacle.vertices[std::size_t(t[2])];
+          const Vec3 &a = obstacle.vertices[std::size_t(t[0])], &b = obstacle.vertices[std::size_t(t[1])],
+                     &c = obstacle.vertices[std::size_t(t[2])];
           const Vec3 p = a + (b - a) * (i / 10.0) + (c - a) * (j / 10.0);
           for (const auto& m : motions)
             for (int s = 0; s <= 8; ++s) {
               const double share = s / 8.0;
-              dense = std::min(dense, gap_of(p, m.tip_from + share * (m.tip_to - m.tip_from), ((1 - share) * m.axis_from + share * m.axis_to).normalized()));
+              dense = std::min(dense, gap_of(p, m.tip_from + share * (m.tip_to - m.tip_from),
+                                             ((1 - share) * m.axis_from + share * m.axis_to).normalized()));
             }
         }
     if (!found) {
@@ -141,7 +148,8 @@ TEST(FingerBodies, DrawnBackTheMillPassesWhereItWas) {
   const tool::ToolAssembly tool = mill(pinion_mill());
   const auto bodies = finger::finger_bodies(gear.cutter(), tool);
   const double top = tool::finger_flute_end(gear.cutter(), tool);  // 9.9
-  const clearance::MeshDistance plate(test::box(Vec3(-20, -20, 1), Vec3(20, 20, top - 2))), lid(test::box(Vec3(-20, -20, top + 1), Vec3(20, 20, top + 1.5)));
+  const clearance::MeshDistance plate(test::box(Vec3(-20, -20, 1), Vec3(20, 20, top - 2))),
+      lid(test::box(Vec3(-20, -20, top + 1), Vec3(20, 20, top + 1.5)));
   path::ToolMotion back;
   back.tip_to = Vec3(0, 0, 5);
   back.axis_from = back.axis_to = Vec3::UnitZ();
@@ -152,9 +160,7 @@ TEST(FingerBodies, DrawnBackTheMillPassesWhereItWas) {
   ASSERT_TRUE(cut);
   EXPECT_LE(cut->gap_mm, 0);
   const auto credited = clearance::MeshClearance(plates, {}).nearest(std::span(&back, 1), bodies, only_cutter, w);
-  if (credited) {
-    EXPECT_GT(credited->gap_mm, 1.9);
-  }
+  if (credited) { EXPECT_GT(credited->gap_mm, 1.9); }
   const clearance::MeshDistance* lids[] = {&lid};
   const auto struck = clearance::MeshClearance(lids, {}).nearest(std::span(&back, 1), bodies, only_cutter, w);
   ASSERT_TRUE(struck);

@@ -1,5 +1,6 @@
-// Brute force for finger mills: how deep the cutter, its shank or its holder is in a bevel gear, from sampled points alone. Knows the meridian
-// of the cutter as a polyline and where its nominal passes run, neither an equation of meshing nor anything of the check.
+// Brute force for finger mills: how deep the cutter, its shank or its holder is in a bevel gear, from sampled points
+// alone. Knows the meridian of the cutter as a polyline and where its nominal passes run, neither an equation of
+// meshing nor anything of the check.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +18,9 @@ namespace toothpath::bevel_test {
 struct BrutePose {
   Vec3 tip = Vec3::Zero(), axis = Vec3::UnitZ();
 };
-inline BrutePose pose_at(const path::ToolMotion& m, double t) { return {m.tip_from + t * (m.tip_to - m.tip_from), ((1 - t) * m.axis_from + t * m.axis_to).normalized()}; }
+inline BrutePose pose_at(const path::ToolMotion& m, double t) {
+  return {m.tip_from + t * (m.tip_to - m.tip_from), ((1 - t) * m.axis_from + t * m.axis_to).normalized()};
+}
 
 struct BruteDepth {
   double depth = -1e9;
@@ -52,7 +55,9 @@ class BruteFinger {
     double best = INFINITY;
     const auto n = line_.size();
     // The polyline rises all along: from the point as high as this one, downhill to both sides.
-    auto at = std::size_t(std::lower_bound(line_.begin(), line_.end(), height, [](const Vec2& a, double x) { return a.x() < x; }) - line_.begin());
+    auto at = std::size_t(
+        std::lower_bound(line_.begin(), line_.end(), height, [](const Vec2& a, double x) { return a.x() < x; }) -
+        line_.begin());
     at = std::clamp<std::size_t>(at, 1, n - 1);
     const auto to = [&](std::size_t k) {
       const Vec2 d = line_[k] - line_[k - 1], q = Vec2(height, rho) - line_[k - 1];
@@ -68,7 +73,13 @@ class BruteFinger {
       }
     if (rho <= line_.front().y()) best = std::min(best, std::abs(height));
     if (height > line_.back().x()) best = std::min(best, std::abs(rho - line_.back().y()));
-    const double radius = height > line_.back().x() ? line_.back().y() : line_[at - 1].y() + (line_[at].y() - line_[at - 1].y()) * std::clamp((height - line_[at - 1].x()) / std::max(1e-15, line_[at].x() - line_[at - 1].x()), 0.0, 1.0);
+    const double radius =
+        height > line_.back().x()
+            ? line_.back().y()
+            : line_[at - 1].y() +
+                  (line_[at].y() - line_[at - 1].y()) *
+                      std::clamp((height - line_[at - 1].x()) / std::max(1e-15, line_[at].x() - line_[at - 1].x()), 0.0,
+                                 1.0);
     return height > 0 && rho < radius ? -best : best;
   }
   [[nodiscard]] double distance(const Vec3& p, const BrutePose& pose) const {
@@ -77,8 +88,8 @@ class BruteFinger {
     return meridian_distance(s, (w - s * pose.axis).norm());
   }
 
-  /// How far a point lies in what the nominal passes leave: > 0 in the material. Where it lies deeper than 0.02 mm in what they have cut,
-  /// any such depth.
+  /// How far a point lies in what the nominal passes leave: > 0 in the material. Where it lies deeper than 0.02 mm in
+  /// what they have cut, any such depth.
   [[nodiscard]] double material(const Vec3& p) const {
     double best = INFINITY;
     for (const auto& piece : pieces_) {
@@ -120,7 +131,8 @@ class BruteFinger {
     return false;
   }
 
-  /// Deepest point of the cutter's own surface in the material at one pose: a first look over the meridian and all around, then narrower.
+  /// Deepest point of the cutter's own surface in the material at one pose: a first look over the meridian and all
+  /// around, then narrower.
   [[nodiscard]] BruteDepth in_walls(const BrutePose& pose) const {
     const Vec3 e1 = pose.axis.unitOrthogonal(), e2 = pose.axis.cross(e1);
     BruteDepth best;
@@ -179,13 +191,14 @@ class BruteFinger {
   std::vector<Piece> pieces_;
 };
 
-/// How far two convex bodies of revolution must be moved apart: by sampled circles and a search over the directions about one. Rims: the tool's as (height
-/// above the tip, radius), the part's as (r, z).
+/// How far two convex bodies of revolution must be moved apart: by sampled circles and a search over the directions
+/// about one. Rims: the tool's as (height above the tip, radius), the part's as (r, z).
 struct BruteOverlap {
   double depth = 1e9;  ///< < 0: apart
   Vec3 direction = Vec3::UnitZ(), on_part = Vec3::Zero();
 };
-inline BruteOverlap overlap_of(const std::vector<Vec2>& tool, const BrutePose& pose, const std::vector<Vec2>& part, const Vec3& start) {
+inline BruteOverlap overlap_of(const std::vector<Vec2>& tool, const BrutePose& pose, const std::vector<Vec2>& part,
+                               const Vec3& start) {
   constexpr int n = 3000;
   const Vec3 e1 = pose.axis.unitOrthogonal(), e2 = pose.axis.cross(e1);
   std::vector<Vec3> of_tool, of_part;
@@ -217,7 +230,8 @@ inline BruteOverlap overlap_of(const std::vector<Vec2>& tool, const BrutePose& p
     const bool fine = level > 6;
     if (level == 7) best.depth = 1e9;  // the fine points decide
     for (int a = -3; a <= 3; ++a)
-      for (int b = -3; b <= 3; ++b) look(n0 + width * (a / 3.0 * t1 + b / 3.0 * t2), fine ? of_tool : coarse_tool, fine ? of_part : coarse_part);
+      for (int b = -3; b <= 3; ++b)
+        look(n0 + width * (a / 3.0 * t1 + b / 3.0 * t2), fine ? of_tool : coarse_tool, fine ? of_part : coarse_part);
   }
   return best;
 }

@@ -1,5 +1,5 @@
-// Planted faults: whatever a program does wrong is found and named, on walls, root, ends, corner, in the wrong tooth, and with
-// shank and holder against hub and shaft.
+// Planted faults: whatever a program does wrong is found and named, on walls, root, ends, corner, in the wrong tooth,
+// and with shank and holder against hub and shaft.
 #include <random>
 
 #include "cam/finger/obstacles.h"
@@ -65,7 +65,8 @@ TEST_F(FingerFaults, RandomPlacesOnWallsRootEndsAndCorner) {
       // Beyond the end of the face only the edge can be touched.
       if (pose.R_c < clean().gear.R_i() + 0.5) continue;
       const double lateral = std::min(side_L, side_U) + depth;
-      record = moved(record, (at_L ? -1 : 1) * lateral / (pose.R_c * clean().gear.sin_delta() * std::cos(radians(45))), 0);
+      record =
+          moved(record, (at_L ? -1 : 1) * lateral / (pose.R_c * clean().gear.sin_delta() * std::cos(radians(45))), 0);
       expected = at_L ? "wall L" : "wall U";
       ++on_wall;
       at_ends += pose.R_c < clean().gear.R_i() + 3 || pose.R_c > clean().gear.R_e() - 3;
@@ -96,7 +97,8 @@ TEST_F(FingerFaults, TheWorstPlaceIsNamed) {
   std::vector<std::size_t> inner;
   for (std::size_t i = 0; i + 1 < motions.size(); ++i) {
     const finger::ConePose pose = finger::cone_pose(clean().gear, motions[i].tip_to, motions[i].axis_to, 0);
-    if (motions[i].operation == 1 && !motions[i].rapid && pose.lift < 0.01 && pose.R_c > 90 && pose.R_c < 98) inner.push_back(i);
+    if (motions[i].operation == 1 && !motions[i].rapid && pose.lift < 0.01 && pose.R_c > 90 && pose.R_c < 98)
+      inner.push_back(i);
   }
   ASSERT_GT(inner.size(), 4u);
   const std::size_t at = inner[inner.size() / 2];
@@ -142,8 +144,8 @@ TEST_F(FingerFaults, MissingPassIsLeftMaterial) {
 }
 
 TEST_F(FingerFaults, HubAndShaftStandInTheWay) {
-  // A hub as wide as the blank is cut by the run-out at the large end, one below the root is not; a thin shaft is clear, a thick one
-  // meets the cutter at the small end.
+  // A hub as wide as the blank is cut by the run-out at the large end, one below the root is not; a thin shaft is
+  // clear, a thick one meets the cutter at the small end.
   struct Case {
     double hub, shaft;
     bool clear;
@@ -151,8 +153,8 @@ TEST_F(FingerFaults, HubAndShaftStandInTheWay) {
   };
   const double sd = clean().gear.sin_delta(), cd = clean().gear.cos_delta();
   const double root_e = clean().gear.R_e() * sd - 5.1 * cd, root_i = clean().gear.R_i() * sd - 5.1 * cd;
-  for (const Case& c : {Case{2 * root_e + 8, 0, false, "hub"}, Case{2 * root_e - 12, 0, true, ""}, Case{0, 2 * root_i + 8, false, "shaft"},
-                        Case{0, 2 * root_i - 20, true, ""}}) {
+  for (const Case& c : {Case{2 * root_e + 8, 0, false, "hub"}, Case{2 * root_e - 12, 0, true, ""},
+                        Case{0, 2 * root_i + 8, false, "shaft"}, Case{0, 2 * root_i - 20, true, ""}}) {
     bevel_gear::BevelGearParameters p = w3();
     p.hub_diameter_mm = c.hub;
     p.hub_length_mm = c.hub > 0 ? 30 : 0;
@@ -163,11 +165,10 @@ TEST_F(FingerFaults, HubAndShaftStandInTheWay) {
     bool clear = true;
     std::string message;
     for (const auto& plan : clean().plans)
-      if (const auto verdict = with_bodies.approve(plan.path); !verdict) clear = false, message = verdict.error().message;
+      if (const auto verdict = with_bodies.approve(plan.path); !verdict)
+        clear = false, message = verdict.error().message;
     EXPECT_EQ(clear, c.clear) << "hub " << c.hub << " shaft " << c.shaft << ": " << message;
-    if (!c.clear) {
-      EXPECT_NE(message.find(c.name), std::string::npos) << message;
-    }
+    if (!c.clear) { EXPECT_NE(message.find(c.name), std::string::npos) << message; }
   }
 }
 
@@ -188,7 +189,8 @@ TEST_F(FingerFaults, HolderAgainstShaft) {
   EXPECT_LE(v.gouge.bound_mm, 2e-3) << "no cut";
 }
 
-// The gap is never above the distance of sampled points of both bodies, and comes close to it where the axes share a plane.
+// The gap is never above the distance of sampled points of both bodies, and comes close to it where the axes share a
+// plane.
 TEST(FingerObstacles, GapAgainstSampledPoints) {
   std::mt19937 random(77);
   const auto uniform = [&](double a, double b) { return a + (b - a) * static_cast<double>(random()) / 4294967295.0; };
@@ -206,7 +208,8 @@ TEST(FingerObstacles, GapAgainstSampledPoints) {
     for (int i = 0; i <= 20; ++i)
       for (int a = 0; a < 48; ++a)
         for (int s = 1; s <= 3; s += 2) {
-          const double t = i / 20.0, r = (tool.rims[0].y() + t * (tool.rims[1].y() - tool.rims[0].y())) * s / 3, phi = a * kPi / 24;
+          const double t = i / 20.0, r = (tool.rims[0].y() + t * (tool.rims[1].y() - tool.rims[0].y())) * s / 3,
+                       phi = a * kPi / 24;
           const Vec3 q = m.tip_from + (10 + 20 * t) * u + r * (std::cos(phi) * v + std::sin(phi) * w);
           // Exact distance to the frustum about z, from outside: over its generatrix and discs in the meridian plane.
           const double rho = std::hypot(q.x(), q.y());
@@ -218,9 +221,7 @@ TEST(FingerObstacles, GapAgainstSampledPoints) {
           nearest = std::min(nearest, d);
         }
     EXPECT_LE(gap, nearest + 0.15) << n;
-    if (coplanar && nearest > 1) {
-      EXPECT_GE(gap, nearest - 0.8) << n;
-    }
+    if (coplanar && nearest > 1) { EXPECT_GE(gap, nearest - 0.8) << n; }
   }
 }
 

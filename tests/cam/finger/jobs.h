@@ -60,7 +60,8 @@ inline Milled mill_all(const Designed& d, double chord = 5e-4, double ridge = 0.
 }
 
 /// The worked gears with the mills of the samples.
-inline Milled mill_all(const bevel_gear::BevelGearParameters& p, double tip_radius, double chord = 5e-4, double ridge = 0.3) {
+inline Milled mill_all(const bevel_gear::BevelGearParameters& p, double tip_radius, double chord = 5e-4,
+                       double ridge = 0.3) {
   return mill_all(Designed{p, {3.0, tip_radius, 4.1, 4.8}}, chord, ridge);
 }
 
@@ -75,7 +76,8 @@ inline Milled mill_trunnion(double chord = 5e-4) {
   p.hub_diameter_mm = 24, p.hub_length_mm = 10;
   p.shaft_diameter_mm = 8, p.shaft_length_mm = 6;
   Milled r = mill_all(Designed{p, {0.72, 0.12, 1.2, 1.4}}, chord, 0.1);
-  r.tools[0].length_mm = 70, r.tools[0].shank_diameter_mm = 6, r.tools[0].holder = {{20, 20, 40}}, r.tools[0].stick_out_mm = 25;
+  r.tools[0].length_mm = 70, r.tools[0].shank_diameter_mm = 6, r.tools[0].holder = {{20, 20, 40}},
+  r.tools[0].stick_out_mm = 25;
   return r;
 }
 

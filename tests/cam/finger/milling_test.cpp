@@ -18,8 +18,8 @@ TEST(FingerMilling, FineRidgeTakesFillPasses) {
   expect_good(r, 5e-4, 0.02);
 }
 
-/// Brute force: lowest height above the root cone at (ell, azimuth) that is inside the cutter at some instant of the two
-/// wall passes, by scanning heights and positions.
+/// Brute force: lowest height above the root cone at (ell, azimuth) that is inside the cutter at some instant of the
+/// two wall passes, by scanning heights and positions.
 double left_by_brute_force(const Milled& r, double ell, double azimuth) {
   const bevel_gear::FingerSolid solid(r.gear.cutter());
   const double sd = r.gear.sin_delta(), cd = r.gear.cos_delta();
@@ -29,7 +29,8 @@ double left_by_brute_force(const Milled& r, double ell, double azimuth) {
       for (int i = 0; i <= 1200; ++i) {
         const auto& t = half.walls[k].trace;
         // The pass and 6 mm of straight run-out.
-        const double s = i / 1000.0, beta = half.beta_from[k] + (half.beta_to[k] - half.beta_from[k]) * std::min(s, 1.0);
+        const double s = i / 1000.0,
+                     beta = half.beta_from[k] + (half.beta_to[k] - half.beta_from[k]) * std::min(s, 1.0);
         auto c = t.centre(half.walls[k].sigma, beta);
         if (s > 1) c = t.run_straight(c, 30 * (s - 1));
         if (std::abs(c.R_c - ell) > 6) continue;
@@ -56,14 +57,16 @@ TEST(FingerMilling, TwoWallPassesAloneLeaveTheRidge) {
   EXPECT_GT(check.verify(r.motions).ridge.reached_mm, 2.8);
 }
 
-// What the planner says of the highest ridge is never below what the passes leave, and no higher than the job allows; many gears, random mills.
+// What the planner says of the highest ridge is never below what the passes leave, and no higher than the job allows;
+// many gears, random mills.
 TEST(FingerMilling, RidgeIsAsPredicted) {
   std::mt19937 random(11);
   const auto uniform = [&](double a, double b) { return a + (b - a) * static_cast<double>(random()) / 4294967295.0; };
   int made_of = 0, fills = 0;
   double nearest = 0;
   for (int n = 0; n < 14; ++n) {
-    Designed d = design(7 + static_cast<int>(uniform(0, 54)), 0, uniform(1, 12), uniform(0, 40), uniform(0.12, 0.3), n % 2 ? 1 : -1, uniform(15, 78));
+    Designed d = design(7 + static_cast<int>(uniform(0, 54)), 0, uniform(1, 12), uniform(0, 40), uniform(0.12, 0.3),
+                        n % 2 ? 1 : -1, uniform(15, 78));
     const double share = uniform(0.8, 1.0), ridge = uniform(0.02, 0.3) * d.p.dedendum_mm;
     d.c.module_mm *= share, d.c.tip_radius_mm *= 0.5;
     const auto gear = bevel_gear::BevelGear::make(d.p, d.c);
@@ -71,13 +74,15 @@ TEST(FingerMilling, RidgeIsAsPredicted) {
     Milled r{gear.value(), {mill(d.c)}, operations(2e-3, ridge), {}, {}};
     double predicted = 0;
     for (std::size_t i = 0; i < r.ops.size(); ++i) {
-      const auto plan = finger::plan_finger_operation(r.gear, r.tools[0], r.ops[i], static_cast<int>(i), proof::ProofLimits{});
+      const auto plan =
+          finger::plan_finger_operation(r.gear, r.tools[0], r.ops[i], static_cast<int>(i), proof::ProofLimits{});
       ASSERT_TRUE(plan) << plan.error().message;
       if (i == 0) predicted = plan->ridge_predicted_mm, fills += plan->passes.size() > 1;
       const auto m = path::motions_of(plan->path);
       r.motions.insert(r.motions.end(), m.begin(), m.end());
     }
-    const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, proof::ProofLimits{}, {.columns = 3, .rows = 3, .ridge_columns = 6, .ridge_rows = 17});
+    const finger::FingerGougeCheck check(r.gear, r.tools, r.ops, proof::ProofLimits{},
+                                         {.columns = 3, .rows = 3, .ridge_columns = 6, .ridge_rows = 17});
     const double reached = check.ridge(r.motions).reached_mm;
     EXPECT_LE(predicted, ridge) << n;
     EXPECT_LE(reached, 1.0001 * predicted) << n;
@@ -89,10 +94,12 @@ TEST(FingerMilling, RidgeIsAsPredicted) {
   EXPECT_GT(nearest, 0.8) << "close somewhere";
 }
 
-// The proof counts a shift of the centre with the leverage of the points beyond it, on a slender cone of few teeth twofold. A job whose chord
-// tolerance is coarse keeps half of the gouge tolerance for what posts add; its walls are proven against a little more than this half.
+// The proof counts a shift of the centre with the leverage of the points beyond it, on a slender cone of few teeth
+// twofold. A job whose chord tolerance is coarse keeps half of the gouge tolerance for what posts add; its walls are
+// proven against a little more than this half.
 TEST(FingerMilling, ChordLeavesTheProofItsLeverage) {
-  for (const Designed& d : {design(7, 0, 6.0, 5, 0.145, 1, 15), design(7, 0, 2.0, 30, 0.32, -1, 30), Designed{w3(), pinion_mill()}}) {
+  for (const Designed& d :
+       {design(7, 0, 6.0, 5, 0.145, 1, 15), design(7, 0, 2.0, 30, 0.32, -1, 30), Designed{w3(), pinion_mill()}}) {
     const bevel_gear::BevelGear gear = made(d.p, d.c);
     const double leverage = finger::centre_leverage(gear);
     EXPECT_EQ(leverage, finger::WallReference(gear, 1).leverage());
@@ -102,7 +109,8 @@ TEST(FingerMilling, ChordLeavesTheProofItsLeverage) {
     const auto ops = operations(2e-3);
     proof::ProofLimits half = job;
     half.gouge_mm = 0.6 * job.gouge_mm;
-    const finger::FingerGougeCheck check(gear, std::vector{tool}, ops, half, {.columns = 3, .rows = 3, .ridge_columns = 2, .ridge_rows = 3});
+    const finger::FingerGougeCheck check(gear, std::vector{tool}, ops, half,
+                                         {.columns = 3, .rows = 3, .ridge_columns = 2, .ridge_rows = 3});
     for (std::size_t i = 0; i < ops.size(); ++i) {
       const auto plan = finger::plan_finger_operation(gear, tool, ops[i], static_cast<int>(i), job);
       ASSERT_TRUE(plan) << plan.error().message;
@@ -124,8 +132,10 @@ TEST(FingerMilling, FeedIsConstantOnThePitchCone) {
     const auto& records = r.plans[i].path.records;
     for (std::size_t k = 1; k < records.size(); ++k) {
       if (records[k].kind != path::MoveKind::feed) continue;
-      const finger::ConePose a = finger::cone_pose(r.gear, records[k - 1].tip, records[k - 1].axis, 0), b = finger::cone_pose(r.gear, records[k].tip, records[k].axis, 0);
-      const Vec2 from(a.R_c * std::cos(a.theta), a.R_c * std::sin(a.theta)), to(b.R_c * std::cos(b.theta), b.R_c * std::sin(b.theta));
+      const finger::ConePose a = finger::cone_pose(r.gear, records[k - 1].tip, records[k - 1].axis, 0),
+                             b = finger::cone_pose(r.gear, records[k].tip, records[k].axis, 0);
+      const Vec2 from(a.R_c * std::cos(a.theta), a.R_c * std::sin(a.theta)),
+          to(b.R_c * std::cos(b.theta), b.R_c * std::sin(b.theta));
       const double minutes = (records[k].tip - records[k - 1].tip).norm() / records[k].feed_mm_min;
       EXPECT_NEAR((to - from).norm() / minutes / r.ops[i].feed_mm_min, 1, 1e-6);
     }
@@ -155,9 +165,7 @@ TEST(FingerMilling, PlantedGougesAreFound) {
     const auto verdict = check.approve(path);
     ASSERT_FALSE(verdict);
     EXPECT_NE(verdict.error().message.find(at_L ? "wall L" : "wall U"), std::string::npos) << verdict.error().message;
-    if (planted == 1) {
-      EXPECT_GT(check.verify(path::motions_of(path)).gouge.bound_mm, 4e-3);
-    }
+    if (planted == 1) { EXPECT_GT(check.verify(path::motions_of(path)).gouge.bound_mm, 4e-3); }
   }
   EXPECT_GE(planted, 5);
 }

@@ -1,6 +1,6 @@
-// Gouges of 2 um planted with every body of a finger mill assembly: flank, fillet and tip of the cutter, shank, holder; at records, between
-// records, at the ends of the face and at the edges of the groove, in one tooth space only. Depth and place are known from sampled points
-// (tests/cam/finger/brute.h).
+// Gouges of 2 um planted with every body of a finger mill assembly: flank, fillet and tip of the cutter, shank, holder;
+// at records, between records, at the ends of the face and at the edges of the groove, in one tooth space only. Depth
+// and place are known from sampled points (tests/cam/finger/brute.h).
 #include <map>
 #include <random>
 
@@ -79,24 +79,30 @@ class FingerPlanted : public ::testing::Test {
     return std::abs(L.offset(pose.R_c, pose.theta)) < std::abs(U.offset(pose.R_c, pose.theta)) ? -1 : 1;
   }
   /// What the check says of some motions against the truth.
-  static void expect_found(const std::vector<path::ToolMotion>& motions, BruteDepth truth, const path::ToolMotion& deepest, const std::string& what) {
-    SCOPED_TRACE(fmt::format("{}: true depth {:.6f} at {:.4f} {:.4f} {:.4f}", what, truth.depth, truth.place.x(), truth.place.y(), truth.place.z()));
+  static void expect_found(const std::vector<path::ToolMotion>& motions, BruteDepth truth,
+                           const path::ToolMotion& deepest, const std::string& what) {
+    SCOPED_TRACE(fmt::format("{}: true depth {:.6f} at {:.4f} {:.4f} {:.4f}", what, truth.depth, truth.place.x(),
+                             truth.place.y(), truth.place.z()));
     const auto v = check_->verify(motions);
     EXPECT_GT(v.gouge.bound_mm, limits().gouge_mm) << "found";
     EXPECT_GE(v.gouge.bound_mm, v.gouge.measured_mm);
     EXPECT_GE(v.gouge.bound_mm, truth.depth - 1e-7);
     ASSERT_FALSE(v.gouge.worst.empty());
     const proof::WorstPlace& w = v.gouge.worst.front();
-    // Where the check names a deeper place than the samples showed, that place is judged: on the finished wall, and as deep as it says.
-    const bool on_wall = w.patch != "root" && brute_->on_face(w.point, 1e-6) && std::abs(brute_->material(w.point)) < 2e-5;
-    const double below_root = -gear().parameters().dedendum_mm - bevel_gear::cone_point(w.point, gear().sin_delta(), gear().cos_delta()).height;
+    // Where the check names a deeper place than the samples showed, that place is judged: on the finished wall, and as
+    // deep as it says.
+    const bool on_wall =
+        w.patch != "root" && brute_->on_face(w.point, 1e-6) && std::abs(brute_->material(w.point)) < 2e-5;
+    const double below_root = -gear().parameters().dedendum_mm -
+                              bevel_gear::cone_point(w.point, gear().sin_delta(), gear().cos_delta()).height;
     const double there = on_wall ? brute_->inside(w.point, deepest, 400) : w.patch == "root" ? below_root : -1;
     if (there > truth.depth) truth = {there, w.point, 0};
     EXPECT_NEAR(v.gouge.measured_mm, truth.depth, kWithin);
     EXPECT_NEAR(w.depth_mm, truth.depth, kWithin);
     EXPECT_TRUE(w.line == motions.front().line || w.line == motions.back().line) << w.line;
     // Along a line of contact many places are as deep: then the one that is named must be among them.
-    EXPECT_TRUE((w.point - truth.place).norm() <= kAway || there >= truth.depth - kWithin) << w.patch << " " << w.point.transpose();
+    EXPECT_TRUE((w.point - truth.place).norm() <= kAway || there >= truth.depth - kWithin)
+        << w.patch << " " << w.point.transpose();
   }
   /// Plants a wall gouge at a record: as deep as asked by one correction of the first guess.
   void plant_in_wall(std::size_t k, double share_down, const std::string& what, int& found) {
@@ -151,7 +157,8 @@ TEST_F(FingerPlanted, EndsOfTheFaceAndEdgesOfTheGroove) {
   int ends = 0, edges = 0;
   const auto small = blocks(gear().R_i() - 3, gear().R_i() + 1.5), large = blocks(gear().R_e() - 2, gear().R_e() + 2);
   const auto groove = blocks(gear().R_ref() - 4.5, gear().R_ref() + 4.5);
-  for (int n = 0; n < 12 && ends < 4; ++n) plant_in_wall(pick(n % 2 == 0 ? small : large), 0, n % 2 == 0 ? "small end" : "large end", ends);
+  for (int n = 0; n < 12 && ends < 4; ++n)
+    plant_in_wall(pick(n % 2 == 0 ? small : large), 0, n % 2 == 0 ? "small end" : "large end", ends);
   for (int n = 0; n < 12 && edges < 3; ++n) plant_in_wall(pick(groove), 0, "groove", edges);
   EXPECT_EQ(ends, 4);
   EXPECT_EQ(edges, 3);
@@ -173,7 +180,8 @@ TEST_F(FingerPlanted, RootByTheTip) {
     EXPECT_EQ(w.patch, "root");
     // The flat touches along a line: the place is under it, as deep as any.
     EXPECT_LE((w.point - pose_at(motions[0], 1).tip).norm(), gear().cutter().rho_o + kAway);
-    EXPECT_GE(brute_->inside(w.point + truth.depth * pose_at(motions[0], 1).axis, motions[0], 50), truth.depth - kWithin);
+    EXPECT_GE(brute_->inside(w.point + truth.depth * pose_at(motions[0], 1).axis, motions[0], 50),
+              truth.depth - kWithin);
   }
 }
 
@@ -222,18 +230,21 @@ TEST_F(FingerPlanted, InOneSpaceOnly) {
   for (const int space : {5, z - 1}) {
     const std::size_t k = pick(all);
     const auto& records = clean_->plans[1].path.records;
-    const auto fault = planted(k, kDepth * 1.25 * towards_wall(k) / std::hypot(records[k].tip.x(), records[k].tip.y()) * 1.3, 0);
+    const auto fault =
+        planted(k, kDepth * 1.25 * towards_wall(k) / std::hypot(records[k].tip.x(), records[k].tip.y()) * 1.3, 0);
     const auto truth = brute_->in_walls(pose_at(fault[0], 1));
     std::vector<path::ToolMotion> motions;
     for (int tooth = 0; tooth < z; ++tooth) {
       const Eigen::AngleAxisd by(tooth * gear().pitch(), Vec3::UnitZ());
       for (std::size_t n = k - 3; n < k + 3; ++n) {  // the blocks about the fault
         path::ToolMotion m;
-        m.tip_from = records[n].tip, m.tip_to = records[n + 1].tip, m.axis_from = records[n].axis, m.axis_to = records[n + 1].axis;
+        m.tip_from = records[n].tip, m.tip_to = records[n + 1].tip, m.axis_from = records[n].axis,
+        m.axis_to = records[n + 1].axis;
         if (tooth == space && n + 1 == k) m = fault[0];
         if (tooth == space && n == k) m = fault[1];
         m.operation = 1, m.tooth = tooth, m.line = 1000 * tooth + int(n) + 1;
-        m.tip_from = by * m.tip_from, m.tip_to = by * m.tip_to, m.axis_from = by * m.axis_from, m.axis_to = by * m.axis_to;
+        m.tip_from = by * m.tip_from, m.tip_to = by * m.tip_to, m.axis_from = by * m.axis_from,
+        m.axis_to = by * m.axis_to;
         motions.push_back(m);
       }
     }
@@ -248,13 +259,15 @@ TEST_F(FingerPlanted, InOneSpaceOnly) {
 }
 
 TEST_F(FingerPlanted, CleanProgramsShowNone) {
-  for (const Designed& d : {Designed{w3(), pinion_mill()}, Designed{w4(), wheel_mill()}, design(20, 30, 2, 30, 0.25, -1)}) {
+  for (const Designed& d :
+       {Designed{w3(), pinion_mill()}, Designed{w4(), wheel_mill()}, design(20, 30, 2, 30, 0.25, -1)}) {
     const Milled job = mill_all(d);
     const finger::FingerGougeCheck check(job.gear, job.tools, job.ops, limits(), kPlantedQuick);
     const auto v = check.verify(job.motions);
     EXPECT_LE(v.gouge.bound_mm, limits().gouge_mm);
     EXPECT_GE(v.gouge.bound_mm, v.gouge.measured_mm);
-    EXPECT_TRUE(v.gouge.worst.empty()) << to_string(v.gouge.worst.front().body) << " " << v.gouge.worst.front().depth_mm;
+    EXPECT_TRUE(v.gouge.worst.empty()) << to_string(v.gouge.worst.front().body) << " "
+                                       << v.gouge.worst.front().depth_mm;
     EXPECT_TRUE(v.gouge.rapids_clear);
   }
 }
@@ -286,19 +299,27 @@ TEST_F(FingerPlanted, ShankAndHolderInBlankHubAndShaft) {
   for (int n = 0; n < 40; ++n) {
     auto tools = clean_->tools;
     tool::ToolAssembly& tool = tools[0];
-    tool.flute_length_mm = uniform(9.5, 14), tool.stick_out_mm = tool.flute_length_mm + uniform(1, 10), tool.shank_diameter_mm = uniform(6, 10);
+    tool.flute_length_mm = uniform(9.5, 14), tool.stick_out_mm = tool.flute_length_mm + uniform(1, 10),
+    tool.shank_diameter_mm = uniform(6, 10);
     tool.holder = {{uniform(14, 30), uniform(30, 40), uniform(10, 40)}};
     const double s = tool.stick_out_mm;
-    const std::vector<Vec2> shank = {{tool.flute_length_mm, tool.shank_diameter_mm / 2}, {s, tool.shank_diameter_mm / 2}};
-    const std::vector<Vec2> holder = {{s, tool.holder[0].lower_diameter_mm / 2}, {s + tool.holder[0].height_mm, tool.holder[0].upper_diameter_mm / 2}};
-    const std::vector<Standing> pairs = {{"shank", "blank", shank, blank}, {"holder", "blank", holder, blank},
-                                         {"holder", "hub", holder, {Vec2(40, back), Vec2(40, back + 30)}}, {"shank", "hub", shank, {Vec2(40, back), Vec2(40, back + 30)}},
+    const std::vector<Vec2> shank = {{tool.flute_length_mm, tool.shank_diameter_mm / 2},
+                                     {s, tool.shank_diameter_mm / 2}};
+    const std::vector<Vec2> holder = {{s, tool.holder[0].lower_diameter_mm / 2},
+                                      {s + tool.holder[0].height_mm, tool.holder[0].upper_diameter_mm / 2}};
+    const std::vector<Standing> pairs = {{"shank", "blank", shank, blank},
+                                         {"holder", "blank", holder, blank},
+                                         {"holder", "hub", holder, {Vec2(40, back), Vec2(40, back + 30)}},
+                                         {"shank", "hub", shank, {Vec2(40, back), Vec2(40, back + 30)}},
                                          {"holder", "shaft", holder, {Vec2(12, front - 120), Vec2(12, front)}}};
     const Standing& pair = pairs[std::size_t(n) % pairs.size()];
     // A tool that leans any way beside the gear, drawn towards it along a line until the overlap is what is asked.
-    const double e = uniform(-0.4, 0.4), R = pair.patch == "shaft" ? g.R_i() - uniform(5, 30) : pair.patch == "hub" ? g.R_e() + uniform(2, 12) : uniform(g.R_i(), g.R_e());
+    const double e = uniform(-0.4, 0.4), R = pair.patch == "shaft" ? g.R_i() - uniform(5, 30)
+                                             : pair.patch == "hub" ? g.R_e() + uniform(2, 12)
+                                                                   : uniform(g.R_i(), g.R_e());
     Vec3 axis = g.axis(e);
-    axis = Eigen::AngleAxisd(uniform(-0.5, 0.5), Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)).normalized()) * axis;
+    axis =
+        Eigen::AngleAxisd(uniform(-0.5, 0.5), Vec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)).normalized()) * axis;
     BrutePose pose{g.tip(R, e, uniform(20, 40)), axis};
     // Newton along the direction of the overlap: it moves the depth one to one.
     Vec3 start = pair.patch == "blank" ? g.axis(e) : Vec3(std::cos(e), std::sin(e), 0);
@@ -312,10 +333,13 @@ TEST_F(FingerPlanted, ShankAndHolderInBlankHubAndShaft) {
     m.tip_from = pose.tip, m.axis_from = m.axis_to = pose.axis;
     m.tip_to = pose.tip + 0.5 * truth.direction;  // away from the part
     m.operation = 1, m.line = 1;
-    const finger::FingerGougeCheck check(g, tools, clean_->ops, limits(), {.columns = 2, .rows = 2, .ridge_columns = 2, .ridge_rows = 3});
+    const finger::FingerGougeCheck check(g, tools, clean_->ops, limits(),
+                                         {.columns = 2, .rows = 2, .ridge_columns = 2, .ridge_rows = 3});
     const auto v = check.verify(std::span(&m, 1));
     SCOPED_TRACE(fmt::format("{} in {}, case {}, true {:.6f}", pair.body, pair.patch, n, truth.depth));
-    const auto named = std::find_if(v.gouge.worst.begin(), v.gouge.worst.end(), [&](const proof::WorstPlace& w) { return to_string(w.body) == pair.body && w.patch == pair.patch; });
+    const auto named = std::find_if(v.gouge.worst.begin(), v.gouge.worst.end(), [&](const proof::WorstPlace& w) {
+      return to_string(w.body) == pair.body && w.patch == pair.patch;
+    });
     if (named == v.gouge.worst.end()) {
       ADD_FAILURE() << "not reported";
       continue;
@@ -323,12 +347,15 @@ TEST_F(FingerPlanted, ShankAndHolderInBlankHubAndShaft) {
     EXPECT_GE(named->depth_mm, truth.depth - 5e-5) << "sampled circles and directions are that coarse";
     EXPECT_LE(named->depth_mm, truth.depth + kWithin);
     EXPECT_GE(-v.gouge.clearance_mm, truth.depth - 5e-5);
-    // A generatrix of the part may touch as a line that the tool meets in one point: the place is on that line and in the tool.
+    // A generatrix of the part may touch as a line that the tool meets in one point: the place is on that line and in
+    // the tool.
     EXPECT_GE(truth.direction.dot(named->point - truth.on_part), -kWithin);
-    EXPECT_LE(outside(pair.tool, pose, named->point), kWithin) << named->point.transpose() << " for " << truth.on_part.transpose();
+    EXPECT_LE(outside(pair.tool, pose, named->point), kWithin)
+        << named->point.transpose() << " for " << truth.on_part.transpose();
     ++found[pair.body + " " + pair.patch];
   }
-  for (const char* what : {"shank blank", "holder blank", "holder hub", "shank hub", "holder shaft"}) EXPECT_GE(found[what], 3) << what;
+  for (const char* what : {"shank blank", "holder blank", "holder hub", "shank hub", "holder shaft"})
+    EXPECT_GE(found[what], 3) << what;
 }
 
 }  // namespace

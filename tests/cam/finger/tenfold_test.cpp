@@ -1,5 +1,6 @@
-// Cutter, shank and holder of the finger-milled samples at ten times as many moments as the check looks at, all three at the same ones: no body is
-// deeper, or nearer, than what is proven of it; faults of 2 um by each of them are seen by the samples and by the check.
+// Cutter, shank and holder of the finger-milled samples at ten times as many moments as the check looks at, all three
+// at the same ones: no body is deeper, or nearer, than what is proven of it; faults of 2 um by each of them are seen by
+// the samples and by the check.
 #include <fmt/format.h>
 
 #include <map>
@@ -14,15 +15,20 @@ namespace {
 using namespace bevel_test;
 
 constexpr double kTenfoldDepth = 0.002, kTenfoldWithin = 2e-4;
-constexpr std::size_t kEvery = 16;  // of the motions of a program: the quick form has fewer motions, each as densely sampled
+constexpr std::size_t kEvery =
+    16;  // of the motions of a program: the quick form has fewer motions, each as densely sampled
 constexpr DenseBody kBodies[] = {DenseBody::cutter, DenseBody::shank, DenseBody::holder};
 const finger::FingerCheckOptions kTenfoldQuick{.columns = 2, .rows = 2, .ridge_columns = 2, .ridge_rows = 3};
 
 /// A program with the tool that is checked and sampled.
 struct Sample {
   Sample(Milled milled, double stick_out_mm)
-      : job(with_stick_out(std::move(milled), stick_out_mm)), dense(job.gear, job.tools[0]), check(job.gear, job.tools, job.ops, {}, kTenfoldQuick) {}
-  [[nodiscard]] proof::GougeResult verdict(const path::ToolMotion& m) const { return check.verify(std::span(&m, 1)).gouge; }
+      : job(with_stick_out(std::move(milled), stick_out_mm)),
+        dense(job.gear, job.tools[0]),
+        check(job.gear, job.tools, job.ops, {}, kTenfoldQuick) {}
+  [[nodiscard]] proof::GougeResult verdict(const path::ToolMotion& m) const {
+    return check.verify(std::span(&m, 1)).gouge;
+  }
   static Milled with_stick_out(Milled milled, double stick_out_mm) {
     milled.tools[0].stick_out_mm = stick_out_mm;
     return milled;
@@ -36,7 +42,9 @@ const Sample& sample(const std::string& name) {
   static std::map<std::string, std::unique_ptr<Sample>> made_once;
   auto& s = made_once[name];
   if (s) return *s;
-  Milled job = name == "bevel_pinion" ? mill_all(w3(), 0.9) : name == "bevel_wheel" ? mill_all(w4(), 0.6) : mill_trunnion();
+  Milled job = name == "bevel_pinion"  ? mill_all(w3(), 0.9)
+               : name == "bevel_wheel" ? mill_all(w4(), 0.6)
+                                       : mill_trunnion();
   // Drawn in until the holder comes as near to the teeth as the shank.
   const double flute = job.gear.parameters().dedendum_mm + job.tools[0].profile_height_mm;
   s = std::make_unique<Sample>(std::move(job), flute + 0.5);
@@ -69,12 +77,16 @@ class FingerTenfold : public ::testing::TestWithParam<const char*> {
       if (feeds && R_c > s_.job.gear.R_i() && R_c < s_.job.gear.R_e()) return block(k, k + length);
     }
   }
-  /// No sample of any body may contradict what is said of the motion. Counts the bodies that came nearer than what is looked at.
+  /// No sample of any body may contradict what is said of the motion. Counts the bodies that came nearer than what is
+  /// looked at.
   void expect_covered(const path::ToolMotion& m, std::map<std::string, int>& near) const {
     const proof::GougeResult v = s_.verdict(m);
     for (const DenseBody body : kBodies) {
       const DenseGap g = s_.dense.least(m, body);
-      const auto where = [&] { return fmt::format("{} against {} at {:.4f} of the motion to record {}, {} moments", name_of(body), g.part, g.t, m.line, s_.dense.moments(m)); };
+      const auto where = [&] {
+        return fmt::format("{} against {} at {:.4f} of the motion to record {}, {} moments", name_of(body), g.part, g.t,
+                           m.line, s_.dense.moments(m));
+      };
       if (g.gap < kFar) ++near[name_of(body)];
       if (m.rapid) EXPECT_TRUE(g.gap >= 0 || !v.rapids_clear) << where();
       else if (body == DenseBody::cutter) EXPECT_GE(g.gap, -v.bound_mm - 1e-7) << where();
@@ -149,12 +161,15 @@ TEST_P(FingerTenfold, AFaultOfShankOrHolderIsFound) {
       ASSERT_NEAR(g.gap, -kTenfoldDepth, 1e-4) << name_of(body) << " " << n;
       const proof::GougeResult v = tool.verdict(m);
       EXPECT_LE(v.clearance_mm, g.gap + 1e-7);
-      const auto named = std::find_if(v.worst.begin(), v.worst.end(), [&](const proof::WorstPlace& w) { return std::string(to_string(w.body)) == name_of(body) && w.patch == g.part; });
+      const auto named = std::find_if(v.worst.begin(), v.worst.end(), [&](const proof::WorstPlace& w) {
+        return std::string(to_string(w.body)) == name_of(body) && w.patch == g.part;
+      });
       if (named == v.worst.end()) {
         ADD_FAILURE() << name_of(body) << " in " << g.part << " is not named, case " << n;
         continue;
       }
-      // The check tells how far both must be moved apart, which is more than the depth of a place where edges meet, and may be most at another moment.
+      // The check tells how far both must be moved apart, which is more than the depth of a place where edges meet, and
+      // may be most at another moment.
       double apart = tool.dense.overlap(g, m, body).depth;
       EXPECT_GE(named->depth_mm, apart - 5e-5) << "sampled circles and directions are that coarse";
       for (int k = 0; k <= 16 && named->depth_mm > apart + kTenfoldWithin; ++k) {

@@ -1,5 +1,5 @@
-// The kernels of line contact: against a sweep of the solid shaper, against differences in 50 digits, and by what a face gear's parallel
-// surfaces, mirror images and scaled copies must give.
+// The kernels of line contact: against a sweep of the solid shaper, against differences in 50 digits, and by what a
+// face gear's parallel surfaces, mirror images and scaled copies must give.
 #include "cam/line/contact.h"
 
 #include <gtest/gtest.h>
@@ -69,17 +69,20 @@ TEST_P(Worked, AnglesMakeTheAxis) {
   pose.psi = std::atan2(w.axis.dot(frame.o), w.axis.dot(frame.p));
   pose.eps = std::asin(w.axis.dot(frame.n)) - radians(5);
   const Vec3 c_0 = w.tip + w.r_0 * w.axis;
-  pose.t_m = ((on.p - c_0) - (on.p - c_0).dot(frame.n) * frame.n).dot(w.axis) / (w.axis - w.axis.dot(frame.n) * frame.n).squaredNorm();
+  pose.t_m = ((on.p - c_0) - (on.p - c_0).dot(frame.n) * frame.n).dot(w.axis) /
+             (w.axis - w.axis.dot(frame.n) * frame.n).squaredNorm();
   pose.delta = (c_0 + pose.t_m * w.axis - on.p).dot(frame.n) - law.rho(pose.t_m);
   const auto back = line::axis_of<double>(on.p, frame, law, pose);
   EXPECT_LE((back.a - w.axis).norm(), 1e-11);
-  EXPECT_LE((back.c_0 - c_0).norm(), 2e-9);  // the axis point over the anchor lies on its normal but for the printed digits
+  EXPECT_LE((back.c_0 - c_0).norm(),
+            2e-9);  // the axis point over the anchor lies on its normal but for the printed digits
   EXPECT_LE(std::abs(pose.delta), 2e-3);
 }
 
-// L1: the gap against the least distance of the ball's centre to a surface made by sweeping the shaper. Near the fillet line the sweep's
-// measure is no distance (it is taken in the shaper's transverse plane, where the rounding of its tip has another slope than the involute
-// beside it), so that feet within a tenth of a module of it are judged by the next test alone.
+// L1: the gap against the least distance of the ball's centre to a surface made by sweeping the shaper. Near the fillet
+// line the sweep's measure is no distance (it is taken in the shaper's transverse plane, where the rounding of its tip
+// has another slope than the involute beside it), so that feet within a tenth of a module of it are judged by the next
+// test alone.
 TEST_P(Worked, GapAgainstTheSweptShaper) {
   const auto& w = GetParam();
   const auto f = task_of(w);
@@ -101,7 +104,8 @@ TEST_P(Worked, GapAgainstTheSweptShaper) {
   EXPECT_GE(compared, 36);
 }
 
-// The same against the nearest place of the whole solid, found by a pattern search: fillet, root, tip and ends included, up to the fillet line.
+// The same against the nearest place of the whole solid, found by a pattern search: fillet, root, tip and ends
+// included, up to the fillet line.
 TEST_P(Worked, GapAgainstTheWholeSolid) {
   const auto& w = GetParam();
   const auto gear = made(w.gear);
@@ -126,7 +130,8 @@ TEST_P(Worked, EstimateOfWhatIsLeft) {
   EXPECT_NEAR(1e3 * left_estimate(*third, 0.5 * w.length), w.estimate, 0.01 * w.estimate);
 }
 
-INSTANTIATE_TEST_SUITE_P(Section11, Worked, testing::ValuesIn(worked_poses()), [](const auto& i) { return i.param.name; });
+INSTANTIATE_TEST_SUITE_P(Section11, Worked, testing::ValuesIn(worked_poses()),
+                         [](const auto& i) { return i.param.name; });
 
 /// A random place of a flank between the limits of a task, inside of its edges.
 struct RandomPlace {
@@ -142,7 +147,9 @@ RandomPlace random_place(const line::FlankTask& f, Random& random) {
 }
 
 template <typename S>
-Vec3T<S> cast(const Vec3& v) { return {S(v[0]), S(v[1]), S(v[2])}; }
+Vec3T<S> cast(const Vec3& v) {
+  return {S(v[0]), S(v[1]), S(v[2])};
+}
 
 TEST(LineContact, FrameIsOrthonormalAndPointsUpAndOutwards) {
   Random random(7);
@@ -152,7 +159,8 @@ TEST(LineContact, FrameIsOrthonormalAndPointsUpAndOutwards) {
       const auto q = random_place(f, random);
       const auto on = f.surface.flank(f.side, q.at.theta, q.at.B);
       const auto frame = line::tangent_frame<double>(f.side, on.n);
-      EXPECT_LE(std::abs(frame.p.dot(frame.o)) + std::abs(frame.p.dot(frame.n)) + std::abs(frame.o.dot(frame.n)), 1e-15);
+      EXPECT_LE(std::abs(frame.p.dot(frame.o)) + std::abs(frame.p.dot(frame.n)) + std::abs(frame.o.dot(frame.n)),
+                1e-15);
       EXPECT_NEAR(frame.p.norm(), 1, 1e-15);
       EXPECT_NEAR(frame.o.norm(), 1, 1e-15);
       EXPECT_GT(frame.p.z(), 0);
@@ -161,7 +169,8 @@ TEST(LineContact, FrameIsOrthonormalAndPointsUpAndOutwards) {
   }
 }
 
-// L2: along the lean of (3.3) at distance d the second difference of the distance is zero. Differences in 50 digits, step 1e-8.
+// L2: along the lean of (3.3) at distance d the second difference of the distance is zero. Differences in 50 digits,
+// step 1e-8.
 TEST(LineContact, LeanIsTheZeroOfASecondDifference) {
   Random random(8);
   for (const auto& c : line_cases()) {
@@ -180,7 +189,9 @@ TEST(LineContact, LeanIsTheZeroOfASecondDifference) {
       const auto second = [&](const F50& lean_angle) {
         const F50 h("1e-8");
         const Vec3T<F50> u = line::axis_direction<F50>(frame, lean_angle, F50(0));
-        const auto d = [&](const F50& t) { return line::flank_foot<F50>(surface, c.side, Vec3T<F50>(x + u * t), start)->d; };
+        const auto d = [&](const F50& t) {
+          return line::flank_foot<F50>(surface, c.side, Vec3T<F50>(x + u * t), start)->d;
+        };
         return F50((d(h) + d(-h) - F50(2) * d(F50(0))) / (h * h));
       };
       // A secant from nearby, so that the zero is found by the differences alone.
@@ -197,7 +208,8 @@ TEST(LineContact, LeanIsTheZeroOfASecondDifference) {
   }
 }
 
-// L3: at the surface itself the lean of distance rho has the normal curvature |K| rho (Cayley-Hamilton), not zero. 50 digits and double.
+// L3: at the surface itself the lean of distance rho has the normal curvature |K| rho (Cayley-Hamilton), not zero. 50
+// digits and double.
 template <typename S>
 S relative_lack(const face_gear::FaceGearParameters& gear, int zone, int side, const line::Place<S>& at, const S& rho) {
   using std::abs, std::sqrt;
@@ -218,7 +230,8 @@ TEST(LineContact, CurvatureAlongTheLineIsGaussTimesRho) {
       const double rho = c.r_0 * random(1, 2);
       EXPECT_LT(relative_lack<double>(c.gear, c.zone, c.side, q.at, rho), 1e-9) << c.name;
       if (k >= 5) continue;
-      EXPECT_LT(double(relative_lack<F50>(c.gear, c.zone, c.side, {F50(q.at.theta), F50(q.at.B)}, F50(rho))), 1e-44) << c.name;
+      EXPECT_LT(double(relative_lack<F50>(c.gear, c.zone, c.side, {F50(q.at.theta), F50(q.at.B)}, F50(rho))), 1e-44)
+          << c.name;
     }
   }
 }
@@ -259,13 +272,16 @@ TEST(LineContact, ThirdDerivativeAgainstDifferences) {
     const double third = *line::distance_third(f.surface, w.side, axis, t, start_of(f, w));
     EXPECT_NEAR(third, (bend(t + h) - bend(t - h)) / (2 * h), 1e-5 * std::abs(third)) << w.name;
     // And the second one against differences of the distance itself.
-    const auto d = [&](double at) { return line::flank_foot<double>(f.surface, w.side, axis.at(at), start_of(f, w))->d; };
+    const auto d = [&](double at) {
+      return line::flank_foot<double>(f.surface, w.side, axis.at(at), start_of(f, w))->d;
+    };
     const double g = 1e-2 * w.length;
     EXPECT_NEAR(bend(t), (d(t + g) + d(t - g) - 2 * d(t)) / (g * g), 1e-6) << w.name;
   }
 }
 
-// L9: with the helix going to 0 the lean goes to that of the spur gear of the same numbers; the steeper root never changes over.
+// L9: with the helix going to 0 the lean goes to that of the spur gear of the same numbers; the steeper root never
+// changes over.
 TEST(LineContact, LeanIsContinuousInTheHelix) {
   for (const double offset : {0.0, 6.0}) {
     for (const int side : {1, -1}) {
@@ -278,8 +294,10 @@ TEST(LineContact, LeanIsContinuousInTheHelix) {
       };
       const double spur = lean_at(0);
       for (const double beta : {1e-12, 1e-9, 1e-6, 1e-4})
-        for (const int hand : {1, -1}) EXPECT_NEAR(lean_at(hand * beta), spur, 4 * beta + 1e-12) << side << " " << offset;
-      for (int k = 0; k < 200; ++k) EXPECT_NEAR(lean_at(0.0025 * k), lean_at(0.0025 * (k + 1)), 0.01) << side << " " << offset;
+        for (const int hand : {1, -1})
+          EXPECT_NEAR(lean_at(hand * beta), spur, 4 * beta + 1e-12) << side << " " << offset;
+      for (int k = 0; k < 200; ++k)
+        EXPECT_NEAR(lean_at(0.0025 * k), lean_at(0.0025 * (k + 1)), 0.01) << side << " " << offset;
     }
   }
 }

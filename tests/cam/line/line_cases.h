@@ -1,5 +1,5 @@
-// The gears, tools and worked poses that the tests of line milling speak of. The expected numbers were made by an independent program:
-// closed forms of its own, checked against a brute-force sweep of the shaper.
+// The gears, tools and worked poses that the tests of line milling speak of. The expected numbers were made by an
+// independent program: closed forms of its own, checked against a brute-force sweep of the shaper.
 #pragma once
 
 #include <array>
@@ -23,7 +23,8 @@ inline tool::RadiusLaw<double> tapered(double r_0, double half_angle_deg = 5) {
 }
 
 /// A tapered mill as it is ordered, in a slim holder.
-inline tool::CutterData tapered_mill(double diameter, double half_angle_deg, double flute, double shank, double stick_out) {
+inline tool::CutterData tapered_mill(double diameter, double half_angle_deg, double flute, double shank,
+                                     double stick_out) {
   tool::CutterData d;
   d.shape = tool::CutterShape::tapered_ball;
   d.diameter_mm = diameter;
@@ -36,8 +37,8 @@ inline tool::CutterData tapered_mill(double diameter, double half_angle_deg, dou
   return d;
 }
 
-/// One flank of one gear and the ball radius of its mill, 5 deg; then what the independent study found, um: misfit of the best poses,
-/// left and gouge of the swept pass.
+/// One flank of one gear and the ball radius of its mill, 5 deg; then what the independent study found, um: misfit of
+/// the best poses, left and gouge of the swept pass.
 struct LineCase {
   std::string name;
   face_gear::FaceGearParameters gear;
@@ -51,20 +52,24 @@ inline std::ostream& operator<<(std::ostream& out, const LineCase& c) { return o
 
 inline const std::vector<LineCase>& line_cases() {
   static const std::vector<LineCase> cases = {
-      {"inner_plus", quarter_dhfg(), 0, 1, 0.25, 0.58, 0.65, 0.04},   {"inner_minus", quarter_dhfg(), 0, -1, 0.25, 1.2, 1.24, 0.19},
-      {"outer_plus", quarter_dhfg(), 1, 1, 0.25, 0.22, 0.31, 0.21},   {"outer_minus", quarter_dhfg(), 1, -1, 0.25, 0.21, 0.31, 0.03},
+      {"inner_plus", quarter_dhfg(), 0, 1, 0.25, 0.58, 0.65, 0.04},
+      {"inner_minus", quarter_dhfg(), 0, -1, 0.25, 1.2, 1.24, 0.19},
+      {"outer_plus", quarter_dhfg(), 1, 1, 0.25, 0.22, 0.31, 0.21},
+      {"outer_minus", quarter_dhfg(), 1, -1, 0.25, 0.21, 0.31, 0.03},
       {"paper_inner_plus", double_helical_parameters(), 0, 1, 1.0, 2.3, 2.6, 0.2},
       {"paper_inner_minus", double_helical_parameters(), 0, -1, 1.0, 4.3, 5.0, 0.8},
       {"paper_outer_plus", double_helical_parameters(), 1, 1, 1.0, 0.9, 1.1, 1.0},
       {"paper_outer_minus", double_helical_parameters(), 1, -1, 1.0, 0.84, 1.2, 0.1},
-      {"offset_plus", offset_gear(), 0, 1, 0.8, 3.2, 5.7, 0.1},       {"offset_minus", offset_gear(), 0, -1, 0.8, 2.8, 4.3, 1.4},
-      {"spur_plus", small_spur(), 0, 1, 0.4, 3.1, 3.0, 0.05},         {"spur_minus", small_spur(), 0, -1, 0.4, 3.1, 3.0, 0.05},
+      {"offset_plus", offset_gear(), 0, 1, 0.8, 3.2, 5.7, 0.1},
+      {"offset_minus", offset_gear(), 0, -1, 0.8, 2.8, 4.3, 1.4},
+      {"spur_plus", small_spur(), 0, 1, 0.4, 3.1, 3.0, 0.05},
+      {"spur_minus", small_spur(), 0, -1, 0.4, 3.1, 3.0, 0.05},
   };
   return cases;
 }
 
-/// A worked pose: anchor radius and height, flank parameters there, leans in degrees at the surface and 0.5 mm above it; the pose, and its
-/// gap at five even heights of the line, um.
+/// A worked pose: anchor radius and height, flank parameters there, leans in degrees at the surface and 0.5 mm above
+/// it; the pose, and its gap at five even heights of the line, um.
 struct WorkedPose {
   std::string name;
   face_gear::FaceGearParameters gear;
@@ -80,24 +85,126 @@ inline std::ostream& operator<<(std::ostream& out, const WorkedPose& c) { return
 
 inline const std::vector<WorkedPose>& worked_poses() {
   static const std::vector<WorkedPose> poses = {
-      {"outer_plus", quarter_dhfg(), 1, 1, 121.5, -18.75, 0.402102835, 0.541566585, 3561.029154, -29.910061, -29.701974, 0.25,
-       {121.771010347, 4.472918238, -20.192451906}, {-0.250739641470, -0.530444911912, 0.809788754937}, -29.8507, 0.0078, 3.375951,
-       {0.1566, 0.0003, 0.0862, 0.1559, -0.0059}, 0.157, 0.156},
-      {"outer_minus", quarter_dhfg(), 1, -1, 121.5, -18.75, 0.387362548, -0.493503457, 3768.036650, 31.795476, 32.000970, 0.25,
-       {121.110709768, -0.123465244, -20.200413003}, {0.290759195796, 0.517290556940, 0.804903453690}, 31.9450, 0.0084, 3.383296,
-       {0.1618, 0.0001, 0.0763, 0.1634, -0.0085}, 0.163, 0.164},
-      {"inner_plus", quarter_dhfg(), 0, 1, 114.625, -18.75, 0.366122040, 0.388193126, 2172.494285, 35.695830, 35.973529, 0.25,
-       {113.962258049, 4.161948353, -20.128801889}, {0.420945554446, -0.448095211580, 0.788679606400}, 36.0462, 0.0224, 3.309971,
-       {0.4333, 0.0012, 0.1891, 0.4301, -0.0297}, 0.433, 0.427},
-      {"inner_minus", quarter_dhfg(), 0, -1, 114.625, -18.75, 0.368847833, -0.409487789, 1614.253205, -36.855988, -36.536866, 0.25,
-       {115.233331184, -0.198764998, -20.071005647}, {-0.423056181432, 0.466165665206, 0.776989729620}, -36.8943, 0.0336, 3.302580,
-       {0.6667, 0.0068, 0.4011, 0.6481, -0.0399}, 0.667, 0.622},
-      {"offset_plus", offset_gear(), 0, 1, 138.75, -37.5, 0.375719208, 0.446779292, 4157.892319, 8.617058, 8.828056, 0.8,
-       {136.989226344, 19.894793756, -41.051382754}, {0.154753224330, -0.347027970448, 0.924998933667}, 9.0697, 0.0265, 6.942498,
-       {1.0618, 0.0002, 0.5125, 1.0653, -0.0588}, 1.065, 1.069},
-      {"spur_plus", small_spur(), 0, 1, 62.5, -20, 0.375417200, 0.445372386, 814.880986, 1.832810, 2.309173, 0.4,
-       {62.373258358, 3.072515596, -22.246341561}, {0.040169744789, -0.349312042050, 0.936145014879}, 2.3535, 0.0558, 4.506171,
-       {1.4544, -0.0004, 0.7454, 1.4605, -0.0904}, 1.460, 1.453},
+      {"outer_plus",
+       quarter_dhfg(),
+       1,
+       1,
+       121.5,
+       -18.75,
+       0.402102835,
+       0.541566585,
+       3561.029154,
+       -29.910061,
+       -29.701974,
+       0.25,
+       {121.771010347, 4.472918238, -20.192451906},
+       {-0.250739641470, -0.530444911912, 0.809788754937},
+       -29.8507,
+       0.0078,
+       3.375951,
+       {0.1566, 0.0003, 0.0862, 0.1559, -0.0059},
+       0.157,
+       0.156},
+      {"outer_minus",
+       quarter_dhfg(),
+       1,
+       -1,
+       121.5,
+       -18.75,
+       0.387362548,
+       -0.493503457,
+       3768.036650,
+       31.795476,
+       32.000970,
+       0.25,
+       {121.110709768, -0.123465244, -20.200413003},
+       {0.290759195796, 0.517290556940, 0.804903453690},
+       31.9450,
+       0.0084,
+       3.383296,
+       {0.1618, 0.0001, 0.0763, 0.1634, -0.0085},
+       0.163,
+       0.164},
+      {"inner_plus",
+       quarter_dhfg(),
+       0,
+       1,
+       114.625,
+       -18.75,
+       0.366122040,
+       0.388193126,
+       2172.494285,
+       35.695830,
+       35.973529,
+       0.25,
+       {113.962258049, 4.161948353, -20.128801889},
+       {0.420945554446, -0.448095211580, 0.788679606400},
+       36.0462,
+       0.0224,
+       3.309971,
+       {0.4333, 0.0012, 0.1891, 0.4301, -0.0297},
+       0.433,
+       0.427},
+      {"inner_minus",
+       quarter_dhfg(),
+       0,
+       -1,
+       114.625,
+       -18.75,
+       0.368847833,
+       -0.409487789,
+       1614.253205,
+       -36.855988,
+       -36.536866,
+       0.25,
+       {115.233331184, -0.198764998, -20.071005647},
+       {-0.423056181432, 0.466165665206, 0.776989729620},
+       -36.8943,
+       0.0336,
+       3.302580,
+       {0.6667, 0.0068, 0.4011, 0.6481, -0.0399},
+       0.667,
+       0.622},
+      {"offset_plus",
+       offset_gear(),
+       0,
+       1,
+       138.75,
+       -37.5,
+       0.375719208,
+       0.446779292,
+       4157.892319,
+       8.617058,
+       8.828056,
+       0.8,
+       {136.989226344, 19.894793756, -41.051382754},
+       {0.154753224330, -0.347027970448, 0.924998933667},
+       9.0697,
+       0.0265,
+       6.942498,
+       {1.0618, 0.0002, 0.5125, 1.0653, -0.0588},
+       1.065,
+       1.069},
+      {"spur_plus",
+       small_spur(),
+       0,
+       1,
+       62.5,
+       -20,
+       0.375417200,
+       0.445372386,
+       814.880986,
+       1.832810,
+       2.309173,
+       0.4,
+       {62.373258358, 3.072515596, -22.246341561},
+       {0.040169744789, -0.349312042050, 0.936145014879},
+       2.3535,
+       0.0558,
+       4.506171,
+       {1.4544, -0.0004, 0.7454, 1.4605, -0.0904},
+       1.460,
+       1.453},
   };
   return poses;
 }

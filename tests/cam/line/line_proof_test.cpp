@@ -1,5 +1,6 @@
-// The proof of line-milled programs: what the mill is found to cut and what it is proven not to exceed, on clean plans, on random poses near
-// contact and with planted errors; against dense sampling of the mill and the gear that shares no code with it.
+// The proof of line-milled programs: what the mill is found to cut and what it is proven not to exceed, on clean plans,
+// on random poses near contact and with planted errors; against dense sampling of the mill and the gear that shares no
+// code with it.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -7,9 +8,9 @@
 #include <cstdio>
 #include <memory>
 
-#include "cam/cut/cut_surface.h"
 #include "cam/analytic/gouge_check.h"
 #include "cam/analytic/profile_sweep.h"
+#include "cam/cut/cut_surface.h"
 #include "cam/cut/swept_tool.h"
 #include "cam/line/plan.h"
 #include "cam/line/room.h"
@@ -77,12 +78,17 @@ proof::GougeResult checked(const Planned& p, const std::vector<path::ToolMotion>
 }
 
 /// Flank `side` of a zone by sweeping the shaper, turned to where the path of space 0 cuts it.
-std::vector<Vec3> flank_points(const Planned& p, const face_gear::FaceGearParameters& gear, int zone, int side, int columns, int rows) {
+std::vector<Vec3> flank_points(const Planned& p, const face_gear::FaceGearParameters& gear, int zone, int side,
+                               int columns, int rows) {
   const auto f = *line::flank_task(p.gear, zone, side);
   const BruteForceFaceGear brute(gear, gear.zones[std::size_t(zone)].helix_angle_rad);
   auto points = swept_flank(
-      brute, f.inner_radius, f.outer_radius, [&](double r) { return *face_gear::fillet_line_height(f.surface, side, r); }, f.z_tip,
-      [&](double r, double z) { return face_gear::flank_azimuth(f.surface, side, *face_gear::invert_flank(f.surface, side, r, z)); }, columns, rows);
+      brute, f.inner_radius, f.outer_radius,
+      [&](double r) { return *face_gear::fillet_line_height(f.surface, side, r); }, f.z_tip,
+      [&](double r, double z) {
+        return face_gear::flank_azimuth(f.surface, side, *face_gear::invert_flank(f.surface, side, r, z));
+      },
+      columns, rows);
   if (side < 0)
     for (auto& q : points) q = face_gear::FaceGearSurface<double>::turned(q, p.gear.pitch());
   return points;
@@ -128,18 +134,23 @@ TEST_P(LineProof, CleanPlan) {
   const auto start = std::chrono::steady_clock::now();
   const auto r = checked(p, motions, p.tool);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  std::printf("%-10s %zu motions: found %.3f um, bound %.3f um, %.0f quads and %.2f ms a motion, clearance %.4f mm, deepest %s on %s\n", GetParam().name.c_str(),
-              motions.size(), 1e3 * r.measured_mm, 1e3 * r.bound_mm, double(r.distance_queries) / double(motions.size()), 1e3 * seconds / double(motions.size()),
-              r.clearance_mm, to_string(r.deepest.body), r.deepest.patch.c_str());
+  std::printf(
+      "%-10s %zu motions: found %.3f um, bound %.3f um, %.0f quads and %.2f ms a motion, clearance %.4f mm, deepest %s "
+      "on %s\n",
+      GetParam().name.c_str(), motions.size(), 1e3 * r.measured_mm, 1e3 * r.bound_mm,
+      double(r.distance_queries) / double(motions.size()), 1e3 * seconds / double(motions.size()), r.clearance_mm,
+      to_string(r.deepest.body), r.deepest.patch.c_str());
   const auto milliseconds = [&](auto&& sweep) {
     const auto from = std::chrono::steady_clock::now();
     for (const auto& m : motions) (void)sweep.check(m);
-    return 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count() / double(motions.size());
+    return 1e3 * std::chrono::duration<double>(std::chrono::steady_clock::now() - from).count() /
+           double(motions.size());
   };
   tool::ToolAssembly ball;
   ball.diameter_mm = GetParam().tool.diameter_mm;
   ball.flute_length_mm = GetParam().tool.flute_length_mm;
-  std::printf("%-10s one thread, the cutting part alone: %.3f ms a motion; a ball mill on the same way %.3f ms\n", GetParam().name.c_str(),
+  std::printf("%-10s one thread, the cutting part alone: %.3f ms a motion; a ball mill on the same way %.3f ms\n",
+              GetParam().name.c_str(),
               milliseconds(analytic::ProfileSweep(*p.part, tool::proof_tool(p.tool, 1), 2e-4, 0.002)),
               milliseconds(analytic::CutterSweep(*p.part, ball, 2e-4, 0.002)));
   EXPECT_LT(r.measured_mm, 1e-4);
@@ -151,12 +162,11 @@ TEST_P(LineProof, CleanPlan) {
   double shortened = 0;
   for (const auto& pass : p.plan.passes) shortened += pass.shortened_mm;
   std::printf("%-10s shortened by %.3f mm\n", GetParam().name.c_str(), shortened);
-  if (GetParam().name != "dhfg_7deg") {
-    EXPECT_EQ(shortened, 0);
-  }
+  if (GetParam().name != "dhfg_7deg") { EXPECT_EQ(shortened, 0); }
 }
 
-// What the proof finds is what dense points of the flank see of the blended motion, and its bound covers that. No bias: depths are depths.
+// What the proof finds is what dense points of the flank see of the blended motion, and its bound covers that. No bias:
+// depths are depths.
 TEST_P(LineProof, FindsWhatTheSweptFlankShows) {
   const auto p = planned(GetParam(), 0);
   const double tau = GetParam().tool.half_angle_rad, r_0 = 0.5 * GetParam().tool.diameter_mm;
@@ -165,15 +175,16 @@ TEST_P(LineProof, FindsWhatTheSweptFlankShows) {
       const auto pass = pass_of(p, zone, side);
       const auto truth = swept(flank_points(p, GetParam().parameters, zone, side, 31, 17), {r_0, tau, 0, 0}, pass.way);
       const auto r = checked(p, pass.motions, p.tool);
-      std::printf("%-10s zone %d side %+d: swept %.3f um, found %.3f um (%s), bound %.3f um\n", GetParam().name.c_str(), zone, side, 1e3 * truth.gouge,
-                  1e3 * r.measured_mm, r.deepest.patch.c_str(), 1e3 * r.bound_mm);
+      std::printf("%-10s zone %d side %+d: swept %.3f um, found %.3f um (%s), bound %.3f um\n", GetParam().name.c_str(),
+                  zone, side, 1e3 * truth.gouge, 1e3 * r.measured_mm, r.deepest.patch.c_str(), 1e3 * r.bound_mm);
       EXPECT_GE(r.bound_mm, truth.gouge);
       EXPECT_GE(r.measured_mm, truth.gouge - 1e-4);
       EXPECT_LE(r.bound_mm, std::max(r.measured_mm, 0.0) + 2.5e-4);
     }
 }
 
-// 2 um by the whole pass, one record, a tilt of 2 um at the tips, a half angle and a ball radius that are larger than stated. Every one is found.
+// 2 um by the whole pass, one record, a tilt of 2 um at the tips, a half angle and a ball radius that are larger than
+// stated. Every one is found.
 TEST_P(LineProof, PlantedErrorsAreFound) {
   const auto& job = GetParam();
   const auto p = planned(job, 0);
@@ -183,16 +194,20 @@ TEST_P(LineProof, PlantedErrorsAreFound) {
     const auto clean = pass_of(p, pass.zone, pass.side);
     const auto f = *line::flank_task(p.gear, pass.zone, pass.side);
     const double turn = pass.side > 0 ? 0 : p.gear.pitch(), length = pass.contact_top_mm - r_0;
-    const bool forwards = (face_gear::FaceGearSurface<double>::turned(pass.records.front().axis.a, turn) - clean.way.front().axis).norm() < 1e-12;
+    const bool forwards =
+        (face_gear::FaceGearSurface<double>::turned(pass.records.front().axis.a, turn) - clean.way.front().axis)
+            .norm() < 1e-12;
     const auto normal = [&](std::size_t k) {
       const Vec3& a = pass.records[forwards ? k : pass.records.size() - 1 - k].anchor;
       const auto at = face_gear::invert_flank(f.surface, f.side, a.head<2>().norm(), a.z());
-      return at ? face_gear::FaceGearSurface<double>::turned(f.surface.flank(f.side, at->theta, at->B).n, turn) : Vec3(Vec3::Zero());
+      return at ? face_gear::FaceGearSurface<double>::turned(f.surface.flank(f.side, at->theta, at->B).n, turn)
+                : Vec3(Vec3::Zero());
     };
-    const auto expect = [&](const char* what, const std::vector<BrutePose>& way, const tool::Profile& tool, double least) {
+    const auto expect = [&](const char* what, const std::vector<BrutePose>& way, const tool::Profile& tool,
+                            double least) {
       const auto r = checked(p, motions_along(way), tool);
-      std::printf("%-10s zone %d side %+d %-11s found %.3f um on %s, bound %.3f um\n", job.name.c_str(), pass.zone, pass.side, what, 1e3 * r.measured_mm,
-                  r.deepest.patch.c_str(), 1e3 * r.bound_mm);
+      std::printf("%-10s zone %d side %+d %-11s found %.3f um on %s, bound %.3f um\n", job.name.c_str(), pass.zone,
+                  pass.side, what, 1e3 * r.measured_mm, r.deepest.patch.c_str(), 1e3 * r.bound_mm);
       EXPECT_GT(r.measured_mm, least) << what;
       EXPECT_LT(r.measured_mm, 3e-3) << what;
       EXPECT_GE(r.bound_mm, r.measured_mm) << what;
@@ -229,7 +244,8 @@ TEST_P(LineProof, CutSurface) {
   path::MillingOperation op;
   op.chord_tolerance_mm = 5e-4;
   const auto start = std::chrono::steady_clock::now();
-  const auto cut = cut::measure_cut_surface(*p.part, p.motions(), {op}, std::vector<tool::ProofTool>{tool::proof_tool(p.tool, 1)});
+  const auto cut =
+      cut::measure_cut_surface(*p.part, p.motions(), {op}, std::vector<tool::ProofTool>{tool::proof_tool(p.tool, 1)});
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double tau = GetParam().tool.half_angle_rad, r_0 = 0.5 * GetParam().tool.diameter_mm;
   for (const auto& g : cut.grids) {
@@ -241,9 +257,11 @@ TEST_P(LineProof, CutSurface) {
       most = std::max(most, double(g.excess_um[0][k]));
       least = std::min(least, double(g.excess_um[0][k]));
     }
-    const auto truth = swept(flank_points(p, GetParam().parameters, g.zone, side, 25, 17), {r_0, tau, 0, 0}, pass_of(p, g.zone, side).way);
-    std::printf("%-10s zone %d %s: left %.3f um (brute force %.3f), least %.3f um (%.3f), %.2f s\n", GetParam().name.c_str(), g.zone, g.patch.c_str(), most,
-                1e3 * truth.left, least, -1e3 * truth.gouge, seconds);
+    const auto truth = swept(flank_points(p, GetParam().parameters, g.zone, side, 25, 17), {r_0, tau, 0, 0},
+                             pass_of(p, g.zone, side).way);
+    std::printf("%-10s zone %d %s: left %.3f um (brute force %.3f), least %.3f um (%.3f), %.2f s\n",
+                GetParam().name.c_str(), g.zone, g.patch.c_str(), most, 1e3 * truth.left, least, -1e3 * truth.gouge,
+                seconds);
     EXPECT_NEAR(most, 1e3 * truth.left, 0.15);
     EXPECT_NEAR(least, -1e3 * truth.gouge, 0.15);
   }
@@ -309,15 +327,16 @@ RandomJob random_job(Random& random, int k) {
 }
 
 /// A random way through a space of a random gear that nearly touches: moved aside until it does.
-path::ToolMotion grazing(Random& random, const face_gear::FaceGear& gear, const analytic::GearDistance& part, const BruteForceBodies& brute,
-                                        const BruteBody& body, double module_mm, bool turns) {
+path::ToolMotion grazing(Random& random, const face_gear::FaceGear& gear, const analytic::GearDistance& part,
+                         const BruteForceBodies& brute, const BruteBody& body, double module_mm, bool turns) {
   const int zone = int(random.index(std::size_t(part.zones())));
   const auto& ring = part.space(zone).ring().zone;
   const double r = random(ring.inner_radius_mm, ring.outer_radius_mm), azimuth = part.space_azimuth(zone, r);
   path::ToolMotion m;
   m.axis_from = (Vec3::UnitZ() + random.vector(0.35)).normalized();
   m.axis_to = turns ? Vec3((m.axis_from + random.vector(0.02)).normalized()) : m.axis_from;
-  m.tip_from = Vec3(r * std::cos(azimuth), r * std::sin(azimuth), gear.lowest_root() + random(0.3, 1.2) * module_mm) + random.vector(0.1 * module_mm);
+  m.tip_from = Vec3(r * std::cos(azimuth), r * std::sin(azimuth), gear.lowest_root() + random(0.3, 1.2) * module_mm) +
+               random.vector(0.1 * module_mm);
   m.tip_to = m.tip_from + random.vector(0.08 * module_mm);
   const Vec3 aside = Vec3(-std::sin(azimuth), std::cos(azimuth), 0) * (random(-1, 1) > 0 ? 1 : -1);
   for (int n = 0; n < 12; ++n) {
@@ -330,8 +349,8 @@ path::ToolMotion grazing(Random& random, const face_gear::FaceGear& gear, const 
   return m;
 }
 
-// Poses near contact, half of them turning, in spaces of random gears: the deepest place of dense samples stays below the bound, and the
-// bound comes close to what was found.
+// Poses near contact, half of them turning, in spaces of random gears: the deepest place of dense samples stays below
+// the bound, and the bound comes close to what was found.
 TEST(RandomPoses, TheBoundCoversDenseSampling) {
   Random random(77);
   double widest = 0, deepest_missed = -INFINITY, most_over = 0;
@@ -356,13 +375,17 @@ TEST(RandomPoses, TheBoundCoversDenseSampling) {
         if (std::abs(found.measured_mm) < 0.01) {
           widest = std::max(widest, found.bound_mm - std::max(found.measured_mm, 0.0));
           most_over = std::max(most_over, found.measured_mm - truth);
-          if (truth > 0) deepest_missed = std::max(deepest_missed, truth - found.measured_mm);  // what is free is not followed farther
+          if (truth > 0)
+            deepest_missed =
+                std::max(deepest_missed, truth - found.measured_mm);  // what is free is not followed farther
         }
       }
     }
   }
-  std::printf("%d near contact: bound above what was found by %.3f um at most; brute force deeper by %.3f um at most, shallower by %.3f um\n", near, 1e3 * widest,
-              1e3 * deepest_missed, 1e3 * most_over);
+  std::printf(
+      "%d near contact: bound above what was found by %.3f um at most; brute force deeper by %.3f um at most, "
+      "shallower by %.3f um\n",
+      near, 1e3 * widest, 1e3 * deepest_missed, 1e3 * most_over);
   EXPECT_GE(near, 30);
   EXPECT_LT(widest, 2.5e-4);
   EXPECT_LT(deepest_missed, 1.5e-4);
@@ -389,7 +412,8 @@ TEST(RandomPoses, TheBoundCoversStatedDeviations) {
       const auto straight = brute.deepest(body, m, 10, 24);
       for (int n = 0; n < 12; ++n) {
         auto strayed = m;
-        const Vec3 off = m.deviation_mm * random.vector(1).normalized(), lean = m.axis_deviation * random.vector(1).normalized();
+        const Vec3 off = m.deviation_mm * random.vector(1).normalized(),
+                   lean = m.axis_deviation * random.vector(1).normalized();
         strayed.tip_from += off;
         strayed.tip_to += off;
         strayed.axis_from = (m.axis_from + lean - lean.dot(m.axis_from) * m.axis_from).normalized();
@@ -403,7 +427,8 @@ TEST(RandomPoses, TheBoundCoversStatedDeviations) {
   std::printf("stated deviations: the bound lies %.3f um above the deepest strayed pose at least\n", 1e3 * closest);
 }
 
-// Line plans on random gears: what the swept flank shows is found, and bounded as closely as on the gears of the project.
+// Line plans on random gears: what the swept flank shows is found, and bounded as closely as on the gears of the
+// project.
 TEST(RandomGears, LinePlans) {
   Random random(31);
   int plans = 0;
@@ -426,9 +451,12 @@ TEST(RandomGears, LinePlans) {
       const auto truth = swept(flank_points(*p, job.parameters, planned_pass.zone, planned_pass.side, 15, 9),
                                {0.5 * job.tool.diameter_mm, job.tool.half_angle_rad, 0, 0}, pass.way);
       const auto r = checked(*p, pass.motions, p->tool);
-      std::printf("%-14s m %.2f zone %d side %+d: misfit %.2f um, swept %.3f um, found %.3f um on %s, bound %.3f um, shortened %.3f mm\n", job.name.c_str(),
-                  job.parameters.module_mm, planned_pass.zone, planned_pass.side, 1e3 * planned_pass.misfit_mm, 1e3 * truth.gouge, 1e3 * r.measured_mm,
-                  r.deepest.patch.c_str(), 1e3 * r.bound_mm, planned_pass.shortened_mm);
+      std::printf(
+          "%-14s m %.2f zone %d side %+d: misfit %.2f um, swept %.3f um, found %.3f um on %s, bound %.3f um, shortened "
+          "%.3f mm\n",
+          job.name.c_str(), job.parameters.module_mm, planned_pass.zone, planned_pass.side,
+          1e3 * planned_pass.misfit_mm, 1e3 * truth.gouge, 1e3 * r.measured_mm, r.deepest.patch.c_str(),
+          1e3 * r.bound_mm, planned_pass.shortened_mm);
       EXPECT_GE(r.bound_mm, truth.gouge);
       EXPECT_GE(r.measured_mm, truth.gouge - 1e-4);
       EXPECT_LE(r.bound_mm, std::max(r.measured_mm, 0.0) + 2.5e-4);
@@ -463,13 +491,14 @@ TEST(ProofTools, ContainTheCuttingPart) {
       if (std::abs(truth) > 0.02) continue;
       double d = INFINITY;
       for (const auto& body : tool.cutting) d = std::min(d, tool::rounded_distance(x, body));
-      // The discs that close the meridian are not the tool's, and above what was measured the largest error stands for it.
+      // The discs that close the meridian are not the tool's, and above what was measured the largest error stands for
+      // it.
       if (x.z() > data.flute_length_mm - 0.05 || (data.meridian && x.z() > profile.law_end())) continue;
       most_inside = std::max(most_inside, d - truth);
       most_outside = std::max(most_outside, truth - d);
     }
-    std::printf("shape %d%s: bodies %zu, inside by %.4f um, outside by %.4f um at most\n", int(data.shape), data.meridian ? " measured" : "", tool.cutting.size(),
-                1e3 * most_inside, 1e3 * most_outside);
+    std::printf("shape %d%s: bodies %zu, inside by %.4f um, outside by %.4f um at most\n", int(data.shape),
+                data.meridian ? " measured" : "", tool.cutting.size(), 1e3 * most_inside, 1e3 * most_outside);
     EXPECT_LT(most_inside, data.meridian ? 1e-5 : 1e-9);
     EXPECT_LT(most_outside, data.meridian || data.shape == tool::CutterShape::barrel ? 5e-4 : 1e-9);
   }
@@ -510,7 +539,8 @@ TEST(ContactFeed, LimitsOfTipAxisAndBlock) {
   EXPECT_NEAR(line::contact_feed(300, tilt, 0.1, a, z, b, lean), 100, 1e-9);
   line::FeedLimits azimuth;
   azimuth.azimuth_rad_min = 10;
-  const Vec3 turned(std::sin(0.5) * std::cos(0.02), std::sin(0.5) * std::sin(0.02), std::cos(0.5)), straight(std::sin(0.5), 0, std::cos(0.5));
+  const Vec3 turned(std::sin(0.5) * std::cos(0.02), std::sin(0.5) * std::sin(0.02), std::cos(0.5)),
+      straight(std::sin(0.5), 0, std::cos(0.5));
   EXPECT_NEAR(line::contact_feed(300, azimuth, 0.1, a, straight, b, turned), 50, 1e-9);
   line::FeedLimits block;
   block.block_s = 0.03;
@@ -523,7 +553,9 @@ TEST(LineProofThreads, SameAnswerWithOneThread) {
   const auto p = planned(line_jobs().front(), line::kBias);
   const auto motions = p.motions();
   path::MillingOperation op;
-  const auto surface = [&] { return cut::measure_cut_surface(*p.part, motions, {op}, std::vector<tool::ProofTool>{tool::proof_tool(p.tool, 1)}); };
+  const auto surface = [&] {
+    return cut::measure_cut_surface(*p.part, motions, {op}, std::vector<tool::ProofTool>{tool::proof_tool(p.tool, 1)});
+  };
   const auto many = checked(p, motions, p.tool);
   const auto cut = surface();
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
@@ -566,7 +598,7 @@ TEST(Room, IsRefusedWhereAFullStationHasNone) {
     ASSERT_FALSE(plan) << text;
     EXPECT_NE(plan.error().message.find(text), std::string::npos) << plan.error().message;
   };
-  refused(tapered_mill(0.8, 5, 4, 4, 22), 0, "the flute has a gap of -0.");  // the opposite flank
+  refused(tapered_mill(0.8, 5, 4, 4, 22), 0, "the flute has a gap of -0.");    // the opposite flank
   refused(tapered_mill(0.5, 5, 4, 4, 22), 0.3, "the flute has a gap of -0.");  // so much stock here leans it into that
   auto low = tapered_mill(0.5, 5, 4, 4, 4.2);
   low.holder = {{30, 30, 20}};
@@ -577,7 +609,8 @@ TEST(Room, AThickConeEndsEarly) {
   LineJob job{"dhfg 10 deg", quarter_dhfg(), tapered_mill(0.5, 10, 4, 6, 16)};
   const auto p = planned(job, line::kBias);
   const auto r = checked(p, p.motions(), p.tool);
-  for (const auto& pass : p.plan.passes) std::printf("10 deg, zone %d side %+d: shortened by %.3f mm\n", pass.zone, pass.side, pass.shortened_mm);
+  for (const auto& pass : p.plan.passes)
+    std::printf("10 deg, zone %d side %+d: shortened by %.3f mm\n", pass.zone, pass.side, pass.shortened_mm);
   std::printf("10 deg: found %.3f um, bound %.3f um\n", 1e3 * r.measured_mm, 1e3 * r.bound_mm);
   EXPECT_LT(r.bound_mm, 3e-4);
   for (const auto& pass : p.plan.passes) EXPECT_EQ(pass.shortened_mm > 0, pass.side > 0) << pass.zone << pass.side;

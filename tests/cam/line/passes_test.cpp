@@ -1,5 +1,5 @@
-// Whole passes: what the moving mill leaves of a flank and how deep it cuts, by brute force on a surface made by sweeping the shaper; planted
-// errors of 2 um that it must find; ends, feeds, choices and refusals.
+// Whole passes: what the moving mill leaves of a flank and how deep it cuts, by brute force on a surface made by
+// sweeping the shaper; planted errors of 2 um that it must find; ends, feeds, choices and refusals.
 #include "cam/line/passes.h"
 
 #include <gtest/gtest.h>
@@ -47,8 +47,12 @@ std::vector<Vec3> points_between(const LineCase& c, double r_from, double r_to, 
   const auto f = c.task();
   const BruteForceFaceGear brute(c.gear, c.gear.zones[std::size_t(c.zone)].helix_angle_rad);
   return swept_flank(
-      brute, std::max(r_from, f.inner_radius), std::min(r_to, f.outer_radius), [&](double r) { return *face_gear::fillet_line_height(f.surface, c.side, r); }, f.z_tip,
-      [&](double r, double z) { return face_gear::flank_azimuth(f.surface, c.side, *face_gear::invert_flank(f.surface, c.side, r, z)); }, columns, rows);
+      brute, std::max(r_from, f.inner_radius), std::min(r_to, f.outer_radius),
+      [&](double r) { return *face_gear::fillet_line_height(f.surface, c.side, r); }, f.z_tip,
+      [&](double r, double z) {
+        return face_gear::flank_azimuth(f.surface, c.side, *face_gear::invert_flank(f.surface, c.side, r, z));
+      },
+      columns, rows);
 }
 
 /// The flank of a case as swept points: 25 radii by 17 heights, borders included.
@@ -62,13 +66,16 @@ BruteConicalMill mill_of(const LineCase& c) { return {c.r_0, radians(5)}; }
 
 class LinePasses : public testing::TestWithParam<LineCase> {};
 
-// L8 without NC text, against the table of the study (its records a tenth of a module apart, its leans smoothed by a polynomial).
+// L8 without NC text, against the table of the study (its records a tenth of a module apart, its leans smoothed by a
+// polynomial).
 TEST_P(LinePasses, SweptFlank) {
   const auto& c = GetParam();
   const auto pass = pass_of(c, options_of(c));
   const auto result = swept(flank_points(c), mill_of(c), way_of(pass, c.r_0));
-  std::printf("%-18s left %.3f um (study %.2f), gouge %.3f um (study %.2f); planned %.3f + chord %.3f um, %zu records\n", c.name.c_str(), 1e3 * result.left,
-              c.left, 1e3 * result.gouge, c.gouge, 1e3 * pass.misfit_mm, 1e3 * pass.chord_mm, pass.records.size());
+  std::printf(
+      "%-18s left %.3f um (study %.2f), gouge %.3f um (study %.2f); planned %.3f + chord %.3f um, %zu records\n",
+      c.name.c_str(), 1e3 * result.left, c.left, 1e3 * result.gouge, c.gouge, 1e3 * pass.misfit_mm, 1e3 * pass.chord_mm,
+      pass.records.size());
   EXPECT_LT(1e3 * result.left, c.left + 0.3);
   EXPECT_LT(1e3 * result.gouge, c.gouge + 0.3);
   // And by its own figures, which a ledger adds up.
@@ -88,7 +95,8 @@ TEST_P(LinePasses, BiasIsKept) {
   EXPECT_GT(1e3 * result.gouge, -0.53);
 }
 
-INSTANTIATE_TEST_SUITE_P(Study, LinePasses, testing::ValuesIn(line_cases()), [](const auto& i) { return i.param.name; });
+INSTANTIATE_TEST_SUITE_P(Study, LinePasses, testing::ValuesIn(line_cases()),
+                         [](const auto& i) { return i.param.name; });
 
 const LineCase& case_of(const std::string& name) {
   const auto& cases = line_cases();
@@ -181,9 +189,11 @@ TEST_P(Planted, PassEndsEarly) {
   EXPECT_GT(measured(mill_of(c)).left, clean + kFault);
 }
 
-INSTANTIATE_TEST_SUITE_P(Faults, Planted, testing::Values("inner_plus", "outer_minus", "spur_plus"), [](const auto& i) { return i.param; });
+INSTANTIATE_TEST_SUITE_P(Faults, Planted, testing::Values("inner_plus", "outer_minus", "spur_plus"),
+                         [](const auto& i) { return i.param; });
 
-// Everything else of the finished gear: opposite flank, fillets, root, tips, ends, the other ring across the groove. Ball, side and shank.
+// Everything else of the finished gear: opposite flank, fillets, root, tips, ends, the other ring across the groove.
+// Ball, side and shank.
 TEST(LinePassRoom, NothingElseIsCut) {
   for (const char* name : {"inner_plus", "inner_minus", "outer_plus", "outer_minus"}) {
     const auto& c = case_of(name);
@@ -192,7 +202,8 @@ TEST(LinePassRoom, NothingElseIsCut) {
     const auto way = way_of(pass, c.r_0);
     const BruteForceBodies bodies(gear, 12, 12);
     const double tau = radians(5), low = c.r_0 * (1 - std::sin(tau)), r_low = c.r_0 * std::cos(tau), top = 22;
-    const BruteBody ball{c.r_0, c.r_0, c.r_0, c.r_0, true}, cone{low, top, r_low, r_low + (top - low) * std::tan(tau), false};
+    const BruteBody ball{c.r_0, c.r_0, c.r_0, c.r_0, true},
+        cone{low, top, r_low, r_low + (top - low) * std::tan(tau), false};
     double deepest = -INFINITY;
     for (std::size_t k = 0; k + 1 < way.size(); k += 3) {
       path::ToolMotion m;
@@ -207,24 +218,29 @@ TEST(LinePassRoom, NothingElseIsCut) {
   }
 }
 
-// One rotary: the standing tilt stands at every record and between records; what the poses leave is that of the study: 0.23 .. 0.28 um on the outer
-// flanks, 1.3 and 3.3 um on the inner ones; the spur gear with the azimuth standing 2.8 um.
+// One rotary: the standing tilt stands at every record and between records; what the poses leave is that of the study:
+// 0.23 .. 0.28 um on the outer flanks, 1.3 and 3.3 um on the inner ones; the spur gear with the azimuth standing 2.8
+// um.
 TEST(LinePassRotaries, TheTiltStands) {
-  const std::map<std::string, double> study = {{"inner_plus", 1.3}, {"inner_minus", 3.3}, {"outer_plus", 0.28}, {"outer_minus", 0.28}};
+  const std::map<std::string, double> study = {
+      {"inner_plus", 1.3}, {"inner_minus", 3.3}, {"outer_plus", 0.28}, {"outer_minus", 0.28}};
   for (const auto& [name, best] : study) {
     const auto& c = case_of(name);
     const auto pass = pass_of(c, options_of(c, line::Rotaries::tilt_stands));
     for (const auto& r : pass.records) EXPECT_NEAR(r.axis.a.z(), pass.records.front().axis.a.z(), 1e-12);
     EXPECT_LT(1e3 * pass.best_mm, 1.1 * best) << name;
     const auto result = swept(flank_points(c), mill_of(c), way_of(pass, c.r_0));
-    std::printf("%-12s tilt stands: poses %.3f um, swept left %.3f, gouge %.3f um\n", name.c_str(), 1e3 * pass.best_mm, 1e3 * result.left, 1e3 * result.gouge);
+    std::printf("%-12s tilt stands: poses %.3f um, swept left %.3f, gouge %.3f um\n", name.c_str(), 1e3 * pass.best_mm,
+                1e3 * result.left, 1e3 * result.gouge);
     EXPECT_LT(result.left, pass.misfit_mm + pass.chord_mm + 1e-4);
     EXPECT_LT(result.gouge, 0.25 * pass.chord_mm + 2e-5);
   }
   const auto& spur = case_of("spur_plus");
   const auto pass = pass_of(spur, options_of(spur, line::Rotaries::azimuth_stands));
   const Vec3 first = pass.records.front().axis.a;
-  for (const auto& r : pass.records) EXPECT_NEAR(std::remainder(std::atan2(r.axis.a.y(), r.axis.a.x()) - std::atan2(first.y(), first.x()), 2 * kPi), 0, 1e-12);
+  for (const auto& r : pass.records)
+    EXPECT_NEAR(std::remainder(std::atan2(r.axis.a.y(), r.axis.a.x()) - std::atan2(first.y(), first.x()), 2 * kPi), 0,
+                1e-12);
   EXPECT_LT(1e3 * pass.best_mm, 1.1 * 2.8);
 }
 
@@ -235,7 +251,8 @@ TEST(LinePassShape, ContactGoesOnSteadilyAndLiftsAreGradual) {
     double contact = 0;
     for (std::size_t k = 1; k < pass.records.size(); ++k) {
       const auto &a = pass.records[k - 1], &b = pass.records[k];
-      const double way = (b.anchor - a.anchor).norm(), tip = (b.axis.c_0 - c.r_0 * b.axis.a - a.axis.c_0 + c.r_0 * a.axis.a).norm();
+      const double way = (b.anchor - a.anchor).norm(),
+                   tip = (b.axis.c_0 - c.r_0 * b.axis.a - a.axis.c_0 + c.r_0 * a.axis.a).norm();
       contact += way;
       EXPECT_GT(b.r, a.r);
       EXPECT_LE(b.r - a.r, 0.1001 * c.gear.module_mm);
@@ -248,7 +265,8 @@ TEST(LinePassShape, ContactGoesOnSteadilyAndLiftsAreGradual) {
     const line::LineFit fit(task, tapered(c.r_0), line::strips_of(task, 1)[0]);
     for (const auto* r : {&pass.records.front(), &pass.records.back()}) {
       const auto at = face_gear::invert_flank(task.surface, c.side, r->anchor.head<2>().norm(), r->anchor.z());
-      const auto gap = fit.gap_along(r->axis, 0.5 * pass.contact_top_mm, {line::theta_at_distance(task.surface, at->theta, c.r_0), at->B});
+      const auto gap = fit.gap_along(r->axis, 0.5 * pass.contact_top_mm,
+                                     {line::theta_at_distance(task.surface, at->theta, c.r_0), at->B});
       ASSERT_TRUE(gap);
       EXPECT_GT(gap->beyond_ring, 0.1 * c.gear.module_mm);
     }
@@ -282,7 +300,8 @@ line::LineOperation finishing() {
   return o;
 }
 
-// The path of one space: four flanks, all clear at rapids, the contact at the job's feed, both flanks of the space cut as one shape.
+// The path of one space: four flanks, all clear at rapids, the contact at the job's feed, both flanks of the space cut
+// as one shape.
 TEST(LinePlans, PathOfTheQuarterGear) {
   const auto gear = made(quarter_dhfg());
   const auto tool = mill(0.5, 5, 4, 4, 22);
@@ -308,7 +327,9 @@ TEST(LinePlans, PathOfTheQuarterGear) {
     ++rapids, ++engages;
     const std::size_t first = k + 1, count = pass.records.size();
     EXPECT_EQ(records[first].zone, pass.zone);
-    const bool forwards = (face_gear::FaceGearSurface<double>::turned(pass.records.front().axis.a, turn) - records[first].axis).norm() < 1e-12;
+    const bool forwards =
+        (face_gear::FaceGearSurface<double>::turned(pass.records.front().axis.a, turn) - records[first].axis).norm() <
+        1e-12;
     double minutes = 0, contact = 0;
     for (std::size_t n = 1; n < count; ++n) {
       const auto& r = records[first + n];
@@ -368,7 +389,8 @@ TEST(LinePlans, AllowanceStandsParallel) {
         p = {turned.c_0, turned.a};
       }
       const auto with = swept(flank_points(c), mill_of(c), way);
-      // Exact along every line (pose_test); at the corners, which no foot meets exactly, the larger distance bends a little.
+      // Exact along every line (pose_test); at the corners, which no foot meets exactly, the larger distance bends a
+      // little.
       EXPECT_NEAR(with.left - without.left, 0.05, 1e-4);
       EXPECT_NEAR(without.gouge - with.gouge, 0.05, 1e-4);
     }
@@ -409,7 +431,8 @@ TEST(LinePlans, Refusals) {
   flat.flute_length_mm = 4;
   flat.shank_diameter_mm = 4;
   flat.stick_out_mm = flat.length_mm = 20;
-  refused(line::plan_line_milling(gear, std::get<tool::Profile>(tool::Profile::make(flat)), finishing()), "needs a tool with a ball end");
+  refused(line::plan_line_milling(gear, std::get<tool::Profile>(tool::Profile::make(flat)), finishing()),
+          "needs a tool with a ball end");
   auto o = finishing();
   o.strips = 9;
   refused(line::plan_line_milling(gear, mill(0.5, 5, 4, 4, 22), o), "strips = 9 lies outside 1 .. 4");

@@ -1,5 +1,5 @@
-// The best pose of a station: against the table of the independent study, the cubic's Chebyshev bound, a search by brute force, and what
-// mirroring, scaling and stock allowances must do.
+// The best pose of a station: against the table of the independent study, the cubic's Chebyshev bound, a search by
+// brute force, and what mirroring, scaling and stock allowances must do.
 #include "cam/line/pose.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,8 @@ line::LineFit fit_of(const LineCase& c, int strips = 1, int strip = 0) {
 double middle(const line::FlankTask& f) { return 0.5 * (f.inner_radius + f.outer_radius); }
 
 /// Worst misfit over the stations with a line over 85 % of the height, um.
-double worst_best(const line::LineFit& fit, double from, double to, double step, const std::optional<line::AxisCondition>& condition = {}) {
+double worst_best(const line::LineFit& fit, double from, double to, double step,
+                  const std::optional<line::AxisCondition>& condition = {}) {
   double worst = 0;
   for (double r = from; r <= to; r += step) {
     const auto p = fit.best(r, condition);
@@ -117,7 +118,8 @@ TEST_P(LinePoses, NoPoseNearbyIsBetter) {
   EXPECT_NEAR(p->gap.least, 0, 2e-9);
   for (int k = 0; k < 60; ++k) {
     const double size = std::pow(10.0, random(-5, -1.5));
-    const auto q = fit.place(r, p->angles.psi + size * random(-1, 1), p->angles.eps + 0.2 * size * random(-1, 1), p->angles.delta, 0, 0);
+    const auto q = fit.place(r, p->angles.psi + size * random(-1, 1), p->angles.eps + 0.2 * size * random(-1, 1),
+                             p->angles.delta, 0, 0);
     ASSERT_TRUE(q);
     EXPECT_GT(q->gap.misfit(), p->gap.misfit() * 0.995 - 1e-8);  // nodes see the extremes within half a hundredth
   }
@@ -188,7 +190,8 @@ TEST(LinePose, MirrorImages) {
 TEST(LinePose, ScalesWithTheModule) {
   for (const int side : {1, -1})
     for (const int zone : {0, 1}) {
-      const auto a = *line::flank_task(made(quarter_dhfg()), zone, side), b = *line::flank_task(made(double_helical_parameters()), zone, side);
+      const auto a = *line::flank_task(made(quarter_dhfg()), zone, side),
+                 b = *line::flank_task(made(double_helical_parameters()), zone, side);
       const line::LineFit fa(a, tapered(0.25), line::strips_of(a, 1)[0]), fb(b, tapered(1.0), line::strips_of(b, 1)[0]);
       const double r = middle(a);
       const auto pa = fa.start(r), pb = fb.start(4 * r);
@@ -205,9 +208,10 @@ TEST(LinePose, StripsHelpSlowly) {
     const char* name;
     double worst[4];
   };
-  for (const Row& row : {Row{"paper_inner_plus", {2.3, 1.4, 0.7, 0.45}}, Row{"paper_inner_minus", {4.3, 3.4, 2.3, 1.8}},
-                         Row{"paper_outer_plus", {0.89, 0.88, 0.60, 0.34}}, Row{"paper_outer_minus", {0.84, 0.58, 0.34, 0.20}},
-                         Row{"spur_plus", {3.1, 1.8, 0.9, 0.6}}, Row{"offset_plus", {3.2, 3.2, 0.9, 0.7}}}) {
+  for (const Row& row :
+       {Row{"paper_inner_plus", {2.3, 1.4, 0.7, 0.45}}, Row{"paper_inner_minus", {4.3, 3.4, 2.3, 1.8}},
+        Row{"paper_outer_plus", {0.89, 0.88, 0.60, 0.34}}, Row{"paper_outer_minus", {0.84, 0.58, 0.34, 0.20}},
+        Row{"spur_plus", {3.1, 1.8, 0.9, 0.6}}, Row{"offset_plus", {3.2, 3.2, 0.9, 0.7}}}) {
     const auto& cases = line_cases();
     const auto& c = *std::find_if(cases.begin(), cases.end(), [&](const LineCase& l) { return l.name == row.name; });
     double before = INFINITY;
@@ -225,8 +229,8 @@ TEST(LinePose, StripsHelpSlowly) {
   }
 }
 
-// One rotary: the condition on the axis holds to rounding, and where the other angle hardly changes anyway the misfit stays small. (Which
-// standing angle is best is asked of the pass.)
+// One rotary: the condition on the axis holds to rounding, and where the other angle hardly changes anyway the misfit
+// stays small. (Which standing angle is best is asked of the pass.)
 TEST(LinePose, OneRotary) {
   for (const auto& c : line_cases()) {
     const bool spur = c.name == "spur_plus";
@@ -235,7 +239,8 @@ TEST(LinePose, OneRotary) {
     const auto& f = fit.flank();
     const auto free = fit.best(middle(f));
     ASSERT_TRUE(free);
-    const auto condition = spur ? line::azimuth_stands(std::atan2(free->axis.a.y(), free->axis.a.x())) : line::tilt_stands(free->tilt());
+    const auto condition =
+        spur ? line::azimuth_stands(std::atan2(free->axis.a.y(), free->axis.a.x())) : line::tilt_stands(free->tilt());
     int full = 0;
     for (double r = f.inner_radius + 0.3; r < f.outer_radius - 0.3; r += 0.25) {
       const auto p = fit.best(r, condition), both = fit.best(r);
@@ -250,7 +255,8 @@ TEST(LinePose, OneRotary) {
   }
 }
 
-// A crown of 10 um over the line is taken back by the lean to a few micrometres when it is known, and left whole when it is not.
+// A crown of 10 um over the line is taken back by the lean to a few micrometres when it is known, and left whole when
+// it is not.
 TEST(LinePose, MeasuredMeridianIsPlannedWith) {
   for (const auto& c : line_cases()) {
     if (c.gear.module_mm != 1.25) continue;

@@ -55,7 +55,8 @@ TEST(GougeMerge, AnyDivisionGivesTheSame) {
     for (const auto& f : findings) add_result(one_by_one, f);
     for (std::size_t at = 0; at < findings.size();) {
       proof::GougeResult chunk = proof::no_motion_yet(0.05);
-      for (const std::size_t end = std::min(findings.size(), at + 1 + random() % 40); at < end; ++at) add_result(chunk, findings[at]);
+      for (const std::size_t end = std::min(findings.size(), at + 1 + random() % 40); at < end; ++at)
+        add_result(chunk, findings[at]);
       add_result(in_chunks, chunk);
     }
     expect_same(one_by_one, in_chunks);
@@ -63,7 +64,8 @@ TEST(GougeMerge, AnyDivisionGivesTheSame) {
     // By hand: the deepest twenty, of equal depth the first of the program.
     std::vector<proof::WorstPlace> listed;
     for (const auto& f : findings) listed.insert(listed.end(), f.worst.begin(), f.worst.end());
-    std::stable_sort(listed.begin(), listed.end(), [](const auto& a, const auto& b) { return a.depth_mm > b.depth_mm; });
+    std::stable_sort(listed.begin(), listed.end(),
+                     [](const auto& a, const auto& b) { return a.depth_mm > b.depth_mm; });
     listed.resize(std::min<std::size_t>(20, listed.size()));
     ASSERT_EQ(one_by_one.worst.size(), listed.size());
     for (std::size_t k = 0; k < listed.size(); ++k) EXPECT_EQ(one_by_one.worst[k].line, listed[k].line);

@@ -11,20 +11,24 @@ namespace {
 tool::ToolAssembly long_tool() { return test::ball_mill(2, 8, 1.9, 20, 12); }
 constexpr proof::RapidObstacle kRing{60, 30, 5, -20};
 
-/// The least height of the tool above the ring's top where it stands over the ring, and whether it is inside anywhere, at many moments.
+/// The least height of the tool above the ring's top where it stands over the ring, and whether it is inside anywhere,
+/// at many moments.
 bool sampled_clear(const path::ToolMotion& m, const tool::ToolAssembly& tool, double margin) {
   std::vector<tool::Frustum> bodies = tool::shank_and_holder(tool);
   const double R = tool.radius_mm();
   bodies.push_back({0.3 * R, tool.flute_length_mm, 0.7 * R, R, tool::Body::flute});
   for (int step = 0; step <= 80; ++step) {
-    const Vec3 tip = path::tip_at(m, step / 80.0), axis = path::axis_at(m, step / 80.0), u = axis.unitOrthogonal(), v = axis.cross(u);
+    const Vec3 tip = path::tip_at(m, step / 80.0), axis = path::axis_at(m, step / 80.0), u = axis.unitOrthogonal(),
+               v = axis.cross(u);
     for (const auto& body : bodies)
       for (int i = 0; i <= 8; ++i)
         for (int j = 0; j < 16; ++j) {
-          const double h = body.from + (body.to - body.from) * i / 8, radius = body.radius_from + (body.radius_to - body.radius_from) * i / 8;
+          const double h = body.from + (body.to - body.from) * i / 8,
+                       radius = body.radius_from + (body.radius_to - body.radius_from) * i / 8;
           const Vec3 p = tip + h * axis + radius * (std::cos(j * kPi / 8) * u + std::sin(j * kPi / 8) * v);
           const double r = p.head<2>().norm();
-          if (r < kRing.outer_radius_mm - margin && r > kRing.inner_radius_mm + margin && p.z() < kRing.top_mm - margin && p.z() > kRing.bottom_mm + margin)
+          if (r < kRing.outer_radius_mm - margin && r > kRing.inner_radius_mm + margin &&
+              p.z() < kRing.top_mm - margin && p.z() > kRing.bottom_mm + margin)
             return false;
         }
   }
@@ -32,7 +36,9 @@ bool sampled_clear(const path::ToolMotion& m, const tool::ToolAssembly& tool, do
 }
 
 path::ToolMotion turning(const Vec3& tip, double from, double to, double azimuth, const Vec3& travel = Vec3::Zero()) {
-  const auto leaning = [&](double lean) { return Vec3(std::sin(lean) * std::cos(azimuth), std::sin(lean) * std::sin(azimuth), std::cos(lean)); };
+  const auto leaning = [&](double lean) {
+    return Vec3(std::sin(lean) * std::cos(azimuth), std::sin(lean) * std::sin(azimuth), std::cos(lean));
+  };
   path::ToolMotion m;
   m.rapid = true;
   m.axis_from = leaning(from);
@@ -78,16 +84,15 @@ TEST(TurningRapid, NeverCallsATouchClear) {
   int clear = 0, hit = 0, near = 0;
   for (int k = 0; k < 300; ++k) {
     const double r = random(25, 75), phi = random(-3.1, 3.1);
-    const auto m = turning(Vec3(r * std::cos(phi), r * std::sin(phi), random(3, 13)), random(-1.3, 1.3), random(-1.3, 1.3), random(-3.1, 3.1),
+    const auto m = turning(Vec3(r * std::cos(phi), r * std::sin(phi), random(3, 13)), random(-1.3, 1.3),
+                           random(-1.3, 1.3), random(-3.1, 3.1),
                            k % 2 == 0 ? Vec3::Zero().eval() : Vec3(random(-3, 3), random(-3, 3), random(-3, 3)));
     const bool proven = proof::prove_rapid(m, tool, kRing).clear;
     const bool free = sampled_clear(m, tool, 1e-6), wide = sampled_clear(m, tool, -0.5);
     clear += proven;
     hit += !free;
     near += free && !wide;
-    if (proven) {
-      EXPECT_TRUE(free) << k;
-    }
+    if (proven) { EXPECT_TRUE(free) << k; }
   }
   EXPECT_GE(clear, 40);
   EXPECT_GE(hit, 30);

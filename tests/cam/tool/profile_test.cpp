@@ -1,5 +1,5 @@
-// Cutters as profiles: the ball mills and finger mills that the project had before are representable and give the same distances; the law
-// rho(t) against the meridian itself; bodies for proofs enclose; what makes no body is refused.
+// Cutters as profiles: the ball mills and finger mills that the project had before are representable and give the same
+// distances; the law rho(t) against the meridian itself; bodies for proofs enclose; what makes no body is refused.
 #include "cam/tool/profile.h"
 
 #include <gtest/gtest.h>
@@ -12,9 +12,9 @@
 #include "geometry/base/angle.h"
 #include "tests/cam/finger/jobs.h"
 #include "tests/support/brute_force_line.h"
+#include "tests/support/plain_frustum.h"
 #include "tests/support/random.h"
 #include "tests/support/sample_tools.h"
-#include "tests/support/plain_frustum.h"
 
 namespace toothpath::test {
 namespace {
@@ -45,25 +45,32 @@ tool::CutterData shaped(tool::CutterShape shape, double half_angle_deg = 0, doub
 }
 tool::Profile made_of(const tool::CutterData& d) {
   auto p = tool::Profile::make(d);
-  if (auto* refused = std::get_if<std::vector<tool::ProfileRefusal>>(&p)) throw std::runtime_error(refused->front().diagnostic.message);
+  if (auto* refused = std::get_if<std::vector<tool::ProfileRefusal>>(&p))
+    throw std::runtime_error(refused->front().diagnostic.message);
   return std::get<tool::Profile>(std::move(p));
 }
 std::vector<tool::CutterData> shapes() {
-  return {shaped(tool::CutterShape::ball), shaped(tool::CutterShape::tapered_ball, 5),       shaped(tool::CutterShape::tapered_ball, 10), shaped(tool::CutterShape::flat),
-          shaped(tool::CutterShape::bull_nose), shaped(tool::CutterShape::barrel, 8, 60), shaped(tool::CutterShape::barrel, 5, -50)};
+  return {shaped(tool::CutterShape::ball),
+          shaped(tool::CutterShape::tapered_ball, 5),
+          shaped(tool::CutterShape::tapered_ball, 10),
+          shaped(tool::CutterShape::flat),
+          shaped(tool::CutterShape::bull_nose),
+          shaped(tool::CutterShape::barrel, 8, 60),
+          shaped(tool::CutterShape::barrel, 5, -50)};
 }
 
 // The ball mill of an assembly: ball and flute are a capsule, shank and holder the frustums that the proofs use.
 TEST(Profile, BallMillOfAnAssembly) {
   Random random(1);
-  for (const tool::ToolAssembly& assembly : {ball_mill(0.5, 3.2, 0.46, 14, 10), ball_mill(1.6, 8, 1.5, 14, 10), stubby_mill()}) {
+  for (const tool::ToolAssembly& assembly :
+       {ball_mill(0.5, 3.2, 0.46, 14, 10), ball_mill(1.6, 8, 1.5, 14, 10), stubby_mill()}) {
     const tool::Profile p = made_of(tool::cutter_data(assembly));
     const double R = assembly.radius_mm(), flute = assembly.flute_length_mm;
     for (int k = 0; k < 3000; ++k) {
       const Vec3 x = random.vector(8) + Vec3(0, 0, 6);
       const double r = x.head<2>().norm();
       // Capsule cut off at the end of the flutes.
-      const double capsule = x.z() <= R ? (x - Vec3(0, 0, R)).norm() - R
+      const double capsule = x.z() <= R                 ? (x - Vec3(0, 0, R)).norm() - R
                              : x.z() <= flute && r >= R ? r - R
                              : x.z() > flute            ? std::hypot(x.z() - flute, std::max(0.0, r - R))
                                                         : -std::min(R - r, flute - x.z());
@@ -71,8 +78,10 @@ TEST(Profile, BallMillOfAnAssembly) {
       EXPECT_NEAR(std::max(0.0, ours_cutting), std::max(0.0, capsule), 1e-13);
       EXPECT_EQ(ours_cutting < -1e-12, capsule < -1e-12);
       double frustums = INFINITY, ours = INFINITY;
-      for (const auto& f : tool::shank_and_holder(assembly)) frustums = std::min(frustums, distance_to_frustum(x, f, Vec3::Zero(), Vec3::UnitZ()));
-      for (const tool::Meridian* m : {&p.shank(), &p.holder()}) ours = std::min(ours, std::max(0.0, m->distance<double>(x.z(), r).distance));
+      for (const auto& f : tool::shank_and_holder(assembly))
+        frustums = std::min(frustums, distance_to_frustum(x, f, Vec3::Zero(), Vec3::UnitZ()));
+      for (const tool::Meridian* m : {&p.shank(), &p.holder()})
+        ours = std::min(ours, std::max(0.0, m->distance<double>(x.z(), r).distance));
       EXPECT_NEAR(ours, frustums, 1e-13);
     }
     const auto bodies = p.proof_bodies(0.01);
@@ -82,14 +91,16 @@ TEST(Profile, BallMillOfAnAssembly) {
   }
 }
 
-// Numbers of an assembly by hand: shank from the flutes to the holder, a shoulder between two segments, the gauge line where there is no holder.
+// Numbers of an assembly by hand: shank from the flutes to the holder, a shoulder between two segments, the gauge line
+// where there is no holder.
 TEST(Profile, ShankAndHolderOfAnAssembly) {
   tool::ToolAssembly a = ball_mill(1.6, 8, 1.5, 14, 10);
   a.shank_diameter_mm = 3;
   a.length_mm = 60;
   a.stick_out_mm = 25;
   a.holder = {{20, 24, 10}, {40, 40, 5}};
-  const auto same = [](const tool::Frustum& f, double from, double to, double radius_from, double radius_to, Body name) {
+  const auto same = [](const tool::Frustum& f, double from, double to, double radius_from, double radius_to,
+                       Body name) {
     return f.from == from && f.to == to && f.radius_from == radius_from && f.radius_to == radius_to && f.body == name;
   };
   const auto held = tool::shank_and_holder(a);
@@ -120,7 +131,8 @@ TEST(Profile, MeshBodiesEncloseEveryCutter) {
     for (int k = 0; k < 500; ++k) {
       const double h = random(-1, d.flute_length_mm + 1), r = random(0, 3);
       double cones = INFINITY;
-      for (const auto& f : bodies[0].pieces) cones = std::min(cones, distance_to_frustum(Vec3(r, 0, h), f, Vec3::Zero(), Vec3::UnitZ()));
+      for (const auto& f : bodies[0].pieces)
+        cones = std::min(cones, distance_to_frustum(Vec3(r, 0, h), f, Vec3::Zero(), Vec3::UnitZ()));
       const double truth = std::max(0.0, p.cutting().distance<double>(h, r).distance);
       EXPECT_LE(cones, truth + 1e-12) << h << " " << r;
       EXPECT_GE(cones, truth - 1.01 * kSag) << h << " " << r;
@@ -128,11 +140,13 @@ TEST(Profile, MeshBodiesEncloseEveryCutter) {
   }
 }
 
-// The finger mill: its solid's signed distance within the sag of the arcs, and the truncated cones that meshes are checked with.
+// The finger mill: its solid's signed distance within the sag of the arcs, and the truncated cones that meshes are
+// checked with.
 TEST(Profile, FingerMill) {
   using namespace bevel_test;
   Random random(2);
-  for (const Designed& d : {Designed{w3(), pinion_mill()}, Designed{w4(), wheel_mill()}, design(9, 40, 3, 20, 0.25), design(30, 30, 1, 35, 0.2)}) {
+  for (const Designed& d : {Designed{w3(), pinion_mill()}, Designed{w4(), wheel_mill()}, design(9, 40, 3, 20, 0.25),
+                            design(30, 30, 1, 35, 0.2)}) {
     const bevel_gear::BevelGear gear = gear_of(d);
     const bevel_gear::FingerSolid solid(gear.cutter());
     tool::ToolAssembly assembly = mill(d.c);
@@ -140,19 +154,24 @@ TEST(Profile, FingerMill) {
     const double sag = 1e-5, flute = tool::finger_flute_end(gear.cutter(), assembly), rho_D = gear.cutter().rho_D;
     const tool::Meridian m = tool::finger_meridian(gear.cutter(), flute, sag);
     EXPECT_EQ(m.to(), flute);
-    EXPECT_LT(2 * m.pieces().size(), tool::finger_profile(gear.cutter(), assembly, sag).cutting().pieces().size());  // arcs follow the involute better than chords
+    EXPECT_LT(2 * m.pieces().size(), tool::finger_profile(gear.cutter(), assembly, sag)
+                                         .cutting()
+                                         .pieces()
+                                         .size());  // arcs follow the involute better than chords
     EXPECT_NEAR(m.largest_radius(), rho_D, 1e-12);
-    EXPECT_FALSE(m.convex());           // the flank is hollow
+    EXPECT_FALSE(m.convex());  // the flank is hollow
     const auto frustums = m.enclosing_frustums(1e-3, tool::Body::cutter);
     double most = 0;
     for (int k = 0; k < 4000; ++k) {
-      const double h = random(-1, flute - 0.5), rho = random(0, 1.5 * rho_D), truth = solid.signed_distance(h - d.p.dedendum_mm, rho);
+      const double h = random(-1, flute - 0.5), rho = random(0, 1.5 * rho_D),
+                   truth = solid.signed_distance(h - d.p.dedendum_mm, rho);
       const double ours = m.distance<double>(h, rho).distance;
       if (std::abs(truth) < 0.3) {  // deep inside the end of the flutes is nearer
         EXPECT_NEAR(ours, truth, 1.2 * sag) << h << " " << rho;
       }
       double enclosed = INFINITY;
-      for (const auto& f : frustums) enclosed = std::min(enclosed, distance_to_frustum(Vec3(rho, 0, h), f, Vec3::Zero(), Vec3::UnitZ()));
+      for (const auto& f : frustums)
+        enclosed = std::min(enclosed, distance_to_frustum(Vec3(rho, 0, h), f, Vec3::Zero(), Vec3::UnitZ()));
       EXPECT_LE(enclosed, std::max(0.0, truth) + 1.2 * sag);
       most = std::max(most, std::max(0.0, truth) - enclosed);
     }
@@ -182,7 +201,8 @@ S worst_law(const tool::CutterData& d) {
     const S off = abs(S(nearest - law.rho(t)));
     if (off > worst) worst = off;
     const S h = S(1e-4);
-    const S slope = (law.rho(S(t + h)) - law.rho(S(t - h))) / (S(2) * h), bend = (law.slope(S(t + h)) - law.slope(S(t - h))) / (S(2) * h);
+    const S slope = (law.rho(S(t + h)) - law.rho(S(t - h))) / (S(2) * h),
+            bend = (law.slope(S(t + h)) - law.slope(S(t - h))) / (S(2) * h);
     EXPECT_NEAR(double(slope - law.slope(t)), 0, 1e-9);
     EXPECT_NEAR(double(bend - law.bend(t)), 0, 1e-9);
   }
@@ -241,14 +261,16 @@ TEST(Profile, GradientIsThatOfTheDistance) {
       const double h = 1e-6;
       for (int axis = 0; axis < 3; ++axis) {
         const Vec3 e = h * Vec3::Unit(axis);
-        EXPECT_NEAR(q.gradient[axis], (p.cutting_distance(x + e).distance - p.cutting_distance(x - e).distance) / (2 * h), 1e-4);
+        EXPECT_NEAR(q.gradient[axis],
+                    (p.cutting_distance(x + e).distance - p.cutting_distance(x - e).distance) / (2 * h), 1e-4);
       }
     }
     // On the boundary itself the normal of the piece stands in: at the places of the meridian.
     for (const auto& piece : p.cutting().pieces()) {
       const Vec2 middle = tool::nearest_on_piece<double>(piece, 0.5 * (piece.from + piece.to));
       const auto at = p.cutting().distance<double>(middle[0], middle[1]);
-      const auto out = p.cutting().distance<double>(middle[0] + 1e-3 * piece_normal<double>(piece, middle)[0], middle[1] + 1e-3 * piece_normal<double>(piece, middle)[1]);
+      const auto out = p.cutting().distance<double>(middle[0] + 1e-3 * piece_normal<double>(piece, middle)[0],
+                                                    middle[1] + 1e-3 * piece_normal<double>(piece, middle)[1]);
       EXPECT_NEAR(at.distance, 0, 1e-13);
       EXPECT_NEAR(out.distance, 1e-3, 1e-12);
     }
@@ -267,7 +289,8 @@ TEST(Profile, TaperedMillAgainstBruteForce) {
     EXPECT_NEAR(p.cutting_distance(x).distance, truth, 1e-13);
   }
   EXPECT_TRUE(p.cutting().convex());
-  EXPECT_NEAR(p.cutting().radius(4.0), 0.25 * std::cos(radians(5)) + (4 - 0.25 * (1 - std::sin(radians(5)))) * std::tan(radians(5)), 1e-14);
+  EXPECT_NEAR(p.cutting().radius(4.0),
+              0.25 * std::cos(radians(5)) + (4 - 0.25 * (1 - std::sin(radians(5)))) * std::tan(radians(5)), 1e-14);
   EXPECT_NEAR(p.shank().radius(4.0), p.cutting().radius(4.0), 1e-14);  // the cone goes on
   EXPECT_NEAR(p.shank().radius(21.9), 2, 1e-13);
   // law_end: the ball there touches at the end of the flutes.
@@ -279,7 +302,8 @@ TEST(Profile, Convexity) {
   for (const auto& d : shapes()) EXPECT_EQ(made_of(d).cutting().convex(), !(d.meridian_radius_mm < 0)) << int(d.shape);
   const tool::Profile p = made_of(tapered());
   EXPECT_TRUE(p.shank().convex() || p.shank().pieces().size() > 1);
-  EXPECT_FALSE(tool::Meridian({{Vec2(0, 1), Vec2(1, 1), 0}, {Vec2(1, 1), Vec2(1, 2), 0}, {Vec2(1, 2), Vec2(2, 2), 0}}).convex());  // a shoulder above
+  EXPECT_FALSE(tool::Meridian({{Vec2(0, 1), Vec2(1, 1), 0}, {Vec2(1, 1), Vec2(1, 2), 0}, {Vec2(1, 2), Vec2(2, 2), 0}})
+                   .convex());  // a shoulder above
 }
 
 // Bodies for proofs contain the tool and stand out of it by no more than the sag.
@@ -294,9 +318,13 @@ TEST(Profile, ProofBodiesEnclose) {
       const Vec3 x = random.vector(6) + Vec3(0, 0, 3);
       const double r = x.head<2>().norm();
       double truth = INFINITY, enclosed = INFINITY;
-      for (const tool::Meridian* m : {&p.cutting(), &p.shank(), &p.holder()}) truth = std::min(truth, std::max(0.0, m->distance<double>(x.z(), r).distance));
-      for (const auto& f : bodies.frustums) enclosed = std::min(enclosed, distance_to_frustum(x, f, Vec3::Zero(), Vec3::UnitZ()));
-      if (bodies.ball_radius_mm > 0) enclosed = std::min(enclosed, std::max(0.0, (x - Vec3(0, 0, bodies.ball_height_mm)).norm() - bodies.ball_radius_mm));
+      for (const tool::Meridian* m : {&p.cutting(), &p.shank(), &p.holder()})
+        truth = std::min(truth, std::max(0.0, m->distance<double>(x.z(), r).distance));
+      for (const auto& f : bodies.frustums)
+        enclosed = std::min(enclosed, distance_to_frustum(x, f, Vec3::Zero(), Vec3::UnitZ()));
+      if (bodies.ball_radius_mm > 0)
+        enclosed =
+            std::min(enclosed, std::max(0.0, (x - Vec3(0, 0, bodies.ball_height_mm)).norm() - bodies.ball_radius_mm));
       EXPECT_LE(enclosed, truth + 1e-12) << int(d.shape);
       most = std::max(most, truth - enclosed);
     }
@@ -316,13 +344,16 @@ TEST(Profile, MeasuredMeridian) {
   d.meridian = table;
   const tool::Profile p = made_of(d);
   ASSERT_TRUE(p.law()->error);
-  for (std::size_t k = 0; k < table.t.size(); ++k) EXPECT_NEAR(p.law()->rho(table.t[k]), 0.25 + table.t[k] * std::sin(radians(5)) + table.f[k], 1e-15);
+  for (std::size_t k = 0; k < table.t.size(); ++k)
+    EXPECT_NEAR(p.law()->rho(table.t[k]), 0.25 + table.t[k] * std::sin(radians(5)) + table.f[k], 1e-15);
   EXPECT_NEAR(p.law()->slope(1.03), (p.law()->rho(1.03 + 1e-6) - p.law()->rho(1.03 - 1e-6)) / 2e-6, 1e-8);
   const auto bodies = p.proof_bodies(1e-3);
   for (int k = 0; k < 500; ++k) {
     const double t_0 = random(0.1, 3.2), out = random(0, 0.2), tau = radians(5), phi = random(0, 6.28);
     // Above the side: the normal from the axis at t_0.
-    const Vec3 x = Vec3(0, 0, 0.25 + t_0) + (0.25 + t_0 * std::sin(tau) + out) * Vec3(std::cos(tau) * std::cos(phi), std::cos(tau) * std::sin(phi), -std::sin(tau));
+    const Vec3 x =
+        Vec3(0, 0, 0.25 + t_0) + (0.25 + t_0 * std::sin(tau) + out) *
+                                     Vec3(std::cos(tau) * std::cos(phi), std::cos(tau) * std::sin(phi), -std::sin(tau));
     double truth = INFINITY;
     for (int i = -400; i <= 400; ++i) {
       const double t = t_0 + i * 1e-4;
@@ -330,7 +361,8 @@ TEST(Profile, MeasuredMeridian) {
     }
     EXPECT_NEAR(p.cutting_distance(x).distance, truth, 1.3e-5 * (p.law()->rho(t_0) + out));  // f' <= 0.0036
     double enclosed = (x - Vec3(0, 0, bodies.ball_height_mm)).norm() - bodies.ball_radius_mm;
-    for (const auto& f : bodies.frustums) enclosed = std::min(enclosed, distance_to_frustum(x, f, Vec3::Zero(), Vec3::UnitZ()));
+    for (const auto& f : bodies.frustums)
+      enclosed = std::min(enclosed, distance_to_frustum(x, f, Vec3::Zero(), Vec3::UnitZ()));
     EXPECT_LE(enclosed, std::max(0.0, truth) + 1e-9);
   }
 }
@@ -348,20 +380,42 @@ TEST(Profile, RefusesWhatMakesNoBody) {
     change(d);
     return d;
   };
-  for (const double angle : {0.0, -5.0, 45.0, 80.0}) refused(tapered(0.25, angle), "half_angle", "lies above 0 and below 45 deg");
+  for (const double angle : {0.0, -5.0, 45.0, 80.0})
+    refused(tapered(0.25, angle), "half_angle", "lies above 0 and below 45 deg");
   refused(with([](tool::CutterData& d) { d.half_angle_rad = NAN; }), "half_angle", "half_angle");
   refused(with([](tool::CutterData& d) { d.diameter_mm = 0; }), "diameter", "diameter = 0.0000 mm");
   refused(with([](tool::CutterData& d) { d.diameter_mm = INFINITY; }), "diameter", "diameter");
-  refused(with([](tool::CutterData& d) { d.flute_length_mm = 0.2; }), "flute_length", "flute_length = 0.2000 mm is below 0.2500 mm");
-  refused(with([](tool::CutterData& d) { d.shank_diameter_mm = 0.4; }), "shank_diameter", "thinner than the end of the flutes");
+  refused(with([](tool::CutterData& d) { d.flute_length_mm = 0.2; }), "flute_length",
+          "flute_length = 0.2000 mm is below 0.2500 mm");
+  refused(with([](tool::CutterData& d) { d.shank_diameter_mm = 0.4; }), "shank_diameter",
+          "thinner than the end of the flutes");
   refused(with([](tool::CutterData& d) { d.shank_diameter_mm = 1.1; }), "shank_diameter", "1.1581 mm");
-  refused(with([](tool::CutterData& d) { d.stick_out_mm = 3; }), "stick_out", "stick_out = 3.0000 mm is below the flute_length 4.0000 mm");
+  refused(with([](tool::CutterData& d) { d.stick_out_mm = 3; }), "stick_out",
+          "stick_out = 3.0000 mm is below the flute_length 4.0000 mm");
   refused(with([](tool::CutterData& d) { d.holder.push_back({10, 0, 5}); }), "holder", "holder segment [10, 0, 5]");
-  refused(with([](tool::CutterData& d) { d.shape = tool::CutterShape::bull_nose; d.corner_radius_mm = 0.3; }), "corner_radius", "no more than 0.2500 mm");
-  refused(with([](tool::CutterData& d) { d.shape = tool::CutterShape::bull_nose; d.corner_radius_mm = 0; }), "corner_radius", "above 0");
-  refused(with([](tool::CutterData& d) { d.shape = tool::CutterShape::barrel; d.meridian_radius_mm = 0.2; }), "meridian_radius", "more than the ball's radius");
-  refused(with([](tool::CutterData& d) { d.shape = tool::CutterShape::barrel; d.meridian_radius_mm = 20; }), "meridian_radius", "it must not narrow");
-  const auto table = [&](std::vector<double> t, std::vector<double> f) { return with([&](tool::CutterData& d) { d.meridian = tool::MeridianError{t, f}; }); };
+  refused(with([](tool::CutterData& d) {
+            d.shape = tool::CutterShape::bull_nose;
+            d.corner_radius_mm = 0.3;
+          }),
+          "corner_radius", "no more than 0.2500 mm");
+  refused(with([](tool::CutterData& d) {
+            d.shape = tool::CutterShape::bull_nose;
+            d.corner_radius_mm = 0;
+          }),
+          "corner_radius", "above 0");
+  refused(with([](tool::CutterData& d) {
+            d.shape = tool::CutterShape::barrel;
+            d.meridian_radius_mm = 0.2;
+          }),
+          "meridian_radius", "more than the ball's radius");
+  refused(with([](tool::CutterData& d) {
+            d.shape = tool::CutterShape::barrel;
+            d.meridian_radius_mm = 20;
+          }),
+          "meridian_radius", "it must not narrow");
+  const auto table = [&](std::vector<double> t, std::vector<double> f) {
+    return with([&](tool::CutterData& d) { d.meridian = tool::MeridianError{t, f}; });
+  };
   refused(table({0}, {0}), "meridian", "two points at least");
   refused(table({0.5, 1}, {0, 0}), "meridian", "must begin at the centre of the ball");
   refused(table({0, 1, 1}, {0, 0, 0}), "meridian", "heights ascend");

@@ -1,5 +1,6 @@
-// A blank point is gone if and only if it lies inside the solid mill at some instant of some pass. The mill here is built from the
-// equivalent gear's tooth space in polar form, apart from the library's profile, and no equation of meshing is used.
+// A blank point is gone if and only if it lies inside the solid mill at some instant of some pass. The mill here is
+// built from the equivalent gear's tooth space in polar form, apart from the library's profile, and no equation of
+// meshing is used.
 #include <map>
 #include <random>
 
@@ -11,12 +12,18 @@ namespace {
 
 using namespace bevel_test;
 
-/// Meridian radius of the mill from its definition: involute of the base circle r_vb with half space angle tau, tangent at C, arc.
+/// Meridian radius of the mill from its definition: involute of the base circle r_vb with half space angle tau, tangent
+/// at C, arc.
 class PolarMill {
  public:
   PolarMill(const bevel_gear::BevelGear& g, const bevel_gear::FingerCutterData& d)
-      : r_v_(1 / g.kappa_v()), alpha_(g.parameters().pressure_angle_rad), r_b_(r_v_ * std::cos(alpha_)), tau_0_(kPi * d.module_mm / 4 / r_v_),
-        h_f_(g.parameters().dedendum_mm), r_t_(d.tip_radius_mm), x_D_(d.profile_height_mm) {
+      : r_v_(1 / g.kappa_v()),
+        alpha_(g.parameters().pressure_angle_rad),
+        r_b_(r_v_ * std::cos(alpha_)),
+        tau_0_(kPi * d.module_mm / 4 / r_v_),
+        h_f_(g.parameters().dedendum_mm),
+        r_t_(d.tip_radius_mm),
+        x_D_(d.profile_height_mm) {
     // C where the rack of depth h_C stops: base tangent length r_v sin(alpha) - h_C / sin(alpha).
     const double length = r_v_ * std::sin(alpha_) - d.rack_depth_mm / std::sin(alpha_);
     r_C_ = std::hypot(r_b_, std::max(0.0, length));
@@ -53,11 +60,13 @@ class PolarMill {
     const auto inv = [](double a) { return std::tan(a) - a; };
     return tau_0_ + inv(std::acos(std::min(1.0, r_b_ / r))) - inv(alpha_);
   }
-  double r_v_, alpha_, r_b_, tau_0_, h_f_, r_t_, x_D_, r_C_ = 0, x_C_ = 0, rho_C_ = 0, slope_ = 0, x_o_ = 0, rho_o_ = 0, x_B_ = 0, widest_ = 0;
+  double r_v_, alpha_, r_b_, tau_0_, h_f_, r_t_, x_D_, r_C_ = 0, x_C_ = 0, rho_C_ = 0, slope_ = 0, x_o_ = 0, rho_o_ = 0,
+                                                       x_B_ = 0, widest_ = 0;
 };
 
 /// Least rho - radius(x) over a pass; negative: the point is gone.
-double least_gap(const Vec3& point, const bevel_gear::BevelTrace<double>& t, int sigma, double from, double to, const PolarMill& mill, int samples) {
+double least_gap(const Vec3& point, const bevel_gear::BevelTrace<double>& t, int sigma, double from, double to,
+                 const PolarMill& mill, int samples) {
   const auto gap = [&](double beta) {
     const auto c = sigma == 0 ? t.middle(beta) : t.centre(sigma, beta);
     const Vec3 q = bevel_gear::cutter_from_blank<double>(point, c.R_c, c.e, t.sin_delta, t.cos_delta);
@@ -69,7 +78,8 @@ double least_gap(const Vec3& point, const bevel_gear::BevelTrace<double>& t, int
   int at = 0;
   for (int i = 0; i <= samples; ++i)
     if (const double d = gap(from + (to - from) * i / samples); d < best) best = d, at = i;
-  double a = from + (to - from) * std::max(0, at - 1) / samples, b = from + (to - from) * std::min(samples, at + 1) / samples;
+  double a = from + (to - from) * std::max(0, at - 1) / samples,
+         b = from + (to - from) * std::min(samples, at + 1) / samples;
   const double g = 0.5 * (std::sqrt(5.0) - 1);
   for (int k = 0; k < 36; ++k) {
     const double x1 = b - g * (b - a), x2 = a + g * (b - a);
@@ -85,7 +95,8 @@ struct Case {
 };
 std::vector<Case> cases() {
   const auto steep = design(12, 60, 3, 45, 0.25), flat = design(25, 25, 5, 5, 0.22, -1);
-  return {{"W1", w1(), pinion_mill()}, {"W2", w2(), wheel_mill()}, {"W3", w3(), pinion_mill()}, {"W4", w4(), wheel_mill()}, {"45 deg", steep.p, steep.c}, {"5 deg", flat.p, flat.c}};
+  return {{"W1", w1(), pinion_mill()}, {"W2", w2(), wheel_mill()},   {"W3", w3(), pinion_mill()},
+          {"W4", w4(), wheel_mill()},  {"45 deg", steep.p, steep.c}, {"5 deg", flat.p, flat.c}};
 }
 
 /// Points 1e-6 mm on either side of every wall: in the space gone, in the tooth there after all passes of all halves.
@@ -95,28 +106,37 @@ TEST(BevelBruteForce, WallsSeparateWhatIsGoneFromWhatStays) {
   for (const auto& test : cases()) {
     const bevel_gear::BevelGear g = made(test.p, test.c);
     const PolarMill mill(g, test.c);
-    const double low = -g.parameters().dedendum_mm + 0.02 * g.parameters().outer_transverse_module_mm, high = g.parameters().addendum_mm, off = 1e-6;
+    const double low = -g.parameters().dedendum_mm + 0.02 * g.parameters().outer_transverse_module_mm,
+                 high = g.parameters().addendum_mm, off = 1e-6;
     for (const auto& half : g.halves())
       for (int k = 0; k < 2; ++k)
         for (int n = 0; n < 8; ++n) {
           const auto& w = half.walls[k];
-          const double ell = half.ell_from + (half.ell_to - half.ell_from) * share(random), height = low + (high - low) * share(random);
+          const double ell = half.ell_from + (half.ell_to - half.ell_from) * share(random),
+                       height = low + (high - low) * share(random);
           const auto at = bevel_gear::bevel_inverse(w, ell, height);
           ASSERT_TRUE(at) << test.name << ' ' << ell << ' ' << height;
           const auto f = w.point(at->beta, at->p);
-          EXPECT_LT(least_gap(f.p + off * f.n, w.trace, w.sigma, half.beta_from[k], half.beta_to[k], mill, 300), 0) << test.name;
+          EXPECT_LT(least_gap(f.p + off * f.n, w.trace, w.sigma, half.beta_from[k], half.beta_to[k], mill, 300), 0)
+              << test.name;
           const Vec3 inside = f.p - off * f.n;
           for (const auto& other : g.halves()) {
             for (int s = 0; s < 2; ++s)
-              EXPECT_GT(least_gap(inside, other.walls[s].trace, other.walls[s].sigma, other.beta_from[s], other.beta_to[s], mill, 300), 0) << test.name;
+              EXPECT_GT(least_gap(inside, other.walls[s].trace, other.walls[s].sigma, other.beta_from[s],
+                                  other.beta_to[s], mill, 300),
+                        0)
+                  << test.name;
             const auto& t = other.walls[0].trace;
-            EXPECT_GT(least_gap(inside, t, 0, t.beta(other.R_from), t.beta(std::min(other.R_to, t.R_lim())), mill, 300), 0) << test.name;
+            EXPECT_GT(least_gap(inside, t, 0, t.beta(other.R_from), t.beta(std::min(other.R_to, t.R_lim())), mill, 300),
+                      0)
+                << test.name;
           }
         }
   }
 }
 
-/// Material simulation: whatever of a grid is gone lies between the walls and above the root, and next to the walls nothing is left.
+/// Material simulation: whatever of a grid is gone lies between the walls and above the root, and next to the walls
+/// nothing is left.
 TEST(BevelBruteForce, RemovedGridPointsLieInTheToothSpace) {
   for (const auto& test : {cases()[0], cases()[2]}) {
     const bevel_gear::BevelGear g = made(test.p, test.c);
@@ -125,8 +145,11 @@ TEST(BevelBruteForce, RemovedGridPointsLieInTheToothSpace) {
     for (const auto& half : g.halves())
       for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 4; ++j) {
-          const double ell = half.ell_from + (half.ell_to - half.ell_from) * (i + 0.5) / 3, height = -g.parameters().dedendum_mm + 0.4 + (g.parameters().addendum_mm + g.parameters().dedendum_mm - 0.5) * j / 3;
-          const auto L = bevel_gear::bevel_inverse(half.walls[0], ell, height), U = bevel_gear::bevel_inverse(half.walls[1], ell, height);
+          const double ell = half.ell_from + (half.ell_to - half.ell_from) * (i + 0.5) / 3,
+                       height = -g.parameters().dedendum_mm + 0.4 +
+                                (g.parameters().addendum_mm + g.parameters().dedendum_mm - 0.5) * j / 3;
+          const auto L = bevel_gear::bevel_inverse(half.walls[0], ell, height),
+                     U = bevel_gear::bevel_inverse(half.walls[1], ell, height);
           ASSERT_TRUE(L && U);
           const double width = U->azimuth - L->azimuth;
           for (int k = -8; k <= 24; ++k) {
@@ -135,16 +158,20 @@ TEST(BevelBruteForce, RemovedGridPointsLieInTheToothSpace) {
             bool removed = false;
             for (const auto& other : g.halves()) {
               for (int s = 0; s < 2 && !removed; ++s)
-                removed = least_gap(p, other.walls[s].trace, other.walls[s].sigma, other.beta_from[s], other.beta_to[s], mill, 160) < 0;
+                removed = least_gap(p, other.walls[s].trace, other.walls[s].sigma, other.beta_from[s], other.beta_to[s],
+                                    mill, 160) < 0;
               const auto& t = other.walls[0].trace;
-              removed = removed || least_gap(p, t, 0, t.beta(other.R_from), t.beta(std::min(other.R_to, t.R_lim())), mill, 160) < 0;
+              removed = removed || least_gap(p, t, 0, t.beta(other.R_from), t.beta(std::min(other.R_to, t.R_lim())),
+                                             mill, 160) < 0;
             }
             if (removed) {
               EXPECT_GT(u, 0);
               EXPECT_LT(u, 1);
             }
             // Ridges stay on the root between the passes, never beside a wall.
-            if ((u > 0 && u < 0.06) || (u > 0.94 && u < 1)) { EXPECT_TRUE(removed) << ell << ' ' << height << ' ' << u; }
+            if ((u > 0 && u < 0.06) || (u > 0.94 && u < 1)) {
+              EXPECT_TRUE(removed) << ell << ' ' << height << ' ' << u;
+            }
             ++(removed ? gone : kept);
           }
         }
@@ -163,12 +190,15 @@ TEST(BevelBruteForce, FlankWithinANanometreOfTheMovingCutter) {
         for (const double u : {0.0, 0.37, 1.0})
           for (const double v : {0.02, 0.3, 0.66, 1.0}) {
             const auto& w = half.walls[k];
-            const auto at = bevel_gear::bevel_inverse(w, half.ell_from + (half.ell_to - half.ell_from) * u, -g.parameters().dedendum_mm + (g.parameters().addendum_mm + g.parameters().dedendum_mm) * v);
+            const auto at = bevel_gear::bevel_inverse(
+                w, half.ell_from + (half.ell_to - half.ell_from) * u,
+                -g.parameters().dedendum_mm + (g.parameters().addendum_mm + g.parameters().dedendum_mm) * v);
             ASSERT_TRUE(at);
             const Vec3 p = w.point(at->beta, at->p).p;
             for (const auto& other : g.halves())
               for (int s = 0; s < 2; ++s) {
-                const double gap = clearance_of_pass(p, other.walls[s].trace, other.walls[s].sigma, other.beta_from[s], other.beta_to[s], solid, 200);
+                const double gap = clearance_of_pass(p, other.walls[s].trace, other.walls[s].sigma, other.beta_from[s],
+                                                     other.beta_to[s], solid, 200);
                 if (&other == &half && s == k) {
                   EXPECT_NEAR(gap, 0, 1e-9) << test.name;
                 } else {
@@ -192,11 +222,14 @@ TEST(BevelBruteForce, RetractingRemovesNothing) {
       for (int n = 0; n < 900; ++n) {
         const int k = n % 2;
         const auto& w = half.walls[k];
-        const auto c = w.trace.centre(w.sigma, half.beta_from[k] + (half.beta_to[k] - half.beta_from[k]) * share(random));
+        const auto c =
+            w.trace.centre(w.sigma, half.beta_from[k] + (half.beta_to[k] - half.beta_from[k]) * share(random));
         // A random blank point near the mill, and the same mill lifted.
         const double reach = 1.2 * g.cutter().rho_D;
-        const Vec3 q(-1.1 * h_f + (1.1 * h_f + h_a) * share(random), reach * (2 * share(random) - 1), reach * (2 * share(random) - 1));
-        const Vec3 p = bevel_gear::blank_from_cutter<double>(q.x(), q.y(), q.z(), c.R_c, c.e, g.sin_delta(), g.cos_delta());
+        const Vec3 q(-1.1 * h_f + (1.1 * h_f + h_a) * share(random), reach * (2 * share(random) - 1),
+                     reach * (2 * share(random) - 1));
+        const Vec3 p =
+            bevel_gear::blank_from_cutter<double>(q.x(), q.y(), q.z(), c.R_c, c.e, g.sin_delta(), g.cos_delta());
         if (bevel_gear::cone_point(p, g.sin_delta(), g.cos_delta()).height > h_a) continue;
         const double lift = 3 * h_f * share(random);
         const Vec3 tip = g.tip(c.R_c, c.e, lift), axis = g.axis(c.e), rel = p - tip;
@@ -210,7 +243,8 @@ TEST(BevelBruteForce, RetractingRemovesNothing) {
   EXPECT_GT(inside, 100);
 }
 
-/// Planted: a mill that leans inwards below C (phi < 0) falls in radius towards the shank, so the same test would find it.
+/// Planted: a mill that leans inwards below C (phi < 0) falls in radius towards the shank, so the same test would find
+/// it.
 TEST(BevelBruteForce, ALeaningMillWouldGougeOnTheWayOut) {
   const auto bent = bevel_gear::make_finger_profile<double>(radians(40), 1 / 18.0, 9.0, 2.0, 0.1, 8.0, 3.0);
   EXPECT_LT(bent.phi, 0);
@@ -223,7 +257,8 @@ TEST(BevelBruteForce, EqualBaseCircle) {
     const bevel_gear::BevelGear g = made(test.p, test.c);
     for (int k = 0; k <= 10; ++k) {
       const double R = g.R_i() + (g.R_e() - g.R_i()) * k / 10, cb = std::sqrt(R / g.R_0());
-      const double m_t = 2 * R * g.sin_delta() / g.parameters().teeth, z_v = g.parameters().teeth / (g.cos_delta() * cb * cb * cb);
+      const double m_t = 2 * R * g.sin_delta() / g.parameters().teeth,
+                   z_v = g.parameters().teeth / (g.cos_delta() * cb * cb * cb);
       EXPECT_NEAR(m_t * cb, g.normal_module(R), 1e-12 * m_t);
       EXPECT_NEAR(0.5 * z_v * m_t * cb * g.kappa_v(), 1, 1e-12);
     }
@@ -235,7 +270,9 @@ TEST(BevelBruteForce, OnePitchOnIsTheSameGear) {
   const bevel_gear::BevelGear g = made(w3(), pinion_mill());
   const auto mesh = mesh::bevel_gear_mesh(g, {5, 5, 1, 1});
   ASSERT_TRUE(mesh);
-  const auto key = [](const Vec3& p) { return std::array<long, 3>{std::lround(p.x() * 1e6), std::lround(p.y() * 1e6), std::lround(p.z() * 1e6)}; };
+  const auto key = [](const Vec3& p) {
+    return std::array<long, 3>{std::lround(p.x() * 1e6), std::lround(p.y() * 1e6), std::lround(p.z() * 1e6)};
+  };
   std::map<std::array<long, 3>, int> there;
   for (const auto& v : mesh->vertices)
     for (long a = -1; a <= 1; ++a)
@@ -245,7 +282,8 @@ TEST(BevelBruteForce, OnePitchOnIsTheSameGear) {
         ++there[k];
       }
   const double c = std::cos(g.pitch()), s = std::sin(g.pitch());
-  for (const auto& v : mesh->vertices) EXPECT_TRUE(there.count(key({c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z()})));
+  for (const auto& v : mesh->vertices)
+    EXPECT_TRUE(there.count(key({c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z()})));
 }
 
 /// Extreme sizes keep their digits.
@@ -257,7 +295,8 @@ TEST(BevelBruteForce, SmallAndLargeModules) {
       for (const double share : {0.1, 0.5, 0.9}) {
         const auto& w = g.halves()[0].walls[k];
         const double ell = g.R_i() + share * (g.R_e() - g.R_i());
-        const auto a = bevel_gear::bevel_inverse(w, ell, 0.3 * m), b = bevel_gear::bevel_inverse(u.halves()[0].walls[k], ell * 6 / m, 0.3 * 6);
+        const auto a = bevel_gear::bevel_inverse(w, ell, 0.3 * m),
+                   b = bevel_gear::bevel_inverse(u.halves()[0].walls[k], ell * 6 / m, 0.3 * 6);
         ASSERT_TRUE(a && b);
         EXPECT_LT((w.point(a->beta, a->p).p / m - u.halves()[0].walls[k].point(b->beta, b->p).p / 6).norm(), 1e-9);
       }

@@ -14,8 +14,12 @@ using namespace bevel_test;
 using Wide = boost::multiprecision::cpp_bin_float_50;
 
 std::vector<bevel_gear::BevelGear> some_gears() {
-  return {made(w1(), pinion_mill()), made(w2(), wheel_mill()), gear_of(design(12, 60, 3, 45, 0.25)), gear_of(design(25, 25, 5, 5, 0.22, -1)),
-          gear_of(design(44, 31, 2, 20, 0.3)), gear_of(design(30, 0, 4, 35, 0.25, 1, 90))};
+  return {made(w1(), pinion_mill()),
+          made(w2(), wheel_mill()),
+          gear_of(design(12, 60, 3, 45, 0.25)),
+          gear_of(design(25, 25, 5, 5, 0.22, -1)),
+          gear_of(design(44, 31, 2, 20, 0.3)),
+          gear_of(design(30, 0, 4, 35, 0.25, 1, 90))};
 }
 
 TEST(BevelInvariants, EquidistantIsAParallelOfTheTrace) {
@@ -39,7 +43,8 @@ TEST(BevelInvariants, EquidistantIsAParallelOfTheTrace) {
     }
 }
 
-// The contact moves only inside the surface: velocity of cutter material against the blank has no part along the normal.
+// The contact moves only inside the surface: velocity of cutter material against the blank has no part along the
+// normal.
 TEST(BevelInvariants, NoVelocityAlongTheNormal) {
   for (const auto& g : some_gears())
     for (int k = 0; k < 2; ++k) {
@@ -64,7 +69,8 @@ TEST(BevelInvariants, ScaleAndMirror) {
     auto p = w1();
     for (double* v : {&p.outer_transverse_module_mm, &p.face_width_mm, &p.addendum_mm, &p.dedendum_mm}) *v *= s;
     const auto m = pinion_mill();
-    const bevel_gear::BevelGear big = made(p, {m.module_mm * s, m.tip_radius_mm * s, m.rack_depth_mm * s, m.profile_height_mm * s});
+    const bevel_gear::BevelGear big =
+        made(p, {m.module_mm * s, m.tip_radius_mm * s, m.rack_depth_mm * s, m.profile_height_mm * s});
     for (int k = 0; k < 2; ++k) {
       const Vec3 a = g.halves()[0].walls[k].point(0.6, 2.0).p, b = big.halves()[0].walls[k].point(0.6, 2.0 * s).p;
       EXPECT_LT((b / s - a).norm(), 1e-12 * g.R_0());
@@ -90,7 +96,8 @@ TEST(BevelInvariants, CrownWheelWallsAreParallelCurves) {
       const auto f = w.point(beta, p);
       const auto c = w.trace.centre(w.sigma, beta);
       // Flat: the point lies on the normal of the centre path at distance rho.
-      const double d = std::remainder(std::atan2(f.p.y(), f.p.x()) - c.theta_c, 2 * kPi), R = std::hypot(f.p.x(), f.p.y());
+      const double d = std::remainder(std::atan2(f.p.y(), f.p.x()) - c.theta_c, 2 * kPi),
+                   R = std::hypot(f.p.x(), f.p.y());
       const double along = (R * std::cos(d) - c.R_c) * std::cos(c.beta_c) + R * std::sin(d) * std::sin(c.beta_c);
       const double across = R * std::sin(d) * std::cos(c.beta_c) - (R * std::cos(d) - c.R_c) * std::sin(c.beta_c);
       EXPECT_NEAR(along, 0, 1e-12 * g.R_0());
@@ -110,7 +117,8 @@ TEST(BevelInvariants, WallsAreTheBoundaryOfWhatTheMovingCutterRemoves) {
       for (const double u : {0.0, 0.5, 1.0})
         for (const double v : {0.1, 0.35, 0.6, 0.9}) {
           const double ell = half.ell_from + (half.ell_to - half.ell_from) * u;
-          const double height = -g.parameters().dedendum_mm + (g.parameters().addendum_mm + g.parameters().dedendum_mm) * v;
+          const double height =
+              -g.parameters().dedendum_mm + (g.parameters().addendum_mm + g.parameters().dedendum_mm) * v;
           const auto at = bevel_gear::bevel_inverse(w, ell, height);
           ASSERT_TRUE(at);
           const Vec3 p = w.point(at->beta, at->p).p;
@@ -124,7 +132,8 @@ TEST(BevelInvariants, WallsAreTheBoundaryOfWhatTheMovingCutterRemoves) {
 TEST(BevelInvariants, GapBetweenTheWallsOnThePitchCone) {
   const bevel_gear::BevelGear g = made(w1(), pinion_mill());
   for (const double ell : {90.0, 105.0, 120.0}) {
-    const auto L = bevel_gear::bevel_inverse(g.halves()[0].walls[0], ell, 0), U = bevel_gear::bevel_inverse(g.halves()[0].walls[1], ell, 0);
+    const auto L = bevel_gear::bevel_inverse(g.halves()[0].walls[0], ell, 0),
+               U = bevel_gear::bevel_inverse(g.halves()[0].walls[1], ell, 0);
     EXPECT_NEAR(U->azimuth - L->azimuth, 2 * g.e_h(), 1.5e-3 / (ell * g.sin_delta()));
   }
 }
@@ -138,11 +147,15 @@ TEST(BevelInvariants, CurvatureIsSymmetricAndTheNormalFollowsTheSurface) {
         const auto c = bevel_gear::bevel_curvature(w, beta, p);
         EXPECT_LT(c.asymmetry, 1e-13);
         EXPECT_GT(c.regularity, 0.5);
-        const Vec3 du = w.point(beta + h, p).p - w.point(beta - h, p).p, dv = w.point(beta, p + h).p - w.point(beta, p - h).p;
-        EXPECT_NEAR(w.point(beta, p).n.dot(du.cross(dv).normalized()), w.sigma * (du.cross(dv).dot(w.point(beta, p).n) * w.sigma > 0 ? 1 : -1), 1e-6);
+        const Vec3 du = w.point(beta + h, p).p - w.point(beta - h, p).p,
+                   dv = w.point(beta, p + h).p - w.point(beta, p - h).p;
+        EXPECT_NEAR(w.point(beta, p).n.dot(du.cross(dv).normalized()),
+                    w.sigma * (du.cross(dv).dot(w.point(beta, p).n) * w.sigma > 0 ? 1 : -1), 1e-6);
         // Mean curvature from differences of the normal along the surface.
-        const Vec3 nu = w.point(beta + h, p).n - w.point(beta - h, p).n, nv = w.point(beta, p + h).n - w.point(beta, p - h).n;
-        const double E = du.dot(du), F = du.dot(dv), G = dv.dot(dv), L = du.dot(nu), M = 0.5 * (du.dot(nv) + dv.dot(nu)), N = dv.dot(nv);
+        const Vec3 nu = w.point(beta + h, p).n - w.point(beta - h, p).n,
+                   nv = w.point(beta, p + h).n - w.point(beta, p - h).n;
+        const double E = du.dot(du), F = du.dot(dv), G = dv.dot(dv), L = du.dot(nu),
+                     M = 0.5 * (du.dot(nv) + dv.dot(nu)), N = dv.dot(nv);
         EXPECT_NEAR(std::abs((E * N - 2 * F * M + G * L) / (E * G - F * F)), std::abs(c.kappa_1 + c.kappa_2), 1e-5);
       }
     }
@@ -155,7 +168,8 @@ TEST(BevelInvariants, CutterModuleHardlyChangesTheFlank) {
   for (int k = 0; k < 2; ++k)
     for (const double ell : {88.0, 100.0, 123.0})
       for (const double height : {-2.5, 0.0, 4.0}) {
-        const auto p = bevel_gear::bevel_inverse(a.halves()[0].walls[k], ell, height), q = bevel_gear::bevel_inverse(b.halves()[0].walls[k], ell, height);
+        const auto p = bevel_gear::bevel_inverse(a.halves()[0].walls[k], ell, height),
+                   q = bevel_gear::bevel_inverse(b.halves()[0].walls[k], ell, height);
         worst = std::max(worst, std::abs(p->azimuth - q->azimuth) * (ell * a.sin_delta() + height * a.cos_delta()));
       }
   EXPECT_GT(worst, 1e-5);
@@ -171,7 +185,8 @@ TEST(BevelInvariants, DoubleAgreesWithFiftyDigits) {
   t.R_0 = w.trace.R_0, t.sin_delta = w.trace.sin_delta, t.cos_delta = w.trace.cos_delta, t.beta_ref = w.trace.beta_ref;
   t.r_0 = w.trace.r_0, t.e_h = w.trace.e_h, t.h = w.trace.h;
   wide.sigma = w.sigma;
-  wide.cutter = bevel_gear::make_finger_profile<Wide>(Wide(w.cutter.alpha_n), Wide(g.kappa_v()), Wide(5.1), Wide(3.0), Wide(0.9), Wide(4.1), Wide(4.8));
+  wide.cutter = bevel_gear::make_finger_profile<Wide>(Wide(w.cutter.alpha_n), Wide(g.kappa_v()), Wide(5.1), Wide(3.0),
+                                                      Wide(0.9), Wide(4.1), Wide(4.8));
   t.r_0 = wide.cutter.r_0;
   std::mt19937 random(42);
   std::uniform_real_distribution<double> betas(0.02, 1.2), shares(0.02, 1.0);
@@ -205,12 +220,14 @@ TEST(BevelExtremes, StraightAtTheLargeEnd) {
   EXPECT_GT(g.limits().least_regularity, 0);
   EXPECT_GT(g.halves()[0].ell_to, g.R_e() - 0.15);
   for (int k = 0; k < 2; ++k)
-    for (const double height : {-2.0, 0.0, 2.0}) EXPECT_TRUE(bevel_gear::bevel_inverse(g.halves()[0].walls[k], g.halves()[0].ell_to, height));
+    for (const double height : {-2.0, 0.0, 2.0})
+      EXPECT_TRUE(bevel_gear::bevel_inverse(g.halves()[0].walls[k], g.halves()[0].ell_to, height));
   const auto mesh = mesh::bevel_gear_mesh(g);
   EXPECT_TRUE(mesh) << mesh.error().message;
 }
 
-// Near beta_e = 0 the straight end of the path has a short parameter; the walls still have every profile point at both ends of the face.
+// Near beta_e = 0 the straight end of the path has a short parameter; the walls still have every profile point at both
+// ends of the face.
 TEST(BevelExtremes, SmallSpiralAnglesHaveTheirWholeWalls) {
   for (const double beta_deg : {2.0, 3.0, 5.0, 10.0}) {
     const bevel_gear::BevelGear g = gear_of(design(7, 0, 6.0, beta_deg, 0.18, 1, 15));
@@ -228,13 +245,16 @@ TEST(BevelExtremes, SmallSpiralAnglesHaveTheirWholeWalls) {
 }
 
 TEST(BevelExtremes, AlmostACrownWheelAndAlmostACylinder) {
-  const bevel_gear::BevelGear flat = gear_of(design(30, 0, 4, 35, 0.25, 1, 90)), nearly = gear_of(design(30, 0, 4, 35, 0.25, 1, 89.9999));
+  const bevel_gear::BevelGear flat = gear_of(design(30, 0, 4, 35, 0.25, 1, 90)),
+                              nearly = gear_of(design(30, 0, 4, 35, 0.25, 1, 89.9999));
   EXPECT_LT((flat.halves()[0].walls[0].point(0.7, 1.0).p - nearly.halves()[0].walls[0].point(0.7, 1.0).p).norm(), 1e-3);
   const bevel_gear::BevelGear slim = gear_of(design(20, 0, 3, 30, 1e-4, 1, 0.01));
   EXPECT_GT(slim.R_e(), 1.7e5);
   const auto& w = slim.halves()[0].walls[0];
   const auto f = w.point(w.trace.beta(slim.R_m()), 0.0);
-  EXPECT_NEAR(clearance_of_pass(f.p, w.trace, 1, slim.halves()[0].beta_from[0], slim.halves()[0].beta_to[0], bevel_gear::FingerSolid(w.cutter), 4000), 0, 1e-7);
+  EXPECT_NEAR(clearance_of_pass(f.p, w.trace, 1, slim.halves()[0].beta_from[0], slim.halves()[0].beta_to[0],
+                                bevel_gear::FingerSolid(w.cutter), 4000),
+              0, 1e-7);
 }
 
 TEST(BevelExtremes, FewTeethClipPointC) {
@@ -243,7 +263,8 @@ TEST(BevelExtremes, FewTeethClipPointC) {
   EXPECT_FALSE(g.warnings().empty());
 }
 
-void expect_refused(const bevel_gear::BevelGearParameters& p, const bevel_gear::FingerCutterData& c, const std::string& key, const std::string& part) {
+void expect_refused(const bevel_gear::BevelGearParameters& p, const bevel_gear::FingerCutterData& c,
+                    const std::string& key, const std::string& part) {
   const auto g = bevel_gear::BevelGear::make(p, c);
   ASSERT_TRUE(!g.has_value()) << key;
   for (const auto& r : g.error())

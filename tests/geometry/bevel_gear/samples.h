@@ -56,12 +56,14 @@ inline bevel_gear::BevelGear made(const bevel_gear::BevelGearParameters& p, cons
   return g.value();
 }
 
-/// A gear by the design rules of the samples: h_a = m_n(R_m), h_f = 1.25 m_n(R_m), m_nj = 0.97 m_n(R_i), r_t 0.8 of its limit.
+/// A gear by the design rules of the samples: h_a = m_n(R_m), h_f = 1.25 m_n(R_m), m_nj = 0.97 m_n(R_i), r_t 0.8 of its
+/// limit.
 struct Designed {
   bevel_gear::BevelGearParameters p;
   bevel_gear::FingerCutterData c;
 };
-inline Designed design(int teeth, int mate, double m, double beta_deg, double width_share, int hand = 1, double pitch_angle_deg = 0) {
+inline Designed design(int teeth, int mate, double m, double beta_deg, double width_share, int hand = 1,
+                       double pitch_angle_deg = 0) {
   Designed d;
   d.p = w1();
   d.p.teeth = teeth;
@@ -70,7 +72,8 @@ inline Designed design(int teeth, int mate, double m, double beta_deg, double wi
   d.p.outer_transverse_module_mm = m;
   d.p.outer_spiral_angle_rad = radians(beta_deg);
   d.p.hand = hand;
-  const double delta = bevel_gear::bevel_pitch_angle(d.p), R_e = teeth * m / (2 * std::sin(delta)), R_0 = R_e / std::pow(std::cos(radians(beta_deg)), 2);
+  const double delta = bevel_gear::bevel_pitch_angle(d.p), R_e = teeth * m / (2 * std::sin(delta)),
+               R_0 = R_e / std::pow(std::cos(radians(beta_deg)), 2);
   d.p.face_width_mm = width_share * R_e;
   const auto m_n = [&](double R) { return 2 * std::sin(delta) / teeth * R * std::sqrt(R / R_0); };
   const double R_m = R_e - d.p.face_width_mm / 2, R_i = R_e - d.p.face_width_mm;
@@ -78,17 +81,18 @@ inline Designed design(int teeth, int mate, double m, double beta_deg, double wi
   d.p.dedendum_mm = 1.25 * m_n(R_m);
   d.c = {0.97 * m_n(R_i), 0.1, d.p.addendum_mm, 1.15 * d.p.addendum_mm};
   const double kappa = std::cos(delta) / (R_0 * std::sin(delta));
-  d.c.tip_radius_mm = 0.8 * largest_tip_radius(bevel_gear::make_finger_profile<double>(d.p.pressure_angle_rad, kappa, d.p.dedendum_mm, d.c.module_mm,
-                                                                         1e-3 * m, d.c.rack_depth_mm, d.c.profile_height_mm));
+  d.c.tip_radius_mm = 0.8 * largest_tip_radius(bevel_gear::make_finger_profile<double>(
+                                d.p.pressure_angle_rad, kappa, d.p.dedendum_mm, d.c.module_mm, 1e-3 * m,
+                                d.c.rack_depth_mm, d.c.profile_height_mm));
   return d;
 }
 inline bevel_gear::BevelGear gear_of(const Designed& d) { return made(d.p, d.c); }
 
 /// Brute force, knowing no meshing equation: smallest signed distance of a blank point to the solid cutter over all
-/// instants of one pass, by sampling and golden section. The cutter is known only as a solid of revolution, the pass only as
-/// positions (R_c, e) over its parameter.
-inline double clearance_of_pass(const Vec3& point, const bevel_gear::BevelTrace<double>& t, int sigma, double beta_from, double beta_to,
-                                const bevel_gear::FingerSolid& solid, int samples = 400) {
+/// instants of one pass, by sampling and golden section. The cutter is known only as a solid of revolution, the pass
+/// only as positions (R_c, e) over its parameter.
+inline double clearance_of_pass(const Vec3& point, const bevel_gear::BevelTrace<double>& t, int sigma, double beta_from,
+                                double beta_to, const bevel_gear::FingerSolid& solid, int samples = 400) {
   const auto distance = [&](double beta) {
     const auto c = t.centre(sigma, beta);
     return solid.signed_distance(bevel_gear::cutter_from_blank<double>(point, c.R_c, c.e, t.sin_delta, t.cos_delta));

@@ -34,10 +34,12 @@ class Pair {
   /// Unknowns: theta, B, theta_1, Z_1, phi_2. Zero: same point (3), same normal (2 of its components).
   [[nodiscard]] Vec5 residual(int s, double phi_1, const Vec5& x) const {
     const auto gear = f_.flank(s, x[0], x[1]);
-    const Vec3 P = face_gear::FaceGearSurface<double>::turned(gear.p, x[4]), n = face_gear::FaceGearSurface<double>::turned(gear.n, x[4]);
+    const Vec3 P = face_gear::FaceGearSurface<double>::turned(gear.p, x[4]),
+               n = face_gear::FaceGearSurface<double>::turned(gear.n, x[4]);
     const double B_1 = s * (theta_01_ + x[2]) + kappa_1_ * (x[3] - f_.L0) + phi_1;
     const Vec3 b(0, 1, 0), e = std::cos(B_1) * d_ + std::sin(B_1) * b, t = -std::sin(B_1) * d_ + std::cos(B_1) * b;
-    const Vec3 axis_point = (f_.E + moved_.offset_mm) * b + (f_.shaper.r_p - r_p1_) * f_.d() + (x[3] + moved_.axial_mm) * a_;
+    const Vec3 axis_point =
+        (f_.E + moved_.offset_mm) * b + (f_.shaper.r_p - r_p1_) * f_.d() + (x[3] + moved_.axial_mm) * a_;
     const Vec3 P_1 = axis_point + r_b1_ * (e - s * x[2] * t);
     const Vec3 n_1 = s * (t * f_.shaper.cos_bb - a_ * f_.shaper.sin_bb);
     Vec5 out;
@@ -85,8 +87,9 @@ class Pair {
 };
 
 TEST(FaceGearContact, TransmissionErrorIsConstantUnderEveryMisalignment) {
-  // A pinion lifted by an angle error about the gear's centre soon has no contact left on the flank, so those are small.
-  const std::vector<Misalignment> moves = {{0, 0, 0},        {0.1, 0, 0},           {0, 0.15, 0},         {0, 0, 0.0004},
+  // A pinion lifted by an angle error about the gear's centre soon has no contact left on the flank, so those are
+  // small.
+  const std::vector<Misalignment> moves = {{0, 0, 0},       {0.1, 0, 0},         {0, 0.15, 0},         {0, 0, 0.0004},
                                            {0, 0, -0.0008}, {0.1, 0.15, 0.0004}, {-0.05, 0.1, -0.0006}};
   for (const char* name : {"offset_15", "dhfg_normal", "gamma_75_mixed", "gamma_120"}) {
     const auto c = case_named(name);
@@ -94,7 +97,8 @@ TEST(FaceGearContact, TransmissionErrorIsConstantUnderEveryMisalignment) {
       const double m = c.module_mm / 5;  // lengths as fractions of the tooth
       const Pair pair(c, c.shaper_teeth - 2, {moved.offset_mm * m, moved.axial_mm * m, moved.angle_rad});
       for (const int s : {1, -1}) {
-        SCOPED_TRACE(fmt::format("{} side {} dE {} dL {} dgamma {}", name, s, moved.offset_mm, moved.axial_mm, moved.angle_rad));
+        SCOPED_TRACE(
+            fmt::format("{} side {} dE {} dL {} dgamma {}", name, s, moved.offset_mm, moved.axial_mm, moved.angle_rad));
         auto [x, phi_0] = pair.pitch_contact(s);
         double low = 1e9, high = -1e9, B_low = 1e9, B_high = -1e9, theta_low = 1e9, theta_high = -1e9;
         for (int k = 0; k <= 20; ++k) {
@@ -156,7 +160,8 @@ TEST(FaceGearContact, PathOfContact) {
       const double th = 0.5 * (lo + hi);
       (f.flank_housing(row.side, th, B).z() > f.z_tip(radius(th)) ? lo : hi) = th;
     }
-    const double r_p1 = 0.5 * f.shaper.m_t * row.pinion_teeth, r_b1 = r_p1 * std::cos(alpha), r_a1 = r_p1 + f.shaper.h_a;
+    const double r_p1 = 0.5 * f.shaper.m_t * row.pinion_teeth, r_b1 = r_p1 * std::cos(alpha),
+                 r_a1 = r_p1 + f.shaper.h_a;
     const double th_1 = std::sqrt(r_a1 * r_a1 - r_b1 * r_b1) / r_b1;
     const double th_end = std::tan(alpha) + (th_1 - std::tan(alpha)) * r_b1 / f.shaper.r_b;
     EXPECT_NEAR(radius(lo), row.tip, 6e-4) << row.name << " " << row.side;

@@ -12,11 +12,13 @@
 namespace toothpath::test {
 namespace {
 
-using Wide = boost::multiprecision::number<boost::multiprecision::cpp_bin_float_50::backend_type, boost::multiprecision::et_off>;
+using Wide =
+    boost::multiprecision::number<boost::multiprecision::cpp_bin_float_50::backend_type, boost::multiprecision::et_off>;
 
 const std::vector<contact::Misalignment>& moves() {
-  static const std::vector<contact::Misalignment> list = {{0, 0, 0},        {0.1, 0, 0},          {0, 0.15, 0},         {0, 0, 0.0004},
-                                                 {0, 0, -0.0008}, {0.1, 0.15, 0.0004}, {-0.05, 0.1, -0.0006}};
+  static const std::vector<contact::Misalignment> list = {
+      {0, 0, 0},       {0.1, 0, 0},         {0, 0.15, 0},         {0, 0, 0.0004},
+      {0, 0, -0.0008}, {0.1, 0.15, 0.0004}, {-0.05, 0.1, -0.0006}};
   return list;
 }
 
@@ -28,7 +30,8 @@ face_gear::FaceGear gear_of(const FaceGearCase& c, double inner, double outer) {
   return std::move(made).value();
 }
 
-contact::ContactMember member_of(const face_gear::FaceGear& gear, int side, int pinion_teeth, const contact::Misalignment& moved = {}, int rows = 31, int columns = 41) {
+contact::ContactMember member_of(const face_gear::FaceGear& gear, int side, int pinion_teeth,
+                                 const contact::Misalignment& moved = {}, int rows = 31, int columns = 41) {
   auto flank = contact::exact_flank(gear, 0, side, rows, columns);
   if (!flank) throw std::invalid_argument(flank.error().message);
   return {std::move(flank.value()), contact::make_pinion(gear.rings()[0].surface, pinion_teeth, moved)};
@@ -36,12 +39,14 @@ contact::ContactMember member_of(const face_gear::FaceGear& gear, int side, int 
 
 /// Both flanks at the point of the path: distance of the points and of the normals.
 template <typename S>
-std::pair<S, S> misfit(const face_gear::FaceGearSurface<S>& f, const contact::Pinion<S>& pinion, const contact::ContactPath<S>& path, const S& theta_1) {
+std::pair<S, S> misfit(const face_gear::FaceGearSurface<S>& f, const contact::Pinion<S>& pinion,
+                       const contact::ContactPath<S>& path, const S& theta_1) {
   const int s = path.side;
   const auto gear = f.flank(s, path.theta(theta_1), path.B);
   const auto mate = pinion.flank(s, theta_1, path.section(theta_1, pinion.T), path.phi_1(theta_1));
   const S turn = path.phi_2(theta_1);
-  const Vec3T<S> dp = face_gear::FaceGearSurface<S>::turned(gear.p, turn) - mate.p, dn = face_gear::FaceGearSurface<S>::turned(gear.n, turn) - mate.n;
+  const Vec3T<S> dp = face_gear::FaceGearSurface<S>::turned(gear.p, turn) - mate.p,
+                 dn = face_gear::FaceGearSurface<S>::turned(gear.n, turn) - mate.n;
   const Vec3T<S> on_path = path.point(theta_1) - mate.p;
   using std::sqrt;
   return {S(sqrt(S(dp.dot(dp))) + sqrt(S(on_path.dot(on_path)))), S(sqrt(S(dn.dot(dn))))};
@@ -55,9 +60,11 @@ void expect_common_points(double tolerance) {
     const auto f = c.surface<S>();
     const double m = c.module_mm / 5;
     for (const auto& moved : moves()) {
-      const auto pinion = contact::make_pinion(f, c.shaper_teeth - 2, {moved.offset_mm * m, moved.axial_mm * m, moved.angle_rad});
+      const auto pinion =
+          contact::make_pinion(f, c.shaper_teeth - 2, {moved.offset_mm * m, moved.axial_mm * m, moved.angle_rad});
       for (const int s : {1, -1}) {
-        SCOPED_TRACE(fmt::format("{} side {} dE {} dL {} dgamma {}", name, s, moved.offset_mm, moved.axial_mm, moved.angle_rad));
+        SCOPED_TRACE(
+            fmt::format("{} side {} dE {} dL {} dgamma {}", name, s, moved.offset_mm, moved.axial_mm, moved.angle_rad));
         const auto path = contact::contact_path(f, pinion, s);
         ASSERT_TRUE(path.has_value());
         EXPECT_FALSE(path->line_contact);
@@ -115,10 +122,12 @@ TEST(ContactPath, RadiiOfTheOffsetGear) {
   EXPECT_NEAR(degrees(contact::contact_path(f, contact::make_pinion(f, 23, {0.1, 0, 0}), 1)->B), 21.996, 6e-4);
 }
 
-/// Inside the flank the rolled transmission error is the closed form's constant, aligned and not: ripple below 1e-12 rad.
+/// Inside the flank the rolled transmission error is the closed form's constant, aligned and not: ripple below 1e-12
+/// rad.
 TEST(Roll, TransmissionErrorIsConstantInsideTheFlank) {
   const face_gear::FaceGear gear = gear_of(case_named("offset_15"), 130.5, 147);
-  for (const auto& moved : {contact::Misalignment{}, contact::Misalignment{0.05, 0, 0}, contact::Misalignment{0, 0.08, 0}, contact::Misalignment{0.04, 0.05, -0.0002}})
+  for (const auto& moved : {contact::Misalignment{}, contact::Misalignment{0.05, 0, 0},
+                            contact::Misalignment{0, 0.08, 0}, contact::Misalignment{0.04, 0.05, -0.0002}})
     for (const int side : {1, -1}) {
       SCOPED_TRACE(fmt::format("side {} dE {}", side, moved.offset_mm));
       const auto member = member_of(gear, side, 23, moved);
@@ -134,7 +143,8 @@ TEST(Roll, TransmissionErrorIsConstantInsideTheFlank) {
       EXPECT_EQ(rolled->most_touching, 2);
       int on_path = 0;
       for (const auto& place : rolled->patterns[0].path) {
-        // On the line of the closed form: its radius at this turn of the pinion. Just beyond its ends the edges still touch.
+        // On the line of the closed form: its radius at this turn of the pinion. Just beyond its ends the edges still
+        // touch.
         const double theta_1 = (path->phi_1_0 - place.phi_1) / path->per_theta;
         if (theta_1 < range->theta_1_from || theta_1 > range->theta_1_to) continue;
         ++on_path;
@@ -145,7 +155,8 @@ TEST(Roll, TransmissionErrorIsConstantInsideTheFlank) {
     }
 }
 
-/// The double helical gear with its pinion: line contact on all of both halves, no transmission error, two to three pairs.
+/// The double helical gear with its pinion: line contact on all of both halves, no transmission error, two to three
+/// pairs.
 TEST(Roll, DoubleHelicalGearHasLineContact) {
   const auto c = case_named("dhfg_transverse");
   face_gear::FaceGearParameters p = c.parameters();
@@ -170,16 +181,17 @@ TEST(Roll, DoubleHelicalGearHasLineContact) {
     EXPECT_LE(rolled->most_touching, 4);
     for (std::size_t m = 0; m < 2; ++m) {
       const auto& pattern = rolled->patterns[m];
-      for (std::size_t k = 0; k < pattern.gap_mm.size(); ++k)
-        EXPECT_GT(pattern.gap_mm[k], -1e-9);
+      for (std::size_t k = 0; k < pattern.gap_mm.size(); ++k) EXPECT_GT(pattern.gap_mm[k], -1e-9);
       EXPECT_GT(pattern.marked_share, 0.8);
     }
   }
 }
 
-/// A path that has left the flank: contact on edges, an error that is not constant, and the same as two dense clouds of points give.
+/// A path that has left the flank: contact on edges, an error that is not constant, and the same as two dense clouds of
+/// points give.
 TEST(Roll, EdgeContactAgreesWithPointClouds) {
-  const face_gear::FaceGear gear = gear_of(case_named("offset_15"), 137, 147);  // the aligned path runs at 132 to 134 mm
+  const face_gear::FaceGear gear =
+      gear_of(case_named("offset_15"), 137, 147);  // the aligned path runs at 132 to 134 mm
   for (const int side : {1, -1}) {
     const auto member = member_of(gear, side, 23);
     const auto path = contact::contact_path(member.flank.surface, member.pinion, side);
@@ -207,7 +219,8 @@ TEST(Roll, InnerContactAgreesWithPointClouds) {
   }
 }
 
-/// Stock all over a flank is a turn of it by stock / M2; a planted hump shows with its height where the path crosses it.
+/// Stock all over a flank is a turn of it by stock / M2; a planted hump shows with its height where the path crosses
+/// it.
 TEST(Roll, DeviationsShowInTheTransmissionError) {
   const face_gear::FaceGear gear = gear_of(case_named("offset_15"), 130.5, 147);
   for (const int side : {1, -1}) {
@@ -239,7 +252,8 @@ TEST(MeasuredFlank, OrderOfRowsAndToothDoNotMatter) {
   std::vector<double> deviation;
   for (int r = 8; r >= 0; --r)
     for (int c = 0; c < 11; ++c) {
-      points.push_back(face_gear::FaceGearSurface<double>::turned(exact->points[exact->index(r, c)], exact->surface.pitch));
+      points.push_back(
+          face_gear::FaceGearSurface<double>::turned(exact->points[exact->index(r, c)], exact->surface.pitch));
       deviation.push_back(1e-3 * r + 1e-4 * c);
     }
   const auto measured = contact::measured_flank(gear, 0, -1, 9, 11, points, deviation);
@@ -251,7 +265,8 @@ TEST(MeasuredFlank, OrderOfRowsAndToothDoNotMatter) {
   EXPECT_FALSE(contact::measured_flank(gear, 0, -1, 9, 11, points, deviation));
 }
 
-/// More compound colours more; offset to the other side with the other flank gives the same pattern; the pinion's places lie on its flank.
+/// More compound colours more; offset to the other side with the other flank gives the same pattern; the pinion's
+/// places lie on its flank.
 TEST(Pattern, GrowsWithTheCompoundAndMirrors) {
   const auto c = case_named("offset_15");
   const face_gear::FaceGear gear = gear_of(c, 130.5, 147);
@@ -280,7 +295,8 @@ TEST(Pattern, GrowsWithTheCompoundAndMirrors) {
   }
 }
 
-/// Half width of the pattern across the path from the relative curvature of both flanks: gap = x^2 / 2 times its least value.
+/// Half width of the pattern across the path from the relative curvature of both flanks: gap = x^2 / 2 times its least
+/// value.
 TEST(Pattern, WidthFollowsTheRelativeCurvature) {
   const face_gear::FaceGear gear = gear_of(case_named("offset_15"), 130.5, 147);
   const auto member = member_of(gear, 1, 22, {}, 61, 121);
@@ -290,12 +306,14 @@ TEST(Pattern, WidthFollowsTheRelativeCurvature) {
   ASSERT_TRUE(rolled);
   const auto path = contact::contact_path(f, member.pinion, 1);
   const double theta_1 = std::tan(f.shaper.alpha_t), theta = path->theta(theta_1);
-  // Curvatures in (e, l): the pinion's only across its generators (spur), 1/(r_b1 theta_1), and convex towards the gear.
+  // Curvatures in (e, l): the pinion's only across its generators (spur), 1/(r_b1 theta_1), and convex towards the
+  // gear.
   const auto H = f.flank_shape(1, theta, path->B);
   const double ee = H.ee + 1 / (member.pinion.r_b * theta_1), el = H.el, ll = H.ll;
   ASSERT_GT(ee * ll - el * el, 0);
-  // While rolling, each place is met at the best moment: what is left across is the Schur complement along the direction in which the
-  // contact line sweeps. For a spur pinion the sweep moves contact across the generators (e), the pattern's width is along l.
+  // While rolling, each place is met at the best moment: what is left across is the Schur complement along the
+  // direction in which the contact line sweeps. For a spur pinion the sweep moves contact across the generators (e),
+  // the pattern's width is along l.
   const double across = ll - el * el / ee, half_width = std::sqrt(2 * compound / across);
   double low = 1e9, high = -1e9;
   const auto& p = rolled->patterns[0];
@@ -337,7 +355,8 @@ TEST(FaceGearForces, BalanceOfTorqueAndAxialForce) {
     const auto both = contact::double_mesh_force(inner, outer, p_in, p_out, s, torque, 0.5);
     EXPECT_NEAR(both.axial_n, 0, 1e-9);
     EXPECT_NEAR(both.single_axial_n, f.pinion_axial_n, 1e-9);
-    EXPECT_NEAR(contact::double_mesh_force(inner, outer, p_in, p_out, s, torque, 0.65).axial_n / both.single_axial_n, 0.3, 1e-12);
+    EXPECT_NEAR(contact::double_mesh_force(inner, outer, p_in, p_out, s, torque, 0.65).axial_n / both.single_axial_n,
+                0.3, 1e-12);
   }
 }
 

@@ -1,4 +1,5 @@
-// Where flanks and fillets end in gears that are no longer ordinary: low teeth, no pointing radius, undercut that runs outwards.
+// Where flanks and fillets end in gears that are no longer ordinary: low teeth, no pointing radius, undercut that runs
+// outwards.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -27,7 +28,8 @@ bool refused_with(const face_gear::FaceGearParameters& g, const std::string& key
   return false;
 }
 
-/// Every fillet query is answered, from starts near and far, with a point on the radius that the solid shaper just touches.
+/// Every fillet query is answered, from starts near and far, with a point on the radius that the solid shaper just
+/// touches.
 TEST(FaceGearEnds, FilletIsFoundFromAnyStart) {
   int queries = 0;
   for (auto c : random_cases(99, 60)) {
@@ -53,7 +55,8 @@ TEST(FaceGearEnds, FilletIsFoundFromAnyStart) {
   EXPECT_GT(queries, 5000);
 }
 
-/// No flank exists inside the limit that is said to be hard: it is the largest of what bounds either flank, and its name says which.
+/// No flank exists inside the limit that is said to be hard: it is the largest of what bounds either flank, and its
+/// name says which.
 TEST(FaceGearEnds, HardLimitIsTheLargestOfAllAndNamed) {
   std::map<std::string, int> named;
   auto cases = random_cases(41, 60);
@@ -69,12 +72,11 @@ TEST(FaceGearEnds, HardLimitIsTheLargestOfAllAndNamed) {
       for (const auto& flank : limits.flanks)
         if (flank.undercut_radius && *flank.undercut_radius > hard) hard = *flank.undercut_radius, name = "undercut";
       for (const auto& flank : limits.flanks)
-        if (flank.flank_start_radius && *flank.flank_start_radius > hard) hard = *flank.flank_start_radius, name = "fillet up to the tip";
+        if (flank.flank_start_radius && *flank.flank_start_radius > hard)
+          hard = *flank.flank_start_radius, name = "fillet up to the tip";
       EXPECT_EQ(limits.hard_inner_limit, hard) << c.name << " addendum " << addendum;
       EXPECT_GE(limits.inner_limit, hard);
-      if (limits.inner_limit == hard) {
-        EXPECT_EQ(limits.inner_limit_name, name);
-      }
+      if (limits.inner_limit == hard) { EXPECT_EQ(limits.inner_limit_name, name); }
       ++named[name];
     }
   EXPECT_GE(named["undercut"], 5);
@@ -90,14 +92,16 @@ TEST(FaceGearEnds, SweptClearanceAgreesWithBruteForce) {
       const auto q = f.flank(at.side, at.theta, at.B);
       for (const double off : {-0.02, -1e-4, 0.0, 1e-4, 0.02}) {
         const Vec3 p = q.p + off * c.module_mm * q.n;
-        EXPECT_NEAR(face_gear::swept_clearance(f, p), solid.least_clearance(p) * solid.cos_base_helix(), 1e-11 * f.L_p) << c.name << " off " << off;
+        EXPECT_NEAR(face_gear::swept_clearance(f, p), solid.least_clearance(p) * solid.cos_base_helix(), 1e-11 * f.L_p)
+            << c.name << " off " << off;
       }
       EXPECT_NEAR(face_gear::swept_clearance(f, q.p), 0, 1e-12 * f.L_p);
     }
   }
 }
 
-/// Stub teeth of a coarse shaper keep a land far beyond the pitch radius: a sound zone is no error because R2 is far away.
+/// Stub teeth of a coarse shaper keep a land far beyond the pitch radius: a sound zone is no error because R2 is far
+/// away.
 TEST(FaceGearEnds, StubTeethAreAccepted) {
   FaceGearCase c{"low_teeth", 9, 61, 4.9, 27.8, 20.8, 51.6, 95.5, 0.33, false, 0, {}, {}, 0, 0};
   const auto f = c.surface();
@@ -116,7 +120,8 @@ TEST(FaceGearEnds, FlankThatEndsBeforePointing) {
   double end = INFINITY;
   for (const auto& flank : limits.flanks)
     if (flank.flank_end_radius) {
-      EXPECT_NEAR(face_gear::fillet_line_height(f, flank.side, *flank.flank_end_radius).value(), f.z_tip(*flank.flank_end_radius), 1e-9 * f.L_p);
+      EXPECT_NEAR(face_gear::fillet_line_height(f, flank.side, *flank.flank_end_radius).value(),
+                  f.z_tip(*flank.flank_end_radius), 1e-9 * f.L_p);
       end = std::min(end, *flank.flank_end_radius);
     }
   ASSERT_LT(end, *limits.land_radius);
@@ -126,10 +131,11 @@ TEST(FaceGearEnds, FlankThatEndsBeforePointing) {
       EXPECT_TRUE(!flank.flank_end_radius || *flank.flank_end_radius > case_named(ordinary).pointing) << ordinary;
 }
 
-/// A gear whose undercut corner runs outwards from R1c: a zone that starts just outside R1c is refused by the solid shaper, one
-/// that starts a millimetre further out is not.
+/// A gear whose undercut corner runs outwards from R1c: a zone that starts just outside R1c is refused by the solid
+/// shaper, one that starts a millimetre further out is not.
 TEST(FaceGearEnds, UndercutBeyondTheCusp) {
-  FaceGearCase c{"outwards", 54, 107, 1.30447, 19.8215, -43.8004, 12.6251, 103.368, 0.847233, true, 0.307558, {}, {}, 0, 0};
+  FaceGearCase c{"outwards", 54,   107,      1.30447, 19.8215, -43.8004, 12.6251, 103.368,
+                 0.847233,   true, 0.307558, {},      {},      0,        0};
   const auto limits = face_gear::zone_limits(c.surface(), c.module_mm);
   const double R1c = limits.flanks[1].undercut_radius.value();
   EXPECT_TRUE(refused_with(with_zone(c, R1c + 1e-3, R1c + 2), "zone[0].inner_radius", "undercut beyond R1c"));

@@ -51,9 +51,7 @@ TEST_P(Envelope, DistanceInsideTheMaterialIsExact) {
     ASSERT_TRUE(d);
     EXPECT_NEAR(d->distance, -depth, 1e-12 * f.L_p);
   }
-  if (c.name != "few_teeth") {
-    EXPECT_GT(tried, 0);
-  }
+  if (c.name != "few_teeth") { EXPECT_GT(tried, 0); }
 }
 
 TEST_P(Envelope, FilletAndRootAreWhereMaterialBegins) {
@@ -75,7 +73,8 @@ TEST_P(Envelope, FilletAndRootAreWhereMaterialBegins) {
           ASSERT_TRUE(Z) << c.name << " r " << r << " A " << A;
           const auto q = f.fillet(side, A, *Z);
           ASSERT_TRUE(q.defined);
-          expect_on_surface(sweep, q.p, q.n, f.L_p, step, fmt::format("fillet side {} A {} r {} rho {}", side, A, r, f.shaper.rho));
+          expect_on_surface(sweep, q.p, q.n, f.L_p, step,
+                            fmt::format("fillet side {} A {} r {} rho {}", side, A, r, f.shaper.rho));
         }
       }
       // Middle and edges of the root land.
@@ -87,8 +86,9 @@ TEST_P(Envelope, FilletAndRootAreWhereMaterialBegins) {
       EXPECT_NEAR(to - from, f.pitch - 2 * f.i * f.shaper.psi_c, 1e-12);
       for (const double u : {0.05, 0.5, 0.95}) {
         const double turn = from + u * (to - from) - own;
-        expect_on_surface(sweep, face_gear::FaceGearSurface<double>::turned(root.p, turn), face_gear::FaceGearSurface<double>::turned(root.n, turn),
-                          f.L_p, step, fmt::format("root r {} u {}", r, u));
+        expect_on_surface(sweep, face_gear::FaceGearSurface<double>::turned(root.p, turn),
+                          face_gear::FaceGearSurface<double>::turned(root.n, turn), f.L_p, step,
+                          fmt::format("root r {} u {}", r, u));
       }
       const auto height = face_gear::root_height(f, std::hypot(root.p.x(), root.p.y()));
       ASSERT_TRUE(height);
@@ -97,13 +97,13 @@ TEST_P(Envelope, FilletAndRootAreWhereMaterialBegins) {
   }
 }
 
-
 INSTANTIATE_TEST_SUITE_P(Extreme, Envelope, testing::ValuesIn(extreme_cases()), name_of_case);
 INSTANTIATE_TEST_SUITE_P(Random, Envelope, testing::ValuesIn(random_cases(20240607, 8)), name_of_case);
 
 /// Above R1c the fillet joins the flank; below it, its beginning is cut away by the other sheet or does not exist.
 TEST(EnvelopeLimits, BelowTheUndercutRadiusTheBeginningOfTheFilletIsCutAway) {
-  for (const char* name : {"offset_15", "dhfg_transverse", "gamma_75_mixed", "gamma_110_mixed", "spur_25_88", "offset_90"}) {
+  for (const char* name :
+       {"offset_15", "dhfg_transverse", "gamma_75_mixed", "gamma_110_mixed", "spur_25_88", "offset_90"}) {
     for (const double share : {0.0, 0.6}) {
       auto c = case_named(name);
       c.tip_radius_mm = share * largest_tip_radius(c.parameters(), c.beta());
@@ -113,7 +113,8 @@ TEST(EnvelopeLimits, BelowTheUndercutRadiusTheBeginningOfTheFilletIsCutAway) {
         if (!flank.undercut_radius) continue;
         const double A = f.shaper.A_t + 1e-9, Z_cusp = f.flank_Z(flank.side, f.shaper.theta_t, *flank.undercut_B);
         const auto clearance_at = [&](double beyond) -> std::optional<double> {
-          const auto Z = face_gear::fillet_Z_at_radius(f, flank.side, A, *flank.undercut_radius + beyond, Z_cusp + beyond);
+          const auto Z =
+              face_gear::fillet_Z_at_radius(f, flank.side, A, *flank.undercut_radius + beyond, Z_cusp + beyond);
           if (!Z) return {};
           return sweep.least_clearance(f.fillet(flank.side, A, *Z).p);
         };
@@ -146,7 +147,8 @@ TEST(EnvelopeLimits, TipThicknessAndPointingRadius) {
     const auto uncut_at = [&](double r, double azimuth) {
       return sweep.least_clearance({r * std::cos(azimuth), r * std::sin(azimuth), f.z_tip(r)}) > 0;
     };
-    for (const double r : {limits.inner_limit + 0.3 * c.module_mm, *limits.land_radius, *limits.pointing_radius - 1e-3}) {
+    for (const double r :
+         {limits.inner_limit + 0.3 * c.module_mm, *limits.land_radius, *limits.pointing_radius - 1e-3}) {
       const double middle = centre(r);
       ASSERT_TRUE(uncut_at(r, middle)) << name;
       double width = 0;
@@ -179,7 +181,8 @@ TEST(EnvelopeLimits, SeesPlantedErrors) {
   const BruteForceFaceGear good(c.parameters(), 0), deep(longer, 0), thin(shifted, 0);
   const auto flank = f.flank(1, 0.35, 0.5);
   const auto root = f.root_meridian(138.0);
-  const double turn = 0.5 * (f.root_edge_azimuth(1, 138.0) + f.root_edge_azimuth(-1, 138.0)) - std::atan2(root.p.y(), root.p.x());
+  const double turn =
+      0.5 * (f.root_edge_azimuth(1, 138.0) + f.root_edge_azimuth(-1, 138.0)) - std::atan2(root.p.y(), root.p.x());
   const Vec3 on_root = face_gear::FaceGearSurface<double>::turned(root.p, turn);
   EXPECT_NEAR(good.least_clearance(flank.p), 0, 1e-11);
   EXPECT_NEAR(thin.least_clearance(flank.p), -0.0005, 1e-9);

@@ -27,7 +27,8 @@ const std::vector<Exact>& gears() {
   static const std::vector<Exact> all = [] {
     std::vector<Exact> list;
     std::vector<FaceGearCase> cases;
-    for (const char* name : {"spur_25_88", "offset_15", "dhfg_transverse", "dhfg_normal", "gamma_75_mixed", "gamma_110_mixed", "beta_45"})
+    for (const char* name :
+         {"spur_25_88", "offset_15", "dhfg_transverse", "dhfg_normal", "gamma_75_mixed", "gamma_110_mixed", "beta_45"})
       cases.push_back(case_named(name));
     for (const auto& c : random_cases(31337, 5)) cases.push_back(c);
     for (auto& c : cases) {
@@ -133,7 +134,8 @@ TEST(FaceGearExact, ReferenceSectionTurnsTheGear) {
     const F50 D = F50(7.25) * F50(g.c.module_mm);
     moved.L0 += D;
     const auto p = g.f.flank(s, th, B), q = moved.flank(s, th, B);
-    EXPECT_LT(size(Vec(q.p - face_gear::FaceGearSurface<F50>::turned(p.p, F50(-g.f.i * g.f.shaper.kappa * D)))), 1e-44 * g.near.L_p);
+    EXPECT_LT(size(Vec(q.p - face_gear::FaceGearSurface<F50>::turned(p.p, F50(-g.f.i * g.f.shaper.kappa * D)))),
+              1e-44 * g.near.L_p);
   });
 }
 
@@ -258,7 +260,8 @@ TEST(FaceGearExact, LimitsOfHelixOffsetAndShaftAngleAreOrdinary) {
         for (const double B : {0.15, 0.5, 0.8}) {
           worst = std::max(worst, size(Vec(f.flank(s, F50(th), F50(s * B)).p - g.flank(s, F50(th), F50(s * B)).p)));
           const F50 A = f.shaper.A_t + F50(0.2);
-          worst = std::max(worst, size(Vec(f.fillet(s, A, F50(f.L_p * F50(1.05))).p - g.fillet(s, A, F50(f.L_p * F50(1.05))).p)));
+          worst = std::max(
+              worst, size(Vec(f.fillet(s, A, F50(f.L_p * F50(1.05))).p - g.fillet(s, A, F50(f.L_p * F50(1.05))).p)));
         }
     return worst;
   };
@@ -271,7 +274,8 @@ TEST(FaceGearExact, LimitsOfHelixOffsetAndShaftAngleAreOrdinary) {
       const double difference = spread(near, base);
       EXPECT_GT(difference, 0);
       if (before > 0) {
-        EXPECT_NEAR(before / difference, 1000, what == 2 && small < 1e-10 ? 20 : 5) << "quantity " << what << " at " << small;
+        EXPECT_NEAR(before / difference, 1000, what == 2 && small < 1e-10 ? 20 : 5)
+            << "quantity " << what << " at " << small;
       }
       before = difference;
     }
@@ -290,9 +294,7 @@ TEST(FaceGearExact, ManyTeethMakeARack) {
     ASSERT_TRUE(q.defined);
     const auto H = f.flank_shape(1, th, q.B);
     const double off = std::abs(as_double(q.B - f.shaper.alpha_t));
-    if (before_B > 0) {
-      EXPECT_NEAR(before_B / off, 100, 1);
-    }
+    if (before_B > 0) { EXPECT_NEAR(before_B / off, 100, 1); }
     before_B = off;
     if (teeth == 180000000) {
       EXPECT_NEAR(as_double(H.ee * F50(teeth)), 1.2492, 6e-5);
@@ -321,7 +323,8 @@ TEST(FaceGearExact, ToothIsHalfAPitchAtThePitchPoint) {
   }
 }
 
-/// T14. A pinion of fewer teeth on parallel axis, aligned: contact at B = s alpha_t, common normal, no transmission error.
+/// T14. A pinion of fewer teeth on parallel axis, aligned: contact at B = s alpha_t, common normal, no transmission
+/// error.
 TEST(FaceGearExact, AlignedPinionTouchesWithoutTransmissionError) {
   for (const auto& g : gears()) {
     SCOPED_TRACE(g.c.name);
@@ -336,8 +339,8 @@ TEST(FaceGearExact, AlignedPinionTouchesWithoutTransmissionError) {
           const F50 th(roll), B = F50(s) * alpha, Z = f.flank_Z(s, th, B);
           const F50 th1 = tan(alpha) + (th - tan(alpha)) * f.shaper.r_b / r_b1;
           const F50 phi1 = B - F50(s) * (theta_01 + th1) - kappa1 * (Z - f.L0);
-          const Vec on_pinion = f.b() * f.E + f.d() * F50(f.shaper.r_p - r_p1) + f.a() * Z +
-                                (f.e(B) - f.t(B) * F50(F50(s) * th1)) * r_b1;
+          const Vec on_pinion =
+              f.b() * f.E + f.d() * F50(f.shaper.r_p - r_p1) + f.a() * Z + (f.e(B) - f.t(B) * F50(F50(s) * th1)) * r_b1;
           EXPECT_LT(size(Vec(on_pinion - f.flank_housing(s, th, B))), 1e-43 * g.near.L_p);
           // Gear angle minus its nominal angle: the same for all points of the path.
           const F50 phi2 = f.i * f.flank_phi(s, th, B);

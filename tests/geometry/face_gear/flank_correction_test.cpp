@@ -1,4 +1,5 @@
-// Corrected flanks: the fit against fields that it can hold, and the displaced sheet against differences of its own points.
+// Corrected flanks: the fit against fields that it can hold, and the displaced sheet against differences of its own
+// points.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,8 +8,8 @@
 
 #include "geometry/base/angle.h"
 #include "geometry/face_gear/flank_correction.h"
-#include "geometry/inspection/grid.h"
 #include "geometry/face_gear/space_sheet.h"
+#include "geometry/inspection/grid.h"
 #include "tests/support/sample_gears.h"
 
 namespace toothpath {
@@ -21,23 +22,29 @@ face_gear::FaceGear gear_of(double offset, double helix_deg, double shaft_deg) {
   return test::made(g);
 }
 
-std::vector<face_gear::FlankDeviation> field_on_grid(const face_gear::FaceGear& gear, int side, const std::function<double(double, double)>& field) {
+std::vector<face_gear::FlankDeviation> field_on_grid(const face_gear::FaceGear& gear, int side,
+                                                     const std::function<double(double, double)>& field) {
   std::vector<face_gear::FlankDeviation> out;
   const auto grid = inspection::inspection_grid(gear);
   EXPECT_TRUE(grid);
   for (const auto& p : *grid)
-    if (p.side == side) out.push_back({p.row, p.column, p.theta, std::hypot(p.p.x(), p.p.y()), field(double(p.row) / 4, double(p.column) / 8)});
+    if (p.side == side)
+      out.push_back(
+          {p.row, p.column, p.theta, std::hypot(p.p.x(), p.p.y()), field(double(p.row) / 4, double(p.column) / 8)});
   return out;
 }
 
 /// 20 um of crowning, slope, twist and a little waviness; x along the profile, y along the face, 0 .. 1.
-double rough(double x, double y) { return 0.02 * (0.4 * (2 * y - 1) + 0.5 * (2 * y - 1) * (2 * y - 1) * (1 - x) - 0.3 * x * x + 0.2 * std::sin(3 * y)); }
+double rough(double x, double y) {
+  return 0.02 * (0.4 * (2 * y - 1) + 0.5 * (2 * y - 1) * (2 * y - 1) * (1 - x) - 0.3 * x * x + 0.2 * std::sin(3 * y));
+}
 
 std::shared_ptr<const face_gear::RingCorrection> correction_of(const face_gear::FaceGear& gear) {
   const double theta_t = gear.rings()[0].surface.shaper.theta_t;
   face_gear::RingCorrection both;
   both.plus = *face_gear::FlankCorrection::fit(field_on_grid(gear, 1, rough), theta_t);
-  both.minus = *face_gear::FlankCorrection::fit(field_on_grid(gear, -1, [](double x, double y) { return -rough(y, x); }), theta_t);
+  both.minus = *face_gear::FlankCorrection::fit(
+      field_on_grid(gear, -1, [](double x, double y) { return -rough(y, x); }), theta_t);
   return std::make_shared<face_gear::RingCorrection>(both);
 }
 
@@ -51,14 +58,18 @@ TEST(FlankCorrection, HoldsAPolynomialExactlyAndStatesWhatIsLeft) {
   EXPECT_LT(fit->residual().residual_max_mm, 5e-6);  // sin(3 y) beyond the sixth degree, and a top line that is a cubic
   // Alternating noise cannot be followed: the residual says so.
   const auto noise = face_gear::FlankCorrection::fit(
-      field_on_grid(gear, 1, [](double x, double y) { return (int(std::lround(4 * x)) + int(std::lround(8 * y))) % 2 ? 1e-3 : -1e-3; }), theta_t);
+      field_on_grid(
+          gear, 1,
+          [](double x, double y) { return (int(std::lround(4 * x)) + int(std::lround(8 * y))) % 2 ? 1e-3 : -1e-3; }),
+      theta_t);
   ASSERT_TRUE(noise);
   EXPECT_GT(noise->residual().residual_max_mm, 5e-4);
 }
 
 TEST(FlankCorrection, DerivativesAreThoseOfTheValue) {
   const auto gear = gear_of(15, 0, 90);
-  const auto fit = face_gear::FlankCorrection::fit(field_on_grid(gear, -1, rough), gear.rings()[0].surface.shaper.theta_t);
+  const auto fit =
+      face_gear::FlankCorrection::fit(field_on_grid(gear, -1, rough), gear.rings()[0].surface.shaper.theta_t);
   ASSERT_TRUE(fit);
   for (const double theta : {-0.05, 0.02, 0.2, 0.4, 0.56, 0.7})
     for (const double r : {120.0, 131.0, 133.0, 140.0, 144.5, 150.0}) {
@@ -74,9 +85,11 @@ TEST(FlankCorrection, TooFewPointsAndWildNumbersAreRefused) {
   auto points = field_on_grid(gear, 1, rough);
   auto few = points;
   std::erase_if(few, [](const face_gear::FlankDeviation& p) { return p.row == 2; });
-  EXPECT_EQ(face_gear::FlankCorrection::fit(few, 0.6).error().message, "4 rows x 9 columns are too few to fit, at least 5 x 9 are needed");
+  EXPECT_EQ(face_gear::FlankCorrection::fit(few, 0.6).error().message,
+            "4 rows x 9 columns are too few to fit, at least 5 x 9 are needed");
   points[7].deviation_mm = NAN;
-  EXPECT_EQ(face_gear::FlankCorrection::fit(points, 0.6).error().message, "row 0, column 7: the deviation or its place is not finite");
+  EXPECT_EQ(face_gear::FlankCorrection::fit(points, 0.6).error().message,
+            "row 0, column 7: the deviation or its place is not finite");
 }
 
 class CorrectedSheet : public testing::TestWithParam<std::array<double, 3>> {};
@@ -87,11 +100,13 @@ TEST_P(CorrectedSheet, DisplacesTheGridByMinusTheDeviation) {
   const face_gear::SpaceSheet sheet(gear.parameters(), gear.rings()[0]);
   const auto grid = inspection::inspection_grid(nominal);
   for (const auto& p : *grid) {
-    const auto q = sheet.at(p.side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus, p.theta, p.B);
+    const auto q =
+        sheet.at(p.side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus, p.theta, p.B);
     ASSERT_TRUE(q);
     const Vec3 at = p.side > 0 ? q->p : face_gear::FaceGearSurface<double>::turned(q->p, -nominal.pitch());
     const double x = double(p.row) / 4, y = double(p.column) / 8, wanted = p.side > 0 ? -rough(x, y) : rough(y, x);
-    EXPECT_NEAR((at - p.p).dot(p.n), wanted, gear.rings()[0].correction->side(p.side).residual().residual_max_mm + 1e-9);
+    EXPECT_NEAR((at - p.p).dot(p.n), wanted,
+                gear.rings()[0].correction->side(p.side).residual().residual_max_mm + 1e-9);
     EXPECT_LT((at - p.p - p.n * (at - p.p).dot(p.n)).norm(), 1e-10);
   }
 }
@@ -112,8 +127,8 @@ TEST_P(CorrectedSheet, NormalsAndDerivativesAreThoseOfThePoints) {
     const double u = flank ? between(0.1, f.shaper.theta_t) : between(f.shaper.A_t, f.shaper.A_e);
     const double v = flank ? side * between(0.3, 0.6) : (between(132, 142) + f.shaper.r_p * f.Cg) / f.Sg;
     const double h = 1e-5, g = flank ? 1e-5 : 1e-3;
-    const auto q = sheet.at(piece, u, v), u0 = sheet.at(piece, u - h, v), u1 = sheet.at(piece, u + h, v), v0 = sheet.at(piece, u, v - g),
-               v1 = sheet.at(piece, u, v + g);
+    const auto q = sheet.at(piece, u, v), u0 = sheet.at(piece, u - h, v), u1 = sheet.at(piece, u + h, v),
+               v0 = sheet.at(piece, u, v - g), v1 = sheet.at(piece, u, v + g);
     if (!q || !u0 || !u1 || !v0 || !v1) continue;
     ++seen;
     EXPECT_LT(((u1->p - u0->p) / (2 * h) - q->pu).norm(), 1e-5 * q->pu.norm());
@@ -121,7 +136,8 @@ TEST_P(CorrectedSheet, NormalsAndDerivativesAreThoseOfThePoints) {
     EXPECT_NEAR(q->n.norm(), 1, 1e-12);
     EXPECT_NEAR(q->n.dot(q->pu.normalized()), 0, 1e-12);
     // The nearest point of a point above the sheet is the point below it.
-    const auto foot = sheet.foot(piece, q->p + (flank ? 0.8 : 0.3) * q->n, u + (flank ? 0.01 : 0.02), v + (flank ? 0.01 : 0.3));
+    const auto foot =
+        sheet.foot(piece, q->p + (flank ? 0.8 : 0.3) * q->n, u + (flank ? 0.01 : 0.02), v + (flank ? 0.01 : 0.3));
     ASSERT_TRUE(foot);
     EXPECT_NEAR(foot->distance, flank ? 0.8 : 0.3, 1e-10);
   }
@@ -144,7 +160,8 @@ TEST_P(CorrectedSheet, FlankFilletAndRootJoinSmoothly) {
       ASSERT_TRUE(a && b);
       EXPECT_LT((a->p - b->p).norm(), 1e-8);
       EXPECT_LT((a->n - b->n).norm(), 1e-6);
-      const auto e = sheet.at(fillet, f.shaper.A_e, Z), r = sheet.at(face_gear::SpacePiece::root, side > 0 ? 0.0 : 1.0, Z);
+      const auto e = sheet.at(fillet, f.shaper.A_e, Z),
+                 r = sheet.at(face_gear::SpacePiece::root, side > 0 ? 0.0 : 1.0, Z);
       ASSERT_TRUE(e && r);
       EXPECT_LT((e->p - r->p).norm(), 1e-9);
       EXPECT_LT((e->n - r->n).norm(), 1e-9);
@@ -155,12 +172,16 @@ TEST_P(CorrectedSheet, FlankFilletAndRootJoinSmoothly) {
 TEST_P(CorrectedSheet, TipEdgeLiesOnTheTipSurface) {
   const auto [E, beta, gamma] = GetParam();
   const auto nominal = gear_of(E, beta, gamma), gear = nominal.corrected({correction_of(nominal)});
-  const face_gear::SpaceSheet sheet(gear.parameters(), gear.rings()[0]), plain(nominal.parameters(), nominal.rings()[0]);
+  const face_gear::SpaceSheet sheet(gear.parameters(), gear.rings()[0]),
+      plain(nominal.parameters(), nominal.rings()[0]);
   for (const int side : {1, -1})
     for (const double r : {131.5, 135.0, 144.0}) {
       const auto tip = sheet.tip(side, r), before = plain.tip(side, r);
       ASSERT_TRUE(tip && before);
-      auto p = sheet.at(side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus, tip->at.theta, tip->at.B)->p;
+      auto p = sheet
+                   .at(side > 0 ? face_gear::SpacePiece::flank_plus : face_gear::SpacePiece::flank_minus, tip->at.theta,
+                       tip->at.B)
+                   ->p;
       if (side < 0) p = face_gear::FaceGearSurface<double>::turned(p, -nominal.pitch());
       EXPECT_NEAR(std::hypot(p.x(), p.y()), r, 1e-9);
       EXPECT_NEAR(p.z(), gear.rings()[0].surface.z_tip(r), 1e-9);
@@ -170,7 +191,8 @@ TEST_P(CorrectedSheet, TipEdgeLiesOnTheTipSurface) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Gears, CorrectedSheet,
-                         testing::Values(std::array{15.0, 0.0, 90.0}, std::array{0.0, 8.0, 90.0}, std::array{-6.0, -5.0, 80.0}));
+                         testing::Values(std::array{15.0, 0.0, 90.0}, std::array{0.0, 8.0, 90.0},
+                                         std::array{-6.0, -5.0, 80.0}));
 
 }  // namespace
 }  // namespace toothpath

@@ -66,7 +66,8 @@ TEST(FaceGearMake, GrooveFloor) {
   EXPECT_NEAR(c.groove_floor(), c.rings()[0].surface.z_tip(459) - 13, 1e-12);
   EXPECT_EQ(c.rings()[0].surface.L0, c.rings()[1].surface.L0);
   EXPECT_GT(std::abs(c.rings()[0].surface.z_tip(445) - c.rings()[0].surface.z_tip(455)), 1);
-  // The root is a cone too: the floor is flat and must lie below it at both edges of the groove, not at its middle only.
+  // The root is a cone too: the floor is flat and must lie below it at both edges of the groove, not at its middle
+  // only.
   double lowest = INFINITY;
   for (const auto& ring : c.rings())
     for (const double r : {455.0, 463.0}) lowest = std::min(lowest, face_gear::root_height(ring.surface, r).value());
@@ -90,16 +91,40 @@ struct Refusal {
 
 const std::vector<Refusal>& refusals() {
   static const std::vector<Refusal> list = {
-      {"undercut", "zone[0].inner_radius", {"129.0000", "undercut", "R1c = 129.5097", "side -1"}, [](auto& g) { g.zones[0].inner_radius_mm = 129; }},
-      {"undercut_other_side", "zone[0].inner_radius", {"R1c = 129.5097", "side +1"}, [](auto& g) { g.zones[0].inner_radius_mm = 129; g.offset_mm = -15; }},
-      {"pointing", "zone[0].outer_radius", {"152.0000", "pointing", "R2 = 151.5833"}, [](auto& g) { g.zones[0].outer_radius_mm = 152; }},
+      {"undercut",
+       "zone[0].inner_radius",
+       {"129.0000", "undercut", "R1c = 129.5097", "side -1"},
+       [](auto& g) { g.zones[0].inner_radius_mm = 129; }},
+      {"undercut_other_side",
+       "zone[0].inner_radius",
+       {"R1c = 129.5097", "side +1"},
+       [](auto& g) {
+         g.zones[0].inner_radius_mm = 129;
+         g.offset_mm = -15;
+       }},
+      {"pointing",
+       "zone[0].outer_radius",
+       {"152.0000", "pointing", "R2 = 151.5833"},
+       [](auto& g) { g.zones[0].outer_radius_mm = 152; }},
       {"inverted_zone", "zone[0].outer_radius", {"130", "130.5"}, [](auto& g) { g.zones[0].outer_radius_mm = 130; }},
       {"empty_zone", "zone[0].outer_radius", {"130.5"}, [](auto& g) { g.zones[0].outer_radius_mm = 130.5; }},
-      {"inside_base", "zone[0].inner_radius", {"120.0000", "124.0394"}, [](auto& g) { g.zones[0].inner_radius_mm = 120; }},
+      {"inside_base",
+       "zone[0].inner_radius",
+       {"120.0000", "124.0394"},
+       [](auto& g) { g.zones[0].inner_radius_mm = 120; }},
       {"inside_offset", "zone[0].inner_radius", {"130.5", "135"}, [](auto& g) { g.offset_mm = -135; }},
-      {"rounding", "shaper_tip_radius", {"1.3000", "too large", "1.1184"}, [](auto& g) { g.shaper_tip_radius_mm = 1.3; }},
+      {"rounding",
+       "shaper_tip_radius",
+       {"1.3000", "too large", "1.1184"},
+       [](auto& g) { g.shaper_tip_radius_mm = 1.3; }},
       {"negative_rounding", "shaper_tip_radius", {"-0.1", "below 0"}, [](auto& g) { g.shaper_tip_radius_mm = -0.1; }},
-      {"pointed_shaper", "addendum_coefficient", {"pointed", "half pitch"}, [](auto& g) { g.addendum_coefficient = 1.9; g.shaper_tip_radius_mm = 0; }},
+      {"pointed_shaper",
+       "addendum_coefficient",
+       {"pointed", "half pitch"},
+       [](auto& g) {
+         g.addendum_coefficient = 1.9;
+         g.shaper_tip_radius_mm = 0;
+       }},
       {"reference_zero", "reference_radius", {"0 mm", "(0,"}, [](auto& g) { g.reference_radius_mm = 0; }},
       {"reference_negative", "reference_radius", {"-5"}, [](auto& g) { g.reference_radius_mm = -5; }},
       {"few_teeth", "teeth", {"3", "[4, 10000]"}, [](auto& g) { g.teeth = 3; }},
@@ -118,12 +143,34 @@ const std::vector<Refusal>& refusals() {
       {"allowance", "stock.allowance_top", {"-1"}, [](auto& g) { g.allowance_top_mm = -1; }},
       {"no_zone", "zone", {"no zone"}, [](auto& g) { g.zones.clear(); }},
       {"helix", "zone[0].helix_angle", {"61", "60"}, [](auto& g) { g.zones[0].helix_angle_rad = radians(61); }},
-      {"overlap", "zone[1].inner_radius", {"467", "468", "zone 0"}, [](auto& g) { g.zones[1].inner_radius_mm = 467; }, true},
-      {"out_of_order", "zone[1].inner_radius", {"449", "496"}, [](auto& g) { std::swap(g.zones[0], g.zones[1]); }, true},
-      {"touching", "zone[1].inner_radius", {"468.0000", "groove"}, [](auto& g) { g.zones[1].inner_radius_mm = 468; }, true},
-      {"three_zones", "zone", {"3", "2"}, [](auto& g) { g.zones.push_back({0, 500, 501}); }, true},
+      {"overlap",
+       "zone[1].inner_radius",
+       {"467", "468", "zone 0"},
+       [](auto& g) { g.zones[1].inner_radius_mm = 467; },
+       true},
+      {"out_of_order",
+       "zone[1].inner_radius",
+       {"449", "496"},
+       [](auto& g) { std::swap(g.zones[0], g.zones[1]); },
+       true},
+      {"touching",
+       "zone[1].inner_radius",
+       {"468.0000", "groove"},
+       [](auto& g) { g.zones[1].inner_radius_mm = 468; },
+       true},
+      {"three_zones",
+       "zone",
+       {"3", "2"},
+       [](auto& g) {
+         g.zones.push_back({0, 500, 501});
+       },
+       true},
       {"shallow_groove", "stock.groove_depth", {"11.0000", "11.2500"}, [](auto& g) { g.groove_depth_mm = 11; }, true},
-      {"inner_half_undercut", "zone[0].inner_radius", {"440.0000", "R1c = 446.8556", "side -1"}, [](auto& g) { g.zones[0].inner_radius_mm = 440; }, true},
+      {"inner_half_undercut",
+       "zone[0].inner_radius",
+       {"440.0000", "R1c = 446.8556", "side -1"},
+       [](auto& g) { g.zones[0].inner_radius_mm = 440; },
+       true},
   };
   return list;
 }
@@ -194,9 +241,7 @@ TEST(FaceGearMake, WarnsWhereAGearIsPossibleButPoor) {
 /// Whatever the numbers: a gear or reasons, never an exception, a hang or a NaN in a limit.
 TEST(FaceGearMake, AnyNumbersGiveAGearOrReasons) {
   std::mt19937_64 generator(99);
-  const auto pick = [&](std::initializer_list<double> values) {
-    return values.begin()[generator() % values.size()];
-  };
+  const auto pick = [&](std::initializer_list<double> values) { return values.begin()[generator() % values.size()]; };
   int gears = 0;
   for (int n = 0; n < 3000; ++n) {
     face_gear::FaceGearParameters g;

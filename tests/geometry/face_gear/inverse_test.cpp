@@ -53,7 +53,8 @@ TEST_P(Inverse, AzimuthObeysTheEikonal) {
     const double r = std::hypot(q.p.x(), q.p.y()), z = q.p.z();
     if (r < limits.inner_limit + 0.3 * c.module_mm) continue;  // third derivatives grow like J^-3
     const auto azimuth = [&](double radius, double height) {
-      const auto inv = face_gear::invert_flank(f, at.side, radius, height, face_gear::FlankCoordinates{at.theta, at.B, 0});
+      const auto inv =
+          face_gear::invert_flank(f, at.side, radius, height, face_gear::FlankCoordinates{at.theta, at.B, 0});
       return inv ? face_gear::flank_azimuth(f, at.side, *inv) : NAN;
     };
     const double by_r = (azimuth(r + h, z) - azimuth(r - h, z)) / (2 * h);
@@ -68,8 +69,8 @@ TEST_P(Inverse, AzimuthObeysTheEikonal) {
   EXPECT_GT(tried, 0);
 }
 
-/// The distance of a point moved along the normal is the way it was moved; its foot is where it came from. Any tooth pitch
-/// away it is another tooth's distance.
+/// The distance of a point moved along the normal is the way it was moved; its foot is where it came from. Any tooth
+/// pitch away it is another tooth's distance.
 TEST_P(Inverse, DistanceAlongTheNormal) {
   const auto& c = GetParam();
   const auto f = c.surface();
@@ -77,15 +78,14 @@ TEST_P(Inverse, DistanceAlongTheNormal) {
     const auto q = f.flank(at.side, at.theta, at.B);
     for (const double share : {-0.1, -0.01, 0.003, 0.1}) {
       const double delta = share * c.module_mm;
-      const double th = at.theta - delta * f.shaper.cos_bb / f.shaper.r_b;  // the parallel surface is this flank, turned
+      const double th =
+          at.theta - delta * f.shaper.cos_bb / f.shaper.r_b;  // the parallel surface is this flank, turned
       if (!(f.flank_J(at.side, th, at.B) > 0)) continue;
       const auto d = face_gear::flank_distance(f, at.side, Vec3(q.p + delta * q.n));
       ASSERT_TRUE(d) << c.name << " side " << at.side << " theta " << at.theta << " delta " << delta;
       EXPECT_NEAR(d->distance, delta, 1e-12 * f.L_p);
       const auto foot = f.flank(at.side, d->foot.theta, d->foot.B);
-      if (d->foot.J > 1e-3 * f.L_p * c.module_mm) {
-        EXPECT_LT((foot.p - q.p).norm(), 1e-10 * f.L_p);
-      }
+      if (d->foot.J > 1e-3 * f.L_p * c.module_mm) { EXPECT_LT((foot.p - q.p).norm(), 1e-10 * f.L_p); }
     }
   }
 }
@@ -131,7 +131,8 @@ TEST(FaceGearInverse, PositionStaysExactTowardsTheCusp) {
     const Vec3 Q = f.flank_housing(-1, back->theta, back->B);
     EXPECT_NEAR(std::hypot(Q.x(), Q.y()), std::hypot(P.x(), P.y()), 1e-12);
     EXPECT_NEAR(Q.z(), P.z(), 1e-12);
-    EXPECT_NEAR(face_gear::flank_azimuth(f, -1, *back), face_gear::flank_azimuth(f, -1, {f.shaper.theta_t, *B, 0}), 1e-10 / r);
+    EXPECT_NEAR(face_gear::flank_azimuth(f, -1, *back), face_gear::flank_azimuth(f, -1, {f.shaper.theta_t, *B, 0}),
+                1e-10 / r);
   }
 }
 

@@ -144,7 +144,8 @@ TEST(FaceGearLimits, MoreShaperTeethNarrowTheBand) {
 TEST(FaceGearLimits, LargestTipRadius) {
   const auto largest = [](const char* name) {
     const auto c = case_named(name);
-    return std::pair(largest_tip_radius(c.parameters(), c.beta()), face_gear::largest_active_tip_radius(c.parameters(), c.beta()));
+    return std::pair(largest_tip_radius(c.parameters(), c.beta()),
+                     face_gear::largest_active_tip_radius(c.parameters(), c.beta()));
   };
   EXPECT_NEAR(largest("offset_15").first, 1.118, 6e-4);
   EXPECT_NEAR(largest("dhfg_transverse").first, 1.9503, 6e-5);
@@ -164,8 +165,10 @@ TEST(FaceGearLimits, HeightsOfTheCusp) {
   EXPECT_NEAR(o.inner_limit, 129.7965, 6e-5);
   EXPECT_NEAR(*o.pointing_radius - o.inner_limit, 21.787, 6e-4);
   EXPECT_NEAR(*o.land_radius - o.inner_limit, 17.958, 6e-4);
-  EXPECT_NEAR(*face_gear::zone_limits(case_named("dhfg_transverse").surface(), 5).flanks[0].undercut_height, -77.91915, 6e-6);
-  EXPECT_NEAR(*face_gear::zone_limits(case_named("dhfg_normal").surface(), 5).flanks[0].undercut_height, -88.70597, 6e-6);
+  EXPECT_NEAR(*face_gear::zone_limits(case_named("dhfg_transverse").surface(), 5).flanks[0].undercut_height, -77.91915,
+              6e-6);
+  EXPECT_NEAR(*face_gear::zone_limits(case_named("dhfg_normal").surface(), 5).flanks[0].undercut_height, -88.70597,
+              6e-6);
   EXPECT_STREQ(face_gear::zone_limits(case_named("few_teeth").surface(), 2).inner_limit_name, "involute start");
 }
 
@@ -206,9 +209,7 @@ TEST(FaceGearLimits, MirrorExchangesTheSides) {
     for (const int k : {0, 1}) {
       const auto &p = a.flanks[std::size_t(k)], &q = b.flanks[std::size_t(1 - k)];
       ASSERT_EQ(p.undercut_radius.has_value(), q.undercut_radius.has_value());
-      if (p.undercut_radius) {
-        EXPECT_NEAR(*p.undercut_radius, *q.undercut_radius, 1e-11 * a.inner_limit);
-      }
+      if (p.undercut_radius) { EXPECT_NEAR(*p.undercut_radius, *q.undercut_radius, 1e-11 * a.inner_limit); }
       ASSERT_EQ(p.involute_start_radius.has_value(), q.involute_start_radius.has_value());
       if (p.involute_start_radius) {
         EXPECT_NEAR(*p.involute_start_radius, *q.involute_start_radius, 1e-11 * a.inner_limit);
@@ -221,7 +222,8 @@ TEST(FaceGearLimits, MirrorExchangesTheSides) {
 // The job's land: the radius where the tooth is that thick, between the pointed one and the one for 0.2 m.
 TEST(FaceGearLimits, LeastLandOfTheGear) {
   const auto& c = case_named("offset_15");
-  const auto usual = face_gear::zone_limits(c.surface(), c.module_mm), thin = face_gear::zone_limits(c.surface(), c.module_mm, 0.3);
+  const auto usual = face_gear::zone_limits(c.surface(), c.module_mm),
+             thin = face_gear::zone_limits(c.surface(), c.module_mm, 0.3);
   ASSERT_TRUE(usual.land_radius && thin.land_radius && thin.pointing_radius);
   EXPECT_DOUBLE_EQ(usual.practical_land_mm, 0.2 * c.module_mm);
   EXPECT_DOUBLE_EQ(thin.practical_land_mm, 0.3);

@@ -36,7 +36,8 @@ TEST_P(Sheet, DerivativesAgainstDifferences) {
     for (const auto& at : places(surface_of(space), 3, 120)) {
       const auto q = space.at(at.piece, at.u, at.v);
       ASSERT_TRUE(q);
-      const bool angle_v = at.piece == face_gear::SpacePiece::flank_plus || at.piece == face_gear::SpacePiece::flank_minus;
+      const bool angle_v =
+          at.piece == face_gear::SpacePiece::flank_plus || at.piece == face_gear::SpacePiece::flank_minus;
       const double hu = 1e-5, hv = angle_v ? 1e-5 : 1e-4;
       const auto u1 = space.point(at.piece, at.u + hu, at.v), u0 = space.point(at.piece, at.u - hu, at.v);
       const auto v1 = space.point(at.piece, at.u, at.v + hv), v0 = space.point(at.piece, at.u, at.v - hv);
@@ -65,10 +66,12 @@ TEST_P(Sheet, FootReturnsToTheSurfacePoint) {
       const auto q = space.at(at.piece, at.u, at.v);
       ASSERT_TRUE(q);
       // Below the smallest hollow radius of curvature the foot is unique.
-      const double k_u = face_gear::SpaceSheet::normal_curvature(*q, q->pu), k_v = face_gear::SpaceSheet::normal_curvature(*q, q->n.cross(q->pu));
+      const double k_u = face_gear::SpaceSheet::normal_curvature(*q, q->pu),
+                   k_v = face_gear::SpaceSheet::normal_curvature(*q, q->n.cross(q->pu));
       const double hollow = std::max({-k_u, -k_v, 1e-9}) * 1.5;
       const double d = random(-0.2, 1) * std::min(0.5 * m, 0.5 / hollow);
-      const bool angle_v = at.piece == face_gear::SpacePiece::flank_plus || at.piece == face_gear::SpacePiece::flank_minus;
+      const bool angle_v =
+          at.piece == face_gear::SpacePiece::flank_plus || at.piece == face_gear::SpacePiece::flank_minus;
       const double u = at.u + random(-0.02, 0.02), v = at.v + random(-1, 1) * (angle_v ? 0.002 : 0.1);
       const auto foot = space.foot(at.piece, q->p + d * q->n, u, v);
       ASSERT_TRUE(foot) << to_string(at.piece);
@@ -86,17 +89,22 @@ TEST_P(Sheet, CurvatureOfFlanksAndFillets) {
     const auto& f = ring.surface;
     for (const auto& at : places(surface_of(space), 21, 120)) {
       if (at.piece == face_gear::SpacePiece::root) continue;
-      const bool flank = at.piece == face_gear::SpacePiece::flank_plus || at.piece == face_gear::SpacePiece::flank_minus;
-      const int side = at.piece == face_gear::SpacePiece::flank_plus || at.piece == face_gear::SpacePiece::fillet_plus ? 1 : -1;
+      const bool flank =
+          at.piece == face_gear::SpacePiece::flank_plus || at.piece == face_gear::SpacePiece::flank_minus;
+      const int side =
+          at.piece == face_gear::SpacePiece::flank_plus || at.piece == face_gear::SpacePiece::fillet_plus ? 1 : -1;
       const auto q = space.at(at.piece, at.u, at.v);
       const auto H = flank ? f.flank_shape(side, at.u, at.v) : f.fillet_shape(side, at.u, at.v);
       const auto basis = flank ? f.flank_basis(side, at.u, at.v) : f.fillet_basis(side, at.u, at.v);
       const double turn = side > 0 ? 0 : f.pitch;
-      const Vec3 e = face_gear::FaceGearSurface<double>::turned(basis.e, turn), l = face_gear::FaceGearSurface<double>::turned(basis.l, turn);
+      const Vec3 e = face_gear::FaceGearSurface<double>::turned(basis.e, turn),
+                 l = face_gear::FaceGearSurface<double>::turned(basis.l, turn);
       for (const double angle : {0.0, 0.7, 1.6, 2.5}) {
         const double c = std::cos(angle), s = std::sin(angle);
         const double expected = c * c * H.ee + 2 * c * s * H.el + s * s * H.ll;
-        EXPECT_NEAR(face_gear::SpaceSheet::normal_curvature(*q, e * c + l * s), expected, 1e-8 * (1 + std::abs(expected))) << to_string(at.piece);
+        EXPECT_NEAR(face_gear::SpaceSheet::normal_curvature(*q, e * c + l * s), expected,
+                    1e-8 * (1 + std::abs(expected)))
+            << to_string(at.piece);
       }
     }
   }
@@ -119,7 +127,8 @@ TEST_P(Sheet, PiecesJoinSmoothly) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Gears, Sheet, testing::ValuesIn(test::gear_names()), [](const auto& gear_case) { return gear_case.param; });
+INSTANTIATE_TEST_SUITE_P(Gears, Sheet, testing::ValuesIn(test::gear_names()),
+                         [](const auto& gear_case) { return gear_case.param; });
 
 }  // namespace
 }  // namespace toothpath

@@ -1,4 +1,5 @@
-// The rest of the two printed tables: the offset sample with every sign of its offset, and the columns of the extreme cases beside their limits.
+// The rest of the two printed tables: the offset sample with every sign of its offset, and the columns of the extreme
+// cases beside their limits.
 #include <gtest/gtest.h>
 
 #include "tests/support/face_gear_cases.h"
@@ -6,11 +7,14 @@
 namespace toothpath::test {
 namespace {
 
-/// B at which the papers' parametrisation folds: cos^2 B (1 - kappa dZ/dB) = 0 as a polynomial in x = sin B; none without a helix.
+/// B at which the papers' parametrisation folds: cos^2 B (1 - kappa dZ/dB) = 0 as a polynomial in x = sin B; none
+/// without a helix.
 std::optional<double> fold_deg(const face_gear::FaceGearSurface<double>& f) {
   const double kappa = f.shaper.kappa, T = f.shaper.T, D = f.shaper.r_b * (1 / f.i + f.Cg);
   if (kappa == 0) return {};
-  const auto F = [&](double x) { return f.Sg * (1 - x * x) - kappa * ((D - f.Sg * T * f.E) * x - (f.Sg * T * f.shaper.r_b - f.E * f.Cg)); };
+  const auto F = [&](double x) {
+    return f.Sg * (1 - x * x) - kappa * ((D - f.Sg * T * f.E) * x - (f.Sg * T * f.shaper.r_b - f.E * f.Cg));
+  };
   double lo = kappa > 0 ? 0 : -1, hi = kappa > 0 ? 1 : 0;
   if ((F(lo) > 0) == (F(hi) > 0)) return {};
   for (int k = 0; k < 100; ++k) ((F(0.5 * (lo + hi)) > 0) == (F(lo) > 0) ? lo : hi) = 0.5 * (lo + hi);
@@ -18,26 +22,30 @@ std::optional<double> fold_deg(const face_gear::FaceGearSurface<double>& f) {
 }
 
 TEST(FaceGearTable, FoldsOfEveryHelicalRow) {
-  const std::vector<std::pair<const char*, double>> rows = {{"beta_45", 21.82},          {"many_teeth", 14.92},      {"module_30", 39.22},
-                                                            {"alpha_25_beta_25", 38.80}, {"gamma_75_mixed", 41.65},  {"gamma_110_mixed", -37.39},
-                                                            {"dhfg_transverse", 20.99},  {"dhfg_normal", 21.16},     {"beta_1e_6", 89.99}};
+  const std::vector<std::pair<const char*, double>> rows = {
+      {"beta_45", 21.82},          {"many_teeth", 14.92},     {"module_30", 39.22},
+      {"alpha_25_beta_25", 38.80}, {"gamma_75_mixed", 41.65}, {"gamma_110_mixed", -37.39},
+      {"dhfg_transverse", 20.99},  {"dhfg_normal", 21.16},    {"beta_1e_6", 89.99}};
   for (const auto& [name, printed] : rows) {
     const auto fold = fold_deg(case_named(name).surface());
     ASSERT_TRUE(fold) << name;
     EXPECT_NEAR(*fold, printed, 6e-3) << name;
   }
-  for (const char* name : {"spur_25_88", "few_teeth", "few_teeth_low", "sixty_teeth", "module_0_2", "alpha_14_5", "offset_45", "offset_minus_45", "offset_90",
-                           "gamma_60", "gamma_120", "offset_15"})
+  for (const char* name : {"spur_25_88", "few_teeth", "few_teeth_low", "sixty_teeth", "module_0_2", "alpha_14_5",
+                           "offset_45", "offset_minus_45", "offset_90", "gamma_60", "gamma_120", "offset_15"})
     EXPECT_FALSE(fold_deg(case_named(name).surface())) << name;
 }
 
-/// The column "stable": how fast Z grows with B where the flank is cut. The closed form stays tame where the usual parameters run away.
+/// The column "stable": how fast Z grows with B where the flank is cut. The closed form stays tame where the usual
+/// parameters run away.
 TEST(FaceGearTable, GrowthOfTheClosedFormStaysAtThePrintedSize) {
   const std::vector<std::pair<const char*, double>> rows = {
-      {"spur_25_88", 35},  {"beta_1e_6", 35},        {"beta_1e_10", 35}, {"beta_45", 95},    {"few_teeth", 15},        {"few_teeth_low", 25},
-      {"many_teeth", 276}, {"sixty_teeth", 59},      {"module_0_2", 32}, {"module_30", 45},  {"alpha_14_5", 53},       {"alpha_25_beta_25", 28},
-      {"offset_45", 38},   {"offset_minus_45", 38},  {"offset_90", 41},  {"gamma_60", 47},   {"gamma_120", 36},        {"gamma_75_mixed", 42},
-      {"gamma_110_mixed", 50}, {"dhfg_transverse", 77}, {"dhfg_normal", 99}};
+      {"spur_25_88", 35}, {"beta_1e_6", 35},       {"beta_1e_10", 35},      {"beta_45", 95},
+      {"few_teeth", 15},  {"few_teeth_low", 25},   {"many_teeth", 276},     {"sixty_teeth", 59},
+      {"module_0_2", 32}, {"module_30", 45},       {"alpha_14_5", 53},      {"alpha_25_beta_25", 28},
+      {"offset_45", 38},  {"offset_minus_45", 38}, {"offset_90", 41},       {"gamma_60", 47},
+      {"gamma_120", 36},  {"gamma_75_mixed", 42},  {"gamma_110_mixed", 50}, {"dhfg_transverse", 77},
+      {"dhfg_normal", 99}};
   for (const auto& [name, printed] : rows) {
     const auto c = case_named(name);
     const auto f = c.surface();
@@ -48,7 +56,8 @@ TEST(FaceGearTable, GrowthOfTheClosedFormStaysAtThePrintedSize) {
         const double r = limits.inner_limit + (*limits.pointing_radius - limits.inner_limit) * n / 12;
         const auto low = face_gear::fillet_line_height(f, side, r);
         for (int k = 0; low && k <= 8; ++k)
-          if (const auto at = face_gear::invert_flank(f, side, r, *low + (f.z_tip(r) - *low) * k / 8)) most = std::max(most, std::abs(f.flank_Z_B(at->B)) / c.module_mm);
+          if (const auto at = face_gear::invert_flank(f, side, r, *low + (f.z_tip(r) - *low) * k / 8))
+            most = std::max(most, std::abs(f.flank_Z_B(at->B)) / c.module_mm);
       }
     EXPECT_NEAR(most, printed, 0.6 + 0.01 * printed) << name;
   }

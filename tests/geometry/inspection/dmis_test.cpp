@@ -52,7 +52,8 @@ TEST(InspectionDmis, EveryPointIsNamedAndMeasuredOnceAtItsPlace) {
   EXPECT_EQ(all[1], "UNITS/MM,ANGDEC");
   EXPECT_EQ(all.back(), "ENDFIL");
   const std::regex feature(R"(F\((Z\d[PM]_R\d+C\d+)\)=FEAT/POINT,CART(,-?\d+\.\d{6}){3}(,-?\d\.\d{8}){3})");
-  const std::regex other(R"(MODE/PROG,MAN|WKPLAN/XYPLAN|SNSET/(APPRCH|RETRCT|SEARCH),\d+\.\d{3}|GOTO/CART(,-?\d+\.\d{4}){3})");
+  const std::regex other(
+      R"(MODE/PROG,MAN|WKPLAN/XYPLAN|SNSET/(APPRCH|RETRCT|SEARCH),\d+\.\d{3}|GOTO/CART(,-?\d+\.\d{4}){3})");
   std::map<std::string, std::vector<double>> nominal;
   std::map<std::string, int> measured;
   std::size_t next = 0;
@@ -85,7 +86,8 @@ TEST(InspectionDmis, EveryPointIsNamedAndMeasuredOnceAtItsPlace) {
   for (const auto& [label, times] : measured) EXPECT_EQ(times, 1) << label;
 }
 
-/// Moves go down in the space beside the flank: from above, over a place that no tooth occupies, and never across a tooth.
+/// Moves go down in the space beside the flank: from above, over a place that no tooth occupies, and never across a
+/// tooth.
 TEST(InspectionDmis, MovesStayInTheSpaceBesideTheFlank) {
   const auto gear = sample_gear();
   const auto grid = *inspection::inspection_grid(gear);
@@ -103,13 +105,15 @@ TEST(InspectionDmis, MovesStayInTheSpaceBesideTheFlank) {
     const auto ring = std::hypot(p.x(), p.y()) < 118 ? 0u : 1u;
     const auto& f = gear.rings()[ring].surface;
     // From the point above to the approach point: outside both flanks of the space all the way below the tip surface.
-    const int side = face_gear::flank_distance(f, 1, p) && std::abs(face_gear::flank_distance(f, 1, p)->distance) < 1e-4 ? 1 : -1;
+    const int side =
+        face_gear::flank_distance(f, 1, p) && std::abs(face_gear::flank_distance(f, 1, p)->distance) < 1e-4 ? 1 : -1;
     const Vec3 start = p + 0.25 * 1.25 * n;
     for (int k = 0; k <= 20; ++k) {
       const Vec3 at = over + (start - over) * (k / 20.0);
       if (at.z() > f.z_tip(std::hypot(at.x(), at.y()))) continue;
       const auto near = face_gear::flank_distance(f, side, at);
-      const auto far = face_gear::flank_distance(f, -side, face_gear::FaceGearSurface<double>::turned(at, -side * gear.pitch()));
+      const auto far =
+          face_gear::flank_distance(f, -side, face_gear::FaceGearSurface<double>::turned(at, -side * gear.pitch()));
       ASSERT_TRUE(near && far);
       EXPECT_GT(near->distance, 0) << s;
       EXPECT_GT(far->distance, 0) << s;

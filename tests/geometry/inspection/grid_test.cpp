@@ -86,9 +86,12 @@ INSTANTIATE_TEST_SUITE_P(Samples, InspectionGrid, testing::ValuesIn(mesh_samples
 
 TEST(InspectionGridRefuses, OptionsOutsideTheirRange) {
   const face_gear::FaceGear gear = made(spur_parameters());
-  EXPECT_EQ(inspection::inspection_grid(gear, {4, 9, 0.05}).error().message, "inspection rows = 4 is outside 5 .. 1000");
-  EXPECT_EQ(inspection::inspection_grid(gear, {5, 8, 0.05}).error().message, "inspection columns = 8 is outside 9 .. 1000");
-  EXPECT_EQ(inspection::inspection_grid(gear, {5, 9, 0.5}).error().message, "inspection margin = 0.5 is outside 0 .. 0.4");
+  EXPECT_EQ(inspection::inspection_grid(gear, {4, 9, 0.05}).error().message,
+            "inspection rows = 4 is outside 5 .. 1000");
+  EXPECT_EQ(inspection::inspection_grid(gear, {5, 8, 0.05}).error().message,
+            "inspection columns = 8 is outside 9 .. 1000");
+  EXPECT_EQ(inspection::inspection_grid(gear, {5, 9, 0.5}).error().message,
+            "inspection margin = 0.5 is outside 0 .. 0.4");
   EXPECT_FALSE(inspection::inspection_grid(gear, {5, 9, NAN}));
 }
 

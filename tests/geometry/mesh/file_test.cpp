@@ -19,7 +19,8 @@ namespace {
 /// Axis-parallel box of 20 x 30 x 40 mm, 12 facets, outward; facet 0 lies on the underside.
 mesh::TriangleMesh box(double scale = 1, const Vec3& at = Vec3::Zero()) {
   mesh::TriangleMesh mesh;
-  for (int k = 0; k < 8; ++k) mesh.vertices.push_back(at + scale * Vec3(k & 1 ? 20 : 0, k & 2 ? 30 : 0, k & 4 ? 40 : 0));
+  for (int k = 0; k < 8; ++k)
+    mesh.vertices.push_back(at + scale * Vec3(k & 1 ? 20 : 0, k & 2 ? 30 : 0, k & 4 ? 40 : 0));
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   return mesh;
@@ -64,7 +65,8 @@ std::string obj(const mesh::TriangleMesh& mesh) {
   return text;
 }
 
-std::string refusal(const std::string& bytes, const std::string& name = "box.stl", const mesh::MeshImportLimits& limits = {}) {
+std::string refusal(const std::string& bytes, const std::string& name = "box.stl",
+                    const mesh::MeshImportLimits& limits = {}) {
   const auto mesh = mesh::parse_mesh(bytes, name, limits);
   return mesh ? "accepted" : mesh.error().text();
 }
@@ -107,7 +109,8 @@ TEST(MeshFile, EveryFormatOfTheBoxIsRead) {
            {"box.STL", ascii_stl(box())},
            {"crlf.stl", ascii_stl(box(), "\r\n")},
            {"cr.stl", ascii_stl(box(), "\r")},
-           {"upper.stl", replaced(replaced(ascii_stl(box()), "solid box", "SOLID BOX"), "facet normal", "FACET Normal")},
+           {"upper.stl",
+            replaced(replaced(ascii_stl(box()), "solid box", "SOLID BOX"), "facet normal", "FACET Normal")},
            {"solid_binary.stl", "solid" + stl(box()).substr(5)},
            {"box.obj", obj(box())}}) {
     const auto mesh = mesh::parse_mesh(bytes, name);
@@ -121,12 +124,15 @@ TEST(MeshFile, EveryFormatOfTheBoxIsRead) {
 TEST(MeshFile, DamagedBytesAreRefusedWithTheirReason) {
   const std::string good = stl(box()), text = ascii_stl(box());
   EXPECT_EQ(refusal(""), "box.stl: error: the file is empty");
-  EXPECT_EQ(refusal(good.substr(0, 50)), "box.stl: error: 50 bytes are neither a text STL nor the 84 bytes of a binary header");
-  EXPECT_EQ(refusal(good.substr(0, 600)), "box.stl: error: binary STL states 12 facets, which need 684 bytes; the file has 600");
+  EXPECT_EQ(refusal(good.substr(0, 50)),
+            "box.stl: error: 50 bytes are neither a text STL nor the 84 bytes of a binary header");
+  EXPECT_EQ(refusal(good.substr(0, 600)),
+            "box.stl: error: binary STL states 12 facets, which need 684 bytes; the file has 600");
   EXPECT_EQ(refusal(good + "x"), "box.stl: error: binary STL states 12 facets, which need 684 bytes; the file has 685");
   std::string huge = good;
   huge.replace(80, 4, "\xff\xff\xff\xff");
-  EXPECT_EQ(refusal(huge), "box.stl: error: binary STL states 4294967295 facets, which need 214748364834 bytes; the file has 684");
+  EXPECT_EQ(refusal(huge),
+            "box.stl: error: binary STL states 4294967295 facets, which need 214748364834 bytes; the file has 684");
   EXPECT_EQ(refusal(std::string(84, '\0')), "box.stl: error: the file has 0 facets");
   EXPECT_EQ(refusal("solid a\nendsolid a\n"), "box.stl: error: the file has 0 facets");
   mesh::MeshImportLimits few;
@@ -142,14 +148,21 @@ TEST(MeshFile, DamagedBytesAreRefusedWithTheirReason) {
 
 TEST(MeshFile, BadTextIsRefusedWithItsLine) {
   const std::string text = ascii_stl(box());
-  EXPECT_EQ(refusal(replaced(text, "vertex 20 0 0", "vertex 20,0 0 0")), "box.stl:6: error: facet 0: \"20,0\" has a decimal comma");
-  EXPECT_EQ(refusal(replaced(text, "vertex 20 0 0", "vertex nan 0 0")), "box.stl:6: error: facet 0: coordinate nan is not finite");
-  EXPECT_EQ(refusal(replaced(text, "vertex 20 0 0", "vertex 1e400 0 0")), "box.stl:6: error: facet 0: 1e400 does not fit a 32-bit number");
-  EXPECT_EQ(refusal(replaced(text, "vertex 20 0 0", "vertex 0x20 0 0")), "box.stl:6: error: facet 0: \"0x20\" is not a number");
-  EXPECT_EQ(refusal(replaced(text, "endloop", "vertex 1 2 3\nendloop")), "box.stl:7: error: facet 0 has more than 3 corners");
-  EXPECT_EQ(refusal(replaced(text, "vertex 20 0 0\n", "")), "box.stl:6: error: \"endloop\" stands where \"vertex\" is expected");
+  EXPECT_EQ(refusal(replaced(text, "vertex 20 0 0", "vertex 20,0 0 0")),
+            "box.stl:6: error: facet 0: \"20,0\" has a decimal comma");
+  EXPECT_EQ(refusal(replaced(text, "vertex 20 0 0", "vertex nan 0 0")),
+            "box.stl:6: error: facet 0: coordinate nan is not finite");
+  EXPECT_EQ(refusal(replaced(text, "vertex 20 0 0", "vertex 1e400 0 0")),
+            "box.stl:6: error: facet 0: 1e400 does not fit a 32-bit number");
+  EXPECT_EQ(refusal(replaced(text, "vertex 20 0 0", "vertex 0x20 0 0")),
+            "box.stl:6: error: facet 0: \"0x20\" is not a number");
+  EXPECT_EQ(refusal(replaced(text, "endloop", "vertex 1 2 3\nendloop")),
+            "box.stl:7: error: facet 0 has more than 3 corners");
+  EXPECT_EQ(refusal(replaced(text, "vertex 20 0 0\n", "")),
+            "box.stl:6: error: \"endloop\" stands where \"vertex\" is expected");
   EXPECT_EQ(refusal(replaced(text, "endsolid box\n", "")), "box.stl:86: error: the file ends without \"endsolid\"");
-  EXPECT_EQ(refusal(text.substr(0, text.find("vertex"))), "box.stl:4: error: the file ends where \"vertex\" is expected");
+  EXPECT_EQ(refusal(text.substr(0, text.find("vertex"))),
+            "box.stl:4: error: the file ends where \"vertex\" is expected");
   EXPECT_EQ(refusal(text.substr(0, text.find("vertex 20 0 0") + 9)), "box.stl:6: error: the file ends inside facet 0");
   EXPECT_EQ(refusal(replaced(text, "solid box", "solid " + std::string(2000, 'x'))),
             "box.stl:1: error: the name of the solid has 2001 characters; the limit is 1000");
@@ -165,40 +178,69 @@ TEST(MeshFile, BrokenSolidsAreRefusedEachWithItsMessage) {
   const double inf = std::numeric_limits<double>::infinity();
   const std::vector<Broken> faults{
       {"nan", [](mesh::TriangleMesh& m) { m.vertices[1].y() = NAN; }, "facet 0: corner 2 = (20, nan, 0) is not finite"},
-      {"inf", [&](mesh::TriangleMesh& m) { m.vertices[7].z() = inf; }, "facet 3: corner 1 = (20, 30, inf) is not finite"},
+      {"inf", [&](mesh::TriangleMesh& m) { m.vertices[7].z() = inf; },
+       "facet 3: corner 1 = (20, 30, inf) is not finite"},
       {"open", [](mesh::TriangleMesh& m) { m.triangles.erase(m.triangles.begin() + 3); },
        "facet 2 near (6.667, 10.000, 40.000) has an open edge: used by 1 facet, a closed surface needs 2"},
       {"flipped", [](mesh::TriangleMesh& m) { std::swap(m.triangles[7][0], m.triangles[7][1]); },
        "and facet 7 run along their common edge in the same direction: one of them is flipped"},
-      {"duplicate", [](mesh::TriangleMesh& m) { m.triangles.push_back(m.triangles[5]); }, "facet 5 near (13.333, 0.000, 26.667) and facet 12 have the same three corners"},
-      {"three facets at an edge", [](mesh::TriangleMesh& m) {
+      {"duplicate", [](mesh::TriangleMesh& m) { m.triangles.push_back(m.triangles[5]); },
+       "facet 5 near (13.333, 0.000, 26.667) and facet 12 have the same three corners"},
+      {"three facets at an edge",
+       [](mesh::TriangleMesh& m) {
          m.vertices.emplace_back(-5, -5, 20);
          m.triangles.push_back({0, 4, 8});
-       }, "has an edge used by 3 facets; a solid has 2"},
-      {"degenerate", [](mesh::TriangleMesh& m) { m.triangles.push_back({0, 0, 1}); },
+       },
+       "has an edge used by 3 facets; a solid has 2"},
+      {"degenerate",
+       [](mesh::TriangleMesh& m) {
+         m.triangles.push_back({0, 0, 1});
+       },
        "facet 12 near (6.667, 0.000, 0.000) is degenerate: its height is 0 of its longest edge, the limit 1e-12"},
-      {"on a line", [](mesh::TriangleMesh& m) {
+      {"on a line",
+       [](mesh::TriangleMesh& m) {
          m.vertices.emplace_back(10, 0, 0);
          m.triangles.push_back({0, 1, 8});
-       }, "facet 12 near (10.000, 0.000, 0.000) is degenerate"},
-      {"inside out", [](mesh::TriangleMesh& m) { for (auto& t : m.triangles) std::swap(t[0], t[1]); },
+       },
+       "facet 12 near (10.000, 0.000, 0.000) is degenerate"},
+      {"inside out",
+       [](mesh::TriangleMesh& m) {
+         for (auto& t : m.triangles) std::swap(t[0], t[1]);
+       },
        "enclosed volume = -24000 mm^3 is not above 0: the surface is turned inside out"},
-      {"crossing itself", [](mesh::TriangleMesh& m) { m.vertices[7] = {-10, -10, -10}; }, "cross each other"},
-      {"two boxes through each other", [](mesh::TriangleMesh& m) {
+      {"crossing itself",
+       [](mesh::TriangleMesh& m) {
+         m.vertices[7] = {-10, -10, -10};
+       },
+       "cross each other"},
+      {"two boxes through each other",
+       [](mesh::TriangleMesh& m) {
          const mesh::TriangleMesh other = box(1, {10, 10, 10});
          for (const auto& t : other.triangles) m.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
          m.vertices.insert(m.vertices.end(), other.vertices.begin(), other.vertices.end());
-       }, "cross each other"},
-      {"touching corners", [](mesh::TriangleMesh& m) {
+       },
+       "cross each other"},
+      {"touching corners",
+       [](mesh::TriangleMesh& m) {
          const mesh::TriangleMesh other = box(1, {20, 30, 40});
          for (const auto& t : other.triangles) m.triangles.push_back({t[0] + 8, t[1] + 8, t[2] + 8});
          m.vertices.insert(m.vertices.end(), other.vertices.begin(), other.vertices.end());
-       }, "the surface touches itself at a corner"},
-      {"far away", [](mesh::TriangleMesh& m) { for (Vec3& v : m.vertices) v.x() += 1e9; },
+       },
+       "the surface touches itself at a corner"},
+      {"far away",
+       [](mesh::TriangleMesh& m) {
+         for (Vec3& v : m.vertices) v.x() += 1e9;
+       },
        "coordinate 1e+09 mm is farther than 100000 mm from the origin"},
-      {"metres", [](mesh::TriangleMesh& m) { for (Vec3& v : m.vertices) v *= 1e-3; },
+      {"metres",
+       [](mesh::TriangleMesh& m) {
+         for (Vec3& v : m.vertices) v *= 1e-3;
+       },
        "longest side = 0.04 mm is below 1 mm; is the file in inches or metres?"},
-      {"micrometres", [](mesh::TriangleMesh& m) { for (Vec3& v : m.vertices) v *= 1e3; },
+      {"micrometres",
+       [](mesh::TriangleMesh& m) {
+         for (Vec3& v : m.vertices) v *= 1e3;
+       },
        "longest side = 40000 mm is above 5000 mm; is the file in micrometres?"},
   };
   for (const Broken& broken : faults) {
@@ -238,7 +280,8 @@ TEST(MeshFile, FilesThatCannotBeReadAreFileAccessErrors) {
 
 // Any bytes give a solid or a reason, never a crash and never a surface that is not closed.
 TEST(MeshFile, MutatedFilesGiveASolidOrADiagnostic) {
-  const std::vector<std::pair<std::string, std::string>> seeds{{"a.stl", stl(box())}, {"b.stl", ascii_stl(box())}, {"c.obj", obj(box())}};
+  const std::vector<std::pair<std::string, std::string>> seeds{
+      {"a.stl", stl(box())}, {"b.stl", ascii_stl(box())}, {"c.obj", obj(box())}};
   std::mt19937 random(20);
   std::size_t accepted = 0, refused = 0;
   for (int n = 0; n < 1500; ++n) {

@@ -32,7 +32,8 @@ INSTANTIATE_TEST_SUITE_P(Samples, MeshSolid, testing::ValuesIn(mesh_samples()), 
 /// column, integrated over the sector. Columns must not overhang.
 double swept_volume(const face_gear::FaceGear& gear, const face_gear::FaceGearRing& ring, double z_base) {
   const BruteForceFaceGear oracle(gear.parameters(), ring.zone.helix_angle_rad);
-  constexpr std::array<double, 5> kNode{-0.906179845938664, -0.538469310105683, 0, 0.538469310105683, 0.906179845938664};
+  constexpr std::array<double, 5> kNode{-0.906179845938664, -0.538469310105683, 0, 0.538469310105683,
+                                        0.906179845938664};
   constexpr std::array<double, 5> kWeight{0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366,
                                           0.236926885056189};
   constexpr int kColumns = 240;
@@ -43,7 +44,9 @@ double swept_volume(const face_gear::FaceGear& gear, const face_gear::FaceGearRi
     double area = 0;
     for (int k = 0; k < kColumns; ++k) {
       const double azimuth = gear.pitch() * (k + 0.5) / kColumns;
-      const auto solid = [&](double z) { return oracle.least_clearance({r * std::cos(azimuth), r * std::sin(azimuth), z}) > 0; };
+      const auto solid = [&](double z) {
+        return oracle.least_clearance({r * std::cos(azimuth), r * std::sin(azimuth), z}) > 0;
+      };
       double low = gear.lowest_root() - 0.1, high = z_tip;
       if (solid(high)) {
         low = high;
@@ -69,9 +72,11 @@ void expect_volume_of_sweep(const face_gear::FaceGearParameters& parameters) {
     const double r0 = gear.rings()[k].zone.outer_radius_mm, r1 = gear.rings()[k + 1].zone.inner_radius_mm;
     groove += 0.5 * gear.pitch() * (r1 * r1 - r0 * r0) * (gear.groove_floor() - z_base);
   }
-  // Measured against the toothed layer alone: 2e-4 of it is far below what a missing fillet or a wrong side would change.
+  // Measured against the toothed layer alone: 2e-4 of it is far below what a missing fillet or a wrong side would
+  // change.
   const double face = gear.outer_radius() - gear.inner_radius();
-  const double layer = gear.pitch() * 0.5 * (gear.inner_radius() + gear.outer_radius()) * face * 2 * gear.parameters().module_mm;
+  const double layer =
+      gear.pitch() * 0.5 * (gear.inner_radius() + gear.outer_radius()) * face * 2 * gear.parameters().module_mm;
   EXPECT_NEAR(meshed_volume, expected + groove, 2e-4 * layer) << "layer " << layer;
 }
 

@@ -116,7 +116,8 @@ TEST_P(MeshTooth, SagStaysBelowTheStatedBound) {
     for (std::size_t o = 0; o < mesh_.tags.size(); ++o) {
       const Vec3 o_low = m.corner(o, 0).cwiseMin(m.corner(o, 1)).cwiseMin(m.corner(o, 2));
       const Vec3 o_high = m.corner(o, 0).cwiseMax(m.corner(o, 1)).cwiseMax(m.corner(o, 2));
-      if (is_exact_patch(mesh_.tags[o].patch) && (o_low.array() <= high.array()).all() && (o_high.array() >= low.array()).all())
+      if (is_exact_patch(mesh_.tags[o].patch) && (o_low.array() <= high.array()).all() &&
+          (o_high.array() >= low.array()).all())
         near.push_back(o);
     }
     for (int n = 0; n < 50; ++n) {
@@ -129,7 +130,8 @@ TEST_P(MeshTooth, SagStaysBelowTheStatedBound) {
       if (r < ring.zone.inner_radius_mm || r > ring.zone.outer_radius_mm) continue;
       if (tag.patch != mesh::Patch::tip && exact->p.z() > ring.surface.z_tip(r)) continue;  // beyond the tip edge
       double best = INFINITY;
-      for (const std::size_t o : near) best = std::min(best, distance_to_triangle(exact->p, m.corner(o, 0), m.corner(o, 1), m.corner(o, 2)));
+      for (const std::size_t o : near)
+        best = std::min(best, distance_to_triangle(exact->p, m.corner(o, 0), m.corner(o, 1), m.corner(o, 2)));
       seen[std::size_t(tag.patch)] = std::max(seen[std::size_t(tag.patch)], best);
     }
   }
@@ -158,8 +160,8 @@ INSTANTIATE_TEST_SUITE_P(Samples, MeshTooth, testing::ValuesIn(mesh_samples()), 
 
 TEST(MeshToothRefuses, ToleranceOutsideItsRange) {
   const face_gear::FaceGear gear = made(spur_parameters());
-  for (const double t : {0.0, -1.0, 1e-5, 11.0, std::numeric_limits<double>::quiet_NaN(),
-                         std::numeric_limits<double>::infinity()}) {
+  for (const double t :
+       {0.0, -1.0, 1e-5, 11.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     const auto mesh = mesh::mesh_tooth_space(gear, t);
     ASSERT_FALSE(mesh) << t;
     EXPECT_EQ(mesh.error().message, fmt::format("mesh tolerance = {:g} mm is outside 0.0001 .. 10 mm", t));

@@ -46,7 +46,8 @@ TEST(Controls, HaveNamesOfTheirOwnAndAllTheirParts) {
 TEST(Controls, AnAliasIsTheSameControl) {
   for (const auto* c : controls::all())
     for (const auto& alias : c->aliases) {
-      const auto reading = controls::read_machine_of_text(replaced(kMachine, "\"linuxcnc\"", "\"" + alias + "\""), "m.toml");
+      const auto reading =
+          controls::read_machine_of_text(replaced(kMachine, "\"linuxcnc\"", "\"" + alias + "\""), "m.toml");
       ASSERT_TRUE(reading.machine) << to_text(reading.errors);
       const auto words = controls::dialect_of(*reading.machine);
       ASSERT_TRUE(words);
@@ -60,17 +61,17 @@ TEST(Controls, WorkOffsetsAreThoseOfTheControl) {
     m.dialect = control;
     return controls::other_work_offsets(m, name).value_or("");
   };
-  const std::pair<const char*, std::vector<const char*>> right[] = {{"linuxcnc", {"G54", "G59", "G59.3"}},
-                                                                    {"fanuc", {"G54", "G54.1 P1", "G54.1 P300"}},
-                                                                    {"mitsubishi_m80", {"G59", "G54.1 P12"}},
-                                                                    {"siemens", {"G54", "G57", "G505", "G599"}},
-                                                                    {"heidenhain", {"G54", "G59.1", "1", "99"}},
-                                                                    {"apt", {"G54", "17"}}};
+  const std::pair<const char*, std::vector<const char*>> right[] = {
+      {"linuxcnc", {"G54", "G59", "G59.3"}},       {"fanuc", {"G54", "G54.1 P1", "G54.1 P300"}},
+      {"mitsubishi_m80", {"G59", "G54.1 P12"}},    {"siemens", {"G54", "G57", "G505", "G599"}},
+      {"heidenhain", {"G54", "G59.1", "1", "99"}}, {"apt", {"G54", "17"}}};
   for (const auto& [control, names] : right)
     for (const char* name : names) EXPECT_EQ(others(control, name), "") << control << " " << name;
   const std::tuple<const char*, const char*, const char*> wrong[] = {
-      {"linuxcnc", "G54.1 P3", "G54 to G59 and G59.1 to G59.3"}, {"linuxcnc", "G59.4", "G54 to G59 and G59.1 to G59.3"},
-      {"fanuc", "G54.1 P301", "G54 to G59 and G54.1 P1 to P300"}, {"fanuc", "G59.1", "G54 to G59 and G54.1 P1 to P300"},
+      {"linuxcnc", "G54.1 P3", "G54 to G59 and G59.1 to G59.3"},
+      {"linuxcnc", "G59.4", "G54 to G59 and G59.1 to G59.3"},
+      {"fanuc", "G54.1 P301", "G54 to G59 and G54.1 P1 to P300"},
+      {"fanuc", "G59.1", "G54 to G59 and G54.1 P1 to P300"},
       {"siemens", "G58", "G54 to G57 and G505 to G599 (G58 and G59 shift single axes)"},
       {"heidenhain", "100", "the presets 1 to 99, or G54 for preset 1 to G59 for 6, G59.1 for 7 to G59.3 for 9"},
       {"heidenhain", "07", "the presets 1 to 99, or G54 for preset 1 to G59 for 6, G59.1 for 7 to G59.3 for 9"}};
@@ -78,17 +79,23 @@ TEST(Controls, WorkOffsetsAreThoseOfTheControl) {
   EXPECT_EQ(others("grbl", "G54"), "none that is known: \"grbl\" is not one of " + controls::list_of_names());
 }
 
-// Every way in which the keys of smoothing, corners and coolants can be wrong, alone or with their partners and the control.
+// Every way in which the keys of smoothing, corners and coolants can be wrong, alone or with their partners and the
+// control.
 TEST(ControlKeys, AreJudgedWithTheirPlace) {
-  for (const test::PostKeys& keys : test::kPostKeys) EXPECT_EQ(messages(test::machine_with(keys)), std::string(keys.messages)) << keys.what;
+  for (const test::PostKeys& keys : test::kPostKeys)
+    EXPECT_EQ(messages(test::machine_with(keys)), std::string(keys.messages)) << keys.what;
   for (const test::BadFile& bad : test::kBadControls)
-    EXPECT_EQ(messages(replaced(kMachine, bad.from, bad.to)), test::with_controls(bad.messages, controls::list_of_names())) << bad.what;
+    EXPECT_EQ(messages(replaced(kMachine, bad.from, bad.to)),
+              test::with_controls(bad.messages, controls::list_of_names()))
+        << bad.what;
 }
 
 TEST(ControlKeys, ComplaintsStandInTheOrderOfTheFile) {
   std::string text = replaced(kMachine, "\"linuxcnc\"", "\"heidenhain\"");
   text = replaced(text, "max_speed = 24000", "max_speed = 0");
-  text = replaced(text, "[chain]", "[post]\ncorner_tolerance = 0.001\ncoolant_air = [\"M128\", \"M129\"]\nlinear_decimals = 9\n\n[chain]");
+  text =
+      replaced(text, "[chain]",
+               "[post]\ncorner_tolerance = 0.001\ncoolant_air = [\"M128\", \"M129\"]\nlinear_decimals = 9\n\n[chain]");
   EXPECT_EQ(messages(text),
             "m.toml:10:13: error: spindle.max_speed = 0 must be above 0 1/min\n"
             "m.toml:18:20: error: post.corner_tolerance belongs to dialect \"linuxcnc\", this is \"heidenhain\"\n"
@@ -103,26 +110,34 @@ TEST(Controls, ReadersOfMachineFilesAndTheCommonTextNameNone) {
   for (const char* folder : {"/machines", "/postproc"})
     for (const auto& entry : std::filesystem::recursive_directory_iterator(kRoot + folder)) {
       const std::string name = entry.path().lexically_relative(kRoot).generic_string();
-      if (entry.path().extension() != ".cpp" || name.starts_with("postproc/controls/") || name.find("shaper") != std::string::npos) continue;
+      if (entry.path().extension() != ".cpp" || name.starts_with("postproc/controls/") ||
+          name.find("shaper") != std::string::npos)
+        continue;
       ++seen;
       const std::string text = file_text(entry.path());
-      for (const auto* c : controls::all()) EXPECT_EQ(text.find("\"" + c->words.name + "\""), std::string::npos) << name << " names " << c->words.name;
+      for (const auto* c : controls::all())
+        EXPECT_EQ(text.find("\"" + c->words.name + "\""), std::string::npos) << name << " names " << c->words.name;
     }
   EXPECT_GT(seen, 40);
 }
 
 // The tables of the documentation name every control, with its file extension.
 TEST(ControlTables, NameEveryControl) {
-  const std::string dialects = file_text(kRoot + "/docs/dialects.md"), machines = file_text(kRoot + "/machines/README.md"),
+  const std::string dialects = file_text(kRoot + "/docs/dialects.md"),
+                    machines = file_text(kRoot + "/machines/README.md"),
                     folder = file_text(kRoot + "/postproc/controls/README.md");
   for (const auto* c : controls::all()) {
-    EXPECT_NE(dialects.find("| `" + c->words.name + "` | `" + c->words.extension + "` |"), std::string::npos) << "docs/dialects.md lacks " << c->words.name;
-    for (const auto& alias : c->aliases) EXPECT_NE(dialects.find("`" + alias + "`"), std::string::npos) << "docs/dialects.md lacks the alias " << alias;
-    EXPECT_NE(folder.find("`" + c->words.name + "/`"), std::string::npos) << "postproc/controls/README.md lacks " << c->words.name;
+    EXPECT_NE(dialects.find("| `" + c->words.name + "` | `" + c->words.extension + "` |"), std::string::npos)
+        << "docs/dialects.md lacks " << c->words.name;
+    for (const auto& alias : c->aliases)
+      EXPECT_NE(dialects.find("`" + alias + "`"), std::string::npos) << "docs/dialects.md lacks the alias " << alias;
+    EXPECT_NE(folder.find("`" + c->words.name + "/`"), std::string::npos)
+        << "postproc/controls/README.md lacks " << c->words.name;
   }
   // Below the controls no list of them is kept.
   EXPECT_EQ(machines.find("`heidenhain`"), std::string::npos);
-  const std::string row = dialects.substr(dialects.find("## What is there"), dialects.find("What a dialect cannot do") - dialects.find("## What is there"));
+  const std::string row = dialects.substr(
+      dialects.find("## What is there"), dialects.find("What a dialect cannot do") - dialects.find("## What is there"));
   const std::regex named("\\n\\| `([a-z0-9_]+)` \\|");
   for (auto it = std::sregex_iterator(row.begin(), row.end(), named); it != std::sregex_iterator(); ++it)
     EXPECT_NE(controls::find((*it)[1].str()), nullptr) << "docs/dialects.md names " << (*it)[1];

@@ -1,4 +1,5 @@
-// The words of every control for flood, mist, air and coolant through the spindle: written, read back, and refused where there are none.
+// The words of every control for flood, mist, air and coolant through the spindle: written, read back, and refused
+// where there are none.
 #include <gtest/gtest.h>
 
 #include "tests/postproc/joints/trunnion_post.h"
@@ -46,13 +47,18 @@ struct Words {
   const char *on, *off;  ///< "" where the control has none
 };
 
-constexpr Words kWords[] = {
-    {"linuxcnc", machines::Coolant::flood, "M8", "M9"},       {"linuxcnc", machines::Coolant::mist, "M7", "M9"},
-    {"fanuc", machines::Coolant::flood, "M8", "M9"},          {"fanuc", machines::Coolant::mist, "M7", "M9"},
-    {"mitsubishi_m80", machines::Coolant::flood, "M8", "M9"}, {"mitsubishi_m80", machines::Coolant::mist, "M7", "M9"},
-    {"siemens", machines::Coolant::flood, "M8", "M9"},        {"siemens", machines::Coolant::mist, "M7", "M9"},
-    {"heidenhain", machines::Coolant::flood, "M8", "M9"},     {"heidenhain", machines::Coolant::mist, "", ""},
-    {"apt", machines::Coolant::flood, "COOLNT/FLOOD", "COOLNT/OFF"}, {"apt", machines::Coolant::mist, "COOLNT/MIST", "COOLNT/OFF"}};
+constexpr Words kWords[] = {{"linuxcnc", machines::Coolant::flood, "M8", "M9"},
+                            {"linuxcnc", machines::Coolant::mist, "M7", "M9"},
+                            {"fanuc", machines::Coolant::flood, "M8", "M9"},
+                            {"fanuc", machines::Coolant::mist, "M7", "M9"},
+                            {"mitsubishi_m80", machines::Coolant::flood, "M8", "M9"},
+                            {"mitsubishi_m80", machines::Coolant::mist, "M7", "M9"},
+                            {"siemens", machines::Coolant::flood, "M8", "M9"},
+                            {"siemens", machines::Coolant::mist, "M7", "M9"},
+                            {"heidenhain", machines::Coolant::flood, "M8", "M9"},
+                            {"heidenhain", machines::Coolant::mist, "", ""},
+                            {"apt", machines::Coolant::flood, "COOLNT/FLOOD", "COOLNT/OFF"},
+                            {"apt", machines::Coolant::mist, "COOLNT/MIST", "COOLNT/OFF"}};
 
 TEST(Coolant, IsWrittenInTheWordsOfTheControlAndReadBack) {
   for (const Words& w : kWords) {
@@ -64,9 +70,7 @@ TEST(Coolant, IsWrittenInTheWordsOfTheControlAndReadBack) {
     EXPECT_EQ(lines_with(text->text, w.on), 1u);
     EXPECT_EQ(lines_with(text->text, w.off), 1u);
     for (const char* other : {"M7", "M8", "COOLNT/FLOOD", "COOLNT/MIST", "COOLNT/ON"})
-      if (std::string(other) != w.on) {
-        EXPECT_EQ(lines_with(text->text, other), 0u) << other;
-      }
+      if (std::string(other) != w.on) { EXPECT_EQ(lines_with(text->text, other), 0u) << other; }
     EXPECT_EQ(reading(text->text, m), "");
     std::string planted = text->text;
     const std::string wrong = std::string(w.dialect) == "apt" ? "COOLNT/TAPKUL" : "M77";
@@ -90,8 +94,13 @@ TEST(Coolant, AirAndThroughTheSpindleAreTheBuildersBusiness) {
       const auto refused = text_with(machine_for(dialect), coolant);
       ASSERT_FALSE(refused) << dialect;
       const std::string message = refused.error().message;
-      EXPECT_EQ(message.find(std::string("mode = \"") + to_string(coolant) + "\": dialect \"" + dialect + "\" has words for "), 0u) << message;
-      EXPECT_EQ(message.find(std::string("post.coolant_") + to_string(coolant)) == std::string::npos, std::string(dialect) == "apt") << message;
+      EXPECT_EQ(message.find(std::string("mode = \"") + to_string(coolant) + "\": dialect \"" + dialect +
+                             "\" has words for "),
+                0u)
+          << message;
+      EXPECT_EQ(message.find(std::string("post.coolant_") + to_string(coolant)) == std::string::npos,
+                std::string(dialect) == "apt")
+          << message;
     }
 }
 
@@ -110,7 +119,8 @@ TEST(Coolant, WordsOfTheMachineFile) {
     EXPECT_EQ(lines_with(text->text, words.on), 1u);
     EXPECT_EQ(lines_with(text->text, words.off), 1u);
     EXPECT_EQ(reading(text->text, m), "");
-    EXPECT_NE(reading(text->text, plain).find(words.on + " is not in the subset"), std::string::npos) << reading(text->text, plain);
+    EXPECT_NE(reading(text->text, plain).find(words.on + " is not in the subset"), std::string::npos)
+        << reading(text->text, plain);
   }
   machines::Machine m = machine_for("heidenhain");
   m.post.coolant[machines::Coolant::mist] = {"M7", "M9"};
@@ -131,26 +141,35 @@ TEST(Coolant, WordsThatMeanSomethingElseAreRefused) {
     return d ? std::string() : d.error().text();
   };
   EXPECT_EQ(refusal("fanuc", {"M50", "M51"}), "");
-  EXPECT_EQ(refusal("fanuc", {"M3", "M9"}), "m.toml:18:16: error: post.coolant_mist: M3 means something else to dialect \"fanuc\"");
-  EXPECT_EQ(refusal("fanuc", {"M7", "M30"}), "m.toml:18:16: error: post.coolant_mist: M30 means something else to dialect \"fanuc\"");
+  EXPECT_EQ(refusal("fanuc", {"M3", "M9"}),
+            "m.toml:18:16: error: post.coolant_mist: M3 means something else to dialect \"fanuc\"");
+  EXPECT_EQ(refusal("fanuc", {"M7", "M30"}),
+            "m.toml:18:16: error: post.coolant_mist: M30 means something else to dialect \"fanuc\"");
   EXPECT_EQ(refusal("fanuc", {"M07", "M9"}), "m.toml:18:16: error: post.coolant_mist: \"M07\" is no M word such as M7");
-  EXPECT_EQ(refusal("fanuc", {"M7 S9000", "M9"}), "m.toml:18:16: error: post.coolant_mist: \"M7 S9000\" is no M word such as M7");
+  EXPECT_EQ(refusal("fanuc", {"M7 S9000", "M9"}),
+            "m.toml:18:16: error: post.coolant_mist: \"M7 S9000\" is no M word such as M7");
   EXPECT_EQ(refusal("fanuc", {"M9", "M7"}), "m.toml:18:16: error: post.coolant_mist: M9 switches flood off");
-  EXPECT_EQ(refusal("linuxcnc", {"M64", "M65"}), "m.toml:18:16: error: post.coolant_mist: M64 means something else to dialect \"linuxcnc\"");
-  EXPECT_EQ(refusal("linuxcnc", {"M428", "M9"}), "m.toml:18:16: error: post.coolant_mist: M428 is a code of TCP or smoothing in this file");
-  EXPECT_EQ(refusal("heidenhain", {"M128", "M9"}), "m.toml:18:16: error: post.coolant_mist: M128 means something else to dialect \"heidenhain\"");
-  EXPECT_EQ(refusal("apt", {"M7", "M9"}), "m.toml:18:16: error: post.coolant_mist: dialect \"apt\" has words of its own and no others");
+  EXPECT_EQ(refusal("linuxcnc", {"M64", "M65"}),
+            "m.toml:18:16: error: post.coolant_mist: M64 means something else to dialect \"linuxcnc\"");
+  EXPECT_EQ(refusal("linuxcnc", {"M428", "M9"}),
+            "m.toml:18:16: error: post.coolant_mist: M428 is a code of TCP or smoothing in this file");
+  EXPECT_EQ(refusal("heidenhain", {"M128", "M9"}),
+            "m.toml:18:16: error: post.coolant_mist: M128 means something else to dialect \"heidenhain\"");
+  EXPECT_EQ(refusal("apt", {"M7", "M9"}),
+            "m.toml:18:16: error: post.coolant_mist: dialect \"apt\" has words of its own and no others");
 }
 
 // LinuxCNC's own interpreter takes the words as they are meant.
 TEST(Coolant, LinuxcncUnderstandsItsWords) {
-  for (const auto& [coolant, canonical] : {std::pair{machines::Coolant::mist, "MIST_ON"}, std::pair{machines::Coolant::flood, "FLOOD_ON"}}) {
+  for (const auto& [coolant, canonical] :
+       {std::pair{machines::Coolant::mist, "MIST_ON"}, std::pair{machines::Coolant::flood, "FLOOD_ON"}}) {
     const auto text = text_with(with_dialect(trunnion(), "linuxcnc"), coolant);
     ASSERT_TRUE(text) << text.error().message;
     const auto out = interpret(text->text, std::string("coolant_") + to_string(coolant));
     ASSERT_EQ(out.exit, 0) << out.messages;
     for (const char* command : {"MIST_ON", "FLOOD_ON"}) {
-      const bool found = std::any_of(out.lines.begin(), out.lines.end(), [&](const std::string& l) { return l.find(command) != std::string::npos; });
+      const bool found = std::any_of(out.lines.begin(), out.lines.end(),
+                                     [&](const std::string& l) { return l.find(command) != std::string::npos; });
       EXPECT_EQ(found, std::string(command) == canonical) << command;
     }
   }

@@ -1,5 +1,5 @@
-// What stands in the blocks that move, turn or change the tool: docs/dangers.md, rows 3, 8, 10, 12, 17, 18, 25. Every dialect in every way that it is
-// posted, several jobs.
+// What stands in the blocks that move, turn or change the tool: docs/dangers.md, rows 3, 8, 10, 12, 17, 18, 25. Every
+// dialect in every way that it is posted, several jobs.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,10 +14,12 @@ namespace {
 
 using namespace test;
 
-// 3: the first motion is a retract in machine coordinates, and no Z in work coordinates stands before the tool length counts.
+// 3: the first motion is a retract in machine coordinates, and no Z in work coordinates stands before the tool length
+// counts.
 TEST_F(DangerModes, NoWorkZBeforeLengthCompensation) {
   every_post([&] {
-    if (apt()) return;  // tips in work coordinates; the length is LOADTL, which the post processor of the control compensates
+    if (apt())
+      return;  // tips in work coordinates; the length is LOADTL, which the post processor of the control compensates
     every_job([&](const ModalRun& run, const auto&) {
       bool moved = false;
       int z = 0;
@@ -37,8 +39,8 @@ TEST_F(DangerModes, NoWorkZBeforeLengthCompensation) {
   });
 }
 
-// 8: G94 with rotary words only with TCP, or with the exact F of a block that inverse time cannot express (its time is checked in
-// DangerTimes), or where the rotary words repeat what stands.
+// 8: G94 with rotary words only with TCP, or with the exact F of a block that inverse time cannot express (its time is
+// checked in DangerTimes), or where the rotary words repeat what stands.
 TEST_F(DangerModes, NoFeedPerMinuteWithRotariesWithoutTcp) {
   every_post([&] {
     if (apt()) return;
@@ -60,7 +62,8 @@ TEST_F(DangerModes, NoFeedPerMinuteWithRotariesWithoutTcp) {
   });
 }
 
-// 10: after a tool change, a retract, a change of TCP or a new tooth all words of the next blocks are printed, also those that are zero.
+// 10: after a tool change, a retract, a change of TCP or a new tooth all words of the next blocks are printed, also
+// those that are zero.
 TEST_F(DangerModes, WordsAreForcedAfterBreaks) {
   every_post([&] {
     every_job([&](const ModalRun& run, const auto&) {
@@ -106,7 +109,8 @@ TEST_F(DangerModes, ATiltOfZeroIsSaidAgain) {
     for (const auto& b : run.blocks) {
       if (b.comment.rfind("OP ", 0) == 0) op = std::stoi(b.comment.substr(3));
       if (b.has("A") && b.rapid) tilts[op].insert(std::abs(std::stod(b.words.at("A"))));
-      if (b.has("A") && !b.rapid && post().tcp != machines::TcpMode::none) tilts[op].insert(std::abs(std::stod(b.words.at("A"))));
+      if (b.has("A") && !b.rapid && post().tcp != machines::TcpMode::none)
+        tilts[op].insert(std::abs(std::stod(b.words.at("A"))));
     }
     ASSERT_EQ(tilts.size(), 3u);
     EXPECT_EQ(tilts[0].count(30), 1u);
@@ -115,7 +119,8 @@ TEST_F(DangerModes, ATiltOfZeroIsSaidAgain) {
   });
 }
 
-// 12: every rapid without TCP moves Z alone, or X and Y, or rotaries. With TCP the tip goes straight and the rotaries stand.
+// 12: every rapid without TCP moves Z alone, or X and Y, or rotaries. With TCP the tip goes straight and the rotaries
+// stand.
 TEST_F(DangerModes, RapidsMoveOneGroupOfAxes) {
   every_post([&] {
     if (apt()) return;  // tips and vectors: the order of the joints is the business of the post processor
@@ -136,7 +141,8 @@ TEST_F(DangerModes, RapidsMoveOneGroupOfAxes) {
   });
 }
 
-// 17: TCP of a Fanuc begins with both rotaries at zero, commanded as such, with Z alone; the others switch it on after the turn.
+// 17: TCP of a Fanuc begins with both rotaries at zero, commanded as such, with Z alone; the others switch it on after
+// the turn.
 TEST_F(DangerModes, TcpStartsWhereItMay) {
   every_post([&] {
     if (apt() || post().tcp == machines::TcpMode::none) return;
@@ -171,7 +177,8 @@ TEST_F(DangerModes, TcpStartsWhereItMay) {
 // 18: G0 and G1 only (L and LN, GOTO): no arc, helix, spline, cycle or radius compensation anywhere.
 TEST_F(DangerModes, NoArcsNoCyclesNoRadiusCompensation) {
   every_post([&] {
-    const std::regex forbidden(R"(\b(G0?[23]|G[23]\.[1-9]|G12|G13|G5|G6|G4[12]|G8[1-9]|G7[3-6]|CIP|CT|CR|CC|CP|RL|RR|SPLINE|BSPLINE|G41\.\d|ARCMOV|CIRCLE)\b|CIRCLE/|TURN=)");
+    const std::regex forbidden(
+        R"(\b(G0?[23]|G[23]\.[1-9]|G12|G13|G5|G6|G4[12]|G8[1-9]|G7[3-6]|CIP|CT|CR|CC|CP|RL|RR|SPLINE|BSPLINE|G41\.\d|ARCMOV|CIRCLE)\b|CIRCLE/|TURN=)");
     every_job([&](const ModalRun& run, const auto&) {
       for (const auto& b : run.blocks) {
         EXPECT_FALSE(std::regex_search(b.code, forbidden)) << b.line << ": " << b.code;
@@ -182,7 +189,8 @@ TEST_F(DangerModes, NoArcsNoCyclesNoRadiusCompensation) {
   });
 }
 
-// 25: the tool is named with its change, the spindle and the coolant stand, Z is at its top, TCP and inverse time are off.
+// 25: the tool is named with its change, the spindle and the coolant stand, Z is at its top, TCP and inverse time are
+// off.
 TEST_F(DangerModes, ToolChangesAreSafe) {
   every_post([&] {
     static const std::regex named(R"re(^T(\d+) M6$|^T="T(\d+)"$|^TOOL CALL (\d+) |^LOADTL/(\d+),)re");
@@ -197,24 +205,23 @@ TEST_F(DangerModes, ToolChangesAreSafe) {
             if (m[k].matched) last_t = std::stoi(m[k]);
         const bool m6 = b.code.find("M6") != std::string::npos && b.code.find("M6") + 2 == b.code.size();
         if (!b.tool_change && !m6) {
-          if (b.moves && !b.rapid) {
-            EXPECT_EQ(b.mode("spindle"), "on") << b.line << ": " << b.code;
-          }
+          if (b.moves && !b.rapid) { EXPECT_EQ(b.mode("spindle"), "on") << b.line << ": " << b.code; }
           continue;
         }
         // Named in the same block, or in the one before it.
-        EXPECT_TRUE(b.code.rfind("T", 0) == 0 || b.code.rfind("LOADTL", 0) == 0 || (i > 0 && run.blocks[i - 1].code.rfind("T=", 0) == 0)) << b.line;
+        EXPECT_TRUE(b.code.rfind("T", 0) == 0 || b.code.rfind("LOADTL", 0) == 0 ||
+                    (i > 0 && run.blocks[i - 1].code.rfind("T=", 0) == 0))
+            << b.line;
         changed.push_back(last_t);
         EXPECT_NE(b.before.count("spindle") != 0 ? b.before.at("spindle") : "off", "on") << b.line;
         EXPECT_NE(b.before.count("coolant") != 0 ? b.before.at("coolant") : "off", "on") << b.line;
         EXPECT_NE(b.mode("tcp"), "on") << b.line;
         EXPECT_NE(b.mode("feed"), "inverse time") << b.line;
-        if (!apt()) {
-          EXPECT_EQ(b.before.at("place"), "machine top") << b.line;
-        }
+        if (!apt()) { EXPECT_EQ(b.before.at("place"), "machine top") << b.line; }
       }
       ASSERT_EQ(changed.size(), paths.size());
-      for (std::size_t k = 0; k < paths.size(); ++k) EXPECT_EQ(changed[k], tools()[static_cast<std::size_t>(paths[k].tool)].number);
+      for (std::size_t k = 0; k < paths.size(); ++k)
+        EXPECT_EQ(changed[k], tools()[static_cast<std::size_t>(paths[k].tool)].number);
     });
   });
 }

@@ -1,4 +1,5 @@
-// The programs on which the guarantees of docs/dangers.md are tested: every dialect in every way that it can be posted, several jobs.
+// The programs on which the guarantees of docs/dangers.md are tested: every dialect in every way that it can be posted,
+// several jobs.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -46,18 +47,27 @@ inline const std::vector<Post>& all_posts() {
 inline machines::Machine machine_of(const Post& p) { return trunnion_with(p.dialect, p.tcp); }
 
 /// What the control would do with a text; a text that it refuses fails the test.
-inline std::vector<readback::ExecutedMove> executed(const Post& p, const std::string& text, const machines::Machine& m) {
+inline std::vector<readback::ExecutedMove> executed(const Post& p, const std::string& text,
+                                                    const machines::Machine& m) {
   const auto control = controls::control_of(m, standing(), tools());
   std::vector<readback::ExecutedMove> moves;
-  const auto done = readback::execute_nc(text, "p", *control, [&](const readback::ExecutedMove& e) { moves.push_back(e); });
+  const auto done =
+      readback::execute_nc(text, "p", *control, [&](const readback::ExecutedMove& e) { moves.push_back(e); });
   EXPECT_TRUE(done) << p.name << ": " << (done ? "" : done.error().text());
   return moves;
 }
-inline std::vector<readback::ExecutedMove> executed(const Post& p, const std::string& text) { return executed(p, text, machine_of(p)); }
+inline std::vector<readback::ExecutedMove> executed(const Post& p, const std::string& text) {
+  return executed(p, text, machine_of(p));
+}
 
 /// Rotaries may move in a cut. Heidenhain without TCP has no feed for it.
-inline bool may_turn(const Post& p) { return p.tcp != machines::TcpMode::none || std::string(p.dialect) != "heidenhain"; }
-inline bool is_iso_point(const Post& p) { return std::string(p.dialect) == "fanuc" || std::string(p.dialect) == "mitsubishi_m80" || std::string(p.dialect) == "haas"; }
+inline bool may_turn(const Post& p) {
+  return p.tcp != machines::TcpMode::none || std::string(p.dialect) != "heidenhain";
+}
+inline bool is_iso_point(const Post& p) {
+  return std::string(p.dialect) == "fanuc" || std::string(p.dialect) == "mitsubishi_m80" ||
+         std::string(p.dialect) == "haas";
+}
 
 /// A ball at (100, 0, -3) .. as sample_path, at a lean in the plane of the trunnion: A = lean exactly and C = 0.
 inline path::ClPath upright_path(double lean, int operation, int tool, int steps = 6) {
@@ -66,7 +76,8 @@ inline path::ClPath upright_path(double lean, int operation, int tool, int steps
   // u = (sin C sin A, cos C sin A, cos A) on this machine: at C = 0 the axis leans along +Y.
   const Vec3 axis = leaning(lean, kPi / 2);
   for (auto& r : path.records) {
-    if (r.kind == path::MoveKind::rapid || r.kind == path::MoveKind::retract) r.tip += 12 * (axis / axis.z() - Vec3::UnitZ());
+    if (r.kind == path::MoveKind::rapid || r.kind == path::MoveKind::retract)
+      r.tip += 12 * (axis / axis.z() - Vec3::UnitZ());
     r.axis = axis;
   }
   return path;
@@ -85,7 +96,8 @@ inline std::map<std::string, std::vector<path::ClPath>> jobs_for(const Post& p) 
 
 inline constexpr int kDangerTeeth = 3;
 
-inline Result<joints::AxisProgram> program_of(const Post& p, const std::vector<path::ClPath>& paths, int teeth = kDangerTeeth) {
+inline Result<joints::AxisProgram> program_of(const Post& p, const std::vector<path::ClPath>& paths,
+                                              int teeth = kDangerTeeth) {
   return axis_program(paths, machine_of(p), standing(), teeth, p.expand);
 }
 

@@ -1,5 +1,5 @@
-// What the modes of a control are at every block of a program: docs/dangers.md, rows 1, 2, 5, 17 to 19, 26. Every dialect in every way that it is
-// posted, several jobs.
+// What the modes of a control are at every block of a program: docs/dangers.md, rows 1, 2, 5, 17 to 19, 26. Every
+// dialect in every way that it is posted, several jobs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,14 +26,17 @@ bool turns_in_cuts(const ModalRun& run) {
   return turns;
 }
 
-// 1: whatever the last program left, every modal group is set before anything moves, and again behind every tool change.
+// 1: whatever the last program left, every modal group is set before anything moves, and again behind every tool
+// change.
 TEST_F(DangerModes, SafeStartBeforeTheFirstMotion) {
   every_post([&] {
     every_job([&](const ModalRun& run, const auto&) {
-      const auto first = std::find_if(run.blocks.begin(), run.blocks.end(), [](const ModalBlock& b) { return b.moves; });
+      const auto first =
+          std::find_if(run.blocks.begin(), run.blocks.end(), [](const ModalBlock& b) { return b.moves; });
       ASSERT_NE(first, run.blocks.end());
       for (const auto& [group, value] : safe_modes(post().dialect)) {
-        ASSERT_EQ(first->before.count(group), 1u) << group << " is left as the last program left it, at line " << first->line;
+        ASSERT_EQ(first->before.count(group), 1u)
+            << group << " is left as the last program left it, at line " << first->line;
         EXPECT_EQ(first->before.at(group), value) << group << " at line " << first->line;
       }
     });
@@ -45,7 +48,9 @@ TEST_F(DangerModes, SafeStartAgainBehindEveryToolChange) {
   every_post([&] {
     if (apt()) return;  // CLDATA has no modes of a control
     every_job([&](const ModalRun& run, const auto& paths) {
-      const std::string first = heidenhain() ? "PLANE RESET STAY" : std::string(post().dialect) == "siemens" ? "G17 G40 G90 G94 G710" : "G21 G17 G90 G94";
+      const std::string first = heidenhain()                               ? "PLANE RESET STAY"
+                                : std::string(post().dialect) == "siemens" ? "G17 G40 G90 G94 G710"
+                                                                           : "G21 G17 G90 G94";
       int changes = 0, resets = 0;
       bool open = false;
       for (const auto& b : run.blocks) {
@@ -76,7 +81,8 @@ TEST_F(DangerModes, EndStateIsTheResetState) {
         EXPECT_EQ(last.mode("place"), "machine top");
         EXPECT_NE(last.mode("tcp"), "on");
       }
-      for (const auto& b : run.blocks) EXPECT_TRUE(b.mode("coolant") != "on" || b.mode("spindle") == "on" || !b.moves) << b.line;
+      for (const auto& b : run.blocks)
+        EXPECT_TRUE(b.mode("coolant") != "on" || b.mode("spindle") == "on" || !b.moves) << b.line;
     });
   });
 }
@@ -107,7 +113,8 @@ TEST_F(DangerModes, FeedWithEveryChangeOfItsMeaning) {
   });
 }
 
-// 17: what the numbers mean stands at the top: work offset and where it is, what the tool lengths refer to, how TCP must be set.
+// 17: what the numbers mean stands at the top: work offset and where it is, what the tool lengths refer to, how TCP
+// must be set.
 TEST_F(DangerModes, HeaderSaysWhatTheNumbersMean) {
   every_post([&] {
     every_job([&](const ModalRun& run, const auto&) {
@@ -117,9 +124,12 @@ TEST_F(DangerModes, HeaderSaysWhatTheNumbersMean) {
         head += b.comment + "\n";
       }
       EXPECT_NE(head.find("MACHINE TRUNNION"), std::string::npos);
-      EXPECT_NE(head.find(apt() ? "TIP AND TOOL AXIS IN WORK COORDINATES" : "TOOL LENGTHS RUN FROM THE GAUGE LINE TO THE TIP"), std::string::npos);
+      EXPECT_NE(head.find(apt() ? "TIP AND TOOL AXIS IN WORK COORDINATES"
+                                : "TOOL LENGTHS RUN FROM THE GAUGE LINE TO THE TIP"),
+                std::string::npos);
       if (!apt()) {
-        EXPECT_TRUE(std::regex_search(head, std::regex(R"(WORK OFFSET G54 AT X\+?3\.? Y-2\.? Z\+?0\.? MM MACHINE)"))) << head;
+        EXPECT_TRUE(std::regex_search(head, std::regex(R"(WORK OFFSET G54 AT X\+?3\.? Y-2\.? Z\+?0\.? MM MACHINE)")))
+            << head;
       }
       if (std::string(post().dialect) == "fanuc" && post().tcp == machines::TcpMode::angles) {
         EXPECT_NE(head.find("19696#5 WKP=0"), std::string::npos);
@@ -128,11 +138,13 @@ TEST_F(DangerModes, HeaderSaysWhatTheNumbersMean) {
   });
 }
 
-// 19: smoothing never without its tolerance, and never with LinuxCNC, where that does not hold; what is on in a cut is off at the end.
+// 19: smoothing never without its tolerance, and never with LinuxCNC, where that does not hold; what is on in a cut is
+// off at the end.
 TEST_F(DangerModes, SmoothingHasItsToleranceAndEnds) {
   every_post([&] {
     const std::string d = post().dialect;
-    const std::regex bounded(R"(G641 ADIS=0\.000(212|122)|CYCL DEF 32\.1 T0\.0003)"), any(R"(\bG64\b|\bG64[1-5]\b|CYCL DEF 32\.1 |CYCLE832|G5\.1|G05|G8 P|COMPON|COMPCURV|COMPCAD)");
+    const std::regex bounded(R"(G641 ADIS=0\.000(212|122)|CYCL DEF 32\.1 T0\.0003)"),
+        any(R"(\bG64\b|\bG64[1-5]\b|CYCL DEF 32\.1 |CYCLE832|G5\.1|G05|G8 P|COMPON|COMPCURV|COMPCAD)");
     every_job([&](const ModalRun& run, const auto&) {
       int on = 0, exact = 0;
       for (const auto& b : run.blocks) {
@@ -146,9 +158,7 @@ TEST_F(DangerModes, SmoothingHasItsToleranceAndEnds) {
         EXPECT_EQ(on, 0);
         EXPECT_EQ(exact, 2);  // at the start and at the end
         for (const auto& b : run.blocks)
-          if (b.moves && !b.rapid) {
-            EXPECT_EQ(b.mode("smoothing"), "off") << b.line;
-          }
+          if (b.moves && !b.rapid) { EXPECT_EQ(b.mode("smoothing"), "off") << b.line; }
       } else if (d == "siemens" || d == "heidenhain") {
         EXPECT_EQ(on, 1);
         EXPECT_EQ(run.blocks.back().mode("smoothing"), "off");
@@ -161,9 +171,7 @@ TEST_F(DangerModes, SmoothingHasItsToleranceAndEnds) {
               EXPECT_EQ(b.mode("path group"), "named") << b.line;
             }
           }
-        if (d == "siemens") {
-          EXPECT_NE(run.blocks.back().mode("path group"), "named");
-        }
+        if (d == "siemens") { EXPECT_NE(run.blocks.back().mode("path group"), "named"); }
       } else {
         EXPECT_EQ(on, 0);
       }
@@ -175,20 +183,21 @@ TEST_F(DangerModes, SmoothingHasItsToleranceAndEnds) {
 TEST_F(DangerModes, UnitCodeIsPrintedAndInchesAreRefused) {
   every_post([&] {
     const std::map<std::string, std::pair<std::string, std::string>> codes = {
-        {"linuxcnc", {"G21", "G20"}}, {"fanuc", {"G21", "G20"}},          {"mitsubishi_m80", {"G21", "G20"}}, {"haas", {"G21", "G20"}},
-        {"siemens", {"G710", "G700"}}, {"heidenhain", {" MM\n", " INCH\n"}}, {"apt", {"UNITS/MM", "UNITS/INCHES"}}};
+        {"linuxcnc", {"G21", "G20"}},         {"fanuc", {"G21", "G20"}},
+        {"mitsubishi_m80", {"G21", "G20"}},   {"haas", {"G21", "G20"}},
+        {"siemens", {"G710", "G700"}},        {"heidenhain", {" MM\n", " INCH\n"}},
+        {"apt", {"UNITS/MM", "UNITS/INCHES"}}};
     const auto& [mm, inch] = codes.at(post().dialect);
     const machines::Machine m = machine_of(post());
     const auto control = controls::control_of(m, standing(), tools());
     every_job([&](const ModalRun& run, const auto& paths) {
       for (const auto& b : run.blocks)
-        if (b.moves) {
-          EXPECT_EQ(b.mode("units"), "mm") << b.line;
-        }
+        if (b.moves) { EXPECT_EQ(b.mode("units"), "mm") << b.line; }
       const std::string text = text_of(post(), paths);
       const auto with = [&](const std::string& replacement) {
         std::string t = text;
-        for (std::size_t at = 0; (at = t.find(mm, at)) != std::string::npos; at += replacement.size()) t.replace(at, mm.size(), replacement);
+        for (std::size_t at = 0; (at = t.find(mm, at)) != std::string::npos; at += replacement.size())
+          t.replace(at, mm.size(), replacement);
         return execute_nc(t, "p", *control, [](const readback::ExecutedMove&) {});
       };
       EXPECT_TRUE(with(mm));

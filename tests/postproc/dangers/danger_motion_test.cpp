@@ -1,5 +1,6 @@
-// What the machine does with a program: docs/dangers.md, rows 7, 8, 11 to 13, 15, 16, 21. Programs are read back and then followed with
-// the kinematics of tests/support/trunnion_kinematics.h, which shares nothing with the machine model.
+// What the machine does with a program: docs/dangers.md, rows 7, 8, 11 to 13, 15, 16, 21. Programs are read back and
+// then followed with the kinematics of tests/support/trunnion_kinematics.h, which shares nothing with the machine
+// model.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,14 +38,16 @@ class DangerMotion : public EveryPost {
   [[nodiscard]] bool apt() const { return std::string(post().dialect) == "apt"; }
 };
 
-// 7, 8: the time that the control needs for every cutting block is the time that the program was made for, 1/F where F is inverse time.
+// 7, 8: the time that the control needs for every cutting block is the time that the program was made for, 1/F where F
+// is inverse time.
 TEST_F(DangerMotion, EveryBlockTakesItsTime) {
   every_post([&] {
     const Post& p = post();
     std::mt19937 random(7);
     std::uniform_real_distribution<double> u(0, 1);
     for (int trial = 0; trial < 5; ++trial) {
-      // Near the axis of C the linear steps are tiny while the rotary turns: trial 0 stands still but for the last digits.
+      // Near the axis of C the linear steps are tiny while the rotary turns: trial 0 stands still but for the last
+      // digits.
       path::ClPath path = sample_path(0.1 + 0.5 * u(random), may_turn(p) ? u(random) : 0, 6 + 2 * trial);
       const double nearer = trial == 0 ? 1e-4 : u(random);
       if (may_turn(p))
@@ -71,7 +74,8 @@ TEST_F(DangerMotion, EveryBlockTakesItsTime) {
         if (!e.rapid) needed.push_back(e.minutes);
       if (apt()) continue;  // CLDATA has FEDRAT alone; a GOTO that turns is timed by the post processor of the control
       ASSERT_EQ(needed.size(), asked.size()) << p.name;
-      for (std::size_t i = 0; i < asked.size(); ++i) ASSERT_NEAR(needed[i] / asked[i], 1, 0.01) << p.name << " trial " << trial << " block " << i;
+      for (std::size_t i = 0; i < asked.size(); ++i)
+        ASSERT_NEAR(needed[i] / asked[i], 1, 0.01) << p.name << " trial " << trial << " block " << i;
       if (p.tcp != machines::TcpMode::none || std::string(p.dialect) == "heidenhain") continue;
       // The same from the text alone: F of the inverse-time blocks.
       std::vector<double> rates;
@@ -90,8 +94,8 @@ TEST_F(DangerMotion, EveryBlockTakesItsTime) {
   });
 }
 
-// 11, 12: on rapids the whole tool stays outside the body that part and fixture sweep, whether the axes of a group run together or one
-// after the other, and while rotaries turn at paces of their own.
+// 11, 12: on rapids the whole tool stays outside the body that part and fixture sweep, whether the axes of a group run
+// together or one after the other, and while rotaries turn at paces of their own.
 TEST_F(DangerMotion, RapidsStayOutsideTheBlank) {
   every_post([&] {
     const Post& p = post();
@@ -110,7 +114,8 @@ TEST_F(DangerMotion, RapidsStayOutsideTheBlank) {
             // (A turn of the rotaries at rest would show as a change of the axis.)
             ASSERT_LT((from.axis - to.axis).norm(), apt() ? 2.0 : 1e-9) << name << " line " << b.line;
             if (!apt()) {
-              ASSERT_TRUE(outside_body({from.tip + t * (to.tip - from.tip), to.axis}, length)) << name << " line " << b.line;
+              ASSERT_TRUE(outside_body({from.tip + t * (to.tip - from.tip), to.axis}, length))
+                  << name << " line " << b.line;
             }
             continue;
           }
@@ -134,7 +139,8 @@ TEST_F(DangerMotion, RapidsStayOutsideTheBlank) {
   });
 }
 
-// 13: five passes of eight turns of C on an axis with nine: each unwinds above the part, in a block of its own, not inside a cut.
+// 13: five passes of eight turns of C on an axis with nine: each unwinds above the part, in a block of its own, not
+// inside a cut.
 TEST_F(DangerMotion, FortyTurnsAreUnwoundAboveThePart) {
   every_post([&] {
     const Post& p = post();
@@ -148,7 +154,8 @@ TEST_F(DangerMotion, FortyTurnsAreUnwoundAboveThePart) {
       const auto add = [&](int i, path::MoveKind kind, double lift) {
         const double phi = 2 * kPi * i / 30.0;
         const Vec3 axis = leaning(0.3, phi);
-        path.records.push_back({Vec3(100 * std::cos(phi), 100 * std::sin(phi), -3) + lift * axis, axis, kind == path::MoveKind::rapid ? 0.0 : 800.0, kind, 0, pass});
+        path.records.push_back({Vec3(100 * std::cos(phi), 100 * std::sin(phi), -3) + lift * axis, axis,
+                                kind == path::MoveKind::rapid ? 0.0 : 800.0, kind, 0, pass});
       };
       add(240 * pass, path::MoveKind::rapid, 15);
       add(240 * pass, path::MoveKind::engage, 0);
@@ -181,25 +188,31 @@ TEST_F(DangerMotion, FortyTurnsAreUnwoundAboveThePart) {
         const TrunnionPose from = pose(a.joints, 95), to = pose(b.joints, 95);
         EXPECT_TRUE(outside_body(from, 95) && outside_body(to, 95)) << p.name << " line " << b.line;
         if (!b.tcp) {
-          EXPECT_EQ((Vec3(a.joints[0], a.joints[1], a.joints[2]) - Vec3(b.joints[0], b.joints[1], b.joints[2])).norm(), 0) << p.name << " line " << b.line;
+          EXPECT_EQ((Vec3(a.joints[0], a.joints[1], a.joints[2]) - Vec3(b.joints[0], b.joints[1], b.joints[2])).norm(),
+                    0)
+              << p.name << " line " << b.line;
         }
       }
     }
     EXPECT_NEAR(cut, 40 * 360, 40) << p.name;
     EXPECT_GE(unwound, 4 * 2000) << p.name;
-    for (auto* limit : {&m.chain.table[0].min_rad, &m.chain.table[0].max_rad}) *limit *= 0.8;  // no room for the eight turns of one pass
+    for (auto* limit : {&m.chain.table[0].min_rad, &m.chain.table[0].max_rad})
+      *limit *= 0.8;  // no room for the eight turns of one pass
     EXPECT_FALSE(axis_program({path}, m, standing(), 1, p.expand));
   });
 }
 
-/// Motions of one operation from the joints by the other kinematics, for a tool that is longer than the program believes.
-std::vector<path::ToolMotion> motions_of(const std::vector<readback::ExecutedMove>& moves, double longer, const machines::KinematicChain* other_chain = nullptr) {
+/// Motions of one operation from the joints by the other kinematics, for a tool that is longer than the program
+/// believes.
+std::vector<path::ToolMotion> motions_of(const std::vector<readback::ExecutedMove>& moves, double longer,
+                                         const machines::KinematicChain* other_chain = nullptr) {
   std::vector<path::ToolMotion> out;
   const auto at = [&](const readback::ExecutedMove& e) {
     const double length = length_of(e.tool);
     TrunnionPose t;
     if (other_chain != nullptr) {
-      const auto q = other_chain->forward({Vec3(e.joints[0], e.joints[1], e.joints[2]), {radians(e.joints[3]), radians(e.joints[4])}}, length);
+      const auto q = other_chain->forward(
+          {Vec3(e.joints[0], e.joints[1], e.joints[2]), {radians(e.joints[3]), radians(e.joints[4])}}, length);
       t.tip = q.tip_mm - standing().origin_mm;
       t.axis = q.axis;
     } else {
@@ -227,8 +240,9 @@ std::vector<path::ToolMotion> motions_of(const std::vector<readback::ExecutedMov
   return out;
 }
 
-// 15: a rotary whose sense or pivot differs from the machine file: the program does not meet the path any more. (Tool vectors name no
-// rotary: there the dry-run program of `toothpath machine test` shows it, SelfTestOf.WrongMachineIsSeen.)
+// 15: a rotary whose sense or pivot differs from the machine file: the program does not meet the path any more. (Tool
+// vectors name no rotary: there the dry-run program of `toothpath machine test` shows it,
+// SelfTestOf.WrongMachineIsSeen.)
 TEST_F(DangerMotion, WrongSenseOrPivotFailsTheRoundTrip) {
   every_post([&] {
     const Post& p = post();
@@ -240,16 +254,19 @@ TEST_F(DangerMotion, WrongSenseOrPivotFailsTheRoundTrip) {
     for (std::size_t k = 0; k < 2; ++k) {
       machines::KinematicChain wrong = trunnion().chain;
       wrong.table[k].sign = 1;
-      EXPECT_FALSE(readback::compare_with_cl(motions_of(moves, 0, &wrong), list, 3e-3, 1e-3).complete) << p.name << " sense of " << wrong.table[k].letter;
+      EXPECT_FALSE(readback::compare_with_cl(motions_of(moves, 0, &wrong), list, 3e-3, 1e-3).complete)
+          << p.name << " sense of " << wrong.table[k].letter;
       wrong.table[k].sign = -1;
       EXPECT_TRUE(readback::compare_with_cl(motions_of(moves, 0, &wrong), list, 3e-3, 1e-3).complete) << p.name;
       wrong.table[k].point_mm += Vec3(0.05, 0.05, 0);
-      EXPECT_FALSE(readback::compare_with_cl(motions_of(moves, 0, &wrong), list, 3e-3, 1e-3).complete) << p.name << " pivot of " << wrong.table[k].letter;
+      EXPECT_FALSE(readback::compare_with_cl(motions_of(moves, 0, &wrong), list, 3e-3, 1e-3).complete)
+          << p.name << " pivot of " << wrong.table[k].letter;
     }
   });
 }
 
-// 16: a tool that is 0.25 mm longer than the list says cuts 0.25 mm too deep along its axis, and the comparison says so.
+// 16: a tool that is 0.25 mm longer than the list says cuts 0.25 mm too deep along its axis, and the comparison says
+// so.
 TEST_F(DangerMotion, AToolAQuarterTooLongIsSeen) {
   every_post([&] {
     const Post& p = post();
@@ -259,14 +276,16 @@ TEST_F(DangerMotion, AToolAQuarterTooLongIsSeen) {
     EXPECT_TRUE(readback::compare_with_cl(motions_of(moves, 0), list, 3e-3, 1e-3).complete) << p.name;
     const auto wrong = readback::compare_with_cl(motions_of(moves, 0.25), list, 3e-3, 1e-3);
     EXPECT_FALSE(wrong.complete) << p.name;
-    if (p.tcp == machines::TcpMode::angles && std::string(p.dialect) == "fanuc") return;  // its turn about the tip is one about another point now
+    if (p.tcp == machines::TcpMode::angles && std::string(p.dialect) == "fanuc")
+      return;  // its turn about the tip is one about another point now
     const auto deep = readback::compare_with_cl(motions_of(moves, 0.25), list, 0.26, 1e-3);
     EXPECT_TRUE(deep.complete) << p.name << ": " << deep.message;
     EXPECT_NEAR(deep.worst_mm, 0.25, 0.005) << p.name;
   });
 }
 
-// 16: what the lengths refer to stands in the text with the length of every tool; another reference is refused, not guessed.
+// 16: what the lengths refer to stands in the text with the length of every tool; another reference is refused, not
+// guessed.
 TEST_F(DangerMotion, LengthReferenceIsSaid) {
   every_post([&] {
     const Post& p = post();

@@ -20,7 +20,8 @@ std::set<std::string> tests_in_sources() {
   for (const auto& entry : fs::recursive_directory_iterator(fs::path(TOOTHPATH_SOURCE_DIR) / "tests")) {
     if (entry.path().extension() != ".cpp") continue;
     const std::string text = test::file_text(entry.path());
-    for (std::sregex_iterator it(text.begin(), text.end(), test), end; it != end; ++it) names.insert((*it)[1].str() + "." + (*it)[2].str());
+    for (std::sregex_iterator it(text.begin(), text.end(), test), end; it != end; ++it)
+      names.insert((*it)[1].str() + "." + (*it)[2].str());
   }
   return names;
 }
@@ -49,7 +50,9 @@ TEST(DangersTable, EveryRowNamesTestsThatExist) {
     for (std::sregex_iterator it(cells[3].begin(), cells[3].end(), file), end; it != end; ++it) {
       const std::string name = (*it)[1];
       bool there = false;
-      for (const char* folder : {"", "postproc/", "postproc/controls/linuxcnc/", "postproc/controls/heidenhain/", "app/", "app/commands/"}) there = there || fs::exists(fs::path(TOOTHPATH_SOURCE_DIR) / folder / name);
+      for (const char* folder :
+           {"", "postproc/", "postproc/controls/linuxcnc/", "postproc/controls/heidenhain/", "app/", "app/commands/"})
+        there = there || fs::exists(fs::path(TOOTHPATH_SOURCE_DIR) / folder / name);
       EXPECT_TRUE(there) << "row " << row << ": " << name;
     }
   }

@@ -24,13 +24,15 @@ std::vector<std::string> lines_of(const std::string& text) {
 /// Executed moves of a program.
 class DangerWords : public EveryPost {};
 
-// 4: on Fanuc and Mitsubishi every value has its point, whatever the job; no dialect prints -0, an exponent, NaN or Inf.
+// 4: on Fanuc and Mitsubishi every value has its point, whatever the job; no dialect prints -0, an exponent, NaN or
+// Inf.
 TEST_F(DangerWords, NumbersOfRandomJobs) {
   every_post([&] {
     const Post& p = post();
     std::mt19937 random(21);
     std::uniform_real_distribution<double> u(0, 1);
-    const std::regex value(R"(([A-Z])(=?)([+-]?\d*\.?\d*))"), bad(R"(-0(\.0*)?(?![0-9.])|\d[eE][+-]?\d|\bnan\b|\binf\b)", std::regex::icase);
+    const std::regex value(R"(([A-Z])(=?)([+-]?\d*\.?\d*))"),
+        bad(R"(-0(\.0*)?(?![0-9.])|\d[eE][+-]?\d|\bnan\b|\binf\b)", std::regex::icase);
     const std::string whole = "GMTHDNOSPLQ";  // codes, numbers of tools and programs, the spindle speed
     for (int trial = 0; trial < 6; ++trial) {
       std::vector<path::ClPath> paths = {sample_path(0.5 * u(random), may_turn(p) ? 0.3 * u(random) : 0, 3 + trial, 0)};
@@ -60,9 +62,7 @@ TEST_F(DangerWords, NumbersOfRandomJobs) {
           }
         }
       }
-      if (is_iso_point(p)) {
-        EXPECT_GT(values, 40u);
-      }
+      if (is_iso_point(p)) { EXPECT_GT(values, 40u); }
     }
   });
 }
@@ -96,7 +96,8 @@ void expect_continuous(const std::vector<readback::ExecutedMove>& moves, const s
     const readback::ExecutedMove &a = moves[i - 1], &b = moves[i];
     if (b.rapid || a.rapid || !a.known || !b.known || (b.commanded & 7) == 0 || (a.commanded & 7) == 0) continue;
     ++cuts;
-    for (std::size_t x = 3; x < 5; ++x) ASSERT_LT(std::abs(b.joints[x] - a.joints[x]), 15) << what << " line " << b.line;
+    for (std::size_t x = 3; x < 5; ++x)
+      ASSERT_LT(std::abs(b.joints[x] - a.joints[x]), 15) << what << " line " << b.line;
     ASSERT_GE(b.joints[4] * a.joints[4], -1e-9) << what << " line " << b.line;
   }
   EXPECT_GT(cuts, 10u) << what;
@@ -130,7 +131,8 @@ TEST_F(DangerWords, TheWayOfARotaryIsNeverLeftToTheControl) {
     const Post& p = post();
     for (const auto& [name, paths] : jobs_for(p)) {
       const std::string text = text_of(p, paths);
-      EXPECT_FALSE(std::regex_search(text, std::regex(R"(=(DC|ACP|ACN|IC|AC)\(|\bI[ABC][+-]|\bG91\b|\b[UVWH]-?\d+\.)"))) << name;
+      EXPECT_FALSE(std::regex_search(text, std::regex(R"(=(DC|ACP|ACN|IC|AC)\(|\bI[ABC][+-]|\bG91\b|\b[UVWH]-?\d+\.)")))
+          << name;
       if (std::string(p.dialect) == "heidenhain") {
         const auto on = text.find("M126"), first = text.find(" L ");
         EXPECT_LT(on, first) << name;
@@ -167,20 +169,25 @@ TEST_F(DangerWords, IndexAnglesDoNotDrift) {
       const auto moves = executed(p, text_of(p, {path}, z));
       std::vector<double> angles;
       for (const auto& m : moves)
-        if (!m.rapid && (m.commanded & 7) != 0 && (angles.empty() || std::abs(m.joints[3] - angles.back()) > 0.1)) angles.push_back(m.joints[3]);
+        if (!m.rapid && (m.commanded & 7) != 0 && (angles.empty() || std::abs(m.joints[3] - angles.back()) > 0.1))
+          angles.push_back(m.joints[3]);
       ASSERT_EQ(angles.size(), static_cast<std::size_t>(z));
-      // Joint words are shifted by a rounded k * 360 / z: half a digit. A word that is rounded with the angle of its own tooth: two halves.
-      const double bound = (p.tcp == machines::TcpMode::none ? 0.5 : 1) * digit + (p.tcp == machines::TcpMode::vectors ? 2e-6 : 1e-9);
+      // Joint words are shifted by a rounded k * 360 / z: half a digit. A word that is rounded with the angle of its
+      // own tooth: two halves.
+      const double bound =
+          (p.tcp == machines::TcpMode::none ? 0.5 : 1) * digit + (p.tcp == machines::TcpMode::vectors ? 2e-6 : 1e-9);
       const double sense = std::fmod(angles[1] - angles[0] + 540, 360) - 180 > 0 ? 1 : -1;
       for (int k = 0; k < z; ++k) {
-        const double off = std::remainder(angles[static_cast<std::size_t>(k)] - angles[0] - sense * k * 360.0 / z, 360.0);
+        const double off =
+            std::remainder(angles[static_cast<std::size_t>(k)] - angles[0] - sense * k * 360.0 / z, 360.0);
         ASSERT_LE(std::abs(off), bound) << p.name << " z = " << z << " tooth " << k;
       }
     }
   });
 }
 
-// 24: what stands at the top about the text stands at its end again, so that a file that was cut off shows it; another text, another hash.
+// 24: what stands at the top about the text stands at its end again, so that a file that was cut off shows it; another
+// text, another hash.
 TEST_F(DangerWords, HashAndBlocksStandAtTheTopAndAtTheEnd) {
   const std::regex stamp(R"(HASH [0-9A-F]{16} BLOCKS \d+)");
   every_post([&] {
@@ -220,7 +227,9 @@ TEST_F(DangerWords, NamesStayNames) {
       EXPECT_TRUE(text) << (text ? "" : text.error().message);
       std::vector<std::string> code;
       if (!text) return code;
-      EXPECT_TRUE(std::all_of(text->text.begin(), text->text.end(), [](char c) { return c == '\n' || (c >= ' ' && c <= '~'); })) << name;
+      EXPECT_TRUE(std::all_of(text->text.begin(), text->text.end(), [](char c) {
+        return c == '\n' || (c >= ' ' && c <= '~');
+      })) << name;
       EXPECT_EQ(text->text.back(), '\n');
       for (const auto& b : simulate_modes(text->text, p.dialect).blocks) {
         static const std::regex with_name(R"((BEGIN|END) PGM [A-Z][A-Z0-9_]{0,23} MM|PARTNO/[A-Z][A-Z0-9_]{0,23})");
@@ -232,9 +241,30 @@ TEST_F(DangerWords, NamesStayNames) {
     };
     const auto plain = code_of("PLAIN");
     EXPECT_GT(plain.size(), 30u);
-    std::vector<std::string> names = {"",  ") G0 Z-100 (", "(((", "%\nO0666", "a\nG0 Z-100", "a\r\nM30\r\n", "/1", "$", "$$ x", ";", "\xEF\xBB\xBF" "bom",
-                                      "Zahnr\xC3\xA4" "der", "\xC3\x28", std::string("nul\0byte", 8), "\t", "{top}", "{safe_start}", "END PGM X MM", "M30",
-                                      std::string(300, 'W'), "{", "}"};
+    std::vector<std::string> names = {"",
+                                      ") G0 Z-100 (",
+                                      "(((",
+                                      "%\nO0666",
+                                      "a\nG0 Z-100",
+                                      "a\r\nM30\r\n",
+                                      "/1",
+                                      "$",
+                                      "$$ x",
+                                      ";",
+                                      "\xEF\xBB\xBF"
+                                      "bom",
+                                      "Zahnr\xC3\xA4"
+                                      "der",
+                                      "\xC3\x28",
+                                      std::string("nul\0byte", 8),
+                                      "\t",
+                                      "{top}",
+                                      "{safe_start}",
+                                      "END PGM X MM",
+                                      "M30",
+                                      std::string(300, 'W'),
+                                      "{",
+                                      "}"};
     std::mt19937 random(27);
     for (int i = 0; i < 40; ++i) {
       std::string n;

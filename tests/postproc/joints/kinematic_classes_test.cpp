@@ -1,5 +1,5 @@
-// Every class of five-axis kinematics, end to end: path -> joints -> text -> reader -> forward kinematics -> path; and which of the
-// solutions a path takes.
+// Every class of five-axis kinematics, end to end: path -> joints -> text -> reader -> forward kinematics -> path; and
+// which of the solutions a path takes.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -27,10 +27,18 @@ const Vec3 kX = Vec3::UnitX(), kY = Vec3::UnitY(), kZ = Vec3::UnitZ();
 const Vec3 kSlanted = Vec3(0, 1, 1).normalized();
 
 std::vector<Class> classes() {
-  return {{"table_AC", 'C', 'A', kZ, kX, 2, kZ},     {"table_BC", 'C', 'B', kZ, kY, 2, kZ},        {"table_AB", 'A', 'B', kX, kY, 2, kZ},
-          {"table_BA", 'B', 'A', kY, kX, 2, kZ},     {"mixed_C_A", 'C', 'A', kZ, kX, 1, kZ},       {"mixed_C_B", 'C', 'B', kZ, kY, 1, kZ},
-          {"mixed_A_B", 'A', 'B', kX, kY, 1, kZ},    {"head_CA", 'C', 'A', kZ, kX, 0, kZ},         {"head_CB", 'C', 'B', kZ, kY, 0, kZ},
-          {"head_AB", 'A', 'B', kX, kY, 0, kZ},      {"nutating_table", 'C', 'B', kZ, kSlanted, 2, kZ}, {"nutating_mixed", 'C', 'B', kZ, kSlanted, 1, kZ},
+  return {{"table_AC", 'C', 'A', kZ, kX, 2, kZ},
+          {"table_BC", 'C', 'B', kZ, kY, 2, kZ},
+          {"table_AB", 'A', 'B', kX, kY, 2, kZ},
+          {"table_BA", 'B', 'A', kY, kX, 2, kZ},
+          {"mixed_C_A", 'C', 'A', kZ, kX, 1, kZ},
+          {"mixed_C_B", 'C', 'B', kZ, kY, 1, kZ},
+          {"mixed_A_B", 'A', 'B', kX, kY, 1, kZ},
+          {"head_CA", 'C', 'A', kZ, kX, 0, kZ},
+          {"head_CB", 'C', 'B', kZ, kY, 0, kZ},
+          {"head_AB", 'A', 'B', kX, kY, 0, kZ},
+          {"nutating_table", 'C', 'B', kZ, kSlanted, 2, kZ},
+          {"nutating_mixed", 'C', 'B', kZ, kSlanted, 1, kZ},
           {"nutating_head", 'C', 'B', kZ, kSlanted, 0, kZ}};
 }
 
@@ -63,7 +71,8 @@ machines::Machine machine_of(const Class& c, int sign) {
 }
 
 class KinematicClass : public testing::TestWithParam<Class> {};
-INSTANTIATE_TEST_SUITE_P(All, KinematicClass, testing::ValuesIn(classes()), [](const auto& c) { return std::string(c.param.name); });
+INSTANTIATE_TEST_SUITE_P(All, KinematicClass, testing::ValuesIn(classes()),
+                         [](const auto& c) { return std::string(c.param.name); });
 
 TEST_P(KinematicClass, EndToEnd) {
   for (const int sign : {1, -1})
@@ -81,10 +90,12 @@ TEST_P(KinematicClass, EndToEnd) {
       ASSERT_TRUE(control);
       const auto back = readback::read_back(text->text, "p", *control, m, standing(), {.teeth = 3, .keep_all = true});
       ASSERT_TRUE(back) << back.error().text();
-      const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, m, standing(), 3, {1e-4, 1e-4});
+      const auto motions =
+          readback::tool_motions(back->operations[0], back->copies, *control, m, standing(), 3, {1e-4, 1e-4});
       ASSERT_TRUE(motions);
       for (int k = 0; k < 3; ++k) {
-        const auto met = compare_tooth(*motions, k, 3, path, program->rounding_bound_mm + program->chord_bound_mm + 1e-4, 2e-3);
+        const auto met =
+            compare_tooth(*motions, k, 3, path, program->rounding_bound_mm + program->chord_bound_mm + 1e-4, 2e-3);
         ASSERT_TRUE(met.complete) << "tooth " << k << ": " << met.message;
         EXPECT_LE(met.worst_mm, program->rounding_bound_mm + 1e-6);
         EXPECT_LE(met.worst_axis_rad, 4e-7);
@@ -101,7 +112,9 @@ TEST_P(KinematicClass, ForwardOfInverse) {
   for (const int sign : {1, -1}) {
     const machines::KinematicChain chain = machine_of(GetParam(), sign).chain;
     for (int i = 0; i < 4000; ++i) {
-      machines::Joints j{Vec3(mm(random), mm(random), mm(random)), {turn(random), chain.rotary(1).zero_rad + (i % 2 == 0 ? turn(random) : std::pow(10.0, decade(random)))}};
+      machines::Joints j{
+          Vec3(mm(random), mm(random), mm(random)),
+          {turn(random), chain.rotary(1).zero_rad + (i % 2 == 0 ? turn(random) : std::pow(10.0, decade(random)))}};
       const machines::TablePose pose = chain.forward(j, 110);
       const auto found = chain.inverse(pose, 110);
       ASSERT_TRUE(found) << found.error().message;
@@ -122,12 +135,14 @@ std::vector<Class> classes_with_upright_pole() {
   return out;
 }
 class KinematicPole : public testing::TestWithParam<Class> {};
-INSTANTIATE_TEST_SUITE_P(All, KinematicPole, testing::ValuesIn(classes_with_upright_pole()), [](const auto& c) { return std::string(c.param.name); });
+INSTANTIATE_TEST_SUITE_P(All, KinematicPole, testing::ValuesIn(classes_with_upright_pole()),
+                         [](const auto& c) { return std::string(c.param.name); });
 
 // The pole is passed by every option that changes axes, within its bound.
 TEST_P(KinematicPole, ThroughIt) {
   const machines::Machine base = machine_of(GetParam(), 1);
-  for (const machines::PoleOption option : {machines::PoleOption::slow, machines::PoleOption::hold, machines::PoleOption::through, machines::PoleOption::retract}) {
+  for (const machines::PoleOption option : {machines::PoleOption::slow, machines::PoleOption::hold,
+                                            machines::PoleOption::through, machines::PoleOption::retract}) {
     machines::Machine m = base;
     m.post.pole = option;
     path::ClPath path = sample_path(0.0, 0, 9);
@@ -146,12 +161,14 @@ TEST_P(KinematicPole, ThroughIt) {
       if (blocks[i].kind != joints::BlockKind::feed) continue;
       const machines::Joints a = words.joints(blocks[i - 1]), b = words.joints(blocks[i]);
       for (std::size_t k = 0; k < 2; ++k)
-        ASSERT_LE(std::abs(b.rotary_rad[k] - a.rotary_rad[k]) / blocks[i].minutes, m.chain.rotary(k).max_speed * (1 + 1e-9));
+        ASSERT_LE(std::abs(b.rotary_rad[k] - a.rotary_rad[k]) / blocks[i].minutes,
+                  m.chain.rotary(k).max_speed * (1 + 1e-9));
       // On the great circle x-z, but for the bound.
       for (int s = 0; s <= 10; ++s) {
         machines::Joints j;
         j.linear_mm = a.linear_mm + (b.linear_mm - a.linear_mm) * s / 10.0;
-        for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = a.rotary_rad[k] + (b.rotary_rad[k] - a.rotary_rad[k]) * s / 10.0;
+        for (std::size_t k = 0; k < 2; ++k)
+          j.rotary_rad[k] = a.rotary_rad[k] + (b.rotary_rad[k] - a.rotary_rad[k]) * s / 10.0;
         const Vec3 u = m.chain.forward(j, 95).axis;
         ASSERT_LE(std::abs(u.y()), 1e-4 + program->pole_axis_rad + 1e-3) << static_cast<int>(option);
       }
@@ -176,10 +193,18 @@ path::ClPath around(double from_deg, double to_deg, int steps) {
 // 1, 2: across C = 180 deg, 359 -> 1 and 1 -> 359, for both pairs: no jump, the tilt keeps its sign.
 TEST(SolutionChoice, NoFlipAcrossHalfOrWholeTurns) {
   const machines::Machine m = trunnion();
-  for (const auto& [from, to] : {std::pair{170.0, 190.0}, {190.0, 170.0}, {-190.0, -170.0}, {350.0, 370.0}, {370.0, 350.0}, {80.0, 100.0}, {260.0, 280.0}, {-10.0, 10.0}})
+  for (const auto& [from, to] : {std::pair{170.0, 190.0},
+                                 {190.0, 170.0},
+                                 {-190.0, -170.0},
+                                 {350.0, 370.0},
+                                 {370.0, 350.0},
+                                 {80.0, 100.0},
+                                 {260.0, 280.0},
+                                 {-10.0, 10.0}})
     for (const bool positive : {true, false}) {
       const std::array<choice::RotaryRange, 2> ranges = {range(-3600, 3600), positive ? range(1, 60) : range(-110, -1)};
-      const auto angles = choice::choose_rotaries(around(from, to, 20), Mat3::Identity(), m.chain, ranges, machines::PoleOption::error);
+      const auto angles =
+          choice::choose_rotaries(around(from, to, 20), Mat3::Identity(), m.chain, ranges, machines::PoleOption::error);
       ASSERT_TRUE(angles) << angles.error().message;
       for (std::size_t i = 1; i < angles->size(); ++i) {
         EXPECT_LE(std::abs((*angles)[i][0] - (*angles)[i - 1][0]), radians(1.01));
@@ -191,10 +216,12 @@ TEST(SolutionChoice, NoFlipAcrossHalfOrWholeTurns) {
 
 // 1: no candidate: both solutions and the range are named.
 TEST(SolutionChoice, NoCandidateNamesBoth) {
-  const auto refused = choice::choose_rotaries(around(0, 10, 5), Mat3::Identity(), trunnion().chain, {range(-3600, 3600), range(-10, 10)}, machines::PoleOption::error);
+  const auto refused = choice::choose_rotaries(around(0, 10, 5), Mat3::Identity(), trunnion().chain,
+                                               {range(-3600, 3600), range(-10, 10)}, machines::PoleOption::error);
   ASSERT_FALSE(refused);
   EXPECT_NE(refused.error().message.find("A = "), std::string::npos);
-  EXPECT_NE(refused.error().message.find("outside [-10.0000, 10.0000]; the other solution A = "), std::string::npos) << refused.error().message;
+  EXPECT_NE(refused.error().message.find("outside [-10.0000, 10.0000]; the other solution A = "), std::string::npos)
+      << refused.error().message;
 }
 
 // 2: between passes the quicker of both pairs: a half turn of C costs more than twice the tilt.
@@ -205,13 +232,15 @@ TEST(SolutionChoice, PairsMayChangeBetweenPasses) {
   path::ClPath path = around(0, 20, 10);
   const path::ClPath opposite = around(180, 200, 10);
   path.records.insert(path.records.end(), opposite.records.begin(), opposite.records.end());
-  const auto angles = choice::choose_rotaries(path, Mat3::Identity(), m.chain, {range(-3600, 3600), range(-110, 60)}, machines::PoleOption::error);
+  const auto angles = choice::choose_rotaries(path, Mat3::Identity(), m.chain, {range(-3600, 3600), range(-110, 60)},
+                                              machines::PoleOption::error);
   ASSERT_TRUE(angles);
   EXPECT_LT((*angles)[5][1] * (*angles)[17][1], 0) << "A goes to the other side, C hardly moves";
   EXPECT_LT(std::abs((*angles)[12][0] - (*angles)[11][0]), radians(25));
 }
 
-// 3, danger 13: forty turns of C in forty passes, limits of ten turns: unwound between passes alone, by whole turns, as little as it takes.
+// 3, danger 13: forty turns of C in forty passes, limits of ten turns: unwound between passes alone, by whole turns, as
+// little as it takes.
 TEST(SolutionChoice, FortyTurnsAreUnwoundAtRetracts) {
   path::ClPath path;
   path.operation_type = "finishing";
@@ -220,8 +249,10 @@ TEST(SolutionChoice, FortyTurnsAreUnwoundAtRetracts) {
     const path::ClPath turn = around(0, 360, 36);
     path.records.insert(path.records.end(), turn.records.begin(), turn.records.end());
   }
-  const std::array<choice::RotaryRange, 2> ranges = {range(-1800, 1800), range(-110, -1)};  // one pair alone: whole turns
-  const auto angles = choice::choose_rotaries(path, Mat3::Identity(), trunnion().chain, ranges, machines::PoleOption::error);
+  const std::array<choice::RotaryRange, 2> ranges = {range(-1800, 1800),
+                                                     range(-110, -1)};  // one pair alone: whole turns
+  const auto angles =
+      choice::choose_rotaries(path, Mat3::Identity(), trunnion().chain, ranges, machines::PoleOption::error);
   ASSERT_TRUE(angles) << angles.error().message;
   int unwound = 0;
   double way = 0;

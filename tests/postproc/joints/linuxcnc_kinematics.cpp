@@ -50,7 +50,8 @@ int hal_pin_s32_new(const char*, int, volatile int** cell, int) {
   *cell = &hal().whole_values.emplace_back(0);
   return 0;
 }
-__attribute__((format(printf, 4, 5))) int hal_pin_float_newf(int, volatile double** cell, int, const char* format, ...) {
+__attribute__((format(printf, 4, 5))) int hal_pin_float_newf(int, volatile double** cell, int, const char* format,
+                                                             ...) {
   char name[200];
   va_list values;
   va_start(values, format);
@@ -111,12 +112,14 @@ std::string LinuxcncModule::pins() const {
 
 Result<LinuxcncModule::Values> LinuxcncModule::forward(const Values& joints) const {
   // Both modules number their joints X Y Z tilt C.
-  const double positions[kMostJoints] = {joints.xyz.x(), joints.xyz.y(), joints.xyz.z(), degrees(joints.tilt_rad), degrees(joints.c_rad)};
+  const double positions[kMostJoints] = {joints.xyz.x(), joints.xyz.y(), joints.xyz.z(), degrees(joints.tilt_rad),
+                                         degrees(joints.c_rad)};
   Pose pose{};
   const unsigned long flags = 0;
   unsigned long back = 0;
   using Forward = int (*)(const double*, Pose*, const unsigned long*, unsigned long*);
-  if (const int r = reinterpret_cast<Forward>(symbol(handle_, "kinematicsForward"))(positions, &pose, &flags, &back); r != 0)
+  if (const int r = reinterpret_cast<Forward>(symbol(handle_, "kinematicsForward"))(positions, &pose, &flags, &back);
+      r != 0)
     return fail("kinematicsForward of {} returns {}", name_, r);
   return Values{{pose.x, pose.y, pose.z}, radians(tilt_ == 'A' ? pose.a : pose.b), radians(pose.c)};
 }
@@ -128,7 +131,8 @@ Result<LinuxcncModule::Values> LinuxcncModule::inverse(const Values& pose) const
   const unsigned long flags = 0;
   unsigned long back = 0;
   using Inverse = int (*)(const Pose*, double*, const unsigned long*, unsigned long*);
-  if (const int r = reinterpret_cast<Inverse>(symbol(handle_, "kinematicsInverse"))(&world, positions, &flags, &back); r != 0)
+  if (const int r = reinterpret_cast<Inverse>(symbol(handle_, "kinematicsInverse"))(&world, positions, &flags, &back);
+      r != 0)
     return fail("kinematicsInverse of {} returns {}", name_, r);
   return Values{{positions[0], positions[1], positions[2]}, radians(positions[3]), radians(positions[4])};
 }

@@ -1,6 +1,6 @@
-// LinuxCNC's kinematics modules as they are shipped, loaded at run time: xyzac-trt-kins and xyzbc-trt-kins of the Debian
-// package. Nothing of LinuxCNC is needed to build this. The test program must export its symbols (ENABLE_EXPORTS): the
-// modules call the HAL functions that linuxcnc_kinematics.cpp supplies.
+// LinuxCNC's kinematics modules as they are shipped, loaded at run time: xyzac-trt-kins and xyzbc-trt-kins of the
+// Debian package. Nothing of LinuxCNC is needed to build this. The test program must export its symbols
+// (ENABLE_EXPORTS): the modules call the HAL functions that linuxcnc_kinematics.cpp supplies.
 #pragma once
 
 #include <map>
@@ -18,13 +18,15 @@ std::string linuxcnc_module_folder();
 /// One loaded module. Angles in rad at this interface, degrees inside the module; lengths mm.
 class LinuxcncModule {
  public:
-  /// @param name "xyzac-trt-kins" or "xyzbc-trt-kins". Errors: no such file, a symbol is missing, the module refuses to start.
+  /// @param name "xyzac-trt-kins" or "xyzbc-trt-kins". Errors: no such file, a symbol is missing, the module refuses to
+  /// start.
   static Result<std::unique_ptr<LinuxcncModule>> load(const std::string& name);
   ~LinuxcncModule();
   LinuxcncModule(const LinuxcncModule&) = delete;
   LinuxcncModule& operator=(const LinuxcncModule&) = delete;
 
-  /// Value of a pin, named without the module: "x-rot-point", "y-offset", "tool-offset". A name that is no pin is an error.
+  /// Value of a pin, named without the module: "x-rot-point", "y-offset", "tool-offset". A name that is no pin is an
+  /// error.
   [[nodiscard]] Status set(const std::string& pin, double value);
   /// Names of all float pins, for messages.
   [[nodiscard]] std::string pins() const;

@@ -1,5 +1,5 @@
-// Our chains against LinuxCNC's own kinematics modules: the machine files that ship and random offsets, forward and inverse.
-// The golden poses of the same modules, which need no package, are in tests/machines/kinematic_chain_test.cpp.
+// Our chains against LinuxCNC's own kinematics modules: the machine files that ship and random offsets, forward and
+// inverse. The golden poses of the same modules, which need no package, are in tests/machines/kinematic_chain_test.cpp.
 #include "tests/postproc/joints/linuxcnc_kinematics.h"
 
 #include <gtest/gtest.h>
@@ -28,15 +28,18 @@ machines::KinematicChain chain_of(const Trunnion& t) {
   return reading.machine ? reading.machine->chain : machines::KinematicChain{};
 }
 
-/// Writes the chain's geometry into the module's pins: the rotation point is on C, the offsets lead from there to the tilt axis.
-Status set_pins(LinuxcncModule& module, const machines::KinematicChain& chain, char tilt, double rot_point_z, double tool_offset) {
+/// Writes the chain's geometry into the module's pins: the rotation point is on C, the offsets lead from there to the
+/// tilt axis.
+Status set_pins(LinuxcncModule& module, const machines::KinematicChain& chain, char tilt, double rot_point_z,
+                double tool_offset) {
   const Vec3 &c = chain.table[0].point_mm, &q = chain.table[1].point_mm;
-  const std::pair<const char*, double> pins[] = {{"x-rot-point", c.x()},
-                                                 {"y-rot-point", c.y()},
-                                                 {"z-rot-point", rot_point_z},
-                                                 {tilt == 'A' ? "y-offset" : "x-offset", tilt == 'A' ? q.y() - c.y() : q.x() - c.x()},
-                                                 {"z-offset", q.z() - rot_point_z},
-                                                 {"tool-offset", tool_offset}};
+  const std::pair<const char*, double> pins[] = {
+      {"x-rot-point", c.x()},
+      {"y-rot-point", c.y()},
+      {"z-rot-point", rot_point_z},
+      {tilt == 'A' ? "y-offset" : "x-offset", tilt == 'A' ? q.y() - c.y() : q.x() - c.x()},
+      {"z-offset", q.z() - rot_point_z},
+      {"tool-offset", tool_offset}};
   for (const auto& [pin, value] : pins)
     if (const Status s = module.set(pin, value); !s) return s;
   return Ok{};
@@ -56,7 +59,8 @@ class LinuxcncModules : public testing::TestWithParam<Trunnion> {
   machines::KinematicChain chain;
 };
 INSTANTIATE_TEST_SUITE_P(Trunnions, LinuxcncModules,
-                         testing::Values(Trunnion{"xyzac-trt-kins", "xyzac_trt.toml", 'A'}, Trunnion{"xyzbc-trt-kins", "xyzbc_trt.toml", 'B'}),
+                         testing::Values(Trunnion{"xyzac-trt-kins", "xyzac_trt.toml", 'A'},
+                                         Trunnion{"xyzbc-trt-kins", "xyzbc_trt.toml", 'B'}),
                          [](const auto& place) { return std::string(place.param.tilt == 'A' ? "xyzac" : "xyzbc"); });
 
 /// Largest differences over a set of poses.
@@ -64,12 +68,14 @@ struct Worst {
   double forward_mm = 0, inverse_mm = 0, angle_rad = 0, round_trip_mm = 0;
 };
 
-Worst compare(const LinuxcncModule& module, const machines::KinematicChain& chain, double tool_mm, std::mt19937_64& rng, int poses) {
+Worst compare(const LinuxcncModule& module, const machines::KinematicChain& chain, double tool_mm, std::mt19937_64& rng,
+              int poses) {
   Worst worst;
   std::uniform_real_distribution<double> mm(-500, 500), tilt(-3.1, 3.1), turns(-30, 30), small(-12, -1);
   for (int i = 0; i < poses; ++i) {
     // Every fourth pose is next to the pole: tilts from 1e-12 to 0.1 rad.
-    const LinuxcncModule::Values joints{{mm(rng), mm(rng), mm(rng)}, i % 4 ? tilt(rng) : std::pow(10.0, small(rng)), turns(rng)};
+    const LinuxcncModule::Values joints{
+        {mm(rng), mm(rng), mm(rng)}, i % 4 ? tilt(rng) : std::pow(10.0, small(rng)), turns(rng)};
     const auto theirs = module.forward(joints);
     EXPECT_TRUE(theirs);
     if (!theirs) return worst;
@@ -85,7 +91,8 @@ Worst compare(const LinuxcncModule& module, const machines::KinematicChain& chai
     const machines::Joints placed = chain.linear_for(theirs->xyz - Vec3(0, 0, tool_mm), start.rotary_rad, tool_mm);
     worst.inverse_mm = std::max(worst.inverse_mm, (placed.linear_mm - back->xyz).norm());
 
-    // Our full inverse knows tip and axis alone. Each of its solutions, given to their forward, is the pose that we asked for.
+    // Our full inverse knows tip and axis alone. Each of its solutions, given to their forward, is the pose that we
+    // asked for.
     const auto solutions = chain.inverse(ours, tool_mm);
     EXPECT_TRUE(solutions);
     if (!solutions) return worst;
@@ -113,8 +120,8 @@ TEST_P(LinuxcncModules, AgreeWithTheShippedMachine) {
   ASSERT_TRUE(set_pins(*module, chain, GetParam().tilt, 0.0, 101.2)) << module->pins();
   const Worst worst = compare(*module, chain, 101.2, rng, 100000);
   expect_equal(worst);
-  fmt::print("{}: 100000 poses, largest difference forward {:.1e} mm, inverse {:.1e} mm, tool axis {:.1e} rad\n", GetParam().module,
-             worst.forward_mm, worst.inverse_mm, worst.angle_rad);
+  fmt::print("{}: 100000 poses, largest difference forward {:.1e} mm, inverse {:.1e} mm, tool axis {:.1e} rad\n",
+             GetParam().module, worst.forward_mm, worst.inverse_mm, worst.angle_rad);
 }
 
 // 200 machines of the same class with other rotation points, offsets and tools, 500 poses each.
@@ -161,12 +168,14 @@ TEST_P(LinuxcncModules, FindPlantedFaults) {
   };
   ASSERT_TRUE(set_pins(*module, chain, GetParam().tilt, 0.0, 101.2));
   EXPECT_LE(error_with([](machines::KinematicChain&) {}, 101.2), kLengthBound);
-  for (const std::size_t axis : {0u, 1u}) EXPECT_GT(error_with([axis](machines::KinematicChain& c) { c.table[axis].sign = 1; }, 101.2), 1.0);
+  for (const std::size_t axis : {0u, 1u})
+    EXPECT_GT(error_with([axis](machines::KinematicChain& c) { c.table[axis].sign = 1; }, 101.2), 1.0);
   for (const std::size_t axis : {0u, 1u})
     for (const Eigen::Index i : {0, 1, 2}) {
       // Along its own direction an axis may be moved.
       if (std::abs(chain.table[axis].direction[i]) == 1) continue;
-      EXPECT_GT(error_with([axis, i](machines::KinematicChain& c) { c.table[axis].point_mm[i] += 1e-3; }, 101.2), 5e-4) << axis << i;
+      EXPECT_GT(error_with([axis, i](machines::KinematicChain& c) { c.table[axis].point_mm[i] += 1e-3; }, 101.2), 5e-4)
+          << axis << i;
     }
   EXPECT_GT(error_with([](machines::KinematicChain&) {}, 101.201), 5e-4);
 }
@@ -174,11 +183,13 @@ TEST_P(LinuxcncModules, FindPlantedFaults) {
 TEST(LinuxcncModule, SaysWhatIsMissing) {
   const auto none = LinuxcncModule::load("no-such-kins");
   ASSERT_FALSE(none);
-  EXPECT_NE(none.error().message.find("/no-such-kins.so is missing: run tools/get_rs274.sh"), std::string::npos) << none.error().message;
+  EXPECT_NE(none.error().message.find("/no-such-kins.so is missing: run tools/get_rs274.sh"), std::string::npos)
+      << none.error().message;
   auto module = LinuxcncModule::load("xyzac-trt-kins");
   ASSERT_TRUE(module) << module.error().message;
   EXPECT_EQ((*module)->set("no-pin", 1).error().message,
-            "xyzac-trt-kins has no pin no-pin; it has tool-offset, x-offset, x-rot-point, y-offset, y-rot-point, z-offset, z-rot-point");
+            "xyzac-trt-kins has no pin no-pin; it has tool-offset, x-offset, x-rot-point, y-offset, y-rot-point, "
+            "z-offset, z-rot-point");
 }
 
 }  // namespace

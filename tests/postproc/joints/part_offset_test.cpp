@@ -27,9 +27,13 @@ TEST(SmallLinearProgram, AgainstAllVertices) {
     }
     numbers::LinearPoint objective{};
     for (int i = 0; i < n; ++i) objective[static_cast<std::size_t>(i)] = normal(random);
-    const auto dot = [](const std::array<double, 4>& a, const numbers::LinearPoint& x) { return a[0] * x[0] + a[1] * x[1] + a[2] * x[2] + a[3] * x[3]; };
+    const auto dot = [](const std::array<double, 4>& a, const numbers::LinearPoint& x) {
+      return a[0] * x[0] + a[1] * x[1] + a[2] * x[2] + a[3] * x[3];
+    };
     const auto x = numbers::maximize(n, objective, 50, [&](const numbers::LinearPoint& p) {
-      return *std::max_element(rows.begin(), rows.end(), [&](const numbers::LinearRow& a, const numbers::LinearRow& b) { return dot(a.a, p) - a.b < dot(b.a, p) - b.b; });
+      return *std::max_element(rows.begin(), rows.end(), [&](const numbers::LinearRow& a, const numbers::LinearRow& b) {
+        return dot(a.a, p) - a.b < dot(b.a, p) - b.b;
+      });
     });
     ASSERT_TRUE(x);
     for (const auto& r : rows) ASSERT_LE(dot(r.a, *x) - r.b, 1e-8);
@@ -38,15 +42,15 @@ TEST(SmallLinearProgram, AgainstAllVertices) {
     for (int k = 0; k < 300; ++k) {
       numbers::LinearPoint p = *x;
       for (int i = 0; i < n; ++i) p[static_cast<std::size_t>(i)] += step(random) * std::pow(0.1, k % 4);
-      const bool inside = std::all_of(rows.begin(), rows.end(), [&](const numbers::LinearRow& r) { return dot(r.a, p) <= r.b; });
-      if (inside) {
-        ASSERT_LE(dot(objective, p), dot(objective, *x) + 1e-7);
-      }
+      const bool inside =
+          std::all_of(rows.begin(), rows.end(), [&](const numbers::LinearRow& r) { return dot(r.a, p) <= r.b; });
+      if (inside) { ASSERT_LE(dot(objective, p), dot(objective, *x) + 1e-7); }
     }
   }
   // Nothing keeps both rows.
   const std::vector<numbers::LinearRow> none = {{{1, 0, 0, 0}, -1}, {{-1, 0, 0, 0}, -1}};
-  EXPECT_FALSE(numbers::maximize(1, {1, 0, 0, 0}, 50, [&](const numbers::LinearPoint& p) { return p[0] + 1 > -p[0] + 1 ? none[0] : none[1]; }));
+  EXPECT_FALSE(numbers::maximize(
+      1, {1, 0, 0, 0}, 50, [&](const numbers::LinearPoint& p) { return p[0] + 1 > -p[0] + 1 ? none[0] : none[1]; }));
 }
 
 machines::Joints at(double x, double y, double z, double c, double a) { return {Vec3(x, y, z), {c, a}}; }
@@ -88,24 +92,25 @@ TEST(PartOffset, BruteForceNeverBeatsIt) {
       EXPECT_NEAR(now[i], offer->room_now_mm[i], 1e-9);
     }
     EXPECT_GE(least(then), least(now) - 2e-3);
-    if (axis) {
-      EXPECT_LT(offer->shift_mm.cross(*axis).norm(), 1e-9);
-    }
+    if (axis) { EXPECT_LT(offer->shift_mm.cross(*axis).norm(), 1e-9); }
     for (int k = 0; k < 3000; ++k) {
       const double scale = std::pow(0.1, k % 5);
       Vec3 d = offer->shift_mm + scale * Vec3(shift(random), shift(random), shift(random));
       if (axis) d = d.dot(*axis) * *axis;
       if (least(offer->room_then_mm) >= 0) d.z() = std::abs(d.z());  // a lower seat is offered only where no other fits
-      ASSERT_LE(least(poses.room(d)), least(offer->room_then_mm) + 2e-3) << trial;  // 1 um of rounding in each coordinate
+      ASSERT_LE(least(poses.room(d)), least(offer->room_then_mm) + 2e-3)
+          << trial;  // 1 um of rounding in each coordinate
     }
   }
 }
 
-// What is left free by the tightest axis goes to the others: without rotaries each axis stands in the middle of its travel.
+// What is left free by the tightest axis goes to the others: without rotaries each axis stands in the middle of its
+// travel.
 TEST(PartOffset, EveryAxisIsCentred) {
   machines::Machine m = trunnion();
   m.chain.table.clear();
-  m.chain.linear = {machines::LinearAxis{-300, 300, 1000}, machines::LinearAxis{-200, 200, 1000}, machines::LinearAxis{-400, 0, 1000}};
+  m.chain.linear = {machines::LinearAxis{-300, 300, 1000}, machines::LinearAxis{-200, 200, 1000},
+                    machines::LinearAxis{-400, 0, 1000}};
   choice::TravelPoses poses(m.chain, m.limit_margin, std::nullopt);
   for (const Vec3& p : {Vec3(10, -60, -350), Vec3(110, 60, -320), Vec3(40, 0, -390)}) poses.note({p, {0, 0}});
   const auto offer = poses.best();
@@ -139,9 +144,12 @@ TEST(PartOffset, RefusedJobIsAcceptedAtTheOffer) {
     const auto from = text.find("most room: set-up origin [");
     ASSERT_NE(from, std::string::npos) << text;
     double x = 0, y = 0, z = 0, wx = 0, wy = 0, wz = 0, rx = 0, ry = 0, rz = 0;
-    ASSERT_EQ(std::sscanf(text.c_str() + from, "most room: set-up origin [%lf, %lf, %lf] with work_offset_at [%lf, %lf, %lf] leaves X %lf, Y %lf, Z %lf mm", &x, &y,
-                          &z, &wx, &wy, &wz, &rx, &ry, &rz),
-              9) << text;
+    ASSERT_EQ(std::sscanf(text.c_str() + from,
+                          "most room: set-up origin [%lf, %lf, %lf] with work_offset_at [%lf, %lf, %lf] leaves X %lf, "
+                          "Y %lf, Z %lf mm",
+                          &x, &y, &z, &wx, &wy, &wz, &rx, &ry, &rz),
+              9)
+        << text;
     toothpath::joints::Setup there = s;
     there.origin_mm = Vec3(x, y, z);
     there.work_offset_at_mm = Vec3(wx, wy, wz);
@@ -162,13 +170,15 @@ TEST(PartOffset, RefusedJobIsAcceptedAtTheOffer) {
             positioned = positioned || b.kind == joints::BlockKind::rapid_xy;
             if (!positioned) continue;
             const bool top = i == 2 && b.kind != joints::BlockKind::feed;
-            const double j = static_cast<double>(b.words[i]) * 1e-4 + accepted->work_offset_at_mm[static_cast<int>(i)] + (i == 2 ? op.tool_length_mm : 0);
+            const double j = static_cast<double>(b.words[i]) * 1e-4 + accepted->work_offset_at_mm[static_cast<int>(i)] +
+                             (i == 2 ? op.tool_length_mm : 0);
             if (!top) room = std::min({room, j - m.chain.linear[i].min_mm - 0.1, m.chain.linear[i].max_mm - 0.1 - j});
           }
       EXPECT_GE(room, promised[i] - 0.01) << i;
     }
     ASSERT_TRUE(accepted->offer);
-    EXPECT_LT(least(accepted->offer->room_then_mm), least(accepted->offer->room_now_mm) + 0.01) << "nothing better from there";
+    EXPECT_LT(least(accepted->offer->room_then_mm), least(accepted->offer->room_now_mm) + 0.01)
+        << "nothing better from there";
   }
 }
 
@@ -176,7 +186,8 @@ TEST(PartOffset, RefusedJobIsAcceptedAtTheOffer) {
 TEST(PartOffset, LowerOnlyWhereItMust) {
   machines::Machine m = trunnion();
   m.chain.table.clear();
-  m.chain.linear = {machines::LinearAxis{-300, 300, 1000}, machines::LinearAxis{-200, 200, 1000}, machines::LinearAxis{-400, 0, 1000}};
+  m.chain.linear = {machines::LinearAxis{-300, 300, 1000}, machines::LinearAxis{-200, 200, 1000},
+                    machines::LinearAxis{-400, 0, 1000}};
   for (const double top : {-20.0, 12.0}) {
     choice::TravelPoses poses(m.chain, m.limit_margin, std::nullopt);
     poses.note({Vec3(0, 0, top), {0, 0}});
@@ -196,7 +207,8 @@ TEST(PartOffset, NowhereIsSaid) {
   s.origin_mm += Vec3(1, 0, 0);
   const auto refused = axis_program({sample_path(0, 0)}, m, s, 1);
   ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().message.find("nowhere does the part have room: at best X -"), std::string::npos) << refused.error().message;
+  EXPECT_NE(refused.error().message.find("nowhere does the part have room: at best X -"), std::string::npos)
+      << refused.error().message;
 }
 
 }  // namespace

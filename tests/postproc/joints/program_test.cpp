@@ -13,7 +13,8 @@ namespace {
 using namespace test;
 
 /// Joints of a block in mm and degrees, from the words alone.
-std::array<double, 5> joints_of(const joints::AxisProgram& p, const joints::AxisOperation& op, const joints::AxisBlock& b, double index_deg = 0) {
+std::array<double, 5> joints_of(const joints::AxisProgram& p, const joints::AxisOperation& op,
+                                const joints::AxisBlock& b, double index_deg = 0) {
   std::array<double, 5> j{};
   for (std::size_t i = 0; i < 3; ++i)
     j[i] = static_cast<double>(b.words[i]) / static_cast<double>(numbers::power_of_ten(p.format.linear_decimals)) +
@@ -37,7 +38,8 @@ Vec3 about_z(const Vec3& v, double angle) { return Eigen::AngleAxisd(angle, Vec3
 TEST(TrunnionKinematics, GoldenValues) {
   const TrunnionGeometry g{.px = 1.5, .py = -2.5, .pz = -40, .dy = 3.25, .z_offset = -7.5};
   const auto p = trunnion_forward(g, 10, 20, 30, 25, -40, 101.2);
-  EXPECT_LT((p.tip + Vec3(0, 0, 101.2) - Vec3(1.1461669155887146, 11.145334377839344, 24.085103908722928)).norm(), 1e-11);
+  EXPECT_LT((p.tip + Vec3(0, 0, 101.2) - Vec3(1.1461669155887146, 11.145334377839344, 24.085103908722928)).norm(),
+            1e-11);
 }
 
 // Every record of every tooth is met at the end of a block, by kinematics that the builder does not know.
@@ -59,7 +61,8 @@ TEST(AxisProgram, EndsOfBlocksAreTheTurnedRecords) {
           const auto& r = path.records[static_cast<std::size_t>(b.record)];
           const double index = expand ? 0 : program->index_sign * 360.0 * k / z;
           const auto p = pose(joints_of(*program, op, b, index), standing(), op.tool_length_mm);
-          ASSERT_LT((p.tip - about_z(r.tip, 2 * kPi * k / z)).norm(), program->rounding_bound_mm) << k << " " << b.record;
+          ASSERT_LT((p.tip - about_z(r.tip, 2 * kPi * k / z)).norm(), program->rounding_bound_mm)
+              << k << " " << b.record;
           ASSERT_LT((p.axis - about_z(r.axis, 2 * kPi * k / z)).norm(), 2e-7);
           met[static_cast<std::size_t>(b.record)] = 1;
         }
@@ -168,12 +171,14 @@ TEST(AxisProgram, RecordsWithoutABlockKeepTheirTime) {
   const double feed = 0.5;    // so slow that nothing else rules
   const Vec3 way(0, 0.1, 0);  // a step is a quarter of the last digit of a word
   const path::ClRecord start = path.records.back();
-  for (int i = 1; i <= steps; ++i) path.records.push_back({start.tip + way * i / steps, start.axis, feed, path::MoveKind::feed, 0, 0});
+  for (int i = 1; i <= steps; ++i)
+    path.records.push_back({start.tip + way * i / steps, start.axis, feed, path::MoveKind::feed, 0, 0});
   const auto program = axis_program({path}, trunnion(), standing(), 1);
   ASSERT_TRUE(program) << program.error().message;
   EXPECT_GT(program->dropped_blocks, 1000u);
   double minutes = 0;
-  for (const joints::AxisBlock& b : program->operations[0].teeth[0].blocks) minutes += b.kind == joints::BlockKind::feed ? b.minutes : 0;
+  for (const joints::AxisBlock& b : program->operations[0].teeth[0].blocks)
+    minutes += b.kind == joints::BlockKind::feed ? b.minutes : 0;
   EXPECT_NEAR(minutes, (start.tip - path.records[0].tip).norm() / 800 + way.norm() / feed, 0.01 * way.norm() / feed);
 }
 
@@ -213,8 +218,9 @@ TEST(AxisProgram, PoleAndIndexSense) {
           r.tip.z() = -r.tip.z();
           r.axis = -r.axis;
         }
-      const auto program = joints::AxisProgramTestAccess::build(std::vector{path}, tools(), s, m, 9,
-                                                        joints::ClearanceBody{120, -5, 5}, controls::axis_options(words_of("linuxcnc"), m));
+      const auto program =
+          joints::AxisProgramTestAccess::build(std::vector{path}, tools(), s, m, 9, joints::ClearanceBody{120, -5, 5},
+                                               controls::axis_options(words_of("linuxcnc"), m));
       ASSERT_TRUE(program) << program.error().message;
       EXPECT_TRUE(program->loop);
       EXPECT_EQ(program->index_sign, sign * (up ? 1 : -1));
@@ -240,7 +246,8 @@ TEST(AxisProgram, EccentricGearIsWrittenOut) {
     for (std::size_t i = 0; i + 1 < blocks.size(); ++i) {
       if (blocks[i].kind != joints::BlockKind::feed || blocks[i + 1].record == blocks[i].record) continue;
       const auto p = pose(joints_of(*program, op, blocks[i]), s, 95);
-      ASSERT_LT((p.tip - about_z(path.records[static_cast<std::size_t>(blocks[i].record)].tip, 2 * kPi * k / 5)).norm(), 1e-4);
+      ASSERT_LT((p.tip - about_z(path.records[static_cast<std::size_t>(blocks[i].record)].tip, 2 * kPi * k / 5)).norm(),
+                1e-4);
     }
   }
 }
@@ -262,12 +269,8 @@ TEST(AxisProgram, RapidsKeepTheSequence) {
         if (b[i].kind == joints::BlockKind::rapid_z) {
           EXPECT_FALSE(changed(0) || changed(1) || changed(3) || changed(4));
         }
-        if (b[i].kind == joints::BlockKind::rapid_xy) {
-          EXPECT_FALSE(changed(2) || changed(3) || changed(4));
-        }
-        if (b[i].kind == joints::BlockKind::rapid_rotary) {
-          EXPECT_FALSE(changed(0) || changed(1) || changed(2));
-        }
+        if (b[i].kind == joints::BlockKind::rapid_xy) { EXPECT_FALSE(changed(2) || changed(3) || changed(4)); }
+        if (b[i].kind == joints::BlockKind::rapid_rotary) { EXPECT_FALSE(changed(0) || changed(1) || changed(2)); }
       }
     }
 }
@@ -297,7 +300,7 @@ TEST(AxisProgram, RotaryLimitsAndTurns) {
   machines::Machine m = trunnion();
   m.chain.table[1].max_rad = radians(-0.5);  // only one sign of A is left
   m.chain.table[0].min_rad = radians(-200);
-  m.chain.table[0].max_rad = radians(200);   // no room for a whole loop of teeth: each tooth finds its own turn
+  m.chain.table[0].max_rad = radians(200);  // no room for a whole loop of teeth: each tooth finds its own turn
   const auto path = sample_path(0.3, 0.2);
   const auto program = axis_program({path}, m, standing(), 12);
   ASSERT_TRUE(program) << program.error().message;

@@ -1,4 +1,5 @@
-// Rotaries that the control counts within one turn: words of 0 to 360 deg, the way that each control takes, no step of half a turn.
+// Rotaries that the control counts within one turn: words of 0 to 360 deg, the way that each control takes, no step of
+// half a turn.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +22,8 @@ constexpr int kRolloverTeeth = 5;
 std::vector<readback::ExecutedMove> executed(const PostForm& f, const std::string& text) {
   const auto control = controls::control_of(machine_of(f), standing(), tools());
   std::vector<readback::ExecutedMove> moves;
-  const auto done = readback::execute_nc(text, "p", *control, [&](const readback::ExecutedMove& e) { moves.push_back(e); });
+  const auto done =
+      readback::execute_nc(text, "p", *control, [&](const readback::ExecutedMove& e) { moves.push_back(e); });
   EXPECT_TRUE(done) << done.error().text() << "\n" << text;
   return moves;
 }
@@ -32,7 +34,8 @@ std::string refusal(const PostForm& f, const std::string& text) {
   return done ? "" : done.error().text();
 }
 
-std::string text_of(const PostForm& f, const std::vector<path::ClPath>& paths, int teeth = kRolloverTeeth, int stride = 1) {
+std::string text_of(const PostForm& f, const std::vector<path::ClPath>& paths, int teeth = kRolloverTeeth,
+                    int stride = 1) {
   const auto program = program_of(f, paths, teeth, stride);
   EXPECT_TRUE(program) << program.error().message;
   const auto text = program ? text_of(f, *program) : Result<text::NcText>(program.error());
@@ -61,7 +64,8 @@ path::ClPath turning_path(double from, double swing, double second, int steps = 
 }
 
 machines::TablePose pose_of(const machines::Machine& m, const readback::ExecutedMove& e, double length) {
-  return m.chain.forward({Vec3(e.joints[0], e.joints[1], e.joints[2]), {radians(e.joints[3]), radians(e.joints[4])}}, length);
+  return m.chain.forward({Vec3(e.joints[0], e.joints[1], e.joints[2]), {radians(e.joints[3]), radians(e.joints[4])}},
+                         length);
 }
 
 class Rollover : public testing::TestWithParam<PostForm> {};
@@ -81,14 +85,16 @@ TEST_P(Rollover, CutsWhatTheContinuousAxisCuts) {
     joints::AxisOptions o = controls::axis_options(*dialect, endless);
     o.expand_teeth = f.expand;
     o.tooth_stride = stride;
-    const auto program = joints::AxisProgramTestAccess::build(paths, tools(), standing(), endless, kRolloverTeeth, kBody, o);
+    const auto program =
+        joints::AxisProgramTestAccess::build(paths, tools(), standing(), endless, kRolloverTeeth, kBody, o);
     ASSERT_TRUE(program) << program.error().message;
     text::NcHeader header;
     const auto text = text::write_nc(*program, *dialect, header);
     ASSERT_TRUE(text);
     std::vector<readback::ExecutedMove> plain;
     const auto control = controls::control_of(endless, standing(), tools());
-    ASSERT_TRUE(readback::execute_nc(text->text, "p", *control, [&](const readback::ExecutedMove& e) { plain.push_back(e); }));
+    ASSERT_TRUE(
+        readback::execute_nc(text->text, "p", *control, [&](const readback::ExecutedMove& e) { plain.push_back(e); }));
 
     const auto cuts = [](const std::vector<readback::ExecutedMove>& moves) {
       std::vector<const readback::ExecutedMove*> out;
@@ -105,7 +111,8 @@ TEST_P(Rollover, CutsWhatTheContinuousAxisCuts) {
     }
     const bool by_sign = std::string(f.dialect) == "linuxcnc";
     for (std::size_t i = 1; i < rolled.size(); ++i) {
-      if (!rolled[i].known || (by_sign && rolled[i].rapid && !f.expand)) continue;  // a loop is entered by any way there
+      if (!rolled[i].known || (by_sign && rolled[i].rapid && !f.expand))
+        continue;  // a loop is entered by any way there
       ASSERT_LE(std::abs(rolled[i].joints[3] - rolled[i - 1].joints[3]), 170 + 1e-3) << rolled[i].line;
     }
   }
@@ -123,23 +130,20 @@ TEST_P(Rollover, WordsLieWithinOneTurn) {
     if (l.find(';') != std::string::npos || l.find('(') == 0) continue;
     std::smatch m;
     if (!std::regex_search(l, m, word)) {
-      if (siemens && std::regex_search(l, any)) {
-        EXPECT_NE(l.find("DC("), std::string::npos) << l;
-      }
+      if (siemens && std::regex_search(l, any)) { EXPECT_NE(l.find("DC("), std::string::npos) << l; }
       continue;
     }
     ++seen;
     const double v = std::stod(m[1]);
     EXPECT_LT(std::abs(v), 360) << l;
-    if (!by_sign) {
-      EXPECT_GE(v, 0) << l;
-    }
+    if (!by_sign) { EXPECT_GE(v, 0) << l; }
   }
   EXPECT_TRUE(seen > 2 || !f.expand) << text;
   EXPECT_NE(text.find("C ROLLS OVER"), std::string::npos);
 }
 
-// A cut through zero, both ways: 350 to 10 and back is 20 deg, on every control, and the tool is where the path wants it.
+// A cut through zero, both ways: 350 to 10 and back is 20 deg, on every control, and the tool is where the path wants
+// it.
 TEST_P(Rollover, StepsAcrossZeroBothWays) {
   const PostForm& f = GetParam();
   if (f.swing == 0) return;  // rotaries stand in the cuts of this form
@@ -161,7 +165,8 @@ TEST_P(Rollover, StepsAcrossZeroBothWays) {
     const auto control = controls::control_of(m, standing(), tools());
     const auto read = readback::read_back(text, "p", *control, m, standing(), {.teeth = 1});
     ASSERT_TRUE(read) << read.error().text();
-    const auto motions = readback::tool_motions(read->operations[0], read->copies, *control, m, standing(), 1, {1e-4, 1e-5});
+    const auto motions =
+        readback::tool_motions(read->operations[0], read->copies, *control, m, standing(), 1, {1e-4, 1e-5});
     ASSERT_TRUE(motions);
     const std::vector<const path::ClPath*> want = {&path};
     const auto same = readback::compare_with_cl(*motions, want, 4e-3, 1e-3);
@@ -214,10 +219,12 @@ TEST_P(Rollover, PlantedFaultsAreRefused) {
     return std::regex_replace(text, std::regex(pattern), to, std::regex_constants::format_first_only);
   };
   if (dialect == "siemens") {
-    EXPECT_NE(refusal(f, changed(R"(C=DC\()", "C=(")).find("which way it turns is said by DC() alone"), std::string::npos);
+    EXPECT_NE(refusal(f, changed(R"(C=DC\()", "C=(")).find("which way it turns is said by DC() alone"),
+              std::string::npos);
     EXPECT_NE(refusal(f, changed(R"(C=DC\([^ \n]*\))", "C=DC(360)")).find("outside 0 .. 360"), std::string::npos);
     EXPECT_NE(refusal(f, changed(R"(C=DC\([^ \n]*\))", "C=DC(-0.001)")).find("outside 0 .. 360"), std::string::npos);
-    EXPECT_NE(refusal(f, changed(R"(A=(-?[\d.]+))", "A=DC(10)")).find("DC() of A, which does not roll over"), std::string::npos);
+    EXPECT_NE(refusal(f, changed(R"(A=(-?[\d.]+))", "A=DC(10)")).find("DC() of A, which does not roll over"),
+              std::string::npos);
   } else if (dialect == "heidenhain") {
     EXPECT_NE(refusal(f, changed("M126", "M127")).find("which way it turns is said by M126 alone"), std::string::npos);
     EXPECT_NE(refusal(f, changed(R"( C\+[\dQ.]+)", " C+360")).find("outside 0 .. 360"), std::string::npos);
@@ -230,7 +237,8 @@ TEST_P(Rollover, PlantedFaultsAreRefused) {
     const std::regex cut(R"((\nX[^\n]* C)(-?)(\[|\d))");
     std::smatch m;
     ASSERT_TRUE(std::regex_search(text, m, cut));
-    const std::string wrong = m.prefix().str() + m[1].str() + (m[2].length() != 0 ? "" : "-") + m[3].str() + m.suffix().str();
+    const std::string wrong =
+        m.prefix().str() + m[1].str() + (m[2].length() != 0 ? "" : "-") + m[3].str() + m.suffix().str();
     EXPECT_NE(refusal(f, wrong).find("in one block, limit 180: a cut is not meant to"), std::string::npos);
   }
 }
@@ -256,11 +264,14 @@ TEST(RolloverLinuxcnc, AgreesMoveByMove) {
   for (const auto& f : rollover_forms()) {
     if (std::string(f.dialect) != "linuxcnc" || f.tcp != machines::TcpMode::none) continue;
     for (const int stride : {1, 2}) {
-      const std::string text = text_of(f, {turning_path(radians(60), radians(60), radians(-90)), sample_path(0.3, 0.1, 5, 1)}, 7, stride);
-      const auto out = interpret(std::regex_replace(text, std::regex("M429\n"), ""), "rollover", "[TRAJ]\nCOORDINATES = X Y Z A C\n[AXIS_C]\nWRAPPED_ROTARY = 1\n");
+      const std::string text =
+          text_of(f, {turning_path(radians(60), radians(60), radians(-90)), sample_path(0.3, 0.1, 5, 1)}, 7, stride);
+      const auto out = interpret(std::regex_replace(text, std::regex("M429\n"), ""), "rollover",
+                                 "[TRAJ]\nCOORDINATES = X Y Z A C\n[AXIS_C]\nWRAPPED_ROTARY = 1\n");
       ASSERT_EQ(out.exit, 0) << out.messages;
       const auto ours = executed(f, text);
-      const std::regex motion("STRAIGHT_(FEED|TRAVERSE)\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)");
+      const std::regex motion(
+          "STRAIGHT_(FEED|TRAVERSE)\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)");
       std::size_t i = 0;
       std::optional<double> turns;  // whole turns between the two counts: where ours begins is not known
       for (const auto& l : out.lines) {

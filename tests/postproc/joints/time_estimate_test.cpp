@@ -70,7 +70,8 @@ TEST(TimeEstimate, BlocksOfOneLineAreOneLine) {
   double stops = 0;
   for (const double t : joints::accelerated_times(many, at_x(0, 0), p, 0, m)) stops += t;
   const double v = feed / 60, ramp = v / 800 / 60;  // min that one stop and start costs: v / a
-  EXPECT_NEAR(stops, whole + (joints::time_from_rest(1, feed, 800 * kPerSecond2) - 1 / feed - ramp) + 2 * ramp, 1e-9 * whole + ramp * 0.02);
+  EXPECT_NEAR(stops, whole + (joints::time_from_rest(1, feed, 800 * kPerSecond2) - 1 / feed - ramp) + 2 * ramp,
+              1e-9 * whole + ramp * 0.02);
 }
 
 // A corner is taken at the share of the speed with which the jump is a * tau: the way back has the jump 2 v.
@@ -80,7 +81,8 @@ TEST(TimeEstimate, CornerSpeed) {
   const joints::AxisProgram p = empty_program(m);
   const double feed = 6000, v = feed / 60, a = 1000, way = 40;  // mm/s
   double sum = 0;
-  for (const double t : joints::accelerated_times({at_x(way, way / feed), at_x(0, way / feed)}, at_x(0, 0), p, 0, m)) sum += t * 60;
+  for (const double t : joints::accelerated_times({at_x(way, way / feed), at_x(0, way / feed)}, at_x(0, 0), p, 0, m))
+    sum += t * 60;
   const double corner = a * 0.004 / 2;  // mm/s
   // Up to v, down to the corner, and the same backwards.
   const double one = v / a + (v - corner) / a + (way - v * v / (2 * a) - (v * v - corner * corner) / (2 * a)) / v;
@@ -101,7 +103,8 @@ TEST(TimeEstimate, EveryAxisCounts) {
   joints::AxisBlock b = at_x(10, 0.02);
   b.words[3] = numbers::to_fixed(90, 5);
   const double v = 90 / (0.02 * 60), a = 50;  // deg/s
-  EXPECT_NEAR(joints::accelerated_times({b}, at_x(0, 0), p, 0, m)[0] * 60, 90 >= v * v / a ? 90 / v + v / a : 2 * std::sqrt(90 / a), 1e-9);
+  EXPECT_NEAR(joints::accelerated_times({b}, at_x(0, 0), p, 0, m)[0] * 60,
+              90 >= v * v / a ? 90 / v + v / a : 2 * std::sqrt(90 / a), 1e-9);
 }
 
 // Whole programs: never below the feed time, monotone, and the feed time in the limit.
@@ -110,7 +113,8 @@ TEST(TimeEstimate, InvariantsOfPrograms) {
   std::uniform_real_distribution<double> lean(0.1, 0.6), swing(-1.5, 1.5);
   for (int trial = 0; trial < 6; ++trial)
     for (const bool expand : {false, true}) {
-      const std::vector<path::ClPath> paths = {sample_path(lean(random), swing(random), 25), sample_path(lean(random), 0, 15, 1)};
+      const std::vector<path::ClPath> paths = {sample_path(lean(random), swing(random), 25),
+                                               sample_path(lean(random), 0, 15, 1)};
       const auto plain = axis_program(paths, trunnion(), standing(), 4, expand);
       ASSERT_TRUE(plain);
       EXPECT_FALSE(plain->has_acceleration);
@@ -132,9 +136,7 @@ TEST(TimeEstimate, InvariantsOfPrograms) {
             for (const auto& b : tooth.blocks) blocks += b.kind == joints::BlockKind::feed;
         for (const auto n : program->time_ruled) ruled += n;
         EXPECT_EQ(ruled, blocks);
-        if (a == 20) {
-          EXPECT_GT(program->time_ruled.back(), blocks / 2);
-        }
+        if (a == 20) { EXPECT_GT(program->time_ruled.back(), blocks / 2); }
         if (a == 1e10) {
           EXPECT_EQ(program->time_ruled.back(), 0u);
           EXPECT_NEAR(total, program->minutes, 1e-6 * program->minutes);
@@ -167,11 +169,15 @@ TEST(TimeEstimate, AccelerationsOfTheMachineFile) {
   EXPECT_DOUBLE_EQ(whole.machine->chain.table[0].max_acceleration, radians(3000) * kPerSecond2);
   const auto partly = machines::read_machine_text(replaced(nutating_file(), "max_acceleration = 1500", "#"), "m.toml");
   ASSERT_FALSE(partly.machine);
-  EXPECT_NE(to_text(partly.errors).find("max_acceleration stands at some axes and is missing at axes.B: every axis has one, or none"), std::string::npos)
+  EXPECT_NE(to_text(partly.errors)
+                .find("max_acceleration stands at some axes and is missing at axes.B: every axis has one, or none"),
+            std::string::npos)
       << to_text(partly.errors);
-  const auto zero = machines::read_machine_text(replaced(nutating_file(), "max_acceleration = 1500", "max_acceleration = 0"), "m.toml");
+  const auto zero = machines::read_machine_text(
+      replaced(nutating_file(), "max_acceleration = 1500", "max_acceleration = 0"), "m.toml");
   EXPECT_FALSE(zero.machine);
-  const auto pole = machines::read_machine_text(nutating_file() + "\n[post]\npole = \"hold\"\npole_angle = 0.5\n", "m.toml");
+  const auto pole =
+      machines::read_machine_text(nutating_file() + "\n[post]\npole = \"hold\"\npole_angle = 0.5\n", "m.toml");
   ASSERT_TRUE(pole.machine) << to_text(pole.errors);
   EXPECT_EQ(pole.machine->post.pole, machines::PoleOption::hold);
   EXPECT_DOUBLE_EQ(pole.machine->post.pole_angle_rad.value_or(0), radians(0.5));

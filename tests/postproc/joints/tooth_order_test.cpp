@@ -46,9 +46,7 @@ TEST(ToothOrder, CutTeethDivideTheCircleEvenly) {
   for (int z = 5; z <= 130; ++z) {
     if (z == 6) continue;
     EXPECT_LE(worst_gap(z, joints::spread_stride(z)), 2.5) << z;
-    if (z > 12) {
-      EXPECT_GT(worst_gap(z, 1), 2.5) << z;
-    }
+    if (z > 12) { EXPECT_GT(worst_gap(z, 1), 2.5) << z; }
   }
 }
 
@@ -64,7 +62,8 @@ int largest_partial_quotient(int teeth, int stride) {
   return largest;
 }
 
-// Among all strides up to half a turn that meet every tooth: the least largest quotient, and of those the nearest to the golden section.
+// Among all strides up to half a turn that meet every tooth: the least largest quotient, and of those the nearest to
+// the golden section.
 TEST(ToothOrder, StrideIsTheBestOfAll) {
   const double golden = (3 - std::sqrt(5.0)) / 2;
   for (int z = 5; z <= 400; ++z) {
@@ -89,7 +88,8 @@ TEST(ToothOrder, TurnsAreCounted) {
 class SpreadOrder : public testing::TestWithParam<PostForm> {};
 INSTANTIATE_TEST_SUITE_P(Forms, SpreadOrder, testing::ValuesIn(post_forms()));
 
-// The text, executed, cuts the teeth in the spread order; every record of the path is met; the index is off by half a digit at most.
+// The text, executed, cuts the teeth in the spread order; every record of the path is met; the index is off by half a
+// digit at most.
 TEST_P(SpreadOrder, IsExecutedInEveryDialect) {
   const PostForm& f = GetParam();
   const machines::Machine m = machine_of(f);
@@ -120,7 +120,8 @@ TEST_P(SpreadOrder, IsExecutedInEveryDialect) {
     all.insert(all.end(), motions->begin(), motions->end());
   }
   const std::vector<const path::ClPath*> list = {&paths[0], &paths[1]};
-  const auto met = readback::compare_with_cl(all, list, program->rounding_bound_mm + program->chord_bound_mm + 1e-3, 2e-3);
+  const auto met =
+      readback::compare_with_cl(all, list, program->rounding_bound_mm + program->chord_bound_mm + 1e-3, 2e-3);
   EXPECT_TRUE(met.complete) << met.message;
 
   std::vector<int> expected;
@@ -131,7 +132,8 @@ TEST_P(SpreadOrder, IsExecutedInEveryDialect) {
   } else {
     std::vector<int> order;
     for (const auto& motion : all)
-      if (motion.operation == 0 && !motion.rapid && (order.empty() || order.back() != motion.tooth)) order.push_back(motion.tooth);
+      if (motion.operation == 0 && !motion.rapid && (order.empty() || order.back() != motion.tooth))
+        order.push_back(motion.tooth);
     EXPECT_EQ(order, expected);
   }
 }
@@ -150,7 +152,8 @@ TEST(ToothOrder, RemaindersOfTheControlsAreExact) {
     const auto back = readback::read_back(text->text, "p", *control, m, standing(), {.teeth = teeth});
     ASSERT_TRUE(back) << back.error().text();
     ASSERT_TRUE(back->copies.copies) << back->copies.difference;
-    for (int n = 0; n < teeth; ++n) ASSERT_EQ(back->copies.operations[0].turns[static_cast<std::size_t>(n)], n * stride % teeth) << dialect;
+    for (int n = 0; n < teeth; ++n)
+      ASSERT_EQ(back->copies.operations[0].turns[static_cast<std::size_t>(n)], n * stride % teeth) << dialect;
     EXPECT_LE(back->copies.worst_shift_deg, control->rotary_rounding_deg) << dialect;
   }
 }
@@ -165,7 +168,8 @@ TEST(ToothOrder, LinuxcncAgrees) {
   const auto written = text::write_nc(spread, words_of("linuxcnc"), {});
   ASSERT_TRUE(written);
   for (const int first : {0, 17}) {
-    const auto out = interpret(std::regex_replace(written->text, std::regex("\n#1=0\n"), fmt::format("\n#1={}\n", first)), "order");
+    const auto out =
+        interpret(std::regex_replace(written->text, std::regex("\n#1=0\n"), fmt::format("\n#1={}\n", first)), "order");
     ASSERT_EQ(out.exit, 0) << out.messages;
     std::vector<double> turns;  // C of each first rotary rapid of a tooth, from the one of tooth 0
     const std::regex traverse("STRAIGHT_TRAVERSE\\(([^)]*)\\)");
@@ -181,7 +185,9 @@ TEST(ToothOrder, LinuxcncAgrees) {
     const double base = static_cast<double>(spread.operations[0].teeth[0].blocks[0].words[3]) / 1e5;
     ASSERT_EQ(turns.size(), static_cast<std::size_t>(teeth - first));
     for (int n = first; n < teeth; ++n)
-      EXPECT_NEAR(turns[static_cast<std::size_t>(n - first)], base + spread.index_sign * 360.0 * (n * stride % teeth) / teeth, 1e-4) << n;
+      EXPECT_NEAR(turns[static_cast<std::size_t>(n - first)],
+                  base + spread.index_sign * 360.0 * (n * stride % teeth) / teeth, 1e-4)
+          << n;
   }
 }
 
@@ -200,13 +206,19 @@ TEST(ToothOrder, ReadersRefuseWhatIsNoRemainder) {
   EXPECT_EQ(refusal("siemens", "R1=7-3*TRUNC((7+0.5)/3)\nFOR R2=R1 TO 1\nENDFOR\nM30\n"), "none");
   EXPECT_EQ(refusal("siemens", "R1=INT(3.5)\nM30\n"), "p:1:4: error: a parameter that was never set, or no parameter");
   EXPECT_EQ(refusal("siemens", "R1=TRUNC(3.5\nM30\n"), "p:1:4: error: ) expected");
-  const auto plain = [&](const std::string& body) { return refusal("heidenhain", "0 BEGIN PGM P MM\n" + body + "9 END PGM P MM\n"); };
-  EXPECT_EQ(refusal("heidenhain", "0 BEGIN PGM P MM\n1 Q1 = 7.9\n2 Q1 = INT Q1\n3 LBL 1\n4 Q1 = Q1 - 1\n5 FN 12: IF +6 LT +Q1 GOTO LBL 1\n6 M30\n7 END PGM P MM\n"), "none");
+  const auto plain = [&](const std::string& body) {
+    return refusal("heidenhain", "0 BEGIN PGM P MM\n" + body + "9 END PGM P MM\n");
+  };
+  EXPECT_EQ(refusal("heidenhain",
+                    "0 BEGIN PGM P MM\n1 Q1 = 7.9\n2 Q1 = INT Q1\n3 LBL 1\n4 Q1 = Q1 - 1\n5 FN 12: IF +6 LT +Q1 GOTO "
+                    "LBL 1\n6 M30\n7 END PGM P MM\n"),
+            "none");
   EXPECT_NE(plain("1 FN 12: IF +Q1 LT +5 GOTO LBL 1\n").find("error"), std::string::npos);
   EXPECT_EQ(refusal("heidenhain", "0 BEGIN PGM P MM\n1 FN 12: IF +1 LT +5 GOTO LBL 1\n2 M30\n3 END PGM P MM\n"),
             "p:2:31: error: GOTO LBL of a label that does not exist");
-  EXPECT_EQ(refusal("heidenhain", "0 BEGIN PGM P MM\n1 LBL 1\n2 FN 12: IF +1 LT +5 GOTO LBL 1\n3 M30\n4 END PGM P MM\n"),
-            "p:3: error: more than 1000 executed blocks");
+  EXPECT_EQ(
+      refusal("heidenhain", "0 BEGIN PGM P MM\n1 LBL 1\n2 FN 12: IF +1 LT +5 GOTO LBL 1\n3 M30\n4 END PGM P MM\n"),
+      "p:3: error: more than 1000 executed blocks");
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ std::string by_to_chars(std::int64_t scaled, int decimals) {
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, negative ? -scaled : scaled).ptr;
   std::string digits(buffer, end);
   while (static_cast<int>(digits.size()) <= decimals) digits.insert(digits.begin(), '0');
-  std::string whole = digits.substr(0, digits.size() - static_cast<std::size_t>(decimals)), part = digits.substr(whole.size());
+  std::string whole = digits.substr(0, digits.size() - static_cast<std::size_t>(decimals)),
+              part = digits.substr(whole.size());
   while (!part.empty() && part.back() == '0') part.pop_back();
   return (negative ? "-" : "") + whole + (part.empty() ? "" : "." + part);
 }

@@ -1,4 +1,5 @@
-// The comparison of a program with its path, on motions made by hand: what is met, what is left out, what nobody asked for.
+// The comparison of a program with its path, on motions made by hand: what is met, what is left out, what nobody asked
+// for.
 #include <gtest/gtest.h>
 
 #include <vector>

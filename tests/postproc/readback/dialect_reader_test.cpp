@@ -1,4 +1,5 @@
-// The readers of Siemens, Heidenhain and APT refuse what is not in their subset, where it stands, and survive any bytes.
+// The readers of Siemens, Heidenhain and APT refuse what is not in their subset, where it stands, and survive any
+// bytes.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -26,7 +27,8 @@ std::string refusal(const std::string& dialect, const std::string& text) {
 }
 
 TEST(SiemensReader, RefusalsNameLineAndColumn) {
-  const std::string start = "G17 G40 G90 G94 G710\nTRAFOOF\nG54\n;OP 0 finishing\nSUPA G0 Z500 D0\nT=\"T1\"\nM6\nS100 M3\nD1\n";
+  const std::string start =
+      "G17 G40 G90 G94 G710\nTRAFOOF\nG54\n;OP 0 finishing\nSUPA G0 Z500 D0\nT=\"T1\"\nM6\nS100 M3\nD1\n";
   const auto error = [&](const std::string& body) { return refusal("siemens", start + body); };
   EXPECT_EQ(error("G0 A=10 C=R1\nM5\nM30\n"), "p:10:11: error: a parameter that was never set, or no parameter");
   EXPECT_EQ(error("R1=3\nG0 A=10 C=-R1*(2+1)/4\nG0 X1\nM5\nM30\n"), "none");
@@ -50,11 +52,14 @@ TEST(SiemensReader, RefusalsNameLineAndColumn) {
       {"G0 X1\n", "the program ends without M30"},
       {"M5\nM30\nG0 X1\n", "p:12:1: error: text behind the end"},
   };
-  for (const auto& [text, expected] : cases) EXPECT_NE(error(text).find(expected), std::string::npos) << text << " gave " << error(text);
+  for (const auto& [text, expected] : cases)
+    EXPECT_NE(error(text).find(expected), std::string::npos) << text << " gave " << error(text);
 }
 
 TEST(HeidenhainReader, RefusalsNameLineAndColumn) {
-  const std::string lines = "BEGIN PGM P MM\n; OP 0 finishing\nCYCL DEF 247 DATUM SETTING Q339=+1\nL Z+500 R0 FMAX M91\nTOOL CALL 1 Z S100\nM3\n";
+  const std::string lines =
+      "BEGIN PGM P MM\n; OP 0 finishing\nCYCL DEF 247 DATUM SETTING Q339=+1\nL Z+500 R0 FMAX M91\nTOOL CALL 1 Z "
+      "S100\nM3\n";
   const auto error = [&](const std::string& body) {
     std::string out, all = lines + body;
     std::size_t n = 0, begin = 0;
@@ -83,14 +88,18 @@ TEST(HeidenhainReader, RefusalsNameLineAndColumn) {
       {"M5\nM30\nEND PGM Q MM\n", "END PGM names another program"},
       {"M5\n", "ends without END PGM"},
   };
-  for (const auto& [text, expected] : cases) EXPECT_NE(error(text).find(expected), std::string::npos) << text << " gave " << error(text);
+  for (const auto& [text, expected] : cases)
+    EXPECT_NE(error(text).find(expected), std::string::npos) << text << " gave " << error(text);
   EXPECT_EQ(refusal("heidenhain", "0 BEGIN PGM P MM\n2 M5\n"), "p:2:1: error: block number 1 expected");
 }
 
 TEST(AptReader, RefusalsNameLineAndColumn) {
-  const std::string start = "PARTNO/P\nUNITS/MM\nMULTAX/ON\n$$ OP 0 finishing\nLOADTL/1,LENGTH,95.\nSPINDL/RPM,100,CLW\n";
+  const std::string start =
+      "PARTNO/P\nUNITS/MM\nMULTAX/ON\n$$ OP 0 finishing\nLOADTL/1,LENGTH,95.\nSPINDL/RPM,100,CLW\n";
   const auto error = [&](const std::string& body) { return refusal("apt", start + body); };
-  EXPECT_EQ(error("RAPID\nGOTO/1.,2.,300.,0.,0.,1.\nFEDRAT/100.,MMPM\nGOTO/1.,2.,299.,0.,0.,1.\nSPINDL/OFF\nEND\nFINI\n"), "none");
+  EXPECT_EQ(
+      error("RAPID\nGOTO/1.,2.,300.,0.,0.,1.\nFEDRAT/100.,MMPM\nGOTO/1.,2.,299.,0.,0.,1.\nSPINDL/OFF\nEND\nFINI\n"),
+      "none");
   const std::pair<const char*, const char*> cases[] = {
       {"GOTO/1.,2.,300.\n", "p:7:16: error: , expected"},
       {"GOTO/1.,2.,300.,0.,0.,2.\n", "a tool vector of length 2"},
@@ -103,7 +112,8 @@ TEST(AptReader, RefusalsNameLineAndColumn) {
       {"SPINDL/OFF\nEND\n", "end without FINI"},
       {"SPINDL/OFF\nEND\nFINI\nEND\n", "text behind FINI"},
   };
-  for (const auto& [text, expected] : cases) EXPECT_NE(error(text).find(expected), std::string::npos) << text << " gave " << error(text);
+  for (const auto& [text, expected] : cases)
+    EXPECT_NE(error(text).find(expected), std::string::npos) << text << " gave " << error(text);
 }
 
 // Any bytes give an answer.
@@ -120,9 +130,7 @@ TEST(DialectReaders, SurviveMutations) {
       const std::string t = damaged(good->text, random, 1 + i % 4, "GMXYZACFRQ=/+(0123456789.-");
       const auto r = readback::read_back(t, "p", *control, m, standing(), {.teeth = 3});
       refused += r ? 0 : 1;
-      if (!r) {
-        EXPECT_FALSE(r.error().message.empty());
-      }
+      if (!r) { EXPECT_FALSE(r.error().message.empty()); }
     }
     EXPECT_GT(refused, 300) << dialect;
   }

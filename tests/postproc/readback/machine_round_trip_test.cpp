@@ -1,4 +1,5 @@
-// Every milling machine that is shipped, in every way that its dialect can be posted: CL -> text -> reader -> forward kinematics
+// Every milling machine that is shipped, in every way that its dialect can be posted: CL -> text -> reader -> forward
+// kinematics
 // -> CL, within the rounding of the words.
 #include <gtest/gtest.h>
 
@@ -35,7 +36,8 @@ path::ClPath small_path(double lean, double swing) {
     const auto axis = [&](double t) { return leaning(lean, 0.4 + 0.1 * pass + swing * t); };
     path.records.push_back({tip(0) + 6 * axis(0), axis(0), 0, path::MoveKind::rapid, 0, pass});
     path.records.push_back({tip(0), axis(0), 300, path::MoveKind::engage, 0, pass});
-    for (int i = 1; i <= 12; ++i) path.records.push_back({tip(i / 12.0), axis(i / 12.0), 500, path::MoveKind::feed, 0, pass});
+    for (int i = 1; i <= 12; ++i)
+      path.records.push_back({tip(i / 12.0), axis(i / 12.0), 500, path::MoveKind::feed, 0, pass});
     path.records.push_back({tip(1) + 6 * axis(1), axis(1), 300, path::MoveKind::retract, 0, pass});
   }
   path.records.push_back(path.records.back());
@@ -49,7 +51,9 @@ struct Post {
   double swing;
   bool expand;
   [[nodiscard]] std::string name() const {
-    std::string n = file.substr(0, file.find('.')) + (tcp == machines::TcpMode::none ? "_joints" : tcp == machines::TcpMode::angles ? "_angles" : "_vectors");
+    std::string n = file.substr(0, file.find('.')) + (tcp == machines::TcpMode::none     ? "_joints"
+                                                      : tcp == machines::TcpMode::angles ? "_angles"
+                                                                                         : "_vectors");
     return n + (swing != 0 ? "_moving" : "_fixed") + (expand ? "_teeth" : "");
   }
 };
@@ -75,13 +79,15 @@ std::vector<Post> posts() {
   std::vector<Post> out;
   for (const auto& f : files) {
     const auto reading = machines::read_machine_file(std::string(TOOTHPATH_SOURCE_DIR) + "/machines/data/" + f);
-    for (const machines::TcpMode tcp : {machines::TcpMode::none, machines::TcpMode::angles, machines::TcpMode::vectors}) {
+    for (const machines::TcpMode tcp :
+         {machines::TcpMode::none, machines::TcpMode::angles, machines::TcpMode::vectors}) {
       machines::Machine m = *reading.machine;
       m.tcp = tcp;
       const auto dialect = controls::dialect_of(m);
       if (!dialect || (dialect->write != nullptr && tcp != machines::TcpMode::vectors)) continue;
       for (const double swing : {0.0, 0.5}) {
-        if (swing != 0 && tcp == machines::TcpMode::none && !dialect->inverse_time) continue;  // refused: see HeidenhainNeedsTcp
+        if (swing != 0 && tcp == machines::TcpMode::none && !dialect->inverse_time)
+          continue;  // refused: see HeidenhainNeedsTcp
         for (const bool expand : {false, true}) out.push_back({f, tcp, swing, expand});
       }
     }
@@ -98,7 +104,8 @@ toothpath::joints::Setup setup_of(const machines::Machine& m) {
 }
 
 class MachineRoundTrip : public testing::TestWithParam<Post> {};
-INSTANTIATE_TEST_SUITE_P(Shipped, MachineRoundTrip, testing::ValuesIn(posts()), [](const auto& post) { return post.param.name(); });
+INSTANTIATE_TEST_SUITE_P(Shipped, MachineRoundTrip, testing::ValuesIn(posts()),
+                         [](const auto& post) { return post.param.name(); });
 
 TEST_P(MachineRoundTrip, MeetsEveryRecordWithinTheRounding) {
   const Post& p = GetParam();
@@ -110,7 +117,8 @@ TEST_P(MachineRoundTrip, MeetsEveryRecordWithinTheRounding) {
   joints::AxisOptions options = axis_options(*dialect, m);
   options.expand_teeth = options.expand_teeth || p.expand;
   const path::ClPath path = small_path(0.3, p.swing);
-  const auto program = joints::AxisProgramTestAccess::build(std::vector{path}, short_tool(), setup, m, teeth, kSmallBody, options);
+  const auto program =
+      joints::AxisProgramTestAccess::build(std::vector{path}, short_tool(), setup, m, teeth, kSmallBody, options);
   ASSERT_TRUE(program) << program.error().message;
   text::NcHeader header;
   header.job_name = "round trip";
@@ -122,11 +130,10 @@ TEST_P(MachineRoundTrip, MeetsEveryRecordWithinTheRounding) {
   ASSERT_TRUE(control);
   const auto back = readback::read_back(text->text, "p", *control, m, setup, {.teeth = teeth});
   ASSERT_TRUE(back) << back.error().text() << "\n" << text->text.substr(0, 3000);
-  if (program->loop) {
-    EXPECT_TRUE(back->copies.copies) << back->copies.line << ": " << back->copies.difference;
-  }
+  if (program->loop) { EXPECT_TRUE(back->copies.copies) << back->copies.line << ": " << back->copies.difference; }
   ASSERT_EQ(back->operations.size(), 1u);
-  const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, m, setup, teeth, {1e-4, 1e-4});
+  const auto motions =
+      readback::tool_motions(back->operations[0], back->copies, *control, m, setup, teeth, {1e-4, 1e-4});
   ASSERT_TRUE(motions) << motions.error().message;
   const auto rapids = readback::check_rapids(back->operations[0], *control, m, setup, kSmallBody);
   EXPECT_TRUE(rapids) << (rapids ? "" : rapids.error().message);
@@ -153,8 +160,10 @@ TEST_P(MachineRoundTrip, MeetsEveryRecordWithinTheRounding) {
 
 // Written-out teeth with TCP: each is the turned path, to the rounding.
 TEST(TcpTeeth, EveryToothIsTheTurnedPath) {
-  for (const char* file : {"fanuc_ac.toml", "siemens_ac.toml", "head_head_ca.toml", "xyzac_trt.toml", "apt_free.toml"}) {
-    const Post post{file, std::string(file) == "apt_free.toml" ? machines::TcpMode::vectors : machines::TcpMode::angles, 0.4, true};
+  for (const char* file :
+       {"fanuc_ac.toml", "siemens_ac.toml", "head_head_ca.toml", "xyzac_trt.toml", "apt_free.toml"}) {
+    const Post post{file, std::string(file) == "apt_free.toml" ? machines::TcpMode::vectors : machines::TcpMode::angles,
+                    0.4, true};
     const machines::Machine m = machine_of(post);
     const auto setup = setup_of(m);
     const auto dialect = controls::dialect_of(m);
@@ -162,7 +171,8 @@ TEST(TcpTeeth, EveryToothIsTheTurnedPath) {
     joints::AxisOptions options = axis_options(*dialect, m);
     options.expand_teeth = true;
     const path::ClPath path = small_path(0.3, 0.4);
-    const auto program = joints::AxisProgramTestAccess::build(std::vector{path}, short_tool(), setup, m, 4, kSmallBody, options);
+    const auto program =
+        joints::AxisProgramTestAccess::build(std::vector{path}, short_tool(), setup, m, 4, kSmallBody, options);
     ASSERT_TRUE(program) << program.error().message;
     const auto text = text::write_nc(*program, *dialect, {});
     ASSERT_TRUE(text);
@@ -181,12 +191,13 @@ TEST(TcpTeeth, EveryToothIsTheTurnedPath) {
 TEST(HeidenhainNeedsTcp, ForRotariesThatMoveInACut) {
   const machines::Machine m = machine_of({"heidenhain_ac.toml", machines::TcpMode::none, 0.5, false});
   const auto dialect = controls::dialect_of(m);
-  const auto program = joints::AxisProgramTestAccess::build(std::vector{small_path(0.3, 0.5)}, short_tool(), setup_of(m), m, 3, kSmallBody,
-                                                    axis_options(*dialect, m));
+  const auto program = joints::AxisProgramTestAccess::build(std::vector{small_path(0.3, 0.5)}, short_tool(),
+                                                            setup_of(m), m, 3, kSmallBody, axis_options(*dialect, m));
   ASSERT_TRUE(program);
   const auto text = text::write_nc(*program, *dialect, {});
   ASSERT_FALSE(text);
-  EXPECT_NE(text.error().message.find("heidenhain has no inverse time feed for it: tcp = \"angles\" is supported"), std::string::npos)
+  EXPECT_NE(text.error().message.find("heidenhain has no inverse time feed for it: tcp = \"angles\" is supported"),
+            std::string::npos)
       << text.error().message;
 }
 
@@ -198,7 +209,8 @@ TEST(PlantedFaultOfEveryDialect, IsSeen) {
     const auto setup = setup_of(m);
     const auto dialect = controls::dialect_of(m);
     const path::ClPath path = small_path(0.3, p.swing);
-    const auto program = joints::AxisProgramTestAccess::build(std::vector{path}, short_tool(), setup, m, 3, kSmallBody, axis_options(*dialect, m));
+    const auto program = joints::AxisProgramTestAccess::build(std::vector{path}, short_tool(), setup, m, 3, kSmallBody,
+                                                              axis_options(*dialect, m));
     ASSERT_TRUE(program);
     std::string text = text::write_nc(*program, *dialect, {})->text;
     // The last digit but one of an X word in the middle of the first tooth.
@@ -216,7 +228,8 @@ TEST(PlantedFaultOfEveryDialect, IsSeen) {
     if (!back) continue;  // refused: seen as well
     const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, m, setup, 3, {1e-4, 1e-4});
     const std::vector<const path::ClPath*> list = {&path};
-    const auto met = readback::compare_with_cl(*motions, list, program->rounding_bound_mm + program->chord_bound_mm + 1e-4, 2e-3);
+    const auto met =
+        readback::compare_with_cl(*motions, list, program->rounding_bound_mm + program->chord_bound_mm + 1e-4, 2e-3);
     EXPECT_TRUE(!met.complete || !back->copies.copies) << p.name();
     EXPECT_FALSE(met.complete && met.worst_mm <= program->rounding_bound_mm && met.worst_extra_mm <= 5e-3) << p.name();
   }

@@ -75,8 +75,8 @@ inline Vec3 leaning(double lean, double azimuth) {
   return {std::sin(lean) * std::cos(azimuth), std::sin(lean) * std::sin(azimuth), std::cos(lean)};
 }
 
-/// Two passes along a curved line across the face, 100 < r < 118, at the given lean; `swing`: the azimuth of the lean turns
-/// by this much along a pass (0: fixed axis).
+/// Two passes along a curved line across the face, 100 < r < 118, at the given lean; `swing`: the azimuth of the lean
+/// turns by this much along a pass (0: fixed axis).
 inline path::ClPath sample_path(double lean, double swing, int steps = 40, int operation = 0) {
   path::ClPath path;
   path.operation = operation;
@@ -101,8 +101,9 @@ inline path::ClPath sample_path(double lean, double swing, int steps = 40, int o
   return path;
 }
 
-inline Result<joints::AxisProgram> axis_program(const std::vector<path::ClPath>& paths, const machines::Machine& machine, const joints::Setup& setup, int teeth,
-                                        bool expand = false, double chord = 5e-4) {
+inline Result<joints::AxisProgram> axis_program(const std::vector<path::ClPath>& paths,
+                                                const machines::Machine& machine, const joints::Setup& setup, int teeth,
+                                                bool expand = false, double chord = 5e-4) {
   auto dialect = controls::dialect_of(machine);
   if (!dialect) return dialect.error();
   joints::AxisOptions o = controls::axis_options(*dialect, machine);
@@ -112,8 +113,8 @@ inline Result<joints::AxisProgram> axis_program(const std::vector<path::ClPath>&
   return joints::AxisProgramTestAccess::build(paths, tools(), setup, machine, teeth, kBody, o);
 }
 
-inline Result<text::NcText> nc_text(const std::vector<path::ClPath>& paths, const machines::Machine& machine, const joints::Setup& setup, int teeth,
-                              bool expand = false) {
+inline Result<text::NcText> nc_text(const std::vector<path::ClPath>& paths, const machines::Machine& machine,
+                                    const joints::Setup& setup, int teeth, bool expand = false) {
   auto program = axis_program(paths, machine, setup, teeth, expand);
   if (!program) return program.error();
   text::NcHeader header;

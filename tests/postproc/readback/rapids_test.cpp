@@ -1,4 +1,5 @@
-// Rapids that turn the rotaries: proven clear just above the height at which dense sampling sees them strike, refused just below.
+// Rapids that turn the rotaries: proven clear just above the height at which dense sampling sees them strike, refused
+// just below.
 #include <gtest/gtest.h>
 
 #include <utility>
@@ -12,8 +13,8 @@ namespace {
 
 using namespace test;
 
-/// A rapid that turns both rotaries while the linear axes stand: the part swings towards the tool. How low the tool may stand is known from
-/// dense sampling of the machine's own forward kinematics.
+/// A rapid that turns both rotaries while the linear axes stand: the part swings towards the tool. How low the tool may
+/// stand is known from dense sampling of the machine's own forward kinematics.
 TEST(TurningRapid, IsClearJustAboveAndRefusedJustBelow) {
   const machines::Machine machine = trunnion();
   const auto setup = standing();
@@ -25,7 +26,8 @@ TEST(TurningRapid, IsClearJustAboveAndRefusedJustBelow) {
   struct Ring {
     double height, radius;
   };
-  const std::vector<std::pair<std::vector<tool::ToolAssembly>, std::vector<Ring>>> cases{{{}, {{0, 0}}}, {{stubby}, {{0, 0}, {18, 20}, {43, 25}}}};
+  const std::vector<std::pair<std::vector<tool::ToolAssembly>, std::vector<Ring>>> cases{
+      {{}, {{0, 0}}}, {{stubby}, {{0, 0}, {18, 20}, {43, 25}}}};
   const auto control = controls::control_of(machine, setup, tools());
   for (const auto& [described, rings] : cases)
     for (const double tilt : {-35.0, 25.0}) {
@@ -37,7 +39,8 @@ TEST(TurningRapid, IsClearJustAboveAndRefusedJustBelow) {
           for (const Ring& ring : rings)
             for (int j = 0; j < (ring.radius > 0 ? 90 : 1); ++j) {
               const double a = j * kPi / 45;
-              const Vec3 p = pose.tip - setup.origin_mm + ring.height * pose.axis + ring.radius * (std::cos(a) * u + std::sin(a) * v);
+              const Vec3 p = pose.tip - setup.origin_mm + ring.height * pose.axis +
+                             ring.radius * (std::cos(a) * u + std::sin(a) * v);
               if (p.head<2>().norm() < kBody.radius_mm && p.z() < kBody.z_max_mm && p.z() > kBody.z_min_mm) return true;
             }
         }
@@ -47,7 +50,8 @@ TEST(TurningRapid, IsClearJustAboveAndRefusedJustBelow) {
       while (!inside(hit)) hit -= 2;
       clear = hit + 2;
       while (clear - hit > 1e-3) (inside(0.5 * (clear + hit)) ? hit : clear) = 0.5 * (clear + hit);
-      // Rapids are followed with 0.05 mm and 0.05 rad of deviation: at the end of a long tool that is what must be left free.
+      // Rapids are followed with 0.05 mm and 0.05 rad of deviation: at the end of a long tool that is what must be left
+      // free.
       const double free = 0.2 + 0.05 * std::hypot(rings.back().height, rings.back().radius);
       EXPECT_FALSE(inside(clear + free));
       for (const double above : {free, -0.2}) {
@@ -69,7 +73,8 @@ TEST(TurningRapid, IsClearJustAboveAndRefusedJustBelow) {
           EXPECT_TRUE(proof) << proof.error().message;
         } else {
           ASSERT_FALSE(proof) << "tilt " << tilt << " at " << clear + above;
-          EXPECT_NE(proof.error().message.find("line 2: a rapid passes through the part"), std::string::npos) << proof.error().message;
+          EXPECT_NE(proof.error().message.find("line 2: a rapid passes through the part"), std::string::npos)
+              << proof.error().message;
         }
       }
     }

@@ -21,9 +21,9 @@ struct Outcome {
   std::vector<path::ToolMotion> motions;
 };
 
-Outcome examine(const std::string& text, const std::vector<path::ClPath>& paths, const machines::Machine& machine, const toothpath::joints::Setup& setup, int teeth,
-                const machines::Machine* reading_machine = nullptr, double tolerance = 1.5e-3,
-                const std::vector<tool::ToolAssembly>& tool_list = tools()) {
+Outcome examine(const std::string& text, const std::vector<path::ClPath>& paths, const machines::Machine& machine,
+                const toothpath::joints::Setup& setup, int teeth, const machines::Machine* reading_machine = nullptr,
+                double tolerance = 1.5e-3, const std::vector<tool::ToolAssembly>& tool_list = tools()) {
   const machines::Machine& m = reading_machine != nullptr ? *reading_machine : machine;
   Outcome out;
   auto control = controls::control_of(m, setup, tool_list);
@@ -60,14 +60,16 @@ struct Variant {
 };
 
 class RoundTrip : public testing::TestWithParam<Variant> {};
-INSTANTIATE_TEST_SUITE_P(Variants, RoundTrip,
-                         testing::Values(Variant{"linuxcnc", 0, 0, false, false}, Variant{"linuxcnc", 0.3, 0, false, false},
-                                         Variant{"linuxcnc", 0.3, 0.4, false, false}, Variant{"linuxcnc", 0.3, 0.4, true, false},
-                                         Variant{"linuxcnc", 0.3, 0.4, false, true}, Variant{"fanuc", 0, 0, false, false},
-                                         Variant{"fanuc", 0.3, 0, false, false}, Variant{"fanuc", 0.3, 0.4, false, false},
-                                         Variant{"fanuc", 0.2, 0.1, true, true}));
+INSTANTIATE_TEST_SUITE_P(
+    Variants, RoundTrip,
+    testing::Values(Variant{"linuxcnc", 0, 0, false, false}, Variant{"linuxcnc", 0.3, 0, false, false},
+                    Variant{"linuxcnc", 0.3, 0.4, false, false}, Variant{"linuxcnc", 0.3, 0.4, true, false},
+                    Variant{"linuxcnc", 0.3, 0.4, false, true}, Variant{"fanuc", 0, 0, false, false},
+                    Variant{"fanuc", 0.3, 0, false, false}, Variant{"fanuc", 0.3, 0.4, false, false},
+                    Variant{"fanuc", 0.2, 0.1, true, true}));
 
-// Text -> joints -> poses: every record of the path met in order, teeth proven to be copies, times those of the program.
+// Text -> joints -> poses: every record of the path met in order, teeth proven to be copies, times those of the
+// program.
 TEST_P(RoundTrip, MeetsEveryRecord) {
   const Variant v = GetParam();
   const machines::Machine m = with_dialect(trunnion(), v.dialect);
@@ -86,9 +88,7 @@ TEST_P(RoundTrip, MeetsEveryRecord) {
   EXPECT_LT(o.comparison.fastest_ratio, 1.03);
   EXPECT_GT(o.comparison.fastest_ratio, 0.9);
   EXPECT_EQ(o.rapids, "");
-  if (program->loop) {
-    EXPECT_TRUE(o.back.copies.copies) << o.back.copies.difference;
-  }
+  if (program->loop) { EXPECT_TRUE(o.back.copies.copies) << o.back.copies.difference; }
   EXPECT_NEAR(o.back.feed_minutes, program->feed_minutes, 2e-3 * program->feed_minutes);
   for (std::size_t a = 0; a < program->ranges.size(); ++a) {
     const auto& r = program->ranges[a];
@@ -97,13 +97,15 @@ TEST_P(RoundTrip, MeetsEveryRecord) {
     EXPECT_NEAR(o.back.greatest[a], r.max * scale, 1e-3) << r.letter;
   }
   for (const auto& motion : o.motions) {
-    EXPECT_LE(motion.deviation_mm, (motion.rapid ? 50 : 1) * 2e-4 * 1.2 + (motion.rapid ? 0 : words_of("linuxcnc").exact_path_mm) + 1e-8);
+    EXPECT_LE(motion.deviation_mm,
+              (motion.rapid ? 50 : 1) * 2e-4 * 1.2 + (motion.rapid ? 0 : words_of("linuxcnc").exact_path_mm) + 1e-8);
     EXPECT_GE(motion.tooth, 0);
     EXPECT_LT(motion.tooth, 6);
   }
 }
 
-// 360/7 deg does not end after three decimals: the other teeth stand off by the rounding, and the kept one answers for them.
+// 360/7 deg does not end after three decimals: the other teeth stand off by the rounding, and the kept one answers for
+// them.
 TEST(ToolMotions, RoundedIndexAnglesCountAsDeviation) {
   const machines::Machine m = with_dialect(trunnion(), "fanuc");
   const std::vector<path::ClPath> paths = {sample_path(0.3, 0)};
@@ -199,14 +201,16 @@ class PlantedFault : public testing::Test {
 };
 
 TEST_F(PlantedFault, NoneInTheOriginal) {
-  EXPECT_TRUE(clean(outcome(text_))) << outcome(text_).error << outcome(text_).comparison.message << outcome(text_).rapids;
+  EXPECT_TRUE(clean(outcome(text_))) << outcome(text_).error << outcome(text_).comparison.message
+                                     << outcome(text_).rapids;
   EXPECT_TRUE(clean(outcome(loop_text_)));
 }
 TEST_F(PlantedFault, OneWordChanged) {
-  // Two units of the last digit: seen as distance at a tight tolerance, and as a difference of the turned copies in a loop.
+  // Two units of the last digit: seen as distance at a tight tolerance, and as a difference of the turned copies in a
+  // loop.
   const auto at = find_line("X", 12);
-  const auto o = examine(with_line(at, replaced_word(line_at(at), 'X', [](double v) { return v + 2e-4; })), paths_, machine_,
-                         standing(), 5, nullptr, 6e-4);
+  const auto o = examine(with_line(at, replaced_word(line_at(at), 'X', [](double v) { return v + 2e-4; })), paths_,
+                         machine_, standing(), 5, nullptr, 6e-4);
   const auto untouched = examine(text_, paths_, machine_, standing(), 5, nullptr, 6e-4);
   ASSERT_TRUE(untouched.comparison.complete) << untouched.comparison.message;
   EXPECT_GT(o.comparison.worst_mm, untouched.comparison.worst_mm + 1e-4);
@@ -229,7 +233,8 @@ TEST_F(PlantedFault, SignOfA) {
 TEST_F(PlantedFault, SwappedRotaries) {
   std::string t = text_;
   for (std::size_t i = 0; i + 1 < t.size(); ++i)
-    if (t[i] == ' ' && (t[i + 1] == 'A' || t[i + 1] == 'C') && (std::isdigit(t[i + 2]) != 0 || t[i + 2] == '-')) t[i + 1] = t[i + 1] == 'A' ? 'C' : 'A';
+    if (t[i] == ' ' && (t[i + 1] == 'A' || t[i + 1] == 'C') && (std::isdigit(t[i + 2]) != 0 || t[i + 2] == '-'))
+      t[i + 1] = t[i + 1] == 'A' ? 'C' : 'A';
   EXPECT_FALSE(clean(outcome(t)));
 }
 TEST_F(PlantedFault, WrongSenseOfTheMachine) {  // danger 15
@@ -242,12 +247,15 @@ TEST_F(PlantedFault, WrongSenseOfTheMachine) {  // danger 15
 TEST_F(PlantedFault, ToolLongerByAQuarter) {  // danger 16: appears as 0.25 mm along the axis
   auto longer = tools();
   longer[0].length_mm += 0.25;
-  // A control that adds the true length and a program that was made for another: the gauge line does not move, the tip does.
+  // A control that adds the true length and a program that was made for another: the gauge line does not move, the tip
+  // does.
   auto control = controls::control_of(machine_, standing(), tools());
   const auto back = readback::read_back(text_, "p", *control, machine_, standing(), {.teeth = 5});
   auto other = controls::control_of(machine_, standing(), longer);
-  const auto a = readback::tool_motions(back->operations[0], back->copies, *control, machine_, standing(), 5, {1e-3, 1e-3});
-  const auto b = readback::tool_motions(back->operations[0], back->copies, *other, machine_, standing(), 5, {1e-3, 1e-3});
+  const auto a =
+      readback::tool_motions(back->operations[0], back->copies, *control, machine_, standing(), 5, {1e-3, 1e-3});
+  const auto b =
+      readback::tool_motions(back->operations[0], back->copies, *other, machine_, standing(), 5, {1e-3, 1e-3});
   ASSERT_EQ(a->size(), b->size());
   for (std::size_t i = 0; i < a->size(); ++i)
     EXPECT_NEAR(((*a)[i].tip_to - (*b)[i].tip_to).dot((*a)[i].axis_to), 0.25, 1e-9);
@@ -295,14 +303,16 @@ TEST_F(PlantedFault, SecondToothDiffers) {
   const auto t = with_line(at, replaced_word(line_at(at), 'Y', [](double v) { return v + 1e-4; }));
   const auto o = outcome(t);
   EXPECT_FALSE(o.back.copies.copies);
-  EXPECT_EQ(o.back.copies.line, 1 + static_cast<int>(std::count(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(at), '\n')));
+  EXPECT_EQ(o.back.copies.line,
+            1 + static_cast<int>(std::count(t.begin(), t.begin() + static_cast<std::ptrdiff_t>(at), '\n')));
 }
 
 // What is not in the subset is refused where it stands.
 TEST(NcReader, RefusalsNameLineAndColumn) {
   const machines::Machine m = trunnion();
   const auto control = controls::control_of(m, standing(), tools());
-  const std::string start = "G21 G17 G90 G94 G40 G49 G80 G61\nG54\n(OP 0 finishing)\nG53 G0 Z500\nT1 M6\nS100 M3\nG43 H1\n";
+  const std::string start =
+      "G21 G17 G90 G94 G40 G49 G80 G61\nG54\n(OP 0 finishing)\nG53 G0 Z500\nT1 M6\nS100 M3\nG43 H1\n";
   const auto error = [&](const std::string& text) {
     readback::NcControl c = *control;
     c.max_steps = 10000;
@@ -330,7 +340,8 @@ TEST(NcReader, RefusalsNameLineAndColumn) {
       {"G64 P0 Q0\n", "G64 P0 leaves the path without limit"},
       {"G64 P-0.001\n", "P and Q of G64 must not be negative"},
       {"G64 P0.001 Q-1\n", "P and Q of G64 must not be negative"},
-      {"G64 P0.001 Q0\nG0 A0 C0\nG0 X1 Y1\nG0 Z1\nG1 X2 F100\nG1 X1 C5\n", "p.ngc:13:7: error: G64 bounds X, Y and Z alone, this G1 turns a rotary axis: G61 or G61.1 is needed"},
+      {"G64 P0.001 Q0\nG0 A0 C0\nG0 X1 Y1\nG0 Z1\nG1 X2 F100\nG1 X1 C5\n",
+       "p.ngc:13:7: error: G64 bounds X, Y and Z alone, this G1 turns a rotary axis: G61 or G61.1 is needed"},
       {"T9 M6\n", "tool 9 is not in the tool list"},
       {"G55\n", "work offset G55 is not defined"},
       {"M2\n", "program end while the spindle turns"},
@@ -348,7 +359,9 @@ TEST(NcReader, RefusalsNameLineAndColumn) {
   unsaid.erase(unsaid.find(" G61"), 4);
   const auto r = readback::execute_nc(unsaid, "p.ngc", *control, [](const readback::ExecutedMove&) {});
   ASSERT_FALSE(r);
-  EXPECT_EQ(r.error().text(), "p.ngc:8:4: error: G1 ahead of G61, G61.1 or G64 P: how far the control leaves the path would depend on the last program");
+  EXPECT_EQ(r.error().text(),
+            "p.ngc:8:4: error: G1 ahead of G61, G61.1 or G64 P: how far the control leaves the path would depend on "
+            "the last program");
 }
 
 // Any bytes give an answer: mutations of a good program neither crash nor hang.
@@ -363,9 +376,7 @@ TEST(NcReader, SurvivesMutations) {
     const std::string t = damaged(good, random, 1 + i % 4, "GMXYZACFo#[]0123456789.-");
     const auto r = readback::read_back(t, "p", *control, m, standing(), {.teeth = 3});
     refused += r ? 0 : 1;
-    if (!r) {
-      EXPECT_FALSE(r.error().message.empty());
-    }
+    if (!r) { EXPECT_FALSE(r.error().message.empty()); }
   }
   EXPECT_GT(refused, 1000);
 }

@@ -40,7 +40,8 @@ std::string iso_subset(const std::string& fanuc) {
 
 class Rs274 : public testing::TestWithParam<std::tuple<const char*, double, double, bool>> {};
 INSTANTIATE_TEST_SUITE_P(Programs, Rs274,
-                         testing::Values(std::tuple{"linuxcnc", 0.0, 0.0, false}, std::tuple{"linuxcnc", 0.3, 0.4, false},
+                         testing::Values(std::tuple{"linuxcnc", 0.0, 0.0, false},
+                                         std::tuple{"linuxcnc", 0.3, 0.4, false},
                                          std::tuple{"linuxcnc", 0.3, 0.4, true}, std::tuple{"fanuc", 0.3, 0.0, false},
                                          std::tuple{"fanuc", 0.3, 0.2, true}));
 
@@ -61,7 +62,8 @@ TEST_P(Rs274, ExecutesTheClPathOfEveryTooth) {
   std::size_t feeds = 0;
   bool ended = false;
   int op = -1;
-  const std::regex motion("STRAIGHT_(FEED|TRAVERSE)\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)");
+  const std::regex motion(
+      "STRAIGHT_(FEED|TRAVERSE)\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)");
   for (const auto& l : out.lines) {
     std::smatch match;
     if (std::regex_search(l, match, std::regex("COMMENT\\(\"OP (\\d)"))) op = std::stoi(match[1]);
@@ -71,8 +73,9 @@ TEST_P(Rs274, ExecutesTheClPathOfEveryTooth) {
     const auto o = static_cast<std::size_t>(op);
     const double length = tools()[o].length_mm;
     const Vec3 origin = standing().work_offset_at_mm;
-    const auto pose = trunnion_forward(kTrunnion, std::stod(match[2]) + origin.x(), std::stod(match[3]) + origin.y(),
-                                       std::stod(match[4]) + origin.z() + length, std::stod(match[5]), std::stod(match[7]), length);
+    const auto pose =
+        trunnion_forward(kTrunnion, std::stod(match[2]) + origin.x(), std::stod(match[3]) + origin.y(),
+                         std::stod(match[4]) + origin.z() + length, std::stod(match[5]), std::stod(match[7]), length);
     const Vec3 tip = pose.tip - standing().origin_mm;
     const auto& records = paths[o].records;
     while (records[next[o] % records.size()].kind == path::MoveKind::rapid) ++next[o];
@@ -103,9 +106,11 @@ TEST_P(Rs274, AgreesWithOurReaderMoveByMove) {
   ASSERT_EQ(out.exit, 0) << out.messages;
   const auto control = controls::control_of(m, standing(), tools());
   std::vector<readback::ExecutedMove> ours;
-  const auto s = readback::execute_nc(text->text, "p", *control, [&](const readback::ExecutedMove& e) { ours.push_back(e); });
+  const auto s =
+      readback::execute_nc(text->text, "p", *control, [&](const readback::ExecutedMove& e) { ours.push_back(e); });
   ASSERT_TRUE(s) << s.error().text();
-  const std::regex motion("STRAIGHT_(FEED|TRAVERSE)\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)");
+  const std::regex motion(
+      "STRAIGHT_(FEED|TRAVERSE)\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)");
   std::size_t i = 0;
   for (const auto& l : out.lines) {
     std::smatch match;
@@ -123,7 +128,8 @@ TEST_P(Rs274, AgreesWithOurReaderMoveByMove) {
   EXPECT_EQ(i, ours.size());
 }
 
-// With TCP the words are the tip. LinuxCNC's interpreter knows no remaps: without the two codes it reads the same numbers.
+// With TCP the words are the tip. LinuxCNC's interpreter knows no remaps: without the two codes it reads the same
+// numbers.
 TEST(Rs274Tcp, AgreesAboutTipWordsAndFeeds) {
   machines::Machine m = trunnion();
   m.tcp = machines::TcpMode::angles;
@@ -135,8 +141,10 @@ TEST(Rs274Tcp, AgreesAboutTipWordsAndFeeds) {
   ASSERT_EQ(out.exit, 0) << out.messages;
   const auto control = controls::control_of(m, standing(), tools());
   std::vector<readback::ExecutedMove> ours;
-  ASSERT_TRUE(readback::execute_nc(text->text, "p", *control, [&](const readback::ExecutedMove& e) { ours.push_back(e); }));
-  const std::regex motion("STRAIGHT_(FEED|TRAVERSE)\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)");
+  ASSERT_TRUE(
+      readback::execute_nc(text->text, "p", *control, [&](const readback::ExecutedMove& e) { ours.push_back(e); }));
+  const std::regex motion(
+      "STRAIGHT_(FEED|TRAVERSE)\\(([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+), ([-0-9.]+)\\)");
   std::size_t i = 0, tips = 0;
   for (const auto& l : out.lines) {
     std::smatch match;
@@ -146,7 +154,8 @@ TEST(Rs274Tcp, AgreesAboutTipWordsAndFeeds) {
     EXPECT_EQ(e.rapid, match[1] == "TRAVERSE");
     if (!e.tcp) continue;
     ++tips;
-    for (int k = 0; k < 3; ++k) EXPECT_NEAR(e.tip[k] - standing().work_offset_at_mm[k], std::stod(match[static_cast<std::size_t>(2 + k)]), 6e-5);
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(e.tip[k] - standing().work_offset_at_mm[k], std::stod(match[static_cast<std::size_t>(2 + k)]), 6e-5);
     EXPECT_NEAR(e.joints[4], std::stod(match[5]), 6e-5);
     EXPECT_NEAR(e.joints[3], std::stod(match[7]), 6e-5);
   }
@@ -165,7 +174,9 @@ TEST(Rs274Golden, ReadsTheFiles) {
     const bool percent = program.substr(0, 1) == "%";
     const auto out = interpret(percent ? iso_subset(program) : program, "golden");
     EXPECT_EQ(out.exit, 0) << file << ": " << out.messages;
-    EXPECT_TRUE(std::any_of(out.lines.begin(), out.lines.end(), [](const std::string& l) { return l.find("PROGRAM_END") != std::string::npos; })) << file;
+    EXPECT_TRUE(std::any_of(out.lines.begin(), out.lines.end(), [](const std::string& l) {
+      return l.find("PROGRAM_END") != std::string::npos;
+    })) << file;
   }
 }
 

@@ -28,8 +28,8 @@ struct TcpOutcome {
   readback::ClComparison comparison;
 };
 
-Result<TcpOutcome> examine(const std::string& text, const std::vector<path::ClPath>& paths, const machines::Machine& m, const toothpath::joints::Setup& setup,
-                           int teeth, double tolerance) {
+Result<TcpOutcome> examine(const std::string& text, const std::vector<path::ClPath>& paths, const machines::Machine& m,
+                           const toothpath::joints::Setup& setup, int teeth, double tolerance) {
   TcpOutcome out;
   const auto control = controls::control_of(m, setup, tools());
   if (!control) return control.error();
@@ -60,7 +60,8 @@ INSTANTIATE_TEST_SUITE_P(Cases, TcpRoundTrip,
                                          TcpCase{"linuxcnc", 0.0, 0.0, true}, TcpCase{"fanuc", 0.3, 0, false},
                                          TcpCase{"fanuc", 0.3, 0.6, false}, TcpCase{"fanuc", 0.25, 0.5, true}));
 
-// Every record is met to the rounding of the words, tip blocks leave their chord by nothing but the blending, times agree.
+// Every record is met to the rounding of the words, tip blocks leave their chord by nothing but the blending, times
+// agree.
 TEST_P(TcpRoundTrip, MeetsEveryRecord) {
   const TcpCase v = GetParam();
   const machines::Machine m = tcp_machine(v.dialect);
@@ -82,7 +83,8 @@ TEST_P(TcpRoundTrip, MeetsEveryRecord) {
   for (const auto& motion : o->motions)
     if (!motion.rapid) {
       EXPECT_LE(motion.deviation_mm, words_of("linuxcnc").exact_path_mm + 1e-8);
-      const bool cuts = (motion.tip_to - motion.tip_from).norm() > 1e-6;  // a turn above the part is cut by the bound of its whole
+      const bool cuts =
+          (motion.tip_to - motion.tip_from).norm() > 1e-6;  // a turn above the part is cut by the bound of its whole
       EXPECT_LE(motion.axis_deviation, cuts ? 1.05e-4 : 1e-3);
     }
   for (std::size_t a = 0; a < program->ranges.size(); ++a) {
@@ -94,7 +96,8 @@ TEST_P(TcpRoundTrip, MeetsEveryRecord) {
   EXPECT_NEAR(o->back.feed_minutes / program->feed_minutes, 1, std::string(v.dialect) == "fanuc" ? 0.2 : 2e-3);
 }
 
-// The tool as the machine moves it under TCP, by kinematics that share nothing with the reader: tip linear, rotaries linear.
+// The tool as the machine moves it under TCP, by kinematics that share nothing with the reader: tip linear, rotaries
+// linear.
 TEST(TcpMotions, BoundHoldsForTheStraightTip) {
   const machines::Machine m = tcp_machine("linuxcnc");
   const auto control = controls::control_of(m, standing(), tools());
@@ -107,8 +110,10 @@ TEST(TcpMotions, BoundHoldsForTheStraightTip) {
     a.tool = b.tool = 1;
     a.joints = {100 * u(random), 100 * u(random), 250 + 50 * u(random), 360 * u(random), 50 * u(random)};
     b.tcp = true;
-    b.tip = m.chain.forward({Vec3(a.joints[0], a.joints[1], a.joints[2]), {radians(a.joints[3]), radians(a.joints[4])}}, 95).tip_mm +
-            Vec3(u(random), u(random), u(random));
+    b.tip =
+        m.chain.forward({Vec3(a.joints[0], a.joints[1], a.joints[2]), {radians(a.joints[3]), radians(a.joints[4])}}, 95)
+            .tip_mm +
+        Vec3(u(random), u(random), u(random));
     const double r0 = a.joints[3] + 6 * u(random), r1 = a.joints[4] + 6 * u(random);
     const Vec3 x = m.chain.linear_for(b.tip, {radians(r0), radians(r1)}, 95).linear_mm;
     b.joints = {x.x(), x.y(), x.z(), r0, r1};
@@ -122,7 +127,8 @@ TEST(TcpMotions, BoundHoldsForTheStraightTip) {
       for (const double t : {0.0, 0.3, 0.5, 0.8, 1.0}) {
         const double s = (i + t) / n;
         // Axis of xyzac-trt from the angles alone.
-        const double C = radians(a.joints[3] + s * (r0 - a.joints[3])), A = radians(a.joints[4] + s * (r1 - a.joints[4]));
+        const double C = radians(a.joints[3] + s * (r0 - a.joints[3])),
+                     A = radians(a.joints[4] + s * (r1 - a.joints[4]));
         const Vec3 axis(std::sin(C) * std::sin(A), std::cos(C) * std::sin(A), std::cos(A));
         const Vec3 blend = ((1 - t) * mo.axis_from + t * mo.axis_to).normalized();
         ASSERT_LE(std::atan2(blend.cross(axis).norm(), blend.dot(axis)), mo.axis_deviation + 1e-9);
@@ -130,7 +136,8 @@ TEST(TcpMotions, BoundHoldsForTheStraightTip) {
     }
     const Vec3 start = motions->front().tip_from, end = motions->back().tip_to;
     for (int i = 0; i < n; ++i)
-      ASSERT_LT(((*motions)[static_cast<std::size_t>(i)].tip_to - (start + (end - start) * ((i + 1.0) / n))).norm(), 1e-9);
+      ASSERT_LT(((*motions)[static_cast<std::size_t>(i)].tip_to - (start + (end - start) * ((i + 1.0) / n))).norm(),
+                1e-9);
   }
 }
 
@@ -194,11 +201,13 @@ TEST(TcpTravel, InsideABlockIsChecked) {
     for (std::size_t i = 1; i < tooth.blocks.size(); ++i) {
       const joints::AxisBlock &a = tooth.blocks[i - 1], &b = tooth.blocks[i];
       if (b.kind != joints::BlockKind::turn) continue;
-      const Vec3 tip(static_cast<double>(b.words[0]) / 1e3 + 3, static_cast<double>(b.words[1]) / 1e3 - 2, static_cast<double>(b.words[2]) / 1e3);
+      const Vec3 tip(static_cast<double>(b.words[0]) / 1e3 + 3, static_cast<double>(b.words[1]) / 1e3 - 2,
+                     static_cast<double>(b.words[2]) / 1e3);
       for (int s = 0; s <= 100; ++s) {
         std::array<double, 2> r{};
         for (std::size_t k = 0; k < 2; ++k)
-          r[k] = radians((static_cast<double>(a.words[3 + k]) * (100 - s) + static_cast<double>(b.words[3 + k]) * s) / 1e5);
+          r[k] = radians((static_cast<double>(a.words[3 + k]) * (100 - s) + static_cast<double>(b.words[3 + k]) * s) /
+                         1e5);
         const double y = m.chain.linear_for(tip, r, 95).linear_mm.y();
         least = std::min(least, y);
         if (s == 0 || s == 100) ends_least = std::min(ends_least, y);
@@ -213,18 +222,28 @@ TEST(TcpReader, Refusals) {
   const auto refusal = [](const std::string& dialect, const std::string& body) {
     const machines::Machine m = tcp_machine(dialect);
     const auto control = controls::control_of(m, standing(), tools());
-    const std::string start = dialect == "fanuc" ? "%\nO1 (X)\nG21 G17 G90 G94 G40 G80 G69\nG54\n(OP 0 finishing)\nG0 G49 G53 Z500.\nT1 M6\nS100 M3\n"
-                                                 : "G21 G17 G90 G94 G40 G49 G80 G61\nG54\n(OP 0 finishing)\nG53 G0 Z500\nT1 M6\nS100 M3\nG43 H1\n";
-    const auto r = readback::execute_nc(start + body + (dialect == "fanuc" ? "M30\n%\n" : "M2\n"), "p", *control, [](const readback::ExecutedMove&) {});
+    const std::string start =
+        dialect == "fanuc"
+            ? "%\nO1 (X)\nG21 G17 G90 G94 G40 G80 G69\nG54\n(OP 0 finishing)\nG0 G49 G53 Z500.\nT1 M6\nS100 M3\n"
+            : "G21 G17 G90 G94 G40 G49 G80 G61\nG54\n(OP 0 finishing)\nG53 G0 Z500\nT1 M6\nS100 M3\nG43 H1\n";
+    const auto r = readback::execute_nc(start + body + (dialect == "fanuc" ? "M30\n%\n" : "M2\n"), "p", *control,
+                                        [](const readback::ExecutedMove&) {});
     return r ? std::string("none") : r.error().text();
   };
-  EXPECT_EQ(refusal("fanuc", "G0 C0. A0.\nG0 X0. Y0.\nG0 G43.4 H1 Z300.\nG1 A10. F100.\nG0 X1. Y1. Z301.\nG0 G49 G53 Z500.\nM5\n"), "none");
+  EXPECT_EQ(
+      refusal("fanuc",
+              "G0 C0. A0.\nG0 X0. Y0.\nG0 G43.4 H1 Z300.\nG1 A10. F100.\nG0 X1. Y1. Z301.\nG0 G49 G53 Z500.\nM5\n"),
+      "none");
   EXPECT_NE(refusal("fanuc", "G0 C10. A0.\nG0 X0. Y0.\nG0 G43.4 H1 Z300.\n").find("away from zero"), std::string::npos);
   EXPECT_NE(refusal("fanuc", "G0 C0. A0.\nG0 X0. Y0.\nG0 G43.4 H1 Z300. X1.\n").find("Z alone"), std::string::npos);
-  EXPECT_NE(refusal("fanuc", "G0 C0. A0.\nG0 X0. Y0.\nG0 G43.4 H1 Z300.\nG49\n").find("must stand with G53"), std::string::npos);
-  EXPECT_NE(refusal("fanuc", "G0 C0. A0.\nG0 X0. Y0.\nG0 G43.4 H1 Z300.\nM5\n").find("end with TCP on"), std::string::npos);
+  EXPECT_NE(refusal("fanuc", "G0 C0. A0.\nG0 X0. Y0.\nG0 G43.4 H1 Z300.\nG49\n").find("must stand with G53"),
+            std::string::npos);
+  EXPECT_NE(refusal("fanuc", "G0 C0. A0.\nG0 X0. Y0.\nG0 G43.4 H1 Z300.\nM5\n").find("end with TCP on"),
+            std::string::npos);
   EXPECT_NE(refusal("linuxcnc", "M428\n").find("did not set"), std::string::npos);
-  EXPECT_NE(refusal("linuxcnc", "G0 C0 A0\nG0 X0 Y0\nG0 Z300\nM428\nG53 G0 Z500\n").find("machine coordinates with TCP on"), std::string::npos);
+  EXPECT_NE(
+      refusal("linuxcnc", "G0 C0 A0\nG0 X0 Y0\nG0 Z300\nM428\nG53 G0 Z500\n").find("machine coordinates with TCP on"),
+      std::string::npos);
   EXPECT_NE(refusal("linuxcnc", "M430\n").find("M430 is not in the subset"), std::string::npos);
   machines::Machine without = trunnion();
   without.post.tcp_on = {"M428"};

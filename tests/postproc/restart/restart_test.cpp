@@ -1,5 +1,5 @@
-// Restart: a program that begins at one tooth makes the last moves of the whole one, and so does the whole text when it is taken up at
-// each place of the menu with a control that knows nothing but the start of the program.
+// Restart: a program that begins at one tooth makes the last moves of the whole one, and so does the whole text when it
+// is taken up at each place of the menu with a control that knows nothing but the start of the program.
 #include <gtest/gtest.h>
 
 #include <regex>
@@ -27,7 +27,8 @@ std::vector<std::string> lines_in(const std::string& text) {
 /// Lines as a text; Heidenhain's numbers count up again.
 std::string joined(const std::vector<std::string>& lines, bool numbered) {
   std::string out;
-  for (std::size_t i = 0; i < lines.size(); ++i) out += numbered ? std::to_string(i) + lines[i].substr(lines[i].find(' ')) + "\n" : lines[i] + "\n";
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    out += numbered ? std::to_string(i) + lines[i].substr(lines[i].find(' ')) + "\n" : lines[i] + "\n";
   return out;
 }
 
@@ -51,7 +52,8 @@ class Restart : public testing::TestWithParam<RestartCase> {
   void SetUp() override {
     const PostForm& f = GetParam().form;
     machine = machine_of(f);
-    const auto built = program_of(f, {sample_path(0.3, f.swing, 3), sample_path(0.3, f.swing, 2, 1)}, kTeeth, GetParam().stride);
+    const auto built =
+        program_of(f, {sample_path(0.3, f.swing, 3), sample_path(0.3, f.swing, 2, 1)}, kTeeth, GetParam().stride);
     ASSERT_TRUE(built) << built.error().message;
     program = *built;
     const auto text = text_of(f, program);
@@ -62,7 +64,8 @@ class Restart : public testing::TestWithParam<RestartCase> {
     control = *made;
   }
   Result<restart::RestartProof> prove(const std::string& text, int operation, int place) const {
-    return restart::prove_restart(whole, text, "p", control, {operation, joints::tooth_of_place(place, GetParam().stride, kTeeth), place, kTeeth});
+    return restart::prove_restart(whole, text, "p", control,
+                                  {operation, joints::tooth_of_place(place, GetParam().stride, kTeeth), place, kTeeth});
   }
   machines::Machine machine;
   joints::AxisProgram program;
@@ -80,7 +83,8 @@ TEST_P(Restart, WrittenProgramMakesTheLastMoves) {
       ASSERT_TRUE(part);
       EXPECT_LE(part->feed_minutes, program.feed_minutes + 1e-12);
       const double teeth_left = place == 0 ? kTeeth : kTeeth - place;
-      EXPECT_NEAR(part->operations[0].feed_minutes, program.operations[static_cast<std::size_t>(op)].feed_minutes * teeth_left / kTeeth, 1e-4);
+      EXPECT_NEAR(part->operations[0].feed_minutes,
+                  program.operations[static_cast<std::size_t>(op)].feed_minutes * teeth_left / kTeeth, 1e-4);
       const auto text = text_of(GetParam().form, *part);
       ASSERT_TRUE(text) << text.error().message;
       EXPECT_NE(text->text.find(fmt::format("RESTART AT OPERATION {} TOOTH {}", op, tooth)), std::string::npos);
@@ -98,7 +102,8 @@ TEST_P(Restart, WrittenProgramMakesTheLastMoves) {
       // The same line says the same thing, or is nowhere.
       const auto whole_lines = lines_in(whole), part_lines = lines_in(text->text);
       for (const auto& [from, to] : proof->line_of) {
-        std::string a = whole_lines[static_cast<std::size_t>(from) - 1], b = part_lines[static_cast<std::size_t>(to) - 1];
+        std::string a = whole_lines[static_cast<std::size_t>(from) - 1],
+                    b = part_lines[static_cast<std::size_t>(to) - 1];
         if (numbered) {
           a = a.substr(a.find(' '));
           b = b.substr(b.find(' '));
@@ -142,7 +147,9 @@ TEST_P(Restart, TimesAndRangesAreThoseOfThePart) {
     EXPECT_NEAR(part->accelerated.feed + part->accelerated.rapid, shares(own), 1e-12);
     const auto text = text_of(GetParam().form, *part);
     ASSERT_TRUE(text);
-    EXPECT_NE(text->text.find(fmt::format("RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING", shares(own), own.accelerated.feed)), std::string::npos);
+    EXPECT_NE(text->text.find(
+                  fmt::format("RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING", shares(own), own.accelerated.feed)),
+              std::string::npos);
     const auto read = readback::read_back(text->text, "p", control, machine, standing(), {.teeth = kTeeth});
     ASSERT_TRUE(read) << read.error().text();
     EXPECT_GE(read->feed_minutes, own.feed_minutes * (1 - 5e-3));
@@ -173,7 +180,8 @@ TEST_P(Restart, EveryPlaceOfTheMenuGivesTheSameMotion) {
     EXPECT_EQ(op.at.number, numbered ? op.at.line - 1 : -1);
     ASSERT_EQ(op.teeth.size(), static_cast<std::size_t>(kTeeth));
     const bool loop = op.first_tooth.line != 0;
-    EXPECT_EQ(loop, program.loop && std::string(GetParam().form.dialect) != "fanuc" && std::string(GetParam().form.dialect) != "mitsubishi_m80");
+    EXPECT_EQ(loop, program.loop && std::string(GetParam().form.dialect) != "fanuc" &&
+                        std::string(GetParam().form.dialect) != "mitsubishi_m80");
     for (const restart::RestartTooth& t : op.teeth) {
       std::vector<std::string> part(lines.begin(), lines.begin() + menu->start_end.line);
       auto rest = lines;
@@ -181,9 +189,7 @@ TEST_P(Restart, EveryPlaceOfTheMenuGivesTheSameMotion) {
         std::string& first = rest[static_cast<std::size_t>(op.first_tooth.line) - 1];
         const std::string before = first;
         first = std::regex_replace(first, std::regex("(=|= )0( |$)"), fmt::format("$01{}$2", t.place));
-        if (t.place > 0) {
-          ASSERT_NE(first, before);
-        }
+        if (t.place > 0) { ASSERT_NE(first, before); }
         part.insert(part.end(), rest.begin() + op.at.line - 1, rest.end());
       } else {
         part.insert(part.end(), rest.begin() + op.at.line - 1, rest.begin() + op.opening_end.line);
@@ -191,8 +197,8 @@ TEST_P(Restart, EveryPlaceOfTheMenuGivesTheSameMotion) {
       }
       const auto proof = prove(joined(part, numbered), op.operation, t.place);
       ASSERT_TRUE(proof) << proof.error().text() << " tooth " << t.tooth;
-      EXPECT_TRUE(proof->same) << "op " << k << " tooth " << t.tooth << ": " << proof->difference << " line " << proof->line << ", whole "
-                               << proof->whole_line;
+      EXPECT_TRUE(proof->same) << "op " << k << " tooth " << t.tooth << ": " << proof->difference << " line "
+                               << proof->line << ", whole " << proof->whole_line;
     }
   }
 }

@@ -9,8 +9,8 @@
 namespace toothpath::test {
 
 /// @param motions read back with every tooth kept, tolerances as compare_with_cl takes them
-inline readback::ClComparison compare_tooth(const std::vector<path::ToolMotion>& motions, int tooth, int teeth, const path::ClPath& path, double tolerance_mm,
-                                  double axis_tolerance_rad) {
+inline readback::ClComparison compare_tooth(const std::vector<path::ToolMotion>& motions, int tooth, int teeth,
+                                            const path::ClPath& path, double tolerance_mm, double axis_tolerance_rad) {
   path::ClPath turned = path;
   const Mat3 turn = Eigen::AngleAxisd(2 * kPi * tooth / teeth, Vec3::UnitZ()).toRotationMatrix();
   for (auto& r : turned.records) {

@@ -1,6 +1,7 @@
-// The dry-run program's poses: the tip stands still on the machine that was described, and does not on a machine that differs.
-#include "postproc/controls/of_machine.h"
+// The dry-run program's poses: the tip stands still on the machine that was described, and does not on a machine that
+// differs.
 #include "postproc/self_test/self_test.h"
+#include "postproc/controls/of_machine.h"
 
 #include <gtest/gtest.h>
 
@@ -10,12 +11,16 @@
 namespace toothpath {
 namespace {
 
-const char* const kMachines[] = {"t600s.toml",        "xyzac_large.toml", "xyzac_trt.toml",  "xyzbc_trt.toml",    "head_table_bc.toml",
-                                 "head_head_ca.toml", "fanuc_ac.toml",    "siemens_ac.toml", "heidenhain_ac.toml"};
+const char* const kMachines[] = {"t600s.toml",     "xyzac_large.toml",   "xyzac_trt.toml",
+                                 "xyzbc_trt.toml", "head_table_bc.toml", "head_head_ca.toml",
+                                 "fanuc_ac.toml",  "siemens_ac.toml",    "heidenhain_ac.toml"};
 
-machines::Machine shipped(const char* name) { return *machines::read_machine_file(machines::find_machine_file(name, ".").value()).machine; }
+machines::Machine shipped(const char* name) {
+  return *machines::read_machine_file(machines::find_machine_file(name, ".").value()).machine;
+}
 
-/// Greatest distance of the tip from the point while another machine executes the moves, all joints linear in every block.
+/// Greatest distance of the tip from the point while another machine executes the moves, all joints linear in every
+/// block.
 double worst_reading(const self_test::SelfTest& test, const machines::KinematicChain& executing) {
   double worst = 0;
   for (std::size_t i = 1; i < test.moves.size(); ++i) {
@@ -66,9 +71,7 @@ TEST_P(SelfTestOf, WrongMachineIsSeen) {
   }
   self_test::SelfTest longer = *test;
   longer.tool_length_mm += 0.5;
-  if (!m.chain.head.empty()) {
-    EXPECT_GT(worst_reading(longer, m.chain), 0.2);
-  }
+  if (!m.chain.head.empty()) { EXPECT_GT(worst_reading(longer, m.chain), 0.2); }
 }
 
 /// The program's text, as `machine test` writes it.
@@ -77,7 +80,8 @@ std::string text_of(const self_test::SelfTest& test, const machines::Machine& m)
   EXPECT_TRUE(dialect) << dialect.error().message;
   text::NcHeader header;
   header.job_name = "self test";
-  const auto text = text::write_nc(self_test::self_test_program(test, m, *dialect), self_test::in_air(*dialect), header);
+  const auto text =
+      text::write_nc(self_test::self_test_program(test, m, *dialect), self_test::in_air(*dialect), header);
   EXPECT_TRUE(text) << text.error().message;
   return text ? text->text : std::string();
 }
@@ -96,14 +100,13 @@ TEST_P(SelfTestOf, TextIsReadBackAndNeverStartsTheSpindle) {
   // A machine whose second rotary turns the other way must not pass.
   machines::Machine wrong = m;
   (wrong.chain.head.empty() ? wrong.chain.table.back() : wrong.chain.head.back()).sign *= -1;
-  if (m.tcp == machines::TcpMode::none) {
-    EXPECT_FALSE(self_test::prove_self_test(text, "t", *test, wrong));
-  }
+  if (m.tcp == machines::TcpMode::none) { EXPECT_FALSE(self_test::prove_self_test(text, "t", *test, wrong)); }
 }
 
 TEST(SelfTest, RefusesWhatItCannotTest) {
   machines::Machine m = shipped("t600s.toml");
-  EXPECT_NE(self_test::plan_self_test(m, {.tool_length_mm = 0}).error().message.find("tool length 0 mm"), std::string::npos);
+  EXPECT_NE(self_test::plan_self_test(m, {.tool_length_mm = 0}).error().message.find("tool length 0 mm"),
+            std::string::npos);
   EXPECT_NE(self_test::plan_self_test(m, {.tool_length_mm = 900}).error().message.find("Z = "), std::string::npos);
   m.chain.table.clear();
   EXPECT_NE(self_test::plan_self_test(m).error().message.find("no rotary axis"), std::string::npos);

@@ -19,12 +19,16 @@ inline machines::ShaperMachine shaper_machine(const std::string& sign_a = "1", c
       "schema = 1\nname = \"test shaper\"\nkind = \"gear_shaper\"\ndialect = \"linuxcnc\"\nassumed = [\"stroke\"]\n"
       "[stroke]\nsteps = [125, 179, 253, 359]\nmax_length = 125.0\nrelief = 0.5\n"
       "[index]\nconstant = [12, 5]\n[feed]\nconstant = [750, 1]\n"
-      "[gears]\nteeth = [20, 24, 25, 30, 32, 36, 40, 44, 45, 47, 50, 55, 60, 65, 70, 75, 80, 89, 97]\nmesh_margin = 15\n"
+      "[gears]\nteeth = [20, 24, 25, 30, 32, 36, 40, 44, 45, 47, 50, 55, 60, 65, 70, 75, 80, 89, 97]\nmesh_margin = "
+      "15\n"
       "[axes.X]\nmin = -5.0\nmax = 200.0\nmax_speed = 20000\n"
       "[axes.Y]\nmin = -100.0\nmax = 100.0\nmax_speed = 5000\n"
       "[axes.Z]\nmin = -500.0\nmax = 500.0\nmax_speed = 120000\n"
-      "[axes.A]\nsign = " + sign_a + "\nmin = -360000.0\nmax = 360000.0\nmax_speed = 7200\n"
-      "[axes.C]\nsign = " + sign_c + "\nmin = -36000.0\nmax = 36000.0\nmax_speed = 7200\n";
+      "[axes.A]\nsign = " +
+      sign_a +
+      "\nmin = -360000.0\nmax = 360000.0\nmax_speed = 7200\n"
+      "[axes.C]\nsign = " +
+      sign_c + "\nmin = -36000.0\nmax = 36000.0\nmax_speed = 7200\n";
   auto reading = shaper::read_shaper_machine_of_text(text, "test_shaper.toml");
   EXPECT_TRUE(reading.machine) << to_text(reading.errors);
   return *reading.machine;
@@ -54,7 +58,8 @@ inline shaper::ShaperSetup shaper_setup(const shaper::ShaperWork& work, const ma
 }
 
 /// The first refusal with this key; fails the test if there is none.
-inline std::string refusal(const shaper::ShaperWork& work, const machines::ShaperMachine& machine, const std::string& key) {
+inline std::string refusal(const shaper::ShaperWork& work, const machines::ShaperMachine& machine,
+                           const std::string& key) {
   const auto planned = shaper::plan_shaper_setup(work, machine);
   if (planned.has_value()) {
     ADD_FAILURE() << "accepted, expected a refusal of " << key;

@@ -81,7 +81,8 @@ max_speed = 7200
 
 class ShaperCommand : public ::testing::Test {
  protected:
-  commands::CommandOutcome run(const std::string& job, const std::string& machine = kMachine, const std::string& out = "out") {
+  commands::CommandOutcome run(const std::string& job, const std::string& machine = kMachine,
+                               const std::string& out = "out") {
     write_file(folder_ / "job.toml", job);
     write_file(folder_ / "shaper.toml", machine);
     commands::JobRequest request;
@@ -92,7 +93,9 @@ class ShaperCommand : public ::testing::Test {
   }
   [[nodiscard]] std::size_t files(const std::string& out = "out") const {
     const fs::path path = folder_ / out;
-    return fs::exists(path) ? static_cast<std::size_t>(std::distance(fs::directory_iterator(path), fs::directory_iterator())) : 0;
+    return fs::exists(path)
+               ? static_cast<std::size_t>(std::distance(fs::directory_iterator(path), fs::directory_iterator()))
+               : 0;
   }
   TestDir folder_;
 };
@@ -111,8 +114,8 @@ TEST_F(ShaperCommand, WritesEveryFileAndTheSameBytesAgain) {
   const auto report = nlohmann::json::parse(outcome.report_json);
   ASSERT_TRUE(report.contains("stages"));
   for (const auto& [stage, seconds] : report["stages"].items())
-    EXPECT_TRUE(stage == "job" || stage == "gear" || stage == "machine" || stage == "shaper set-up" || stage == "stroke simulation" ||
-                stage == "shaper program")
+    EXPECT_TRUE(stage == "job" || stage == "gear" || stage == "machine" || stage == "shaper set-up" ||
+                stage == "stroke simulation" || stage == "shaper program")
         << stage;
 }
 
@@ -142,12 +145,14 @@ TEST_F(ShaperCommand, RefusalsHaveAPlaceAndChangeNoFile) {
     EXPECT_EQ(files(), 5u) << c.by;
     EXPECT_EQ(file_text(fs::path(folder_ / "out") / "shaper_program.ngc"), earlier) << c.by;
     bool found = false;
-    for (const auto& e : outcome.errors) found = found || (e.message.find(c.message) != std::string::npos && e.position.line == c.line);
+    for (const auto& e : outcome.errors)
+      found = found || (e.message.find(c.message) != std::string::npos && e.position.line == c.line);
     EXPECT_TRUE(found) << c.by << ":\n" << to_text(outcome.errors);
   }
   const auto narrow = run(kJob, replaced(kMachine, "max = 100.0", "max = 10.0"));
   EXPECT_EQ(narrow.exit_code, app::ExitCode::refused);
-  EXPECT_NE(to_text(narrow.errors).find("job.toml:12:10: error: axis Y needs 15.0000"), std::string::npos) << to_text(narrow.errors);
+  EXPECT_NE(to_text(narrow.errors).find("job.toml:12:10: error: axis Y needs 15.0000"), std::string::npos)
+      << to_text(narrow.errors);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// Programs for electronic gearboxes, read back: the coupling as an equality of whole numbers, strokes, infeed, turns, order; planted faults.
+// Programs for electronic gearboxes, read back: the coupling as an equality of whole numbers, strokes, infeed, turns,
+// order; planted faults.
 #include <algorithm>
 #include <functional>
 #include <numeric>
@@ -18,7 +19,8 @@ machines::ShaperMachine installed(const std::string& dialect) {
   return *reading.machine;
 }
 shaper::GearboxWords words_of(const machines::ShaperMachine& m) {
-  return {m.gearbox->cutter_axis, m.gearbox->work_axis, m.gearbox->relief_on, m.gearbox->relief_off, m.gearbox->pulses_per_turn};
+  return {m.gearbox->cutter_axis, m.gearbox->work_axis, m.gearbox->relief_on, m.gearbox->relief_off,
+          m.gearbox->pulses_per_turn};
 }
 
 Status accepted(const std::string& dialect, int cutter_teeth, int work_teeth) {
@@ -32,7 +34,8 @@ TEST_P(Gearbox, MachineFileIsAllAssumed) {
   const auto m = installed(GetParam());
   EXPECT_EQ(m.dialect, GetParam());
   EXPECT_TRUE(m.assumed);
-  for (const char* key : {"stroke", "gearbox", "axes"}) EXPECT_NE(std::find(m.assumed_keys.begin(), m.assumed_keys.end(), key), m.assumed_keys.end());
+  for (const char* key : {"stroke", "gearbox", "axes"})
+    EXPECT_NE(std::find(m.assumed_keys.begin(), m.assumed_keys.end(), key), m.assumed_keys.end());
 }
 
 TEST_P(Gearbox, ProgramIsProvenByItsReader) {
@@ -55,7 +58,8 @@ TEST_P(Gearbox, ProgramIsProvenByItsReader) {
 }
 
 TEST_P(Gearbox, OtherJobsSensesAndRatios) {
-  for (const auto& [cutter, work] : {std::pair{25, 88}, std::pair{20, 88}, std::pair{21, 84}, std::pair{23, 97}, std::pair{30, 100}})
+  for (const auto& [cutter, work] :
+       {std::pair{25, 88}, std::pair{20, 88}, std::pair{21, 84}, std::pair{23, 97}, std::pair{30, 100}})
     for (const int sense : {1, -1})
       for (const double E : {15.0, -7.1234}) {
         auto w = shaper_work();
@@ -69,7 +73,9 @@ TEST_P(Gearbox, OtherJobsSensesAndRatios) {
         const auto setup = shaper_setup(w, machine);
         EXPECT_EQ(setup.sense, sense);
         const auto text = shaper::shaper_program(setup);
-        EXPECT_EQ(joined(shaper::gearbox_program_faults(text, setup)), "") << cutter << "/" << work << " " << sense << "\n" << text;
+        EXPECT_EQ(joined(shaper::gearbox_program_faults(text, setup)), "")
+            << cutter << "/" << work << " " << sense << "\n"
+            << text;
         const auto r = shaper::shaper_control(machine).read(text, words_of(machine));
         EXPECT_EQ(r.ratio->work_turns * work, sense * r.ratio->cutter_turns * cutter);
         EXPECT_EQ(std::gcd(r.ratio->work_turns, r.ratio->cutter_turns), 1);
@@ -83,7 +89,8 @@ TEST_P(Gearbox, OtherJobsSensesAndRatios) {
 TEST(FanucGearbox, TAndLWhereTheyFitElsePulses) {
   const auto machine = installed("fanuc");
   auto w = shaper_work();
-  EXPECT_NE(shaper::shaper_program(shaper_setup(w, machine)).find("G81.5 P31680000 C9000.\n"), std::string::npos);  // 88 turns of 360000, 25 turns
+  EXPECT_NE(shaper::shaper_program(shaper_setup(w, machine)).find("G81.5 P31680000 C9000.\n"),
+            std::string::npos);  // 88 turns of 360000, 25 turns
   w.gear.shaper_teeth = 20;
   w.gear.zones = {{0, 131, 145}};
   EXPECT_NE(shaper::shaper_program(shaper_setup(w, machine)).find("G81.5 T22 C0. L5\n"), std::string::npos);
@@ -93,9 +100,11 @@ TEST(FanucGearbox, RatiosBeyondItsWordsAreRefusedWithTheNumbers) {
   auto machine = installed("fanuc");
   machine.gearbox->pulses_per_turn = 36000000;
   EXPECT_EQ(refusal(shaper_work(), machine, "gear.shaper_teeth"),
-            "the ratio 25/88 needs P = 3168000000 pulses for 88 turns of the cutter axis, G81.5 of CNC gear shaper, Fanuc 31i takes 999999999");
+            "the ratio 25/88 needs P = 3168000000 pulses for 88 turns of the cutter axis, G81.5 of CNC gear shaper, "
+            "Fanuc 31i takes 999999999");
   EXPECT_EQ(accepted("fanuc", 281, 997).error().message,
-            "the ratio 281/997 needs C = 101160 deg for 281 turns of the work, G81.5 of CNC gear shaper, Fanuc 31i takes 99999");
+            "the ratio 281/997 needs C = 101160 deg for 281 turns of the work, G81.5 of CNC gear shaper, Fanuc 31i "
+            "takes 99999");
   EXPECT_FALSE(shaper::shaper_control(installed("siemens")).accepts);  // any ratio
 }
 
@@ -165,8 +174,9 @@ TEST_P(Gearbox, PlantedFaultsAreFound) {
   std::istringstream in(good);
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   for (std::size_t k = 0; k < lines.size(); ++k) {
-    if (lines[k].starts_with(";") || lines[k].starts_with("(") || lines[k].starts_with("O2") || lines[k].starts_with("WAITP") ||
-        lines[k].starts_with("EGDEL") || lines[k].starts_with("G0 C1=0") || lines[k].starts_with("G0 A0."))
+    if (lines[k].starts_with(";") || lines[k].starts_with("(") || lines[k].starts_with("O2") ||
+        lines[k].starts_with("WAITP") || lines[k].starts_with("EGDEL") || lines[k].starts_with("G0 C1=0") ||
+        lines[k].starts_with("G0 A0."))
       continue;
     auto fewer = lines;
     fewer.erase(fewer.begin() + std::ptrdiff_t(k));
@@ -187,17 +197,21 @@ TEST(ShaperControls, AreWholeAndDiffer) {
     EXPECT_EQ(c.read != nullptr, gearbox) << c.dialect.name << ": what couples is read back";
     EXPECT_EQ(!c.coupling_words.empty(), gearbox) << c.dialect.name;
   }
-  const auto refused = shaper::read_shaper_machine_of_text("schema = 1\nname = \"s\"\nkind = \"gear_shaper\"\ndialect = \"fagor\"\n", "s.toml");
-  const auto told = std::find_if(refused.errors.begin(), refused.errors.end(), [](const Diagnostic& d) { return d.position.line == 4; });
+  const auto refused = shaper::read_shaper_machine_of_text(
+      "schema = 1\nname = \"s\"\nkind = \"gear_shaper\"\ndialect = \"fagor\"\n", "s.toml");
+  const auto told = std::find_if(refused.errors.begin(), refused.errors.end(),
+                                 [](const Diagnostic& d) { return d.position.line == 4; });
   ASSERT_NE(told, refused.errors.end());
   for (const auto& name : names) EXPECT_NE(told->message.find(name), std::string::npos) << told->message;
 }
 
-INSTANTIATE_TEST_SUITE_P(Dialects, Gearbox, ::testing::Values("siemens", "fanuc"), [](const auto& p) { return p.param; });
+INSTANTIATE_TEST_SUITE_P(Dialects, Gearbox, ::testing::Values("siemens", "fanuc"),
+                         [](const auto& p) { return p.param; });
 
 TEST(GearboxReader, AnyTextGivesAReading) {
   const auto setup = shaper_setup(shaper_work(), installed("siemens"));
-  for (const char* text : {"", "%", "\n\n", "EGON(", "EGON()", "OS[Z]=1", "G1 X", "G81.5 ", "FA[Z]=", "C1=", "=", "M30", "\xff\xfe", "G17 ", "G1 X1e5 F9999999999999999"})
+  for (const char* text : {"", "%", "\n\n", "EGON(", "EGON()", "OS[Z]=1", "G1 X", "G81.5 ", "FA[Z]=", "C1=", "=", "M30",
+                           "\xff\xfe", "G17 ", "G1 X1e5 F9999999999999999"})
     EXPECT_FALSE(shaper::gearbox_program_faults(text, setup).empty()) << text;
 }
 

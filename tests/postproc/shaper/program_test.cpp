@@ -1,5 +1,5 @@
-// The emitted text against the rules of the output, read back by a reader that shares no code with the writer; planted faults;
-// and LinuxCNC's own interpreter as second opinion.
+// The emitted text against the rules of the output, read back by a reader that shares no code with the writer; planted
+// faults; and LinuxCNC's own interpreter as second opinion.
 #include <sys/wait.h>
 
 #include <cstdio>
@@ -41,7 +41,7 @@ TEST(ShaperProgram, OtherJobsKeepTheRulesToo) {
     double n = 359;
     if (trial == 0) w.gear.offset_mm = -15;
     if (trial == 1) w.gear.offset_mm = 0, w.shaping.circular_feed_mm = 0.37, w.shaping.radial_feed_mm = 6.75;
-    if (trial == 2) machine.axes['Z'].max_speed = 17500;                       // uneven split of the double stroke
+    if (trial == 2) machine.axes['Z'].max_speed = 17500;  // uneven split of the double stroke
     if (trial == 3) machine.stroke_steps = {60.5, 97.3}, n = 97.3, w.shaping.radial_feed_mm = 0.75;
     const auto text = shaper::shaper_program_text(shaper_setup(w, machine));
     EXPECT_EQ(joined(faults_in(text, facts_of(w, 0.5, n, +1))), "") << "trial " << trial;
@@ -62,13 +62,15 @@ TEST(ShaperProgram, SignsOfTheAxesReverseTheSense) {
 
 TEST(ShaperProgram, SameSetupSameBytes) {
   const auto w = shaper_work();
-  EXPECT_EQ(shaper::shaper_program_text(shaper_setup(w, shaper_machine())), shaper::shaper_program_text(shaper_setup(w, shaper_machine())));
+  EXPECT_EQ(shaper::shaper_program_text(shaper_setup(w, shaper_machine())),
+            shaper::shaper_program_text(shaper_setup(w, shaper_machine())));
 }
 
 TEST(ShaperProgram, NamesCannotBreakOutOfTheComment) {
   auto w = shaper_work();
   w.job_name = "x) G0 X-5 (\nG0 Z0 \xc3\xa4" + std::string(400, 'n');
-  EXPECT_EQ(joined(faults_in(shaper::shaper_program_text(shaper_setup(w, shaper_machine())), facts_of(w, 0.5, 359, 1))), "");
+  EXPECT_EQ(joined(faults_in(shaper::shaper_program_text(shaper_setup(w, shaper_machine())), facts_of(w, 0.5, 359, 1))),
+            "");
 }
 
 // Each fault is one that a wrong writer or a damaged file could produce; the checker must see it.
@@ -99,11 +101,14 @@ TEST(ShaperProgram, PlantedFaultsAreFound) {
   const std::vector<Planted> faults = {
       {"two units of the last digit of C", [](auto& l) { shift_word(l[line_of(l, "G1 Z", 4001)], 'C', 2e-5); }},
       {"two units of the last digit of A", [](auto& l) { shift_word(l[line_of(l, "G1 Z", 7777)], 'A', 2e-5); }},
-      {"wrong sense", [](auto& l) {
+      {"wrong sense",
+       [](auto& l) {
          for (auto& line : l)
-           if (const auto at = line.find(" C"); line.rfind("G1 Z", 0) == 0 && at != std::string::npos) line.insert(at + 2, "-");
+           if (const auto at = line.find(" C"); line.rfind("G1 Z", 0) == 0 && at != std::string::npos)
+             line.insert(at + 2, "-");
        }},
-      {"angles added up from rounded steps", [](auto& l) {
+      {"angles added up from rounded steps",
+       [](auto& l) {
          char text[40];
          int j = 0;
          for (auto& line : l)
@@ -112,22 +117,33 @@ TEST(ShaperProgram, PlantedFaultsAreFound) {
              line.replace(at, line.find(" F") - at, text);
            }
        }},
-      {"infeed at the wrong end", [](auto& l) {
+      {"infeed at the wrong end",
+       [](auto& l) {
          const auto k = line_of(l, "G1 Z", 21);  // lift and approach exchanged
          std::swap(l[k + 1], l[k + 3]);
        }},
       {"no lift", [](auto& l) { l.erase(l.begin() + std::ptrdiff_t(line_of(l, "G1 Z", 4001) + 1)); }},
-      {"a dropped double stroke", [](auto& l) {
+      {"a dropped double stroke",
+       [](auto& l) {
          const auto k = std::ptrdiff_t(line_of(l, "G1 Z", 4001) & ~std::size_t{0});
          l.erase(l.begin() + k, l.begin() + k + 4);
        }},
       {"F of one block times 60", [](auto& l) { shift_word(l[line_of(l, "G1 Z", 901)], 'F', 359 * 2 * 59); }},
-      {"F missing", [](auto& l) { auto& s = l[line_of(l, "G1 Z", 901)]; s.erase(s.find(" F")); }},
+      {"F missing",
+       [](auto& l) {
+         auto& s = l[line_of(l, "G1 Z", 901)];
+         s.erase(s.find(" F"));
+       }},
       {"G93 missing", [](auto& l) { l.erase(l.begin() + std::ptrdiff_t(line_of(l, "G93", 1))); }},
       {"work turns on the return", [](auto& l) { l[line_of(l, "G1 Z", 902)] += " C100"; }},
-      {"rapid into the work", [](auto& l) { auto& s = l[line_of(l, "G1 X", 1)]; s[1] = '0'; }},
+      {"rapid into the work",
+       [](auto& l) {
+         auto& s = l[line_of(l, "G1 X", 1)];
+         s[1] = '0';
+       }},
       {"offset slide of the other sign", [](auto& l) { l[line_of(l, "G0 Y", 1)] = "G0 Y-15"; }},
-      {"offset slide moved while cutting", [](auto& l) { l.insert(l.begin() + std::ptrdiff_t(line_of(l, "G1 Z", 51)), "G1 Y15 F100"); }},
+      {"offset slide moved while cutting",
+       [](auto& l) { l.insert(l.begin() + std::ptrdiff_t(line_of(l, "G1 Z", 51)), "G1 Y15 F100"); }},
       {"first motion is not clear", [](auto& l) { std::swap(l[line_of(l, "G53 G0 X", 1)], l[line_of(l, "G0 Z", 1)]); }},
       {"not lifted at the end", [](auto& l) { l.erase(l.end() - 2); }},
       {"stroke away before the lift at the end", [](auto& l) { l.insert(l.end() - 2, "G1 Z300 F100"); }},
@@ -167,8 +183,8 @@ Interpreted interpreted_by_linuxcnc(const std::string& text, const std::filesyst
     const auto feed = line.find("STRAIGHT_FEED("), rapid = line.find("STRAIGHT_TRAVERSE(");
     if (feed == std::string::npos && rapid == std::string::npos) continue;
     std::array<double, 6> v{};
-    if (std::sscanf(line.c_str() + line.find('(', feed == std::string::npos ? rapid : feed), "(%lf, %lf, %lf, %lf, %lf, %lf",
-                    &v[0], &v[1], &v[2], &v[3], &v[4], &v[5]) != 6) {
+    if (std::sscanf(line.c_str() + line.find('(', feed == std::string::npos ? rapid : feed),
+                    "(%lf, %lf, %lf, %lf, %lf, %lf", &v[0], &v[1], &v[2], &v[3], &v[4], &v[5]) != 6) {
       ADD_FAILURE() << line;
       break;
     }
@@ -184,7 +200,8 @@ TEST(ShaperProgram, LinuxCncReadsItToTheEnd) {
       << "LinuxCNC's rs274 is missing: run tools/get_rs274.sh";
   const auto folder = std::filesystem::temp_directory_path() / ("shaper_rs274_" + std::to_string(::getpid()));
   for (const bool reversed : {false, true}) {
-    const auto text = shaper::shaper_program_text(shaper_setup(shaper_work(), shaper_machine("1", reversed ? "-1" : "1")));
+    const auto text =
+        shaper::shaper_program_text(shaper_setup(shaper_work(), shaper_machine("1", reversed ? "-1" : "1")));
     const auto seen = interpreted_by_linuxcnc(text, folder);
     ASSERT_EQ(seen.exit_code, 0);
     const auto moves = read_shaper_program(text).moves;
@@ -193,7 +210,8 @@ TEST(ShaperProgram, LinuxCncReadsItToTheEnd) {
     for (std::size_t k = 0; k < moves.size(); ++k) {
       EXPECT_EQ(seen.rapid[k], moves[k].rapid) << "line " << moves[k].line;
       // Nothing is known of an axis before its first word.
-      for (std::size_t axis = 0; axis < 5; ++axis) worst = std::max(worst, std::abs(seen.positions[k][axis] - moves[k].to[axis]));
+      for (std::size_t axis = 0; axis < 5; ++axis)
+        worst = std::max(worst, std::abs(seen.positions[k][axis] - moves[k].to[axis]));
     }
     EXPECT_LE(worst, 6e-5);  // rs274 prints 4 decimals
   }

@@ -114,7 +114,8 @@ TEST(ShaperSetup, FeedGearsGiveTheStatedFeedAndLeaveTheIndexGearsAlone) {
   }
 }
 
-// The tooth space is widest at the full depth; there the arcs are those of the finished gear (face gear tables, r = 138).
+// The tooth space is widest at the full depth; there the arcs are those of the finished gear (face gear tables, r =
+// 138).
 TEST(ShaperSetup, PassTableEndsAtTheFinishedTooth) {
   auto w = shaper_work();
   w.gear.zones[0].inner_radius_mm = 130;

@@ -1,4 +1,5 @@
-// shaper.json has every key of the output's description with values that agree with each other; the sheet says the same.
+// shaper.json has every key of the output's description with values that agree with each other; the sheet says the
+// same.
 #include <nlohmann/json.hpp>
 
 #include "postproc/shaper/sheet.h"
@@ -15,7 +16,8 @@ TEST(ShaperSheet, JsonHasEveryKey) {
   const auto s = setup_of(shaper_work());
   const auto j = Json::parse(shaper::shaper_json(s, shaper::feed_study(s, {0.1})));
   const std::vector<std::pair<std::string, std::vector<std::string>>> keys = {
-      {"machine", {"name", "file", "stroke_steps", "index_constant", "feed_constant", "gears", "mesh_margin", "relief"}},
+      {"machine",
+       {"name", "file", "stroke_steps", "index_constant", "feed_constant", "gears", "mesh_margin", "relief"}},
       {"cutter", {"teeth", "pitch_diameter"}},
       {"work", {"teeth", "inner_radius", "outer_radius", "depth"}},
       {"offset", {"slide", "reference", "angle_tan", "angle_sin"}},
@@ -58,8 +60,8 @@ TEST(ShaperSheet, PageIsSelfContainedAndMarksWhatIsAssumed) {
   // The stroke table of the machine is assumed, its index constant is not.
   EXPECT_NE(page.find("125, 179, 253, 359 <span class=a>assumed</span>"), std::string::npos);
   EXPECT_EQ(page.find("12/5 <span class=a>assumed</span>"), std::string::npos);
-  for (const char* text : {"15.0000&nbsp;mm", "21.598&nbsp;mm", "148.733&nbsp;mm", "127.135&nbsp;mm", ">359<", "8294", "24.04", "0.152789",
-                           "5.8263", "5.8567", "a&nbsp;=&nbsp;30 &nbsp;b&nbsp;=&nbsp;44"})
+  for (const char* text : {"15.0000&nbsp;mm", "21.598&nbsp;mm", "148.733&nbsp;mm", "127.135&nbsp;mm", ">359<", "8294",
+                           "24.04", "0.152789", "5.8263", "5.8567", "a&nbsp;=&nbsp;30 &nbsp;b&nbsp;=&nbsp;44"})
     EXPECT_NE(page.find(text), std::string::npos) << text;
   auto machine = shaper_machine();
   machine.assumed_keys.clear();

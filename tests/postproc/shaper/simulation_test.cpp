@@ -1,4 +1,5 @@
-// Does the program cut the right gear? The strokes of the text, swept with the cutter's involute, against the exact flank.
+// Does the program cut the right gear? The strokes of the text, swept with the cutter's involute, against the exact
+// flank.
 #include <algorithm>
 
 #include "postproc/shaper/program.h"
@@ -9,7 +10,8 @@ namespace toothpath::test {
 namespace {
 
 /// Strokes of the text as motions of cutter and work: words times the axis signs of the machine.
-std::vector<shaper::ShaperStroke> strokes_of_text(const std::string& text, const ShaperFacts& facts, int sign_a, int sign_c) {
+std::vector<shaper::ShaperStroke> strokes_of_text(const std::string& text, const ShaperFacts& facts, int sign_a,
+                                                  int sign_c) {
   std::vector<shaper::ShaperStroke> strokes;
   for (const auto& r : cutting_strokes(read_shaper_program(text), facts))
     strokes.push_back({r.x, r.z_from, r.z_to, radians(sign_a * r.a_from), radians(sign_a * r.a_to),
@@ -88,7 +90,8 @@ TEST(ShaperSimulation, TheProgramCutsTheRightGear) {
   for (const int sign_a : {1, -1})
     for (const int sign_c : {1, -1}) {
       const auto s = shaper_setup(w, shaper_machine(std::to_string(sign_a), std::to_string(sign_c)));
-      const auto strokes = strokes_of_text(shaper::shaper_program_text(s), facts_of(w, 0.5, 359, s.sense), sign_a, sign_c);
+      const auto strokes =
+          strokes_of_text(shaper::shaper_program_text(s), facts_of(w, 0.5, 359, s.sense), sign_a, sign_c);
       ASSERT_EQ(strokes.size(), std::size_t(s.strokes_total()));
       const auto d = shaped_deviation(s.surface, strokes, samples_of(s, 4, 5, middle_tooth(s, sign_a)));
       EXPECT_GE(d.deepest_um, -0.02);  // rounded words: 1e-5 deg at 147 mm is 0.026 um
@@ -125,21 +128,27 @@ TEST(ShaperSimulation, ThreeStrokesTouchTheRightFlank) {
   const double step = 2 * kPi * s.work_teeth / s.cutter_teeth / s.strokes_turn;
   int checked = 0;
   for (const auto& p : samples_of(s, 3, 3, tooth)) {
-    // Tooth k is tooth 0 one pitch further: the cutter has turned k shaper pitches less. Whole turns of the work later it is the same.
+    // Tooth k is tooth 0 one pitch further: the cutter has turned k shaper pitches less. Whole turns of the work later
+    // it is the same.
     const double phi = s.surface.flank_phi(p.side, p.theta, p.B) - tooth * 2 * kPi / s.cutter_teeth;
-    const double turns = std::ceil((all[std::size_t(s.strokes_infeed)].cutter_from - phi) * s.cutter_teeth / (2 * kPi * s.work_teeth));
+    const double turns =
+        std::ceil((all[std::size_t(s.strokes_infeed)].cutter_from - phi) * s.cutter_teeth / (2 * kPi * s.work_teeth));
     const double at = phi + turns * 2 * kPi * s.work_teeth / s.cutter_teeth;
     const auto j = static_cast<std::size_t>(at / step);
     ASSERT_GE(j, std::size_t(s.strokes_infeed));
     ASSERT_LT(j + 2, all.size());
-    const std::vector<shaper::ShaperStroke> three(all.begin() + std::ptrdiff_t(j) - 1, all.begin() + std::ptrdiff_t(j) + 2);
+    const std::vector<shaper::ShaperStroke> three(all.begin() + std::ptrdiff_t(j) - 1,
+                                                  all.begin() + std::ptrdiff_t(j) + 2);
     const double um = 1000 * swept_distance(s.surface, three, p.point);
     EXPECT_GT(um, -0.02);
     EXPECT_LT(um, 1.0);
-    // The other flank's point with -B is cut at the roll angle -phi: unless that is the same, the three strokes do not touch it.
+    // The other flank's point with -B is cut at the roll angle -phi: unless that is the same, the three strokes do not
+    // touch it.
     if (std::abs(s.surface.flank_phi(p.side, p.theta, p.B)) < 0.05) continue;
     const auto mirrored_side = s.surface.flank(-p.side, p.theta, -p.B);
-    const double other = 1000 * swept_distance(s.surface, three, face_gear::FaceGearSurface<double>::turned(mirrored_side.p, s.surface.pitch * tooth));
+    const double other =
+        1000 * swept_distance(s.surface, three,
+                              face_gear::FaceGearSurface<double>::turned(mirrored_side.p, s.surface.pitch * tooth));
     EXPECT_GT(std::abs(other), 20);
     // The wrong sense takes the cutter somewhere else.
     auto wrong = three;
@@ -165,7 +174,8 @@ TEST(ShaperSimulation, NoDriftOverTheWholeTurn) {
   }
 }
 
-// What the strokes leave grows with the square of the feed, and is the parabola that the curvature of the envelope predicts.
+// What the strokes leave grows with the square of the feed, and is the parabola that the curvature of the envelope
+// predicts.
 TEST(ShaperSimulation, ScallopsGrowWithTheSquareOfTheFeed) {
   const auto s = shaper_setup(shaper_work(), shaper_machine());
   const auto rows = shaper::feed_study(s, {0.1, 0.2, 0.4, 0.8});
@@ -176,8 +186,9 @@ TEST(ShaperSimulation, ScallopsGrowWithTheSquareOfTheFeed) {
     EXPECT_GT(rows[k].deviation.deepest_um, -1e-6);
   }
   EXPECT_NEAR(rows[3].deviation.rms_um / rows[0].deviation.rms_um, 64, 13);
-  // The distance grows over the roll angle with the second derivative c = i^2 Sg cos B J/(r_b theta): c dphi^2/8 half-way between
-  // two strokes; at the end of the involute the edge takes over on one side, and it may be a whole step: c dphi^2/2.
+  // The distance grows over the roll angle with the second derivative c = i^2 Sg cos B J/(r_b theta): c dphi^2/8
+  // half-way between two strokes; at the end of the involute the edge takes over on one side, and it may be a whole
+  // step: c dphi^2/2.
   const auto& g = s.surface;
   for (const auto& row : rows) {
     const double dphi = 2 * row.circular_feed_mm / s.pitch_diameter_mm;

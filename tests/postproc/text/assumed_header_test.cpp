@@ -29,7 +29,8 @@ TEST_P(AssumedHeader, WarnsAheadOfTheFirstMotion) {
   const auto warning = text->text.find("WARNING, ASSUMED AND NOT MEASURED:");
   ASSERT_NE(warning, std::string::npos) << text->text.substr(0, 500);
   std::size_t motion = std::string::npos;
-  for (const char* word : {"G0 ", "G1 ", "G00 ", "G53", "SUPA", "L Z", "L X", "GOTO/", "G28"}) motion = std::min(motion, text->text.find(word));
+  for (const char* word : {"G0 ", "G1 ", "G00 ", "G53", "SUPA", "L Z", "L X", "GOTO/", "G28"})
+    motion = std::min(motion, text->text.find(word));
   ASSERT_NE(motion, std::string::npos);
   for (const char* key : {"AXES.A.POINT", "AXES.C.SIGN"}) {
     const auto at = text->text.find(std::string("ASSUMED ") + key);
@@ -51,7 +52,8 @@ TEST_P(AssumedHeader, WarnsAheadOfTheFirstMotion) {
   EXPECT_LT(text->text.size() - last, 120u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Dialects, AssumedHeader, testing::Values("linuxcnc", "fanuc", "siemens", "heidenhain", "mitsubishi_m80", "apt"),
+INSTANTIATE_TEST_SUITE_P(Dialects, AssumedHeader,
+                         testing::Values("linuxcnc", "fanuc", "siemens", "heidenhain", "mitsubishi_m80", "apt"),
                          [](const auto& place) { return std::string(place.param); });
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What a control may leave of the path at corners, as the readers of Siemens and Heidenhain count it: against brute force over everything that
-// the axes may do there, against the writer's bound, and with planted faults.
+// What a control may leave of the path at corners, as the readers of Siemens and Heidenhain count it: against brute
+// force over everything that the axes may do there, against the writer's bound, and with planted faults.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +26,8 @@ std::string regex_replaced(std::string text, const std::string& what, const std:
 std::vector<readback::ExecutedMove> moves_of(const std::string& text, const machines::Machine& m, std::string& error) {
   const auto control = controls::control_of(m, standing(), tools());
   std::vector<readback::ExecutedMove> moves;
-  const auto s = readback::execute_nc(text, "p", *control, [&](const readback::ExecutedMove& e) { moves.push_back(e); });
+  const auto s =
+      readback::execute_nc(text, "p", *control, [&](const readback::ExecutedMove& e) { moves.push_back(e); });
   error = s ? "" : s.error().message;
   return moves;
 }
@@ -36,7 +37,8 @@ std::vector<path::ToolMotion> motions_of(const std::vector<readback::ExecutedMov
   trace.tool = 1;
   trace.kept_teeth = 1;
   trace.moves = moves;
-  const auto motions = readback::tool_motions(trace, {}, *controls::control_of(m, standing(), tools()), m, standing(), 1, {1e4, 10});  // coarse: one motion a move
+  const auto motions = readback::tool_motions(trace, {}, *controls::control_of(m, standing(), tools()), m, standing(),
+                                              1, {1e4, 10});  // coarse: one motion a move
   return motions ? *motions : std::vector<path::ToolMotion>{};
 }
 
@@ -47,7 +49,9 @@ double value_in(const std::string& text, const std::string& name) {
 }
 
 /// X Y Z A C and the tool length -> tip in the table frame and axis.
-TrunnionPose pose_of(const std::array<double, 5>& j) { return trunnion_forward(kTrunnion, j[0], j[1], j[2], j[4], j[3], 95); }
+TrunnionPose pose_of(const std::array<double, 5>& j) {
+  return trunnion_forward(kTrunnion, j[0], j[1], j[2], j[4], j[3], 95);
+}
 
 double angle(const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
 
@@ -59,7 +63,9 @@ struct Box {
 class CornerBox {
  public:
   explicit CornerBox(const std::string& text)
-      : adis_(value_in(text, "ADIS=")), c_(value_in(text, "FGREF[C]=") * kPi / 180), a_(value_in(text, "FGREF[A]=") * kPi / 180) {}
+      : adis_(value_in(text, "ADIS=")),
+        c_(value_in(text, "FGREF[C]=") * kPi / 180),
+        a_(value_in(text, "FGREF[A]=") * kPi / 180) {}
   Box at(const std::vector<readback::ExecutedMove>& moves, std::size_t i) const {
     Box b;
     for (const std::size_t k : {i, i + 1}) {
@@ -81,7 +87,8 @@ class CornerBox {
   double adis_, c_, a_;
 };
 
-// Joints: whatever the axes do inside the pieces of both blocks, the tip stays within what is counted, and that within what is granted.
+// Joints: whatever the axes do inside the pieces of both blocks, the tip stays within what is counted, and that within
+// what is granted.
 TEST(Corners, SiemensJointsBoundTipAndAxis) {
   const machines::Machine m = machine_for("siemens", machines::TcpMode::none);
   for (const double blend : {0.0003, 0.02}) {
@@ -114,7 +121,8 @@ TEST(Corners, SiemensJointsBoundTipAndAxis) {
       const std::size_t k = n++;
       if (moves[i].rapid) continue;
       ASSERT_EQ(counted[k].line, moves[i].line);
-      const double tip_bound = counted[k].deviation_mm - rest[k].deviation_mm, axis_bound = counted[k].axis_deviation - rest[k].axis_deviation;
+      const double tip_bound = counted[k].deviation_mm - rest[k].deviation_mm,
+                   axis_bound = counted[k].axis_deviation - rest[k].axis_deviation;
       EXPECT_LE(tip_bound, granted * (1 + 1e-5)) << moves[i].line;
       most_counted = std::max(most_counted, tip_bound);
       const TrunnionPose corner = pose_of(moves[i].joints);
@@ -141,7 +149,8 @@ TEST(Corners, SiemensJointsBoundTipAndAxis) {
 TEST(Corners, SiemensCountsBlocksThatTurnOnly) {
   const machines::Machine m = machine_for("siemens", machines::TcpMode::none);
   const std::string start =
-      "G17 G40 G90 G94 G710\nTRAFOOF\nG54\nFGROUP(X,Y,Z,C,A)\nFGREF[C]=120\nFGREF[A]=120\nG641 ADIS=0.01\n;OP 0 finishing\nSUPA G0 Z500 D0\nT=\"T1\"\nM6\nS100 M3\nD1\n"
+      "G17 G40 G90 G94 G710\nTRAFOOF\nG54\nFGROUP(X,Y,Z,C,A)\nFGREF[C]=120\nFGREF[A]=120\nG641 ADIS=0.01\n;OP 0 "
+      "finishing\nSUPA G0 Z500 D0\nT=\"T1\"\nM6\nS100 M3\nD1\n"
       "G0 C=0 A=0\nG0 X100 Y0\nG0 Z100\nG93\n";
   const std::string end = "G94 F100\nM5\nSUPA G0 Z500 D0\nG60\nFGROUP()\nM30\n";
   std::string error;
@@ -157,11 +166,14 @@ TEST(Corners, SiemensCountsBlocksThatTurnOnly) {
   for (const auto& motion : motions_of(moves, m))
     if (!motion.rapid) {
       EXPECT_LT(motion.deviation_mm, 0.02 + 0.0162 * 100);  // |d| + w R, and what the chord of 2 deg leaves
-      EXPECT_LT(motion.axis_deviation, 1e-9);  // the tool stands along C
+      EXPECT_LT(motion.axis_deviation, 1e-9);               // the tool stands along C
     }
   // A tool that leans by 30 deg: C moves its axis by the half of its turn.
   bool seen = false;
-  for (const auto& motion : motions_of(moves_of(regex_replaced(start, "A=0", "A=30") + "G1 C=2 F10\nG1 C=2.002 F10\nG1 C=2.004 X100.5 F10\n" + end, m, error), m))
+  for (const auto& motion : motions_of(
+           moves_of(regex_replaced(start, "A=0", "A=30") + "G1 C=2 F10\nG1 C=2.002 F10\nG1 C=2.004 X100.5 F10\n" + end,
+                    m, error),
+           m))
     if (!motion.rapid && motion.line == 18) {
       seen = true;
       EXPECT_GE(motion.axis_deviation, 0.5 * 0.01 / 120);
@@ -182,23 +194,23 @@ TEST(Corners, SiemensCountsBlocksThatTurnOnly) {
   const auto left_out = moves_of(regex_replaced(start, "X,Y,Z,C,A", "X,Y,Z,A") + turn + end, m, error);
   ASSERT_EQ(error, "");
   for (const auto& e : left_out)
-    if (!e.rapid) {
-      EXPECT_EQ(e.corner_share, 0.5F);
-    }
+    if (!e.rapid) { EXPECT_EQ(e.corner_share, 0.5F); }
   // Without FGREF the control counts 1 mm for a degree.
   const auto unnamed = moves_of(regex_replaced(start, "FGREF\\[C\\]=120\n", "") + turn + end, m, error);
   ASSERT_EQ(error, "");
   for (const auto& e : unnamed)
-    if (!e.rapid) {
-      EXPECT_NEAR(e.corner_share, 0.01 / 2, 1e-6);
-    }
+    if (!e.rapid) { EXPECT_NEAR(e.corner_share, 0.01 / 2, 1e-6); }
   // Exact stop needs none of it.
-  const auto stops = moves_of(regex_replaced(regex_replaced(start, "FGROUP[^\n]*\nFGREF[^\n]*\nFGREF[^\n]*\n", ""), "G641 ADIS=0.01", "G60") + turn + end, m, error);
+  const auto stops = moves_of(
+      regex_replaced(regex_replaced(start, "FGROUP[^\n]*\nFGREF[^\n]*\nFGREF[^\n]*\n", ""), "G641 ADIS=0.01", "G60") +
+          turn + end,
+      m, error);
   ASSERT_EQ(error, "");
   for (const auto& e : stops) EXPECT_EQ(e.corner_share, 0.0F);
 }
 
-// TRAORI: the way is that of the tip; the rotaries may be off by the same share of their turn, which is the deviation of the tool axis.
+// TRAORI: the way is that of the tip; the rotaries may be off by the same share of their turn, which is the deviation
+// of the tool axis.
 TEST(Corners, SiemensTraoriCountsTheToolAxis) {
   for (const machines::TcpMode tcp : {machines::TcpMode::angles, machines::TcpMode::vectors}) {
     const machines::Machine m = machine_for("siemens", tcp);
@@ -225,8 +237,10 @@ TEST(Corners, SiemensTraoriCountsTheToolAxis) {
       EXPECT_LE(counted[k].deviation_mm - rest[k].deviation_mm, std::sqrt(2) * adis * (1 + 1e-5) + 1e-12);
       const double way = (moves[i].tip - moves[i - 1].tip).norm(), share = std::min(0.5, adis / way);
       // C, which carries the work, moves the tool axis by the sine of the tilt.
-      const double sine = std::min(std::abs(std::sin(radians(moves[i].joints[4]))), std::abs(std::sin(radians(moves[i - 1].joints[4]))));
-      const double turn = radians(sine * std::abs(moves[i].joints[3] - moves[i - 1].joints[3]) + std::abs(moves[i].joints[4] - moves[i - 1].joints[4]));
+      const double sine = std::min(std::abs(std::sin(radians(moves[i].joints[4]))),
+                                   std::abs(std::sin(radians(moves[i - 1].joints[4]))));
+      const double turn = radians(sine * std::abs(moves[i].joints[3] - moves[i - 1].joints[3]) +
+                                  std::abs(moves[i].joints[4] - moves[i - 1].joints[4]));
       const double axis = counted[k].axis_deviation - rest[k].axis_deviation;
       EXPECT_GE(axis, share * turn * (1 - 1e-6) - 1e-12);
       most = std::max(most, axis);
@@ -236,7 +250,8 @@ TEST(Corners, SiemensTraoriCountsTheToolAxis) {
   }
 }
 
-// TA of cycle 32: what it lets each rotary do is the deviation of the tool axis; without it a block that turns a rotary is refused.
+// TA of cycle 32: what it lets each rotary do is the deviation of the tool axis; without it a block that turns a rotary
+// is refused.
 TEST(Corners, HeidenhainCountsTheToleranceOfTheRotaries) {
   const machines::Machine m = machine_for("heidenhain", machines::TcpMode::angles);
   const auto build = [&](double swing, double ta) {
@@ -263,8 +278,9 @@ TEST(Corners, HeidenhainCountsTheToleranceOfTheRotaries) {
       }
     EXPECT_GT(cuts, 15);
     // Without the block, and with a T behind it that resets it.
-    for (const auto& [what, by] : {std::pair<const char*, const char*>{"CYCL DEF 32\\.2[^\n]*", "CYCL DEF 32.0 TOLERANCE"},
-                                   {"CYCL DEF 32\\.2[^\n]*", "CYCL DEF 32.1 T0.0003"}}) {
+    for (const auto& [what, by] :
+         {std::pair<const char*, const char*>{"CYCL DEF 32\\.2[^\n]*", "CYCL DEF 32.0 TOLERANCE"},
+          {"CYCL DEF 32\\.2[^\n]*", "CYCL DEF 32.1 T0.0003"}}) {
       (void)moves_of(regex_replaced(text, what, by), m, error);
       EXPECT_NE(error.find("no TA says how far"), std::string::npos) << error;
     }
@@ -279,19 +295,24 @@ TEST(Corners, HeidenhainCountsTheToleranceOfTheRotaries) {
   EXPECT_EQ(error, "");
 }
 
-// Lines of the machine file in place of the dialect's own: written around every operation, read as what is stated, no word otherwise.
+// Lines of the machine file in place of the dialect's own: written around every operation, read as what is stated, no
+// word otherwise.
 struct Stated {
   const char* dialect;
   machines::TcpMode tcp;
   const char *on, *off;
 };
-void PrintTo(const Stated& s, std::ostream* out) { *out << s.dialect << (s.tcp == machines::TcpMode::none ? "" : "_tcp"); }
+void PrintTo(const Stated& s, std::ostream* out) {
+  *out << s.dialect << (s.tcp == machines::TcpMode::none ? "" : "_tcp");
+}
 class StatedSmoothing : public testing::TestWithParam<Stated> {};
-INSTANTIATE_TEST_SUITE_P(Controls, StatedSmoothing,
-                         testing::Values(Stated{"fanuc", machines::TcpMode::none, "G5.1 Q1", "G5.1 Q0"}, Stated{"fanuc", machines::TcpMode::angles, "G5.1 Q1 R5", "G5.1 Q0"},
-                                         Stated{"mitsubishi_m80", machines::TcpMode::none, "G61.4", "G64"},
-                                         Stated{"siemens", machines::TcpMode::none, "CYCLE832(0.002,_FINISH,1)", "CYCLE832()"},
-                                         Stated{"siemens", machines::TcpMode::angles, "CYCLE832(0.002,_ORI_FINISH,0.01)", "CYCLE832()"}));
+INSTANTIATE_TEST_SUITE_P(
+    Controls, StatedSmoothing,
+    testing::Values(Stated{"fanuc", machines::TcpMode::none, "G5.1 Q1", "G5.1 Q0"},
+                    Stated{"fanuc", machines::TcpMode::angles, "G5.1 Q1 R5", "G5.1 Q0"},
+                    Stated{"mitsubishi_m80", machines::TcpMode::none, "G61.4", "G64"},
+                    Stated{"siemens", machines::TcpMode::none, "CYCLE832(0.002,_FINISH,1)", "CYCLE832()"},
+                    Stated{"siemens", machines::TcpMode::angles, "CYCLE832(0.002,_ORI_FINISH,0.01)", "CYCLE832()"}));
 
 TEST_P(StatedSmoothing, IsWrittenAndCountedAsStated) {
   const Stated& s = GetParam();
@@ -313,7 +334,9 @@ TEST_P(StatedSmoothing, IsWrittenAndCountedAsStated) {
   EXPECT_EQ(text->text.find("G641"), std::string::npos);
   const auto count = [&](const std::string& line) {
     std::size_t n = 0;
-    for (std::size_t at = text->text.find(line + "\n"); at != std::string::npos; at = text->text.find(line + "\n", at + 1)) ++n;
+    for (std::size_t at = text->text.find(line + "\n"); at != std::string::npos;
+         at = text->text.find(line + "\n", at + 1))
+      ++n;
     return n;
   };
   EXPECT_EQ(count(s.on), 2u);
@@ -352,7 +375,8 @@ TEST_P(StatedSmoothing, IsWrittenAndCountedAsStated) {
 TEST(StatedSmoothingKeys, NeedItsBoundAndADialectWithoutItsOwn) {
   machines::Machine m = machine_for("fanuc", machines::TcpMode::none);
   m.post.smoothing_on = {"G5.1 Q1"};
-  EXPECT_NE(controls::dialect_of(m).error().message.find("needs post.smoothing_off and post.smoothing_tolerance"), std::string::npos);
+  EXPECT_NE(controls::dialect_of(m).error().message.find("needs post.smoothing_off and post.smoothing_tolerance"),
+            std::string::npos);
   m.post.smoothing_off = {"G5.1 Q0"};
   EXPECT_FALSE(controls::dialect_of(m));
   m.post.smoothing_tolerance_mm = 0.01;

@@ -1,5 +1,5 @@
-// A short job in every dialect, byte for byte as it stands in tests/golden/posts. TOOTHPATH_WRITE_GOLDEN=1 writes the files anew:
-// a deliberate act, to be explained block by block.
+// A short job in every dialect, byte for byte as it stands in tests/golden/posts. TOOTHPATH_WRITE_GOLDEN=1 writes the
+// files anew: a deliberate act, to be explained block by block.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -23,28 +23,30 @@ struct Golden {
 void PrintTo(const Golden& g, std::ostream* out) { *out << g.file; }
 
 class GoldenPost : public testing::TestWithParam<Golden> {};
-INSTANTIATE_TEST_SUITE_P(Files, GoldenPost,
-                         testing::Values(Golden{"linuxcnc_joints.ngc", "linuxcnc", machines::TcpMode::none, 0.1, false},
-                                         Golden{"linuxcnc_tcp.ngc", "linuxcnc", machines::TcpMode::angles, 0.1, true},
-                                         Golden{"fanuc_joints.nc", "fanuc", machines::TcpMode::none, 0, false},
-                                         Golden{"fanuc_tcp.nc", "fanuc", machines::TcpMode::angles, 0.1, true},
-                                         Golden{"mitsubishi_m80.nc", "mitsubishi_m80", machines::TcpMode::none, 0, false},
-                                         Golden{"haas.nc", "haas", machines::TcpMode::none, 0.1, true},
-                                         Golden{"siemens_joints.mpf", "siemens", machines::TcpMode::none, 0.1, false},
-                                         Golden{"siemens_tcp.mpf", "siemens", machines::TcpMode::angles, 0.1, false},
-                                         Golden{"siemens_vectors.mpf", "siemens", machines::TcpMode::vectors, 0.1, false},
-                                         Golden{"heidenhain_joints.h.txt", "heidenhain", machines::TcpMode::none, 0, false},
-                                         Golden{"heidenhain_tcp.h.txt", "heidenhain", machines::TcpMode::angles, 0, false},
-                                         Golden{"heidenhain_vectors.h.txt", "heidenhain", machines::TcpMode::vectors, 0.1, true},
-                                         Golden{"cutter_location.apt", "apt", machines::TcpMode::vectors, 0.1, true},
-                                         Golden{"linuxcnc_spread.ngc", "linuxcnc", machines::TcpMode::none, 0.1, false, 5, 2, 1},
-                                         Golden{"fanuc_spread.nc", "fanuc", machines::TcpMode::none, 0, false, 5, 2, 1},
-                                         Golden{"siemens_spread.mpf", "siemens", machines::TcpMode::angles, 0.1, false, 5, 2, 1},
-                                         Golden{"heidenhain_spread.h.txt", "heidenhain", machines::TcpMode::angles, 0, false, 5, 2, 1},
-                                         Golden{"linuxcnc_rollover.ngc", "linuxcnc", machines::TcpMode::none, 0.1, false, 5, 1, 1, -1},
-                                         Golden{"fanuc_rollover.nc", "fanuc", machines::TcpMode::none, 0, false, 5, 1, 1, -1},
-                                         Golden{"siemens_rollover.mpf", "siemens", machines::TcpMode::angles, 0.1, false, 5, 1, 1, -1},
-                                         Golden{"heidenhain_rollover.h.txt", "heidenhain", machines::TcpMode::angles, 0, false, 5, 1, 1, -1}));
+INSTANTIATE_TEST_SUITE_P(
+    Files, GoldenPost,
+    testing::Values(Golden{"linuxcnc_joints.ngc", "linuxcnc", machines::TcpMode::none, 0.1, false},
+                    Golden{"linuxcnc_tcp.ngc", "linuxcnc", machines::TcpMode::angles, 0.1, true},
+                    Golden{"fanuc_joints.nc", "fanuc", machines::TcpMode::none, 0, false},
+                    Golden{"fanuc_tcp.nc", "fanuc", machines::TcpMode::angles, 0.1, true},
+                    Golden{"mitsubishi_m80.nc", "mitsubishi_m80", machines::TcpMode::none, 0, false},
+                    Golden{"haas.nc", "haas", machines::TcpMode::none, 0.1, true},
+                    Golden{"siemens_joints.mpf", "siemens", machines::TcpMode::none, 0.1, false},
+                    Golden{"siemens_tcp.mpf", "siemens", machines::TcpMode::angles, 0.1, false},
+                    Golden{"siemens_vectors.mpf", "siemens", machines::TcpMode::vectors, 0.1, false},
+                    Golden{"heidenhain_joints.h.txt", "heidenhain", machines::TcpMode::none, 0, false},
+                    Golden{"heidenhain_tcp.h.txt", "heidenhain", machines::TcpMode::angles, 0, false},
+                    Golden{"heidenhain_vectors.h.txt", "heidenhain", machines::TcpMode::vectors, 0.1, true},
+                    Golden{"cutter_location.apt", "apt", machines::TcpMode::vectors, 0.1, true},
+                    Golden{"linuxcnc_spread.ngc", "linuxcnc", machines::TcpMode::none, 0.1, false, 5, 2, 1},
+                    Golden{"fanuc_spread.nc", "fanuc", machines::TcpMode::none, 0, false, 5, 2, 1},
+                    Golden{"siemens_spread.mpf", "siemens", machines::TcpMode::angles, 0.1, false, 5, 2, 1},
+                    Golden{"heidenhain_spread.h.txt", "heidenhain", machines::TcpMode::angles, 0, false, 5, 2, 1},
+                    Golden{"linuxcnc_rollover.ngc", "linuxcnc", machines::TcpMode::none, 0.1, false, 5, 1, 1, -1},
+                    Golden{"fanuc_rollover.nc", "fanuc", machines::TcpMode::none, 0, false, 5, 1, 1, -1},
+                    Golden{"siemens_rollover.mpf", "siemens", machines::TcpMode::angles, 0.1, false, 5, 1, 1, -1},
+                    Golden{"heidenhain_rollover.h.txt", "heidenhain", machines::TcpMode::angles, 0, false, 5, 1, 1,
+                           -1}));
 
 TEST_P(GoldenPost, ByteForByte) {
   const Golden& g = GetParam();

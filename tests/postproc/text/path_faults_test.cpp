@@ -1,5 +1,5 @@
-// Paths that nobody should ask for, each with its exact message or handled as said: checklist of bad inputs 74, 76, 77 and 79 to 87.
-// First as paths given to the axis program, then as program text where a file can bring them.
+// Paths that nobody should ask for, each with its exact message or handled as said: checklist of bad inputs 74, 76, 77
+// and 79 to 87. First as paths given to the axis program, then as program text where a file can bring them.
 #include <gtest/gtest.h>
 
 #include "tests/postproc/readback/nc_case.h"
@@ -22,7 +22,9 @@ path::ClPath path_along(const std::vector<std::pair<Vec3, Vec3>>& poses) {
   path.spindle_rpm = 12000;
   const auto& [first, first_axis] = poses.front();
   const auto& [last, last_axis] = poses.back();
-  const auto above = [](const Vec3& tip, const Vec3& axis) { return Vec3(tip + (30 - tip.z()) / std::max(0.1, axis.z()) * axis); };
+  const auto above = [](const Vec3& tip, const Vec3& axis) {
+    return Vec3(tip + (30 - tip.z()) / std::max(0.1, axis.z()) * axis);
+  };
   path.records.push_back({above(first, first_axis), first_axis, 0, path::MoveKind::rapid, 0, 0});
   for (const auto& [tip, axis] : poses) path.records.push_back({tip, axis, 500, path::MoveKind::feed, 0, 0});
   path.records.push_back({above(last, last_axis), last_axis, 500, path::MoveKind::retract, 0, 0});
@@ -47,7 +49,8 @@ TEST(PathFaults, Nr80ToolAxisThatIsNoUnitVector) {
 
 // Points that repeat are posted; every block still takes time, and the records behind them are met.
 TEST(PathFaults, Nr81RepeatedPoints) {
-  const path::ClPath path = path_along({{{100, 0, -1}, kUp}, {{101, 0, -1}, kUp}, {{101, 0, -1}, kUp}, {{101, 0, -1}, kUp}, {{102, 0, -1}, kUp}});
+  const path::ClPath path = path_along(
+      {{{100, 0, -1}, kUp}, {{101, 0, -1}, kUp}, {{101, 0, -1}, kUp}, {{101, 0, -1}, kUp}, {{102, 0, -1}, kUp}});
   const auto program = axis_program({path}, trunnion(), standing(), 3);
   ASSERT_TRUE(program) << program.error().message;
   for (const auto& b : program->operations[0].teeth[0].blocks)
@@ -58,7 +61,8 @@ TEST(PathFaults, Nr81RepeatedPoints) {
   const auto control = controls::control_of(trunnion(), setup, tools());
   const auto back = readback::read_back(text->text, "p", *control, trunnion(), setup, {.teeth = 3});
   ASSERT_TRUE(back) << back.error().text();
-  const auto motions = readback::tool_motions(back->operations[0], back->copies, *control, trunnion(), setup, 3, {1e-3, 1e-3});
+  const auto motions =
+      readback::tool_motions(back->operations[0], back->copies, *control, trunnion(), setup, 3, {1e-3, 1e-3});
   ASSERT_TRUE(motions);
   const path::ClPath* asked[] = {&path};
   const auto met = readback::compare_with_cl(*motions, asked, 1e-3, 1e-3);
@@ -90,23 +94,26 @@ TEST(PathFaults, Nr84HundredMillionPoints) {
   path.records.insert(path.records.begin() + 5, 5000 - path.records.size(), middle);
   const auto program = axis_program({path}, trunnion(), standing(), 20000, true);
   ASSERT_FALSE(program);
-  EXPECT_EQ(program.error().message,
-            "the program would have at least 100000000 blocks (5000 records, 20000 teeth written out), more than 20000000");
+  EXPECT_EQ(
+      program.error().message,
+      "the program would have at least 100000000 blocks (5000 records, 20000 teeth written out), more than 20000000");
 }
 
 const std::string kThroughThePole =
-    "operation 0 record 2: the tool axis passes the pole at 0.0000 deg, C turns by 180.000 deg in one block, limit 30: post.pole = \"slow\", "
-    "\"hold\", \"through\" or \"retract\" goes past it, or mount the part inclined";
+    "operation 0 record 2: the tool axis passes the pole at 0.0000 deg, C turns by 180.000 deg in one block, limit 30: "
+    "post.pole = \"slow\", \"hold\", \"through\" or \"retract\" goes past it, or mount the part inclined";
 
 // From one side of the gear to the other within one step: no control could follow the axis in between.
 TEST(PathFaults, Nr85AxisThatFlips) {
   EXPECT_EQ(message_of(path_along({{{100, 0, -1}, kUp}, {{101, 0, -1}, -kUp}})),
             "operation 0 record 2: A turns by 180.000 deg in one block, limit 170");
-  EXPECT_EQ(message_of(path_along({{{100, 0, -1}, leaning(0.4, 0)}, {{101, 0, -1}, leaning(0.4, kPi)}})), kThroughThePole);
+  EXPECT_EQ(message_of(path_along({{{100, 0, -1}, leaning(0.4, 0)}, {{101, 0, -1}, leaning(0.4, kPi)}})),
+            kThroughThePole);
 }
 
 TEST(PathFaults, Nr86ExactlyThroughThePole) {
-  const path::ClPath path = path_along({{{100, 0, -1}, leaning(0.1, 0.3)}, {{101, 0, -1}, kUp}, {{102, 0, -1}, leaning(0.1, 0.3 + kPi)}});
+  const path::ClPath path =
+      path_along({{{100, 0, -1}, leaning(0.1, 0.3)}, {{101, 0, -1}, kUp}, {{102, 0, -1}, leaning(0.1, 0.3 + kPi)}});
   EXPECT_EQ(message_of(path), kThroughThePole);
 }
 
@@ -121,7 +128,8 @@ TEST(PathFaults, Nr87StepsOfANanometreAndOfTenMetres) {
   EXPECT_EQ(message_of(path_along({{{100, 0, -1}, kUp}, {{10100, 0, -1}, kUp}})),
             "operation 0 record 2 (tooth 0): X = 10103.0000 mm exceeds 899.9000\n"
             "operation 0 record 3 (tooth 0): X = 10103.0000 mm exceeds 899.9000 (no shift of the set-up alone fits)");
-  EXPECT_EQ(message_of(path_along({{{100, 0, -1}, kUp}, {{100001, 0, -1}, kUp}})), "operation 0 record 2: position is not a number below 1e5 mm");
+  EXPECT_EQ(message_of(path_along({{{100, 0, -1}, kUp}, {{100001, 0, -1}, kUp}})),
+            "operation 0 record 2: position is not a number below 1e5 mm");
 }
 
 // 74, 76: no pose inside the limits, and a part where the travels do not go.
@@ -138,17 +146,21 @@ TEST(MachineFaults, Nr76PartOutOfReach) {
   m.chain.linear[0] = {-50, 50, 30000};
   const std::string message = message_of(path_along({{{100, 0, -1}, kUp}, {{101, 0, -1}, kUp}}), m);
   const std::string expected =
-      "operation 0 record 0 (tooth 0): X = 103.0000 mm exceeds 49.9000\noperation 0 record 0 (tooth 0): X = 103.0000 mm exceeds 49.9000\n"
-      "operation 0 record 1 (tooth 0): X = 103.0000 mm exceeds 49.9000\noperation 0 record 2 (tooth 0): X = 104.0000 mm exceeds 49.9000\n"
+      "operation 0 record 0 (tooth 0): X = 103.0000 mm exceeds 49.9000\noperation 0 record 0 (tooth 0): X = 103.0000 "
+      "mm exceeds 49.9000\n"
+      "operation 0 record 1 (tooth 0): X = 103.0000 mm exceeds 49.9000\noperation 0 record 2 (tooth 0): X = 104.0000 "
+      "mm exceeds 49.9000\n"
       "operation 0 record 3 (tooth 0): X = 104.0000 mm exceeds 49.9000 (set-up origin X -54.1000 fits)";
-  EXPECT_EQ(message.substr(0, expected.size()), expected);  // what may follow: whether another place has room for the part
+  EXPECT_EQ(message.substr(0, expected.size()),
+            expected);  // what may follow: whether another place has room for the part
 }
 
 TEST(MachineFaults, Nr77MoreAxesThanTheControlInterpolates) {
   machines::Machine m = trunnion();
   m.max_simultaneous_axes = 4;
-  EXPECT_EQ(message_of(path_along({{{100, 0, -1}, leaning(0.3, 0.2)}, {{101, 3, -2}, leaning(0.35, 0.25)}}), m),
-            "operation 0 record 2: 5 axes move in one block, the control interpolates 4 (keep the tilt fixed in a pass)");
+  EXPECT_EQ(
+      message_of(path_along({{{100, 0, -1}, leaning(0.3, 0.2)}, {{101, 3, -2}, leaning(0.35, 0.25)}}), m),
+      "operation 0 record 2: 5 axes move in one block, the control interpolates 4 (keep the tilt fixed in a pass)");
   m.max_simultaneous_axes = 5;
   EXPECT_EQ(message_of(path_along({{{100, 0, -1}, leaning(0.3, 0.2)}, {{101, 3, -2}, leaning(0.35, 0.25)}}), m), "");
 }
@@ -164,8 +176,10 @@ std::string read_error(machines::Machine machine, const std::string& dialect, co
 }
 
 std::string apt_error(const std::string& points) {
-  return read_error(trunnion(), "apt", "PARTNO/P\nUNITS/MM\nMULTAX/ON\n$$ OP 0 finishing\nLOADTL/1,LENGTH,95.\nSPINDL/RPM,100,CLW\nRAPID\n"
-                                       "GOTO/100.,0.,300.,0.,0.,1.\nFEDRAT/500.,MMPM\n" + points + "SPINDL/OFF\nEND\nFINI\n");
+  return read_error(trunnion(), "apt",
+                    "PARTNO/P\nUNITS/MM\nMULTAX/ON\n$$ OP 0 finishing\nLOADTL/1,LENGTH,95.\nSPINDL/RPM,100,CLW\nRAPID\n"
+                    "GOTO/100.,0.,300.,0.,0.,1.\nFEDRAT/500.,MMPM\n" +
+                        points + "SPINDL/OFF\nEND\nFINI\n");
 }
 
 TEST(PathFaultsInText, AptPoints) {
@@ -174,7 +188,8 @@ TEST(PathFaultsInText, AptPoints) {
   EXPECT_EQ(apt_error("GOTO/100.,0.,299.,0.,0.,0.999\n"), "p:10:1: error: a tool vector of length 0.999000");
   EXPECT_EQ(apt_error("GOTO/100.,0.,299.,0.,nan,1.\n"), "p:10:22: error: number expected");
   EXPECT_EQ(apt_error("GOTO/100.,0.,1e10,0.,0.,1.\n"), "p:10:15: error: , expected");  // no exponents
-  EXPECT_EQ(apt_error("GOTO/100.,0.,299.,0.,0.,1.\nGOTO/100.,0.,299.,0.,0.,1.\n"), "");  // a repeated point takes no time
+  EXPECT_EQ(apt_error("GOTO/100.,0.,299.,0.,0.,1.\nGOTO/100.,0.,299.,0.,0.,1.\n"),
+            "");  // a repeated point takes no time
   EXPECT_EQ(apt_error("GOTO/100.,0.,299.,0.,0.,1.\nGOTO/100.000001,0.,299.,0.,0.,1.\n"), "");
   EXPECT_EQ(apt_error("GOTO/100.,0.,299.,0.,0.,1.\nGOTO/101.,0.,299.,0.,0.,-1.\n"),
             "p:11:1: error: the tool axis turns by 180.0000 deg in one block, limit 170: which way is not said");
@@ -189,14 +204,19 @@ TEST(PathFaultsInText, MovesAreCountedBeforeTheyAreKept) {
   const auto error = [&](bool expand, const std::string& from, const std::string& to) -> std::string {
     auto text = nc_text({path}, trunnion(), standing(), 6, expand);
     EXPECT_TRUE(text);
-    if (const auto at = text->text.rfind(from); !from.empty() && at != std::string::npos) text->text.replace(at, from.size(), to);
-    const auto back = readback::read_back(text->text, "p", *control, trunnion(), standing(), {.teeth = 6, .keep_all = false, .max_kept = 200});
+    if (const auto at = text->text.rfind(from); !from.empty() && at != std::string::npos)
+      text->text.replace(at, from.size(), to);
+    const auto back = readback::read_back(text->text, "p", *control, trunnion(), standing(),
+                                          {.teeth = 6, .keep_all = false, .max_kept = 200});
     return back ? "" : back.error().text();
   };
   EXPECT_EQ(error(false, "", ""), "");
   EXPECT_EQ(error(true, "", ""), "");
   const std::string refused = error(true, "\nX", "\nX1");  // another digit before one word of the last tooth
-  EXPECT_NE(refused.find(" moves would have to be kept, more than 200: the teeth are not turned copies of the first one ("), std::string::npos) << refused;
+  EXPECT_NE(
+      refused.find(" moves would have to be kept, more than 200: the teeth are not turned copies of the first one ("),
+      std::string::npos)
+      << refused;
   EXPECT_TRUE(refused.starts_with("p:")) << refused;
 }
 
@@ -205,8 +225,9 @@ TEST(PathFaultsInText, EndlessLoopsEnd) {
   auto control = *controls::control_of(trunnion(), standing(), tools());
   EXPECT_EQ(control.max_steps, 400'000'000u);
   control.max_steps = 100'000;
-  const auto s = readback::execute_nc("G21 G17 G90 G94 G40 G49 G80\n#1=0\no1 while [#1 LT 100000000]\n#1=[#1+1]\no1 endwhile\nM2\n", "p", control,
-                            [](const readback::ExecutedMove&) {});
+  const auto s = readback::execute_nc(
+      "G21 G17 G90 G94 G40 G49 G80\n#1=0\no1 while [#1 LT 100000000]\n#1=[#1+1]\no1 endwhile\nM2\n", "p", control,
+      [](const readback::ExecutedMove&) {});
   ASSERT_FALSE(s);
   EXPECT_NE(s.error().text().find("more than 100000 executed blocks"), std::string::npos) << s.error().text();
 }

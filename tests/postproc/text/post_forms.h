@@ -11,14 +11,20 @@ namespace toothpath::test {
 struct PostForm {
   const char* dialect;
   machines::TcpMode tcp;
-  double swing;  ///< turn of the tool axis inside a pass
-  bool expand;   ///< every tooth written out
+  double swing;      ///< turn of the tool axis inside a pass
+  bool expand;       ///< every tooth written out
   int rollover = 0;  ///< C rolls over and its index rises (1) or falls (-1)
 };
 
 inline void PrintTo(const PostForm& f, std::ostream* out) {
-  *out << f.dialect << (f.tcp == machines::TcpMode::none ? "" : f.tcp == machines::TcpMode::angles ? "_tcp" : "_vectors") << (f.expand ? "_written" : "")
-       << (f.rollover > 0 ? "_rollover" : f.rollover < 0 ? "_rollover_back" : "");
+  *out << f.dialect
+       << (f.tcp == machines::TcpMode::none     ? ""
+           : f.tcp == machines::TcpMode::angles ? "_tcp"
+                                                : "_vectors")
+       << (f.expand ? "_written" : "")
+       << (f.rollover > 0   ? "_rollover"
+           : f.rollover < 0 ? "_rollover_back"
+                            : "");
 }
 
 /// The same with a C that rolls over.
@@ -26,14 +32,22 @@ inline const std::vector<PostForm>& rollover_forms() {
   static const std::vector<PostForm> forms = [] {
     std::vector<PostForm> list;
     for (const int sense : {1, -1})
-      for (const PostForm& f : {PostForm{"linuxcnc", machines::TcpMode::none, 0.1, false}, PostForm{"linuxcnc", machines::TcpMode::none, 0.1, true},
-                                PostForm{"linuxcnc", machines::TcpMode::angles, 0.1, true}, PostForm{"fanuc", machines::TcpMode::none, 0, false},
-                                PostForm{"fanuc", machines::TcpMode::none, 0.1, true}, PostForm{"fanuc", machines::TcpMode::angles, 0.1, true},
-                                PostForm{"mitsubishi_m80", machines::TcpMode::none, 0.1, true}, PostForm{"siemens", machines::TcpMode::none, 0.1, false},
-                                PostForm{"siemens", machines::TcpMode::none, 0.1, true}, PostForm{"siemens", machines::TcpMode::angles, 0.1, false},
-                                PostForm{"siemens", machines::TcpMode::vectors, 0.1, false}, PostForm{"siemens", machines::TcpMode::vectors, 0.1, true},
-                                PostForm{"heidenhain", machines::TcpMode::none, 0, false}, PostForm{"heidenhain", machines::TcpMode::angles, 0, false},
-                                PostForm{"heidenhain", machines::TcpMode::angles, 0.1, true}, PostForm{"heidenhain", machines::TcpMode::vectors, 0.1, true}}) {
+      for (const PostForm& f :
+           {PostForm{"linuxcnc", machines::TcpMode::none, 0.1, false},
+            PostForm{"linuxcnc", machines::TcpMode::none, 0.1, true},
+            PostForm{"linuxcnc", machines::TcpMode::angles, 0.1, true},
+            PostForm{"fanuc", machines::TcpMode::none, 0, false}, PostForm{"fanuc", machines::TcpMode::none, 0.1, true},
+            PostForm{"fanuc", machines::TcpMode::angles, 0.1, true},
+            PostForm{"mitsubishi_m80", machines::TcpMode::none, 0.1, true},
+            PostForm{"siemens", machines::TcpMode::none, 0.1, false},
+            PostForm{"siemens", machines::TcpMode::none, 0.1, true},
+            PostForm{"siemens", machines::TcpMode::angles, 0.1, false},
+            PostForm{"siemens", machines::TcpMode::vectors, 0.1, false},
+            PostForm{"siemens", machines::TcpMode::vectors, 0.1, true},
+            PostForm{"heidenhain", machines::TcpMode::none, 0, false},
+            PostForm{"heidenhain", machines::TcpMode::angles, 0, false},
+            PostForm{"heidenhain", machines::TcpMode::angles, 0.1, true},
+            PostForm{"heidenhain", machines::TcpMode::vectors, 0.1, true}}) {
         list.push_back(f);
         list.back().rollover = sense;
       }
@@ -45,12 +59,14 @@ inline const std::vector<PostForm>& rollover_forms() {
 /// Every form, C counted continuously and rolling over.
 inline const std::vector<PostForm>& post_forms() {
   static const std::vector<PostForm> forms = {
-      {"linuxcnc", machines::TcpMode::none, 0.1, false},     {"linuxcnc", machines::TcpMode::none, 0.1, true},      {"linuxcnc", machines::TcpMode::angles, 0.1, true},
-      {"fanuc", machines::TcpMode::none, 0, false},          {"fanuc", machines::TcpMode::none, 0.1, true},         {"fanuc", machines::TcpMode::angles, 0.1, true},
-      {"mitsubishi_m80", machines::TcpMode::none, 0, false}, {"haas", machines::TcpMode::none, 0.1, true},          {"siemens", machines::TcpMode::none, 0.1, false},
-      {"siemens", machines::TcpMode::angles, 0.1, false},
-      {"siemens", machines::TcpMode::vectors, 0.1, false},   {"siemens", machines::TcpMode::vectors, 0.1, true},    {"heidenhain", machines::TcpMode::none, 0, false},
-      {"heidenhain", machines::TcpMode::angles, 0, false},   {"heidenhain", machines::TcpMode::vectors, 0.1, true}, {"apt", machines::TcpMode::vectors, 0.1, true}};
+      {"linuxcnc", machines::TcpMode::none, 0.1, false},     {"linuxcnc", machines::TcpMode::none, 0.1, true},
+      {"linuxcnc", machines::TcpMode::angles, 0.1, true},    {"fanuc", machines::TcpMode::none, 0, false},
+      {"fanuc", machines::TcpMode::none, 0.1, true},         {"fanuc", machines::TcpMode::angles, 0.1, true},
+      {"mitsubishi_m80", machines::TcpMode::none, 0, false}, {"haas", machines::TcpMode::none, 0.1, true},
+      {"siemens", machines::TcpMode::none, 0.1, false},      {"siemens", machines::TcpMode::angles, 0.1, false},
+      {"siemens", machines::TcpMode::vectors, 0.1, false},   {"siemens", machines::TcpMode::vectors, 0.1, true},
+      {"heidenhain", machines::TcpMode::none, 0, false},     {"heidenhain", machines::TcpMode::angles, 0, false},
+      {"heidenhain", machines::TcpMode::vectors, 0.1, true}, {"apt", machines::TcpMode::vectors, 0.1, true}};
   static const std::vector<PostForm> all = [] {
     std::vector<PostForm> list = forms;
     for (const auto& f : rollover_forms()) list.push_back(f);
@@ -73,7 +89,8 @@ inline machines::Machine machine_of(const PostForm& f) {
   return m;
 }
 
-inline Result<joints::AxisProgram> program_of(const PostForm& f, const std::vector<path::ClPath>& paths, int teeth, int stride) {
+inline Result<joints::AxisProgram> program_of(const PostForm& f, const std::vector<path::ClPath>& paths, int teeth,
+                                              int stride) {
   const machines::Machine m = machine_of(f);
   auto dialect = controls::dialect_of(m);
   if (!dialect) return dialect.error();

@@ -22,7 +22,9 @@ std::vector<std::string> lines(const std::string& text) {
   return out;
 }
 
-std::string without_comments(const std::string& line) { return std::regex_replace(line, std::regex("\\([^)]*\\)"), ""); }
+std::string without_comments(const std::string& line) {
+  return std::regex_replace(line, std::regex("\\([^)]*\\)"), "");
+}
 
 std::vector<path::ClPath> three_operations() {
   std::vector<path::ClPath> paths = {sample_path(0.3, 0.2), sample_path(0, 0, 20, 1), sample_path(0, 0, 20, 2)};
@@ -42,8 +44,8 @@ class BothDialects : public testing::TestWithParam<std::pair<const char*, bool>>
   bool fanuc() const { return std::string(GetParam().first) == "fanuc"; }
 };
 INSTANTIATE_TEST_SUITE_P(Dialects, BothDialects,
-                         testing::Values(std::pair{"linuxcnc", false}, std::pair{"linuxcnc", true}, std::pair{"fanuc", false},
-                                         std::pair{"fanuc", true}));
+                         testing::Values(std::pair{"linuxcnc", false}, std::pair{"linuxcnc", true},
+                                         std::pair{"fanuc", false}, std::pair{"fanuc", true}));
 
 // Danger 1 and 3: all modal groups are reset before the first motion, and that motion is a machine retract.
 TEST_P(BothDialects, SafeStart) {
@@ -58,7 +60,8 @@ TEST_P(BothDialects, SafeStart) {
     }
     before += code + " ";
   }
-  for (const char* g : {"G21", "G17", "G90", "G94", "G40", "G49", "G80", "G54"}) EXPECT_NE(before.find(g), std::string::npos) << g;
+  for (const char* g : {"G21", "G17", "G90", "G94", "G40", "G49", "G80", "G54"})
+    EXPECT_NE(before.find(g), std::string::npos) << g;
 }
 
 // Danger 2 and 25: modes at the end and at every tool change.
@@ -131,7 +134,9 @@ TEST_P(BothDialects, ForcedWordsAfterBreaks) {
   bool fresh = true;  // since the tool change or the tooth
   for (const auto& l : lines(text())) {
     const std::string c = without_comments(l);
-    if (c.find("M6") != std::string::npos || l.find("TOOTH") != std::string::npos || c.find(" sub") != std::string::npos) fresh = true;
+    if (c.find("M6") != std::string::npos || l.find("TOOTH") != std::string::npos ||
+        c.find(" sub") != std::string::npos)
+      fresh = true;
     if (c.rfind("G0", 0) == 0 && c.find("G53") == std::string::npos && c.find("G43") == std::string::npos) {
       if (fresh && c.find('A') == std::string::npos && !fanuc()) ADD_FAILURE() << "no rotaries first: " << l;
       fresh = false;
@@ -213,7 +218,8 @@ TEST(NcWriter, LinuxcncKeepsThePathAndCountsWhatItLeaves) {
   counts(sample_path(0.3, 0), 0.0005, usual);
   counts(sample_path(0.3, 0.6), 0.0005, usual);
   m.post.corner_tolerance_mm = 0.0001;
-  counts(sample_path(0.3, 0.6), 0.0001, "(CORNERS WITHIN 0.0001 MM: TOOL ACCELERATION X SERVO PERIOD SQUARED IS AT MOST 0.0004 MM)");
+  counts(sample_path(0.3, 0.6), 0.0001,
+         "(CORNERS WITHIN 0.0001 MM: TOOL ACCELERATION X SERVO PERIOD SQUARED IS AT MOST 0.0004 MM)");
   // Accelerations that are stated and leave more: 3000 mm/s^2 along X, 4000 along Y in 1 ms squared, a quarter of 5 um.
   m.post.corner_tolerance_mm.reset();
   m.tcp = machines::TcpMode::angles;
@@ -240,12 +246,15 @@ TEST(NcReader, G64OfLinuxcncCountsMoreThanItsTolerance) {
     std::string with = text;
     with.replace(with.find("\nG61\n"), 5, "\n" + word);
     double most = 0;
-    const auto s = readback::execute_nc(with, "p.ngc", *control, [&](const readback::ExecutedMove& e) { most = std::max(most, double(e.blend_mm)); });
+    const auto s = readback::execute_nc(
+        with, "p.ngc", *control, [&](const readback::ExecutedMove& e) { most = std::max(most, double(e.blend_mm)); });
     EXPECT_TRUE(s) << s.error().text();
     return most;
   };
   // Tip acceleration a = 2000 mm/s^2, period T = 1 ms, P in mm.
-  const auto bound = [](double a, double t, double tolerance) { return std::pow(std::sqrt(1.06 * tolerance) + t / 2 * std::sqrt(a / 2), 2) + 0.3 * a * t * t; };
+  const auto bound = [](double a, double t, double tolerance) {
+    return std::pow(std::sqrt(1.06 * tolerance) + t / 2 * std::sqrt(a / 2), 2) + 0.3 * a * t * t;
+  };
   EXPECT_NEAR(counted("G64 P0.0003 Q0"), bound(2000, 1e-3, 0.0003), 1e-9);
   EXPECT_NEAR(counted("G64 P0.002 Q0"), bound(2000, 1e-3, 0.002), 1e-9);
   EXPECT_NEAR(counted("G64 P0.002"), bound(2000, 1e-3, 0.002) + 0.002, 1e-9);
