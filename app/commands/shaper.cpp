@@ -51,6 +51,30 @@ const std::vector<std::string>& shaper_outputs() {
   return names;
 }
 
+/// A program by its name and bytes.
+struct NamedProgram {
+  const std::string &name, &bytes;
+};
+
+report::RunReport report_of(const job::Job& job, const machines::ShaperMachine& machine,
+                            const shaper::ShaperSetup& setup, const NamedProgram& program) {
+  report::RunReport report;
+  report.command = "shaper";
+  report.job_name = job.name;
+  report.job_file = job.file;
+  report.machine_name = machine.name;
+  report.machine_file = job.machine.file;
+  report.dialect = machine.dialect;
+  report.assumed = machine.assumed_keys;
+  report.warnings = setup.warnings;
+  report.program_file = program.name;
+  report.program_sha256 = sha256_hex(program.bytes);
+  report.program_bytes = program.bytes.size();
+  report.blocks = static_cast<std::size_t>(std::count(program.bytes.begin(), program.bytes.end(), '\n'));
+  report.feed_minutes = report.total_minutes = setup.total_min();
+  return report;
+}
+
 CommandOutcome run_shaper(const JobRequest& request) {
   app::Progress progress(request.quiet);
   app::StageClock clock(progress);
@@ -84,20 +108,7 @@ CommandOutcome run_shaper(const JobRequest& request) {
     if (!errors.empty()) return failed(std::move(errors));
   }
 
-  report::RunReport report;
-  report.command = "shaper";
-  report.job_name = job.name;
-  report.job_file = job.file;
-  report.machine_name = machine.name;
-  report.machine_file = job.machine.file;
-  report.dialect = machine.dialect;
-  report.assumed = machine.assumed_keys;
-  report.warnings = setup.warnings;
-  report.program_file = program_name;
-  report.program_sha256 = sha256_hex(program);
-  report.program_bytes = program.size();
-  report.blocks = static_cast<std::size_t>(std::count(program.begin(), program.end(), '\n'));
-  report.feed_minutes = report.total_minutes = setup.total_min();
+  report::RunReport report = report_of(job, machine, setup, {program_name, program});
   const auto write = [&](const std::string& name, const std::string& content) -> Status {
     report.files.push_back(name);
     return output->write(name, content);

@@ -142,6 +142,35 @@ void add_directions(Json& json, const RunReport& r) {
   json["tilt"] = {{"mode", fixed ? "fixed" : "simultaneous"}, {"directions", std::move(list)}};
 }
 
+void add_axes(Json& json, const RunReport& r) {
+  Json axes = Json::object();
+  for (const auto& axis : r.axes) {
+    const double f = axis.rotary ? degrees(1.0) : 1.0;
+    Json& entry = axes[std::string(1, axis.letter)];
+    entry = {{"min", axis.min * f}, {"max", axis.max * f}, {"unit", axis.rotary ? "deg" : "mm"}};
+    if (axis.endless()) entry["rolls_over"] = true;
+    else entry["limit"] = {axis.lower_limit * f, axis.upper_limit * f};
+  }
+  json["axes"] = std::move(axes);
+  if (r.poles)
+    json["poles"] = {{"passages_per_tooth", r.poles->passages},
+                     {"option", r.poles->option},
+                     {"axis_change_deg", degrees(r.poles->axis_rad)},
+                     {"tip_change_um", app::um(r.poles->tip_mm)}};
+}
+
+void add_block_times(Json& json, const RunReport& r) {
+  if (!r.block_times) return;
+  const BlockTimes& t = *r.block_times;
+  Json bins = Json::array(), ruled = Json::object();
+  for (std::size_t i = 0; i < t.counts.size(); ++i)
+    bins.push_back(
+        {{"from", std::pow(10.0, t.from_log_ms + t.step_log_ms * static_cast<double>(i))}, {"blocks", t.counts[i]}});
+  for (const auto& [what, blocks] : t.ruled) ruled[what] = blocks;
+  json["block_time_ms"] = {
+      {"least", t.least_ms}, {"median", t.median_ms}, {"ruled_by", std::move(ruled)}, {"histogram", std::move(bins)}};
+}
+
 void add_motion(Json& json, const RunReport& r) {
   if (r.operations.empty()) return;
   json["cl_points"] = r.cl_points;
@@ -171,20 +200,7 @@ void add_motion(Json& json, const RunReport& r) {
     if (t.too_short_mm) tolerances.back()["too_short_um"] = *t.too_short_mm * 1000;
   }
   if (!tolerances.empty()) json["length_tolerance"] = std::move(tolerances);
-  Json axes = Json::object();
-  for (const auto& axis : r.axes) {
-    const double f = axis.rotary ? degrees(1.0) : 1.0;
-    Json& entry = axes[std::string(1, axis.letter)];
-    entry = {{"min", axis.min * f}, {"max", axis.max * f}, {"unit", axis.rotary ? "deg" : "mm"}};
-    if (axis.endless()) entry["rolls_over"] = true;
-    else entry["limit"] = {axis.lower_limit * f, axis.upper_limit * f};
-  }
-  json["axes"] = std::move(axes);
-  if (r.poles)
-    json["poles"] = {{"passages_per_tooth", r.poles->passages},
-                     {"option", r.poles->option},
-                     {"axis_change_deg", degrees(r.poles->axis_rad)},
-                     {"tip_change_um", app::um(r.poles->tip_mm)}};
+  add_axes(json, r);
   json["acceleration_in_times"] = r.has_acceleration;
   if (r.travel_room) {
     const choice::TravelOffer& offer = r.travel_room->offer;
@@ -195,15 +211,7 @@ void add_motion(Json& json, const RunReport& r) {
                            {"on_index_axis", offer.on_index_axis},
                            {"riser", offer.shift_mm.z()}};
   }
-  if (!r.block_times) return;
-  const BlockTimes& t = *r.block_times;
-  Json bins = Json::array(), ruled = Json::object();
-  for (std::size_t i = 0; i < t.counts.size(); ++i)
-    bins.push_back(
-        {{"from", std::pow(10.0, t.from_log_ms + t.step_log_ms * static_cast<double>(i))}, {"blocks", t.counts[i]}});
-  for (const auto& [what, blocks] : t.ruled) ruled[what] = blocks;
-  json["block_time_ms"] = {
-      {"least", t.least_ms}, {"median", t.median_ms}, {"ruled_by", std::move(ruled)}, {"histogram", std::move(bins)}};
+  add_block_times(json, r);
 }
 
 }  // namespace

@@ -40,6 +40,32 @@ void axis_rows(std::string& out, const RunReport& report) {
   }
 }
 
+void proof_rows(std::string& out, const RunReport& report) {
+  if (report.gouge)
+    row(out, "worst gouge",
+        fmt::format("{:.2f} um, proven below {:.2f} um (tolerance {:.2f} um)",
+                    std::max(0.0, report.gouge->measured_mm) * app::kUm,
+                    std::max(0.0, report.gouge->bound_mm) * app::kUm, report.gouge_tolerance_mm * app::kUm));
+  if (report.finished)
+    row(out, "worst left material",
+        fmt::format("{:.2f} um, proven below {:.2f} um", report.finished->max_mm * app::kUm,
+                    report.finished->bound_mm * app::kUm));
+  for (const Finding& f : report.findings)
+    if (!f.label.empty() && f.unfinished.empty()) row(out, f.label, f.row_text());
+  if (report.gouge)
+    row(out, "least clearance", fmt::format("{:.3f} mm (neck, shank, holder)", report.gouge->clearance_mm));
+  for (const auto& v : report.scene) {
+    const std::string place = v.nearest ? fmt::format("{}, op {}, tooth {}, line {}", v.nearest->body,
+                                                      v.nearest->operation, v.nearest->tooth, v.nearest->line)
+                                        : "";
+    row(out, v.name,
+        !v.nearest
+            ? fmt::format("clear by more than {:.3f} mm", v.look_mm)
+            : fmt::format("{}: least gap {:.3f} mm proven ({}), clearance {:.3f} mm", v.clear() ? "clear" : "NOT clear",
+                          std::max(0.0, v.nearest->gap_mm), place, v.required_mm));
+  }
+}
+
 }  // namespace
 
 std::string readable_minutes(double minutes) {
@@ -68,29 +94,7 @@ std::string summary_table(const RunReport& report, bool color) {
     row(out, "verified", color ? fmt::format("{}{}\033[0m", paint, verdict) : std::string(verdict));
   for (const auto& reason : report.reasons) row(out, "  because", reason);
   if (!left.empty()) row(out, "not finished", left);
-  if (report.gouge)
-    row(out, "worst gouge",
-        fmt::format("{:.2f} um, proven below {:.2f} um (tolerance {:.2f} um)",
-                    std::max(0.0, report.gouge->measured_mm) * app::kUm,
-                    std::max(0.0, report.gouge->bound_mm) * app::kUm, report.gouge_tolerance_mm * app::kUm));
-  if (report.finished)
-    row(out, "worst left material",
-        fmt::format("{:.2f} um, proven below {:.2f} um", report.finished->max_mm * app::kUm,
-                    report.finished->bound_mm * app::kUm));
-  for (const Finding& f : report.findings)
-    if (!f.label.empty() && f.unfinished.empty()) row(out, f.label, f.row_text());
-  if (report.gouge)
-    row(out, "least clearance", fmt::format("{:.3f} mm (neck, shank, holder)", report.gouge->clearance_mm));
-  for (const auto& v : report.scene) {
-    const std::string place = v.nearest ? fmt::format("{}, op {}, tooth {}, line {}", v.nearest->body,
-                                                      v.nearest->operation, v.nearest->tooth, v.nearest->line)
-                                        : "";
-    row(out, v.name,
-        !v.nearest
-            ? fmt::format("clear by more than {:.3f} mm", v.look_mm)
-            : fmt::format("{}: least gap {:.3f} mm proven ({}), clearance {:.3f} mm", v.clear() ? "clear" : "NOT clear",
-                          std::max(0.0, v.nearest->gap_mm), place, v.required_mm));
-  }
+  proof_rows(out, report);
   if (!report.operations.empty()) {
     row(out, "cutting time",
         fmt::format("{} (with rapids {})", readable_minutes(report.feed_minutes),

@@ -235,7 +235,20 @@ class BevelGearBuilder {
       }
     }
     g.limits_.cusp_speed_ratio = least_F_;
-    // Just before the end of the trace the convex wall has no regular envelope at its tip: ell(beta) turns back there.
+    end_before_the_trace();
+    if (!(least_F_ > 0.05))
+      refuse("face_width",
+             "face_width = {:.4f}: the cutter centre path has a cusp inside the face (speed ratio {:.4f}, must exceed "
+             "0.05)",
+             p.face_width_mm, least_F_);
+    check_bevel_cusp(g, refusals_, gear_.warnings_);
+  }
+
+  /// Just before the end of the trace the convex wall has no regular envelope at its tip: ell(beta) turns back there.
+  void end_before_the_trace() {
+    auto& g = gear_;
+    const auto& p = g.parameters_;
+    const double m_te = p.outer_transverse_module_mm;
     auto& last = g.halves_.back();
     last.ell_to = std::min(last.ell_to, last.walls[0].trace.R_lim());
     for (const auto& w : last.walls) {
@@ -248,12 +261,6 @@ class BevelGearBuilder {
       for (int k = 0; k <= 400; ++k) farthest = std::max(farthest, w.generatrix(0.2 * k / 400, hi)[0]);
       last.ell_to = std::min(last.ell_to, farthest - kRegularMargin * m_te);
     }
-    if (!(least_F_ > 0.05))
-      refuse("face_width",
-             "face_width = {:.4f}: the cutter centre path has a cusp inside the face (speed ratio {:.4f}, must exceed "
-             "0.05)",
-             p.face_width_mm, least_F_);
-    check_bevel_cusp(g, refusals_, gear_.warnings_);
   }
 
   void regularity() {

@@ -93,15 +93,11 @@ std::pair<const NcBlock*, Diagnostic> NcFlow::fetch(std::size_t line) {
 std::optional<Diagnostic> NcFlow::find_labels() {
   std::vector<std::pair<OWord, std::int64_t>> open;
   std::vector<std::size_t> open_line;
-  bool percent_first = false;
   for (std::size_t i = 0; i < lines_.size(); ++i) {
     const auto first = lines_[i].find_first_not_of(" \t");
     if (first == std::string_view::npos) continue;
     const char c = lines_[i][first];
-    if (c == '%') {
-      percents_.push_back(i);
-      percent_first = percent_first || i == 0;
-    }
+    if (c == '%') percents_.push_back(i);
     if (c != 'o' && c != 'O') continue;
     auto block = parse_nc_block(lines_[i], o_words_);
     if (!block) {
@@ -146,7 +142,12 @@ std::optional<Diagnostic> NcFlow::find_labels() {
     }
   }
   if (!open.empty()) return at(open_line.back() + 1, 1, fmt::format("o{} is never closed", open.back().second));
-  if (percents_.size() == 1 || percents_.size() > 2 || (percents_.size() == 2 && !percent_first))
+  return check_percents();
+}
+
+std::optional<Diagnostic> NcFlow::check_percents() const {
+  const bool first = !percents_.empty() && percents_.front() == 0;
+  if (percents_.size() == 1 || percents_.size() > 2 || (percents_.size() == 2 && !first))
     return at(percents_.back() + 1, 1, "% must stand in the first and in the last line");
   if (!o_words_ && percents_.size() != 2) return at(1, 1, "the program does not stand between % and %");
   return std::nullopt;

@@ -56,6 +56,7 @@ class NcFlow {
   [[nodiscard]] Diagnostic at(std::size_t line, int column, std::string message) const;
   std::pair<const NcBlock*, Diagnostic> fetch(std::size_t line);
   std::optional<Diagnostic> find_labels();
+  [[nodiscard]] std::optional<Diagnostic> check_percents() const;
   Status after_end();
   [[nodiscard]] const double* parameter(int n) const;
   std::optional<Diagnostic> assign(const NcBlock& b);

@@ -67,11 +67,8 @@ class FirstLines {
   std::map<int, std::vector<std::pair<int, int>>> lines_;
 };
 
-}  // namespace
-
-Result<RestartMenu> restart_menu(std::string_view text, const std::string& file, const readback::NcControl& control,
-                                 const joints::AxisProgram& program) {
-  const std::vector<std::string_view> lines = readback::lines_of(text);
+/// The operations that the comments name, without their teeth.
+RestartMenu operations_in(const std::vector<std::string_view>& lines) {
   RestartMenu menu;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     int number = -1;
@@ -88,7 +85,15 @@ Result<RestartMenu> restart_menu(std::string_view text, const std::string& file,
       menu.operations.back().first_tooth = {here.line + 1, number_of(lines[i + 1])};
     }
   }
+  return menu;
+}
 
+}  // namespace
+
+Result<RestartMenu> restart_menu(std::string_view text, const std::string& file, const readback::NcControl& control,
+                                 const joints::AxisProgram& program) {
+  const std::vector<std::string_view> lines = readback::lines_of(text);
+  RestartMenu menu = operations_in(lines);
   std::map<int, std::size_t> teeth;
   for (const auto& op : menu.operations) teeth[op.operation] = static_cast<std::size_t>(program.teeth);
   for (const auto& op : program.operations)

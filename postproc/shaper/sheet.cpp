@@ -93,6 +93,7 @@ std::string header(const ShaperSetup& s) {
   return out;
 }
 
+/// Long because it is the list of the sheet, step after step.
 std::string steps(const ShaperSetup& s) {
   const auto step = [](const std::string& text) { return "<li><span class=box></span>" + text + "</li>\n"; };
   std::string out = "<h2>Steps</h2>\n<ol>\n";
