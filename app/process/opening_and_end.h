@@ -8,6 +8,7 @@
 
 #include "app/base/outcome.h"
 #include "app/base/output_dir.h"
+#include "app/base/stage_clock.h"
 #include "app/process/gear_of_job.h"
 #include "app/report/run_report.h"
 #include "geometry/bevel_gear/gear.h"

@@ -117,13 +117,15 @@ text::NcHeader header_of(const PostRequest& request, const std::vector<std::stri
 Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, const PostRequest& request,
                                    const std::vector<std::string>& assumed, app::OutputDir& output,
                                    app::StageClock& clock) {
-  const auto& [job, title, machine, teeth, body, restart] = request;
+  const job::Job& job = request.job;
+  const machines::Machine& machine = request.machine;
+  const std::optional<joints::ProgramRestart>& restart = request.restart;
   const auto dialect = controls::dialect_of(machine);
   if (!dialect) return located(job, "machine.file", dialect.error());
   auto program = clock.run("axis program", [&] {
     joints::AxisOptions options = controls::axis_options(*dialect, machine);
-    if (job.program.spread_teeth) options.tooth_stride = joints::spread_stride(teeth);
-    return build_axis_program(paths, job.tools, *job.setup, machine, teeth, body, options);
+    if (job.program.spread_teeth) options.tooth_stride = joints::spread_stride(request.teeth);
+    return build_axis_program(paths, job.tools, *job.setup, machine, request.teeth, request.body, options);
   });
   if (!program) return located(job, "setup", program.error());
   PostedProgram posted;

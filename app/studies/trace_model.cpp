@@ -112,7 +112,8 @@ commands::CommandOutcome study_trace_model(const TraceModelRequest& request) {
   app::StageClock clock(progress);
   auto read = process::read_bevel_gear_job(request.job_file, clock);
   if (auto* errors = read.refused()) return commands::failed(std::move(*errors));
-  const auto& [job, gear] = read.value();
+  const job::Job& job = read.value().job;
+  const bevel_gear::BevelGear& gear = read.value().gear;
   const auto maps = clock.run("models", [&] {
     return section_model_maps(
         gear, request.quick ? bevel_gear::SectionModelOptions{9, 13, 0, 0} : bevel_gear::SectionModelOptions{});

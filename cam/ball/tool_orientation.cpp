@@ -330,7 +330,8 @@ Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& che
   out.least_lean_rad = INFINITY;
   out.clearance_mm = kFarthestGap;
   for (std::size_t p = 0; p < made.size(); ++p) {
-    auto& [points, axes] = made[p];
+    auto& points = made[p].points;
+    auto& axes = made[p].axes;
     std::vector<double> gaps(points.size(), kFarthestGap);
     tbb::parallel_for(std::size_t(0), points.size(), [&](std::size_t k) {
       for (const auto& body : check.bodies())

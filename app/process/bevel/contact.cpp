@@ -86,7 +86,8 @@ std::vector<svg::LineChart> charts_of(const PairAnalysis& a) {
                        "The pinion stops at the first pair that touches; jumps of the slope are changes of the pair."};
   svg::LineChart pairs{"Pairs within the compound", "turn of the wheel [deg]", "pairs", {}, {}, false, false, true, ""};
   for (std::size_t w = 0; w < a.walls.size(); ++w) {
-    svg::ChartSeries e{std::string("wall ") + kWall[w], {}, {}}, n{e.name, {}, {}};
+    const std::string name = std::string("wall ") + kWall[w];
+    svg::ChartSeries e{name, {}, {}}, n{name, {}, {}};
     for (const auto& at : a.walls[w].cycle) {
       e.x.push_back(degrees(at.phi_2));
       e.y.push_back((at.error_rad - a.walls[w].error_mean_rad) * 1e6);
