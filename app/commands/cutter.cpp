@@ -26,7 +26,7 @@ process::ValueOrErrors<bevel_gear::FingerCutterDesign> design_for(const job::Job
   if (!p)
     return std::vector{fail_at(job.where("gear.type"),
                                "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear",
-                               process::gear_type(job))};
+                               job.gear_type())};
   auto made = bevel_gear::design_finger_cutter(*p);
   if (auto* design = made.value_if()) return std::move(*design);
   std::vector<Diagnostic> errors;
@@ -145,7 +145,7 @@ process::ValueOrErrors<std::optional<job::Job>> read_other(const CutterRequest& 
   if (!other.bevel_gear())
     return std::vector{fail_at(other.where("gear.type"),
                                "type = \"{}\", but a finger mill makes an equal_base_circle_bevel_gear",
-                               process::gear_type(other))};
+                               other.gear_type())};
   return std::optional<job::Job>(std::move(other));
 }
 

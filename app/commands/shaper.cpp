@@ -82,7 +82,8 @@ CommandOutcome run_shaper(const JobRequest& request) {
   if (!output) return failed(output.error());
   auto read = process::read_face_gear_job(request.job_file, clock);
   if (auto* errors = read.refused()) return failed(std::move(*errors));
-  const auto& [job, gear] = read.value();
+  const job::Job& job = read.value().job;
+  const face_gear::FaceGear& gear = read.value().gear;
   auto loaded = clock.run("machine", [&] { return face::load_shaper_machine(job); });
   if (auto* errors = loaded.refused()) return failed(std::move(*errors));
   const machines::ShaperMachine& machine = loaded.value();

@@ -9,23 +9,6 @@
 namespace toothpath::job {
 namespace {
 
-void read_gear(toml::TableReader& root, Job& job) {
-  auto gear = root.table("gear");
-  auto stock = root.table("stock");
-  if (!gear) {
-    if (!root.has("gear")) root.refuse("gear", "the job lacks the table [gear]");
-    return;
-  }
-  const auto type = gear->word("type", {"face_gear", "equal_base_circle_bevel_gear"});
-  if (!type) return;  // which keys belong here is unknown
-  if (*type == "face_gear") {
-    job.gear = read_face_gear(*gear, stock ? &*stock : nullptr, job.warnings);
-  } else {
-    job.gear = read_bevel_gear(*gear);
-    if (stock) root.refuse("stock", "[stock] belongs to face gears; this gear is {}", *type);
-  }
-}
-
 void read_tools(toml::TableReader& root, Job& job) {
   for (auto& table : root.tables("tool")) {
     tool::ToolAssembly tool = read_tool(table, job.bevel_gear());

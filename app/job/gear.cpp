@@ -1,6 +1,8 @@
 // [gear], [[gear.zone]] and [stock]. What the geometry itself limits (undercut, pointing) is refused by geometry; here
 // stand the bounds of what a number of this kind can mean at all.
 #include <cmath>
+#include <iterator>
+#include <variant>
 
 #include "app/job/tables.h"
 #include "geometry/base/angle.h"
@@ -63,8 +65,7 @@ void read_zones(toml::TableReader& gear, face_gear::FaceGearParameters& result, 
   }
 }
 
-}  // namespace
-
+/// With its [[gear.zone]] tables, and [stock] where there is one.
 face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::TableReader* stock,
                                              std::vector<std::string>& warnings) {
   face_gear::FaceGearParameters p;
@@ -154,6 +155,44 @@ bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear) {
   }
   gear.finish();
   return p;
+}
+
+/// A type of gear in job files.
+struct GearType {
+  const char* word;
+  /// Reads [gear] and, where it belongs to the gear, [stock].
+  void (*read)(toml::TableReader& gear, toml::TableReader* stock, toml::TableReader& root, Job& job);
+};
+
+// A line a type, in the order of the variant `Job::gear`; a type without its line does not compile.
+constexpr GearType kGearTypes[] = {
+    {"face_gear", [](toml::TableReader& gear, toml::TableReader* stock, toml::TableReader&,
+                     Job& job) { job.gear = read_face_gear(gear, stock, job.warnings); }},
+    {"equal_base_circle_bevel_gear",
+     [](toml::TableReader& gear, toml::TableReader* stock, toml::TableReader& root, Job& job) {
+       job.gear = read_bevel_gear(gear);
+       if (stock) root.refuse("stock", "[stock] belongs to face gears; this gear is {}", job.gear_type());
+     }},
+};
+static_assert(std::size(kGearTypes) == std::variant_size_v<decltype(Job::gear)>);
+
+}  // namespace
+
+const char* Job::gear_type() const { return kGearTypes[gear.index()].word; }
+
+void read_gear(toml::TableReader& root, Job& job) {
+  auto gear = root.table("gear");
+  auto stock = root.table("stock");
+  if (!gear) {
+    if (!root.has("gear")) root.refuse("gear", "the job lacks the table [gear]");
+    return;
+  }
+  std::vector<std::string_view> words;
+  for (const GearType& type : kGearTypes) words.emplace_back(type.word);
+  const auto named = gear->word("type", words);
+  if (!named) return;  // which keys belong here is unknown
+  for (const GearType& type : kGearTypes)
+    if (*named == type.word) type.read(*gear, stock ? &*stock : nullptr, root, job);
 }
 
 }  // namespace toothpath::job

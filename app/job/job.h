@@ -78,6 +78,8 @@ struct Job {
 
   /// Position of a key, of the nearest table above it where the key was not written, or of the file.
   [[nodiscard]] SourcePosition where(std::string_view key) const;
+  /// The word of the gear's type, as job files say it.
+  [[nodiscard]] const char* gear_type() const;
   [[nodiscard]] const face_gear::FaceGearParameters* face_gear() const {
     return std::get_if<face_gear::FaceGearParameters>(&gear);
   }

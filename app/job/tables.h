@@ -6,12 +6,8 @@
 
 namespace toothpath::job {
 
-/// [gear] with type = "face_gear", its [[gear.zone]] tables, and [stock] where there is one.
-[[nodiscard]] face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::TableReader* stock,
-                                                           std::vector<std::string>& warnings);
-
-/// [gear] with type = "equal_base_circle_bevel_gear".
-[[nodiscard]] bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear);
+/// [gear] with its type, and [stock] where there is one.
+void read_gear(toml::TableReader& root, Job& job);
 
 /// One [[tool]].
 /// @param bevel  the gear, when it is a bevel gear: a finger mill's flute length defaults to dedendum + profile height

@@ -15,10 +15,6 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-// As in job files. A type of gear without its word does not compile.
-const char* type_word(const face_gear::FaceGearParameters&) { return "face_gear"; }
-const char* type_word(const bevel_gear::BevelGearParameters&) { return "equal_base_circle_bevel_gear"; }
-
 void check_speeds(const job::Job& job, const machines::Machine& machine, std::vector<Diagnostic>& errors) {
   for (std::size_t i = 0; i < job.operations.size(); ++i) {
     const auto& operation = job.operations[i];
@@ -39,12 +35,8 @@ Diagnostic located(const job::Job& job, std::string_view key, Diagnostic diagnos
   return diagnostic;
 }
 
-const char* gear_type(const job::Job& job) {
-  return std::visit([](const auto& gear) { return type_word(gear); }, job.gear);
-}
-
 Diagnostic needs_face_gear(const job::Job& job) {
-  return fail_at(job.where("gear.type"), "type = \"{}\", but this command needs a face_gear", gear_type(job));
+  return fail_at(job.where("gear.type"), "type = \"{}\", but this command needs a face_gear", job.gear_type());
 }
 
 ValueOrErrors<face_gear::FaceGear> make_face_gear(const job::Job& job) {
@@ -65,7 +57,7 @@ ValueOrErrors<bevel_gear::BevelGear> make_bevel_gear(const job::Job& job) {
   const bevel_gear::BevelGearParameters* parameters = job.bevel_gear();
   if (!parameters)
     return std::vector{
-        fail_at(job.where("gear.type"), "type = \"{}\", but a bevel gear is needed here", gear_type(job))};
+        fail_at(job.where("gear.type"), "type = \"{}\", but a bevel gear is needed here", job.gear_type())};
   std::optional<std::size_t> tool;
   for (std::size_t i = job.tools.size(); i-- > 0;)
     if (job.tools[i].type == tool::CutterType::finger_mill) tool = i;

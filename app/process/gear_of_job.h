@@ -15,9 +15,6 @@ namespace toothpath::process {
 template <typename T>
 using ValueOrErrors = Expected<T, std::vector<Diagnostic>>;
 
-/// `gear.type`, as in the job file.
-[[nodiscard]] const char* gear_type(const job::Job& job);
-
 /// The face gear of the job. Refused: a bevel gear; everything that FaceGear::make refuses, all of it, each with its
 /// place.
 [[nodiscard]] ValueOrErrors<face_gear::FaceGear> make_face_gear(const job::Job& job);

@@ -238,6 +238,7 @@ TEST_F(BevelCommand, OneAndTwoThreadsSayTheSame) {
     for (const char* file : {"program.ngc", "tooth.vtp", "setup.html"})
       EXPECT_EQ(file_text(*dir_ / (std::string("one/") + file)), file_text(*dir_ / (std::string("two/") + file)))
           << job << " " << file;
+    EXPECT_NE(file_text(*dir_ / "one/setup.html").find("<td>bevel gear, z "), std::string::npos) << job;
   }
 }
 

@@ -333,6 +333,8 @@ TEST(Run, ASmallGearGoesTheWholeWay) {
        {"program.ngc", "cl.csv", "gear.stl", "tooth.vtp", "inspection.csv", "limits.json", "setup.html"})
     EXPECT_EQ(file_text(dir / (std::string("1/") + name)), file_text(dir / (std::string("2/") + name))) << name;
 
+  EXPECT_NE(file_text(dir / "2/setup.html").find("<td>face gear, z 60, shaper z 20, "), std::string::npos);
+
   // A refused run into the same directory leaves every one of its files, and says whose they are.
   const auto text_before = file_text(dir / "2/report.json");
   const Finished refused = run_program({"run", kBadJobs + "/module_negative.toml", "--out", dir / "2", "--quiet"});

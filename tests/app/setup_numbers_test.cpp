@@ -79,7 +79,7 @@ TEST(SetupSheet, NamesTheCoolantAndItsWords) {
   machines::Machine m = trunnion_machine(0, 0, 0, 0, 1);
   m.dialect = "linuxcnc";
   const auto sheet = [&] {
-    return sheet::setup_sheet(job, sheet::PartOutline{40, 60, 0, -5, -20}, m, report::RunReport{});
+    return sheet::setup_sheet(job, sheet::PartOutline{40, 60, 0, -5, -20, "a gear"}, m, report::RunReport{});
   };
   EXPECT_NE(sheet().find("<tr><td>coolant</td><td>off</td>"), std::string::npos);
   job.coolant = machines::Coolant::mist;
@@ -87,8 +87,7 @@ TEST(SetupSheet, NamesTheCoolantAndItsWords) {
   m.post.coolant[machines::Coolant::through_spindle] = {"M150", "M151"};
   job.coolant = machines::Coolant::through_spindle;
   EXPECT_NE(sheet().find("through_spindle: on with M150, off with M151"), std::string::npos);
-  job.gear = bevel_gear::BevelGearParameters{};
-  EXPECT_NE(sheet().find("bevel gear, z"), std::string::npos);
+  EXPECT_NE(sheet().find("<td>a gear</td>"), std::string::npos);
 }
 
 // A ball that touches a surface everywhere, moved along its axis: no place is cut deeper than the share says.
@@ -105,7 +104,7 @@ TEST(LengthTolerance, NoPlaceIsMovedByMoreThanItsShare) {
   job.operations = {finishing};
   // A valley: normals from 20 to 160 deg about the y axis.
   proof::SurfaceGrid grid;
-  grid.patch = "flank +1";
+  grid.patch = proof::Patch::flank_plus;
   for (int i = 0; i <= 60; ++i) {
     const double angle = radians(20 + i);  // one flank: to 80 deg
     grid.normals.emplace_back(std::cos(angle), 0, std::sin(angle));
@@ -140,7 +139,7 @@ TEST(LengthTolerance, NoPlaceIsMovedByMoreThanItsShare) {
   EXPECT_LE(highest, (0.004 + 0.002 + 0.001 - 0.004) * 1.01);
   EXPECT_GT(highest, 0.98 * (0.004 + 0.002 + 0.001 - 0.004));
   // A corner that the ball does not reach does not count; a root that the tip faces does.
-  grid.patch = "root";
+  grid.patch = proof::Patch::root;
   grid.normals.push_back(axis);
   grid.points.push_back(Vec3::Zero());
   grid.reachable.push_back(0);

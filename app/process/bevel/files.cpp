@@ -33,6 +33,11 @@ Result<std::string> inspection_text(const bevel_gear::BevelGear& gear) {
   return bevel_inspection_csv(*points);
 }
 
+std::string gear_words(const bevel_gear::BevelGearParameters& p) {
+  return fmt::format("bevel gear, z {}, {}outer transverse module {:g} mm", p.teeth,
+                     p.mate_teeth > 0 ? fmt::format("mate z {}, ", p.mate_teeth) : "", p.outer_transverse_module_mm);
+}
+
 }  // namespace
 
 joints::ClearanceBody clearance_body(const bevel_gear::BevelGear& g) {
@@ -71,7 +76,8 @@ sheet::PartOutline outline(const bevel_gear::BevelGear& g) {
   const auto& p = g.parameters();
   const joints::ClearanceBody body = clearance_body(g);
   const double inner = std::max(0.0, g.R_i() * g.sin_delta() - p.dedendum_mm * g.cos_delta());
-  return {inner, body.radius_mm, body.z_min_mm, g.R_e() * g.cos_delta() + p.dedendum_mm * g.sin_delta(), body.z_max_mm};
+  return {inner,         body.radius_mm, body.z_min_mm, g.R_e() * g.cos_delta() + p.dedendum_mm * g.sin_delta(),
+          body.z_max_mm, gear_words(p)};
 }
 
 std::string limits_json(const bevel_gear::BevelGear& g) {

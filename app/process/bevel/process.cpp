@@ -149,8 +149,7 @@ class BevelProcess final : public process::GearProcess {
     for (const auto& [given, option] :
          {std::pair(asked.pinion_teeth.has_value(), "--pinion-teeth"), {asked.as_cut, "--as-cut"}})
       if (given)
-        return fail_at(job_.where("gear.type"), "type = \"{}\", but {} needs a face_gear", process::gear_type(job_),
-                       option);
+        return fail_at(job_.where("gear.type"), "type = \"{}\", but {} needs a face_gear", job_.gear_type(), option);
     return Ok{};
   }
   [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked,

@@ -20,6 +20,19 @@
 namespace toothpath::face {
 namespace {
 
+std::string gear_words(const face_gear::FaceGearParameters& p) {
+  const char* plane = p.module_plane == face_gear::ModulePlane::normal ? "normal" : "transverse";
+  std::string text = fmt::format(
+      "face gear, z {}, shaper z {}, {} module {:g} mm, pressure angle {:g} deg, shaft angle {:g} deg", p.teeth,
+      p.shaper_teeth, plane, p.module_mm, degrees(p.pressure_angle_rad), degrees(p.shaft_angle_rad));
+  if (p.offset_mm != 0) text += fmt::format(", offset {:g} mm", p.offset_mm);
+  for (const auto& zone : p.zones)
+    text += fmt::format(
+        "; radius {:g} to {:g} mm, {}", zone.inner_radius_mm, zone.outer_radius_mm,
+        zone.helix_angle_rad == 0 ? "spur" : fmt::format("shaper helix {:g} deg", degrees(zone.helix_angle_rad)));
+  return text;
+}
+
 cut::CutSurfaceOptions surface_options(const process::FlankGrid& grid) {
   cut::CutSurfaceOptions options;
   if (grid.rows > 0) options.flank_rows = grid.rows;
@@ -108,8 +121,12 @@ class FaceProcess final : public process::GearProcess {
   }
   [[nodiscard]] sheet::PartOutline outline() const override {
     const double root = gear_.lowest_root();
-    return {gear_.inner_radius(), gear_.outer_radius(), gear_.blank_top(), root,
-            root - 2.5 * gear_.parameters().module_mm};
+    return {gear_.inner_radius(),
+            gear_.outer_radius(),
+            gear_.blank_top(),
+            root,
+            root - 2.5 * gear_.parameters().module_mm,
+            gear_words(gear_.parameters())};
   }
   [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override {
     const face_gear::FaceGearParameters& p = gear_.parameters();
@@ -148,7 +165,7 @@ class FaceProcess final : public process::GearProcess {
                                         {asked.wheel_axial_error_mm.has_value(), "--wheel-axial-error"}})
       if (given)
         return fail_at(job_.where("gear.type"), "type = \"{}\", but {} needs an equal_base_circle_bevel_gear",
-                       process::gear_type(job_), option);
+                       job_.gear_type(), option);
     return Ok{};
   }
   [[nodiscard]] process::ValueOrErrors<process::ContactFound> contact(const process::ContactAsked& asked,

@@ -33,7 +33,8 @@ void add_details(const proof::UnreachedResult& u, report::Finding& finding) {
   detail("share_percent", 100 * u.share);
   detail("height_um", app::um(u.height_mm));
   detail("largest_ball_mm", u.left() ? report::Finding::Detail(u.largest_ball_mm) : report::Finding::Detail(nullptr));
-  detail("active_flank", u.active ? report::Finding::Detail(u.active->patch) : report::Finding::Detail(nullptr));
+  detail("active_flank", u.active ? report::Finding::Detail(std::string(to_string(u.active->patch)))
+                                  : report::Finding::Detail(nullptr));
   if (!u.active) return;
   detail("active_flank_height_um", app::um(u.active->height_mm));
   detail("active_flank_zone", std::size_t(u.active->zone));

@@ -13,7 +13,8 @@ constexpr double kPageWidth = 182, kSketchHeight = 62;  // mm of paper
 }  // namespace
 
 std::string part_sketch(const joints::Setup& setup, const PartOutline& part, const machines::Machine& machine) {
-  const auto [r_in, r_out, top, root, bottom] = part;
+  const double r_in = part.inner_radius, r_out = part.outer_radius;
+  const double top = part.tooth_top, root = part.root, bottom = part.bottom;
   const double up = setup.axis_up ? 1.0 : -1.0;
   const Vec3 at = setup.origin_mm, offset = setup.work_offset_at_mm;
   const auto z_of = [&](double z) { return at.z() + up * z; };
@@ -24,16 +25,16 @@ std::string part_sketch(const joints::Setup& setup, const PartOutline& part, con
     xs.push_back(axis.point_mm.x());
     zs.push_back(axis.point_mm.z());
   }
-  const auto [x_min, x_max] = std::minmax_element(xs.begin(), xs.end());
-  const auto [z_min, z_max] = std::minmax_element(zs.begin(), zs.end());
-  const double margin = 0.12 * std::max(*x_max - *x_min, *z_max - *z_min) + 1;
-  const double height = *z_max - *z_min + 2 * margin;
+  const double x_min = *std::min_element(xs.begin(), xs.end()), x_max = *std::max_element(xs.begin(), xs.end());
+  const double z_min = *std::min_element(zs.begin(), zs.end()), z_max = *std::max_element(zs.begin(), zs.end());
+  const double margin = 0.12 * std::max(x_max - x_min, z_max - z_min) + 1;
+  const double height = z_max - z_min + 2 * margin;
   // The view box is as wide as the page, so that lines and letters have the same size on every sheet.
   const double scale =
-      std::max((*x_max - *x_min + 2 * margin) / kPageWidth, height / kSketchHeight);  // mm of the machine a mm of paper
-  const double width = scale * kPageWidth, unit = 1.1 * scale, left = (width - (*x_max - *x_min)) / 2;
-  const auto px = [&](double x) { return x - *x_min + left; };
-  const auto py = [&](double z) { return *z_max - z + margin; };
+      std::max((x_max - x_min + 2 * margin) / kPageWidth, height / kSketchHeight);  // mm of the machine a mm of paper
+  const double width = scale * kPageWidth, unit = 1.1 * scale, left = (width - (x_max - x_min)) / 2;
+  const auto px = [&](double x) { return x - x_min + left; };
+  const auto py = [&](double z) { return z_max - z + margin; };
   std::string svg = fmt::format(
       "<svg viewBox='0 0 {:.3f} {:.3f}' role=img aria-label='part in the machine, X to the right, Z up' "
       "style='width:100%;max-height:{:g}mm' font-size='{:.3f}' font-family='sans-serif'>",

@@ -27,25 +27,6 @@ std::string coordinates(const Vec3& v) {
   return fmt::format("X {}  Y {}  Z {}", millimetres(v.x()), millimetres(v.y()), millimetres(v.z()));
 }
 
-// What the gear is, in the words of its drawing. A type of gear without these words does not compile.
-std::string gear_words(const bevel_gear::BevelGearParameters& p) {
-  return fmt::format("bevel gear, z {}, {}outer transverse module {:g} mm", p.teeth,
-                     p.mate_teeth > 0 ? fmt::format("mate z {}, ", p.mate_teeth) : "", p.outer_transverse_module_mm);
-}
-
-std::string gear_words(const face_gear::FaceGearParameters& p) {
-  const char* plane = p.module_plane == face_gear::ModulePlane::normal ? "normal" : "transverse";
-  std::string text = fmt::format(
-      "face gear, z {}, shaper z {}, {} module {:g} mm, pressure angle {:g} deg, shaft angle {:g} deg", p.teeth,
-      p.shaper_teeth, plane, p.module_mm, degrees(p.pressure_angle_rad), degrees(p.shaft_angle_rad));
-  if (p.offset_mm != 0) text += fmt::format(", offset {:g} mm", p.offset_mm);
-  for (const auto& zone : p.zones)
-    text += fmt::format(
-        "; radius {:g} to {:g} mm, {}", zone.inner_radius_mm, zone.outer_radius_mm,
-        zone.helix_angle_rad == 0 ? "spur" : fmt::format("shaper helix {:g} deg", degrees(zone.helix_angle_rad)));
-  return text;
-}
-
 /// What cools, and the words that the operator finds in the program.
 std::string coolant_text(machines::Coolant coolant, const machines::Machine& machine) {
   const auto dialect = controls::dialect_of(machine);
@@ -60,7 +41,7 @@ void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part,
   const joints::Setup& setup = *job.setup;
   sheet.heading("Gear, machine and work offset");
   sheet.begin_table({"what", "value"});
-  sheet.row({"gear", std::visit([](const auto& gear) { return gear_words(gear); }, job.gear)});
+  sheet.row({"gear", part.words});
   sheet.row({"heights, gear Z", fmt::format("tooth tops {}, deepest root {}, both from the gear origin",
                                             millimetres(part.tooth_top), millimetres(part.root))});
   sheet.row({"machine", fmt::format("{} ({})", machine.name, job.machine.file)});

@@ -13,6 +13,7 @@ namespace toothpath::sheet {
 struct PartOutline {
   double inner_radius = 0, outer_radius = 0;
   double tooth_top = 0, root = 0, bottom = 0;  ///< z
+  std::string words;                           ///< what the gear is, as on its drawing
 };
 
 /// Machine, work offset, tools with lengths and run times, operations, axis ranges, every assumed value, warnings, and
