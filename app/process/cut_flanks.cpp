@@ -5,8 +5,8 @@ namespace toothpath::process {
 std::vector<CutFlanks::Flank> flanks_of(const std::vector<proof::SurfaceGrid>& surface) {
   std::vector<CutFlanks::Flank> flanks;
   for (const proof::SurfaceGrid& g : surface) {
-    if (!g.patch.starts_with("flank") || g.excess_um.empty()) continue;
-    CutFlanks::Flank flank{g.zone, g.patch.ends_with("+1") ? 1 : -1, g.rows, g.columns, g.points, g.normals, {}};
+    if (flank_side(g.patch) == 0 || g.excess_um.empty()) continue;
+    CutFlanks::Flank flank{g.zone, flank_side(g.patch), g.rows, g.columns, g.points, g.normals, {}};
     for (const float um : g.excess_um.back()) flank.deviation_mm.push_back(double(um) / 1000);
     flanks.push_back(std::move(flank));
   }

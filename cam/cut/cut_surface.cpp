@@ -33,6 +33,17 @@ bool is_flank(face_gear::SpacePiece piece) {
   return piece == face_gear::SpacePiece::flank_plus || piece == face_gear::SpacePiece::flank_minus;
 }
 
+proof::Patch patch_of(face_gear::SpacePiece piece) {
+  switch (piece) {
+    case face_gear::SpacePiece::flank_plus: return proof::Patch::flank_plus;
+    case face_gear::SpacePiece::fillet_plus: return proof::Patch::fillet_plus;
+    case face_gear::SpacePiece::root: return proof::Patch::root;
+    case face_gear::SpacePiece::fillet_minus: return proof::Patch::fillet_minus;
+    case face_gear::SpacePiece::flank_minus: return proof::Patch::flank_minus;
+  }
+  return proof::Patch::root;
+}
+
 class Meter {
  public:
   Meter(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
@@ -103,7 +114,7 @@ class Meter {
   void grid(const ZonePlaces& places, int zone, face_gear::SpacePiece piece) {
     proof::SurfaceGrid g;
     g.zone = zone;
-    g.patch = to_string(piece);
+    g.patch = patch_of(piece);
     const bool flank = is_flank(piece);
     g.rows = flank ? o_.flank_rows : piece == face_gear::SpacePiece::root ? o_.root_rows : o_.fillet_rows;
     g.columns = o_.columns;
@@ -241,7 +252,7 @@ class Meter {
     u.height_mm = std::max(u.height_mm, height);
     if (!is_flank(s.piece) || s.u > active_end_[std::size_t(zone)]) return;
     if (!u.active || height > u.active->height_mm)
-      u.active = {height, zone, to_string(s.piece), std::hypot(s.contact.p.x(), s.contact.p.y()), s.contact.p.z()};
+      u.active = {height, zone, patch_of(s.piece), std::hypot(s.contact.p.x(), s.contact.p.y()), s.contact.p.z()};
   }
 
   static void finish(proof::ExcessResult& r, const std::vector<float>& values_um) {

@@ -54,7 +54,7 @@ json grid_json(const proof::SurfaceGrid& grid) {
     reachable = pack_floats({flags}, 1);
   }
   return {{"zone", grid.zone},
-          {"patch", svg::valid_utf8(grid.patch)},
+          {"patch", to_string(grid.patch)},
           {"rows", grid.rows},
           {"columns", grid.columns},
           {"points", pack_floats(columns_of(grid.points))},

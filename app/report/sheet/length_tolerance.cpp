@@ -55,8 +55,7 @@ std::vector<report::LengthTolerance> length_tolerances(const job::Job& job, cons
       if (zone == axes.end()) continue;
       const double share = largest_share(zone->second, grid);
       t.share = std::max(t.share, share);
-      if (grid.patch.find("fillet") == std::string::npos && grid.patch.find("root") == std::string::npos)
-        t.flank_share = std::max(t.flank_share, share);
+      if (!below_the_flanks(grid.patch)) t.flank_share = std::max(t.flank_share, share);
     }
     if (axes.empty()) continue;
     const double by = std::max(kLeastShare, t.share);

@@ -59,7 +59,8 @@ Foot surface(int patch, double t, double r) {
   return out;
 }
 
-constexpr const char* kPatches[] = {"flank -1", "fillet -1", "root", "fillet +1", "flank +1"};
+constexpr proof::Patch kPatches[] = {proof::Patch::flank_minus, proof::Patch::fillet_minus, proof::Patch::root,
+                                     proof::Patch::fillet_plus, proof::Patch::flank_plus};
 constexpr double kZone[2][2] = {{66, 76}, {80, 90}};
 
 proof::SurfaceGrid grid(int zone, int patch, int fields) {
@@ -269,7 +270,7 @@ proof::GougeResult gouge(const page::ReportPage& page, bool gouged) {
     proof::WorstPlace place;
     place.depth_mm = 0.0064 - 0.0006 * k;
     place.body = k == 5 ? tool::Body::shank : tool::Body::ball;
-    place.patch = kPatches[patch];
+    place.patch = to_string(kPatches[patch]);
     place.operation = finishing.cl.operation;
     place.tooth = 3 * k, place.zone = k % 2;
     const std::size_t record = finishing.cl.records.size() * static_cast<std::size_t>(k + 1) / 9;
@@ -380,7 +381,6 @@ page::ReportPage synthetic_page(const SyntheticPageOptions& options) {
     page.reasons = page.warnings = page.assumed = {nasty};
     page.summary = {{nasty, nasty}};
     page.figures[0] = {nasty, nasty, nasty, nasty, State::bad};
-    for (auto& g : page.surface) g.patch = nasty;
     for (auto& p : page.paths) p.cl.operation_type = nasty;
     for (auto& t : page.tools) t.name = nasty;
     for (auto& w : page.gouge->worst) w.patch = nasty;

@@ -40,7 +40,8 @@ TEST(CutSurface, AgreesWithDenselySampledTubes) {
             least = std::min(least, (g.points[k] - (1 - t) * m.tip_from - t * m.tip_to - R * m.axis_from).norm() - R);
           }
         }
-        EXPECT_NEAR(double(g.excess_um[n][k]) / 1000, least, 1e-5 + 1e-6 * least) << g.patch << " operation " << n;
+        EXPECT_NEAR(double(g.excess_um[n][k]) / 1000, least, 1e-5 + 1e-6 * least)
+            << to_string(g.patch) << " operation " << n;
       }
     }
 }

@@ -145,8 +145,8 @@ TEST(Unreached, TheActiveFlankIsNamed) {
   ASSERT_TRUE(u.active);
   EXPECT_GT(u.active->height_mm, u.limit_mm);
   EXPECT_LE(u.active->height_mm, u.height_mm);
-  const int side = u.active->patch == "flank +1" ? 1 : -1;
-  EXPECT_TRUE(side == 1 || u.active->patch == "flank -1");
+  const int side = flank_side(u.active->patch);
+  EXPECT_NE(side, 0);
   const auto c = face_gear::invert_flank(job.gear.rings()[0].surface, side, u.active->radius_mm, u.active->z_mm, {});
   ASSERT_TRUE(c);
   EXPECT_LE(c->theta, face_gear::active_roll_parameter(job.gear.parameters(), 0) + 1e-9);

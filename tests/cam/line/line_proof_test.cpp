@@ -249,8 +249,8 @@ TEST_P(LineProof, CutSurface) {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double tau = GetParam().tool.half_angle_rad, r_0 = 0.5 * GetParam().tool.diameter_mm;
   for (const auto& g : cut.grids) {
-    if (g.patch.rfind("flank", 0) != 0) continue;
-    const int side = g.patch == "flank +1" ? 1 : -1;
+    const int side = flank_side(g.patch);
+    if (side == 0) continue;
     double most = -INFINITY, least = INFINITY;
     for (std::size_t k = 0; k < g.points.size(); ++k) {
       if (g.normals[k] == Vec3::Zero()) continue;
@@ -260,7 +260,7 @@ TEST_P(LineProof, CutSurface) {
     const auto truth = swept(flank_points(p, GetParam().parameters, g.zone, side, 25, 17), {r_0, tau, 0, 0},
                              pass_of(p, g.zone, side).way);
     std::printf("%-10s zone %d %s: left %.3f um (brute force %.3f), least %.3f um (%.3f), %.2f s\n",
-                GetParam().name.c_str(), g.zone, g.patch.c_str(), most, 1e3 * truth.left, least, -1e3 * truth.gouge,
+                GetParam().name.c_str(), g.zone, to_string(g.patch), most, 1e3 * truth.left, least, -1e3 * truth.gouge,
                 seconds);
     EXPECT_NEAR(most, 1e3 * truth.left, 0.15);
     EXPECT_NEAR(least, -1e3 * truth.gouge, 0.15);
