@@ -6,6 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mode=(-i)
 [[ ${1:-} != --check ]] || mode=(--dry-run --Werror)
 status=0
-git ls-files -z -- '*.h' '*.cpp' '*.inl' | xargs -0 -P 2 -n 60 clang-format "${mode[@]}" || status=1
+find app cam geometry machines postproc tests -name '*.h' -print0 -o -name '*.cpp' -print0 -o -name '*.inl' -print0 |
+  xargs -0 -r -P 2 -n 60 clang-format "${mode[@]}" || status=1
 ((status == 0)) || echo "not formatted: tools/format.sh mends it" >&2
 exit $status
