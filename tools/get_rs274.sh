@@ -108,10 +108,12 @@ while libraries=$(absent "$work/keep"); [ -n "$libraries" ]; do
   [ "$libraries" != "$libraries_then" ] || fail "no package that linuxcnc-uspace depends on has: $(echo "$libraries" | tr '\n' ' ')"
 done
 
-# The interpreter starts Python, whose own modules came with its library where this machine has none.
+# The interpreter starts Python, whose own modules came with its library where this machine has none. Where it has a part of
+# them, the packages bring the rest: both parts together are what it starts with.
 for modules in "$work"/x/usr/lib/python3.*; do
   [ -d "$modules" ] || continue
   mkdir -p "$work/keep/python3/lib"
+  [ ! -d "/usr/lib/${modules##*/}" ] || cp -r "/usr/lib/${modules##*/}" "$work/keep/python3/lib/"
   cp -r "$modules" "$work/keep/python3/lib/"
 done
 works "$work/keep" || { cat "$work/log" >&2; fail "what was fetched does not run"; }
