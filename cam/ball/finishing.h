@@ -30,7 +30,7 @@ struct FinishingOptions {
 struct FinishingPasses {
   std::vector<BallPass> passes;  ///< in cutting order
   double scallop_max_mm = 0;     ///< highest cusp found between two passes, flanks, fillets and root
-  double crest_lean = 0;         ///< greatest lean of a crest (cam/pass_count.h)
+  double crest_lean = 0;         ///< greatest lean of a crest (cam/ball/pass_count.h)
   double worst_chord_mm = 0;     ///< largest sag found while placing points
   bool corner_passes = false;    ///< the ball is too large for the fillet: extra passes run along the corners
 };

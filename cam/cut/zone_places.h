@@ -8,7 +8,8 @@
 
 namespace toothpath::cut {
 
-/// Between tip edge and tip edge of one zone, from its inner to its outer radius; sigma as in cam/offset_sheet.h.
+/// Between tip edge and tip edge of one zone, from its inner to its outer radius; sigma as in
+/// geometry/face_gear/offset_sheet.h.
 class ZonePlaces {
  public:
   /// Holds a reference to `part`, which must have the zone.
