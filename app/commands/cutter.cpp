@@ -8,6 +8,7 @@
 #include "app/report/page/study_page.h"
 #include "app/report/sheet/cutter_sheet.h"
 #include "cam/finger/milling.h"
+#include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 #include "geometry/bevel_gear/forces.h"
 #include "geometry/bevel_gear/limits.h"
@@ -100,7 +101,7 @@ std::vector<sheet::JudgedCutter> judge_mills(const bevel_gear::BevelGear& gear, 
                                              const job::Job* other) {
   std::vector<sheet::JudgedCutter> mills;
   for (const auto& tool : job.tools)
-    if (tool.type == tool::CutterType::finger_mill)
+    if (tool::serves(tool, tool::CutterUse::tooth_form))
       mills.push_back({fmt::format("tool {}", tool.number),
                        bevel_gear::judge_finger_cutter(gear, finger::finger_cutter_data(tool))});
   if (!other) return mills;
@@ -110,7 +111,7 @@ std::vector<sheet::JudgedCutter> judge_mills(const bevel_gear::BevelGear& gear, 
   const double R_0 = R_e / std::pow(std::cos(p.outer_spiral_angle_rad), 2),
                kappa_v = std::abs(delta - kPi / 2) < 1e-15 ? 0.0 : std::cos(delta) / (R_0 * std::sin(delta));
   for (const auto& tool : other->tools) {
-    if (tool.type != tool::CutterType::finger_mill) continue;
+    if (!tool::serves(tool, tool::CutterUse::tooth_form)) continue;
     const bevel_gear::FingerCutterData d = finger::finger_cutter_data(tool);
     mills.push_back({fmt::format("tool {} of {}", tool.number, other->name),
                      judge_finger_profile(gear, d,

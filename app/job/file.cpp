@@ -1,6 +1,7 @@
 #include "app/job/file.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "app/job/tables.h"
 #include "app/job/words.h"
@@ -10,8 +11,9 @@ namespace toothpath::job {
 namespace {
 
 void read_tools(toml::TableReader& root, Job& job) {
+  const ToolContext context{job.bevel_gear(), std::filesystem::path(job.file).parent_path().string()};
   for (auto& table : root.tables("tool")) {
-    tool::ToolAssembly tool = read_tool(table, job.bevel_gear());
+    tool::ToolAssembly tool = read_tool(table, context, job.warnings);
     const auto same = [&](const tool::ToolAssembly& other) { return other.number == tool.number && tool.number > 0; };
     if (std::any_of(job.tools.begin(), job.tools.end(), same))
       table.refuse("number", "number = {} is used by two tools", tool.number);
@@ -66,6 +68,7 @@ JobOrErrors parse_job(std::string_view text, const std::string& file) {
   for (auto& table : operations)
     job.operations.push_back(read_operation(table, job.tools, job.bevel_gear() != nullptr));
   check_milling(root, job);
+  if (findings.errors.empty() && !job.bevel_gear()) check_regions(root, job.operations);
   root.finish();
 
   if (!findings.errors.empty()) {

@@ -1,18 +1,17 @@
-// [machine], [setup], [[tool]], [[operation]], [coolant], [verify], [program], [shaping] and [contact].
+// [machine], [setup], [[operation]], [coolant], [verify], [program], [shaping] and [contact].
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <regex>
 
 #include "app/job/tables.h"
+#include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 #include "machines/machine_file.h"
 
 namespace toothpath::job {
 namespace {
 
-constexpr toml::Range kToolLength{0, 2000, " mm", true};
-constexpr toml::Range kToolDiameter{0.01, 500, " mm"};
 constexpr toml::Range kSpeed{1, 500000, " 1/min"};
 constexpr toml::Range kFeed{0, 100000, " mm/min", true};
 constexpr toml::Range kStep{0.001, 100, " mm"};
@@ -23,50 +22,6 @@ constexpr toml::Range kPosition{-100000, 100000, " mm"};
 constexpr double kMostAxisLean = 60;  // deg
 constexpr double kAxisKeyGap = 0.01;  // mm between two keys of a tool axis
 constexpr std::size_t kMostAxisKeys = 1000;
-
-std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
-  std::vector<tool::HolderSegment> result;
-  const toml::TomlValue* value = table.value("holder");
-  if (!value) {
-    table.refuse("holder", "[{}] lacks the key \"holder\"", table.path());
-    return result;
-  }
-  const auto wrong = [&] {
-    table.refuse(
-        "holder",
-        "holder must be an array of [lower diameter, upper diameter, height] in mm, each above 0 and at most 2000");
-    return std::vector<tool::HolderSegment>{};
-  };
-  const toml::TomlArray* segments = value->array();
-  if (!segments || segments->values.empty() || segments->values.size() > 100) return wrong();
-  for (const auto& segment : segments->values) {
-    const toml::TomlArray* numbers = segment.array();
-    if (!numbers || numbers->values.size() != 3) return wrong();
-    double read[3] = {};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto& data = numbers->values[i].data;
-      if (const auto* real = std::get_if<double>(&data)) read[i] = *real;
-      else if (const auto* whole = std::get_if<std::int64_t>(&data)) read[i] = static_cast<double>(*whole);
-      if (!(read[i] > 0 && read[i] <= 2000)) return wrong();
-    }
-    result.push_back({read[0], read[1], read[2]});
-  }
-  return result;
-}
-
-void read_finger_profile(toml::TableReader& table, const bevel_gear::BevelGearParameters* bevel,
-                         tool::ToolAssembly& tool) {
-  tool.module_mm = table.number("module", {0.01, 100, " mm"}).value_or(0);
-  tool.tip_radius_mm = table.number("tip_radius", {0, 100, " mm"}).value_or(0);
-  tool.rack_depth_mm = table.number("rack_depth", kToolLength).value_or(0);
-  tool.profile_height_mm = table.number("profile_height", kToolLength).value_or(0);
-  tool.flute_length_mm = (bevel ? bevel->dedendum_mm : 0) + tool.profile_height_mm;
-  if (const auto flute = table.if_present("flute_length", [&] { return table.number("flute_length", kToolLength); }))
-    tool.flute_length_mm = *flute;
-  if (table.value("diameter"))
-    table.refuse("diameter",
-                 "diameter contradicts type = \"finger_mill\": its width follows from module and profile_height");
-}
 
 /// Three finite numbers of an array; nothing where it is something else.
 std::optional<std::array<double, 3>> three_numbers(const toml::TomlValue& value) {
@@ -135,19 +90,105 @@ void read_tool_axis(toml::TableReader& table, path::MillingOperation& operation)
                  "tool_axis_plus and tool_axis_minus stand together: the other is missing");
 }
 
+/// The regions that an operation cuts; all where it does not say.
+path::ByRegion<bool> read_regions(toml::TableReader& table) {
+  path::ByRegion<bool> regions{{true, true, true}};
+  if (!table.has("regions")) return regions;
+  const auto names = table.ascii_list("regions");
+  if (!names) return regions;
+  regions = {};
+  for (const std::string& name : *names) {
+    const auto* region = std::find_if(path::kRegions.begin(), path::kRegions.end(),
+                                      [&](path::Region r) { return name == to_string(r); });
+    if (region == path::kRegions.end())
+      table.refuse("regions", "regions: \"{}\" is none of \"flank\", \"fillet\", \"root\"", name);
+    else regions[*region] = true;
+  }
+  if (names->empty()) table.refuse("regions", "regions = [] cuts nothing: leave the key out for all of them");
+  return regions;
+}
+
+/// One cusp height for all regions, or one for each of them.
+void read_scallop(toml::TableReader& table, path::MillingOperation& operation) {
+  const toml::TomlValue* value = table.value("scallop");
+  if (!value || value->type() != toml::TomlType::table) {
+    operation.scallop_mm = table.number("scallop", kScallop).value_or(0);
+    return;
+  }
+  auto heights = table.table("scallop");
+  if (!heights) return;
+  operation.scallops_mm.emplace();
+  for (const path::Region region : path::kRegions) {
+    const char* name = to_string(region);
+    if (!operation.regions[region]) {
+      if (heights->value(name)) heights->refuse(name, "scallop.{} is asked, but regions leaves the {} out", name, name);
+      continue;
+    }
+    const double height = heights->number(name, kScallop).value_or(0);
+    (*operation.scallops_mm)[region] = height;
+    operation.scallop_mm = std::max(operation.scallop_mm, height);
+  }
+  heights->finish();
+}
+
 path::MillingOperation read_ball_operation(toml::TableReader& table, path::OperationType type) {
   path::MillingOperation operation;
   if (type == path::OperationType::roughing) {
     operation.step_down_mm = table.number("step_down", kStep).value_or(0);
     operation.step_over_mm = table.number("step_over", kStep).value_or(0);
   } else {
-    operation.scallop_mm = table.number("scallop", kScallop).value_or(0);
+    operation.regions = read_regions(table);
+    read_scallop(table, operation);
     read_tool_axis(table, operation);
   }
   if (type != path::OperationType::finishing)
     operation.allowance_mm = table.number("allowance", kAllowance).value_or(0);
-  if (const auto climb = table.if_present("climb", [&] { return table.boolean("climb"); })) operation.climb = *climb;
   return operation;
+}
+
+path::MillingOperation read_line_operation(toml::TableReader& table) {
+  path::MillingOperation operation;
+  operation.regions = {{true, false, false}};
+  if (const auto allowance = table.if_present("allowance", [&] { return table.number("allowance", kAllowance); }))
+    operation.allowance_mm = *allowance;
+  operation.strips = table.if_present("strips", [&] { return table.integer("strips", {1, path::kMostStrips}); });
+  operation.left_mm = table.if_present("left", [&] { return table.number("left", kScallop); });
+  if (const auto word = table.if_present("rotaries", [&] { return table.word("rotaries", {"both", "one"}); }))
+    operation.rotaries = *word == "both" ? path::MovingRotaries::both : path::MovingRotaries::one;
+  return operation;
+}
+
+struct OperationWord {
+  const char* word;
+  path::OperationType type;
+  tool::CutterUse needs;
+  bool bevel_gear;
+};
+constexpr OperationWord kOperationWords[] = {
+    {"roughing", path::OperationType::roughing, tool::CutterUse::layers, false},
+    {"semi_finishing", path::OperationType::semi_finishing, tool::CutterUse::ball_end, false},
+    {"finishing", path::OperationType::finishing, tool::CutterUse::ball_end, false},
+    {"line_milling", path::OperationType::line_milling, tool::CutterUse::side, false},
+    {"finger_roughing", path::OperationType::finger_roughing, tool::CutterUse::tooth_form, true},
+    {"finger_finishing", path::OperationType::finger_finishing, tool::CutterUse::tooth_form, true}};
+
+/// Nothing where the type is none of those that mill such a gear.
+const OperationWord* read_type(toml::TableReader& table, bool bevel_gear) {
+  std::vector<std::string_view> words;
+  for (const auto& entry : kOperationWords)
+    if (entry.bevel_gear == bevel_gear) words.emplace_back(entry.word);
+  const auto word = table.word("type", words);
+  if (!word) return nullptr;
+  return std::find_if(std::begin(kOperationWords), std::end(kOperationWords),
+                      [&](const OperationWord& entry) { return *word == entry.word; });
+}
+
+/// "ball_end_mill or tapered_ball_end_mill".
+std::string words_that_serve(tool::CutterUse use) {
+  std::string text;
+  for (const auto& kind : tool::cutter_kinds())
+    if (kind.serves(use)) text += (text.empty() ? "" : " or ") + std::string(kind.word);
+  return text;
 }
 
 /// Cutting steps and cusps larger than the tool itself cannot be meant.
@@ -168,43 +209,9 @@ void compare_with_tool(toml::TableReader& table, const path::MillingOperation& o
 
 }  // namespace
 
-tool::ToolAssembly read_tool(toml::TableReader& table, const bevel_gear::BevelGearParameters* bevel) {
-  tool::ToolAssembly tool;
-  tool.number = table.integer("number", {1, 9999}).value_or(0);
-  const auto type = table.word("type", {"ball_end_mill", "finger_mill"});
-  tool.shank_diameter_mm = table.number("shank_diameter", kToolDiameter).value_or(0);
-  const auto length = table.number("length", kToolLength);
-  const auto stick_out = table.number("stick_out", kToolLength);
-  tool.length_mm = length.value_or(0);
-  tool.stick_out_mm = stick_out.value_or(0);
-  tool.holder = read_holder(table);
-  if (const auto teeth = table.if_present("teeth", [&] { return table.integer("teeth", {1, 100}); }))
-    tool.teeth = *teeth;
-  if (length && stick_out && *stick_out > *length)
-    table.refuse("stick_out", "stick_out = {} mm exceeds length = {} mm", *stick_out, *length);
-  if (!type) return tool;  // which other keys belong here is unknown
-  if (*type == "finger_mill") {
-    tool.type = tool::CutterType::finger_mill;
-    read_finger_profile(table, bevel, tool);
-  } else {
-    const auto diameter = table.number("diameter", kToolDiameter);
-    const auto flute = table.number("flute_length", kToolLength);
-    tool.diameter_mm = diameter.value_or(0);
-    tool.flute_length_mm = flute.value_or(0);
-    if (diameter && flute && *flute < *diameter / 2)
-      table.refuse("flute_length", "flute_length = {} mm is below {} mm, half the diameter", *flute, *diameter / 2);
-  }
-  if (stick_out && tool.flute_length_mm > *stick_out)
-    table.refuse(table.has("flute_length") ? "flute_length" : "stick_out",
-                 "flute_length = {} mm exceeds stick_out = {} mm", tool.flute_length_mm, *stick_out);
-  table.finish();
-  return tool;
-}
-
 path::MillingOperation read_operation(toml::TableReader& table, const std::vector<tool::ToolAssembly>& tools,
                                       bool bevel_gear) {
-  const auto name = bevel_gear ? table.word("type", {"finger_roughing", "finger_finishing"})
-                               : table.word("type", {"roughing", "semi_finishing", "finishing"});
+  const OperationWord* word = read_type(table, bevel_gear);
   path::MillingOperation operation;
   const tool::ToolAssembly* tool = nullptr;
   if (const auto number = table.integer("tool", {1, 9999})) {
@@ -218,32 +225,41 @@ path::MillingOperation read_operation(toml::TableReader& table, const std::vecto
   if (const auto given =
           table.if_present("chord_tolerance", [&] { return table.number("chord_tolerance", kChordTolerance); }))
     chord = *given;
-  if (!name) return operation;
-  if (*name == "finger_roughing" || *name == "finger_finishing") {
-    operation.type =
-        *name == "finger_roughing" ? path::OperationType::finger_roughing : path::OperationType::finger_finishing;
-    if (operation.type == path::OperationType::finger_roughing)
-      operation.ridge_mm = table.number("ridge", {0.001, 10, " mm"}).value_or(0);
-  } else {
-    const auto type = *name == "roughing"         ? path::OperationType::roughing
-                      : *name == "semi_finishing" ? path::OperationType::semi_finishing
-                                                  : path::OperationType::finishing;
-    operation = read_ball_operation(table, type);
-    operation.type = type;
-  }
+  if (!word) return operation;
+  if (word->type == path::OperationType::finger_roughing)
+    operation.ridge_mm = table.number("ridge", {0.001, 10, " mm"}).value_or(0);
+  else if (word->type == path::OperationType::line_milling) operation = read_line_operation(table);
+  else if (!word->bevel_gear) operation = read_ball_operation(table, word->type);
+  if (!word->bevel_gear)
+    if (const auto climb = table.if_present("climb", [&] { return table.boolean("climb"); })) operation.climb = *climb;
+  operation.type = word->type;
   operation.speed_rpm = speed;
   operation.feed_mm_min = feed;
   operation.chord_tolerance_mm = chord;
   if (tool) {
     operation.tool = static_cast<int>(tool - tools.data());
-    const bool finger = tool->type == tool::CutterType::finger_mill;
-    if (finger != bevel_gear)
-      table.refuse("tool", "tool = {} is a {}, but {} needs a {}", tool->number,
-                   finger ? "finger_mill" : "ball_end_mill", *name, finger ? "ball_end_mill" : "finger_mill");
+    if (!tool::serves(*tool, word->needs))
+      table.refuse("tool", "tool = {} is a {}, but {} needs a {}", tool->number, tool::kind_of(*tool).word, word->word,
+                   words_that_serve(word->needs));
     else compare_with_tool(table, operation, *tool);
   }
   table.finish();
   return operation;
+}
+
+void check_regions(toml::TableReader& root, const std::vector<path::MillingOperation>& operations) {
+  const bool finished = std::any_of(operations.begin(), operations.end(), [](const auto& o) { return o.finishes(); });
+  if (!finished) return;
+  std::string missing;
+  for (const path::Region region : path::kRegions)
+    if (!path::finisher_of(operations, region))
+      missing += (missing.empty() ? "" : ", ") + std::string(to_string(region));
+  if (!missing.empty())
+    root.refuse(
+        "operation",
+        "the finishing operations leave out: {}; every region (flank, fillet, root) needs one that finishes it: "
+        "a finishing with that region, for the flank also a line_milling without allowance",
+        missing);
 }
 
 joints::Setup read_setup(toml::TableReader& table) {
@@ -251,6 +267,7 @@ joints::Setup read_setup(toml::TableReader& table) {
   if (const auto origin = table.numbers("origin", 3, kPosition))
     setup.origin_mm = Vec3((*origin)[0], (*origin)[1], (*origin)[2]);
   if (const auto axis = table.word("axis", {"up", "down"})) setup.axis_up = *axis == "up";
+  setup.pivot_error_mm = table.if_present("pivot_error", [&] { return table.number("pivot_error", {0, 1, " mm"}); });
   if (const auto name = table.text("work_offset")) {
     static const std::regex kOffset("[A-Z]?[0-9]{1,4}(\\.[0-9])?( ?P[0-9]{1,3})?");
     if (std::regex_match(*name, kOffset)) setup.work_offset = *name;

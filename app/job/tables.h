@@ -9,14 +9,23 @@ namespace toothpath::job {
 /// [gear] with its type, and [stock] where there is one.
 void read_gear(toml::TableReader& root, Job& job);
 
-/// One [[tool]].
-/// @param bevel  the gear, when it is a bevel gear: a finger mill's flute length defaults to dedendum + profile height
-[[nodiscard]] tool::ToolAssembly read_tool(toml::TableReader& table, const bevel_gear::BevelGearParameters* bevel);
+/// What a [[tool]] is read in.
+struct ToolContext {
+  const bevel_gear::BevelGearParameters* bevel = nullptr;  ///< the gear, when it is a bevel gear: a finger mill's flute
+                                                           ///< length defaults to dedendum + profile height
+  std::string directory;                                   ///< of the job: files that it names are looked up there
+};
+/// One [[tool]]. @param warnings  located remarks join them
+[[nodiscard]] tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& context,
+                                           std::vector<std::string>& warnings);
 
 /// One [[operation]]; its `tool` becomes an index into `tools`.
 /// @param bevel_gear  which operations fit: finger operations for bevel gears, ball operations for face gears
 [[nodiscard]] path::MillingOperation read_operation(toml::TableReader& table,
                                                     const std::vector<tool::ToolAssembly>& tools, bool bevel_gear);
+
+/// Refused, at the operations: regions that no finishing operation covers, where anything finishes at all.
+void check_regions(toml::TableReader& root, const std::vector<path::MillingOperation>& operations);
 
 [[nodiscard]] joints::Setup read_setup(toml::TableReader& table);
 [[nodiscard]] shaper::Shaping read_shaping(toml::TableReader& table);

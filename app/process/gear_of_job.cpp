@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "cam/finger/milling.h"
+#include "cam/tool/cutters.h"
 #include "machines/machine_file.h"
 #include "postproc/controls/of_machine.h"
 
@@ -60,7 +61,7 @@ ValueOrErrors<bevel_gear::BevelGear> make_bevel_gear(const job::Job& job) {
         fail_at(job.where("gear.type"), "type = \"{}\", but a bevel gear is needed here", job.gear_type())};
   std::optional<std::size_t> tool;
   for (std::size_t i = job.tools.size(); i-- > 0;)
-    if (job.tools[i].type == tool::CutterType::finger_mill) tool = i;
+    if (tool::serves(job.tools[i], tool::CutterUse::tooth_form)) tool = i;
   for (const auto& operation : job.operations)
     if (operation.type == path::OperationType::finger_finishing) tool = static_cast<std::size_t>(operation.tool);
   if (!tool)

@@ -21,7 +21,13 @@ double blend_read_back(const readback::ReadBack& read) {
 }  // namespace
 
 proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double measured_mm, std::string note) {
-  return {source, predicted_mm * app::kUm, measured_mm * app::kUm, std::move(note)};
+  return {source, predicted_mm * app::kUm, measured_mm * app::kUm, true, std::move(note)};
+}
+
+proof::LedgerEntry stated_entry(proof::ErrorSource source, const std::optional<double>& stated_mm, std::string counted,
+                                const std::string& missing) {
+  if (stated_mm) return {source, *stated_mm * app::kUm, 0, true, std::move(counted)};
+  return {source, 0, 0, false, "not counted: " + missing};
 }
 
 double rotary_rounding(const joints::AxisProgram& program) {

@@ -18,6 +18,11 @@ namespace toothpath::process {
 [[nodiscard]] proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double measured_mm,
                                        std::string note = {});
 
+/// A source that no program shows: what the job states is predicted, nothing is measured.
+/// @param missing  named as not counted where the job states nothing: the key that would
+[[nodiscard]] proof::LedgerEntry stated_entry(proof::ErrorSource source, const std::optional<double>& stated_mm,
+                                              std::string counted, const std::string& missing);
+
 /// Largest error of the tool axis from rounding the words of both rotaries, rad.
 [[nodiscard]] double rotary_rounding(const joints::AxisProgram& program);
 

@@ -1,21 +1,31 @@
 #include "app/process/proof_limits.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "geometry/base/angle.h"
+#include "postproc/controls/of_machine.h"
 
 namespace toothpath::process {
 namespace {
 
 constexpr double kProofShare = 0.1;  // of the gouge tolerance
 
-/// With a ball mill the last operation must be the finishing one; the walls of a finger mill are those of its last
-/// finishing operation, whatever cuts the root afterwards.
-std::optional<double> left_limit(const job::Job& job) {
+/// The walls of a finger mill are those of its last finishing operation, whatever cuts the root afterwards.
+std::optional<double> left_of_fingers(const job::Job& job) {
   std::optional<double> left;
-  for (const path::MillingOperation& o : job.operations) {
+  for (const path::MillingOperation& o : job.operations)
     if (o.type == path::OperationType::finger_finishing) left = o.chord_tolerance_mm + kFingerMargin;
-    else if (o.type == path::OperationType::finishing) left = proof::most_left_mm(o);
-    else if (o.type != path::OperationType::finger_roughing) left.reset();
-  }
+  return left;
+}
+
+/// Of a face gear: the last operation must be a finishing one, and each region is judged by the one that finishes it.
+path::ByRegion<std::optional<double>> left_in_regions(const job::Job& job) {
+  path::ByRegion<std::optional<double>> left;
+  if (job.operations.empty() || !job.operations.back().finishes()) return left;
+  for (const path::Region region : path::kRegions)
+    if (const auto n = path::finisher_of(job.operations, region))
+      left[region] = proof::most_left_mm(job.operations[*n], region);
   return left;
 }
 
@@ -26,8 +36,17 @@ proof::ProofLimits proof_limits(const job::Job& job, double proof_mm) {
   limits.gouge_mm = job.verify.gouge_tolerance_mm;
   limits.proof_mm = std::min(proof_mm, kProofShare * limits.gouge_mm);
   if (job.verify.clearance_mm) limits.clearance_mm = *job.verify.clearance_mm;
-  limits.left_mm = left_limit(job);
+  limits.left_mm = left_of_fingers(job);
+  limits.left_in_mm = left_in_regions(job);
+  for (const auto& left : limits.left_in_mm.value)
+    if (left) limits.left_mm = std::max(limits.left_mm.value_or(0), *left);
   return limits;
+}
+
+double word_rounding(const machines::Machine& machine, double radius_mm) {
+  const auto dialect = controls::dialect_of(machine);
+  const joints::WordFormat format = dialect ? dialect->format : joints::WordFormat{};
+  return 0.5 * (std::pow(10.0, -format.linear_decimals) + radians(std::pow(10.0, -format.rotary_decimals)) * radius_mm);
 }
 
 }  // namespace toothpath::process

@@ -3,6 +3,7 @@
 
 #include "app/job/job.h"
 #include "cam/proof/limits.h"
+#include "machines/machine.h"
 
 namespace toothpath::process {
 
@@ -13,5 +14,8 @@ inline constexpr double kFingerMargin = 1.5e-3;
 /// @param proof_mm how far a proven bound may lie above what was measured; no more than a tenth of the gouge tolerance
 /// is taken
 [[nodiscard]] proof::ProofLimits proof_limits(const job::Job& job, double proof_mm = proof::ProofLimits{}.proof_mm);
+
+/// What rounding the words of a machine's programs may cost at this radius about the gear axis, mm.
+[[nodiscard]] double word_rounding(const machines::Machine& machine, double radius_mm);
 
 }  // namespace toothpath::process

@@ -76,13 +76,16 @@ void add_findings(Json& json, const RunReport& r) {
 
 /// Of one tooth space.
 void add_passes(Json& json, const RunReport& r) {
-  for (const PassReport& p : r.passes)
-    json["passes"].push_back({{"op", p.operation},
-                              {"zone", p.zone},
-                              {"pass", p.pass},
-                              {"name", p.name},
-                              {"length", p.length_mm},
-                              {"points", p.points}});
+  for (const PassReport& p : r.passes) {
+    Json pass = {{"op", p.operation}, {"zone", p.zone},        {"pass", p.pass},
+                 {"name", p.name},    {"length", p.length_mm}, {"points", p.points}};
+    if (p.side) {
+      pass["flank"] = p.side->flank;
+      pass["strip"] = p.side->strip;
+      pass["misfit_um"] = app::um(p.side->misfit_mm);
+    }
+    json["passes"].push_back(std::move(pass));
+  }
 }
 
 Json meeting_json(const clearance::MeshMeeting& m) {
@@ -171,6 +174,17 @@ void add_block_times(Json& json, const RunReport& r) {
       {"least", t.least_ms}, {"median", t.median_ms}, {"ruled_by", std::move(ruled)}, {"histogram", std::move(bins)}};
 }
 
+/// What the side of a mill leaves by its form, beside the operation that uses it.
+void add_sides(Json& operations, const RunReport& r) {
+  for (Json& operation : operations)
+    for (const PassReport& p : r.passes) {
+      if (!p.side || operation["op"] != p.operation) continue;
+      operation["misfit_um"] = std::max(operation.value("misfit_um", 0.0), app::um(p.side->misfit_mm));
+      operation["strips"] = std::max(operation.value("strips", 0), p.side->strip + 1);
+      operation["rotaries"] = p.side->rotaries;
+    }
+}
+
 void add_motion(Json& json, const RunReport& r) {
   if (r.operations.empty()) return;
   json["cl_points"] = r.cl_points;
@@ -187,6 +201,7 @@ void add_motion(Json& json, const RunReport& r) {
                           {"cl_points", o.cl_points},
                           {"cutting_minutes", o.feed_minutes},
                           {"rapid_minutes", o.rapid_minutes}});
+  add_sides(operations, r);
   json["operations"] = std::move(operations);
   if (r.tooth_stride != 1) json["tooth_order"] = {{"order", "spread"}, {"stride", r.tooth_stride}, {"teeth", r.teeth}};
   if (r.restart) json["restart"] = {{"op", r.restart->operation}, {"tooth", r.restart->tooth}};
@@ -243,6 +258,7 @@ std::string report_json(const RunReport& r) {
     for (const auto& entry : r.ledger) {
       Json& source = ledger[to_string(entry.source)];
       source = {{"predicted", entry.predicted_um}, {"measured", entry.measured_um}};
+      if (!entry.counted) source["counted"] = false;
       if (!entry.note.empty()) source["note"] = entry.note;
     }
     json["ledger"] = std::move(ledger);

@@ -55,6 +55,17 @@ struct PolesReport {
 /// The same in one line, for page and set-up sheet.
 [[nodiscard]] std::string poles_text(const PolesReport& poles);
 
+/// A pass with the side of a mill along a flank.
+struct SidePass {
+  int flank = 1, strip = 0;
+  std::string rotaries;  ///< which of them move
+  double misfit_mm = 0;
+  struct Station {
+    double r_mm = 0, lean_rad = 0, tilt_rad = 0, misfit_mm = 0;
+  };
+  std::vector<Station> stations;  ///< from the inner end to the outer
+};
+
 /// One pass of an operation in one zone.
 struct PassReport {
   int operation = 0, zone = 0, pass = 0;
@@ -62,6 +73,7 @@ struct PassReport {
   bool outward = false;  ///< away from the apex
   double length_mm = 0;
   std::size_t points = 0;
+  std::optional<SidePass> side = {};  ///< of a pass with the side of a mill
 };
 
 /// Where the part has the most room, and set-up origin and work offset there.

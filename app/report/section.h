@@ -5,14 +5,17 @@
 #include <string>
 #include <vector>
 
+#include "app/report/svg/chart.h"
+
 namespace toothpath::report {
 
 struct Section {
   std::string title;
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
-  std::string note;  ///< below the table
-  std::string id;    ///< its anchor on the page; empty: it stands on the set-up sheet alone
+  std::string note;                         ///< below the table
+  std::string id;                           ///< its anchor on the page; empty: it stands on the set-up sheet alone
+  std::vector<svg::LineChart> charts = {};  ///< on the page, above the table
 };
 
 }  // namespace toothpath::report

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "app/job/file.h"
@@ -291,7 +292,9 @@ process::ValueOrErrors<DhfgStudy> parse_dhfg_study(std::string_view text, const 
   study.name = root.text("name").value_or("");
   if (auto table = root.table("study")) read_study(*table, study);
   else if (!root.has("study")) root.refuse("study", "the study lacks the table [study]");
-  for (auto& table : root.tables("tool")) study.tools.push_back(job::read_tool(table, nullptr));
+  std::vector<std::string> warnings;  // of tools: a study has no place for them
+  const job::ToolContext context{nullptr, std::filesystem::path(file).parent_path().string()};
+  for (auto& table : root.tables("tool")) study.tools.push_back(job::read_tool(table, context, warnings));
   for (auto& table : root.tables("operation"))
     study.operations.push_back(job::read_operation(table, study.tools, false));
   root.finish();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cam/ball/plan.h"
+#include "cam/plan/face_gear.h"
 #include "geometry/base/angle.h"
 #include "geometry/contact/tooth_contact.h"
 
@@ -87,9 +87,9 @@ MillingTime mill(const DhfgStudy& study, const face_gear::FaceGear& gear) {
     return time;
   }
   const analytic::GearDistance part(gear, ball::reach_of(study.tools));
-  ball::PlanOptions options;
+  plan::Options options;
   options.limits.gouge_mm = 1.0;  // paths are timed, not cut: coarse chords are no refusal
-  const auto planned = ball::plan_face_gear(part, study.tools, study.operations, options);
+  const auto planned = plan::plan_face_gear(part, study.tools, study.operations, options);
   if (const auto* refusal = planned.refused()) {
     time.refusal = refusal->key + ": " + refusal->diagnostic.message;
     return time;

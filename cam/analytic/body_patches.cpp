@@ -63,6 +63,13 @@ const char* BodyPatches::name(std::size_t index) const {
   return cell.surface == BodySurface::sheet ? to_string(blocks_[cell.block].piece) : to_string(cell.surface);
 }
 
+bool BodyPatches::on_flank(std::size_t index) const {
+  const Cell& cell = cells_[index];
+  if (cell.surface != BodySurface::sheet) return false;
+  const auto piece = blocks_[cell.block].piece;
+  return piece == face_gear::SpacePiece::flank_plus || piece == face_gear::SpacePiece::flank_minus;
+}
+
 void BodyPatches::add_block(face_gear::SpacePiece piece, const std::vector<SheetCell>& cells) {
   if (cells.empty()) return;
   Block block;

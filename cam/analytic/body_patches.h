@@ -79,6 +79,7 @@ class BodyPatches {
   [[nodiscard]] double search_margin() const { return search_margin_; }
   [[nodiscard]] bool on_sheet(std::size_t cell) const { return cells_[cell].surface == BodySurface::sheet; }
   [[nodiscard]] const char* name(std::size_t cell) const;
+  [[nodiscard]] bool on_flank(std::size_t cell) const;
 
   [[nodiscard]] std::array<BodyQuad, 2> halved(std::size_t cell, const BodyQuad& quad) const;
   [[nodiscard]] BodyHull outline(std::size_t cell, const BodyQuad& quad) const;

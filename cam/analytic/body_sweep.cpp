@@ -175,6 +175,7 @@ class Sweep {
         cell = {zone, tooth, 0, std::cos(tooth * pitch), std::sin(tooth * pitch)};
       cell.cell = std::size_t(key & 0xffffffff);
       const auto& patches = part_.patches(zone);
+      if (o_.flanks_only && !patches.on_flank(cell.cell)) continue;
       const Vec3 c = cell.placed(patches.centre(cell.cell)), a = first(c), b = last(c);
       const double arm = std::sqrt(std::max(a.squaredNorm(), b.squaredNorm()));
       const double away = 0.5 * (b - a).norm() + slack(arm, 1) + patches.radius(cell.cell);

@@ -38,6 +38,7 @@ struct SweptGapOptions {
                                                             ///< was found, but for the motion's own deviations
   double proof_mm = 0.01;                                   ///< else within this
   bool touching = false;         ///< the body may touch: tangent planes where it comes nearest
+  bool flanks_only = false;      ///< gaps to flanks; everything else is not looked at
   double settled_mm = INFINITY;  ///< a bound above this is good enough, however much larger the least gap is
 };
 

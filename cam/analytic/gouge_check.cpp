@@ -155,9 +155,7 @@ class Chunk {
 
 GougeCheck::GougeCheck(const GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
                        GougeCheckOptions options)
-    : part_(part), options_(options) {
-  for (const auto& t : tools) tools_.push_back(tool::proof_tool(t));
-}
+    : GougeCheck(part, tool::proof_tools(tools), options) {}
 
 GougeCheck::GougeCheck(const GearDistance& part, std::vector<tool::ProofTool> tools, GougeCheckOptions options)
     : part_(part), tools_(std::move(tools)), options_(options) {}

@@ -35,7 +35,8 @@ class OpenEnd {
     const double inward = inner_ ? 1 : -1;
     if (inward * (*closed - *opened) < kShortestPass) return {};
     int count = 0;
-    while (count < kMostPasses && left_between(count, *opened) > kCuspAim * o_.scallop_mm) ++count;
+    while (count < kMostPasses && left_between(count, *opened) > kCuspAim * o_.scallop_mm[path::Region::fillet])
+      ++count;
     std::vector<BallPass> out;
     for (int i = 1; i <= count; ++i)
       if (auto pass = make_pass(double(i) / count, *closed)) out.push_back(std::move(*pass));

@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -45,12 +44,20 @@ class FinishingPlanner {
   using Place = std::function<double(double)>;  ///< sigma over the centre radius
   using Chain = std::vector<Place>;             ///< neighbouring passes
 
-  /// The whole sheet as one: from both tips downwards, in turn, so that a climbing pass on one flank leads to a
-  /// climbing pass on the other. (Counts of single flanks vary more along the tooth than the count of the whole space
-  /// does.)
+  /// The asked regions of the sheet, neighbouring ones as one: from both tips downwards, in turn, so that a climbing
+  /// pass on one flank leads to a climbing pass on the other. (Counts of single flanks vary more along the tooth than
+  /// the count of the whole space does.)
   void passes_over_all() {
-    Chain chain = drawn_together<1>([this] { return std::array{chain_over_all()}; })[0];
-    note_cusps(chain);
+    const std::vector<Chain> chains = drawn_together([this] {
+      std::vector<Chain> laid;
+      for (const auto& [from, to] : stretches()) laid.push_back(chain_between(from, to));
+      return laid;
+    });
+    Chain chain;
+    for (const Chain& c : chains) {
+      note_cusps(c);
+      chain.insert(chain.end(), c.begin(), c.end());
+    }
     const std::size_t all = chain.size(), on_plus = passes_of_plus(chain);
     for (std::size_t i = 0; i < std::max(on_plus, all - on_plus); ++i) {
       if (i < on_plus) add_pass(chain[i], true);
@@ -58,14 +65,31 @@ class FinishingPlanner {
     }
   }
 
-  [[nodiscard]] Chain chain_over_all() const {
-    const auto& totals = count_.totals();
-    const int passes = std::max(2, int(std::ceil(most_on_ring(totals) - 1e-9)));
+  /// Ends in sigma of what is covered.
+  [[nodiscard]] std::vector<std::pair<double, double>> stretches() const {
+    std::vector<std::pair<double, double>> out;
+    for (int piece = 0; piece < 5; ++piece) {
+      if (!o_.regions[FinishingOptions::region_at(piece + 0.5)]) continue;
+      if (!out.empty() && out.back().second == piece) out.back().second = piece + 1;
+      else out.emplace_back(piece, piece + 1);
+    }
+    return out;
+  }
+
+  [[nodiscard]] Chain chain_between(double from, double to) const {
+    const std::size_t n = sheet_.stations().size();
+    std::vector<double> begin(n), counts(n);
+    for (std::size_t j = 0; j < n; ++j) {
+      begin[j] = count_.count_at(j, from);
+      counts[j] = count_.count_at(j, to) - begin[j];
+    }
+    const int least = from == 0 && to == 5 ? 2 : 1;
+    const int passes = std::max(least, int(std::ceil(most_on_ring(counts) - 1e-9)));
     Chain chain;
     for (int index = 0; index < passes; ++index) {
       const double share = (index + 0.5) / passes;
       std::vector<double> sigma;
-      for (std::size_t j = 0; j < totals.size(); ++j) sigma.push_back(count_.sigma_at(j, share * totals[j]));
+      for (std::size_t j = 0; j < n; ++j) sigma.push_back(count_.sigma_at(j, begin[j] + share * counts[j]));
       chain.push_back([this, sigma](double r) { return smooth(sigma, station_coordinate(r)); });
     }
     return chain;
@@ -106,12 +130,13 @@ class FinishingPlanner {
     return lines;
   }
 
-  /// The cusps between the passes of a chain that are higher than `above` on the ring, also between the stations; one
-  /// list a pair.
-  [[nodiscard]] std::vector<std::vector<HighCusp>> cusps_above(const Chain& chain, double above) const {
+  /// The cusps between the passes of a chain that are higher than a share of what is asked there, on the ring, also
+  /// between the stations; one list a pair.
+  [[nodiscard]] std::vector<std::vector<HighCusp>> cusps_above(const Chain& chain, double share) const {
+    if (chain.empty()) return {};
     std::vector<std::vector<std::optional<PassLine>>> lines(chain.size());
     tbb::parallel_for(std::size_t(0), chain.size(), [&](std::size_t i) { lines[i] = lines_of(chain[i]); });
-    std::vector<std::vector<HighCusp>> out(chain.size() - 1);  // a chain has one pass at least
+    std::vector<std::vector<HighCusp>> out(chain.size() - 1);
     tbb::parallel_for(std::size_t(0), chain.size() - 1, [&](std::size_t i) {
       for (int k = 1; k < samples(); ++k) {
         const auto &a = lines[i][std::size_t(k)], &b = lines[i + 1][std::size_t(k)];
@@ -120,7 +145,7 @@ class FinishingPlanner {
         if (flat && k % 2 != 0) continue;  // the flanks bend slowly
         const double r = sample_radius(k);
         const Crest crest = count_.cusp(*a, *b, r, sheet_.gaps(r));
-        if (crest.height_mm > above)
+        if (crest.height_mm > share * o_.scallop(a->sigma, b->sigma))
           out[i].push_back({r, std::min(a->sigma, b->sigma), std::max(a->sigma, b->sigma), crest});
       }
     });
@@ -153,17 +178,17 @@ class FinishingPlanner {
   /// Lays chains with `lay`, draws the passes together where a cusp is too high and lays them anew. A place where the
   /// surface bends sharply would draw all passes together along the whole tooth: of all rounds the one with the fewest
   /// passes is taken, those counted that must then stand between two others.
-  template <std::size_t N, typename Lay>
-  [[nodiscard]] std::array<Chain, N> drawn_together(const Lay& lay) {
-    std::array<Chain, N> best;
+  template <typename Lay>
+  [[nodiscard]] std::vector<Chain> drawn_together(const Lay& lay) {
+    std::vector<Chain> best;
     std::size_t fewest = SIZE_MAX;
     for (int round = 0; round <= kDrawRounds; ++round) {
-      std::array<Chain, N> chains = lay();
+      std::vector<Chain> chains = lay();
       std::vector<HighCusp> high;
       std::size_t passes = 0;
       for (const Chain& chain : chains) {
         passes += chain.size();
-        for (const auto& pair : cusps_above(chain, o_.scallop_mm)) {
+        for (const auto& pair : cusps_above(chain, 1)) {
           passes += pair.empty() ? 0 : 1;
           high.insert(high.end(), pair.begin(), pair.end());
         }
@@ -181,7 +206,7 @@ class FinishingPlanner {
 
   [[nodiscard]] std::vector<HighCusp> high_cusps(const Chain& chain) const {
     std::vector<HighCusp> all;
-    for (const auto& pair : cusps_above(chain, o_.scallop_mm)) all.insert(all.end(), pair.begin(), pair.end());
+    for (const auto& pair : cusps_above(chain, 1)) all.insert(all.end(), pair.begin(), pair.end());
     return all;
   }
   void note_cusps(const Chain& chain) {
@@ -198,7 +223,7 @@ class FinishingPlanner {
       if (!close_gaps_once(chain)) return;
   }
   [[nodiscard]] bool close_gaps_once(Chain& chain) const {
-    const auto high = cusps_above(chain, o_.scallop_mm);
+    const auto high = cusps_above(chain, 1);
     Chain closed;
     for (std::size_t i = 0; i < chain.size(); ++i) {
       closed.push_back(chain[i]);
@@ -277,33 +302,51 @@ class FinishingPlanner {
     std::vector<CornerPlace> plus, minus;
   };
   /// The passes of the plus flank and of the minus flank, each from its tip down to its corner, which is the last one.
-  [[nodiscard]] std::array<Chain, 2> chains_to_corners(const Corners& corners) const {
+  [[nodiscard]] std::vector<Chain> chains_to_corners(const Corners& corners) const {
     const std::size_t n = sheet_.stations().size();
     const auto& totals = count_.totals();
-    std::vector<double> a(n), c(n);  // counts of the plus flank and of the minus flank, tip to corner
+    std::vector<double> begin_a(n), begin_c(n), a(n),
+        c(n);  // counts from where a flank's own passes begin to its corner
     for (std::size_t j = 0; j < n; ++j) {
-      a[j] = count_.count_at(j, corners.plus[j].from);
-      c[j] = totals[j] - count_.count_at(j, corners.minus[j].to);
+      begin_a[j] = count_.count_at(j, std::min(first_sigma(), corners.plus[j].from));
+      begin_c[j] = totals[j] - count_.count_at(j, std::max(5 - first_sigma(), corners.minus[j].to));
+      a[j] = count_.count_at(j, last_sigma(corners.plus[j].from)) - begin_a[j];
+      c[j] = totals[j] - count_.count_at(j, 5 - last_sigma(5 - corners.minus[j].to)) - begin_c[j];
     }
-    const int passes_a = std::max(1, int(std::ceil(most_on_ring(a) - 0.5)));
-    const int passes_c = std::max(1, int(std::ceil(most_on_ring(c) - 0.5)));
-    std::array<Chain, 2> chains;
-    auto& [on_plus, on_minus] = chains;
+    const double end = to_corner() ? 0.5 : 0;  // the corner's own pass is the last one
+    const auto passes = [&](const std::vector<double>& counts) {
+      const double most = most_on_ring(counts);
+      return most <= 0 ? 0 : std::max(1, int(std::ceil(most - end - 1e-9 * (end == 0))));
+    };
+    const int passes_a = passes(a), passes_c = passes(c);
+    std::vector<Chain> chains(2);
+    Chain &on_plus = chains[0], &on_minus = chains[1];
     for (int i = 0; i < passes_a; ++i) {
-      const double share = (i + 0.5) / (passes_a + 0.5);
+      const double share = (i + 0.5) / (passes_a + end);
       std::vector<double> sigma(n);
-      for (std::size_t j = 0; j < n; ++j) sigma[j] = count_.sigma_at(j, share * a[j]);
+      for (std::size_t j = 0; j < n; ++j) sigma[j] = count_.sigma_at(j, begin_a[j] + share * a[j]);
       on_plus.push_back(beside_corner(std::move(sigma), share, corners.plus, true));
     }
     for (int i = 0; i < passes_c; ++i) {
-      const double share = (i + 0.5) / (passes_c + 0.5);
+      const double share = (i + 0.5) / (passes_c + end);
       std::vector<double> sigma(n);
-      for (std::size_t j = 0; j < n; ++j) sigma[j] = count_.sigma_at(j, totals[j] - share * c[j]);
+      for (std::size_t j = 0; j < n; ++j) sigma[j] = count_.sigma_at(j, totals[j] - begin_c[j] - share * c[j]);
       on_minus.push_back(beside_corner(std::move(sigma), share, corners.minus, false));
     }
-    on_plus.push_back([this](double r) { return corner_at(r, true).from; });
-    on_minus.push_back([this](double r) { return corner_at(r, false).to; });
+    if (to_corner()) {
+      on_plus.push_back([this](double r) { return corner_at(r, true).from; });
+      on_minus.push_back([this](double r) { return corner_at(r, false).to; });
+    }
     return chains;
+  }
+  /// Where the passes of a flank begin, from its tip, and where they end: at the corner, or at the fillet line where
+  /// the fillet is left out.
+  [[nodiscard]] double first_sigma() const {
+    return o_.regions[path::Region::flank] ? 0 : o_.regions[path::Region::fillet] ? 1 : kRootBegin;
+  }
+  [[nodiscard]] bool to_corner() const { return o_.regions[path::Region::fillet] || o_.regions[path::Region::root]; }
+  [[nodiscard]] double last_sigma(double corner) const {
+    return o_.regions[path::Region::fillet] ? corner : std::min(corner, 1.0);
   }
 
   /// A pass of a flank, smooth through its places at the stations. Between them the corner may leave the smooth curve
@@ -328,19 +371,20 @@ class FinishingPlanner {
       corners.plus.push_back(corner_at(station.r, true));
       corners.minus.push_back(corner_at(station.r, false));
     }
-    auto [on_plus, on_minus] = drawn_together<2>([&] { return chains_to_corners(corners); });
+    auto chains = drawn_together([&] { return chains_to_corners(corners); });
+    Chain &on_plus = chains[0], &on_minus = chains[1];
     note_cusps(on_plus);
     note_cusps(on_minus);
-    on_minus.pop_back();  // the minus corner comes below, where it is apart from the plus corner
+    if (to_corner()) on_minus.pop_back();  // the minus corner comes below, where it is apart from the plus corner
     for (std::size_t i = 0; i < std::max(on_plus.size(), on_minus.size()); ++i) {
-      if (i + 1 == on_plus.size())  // along the corner
+      if (to_corner() && i + 1 == on_plus.size())  // along the corner
         add_corner_pass(
             on_plus[i], [this](double r) { return corner_at(r, true).to; }, true, -INFINITY, INFINITY);
       else if (i < on_plus.size()) add_pass(on_plus[i], true);
       if (i < on_minus.size()) add_pass(on_minus[i], false);
     }
-    out_.corner_passes = true;
-    passes_on_root_land(corners);
+    out_.corner_passes = to_corner();
+    if (to_corner()) passes_on_root_land(corners);
   }
 
   /// From corner to corner over the root land, both of them included; where the corners are one, that one.

@@ -1,8 +1,10 @@
 // Finishing and semi-finishing of one tooth space with a ball: passes along the tooth, iso-scallop across it.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
+#include "cam/path/operation.h"
 #include "geometry/face_gear/offset_sheet.h"
 
 namespace toothpath::ball {
@@ -21,10 +23,21 @@ struct BallPass {
 struct FinishingOptions {
   double ball_radius_mm = 0;
   double allowance_mm = 0;
-  double scallop_mm = 0;
+  path::ByRegion<double> scallop_mm;                 ///< cusp height asked in each region
+  path::ByRegion<bool> regions{{true, true, true}};  ///< what is covered
   double chord_mm = 0;
   double run_out_mm = 0;  ///< how far the ball centre goes on beyond the last contact
   bool climb = true;
+
+  /// Asked at a place across the sheet, and between two of them: the lower one.
+  [[nodiscard]] double scallop(double sigma) const { return scallop_mm[region_at(sigma)]; }
+  [[nodiscard]] double scallop(double a, double b) const { return std::min(scallop(a), scallop(b)); }
+  /// Sigma runs over flank +1, its fillet, the root, the other fillet and flank, one unit each.
+  [[nodiscard]] static path::Region region_at(double sigma) {
+    return sigma < 1 || sigma > 4   ? path::Region::flank
+           : sigma < 2 || sigma > 3 ? path::Region::fillet
+                                    : path::Region::root;
+  }
 };
 
 struct FinishingPasses {

@@ -6,6 +6,8 @@
 namespace toothpath::ball {
 namespace {
 
+constexpr double kLevelHop = 0.02;  // mm: a hop that falls by more comes down to another layer
+
 class Linker {
  public:
   Linker(const LinkingOptions& o, const HopIsClear& clear, const BodiesAreClear& bodies,
@@ -29,11 +31,11 @@ class Linker {
   }
 
  private:
-  [[nodiscard]] Vec3 tip(const Vec3& centre, const Vec3& axis) const { return centre - o_.ball_radius_mm * axis; }
+  [[nodiscard]] Vec3 tip(const Vec3& centre, const Vec3& axis) const { return centre - o_.centre_mm * axis; }
   /// The centre lifted along the axis until tip, shank and holder are above the clearance height.
   [[nodiscard]] Vec3 above(const Vec3& centre, const Vec3& axis) const {
-    double lowest = -o_.ball_radius_mm * axis.z();  // under the centre
-    for (const auto& f : o_.bodies) lowest = std::min(lowest, tool::lowest_z(f, -o_.ball_radius_mm * axis, axis));
+    double lowest = -o_.centre_mm * axis.z();  // under the centre
+    for (const auto& f : o_.bodies) lowest = std::min(lowest, tool::lowest_z(f, -o_.centre_mm * axis, axis));
     const double lift = (o_.clearance_height_mm - lowest - centre.z()) / axis.z();
     return centre + std::max(lift, 0.0) * axis;
   }
@@ -46,18 +48,23 @@ class Linker {
       const Vec3 a = last_ + o_.hop_mm * last_axis_, b = start + o_.hop_mm * axis;
       if ((b - a).norm() <= o_.longest_hop_mm && clear_(last_, a) && clear_(a, b) && clear_(b, start) &&
           turns_clear(a, b, axis)) {
-        add(a, last_axis_, path::MoveKind::retract, o_.feed_mm_min);
-        hop(a, b, axis);
+        add(a, last_axis_, path::MoveKind::retract, o_.link_feed_mm_min);
+        // Down to fresh stock no faster than the cut.
+        const bool level = (b - a).dot(axis) > -kLevelHop;
+        hop(a, b, axis, level ? o_.link_feed_mm_min : o_.feed_mm_min);
         add(start, axis, path::MoveKind::engage, o_.feed_mm_min);
         return;
       }
       leave();
     }
-    add(above(start, axis), axis, path::MoveKind::rapid, 0);
+    const Vec3 high = above(start, axis);
+    add(high, axis, path::MoveKind::rapid, 0);
+    if ((high - start).norm() > o_.slow_mm)
+      add(start + o_.slow_mm * axis, axis, path::MoveKind::engage, o_.link_feed_mm_min);
     add(start, axis, path::MoveKind::engage, o_.feed_mm_min);
   }
 
-  void leave() { add(above(last_, last_axis_), last_axis_, path::MoveKind::retract, o_.feed_mm_min); }
+  void leave() { add(above(last_, last_axis_), last_axis_, path::MoveKind::retract, o_.link_feed_mm_min); }
 
   // Hops between two directions: even steps, the centre straight.
   [[nodiscard]] double turn_to(const Vec3& axis) const {
@@ -79,13 +86,13 @@ class Linker {
     }
     return true;
   }
-  void hop(const Vec3& a, const Vec3& b, const Vec3& axis) {
+  void hop(const Vec3& a, const Vec3& b, const Vec3& axis, double feed) {
     const int steps = axis == last_axis_ ? 1 : steps_of(axis);
     for (int k = 1; k < steps; ++k) {
       const double t = double(k) / steps;
-      add(a + t * (b - a), blended(axis, t), path::MoveKind::engage, o_.feed_mm_min);
+      add(a + t * (b - a), blended(axis, t), path::MoveKind::engage, feed);
     }
-    add(b, axis, path::MoveKind::engage, o_.feed_mm_min);
+    add(b, axis, path::MoveKind::engage, feed);
   }
 
   void feed(const BallPass::Point& from, const Vec3& from_axis, const BallPass::Point& to, const Vec3& to_axis) {

@@ -78,11 +78,11 @@ double PassCount::sigma_at(std::size_t j, double count) const {
 }
 
 /// Centre spacing across the pass for the asked cusp at a contact point.
-double PassCount::spacing(const face_gear::SheetPoint& s, const Vec3& feed) const {
+double PassCount::spacing(double sigma, const face_gear::SheetPoint& s, const Vec3& feed) const {
   const Vec3 across = s.contact.n.cross(feed);
   const double k = face_gear::SpaceSheet::normal_curvature(s.contact, across);
   const double regular = std::max(1e-6, (1 + k * sheet_.delta()) / (1 + k * o_.allowance_mm));
-  return std::sqrt(8 * o_.scallop_mm * o_.ball_radius_mm * regular);
+  return std::sqrt(8 * o_.scallop(sigma) * o_.ball_radius_mm * regular);
 }
 
 void PassCount::count_profiles() {
@@ -106,7 +106,7 @@ void PassCount::count_profiles() {
         });
         if (hidden) continue;
         const Vec3 feed = feed_direction(j, k, round);
-        const double w = spacing(node.at, feed);
+        const double w = spacing(node.sigma, node.at, feed);
         if (previous) {
           const Vec3 mean_feed = (feed + previous_feed).normalized();
           Vec3 from = previous->at.centre;
@@ -152,7 +152,8 @@ void PassCount::draw_together(std::span<const HighCusp> cusps) {
   for (const auto& c : cusps) {
     const auto before =
         std::size_t(std::clamp(std::floor((c.r - sheet_.r_from()) / step), 0.0, double(stations.size() - 2)));
-    const double factor = std::sqrt(std::clamp(c.crest.height_mm / (kCornerAim * o_.scallop_mm), 1.0, 4.0));
+    const double factor =
+        std::sqrt(std::clamp(c.crest.height_mm / (kCornerAim * o_.scallop(c.sigma_a, c.sigma_b)), 1.0, 4.0));
     for (const std::size_t j : {before, before + 1})
       for (std::size_t k = 1; k < grow[j].size(); ++k)
         if (profiles_[j].sigma[k] > c.sigma_a && profiles_[j].sigma[k - 1] < c.sigma_b)
@@ -191,7 +192,8 @@ std::vector<double> PassCount::growth(std::size_t j) const {
       if (std::any_of(gaps.begin(), gaps.end(), between)) continue;  // a pass will run along the corner between them
       const double height = cusp(a, b, r, gaps).height_mm;
       const double ratio = std::clamp(
-          height / ((on_flank(a.sigma) && on_flank(b.sigma) ? kFlankAim : kCornerAim) * o_.scallop_mm), 1.0, 4.0);
+          height / ((on_flank(a.sigma) && on_flank(b.sigma) ? kFlankAim : kCornerAim) * o_.scallop(a.sigma, b.sigma)),
+          1.0, 4.0);
       if (ratio == 1.0) continue;
       for (std::size_t k = 1; k < p.sigma.size(); ++k)
         if (p.sigma[k] > a.sigma && p.sigma[k - 1] < b.sigma) grow[k] = std::max(grow[k], std::sqrt(ratio));
@@ -255,7 +257,7 @@ Crest PassCount::cusp(const PassLine& a, const PassLine& b, double r,
     const auto s = sheet_.raw(sigma, r);
     if (!s) return {};
     const auto h = over(*s);
-    if (std::abs(slope(h)) < kSameHeight * o_.scallop_mm || k == kCrestSteps)
+    if (std::abs(slope(h)) < kSameHeight * o_.scallop(a.sigma, b.sigma) || k == kCrestSteps)
       return crest(*s, 0.5 * (h.first + h.second));
     (slope(h) < 0 ? low : high) = sigma;
     (slope(h) < 0 ? f_low : f_high) = slope(h);

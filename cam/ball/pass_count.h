@@ -65,7 +65,7 @@ class PassCount {
     std::vector<double> sigma, count;  ///< same length, both ascending; gaps are jumps in sigma at equal count
   };
 
-  [[nodiscard]] double spacing(const face_gear::SheetPoint& s, const Vec3& feed) const;
+  [[nodiscard]] double spacing(double sigma, const face_gear::SheetPoint& s, const Vec3& feed) const;
   void count_profiles();
   void sharpen();
   [[nodiscard]] std::vector<double> growth(std::size_t j) const;

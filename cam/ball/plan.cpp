@@ -12,10 +12,14 @@
 #include "cam/ball/roughing.h"
 #include "cam/ball/tool_direction.h"
 #include "cam/ball/tool_orientation.h"
+#include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::ball {
 namespace {
+
+/// Least cosine between the tool axis and the normals of the surface, beyond that of the cutter's own side.
+constexpr double kLeastDraft = 0.01;
 
 /// Of the chord tolerance, this share is spent on placing points; the rest covers the rounding of words and the proof.
 constexpr double kChordShare = 0.6;
@@ -34,51 +38,31 @@ double lower_bound_between(double d0, double d1, double length) {
   return g > 0 ? std::sqrt(g) : 0;
 }
 
-/// Ball centres of everything that cuts: feed, engage and retract moves.
-std::vector<cut::BallMove> ball_moves(const path::ClPath& path, double radius) {
-  std::vector<cut::BallMove> out;
-  for (std::size_t k = 1; k < path.records.size(); ++k) {
-    const auto &a = path.records[k - 1], &b = path.records[k];
-    if (b.kind != path::MoveKind::rapid) out.push_back({a.tip + radius * a.axis, b.tip + radius * b.axis});
-  }
-  return out;
-}
+}  // namespace
 
-class JobPlanner {
+class Planner::Work {
  public:
-  JobPlanner(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
-             const std::vector<path::MillingOperation>& operations, const PlanOptions& options,
-             const PlanProgress& progress)
-      : part_(part), tools_(tools), operations_(operations), o_(options), progress_(progress) {}
+  Work(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
+       const std::vector<path::MillingOperation>& operations, const PlanOptions& options)
+      : part_(part), tools_(tools), operations_(operations), o_(options) {}
 
-  Expected<FaceGearPlan, PlanRefusal> run() {
-    if (const auto& refusal = part_.refusal()) return PlanRefusal{"gear." + refusal->key, refusal->diagnostic};
-    for (std::size_t n = 0; n < operations_.size(); ++n) {
-      const auto& op = operations_[n];
-      path::ClPath path;
-      path.operation = int(n);
-      path.operation_type = to_string(op.type);
-      path.tool = op.tool;
-      path.spindle_rpm = op.speed_rpm;
-      OperationPlan summary;
-      summary.operation = int(n);
-      if (progress_) progress_(to_string(op.type));
-      // Rings know nothing of each other's passes; directions and links follow in order, each on all threads.
-      std::vector<std::optional<Expected<ZonePasses, PlanRefusal>>> zones(std::size_t(part_.zones()));
-      as_stage("tool passes", [&] {
-        tbb::parallel_for(std::size_t(0), zones.size(),
-                          [&](std::size_t zone) { zones[zone] = plan_passes(int(n), int(zone)); });
-      });
-      for (std::size_t zone = 0; zone < zones.size(); ++zone) {
-        if (const auto* refusal = (*zones[zone]).refused()) return *refusal;
-        if (auto refusal = lead_tool(int(n), int(zone), (*zones[zone]).value(), path, summary)) return *refusal;
-      }
-      if (n + 1 < operations_.size()) {
-        const double radius = tools_[std::size_t(op.tool)].radius_mm();
-        cleared_.push_back(std::make_unique<cut::SweptPath>(ball_moves(path, radius), radius));
-      }
-      plan_.paths.push_back(std::move(path));
-      plan_.operations.push_back(summary);
+  Expected<Planned, PlanRefusal> run(int n, const std::vector<const cut::Removed*>& cleared) {
+    cleared_ = cleared;
+    plan_ = {};
+    const auto& op = operation(n);
+    plan_.path.operation = plan_.summary.operation = n;
+    plan_.path.operation_type = to_string(op.type);
+    plan_.path.tool = op.tool;
+    plan_.path.spindle_rpm = op.speed_rpm;
+    // Rings know nothing of each other's passes; directions and links follow in order, each on all threads.
+    std::vector<std::optional<Expected<ZonePasses, PlanRefusal>>> zones(std::size_t(part_.zones()));
+    as_stage("tool passes", [&] {
+      tbb::parallel_for(std::size_t(0), zones.size(),
+                        [&](std::size_t zone) { zones[zone] = plan_passes(n, int(zone)); });
+    });
+    for (std::size_t zone = 0; zone < zones.size(); ++zone) {
+      if (const auto* refusal = (*zones[zone]).refused()) return *refusal;
+      if (auto refusal = lead_tool(n, int(zone), (*zones[zone]).value(), plan_.path, plan_.summary)) return *refusal;
     }
     return std::move(plan_);
   }
@@ -144,9 +128,8 @@ class JobPlanner {
     r.overrun_mm = room;
     r.blank_top_mm = part_.gear().blank_top();
     r.climb = op.climb;
-    std::vector<const cut::SweptPath*> cleared;
-    for (const auto& c : cleared_) cleared.push_back(c.get());
-    auto planned = plan_roughing(out.sheet, r, cleared);
+    r.end_centre_mm = tool::end_centre_mm(tool_of(n));
+    auto planned = plan_roughing(out.sheet, r, cleared_);
     if (!planned) return PlanRefusal{key_of(n) + ".tool", planned.error()};
     out.passes = std::move(planned->passes);
     out.summary.layers = planned->layers;
@@ -161,7 +144,8 @@ class JobPlanner {
     FinishingOptions f;
     f.ball_radius_mm = tool.radius_mm();
     f.allowance_mm = op.allowance_mm;
-    f.scallop_mm = op.scallop_mm;
+    for (const path::Region region : path::kRegions) f.scallop_mm[region] = op.scallop_in(region);
+    f.regions = op.regions;
     f.chord_mm = kChordShare * op.chord_tolerance_mm;
     f.chord_mm = std::min(f.chord_mm, chord_room(op));
     f.run_out_mm = room;
@@ -172,7 +156,8 @@ class JobPlanner {
     const auto distance = [&](const Vec3& centre) {
       return part_.nearest(centre, f.ball_radius_mm + op.allowance_mm + 0.01).distance;
     };
-    for (auto& pass : plan_corner_ends(out.sheet, f, distance)) out.passes.push_back(std::move(pass));
+    if (f.regions[path::Region::fillet])
+      for (auto& pass : plan_corner_ends(out.sheet, f, distance)) out.passes.push_back(std::move(pass));
     out.summary.scallop_max_mm = planned->scallop_max_mm;
     out.summary.crest_lean = planned->crest_lean;
     out.summary.chord_mm = planned->worst_chord_mm;
@@ -205,18 +190,21 @@ class JobPlanner {
     const auto& op = operation(n);
     const double R = tool_of(n).radius_mm();
     const auto& ring = part_.space(zone).ring().zone;
-    link.ball_radius_mm = R;
+    link.centre_mm = tool::end_centre_mm(tool_of(n));
     link.axis = direction.axis;
     link.clearance_height_mm = part_.gear().blank_top() + o_.rapid_clearance_mm;
     link.hop_mm = 0.2 * R + op.allowance_mm;
     link.longest_hop_mm = 1.5 * part_.gear().pitch() * ring.outer_radius_mm;
     link.feed_mm_min = op.feed_mm_min;
+    link.link_feed_mm_min = std::max(op.feed_mm_min, o_.link_feed_mm_min);
+    link.slow_mm = slow_way(operations_, tools_, std::size_t(n), tool_of(n).half_angle_rad);
     link.inner_radius_mm = ring.inner_radius_mm;
     link.outer_radius_mm = ring.outer_radius_mm;
     link.zone = zone;
     link.bodies = tool::shank_and_holder(tool_of(n));
     const auto bodies_are_clear = [&](const Vec3& centre, const Vec3& axis) {
-      return bodies_->clear(link.bodies, centre - R * axis, axis, o_.limits.clearance_mm + kTurnMargin, 0.01);
+      return bodies_->clear(link.bodies, centre - link.centre_mm * axis, axis, o_.limits.clearance_mm + kTurnMargin,
+                            0.01);
     };
     as_stage("links", [&] {
       link_passes(
@@ -239,8 +227,8 @@ class JobPlanner {
     as_stage("tool direction", [&] {
       if (!bodies_) bodies_ = std::make_unique<analytic::BodyTree>(part_);
       if (!prescribed)
-        direction =
-            choose_direction(part_, *bodies_, zone, made.sheet, made.passes, tool, {o_.limits.clearance_mm, 0.01});
+        direction = choose_direction(part_, *bodies_, zone, made.sheet, made.passes, tool,
+                                     {o_.limits.clearance_mm, kLeastDraft + std::sin(tool.half_angle_rad)});
     });
     direction.operation = n;
     direction.zone = zone;
@@ -433,24 +421,46 @@ class JobPlanner {
   const std::vector<tool::ToolAssembly>& tools_;
   const std::vector<path::MillingOperation>& operations_;
   const PlanOptions& o_;
-  const PlanProgress& progress_;
-  std::vector<std::unique_ptr<cut::SweptPath>> cleared_;
+  std::vector<const cut::Removed*> cleared_;
   std::unique_ptr<analytic::BodyTree> bodies_;  ///< built with the first zone
-  FaceGearPlan plan_;
+  Planned plan_;
 };
 
-}  // namespace
+Planner::Planner(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
+                 const std::vector<path::MillingOperation>& operations, const PlanOptions& options)
+    : work_(std::make_unique<Work>(part, tools, operations, options)) {}
+Planner::~Planner() = default;
 
-Expected<FaceGearPlan, PlanRefusal> plan_face_gear(const analytic::GearDistance& part,
-                                                   const std::vector<tool::ToolAssembly>& tools,
-                                                   const std::vector<path::MillingOperation>& operations,
-                                                   const PlanOptions& options, const PlanProgress& progress) {
-  return JobPlanner(part, tools, operations, options, progress).run();
+Expected<Planned, PlanRefusal> Planner::plan(int operation, const std::vector<const cut::Removed*>& cleared) {
+  return work_->run(operation, cleared);
+}
+
+double slow_way(const std::vector<path::MillingOperation>& operations, const std::vector<tool::ToolAssembly>& tools,
+                std::size_t n, double half_angle_rad) {
+  constexpr double kAir = 0.2, kSkin = 0.1,
+                   kSteepest = 0.17;  // mm; of the diameter of a roughing tool; sine of a draft
+  const path::MillingOperation& op = operations[n];
+  if (op.type == path::OperationType::roughing) return op.step_down_mm + kAir;
+  const double steep = half_angle_rad > 0 ? std::min(kSteepest, std::sin(half_angle_rad)) : kSteepest;
+  for (std::size_t k = n; k-- > 0;) {
+    const path::MillingOperation& before = operations[k];
+    const bool shares = std::any_of(path::kRegions.begin(), path::kRegions.end(),
+                                    [&](path::Region r) { return before.regions[r] && op.regions[r]; });
+    if (!shares) continue;
+    double stock = std::max(0.0, before.allowance_mm - op.allowance_mm);
+    if (before.type == path::OperationType::roughing) stock += kSkin * 2 * tools[std::size_t(before.tool)].radius_mm();
+    else stock += before.scallop_mm;
+    return kAir + stock / steep;
+  }
+  return INFINITY;
 }
 
 double reach_of(const std::vector<tool::ToolAssembly>& tools) {
   double most = 0.5;
-  for (const auto& t : tools) most = std::max(most, t.radius_mm());
+  for (const auto& t : tools) {
+    most = std::max(most, t.radius_mm());
+    if (tool::serves(t, tool::CutterUse::side)) most = std::max(most, tool::profile_of(t).cutting().largest_radius());
+  }
   return 1.3 * most + 0.6;
 }
 

@@ -1,11 +1,13 @@
-// Plans every operation of a face gear job for one tooth space: from flanks to CL paths.
+// Plans the operations of a ball end for one tooth space: from flanks to CL paths.
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "cam/analytic/gear_distance.h"
+#include "cam/cut/swept_tool.h"
 #include "cam/path/cl_path.h"
 #include "cam/path/operation.h"
 #include "cam/proof/limits.h"
@@ -19,6 +21,8 @@ struct PlanOptions {
   proof::ProofLimits
       limits;  ///< of shank and holder the clearance; chords of any operation may use a part of the gouge tolerance
   double rapid_clearance_mm = 2.0;  ///< height of rapids above the blank
+  double link_feed_mm_min = 0;      ///< of moves under feed where nothing can be cut: drawing back, coming down to
+                                    ///< where stock may begin; 0, or below that of the operation: as the operation
   double least_tilt_rad =
       0.035;  ///< of a tool axis that turns in a pass, from the gear axis: the pole of a rotary that carries the work
   /// Runs a stage under its name; empty: just runs it. Called on the thread of the caller, for "tool passes", "tool
@@ -36,25 +40,41 @@ struct OperationPlan {
   bool corner_passes = false;
 };
 
-struct FaceGearPlan {
-  std::vector<path::ClPath> paths;  ///< one an operation
-  std::vector<OperationPlan> operations;
-  std::vector<proof::DirectionChoice> directions;
-};
-
 /// A refusal with the key of the job it belongs to ("operation[2].tool", ...).
 struct PlanRefusal {
   std::string key;
   Diagnostic diagnostic;
 };
 
-using PlanProgress = std::function<void(const std::string&)>;
+/// One operation of a ball, or of another end that a ball contains.
+struct Planned {
+  path::ClPath path;
+  OperationPlan summary;
+  std::vector<proof::DirectionChoice> directions;
+};
 
-[[nodiscard]] Expected<FaceGearPlan, PlanRefusal> plan_face_gear(const analytic::GearDistance& part,
-                                                                 const std::vector<tool::ToolAssembly>& tools,
-                                                                 const std::vector<path::MillingOperation>& operations,
-                                                                 const PlanOptions& options,
-                                                                 const PlanProgress& progress = {});
+/// Plans roughing, semi-finishing and finishing, operation by operation. What it is made of must outlive it.
+class Planner {
+ public:
+  Planner(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
+          const std::vector<path::MillingOperation>& operations, const PlanOptions& options);
+  ~Planner();
+  Planner(const Planner&) = delete;
+  Planner& operator=(const Planner&) = delete;
+
+  /// @param cleared  what earlier operations removed: roughing passes that would cut nothing are left out
+  [[nodiscard]] Expected<Planned, PlanRefusal> plan(int operation, const std::vector<const cut::Removed*>& cleared);
+
+ private:
+  class Work;
+  std::unique_ptr<Work> work_;
+};
+
+/// Way along the axis before an operation's passes on which its tool may meet stock: coming down from above it. What
+/// stands there is what the operation before it in the same regions left, along walls that are steep; a side that
+/// widens upwards meets it higher. Infinite where nothing was cut before.
+[[nodiscard]] double slow_way(const std::vector<path::MillingOperation>& operations,
+                              const std::vector<tool::ToolAssembly>& tools, std::size_t n, double half_angle_rad);
 
 /// Largest distance that the planner and the checks will ask `GearDistance` for with these tools.
 [[nodiscard]] double reach_of(const std::vector<tool::ToolAssembly>& tools);

@@ -6,6 +6,10 @@
 namespace toothpath::ball {
 namespace {
 
+/// A skin thinner than this share of the diameter is not worth a roughing pass: the next operation takes it with its
+/// own stock.
+constexpr double kWorthCutting = 0.1;
+
 /// Directions on the lower half of a ball: where it cuts.
 std::vector<Vec3> lower_directions() {
   std::vector<Vec3> out{Vec3(0, 0, -1)};
@@ -84,7 +88,7 @@ Walls walls_of(const face_gear::OffsetSheet& sheet, const face_gear::OffsetSheet
 class RoughingPlanner {
  public:
   RoughingPlanner(const face_gear::OffsetSheet& sheet, const RoughingOptions& o,
-                  const std::vector<const cut::SweptPath*>& cleared)
+                  const std::vector<const cut::Removed*>& cleared)
       : sheet_(sheet), o_(o), cleared_(cleared) {}
 
   Result<RoughingPasses> run() {
@@ -100,7 +104,7 @@ class RoughingPlanner {
       lowest = std::min(lowest, walls_.back().bottom_height);
       out_.reaches_root = out_.reaches_root && walls_.back().bottom_height == 0;
     }
-    const double top = o_.blank_top_mm + o_.ball_radius_mm - walls_[walls_.size() / 2].root_z;
+    const double top = o_.blank_top_mm + o_.end_centre_mm - walls_[walls_.size() / 2].root_z;
     for (double height = top - o_.step_down_mm;; height -= o_.step_down_mm) {
       // The last layer follows the bottom: the root land, or the corner between both walls where the ball is too wide.
       const bool last = height <= lowest + 1e-6;
@@ -177,7 +181,7 @@ class RoughingPlanner {
     if (cleared_.empty()) return true;
     static const std::vector<Vec3> directions = lower_directions();
     const auto& ring = sheet_.space().ring().zone;
-    constexpr double kWorthCutting = 0.01;  // mm: a thinner skin is not worth a roughing pass
+    const double worth = kWorthCutting * 2 * o_.ball_radius_mm;
     Vec3 last = Vec3::Constant(INFINITY);
     for (const auto& point : points) {
       if ((point.centre - last).norm() < 0.4 * o_.ball_radius_mm) continue;
@@ -188,7 +192,7 @@ class RoughingPlanner {
         if (r < ring.inner_radius_mm || r > ring.outer_radius_mm || q.z() > o_.blank_top_mm) continue;
         bool left = true;
         for (const auto* path : cleared_)
-          if (path->excess(q, kWorthCutting) < kWorthCutting) {
+          if (path->excess(q, worth) < worth) {
             left = false;
             break;
           }
@@ -200,7 +204,7 @@ class RoughingPlanner {
 
   const face_gear::OffsetSheet& sheet_;
   RoughingOptions o_;
-  const std::vector<const cut::SweptPath*>& cleared_;
+  const std::vector<const cut::Removed*>& cleared_;
   double from_ = 0, to_ = 0;
   std::vector<Walls> walls_;  ///< one a station
   RoughingPasses out_;
@@ -209,7 +213,7 @@ class RoughingPlanner {
 }  // namespace
 
 Result<RoughingPasses> plan_roughing(const face_gear::OffsetSheet& sheet, const RoughingOptions& options,
-                                     const std::vector<const cut::SweptPath*>& cleared) {
+                                     const std::vector<const cut::Removed*>& cleared) {
   return RoughingPlanner(sheet, options, cleared).run();
 }
 

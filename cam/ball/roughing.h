@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cam/ball/finishing.h"
-#include "cam/cut/swept_path.h"
+#include "cam/cut/swept_tool.h"
 
 namespace toothpath::ball {
 
@@ -15,6 +15,8 @@ struct RoughingOptions {
   double step_down_mm = 0;
   double step_over_mm = 0;
   double chord_mm = 0;
+  double end_centre_mm =
+      0;  ///< height above the tip of the centre that is planned: the ball's radius, less for flatter ends
   double overrun_mm = 0;    ///< beyond both ends of the ring, for the ball centre
   double blank_top_mm = 0;  ///< z of the blank at the middle of the ring
   bool climb = true;
@@ -28,6 +30,6 @@ struct RoughingPasses {
 
 /// `cleared` are the volumes removed by earlier operations: a pass that would cut nothing is left out.
 [[nodiscard]] Result<RoughingPasses> plan_roughing(const face_gear::OffsetSheet& sheet, const RoughingOptions& options,
-                                                   const std::vector<const cut::SweptPath*>& cleared);
+                                                   const std::vector<const cut::Removed*>& cleared);
 
 }  // namespace toothpath::ball

@@ -21,9 +21,10 @@ constexpr double kFluteSkin = 0.03;  // mm: the flute grazes the walls that it c
 /// The flute above the ball as a body. It stands on the side that is away from its own walls where these have draft;
 /// the other ring of teeth, across a relief groove, may still be in its way.
 std::optional<tool::Frustum> flute_body(const tool::ToolAssembly& tool) {
-  const double R = tool.radius_mm(), skin = std::min(kFluteSkin, 0.1 * R);
-  if (tool.flute_length_mm - R < skin) return std::nullopt;
-  return tool::Frustum{R + skin, tool.flute_length_mm, R - skin, R - skin, tool::Body::flute};
+  const double R = tool.radius_mm(), skin = std::min(kFluteSkin, 0.1 * R), top = tool.flute_length_mm;
+  if (top - R < skin) return std::nullopt;
+  const double wider = (top - R - skin) * std::tan(tool.half_angle_rad);
+  return tool::Frustum{R + skin, top, R - skin, R - skin + wider, tool::Body::flute};
 }
 
 std::vector<Vec3> some_centres(const std::vector<BallPass>& passes, std::size_t count) {
@@ -50,7 +51,7 @@ class Search {
         many_(some_centres(passes, 400)),
         frame_(pitch_frame(part, zone)),
         beside_ring_(part.zones() > 1) {
-    if (beside_ring_) flute_ = flute_body(tool);
+    if (beside_ring_ || tool.half_angle_rad > 0) flute_ = flute_body(tool);
     choice_.zone = zone;
     choice_.fixed = false;
   }
@@ -263,7 +264,7 @@ class Search {
   std::vector<Vec3> few_, many_;
   PitchFrame frame_;
   bool beside_ring_;                    ///< a double helical gear: another ring of teeth stands across the groove
-  std::optional<tool::Frustum> flute_;  ///< asked for then
+  std::optional<tool::Frustum> flute_;  ///< asked for then, and where it is a cone
   proof::DirectionChoice choice_;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cam/path/motion_blend.h"
+#include "cam/tool/cutters.h"
 
 namespace toothpath::clearance {
 namespace {
@@ -134,9 +135,7 @@ class BodyWatch {
 
 }  // namespace
 
-std::vector<MeshBody> mesh_bodies(const tool::ToolAssembly& tool) {
-  return mesh_bodies(tool::Profile::of_ball_mill(tool));
-}
+std::vector<MeshBody> mesh_bodies(const tool::ToolAssembly& tool) { return mesh_bodies(tool::profile_of(tool)); }
 
 std::vector<MeshBody> mesh_bodies(const tool::Profile& tool, double sag_mm) {
   MeshBody cutter{tool::Body::cutter, {}, 0};

@@ -20,6 +20,7 @@ namespace {
 constexpr double kReachTolerance = 1e-4;
 constexpr double kSamePlace = 1e-6;  // a foot this near to a place of the grid is that place, mm
 constexpr int kHistogramBins = 40;
+constexpr int kSideSamples = 160;   // across a flank that the side of a mill cuts: its gap is a smooth cubic
 constexpr int kCrestSteps = 10;     // of a golden section: a hundredth of what the samples leave
 constexpr double kSharpEnd = 0.02;  // mm: diameter of the ball that stands for the corner of a flat cutter
 
@@ -29,9 +30,17 @@ struct LinePoint {
   double sigma = 0, left = 0;
 };
 
-bool is_flank(face_gear::SpacePiece piece) {
-  return piece == face_gear::SpacePiece::flank_plus || piece == face_gear::SpacePiece::flank_minus;
+path::Region region_of(face_gear::SpacePiece piece) {
+  switch (piece) {
+    case face_gear::SpacePiece::flank_plus:
+    case face_gear::SpacePiece::flank_minus: return path::Region::flank;
+    case face_gear::SpacePiece::fillet_plus:
+    case face_gear::SpacePiece::fillet_minus: return path::Region::fillet;
+    case face_gear::SpacePiece::root: return path::Region::root;
+  }
+  return path::Region::root;
 }
+bool is_flank(face_gear::SpacePiece piece) { return region_of(piece) == path::Region::flank; }
 
 proof::Patch patch_of(face_gear::SpacePiece piece) {
   switch (piece) {
@@ -47,31 +56,22 @@ proof::Patch patch_of(face_gear::SpacePiece piece) {
 class Meter {
  public:
   Meter(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
-        const std::vector<path::MillingOperation>& operations, const std::vector<tool::ToolAssembly>& tools,
+        const std::vector<path::MillingOperation>& operations, const std::vector<tool::ProofTool>& tools,
         const CutSurfaceOptions& options)
-      : part_(part), operations_(operations), tools_(tools), o_(options) {
+      : part_(part), operations_(operations), o_(options) {
     if (o_.cap_mm <= 0) o_.cap_mm = part.gear().parameters().module_mm;
-    for (std::size_t n = 0; n < operations.size(); ++n) {
-      const double R = tools[std::size_t(operations[n].tool)].radius_mm();
-      std::vector<BallMove> moves;
-      for (const auto& m : motions)
-        if (m.operation == int(n) && m.tooth == 0 && !m.rapid)
-          moves.push_back({m.tip_from + R * m.axis_from, m.tip_to + R * m.axis_to});
-      paths_.push_back(std::make_unique<Removed>(std::move(moves), R));
-    }
-  }
-  /// @param bodies  of the same tools
-  Meter(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
-        const std::vector<path::MillingOperation>& operations, const std::vector<tool::ToolAssembly>& tools,
-        const std::vector<tool::ProofTool>& bodies, const CutSurfaceOptions& options)
-      : Meter(part, {}, operations, tools, options) {
-    paths_.clear();
     for (std::size_t n = 0; n < operations.size(); ++n) {
       std::vector<path::ToolMotion> cuts;
       for (const auto& m : motions)
         if (m.operation == int(n) && m.tooth == 0 && !m.rapid) cuts.push_back(m);
-      paths_.push_back(
-          std::make_unique<Removed>(std::move(cuts), bodies[std::size_t(operations[n].tool)], part.gear().blank_top()));
+      const tool::ProofTool& tool = tools[std::size_t(operations[n].tool)];
+      paths_.push_back(std::make_unique<Removed>(std::move(cuts), tool, part.gear().blank_top()));
+      balls_.push_back(ball_of(tool));
+    }
+    if (operations.empty()) return;
+    for (const path::Region region : path::kRegions) {
+      const auto finisher = operations.back().finishes() ? path::finisher_of(operations, region) : std::nullopt;
+      last_[region] = finisher.value_or(operations.size() - 1);
     }
     for (std::size_t n = 0; n + 1 < operations.size(); ++n)
       if (operations[n].allowance_mm == operations.back().allowance_mm &&
@@ -86,7 +86,7 @@ class Meter {
     for (int zone = 0; zone < part_.zones(); ++zone) {
       const ZonePlaces places(part_, zone);
       for (int piece = 0; piece < face_gear::kSpacePieces; ++piece) grid(places, zone, face_gear::SpacePiece(piece));
-      if (!operations_.empty() && operations_.back().scallop_mm > 0) fine_lines(places, zone);
+      if (!operations_.empty() && operations_.back().type != path::OperationType::roughing) fine_lines(places, zone);
     }
     summarise();
     return std::move(out_);
@@ -102,9 +102,21 @@ class Meter {
     }
     return e;
   }
-  [[nodiscard]] bool reachable(const face_gear::PatchPoint& s, double* residual = nullptr) const {
-    if (operations_.empty()) return true;
-    const double R = tools_[std::size_t(operations_.back().tool)].radius_mm();
+  /// Radius of the ball that stands for the end of a tool.
+  static double ball_of(const tool::ProofTool& tool) {
+    if (tool.ball_mill) return tool.ball_mill->radius_mm();
+    return std::max(0.5 * kSharpEnd, tool.cutting.empty() ? 0.0 : tool.cutting.front().round);
+  }
+  /// The operation that a region is judged by: the one that finishes it, else the last one.
+  [[nodiscard]] const path::MillingOperation& last_in(path::Region region) const { return operations_[last_[region]]; }
+  [[nodiscard]] double ball_in(path::Region region) const { return balls_[last_[region]]; }
+  [[nodiscard]] bool by_side(path::Region region) const {
+    return last_in(region).type == path::OperationType::line_milling;
+  }
+  /// Can the ball end that the place is judged by touch it? The side of a mill is asked for all of its flank.
+  [[nodiscard]] bool reachable(const face_gear::PatchPoint& s, path::Region region, double* residual = nullptr) const {
+    if (operations_.empty() || by_side(region)) return true;
+    const double R = ball_in(region);
     const auto q = part_.nearest(s.p + R * s.n, R + 0.01);
     // Where the foot is the place itself, the two solvers must agree.
     if (residual && q.exact && (q.foot - s.p).norm() < kSamePlace) *residual = std::abs(q.distance - R);
@@ -135,7 +147,7 @@ class Meter {
         g.points[k] = s->contact.p;
         g.normals[k] = s->contact.n;
         excess[k] = excess_of(s->contact.p);
-        g.reachable[k] = reachable(s->contact, &residual[k]);
+        g.reachable[k] = reachable(s->contact, region_of(piece), &residual[k]);
         if (!g.reachable[k]) left[k] = s;
       }
     });
@@ -158,25 +170,26 @@ class Meter {
       if (!end) count_cusps(places, r, points);
       for (const auto& q : points) {
         const double x = q.left + operations_.back().allowance_mm;
-        if (x <= std::min(line_max_, unreached_limit())) continue;
+        const path::Region region = region_of(q.piece);
+        if (x <= std::min(line_max_[region], unreached_limit(region))) continue;
         const auto s = places.at(q.sigma, r);
         if (!s) continue;
-        if (reachable(s->contact)) line_max_ = std::max(line_max_, x);
+        if (reachable(s->contact, region)) line_max_[region] = std::max(line_max_[region], x);
         else note_unreached(*s, zone, x);
       }
     }
   }
 
   [[nodiscard]] std::vector<LinePoint> line_across(const ZonePlaces& places, double r) {
-    const auto& op = operations_.back();
-    const double step = std::sqrt(8 * tools_[std::size_t(op.tool)].radius_mm() * op.scallop_mm) / 24;
     std::vector<LinePoint> points;
     for (int piece = 0; piece < face_gear::kSpacePieces; ++piece) {
+      const path::Region region = region_of(face_gear::SpacePiece(piece));
+      const double step = std::sqrt(8 * ball_in(region) * last_in(region).scallop_in(region)) / 24;
       const auto [from, to] = places.range(face_gear::SpacePiece(piece), r);
       const auto a = places.at(from, r), b = places.at(to, r);
       if (!a || !b) continue;
       const double length = (b->contact.p - a->contact.p).norm();
-      const int n = std::max(16, int(1.2 * length / step));
+      const int n = by_side(region) ? kSideSamples : step > 0 ? std::max(16, int(1.2 * length / step)) : 16;
       line_step_ = std::max(line_step_, length / n);
       // Where two pieces join one point is enough.
       for (int k = points.empty() ? 0 : 1; k <= n; ++k)
@@ -193,7 +206,6 @@ class Meter {
   }
 
   void count_cusps(const ZonePlaces& places, double r, const std::vector<LinePoint>& line) {
-    const double wanted = operations_.back().scallop_mm;
     // Valleys are where the ball touched; a cusp is the highest place between two neighbouring valleys.
     std::vector<std::size_t> valleys;
     for (std::size_t k = 1; k + 1 < line.size(); ++k)
@@ -204,13 +216,17 @@ class Meter {
       const auto top = std::max_element(first, line.begin() + long(valleys[v]),
                                         [](const auto& p, const auto& q) { return p.left < q.left; });
       const double valley = 0.5 * (a.left + b.left);
+      const path::Region region = region_of(top->piece);
+      if (by_side(region)) continue;
+      const double wanted = last_in(region).scallop_in(region);
       if (top->left - valley < 0.02 * wanted) continue;  // two samples of one valley
       const auto [sigma, height] = crest(places, r, *(top - 1), *(top + 1));
       const auto s = places.at(sigma, r);
-      if (!s || !reachable(s->contact)) continue;  // a corner that was left
-      line_max_ = std::max(line_max_, height + operations_.back().allowance_mm);
-      if (is_flank(a.piece) && a.piece == b.piece) cusps_.push_back(height - valley);
-      else fillet_cusp_ = std::max(fillet_cusp_, height - valley);
+      if (!s || !reachable(s->contact, region)) continue;  // a corner that was left
+      line_max_[region] = std::max(line_max_[region], height + operations_.back().allowance_mm);
+      const bool on_flank = is_flank(a.piece) && a.piece == b.piece;
+      if (on_flank || by_side(path::Region::flank)) cusps_.push_back({height - valley, wanted});
+      if (!on_flank) fillet_cusp_ = std::max(fillet_cusp_, height - valley);
     }
   }
 
@@ -241,13 +257,13 @@ class Meter {
 
   /// Excess above which a place that the ball does not reach was left; no place is where the last operation does not
   /// finish.
-  [[nodiscard]] double unreached_limit() const {
-    if (operations_.empty() || operations_.back().type != path::OperationType::finishing) return INFINITY;
-    return proof::most_left_mm(operations_.back());
+  [[nodiscard]] double unreached_limit(path::Region region) const {
+    if (operations_.empty() || !last_in(region).finishes()) return INFINITY;
+    return proof::most_left_mm(last_in(region), region);
   }
 
   void note_unreached(const face_gear::SheetPoint& s, int zone, double height) {
-    if (height <= unreached_limit()) return;
+    if (height <= unreached_limit(region_of(s.piece))) return;
     auto& u = out_.unreached;
     u.height_mm = std::max(u.height_mm, height);
     if (!is_flank(s.piece) || s.u > active_end_[std::size_t(zone)]) return;
@@ -282,53 +298,78 @@ class Meter {
       proof::ExcessResult r;
       r.operation = int(n);
       std::vector<float> values;
-      for (const auto& g : out_.grids) values.insert(values.end(), g.excess_um[n].begin(), g.excess_um[n].end());
+      path::ByRegion<double> most{{-INFINITY, -INFINITY, -INFINITY}}, least{{INFINITY, INFINITY, INFINITY}};
+      for (const auto& g : out_.grids) {
+        values.insert(values.end(), g.excess_um[n].begin(), g.excess_um[n].end());
+        const path::Region region = proof::region_of(g.patch);
+        for (const float e : g.excess_um[n]) {
+          most[region] = std::max(most[region], double(e) / 1000);
+          least[region] = std::min(least[region], double(e) / 1000);
+        }
+      }
       finish(r, values);
       r.bound_mm = r.max_mm + operations_[n].scallop_mm + operations_[n].chord_tolerance_mm;
       out_.operations.push_back(r);
+      out_.most_in_mm.push_back(most);
+      out_.least_in_mm.push_back(least);
     }
     if (paths_.empty()) return;
+    summarise_finished();
+    judge_unreached();
+    summarise_cusps();
+  }
+
+  void summarise_finished() {
     std::vector<float> values;
+    out_.finished_in_mm = line_max_;
     for (const auto& g : out_.grids)
       for (std::size_t k = 0; k < g.points.size(); ++k) {
         const float e = g.excess_um.back()[k];
         if (g.reachable[k]) {
           values.push_back(e);
+          double& most = out_.finished_in_mm[proof::region_of(g.patch)];
+          most = std::max(most, double(e) / 1000);
         } else if (g.normals[k] != Vec3::Zero()) {
           ++out_.unreached.points;
           out_.unreached.max_height_mm = std::max(out_.unreached.max_height_mm, double(e) / 1000);
         }
       }
-    judge_unreached();
-    const auto& op = operations_.back();
-    const double R = tools_[std::size_t(op.tool)].radius_mm();
     out_.finished.operation = int(paths_.size()) - 1;
     finish(out_.finished, values);
-    // Along a line the excess rises no faster than the slope at a cusp's foot, sqrt(2 h / R).
-    out_.finished.max_mm = std::max(out_.finished.max_mm, line_max_);
-    out_.finished.bound_mm = out_.finished.max_mm + 0.5 * line_step_ * std::sqrt(2 * std::max(op.scallop_mm, 0.0) / R) +
-                             op.chord_tolerance_mm;
-    out_.scallop.fillet_max_mm = fillet_cusp_;
-    if (!cusps_.empty()) {
-      auto& s = out_.scallop;
-      s.requested_mm = op.scallop_mm;
-      s.reached_min_mm = *std::min_element(cusps_.begin(), cusps_.end());
-      s.reached_max_mm = *std::max_element(cusps_.begin(), cusps_.end());
-      std::size_t within = 0;
-      for (const double c : cusps_) within += c >= 0.85 * op.scallop_mm && c <= 1.05 * op.scallop_mm;
-      s.share_within = double(within) / double(cusps_.size());
+    for (const path::Region region : path::kRegions) {
+      out_.finished.max_mm = std::max(out_.finished.max_mm, line_max_[region]);
+      // Along a line the excess rises no faster than the slope at a cusp's foot, sqrt(2 h / R).
+      const auto& op = last_in(region);
+      const double rise = by_side(region) ? 0 : std::sqrt(2 * std::max(op.scallop_in(region), 0.0) / ball_in(region));
+      slack_ = std::max(slack_, 0.5 * line_step_ * rise + op.chord_tolerance_mm);
     }
+    out_.finished.bound_mm = out_.finished.max_mm + slack_;
   }
 
-  /// Share of the area that was left, and the ball that would not leave it.
+  void summarise_cusps() {
+    out_.scallop.fillet_max_mm = fillet_cusp_;
+    if (cusps_.empty()) return;
+    auto& s = out_.scallop;
+    const auto lower = [](const Cusp& a, const Cusp& b) { return a.height < b.height; };
+    const path::Region region = by_side(path::Region::flank) ? path::Region::fillet : path::Region::flank;
+    s.requested_mm = last_in(region).scallop_in(region);
+    s.reached_min_mm = std::min_element(cusps_.begin(), cusps_.end(), lower)->height;
+    s.reached_max_mm = std::max_element(cusps_.begin(), cusps_.end(), lower)->height;
+    std::size_t within = 0;
+    for (const auto& c : cusps_) within += c.height >= 0.85 * c.wanted && c.height <= 1.05 * c.wanted;
+    s.share_within = double(within) / double(cusps_.size());
+  }
+
+  /// Share of the area that was left, and the ball that would not leave it. Told of the ball that finishes the fillets.
   void judge_unreached() {
     auto& u = out_.unreached;
-    if (unreached_limit() == INFINITY) return;
-    const double R = tools_[std::size_t(operations_.back().tool)].radius_mm();
+    if (unreached_limit(path::Region::fillet) == INFINITY) return;
+    const double R = ball_in(path::Region::fillet);
     u.ball_mm = 2 * R;
-    u.limit_mm = unreached_limit();
+    u.limit_mm = unreached_limit(path::Region::fillet);
     double left = 0, all = 0;
     for (const auto& g : out_.grids) {
+      const double limit = unreached_limit(proof::region_of(g.patch));
       const auto columns = std::size_t(g.columns);
       for (std::size_t row = 0; row + 1 < std::size_t(g.rows); ++row)
         for (std::size_t column = 0; column + 1 < columns; ++column) {
@@ -341,7 +382,7 @@ class Meter {
               0.5 * (g.points[corner[2]] - g.points[corner[0]]).cross(g.points[corner[3]] - g.points[corner[1]]).norm();
           all += area;
           for (const std::size_t c : corner)
-            if (!g.reachable[c] && double(g.excess_um.back()[c]) / 1000 > u.limit_mm) left += 0.25 * area;
+            if (!g.reachable[c] && double(g.excess_um.back()[c]) / 1000 > limit) left += 0.25 * area;
         }
     }
     u.share = all > 0 ? left / all : 0;
@@ -350,12 +391,17 @@ class Meter {
 
   const analytic::GearDistance& part_;
   const std::vector<path::MillingOperation>& operations_;
-  const std::vector<tool::ToolAssembly>& tools_;
   CutSurfaceOptions o_;
   std::vector<std::unique_ptr<Removed>> paths_;
-  std::vector<double> cusps_;
+  std::vector<double> balls_;         ///< radius of the ball end of every operation's tool
+  path::ByRegion<std::size_t> last_;  ///< operation that a region is judged by
+  struct Cusp {
+    double height = 0, wanted = 0;
+  };
+  std::vector<Cusp> cusps_;
   std::vector<double> active_end_;  ///< roll parameter at the end of the active flank, a zone each
-  double line_step_ = 0, line_max_ = 0, fillet_cusp_ = 0;
+  path::ByRegion<double> line_max_;
+  double line_step_ = 0, fillet_cusp_ = 0, slack_ = 0;
   CutSurface out_;
 };
 
@@ -364,19 +410,13 @@ class Meter {
 CutSurface measure_cut_surface(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
                                const std::vector<path::MillingOperation>& operations,
                                const std::vector<tool::ToolAssembly>& tools, const CutSurfaceOptions& options) {
-  return Meter(part, motions, operations, tools, options).run();
+  return measure_cut_surface(part, motions, operations, tool::proof_tools(tools), options);
 }
 
 CutSurface measure_cut_surface(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
                                const std::vector<path::MillingOperation>& operations,
                                const std::vector<tool::ProofTool>& tools, const CutSurfaceOptions& options) {
-  std::vector<tool::ToolAssembly> balls;
-  for (const auto& t : tools) {
-    balls.push_back(t.ball_mill.value_or(tool::ToolAssembly{}));
-    if (!t.ball_mill)
-      balls.back().diameter_mm = std::max(kSharpEnd, t.cutting.empty() ? 0.0 : 2 * t.cutting.front().round);
-  }
-  return Meter(part, motions, operations, balls, tools, options).run();
+  return Meter(part, motions, operations, tools, options).run();
 }
 
 }  // namespace toothpath::cut

@@ -25,6 +25,9 @@ struct CutSurface {
   std::vector<proof::ExcessResult> operations;  ///< after each operation, over all points
   proof::ExcessResult finished;                 ///< after the last one, over the points that its ball can reach
   proof::UnreachedResult unreached;
+  /// Greatest and least excess in each region: after each operation, and of the finished surface where its tools reach.
+  std::vector<path::ByRegion<double>> most_in_mm, least_in_mm;
+  path::ByRegion<double> finished_in_mm;
   double solve_residual_mm =
       0;  ///< greatest difference between a radius and the distance from a centre that far above the grid
   proof::ScallopResult scallop;  ///< cusps of the last operation; requested 0: it has none

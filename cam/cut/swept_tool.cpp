@@ -81,6 +81,17 @@ double SweptTool::excess(const Vec3& p, double cap) const {
   return best;
 }
 
+Removed::Removed(std::vector<path::ToolMotion> motions, const tool::ProofTool& tool, double top_mm) {
+  if (!tool.ball_mill) {
+    tool_ = std::make_unique<SweptTool>(std::move(motions), tool.cutting, top_mm);
+    return;
+  }
+  const double R = tool.ball_mill->radius_mm();
+  std::vector<BallMove> moves;
+  for (const auto& m : motions) moves.push_back({m.tip_from + R * m.axis_from, m.tip_to + R * m.axis_to});
+  balls_ = std::make_unique<SweptPath>(std::move(moves), R);
+}
+
 double Removed::excess(const Vec3& p, double cap) const {
   double e = balls_ ? balls_->excess(p, cap) : tool_->excess(p, cap);
   for (const Removed* other : others_) e = other->excess(p, e);

@@ -5,6 +5,7 @@
 
 #include "cam/finger/passes.h"
 #include "cam/finger/reference.h"
+#include "cam/tool/cutters.h"
 #include "cam/tool/finger_profile.h"
 
 namespace toothpath::finger {
@@ -230,7 +231,7 @@ Result<bevel_gear::BevelGear> gear_for_finger_mill(const bevel_gear::BevelGear& 
 Result<FingerPlan> plan_finger_operation(const bevel_gear::BevelGear& gear, const tool::ToolAssembly& tool,
                                          const path::MillingOperation& operation, int operation_index,
                                          const proof::ProofLimits& limits) {
-  if (tool.type != tool::CutterType::finger_mill) return fail("tool {} is not a finger mill", tool.number);
+  if (!tool::serves(tool, tool::CutterUse::tooth_form)) return fail("tool {} is not a finger mill", tool.number);
   auto own = gear_for_finger_mill(gear, tool);
   if (!own) return own.error();
   if (operation.type == path::OperationType::finger_roughing && !(operation.ridge_mm > 0))

@@ -361,7 +361,7 @@ class PassPlanner {
   [[nodiscard]] double lift_at(double r) const {
     const double u = std::clamp((r - start_) / step_, 0.0, double(count_ - 1));
     const std::size_t k = std::min(std::size_t(u), count_ - 2);
-    return lift_[k] + (u - double(k)) * (lift_[k + 1] - lift_[k]);
+    return o_.base_lift + lift_[k] + (u - double(k)) * (lift_[k + 1] - lift_[k]);
   }
 
   /// Where exactly the first and the last foot of the pass lie in the ring. There the gap is held by the corner alone;

@@ -40,6 +40,7 @@ struct PassOptions {
   /// Is there something across the inner, the outer end (the other ring, a groove)? There the ball end is lifted out of
   /// the way.
   bool lift_inner = false, lift_outer = false;
+  double base_lift = 0;  ///< of the ball end everywhere, along the axis, mm: it leaves more room between the flanks
   double lift_margin = 0.08;  ///< the lift begins where the ball end's foot is so far beyond the end, in modules
   double lift_slope = 1;      ///< mm of lift per mm of contact, at most
   double enough_mm =

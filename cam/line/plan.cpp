@@ -33,6 +33,7 @@ Result<std::vector<LinePass>> passes_of(const std::vector<FlankTask>& flanks, co
     p.rotaries = choice.rotaries;
     p.chord_mm = o.chord_tolerance_mm;
     p.bias_mm = o.bias_mm;
+    if (int(strip) + 1 == choice.strips) p.base_lift = o.base_lift_mm;
     p.lift_inner = flank.zone > 0;
     p.lift_outer = flank.zone + 1 < rings;
     if (o.room)
@@ -57,7 +58,7 @@ double worst_of(const std::vector<LinePass>& passes) {
 
 std::vector<Choice> choices_of(const LineOperation& o) {
   std::vector<Rotaries> rotaries{Rotaries::both};
-  if (o.rotaries) rotaries = {*o.rotaries};
+  if (!o.rotaries.empty()) rotaries = o.rotaries;
   else if (o.left_mm) rotaries = {Rotaries::tilt_stands, Rotaries::both};
   std::vector<Choice> out;
   const int from = o.strips.value_or(1), to = o.strips ? *o.strips : o.left_mm ? kMostStrips : 1;
@@ -84,7 +85,10 @@ class PathWriter {
     zone_ = flank.zone;
     pass_ = number;
     record(above(records.front().axis), records.front().axis.a, path::MoveKind::rapid, 0);
-    record(tip(records.front().axis), records.front().axis.a, path::MoveKind::engage, o_.feed_mm_min);
+    const AxisLine<double>& first = records.front().axis;
+    if ((above(first) - tip(first)).norm() > o_.slow_mm)
+      record(tip(first) + o_.slow_mm * first.a, first.a, path::MoveKind::engage, link_feed());
+    record(tip(first), first.a, path::MoveKind::engage, o_.feed_mm_min);
     for (std::size_t k = 1; k < records.size(); ++k) {
       const double contact = (records[k].anchor - records[k - 1].anchor).norm();
       const Vec3 from = tip(records[k - 1].axis), to = tip(records[k].axis);
@@ -93,8 +97,9 @@ class PathWriter {
       least_feed_ = std::min(least_feed_, feed);
       record(to, records[k].axis.a, path::MoveKind::feed, feed * (to - from).norm() / contact);
     }
-    record(above(records.back().axis), records.back().axis.a, path::MoveKind::retract, o_.feed_mm_min);
+    record(above(records.back().axis), records.back().axis.a, path::MoveKind::retract, link_feed());
   }
+  [[nodiscard]] double link_feed() const { return std::max(o_.feed_mm_min, o_.link_feed_mm_min); }
   [[nodiscard]] double least_feed() const { return least_feed_; }
 
  private:
@@ -161,11 +166,14 @@ Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::
     }
   LinePlan plan;
   double least = INFINITY;
+  std::optional<Diagnostic> refused;
   for (const auto& choice : choices_of(o)) {
     auto passes = passes_of(flanks, tool, o, choice, int(gear.rings().size()));
     if (!passes) {
-      if (choice.rotaries != Rotaries::both && !o.rotaries) continue;  // the standing tilt was our own idea
-      return passes.error();
+      // What both rotaries cannot do more strips cannot either; one that stands may have failed by itself.
+      if (choice.rotaries == Rotaries::both) return passes.error();
+      refused = passes.error();
+      continue;
     }
     plan.misfit_mm = worst_of(*passes);
     least = std::min(least, plan.misfit_mm);
@@ -175,6 +183,7 @@ Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::
     plan.rotaries = choice.rotaries;
     break;
   }
+  if (plan.passes.empty() && least == INFINITY && refused) return *refused;
   if (plan.passes.empty())
     return fail(
         "left = {:.3f} um cannot be met: the side of this tool leaves {:.3f} um at best with {} strip(s); cut the rest "

@@ -11,11 +11,12 @@
 
 #include "cam/line/passes.h"
 #include "cam/path/cl_path.h"
+#include "cam/path/operation.h"
 #include "cam/tool/profile.h"
 
 namespace toothpath::line {
 
-inline constexpr int kMostStrips = 4;
+using path::kMostStrips;
 /// Gap that the poses keep by default, mm: what the proof may stand above what it finds (2e-4) and the rounding of axes
 /// to 1e-4 mm and deg.
 inline constexpr double kBias = 3e-4;
@@ -34,13 +35,18 @@ struct LineOperation {
   int operation = 0;  ///< index in the job
   int tool = 0;       ///< index into the job's list of tools
   double speed_rpm = 0;
-  double feed_mm_min = 0;            ///< of the contact
-  double allowance_mm = 0;           ///< stock that is left, exactly parallel; 0: finishing
-  std::optional<int> strips;         ///< 1 .. 4; none: the least number that meets `left`
-  std::optional<double> left_mm;     ///< largest misfit of a pass; none: whatever one strip with both rotaries leaves
-  std::optional<Rotaries> rotaries;  ///< none: the tilt stands where that meets `left`, else both
+  double feed_mm_min = 0;         ///< of the contact
+  double allowance_mm = 0;        ///< stock that is left, exactly parallel; 0: finishing
+  std::optional<int> strips;      ///< 1 .. 4; none: the least number that meets `left`
+  std::optional<double> left_mm;  ///< largest misfit of a pass; none: whatever one strip with both rotaries leaves
+  /// Admitted, tried in this order for each number of strips; empty: the tilt stands where that meets `left`, else
+  /// both.
+  std::vector<Rotaries> rotaries;
   double chord_tolerance_mm = 5e-4;
-  double bias_mm = kBias;  ///< see PassOptions; coarser axes ask for more: 8e-4 for 0.001 mm and deg
+  double bias_mm = kBias;       ///< see PassOptions; coarser axes ask for more: 8e-4 for 0.001 mm and deg
+  double base_lift_mm = 0;      ///< see PassOptions; of the lowest strip
+  double link_feed_mm_min = 0;  ///< of moves that cannot cut; 0, or below `feed_mm_min`: as that
+  double slow_mm = INFINITY;    ///< way along the axis before a pass on which stock may be met
   FeedLimits limits;
   bool climb = true;               ///< spindle M3, material to the right of the feed seen from the holder
   double clearance_height_mm = 0;  ///< z above which every part of the tool is for rapids

@@ -10,6 +10,7 @@
 namespace toothpath::line {
 namespace {
 
+constexpr double kStockProof = 1e-3;  // mm: to which stock is decided
 constexpr double kTouchProof = 1e-4;  // mm: to which a pose in contact is decided
 
 path::ToolMotion standing(const AxisLine<double>& axis, double r_0) {
@@ -36,6 +37,16 @@ Room room_of(const analytic::GearDistance& part, const tool::Profile& profile, c
     for (const auto& body : tool->cutting)
       if (const auto gap = analytic::swept_gap(part, body, m, cutting); gap.proven_mm < -options.touch_mm)
         return Blocked{to_string(body.core.body), gap.patch, gap.measured_mm, -options.touch_mm};
+    if (options.stock_mm > 0) {
+      cutting.flanks_only = true;
+      cutting.enough_mm = options.stock_mm + 0.05;
+      cutting.contact_mm = options.stock_mm + 0.01;
+      cutting.contact_proof_mm = kStockProof;
+      cutting.settled_mm = options.stock_mm;
+      for (const auto& body : tool->cutting)
+        if (const auto gap = analytic::swept_gap(part, body, m, cutting); gap.proven_mm < options.stock_mm)
+          return Blocked{to_string(body.core.body), gap.patch, gap.measured_mm, options.stock_mm};
+    }
     analytic::SweptGapOptions beside;
     beside.enough_mm = options.clearance_mm + 0.01;
     beside.settled_mm = options.clearance_mm;

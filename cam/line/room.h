@@ -11,6 +11,7 @@ struct RoomOptions {
   double clearance_mm = 0.05;  ///< least gap of shank and holder
   double touch_mm =
       1e-4;  ///< how deep the cutting part may be bounded: its own flank it touches, up to the bias of the pass
+  double stock_mm = 0;  ///< that it leaves on every flank, its own and the opposite one
 };
 
 /// Answers for any pose of the tool in the gear frame, on flanks of any tooth: neither does the cutting part cut, nor

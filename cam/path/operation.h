@@ -1,9 +1,27 @@
 // One operation of a job: what the planners need to know, feeds in mm/min, lengths in mm.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace toothpath::path {
+
+/// Parts of the finished surface of a tooth space.
+enum class Region : std::uint8_t { flank, fillet, root };
+inline constexpr std::array kRegions{Region::flank, Region::fillet, Region::root};
+[[nodiscard]] const char* to_string(Region region);  ///< as in the job file
+
+/// One value for each region.
+template <typename T>
+struct ByRegion {
+  std::array<T, 3> value{};
+  [[nodiscard]] static ByRegion everywhere(const T& v) { return {{v, v, v}}; }
+  [[nodiscard]] T& operator[](Region region) { return value[std::size_t(region)]; }
+  [[nodiscard]] const T& operator[](Region region) const { return value[std::size_t(region)]; }
+};
 
 /// One key of a tool axis that the job prescribes: with the ball centre at this radius about the gear axis the tool
 /// leans so far from the normal of the pitch surface, outwards along the teeth and aside towards growing azimuth (away
@@ -12,8 +30,13 @@ struct ToolAxisKey {
   double radius_mm = 0, outwards_rad = 0, aside_rad = 0;
 };
 
-enum class OperationType { roughing, semi_finishing, finishing, finger_roughing, finger_finishing };
+enum class OperationType { roughing, semi_finishing, finishing, line_milling, finger_roughing, finger_finishing };
 [[nodiscard]] const char* to_string(OperationType type);  ///< as in the job file
+
+/// Which rotaries may move while the side of a mill cuts: "both" or "one" in the job file.
+enum class MovingRotaries : std::uint8_t { both, one };
+
+inline constexpr int kMostStrips = 4;  ///< of a line-milled flank
 
 struct MillingOperation {
   OperationType type = OperationType::finishing;
@@ -23,13 +46,36 @@ struct MillingOperation {
   double step_down_mm = 0;  ///< roughing: between layers
   double step_over_mm = 0;  ///< roughing: between passes of a layer
   double allowance_mm = 0;  ///< stock left, along the normal of the finished surface
-  double scallop_mm = 0;    ///< semi-finishing and finishing: cusp height between passes
-  double chord_tolerance_mm = 0.005;  ///< sag of a block against the exact path; not asked for: 0.005
+  double scallop_mm = 0;    ///< semi-finishing and finishing: cusp height between passes, the largest of its regions
+  std::optional<ByRegion<double>> scallops_mm;  ///< another one for each region; none: `scallop_mm` everywhere
+  ByRegion<bool> regions{{true, true, true}};   ///< semi-finishing and finishing: what is cut; line milling: the flank
+  double chord_tolerance_mm = 0.005;            ///< sag of a block against the exact path; not asked for: 0.005
   bool climb = true;
   double ridge_mm = 0;  ///< finger roughing: highest ridge left on the root
   /// Semi-finishing and finishing: prescribed tool axes, by ascending radius; both empty (the planner chooses) or both
   /// not. Those of passes on flank +1 of tooth 0 and its half of the root, and of the others.
   std::vector<ToolAxisKey> axis_plus, axis_minus;
+  // Line milling.
+  std::optional<int> strips;               ///< none: the least number that meets `left_mm`
+  std::optional<double> left_mm;           ///< largest misfit; none: kDefaultLeft
+  std::optional<MovingRotaries> rotaries;  ///< none: the fewest that meet `left_mm`
+
+  /// Does it leave the finished surface where it cuts?
+  [[nodiscard]] bool finishes() const {
+    return type == OperationType::finishing || (type == OperationType::line_milling && allowance_mm == 0);
+  }
+  [[nodiscard]] double scallop_in(Region region) const { return scallops_mm ? (*scallops_mm)[region] : scallop_mm; }
+  /// Largest misfit that a line-milled flank may keep.
+  [[nodiscard]] double most_misfit_mm() const { return left_mm.value_or(kDefaultLeft); }
+  static constexpr double kDefaultLeft = 5e-3;  ///< mm
 };
+
+/// The operation that finishes a region last, by index; nothing where none does.
+[[nodiscard]] inline std::optional<std::size_t> finisher_of(const std::vector<MillingOperation>& operations,
+                                                            Region region) {
+  for (std::size_t n = operations.size(); n-- > 0;)
+    if (operations[n].finishes() && operations[n].regions[region]) return n;
+  return {};
+}
 
 }  // namespace toothpath::path

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <string_view>
 
+#include "cam/path/operation.h"
+
 namespace toothpath::proof {
 
 /// Face gears: the five pieces of a tooth space from flank +1 to flank -1. Bevel gears: the two walls.
@@ -23,6 +25,16 @@ enum class Patch : std::uint8_t { flank_plus, fillet_plus, root, fillet_minus, f
     case Patch::wall_u: return "wall U";
   }
   return "";
+}
+
+/// The region of a patch of a face gear; walls are flanks.
+[[nodiscard]] constexpr path::Region region_of(Patch patch) {
+  switch (patch) {
+    case Patch::fillet_plus:
+    case Patch::fillet_minus: return path::Region::fillet;
+    case Patch::root: return path::Region::root;
+    default: return path::Region::flank;
+  }
 }
 
 /// +1 or -1 for a flank of a face gear; 0 for everything else.

@@ -94,11 +94,16 @@ enum class ErrorSource : std::uint8_t {
   flank_solve,
   chord,
   scallop,
+  line_misfit,
   ridge,
   orientation,
   axis_linearisation,
   rounding,
   path_blending,
+  tool_form,
+  half_angle,
+  run_out,
+  pivots,
   verification
 };
 [[nodiscard]] constexpr const char* to_string(ErrorSource source) {
@@ -106,11 +111,16 @@ enum class ErrorSource : std::uint8_t {
     case ErrorSource::flank_solve: return "flank solve";
     case ErrorSource::chord: return "chord";
     case ErrorSource::scallop: return "scallop";
+    case ErrorSource::line_misfit: return "line misfit";
     case ErrorSource::ridge: return "ridge";
     case ErrorSource::orientation: return "orientation";
     case ErrorSource::axis_linearisation: return "axis linearisation";
     case ErrorSource::rounding: return "rounding";
     case ErrorSource::path_blending: return "path blending";
+    case ErrorSource::tool_form: return "tool form";
+    case ErrorSource::half_angle: return "half angle";
+    case ErrorSource::run_out: return "run-out";
+    case ErrorSource::pivots: return "pivots";
     case ErrorSource::verification: return "verification";
   }
   return "";
@@ -119,7 +129,8 @@ enum class ErrorSource : std::uint8_t {
 struct LedgerEntry {
   ErrorSource source = ErrorSource::flank_solve;
   double predicted_um = 0, measured_um = 0;
-  std::string note;  ///< what was measured, or why the source does not occur
+  bool counted = true;  ///< false: nothing states how large it is; the note says what would
+  std::string note;     ///< what was measured, or why the source does not occur
 };
 
 /// Why the tool stands as it does in one zone of one operation.

@@ -1,12 +1,16 @@
 // A tool assembly: cutter, neck or shank, holder. Lengths mm, measured along the axis from the tip.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "cam/tool/radius_law.h"
+
 namespace toothpath::tool {
 
-enum class CutterType { ball_end_mill, finger_mill };
+/// What a cutter is: cam/tool/cutters.h has a line for each.
+enum class CutterType { ball_end_mill, tapered_ball_end_mill, flat_end_mill, bull_nose_end_mill, finger_mill };
 
 /// A conical or cylindrical piece of a holder, from the tip side.
 struct HolderSegment {
@@ -16,13 +20,19 @@ struct HolderSegment {
 struct ToolAssembly {
   int number = 0;  ///< T word
   CutterType type = CutterType::ball_end_mill;
-  double diameter_mm = 0;      ///< of the ball; a finger mill has none
+  double diameter_mm = 0;      ///< of the ball; of a flat or bull nose mill that of the cutter; a finger mill has none
   double flute_length_mm = 0;  ///< tip to the end of the cutting part; shank above it
   double shank_diameter_mm = 0;
   double length_mm = 0;  ///< gauge line to tip
   std::vector<HolderSegment> holder;
-  double stick_out_mm = 0;  ///< tip to the lower face of the holder
-  int teeth = 2;            ///< cutting edges
+  double stick_out_mm = 0;          ///< tip to the lower face of the holder
+  int teeth = 2;                    ///< cutting edges
+  double half_angle_rad = 0;        ///< tapered: between axis and side
+  double corner_radius_mm = 0;      ///< bull nose
+  std::optional<double> helix_rad;  ///< of the flutes, where the job says it
+  std::optional<double> form_error_mm, half_angle_error_rad,
+      run_out_mm;                         ///< stated: of the form, the angle, total reading
+  std::optional<MeridianError> meridian;  ///< measured: error of rho along t
   // Finger mill only.
   double module_mm = 0;          ///< m_nj
   double tip_radius_mm = 0;      ///< r_t

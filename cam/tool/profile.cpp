@@ -1,5 +1,6 @@
 #include "cam/tool/profile.h"
 
+#include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::tool {
@@ -241,7 +242,11 @@ std::vector<Frustum> Meridian::enclosing_frustums(double sag_mm, Body body) cons
 
 CutterData cutter_data(const ToolAssembly& t) {
   CutterData d;
+  d.shape = kind_of(t).shape;
   d.diameter_mm = t.diameter_mm;
+  d.half_angle_rad = t.half_angle_rad;
+  d.corner_radius_mm = t.corner_radius_mm;
+  d.meridian = t.meridian;
   d.flute_length_mm = t.flute_length_mm;
   d.shank_diameter_mm = t.shank_diameter_mm;
   d.length_mm = t.length_mm;
@@ -265,8 +270,6 @@ std::variant<Profile, std::vector<ProfileRefusal>> Profile::make(const CutterDat
   if (!maker.refusals.empty()) return std::move(maker.refusals);
   return unchecked(data);
 }
-
-Profile Profile::of_ball_mill(const ToolAssembly& tool) { return unchecked(cutter_data(tool)); }
 
 Profile Profile::unchecked(const CutterData& data) {
   const Maker maker(data);

@@ -167,8 +167,8 @@ struct CutterData {
   std::vector<HolderSegment> holder;
   std::optional<MeridianError> meridian;  ///< measured: error of rho along t
 };
-/// The ball mill of an assembly as cutter data.
-[[nodiscard]] CutterData cutter_data(const ToolAssembly& ball_mill);
+/// What a job says of a tool whose form its numbers give, as cutter data.
+[[nodiscard]] CutterData cutter_data(const ToolAssembly& tool);
 
 /// What is above the cutting part of any assembly, as its numbers say; empty where they leave no room for it.
 [[nodiscard]] Meridian shank_of(const ToolAssembly& tool);
@@ -195,9 +195,8 @@ class Profile {
   /// flutes; a barrel whose flutes pass its widest place; a stick-out below the flutes; a measured meridian that begins
   /// above the ball's centre, is not ascending, or errs by more than r_0/10.
   static std::variant<Profile, std::vector<ProfileRefusal>> make(const CutterData& data);
-  /// The ball mill of an assembly that a job reader has accepted; nothing is checked again. Finger mills:
-  /// cam/tool/finger_profile.h.
-  static Profile of_ball_mill(const ToolAssembly& tool);
+  /// Of data that `make` would accept; nothing is checked again.
+  static Profile of_accepted(const CutterData& data) { return unchecked(data); }
   /// A body from pieces, for cutters whose form is made elsewhere. `shank` and `holder` may be empty. No law.
   Profile(Meridian cutting, Meridian shank, Meridian holder)
       : cutting_(std::move(cutting)), shank_(std::move(shank)), holder_(std::move(holder)) {}

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cam/tool/cutters.h"
 #include "cam/tool/profile.h"
 
 namespace toothpath::tool {
@@ -81,7 +82,14 @@ std::optional<RoundedFrustum> bull_nose(const Meridian& cutting) {
 
 }  // namespace
 
+std::vector<ProofTool> proof_tools(const std::vector<ToolAssembly>& tools) {
+  std::vector<ProofTool> out;
+  for (const auto& t : tools) out.push_back(proof_tool(t));
+  return out;
+}
+
 ProofTool proof_tool(const ToolAssembly& t) {
+  if (!turns_freely(t)) return proof_tool(profile_of(t), t.number);
   ProofTool out;
   out.number = t.number;
   const double R = t.radius_mm();

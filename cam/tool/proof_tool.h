@@ -20,8 +20,9 @@ struct ProofTool {
   std::optional<ToolAssembly> ball_mill;  ///< a plain ball mill: its ball and flute are followed by distances of points
 };
 
-/// The tool of a ball mill: everything in `ball_mill`, and the same as bodies.
-[[nodiscard]] ProofTool proof_tool(const ToolAssembly& ball_mill);
+/// Of a plain ball mill everything in `ball_mill`, and the same as bodies; any other end mill by its profile.
+[[nodiscard]] ProofTool proof_tool(const ToolAssembly& tool);
+[[nodiscard]] std::vector<ProofTool> proof_tools(const std::vector<ToolAssembly>& tools);
 
 /// The tool of a profile. Ball, tapered ball, flat and bull nose cutters: one rounded frustum, exact up to the end of
 /// the flutes; above them it goes on by the ball's or corner's radius times 1 + sin(half angle), where the shank is.

@@ -77,6 +77,8 @@ class TableReader {
   /// What a key of this table is called in messages.
   [[nodiscard]] std::string name(std::string_view key) const { return words().name(path_, key); }
   [[nodiscard]] const std::string& path() const { return path_; }
+  /// Refusals so far, in all tables of the file.
+  [[nodiscard]] std::size_t errors() const { return findings_->errors.size(); }
 
   // Required keys: a missing, mistyped or out-of-range one is recorded and gives nothing.
   std::optional<double> number(std::string_view key, const Range& range);

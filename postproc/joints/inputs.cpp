@@ -1,4 +1,5 @@
 #include "postproc/joints/inputs.h"
+#include "cam/tool/cutters.h"
 
 #include <algorithm>
 #include <cmath>
@@ -64,7 +65,7 @@ PoleRules pole_rules_of(const machines::Machine& machine, const AxisOptions& opt
   PoleRules rules;
   rules.option = post.pole;
   if (machine.chain.rotary_count() > 0) rules.letter = machine.chain.rotary(0).letter;
-  rules.ball = tool.type == tool::CutterType::ball_end_mill;
+  rules.ball = tool::turns_freely(tool);
   rules.ball_radius_mm = rules.ball ? tool.radius_mm() : 0;
   const bool moves = post.pole == machines::PoleOption::hold || post.pole == machines::PoleOption::through ||
                      post.pole == machines::PoleOption::retract;

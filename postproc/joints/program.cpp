@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 #include "postproc/choice/solution.h"
 #include "postproc/joints/clearance.h"
@@ -286,8 +287,7 @@ class ProgramBuilder {
     op.type = path.operation_type;
     op.tool_number = tool.number;
     op.tool_length_mm = tool.length_mm;
-    op.tool_name = tool.type == tool::CutterType::ball_end_mill ? fmt::format("BALL END MILL D{}", tool.diameter_mm)
-                                                                : fmt::format("FINGER MILL M{}", tool.module_mm);
+    op.tool_name = tool::cutter_comment(tool);
     op.spindle_rpm = path.spindle_rpm;
     builder.begin(op, tool.length_mm);
     const int written = program_.loop ? 1 : teeth_;

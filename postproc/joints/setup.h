@@ -1,6 +1,7 @@
 // How the workpiece stands in the machine: the [setup] table of a job.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "geometry/base/vec.h"
@@ -9,7 +10,9 @@ namespace toothpath::joints {
 
 struct Setup {
   Vec3 origin_mm = Vec3::Zero();  ///< of the gear frame, machine coordinates, all rotaries at zero
-  bool axis_up = true;            ///< gear z along machine +Z, x along +X; else turned by 180 deg about X
+  std::optional<double>
+      pivot_error_mm;   ///< stated: how far the rotary axes may stand beside where the machine file says
+  bool axis_up = true;  ///< gear z along machine +Z, x along +X; else turned by 180 deg about X
   std::string work_offset = "G54";
   Vec3 work_offset_at_mm = Vec3::Zero();  ///< origin of the work coordinate system, machine coordinates
 

@@ -15,9 +15,9 @@
 #include "app/process/face/shaper_setup.h"
 #include "app/process/gear_of_job.h"
 #include "app/process/proof_limits.h"
-#include "cam/ball/plan.h"
 #include "cam/finger/check.h"
 #include "cam/finger/milling.h"
+#include "cam/plan/face_gear.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/readback/reader.h"
 #include "postproc/shaper/control.h"
@@ -99,9 +99,9 @@ Planned plan_face(const job::Job& job) {
   const face_gear::FaceGear& gear = made.value();
   const analytic::GearDistance part(gear, ball::reach_of(job.tools));
   const proof::ProofLimits limits = process::proof_limits(job, 1);
-  ball::PlanOptions options;
+  plan::Options options;
   options.limits = limits;
-  auto planned = ball::plan_face_gear(part, job.tools, job.operations, options);
+  auto planned = plan::plan_face_gear(part, job.tools, job.operations, options);
   if (const auto* refusal = planned.refused()) return out.error = refusal->diagnostic.message, out;
   out.paths = planned.value().paths;
   const analytic::GougeCheck gouge(part, job.tools, {limits, gear.blank_top()});

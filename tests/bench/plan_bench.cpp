@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "cam/analytic/gouge_check.h"
-#include "cam/ball/plan.h"
+#include "cam/plan/face_gear.h"
 #include "tests/support/sample_gears.h"
 #include "tests/support/sample_tools.h"
 #include "tests/support/threads.h"
@@ -92,11 +92,11 @@ std::vector<path::ClRecord> row(const Case& c, int threads) {
   Clock clock;
   std::unique_ptr<analytic::GearDistance> part;
   clock.run("distance index", [&] { part = std::make_unique<analytic::GearDistance>(gear, ball::reach_of(c.tools)); });
-  ball::PlanOptions options;
+  plan::Options options;
   options.stage = [&](const std::string& name, const std::function<void()>& work) { clock.run(name, work); };
-  ball::FaceGearPlan plan;
+  plan::FaceGearPlan plan;
   clock.run("rest", [&] {
-    auto planned = ball::plan_face_gear(*part, c.tools, c.operations, options);
+    auto planned = plan::plan_face_gear(*part, c.tools, c.operations, options);
     if (const auto* refusal = planned.refused()) {
       std::fprintf(stderr, "%s: %s\n", c.name, refusal->diagnostic.message.c_str());
       std::exit(1);

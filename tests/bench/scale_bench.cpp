@@ -12,7 +12,7 @@
 #include <variant>
 
 #include "cam/analytic/gouge_check.h"
-#include "cam/ball/plan.h"
+#include "cam/plan/face_gear.h"
 #include "tests/support/sample_gears.h"
 #include "tests/support/sample_tools.h"
 
@@ -57,7 +57,7 @@ std::unique_ptr<Planned> plan(int teeth, std::size_t records) {
   for (int round = 0; round < 4; ++round) {
     op.scallop_mm = 0.01 * share;
     op.chord_tolerance_mm = 5e-4 * share;
-    auto planned = ball::plan_face_gear(job->part, job->tools, {op}, {});
+    auto planned = plan::plan_face_gear(job->part, job->tools, {op}, {});
     if (auto* refusal = planned.refused()) {
       std::fprintf(stderr, "%s\n", refusal->diagnostic.message.c_str());
       std::exit(1);

@@ -8,8 +8,8 @@
 
 #include "app/process/program_proof.h"
 #include "cam/analytic/gear_distance.h"
-#include "cam/ball/plan.h"
 #include "cam/cut/cut_surface.h"
+#include "cam/plan/face_gear.h"
 #include "postproc/joints/program.h"
 
 namespace toothpath::face {
@@ -17,16 +17,21 @@ namespace toothpath::face {
 /// A gear, what was planned for it, and what that cut.
 struct MilledGear {
   const analytic::GearDistance& part;
-  const ball::FaceGearPlan& plan;
+  const plan::FaceGearPlan& plan;
   std::span<const tool::ToolAssembly> tools;
+  const std::vector<path::MillingOperation>& operations;
   const cut::CutSurface& surface;  ///< with the cusps and residuals found on it
 };
 
-/// The finished surface is what the last operation leaves; the others stay above it by their allowance.
-/// @param blend_mm how far the control may round the corners of the path; 0: the dialect has no word for it
-/// @param proof_mm how far the bound of the gouge check may lie above what it measured
+struct LedgerTerms {
+  double blend_mm = 0;  ///< how far the control may round the corners of the path; 0: the dialect has no word for it
+  double proof_mm = 0;  ///< how far the bound of the gouge check may lie above what it measured
+  double bias_mm = 0;   ///< gap that line poses keep
+  const joints::Setup& setup;
+};
+
+/// The finished surface is what the finishing operations leave; the others stay above it by their allowance.
 [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const MilledGear& milled, const joints::AxisProgram& program,
-                                                     const process::ProgramProof& proof, double blend_mm,
-                                                     double proof_mm);
+                                                     const process::ProgramProof& proof, const LedgerTerms& terms);
 
 }  // namespace toothpath::face

@@ -9,12 +9,13 @@
 #include "app/process/face/proof.h"
 #include "app/process/face/shaped_flanks.h"
 #include "app/process/face/surface_files.h"
+#include "app/process/proof_limits.h"
 #include "app/report/limits/chart.h"
 #include "app/report/page/tool_body.h"
 #include "app/report/svg/html_text.h"
 #include "cam/analytic/gouge_check.h"
-#include "cam/ball/plan.h"
 #include "cam/cut/cut_surface.h"
+#include "cam/plan/face_gear.h"
 #include "postproc/joints/pole.h"
 
 namespace toothpath::face {
@@ -33,6 +34,9 @@ std::string gear_words(const face_gear::FaceGearParameters& p) {
   return text;
 }
 
+constexpr double kLinkFeed = 3000;  // mm/min: of moves under feed through air, where the machine is no slower
+constexpr double kBiasShare = 0.4;  // of the rounding, taken up by the poses: the rest is counted
+
 cut::CutSurfaceOptions surface_options(const process::FlankGrid& grid) {
   cut::CutSurfaceOptions options;
   if (grid.rows > 0) options.flank_rows = grid.rows;
@@ -40,14 +44,28 @@ cut::CutSurfaceOptions surface_options(const process::FlankGrid& grid) {
   return options;
 }
 
-ball::PlanOptions plan_options(const proof::ProofLimits& limits, const machines::Machine& machine) {
-  ball::PlanOptions options;
+plan::Options plan_options(const proof::ProofLimits& limits, const machines::Machine& machine, double outer_radius_mm) {
+  plan::Options options;
   options.limits = limits;
+  options.link_feed_mm_min = std::min(machine.max_cutting_feed, kLinkFeed);
+  options.line_bias_mm = line::kBias + kBiasShare * process::word_rounding(machine, outer_radius_mm);
   // `tilt` keeps what it asks between two records, too, where the axis dips by less than this margin.
   if (machine.post.pole == machines::PoleOption::tilt)
     options.least_tilt_rad =
         std::max(options.least_tilt_rad, machine.post.pole_angle_rad.value_or(joints::kLeastPoleTilt) + 1e-3);
   return options;
+}
+
+void add_side_passes(const line::LinePlan& plan, int operation, std::vector<report::PassReport>& out) {
+  for (const auto& pass : plan.passes) {
+    report::SidePass side{pass.side, pass.strip, to_string(plan.rotaries), pass.misfit_mm, {}};
+    for (const auto& s : pass.stations) side.stations.push_back({s.r, s.lean, s.tilt, s.misfit});
+    std::string name = fmt::format("flank {:+d}", pass.side);
+    if (plan.strips > 1) name += fmt::format(", strip {}", pass.strip);
+    const int number = (pass.side > 0 ? 0 : plan.strips) + pass.strip;
+    out.push_back(
+        {operation, pass.zone, number, std::move(name), true, pass.contact_mm, pass.records.size(), std::move(side)});
+  }
 }
 
 class FaceMilling final : public process::GearMilling {
@@ -62,10 +80,10 @@ class FaceMilling final : public process::GearMilling {
         check_(job, machine, limits, part_, gouge_, surface_options(grid)) {}
 
   [[nodiscard]] Status plan(app::StageClock& clock, app::Progress& progress) override {
-    ball::PlanOptions options = plan_options(limits_, machine_);
+    plan::Options options = plan_options(limits_, machine_, part_.gear().outer_radius());
     options.stage = [&](const std::string& name, const std::function<void()>& work) { clock.run(name, work); };
     auto planned = clock.run("plan", [&] {
-      return ball::plan_face_gear(part_, job_.tools, job_.operations, options,
+      return plan::plan_face_gear(part_, job_.tools, job_.operations, options,
                                   [&](const std::string& text) { progress.show(text); });
     });
     if (auto* refusal = planned.refused()) return process::located(job_, refusal->key, std::move(refusal->diagnostic));
@@ -78,7 +96,12 @@ class FaceMilling final : public process::GearMilling {
     return out;
   }
   [[nodiscard]] std::vector<proof::DirectionChoice> directions() const override { return plan_.directions; }
-  [[nodiscard]] std::vector<report::PassReport> passes() const override { return {}; }
+  [[nodiscard]] std::vector<report::PassReport> passes() const override {
+    std::vector<report::PassReport> out;
+    for (std::size_t n = 0; n < plan_.lines.size(); ++n)
+      if (plan_.lines[n]) add_side_passes(*plan_.lines[n], int(n), out);
+    return out;
+  }
   [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override {
     return gouge_.check_path(path);
   }
@@ -86,7 +109,9 @@ class FaceMilling final : public process::GearMilling {
   [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program,
                                                        const process::ProgramProof& proof,
                                                        double blend_mm) const override {
-    return face::ledger({part_, plan_, job_.tools, check_.surface}, program, proof, blend_mm, limits_.proof_mm);
+    return face::ledger({part_, plan_, job_.tools, job_.operations, check_.surface}, program, proof,
+                        {blend_mm, limits_.proof_mm,
+                         plan_options(limits_, machine_, part_.gear().outer_radius()).line_bias_mm, *job_.setup});
   }
   [[nodiscard]] sheet::OtherSurface beside_the_grid() const override { return {}; }
 
@@ -97,7 +122,7 @@ class FaceMilling final : public process::GearMilling {
   analytic::GearDistance part_;
   analytic::GougeCheck gouge_;
   FaceGearCheck check_;
-  ball::FaceGearPlan plan_;
+  plan::FaceGearPlan plan_;
 };
 
 class FaceProcess final : public process::GearProcess {
@@ -133,7 +158,7 @@ class FaceProcess final : public process::GearProcess {
     page::GearOnPage out;
     out.subtitle = fmt::format("face gear {}/{}, module {} mm, {}", p.shaper_teeth, p.teeth,
                                svg::short_number(p.module_mm), machine_name);
-    for (const auto& tool : job_.tools) out.tools.push_back(page::page_ball_mill(tool));
+    for (const auto& tool : job_.tools) out.tools.push_back(page::page_end_mill(tool));
     return out;
   }
   [[nodiscard]] std::vector<svg::LineChart> limit_charts() const override { return limits::limit_charts(gear_); }

@@ -36,24 +36,55 @@ void judge_gouge(const proof::GougeResult& gouge, const analytic::GougeCheck& ch
 /// The least stock after an operation, as a share of its allowance.
 constexpr double kLeastAllowance = 0.8;
 
+/// What may stand above the allowance of a line-milled flank, whether or not others follow.
+void judge_line_flank(const cut::CutSurface& surface, const path::MillingOperation& op, std::size_t n,
+                      std::vector<std::string>& reasons) {
+  const double most = proof::most_left_mm(op, path::Region::flank),
+               stands = surface.most_in_mm[n][path::Region::flank] - op.allowance_mm;
+  if (stands > most)
+    reasons.push_back(
+        fmt::format("operation {}: {:.2f} um stand on a flank above the allowance of {:.4f} mm, limit {:.2f} "
+                    "um (left {:.2f}, chord {:.2f}, margin {:.2f})",
+                    n, stands * 1000, op.allowance_mm, most * 1000, op.most_misfit_mm() * 1000,
+                    op.chord_tolerance_mm * 1000, proof::kBallMargin * 1000));
+}
+
+/// What the finishing operations leave in each region.
+void judge_finished(const cut::CutSurface& surface, const job::Job& job, const proof::ProofLimits& limits,
+                    std::vector<std::string>& reasons) {
+  for (const path::Region region : path::kRegions) {
+    const auto& limit = limits.left_in_mm[region];
+    const double left = surface.finished_in_mm[region];
+    if (!limit || left <= *limit) continue;
+    const path::MillingOperation& op = job.operations[*path::finisher_of(job.operations, region)];
+    const bool side = op.type == path::OperationType::line_milling;
+    reasons.push_back(fmt::format(
+        "left material: {:.2f} um on the {} after the last operation, limit {:.2f} um ({} {:.2f}, chord {:.2f}, margin "
+        "{:.2f})",
+        left * 1000, to_string(region), *limit * 1000, side ? "left" : "scallop",
+        (side ? op.most_misfit_mm() : op.scallop_in(region)) * 1000, op.chord_tolerance_mm * 1000,
+        proof::kBallMargin * 1000));
+  }
+}
+
 /// What a finishing operation may leave, on every point that its ball can reach: the cusps, the chords and a
 /// micrometre.
 void judge_surface(const cut::CutSurface& surface, const job::Job& job, const proof::ProofLimits& limits,
                    std::vector<std::string>& reasons) {
   for (const proof::ExcessResult& after : surface.operations) {
-    const double allowance = job.operations[static_cast<std::size_t>(after.operation)].allowance_mm;
-    if (allowance > 0 && after.points > 0 && after.min_mm < kLeastAllowance * allowance)
+    const auto n = static_cast<std::size_t>(after.operation);
+    const path::MillingOperation& op = job.operations[n];
+    if (after.points == 0) continue;
+    // The side of a mill is asked for the flanks; its end runs through what is left in fillets and root.
+    const bool side = op.type == path::OperationType::line_milling;
+    const double allowance = op.allowance_mm, least = side ? surface.least_in_mm[n][path::Region::flank] : after.min_mm;
+    if (side) judge_line_flank(surface, op, n, reasons);
+    if (allowance > 0 && least < kLeastAllowance * allowance)
       reasons.push_back(
-          fmt::format("operation {}: the least stock left is {:.4f} mm, below {:.4f} mm ({} of the allowance {:.4f})",
-                      after.operation, after.min_mm, kLeastAllowance * allowance, kLeastAllowance, allowance));
+          fmt::format("operation {}: the least stock left{} is {:.4f} mm, below {:.4f} mm ({} of the allowance {:.4f})",
+                      n, side ? " on a flank" : "", least, kLeastAllowance * allowance, kLeastAllowance, allowance));
   }
-  if (!limits.left_mm || surface.finished.max_mm <= *limits.left_mm) return;
-  const path::MillingOperation& last = job.operations.back();
-  reasons.push_back(
-      fmt::format("left material: {:.2f} um after the last operation, limit {:.2f} um (scallop {:.2f}, chord {:.2f}, "
-                  "margin {:.2f})",
-                  surface.finished.max_mm * 1000, *limits.left_mm * 1000, last.scallop_mm * 1000,
-                  last.chord_tolerance_mm * 1000, proof::kBallMargin * 1000));
+  judge_finished(surface, job, limits, reasons);
 }
 
 report::Finding scallop_of(const proof::ScallopResult& scallop) {

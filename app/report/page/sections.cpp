@@ -229,7 +229,11 @@ std::string ledger_section(const ReportPage& page) {
                                            : std::string("\u2013");
   };
   for (const proof::LedgerEntry& e : page.ledger) {
-    chart.rows.push_back({to_string(e.source), e.predicted_um, e.measured_um});
+    if (e.counted) chart.rows.push_back({to_string(e.source), e.predicted_um, e.measured_um});
+    if (!e.counted) {
+      t.rows.push_back({to_string(e.source), "\u2013", "\u2013", e.note});
+      continue;
+    }
     t.rows.push_back({to_string(e.source), svg::short_number(e.predicted_um), svg::short_number(e.measured_um),
                       share(e.measured_um, e.predicted_um)});
     predicted += e.predicted_um;
@@ -248,8 +252,9 @@ std::string direction_section(const ReportPage& page) {
   for (const proof::DirectionChoice& c : page.directions) {
     t.rows.push_back({operation_name(page, c.operation), std::to_string(c.zone), c.fixed ? "fixed" : "simultaneous",
                       fmt::format("{:.2f}", c.lean_rad / kDegree), decimal(c.clearance_mm, 3), c.explanation});
-    plots += figure(fmt::format("Operation {}, zone {}", operation_name(page, c.operation), c.zone),
-                    svg::svg_direction_map(c));
+    if (!c.candidates.empty())
+      plots += figure(fmt::format("Operation {}, zone {}", operation_name(page, c.operation), c.zone),
+                      svg::svg_direction_map(c));
   }
   std::string out = table(t) + figures(plots);
   if (!plots.empty())
@@ -287,7 +292,9 @@ std::string contact_section(const ReportPage& page) {
 }
 
 std::string section_of_the_report(const report::Section& s) {
-  return section(s.id, svg::html_escape(s.title), table({"", s.columns, s.rows, s.note}));
+  std::string plots;
+  for (const svg::LineChart& chart : s.charts) plots += figure(chart.title, svg::svg_line_chart(chart));
+  return section(s.id, svg::html_escape(s.title), figures(plots) + table({"", s.columns, s.rows, s.note}));
 }
 
 std::string stages_section(const ReportPage& page) {

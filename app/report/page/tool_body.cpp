@@ -4,40 +4,24 @@
 
 #include "app/report/svg/html_text.h"
 #include "cam/finger/milling.h"
+#include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::page {
 namespace {
 
-/// What is above the cutting part, up to the spindle.
-void add_shank_and_holder(PageTool& page, const tool::ToolAssembly& tool) {
-  const double shank = tool.shank_diameter_mm / 2;
-  page.bodies.push_back({"shank", {Vec2(shank, tool.flute_length_mm), Vec2(shank, tool.stick_out_mm)}, false});
-  PageToolBody holder{"holder", {}, false};
-  double z = tool.stick_out_mm;
-  for (const auto& part : tool.holder) {
-    holder.profile.emplace_back(part.lower_diameter_mm / 2, z);
-    z += part.height_mm;
-    holder.profile.emplace_back(part.upper_diameter_mm / 2, z);
-  }
-  page.bodies.push_back(std::move(holder));
+PageToolBody page_body(const tool::Outline& outline) {
+  PageToolBody body{to_string(outline.body), {}, tool::cuts(outline.body)};
+  for (const Vec2& p : outline.line) body.profile.emplace_back(p[1], p[0]);
+  return body;
 }
 
 }  // namespace
 
-PageTool page_ball_mill(const tool::ToolAssembly& tool) {
+PageTool page_end_mill(const tool::ToolAssembly& tool) {
   PageTool page;
-  page.name = fmt::format("T{} ball {} mm", tool.number, svg::short_number(tool.diameter_mm));
-  const double r = tool.radius_mm();
-  PageToolBody ball{"ball", {}, true};
-  constexpr int kSteps = 12;
-  for (int i = 0; i <= kSteps; ++i) {
-    const double angle = kPi / 2 * i / kSteps;
-    ball.profile.emplace_back(r * std::sin(angle), r * (1 - std::cos(angle)));
-  }
-  page.bodies.push_back(std::move(ball));
-  page.bodies.push_back({"flute", {Vec2(r, r), Vec2(r, tool.flute_length_mm)}, true});
-  add_shank_and_holder(page, tool);
+  page.name = fmt::format("T{} {}", tool.number, tool::cutter_text(tool));
+  for (const auto& outline : tool::outline_of(tool)) page.bodies.push_back(page_body(outline));
   return page;
 }
 
@@ -54,7 +38,8 @@ PageTool page_finger_mill(const bevel_gear::BevelGear& gear, const tool::ToolAss
   }
   flute.profile.emplace_back(c.rho_D, tool.flute_length_mm);
   page.bodies.push_back(std::move(flute));
-  add_shank_and_holder(page, tool);
+  for (const auto& outline : tool::outline_of(tool))
+    if (!tool::cuts(outline.body)) page.bodies.push_back(page_body(outline));
   return page;
 }
 

@@ -8,7 +8,7 @@
 namespace toothpath::page {
 
 /// Ball, flute, shank and holder of a ball end mill.
-[[nodiscard]] PageTool page_ball_mill(const tool::ToolAssembly& tool);
+[[nodiscard]] PageTool page_end_mill(const tool::ToolAssembly& tool);
 
 /// Flute, shank and holder of a finger mill; the flute has the profile that it must have for this gear. Without bodies
 /// where no such profile exists.

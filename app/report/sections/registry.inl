@@ -1,4 +1,5 @@
 // Every section, in the order of the set-up sheet: the name of its file and of the function in it.
 SECTION(travels)
 SECTION(times)
+SECTION(side_passes)
 SECTION(tool_work)

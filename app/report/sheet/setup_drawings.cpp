@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/report/svg/html_text.h"
+#include "cam/tool/cutters.h"
 #include "geometry/base/result.h"
 
 namespace toothpath::sheet {
@@ -78,27 +79,14 @@ std::string tool_sketch(const tool::ToolAssembly& tool) {
   std::string svg =
       fmt::format("<svg viewBox='{:.3f} {:.3f} {:.3f} {:.3f}' style='height:34mm' role=img aria-label='tool {}'>",
                   -widest / 2 - 1, -height - 1, widest + 2, height + 2, tool.number);
-  const auto cone = [&](double z1, double d1, double z2, double d2, const char* fill) {
-    svg += fmt::format(
-        "<path d='M{:.3f} {:.3f}L{:.3f} {:.3f}L{:.3f} {:.3f}L{:.3f} {:.3f}Z' fill='{}' stroke='#333' "
-        "stroke-width='.3'/>",
-        -d1 / 2, -z1, d1 / 2, -z1, d2 / 2, -z2, -d2 / 2, -z2, fill);
-  };
-  // A finger mill is drawn by its widest and its tip.
-  const bool finger = tool.type == tool::CutterType::finger_mill;
-  if (finger) cone(0, tool.module_mm / 2, tool.flute_length_mm, tool.shank_diameter_mm, "#e8c66a");
-  const double r = tool.radius_mm();
-  if (!finger) cone(r, 2 * r, tool.flute_length_mm, 2 * r, "#e8c66a");
-  if (!finger)
-    svg += fmt::format(
-        "<path d='M{0:.3f} {1:.3f}A{2:.3f} {2:.3f} 0 0 0 {2:.3f} {1:.3f}Z' fill='#e8c66a' stroke='#333' "
-        "stroke-width='.3'/>",
-        -r, -r, r);
-  cone(tool.flute_length_mm, tool.shank_diameter_mm, tool.stick_out_mm, tool.shank_diameter_mm, "#bbb");
-  double z = tool.stick_out_mm;
-  for (const auto& part : tool.holder) {
-    cone(z, part.lower_diameter_mm, z + part.height_mm, part.upper_diameter_mm, "#888");
-    z += part.height_mm;
+  for (const auto& body : tool::outline_of(tool)) {
+    const char* fill = tool::cuts(body.body) ? "#e8c66a" : body.body == tool::Body::shank ? "#bbb" : "#888";
+    std::string right, left;
+    for (const Vec2& p : body.line) {
+      right += fmt::format("{}{:.3f} {:.3f}", right.empty() ? "M" : "L", p[1], -p[0]);
+      left = fmt::format("L{:.3f} {:.3f}", -p[1], -p[0]) + left;
+    }
+    svg += fmt::format("<path d='{}{}Z' fill='{}' stroke='#333' stroke-width='.3'/>", right, left, fill);
   }
   return svg + "</svg>\n";
 }

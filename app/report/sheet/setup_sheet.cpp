@@ -7,6 +7,7 @@
 #include "app/report/sheet/setup_drawings.h"
 #include "app/report/sheet/sheet_html.h"
 #include "app/report/svg/html_text.h"
+#include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 #include "postproc/controls/of_machine.h"
 
@@ -57,13 +58,6 @@ void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part,
   sheet.end_table();
 }
 
-std::string cutter_name(const tool::ToolAssembly& tool) {
-  if (tool.type == tool::CutterType::finger_mill)
-    return fmt::format("finger mill, module {:g}, tip radius {:g}, rack depth {:g}, profile height {:g} mm",
-                       tool.module_mm, tool.tip_radius_mm, tool.rack_depth_mm, tool.profile_height_mm);
-  return fmt::format("ball end mill, dia {:g} mm", tool.diameter_mm);
-}
-
 void tool_section(Sheet& sheet, const job::Job& job, const report::RunReport& report) {
   sheet.heading("Tools");
   sheet.begin_table({"T", "cutter", "length mm: gauge line to tip", "stick-out mm", "flute mm", "shank mm", "teeth",
@@ -80,10 +74,11 @@ void tool_section(Sheet& sheet, const job::Job& job, const report::RunReport& re
       feed += operation.feed_minutes;
       rapid += operation.rapid_minutes;
     }
-    sheet.row(
-        {std::to_string(tool.number), cutter_name(tool), millimetres(tool.length_mm), millimetres(tool.stick_out_mm),
-         millimetres(tool.flute_length_mm), fmt::format("dia {:g}", tool.shank_diameter_mm), std::to_string(tool.teeth),
-         report::readable_minutes(feed), report::readable_minutes(rapid), report::readable_minutes(feed + rapid)});
+    sheet.row({std::to_string(tool.number), tool::cutter_text(tool), millimetres(tool.length_mm),
+               millimetres(tool.stick_out_mm), millimetres(tool.flute_length_mm),
+               fmt::format("dia {:g}", tool.shank_diameter_mm), std::to_string(tool.teeth),
+               report::readable_minutes(feed), report::readable_minutes(rapid),
+               report::readable_minutes(feed + rapid)});
   }
   sheet.end_table();
   sheet.raw(fmt::format("<p class=small>{} tool change{}, the first tool included; changes are not in the times.</p>\n",

@@ -25,7 +25,7 @@ Sides sides_of(const face_gear::FaceGearParameters& gear, double ball, double sc
     ball::FinishingOptions o;
     o.ball_radius_mm = ball;
     o.allowance_mm = allowance;
-    o.scallop_mm = scallop;
+    o.scallop_mm = path::ByRegion<double>::everywhere(scallop);
     o.chord_mm = 0.002;
     o.run_out_mm = 0.5 * ball;
     o.climb = climb;

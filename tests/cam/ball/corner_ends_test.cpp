@@ -33,7 +33,7 @@ const test::PlannedJob& leaning_job() {
 ball::FinishingOptions options_of(const path::MillingOperation& op) {
   ball::FinishingOptions o;
   o.ball_radius_mm = kBall;
-  o.scallop_mm = op.scallop_mm;
+  o.scallop_mm = path::ByRegion<double>::everywhere(op.scallop_mm);
   o.chord_mm = op.chord_tolerance_mm;
   o.run_out_mm = 0.5 * kBall;
   return o;

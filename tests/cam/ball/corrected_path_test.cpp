@@ -42,7 +42,7 @@ TEST(CorrectedPath, PlannedAndProvenAgainstTheCorrectedFlanksAndWrongForTheOther
   const std::vector<path::MillingOperation> operations = {finishing(0, 3e-4, 3e-4)};
   PlannedJob job{corrected(nominal), tools, operations, nullptr, {}};
   job.part = std::make_unique<analytic::GearDistance>(job.gear, ball::reach_of(tools));
-  auto plan = ball::plan_face_gear(*job.part, tools, operations, {});
+  auto plan = plan::plan_face_gear(*job.part, tools, operations, {});
   ASSERT_TRUE(plan.has_value()) << plan.error().diagnostic.message;
   job.plan = std::move(plan).value();
   const auto motions = job.motions();

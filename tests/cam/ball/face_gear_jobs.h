@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "cam/analytic/gouge_check.h"
-#include "cam/ball/plan.h"
+#include "cam/plan/face_gear.h"
 #include "geometry/base/angle.h"
 #include "tests/support/random.h"
 #include "tests/support/sample_gears.h"
@@ -55,7 +55,7 @@ struct PlannedJob {
   std::vector<tool::ToolAssembly> tools;
   std::vector<path::MillingOperation> operations;
   std::unique_ptr<analytic::GearDistance> part;
-  ball::FaceGearPlan plan;
+  plan::FaceGearPlan plan;
 
   [[nodiscard]] std::vector<path::ToolMotion> motions() const {
     std::vector<path::ToolMotion> all;
@@ -84,7 +84,7 @@ inline PlannedJob planned(const face_gear::FaceGearParameters& p, std::vector<to
                           std::vector<path::MillingOperation> operations) {
   PlannedJob job{made(p), std::move(tools), std::move(operations), nullptr, {}};
   job.part = std::make_unique<analytic::GearDistance>(job.gear, ball::reach_of(job.tools));
-  auto plan = ball::plan_face_gear(*job.part, job.tools, job.operations, {});
+  auto plan = plan::plan_face_gear(*job.part, job.tools, job.operations, {});
   if (auto* refusal = plan.refused()) throw std::runtime_error(refusal->key + ": " + refusal->diagnostic.message);
   job.plan = std::move(plan).value();
   return job;

@@ -32,7 +32,7 @@ test::PlannedJob planned_with(const std::vector<path::ToolAxisKey>& plus, const 
 ball::PlanRefusal refused_with(const face_gear::FaceGear& gear, const tool::ToolAssembly& tool,
                                const std::vector<path::ToolAxisKey>& keys) {
   const analytic::GearDistance part(gear, ball::reach_of({tool}));
-  const auto plan = ball::plan_face_gear(part, {tool}, {with_axes(keys, keys)}, {});
+  const auto plan = plan::plan_face_gear(part, {tool}, {with_axes(keys, keys)}, {});
   const auto* refusal = plan.refused();
   return refusal != nullptr ? *refusal : ball::PlanRefusal{};
 }

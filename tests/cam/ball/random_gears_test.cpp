@@ -41,7 +41,7 @@ ball::FinishingOptions options(const Asked& a) {
   ball::FinishingOptions o;
   o.ball_radius_mm = a.ball_radius;
   o.allowance_mm = a.allowance;
-  o.scallop_mm = a.scallop;
+  o.scallop_mm = path::ByRegion<double>::everywhere(a.scallop);
   o.chord_mm = 0.002;
   o.run_out_mm = 0.5 * a.ball_radius;
   return o;

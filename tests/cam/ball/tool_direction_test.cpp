@@ -24,7 +24,7 @@ TEST(Direction, FatHolderOnAShortToolIsRefusedOrLeansAndSaysWhy) {
   const face_gear::FaceGear gear = test::made(test::offset_gear());
   auto tool = test::ball_mill(1.6, 4, 1.5, 5, 40);
   const analytic::GearDistance part(gear, ball::reach_of({tool}));
-  const auto plan = ball::plan_face_gear(part, {tool}, {test::finishing(0, 0.05, 0.002)}, {});
+  const auto plan = plan::plan_face_gear(part, {tool}, {test::finishing(0, 0.05, 0.002)}, {});
   if (const auto* refusal = plan.refused()) {
     EXPECT_EQ(refusal->key, "operation[0].tool");
     EXPECT_NE(refusal->diagnostic.message.find("holder"), std::string::npos) << refusal->diagnostic.message;

@@ -29,7 +29,7 @@ const test::PlannedJob& short_job() {
 std::string refusal_with(const tool::ToolAssembly& tool) {
   const face_gear::FaceGear gear = test::made(steep_gear());
   const analytic::GearDistance part(gear, ball::reach_of({tool}));
-  const auto plan = ball::plan_face_gear(part, {tool}, {test::finishing(0, 0.5, 0.002)}, {});
+  const auto plan = plan::plan_face_gear(part, {tool}, {test::finishing(0, 0.5, 0.002)}, {});
   const auto* refusal = plan.refused();
   return refusal != nullptr ? refusal->key + ": " + refusal->diagnostic.message : "";
 }
@@ -345,12 +345,12 @@ TEST(Orientation, PlainJobsRunNoSimultaneousSolver) {
   const auto tool = test::ball_mill(1, 6, 0.95, 16, 10);
   const analytic::GearDistance part(gear, ball::reach_of({tool}));
   std::set<std::string> stages;
-  ball::PlanOptions options;
+  plan::Options options;
   options.stage = [&](const std::string& name, const std::function<void()>& work) {
     stages.insert(name);
     work();
   };
-  const auto plan = ball::plan_face_gear(part, {tool}, {test::finishing(0, 0.05, 0.004)}, options);
+  const auto plan = plan::plan_face_gear(part, {tool}, {test::finishing(0, 0.05, 0.004)}, options);
   ASSERT_TRUE(plan.has_value());
   EXPECT_EQ(ball::orientation_runs(), before);
   EXPECT_EQ(stages, (std::set<std::string>{"tool passes", "tool direction", "links"}));

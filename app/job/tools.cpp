@@ -1,0 +1,199 @@
+// [[tool]]: what every tool has, and the numbers of its kind of cutter (cam/tool/cutters.h).
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+
+#include "app/job/tables.h"
+#include "cam/tool/cutters.h"
+#include "geometry/base/angle.h"
+#include "machines/toml/regular_file.h"
+
+namespace toothpath::job {
+namespace {
+
+constexpr toml::Range kToolLength{0, 2000, " mm", true};
+constexpr toml::Range kToolDiameter{0.01, 500, " mm"};
+constexpr std::size_t kMostMeridianBytes = 1 << 20;
+constexpr double kMostHelix = 75;  // deg
+
+std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
+  std::vector<tool::HolderSegment> result;
+  const toml::TomlValue* value = table.value("holder");
+  if (!value) {
+    table.refuse("holder", "[{}] lacks the key \"holder\"", table.path());
+    return result;
+  }
+  const auto wrong = [&] {
+    table.refuse(
+        "holder",
+        "holder must be an array of [lower diameter, upper diameter, height] in mm, each above 0 and at most 2000");
+    return std::vector<tool::HolderSegment>{};
+  };
+  const toml::TomlArray* segments = value->array();
+  if (!segments || segments->values.empty() || segments->values.size() > 100) return wrong();
+  for (const auto& segment : segments->values) {
+    const toml::TomlArray* numbers = segment.array();
+    if (!numbers || numbers->values.size() != 3) return wrong();
+    double read[3] = {};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto& data = numbers->values[i].data;
+      if (const auto* real = std::get_if<double>(&data)) read[i] = *real;
+      else if (const auto* whole = std::get_if<std::int64_t>(&data)) read[i] = static_cast<double>(*whole);
+      if (!(read[i] > 0 && read[i] <= 2000)) return wrong();
+    }
+    result.push_back({read[0], read[1], read[2]});
+  }
+  return result;
+}
+
+std::vector<std::string_view> kind_words() {
+  std::vector<std::string_view> words;
+  for (const auto& kind : tool::cutter_kinds()) words.push_back(kind.word);
+  return words;
+}
+
+void read_numbers(toml::TableReader& table, const tool::CutterKind& kind, tool::ToolAssembly& tool) {
+  for (const auto& n : kind.numbers) {
+    if (n.member == &tool::ToolAssembly::flute_length_mm || n.member == &tool::ToolAssembly::diameter_mm) continue;
+    const double read = table.number(n.key, {n.low, n.high, n.degrees ? " deg" : " mm", n.open_low}).value_or(0);
+    tool.*n.member = n.degrees ? radians(read) : read;
+  }
+}
+
+/// A finger mill: its width follows from its numbers, its flutes end at the profile where nothing else is said.
+void read_finger_lengths(toml::TableReader& table, const ToolContext& context, tool::ToolAssembly& tool) {
+  tool.flute_length_mm = (context.bevel ? context.bevel->dedendum_mm : 0) + tool.profile_height_mm;
+  if (const auto flute = table.if_present("flute_length", [&] { return table.number("flute_length", kToolLength); }))
+    tool.flute_length_mm = *flute;
+  if (table.value("diameter"))
+    table.refuse("diameter",
+                 "diameter contradicts type = \"finger_mill\": its width follows from module and profile_height");
+}
+
+void read_ball_lengths(toml::TableReader& table, tool::ToolAssembly& tool) {
+  const auto diameter = table.number("diameter", kToolDiameter);
+  const auto flute = table.number("flute_length", kToolLength);
+  tool.diameter_mm = diameter.value_or(0);
+  tool.flute_length_mm = flute.value_or(0);
+  if (tool.type == tool::CutterType::flat_end_mill || !diameter || !flute) return;
+  if (const double end = tool::end_centre_mm(tool); *flute < end)
+    table.refuse("flute_length", "flute_length = {} mm is below {} mm, {}", *flute, end,
+                 tool.type == tool::CutterType::bull_nose_end_mill ? "the corner radius" : "half the diameter");
+}
+
+/// One line `t,f`: mm, um.
+std::optional<std::pair<double, double>> meridian_line(std::string_view line) {
+  const std::size_t comma = line.find(',');
+  if (comma == std::string_view::npos) return {};
+  double value[2] = {};
+  const std::string_view cells[] = {line.substr(0, comma), line.substr(comma + 1)};
+  for (int k = 0; k < 2; ++k) {
+    std::string_view cell = cells[k];
+    while (!cell.empty() && cell.front() == ' ') cell.remove_prefix(1);
+    while (!cell.empty() && cell.back() == ' ') cell.remove_suffix(1);
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value[k]);
+    if (error != std::errc{} || end != cell.data() + cell.size() || !std::isfinite(value[k])) return {};
+  }
+  return std::pair{value[0], value[1]};
+}
+
+/// The measured meridian: a table `t,f`, height above the centre of the ball [mm] and error of rho [um].
+void read_meridian(toml::TableReader& table, const ToolContext& context, tool::ToolAssembly& tool) {
+  const auto name = table.text("meridian");
+  if (!name) return;
+  const auto path = (std::filesystem::path(context.directory) / *name).string();
+  const auto text = toml::read_regular_file(path, kMostMeridianBytes);
+  if (!text) return table.refuse("meridian", "{}", text.error().message);
+  tool::MeridianError measured;
+  int number = 0;
+  for (std::size_t at = 0; at < text->size();) {
+    const std::size_t end = std::min(text->find('\n', at), text->size());
+    std::string_view line(text->data() + at, end - at);
+    at = end + 1;
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    ++number;
+    if (number == 1) {
+      if (line != "t,f") return table.refuse("meridian", "{}:1: the header must be \"t,f\"", *name);
+      continue;
+    }
+    if (line.empty()) continue;
+    const auto point = meridian_line(line);
+    if (!point) return table.refuse("meridian", "{}:{}: a line is two numbers: t in mm, f in um", *name, number);
+    measured.t.push_back(point->first);
+    measured.f.push_back(point->second / 1000);
+  }
+  tool.meridian = std::move(measured);
+}
+
+/// What a profile must fulfil, with the keys of the table.
+void check_profile(toml::TableReader& table, const tool::ToolAssembly& tool) {
+  const auto made = tool::Profile::make(tool::cutter_data(tool));
+  if (const auto* refusals = std::get_if<std::vector<tool::ProfileRefusal>>(&made))
+    for (const auto& refusal : *refusals) table.refuse(refusal.key, "{}", refusal.diagnostic.message);
+}
+
+void read_end_mill(toml::TableReader& table, const ToolContext& context, tool::ToolAssembly& tool,
+                   std::vector<std::string>& warnings) {
+  if (tool.type == tool::CutterType::tapered_ball_end_mill) {
+    if (table.value("taper_angle"))
+      table.refuse("taper_angle",
+                   "taper_angle is ambiguous (per side or included?): say half_angle, between the axis and the side");
+    if (table.has("meridian")) read_meridian(table, context, tool);
+  }
+  const auto stated = [&](const char* key, const toml::Range& range) {
+    return table.if_present(key, [&] { return table.number(key, range); });
+  };
+  tool.form_error_mm = stated("form_error", {0, 1, " mm"});
+  tool.run_out_mm = stated("run_out", {0, 1, " mm"});
+  if (tool.half_angle_rad > 0)
+    if (const auto error = stated("half_angle_error", {0, 5, " deg"})) tool.half_angle_error_rad = radians(*error);
+  const auto helix = table.if_present("helix", [&] { return table.number("helix", {0, kMostHelix, " deg"}); });
+  if (!helix) return;
+  tool.helix_rad = radians(*helix);
+  if (*helix == 0) {
+    const SourcePosition at = table.where("helix");
+    warnings.push_back(
+        fmt::format("{}:{}:{}: warning: helix = 0 deg, tool {}: straight flutes cut along the whole line at once; the "
+                    "force is several "
+                    "times that of a helix of 30 deg",
+                    at.file, at.line, at.column, tool.number));
+  }
+}
+
+}  // namespace
+
+tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& context, std::vector<std::string>& warnings) {
+  const std::vector<std::string_view> words = kind_words();
+  tool::ToolAssembly tool;
+  tool.number = table.integer("number", {1, 9999}).value_or(0);
+  const auto type = table.word("type", words);
+  tool.shank_diameter_mm = table.number("shank_diameter", kToolDiameter).value_or(0);
+  const auto length = table.number("length", kToolLength);
+  const auto stick_out = table.number("stick_out", kToolLength);
+  tool.length_mm = length.value_or(0);
+  tool.stick_out_mm = stick_out.value_or(0);
+  tool.holder = read_holder(table);
+  if (const auto teeth = table.if_present("teeth", [&] { return table.integer("teeth", {1, 100}); }))
+    tool.teeth = *teeth;
+  if (length && stick_out && *stick_out > *length)
+    table.refuse("stick_out", "stick_out = {} mm exceeds length = {} mm", *stick_out, *length);
+  if (!type) return tool;  // which other keys belong here is unknown
+  const auto& kind = tool::cutter_kinds()[std::size_t(std::find(words.begin(), words.end(), *type) - words.begin())];
+  tool.type = kind.type;
+  const std::size_t before = table.errors();
+  read_numbers(table, kind, tool);
+  if (kind.form_from_gear) read_finger_lengths(table, context, tool);
+  else read_ball_lengths(table, tool);
+  if (stick_out && tool.flute_length_mm > *stick_out)
+    table.refuse(table.has("flute_length") ? "flute_length" : "stick_out",
+                 "flute_length = {} mm exceeds stick_out = {} mm", tool.flute_length_mm, *stick_out);
+  if (!kind.form_from_gear) {
+    read_end_mill(table, context, tool, warnings);
+    if (kind.type != tool::CutterType::ball_end_mill && table.errors() == before) check_profile(table, tool);
+  }
+  table.finish();
+  return tool;
+}
+
+}  // namespace toothpath::job

@@ -1,0 +1,181 @@
+#include "cam/plan/face_gear.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "cam/analytic/gouge_check.h"
+#include "cam/line/room.h"
+#include "cam/tool/cutters.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath::plan {
+namespace {
+
+constexpr double kLeastStock = 0.85;  // of the allowance, on every flank: a program is refused below 0.8
+constexpr double kLiftShare = 0.5;
+
+std::vector<line::Rotaries> admitted(const path::MillingOperation& op) {
+  using line::Rotaries;
+  if (op.rotaries == path::MovingRotaries::both) return {Rotaries::both};
+  if (op.rotaries == path::MovingRotaries::one) return {Rotaries::tilt_stands, Rotaries::azimuth_stands};
+  return {Rotaries::tilt_stands, Rotaries::azimuth_stands, Rotaries::both};
+}
+
+const char* moving_text(line::Rotaries rotaries) {
+  switch (rotaries) {
+    case line::Rotaries::both: return "tilt and azimuth turn";
+    case line::Rotaries::tilt_stands: return "the tilt stands, the azimuth turns";
+    case line::Rotaries::azimuth_stands: return "the azimuth stands, the tilt turns";
+  }
+  return "";
+}
+
+/// How the axis stands in the passes of one ring.
+proof::DirectionChoice direction_of(const line::LinePlan& planned, int operation, int zone, double clearance_mm) {
+  proof::DirectionChoice d;
+  d.operation = operation;
+  d.zone = zone;
+  d.fixed = false;
+  d.clearance_mm = clearance_mm;
+  d.least_lean_rad = INFINITY;
+  Vec3 sum = Vec3::Zero();
+  double misfit = 0;
+  for (const auto& pass : planned.passes) {
+    if (pass.zone != zone) continue;
+    ++d.passes;
+    ++d.turning_passes;
+    misfit = std::max(misfit, pass.misfit_mm);
+    for (std::size_t k = 0; k < pass.records.size(); ++k) {
+      const auto& record = pass.records[k];
+      sum += record.axis.a;
+      const double tilt = std::acos(record.axis.a.z());
+      d.least_lean_rad = std::min(d.least_lean_rad, tilt);
+      d.greatest_lean_rad = std::max(d.greatest_lean_rad, tilt);
+      if (k == 0) continue;
+      const auto& before = pass.records[k - 1];
+      const double step = std::atan2(before.axis.a.cross(record.axis.a).norm(), before.axis.a.dot(record.axis.a));
+      const double way = (record.anchor - before.anchor).norm();
+      d.greatest_step_rad = std::max(d.greatest_step_rad, step);
+      if (way > 0) d.greatest_turn_rad_per_mm = std::max(d.greatest_turn_rad_per_mm, step / way);
+    }
+  }
+  d.axis = sum.normalized();
+  d.lean_rad = std::atan2(std::hypot(d.axis.x(), d.axis.y()), d.axis.z());
+  d.explanation = fmt::format(
+      "the side of the mill touches the flank along its height in {} strip{}: the axis leans {:.1f} to {:.1f} deg from "
+      "the "
+      "gear axis, {}; the misfit of the straight side is {:.2f} um at most, shank and holder keep {:.3f} mm or more",
+      planned.strips, planned.strips == 1 ? "" : "s", degrees(d.least_lean_rad), degrees(d.greatest_lean_rad),
+      moving_text(planned.rotaries), 1e3 * misfit, clearance_mm);
+  return d;
+}
+
+class FaceGearPlanner {
+ public:
+  FaceGearPlanner(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
+                  const std::vector<path::MillingOperation>& operations, const Options& options)
+      : part_(part), tools_(tools), operations_(operations), o_(options), ball_(part, tools, operations, options) {}
+
+  Expected<FaceGearPlan, ball::PlanRefusal> run(const Progress& progress) {
+    if (const auto& refusal = part_.refusal()) return ball::PlanRefusal{"gear." + refusal->key, refusal->diagnostic};
+    for (std::size_t n = 0; n < operations_.size(); ++n) {
+      if (progress) progress(to_string(operations_[n].type));
+      auto refusal = operations_[n].type == path::OperationType::line_milling ? line(int(n)) : ball(int(n));
+      if (refusal) return std::move(*refusal);
+      if (rougher_follows(n)) remember(n);
+    }
+    return std::move(plan_);
+  }
+
+ private:
+  [[nodiscard]] std::optional<ball::PlanRefusal> ball(int n) {
+    std::vector<const cut::Removed*> cleared;
+    for (const auto& c : cleared_) cleared.push_back(c.get());
+    auto planned = ball_.plan(n, cleared);
+    if (auto* refusal = planned.refused()) return std::move(*refusal);
+    plan_.paths.push_back(std::move(planned.value().path));
+    plan_.operations.push_back(planned.value().summary);
+    plan_.lines.emplace_back();
+    for (auto& d : planned.value().directions) plan_.directions.push_back(std::move(d));
+    return {};
+  }
+
+  [[nodiscard]] std::optional<ball::PlanRefusal> line(int n) {
+    const path::MillingOperation& op = operations_[std::size_t(n)];
+    const tool::Profile profile = tool::profile_of(tools_[std::size_t(op.tool)]);
+    line::LineOperation asked;
+    asked.operation = n;
+    asked.tool = op.tool;
+    asked.speed_rpm = op.speed_rpm;
+    asked.feed_mm_min = op.feed_mm_min;
+    asked.allowance_mm = op.allowance_mm;
+    asked.strips = op.strips;
+    asked.left_mm = op.most_misfit_mm();
+    asked.rotaries = admitted(op);
+    asked.chord_tolerance_mm = op.chord_tolerance_mm;
+    asked.bias_mm = o_.line_bias_mm;
+    asked.climb = op.climb;
+    asked.link_feed_mm_min = o_.link_feed_mm_min;
+    asked.slow_mm = ball::slow_way(operations_, tools_, std::size_t(n), profile.half_angle_rad());
+    asked.clearance_height_mm = part_.gear().blank_top() + o_.rapid_clearance_mm;
+    line::RoomOptions room;
+    room.clearance_mm = o_.limits.clearance_mm;
+    if (op.allowance_mm > 0) {
+      room.stock_mm = kLeastStock * op.allowance_mm;
+      // What the ball end leaves at the fillet line when it stands higher: a share of the chord.
+      asked.base_lift_mm = std::sqrt(2 * profile.law()->r_0 * kLiftShare * op.chord_tolerance_mm);
+    }
+    asked.room = line::room_of(part_, profile, room);
+    std::optional<Result<line::LinePlan>> planned;
+    const auto work = [&] { planned.emplace(line::plan_line_milling(part_.gear(), profile, asked)); };
+    if (o_.stage) o_.stage("line passes", work);
+    else work();
+    if (!*planned) return ball::PlanRefusal{fmt::format("operation[{}]", n), planned->error()};
+    keep(n, std::move(**planned));
+    return {};
+  }
+
+  void keep(int n, line::LinePlan planned) {
+    ball::OperationPlan summary;
+    summary.operation = n;
+    summary.passes = int(planned.passes.size());
+    for (const auto& pass : planned.passes) summary.chord_mm = std::max(summary.chord_mm, pass.chord_mm);
+    for (int zone = 0; zone < part_.zones(); ++zone)
+      plan_.directions.push_back(direction_of(planned, n, zone, o_.limits.clearance_mm));
+    plan_.paths.push_back(std::move(planned.path));
+    plan_.operations.push_back(summary);
+    plan_.lines.emplace_back(std::move(planned));
+  }
+
+  [[nodiscard]] bool rougher_follows(std::size_t n) const {
+    return std::any_of(operations_.begin() + long(n) + 1, operations_.end(),
+                       [](const auto& o) { return o.type == path::OperationType::roughing; });
+  }
+  void remember(std::size_t n) {
+    std::vector<path::ToolMotion> cuts;
+    for (const auto& m : analytic::GougeCheck::motions_of(plan_.paths[n]))
+      if (!m.rapid) cuts.push_back(m);
+    cleared_.push_back(std::make_unique<cut::Removed>(
+        std::move(cuts), tool::proof_tool(tools_[std::size_t(operations_[n].tool)]), part_.gear().blank_top()));
+  }
+
+  const analytic::GearDistance& part_;
+  const std::vector<tool::ToolAssembly>& tools_;
+  const std::vector<path::MillingOperation>& operations_;
+  const Options& o_;
+  ball::Planner ball_;
+  std::vector<std::unique_ptr<cut::Removed>> cleared_;
+  FaceGearPlan plan_;
+};
+
+}  // namespace
+
+Expected<FaceGearPlan, ball::PlanRefusal> plan_face_gear(const analytic::GearDistance& part,
+                                                         const std::vector<tool::ToolAssembly>& tools,
+                                                         const std::vector<path::MillingOperation>& operations,
+                                                         const Options& options, const Progress& progress) {
+  return FaceGearPlanner(part, tools, operations, options).run(progress);
+}
+
+}  // namespace toothpath::plan

@@ -1,0 +1,34 @@
+// Plans every operation of a face gear job for one tooth space, in the order of the job: each with the planner that its
+// type asks for.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cam/ball/plan.h"
+#include "cam/line/plan.h"
+
+namespace toothpath::plan {
+
+/// Limits and stages hold for every planner.
+struct Options : ball::PlanOptions {
+  double line_bias_mm = line::kBias;  ///< least gap of line poses: coarser axes ask for more
+};
+
+struct FaceGearPlan {
+  std::vector<path::ClPath> paths;                   ///< one an operation
+  std::vector<ball::OperationPlan> operations;       ///< the same
+  std::vector<std::optional<line::LinePlan>> lines;  ///< of line milling, without its path; nothing for the others
+  std::vector<proof::DirectionChoice> directions;
+};
+
+using Progress = std::function<void(const std::string&)>;
+
+/// Refused: what the planner of an operation refuses, with the key of the job that it belongs to.
+[[nodiscard]] Expected<FaceGearPlan, ball::PlanRefusal> plan_face_gear(
+    const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
+    const std::vector<path::MillingOperation>& operations, const Options& options, const Progress& progress = {});
+
+}  // namespace toothpath::plan
