@@ -23,6 +23,10 @@ constexpr double kChordShare = 0.6;
 /// Of that tolerance, the share for ball centres that leave the pass because the axis turns.
 constexpr double kTurnShare = 0.1;
 
+/// Of the stock that an operation leaves, the share that its chords may take at most; the turning axis and the rounding
+/// of words come on top.
+constexpr double kStockShare = 0.15;
+
 /// Hops in which the axis turns keep this much more than the clearance, mm: they are looked at in steps.
 constexpr double kTurnMargin = 0.02;
 
@@ -327,9 +331,11 @@ class JobPlanner {
                   degrees(o.greatest_turn_rad_per_mm), o.clearance_mm);
   }
 
-  /// Sag that an operation may have: a tenth of the stock that it leaves, and less than half of what may be gouged.
+  /// Sag that an operation may have: a tenth of the stock that it leaves, and less than half of what may be gouged. Of
+  /// the stock 0.8 must stay: where that is smaller, a share of it.
   [[nodiscard]] double chord_room(const path::MillingOperation& op) const {
-    return 0.1 * op.allowance_mm + 0.4 * o_.limits.gouge_mm;
+    const double room = 0.1 * op.allowance_mm + 0.4 * o_.limits.gouge_mm;
+    return op.allowance_mm > 0 ? std::min(room, kStockShare * op.allowance_mm) : room;
   }
 
   /// A planned place at which the ball would cut deeper than may be gouged is refused before any motion is made of it.
