@@ -219,7 +219,10 @@ class JobPlanner {
     link.outer_radius_mm = ring.outer_radius_mm;
     link.zone = zone;
     link.bodies = tool::shank_and_holder(tool_of(n));
+    // A turn past the pole is left to the clearance height, but for axes that the job prescribes.
+    const double off_pole = op.axis_plus.empty() ? o_.least_tilt_rad : 0;
     const auto bodies_are_clear = [&](const Vec3& centre, const Vec3& axis) {
+      if (std::atan2(std::hypot(axis.x(), axis.y()), axis.z()) < off_pole) return false;
       return bodies_->clear(link.bodies, centre - R * axis, axis, o_.limits.clearance_mm + kTurnMargin, 0.01);
     };
     as_stage("links", [&] {
@@ -273,8 +276,16 @@ class JobPlanner {
                                                                  const OrientationOptions& options,
                                                                  std::vector<BallPass>& passes) const {
     std::optional<Expected<Orientation, OrientationRefusal>> result;
-    as_stage("five-axis orientation",
-             [&] { result.emplace(orient_passes(part_, *bodies_, zone, tool, options, passes)); });
+    as_stage("five-axis orientation", [&] {
+      const std::vector<BallPass> as_planned = passes;
+      result.emplace(orient_passes(part_, *bodies_, zone, tool, options, passes));
+      if (!result->refused() || !o_.pole_is_passed) return;
+      OrientationOptions anywhere = options;
+      anywhere.least_tilt_rad = 0;
+      passes = as_planned;
+      auto again = orient_passes(part_, *bodies_, zone, tool, anywhere, passes);
+      if (!again.refused()) result.emplace(std::move(again));
+    });
     return std::move(*result);
   }
   /// The same with the axes that the operation prescribes.

@@ -47,6 +47,8 @@ ball::PlanOptions plan_options(const proof::ProofLimits& limits, const machines:
   if (machine.post.pole == machines::PoleOption::tilt)
     options.least_tilt_rad =
         std::max(options.least_tilt_rad, machine.post.pole_angle_rad.value_or(joints::kLeastPoleTilt) + 1e-3);
+  options.pole_is_passed =
+      machine.post.pole != machines::PoleOption::error && machine.post.pole != machines::PoleOption::tilt;
   return options;
 }
 
