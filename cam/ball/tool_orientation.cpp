@@ -393,8 +393,9 @@ class Orienter {
                    : fmt::format("its {} keeps {:.4f} mm, it must keep {:.3f} mm", body, gap, needed());
   }
   [[nodiscard]] std::string margin_words() const {
-    return fmt::format(" (clearance {:.3f} mm, and {:.3f} mm for what lies between the places that are looked at)",
-                       o_.clearance_mm, kTightMargin);
+    return fmt::format(
+        " (the clearance is {:.3f} mm, and {:.3f} mm is for what lies between the places that are looked at)",
+        o_.clearance_mm, kTightMargin);
   }
   /// What is wrong with one axis at one place.
   [[nodiscard]] std::string stands(const BallPass::Point& point, const Vec3& axis) const {
