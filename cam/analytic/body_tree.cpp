@@ -32,6 +32,7 @@ class BodyTree::Search {
         body_(body),
         tip_(tip),
         axis_(axis),
+        enough_(enough),
         best_(enough + tree.sag_),
         stop_(std::max(stop, 0.0) + tree.sag_),
         resolution_(resolution_mm),
@@ -43,7 +44,7 @@ class BodyTree::Search {
       if (!zone.nodes.empty()) teeth(zone);
       if (ended()) break;
     }
-    return best_ - tree_.sag_;
+    return best_ < enough_ + tree_.sag_ ? best_ - tree_.sag_ : enough_;  // (enough + sag) - sag may be less than enough
   }
 
  private:
@@ -136,7 +137,7 @@ class BodyTree::Search {
   const BodyTree& tree_;
   const tool::Frustum& body_;
   Vec3 tip_, axis_;
-  double best_, stop_, resolution_;
+  double enough_, best_, stop_, resolution_;
   Vec3 middle_;
   double radius_;
 };

@@ -334,6 +334,33 @@ class Maker {
   std::array<std::vector<std::optional<CurveBend>>, 2> tip_bend_;
 };
 
+/// A flank whose fold lies below the tip surface somewhere on the ring, with the radius from which it reaches it.
+std::optional<face_gear::FaceGearRefusal> flank_below_tip(const face_gear::SpaceSheet& space, const std::string& key,
+                                                          int zone) {
+  constexpr int kSections = 16, kHalvings = 30;
+  const auto& ring = space.ring().zone;
+  const double inner = ring.inner_radius_mm, step = (ring.outer_radius_mm - inner) / kSections;
+  for (const int side : {1, -1})
+    for (int k = kSections; k >= 0; --k) {
+      double folded = inner + k * step, reaches = folded + step;
+      if (space.tip(side, folded)) continue;
+      for (int n = 0; n < kHalvings && k < kSections; ++n) {
+        const double middle = 0.5 * (folded + reaches);
+        (space.tip(side, middle) ? reaches : folded) = middle;
+      }
+      const std::string way_out =
+          k < kSections
+              ? fmt::format("an inner_radius of at least {:.4f} mm would do", reaches)
+              : std::string("no ring that ends there would do: fewer shaper teeth or more pressure angle are needed");
+      return face_gear::FaceGearRefusal{
+          key,
+          fail("zone {}: at radius {:.4f} mm flank side {:+d} folds back (undercut) below the tip surface at height "
+               "{:.4f} mm; {}",
+               zone, inner + k * step, side, space.surface().z_tip(inner + k * step), way_out)};
+    }
+  return {};
+}
+
 }  // namespace
 
 Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal> GearRing::make(const face_gear::FaceGear& gear,
@@ -358,6 +385,7 @@ Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal> GearRing::make(c
     return face_gear::FaceGearRefusal{key, fail("zone {}: the flanks and fillets of the tooth space are found from "
                                                 "radius {:.4f} to {:.4f} mm only, the ring is {:.4f} to {:.4f} mm",
                                                 zone, sheet.r_from(), sheet.r_to(), r_in, r_out)};
+  if (auto refusal = flank_below_tip(out->space, key, zone)) return std::move(*refusal);
   Maker(gear, zone, out->space, *out).make();
   return out;
 }

@@ -39,48 +39,91 @@ class Lattice {
     });
   }
 
-  /// Grid indices of the cheapest way; empty, with `reached` the number of stations that are, when there is none.
-  std::vector<std::size_t> cheapest(const std::set<std::pair<std::size_t, std::size_t>>& forbidden,
-                                    std::size_t& reached) const {
+  /// Steps from a lean at a station to one at the next that are not clear half-way.
+  using Forbidden = std::set<std::pair<std::size_t, std::size_t>>;
+
+  /// Cheapest ways to every lean of every station, from the stations where a way may begin at `start` (its cost).
+  struct Layer {
+    std::vector<double> cost;
+    std::vector<int> from;  ///< lean at the station before; -1: the way begins here
+    [[nodiscard]] double least(std::size_t station, std::size_t leans) const {
+      const auto begin = cost.begin() + long(station * leans);
+      return *std::min_element(begin, begin + long(leans));
+    }
+    [[nodiscard]] std::size_t best(std::size_t station, std::size_t leans) const {
+      const auto begin = cost.begin() + long(station * leans);
+      return std::size_t(std::min_element(begin, begin + long(leans)) - begin);
+    }
+  };
+  [[nodiscard]] Layer layer(const Forbidden& forbidden, const std::vector<double>& start) const {
     const std::size_t n = way_.s.size(), m = grid_.leans.size();
-    std::vector<double> cost(n * m, INFINITY);
-    std::vector<int> from(n * m, -1);
-    reached = 0;
-    for (std::size_t k = 0; k < n; ++k) {
-      const double ds = way_.s[1] - way_.s[0];
-      const int steps = std::max(1, int(std::floor(kMostTurn * ds / grid_.step)));
-      bool any = false;
+    Layer out{std::vector<double>(n * m, INFINITY), std::vector<int>(n * m, -1)};
+    const double ds = way_.s[1] - way_.s[0];
+    const int steps = std::max(1, int(std::floor(kMostTurn * ds / grid_.step)));
+    for (std::size_t k = 0; k < n; ++k)
       for (std::size_t g = 0; g < m; ++g) {
         if (known_[at(k, g)] != kClear) continue;
         const double own = ds * (kLeanWeight * grid_.leans[g].squaredNorm() +
                                  kNearWeight * (grid_.leans[g] - reference_[k]).squaredNorm());
-        double best = k == 0 ? 0 : INFINITY;
+        double best = start[k];
         const auto [x, y] = grid_.cells[g];
         if (k > 0)
           for (int dx = -steps; dx <= steps; ++dx)
             for (int dy = -steps; dy <= steps; ++dy) {
               if (std::abs(x + dx) > grid_.half || std::abs(y + dy) > grid_.half) continue;
               const int h = index_[cell(x + dx, y + dy)];
-              if (h < 0 || cost[at(k - 1, std::size_t(h))] == INFINITY) continue;
+              if (h < 0 || out.cost[at(k - 1, std::size_t(h))] == INFINITY) continue;
               const double turn = double(dx * dx + dy * dy) * grid_.step * grid_.step;
-              const double total = cost[at(k - 1, std::size_t(h))] + kTurnWeight * turn / ds;
+              const double total = out.cost[at(k - 1, std::size_t(h))] + kTurnWeight * turn / ds;
               if (total >= best || forbidden.count({at(k - 1, std::size_t(h)), at(k, g)}) > 0) continue;
               best = total;
-              from[at(k, g)] = h;
+              out.from[at(k, g)] = h;
             }
-        cost[at(k, g)] = own + best;
-        any = any || best < INFINITY;
+        out.cost[at(k, g)] = own + best;
       }
-      if (!any) return {};
-      reached = k + 1;
-    }
-    std::vector<std::size_t> way(n);
-    const auto last = cost.begin() + long((n - 1) * m);
-    way[n - 1] = std::size_t(std::min_element(last, cost.end()) - last);
-    for (std::size_t k = n - 1; k > 0; --k) way[k - 1] = std::size_t(from[at(k, way[k])]);
-    return way;
+    return out;
   }
 
+  /// Grid indices of the cheapest way; empty, with `reached` the number of stations that are, when there is none.
+  std::vector<std::size_t> cheapest(const Forbidden& forbidden, std::size_t& reached) const {
+    const std::size_t n = way_.s.size(), m = grid_.leans.size();
+    std::vector<double> start(n, INFINITY);
+    start[0] = 0;
+    const Layer layer = this->layer(forbidden, start);
+    for (reached = 0; reached < n; ++reached)
+      if (layer.least(reached, m) == INFINITY) return {};
+    std::size_t begin = 0;
+    return back(layer, n - 1, begin);
+  }
+
+  /// Strokes over all stations that overlap by so many; empty, with `reached` as above, when kMostStrokes do not do.
+  std::vector<WayStroke> strokes(const Forbidden& forbidden, std::size_t overlap, std::size_t& reached) const {
+    const std::size_t n = way_.s.size(), m = grid_.leans.size();
+    std::vector<Layer> layers;
+    std::vector<double> start(n, INFINITY);
+    start[0] = 0;
+    while (layers.size() < kMostStrokes) {
+      layers.push_back(layer(forbidden, start));
+      for (reached = n; reached > 0 && layers.back().least(reached - 1, m) == INFINITY;) --reached;
+      if (reached == n) break;
+      for (std::size_t k = 0; k < n; ++k) start[k] = k + overlap < n ? layers.back().least(k + overlap, m) : INFINITY;
+    }
+    if (reached < n) return {};
+    std::vector<WayStroke> out;
+    std::size_t end = n - 1;
+    for (auto it = layers.rbegin(); it != layers.rend(); ++it) {
+      WayStroke stroke;
+      stroke.to = end;
+      for (const std::size_t g : back(*it, end, stroke.from)) stroke.lean.push_back(grid_.leans[g]);
+      out.insert(out.begin(), stroke);
+      end = stroke.from + overlap;
+    }
+    return out;
+  }
+
+  [[nodiscard]] std::size_t index_of(const Vec2& lean) const {
+    return std::size_t(index_[cell(int(std::lround(lean.x() / grid_.step)), int(std::lround(lean.y() / grid_.step)))]);
+  }
   [[nodiscard]] bool any_clear(std::size_t station) const {
     const auto begin = known_.begin() + long(at(station, 0));
     return std::find(begin, begin + long(grid_.leans.size()), kClear) != begin + long(grid_.leans.size());
@@ -90,6 +133,14 @@ class Lattice {
   }
 
  private:
+  /// The way of a layer that ends at a station with the best lean, from the station where it begins.
+  std::vector<std::size_t> back(const Layer& layer, std::size_t end, std::size_t& begin) const {
+    std::vector<std::size_t> way{layer.best(end, grid_.leans.size())};
+    for (begin = end; layer.from[at(begin, way.front())] >= 0; --begin)
+      way.insert(way.begin(), std::size_t(layer.from[at(begin, way.front())]));
+    return way;
+  }
+
   static constexpr char kUnknown = 0, kClear = 1, kBlocked = 2;
   [[nodiscard]] std::size_t cell(int x, int y) const {
     return std::size_t((x + grid_.half) * (2 * grid_.half + 1) + y + grid_.half);
@@ -185,7 +236,7 @@ WayFound find_way(OrientationWay& way, const LeanGrid& grid, const LeanReference
   WayFound result;
   for (const double window : {kFirstWindow, 10.0}) {
     lattice.ask(window);
-    std::set<std::pair<std::size_t, std::size_t>> forbidden;
+    Lattice::Forbidden forbidden;
     for (int repair = 0; repair <= kRepairs; ++repair) {
       std::size_t reached = 0;
       const auto found = lattice.cheapest(forbidden, reached);
@@ -208,6 +259,30 @@ WayFound find_way(OrientationWay& way, const LeanGrid& grid, const LeanReference
   result.blocked_at = std::min(result.blocked_at, way.s.size() - 1);
   result.none_clear = !lattice.any_clear(result.blocked_at);
   return result;
+}
+
+std::vector<WayStroke> find_strokes(const OrientationWay& way, const LeanGrid& grid, const LeanReference& reference,
+                                    const LeanIsClear& clear, const HalfWayIsClear& half_way, std::size_t& blocked_at) {
+  Lattice lattice(way, grid, reference, clear);
+  lattice.ask(10.0);
+  for (const std::size_t overlap : {std::size_t(1), std::size_t(0)}) {
+    Lattice::Forbidden forbidden;
+    for (int repair = 0; repair <= kRepairs; ++repair) {
+      auto found = lattice.strokes(forbidden, overlap, blocked_at);
+      if (found.empty()) break;
+      const std::size_t before = forbidden.size();
+      for (const WayStroke& stroke : found)
+        for (std::size_t k = stroke.from; k < stroke.to; ++k) {
+          const Vec2 &a = stroke.lean[k - stroke.from], &b = stroke.lean[k + 1 - stroke.from];
+          if (half_way(k, a, b)) continue;
+          forbidden.insert({lattice.at(k, lattice.index_of(a)), lattice.at(k + 1, lattice.index_of(b))});
+          blocked_at = k + 1;
+        }
+      if (forbidden.size() == before) return found;
+    }
+  }
+  blocked_at = std::min(blocked_at, way.s.size() - 1);
+  return {};
 }
 
 }  // namespace toothpath::ball

@@ -29,9 +29,11 @@ struct LeanGrid {
 struct OrientationWay {
   std::vector<double> s, r;  ///< mm along the pass, and radius about the gear axis, of every station
   std::vector<BallPass::Point> points;
-  std::vector<Vec2> lean;         ///< one a station
-  std::vector<std::size_t> near;  ///< passes beside it, nearest first
+  std::vector<Vec2> lean;                                ///< one a station
+  std::vector<std::size_t> near;                         ///< passes beside it, nearest first
+  std::vector<std::pair<double, BallPass::Point>> also;  ///< places (s, point) that are asked with the nearest station
   bool constant = false, solved = false;
+  bool tight = false;  ///< little room: searched at closer stations with the least margin
 
   /// Lean at a radius, straight between the stations, constant beyond the ends.
   [[nodiscard]] Vec2 lean_at(double radius) const;
@@ -59,5 +61,19 @@ struct WayFound {
 /// lean turns by at most 0.25 rad/mm. Looks near the reference first, then at the whole grid.
 [[nodiscard]] WayFound find_way(OrientationWay& way, const LeanGrid& grid, const LeanReference& reference,
                                 const LeanIsClear& clear, const HalfWayIsClear& half_way);
+
+/// A part of a pass that is cut in one stroke: from station to station, one lean a station.
+struct WayStroke {
+  std::size_t from = 0, to = 0;
+  std::vector<Vec2> lean;
+};
+inline constexpr std::size_t kMostStrokes = 4;
+
+/// Ways that together go over all stations where one alone does not, as few strokes as possible, at most kMostStrokes:
+/// the tool leaves a stroke, turns, and begins the next one a station before the end of the last, or at that end where
+/// no lean allows more. Empty: there are none. `blocked_at` is the first station that no stroke reaches.
+[[nodiscard]] std::vector<WayStroke> find_strokes(const OrientationWay& way, const LeanGrid& grid,
+                                                  const LeanReference& reference, const LeanIsClear& clear,
+                                                  const HalfWayIsClear& half_way, std::size_t& blocked_at);
 
 }  // namespace toothpath::ball

@@ -27,6 +27,10 @@ constexpr double kChordShare = 0.6;
 /// Of that tolerance, the share for ball centres that leave the pass because the axis turns.
 constexpr double kTurnShare = 0.1;
 
+/// Of the stock that an operation leaves, the share that its chords may take at most; the turning axis and the rounding
+/// of words come on top.
+constexpr double kStockShare = 0.15;
+
 /// Hops in which the axis turns keep this much more than the clearance, mm: they are looked at in steps.
 constexpr double kTurnMargin = 0.02;
 
@@ -202,7 +206,10 @@ class Planner::Work {
     link.outer_radius_mm = ring.outer_radius_mm;
     link.zone = zone;
     link.bodies = tool::shank_and_holder(tool_of(n));
+    // A turn past the pole is left to the clearance height, but for axes that the job prescribes.
+    const double off_pole = op.axis_plus.empty() ? o_.least_tilt_rad : 0;
     const auto bodies_are_clear = [&](const Vec3& centre, const Vec3& axis) {
+      if (std::atan2(std::hypot(axis.x(), axis.y()), axis.z()) < off_pole) return false;
       return bodies_->clear(link.bodies, centre - link.centre_mm * axis, axis, o_.limits.clearance_mm + kTurnMargin,
                             0.01);
     };
@@ -257,8 +264,16 @@ class Planner::Work {
                                                                  const OrientationOptions& options,
                                                                  std::vector<BallPass>& passes) const {
     std::optional<Expected<Orientation, OrientationRefusal>> result;
-    as_stage("five-axis orientation",
-             [&] { result.emplace(orient_passes(part_, *bodies_, zone, tool, options, passes)); });
+    as_stage("five-axis orientation", [&] {
+      const std::vector<BallPass> as_planned = passes;
+      result.emplace(orient_passes(part_, *bodies_, zone, tool, options, passes));
+      if (!result->refused() || !o_.pole_is_passed) return;
+      OrientationOptions anywhere = options;
+      anywhere.least_tilt_rad = 0;
+      passes = as_planned;
+      auto again = orient_passes(part_, *bodies_, zone, tool, anywhere, passes);
+      if (!again.refused()) result.emplace(std::move(again));
+    });
     return std::move(*result);
   }
   /// The same with the axes that the operation prescribes.
@@ -315,9 +330,11 @@ class Planner::Work {
                   degrees(o.greatest_turn_rad_per_mm), o.clearance_mm);
   }
 
-  /// Sag that an operation may have: a tenth of the stock that it leaves, and less than half of what may be gouged.
+  /// Sag that an operation may have: a tenth of the stock that it leaves, and less than half of what may be gouged. Of
+  /// the stock 0.8 must stay: where that is smaller, a share of it.
   [[nodiscard]] double chord_room(const path::MillingOperation& op) const {
-    return 0.1 * op.allowance_mm + 0.4 * o_.limits.gouge_mm;
+    const double room = 0.1 * op.allowance_mm + 0.4 * o_.limits.gouge_mm;
+    return op.allowance_mm > 0 ? std::min(room, kStockShare * op.allowance_mm) : room;
   }
 
   /// A planned place at which the ball would cut deeper than may be gouged is refused before any motion is made of it.

@@ -25,6 +25,9 @@ struct PlanOptions {
                                     ///< where stock may begin; 0, or below that of the operation: as the operation
   double least_tilt_rad =
       0.035;  ///< of a tool axis that turns in a pass, from the gear axis: the pole of a rotary that carries the work
+  /// The post goes past that pole ("slow", "hold", "through", "retract"): where no motion keeps away from it, one that
+  /// does not is planned.
+  bool pole_is_passed = false;
   /// Runs a stage under its name; empty: just runs it. Called on the thread of the caller, for "tool passes", "tool
   /// direction" and "links", and for "five-axis orientation" only where it is needed.
   std::function<void(const std::string& name, const std::function<void()>& work)> stage;

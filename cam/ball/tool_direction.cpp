@@ -253,7 +253,7 @@ class Search {
                   choice_.candidates.size(), degrees(best->lean_rad), best->worst_body,
                   best->gap_mm <= -kDirectionDeepest ? "more than " : "", -best->gap_mm)
             : fmt::format(
-                  "no fixed direction is clear: the best of {} leans {:.1f} deg and its {} keeps {:.3f} of {:.3f} mm",
+                  "no fixed direction is clear: the best of {} leans {:.1f} deg and its {} keeps {:.4f} of {:.4f} mm",
                   choice_.candidates.size(), degrees(best->lean_rad), best->worst_body, best->gap_mm, o_.clearance_mm);
   }
 

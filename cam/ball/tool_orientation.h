@@ -4,7 +4,8 @@
 // At stations along every pass the directions on a grid around the pitch normal are clear or not. A pass takes the
 // cheapest way through them (dynamic programming over stations and directions: lean, turn per mm, distance from the
 // pass beside it); all ways are then relaxed together as far as they stay clear, which takes the steps of the grid out,
-// and read as smooth curves.
+// and read as smooth curves. Where no way goes over the whole pass, it is cut in as few strokes as possible, which
+// overlap.
 #pragma once
 
 #include <optional>
@@ -18,11 +19,17 @@
 
 namespace toothpath::ball {
 
+/// Of the proof of shank and holder: it may tell of so much less than there is, mm.
+inline constexpr double kProofRoom = 0.01;
+/// Margin and resolution of the gaps where there is little room, mm.
+inline constexpr double kTightMargin = 0.012, kTightResolution = 0.002;
+
 struct OrientationOptions {
   double clearance_mm = proof::ProofLimits{}.clearance_mm;  ///< least gap of shank and holder
-  double margin_mm = 0.02;        ///< kept beyond it at the stations, for what lies between them
-  double least_draft = 0.02;      ///< least cosine between the axis and the normal at the contact
-  double least_tilt_rad = 0.035;  ///< kept from the gear axis: a rotary that carries the work has its pole there
+  double margin_mm = 0.02;    ///< kept beyond it at the stations, for what lies between them
+  double least_draft = 0.02;  ///< least cosine between the axis and the normal at the contact
+  double least_tilt_rad =
+      0.035;  ///< kept from the gear axis where the axis turns: a rotary that carries the work has its pole there
   double widest_lean_rad = 0.66;  ///< of the grid, from the pitch normal
   double chord_mm = 0.0002;  ///< how far the ball centre may leave the pass because the axis turns between two records
 };
@@ -48,15 +55,19 @@ class OrientationCheck {
   OrientationCheck(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone,
                    const tool::ToolAssembly& tool, const OrientationOptions& options);
   /// With the ball centre at `point`. `clearance_mm`: of shank and holder.
-  [[nodiscard]] bool clear(const BallPass::Point& point, const Vec3& axis, double clearance_mm) const;
-  /// The part of it that concerns the cutting: draft at the contact, flute free of the part, away from the gear axis.
+  [[nodiscard]] bool clear(const BallPass::Point& point, const Vec3& axis, double clearance_mm,
+                           double resolution_mm = 0.01) const;
+  /// The part of it that concerns the cutting: draft at the contact, flute free of the part.
   [[nodiscard]] bool cutting(const BallPass::Point& point, const Vec3& axis) const;
+  /// `least_tilt_rad` off the gear axis: asked of axes that turn.
+  [[nodiscard]] bool away_from_pole(const Vec3& axis) const;
+  /// By how much `cutting` fails: depth of the flute in the part, or what is missing of the draft at the ball. mm
+  [[nodiscard]] double flute_depth(const BallPass::Point& point, const Vec3& axis) const;
   [[nodiscard]] const PitchFrame& frame() const { return frame_; }
   [[nodiscard]] const std::vector<tool::Frustum>& bodies() const { return bodies_; }
 
  private:
-  [[nodiscard]] bool stands_right(const BallPass::Point& point,
-                                  const Vec3& axis) const;  ///< draft, and away from the gear axis
+  [[nodiscard]] bool stands_right(const BallPass::Point& point, const Vec3& axis) const;  ///< draft
   [[nodiscard]] bool flute_is_free(const BallPass::Point& point, const Vec3& axis) const;
 
   const analytic::GearDistance& part_;
@@ -67,7 +78,8 @@ class OrientationCheck {
   std::vector<tool::Frustum> bodies_;
 };
 
-/// Axes for all passes of one zone; inserts points into the passes where the axis turns. Deterministic on any number of
+/// Axes for all passes of one zone; inserts points into the passes where the axis turns, and splits passes into strokes
+/// where the clear directions of the whole pass do not join. Deterministic on any number of
 /// threads.
 [[nodiscard]] Expected<Orientation, OrientationRefusal> orient_passes(const analytic::GearDistance& part,
                                                                       const analytic::BodyTree& tree, int zone,

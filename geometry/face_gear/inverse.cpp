@@ -57,6 +57,16 @@ bool newton(const FaceGearSurface<double>& f, int s, double r, double z, double&
   return best < 1e-12 * std::max(r, 1.0);
 }
 
+/// Root of g, whose values at x0 and x1 (any order) have opposite signs.
+template <typename G>
+double root_between(const G& g, double x0, double g0, double x1, double g1) {
+  std::uintmax_t steps = 200;
+  const boost::math::tools::eps_tolerance<double> tolerance(52);
+  const auto bracket = x0 < x1 ? boost::math::tools::toms748_solve(g, x0, x1, g0, g1, tolerance, steps)
+                               : boost::math::tools::toms748_solve(g, x1, x0, g1, g0, tolerance, steps);
+  return 0.5 * (bracket.first + bracket.second);
+}
+
 /// For a given B the height alone gives theta; then the radius is a function of B only.
 std::optional<FlankCoordinates> by_bracketing(const FaceGearSurface<double>& f, int s, double r, double z) {
   const auto theta_of = [&](double B) {
@@ -69,13 +79,6 @@ std::optional<FlankCoordinates> by_bracketing(const FaceGearSurface<double>& f, 
     return std::isnan(theta) ? NAN : meridian(f, s, theta, B).r - r;
   };
   const auto regularity = [&](double B) { return f.flank_J(s, theta_of(B), B); };
-  const auto root_of = [](const auto& g, double x0, double g0, double x1, double g1) {
-    std::uintmax_t steps = 200;
-    const boost::math::tools::eps_tolerance<double> tolerance(52);
-    const auto bracket = x0 < x1 ? boost::math::tools::toms748_solve(g, x0, x1, g0, g1, tolerance, steps)
-                                 : boost::math::tools::toms748_solve(g, x1, x0, g1, g0, tolerance, steps);
-    return 0.5 * (bracket.first + bracket.second);
-  };
   constexpr int kSamples = 400;
   double B0 = NAN, f0 = NAN, J0 = NAN;
   for (int k = 0; k <= kSamples; ++k) {
@@ -83,11 +86,11 @@ std::optional<FlankCoordinates> by_bracketing(const FaceGearSurface<double>& f, 
     const double J1 = std::isnan(f1) ? NAN : regularity(B1);
     const bool edge = !std::isnan(f0) && J1 <= 0;
     if (edge) {  // the sheet ends between the two samples: go up to its edge, where r has its extreme
-      B1 = root_of(regularity, B0, J0, B1, J1);
+      B1 = root_between(regularity, B0, J0, B1, J1);
       f1 = residual(B1);
     }
     if (!std::isnan(f0) && (J1 > 0 || edge) && f0 * f1 <= 0) {
-      const double B = root_of(residual, B0, f0, B1, f1), theta = theta_of(B), J = f.flank_J(s, theta, B);
+      const double B = root_between(residual, B0, f0, B1, f1), theta = theta_of(B), J = f.flank_J(s, theta, B);
       if (J > 0) return FlankCoordinates{theta, B, J};
     }
     B0 = B1;
@@ -167,12 +170,64 @@ std::optional<double> fillet_by_bracketing(const FilletRadius& radius, double r)
   return {};
 }
 
+/// Newton from a B nearby.
+std::optional<double> flank_B_by_newton(const FaceGearSurface<double>& f, int side, double theta, double r,
+                                        double start_B) {
+  double B = start_B;
+  for (int k = 0; k < kNewtonLimit; ++k) {
+    const Vec3 P = f.flank_housing(side, theta, B);
+    const double r_now = std::hypot(P.x(), P.y()), w = side * f.shaper.r_b * theta;
+    const Vec3 PB = f.a() * f.flank_Z_B(B) + f.t(B) * f.shaper.r_b + f.e(B) * w;
+    const double rB = (P.x() * PB.x() + P.y() * PB.y()) / r_now;
+    double dB = (r - r_now) / rB;
+    if (!(std::abs(dB) < INFINITY)) return {};
+    dB = std::clamp(dB, -0.1, 0.1);
+    B += dB;
+    if (std::abs(B) > kMaxB) return {};
+    if (std::abs(dB) < 1e-14) {
+      if (std::abs(meridian(f, side, theta, B).r - r) > 1e-11 * r || !(f.flank_J(side, theta, B) > 0)) return {};
+      return B;
+    }
+  }
+  const double error = std::abs(meridian(f, side, theta, B).r - r);
+  if (error > 1e-12 * r || !(f.flank_J(side, theta, B) > 0)) return {};
+  return B;
+}
+
+/// The same from the outermost place of the line inwards to the first crossing, as far as the line is regular.
+std::optional<double> flank_B_by_bracketing(const FaceGearSurface<double>& f, int side, double theta, double r) {
+  const auto error = [&](double B) { return meridian(f, side, theta, B).r - r; };
+  const auto regularity = [&](double B) { return f.flank_J(side, theta, B); };
+  constexpr int kSamples = 400;
+  double B0 = side * kMaxB, e0 = error(B0), J0 = regularity(B0);
+  for (int k = 1; k <= kSamples && J0 > 0; ++k) {
+    double B1 = side * (kMaxB - (kMaxB + 0.6) * k / kSamples), J1 = regularity(B1);
+    const bool edge = !(J1 > 0);
+    if (edge) {
+      if (!(J1 < 0)) return {};
+      B1 = root_between(regularity, B0, J0, B1, J1);
+    }
+    const double e1 = error(B1);
+    if (e0 * e1 <= 0) {
+      const double B = root_between(error, B0, e0, B1, e1);
+      if (std::abs(error(B)) <= 1e-11 * r && regularity(B) > 0) return B;
+      return {};
+    }
+    if (edge) return {};
+    B0 = B1;
+    e0 = e1;
+    J0 = J1;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::optional<FlankCoordinates> invert_flank(const FaceGearSurface<double>& f, int side, double r, double z,
                                              const std::optional<FlankCoordinates>& start) {
   if (!(r > f.M2)) return {};
-  double theta = start ? start->theta : std::tan(f.shaper.alpha_t), B = start ? start->B : side * f.shaper.alpha_t;
+  double theta = start ? start->theta : std::tan(f.shaper.alpha_t),
+         B = start ? start->B : regular_start_B(f, side, theta);
   const Meridian from = meridian(f, side, theta, B);
   const double distance = std::hypot(r - from.r, z - from.z), step = 0.5 * f.shaper.m_t;
   const int steps = std::clamp(int(std::ceil(distance / step)), 1, 400);
@@ -212,27 +267,17 @@ std::optional<FlankDistance> flank_distance(const FaceGearSurface<double>& f, in
   return d;
 }
 
+double regular_start_B(const FaceGearSurface<double>& f, int side, double theta) {
+  constexpr double kStep = 0.02;
+  double B = side * f.shaper.alpha_t;
+  while (!(f.flank_J(side, theta, B) > 0) && std::abs(B) + kStep < kMaxB) B += side * kStep;
+  return B;
+}
+
 std::optional<double> flank_B_at_radius(const FaceGearSurface<double>& f, int side, double theta, double r,
                                         double start_B) {
-  double B = start_B;
-  for (int k = 0; k < kNewtonLimit; ++k) {
-    const Vec3 P = f.flank_housing(side, theta, B);
-    const double r_now = std::hypot(P.x(), P.y()), w = side * f.shaper.r_b * theta;
-    const Vec3 PB = f.a() * f.flank_Z_B(B) + f.t(B) * f.shaper.r_b + f.e(B) * w;
-    const double rB = (P.x() * PB.x() + P.y() * PB.y()) / r_now;
-    double dB = (r - r_now) / rB;
-    if (!(std::abs(dB) < INFINITY)) return {};
-    dB = std::clamp(dB, -0.1, 0.1);
-    B += dB;
-    if (std::abs(B) > kMaxB) return {};
-    if (std::abs(dB) < 1e-14) {
-      if (std::abs(meridian(f, side, theta, B).r - r) > 1e-11 * r || !(f.flank_J(side, theta, B) > 0)) return {};
-      return B;
-    }
-  }
-  const double error = std::abs(meridian(f, side, theta, B).r - r);
-  if (error > 1e-12 * r || !(f.flank_J(side, theta, B) > 0)) return {};
-  return B;
+  if (const auto B = flank_B_by_newton(f, side, theta, r, start_B)) return B;
+  return flank_B_by_bracketing(f, side, theta, r);
 }
 
 std::optional<double> fillet_Z_at_radius(const FaceGearSurface<double>& f, int side, double A, double r,

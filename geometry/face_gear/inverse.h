@@ -19,9 +19,15 @@ struct FlankCoordinates {
       0;  ///< Newton steps of the whole way, filled in by invert_flank; 0 when a bracketing search found it
 };
 
-/// (r, z) -> (theta, B) on the regular sheet of side s. Start: any point of the same sheet; the pitch point is taken
-/// when `start` is empty. Newton along a straight (r, z) path in short steps; on failure a bracketing search over B.
-/// Position error <= 1e-12 r. Nothing is returned where the sheet does not reach (r, z) (r <= M2, beyond J = 0).
+/// B at which searches on the line of this theta begin: that of the pitch point, s alpha_t, and where the fold of the
+/// undercut lies outside it (J <= 0: low pressure angles, few teeth against the shaper's) the next one outwards in
+/// steps of 0.02 rad with J > 0.
+[[nodiscard]] double regular_start_B(const FaceGearSurface<double>& surface, int side, double theta);
+
+/// (r, z) -> (theta, B) on the regular sheet of side s. Start: any point of the same sheet; the pitch point, or what
+/// regular_start_B gives for its theta, is taken when `start` is empty. Newton along a straight (r, z) path in short
+/// steps; on failure a bracketing search over B. Position error <= 1e-12 r. Nothing is returned where the sheet does
+/// not reach (r, z) (r <= M2, beyond J = 0).
 [[nodiscard]] std::optional<FlankCoordinates> invert_flank(const FaceGearSurface<double>& surface, int side, double r,
                                                            double z, const std::optional<FlankCoordinates>& start = {});
 
@@ -38,7 +44,8 @@ struct FlankDistance {
                                                           const Vec3& point,
                                                           const std::optional<FlankCoordinates>& start = {});
 
-/// B of the flank point with this theta at radius r on the regular sheet; by continuation from `start_B`.
+/// B of the flank point with this theta at radius r on the regular sheet: by continuation from `start_B`, and where
+/// that does not arrive by a bracketing search from the outside up to the fold. |radius - r| <= 1e-11 r.
 [[nodiscard]] std::optional<double> flank_B_at_radius(const FaceGearSurface<double>& surface, int side, double theta,
                                                       double r, double start_B);
 

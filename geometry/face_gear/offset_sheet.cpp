@@ -176,8 +176,7 @@ std::optional<OffsetSheet::Station> OffsetSheet::make_station(double r, const St
       if (kind == SpacePiece::flank_plus || kind == SpacePiece::flank_minus) {
         // The ball-centre surface of a flank is the flank itself, turned, at theta - delta cos(beta_b)/r_b.
         const double theta_c = u - delta_ * f.shaper.cos_bb / f.shaper.r_b;
-        double start = side * f.shaper.alpha_t;
-        if (neighbour) start = neighbour->nodes[index].at.v;
+        const double start = neighbour ? neighbour->nodes[index].at.v : regular_start_B(f, side, theta_c);
         const auto B = flank_B_at_radius(f, side, theta_c, r, start);
         if (B) s = solve(kind, u, r, *B);
       } else {

@@ -53,6 +53,8 @@ plan::Options plan_options(const proof::ProofLimits& limits, const machines::Mac
   if (machine.post.pole == machines::PoleOption::tilt)
     options.least_tilt_rad =
         std::max(options.least_tilt_rad, machine.post.pole_angle_rad.value_or(joints::kLeastPoleTilt) + 1e-3);
+  options.pole_is_passed =
+      machine.post.pole != machines::PoleOption::error && machine.post.pole != machines::PoleOption::tilt;
   return options;
 }
 

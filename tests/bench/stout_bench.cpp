@@ -1,0 +1,33 @@
+// Five-axis planning with stout tools, each planned and proven: the fourteen jobs of the tests, or with `all` all sixty
+// random ones that they are taken from. A job succeeds when it is proven and turns no axis within 2 deg of the gear
+// axis.
+#include <fmt/format.h>
+
+#include <chrono>
+#include <string_view>
+
+#include "tests/cam/ball/stout_jobs.h"
+
+int main(int count, char** given) {
+  using namespace toothpath;
+  int done = 0, number = 0;
+  for (const auto& job :
+       count > 1 && std::string_view(given[1]) == "all" ? test::random_stout_jobs() : test::stout_jobs()) {
+    ++number;
+    const auto start = std::chrono::steady_clock::now();
+    const auto outcome = test::plan_stout(job);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const bool good = outcome.proven && outcome.least_tilt_rad >= radians(2);
+    done += good;
+    fmt::print("{:2} {:8} ball {:.2f} flute {:.2f} shank {:.2f} stick-out {:.2f} holder {:.0f}: {} ({:.1f} s)\n   {}\n",
+               number, job.gear, job.tool.diameter_mm, job.tool.flute_length_mm, job.tool.shank_diameter_mm,
+               job.tool.stick_out_mm, job.tool.holder.front().lower_diameter_mm,
+               good              ? "proven"
+               : outcome.proven  ? "proven, but past the pole"
+               : outcome.planned ? "planned, not proven"
+                                 : "refused",
+               seconds, outcome.words);
+    std::fflush(stdout);
+  }
+  fmt::print("{} of {}\n", done, number);
+}

@@ -1,0 +1,129 @@
+// Gears whose pitch point lies beyond the fold of the undercut (few teeth against the shaper's, low pressure angles,
+// strong helices): the space is found wherever a plain search finds a regular flank, and nowhere else.
+#include "tests/cam/ball/face_gear_jobs.h"
+#include "tests/support/brute_force_face_gear.h"
+
+namespace toothpath {
+namespace {
+
+using Surface = face_gear::FaceGearSurface<double>;
+
+/// A ring in the band where Newton from the pitch point used to fail.
+face_gear::FaceGearParameters gear_beyond_the_fold(test::Random& random) {
+  face_gear::FaceGearParameters g;
+  g.teeth = 30 + int(random.index(91));
+  g.shaper_teeth = int(std::lround(g.teeth * random(0.45, 0.65)));
+  g.module_mm = std::exp(random(std::log(0.5), std::log(6.0)));
+  g.module_plane = random(0, 1) < 0.5 ? face_gear::ModulePlane::transverse : face_gear::ModulePlane::normal;
+  g.pressure_angle_rad = radians(random(14.5, 17.5));
+  g.shaft_angle_rad = random(0, 1) < 0.5 ? radians(90) : radians(random(75, 105));
+  g.shaper_tip_radius_mm = random(0.1, 0.3) * g.module_mm;
+  const double helix = radians(random(18, 34)) * (random(0, 1) < 0.5 ? 1 : -1);
+  // Rings about the inner limit: some begin inside the fold.
+  if (!face_gear::check_shaper(g, helix)) return g;
+  const auto limits = face_gear::zone_limits(face_gear::make_surface<double>(g, helix), g.module_mm);
+  const double inner = limits.hard_inner_limit + g.module_mm * random(-0.15, 0.8);
+  const double most = limits.pointing_radius.value_or(inner + 3 * g.module_mm);
+  g.zones = {{helix, inner, inner + random(0.2, 1.02) * std::max(most - inner, 0.1 * g.module_mm)}};
+  return g;
+}
+
+double radius_of(const Surface& f, int side, double theta, double B) {
+  const Vec3 P = f.flank_housing(side, theta, B);
+  return std::hypot(P.x(), P.y());
+}
+
+/// B in J > 0 with the flank line of this theta at the radius: every 0.002 rad is looked at, up to the fold itself. The
+/// largest s B counts: the sheet that is cut is the outermost.
+std::optional<double> searched_B(const Surface& f, int side, double theta, double r) {
+  constexpr double kStep = 2e-3, kWidest = radians(79);
+  const auto J = [&](double b) { return f.flank_J(side, theta, side * b); };
+  const auto e = [&](double b) { return radius_of(f, side, theta, side * b) - r; };
+  for (double high = kWidest; high > -kWidest; high -= kStep) {
+    double low = high - kStep;
+    if (J(high) <= 0) continue;
+    for (double good = high, bad = low; J(low) <= 0 && good - bad > 1e-14;) {
+      const double middle = 0.5 * (good + bad);
+      (J(middle) > 0 ? good : bad) = middle;
+      if (good - bad <= 1e-14) low = good;
+    }
+    if (e(high) * e(low) > 0) continue;
+    double from = high, to = low;
+    for (int k = 0; k < 60; ++k) {
+      const double middle = 0.5 * (from + to);
+      (e(middle) * e(high) > 0 ? from : to) = middle;
+    }
+    return side * 0.5 * (from + to);
+  }
+  return {};
+}
+
+/// The flank of a side at a radius, from the fillet line up to the tip surface: is every place of it regular, and does
+/// the solid shaper leave it? Beyond theta = 0 the flank goes on as the other one, which no shaper cuts (FaceGear warns
+/// of it). Where the sheet ends the search goes on with another one: B jumps.
+enum class Flank { regular, folded, cut };
+Flank searched_flank(const face_gear::FaceGear& gear, int side, double r) {
+  const auto& ring = gear.rings().front();
+  const auto& f = ring.surface;
+  const double z_tip = f.z_tip(r);
+  const test::BruteForceFaceGear brute(gear.parameters(), ring.zone.helix_angle_rad);
+  constexpr int kPlaces = 40;
+  const double step = f.shaper.theta_t / kPlaces;
+  bool cut = false;
+  std::optional<double> before;
+  for (int k = 0; k <= 2 * kPlaces; ++k) {
+    const double theta = f.shaper.theta_t - k * step;
+    const auto B = searched_B(f, side, theta, r);
+    if (!B || (before && std::abs(*B - *before) > 0.1)) return Flank::folded;
+    before = B;
+    const Vec3 P = f.flank(side, theta, *B).p;
+    if (P.z() > z_tip) return k == 0 ? Flank::folded : cut ? Flank::cut : Flank::regular;
+    if (k % 8 == 0 && theta >= 0) cut = cut || brute.least_clearance(P) < -2e-4 * gear.parameters().module_mm;
+  }
+  return Flank::folded;
+}
+
+/// Five sections of the ring, both sides: the worst.
+Flank searched_ring(const face_gear::FaceGear& gear) {
+  const auto& zone = gear.rings().front().zone;
+  Flank worst = Flank::regular;
+  for (const int side : {1, -1})
+    for (int n = 0; n <= 4 && worst == Flank::regular; ++n)
+      worst =
+          searched_flank(gear, side, zone.inner_radius_mm + n * 0.25 * (zone.outer_radius_mm - zone.inner_radius_mm));
+  return worst;
+}
+
+TEST(UndercutFold, SpacesAreFoundWhereASearchFindsARegularFlank) {
+  test::Random random(2026);
+  int accepted = 0, refused = 0, beyond = 0;
+  for (int k = 0; k < 160; ++k) {
+    const auto parameters = gear_beyond_the_fold(random);
+    auto made = parameters.zones.empty() ? Expected<face_gear::FaceGear, std::vector<face_gear::FaceGearRefusal>>(
+                                               std::vector<face_gear::FaceGearRefusal>{})
+                                         : face_gear::FaceGear::make(parameters);
+    if (made.refused()) {
+      ++refused;
+      continue;
+    }
+    const face_gear::FaceGear gear = std::move(made).value();
+    const auto& ring = gear.rings().front();
+    const auto& f = ring.surface;
+    SCOPED_TRACE(fmt::format("{}: {}/{} teeth, {:.2f} deg, helix {:.2f} deg, ring {:.3f} to {:.3f}", k,
+                             parameters.shaper_teeth, parameters.teeth, degrees(parameters.pressure_angle_rad),
+                             degrees(ring.zone.helix_angle_rad), ring.zone.inner_radius_mm, ring.zone.outer_radius_mm));
+    for (const int side : {1, -1}) beyond += f.flank_J(side, std::tan(f.shaper.alpha_t), side * f.shaper.alpha_t) <= 0;
+    const analytic::GearDistance part(gear, 1.0);
+    accepted += !part.refusal();
+    EXPECT_EQ(!part.refusal(), searched_ring(gear) == Flank::regular)
+        << (part.refusal() ? part.refusal()->diagnostic.message : "accepted");
+  }
+  std::printf("%d accepted, %d refused as gears, %d flanks with the pitch point beyond the fold\n", accepted, refused,
+              beyond);
+  EXPECT_GE(accepted, 60);
+  EXPECT_GE(refused, 10);
+  EXPECT_GE(beyond, 10);
+}
+
+}  // namespace
+}  // namespace toothpath
