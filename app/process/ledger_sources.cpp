@@ -24,6 +24,10 @@ proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double 
   return {source, predicted_mm * app::kUm, measured_mm * app::kUm, std::move(note)};
 }
 
+proof::LedgerEntry unmeasured(proof::ErrorSource source, double predicted_mm, std::string note) {
+  return {source, predicted_mm * app::kUm, std::nullopt, std::move(note)};
+}
+
 double rotary_rounding(const joints::AxisProgram& program) {
   const double one = radians(0.5 * std::pow(10.0, -program.format.rotary_decimals));
   return (program.letters[3] != 0 ? one : 0) + (program.letters[4] != 0 ? one : 0);

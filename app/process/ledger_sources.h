@@ -18,6 +18,9 @@ namespace toothpath::process {
 [[nodiscard]] proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double measured_mm,
                                        std::string note = {});
 
+/// A source that is predicted by a model alone; nothing in the proof measures it.
+[[nodiscard]] proof::LedgerEntry unmeasured(proof::ErrorSource source, double predicted_mm, std::string note);
+
 /// Largest error of the tool axis from rounding the words of both rotaries, rad.
 [[nodiscard]] double rotary_rounding(const joints::AxisProgram& program);
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/report/block_times.h"
+#include "app/report/cutting_load.h"
 #include "app/report/finding.h"
 #include "app/report/scene_report.h"
 #include "app/report/section.h"
@@ -26,6 +27,7 @@ struct OperationReport {
   double speed_rpm = 0, feed_mm_min = 0;
   std::size_t cl_points = 0;                   ///< one tooth space
   double feed_minutes = 0, rapid_minutes = 0;  ///< all teeth
+  std::optional<CuttingLoad> cutting = {};          ///< none where forces were not asked for
 };
 
 /// A flank that was corrected by a measurement.
@@ -102,6 +104,7 @@ struct RunReport {
   std::vector<LengthTolerance> length_tolerances;
   std::vector<Section> sections;  ///< tables for page and set-up sheet: app/report/sections
   std::vector<proof::LedgerEntry> ledger;
+  std::string force_basis;                ///< of the forces of the operations: coefficients and where they are from
   std::vector<SceneVerdict> scene;        ///< fixture and stock, where meshes of them were given
   std::vector<CorrectionRow> correction;  ///< empty: the nominal flanks are the target
   std::vector<std::string> assumed, warnings;

@@ -42,7 +42,7 @@ struct OperationLoad {
 ///     b = min(L, a/tan psi) max(1, max(a, L tan psi) z/(2 pi R)),   h_m = f_z S/A,   F_n = b (0.6 K h_m + K_e)
 ///     power = n z (K f_z S + K_e A),   torque = power/(2 pi n),   deflection = F_n compliance
 ///
-/// Source: docs/force.md (5), to which it falls for the side of a mill; 0.6 is the share of
+/// Source: docs/force.md (4) to (6); 0.6 is the share of
 /// the normal force. Its error is the material's: +-50 %.
 /// Refused: no teeth, speed or feed that is not above 0, a helix outside [0, 90) deg; what `compliance` refuses.
 [[nodiscard]] Result<OperationLoad> load_of(const tool::Profile& mill, const Cutting& cutting, const Engagement& cut,

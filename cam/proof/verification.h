@@ -99,7 +99,8 @@ enum class ErrorSource : std::uint8_t {
   axis_linearisation,
   rounding,
   path_blending,
-  verification
+  verification,
+  deflection
 };
 [[nodiscard]] constexpr const char* to_string(ErrorSource source) {
   switch (source) {
@@ -112,13 +113,16 @@ enum class ErrorSource : std::uint8_t {
     case ErrorSource::rounding: return "rounding";
     case ErrorSource::path_blending: return "path blending";
     case ErrorSource::verification: return "verification";
+    case ErrorSource::deflection: return "deflection";
   }
   return "";
 }
 
 struct LedgerEntry {
   ErrorSource source = ErrorSource::flank_solve;
-  double predicted_um = 0, measured_um = 0;
+  double predicted_um = 0;
+  /// None: the prediction is a model that nothing of the proof measures; it is no part of any sum.
+  std::optional<double> measured_um;
   std::string note;  ///< what was measured, or why the source does not occur
 };
 

@@ -229,11 +229,16 @@ std::string ledger_section(const ReportPage& page) {
                                            : std::string("\u2013");
   };
   for (const proof::LedgerEntry& e : page.ledger) {
-    chart.rows.push_back({to_string(e.source), e.predicted_um, e.measured_um});
-    t.rows.push_back({to_string(e.source), svg::short_number(e.predicted_um), svg::short_number(e.measured_um),
-                      share(e.measured_um, e.predicted_um)});
+    if (!e.measured_um) {  // a model: no part of the chart, nor of the sum
+      t.rows.push_back({to_string(e.source), svg::short_number(e.predicted_um), "\u2013", "\u2013"});
+      t.note += fmt::format("{}{}: {}.", t.note.empty() ? "" : " ", to_string(e.source), e.note);
+      continue;
+    }
+    chart.rows.push_back({to_string(e.source), e.predicted_um, *e.measured_um});
+    t.rows.push_back({to_string(e.source), svg::short_number(e.predicted_um), svg::short_number(*e.measured_um),
+                      share(*e.measured_um, e.predicted_um)});
     predicted += e.predicted_um;
-    measured += e.measured_um;
+    measured += *e.measured_um;
   }
   t.rows.push_back({"sum", svg::short_number(predicted), svg::short_number(measured), share(measured, predicted)});
   return section("ledger", "Error ledger",

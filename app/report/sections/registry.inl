@@ -2,3 +2,4 @@
 SECTION(travels)
 SECTION(times)
 SECTION(tool_work)
+SECTION(cutting_force)
