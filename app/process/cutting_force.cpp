@@ -8,6 +8,7 @@
 #include "app/process/gear_of_job.h"
 #include "app/process/ledger_sources.h"
 #include "cam/finger/milling.h"
+#include "cam/force/load.h"
 #include "cam/tool/finger_profile.h"
 #include "geometry/base/angle.h"
 

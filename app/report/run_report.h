@@ -27,7 +27,7 @@ struct OperationReport {
   double speed_rpm = 0, feed_mm_min = 0;
   std::size_t cl_points = 0;                   ///< one tooth space
   double feed_minutes = 0, rapid_minutes = 0;  ///< all teeth
-  std::optional<CuttingLoad> cutting = {};          ///< none where forces were not asked for
+  std::optional<CuttingLoad> cutting = {};     ///< none where forces were not asked for
 };
 
 /// A flank that was corrected by a measurement.

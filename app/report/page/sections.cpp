@@ -31,8 +31,9 @@ std::string figures(std::string_view inside) {
 
 /// Digits with the usual signs around them, or a dash: set right-aligned.
 bool reads_as_number(std::string_view cell) {
-  return !cell.empty() && cell.find_first_of("0123456789") != std::string_view::npos &&
-         cell.find_first_not_of("0123456789+-.,eE%/< \xE2\x88\x92\x93\xC2\xB0") == std::string_view::npos;
+  return cell == "\u2013" ||
+         (!cell.empty() && cell.find_first_of("0123456789") != std::string_view::npos &&
+          cell.find_first_not_of("0123456789+-.,eE%/< \xE2\x88\x92\x93\xC2\xB0") == std::string_view::npos);
 }
 
 std::string table(const PageTable& t) {

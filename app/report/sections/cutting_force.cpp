@@ -1,4 +1,5 @@
 #include "app/report/sections/sections.h"
+#include "cam/force/load.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::sections {
