@@ -153,8 +153,9 @@ TEST(Compliance, TheTableOfTheSpecification) {
   }
 }
 
-// The ball R0.25 with a neck of 0.46 over 5 mm, stick-out 14: 66 um/N in the table, half way up the flank. The neck of
-// the sample goes on to the holder: ten times as much, at the centre of the ball.
+// The ball R0.25 with a neck of 0.46 over 5 mm, stick-out 14: 66 um/N in the table, which names no height; it is
+// met 1.85 mm above the tip. The neck of the sample goes on to the holder: ten times as much, at the centre of the
+// ball.
 TEST(Compliance, TheNeckOfTheOldSample) {
   const tool::Profile neck(made(ball_data(0.25, 3.2, 0.46, 14)).cutting(),
                            line({{3.2, 0.23}, {8.2, 0.23}, {8.2, 2}, {14, 2}}), line({{14, 5}, {40, 5}}));
