@@ -56,6 +56,7 @@ JobOrErrors parse_job(std::string_view text, const std::string& file) {
   if (auto table = root.table("shaping")) job.shaping = read_shaping(*table);
   if (auto table = root.table("contact")) job.contact = read_contact(*table);
   if (auto table = root.table("coolant")) job.coolant = read_coolant(*table);
+  if (auto table = root.table("material")) job.material = read_material(*table);
   if (auto table = root.table("verify")) job.verify = read_verify(*table, job.bevel_gear() != nullptr);
   if (auto table = root.table("program")) job.program = read_program_settings(*table);
   if (auto table = root.table("load")) {

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "cam/force/load.h"
 #include "cam/path/operation.h"
 #include "cam/proof/limits.h"
 #include "cam/tool/assembly.h"
@@ -55,6 +56,13 @@ struct ContactSettings {
   double compound_mm = 0.006;  ///< thickness of the marking compound
 };
 
+/// The [material] table: what cutting costs, and of what the tools are. docs/force.md.
+struct MaterialSettings {
+  force::Material cutting;
+  force::Elasticity tools;
+  bool stated = false;  ///< the job has the table; else these are the defaults: steel, carbide
+};
+
 /// Where a key was written: "gear.module", "gear.zone[0].inner_radius", "tool[1].diameter", "operation[2].scallop",
 /// "machine.file"; a table itself as "gear", "tool[1]". Later stages ask it to locate what they refuse.
 using KeyPositions = std::map<std::string, SourcePosition, std::less<>>;
@@ -69,6 +77,7 @@ struct Job {
   std::vector<path::MillingOperation> operations;      ///< `tool` is an index into `tools`
   machines::Coolant coolant = machines::Coolant::off;  ///< mode of [coolant]
   VerifySettings verify;
+  MaterialSettings material;
   ProgramSettings program;
   std::optional<shaper::Shaping> shaping;
   std::optional<ContactSettings> contact;

@@ -236,6 +236,7 @@ path::MillingOperation read_operation(toml::TableReader& table, const std::vecto
   operation.speed_rpm = speed;
   operation.feed_mm_min = feed;
   operation.chord_tolerance_mm = chord;
+  read_chip_limits(table, operation);
   if (tool) {
     operation.tool = static_cast<int>(tool - tools.data());
     if (!tool::serves(*tool, word->needs))

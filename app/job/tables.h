@@ -32,6 +32,9 @@ void check_regions(toml::TableReader& root, const std::vector<path::MillingOpera
 [[nodiscard]] ContactSettings read_contact(toml::TableReader& table);
 [[nodiscard]] VerifySettings read_verify(toml::TableReader& table, bool bevel);
 [[nodiscard]] ProgramSettings read_program_settings(toml::TableReader& table);
+[[nodiscard]] MaterialSettings read_material(toml::TableReader& table);
+/// `chip_load` and `max_engagement` of an operation, where they are.
+void read_chip_limits(toml::TableReader& table, path::MillingOperation& operation);
 [[nodiscard]] MachineChoice read_machine_choice(toml::TableReader& table);
 [[nodiscard]] machines::Coolant read_coolant(toml::TableReader& table);
 

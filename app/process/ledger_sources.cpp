@@ -26,8 +26,12 @@ proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double 
 
 proof::LedgerEntry stated_entry(proof::ErrorSource source, const std::optional<double>& stated_mm, std::string counted,
                                 const std::string& missing) {
-  if (stated_mm) return {source, *stated_mm * app::kUm, 0, true, std::move(counted)};
-  return {source, 0, 0, false, "not counted: " + missing};
+  if (stated_mm) return unmeasured(source, *stated_mm, std::move(counted));
+  return {source, 0, {}, false, "not counted: " + missing};
+}
+
+proof::LedgerEntry unmeasured(proof::ErrorSource source, double predicted_mm, std::string note) {
+  return {source, predicted_mm * app::kUm, std::nullopt, true, std::move(note)};
 }
 
 double rotary_rounding(const joints::AxisProgram& program) {

@@ -22,6 +22,8 @@ namespace toothpath::process {
 /// @param missing  named as not counted where the job states nothing: the key that would
 [[nodiscard]] proof::LedgerEntry stated_entry(proof::ErrorSource source, const std::optional<double>& stated_mm,
                                               std::string counted, const std::string& missing);
+/// A source that is predicted by a model alone; nothing in the proof measures it.
+[[nodiscard]] proof::LedgerEntry unmeasured(proof::ErrorSource source, double predicted_mm, std::string note);
 
 /// Largest error of the tool axis from rounding the words of both rotaries, rad.
 [[nodiscard]] double rotary_rounding(const joints::AxisProgram& program);

@@ -185,6 +185,25 @@ void add_sides(Json& operations, const RunReport& r) {
     }
 }
 
+/// What is not computed is null, with the reason beside it.
+void add_cutting(Json& operation, const CuttingLoad& c) {
+  for (const char* key : {"force_n", "deflection_um", "compliance_um_n", "chip_um"}) operation[key] = nullptr;
+  if (c.compliance) operation["compliance_um_n"] = app::um(c.compliance->total());
+  if (!c.load) {
+    operation["force_note"] = c.not_computed;
+    return;
+  }
+  operation["force_n"] = c.load->force_N;
+  operation["deflection_um"] = app::um(c.load->deflection_mm);
+  operation["chip_um"] = app::um(c.load->chip_mm);
+  operation["mean_chip_um"] = app::um(c.load->mean_chip_mm);
+  operation["engagement_deg"] = degrees(c.load->engaged_rad);
+  operation["torque_nm"] = c.load->torque_Nm;
+  operation["power_w"] = c.load->power_W;
+  operation["force_uncertainty"] = c.load->uncertainty;
+  operation["slender"] = c.slender;
+}
+
 void add_motion(Json& json, const RunReport& r) {
   if (r.operations.empty()) return;
   json["cl_points"] = r.cl_points;
@@ -192,7 +211,7 @@ void add_motion(Json& json, const RunReport& r) {
   json["cutting_minutes"] = r.feed_minutes;
   json["total_minutes"] = r.total_minutes;
   Json operations = Json::array();
-  for (const auto& o : r.operations)
+  for (const auto& o : r.operations) {
     operations.push_back({{"op", o.operation},
                           {"type", o.type},
                           {"tool", o.tool_number},
@@ -201,6 +220,8 @@ void add_motion(Json& json, const RunReport& r) {
                           {"cl_points", o.cl_points},
                           {"cutting_minutes", o.feed_minutes},
                           {"rapid_minutes", o.rapid_minutes}});
+    if (o.cutting) add_cutting(operations.back(), *o.cutting);
+  }
   add_sides(operations, r);
   json["operations"] = std::move(operations);
   if (r.tooth_stride != 1) json["tooth_order"] = {{"order", "spread"}, {"stride", r.tooth_stride}, {"teeth", r.teeth}};
@@ -257,7 +278,8 @@ std::string report_json(const RunReport& r) {
     Json ledger = Json::object();
     for (const auto& entry : r.ledger) {
       Json& source = ledger[to_string(entry.source)];
-      source = {{"predicted", entry.predicted_um}, {"measured", entry.measured_um}};
+      source = {{"predicted", entry.predicted_um}, {"measured", entry.measured_um.value_or(0)}};
+      if (!entry.measured_um) source["model_only"] = true;
       if (!entry.counted) source["counted"] = false;
       if (!entry.note.empty()) source["note"] = entry.note;
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/report/block_times.h"
+#include "app/report/cutting_load.h"
 #include "app/report/finding.h"
 #include "app/report/scene_report.h"
 #include "app/report/section.h"
@@ -26,6 +27,7 @@ struct OperationReport {
   double speed_rpm = 0, feed_mm_min = 0;
   std::size_t cl_points = 0;                   ///< one tooth space
   double feed_minutes = 0, rapid_minutes = 0;  ///< all teeth
+  std::optional<CuttingLoad> cutting = {};     ///< none where forces were not asked for
 };
 
 /// A flank that was corrected by a measurement.
@@ -60,6 +62,7 @@ struct SidePass {
   int flank = 1, strip = 0;
   std::string rotaries;  ///< which of them move
   double misfit_mm = 0;
+  double contact_top_mm = 0;  ///< highest contact above the tip, along the axis
   struct Station {
     double r_mm = 0, lean_rad = 0, tilt_rad = 0, misfit_mm = 0;
   };
@@ -114,6 +117,7 @@ struct RunReport {
   std::vector<LengthTolerance> length_tolerances;
   std::vector<Section> sections;  ///< tables for page and set-up sheet: app/report/sections
   std::vector<proof::LedgerEntry> ledger;
+  std::string force_basis;                ///< of the forces of the operations: coefficients and where they are from
   std::vector<SceneVerdict> scene;        ///< fixture and stock, where meshes of them were given
   std::vector<CorrectionRow> correction;  ///< empty: the nominal flanks are the target
   std::vector<std::string> assumed, warnings;

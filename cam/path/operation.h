@@ -51,7 +51,9 @@ struct MillingOperation {
   ByRegion<bool> regions{{true, true, true}};   ///< semi-finishing and finishing: what is cut; line milling: the flank
   double chord_tolerance_mm = 0.005;            ///< sag of a block against the exact path; not asked for: 0.005
   bool climb = true;
-  double ridge_mm = 0;  ///< finger roughing: highest ridge left on the root
+  double chip_load_mm = 0;        ///< largest chip of a tooth; 0: none is asked for
+  double max_engagement_rad = 0;  ///< largest angle of a tooth in the material; 0: none is asked for
+  double ridge_mm = 0;            ///< finger roughing: highest ridge left on the root
   /// Semi-finishing and finishing: prescribed tool axes, by ascending radius; both empty (the planner chooses) or both
   /// not. Those of passes on flank +1 of tooth 0 and its half of the root, and of the others.
   std::vector<ToolAxisKey> axis_plus, axis_minus;

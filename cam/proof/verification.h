@@ -104,7 +104,8 @@ enum class ErrorSource : std::uint8_t {
   half_angle,
   run_out,
   pivots,
-  verification
+  verification,
+  deflection
 };
 [[nodiscard]] constexpr const char* to_string(ErrorSource source) {
   switch (source) {
@@ -122,13 +123,16 @@ enum class ErrorSource : std::uint8_t {
     case ErrorSource::run_out: return "run-out";
     case ErrorSource::pivots: return "pivots";
     case ErrorSource::verification: return "verification";
+    case ErrorSource::deflection: return "deflection";
   }
   return "";
 }
 
 struct LedgerEntry {
   ErrorSource source = ErrorSource::flank_solve;
-  double predicted_um = 0, measured_um = 0;
+  double predicted_um = 0;
+  /// None: the prediction is a model, or the job's word, that nothing of the proof measures; it is no part of any sum.
+  std::optional<double> measured_um;
   bool counted = true;  ///< false: nothing states how large it is; the note says what would
   std::string note;     ///< what was measured, or why the source does not occur
 };

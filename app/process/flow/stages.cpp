@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/process/cutting_force.h"
 #include "app/process/flow/registry.h"
 #include "app/process/flow/restart.h"
 #include "app/process/program_report.h"
@@ -85,6 +86,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
     return done.error();
   run.program_text = std::move(posted->restarted ? posted->restart_text : posted->text);
   run.report.ledger = run.milling->ledger(program, *proof, posted->blend_mm);
+  process::note_cutting_forces(run.report, run.job);
   run.report.sections =
       sections::sections_of({run.job, run.report, posted->restarted ? *posted->restarted : program, paths});
   if (!run.report.reasons.empty()) return std::nullopt;

@@ -31,8 +31,9 @@ std::string figures(std::string_view inside) {
 
 /// Digits with the usual signs around them, or a dash: set right-aligned.
 bool reads_as_number(std::string_view cell) {
-  return !cell.empty() && cell.find_first_of("0123456789") != std::string_view::npos &&
-         cell.find_first_not_of("0123456789+-.,eE%/< \xE2\x88\x92\x93\xC2\xB0") == std::string_view::npos;
+  return cell == "\u2013" ||
+         (!cell.empty() && cell.find_first_of("0123456789") != std::string_view::npos &&
+          cell.find_first_not_of("0123456789+-.,eE%/< \xE2\x88\x92\x93\xC2\xB0") == std::string_view::npos);
 }
 
 std::string table(const PageTable& t) {
@@ -229,15 +230,21 @@ std::string ledger_section(const ReportPage& page) {
                                            : std::string("\u2013");
   };
   for (const proof::LedgerEntry& e : page.ledger) {
-    if (e.counted) chart.rows.push_back({to_string(e.source), e.predicted_um, e.measured_um});
     if (!e.counted) {
-      t.rows.push_back({to_string(e.source), "\u2013", "\u2013", e.note});
+      t.rows.push_back({to_string(e.source), "\u2013", "\u2013", "\u2013"});
+      t.note += fmt::format("{}{}: {}.", t.note.empty() ? "" : " ", to_string(e.source), e.note);
       continue;
     }
-    t.rows.push_back({to_string(e.source), svg::short_number(e.predicted_um), svg::short_number(e.measured_um),
-                      share(e.measured_um, e.predicted_um)});
+    if (!e.measured_um) {  // a model: no part of the chart, nor of the sum
+      t.rows.push_back({to_string(e.source), svg::short_number(e.predicted_um), "\u2013", "\u2013"});
+      t.note += fmt::format("{}{}: {}.", t.note.empty() ? "" : " ", to_string(e.source), e.note);
+      continue;
+    }
+    chart.rows.push_back({to_string(e.source), e.predicted_um, *e.measured_um});
+    t.rows.push_back({to_string(e.source), svg::short_number(e.predicted_um), svg::short_number(*e.measured_um),
+                      share(*e.measured_um, e.predicted_um)});
     predicted += e.predicted_um;
-    measured += e.measured_um;
+    measured += *e.measured_um;
   }
   t.rows.push_back({"sum", svg::short_number(predicted), svg::short_number(measured), share(measured, predicted)});
   return section("ledger", "Error ledger",
