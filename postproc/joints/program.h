@@ -71,6 +71,7 @@ enum class BlockKind : std::uint8_t {
 struct AxisBlock {
   std::array<std::int64_t, 5> words{};
   double minutes = 0;         ///< that the machine needs or is told, from the rounded words
+  double run_minutes = 0;     ///< the same with the accelerations of the axes; 0: the machine states none
   double per_minute = 0;      ///< with TCP: feed of the tip, mm/min; of the rotaries where the tip stands, deg/min
   Vec3 axis = Vec3::UnitZ();  ///< with TCP: tool axis at the end of the block, table frame
   std::int32_t record = -1;   ///< index of the CL record that the block goes to; -1: a link
@@ -153,6 +154,7 @@ struct AxisProgram {
   double pole_axis_rad = 0;       ///< proven: handling poles moves the tool axis by no more ..
   double pole_tip_mm = 0;         ///< .. and the tip, about the centre of the ball, which stays
   bool has_acceleration = false;  ///< the machine states them: `accelerated` is filled in
+  std::string time_model;         ///< what the times hold and assume
   TimedMinutes accelerated;       ///< over all operations
   std::optional<choice::TravelOffer> offer;  ///< empty: not looked for, or too many directions of the part
   std::size_t inserted_blocks = 0;           ///< by the subdivision

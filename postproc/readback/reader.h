@@ -24,6 +24,7 @@
 #include "machines/machine.h"
 #include "postproc/joints/program.h"
 #include "postproc/joints/setup.h"
+#include "postproc/timing/path_timer.h"
 
 namespace toothpath::readback {
 
@@ -80,9 +81,11 @@ struct ExecutedMove {
   float blend_axis_rad = 0;  ///< the same of the tool axis (TA of cycle 32)
   float corner_path_mm =
       0;  ///< every axis may leave the path within this way ahead of and behind a corner (G641 ADIS) ..
-  float corner_share = 0;          ///< .. which is this part of the block, a half at most
-  std::uint8_t commanded = 0;      ///< bit a: the block has a word for axis a
-  std::int16_t tooth = -1;         ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
+  float corner_share = 0;      ///< .. which is this part of the block, a half at most
+  std::uint8_t commanded = 0;  ///< bit a: the block has a word for axis a
+  std::int16_t tooth = -1;     ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
+  timing::Corners corners = timing::Corners::exact;  ///< LinuxCNC: the path mode, and P of G64
+  float tolerance_mm = 0;
   bool machine = false;            ///< G53, or the block that switches tool length compensation on
   bool known = false;              ///< all joints were known before and after
   std::uint64_t vector_print = 0;  ///< of the words of a tool vector, FNV-1a over their bytes; 0: rotary words
@@ -129,7 +132,8 @@ struct ReadBack {
   std::vector<OperationTrace> between;
   std::array<double, 5> least{}, greatest{};  ///< joints over all executed moves, mm and deg
   std::size_t executed = 0;
-  double minutes = 0, feed_minutes = 0;
+  double minutes = 0, feed_minutes = 0;  ///< as the text asks
+  joints::TimedMinutes accelerated;      ///< with the accelerations of the axes; without them as the text asks
   int mixed_rapid = 0;  ///< line of the first rapid that moves more than one group of axes, of all executed moves; 0:
                         ///< none does, or cutter locations
 };
