@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "geometry/base/angle.h"
 #include "postproc/joints/words.h"
@@ -15,35 +16,118 @@ constexpr const char* kAcceleration = "acceleration";
 constexpr double kRuled = 1.01;  // a feed block that takes longer than this share of its time is ruled by acceleration
 constexpr double kLeastIndex = 1e-12;  // min: less is the rounding of a sum
 
-/// Steps of the axes, mm and deg, from the place of one block to that of the next.
-class Steps {
+/// Where the axes stand, and their steps from block to block.
+class Walk {
  public:
-  Steps(const AxisProgram& program, double tool_length_mm, const machines::Machine& machine, bool plans_words)
-      : words_(machine.chain, program.format, program.work_offset_at_mm), plans_words_(plans_words) {
+  Walk(const AxisProgram& program, double tool_length_mm, const machines::Machine& machine)
+      : words_(machine.chain, program.format, program.work_offset_at_mm),
+        plans_words_(timing::control_of(machine).plans_words),
+        tcp_moves_z_(program.tcp_starts_at_zero) {
     words_.set_length(tool_length_mm);
   }
 
-  [[nodiscard]] std::array<double, 5> between(const AxisBlock& a, const AxisBlock& b) const {
-    const machines::Joints from = words_.joints(a), to = words_.joints(b);
-    const Vec3 linear =
-        plans_words_ && a.tip && b.tip ? Vec3(words_.tip(b) - words_.tip(a)) : Vec3(to.linear_mm - from.linear_mm);
-    return {linear.x(), linear.y(), linear.z(), degrees(to.rotary_rad[0] - from.rotary_rad[0]),
-            degrees(to.rotary_rad[1] - from.rotary_rad[1])};
+  [[nodiscard]] machines::Joints end_of(const AxisBlock& b) const { return words_.joints(b); }
+  void stand(const machines::Joints& at) {
+    at_ = at;
+    tip_.reset();
+  }
+  [[nodiscard]] const machines::Joints& at() const { return at_; }
+
+  /// mm and deg; links move the axes of their kind alone, whatever the other words say.
+  std::array<double, 5> go_to(const AxisBlock& b) {
+    const machines::Joints from = at_, to = words_.joints(b);
+    const bool tcp_switch = b.kind == BlockKind::tcp_on || b.kind == BlockKind::tcp_off;
+    const bool z_alone = b.kind == BlockKind::rapid_z || (tcp_switch && tcp_moves_z_);
+    const bool all = b.kind == BlockKind::feed || b.kind == BlockKind::rapid_tip || b.kind == BlockKind::turn;
+    if (all || b.kind == BlockKind::rapid_xy) at_.linear_mm.head<2>() = to.linear_mm.head<2>();
+    if (all || z_alone) at_.linear_mm.z() = to.linear_mm.z();
+    if (all || b.kind == BlockKind::rapid_rotary) at_.rotary_rad = to.rotary_rad;
+    Vec3 linear = at_.linear_mm - from.linear_mm;
+    const std::optional<Vec3> tip_from = tip_;
+    tip_.reset();
+    if (b.tip) tip_ = words_.tip(b);
+    if (plans_words_ && tip_ && tip_from) linear = *tip_ - *tip_from;
+    return {linear.x(), linear.y(), linear.z(), degrees(at_.rotary_rad[0] - from.rotary_rad[0]),
+            degrees(at_.rotary_rad[1] - from.rotary_rad[1])};
   }
 
  private:
   AxisWords words_;
-  bool plans_words_;
+  bool plans_words_ = false, tcp_moves_z_ = false;
+  machines::Joints at_;
+  std::optional<Vec3> tip_;
 };
 
-/// Turns of the index by `minutes` of its greatest speed in all, `turns` of them, each from rest to rest.
-double index_minutes(double minutes, int turns, const machines::Machine& machine) {
-  const timing::AxisLimits limits = timing::limits_of(machine);
-  timing::Block turn;
-  turn.minutes = minutes / turns;
-  turn.step[3] = turn.minutes * limits.speed[3];
-  turn.rapid = true;
-  return turns * timing::times_of(std::span(&turn, 1), limits, timing::control_of(machine)).front();
+std::vector<double> walk(Walk& place, const std::vector<AxisBlock>& blocks, const machines::Machine& machine) {
+  std::vector<double> times;
+  times.reserve(blocks.size());
+  timing::PathTimer timer(timing::limits_of(machine), timing::control_of(machine),
+                          [&times](double minutes) { times.push_back(minutes); });
+  for (const AxisBlock& b : blocks) {
+    // The way of a link, and so its time, depends on where the tooth before has ended.
+    const bool link =
+        b.kind == BlockKind::rapid_z || b.kind == BlockKind::rapid_xy || b.kind == BlockKind::rapid_rotary;
+    timer.add({place.go_to(b), link ? 0 : b.minutes, b.kind != BlockKind::feed});
+  }
+  timer.finish();
+  return times;
+}
+
+/// Z alone up to the height of tool changes, behind every operation.
+double retract(machines::Joints& at, double top_mm, const machines::Machine& machine) {
+  const double way = top_mm - at.linear_mm.z();
+  if (way <= 0) return 0;
+  at.linear_mm.z() = top_mm;
+  const timing::Block rise{{0, 0, way, 0, 0}, way / machine.chain.linear[2].max_speed, true};
+  return timing::times_of(std::span(&rise, 1), timing::limits_of(machine), timing::control_of(machine)).front();
+}
+
+/// What the operation's rapids hold beside those of the blocks: the turns of the index, min.
+double index_minutes(const AxisOperation& op, int copies) {
+  double blocks = 0;
+  for (const auto& tooth : op.teeth)
+    for (const auto& b : tooth.blocks) blocks += b.kind == BlockKind::feed ? 0 : copies * b.minutes;
+  const double index = op.rapid_minutes - blocks;
+  return index > kLeastIndex ? index : 0;
+}
+
+/// Times of the blocks of one operation into `op`; `stands`: where the axes stand before and behind it.
+/// @returns how many feed blocks the accelerations rule
+std::size_t time_operation(AxisProgram& program, AxisOperation& op, std::optional<machines::Joints>& stands,
+                           const machines::Machine& machine) {
+  Walk place(program, op.tool_length_mm, machine);
+  std::size_t ruled = 0;
+  op.accelerated = {};
+  const int cut = program.teeth - op.first_place, copies = program.loop ? cut : 1;
+  const std::size_t index_rotary = program.index_axis == 4 ? 1 : 0;
+  const double pitch_rad = copies > 1 ? program.index_sign * index_minutes(op, copies) / (copies - 1) *
+                                            machine.chain.rotary(index_rotary).max_speed
+                                      : 0;
+  for (auto& tooth : op.teeth) {
+    if (tooth.blocks.empty()) continue;
+    place.stand(stands ? *stands : place.end_of(tooth.blocks.front()));
+    const auto first = walk(place, tooth.blocks, machine);
+    auto times = first;
+    if (copies > 1) {
+      // In a loop the other teeth begin where the one before has ended, a pitch behind.
+      machines::Joints behind = place.at();
+      behind.rotary_rad[index_rotary] -= pitch_rad;
+      place.stand(behind);
+      times = walk(place, tooth.blocks, machine);
+    }
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      AxisBlock& b = tooth.blocks[i];
+      b.run_minutes = times[i];
+      (b.kind == BlockKind::feed ? op.accelerated.feed : op.accelerated.rapid) += first[i] + (copies - 1) * times[i];
+      if (b.kind != BlockKind::feed) continue;
+      if (times[i] > kRuled * b.minutes) ++ruled;
+      else ++program.time_ruled[b.ruler];
+    }
+    stands = place.at();
+    stands->rotary_rad[index_rotary] += (copies - 1) * pitch_rad;
+  }
+  if (stands) op.accelerated.rapid += retract(*stands, program.retract_z_mm, machine);
+  return ruled;
 }
 
 }  // namespace
@@ -51,18 +135,9 @@ double index_minutes(double minutes, int turns, const machines::Machine& machine
 std::vector<double> accelerated_times(const std::vector<AxisBlock>& blocks, const AxisBlock& start,
                                       const AxisProgram& program, double tool_length_mm,
                                       const machines::Machine& machine) {
-  const timing::PathControl control = timing::control_of(machine);
-  const Steps steps(program, tool_length_mm, machine, control.plans_words);
-  std::vector<double> times;
-  times.reserve(blocks.size());
-  timing::PathTimer timer(timing::limits_of(machine), control, [&times](double minutes) { times.push_back(minutes); });
-  const AxisBlock* before = &start;
-  for (const AxisBlock& b : blocks) {
-    timer.add({steps.between(*before, b), b.minutes, b.kind != BlockKind::feed});
-    before = &b;
-  }
-  timer.finish();
-  return times;
+  Walk place(program, tool_length_mm, machine);
+  place.stand(place.end_of(start));
+  return walk(place, blocks, machine);
 }
 
 void estimate_times(AxisProgram& program, const machines::Machine& machine) {
@@ -72,37 +147,9 @@ void estimate_times(AxisProgram& program, const machines::Machine& machine) {
   program.accelerated = {};
   std::size_t ruled = 0;
   std::fill(program.time_ruled.begin(), program.time_ruled.end(), std::size_t{0});
-  AxisBlock stands;  // rotaries at zero, X and Y where the first block finds them: the first moves of the program are
-                     // not known
-  bool known = false;
+  std::optional<machines::Joints> stands;  // the first moves of the program are not known
   for (auto& op : program.operations) {
-    op.accelerated = {};
-    const int cut = program.teeth - op.first_place, copies = program.loop ? cut : 1;
-    for (auto& tooth : op.teeth) {
-      if (tooth.blocks.empty()) continue;
-      if (!known) stands = tooth.blocks.front();
-      known = true;
-      const auto first = accelerated_times(tooth.blocks, stands, program, op.tool_length_mm, machine);
-      // In a loop the other teeth begin where the one before has ended; the turn of the index is counted below.
-      const auto times = copies > 1
-                             ? accelerated_times(tooth.blocks, tooth.blocks.back(), program, op.tool_length_mm, machine)
-                             : first;
-      for (std::size_t i = 0; i < times.size(); ++i) {
-        AxisBlock& b = tooth.blocks[i];
-        b.run_minutes = times[i];
-        (b.kind == BlockKind::feed ? op.accelerated.feed : op.accelerated.rapid) += first[i] + (copies - 1) * times[i];
-        if (b.kind != BlockKind::feed) continue;
-        if (times[i] > kRuled * b.minutes) ++ruled;
-        else ++program.time_ruled[b.ruler];
-      }
-      stands = tooth.blocks.back();
-    }
-    // What the operation's rapids hold beside those of the blocks: the turns of the index.
-    double blocks = 0;
-    for (const auto& tooth : op.teeth)
-      for (const auto& b : tooth.blocks) blocks += b.kind == BlockKind::feed ? 0 : copies * b.minutes;
-    const double index = std::max(0.0, op.rapid_minutes - blocks);
-    if (program.loop && cut > 1 && index > kLeastIndex) op.accelerated.rapid += index_minutes(index, cut - 1, machine);
+    ruled += time_operation(program, op, stands, machine);
     program.accelerated.feed += op.accelerated.feed;
     program.accelerated.rapid += op.accelerated.rapid;
   }

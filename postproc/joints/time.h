@@ -4,7 +4,10 @@
 // With TCP the joints at the ends of the blocks count, straight between them; LinuxCNC plans the words themselves (tip
 // and rotaries). Everything that is no feed block begins and ends at rest.
 //
-// So the time is never below that of the program, and goes to that of the program when accelerations grow.
+// Links move the axes of their kind alone. Behind an operation Z goes up for the tool change, and between teeth the
+// index turns together with the rotaries of the first link: both as the text does it.
+//
+// So a feed move never takes less than the program asks, and as much when accelerations grow.
 #pragma once
 
 #include <vector>

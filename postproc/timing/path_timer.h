@@ -53,7 +53,7 @@ struct PathControl {
 
 struct Block {
   std::array<double, 5> step{};  ///< mm and deg
-  double minutes = 0;            ///< that the program asks for, > 0
+  double minutes = 0;            ///< that the program asks for; 0: as quick as the axes can
   bool rapid = false;
 };
 

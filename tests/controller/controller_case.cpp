@@ -30,9 +30,10 @@ namespace fs = std::filesystem;
 using test::JointVector, test::PathCorner;
 
 // The record is printed with six digits after the point.
-constexpr double kPrinted = 1e-6;  // mm and deg
-constexpr double kGiveUp = 1.0;    // mm: beyond this the record does not follow the path
-constexpr double kPiece = 0.02;    // deg: moves with TCP are cut into pieces that turn by no more than this
+constexpr double kPrinted = 1e-6;    // mm and deg
+constexpr double kGiveUp = 1.0;      // mm: beyond this the record does not follow the path
+constexpr double kPiece = 0.02;      // deg: moves with TCP are cut into pieces that turn by no more than this
+constexpr double kRapidPiece = 0.1;  // deg: of a rapid, whose joints are straight: 0.04 um of the tip at 100 mm
 
 struct Case {
   job::Job job;
@@ -256,10 +257,8 @@ Result<Expected> expected_path(const Case& c, const std::string& text) {
             .tip_mm;
       };
       const Vec3 from = tip_of(last), to = tip_of(e);
-      const double turn =
-          e.rapid && !e.tcp ? 0
-                            : std::max(std::abs(e.joints[3] - last.joints[3]), std::abs(e.joints[4] - last.joints[4]));
-      const int pieces = static_cast<int>(std::ceil(turn / kPiece));
+      const double turn = std::max(std::abs(e.joints[3] - last.joints[3]), std::abs(e.joints[4] - last.joints[4]));
+      const int pieces = static_cast<int>(std::ceil(turn / (e.rapid ? kRapidPiece : kPiece)));
       for (int i = 1; i < pieces; ++i) {
         const double t = static_cast<double>(i) / pieces;
         std::array<double, 5> j{};

@@ -12,23 +12,23 @@ namespace {
 
 using timing::AxisLimits, timing::Block, timing::Corners, timing::PathControl;
 
-constexpr double kSecond = 1.0 / 60;  // min
-constexpr double kPerSecond = 60;     // per minute of 1 per second
-constexpr double kPerSecond2 = 3600;  // per min^2 of 1 per s^2
-constexpr double kPerSecond3 = 216000;
-constexpr double kPeriod = 0.001 * kSecond;
+constexpr double kSecondInMinutes = 1.0 / 60;  // min
+constexpr double kMinute = 60;                 // per minute of 1 per second
+constexpr double kMinute2 = 3600;              // per min^2 of 1 per s^2
+constexpr double kMinute3 = 216000;
+constexpr double kPeriod = 0.001 * kSecondInMinutes;
 
 AxisLimits limits(double acceleration, double jerk = 0, double speed = 1000) {
   AxisLimits l;
-  l.speed.fill(speed * kPerSecond);
-  l.acceleration.fill(acceleration * kPerSecond2);
-  l.jerk.fill(jerk * kPerSecond3);
+  l.speed.fill(speed * kMinute);
+  l.acceleration.fill(acceleration * kMinute2);
+  l.jerk.fill(jerk * kMinute3);
   return l;
 }
 
 PathControl linuxcnc(Corners corners, double tolerance = 0) { return {corners, kPeriod, 0, tolerance, true}; }
 
-PathControl jumping(double ms) { return {Corners::jump, 0, 0.001 * ms * kSecond, 0, false}; }
+PathControl jumping(double ms) { return {Corners::jump, 0, 0.001 * ms * kSecondInMinutes, 0, false}; }
 
 double seconds(const std::vector<Block>& blocks, const AxisLimits& l, const PathControl& control) {
   const auto times = timing::times_of(blocks, l, control);
@@ -40,7 +40,7 @@ double seconds(const std::vector<Block>& blocks, const AxisLimits& l, const Path
 Block block(std::array<double, 5> step, double speed) {
   double square = 0;
   for (const double s : step) square += s * s;
-  return {step, std::sqrt(square) / speed * kSecond, false};
+  return {step, std::sqrt(square) / speed * kSecondInMinutes, false};
 }
 
 double from_rest(double length, double v, double a) {
@@ -62,8 +62,8 @@ TEST(PathTimer, ExactStops) {
 // The slowest axis rules: speed and acceleration of a rotary, as of a linear axis.
 TEST(PathTimer, RotaryLimits) {
   AxisLimits l = limits(1e6);
-  l.speed[4] = 20 * kPerSecond;  // deg/s
-  l.acceleration[4] = 100 * kPerSecond2;
+  l.speed[4] = 20 * kMinute;  // deg/s
+  l.acceleration[4] = 100 * kMinute2;
   EXPECT_NEAR(seconds({block({3, 0, 0, 0, 40}, 1e6)}, l, jumping(1)), from_rest(40, 20, 100), 1e-9);
   EXPECT_NEAR(seconds({block({0, 0, 0, 0, 1}, 1e6)}, l, jumping(1)), from_rest(1, 20, 100), 1e-9);
 }
