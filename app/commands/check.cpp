@@ -88,7 +88,7 @@ Status prove(Check& check) {
   process::note_proof(report, *check.proof);
   report.blocks = check.proof->read.executed;
   report.has_acceleration = check.machine.has_acceleration();
-  report.time_model = timing::model_text(check.machine);
+  report.time_model = timing::model_text(check.machine, check.proof->read.corners);
   report.feed_minutes = check.proof->read.accelerated.feed;
   report.total_minutes = report.feed_minutes + check.proof->read.accelerated.rapid;
   report.axes = process::ranges_of(check.proof->read, check.machine);

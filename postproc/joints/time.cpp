@@ -21,7 +21,7 @@ class Walk {
  public:
   Walk(const AxisProgram& program, double tool_length_mm, const machines::Machine& machine)
       : words_(machine.chain, program.format, program.work_offset_at_mm),
-        plans_words_(timing::control_of(machine).plans_words),
+        plans_words_(timing::control_of(machine, program.corners).plans_words),
         tcp_moves_z_(program.tcp_starts_at_zero) {
     words_.set_length(tool_length_mm);
   }
@@ -58,10 +58,11 @@ class Walk {
   std::optional<Vec3> tip_;
 };
 
-std::vector<double> walk(Walk& place, const std::vector<AxisBlock>& blocks, const machines::Machine& machine) {
+std::vector<double> walk(Walk& place, const std::vector<AxisBlock>& blocks, timing::Corners corners,
+                         const machines::Machine& machine) {
   std::vector<double> times;
   times.reserve(blocks.size());
-  timing::PathTimer timer(timing::limits_of(machine), timing::control_of(machine),
+  timing::PathTimer timer(timing::limits_of(machine), timing::control_of(machine, corners),
                           [&times](double minutes) { times.push_back(minutes); });
   for (const AxisBlock& b : blocks) {
     // The way of a link, and so its time, depends on where the tooth before has ended.
@@ -74,12 +75,13 @@ std::vector<double> walk(Walk& place, const std::vector<AxisBlock>& blocks, cons
 }
 
 /// Z alone up to the height of tool changes, behind every operation.
-double retract(machines::Joints& at, double top_mm, const machines::Machine& machine) {
+double retract(machines::Joints& at, double top_mm, timing::Corners corners, const machines::Machine& machine) {
   const double way = top_mm - at.linear_mm.z();
   if (way <= 0) return 0;
   at.linear_mm.z() = top_mm;
   const timing::Block rise{{0, 0, way, 0, 0}, way / machine.chain.linear[2].max_speed, true};
-  return timing::times_of(std::span(&rise, 1), timing::limits_of(machine), timing::control_of(machine)).front();
+  return timing::times_of(std::span(&rise, 1), timing::limits_of(machine), timing::control_of(machine, corners))
+      .front();
 }
 
 /// What the operation's rapids hold beside those of the blocks: the turns of the index, min.
@@ -106,14 +108,14 @@ std::size_t time_operation(AxisProgram& program, AxisOperation& op, std::optiona
   for (auto& tooth : op.teeth) {
     if (tooth.blocks.empty()) continue;
     place.stand(stands ? *stands : place.end_of(tooth.blocks.front()));
-    const auto first = walk(place, tooth.blocks, machine);
+    const auto first = walk(place, tooth.blocks, program.corners, machine);
     auto times = first;
     if (copies > 1) {
       // In a loop the other teeth begin where the one before has ended, a pitch behind.
       machines::Joints behind = place.at();
       behind.rotary_rad[index_rotary] -= pitch_rad;
       place.stand(behind);
-      times = walk(place, tooth.blocks, machine);
+      times = walk(place, tooth.blocks, program.corners, machine);
     }
     for (std::size_t i = 0; i < times.size(); ++i) {
       AxisBlock& b = tooth.blocks[i];
@@ -126,7 +128,7 @@ std::size_t time_operation(AxisProgram& program, AxisOperation& op, std::optiona
     stands = place.at();
     stands->rotary_rad[index_rotary] += (copies - 1) * pitch_rad;
   }
-  if (stands) op.accelerated.rapid += retract(*stands, program.retract_z_mm, machine);
+  if (stands) op.accelerated.rapid += retract(*stands, program.retract_z_mm, program.corners, machine);
   return ruled;
 }
 
@@ -137,11 +139,11 @@ std::vector<double> accelerated_times(const std::vector<AxisBlock>& blocks, cons
                                       const machines::Machine& machine) {
   Walk place(program, tool_length_mm, machine);
   place.stand(place.end_of(start));
-  return walk(place, blocks, machine);
+  return walk(place, blocks, program.corners, machine);
 }
 
 void estimate_times(AxisProgram& program, const machines::Machine& machine) {
-  program.time_model = timing::model_text(machine);
+  program.time_model = timing::model_text(machine, program.corners);
   if (!machine.has_acceleration()) return;
   program.has_acceleration = true;
   program.accelerated = {};

@@ -263,7 +263,8 @@ class ReadBackRun {
       }
     };
     ExecutedMove before;
-    RunTimer timer(machine_, [this](bool rapid, double minutes) {
+    result_.corners = control_.corners;
+    RunTimer timer(machine_, control_.corners, [this](bool rapid, double minutes) {
       (rapid ? result_.accelerated.rapid : result_.accelerated.feed) += minutes;
     });
     Status status = execute_nc(text_, file_, control_, [&](const ExecutedMove& m) {

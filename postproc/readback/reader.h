@@ -56,8 +56,9 @@ struct NcControl {
   /// Lines of the machine file that switch the control's own smoothing on and off, and what the shop states for it.
   std::vector<std::string> smoothing_on, smoothing_off;
   double smoothing_mm = 0;
-  std::optional<double> smoothing_axis_rad;  ///< not stated: no cut may turn a rotary while it is on
-  std::vector<std::string> coolant_words;    ///< M words of the builder that switch coolants, on and off
+  std::optional<double> smoothing_axis_rad;         ///< not stated: no cut may turn a rotary while it is on
+  std::vector<std::string> coolant_words;           ///< M words of the builder that switch coolants, on and off
+  timing::Corners corners = timing::Corners::jump;  ///< how it joins feed blocks
   bool dry_run = false;                 ///< feed moves with a standing spindle are meant: a program that runs in air
   std::size_t max_steps = 400'000'000;  ///< executed blocks before the program is refused as endless
 
@@ -132,8 +133,9 @@ struct ReadBack {
   std::vector<OperationTrace> between;
   std::array<double, 5> least{}, greatest{};  ///< joints over all executed moves, mm and deg
   std::size_t executed = 0;
-  double minutes = 0, feed_minutes = 0;  ///< as the text asks
-  joints::TimedMinutes accelerated;      ///< with the accelerations of the axes; without them as the text asks
+  double minutes = 0, feed_minutes = 0;             ///< as the text asks
+  timing::Corners corners = timing::Corners::jump;  ///< of the control
+  joints::TimedMinutes accelerated;  ///< with the accelerations of the axes; without them as the text asks
   int mixed_rapid = 0;  ///< line of the first rapid that moves more than one group of axes, of all executed moves; 0:
                         ///< none does, or cutter locations
 };

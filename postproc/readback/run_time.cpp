@@ -2,12 +2,12 @@
 
 namespace toothpath::readback {
 
-RunTimer::RunTimer(const machines::Machine& machine, std::function<void(bool, double)> sink)
+RunTimer::RunTimer(const machines::Machine& machine, timing::Corners corners, std::function<void(bool, double)> sink)
     : accelerates_(machine.has_acceleration()),
-      plans_words_(timing::control_of(machine).plans_words),
-      exact_(timing::control_of(machine).corners == timing::Corners::exact),
+      plans_words_(timing::control_of(machine, corners).plans_words),
+      exact_(corners == timing::Corners::exact),
       sink_(std::move(sink)),
-      timer_(timing::limits_of(machine), timing::control_of(machine), [this](double minutes) {
+      timer_(timing::limits_of(machine), timing::control_of(machine, corners), [this](double minutes) {
         sink_(rapids_.front(), minutes);
         rapids_.pop_front();
       }) {}
@@ -31,10 +31,11 @@ void RunTimer::add(const ExecutedMove& move) {
 
 void RunTimer::finish() { timer_.finish(); }
 
-std::vector<double> run_times(std::span<const ExecutedMove> moves, const machines::Machine& machine) {
+std::vector<double> run_times(std::span<const ExecutedMove> moves, const machines::Machine& machine,
+                              timing::Corners corners) {
   std::vector<double> times;
   times.reserve(moves.size());
-  RunTimer timer(machine, [&times](bool, double minutes) { times.push_back(minutes); });
+  RunTimer timer(machine, corners, [&times](bool, double minutes) { times.push_back(minutes); });
   for (const ExecutedMove& m : moves) timer.add(m);
   timer.finish();
   return times;

@@ -14,7 +14,8 @@ namespace toothpath::readback {
 class RunTimer {
  public:
   /// @param sink gets whether the move is a rapid, and its time [min]
-  RunTimer(const machines::Machine& machine, std::function<void(bool rapid, double minutes)> sink);
+  RunTimer(const machines::Machine& machine, timing::Corners corners,
+           std::function<void(bool rapid, double minutes)> sink);
 
   void add(const ExecutedMove& move);
   void finish();
@@ -28,6 +29,7 @@ class RunTimer {
 };
 
 /// Times of moves that follow one another [min], one for each.
-[[nodiscard]] std::vector<double> run_times(std::span<const ExecutedMove> moves, const machines::Machine& machine);
+[[nodiscard]] std::vector<double> run_times(std::span<const ExecutedMove> moves, const machines::Machine& machine,
+                                            timing::Corners corners);
 
 }  // namespace toothpath::readback

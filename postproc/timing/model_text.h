@@ -4,10 +4,11 @@
 #include <string>
 
 #include "machines/machine.h"
+#include "postproc/timing/path_timer.h"
 
 namespace toothpath::timing {
 
 /// One sentence without full stop.
-[[nodiscard]] std::string model_text(const machines::Machine& machine);
+[[nodiscard]] std::string model_text(const machines::Machine& machine, Corners corners);
 
 }  // namespace toothpath::timing

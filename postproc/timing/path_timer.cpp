@@ -77,10 +77,10 @@ AxisLimits limits_of(const machines::Machine& machine) {
   return out;
 }
 
-PathControl control_of(const machines::Machine& machine) {
+PathControl control_of(const machines::Machine& machine, Corners corners) {
   PathControl out;
-  if (machine.dialect == "linuxcnc") {
-    out.corners = Corners::exact;
+  out.corners = corners;
+  if (corners != Corners::jump) {
     out.period_min = kServoPeriodMs / 60000;
     out.plans_words = true;
   } else {

@@ -48,8 +48,8 @@ struct PathControl {
   bool plans_words = false;  ///< with TCP the limits act on the words (tip and rotaries), not on the joints (LinuxCNC)
 };
 
-/// Of the control that the machine file names.
-[[nodiscard]] PathControl control_of(const machines::Machine& machine);
+/// @param corners of the control that the machine file names: `exact` is LinuxCNC, all others `jump`
+[[nodiscard]] PathControl control_of(const machines::Machine& machine, Corners corners);
 
 struct Block {
   std::array<double, 5> step{};  ///< mm and deg

@@ -382,7 +382,7 @@ Status print_times(const Case& c, const fs::path& folder, const Settings& settin
   if (!control) return control.error();
   double asked = 0, predicted = 0, in_cuts = 0;
   const machines::Machine machine = accelerated(c.machine, settings.acceleration);
-  readback::RunTimer timer(machine, [&](bool rapid, double minutes) {
+  readback::RunTimer timer(machine, control->corners, [&](bool rapid, double minutes) {
     predicted += minutes;
     in_cuts += rapid ? 0 : minutes;
   });

@@ -36,7 +36,7 @@ std::array<AxisCurve, 5> curves_of(const readback::ReadBack& read, const machine
   double now = 0;
   for (const readback::OperationTrace& trace : read.operations) {
     const readback::ExecutedMove* before = nullptr;
-    const std::vector<double> times = readback::run_times(trace.moves, machine);
+    const std::vector<double> times = readback::run_times(trace.moves, machine, read.corners);
     for (std::size_t k = 0; k < trace.moves.size(); ++k) {
       const readback::ExecutedMove& move = trace.moves[k];
       if (!move.known) continue;
@@ -104,7 +104,7 @@ std::map<int, int> first_teeth(const std::vector<path::ToolMotion>& motions) {
 std::map<int, double> slowed_lines(const readback::ReadBack& read, const machines::Machine& machine) {
   std::map<int, double> slowed;
   for (const readback::OperationTrace& trace : read.operations) {
-    const std::vector<double> times = readback::run_times(trace.moves, machine);
+    const std::vector<double> times = readback::run_times(trace.moves, machine, read.corners);
     for (std::size_t k = 0; k < trace.moves.size(); ++k)
       if (trace.moves[k].minutes > 0) slowed.try_emplace(trace.moves[k].line, times[k] / trace.moves[k].minutes);
   }
