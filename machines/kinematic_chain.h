@@ -26,6 +26,7 @@ struct LinearAxis {
   double max_mm = 0.0;
   double max_speed = 0.0;         ///< mm/min
   double max_acceleration = 0.0;  ///< mm/min^2; 0: not stated
+  double max_jerk = 0.0;          ///< mm/min^3; 0: not stated
 };
 
 struct RotaryAxis {
@@ -40,6 +41,7 @@ struct RotaryAxis {
   bool rollover = false;   ///< the control counts it within one turn and it has no ends: min and max are infinite
   double max_speed = 0.0;  ///< rad/min
   double max_acceleration = 0.0;  ///< rad/min^2; 0: not stated
+  double max_jerk = 0.0;          ///< rad/min^3; 0: not stated
 
   [[nodiscard]] double pivot_length_mm() const { return point_mm.z(); }  ///< head axes only
   /// Rot(direction, sign * (command - zero)).

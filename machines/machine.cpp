@@ -5,13 +5,24 @@
 
 namespace toothpath::machines {
 
-bool Machine::has_acceleration() const {
+namespace {
+
+/// The limit stands at every axis.
+bool stated(const KinematicChain& chain, double LinearAxis::*linear, double RotaryAxis::*rotary) {
   for (const auto& axis : chain.linear)
-    if (!(axis.max_acceleration > 0)) return false;
+    if (!(axis.*linear > 0)) return false;
   for (std::size_t k = 0; k < chain.rotary_count(); ++k)
-    if (!(chain.rotary(k).max_acceleration > 0)) return false;
+    if (!(chain.rotary(k).*rotary > 0)) return false;
   return true;
 }
+
+}  // namespace
+
+bool Machine::has_acceleration() const {
+  return stated(chain, &LinearAxis::max_acceleration, &RotaryAxis::max_acceleration);
+}
+
+bool Machine::has_jerk() const { return stated(chain, &LinearAxis::max_jerk, &RotaryAxis::max_jerk); }
 
 SourcePosition Machine::where(std::string_view key) const {
   const auto found = positions.find(key);

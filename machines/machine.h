@@ -65,6 +65,7 @@ struct Machine {
   int max_simultaneous_axes = 5;  ///< axes that the control interpolates in one block
 
   double max_spindle_speed = 0.0;          ///< 1/min
+  std::optional<double> tool_change_min;   ///< from cut to cut, when stated
   double max_cutting_feed = 0.0;           ///< mm/min
   double table_diameter_mm = 0.0;          ///< largest circle that fits on the table
   std::optional<double> part_diameter_mm;  ///< largest part that turns on the rotary table, when stated
@@ -87,6 +88,8 @@ struct Machine {
   [[nodiscard]] double exact_corner_mm() const;
   /// Every axis of the chain has an acceleration.
   [[nodiscard]] bool has_acceleration() const;
+  /// Every axis of the chain has a jerk.
+  [[nodiscard]] bool has_jerk() const;
   /// Largest part that turns on the table: `part_diameter_mm` if stated, else `table_diameter_mm`.
   [[nodiscard]] double largest_part_mm() const { return part_diameter_mm.value_or(table_diameter_mm); }
 };

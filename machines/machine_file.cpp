@@ -13,6 +13,8 @@ namespace {
 
 // Plausible ranges; a value outside them is a typing error or another unit.
 constexpr double kLargestAcceleration = 1e7;  // mm/s^2, deg/s^2
+constexpr double kLargestJerk = 1e10;         // mm/s^3, deg/s^3
+constexpr double kLongestToolChange = 3600;   // s
 constexpr double kLeastTravel = 10.0;         // mm; less means metres
 constexpr double kLeastDirection = 1e-3;      // length of a direction as written
 constexpr double kLeastOffset = 1.0;          // mm; the largest offset of all table axes: less may mean metres ...
@@ -76,6 +78,12 @@ double read_acceleration(toml::TableReader& axis, const char* unit) {
   return 3600.0 * axis.number("max_acceleration", toml::Range::positive(kLargestAcceleration, unit)).value_or(0.0);
 }
 
+/// `max_jerk`, per second cubed in the file, per minute cubed here; 0 where it is left out.
+double read_jerk(toml::TableReader& axis, const char* unit) {
+  if (!axis.has("max_jerk")) return 0.0;
+  return 216000.0 * axis.number("max_jerk", toml::Range::positive(kLargestJerk, unit)).value_or(0.0);
+}
+
 LinearAxis read_linear(toml::TableReader axis, const LimitMargin& margin) {
   LinearAxis out;
   if (const auto range = read_range(axis, kLargestLength, " mm")) {
@@ -88,6 +96,7 @@ LinearAxis read_linear(toml::TableReader axis, const LimitMargin& margin) {
   }
   out.max_speed = read_speed(axis, " mm/min");
   out.max_acceleration = read_acceleration(axis, " mm/s^2");
+  out.max_jerk = read_jerk(axis, " mm/s^3");
   axis.finish();
   return out;
 }
@@ -151,6 +160,7 @@ RotaryAxis read_rotary(toml::TableReader axis, char letter, bool in_table, const
   }
   out.max_speed = radians(read_speed(axis, " deg/min"));
   out.max_acceleration = radians(read_acceleration(axis, " deg/s^2"));
+  out.max_jerk = radians(read_jerk(axis, " deg/s^3"));
   axis.finish();
   return out;
 }
@@ -304,21 +314,25 @@ SourcePosition direction_position(const toml::TomlValue& tree, const KinematicCh
   return direction ? direction->value.position : tree.position;
 }
 
-/// A time with some axes that stop at once and some that do not would mean nothing.
+/// A time with some axes that stop at once and some that do not would mean nothing; nor a jerk without acceleration.
 void check_accelerations(toml::TableReader& root, const Machine& machine) {
-  if (machine.has_acceleration()) return;
-  bool any = false;
-  std::string lacking;
-  const auto look = [&](char letter, double acceleration) {
-    any = any || acceleration > 0;
-    if (!(acceleration > 0)) lacking += fmt::format("{}axes.{}", lacking.empty() ? "" : ", ", letter);
+  const auto every_or_none = [&](const char* key, double LinearAxis::*linear, double RotaryAxis::*rotary) {
+    bool any = false;
+    std::string lacking;
+    const auto look = [&](char letter, double limit) {
+      any = any || limit > 0;
+      if (!(limit > 0)) lacking += fmt::format("{}axes.{}", lacking.empty() ? "" : ", ", letter);
+    };
+    for (std::size_t i = 0; i < 3; ++i) look("XYZ"[i], machine.chain.linear[i].*linear);
+    for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k)
+      look(machine.chain.rotary(k).letter, machine.chain.rotary(k).*rotary);
+    if (any && !lacking.empty())
+      root.refuse("axes", "{} stands at some axes and is missing at {}: every axis has one, or none", key, lacking);
   };
-  for (std::size_t i = 0; i < 3; ++i) look("XYZ"[i], machine.chain.linear[i].max_acceleration);
-  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k)
-    look(machine.chain.rotary(k).letter, machine.chain.rotary(k).max_acceleration);
-  if (any)
-    root.refuse("axes", "max_acceleration stands at some axes and is missing at {}: every axis has one, or none",
-                lacking);
+  every_or_none("max_acceleration", &LinearAxis::max_acceleration, &RotaryAxis::max_acceleration);
+  every_or_none("max_jerk", &LinearAxis::max_jerk, &RotaryAxis::max_jerk);
+  if (machine.has_jerk() && !machine.has_acceleration())
+    root.refuse("axes", "max_jerk stands without max_acceleration: a jerk limits how fast an acceleration changes");
 }
 
 Machine read_machine_tree(const toml::TomlValue& tree, const std::string& file, const MachineJudge& judge,
@@ -342,6 +356,9 @@ Machine read_machine_tree(const toml::TomlValue& tree, const std::string& file, 
   if (auto spindle = root.required_table("spindle")) {
     machine.max_spindle_speed =
         spindle->number("max_speed", toml::Range::positive(kLargestSpeed, " 1/min")).value_or(0.0);
+    if (spindle->has("tool_change"))
+      if (const auto seconds = spindle->number("tool_change", toml::Range::positive(kLongestToolChange, " s")))
+        machine.tool_change_min = *seconds / 60;
     spindle->finish();
   }
   if (const auto limits = root.required_table("limits")) read_limits(*limits, machine);

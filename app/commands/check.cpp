@@ -11,6 +11,7 @@
 #include "app/report/page/motion_charts.h"
 #include "app/report/page/page_of_run.h"
 #include "geometry/base/hash.h"
+#include "postproc/timing/model_text.h"
 
 namespace toothpath::commands {
 namespace {
@@ -86,8 +87,10 @@ Status prove(Check& check) {
   if (auto judged = judge_scene(check); !judged) return judged;
   process::note_proof(report, *check.proof);
   report.blocks = check.proof->read.executed;
-  report.feed_minutes = check.proof->read.feed_minutes;
-  report.total_minutes = check.proof->read.minutes;
+  report.has_acceleration = check.machine.has_acceleration();
+  report.time_model = timing::model_text(check.machine, check.proof->read.corners);
+  report.feed_minutes = check.proof->read.accelerated.feed;
+  report.total_minutes = report.feed_minutes + check.proof->read.accelerated.rapid;
   report.axes = process::ranges_of(check.proof->read, check.machine);
   report.verified = report.reasons.empty();
   report.program_file = check.request.program_file;

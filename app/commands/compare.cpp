@@ -135,7 +135,8 @@ page::PageTable time_table(const process::CutFlanks& shaped, const process::CutF
                         {"route", "cutting min", "all min", "verified"},
                         {},
                         "Shaped: double strokes of infeed and one full turn. Milled: feed, and feed with rapids, of "
-                        "all teeth and operations of the job; without tool changes and clamping."};
+                        "all teeth and operations of the job, without clamping; " +
+                            milled.time_model + "."};
   table.rows.push_back({"shaped", fmt::format("{:.2f}", shaped.cutting_minutes),
                         fmt::format("{:.2f}", shaped.total_minutes), "strokes simulated"});
   table.rows.push_back({"milled", fmt::format("{:.2f}", milled.cutting_minutes),

@@ -21,7 +21,8 @@ struct CutFlanks {
   std::vector<Flank> flanks;
   std::string route;  ///< "milled" or "shaped"
   double cutting_minutes = 0, total_minutes = 0;
-  bool verified = true;  ///< milled: the program was proven; its reasons stand in `warnings` otherwise
+  std::string time_model;  ///< milled: what the times hold and assume
+  bool verified = true;    ///< milled: the program was proven; its reasons stand in `warnings` otherwise
   std::vector<std::string> warnings, assumed;
   std::vector<std::pair<std::string, double>> stages;  ///< milled: seconds of the run
 };

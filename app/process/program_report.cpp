@@ -22,6 +22,16 @@ constexpr double kBlendShare = 0.15;        // of the gouge tolerance that the c
 /// The words of `pole`, in the order of PoleOption.
 constexpr const char* kPoleWords[] = {"error", "tilt", "hold", "through", "slow", "retract"};
 
+/// All changes of the tool, the first tool included.
+double tool_changes(const joints::AxisProgram& program) {
+  int changes = 0, before = -1;
+  for (const joints::AxisOperation& o : program.operations) {
+    changes += o.tool_number != before ? 1 : 0;
+    before = o.tool_number;
+  }
+  return changes;
+}
+
 double shown(const joints::AxisRange& axis, double value) { return axis.rotary ? degrees(value) : value; }
 
 }  // namespace
@@ -57,6 +67,11 @@ void note_axis_program(report::RunReport& report, const job::Job& job, const mac
   report.has_acceleration = timed;
   report.feed_minutes = timed ? program.accelerated.feed : program.feed_minutes;
   report.total_minutes = timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes;
+  report.time_model = program.time_model;
+  if (machine.tool_change_min) {
+    report.tool_change_minutes = tool_changes(program) * *machine.tool_change_min;
+    report.total_minutes += *report.tool_change_minutes;
+  }
   if (job.setup && program.offer)
     report.travel_room = report::TravelRoom{*program.offer, job.setup->origin_mm + program.offer->shift_mm,
                                             job.setup->work_offset_at_mm + program.offer->shift_mm};

@@ -11,7 +11,8 @@ BlockTimes block_times_of(const joints::AxisProgram& program) {
   for (const auto& operation : program.operations) {
     if (operation.teeth.empty()) continue;
     for (const auto& block : operation.teeth.front().blocks)
-      if (block.kind == joints::BlockKind::feed) ms.push_back(block.minutes * 60000);
+      if (block.kind == joints::BlockKind::feed)
+        ms.push_back((program.has_acceleration ? block.run_minutes : block.minutes) * 60000);
   }
   for (std::size_t i = 0; i < program.time_rulers.size() && i < program.time_ruled.size(); ++i)
     if (program.time_ruled[i] > 0) out.ruled.emplace_back(program.time_rulers[i], program.time_ruled[i]);

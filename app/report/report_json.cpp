@@ -210,6 +210,7 @@ void add_motion(Json& json, const RunReport& r) {
   json["blocks"] = r.blocks;
   json["cutting_minutes"] = r.feed_minutes;
   json["total_minutes"] = r.total_minutes;
+  if (r.tool_change_minutes) json["tool_change_minutes"] = *r.tool_change_minutes;
   Json operations = Json::array();
   for (const auto& o : r.operations) {
     operations.push_back({{"op", o.operation},
@@ -219,7 +220,8 @@ void add_motion(Json& json, const RunReport& r) {
                           {"feed", o.feed_mm_min},
                           {"cl_points", o.cl_points},
                           {"cutting_minutes", o.feed_minutes},
-                          {"rapid_minutes", o.rapid_minutes}});
+                          {"rapid_minutes", o.rapid_minutes},
+                          {"minutes", o.minutes()}});
     if (o.cutting) add_cutting(operations.back(), *o.cutting);
   }
   add_sides(operations, r);
@@ -238,6 +240,7 @@ void add_motion(Json& json, const RunReport& r) {
   if (!tolerances.empty()) json["length_tolerance"] = std::move(tolerances);
   add_axes(json, r);
   json["acceleration_in_times"] = r.has_acceleration;
+  json["times"] = times_text(r);
   if (r.travel_room) {
     const choice::TravelOffer& offer = r.travel_room->offer;
     json["travel_room"] = {{"now", offer.room_now_mm},

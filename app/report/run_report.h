@@ -28,6 +28,7 @@ struct OperationReport {
   std::size_t cl_points = 0;                   ///< one tooth space
   double feed_minutes = 0, rapid_minutes = 0;  ///< all teeth
   std::optional<CuttingLoad> cutting = {};     ///< none where forces were not asked for
+  [[nodiscard]] double minutes() const { return feed_minutes + rapid_minutes; }
 };
 
 /// A flank that was corrected by a measurement.
@@ -102,7 +103,8 @@ struct RunReport {
   std::vector<Finding> findings;  ///< what else there is to say about the part
 
   std::size_t cl_points = 0, blocks = 0;
-  double feed_minutes = 0, total_minutes = 0;  ///< all teeth; tool changes left out
+  double feed_minutes = 0, total_minutes = 0;  ///< all teeth, rapids and `tool_change_minutes` in the second
+  std::optional<double> tool_change_minutes;   ///< of all tool changes; none: the machine file does not state them
   std::vector<OperationReport> operations;
   std::vector<proof::DirectionChoice> directions;
   std::vector<PassReport> passes;  ///< of one tooth space, where the plan tells them
@@ -110,6 +112,7 @@ struct RunReport {
   std::optional<PolesReport> poles;                  ///< none where the program comes to no pole
   std::optional<TravelRoom> travel_room;             ///< none where it was not looked for
   bool has_acceleration = false;                     ///< the times above hold the accelerations of the axes
+  std::string time_model;                            ///< what the times hold and assume
   std::optional<BlockTimes> block_times;             ///< none where no program was posted
   int teeth = 0, tooth_stride = 1;                   ///< of the program: place n cuts tooth n * stride mod teeth
   std::optional<joints::ProgramRestart> restart;     ///< the program begins there
@@ -141,5 +144,8 @@ struct RunReport {
 
 /// "1 h 23 min", "4 min 05 s".
 [[nodiscard]] std::string readable_minutes(double minutes);
+
+/// What the times of the report hold and assume, tool changes too; one sentence without full stop.
+[[nodiscard]] std::string times_text(const RunReport& report);
 
 }  // namespace toothpath::report

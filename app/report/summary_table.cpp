@@ -74,6 +74,12 @@ std::string readable_minutes(double minutes) {
   return fmt::format("{} min {:02} s", seconds / 60, seconds % 60);
 }
 
+std::string times_text(const RunReport& report) {
+  return report.time_model + (report.tool_change_minutes
+                                  ? fmt::format(", tool changes of {}", readable_minutes(*report.tool_change_minutes))
+                                  : ", without tool changes");
+}
+
 std::string unfinished_text(const RunReport& report) {
   for (const Finding& f : report.findings)
     if (!f.unfinished.empty()) return f.unfinished;
@@ -98,8 +104,8 @@ std::string summary_table(const RunReport& report, bool color) {
   if (!report.operations.empty()) {
     row(out, "cutting time",
         fmt::format("{} (with rapids {})", readable_minutes(report.feed_minutes),
-                    readable_minutes(report.total_minutes)) +
-            (report.has_acceleration ? ", accelerations included" : ""));
+                    readable_minutes(report.total_minutes)));
+    row(out, "times are", times_text(report));
     row(out, "time by tool", tools_text(report));
   }
   for (const auto& d : report.directions)

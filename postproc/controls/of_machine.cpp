@@ -6,6 +6,7 @@
 
 #include "geometry/base/angle.h"
 #include "postproc/controls/registry.h"
+#include "postproc/timing/path_timer.h"
 
 namespace toothpath::controls {
 namespace {
@@ -159,6 +160,15 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
   return d;
 }
 
+namespace {
+
+/// A control that states how far it leaves an exact path is one that stops there.
+timing::Corners corners_of(const text::NcDialect& words) {
+  return words.exact_path_mm > 0 ? timing::Corners::exact : timing::Corners::jump;
+}
+
+}  // namespace
+
 joints::AxisOptions axis_options(const text::NcDialect& words, const machines::Machine& machine) {
   joints::AxisOptions options;
   options.format = words.format;
@@ -167,6 +177,7 @@ joints::AxisOptions axis_options(const text::NcDialect& words, const machines::M
       words.loop.form == text::NcLoop::Form::stretches || !words.loop.index_line.empty();
   options.expand_teeth = !machine.post.index_loop.value_or(true) || words.loop.form == text::NcLoop::Form::none;
   options.tcp_starts_at_zero = words.tcp_starts_at_zero;
+  options.corners = corners_of(words);
   options.tcp_loop = !words.loop.frame_on.empty();
   return options;
 }
@@ -178,6 +189,7 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
   readback::NcControl c;
   c.execute = control->execute;
   c.cutter_locations = control->cutter_locations;
+  c.corners = corners_of(control->words);
   c.rotary_rounding_deg =
       0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(control->words.format.rotary_decimals));
   if (machine.tcp != machines::TcpMode::none) c.chain = machine.chain;

@@ -128,6 +128,7 @@ class ProgramBuilder {
     program_.work_offset = setup_.work_offset;
     program_.work_offset_at_mm = setup_.work_offset_at_mm;
     program_.tcp = machine_.tcp;
+    program_.corners = options_.corners;
     program_.tcp_starts_at_zero = tcp() && options_.tcp_starts_at_zero;
     const double top = chain_.linear[2].max_mm - machine_.limit_margin.linear_mm;
     const double unit = std::pow(10.0, options_.format.linear_decimals);

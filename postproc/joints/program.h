@@ -22,6 +22,7 @@
 #include "machines/machine.h"
 #include "postproc/choice/travel_offer.h"
 #include "postproc/joints/setup.h"
+#include "postproc/timing/path_timer.h"
 
 namespace toothpath::joints {
 
@@ -50,7 +51,8 @@ struct AxisOptions {
   bool expand_teeth = false;  ///< write every tooth out even where the loop would do
   int tooth_stride = 1;       ///< place n of the order cuts tooth n * stride mod z (tooth_order.h); 1: the sequence
   bool tcp_starts_at_zero =
-      false;              ///< TCP freezes the table frame where it is switched on: only with the rotaries at zero
+      false;  ///< TCP freezes the table frame where it is switched on: only with the rotaries at zero
+  timing::Corners corners = timing::Corners::jump;  ///< how the control joins feed blocks
   bool tcp_loop = false;  ///< the dialect can turn the frame of a loop about the gear axis while TCP is on
 };
 
@@ -71,6 +73,7 @@ enum class BlockKind : std::uint8_t {
 struct AxisBlock {
   std::array<std::int64_t, 5> words{};
   double minutes = 0;         ///< that the machine needs or is told, from the rounded words
+  double run_minutes = 0;     ///< the same with the accelerations of the axes; 0: the machine states none
   double per_minute = 0;      ///< with TCP: feed of the tip, mm/min; of the rotaries where the tip stands, deg/min
   Vec3 axis = Vec3::UnitZ();  ///< with TCP: tool axis at the end of the block, table frame
   std::int32_t record = -1;   ///< index of the CL record that the block goes to; -1: a link
@@ -153,10 +156,12 @@ struct AxisProgram {
   double pole_axis_rad = 0;       ///< proven: handling poles moves the tool axis by no more ..
   double pole_tip_mm = 0;         ///< .. and the tip, about the centre of the ball, which stays
   bool has_acceleration = false;  ///< the machine states them: `accelerated` is filled in
-  TimedMinutes accelerated;       ///< over all operations
-  std::optional<choice::TravelOffer> offer;  ///< empty: not looked for, or too many directions of the part
-  std::size_t inserted_blocks = 0;           ///< by the subdivision
-  std::size_t dropped_blocks = 0;            ///< all words equal to those before
+  timing::Corners corners = timing::Corners::jump;  ///< as in the options
+  std::string time_model;                           ///< what the times hold and assume
+  TimedMinutes accelerated;                         ///< over all operations
+  std::optional<choice::TravelOffer> offer;         ///< empty: not looked for, or too many directions of the part
+  std::size_t inserted_blocks = 0;                  ///< by the subdivision
+  std::size_t dropped_blocks = 0;                   ///< all words equal to those before
 };
 
 /// Builds the program for one set-up. `tools` are indexed by ClPath::tool; `teeth` = z >= 1.

@@ -1,13 +1,13 @@
-// Run time with the accelerations of the axes.
+// Run time of a program with the accelerations of the axes: blocks go through timing::PathTimer, which knows how the
+// control passes corners.
 //
-// Model: every block is straight in the joints and asks for the joint speeds v = dq / t, t its time in the program. The
-// control runs it at a share s of them, 0 <= s <= 1. Inside a block |ds/dt| <= min_j a_j / |v_j|. From one block to the
-// next the share is the same and the speeds jump by s * dv: the control rounds the corner within the shortest block
-// time tau, so that s <= min_j a_j tau / |dv_j|. Rapids, and everything that is no feed block, begin and end at rest.
-// The greatest s that keep all of this come from one pass forward and one backward; each block then takes its
-// trapezoid. Blocks with TCP are taken as straight in the joints, too.
+// With TCP the joints at the ends of the blocks count, straight between them; LinuxCNC plans the words themselves (tip
+// and rotaries). Everything that is no feed block begins and ends at rest.
 //
-// So the time is never below that of the program, falls when an acceleration grows, and goes to that of the program.
+// Links move the axes of their kind alone. Behind an operation Z goes up for the tool change, and between teeth the
+// index turns together with the rotaries of the first link: both as the text does it.
+//
+// So a feed move never takes less than the program asks, and as much when accelerations grow.
 #pragma once
 
 #include <vector>
@@ -23,12 +23,10 @@ namespace toothpath::joints {
                                                     const AxisProgram& program, double tool_length_mm,
                                                     const machines::Machine& machine);
 
-/// Time of a move from rest to rest [min].
-[[nodiscard]] double time_from_rest(double distance, double speed, double acceleration);
-
-/// Fills in `accelerated` of the program and its operations, and the ruler "acceleration": feed blocks that take more
-/// than 1 % longer than the program asks are counted there, over all blocks that the program holds. Nothing without
-/// accelerations in the machine file.
+/// Fills in `accelerated` of the program and its operations, `run_minutes` of the blocks (in a loop: of all teeth but
+/// the first, which comes from elsewhere), and the ruler "acceleration": feed blocks that take more than 1 % longer
+/// than the program asks are counted there, over all blocks that the program holds. Nothing without accelerations in
+/// the machine file.
 void estimate_times(AxisProgram& program, const machines::Machine& machine);
 
 }  // namespace toothpath::joints

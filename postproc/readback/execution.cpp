@@ -302,6 +302,8 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
   e.operation = static_cast<std::int16_t>(operation_);
   e.tool = static_cast<std::int16_t>(tool_);
   e.rapid = m.rapid;
+  e.corners = path_mode_;
+  e.tolerance_mm = static_cast<float>(path_tolerance_mm_);
   if (!m.rapid && e.known)
     if (auto bad = corners(goal, tip, e)) return bad;
   e.tooth = static_cast<std::int16_t>(tooth_);

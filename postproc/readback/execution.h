@@ -70,6 +70,11 @@ class NcExecution {
     blend_is_linear_ = linear_only;
     corner_way_.reset();
   }
+  /// LinuxCNC: how the path goes on at corners; P of G64.
+  void set_path_mode(timing::Corners corners, double tolerance_mm) {
+    path_mode_ = corners;
+    path_tolerance_mm_ = tolerance_mm;
+  }
   /// Every axis may leave the path within this way ahead of and behind a corner, mm (G641).
   void set_corner_way(double mm) {
     set_blend(0);
@@ -116,6 +121,8 @@ class NcExecution {
   Feed feed_mode_ = Feed::none;
   std::optional<double> feed_, length_;
   std::optional<Vec3> offset_;
+  timing::Corners path_mode_ = timing::Corners::exact;
+  double path_tolerance_mm_ = 0;
   double blend_mm_ = 0;
   bool blend_is_linear_ = false, site_smoothing_ = false;
   std::optional<double> corner_way_, blend_axis_rad_;

@@ -45,7 +45,7 @@ class Interpreter {
     NcExecution::Move move;
     int motion = -1;     // G0 G1 in this block
     int feed_mode = -1;  // 93 94
-    bool g53 = false, g43 = false, tcp = false, g49 = false, g64 = false, g61 = false;
+    bool g53 = false, g43 = false, tcp = false, g49 = false, g64 = false, g61 = false, stops = false;
     bool extended = false;  // G54.1, its number in P
     std::string offset;
     std::vector<int> m;
@@ -153,6 +153,7 @@ class Interpreter {
       case 640:
         r.g64 = tenths == 640;
         r.g61 = !r.g64;
+        r.stops = tenths == 611;
         return 10;
       case 921: return 11;
       case 690: return 13;
@@ -204,6 +205,8 @@ class Interpreter {
     corners_said_ = corners_said_ || r.g64 || r.g61;
     if (r.g64) execution_.set_blend(language_.corner_of_g64(*r.p, r.q.value_or(*r.p), control_.exact_path_mm), true);
     if (r.g61) execution_.set_blend(control_.exact_path_mm);  // a stop leaves as much
+    if (r.g64) execution_.set_path_mode(timing::Corners::blend, *r.p);
+    if (r.g61) execution_.set_path_mode(r.stops ? timing::Corners::stop : timing::Corners::exact, 0);
     if (r.feed_mode == 93) execution_.set_feed_mode(NcExecution::Feed::inverse_time);
     if (r.feed_mode == 94) execution_.set_feed_mode(NcExecution::Feed::per_minute);
     if (r.f)

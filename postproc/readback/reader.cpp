@@ -7,6 +7,7 @@
 
 #include "geometry/base/angle.h"
 #include "postproc/readback/operation_moves.h"
+#include "postproc/readback/run_time.h"
 
 namespace toothpath::readback {
 namespace {
@@ -262,8 +263,13 @@ class ReadBackRun {
       }
     };
     ExecutedMove before;
-    return execute_nc(text_, file_, control_, [&](const ExecutedMove& m) {
+    result_.corners = control_.corners;
+    RunTimer timer(machine_, control_.corners, [this](bool rapid, double minutes) {
+      (rapid ? result_.accelerated.rapid : result_.accelerated.feed) += minutes;
+    });
+    Status status = execute_nc(text_, file_, control_, [&](const ExecutedMove& m) {
       ++result_.executed;
+      timer.add(m);
       result_.minutes += m.minutes;
       if (!m.rapid) result_.feed_minutes += m.minutes;
       if (m.tcp && m.known) follow_tip(before, m, control_, machine_.chain, reach);
@@ -273,6 +279,8 @@ class ReadBackRun {
       reach(m.joints);
       counts_[m.operation].add(m);
     });
+    timer.finish();
+    return status;
   }
   /// Second time: are the teeth turned copies, and what stands between the operations.
   Status compare(CopyCheck& check) {

@@ -24,6 +24,7 @@
 #include "machines/machine.h"
 #include "postproc/joints/program.h"
 #include "postproc/joints/setup.h"
+#include "postproc/timing/path_timer.h"
 
 namespace toothpath::readback {
 
@@ -55,8 +56,9 @@ struct NcControl {
   /// Lines of the machine file that switch the control's own smoothing on and off, and what the shop states for it.
   std::vector<std::string> smoothing_on, smoothing_off;
   double smoothing_mm = 0;
-  std::optional<double> smoothing_axis_rad;  ///< not stated: no cut may turn a rotary while it is on
-  std::vector<std::string> coolant_words;    ///< M words of the builder that switch coolants, on and off
+  std::optional<double> smoothing_axis_rad;         ///< not stated: no cut may turn a rotary while it is on
+  std::vector<std::string> coolant_words;           ///< M words of the builder that switch coolants, on and off
+  timing::Corners corners = timing::Corners::jump;  ///< how it joins feed blocks
   bool dry_run = false;                 ///< feed moves with a standing spindle are meant: a program that runs in air
   std::size_t max_steps = 400'000'000;  ///< executed blocks before the program is refused as endless
 
@@ -80,9 +82,11 @@ struct ExecutedMove {
   float blend_axis_rad = 0;  ///< the same of the tool axis (TA of cycle 32)
   float corner_path_mm =
       0;  ///< every axis may leave the path within this way ahead of and behind a corner (G641 ADIS) ..
-  float corner_share = 0;          ///< .. which is this part of the block, a half at most
-  std::uint8_t commanded = 0;      ///< bit a: the block has a word for axis a
-  std::int16_t tooth = -1;         ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
+  float corner_share = 0;      ///< .. which is this part of the block, a half at most
+  std::uint8_t commanded = 0;  ///< bit a: the block has a word for axis a
+  std::int16_t tooth = -1;     ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
+  timing::Corners corners = timing::Corners::exact;  ///< LinuxCNC: the path mode, and P of G64
+  float tolerance_mm = 0;
   bool machine = false;            ///< G53, or the block that switches tool length compensation on
   bool known = false;              ///< all joints were known before and after
   std::uint64_t vector_print = 0;  ///< of the words of a tool vector, FNV-1a over their bytes; 0: rotary words
@@ -129,7 +133,9 @@ struct ReadBack {
   std::vector<OperationTrace> between;
   std::array<double, 5> least{}, greatest{};  ///< joints over all executed moves, mm and deg
   std::size_t executed = 0;
-  double minutes = 0, feed_minutes = 0;
+  double minutes = 0, feed_minutes = 0;             ///< as the text asks
+  timing::Corners corners = timing::Corners::jump;  ///< of the control
+  joints::TimedMinutes accelerated;  ///< with the accelerations of the axes; without them as the text asks
   int mixed_rapid = 0;  ///< line of the first rapid that moves more than one group of axes, of all executed moves; 0:
                         ///< none does, or cutter locations
 };

@@ -90,9 +90,10 @@ std::vector<std::string> order_comments(const joints::AxisProgram& program) {
     out.push_back(fmt::format("RESTART AT OPERATION {} TOOTH {}", program.restart->operation, program.restart->tooth));
     out.emplace_back("WHAT THE WHOLE PROGRAM CUTS BEFORE THAT IS TAKEN AS DONE");
     const bool timed = program.has_acceleration;
-    out.push_back(fmt::format("RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING",
+    out.push_back(fmt::format("RUN TIME {:.2f} MIN, {:.2f} MIN OF IT CUTTING{}",
                               timed ? program.accelerated.feed + program.accelerated.rapid : program.minutes,
-                              timed ? program.accelerated.feed : program.feed_minutes));
+                              timed ? program.accelerated.feed : program.feed_minutes,
+                              timed ? "" : ", WITHOUT ACCELERATIONS"));
   }
   return out;
 }

@@ -1,7 +1,9 @@
 // Makes the folder from which LinuxCNC's motion controller runs a program of a job, and compares what it executed with
 // our read-back of the same text.
 //   toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH CORNERS ACCELERATION PERIOD
-//   toothpath_controller_case compare JOB FOLDER ACCELERATION PERIOD      FOLDER/samples.txt: what halsampler recorded
+//   toothpath_controller_case times JOB FOLDER ACCELERATION PERIOD        a row of docs/times.md: what we say and what
+//   was needed toothpath_controller_case compare JOB FOLDER ACCELERATION PERIOD      FOLDER/samples.txt: what
+//   halsampler recorded
 // TEETH: teeth per operation, "1,1". CORNERS: "written", or a line like "G61.1" or "G64 P0.0003 Q0" in the place of the
 // program's own. ACCELERATION: of every axis, mm/s^2 and deg/s^2. PERIOD: of the servo thread and of the record,
 // microseconds.
@@ -18,6 +20,7 @@
 #include "app/process/gear_of_job.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/readback/reader.h"
+#include "postproc/readback/run_time.h"
 #include "tests/controller/joint_record.h"
 
 namespace toothpath {
@@ -27,9 +30,10 @@ namespace fs = std::filesystem;
 using test::JointVector, test::PathCorner;
 
 // The record is printed with six digits after the point.
-constexpr double kPrinted = 1e-6;  // mm and deg
-constexpr double kGiveUp = 1.0;    // mm: beyond this the record does not follow the path
-constexpr double kPiece = 0.02;    // deg: moves with TCP are cut into pieces that turn by no more than this
+constexpr double kPrinted = 1e-6;    // mm and deg
+constexpr double kGiveUp = 1.0;      // mm: beyond this the record does not follow the path
+constexpr double kPiece = 0.02;      // deg: moves with TCP are cut into pieces that turn by no more than this
+constexpr double kRapidPiece = 0.1;  // deg: of a rapid, whose joints are straight: 0.04 um of the tip at 100 mm
 
 struct Case {
   job::Job job;
@@ -253,10 +257,8 @@ Result<Expected> expected_path(const Case& c, const std::string& text) {
             .tip_mm;
       };
       const Vec3 from = tip_of(last), to = tip_of(e);
-      const double turn =
-          e.rapid && !e.tcp ? 0
-                            : std::max(std::abs(e.joints[3] - last.joints[3]), std::abs(e.joints[4] - last.joints[4]));
-      const int pieces = static_cast<int>(std::ceil(turn / kPiece));
+      const double turn = std::max(std::abs(e.joints[3] - last.joints[3]), std::abs(e.joints[4] - last.joints[4]));
+      const int pieces = static_cast<int>(std::ceil(turn / (e.rapid ? kRapidPiece : kPiece)));
       for (int i = 1; i < pieces; ++i) {
         const double t = static_cast<double>(i) / pieces;
         std::array<double, 5> j{};
@@ -363,14 +365,57 @@ Result<bool> compare(const Case& c, const fs::path& folder, const Settings& sett
   return good;
 }
 
+/// The machine with the accelerations that the controller was set to.
+machines::Machine accelerated(machines::Machine machine, double of_every_axis) {
+  for (auto& axis : machine.chain.linear) axis.max_acceleration = of_every_axis * 3600;
+  for (auto* rotaries : {&machine.chain.table, &machine.chain.head})
+    for (auto& axis : *rotaries) axis.max_acceleration = radians(of_every_axis) * 3600;
+  return machine;
+}
+
+/// Times from the first place where all joints are known to the end: asked by the text, predicted, executed.
+Status print_times(const Case& c, const fs::path& folder, const Settings& settings) {
+  const std::string text = read(folder / "program.ngc");
+  const auto expected = expected_path(c, text);
+  if (!expected) return expected.error();
+  const auto control = controls::control_of(c.machine, *c.job.setup, c.job.tools);
+  if (!control) return control.error();
+  double asked = 0, predicted = 0, in_cuts = 0;
+  const machines::Machine machine = accelerated(c.machine, settings.acceleration);
+  readback::RunTimer timer(machine, control->corners, [&](bool rapid, double minutes) {
+    predicted += minutes;
+    in_cuts += rapid ? 0 : minutes;
+  });
+  const Status s = readback::execute_nc(text, "program.ngc", *control, [&](const readback::ExecutedMove& e) {
+    if (!e.known) return;
+    asked += e.minutes;
+    timer.add(e);
+  });
+  if (!s) return s;
+  timer.finish();
+  std::ifstream in(folder / "samples.txt");
+  const auto samples = test::read_samples(in);
+  if (!samples) return samples.error();
+  const auto walk = test::compare_curves(expected->path, *samples, kGiveUp);
+  if (!walk.followed) return fail("the record does not follow the program near its line {}", walk.stuck_line);
+  const double executed = static_cast<double>(walk.samples) * settings.period_us * 1e-6;
+  fmt::print("{} moves | asked {:.1f} s | predicted {:.1f} s, {:.1f} s of it cutting | executed {:.1f} s | {:+.2f} %\n",
+             expected->blocks, asked * 60, predicted * 60, in_cuts * 60, executed,
+             100 * (predicted * 60 / executed - 1));
+  return Ok{};
+}
+
 int run(const std::vector<std::string>& args) {
+  const bool timing = args.size() == 5 && args[0] == "times";
   const bool preparing = args.size() == 8 && args[0] == "prepare", comparing = args.size() == 5 && args[0] == "compare";
   Settings settings;
-  if (preparing || comparing) settings = {std::atof(args[args.size() - 2].c_str()), std::atoi(args.back().c_str())};
+  if (preparing || comparing || timing)
+    settings = {std::atof(args[args.size() - 2].c_str()), std::atoi(args.back().c_str())};
   if (!(settings.acceleration > 0) || settings.period_us <= 0) {
     fmt::print(stderr,
                "usage: toothpath_controller_case prepare JOB PROGRAM FOLDER TEETH CORNERS ACCELERATION PERIOD\n"
-               "       toothpath_controller_case compare JOB FOLDER ACCELERATION PERIOD\n");
+               "       toothpath_controller_case compare JOB FOLDER ACCELERATION PERIOD\n"
+               "       toothpath_controller_case times JOB FOLDER ACCELERATION PERIOD\n");
     return 2;
   }
   const auto c = read_case(args[1]);
@@ -380,6 +425,11 @@ int run(const std::vector<std::string>& args) {
   }
   if (preparing) {
     const Status s = prepare(*c, args[2], args[3], args[4], args[5], settings);
+    if (!s) fmt::print(stderr, "{}\n", s.error().text());
+    return s ? 0 : 3;
+  }
+  if (timing) {
+    const Status s = print_times(*c, args[2], settings);
     if (!s) fmt::print(stderr, "{}\n", s.error().text());
     return s ? 0 : 3;
   }

@@ -27,6 +27,7 @@ process::ValueOrErrors<process::CutFlanks> cut_flanks(const job::Job& job, const
   }
   cut.cutting_minutes = done.report.feed_minutes;
   cut.total_minutes = done.report.total_minutes;
+  cut.time_model = report::times_text(done.report);
   cut.verified = done.report.verified;
   cut.warnings = done.report.warnings;
   for (const auto& reason : done.report.reasons) cut.warnings.push_back("not verified: " + reason);

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "geometry/base/angle.h"
+#include "postproc/readback/run_time.h"
 
 namespace toothpath::page {
 namespace {
@@ -30,22 +31,24 @@ void drop_far(AxisCurve& curve) {
     if (v < curve.least - room || v > curve.greatest + room) v = kNothing;
 }
 
-std::array<AxisCurve, 5> curves_of(const readback::ReadBack& read) {
+std::array<AxisCurve, 5> curves_of(const readback::ReadBack& read, const machines::Machine& machine) {
   std::array<AxisCurve, 5> curves;
   double now = 0;
   for (const readback::OperationTrace& trace : read.operations) {
     const readback::ExecutedMove* before = nullptr;
-    for (const readback::ExecutedMove& move : trace.moves) {
+    const std::vector<double> times = readback::run_times(trace.moves, machine, read.corners);
+    for (std::size_t k = 0; k < trace.moves.size(); ++k) {
+      const readback::ExecutedMove& move = trace.moves[k];
       if (!move.known) continue;
-      const double start = now;
-      if (before != nullptr) now += move.minutes;
+      const double start = now, minutes = times[k];
+      if (before != nullptr) now += minutes;
       for (std::size_t a = 0; a < 5; ++a) {
         AxisCurve& curve = curves[a];
         curve.position.x.push_back(now);
         curve.position.y.push_back(move.joints[a]);
-        if (before == nullptr || !(move.minutes > 0)) continue;
+        if (before == nullptr || !(minutes > 0)) continue;
         // Speeds are steps: both ends of the block.
-        const double speed = move.rapid ? kNothing : std::abs(move.joints[a] - before->joints[a]) / move.minutes;
+        const double speed = move.rapid ? kNothing : std::abs(move.joints[a] - before->joints[a]) / minutes;
         curve.speed.x.insert(curve.speed.x.end(), {start, now});
         curve.speed.y.insert(curve.speed.y.end(), 2, speed);
         if (move.rapid) continue;
@@ -97,7 +100,19 @@ std::map<int, int> first_teeth(const std::vector<path::ToolMotion>& motions) {
   return first;
 }
 
-svg::LineChart feed_chart(const std::vector<path::ToolMotion>& motions, const machines::Machine& machine) {
+/// How much longer than asked the blocks of the kept teeth take, by their line.
+std::map<int, double> slowed_lines(const readback::ReadBack& read, const machines::Machine& machine) {
+  std::map<int, double> slowed;
+  for (const readback::OperationTrace& trace : read.operations) {
+    const std::vector<double> times = readback::run_times(trace.moves, machine, read.corners);
+    for (std::size_t k = 0; k < trace.moves.size(); ++k)
+      if (trace.moves[k].minutes > 0) slowed.try_emplace(trace.moves[k].line, times[k] / trace.moves[k].minutes);
+  }
+  return slowed;
+}
+
+svg::LineChart feed_chart(const readback::ReadBack& read, const std::vector<path::ToolMotion>& motions,
+                          const machines::Machine& machine) {
   svg::LineChart chart{"Feed of the tool tip",
                        "time [min]",
                        "feed [mm/min]",
@@ -110,17 +125,20 @@ svg::LineChart feed_chart(const std::vector<path::ToolMotion>& motions, const ma
   double now = 0;
   auto& [name, x, y] = chart.series.front();
   const std::map<int, int> first = first_teeth(motions);
+  const std::map<int, double> slowed = slowed_lines(read, machine);
   for (const path::ToolMotion& m : motions) {
     if (m.tooth != first.at(m.operation) || !(m.minutes > 0)) continue;
+    const auto line = slowed.find(m.line);
+    const double minutes = m.minutes * (line == slowed.end() ? 1 : line->second);
     if (!m.rapid) {
-      const double speed = (m.tip_to - m.tip_from).norm() / m.minutes;
-      x.insert(x.end(), {now, now + m.minutes});
+      const double speed = (m.tip_to - m.tip_from).norm() / minutes;
+      x.insert(x.end(), {now, now + minutes});
       y.insert(y.end(), {speed, speed});
     } else if (!y.empty() && !std::isnan(y.back())) {
       x.push_back(now);
       y.push_back(kNothing);
     }
-    now += m.minutes;
+    now += minutes;
   }
   chart.limits.push_back({"cutting feed of the machine", machine.max_cutting_feed});
   double greatest = 0;
@@ -166,7 +184,7 @@ std::vector<int> lines_of_records(const path::ClPath& path, const std::vector<pa
 std::vector<svg::LineChart> motion_charts(const readback::ReadBack& read, const std::vector<path::ToolMotion>& motions,
                                           const machines::Machine& machine) {
   std::vector<svg::LineChart> charts;
-  std::array<AxisCurve, 5> curves = curves_of(read);
+  std::array<AxisCurve, 5> curves = curves_of(read, machine);
   if (curves[0].position.x.size() < 2) return charts;
   std::string standing;
   for (std::size_t a = 0; a < 3 + machine.chain.rotary_count(); ++a) {
@@ -175,7 +193,7 @@ std::vector<svg::LineChart> motion_charts(const readback::ReadBack& read, const 
     add_axis(charts, curves[a], letter, rotary,
              rotary ? degrees(machine.chain.rotary(a - 3).max_speed) : machine.chain.linear[a].max_speed, standing);
   }
-  charts.push_back(feed_chart(motions, machine));
+  charts.push_back(feed_chart(read, motions, machine));
   if (!standing.empty()) charts.back().note += " " + standing + ".";
   return charts;
 }

@@ -36,7 +36,9 @@ std::vector<KeyFigure> key_figures(const report::RunReport& r) {
                        r.gouge->clearance_mm >= r.gouge->required_clearance_mm ? State::good : State::bad});
   if (!r.operations.empty()) {
     figures.push_back({"cutting time", report::readable_minutes(r.feed_minutes), "",
-                       "with rapids " + report::readable_minutes(r.total_minutes), State::plain});
+                       fmt::format("with rapids {}{}", report::readable_minutes(r.total_minutes),
+                                   r.has_acceleration ? "" : ", no accelerations stated"),
+                       State::plain});
     figures.push_back(
         {"NC blocks", std::to_string(r.blocks), "", fmt::format("{} CL points a tooth", r.cl_points), State::plain});
   }
@@ -74,6 +76,7 @@ PageTable operation_table(const report::RunReport& r) {
                           fmt::format("{:g}", o.speed_rpm), fmt::format("{:g}", o.feed_mm_min),
                           std::to_string(o.cl_points), fmt::format("{:.2f}", o.feed_minutes),
                           fmt::format("{:.2f}", o.rapid_minutes)});
+  if (!r.operations.empty()) table.note = "Times: " + report::times_text(r) + ".";
   return table;
 }
 

@@ -81,8 +81,12 @@ void tool_section(Sheet& sheet, const job::Job& job, const report::RunReport& re
                report::readable_minutes(feed + rapid)});
   }
   sheet.end_table();
-  sheet.raw(fmt::format("<p class=small>{} tool change{}, the first tool included; changes are not in the times.</p>\n",
-                        changes, changes == 1 ? "" : "s"));
+  const std::string changing = report.tool_change_minutes
+                                   ? fmt::format("they take {}, which no tool's times hold",
+                                                 report::readable_minutes(*report.tool_change_minutes))
+                                   : "changes are not in the times";
+  sheet.raw(fmt::format("<p class=small>{} tool change{}, the first tool included; {}.</p>\n", changes,
+                        changes == 1 ? "" : "s", changing));
   sheet.raw("<p>");
   for (const auto& tool : job.tools) sheet.raw(fmt::format("T{} {} &nbsp; ", tool.number, tool_sketch(tool)));
   sheet.raw("</p>\n");
@@ -135,9 +139,12 @@ void operation_section(Sheet& sheet, const report::RunReport& report) {
     sheet.row({std::to_string(o.operation), o.type, std::to_string(o.tool_number), fmt::format("{:g}", o.speed_rpm),
                fmt::format("{:g}", o.feed_mm_min), report::readable_minutes(o.feed_minutes),
                report::readable_minutes(o.rapid_minutes), tilt_of(report, o.operation)});
-  sheet.row({"", "all", "", "", "", report::readable_minutes(report.feed_minutes),
-             report::readable_minutes(report.total_minutes - report.feed_minutes), ""});
+  sheet.row(
+      {"", "all", "", "", "", report::readable_minutes(report.feed_minutes),
+       report::readable_minutes(report.total_minutes - report.feed_minutes - report.tool_change_minutes.value_or(0)),
+       ""});
   sheet.end_table();
+  sheet.raw(fmt::format("<p class=small>Times: {}.</p>\n", report::times_text(report)));
   sheet.heading("Axis ranges, machine coordinates");
   sheet.begin_table({"axis", "least", "greatest", "lower limit", "upper limit", "unit"});
   for (const auto& axis : report.axes) {

@@ -49,10 +49,7 @@ report::Section time_section(const joints::AxisProgram& program, const std::opti
   if (program.has_acceleration)
     section.rows.push_back({"with the accelerations of the axes", fmt::format("{:.3f}", program.accelerated.feed),
                             fmt::format("{:.3f}", program.accelerated.rapid)});
-  section.note = program.has_acceleration
-                     ? "Model: joints straight in each block, speeds up and down by max_acceleration, corners rounded "
-                       "within the shortest block time, rapids from rest to rest."
-                     : "No acceleration data in the machine file (max_acceleration): the machine takes longer.";
+  section.note = fmt::format("The last row is {}.", program.time_model);
   std::string rulers;
   for (std::size_t i = 0; i < program.time_rulers.size(); ++i)
     if (program.time_ruled[i] > 0)

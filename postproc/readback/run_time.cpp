@@ -1,0 +1,44 @@
+#include "postproc/readback/run_time.h"
+
+namespace toothpath::readback {
+
+RunTimer::RunTimer(const machines::Machine& machine, timing::Corners corners, std::function<void(bool, double)> sink)
+    : accelerates_(machine.has_acceleration()),
+      plans_words_(timing::control_of(machine, corners).plans_words),
+      exact_(corners == timing::Corners::exact),
+      sink_(std::move(sink)),
+      timer_(timing::limits_of(machine), timing::control_of(machine, corners), [this](double minutes) {
+        sink_(rapids_.front(), minutes);
+        rapids_.pop_front();
+      }) {}
+
+void RunTimer::add(const ExecutedMove& move) {
+  if (!accelerates_) {
+    sink_(move.rapid, move.minutes);
+    return;
+  }
+  timing::Block block{{}, move.minutes, move.rapid};
+  if (move.known) {
+    for (std::size_t a = 0; a < 5; ++a) block.step[a] = move.joints[a] - before_.joints[a];
+    if (plans_words_ && move.tcp && before_.tcp)
+      for (int a = 0; a < 3; ++a) block.step[static_cast<std::size_t>(a)] = move.tip[a] - before_.tip[a];
+  }
+  if (exact_ && !move.rapid) timer_.set_corners(move.corners, static_cast<double>(move.tolerance_mm));
+  rapids_.push_back(move.rapid);
+  timer_.add(block);
+  before_ = move;
+}
+
+void RunTimer::finish() { timer_.finish(); }
+
+std::vector<double> run_times(std::span<const ExecutedMove> moves, const machines::Machine& machine,
+                              timing::Corners corners) {
+  std::vector<double> times;
+  times.reserve(moves.size());
+  RunTimer timer(machine, corners, [&times](bool, double minutes) { times.push_back(minutes); });
+  for (const ExecutedMove& m : moves) timer.add(m);
+  timer.finish();
+  return times;
+}
+
+}  // namespace toothpath::readback
