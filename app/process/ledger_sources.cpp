@@ -21,17 +21,17 @@ double blend_read_back(const readback::ReadBack& read) {
 }  // namespace
 
 proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double measured_mm, std::string note) {
-  return {source, predicted_mm * app::kUm, measured_mm * app::kUm, true, std::move(note)};
+  return {source, predicted_mm * app::kUm, measured_mm * app::kUm, std::move(note)};
 }
 
 proof::LedgerEntry stated_entry(proof::ErrorSource source, const std::optional<double>& stated_mm, std::string counted,
                                 const std::string& missing) {
   if (stated_mm) return unmeasured(source, *stated_mm, std::move(counted));
-  return {source, 0, {}, false, "not counted: " + missing};
+  return {source, 0, {}, "not counted: " + missing, false};
 }
 
 proof::LedgerEntry unmeasured(proof::ErrorSource source, double predicted_mm, std::string note) {
-  return {source, predicted_mm * app::kUm, std::nullopt, true, std::move(note)};
+  return {source, predicted_mm * app::kUm, std::nullopt, std::move(note)};
 }
 
 double rotary_rounding(const joints::AxisProgram& program) {

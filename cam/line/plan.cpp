@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "cam/tool/body.h"
+#include "geometry/base/angle.h"
 
 namespace toothpath::line {
 namespace {
@@ -130,6 +132,46 @@ class PathWriter {
   int zone_ = 0, pass_ = 0;
 };
 
+bool shortened(const std::vector<LinePass>& passes) {
+  return std::any_of(passes.begin(), passes.end(), [](const LinePass& p) { return p.shortened_mm > 0; });
+}
+/// Is the same number of strips tried with both rotaries after this choice?
+bool both_follow(const std::vector<Choice>& choices, const Choice& choice) {
+  return std::any_of(choices.begin(), choices.end(),
+                     [&](const Choice& c) { return c.strips == choice.strips && c.rotaries == Rotaries::both; });
+}
+
+/// Azimuth of the axis in the middle of a pass.
+double azimuth_of(const FlankTask& flank, const LinePass& pass) {
+  const Vec3 a = turned(pass.records[pass.records.size() / 2].axis, flank.side > 0 ? 0 : flank.surface.pitch).a;
+  return std::atan2(a.y(), a.x());
+}
+
+/// Flanks in the order in which the azimuth of the axis turns least over a tooth space and on to the next one: both
+/// flanks of a space lean over opposite teeth. The first one stays; of many rings the order stays as it is.
+std::vector<std::size_t> shortest_order(const std::vector<FlankTask>& flanks, const std::vector<LinePass>& passes,
+                                        std::size_t strips) {
+  constexpr std::size_t kMostFlanks = 8;
+  std::vector<std::size_t> order(flanks.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (flanks.size() > kMostFlanks || passes.size() != flanks.size() * strips) return order;
+  std::vector<double> azimuth;
+  for (std::size_t k = 0; k < flanks.size(); ++k) {
+    if (passes[k * strips].records.empty()) return order;
+    azimuth.push_back(azimuth_of(flanks[k], passes[k * strips]));
+  }
+  const auto turn_of = [&](const std::vector<std::size_t>& trial) {
+    double turn = 0;
+    for (std::size_t k = 0; k < trial.size(); ++k)
+      turn += std::abs(std::remainder(azimuth[trial[(k + 1) % trial.size()]] - azimuth[trial[k]], 2 * kPi));
+    return turn;
+  };
+  std::vector<std::size_t> best = order;
+  while (std::next_permutation(order.begin() + 1, order.end()))
+    if (turn_of(order) < turn_of(best) - 1e-6) best = order;
+  return best;
+}
+
 }  // namespace
 
 AxisLine<double> with_allowance(const FlankTask& flank, const AxisLine<double>& axis, double allowance_mm) {
@@ -167,7 +209,8 @@ Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::
   LinePlan plan;
   double least = INFINITY;
   std::optional<Diagnostic> refused;
-  for (const auto& choice : choices_of(o)) {
+  const auto choices = choices_of(o);
+  for (const auto& choice : choices) {
     auto passes = passes_of(flanks, tool, o, choice, int(gear.rings().size()));
     if (!passes) {
       // What both rotaries cannot do more strips cannot either; one that stands may have failed by itself.
@@ -178,6 +221,8 @@ Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::
     plan.misfit_mm = worst_of(*passes);
     least = std::min(least, plan.misfit_mm);
     if (o.left_mm && plan.misfit_mm > *o.left_mm) continue;
+    // A pass that ends early leaves a corner; with both rotaries there may be room.
+    if (choice.rotaries != Rotaries::both && shortened(*passes) && both_follow(choices, choice)) continue;
     plan.passes = std::move(*passes);
     plan.strips = choice.strips;
     plan.rotaries = choice.rotaries;
@@ -194,10 +239,10 @@ Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::
   plan.path.tool = o.tool;
   plan.path.spindle_rpm = o.speed_rpm;
   PathWriter writer(tool, o, plan.path);
-  for (std::size_t k = 0; k < plan.passes.size(); ++k) {
-    const auto flank = k / std::size_t(plan.strips);
-    writer.add(flanks[flank], plan.passes[k], int(k % std::size_t(2 * plan.strips)));
-  }
+  const auto strips = std::size_t(plan.strips);
+  for (const std::size_t flank : shortest_order(flanks, plan.passes, strips))
+    for (std::size_t k = flank * strips; k < (flank + 1) * strips; ++k)
+      writer.add(flanks[flank], plan.passes[k], int(k % (2 * strips)));
   plan.least_feed_mm_min = writer.least_feed();
   return plan;
 }

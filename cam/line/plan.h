@@ -55,8 +55,8 @@ struct LineOperation {
 
 struct LinePlan {
   path::ClPath path;
-  std::vector<LinePass>
-      passes;  ///< in the order of the path: zones from the inside, flank +1 then -1, strips from the tip down
+  std::vector<LinePass> passes;  ///< zones from the inside, flank +1 then -1, strips from the tip down; the path may
+                                 ///< order flanks otherwise
   int strips = 1;
   Rotaries rotaries = Rotaries::both;
   double misfit_mm = 0;          ///< worst of the passes

@@ -25,8 +25,7 @@ struct ClRecord {
 };
 
 /// One operation on one tooth space. The first record is a rapid to a point outside the blank, above everything;
-/// rapids link only such points. Zones follow one another; between two zones the path is at such a point (not in a
-/// herringbone corner).
+/// rapids link only such points. Between two zones the path is at such a point (not in a herringbone corner).
 struct ClPath {
   int operation = 0;           ///< index in the job, from 0
   std::string operation_type;  ///< "roughing", "finishing", ... as in the job

@@ -133,8 +133,8 @@ struct LedgerEntry {
   double predicted_um = 0;
   /// None: the prediction is a model, or the job's word, that nothing of the proof measures; it is no part of any sum.
   std::optional<double> measured_um;
-  bool counted = true;  ///< false: nothing states how large it is; the note says what would
   std::string note;     ///< what was measured, or why the source does not occur
+  bool counted = true;  ///< false: nothing states how large it is; the note says what would
 };
 
 /// Why the tool stands as it does in one zone of one operation.

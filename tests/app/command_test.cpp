@@ -306,7 +306,7 @@ TEST(Machine, APartThatDoesNotFitIsRefusedWithBothNumbers) {
 
 TEST(Machine, AssumedValuesMustBeAccepted) {
   const TestDir dir;
-  const std::string text = file_text(kSamples + "/dhfg_t600s.toml");
+  const std::string text = file_text(kSamples + "/dhfg_ball.toml");
   const auto line_end = text.find('\n', text.find("accept_assumed"));
   const auto line_start = text.rfind('\n', text.find("accept_assumed"));
   write_file(dir / "job.toml", text.substr(0, line_start) + text.substr(line_end));

@@ -49,7 +49,7 @@ const report::CuttingLoad& cutting(const report::RunReport& report, std::size_t 
 
 // dhfg_ball: slots for roughing, allowances and cusps for what comes after, and the mill of the old sample.
 TEST(CuttingForce, OfTheOldSample) {
-  const job::Job job = job_of(file_text(kSamples + "dhfg_t600s.toml"));
+  const job::Job job = job_of(file_text(kSamples + "dhfg_ball.toml"));
   const report::RunReport report = noted(job);
   ASSERT_EQ(report.operations.size(), 4u);
   for (std::size_t k = 0; k < 4; ++k) {

@@ -235,7 +235,7 @@ void expect_round_trip(const std::string& text, const joints::AxisProgram& progr
 class GoldenPrograms : public testing::TestWithParam<Coarse> {};
 INSTANTIATE_TEST_SUITE_P(
     Samples, GoldenPrograms,
-    testing::Values(Coarse{"dhfg_paper", {0, 3}, 5, 3, 0.08, 0, 4}, Coarse{"dhfg_t600s", {0, 3}, 1.2, 0.8, 0.02, 0, 3},
+    testing::Values(Coarse{"dhfg_paper", {0, 3}, 5, 3, 0.08, 0, 4}, Coarse{"dhfg_ball", {0, 3}, 1.2, 0.8, 0.02, 0, 3},
                     Coarse{"offset_milled", {0}, 0, 0, 0.05, 0, 3}, Coarse{"short_tool", {0, 1}, 4, 1.8, 0.3, 0, 3},
                     Coarse{"spur_quick", {0, 1}, 2, 0.9, 0.06, 0, 3}, Coarse{"bevel_pinion", {0, 1}, 0, 0, 0, 1.0, 3},
                     Coarse{"bevel_wheel", {0, 1}, 0, 0, 0, 1.0, 3}, Coarse{"bevel_trunnion", {0, 1}, 0, 0, 0, 0.3, 3}),

@@ -54,8 +54,8 @@ TEST_P(Ledger, CoversWhatIsMeasured) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, Ledger,
-                         testing::Values("spur_quick", "offset_milled", "dhfg_t600s", "dhfg_paper", "short_tool",
-                                         "bevel_pinion", "bevel_trunnion", "bevel_wheel", "tool_axis"),
+                         testing::Values("spur_quick", "offset_milled", "dhfg_ball", "dhfg_t600s", "dhfg_paper",
+                                         "short_tool", "bevel_pinion", "bevel_trunnion", "bevel_wheel", "tool_axis"),
                          [](const auto& c) { return std::string(c.param); });
 
 }  // namespace

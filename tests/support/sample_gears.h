@@ -27,7 +27,7 @@ inline face_gear::FaceGearParameters transverse_gear(int teeth, int shaper_teeth
 }
 
 /// The double helical gear of the DHFG paper (30/180, 20 deg, module 5 in the transverse plane), lengths times `scale`;
-/// scale 1/4 is samples/dhfg_t600s.toml.
+/// scale 1/4 is samples/dhfg_ball.toml.
 inline face_gear::FaceGearParameters double_helical_parameters(double scale = 1) {
   auto g = transverse_gear(180, 30, 5 * scale, 1.5 * scale,
                            {{radians(-30), 449 * scale, 468 * scale}, {radians(30), 476 * scale, 496 * scale}});

@@ -34,7 +34,7 @@ std::string gear_words(const face_gear::FaceGearParameters& p) {
   return text;
 }
 
-constexpr double kLinkFeed = 3000;  // mm/min: of moves under feed through air, where the machine is no slower
+constexpr double kLinkFeed = 6000;  // mm/min: of moves under feed through air, where the machine is no slower
 constexpr double kBiasShare = 0.4;  // of the rounding, taken up by the poses: the rest is counted
 
 cut::CutSurfaceOptions surface_options(const process::FlankGrid& grid) {

@@ -98,6 +98,21 @@ report::Finding scallop_of(const proof::ScallopResult& scallop) {
   return finding;
 }
 
+/// What stands on each region of the finished surface.
+report::Finding left_of(const cut::CutSurface& surface) {
+  const auto& left = surface.finished_in_mm;
+  report::Finding finding;
+  finding.key = "left_um";
+  finding.label = "left on the regions";
+  for (const path::Region region : path::kRegions) {
+    finding.details.emplace_back(to_string(region), app::um(left[region]));
+    finding.text +=
+        fmt::format("{}{} {:.2f}", finding.text.empty() ? "" : ", ", to_string(region), app::um(left[region]));
+  }
+  finding.unit = "um";
+  return finding;
+}
+
 }  // namespace
 
 joints::ClearanceBody clearance_body(const face_gear::FaceGear& gear) {
@@ -137,6 +152,9 @@ void FaceGearCheck::judge(process::ProgramProof& program, app::StageClock& clock
   program.finished = surface.finished;
   program.surface = std::move(surface.grids);
   program.findings.push_back(unreached_of(surface.unreached));
+  if (path::finisher_of(job_.operations, path::Region::flank) !=
+      path::finisher_of(job_.operations, path::Region::fillet))
+    program.findings.push_back(left_of(surface));
   if (surface.scallop.requested_mm > 0) program.findings.push_back(scallop_of(surface.scallop));
 }
 

@@ -25,7 +25,7 @@ inline face_gear::FaceGearParameters stout_gear(const std::string& name) {
     g.zones = {{0, 134, 140}};
     return g;
   }
-  if (name == "dhfg") {  // samples/dhfg_t600s.toml, its outer half
+  if (name == "dhfg") {  // samples/dhfg_ball.toml, its outer half
     auto g = quarter_dhfg();
     g.zones = {g.zones[1]};
     return g;

@@ -445,7 +445,7 @@ TEST(LinePlans, SameAnswerWithOneThread) {
   const auto tool = mill(2, 5, 15, 8, 32);
   auto o = finishing();
   o.clearance_height_mm = -60;
-  o.rotaries = line::Rotaries::both;
+  o.rotaries = {line::Rotaries::both};
   const auto start = std::chrono::steady_clock::now();
   const auto a = line::plan_line_milling(gear, tool, o);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
