@@ -62,7 +62,7 @@ class Study {
     if (auto trial = tried(name, job)) trials_.push_back(std::move(*trial));
   }
 
-  /// The first lean whose plan stands. Where none does, the row says why of each.
+  /// The first lean whose program comes to its proof. Where none does, the row says why of each.
   void add_tilted() {
     const std::string name = "tilted ball";
     std::string refusals;
@@ -114,8 +114,8 @@ page::PageTable time_table(const std::vector<StrategyTrial>& trials) {
 }
 
 page::PageTable left_table(const std::vector<StrategyTrial>& trials) {
-  page::PageTable table{"Left on the flanks",
-                        {"strategy", "worst um", "rms um", "least um", "gouge um"},
+  page::PageTable table{"Left on the flanks, um",
+                        {"strategy", "worst", "rms", "least", "gouge"},
                         {},
                         "Along the normal, at the grid of the proof, of the program as read back, where the ball of "
                         "the last tool reaches; least < 0: material is missing. gouge: proven bound over all surfaces "
@@ -130,10 +130,12 @@ page::PageTable left_table(const std::vector<StrategyTrial>& trials) {
 }
 
 page::PageTable load_table(const std::vector<StrategyTrial>& trials) {
-  page::PageTable table{"Deflection while the flanks are finished",
-                        {"strategy", "stock um", "force N", "bends um"},
-                        {},
-                        "A model of the cut, beside the geometry above and not in it."};
+  page::PageTable table{
+      "Deflection while the flanks are finished",
+      {"strategy", "stock um", "force N", "bends um"},
+      {},
+      "A model of the cut, beside the geometry above and not in it; a flank in strips is computed as if each met the "
+      "whole line."};
   for (const auto& t : trials) {
     const report::CuttingLoad* c = t.cutting();
     table.rows.push_back({t.name, c && c->stock_mm ? report::estimate(app::um(*c->stock_mm)) : kNone,
@@ -165,7 +167,7 @@ page::PageTable verdict_table(const std::vector<StrategyTrial>& trials) {
 std::string screen_text(const std::vector<StrategyTrial>& trials) {
   const page::PageTable time = time_table(trials), left = left_table(trials), load = load_table(trials);
   page::PageTable all{"", time.columns, {}, ""};
-  all.columns.insert(all.columns.end(), left.columns.begin() + 1, left.columns.end());
+  for (std::size_t k = 1; k < left.columns.size(); ++k) all.columns.push_back(left.columns[k] + " um");
   all.columns.emplace_back("bends um");
   all.columns.emplace_back("verified");
   for (std::size_t k = 0; k < trials.size(); ++k) {
@@ -191,7 +193,7 @@ svg::LineChart chart_of(const std::vector<StrategyTrial>& trials, const char* ti
   chart.title = title;
   chart.x_label = x_label;
   chart.y_label = "left on the flanks [um]";
-  chart.markers = true;
+  chart.log_x = chart.markers = true;
   chart.note =
       "Each strategy has two dots, joined: rms below and worst above. Left is faster, down is more exact. What the "
       "mill "
@@ -227,9 +229,10 @@ page::StudyPage page_of(const job::Job& job, const LineMilledFlanks& flanks, con
                   "operations with an allowance become semi-finishing with that allowance and cusps of {:g} of it, at "
                   "least {:g} um.",
                   app::um(line.most_misfit_mm()), kCuspPerAllowance, app::um(kLeastCusp_mm)),
-      fmt::format("tilted ball: the same with a prescribed tool axis, the first of these leans that is clear: {}; {}; "
-                  "{}. Outwards is along the teeth, aside is away from the flank that is cut.",
-                  to_string(kLeans[0]), to_string(kLeans[1]), to_string(kLeans[2]))};
+      fmt::format(
+          "tilted ball: the same with a prescribed tool axis, the first of these leans that is not refused: {}; {}; "
+          "{}. Outwards is along the teeth, aside is away from the flank that is cut.",
+          to_string(kLeans[0]), to_string(kLeans[1]), to_string(kLeans[2]))};
   page.charts = {chart_of(trials, "What is left against all of the time", "total time [h]",
                           [](const StrategyTrial& t) { return t.report.total_minutes; }),
                  chart_of(trials, "What is left against the time for the flanks", "time for the flanks [h]",

@@ -37,11 +37,14 @@ int passes_of(const path::ClPath& path) {
   return int(passes.size());
 }
 
+/// "13.7 to 20.4 deg", or one number where both read the same.
 std::string range_text(double least_rad, double greatest_rad) {
-  return fmt::format("{:.1f} to {:.1f} deg", degrees(least_rad), degrees(greatest_rad));
+  const std::string least = fmt::format("{:.1f}", degrees(least_rad)),
+                    greatest = fmt::format("{:.1f}", degrees(greatest_rad));
+  return (least == greatest ? least : least + " to " + greatest) + " deg";
 }
 
-/// "turning, 13.7 to 20.4 deg from the pitch normal": over all zones.
+/// "turning, 13.7 to 20.4 deg": over all zones.
 std::string axis_text(const std::vector<proof::DirectionChoice>& directions, std::size_t operation) {
   bool turns = false, any = false;
   double least = INFINITY, greatest = 0;

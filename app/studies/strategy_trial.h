@@ -20,7 +20,7 @@ struct LeftOnFlanks {
 struct StrategyTrial {
   std::string name;           ///< "line", "2 strips", "ball", "tilted ball"
   std::string tool_axis;      ///< how the tool stands while the flank is finished
-  bool proven = false;        ///< there is a program, and it was proven or found unsafe
+  bool proven = false;        ///< a program was made and looked at: proven safe, or not
   std::string reason;         ///< why it is not verified; empty: it is
   std::string remark;         ///< what was chosen or tried for it; may be empty
   report::RunReport report;   ///< as `run` has it
