@@ -15,7 +15,7 @@ Progress::Progress(bool quiet) {
 
 void Progress::show(const std::string& text) {
   if (!active_) return;
-  std::fprintf(stderr, "\r\033[2K%s ...", text.c_str());
+  std::fprintf(stderr, "\r\033[2K%s%s%s ...", label_.c_str(), label_.empty() ? "" : ": ", text.c_str());
   std::fflush(stderr);
   shown_ = true;
 }

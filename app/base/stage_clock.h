@@ -14,9 +14,12 @@ class Progress {
   explicit Progress(bool quiet);
   void show(const std::string& text);
   void clear();
+  /// From now on it stands before every text: which of several runs this is. Empty: nothing does.
+  void label(std::string text) { label_ = std::move(text); }
 
  private:
   bool active_ = false, shown_ = false;
+  std::string label_;
 };
 
 class StageClock {

@@ -44,7 +44,7 @@ struct CommandGroup {
   const char* description;
 };
 inline constexpr CommandGroup kStudies = {
-    "study", "error against run time, extreme cases, section models, double helical gears"};
+    "study", "error against run time, line against ball, extreme cases, section models, double helical gears"};
 inline constexpr CommandGroup kMachines = {"machine", "what a machine file says, and how to prove it"};
 
 struct Command {
