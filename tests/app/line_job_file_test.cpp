@@ -124,7 +124,7 @@ TEST(LineJobFile, MeasuredMillAndPivots) {
   EXPECT_EQ(mill.half_angle_error_rad, radians(0.05));
   EXPECT_EQ(job.setup->pivot_error_mm, 0.005);
   ASSERT_EQ(job.warnings.size(), 1u);
-  EXPECT_NE(job.warnings[0].find(":27:9: warning: helix = 0 deg, tool 1"), std::string::npos) << job.warnings[0];
+  EXPECT_NE(job.warnings[0].find(":31:9: warning: helix = 0 deg, tool 1"), std::string::npos) << job.warnings[0];
 }
 
 TEST(LineJobFile, FlatAndBullNose) {
