@@ -102,6 +102,7 @@ path::ByRegion<bool> read_regions(toml::TableReader& table) {
                                       [&](path::Region r) { return name == to_string(r); });
     if (region == path::kRegions.end())
       table.refuse("regions", "regions: \"{}\" is none of \"flank\", \"fillet\", \"root\"", name);
+    else if (regions[*region]) table.refuse("regions", "regions: \"{}\" stands twice", name);
     else regions[*region] = true;
   }
   if (names->empty()) table.refuse("regions", "regions = [] cuts nothing: leave the key out for all of them");
@@ -199,9 +200,14 @@ void compare_with_tool(toml::TableReader& table, const path::MillingOperation& o
   if (operation.step_over_mm > diameter)
     table.refuse("step_over", "step_over = {} mm exceeds {} mm, the diameter of tool {}", operation.step_over_mm,
                  diameter, tool.number);
-  if (operation.scallop_mm >= diameter / 2)
-    table.refuse("scallop", "scallop = {} mm is not below {} mm, the radius of tool {}", operation.scallop_mm,
+  if (operation.scallop_mm >= diameter / 2) {
+    std::string key = "scallop";
+    for (const path::Region region : path::kRegions)
+      if (operation.scallops_mm && (*operation.scallops_mm)[region] == operation.scallop_mm)
+        key = fmt::format("scallop.{}", to_string(region));
+    table.refuse("scallop", "{} = {} mm is not below {} mm, the radius of tool {}", key, operation.scallop_mm,
                  diameter / 2, tool.number);
+  }
   if (tool.flute_length_mm > 0 && operation.step_down_mm > tool.flute_length_mm)
     table.refuse("step_down", "step_down = {} mm exceeds {} mm, the flute_length of tool {}", operation.step_down_mm,
                  tool.flute_length_mm, tool.number);

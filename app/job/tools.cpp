@@ -16,6 +16,7 @@ constexpr toml::Range kToolLength{0, 2000, " mm", true};
 constexpr toml::Range kToolDiameter{0.01, 500, " mm"};
 constexpr std::size_t kMostMeridianBytes = 1 << 20;
 constexpr double kMostHelix = 75;  // deg
+constexpr const char* kTaperAngle = "taper_angle";
 
 std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
   std::vector<tool::HolderSegment> result;
@@ -56,6 +57,11 @@ std::vector<std::string_view> kind_words() {
 void read_numbers(toml::TableReader& table, const tool::CutterKind& kind, tool::ToolAssembly& tool) {
   for (const auto& n : kind.numbers) {
     if (n.member == &tool::ToolAssembly::flute_length_mm || n.member == &tool::ToolAssembly::diameter_mm) continue;
+    // Refused for what stands instead of it: read_end_mill.
+    if (n.member == &tool::ToolAssembly::half_angle_rad && !table.has(n.key) && table.has(kTaperAngle)) {
+      (void)table.value(n.key);
+      continue;
+    }
     const double read = table.number(n.key, {n.low, n.high, n.degrees ? " deg" : " mm", n.open_low}).value_or(0);
     tool.*n.member = n.degrees ? radians(read) : read;
   }
@@ -104,7 +110,7 @@ void read_meridian(toml::TableReader& table, const ToolContext& context, tool::T
   if (!name) return;
   const auto path = (std::filesystem::path(context.directory) / *name).string();
   const auto text = toml::read_regular_file(path, kMostMeridianBytes);
-  if (!text) return table.refuse("meridian", "{}", text.error().message);
+  if (!text) return table.refuse("meridian", "meridian = \"{}\": {}", *name, text.error().message);
   tool::MeridianError measured;
   int number = 0;
   for (std::size_t at = 0; at < text->size();) {
@@ -136,9 +142,10 @@ void check_profile(toml::TableReader& table, const tool::ToolAssembly& tool) {
 void read_end_mill(toml::TableReader& table, const ToolContext& context, tool::ToolAssembly& tool,
                    std::vector<std::string>& warnings) {
   if (tool.type == tool::CutterType::tapered_ball_end_mill) {
-    if (table.value("taper_angle"))
-      table.refuse("taper_angle",
-                   "taper_angle is ambiguous (per side or included?): say half_angle, between the axis and the side");
+    if (table.value(kTaperAngle))
+      table.refuse(kTaperAngle,
+                   "taper_angle: half or included? Say half_angle, between the axis and the side: half of the included "
+                   "angle");
     if (table.has("meridian")) read_meridian(table, context, tool);
   }
   const auto stated = [&](const char* key, const toml::Range& range) {

@@ -29,6 +29,28 @@ void check_speeds(const job::Job& job, const machines::Machine& machine, std::ve
   }
 }
 
+/// The side of a mill cuts while one rotary turns at least.
+void check_axes_at_once(const job::Job& job, const machines::Machine& machine, std::vector<Diagnostic>& errors) {
+  const int axes = machine.max_simultaneous_axes;
+  for (std::size_t i = 0; i < job.operations.size(); ++i) {
+    const auto& operation = job.operations[i];
+    if (operation.type != path::OperationType::line_milling) continue;
+    const std::string path = fmt::format("operation[{}]", i);
+    if (axes < 4)
+      errors.push_back(
+          fail_at(job.where(path + ".type"),
+                  "line_milling moves X, Y, Z and one rotary at least, but {} interpolates {} axes at once "
+                  "(max_simultaneous_axes): finish the flanks with a ball end whose axis stands, "
+                  "type = \"finishing\"",
+                  machine.name, axes));
+    else if (axes < 5 && operation.rotaries == path::MovingRotaries::both)
+      errors.push_back(fail_at(job.where(path + ".rotaries"),
+                               "rotaries = \"both\" moves 5 axes at once, but {} interpolates {} "
+                               "(max_simultaneous_axes): rotaries = \"one\" moves 4",
+                               machine.name, axes));
+  }
+}
+
 }  // namespace
 
 Diagnostic located(const job::Job& job, std::string_view key, Diagnostic diagnostic) {
@@ -104,6 +126,7 @@ ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional
                              "{} has assumed values ({}); measure them, or accept them with accept_assumed = true",
                              job.machine.file, joined(machine.assumed_keys)));
   check_speeds(job, machine, errors);
+  check_axes_at_once(job, machine, errors);
   if (job.setup)
     if (const auto others = controls::other_work_offsets(machine, job.setup->work_offset))
       errors.push_back(fail_at(job.where("setup.work_offset"), "work_offset = \"{}\" is none of {}: it has {}",

@@ -28,7 +28,8 @@ using ValueOrErrors = Expected<T, std::vector<Diagnostic>>;
 
 /// The milling machine of the job. Refused: no [machine], a file that is missing or wrong, a gear shaper, assumed
 /// values that the job does not accept, an operation that is faster than the spindle or the cutting feed of the
-/// machine, a work offset or a coolant that its control does not have; with a part diameter [mm] also a part that does
+/// machine, line milling that moves more axes at once than its control interpolates, a work offset or a coolant that it
+/// does not have; with a part diameter [mm] also a part that does
 /// not lie on it.
 [[nodiscard]] ValueOrErrors<machines::Machine> load_machine(const job::Job& job,
                                                             std::optional<double> part_diameter_mm = {});

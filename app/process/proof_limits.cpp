@@ -9,7 +9,8 @@
 namespace toothpath::process {
 namespace {
 
-constexpr double kProofShare = 0.1;  // of the gouge tolerance
+constexpr double kProofShare = 0.1;    // of the gouge tolerance
+constexpr double kCoarseShare = 0.25;  // of the gouge tolerance: a rounding that is told
 
 /// The walls of a finger mill are those of its last finishing operation, whatever cuts the root afterwards.
 std::optional<double> left_of_fingers(const job::Job& job) {
@@ -29,6 +30,11 @@ path::ByRegion<std::optional<double>> left_in_regions(const job::Job& job) {
   return left;
 }
 
+joints::WordFormat format_of(const machines::Machine& machine) {
+  const auto dialect = controls::dialect_of(machine);
+  return dialect ? dialect->format : joints::WordFormat{};
+}
+
 }  // namespace
 
 proof::ProofLimits proof_limits(const job::Job& job, double proof_mm) {
@@ -44,9 +50,23 @@ proof::ProofLimits proof_limits(const job::Job& job, double proof_mm) {
 }
 
 double word_rounding(const machines::Machine& machine, double radius_mm) {
-  const auto dialect = controls::dialect_of(machine);
-  const joints::WordFormat format = dialect ? dialect->format : joints::WordFormat{};
+  const joints::WordFormat format = format_of(machine);
   return 0.5 * (std::pow(10.0, -format.linear_decimals) + radians(std::pow(10.0, -format.rotary_decimals)) * radius_mm);
+}
+
+std::optional<std::string> coarse_words(const job::Job& job, const machines::Machine& machine, double radius_mm) {
+  const bool side = std::any_of(job.operations.begin(), job.operations.end(), [](const path::MillingOperation& o) {
+    return o.type == path::OperationType::line_milling;
+  });
+  const double rounding = word_rounding(machine, radius_mm), most = kCoarseShare * job.verify.gouge_tolerance_mm;
+  if (!side || rounding <= most) return {};
+  const joints::WordFormat format = format_of(machine);
+  return fmt::format(
+      "words rounded to {:g} mm and {:g} deg cost up to {:.2f} um at radius {:.1f} mm, above {:.2f} um, a quarter of "
+      "gouge_tolerance: finer increments (post.linear_decimals, post.rotary_decimals of the machine), or a larger left "
+      "and gouge_tolerance",
+      std::pow(10.0, -format.linear_decimals), std::pow(10.0, -format.rotary_decimals), 1e3 * rounding, radius_mm,
+      1e3 * most);
 }
 
 }  // namespace toothpath::process

@@ -1,6 +1,9 @@
 // From a job to the limits that its program must keep.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "app/job/job.h"
 #include "cam/proof/limits.h"
 #include "machines/machine.h"
@@ -17,5 +20,10 @@ inline constexpr double kFingerMargin = 1.5e-3;
 
 /// What rounding the words of a machine's programs may cost at this radius about the gear axis, mm.
 [[nodiscard]] double word_rounding(const machines::Machine& machine, double radius_mm);
+
+/// What the rounding costs the flanks of a line-milled gear, where that is much of the gouge tolerance; nothing where
+/// it is not, and for other gears.
+[[nodiscard]] std::optional<std::string> coarse_words(const job::Job& job, const machines::Machine& machine,
+                                                      double radius_mm);
 
 }  // namespace toothpath::process

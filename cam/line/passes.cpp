@@ -35,6 +35,19 @@ struct Stations {
 };
 
 /// Everything about one pass that its steps share.
+/// What would give a blocked pose its room.
+const char* remedy(Blocked::Need need) {
+  switch (need) {
+    case Blocked::Need::touch:
+      return ": the space between the flanks, or the groove, is too narrow for this mill; a smaller diameter or "
+             "half_angle";
+    case Blocked::Need::stock:
+      return ", the stock that stands there: it would rub; a smaller allowance, diameter or half_angle";
+    case Blocked::Need::clearance: break;
+  }
+  return " clearance; a thinner shank or holder, a larger stick_out, or another half_angle";
+}
+
 class PassPlanner {
  public:
   PassPlanner(const LineFit& fit, const PassOptions& o, double law_end)
@@ -103,19 +116,37 @@ class PassPlanner {
             "zone {}: flank {:+d} at radius {:.3f} mm asks for a tool tilted by {:.2f} deg from the gear axis; at most "
             "{:.0f} deg are planned",
             f.zone, f.side, radius(k), degrees(p.tilt()), degrees(kMostTilt));
-      if (auto s = reached(p); !s) return s.error();
     }
+    if (auto s = reached(highest()); !s) return s.error();
     pass_.best_mm = worst_best();
     return Ok{};
   }
-  /// Do the teeth end above the highest contact?
+  /// The full station that touches highest on the tool.
+  [[nodiscard]] const StationPose& highest() const {
+    std::size_t at = best_.first;
+    for (std::size_t k = best_.first; k <= best_.last; ++k)
+      if (best_.poses[k]->gap.t_to > best_.poses[at]->gap.t_to) at = k;
+    return *best_.poses[at];
+  }
+  /// Height above the tip at which the ball at t touches the side.
+  [[nodiscard]] double touches(double t) const {
+    const auto& law = fit_.law();
+    return law.r_0 + t - law.rho(t) * law.slope(t);
+  }
+  /// Do the teeth end above the highest contact, and does a measured meridian?
   [[nodiscard]] Status reached(const StationPose& p) const {
     if (p.gap.nodes.empty() || p.gap.t_to <= law_end_) return Ok{};
     const auto& f = fit_.flank();
+    const auto& error = fit_.law().error;
+    if (error && !(law_end_ < error->t.back()))
+      return fail(
+          "zone {}: flank {:+d} at radius {:.3f} mm is touched up to t = {:.3f} mm above the centre of the ball end, "
+          "the measured meridian ends at t = {:.3f} mm: it must be measured up to there",
+          f.zone, f.side, p.r, p.gap.t_to, law_end_);
     return fail(
-        "zone {}: flank {:+d} at radius {:.3f} mm is touched up to {:.3f} mm above the centre of the ball end, the "
-        "flutes cut up to {:.3f} mm: flute_length must be {:.3f} mm longer",
-        f.zone, f.side, p.r, p.gap.t_to, law_end_, p.gap.t_to - law_end_);
+        "zone {}: flank {:+d} at radius {:.3f} mm is touched up to {:.3f} mm above the tip, the teeth end at {:.3f} "
+        "mm: flute_length must be {:.3f} mm at least",
+        f.zone, f.side, p.r, touches(p.gap.t_to), touches(law_end_), std::ceil(1e3 * touches(p.gap.t_to)) / 1e3);
   }
   /// Worst misfit of the poses alone, over the full stations.
   [[nodiscard]] double worst_best() const {
@@ -306,20 +337,24 @@ class PassPlanner {
       if (const auto& b = blocked[k])
         return fail(
             "zone {}: flank {:+d} at radius {:.3f} mm: the {} has a gap of {:.4f} mm to the {}, {:.4f} mm is the "
-            "least; a thinner or longer tool, or another half_angle",
-            fit_.flank().zone, fit_.flank().side, radius(best_.first + k), b->body, b->gap_mm, b->patch, b->least_mm);
+            "least{}",
+            fit_.flank().zone, fit_.flank().side, radius(best_.first + k), b->body, b->gap_mm, b->patch, b->least_mm,
+            remedy(b->need));
     room(-1, best_.first, from_, r_from_);
     room(1, best_.last, to_, r_to_);
     return Ok{};
   }
+  /// @param sense  +1: outwards
   void room(int sense, std::size_t full, std::size_t& end, double& r_end) {
     for (std::size_t k = full; k != end;) {
       const std::size_t next = std::size_t(std::ptrdiff_t(k) + sense);
       if (!clear(radius(next))) {
+        const std::size_t asked = end;
         end = k;
         r_end = last_clear(radius(k), radius(next));
         const auto last = pose(r_end);
-        if (!last || last->gap.in_ring()) pass_.shortened_mm += std::abs(radius(next) - r_end);
+        if (!last || last->gap.in_ring()) pass_.shortened_mm += std::abs(radius(asked) - r_end);
+        if (const auto p = pose(radius(next))) pass_.shortened_by = o_.room(p->axis);
         return;
       }
       k = next;

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -24,6 +25,7 @@ struct Blocked {
   std::string body, patch;
   double gap_mm = 0;    ///< least gap found; negative: it cuts
   double least_mm = 0;  ///< that it must keep
+  enum class Need : std::uint8_t { touch, stock, clearance } need = Need::clearance;  ///< why it must keep that
 };
 /// Nothing where a pose, in the frame of the flank's own tooth 0, is free.
 using Room = std::function<std::optional<Blocked>(const AxisLine<double>&)>;
@@ -78,7 +80,8 @@ struct LinePass {
   double contact_mm = 0;  ///< way of the contact
   double contact_top_mm =
       0;  ///< highest height of a contact above the tip, along the axis, lifts included: the flutes must reach it
-  double shortened_mm = 0;  ///< lost at ends that are not clear before the last foot has left the ring
+  double shortened_mm = 0;              ///< lost at ends that are not clear before the last foot has left the ring
+  std::optional<Blocked> shortened_by;  ///< what is in the way where a pass ends early, feet in the ring or not
 };
 
 /// Plans a pass. Refused, with quantity, value and limit: a tilt above 60 deg, flutes that end below a contact of any

@@ -69,6 +69,30 @@ std::vector<Choice> choices_of(const LineOperation& o) {
   return out;
 }
 
+std::string strips_text(int n) { return fmt::format("{} strip{}", n, n == 1 ? "" : "s"); }
+
+/// No choice leaves little enough: the best one, what was tried, what would help.
+std::string missed(const LineOperation& o, const std::vector<Choice>& tried, const Choice& best, double least) {
+  const int from = tried.front().strips, to = tried.back().strips;
+  const auto moving = [](Rotaries r) { return r == Rotaries::both ? "both rotaries move" : to_string(r); };
+  std::string rotaries, help;
+  bool both = false;
+  for (const auto& c : tried) {
+    if (c.strips != from) break;
+    rotaries += fmt::format("{}{}", rotaries.empty() ? "" : " or ", moving(c.rotaries));
+    both = both || c.rotaries == Rotaries::both;
+  }
+  if (to < kMostStrips) help += fmt::format(", more strips (at most {})", kMostStrips);
+  if (!both) help += ", rotaries = \"both\"";
+  return fmt::format(
+      "left = {:.3f} um cannot be met: the side of this tool leaves {:.3f} um at best, with {} while {}; tried: {} "
+      "while {}; what helps: left = {:.4f} mm{}, a smaller half_angle, or a finishing with regions = [\"flank\"] by a "
+      "ball end",
+      1e3 * o.left_mm.value_or(0), 1e3 * least, strips_text(best.strips), moving(best.rotaries),
+      from == to ? strips_text(from) : fmt::format("{} to {}", from, strips_text(to)), rotaries,
+      std::ceil(1e4 * least + 1) / 1e4, help);
+}
+
 /// Appends passes to a path: in and out along the tool axis, which only ever frees a tool that widens upwards.
 class PathWriter {
  public:
@@ -208,6 +232,7 @@ Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::
     }
   LinePlan plan;
   double least = INFINITY;
+  Choice best;
   std::optional<Diagnostic> refused;
   const auto choices = choices_of(o);
   for (const auto& choice : choices) {
@@ -219,6 +244,7 @@ Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::
       continue;
     }
     plan.misfit_mm = worst_of(*passes);
+    if (plan.misfit_mm < least) best = choice;
     least = std::min(least, plan.misfit_mm);
     if (o.left_mm && plan.misfit_mm > *o.left_mm) continue;
     // A pass that ends early leaves a corner; with both rotaries there may be room.
@@ -229,11 +255,7 @@ Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::
     break;
   }
   if (plan.passes.empty() && least == INFINITY && refused) return *refused;
-  if (plan.passes.empty())
-    return fail(
-        "left = {:.3f} um cannot be met: the side of this tool leaves {:.3f} um at best with {} strip(s); cut the rest "
-        "with the ball end or allow more",
-        1e3 * o.left_mm.value_or(0), 1e3 * least, o.strips.value_or(kMostStrips));
+  if (plan.passes.empty()) return fail("{}", missed(o, choices, best, least));
   plan.path.operation = o.operation;
   plan.path.operation_type = "line_milling";
   plan.path.tool = o.tool;

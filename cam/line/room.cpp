@@ -26,7 +26,7 @@ Room room_of(const analytic::GearDistance& part, const tool::Profile& profile, c
   const auto tool = std::make_shared<const tool::ProofTool>(tool::proof_tool(profile, 0));
   const double r_0 = profile.law() ? profile.law()->r_0 : 0;
   return [&part, tool, r_0, options](const AxisLine<double>& axis) -> std::optional<Blocked> {
-    if (part.refusal()) return Blocked{"flute", "inside", -INFINITY, 0};
+    if (part.refusal()) return Blocked{"flute", "inside", -INFINITY, 0, Blocked::Need::touch};
     const auto m = standing(axis, r_0);
     analytic::SweptGapOptions cutting;
     cutting.touching = true;
@@ -36,7 +36,7 @@ Room room_of(const analytic::GearDistance& part, const tool::Profile& profile, c
     cutting.settled_mm = -options.touch_mm;
     for (const auto& body : tool->cutting)
       if (const auto gap = analytic::swept_gap(part, body, m, cutting); gap.proven_mm < -options.touch_mm)
-        return Blocked{to_string(body.core.body), gap.patch, gap.measured_mm, -options.touch_mm};
+        return Blocked{to_string(body.core.body), gap.patch, gap.measured_mm, -options.touch_mm, Blocked::Need::touch};
     if (options.stock_mm > 0) {
       cutting.flanks_only = true;
       cutting.enough_mm = options.stock_mm + 0.05;
@@ -45,14 +45,15 @@ Room room_of(const analytic::GearDistance& part, const tool::Profile& profile, c
       cutting.settled_mm = options.stock_mm;
       for (const auto& body : tool->cutting)
         if (const auto gap = analytic::swept_gap(part, body, m, cutting); gap.proven_mm < options.stock_mm)
-          return Blocked{to_string(body.core.body), gap.patch, gap.measured_mm, options.stock_mm};
+          return Blocked{to_string(body.core.body), gap.patch, gap.measured_mm, options.stock_mm, Blocked::Need::stock};
     }
     analytic::SweptGapOptions beside;
     beside.enough_mm = options.clearance_mm + 0.01;
     beside.settled_mm = options.clearance_mm;
     for (const auto& body : tool->bodies)
       if (const auto gap = analytic::swept_gap(part, body, m, beside); gap.proven_mm < options.clearance_mm)
-        return Blocked{to_string(body.body), gap.patch, gap.measured_mm, options.clearance_mm};
+        return Blocked{to_string(body.body), gap.patch, gap.measured_mm, options.clearance_mm,
+                       Blocked::Need::clearance};
     return {};
   };
 }

@@ -14,11 +14,14 @@ namespace {
 
 constexpr double kLeastStock = 0.85;  // of the allowance, on every flank: a program is refused below 0.8
 constexpr double kLiftShare = 0.5;
+constexpr double kAxisStands = 1e-9;  // of a unit vector: less is no turn
+constexpr int kAllAxes = 5;           // X, Y, Z and two rotaries
 
-std::vector<line::Rotaries> admitted(const path::MillingOperation& op) {
+std::vector<line::Rotaries> admitted(const path::MillingOperation& op, int simultaneous_axes) {
   using line::Rotaries;
   if (op.rotaries == path::MovingRotaries::both) return {Rotaries::both};
-  if (op.rotaries == path::MovingRotaries::one) return {Rotaries::tilt_stands, Rotaries::azimuth_stands};
+  if (op.rotaries == path::MovingRotaries::one || simultaneous_axes < kAllAxes)
+    return {Rotaries::tilt_stands, Rotaries::azimuth_stands};
   return {Rotaries::tilt_stands, Rotaries::azimuth_stands, Rotaries::both};
 }
 
@@ -94,10 +97,32 @@ class FaceGearPlanner {
     for (const auto& c : cleared_) cleared.push_back(c.get());
     auto planned = ball_.plan(n, cleared);
     if (auto* refusal = planned.refused()) return std::move(*refusal);
+    if (auto refusal = too_many_axes(n, planned.value().path)) return refusal;
     plan_.paths.push_back(std::move(planned.value().path));
     plan_.operations.push_back(planned.value().summary);
     plan_.lines.emplace_back();
     for (auto& d : planned.value().directions) plan_.directions.push_back(std::move(d));
+    return {};
+  }
+
+  /// A ball whose axis turns while it cuts. One rotary turns with the tilt from the gear axis, the other with the
+  /// azimuth about it.
+  [[nodiscard]] std::optional<ball::PlanRefusal> too_many_axes(int n, const path::ClPath& path) const {
+    for (std::size_t k = 1; k < path.records.size(); ++k) {
+      const auto &from = path.records[k - 1], &to = path.records[k];
+      if (to.kind != path::MoveKind::feed || (to.axis - from.axis).norm() <= kAxisStands) continue;
+      const bool tilts = std::abs(std::hypot(to.axis.x(), to.axis.y()) - std::hypot(from.axis.x(), from.axis.y())) >
+                         kAxisStands,
+                 swings = std::abs(from.axis.x() * to.axis.y() - from.axis.y() * to.axis.x()) > kAxisStands;
+      const int axes = 3 + (tilts ? 1 : 0) + (swings ? 1 : 0);
+      if (axes <= o_.simultaneous_axes) continue;
+      return ball::PlanRefusal{
+          fmt::format("operation[{}].tool", n),
+          fail("tool = {}: its axis turns while it cuts in zone {}, {} axes at once, but the control interpolates {} "
+               "(max_simultaneous_axes): a thinner shank or holder or a larger stick_out, so that one direction clears "
+               "the whole pass, or a tool_axis that stands",
+               tools_[std::size_t(operations_[std::size_t(n)].tool)].number, to.zone, axes, o_.simultaneous_axes)};
+    }
     return {};
   }
 
@@ -112,7 +137,7 @@ class FaceGearPlanner {
     asked.allowance_mm = op.allowance_mm;
     asked.strips = op.strips;
     asked.left_mm = op.most_misfit_mm();
-    asked.rotaries = admitted(op);
+    asked.rotaries = admitted(op, o_.simultaneous_axes);
     asked.chord_tolerance_mm = op.chord_tolerance_mm;
     asked.bias_mm = o_.line_bias_mm;
     asked.climb = op.climb;
@@ -131,9 +156,19 @@ class FaceGearPlanner {
     const auto work = [&] { planned.emplace(line::plan_line_milling(part_.gear(), profile, asked)); };
     if (o_.stage) o_.stage("line passes", work);
     else work();
-    if (!*planned) return ball::PlanRefusal{fmt::format("operation[{}]", n), planned->error()};
+    if (!*planned) return line_refusal(n, planned->error());
     keep(n, std::move(**planned));
     return {};
+  }
+
+  /// What a control of fewer axes does not admit is told beside.
+  [[nodiscard]] ball::PlanRefusal line_refusal(int n, Diagnostic why) const {
+    if (o_.simultaneous_axes < kAllAxes)
+      why.message += fmt::format(
+          " (the control interpolates {} axes at once: rotaries = \"one\" is what it takes, so that more strips or a "
+          "larger left must do)",
+          o_.simultaneous_axes);
+    return {fmt::format("operation[{}]", n), std::move(why)};
   }
 
   void keep(int n, line::LinePlan planned) {

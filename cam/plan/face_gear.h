@@ -15,6 +15,7 @@ namespace toothpath::plan {
 /// Limits and stages hold for every planner.
 struct Options : ball::PlanOptions {
   double line_bias_mm = line::kBias;  ///< least gap of line poses: coarser axes ask for more
+  int simultaneous_axes = 5;          ///< that the control interpolates in a block: X, Y, Z and the rotaries that turn
 };
 
 struct FaceGearPlan {

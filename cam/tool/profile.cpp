@@ -8,6 +8,7 @@ namespace {
 
 constexpr double kSharp = 1e-9;     // rad: by which a tangent may turn back at a joint of a convex meridian
 constexpr double kMostError = 0.1;  // of the ball's radius, in a measured meridian
+constexpr double kMostSlope = 0.1;  // mm/mm, of a measured error: a side 5.7 deg off
 
 /// Inclination of a piece's tangent at a place: pi/2 runs straight outwards, 0 along the axis, -pi/2 straight inwards.
 double inclination(const MeridianPiece& piece, const Vec2& at) {
@@ -184,13 +185,23 @@ class Maker {
                     "the measured meridian begins at t = {:.4f} mm; it must begin at the centre of the ball, t = 0",
                     m.t.front());
     for (std::size_t k = 0; k < m.t.size(); ++k) {
-      if (!std::isfinite(m.t[k]) || !std::isfinite(m.f[k]) || (k > 0 && !(m.t[k] > m.t[k - 1])))
-        return refuse("meridian", "point {} of the measured meridian: heights ascend and numbers are finite", k + 1);
+      if (!std::isfinite(m.t[k]) || !std::isfinite(m.f[k]))
+        return refuse("meridian", "point {} of the measured meridian: t and f are finite numbers", k + 1);
+      if (k > 0 && !(m.t[k] > m.t[k - 1]))
+        return refuse("meridian",
+                      "point {} of the measured meridian: t = {:.4f} mm is not above {:.4f} mm, that of the point "
+                      "before: heights ascend",
+                      k + 1, m.t[k], m.t[k - 1]);
       if (std::abs(m.f[k]) > kMostError * r_0_)
         return refuse("meridian",
                       "the measured error {:.2f} um at t = {:.4f} mm exceeds {:.2f} um, a tenth of the ball's radius: "
                       "is it in micrometres?",
                       1e3 * m.f[k], m.t[k], 1e3 * kMostError * r_0_);
+      if (k > 0 && std::abs(m.f[k] - m.f[k - 1]) > kMostSlope * (m.t[k] - m.t[k - 1]))
+        return refuse("meridian",
+                      "the measured error changes by {:.2f} um from t = {:.4f} to {:.4f} mm, at most {:.2f} um can be "
+                      "the form of a mill: smooth the measurement, or is t not in millimetres?",
+                      1e3 * (m.f[k] - m.f[k - 1]), m.t[k - 1], m.t[k], 1e3 * kMostSlope * (m.t[k] - m.t[k - 1]));
     }
   }
 

@@ -48,6 +48,7 @@ plan::Options plan_options(const proof::ProofLimits& limits, const machines::Mac
   plan::Options options;
   options.limits = limits;
   options.link_feed_mm_min = std::min(machine.max_cutting_feed, kLinkFeed);
+  options.simultaneous_axes = machine.max_simultaneous_axes;
   options.line_bias_mm = line::kBias + kBiasShare * process::word_rounding(machine, outer_radius_mm);
   // `tilt` keeps what it asks between two records, too, where the axis dips by less than this margin.
   if (machine.post.pole == machines::PoleOption::tilt)
@@ -70,6 +71,25 @@ void add_side_passes(const line::LinePlan& plan, int operation, std::vector<repo
   }
 }
 
+/// Passes that end before their flank does, and why.
+std::vector<std::string> shortened_passes(const plan::FaceGearPlan& plan) {
+  std::vector<std::string> out;
+  for (std::size_t n = 0; n < plan.lines.size(); ++n) {
+    if (!plan.lines[n]) continue;
+    for (const line::LinePass& pass : plan.lines[n]->passes) {
+      const auto& b = pass.shortened_by;
+      if (!b) continue;
+      std::string text = fmt::format(
+          "operation {}: the pass on zone {}, flank {:+d} ends early: beyond its end the {} has a gap of {:.4f} mm to "
+          "the "
+          "{}, {:.4f} mm is the least; a wider groove, or a mill of smaller diameter or half_angle",
+          n, pass.zone, pass.side, b->body, b->gap_mm, b->patch, b->least_mm);
+      out.push_back(std::move(text));
+    }
+  }
+  return out;
+}
+
 class FaceMilling final : public process::GearMilling {
  public:
   FaceMilling(const job::Job& job, const machines::Machine& machine, const face_gear::FaceGear& gear,
@@ -90,6 +110,7 @@ class FaceMilling final : public process::GearMilling {
     });
     if (auto* refusal = planned.refused()) return process::located(job_, refusal->key, std::move(refusal->diagnostic));
     plan_ = std::move(planned).value();
+    check_.shortened = shortened_passes(plan_);
     return Ok{};
   }
   [[nodiscard]] std::vector<const path::ClPath*> paths() const override {

@@ -4,6 +4,7 @@
 
 #include "app/base/units.h"
 #include "app/process/face/unreached.h"
+#include "app/process/proof_limits.h"
 
 namespace toothpath::face {
 namespace {
@@ -147,6 +148,10 @@ void FaceGearCheck::judge(process::ProgramProof& program, app::StageClock& clock
     return cut::measure_cut_surface(part_, program.motions, job_.operations, job_.tools, grid_);
   });
   judge_surface(surface, job_, limits_, program.reasons);
+  if (!program.reasons.empty()) program.reasons.insert(program.reasons.end(), shortened.begin(), shortened.end());
+  if (!program.reasons.empty())
+    if (const auto coarse = process::coarse_words(job_, machine_, part_.gear().outer_radius()))
+      program.reasons.push_back(*coarse);
   judge_unreached(surface.unreached, job_.verify.unreached_mm, program.reasons);
   program.excess = surface.operations;
   program.finished = surface.finished;

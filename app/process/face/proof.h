@@ -24,7 +24,8 @@ class FaceGearCheck final : public process::GearCheck {
   void meet(const process::ProgramProof& whole) override;
   void judge(process::ProgramProof& program, app::StageClock& clock) override;
 
-  cut::CutSurface surface;  ///< of the program judged last, for the ledger; its grids stand in the proof
+  cut::CutSurface surface;             ///< of the program judged last, for the ledger; its grids stand in the proof
+  std::vector<std::string> shortened;  ///< passes that end before their flank does: told beside what they leave
 
  private:
   const job::Job& job_;

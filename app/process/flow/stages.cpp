@@ -6,6 +6,7 @@
 #include "app/process/flow/registry.h"
 #include "app/process/flow/restart.h"
 #include "app/process/program_report.h"
+#include "app/process/proof_limits.h"
 #include "app/report/page/motion_charts.h"
 #include "app/report/page/page_of_run.h"
 #include "app/report/sections/sections.h"
@@ -18,6 +19,8 @@ void begin_report(Run& run) {
   run.report = process::report_of(run.gear.correction ? "correct" : "run", run.job, run.machine,
                                   run.gear.process->part().warnings);
   report::RunReport& report = run.report;
+  if (auto coarse = process::coarse_words(run.job, run.machine, 0.5 * run.gear.process->part().diameter_mm))
+    report.warnings.push_back(std::move(*coarse));
   if (!run.gear.correction) return;
   report.correction = run.gear.correction->rows;
   double most = 0;

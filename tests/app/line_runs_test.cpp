@@ -1,0 +1,100 @@
+// Runs of jobs with line milling that succeed: mills that only rough, a measured meridian, regions with cusps of their
+// own.
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/line_job.h"
+
+namespace toothpath::test {
+namespace {
+
+nlohmann::json report_in(const TestDir& dir) { return nlohmann::json::parse(file_text(dir / "out/report.json")); }
+
+std::string small_ball(const std::string& lines) { return operation("finishing", 2, lines); }
+
+// Flat and bull nose mills rough; a small ball finishes.
+TEST(LineRuns, FlatAndBullNoseRough) {
+  for (const bool flat : {true, false}) {
+    const TestDir dir;
+    std::string gear = kLineGear;
+    if (flat) {
+      gear = replaced(gear, "\"bull_nose_end_mill\"", "\"flat_end_mill\"");
+      gear = replaced(gear, "corner_radius = 0.2\n", "");
+    }
+    const auto run = run_line_job(dir, gear + roughing(3) + small_ball("scallop = 0.02\nchord_tolerance = 0.002"));
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_TRUE(report_in(dir)["verified"].get<bool>());
+    EXPECT_EQ(report_in(dir)["operations"][0]["tool"], 3);
+    EXPECT_NE(file_text(dir / "out/program.ngc").find(flat ? "FLAT END MILL D1" : "BULL NOSE END MILL D1 R0.2"),
+              std::string::npos);
+  }
+}
+
+// A side that is 5 um thicker in its middle: counted by the plan, and by a proof that knows it.
+TEST(LineRuns, MeasuredMeridian) {
+  constexpr double kCrown = 5, kLength = 6;  // um, mm
+  std::string table = "t,f\n";
+  for (int k = 0; k <= 24; ++k) {
+    const double t = kLength * k / 24, u = 2 * t / kLength - 1;
+    table += fmt::format("{},{}\n", t, kCrown * (1 - u * u));
+  }
+  const std::string job = kLineGear + roughing(3) + operation("line_milling", 1, "left = 0.008") + kFilletAndRoot;
+  const auto misfit_of = [](const TestDir& dir) {
+    const auto report = report_in(dir);
+    EXPECT_TRUE(report["verified"].get<bool>());
+    return report["operations"][1]["misfit_um"].get<double>();
+  };
+  const TestDir plain, crowned;
+  ASSERT_EQ(run_line_job(plain, job).exit_code, 0);
+  write_file(crowned / "crown.csv", table);
+  const auto run =
+      run_line_job(crowned, replaced(job, "flute_length = 6.5", "flute_length = 6.5\nmeridian = \"crown.csv\""));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  std::printf("misfit %.3f um, with the crown %.3f um\n", misfit_of(plain), misfit_of(crowned));
+  EXPECT_GT(misfit_of(crowned), misfit_of(plain) + 0.3);  // what the lean cannot take up
+  EXPECT_LT(misfit_of(crowned), misfit_of(plain) + kCrown);
+}
+
+/// The largest cusp of a flank and of the rest that a report tells, um.
+nlohmann::json cusps_of(const TestDir& dir) { return report_in(dir)["scallop_um"]; }
+
+// Flanks by one ball, fillet and root by another, each with its own cusps; both are held on the cut surface.
+TEST(LineRuns, RegionsHaveTheirOwnCusps) {
+  const std::string others =
+      operation("finishing", 1, "regions = [\"fillet\", \"root\"]\nscallop = 0.012\nchord_tolerance = 0.001");
+  const auto job = [&](double flank) {
+    return kLineGear + roughing(3) +
+           small_ball(fmt::format("regions = [\"flank\"]\nscallop = {}\nchord_tolerance = 0.001", flank)) + others;
+  };
+  const TestDir fine, coarse;
+  for (const auto& [dir, flank] : {std::pair{&fine, 0.004}, {&coarse, 0.012}}) {
+    const auto run = run_line_job(*dir, job(flank));
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const auto cusps = cusps_of(*dir);
+    std::printf("asked %.1f um: %s\n", 1e3 * flank, cusps.dump().c_str());
+    EXPECT_LE(cusps["reached_max"].get<double>(), 1e3 * flank * 1.05);
+    EXPECT_GT(cusps["reached_max"].get<double>(), 0.3 * 1e3 * flank);  // and not by cutting finer than asked
+    EXPECT_LE(cusps["fillet_max"].get<double>(), 12 * 1.05);
+  }
+  EXPECT_LT(cusps_of(fine)["reached_max"].get<double>(), 0.6 * cusps_of(coarse)["reached_max"].get<double>());
+}
+
+// The same as a table of one operation.
+TEST(LineRuns, TableOfCusps) {
+  const TestDir dir;
+  const auto run = run_line_job(
+      dir, kLineGear + roughing(3) +
+               operation("finishing", 1,
+                         "scallop = {flank = 0.004, fillet = 0.012, root = 0.012}\nchord_tolerance = 0.001"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto cusps = cusps_of(dir);
+  std::printf("table: %s\n", cusps.dump().c_str());
+  EXPECT_LE(cusps["reached_max"].get<double>(), 4 * 1.05);
+  EXPECT_LE(cusps["fillet_max"].get<double>(), 12 * 1.05);
+  EXPECT_GT(cusps["fillet_max"].get<double>(), 4);
+}
+
+}  // namespace
+}  // namespace toothpath::test
