@@ -1,5 +1,4 @@
-// Runs of jobs with line milling that succeed: mills that only rough, a measured meridian, regions with cusps of their
-// own.
+// Runs of jobs with line milling that succeed: mills that only rough, regions with cusps of their own.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -30,31 +29,6 @@ TEST(LineRuns, FlatAndBullNoseRough) {
     EXPECT_NE(file_text(dir / "out/program.ngc").find(flat ? "FLAT END MILL D1" : "BULL NOSE END MILL D1 R0.2"),
               std::string::npos);
   }
-}
-
-// A side that is 5 um thicker in its middle: counted by the plan, and by a proof that knows it.
-TEST(LineRuns, MeasuredMeridian) {
-  constexpr double kCrown = 5, kLength = 6;  // um, mm
-  std::string table = "t,f\n";
-  for (int k = 0; k <= 24; ++k) {
-    const double t = kLength * k / 24, u = 2 * t / kLength - 1;
-    table += fmt::format("{},{}\n", t, kCrown * (1 - u * u));
-  }
-  const std::string job = kLineGear + roughing(3) + operation("line_milling", 1, "left = 0.008") + kFilletAndRoot;
-  const auto misfit_of = [](const TestDir& dir) {
-    const auto report = report_in(dir);
-    EXPECT_TRUE(report["verified"].get<bool>());
-    return report["operations"][1]["misfit_um"].get<double>();
-  };
-  const TestDir plain, crowned;
-  ASSERT_EQ(run_line_job(plain, job).exit_code, 0);
-  write_file(crowned / "crown.csv", table);
-  const auto run =
-      run_line_job(crowned, replaced(job, "flute_length = 6.5", "flute_length = 6.5\nmeridian = \"crown.csv\""));
-  ASSERT_EQ(run.exit_code, 0) << run.err;
-  std::printf("misfit %.3f um, with the crown %.3f um\n", misfit_of(plain), misfit_of(crowned));
-  EXPECT_GT(misfit_of(crowned), misfit_of(plain) + 0.3);  // what the lean cannot take up
-  EXPECT_LT(misfit_of(crowned), misfit_of(plain) + kCrown);
 }
 
 /// The largest cusp of a flank and of the rest that a report tells, um.
