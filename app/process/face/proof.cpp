@@ -53,19 +53,21 @@ void judge_line_flank(const cut::CutSurface& surface, const path::MillingOperati
 /// What the finishing operations leave in each region.
 void judge_finished(const cut::CutSurface& surface, const job::Job& job, const proof::ProofLimits& limits,
                     std::vector<std::string>& reasons) {
+  std::string said;
   for (const path::Region region : path::kRegions) {
     const auto& limit = limits.left_in_mm[region];
     const double left = surface.finished_in_mm[region];
     if (!limit || left <= *limit) continue;
     const path::MillingOperation& op = job.operations[*path::finisher_of(job.operations, region)];
     const bool side = op.type == path::OperationType::line_milling;
-    reasons.push_back(fmt::format(
-        "left material: {:.2f} um on the {} after the last operation, limit {:.2f} um ({} {:.2f}, chord {:.2f}, margin "
+    said += fmt::format(
+        "{}{:.2f} um on the {} after the last operation, limit {:.2f} um ({} {:.2f}, chord {:.2f}, margin "
         "{:.2f})",
-        left * 1000, to_string(region), *limit * 1000, side ? "left" : "scallop",
-        (side ? op.most_misfit_mm() : op.scallop_in(region)) * 1000, op.chord_tolerance_mm * 1000,
-        proof::kBallMargin * 1000));
+        said.empty() ? "left material: " : "; ", left * 1000, to_string(region), *limit * 1000,
+        side ? "left" : "scallop", (side ? op.most_misfit_mm() : op.scallop_in(region)) * 1000,
+        op.chord_tolerance_mm * 1000, proof::kBallMargin * 1000);
   }
+  if (!said.empty()) reasons.push_back(std::move(said));
 }
 
 /// What a finishing operation may leave, on every point that its ball can reach: the cusps, the chords and a
