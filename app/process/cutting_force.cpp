@@ -26,18 +26,6 @@ bool finger(OperationType type) {
   return type == OperationType::finger_roughing || type == OperationType::finger_finishing;
 }
 
-/// Cusp between passes of a ball so far apart.
-double cusp(double radius, double step) {
-  const double half = std::min(step / 2, radius);
-  return radius - std::sqrt(radius * radius - half * half);
-}
-
-/// The most that an operation of a ball mill leaves where its ball fits.
-double left_by(const path::MillingOperation& o, double radius) {
-  return o.allowance_mm +
-         (o.type == OperationType::roughing ? cusp(radius, std::max(o.step_down_mm, o.step_over_mm)) : o.scallop_mm);
-}
-
 /// What the operation may leave beside what it was asked to; none where it has no such number.
 std::optional<double> may_leave(const path::MillingOperation& o) {
   double limit = o.allowance_mm;
@@ -46,13 +34,18 @@ std::optional<double> may_leave(const path::MillingOperation& o) {
   return limit > 0 && !finger(o.type) ? std::optional(limit) : std::nullopt;
 }
 
-/// The operation that left the stock which another meets: the last one before it in any of its regions.
-const path::MillingOperation* before(const job::Job& job, std::size_t index) {
+/// The most stock that an operation meets: what those before it in its regions left. None: one of them is uncut.
+std::optional<double> stock_before(const job::Job& job, std::size_t index) {
   const path::MillingOperation& o = job.operations[index];
-  for (std::size_t k = index; k-- > 0;)
-    for (const path::Region region : path::kRegions)
-      if (o.regions[region] && job.operations[k].regions[region]) return &job.operations[k];
-  return nullptr;
+  double stock = 0;
+  for (const path::Region region : path::kRegions) {
+    if (!o.regions[region]) continue;
+    const auto k = path::last_before(job.operations, index, region);
+    if (!k) return {};
+    const path::MillingOperation& left = job.operations[*k];
+    stock = std::max(stock, path::left_by(left, job.tools[std::size_t(left.tool)].radius_mm()) - o.allowance_mm);
+  }
+  return stock;
 }
 
 /// The line of a side along a flank: from its ball end up to its highest contact. As planned.
@@ -83,9 +76,8 @@ Result<force::Engagement> cut_of(const job::Job& job, const report::RunReport& r
   if (const auto* bevel = job.bevel_gear(); bevel && o.type == OperationType::finger_roughing)
     return force::slot_engagement(mill, std::min(bevel->addendum_mm + bevel->dedendum_mm, mill.cutting().to()));
   if (finger(o.type)) return fail("the stock on the walls follows from form and ridge of the roughing mill");
-  const path::MillingOperation* left = before(job, index);
-  if (!left) return fail("no operation before it says what stock it meets");
-  out.stock_mm = left_by(*left, job.tools[std::size_t(left->tool)].radius_mm()) - o.allowance_mm;
+  out.stock_mm = stock_before(job, index);
+  if (!out.stock_mm) return fail("no operation before it says what stock it meets");
   if (o.type == OperationType::line_milling) {
     const auto line = contact_line(report, int(index), mill);
     if (!line) return fail("where the side touches is known from its plan: this program was not planned here");
@@ -128,8 +120,7 @@ std::string slender_text(const report::OperationReport& o) {
   const double um = app::um(c.load->deflection_mm);
   std::string text = fmt::format(
       "tool {} is slender: {} um/N at {:.3f} mm above its tip; in operation {} a force of {} N (+-{:.0f} %) bends it "
-      "by "
-      "{} um, the operation may leave {} um more than it was asked to",
+      "by {} um, the operation may leave {} um more than it was asked to",
       o.tool_number, estimate(app::um(c.compliance->total())), c.load->height_mm, o.operation,
       estimate(c.load->force_N), 100 * c.load->uncertainty, estimate(um), estimate(app::um(*c.may_leave_mm)));
   if (c.stock_mm && c.load->deflection_mm > *c.stock_mm)

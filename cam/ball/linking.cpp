@@ -6,13 +6,10 @@
 namespace toothpath::ball {
 namespace {
 
-constexpr double kLevelHop = 0.02;  // mm: a hop that falls by more comes down to another layer
-
 class Linker {
  public:
-  Linker(const LinkingOptions& o, const HopIsClear& clear, const BodiesAreClear& bodies,
-         std::vector<path::ClRecord>& out)
-      : o_(o), clear_(clear), bodies_are_clear_(bodies), out_(out) {}
+  Linker(const LinkingOptions& o, const HopMeets& meets, const BodiesAreClear& bodies, std::vector<path::ClRecord>& out)
+      : o_(o), meets_(meets), bodies_are_clear_(bodies), out_(out) {}
 
   void run(const std::vector<BallPass>& passes) {
     int number = 0;
@@ -45,16 +42,7 @@ class Linker {
 
   void approach(const Vec3& start, const Vec3& axis) {
     if (engaged_) {
-      const Vec3 a = last_ + o_.hop_mm * last_axis_, b = start + o_.hop_mm * axis;
-      if ((b - a).norm() <= o_.longest_hop_mm && clear_(last_, a) && clear_(a, b) && clear_(b, start) &&
-          turns_clear(a, b, axis)) {
-        add(a, last_axis_, path::MoveKind::retract, o_.link_feed_mm_min);
-        // Down to fresh stock no faster than the cut.
-        const bool level = (b - a).dot(axis) > -kLevelHop;
-        hop(a, b, axis, level ? o_.link_feed_mm_min : o_.feed_mm_min);
-        add(start, axis, path::MoveKind::engage, o_.feed_mm_min);
-        return;
-      }
+      if (hops_to(start, axis)) return;
       leave();
     }
     const Vec3 high = above(start, axis);
@@ -62,6 +50,29 @@ class Linker {
     if ((high - start).norm() > o_.slow_mm)
       add(start + o_.slow_mm * axis, axis, path::MoveKind::engage, o_.link_feed_mm_min);
     add(start, axis, path::MoveKind::engage, o_.feed_mm_min);
+  }
+
+  /// The hop from the end of the pass before, where there is one and it is the shorter way in time.
+  bool hops_to(const Vec3& start, const Vec3& axis) {
+    const Vec3 a = last_ + o_.hop_mm * last_axis_, b = start + o_.hop_mm * axis;
+    const auto clear = [&](const HopEnd& from, const HopEnd& to) { return meets_(from, to) != Meets::part; };
+    if ((b - a).norm() > o_.longest_hop_mm || !clear({last_, last_axis_}, {a, last_axis_}) ||
+        !clear({b, axis}, {start, axis}) || !turns_clear(a, b, axis))
+      return false;
+    const Meets across = meets_({a, last_axis_}, {b, axis});
+    const double feed = across == Meets::air ? o_.link_feed_mm_min : o_.feed_mm_min;
+    if (across == Meets::part || (b - a).norm() / feed > minutes_over_the_top(start, axis)) return false;
+    add(a, last_axis_, path::MoveKind::retract, o_.link_feed_mm_min);
+    hop(a, b, axis, feed);
+    add(start, axis, path::MoveKind::engage, o_.feed_mm_min);
+    return true;
+  }
+  /// Up, aside and down again, but for what a hop takes too.
+  [[nodiscard]] double minutes_over_the_top(const Vec3& start, const Vec3& axis) const {
+    const Vec3 from = above(last_, last_axis_), to = above(start, axis);
+    const double down = (to - start).norm(), slow = std::min(down, o_.slow_mm);
+    return ((from - last_).norm() + (to - from).norm() + down - slow) / o_.link_feed_mm_min +
+           (slow - o_.hop_mm) / o_.feed_mm_min;
   }
 
   void leave() { add(above(last_, last_axis_), last_axis_, path::MoveKind::retract, o_.link_feed_mm_min); }
@@ -105,7 +116,7 @@ class Linker {
   }
 
   const LinkingOptions& o_;
-  const HopIsClear& clear_;
+  const HopMeets& meets_;
   const BodiesAreClear& bodies_are_clear_;
   std::vector<path::ClRecord>& out_;
   int pass_ = 0;
@@ -115,9 +126,9 @@ class Linker {
 
 }  // namespace
 
-void link_passes(const std::vector<BallPass>& passes, const LinkingOptions& options, const HopIsClear& hop_is_clear,
+void link_passes(const std::vector<BallPass>& passes, const LinkingOptions& options, const HopMeets& hop_meets,
                  std::vector<path::ClRecord>& records, const BodiesAreClear& bodies_are_clear) {
-  Linker(options, hop_is_clear, bodies_are_clear, records).run(passes);
+  Linker(options, hop_meets, bodies_are_clear, records).run(passes);
 }
 
 }  // namespace toothpath::ball

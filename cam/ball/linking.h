@@ -31,16 +31,23 @@ struct LinkingOptions {
 /// over the clearance height. rad.
 inline constexpr double kMostTurnOfHopRecord = 0.0175, kMostTurnOfHop = 0.35;
 
-/// Is a straight move of the ball centre free of the finished part? Asked for hops only.
-using HopIsClear = std::function<bool(const Vec3& from, const Vec3& to)>;
+/// What a straight move of the ball centre meets: the finished part, or stock that stands on it, or nothing.
+enum class Meets { part, stock, air };
+/// A pose on a hop: ball centre and axis.
+struct HopEnd {
+  Vec3 centre, axis;
+};
+/// Asked for hops only.
+using HopMeets = std::function<Meets(const HopEnd& from, const HopEnd& to)>;
 
 /// Do shank and holder keep their clearance with the ball at a centre and this axis? Asked for hops in which the axis
 /// turns.
 using BodiesAreClear = std::function<bool(const Vec3& centre, const Vec3& axis)>;
 
 /// Appends the passes to `records`. Starts and ends with rapids at the clearance height. The tip's feed is the contact
-/// point's feed times the ratio of their ways, at most 20 % faster.
-void link_passes(const std::vector<BallPass>& passes, const LinkingOptions& options, const HopIsClear& hop_is_clear,
+/// point's feed times the ratio of their ways, at most 20 % faster. A hop that may meet stock is no faster than the
+/// cut, or goes over the clearance height where that takes less time.
+void link_passes(const std::vector<BallPass>& passes, const LinkingOptions& options, const HopMeets& hop_meets,
                  std::vector<path::ClRecord>& records, const BodiesAreClear& bodies_are_clear = {});
 
 }  // namespace toothpath::ball

@@ -37,6 +37,9 @@ constexpr double kTurnMargin = 0.02;
 /// Roughing works on tables of the offset walls: this covers the sag between their entries, mm.
 constexpr double kRoughingPad = 0.004;
 
+// mm beyond the stock that a hop looks for it.
+constexpr double kStockMargin = 0.05;
+
 double lower_bound_between(double d0, double d1, double length) {
   const double g = std::min(d0 * d0, d1 * d1) - length * length / 4;
   return g > 0 ? std::sqrt(g) : 0;
@@ -201,7 +204,7 @@ class Planner::Work {
     link.longest_hop_mm = 1.5 * part_.gear().pitch() * ring.outer_radius_mm;
     link.feed_mm_min = op.feed_mm_min;
     link.link_feed_mm_min = std::max(op.feed_mm_min, o_.link_feed_mm_min);
-    link.slow_mm = slow_way(operations_, tools_, std::size_t(n), tool_of(n).half_angle_rad);
+    link.slow_mm = slow_way(operations_, tools_, std::size_t(n));
     link.inner_radius_mm = ring.inner_radius_mm;
     link.outer_radius_mm = ring.outer_radius_mm;
     link.zone = zone;
@@ -214,8 +217,13 @@ class Planner::Work {
                             0.01);
     };
     as_stage("links", [&] {
+      const double stock = stock_before(operations_, tools_, std::size_t(n));
       link_passes(
-          made.passes, link, [&](const Vec3& a, const Vec3& b) { return hop_is_clear(a, b, R, op.allowance_mm); },
+          made.passes, link,
+          [&](const HopEnd& a, const HopEnd& b) {
+            if (hop_is_outside(a, b, tool_of(n))) return Meets::air;
+            return hop_meets(a.centre, b.centre, R, op.allowance_mm, op.allowance_mm + stock);
+          },
           path.records, bodies_are_clear);
     });
     return {};
@@ -418,20 +426,36 @@ class Planner::Work {
     return {};
   }
 
-  [[nodiscard]] bool hop_is_clear(const Vec3& a, const Vec3& b, double R, double allowance) const {
-    const double length = (b - a).norm();
+  /// Both ends of a hop touch the finished surface (or keep the allowance); in between there must be air.
+  [[nodiscard]] Meets hop_meets(const Vec3& a, const Vec3& b, double R, double allowance, double stock) const {
+    const double length = (b - a).norm(), least = R + 0.5 * allowance - 1e-3,
+                 look = std::max(R + 0.2, std::min(R + stock + kStockMargin, reach_of(tools_)));
     const int steps = std::max(1, int(std::ceil(length / (0.25 * R))));
-    const double look = R + 0.2;
-    double previous = part_.nearest(a, look).distance;
+    double previous = part_.nearest(a, look).distance, nearest = previous;
     for (int k = 1; k <= steps; ++k) {
       const double d = part_.nearest(a + (b - a) * (double(k) / steps), look).distance;
-      // Both ends of a hop touch the finished surface (or keep the allowance); in between there must be air.
-      const double least = R + 0.5 * allowance - 1e-3;
-      if (d < least || previous < least) return false;
-      if (k > 1 && k < steps && lower_bound_between(previous, d, length / steps) < 0.9 * R) return false;
+      if (d < least || previous < least) return Meets::part;
+      const double between = lower_bound_between(previous, d, length / steps);
+      if (k > 1 && k < steps && between < 0.9 * R) return Meets::part;
+      nearest = std::min(nearest, between);
       previous = d;
     }
-    return true;
+    return nearest > R + stock ? Meets::air : Meets::stock;
+  }
+  /// Does the cutting part stay beside all rings of teeth?
+  [[nodiscard]] bool hop_is_outside(const HopEnd& a, const HopEnd& b, const tool::ToolAssembly& tool) const {
+    const double widest = std::max(tool.radius_mm(), tool::profile_of(tool).cutting().largest_radius());
+    double low = INFINITY, high = 0;
+    for (const double above : {0.0, tool.flute_length_mm - tool::end_centre_mm(tool)}) {
+      const Vec2 from = (a.centre + above * a.axis).head<2>(), to = (b.centre + above * b.axis).head<2>();
+      const Vec2 way = to - from;
+      const double t = way.isZero() ? 0 : std::clamp(-from.dot(way) / way.squaredNorm(), 0.0, 1.0);
+      low = std::min(low, (from + t * way).norm() - widest);
+      high = std::max({high, from.norm() + widest, to.norm() + widest});
+    }
+    const auto& zones = part_.gear().parameters().zones;
+    return std::all_of(zones.begin(), zones.end(),
+                       [&](const auto& z) { return high < z.inner_radius_mm || low > z.outer_radius_mm; });
   }
 
   const analytic::GearDistance& part_;
@@ -452,24 +476,34 @@ Expected<Planned, PlanRefusal> Planner::plan(int operation, const std::vector<co
   return work_->run(operation, cleared);
 }
 
-double slow_way(const std::vector<path::MillingOperation>& operations, const std::vector<tool::ToolAssembly>& tools,
-                std::size_t n, double half_angle_rad) {
-  constexpr double kAir = 0.2, kSkin = 0.1,
-                   kSteepest = 0.17;  // mm; of the diameter of a roughing tool; sine of a draft
+double stock_before(const std::vector<path::MillingOperation>& operations, const std::vector<tool::ToolAssembly>& tools,
+                    std::size_t n) {
   const path::MillingOperation& op = operations[n];
-  if (op.type == path::OperationType::roughing) return op.step_down_mm + kAir;
-  const double steep = half_angle_rad > 0 ? std::min(kSteepest, std::sin(half_angle_rad)) : kSteepest;
-  for (std::size_t k = n; k-- > 0;) {
-    const path::MillingOperation& before = operations[k];
-    const bool shares = std::any_of(path::kRegions.begin(), path::kRegions.end(),
-                                    [&](path::Region r) { return before.regions[r] && op.regions[r]; });
-    if (!shares) continue;
-    double stock = std::max(0.0, before.allowance_mm - op.allowance_mm);
-    if (before.type == path::OperationType::roughing) stock += kSkin * 2 * tools[std::size_t(before.tool)].radius_mm();
-    else stock += before.scallop_mm;
-    return kAir + stock / steep;
+  if (op.type == path::OperationType::roughing) return INFINITY;
+  double stock = 0;
+  for (const path::Region region : path::kRegions) {
+    if (!op.regions[region]) continue;
+    const auto k = path::last_before(operations, n, region);
+    if (!k) return INFINITY;
+    const path::MillingOperation& before = operations[*k];
+    const tool::ToolAssembly &tool = tools[std::size_t(op.tool)], &its = tools[std::size_t(before.tool)];
+    if (its.radius_mm() > tool.radius_mm() || !tool::serves(its, tool::CutterUse::ball_end)) return INFINITY;
+    double left = path::left_by(before, its.radius_mm()) - op.allowance_mm;
+    if (before.type == path::OperationType::roughing) left += path::kSkinShare * its.diameter_mm;
+    stock = std::max(stock, left);
   }
-  return INFINITY;
+  return stock;
+}
+
+double slow_way(const std::vector<path::MillingOperation>& operations, const std::vector<tool::ToolAssembly>& tools,
+                std::size_t n) {
+  constexpr double kAir = 0.2, kSteepest = 0.17;  // mm; sine of a draft
+  const path::MillingOperation& op = operations[n];
+  const tool::ToolAssembly& tool = tools[std::size_t(op.tool)];
+  const double steep = tool.half_angle_rad > 0 ? std::min(kSteepest, std::sin(tool.half_angle_rad)) : kSteepest;
+  if (op.type != path::OperationType::roughing) return kAir + stock_before(operations, tools, n) / steep;
+  // The layer above, or what was thought not worth a pass of it.
+  return kAir + op.step_down_mm + (n > 0 ? path::kSkinShare * tool.diameter_mm / steep : 0);
 }
 
 double reach_of(const std::vector<tool::ToolAssembly>& tools) {

@@ -73,11 +73,16 @@ class Planner {
   std::unique_ptr<Work> work_;
 };
 
-/// Way along the axis before an operation's passes on which its tool may meet stock: coming down from above it. What
-/// stands there is what the operation before it in the same regions left, along walls that are steep; a side that
-/// widens upwards meets it higher. Infinite where nothing was cut before.
+/// The most that stands on the finished surface, and on the operation's own allowance, where it cuts. mm. Infinite
+/// where nothing was cut before, or by a tool that is larger or not round and so stayed above; and while roughing.
+[[nodiscard]] double stock_before(const std::vector<path::MillingOperation>& operations,
+                                  const std::vector<tool::ToolAssembly>& tools, std::size_t n);
+
+/// Way along the axis before an operation's passes on which its tool may meet stock: coming down from above it, along
+/// walls that are steep; a side that widens upwards meets it higher. mm. Infinite where `stock_before` is, but for
+/// roughing, which comes down to the next layer.
 [[nodiscard]] double slow_way(const std::vector<path::MillingOperation>& operations,
-                              const std::vector<tool::ToolAssembly>& tools, std::size_t n, double half_angle_rad);
+                              const std::vector<tool::ToolAssembly>& tools, std::size_t n);
 
 /// Largest distance that the planner and the checks will ask `GearDistance` for with these tools.
 [[nodiscard]] double reach_of(const std::vector<tool::ToolAssembly>& tools);

@@ -8,7 +8,6 @@ namespace {
 
 /// A skin thinner than this share of the diameter is not worth a roughing pass: the next operation takes it with its
 /// own stock.
-constexpr double kWorthCutting = 0.1;
 
 /// Directions on the lower half of a ball: where it cuts.
 std::vector<Vec3> lower_directions() {
@@ -181,7 +180,7 @@ class RoughingPlanner {
     if (cleared_.empty()) return true;
     static const std::vector<Vec3> directions = lower_directions();
     const auto& ring = sheet_.space().ring().zone;
-    const double worth = kWorthCutting * 2 * o_.ball_radius_mm;
+    const double worth = path::kSkinShare * 2 * o_.ball_radius_mm;
     Vec3 last = Vec3::Constant(INFINITY);
     for (const auto& point : points) {
       if ((point.centre - last).norm() < 0.4 * o_.ball_radius_mm) continue;

@@ -63,7 +63,7 @@ class Meter {
     for (std::size_t n = 0; n < operations.size(); ++n) {
       std::vector<path::ToolMotion> cuts;
       for (const auto& m : motions)
-        if (m.operation == int(n) && m.tooth == 0 && !m.rapid) cuts.push_back(m);
+        if (m.operation == int(n) && m.tooth == 0) cuts.push_back(m);
       const tool::ProofTool& tool = tools[std::size_t(operations[n].tool)];
       paths_.push_back(std::make_unique<Removed>(std::move(cuts), tool, part.gear().blank_top()));
       balls_.push_back(ball_of(tool));

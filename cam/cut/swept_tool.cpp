@@ -82,6 +82,7 @@ double SweptTool::excess(const Vec3& p, double cap) const {
 }
 
 Removed::Removed(std::vector<path::ToolMotion> motions, const tool::ProofTool& tool, double top_mm) {
+  std::erase_if(motions, [](const path::ToolMotion& m) { return m.rapid; });
   if (!tool.ball_mill) {
     tool_ = std::make_unique<SweptTool>(std::move(motions), tool.cutting, top_mm);
     return;

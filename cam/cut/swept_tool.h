@@ -41,7 +41,7 @@ class Removed {
  public:
   Removed(std::vector<BallMove> moves, double ball_radius_mm)
       : balls_(std::make_unique<SweptPath>(std::move(moves), ball_radius_mm)) {}
-  /// @param motions  those that cut;  @param top_mm  as of `SweptTool`
+  /// @param motions  rapids among them remove nothing;  @param top_mm  as of `SweptTool`
   Removed(std::vector<path::ToolMotion> motions, const tool::ProofTool& tool, double top_mm);
   /// Counts another one in; it must outlive this one.
   void also(const Removed* other) { others_.push_back(other); }

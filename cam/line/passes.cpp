@@ -109,17 +109,18 @@ class PassPlanner {
           "zone {}: flank {:+d} has no four stations {:.3f} mm apart about radius {:.3f} mm with a line over its whole "
           "height",
           f.zone, f.side, step_, radius(middle()));
-    for (std::size_t k = best_.first; k <= best_.last; ++k) {
-      const auto& p = *best_.poses[k];
-      if (p.tilt() > kMostTilt)
-        return fail(
-            "zone {}: flank {:+d} at radius {:.3f} mm asks for a tool tilted by {:.2f} deg from the gear axis; at most "
-            "{:.0f} deg are planned",
-            f.zone, f.side, radius(k), degrees(p.tilt()), degrees(kMostTilt));
-    }
+    for (std::size_t k = best_.first; k <= best_.last; ++k)
+      if (auto s = not_too_tilted(*best_.poses[k], radius(k)); !s) return s.error();
     if (auto s = reached(highest()); !s) return s.error();
     pass_.best_mm = worst_best();
     return Ok{};
+  }
+  [[nodiscard]] Status not_too_tilted(const StationPose& p, double r) const {
+    if (p.tilt() <= kMostTilt) return Ok{};
+    return fail(
+        "zone {}: flank {:+d} at radius {:.3f} mm asks for a tool tilted by {:.2f} deg from the gear axis; at most "
+        "{:.0f} deg are planned: a ring that begins farther from the undercut limit, or a smaller helix angle",
+        fit_.flank().zone, fit_.flank().side, r, degrees(p.tilt()), degrees(kMostTilt));
   }
   /// The full station that touches highest on the tool.
   [[nodiscard]] const StationPose& highest() const {
@@ -475,6 +476,7 @@ class PassPlanner {
   }
   Status add(const StationPose& p) {
     if (auto s = reached(p); !s) return s;
+    if (auto s = not_too_tilted(p, p.r); !s) return s;
     if (p.gap.in_ring()) pass_.misfit_mm = std::max(pass_.misfit_mm, p.gap.misfit());
     LineRecord record{p.r, p.axis, p.anchor, p.gap.most, p.lift, 1};
     const double r_0 = fit_.law().r_0;

@@ -83,7 +83,7 @@ std::string missed(const LineOperation& o, const std::vector<Choice>& tried, con
     both = both || c.rotaries == Rotaries::both;
   }
   if (to < kMostStrips) help += fmt::format(", more strips (at most {})", kMostStrips);
-  if (!both) help += ", rotaries = \"both\"";
+  if (!both && o.both_admitted) help += ", rotaries = \"both\"";
   return fmt::format(
       "left = {:.3f} um cannot be met: the side of this tool leaves {:.3f} um at best, with {} while {}; tried: {} "
       "while {}; what helps: left = {:.4f} mm{}, a smaller half_angle, or a finishing with regions = [\"flank\"] by a "

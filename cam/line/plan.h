@@ -42,6 +42,7 @@ struct LineOperation {
   /// Admitted, tried in this order for each number of strips; empty: the tilt stands where that meets `left`, else
   /// both.
   std::vector<Rotaries> rotaries;
+  bool both_admitted = true;  ///< does the control move both rotaries at once? Else a refusal does not offer it
   double chord_tolerance_mm = 5e-4;
   double bias_mm = kBias;       ///< see PassOptions; coarser axes ask for more: 8e-4 for 0.001 mm and deg
   double base_lift_mm = 0;      ///< see PassOptions; of the lowest strip

@@ -1,5 +1,7 @@
 #include "cam/path/operation.h"
 
+#include <cmath>
+
 namespace toothpath::path {
 
 const char* to_string(Region region) {
@@ -21,6 +23,18 @@ const char* to_string(OperationType type) {
     case OperationType::finger_finishing: return "finger_finishing";
   }
   return "";
+}
+
+std::optional<std::size_t> last_before(const std::vector<MillingOperation>& operations, std::size_t n, Region region) {
+  while (n-- > 0)
+    if (operations[n].regions[region]) return n;
+  return {};
+}
+
+double left_by(const MillingOperation& o, double radius_mm) {
+  if (o.type != OperationType::roughing) return o.allowance_mm + o.scallop_mm;
+  const double half = std::min(std::max(o.step_down_mm, o.step_over_mm) / 2, radius_mm);
+  return o.allowance_mm + radius_mm - std::sqrt(radius_mm * radius_mm - half * half);
 }
 
 }  // namespace toothpath::path

@@ -72,6 +72,17 @@ struct MillingOperation {
   static constexpr double kDefaultLeft = 5e-3;  ///< mm
 };
 
+/// The operation before `n` that cut a region last, by index; nothing where none did. Roughing cuts all of them.
+[[nodiscard]] std::optional<std::size_t> last_before(const std::vector<MillingOperation>& operations, std::size_t n,
+                                                     Region region);
+
+/// The most that an operation leaves where a ball of this radius fits, normal to the finished surface: its allowance
+/// and the cusps between its passes. mm.
+[[nodiscard]] double left_by(const MillingOperation& operation, double radius_mm);
+
+/// A roughing pass that would remove nowhere more than this share of its tool's diameter is left out.
+inline constexpr double kSkinShare = 0.1;
+
 /// The operation that finishes a region last, by index; nothing where none does.
 [[nodiscard]] inline std::optional<std::size_t> finisher_of(const std::vector<MillingOperation>& operations,
                                                             Region region) {

@@ -67,8 +67,8 @@ proof::DirectionChoice direction_of(const line::LinePlan& planned, int operation
   d.lean_rad = std::atan2(std::hypot(d.axis.x(), d.axis.y()), d.axis.z());
   d.explanation = fmt::format(
       "the side of the mill touches the flank along its height in {} strip{}: the axis leans {:.1f} to {:.1f} deg from "
-      "the "
-      "gear axis, {}; the misfit of the straight side is {:.2f} um at most, shank and holder keep {:.3f} mm or more",
+      "the gear axis, {}; the misfit of the straight side is {:.2f} um at most, shank and holder keep {:.3f} mm or "
+      "more",
       planned.strips, planned.strips == 1 ? "" : "s", degrees(d.least_lean_rad), degrees(d.greatest_lean_rad),
       moving_text(planned.rotaries), 1e3 * misfit, clearance_mm);
   return d;
@@ -138,11 +138,12 @@ class FaceGearPlanner {
     asked.strips = op.strips;
     asked.left_mm = op.most_misfit_mm();
     asked.rotaries = admitted(op, o_.simultaneous_axes);
+    asked.both_admitted = o_.simultaneous_axes >= kAllAxes;
     asked.chord_tolerance_mm = op.chord_tolerance_mm;
     asked.bias_mm = o_.line_bias_mm;
     asked.climb = op.climb;
     asked.link_feed_mm_min = o_.link_feed_mm_min;
-    asked.slow_mm = ball::slow_way(operations_, tools_, std::size_t(n), profile.half_angle_rad());
+    asked.slow_mm = ball::slow_way(operations_, tools_, std::size_t(n));
     asked.clearance_height_mm = part_.gear().blank_top() + o_.rapid_clearance_mm;
     line::RoomOptions room;
     room.clearance_mm = o_.limits.clearance_mm;
@@ -188,11 +189,9 @@ class FaceGearPlanner {
                        [](const auto& o) { return o.type == path::OperationType::roughing; });
   }
   void remember(std::size_t n) {
-    std::vector<path::ToolMotion> cuts;
-    for (const auto& m : analytic::GougeCheck::motions_of(plan_.paths[n]))
-      if (!m.rapid) cuts.push_back(m);
-    cleared_.push_back(std::make_unique<cut::Removed>(
-        std::move(cuts), tool::proof_tool(tools_[std::size_t(operations_[n].tool)]), part_.gear().blank_top()));
+    cleared_.push_back(std::make_unique<cut::Removed>(analytic::GougeCheck::motions_of(plan_.paths[n]),
+                                                      tool::proof_tool(tools_[std::size_t(operations_[n].tool)]),
+                                                      part_.gear().blank_top()));
   }
 
   const analytic::GearDistance& part_;

@@ -81,8 +81,7 @@ std::vector<std::string> shortened_passes(const plan::FaceGearPlan& plan) {
       if (!b) continue;
       std::string text = fmt::format(
           "operation {}: the pass on zone {}, flank {:+d} ends early: beyond its end the {} has a gap of {:.4f} mm to "
-          "the "
-          "{}, {:.4f} mm is the least; a wider groove, or a mill of smaller diameter or half_angle",
+          "the {}, {:.4f} mm is the least; a wider groove, or a mill of smaller diameter or half_angle",
           n, pass.zone, pass.side, b->body, b->gap_mm, b->patch, b->least_mm);
       out.push_back(std::move(text));
     }
@@ -95,14 +94,14 @@ class FaceMilling final : public process::GearMilling {
   FaceMilling(const job::Job& job, const machines::Machine& machine, const face_gear::FaceGear& gear,
               const proof::ProofLimits& limits, const process::FlankGrid& grid)
       : job_(job),
-        machine_(machine),
         limits_(limits),
+        options_(plan_options(limits, machine, gear.outer_radius())),
         part_(gear, ball::reach_of(job.tools)),
         gouge_(part_, job.tools, {limits, gear.blank_top()}),
         check_(job, machine, limits, part_, gouge_, surface_options(grid)) {}
 
   [[nodiscard]] Status plan(app::StageClock& clock, app::Progress& progress) override {
-    plan::Options options = plan_options(limits_, machine_, part_.gear().outer_radius());
+    plan::Options options = options_;
     options.stage = [&](const std::string& name, const std::function<void()>& work) { clock.run(name, work); };
     auto planned = clock.run("plan", [&] {
       return plan::plan_face_gear(part_, job_.tools, job_.operations, options,
@@ -133,15 +132,14 @@ class FaceMilling final : public process::GearMilling {
                                                        const process::ProgramProof& proof,
                                                        double blend_mm) const override {
     return face::ledger({part_, plan_, job_.tools, job_.operations, check_.surface}, program, proof,
-                        {blend_mm, limits_.proof_mm,
-                         plan_options(limits_, machine_, part_.gear().outer_radius()).line_bias_mm, *job_.setup});
+                        {blend_mm, limits_.proof_mm, options_.line_bias_mm, *job_.setup});
   }
   [[nodiscard]] sheet::OtherSurface beside_the_grid() const override { return {}; }
 
  private:
   const job::Job& job_;
-  const machines::Machine& machine_;
   proof::ProofLimits limits_;
+  plan::Options options_;
   analytic::GearDistance part_;
   analytic::GougeCheck gouge_;
   FaceGearCheck check_;

@@ -2,6 +2,7 @@
 // do not join, and refused with the body, the place, the gap and what would help.
 #include "cam/ball/orientation_way.h"
 #include "cam/ball/tool_orientation.h"
+#include "tests/cam/ball/plain_way.h"
 #include "tests/cam/ball/stout_jobs.h"
 
 namespace toothpath {
@@ -55,22 +56,11 @@ TEST(StoutTools, ABodyWithRoomKeepsEveryClearance) {
   }
 }
 
-ball::OrientationWay plain_way(int stations, double spacing) {
-  ball::OrientationWay way;
-  for (int k = 0; k < stations; ++k) {
-    way.s.push_back(k * spacing);
-    way.r.push_back(100 + k * spacing);
-    way.points.emplace_back();
-    way.lean.emplace_back(0, 0);
-  }
-  return way;
-}
-
 // Inwards up to station 6, outwards from station 5 on, nothing between: two strokes, and both go over the stations that
 // have both. With one such station they meet there; with none there are no strokes.
 TEST(StoutTools, DirectionsThatDoNotJoinAreTwoStrokes) {
   const ball::LeanGrid grid(0.5);
-  const auto way = plain_way(12, 0.7);
+  const auto way = test::plain_way(12, 0.7);
   const auto upright = [](std::size_t) { return Vec2(0, 0); };
   const auto always = [](std::size_t, const Vec2&, const Vec2&) { return true; };
   for (const std::size_t inwards_to : {6, 5, 4}) {

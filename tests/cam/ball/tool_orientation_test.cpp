@@ -7,6 +7,7 @@
 
 #include "cam/ball/orientation_way.h"
 #include "tests/cam/ball/face_gear_jobs.h"
+#include "tests/cam/ball/plain_way.h"
 #include "tests/support/brute_force_gear_solid.h"
 #include "tests/support/plain_frustum.h"
 
@@ -143,17 +144,6 @@ TEST(Orientation, ClearDirectionsAgainstSampledSurfaces) {
   EXPECT_GE(blocked, 10);
 }
 
-ball::OrientationWay plain_way(int stations, double spacing) {
-  ball::OrientationWay way;
-  for (int k = 0; k < stations; ++k) {
-    way.s.push_back(k * spacing);
-    way.r.push_back(100 + k * spacing);
-    way.points.emplace_back();
-    way.lean.emplace_back(0, 0);
-  }
-  return way;
-}
-
 double cost_of(const std::vector<Vec2>& leans, double ds, const ball::LeanReference& reference) {
   double cost = 0;
   for (std::size_t k = 0; k < leans.size(); ++k) {
@@ -170,7 +160,7 @@ TEST(OrientationWay, CheapestOfAllWaysOnASmallGrid) {
   test::Random random(9);
   int compared = 0;
   for (int trial = 0; trial < 40; ++trial) {
-    auto way = plain_way(4, 0.7);
+    auto way = test::plain_way(4, 0.7);
     std::vector<char> open(4 * 13);
     for (auto& o : open) o = random(0, 1) < 0.3;
     const Vec2 aim(random(-0.1, 0.1), random(-0.1, 0.1));
@@ -206,13 +196,13 @@ TEST(OrientationWay, CheapestOfAllWaysOnASmallGrid) {
 TEST(OrientationWay, OneLeanWhereOneIsClearAndAWallIsGoneAround) {
   const ball::LeanGrid grid(0.5);
   const auto upright = [](std::size_t) { return Vec2(0, 0); };
-  auto way = plain_way(12, 0.7);
+  auto way = test::plain_way(12, 0.7);
   ASSERT_TRUE(ball::find_constant(way, grid, upright, [](std::size_t, const Vec2& q) { return q.x() >= 0.1; }));
   EXPECT_TRUE(way.constant);
   for (const auto& q : way.lean) EXPECT_NEAR((q - Vec2(0.12, 0)).norm(), 0, 1e-12);
   // First inwards, then outwards: no constant lean; and half-way through station 5 upright is blocked.
   const auto clear = [](std::size_t k, const Vec2& q) { return k < 4 ? q.x() <= -0.1 : k > 7 ? q.x() >= 0.1 : true; };
-  auto turning = plain_way(12, 0.7);
+  auto turning = test::plain_way(12, 0.7);
   ASSERT_FALSE(ball::find_constant(turning, grid, upright, clear));
   const auto half = [](std::size_t k, const Vec2& a, const Vec2& b) {
     return k != 5 || std::abs(0.5 * (a + b).y()) > 0.05;
