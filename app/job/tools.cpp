@@ -56,7 +56,6 @@ std::vector<std::string_view> kind_words() {
 
 void read_numbers(toml::TableReader& table, const tool::CutterKind& kind, tool::ToolAssembly& tool) {
   for (const auto& n : kind.numbers) {
-    if (n.member == &tool::ToolAssembly::flute_length_mm || n.member == &tool::ToolAssembly::diameter_mm) continue;
     // Refused for what stands instead of it: read_end_mill.
     if (n.member == &tool::ToolAssembly::half_angle_rad && !table.has(n.key) && table.has(kTaperAngle)) {
       (void)table.value(n.key);
@@ -75,17 +74,6 @@ void read_finger_lengths(toml::TableReader& table, const ToolContext& context, t
   if (table.value("diameter"))
     table.refuse("diameter",
                  "diameter contradicts type = \"finger_mill\": its width follows from module and profile_height");
-}
-
-void read_ball_lengths(toml::TableReader& table, tool::ToolAssembly& tool) {
-  const auto diameter = table.number("diameter", kToolDiameter);
-  const auto flute = table.number("flute_length", kToolLength);
-  tool.diameter_mm = diameter.value_or(0);
-  tool.flute_length_mm = flute.value_or(0);
-  if (tool.type == tool::CutterType::flat_end_mill || !diameter || !flute) return;
-  if (const double end = tool::end_centre_mm(tool); *flute < end)
-    table.refuse("flute_length", "flute_length = {} mm is below {} mm, {}", *flute, end,
-                 tool.type == tool::CutterType::bull_nose_end_mill ? "the corner radius" : "half the diameter");
 }
 
 /// One line `t,f`: mm, um.
@@ -141,7 +129,7 @@ void check_profile(toml::TableReader& table, const tool::ToolAssembly& tool) {
 
 void read_end_mill(toml::TableReader& table, const ToolContext& context, tool::ToolAssembly& tool,
                    std::vector<std::string>& warnings) {
-  if (tool.type == tool::CutterType::tapered_ball_end_mill) {
+  if (tool::serves(tool, tool::CutterUse::side)) {
     if (table.value(kTaperAngle))
       table.refuse(kTaperAngle,
                    "taper_angle: half or included? Say half_angle, between the axis and the side: half of the included "
@@ -162,8 +150,7 @@ void read_end_mill(toml::TableReader& table, const ToolContext& context, tool::T
     const SourcePosition at = table.where("helix");
     warnings.push_back(
         fmt::format("{}:{}:{}: warning: helix = 0 deg, tool {}: straight flutes cut along the whole line at once; the "
-                    "force is several "
-                    "times that of a helix of 30 deg",
+                    "force is several times that of a helix of 30 deg",
                     at.file, at.line, at.column, tool.number));
   }
 }
@@ -191,13 +178,12 @@ tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& contex
   const std::size_t before = table.errors();
   read_numbers(table, kind, tool);
   if (kind.form_from_gear) read_finger_lengths(table, context, tool);
-  else read_ball_lengths(table, tool);
   if (stick_out && tool.flute_length_mm > *stick_out)
     table.refuse(table.has("flute_length") ? "flute_length" : "stick_out",
                  "flute_length = {} mm exceeds stick_out = {} mm", tool.flute_length_mm, *stick_out);
   if (!kind.form_from_gear) {
     read_end_mill(table, context, tool, warnings);
-    if (kind.type != tool::CutterType::ball_end_mill && table.errors() == before) check_profile(table, tool);
+    if (table.errors() == before) check_profile(table, tool);
   }
   table.finish();
   return tool;

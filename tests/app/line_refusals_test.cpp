@@ -67,6 +67,42 @@ TEST(LineRefusals, StockOnTheOtherFlank) {
        "to the flank -1, 0.1275 mm is the least, the stock that stands there: it would rub", "a smaller allowance"});
 }
 
+// The mill leans over the groove: where that is too narrow its pass ends before the flank does, and nothing is written.
+TEST(LineRefusals, GrooveTooNarrow) {
+  const TestDir dir;
+  std::string job =
+      with(kDoubleHelical, line(3, "left = 0.002\nchord_tolerance = 0.001") +
+                               operation("finishing", 3, "regions = [\"fillet\", \"root\"]\nscallop = 0.02"));
+  job = replaced(replaced(job, "inner_radius = 119.0", "inner_radius = 118.2"), "outer_radius = 124.0",
+                 "outer_radius = 123.2");
+  const auto run = run_line_job(dir, job);
+  EXPECT_EQ(run.exit_code, 1) << run.err;
+  expect_words(run.err, {"the pass on zone 0, flank +1 ends early: beyond its end the flute has a gap of -",
+                         "mm is the least; a wider groove, or a mill of smaller diameter or half_angle",
+                         "um on the flank after the last operation, limit "});
+  EXPECT_FALSE(std::filesystem::exists(dir / "out/program.ngc"));
+}
+
+// Near the undercut limit of a steep ring the direction turns fast.
+TEST(LineRefusals, TiltAboveTheLimit) {
+  std::string job = with(kDoubleHelical, line(3, "allowance = 0.02\nleft = 0.05\nrotaries = \"both\""));
+  const auto second = job.rfind("[[gear.zone]]"), after = job.find("[machine]");
+  job = job.substr(0, second) + job.substr(after);
+  for (const auto& [from, to] : {std::pair{"helix_angle = -30.0", "helix_angle = 60.0"},
+                                 {"inner_radius = 112.25", "inner_radius = 115.6"},
+                                 {"outer_radius = 117.0", "outer_radius = 124.0"},
+                                 {"pressure_angle = 20.0", "pressure_angle = 25.0"},
+                                 {"addendum_coefficient = 1.0", "addendum_coefficient = 0.8"},
+                                 {"half_angle = 5.0", "half_angle = 1.0"},
+                                 {"diameter = 0.5", "diameter = 0.3"}})
+    job = replaced(job, from, to);
+  const std::size_t third = job.find("number = 3"), flute = job.find("flute_length = 4.0", third);
+  job.replace(flute, std::string("flute_length = 4.0").size(), "flute_length = 8.0");
+  job = job.substr(0, job.find("reference_radius")) + job.substr(job.find('\n', job.find("reference_radius")));
+  expect_words(refused(job), {"asks for a tool tilted by 6", " deg from the gear axis; at most 60 deg are planned",
+                              "farther from the undercut limit, or a smaller helix angle"});
+}
+
 TEST(LineRefusals, MisfitThatCannotBeMet) {
   const std::string any = refused(kLineGear + line(1, "allowance = 0.05\nleft = 0.00001"));
   expect_words(any, {"left = 0.010 um cannot be met: the side of this tool leaves ", " um at best, with ",
@@ -84,9 +120,11 @@ TEST(LineRefusals, FourAxesTakeOneRotary) {
   expect_words(
       refused(kLineGear + line(1, "allowance = 0.05\nleft = 0.004\nrotaries = \"both\""), four),
       {"rotaries = \"both\" moves 5 axes at once", "interpolates 4 (max_simultaneous_axes): rotaries = \"one\""});
-  expect_words(refused(kLineGear + line(1, "allowance = 0.05\nleft = 0.00001"), four),
+  const std::string least = refused(kLineGear + line(1, "allowance = 0.05\nleft = 0.00001"), four);
+  expect_words(least,
                {"left = 0.010 um cannot be met", "tried: 1 to 4 strips while the tilt stands or the azimuth stands;",
                 "the control interpolates 4 axes at once: rotaries = \"one\"", "larger left"});
+  EXPECT_EQ(least.find("rotaries = \"both\""), std::string::npos) << "offers what the control cannot do";
   const TestDir dir;
   const auto run = run_line_job(dir, kLineGear + line(1, "allowance = 0.05\nleft = 0.02"), four);
   EXPECT_EQ(run.exit_code, 0) << run.err;

@@ -55,6 +55,22 @@ TEST(LineRuns, RegionsHaveTheirOwnCusps) {
   EXPECT_LT(cusps_of(fine)["reached_max"].get<double>(), 0.6 * cusps_of(coarse)["reached_max"].get<double>());
 }
 
+// The whole height of a flank of module 2 and 3 in one strip.
+TEST(LineRuns, OffsetAndSpurSamplesInOneStrip) {
+  for (const char* name : {"offset_line", "spur_line"}) {
+    const TestDir dir;
+    const auto run =
+        run_program({"run", std::string(TOOTHPATH_SOURCE_DIR) + "/samples/" + name + ".toml", "--out", dir / "out"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const auto report = report_in(dir);
+    EXPECT_TRUE(report["verified"].get<bool>());
+    const double left = report["left_um"]["flank"].get<double>();
+    std::printf("%s: %.2f um left on the flanks, %.1f h\n", name, left, report["total_minutes"].get<double>() / 60);
+    EXPECT_LE(left, 5.0);
+    for (const auto& operation : report["operations"]) EXPECT_EQ(operation.value("strips", 1), 1);
+  }
+}
+
 // The same as a table of one operation.
 TEST(LineRuns, TableOfCusps) {
   const TestDir dir;
