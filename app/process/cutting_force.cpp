@@ -20,7 +20,8 @@ using path::OperationType;
 using report::estimate;
 
 constexpr double kHelix = 30 * kDegree;  // of end mills as they are sold, where the job does not say
-constexpr double kFingerSag = 1e-3;      // mm: of a finger mill's profile
+constexpr double kRounding = 1e-9;
+constexpr double kFingerSag = 1e-3;  // mm: of a finger mill's profile
 
 bool finger(OperationType type) {
   return type == OperationType::finger_roughing || type == OperationType::finger_finishing;
@@ -104,9 +105,9 @@ report::CuttingLoad load_of(const job::Job& job, const report::RunReport& report
   if (const auto c = force::compliance(*mill, height, height, job.material.tools)) out.compliance = *c;
   const auto cut = cut_of(job, report, index, *mill, out);
   if (!cut) return not_computed(cut.error());
-  const auto load =
-      force::load_of(*mill, {tool.teeth, ball ? tool.helix_rad.value_or(kHelix) : 0, o.speed_rpm, o.feed_mm_min}, *cut,
-                     job.material.cutting, job.material.tools);
+  const double feed = finger(o.type) ? o.feed_mm_min : o.feed_for(cut->steepest, tool.teeth);
+  const auto load = force::load_of(*mill, {tool.teeth, ball ? tool.helix_rad.value_or(kHelix) : 0, o.speed_rpm, feed},
+                                   *cut, job.material.cutting, job.material.tools);
   if (!load) return not_computed(load.error());
   out.load = *load;
   out.compliance = load->compliance;
@@ -128,6 +129,18 @@ std::string slender_text(const report::OperationReport& o) {
   return text;
 }
 
+/// As measured along the path, or of the load model: chip [mm], angle [rad].
+struct LargestCut {
+  double chip_mm = 0, engaged_rad = 0;
+};
+LargestCut largest_cut(const report::RunReport& report, const report::OperationReport& o) {
+  for (const report::EngagementReport& t : report.engagement)
+    if (t.operation == o.operation && !t.way_mm.empty())
+      return {*std::max_element(t.chip_mm.begin(), t.chip_mm.end()),
+              *std::max_element(t.engaged_rad.begin(), t.engaged_rad.end())};
+  return {o.cutting->load->chip_mm, o.cutting->load->engaged_rad};
+}
+
 /// One warning a slender tool, from its worst operation; one for every chip and engagement that is too large.
 void add_warnings(report::RunReport& report, const job::Job& job) {
   std::map<int, const report::OperationReport*> worst;
@@ -137,8 +150,8 @@ void add_warnings(report::RunReport& report, const job::Job& job) {
   for (const report::OperationReport& o : report.operations) {
     if (!o.cutting || !o.cutting->load) continue;
     const path::MillingOperation& asked = job.operations[std::size_t(o.operation)];
-    const force::OperationLoad& load = *o.cutting->load;
-    if (asked.chip_load_mm > 0 && load.chip_mm > asked.chip_load_mm)
+    const LargestCut load = largest_cut(report, o);
+    if (asked.chip_load_mm > 0 && load.chip_mm > asked.chip_load_mm * (1 + kRounding))
       report.warnings.push_back(fmt::format("operation {}: its largest chip of {} um exceeds chip_load = {:g} mm",
                                             o.operation, estimate(app::um(load.chip_mm)), asked.chip_load_mm));
     if (asked.max_engagement_rad > 0 && load.engaged_rad > asked.max_engagement_rad)

@@ -60,6 +60,8 @@ class GearMilling {
   [[nodiscard]] virtual std::vector<proof::DirectionChoice> directions() const = 0;
   /// Passes of the plan for page and report.json; empty where the plan has none to tell.
   [[nodiscard]] virtual std::vector<report::PassReport> passes() const = 0;
+  /// Engagement along the paths of operations that ask for it; empty where none does.
+  [[nodiscard]] virtual std::vector<report::EngagementReport> engagement() const { return {}; }
   /// The gouge check of one path: the only way to a CheckedClPath. Errors (kind verification): the deepest place.
   [[nodiscard]] virtual Result<proof::CheckedClPath> approve(const path::ClPath& path) const = 0;
 

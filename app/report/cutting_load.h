@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -17,6 +18,12 @@ struct CuttingLoad {
   std::optional<double> stock_mm;               ///< that the force is for; none in full material
   std::optional<double> may_leave_mm;           ///< beside what it was asked to leave; none: no such number
   bool slender = false;                         ///< bends by more than that
+};
+
+/// A roughing mill in the material along its path, as planned: one entry a feed motion, vectors of one length.
+struct EngagementReport {
+  int operation = 0;
+  std::vector<double> way_mm, engaged_rad, chip_mm, feed_mm_min;
 };
 
 /// A number that is an estimate, in few digits.

@@ -204,6 +204,19 @@ void add_cutting(Json& operation, const CuttingLoad& c) {
   operation["slender"] = c.slender;
 }
 
+void add_engagement(Json& json, const RunReport& r) {
+  for (const EngagementReport& t : r.engagement) {
+    if (t.way_mm.empty()) continue;
+    const auto [slow, fast] = std::minmax_element(t.feed_mm_min.begin(), t.feed_mm_min.end());
+    json["engagement"].push_back(
+        {{"op", t.operation},
+         {"engaged_deg", degrees(*std::max_element(t.engaged_rad.begin(), t.engaged_rad.end()))},
+         {"chip_um", app::um(*std::max_element(t.chip_mm.begin(), t.chip_mm.end()))},
+         {"least_feed", *slow},
+         {"most_feed", *fast}});
+  }
+}
+
 void add_motion(Json& json, const RunReport& r) {
   if (r.operations.empty()) return;
   json["cl_points"] = r.cl_points;
@@ -274,6 +287,7 @@ std::string report_json(const RunReport& r) {
   add_proof(json, r);
   add_scene(json, r);
   add_motion(json, r);
+  add_engagement(json, r);
   add_directions(json, r);
   add_findings(json, r);
   add_passes(json, r);

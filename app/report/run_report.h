@@ -107,7 +107,8 @@ struct RunReport {
   std::optional<double> tool_change_minutes;   ///< of all tool changes; none: the machine file does not state them
   std::vector<OperationReport> operations;
   std::vector<proof::DirectionChoice> directions;
-  std::vector<PassReport> passes;  ///< of one tooth space, where the plan tells them
+  std::vector<PassReport> passes;            ///< of one tooth space, where the plan tells them
+  std::vector<EngagementReport> engagement;  ///< of operations that ask for a chip load or an engagement
   std::vector<joints::AxisRange> axes;
   std::optional<PolesReport> poles;                  ///< none where the program comes to no pole
   std::optional<TravelRoom> travel_room;             ///< none where it was not looked for

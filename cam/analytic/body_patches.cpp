@@ -239,10 +239,27 @@ BodyQuad BodyPatches::end_quad(const Cell& cell, const std::array<Vec2, 4>& at) 
   return q;
 }
 
-std::array<BodyQuad, 2> BodyPatches::halved(std::size_t index, const BodyQuad& q) const {
+Vec2 BodyPatches::sides(const Cell& cell, const BodyQuad& q) const {
   const auto& c = q.corner;
-  const bool across = (c[1] - c[0]).squaredNorm() + (c[2] - c[3]).squaredNorm() >=
-                      (c[3] - c[0]).squaredNorm() + (c[2] - c[1]).squaredNorm();
+  Vec2 out(std::max((c[1] - c[0]).norm(), (c[2] - c[3]).norm()), std::max((c[3] - c[0]).norm(), (c[2] - c[1]).norm()));
+  if (is_end(cell.surface))
+    out.y() = std::min(
+        out.y(), (q.at[2].y() - q.at[0].y()) * (std::max(c[2].z(), c[3].z()) - std::min(ring_.base_mm, c[0].z())));
+  return out;
+}
+
+double BodyPatches::stays(std::size_t index, const BodyQuad& q) const {
+  const Cell& cell = cells_[index];
+  if (!is_end(cell.surface)) return 0;
+  const double height = std::max((q.corner[3] - q.corner[0]).norm(), (q.corner[2] - q.corner[1]).norm());
+  return std::max(0.0, height - sides(cell, q).y());
+}
+
+double BodyPatches::size(std::size_t index, const BodyQuad& q) const { return sides(cells_[index], q).maxCoeff(); }
+
+std::array<BodyQuad, 2> BodyPatches::halved(std::size_t index, const BodyQuad& q) const {
+  const Vec2 side = sides(cells_[index], q);
+  const bool across = side.x() >= side.y();
   const auto& x = q.at;
   std::array<std::array<Vec2, 4>, 2> at;
   std::array<std::array<int, 4>, 2> old;  // corners that stay, and -1

@@ -82,6 +82,10 @@ class BodyPatches {
   [[nodiscard]] bool on_flank(std::size_t cell) const;
 
   [[nodiscard]] std::array<BodyQuad, 2> halved(std::size_t cell, const BodyQuad& quad) const;
+  /// Longest side that halving shortens, mm. A quad of an end is higher by what its border may stand out: `stays`.
+  [[nodiscard]] double size(std::size_t cell, const BodyQuad& quad) const;
+  /// The part of its height that no halving shortens, mm; 0 but for ends.
+  [[nodiscard]] double stays(std::size_t cell, const BodyQuad& quad) const;
   [[nodiscard]] BodyHull outline(std::size_t cell, const BodyQuad& quad) const;
   /// The most by which the hull can lie above the surface along a unit vector g, and in any direction. mm
   [[nodiscard]] double above(std::size_t cell, const BodyQuad& quad, const Vec3& g) const;
@@ -107,6 +111,8 @@ class BodyPatches {
     Vec3 centre = Vec3::Zero();
     BodyQuad quad;
   };
+  /// Lengths of the sides along both parameters, as `size` counts.
+  [[nodiscard]] Vec2 sides(const Cell& cell, const BodyQuad& quad) const;
   [[nodiscard]] BodyQuad made(const Cell& cell, const std::array<Vec2, 4>& at) const;
   [[nodiscard]] BodyQuad end_quad(const Cell& cell, const std::array<Vec2, 4>& at) const;
   [[nodiscard]] double edge_azimuth(int which, double r) const;

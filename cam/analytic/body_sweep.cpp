@@ -324,11 +324,10 @@ class Sweep {
         proven_ = -widest_;  // no place lies deeper in a body than its radius
         return;
       }
-      double size = 0;
-      for (std::size_t k = 0; k < 4; ++k)
-        size = std::max(size, (piece.quad.corner[k] - piece.quad.corner[(k + 1) % 4]).norm());
+      const double size = patches.size(target.cell, piece.quad);
       if (least + fixed >= best_ - leeway(std::min(best_, least + fixed)) || least + fixed >= o_.settled_mm ||
-          std::max(size, s.moved) < kSmallestQuad || ++examined_ > kMostPieces || !std::isfinite(least)) {
+          std::max(size, s.moved) < std::max(kSmallestQuad, patches.stays(target.cell, piece.quad)) ||
+          ++examined_ > kMostPieces || !std::isfinite(least)) {
         proven_ = std::min(proven_, std::isfinite(least) ? least : -widest_);
         continue;
       }

@@ -2,26 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace toothpath::ball {
 namespace {
 
 class Linker {
  public:
-  Linker(const LinkingOptions& o, const HopMeets& meets, const BodiesAreClear& bodies, std::vector<path::ClRecord>& out)
-      : o_(o), meets_(meets), bodies_are_clear_(bodies), out_(out) {}
+  Linker(const std::vector<BallPass>& passes, const LinkingOptions& o, const HopMeets& meets,
+         const BodiesAreClear& bodies, std::vector<path::ClRecord>& out)
+      : passes_(passes), o_(o), meets_(meets), bodies_are_clear_(bodies), out_(out) {}
 
-  void run(const std::vector<BallPass>& passes) {
+  void run() {
     int number = 0;
-    for (std::size_t p = 0; p < passes.size(); ++p) {
-      const auto& points = passes[p].points;
+    for (std::size_t p = 0; p < passes_.size(); ++p) {
+      const auto& points = passes_[p].points;
       if (points.empty()) continue;
-      const auto axis = [&](std::size_t k) { return o_.axes.empty() ? o_.axis : o_.axes[p][k]; };
+      const auto axis = [&](std::size_t k) { return axis_at(p, k); };
       pass_ = number++;
       approach(points.front().centre, axis(0));
       for (std::size_t k = 1; k < points.size(); ++k) feed(points[k - 1], axis(k - 1), points[k], axis(k));
       last_ = points.back().centre;
       last_axis_ = axis(points.size() - 1);
+      before_ = p;
       engaged_ = true;
     }
     if (engaged_) leave();
@@ -42,7 +45,7 @@ class Linker {
 
   void approach(const Vec3& start, const Vec3& axis) {
     if (engaged_) {
-      if (hops_to(start, axis)) return;
+      if (hops_to(start, axis) || returns_to(start, axis)) return;
       leave();
     }
     const Vec3 high = above(start, axis);
@@ -54,18 +57,52 @@ class Linker {
 
   /// The hop from the end of the pass before, where there is one and it is the shorter way in time.
   bool hops_to(const Vec3& start, const Vec3& axis) {
-    const Vec3 a = last_ + o_.hop_mm * last_axis_, b = start + o_.hop_mm * axis;
+    const auto feed = hop_feed(start, axis);
+    if (!feed || way(start, axis) / *feed > minutes_over_the_top(start, axis)) return false;
+    add(lifted(last_, last_axis_), last_axis_, path::MoveKind::retract, o_.link_feed_mm_min);
+    hop(start, axis, *feed);
+    return true;
+  }
+  /// Back along the pass before, lifted along its axes, then a hop to a start beside its own. A tool that nowhere
+  /// narrows upwards is in its own track there: nothing stands in it.
+  bool returns_to(const Vec3& start, const Vec3& axis) {
+    const auto& points = passes_[before_].points;
+    const Vec3 end = last_, end_axis = last_axis_;
+    double back = 0;
+    for (std::size_t k = 1; k < points.size(); ++k) back += (points[k].centre - points[k - 1].centre).norm();
+    const double top = minutes_over_the_top(start, axis);
+    last_ = points.front().centre;
+    last_axis_ = axis_at(before_, 0);
+    const auto feed = hop_feed(start, axis);
+    if (!feed || back / o_.link_feed_mm_min + way(start, axis) / *feed > top) {
+      last_ = end;
+      last_axis_ = end_axis;
+      return false;
+    }
+    add(lifted(end, end_axis), end_axis, path::MoveKind::retract, o_.link_feed_mm_min);
+    for (std::size_t k = points.size() - 1; k-- > 0;)
+      add(lifted(points[k].centre, axis_at(before_, k)), axis_at(before_, k), path::MoveKind::engage,
+          o_.link_feed_mm_min);
+    hop(start, axis, *feed);
+    return true;
+  }
+  [[nodiscard]] Vec3 axis_at(std::size_t pass, std::size_t k) const {
+    return o_.axes.empty() ? o_.axis : o_.axes[pass][k];
+  }
+  [[nodiscard]] Vec3 lifted(const Vec3& centre, const Vec3& axis) const { return centre + o_.hop_mm * axis; }
+  [[nodiscard]] double way(const Vec3& start, const Vec3& axis) const {
+    return (lifted(start, axis) - lifted(last_, last_axis_)).norm();
+  }
+  /// Feed of a hop from where the tool is; nothing where there is none.
+  [[nodiscard]] std::optional<double> hop_feed(const Vec3& start, const Vec3& axis) const {
+    const Vec3 a = lifted(last_, last_axis_), b = lifted(start, axis);
     const auto clear = [&](const HopEnd& from, const HopEnd& to) { return meets_(from, to) != Meets::part; };
     if ((b - a).norm() > o_.longest_hop_mm || !clear({last_, last_axis_}, {a, last_axis_}) ||
         !clear({b, axis}, {start, axis}) || !turns_clear(a, b, axis))
-      return false;
+      return {};
     const Meets across = meets_({a, last_axis_}, {b, axis});
-    const double feed = across == Meets::air ? o_.link_feed_mm_min : o_.feed_mm_min;
-    if (across == Meets::part || (b - a).norm() / feed > minutes_over_the_top(start, axis)) return false;
-    add(a, last_axis_, path::MoveKind::retract, o_.link_feed_mm_min);
-    hop(a, b, axis, feed);
-    add(start, axis, path::MoveKind::engage, o_.feed_mm_min);
-    return true;
+    if (across == Meets::part) return {};
+    return across == Meets::air ? o_.link_feed_mm_min : o_.feed_mm_min;
   }
   /// Up, aside and down again, but for what a hop takes too.
   [[nodiscard]] double minutes_over_the_top(const Vec3& start, const Vec3& axis) const {
@@ -97,13 +134,16 @@ class Linker {
     }
     return true;
   }
-  void hop(const Vec3& a, const Vec3& b, const Vec3& axis, double feed) {
+  /// Across between the lifted places, then down.
+  void hop(const Vec3& start, const Vec3& axis, double feed) {
+    const Vec3 a = lifted(last_, last_axis_), b = lifted(start, axis);
     const int steps = axis == last_axis_ ? 1 : steps_of(axis);
     for (int k = 1; k < steps; ++k) {
       const double t = double(k) / steps;
       add(a + t * (b - a), blended(axis, t), path::MoveKind::engage, feed);
     }
     add(b, axis, path::MoveKind::engage, feed);
+    add(start, axis, path::MoveKind::engage, o_.feed_mm_min);
   }
 
   void feed(const BallPass::Point& from, const Vec3& from_axis, const BallPass::Point& to, const Vec3& to_axis) {
@@ -115,11 +155,13 @@ class Linker {
     add(to.centre, to_axis, path::MoveKind::feed, speed);
   }
 
+  const std::vector<BallPass>& passes_;
   const LinkingOptions& o_;
   const HopMeets& meets_;
   const BodiesAreClear& bodies_are_clear_;
   std::vector<path::ClRecord>& out_;
   int pass_ = 0;
+  std::size_t before_ = 0;  // index of the pass that was cut last
   bool engaged_ = false;
   Vec3 last_ = Vec3::Zero(), last_axis_ = Vec3::UnitZ();
 };
@@ -128,7 +170,7 @@ class Linker {
 
 void link_passes(const std::vector<BallPass>& passes, const LinkingOptions& options, const HopMeets& hop_meets,
                  std::vector<path::ClRecord>& records, const BodiesAreClear& bodies_are_clear) {
-  Linker(options, hop_meets, bodies_are_clear, records).run(passes);
+  Linker(passes, options, hop_meets, bodies_are_clear, records).run();
 }
 
 }  // namespace toothpath::ball

@@ -46,7 +46,8 @@ using BodiesAreClear = std::function<bool(const Vec3& centre, const Vec3& axis)>
 
 /// Appends the passes to `records`. Starts and ends with rapids at the clearance height. The tip's feed is the contact
 /// point's feed times the ratio of their ways, at most 20 % faster. A hop that may meet stock is no faster than the
-/// cut, or goes over the clearance height where that takes less time.
+/// cut; where it cannot be, or takes longer, the link goes back along the pass before and on from there, or over the
+/// clearance height.
 void link_passes(const std::vector<BallPass>& passes, const LinkingOptions& options, const HopMeets& hop_meets,
                  std::vector<path::ClRecord>& records, const BodiesAreClear& bodies_are_clear = {});
 

@@ -53,8 +53,9 @@ class Planner::Work {
        const std::vector<path::MillingOperation>& operations, const PlanOptions& options)
       : part_(part), tools_(tools), operations_(operations), o_(options) {}
 
-  Expected<Planned, PlanRefusal> run(int n, const std::vector<const cut::Removed*>& cleared) {
+  Expected<Planned, PlanRefusal> run(int n, const std::vector<const cut::Removed*>& cleared, const Leading* leading) {
     cleared_ = cleared;
+    leading_ = leading;
     plan_ = {};
     const auto& op = operation(n);
     plan_.path.operation = plan_.summary.operation = n;
@@ -239,6 +240,10 @@ class Planner::Work {
     turning.least_tilt_rad = o_.least_tilt_rad;
     turning.chord_mm = kTurnShare * std::min(op.chord_tolerance_mm, chord_room(op));
     const bool prescribed = !op.axis_plus.empty();
+    direction.operation = n;
+    direction.zone = zone;
+    if (leading_ && !prescribed && is_led(zone, tool, op, turning, made.passes, direction, axes)) return {};
+    turning.least_draft += std::sin(tool.half_angle_rad);
     as_stage("tool direction", [&] {
       if (!bodies_) bodies_ = std::make_unique<analytic::BodyTree>(part_);
       if (!prescribed)
@@ -265,6 +270,32 @@ class Planner::Work {
       axes = std::move(oriented.value().axes);
     }
     return {};
+  }
+
+  /// The first of the leading axes with which the tool keeps clear, if there is one.
+  [[nodiscard]] bool is_led(int zone, const tool::ToolAssembly& tool, path::MillingOperation op,
+                            OrientationOptions options, std::vector<BallPass>& passes,
+                            proof::DirectionChoice& direction, std::vector<std::vector<Vec3>>& axes) {
+    options.least_draft = std::sin(tool.half_angle_rad);
+    if (!bodies_) bodies_ = std::make_unique<analytic::BodyTree>(part_);
+    for (const LedAxes& led : leading_->zones[std::size_t(zone)]) {
+      op.axis_plus = led.plus;
+      op.axis_minus = led.minus;
+      std::vector<BallPass> trial = passes;
+      // One flank after the other: between them the axis turns far.
+      std::stable_partition(trial.begin(), trial.end(), [&](const BallPass& p) { return p.outward == op.climb; });
+      auto oriented = prescribe(zone, tool, op, options, trial);
+      if (oriented.refused()) continue;
+      passes = std::move(trial);
+      measure(oriented.value(), direction);
+      direction.explanation = fmt::format(
+          "{}: lean {:.1f} to {:.1f} deg from the normal of the pitch surface; shank and holder keep {:.3f} mm",
+          leading_->words, degrees(oriented.value().least_lean_rad), degrees(oriented.value().greatest_lean_rad),
+          oriented.value().clearance_mm);
+      axes = std::move(oriented.value().axes);
+      return true;
+    }
+    return false;
   }
 
   /// Simultaneous axes for one zone.
@@ -463,6 +494,7 @@ class Planner::Work {
   const std::vector<path::MillingOperation>& operations_;
   const PlanOptions& o_;
   std::vector<const cut::Removed*> cleared_;
+  const Leading* leading_ = nullptr;
   std::unique_ptr<analytic::BodyTree> bodies_;  ///< built with the first zone
   Planned plan_;
 };
@@ -472,8 +504,9 @@ Planner::Planner(const analytic::GearDistance& part, const std::vector<tool::Too
     : work_(std::make_unique<Work>(part, tools, operations, options)) {}
 Planner::~Planner() = default;
 
-Expected<Planned, PlanRefusal> Planner::plan(int operation, const std::vector<const cut::Removed*>& cleared) {
-  return work_->run(operation, cleared);
+Expected<Planned, PlanRefusal> Planner::plan(int operation, const std::vector<const cut::Removed*>& cleared,
+                                             const std::optional<Leading>& leading) {
+  return work_->run(operation, cleared, leading ? &*leading : nullptr);
 }
 
 double stock_before(const std::vector<path::MillingOperation>& operations, const std::vector<tool::ToolAssembly>& tools,

@@ -57,6 +57,16 @@ struct Planned {
 };
 
 /// Plans roughing, semi-finishing and finishing, operation by operation. What it is made of must outlive it.
+/// Axes that lead the tool beside poses that are cut before: those of passes on flank +1 and of others.
+struct LedAxes {
+  std::vector<path::ToolAxisKey> plus, minus;
+};
+/// For every zone what is tried in turn, and in words what leads.
+struct Leading {
+  std::vector<std::vector<LedAxes>> zones;
+  std::string words;  ///< "beside the poses of operation 6"
+};
+
 class Planner {
  public:
   Planner(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
@@ -66,7 +76,9 @@ class Planner {
   Planner& operator=(const Planner&) = delete;
 
   /// @param cleared  what earlier operations removed: roughing passes that would cut nothing are left out
-  [[nodiscard]] Expected<Planned, PlanRefusal> plan(int operation, const std::vector<const cut::Removed*>& cleared);
+  /// @param leading  axes that are taken where tool and part keep clear, before a direction of its own is looked for
+  [[nodiscard]] Expected<Planned, PlanRefusal> plan(int operation, const std::vector<const cut::Removed*>& cleared,
+                                                    const std::optional<Leading>& leading = {});
 
  private:
   class Work;

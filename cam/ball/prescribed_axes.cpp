@@ -103,7 +103,7 @@ class Prover {
     }
     double deepest = 0, at = 0;
     for (double h = 0.4 * R; h <= tool_.flute_length_mm - R; h += 0.25 * R) {
-      const double cut = R - part_.nearest(s.point.centre + h * s.axis, R + 0.01).distance;
+      const double cut = check_.flute_cut(s.point, s.axis, h);
       if (cut > deepest) deepest = cut, at = h;
     }
     if (deepest <= s.by && s.by > 0) return;

@@ -10,6 +10,9 @@ namespace {
 /// own stock.
 
 /// Directions on the lower half of a ball: where it cuts.
+// Of the ball's radius: where a pass has nothing to cut for longer, it is left and taken up again behind.
+constexpr double kShortestIdle = 6;
+
 std::vector<Vec3> lower_directions() {
   std::vector<Vec3> out{Vec3(0, 0, -1)};
   for (int ring = 1; ring <= 4; ++ring) {
@@ -162,42 +165,53 @@ class RoughingPlanner {
       };
       const auto line = sample_curve(curve, from_, to_, o_.chord_mm, 2.0 * o_.ball_radius_mm);
       if (!line) return fail("the layer {:.4f} mm above the root cannot be followed", height);
-      if (!cuts(line->points)) {
-        ++out_.skipped;
-        continue;
+      const auto stretches = cutting_stretches(line->points);
+      if (stretches.empty()) ++out_.skipped;
+      for (const auto& [from, to] : stretches) {
+        BallPass pass;
+        pass.points.assign(line->points.begin() + long(from), line->points.begin() + long(to) + 1);
+        pass.outward = (share <= 0.5) == o_.climb;
+        if (!pass.outward) std::reverse(pass.points.begin(), pass.points.end());
+        out_.passes.push_back(std::move(pass));
       }
-      BallPass pass;
-      pass.points = line->points;
-      pass.outward = (share <= 0.5) == o_.climb;
-      if (!pass.outward) std::reverse(pass.points.begin(), pass.points.end());
-      out_.passes.push_back(std::move(pass));
     }
     return Ok{};
   }
 
-  /// Would a ball along these centres remove anything that the earlier operations left?
-  [[nodiscard]] bool cuts(const std::vector<BallPass::Point>& points) const {
-    if (cleared_.empty()) return true;
+  /// First and last points of the stretches in which a ball along these centres removes what earlier operations left:
+  /// all of it where there were none.
+  [[nodiscard]] std::vector<std::pair<std::size_t, std::size_t>> cutting_stretches(
+      const std::vector<BallPass::Point>& points) const {
+    if (cleared_.empty()) return {{0, points.size() - 1}};
+    std::vector<std::pair<std::size_t, std::size_t>> out;
+    double idle = INFINITY;  // way since the last stretch
+    for (std::size_t k = 1; k < points.size(); ++k) {
+      const double way = (points[k].centre - points[k - 1].centre).norm();
+      if (!cuts(points[k - 1].centre, points[k].centre, way)) {
+        idle += way;
+        continue;
+      }
+      if (idle > kShortestIdle * o_.ball_radius_mm) out.emplace_back(k - 1, k);
+      out.back().second = k;
+      idle = 0;
+    }
+    return out;
+  }
+
+  [[nodiscard]] bool cuts(const Vec3& from, const Vec3& to, double way) const {
     static const std::vector<Vec3> directions = lower_directions();
     const auto& ring = sheet_.space().ring().zone;
     const double worth = path::kSkinShare * 2 * o_.ball_radius_mm;
-    Vec3 last = Vec3::Constant(INFINITY);
-    for (const auto& point : points) {
-      if ((point.centre - last).norm() < 0.4 * o_.ball_radius_mm) continue;
-      last = point.centre;
+    const int places = std::max(1, int(std::ceil(way / (0.4 * o_.ball_radius_mm))));
+    for (int k = 0; k <= places; ++k)
       for (const auto& direction : directions) {
-        const Vec3 q = point.centre + o_.ball_radius_mm * direction;
+        const Vec3 q = from + (to - from) * (double(k) / places) + o_.ball_radius_mm * direction;
         const double r = radius(q);
         if (r < ring.inner_radius_mm || r > ring.outer_radius_mm || q.z() > o_.blank_top_mm) continue;
-        bool left = true;
-        for (const auto* path : cleared_)
-          if (path->excess(q, worth) < worth) {
-            left = false;
-            break;
-          }
-        if (left) return true;
+        if (std::none_of(cleared_.begin(), cleared_.end(),
+                         [&](const cut::Removed* removed) { return removed->excess(q, worth) < worth; }))
+          return true;
       }
-    }
     return false;
   }
 

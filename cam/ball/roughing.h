@@ -28,7 +28,8 @@ struct RoughingPasses {
   bool reaches_root = true;      ///< false: the ball is too wide and stops in the corners between both walls
 };
 
-/// `cleared` are the volumes removed by earlier operations: a pass that would cut nothing is left out.
+/// `cleared` are the volumes removed by earlier operations: a pass that would cut nothing (`path::kSkinShare`) is left
+/// out, and of others what cuts nothing at their ends or over a long stretch between.
 [[nodiscard]] Result<RoughingPasses> plan_roughing(const face_gear::OffsetSheet& sheet, const RoughingOptions& options,
                                                    const std::vector<const cut::Removed*>& cleared);
 

@@ -536,13 +536,16 @@ bool OrientationCheck::stands_right(const BallPass::Point& point, const Vec3& ax
   return !point.touching || normal.norm() <= 0.1 * tool_.radius_mm() || normal.normalized().dot(axis) >= o_.least_draft;
 }
 
+double OrientationCheck::flute_cut(const BallPass::Point& point, const Vec3& axis, double above) const {
+  const double R = tool_.radius_mm() + above * std::sin(tool_.half_angle_rad);
+  return R - part_.nearest(point.centre + above * axis, R + 0.01).distance;
+}
+
 bool OrientationCheck::flute_is_free(const BallPass::Point& point, const Vec3& axis) const {
-  const double R = tool_.radius_mm();
-  const double top = tool_.flute_length_mm - R;
+  const double R = tool_.radius_mm(), top = tool_.flute_length_mm - R;
   for (double h = std::min(0.4 * R, top); h > 0; h = h < top ? std::min(h + R, top) : -1) {
-    const Vec3 c = point.centre + h * axis;
-    if (c.z() - R > part_.gear().blank_top()) break;
-    if (part_.nearest(c, R + 0.01).distance < R) return false;
+    if (point.centre.z() + h * axis.z() - R > part_.gear().blank_top()) break;
+    if (flute_cut(point, axis, h) > 0) return false;
   }
   return true;
 }
@@ -554,7 +557,7 @@ double OrientationCheck::flute_depth(const BallPass::Point& point, const Vec3& a
   if (point.touching && normal.norm() > 0.1 * R)
     deepest = std::max(0.0, R * (o_.least_draft - normal.normalized().dot(axis)));
   for (double h = 0.4 * R; h <= tool_.flute_length_mm - R; h += 0.25 * R)
-    deepest = std::max(deepest, R - part_.nearest(point.centre + h * axis, R + 0.01).distance);
+    deepest = std::max(deepest, flute_cut(point, axis, h));
   return deepest;
 }
 

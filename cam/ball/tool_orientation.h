@@ -63,6 +63,8 @@ class OrientationCheck {
   [[nodiscard]] bool away_from_pole(const Vec3& axis) const;
   /// By how much `cutting` fails: depth of the flute in the part, or what is missing of the draft at the ball. mm
   [[nodiscard]] double flute_depth(const BallPass::Point& point, const Vec3& axis) const;
+  /// Depth of the flute in the part where it is so far above the ball centre; of a taper it widens. Negative: clear. mm
+  [[nodiscard]] double flute_cut(const BallPass::Point& point, const Vec3& axis, double above) const;
   [[nodiscard]] const PitchFrame& frame() const { return frame_; }
   [[nodiscard]] const std::vector<tool::Frustum>& bodies() const { return bodies_; }
 

@@ -72,9 +72,10 @@ double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const pat
 SweptTool::SweptTool(std::vector<path::ToolMotion> motions, std::vector<tool::RoundedFrustum> cutting, double top_mm)
     : motions_(std::move(motions)), cutting_(std::move(cutting)), index_(boxes_of(motions_, cutting_, top_mm)) {}
 
-double SweptTool::excess(const Vec3& p, double cap) const {
+double SweptTool::excess_after(std::size_t count, const Vec3& p, double cap) const {
   double best = cap;
   index_.near(p, std::max(cap, 0.0), [&](std::size_t k, double) {
+    if (k >= count) return std::max(best, 0.0);
     for (const auto& body : cutting_) best = std::min(best, least_distance(p, body, motions_[k], best));
     return std::max(best, 0.0);
   });

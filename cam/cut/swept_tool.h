@@ -28,7 +28,9 @@ class SweptTool {
 
   /// min over the path of the distance to the cutting part: > 0 material left at p, < 0 removed that deep. Values above
   /// `cap` are returned as `cap`. mm.
-  [[nodiscard]] double excess(const Vec3& p, double cap) const;
+  [[nodiscard]] double excess(const Vec3& p, double cap) const { return excess_after(motions_.size(), p, cap); }
+  /// The same after the first `count` motions.
+  [[nodiscard]] double excess_after(std::size_t count, const Vec3& p, double cap) const;
 
  private:
   std::vector<path::ToolMotion> motions_;

@@ -25,6 +25,11 @@ const char* to_string(OperationType type) {
   return "";
 }
 
+double MillingOperation::feed_for(double steepest, int teeth) const {
+  if (chip_load_mm == 0) return feed_mm_min;
+  return std::min(chip_load_mm * speed_rpm * teeth / steepest, (finishes() ? 1 : kMostRaise) * feed_mm_min);
+}
+
 std::optional<std::size_t> last_before(const std::vector<MillingOperation>& operations, std::size_t n, Region region) {
   while (n-- > 0)
     if (operations[n].regions[region]) return n;

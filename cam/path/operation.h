@@ -51,7 +51,7 @@ struct MillingOperation {
   ByRegion<bool> regions{{true, true, true}};   ///< semi-finishing and finishing: what is cut; line milling: the flank
   double chord_tolerance_mm = 0.005;            ///< sag of a block against the exact path; not asked for: 0.005
   bool climb = true;
-  double chip_load_mm = 0;        ///< largest chip of a tooth; 0: none is asked for
+  double chip_load_mm = 0;        ///< largest chip of a tooth, which rules the feed; 0: the feed stands
   double max_engagement_rad = 0;  ///< largest angle of a tooth in the material; 0: none is asked for
   double ridge_mm = 0;            ///< finger roughing: highest ridge left on the root
   /// Semi-finishing and finishing: prescribed tool axes, by ascending radius; both empty (the planner chooses) or both
@@ -66,6 +66,10 @@ struct MillingOperation {
   [[nodiscard]] bool finishes() const {
     return type == OperationType::finishing || (type == OperationType::line_milling && allowance_mm == 0);
   }
+  /// Feed where the largest chip is `steepest` feeds per tooth, in (0, 1], of so many teeth: the job's, raised to
+  /// kMostRaise times that at most where the operation does not finish, never above the chip load. mm/min
+  [[nodiscard]] double feed_for(double steepest, int teeth) const;
+  static constexpr double kMostRaise = 3;
   [[nodiscard]] double scallop_in(Region region) const { return scallops_mm ? (*scallops_mm)[region] : scallop_mm; }
   /// Largest misfit that a line-milled flank may keep.
   [[nodiscard]] double most_misfit_mm() const { return left_mm.value_or(kDefaultLeft); }

@@ -6,6 +6,7 @@
 
 #include "cam/analytic/gouge_check.h"
 #include "cam/line/room.h"
+#include "cam/plan/beside_side.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 
@@ -86,6 +87,7 @@ class FaceGearPlanner {
       if (progress) progress(to_string(operations_[n].type));
       auto refusal = operations_[n].type == path::OperationType::line_milling ? line(int(n)) : ball(int(n));
       if (refusal) return std::move(*refusal);
+      set_feeds(n);
       if (rougher_follows(n)) remember(n);
     }
     return std::move(plan_);
@@ -95,13 +97,22 @@ class FaceGearPlanner {
   [[nodiscard]] std::optional<ball::PlanRefusal> ball(int n) {
     std::vector<const cut::Removed*> cleared;
     for (const auto& c : cleared_) cleared.push_back(c.get());
-    auto planned = ball_.plan(n, cleared);
+    auto planned = ball_.plan(n, cleared, leading_of(std::size_t(n)));
     if (auto* refusal = planned.refused()) return std::move(*refusal);
     if (auto refusal = too_many_axes(n, planned.value().path)) return refusal;
     plan_.paths.push_back(std::move(planned.value().path));
     plan_.operations.push_back(planned.value().summary);
     plan_.lines.emplace_back();
     for (auto& d : planned.value().directions) plan_.directions.push_back(std::move(d));
+    return {};
+  }
+
+  /// The ball end of a mill cuts beside the poses of its side where it leaves out the flank.
+  [[nodiscard]] std::optional<ball::Leading> leading_of(std::size_t n) const {
+    const path::MillingOperation& op = operations_[n];
+    if (op.regions[path::Region::flank] || o_.simultaneous_axes < kAllAxes) return {};
+    for (std::size_t k = n; k-- > 0;)
+      if (plan_.lines[k] && operations_[k].tool == op.tool) return beside_side(part_, *plan_.lines[k], int(k));
     return {};
   }
 
@@ -187,6 +198,38 @@ class FaceGearPlanner {
   [[nodiscard]] bool rougher_follows(std::size_t n) const {
     return std::any_of(operations_.begin() + long(n) + 1, operations_.end(),
                        [](const auto& o) { return o.type == path::OperationType::roughing; });
+  }
+  /// By `chip_load`; what only `max_engagement` asks for is measured and leaves the feeds.
+  void set_feeds(std::size_t n) {
+    const path::MillingOperation& op = operations_[n];
+    if (op.chip_load_mm == 0 && op.max_engagement_rad == 0) return;
+    path::ClPath& path = plan_.paths[n];
+    const tool::ToolAssembly& tool = tools_[std::size_t(op.tool)];
+    if (op.type != path::OperationType::roughing) {
+      double contact_top = 0;
+      if (plan_.lines[n])
+        for (const auto& pass : plan_.lines[n]->passes) contact_top = std::max(contact_top, pass.contact_top_mm);
+      return feed_by_stock(path, operations_, tools_, n, contact_top);
+    }
+    const tool::Profile mill = tool::profile_of(tool);
+    const tool::ProofTool bodies = tool::proof_tool(tool);
+    std::vector<const cut::Removed*> before;
+    for (const auto& c : cleared_) before.push_back(c.get());
+    const double top = part_.gear().blank_top();
+    const cut::EngagementQuery query{mill, bodies.cutting, before, [&](const Vec3& p) { return in_blank(p, top); },
+                                     top};
+    const auto work = [&] {
+      const auto engaged = cut::engagement_along(analytic::GougeCheck::motions_of(path), query);
+      plan_.engagement.push_back(feed_by_engagement(path, engaged, op, tool.teeth));
+    };
+    if (o_.stage) o_.stage("engagement", work);
+    else work();
+  }
+  [[nodiscard]] bool in_blank(const Vec3& p, double top) const {
+    const double r = radius(p);
+    const auto& zones = part_.gear().parameters().zones;
+    return p.z() <= top && std::any_of(zones.begin(), zones.end(),
+                                       [&](const auto& z) { return r >= z.inner_radius_mm && r <= z.outer_radius_mm; });
   }
   void remember(std::size_t n) {
     cleared_.push_back(std::make_unique<cut::Removed>(analytic::GougeCheck::motions_of(plan_.paths[n]),

@@ -9,6 +9,7 @@
 
 #include "cam/ball/plan.h"
 #include "cam/line/plan.h"
+#include "cam/plan/chip_feed.h"
 
 namespace toothpath::plan {
 
@@ -23,6 +24,7 @@ struct FaceGearPlan {
   std::vector<ball::OperationPlan> operations;       ///< the same
   std::vector<std::optional<line::LinePlan>> lines;  ///< of line milling, without its path; nothing for the others
   std::vector<proof::DirectionChoice> directions;
+  std::vector<EngagementTrack> engagement;  ///< of roughing that has a `chip_load` or a `max_engagement`
 };
 
 using Progress = std::function<void(const std::string&)>;

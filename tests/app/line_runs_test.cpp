@@ -71,6 +71,31 @@ TEST(LineRuns, OffsetAndSpurSamplesInOneStrip) {
   }
 }
 
+// Where the job states a chip load, roughing is fed by the chip that is measured on the stock: quicker, and no chip is
+// larger.
+TEST(LineRuns, RoughingIsFedByItsChip) {
+  const std::string plain = operation("roughing", 2, "step_down = 0.5\nstep_over = 0.3\nallowance = 0.1"),
+                    finish = small_ball("scallop = 0.03\nchord_tolerance = 0.004");
+  const auto minutes = [&](const std::string& rough, nlohmann::json* engagement) {
+    const TestDir dir;
+    const auto run = run_line_job(dir, kLineGear + rough + finish);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    const auto report = report_in(dir);
+    if (report.contains("engagement")) *engagement = report["engagement"];
+    EXPECT_EQ(file_text(dir / "out/report.html").find("Teeth in the material") != std::string::npos,
+              report.contains("engagement"));
+    return report["operations"][0]["cutting_minutes"].get<double>();
+  };
+  nlohmann::json none, found;
+  const double before = minutes(plain, &none), after = minutes(plain + "chip_load = 0.012\n", &found);
+  EXPECT_TRUE(none.is_null());
+  ASSERT_EQ(found.size(), 1u);
+  std::printf("%.2f min by feed, %.2f min by chip: %s\n", before, after, found.dump().c_str());
+  EXPECT_LT(after, 0.9 * before);
+  EXPECT_LE(found[0]["chip_um"].get<double>(), 12 + 1e-6);
+  EXPECT_LE(found[0]["most_feed"].get<double>(), 3 * 300 + 1e-6);
+}
+
 // The same as a table of one operation.
 TEST(LineRuns, TableOfCusps) {
   const TestDir dir;

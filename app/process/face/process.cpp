@@ -124,6 +124,12 @@ class FaceMilling final : public process::GearMilling {
       if (plan_.lines[n]) add_side_passes(*plan_.lines[n], int(n), out);
     return out;
   }
+  [[nodiscard]] std::vector<report::EngagementReport> engagement() const override {
+    std::vector<report::EngagementReport> out;
+    for (const plan::EngagementTrack& t : plan_.engagement)
+      out.push_back({t.operation, t.way_mm, t.engaged_rad, t.chip_mm, t.feed_mm_min});
+    return out;
+  }
   [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override {
     return gouge_.check_path(path);
   }

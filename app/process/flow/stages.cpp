@@ -37,6 +37,7 @@ std::optional<Diagnostic> plan_and_check(Run& run) {
   const auto paths = run.paths();
   run.report.directions = run.milling->directions();
   run.report.passes = run.milling->passes();
+  run.report.engagement = run.milling->engagement();
   for (const path::ClPath* path : paths) run.report.cl_points += path->records.size();
   if (!planned) return planned.error();
   for (const path::ClPath* path : paths) {

@@ -1,0 +1,38 @@
+// How far a mill stands in the stock along its path: points all over its cutting part, asked whether what they enter is
+// still there.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "cam/cut/swept_tool.h"
+#include "cam/tool/profile.h"
+
+namespace toothpath::cut {
+
+/// Of one motion, at the worst of its places. Nothing in the material: zeros.
+struct Engaged {
+  double angle_rad = 0;  ///< about the axis, of a tooth in the material, at the height where it is greatest
+  double steepest = 0;   ///< greatest share of the feed along the normal: the largest chip, a feed per tooth; in [0, 1]
+};
+
+struct EngagementQuery {
+  const tool::Profile& mill;
+  const std::vector<tool::RoundedFrustum>& cutting;  ///< the same as bodies
+  const std::vector<const Removed*>& before;         ///< what earlier operations removed
+  std::function<bool(const Vec3&)> in_blank;         ///< does the uncut blank hold this place?
+  double top_mm = 0;                                 ///< z above which it never does
+};
+
+/// Stock thinner than this is none, mm.
+inline constexpr double kThinnestStock = 1e-3;
+/// Steps of the points about the axis and along round ends, rad: angles are found to one step; of arcs that are
+/// shorter, and so of chips thinner than its sine, nothing may be seen.
+inline constexpr double kEngagementStep = 0.1745;
+
+/// One entry a motion; rapids and motions that stand have zeros. Motions are those of one operation in one space, in
+/// the order of the cut: each meets what the ones before it and the earlier operations left. On all threads.
+[[nodiscard]] std::vector<Engaged> engagement_along(const std::vector<path::ToolMotion>& motions,
+                                                    const EngagementQuery& query);
+
+}  // namespace toothpath::cut
