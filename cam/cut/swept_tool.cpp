@@ -8,6 +8,7 @@ namespace {
 
 constexpr int kMomentSteps = 40;   // of the bracket of a moment; each at least halves it every second time
 constexpr double kMoment = 1e-12;  // share of a motion
+constexpr int kMostStretches = 12;
 
 /// The distance at a moment and its rate.
 struct AtMoment {
@@ -28,22 +29,39 @@ AtMoment at_moment(const Vec3& p, const tool::RoundedFrustum& body, const path::
   return {s.distance, s.gradient.x() * drho + s.gradient.z() * dh};
 }
 
-/// Where the cutting part may be during a motion, below `top`.
+/// Where the cutting part may be during a motion, below `top`: every stretch of every body about as long as it is wide.
+/// `owners`: the motion of each box.
 std::vector<analytic::Box> boxes_of(const std::vector<path::ToolMotion>& motions,
-                                    const std::vector<tool::RoundedFrustum>& cutting, double top) {
-  std::vector<analytic::Box> boxes(motions.size());
-  for (std::size_t k = 0; k < motions.size(); ++k) {
-    const auto& m = motions[k];
-    for (const auto& body : cutting)
-      for (const auto& [tip, axis] : {std::pair{m.tip_from, m.axis_from}, std::pair{m.tip_to, m.axis_to}})
-        for (const double h : {body.core.from, body.core.to}) {
-          const double arc = 0.125 * (m.axis_to - m.axis_from).squaredNorm() * h;  // of an axis that turns
-          const Vec3 c = tip + h * axis, r = Vec3::Constant(body.widest() + arc);
-          boxes[k].add(c - r);
-          boxes[k].add(c + r);
-        }
-    boxes[k].high.z() = std::max(std::min(boxes[k].high.z(), top), boxes[k].low.z());
-  }
+                                    const std::vector<tool::RoundedFrustum>& cutting, double top,
+                                    std::vector<std::size_t>& owners) {
+  std::vector<analytic::Box> boxes;
+  for (std::size_t k = 0; k < motions.size(); ++k)
+    for (const auto& body : cutting) {
+      const tool::Frustum& core = body.core;
+      const double length = core.to - core.from;
+      const int stretches = std::clamp(int(std::ceil(length / (2 * body.widest()))), 1, kMostStretches);
+      for (int n = 0; n < stretches; ++n) {
+        const double low = core.from + length * n / stretches, high = core.from + length * (n + 1) / stretches;
+        const auto at = [&](double h) {
+          return length > 0 ? core.radius_from + (core.radius_to - core.radius_from) * (h - core.from) / length
+                            : std::max(core.radius_from, core.radius_to);
+        };
+        analytic::Box box;
+        const double radius = std::max(at(low), at(high)) + body.round;
+        for (const auto& [tip, axis] :
+             {std::pair{motions[k].tip_from, motions[k].axis_from}, std::pair{motions[k].tip_to, motions[k].axis_to}})
+          for (const double h : {low, high}) {
+            const double arc = 0.125 * (motions[k].axis_to - motions[k].axis_from).squaredNorm() * h;  // of a turn
+            const Vec3 c = tip + h * axis, r = Vec3::Constant(radius + arc);
+            box.add(c - r);
+            box.add(c + r);
+          }
+        if (box.low.z() > top && n > 0) continue;
+        box.high.z() = std::max(std::min(box.high.z(), top), box.low.z());
+        boxes.push_back(box);
+        owners.push_back(k);
+      }
+    }
   return boxes;
 }
 
@@ -70,11 +88,14 @@ double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const pat
 }
 
 SweptTool::SweptTool(std::vector<path::ToolMotion> motions, std::vector<tool::RoundedFrustum> cutting, double top_mm)
-    : motions_(std::move(motions)), cutting_(std::move(cutting)), index_(boxes_of(motions_, cutting_, top_mm)) {}
+    : motions_(std::move(motions)),
+      cutting_(std::move(cutting)),
+      index_(boxes_of(motions_, cutting_, top_mm, owners_)) {}
 
 double SweptTool::excess_after(std::size_t count, const Vec3& p, double cap) const {
   double best = cap;
-  index_.near(p, std::max(cap, 0.0), [&](std::size_t k, double) {
+  index_.near(p, std::max(cap, 0.0), [&](std::size_t box, double) {
+    const std::size_t k = owners_[box];
     if (k >= count) return std::max(best, 0.0);
     for (const auto& body : cutting_) best = std::min(best, least_distance(p, body, motions_[k], best));
     return std::max(best, 0.0);

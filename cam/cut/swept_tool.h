@@ -35,6 +35,7 @@ class SweptTool {
  private:
   std::vector<path::ToolMotion> motions_;
   std::vector<tool::RoundedFrustum> cutting_;
+  std::vector<std::size_t> owners_;  ///< motions of the boxes of the index
   analytic::SpatialIndex index_;
 };
 
