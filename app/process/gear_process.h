@@ -62,6 +62,8 @@ class GearMilling {
   [[nodiscard]] virtual std::vector<report::PassReport> passes() const = 0;
   /// Engagement along the paths of operations that ask for it; empty where none does.
   [[nodiscard]] virtual std::vector<report::EngagementReport> engagement() const { return {}; }
+  /// What the plan would have its reader know; warnings of the report.
+  [[nodiscard]] virtual std::vector<std::string> advice() const { return {}; }
   /// The gouge check of one path: the only way to a CheckedClPath. Errors (kind verification): the deepest place.
   [[nodiscard]] virtual Result<proof::CheckedClPath> approve(const path::ClPath& path) const = 0;
 

@@ -16,6 +16,7 @@
 #include "cam/analytic/gouge_check.h"
 #include "cam/cut/cut_surface.h"
 #include "cam/plan/face_gear.h"
+#include "cam/plan/first_ball.h"
 #include "postproc/joints/pole.h"
 
 namespace toothpath::face {
@@ -34,8 +35,9 @@ std::string gear_words(const face_gear::FaceGearParameters& p) {
   return text;
 }
 
-constexpr double kLinkFeed = 6000;  // mm/min: of moves under feed through air, where the machine is no slower
-constexpr double kBiasShare = 0.4;  // of the rounding, taken up by the poses: the rest is counted
+constexpr double kLinkFeed = 6000;   // mm/min: of moves under feed through air, where the machine is no slower
+constexpr double kSmallFirst = 0.7;  // of what the space admits: a first roughing tool that is told
+constexpr double kBiasShare = 0.4;   // of the rounding, taken up by the poses: the rest is counted
 
 cut::CutSurfaceOptions surface_options(const process::FlankGrid& grid) {
   cut::CutSurfaceOptions options;
@@ -129,6 +131,17 @@ class FaceMilling final : public process::GearMilling {
     for (const plan::EngagementTrack& t : plan_.engagement)
       out.push_back({t.operation, t.way_mm, t.engaged_rad, t.chip_mm, t.feed_mm_min});
     return out;
+  }
+  [[nodiscard]] std::vector<std::string> advice() const override {
+    if (plan_.paths.empty() || job_.operations.front().type != path::OperationType::roughing) return {};
+    const path::MillingOperation& first = job_.operations.front();
+    const tool::ToolAssembly& tool = job_.tools[std::size_t(first.tool)];
+    const double admitted = plan::first_ball_mm(part_, first.allowance_mm, ball::reach_of(job_.tools));
+    if (tool.diameter_mm >= kSmallFirst * admitted) return {};
+    return {
+        fmt::format("operation 0 roughs with tool {}, {:g} mm; the upper half of the tooth spaces, where most of "
+                    "the material is, admits a ball of {:.2f} mm",
+                    tool.number, tool.diameter_mm, admitted)};
   }
   [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override {
     return gouge_.check_path(path);

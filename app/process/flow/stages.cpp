@@ -38,6 +38,7 @@ std::optional<Diagnostic> plan_and_check(Run& run) {
   run.report.directions = run.milling->directions();
   run.report.passes = run.milling->passes();
   run.report.engagement = run.milling->engagement();
+  for (std::string& text : run.milling->advice()) run.report.warnings.push_back(std::move(text));
   for (const path::ClPath* path : paths) run.report.cl_points += path->records.size();
   if (!planned) return planned.error();
   for (const path::ClPath* path : paths) {
