@@ -16,6 +16,8 @@ struct PointRing {
   double normal_out = 1, normal_up = 0;  ///< of the surface: from the axis, along it
 };
 
+constexpr double kChipCounts =
+    0.5;  // of the largest chip: the tip of a ball that sinks touches all around, and cuts little
 constexpr double kPlaces = 0.2;  // of the largest radius, between the places of a motion that are looked at
 
 std::vector<PointRing> rings_of(const tool::Meridian& meridian) {
@@ -68,17 +70,23 @@ class Along {
   void at(const path::ToolMotion& m, double t, std::size_t done, Engaged& most) const {
     const Vec3 tip = path::tip_at(m, t), axis = path::axis_at(m, t), feed = (m.tip_to - m.tip_from).normalized();
     const Vec3 u = axis.unitOrthogonal(), v = axis.cross(u);
+    double steepest = 0;
+    std::vector<Engaged> at_heights;
     for (const PointRing& ring : rings_) {
-      int engaged = 0;
+      Engaged here;
       for (const double a : around_) {
         const Vec3 out = std::cos(a) * u + std::sin(a) * v;
         const double along = (ring.normal_out * out + ring.normal_up * axis).dot(feed);
         if (along <= 0 || !stands(tip + ring.height * axis + ring.radius * out, done)) continue;
-        ++engaged;
-        most.steepest = std::max(most.steepest, along);
+        here.angle_rad += kEngagementStep;
+        here.steepest = std::max(here.steepest, along);
       }
-      most.angle_rad = std::max(most.angle_rad, engaged * kEngagementStep);
+      steepest = std::max(steepest, here.steepest);
+      at_heights.push_back(here);
     }
+    most.steepest = std::max(most.steepest, steepest);
+    for (const Engaged& here : at_heights)
+      if (here.steepest >= kChipCounts * steepest) most.angle_rad = std::max(most.angle_rad, here.angle_rad);
   }
 
   [[nodiscard]] bool stands(const Vec3& p, std::size_t done) const {

@@ -12,8 +12,9 @@ namespace toothpath::cut {
 
 /// Of one motion, at the worst of its places. Nothing in the material: zeros.
 struct Engaged {
-  double angle_rad = 0;  ///< about the axis, of a tooth in the material, at the height where it is greatest
-  double steepest = 0;   ///< greatest share of the feed along the normal: the largest chip, a feed per tooth; in [0, 1]
+  double angle_rad =
+      0;  ///< about the axis, of a tooth in the material: greatest of the heights with half the largest chip
+  double steepest = 0;  ///< greatest share of the feed along the normal: the largest chip, a feed per tooth; in [0, 1]
 };
 
 struct EngagementQuery {

@@ -6,11 +6,22 @@
 namespace toothpath::plan {
 namespace {
 
-constexpr double kFound = 5e-4;  // mm of radius
+constexpr double kFound = 5e-4;  // mm of radius, and of the bottom's height
+constexpr double kDeepest = 5;   // modules: no tooth is so high
+
+/// Height of the bottom of a space in its middle: below it the part is solid.
+double bottom_of(const analytic::GearDistance& part, int zone, double r, double azimuth) {
+  double high = part.space(zone).surface().z_tip(r), low = high - kDeepest * part.gear().parameters().module_mm;
+  while (high - low > kFound) {
+    const double z = 0.5 * (low + high);
+    (part.nearest({r * std::cos(azimuth), r * std::sin(azimuth), z}, kFound).distance > 0 ? high : low) = z;
+  }
+  return high;
+}
 
 double largest_radius_at(const analytic::GearDistance& part, int zone, double r, double allowance, double reach) {
   const double azimuth = part.space_azimuth(zone, r),
-               half = 0.5 * (part.space(zone).surface().z_tip(r) + part.gear().lowest_root());
+               half = 0.5 * (part.space(zone).surface().z_tip(r) + bottom_of(part, zone, r, azimuth));
   double low = 0, high = reach - allowance;
   while (high - low > kFound) {
     const double R = 0.5 * (low + high);

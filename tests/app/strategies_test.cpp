@@ -115,10 +115,10 @@ TEST(StudyStrategies, LineStripsBallAndTiltedBall) {
     EXPECT_LT(number("line", time), number("2 strips", time)) << time;
     EXPECT_LT(number("2 strips", time), number("ball", time)) << time;
   }
-  // Nothing but the flanks differs.
+  // Nothing but the flanks differs, and that fillets are cut beside poses of a side where there are some.
   const double rest = number("line", "total_minutes") - number("line", "flank_minutes");
-  for (const char* row : {"2 strips", "ball"})
-    EXPECT_NEAR(number(row, "total_minutes") - number(row, "flank_minutes"), rest, 0.02 * rest) << row;
+  for (const auto& [row, share] : {std::pair{"2 strips", 0.02}, {"ball", 0.1}})
+    EXPECT_NEAR(number(row, "total_minutes") - number(row, "flank_minutes"), rest, share * rest) << row;
   EXPECT_EQ(number("line", "passes"), 2);
   EXPECT_EQ(number("2 strips", "passes"), 4);
   EXPECT_GT(number("ball", "passes"), 10);

@@ -101,9 +101,10 @@ TEST(UnreachedRun, NothingIsSaidWhereTheBallFits) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   const auto report = report_in(dir);
   EXPECT_EQ(report["verdict"], "verified");
-  // Of the ball nothing; that its neck is slender is another matter (docs/force.md).
-  ASSERT_EQ(report["warnings"].size(), 1u);
-  EXPECT_TRUE(report["warnings"][0].get<std::string>().starts_with("tool 1 is slender")) << report["warnings"];
+  // Of the ball nothing; that its neck is slender, and that it is small for roughing, are other matters.
+  ASSERT_EQ(report["warnings"].size(), 2u) << report["warnings"];
+  EXPECT_TRUE(report["warnings"][0].get<std::string>().starts_with("operation 0 roughs with tool 1, 1 mm; the upper"));
+  EXPECT_TRUE(report["warnings"][1].get<std::string>().starts_with("tool 1 is slender")) << report["warnings"];
   EXPECT_EQ(run.out.find("not finished"), std::string::npos);
   EXPECT_EQ(file_text(dir / "out/report.html").find("oot not finished"), std::string::npos);
   EXPECT_EQ(file_text(dir / "out/setup.html").find("oot not finished"), std::string::npos);
