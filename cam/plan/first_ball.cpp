@@ -7,11 +7,10 @@ namespace toothpath::plan {
 namespace {
 
 constexpr double kFound = 5e-4;  // mm of radius, and of the bottom's height
-constexpr double kDeepest = 5;   // modules: no tooth is so high
 
 /// Height of the bottom of a space in its middle: below it the part is solid.
 double bottom_of(const analytic::GearDistance& part, int zone, double r, double azimuth) {
-  double high = part.space(zone).surface().z_tip(r), low = high - kDeepest * part.gear().parameters().module_mm;
+  double high = part.space(zone).surface().z_tip(r), low = part.gear().lowest_root() - kFound;
   while (high - low > kFound) {
     const double z = 0.5 * (low + high);
     (part.nearest({r * std::cos(azimuth), r * std::sin(azimuth), z}, kFound).distance > 0 ? high : low) = z;
