@@ -83,6 +83,8 @@ Result<ProgramProof> prove_program(const ProgramText& program, const AskedPaths&
     proof.motions = clock.run("compare the teeth", [&] {
       return without_copies(std::move(proof.motions), gear.teeth(), kCopyShare * program.job.verify.gouge_tolerance_mm);
     });
+  if (!proof.read.copies.copies && !program.job.verify.all_teeth)
+    proof.likes = clock.run("compare the teeth", [&] { return like_motions(proof.motions, gear.teeth()); });
   gear.judge(proof, clock);
   if (!asked.paths.empty()) compare(proof, asked, gear, clock);
   return proof;
