@@ -7,18 +7,6 @@
 #include "geometry/base/angle.h"
 
 namespace toothpath::process {
-namespace {
-
-/// Largest tolerance of path blending that the text asks for while cutting.
-double blend_read_back(const readback::ReadBack& read) {
-  double most = 0;
-  for (const auto& trace : read.operations)
-    for (const auto& move : trace.moves)
-      if (!move.rapid) most = std::max({most, double(move.blend_mm), double(move.corner_path_mm)});
-  return most;
-}
-
-}  // namespace
 
 proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double measured_mm, std::string note) {
   return {source, predicted_mm * app::kUm, measured_mm * app::kUm, std::move(note)};
@@ -62,7 +50,7 @@ void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::
                          "records against the motions that were read back"));
   // In single precision, as the moves that are read back carry it.
   ledger.push_back(
-      entry(proof::ErrorSource::path_blending, double(float(blend_mm)), blend_read_back(read),
+      entry(proof::ErrorSource::path_blending, double(float(blend_mm)), read.blend_mm,
             blend_mm > 0 ? "the tolerance that the text grants the control" : "the text grants the control none"));
 }
 

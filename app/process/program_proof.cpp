@@ -24,16 +24,20 @@ Result<ProgramProof> read_program(const ProgramText& program, const GearCheck& g
   });
   if (!read) return read.error();
   out.read = std::move(read.value());
+  std::size_t moves = 0;
+  for (const readback::OperationTrace& trace : out.read.operations) moves += trace.moves.size();
+  out.motions.reserve(moves);
   for (const readback::OperationTrace& trace : out.read.operations) {
     if (const auto count = static_cast<int>(job.operations.size()); trace.operation >= count)
       return fail_at({program.file, trace.moves.empty() ? 0 : trace.moves.front().line, 0},
                      "operation {}: the job has the operations 0 to {}", trace.operation, count - 1);
-    const auto part = clock.run("read back", [&] {
-      return tool_motions(trace, out.read.copies, out.control, program.machine, *job.setup, gear.teeth(),
-                          {gear.motion_tolerance(), gear.motion_tolerance()});
+    const Status followed = clock.run("read back", [&] {
+      return add_tool_motions(
+          trace, out.read.copies,
+          {out.control, program.machine, *job.setup, gear.teeth(), {gear.motion_tolerance(), gear.motion_tolerance()}},
+          out.motions);
     });
-    if (!part) return part.error();
-    out.motions.insert(out.motions.end(), part->begin(), part->end());
+    if (!followed) return followed.error();
   }
   return out;
 }
@@ -78,11 +82,14 @@ Result<ProgramProof> prove_program(const ProgramText& program, const AskedPaths&
   judge_feeds_between(proof.read, proof.reasons);
   judge_travels(ranges_of(proof.read, program.machine), proof.reasons);
   gear.meet(proof);
+  if (!proof.read.copies.copies) keep_first_teeth(proof.read);  // what else there is to say of them is in the motions
   // Teeth that are written out one by one: what is the first tooth again, turned, need not be proven again.
   if (!proof.read.copies.copies && !program.job.verify.all_teeth)
     proof.motions = clock.run("compare the teeth", [&] {
       return without_copies(std::move(proof.motions), gear.teeth(), kCopyShare * program.job.verify.gouge_tolerance_mm);
     });
+  if (!proof.read.copies.copies && !program.job.verify.all_teeth)
+    proof.likes = clock.run("compare the teeth", [&] { return like_motions(proof.motions, gear.teeth()); });
   gear.judge(proof, clock);
   if (!asked.paths.empty()) compare(proof, asked, gear, clock);
   return proof;

@@ -13,6 +13,7 @@
 #include "app/base/stage_clock.h"
 #include "app/job/job.h"
 #include "app/report/finding.h"
+#include "cam/proof/like_motion.h"
 #include "cam/proof/verification.h"
 #include "machines/machine.h"
 #include "postproc/readback/reader.h"
@@ -40,6 +41,7 @@ struct ProgramProof {
   readback::NcControl control;
   readback::ReadBack read;
   std::vector<path::ToolMotion> motions;             ///< in program order; all teeth that were kept
+  std::vector<proof::LikeMotion> likes;              ///< those that go nearly as their operation's first tooth
   std::optional<readback::ClComparison> comparison;  ///< only where there is a path to compare with
   double path_tolerance_mm = 0;                      ///< of that comparison
   std::vector<std::string> reasons;                  ///< why the program is not proven; empty: it is

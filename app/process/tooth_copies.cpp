@@ -1,7 +1,10 @@
 #include "app/process/tooth_copies.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
@@ -12,6 +15,16 @@ namespace toothpath::process {
 namespace {
 
 constexpr double kReach = 1000;  // mm: the axis also moves shank and holder, less than a metre away
+
+constexpr double kLike = 0.1;        // mm, the same way: motions farther apart tell little of each other
+constexpr double kLever = 10;        // mm: of an axis where its turn is weighed against a way of the tip
+constexpr std::size_t kAhead = 48;   // motions of the first tooth among which the next place is looked for,
+constexpr std::size_t kSettled = 4;  // and how many behind the best one decide,
+constexpr double kThere = 0.003;     // mm: one where it is this near; passes may come by again
+constexpr int kSearches = 64;        // of the whole first tooth, where a tooth has gone elsewhere
+// Axes are blended in a straight line and then made unit vectors again. Where none turns by more than the first of
+// these within a motion, that widens what lies between two of them by no more than the second.
+constexpr double kWideTurn = 0.05, kNormalised = 1.001;
 
 /// Motions that one block of the text was cut into: pieces of equal time, indices [first, last).
 struct Block {
@@ -101,13 +114,133 @@ void stand_for(std::vector<path::ToolMotion>& motions, const Block& original, co
   }
 }
 
+/// A place of the straight line between two poses.
+Pose between(const Pose& a, const Pose& b, double t) {
+  return {(1 - t) * a.tip + t * b.tip, (1 - t) * a.axis + t * b.axis};
+}
+double apart_squared(const Pose& a, const Pose& b) {
+  return (a.tip - b.tip).squaredNorm() + kLever * kLever * (a.axis - b.axis).squaredNorm();
+}
+/// Share of the line between two poses that is nearest to another.
+double share(const Pose& a, const Pose& b, const Pose& x) {
+  const double square = apart_squared(a, b);
+  if (square == 0) return 0;
+  const double along = (b.tip - a.tip).dot(x.tip - a.tip) + kLever * kLever * (b.axis - a.axis).dot(x.axis - a.axis);
+  return std::clamp(along / square, 0.0, 1.0);
+}
+float rounded_up(double x) { return std::nextafter(float(std::max(x, 0.0)), INFINITY); }
+
+/// Follows the first tooth beside another one, motion by motion. Wherever either is cut, the nearest place of the other
+/// is taken; from one such place to the next both go straight.
+class Beside {
+ public:
+  /// @param path  cutting motions of the first tooth, by their number, in order; @param turn  back to it
+  Beside(const std::vector<path::ToolMotion>& motions, const std::vector<std::uint32_t>& path, double turn)
+      : motions_(motions), path_(path), c_(std::cos(turn)), s_(std::sin(turn)) {}
+
+  /// The next motion of the other tooth; nothing where it is not like the first one.
+  std::optional<proof::LikeMotion> next(std::uint32_t k) {
+    const path::ToolMotion& m = motions_[k];
+    const Pose a{back(m.tip_from), back(m.axis_from)}, b{back(m.tip_to), back(m.axis_to)};
+    const std::size_t from = nearest(a, at_, kAhead), to = nearest(b, from, kAhead);
+    tip_ = axis_ = 0;
+    double stray = INFINITY, turn = INFINITY, t = 0;
+    bool wide = turns_wide(m);
+    for (std::size_t n = from; n <= to; ++n) {
+      const path::ToolMotion& own = motions_[path_[n]];
+      const Pose start{own.tip_from, own.axis_from}, end{own.tip_to, own.axis_to};
+      if (n == from) {
+        note(a, between(start, end, share(start, end, a)));
+      } else {  // where the motion before this one ends and this one begins
+        const path::ToolMotion& before = motions_[path_[n - 1]];
+        t = std::max(t, share(a, b, start));
+        note(between(a, b, t), start);
+        note(between(a, b, t), {before.tip_to, before.axis_to});
+      }
+      if (n == to) note(b, between(start, end, share(start, end, b)));
+      stray = std::min(stray, own.deviation_mm);
+      turn = std::min(turn, own.axis_deviation);
+      wide = wide || turns_wide(own);
+    }
+    const bool like = !wide && tip_ + kReach * axis_ <= kLike;
+    if (like) at_ = to;
+    else if (searches_ > 0) at_ = nearest(b, 0, path_.size()), --searches_;
+    if (!like) return std::nullopt;
+    return proof::LikeMotion{k, path_[from], path_[to] + 1, rounded_up(tip_ + m.deviation_mm - stray),
+                             rounded_up(kNormalised * axis_ + m.axis_deviation - turn)};
+  }
+
+ private:
+  [[nodiscard]] static bool turns_wide(const path::ToolMotion& m) {
+    return (m.axis_to - m.axis_from).norm() > kWideTurn;
+  }
+  void note(const Pose& a, const Pose& b) {
+    tip_ = std::max(tip_, (a.tip - b.tip).norm());
+    axis_ = std::max(axis_, (a.axis - b.axis).norm());
+  }
+  /// The motion of the path that comes nearest, of `count` from `first` on.
+  [[nodiscard]] std::size_t nearest(const Pose& x, std::size_t first, std::size_t count) const {
+    std::size_t best = first;
+    double least = INFINITY;
+    for (std::size_t n = first; n < std::min(first + count, path_.size()); ++n) {
+      const path::ToolMotion& own = motions_[path_[n]];
+      const Pose a{own.tip_from, own.axis_from}, b{own.tip_to, own.axis_to};
+      const double off = apart_squared(x, between(a, b, share(a, b, x)));
+      if (off < least) {
+        least = off;
+        best = n;
+      } else if (least < kThere * kThere || (n > best + kSettled && least < kLike * kLike)) {
+        break;
+      }
+    }
+    return best;
+  }
+  [[nodiscard]] Vec3 back(const Vec3& v) const { return {c_ * v.x() - s_ * v.y(), s_ * v.x() + c_ * v.y(), v.z()}; }
+
+  const std::vector<path::ToolMotion>& motions_;
+  const std::vector<std::uint32_t>& path_;
+  double c_, s_;
+  std::size_t at_ = 0;         ///< of the path: where the last motion ended
+  int searches_ = kSearches;   ///< that are left
+  double tip_ = 0, axis_ = 0;  ///< how far the places taken are apart, at most
+};
+
+/// Of every operation the first tooth that it cuts.
+std::map<int, int> first_teeth(const std::vector<path::ToolMotion>& motions) {
+  std::map<int, int> first;
+  for (const path::ToolMotion& m : motions)
+    if (!m.rapid) first.emplace(m.operation, m.tooth);
+  return first;
+}
+
 }  // namespace
+
+std::vector<proof::LikeMotion> like_motions(const std::vector<path::ToolMotion>& motions, int teeth) {
+  std::map<ToothOfOperation, std::vector<std::uint32_t>> cuts;
+  for (std::size_t k = 0; k < motions.size(); ++k)
+    if (!motions[k].rapid) cuts[{motions[k].operation, motions[k].tooth}].push_back(std::uint32_t(k));
+  const std::map<int, int> first_tooth = first_teeth(motions);
+  std::vector<ToothOfOperation> others;
+  for (const auto& [key, cut] : cuts)
+    if (key.second != first_tooth.at(key.first)) others.push_back(key);
+  std::vector<std::vector<proof::LikeMotion>> found(others.size());
+  tbb::parallel_for(std::size_t(0), others.size(), [&](std::size_t n) {
+    const auto [operation, tooth] = others[n];
+    const int reference = first_tooth.at(operation);
+    Beside beside(motions, cuts.at({operation, reference}), -2 * kPi * (tooth - reference) / teeth);
+    for (const std::uint32_t k : cuts.at(others[n]))
+      if (const auto like = beside.next(k)) found[n].push_back(*like);
+  });
+  std::vector<proof::LikeMotion> likes;
+  for (const auto& of_tooth : found) likes.insert(likes.end(), of_tooth.begin(), of_tooth.end());
+  std::sort(likes.begin(), likes.end(),
+            [](const proof::LikeMotion& a, const proof::LikeMotion& b) { return a.motion < b.motion; });
+  return likes;
+}
 
 std::vector<path::ToolMotion> without_copies(std::vector<path::ToolMotion> motions, int teeth, double tolerance_mm) {
   const Blocks cuts = cutting_blocks(motions);
-  std::map<int, int> first_tooth;  // of an operation
-  for (const path::ToolMotion& m : motions)
-    if (!m.rapid) first_tooth.emplace(m.operation, m.tooth);
+  const std::map<int, int> first_tooth = first_teeth(motions);
   std::map<ToothOfOperation, double> shifts;
   std::map<int, bool> copied;  // tooth -> in every operation
   for (const auto& [key, blocks] : cuts) {
@@ -132,10 +265,11 @@ std::vector<path::ToolMotion> without_copies(std::vector<path::ToolMotion> motio
                 drop.begin() + static_cast<std::ptrdiff_t>(copies[k].last), true);
     }
   }
-  std::vector<path::ToolMotion> kept;
+  std::size_t kept = 0;
   for (std::size_t k = 0; k < motions.size(); ++k)
-    if (!drop[k]) kept.push_back(motions[k]);
-  return kept;
+    if (!drop[k]) motions[kept++] = motions[k];
+  motions.resize(kept);
+  return motions;
 }
 
 }  // namespace toothpath::process

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cam/path/tool_motion.h"
+#include "cam/proof/like_motion.h"
 
 namespace toothpath::process {
 
@@ -15,5 +16,10 @@ namespace toothpath::process {
 /// @param motions  in program order, W; @param teeth  of the gear
 [[nodiscard]] std::vector<path::ToolMotion> without_copies(std::vector<path::ToolMotion> motions, int teeth,
                                                            double tolerance_mm);
+
+/// Cutting motions of later teeth that go within 0.1 mm of their operation's first tooth, however either is cut into
+/// blocks, in the order of the motions. What is proven of the first tooth tells of them all but this distance.
+/// @param motions, teeth  as above
+[[nodiscard]] std::vector<proof::LikeMotion> like_motions(const std::vector<path::ToolMotion>& motions, int teeth);
 
 }  // namespace toothpath::process

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "cam/path/motion_blend.h"
 
@@ -83,21 +84,46 @@ bool CutterSweep::settled(double least, double seen, double slack, double arm) c
   return deepest <= 0 || deepest <= here + proof_ + leeway + m_->deviation_mm + arm * m_->axis_deviation;
 }
 
-CutterFinding CutterSweep::check(const path::ToolMotion& motion) {
+void CutterSweep::expect(double depth_mm) { worst_ = std::max(worst_, std::min(depth_mm, tolerance_ - proof_)); }
+
+CutterFinding CutterSweep::check(const path::ToolMotion& motion, const KnownDepths& known) {
   m_ = &motion;
   found_ = {};
+  if (by_itself_) worst_ = 0;
+  double least = 0;
+  if (known.good(0)) {
+    found_.bound_mm = known.of_part[0];
+    least = R_ - found_.bound_mm;
+  } else if (centre(least)) {
+    part_bounds_.fill(found_.bound_mm);
+    return found_;
+  }
+  const double ball = std::exchange(found_.bound_mm, -INFINITY);
+  flute_leaves_ = INFINITY;
+  if (known.good(1)) found_.bound_mm = known.of_part[1];
+  else flute(least);
+  // A wreck is bounded already; there and above the part nothing was asked of the flute.
+  part_bounds_ = {ball, least <= -within_ ? ball : std::max(found_.bound_mm, -flute_leaves_)};
+  found_.bound_mm = std::max(ball, found_.bound_mm);
+  return found_;
+}
+
+/// Follows the ball centre: its least distance. Is the whole cutting part above the part, so that nothing is left to
+/// ask?
+bool CutterSweep::centre(double& least) {
   const Vec3 a = place(0, 0), b = place(1, 0);
   const double length = (b - a).norm();
   const NearestPlace qa = chained_ && a == last_centre_ ? last_ : query(a, within_);
   const NearestPlace qb = query(b, qa.distance + length);
   note(qa, tool::Body::ball);
   note(qb, tool::Body::ball);
-  if (const double height = height_above(); height > 0) found_.bound_mm = std::max(-height, found_.measured_mm);
-  else flute(ball(0, 1, qa, qb, kCutterHalvings));
+  const double height = height_above();
+  if (height > 0) found_.bound_mm = std::max(-height, found_.measured_mm);
+  else least = ball(0, 1, qa, qb, kCutterHalvings);
   chained_ = true;
   last_centre_ = b;
   last_ = qb;
-  return found_;
+  return height > 0;
 }
 
 /// How far the whole cutting part stays above the part.
@@ -155,9 +181,12 @@ void CutterSweep::flute(double low) {
   double h = 0;
   const double roof = part_.gear().blank_top();
   for (Row& row : rows_) {
-    if (m_->axis_from.z() >= 0 && m_->axis_to.z() >= 0 &&
-        std::min(place(0, h).z(), place(1, h).z()) - R_ - path::line_slack(*m_, R_ + row.height, 1) > roof)
+    if (const double above =
+            std::min(place(0, h).z(), place(1, h).z()) - R_ - path::line_slack(*m_, R_ + row.height, 1) - roof;
+        m_->axis_from.z() >= 0 && m_->axis_to.z() >= 0 && above > 0) {
+      flute_leaves_ = above;
       return;  // above the part from here on
+    }
     const double H = row.height - h;
     double high = remembered(row);
     const auto good = [&] { return settled(least_between(low, high, H), worst_, 0, R_); };

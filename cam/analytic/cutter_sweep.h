@@ -9,8 +9,10 @@
 // docs/proof.md.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "cam/analytic/gear_distance.h"
@@ -31,6 +33,14 @@ struct CutterFinding {
   tool::Body body = tool::Body::ball;  ///< or the flute
 };
 
+/// What is known of a motion before it is looked at, for each part of the cutter in turn: a depth that it cannot
+/// exceed.
+struct KnownDepths {
+  std::span<const double> of_part;  ///< mm; empty: nothing is known
+  double good_mm = 0;               ///< a part that is known to be no deeper than this is not looked at
+  [[nodiscard]] bool good(std::size_t part) const { return part < of_part.size() && of_part[part] <= good_mm; }
+};
+
 /// Checks motions one after another; each starts from what the one before it found, so that a chain of short motions
 /// costs about two distances a motion. One object a thread.
 class CutterSweep {
@@ -39,7 +49,14 @@ class CutterSweep {
   /// @param tolerance_mm depth that is accepted: a motion is followed more coarsely only where it stays below
   CutterSweep(const GearDistance& part, const tool::ToolAssembly& tool, double proof_mm, double tolerance_mm);
 
-  [[nodiscard]] CutterFinding check(const path::ToolMotion& motion);
+  /// Parts: ball, flute.
+  [[nodiscard]] CutterFinding check(const path::ToolMotion& motion, const KnownDepths& known = {});
+  /// Something this deep was found elsewhere: what is no deeper need not be followed closely.
+  void expect(double depth_mm);
+  /// From now on every motion is followed closely, whatever was found in others.
+  void each_by_itself() { by_itself_ = true; }
+  /// Of every part, the depth that it cannot exceed in the motion that was checked last.
+  [[nodiscard]] std::span<const double> part_bounds() const { return part_bounds_; }
   [[nodiscard]] std::size_t queries() const { return queries_; }
 
  private:
@@ -60,6 +77,7 @@ class CutterSweep {
   void note(const NearestPlace& q, tool::Body body);
   [[nodiscard]] bool settled(double least, double seen, double slack, double arm) const;
   [[nodiscard]] double height_above() const;
+  bool centre(double& least);
   double ball(double t0, double t1, const NearestPlace& q0, const NearestPlace& q1, int depth);
   void flute(double least_at_centre);
   [[nodiscard]] double remembered(const Row& row) const;
@@ -75,8 +93,11 @@ class CutterSweep {
   Vec3 last_centre_ = Vec3::Zero();
   NearestPlace last_;
   double worst_ = 0;  ///< deepest found by this object so far, at least 0
+  bool by_itself_ = false;
   const path::ToolMotion* m_ = nullptr;
   CutterFinding found_;
+  std::array<double, 2> part_bounds_{};
+  double flute_leaves_ = INFINITY;  ///< how far above the part the flute was when it was followed no higher
   std::size_t queries_ = 0;
 };
 

@@ -248,7 +248,7 @@ class GearDistance::Impl::Question {
   }
 
   void end_faces(const View& at) {
-    if (!at.beside()) return;
+    if (!at.beside() || at.gap_r >= best_.distance) return;  // no nearer than what was found
     const auto& profile = r_ < at.ring.r_in ? at.ring.end_in : at.ring.end_out;
     if (profile.size() > 2 && in_material(profile, at.azimuth, z_, at.z_tip))
       take(at.gap_r, true, at.zone, "end", at.c, at.c);

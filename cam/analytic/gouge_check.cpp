@@ -24,6 +24,8 @@ constexpr double kAhead =
     0.4;  // mm: and this much farther where a body is looked at anew, so that later motions need not
 constexpr double kContact = 0.005;  // mm: smaller gaps of shank and holder are followed to proof_mm
 constexpr double kGapStep = 0.02;   // mm: to which the least gap is told
+// Of proof_mm, to which the motions are followed that others are like: of a ball by distances, of a convex body.
+constexpr double kBallModel = 0.25, kProfileModel = 0.5;
 
 proof::WorstPlace place_of(const NearestPlace& q, const path::ToolMotion& m, double depth, tool::Body body) {
   proof::WorstPlace w;
@@ -48,15 +50,66 @@ proof::WorstPlace place_of(const SweptGap& gap, const path::ToolMotion& m, tool:
   return place_of(q, m, -gap.measured_mm, body);
 }
 
+double arm_of(const tool::Frustum& f) { return std::hypot(f.to, std::max(f.radius_from, f.radius_to)); }
+
+/// How far the parts of a tool reach from its tip: those of the cutter as its sweep tells them apart, then shank and
+/// holder.
+std::vector<double> arms_of(const tool::ProofTool& tool) {
+  std::vector<double> arms;
+  if (tool.ball_mill) {
+    const double R = tool.ball_mill->radius_mm();
+    arms = {R, std::hypot(tool.ball_mill->flute_length_mm, R)};  // the ball goes where its centre goes
+  } else {
+    for (const auto& shape : tool.cutting) arms.push_back(std::hypot(shape.core.to + shape.round, shape.widest()));
+  }
+  for (const auto& f : tool.bodies) arms.push_back(arm_of(f));
+  return arms;
+}
+
+/// What is proven of motions by themselves, part by part of their tools, for those that are like them.
+class ProvenDepths {
+ public:
+  /// @param of  motions by their number, in order
+  ProvenDepths(const std::vector<std::size_t>& of, std::size_t parts)
+      : of_(of), parts_(parts), depth_(of.size() * parts, INFINITY) {}
+  [[nodiscard]] std::span<double> place(std::size_t n) { return std::span(depth_).subspan(n * parts_, parts_); }
+  /// Depths that the parts of a motion that is like others cannot exceed.
+  void of(const proof::LikeMotion& like, const std::vector<double>& arms, std::vector<double>& known) const {
+    const auto first = std::size_t(std::lower_bound(of_.begin(), of_.end(), like.like_first) - of_.begin());
+    known.assign(arms.size(), -INFINITY);
+    for (std::size_t n = first; n < of_.size() && of_[n] < like.like_last; ++n)
+      for (std::size_t k = 0; k < arms.size(); ++k) known[k] = std::max(known[k], depth_[n * parts_ + k]);
+    for (std::size_t k = 0; k < arms.size(); ++k) known[k] += like.away(arms[k]);
+  }
+
+ private:
+  const std::vector<std::size_t>& of_;
+  std::size_t parts_;
+  std::vector<double> depth_;
+};
+
 /// Motions that follow one another, checked by one thread.
 class Chunk {
  public:
-  Chunk(const GearDistance& part, const std::vector<tool::ProofTool>& tools, const GougeCheckOptions& options)
-      : part_(part), tools_(tools), o_(options), out_(proof::no_motion_yet(options.limits.clearance_mm)) {}
+  /// @param model  others are like these: every motion is followed closely
+  /// @param elsewhere  what was found before in other motions; none: nothing was
+  Chunk(const GearDistance& part, const std::vector<tool::ProofTool>& tools, const GougeCheckOptions& options,
+        bool model, const proof::GougeResult* elsewhere = nullptr)
+      : part_(part),
+        tools_(tools),
+        o_(options),
+        model_(model),
+        elsewhere_(elsewhere),
+        out_(proof::no_motion_yet(options.limits.clearance_mm)) {}
 
-  void check(const path::ToolMotion& m, int tool) {
+  /// @param known  of the tool's parts, a depth that each cannot exceed; empty: nothing is known
+  /// @param proven  takes the depths that are proven now; empty: not asked for
+  void check(const path::ToolMotion& m, int tool, std::span<const double> known = {}, std::span<double> proven = {}) {
     if (tool != tool_) take(tool);
-    const auto cut = ball_ ? ball_->check(m) : profile_->check(m);
+    const KnownDepths of_cutter{known, good_};
+    const auto cut = ball_ ? ball_->check(m, of_cutter) : profile_->check(m, of_cutter);
+    const auto bounds = ball_ ? ball_->part_bounds() : profile_->part_bounds();
+    if (!proven.empty()) std::copy(bounds.begin(), bounds.end(), proven.begin());
     if (cut.measured_mm > out_.measured_mm) {
       out_.measured_mm = cut.measured_mm;
       note_deepest(out_, place_of(cut.deepest, m, cut.measured_mm, cut.body));
@@ -67,7 +120,10 @@ class Chunk {
     }
     if (const double depth = std::max(cut.measured_mm, cut.bound_mm); depth > o_.limits.gouge_mm)
       add_worst(out_, place_of(cut.deepest, m, depth, cut.body));
-    for (Body& body : bodies_) clearance(body, m);
+    for (std::size_t k = 0, n = bounds.size(); k < bodies_.size(); ++k, ++n) {
+      const double gap = clearance(bodies_[k], m, n < known.size() ? -known[n] : -INFINITY);
+      if (!proven.empty()) proven[n] = -gap;
+    }
     if (m.rapid) {
       const proof::RapidObstacle blank{part_.gear().outer_radius(), part_.gear().inner_radius(), o_.rapid_height_mm,
                                        -std::numeric_limits<double>::infinity()};
@@ -108,14 +164,28 @@ class Chunk {
     tool_ = tool;
     if (tool < 0) return;
     const auto& taken = tools_[std::size_t(tool)];
-    if (taken.ball_mill) ball_.emplace(part_, *taken.ball_mill, o_.limits.proof_mm, o_.limits.gouge_mm);
-    else profile_.emplace(part_, taken, o_.limits.proof_mm, o_.limits.gouge_mm);
+    const auto proof_mm = [&](double of_model) { return (model_ ? of_model : 1) * o_.limits.proof_mm; };
+    if (taken.ball_mill) begin(ball_.emplace(part_, *taken.ball_mill, proof_mm(kBallModel), o_.limits.gouge_mm), 1);
+    else begin(profile_.emplace(part_, taken, proof_mm(kProfileModel), o_.limits.gouge_mm), 0.5);
     for (const auto& f : taken.bodies) bodies_.push_back({f, false, Vec3::Zero(), Vec3::UnitZ(), 0});
   }
 
-  void clearance(Body& body, const path::ToolMotion& m) {
-    const double enough = o_.limits.clearance_mm + kBodyLook,
-                 arm = std::hypot(body.frustum.to, std::max(body.frustum.radius_from, body.frustum.radius_to));
+  /// @param share  of the proof's leeway by which the sweep lets bounds stand above the deepest place found
+  template <typename Sweep>
+  void begin(Sweep& sweep, double share) {
+    if (model_) sweep.each_by_itself();
+    if (!elsewhere_) return;
+    sweep.expect(elsewhere_->measured_mm);
+    good_ = std::clamp(elsewhere_->measured_mm + share * o_.limits.proof_mm, 0.0, o_.limits.gouge_mm);
+  }
+
+  /// The gap that is proven. @param known  it is no less than this
+  double clearance(Body& body, const path::ToolMotion& m, double known) {
+    const double enough = o_.limits.clearance_mm + kBodyLook, arm = arm_of(body.frustum);
+    if (known >= o_.limits.clearance_mm && elsewhere_ && known >= std::min(enough, elsewhere_->clearance_mm)) {
+      out_.clearance_mm = std::min({out_.clearance_mm, known, enough});
+      return known;
+    }
     if (body.known) {
       const auto away = [&](const Vec3& tip, const Vec3& axis) {
         return (tip - body.tip).norm() + arm * (axis - body.axis).norm();
@@ -125,7 +195,7 @@ class Chunk {
       if (left >= o_.limits.clearance_mm && left >= std::min(enough, out_.clearance_measured_mm - kGapStep)) {
         out_.clearance_mm = std::min({out_.clearance_mm, left, enough});
         out_.clearance_measured_mm = std::min(out_.clearance_measured_mm, enough);
-        return;
+        return left;
       }
     }
     SweptGapOptions look;
@@ -139,11 +209,15 @@ class Chunk {
     if (gap.proven_mm < out_.clearance_mm) out_.closest = place_of(gap, m, body.frustum.body);
     out_.clearance_mm = std::min({out_.clearance_mm, gap.proven_mm, enough});
     if (gap.proven_mm < o_.limits.clearance_mm) add_worst(out_, place_of(gap, m, body.frustum.body));
+    return gap.proven_mm;
   }
 
   const GearDistance& part_;
   const std::vector<tool::ProofTool>& tools_;
   const GougeCheckOptions& o_;
+  bool model_;
+  const proof::GougeResult* elsewhere_;
+  double good_ = 0;  // a depth at which a motion need not be looked at
   proof::GougeResult out_;
   int tool_ = -1;
   std::optional<CutterSweep> ball_;  // one of the two
@@ -161,16 +235,43 @@ GougeCheck::GougeCheck(const GearDistance& part, std::vector<tool::ProofTool> to
     : part_(part), tools_(std::move(tools)), options_(options) {}
 
 proof::GougeResult GougeCheck::check(const std::vector<path::ToolMotion>& motions,
-                                     const std::vector<int>& tool_of_operation) const {
-  std::vector<proof::GougeResult> chunks((motions.size() + kChunk - 1) / kChunk);
-  tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t n) {
-    Chunk chunk(part_, tools_, options_);
-    for (std::size_t k = n * kChunk; k < std::min(motions.size(), (n + 1) * kChunk); ++k)
-      chunk.check(motions[k], tool_of_operation[std::size_t(motions[k].operation)]);
-    chunks[n] = chunk.finish();
-  });
+                                     const std::vector<int>& tool_of_operation,
+                                     std::span<const proof::LikeMotion> likes) const {
+  const auto tool_of = [&](std::size_t k) { return tool_of_operation[std::size_t(motions[k].operation)]; };
   proof::GougeResult out = proof::no_motion_yet(options_.limits.clearance_mm);
-  for (const auto& chunk : chunks) proof::add_result(out, chunk);
+  const auto on_all_threads = [&](std::size_t count, const auto& checked) {
+    std::vector<proof::GougeResult> chunks(count);
+    tbb::parallel_for(std::size_t(0), count, [&](std::size_t n) { chunks[n] = checked(n); });
+    for (const auto& chunk : chunks) proof::add_result(out, chunk);
+  };
+  // Those that are like no others, by themselves.
+  std::vector<std::size_t> own;
+  auto like = likes.begin();
+  for (std::size_t k = 0; k < motions.size(); ++k) {
+    if (like != likes.end() && like->motion == k) ++like;
+    else own.push_back(k);
+  }
+  std::vector<std::vector<double>> arms;
+  std::size_t parts = 0;
+  for (const auto& tool : tools_) parts = std::max(parts, arms.emplace_back(arms_of(tool)).size());
+  ProvenDepths proven(own, likes.empty() ? 0 : parts);
+  on_all_threads((own.size() + kChunk - 1) / kChunk, [&](std::size_t n) {
+    Chunk chunk(part_, tools_, options_, !likes.empty());
+    for (std::size_t k = n * kChunk; k < std::min(own.size(), (n + 1) * kChunk); ++k)
+      chunk.check(motions[own[k]], tool_of(own[k]), {}, proven.place(k));
+    return chunk.finish();
+  });
+  if (likes.empty()) return out;
+  const proof::GougeResult before = out;
+  on_all_threads((likes.size() + kChunk - 1) / kChunk, [&](std::size_t n) {
+    Chunk chunk(part_, tools_, options_, false, &before);
+    std::vector<double> known;
+    for (const auto& as : likes.subspan(n * kChunk, std::min(kChunk, likes.size() - n * kChunk))) {
+      proven.of(as, arms[std::size_t(tool_of(as.motion))], known);
+      chunk.check(motions[as.motion], tool_of(as.motion), known);
+    }
+    return chunk.finish();
+  });
   return out;
 }
 

@@ -4,11 +4,13 @@
 // the bounds hold: docs/proof.md.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "cam/analytic/gear_distance.h"
 #include "cam/path/tool_motion.h"
 #include "cam/proof/checked_cl_path.h"
+#include "cam/proof/like_motion.h"
 #include "cam/proof/limits.h"
 #include "cam/proof/verification.h"
 #include "cam/tool/assembly.h"
@@ -30,8 +32,11 @@ class GougeCheck {
   GougeCheck(const GearDistance& part, std::vector<tool::ProofTool> tools, GougeCheckOptions options);
 
   /// Checks motions; `tool_of_operation[op]` is an index into the tools. Runs on all threads; same bytes on any number.
+  /// Those of `likes` (in order, like motions that are not among them) are looked at where what is proven of the
+  /// others, and the way from there, does not tell that they are as good.
   [[nodiscard]] proof::GougeResult check(const std::vector<path::ToolMotion>& motions,
-                                         const std::vector<int>& tool_of_operation) const;
+                                         const std::vector<int>& tool_of_operation,
+                                         std::span<const proof::LikeMotion> likes = {}) const;
 
   /// Is everything within the options?
   [[nodiscard]] bool passes(const proof::GougeResult& result) const;

@@ -21,7 +21,10 @@ ProfileSweep::ProfileSweep(const GearDistance& part, const tool::ProofTool& tool
   for (const auto& shape : tool.cutting)
     bodies_.push_back(
         {shape, std::hypot(shape.core.to + shape.round, shape.widest()), false, Vec3::Zero(), Vec3::UnitZ(), 0});
+  part_bounds_.resize(bodies_.size());
 }
+
+void ProfileSweep::expect(double depth_mm) { worst_ = std::max(worst_, std::min(depth_mm, tolerance_ - proof_)); }
 
 /// Gap that is left of the one that was proven where the body was looked at last.
 double ProfileSweep::left_of(const Body& body, const path::ToolMotion& m) const {
@@ -33,7 +36,8 @@ double ProfileSweep::left_of(const Body& body, const path::ToolMotion& m) const 
          path::line_slack(m, body.arm, 1);
 }
 
-void ProfileSweep::look(Body& body, const path::ToolMotion& m) {
+/// The depth that is proven.
+double ProfileSweep::look(Body& body, const path::ToolMotion& m) {
   SweptGapOptions o;
   o.touching = true;
   o.enough_mm = kProfileLook + (body.known && body.gap < kProfileLook ? 0 : kFreeAhead);
@@ -47,9 +51,9 @@ void ProfileSweep::look(Body& body, const path::ToolMotion& m) {
   body.tip = m.tip_to;
   body.axis = m.axis_to;
   body.gap = gap.proven_mm;
-  found_.bound_mm = std::max(found_.bound_mm, -std::min(gap.proven_mm, kProfileLook));
+  const double bound = -std::min(gap.proven_mm, kProfileLook);
   const double depth = -std::min(gap.measured_mm, kProfileLook);
-  if (depth <= found_.measured_mm) return;
+  if (depth <= found_.measured_mm) return bound;
   found_.measured_mm = depth;
   found_.deepest.distance = gap.measured_mm;
   found_.deepest.zone = gap.zone;
@@ -57,23 +61,30 @@ void ProfileSweep::look(Body& body, const path::ToolMotion& m) {
   found_.deepest.foot = found_.deepest.point = gap.place;
   found_.body = ball_top_ > 0 && gap.height_mm < ball_top_ ? tool::Body::ball : tool::Body::flute;
   worst_ = std::max(worst_, std::min(depth, tolerance_ - proof_));
+  return bound;
 }
 
-CutterFinding ProfileSweep::check(const path::ToolMotion& m) {
+CutterFinding ProfileSweep::check(const path::ToolMotion& m, const KnownDepths& known) {
   found_ = {};
   found_.body = ball_top_ > 0 ? tool::Body::ball : tool::Body::flute;
+  if (by_itself_) worst_ = 0;
   if (part_.refusal()) {  // nothing is known of where the part is
     found_.measured_mm = found_.bound_mm = kUnknownDepth;
     found_.deepest.patch = "inside";
+    std::fill(part_bounds_.begin(), part_bounds_.end(), kUnknownDepth);
     return found_;
   }
-  for (Body& body : bodies_) {
-    if (left_of(body, m) < kProfileLook) {
-      look(body, m);
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    Body& body = bodies_[k];
+    if (known.good(k)) {
+      part_bounds_[k] = known.of_part[k];
+    } else if (left_of(body, m) < kProfileLook) {
+      part_bounds_[k] = look(body, m);
     } else {
-      found_.bound_mm = std::max(found_.bound_mm, -kProfileLook);
+      part_bounds_[k] = -kProfileLook;
       found_.measured_mm = std::max(found_.measured_mm, -kProfileLook);
     }
+    found_.bound_mm = std::max(found_.bound_mm, part_bounds_[k]);
   }
   return found_;
 }

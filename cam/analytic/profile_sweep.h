@@ -10,6 +10,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "cam/analytic/body_sweep.h"
@@ -27,8 +28,15 @@ class ProfileSweep {
   /// @param tolerance_mm depth that is accepted: only beyond it the depth of every motion by itself is wanted
   ProfileSweep(const GearDistance& part, const tool::ProofTool& tool, double proof_mm, double tolerance_mm);
 
-  /// `body` is "ball" or "flute". Depths below -`kProfileLook` (gaps beyond that) are told as that.
-  [[nodiscard]] CutterFinding check(const path::ToolMotion& motion);
+  /// `body` is "ball" or "flute". Depths below -`kProfileLook` (gaps beyond that) are told as that. Parts: the cutting
+  /// bodies of the tool.
+  [[nodiscard]] CutterFinding check(const path::ToolMotion& motion, const KnownDepths& known = {});
+  /// Something this deep was found elsewhere: what is no deeper need not be followed closely.
+  void expect(double depth_mm);
+  /// From now on every motion is followed closely, whatever was found in others.
+  void each_by_itself() { by_itself_ = true; }
+  /// Of every part, the depth that it cannot exceed in the motion that was checked last.
+  [[nodiscard]] std::span<const double> part_bounds() const { return part_bounds_; }
   [[nodiscard]] std::size_t queries() const { return queries_; }
 
  private:
@@ -40,13 +48,15 @@ class ProfileSweep {
     double gap = 0;                                 // and its proven gap there
   };
   [[nodiscard]] double left_of(const Body& body, const path::ToolMotion& m) const;
-  void look(Body& body, const path::ToolMotion& m);
+  double look(Body& body, const path::ToolMotion& m);
 
   const GearDistance& part_;
   double ball_top_, proof_, tolerance_;
   std::vector<Body> bodies_;
+  std::vector<double> part_bounds_;
   CutterFinding found_;
   double worst_ = 0;  ///< deepest found by this object so far, at least 0
+  bool by_itself_ = false;
   std::size_t queries_ = 0;
 };
 

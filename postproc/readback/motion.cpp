@@ -125,32 +125,31 @@ int nearest_tooth(const Vec3& tip, double reference, int teeth) {
 /// The moves of one trace, one by one, as motions in W.
 class TraceFollower {
  public:
-  TraceFollower(const OperationTrace& trace, const TurnedCopies& copies, const NcControl& control,
-                const machines::Machine& machine, const joints::Setup& setup, int teeth,
-                const MotionTolerances& tolerances)
+  TraceFollower(const OperationTrace& trace, const TurnedCopies& copies, const Followed& by,
+                std::vector<path::ToolMotion>& out)
       : trace_(trace),
         copies_(copies),
-        control_(control),
-        machine_(machine),
-        kinematics_(machine.chain, setup),
-        teeth_(teeth),
-        tolerances_(tolerances),
+        control_(by.control),
+        machine_(by.machine),
+        kinematics_(by.machine.chain, by.setup),
+        teeth_(by.teeth),
+        tolerances_(by.tolerances),
         // Teeth that were not kept stand where their index words put them: rounded, so off the exact turn by up to
         // this.
         shift_(copies.copies && trace.kept_teeth == 1 ? radians(copies.worst_shift_deg) : 0),
-        reference_(first_cut_angle()) {
+        reference_(first_cut_angle()),
+        out_(out) {
     for (const auto& o : copies.operations)
       if (o.operation == trace.operation) operation_ = &o;
   }
 
-  Result<std::vector<path::ToolMotion>> run() {
-    out_.reserve(trace_.moves.size() + 64);
+  Status run() {
     for (std::size_t i = 1; i < trace_.moves.size(); ++i) {
       if (!trace_.moves[i].known)
         continue;  // a change of tool moves nothing: the new one starts where the gauge line stands
       if (auto s = follow(i); !s) return s.error();
     }
-    return std::move(out_);
+    return Ok{};
   }
 
  private:
@@ -248,18 +247,27 @@ class TraceFollower {
   MotionTolerances tolerances_;
   double shift_, reference_;
   const TurnedCopies::Operation* operation_ = nullptr;
-  std::vector<path::ToolMotion> out_;
+  std::vector<path::ToolMotion>& out_;
 };
 
 }  // namespace
+
+Status add_tool_motions(const OperationTrace& trace, const TurnedCopies& copies, const Followed& by,
+                        std::vector<path::ToolMotion>& motions) {
+  if (!(by.tolerances.tip_mm > 0) || !(by.tolerances.axis_rad > 0))
+    return fail("tolerances of the read-back must be above 0");
+  return TraceFollower(trace, copies, by, motions).run();
+}
 
 Result<std::vector<path::ToolMotion>> tool_motions(const OperationTrace& trace, const TurnedCopies& copies,
                                                    const NcControl& control, const machines::Machine& machine,
                                                    const joints::Setup& setup, int teeth,
                                                    const MotionTolerances& tolerances) {
-  if (!(tolerances.tip_mm > 0) || !(tolerances.axis_rad > 0))
-    return fail("tolerances of the read-back must be above 0");
-  return TraceFollower(trace, copies, control, machine, setup, teeth, tolerances).run();
+  std::vector<path::ToolMotion> motions;
+  motions.reserve(trace.moves.size() + 64);
+  if (auto s = add_tool_motions(trace, copies, {control, machine, setup, teeth, tolerances}, motions); !s)
+    return s.error();
+  return motions;
 }
 
 }  // namespace toothpath::readback

@@ -10,6 +10,8 @@
 namespace toothpath::readback {
 namespace {
 
+constexpr std::size_t kTogether = 4096;  // rapids that are followed at a time
+
 /// More than one of Z, XY and the rotaries moves.
 bool mixes_axes(const ExecutedMove& a, const ExecutedMove& b) {
   const bool xy = a.joints[0] != b.joints[0] || a.joints[1] != b.joints[1];
@@ -42,19 +44,32 @@ Status check_axis_groups(const OperationTrace& trace) {
 Status check_rapids_outside(const OperationTrace& trace, const NcControl& control, const machines::Machine& machine,
                             const joints::Setup& setup, const joints::ClearanceBody& body,
                             std::span<const tool::ToolAssembly> tools) {
-  const auto motions = tool_motions(trace, {}, control, machine, setup, 1, {0.001, 1e-3});
-  if (!motions) return motions.error();
   const auto found =
       std::find_if(tools.begin(), tools.end(), [&](const tool::ToolAssembly& t) { return t.number == trace.tool; });
   const tool::ToolAssembly tool = found != tools.end() ? *found : bare_tip(trace.tool);
   const proof::RapidObstacle obstacle{body.radius_mm, 0, body.z_max_mm, body.z_min_mm};
-  for (const auto& m : *motions) {
-    if (!m.rapid) continue;
-    const auto proof = proof::prove_rapid(m, tool, obstacle);
-    if (!proof.clear)
-      return fail_as(DiagnosticKind::verification,
-                     "line {}: a rapid passes through the part: the {} of the tool, tip at r {:.3f} z {:.3f} mm",
-                     m.line, proof.body, proof.tip.head<2>().norm(), proof.tip.z());
+  // Rapids that follow one another, with the moves on either side that their corners lie on.
+  for (std::size_t i = 0; i < trace.moves.size();) {
+    if (!trace.moves[i].rapid) {
+      ++i;
+      continue;
+    }
+    std::size_t end = i;
+    while (end < trace.moves.size() && trace.moves[end].rapid && end - i < kTogether) ++end;
+    OperationTrace stretch{trace.operation, trace.tool, trace.kept_teeth, 0, {}};
+    stretch.moves.assign(trace.moves.begin() + std::ptrdiff_t(i < 2 ? 0 : i - 2),
+                         trace.moves.begin() + std::ptrdiff_t(std::min(end + 1, trace.moves.size())));
+    const auto motions = tool_motions(stretch, {}, control, machine, setup, 1, {0.001, 1e-3});
+    if (!motions) return motions.error();
+    for (const auto& m : *motions) {
+      if (!m.rapid) continue;
+      const auto proof = proof::prove_rapid(m, tool, obstacle);
+      if (!proof.clear)
+        return fail_as(DiagnosticKind::verification,
+                       "line {}: a rapid passes through the part: the {} of the tool, tip at r {:.3f} z {:.3f} mm",
+                       m.line, proof.body, proof.tip.head<2>().norm(), proof.tip.z());
+    }
+    i = end;
   }
   return Ok{};
 }

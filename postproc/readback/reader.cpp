@@ -248,6 +248,8 @@ class ReadBackRun {
       t.lead = counts_[op].lead;
       t.kept_teeth = all ? static_cast<std::size_t>(options.teeth) : 1;
       t.tool = t.moves.empty() ? 0 : t.moves.back().tool;
+      for (const ExecutedMove& m : t.moves)
+        if (!m.rapid) result_.blend_mm = std::max({result_.blend_mm, double(m.blend_mm), double(m.corner_path_mm)});
       result_.operations.push_back(std::move(t));
     }
     return std::move(result_);
@@ -324,6 +326,18 @@ class ReadBackRun {
 };
 
 }  // namespace
+
+void keep_first_teeth(ReadBack& read) {
+  for (OperationTrace& trace : read.operations) {
+    const auto labelled =
+        std::find_if(trace.moves.begin(), trace.moves.end(), [](const auto& m) { return m.tooth >= 0; });
+    if (labelled == trace.moves.end()) continue;
+    const int first = labelled->tooth;
+    std::erase_if(trace.moves, [&](const ExecutedMove& m) { return m.tooth >= 0 && m.tooth != first; });
+    trace.moves.shrink_to_fit();
+    trace.kept_teeth = 1;
+  }
+}
 
 Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control,
                            const machines::Machine& machine, const joints::Setup& setup,

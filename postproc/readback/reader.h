@@ -136,6 +136,8 @@ struct ReadBack {
   double minutes = 0, feed_minutes = 0;             ///< as the text asks
   timing::Corners corners = timing::Corners::jump;  ///< of the control
   joints::TimedMinutes accelerated;  ///< with the accelerations of the axes; without them as the text asks
+  double blend_mm =
+      0;  ///< largest tolerance of path blending in the feeds of `operations`, all that were kept at first
   int mixed_rapid = 0;  ///< line of the first rapid that moves more than one group of axes, of all executed moves; 0:
                         ///< none does, or cutter locations
 };
@@ -165,6 +167,20 @@ struct MotionTolerances {
                                                                  const machines::Machine& machine,
                                                                  const joints::Setup& setup, int teeth,
                                                                  const MotionTolerances& tolerances);
+
+/// The same, put behind `motions`: of a long program there need be only one list.
+struct Followed {
+  const NcControl& control;
+  const machines::Machine& machine;
+  const joints::Setup& setup;
+  int teeth = 1;
+  MotionTolerances tolerances;
+};
+[[nodiscard]] Status add_tool_motions(const OperationTrace& trace, const TurnedCopies& copies, const Followed& by,
+                                      std::vector<path::ToolMotion>& motions);
+
+/// Leaves the moves of the first tooth of every operation, where the teeth are labelled; moves without a label stay.
+void keep_first_teeth(ReadBack& read);
 
 /// Every CL record of tooth space 0 met in order by the motions of tooth 0 of the same operation.
 struct ClComparison {

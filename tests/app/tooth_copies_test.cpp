@@ -1,8 +1,10 @@
 // Teeth that are written out one by one: which are the first one again, and what the first one then stands for.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <set>
+#include <utility>
 
 #include "app/process/tooth_copies.h"
 #include "geometry/base/angle.h"
@@ -116,6 +118,91 @@ TEST(ToothCopies, RapidsAreKept) {
   const auto kept = process::without_copies(motions, kTeeth, kTolerance);
   EXPECT_EQ(teeth_of(kept).size(), std::size_t{kTeeth});
   EXPECT_EQ(kept.size(), std::size_t{2 * kTeeth + 10});
+}
+
+/// Least distance of a tip from a stretch of motions.
+double off(const Vec3& tip, const std::vector<path::ToolMotion>& motions, const proof::LikeMotion& like) {
+  double least = INFINITY;
+  for (std::size_t k = like.like_first; k < like.like_last; ++k)
+    least = std::min(least, distance_to_segment(tip, motions[k].tip_from, motions[k].tip_to));
+  return least;
+}
+
+TEST(LikeMotions, AreFoundHoweverTheWayIsCut) {
+  for (const int lines : {5, 6, 9, 17}) {
+    // One way in any number of straight pieces, each tooth rounded a little otherwise.
+    const auto way = [&](int tooth, int count) {
+      std::vector<path::ToolMotion> out;
+      const auto at = [&](int k) -> Vec3 {
+        const double u = 2.0 * k / count, noise = 1e-3 * std::sin(17.0 * k + tooth);
+        return turned(Vec3(50 + u, 0.02 * u * u + noise, -u - noise), 2 * kPi * tooth / kTeeth);
+      };
+      for (int k = 0; k < count; ++k) {
+        path::ToolMotion m;
+        m.tip_from = at(k);
+        m.tip_to = at(k + 1);
+        m.axis_from = m.axis_to = turned(Vec3(0.6, 0, 0.8), 2 * kPi * tooth / kTeeth);
+        m.deviation_mm = 1e-5;
+        m.tooth = tooth;
+        m.line = 100 * tooth + k;
+        out.push_back(m);
+      }
+      return out;
+    };
+    std::vector<path::ToolMotion> motions = way(0, 7);
+    for (const auto& [tooth, count] : {std::pair{3, lines}, std::pair{5, lines + 1}}) {
+      const auto more = way(tooth, count);
+      motions.insert(motions.end(), more.begin(), more.end());
+    }
+    const auto likes = process::like_motions(motions, kTeeth);
+    ASSERT_EQ(likes.size(), motions.size() - 7) << lines;
+    double largest = 0;
+    for (const auto& like : likes) {
+      const path::ToolMotion& m = motions[like.motion];
+      largest = std::max(largest, double(like.tip_mm));
+      EXPECT_LE(like.like_last, 7u);
+      for (int n = 0; n <= 20; ++n) {
+        const Vec3 tip = turned(path::tip_at(m, n / 20.0), -2 * kPi * m.tooth / kTeeth);
+        EXPECT_LE(off(tip, motions, like), double(like.tip_mm)) << "motion " << like.motion;
+      }
+    }
+    EXPECT_GT(largest, 1e-4);
+    EXPECT_LT(largest, 0.01) << "no more than roundings and chords";
+  }
+}
+
+TEST(LikeMotions, WhatGoesElsewhereIsNot) {
+  auto motions = program(1, 2);
+  for (auto& m : motions)
+    if (m.tooth == 4 && (m.line % 1000 == 3)) {
+      m.tip_from.z() += 0.3;
+      m.tip_to.z() += 0.3;
+    } else if (m.tooth == 5 && m.line % 1000 == 4) {
+      m.axis_to = (m.axis_to + Vec3(0, 2e-4, 0)).normalized();
+    } else if (m.tooth == 6) {
+      m.rapid = true;
+    }
+  std::set<std::pair<int, int>> others;  // tooth, line
+  for (const auto& m : motions)
+    if (m.tooth != 0) others.insert({m.tooth, m.line % 1000});
+  for (const auto& like : process::like_motions(motions, kTeeth)) {
+    EXPECT_NE(motions[like.motion].tooth, 0);
+    others.erase({motions[like.motion].tooth, motions[like.motion].line % 1000});
+  }
+  EXPECT_EQ(others, (std::set<std::pair<int, int>>{{4, 3}, {5, 4}, {6, 1}, {6, 2}, {6, 3}, {6, 4}, {6, 5}, {6, 6}}));
+}
+
+TEST(LikeMotions, StrayingCounts) {
+  auto motions = program(1, 1);
+  for (auto& m : motions) {
+    m.deviation_mm = m.tooth == 2 ? 5e-4 : 1e-4;
+    m.axis_deviation = m.tooth == 2 ? 5e-6 : 1e-6;
+  }
+  for (const auto& like : process::like_motions(motions, kTeeth)) {
+    const bool strays = motions[like.motion].tooth == 2;
+    EXPECT_NEAR(double(like.tip_mm), strays ? 4e-4 : 0, 1e-8);
+    EXPECT_NEAR(double(like.axis_rad), strays ? 4e-6 : 0, 1e-10);
+  }
 }
 
 }  // namespace

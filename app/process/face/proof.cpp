@@ -144,7 +144,8 @@ void FaceGearCheck::meet(const process::ProgramProof&) {
 void FaceGearCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
   std::vector<int> tool_of_operation;
   for (const auto& operation : job_.operations) tool_of_operation.push_back(operation.tool);
-  program.gouge = clock.run("proof of the program", [&] { return check_.check(program.motions, tool_of_operation); });
+  program.gouge = clock.run("proof of the program",
+                            [&] { return check_.check(program.motions, tool_of_operation, program.likes); });
   judge_gouge(program.gouge, check_, limits_.gouge_mm, program.reasons);
   surface = clock.run("cut surface", [&] {
     return cut::measure_cut_surface(part_, program.motions, job_.operations, job_.tools, grid_);
