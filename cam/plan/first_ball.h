@@ -5,7 +5,7 @@
 
 namespace toothpath::plan {
 
-/// Diameter of the largest ball that fits between the flanks with its lowest point at half the height of the teeth and
+/// Diameter of the largest ball that fits upright in the middle of a space with its lowest point at half the height and
 /// keeps the allowance everywhere, in the middle and at both ends of every ring. Most of the material lies above that
 /// height. Found to 1e-3 mm. mm
 /// @param reach_mm  that `part` was made for: where ball and allowance fill it, a larger one is told as that

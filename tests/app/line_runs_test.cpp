@@ -111,5 +111,56 @@ TEST(LineRuns, TableOfCusps) {
   EXPECT_GT(cusps["fillet_max"].get<double>(), 4);
 }
 
+/// The report but for the run times.
+nlohmann::json findings_in(const TestDir& dir, const std::string& out) {
+  auto report = nlohmann::json::parse(file_text(dir / (out + "/report.json")));
+  report.erase("stages");
+  return report;
+}
+
+/// Where the part stands off the rotary axis, and words are rounded to a micrometre, no tooth is a copy of the first.
+std::string off_the_axis(const TestDir& dir, std::string job) {
+  write_file(dir / "machine.toml", changed_machine("", "", "\n[post]\nlinear_decimals = 3\nrotary_decimals = 4\n"));
+  job = replaced(job, "\"xyzac_large.toml\"", "\"machine.toml\"");
+  return replaced(job, "origin = [3.0, -2.0, 120.0]", "origin = [14.0, -9.0, 120.0]");
+}
+
+// Flanks by the line, on the rotary axis and off it: threads change nothing.
+TEST(LineRuns, OneAndTwoThreadsGiveTheSameProgram) {
+  const TestDir dir;
+  const std::string job = kLineGear + operation("line_milling", 1, "left = 0.005") + kFilletAndRoot;
+  write_file(dir / "on.toml", job);
+  write_file(dir / "off.toml", off_the_axis(dir, job));
+  for (const std::string place : {"on", "off"}) {
+    for (const std::string threads : {"1", "2"}) {
+      const auto run =
+          run_program({"run", dir / (place + ".toml"), "--out", dir / (place + threads), "--threads", threads});
+      ASSERT_EQ(run.exit_code, 0) << run.err;
+    }
+    EXPECT_EQ(file_text(dir / (place + "1/program.ngc")), file_text(dir / (place + "2/program.ngc"))) << place;
+    EXPECT_EQ(findings_in(dir, place + "1"), findings_in(dir, place + "2")) << place;
+  }
+}
+
+// The proof that shares what it knows of the first tooth says no less, and is no looser, than that of every tooth by
+// itself.
+TEST(LineRuns, LikeTeethAreProvenAsEachByItself) {
+  const TestDir dir;
+  const std::string job = off_the_axis(dir, kLineGear + small_ball("scallop = 0.02\nchord_tolerance = 0.002"));
+  write_file(dir / "shared.toml", job);
+  write_file(dir / "each.toml", replaced(job, "gouge_tolerance = 0.002", "gouge_tolerance = 0.002\nteeth = \"all\""));
+  for (const std::string name : {"shared", "each"}) {
+    const auto run = run_program({"run", dir / (name + ".toml"), "--out", dir / name});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  EXPECT_EQ(file_text(dir / "shared/program.ngc"), file_text(dir / "each/program.ngc"));
+  const auto shared = findings_in(dir, "shared"), each = findings_in(dir, "each");
+  const auto um = [](const nlohmann::json& report, const char* what) { return report["gouge_um"][what].get<double>(); };
+  EXPECT_GE(um(shared, "bound"), um(each, "measured"));
+  EXPECT_LE(um(shared, "bound"), um(each, "bound") + 0.2);
+  EXPECT_NEAR(um(shared, "measured"), um(each, "measured"), 0.2);
+  EXPECT_NEAR(shared["clearance"]["least"].get<double>(), each["clearance"]["least"].get<double>(), 0.02);
+}
+
 }  // namespace
 }  // namespace toothpath::test
