@@ -134,6 +134,7 @@ CommandOutcome check_program(const CheckRequest& request) {
     check.progress.clear();
     return failed(std::move(errors));
   }
+  if (const auto kept = output->keeps_inputs(); !kept) return failed(kept.error());
   if (const auto proven = prove(check); !proven) {
     check.progress.clear();
     return failed(proven.error());

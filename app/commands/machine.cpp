@@ -27,14 +27,14 @@ struct Shown {
 
 /// Text, page and drawing of a machine of either kind.
 Expected<Shown, std::vector<Diagnostic>> show(const std::string& path) {
-  const auto kind = machines::machine_kind_of(path);
-  if (!kind) return std::vector{kind.error()};
-  if (*kind == machines::MachineKind::gear_shaper) {
-    auto reading = shaper::read_shaper_machine(path);
+  const auto file = machines::open_machine_file(path);
+  if (!file) return std::vector{file.error()};
+  if (file->kind == machines::MachineKind::gear_shaper) {
+    auto reading = shaper::read_shaper_machine_of_text(file->text, path);
     if (!reading.machine) return std::move(reading.errors);
     return Shown{sheet::machine_text(*reading.machine), sheet::machine_page(*reading.machine), {}};
   }
-  auto reading = controls::read_machine(path);
+  auto reading = controls::read_machine_of_text(file->text, path);
   if (!reading.machine) return std::move(reading.errors);
   return Shown{sheet::machine_text(*reading.machine), sheet::machine_page(*reading.machine),
                sheet::machine_drawing_svg(*reading.machine)};

@@ -81,7 +81,7 @@ JobOrErrors parse_job(std::string_view text, const std::string& file) {
 }
 
 JobOrErrors read_job_file(const std::string& path) {
-  const auto text = toml::read_regular_file(path, kMaxJobBytes);
+  const auto text = toml::read_input_file(path, kMaxJobBytes);
   if (!text) return std::vector<Diagnostic>{text.error()};
   return parse_job(*text, path);
 }

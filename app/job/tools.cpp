@@ -109,7 +109,7 @@ void read_meridian(toml::TableReader& table, const ToolContext& context, tool::T
   const auto name = table.text("meridian");
   if (!name) return;
   const auto path = (std::filesystem::path(context.directory) / *name).string();
-  const auto text = toml::read_regular_file(path, kMostMeridianBytes);
+  const auto text = toml::read_input_file(path, kMostMeridianBytes);
   if (!text) return table.refuse("meridian", "meridian = \"{}\": {}", *name, text.error().message);
   tool::MeridianError measured;
   int number = 0;

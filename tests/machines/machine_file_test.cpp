@@ -20,9 +20,9 @@ using test::damaged, test::replaced, test::kMachine, test::kMaxBytesForTest, tes
 std::vector<std::string> shipped(machines::MachineKind kind) {
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(fs::path(TOOTHPATH_SOURCE_DIR) / "machines" / "data")) {
-    const auto found = machines::machine_kind_of(entry.path().string());
+    const auto found = machines::open_machine_file(entry.path().string());
     EXPECT_TRUE(found) << entry.path();
-    if (found && *found == kind) files.push_back(entry.path().string());
+    if (found && found->kind == kind) files.push_back(entry.path().string());
   }
   std::sort(files.begin(), files.end());
   return files;
