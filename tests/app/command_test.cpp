@@ -1,8 +1,14 @@
 // The program from outside: exit codes, what lies in the output directory afterwards, faults of the disk, signals.
+#include <fmt/format.h>
+#include <sys/inotify.h>
+
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
+#include <thread>
 #include <tuple>
 
+#include "geometry/base/hash.h"
 #include "tests/app/program.h"
 
 namespace toothpath::test {
@@ -272,6 +278,63 @@ TEST(OutputDirectory, ASecondRunAtTheSameTimeIsFour) {
   }();
   EXPECT_EQ(second.exit_code, 4);
   EXPECT_NE(second.err.find("another run is writing into this directory"), std::string::npos) << second.err;
+}
+
+// Many at once, each with its own name for the job: whoever is told 0 left all of it, and a program with its own
+// report.
+TEST(OutputDirectory, RunsAtOnceNeverMix) {
+  const TestDir dir;
+  constexpr int kRuns = 6;
+  const std::string job = file_text(kQuick), out = dir / "out";
+  for (int round = 0; round < 2; ++round) {
+    std::vector<int> codes(kRuns);
+    std::vector<std::thread> all;
+    for (int k = 0; k < kRuns; ++k) {
+      const std::string file = dir / fmt::format("job{}.toml", k);
+      write_file(file, replaced(job, "spur-quick", fmt::format("run {}", k)));
+      all.emplace_back([&, k, file] {
+        codes[std::size_t(k)] = run_program({"run", file, "--out", out, "--threads", "1"}).exit_code;
+      });
+    }
+    for (auto& thread : all) thread.join();
+    EXPECT_GE(std::count(codes.begin(), codes.end(), 0), 1);
+    EXPECT_EQ(std::count(codes.begin(), codes.end(), 0) + std::count(codes.begin(), codes.end(), 4), kRuns);
+    const auto report = nlohmann::json::parse(file_text(out + "/report.json"));
+    const std::string name = report["job"];
+    EXPECT_EQ(codes[std::size_t(name.back() - '0')], 0) << name;
+    const std::string program = file_text(out + "/program.ngc");
+    EXPECT_EQ(sha256_hex(program), report["program"]["sha256"]) << name;
+    for (const auto& file : report["files"]) EXPECT_TRUE(std::filesystem::exists(out + "/" + std::string(file)));
+    for (const auto& file : names_in(out)) EXPECT_FALSE(file.starts_with(".toothpath-")) << file;
+  }
+}
+
+// The program appears after everything else, and goes before everything else.
+TEST(OutputDirectory, AProgramStandsWithAllTheRestOnly) {
+  const TestDir dir;
+  const std::string out = dir / "out";
+  ASSERT_EQ(run_program({"run", kQuick, "--out", out, "--quiet"}).exit_code, 0);
+  auto whole = names_in(out);
+  const int queue = ::inotify_init1(IN_NONBLOCK);
+  ASSERT_GE(::inotify_add_watch(queue, out.c_str(), IN_MOVE | IN_DELETE), 0);
+  ASSERT_EQ(run_program({"run", kQuick, "--out", out, "--quiet"}).exit_code, 0);
+  std::set<std::string> there(whole.begin(), whole.end());
+  int without = 0;
+  alignas(inotify_event) char bytes[1 << 16];
+  for (ssize_t got = 0; (got = ::read(queue, bytes, sizeof bytes)) > 0;)
+    for (const char* at = bytes; at < bytes + got;) {
+      const auto* event = reinterpret_cast<const inotify_event*>(at);
+      at += sizeof *event + event->len;
+      const std::string name = event->len > 0 ? event->name : "";
+      if (name.starts_with(".toothpath-") || name == "previous") continue;
+      if (there.contains("program.ngc")) EXPECT_EQ(there, std::set<std::string>(whole.begin(), whole.end())) << name;
+      else ++without;
+      if ((event->mask & IN_MOVED_TO) != 0) there.insert(name);
+      else there.erase(name);
+    }
+  ::close(queue);
+  EXPECT_EQ(there, std::set<std::string>(whole.begin(), whole.end()));
+  EXPECT_GT(without, int(whole.size()));
 }
 
 // The measurement lies where the run would write its own inspection points.
