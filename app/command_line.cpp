@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <map>
@@ -24,7 +23,7 @@ constexpr const char* kVersion = "toothpath " TOOTHPATH_VERSION;
 struct GlobalOptions {
   bool json = false;
   bool quiet = false;
-  int threads = 0;  ///< 0: as many as the machine has
+  std::optional<int> threads;  ///< none: as many as the machine has
   std::string color = "auto";
 };
 
@@ -95,14 +94,6 @@ commands::CommandOutcome guarded(const commands::Command::Action& action, const 
   }
 }
 
-/// A whole number in a range; the library's own check prints limits that nobody can read.
-std::string check_threads(const std::string& text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc{} && end == text.data() + text.size() && value >= 1 && value <= 1024) return {};
-  return "--threads = " + text + " is not a whole number from 1 to 1024";
-}
-
 /// A command on the command line, below its group where it has one.
 struct Subcommand {
   CLI::App* app = nullptr;
@@ -141,8 +132,7 @@ void add_global_options(CLI::App& app, GlobalOptions& options) {
   app.set_version_flag("--version", kVersion);
   app.add_flag("--json", options.json, "print one JSON object on stdout");
   app.add_flag("--quiet", options.quiet, "print errors only");
-  app.add_option("--threads", options.threads, "number of threads (default: all)")
-      ->check(CLI::Validator(check_threads, "N", "threads"));
+  commands::OptionSet(app).whole_number("--threads", options.threads, "number of threads (default: all)", {1, 1024});
   app.add_option("--color", options.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}));
 }
 
@@ -170,8 +160,8 @@ int run_command_line(int argc, char** argv) {
 
   const commands::CommonRequest request{options.quiet || options.json, wants_color(options.color, STDOUT_FILENO)};
   std::optional<tbb::global_control> threads;
-  if (options.threads > 0)
-    threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+  if (options.threads)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(*options.threads));
   for (const auto& [sub, name, action] : commands)
     if (sub->parsed()) return present(name, guarded(action, request), options);
   return static_cast<int>(app::ExitCode::internal);

@@ -169,7 +169,7 @@ void add_machine(Commands& commands) {
         set.file("MACHINE", request.machine_file, kMachine);
         set.out_dir(request.out_dir, "directory for the program and its page; made where it does not exist");
         set.number("--tool-length", request.tool_length_mm,
-                   "gauge line to the tip of the test bar, mm (default: 100, 60 or 30, what fits)");
+                   "gauge line to the tip of the test bar (default: 100, 60 or 30, what fits)", {1, 5000, " mm"});
       },
       test_machine, &kMachines));
 }

@@ -173,7 +173,7 @@ void read_end_mill(toml::TableReader& table, const ToolContext& context, tool::T
 tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& context, std::vector<std::string>& warnings) {
   const std::vector<std::string_view> words = kind_words();
   tool::ToolAssembly tool;
-  tool.number = table.integer("number", {1, 9999}).value_or(0);
+  tool.number = table.integer("number", kToolNumber).value_or(0);
   const auto type = table.word("type", words);
   tool.shank_diameter_mm = table.number("shank_diameter", kToolDiameter).value_or(0);
   const auto length = table.number("length", kToolLength);

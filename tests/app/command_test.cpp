@@ -30,6 +30,75 @@ TEST(CommandLine, UsageErrorsAreTwo) {
     EXPECT_EQ(run_program(arguments).exit_code, 2);
 }
 
+// Every number of every command goes through one reader.
+TEST(CommandLine, NumbersAreNumbersOfTheirRange) {
+  const TestDir dir;
+  const std::string pinion = kSamples + "/bevel_pinion.toml";
+  struct Case {
+    std::vector<std::string> words;
+    std::string option, least, most, beyond;
+    bool whole = false;
+  };
+  const std::vector<Case> cases = {
+      {{"forces", pinion}, "--torque", "1e-06", "1000000000 N m", "0"},
+      {{"contact", kQuick}, "--pinion-teeth", "5", "1000", "0", true},
+      {{"contact", kQuick}, "--pinion-teeth", "5", "1000", "-5", true},
+      {{"contact", kQuick}, "--offset-error", "-5", "5 mm", "5.01"},
+      {{"contact", kQuick}, "--axial-error", "-5", "5 mm", "-5.01"},
+      {{"contact", kQuick}, "--wheel-axial-error", "-5", "5 mm", "1e9"},
+      {{"contact", kQuick}, "--angle-error", "-1", "1 deg", "1.1"},
+      {{"contact", kQuick}, "--compound", "0.1", "100 um", "0"},
+      {{"cutter", pinion}, "--tool", "1", "9999", "0", true},
+      {{"machine", "test", "t600s"}, "--tool-length", "1", "5000 mm", "-30"},
+      {{"study", "strategies", kQuick}, "--strips", "1", "4", "0", true},
+      {{"surface", kQuick}, "--threads", "1", "1024", "0", true},
+  };
+  for (const Case& c : cases) {
+    std::vector<std::string> texts = {"nan", "inf",  "-inf", "1e999", "",      "x",
+                                      "1,5", "0x10", " 20",  "20 ",   "20abc", c.beyond};
+    if (c.whole) texts.insert(texts.end(), {"20.0", "2e1", "99999999999999999999"});
+    for (const std::string& text : texts) {
+      std::vector<std::string> words = c.words;
+      words.insert(words.end(), {"--out", dir / "out", c.option + "=" + text});
+      if (text.empty()) {
+        words.pop_back();
+        words.insert(words.end(), {c.option, ""});
+      }
+      const Finished refused = run_program(words);
+      EXPECT_EQ(refused.exit_code, 2) << c.option << " " << text;
+      const std::string said = fmt::format("{} = {} is not a {}number from {} to {}", c.option,
+                                           text.empty() ? "\"\"" : text, c.whole ? "whole " : "", c.least, c.most);
+      EXPECT_NE(refused.err.find(said), std::string::npos) << refused.err << said;
+      EXPECT_FALSE(std::filesystem::exists(dir / "out"));
+    }
+  }
+  EXPECT_EQ(run_program({"forces", pinion, "--torque", "+2.5e1", "--out", dir / "out"}).exit_code, 0);
+  EXPECT_EQ(run_program({"surface", kQuick, "--threads", "+1", "--out", dir / "out"}).exit_code, 0);
+}
+
+// An unset variable of a script must not mean "all of it".
+TEST(CommandLine, EmptyTextsAreRefused) {
+  const TestDir dir;
+  const std::string pinion = kSamples + "/bevel_pinion.toml", out = dir / "out";
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"run", kQuick, "--restart", "", "--out", out},
+                                                {"run", kQuick, "--restart=", "--out", out},
+                                                {"run", "", "--out", out},
+                                                {"run", kQuick, "--out", ""},
+                                                {"check", kQuick, "", "--out", out},
+                                                {"check", kQuick, "x", "--stock", "", "--out", out},
+                                                {"check", kQuick, "x", "--fixture", "", "--out", out},
+                                                {"correct", kQuick, "--measured", "", "--out", out},
+                                                {"contact", pinion, "--mate", "", "--out", out},
+                                                {"cutter", pinion, "--cutter-of", "", "--out", out},
+                                                {"machine", "show", ""},
+                                                {"machine", "show", "t600s", "--out", ""},
+                                                {"study", "dhfg", "--file", "", "--out", out}}) {
+    const Finished refused = run_program(words);
+    EXPECT_EQ(refused.exit_code, 2) << words[0] << " " << words[1] << "\n" << refused.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
+  }
+}
+
 TEST(CommandLine, HelpAndVersion) {
   const Finished help = run_program({"--help"});
   EXPECT_EQ(help.exit_code, 0);
