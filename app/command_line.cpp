@@ -11,6 +11,7 @@
 #include <optional>
 #include <thread>
 
+#include "app/base/out_of_memory.h"
 #include "app/base/output_dir.h"
 #include "app/commands/command.h"
 #include "app/report/svg/html_text.h"
@@ -89,7 +90,7 @@ commands::CommandOutcome internal_error(std::string message) {
 commands::CommandOutcome guarded(const commands::Command::Action& action, const commands::CommonRequest& request) {
   try {
     return action(request);
-  } catch (const std::bad_alloc&) { return internal_error("out of memory"); } catch (const std::exception& error) {
+  } catch (const std::bad_alloc&) { return internal_error(app::kOutOfMemory); } catch (const std::exception& error) {
     return internal_error(fmt::format("internal error: {}", error.what()));
   }
 }
@@ -145,7 +146,8 @@ int run_command_line(int argc, char** argv) {
   app.footer(
       "Exit codes: 0 done and verified, 1 not verified (no program is left), 2 usage, 3 an input file is refused, 4 a "
       "file cannot be read or\n"
-      "written, 70 internal error, 130 interrupted. `toothpath COMMAND --help` lists the options of a command.");
+      "written, 70 internal error or out of memory, 130 interrupted. `toothpath COMMAND --help` lists the options of a "
+      "command.");
   app.require_subcommand(0, 1);
   const auto commands = add_commands(app);
 
@@ -163,7 +165,10 @@ int run_command_line(int argc, char** argv) {
   if (options.threads)
     threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(*options.threads));
   for (const auto& [sub, name, action] : commands)
-    if (sub->parsed()) return present(name, guarded(action, request), options);
+    if (sub->parsed()) {
+      if (options.json) app::set_out_of_memory_answer(outcome_json(name, internal_error(app::kOutOfMemory)));
+      return present(name, guarded(action, request), options);
+    }
   return static_cast<int>(app::ExitCode::internal);
 }
 

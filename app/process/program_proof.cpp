@@ -24,16 +24,22 @@ Result<ProgramProof> read_program(const ProgramText& program, const GearCheck& g
   });
   if (!read) return read.error();
   out.read = std::move(read.value());
+  const std::size_t most = readback::MotionTolerances().most;
   for (const readback::OperationTrace& trace : out.read.operations) {
     if (const auto count = static_cast<int>(job.operations.size()); trace.operation >= count)
       return fail_at({program.file, trace.moves.empty() ? 0 : trace.moves.front().line, 0},
                      "operation {}: the job has the operations 0 to {}", trace.operation, count - 1);
     const auto part = clock.run("read back", [&] {
       return tool_motions(trace, out.read.copies, out.control, program.machine, *job.setup, gear.teeth(),
-                          {gear.motion_tolerance(), gear.motion_tolerance()});
+                          {gear.motion_tolerance(), gear.motion_tolerance(), most - out.motions.size()});
     });
-    if (!part) return part.error();
-    out.motions.insert(out.motions.end(), part->begin(), part->end());
+    if (!part) {
+      Diagnostic error = part.error();
+      if (error.position.file.empty()) error.position.file = program.file;
+      return error;
+    }
+    if (out.motions.empty()) out.motions = std::move(*part);
+    else out.motions.insert(out.motions.end(), part->begin(), part->end());
   }
   return out;
 }

@@ -6,7 +6,8 @@
 namespace toothpath::readback {
 namespace {
 constexpr std::size_t kDeepestCall = 8;
-}
+constexpr std::size_t kMostParsed = 1 << 19;  // lines of loops and sub-programs that are kept parsed
+}  // namespace
 
 NcFlow::NcFlow(std::string_view text, const std::string& file, bool o_words, std::size_t max_steps)
     : file_(file), o_words_(o_words), max_steps_(max_steps) {
@@ -73,7 +74,7 @@ void NcFlow::split(std::string_view text) {
     begin = end + 1;
   }
 }
-/// Parsed line; lines of sub-programs and loops are parsed once.
+/// Parsed line; lines of sub-programs and loops are parsed once, up to kMostParsed of them.
 std::pair<const NcBlock*, Diagnostic> NcFlow::fetch(std::size_t line) {
   if (const auto found = cache_.find(line); found != cache_.end()) return {&found->second, {}};
   auto block = parse_nc_block(lines_[line], o_words_);
@@ -83,7 +84,7 @@ std::pair<const NcBlock*, Diagnostic> NcFlow::fetch(std::size_t line) {
     d.position.line = static_cast<int>(line) + 1;
     return {nullptr, d};
   }
-  if (frames_.empty()) {
+  if (frames_.empty() || cache_.size() >= kMostParsed) {
     once_ = std::move(*block);
     return {&once_, {}};
   }

@@ -140,11 +140,14 @@ struct ReadBack {
                         ///< none does, or cutter locations
 };
 
+/// Of the moves that are kept of a program, and again of its motions.
+inline constexpr std::size_t kMostKeptBytes = std::size_t(1) << 30;
+
 struct ReadBackOptions {
   int teeth = 1;
   bool keep_all = false;  ///< keep every tooth although they are copies
-  std::size_t max_kept =
-      20'000'000;  ///< moves of 100 bytes; a program that needs more is refused by their number, before any is kept
+  /// A program that needs more moves is refused by their number, before any is kept.
+  std::size_t max_kept = kMostKeptBytes / sizeof(ExecutedMove);
 };
 
 /// Executes the program twice (to count, then to compare and keep), a third time where every tooth is kept.
@@ -154,7 +157,8 @@ struct ReadBackOptions {
 
 /// How far the motion of a cut may leave the straight one that stands for it; 50 times as far in rapids.
 struct MotionTolerances {
-  double tip_mm = 0, axis_rad = 0;  ///< above 0
+  double tip_mm = 0, axis_rad = 0;                               ///< above 0
+  std::size_t most = kMostKeptBytes / sizeof(path::ToolMotion);  ///< motions; a trace that needs more is refused
 };
 
 /// Moves of a trace as straight motions of the tip in W. Moves that turn the axes are cut until the proven distance
