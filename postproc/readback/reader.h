@@ -59,8 +59,9 @@ struct NcControl {
   std::optional<double> smoothing_axis_rad;         ///< not stated: no cut may turn a rotary while it is on
   std::vector<std::string> coolant_words;           ///< M words of the builder that switch coolants, on and off
   timing::Corners corners = timing::Corners::jump;  ///< how it joins feed blocks
-  bool dry_run = false;                 ///< feed moves with a standing spindle are meant: a program that runs in air
-  std::size_t max_steps = 400'000'000;  ///< executed blocks before the program is refused as endless
+  bool dry_run = false;                ///< feed moves with a standing spindle are meant: a program that runs in air
+  std::size_t max_steps = 50'000'000;  ///< executed blocks before the program is refused as endless
+  std::size_t max_idle = 2'000'000;    ///< of them in a row without a move
 
   [[nodiscard]] bool switches_coolant(std::string_view word) const {
     return std::find(coolant_words.begin(), coolant_words.end(), word) != coolant_words.end();
