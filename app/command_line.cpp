@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cstdio>
 #include <exception>
 #include <map>
@@ -12,6 +11,7 @@
 #include <optional>
 #include <thread>
 
+#include "app/base/out_of_memory.h"
 #include "app/base/output_dir.h"
 #include "app/commands/command.h"
 #include "app/report/svg/html_text.h"
@@ -24,7 +24,7 @@ constexpr const char* kVersion = "toothpath " TOOTHPATH_VERSION;
 struct GlobalOptions {
   bool json = false;
   bool quiet = false;
-  int threads = 0;  ///< 0: as many as the machine has
+  std::optional<int> threads;  ///< none: as many as the machine has
   std::string color = "auto";
 };
 
@@ -90,17 +90,9 @@ commands::CommandOutcome internal_error(std::string message) {
 commands::CommandOutcome guarded(const commands::Command::Action& action, const commands::CommonRequest& request) {
   try {
     return action(request);
-  } catch (const std::bad_alloc&) { return internal_error("out of memory"); } catch (const std::exception& error) {
+  } catch (const std::bad_alloc&) { return internal_error(app::kOutOfMemory); } catch (const std::exception& error) {
     return internal_error(fmt::format("internal error: {}", error.what()));
   }
-}
-
-/// A whole number in a range; the library's own check prints limits that nobody can read.
-std::string check_threads(const std::string& text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc{} && end == text.data() + text.size() && value >= 1 && value <= 1024) return {};
-  return "--threads = " + text + " is not a whole number from 1 to 1024";
 }
 
 /// A command on the command line, below its group where it has one.
@@ -141,8 +133,7 @@ void add_global_options(CLI::App& app, GlobalOptions& options) {
   app.set_version_flag("--version", kVersion);
   app.add_flag("--json", options.json, "print one JSON object on stdout");
   app.add_flag("--quiet", options.quiet, "print errors only");
-  app.add_option("--threads", options.threads, "number of threads (default: all)")
-      ->check(CLI::Validator(check_threads, "N", "threads"));
+  commands::OptionSet(app).whole_number("--threads", options.threads, "number of threads (default: all)", {1, 1024});
   app.add_option("--color", options.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}));
 }
 
@@ -155,7 +146,8 @@ int run_command_line(int argc, char** argv) {
   app.footer(
       "Exit codes: 0 done and verified, 1 not verified (no program is left), 2 usage, 3 an input file is refused, 4 a "
       "file cannot be read or\n"
-      "written, 70 internal error, 130 interrupted. `toothpath COMMAND --help` lists the options of a command.");
+      "written, 70 internal error or out of memory, 130 interrupted. `toothpath COMMAND --help` lists the options of a "
+      "command.");
   app.require_subcommand(0, 1);
   const auto commands = add_commands(app);
 
@@ -170,10 +162,13 @@ int run_command_line(int argc, char** argv) {
 
   const commands::CommonRequest request{options.quiet || options.json, wants_color(options.color, STDOUT_FILENO)};
   std::optional<tbb::global_control> threads;
-  if (options.threads > 0)
-    threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(options.threads));
+  if (options.threads)
+    threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(*options.threads));
   for (const auto& [sub, name, action] : commands)
-    if (sub->parsed()) return present(name, guarded(action, request), options);
+    if (sub->parsed()) {
+      if (options.json) app::set_out_of_memory_answer(outcome_json(name, internal_error(app::kOutOfMemory)));
+      return present(name, guarded(action, request), options);
+    }
   return static_cast<int>(app::ExitCode::internal);
 }
 

@@ -1,8 +1,10 @@
 #include "app/base/interruption.h"
+#include "app/base/out_of_memory.h"
 #include "app/command_line.h"
 
 int main(int argc, char** argv) {
   toothpath::app::handle_signals();
+  toothpath::app::handle_out_of_memory();
   toothpath::app::set_last_line("interrupted: nothing was written");
   return toothpath::run_command_line(argc, argv);
 }

@@ -393,8 +393,8 @@ MachineReading read_machine_file(const std::string& path, const MachineJudge& ju
       path, [&judge](std::string_view text, const std::string& file) { return read_machine_text(text, file, judge); });
 }
 
-Result<MachineKind> machine_kind_of(const std::string& path) {
-  const auto text = read_machine_bytes(path);
+Result<MachineFileText> open_machine_file(const std::string& path) {
+  auto text = read_machine_bytes(path);
   if (!text) return text.error();
   const auto tree = parse_machine_toml(*text, path);
   if (!tree) return tree.error();
@@ -402,7 +402,8 @@ Result<MachineKind> machine_kind_of(const std::string& path) {
   toml::TableReader root(*tree, "", findings);
   const auto kind = read_kind(root);
   if (!kind) return findings.errors.front();
-  return *kind == "five_axis" ? MachineKind::five_axis : MachineKind::gear_shaper;
+  return MachineFileText{path, std::move(text).value(),
+                         *kind == "five_axis" ? MachineKind::five_axis : MachineKind::gear_shaper};
 }
 
 }  // namespace toothpath::machines

@@ -35,9 +35,15 @@ using MachineJudge = std::function<std::vector<Diagnostic>(const Machine&)>;
 [[nodiscard]] MachineReading read_machine_text(std::string_view text, const std::string& file,
                                                const MachineJudge& judge = {});
 
-/// Kind of machine that a file describes, without reading the rest. Errors: unreadable, not TOML, `kind` missing or
-/// unknown.
-[[nodiscard]] Result<MachineKind> machine_kind_of(const std::string& path);
+/// A machine file that has been opened: what it says can be read from `text`, whatever becomes of the file.
+struct MachineFileText {
+  std::string path, text;
+  MachineKind kind{};
+};
+
+/// Opens a machine file and tells what kind of machine it describes, without reading the rest. Errors: unreadable, not
+/// TOML, `kind` missing or unknown.
+[[nodiscard]] Result<MachineFileText> open_machine_file(const std::string& path);
 
 /// Directories that hold installed machine files, best first: `share/toothpath/machines` beside the executable's
 /// folder, then the data folder of the source tree this was built from. Only those that exist.

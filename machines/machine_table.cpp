@@ -107,7 +107,7 @@ Result<std::string> read_machine_bytes(const std::string& path) {
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   if (!error && bytes > kMaxMachineFileBytes)
     return refuse(fmt::format("has more than {} bytes, the largest machine file allowed", kMaxMachineFileBytes));
-  auto text = toml::read_regular_file(path, kMaxMachineFileBytes);
+  auto text = toml::read_input_file(path, kMaxMachineFileBytes);
   if (!text) return refuse("cannot be opened for reading");
   return text;
 }

@@ -11,7 +11,7 @@ enum class ExitCode {
   usage = 2,          ///< the command line is wrong
   refused = 3,        ///< the job, machine, program or mesh file is wrong
   file_access = 4,    ///< a file cannot be read or written
-  internal = 70,      ///< a broken promise inside the program
+  internal = 70,      ///< a broken promise inside the program, or no memory
   interrupted = 130,  ///< stopped by a signal
 };
 

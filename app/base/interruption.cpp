@@ -31,14 +31,16 @@ std::atomic<bool> pending = false;
 
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
-[[noreturn]] void leave() {
+void remove_temporaries() {
   for (const Slot& slot : slots)
     if (slot.used && !slot.is_directory) ::unlink(slot.path.data());
   for (std::size_t i = kSlots; i-- > 0;)  // the innermost directory was registered last
     if (slots[i].used && slots[i].is_directory) ::rmdir(slots[i].path.data());
+}
+
+[[noreturn]] void leave() {
   const LastLine& line = last_lines[static_cast<std::size_t>(last_line)];
-  if (line.size > 0) (void)!::write(STDERR_FILENO, line.text.data(), line.size);
-  ::_exit(130);
+  leave_process(line.text.data(), line.size, 130);
 }
 
 extern "C" void on_signal(int) {
@@ -85,6 +87,13 @@ void set_last_line(const std::string& text) {
   last_line = next;
 }
 
+void leave_process(const char* text, std::size_t size, int exit_code) {
+  remove_temporaries();
+  if (size > 0) (void)!::write(STDERR_FILENO, text, size);
+  ::_exit(exit_code);
+}
+
+bool SignalsBlocked::any() { return blocked > 0; }
 SignalsBlocked::SignalsBlocked() { ++blocked; }
 SignalsBlocked::~SignalsBlocked() {
   if (--blocked == 0 && pending) leave();

@@ -19,6 +19,9 @@ void forget_temporary(const std::string& path);
 /// The line that a signal leaves on stderr, at most 1000 bytes of it; empty (as at first): none.
 void set_last_line(const std::string& text);
 
+/// Ends the process: the registered temporary files and empty directories go, `text` goes to stderr. Allocates nothing.
+[[noreturn]] void leave_process(const char* text, std::size_t size, int exit_code);
+
 /// While one of these lives the signals wait: renaming must not be cut in two.
 class SignalsBlocked {
  public:
@@ -26,6 +29,7 @@ class SignalsBlocked {
   ~SignalsBlocked();
   SignalsBlocked(const SignalsBlocked&) = delete;
   SignalsBlocked& operator=(const SignalsBlocked&) = delete;
+  [[nodiscard]] static bool any();
 };
 
 }  // namespace toothpath::app

@@ -80,6 +80,17 @@ void remove_leftovers(const std::string& directory) {
 
 bool same_file(const struct stat& a, const struct stat& b) { return a.st_dev == b.st_dev && a.st_ino == b.st_ino; }
 
+/// Is `place` the file that `path` names, or the link that `path` is?
+bool stands_at(const std::string& path, const struct stat& place) {
+  struct stat input {};
+  return (::stat(path.c_str(), &input) == 0 && same_file(input, place)) ||
+         (::lstat(path.c_str(), &input) == 0 && same_file(input, place));
+}
+
+Diagnostic refused_input(const std::string& path, std::string why) {
+  return {DiagnosticKind::usage, {path, 0, 0}, std::move(why)};
+}
+
 }  // namespace
 
 OutputDir::OutputDir(std::string path, const std::vector<std::string>& own_names, const std::string& previous)
@@ -97,6 +108,7 @@ Result<OutputDir> OutputDir::open(const std::string& path, const std::vector<std
   if (!fs::is_directory(path, error)) return cannot("write into", path, ENOTDIR);
   if (::access(path.c_str(), W_OK | X_OK) != 0) return cannot("write into", path, errno);
   if (auto s = result.lock(); !s) return s.error();
+  if (auto s = result.refuse_leftovers(inputs); !s) return s.error();
   {
     const SignalsBlocked blocked;
     remove_leftovers(path);
@@ -163,26 +175,38 @@ void OutputDir::unlock() {
 }
 
 Status OutputDir::refuse_replaced_inputs(const std::vector<std::string>& inputs) const {
-  for (const auto& input : inputs) {
-    struct stat read {
-    }, replaced{};
-    if (::stat(input.c_str(), &read) != 0) continue;  // who reads it says why
-    const auto refuse_in = [&](const std::string& directory) -> Status {
-      for (const auto& name : names_.standing_in(directory)) {
-        if (::lstat((directory + "/" + name).c_str(), &replaced) != 0 || !same_file(read, replaced)) continue;
-        Diagnostic refusal = fail_as(
-            DiagnosticKind::usage,
-            "this input lies where the command writes its own {}: copy it elsewhere, or give another --out", name);
-        refusal.position.file = input;
-        return refusal;
-      }
-      return Ok{};
-    };
-    if (auto s = refuse_in(path_); !s) return s;
-    if (auto s = previous_.empty() ? Status(Ok{}) : refuse_in(path_ + "/" + previous_); !s) return s;
-  }
+  const auto refuse_in = [&](const std::string& directory) -> Status {
+    for (const auto& name : names_.standing_in(directory)) {
+      struct stat replaced {};
+      if (::lstat((directory + "/" + name).c_str(), &replaced) != 0) continue;
+      for (const auto& input : inputs)
+        if (stands_at(input, replaced))
+          return refused_input(
+              input,
+              fmt::format(
+                  "this input lies where the command writes its own {}: copy it elsewhere, or give another --out",
+                  name));
+    }
+    return Ok{};
+  };
+  if (auto s = refuse_in(path_); !s) return s;
+  return previous_.empty() ? Status(Ok{}) : refuse_in(path_ + "/" + previous_);
+}
+
+/// open() clears hidden files of ours away.
+Status OutputDir::refuse_leftovers(const std::vector<std::string>& inputs) const {
+  std::error_code error;
+  const fs::path here = fs::canonical(path_, error);
+  for (const auto& input : inputs)
+    for (fs::path at = fs::absolute(input, error); at.has_relative_path(); at = at.parent_path())
+      if (at.filename().string().starts_with(kTemporaryPrefix) && fs::canonical(at.parent_path(), error) == here)
+        return refused_input(input, fmt::format("names that begin with \"{}\" are the program's own in {}: copy this "
+                                                "input elsewhere",
+                                                kTemporaryPrefix, path_));
   return Ok{};
 }
+
+Status OutputDir::keeps_inputs() const { return refuse_replaced_inputs(toml::inputs_read()); }
 
 void OutputDir::note_standing() const {
   const std::string standing = describe_results(path_, names_.standing_in(path_));
@@ -192,6 +216,7 @@ void OutputDir::note_standing() const {
 }
 
 Status OutputDir::set_aside() {
+  if (auto s = keeps_inputs(); !s) return s;
   const auto standing = names_.standing_in(path_);
   if (standing.empty() || !names_.is_program(standing.front())) return Ok{};
   std::string text =
@@ -271,6 +296,10 @@ Status OutputDir::verify() const {
 
 Status OutputDir::commit() {
   const SignalsBlocked blocked;
+  if (auto s = keeps_inputs(); !s) {
+    discard_all();
+    return s;
+  }
   std::stable_partition(files_.begin(), files_.end(), [&](const File& file) { return !names_.is_program(file.name); });
   std::vector<OutputExchange::NewFile> renamed;
   for (const File& file : files_) renamed.push_back({file.temporary_path, file.name});

@@ -40,8 +40,14 @@ class OutputDir {
   /// Discards what was not committed; a directory that open() made and that is still empty goes too.
   ~OutputDir();
 
+  /// Refused (kind `usage`): a file that has been read as an input until now (toml::inputs_read()) and that this
+  /// command would replace. open() asks for those of its list, set_aside() and commit() for all; a command that works
+  /// long between the two asks by itself.
+  [[nodiscard]] Status keeps_inputs() const;
+
   /// The inputs are accepted, and the work begins: earlier results with a program move into `previous`, whose results
-  /// go. Results without one stay until commit(). Errors: `file_access`; then everything is where it was.
+  /// go. Results without one stay until commit(). Errors: `file_access`, and those of keeps_inputs(); then everything
+  /// is where it was.
   Status set_aside();
 
   /// Writes a file under its temporary name. `name` has no slash. Errors: `file_access` (disk full, ...).
@@ -71,6 +77,7 @@ class OutputDir {
   [[nodiscard]] Status lock();
   void unlock();
   [[nodiscard]] Status refuse_replaced_inputs(const std::vector<std::string>& inputs) const;
+  [[nodiscard]] Status refuse_leftovers(const std::vector<std::string>& inputs) const;
   [[nodiscard]] Status verify() const;
   void note_standing() const;
   void discard_all();

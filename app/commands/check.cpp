@@ -10,6 +10,7 @@
 #include "app/report/deviation_vtp.h"
 #include "app/report/page/motion_charts.h"
 #include "app/report/page/page_of_run.h"
+#include "app/report/sections/sections.h"
 #include "geometry/base/hash.h"
 #include "postproc/timing/model_text.h"
 
@@ -53,10 +54,14 @@ std::vector<Diagnostic> read_inputs(Check& check) {
   if (!text) return {text.error()};
   check.text = std::move(text.value());
   if (!process::wants_scene(request)) return {};
-  auto meshes = check.clock.run("stock and fixture meshes",
-                                [&] { return process::load_scene(request, check.gear.process->part().diameter_mm); });
+  auto meshes = check.clock.run("stock and fixture meshes", [&] { return process::load_scene(request); });
   if (!meshes) return {meshes.error()};
   check.scene = std::move(meshes.value());
+  const auto placed = check.clock.run("stock and fixture meshes", [&]() -> Status {
+    const auto solid = check.gear.process->solid();
+    return solid ? process::place_scene(*check.scene, *solid, check.limits.clearance_mm) : Status(solid.error());
+  });
+  if (!placed) return {placed.error()};
   return {};
 }
 
@@ -71,6 +76,7 @@ Status judge_scene(Check& check) {
   });
   if (!verdicts) return verdicts.error();
   process::add_scene(*verdicts, check.proof->reasons, check.proof->gouge, check.report);
+  check.report.sections.push_back(sections::scene(check.report));
   return Ok{};
 }
 
@@ -134,6 +140,7 @@ CommandOutcome check_program(const CheckRequest& request) {
     check.progress.clear();
     return failed(std::move(errors));
   }
+  if (const auto kept = output->keeps_inputs(); !kept) return failed(kept.error());
   if (const auto proven = prove(check); !proven) {
     check.progress.clear();
     return failed(proven.error());

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "app/base/units.h"
 #include "app/job/file.h"
 #include "app/process/flow/cut_flanks.h"
 #include "app/process/flow/stages.h"
@@ -14,20 +15,6 @@ const std::vector<std::string> kContactOutputs = {"contact.csv", "transmission.c
 /// Rows that resolve the cusps of a finishing operation: several to a pass.
 constexpr int kCutRows = 241, kCutColumns = 33;
 
-std::optional<Diagnostic> out_of_range(const ContactRequest& r) {
-  const auto check = [](const char* name, const std::optional<double>& value, double low, double high,
-                        const char* unit) -> std::optional<Diagnostic> {
-    if (!value || (*value >= low && *value <= high)) return std::nullopt;
-    return fail_as(DiagnosticKind::usage, "{} = {:g} is not from {:g} to {:g} {}", name, *value, low, high, unit);
-  };
-  if (auto e = check("--offset-error", r.offset_error_mm, -5, 5, "mm")) return e;
-  if (auto e = check("--axial-error", r.axial_error_mm, -5, 5, "mm")) return e;
-  if (auto e = check("--wheel-axial-error", r.wheel_axial_error_mm, -5, 5, "mm")) return e;
-  if (auto e = check("--angle-error", r.angle_error_deg, -1, 1, "deg")) return e;
-  if (auto e = check("--compound", r.compound_um, 0.1, 100, "um")) return e;
-  return std::nullopt;
-}
-
 }  // namespace
 
 CommandOutcome run_contact(const ContactRequest& request) {
@@ -35,7 +22,6 @@ CommandOutcome run_contact(const ContactRequest& request) {
   app::StageClock clock(progress);
   auto output = app::OutputDir::open(request.out_dir, kContactOutputs, {request.job_file, request.other_job});
   if (!output) return failed(output.error());
-  if (auto error = out_of_range(request)) return failed(std::move(*error));
   auto read = clock.run("job", [&] { return job::read_job_file(request.job_file); });
   if (auto* errors = read.refused()) return failed(std::move(*errors));
   const job::Job& job = read.value();
@@ -64,16 +50,18 @@ void add_contact(Commands& commands) {
       "contact", "gear and pinion rolled: contact pattern, transmission error, pairs",
       [](OptionSet& set, ContactRequest& request) {
         job_options(set, request);
-        set.number("--pinion-teeth", request.pinion_teeth,
-                   "teeth of the pinion (default: mate_teeth, else the shaper's)");
-        set.number("--offset-error", request.offset_error_mm, "pinion axis off its place across the tooth, mm");
-        set.number("--angle-error", request.angle_error_deg, "error of the shaft angle, deg");
-        set.number("--axial-error", request.axial_error_mm, "pinion off its place along its axis, mm");
-        set.number("--compound", request.compound_um, "thickness of the marking compound, um (default 6)");
+        set.whole_number("--pinion-teeth", request.pinion_teeth,
+                         "teeth of the pinion (default: mate_teeth, else the shaper's)", job::kPinionTeeth);
+        set.number("--offset-error", request.offset_error_mm, "pinion axis off its place across the tooth",
+                   job::kMoved);
+        set.number("--angle-error", request.angle_error_deg, "error of the shaft angle", job::kAngleError);
+        set.number("--axial-error", request.axial_error_mm, "pinion off its place along its axis", job::kMoved);
+        set.number("--compound", request.compound_um, "thickness of the marking compound (default 6)",
+                   {app::um(job::kCompound.low), app::um(job::kCompound.high), " um"});
         set.text("--mate", request.other_job,
                  "bevel gears: job of the mate (default: by the rules of the pair, same mill)", "JOB");
         set.number("--wheel-axial-error", request.wheel_axial_error_mm,
-                   "bevel gears: wheel off its place along its axis, mm");
+                   "bevel gears: wheel off its place along its axis", job::kMoved);
         set.flag("--as-cut", request.as_cut, "roll the surface that the job cuts, too");
       },
       run_contact));

@@ -151,15 +151,16 @@ process::ValueOrErrors<std::optional<job::Job>> read_other(const CutterRequest& 
 }
 
 /// Index of the mill that the sheet describes: the designed one, or the tool that is asked for.
-Result<std::size_t> drawn_mill(int tool_number, const std::vector<sheet::JudgedCutter>& mills, const job::Job& job) {
-  if (tool_number == 0) return std::size_t{0};
-  const std::string name = fmt::format("tool {}", tool_number);
+Result<std::size_t> drawn_mill(std::optional<int> tool_number, const std::vector<sheet::JudgedCutter>& mills,
+                               const job::Job& job) {
+  if (!tool_number) return std::size_t{0};
+  const std::string name = fmt::format("tool {}", *tool_number);
   std::size_t drawn = 0;
   while (drawn < mills.size() && mills[drawn].name != name) ++drawn;
   if (drawn == mills.size())
-    return fail_at(job.where("tool"), "--tool = {} is not a finger mill of the job", tool_number);
+    return fail_at(job.where("tool"), "--tool = {} is not a finger mill of the job", *tool_number);
   if (mills[drawn].judgement.walls.empty())
-    return fail_at(job.where("tool"), "tool {} cannot be drawn: its profile is impossible", tool_number);
+    return fail_at(job.where("tool"), "tool {} cannot be drawn: its profile is impossible", *tool_number);
   return drawn;
 }
 
@@ -265,7 +266,8 @@ void add_cutter(Commands& commands) {
       "cutter", "designs the finger mill of a bevel gear and judges the mills that are there",
       [](OptionSet& set, CutterRequest& request) {
         job_options(set, request);
-        set.number("--tool", request.tool_number, "draw this tool of the job instead of the designed mill");
+        set.whole_number("--tool", request.tool_number, "draw this tool of the job instead of the designed mill",
+                         job::kToolNumber);
         set.text("--cutter-of", request.other_job,
                  "judge the mills of this other job too, as they were made for its gear", "JOB");
       },

@@ -7,7 +7,7 @@
 namespace toothpath::commands {
 
 struct CutterRequest : JobRequest {
-  int tool_number = 0;  ///< 0: the designed mill
+  std::optional<int> tool_number;  ///< none: the designed mill
   std::string other_job;
 };
 

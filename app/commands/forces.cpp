@@ -266,8 +266,8 @@ void add_forces(Commands& commands) {
       "forces", "tooth forces of a bevel pair over the apex cone distance, and what balances them",
       [](OptionSet& set, ForcesRequest& request) {
         job_options(set, request);
-        set.number("--torque", request.torque_Nm, "torque on the gear of the job [N m]; overrides torque in its [load]",
-                   1e-6, 1e9);
+        set.number("--torque", request.torque_Nm, "torque on the gear of the job; overrides torque in its [load]",
+                   job::kTorque);
       },
       run_forces));
 }

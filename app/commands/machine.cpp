@@ -27,14 +27,14 @@ struct Shown {
 
 /// Text, page and drawing of a machine of either kind.
 Expected<Shown, std::vector<Diagnostic>> show(const std::string& path) {
-  const auto kind = machines::machine_kind_of(path);
-  if (!kind) return std::vector{kind.error()};
-  if (*kind == machines::MachineKind::gear_shaper) {
-    auto reading = shaper::read_shaper_machine(path);
+  const auto file = machines::open_machine_file(path);
+  if (!file) return std::vector{file.error()};
+  if (file->kind == machines::MachineKind::gear_shaper) {
+    auto reading = shaper::read_shaper_machine_of_text(file->text, path);
     if (!reading.machine) return std::move(reading.errors);
     return Shown{sheet::machine_text(*reading.machine), sheet::machine_page(*reading.machine), {}};
   }
-  auto reading = controls::read_machine(path);
+  auto reading = controls::read_machine_of_text(file->text, path);
   if (!reading.machine) return std::move(reading.errors);
   return Shown{sheet::machine_text(*reading.machine), sheet::machine_page(*reading.machine),
                sheet::machine_drawing_svg(*reading.machine)};
@@ -169,7 +169,7 @@ void add_machine(Commands& commands) {
         set.file("MACHINE", request.machine_file, kMachine);
         set.out_dir(request.out_dir, "directory for the program and its page; made where it does not exist");
         set.number("--tool-length", request.tool_length_mm,
-                   "gauge line to the tip of the test bar, mm (default: 100, 60 or 30, what fits)");
+                   "gauge line to the tip of the test bar (default: 100, 60 or 30, what fits)", {1, 5000, " mm"});
       },
       test_machine, &kMachines));
 }

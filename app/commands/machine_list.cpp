@@ -37,15 +37,15 @@ Listed listed(const std::string& file, const std::string& name, const char* kind
 Listed read_installed(const std::string& file) {
   const auto path = machines::find_machine_file(file, "/");
   if (!path) return {{}, {}, {path.error()}};
-  const auto kind = machines::machine_kind_of(*path);
-  if (!kind) return {{}, {}, {kind.error()}};
-  if (*kind == machines::MachineKind::gear_shaper) {
-    auto reading = shaper::read_shaper_machine(*path);
+  const auto opened = machines::open_machine_file(*path);
+  if (!opened) return {{}, {}, {opened.error()}};
+  if (opened->kind == machines::MachineKind::gear_shaper) {
+    auto reading = shaper::read_shaper_machine_of_text(opened->text, *path);
     if (!reading.machine) return {{}, {}, std::move(reading.errors)};
     return listed(file, reading.machine->name, "gear_shaper", reading.machine->dialect, "-", "-",
                   reading.machine->assumed_keys.size());
   }
-  auto reading = machines::read_machine_file(*path);
+  auto reading = machines::read_machine_text(opened->text, *path);
   if (!reading.machine) return {{}, {}, std::move(reading.errors)};
   const machines::Machine& m = *reading.machine;
   return listed(file, m.name, "five_axis", m.dialect, letters_of(m.chain.table), letters_of(m.chain.head),

@@ -3,42 +3,59 @@
 #include <CLI/CLI.hpp>
 
 namespace toothpath::commands {
+namespace {
+
+template <typename Number, typename Read>
+void add_number(CLI::App& app, const char* name, std::optional<Number>& value, const char* help,
+                const toml::Range& range, Read read) {
+  const auto take = [&value, name, range, read](const std::string& text) {
+    const auto number = read(name, text, range);
+    if (!number) throw CLI::ValidationError(number.error().message);
+    value = *number;
+  };
+  app.add_option_function<std::string>(name, take, help)
+      ->type_name(fmt::format("NUMBER ({:g} to {:g}{})", range.low, range.high, range.unit));
+}
+
+/// A name or a word that says nothing is a slip of whoever wrote the command: an unset variable of a script.
+CLI::Option* not_empty(CLI::Option* option) {
+  return option->check(CLI::Validator(
+      [name = option->get_name()](const std::string& text) { return text.empty() ? name + " is empty" : ""; }, ""));
+}
+
+}  // namespace
 
 void OptionSet::file(const char* name, std::string& value, const char* help) {
-  app_.add_option(name, value, help)->required()->type_name("FILE");
+  not_empty(app_.add_option(name, value, help))->required()->type_name("FILE");
 }
 
 void OptionSet::out_dir(std::string& value) {
   out_dir(value, "directory for the results; made where it does not exist");
 }
 void OptionSet::out_dir(std::string& value, const char* help) {
-  app_.add_option("--out", value, help)->required()->type_name("DIR");
+  not_empty(app_.add_option("--out", value, help))->required()->type_name("DIR");
 }
 void OptionSet::out_dir_or_none(std::string& value, const char* help) {
-  app_.add_option("--out", value, help)->type_name("DIR");
+  not_empty(app_.add_option("--out", value, help))->type_name("DIR");
 }
 
 void OptionSet::flag(const char* name, bool& value, const char* help) { app_.add_flag(name, value, help); }
 void OptionSet::text(const char* name, std::string& value, const char* help, const char* type) {
-  app_.add_option(name, value, help)->type_name(type);
+  not_empty(app_.add_option(name, value, help))->type_name(type);
 }
 
 void OptionSet::files(const char* name, std::vector<std::string>& values, const char* help) {
-  app_.add_option(name, values, help)->type_name("FILE");
+  not_empty(app_.add_option(name, values, help))->type_name("FILE");
 }
 void OptionSet::required_files(const char* name, std::vector<std::string>& values, const char* help) {
-  app_.add_option(name, values, help)->required()->type_name("FILE");
+  not_empty(app_.add_option(name, values, help))->required()->type_name("FILE");
 }
 
-void OptionSet::number(const char* name, int& value, const char* help) { app_.add_option(name, value, help); }
-void OptionSet::number(const char* name, std::optional<int>& value, const char* help) {
-  app_.add_option(name, value, help);
+void OptionSet::number(const char* name, std::optional<double>& value, const char* help, const toml::Range& range) {
+  add_number(app_, name, value, help, range, app::read_number);
 }
-void OptionSet::number(const char* name, std::optional<double>& value, const char* help) {
-  app_.add_option(name, value, help);
-}
-void OptionSet::number(const char* name, std::optional<double>& value, const char* help, double least, double most) {
-  app_.add_option(name, value, help)->check(CLI::Range(least, most));
+void OptionSet::whole_number(const char* name, std::optional<int>& value, const char* help, const toml::Range& range) {
+  add_number(app_, name, value, help, range, app::read_whole_number);
 }
 
 }  // namespace toothpath::commands

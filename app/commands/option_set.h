@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "app/base/option_number.h"
+
 namespace CLI {
 class App;
 }
@@ -13,7 +15,7 @@ class App;
 namespace toothpath::commands {
 
 /// Options in the order in which the help lists them. Every value is filled in when the command line has been read, and
-/// must live until then. `type` stands behind the option in the help.
+/// must live until then. `type` stands behind the option in the help. An empty name or text is refused (kind usage).
 class OptionSet {
  public:
   explicit OptionSet(CLI::App& app) : app_(app) {}
@@ -30,11 +32,9 @@ class OptionSet {
   /// One or more, repeated or one behind the other.
   void files(const char* name, std::vector<std::string>& values, const char* help);
   void required_files(const char* name, std::vector<std::string>& values, const char* help);
-  void number(const char* name, int& value, const char* help);
-  void number(const char* name, std::optional<int>& value, const char* help);
-  void number(const char* name, std::optional<double>& value, const char* help);
-  /// Refused (kind usage) outside of least .. most.
-  void number(const char* name, std::optional<double>& value, const char* help, double least, double most);
+  /// Refused (kind usage): what is no finite number of the range, whose unit stands in the help.
+  void number(const char* name, std::optional<double>& value, const char* help, const toml::Range& range);
+  void whole_number(const char* name, std::optional<int>& value, const char* help, const toml::Range& range);
 
  private:
   CLI::App& app_;

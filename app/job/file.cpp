@@ -60,7 +60,7 @@ JobOrErrors parse_job(std::string_view text, const std::string& file) {
   if (auto table = root.table("verify")) job.verify = read_verify(*table, job.bevel_gear() != nullptr);
   if (auto table = root.table("program")) job.program = read_program_settings(*table);
   if (auto table = root.table("load")) {
-    job.torque_Nm = table->number("torque", {0, 1e9, " N m", true});
+    job.torque_Nm = table->number("torque", kTorque);
     table->finish();
   }
   read_tools(root, job);
@@ -81,7 +81,7 @@ JobOrErrors parse_job(std::string_view text, const std::string& file) {
 }
 
 JobOrErrors read_job_file(const std::string& path) {
-  const auto text = toml::read_regular_file(path, kMaxJobBytes);
+  const auto text = toml::read_input_file(path, kMaxJobBytes);
   if (!text) return std::vector<Diagnostic>{text.error()};
   return parse_job(*text, path);
 }

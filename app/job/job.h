@@ -17,6 +17,7 @@
 #include "geometry/contact/pinion.h"
 #include "geometry/face_gear/parameters.h"
 #include "machines/coolant.h"
+#include "machines/toml/table_reader.h"
 #include "postproc/joints/setup.h"
 #include "postproc/shaper/shaping.h"
 
@@ -48,6 +49,14 @@ struct ProgramSettings {
   std::optional<machines::PoleOption> pole;  ///< instead of post.pole of the machine file
   std::optional<double> pole_angle_rad;      ///< instead of post.pole_angle
 };
+
+/// What the keys of [contact], and the options of `contact` in their place, may be.
+inline constexpr toml::Range kPinionTeeth{5, 1000}, kMoved{-5, 5, " mm"}, kAngleError{-1, 1, " deg"},
+    kCompound{1e-4, 0.1, " mm"};
+/// Torque on the gear, in [load] and as an option.
+inline constexpr toml::Range kTorque{1e-6, 1e9, " N m"};
+/// Numbers of tools.
+inline constexpr toml::Range kToolNumber{1, 9999};
 
 /// The [contact] table: the pinion that runs with the gear, and where it stands.
 struct ContactSettings {

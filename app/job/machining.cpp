@@ -313,12 +313,12 @@ ContactSettings read_contact(toml::TableReader& table) {
   const auto number = [&](const char* key, const toml::Range& range) {
     return table.if_present(key, [&] { return table.number(key, range); });
   };
-  if (const auto teeth = table.if_present("pinion_teeth", [&] { return table.integer("pinion_teeth", {5, 1000}); }))
+  if (const auto teeth = table.if_present("pinion_teeth", [&] { return table.integer("pinion_teeth", kPinionTeeth); }))
     c.pinion_teeth = *teeth;
-  if (const auto offset = number("offset_error", {-5, 5, " mm"})) c.moved.offset_mm = *offset;
-  if (const auto axial = number("axial_error", {-5, 5, " mm"})) c.moved.axial_mm = *axial;
-  if (const auto angle = number("angle_error", {-1, 1, " deg"})) c.moved.angle_rad = radians(*angle);
-  if (const auto compound = number("compound", {1e-4, 0.1, " mm"})) c.compound_mm = *compound;
+  if (const auto offset = number("offset_error", kMoved)) c.moved.offset_mm = *offset;
+  if (const auto axial = number("axial_error", kMoved)) c.moved.axial_mm = *axial;
+  if (const auto angle = number("angle_error", kAngleError)) c.moved.angle_rad = radians(*angle);
+  if (const auto compound = number("compound", kCompound)) c.compound_mm = *compound;
   table.finish();
   return c;
 }

@@ -184,7 +184,7 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
 }
 
 Result<MeasuredFlanks> read_measured(const std::string& path, const face_gear::FaceGear& gear) {
-  const auto text = toml::read_regular_file(path, kMostMeasuredBytes);
+  const auto text = toml::read_input_file(path, kMostMeasuredBytes);
   if (!text) return text.error();
   return parse_measured(*text, path, gear);
 }

@@ -97,7 +97,7 @@ void read_meridian(toml::TableReader& table, const ToolContext& context, tool::T
   const auto name = table.text("meridian");
   if (!name) return;
   const auto path = (std::filesystem::path(context.directory) / *name).string();
-  const auto text = toml::read_regular_file(path, kMostMeridianBytes);
+  const auto text = toml::read_input_file(path, kMostMeridianBytes);
   if (!text) return table.refuse("meridian", "meridian = \"{}\": {}", *name, text.error().message);
   tool::MeridianError measured;
   int number = 0;
@@ -160,7 +160,7 @@ void read_end_mill(toml::TableReader& table, const ToolContext& context, tool::T
 tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& context, std::vector<std::string>& warnings) {
   const std::vector<std::string_view> words = kind_words();
   tool::ToolAssembly tool;
-  tool.number = table.integer("number", {1, 9999}).value_or(0);
+  tool.number = table.integer("number", kToolNumber).value_or(0);
   const auto type = table.word("type", words);
   tool.shank_diameter_mm = table.number("shank_diameter", kToolDiameter).value_or(0);
   const auto length = table.number("length", kToolLength);

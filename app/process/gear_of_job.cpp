@@ -105,12 +105,12 @@ ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional
   const std::string directory = std::filesystem::path(job.file).parent_path().string();
   const auto path = machines::find_machine_file(job.machine.file, directory);
   if (!path) return std::vector{located(job, "machine.file", path.error())};
-  const auto kind = machines::machine_kind_of(*path);
-  if (!kind) return std::vector{located(job, "machine.file", kind.error())};
-  if (*kind != machines::MachineKind::five_axis)
+  const auto file = machines::open_machine_file(*path);
+  if (!file) return std::vector{located(job, "machine.file", file.error())};
+  if (file->kind != machines::MachineKind::five_axis)
     return std::vector{fail_at(job.where("machine.file"),
                                "{} is a gear shaper, but this command needs a milling machine", job.machine.file)};
-  auto reading = controls::read_machine(*path);
+  auto reading = controls::read_machine_of_text(file->text, file->path);
   if (!reading.machine) return reading.errors;
   machines::Machine machine = std::move(*reading.machine);
   if (job.program.pole) machine.post.pole = *job.program.pole;

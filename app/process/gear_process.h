@@ -22,6 +22,7 @@
 #include "app/process/opening_and_end.h"
 #include "app/process/program_proof.h"
 #include "app/process/scene.h"
+#include "app/process/scene_place.h"
 #include "app/report/page/page_of_run.h"
 #include "app/report/run_report.h"
 #include "app/report/sheet/length_tolerance.h"
@@ -116,6 +117,8 @@ class GearProcess {
   [[nodiscard]] virtual std::vector<svg::LineChart> limit_charts() const = 0;
   /// What a check of fixture and stock must know. Errors: a tool that does not fit the gear, at its place in the job.
   [[nodiscard]] virtual Result<SceneGear> scene(double clearance_mm) const = 0;
+  /// The finished gear as a mesh, its facets within 0.02 mm. Errors: what has no mesh, at gear.
+  [[nodiscard]] virtual Result<FinishedGear> solid() const = 0;
 
   /// Limits, inspection points, meshes; with `surface` tooth.vtp is the cut surface with its deviation, without the
   /// plain tooth.

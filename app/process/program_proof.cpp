@@ -37,7 +37,11 @@ Result<ProgramProof> read_program(const ProgramText& program, const GearCheck& g
           {out.control, program.machine, *job.setup, gear.teeth(), {gear.motion_tolerance(), gear.motion_tolerance()}},
           out.motions);
     });
-    if (!followed) return followed.error();
+    if (!followed) {
+      Diagnostic error = followed.error();
+      if (error.position.file.empty()) error.position.file = program.file;
+      return error;
+    }
   }
   return out;
 }

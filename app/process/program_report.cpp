@@ -177,7 +177,7 @@ void discard_program(app::OutputDir& output) {
   for (const auto& extension : controls::program_extensions()) output.discard("program" + extension);
 }
 
-Result<std::string> read_program_file(const std::string& path) { return toml::read_regular_file(path, kMostBytes); }
+Result<std::string> read_program_file(const std::string& path) { return toml::read_input_file(path, kMostBytes); }
 
 std::vector<joints::AxisRange> ranges_of(const readback::ReadBack& read, const machines::Machine& machine) {
   std::vector<joints::AxisRange> out;

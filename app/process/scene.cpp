@@ -18,29 +18,12 @@ constexpr std::size_t kGroup = 32;                    // motions that are looked
 constexpr double kTip = 1e-4, kAxis = 2e-6;           // mm, rad: motions of feeds; rapids are cut 50 times coarser
 constexpr std::size_t kMostRows = 20;
 
-Status load(const std::vector<std::string>& files, double least_mm,
-            std::vector<std::unique_ptr<clearance::MeshDistance>>& out, std::size_t& facets) {
+Status load(const std::vector<std::string>& files, std::vector<SceneMesh>& out) {
   for (const auto& file : files) {
-    mesh::MeshImportLimits limits;
-    limits.expected_size_mm = least_mm;
-    const auto mesh = mesh::load_mesh(file, limits);
+    auto mesh = mesh::load_mesh(file);
     if (!mesh) return mesh.error();
-    Vec3 low = Vec3::Constant(INFINITY), high = -low;
-    for (const auto& v : mesh->vertices) {
-      low = low.cwiseMin(v);
-      high = high.cwiseMax(v);
-    }
-    const double size = (high - low).maxCoeff();
-    if (size < least_mm) {
-      Diagnostic error = fail(
-          "the longest side of the stock, {:.4g} mm, is below {:.4g} mm, the outer diameter of the finished gear; if "
-          "the file is in inches, it would be {:.4g} mm, in metres {:.4g} mm: mesh files are read as mm",
-          size, least_mm, 25.4 * size, 1000 * size);
-      error.position.file = file;
-      return error;
-    }
-    facets += mesh->triangles.size();
-    out.push_back(std::make_unique<clearance::MeshDistance>(*mesh));
+    auto distance = std::make_unique<clearance::MeshDistance>(*mesh);
+    out.push_back({std::move(*mesh), std::move(distance)});
   }
   return Ok{};
 }
@@ -58,10 +41,10 @@ class SceneWalk {
   SceneWalk(const Scene& scene, const job::Job& job, const machines::Machine& machine,
             const readback::NcControl& control, const readback::ReadBack& read, const SceneGear& gear)
       : job_(job), machine_(machine), control_(control), read_(read), gear_(gear), clearance_(gear.clearance_mm) {
-    for (const auto& m : scene.fixture) fixture_.push_back(m.get());
-    for (const auto& m : scene.stock) stock_.push_back(m.get());
-    if (!fixture_.empty()) verdicts_.push_back(verdict("fixture", scene.fixture_files, scene.fixture_facets));
-    if (!stock_.empty()) verdicts_.push_back(verdict("stock", scene.stock_files, scene.stock_facets));
+    for (const auto& m : scene.fixture) fixture_.push_back(m.distance.get());
+    for (const auto& m : scene.stock) stock_.push_back(m.distance.get());
+    if (!fixture_.empty()) verdicts_.push_back(verdict("fixture", scene.fixture_places));
+    if (!stock_.empty()) verdicts_.push_back(verdict("stock", scene.stock_places));
   }
 
   void operator()(readback::ExecutedMove m) {
@@ -92,12 +75,10 @@ class SceneWalk {
   }
 
  private:
-  [[nodiscard]] report::SceneVerdict verdict(const char* name, const std::vector<std::string>& files,
-                                             std::size_t facets) const {
+  [[nodiscard]] report::SceneVerdict verdict(const char* name, const std::vector<report::MeshInScene>& meshes) const {
     report::SceneVerdict v;
     v.name = name;
-    v.files = files;
-    v.facets = facets;
+    v.meshes = meshes;
     v.required_mm = clearance_;
     v.look_mm = clearance_ + options_.look_mm;
     return v;
@@ -240,12 +221,12 @@ proof::WorstPlace worst_place(const clearance::MeshMeeting& m, const std::string
 
 }  // namespace
 
-Result<Scene> load_scene(const SceneFiles& request, double gear_diameter_mm) {
+Result<Scene> load_scene(const SceneFiles& request) {
   Scene scene;
   scene.fixture_files = request.fixture_files;
   scene.stock_files = request.stock_files;
-  if (const auto s = load(request.fixture_files, 0, scene.fixture, scene.fixture_facets); !s) return s.error();
-  if (const auto s = load(request.stock_files, gear_diameter_mm, scene.stock, scene.stock_facets); !s) return s.error();
+  if (const auto s = load(request.fixture_files, scene.fixture); !s) return s.error();
+  if (const auto s = load(request.stock_files, scene.stock); !s) return s.error();
   return scene;
 }
 

@@ -18,12 +18,17 @@
 
 namespace toothpath::process {
 
+struct SceneMesh {
+  mesh::TriangleMesh mesh;
+  std::unique_ptr<clearance::MeshDistance> distance;
+};
+
 /// Meshes in the gear frame W, mm: they stand still about the gear, as bolted to the table that turns it. Each file is
 /// a solid of its own.
 struct Scene {
   std::vector<std::string> fixture_files, stock_files;
-  std::vector<std::unique_ptr<clearance::MeshDistance>> fixture, stock;
-  std::size_t fixture_facets = 0, stock_facets = 0;
+  std::vector<SceneMesh> fixture, stock;
+  std::vector<report::MeshInScene> fixture_places, stock_places;  ///< one a mesh: app/process/scene_place
   [[nodiscard]] bool empty() const { return fixture.empty() && stock.empty(); }
 };
 
@@ -37,9 +42,9 @@ struct SceneFiles {
   return !request.stock_files.empty() || !request.fixture_files.empty();
 }
 
-/// Loads what the request names; nothing is loaded or built when it names nothing. `gear_diameter_mm`: outer diameter
-/// of the finished gear. Errors: those of load_mesh, located in the file; a stock that is smaller than the gear.
-[[nodiscard]] Result<Scene> load_scene(const SceneFiles& request, double gear_diameter_mm);
+/// Loads what the request names; nothing is loaded or built when it names nothing. Errors: those of load_mesh, located
+/// in the file.
+[[nodiscard]] Result<Scene> load_scene(const SceneFiles& request);
 
 /// What a check of the meshes must know of gear and tools.
 struct SceneGear {

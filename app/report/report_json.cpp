@@ -105,11 +105,13 @@ Json meeting_json(const clearance::MeshMeeting& m) {
 /// "fixture" and "stock": lengths in mm; "file" counts the files from 0.
 void add_scene(Json& json, const RunReport& r) {
   for (const auto& v : r.scene) {
-    Json entry = {{"files", text_list(v.files)},
-                  {"facets", v.facets},
-                  {"clear", v.clear()},
-                  {"required", v.required_mm},
-                  {"looked", v.look_mm}};
+    Json entry = {{"meshes", Json::array()}, {"clear", v.clear()}, {"required", v.required_mm}, {"looked", v.look_mm}};
+    for (const auto& m : v.meshes)
+      entry["meshes"].push_back({{"file", svg::valid_utf8(m.file)},
+                                 {"facets", m.facets},
+                                 {"low", vector_json(m.low)},
+                                 {"high", vector_json(m.high)},
+                                 {"to_gear", m.to_gear_mm}});
     entry["clearance"] = v.nearest ? Json(std::max(v.nearest->gap_mm, 0.0)) : Json(nullptr);
     entry["nearest"] = v.nearest ? meeting_json(*v.nearest) : Json(nullptr);
     entry["worst"] = Json::array();

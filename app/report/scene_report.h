@@ -9,11 +9,18 @@
 
 namespace toothpath::report {
 
+/// A mesh and where it stands, mm in the gear frame.
+struct MeshInScene {
+  std::string file;
+  std::size_t facets = 0;
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< corners of its box
+  double to_gear_mm = 0;                         ///< between its surface and that of the finished gear; 0: they meet
+};
+
 /// One kind of mesh: all files given for it.
 struct SceneVerdict {
   std::string name;  ///< "fixture" or "stock"
-  std::vector<std::string> files;
-  std::size_t facets = 0;
+  std::vector<MeshInScene> meshes;
   double required_mm = 0;  ///< clearance that was asked for
   double look_mm = 0;      ///< gaps larger than this were not told apart
   std::optional<clearance::MeshMeeting>

@@ -63,6 +63,10 @@ void proof_rows(std::string& out, const RunReport& report) {
             ? fmt::format("clear by more than {:.3f} mm", v.look_mm)
             : fmt::format("{}: least gap {:.3f} mm proven ({}), clearance {:.3f} mm", v.clear() ? "clear" : "NOT clear",
                           std::max(0.0, v.nearest->gap_mm), place, v.required_mm));
+    for (const auto& m : v.meshes)
+      row(out, "",
+          fmt::format("{}: X {:.6g} to {:.6g}, Y {:.6g} to {:.6g}, Z {:.6g} to {:.6g} mm, {:.3f} mm from the gear",
+                      m.file, m.low.x(), m.high.x(), m.low.y(), m.high.y(), m.low.z(), m.high.z(), m.to_gear_mm));
   }
 }
 

@@ -309,7 +309,7 @@ commands::CommandOutcome study_dhfg(const DhfgRequest& request) {
   if (!output) return commands::failed(output.error());
   DhfgStudy study = default_study();
   if (!request.study_file.empty()) {
-    const auto text = toml::read_regular_file(request.study_file, job::kMaxJobBytes);
+    const auto text = toml::read_input_file(request.study_file, job::kMaxJobBytes);
     if (!text) return commands::failed(text.error());
     auto parsed = parse_dhfg_study(*text, request.study_file);
     if (auto* errors = parsed.refused()) return commands::failed(std::move(*errors));

@@ -286,9 +286,6 @@ std::string json_text(const job::Job& job, const std::vector<StrategyTrial>& tri
 }  // namespace
 
 commands::CommandOutcome study_strategies(const StrategiesRequest& request) {
-  if (request.strips && (*request.strips < 1 || *request.strips > path::kMostStrips))
-    return commands::failed(
-        fail_as(DiagnosticKind::usage, "--strips {} is outside 1 to {}", *request.strips, path::kMostStrips));
   auto output = app::OutputDir::open(request.out_dir, kStrategiesOutputs, {request.job_file});
   if (!output) return commands::failed(output.error());
   auto read = job::read_job_file(request.job_file);
@@ -314,8 +311,9 @@ void add_strategies(commands::Commands& commands) {
       "strategies", "the flanks of a job by the side of its mill and by its ball: hours, what is left, what bends",
       [](commands::OptionSet& set, StrategiesRequest& request) {
         job_options(set, request);
-        set.number("--strips", request.strips,
-                   "most strips of a flank that are tried, 1 to 4; without: one more than the job's plan has");
+        set.whole_number("--strips", request.strips,
+                         "most strips of a flank that are tried; without: one more than the job's plan has",
+                         {1, path::kMostStrips});
       },
       study_strategies, &commands::kStudies));
 }

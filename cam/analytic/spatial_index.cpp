@@ -46,7 +46,7 @@ struct SpatialIndex::Impl {
 
   void build() {
     device = rtcNewDevice(nullptr);
-    if (!device) throw std::runtime_error("the ray tracing device cannot be made");
+    if (!device) give_up(rtcGetDeviceError(nullptr));
     scene = rtcNewScene(device);
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
@@ -70,6 +70,14 @@ struct SpatialIndex::Impl {
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);
     rtcCommitScene(scene);
+    if (const RTCError error = rtcGetDeviceError(device); error != RTC_ERROR_NONE) give_up(error);
+  }
+
+  /// A tree that is not whole would find too little. What makes the library fail on a processor that it knows is
+  /// memory.
+  [[noreturn]] static void give_up(RTCError error) {
+    if (error == RTC_ERROR_UNSUPPORTED_CPU) throw std::runtime_error("Embree does not know this processor");
+    throw std::bad_alloc();
   }
 
   ~Impl() {

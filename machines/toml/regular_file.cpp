@@ -4,8 +4,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
 
 namespace toothpath::toml {
 
@@ -37,6 +39,26 @@ Result<std::string> read_regular_file(const std::string& path, std::size_t max_b
     text.append(block, static_cast<std::size_t>(got));
     if (text.size() > max_bytes) return fail_at(position, "is longer than {} bytes", max_bytes);
   }
+}
+
+namespace {
+
+std::mutex inputs_mutex;
+std::vector<std::string> inputs;
+
+}  // namespace
+
+Result<std::string> read_input_file(const std::string& path, std::size_t max_bytes) {
+  {
+    const std::lock_guard lock(inputs_mutex);
+    if (std::find(inputs.begin(), inputs.end(), path) == inputs.end()) inputs.push_back(path);
+  }
+  return read_regular_file(path, max_bytes);
+}
+
+std::vector<std::string> inputs_read() {
+  const std::lock_guard lock(inputs_mutex);
+  return inputs;
 }
 
 }  // namespace toothpath::toml

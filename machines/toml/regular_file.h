@@ -1,7 +1,9 @@
-// The bytes of a file that a user names: directories, pipes and devices are refused without reading them.
+// The bytes of a file that a user names: directories, pipes and devices are refused without reading them. Which of
+// them are inputs is remembered.
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "geometry/base/result.h"
 
@@ -10,5 +12,11 @@ namespace toothpath::toml {
 /// The bytes of a regular file of at most `max_bytes`.
 /// A file that cannot be opened or read is `DiagnosticKind::file_access`, every other refusal `refused_input`.
 [[nodiscard]] Result<std::string> read_regular_file(const std::string& path, std::size_t max_bytes);
+
+/// The same for an input of the command; its name is kept, so that no output takes the place of the file.
+[[nodiscard]] Result<std::string> read_input_file(const std::string& path, std::size_t max_bytes);
+
+/// Names of the inputs that this process has read, each once, in order.
+[[nodiscard]] std::vector<std::string> inputs_read();
 
 }  // namespace toothpath::toml

@@ -8,61 +8,94 @@
 namespace toothpath::toml {
 namespace {
 
-/// Looks for what could make the parser or its tree recurse without bound. Strings cannot span lines here, so the state
-/// of a line does not depend on the lines before it, except for the open brackets.
-Status check_lines(std::string_view text, const std::string& file, int max_nesting) {
-  int line = 1, column = 0, depth = 0, dots = 0;
-  char quote = 0;
-  bool comment = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    ++column;
-    if (c == '\n') {
-      ++line;
-      column = dots = 0;
-      quote = 0;
-      comment = false;
-      continue;
+/// Looks for what could make the parser or its tree recurse without bound: brackets in brackets, keys of many parts.
+/// Whatever else is wrong with the text is left to the parser.
+class DepthCheck {
+ public:
+  DepthCheck(std::string_view text, const std::string& file, const TomlSyntax& syntax)
+      : text_(text), file_(file), syntax_(syntax) {}
+
+  Status run() {
+    for (at_ = 0; at_ < text_.size(); ++at_, ++column_) {
+      if (text_[at_] == '\n') new_line();
+      else if (auto s = letter(text_[at_]); !s) return s;
     }
-    if (c == '\r' && text.substr(i + 1, 1) != "\n")
-      return fail_at({file, line, column}, "a carriage return without a line feed");
-    if (comment) continue;
-    if (quote != 0) {
-      if (quote == '"' && c == '\\') {
-        ++i;
-        ++column;
-      } else if (c == quote) quote = 0;
-      continue;
+    return Ok{};
+  }
+
+ private:
+  [[nodiscard]] SourcePosition here() const { return {file_, line_, column_}; }
+  [[nodiscard]] bool three(char quote) const { return text_.substr(at_, 3) == std::string(3, quote); }
+  void skip(std::size_t letters) {
+    at_ += letters;
+    column_ += static_cast<int>(letters);
+  }
+  void new_line() {
+    ++line_;
+    column_ = dots_ = 0;
+    comment_ = false;
+    if (!long_string_) quote_ = 0;
+  }
+
+  Status letter(char c) {
+    if (c == '\r' && syntax_.one_line_strings && text_.substr(at_ + 1, 1) != "\n")
+      return fail_at(here(), "a carriage return without a line feed");
+    if (comment_) return Ok{};
+    if (quote_ != 0) in_string(c);
+    else return outside(c);
+    return Ok{};
+  }
+  void in_string(char c) {
+    if (quote_ == '"' && c == '\\') {
+      if (text_.substr(at_ + 1, 1) != "\n") skip(1);
+    } else if (c == quote_ && !long_string_) {
+      quote_ = 0;
+    } else if (c == quote_ && three(c)) {
+      skip(2);
+      while (text_.substr(at_ + 1, 1) == std::string(1, c)) skip(1);  // quotes at the end of the string
+      quote_ = 0;
     }
-    const SourcePosition here{file, line, column};
+  }
+  Status outside(char c) {
     switch (c) {
-      case '#': comment = true; break;
+      case '#': comment_ = true; break;
       case '"':
       case '\'':
-        if (text.substr(i, 3) == std::string(3, c))
-          return fail_at(here, "multi-line strings are not part of this format");
-        quote = c;
+        long_string_ = three(c);
+        if (long_string_ && syntax_.one_line_strings)
+          return fail_at(here(), "multi-line strings are not part of this format");
+        quote_ = c;
+        if (long_string_) skip(2);
         break;
       case '[':
       case '{':
-        if (++depth > max_nesting) return fail_at(here, "brackets are nested deeper than {}", max_nesting);
-        dots = 0;
+        if (++depth_ > syntax_.max_nesting)
+          return fail_at(here(), "brackets are nested deeper than {}", syntax_.max_nesting);
+        dots_ = 0;
         break;
       case ']':
       case '}':
-        depth = std::max(0, depth - 1);
-        dots = 0;
+        depth_ = std::max(0, depth_ - 1);
+        dots_ = 0;
         break;
       case ',':
-      case '=': dots = 0; break;
+      case '=': dots_ = 0; break;
       case '.':
-        if (++dots >= max_nesting) return fail_at(here, "a key has more than {} parts", max_nesting);
+        if (++dots_ >= syntax_.max_nesting) return fail_at(here(), "a key has more than {} parts", syntax_.max_nesting);
         break;
       default: break;
     }
+    return Ok{};
   }
-  return Ok{};
-}
+
+  std::string_view text_;
+  const std::string& file_;
+  const TomlSyntax& syntax_;
+  std::size_t at_ = 0;
+  int line_ = 1, column_ = 1, depth_ = 0, dots_ = 0;
+  char quote_ = 0;
+  bool long_string_ = false, comment_ = false;
+};
 
 /// The library would name a NUL byte as a character of TOML that is not allowed; what it means is that the file is no
 /// text.
@@ -158,8 +191,9 @@ std::optional<double> TomlValue::number() const {
 }
 
 Result<TomlValue> parse_toml(std::string_view text, const std::string& file, const TomlSyntax& syntax) {
-  const Status checked = syntax.one_line_strings ? check_lines(text, file, syntax.max_nesting) : check_nul(text, file);
-  if (!checked) return checked.error();
+  if (!syntax.one_line_strings)
+    if (const Status text_only = check_nul(text, file); !text_only) return text_only.error();
+  if (const Status bounded = DepthCheck(text, file, syntax).run(); !bounded) return bounded.error();
   try {
     const ::toml::table table = ::toml::parse(text, std::string_view{file});
     // Where the brackets have been counted, the depth is bounded already.

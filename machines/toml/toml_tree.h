@@ -51,9 +51,9 @@ struct TomlEntry {
 
 /// What of TOML 1.0 a format takes.
 struct TomlSyntax {
-  int max_nesting = 16;           ///< levels of tables and arrays, 1 or more
-  bool one_line_strings = false;  ///< strings that span lines are refused; brackets and dotted keys are then counted
-                                  ///< before anything is parsed, so that no file can exhaust the stack
+  int max_nesting = 16;  ///< brackets in brackets, parts of a key, and levels of tables and arrays, 1 or more; counted
+                         ///< before anything is parsed, so that no file can exhaust the stack
+  bool one_line_strings = false;  ///< strings that span lines are refused
   bool ascii_messages =
       false;  ///< bytes of the file that a message quotes are written as \xNN where they are not ASCII
 };

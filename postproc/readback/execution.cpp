@@ -12,8 +12,9 @@ namespace toothpath::readback {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTipStill = 1e-9;        // mm: round-off of a tip that does not move
-constexpr double kZeroRotary = 1e-9;      // deg
+constexpr double kTipStill = 1e-9;    // mm: round-off of a tip that does not move
+constexpr double kZeroRotary = 1e-9;  // deg
+constexpr double kLongestBlock_min = 1440;
 constexpr double kFullTurn = 360;         // deg
 constexpr double kHalfTurn = 180 - 1e-6;  // deg: from here on round-off decides which way is the nearer one
 constexpr double kBelowZero = 1e-9;       // deg: round-off of a remainder
@@ -285,6 +286,13 @@ NcExecution::Problem NcExecution::move(const Move& m, std::int32_t line) {
   return move_to(rolled, line);
 }
 
+NcExecution::Problem NcExecution::next_block() {
+  if (++steps_ > control_.max_steps) return fmt::format("more than {} executed blocks", control_.max_steps);
+  if (++idle_ > control_.max_idle)
+    return fmt::format("more than {} executed blocks in a row without a move", control_.max_idle);
+  return std::nullopt;
+}
+
 NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
   std::array<double, 5> goal = joints_;
   Vec3 tip = Vec3::Zero();
@@ -315,8 +323,12 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
   } else if (auto bad = feed_minutes(m, goal, tip, e.minutes)) {
     return bad;
   }
+  if (e.minutes > kLongestBlock_min)
+    return fmt::format("the block takes {:.6g} min, more than {:g} (a day): is its F right?", e.minutes,
+                       kLongestBlock_min);
   retracted_ = m.machine_frame && m.has[2];
   joints_ = goal;
+  idle_ = 0;
   tip_ = tip;
   sink_(e);
   return std::nullopt;

@@ -94,6 +94,8 @@ class NcExecution {
   void turn_frame(double degrees) { frame_deg_ = degrees; }
   Problem end_program(bool inside_call);
 
+  /// Of a reader without NcFlow, at every block: too many, or too many in a row without a move.
+  Problem next_block();
   /// A block with axis words; `line` from 1.
   Problem move(const Move& m, std::int32_t line);
 
@@ -129,6 +131,7 @@ class NcExecution {
   std::optional<std::array<double, 5>> path_weights_;
   bool spindle_ = false, spindle_set_ = false, retracted_ = false;
   bool unit_ = false, absolute_ = false;
+  std::size_t steps_ = 0, idle_ = 0;
 };
 
 }  // namespace toothpath::readback

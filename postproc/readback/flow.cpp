@@ -1,15 +1,17 @@
 #include "postproc/readback/flow.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace toothpath::readback {
 namespace {
 constexpr std::size_t kDeepestCall = 8;
-}
+constexpr std::size_t kMostParsed = 1 << 19;  // lines of loops and sub-programs that are kept parsed
+}  // namespace
 
-NcFlow::NcFlow(std::string_view text, const std::string& file, bool o_words, std::size_t max_steps)
-    : file_(file), o_words_(o_words), max_steps_(max_steps) {
+NcFlow::NcFlow(std::string_view text, const std::string& file, bool o_words, const NcControl& control)
+    : file_(file), o_words_(o_words), max_steps_(control.max_steps), max_idle_(control.max_idle) {
   split(text);
   parameters_.assign(5001, 0);
   parameter_set_.assign(5001, false);
@@ -22,6 +24,8 @@ Status NcFlow::run(const Words& words) {
     if (pc_ >= lines_.size())
       return at(lines_.size(), 0, o_words_ ? "the program ends without M2 or M30" : "the program ends without M30");
     if (++steps > max_steps_) return at(pc_ + 1, 0, fmt::format("more than {} executed blocks", max_steps_));
+    if (++idle_ > max_idle_)
+      return at(pc_ + 1, 0, fmt::format("more than {} executed blocks in a row without a move", max_idle_));
     line_ = pc_++;
     const auto [block, problem] = fetch(line_);
     if (block == nullptr) return problem;
@@ -73,7 +77,7 @@ void NcFlow::split(std::string_view text) {
     begin = end + 1;
   }
 }
-/// Parsed line; lines of sub-programs and loops are parsed once.
+/// Parsed line; lines of sub-programs and loops are parsed once, up to kMostParsed of them.
 std::pair<const NcBlock*, Diagnostic> NcFlow::fetch(std::size_t line) {
   if (const auto found = cache_.find(line); found != cache_.end()) return {&found->second, {}};
   auto block = parse_nc_block(lines_[line], o_words_);
@@ -83,7 +87,7 @@ std::pair<const NcBlock*, Diagnostic> NcFlow::fetch(std::size_t line) {
     d.position.line = static_cast<int>(line) + 1;
     return {nullptr, d};
   }
-  if (frames_.empty()) {
+  if (frames_.empty() || cache_.size() >= kMostParsed) {
     once_ = std::move(*block);
     return {&once_, {}};
   }
@@ -179,8 +183,7 @@ std::optional<Diagnostic> NcFlow::assign(const NcBlock& b) {
     if (w.letter != '#') return here(w.column, "a word in a line of assignments");
     const auto v = value(b, w.value, w.column);
     if (!v) return v.error();
-    parameters_[static_cast<std::size_t>(w.index)] = *v;
-    parameter_set_[static_cast<std::size_t>(w.index)] = true;
+    set_parameter(static_cast<std::size_t>(w.index), *v, true);
   }
   return std::nullopt;
 }
@@ -227,10 +230,7 @@ std::optional<Diagnostic> NcFlow::call(const NcBlock& b) {
     if (!v) return v.error();
     arguments[i] = *v;
   }
-  for (std::size_t i = 0; i < 30; ++i) {
-    parameters_[i + 1] = arguments[i];
-    parameter_set_[i + 1] = i < b.arguments.size();
-  }
+  for (std::size_t i = 0; i < 30; ++i) { set_parameter(i + 1, arguments[i], i < b.arguments.size()); }
   frames_.push_back(f);
   pc_ = label->second + 1;
   return std::nullopt;
@@ -239,13 +239,37 @@ std::optional<Diagnostic> NcFlow::call(const NcBlock& b) {
 std::optional<Diagnostic> NcFlow::end_call() {
   if (frames_.empty() || frames_.back().kind != OWord::call) return here(1, "end of a sub-program that is not running");
   const Frame& f = frames_.back();
-  for (std::size_t i = 0; i < 30; ++i) {
-    parameters_[i + 1] = f.saved[i];
-    parameter_set_[i + 1] = f.saved_set[i];
-  }
+  for (std::size_t i = 0; i < 30; ++i) { set_parameter(i + 1, f.saved[i], f.saved_set[i]); }
   pc_ = f.begin;
   frames_.pop_back();
   return std::nullopt;
+}
+
+void NcFlow::set_parameter(std::size_t n, double value, bool set) {
+  const auto print = [n](double v) {
+    std::uint64_t x = std::bit_cast<std::uint64_t>(v) + 0x9E3779B97F4A7C15 * (n + 1);
+    x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9;
+    x = (x ^ (x >> 27)) * 0x94D049BB133111EB;
+    return x ^ (x >> 31);
+  };
+  if (parameter_set_[n]) print_ ^= print(parameters_[n]);
+  parameters_[n] = value;
+  parameter_set_[n] = set;
+  if (set) print_ ^= print(value);
+}
+
+/// What a program does next follows from its place and its parameters alone: a while loop that finds all of them as
+/// they were some turns before goes on for ever. Compared with turn 1, 2, 4, 8 .. (Brent), so that cycles of any length
+/// are found.
+bool NcFlow::comes_round(Frame& loop) const {
+  if (loop.turns > 0 && loop.marked_print == print_ && loop.marked_set == parameter_set_ && loop.marked == parameters_)
+    return true;
+  if (std::has_single_bit(++loop.turns)) {
+    loop.marked = parameters_;
+    loop.marked_set = parameter_set_;
+    loop.marked_print = print_;
+  }
+  return false;
 }
 
 std::optional<Diagnostic> NcFlow::loop_head(const NcBlock& b) {
@@ -269,6 +293,9 @@ std::optional<Diagnostic> NcFlow::loop_head(const NcBlock& b) {
     f.repeats = *v;
     frames_.push_back(f);
   }
+  if (again && b.o_word == OWord::loop_while && comes_round(frames_.back()))
+    return here(1, fmt::format("o{}: the loop never ends: after {} turns no parameter has another value", b.o_number,
+                               frames_.back().turns));
   if (!again) {
     if (running) frames_.pop_back();
     pc_ = ends_.at(line_) + 1;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "postproc/readback/block.h"
+#include "postproc/readback/reader.h"
 
 namespace toothpath::readback {
 
@@ -22,7 +23,7 @@ class NcFlow {
   using Words = std::function<std::optional<Diagnostic>(const NcBlock&)>;
 
   /// @param o_words LinuxCNC: o-words and text without %; else M98 and a program between % and %
-  NcFlow(std::string_view text, const std::string& file, bool o_words, std::size_t max_steps);
+  NcFlow(std::string_view text, const std::string& file, bool o_words, const NcControl& control);
 
   /// Executes to the end of the program. `words` sees every block that is no o-word and no assignment, empty ones too.
   [[nodiscard]] Status run(const Words& words);
@@ -41,6 +42,7 @@ class NcFlow {
   [[nodiscard]] std::optional<Diagnostic> return_from_program(int column);
   [[nodiscard]] bool inside_call() const { return !frames_.empty(); }
   void end() { ended_ = true; }
+  void moved() { idle_ = 0; }  ///< the block made a move
 
  private:
   struct Frame {  // of a call or a loop
@@ -50,6 +52,10 @@ class NcFlow {
     double repeats = 0;
     std::array<double, 30> saved{};
     std::array<bool, 30> saved_set{};
+    std::size_t turns = 0;       // of a while loop
+    std::vector<double> marked;  // parameters at turn 1, 2, 4, 8 ..
+    std::vector<bool> marked_set;
+    std::uint64_t marked_print = 0;  // of them
   };
 
   void split(std::string_view text);
@@ -64,10 +70,12 @@ class NcFlow {
   std::optional<Diagnostic> call(const NcBlock& b);
   std::optional<Diagnostic> end_call();
   std::optional<Diagnostic> loop_head(const NcBlock& b);
+  void set_parameter(std::size_t n, double value, bool set);
+  [[nodiscard]] bool comes_round(Frame& loop) const;
 
   const std::string& file_;
   bool o_words_;
-  std::size_t max_steps_;
+  std::size_t max_steps_, max_idle_, idle_ = 0;
   std::vector<std::string_view> lines_;
   std::vector<std::size_t> percents_;
   std::unordered_map<std::size_t, std::size_t> ends_;     // head line -> end line
@@ -77,6 +85,7 @@ class NcFlow {
   std::vector<Frame> frames_;
   std::size_t pc_ = 0, line_ = 0;
   bool ended_ = false, started_ = false;
+  std::uint64_t print_ = 0;  // of the parameters that are set: two states with other prints differ
   std::vector<double> parameters_;
   std::vector<bool> parameter_set_;
 };

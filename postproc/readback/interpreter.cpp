@@ -17,7 +17,7 @@ class Interpreter {
               const IsoLanguage& language)
       : control_(control),
         language_(language),
-        flow_(text, file, language.o_words, control.max_steps),
+        flow_(text, file, language.o_words, control),
         execution_(control, language.rules, sink) {}
 
   Status run() {
@@ -282,6 +282,7 @@ class Interpreter {
     if (r.tcp && (has[0] || has[1] || has[3] || has[4] || motion_ != 0))
       return here(r.column, "G43.4 moves Z alone, with G0");
     if (auto bad = placed(r.column, execution_.move(r.move, flow_.line()))) return bad;
+    flow_.moved();
     return r.tcp ? placed(r.column, execution_.tcp_on()) : std::nullopt;
   }
 

@@ -213,6 +213,11 @@ class TraceFollower {
     if (pieces > kMostPieces)
       return fail("line {}: move turns too far to be followed within {} mm", m.line, tolerances_.tip_mm);
     const int n = std::max(1, static_cast<int>(pieces));
+    if (out_.size() + static_cast<std::size_t>(n) > tolerances_.most)
+      return fail(
+          "line {}: more than {} motions of the tool, {} bytes each, would have to be kept to follow the "
+          "program within {} mm",
+          m.line, tolerances_.most, sizeof(path::ToolMotion), tolerances_.tip_mm);
     const int tooth = tooth_of(i, to.tip);
     const auto [corner_mm, corner_rad] = corners(i, *length);
     Placed start = from;

@@ -1,5 +1,6 @@
 #include "postproc/readback/reader.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -12,6 +13,7 @@
 namespace toothpath::readback {
 namespace {
 
+constexpr std::ptrdiff_t kMostLines = 30'000'000;
 constexpr double kReadCoincident = 1e-9;  // mm
 constexpr double kReadParallel = 1e-12;
 constexpr double kSameTip = 1e-9;              // mm: round-off of a turned frame
@@ -216,6 +218,8 @@ void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcContro
 
 Status execute_nc(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
   if (control.execute == nullptr) return fail("a control without a reader: its programs cannot be read back");
+  if (const auto lines = std::count(text.begin(), text.end(), '\n'); lines > kMostLines)
+    return fail_at({file, 0, 0}, "the program has {} lines, more than {}", lines, kMostLines);
   return control.execute(text, file, control, sink);
 }
 
@@ -233,6 +237,7 @@ class ReadBackRun {
 
   Result<ReadBack> run(const joints::Setup& setup, const ReadBackOptions& options) {
     if (auto s = count(); !s) return s.error();
+    if (auto s = one_tooth_fits(options); !s) return s.error();
     CopyCheck check(counts_, control_, setup, options.teeth, index_sign(machine_, setup));
     if (auto s = compare(check); !s) return s.error();
     const bool all = options.keep_all || !result_.copies.copies;
@@ -283,6 +288,17 @@ class ReadBackRun {
     });
     timer.finish();
     return status;
+  }
+  /// What is kept at any rate: one tooth with the link to the next, and what stands about the teeth.
+  Status one_tooth_fits(const ReadBackOptions& options) const {
+    std::size_t kept = 0;
+    for (const auto& [op, c] : counts_)
+      kept += op < 0 ? c.total : c.lead + c.trail + 2 * (c.teeth() / static_cast<std::size_t>(options.teeth));
+    if (kept <= options.max_kept) return Ok{};
+    Diagnostic error =
+        fail("{} moves of one tooth and beside the teeth would have to be kept, more than {}", kept, options.max_kept);
+    error.position.file = file_;
+    return error;
   }
   /// Second time: are the teeth turned copies, and what stands between the operations.
   Status compare(CopyCheck& check) {

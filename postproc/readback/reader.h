@@ -59,8 +59,9 @@ struct NcControl {
   std::optional<double> smoothing_axis_rad;         ///< not stated: no cut may turn a rotary while it is on
   std::vector<std::string> coolant_words;           ///< M words of the builder that switch coolants, on and off
   timing::Corners corners = timing::Corners::jump;  ///< how it joins feed blocks
-  bool dry_run = false;                 ///< feed moves with a standing spindle are meant: a program that runs in air
-  std::size_t max_steps = 400'000'000;  ///< executed blocks before the program is refused as endless
+  bool dry_run = false;                ///< feed moves with a standing spindle are meant: a program that runs in air
+  std::size_t max_steps = 50'000'000;  ///< executed blocks before the program is refused as endless
+  std::size_t max_idle = 2'000'000;    ///< of them in a row without a move
 
   [[nodiscard]] bool switches_coolant(std::string_view word) const {
     return std::find(coolant_words.begin(), coolant_words.end(), word) != coolant_words.end();
@@ -142,11 +143,14 @@ struct ReadBack {
                         ///< none does, or cutter locations
 };
 
+/// Of the moves that are kept of a program, and again of its motions.
+inline constexpr std::size_t kMostKeptBytes = std::size_t(1) << 30;
+
 struct ReadBackOptions {
   int teeth = 1;
   bool keep_all = false;  ///< keep every tooth although they are copies
-  std::size_t max_kept =
-      20'000'000;  ///< moves of 100 bytes; a program that needs more is refused by their number, before any is kept
+  /// A program that needs more moves is refused by their number, before any is kept.
+  std::size_t max_kept = kMostKeptBytes / sizeof(ExecutedMove);
 };
 
 /// Executes the program twice (to count, then to compare and keep), a third time where every tooth is kept.
@@ -156,7 +160,8 @@ struct ReadBackOptions {
 
 /// How far the motion of a cut may leave the straight one that stands for it; 50 times as far in rapids.
 struct MotionTolerances {
-  double tip_mm = 0, axis_rad = 0;  ///< above 0
+  double tip_mm = 0, axis_rad = 0;                               ///< above 0
+  std::size_t most = kMostKeptBytes / sizeof(path::ToolMotion);  ///< motions; a trace that needs more is refused
 };
 
 /// Moves of a trace as straight motions of the tip in W. Moves that turn the axes are cut until the proven distance

@@ -134,7 +134,8 @@ TEST_F(BevelScene, StockInTheWayOfRapidsAndOfTheShank) {
   mesh::TriangleMesh bar = box(Vec3(-1, -1, 75), Vec3(1, 1, 130));
   const Vec3 u = gear_->axis(0), across = Vec3::UnitY(), along = across.cross(u);
   for (Vec3& v : bar.vertices) v = Vec3(gear_->tip(25.45, 0, 0) + v.x() * along + v.y() * across + v.z() * u);
-  EXPECT_EQ(check({"--stock", stl("bar.stl", bar)}).exit_code, 1);
+  const std::string turned_blank = stl("blank.stl", blank(gear_->parameters().addendum_mm));
+  EXPECT_EQ(check({"--stock", turned_blank, stl("bar.stl", bar)}).exit_code, 1);
   ASSERT_FALSE(report_["stock"]["worst"].empty());
   for (const auto& w : report_["stock"]["worst"]) {
     EXPECT_TRUE(w["rapid"].get<bool>());
@@ -154,7 +155,11 @@ TEST_F(BevelScene, BadFilesAreRefusedWithTheirPlace) {
   for (const char* option : {"--fixture", "--stock"}) expect_bad_files_refused(option);
   const auto small = check({"--stock", stl("small.stl", box(Vec3(-18, -18, 10), Vec3(18, 18, 30)))});
   EXPECT_EQ(small.exit_code, 3);
-  EXPECT_NE(small.err.find("outer diameter of the finished gear"), std::string::npos) << small.err;
+  EXPECT_NE(small.err.find("mm out of the stock"), std::string::npos) << small.err;
+  // The face cone 1 mm too low: the tips are not there.
+  const auto low = check({"--stock", stl("low.stl", blank(gear_->parameters().addendum_mm - 1))});
+  EXPECT_EQ(low.exit_code, 3);
+  EXPECT_NE(low.err.find("the finished gear reaches 1.0"), std::string::npos) << low.err;
 }
 
 }  // namespace

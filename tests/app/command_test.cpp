@@ -1,8 +1,14 @@
 // The program from outside: exit codes, what lies in the output directory afterwards, faults of the disk, signals.
+#include <fmt/format.h>
+#include <sys/inotify.h>
+
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
+#include <thread>
 #include <tuple>
 
+#include "geometry/base/hash.h"
 #include "tests/app/program.h"
 
 namespace toothpath::test {
@@ -22,6 +28,75 @@ TEST(CommandLine, UsageErrorsAreTwo) {
                                                     {"surface", kQuick, "--out", "x", "--threads", "0"},
                                                     {"surface", kQuick, "--out", "x", "--color", "pink"}})
     EXPECT_EQ(run_program(arguments).exit_code, 2);
+}
+
+// Every number of every command goes through one reader.
+TEST(CommandLine, NumbersAreNumbersOfTheirRange) {
+  const TestDir dir;
+  const std::string pinion = kSamples + "/bevel_pinion.toml";
+  struct Case {
+    std::vector<std::string> words;
+    std::string option, least, most, beyond;
+    bool whole = false;
+  };
+  const std::vector<Case> cases = {
+      {{"forces", pinion}, "--torque", "1e-06", "1000000000 N m", "0"},
+      {{"contact", kQuick}, "--pinion-teeth", "5", "1000", "0", true},
+      {{"contact", kQuick}, "--pinion-teeth", "5", "1000", "-5", true},
+      {{"contact", kQuick}, "--offset-error", "-5", "5 mm", "5.01"},
+      {{"contact", kQuick}, "--axial-error", "-5", "5 mm", "-5.01"},
+      {{"contact", kQuick}, "--wheel-axial-error", "-5", "5 mm", "1e9"},
+      {{"contact", kQuick}, "--angle-error", "-1", "1 deg", "1.1"},
+      {{"contact", kQuick}, "--compound", "0.1", "100 um", "0"},
+      {{"cutter", pinion}, "--tool", "1", "9999", "0", true},
+      {{"machine", "test", "t600s"}, "--tool-length", "1", "5000 mm", "-30"},
+      {{"study", "strategies", kQuick}, "--strips", "1", "4", "0", true},
+      {{"surface", kQuick}, "--threads", "1", "1024", "0", true},
+  };
+  for (const Case& c : cases) {
+    std::vector<std::string> texts = {"nan", "inf",  "-inf", "1e999", "",      "x",
+                                      "1,5", "0x10", " 20",  "20 ",   "20abc", c.beyond};
+    if (c.whole) texts.insert(texts.end(), {"20.0", "2e1", "99999999999999999999"});
+    for (const std::string& text : texts) {
+      std::vector<std::string> words = c.words;
+      words.insert(words.end(), {"--out", dir / "out", c.option + "=" + text});
+      if (text.empty()) {
+        words.pop_back();
+        words.insert(words.end(), {c.option, ""});
+      }
+      const Finished refused = run_program(words);
+      EXPECT_EQ(refused.exit_code, 2) << c.option << " " << text;
+      const std::string said = fmt::format("{} = {} is not a {}number from {} to {}", c.option,
+                                           text.empty() ? "\"\"" : text, c.whole ? "whole " : "", c.least, c.most);
+      EXPECT_NE(refused.err.find(said), std::string::npos) << refused.err << said;
+      EXPECT_FALSE(std::filesystem::exists(dir / "out"));
+    }
+  }
+  EXPECT_EQ(run_program({"forces", pinion, "--torque", "+2.5e1", "--out", dir / "out"}).exit_code, 0);
+  EXPECT_EQ(run_program({"surface", kQuick, "--threads", "+1", "--out", dir / "out"}).exit_code, 0);
+}
+
+// An unset variable of a script must not mean "all of it".
+TEST(CommandLine, EmptyTextsAreRefused) {
+  const TestDir dir;
+  const std::string pinion = kSamples + "/bevel_pinion.toml", out = dir / "out";
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"run", kQuick, "--restart", "", "--out", out},
+                                                {"run", kQuick, "--restart=", "--out", out},
+                                                {"run", "", "--out", out},
+                                                {"run", kQuick, "--out", ""},
+                                                {"check", kQuick, "", "--out", out},
+                                                {"check", kQuick, "x", "--stock", "", "--out", out},
+                                                {"check", kQuick, "x", "--fixture", "", "--out", out},
+                                                {"correct", kQuick, "--measured", "", "--out", out},
+                                                {"contact", pinion, "--mate", "", "--out", out},
+                                                {"cutter", pinion, "--cutter-of", "", "--out", out},
+                                                {"machine", "show", ""},
+                                                {"machine", "show", "t600s", "--out", ""},
+                                                {"study", "dhfg", "--file", "", "--out", out}}) {
+    const Finished refused = run_program(words);
+    EXPECT_EQ(refused.exit_code, 2) << words[0] << " " << words[1] << "\n" << refused.err;
+    EXPECT_FALSE(std::filesystem::exists(out));
+  }
 }
 
 TEST(CommandLine, HelpAndVersion) {
@@ -272,6 +347,63 @@ TEST(OutputDirectory, ASecondRunAtTheSameTimeIsFour) {
   }();
   EXPECT_EQ(second.exit_code, 4);
   EXPECT_NE(second.err.find("another run is writing into this directory"), std::string::npos) << second.err;
+}
+
+// Many at once, each with its own name for the job: whoever is told 0 left all of it, and a program with its own
+// report.
+TEST(OutputDirectory, RunsAtOnceNeverMix) {
+  const TestDir dir;
+  constexpr int kRuns = 6;
+  const std::string job = file_text(kQuick), out = dir / "out";
+  for (int round = 0; round < 2; ++round) {
+    std::vector<int> codes(kRuns);
+    std::vector<std::thread> all;
+    for (int k = 0; k < kRuns; ++k) {
+      const std::string file = dir / fmt::format("job{}.toml", k);
+      write_file(file, replaced(job, "spur-quick", fmt::format("run {}", k)));
+      all.emplace_back([&, k, file] {
+        codes[std::size_t(k)] = run_program({"run", file, "--out", out, "--threads", "1"}).exit_code;
+      });
+    }
+    for (auto& thread : all) thread.join();
+    EXPECT_GE(std::count(codes.begin(), codes.end(), 0), 1);
+    EXPECT_EQ(std::count(codes.begin(), codes.end(), 0) + std::count(codes.begin(), codes.end(), 4), kRuns);
+    const auto report = nlohmann::json::parse(file_text(out + "/report.json"));
+    const std::string name = report["job"];
+    EXPECT_EQ(codes[std::size_t(name.back() - '0')], 0) << name;
+    const std::string program = file_text(out + "/program.ngc");
+    EXPECT_EQ(sha256_hex(program), report["program"]["sha256"]) << name;
+    for (const auto& file : report["files"]) EXPECT_TRUE(std::filesystem::exists(out + "/" + std::string(file)));
+    for (const auto& file : names_in(out)) EXPECT_FALSE(file.starts_with(".toothpath-")) << file;
+  }
+}
+
+// The program appears after everything else, and goes before everything else.
+TEST(OutputDirectory, AProgramStandsWithAllTheRestOnly) {
+  const TestDir dir;
+  const std::string out = dir / "out";
+  ASSERT_EQ(run_program({"run", kQuick, "--out", out, "--quiet"}).exit_code, 0);
+  auto whole = names_in(out);
+  const int queue = ::inotify_init1(IN_NONBLOCK);
+  ASSERT_GE(::inotify_add_watch(queue, out.c_str(), IN_MOVE | IN_DELETE), 0);
+  ASSERT_EQ(run_program({"run", kQuick, "--out", out, "--quiet"}).exit_code, 0);
+  std::set<std::string> there(whole.begin(), whole.end());
+  int without = 0;
+  alignas(inotify_event) char bytes[1 << 16];
+  for (ssize_t got = 0; (got = ::read(queue, bytes, sizeof bytes)) > 0;)
+    for (const char* at = bytes; at < bytes + got;) {
+      const auto* event = reinterpret_cast<const inotify_event*>(at);
+      at += sizeof *event + event->len;
+      const std::string name = event->len > 0 ? event->name : "";
+      if (name.starts_with(".toothpath-") || name == "previous") continue;
+      if (there.contains("program.ngc")) EXPECT_EQ(there, std::set<std::string>(whole.begin(), whole.end())) << name;
+      else ++without;
+      if ((event->mask & IN_MOVED_TO) != 0) there.insert(name);
+      else there.erase(name);
+    }
+  ::close(queue);
+  EXPECT_EQ(there, std::set<std::string>(whole.begin(), whole.end()));
+  EXPECT_GT(without, int(whole.size()));
 }
 
 // The measurement lies where the run would write its own inspection points.

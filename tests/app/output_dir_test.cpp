@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include "geometry/base/hash.h"
+#include "machines/toml/regular_file.h"
 #include "tests/app/program.h"
 
 namespace toothpath::test {
@@ -179,6 +180,25 @@ TEST(OutputDir, AnInputThatWouldBeReplacedIsRefused) {
   }
   EXPECT_TRUE(app::OutputDir::open(out, {"report.html"}, {out + "/program.ngc"})) << "not its own";
   EXPECT_TRUE(app::OutputDir::open(out, kRun, {out + "/my notes.txt"}));
+}
+
+// Files that only the job names are known when they have been read.
+TEST(OutputDir, AnInputReadMeanwhileIsNotReplaced) {
+  const TestDir dir;
+  const std::string out = finished_run(dir);
+  const auto before = names_in(out);
+  auto output = app::OutputDir::open(out, kRun, {}, app::kPrevious);
+  ASSERT_TRUE(output && output->keeps_inputs());
+  ASSERT_TRUE(toml::read_input_file(out + "/report.json", 1000));
+  for (const Status& refused : {output->keeps_inputs(), output->set_aside()}) {
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().kind, DiagnosticKind::usage);
+    EXPECT_EQ(refused.error().position.file, out + "/report.json");
+  }
+  ASSERT_TRUE(output->write("report.json", "new"));
+  EXPECT_FALSE(output->commit());
+  EXPECT_EQ(names_in(out), before);
+  EXPECT_NE(file_text(out + "/report.json"), "new");
 }
 
 TEST(OutputDir, ProgramsGetTheirNamesLast) {

@@ -31,7 +31,8 @@ struct Launch {
   std::vector<std::string> arguments;
   std::string stdout_file;  ///< instead of the captured one: "/dev/full"
   rlim_t largest_file = RLIM_INFINITY;
-  int signal_number = 0;  ///< sent after `signal_after_ms`
+  rlim_t address_space = RLIM_INFINITY;  ///< bytes
+  int signal_number = 0;                 ///< sent after `signal_after_ms`
   int signal_after_ms = 0;
   std::string signal_when;  ///< instead: when this file or folder is there (at most a minute is waited)
   std::function<void()> before_signal = [] {};
@@ -52,6 +53,10 @@ inline Finished run_program(const Launch& launch) {
     if (launch.largest_file != RLIM_INFINITY) {
       const rlimit limit{launch.largest_file, launch.largest_file};
       ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    if (launch.address_space != RLIM_INFINITY) {
+      const rlimit limit{launch.address_space, launch.address_space};
+      ::setrlimit(RLIMIT_AS, &limit);
     }
     ::execv(argv[0], argv.data());
     ::_exit(127);

@@ -92,6 +92,74 @@ TEST_F(SceneTest, StockInTheWayOfRapidsAndOfTheShank) {
   }
 }
 
+// A stock that cannot become the gear proves nothing about the program.
+TEST_F(SceneTest, AStockThatDoesNotHoldTheGearIsRefused) {
+  mesh::TriangleMesh hollow = box(Vec3(-66, -66, -45), Vec3(66, 66, -18)),
+                     hole = box(Vec3(62, -0.4, -20.5), Vec3(62.8, 0.4, -19.5));  // within tooth 0
+  for (auto& t : hole.triangles) std::swap(t[1], t[2]);
+  append(hollow, hole);
+  struct Case {
+    const char* name;
+    mesh::TriangleMesh stock;
+    const char* words;
+  };
+  for (const Case& c : {Case{"off.stl", box(Vec3(234, -66, -45), Vec3(366, 66, -18)), "mm out of the stock"},
+                        Case{"half.stl", box(Vec3(-66, -66, -45), Vec3(66, 66, -20)),
+                             "the finished gear reaches 2.000 mm out of the stock"},
+                        Case{"narrow.stl", box(Vec3(-64, -66, -45), Vec3(66, 66, -18)), "mm out of the stock"},
+                        Case{"hollow.stl", hollow, "in the teeth of the finished gear"}}) {
+    const auto finished = check({"--stock", stl(c.name, c.stock)});
+    EXPECT_EQ(finished.exit_code, 3) << c.name;
+    EXPECT_NE(finished.err.find(std::string(c.name) + ": error: "), std::string::npos) << finished.err;
+    EXPECT_NE(finished.err.find(c.words), std::string::npos) << finished.err;
+  }
+  // Two halves hold what neither does, and what the body below the teeth needs is not known.
+  const std::string left = stl("left.stl", box(Vec3(-66, -66, -24), Vec3(0, 66, -18))),
+                    right = stl("right.stl", box(Vec3(0, -66, -24), Vec3(66, 66, -18)));
+  EXPECT_EQ(check({"--stock", left, right}).exit_code, 0);
+  EXPECT_EQ(check({"--stock", left}).exit_code, 3);
+}
+
+TEST_F(SceneTest, AFixtureOfAnotherScaleIsRefused) {
+  const auto scaled = [](mesh::TriangleMesh mesh, double by) {
+    for (auto& v : mesh.vertices) v *= by;
+    return mesh;
+  };
+  // The clamp that meets the holder, drawn in inches: it would stand in the bore.
+  const mesh::TriangleMesh clamp = block(30, 67.5, 75, 1.5, -30, -4);
+  const auto inches = check({"--fixture", stl("inches.stl", scaled(clamp, 1 / 25.4))});
+  EXPECT_EQ(inches.exit_code, 3);
+  EXPECT_NE(inches.err.find("inches.stl: error: "), std::string::npos) << inches.err;
+  EXPECT_NE(inches.err.find("in inches it would reach 80.8 mm"), std::string::npos) << inches.err;
+  const auto large = check({"--fixture", stl("large.stl", scaled(clamp, 25.4))});
+  EXPECT_EQ(large.exit_code, 3);
+  EXPECT_NE(large.err.find("mm from the finished gear"), std::string::npos) << large.err;
+  // A small part is right where it stands on something.
+  const std::string nut = stl("nut.stl", box(Vec3(-5, -5, -12), Vec3(5, 5, -5))),
+                    arbor = stl("arbor.stl", box(Vec3(-4, -4, -60), Vec3(4, 4, -3)));
+  EXPECT_EQ(check({"--fixture", nut}).exit_code, 3);
+  EXPECT_EQ(check({"--fixture", nut, arbor}).exit_code, 0);
+}
+
+TEST_F(SceneTest, MeshesShowTheirBoxAndDistance) {
+  const auto gear = mesh::load_mesh(*dir_ / "run/gear.stl");
+  ASSERT_TRUE(gear);
+  double low = 0;
+  for (const auto& v : gear->vertices) low = std::min(low, v.z());
+  const std::string plate = stl("plate.stl", box(Vec3(-80, -81, -60), Vec3(80, 82, -40)));
+  const std::string blank = stl("blank.stl", box(Vec3(-66, -66, -45), Vec3(66, 66, -18)));
+  const auto finished = check({"--fixture", plate, "--stock", blank});
+  ASSERT_EQ(finished.exit_code, 0) << finished.err;
+  const Json& mesh = report_["fixture"]["meshes"][0];
+  EXPECT_EQ(mesh["file"], plate);
+  EXPECT_EQ(mesh["low"], Json({-80, -81, -60}));
+  EXPECT_EQ(mesh["high"], Json({80, 82, -40}));
+  EXPECT_NEAR(mesh["to_gear"].get<double>(), low + 40, 0.02);
+  EXPECT_NEAR(report_["stock"]["meshes"][0]["to_gear"].get<double>(), 0, 1e-3) << "the tips lie in its top";
+  EXPECT_NE(finished.out.find("X -80 to 80, Y -81 to 82, Z -60 to -40 mm"), std::string::npos) << finished.out;
+  EXPECT_NE(file_text(*dir_ / "check/report.html").find("id=\"scene\""), std::string::npos);
+}
+
 TEST_F(SceneTest, BadFilesAreRefusedWithTheirPlace) {
   for (const char* option : {"--fixture", "--stock"}) expect_bad_files_refused(option);
   // Inches taken for millimetres: a stock smaller than the gear.

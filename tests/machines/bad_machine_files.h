@@ -128,7 +128,7 @@ inline constexpr BadFile kBadMachineFiles[] = {
     {"45 carriage returns only", "schema = 1\n", "schema = 1\r",
      "m.toml:1:12: error: Error while parsing key-value pair: expected '\\n' after '\\r', saw 'n'\n"},
     {"47 nesting", "assumed = false", "assumed = [[[[[[[[[[[[[[[[[[[[1]]]]]]]]]]]]]]]]]]]]",
-     "m.toml:6:27: error: nested deeper than 16 levels\n"},
+     "m.toml:6:27: error: brackets are nested deeper than 16\n"},
     {"head axis without pivot length", "table = [\"C\", \"A\"]\nhead = []", "table = [\"C\"]\nhead = [\"A\"]",
      "m.toml:36:1: error: axes.A.pivot_length is missing\n"
      "m.toml:38:9: error: axes.A.point[2] = -285 must be 0: the height of a head axis is its pivot_length\n"},

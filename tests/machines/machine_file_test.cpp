@@ -8,6 +8,7 @@
 #include <random>
 
 #include "machines/shaper_machine.h"
+#include "machines/toml/toml_tree.h"
 #include "tests/machines/bad_machine_files.h"
 #include "tests/machines/example_files.h"
 
@@ -20,9 +21,9 @@ using test::damaged, test::replaced, test::kMachine, test::kMaxBytesForTest, tes
 std::vector<std::string> shipped(machines::MachineKind kind) {
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(fs::path(TOOTHPATH_SOURCE_DIR) / "machines" / "data")) {
-    const auto found = machines::machine_kind_of(entry.path().string());
+    const auto found = machines::open_machine_file(entry.path().string());
     EXPECT_TRUE(found) << entry.path();
-    if (found && *found == kind) files.push_back(entry.path().string());
+    if (found && found->kind == kind) files.push_back(entry.path().string());
   }
   std::sort(files.begin(), files.end());
   return files;
@@ -130,6 +131,51 @@ std::string messages(const std::string& text) {
 }
 
 TEST(MachineFile, TheExampleItselfIsGood) { EXPECT_EQ(messages(kMachine), ""); }
+
+/// "a.a.a", n parts.
+std::string parts(int n) {
+  std::string text = "a";
+  for (int k = 1; k < n; ++k) text += ".a";
+  return text;
+}
+
+// One key of 40 000 parts is as many tables in each other: no stack holds them.
+TEST(TomlDepth, IsBoundedInEveryForm) {
+  const std::string many = parts(40'000), key = "a key has more than 16 parts", deep = std::string(100'000, '[');
+  const std::pair<std::string, std::string> cases[] = {
+      {many + " = 1", "t:1:32: error: " + key},
+      {"[" + many + "]", "t:1:33: error: " + key},
+      {"[[" + many + "]]", "t:1:34: error: " + key},
+      {"x = {" + many + " = 1}", "t:1:37: error: " + key},
+      {"x = [{" + many + " = 1}]", "t:1:38: error: " + key},
+      {"x = [\n{b = 1, " + many + " = 1}]", "t:2:40: error: " + key},
+      {"x = \"\"\"\n\"\"\"\n" + many + " = 1", "t:3:32: error: " + key},
+      {"x = \"a\\\"#[\"\n" + many + " = 1", "t:2:32: error: " + key},
+      {"x = " + deep, "t:1:21: error: brackets are nested deeper than 16"},
+      {"x = {a = " + deep, "t:1:25: error: brackets are nested deeper than 16"},
+      {"[" + parts(15) + "]\n" + parts(15) + " = 1", "t:2:3: error: nested deeper than 16 levels"},
+  };
+  for (const auto& [text, message] : cases) {
+    const auto tree = toml::parse_toml(text, "t", {});
+    ASSERT_FALSE(tree) << text.substr(0, 60);
+    EXPECT_EQ(tree.error().text(), message) << text.substr(0, 60);
+  }
+  EXPECT_EQ(machines::read_machine_text(many + " = 1", "m.toml").errors.front().text(), "m.toml:1:32: error: " + key);
+  EXPECT_EQ(machines::read_shaper_machine_text(many + " = 1", "m.toml", {}).errors.front().text(),
+            "m.toml:1:32: error: " + key);
+}
+
+TEST(TomlDepth, StringsAndNumbersAreNoNesting) {
+  const std::string noise = std::string(100, '[') + parts(100) + std::string(100, '{');
+  for (const std::string& text :
+       {"x = \"" + noise + "\"\ny = 1", "x = '" + noise + "\\'\ny = 1", "x = 1 # " + noise + "\ny = 1",
+        "x = \"\"\"\n" + noise + "\n\\\"\"\" " + noise + "\"\"\"\ny = 1", "x = '''\n'" + noise + "\\\n''''\ny = 1",
+        "x = \"\"\"a\\\n\n  b" + noise + "\"\"\"\"\"\ny = 1", std::string("x = [1.5, 2.5,\n 1.5]\ny = 1"),
+        "[" + parts(15) + "]\ny = 1"}) {
+    const auto tree = toml::parse_toml(text, "t", {});
+    EXPECT_TRUE(tree) << text.substr(0, 30) << (tree ? "" : tree.error().text().substr(0, 100));
+  }
+}
 
 class BadMachineFile : public testing::TestWithParam<test::BadFile> {};
 

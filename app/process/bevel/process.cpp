@@ -12,11 +12,13 @@
 #include "cam/finger/check.h"
 #include "cam/finger/milling.h"
 #include "geometry/base/angle.h"
+#include "geometry/mesh/bevel_mesh.h"
 
 namespace toothpath::bevel {
 namespace {
 
-constexpr double kRootShare = 1;  // the flat tip of the mill faces the root: a length error reaches it in full
+constexpr double kRootRounding = 1e-9;  // mm
+constexpr double kRootShare = 1;        // the flat tip of the mill faces the root: a length error reaches it in full
 
 /// How far the middle of a tooth space has wound about the axis at a tip, from the reference cone distance on.
 double space_azimuth(const bevel_gear::BevelGear& gear, const Vec3& tip) {
@@ -129,6 +131,17 @@ class BevelProcess final : public process::GearProcess {
       if (!own) return process::located(job_, fmt::format("tool[{}]", k), own.error());
       out.bodies[k] = finger::finger_bodies(own->cutter(), job_.tools[k]);
     }
+    return out;
+  }
+  [[nodiscard]] Result<process::FinishedGear> solid() const override {
+    auto mesh = mesh::bevel_gear_mesh(gear_);
+    if (!mesh) return process::located(job_, "gear", mesh.error());
+    const auto above = [gear = gear_](const Vec3& p) {
+      return bevel_gear::cone_point(p, gear.sin_delta(), gear.cos_delta()).height >
+             -gear.parameters().dedendum_mm - kRootRounding;
+    };
+    process::FinishedGear out{std::move(*mesh), {}, above};
+    for (const Vec3& v : out.mesh.vertices) out.teeth.push_back(above(v));
     return out;
   }
   [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,

@@ -17,6 +17,7 @@
 #include "cam/cut/cut_surface.h"
 #include "cam/plan/face_gear.h"
 #include "cam/plan/first_ball.h"
+#include "geometry/mesh/tooth_mesh.h"
 #include "postproc/joints/pole.h"
 
 namespace toothpath::face {
@@ -35,6 +36,7 @@ std::string gear_words(const face_gear::FaceGearParameters& p) {
   return text;
 }
 
+constexpr double kSolidSag = 0.02;   // mm
 constexpr double kLinkFeed = 6000;   // mm/min: of moves under feed through air, where the machine is no slower
 constexpr double kSmallFirst = 0.7;  // of what the space admits: a first roughing tool that is told
 constexpr double kBiasShare = 0.4;   // of the rounding, taken up by the poses: the rest is counted
@@ -206,6 +208,17 @@ class FaceProcess final : public process::GearProcess {
     // Spaces are radial enough to count teeth by the tip's azimuth.
     process::SceneGear out{part_.teeth, clearance_mm, {}, [](const Vec3& tip) { return std::atan2(tip.y(), tip.x()); }};
     for (const auto& tool : job_.tools) out.bodies.push_back(clearance::mesh_bodies(tool));
+    return out;
+  }
+  [[nodiscard]] Result<process::FinishedGear> solid() const override {
+    const auto pitch = mesh::mesh_tooth_space(gear_, kSolidSag);
+    if (!pitch) return process::located(job_, "gear", pitch.error());
+    process::FinishedGear out{
+        mesh::join_copies(*pitch), {}, [root = gear_.lowest_root()](const Vec3& p) { return p.z() > root; }};
+    out.teeth.resize(out.mesh.vertices.size());
+    for (std::size_t t = 0; t < out.mesh.triangles.size(); ++t)
+      if (pitch->tags[t % pitch->tags.size()].patch != mesh::Patch::body)
+        for (const auto vertex : out.mesh.triangles[t]) out.teeth[static_cast<std::size_t>(vertex)] = true;
     return out;
   }
   [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,

@@ -12,12 +12,12 @@ process::ValueOrErrors<machines::ShaperMachine> load_shaper_machine(const job::J
   const auto path =
       machines::find_machine_file(job.machine.file, std::filesystem::path(job.file).parent_path().string());
   if (!path) return std::vector{process::located(job, "machine.file", path.error())};
-  const auto kind = machines::machine_kind_of(*path);
-  if (!kind) return std::vector{process::located(job, "machine.file", kind.error())};
-  if (*kind != machines::MachineKind::gear_shaper)
+  const auto file = machines::open_machine_file(*path);
+  if (!file) return std::vector{process::located(job, "machine.file", file.error())};
+  if (file->kind != machines::MachineKind::gear_shaper)
     return std::vector{fail_at(job.where("machine.file"),
                                "{} is a milling machine, but this command needs a gear shaper", job.machine.file)};
-  auto reading = shaper::read_shaper_machine(*path);
+  auto reading = shaper::read_shaper_machine_of_text(file->text, file->path);
   if (!reading.machine) return std::move(reading.errors);
   if (reading.machine->assumed && !job.machine.accept_assumed) {
     std::string names;

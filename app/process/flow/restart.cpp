@@ -1,7 +1,8 @@
 #include "app/process/flow/restart.h"
 
-#include <charconv>
+#include <limits>
 
+#include "app/base/option_number.h"
 #include "geometry/base/angle.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/joints/tooth_order.h"
@@ -9,13 +10,6 @@
 
 namespace toothpath::flow {
 namespace {
-
-std::optional<int> whole_number(std::string_view text) {
-  int n = -1;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), n);
-  if (error != std::errc{} || end != text.data() + text.size() || n < 0) return std::nullopt;
-  return n;
-}
 
 Diagnostic of_our_own(Diagnostic d) {
   d.kind = DiagnosticKind::verification;  // our own program must be readable
@@ -73,8 +67,10 @@ Status prove(report::RunReport& report, const process::PostedProgram& posted, co
 Result<std::optional<joints::ProgramRestart>> read_restart(const std::string& text, const job::Job& job, int teeth) {
   if (text.empty()) return std::optional<joints::ProgramRestart>{};
   const std::size_t colon = text.find(':');
-  const auto operation = whole_number(std::string_view(text).substr(0, colon));
-  const auto tooth = colon == std::string::npos ? std::nullopt : whole_number(std::string_view(text).substr(colon + 1));
+  const toml::Range numbers{0, std::numeric_limits<int>::max()};
+  const auto part = [&](std::string_view digits) { return app::read_whole_number("--restart", digits, numbers); };
+  const auto operation = part(std::string_view(text).substr(0, colon));
+  const auto tooth = part(colon == std::string::npos ? std::string_view() : std::string_view(text).substr(colon + 1));
   if (!operation || !tooth)
     return fail_as(DiagnosticKind::usage, "--restart = {} is not OP:TOOTH, two whole numbers from 0", text);
   const auto count = static_cast<int>(job.operations.size());

@@ -24,4 +24,7 @@ struct SectionInput {
 /// Those that have something to say, in the order of registry.inl.
 [[nodiscard]] std::vector<report::Section> sections_of(const SectionInput& input);
 
+/// Meshes of stock and fixture: which, where, how far from the finished gear. Of `check`, which has no axis program.
+[[nodiscard]] report::Section scene(const report::RunReport& report);
+
 }  // namespace toothpath::sections

@@ -28,11 +28,9 @@ class Siemens {
 
   Status run() {
     if (auto bad = find_loops()) return *bad;
-    std::size_t steps = 0;
     while (!ended_) {
       if (pc_ >= lines_.size()) return place(lines_.size(), 0, "the program ends without M30");
-      if (++steps > control_.max_steps)
-        return place(pc_ + 1, 0, fmt::format("more than {} executed blocks", control_.max_steps));
+      if (auto bad = execution_.next_block()) return place(pc_ + 1, 0, std::move(*bad));
       line_ = pc_++;
       if (auto bad = execute(lines_[line_])) return *bad;
     }

@@ -72,8 +72,8 @@ machines::Machine machine_of(const Post& p) {
 std::vector<Post> posts() {
   std::vector<std::string> files;
   for (const auto& entry : fs::directory_iterator(std::string(TOOTHPATH_SOURCE_DIR) + "/machines/data")) {
-    const auto kind = machines::machine_kind_of(entry.path().string());
-    if (kind && *kind == machines::MachineKind::five_axis) files.push_back(entry.path().filename().string());
+    const auto file = machines::open_machine_file(entry.path().string());
+    if (file && file->kind == machines::MachineKind::five_axis) files.push_back(entry.path().filename().string());
   }
   std::sort(files.begin(), files.end());
   std::vector<Post> out;

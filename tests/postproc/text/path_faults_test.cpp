@@ -220,16 +220,91 @@ TEST(PathFaultsInText, MovesAreCountedBeforeTheyAreKept) {
   EXPECT_TRUE(refused.starts_with("p:")) << refused;
 }
 
-// 84 as text: a loop without end costs time up to the stated number of blocks, and no memory.
+// 84 as text: a loop without end is found where nothing changes, else it costs time up to the stated number of blocks,
+// and no memory.
 TEST(PathFaultsInText, EndlessLoopsEnd) {
-  auto control = *controls::control_of(trunnion(), standing(), tools());
-  EXPECT_EQ(control.max_steps, 400'000'000u);
-  control.max_steps = 100'000;
-  const auto s = readback::execute_nc(
-      "G21 G17 G90 G94 G40 G49 G80\n#1=0\no1 while [#1 LT 100000000]\n#1=[#1+1]\no1 endwhile\nM2\n", "p", control,
-      [](const readback::ExecutedMove&) {});
-  ASSERT_FALSE(s);
-  EXPECT_NE(s.error().text().find("more than 100000 executed blocks"), std::string::npos) << s.error().text();
+  const auto control = *controls::control_of(trunnion(), standing(), tools());
+  EXPECT_EQ(control.max_steps, 50'000'000u);
+  EXPECT_EQ(control.max_idle, 2'000'000u);
+  const std::string start = "G21 G17 G90 G94 G40 G49 G80\nG54\nG53 G0 Z500\n";
+  const auto refusal = [&](const std::string& body, std::size_t steps, std::size_t idle) {
+    readback::NcControl c = control;
+    c.max_steps = steps;
+    c.max_idle = idle;
+    const auto s = readback::execute_nc(start + body + "M2\n", "p", c, [](const readback::ExecutedMove&) {});
+    return s ? std::string("none") : s.error().text();
+  };
+  const std::size_t many = 1'000'000'000'000;  // no help: what follows is found by itself
+  struct Case {
+    std::string body, words;
+  };
+  for (const Case& c : {
+           Case{"o1 while [1]\no1 endwhile\n", "p:4:1: error: o1: the loop never ends: after 1 turns"},
+           Case{"#1=0\no1 while [#1 LT 5]\nG0 X1\nG0 X2\no1 endwhile\n", "p:5:1: error: o1: the loop never ends"},
+           Case{"#1=0\no1 while [#1 LT 5]\n#1=[#1+0]\no1 endwhile\n", "never ends"},
+           Case{"#1=0\no1 while [#1 LT 5]\n#1=[1-#1]\nG0 X#1\no1 endwhile\n", "never ends"},
+           Case{"#1=0\no1 while [#1 GE 0]\n#1=[[#1+1] MOD 1000]\no1 endwhile\n", "never ends"},
+           Case{"o9 sub\nG0 X#1\no9 endsub\n#40=1\no1 while [#40]\no9 call [2]\no9 call [3]\no1 endwhile\n",
+                "never ends"},
+           Case{"#1=0\no1 while [#1 LT 5]\n#2=0\no2 while [#2 LT 1]\no2 endwhile\no1 endwhile\n",
+                "o2: the loop never ends"},
+       })
+    EXPECT_NE(refusal(c.body, many, many).find(c.words), std::string::npos) << c.body << refusal(c.body, many, many);
+  for (const std::string& good : {
+           std::string("#1=0\no1 while [#1 LT 3000]\n#1=[#1+1]\no1 endwhile\n"),
+           std::string(
+               "#1=0\no1 while [#1 LT 3]\n#2=0\no2 while [#2 LT 3]\n#2=[#2+1]\no2 endwhile\n#1=[#1+1]\no1 endwhile\n"),
+           std::string("#1=0\n#3=0\no1 while [#3 LT 9]\n#1=[1-#1]\n#3=[#3+1]\no1 endwhile\n"),
+           std::string("o1 repeat [5000]\nG0 X1\no1 endrepeat\n"),
+       })
+    EXPECT_EQ(refusal(good, many, many), "none") << good;
+  const std::string counts = "#1=0\no1 while [#1 LT 100000000]\n#1=[#1+1]\no1 endwhile\n",
+                    moves = "#1=0\no1 while [#1 LT 100000000]\n#1=[#1+1]\nG0 X[#1/1000000]\no1 endwhile\n";
+  EXPECT_NE(refusal(counts, 100'000, many).find("more than 100000 executed blocks"), std::string::npos);
+  EXPECT_NE(refusal(counts, many, 100'000).find("more than 100000 executed blocks in a row without a move"),
+            std::string::npos);
+  EXPECT_NE(refusal(moves, 100'000, 1000).find("more than 100000 executed blocks"), std::string::npos);
+}
+
+TEST(PathFaultsInText, OtherDialectsEndToo) {
+  const std::pair<const char*, std::string> cases[] = {
+      {"siemens", "R2=0\nFOR R1=0 TO 999999999\nR2=R2+1\nENDFOR\nM30\n"},
+      {"heidenhain",
+       "0 BEGIN PGM P MM\n1 Q1 = 0\n2 LBL 1\n3 Q1 = Q1 + 0\n4 FN 12: IF +Q1 LT +6 GOTO LBL 1\n5 M30\n6 END PGM P MM\n"},
+  };
+  for (const auto& [dialect, text] : cases) {
+    machines::Machine m = trunnion();
+    m.dialect = dialect;
+    m.tcp = machines::TcpMode::vectors;
+    auto control = *controls::control_of(m, standing(), tools());
+    control.max_idle = 50'000;
+    const auto s = readback::execute_nc(text, "p", control, [](const readback::ExecutedMove&) {});
+    ASSERT_FALSE(s) << dialect;
+    EXPECT_NE(s.error().text().find("more than 50000 executed blocks in a row without a move"), std::string::npos)
+        << s.error().text();
+    control.max_steps = 20'000;
+    const auto steps = readback::execute_nc(text, "p", control, [](const readback::ExecutedMove&) {});
+    EXPECT_NE(steps.error().text().find("more than 20000 executed blocks"), std::string::npos) << steps.error().text();
+  }
+}
+
+// A block of a thousand million minutes is a wrong F.
+TEST(PathFaultsInText, ABlockTakesADayAtMost) {
+  const auto control = *controls::control_of(trunnion(), standing(), tools());
+  const std::string start =
+      "G21 G17 G90 G94 G40 G49 G80 G61\nG54\n(OP 0 finishing)\nG53 G0 Z500\nT1 M6\nS100 M3\nG43 H1\nG0 X0 Y0 Z50 A0 "
+      "C0\n";
+  const auto refusal = [&](const std::string& body) {
+    const auto s = readback::execute_nc(start + body + "M5\nM2\n", "p", control, [](const readback::ExecutedMove&) {});
+    return s ? std::string("none") : s.error().text();
+  };
+  EXPECT_EQ(refusal("G1 X144 F0.1\n"), "none");
+  EXPECT_NE(refusal("G1 X145 F0.1\n").find("p:9:"), std::string::npos);
+  EXPECT_NE(refusal("G1 X145 F0.1\n").find("the block takes 1450 min, more than 1440 (a day): is its F right?"),
+            std::string::npos)
+      << refusal("G1 X145 F0.1\n");
+  for (const char* body : {"G1 X1 F0.000000001\n", "G93\nG1 X0 F0.000000001\nG94\n"})
+    EXPECT_NE(refusal(body).find("the block takes 1e+09 min"), std::string::npos) << body << refusal(body);
 }
 
 }  // namespace
