@@ -52,7 +52,9 @@ proof::WorstPlace place_of(const SweptGap& gap, const path::ToolMotion& m, tool:
 class Chunk {
  public:
   Chunk(const GearDistance& part, const std::vector<tool::ProofTool>& tools, const GougeCheckOptions& options)
-      : part_(part), tools_(tools), o_(options), out_(proof::no_motion_yet(options.limits.clearance_mm)) {}
+      : part_(part), tools_(tools), o_(options), out_(proof::no_motion_yet(options.limits.clearance_mm)) {
+    out_.clearance_followed_mm = options.limits.clearance_mm + kBodyLook;
+  }
 
   void check(const path::ToolMotion& m, int tool) {
     if (tool != tool_) take(tool);
@@ -114,7 +116,7 @@ class Chunk {
   }
 
   void clearance(Body& body, const path::ToolMotion& m) {
-    const double enough = o_.limits.clearance_mm + kBodyLook,
+    const double enough = out_.clearance_followed_mm,
                  arm = std::hypot(body.frustum.to, std::max(body.frustum.radius_from, body.frustum.radius_to));
     if (body.known) {
       const auto away = [&](const Vec3& tip, const Vec3& axis) {
