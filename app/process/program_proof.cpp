@@ -32,7 +32,11 @@ Result<ProgramProof> read_program(const ProgramText& program, const GearCheck& g
       return tool_motions(trace, out.read.copies, out.control, program.machine, *job.setup, gear.teeth(),
                           {gear.motion_tolerance(), gear.motion_tolerance()});
     });
-    if (!part) return part.error();
+    if (!part) {
+      Diagnostic error = part.error();
+      error.position.file = program.file;
+      return error;
+    }
     out.motions.insert(out.motions.end(), part->begin(), part->end());
   }
   return out;
