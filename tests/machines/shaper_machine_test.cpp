@@ -111,8 +111,7 @@ TEST(ShaperMachine, BadFilesAreRefusedWithTheirPlace) {
   EXPECT_EQ(message("min = -5.0\nmax = 200.0", "min = 200.0\nmax = 200.0"),
             "s.toml:28:7: error: axes.X.max = 200 must exceed axes.X.min = 200\n");
   EXPECT_EQ(message("sign = 1", "sign = 0"), "s.toml:42:8: error: axes.A.sign = 0 must be 1 or -1\n");
-  EXPECT_EQ(message("max_speed = 5000", "max_speed = 5000\nsign = 1"),
-            "s.toml:35:1: error: unknown key axes.Y.sign\n");
+  EXPECT_EQ(message("max_speed = 5000", "max_speed = 5000\nsign = 1"), "s.toml:35:1: error: unknown key axes.Y.sign\n");
   EXPECT_EQ(message("\"feed\", ", "\"fed\", "),
             "s.toml:8:31: error: assumed names \"fed\", which this file does not have\n");
 }

@@ -1,5 +1,5 @@
-// Jobs that nobody chose: texts of random face gears and bevel gears. Many are possible, some are not: undercut, pointed,
-// a cutter too wide.
+// Jobs that nobody chose: texts of random face gears and bevel gears. Many are possible, some are not: undercut,
+// pointed, a cutter too wide.
 #pragma once
 
 #include <fmt/format.h>
