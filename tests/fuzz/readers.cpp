@@ -96,11 +96,13 @@ ByteReader meridian_reader() {
     seeds.push_back(file_text(entry.path()));
   std::sort(seeds.begin(), seeds.end());
   seeds.emplace_back("t,f\n0,0.5\n1,0.25\n2.5,-0.5\n6,0\n");
-  return {"meridian", "0123456789.,-+eE\n", std::move(seeds), [](std::string_view bytes) {
+  return {"meridian", "0123456789.,-+eE\n", std::move(seeds),
+          [](std::string_view bytes) {
             write_file(dir / "m.csv", std::string(bytes));
             const auto read = job::parse_job(job, dir / "job.toml");
             return fault_of(read ? std::vector<Diagnostic>{} : read.error(), read.has_value());
-          }};
+          },
+          20};  // each writes a file
 }
 
 ByteReader measured_reader() {
@@ -126,18 +128,18 @@ std::string box_stl() {
 }
 
 ByteReader mesh_reader(const std::string& name, const std::string& file, const std::string& letters,
-                       std::vector<std::string> seeds) {
+                       std::vector<std::string> seeds, int cost) {
   return {name, letters, std::move(seeds),
-          [file](std::string_view bytes) { return fault_of(mesh::parse_mesh(bytes, file)); }};
+          [file](std::string_view bytes) { return fault_of(mesh::parse_mesh(bytes, file)); }, cost};
 }
 
 std::vector<ByteReader> mesh_readers() {
   const std::string facet =
       "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 20 0 0\nvertex 0 30 1e1\nendloop\nendfacet\n";
   const std::string obj = "v 0 0 0\nv 20 0 0\nv 0 30 0\nv 0 0 40\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
-  return {
-      mesh_reader("mesh_stl", "a.stl", "0123456789.-+e \n", {box_stl(), "solid a\n" + facet + facet + "endsolid a\n"}),
-      mesh_reader("mesh_obj", "a.obj", "0123456789.-+e/ \nvf", {obj, "mtllib a.mtl\no b\n" + obj})};
+  return {mesh_reader("mesh_stl", "a.stl", "0123456789.-+e \n",
+                      {box_stl(), "solid a\n" + facet + facet + "endsolid a\n"}, 1),
+          mesh_reader("mesh_obj", "a.obj", "0123456789.-+e/ \nvf", {obj, "mtllib a.mtl\no b\n" + obj}, 5)};
 }
 
 /// The forms of one dialect; the first byte chooses among them, so that one fuzzer meets all.

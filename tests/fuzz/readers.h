@@ -15,6 +15,7 @@ struct ByteReader {
   std::vector<std::string> seeds;
   /// Reads; what is wrong with the answer. Empty: nothing.
   std::function<std::string(std::string_view bytes)> fault_of;
+  int cost = 1;  ///< of one reading: it gets so many times fewer
 };
 
 /// All of them, each made once.
