@@ -46,6 +46,10 @@ struct PairCounter {
 
 /// Do more than `most` pairs of triangles have boxes that meet?
 bool more_pairs_than(std::size_t most, const std::vector<Kernel::Point_3>& points, const Soup& soup) {
+  std::vector<std::size_t> fan(points.size(), 0);  // facets at a corner: every two of them are such a pair
+  for (const auto& triangle : soup)
+    for (const std::size_t corner : triangle)
+      if (const std::size_t n = ++fan[corner]; n * (n - 1) / 2 > most) return true;
   using Box = CGAL::Box_intersection_d::Box_d<double, 3, CGAL::Box_intersection_d::ID_EXPLICIT>;
   std::vector<Box> boxes;
   boxes.reserve(soup.size());
@@ -62,6 +66,10 @@ bool more_pairs_than(std::size_t most, const std::vector<Kernel::Point_3>& point
 /// Pairs allowed where there are more of them, else 0.
 std::size_t check_soup(const std::vector<Kernel::Point_3>& points, const Soup& soup, const MeshCheckOptions& options,
                        MeshCheck& check) {
+  if (options.self_intersections) {
+    const std::size_t most = std::max(options.most_compared, options.most_compared_each * soup.size());
+    if (more_pairs_than(most, points, soup)) return most;
+  }
   SurfaceMesh mesh;
   check.manifold = pmp::is_polygon_soup_a_polygon_mesh(soup);
   if (check.manifold) {
@@ -76,8 +84,6 @@ std::size_t check_soup(const std::vector<Kernel::Point_3>& points, const Soup& s
     }
   }
   if (!options.self_intersections || !check.manifold) return 0;
-  const std::size_t most = std::max(options.most_compared, options.most_compared_each * soup.size());
-  if (more_pairs_than(most, points, soup)) { return most; }
   try {
     pmp::self_intersections(mesh, PairCounter{&check, options.most_pairs});
   } catch (const Enough&) { return 0; }
