@@ -15,6 +15,7 @@
 #include "app/base/output_dir.h"
 #include "app/commands/command.h"
 #include "app/report/svg/html_text.h"
+#include "geometry/base/printable.h"
 
 namespace toothpath {
 namespace {
@@ -66,11 +67,11 @@ int present(const std::string& command, const commands::CommandOutcome& outcome,
     std::fprintf(stderr, "%s%s%s\n", color ? "\033[31m" : "", error.text().c_str(), color ? "\033[0m" : "");
   if (const std::string note = app::OutputDir::closing_note();
       !note.empty() && (!options.quiet || outcome.exit_code != app::ExitCode::ok))
-    std::fprintf(stderr, "note: %s\n", note.c_str());
+    std::fprintf(stderr, "note: %s\n", printable(note).c_str());
   std::fflush(stderr);
   bool printed = true;
   if (options.json) printed = print(outcome_json(command, outcome));
-  else if (!options.quiet) printed = print(outcome.summary);
+  else if (!options.quiet) printed = print(printable_lines(outcome.summary, wants_color(options.color, STDOUT_FILENO)));
   if (!printed && outcome.exit_code == app::ExitCode::ok) {
     std::fputs("error: cannot write to the standard output\n", stderr);
     return static_cast<int>(app::ExitCode::file_access);
@@ -148,6 +149,9 @@ int run_command_line(int argc, char** argv) {
       "file cannot be read or\n"
       "written, 70 internal error or out of memory, 130 interrupted. `toothpath COMMAND --help` lists the options of a "
       "command.");
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return printable(error.what()) + "\nRun with --help for more information.\n";
+  });
   app.require_subcommand(0, 1);
   const auto commands = add_commands(app);
 

@@ -42,9 +42,9 @@ struct PostSettings {
   std::optional<double>
       smoothing_tolerance_mm;  ///< stated by the shop: the tip leaves the path by no more while it is on
   std::optional<double>
-      smoothing_axis_tolerance_rad;  ///< the same of the tool axis; not stated: no cut may turn a rotary
-  std::optional<double>
-      corner_tolerance_mm;  ///< LinuxCNC: the tip is off a corner of its path by no more in exact path mode
+      smoothing_axis_tolerance_rad;           ///< the same of the tool axis; not stated: no cut may turn a rotary
+  std::optional<double> corner_tolerance_mm;  ///< the tip is off a corner by no more: LinuxCNC in exact path mode,
+                                              ///< Fanuc and the like in G64
   std::map<Coolant, CoolantWords>
       coolant;  ///< words of the builder, instead of those of the control or where it has none
   LengthReference length_reference = LengthReference::tip;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "geometry/base/printable.h"
+#include "machines/toml/near_name.h"
 #include "machines/toml/regular_file.h"
 
 namespace toothpath::machines {
@@ -31,8 +33,10 @@ class MachineWords final : public toml::TableWords {
     return fmt::format("{} is missing", name(path, key));
   }
 
-  std::string unknown(const std::string& path, const std::string& key, const KnownKeys&) const override {
-    return fmt::format("unknown key {}", name(path, key));
+  std::string unknown(const std::string& path, const std::string& key, const KnownKeys& known) const override {
+    const std::string_view near = toml::near_name(key, known);
+    const std::string hint = near.empty() ? "" : fmt::format("; did you mean {}?", near);
+    return fmt::format("unknown key {}{}", name(path, key), hint);
   }
 
   std::string wrong_type(const std::string& name, toml::TomlType wanted, toml::TomlType found) const override {
@@ -74,6 +78,8 @@ class MachineWords final : public toml::TableWords {
         return fmt::format("{} contains byte 0x{:02x}; only {} is allowed", name, byte,
                            ascii ? "printable ASCII" : "printable text");
     }
+    if (const std::string shown = printable(text); shown != text)
+      return fmt::format("{} = \"{}\" contains a character that is no printable text", name, shown);
     return std::nullopt;
   }
 
@@ -104,11 +110,8 @@ Result<std::string> read_machine_bytes(const std::string& path) {
   if (error) return refuse(fmt::format("cannot be opened: {}", error.message()));
   if (status.type() == std::filesystem::file_type::directory) return refuse("is a directory, not a file");
   if (status.type() != std::filesystem::file_type::regular) return refuse("is not a regular file");
-  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
-  if (!error && bytes > kMaxMachineFileBytes)
-    return refuse(fmt::format("has more than {} bytes, the largest machine file allowed", kMaxMachineFileBytes));
   auto text = toml::read_input_file(path, kMaxMachineFileBytes);
-  if (!text) return refuse("cannot be opened for reading");
+  if (!text && text.error().kind == DiagnosticKind::file_access) return refuse("cannot be opened for reading");
   return text;
 }
 

@@ -14,8 +14,8 @@ inline constexpr double kLargestLength = 1e5;  ///< mm
 inline constexpr double kLargestSpeed = 1e6;   ///< mm/min, deg/min, 1/min
 inline constexpr double kLargestAngle = 1e7;   ///< deg: 27000 turns
 
-/// The bytes of a machine file. Errors (kind file_access): missing, not a regular file, larger than
-/// kMaxMachineFileBytes, unreadable.
+/// The bytes of a machine file. Errors: missing, not a regular file, unreadable (kind file_access), larger than
+/// kMaxMachineFileBytes (kind refused_input).
 [[nodiscard]] Result<std::string> read_machine_bytes(const std::string& path);
 
 /// Errors: the first syntax error with its place; NUL bytes and nesting deeper than 16 levels are refused.

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <initializer_list>
 
+#include "geometry/base/printable.h"
+
 namespace toothpath::app {
 namespace {
 
@@ -79,7 +81,7 @@ void forget_temporary(const std::string& path) {
 void set_last_line(const std::string& text) {
   const int next = 1 - last_line;
   LastLine& line = last_lines[static_cast<std::size_t>(next)];
-  std::string whole = text.substr(0, line.text.size() - 2);
+  std::string whole = printable(text).substr(0, line.text.size() - 2);
   if (!whole.empty()) whole += '\n';
   if (!whole.empty() && ::isatty(STDERR_FILENO) != 0) whole.insert(0, 1, '\n');  // behind a line of progress
   line.size = whole.size();

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "geometry/base/printable.h"
+
 namespace toothpath::app {
 
 Progress::Progress(bool quiet) {
@@ -15,7 +17,8 @@ Progress::Progress(bool quiet) {
 
 void Progress::show(const std::string& text) {
   if (!active_) return;
-  std::fprintf(stderr, "\r\033[2K%s%s%s ...", label_.c_str(), label_.empty() ? "" : ": ", text.c_str());
+  std::fprintf(stderr, "\r\033[2K%s%s%s ...", printable(label_).c_str(), label_.empty() ? "" : ": ",
+               printable(text).c_str());
   std::fflush(stderr);
   shown_ = true;
 }

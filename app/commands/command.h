@@ -14,6 +14,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -37,6 +38,12 @@ struct JobRequest : CommonRequest {
 
 using app::CommandOutcome;
 using app::failed;
+
+/// A refused input without a place is something in the job: what found it knew no file.
+inline void name_file(std::vector<Diagnostic>& errors, const std::string& job_file) {
+  for (Diagnostic& error : errors)
+    if (error.position.file.empty() && error.kind == DiagnosticKind::refused_input) error.position.file = job_file;
+}
 
 /// Commands below a command: `study stability`.
 struct CommandGroup {
@@ -68,7 +75,9 @@ template <typename Request, typename Options, typename Run>
             options(set, *request);
             return [request, run](const CommonRequest& common) {
               static_cast<CommonRequest&>(*request) = common;
-              return run(*request);
+              CommandOutcome outcome = run(*request);
+              if constexpr (std::is_base_of_v<JobRequest, Request>) name_file(outcome.errors, request->job_file);
+              return outcome;
             };
           }};
 }

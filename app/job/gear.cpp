@@ -20,6 +20,7 @@ constexpr toml::Range kRadius{0, 10000, " mm", true};
 constexpr toml::Range kSignedLength{-10000, 10000, " mm"};
 constexpr toml::Range kLength{0, 10000, " mm", true};
 constexpr toml::Range kLengthOrZero{0, 10000, " mm"};
+constexpr double kLeastFace = 0.01;  // mm; a face of the smallest module is wider
 
 /// Absent optional numbers leave the target as it is.
 void optional_number(toml::TableReader& table, std::string_view key, const toml::Range& range, double& target,
@@ -57,6 +58,9 @@ void read_zones(toml::TableReader& gear, face_gear::FaceGearParameters& result, 
     zone.outer_radius_mm = outer.value_or(0);
     if (inner && outer && *outer <= *inner)
       table.refuse("outer_radius", "outer_radius = {} mm is not above inner_radius = {} mm", *outer, *inner);
+    else if (inner && outer && *outer - *inner < kLeastFace)
+      table.refuse("outer_radius", "outer_radius - inner_radius = {:.6g} mm of face is below {} mm", *outer - *inner,
+                   kLeastFace);
     else if (inner && !result.zones.empty() && *inner <= result.zones.back().outer_radius_mm)
       table.refuse("inner_radius", "inner_radius = {} mm is not above {} mm, the outer_radius of the zone before",
                    *inner, result.zones.back().outer_radius_mm);
@@ -125,7 +129,7 @@ bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear) {
   p.outer_transverse_module_mm = module.value_or(0);
   p.pressure_angle_rad = radians(gear.number("pressure_angle", kPressureAngle).value_or(0));
   p.outer_spiral_angle_rad = radians(gear.number("outer_spiral_angle", {0, 60, " deg"}).value_or(0));
-  p.face_width_mm = gear.number("face_width", kLength).value_or(0);
+  p.face_width_mm = gear.number("face_width", {kLeastFace, kLength.high, " mm"}).value_or(0);
   const auto form = gear.word("form", {"herringbone", "single"});
   if (form) p.form = *form == "single" ? bevel_gear::BevelForm::single : bevel_gear::BevelForm::herringbone;
   if (const auto hand = gear.word("hand", {"right", "left"})) p.hand = *hand == "right" ? 1 : -1;
@@ -190,7 +194,7 @@ void read_gear(toml::TableReader& root, Job& job) {
   std::vector<std::string_view> words;
   for (const GearType& type : kGearTypes) words.emplace_back(type.word);
   const auto named = gear->word("type", words);
-  if (!named) return;  // which keys belong here is unknown
+  if (!named) return gear->name_misspelt("type");  // which keys belong here is unknown
   for (const GearType& type : kGearTypes)
     if (*named == type.word) type.read(*gear, stock ? &*stock : nullptr, root, job);
 }

@@ -13,7 +13,7 @@ namespace toothpath::job {
 namespace {
 
 constexpr toml::Range kSpeed{1, 500000, " 1/min"};
-constexpr toml::Range kFeed{0, 100000, " mm/min", true};
+constexpr toml::Range kFeed{0.1, 100000, " mm/min"};  // less is slower than any control counts
 constexpr toml::Range kStep{0.001, 100, " mm"};
 constexpr toml::Range kAllowance{0, 50, " mm"};
 constexpr toml::Range kScallop{1e-5, 1, " mm"};
@@ -231,7 +231,10 @@ path::MillingOperation read_operation(toml::TableReader& table, const std::vecto
   if (const auto given =
           table.if_present("chord_tolerance", [&] { return table.number("chord_tolerance", kChordTolerance); }))
     chord = *given;
-  if (!word) return operation;
+  if (!word) {
+    table.name_misspelt("type");
+    return operation;
+  }
   if (word->type == path::OperationType::finger_roughing)
     operation.ridge_mm = table.number("ridge", {0.001, 10, " mm"}).value_or(0);
   else if (word->type == path::OperationType::line_milling) operation = read_line_operation(table);

@@ -64,16 +64,14 @@ Result<Line> parse_line(std::string_view text, int number, const std::string& fi
   std::array<int*, 4> whole = {&line.zone, &line.side, &line.row, &line.place};
   for (std::size_t k = 0; k < 4; ++k)
     if (!parse(line.cell[k], *whole[k]) || (k != 1 && (*whole[k] < 0 || *whole[k] > 999)))
-      return at(file, number, line.column[k], "{} = \"{}\" is no whole number from 0 to 999", names(k),
-                svg::valid_utf8(line.cell[k]));
+      return at(file, number, line.column[k], "{} = \"{}\" is no whole number from 0 to 999", names(k), line.cell[k]);
   if (line.side != 1 && line.side != -1)
     return at(file, number, line.column[1], "flank = {} must be 1 or -1", line.side);
   double normal = 0;
   for (std::size_t k = 4; k < kMeasuredColumns; ++k) {
     double& value = k < 7 ? line.p[Eigen::Index(k) - 4] : k < 10 ? normal : line.deviation_um;
     if (!parse(line.cell[k], value) || !std::isfinite(value))
-      return at(file, number, line.column[k], "{} = \"{}\" is no finite number", names(k),
-                svg::valid_utf8(line.cell[k]));
+      return at(file, number, line.column[k], "{} = \"{}\" is no finite number", names(k), line.cell[k]);
   }
   return line;
 }
@@ -140,8 +138,7 @@ Result<MeasuredFlanks> parse_measured(std::string_view text, const std::string& 
     if (row.ends_with('\r')) row.remove_suffix(1);
     ++number;
     if (number == 1) {
-      if (row != kHeader)
-        return at(file, 1, 0, "the header is \"{}\", must be \"{}\"", svg::valid_utf8(row.substr(0, 120)), kHeader);
+      if (row != kHeader) return at(file, 1, 0, "the header is \"{}\", must be \"{}\"", row.substr(0, 120), kHeader);
       continue;
     }
     if (row.empty()) continue;

@@ -15,7 +15,8 @@ namespace {
 constexpr toml::Range kToolLength{0, 2000, " mm", true};
 constexpr toml::Range kToolDiameter{0.01, 500, " mm"};
 constexpr std::size_t kMostMeridianBytes = 1 << 20;
-constexpr double kMostHelix = 75;  // deg
+constexpr std::size_t kMostSegments = 100;  // of a holder
+constexpr double kMostHelix = 75;           // deg
 constexpr const char* kTaperAngle = "taper_angle";
 
 std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
@@ -25,23 +26,27 @@ std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
     table.refuse("holder", "[{}] lacks the key \"holder\"", table.path());
     return result;
   }
-  const auto wrong = [&] {
-    table.refuse(
-        "holder",
-        "holder must be an array of [lower diameter, upper diameter, height] in mm, each above 0 and at most 2000");
+  const auto wrong = [&](const std::string& what) {
+    table.refuse("holder",
+                 "holder must be an array of [lower diameter, upper diameter, height] in mm, each above 0 and at most "
+                 "2000; {}",
+                 what);
     return std::vector<tool::HolderSegment>{};
   };
   const toml::TomlArray* segments = value->array();
-  if (!segments || segments->values.empty() || segments->values.size() > 100) return wrong();
-  for (const auto& segment : segments->values) {
-    const toml::TomlArray* numbers = segment.array();
-    if (!numbers || numbers->values.size() != 3) return wrong();
+  if (!segments) return wrong("this is no array");
+  if (segments->values.empty() || segments->values.size() > kMostSegments)
+    return wrong(fmt::format("this has {} of them, 1 to {} may stand here", segments->values.size(), kMostSegments));
+  for (std::size_t s = 0; s < segments->values.size(); ++s) {
+    const toml::TomlArray* numbers = segments->values[s].array();
+    if (!numbers) return wrong(fmt::format("holder[{}] is no array", s));
+    if (numbers->values.size() != 3) return wrong(fmt::format("holder[{}] has {} numbers", s, numbers->values.size()));
     double read[3] = {};
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto& data = numbers->values[i].data;
-      if (const auto* real = std::get_if<double>(&data)) read[i] = *real;
-      else if (const auto* whole = std::get_if<std::int64_t>(&data)) read[i] = static_cast<double>(*whole);
-      if (!(read[i] > 0 && read[i] <= 2000)) return wrong();
+      const auto number = numbers->values[i].number();
+      if (!number) return wrong(fmt::format("holder[{}][{}] is no number", s, i));
+      if (!(*number > 0 && *number <= 2000)) return wrong(fmt::format("holder[{}][{}] = {}", s, i, *number));
+      read[i] = *number;
     }
     result.push_back({read[0], read[1], read[2]});
   }
@@ -172,7 +177,10 @@ tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& contex
     tool.teeth = *teeth;
   if (length && stick_out && *stick_out > *length)
     table.refuse("stick_out", "stick_out = {} mm exceeds length = {} mm", *stick_out, *length);
-  if (!type) return tool;  // which other keys belong here is unknown
+  if (!type) {
+    table.name_misspelt("type");
+    return tool;  // which other keys belong here is unknown
+  }
   const auto& kind = tool::cutter_kinds()[std::size_t(std::find(words.begin(), words.end(), *type) - words.begin())];
   tool.type = kind.type;
   const std::size_t before = table.errors();

@@ -2,18 +2,14 @@
 
 #include <algorithm>
 
+#include "geometry/base/printable.h"
 #include "machines/toml/near_name.h"
 
 namespace toothpath::job {
 namespace {
 
-/// A key as it may be printed: cut to 60 characters, control characters replaced.
-std::string shown(std::string_view key) {
-  std::string text(key.substr(0, 60));
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  return text;
-}
+/// A key, not longer than a line.
+std::string_view shown(std::string_view key) { return key.substr(0, 60); }
 
 std::string title(const std::string& path) { return path.empty() ? "the job" : "[" + path + "]"; }
 
@@ -76,14 +72,10 @@ class JobWords final : public toml::TableWords {
   }
 
   std::optional<std::string> text_fault(const std::string& name, const std::string& text, bool ascii) const override {
-    const auto has = [&](auto wrong) {
-      return std::any_of(text.begin(), text.end(), [&](char c) { return wrong(static_cast<unsigned char>(c)); });
-    };
     if (text.empty()) return fmt::format("{} is empty", name);
     if (text.size() > 255) return fmt::format("{} has {} bytes, which exceeds 255", name, text.size());
-    if (has([](unsigned char c) { return c < 0x20 || c == 0x7f; }))
-      return fmt::format("{} contains a control character", name);
-    if (ascii && has([](unsigned char c) { return c > 0x7f; }))
+    if (printable(text) != text) return fmt::format("{} contains a control character", name);
+    if (ascii && std::any_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) > 0x7f; }))
       return fmt::format("{} contains a character outside ASCII", name);
     return std::nullopt;
   }

@@ -5,7 +5,7 @@
 
 namespace toothpath::job {
 
-inline constexpr toml::TomlSyntax kJobSyntax{.max_nesting = 32, .one_line_strings = true, .ascii_messages = true};
+inline constexpr toml::TomlSyntax kJobSyntax{.max_nesting = 32, .one_line_strings = true};
 
 /// Keys by themselves ("teeth = 1 is below 2"), tables in brackets; a misspelt key brings the nearest known one.
 [[nodiscard]] const toml::TableWords& job_words();

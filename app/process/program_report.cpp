@@ -48,6 +48,11 @@ report::RunReport report_of(const std::string& command, const job::Job& job, con
   report.gouge_tolerance_mm = job.verify.gouge_tolerance_mm;
   if (machine.assumed)
     for (const auto& key : machine.assumed_keys) report.assumed.push_back(fmt::format("{}: {}", job.machine.file, key));
+  if (const controls::Control* control = controls::find(machine.dialect);
+      control && !control->words.corner_flow.empty() && machine.post.corner_tolerance_mm)
+    report.assumed.push_back(fmt::format("{}: post.corner_tolerance = {:g} mm, what {} leaves of corners",
+                                         job.machine.file, *machine.post.corner_tolerance_mm,
+                                         control->words.corner_flow));
   if (!machine.post.smoothing_on.empty() && machine.post.smoothing_tolerance_mm)
     report.assumed.push_back(fmt::format("{}: post.smoothing_tolerance = {:g} mm, what \"{}\" leaves of the path",
                                          job.machine.file, *machine.post.smoothing_tolerance_mm,

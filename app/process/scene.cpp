@@ -239,7 +239,9 @@ Result<std::vector<report::SceneVerdict>> check_scene(const Scene& scene, std::s
   SceneWalk walk(scene, job, machine, *control, read, gear);
   if (const auto s = readback::execute_nc(text, file, *control, [&](const readback::ExecutedMove& m) { walk(m); }); !s)
     return s.error();
-  return walk.finish();
+  auto verdicts = walk.finish();
+  if (auto* error = verdicts.refused()) error->position.file = file;
+  return verdicts;
 }
 
 std::vector<std::string> reasons_of(const std::vector<report::SceneVerdict>& verdicts) {

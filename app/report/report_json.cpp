@@ -48,8 +48,10 @@ void add_proof(Json& json, const RunReport& r) {
     json["gouge_um"] = {{"measured", app::um(r.gouge->measured_mm)},
                         {"bound", app::um(r.gouge->bound_mm)},
                         {"tolerance", app::um(r.gouge_tolerance_mm)}};
+    const bool none_near = r.gouge->clearance_measured_mm >= r.gouge->clearance_followed_mm;
     json["clearance"] = {{"least", r.gouge->clearance_mm},
-                         {"measured", r.gouge->clearance_measured_mm},
+                         {"at_least", r.gouge->clearance_at_least()},
+                         {"measured", none_near ? Json(nullptr) : Json(r.gouge->clearance_measured_mm)},
                          {"required", r.gouge->required_clearance_mm},
                          {"rapids_clear", r.gouge->rapids_clear}};
     Json worst = Json::array();
@@ -135,6 +137,7 @@ void add_directions(Json& json, const RunReport& r) {
                   {"axis", vector_json(d.axis)},
                   {"lean_deg", degrees(d.lean_rad)},
                   {"clearance", d.clearance_mm},
+                  {"clearance_at_least", d.clearance_at_least},
                   {"explanation", svg::valid_utf8(d.explanation)}};
     if (!d.fixed && d.passes > 0) {
       entry["lean_from_pitch_normal_deg"] = {{"min", degrees(d.least_lean_rad)}, {"max", degrees(d.greatest_lean_rad)}};

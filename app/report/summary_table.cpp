@@ -53,7 +53,9 @@ void proof_rows(std::string& out, const RunReport& report) {
   for (const Finding& f : report.findings)
     if (!f.label.empty() && f.unfinished.empty()) row(out, f.label, f.row_text());
   if (report.gouge)
-    row(out, "least clearance", fmt::format("{:.3f} mm (neck, shank, holder)", report.gouge->clearance_mm));
+    row(out, "least clearance",
+        fmt::format("{} mm (neck, shank, holder)",
+                    app::least_text(report.gouge->clearance_mm, report.gouge->clearance_at_least())));
   for (const auto& v : report.scene) {
     const std::string place = v.nearest ? fmt::format("{}, op {}, tooth {}, line {}", v.nearest->body,
                                                       v.nearest->operation, v.nearest->tooth, v.nearest->line)

@@ -100,7 +100,9 @@ class Chunk {
         o_(options),
         model_(model),
         elsewhere_(elsewhere),
-        out_(proof::no_motion_yet(options.limits.clearance_mm)) {}
+        out_(proof::no_motion_yet(options.limits.clearance_mm)) {
+    out_.clearance_followed_mm = options.limits.clearance_mm + kBodyLook;
+  }
 
   /// @param known  of the tool's parts, a depth that each cannot exceed; empty: nothing is known
   /// @param proven  takes the depths that are proven now; empty: not asked for
@@ -181,7 +183,7 @@ class Chunk {
 
   /// The gap that is proven. @param known  it is no less than this
   double clearance(Body& body, const path::ToolMotion& m, double known) {
-    const double enough = o_.limits.clearance_mm + kBodyLook, arm = arm_of(body.frustum);
+    const double enough = out_.clearance_followed_mm, arm = arm_of(body.frustum);
     if (known >= o_.limits.clearance_mm && elsewhere_ && known >= std::min(enough, elsewhere_->clearance_mm)) {
       out_.clearance_mm = std::min({out_.clearance_mm, known, enough});
       return known;

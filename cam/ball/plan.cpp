@@ -337,6 +337,7 @@ class Planner::Work {
     d.axis = sum.normalized();
     d.lean_rad = std::atan2(std::hypot(d.axis.x(), d.axis.y()), d.axis.z());
     d.clearance_mm = o.clearance_mm;
+    d.clearance_at_least = o.clearance_at_least;
     d.least_lean_rad = o.least_lean_rad;
     d.greatest_lean_rad = o.greatest_lean_rad;
     d.greatest_turn_rad_per_mm = o.greatest_turn_rad_per_mm;
@@ -344,13 +345,16 @@ class Planner::Work {
     d.passes = int(o.axes.size());
     d.turning_passes = o.turning_passes;
   }
+  static std::string room(const Orientation& o) {
+    return fmt::format("{}{:.3f} mm", o.clearance_at_least ? "at least " : "", o.clearance_mm);
+  }
   static void describe(const Orientation& o, proof::DirectionChoice& d) {
     measure(o, d);
     d.explanation = fmt::format(
         "{}; so the axis turns: lean {:.1f} to {:.1f} deg from the normal of the pitch surface, inside {} of {} "
-        "passes, by at most {:.2f} deg/mm; shank and holder keep {:.3f} mm",
+        "passes, by at most {:.2f} deg/mm; shank and holder keep {}",
         d.explanation, degrees(o.least_lean_rad), degrees(o.greatest_lean_rad), o.turning_passes, o.axes.size(),
-        degrees(o.greatest_turn_rad_per_mm), o.clearance_mm);
+        degrees(o.greatest_turn_rad_per_mm), room(o));
   }
   static void describe_prescribed(const Orientation& o, proof::DirectionChoice& d) {
     measure(o, d);
@@ -359,14 +363,13 @@ class Planner::Work {
     });
     d.explanation =
         d.fixed
-            ? fmt::format(
-                  "prescribed: leans {:.2f} deg from the normal of the pitch surface; shank and holder keep {:.3f} mm",
-                  degrees(o.greatest_lean_rad), o.clearance_mm)
+            ? fmt::format("prescribed: leans {:.2f} deg from the normal of the pitch surface; shank and holder keep {}",
+                          degrees(o.greatest_lean_rad), room(o))
             : fmt::format(
                   "prescribed: lean {:.2f} to {:.2f} deg from the normal of the pitch surface, the axis turns inside "
-                  "{} of {} passes, by at most {:.2f} deg/mm; shank and holder keep {:.3f} mm",
+                  "{} of {} passes, by at most {:.2f} deg/mm; shank and holder keep {}",
                   degrees(o.least_lean_rad), degrees(o.greatest_lean_rad), o.turning_passes, o.axes.size(),
-                  degrees(o.greatest_turn_rad_per_mm), o.clearance_mm);
+                  degrees(o.greatest_turn_rad_per_mm), room(o));
   }
 
   /// Sag that an operation may have: a tenth of the stock that it leaves, and less than half of what may be gouged. Of

@@ -221,6 +221,7 @@ class Search {
       choice_.lean_rad = 0;
     }
     choice_.clearance_mm = c.gap_mm;
+    choice_.clearance_at_least = c.gap_mm >= kEnough;
     const std::string room =
         c.gap_mm >= kEnough ? fmt::format("more than {:.0f} mm", kEnough) : fmt::format("{:.3f} mm", c.gap_mm);
     if (choice_.lean_rad == 0 && c.lean_rad > 0)

@@ -598,6 +598,7 @@ Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& che
     passes[p].points = std::move(points);
     out.axes.push_back(std::move(axes));
   }
+  out.clearance_at_least = out.clearance_mm >= kFarthestGap;
   return out;
 }
 

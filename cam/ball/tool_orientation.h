@@ -41,6 +41,7 @@ struct Orientation {
   double greatest_turn_rad_per_mm = 0;               ///< of the axis, along the ball centre
   double greatest_step_rad = 0;                      ///< between neighbouring records
   double clearance_mm = 0;                           ///< least gap found at the records, at most 2
+  bool clearance_at_least = false;                   ///< it is cut there
   int turning_passes = 0;  ///< passes inside which the axis turns; the others keep one direction
 };
 

@@ -42,6 +42,7 @@ proof::DirectionChoice direction_of(const line::LinePlan& planned, int operation
   d.zone = zone;
   d.fixed = false;
   d.clearance_mm = clearance_mm;
+  d.clearance_at_least = true;  // what was asked for
   d.least_lean_rad = INFINITY;
   Vec3 sum = Vec3::Zero();
   double misfit = 0;

@@ -22,7 +22,7 @@ void keep_worst(std::vector<WorstPlace>& places, std::size_t ordered) {
 GougeResult no_motion_yet(double required_clearance_mm) {
   GougeResult r;
   r.measured_mm = r.bound_mm = -INFINITY;
-  r.clearance_mm = r.clearance_measured_mm = INFINITY;
+  r.clearance_mm = r.clearance_measured_mm = r.clearance_followed_mm = INFINITY;
   r.required_clearance_mm = required_clearance_mm;
   return r;
 }
@@ -47,6 +47,7 @@ void add_result(GougeResult& all, const GougeResult& later) {
   if (later.clearance_mm < all.clearance_mm) all.closest = later.closest;
   all.clearance_mm = std::min(all.clearance_mm, later.clearance_mm);
   all.clearance_measured_mm = std::min(all.clearance_measured_mm, later.clearance_measured_mm);
+  all.clearance_followed_mm = std::min(all.clearance_followed_mm, later.clearance_followed_mm);
   all.rapids_clear = all.rapids_clear && later.rapids_clear;
   const std::size_t ordered = all.worst.size();
   all.worst.insert(all.worst.end(), later.worst.begin(), later.worst.end());

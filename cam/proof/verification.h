@@ -25,18 +25,24 @@ struct WorstPlace {
 
 /// Penetration of the cutting part into the finished surface, over all motions.
 struct GougeResult {
-  double measured_mm = 0;  ///< worst penetration found; negative: the least gap
-  double bound_mm = 0;     ///< proven: nothing on any path between the samples is deeper
-  int bound_line = 0;      ///< line of the move with the greatest bound
-  double clearance_mm =
-      0;  ///< least proven gap of shank and holder; gaps are followed to 0.3 mm beyond the required one
+  double measured_mm = 0;            ///< worst penetration found; negative: the least gap
+  double bound_mm = 0;               ///< proven: nothing on any path between the samples is deeper
+  int bound_line = 0;                ///< line of the move with the greatest bound
+  double clearance_mm = 0;           ///< least proven gap of shank and holder
   double clearance_measured_mm = 0;  ///< least gap of shank and holder that was found; negative: they cut
+  double clearance_followed_mm = 0;  ///< gaps are followed to this: where none less is found both others are cut there
   double required_clearance_mm = 0;
   bool rapids_clear = true;       ///< every rapid stays outside the blank, all bodies
   std::vector<WorstPlace> worst;  ///< deepest first, at most 20, only those beyond the tolerance or the clearance
   WorstPlace deepest;             ///< the single deepest place, also when all is well
   WorstPlace closest;  ///< of shank or holder, where they keep less than is required: the place of the least gap
   std::size_t motions = 0, distance_queries = 0;
+
+  /// The least gap may be much larger than the proven one: nothing so near was found.
+  [[nodiscard]] bool clearance_at_least() const {
+    constexpr double kNear_mm = 0.05;
+    return clearance_measured_mm >= clearance_followed_mm || clearance_measured_mm > clearance_mm + kNear_mm;
+  }
 };
 
 /// Material left (> 0) or missing (< 0) on the finished surface after an operation, along the normal.
@@ -142,8 +148,9 @@ struct DirectionChoice {
   int operation = 0, zone = 0;
   bool fixed = true;
   Vec3 axis = Vec3::UnitZ();
-  double lean_rad = 0;      ///< angle between the axis and the gear axis
-  double clearance_mm = 0;  ///< least gap of shank and holder in that direction
+  double lean_rad = 0;              ///< angle between the axis and the gear axis
+  double clearance_mm = 0;          ///< least gap of shank and holder in that direction
+  bool clearance_at_least = false;  ///< gaps are followed no further: they keep that or more
   // Simultaneous (`fixed` is false): `axis` is the mean of the path; leans are from the normal of the pitch surface.
   double least_lean_rad = 0, greatest_lean_rad = 0;
   double greatest_turn_rad_per_mm = 0;  ///< of the axis, along the ball centre

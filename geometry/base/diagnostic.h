@@ -25,9 +25,9 @@ enum class DiagnosticKind {
 struct Diagnostic {
   DiagnosticKind kind = DiagnosticKind::refused_input;
   SourcePosition position;  ///< empty file: the folder that made it knows no file
-  std::string message;      ///< quantity, value and limit; no trailing full stop or newline
+  std::string message;  ///< quantity, value and limit; no trailing full stop or newline. Quoted bytes stay as they are
 
-  /// `file:line:column: error: message`; the parts that are unknown are left out.
+  /// `file:line:column: error: message`, one line of printable text; the parts that are unknown are left out.
   [[nodiscard]] std::string text() const;
 };
 

@@ -8,7 +8,9 @@
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
+#include <CGAL/box_intersection_d.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 
@@ -42,8 +44,32 @@ struct PairCounter {
   }
 };
 
-void check_soup(const std::vector<Kernel::Point_3>& points, const Soup& soup, const MeshCheckOptions& options,
-                MeshCheck& check) {
+/// Do more than `most` pairs of triangles have boxes that meet?
+bool more_pairs_than(std::size_t most, const std::vector<Kernel::Point_3>& points, const Soup& soup) {
+  std::vector<std::size_t> fan(points.size(), 0);  // facets at a corner: every two of them are such a pair
+  for (const auto& triangle : soup)
+    for (const std::size_t corner : triangle)
+      if (const std::size_t n = ++fan[corner]; n * (n - 1) / 2 > most) return true;
+  using Box = CGAL::Box_intersection_d::Box_d<double, 3, CGAL::Box_intersection_d::ID_EXPLICIT>;
+  std::vector<Box> boxes;
+  boxes.reserve(soup.size());
+  for (const auto& [a, b, c] : soup) boxes.emplace_back(points[a].bbox() + points[b].bbox() + points[c].bbox());
+  std::size_t pairs = 0;
+  try {
+    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box&, const Box&) {
+      if (++pairs > most) throw Enough{};
+    });
+  } catch (const Enough&) { return true; }
+  return false;
+}
+
+/// Pairs allowed where there are more of them, else 0.
+std::size_t check_soup(const std::vector<Kernel::Point_3>& points, const Soup& soup, const MeshCheckOptions& options,
+                       MeshCheck& check) {
+  if (options.self_intersections) {
+    const std::size_t most = std::max(options.most_compared, options.most_compared_each * soup.size());
+    if (more_pairs_than(most, points, soup)) return most;
+  }
   SurfaceMesh mesh;
   check.manifold = pmp::is_polygon_soup_a_polygon_mesh(soup);
   if (check.manifold) {
@@ -57,10 +83,11 @@ void check_soup(const std::vector<Kernel::Point_3>& points, const Soup& soup, co
       check.outward = check.components == 1 ? pmp::is_outward_oriented(mesh) : check.volume_mm3 > 0;
     }
   }
-  if (!options.self_intersections || !check.manifold) return;
+  if (!options.self_intersections || !check.manifold) return 0;
   try {
     pmp::self_intersections(mesh, PairCounter{&check, options.most_pairs});
-  } catch (const Enough&) { return; }
+  } catch (const Enough&) { return 0; }
+  return 0;
 }
 
 }  // namespace
@@ -84,9 +111,16 @@ Result<MeshCheck> check_mesh(const TriangleMesh& mesh, const MeshCheckOptions& o
         {std::size_t(mesh.triangles[t][0]), std::size_t(mesh.triangles[t][1]), std::size_t(mesh.triangles[t][2])});
   }
   MeshCheck check;
+  std::size_t too_many = 0;
   try {
-    check_soup(points, soup, options, check);
+    too_many = check_soup(points, soup, options, check);
   } catch (const std::exception& problem) { return fail("the mesh could not be examined: {}", problem.what()); }
+  if (too_many > 0)
+    return fail(
+        "the boxes around its {} facets meet in more than {} pairs: too many long thin facets to compare them all; a "
+        "mesh "
+        "with more even facets is needed",
+        soup.size(), too_many);
   return check;
 }
 

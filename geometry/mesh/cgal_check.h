@@ -26,10 +26,13 @@ struct MeshCheck {
 struct MeshCheckOptions {
   bool self_intersections = true;  ///< look for crossing triangles: the slow part, about 0.3 s for 200 000 triangles
   std::size_t most_pairs = 1000;   ///< stop counting here
+  /// Pairs of triangles whose boxes meet and that are therefore compared, about 10 million a second. Even triangles
+  /// have some ten each; millions of slivers have them by the square.
+  std::size_t most_compared = 50'000'000, most_compared_each = 40;  ///< the larger of both counts
 };
 
 /// Checks a mesh whose vertices are already shared (welded). Refused: an index outside the vertices, a coordinate that
-/// is not finite, no triangle at all.
+/// is not finite, no triangle at all, more pairs to compare than the options allow.
 [[nodiscard]] Result<MeshCheck> check_mesh(const TriangleMesh& mesh, const MeshCheckOptions& options = {});
 
 }  // namespace toothpath::mesh

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "machines/toml/near_name.h"
+
 namespace toothpath::toml {
 
 TableReader::TableReader(const TomlValue& table, std::string path, ReaderFindings& findings)
@@ -205,8 +207,21 @@ std::vector<TableReader> TableReader::tables(std::string_view key) {
 }
 
 void TableReader::finish() {
+  TableWords::KnownKeys absent;  // only these can a misspelt key have been meant to be
+  for (const std::string& key : known_)
+    if (!has(key)) absent.insert(key);
   for (const auto& entry : table_.entries)
-    if (!known_.contains(entry.key)) record(entry.key_position, words().unknown(path_, entry.key, known_));
+    if (!known_.contains(entry.key)) record(entry.key_position, words().unknown(path_, entry.key, absent));
+}
+
+void TableReader::name_misspelt(std::string_view key) {
+  if (has(key)) return;
+  std::vector<std::string_view> keys;
+  for (const auto& entry : table_.entries) keys.push_back(entry.key);
+  const std::string_view near = near_name(key, keys);
+  if (near.empty()) return;
+  const TomlEntry& entry = *table_.find(near);
+  record(entry.key_position, words().unknown(path_, entry.key, {std::string(key)}));
 }
 
 void sort_by_position(std::vector<Diagnostic>& errors) {

@@ -131,6 +131,8 @@ class TableReader {
   }
   /// Records every key that was never asked for.
   void finish();
+  /// Of a table that cannot be read further because `key` is absent: records the key that was probably meant to be it.
+  void name_misspelt(std::string_view key);
 
  private:
   [[nodiscard]] const TableWords& words() const { return findings_->words; }

@@ -165,17 +165,6 @@ class Copier {
   std::optional<SourcePosition> too_deep_;
 };
 
-/// One line of printable text: the library quotes bytes of the file in its messages.
-std::string printable(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte >= 0x7f) result += fmt::format("\\x{:02X}", byte);
-    else result += c;
-  }
-  return result;
-}
-
 }  // namespace
 
 const TomlEntry* TomlTable::find(std::string_view key) const {
@@ -203,9 +192,7 @@ Result<TomlValue> parse_toml(std::string_view text, const std::string& file, con
     root.position = {file, 1, 1};
     return root;
   } catch (const ::toml::parse_error& error) {
-    const std::string_view what = error.description();
-    return fail_at(position_of(error.source(), file), "{}",
-                   syntax.ascii_messages ? printable(what) : std::string(what));
+    return fail_at(position_of(error.source(), file), "{}", error.description());
   }
 }
 

@@ -54,8 +54,6 @@ struct TomlSyntax {
   int max_nesting = 16;  ///< brackets in brackets, parts of a key, and levels of tables and arrays, 1 or more; counted
                          ///< before anything is parsed, so that no file can exhaust the stack
   bool one_line_strings = false;  ///< strings that span lines are refused
-  bool ascii_messages =
-      false;  ///< bytes of the file that a message quotes are written as \xNN where they are not ASCII
 };
 
 /// Parses `text`; the root is a table. Errors, with line and column: the first place that is not TOML 1.0 or that

@@ -20,8 +20,8 @@ struct WorkOffsets {
 
 struct Control {
   /// Name, file extension, words, coolants, corners, rotaries that roll over; what it takes of a machine file follows
-  /// from them: `exact_path_mm` corner_tolerance, `takes_smoothing` smoothing_*, `takes_coolant` coolant_*,
-  /// `tcp_codes_of_site` tcp_on and tcp_off.
+  /// from them: `exact_path_mm` or `corner_flow` corner_tolerance, `takes_smoothing` smoothing_*, `takes_coolant`
+  /// coolant_*, `tcp_codes_of_site` tcp_on and tcp_off.
   text::NcDialect words;
   std::vector<std::string> aliases;  ///< other names that a machine file may use
   WorkOffsets offsets;

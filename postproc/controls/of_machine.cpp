@@ -50,10 +50,13 @@ class Judge {
 
   void corners() {
     const machines::PostSettings& post = machine_.post;
-    if (post.corner_tolerance_mm && !(words_.exact_path_mm > 0)) {
+    const auto takes = [](const text::NcDialect& words) {
+      return words.exact_path_mm > 0 || !words.corner_flow.empty();
+    };
+    if (post.corner_tolerance_mm && !takes(words_)) {
       std::string takers;
       for (const Control* c : all())
-        if (c->words.exact_path_mm > 0) takers += fmt::format("{}\"{}\"", takers.empty() ? "" : ", ", c->words.name);
+        if (takes(c->words)) takers += fmt::format("{}\"{}\"", takers.empty() ? "" : ", ", c->words.name);
       refuse("post.corner_tolerance", "post.corner_tolerance belongs to dialect {}, this is \"{}\"", takers,
              words_.name);
     }
@@ -133,6 +136,29 @@ machines::MachineReading read_machine_of_text(std::string_view text, const std::
   return machines::read_machine_text(text, file, judge);
 }
 
+namespace {
+
+/// Corners of a control that stops at them or states nothing: it flows where the machine file says by how much, and
+/// around its own smoothing.
+void apply_corners(text::NcDialect& d, const machines::PostSettings& post) {
+  if (d.corner_flow.empty()) return;
+  const std::string& usual = post.corner_tolerance_mm ? d.corner_flow : d.corner_stop;
+  d.corner_mm = post.corner_tolerance_mm.value_or(0);
+  std::replace(d.safe_start.begin(), d.safe_start.end(), d.corner_stop, usual);
+  if (d.smoothing_on.empty()) return;
+  d.smoothing_on.insert(d.smoothing_on.begin(), d.corner_flow);
+  d.smoothing_off.push_back(usual);
+}
+
+/// A control that states how far it leaves an exact path is one that stops there.
+timing::Corners corners_of(const text::NcDialect& words, const machines::PostSettings& post) {
+  if (words.exact_path_mm > 0) return timing::Corners::exact;
+  const bool flows = words.corner_stop.empty() || post.corner_tolerance_mm || !post.smoothing_on.empty();
+  return flows ? timing::Corners::jump : timing::Corners::stop;
+}
+
+}  // namespace
+
 Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
   if (auto errors = judge(machine); !errors.empty()) return std::move(errors.front());
   text::NcDialect d = find(machine.dialect)->words;
@@ -156,18 +182,10 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
     d.blend = false;
     std::erase_if(d.start, [](const std::string& line) { return line.find("{blend}") != std::string::npos; });
   }
+  apply_corners(d, post);
   for (const auto& [coolant, words] : post.coolant) d.coolant[coolant] = words;
   return d;
 }
-
-namespace {
-
-/// A control that states how far it leaves an exact path is one that stops there.
-timing::Corners corners_of(const text::NcDialect& words) {
-  return words.exact_path_mm > 0 ? timing::Corners::exact : timing::Corners::jump;
-}
-
-}  // namespace
 
 joints::AxisOptions axis_options(const text::NcDialect& words, const machines::Machine& machine) {
   joints::AxisOptions options;
@@ -177,7 +195,7 @@ joints::AxisOptions axis_options(const text::NcDialect& words, const machines::M
       words.loop.form == text::NcLoop::Form::stretches || !words.loop.index_line.empty();
   options.expand_teeth = !machine.post.index_loop.value_or(true) || words.loop.form == text::NcLoop::Form::none;
   options.tcp_starts_at_zero = words.tcp_starts_at_zero;
-  options.corners = corners_of(words);
+  options.corners = corners_of(words, machine.post);
   options.tcp_loop = !words.loop.frame_on.empty();
   return options;
 }
@@ -189,12 +207,13 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
   readback::NcControl c;
   c.execute = control->execute;
   c.cutter_locations = control->cutter_locations;
-  c.corners = corners_of(control->words);
+  c.corners = corners_of(control->words, machine.post);
   c.rotary_rounding_deg =
       0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(control->words.format.rotary_decimals));
   if (machine.tcp != machines::TcpMode::none) c.chain = machine.chain;
   c.top_mm = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
   c.exact_path_mm = machine.exact_corner_mm();
+  c.corner_mm = machine.post.corner_tolerance_mm;
   c.tcp_on = machine.post.tcp_on;
   c.tcp_off = machine.post.tcp_off;
   c.smoothing_on = machine.post.smoothing_on;

@@ -87,6 +87,7 @@ class NcExecution {
   /// A line that the machine file states for the control's own smoothing, blanks around it left out: takes its effect.
   /// @returns it is one
   bool site_smoothing(std::string_view line);
+  [[nodiscard]] bool in_site_smoothing() const { return site_smoothing_; }
   Problem tcp_on();
   Problem tcp_off();
   [[nodiscard]] bool tcp() const { return tcp_; }

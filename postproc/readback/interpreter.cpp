@@ -36,7 +36,12 @@ class Interpreter {
   Problem block(const NcBlock& b) {
     if (b.operation >= 0) execution_.begin_operation(b.operation);
     if (b.tooth >= 0) execution_.begin_tooth(b.tooth);
-    if (b.words.empty() || execution_.site_smoothing(flow_.text())) return std::nullopt;
+    if (b.words.empty()) return std::nullopt;
+    if (execution_.site_smoothing(flow_.text())) {
+      corners_said_ =
+          corners_said_ && !language_.stops_at_corners;  // what holds behind the smoothing must be said again
+      return std::nullopt;
+    }
     return words(b);
   }
 
@@ -198,6 +203,7 @@ class Interpreter {
     if ((r.p || r.q) && !r.g64 && (r.m.empty() || r.m.front() != 98))
       return here(r.p_column, "P or Q without G64 or M98");
     if (r.l) return here(r.column, "L is not in the subset");
+    if (language_.stops_at_corners) return stop_or_flow(r);
     if (r.g64 && (!r.p || *r.p == 0))
       return here(r.column, fmt::format("G64 {} leaves the path without limit", r.p ? "P0" : "without P"));
     if (r.g64 && (*r.p < 0 || r.q.value_or(0) < 0)) return here(r.column, "P and Q of G64 must not be negative");
@@ -207,6 +213,21 @@ class Interpreter {
     if (r.g61) execution_.set_blend(control_.exact_path_mm);  // a stop leaves as much
     if (r.g64) execution_.set_path_mode(timing::Corners::blend, *r.p);
     if (r.g61) execution_.set_path_mode(r.stops ? timing::Corners::stop : timing::Corners::exact, 0);
+    return take_effect(r);
+  }
+
+  /// G61 and G64 of a control whose machine file says what G64 leaves of a corner.
+  Problem stop_or_flow(Request& r) {
+    if (r.g64 && (r.p || r.q)) return here(r.p_column, "P or Q without M98");
+    if (r.g61 || r.g64) {
+      corners_said_ = r.g61 || control_.corner_mm;
+      execution_.set_blend(r.g64 ? control_.corner_mm.value_or(0) : 0);
+      execution_.set_path_mode(r.g61 ? timing::Corners::stop : timing::Corners::jump, 0);
+    }
+    return take_effect(r);
+  }
+
+  Problem take_effect(Request& r) {
     if (r.feed_mode == 93) execution_.set_feed_mode(NcExecution::Feed::inverse_time);
     if (r.feed_mode == 94) execution_.set_feed_mode(NcExecution::Feed::per_minute);
     if (r.f)
@@ -274,6 +295,10 @@ class Interpreter {
       return here(
           r.column,
           "G1 ahead of G61, G61.1 or G64 P: how far the control leaves the path would depend on the last program");
+    if (language_.stops_at_corners && motion_ == 1 && !corners_said_ && !execution_.in_site_smoothing())
+      return here(r.column,
+                  "G1 without G61, and no post.corner_tolerance in the machine file ahead of G64: nothing says how far "
+                  "the control leaves the corners");
     r.move.rapid = motion_ == 0;
     r.move.machine_frame = r.g53;
     r.move.compensation = r.g43 && !r.tcp;
@@ -291,7 +316,8 @@ class Interpreter {
   NcFlow flow_;
   NcExecution execution_;
   int motion_ = -1;
-  bool corners_said_ = false;  // G61, G61.1 or G64 P
+  bool corners_said_ =
+      false;  // how far the control leaves corners: G61, G61.1, G64 P, or G64 with what the machine states
 };
 
 }  // namespace

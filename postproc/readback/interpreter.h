@@ -26,8 +26,11 @@ struct IsoLanguage {
   std::vector<int> g_tenths;               ///< further G codes, in tenths: 434 for G43.4
   std::vector<int> coolant_m = {7, 8, 9};  ///< M words that switch coolants
   ExtendedOffsets extended;
+  /// G61 stops at every corner, G64 leaves corners by what the machine file states (NcControl::corner_mm); one of them
+  /// must be said ahead of G1.
+  bool stops_at_corners = false;
   /// What the control leaves of a corner under G64 P Q, mm; `exact_mm`: what the machine leaves where it stops. Null:
-  /// there is no G64, and nothing need be said of corners ahead of G1.
+  /// there is no G64 P.
   double (*corner_of_g64)(double p_mm, double q_mm, double exact_mm) = nullptr;
   NcRules rules;
 };

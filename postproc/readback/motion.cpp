@@ -202,7 +202,7 @@ class TraceFollower {
   Status follow(std::size_t i) {
     const ExecutedMove& m = trace_.moves[i];
     const double* length = length_of(m.tool);
-    if (length == nullptr) return fail("line {}: tool {} is not in the tool list", m.line, m.tool);
+    if (length == nullptr) return fail_at({"", m.line, 0}, "tool {} is not in the tool list", m.tool);
     const Placed from = kinematics_.place(kinematics_.joints(trace_.moves[i - 1].joints), *length);
     const Placed to = kinematics_.place(kinematics_.joints(m.joints), *length);
     const double factor = m.rapid ? kRapidFactor : 1;
@@ -211,7 +211,7 @@ class TraceFollower {
     const double pieces = std::ceil(
         std::sqrt(std::max(tip_bound / (factor * tolerances_.tip_mm), axis_bound / (factor * tolerances_.axis_rad))));
     if (pieces > kMostPieces)
-      return fail("line {}: move turns too far to be followed within {} mm", m.line, tolerances_.tip_mm);
+      return fail_at({"", m.line, 0}, "this move turns too far to be followed within {} mm", tolerances_.tip_mm);
     const int n = std::max(1, static_cast<int>(pieces));
     if (out_.size() + static_cast<std::size_t>(n) > tolerances_.most)
       return fail(

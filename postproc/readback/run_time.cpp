@@ -5,7 +5,7 @@ namespace toothpath::readback {
 RunTimer::RunTimer(const machines::Machine& machine, timing::Corners corners, std::function<void(bool, double)> sink)
     : accelerates_(machine.has_acceleration()),
       plans_words_(timing::control_of(machine, corners).plans_words),
-      exact_(corners == timing::Corners::exact),
+      follows_(corners != timing::Corners::jump),
       sink_(std::move(sink)),
       timer_(timing::limits_of(machine), timing::control_of(machine, corners), [this](double minutes) {
         sink_(rapids_.front(), minutes);
@@ -23,7 +23,7 @@ void RunTimer::add(const ExecutedMove& move) {
     if (plans_words_ && move.tcp && before_.tcp)
       for (int a = 0; a < 3; ++a) block.step[static_cast<std::size_t>(a)] = move.tip[a] - before_.tip[a];
   }
-  if (exact_ && !move.rapid) timer_.set_corners(move.corners, static_cast<double>(move.tolerance_mm));
+  if (follows_ && !move.rapid) timer_.set_corners(move.corners, static_cast<double>(move.tolerance_mm));
   rapids_.push_back(move.rapid);
   timer_.add(block);
   before_ = move;

@@ -21,7 +21,7 @@ class RunTimer {
   void finish();
 
  private:
-  bool accelerates_ = false, plans_words_ = false, exact_ = false;
+  bool accelerates_ = false, plans_words_ = false, follows_ = false;
   std::deque<bool> rapids_;  ///< of the moves whose time is not known yet
   std::function<void(bool, double)> sink_;
   timing::PathTimer timer_;

@@ -44,7 +44,7 @@ CornerWords corner_words(const joints::AxisProgram& program, const NcDialect& di
   CornerWords out;
   out.blend_mm = header.blend_mm;
   if (!dialect.blend) {
-    out.granted_mm = std::max(dialect.exact_path_mm, dialect.smoothing_mm);
+    out.granted_mm = std::max({dialect.exact_path_mm, dialect.corner_mm, dialect.smoothing_mm});
     out.granted_rad = dialect.smoothing_axis_rad.value_or(0);
     return out;
   }

@@ -109,6 +109,11 @@ struct NcDialect {
       {0, 6}, {19, 19}, {30, 30}, {96, 99}};  ///< M words, first to last, that can be no coolant
   bool blend = false;        ///< `start` lets the control leave corners by {blend}: counts as deviation
   double exact_path_mm = 0;  ///< without `blend`: the tip is off a corner by up to this all the same
+  /// Codes of a control that stops at every corner or leaves corners by what nobody states: `corner_stop` stands in
+  /// `safe_start`; `corner_flow` in its place where the machine file states `corner_mm`, and around smoothing. Empty:
+  /// the dialect has other words for it.
+  std::string corner_stop, corner_flow;
+  double corner_mm = 0;  ///< the tip is off a corner by no more under `corner_flow`; 0: not stated
   /// {blend} is not a distance from the path but the way ahead of and behind a corner within which every axis may leave
   /// it (G641 ADIS).
   bool blend_is_way = false;

@@ -68,6 +68,12 @@ std::vector<std::string> header_comments(const joints::AxisProgram& program, con
     out.push_back(fmt::format("CORNERS WITHIN {} MM: TOOL ACCELERATION X SERVO PERIOD SQUARED IS AT MOST {} MM", within,
                               product));
   }
+  if (dialect.corner_mm > 0) {
+    std::string within;
+    numbers::append_fixed(within, numbers::to_fixed(dialect.corner_mm, 6), 6, false);
+    out.push_back(
+        fmt::format("{} LEAVES CORNERS BY AT MOST {} MM: STATED IN THE MACHINE FILE", dialect.corner_flow, within));
+  }
   if (program.tcp != machines::TcpMode::none && !dialect.tcp_note.empty())
     out.push_back(comment_text(dialect.tcp_note));
   for (std::size_t a = 3; a < 5; ++a)

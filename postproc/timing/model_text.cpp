@@ -14,6 +14,8 @@ std::string model_text(const machines::Machine& machine, Corners corners) {
   if (control.corners == Corners::exact)
     return fmt::format("{}, corners by the rules of LinuxCNC 2.9, servo period {:g} ms assumed", limits,
                        control.period_min * 60000);
+  if (control.corners == Corners::stop)
+    return fmt::format("{}, a stop at every corner (G61), its wait for the position of the axes not counted", limits);
   return fmt::format("{}, assumed: at corners every axis may jump by what it accelerates in {:g} ms (min_block_ms)",
                      limits, control.jump_min * 60000);
 }

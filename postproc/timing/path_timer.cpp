@@ -80,7 +80,7 @@ AxisLimits limits_of(const machines::Machine& machine) {
 PathControl control_of(const machines::Machine& machine, Corners corners) {
   PathControl out;
   out.corners = corners;
-  if (corners != Corners::jump) {
+  if (corners == Corners::exact || corners == Corners::blend) {
     out.period_min = kServoPeriodMs / 60000;
     out.plans_words = true;
   } else {

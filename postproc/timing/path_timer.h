@@ -24,7 +24,7 @@ namespace toothpath::timing {
 
 /// How one feed block joins the next.
 enum class Corners : std::uint8_t {
-  stop,   ///< the path stops at the corner (G61.1)
+  stop,   ///< the path stops at the corner (LinuxCNC's G61.1, Fanuc's G61)
   exact,  ///< LinuxCNC's G61: a stop, but where no axis changes its speed by more than a tenth of what it can in a
           ///< period; where a rotary turns always a stop
   blend,  ///< LinuxCNC's G64 P: an arc or two parabolas within the tolerance; nothing where a rotary turns is exact
@@ -48,7 +48,7 @@ struct PathControl {
   bool plans_words = false;  ///< with TCP the limits act on the words (tip and rotaries), not on the joints (LinuxCNC)
 };
 
-/// @param corners of the control that the machine file names: `exact` is LinuxCNC, all others `jump`
+/// @param corners of the control that the machine file names: `exact` is LinuxCNC, the others `stop` or `jump`
 [[nodiscard]] PathControl control_of(const machines::Machine& machine, Corners corners);
 
 struct Block {

@@ -95,10 +95,10 @@ inline constexpr BadFile kBadMachineFiles[] = {
      "m.toml:36:7: error: axes.B is named in neither chain.table nor chain.head\n"},
     {"11 unknown key", "min_block_ms", "min_block_sm",
      "m.toml:12:1: error: limits.min_block_ms is missing\n"
-     "m.toml:15:1: error: unknown key limits.min_block_sm\n"},
+     "m.toml:15:1: error: unknown key limits.min_block_sm; did you mean min_block_ms?\n"},
     {"11 unknown table", "[spindle]", "[spindel]",
      "m.toml:1:1: error: spindle is missing\n"
-     "m.toml:9:2: error: unknown key spindel\n"},
+     "m.toml:9:2: error: unknown key spindel; did you mean spindle?\n"},
     {"12 duplicate key", "min = -110.0", "min = -110.0\nmin = -110.0",
      "m.toml:41:7: error: Error while parsing key-value pair: cannot redefine existing floating-point 'min'\n"},
     {"schema of another version", "schema = 1", "schema = 2", "m.toml:1:10: error: schema = 2 must be 1\n"},

@@ -32,6 +32,7 @@ inline constexpr PostKeys kPostKeys[] = {
     {"smoothing of an M80", "mitsubishi_m80",
      "smoothing_on = [\"G61.4\"]\nsmoothing_off = [\"G64\"]\nsmoothing_tolerance = 1\n", ""},
     {"corner tolerance of LinuxCNC", "linuxcnc", "corner_tolerance = 0.1\n", ""},
+    {"corner tolerance of a Fanuc", "fanuc", "corner_tolerance = 0.002\n", ""},
 
     {"coolants of the builder", "fanuc",
      "coolant_mist = [\"M7\", \"M9\"]\ncoolant_through_spindle = [\"M88\", \"M89\"]\n", ""},
@@ -141,9 +142,11 @@ inline constexpr PostKeys kPostKeys[] = {
     {"corner_tolerance in um", "linuxcnc", "corner_tolerance = 0.5\n",
      "m.toml:18:20: error: post.corner_tolerance = 0.5 exceeds 0.1 mm\n"},
     {"corner_tolerance of a Siemens", "siemens", "corner_tolerance = 0.0005\n",
-     "m.toml:18:20: error: post.corner_tolerance belongs to dialect \"linuxcnc\", this is \"siemens\"\n"},
+     "m.toml:18:20: error: post.corner_tolerance belongs to dialect \"linuxcnc\", \"fanuc\", \"mitsubishi_m80\", "
+     "\"haas\", this is \"siemens\"\n"},
     {"corner_tolerance in cutter location data", "apt", "corner_tolerance = 0.0005\n",
-     "m.toml:18:20: error: post.corner_tolerance belongs to dialect \"linuxcnc\", this is \"apt\"\n"},
+     "m.toml:18:20: error: post.corner_tolerance belongs to dialect \"linuxcnc\", \"fanuc\", \"mitsubishi_m80\", "
+     "\"haas\", this is \"apt\"\n"},
 };
 
 }  // namespace toothpath::test

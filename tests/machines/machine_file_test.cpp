@@ -246,7 +246,7 @@ TEST(MachineFile, EveryComplaintIsCollected) {
   text = replaced(text, "max_speed = 24000", "max_sped = 24000");
   EXPECT_EQ(messages(text),
             "m.toml:9:1: error: spindle.max_speed is missing\n"
-            "m.toml:10:1: error: unknown key spindle.max_sped\n"
+            "m.toml:10:1: error: unknown key spindle.max_sped; did you mean max_speed?\n"
             "m.toml:39:8: error: axes.A.sign = 0 must be 1 or -1\n"
             "m.toml:40:7: error: axes.A.min = nan must be finite\n");
 }
@@ -281,8 +281,22 @@ TEST(MachineFile, FilesThatCannotBeRead) {
   EXPECT_EQ(error_of("/dev/zero"), "is not a regular file");
   fs::create_symlink(dir / "loop.toml", dir / "loop.toml");
   EXPECT_EQ(error_of(dir / "loop.toml").substr(0, 17), "cannot be opened:");
+}
+
+TEST(MachineFile, OneAboveItsLargestSizeIsRefused) {
+  const TestDir dir;
   std::ofstream(dir / "big.toml") << std::string(kMaxBytesForTest + 1, '#');
-  EXPECT_EQ(error_of(dir / "big.toml"), "has more than 1048576 bytes, the largest machine file allowed");
+  const auto reading = machines::read_machine_file(dir / "big.toml");
+  ASSERT_EQ(reading.errors.size(), 1u);
+  EXPECT_EQ(reading.errors[0].kind, DiagnosticKind::refused_input);
+  EXPECT_EQ(reading.errors[0].text(), (dir / "big.toml") + ": error: is longer than 1048576 bytes");
+}
+
+TEST(MachineFile, BytesOfTheFileCannotReachTheTerminal) {
+  EXPECT_EQ(messages(replaced(kMachine, "max_speed = 24000", "max_speed = 24000\n\"a\\u001b[2Jb\\nc\\u0000d\" = 1")),
+            "m.toml:11:1: error: unknown key spindle.a\\x1B[2Jb\\nc\\x00d\n");
+  EXPECT_EQ(messages(replaced(kMachine, "\"example\"", "\"a\\u009bb\"")),
+            "m.toml:2:8: error: name = \"a\\u{009B}b\" contains a character that is no printable text\n");
 }
 
 // Any bytes give a machine or complaints: damaged copies of the example, one to six random bytes each.

@@ -104,7 +104,8 @@ TEST(ShaperMachine, BadFilesAreRefusedWithTheirPlace) {
   EXPECT_EQ(message("max_length = 125.0", "max_length = nan"),
             "s.toml:12:14: error: stroke.max_length = nan must be finite\n");
   EXPECT_EQ(message("relief = 0.5", "releif = 0.5"),
-            "s.toml:10:1: error: stroke.relief is missing\ns.toml:13:1: error: unknown key stroke.releif\n");
+            "s.toml:10:1: error: stroke.relief is missing\ns.toml:13:1: error: unknown key stroke.releif; did you mean "
+            "relief?\n");
   EXPECT_EQ(message("min = -5.0\nmax = 200.0", "min = 200.0\nmax = -5.0"),
             "s.toml:28:7: error: axes.X.max = -5 must exceed axes.X.min = 200\n");
   EXPECT_EQ(message("min = -5.0\nmax = 200.0", "min = 200.0\nmax = 200.0"),

@@ -82,14 +82,16 @@ Language fanuc() {
   Language l;
   l.words = iso_and({{"G69", "rotation", "off"},
                      {"G68", "rotation", "on"},
+                     {"G61", "smoothing", "off"},
+                     {"G64", "smoothing", "on"},
                      {"G43.4", "length", "on"},
                      {"M30", "-", "end"},
                      {"M99", "-", "return"}});
   l.lines = {{R"(%|O\d+ ?)", "-", ""}, {R"(.*\bG43\.4\b.*)", "tcp", "on"}, {R"(.*\bG49\b.*)", "tcp", "off"}};
   l.axis = kPlainWord;
   // G49 stands in the block of the first retract: it is that motion which is safe.
-  l.safe = {{"units", "mm"},   {"plane", "xy"},  {"distance", "absolute"}, {"feed", "per minute"},
-            {"radius", "off"}, {"cycle", "off"}, {"rotation", "off"},      {"offset", "G54"}};
+  l.safe = {{"units", "mm"},  {"plane", "xy"},     {"distance", "absolute"}, {"feed", "per minute"}, {"radius", "off"},
+            {"cycle", "off"}, {"rotation", "off"}, {"offset", "G54"},        {"smoothing", "off"}};
   l.end = l.safe;
   l.end["length"] = l.end["tcp"] = l.end["spindle"] = "off";
   return l;

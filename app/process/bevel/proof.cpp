@@ -81,6 +81,7 @@ std::vector<proof::DirectionChoice> directions_of(const bevel_gear::BevelGear& g
       d.axis = g.axis(0);
       d.lean_rad = kPi / 2 - g.delta();
       d.clearance_mm = proof.gouge.clearance_mm;
+      d.clearance_at_least = proof.gouge.clearance_at_least();
       d.explanation = fmt::format(
           "normal to the pitch cone, {:.4f} deg to the gear axis, to within {:.4f} deg: {} simultaneous axes ({}) plus "
           "fixed tilt",

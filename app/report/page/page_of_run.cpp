@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "app/base/units.h"
 #include "app/report/page/tool_body.h"
 #include "app/report/svg/html_text.h"
 #include "geometry/base/angle.h"
@@ -31,7 +32,7 @@ std::vector<KeyFigure> key_figures(const report::RunReport& r) {
     figures.push_back(
         {"worst left material", um(r.finished->max_mm), "\u00b5m", "bound " + um(r.finished->bound_mm), State::plain});
   if (r.gouge)
-    figures.push_back({"least clearance", fmt::format("{:.3f}", r.gouge->clearance_mm), "mm",
+    figures.push_back({"least clearance", app::least_text(r.gouge->clearance_mm, r.gouge->clearance_at_least()), "mm",
                        fmt::format("required {:.3f}", r.gouge->required_clearance_mm),
                        r.gouge->clearance_mm >= r.gouge->required_clearance_mm ? State::good : State::bad});
   if (!r.operations.empty()) {

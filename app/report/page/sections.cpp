@@ -179,9 +179,9 @@ std::string gouge_section(const ReportPage& page) {
           : fmt::format("The cutter stays at least {} \u00b5m away from the finished surface{}; proven bound {} "
                         "\u00b5m, tolerance {} \u00b5m.",
                         um_text(-g.measured_mm), where, um_text(g.bound_mm), um_text(page.gouge_tolerance_mm)));
-  out +=
-      svg::html_escape(fmt::format(" Shank and holder keep {:.3f} mm, {:.3f} mm asked for. Rapids {} the blank.",
-                                   g.clearance_mm, g.required_clearance_mm, g.rapids_clear ? "stay outside" : "enter"));
+  out += svg::html_escape(fmt::format(" Shank and holder keep {} mm, {:.3f} mm asked for. Rapids {} the blank.",
+                                      app::least_text(g.clearance_mm, g.clearance_at_least()), g.required_clearance_mm,
+                                      g.rapids_clear ? "stay outside" : "enter"));
   out += fmt::format(" {} motions checked.</p>\n", g.motions);
   if (g.worst.empty()) {
     out += "<p class=\"none\">No place is beyond the tolerance or the clearance.</p>\n";
@@ -258,7 +258,8 @@ std::string direction_section(const ReportPage& page) {
   PageTable t{"", {"Operation", "Zone", "Tilt", "Lean [\u00b0]", "Least gap [mm]", "Why"}, {}, {}};
   for (const proof::DirectionChoice& c : page.directions) {
     t.rows.push_back({operation_name(page, c.operation), std::to_string(c.zone), c.fixed ? "fixed" : "simultaneous",
-                      fmt::format("{:.2f}", c.lean_rad / kDegree), decimal(c.clearance_mm, 3), c.explanation});
+                      fmt::format("{:.2f}", c.lean_rad / kDegree),
+                      (c.clearance_at_least ? "at least " : "") + decimal(c.clearance_mm, 3), c.explanation});
     if (!c.candidates.empty())
       plots += figure(fmt::format("Operation {}, zone {}", operation_name(page, c.operation), c.zone),
                       svg::svg_direction_map(c));

@@ -5,28 +5,12 @@
 #include <cmath>
 #include <cstddef>
 
+#include "geometry/base/printable.h"
+
 namespace toothpath::svg {
 namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
-
-/// Length of the valid UTF-8 sequence at `i`, 0 where there is none (overlong forms and surrogates are invalid).
-std::size_t sequence_length(std::string_view s, std::size_t i) {
-  const auto at = [&](std::size_t k) { return k < s.size() ? static_cast<unsigned char>(s[k]) : 0U; };
-  const auto tail = [&](std::size_t k) { return (at(k) & 0xC0U) == 0x80U; };
-  const unsigned a = at(i), b = at(i + 1);
-  if (a < 0x80U) return 1;
-  if (a >= 0xC2U && a <= 0xDFU) return tail(i + 1) ? 2 : 0;
-  if (a >= 0xE0U && a <= 0xEFU) {
-    if ((a == 0xE0U && b < 0xA0U) || (a == 0xEDU && b > 0x9FU)) return 0;
-    return tail(i + 1) && tail(i + 2) ? 3 : 0;
-  }
-  if (a >= 0xF0U && a <= 0xF4U) {
-    if ((a == 0xF0U && b < 0x90U) || (a == 0xF4U && b > 0x8FU)) return 0;
-    return tail(i + 1) && tail(i + 2) && tail(i + 3) ? 4 : 0;
-  }
-  return 0;
-}
 
 }  // namespace
 
@@ -34,7 +18,7 @@ std::string valid_utf8(std::string_view text) {
   std::string out;
   out.reserve(text.size());
   for (std::size_t i = 0; i < text.size();) {
-    const std::size_t length = sequence_length(text, i);
+    const std::size_t length = utf8_length(text, i);
     out += length == 0 ? kReplacement : text.substr(i, length);
     i += length == 0 ? 1 : length;
   }

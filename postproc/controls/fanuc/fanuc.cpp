@@ -1,6 +1,6 @@
 // Fanuc and compatible controls, IS-B (3 decimals): every value has a point, G43 stands with Z, G49 only in the block
 // of a machine-coordinate retract, the largest F in G93 is 9999.999. TCP is G43.4: its block moves Z alone, at rotary
-// zero, where the table frame is frozen.
+// zero, where the table frame is frozen. G61 stops at every corner: G64 states no bound of what it leaves.
 #include "postproc/controls/fanuc/fanuc.h"
 
 #include "postproc/controls/work_offset.h"
@@ -32,7 +32,9 @@ text::NcDialect fanuc_words() {
   d.max_inverse_time = 9999.999;
   d.max_line = 80;
   d.frame_begin = {"%", "O{number} ({name})"};
-  d.safe_start = {"G21 G17 G90 G94 G40 G80 G69"};
+  d.safe_start = {"G21 G17 G90 G94 G40 G80 G69", "G61"};
+  d.corner_stop = "G61";
+  d.corner_flow = "G64";
   d.start = {"{safe_start}", "{offset}"};
   d.retract = {"G0 G49 G53 Z{top}"};
   d.tool_change = {"T{tool} M6", "{safe_start}", "{offset}", "S{speed} M3"};
@@ -53,7 +55,8 @@ text::NcDialect fanuc_words() {
 
 readback::IsoLanguage fanuc_language() {
   readback::IsoLanguage l;
-  l.g_tenths = {434, 690};
+  l.g_tenths = {434, 610, 640, 690};
+  l.stops_at_corners = true;
   l.extended = {.tenths = 541, .last = kLastExtended};
   l.rules.tcp_needs_zero = true;
   return l;

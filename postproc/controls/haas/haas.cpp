@@ -27,7 +27,8 @@ text::NcDialect words() {
 const readback::IsoLanguage& language() {
   static const readback::IsoLanguage l = [] {
     readback::IsoLanguage haas;
-    haas.g_tenths = {690};
+    haas.g_tenths = {610, 640, 690};
+    haas.stops_at_corners = true;
     haas.coolant_m = {8, 9, 88, 89};
     haas.extended = {.tenths = 1540, .last = kLastExtended};
     return haas;

@@ -252,6 +252,29 @@ TEST(MeshFile, BrokenSolidsAreRefusedEachWithItsMessage) {
   }
 }
 
+/// A drum whose lids are fans: every facet of a lid lies beside every other one.
+mesh::TriangleMesh drum(int sides) {
+  mesh::TriangleMesh m;
+  m.vertices = {Vec3(0, 0, 0), Vec3(0, 0, 40)};
+  for (int k = 0; k < sides; ++k)
+    for (const double z : {0.0, 40.0})
+      m.vertices.emplace_back(50 * std::cos(2 * kPi * k / sides), 50 * std::sin(2 * kPi * k / sides), z);
+  for (int k = 0; k < sides; ++k) {
+    const int a = 2 + 2 * k, b = 2 + 2 * ((k + 1) % sides);
+    m.triangles.insert(m.triangles.end(), {{0, b, a}, {1, a + 1, b + 1}, {a, b, b + 1}, {a, b + 1, a + 1}});
+  }
+  return m;
+}
+
+// Pairs of long thin facets grow with the square of their number: a hundred million of them would be compared for
+// minutes.
+TEST(MeshFile, SliversAreRefusedByTheirNumber) {
+  EXPECT_EQ(refusal(raw_stl(drum(2000)), "drum.stl"), "accepted");
+  EXPECT_EQ(refusal(raw_stl(drum(20000)), "drum.stl"),
+            "drum.stl: error: the boxes around its 80000 facets meet in more than 50000000 pairs: too many long thin "
+            "facets to compare them all; a mesh with more even facets is needed");
+}
+
 TEST(MeshFile, UnitIsGuessedFromTheExpectedSize) {
   mesh::MeshImportLimits limits;
   limits.expected_size_mm = 40;

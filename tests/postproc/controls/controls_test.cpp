@@ -98,7 +98,8 @@ TEST(ControlKeys, ComplaintsStandInTheOrderOfTheFile) {
                "[post]\ncorner_tolerance = 0.001\ncoolant_air = [\"M128\", \"M129\"]\nlinear_decimals = 9\n\n[chain]");
   EXPECT_EQ(messages(text),
             "m.toml:10:13: error: spindle.max_speed = 0 must be above 0 1/min\n"
-            "m.toml:18:20: error: post.corner_tolerance belongs to dialect \"linuxcnc\", this is \"heidenhain\"\n"
+            "m.toml:18:20: error: post.corner_tolerance belongs to dialect \"linuxcnc\", \"fanuc\", "
+            "\"mitsubishi_m80\", \"haas\", this is \"heidenhain\"\n"
             "m.toml:19:15: error: post.coolant_air: M128 means something else to dialect \"heidenhain\"\n"
             "m.toml:19:15: error: post.coolant_air: M129 means something else to dialect \"heidenhain\"\n"
             "m.toml:20:19: error: post.linear_decimals = 9: 1 to 7 decimals are possible in a word\n");

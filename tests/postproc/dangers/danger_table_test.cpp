@@ -3,32 +3,19 @@
 
 #include <filesystem>
 #include <regex>
-#include <set>
 #include <sstream>
 
 #include "tests/support/files.h"
+#include "tests/support/test_names.h"
 
 namespace toothpath {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// "Suite.Name" of every GoogleTest case in the sources under tests.
-std::set<std::string> tests_in_sources() {
-  std::set<std::string> names;
-  const std::regex test(R"((?:^|\n)TEST(?:_F|_P)?\((\w+),\s*(\w+)\))");
-  for (const auto& entry : fs::recursive_directory_iterator(fs::path(TOOTHPATH_SOURCE_DIR) / "tests")) {
-    if (entry.path().extension() != ".cpp") continue;
-    const std::string text = test::file_text(entry.path());
-    for (std::sregex_iterator it(text.begin(), text.end(), test), end; it != end; ++it)
-      names.insert((*it)[1].str() + "." + (*it)[2].str());
-  }
-  return names;
-}
-
 TEST(DangersTable, EveryRowNamesTestsThatExist) {
   constexpr int kDangers = 29;
-  const auto known = tests_in_sources();
+  const auto known = test::tests_in_sources();
   ASSERT_GT(known.size(), 500u);
   std::istringstream in(test::file_text(fs::path(TOOTHPATH_SOURCE_DIR) / "docs/dangers.md"));
   const std::regex named(R"(`([A-Za-z0-9]+\.[A-Za-z0-9]+)`)");

@@ -193,10 +193,16 @@ TEST(TimeEstimate, SaysWhatItHolds) {
             "without accelerations, the machine file states none (max_acceleration): the machine takes longer");
   machines::Machine m = with_acceleration(700, 900);
   m.min_block_ms = 4;
-  EXPECT_EQ(
-      model(m),
+  const std::string jumps =
       "with speeds, accelerations of the axes, no jerk stated, assumed: at corners every axis may jump by what it "
-      "accelerates in 4 ms (min_block_ms)");
+      "accelerates in 4 ms (min_block_ms)";
+  EXPECT_EQ(model(with_dialect(m, "siemens")), jumps);
+  EXPECT_EQ(model(with_dialect(m, "fanuc")),
+            "with speeds, accelerations of the axes, no jerk stated, a stop at every corner (G61), its wait for the "
+            "position of the axes not counted");
+  m.post.corner_tolerance_mm = 0.002;
+  EXPECT_EQ(model(with_dialect(m, "fanuc")), jumps) << "G64";
+  m.post.corner_tolerance_mm.reset();
   EXPECT_EQ(
       model(with_dialect(m, "linuxcnc")),
       "with speeds, accelerations of the axes, no jerk stated, corners by the rules of LinuxCNC 2.9, servo period "

@@ -381,6 +381,19 @@ TEST(NcReader, SurvivesMutations) {
   EXPECT_GT(refused, 1000);
 }
 
+TEST(NcReader, MotionsThatCannotBeFollowedNameTheirLine) {
+  const machines::Machine m = trunnion();
+  const auto control = controls::control_of(m, standing(), tools());
+  const std::string text = nc_text({sample_path(0.3, 0.2, 4)}, m, standing(), 3)->text;
+  const auto back = readback::read_back(text, "p", *control, m, standing(), {.teeth = 3});
+  ASSERT_TRUE(back);
+  const auto motions =
+      readback::tool_motions(back->operations[0], back->copies, *control, m, standing(), 3, {1e-14, 1e-14});
+  ASSERT_FALSE(motions);
+  EXPECT_GT(motions.error().position.line, 1);
+  EXPECT_EQ(motions.error().message, "this move turns too far to be followed within 1e-14 mm");
+}
+
 // A long index loop is executed without keeping it: only one tooth stays in memory.
 TEST(NcReader, KeepsOneToothOfALongLoop) {
   const std::vector<path::ClPath> paths = {sample_path(0.3, 0.0, 1500)};

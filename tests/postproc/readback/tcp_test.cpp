@@ -224,7 +224,7 @@ TEST(TcpReader, Refusals) {
     const auto control = controls::control_of(m, standing(), tools());
     const std::string start =
         dialect == "fanuc"
-            ? "%\nO1 (X)\nG21 G17 G90 G94 G40 G80 G69\nG54\n(OP 0 finishing)\nG0 G49 G53 Z500.\nT1 M6\nS100 M3\n"
+            ? "%\nO1 (X)\nG21 G17 G90 G94 G40 G80 G69\nG61\nG54\n(OP 0 finishing)\nG0 G49 G53 Z500.\nT1 M6\nS100 M3\n"
             : "G21 G17 G90 G94 G40 G49 G80 G61\nG54\n(OP 0 finishing)\nG53 G0 Z500\nT1 M6\nS100 M3\nG43 H1\n";
     const auto r = readback::execute_nc(start + body + (dialect == "fanuc" ? "M30\n%\n" : "M2\n"), "p", *control,
                                         [](const readback::ExecutedMove&) {});

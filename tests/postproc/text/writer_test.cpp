@@ -236,6 +236,44 @@ TEST(NcWriter, LinuxcncKeepsThePathAndCountsWhatItLeaves) {
   EXPECT_NEAR(m.exact_corner_mm(), 0.00125 + radians(1000) * m.largest_part_mm() / 2 * 1e-6 / 4, 1e-12);
 }
 
+// Controls that state no bound under G64: G61, or what the machine file states; a text that says neither is refused.
+TEST(NcWriter, CornersAreStopsOrStatedOnFanucAndTheLike) {
+  for (const char* name : {"fanuc", "mitsubishi_m80", "haas"}) {
+    machines::Machine m = trunnion();
+    m.dialect = name;
+    const auto read = [&](const std::string& text, double& most) {
+      most = 0;
+      return readback::execute_nc(text, "p.nc", *controls::control_of(m, standing(), tools()),
+                                  [&](const readback::ExecutedMove& e) {
+                                    if (!e.rapid) most = std::max(most, double(e.blend_mm));
+                                  });
+    };
+    const auto p = axis_program({sample_path(0.3, 0)}, m, standing(), 3, true);
+    ASSERT_TRUE(p) << p.error().message;
+    const auto written = [&] { return text::write_nc(*p, *controls::dialect_of(m), {})->text; };
+    const std::string stops = written();
+    double most = 0;
+    EXPECT_TRUE(read(stops, most)) << name;
+    EXPECT_EQ(most, 0) << name;
+    EXPECT_EQ(stops.find("G64"), std::string::npos) << name;
+    const std::string silent = std::regex_replace(stops, std::regex("\nG61\n"), "\n"),
+                      flowing = std::regex_replace(stops, std::regex("\nG61\n"), "\nG64\n");
+    for (const std::string& text : {silent, flowing}) {
+      const auto refused = read(text, most);
+      ASSERT_FALSE(refused) << name;
+      EXPECT_NE(refused.error().message.find("G1 without G61"), std::string::npos) << refused.error().message;
+    }
+    m.post.corner_tolerance_mm = 0.002;
+    const std::string stated = written();
+    EXPECT_EQ(text::granted_blend_mm(*p, *controls::dialect_of(m), {}), 0.002);
+    EXPECT_NE(stated.find("(G64 LEAVES CORNERS BY AT MOST 0.002 MM: STATED IN THE MACHINE FILE)\n"), std::string::npos);
+    EXPECT_EQ(stated.find("\nG61\n"), std::string::npos) << name;
+    EXPECT_TRUE(read(stated, most)) << name;
+    EXPECT_EQ(most, double(float(0.002))) << name;
+    EXPECT_FALSE(read(std::regex_replace(stated, std::regex("\nG64\n"), "\nG64 P0.002\n"), most)) << name;
+  }
+}
+
 // A text with G64 P: more than P is counted, as docs/dialects.md derives it, and lines that are joined without Q.
 TEST(NcReader, G64OfLinuxcncCountsMoreThanItsTolerance) {
   const machines::Machine m = trunnion();

@@ -1,0 +1,206 @@
+#include "tests/fuzz/readers.h"
+
+#include <filesystem>
+#include <map>
+#include <sstream>
+
+#include "app/job/file.h"
+#include "app/job/measured_file.h"
+#include "geometry/mesh/file.h"
+#include "postproc/controls/of_machine.h"
+#include "postproc/shaper/control.h"
+#include "postproc/shaper/gearbox_proof.h"
+#include "tests/postproc/shaper/case.h"
+#include "tests/postproc/text/post_forms.h"
+#include "tests/support/files.h"
+#include "tests/support/inspection_points.h"
+#include "tests/support/sample_gears.h"
+
+namespace toothpath::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostSteps = 20000;  // executed blocks: a loop that a fuzzer makes endless is cut here
+constexpr const char* kToml = "0123456789.-=[]\"\n_#";
+
+const fs::path kSource = TOOTHPATH_SOURCE_DIR;
+
+std::vector<std::string> files_of(const fs::path& folder, const std::string& start = "") {
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == ".toml" && entry.path().filename().string().starts_with(start))
+      paths.push_back(entry.path());
+  std::sort(paths.begin(), paths.end());
+  std::vector<std::string> texts;
+  for (const auto& path : paths) texts.push_back(file_text(path));
+  return texts;
+}
+
+/// A refusal has words, in one line that may go to a terminal.
+std::string fault_of(const Diagnostic& error) {
+  if (error.message.empty()) return "a refusal without words";
+  for (const char c : error.text())
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) return "a control character in: " + error.text();
+  return "";
+}
+
+std::string fault_of(const std::vector<Diagnostic>& errors, bool has_value) {
+  if (has_value != errors.empty()) return has_value ? "a value and refusals" : "neither a value nor a refusal";
+  for (const Diagnostic& error : errors) {
+    if (error.position.file.empty()) return "no file in: " + error.text();
+    if (std::string fault = fault_of(error); !fault.empty()) return fault;
+  }
+  return "";
+}
+
+template <typename T>
+std::string fault_of(const Result<T>& result) {
+  if (result) return "";
+  return fault_of({result.error()}, false);
+}
+
+ByteReader job_reader() {
+  std::vector<std::string> seeds = files_of(kSource / "samples");
+  for (auto& text : files_of(kSource / "tests/jobs")) seeds.push_back(std::move(text));
+  for (auto& text : files_of(kSource / "tests/bad_jobs")) seeds.push_back(std::move(text));
+  return {"job", kToml, std::move(seeds), [](std::string_view bytes) {
+            const auto read = job::parse_job(bytes, "job.toml");
+            return fault_of(read ? std::vector<Diagnostic>{} : read.error(), read.has_value());
+          }};
+}
+
+ByteReader machine_reader() {
+  return {"machine", kToml, files_of(kSource / "machines/data"), [](std::string_view bytes) {
+            const auto read = controls::read_machine_of_text(bytes, "machine.toml");
+            return fault_of(read.errors, read.machine.has_value());
+          }};
+}
+
+ByteReader shaper_machine_reader() {
+  auto seeds = files_of(kSource / "machines/data", "shaper_");
+  for (auto& text : files_of(kSource / "machines/data", "y514")) seeds.push_back(std::move(text));
+  return {"shaper_machine", kToml, std::move(seeds), [](std::string_view bytes) {
+            const auto read = shaper::read_shaper_machine_of_text(bytes, "machine.toml");
+            return fault_of(read.errors, read.machine.has_value());
+          }};
+}
+
+/// The measured meridian of a tool, beside a job that names it.
+ByteReader meridian_reader() {
+  static const TestDir dir;
+  static const std::string job = replaced(file_text(kSource / "tests/jobs/dhfg_line.toml"),
+                                          "half_angle = ", "meridian = \"m.csv\"\nhalf_angle = ");
+  std::vector<std::string> seeds;
+  for (const auto& entry : fs::directory_iterator(kSource / "tests/bad_jobs/meridians"))
+    seeds.push_back(file_text(entry.path()));
+  std::sort(seeds.begin(), seeds.end());
+  seeds.emplace_back("t,f\n0,0.5\n1,0.25\n2.5,-0.5\n6,0\n");
+  return {"meridian", "0123456789.,-+eE\n", std::move(seeds),
+          [](std::string_view bytes) {
+            write_file(dir / "m.csv", std::string(bytes));
+            const auto read = job::parse_job(job, dir / "job.toml");
+            return fault_of(read ? std::vector<Diagnostic>{} : read.error(), read.has_value());
+          },
+          20};  // each writes a file
+}
+
+ByteReader measured_reader() {
+  static const face_gear::FaceGear gear = made(spur_parameters());
+  const auto grid = inspection::inspection_grid(gear, {5, 9});
+  std::istringstream in(inspection::inspection_csv(*grid));
+  std::string line, csv = "zone,flank,row,column,x,y,z,i,j,k,deviation_um\n";
+  std::getline(in, line);
+  while (std::getline(in, line)) csv += line + ",1.5\n";
+  return {"measured", "0123456789.,-+eE\n", {csv}, [](std::string_view bytes) {
+            return fault_of(job::parse_measured(bytes, "measured.csv", gear));
+          }};
+}
+
+std::string box_stl() {
+  mesh::TriangleMesh box;
+  for (int k = 0; k < 8; ++k) box.vertices.emplace_back(k & 1 ? 20 : 0, k & 2 ? 30 : 0, k & 4 ? 40 : 0);
+  box.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  std::ostringstream out;
+  (void)mesh::write_stl(out, box, "box").has_value();
+  return out.str();
+}
+
+ByteReader mesh_reader(const std::string& name, const std::string& file, const std::string& letters,
+                       std::vector<std::string> seeds, int cost) {
+  return {name, letters, std::move(seeds),
+          [file](std::string_view bytes) { return fault_of(mesh::parse_mesh(bytes, file)); }, cost};
+}
+
+std::vector<ByteReader> mesh_readers() {
+  const std::string facet =
+      "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 20 0 0\nvertex 0 30 1e1\nendloop\nendfacet\n";
+  const std::string obj = "v 0 0 0\nv 20 0 0\nv 0 30 0\nv 0 0 40\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+  return {mesh_reader("mesh_stl", "a.stl", "0123456789.-+e \n",
+                      {box_stl(), "solid a\n" + facet + facet + "endsolid a\n"}, 1),
+          mesh_reader("mesh_obj", "a.obj", "0123456789.-+e/ \nvf", {obj, "mtllib a.mtl\no b\n" + obj}, 5)};
+}
+
+/// The forms of one dialect; the first byte chooses among them, so that one fuzzer meets all.
+ByteReader nc_reader(const std::string& dialect, const std::vector<PostForm>& forms) {
+  std::vector<std::string> seeds;
+  for (std::size_t k = 0; k < forms.size(); ++k) {
+    const auto program = program_of(forms[k], {sample_path(0.3, forms[k].swing, 4)}, 5, 2);
+    const auto text = program ? text_of(forms[k], *program) : Result<text::NcText>(program.error());
+    if (text) seeds.push_back(std::string(1, char('0' + k)) + text->text);
+  }
+  EXPECT_FALSE(seeds.empty()) << dialect;
+  return {"nc_" + dialect, "GMXYZACFRQLBL=/+#[]()0123456789.-\n", std::move(seeds), [forms](std::string_view bytes) {
+            if (bytes.empty()) return std::string();
+            const auto chosen = static_cast<unsigned char>(bytes.front() - '0');
+            const machines::Machine m = machine_of(forms[chosen % forms.size()]);
+            auto control = controls::control_of(m, standing(), tools());
+            control->max_steps = kMostSteps;
+            return fault_of(readback::read_back(bytes.substr(1), "program.nc", *control, m, standing(), {.teeth = 5}));
+          }};
+}
+
+std::vector<ByteReader> nc_readers() {
+  std::map<std::string, std::vector<PostForm>> by_dialect;
+  for (const PostForm& form : post_forms())
+    if (by_dialect[form.dialect].size() < 70) by_dialect[form.dialect].push_back(form);
+  std::vector<ByteReader> readers;
+  for (const auto& [dialect, forms] : by_dialect) readers.push_back(nc_reader(dialect, forms));
+  return readers;
+}
+
+std::vector<ByteReader> gearbox_readers() {
+  std::vector<ByteReader> readers;
+  for (const char* dialect : {"fanuc", "siemens"}) {
+    auto machine = shaper::read_shaper_machine((kSource / "machines/data/shaper_").string() + dialect + ".toml");
+    EXPECT_TRUE(machine.machine) << to_text(machine.errors);
+    const auto setup = shaper_setup(shaper_work(), *machine.machine);
+    readers.push_back({std::string("gearbox_") + dialect,
+                       "GMXYZACFRQ=/+(),0123456789.-\n",
+                       {shaper::shaper_program(setup)},
+                       [setup](std::string_view bytes) {
+                         for (const std::string& fault : shaper::gearbox_program_faults(bytes, setup))
+                           if (fault.empty()) return std::string("a fault without words");
+                         return std::string();
+                       }});
+  }
+  return readers;
+}
+
+std::vector<ByteReader> all_readers() {
+  std::vector<ByteReader> readers = {job_reader(), machine_reader(), shaper_machine_reader(), meridian_reader(),
+                                     measured_reader()};
+  for (const auto& group : {mesh_readers(), nc_readers(), gearbox_readers()})
+    readers.insert(readers.end(), group.begin(), group.end());
+  return readers;
+}
+
+}  // namespace
+
+const std::vector<ByteReader>& fuzzed_readers() {
+  static const std::vector<ByteReader> readers = all_readers();
+  return readers;
+}
+
+}  // namespace toothpath::test
