@@ -10,6 +10,7 @@
 
 #include "geometry/base/hash.h"
 #include "tests/app/program.h"
+#include "tests/support/random.h"
 
 namespace toothpath::test {
 namespace {
@@ -331,6 +332,36 @@ TEST(OutputDirectory, ASignalLeavesEarlierResultsInPrevious) {
         << run.err;
     EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
   }
+}
+
+// Whenever it comes: what stands in the directory is a whole run, this one or the one before, and never a mixture.
+TEST(OutputDirectory, ASignalAtAnyMomentLeavesAWholeRun) {
+  Random random(15);
+  const TestDir earlier;
+  ASSERT_EQ(run_program({"run", kSamples + "/bevel_trunnion.toml", "--out", earlier / "out", "--quiet"}).exit_code, 0);
+  int interrupted = 0, done = 0;
+  for (int trial = 0; trial < 14; ++trial) {
+    const TestDir dir;
+    std::filesystem::copy(earlier / "out", dir / "out", std::filesystem::copy_options::recursive);
+    Launch launch;
+    launch.arguments = {"run", kQuick, "--out", dir / "out", "--quiet"};
+    launch.signal_number = trial % 2 == 0 ? SIGINT : SIGTERM;
+    launch.signal_after_ms = int(random(0, 1600));
+    const Finished run = run_program(launch);
+    ASSERT_TRUE(run.exit_code == 0 || run.exit_code == 130 || run.exit_code == -1) << run.exit_code << run.err;
+    ++(run.exit_code == 0 ? done : interrupted);
+    int whole = 0;
+    for (const std::string folder : {"out", "out/previous"}) {
+      const bool program = std::filesystem::exists(dir / (folder + "/program.ngc"));
+      if (!program) continue;
+      ++whole;
+      const auto report = nlohmann::json::parse(file_text(dir / (folder + "/report.json")));
+      EXPECT_EQ(report["program"]["sha256"], sha256_hex(file_text(dir / (folder + "/program.ngc")))) << trial;
+    }
+    EXPECT_EQ(whole, run.exit_code == 0 ? 2 : 1) << trial << ": " << launch.signal_after_ms << " ms";
+  }
+  std::printf("%d interrupted, %d done\n", interrupted, done);
+  EXPECT_GT(interrupted, 4);
 }
 
 TEST(OutputDirectory, ASecondRunAtTheSameTimeIsFour) {

@@ -118,7 +118,7 @@ TEST(ContactCommand, AFailedRunLeavesEverythingAsItWas) {
     const Finished run = run_program(arguments);
     EXPECT_EQ(run.exit_code, code) << words.back();
     expect_as_it_was(words.back());
-    expect_said(run);
+    if (code != 2) expect_said(run);  // a wrong command line is no run
   }
   // The disk is full from the beginning, and at a later file.
   for (const rlim_t bytes : {rlim_t{0}, rlim_t{4000}}) {

@@ -1,0 +1,92 @@
+// Memory that is not there: one message and one exit code, wherever it happens; nothing half-written. Programs that
+// would take more than is good are refused by number.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/app/program.h"
+
+namespace toothpath::test {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kOwnMemory = true;  // sanitizers map terabytes
+#else
+constexpr bool kOwnMemory = false;
+#endif
+
+constexpr rlim_t kMiB = rlim_t(1) << 20;
+
+TEST(Memory, WhereItEndsTheProgramSaysSo) {
+  if (kOwnMemory) GTEST_SKIP() << "the address space of a sanitizer cannot be limited";
+  const TestDir dir;
+  const std::string quick = kSamples + "/spur_quick.toml", out = dir / "out";
+  ASSERT_EQ(run_program({"run", quick, "--out", dir / "made", "--quiet"}).exit_code, 0);
+  int ended = 0, done = 0;
+  for (const std::vector<std::string>& words : {std::vector<std::string>{"run", quick},
+                                                {"surface", quick},
+                                                {"run", kSamples + "/bevel_trunnion.toml"},
+                                                {"check", quick, dir / "made/program.ngc", "--json"}})
+    for (rlim_t mib = 85; mib <= 400; mib += mib / 8) {
+      Launch launch;
+      launch.arguments = words;
+      launch.arguments.insert(launch.arguments.end(), {"--out", out, "--threads", "2"});
+      launch.address_space = mib * kMiB;
+      const Finished run = run_program(launch);
+      if (run.exit_code == 127) continue;  // not even the libraries fit
+      if (run.exit_code == 0) {
+        ++done;
+        std::filesystem::remove_all(out);
+        continue;
+      }
+      ++ended;
+      EXPECT_EQ(run.exit_code, 70) << words[0] << " " << mib << " MiB: " << run.err;
+      EXPECT_NE(run.err.find("error: out of memory: nothing was written"), std::string::npos) << run.err;
+      EXPECT_EQ(names_in(out), std::vector<std::string>{}) << words[0] << " " << mib << " MiB";
+      if (words.back() == "--json") { EXPECT_EQ(nlohmann::json::parse(run.out)["exit_code"], 70) << run.out; }
+    }
+  EXPECT_GT(ended, 4);
+  EXPECT_GT(done, 4);
+}
+
+/// A program of some lines that would fill the memory by its loops.
+Finished check_of(const TestDir& dir, const std::string& body) {
+  write_file(dir / "p.ngc", "G21 G17 G90 G94 G40 G49 G80\nG92.1\nG54\nG61\nG53 G0 Z0\n" + body + "M5\nM2\n");
+  Launch launch;
+  launch.arguments = {"check", kSamples + "/spur_quick.toml", dir / "p.ngc", "--out", dir / "out"};
+  if (!kOwnMemory) launch.address_space = 2500 * kMiB;
+  return run_program(launch);
+}
+
+const std::string kStart = "T1 M6\nS1000 M3\nG53 G0 Z0\nG0 C0 A0\nG0 X80 Y0\nG43 H1 Z120\nG94 F600\n";
+
+TEST(Memory, ProgramsThatWouldFillItAreRefusedByNumber) {
+  const TestDir dir;
+  struct Case {
+    const char* what;
+    std::string body, words;
+  };
+  for (const Case& c : {
+           Case{"moves of no operation", "o1 repeat [4200000]\nG53 G0 X1\nG53 G0 X0\no1 endrepeat\n",
+                "moves of one tooth and beside the teeth would have to be kept, more than 8388608"},
+           Case{"machine moves ahead of a tooth",
+                "(OP 0 roughing)\no1 repeat [4200000]\nG53 G0 Z-1\nG53 G0 Z0\no1 endrepeat\n" + kStart,
+                "moves of one tooth and beside the teeth would have to be kept, more than 8388608"},
+           Case{"teeth that are no copies",
+                "(OP 0 roughing)\n" + kStart +
+                    "#1=0\no1 repeat [4200000]\n#1=[#1+0.000001]\nG1 X[80+#1]\nG1 X80\no1 endrepeat\n",
+                "moves would have to be kept, more than 8388608"},
+           Case{"long ways round",
+                "(OP 0 roughing)\n" + kStart +
+                    "G93\no1 repeat [4000]\nG1 X80 C300 F1\nG1 X80.5 C0 F1\no1 endrepeat\nG94 F600\n",
+                "motions of the tool, 136 bytes each, would have to be kept"},
+       }) {
+    const Finished refused = check_of(dir, c.body);
+    EXPECT_EQ(refused.exit_code, 3) << c.what << ": " << refused.err.substr(0, 300);
+    EXPECT_NE(refused.err.find(c.words), std::string::npos) << c.what << ": " << refused.err.substr(0, 300);
+    EXPECT_NE(refused.err.find("p.ngc"), std::string::npos) << refused.err.substr(0, 300);
+  }
+}
+
+}  // namespace
+}  // namespace toothpath::test
