@@ -27,7 +27,7 @@ TEST(Memory, WhereItEndsTheProgramSaysSo) {
                                                 {"surface", quick},
                                                 {"run", kSamples + "/bevel_trunnion.toml"},
                                                 {"check", quick, dir / "made/program.ngc", "--json"}})
-    for (rlim_t mib = 85; mib <= 400; mib += mib / 8) {
+    for (rlim_t mib = 85; mib <= 400; mib += mib / 5) {
       Launch launch;
       launch.arguments = words;
       launch.arguments.insert(launch.arguments.end(), {"--out", out, "--threads", "2"});
