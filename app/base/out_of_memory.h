@@ -9,8 +9,7 @@ namespace toothpath::app {
 /// What is said, without "error: ".
 inline constexpr const char* kOutOfMemory =
     "out of memory: nothing was written; a limit of this shell (ulimit -v), or a job that asks for less (larger "
-    "scallop "
-    "and chord_tolerance, fewer teeth written out)";
+    "scallop and chord_tolerance, fewer teeth written out)";
 
 /// From now on an allocation that fails removes the registered temporary files and ends the process with
 /// ExitCode::internal and kOutOfMemory; while signals are blocked it throws std::bad_alloc as usual, so that renaming
