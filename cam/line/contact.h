@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "cam/tool/radius_law.h"
+#include "geometry/face_gear/flank_foot.h"
 #include "geometry/face_gear/inverse.h"
 #include "geometry/face_gear/surface.h"
 
@@ -22,9 +23,8 @@ namespace toothpath::line {
 
 /// Parameters of a place on the flank or on one of its parallel surfaces.
 template <typename S>
-struct Place {
-  S theta{}, B{};
-};
+using Place = face_gear::FlankParameters<S>;
+using face_gear::flank_foot, face_gear::FlankFoot, face_gear::theta_at_distance;
 
 /// The tangent plane at a flank point: p up along the profile, o along the tooth outwards, n out of the material.
 /// Orthonormal.
@@ -44,12 +44,6 @@ TangentFrame<S> tangent_frame(int side, const Vec3T<S>& n) {
   f.p = Vec3T<S>(-n[2] * n[0] / flat, -n[2] * n[1] / flat, flat);
   f.o = Vec3T<S>(S(side) * n[1] / flat, S(-side) * n[0] / flat, S(0));
   return f;
-}
-
-/// theta of the parallel surface at `distance` above the flank place (theta, B); B stays.
-template <typename S>
-S theta_at_distance(const face_gear::FaceGearSurface<S>& f, const S& theta, const S& distance) {
-  return theta - distance * f.shaper.cos_bb / f.shaper.r_b;
 }
 
 /// Both directions of zero normal curvature of a saddle, in its tangent basis (e, l), not normalised: the roots of
@@ -79,11 +73,14 @@ template <typename S>
 std::optional<S> lean(const face_gear::FaceGearSurface<S>& f, int side, const Place<S>& at, const S& distance) {
   using std::atan2, std::sqrt;
   const S theta = theta_at_distance(f, at.theta, distance);
-  if (!(f.flank_J(side, theta, at.B) > S(0)) || !(f.flank_J(side, at.theta, at.B) > S(0))) return {};
-  const auto roots = zero_directions<S>(f.flank_shape(side, theta, at.B));
+  const typename face_gear::FaceGearSurface<S>::FlankPlace parallel(f, side, theta, at.B), on(f, side, at.theta, at.B);
+  const auto bend = parallel.curvature();
+  if (!(bend.J > S(0)) || !(on.curvature().J > S(0))) return {};
+  const auto roots = zero_directions<S>(parallel.shape(bend));
   if (!roots.ok) return {};
-  const auto basis = f.flank_basis(side, at.theta, at.B);
-  const auto frame = tangent_frame<S>(side, f.flank(side, at.theta, at.B).n);
+  const auto turn = on.turn();
+  const auto basis = on.basis(turn);
+  const auto frame = tangent_frame<S>(side, on.point(turn).n);
   std::optional<S> best;
   S steepest(-1);
   for (const auto& root : {roots.first, roots.second}) {
@@ -135,67 +132,15 @@ AxisLine<S> axis_of(const Vec3T<S>& P, const TangentFrame<S>& frame, const tool:
   return {Vec3T<S>(P + frame.n * S(law.rho(pose.t_m) + pose.delta) - a * pose.t_m), a};
 }
 
-/// A point of space against the continued flank of side s of tooth 0.
-template <typename S>
-struct FlankFoot {
-  Place<S> at;     ///< of the parallel surface through the point; the foot has the same B
-  S turn{};        ///< by which the flank is turned about z onto that parallel surface
-  S d{};           ///< signed distance, positive outside the material: s M2 turn
-  S theta_foot{};  ///< roll parameter of the foot
-  Vec3T<S> n;      ///< grad d: the normal at the foot
-};
-
-/// Newton for (theta, B) at the point's (r, z) from `start`, which must be near (a neighbour on the same axis); no
-/// continuation, no other sheet: nothing is returned where it does not arrive within `kSteps` or arrives at J <= 0.
-/// Error of d <= 1e-13 r. Converges quadratically; stops after a step below 1e-3 sqrt(eps) in both parameters, at least
-/// one step is taken (so that dual numbers carry their derivatives).
-template <typename S>
-std::optional<FlankFoot<S>> flank_foot(const face_gear::FaceGearSurface<S>& f, int side, const Vec3T<S>& x,
-                                       const Place<S>& start) {
-  using std::atan2, std::sqrt;
-  constexpr int kSteps = 30;
-  const auto size = [](const S& v) { return v < S(0) ? S(-v) : v; };
-  const S r = sqrt(S(x[0] * x[0] + x[1] * x[1])), small = S(1e-3) * S(sqrt(S(std::numeric_limits<double>::epsilon())));
-  S enough = small;
-  if constexpr (std::numeric_limits<S>::digits > 60) enough = S(1e-3) * S(sqrt(S(std::numeric_limits<S>::epsilon())));
-  FlankFoot<S> out;
-  out.at = start;
-  bool arrived = false;
-  for (int k = 0; k < kSteps && !arrived; ++k) {
-    const S w = S(side) * f.shaper.r_b * out.at.theta;
-    const Vec3T<S> P = f.flank_housing(side, out.at.theta, out.at.B), t = f.t(out.at.B), a = f.a();
-    const Vec3T<S> P_theta = (t * f.shaper.cos_bb - a * f.shaper.sin_bb) * S(S(-side) * f.shaper.r_b / f.shaper.cos_bb);
-    const Vec3T<S> P_B = a * f.flank_Z_B(out.at.B) + t * f.shaper.r_b + f.e(out.at.B) * w;
-    const S r_now = sqrt(S(P[0] * P[0] + P[1] * P[1])), er = r - r_now, ez = x[2] - P[2];
-    const S rt = (P[0] * P_theta[0] + P[1] * P_theta[1]) / r_now, rB = (P[0] * P_B[0] + P[1] * P_B[1]) / r_now;
-    const S det = rt * P_B[2] - rB * P_theta[2];
-    S dt = (er * P_B[2] - rB * ez) / det, dB = (rt * ez - er * P_theta[2]) / det;
-    const S step = std::max(size(dt), size(dB));
-    if (!(step < S(10))) return {};
-    if (step > S(0.1)) {
-      dt = dt * (S(0.1) / step);
-      dB = dB * (S(0.1) / step);
-    }
-    out.at.theta += dt;
-    out.at.B += dB;
-    arrived = step < enough;
-  }
-  if (!arrived || !(f.flank_J(side, out.at.theta, out.at.B) > S(0))) return {};
-  const auto on = f.flank(side, out.at.theta, out.at.B);
-  out.turn = atan2(S(on.p[0] * x[1] - on.p[1] * x[0]), S(on.p[0] * x[0] + on.p[1] * x[1]));
-  out.d = S(side) * f.M2 * out.turn;
-  out.theta_foot = out.at.theta + out.d * f.shaper.cos_bb / f.shaper.r_b;
-  out.n = f.turned(on.n, out.turn);
-  return out;
-}
-
 /// d'' along the unit direction a at a place with this foot: a^T (Hess d) a, the shape operator of the parallel
 /// surface.
 template <typename S>
 S distance_bend(const face_gear::FaceGearSurface<S>& f, int side, const FlankFoot<S>& foot, const Vec3T<S>& a) {
-  const auto H = f.flank_shape(side, foot.at.theta, foot.at.B);
-  const auto basis = f.flank_basis(side, foot.at.theta, foot.at.B);
-  const S e = a.dot(f.turned(basis.e, foot.turn)), l = a.dot(f.turned(basis.l, foot.turn));
+  const typename face_gear::FaceGearSurface<S>::FlankPlace at(f, side, foot.at.theta, foot.at.B);
+  const auto H = at.shape(at.curvature());
+  const auto basis = at.basis(at.turn());
+  const typename face_gear::FaceGearSurface<S>::Turn turn(foot.turn);
+  const S e = a.dot(turn(basis.e)), l = a.dot(turn(basis.l));
   return H.ee * e * e + S(2) * H.el * e * l + H.ll * l * l;
 }
 

@@ -26,7 +26,8 @@ bool newton(const FaceGearSurface<double>& f, int s, double r, double z, double&
   double best = INFINITY;
   int stalled = 0;
   for (int k = 0; k < kNewtonLimit; ++k, ++iterations) {
-    const Vec3 P = f.flank_housing(s, theta, B);
+    const FaceGearSurface<double>::FlankPlace at(f, s, theta, B);
+    const Vec3 P = at.housing();
     const double r_now = std::hypot(P.x(), P.y());
     const double er = r - r_now, ez = z - P.z(), error = std::hypot(er, ez);
     if (!(error < INFINITY)) return false;
@@ -36,10 +37,7 @@ bool newton(const FaceGearSurface<double>& f, int s, double r, double z, double&
       if (stalled > 12) return false;
     }
     best = std::min(best, error);
-    const double w = s * f.shaper.r_b * theta;
-    const Vec3 n = (f.t(B) * f.shaper.cos_bb - f.a() * f.shaper.sin_bb) * double(s);
-    const Vec3 Pt = n * (-f.shaper.r_b / f.shaper.cos_bb);
-    const Vec3 PB = f.a() * f.flank_Z_B(B) + f.t(B) * f.shaper.r_b + f.e(B) * w;
+    const Vec3 Pt = at.housing_theta(), PB = at.housing_B();
     const double rt = (P.x() * Pt.x() + P.y() * Pt.y()) / r_now, rB = (P.x() * PB.x() + P.y() * PB.y()) / r_now;
     const double det = rt * PB.z() - rB * Pt.z();
     if (det == 0) return false;
@@ -175,9 +173,9 @@ std::optional<double> flank_B_by_newton(const FaceGearSurface<double>& f, int si
                                         double start_B) {
   double B = start_B;
   for (int k = 0; k < kNewtonLimit; ++k) {
-    const Vec3 P = f.flank_housing(side, theta, B);
-    const double r_now = std::hypot(P.x(), P.y()), w = side * f.shaper.r_b * theta;
-    const Vec3 PB = f.a() * f.flank_Z_B(B) + f.t(B) * f.shaper.r_b + f.e(B) * w;
+    const FaceGearSurface<double>::FlankPlace at(f, side, theta, B);
+    const Vec3 P = at.housing(), PB = at.housing_B();
+    const double r_now = std::hypot(P.x(), P.y());
     const double rB = (P.x() * PB.x() + P.y() * PB.y()) / r_now;
     double dB = (r - r_now) / rB;
     if (!(std::abs(dB) < INFINITY)) return {};

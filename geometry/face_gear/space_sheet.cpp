@@ -4,20 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/face_gear/flank_foot.h"
+
 namespace toothpath::face_gear {
 namespace {
 
 using Dual2 = Dual<double, 2>;
 
+bool is_flank(SpacePiece piece) { return piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus; }
 int side_of(SpacePiece piece) { return piece == SpacePiece::flank_plus || piece == SpacePiece::fillet_plus ? 1 : -1; }
 
 PatchPoint from_dual(const Vec3T<Dual2>& p, const Vec3T<Dual2>& n) {
   return {value(p), value(n), derivative(p, 0), derivative(p, 1), derivative(n, 0), derivative(n, 1)};
 }
 
-PatchPoint turned(const PatchPoint& q, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  const auto turn = [c, s](const Vec3& x) { return Vec3(c * x.x() - s * x.y(), s * x.x() + c * x.y(), x.z()); };
+PatchPoint turned(const PatchPoint& q, const FaceGearSurface<double>::Turn& turn) {
   return {turn(q.p), turn(q.n), turn(q.pu), turn(q.pv), turn(q.nu), turn(q.nv)};
 }
 
@@ -35,7 +36,7 @@ const char* to_string(SpacePiece piece) {
 }
 
 SpaceSheet::SpaceSheet(const FaceGearParameters& gear, const FaceGearRing& ring)
-    : ring_(ring), dual_(make_surface<Dual2>(gear, ring.zone.helix_angle_rad)) {
+    : ring_(ring), dual_(make_surface<Dual2>(gear, ring.zone.helix_angle_rad)), to_minus_(ring.surface.pitch) {
   if (!ring_.correction) return;
   const auto& f = ring_.surface;
   const auto section = [&](double r) { return std::sqrt(std::max(0.0, r * r - f.E * f.E)) / f.Sg; };
@@ -65,11 +66,14 @@ std::optional<PatchPoint> SpaceSheet::nominal(SpacePiece piece, double u, double
     case SpacePiece::flank_plus:
     case SpacePiece::flank_minus: {
       if (!(std::abs(v) < 1.4)) return {};
-      const auto H = f.flank_shape(s, u, v);
-      if (!(f.flank_J(s, u, v) > 0)) return {};
-      const auto point = f.flank(s, u, v);
-      const auto d = f.flank_derivatives(s, u, v);
-      const auto basis = f.flank_basis(s, u, v);
+      const FaceGearSurface<double>::FlankPlace place(f, s, u, v);
+      const auto k = place.curvature();
+      if (!(k.J > 0)) return {};
+      const auto H = place.shape(k);
+      const auto turn = place.turn();
+      const auto point = place.point(turn);
+      const auto d = place.derivatives(point, turn);
+      const auto basis = place.basis(turn);
       const auto dn = [&](const Vec3& along) {
         const double x = along.dot(basis.e), y = along.dot(basis.l);
         return Vec3(basis.e * (H.ee * x + H.el * y) + basis.l * (H.el * x + H.ll * y));
@@ -96,7 +100,7 @@ std::optional<PatchPoint> SpaceSheet::nominal(SpacePiece piece, double u, double
 void SpaceSheet::displace(SpacePiece piece, double u, double v, PatchPoint& q) const {
   const int s = side_of(piece);
   double c = 0, c_u = 0, c_v = 0;
-  if (piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus) {
+  if (is_flank(piece)) {
     const double r = std::hypot(q.p.x(), q.p.y());
     const auto offset = ring_.correction->side(s).at(u, r);
     c = offset.value;
@@ -126,8 +130,7 @@ std::optional<PatchPoint> SpaceSheet::at(SpacePiece piece, double u, double v) c
     displace(piece, u, v, *q);
     // Second derivatives of the field count where a ball hardly fits the fillet: the normals' derivatives by
     // differences of the normals.
-    const bool flank = piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus;
-    const double h = 1e-5, g = flank ? 1e-5 : 1e-3;  // rad; rad or mm
+    const double h = 1e-5, g = is_flank(piece) ? 1e-5 : 1e-3;  // rad; rad or mm
     const auto normal = [&](double a, double b) -> std::optional<Vec3> {
       auto near = nominal(piece, a, b);
       if (!near) return {};
@@ -138,7 +141,7 @@ std::optional<PatchPoint> SpaceSheet::at(SpacePiece piece, double u, double v) c
     if (u0 && u1) q->nu = (*u1 - *u0) / (2 * h);
     if (v0 && v1) q->nv = (*v1 - *v0) / (2 * g);
   }
-  return side_of(piece) > 0 ? q : turned(*q, ring_.surface.pitch);
+  return side_of(piece) > 0 ? q : turned(*q, to_minus_);
 }
 
 std::optional<TipPlace> SpaceSheet::tip(int side, double r, const std::optional<FlankCoordinates>& start) const {
@@ -176,17 +179,19 @@ std::optional<PatchPoint> SpaceSheet::point(SpacePiece piece, double u, double v
     auto q = nominal(piece, u, v);
     if (!q || piece == SpacePiece::root) return q;
     displace(piece, u, v, *q);
-    return side_of(piece) > 0 ? q : turned(*q, ring_.surface.pitch);
+    return side_of(piece) > 0 ? q : turned(*q, to_minus_);
   }
   const auto& f = ring_.surface;
   const int s = side_of(piece);
   SurfacePointT<double> q;
   switch (piece) {
     case SpacePiece::flank_plus:
-    case SpacePiece::flank_minus:
-      if (!(std::abs(v) < 1.4) || !(f.flank_J(s, u, v) > 0)) return {};
-      q = f.flank(s, u, v);
+    case SpacePiece::flank_minus: {
+      const FaceGearSurface<double>::FlankPlace place(f, s, u, v);
+      if (!(std::abs(v) < 1.4) || !(place.curvature().J > 0)) return {};
+      q = place.point(place.turn());
       break;
+    }
     case SpacePiece::fillet_plus:
     case SpacePiece::fillet_minus: {
       const auto g = f.fillet(s, u, v);
@@ -198,12 +203,28 @@ std::optional<PatchPoint> SpaceSheet::point(SpacePiece piece, double u, double v
   }
   PatchPoint out;
   const bool turn = piece == SpacePiece::fillet_minus || piece == SpacePiece::flank_minus;
-  out.p = turn ? FaceGearSurface<double>::turned(q.p, f.pitch) : q.p;
-  out.n = turn ? FaceGearSurface<double>::turned(q.n, f.pitch) : q.n;
+  out.p = turn ? to_minus_(q.p) : q.p;
+  out.n = turn ? to_minus_(q.n) : q.n;
   return out;
 }
 
+/// By the parallel surface through the point: two unknowns, and no normal bends.
+std::optional<PatchFoot> SpaceSheet::nominal_flank_foot(SpacePiece piece, const Vec3& c, double u, double v) const {
+  const auto& f = ring_.surface;
+  const int side = side_of(piece);
+  const Vec3 x = side > 0 ? c : to_minus_.back(c);
+  const FaceGearSurface<double>::FlankPlace near(f, side, u, v);
+  const auto seen = near.point(near.turn());
+  const auto foot = flank_foot<double>(f, side, x, {theta_at_distance<double>(f, u, (x - seen.p).dot(seen.n)), v});
+  if (!foot) return {};
+  const auto q = at(piece, foot->theta_foot, foot->at.B);
+  if (!q) return {};
+  return PatchFoot{foot->theta_foot, foot->at.B, foot->d, *q};
+}
+
 std::optional<PatchFoot> SpaceSheet::foot(SpacePiece piece, const Vec3& c, double u, double v) const {
+  if (is_flank(piece) && !ring_.correction && std::abs(v) < 1.4)
+    if (auto f = nominal_flank_foot(piece, c, u, v)) return f;
   PatchFoot f;
   f.u = u;
   f.v = v;
@@ -229,8 +250,7 @@ std::optional<PatchFoot> SpaceSheet::foot(SpacePiece piece, const Vec3& c, doubl
     // Roll, normal and base-tangent angles move by at most 0.15 rad, sections and distances by a fraction of a
     // millimetre scale.
     const double limit_u = piece == SpacePiece::root ? 0.5 : 0.15;
-    const double limit_v =
-        piece == SpacePiece::flank_plus || piece == SpacePiece::flank_minus ? 0.15 : 2 * ring_.surface.shaper.m_t;
+    const double limit_v = is_flank(piece) ? 0.15 : 2 * ring_.surface.shaper.m_t;
     const double shrink = std::max({1.0, std::abs(step[0]) / limit_u, std::abs(step[1]) / limit_v});
     step /= shrink;
     f.u += step[0];

@@ -76,11 +76,13 @@ class SpaceSheet {
   [[nodiscard]] SurfacePointT<S> root_point(const FaceGearSurface<S>& f, const S& fraction, const S& Z) const;
   /// The nominal piece before it is turned to its tooth.
   [[nodiscard]] std::optional<PatchPoint> nominal(SpacePiece piece, double u, double v) const;
+  [[nodiscard]] std::optional<PatchFoot> nominal_flank_foot(SpacePiece piece, const Vec3& c, double u, double v) const;
   /// Moves a point by the correction of its piece.
   void displace(SpacePiece piece, double u, double v, PatchPoint& q) const;
 
   FaceGearRing ring_;
   FaceGearSurface<Dual2> dual_;
+  FaceGearSurface<double>::Turn to_minus_;  ///< from the minus flank of tooth 0 to that of the space 0 | 1
   std::array<std::shared_ptr<const FilletBlend>, 2> blends_;  ///< sides +1 and -1; empty: nominal
 };
 

@@ -49,56 +49,25 @@ struct FaceGearSurface {
     const S s = sin(x);
     return {S(Cg * s), cos(x), S(Sg * s)};
   }
+  /// A turn about z: its cosine and sine, for what is turned by it more than once.
+  struct Turn {
+    S c{}, s{};
+    explicit Turn(const S& angle) {
+      using std::cos, std::sin;
+      c = cos(angle);
+      s = sin(angle);
+    }
+    [[nodiscard]] Vec3T<S> operator()(const Vec3T<S>& v) const {
+      return {S(c * v[0] - s * v[1]), S(s * v[0] + c * v[1]), v[2]};
+    }
+    [[nodiscard]] Vec3T<S> back(const Vec3T<S>& v) const {
+      return {S(c * v[0] + s * v[1]), S(c * v[1] - s * v[0]), v[2]};
+    }
+  };
   /// v turned about z by `angle`.
-  static Vec3T<S> turned(const Vec3T<S>& v, const S& angle) {
-    using std::cos, std::sin;
-    const S c = cos(angle), s = sin(angle);
-    return {S(c * v[0] - s * v[1]), S(s * v[0] + c * v[1]), v[2]};
-  }
+  static Vec3T<S> turned(const Vec3T<S>& v, const S& angle) { return Turn(angle)(v); }
 
-  /// Z(theta, B) of the equation of meshing on the involute, (3.2). |B| < 80 deg.
-  [[nodiscard]] S flank_Z(int s, const S& theta, const S& B) const {
-    using std::cos, std::sin;
-    const S sb = sin(B), cb = cos(B), r_b = shaper.r_b;
-    const S D = r_b * (S(1) / i + Cg);
-    const S w = S(s) * r_b * theta;
-    return (D + E * Cg * sb - Sg * shaper.T * (E + r_b * sb - w * cb)) / (Sg * cb);
-  }
-
-  /// dZ/dB at constant theta.
-  [[nodiscard]] S flank_Z_B(const S& B) const {
-    using std::cos, std::sin;
-    const S D = shaper.r_b * (S(1) / i + Cg), T = shaper.T;
-    return ((D - Sg * T * E) * sin(B) - (Sg * T * shaper.r_b - E * Cg)) / (Sg * cos(B) * cos(B));
-  }
-
-  /// Flank point before it is turned into the gear frame: r and z are already right. Housing frame.
-  [[nodiscard]] Vec3T<S> flank_housing(int s, const S& theta, const S& B) const {
-    using std::cos, std::sin;
-    const S sb = sin(B), cb = cos(B), w = S(s) * theta, Z = flank_Z(s, theta, B);
-    const S x = shaper.r_b * (cb + w * sb), y = shaper.r_b * (sb - w * cb);
-    return {S(Z * Sg - x * Cg), S(E + y), S(-Z * Cg - x * Sg)};
-  }
-
-  /// Roll angle phi of the shaper at which (theta, B) is cut.
-  [[nodiscard]] S flank_phi(int s, const S& theta, const S& B) const {
-    return B - S(s) * (shaper.theta_0 + theta) - shaper.kappa * (flank_Z(s, theta, B) - L0);
-  }
-
-  /// Flank point and normal, (3.3).
-  [[nodiscard]] SurfacePointT<S> flank(int s, const S& theta, const S& B) const {
-    const S turn = -i * flank_phi(s, theta, B);
-    const Vec3T<S> n = (t(B) * shaper.cos_bb - a() * shaper.sin_bb) * S(s);
-    return {turned(flank_housing(s, theta, B), turn), turned(n, turn)};
-  }
-
-  /// Regularity (4.1): > 0 on the sheet that is cut, 0 at the undercut edge.
-  [[nodiscard]] S flank_J(int s, const S& theta, const S& B) const {
-    const auto k = curvature_terms(s, theta, B);
-    return k.J;
-  }
-
-  /// Shape operator in the orthonormal tangent basis (e, l), convex positive, (4.3).
+  /// Shape operator in an orthonormal tangent basis (e, l), convex positive.
   struct ShapeOperator {
     S ee{}, el{}, ll{};
     /// Larger (more convex) and smaller (more concave) principal curvature, 1/mm.
@@ -116,34 +85,123 @@ struct FaceGearSurface {
       return sqrt(S(h * h + el * el));
     }
   };
-  [[nodiscard]] ShapeOperator flank_shape(int s, const S& theta, const S& B) const {
-    using std::cos, std::sin;
-    const auto k = curvature_terms(s, theta, B);
-    ShapeOperator H;
-    H.ee = S(s) * (shaper.cos_bb * k.Y - k.M * k.kl) / k.J;
-    H.el = -S(s) * Sg * cos(B) * k.M / k.J;
-    H.ll = Sg * cos(B) * shaper.r_b * theta / k.J;
-    return H;
-  }
-  /// The basis (e, l) of `flank_shape`, in the gear frame.
+  /// The basis (e, l) of a shape operator, in the gear frame.
   struct TangentBasis {
     Vec3T<S> e, l;
   };
-  [[nodiscard]] TangentBasis flank_basis(int s, const S& theta, const S& B) const {
-    const S turn = -i * flank_phi(s, theta, B);
-    return {turned(e(B), turn), turned(Vec3T<S>(t(B) * shaper.sin_bb + a() * shaper.cos_bb), turn)};
-  }
-  /// dP/dtheta and dP/dB in the gear frame (4.2).
+  /// dP/dtheta and dP/dB, or dP/dA and dP/dZ, in the gear frame.
   struct Derivatives {
     Vec3T<S> u, v;
   };
+
+  /// A place (theta, B) of the flank of side s; |B| < 80 deg. Sines and cosines are taken once, for all that is asked
+  /// of the place; what lies in the gear frame takes the `turn()` that brings it there.
+  class FlankPlace {
+   public:
+    FlankPlace(const FaceGearSurface& f, int s, const S& theta, const S& B) : f_(f), side_(s), theta_(theta), B_(B) {
+      using std::cos, std::sin;
+      sB_ = sin(B);
+      cB_ = cos(B);
+      const S r_b = f.shaper.r_b, D = r_b * (S(1) / f.i + f.Cg), w = side_ * r_b * theta;
+      Z_ = (D + f.E * f.Cg * sB_ - f.Sg * f.shaper.T * (f.E + r_b * sB_ - w * cB_)) / (f.Sg * cB_);
+    }
+    /// Z(theta, B) of the equation of meshing on the involute, (3.2).
+    [[nodiscard]] const S& Z() const { return Z_; }
+    /// dZ/dB at constant theta.
+    [[nodiscard]] S Z_B() const { return f_.slope_of_Z(sB_, cB_); }
+    /// The point before it is turned into the gear frame: r and z are already right. Housing frame.
+    [[nodiscard]] Vec3T<S> housing() const {
+      const S w = side_ * theta_;
+      const S x = f_.shaper.r_b * (cB_ + w * sB_), y = f_.shaper.r_b * (sB_ - w * cB_);
+      return {S(Z_ * f_.Sg - x * f_.Cg), S(f_.E + y), S(-Z_ * f_.Cg - x * f_.Sg)};
+    }
+    /// Roll angle phi of the shaper at which the place is cut.
+    [[nodiscard]] S phi() const { return B_ - side_ * (f_.shaper.theta_0 + theta_) - f_.shaper.kappa * (Z_ - f_.L0); }
+    [[nodiscard]] Turn turn() const { return Turn(S(-f_.i * phi())); }
+    /// Point and normal, (3.3).
+    [[nodiscard]] SurfacePointT<S> point(const Turn& turn) const {
+      const Vec3T<S> n = (t() * f_.shaper.cos_bb - f_.a() * f_.shaper.sin_bb) * side_;
+      return {turn(housing()), turn(n)};
+    }
+
+    /// Terms of the curvatures, and the regularity J (4.1): > 0 on the sheet that is cut, 0 at the undercut edge.
+    struct Curvature {
+      S M{}, X{}, Y{}, kl{}, J{};
+    };
+    [[nodiscard]] Curvature curvature() const {
+      const S cb = f_.shaper.cos_bb, sb = f_.shaper.sin_bb, r_b = f_.shaper.r_b, E = f_.E, Sg = f_.Sg, Cg = f_.Cg;
+      const S w = side_ * r_b * theta_;
+      Curvature k;
+      k.M = Z_B() * cb + r_b * sb;
+      k.X = E * Cg * cB_ + Z_ * Sg * sB_ - w * Cg;
+      k.Y = -E * (sB_ * sb * Cg + cb * Sg) + Z_ * sb * Sg * cB_ - r_b * (sb * Cg + cb * Sg * sB_) + w * cb * Sg * cB_;
+      k.kl = Sg * sB_ * sb - Cg * cb;
+      k.J = k.X * k.M - w * k.Y;
+      return k;
+    }
+    /// Shape operator in the basis of the place, (4.3).
+    [[nodiscard]] ShapeOperator shape(const Curvature& k) const {
+      ShapeOperator H;
+      H.ee = side_ * (f_.shaper.cos_bb * k.Y - k.M * k.kl) / k.J;
+      H.el = -side_ * f_.Sg * cB_ * k.M / k.J;
+      H.ll = f_.Sg * cB_ * f_.shaper.r_b * theta_ / k.J;
+      return H;
+    }
+    [[nodiscard]] TangentBasis basis(const Turn& turn) const {
+      return {turn(e()), turn(Vec3T<S>(t() * f_.shaper.sin_bb + f_.a() * f_.shaper.cos_bb))};
+    }
+    /// Derivatives of the place as the gear stands still: those of `housing()` but for its turn with the gear.
+    [[nodiscard]] Vec3T<S> housing_theta() const {
+      return (t() * f_.shaper.cos_bb - f_.a() * f_.shaper.sin_bb) * S(-side_ * f_.shaper.r_b / f_.shaper.cos_bb);
+    }
+    [[nodiscard]] Vec3T<S> housing_B() const {
+      return f_.a() * Z_B() + t() * f_.shaper.r_b + e() * S(side_ * f_.shaper.r_b * theta_);
+    }
+    /// dP/dtheta and dP/dB (4.2). @param at  the `point` of the same turn
+    [[nodiscard]] Derivatives derivatives(const SurfacePointT<S>& at, const Turn& turn) const {
+      const S cb = f_.shaper.cos_bb;
+      const Vec3T<S> kxP(-at.p[1], at.p[0], S(0));
+      return {kxP * S(f_.i * side_ / (cb * cb)) - at.n * S(f_.shaper.r_b / cb),
+              kxP * S(-f_.i * (S(1) - f_.shaper.kappa * Z_B())) + turn(housing_B())};
+    }
+
+   private:
+    [[nodiscard]] Vec3T<S> e() const { return {S(-f_.Cg * cB_), sB_, S(-f_.Sg * cB_)}; }
+    [[nodiscard]] Vec3T<S> t() const { return {S(f_.Cg * sB_), cB_, S(f_.Sg * sB_)}; }
+
+    const FaceGearSurface& f_;
+    S side_, theta_, B_, sB_, cB_, Z_;
+  };
+
+  /// What is asked of a place by itself: see `FlankPlace`.
+  [[nodiscard]] S flank_Z(int s, const S& theta, const S& B) const { return FlankPlace(*this, s, theta, B).Z(); }
+  [[nodiscard]] S flank_Z_B(const S& B) const {
+    using std::cos, std::sin;
+    return slope_of_Z(sin(B), cos(B));
+  }
+  [[nodiscard]] Vec3T<S> flank_housing(int s, const S& theta, const S& B) const {
+    return FlankPlace(*this, s, theta, B).housing();
+  }
+  [[nodiscard]] S flank_phi(int s, const S& theta, const S& B) const { return FlankPlace(*this, s, theta, B).phi(); }
+  [[nodiscard]] SurfacePointT<S> flank(int s, const S& theta, const S& B) const {
+    const FlankPlace at(*this, s, theta, B);
+    return at.point(at.turn());
+  }
+  [[nodiscard]] S flank_J(int s, const S& theta, const S& B) const {
+    return FlankPlace(*this, s, theta, B).curvature().J;
+  }
+  [[nodiscard]] ShapeOperator flank_shape(int s, const S& theta, const S& B) const {
+    const FlankPlace at(*this, s, theta, B);
+    return at.shape(at.curvature());
+  }
+  [[nodiscard]] TangentBasis flank_basis(int s, const S& theta, const S& B) const {
+    const FlankPlace at(*this, s, theta, B);
+    return at.basis(at.turn());
+  }
   [[nodiscard]] Derivatives flank_derivatives(int s, const S& theta, const S& B) const {
-    const auto pt = flank(s, theta, B);
-    const S turn = -i * flank_phi(s, theta, B), cb = shaper.cos_bb, ZB = flank_Z_B(B);
-    const Vec3T<S> kxP(-pt.p[1], pt.p[0], S(0));
-    const Vec3T<S> in_housing = a() * ZB + t(B) * shaper.r_b + e(B) * S(S(s) * shaper.r_b * theta);
-    return {kxP * S(i * S(s) / (cb * cb)) - pt.n * S(shaper.r_b / cb),
-            kxP * S(-i * (S(1) - shaper.kappa * ZB)) + turned(in_housing, turn)};
+    const FlankPlace at(*this, s, theta, B);
+    const Turn turn = at.turn();
+    return at.derivatives(at.point(turn), turn);
   }
 
   /// Fillet point and normal at normal angle A in [A_t, A_e], section Z on the shaper axis, (5.1).
@@ -183,20 +241,9 @@ struct FaceGearSurface {
   }
 
  private:
-  struct CurvatureTerms {
-    S M{}, X{}, Y{}, kl{}, J{};
-  };
-  [[nodiscard]] CurvatureTerms curvature_terms(int s, const S& theta, const S& B) const {
-    using std::cos, std::sin;
-    const S cb = shaper.cos_bb, sb = shaper.sin_bb, r_b = shaper.r_b, cB = cos(B), sB = sin(B);
-    const S Z = flank_Z(s, theta, B), ZB = flank_Z_B(B), w = S(s) * r_b * theta;
-    CurvatureTerms k;
-    k.M = ZB * cb + r_b * sb;
-    k.X = E * Cg * cB + Z * Sg * sB - w * Cg;
-    k.Y = -E * (sB * sb * Cg + cb * Sg) + Z * sb * Sg * cB - r_b * (sb * Cg + cb * Sg * sB) + w * cb * Sg * cB;
-    k.kl = Sg * sB * sb - Cg * cb;
-    k.J = k.X * k.M - w * k.Y;
-    return k;
+  [[nodiscard]] S slope_of_Z(const S& sB, const S& cB) const {
+    const S D = shaper.r_b * (S(1) / i + Cg), T = shaper.T;
+    return ((D - Sg * T * E) * sB - (Sg * T * shaper.r_b - E * Cg)) / (Sg * cB * cB);
   }
   [[nodiscard]] FilletPoint swept_profile(int s, const S& A, const S& Z, const S& h, const S& g) const;
 };
@@ -238,11 +285,12 @@ typename FaceGearSurface<S>::FilletPoint FaceGearSurface<S>::swept_profile(int s
   f.B = atan2(Sn, C) + side * acos(ratio);
   const S sB = sin(f.B), cB = cos(f.B);
   const S x = h * cB + side * g * sB, y = h * sB - side * g * cB;
-  const S turn = -i * (f.B - side * A - kappa * (Z - L0));
   const Vec3T<S> P_f(S(Z * Sg - x * Cg), S(E + y), S(-Z * Cg - x * Sg));
   const S tan_delta = kappa * h, cd = S(1) / sqrt(S(S(1) + tan_delta * tan_delta)), sd = tan_delta * cd;
-  f.p = turned(P_f, turn);
-  f.n = turned(Vec3T<S>((t(f.B) * cd - a() * sd) * side), turn);
+  const Vec3T<S> t_B(S(Cg * sB), cB, S(Sg * sB));
+  const Turn turn(S(-i * (f.B - side * A - kappa * (Z - L0))));
+  f.p = turn(P_f);
+  f.n = turn(Vec3T<S>((t_B * cd - a() * sd) * side));
   return f;
 }
 
