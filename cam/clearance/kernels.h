@@ -45,6 +45,12 @@ struct TriangleHit {
   std::int32_t lane = 0;
 };
 
+/// A block of which some triangle lies near, with the squared distances of all its lanes.
+struct alignas(64) BlockHit {
+  double squared[kLanes];
+  std::int32_t block = 0;
+};
+
 /// A window of candidate blocks about some neighbouring poses: their own boxes, eight at a time.
 struct alignas(64) BoxGroup {
   double centre[3][kLanes], axis[3][3][kLanes], half[3][kLanes];
@@ -70,6 +76,9 @@ struct MeshKernels {
   const char* name;
   /// Nearest triangle below `limit2` (squared). `start`: a triangle to begin with, or block -1.
   TriangleHit (*nearest)(const TreeView&, const double* p, double limit2, TriangleHit start);
+  /// Blocks with a triangle below `limit2` (squared) that is no more than `slack` farther than the nearest of those met
+  /// before; the nearest triangles are always among them. Writes at most `most`, returns how many there are.
+  std::size_t (*near)(const TreeView&, const double* p, double limit2, double slack, BlockHit* out, std::size_t most);
   /// Blocks whose node box is within `reach` of the segment p .. p + height * axis. Writes at most `most`, returns how
   /// many there are.
   std::size_t (*gather)(const TreeView&, const CapsuleView&, double reach, std::int32_t* out, std::size_t most);

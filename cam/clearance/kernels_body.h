@@ -108,6 +108,56 @@ TriangleHit nearest(const TreeView& tree, const double* p, double limit2, Triang
   return hit;
 }
 
+unsigned long near(const TreeView& tree, const double* p, double limit2, double slack, BlockHit* out,
+                   unsigned long room) {
+  double best = limit2, within = limit2;
+  unsigned long count = 0;
+  struct Open {
+    double d;
+    int node;
+  } stack[kStack];
+  int open = 0;
+  stack[open++] = {0, 0};
+  while (open > 0) {
+    const Open next = stack[--open];
+    if (next.d >= within) continue;
+    if (next.node < 0) {
+      const TriangleBlock& block = tree.blocks[~next.node];
+      const V d0 = to_triangles(block, p, 0), d1 = to_triangles(block, p, 1);
+      const V m = least(d0, d1);
+      const double low = m[0] < m[1] ? m[0] : m[1], high = m[2] < m[3] ? m[2] : m[3], d = low < high ? low : high;
+      if (!(d < within)) continue;
+      if (count < room) {
+        store(out[count].squared, 0, d0);
+        store(out[count].squared, 1, d1);
+        out[count].block = ~next.node;
+      }
+      ++count;
+      if (d < best) {
+        best = d;
+        const double reach = __builtin_sqrt(d) + slack;
+        within = reach * reach < limit2 ? reach * reach : limit2;
+      }
+      continue;
+    }
+    const MeshNode& node = tree.nodes[next.node];
+    alignas(32) double d[kLanes];
+    store(d, 0, to_boxes(node, p, 0));
+    store(d, 1, to_boxes(node, p, 1));
+    const int first = open;
+    for (int i = 0; i < kLanes; ++i) {
+      if (!(d[i] < within)) continue;
+      int k = open++;  // nearest on top
+      while (k > first && stack[k - 1].d < d[i]) {
+        stack[k] = stack[k - 1];
+        --k;
+      }
+      stack[k] = {d[i], node.child[i]};
+    }
+  }
+  return count;
+}
+
 /// Lower bounds of the distance between a segment and four boxes: the sphere about each box, then the box of the
 /// segment.
 INLINE V segment_to_boxes(const MeshNode& node, const CapsuleView& s, int half) {

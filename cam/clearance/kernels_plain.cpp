@@ -4,6 +4,6 @@
 namespace toothpath::clearance::plain {
 #include "cam/clearance/kernels_body.h"
 extern const MeshKernels kKernels;
-const MeshKernels kKernels = {"any processor",     nearest, gather, nearest_in, beside_flute, frustum_to_boxes,
+const MeshKernels kKernels = {"any processor",     nearest, near, gather, nearest_in, beside_flute, frustum_to_boxes,
                               frustum_to_triangles};
 }  // namespace toothpath::clearance::plain
