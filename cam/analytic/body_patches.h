@@ -77,9 +77,14 @@ class BodyPatches {
   [[nodiscard]] double radius(std::size_t cell) const { return cells_[cell].radius; }
   /// How far any piece of the surface may lie from the corners by which its cell is found.
   [[nodiscard]] double search_margin() const { return search_margin_; }
-  [[nodiscard]] bool on_sheet(std::size_t cell) const { return cells_[cell].surface == BodySurface::sheet; }
+  [[nodiscard]] BodySurface surface(std::size_t cell) const { return cells_[cell].surface; }
   [[nodiscard]] const char* name(std::size_t cell) const;
   [[nodiscard]] bool on_flank(std::size_t cell) const;
+
+  /// Parameters of the piece, of a place of a cell of the sheet.
+  [[nodiscard]] Vec2 parameters(std::size_t cell, const Vec2& at) const {
+    return blocks_[cells_[cell].block].frame.uv(at);
+  }
 
   [[nodiscard]] std::array<BodyQuad, 2> halved(std::size_t cell, const BodyQuad& quad) const;
   /// Longest side that halving shortens, mm. A quad of an end is higher by what its border may stand out: `stays`.

@@ -163,19 +163,22 @@ double CutterSweep::remembered(const Row& row) const {
   return row.distance - away - path::line_slack(*m_, R_ + row.height, 1);
 }
 
+/// A lower bound of the distance to the surface at a height over the whole motion, by facets: enough where the flute
+/// has left it.
 double CutterSweep::fresh(Row& row) {
   const Vec3 a = place(0, row.height), b = place(1, row.height);
   const double L = (b - a).norm();
-  const auto qb = query(b, within_);
+  const double keeps = part_.surface_keeps(b, within_);
   double d0 = row.known ? row.distance - (a - row.at).norm() : -INFINITY;
-  if (!(row.known && a == row.at) && least_between(d0, qb.distance, L) < R_ + 0.5 * (within_ - R_))
-    d0 = query(a, qb.distance + L).distance;
-  row = {row.height, true, b, qb.distance};
-  return least_between(d0, qb.distance, L) - path::line_slack(*m_, R_ + row.height, 1);
+  if (!(row.known && a == row.at) && least_between(d0, keeps, L) < R_ + 0.5 * (within_ - R_))
+    d0 = part_.surface_keeps(a, within_);
+  row = {row.height, true, b, keeps};
+  return least_between(d0, keeps, L) - path::line_slack(*m_, R_ + row.height, 1);
 }
 
 /// The flute, height by height. At every moment the axis is a straight line: between two heights whose least distances
-/// are proven, the same parabola bounds what lies between them.
+/// are proven, the same parabola bounds what lies between them. Where that keeps the axis off the surface, from a
+/// centre outside of it, no height lies inside.
 void CutterSweep::flute(double low) {
   if (low <= -within_) return;  // a wreck, bounded already
   double h = 0;

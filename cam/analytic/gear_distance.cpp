@@ -13,7 +13,8 @@
 namespace toothpath::analytic {
 namespace {
 
-constexpr double kBorder = 1e-9;  // a foot this far beyond the border of a piece (in its parameter) still counts
+constexpr double kTreeError = 1e-7;  // mm: of distances to facets, with room to spare
+constexpr double kBorder = 1e-9;     // a foot this far beyond the border of a piece (in its parameter) still counts
 // Corrected pieces share their normals to 1e-5 only; a foot so little beyond is about 1e-6 mm wrong.
 constexpr double kCorrectedBorder = 3e-5;
 
@@ -135,15 +136,15 @@ class GearDistance::Impl::Question {
       return beside() || c.z() >= z_tip;
     }  ///< certainly: neither between the radii of the ring and below its tip
   };
-  /// The nearest cell of every band of every piece, apart for whole cells and for those that reach beyond the ring: the
+  /// The nearest quad of every band of every piece, apart for whole quads and for those that reach beyond the ring: the
   /// nearest point of such a one may not exist, and must not hide a farther one that does.
   struct Seed {
     double d = INFINITY;
-    std::size_t cell = 0;
+    std::size_t quad = 0;
   };
   struct Seeds {
     std::array<Seed, 2 * face_gear::kSpacePieces * kBands> of_band;
-    double d_mesh = INFINITY;  ///< to whole cells
+    double d_mesh = INFINITY;  ///< to whole quads
     double search = 0, slack = 0;
   };
 
@@ -166,8 +167,8 @@ class GearDistance::Impl::Question {
     const bool found = sheet(at, seeds);
     edges(at);
     // Newton must agree with the facets; where it does not, the facets decide with their sag.
-    if (best_.distance > seeds.d_mesh + 2 * ring.sag + 1e-9)
-      take(seeds.d_mesh - ring.sag, false, at.zone, "flank", at.c, at.c);
+    if (best_.distance > seeds.d_mesh + seeds.slack)
+      take(seeds.d_mesh - ring.facet_sag, false, at.zone, "flank", at.c, at.c);
     end_faces(at);
     land_or_inside(at, found);
   }
@@ -176,21 +177,16 @@ class GearDistance::Impl::Question {
     const auto& ring = at.ring;
     const Vec3& c = at.c;
     Seeds s;
-    s.search = std::min(within_, best_.distance) + ring.sag;
-    s.slack = 4 * ring.sag + 0.02;  // a facet farther than the nearest by this cannot hold the nearest point
-    ring.index->near(c, s.search, [&](std::size_t k, double r_query) {
-      const auto& cell = ring.cells[k];
-      if (!cell.sheet || (c - cell.centre).norm() - cell.radius > std::min(s.d_mesh + s.slack, s.search))
-        return r_query;
-      const double d = std::min(distance_to_triangle(c, cell.corner[0], cell.corner[1], cell.corner[2]),
-                                distance_to_triangle(c, cell.corner[1], cell.corner[2], cell.corner[3]));
-      const bool border = ring.border[k];
-      if (!border) s.d_mesh = std::min(s.d_mesh, d);
-      const std::size_t band = (std::size_t(cell.piece) * kBands + std::size_t(cell.band)) * 2 + border;
-      auto& seed = s.of_band[band];
-      if (d < seed.d || (d == seed.d && k < seed.cell)) seed = {d, k};
-      return std::min(r_query, s.d_mesh + s.slack);
-    });
+    s.search = std::min(within_, best_.distance) + ring.facet_sag;
+    s.slack =
+        2 * ring.facet_sag + kTreeError;  // a facet farther than the nearest by this does not hold the nearest point
+    const auto keep = [&](std::size_t k, double d) {
+      const auto& quad = ring.quads[k];
+      auto& seed = s.of_band[(std::size_t(quad.piece) * kBands + quad.band) * 2 + quad.border];
+      if (d < seed.d || (d == seed.d && k < seed.quad)) seed = {d, k};
+    };
+    s.d_mesh = ring.whole_facets.near(c, s.search, s.slack, keep);
+    ring.border_facets.near(c, std::min(s.d_mesh + s.slack, s.search), INFINITY, keep);
     return s;
   }
 
@@ -203,15 +199,15 @@ class GearDistance::Impl::Question {
     for (const auto& seed : seeds.of_band) {
       // A seed whose facet is farther than the best exact distance cannot win.
       if (!(seed.d <= std::min(seeds.d_mesh + seeds.slack, seeds.search))) continue;
-      if (seed.d - ring.sag > accepted) continue;
-      const auto& cell = ring.cells[seed.cell];
-      const auto foot = ring.space.foot(cell.piece, at.c, cell.u, cell.v);
-      if (!foot || !on_piece(ring, cell.piece, foot->u)) continue;
+      if (seed.d - ring.facet_sag > accepted) continue;
+      const auto& quad = ring.quads[seed.quad];
+      const auto foot = ring.space.foot(quad.piece, at.c, quad.u, quad.v);
+      if (!foot || !on_piece(ring, quad.piece, foot->u)) continue;
       if (foot->distance < 0 && at.in_air()) continue;  // seen through an end of the ring or the tip
       found = true;
       if (ring.on_ring(foot->at.p)) {
         accepted = std::min(accepted, foot->distance);
-        take(foot->distance, true, at.zone, to_string(cell.piece), foot->at.p, at.c);
+        take(foot->distance, true, at.zone, to_string(quad.piece), foot->at.p, at.c);
       } else if (seed.d < beyond_seed) {
         beyond = foot->distance;
         beyond_seed = seed.d;
@@ -240,10 +236,9 @@ class GearDistance::Impl::Question {
     const auto& ring = at.ring;
     const double look = std::min(within_, best_.distance) + ring.edge_sag;
     if (!(look > 0)) return;
-    ring.edge_index->near(at.c, look, [&](std::size_t k, double r_query) {
+    ring.edge_facets.near(at.c, look, ring.edge_sag, [&](std::size_t k, double d) {
       const auto& e = ring.edges[k];
-      take(distance_to_segment(at.c, e.a, e.b) - e.sag, false, at.zone, e.patch, e.a, at.c);
-      return r_query;
+      take(d - e.sag, false, at.zone, e.patch, e.a, at.c);
     });
   }
 
@@ -284,6 +279,27 @@ class GearDistance::Impl::Question {
   double within_, r_, z_;
   NearestPlace best_;
 };
+
+double GearDistance::surface_keeps(const Vec3& p, double within) const {
+  if (impl_->refusal) return 0;
+  double least = within;
+  const double r = radius(p), azimuth = toothpath::azimuth(p);
+  for (std::size_t zone = 0; zone < impl_->rings.size(); ++zone) {
+    const auto& ring = *impl_->rings[zone];
+    if (std::max(ring.r_in - r, r - ring.r_out) < least) {
+      const double away = std::remainder(azimuth - ring.lookup(ring.opening, r), kTwoPi);
+      const Vec3 c = impl_->to_space_0(p, std::round(away / impl_->pitch));
+      for (const auto* facets : {&ring.whole_facets, &ring.border_facets, &ring.other_facets})
+        least = std::min(least, facets->least(c, least + ring.facet_sag) - ring.facet_sag);
+    }
+    // The floor of the groove up to the next ring.
+    if (zone + 1 < impl_->rings.size()) {
+      const double beside = std::max({ring.r_out - r, r - impl_->rings[zone + 1]->r_in, 0.0});
+      least = std::min(least, std::hypot(beside, p.z() - impl_->groove_floor));
+    }
+  }
+  return std::max(least, 0.0);
+}
 
 NearestPlace GearDistance::nearest(const Vec3& asked, double within) const {
   return Impl::Question(*impl_, asked, within).answer();

@@ -18,12 +18,24 @@ constexpr int kTable = 257;           // places over the radius
 constexpr std::size_t kLandStep = 4;  // of them, along a cell of a land
 constexpr int kLandParts = 4;         // cells across a land
 constexpr int kFloorStrips = 48;      // of the groove floor over a pitch
+constexpr double kFacetSag = 4e-3;    // mm: quads of the sheet are halved until their facets leave it by no more
+constexpr int kFacetHalvings = 10;    // at most: near the undercut edge no facet is that close
+
+/// Between two segments of any length, from above by no more than rounding.
+double distance_between(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const Vec3 u = b - a, v = d - c, w = a - c;
+  const double uu = u.squaredNorm(), uv = u.dot(v), vv = v.squaredNorm(), uw = u.dot(w), vw = v.dot(w);
+  const double det = uu * vv - uv * uv;
+  const double s = det > 0 ? std::clamp((uv * vw - vv * uw) / det, 0.0, 1.0) : 0.0;
+  const double t = vv > 0 ? std::clamp((uv * s + vw) / vv, 0.0, 1.0) : 0.0;
+  return (w + s * u - t * v).norm();
+}
 
 /// Makes one ring, step by step.
 class Maker {
  public:
-  Maker(const face_gear::FaceGear& gear, int zone, const face_gear::SpaceSheet& space, GearRing& ring)
-      : gear_(gear), zone_(zone), space_(space), R(ring), bounds_(gear.parameters(), space) {}
+  Maker(const face_gear::FaceGear& gear, int zone, const face_gear::SpaceSheet& space, GearRing& ring, double reach_mm)
+      : gear_(gear), zone_(zone), space_(space), R(ring), reach_(reach_mm), bounds_(gear.parameters(), space) {}
 
   void make() {
     sheet_cells();
@@ -35,13 +47,13 @@ class Maker {
       tip_bend_[n] = tip_bends(bounds_, n == 0 ? 1 : -1, tip_[n], R.table_r);
       add_edge(n == 0 ? plus_line_ : minus_line_, tip_edge_sags(bounds_, tip_bend_[n], R.table_r), "tip edge");
     }
-    R.edge_index = std::make_unique<SpatialIndex>(edge_boxes_);
     land_cells();
     end_cells();
     floor_cells();
     cut_triangles();
     R.index = std::make_unique<SpatialIndex>(boxes_);
     body_patches();
+    facets();
   }
 
  private:
@@ -112,10 +124,6 @@ class Maker {
     for (std::size_t k = 0; k + 1 < line.size(); ++k) {
       if ((line[k + 1] - line[k]).norm() < 1e-12) continue;
       R.edges.push_back({line[k], line[k + 1], patch, k < sags.size() ? sags[k] : -1});
-      Box b;
-      b.add(line[k]);
-      b.add(line[k + 1]);
-      edge_boxes_.push_back(b);
       if (k > 0 && k + 2 < line.size()) {
         // Sag of a chord, estimated from the turn between neighbours.
         const Vec3 u = (line[k] - line[k - 1]), v = (line[k + 1] - line[k]);
@@ -311,6 +319,67 @@ class Maker {
       R.patches->add(other.index, other.surface, other.low, other.high, R.cells[other.index].corner);
   }
 
+  /// The same surfaces for questions about points.
+  void facets() {
+    std::vector<clearance::Facet> edges;
+    for (std::size_t n = 0; n < R.edges.size(); ++n)
+      edges.push_back({{R.edges[n].a, R.edges[n].b, R.edges[n].b}, std::uint32_t(n)});
+    R.edge_facets = clearance::FacetTree(edges);
+    std::array<std::vector<clearance::Facet>, 2> sheet;
+    std::vector<clearance::Facet> others;
+    for (std::size_t n = 0; n < R.cells.size(); ++n) {
+      if (R.cells[n].sheet) add_quads(n, R.patches->quad(n), kFacetHalvings, sheet);
+      else if (R.patches->surface(n) != BodySurface::floor) add_other(n, others);
+    }
+    R.whole_facets = clearance::FacetTree(sheet[0]);
+    R.border_facets = clearance::FacetTree(sheet[1]);
+    R.other_facets = clearance::FacetTree(others);
+  }
+
+  /// How far a piece of the surface may leave the two facets of its quad: its sag over the hull of the four corners,
+  /// and the hull leaves the facets by no more than its diagonals lie apart.
+  [[nodiscard]] double facet_sag(std::size_t cell, const BodyQuad& quad) const {
+    const auto& c = quad.corner;
+    return R.patches->sag(cell, quad) + distance_between(c[0], c[2], c[1], c[3]);
+  }
+
+  /// The quads of a cell of the sheet, halved until their facets are close. `sheet`: wholly on the ring, and the
+  /// others.
+  void add_quads(std::size_t n, const BodyQuad& quad, int halvings,
+                 std::array<std::vector<clearance::Facet>, 2>& sheet) {
+    const double sag = facet_sag(n, quad);
+    if (sag > kFacetSag && halvings > 0) {
+      const auto halves = R.patches->halved(n, quad);
+      const auto exists = [](const BodyQuad& q) {
+        return std::all_of(q.corner.begin(), q.corner.end(), [](const Vec3& c) { return c.allFinite(); });
+      };
+      if (exists(halves[0]) && exists(halves[1])) {
+        for (const auto& half : halves) add_quads(n, half, halvings - 1, sheet);
+        return;
+      }
+    }
+    R.facet_sag = std::max(R.facet_sag, sag);
+    const auto& c = quad.corner;
+    const bool border = !std::all_of(c.begin(), c.end(), [&](const Vec3& p) { return R.on_ring(p); });
+    const Vec2 uv = R.patches->parameters(n, 0.25 * (quad.at[0] + quad.at[1] + quad.at[2] + quad.at[3]));
+    const auto owner = std::uint32_t(R.quads.size());
+    R.quads.push_back({R.cells[n].piece, std::uint8_t(R.cells[n].band), border, uv.x(), uv.y()});
+    sheet[border].push_back({{c[0], c[1], c[2]}, owner});
+    sheet[border].push_back({{c[0], c[2], c[3]}, owner});
+  }
+
+  void add_other(std::size_t n, std::vector<clearance::Facet>& others) {
+    const auto& quad = R.patches->quad(n);
+    R.facet_sag = std::max(R.facet_sag, facet_sag(n, quad));
+    const int about = 1 + int(std::ceil(reach_ / (gear_.pitch() * R.r_in)));
+    for (int tooth = -about; tooth <= about; ++tooth) {
+      std::array<Vec3, 4> c;
+      for (std::size_t k = 0; k < 4; ++k) c[k] = turned(quad.corner[k], tooth * gear_.pitch());
+      others.push_back({{c[0], c[1], c[2]}, std::uint32_t(n)});
+      others.push_back({{c[0], c[2], c[3]}, std::uint32_t(n)});
+    }
+  }
+
   struct Station {
     std::size_t row, node;
   };
@@ -323,8 +392,9 @@ class Maker {
   int zone_;
   const face_gear::SpaceSheet& space_;
   GearRing& R;
+  double reach_;
   PatchBounds bounds_;
-  std::vector<Box> boxes_, edge_boxes_;
+  std::vector<Box> boxes_;
   std::vector<Station> station_;  // of the cells of the sheet
   std::vector<Other> others_;
   std::array<std::vector<EndPlace>, 2> places_;
@@ -386,7 +456,7 @@ Expected<std::unique_ptr<GearRing>, face_gear::FaceGearRefusal> GearRing::make(c
                                                 "radius {:.4f} to {:.4f} mm only, the ring is {:.4f} to {:.4f} mm",
                                                 zone, sheet.r_from(), sheet.r_to(), r_in, r_out)};
   if (auto refusal = flank_below_tip(out->space, key, zone)) return std::move(*refusal);
-  Maker(gear, zone, out->space, *out).make();
+  Maker(gear, zone, out->space, *out, reach_mm).make();
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include "cam/analytic/body_patches.h"
 #include "cam/analytic/gear_distance.h"
 #include "cam/analytic/spatial_index.h"
+#include "cam/clearance/facet_tree.h"
 #include "geometry/face_gear/offset_sheet.h"
 
 namespace toothpath::analytic {
@@ -21,6 +22,14 @@ struct EdgeSegment {
   double sag = 0;  ///< how far the edge may leave the segment: proven, or as it showed where that is not possible
 };
 
+/// A quad of the sheet that its two facets leave by no more than `GearRing::facet_sag`: where Newton starts.
+struct SheetQuad {
+  face_gear::SpacePiece piece = face_gear::SpacePiece::root;
+  std::uint8_t band = 0;  ///< quarter of the piece across the space
+  bool border = false;    ///< partly beyond an end of the ring or the tip
+  double u = 0, v = 0;    ///< its middle
+};
+
 struct GearRing {
   using Cell = GearDistance::Cell;
   face_gear::SpaceSheet space;
@@ -29,12 +38,16 @@ struct GearRing {
   std::vector<Cell> cells;
   std::vector<bool> border;  ///< a cell: partly beyond an end of the ring or the tip
   std::unique_ptr<SpatialIndex> index;
+  std::vector<SheetQuad> quads;                      ///< of the sheet
+  clearance::FacetTree whole_facets, border_facets;  ///< of `quads`: those wholly on the ring, and the others
+  clearance::FacetTree other_facets;                 ///< lands and ends of all teeth within the reach of a question
+  double facet_sag = 0;                              ///< proven: how far the surface may leave all these facets
   std::vector<EdgeSegment> edges;
-  std::unique_ptr<SpatialIndex> edge_index;
-  double sag = 0;                  ///< of the facets, as it showed, doubled
-  double edge_sag = 0;             ///< greatest of the edges
-  std::size_t unproven_edges = 0;  ///< stretches of an edge for which only the sag that showed is known
-  double tip_sag = 0;              ///< of the tip surface's meridian against the straight line between its ends
+  clearance::FacetTree edge_facets;  ///< the segments
+  double sag = 0;                    ///< of the facets, as it showed, doubled
+  double edge_sag = 0;               ///< greatest of the edges
+  std::size_t unproven_edges = 0;    ///< stretches of an edge for which only the sag that showed is known
+  double tip_sag = 0;                ///< of the tip surface's meridian against the straight line between its ends
   double z_tip_in = 0, z_tip_out = 0;
   std::vector<double> table_r, mid, tip_plus, tip_minus;  ///< azimuths over r
   std::vector<double> opening;                            ///< azimuth of the middle between the tip edges, over r
