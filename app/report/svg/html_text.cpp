@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -11,6 +12,7 @@ namespace toothpath::svg {
 namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
+constexpr std::size_t kLongWord = 24;
 
 }  // namespace
 
@@ -44,6 +46,15 @@ std::string html_escape(std::string_view text) {
     }
   }
   return out;
+}
+
+bool has_long_word(std::string_view text) {
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find(' ', from), text.size());
+    if (end - from > kLongWord) return true;
+    from = end + 1;
+  }
+  return false;
 }
 
 std::string script_safe_json(std::string_view json) {
