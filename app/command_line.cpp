@@ -92,7 +92,7 @@ commands::CommandOutcome guarded(const commands::Command::Action& action, const 
   try {
     return action(request);
   } catch (const std::bad_alloc&) { return internal_error(app::kOutOfMemory); } catch (const std::exception& error) {
-    return internal_error(fmt::format("internal error: {}", error.what()));
+    return internal_error(app::words_of(error));
   }
 }
 
@@ -170,7 +170,9 @@ int run_command_line(int argc, char** argv) {
     threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(*options.threads));
   for (const auto& [sub, name, action] : commands)
     if (sub->parsed()) {
-      if (options.json) app::set_out_of_memory_answer(outcome_json(name, internal_error(app::kOutOfMemory)));
+      if (options.json)
+        app::set_out_of_memory_answers(outcome_json(name, internal_error(app::kOutOfMemory)),
+                                       outcome_json(name, internal_error(app::kOutOfMemoryAtTheEnd)));
       return present(name, guarded(action, request), options);
     }
   return static_cast<int>(app::ExitCode::internal);

@@ -5,6 +5,6 @@
 int main(int argc, char** argv) {
   toothpath::app::handle_signals();
   toothpath::app::handle_out_of_memory();
-  toothpath::app::set_last_line("interrupted: nothing was written");
+  toothpath::app::set_state("nothing was written");
   return toothpath::run_command_line(argc, argv);
 }

@@ -22,12 +22,13 @@ struct Slot {
 constexpr std::size_t kSlots = 128;
 std::array<Slot, kSlots> slots;
 /// Two lines: one may be read while the other is written.
-struct LastLine {
+struct StandingLine {
   std::array<char, 1002> text{};
   std::size_t size = 0;
 };
-std::array<LastLine, 2> last_lines;
-std::atomic<int> last_line = 0;
+std::array<StandingLine, 2> standing_lines;
+std::atomic<int> standing_line = 0;
+std::atomic<bool> on_terminal = false;
 std::atomic<int> blocked = 0;
 std::atomic<bool> pending = false;
 
@@ -40,9 +41,10 @@ void remove_temporaries() {
     if (slots[i].used && slots[i].is_directory) ::rmdir(slots[i].path.data());
 }
 
+void to_stderr(std::string_view text) { (void)!::write(STDERR_FILENO, text.data(), text.size()); }
+
 [[noreturn]] void leave() {
-  const LastLine& line = last_lines[static_cast<std::size_t>(last_line)];
-  leave_process(line.text.data(), line.size, 130);
+  leave_process(on_terminal ? "\n" : "", "interrupted: ", 130);  // behind a line of progress
 }
 
 extern "C" void on_signal(int) {
@@ -78,20 +80,24 @@ void forget_temporary(const std::string& path) {
     if (slot.used && path == slot.path.data()) slot.used = false;
 }
 
-void set_last_line(const std::string& text) {
-  const int next = 1 - last_line;
-  LastLine& line = last_lines[static_cast<std::size_t>(next)];
+void set_state(const std::string& text) {
+  const int next = 1 - standing_line;
+  StandingLine& line = standing_lines[static_cast<std::size_t>(next)];
   std::string whole = printable(text).substr(0, line.text.size() - 2);
   if (!whole.empty()) whole += '\n';
-  if (!whole.empty() && ::isatty(STDERR_FILENO) != 0) whole.insert(0, 1, '\n');  // behind a line of progress
+  on_terminal = ::isatty(STDERR_FILENO) != 0;
   line.size = whole.size();
   std::memcpy(line.text.data(), whole.data(), whole.size());
-  last_line = next;
+  standing_line = next;
 }
 
-void leave_process(const char* text, std::size_t size, int exit_code) {
+void leave_process(std::string_view text, std::string_view before_state, int exit_code) {
   remove_temporaries();
-  if (size > 0) (void)!::write(STDERR_FILENO, text, size);
+  to_stderr(text);
+  if (const StandingLine& line = standing_lines[static_cast<std::size_t>(standing_line)]; line.size > 0) {
+    to_stderr(before_state);
+    to_stderr({line.text.data(), line.size});
+  }
   ::_exit(exit_code);
 }
 

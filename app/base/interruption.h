@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 namespace toothpath::app {
 
@@ -16,11 +17,13 @@ void handle_signals();
 [[nodiscard]] bool register_temporary(const std::string& path, bool is_directory);
 void forget_temporary(const std::string& path);
 
-/// The line that a signal leaves on stderr, at most 1000 bytes of it; empty (as at first): none.
-void set_last_line(const std::string& text);
+/// What stands in the output directory: a signal leaves "interrupted: " and this on stderr, at most 1000 bytes of it;
+/// empty (as at first): none.
+void set_state(const std::string& text);
 
-/// Ends the process: the registered temporary files and empty directories go, `text` goes to stderr. Allocates nothing.
-[[noreturn]] void leave_process(const char* text, std::size_t size, int exit_code);
+/// Ends the process: the registered temporary files and empty directories go; `text` goes to stderr, then the state
+/// behind `before_state` where there is one. Allocates nothing.
+[[noreturn]] void leave_process(std::string_view text, std::string_view before_state, int exit_code);
 
 /// While one of these lives the signals wait: renaming must not be cut in two.
 class SignalsBlocked {

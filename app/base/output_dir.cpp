@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "app/base/interruption.h"
+#include "app/base/out_of_memory.h"
 #include "app/base/standing_results.h"
 #include "geometry/base/hash.h"
 #include "machines/toml/regular_file.h"
@@ -30,7 +31,7 @@ constexpr const char* kLock = ".toothpath-lock";
 std::string note;
 
 void say(const std::string& interrupted, const std::string& ended) {
-  set_last_line("interrupted: " + interrupted);
+  set_state(interrupted);
   note = ended;
 }
 
@@ -110,6 +111,7 @@ Result<OutputDir> OutputDir::open(const std::string& path, const std::vector<std
   if (auto s = result.lock(); !s) return s.error();
   if (auto s = result.refuse_leftovers(inputs); !s) return s.error();
   {
+    require_memory();
     const SignalsBlocked blocked;
     remove_leftovers(path);
     if (auto s = result.exchange_.recover(); !s) return s.error();
@@ -221,6 +223,7 @@ Status OutputDir::set_aside() {
   if (standing.empty() || !names_.is_program(standing.front())) return Ok{};
   std::string text =
       fmt::format("what stood in {} is in {}/{}: {}", path_, path_, previous_, describe_results(path_, standing));
+  require_memory();
   const SignalsBlocked blocked;
   if (auto s = exchange_.set_aside(); !s) return s;
   aside_ = std::move(text);
@@ -282,9 +285,13 @@ void OutputDir::discard_all() {
 /// What lies under the final names is what was written.
 Status OutputDir::verify() const {
   for (const File& file : files_) {
-    const auto bytes = toml::read_regular_file(final_path(file.name), std::string().max_size());
-    if (!bytes) return bytes.error();
-    if (sha256_hex(*bytes) == file.sha256) continue;
+    Sha256 hash;
+    const Status read = toml::for_each_block(final_path(file.name), [&](std::string_view block) -> Status {
+      hash.add(block);
+      return Ok{};
+    });
+    if (!read) return read;
+    if (hash.hex() == file.sha256) continue;
     Diagnostic differs =
         fail_as(DiagnosticKind::file_access,
                 "the file on the disk differs from what was written; all files of this run are removed");
@@ -295,6 +302,7 @@ Status OutputDir::verify() const {
 }
 
 Status OutputDir::commit() {
+  require_memory();
   const SignalsBlocked blocked;
   if (auto s = keeps_inputs(); !s) {
     discard_all();
@@ -313,6 +321,7 @@ Status OutputDir::commit() {
   made_.clear();
   unlock();
   active_ = false;
+  note_results_written();
   say(path_ + " holds the results of this run" + (aside_.empty() ? "" : "; " + aside_), aside_);
   return Ok{};
 }

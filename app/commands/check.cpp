@@ -11,11 +11,14 @@
 #include "app/report/page/motion_charts.h"
 #include "app/report/page/page_of_run.h"
 #include "app/report/sections/sections.h"
+#include "app/report/sheet/setup_sheet.h"
 #include "geometry/base/hash.h"
 #include "postproc/timing/model_text.h"
 
 namespace toothpath::commands {
 namespace {
+
+constexpr const char* kSheet = "setup_check.html";  // not that of `run`, which knows more of its program
 
 /// What one check has read and found so far. Steps fill it in order.
 struct Check {
@@ -111,7 +114,9 @@ Status write_results(Check& check, app::OutputDir& output, std::string& json) {
   const auto vtp = report::deviation_vtp(proof.surface);
   if (!vtp) return vtp.error();
   if (const auto s = output.write("tooth.vtp", *vtp); !s) return s;
-  report.files = {"tooth.vtp", "report.html", "report.json"};
+  const auto outline = check.gear.process->outline();
+  if (const auto s = output.write(kSheet, sheet::setup_sheet(check.job, outline, check.machine, report)); !s) return s;
+  report.files = {"tooth.vtp", kSheet, "report.html", "report.json"};
   report.stages = check.clock.seconds();
   const auto page = check.clock.run("report page", [&] {
     page::ReportPage content =
@@ -133,7 +138,7 @@ CommandOutcome check_program(const CheckRequest& request) {
   std::vector<std::string> inputs = {request.job_file, request.program_file};
   for (const auto* more : {&request.stock_files, &request.fixture_files, &request.measured_files})
     inputs.insert(inputs.end(), more->begin(), more->end());
-  auto output = app::OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp"}, inputs);
+  auto output = app::OutputDir::open(request.out_dir, {"report.json", "report.html", "tooth.vtp", kSheet}, inputs);
   if (!output) return failed(output.error());
   Check check(request);
   if (auto errors = read_inputs(check); !errors.empty()) {

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
+
+struct evp_md_ctx_st;  // of OpenSSL
 
 namespace toothpath {
 
@@ -11,6 +14,21 @@ namespace toothpath {
 /// of. Source: FIPS 180-4, by OpenSSL's libcrypto; throws std::runtime_error where that cannot work (a build of it
 /// without SHA-256).
 [[nodiscard]] std::string sha256_hex(std::string_view bytes);
+
+/// The same of bytes that come in pieces, with a fixed amount of memory.
+class Sha256 {
+ public:
+  Sha256();
+  void add(std::string_view bytes);
+  /// Of all that was added; nothing may be added afterwards.
+  [[nodiscard]] std::string hex();
+
+ private:
+  struct Free {
+    void operator()(evp_md_ctx_st* context) const;
+  };
+  std::unique_ptr<evp_md_ctx_st, Free> context_;
+};
 
 /// FNV-1a, 64 bits: the line HASH of NC programs, tables in memory.
 [[nodiscard]] constexpr std::uint64_t fnv1a(std::string_view bytes) {

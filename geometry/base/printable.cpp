@@ -52,6 +52,8 @@ std::string escaped(std::string_view text, bool lines, bool color) {
 
 }  // namespace
 
+bool is_hidden(std::string_view sequence) { return hidden(code_point(sequence)); }
+
 std::size_t utf8_length(std::string_view s, std::size_t i) {
   const auto at = [&](std::size_t k) { return k < s.size() ? static_cast<unsigned char>(s[k]) : 0U; };
   const auto tail = [&](std::size_t k) { return (at(k) & 0xC0U) == 0x80U; };

@@ -1,4 +1,4 @@
-// Import of mesh files through assimp, of which only the STL and OBJ readers are left registered.
+// Import of mesh files: STL through assimp, of which only that reader is left registered; OBJ by obj_scan.
 #include "geometry/mesh/file.h"
 
 #include <assimp/BaseImporter.h>
@@ -14,13 +14,14 @@
 #include <vector>
 
 #include "geometry/base/hash.h"
+#include "geometry/mesh/obj_scan.h"
 #include "geometry/mesh/solid_check.h"
 #include "geometry/mesh/stl_scan.h"
 
 namespace toothpath::mesh {
 namespace {
 
-/// No file but the one in memory: an OBJ may name materials anywhere on the disk.
+/// No file but the one in memory.
 class NoFiles : public Assimp::IOSystem {
  public:
   bool Exists(const char*) const override { return false; }
@@ -29,13 +30,13 @@ class NoFiles : public Assimp::IOSystem {
   void Close(Assimp::IOStream*) override {}
 };
 
-void keep_stl_and_obj(Assimp::Importer& importer) {
+void keep_stl(Assimp::Importer& importer) {
   std::vector<Assimp::BaseImporter*> others;
   for (std::size_t k = 0; k < importer.GetImporterCount(); ++k) {
     Assimp::BaseImporter* reader = importer.GetImporter(k);
     std::set<std::string> endings;
     reader->GetExtensionList(endings);
-    if (!endings.count("stl") && !endings.count("obj")) others.push_back(reader);
+    if (!endings.count("stl")) others.push_back(reader);
   }
   for (Assimp::BaseImporter* reader : others) {
     importer.UnregisterLoader(reader);
@@ -49,8 +50,8 @@ class Weld {
  public:
   explicit Weld(std::size_t corners) : table_(std::bit_ceil(2 * corners + 2), -1) {}
 
-  std::int32_t index(const aiVector3D& p, std::vector<Vec3>& vertices) {
-    const std::array<float, 3> key{p.x + 0.0f, p.y + 0.0f, p.z + 0.0f};  // -0 becomes 0
+  std::int32_t index(const std::array<float, 3>& p, std::vector<Vec3>& vertices) {
+    const std::array<float, 3> key{p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};  // -0 becomes 0
     const auto bytes = std::bit_cast<std::array<char, sizeof key>>(key);
     for (std::size_t slot = fnv1a({bytes.data(), bytes.size()}) & (table_.size() - 1);;
          slot = (slot + 1) & (table_.size() - 1)) {
@@ -94,10 +95,25 @@ Result<TriangleMesh> welded(const aiScene& scene, const SourcePosition& at, cons
         if (face.mIndices[k] >= part.mNumVertices)
           return fail_at(at, "facet {} names vertex {} of {}", mesh.triangles.size(), face.mIndices[k],
                          part.mNumVertices);
-        t[k] = weld.index(part.mVertices[face.mIndices[k]], mesh.vertices);
+        const aiVector3D& p = part.mVertices[face.mIndices[k]];
+        t[k] = weld.index({p.x, p.y, p.z}, mesh.vertices);
       }
       mesh.triangles.push_back(t);
     }
+  }
+  return mesh;
+}
+
+Result<TriangleMesh> welded(const ObjScan& scan, const SourcePosition& at) {
+  if (scan.facets.empty()) return fail_at(at, "the file has 0 facets");
+  TriangleMesh mesh;
+  mesh.triangles.reserve(scan.facets.size());
+  Weld weld(3 * scan.facets.size());
+  for (const auto& facet : scan.facets) {
+    std::array<std::int32_t, 3> t{};
+    for (std::size_t k = 0; k < 3; ++k)
+      t[k] = weld.index(scan.vertices[static_cast<std::size_t>(facet[k])], mesh.vertices);
+    mesh.triangles.push_back(t);
   }
   return mesh;
 }
@@ -108,16 +124,20 @@ std::string lower_ending(const std::string& name) {
   return ending;
 }
 
-Result<TriangleMesh> import(std::string_view bytes, const std::string& ending, const SourcePosition& at,
-                            const MeshImportLimits& limits) {
+Result<TriangleMesh> import_stl(std::string_view bytes, const SourcePosition& at, const MeshImportLimits& limits) {
   try {
     Assimp::Importer importer;
     importer.SetIOHandler(new NoFiles);  // the importer owns it
-    keep_stl_and_obj(importer);
-    const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, ending.c_str() + 1);
+    keep_stl(importer);
+    const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, "stl");
     if (!scene) return fail_at(at, "the file is damaged: {}", importer.GetErrorString());
     return welded(*scene, at, limits);
   } catch (const std::exception& problem) { return fail_at(at, "the file could not be read: {}", problem.what()); }
+}
+
+Result<TriangleMesh> import_obj(std::string_view bytes, const SourcePosition& at, const MeshImportLimits& limits) {
+  const auto scan = scan_obj(bytes, at.file, limits.most_facets);
+  return scan ? welded(*scan, at) : Result<TriangleMesh>(scan.error());
 }
 
 }  // namespace
@@ -138,7 +158,7 @@ Result<TriangleMesh> parse_mesh(std::string_view bytes, const std::string& name,
     text = std::move(scan->lower_case);
     if (!scan->binary) bytes = text;
   }
-  auto mesh = import(bytes, ending, at, limits);
+  auto mesh = ending == ".obj" ? import_obj(bytes, at, limits) : import_stl(bytes, at, limits);
   if (!mesh) return mesh;
   if (stated > 0 && mesh->triangles.size() != stated)
     return fail_at(at, "the file states {} facets, {} were read", stated, mesh->triangles.size());

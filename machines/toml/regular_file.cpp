@@ -11,7 +11,7 @@
 
 namespace toothpath::toml {
 
-Result<std::string> read_regular_file(const std::string& path, std::size_t max_bytes) {
+Status for_each_block(const std::string& path, const std::function<Status(std::string_view)>& take) {
   const auto cannot = [&](const char* what) {
     return Diagnostic{
         DiagnosticKind::file_access, {path, 0, 0}, fmt::format("cannot {}: {}", what, std::strerror(errno))};
@@ -29,16 +29,25 @@ Result<std::string> read_regular_file(const std::string& path, std::size_t max_b
   if (S_ISDIR(status.st_mode))
     return Diagnostic{DiagnosticKind::file_access, position, "cannot read: it is a directory"};
   if (!S_ISREG(status.st_mode)) return fail_at(position, "is not a regular file");
-  std::string text;
   char block[1 << 16];
   while (true) {
     const ssize_t got = ::read(descriptor, block, sizeof block);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return cannot("read");
-    if (got == 0) return text;
-    text.append(block, static_cast<std::size_t>(got));
-    if (text.size() > max_bytes) return fail_at(position, "is longer than {} bytes", max_bytes);
+    if (got == 0) return Ok{};
+    if (auto s = take({block, static_cast<std::size_t>(got)}); !s) return s;
   }
+}
+
+Result<std::string> read_regular_file(const std::string& path, std::size_t max_bytes) {
+  std::string text;
+  const Status read = for_each_block(path, [&](std::string_view block) -> Status {
+    text += block;
+    if (text.size() > max_bytes) return fail_at({path, 0, 0}, "is longer than {} bytes", max_bytes);
+    return Ok{};
+  });
+  if (!read) return read.error();
+  return text;
 }
 
 namespace {

@@ -2,7 +2,9 @@
 // them are inputs is remembered.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "geometry/base/result.h"
@@ -13,7 +15,10 @@ namespace toothpath::toml {
 /// A file that cannot be opened or read is `DiagnosticKind::file_access`, every other refusal `refused_input`.
 [[nodiscard]] Result<std::string> read_regular_file(const std::string& path, std::size_t max_bytes);
 
-/// The same for an input of the command; its name is kept, so that no output takes the place of the file.
+/// The same a block at a time, in order, with a fixed amount of memory. Errors: those of `take`, too.
+[[nodiscard]] Status for_each_block(const std::string& path, const std::function<Status(std::string_view)>& take);
+
+/// The bytes of an input of the command; its name is kept, so that no output takes the place of the file.
 [[nodiscard]] Result<std::string> read_input_file(const std::string& path, std::size_t max_bytes);
 
 /// Names of the inputs that this process has read, each once, in order.

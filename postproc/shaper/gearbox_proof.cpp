@@ -57,7 +57,7 @@ std::vector<std::string> gearbox_program_faults(std::string_view text, const Sha
     return faults;
   }
   const auto [work, cutter] = *r.ratio;
-  if (work * s.work_teeth != s.sense * cutter * s.cutter_teeth)
+  if (__int128{work} * s.work_teeth != __int128{cutter} * s.sense * s.cutter_teeth)
     wrong("coupling {}/{} is not {:+} times {}/{}", work, cutter, s.sense, s.cutter_teeth, s.work_teeth);
   const auto place = [&](const char* what, double is, double wanted) {
     if (std::abs(is - wanted) > kPlace) wrong("{} = {:.6f} mm, must be {:.6f} mm", what, is, wanted);

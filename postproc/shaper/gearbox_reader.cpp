@@ -8,6 +8,9 @@
 namespace toothpath::shaper {
 namespace {
 
+constexpr std::int64_t kMostUnits = 9'999'999'999;  // mm, deg: sums and differences of millionths stay whole numbers
+constexpr std::int64_t kMostWhole = 999'999'999'999;
+
 std::string_view trimmed(std::string_view s) {
   while (!s.empty() && (s.front() == ' ' || s.front() == '\r')) s.remove_prefix(1);
   while (!s.empty() && (s.back() == ' ' || s.back() == '\r')) s.remove_suffix(1);
@@ -33,14 +36,18 @@ std::optional<std::int64_t> micro(std::string_view s) {
     }
   }
   if (digits == 0 || decimals > 6) return {};
-  for (int k = std::max(decimals, 0); k < 6; ++k) value *= 10;
+  for (int k = std::max(decimals, 0); k < 6; ++k) {
+    if (value > kMostUnits * 1'000'000) return {};
+    value *= 10;
+  }
+  if (value >= (kMostUnits + 1) * 1'000'000) return {};
   return negative ? -value : value;
 }
 
 std::optional<std::int64_t> whole(std::string_view s) {
   std::int64_t value = 0;
   const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), value);
-  if (error != std::errc{} || end != s.data() + s.size()) return {};
+  if (error != std::errc{} || end != s.data() + s.size() || value > kMostWhole || value < -kMostWhole) return {};
   return value;
 }
 

@@ -44,9 +44,10 @@ struct GearboxWords {
   std::int64_t pulses_per_turn = 0;
 };
 
-/// A decimal number as micro-units, exactly; nothing if it has more than six decimals or is no number.
+/// A decimal number as micro-units, exactly; nothing if it has more than six decimals or ten digits before the point,
+/// or is no number.
 [[nodiscard]] std::optional<std::int64_t> micro(std::string_view text);
-/// A whole number with its sign.
+/// A whole number with its sign, of at most twelve digits.
 [[nodiscard]] std::optional<std::int64_t> whole(std::string_view text);
 /// The words of a block, without what stands between them.
 [[nodiscard]] std::vector<std::string_view> words_of_block(std::string_view block);

@@ -42,6 +42,46 @@ TEST(Memory, WhereItEndsTheProgramSaysSo) {
   EXPECT_GT(done, 4);
 }
 
+// Where memory ends at the very end of a run, the results are all there or none is, and what is said is true.
+TEST(Memory, TheExchangeOfResultsIsNeverCutInTwo) {
+  const TestDir dir;
+  const std::string quick = kSamples + "/spur_quick.toml", out = dir / "out";
+  ASSERT_EQ(run_program({"run", quick, "--out", dir / "made", "--quiet"}).exit_code, 0);
+  const std::vector<std::string> whole = names_in(dir / "made");
+  int ended = 0, done = 0;
+  const auto run_within = [&](rlim_t mib) {
+    std::filesystem::remove_all(out);
+    std::filesystem::copy(dir / "made", out, std::filesystem::copy_options::recursive);
+    Launch launch;
+    launch.arguments = {"run", quick, "--out", out, "--threads", "2"};
+    launch.address_space = mib * kMiB;
+    const Finished run = run_program(launch);
+    std::vector<std::string> names = names_in(out);
+    const std::string when = fmt::format("{} MiB: {} {}", mib, run.exit_code, run.err);
+    if (run.exit_code == 0) {
+      ++done;
+      EXPECT_EQ(std::erase(names, "previous"), 1u) << when;
+      EXPECT_EQ(names, whole) << when;
+      return true;
+    }
+    ++ended;
+    EXPECT_TRUE(run.exit_code == 70 || run.exit_code == 127) << when;
+    const bool moved = std::erase(names, "previous") == 1;
+    EXPECT_EQ(moved ? names_in(out + "/previous") : names, whole) << when;
+    if (moved) {
+      EXPECT_EQ(names, std::vector<std::string>{}) << when;
+      EXPECT_NE(run.err.find("out of memory: nothing was written"), std::string::npos) << when;
+      EXPECT_NE(run.err.find("note: what stood in " + out + " is in " + out + "/previous"), std::string::npos) << when;
+    }
+    return false;
+  };
+  rlim_t no = 85, yes = 400;
+  while (yes - no > 8) (run_within((no + yes) / 2) ? yes : no) = (no + yes) / 2;
+  for (rlim_t mib = no - 4; mib < yes + 4; mib += 2) run_within(mib);
+  EXPECT_GT(ended, 2);
+  EXPECT_GT(done, 2);
+}
+
 /// A program of some lines that would fill the memory by its loops.
 Finished check_of(const TestDir& dir, const std::string& body) {
   write_file(dir / "p.ngc", "G21 G17 G90 G94 G40 G49 G80\nG92.1\nG54\nG61\nG53 G0 Z0\n" + body + "M5\nM2\n");

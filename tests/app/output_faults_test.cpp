@@ -9,20 +9,32 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cctype>
 #include <cerrno>
 #include <chrono>
 #include <cstdarg>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <new>
 #include <random>
 #include <sstream>
 
+#include "app/base/interruption.h"
 #include "app/base/output_dir.h"
 
 namespace {
+
+std::atomic<std::size_t> asked_while_exchanging = 0;  ///< bytes
+
+void* allocated(std::size_t size) {
+  if (toothpath::app::SignalsBlocked::any()) asked_while_exchanging += size;
+  if (void* place = std::malloc(size == 0 ? 1 : size)) return place;
+  throw std::bad_alloc();
+}
 
 /// What is made to fail: the n-th of the watched calls, while armed.
 struct Fault {
@@ -46,6 +58,13 @@ bool hit() {
 }
 
 }  // namespace
+
+void* operator new(std::size_t size) { return allocated(size); }
+void* operator new[](std::size_t size) { return allocated(size); }
+void operator delete(void* place) noexcept { std::free(place); }
+void operator delete[](void* place) noexcept { std::free(place); }
+void operator delete(void* place, std::size_t) noexcept { std::free(place); }
+void operator delete[](void* place, std::size_t) noexcept { std::free(place); }
 
 extern "C" {
 int __real_open(const char*, int, ...);
@@ -368,6 +387,16 @@ TEST(OutputFaults, KilledAtRandomMoments) {
   }
   EXPECT_GT(killed, 3);
   EXPECT_GT(whole, 0);
+}
+
+// The memory of an exchange is asked for before it begins: large files must not need more.
+TEST(OutputFaults, AnExchangeNeedsLittleMemoryForLargeFiles) {
+  const Place place;
+  ASSERT_TRUE(session(place.path(), 1, true));
+  asked_while_exchanging = 0;
+  ASSERT_TRUE(session(place.path(), 2, true, 20'000'000));
+  EXPECT_GT(asked_while_exchanging, 1000u);
+  EXPECT_LT(asked_while_exchanging, 200'000u) << "bytes, all calls together";
 }
 
 // What may stand in the place of an output: a file that may not be written, a link into nowhere, a link to somebody's

@@ -160,6 +160,47 @@ TEST_F(SceneTest, MeshesShowTheirBoxAndDistance) {
   EXPECT_NE(file_text(*dir_ / "check/report.html").find("id=\"scene\""), std::string::npos);
 }
 
+// The machinist sees them on paper, whatever the verdict; the sheet of the run, which knows more, stays as it is.
+TEST_F(SceneTest, SheetShowsBoxAndDistanceOfEveryMesh) {
+  const std::string plate = stl("plate.stl", box(Vec3(-80, -81, -60), Vec3(80, 82, -40)));
+  const std::string blank = stl("blank.stl", box(Vec3(-66, -66, -45), Vec3(66, 66, -18)));
+  const std::string clamp = stl("clamp.stl", block(0, 67.5, 75, 1.5, -30, -4));
+  const std::string out = *dir_ / "same";
+  ASSERT_EQ(run_program({"run", job_, "--out", out, "--quiet"}).exit_code, 0);
+  const std::string made = file_text(out + "/setup.html");
+  struct Case {
+    std::vector<std::string> options, says, says_not;
+    int exit_code;
+  };
+  // Long paths break, and do not push the numbers off the paper.
+  const std::string plate_row = "<td class=w>" + plate +
+                                "</td><td class=n>12</td><td class=n>-80 to 80</td><td class=n>-81 to 82</td>"
+                                "<td class=n>-60 to -40</td><td class=n>",
+                    blank_row = blank +
+                                "</td><td class=n>12</td><td class=n>-66 to 66</td><td class=n>-66 to 66</td>"
+                                "<td class=n>-45 to -18</td><td class=n>0.000</td>";
+  for (const Case& c :
+       {Case{{"--fixture", plate, "--stock", blank},
+             {plate_row, blank_row, "Verified: ", "The teeth lie within the stock.", "gear origin, machine"},
+             {"0 tool changes"},
+             0},
+        Case{{"--fixture", plate}, {plate_row, "Verified: "}, {"within the stock", blank}, 0},
+        Case{{"--fixture", plate, clamp}, {plate_row, clamp, "NOT VERIFIED", "fixture: holder"}, {}, 1},
+        Case{{}, {"Verified: "}, {"Stock and fixture"}, 0}}) {
+    std::vector<std::string> words = {"check", job_, out + "/program.ngc", "--out", out, "--json"};
+    words.insert(words.end(), c.options.begin(), c.options.end());
+    const auto finished = run_program(words);
+    ASSERT_EQ(finished.exit_code, c.exit_code) << finished.err;
+    const std::string sheet = file_text(out + "/setup_check.html");
+    for (const std::string& text : c.says) EXPECT_NE(sheet.find(text), std::string::npos) << text;
+    for (const std::string& text : c.says_not) EXPECT_EQ(sheet.find(text), std::string::npos) << text;
+    EXPECT_NE(finished.out.find("\"setup_check.html\""), std::string::npos);
+    EXPECT_EQ(file_text(out + "/setup.html"), made);
+    const bool on_page = file_text(out + "/report.html").find("<td class=\"w\">" + plate) != std::string::npos;
+    EXPECT_EQ(on_page, !c.options.empty());
+  }
+}
+
 TEST_F(SceneTest, BadFilesAreRefusedWithTheirPlace) {
   for (const char* option : {"--fixture", "--stock"}) expect_bad_files_refused(option);
   // Inches taken for millimetres: a stock smaller than the gear.

@@ -1,5 +1,5 @@
-// One reader under libFuzzer: TOOTHPATH_READER names it. `-runs`, `-max_total_time` and a corpus folder as with every
-// libFuzzer program; an empty folder is filled with the seeds.
+// One reader under libFuzzer: TOOTHPATH_READER names it, `--readers` lists them. `-runs`, `-max_total_time` and a
+// corpus folder as with every libFuzzer program; an empty folder is filled with the seeds.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -15,6 +15,10 @@ const toothpath::test::ByteReader* reader = nullptr;
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
+  if (*argc == 2 && std::string_view((*argv)[1]) == "--readers") {
+    for (const auto& known : toothpath::test::fuzzed_readers()) std::printf("%s\n", known.name.c_str());
+    std::exit(0);
+  }
   const char* name = std::getenv("TOOTHPATH_READER");
   for (const auto& known : toothpath::test::fuzzed_readers())
     if (name && known.name == name) reader = &known;

@@ -196,10 +196,24 @@ std::vector<ByteReader> all_readers() {
   return readers;
 }
 
+/// What fuzzers found, each mended: tests/fuzz/found/READER.WHAT joins the seeds.
+std::vector<ByteReader> with_findings(std::vector<ByteReader> readers) {
+  std::vector<fs::path> paths;
+  for (const auto& entry : fs::directory_iterator(kSource / "tests/fuzz/found")) paths.push_back(entry.path());
+  std::sort(paths.begin(), paths.end());
+  for (const auto& path : paths) {
+    const auto reader = std::find_if(readers.begin(), readers.end(),
+                                     [&](const ByteReader& r) { return r.name == path.stem().string(); });
+    if (reader == readers.end()) ADD_FAILURE() << path << " names no reader";
+    else reader->seeds.push_back(file_text(path));
+  }
+  return readers;
+}
+
 }  // namespace
 
 const std::vector<ByteReader>& fuzzed_readers() {
-  static const std::vector<ByteReader> readers = all_readers();
+  static const std::vector<ByteReader> readers = with_findings(all_readers());
   return readers;
 }
 

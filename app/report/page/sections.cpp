@@ -49,9 +49,11 @@ std::string table(const PageTable& t) {
   out += "</tr></thead><tbody>\n";
   for (const auto& row : t.rows) {
     out += "<tr>";
-    for (std::size_t c = 0; c < row.size(); ++c)
-      out += fmt::format("<td{}>{}</td>", c < numeric.size() && numeric[c] ? " class=\"n\"" : "",
-                         svg::html_escape(row[c]));
+    for (std::size_t c = 0; c < row.size(); ++c) {
+      const char* css_class = c < numeric.size() && numeric[c] ? " class=\"n\"" : "";
+      if (svg::has_long_word(row[c])) css_class = " class=\"w\"";
+      out += fmt::format("<td{}>{}</td>", css_class, svg::html_escape(row[c]));
+    }
     out += "</tr>\n";
   }
   out += "</tbody></table></div>\n";

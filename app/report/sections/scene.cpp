@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "app/report/sections/sections.h"
 
 namespace toothpath::sections {
@@ -17,10 +19,10 @@ report::Section scene(const report::RunReport& report) {
     }
   section.note =
       "Boxes of the files as they were read, in mm and in the gear frame: is that their size and their place? Last: "
-      "the "
-      "gap between the surfaces of the mesh and of the finished gear; below its teeth the gear is as thick as in "
-      "gear.stl. "
-      "The teeth lie within the stock.";
+      "the gap between the surfaces of the mesh and of the finished gear; below its teeth the gear is as thick as in "
+      "gear.stl.";
+  if (std::any_of(report.scene.begin(), report.scene.end(), [](const auto& kind) { return kind.name == "stock"; }))
+    section.note += " The teeth lie within the stock.";
   return section;
 }
 

@@ -18,7 +18,7 @@ constexpr std::string_view kSetupStyle = R"(@page{size:A4;margin:14mm}
 body{font:10.5pt/1.35 sans-serif;color:#111;background:#fff;max-width:182mm;margin:6mm auto}
 h1{font-size:16pt;margin:0 0 1mm}h2{font-size:11.5pt;margin:4mm 0 1mm;border-bottom:.3mm solid #888;break-after:avoid}
 table{border-collapse:collapse;width:100%}th,td{border:.2mm solid #999;padding:.6mm 1.6mm;text-align:left;vertical-align:top}
-th{background:#eee;font-weight:600}td.n{text-align:right;font-variant-numeric:tabular-nums}tr,svg{break-inside:avoid}
+th{background:#eee;font-weight:600}td.n{text-align:right;font-variant-numeric:tabular-nums}td.w{overflow-wrap:anywhere}tr,svg{break-inside:avoid}
 .no{border:.8mm solid #b00;padding:2mm;color:#b00;font-weight:700}.yes{border:.4mm solid #070;padding:1.5mm}.part{border:.6mm solid #a60;padding:1.5mm;font-weight:600}
 .assumed{border:.5mm dashed #a60;padding:1.5mm}.assumed ul{columns:3 46mm;column-gap:5mm}@media print{body{margin:0}}ul{margin:1mm 0;padding-left:5mm}svg{max-width:100%}
 .small{font-size:9pt;margin:1mm 0}.pairs{columns:6 26mm;column-gap:4mm;font-size:8.5pt;font-variant-numeric:tabular-nums}.pairs span{display:block}
@@ -58,35 +58,51 @@ void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part,
   sheet.end_table();
 }
 
-void tool_section(Sheet& sheet, const job::Job& job, const report::RunReport& report) {
-  sheet.heading("Tools");
-  sheet.begin_table({"T", "cutter", "length mm: gauge line to tip", "stick-out mm", "flute mm", "shank mm", "teeth",
-                     "cutting", "rapids", "total"});
-  int changes = 0, before = -1;
-  for (const auto& operation : report.operations) {
-    changes += operation.tool_number != before ? 1 : 0;
-    before = operation.tool_number;
-  }
+/// The times of a tool stand where the operations tell them: not of a program that was only read.
+void tool_table(Sheet& sheet, const job::Job& job, const report::RunReport& report) {
+  std::vector<std::string> columns = {"T",        "cutter", "length mm: gauge line to tip", "stick-out mm", "flute mm",
+                                      "shank mm", "teeth"};
+  const bool timed = !report.operations.empty();
+  if (timed) columns.insert(columns.end(), {"cutting", "rapids", "total"});
+  sheet.begin_table(columns);
   for (const auto& tool : job.tools) {
+    std::vector<std::string> row = {std::to_string(tool.number),       tool::cutter_text(tool),
+                                    millimetres(tool.length_mm),       millimetres(tool.stick_out_mm),
+                                    millimetres(tool.flute_length_mm), fmt::format("dia {:g}", tool.shank_diameter_mm),
+                                    std::to_string(tool.teeth)};
     double feed = 0, rapid = 0;
     for (const auto& operation : report.operations) {
       if (operation.tool_number != tool.number) continue;
       feed += operation.feed_minutes;
       rapid += operation.rapid_minutes;
     }
-    sheet.row({std::to_string(tool.number), tool::cutter_text(tool), millimetres(tool.length_mm),
-               millimetres(tool.stick_out_mm), millimetres(tool.flute_length_mm),
-               fmt::format("dia {:g}", tool.shank_diameter_mm), std::to_string(tool.teeth),
-               report::readable_minutes(feed), report::readable_minutes(rapid),
-               report::readable_minutes(feed + rapid)});
+    if (timed)
+      row.insert(row.end(), {report::readable_minutes(feed), report::readable_minutes(rapid),
+                             report::readable_minutes(feed + rapid)});
+    sheet.row(row);
   }
   sheet.end_table();
+}
+
+/// How often the tool is changed, and whether the times hold it.
+void change_line(Sheet& sheet, const report::RunReport& report) {
+  int changes = 0, before = -1;
+  for (const auto& operation : report.operations) {
+    changes += operation.tool_number != before ? 1 : 0;
+    before = operation.tool_number;
+  }
   const std::string changing = report.tool_change_minutes
                                    ? fmt::format("they take {}, which no tool's times hold",
                                                  report::readable_minutes(*report.tool_change_minutes))
                                    : "changes are not in the times";
   sheet.raw(fmt::format("<p class=small>{} tool change{}, the first tool included; {}.</p>\n", changes,
                         changes == 1 ? "" : "s", changing));
+}
+
+void tool_section(Sheet& sheet, const job::Job& job, const report::RunReport& report) {
+  sheet.heading("Tools");
+  tool_table(sheet, job, report);
+  if (!report.operations.empty()) change_line(sheet, report);
   sheet.raw("<p>");
   for (const auto& tool : job.tools) sheet.raw(fmt::format("T{} {} &nbsp; ", tool.number, tool_sketch(tool)));
   sheet.raw("</p>\n");
@@ -133,6 +149,14 @@ std::string tilt_of(const report::RunReport& report, int operation) {
 }
 
 void operation_section(Sheet& sheet, const report::RunReport& report) {
+  const double rapids = report.total_minutes - report.feed_minutes - report.tool_change_minutes.value_or(0);
+  const std::string times = svg::html_escape(report::times_text(report));
+  if (report.operations.empty()) {  // of a program that was only read: its feeds and speeds are its own
+    sheet.heading("Times");
+    sheet.raw(fmt::format("<p>Cutting {}, rapids {}.</p>\n<p class=small>Times: {}.</p>\n",
+                          report::readable_minutes(report.feed_minutes), report::readable_minutes(rapids), times));
+    return;
+  }
   sheet.heading("Operations");
   sheet.begin_table({"op", "type", "T", "S 1/min", "feed mm/min", "cutting", "rapids", "tool axis"});
   for (const auto& o : report.operations)
@@ -140,11 +164,12 @@ void operation_section(Sheet& sheet, const report::RunReport& report) {
                fmt::format("{:g}", o.feed_mm_min), report::readable_minutes(o.feed_minutes),
                report::readable_minutes(o.rapid_minutes), tilt_of(report, o.operation)});
   sheet.row(
-      {"", "all", "", "", "", report::readable_minutes(report.feed_minutes),
-       report::readable_minutes(report.total_minutes - report.feed_minutes - report.tool_change_minutes.value_or(0)),
-       ""});
+      {"", "all", "", "", "", report::readable_minutes(report.feed_minutes), report::readable_minutes(rapids), ""});
   sheet.end_table();
-  sheet.raw(fmt::format("<p class=small>Times: {}.</p>\n", report::times_text(report)));
+  sheet.raw(fmt::format("<p class=small>Times: {}.</p>\n", times));
+}
+
+void axis_section(Sheet& sheet, const report::RunReport& report) {
   sheet.heading("Axis ranges, machine coordinates");
   sheet.begin_table({"axis", "least", "greatest", "lower limit", "upper limit", "unit"});
   for (const auto& axis : report.axes) {
@@ -185,6 +210,11 @@ std::string setup_sheet(const job::Job& job, const PartOutline& part, const mach
                     left.empty() ? "" : fmt::format("<br>Not finished: {}.", svg::html_escape(left))));
   else sheet.raw("<div class=no>NOT VERIFIED: do not cut.</div>\n");
   if (!report.reasons.empty()) sheet.list(report.reasons, "no");
+  if (report.command == "check")
+    sheet.raw(
+        "<p class=small>Of a program that was read, not made. How exactly its tool lengths must be set and where it "
+        "can "
+        "be taken up again stand on the sheet of the run that made it.</p>\n");
   if (report.restart)
     sheet.raw(
         fmt::format("<p class=no>This program begins at operation {}, tooth {}. What the whole program cuts before "
@@ -195,6 +225,7 @@ std::string setup_sheet(const job::Job& job, const PartOutline& part, const mach
   tool_section(sheet, job, report);
   length_section(sheet, report);
   operation_section(sheet, report);
+  axis_section(sheet, report);
   restart_section(sheet, job, report);
   const BlankCylinder blank{part.outer_radius, std::min(part.bottom, part.tooth_top),
                             std::max(part.bottom, part.tooth_top)};

@@ -22,12 +22,13 @@ class Sheet {
     for (const auto& column : columns) out_ += fmt::format("<th>{}</th>", svg::html_escape(column));
     out_ += "</tr></thead><tbody>\n";
   }
-  /// Cells that begin with a digit or a minus sign are set to the right.
+  /// Cells that begin with a digit or a minus sign are set to the right; long words (paths of files) may break.
   void row(const std::vector<std::string>& cells) {
     out_ += "<tr>";
     for (const auto& cell : cells) {
       const bool number = !cell.empty() && (cell[0] == '-' || (cell[0] >= '0' && cell[0] <= '9'));
-      out_ += fmt::format("<td{}>{}</td>", number ? " class=n" : "", svg::html_escape(cell));
+      const char* css_class = svg::has_long_word(cell) ? " class=w" : number ? " class=n" : "";
+      out_ += fmt::format("<td{}>{}</td>", css_class, svg::html_escape(cell));
     }
     out_ += "</tr>\n";
   }

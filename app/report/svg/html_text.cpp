@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -11,6 +12,7 @@ namespace toothpath::svg {
 namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
+constexpr std::size_t kLongWord = 24;
 
 }  // namespace
 
@@ -28,22 +30,29 @@ std::string valid_utf8(std::string_view text) {
 std::string html_escape(std::string_view text) {
   std::string out;
   out.reserve(text.size() + text.size() / 8);
-  for (const char c : valid_utf8(text)) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      case '\'': out += "&#39;"; break;
-      default: {
-        const auto code = static_cast<unsigned char>(c);
-        const bool control = (code < 0x20U && c != '\n' && c != '\t') || code == 0x7FU;
-        if (control) out += kReplacement;
-        else out += c;
-      }
-    }
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8_length(text, i);
+    const auto code = static_cast<unsigned char>(text[i]);
+    const bool control = (code < 0x20U && code != '\n' && code != '\t') || code == 0x7FU;
+    if (length == 0 || control || (length > 1 && is_hidden(text.substr(i, length)))) out += kReplacement;
+    else if (code == '&') out += "&amp;";
+    else if (code == '<') out += "&lt;";
+    else if (code == '>') out += "&gt;";
+    else if (code == '"') out += "&quot;";
+    else if (code == '\'') out += "&#39;";
+    else out += text.substr(i, length);
+    i += length == 0 ? 1 : length;
   }
   return out;
+}
+
+bool has_long_word(std::string_view text) {
+  for (std::size_t from = 0; from < text.size();) {
+    const std::size_t end = std::min(text.find(' ', from), text.size());
+    if (end - from > kLongWord) return true;
+    from = end + 1;
+  }
+  return false;
 }
 
 std::string script_safe_json(std::string_view json) {

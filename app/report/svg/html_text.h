@@ -6,12 +6,16 @@
 
 namespace toothpath::svg {
 
-/// `&`, `<`, `>`, `"` and `'` as entities; control characters other than tab and newline, and bytes that are not valid
-/// UTF-8, become U+FFFD. For element content and quoted attributes.
+/// `&`, `<`, `>`, `"` and `'` as entities; control characters other than tab and newline, hidden ones
+/// (is_hidden), and bytes that are not valid UTF-8, become U+FFFD. For element content and quoted attributes.
 [[nodiscard]] std::string html_escape(std::string_view text);
 
 /// Valid UTF-8: bytes that are not become U+FFFD. For text that goes into JSON.
 [[nodiscard]] std::string valid_utf8(std::string_view text);
+
+/// A word of more than 24 bytes (a path, a hash): a table cell that holds one lets it break, or it pushes the others
+/// off the paper.
+[[nodiscard]] bool has_long_word(std::string_view text);
 
 /// JSON text made safe inside a script element: `<`, `>`, `&` and the two Unicode line ends as \u escapes. These
 /// characters occur only inside the strings of a JSON text, where the escapes mean the same.

@@ -42,6 +42,12 @@ TEST(ReportPage, AwkwardNamesStayText) {
   EXPECT_EQ(svg::valid_utf8(*text), *text);
 }
 
+TEST(ReportPage, NothingInANameTurnsOrHidesWhatFollows) {
+  EXPECT_EQ(svg::html_escape("a\u202Eb\u009Bc\u2066d\u2028e\uFEFFf\x1Bg\xC0\xAFh"),
+            "a\uFFFDb\uFFFDc\uFFFDd\uFFFDe\uFFFDf\uFFFDg\uFFFD\uFFFDh");
+  EXPECT_EQ(svg::html_escape("\u00E4\u6F22 <\"'&>\n"), "\u00E4\u6F22 &lt;&quot;&#39;&amp;&gt;\n");
+}
+
 TEST(ReportPage, ThreeHundredThousandPointsStayBelowThreeMegabytes) {
   test::SyntheticPageOptions options;
   options.path_points = 300000;

@@ -370,5 +370,33 @@ TEST(MeshFile, VtpHoldsEveryDoubleBitForBit) {
   EXPECT_FALSE(mesh::write_vtp(out, mesh, std::vector<mesh::PointField>{{"deviation_um", short_field}}));
 }
 
+// No library reads this text: one ended with a signal on damaged files (tests/fuzz/found).
+TEST(MeshFile, DamagedObjIsRefusedWithItsLine) {
+  const std::string good = obj(box());
+  EXPECT_EQ(refusal("# made by hand\r\nmtllib nowhere.mtl\no box\ng side\ns off\nvn 0 0 1\n" + good, "a.obj"),
+            "accepted");
+  struct Case {
+    std::string text, words;
+  };
+  for (const Case& c : {
+           Case{good + "f 1 2 3 4\n", "facet 12 has 4 corners; only triangles are read"},
+           Case{good + "f 1 2\n", "facet 12 has 2 corners"},
+           Case{good + "f 1 2 9\n", "the facet names vertex 9 of the 8 above it"},
+           Case{good + "f 1 2 -9\n", "the facet names vertex -9 of the 8 above it"},
+           Case{good + "f 1 2 99999999999999999999\n", "names no vertex"},
+           Case{good + "f 0 1 2\n", "\"0\" names no vertex"},
+           Case{good + "f 1/1/1 x//1 3\n", "\"x//1\" names no vertex"},
+           Case{"v 1 2\n" + good, "a.obj:1: error: the vertex has 2 numbers, must have 3"},
+           Case{"v 1 2 nan\n" + good, "\"nan\" is no finite number"},
+           Case{"v 1 2 1e39\n" + good, "\"1e39\" is no finite number"},
+           Case{"v 1 2 3x\n" + good, "\"3x\" is no finite number"},
+           Case{"v 1 2 3 0.5\n" + good, "the vertex has the weight 0.5, must be 1"},
+           Case{"curv 1 2\n" + good, "\"curv\" begins no line of a mesh in OBJ"},
+           Case{"v!0  a", "\"v!0\" begins no line of a mesh in OBJ"},
+           Case{"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "the file has 0 facets"},
+       })
+    EXPECT_NE(refusal(c.text, "a.obj").find(c.words), std::string::npos) << refusal(c.text, "a.obj");
+}
+
 }  // namespace
 }  // namespace toothpath::test

@@ -215,5 +215,15 @@ TEST(GearboxReader, AnyTextGivesAReading) {
     EXPECT_FALSE(shaper::gearbox_program_faults(text, setup).empty()) << text;
 }
 
+TEST(GearboxReader, NumbersThatNoMachineHasAreNotUnderstood) {
+  EXPECT_EQ(shaper::micro("-9999999999.99999"), -9999999999999990);
+  EXPECT_EQ(shaper::micro("000000000000012."), 12000000);
+  for (const char* text : {"10000000000", "-99999999999999", "999999999999999.", "99999999999999.9"})
+    EXPECT_FALSE(shaper::micro(text)) << text;
+  EXPECT_EQ(shaper::whole("-999999999999"), -999999999999);
+  for (const char* text : {"1000000000000", "-9223372036854775808", "9223372036854775807", "9223372036854775808"})
+    EXPECT_FALSE(shaper::whole(text)) << text;
+}
+
 }  // namespace
 }  // namespace toothpath::test
