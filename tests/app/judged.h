@@ -27,16 +27,17 @@ struct OutputForm {
   }
 };
 
-/// Every form; the first ten have every control, with and without TCP, with vectors, in loops and written out.
+/// Every form. The first ten, of the face gears of a check, have every control, with and without TCP, with vectors, in
+/// loops and written out; the next six are those of the bevel gears.
 inline constexpr OutputForm kForms[] = {
-    {"linuxcnc", "none", true},      {"mitsubishi_m80", "none", true},  {"siemens", "vectors", true},
-    {"heidenhain", "angles", true},  {"apt", "vectors", false},         {"haas", "none", false},
-    {"fanuc", "angles", false},      {"fanuc", "none", true},           {"siemens", "none", true},
-    {"linuxcnc", "angles", false},   {"heidenhain", "vectors", true},   {"siemens", "angles", true},
-    {"fanuc", "none", false},        {"heidenhain", "none", true},      {"siemens", "angles", false},
-    {"linuxcnc", "none", false},     {"heidenhain", "none", false},     {"siemens", "vectors", false},
-    {"heidenhain", "angles", false}, {"mitsubishi_m80", "none", false}, {"heidenhain", "vectors", false},
-    {"siemens", "none", false}};
+    {"linuxcnc", "none", true},       {"mitsubishi_m80", "none", true}, {"siemens", "vectors", true},
+    {"heidenhain", "angles", true},   {"apt", "vectors", false},        {"haas", "none", false},
+    {"fanuc", "angles", false},       {"fanuc", "none", true},          {"heidenhain", "none", true},
+    {"linuxcnc", "angles", false},    {"heidenhain", "vectors", true},  {"siemens", "angles", true},
+    {"siemens", "none", true},        {"siemens", "angles", false},     {"linuxcnc", "none", false},
+    {"siemens", "vectors", false},    {"heidenhain", "none", false},    {"heidenhain", "angles", false},
+    {"heidenhain", "vectors", false}, {"siemens", "none", false},       {"fanuc", "none", false},
+    {"mitsubishi_m80", "none", false}};
 
 inline void replace_once(std::string& text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);
@@ -106,11 +107,13 @@ class JudgedPath {
   [[nodiscard]] const std::vector<MachineMove>& moves() const { return moves_; }
   [[nodiscard]] ToolPlace at(const MachineMove& move, double t) const {
     ToolPlace p = place_on(machine_, move, setup_.words, t);
-    p.tip -= setup_.origin;
-    if (setup_.down)
-      for (Vec3* v : {&p.tip, &p.axis}) v->tail<2>() *= -1;
+    p.tip = in_table(p.tip - setup_.origin);
+    p.axis = in_table(p.axis);
     return p;
   }
+  /// Directions of the gear frame in that of the table, and back: half a turn or none.
+  [[nodiscard]] Vec3 in_table(const Vec3& v) const { return setup_.down ? Vec3(v.x(), -v.y(), -v.z()) : v; }
+  [[nodiscard]] const PlainMachine& machine() const { return machine_; }
 
  private:
   PlainMachine machine_;
