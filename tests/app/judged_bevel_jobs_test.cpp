@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
 
 #include "app/job/file.h"
 #include "tests/app/judged.h"
+#include "tests/app/refusals.h"
 #include "tests/support/brute_force_bevel_gear.h"
 #include "tests/support/random_jobs.h"
 
@@ -18,10 +18,6 @@ namespace {
 
 constexpr double kBevelSlack = 1e-4;  // mm: of the judge itself
 constexpr int kProfilePlaces = 7, kWallPoints = 160, kRootPoints = 120, kOtherTeeth = 40;
-
-FingerMill mill_of(const tool::ToolAssembly& t) {
-  return {t.module_mm, t.tip_radius_mm, t.rack_depth_mm, t.profile_height_mm};
-}
 
 /// Other teeth, angles and proportions than those of `random_bevel_job`: one hand or two, every side of the limits.
 std::string random_judged_bevel_job(Random& random) {
@@ -71,29 +67,6 @@ std::string random_judged_bevel_job(Random& random) {
                     "[[operation]]\ntype = \"finger_finishing\"\ntool = 1\nspeed = 5000\nfeed = 250.0\nchord_tolerance "
                     "= {:.5f}\n[verify]\ngouge_tolerance = {:.4f}\n",
                     random(0.1, 0.3) * p.dedendum_mm, logarithmic(random, 0.0005, 0.003), random(0.003, 0.006));
-}
-
-/// The refusals of a bevel gear, each by another calculation: closed forms of the cutter, and the solid mill.
-bool confirms(const std::string& message, const bevel_gear::BevelGearParameters& p, const FingerMill& mill) {
-  const BruteForceBevelGear gear(p, mill);
-  std::smatch m;
-  const auto says = [&](const char* pattern) { return std::regex_search(message, m, std::regex(pattern)); };
-  const auto is = [&](std::size_t group, double value) {
-    return std::abs(std::stod(m[group]) - value) < 2e-4 * (1 + value);
-  };
-  if (says("relief_half_width = ([0-9.]+) is below ([0-9.]+), the reach of the corner fillet"))
-    return is(2, gear.corner_reach()) && p.relief_half_width_mm < gear.corner_reach();
-  if (says("leaves a half narrower than ([0-9.]+), twice the reach")) {
-    const double half = std::min(p.apex_cone_distance_mm - gear.inner(), gear.outer() - p.apex_cone_distance_mm);
-    return is(1, 2 * gear.corner_reach()) && half < 2 * gear.corner_reach();
-  }
-  if (says(R"(module = ([0-9.]+) exceeds ([0-9.]+) \(0.99 of the normal module)"))
-    return is(2, 0.99 * gear.normal_module(gear.inner())) && mill.module > 0.99 * gear.normal_module(gear.inner());
-  if (says("tip_radius = ([0-9.]+) exceeds ([0-9.]+), where (the cutter gets pointed)?")) {
-    const double largest = gear.mill().largest_tip_radii()[m[3].matched ? 0 : 1];
-    return is(2, largest) && mill.tip_radius > largest;
-  }
-  return false;
 }
 
 /// A motion and the tooth space in which it is.
@@ -351,8 +324,7 @@ TEST(JudgedBevelJobs, CutTheGearAndNothingElseInEveryForm) {
     SCOPED_TRACE(form.name() + "\n" + text + run.machine_text);
     if (run.outcome.exit_code == app::ExitCode::refused) {
       for (const Diagnostic& error : run.outcome.errors)
-        EXPECT_TRUE(confirms(error.message, *job.value().bevel_gear(), mill_of(job.value().tools.front())))
-            << error.text();
+        EXPECT_TRUE(refused_for_a_reason(error.message, job.value())) << error.text();
       continue;
     }
     ASSERT_EQ(run.outcome.exit_code, app::ExitCode::ok) << to_text(run.outcome.errors);

@@ -8,6 +8,7 @@
 
 #include "app/job/file.h"
 #include "tests/app/judged.h"
+#include "tests/app/refusals.h"
 #include "tests/support/brute_force_face_gear.h"
 #include "tests/support/random_jobs.h"
 
@@ -125,8 +126,12 @@ TEST(JudgedJobs, CutTheGearAndNothingElseInEveryForm) {
     const auto job = job::parse_job(text, "job.toml");
     if (!job || !job.value().face_gear() || job.value().face_gear()->shaft_angle_rad != 0.5 * kPi) continue;
     const JudgedRun run = run_judged(text, form, random);
-    if (run.outcome.exit_code == app::ExitCode::refused && run.report.is_null()) continue;  // random_jobs_test.cpp
     SCOPED_TRACE(form.name() + "\n" + text + run.machine_text);
+    if (run.outcome.exit_code == app::ExitCode::refused && run.report.is_null()) {
+      for (const Diagnostic& error : run.outcome.errors)
+        EXPECT_TRUE(refused_for_a_reason(error.message, job.value())) << error.text();
+      continue;
+    }
     ASSERT_EQ(run.outcome.exit_code, app::ExitCode::ok) << to_text(run.outcome.errors);
     JudgedSetup setup{{3, -2, 120}, false, {{3, -2, 0}, {0, job.value().tools.front().length_mm}}};
     Judged judged{gear_of(job.value()), {run.program, run.machine_text, setup}, {}};
