@@ -243,12 +243,16 @@ class BevelJudge {
     const int count = int(std::lround(2 * kPi / gear_.pitch()));
     return (int(std::lround(azimuth / gear_.pitch())) % count + count) % count;
   }
+  /// To within the last digits of the words: three behind the point of Fanuc and Haas, four and more of the others.
   [[nodiscard]] bool is_copy(const SpaceMove& one, const SpaceMove& other) const {
+    const std::string& control = path_.machine().control();
+    const bool coarse = control == "fanuc" || control == "haas";
+    const double of_tip = coarse ? 1.5e-3 : 2e-4, of_turn = coarse ? 2e-5 : 3e-6;
     const Eigen::AngleAxisd turn((other.space - one.space) * gear_.pitch(), Vec3::UnitZ());
     for (const double t : {0.0, 1.0}) {
       const ToolPlace a = path_.at(one.move, t), b = path_.at(other.move, t);
       const double radius = b.tip.head<2>().norm();
-      if ((turn * a.tip - b.tip).norm() > 1.5e-3 + radius * 2e-5 || (turn * a.axis - b.axis).norm() > 4e-5)
+      if ((turn * a.tip - b.tip).norm() > of_tip + radius * of_turn || (turn * a.axis - b.axis).norm() > 2 * of_turn)
         return false;
     }
     return true;
