@@ -72,7 +72,7 @@ std::string random_judged_bevel_job(Random& random) {
 /// A motion and the tooth space in which it is.
 struct SpaceMove {
   MachineMove move;
-  int space = 0;
+  int space = 0;  ///< -1: beside the blank, where turns of the tool and links are
 };
 
 struct Deepest {
@@ -90,11 +90,14 @@ class BevelJudge {
         length_(job.tools.front().length_mm),
         path_(program, machine, {{3, -2, 260}, true, {{3, -2, 0}, {0, length_}}}) {
     for (const MachineMove& move : path_.moves())
-      if (!move.rapid) cuts_.push_back({move, space_of(move)});
+      if (!move.rapid) cuts_.push_back({move, near_teeth(move) ? space_of(move) : -1});
+    for (const SpaceMove& cut : cuts_)
+      if (cut.space >= 0 && first_space_ < 0) first_space_ = cut.space;
   }
   [[nodiscard]] const std::vector<std::string>& faults() const { return path_.faults(); }
   [[nodiscard]] const std::vector<SpaceMove>& cuts() const { return cuts_; }
   [[nodiscard]] const BruteForceBevelGear& gear() const { return gear_; }
+  [[nodiscard]] int first_space() const { return first_space_; }
   [[nodiscard]] std::vector<const SpaceMove*> in_space(int space) const {
     std::vector<const SpaceMove*> out;
     for (const auto& c : cuts_)
@@ -115,15 +118,15 @@ class BevelJudge {
   /// The motions to look at: all of the first space; of the others those that are no turned copies of them to within
   /// the last digits, and some of the rest.
   [[nodiscard]] std::vector<const SpaceMove*> to_judge(std::uint64_t seed) const {
-    const auto first = in_space(cuts_.front().space);
+    const auto first = in_space(first_space_);
     std::vector<const SpaceMove*> out = first;
     std::vector<const SpaceMove*> copies;
     const int count = int(std::lround(2 * kPi / gear_.pitch()));
-    for (int space = 0; space < count; ++space) {
-      if (space == first.front()->space) continue;
+    for (int space = -1; space < count; ++space) {
+      if (space == first_space_) continue;
       const auto here = in_space(space);
       for (std::size_t k = 0; k < here.size(); ++k)
-        (here.size() == first.size() && is_copy(*here[k], *first[k]) ? copies : out).push_back(here[k]);
+        (space >= 0 && here.size() == first.size() && is_copy(*here[k], *first[k]) ? copies : out).push_back(here[k]);
     }
     Random random(seed);
     for (int k = 0; k < kOtherTeeth && !copies.empty(); ++k) out.push_back(copies[random.index(copies.size())]);
@@ -171,7 +174,11 @@ class BevelJudge {
   [[nodiscard]] double below_root(const std::vector<const SpaceMove*>& moves) const {
     double most = -1e9;
     for (const SpaceMove* m : moves)
-      for (const double t : {0.5, 1.0}) most = std::max(most, -dedendum_ - gear_.height_of(path_.at(m->move, t).tip));
+      for (const double t : {0.5, 1.0}) {
+        const Vec3 tip = path_.at(m->move, t).tip;
+        const double ell = gear_.ell_of(tip);
+        if (ell > gear_.inner() && ell < gear_.outer()) most = std::max(most, -dedendum_ - gear_.height_of(tip));
+      }
     return most;
   }
 
@@ -229,6 +236,15 @@ class BevelJudge {
     if (profile_.empty()) profile_ = gear_.mill().places(addendum_, kProfilePlaces);
     return profile_;
   }
+  [[nodiscard]] bool near_teeth(const MachineMove& move) const {
+    const double beside = 3 * gear_.mill().largest_radius();
+    for (const double t : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+      const Vec3 tip = path_.at(move, t).tip;
+      const double ell = gear_.ell_of(tip);
+      if (gear_.height_of(tip) < addendum_ && ell > gear_.inner() - beside && ell < gear_.outer() + beside) return true;
+    }
+    return false;
+  }
   [[nodiscard]] int space_of(const MachineMove& move) const {
     // Of both ends the one nearer to the middle of the face.
     double azimuth = 0, best = 1e9;
@@ -262,6 +278,7 @@ class BevelJudge {
   double dedendum_, addendum_, length_;
   JudgedPath path_;
   std::vector<SpaceMove> cuts_;
+  int first_space_ = -1;
   mutable std::vector<PlainFingerMill::Place> profile_;
 };
 
@@ -270,7 +287,7 @@ class BevelJudge {
 void expect_planted_faults_seen(const BevelJudge& good, const job::Job& job, const JudgedRun& run, double gouge,
                                 Random& random) {
   std::vector<const SpaceMove*> some;
-  const auto first = good.in_space(good.cuts().front().space);
+  const auto first = good.in_space(good.first_space());
   for (std::size_t k = 0; k < first.size(); k += 3) some.push_back(first[k]);
   const double thick = good.deepest(some, 0.02).depth;
   EXPECT_GT(thick, 0.0195);
@@ -280,7 +297,7 @@ void expect_planted_faults_seen(const BevelJudge& good, const job::Job& job, con
   for (int trial = 0; trial < 400 && !moved; ++trial) {
     const std::size_t cut = random.index(good.cuts().size() - 1);
     const SpaceMove &here = good.cuts()[cut], &next = good.cuts()[cut + 1];
-    if (next.space != here.space) continue;
+    if (here.space < 0 || next.space != here.space) continue;
     const Deepest before = good.deepest_at(here.move, 1);
     if (before.depth < -1e-3) continue;
     BevelJudge bad = good;
@@ -338,7 +355,7 @@ TEST(JudgedBevelJobs, CutTheGearAndNothingElseInEveryForm) {
     if (job.value().bevel_gear()->form == bevel_gear::BevelForm::herringbone) {
       EXPECT_LE(judge.gear().fillet_reach(), job.value().bevel_gear()->relief_half_width_mm);
     }
-    const auto first = judge.in_space(judge.cuts().front().space), looked_at = judge.to_judge(1);
+    const auto first = judge.in_space(judge.first_space()), looked_at = judge.to_judge(1);
     const Deepest gouge = judge.deepest(looked_at);
     const double root = judge.below_root(looked_at);
     const auto walls = judge.walls(first, 2);
