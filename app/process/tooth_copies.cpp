@@ -14,7 +14,8 @@
 namespace toothpath::process {
 namespace {
 
-constexpr double kReach = 1000;  // mm: the axis also moves shank and holder, less than a metre away
+constexpr double kReach =
+    1000;  // mm: the axis also moves shank and holder, less than a metre away; a copy is near there
 
 constexpr double kLike = 0.1;        // mm, the same way: motions farther apart tell little of each other
 constexpr double kLever = 10;        // mm: of an axis where its turn is weighed against a way of the tip
@@ -53,6 +54,16 @@ struct Pose {
   Vec3 tip, axis;
 };
 
+/// How far copies are away: no tip farther, no axis turned farther.
+struct Shift {
+  double tip_mm = 0, axis_rad = 0;
+  [[nodiscard]] double away() const { return tip_mm + kReach * axis_rad; }
+  void take_greater(const Shift& other) {
+    tip_mm = std::max(tip_mm, other.tip_mm);
+    axis_rad = std::max(axis_rad, other.axis_rad);
+  }
+};
+
 /// The first tooth and one that may be its copy.
 class Turned {
  public:
@@ -60,21 +71,29 @@ class Turned {
       : motions_(motions), c_(std::cos(turn)), s_(std::sin(turn)) {}
 
   /// Greatest distance of two blocks, the second one turned back, at the same share of their time. Between two ends of
-  /// pieces of either both are straight, so that it is met at such an end. mm, with what the axes do at the far end of
-  /// the tool.
-  [[nodiscard]] double distance(const Block& original, const Block& copy) const {
+  /// pieces of either both are straight, so that it is met at such an end; axes that are blended in a straight line and
+  /// made unit vectors again differ by the inverse of their least length more.
+  [[nodiscard]] Shift distance(const Block& original, const Block& copy) const {
     const std::size_t n = original.pieces(), m = copy.pieces();
-    double most = 0;
-    for (std::size_t k = 0; k <= n; ++k) most = std::max(most, apart(original, copy, k, n));
+    Shift most;
+    for (std::size_t k = 0; k <= n; ++k) most.take_greater(apart(original, copy, k, n));
     if (m != n)
-      for (std::size_t k = 0; k <= m; ++k) most = std::max(most, apart(original, copy, k, m));
+      for (std::size_t k = 0; k <= m; ++k) most.take_greater(apart(original, copy, k, m));
+    most.axis_rad /= std::min(least_length(original), least_length(copy));
     return most;
   }
 
  private:
-  [[nodiscard]] double apart(const Block& original, const Block& copy, std::size_t k, std::size_t of) const {
+  [[nodiscard]] Shift apart(const Block& original, const Block& copy, std::size_t k, std::size_t of) const {
     const Pose a = at(original, k, of), b = at(copy, k, of);
-    return (back(b.tip) - a.tip).norm() + kReach * (back(b.axis) - a.axis).norm();
+    return {(back(b.tip) - a.tip).norm(), (back(b.axis) - a.axis).norm()};
+  }
+  /// Of the axes while they are blended: in the middle.
+  [[nodiscard]] double least_length(const Block& block) const {
+    double least = 1;
+    for (std::size_t k = block.first; k < block.last; ++k)
+      least = std::min(least, 0.5 * (motions_[k].axis_from + motions_[k].axis_to).norm());
+    return least;
   }
   /// Where the block is at the share k / of of its time; exact at the ends of its own pieces.
   [[nodiscard]] Pose at(const Block& block, std::size_t k, std::size_t of) const {
@@ -90,27 +109,27 @@ class Turned {
 };
 
 /// Greatest distance of any block of a tooth from that of the first one; nothing where it is no copy.
-std::optional<double> shift_of(const Turned& turned, const std::vector<Block>& originals,
-                               const std::vector<Block>& copies, double tolerance_mm) {
+std::optional<Shift> shift_of(const Turned& turned, const std::vector<Block>& originals,
+                              const std::vector<Block>& copies, double tolerance_mm) {
   if (originals.size() != copies.size()) return std::nullopt;
-  double shift = 0;
+  Shift shift;
   for (std::size_t k = 0; k < originals.size(); ++k) {
-    shift = std::max(shift, turned.distance(originals[k], copies[k]));
-    if (!(shift <= tolerance_mm)) return std::nullopt;
+    shift.take_greater(turned.distance(originals[k], copies[k]));
+    if (!(shift.away() <= tolerance_mm)) return std::nullopt;
   }
   return shift;
 }
 
 /// The first tooth's block stands for the copy as well: it may stray as far as that does, and by their distance.
-void stand_for(std::vector<path::ToolMotion>& motions, const Block& original, const Block& copy, double shift) {
+void stand_for(std::vector<path::ToolMotion>& motions, const Block& original, const Block& copy, const Shift& shift) {
   double tip = 0, axis = 0;
   for (std::size_t k = copy.first; k < copy.last; ++k) {
     tip = std::max(tip, motions[k].deviation_mm);
     axis = std::max(axis, motions[k].axis_deviation);
   }
   for (std::size_t k = original.first; k < original.last; ++k) {
-    motions[k].deviation_mm = std::max(motions[k].deviation_mm, tip + shift);
-    motions[k].axis_deviation = std::max(motions[k].axis_deviation, axis);
+    motions[k].deviation_mm = std::max(motions[k].deviation_mm, tip + shift.tip_mm);
+    motions[k].axis_deviation = std::max(motions[k].axis_deviation, axis + shift.axis_rad);
   }
 }
 
@@ -241,7 +260,7 @@ std::vector<proof::LikeMotion> like_motions(const std::vector<path::ToolMotion>&
 std::vector<path::ToolMotion> without_copies(std::vector<path::ToolMotion> motions, int teeth, double tolerance_mm) {
   const Blocks cuts = cutting_blocks(motions);
   const std::map<int, int> first_tooth = first_teeth(motions);
-  std::map<ToothOfOperation, double> shifts;
+  std::map<ToothOfOperation, Shift> shifts;
   std::map<int, bool> copied;  // tooth -> in every operation
   for (const auto& [key, blocks] : cuts) {
     const auto& [operation, tooth] = key;

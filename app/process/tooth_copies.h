@@ -10,9 +10,9 @@
 namespace toothpath::process {
 
 /// Cutting motions of a tooth are left out where every operation cuts it as it cuts its own first tooth, turned about
-/// the gear axis, to within half a micrometre at every moment of every block. The distance found is added to the
-/// deviation of the first tooth's motions, so that what is proven of these holds for all. Rapids, and teeth that differ
-/// anywhere, are kept as they are.
+/// the gear axis, to within the tolerance at every moment of every block, up to a metre from the tip. How far tip and
+/// axis are found away is added to the deviations of the first tooth's motions, so that what is proven of these holds
+/// for all. Rapids, and teeth that differ anywhere, are kept as they are.
 /// @param motions  in program order, W; @param teeth  of the gear
 [[nodiscard]] std::vector<path::ToolMotion> without_copies(std::vector<path::ToolMotion> motions, int teeth,
                                                            double tolerance_mm);

@@ -58,10 +58,17 @@ void check_bevel_ranges(const BevelGearParameters& p, const FingerCutterData& c,
            c.profile_height_mm, p.addendum_mm);
 }
 
+namespace {
+
+double largest_tip_radius_not_pointed(const FingerProfile<double>& c) {
+  return c.line_radius(-c.h_f) * c.cos_phi / (1 - c.sin_phi);
+}
+
+}  // namespace
+
 double largest_tip_radius(const FingerProfile<double>& c) {
-  const double not_pointed = c.line_radius(-c.h_f) * c.cos_phi / (1 - c.sin_phi);
   const double below_C = (c.x_C + c.h_f) / (1 - c.sin_phi);
-  return std::min(not_pointed, below_C);
+  return std::min(largest_tip_radius_not_pointed(c), below_C);
 }
 
 double face_width_for_module(const BevelGear& g, double module) {
@@ -140,7 +147,9 @@ void check_form(const BevelGear& g, const FingerProfile<double>& c, const BevelL
         d.module_mm, c.line_radius(-c.h_f), c.h_f);
   else if (d.tip_radius_mm > lim.tip_radius_limit_mm)
     refuse(list, "tool.tip_radius", "tip_radius = {:.4f} exceeds {:.4f}, where {}", d.tip_radius_mm,
-           lim.tip_radius_limit_mm, c.rho_o < 0 ? "the cutter gets pointed" : "the corner arc reaches the involute");
+           lim.tip_radius_limit_mm,
+           lim.tip_radius_limit_mm < largest_tip_radius_not_pointed(c) ? "the corner arc reaches the involute"
+                                                                       : "the cutter gets pointed");
   if (c.base_circle_clips_C)
     warnings.push_back(
         fmt::format("point C of the cutter sits on the base circle: rack_depth = {:.4f} is not reached, only {:.4f}",

@@ -2,17 +2,13 @@
 // on any number of threads, or it is refused, and a calculation that shares nothing with the refusal says so too.
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "app/commands/run.h"
 #include "app/job/file.h"
 #include "geometry/base/hash.h"
-#include "geometry/face_gear/inverse.h"
-#include "geometry/face_gear/limits.h"
-#include "tests/support/brute_force_face_gear.h"
+#include "tests/app/refusals.h"
 #include "tests/support/files.h"
 #include "tests/support/random_jobs.h"
 #include "tests/support/threads.h"
@@ -43,98 +39,13 @@ Trial run_in(const TestDir& dir, const std::string& name, int seed) {
   return run;
 }
 
-/// Radius of a full round tip: its centre lies on the middle of the shaper's tooth, as far from the involute as from
-/// the tip circle.
-double full_round_tip(const face_gear::FaceGearParameters& p) {
-  const double n = p.shaper_teeth, pitch = 0.5 * p.module_mm * n, base = pitch * std::cos(p.pressure_angle_rad),
-               tip = pitch + (p.addendum_coefficient + p.clearance_coefficient) * p.module_mm;
-  const auto involute = [](double angle) { return std::tan(angle) - angle; };
-  double low = 0, high = tip - base;
-  for (int k = 0; k < 100; ++k) {
-    const double rho = 0.5 * (low + high);
-    const double room =
-        kPi / (2 * n) + involute(p.pressure_angle_rad) - involute(std::acos(base / (tip - rho))) - rho / base;
-    (room > 0 ? low : high) = rho;
-  }
-  return low;
-}
-
-/// The refusals of a face gear, each by another calculation: closed forms, and the solid shaper swept past points.
-class FaceRefusals {
- public:
-  explicit FaceRefusals(const face_gear::FaceGearParameters& p) : p_(p) {}
-
-  /// Is what the message says true? Messages of other kinds are not.
-  [[nodiscard]] bool confirm(const std::string& message) const {
-    const auto number = [&](const char* pattern) {
-      std::smatch found;
-      return std::regex_search(message, found, std::regex(pattern)) ? std::stod(found[1]) : NAN;
-    };
-    if (const double limit = number("the full round tip has ([0-9.]+) mm"); !std::isnan(limit))
-      return p_.shaper_tip_radius_mm > limit && std::abs(full_round_tip(p_) - limit) < 1e-4;
-    const double inner = number("inner_radius = ([0-9.]+) mm"), outer = number("outer_radius = ([0-9.]+) mm");
-    if (const double limit = number("the gear's base radius ([0-9.]+) mm"); !std::isnan(limit))
-      return inner <= limit && std::abs(base_radius(zone_with(inner, true)) - limit) < 1e-4;
-    if (message.find("lies inside the undercut limit") != std::string::npos)
-      return undercut(zone_with(inner, true), int(number("flank side ([+-]1)")));
-    if (message.find("exceeds the pointing limit") != std::string::npos) return pointed(zone_with(outer, false));
-    return false;
-  }
-
- private:
-  [[nodiscard]] const face_gear::FaceGearZone& zone_with(double radius, bool inner) const {
-    const face_gear::FaceGearZone* nearest = &p_.zones.front();
-    const auto off = [&](const face_gear::FaceGearZone& z) {
-      return std::abs((inner ? z.inner_radius_mm : z.outer_radius_mm) - radius);
-    };
-    for (const auto& zone : p_.zones)
-      if (off(zone) < off(*nearest)) nearest = &zone;
-    return *nearest;
-  }
-  /// A normal of the involute has the moment r_b cos(base helix) about the shaper's axis, and N_2 / N_s of it about the
-  /// gear's; no unit vector has more than its distance.
-  [[nodiscard]] double base_radius(const face_gear::FaceGearZone& zone) const {
-    const double base = 0.5 * p_.module_mm * p_.shaper_teeth * std::cos(p_.pressure_angle_rad);
-    return base * BruteForceFaceGear(p_, zone.helix_angle_rad).cos_base_helix() * p_.teeth / p_.shaper_teeth;
-  }
-  /// The fillet as it would begin at the inner radius is cut away by the shaper in another position, or there is none.
-  [[nodiscard]] bool undercut(const face_gear::FaceGearZone& zone, int side) const {
-    const auto surface = face_gear::make_surface<double>(p_, zone.helix_angle_rad);
-    const BruteForceFaceGear sweep(p_, zone.helix_angle_rad);
-    const double start = surface.shaper.A_t + 1e-9;
-    for (const auto& flank : face_gear::zone_limits(surface, p_.module_mm).flanks) {
-      if (flank.side != side || !flank.undercut_radius) continue;
-      const double cusp = surface.flank_Z(side, surface.shaper.theta_t, *flank.undercut_B);
-      const double below = zone.inner_radius_mm - *flank.undercut_radius;
-      const auto z = face_gear::fillet_Z_at_radius(surface, side, start, zone.inner_radius_mm, cusp + below);
-      return !z || sweep.least_clearance(surface.fillet(side, start, *z).p) < -1e-7;
-    }
-    return false;
-  }
-  /// No place of the tip surface at the outer radius is left.
-  [[nodiscard]] bool pointed(const face_gear::FaceGearZone& zone) const {
-    const auto surface = face_gear::make_surface<double>(p_, zone.helix_angle_rad);
-    const BruteForceFaceGear sweep(p_, zone.helix_angle_rad);
-    const double r = zone.outer_radius_mm;
-    for (int k = 0; k < 400; ++k) {
-      const double azimuth = surface.pitch * k / 400;
-      if (sweep.least_clearance({r * std::cos(azimuth), r * std::sin(azimuth), surface.z_tip(r)}) > 0) return false;
-    }
-    return true;
-  }
-
-  const face_gear::FaceGearParameters& p_;
-};
-
 void expect_refused_for_a_reason(const Trial& run) {
   const auto job = job::parse_job(run.job, "job.toml");
   ASSERT_TRUE(job) << to_text(job.error());
-  ASSERT_NE(job.value().face_gear(), nullptr) << to_text(run.outcome.errors) << run.job;
-  const FaceRefusals refusals(*job.value().face_gear());
   ASSERT_FALSE(run.outcome.errors.empty());
   for (const Diagnostic& error : run.outcome.errors) {
     EXPECT_EQ(error.kind, DiagnosticKind::refused_input);
-    EXPECT_TRUE(refusals.confirm(error.message)) << error.text() << "\n" << run.job;
+    EXPECT_TRUE(refused_for_a_reason(error.message, job.value())) << error.text() << "\n" << run.job;
   }
 }
 
@@ -179,6 +90,18 @@ TEST(RandomJobsJudge, DeniesRefusalsOfAGoodGear) {
         "inner_radius = 60.0000 mm is not above the gear's base radius 61.0000 mm: no flank",
         "outer_radius = 65.0000 mm exceeds the pointing limit R2 = 64.0000 mm", "no"})
     EXPECT_FALSE(refusals.confirm(message)) << message;
+}
+
+TEST(RandomJobsJudge, DeniesRefusalsOfAGoodBevelGear) {
+  const auto job = job::parse_job(file_text(TOOTHPATH_SOURCE_DIR "/samples/bevel_trunnion.toml"), "job.toml");
+  ASSERT_TRUE(job);
+  for (const char* message :
+       {"relief_half_width = 1.1000 is below 1.2000, the reach of the corner fillet at the tip",
+        "relief_half_width = 1.1000 is below 0.7794, the reach of the corner fillet at the tip",
+        "apex_cone_distance = 25.4500 leaves a half narrower than 1.5589, twice the reach of the corner fillet",
+        "module = 0.7200 exceeds 0.7351 (0.99 of the normal module 0.7426 at the small end)",
+        "tip_radius = 0.1200 exceeds 0.1605, where the cutter gets pointed", "no"})
+    EXPECT_FALSE(refused_for_a_reason(message, job.value())) << message;
 }
 
 class RandomThreads : public ::testing::TestWithParam<int> {};

@@ -58,7 +58,7 @@ double BruteForceFaceGear::clearance(const Vec3& point, double phi) const {
   return std::max(to_involute, to_tip);
 }
 
-double BruteForceFaceGear::least_clearance(const Vec3& point) const {
+double BruteForceFaceGear::least_clearance(const Vec3& point, double enough) const {
   const double r = std::hypot(point.x(), point.y()), azimuth = std::atan2(point.y(), point.x());
   // All phi at which the point can be within the tip cylinder: |y| <= r_a, and one step more on both sides.
   const double low = std::asin(std::clamp((offset_ - r_a_) / r, -1.0, 1.0));
@@ -67,7 +67,10 @@ double BruteForceFaceGear::least_clearance(const Vec3& point) const {
   const double start = (low - azimuth) / ratio_ - step;
   const int count = int(std::ceil((high - low) / ratio_ / step)) + 3;
   std::vector<double> sampled(static_cast<std::size_t>(count));
-  for (int k = 0; k < count; ++k) sampled[std::size_t(k)] = clearance(point, start + k * step);
+  for (int k = 0; k < count; ++k) {
+    const double f = sampled[std::size_t(k)] = clearance(point, start + k * step);
+    if (f <= enough) return f;
+  }
   std::vector<std::pair<double, int>> minima;
   for (int k = 1; k + 1 < count; ++k) {
     const double f = sampled[std::size_t(k)];

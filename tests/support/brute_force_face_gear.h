@@ -2,6 +2,8 @@
 // meshing. Shares no formula with geometry/: it starts from the parameters alone.
 #pragma once
 
+#include <cmath>
+
 #include "geometry/base/vec.h"
 #include "geometry/face_gear/parameters.h"
 
@@ -17,7 +19,8 @@ class BruteForceFaceGear {
 
   /// Least clearance over the whole motion: 0 on the finished surface, > 0 in the remaining material, < 0 where cut.
   /// Times `cos_base_helix()` it is the normal distance of a point to the involute flank.
-  [[nodiscard]] double least_clearance(const Vec3& point) const;
+  /// @param enough ends the search with the first value found at or below it
+  [[nodiscard]] double least_clearance(const Vec3& point, double enough = -INFINITY) const;
 
   [[nodiscard]] double cos_base_helix() const { return cos_base_helix_; }
 
