@@ -3,7 +3,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 
 namespace toothpath::ball {
@@ -11,6 +13,8 @@ namespace {
 
 constexpr double kMostTurn = 0.25;    // rad/mm
 constexpr double kFirstWindow = 0.2;  // tangent about the reference
+constexpr double kSameStep = 1e-9;    // mm
+constexpr double kWhole = 10;         // beyond any grid
 constexpr int kRepairs = 60;          // steps that are not clear half-way and must be gone around
 constexpr std::size_t kBatch = 32;    // candidates looked at together
 
@@ -39,6 +43,15 @@ class Lattice {
     });
   }
 
+  /// Asks for all leans, square by square.
+  void ask_all(const LeansInSquare& square) {
+    tbb::parallel_for(std::size_t(0), way_.s.size(), [&](std::size_t k) {
+      int wide = 1;
+      while (wide < 2 * grid_.half + 1) wide *= 2;
+      ask_square(k, -grid_.half, -grid_.half, wide, square);
+    });
+  }
+
   /// Steps from a lean at a station to one at the next that are not clear half-way.
   using Forbidden = std::set<std::pair<std::size_t, std::size_t>>;
 
@@ -58,9 +71,9 @@ class Lattice {
   [[nodiscard]] Layer layer(const Forbidden& forbidden, const std::vector<double>& start) const {
     const std::size_t n = way_.s.size(), m = grid_.leans.size();
     Layer out{std::vector<double>(n * m, INFINITY), std::vector<int>(n * m, -1)};
-    const double ds = way_.s[1] - way_.s[0];
-    const int steps = std::max(1, int(std::floor(kMostTurn * ds / grid_.step)));
-    for (std::size_t k = 0; k < n; ++k)
+    for (std::size_t k = 0; k < n; ++k) {
+      const double ds = way_.step(k);
+      const int steps = std::max(1, int(std::floor(kMostTurn * ds / grid_.step)));
       for (std::size_t g = 0; g < m; ++g) {
         if (known_[at(k, g)] != kClear) continue;
         const double own = ds * (kLeanWeight * grid_.leans[g].squaredNorm() +
@@ -81,6 +94,7 @@ class Lattice {
             }
         out.cost[at(k, g)] = own + best;
       }
+    }
     return out;
   }
 
@@ -133,6 +147,28 @@ class Lattice {
   }
 
  private:
+  void settle(std::size_t station, int x, int y, int wide, char known) {
+    for (int i = x; i < std::min(x + wide, grid_.half + 1); ++i)
+      for (int j = y; j < std::min(y + wide, grid_.half + 1); ++j)
+        if (const int g = index_[cell(i, j)]; g >= 0) known_[at(station, std::size_t(g))] = known;
+  }
+  /// The cells from (x, y) on, so many in both directions.
+  void ask_square(std::size_t station, int x, int y, int wide, const LeansInSquare& square) {
+    if (x > grid_.half || y > grid_.half) return;
+    if (wide == 1) {
+      const int g = index_[cell(x, y)];
+      if (g < 0) return;
+      char& known = known_[at(station, std::size_t(g))];
+      known = clear_(station, grid_.leans[std::size_t(g)]) ? kClear : kBlocked;
+      return;
+    }
+    const double half = 0.5 * (wide - 1) * grid_.step;
+    const Leans all = square(station, Vec2(x * grid_.step + half, y * grid_.step + half), half);
+    if (all != Leans::mixed) return settle(station, x, y, wide, all == Leans::all_clear ? kClear : kBlocked);
+    for (const int dx : {0, wide / 2})
+      for (const int dy : {0, wide / 2}) ask_square(station, x + dx, y + dy, wide / 2, square);
+  }
+
   /// The way of a layer that ends at a station with the best lean, from the station where it begins.
   std::vector<std::size_t> back(const Layer& layer, std::size_t end, std::size_t& begin) const {
     std::vector<std::size_t> way{layer.best(end, grid_.leans.size())};
@@ -174,6 +210,11 @@ LeanGrid::LeanGrid(double widest_tangent, double step_tangent)
   for (const auto& [x, y] : cells) leans.emplace_back(x * step, y * step);
 }
 
+double OrientationWay::step(std::size_t station) const {
+  const double first = s[1] - s[0], own = station == 0 ? first : s[station] - s[station - 1];
+  return std::abs(own - first) < kSameStep ? first : own;  // even stations are told by one number
+}
+
 Vec2 OrientationWay::lean_at(double radius) const {
   const bool outward = r.back() >= r.front();
   for (std::size_t k = 1; k < r.size(); ++k) {
@@ -193,12 +234,38 @@ Vec2 OrientationWay::lean_along(double at, bool smooth) const {
   if (!smooth) return a + t * (b - a);
   Vec2 out;
   for (int i = 0; i < 2; ++i) {
-    const double rise = b[i] - a[i];  // over one station; the spacing is even
-    const double m0 = k >= 2 ? slope(a[i] - lean[k - 2][i], rise) : 0,
-                 m1 = k + 1 < n ? slope(rise, lean[k + 1][i] - b[i]) : 0;
+    const double rise = b[i] - a[i];  // slopes are told over this step
+    const double m0 = k >= 2 ? slope((a[i] - lean[k - 2][i]) * (step(k) / step(k - 1)), rise) : 0,
+                 m1 = k + 1 < n ? slope(rise, (lean[k + 1][i] - b[i]) * (step(k) / step(k + 1))) : 0;
     out[i] = a[i] + t * (m0 + t * (3 * rise - 2 * m0 - m1 + t * (m0 + m1 - 2 * rise)));
   }
   return out;
+}
+
+std::optional<Vec2> find_clear_lean(double widest_tangent, double finest, const Vec2& near,
+                                    const std::function<Leans(const Vec2& centre, double half)>& square,
+                                    const std::function<bool(const Vec2& lean)>& clear) {
+  struct Square {
+    Vec2 centre;
+    double half;
+  };
+  std::vector<Square> open{{Vec2(0, 0), widest_tangent}};
+  while (!open.empty()) {
+    const auto [centre, half] = open.back();
+    open.pop_back();
+    if (centre.norm() - half * std::numbers::sqrt2 > widest_tangent || square(centre, half) == Leans::none_clear)
+      continue;
+    if (centre.norm() <= widest_tangent && clear(centre)) return centre;
+    if (2 * half < finest) continue;
+    std::array<Square, 4> parts;
+    for (std::size_t k = 0; k < 4; ++k)
+      parts[k] = {centre + 0.5 * half * Vec2(k % 2 == 0 ? -1 : 1, k < 2 ? -1 : 1), 0.5 * half};
+    std::stable_sort(parts.begin(), parts.end(), [&](const Square& a, const Square& b) {
+      return (a.centre - near).squaredNorm() > (b.centre - near).squaredNorm();
+    });
+    open.insert(open.end(), parts.begin(), parts.end());
+  }
+  return {};
 }
 
 bool find_constant(OrientationWay& way, const LeanGrid& grid, const LeanReference& reference,
@@ -231,11 +298,13 @@ bool find_constant(OrientationWay& way, const LeanGrid& grid, const LeanReferenc
 }
 
 WayFound find_way(OrientationWay& way, const LeanGrid& grid, const LeanReference& reference, const LeanIsClear& clear,
-                  const HalfWayIsClear& half_way) {
+                  const HalfWayIsClear& half_way, const LeansInSquare& square) {
   Lattice lattice(way, grid, reference, clear);
   WayFound result;
-  for (const double window : {kFirstWindow, 10.0}) {
-    lattice.ask(window);
+  for (const double window : {kFirstWindow, kWhole}) {
+    if (square && window != kWhole) continue;
+    if (square) lattice.ask_all(square);
+    else lattice.ask(window);
     Lattice::Forbidden forbidden;
     for (int repair = 0; repair <= kRepairs; ++repair) {
       std::size_t reached = 0;
@@ -262,9 +331,11 @@ WayFound find_way(OrientationWay& way, const LeanGrid& grid, const LeanReference
 }
 
 std::vector<WayStroke> find_strokes(const OrientationWay& way, const LeanGrid& grid, const LeanReference& reference,
-                                    const LeanIsClear& clear, const HalfWayIsClear& half_way, std::size_t& blocked_at) {
+                                    const LeanIsClear& clear, const HalfWayIsClear& half_way, std::size_t& blocked_at,
+                                    const LeansInSquare& square) {
   Lattice lattice(way, grid, reference, clear);
-  lattice.ask(10.0);
+  if (square) lattice.ask_all(square);
+  else lattice.ask(kWhole);
   for (const std::size_t overlap : {std::size_t(1), std::size_t(0)}) {
     Lattice::Forbidden forbidden;
     for (int repair = 0; repair <= kRepairs; ++repair) {

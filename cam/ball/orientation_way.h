@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "cam/ball/finishing.h"
@@ -35,6 +37,8 @@ struct OrientationWay {
   bool constant = false, solved = false;
   bool tight = false;  ///< little room: searched at closer stations with the least margin
 
+  /// mm from the station before to a station; of the first one to the next.
+  [[nodiscard]] double step(std::size_t station) const;
   /// Lean at a radius, straight between the stations, constant beyond the ends.
   [[nodiscard]] Vec2 lean_at(double radius) const;
   /// Lean at s. Smooth: a cubic with limited slopes, which has a continuous derivative and never leaves the box of its
@@ -51,6 +55,16 @@ using HalfWayIsClear = std::function<bool(std::size_t station, const Vec2& lean,
 [[nodiscard]] bool find_constant(OrientationWay& way, const LeanGrid& grid, const LeanReference& reference,
                                  const LeanIsClear& clear);
 
+/// What is known of a square of leans about `centre`, `half` to each side.
+enum class Leans : std::uint8_t { mixed, none_clear, all_clear };
+using LeansInSquare = std::function<Leans(std::size_t station, const Vec2& centre, double half)>;
+
+/// A clear lean within the widest tangent, found by halving squares of leans, those nearest to `near` first; none where
+/// no lean of any square is clear, but for squares smaller than `finest` that are not clear at their centres.
+[[nodiscard]] std::optional<Vec2> find_clear_lean(double widest_tangent, double finest, const Vec2& near,
+                                                  const std::function<Leans(const Vec2& centre, double half)>& square,
+                                                  const std::function<bool(const Vec2& lean)>& clear);
+
 struct WayFound {
   bool found = false;
   std::size_t blocked_at = 0;  ///< first station that is not reached
@@ -58,9 +72,11 @@ struct WayFound {
 };
 
 /// The cheapest way through the clear leans by dynamic programming over stations and grid; between two stations the
-/// lean turns by at most 0.25 rad/mm. Looks near the reference first, then at the whole grid.
+/// lean turns by at most 0.25 rad/mm. Looks near the reference first, then at the whole grid; with `square` at once,
+/// square by square: that is for fine grids.
 [[nodiscard]] WayFound find_way(OrientationWay& way, const LeanGrid& grid, const LeanReference& reference,
-                                const LeanIsClear& clear, const HalfWayIsClear& half_way);
+                                const LeanIsClear& clear, const HalfWayIsClear& half_way,
+                                const LeansInSquare& square = {});
 
 /// A part of a pass that is cut in one stroke: from station to station, one lean a station.
 struct WayStroke {
@@ -74,6 +90,7 @@ inline constexpr std::size_t kMostStrokes = 4;
 /// no lean allows more. Empty: there are none. `blocked_at` is the first station that no stroke reaches.
 [[nodiscard]] std::vector<WayStroke> find_strokes(const OrientationWay& way, const LeanGrid& grid,
                                                   const LeanReference& reference, const LeanIsClear& clear,
-                                                  const HalfWayIsClear& half_way, std::size_t& blocked_at);
+                                                  const HalfWayIsClear& half_way, std::size_t& blocked_at,
+                                                  const LeansInSquare& square = {});
 
 }  // namespace toothpath::ball

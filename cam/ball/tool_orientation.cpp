@@ -4,8 +4,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <numbers>
 
 #include "cam/ball/orientation_way.h"
 #include "geometry/base/angle.h"
@@ -17,16 +19,16 @@ std::atomic<std::size_t> runs{0};
 
 constexpr double kGapResolution = 0.01;  // mm, of gaps
 constexpr double kStation = 0.7;         // mm between stations, at most
-constexpr double kTightStation = 0.35;   // mm: where there is little room
-constexpr double kPlace = 0.3;           // mm between the places of the records that are looked at
+constexpr double kWidestTurn = 0.5;      // rad: of squares that are asked as one
+constexpr double kShortestWay = 0.004;   // mm: a motion is halved to this
+constexpr int kCloser = 8;               // pieces of a step where directions do not join
+constexpr int kLooks = 3;                // at such steps of a pass
 constexpr int kArcPlaces = 8;            // of a turn between two stations, where its distance to the pole is asked
 constexpr int kSweeps = 16;              // of the relaxation
 constexpr double kSettled = 0.002;       // tangent: the relaxation ends when no direction moves by more
 constexpr int kRounds = 9;               // searches for a pass that is not clear between its stations
 constexpr int kRoundsOfStations = 3;     // of them, until the stations are halved
 constexpr double kFarthestGap = 2.0;     // mm: gaps beyond are not measured
-constexpr double kDeepest = 3.0;         // mm: how far a body that cuts in is followed
-constexpr double kLongestStickOut = 60;  // mm: how much longer a tool is looked for, when a job is refused
 
 class Orienter {
  public:
@@ -36,9 +38,16 @@ class Orienter {
         tool_(tool),
         o_(o),
         passes_(passes),
+        whole_(passes),
+        part_(part),
+        zone_(zone),
         check_(part, tree, zone, tool, o),
+        words_(part, tree, zone, tool, o),
         grid_(std::tan(o.widest_lean_rad)),
-        fine_(std::tan(o.widest_lean_rad), 0.5 * grid_.step) {}
+        fine_(std::tan(o.widest_lean_rad), 0.5 * grid_.step),
+        narrow_(std::tan(o.widest_lean_rad), 0.25 * grid_.step),
+        wide_(std::tan(o.farthest_lean_rad), 0.25 * grid_.step),
+        finest_(std::tan(o.widest_lean_rad), 0.125 * grid_.step) {}
 
   Expected<Orientation, OrientationRefusal> run() {
     for (const auto& pass : passes_) {
@@ -48,11 +57,9 @@ class Orienter {
     find_neighbours();
     for (std::size_t p = 0; p < ways_.size(); ++p) {
       if (search(p)) continue;
+      const std::size_t before = ways_.size();
       if (!search_tight(p)) return *refusal_;
-      if (strokes_.empty()) continue;
-      const std::size_t strokes = strokes_.size();
-      split(p);
-      p += strokes - 1;
+      p += ways_.size() - before;  // strokes of it
     }
     relax();
     for (std::size_t p = 0; p < ways_.size(); ++p)
@@ -61,12 +68,27 @@ class Orienter {
   }
 
  private:
+  /// Are the same passes planned with another tool?
+  [[nodiscard]] RefusalWords::Plans plans() const {
+    return [this](const tool::ToolAssembly& tool) {
+      std::vector<BallPass> passes = whole_;
+      Orienter other(part_, tree_, zone_, tool, o_, passes);
+      other.silent_ = true;
+      return !other.run().refused();
+    };
+  }
+
   OrientationWay make_way(const PassTrack& track, double spacing) const {
-    OrientationWay way;
     const double length = track.at().back();
     const int count = std::max(2, int(std::ceil(length / spacing)));
-    for (int k = 0; k <= count; ++k) {
-      way.s.push_back(length * k / count);
+    std::vector<double> at;
+    for (int k = 0; k <= count; ++k) at.push_back(length * k / count);
+    return make_way(track, at);
+  }
+  static OrientationWay make_way(const PassTrack& track, const std::vector<double>& at) {
+    OrientationWay way;
+    for (const double s : at) {
+      way.s.push_back(s);
       way.points.push_back(track.point(way.s.back()));
       way.r.push_back(radius(way.points.back().centre));
       way.lean.emplace_back(0, 0);
@@ -97,11 +119,25 @@ class Orienter {
   }
   /// At a station and at the places that are asked with it.
   [[nodiscard]] bool clear_about(const OrientationWay& way, std::size_t station, const Vec2& lean, bool turning) const {
-    const double half = 0.5 * (way.s[1] - way.s[0]);
+    const double before = 0.5 * way.step(station), after = 0.5 * way.step(std::min(station + 1, way.s.size() - 1));
     return clear_at(way, way.points[station], lean, turning) &&
            std::all_of(way.also.begin(), way.also.end(), [&](const auto& place) {
-             return std::abs(place.first - way.s[station]) > half + 1e-9 || clear_at(way, place.second, lean, turning);
+             const double off = place.first - way.s[station];
+             return -off > before + 1e-9 || off > after + 1e-9 || clear_at(way, place.second, lean, turning);
            });
+  }
+  /// Of a square of leans at a place. Two leans are no farther apart as axes than as tangents.
+  [[nodiscard]] Leans leans_about(const OrientationWay& way, const BallPass::Point& point, const Vec2& centre,
+                                  double half) const {
+    const double margin = way.tight ? kTightMargin : o_.margin_mm;
+    return check_.about(point, check_.frame().axis(centre.x(), centre.y()), half * std::numbers::sqrt2,
+                        o_.clearance_mm + margin, way.tight ? kTightResolution : kGapResolution);
+  }
+  /// At a station of a way that turns: with the places that are asked with it, and the pole.
+  [[nodiscard]] Leans leans_at(const OrientationWay& way, std::size_t station, const Vec2& centre, double half) const {
+    const Leans here = leans_about(way, way.points[station], centre, half);
+    const double off = off_pole(check_.frame().axis(centre.x(), centre.y())) - half * std::numbers::sqrt2;
+    return here == Leans::all_clear && (!way.also.empty() || off < o_.least_tilt_rad) ? Leans::mixed : here;
   }
   /// Half-way between two stations, and the whole turn away from the pole.
   [[nodiscard]] bool clear_between(const OrientationWay& way, std::size_t station, std::size_t next, const Vec2& a,
@@ -110,6 +146,9 @@ class Orienter {
       const Vec2 q = a + double(k) / kArcPlaces * (b - a);
       if (!check_.away_from_pole(check_.frame().axis(q.x(), q.y()))) return false;
     }
+    if (way.tight)
+      return !check_.not_kept({0, way.points[station], check_.frame().axis(a.x(), a.y())},
+                              {1, way.points[next], check_.frame().axis(b.x(), b.y())}, o_.clearance_mm + kProofRoom);
     return clear_at(way, blend_points(way.points[station], way.points[next], 0.5), 0.5 * (a + b), true, 0.5);
   }
 
@@ -118,6 +157,7 @@ class Orienter {
     LeanReference reference;
     LeanIsClear clear, clear_turning;
     HalfWayIsClear between;
+    LeansInSquare square;
   };
   [[nodiscard]] Questions questions(const OrientationWay& way) const {
     const OrientationWay* like = nullptr;
@@ -134,6 +174,9 @@ class Orienter {
     ask.between = [this, &way](std::size_t station, const Vec2& a, const Vec2& b) {
       return clear_between(way, station, station + 1, a, b);
     };
+    ask.square = [this, &way](std::size_t station, const Vec2& centre, double half) {
+      return leans_at(way, station, centre, half);
+    };
     return ask;
   }
 
@@ -143,37 +186,69 @@ class Orienter {
     const Questions ask = questions(way);
     for (const LeanGrid* grid : {&grid_, &fine_}) {
       if (find_constant(way, *grid, ask.reference, ask.clear)) return true;
-      if (find_way(way, *grid, ask.reference, ask.clear_turning, ask.between).found) return true;
+      const LeansInSquare square = grid == &grid_ ? LeansInSquare() : ask.square;
+      if (find_way(way, *grid, ask.reference, ask.clear_turning, ask.between, square).found) return true;
     }
     return false;
   }
 
-  /// Where that finds nothing: closer stations and the least margin, and at last more than one stroke.
+  /// Where that finds nothing: closer stations and the least margin, more than one stroke, finer grids.
   bool search_tight(std::size_t p) {
-    strokes_.clear();
     std::size_t blocked_at = 0;
+    if (!all_asked_ && any_blocked()) return refuse_place();
     for (const double spacing : {kTightStation, kTightStation / 2}) {
       renew(p, spacing, true);
-      const OrientationWay& way = ways_[p];
-      const Questions ask = questions(way);
-      if (const auto none = first_blocked(way, ask)) {
-        refusal_ = blocked(way, *none);
-        return false;
-      }
+      if (first_blocked(ways_[p])) return refuse_place();
       if (spacing == kTightStation && search(p)) return true;
-      strokes_ = find_strokes(way, grid_, ask.reference, ask.clear_turning, ask.between, blocked_at);
-      if (strokes_.empty())
-        strokes_ = find_strokes(way, fine_, ask.reference, ask.clear_turning, ask.between, blocked_at);
-      if (!strokes_.empty()) return true;
+      if (search_strokes(p, blocked_at)) return true;
     }
-    refusal_ = parted(ways_[p], blocked_at);
+    for (int look = 0; look < kLooks && blocked_at > 0; ++look) {
+      look_closer(p, blocked_at);
+      if (first_blocked(ways_[p])) return refuse_place();
+      if (in_strokes(p, finest_, blocked_at)) return true;
+    }
+    refusal_ = silent_ ? OrientationRefusal{} : words_.parted(ways_[p], blocked_at, plans());
     return false;
   }
+  bool refuse_place() {
+    refusal_ = silent_ ? OrientationRefusal{} : words_.blocked(whole_, plans());
+    return false;
+  }
+  bool search_strokes(std::size_t p, std::size_t& blocked_at) {
+    return std::any_of(kGrids.begin(), kGrids.end(), [&](auto grid) { return in_strokes(p, this->*grid, blocked_at); });
+  }
+  /// As few strokes as do, one if possible; splits the pass where it is more.
+  bool in_strokes(std::size_t p, const LeanGrid& grid, std::size_t& blocked_at) {
+    OrientationWay& way = ways_[p];
+    const Questions ask = questions(way);
+    auto strokes = find_strokes(way, grid, ask.reference, ask.clear_turning, ask.between, blocked_at, ask.square);
+    if (strokes.empty()) return false;
+    if (strokes.size() > 1) {
+      split(p, strokes);
+    } else {
+      way.lean = std::move(strokes.front().lean);
+      way.constant = false;
+      way.solved = true;
+    }
+    return true;
+  }
+  /// Is there a place on any pass at which no lean is clear? Asked once, before anything that takes long.
+  bool any_blocked() {
+    all_asked_ = true;
+    return std::any_of(tracks_.begin(), tracks_.end(), [&](const PassTrack& track) {
+      OrientationWay way = make_way(track, kTightStation);
+      way.tight = true;
+      return first_blocked(way).has_value();
+    });
+  }
   /// A station at which no lean is clear.
-  [[nodiscard]] std::optional<std::size_t> first_blocked(const OrientationWay& way, const Questions& ask) const {
+  [[nodiscard]] std::optional<std::size_t> first_blocked(const OrientationWay& way) const {
     std::vector<char> none(way.s.size());
     tbb::parallel_for(std::size_t(0), none.size(), [&](std::size_t k) {
-      none[k] = std::none_of(fine_.leans.begin(), fine_.leans.end(), [&](const Vec2& q) { return ask.clear(k, q); });
+      none[k] = !find_clear_lean(
+          std::tan(o_.farthest_lean_rad), kFinestLean, Vec2(0, 0),
+          [&](const Vec2& centre, double half) { return leans_about(way, way.points[k], centre, half); },
+          [&](const Vec2& lean) { return clear_at(way, way.points[k], lean, false); });
     });
     const auto first = std::find(none.begin(), none.end(), 1);
     if (first == none.end()) return {};
@@ -181,8 +256,15 @@ class Orienter {
   }
 
   /// Other stations for a way.
-  void renew(std::size_t p, double spacing, bool tight) {
-    OrientationWay way = make_way(tracks_[p], spacing);
+  void renew(std::size_t p, double spacing, bool tight) { take(p, make_way(tracks_[p], spacing), tight); }
+  /// More of them between a station and the one before it.
+  void look_closer(std::size_t p, std::size_t station) {
+    std::vector<double> at = ways_[p].s;
+    const double from = at[station - 1], to = at[station];
+    for (int k = kCloser - 1; k > 0; --k) at.insert(at.begin() + long(station), from + (to - from) * k / kCloser);
+    take(p, make_way(tracks_[p], at), true);
+  }
+  void take(std::size_t p, OrientationWay way, bool tight) {
     way.near = ways_[p].near;
     way.also = ways_[p].also;
     way.tight = tight;
@@ -190,11 +272,11 @@ class Orienter {
   }
 
   /// Makes a pass of every stroke. The stations stay; one lean for the whole stroke is preferred.
-  void split(std::size_t p) {
+  void split(std::size_t p, const std::vector<WayStroke>& strokes) {
     const OrientationWay whole = ways_[p];
     std::vector<BallPass> parts;
     std::vector<OrientationWay> ways;
-    for (const WayStroke& stroke : strokes_) {
+    for (const WayStroke& stroke : strokes) {
       parts.push_back(part_of(p, whole.s[stroke.from], whole.s[stroke.to]));
       OrientationWay way;
       way.near = whole.near;
@@ -205,6 +287,9 @@ class Orienter {
         way.points.push_back(whole.points[k]);
         way.r.push_back(whole.r[k]);
       }
+      for (const auto& [at, point] : whole.also)
+        if (at >= whole.s[stroke.from] && at <= whole.s[stroke.to])
+          way.also.emplace_back(at - whole.s[stroke.from], point);
       ways.push_back(std::move(way));
     }
     for (auto& way : ways) {
@@ -265,12 +350,12 @@ class Orienter {
     for (std::size_t k = 0; k < n; ++k) {
       Vec2 sum(0, 0);
       double weight = 0;
-      const double ds = way.s[1] - way.s[0];
-      add_neighbours(way, k, all, ds, sum, weight);
+      add_neighbours(way, k, all, way.step(k), sum, weight);
       for (const std::size_t j : {k - 1, k + 1})
         if (j < n) {
-          sum += kTurnWeight / ds * way.lean[j];
-          weight += kTurnWeight / ds;
+          const double turn = kTurnWeight / way.step(std::max(j, k));
+          sum += turn * way.lean[j];
+          weight += turn;
         }
       const Vec2 from = way.lean[k], to = sum / weight;
       for (const double step : {1.0, 0.5, 0.25}) {
@@ -316,11 +401,11 @@ class Orienter {
       for (const bool tight : {false, true}) {
         if (found || round == kRounds || (ways_[p].tight && !tight)) continue;
         renew(p, spacing, tight);
-        found = search(p);
+        std::size_t blocked_at = 0;
+        found = search(p) || (tight && search_strokes(p, blocked_at));
       }
       if (found) continue;
-      refusal_ = {
-          fmt::format("{}; other directions of this pass are not clear elsewhere", stands(bad->point, bad->axis))};
+      refusal_ = silent_ ? OrientationRefusal{} : words_.no_way_about(bad->point, bad->axis, plans());
       return false;
     }
   }
@@ -329,35 +414,24 @@ class Orienter {
     double s = 0;
     BallPass::Point point;
     Vec3 axis = Vec3::UnitZ();
-    bool record = false;
   };
-  /// Among the records and places at most kPlace apart between them: room for the proof, and where the axis turns away
-  /// from the pole. The flute is asked at the records: between them the ball leaves its pass by the chord.
+  /// Among the records and every moment between them: room for the proof. At the records the flute is free, and where
+  /// the axis turns it keeps away from the pole; between them the ball leaves its pass by the chord.
   [[nodiscard]] std::optional<AxisPlace> first_not_clear(const AxisRecords& records, bool constant) const {
-    std::vector<AxisPlace> places{{0, records.points.front(), records.axes.front(), true}};
-    for (std::size_t k = 1; k < records.points.size(); ++k) {
-      const auto &a = records.points[k - 1], &b = records.points[k];
-      const double from = places.back().s, way = (b.centre - a.centre).norm();
-      const int pieces = std::max(1, int(std::ceil(way / kPlace)));
-      for (int j = 1; j < pieces; ++j) {
-        const double t = double(j) / pieces;
-        places.push_back({from + t * way, blend_points(a, b, t),
-                          ((1 - t) * records.axes[k - 1] + t * records.axes[k]).normalized(), false});
-      }
-      places.push_back({from + way, b, records.axes[k], true});
-    }
-    std::vector<char> good(places.size());
-    tbb::parallel_for(std::size_t(0), good.size(), [&](std::size_t k) { good[k] = stands_clear(places[k], constant); });
-    const auto bad = std::find(good.begin(), good.end(), 0);
-    if (bad == good.end()) return {};
-    return places[std::size_t(bad - good.begin())];
-  }
-  [[nodiscard]] bool stands_clear(const AxisPlace& at, bool constant) const {
-    const double room = o_.clearance_mm + kProofRoom;
-    const Vec3 tip = at.point.centre - tool_.radius_mm() * at.axis;
-    return (constant || check_.away_from_pole(at.axis)) && (!at.record || check_.cutting(at.point, at.axis)) &&
-           (tree_.clear(check_.bodies(), tip, at.axis, room, kGapResolution) ||
-            tree_.clear(check_.bodies(), tip, at.axis, room, kTightResolution));
+    const auto& [points, axes] = records;
+    std::vector<std::optional<AxisPlace>> bad(points.size());
+    std::vector<double> s(points.size(), 0);
+    for (std::size_t k = 1; k < s.size(); ++k) s[k] = s[k - 1] + (points[k].centre - points[k - 1].centre).norm();
+    tbb::parallel_for(std::size_t(0), bad.size(), [&](std::size_t k) {
+      if (!(constant || check_.away_from_pole(axes[k])) || !check_.cutting(points[k], axes[k]))
+        bad[k] = {s[k], points[k], axes[k]};
+      if (k == 0 || bad[k]) return;
+      const auto moment = check_.not_kept({s[k - 1], points[k - 1], axes[k - 1]}, {s[k], points[k], axes[k]},
+                                          o_.clearance_mm + kProofRoom);
+      if (moment) bad[k] = {moment->at, moment->point, moment->axis};
+    });
+    const auto first = std::find_if(bad.begin(), bad.end(), [](const auto& place) { return place.has_value(); });
+    return first == bad.end() ? std::nullopt : *first;
   }
 
   [[nodiscard]] AxisRecords records_of(std::size_t p, bool smooth) const {
@@ -369,150 +443,30 @@ class Orienter {
     return records_with_axes(tracks_[p], axis, o_.chord_mm, tool_.radius_mm());
   }
 
-  // Refusals. What a place needs is the same in all of them: the clearance and the least margin.
-  [[nodiscard]] double needed() const { return o_.clearance_mm + kTightMargin; }
-  [[nodiscard]] static std::string place(const BallPass::Point& point) {
-    return fmt::format("no five-axis motion either: with the ball at radius {:.3f}, height {:.3f}",
-                       radius(point.centre), point.centre.z());
-  }
-  /// The body that keeps least and what it keeps, up to what is needed; `none` where all keep that.
-  [[nodiscard]] std::pair<tool::Body, double> nearest_body(const BallPass::Point& point, const Vec3& axis) const {
-    double gap = needed();
-    tool::Body worst = tool::Body::none;
-    const Vec3 tip = point.centre - tool_.radius_mm() * axis;
-    for (const auto& f : check_.bodies()) {
-      double g = tree_.gap(f, tip, axis, gap, kTightResolution);
-      if (g < 0) g = -tree_.depth(f, {&tip, 1}, axis, kDeepest, kTightResolution);
-      if (g < gap) gap = g, worst = f.body;
-    }
-    return {worst, gap};
-  }
-  [[nodiscard]] std::string keeps(tool::Body body, double gap) const {
-    return gap < 0 ? fmt::format("its {} cuts in by {}{:.3f} mm, it must keep {:.3f} mm", body,
-                                 gap <= -kDeepest ? "more than " : "", -gap, needed())
-                   : fmt::format("its {} keeps {:.4f} mm, it must keep {:.3f} mm", body, gap, needed());
-  }
-  [[nodiscard]] std::string margin_words() const {
-    return fmt::format(
-        " (the clearance is {:.3f} mm, and {:.3f} mm is for what lies between the places that are looked at)",
-        o_.clearance_mm, kTightMargin);
-  }
-  /// What is wrong with one axis at one place.
-  [[nodiscard]] std::string stands(const BallPass::Point& point, const Vec3& axis) const {
-    const double lean = degrees(angle_between(axis, check_.frame().up));
-    const auto [body, gap] = nearest_body(point, axis);
-    if (body != tool::Body::none)
-      return fmt::format("{} and the axis leaning {:.2f} deg {}{}; more stick-out or a slimmer {} would help",
-                         place(point), lean, keeps(body, gap), margin_words(), body);
-    if (!check_.away_from_pole(axis))
-      return fmt::format(
-          "{} the axis turns at {:.2f} deg of the gear axis, it must keep {:.2f} deg there, the pole of a "
-          "rotary that carries the work; program.pole = \"slow\", \"hold\", \"through\" or \"retract\" "
-          "goes past it",
-          place(point), degrees(std::atan2(std::hypot(axis.x(), axis.y()), axis.z())), degrees(o_.least_tilt_rad));
-    return fmt::format("{} and the axis leaning {:.2f} deg its flute would cut, by {:.4f} mm", place(point), lean,
-                       check_.flute_depth(point, axis));
-  }
-
-  /// Clear directions on both sides that no stroke joins: the pair that comes nearest, and what is in the way between.
-  [[nodiscard]] OrientationRefusal parted(const OrientationWay& way, std::size_t station) const {
-    const std::size_t before = station > 0 ? station - 1 : 0;
-    std::vector<Vec2> from, to;
-    for (const auto& q : fine_.leans) {
-      if (clear_at(way, way.points[before], q, true)) from.push_back(q);
-      if (clear_at(way, way.points[station], q, true)) to.push_back(q);
-    }
-    const auto& point = way.points[station];
-    if (from.empty() || to.empty())
-      return {
-          fmt::format("{} every direction that is clear lies within {:.1f} deg of the gear axis, the pole of a rotary "
-                      "that carries the work, where no axis may turn; program.pole = \"slow\", \"hold\", \"through\" "
-                      "or \"retract\" goes past it",
-                      place(point), degrees(o_.least_tilt_rad))};
-    Vec2 a = from.front(), b = to.front();
-    for (const auto& p : from)
-      for (const auto& q : to)
-        if ((q - p).norm() < (b - a).norm()) a = p, b = q;
-    const auto axis_of = [&](const Vec2& q) { return check_.frame().axis(q.x(), q.y()); };
-    const double turn = angle_between(axis_of(a), axis_of(b)), way_mm = way.s[station] - way.s[before];
-    const auto half = blend_points(way.points[before], point, 0.5);
-    const auto [body, gap] = nearest_body(half, axis_of(0.5 * (a + b)));
-    const std::string what = body != tool::Body::none ? keeps(body, gap) + " half-way" + margin_words()
-                                                      : std::string("that is more than a stroke may turn there");
-    return {
-        fmt::format("{} the clear directions do not join those before it, not in {} strokes either: the nearest two "
-                    "are {:.1f} deg apart over {:.2f} mm, and {}; more stick-out or a slimmer shank would help",
-                    place(point), kMostStrokes, degrees(turn), way_mm, what)};
-  }
-
-  /// A place where no direction is clear: the body in the way in the best one, and what more reach would do.
-  [[nodiscard]] OrientationRefusal blocked(const OrientationWay& way, std::size_t station) const {
-    const auto& point = way.points[station];
-    std::vector<Vec3> usable;  // directions in which the ball cuts, whatever stands above it
-    double shallowest = INFINITY, shallowest_lean = 0, best = -INFINITY, lean = 0;
-    tool::Body body = tool::Body::none;
-    for (const auto& q : grid_.leans) {
-      const Vec3 axis = check_.frame().axis(q.x(), q.y());
-      const double of = angle_between(axis, check_.frame().up);
-      if (!check_.cutting(point, axis)) {
-        const double depth = check_.flute_depth(point, axis);
-        if (depth < shallowest) shallowest = depth, shallowest_lean = of;
-        continue;
-      }
-      usable.push_back(axis);
-      const auto [worst, gap] = nearest_body(point, axis);
-      if (gap > best) best = gap, lean = of, body = worst;
-    }
-    if (usable.empty())
-      return {
-          fmt::format("{} its flute would cut in every direction, least where it leans {:.1f} deg: by {:.4f} mm; a "
-                      "ball of less diameter is needed",
-                      place(point), degrees(shallowest_lean), shallowest)};
-    return {fmt::format("{} the best of {} directions leans {:.1f} deg and {}{}; {}", place(point), usable.size(),
-                        degrees(lean), keeps(body, best), margin_words(), advice(point, usable))};
-  }
-
-  [[nodiscard]] std::string advice(const BallPass::Point& point, const std::vector<Vec3>& usable) const {
-    const auto helps = [&](double by, bool flute) {
-      tool::ToolAssembly longer = tool_;
-      longer.stick_out_mm += by;
-      longer.length_mm += by;
-      if (flute) longer.flute_length_mm += by;
-      const auto bodies = tool::shank_and_holder(longer);
-      return std::any_of(usable.begin(), usable.end(), [&](const Vec3& axis) {
-        return tree_.clear(bodies, point.centre - tool_.radius_mm() * axis, axis, needed(), kTightResolution);
-      });
-    };
-    for (const bool flute : {false, true}) {
-      if (!helps(kLongestStickOut, flute)) continue;
-      double short_by = 0, enough = kLongestStickOut;
-      while (enough - short_by > 0.05) {
-        const double middle = 0.5 * (short_by + enough);
-        (helps(middle, flute) ? enough : short_by) = middle;
-      }
-      return flute ? fmt::format("a flute of {:.1f} mm (now {:.1f}) with as much more stick-out would clear this place",
-                                 tool_.flute_length_mm + enough, tool_.flute_length_mm)
-                   : fmt::format("a stick-out of {:.1f} mm (now {:.1f}) would clear this place",
-                                 tool_.stick_out_mm + enough, tool_.stick_out_mm);
-    }
-    return "a slimmer shank is needed";
-  }
-
   const analytic::BodyTree& tree_;
   const tool::ToolAssembly& tool_;
   const OrientationOptions& o_;
   std::vector<BallPass>& passes_;
+  const std::vector<BallPass> whole_;  ///< as they were given: in one stroke each
+  const analytic::GearDistance& part_;
+  const int zone_;
   OrientationCheck check_;
+  RefusalWords words_;
   LeanGrid grid_;
-  LeanGrid fine_;  ///< asked when the coarse one does not do
+  LeanGrid fine_;                    ///< asked when the coarse one does not do
+  LeanGrid narrow_, wide_, finest_;  ///< asked in the end, square by square: a narrow way through, a far lean
+  static constexpr std::array kGrids = {&Orienter::grid_, &Orienter::fine_, &Orienter::narrow_, &Orienter::wide_};
   std::vector<PassTrack> tracks_;
   std::vector<OrientationWay> ways_;
-  std::vector<WayStroke> strokes_;  ///< of the pass that was searched last; empty: one stroke
   std::vector<AxisRecords> made_;
   std::optional<OrientationRefusal> refusal_;
+  bool all_asked_ = false;
+  bool silent_ = false;  ///< asked only whether there are axes
 };
 
 }  // namespace
+
+double off_pole(const Vec3& axis) { return std::atan2(std::hypot(axis.x(), axis.y()), axis.z()); }
 
 OrientationCheck::OrientationCheck(const analytic::GearDistance& part, const analytic::BodyTree& tree, int zone,
                                    const tool::ToolAssembly& tool, const OrientationOptions& options)
@@ -523,17 +477,25 @@ OrientationCheck::OrientationCheck(const analytic::GearDistance& part, const ana
       frame_(pitch_frame(part, zone)),
       bodies_(tool::shank_and_holder(tool)) {}
 
+void OrientationCheck::slim(double by_mm) {
+  for (auto& f : bodies_) {
+    f.from += by_mm;
+    f.radius_from = std::max(f.radius_from - by_mm, 0.0);
+    f.radius_to = std::max(f.radius_to - by_mm, 0.0);
+  }
+  std::erase_if(bodies_, [](const tool::Frustum& f) { return f.from >= f.to; });
+}
+
 bool OrientationCheck::cutting(const BallPass::Point& point, const Vec3& axis) const {
   return stands_right(point, axis) && flute_is_free(point, axis);
 }
 
-bool OrientationCheck::away_from_pole(const Vec3& axis) const {
-  return std::atan2(std::hypot(axis.x(), axis.y()), axis.z()) >= o_.least_tilt_rad;
-}
+bool OrientationCheck::away_from_pole(const Vec3& axis) const { return off_pole(axis) >= o_.least_tilt_rad; }
 
-bool OrientationCheck::stands_right(const BallPass::Point& point, const Vec3& axis) const {
+bool OrientationCheck::stands_right(const BallPass::Point& point, const Vec3& axis, double angle_rad) const {
   const Vec3 normal = point.centre - point.contact;
-  return !point.touching || normal.norm() <= 0.1 * tool_.radius_mm() || normal.normalized().dot(axis) >= o_.least_draft;
+  return !point.touching || normal.norm() <= 0.1 * tool_.radius_mm() ||
+         normal.normalized().dot(axis) - angle_rad >= o_.least_draft;
 }
 
 double OrientationCheck::flute_cut(const BallPass::Point& point, const Vec3& axis, double above) const {
@@ -541,11 +503,11 @@ double OrientationCheck::flute_cut(const BallPass::Point& point, const Vec3& axi
   return R - part_.nearest(point.centre + above * axis, R + 0.01).distance;
 }
 
-bool OrientationCheck::flute_is_free(const BallPass::Point& point, const Vec3& axis) const {
+bool OrientationCheck::flute_is_free(const BallPass::Point& point, const Vec3& axis, double angle_rad) const {
   const double R = tool_.radius_mm(), top = tool_.flute_length_mm - R;
   for (double h = std::min(0.4 * R, top); h > 0; h = h < top ? std::min(h + R, top) : -1) {
-    if (point.centre.z() + h * axis.z() - R > part_.gear().blank_top()) break;
-    if (flute_cut(point, axis, h) > 0) return false;
+    if (point.centre.z() + h * (axis.z() - angle_rad) - R > part_.gear().blank_top()) break;
+    if (flute_cut(point, axis, h) + h * angle_rad > 0) return false;
   }
   return true;
 }
@@ -566,6 +528,44 @@ bool OrientationCheck::clear(const BallPass::Point& point, const Vec3& axis, dou
   return stands_right(point, axis) &&
          tree_.clear(bodies_, point.centre - tool_.radius_mm() * axis, axis, clearance_mm, resolution_mm) &&
          flute_is_free(point, axis);
+}
+
+Leans OrientationCheck::about(const BallPass::Point& point, const Vec3& axis, double angle_rad, double clearance_mm,
+                              double resolution_mm) const {
+  if (angle_rad >= kWidestTurn) return Leans::mixed;
+  if (!stands_right(point, axis, -angle_rad)) return Leans::none_clear;
+  const double R = tool_.radius_mm(), told = std::max(0.0, clearance_mm - resolution_mm - part_.cell_sag_mm());
+  const Vec3 tip = point.centre - R * axis;
+  for (const auto& body : bodies_)
+    if (const auto core = tool::turned_core(body, R, angle_rad))
+      if (!tree_.keeps(*core, tip, axis, told, resolution_mm)) return Leans::none_clear;
+  const bool all =
+      stands_right(point, axis, angle_rad) &&
+      std::all_of(bodies_.begin(), bodies_.end(),
+                  [&](const tool::Frustum& body) {
+                    return tree_.keeps(tool::turned_hull(body, R, angle_rad), tip, axis, clearance_mm, resolution_mm);
+                  }) &&
+      flute_is_free(point, axis, angle_rad);
+  return all ? Leans::all_clear : Leans::mixed;
+}
+
+std::optional<OrientationCheck::Moment> OrientationCheck::not_kept(const Moment& from, const Moment& to,
+                                                                   double clearance_mm) const {
+  const double R = tool_.radius_mm(), way = (to.point.centre - from.point.centre).norm(),
+               turn = angle_between(from.axis, to.axis);
+  const Moment middle{0.5 * (from.at + to.at), blend_points(from.point, to.point, 0.5),
+                      (from.axis + to.axis).normalized()};
+  const Vec3 tip = middle.point.centre - R * middle.axis;
+  // Every moment lies within half the way and half the turn of the middle; the centre leaves its line by `centre_sag`.
+  const double off = 0.5 * way + 2 * centre_sag(R, turn);
+  const bool kept = std::all_of(bodies_.begin(), bodies_.end(), [&](const tool::Frustum& body) {
+    return tree_.keeps(tool::turned_hull(body, R, 0.5 * turn), tip, middle.axis, clearance_mm + off, kTightResolution);
+  });
+  if (kept) return {};
+  if (!tree_.clear(bodies_, tip, middle.axis, clearance_mm, kTightResolution)) return middle;
+  if (way + turn * tool_.stick_out_mm < kShortestWay) return {};
+  if (const auto first = not_kept(from, middle, clearance_mm)) return first;
+  return not_kept(middle, to, clearance_mm);
 }
 
 Orientation take_axes(std::vector<AxisRecords> made, const OrientationCheck& check, const analytic::BodyTree& tree,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -45,6 +46,12 @@ struct Frustum {
 /// length.
 [[nodiscard]] std::vector<Frustum> shank_and_holder(const ToolAssembly& tool);
 [[nodiscard]] std::vector<Frustum> shank_and_holder(const Profile& profile);
+
+/// What a body has in common under all axes within `angle_rad` (< 1) of its own, turned about the point `pivot_mm`
+/// above the tip: a frustum inside of it, on its own axis. None where nothing is left that a frustum holds.
+[[nodiscard]] std::optional<Frustum> turned_core(const Frustum& body, double pivot_mm, double angle_rad);
+/// A frustum that holds the body under all of them.
+[[nodiscard]] Frustum turned_hull(const Frustum& body, double pivot_mm, double angle_rad);
 
 /// Lowest z of a frustum.
 [[nodiscard]] double lowest_z(const Frustum& f, const Vec3& tip, const Vec3& axis);

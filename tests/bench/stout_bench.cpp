@@ -1,19 +1,25 @@
 // Five-axis planning with stout tools, each planned and proven: the fourteen jobs of the tests, or with `all` all sixty
-// random ones that they are taken from. A job succeeds when it is proven and turns no axis within 2 deg of the gear
-// axis.
+// random ones that they are taken from, or those of the fourteen whose numbers are given. A job succeeds when it is
+// proven and turns no axis within 2 deg of the gear axis.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
-#include <string_view>
+#include <string>
+#include <vector>
 
 #include "tests/cam/ball/stout_jobs.h"
 
 int main(int count, char** given) {
   using namespace toothpath;
-  int done = 0, number = 0;
-  for (const auto& job :
-       count > 1 && std::string_view(given[1]) == "all" ? test::random_stout_jobs() : test::stout_jobs()) {
+  int done = 0, number = 0, tried = 0;
+  const std::vector<std::string> asked(given + 1, given + count);
+  const bool all = !asked.empty() && asked.front() == "all";
+  for (const auto& job : all ? test::random_stout_jobs() : test::stout_jobs()) {
     ++number;
+    if (!all && !asked.empty() && std::find(asked.begin(), asked.end(), std::to_string(number)) == asked.end())
+      continue;
+    ++tried;
     const auto start = std::chrono::steady_clock::now();
     const auto outcome = test::plan_stout(job);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -27,7 +33,13 @@ int main(int count, char** given) {
                : outcome.planned ? "planned, not proven"
                                  : "refused",
                seconds, outcome.words);
+    for (auto fitting = job; const auto& tool : test::advised_tools(job, outcome.words)) {
+      fitting.tool = tool;
+      const auto then = test::plan_stout(fitting);
+      fmt::print("   with flute {:.2f} shank {:.2f} stick-out {:.2f}: {}\n", tool.flute_length_mm,
+                 tool.shank_diameter_mm, tool.stick_out_mm, then.proven ? "proven" : then.words);
+    }
     std::fflush(stdout);
   }
-  fmt::print("{} of {}\n", done, number);
+  fmt::print("{} of {}\n", done, tried);
 }

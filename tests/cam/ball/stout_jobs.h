@@ -2,6 +2,7 @@
 // holder. No fixed direction keeps them clear.
 #pragma once
 
+#include "cam/ball/finishing.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
 namespace toothpath::test {
@@ -94,6 +95,88 @@ inline StoutOutcome plan_stout(const StoutJob& job) {
     out.words += fmt::format("; gouge {:.5f} mm, clearance {:.4f} mm", result.bound_mm, result.clearance_mm);
   if (out.least_tilt_rad < INFINITY)
     out.words += fmt::format("; turns at {:.2f} deg of the gear axis", degrees(out.least_tilt_rad));
+  return out;
+}
+
+/// The passes of the job, as the planner lays them.
+inline std::vector<ball::BallPass> stout_passes(const StoutJob& job, const analytic::GearDistance& part) {
+  const double R = job.tool.radius_mm();
+  const auto& ring = part.space(0).ring().zone;
+  const face_gear::OffsetSheet sheet(part.space(0), R, ring.inner_radius_mm - R - 0.1, ring.outer_radius_mm + R + 0.1,
+                                     33);
+  ball::FinishingOptions options;
+  options.ball_radius_mm = R;
+  for (const path::Region region : path::kRegions) options.scallop_mm[region] = job.scallop_mm;
+  options.chord_mm = 0.0008;
+  options.run_out_mm = 0.5 * R;
+  auto planned = ball::plan_finishing(sheet, options);
+  if (!planned) throw std::runtime_error(planned.error().message);
+  return planned->passes;
+}
+
+/// Is a place of the body's lower face or side within `clearance` of the solid, or inside of it? Asked of the exact
+/// distance to the part at places 0.15 mm apart: independent of the planner's trees.
+inline bool body_is_in_the_way(const analytic::GearDistance& part, const tool::Frustum& f, const Vec3& tip,
+                               const Vec3& axis, double clearance) {
+  constexpr double kApart = 0.15;
+  const Vec3 x = axis.unitOrthogonal(), y = axis.cross(x);
+  const double top = part.gear().blank_top() + clearance;
+  double lowest = INFINITY;
+  const auto ring = [&](double h, double rho) {
+    const int around = std::max(12, int(2 * kPi * rho / kApart));
+    lowest = INFINITY;
+    for (int k = 0; k < around; ++k) {
+      const double a = 2 * kPi * k / around;
+      const Vec3 p = tip + h * axis + rho * (std::cos(a) * x + std::sin(a) * y);
+      lowest = std::min(lowest, p.z());
+      if (p.z() <= top && part.nearest(p, clearance + 0.01).distance < clearance) return true;
+    }
+    return false;
+  };
+  for (double h = f.from; h <= f.to; h += kApart) {
+    if (ring(h, f.radius_from + (h - f.from) / (f.to - f.from) * (f.radius_to - f.radius_from))) return true;
+    if (lowest > top) break;
+  }
+  for (double rho = f.radius_from;
+       rho > 0 && tool::lowest_z(tool::Frustum{f.from, f.from, rho, rho, f.body}, tip, axis) <= top; rho -= kApart)
+    if (ring(f.from, rho)) return true;
+  return false;
+}
+
+/// Does the flute, a cylinder above the ball, reach into the solid?
+inline bool flute_is_in_the_way(const analytic::GearDistance& part, const tool::ToolAssembly& tool, const Vec3& centre,
+                                const Vec3& axis) {
+  const double R = tool.radius_mm();
+  for (double h = 0.3 * R; h <= tool.flute_length_mm - R; h += 0.2 * R)
+    if (part.nearest(centre + h * axis, R + 0.01).distance < R) return true;
+  return false;
+}
+
+/// The tools that a refusal says would do.
+inline std::vector<tool::ToolAssembly> advised_tools(const StoutJob& job, const std::string& words) {
+  std::vector<tool::ToolAssembly> out;
+  const auto from = words.find("planned as a trial: ");
+  const auto number = [&](const std::string& word) -> std::optional<double> {
+    const auto at = from == std::string::npos ? from : words.find(word, from);
+    if (at == std::string::npos) return {};
+    return std::stod(words.substr(at + word.size()));
+  };
+  if (const auto flute = number("a flute of ")) {
+    out.push_back(job.tool);
+    const double more = *flute - job.tool.flute_length_mm;
+    out.back().flute_length_mm = *flute;
+    out.back().stick_out_mm += more;
+    out.back().length_mm += more;
+  }
+  if (const auto stick_out = number("a stick-out of ")) {
+    out.push_back(job.tool);
+    out.back().length_mm += *stick_out - job.tool.stick_out_mm;
+    out.back().stick_out_mm = *stick_out;
+  }
+  if (const auto shank = number("a shank of ")) {
+    out.push_back(job.tool);
+    out.back().shank_diameter_mm = *shank;
+  }
   return out;
 }
 
