@@ -134,6 +134,7 @@ class TraceFollower {
         kinematics_(by.machine.chain, by.setup),
         teeth_(by.teeth),
         tolerances_(by.tolerances),
+        rapids_alone_(by.rapids_alone),
         // Teeth that were not kept stand where their index words put them: rounded, so off the exact turn by up to
         // this.
         shift_(copies.copies && trace.kept_teeth == 1 ? radians(copies.worst_shift_deg) : 0),
@@ -144,8 +145,8 @@ class TraceFollower {
   }
 
   Status run() {
-    for (std::size_t i = 1; i < trace_.moves.size(); ++i) {
-      if (!trace_.moves[i].known)
+    for (std::size_t i = std::max<std::size_t>(1, trace_.before); i + trace_.after < trace_.moves.size(); ++i) {
+      if (!trace_.moves[i].known || (rapids_alone_ && !trace_.moves[i].rapid))
         continue;  // a change of tool moves nothing: the new one starts where the gauge line stands
       if (auto s = follow(i); !s) return s.error();
     }
@@ -250,6 +251,7 @@ class TraceFollower {
   const Motions kinematics_;
   int teeth_;
   MotionTolerances tolerances_;
+  bool rapids_alone_;
   double shift_, reference_;
   const TurnedCopies::Operation* operation_ = nullptr;
   std::vector<path::ToolMotion>& out_;
