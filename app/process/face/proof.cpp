@@ -138,14 +138,18 @@ Status FaceGearCheck::rapids_clear(const readback::OperationTrace& trace, const 
   return check_rapids_outside(trace, control, machine_, *job_.setup, clearance_body(part_.gear()), job_.tools);
 }
 
-void FaceGearCheck::meet(const process::ProgramProof&) {
+void FaceGearCheck::meet(const readback::OperationTrace&, std::span<const path::ToolMotion>,
+                         const readback::NcControl&) {
 }  // all that is said of a face gear holds for the teeth that are proven
 
 void FaceGearCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
   std::vector<int> tool_of_operation;
   for (const auto& operation : job_.operations) tool_of_operation.push_back(operation.tool);
-  program.gouge = clock.run("proof of the program",
-                            [&] { return check_.check(program.motions, tool_of_operation, program.likes); });
+  clock.run("proof of the program", [&] {
+    process::with_all_motions(program, [&](const auto& motions, auto likes) {
+      program.gouge = check_.check(motions, tool_of_operation, likes);
+    });
+  });
   judge_gouge(program.gouge, check_, limits_.gouge_mm, program.reasons);
   surface = clock.run("cut surface", [&] {
     return cut::measure_cut_surface(part_, program.motions, job_.operations, job_.tools, grid_);
