@@ -123,7 +123,7 @@ namespace {
 void release_later_teeth(joints::AxisProgram& program) {
   for (joints::AxisOperation& operation : program.operations)
     for (std::size_t n = 1; n < operation.teeth.size(); ++n) {
-      operation.teeth[n].blocks = {};
+      operation.teeth[n].release();
       operation.teeth[n].packed = {};
     }
 }
@@ -182,8 +182,8 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   }
   if (const auto written = output.write(posted.file, restart ? text->text : whole); !written) return written.error();
   // What is proven is what lies there; the first teeth are all that is asked for later.
-  if (!restart) whole = {};
-  text->text = {};
+  if (!restart) std::string().swap(whole);
+  std::string().swap(text->text);
   release_later_teeth(posted.axes);
   if (posted.restarted) release_later_teeth(*posted.restarted);
   auto bytes = output.read_back(posted.file);

@@ -106,8 +106,10 @@ void PackedBlocks::unpack(std::vector<AxisBlock>& blocks) const {
 
 void ToothBlocks::pack() {
   packed.pack(blocks);
-  blocks = {};
+  release();
 }
+
+void ToothBlocks::release() { std::vector<AxisBlock>().swap(blocks); }
 
 void ToothBlocks::unpack() {
   if (packed.empty()) return;

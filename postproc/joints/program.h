@@ -107,6 +107,7 @@ struct ToothBlocks {
 
   void pack();
   void unpack();
+  void release();  ///< no blocks, and no room for them
   /// The blocks, however they are held. @param room  for those that are packed
   [[nodiscard]] const std::vector<AxisBlock>& all(std::vector<AxisBlock>& room) const;
 };
