@@ -78,7 +78,7 @@ class EachTooth {
     const auto walked =
         readback::walk_teeth(program_.text, program_.file, control_, read, [&](readback::OperationTrace&& trace) {
           if (!status_) return;
-          status_ = operation_exists(program_, trace);
+          if (status_ = operation_exists(program_, trace); !status_) return;
           const bool first = trace.before == 0;
           if (first) finish();  // the others are compared with it
           moves_ += trace.moves.size();

@@ -190,6 +190,10 @@ TEST(LineRuns, AFaultInTheLastToothOffTheAxisIsFound) {
     EXPECT_NEAR(worst[0]["line"].get<int>(), line, 1);
   }
   EXPECT_EQ(findings_in(dir, "deep1"), findings_in(dir, "deep2"));
+  write_file(dir / "other.ngc", replaced(file_text(dir / "made/program.ngc"), "(OP 0 ", "(OP 7 "));
+  const auto refused = run_program({"check", dir / "off.toml", dir / "other.ngc", "--out", dir / "other"});
+  EXPECT_EQ(refused.exit_code, 3) << refused.err;
+  EXPECT_NE(refused.err.find("operation 7: the job has the operations 0 to 0"), std::string::npos) << refused.err;
 }
 
 }  // namespace
