@@ -58,7 +58,8 @@ Diagnostic in_file(Diagnostic error, const std::string& file) {
 /// One tooth of a program whose teeth are followed one by one.
 struct Tooth {
   readback::OperationTrace trace;
-  bool first = false, rapids_alone = false;
+  bool first = false;
+  readback::Followed::Moves wanted = readback::Followed::Moves::all;
   std::vector<path::ToolMotion> motions;
   Status followed = Ok{};
 };
@@ -73,8 +74,8 @@ class EachTooth {
   EachTooth(const ProgramText& program, const readback::NcControl& control, const GearCheck& gear, Make make, Take take)
       : program_(program), control_(control), by_(follower(program, control, gear)), make_(make), take_(take) {}
 
-  /// @param left_out  teeth of which the rapids alone are wanted
-  Status run(const readback::ReadBack& read, const std::function<bool(int)>& left_out) {
+  /// @param wanted  of a later tooth
+  Status run(const readback::ReadBack& read, const std::function<readback::Followed::Moves(int)>& wanted) {
     const auto walked =
         readback::walk_teeth(program_.text, program_.file, control_, read, [&](readback::OperationTrace&& trace) {
           if (!status_) return;
@@ -82,8 +83,8 @@ class EachTooth {
           const bool first = trace.before == 0;
           if (first) finish();  // the others are compared with it
           moves_ += trace.moves.size();
-          const bool alone = !first && left_out(trace.moves[trace.before].tooth);
-          teeth_.push_back({std::move(trace), first, alone, {}});
+          const auto moves = first ? readback::Followed::Moves::all : wanted(trace.moves[trace.before].tooth);
+          teeth_.push_back({std::move(trace), first, moves, {}});
           if (first || moves_ >= most_moves_) finish();
         });
     if (!walked) return walked;
@@ -97,7 +98,7 @@ class EachTooth {
     tbb::parallel_for(std::size_t(0), teeth_.size(), [&](std::size_t n) {
       Tooth& tooth = teeth_[n];
       readback::Followed by = by_;
-      by.rapids_alone = tooth.rapids_alone;
+      by.moves = tooth.wanted;
       tooth.followed = readback::add_tool_motions(tooth.trace, {}, by, tooth.motions);
       if (tooth.followed) made[n] = make_(tooth);
     });
@@ -175,11 +176,12 @@ class TeethOneByOne {
     }
     kept_.clear();
     proof_.stated = teeth_.stated();
+    proof_.likes_follow = teeth_.any_like();
     return Ok{};
   }
 
   /// What is to be proven, tooth by tooth.
-  Status each(const ToothSink& sink) const {
+  Status each(TeethWanted wanted, const ToothSink& sink) const {
     EachTooth<std::vector<proof::LikeMotion>> all(
         program_, proof_.control, gear_,
         [&](Tooth& tooth) { return tooth.first ? std::vector<proof::LikeMotion>() : teeth_.likes(tooth.motions); },
@@ -190,7 +192,11 @@ class TeethOneByOne {
           }
           sink(std::move(tooth.motions), likes, tooth.first);
         });
-    return all.run(proof_.read, [&](int tooth) { return teeth_.left_out(tooth); });
+    using Moves = readback::Followed::Moves;
+    return all.run(proof_.read, [&](int tooth) {
+      if (teeth_.left_out(tooth)) return Moves::rapids;
+      return wanted == TeethWanted::cuts ? Moves::feeds : Moves::all;
+    });
   }
 
  private:
@@ -209,7 +215,7 @@ class TeethOneByOne {
           return look;
         },
         [&](Tooth& tooth, Look& look) { (this->*take)(tooth, look); });
-    return all.run(proof_.read, [](int) { return false; });
+    return all.run(proof_.read, [](int) { return readback::Followed::Moves::all; });
   }
   void met(Tooth& tooth, Look& look) {
     const int operation = tooth.trace.operation;
@@ -270,20 +276,20 @@ void with_all_motions(ProgramProof& program,
   all.reserve(program.tooth_motions);
   std::vector<proof::LikeMotion> alike;
   std::size_t firsts = 0, shift = 0;  // motions of first teeth so far; how much later the last of them stand here
-  const Status made = program.each_tooth(
-      [&](std::vector<path::ToolMotion>&& motions, std::span<const proof::LikeMotion> likes, bool first) {
-        if (first) {
-          shift = all.size() - firsts;
-          firsts += motions.size();
-        }
-        for (proof::LikeMotion like : likes) {
-          like.motion += std::uint32_t(all.size());
-          like.like_first += std::uint32_t(shift);
-          like.like_last += std::uint32_t(shift);
-          alike.push_back(like);
-        }
-        all.insert(all.end(), motions.begin(), motions.end());
-      });
+  const Status made = program.each_tooth(TeethWanted::whole, [&](std::vector<path::ToolMotion>&& motions,
+                                                                 std::span<const proof::LikeMotion> likes, bool first) {
+    if (first) {
+      shift = all.size() - firsts;
+      firsts += motions.size();
+    }
+    for (proof::LikeMotion like : likes) {
+      like.motion += std::uint32_t(all.size());
+      like.like_first += std::uint32_t(shift);
+      like.like_last += std::uint32_t(shift);
+      alike.push_back(like);
+    }
+    all.insert(all.end(), motions.begin(), motions.end());
+  });
   if (!made) program.reasons.push_back(made.error().message);
   work(all, alike);
 }
@@ -299,7 +305,7 @@ Result<ProgramProof> prove_program(const ProgramText& program, const AskedPaths&
     one_by_one.emplace(program, gear, proof);
     const Status seen = clock.run("compare the teeth", [&] { return one_by_one->see(rapids); });
     if (!seen) return seen.error();
-    proof.each_tooth = [&](const ToothSink& sink) { return one_by_one->each(sink); };
+    proof.each_tooth = [&](TeethWanted wanted, const ToothSink& sink) { return one_by_one->each(wanted, sink); };
   } else {
     if (auto followed = follow_whole(program, gear, proof, rapids, clock); !followed) return followed.error();
     proof.stated = stated_deviation(proof.motions);

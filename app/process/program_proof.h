@@ -4,6 +4,7 @@
 // gear is a `GearCheck`: a gear type without one has no proof, and none can leave a step out.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -42,6 +43,9 @@ struct AskedPaths {
 using ToothSink =
     std::function<void(std::vector<path::ToolMotion>&& motions, std::span<const proof::LikeMotion> likes, bool first)>;
 
+/// Of later teeth the cuts alone, where they are wanted for what they are like.
+enum class TeethWanted : std::uint8_t { whole, cuts };
+
 /// What is found about a program of any gear. The first half is read from the text, the second is what the gear says of
 /// it.
 struct ProgramProof {
@@ -52,8 +56,9 @@ struct ProgramProof {
   std::vector<path::ToolMotion> motions;
   std::vector<proof::LikeMotion> likes;  ///< those of `motions` that go nearly as their operation's first tooth
   /// All that is to be proven, tooth by tooth, made anew from the text: they are not held. Empty: `motions` are all.
-  std::function<Status(const ToothSink&)> each_tooth;
+  std::function<Status(TeethWanted, const ToothSink&)> each_tooth;
   std::size_t tooth_motions = 0;                     ///< that each_tooth gives, at most
+  bool likes_follow = false;                         ///< some of them are like others
   Stated stated;                                     ///< of all that is to be proven
   std::optional<readback::ClComparison> comparison;  ///< only where there is a path to compare with
   double path_tolerance_mm = 0;                      ///< of that comparison

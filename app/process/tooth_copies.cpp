@@ -304,7 +304,7 @@ struct ToothByTooth::First {
 
 /// A later tooth, as it was seen.
 struct ToothByTooth::Later {
-  bool copy = false;
+  bool copy = false, like = false;
   Stated stated;
 };
 
@@ -339,6 +339,9 @@ ToothByTooth::Seen ToothByTooth::seen(std::span<const path::ToolMotion> motions)
   out.stated = stated_deviation(motions);
   const First& first = operations_.at(out.operation);
   if (!tolerance_mm_) return out;
+  Beside beside(firsts_, first.cuts, back_to_first(out.tooth, first.tooth, teeth_));
+  for (std::size_t k = 0; k < motions.size() && !out.like; ++k)
+    out.like = !motions[k].rapid && beside.next(motions[k], std::uint32_t(k));
   const auto shift =
       shift_of({firsts_, motions, back_to_first(out.tooth, first.tooth, teeth_)}, first.blocks, blocks, *tolerance_mm_);
   if (!shift) return out;
@@ -351,7 +354,7 @@ ToothByTooth::Seen ToothByTooth::seen(std::span<const path::ToolMotion> motions)
 
 void ToothByTooth::note(const Seen& seen) {
   if (seen.operation < 0) return;
-  later_[{seen.operation, seen.tooth}] = {!seen.blocks.empty(), seen.stated};
+  later_[{seen.operation, seen.tooth}] = {!seen.blocks.empty(), seen.like, seen.stated};
   if (copies_ && !copies_->contains(seen.tooth)) return;
   std::vector<Stated>& copies = operations_.at(seen.operation).copies;
   for (std::size_t k = 0; k < seen.blocks.size(); ++k) copies[k].add(seen.blocks[k]);
@@ -379,6 +382,11 @@ Stated ToothByTooth::stated() const {
   for (const auto& [key, later] : later_)
     if (!left_out(key.second)) out.add(later.stated);
   return out;
+}
+
+bool ToothByTooth::any_like() const {
+  return std::any_of(later_.begin(), later_.end(),
+                     [this](const auto& later) { return later.second.like && !left_out(later.first.second); });
 }
 
 std::span<const path::ToolMotion> ToothByTooth::first_of(int operation) const {

@@ -54,6 +54,7 @@ class ToothByTooth {
   struct Seen {
     int operation = -1, tooth = -1;  ///< below 0: it cuts nothing
     Stated stated;
+    bool like = false;           ///< some motion is like the first tooth
     std::vector<Stated> blocks;  ///< a copy: how far each of its blocks may be from the first tooth's
   };
   [[nodiscard]] Seen seen(std::span<const path::ToolMotion> motions) const;
@@ -68,6 +69,8 @@ class ToothByTooth {
   [[nodiscard]] bool left_out(int tooth) const;
   /// Of all that is not left out.
   [[nodiscard]] Stated stated() const;
+  /// Some of it is like a first tooth.
+  [[nodiscard]] bool any_like() const;
   /// Those of a later tooth by their number among `motions`, what they are like by its number in firsts().
   [[nodiscard]] std::vector<proof::LikeMotion> likes(std::span<const path::ToolMotion> motions) const;
 

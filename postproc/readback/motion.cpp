@@ -12,6 +12,7 @@
 // |d| + w R) at most, the tool axis by w. With TCP the pieces are of the tip itself: |d|, w.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "geometry/base/angle.h"
 #include "postproc/readback/reader.h"
@@ -142,7 +143,7 @@ class TraceFollower {
         kinematics_(by.machine.chain, by.setup),
         teeth_(by.teeth),
         tolerances_(by.tolerances),
-        rapids_alone_(by.rapids_alone),
+        unwanted_(by.moves == Followed::Moves::all ? std::nullopt : std::optional(by.moves == Followed::Moves::feeds)),
         // Teeth that were not kept stand where their index words put them: rounded, so off the exact turn by up to
         // this.
         shift_(copies.copies && trace.kept_teeth == 1 ? radians(copies.worst_shift_deg) : 0),
@@ -154,7 +155,7 @@ class TraceFollower {
 
   Status run() {
     for (std::size_t i = std::max<std::size_t>(1, trace_.before); i + trace_.after < trace_.moves.size(); ++i) {
-      if (!trace_.moves[i].known || (rapids_alone_ && !trace_.moves[i].rapid))
+      if (!trace_.moves[i].known || unwanted_ == trace_.moves[i].rapid)
         continue;  // a change of tool moves nothing: the new one starts where the gauge line stands
       if (auto s = follow(i); !s) return s.error();
     }
@@ -262,7 +263,7 @@ class TraceFollower {
   const Motions kinematics_;
   int teeth_;
   MotionTolerances tolerances_;
-  bool rapids_alone_;
+  std::optional<bool> unwanted_;  ///< rapids, or feeds
   double shift_, reference_;
   std::size_t ended_ = 0;  ///< move whose end is known, not 0
   Placed end_;

@@ -193,7 +193,7 @@ struct Followed {
   const joints::Setup& setup;
   int teeth = 1;
   MotionTolerances tolerances;
-  bool rapids_alone = false;  ///< feeds are left out
+  enum class Moves : std::uint8_t { all, rapids, feeds } moves = Moves::all;  ///< that are wanted
 };
 [[nodiscard]] Status add_tool_motions(const OperationTrace& trace, const TurnedCopies& copies, const Followed& by,
                                       std::vector<path::ToolMotion>& motions);

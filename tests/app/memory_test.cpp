@@ -98,7 +98,7 @@ TEST(Memory, TeethOffTheAxisAreNotHeld) {
   write_file(dir / "off.toml", job);
   Launch launch;
   launch.arguments = {"run", dir / "off.toml", "--out", dir / "out", "--threads", "1", "--quiet"};
-  launch.address_space = 345 * kMiB;
+  launch.address_space = 310 * kMiB;
   const Finished run = run_program(launch);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   const auto report = nlohmann::json::parse(file_text(dir / "out/report.json"));
