@@ -27,16 +27,6 @@ double rotary_rounding(const joints::AxisProgram& program) {
   return (program.letters[3] != 0 ? one : 0) + (program.letters[4] != 0 ? one : 0);
 }
 
-Stated stated_deviation(std::span<const path::ToolMotion> motions) {
-  Stated out;
-  for (const auto& m : motions)
-    if (!m.rapid) {
-      out.tip_mm = std::max(out.tip_mm, m.deviation_mm);
-      out.axis_rad = std::max(out.axis_rad, m.axis_deviation);
-    }
-  return out;
-}
-
 void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::AxisProgram& program,
                          const std::optional<readback::ClComparison>& met, const readback::ReadBack& read,
                          double blend_mm) {

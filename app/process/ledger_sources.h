@@ -28,12 +28,6 @@ namespace toothpath::process {
 /// Largest error of the tool axis from rounding the words of both rotaries, rad.
 [[nodiscard]] double rotary_rounding(const joints::AxisProgram& program);
 
-/// Largest deviations that the motions of the program state while cutting.
-struct Stated {
-  double tip_mm = 0, axis_rad = 0;
-};
-[[nodiscard]] Stated stated_deviation(std::span<const path::ToolMotion> motions);
-
 /// Axis linearisation, rounding, path blending.
 /// @param blend_mm how far the control may round the corners of the path; 0: the dialect has no word for it
 void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::AxisProgram& program,

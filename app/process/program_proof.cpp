@@ -1,5 +1,12 @@
 #include "app/process/program_proof.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <iterator>
+#include <map>
+#include <utility>
+
 #include "app/process/program_report.h"
 #include "app/process/tooth_copies.h"
 #include "postproc/controls/of_machine.h"
@@ -11,7 +18,10 @@ namespace {
 /// with room.
 constexpr double kCopyShare = 0.25;
 
-/// The text as motions of the tool.
+/// Of the gouge tolerance, mm.
+double copy_tolerance(const job::Job& job) { return kCopyShare * job.verify.gouge_tolerance_mm; }
+
+/// The text as moves of the axes: of teeth that stand one by one those of the first ones.
 Result<ProgramProof> read_program(const ProgramText& program, const GearCheck& gear, app::StageClock& clock) {
   const job::Job& job = program.job;
   auto control = controls::control_of(program.machine, *job.setup, job.tools);
@@ -20,31 +30,217 @@ Result<ProgramProof> read_program(const ProgramText& program, const GearCheck& g
   out.control = std::move(*control);
   auto read = clock.run("read back", [&] {
     return read_back(program.text, program.file, out.control, program.machine, *job.setup,
-                     {.teeth = gear.teeth(), .keep_all = job.verify.all_teeth});
+                     {.teeth = gear.teeth(), .keep_all = job.verify.all_teeth, .first_teeth = true});
   });
   if (!read) return read.error();
   out.read = std::move(read.value());
-  std::size_t moves = 0;
-  for (const readback::OperationTrace& trace : out.read.operations) moves += trace.moves.size();
-  out.motions.reserve(moves);
-  for (const readback::OperationTrace& trace : out.read.operations) {
-    if (const auto count = static_cast<int>(job.operations.size()); trace.operation >= count)
-      return fail_at({program.file, trace.moves.empty() ? 0 : trace.moves.front().line, 0},
-                     "operation {}: the job has the operations 0 to {}", trace.operation, count - 1);
-    const Status followed = clock.run("read back", [&] {
-      return add_tool_motions(
-          trace, out.read.copies,
-          {out.control, program.machine, *job.setup, gear.teeth(), {gear.motion_tolerance(), gear.motion_tolerance()}},
-          out.motions);
-    });
-    if (!followed) {
-      Diagnostic error = followed.error();
-      if (error.position.file.empty()) error.position.file = program.file;
-      return error;
-    }
-  }
   return out;
 }
+
+readback::Followed follower(const ProgramText& program, const readback::NcControl& control, const GearCheck& gear) {
+  return {
+      control, program.machine, *program.job.setup, gear.teeth(), {gear.motion_tolerance(), gear.motion_tolerance()}};
+}
+
+/// The operation is one of the job.
+Status operation_exists(const ProgramText& program, const readback::OperationTrace& trace) {
+  const auto count = static_cast<int>(program.job.operations.size());
+  if (trace.operation < count) return Ok{};
+  return fail_at({program.file, trace.moves.empty() ? 0 : trace.moves.front().line, 0},
+                 "operation {}: the job has the operations 0 to {}", trace.operation, count - 1);
+}
+
+Diagnostic in_file(Diagnostic error, const std::string& file) {
+  if (error.position.file.empty()) error.position.file = file;
+  return error;
+}
+
+/// One tooth of a program whose teeth are followed one by one.
+struct Tooth {
+  readback::OperationTrace trace;
+  bool first = false;
+  readback::Followed::Moves wanted = readback::Followed::Moves::all;
+  std::vector<path::ToolMotion> motions;
+  Status followed = Ok{};
+};
+
+/// The teeth of a program, made of its text; some at a time, on all threads.
+template <typename Made>
+class EachTooth {
+ public:
+  using Make = std::function<Made(Tooth&)>;
+  using Take = std::function<void(Tooth&, Made&)>;
+  /// @param make  for several teeth at once;  @param take  gets them in the order of the program
+  EachTooth(const ProgramText& program, const readback::NcControl& control, const GearCheck& gear, Make make, Take take)
+      : program_(program), control_(control), by_(follower(program, control, gear)), make_(make), take_(take) {}
+
+  /// @param wanted  of a later tooth
+  Status run(const readback::ReadBack& read, const std::function<readback::Followed::Moves(int)>& wanted) {
+    const auto walked =
+        readback::walk_teeth(program_.text, program_.file, control_, read, [&](readback::OperationTrace&& trace) {
+          if (!status_) return;
+          if (status_ = operation_exists(program_, trace); !status_) return;
+          const bool first = trace.before == 0;
+          if (first) finish();  // the others are compared with it
+          moves_ += trace.moves.size();
+          const auto moves = first ? readback::Followed::Moves::all : wanted(trace.moves[trace.before].tooth);
+          teeth_.push_back({std::move(trace), first, moves, {}});
+          if (first || moves_ >= most_moves_) finish();
+        });
+    if (!walked) return walked;
+    finish();
+    return status_;
+  }
+
+ private:
+  void finish() {
+    std::vector<Made> made(teeth_.size());
+    tbb::parallel_for(std::size_t(0), teeth_.size(), [&](std::size_t n) {
+      Tooth& tooth = teeth_[n];
+      readback::Followed by = by_;
+      by.moves = tooth.wanted;
+      tooth.followed = readback::add_tool_motions(tooth.trace, {}, by, tooth.motions);
+      if (tooth.followed) made[n] = make_(tooth);
+    });
+    std::size_t motions = 0;
+    for (std::size_t n = 0; n < teeth_.size() && status_; ++n) {
+      motions += teeth_[n].motions.size();
+      if (!teeth_[n].followed) status_ = in_file(teeth_[n].followed.error(), program_.file);
+      else take_(teeth_[n], made[n]);
+    }
+    // Turns of the rotaries become many motions.
+    if (motions > 0) most_moves_ = std::max<std::size_t>(1, kTogether * moves_ / motions);
+    teeth_.clear();
+    moves_ = 0;
+  }
+
+  static constexpr std::size_t kTogether = 65536;  // motions that are held at a time, about
+  const ProgramText& program_;
+  const readback::NcControl& control_;
+  const readback::Followed by_;
+  Make make_;
+  Take take_;
+  std::vector<Tooth> teeth_;
+  std::size_t moves_ = 0, most_moves_ = 4096;
+  Status status_ = Ok{};
+};
+
+/// All that was kept, as one list.
+Status follow_whole(const ProgramText& program, GearCheck& gear, ProgramProof& proof, std::vector<std::string>& rapids,
+                    app::StageClock& clock) {
+  std::size_t moves = 0;
+  for (const readback::OperationTrace& trace : proof.read.operations) moves += trace.moves.size();
+  proof.motions.reserve(moves);
+  const readback::Followed by = follower(program, proof.control, gear);
+  for (const readback::OperationTrace& trace : proof.read.operations) {
+    if (auto known = operation_exists(program, trace); !known) return known;
+    const std::size_t before = proof.motions.size();
+    const Status followed =
+        clock.run("read back", [&] { return add_tool_motions(trace, proof.read.copies, by, proof.motions); });
+    if (!followed) return in_file(followed.error(), program.file);
+    if (const auto clear = gear.rapids_clear(trace, proof.control); !clear) rapids.push_back(clear.error().message);
+    gear.meet(trace, std::span(proof.motions).subspan(before), proof.control);
+  }
+  if (proof.read.copies.copies) return Ok{};
+  keep_first_teeth(proof.read);  // what else there is to say of them is in the motions
+  if (program.job.verify.all_teeth) return Ok{};
+  // Teeth that are written out one by one: what is the first tooth again, turned, need not be proven again.
+  clock.run("compare the teeth", [&] {
+    proof.motions = without_copies(std::move(proof.motions), gear.teeth(), copy_tolerance(program.job));
+    proof.likes = like_motions(proof.motions, gear.teeth());
+  });
+  return Ok{};
+}
+
+/// Teeth that stand one by one, none held but the first of every operation, and tooth space 0.
+class TeethOneByOne {
+ public:
+  TeethOneByOne(const ProgramText& program, GearCheck& gear, ProgramProof& proof)
+      : program_(program),
+        gear_(gear),
+        proof_(proof),
+        teeth_(gear.teeth(), program.job.verify.all_teeth ? std::nullopt : std::optional(copy_tolerance(program.job))) {
+  }
+
+  /// Every tooth is seen, its rapids against the part and its cuts beside the first one.
+  Status see(std::vector<std::string>& rapids) {
+    if (auto seen = see_all(&TeethOneByOne::met); !seen) return seen;
+    while (!teeth_.settle())
+      if (auto seen = see_all(&TeethOneByOne::seen_again); !seen) return seen;
+    for (auto& [operation, refusal] : refused_) rapids.push_back(std::move(refusal));
+    for (auto& [operation, motions] : kept_) {
+      const auto first = teeth_.first_of(operation);
+      proof_.motions.insert(proof_.motions.end(), first.begin(), first.end());
+      if (teeth_.left_out(0)) std::erase_if(motions, [](const path::ToolMotion& m) { return !m.rapid; });
+      proof_.motions.insert(proof_.motions.end(), motions.begin(), motions.end());
+    }
+    kept_.clear();
+    proof_.stated = teeth_.stated();
+    proof_.likes_follow = teeth_.any_like();
+    return Ok{};
+  }
+
+  /// What is to be proven, tooth by tooth.
+  Status each(TeethWanted wanted, const ToothSink& sink) const {
+    EachTooth<std::vector<proof::LikeMotion>> all(
+        program_, proof_.control, gear_,
+        [&](Tooth& tooth) { return tooth.first ? std::vector<proof::LikeMotion>() : teeth_.likes(tooth.motions); },
+        [&](Tooth& tooth, std::vector<proof::LikeMotion>& likes) {
+          if (tooth.first) {  // it stands for others, too
+            const auto first = teeth_.first_of(tooth.trace.operation);
+            tooth.motions.assign(first.begin(), first.end());
+          }
+          sink(std::move(tooth.motions), likes, tooth.first);
+        });
+    using Moves = readback::Followed::Moves;
+    return all.run(proof_.read, [&](int tooth) {
+      if (teeth_.left_out(tooth)) return Moves::rapids;
+      return wanted == TeethWanted::cuts ? Moves::feeds : Moves::all;
+    });
+  }
+
+ private:
+  struct Look {
+    Status rapids = Ok{};
+    ToothByTooth::Seen seen;
+  };
+  Status see_all(void (TeethOneByOne::*take)(Tooth&, Look&)) {
+    const bool anew = take == &TeethOneByOne::met;
+    EachTooth<Look> all(
+        program_, proof_.control, gear_,
+        [&](Tooth& tooth) {
+          Look look;
+          if (anew) look.rapids = gear_.rapids_clear(tooth.trace, proof_.control);
+          if (!tooth.first) look.seen = teeth_.seen(tooth.motions);
+          return look;
+        },
+        [&](Tooth& tooth, Look& look) { (this->*take)(tooth, look); });
+    return all.run(proof_.read, [](int) { return readback::Followed::Moves::all; });
+  }
+  void met(Tooth& tooth, Look& look) {
+    const int operation = tooth.trace.operation;
+    if (!look.rapids) refused_.emplace(operation, look.rapids.error().message);
+    gear_.meet(tooth.trace, tooth.motions, proof_.control);
+    proof_.tooth_motions += tooth.motions.size();
+    if (tooth.first) {
+      teeth_.first(tooth.motions);
+      kept_.emplace_back(operation, std::vector<path::ToolMotion>());
+    } else {
+      teeth_.note(look.seen);
+      if (tooth.trace.moves[tooth.trace.before].tooth == 0) kept_.back().second = std::move(tooth.motions);
+    }
+  }
+  void seen_again(Tooth& tooth, Look& look) {
+    if (!tooth.first) teeth_.note(look.seen);
+  }
+
+  const ProgramText& program_;
+  GearCheck& gear_;
+  ProgramProof& proof_;
+  ToothByTooth teeth_;
+  std::map<int, std::string> refused_;  // of an operation, its first rapid that is not clear
+  std::vector<std::pair<int, std::vector<path::ToolMotion>>> kept_;  // operations, with space 0 where it comes later
+};
 
 /// Only the teeth are proven against the part: nothing may feed ahead of, between or behind them.
 void judge_feeds_between(const readback::ReadBack& read, std::vector<std::string>& reasons) {
@@ -72,29 +268,58 @@ void compare(ProgramProof& proof, const AskedPaths& asked, const GearCheck& gear
 
 }  // namespace
 
+void with_all_motions(ProgramProof& program,
+                      const std::function<void(const std::vector<path::ToolMotion>& motions,
+                                               std::span<const proof::LikeMotion> likes)>& work) {
+  if (!program.each_tooth) return work(program.motions, program.likes);
+  std::vector<path::ToolMotion> all;
+  all.reserve(program.tooth_motions);
+  std::vector<proof::LikeMotion> alike;
+  std::size_t firsts = 0, shift = 0;  // motions of first teeth so far; how much later the last of them stand here
+  const Status made = program.each_tooth(TeethWanted::whole, [&](std::vector<path::ToolMotion>&& motions,
+                                                                 std::span<const proof::LikeMotion> likes, bool first) {
+    if (first) {
+      shift = all.size() - firsts;
+      firsts += motions.size();
+    }
+    for (proof::LikeMotion like : likes) {
+      like.motion += std::uint32_t(all.size());
+      like.like_first += std::uint32_t(shift);
+      like.like_last += std::uint32_t(shift);
+      alike.push_back(like);
+    }
+    all.insert(all.end(), motions.begin(), motions.end());
+  });
+  if (!made) program.reasons.push_back(made.error().message);
+  work(all, alike);
+}
+
 Result<ProgramProof> prove_program(const ProgramText& program, const AskedPaths& asked, GearCheck& gear,
                                    app::StageClock& clock) {
   auto read = read_program(program, gear, clock);
   if (!read) return read.error();
   ProgramProof proof = std::move(read.value());
+  std::vector<std::string> rapids;
+  std::optional<TeethOneByOne> one_by_one;
+  if (proof.read.first_teeth) {
+    one_by_one.emplace(program, gear, proof);
+    const Status seen = clock.run("compare the teeth", [&] { return one_by_one->see(rapids); });
+    if (!seen) return seen.error();
+    proof.each_tooth = [&](TeethWanted wanted, const ToothSink& sink) { return one_by_one->each(wanted, sink); };
+  } else {
+    if (auto followed = follow_whole(program, gear, proof, rapids, clock); !followed) return followed.error();
+    proof.stated = stated_deviation(proof.motions);
+  }
   if (proof.read.mixed_rapid > 0)
     proof.reasons.push_back(fmt::format("line {}: a rapid moves more than one group of axes", proof.read.mixed_rapid));
-  for (const auto* traces : {&proof.read.operations, &proof.read.between})
-    for (const readback::OperationTrace& trace : *traces)
-      if (const auto clear = gear.rapids_clear(trace, proof.control); !clear)
-        proof.reasons.push_back(clear.error().message);
+  std::move(rapids.begin(), rapids.end(), std::back_inserter(proof.reasons));
+  for (const readback::OperationTrace& trace : proof.read.between)
+    if (const auto clear = gear.rapids_clear(trace, proof.control); !clear)
+      proof.reasons.push_back(clear.error().message);
   judge_feeds_between(proof.read, proof.reasons);
   judge_travels(ranges_of(proof.read, program.machine), proof.reasons);
-  gear.meet(proof);
-  if (!proof.read.copies.copies) keep_first_teeth(proof.read);  // what else there is to say of them is in the motions
-  // Teeth that are written out one by one: what is the first tooth again, turned, need not be proven again.
-  if (!proof.read.copies.copies && !program.job.verify.all_teeth)
-    proof.motions = clock.run("compare the teeth", [&] {
-      return without_copies(std::move(proof.motions), gear.teeth(), kCopyShare * program.job.verify.gouge_tolerance_mm);
-    });
-  if (!proof.read.copies.copies && !program.job.verify.all_teeth)
-    proof.likes = clock.run("compare the teeth", [&] { return like_motions(proof.motions, gear.teeth()); });
   gear.judge(proof, clock);
+  proof.each_tooth = nullptr;
   if (!asked.paths.empty()) compare(proof, asked, gear, clock);
   return proof;
 }

@@ -4,6 +4,8 @@
 // gear is a `GearCheck`: a gear type without one has no proof, and none can leave a step out.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +14,7 @@
 
 #include "app/base/stage_clock.h"
 #include "app/job/job.h"
+#include "app/process/tooth_copies.h"
 #include "app/report/finding.h"
 #include "cam/proof/like_motion.h"
 #include "cam/proof/verification.h"
@@ -35,13 +38,28 @@ struct AskedPaths {
   double mm = 0, rad = 0;  ///< bounds of the axis program; what reading back adds is added
 };
 
+/// Takes the motions of one tooth of an operation, in the order of the program, and those among them that are like
+/// motions of first teeth: by their number in this list, and in the list of all first teeth. `first`: such a tooth.
+using ToothSink =
+    std::function<void(std::vector<path::ToolMotion>&& motions, std::span<const proof::LikeMotion> likes, bool first)>;
+
+/// Of later teeth the cuts alone, where they are wanted for what they are like.
+enum class TeethWanted : std::uint8_t { whole, cuts };
+
 /// What is found about a program of any gear. The first half is read from the text, the second is what the gear says of
 /// it.
 struct ProgramProof {
   readback::NcControl control;
   readback::ReadBack read;
-  std::vector<path::ToolMotion> motions;             ///< in program order; all teeth that were kept
-  std::vector<proof::LikeMotion> likes;              ///< those that go nearly as their operation's first tooth
+  /// In program order. Where the teeth are followed one by one, `each_tooth`: those of the first tooth of every
+  /// operation and of tooth space 0; else of all teeth that were kept.
+  std::vector<path::ToolMotion> motions;
+  std::vector<proof::LikeMotion> likes;  ///< those of `motions` that go nearly as their operation's first tooth
+  /// All that is to be proven, tooth by tooth, made anew from the text: they are not held. Empty: `motions` are all.
+  std::function<Status(TeethWanted, const ToothSink&)> each_tooth;
+  std::size_t tooth_motions = 0;                     ///< that each_tooth gives, at most
+  bool likes_follow = false;                         ///< some of them are like others
+  Stated stated;                                     ///< of all that is to be proven
   std::optional<readback::ClComparison> comparison;  ///< only where there is a path to compare with
   double path_tolerance_mm = 0;                      ///< of that comparison
   std::vector<std::string> reasons;                  ///< why the program is not proven; empty: it is
@@ -66,12 +84,19 @@ class GearCheck {
   /// Do the rapids of this trace keep the whole tool clear of part and blank at every moment? A refusal names the line.
   [[nodiscard]] virtual Status rapids_clear(const readback::OperationTrace& trace,
                                             const readback::NcControl& control) const = 0;
-  /// Sees the program as it was read, with all teeth that were kept, before copies among them are left out.
-  virtual void meet(const ProgramProof& whole) = 0;
-  /// Gouge, clearance, material left: what `program.motions` do to the part, in stages of the gear's own, goes into the
-  /// second half of `program`. What is not within its limit joins `program.reasons`.
+  /// Sees the program as it was read ahead of judge(), all teeth that were kept, before copies among them are left out:
+  /// stretch by stretch, each of one operation, the moves with the motions made of them.
+  virtual void meet(const readback::OperationTrace& trace, std::span<const path::ToolMotion> motions,
+                    const readback::NcControl& control) = 0;
+  /// Gouge, clearance, material left: what the motions of `program` do to the part, in stages of the gear's own, goes
+  /// into the second half of `program`. What is not within its limit joins `program.reasons`.
   virtual void judge(ProgramProof& program, app::StageClock& clock) = 0;
 };
+
+/// The motions of `program` that are to be proven as one list, with those that are like others; what keeps them from
+/// being made joins its reasons.
+void with_all_motions(ProgramProof& program, const std::function<void(const std::vector<path::ToolMotion>& motions,
+                                                                      std::span<const proof::LikeMotion> likes)>& work);
 
 /// The one proof of a program. Stages "read back", "compare the teeth" (only where teeth are written out), those of the
 /// gear, "compare with the path". Errors: what the reader refuses, located in the file. A program that is read but not

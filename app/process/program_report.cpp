@@ -119,6 +119,15 @@ std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& progra
 
 namespace {
 
+/// They are in the text.
+void release_later_teeth(joints::AxisProgram& program) {
+  for (joints::AxisOperation& operation : program.operations)
+    for (std::size_t n = 1; n < operation.teeth.size(); ++n) {
+      operation.teeth[n].release();
+      operation.teeth[n].packed = {};
+    }
+}
+
 text::NcHeader header_of(const PostRequest& request, const std::vector<std::string>& assumed, double radius) {
   text::NcHeader header;
   header.job_name = request.title;
@@ -144,6 +153,7 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   if (!dialect) return located(job, "machine.file", dialect.error());
   auto program = clock.run("axis program", [&] {
     joints::AxisOptions options = controls::axis_options(*dialect, machine);
+    options.pack_teeth = true;
     if (job.program.spread_teeth) options.tooth_stride = joints::spread_stride(request.teeth);
     return build_axis_program(paths, job.tools, *job.setup, machine, request.teeth, request.body, options);
   });
@@ -171,6 +181,11 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
     posted.blocks = text->blocks;
   }
   if (const auto written = output.write(posted.file, restart ? text->text : whole); !written) return written.error();
+  // What is proven is what lies there; the first teeth are all that is asked for later.
+  if (!restart) std::string().swap(whole);
+  std::string().swap(text->text);
+  release_later_teeth(posted.axes);
+  if (posted.restarted) release_later_teeth(*posted.restarted);
   auto bytes = output.read_back(posted.file);
   if (!bytes) return bytes.error();
   posted.text = std::move(restart ? whole : bytes.value());

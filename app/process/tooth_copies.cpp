@@ -6,13 +6,21 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
-#include <optional>
 #include <utility>
 
 #include "geometry/base/angle.h"
 
 namespace toothpath::process {
+
+/// Motions that one block of the text was cut into: pieces of equal time, indices [first, last).
+struct MotionBlock {
+  std::size_t first = 0, last = 0;
+  [[nodiscard]] std::size_t pieces() const { return last - first; }
+};
+
 namespace {
+
+using Block = MotionBlock;
 
 constexpr double kReach =
     1000;  // mm: the axis also moves shank and holder, less than a metre away; a copy is near there
@@ -27,28 +35,27 @@ constexpr int kSearches = 64;        // of the whole first tooth, where a tooth 
 // these within a motion, that widens what lies between two of them by no more than the second.
 constexpr double kWideTurn = 0.05, kNormalised = 1.001;
 
-/// Motions that one block of the text was cut into: pieces of equal time, indices [first, last).
-struct Block {
-  std::size_t first = 0, last = 0;
-  [[nodiscard]] std::size_t pieces() const { return last - first; }
-};
 using ToothOfOperation = std::pair<int, int>;  // operation, tooth
 using Blocks = std::map<ToothOfOperation, std::vector<Block>>;
+
+/// Motion k, which cuts, joins the blocks of its tooth.
+void add_cut(std::vector<Block>& blocks, std::span<const path::ToolMotion> motions, std::size_t k) {
+  if (!blocks.empty() && blocks.back().last == k && motions[k - 1].line == motions[k].line &&
+      motions[k - 1].minutes == motions[k].minutes)
+    ++blocks.back().last;
+  else blocks.push_back({k, k + 1});
+}
 
 /// Cutting blocks of every tooth of every operation, in program order.
 Blocks cutting_blocks(const std::vector<path::ToolMotion>& motions) {
   Blocks cuts;
-  for (std::size_t k = 0; k < motions.size(); ++k) {
-    const path::ToolMotion& m = motions[k];
-    if (m.rapid) continue;
-    std::vector<Block>& blocks = cuts[{m.operation, m.tooth}];
-    if (!blocks.empty() && blocks.back().last == k && motions[k - 1].line == m.line &&
-        motions[k - 1].minutes == m.minutes)
-      ++blocks.back().last;
-    else blocks.push_back({k, k + 1});
-  }
+  for (std::size_t k = 0; k < motions.size(); ++k)
+    if (!motions[k].rapid) add_cut(cuts[{motions[k].operation, motions[k].tooth}], motions, k);
   return cuts;
 }
+
+/// Angle that turns a tooth onto the first one.
+double back_to_first(int tooth, int first, int teeth) { return -2 * kPi * (tooth - first) / teeth; }
 
 struct Pose {
   Vec3 tip, axis;
@@ -67,8 +74,9 @@ struct Shift {
 /// The first tooth and one that may be its copy.
 class Turned {
  public:
-  Turned(const std::vector<path::ToolMotion>& motions, double turn)
-      : motions_(motions), c_(std::cos(turn)), s_(std::sin(turn)) {}
+  /// @param turn  from the copy back to the first tooth
+  Turned(std::span<const path::ToolMotion> originals, std::span<const path::ToolMotion> copies, double turn)
+      : originals_(originals), copies_(copies), c_(std::cos(turn)), s_(std::sin(turn)) {}
 
   /// Greatest distance of two blocks, the second one turned back, at the same share of their time. Between two ends of
   /// pieces of either both are straight, so that it is met at such an end; axes that are blended in a straight line and
@@ -79,32 +87,33 @@ class Turned {
     for (std::size_t k = 0; k <= n; ++k) most.take_greater(apart(original, copy, k, n));
     if (m != n)
       for (std::size_t k = 0; k <= m; ++k) most.take_greater(apart(original, copy, k, m));
-    most.axis_rad /= std::min(least_length(original), least_length(copy));
+    most.axis_rad /= std::min(least_length(originals_, original), least_length(copies_, copy));
     return most;
   }
 
  private:
   [[nodiscard]] Shift apart(const Block& original, const Block& copy, std::size_t k, std::size_t of) const {
-    const Pose a = at(original, k, of), b = at(copy, k, of);
+    const Pose a = at(originals_, original, k, of), b = at(copies_, copy, k, of);
     return {(back(b.tip) - a.tip).norm(), (back(b.axis) - a.axis).norm()};
   }
   /// Of the axes while they are blended: in the middle.
-  [[nodiscard]] double least_length(const Block& block) const {
+  [[nodiscard]] static double least_length(std::span<const path::ToolMotion> motions, const Block& block) {
     double least = 1;
     for (std::size_t k = block.first; k < block.last; ++k)
-      least = std::min(least, 0.5 * (motions_[k].axis_from + motions_[k].axis_to).norm());
+      least = std::min(least, 0.5 * (motions[k].axis_from + motions[k].axis_to).norm());
     return least;
   }
   /// Where the block is at the share k / of of its time; exact at the ends of its own pieces.
-  [[nodiscard]] Pose at(const Block& block, std::size_t k, std::size_t of) const {
+  [[nodiscard]] static Pose at(std::span<const path::ToolMotion> motions, const Block& block, std::size_t k,
+                               std::size_t of) {
     const std::size_t whole = k * block.pieces(), piece = std::min(whole / of, block.pieces() - 1);
-    const path::ToolMotion& m = motions_[block.first + piece];
+    const path::ToolMotion& m = motions[block.first + piece];
     const double t = static_cast<double>(whole - piece * of) / static_cast<double>(of);
     return {(1 - t) * m.tip_from + t * m.tip_to, (1 - t) * m.axis_from + t * m.axis_to};
   }
   [[nodiscard]] Vec3 back(const Vec3& v) const { return {c_ * v.x() - s_ * v.y(), s_ * v.x() + c_ * v.y(), v.z()}; }
 
-  const std::vector<path::ToolMotion>& motions_;
+  std::span<const path::ToolMotion> originals_, copies_;
   double c_, s_;
 };
 
@@ -120,16 +129,22 @@ std::optional<Shift> shift_of(const Turned& turned, const std::vector<Block>& or
   return shift;
 }
 
-/// The first tooth's block stands for the copy as well: it may stray as far as that does, and by their distance.
-void stand_for(std::vector<path::ToolMotion>& motions, const Block& original, const Block& copy, const Shift& shift) {
-  double tip = 0, axis = 0;
-  for (std::size_t k = copy.first; k < copy.last; ++k) {
-    tip = std::max(tip, motions[k].deviation_mm);
-    axis = std::max(axis, motions[k].axis_deviation);
+Stated most_of(std::span<const path::ToolMotion> motions, const Block& block) {
+  Stated most;
+  for (std::size_t k = block.first; k < block.last; ++k) {
+    most.tip_mm = std::max(most.tip_mm, motions[k].deviation_mm);
+    most.axis_rad = std::max(most.axis_rad, motions[k].axis_deviation);
   }
+  return most;
+}
+
+Stated farther(const Stated& copy, const Shift& by) { return {copy.tip_mm + by.tip_mm, copy.axis_rad + by.axis_rad}; }
+
+/// The first tooth's block stands for copies as well: it may stray as far as they do, and by their distance.
+void stand_for(std::span<path::ToolMotion> motions, const Block& original, const Stated& copies) {
   for (std::size_t k = original.first; k < original.last; ++k) {
-    motions[k].deviation_mm = std::max(motions[k].deviation_mm, tip + shift.tip_mm);
-    motions[k].axis_deviation = std::max(motions[k].axis_deviation, axis + shift.axis_rad);
+    motions[k].deviation_mm = std::max(motions[k].deviation_mm, copies.tip_mm);
+    motions[k].axis_deviation = std::max(motions[k].axis_deviation, copies.axis_rad);
   }
 }
 
@@ -154,12 +169,11 @@ float rounded_up(double x) { return std::nextafter(float(std::max(x, 0.0)), INFI
 class Beside {
  public:
   /// @param path  cutting motions of the first tooth, by their number, in order; @param turn  back to it
-  Beside(const std::vector<path::ToolMotion>& motions, const std::vector<std::uint32_t>& path, double turn)
+  Beside(std::span<const path::ToolMotion> motions, const std::vector<std::uint32_t>& path, double turn)
       : motions_(motions), path_(path), c_(std::cos(turn)), s_(std::sin(turn)) {}
 
-  /// The next motion of the other tooth; nothing where it is not like the first one.
-  std::optional<proof::LikeMotion> next(std::uint32_t k) {
-    const path::ToolMotion& m = motions_[k];
+  /// The next motion of the other tooth, number k of its list; nothing where it is not like the first one.
+  std::optional<proof::LikeMotion> next(const path::ToolMotion& m, std::uint32_t k) {
     const Pose a{back(m.tip_from), back(m.axis_from)}, b{back(m.tip_to), back(m.axis_to)};
     const std::size_t from = nearest(a, at_, kAhead), to = nearest(b, from, kAhead);
     tip_ = axis_ = 0;
@@ -216,7 +230,7 @@ class Beside {
   }
   [[nodiscard]] Vec3 back(const Vec3& v) const { return {c_ * v.x() - s_ * v.y(), s_ * v.x() + c_ * v.y(), v.z()}; }
 
-  const std::vector<path::ToolMotion>& motions_;
+  std::span<const path::ToolMotion> motions_;
   const std::vector<std::uint32_t>& path_;
   double c_, s_;
   std::size_t at_ = 0;         ///< of the path: where the last motion ended
@@ -246,9 +260,9 @@ std::vector<proof::LikeMotion> like_motions(const std::vector<path::ToolMotion>&
   tbb::parallel_for(std::size_t(0), others.size(), [&](std::size_t n) {
     const auto [operation, tooth] = others[n];
     const int reference = first_tooth.at(operation);
-    Beside beside(motions, cuts.at({operation, reference}), -2 * kPi * (tooth - reference) / teeth);
+    Beside beside(motions, cuts.at({operation, reference}), back_to_first(tooth, reference, teeth));
     for (const std::uint32_t k : cuts.at(others[n]))
-      if (const auto like = beside.next(k)) found[n].push_back(*like);
+      if (const auto like = beside.next(motions[k], k)) found[n].push_back(*like);
   });
   std::vector<proof::LikeMotion> likes;
   for (const auto& of_tooth : found) likes.insert(likes.end(), of_tooth.begin(), of_tooth.end());
@@ -266,7 +280,7 @@ std::vector<path::ToolMotion> without_copies(std::vector<path::ToolMotion> motio
     const auto& [operation, tooth] = key;
     const int reference = first_tooth.at(operation);
     const auto shift = tooth == reference ? std::nullopt
-                                          : shift_of({motions, -2 * kPi * (tooth - reference) / teeth},
+                                          : shift_of({motions, motions, back_to_first(tooth, reference, teeth)},
                                                      cuts.at({operation, reference}), blocks, tolerance_mm);
     const auto known = copied.emplace(tooth, true).first;
     known->second = known->second && shift.has_value();
@@ -279,7 +293,7 @@ std::vector<path::ToolMotion> without_copies(std::vector<path::ToolMotion> motio
     if (!copied.at(key.second)) continue;
     const auto &originals = cuts.at({key.first, first_tooth.at(key.first)}), &copies = cuts.at(key);
     for (std::size_t k = 0; k < originals.size(); ++k) {
-      stand_for(motions, originals[k], copies[k], shift);
+      stand_for(motions, originals[k], farther(most_of(motions, copies[k]), shift));
       std::fill(drop.begin() + static_cast<std::ptrdiff_t>(copies[k].first),
                 drop.begin() + static_cast<std::ptrdiff_t>(copies[k].last), true);
     }
@@ -289,6 +303,124 @@ std::vector<path::ToolMotion> without_copies(std::vector<path::ToolMotion> motio
     if (!drop[k]) motions[kept++] = motions[k];
   motions.resize(kept);
   return motions;
+}
+
+Stated stated_deviation(std::span<const path::ToolMotion> motions) {
+  Stated out;
+  for (const auto& m : motions)
+    if (!m.rapid) out.add({m.deviation_mm, m.axis_deviation});
+  return out;
+}
+
+/// The first tooth of an operation, by the numbers of its motions in the list of all first teeth.
+struct ToothByTooth::First {
+  int tooth = 0;
+  std::size_t begin = 0, end = 0;
+  std::vector<Block> blocks;
+  std::vector<std::uint32_t> cuts;
+  std::vector<Stated> copies;  ///< of every block: how far the teeth may be from it that are its copies
+};
+
+/// A later tooth, as it was seen.
+struct ToothByTooth::Later {
+  bool copy = false, like = false;
+  Stated stated;
+};
+
+ToothByTooth::ToothByTooth(int teeth, std::optional<double> copy_tolerance_mm)
+    : teeth_(teeth), tolerance_mm_(copy_tolerance_mm) {}
+ToothByTooth::~ToothByTooth() = default;
+
+void ToothByTooth::first(std::span<const path::ToolMotion> motions) {
+  if (motions.empty() || operations_.contains(motions.front().operation)) return;
+  First first;
+  first.begin = firsts_.size();
+  first.end = first.begin + motions.size();
+  for (const path::ToolMotion& m : motions) {
+    firsts_.push_back(m);
+    if (m.rapid) continue;
+    first.tooth = m.tooth;
+    first.cuts.push_back(std::uint32_t(firsts_.size() - 1));
+    add_cut(first.blocks, firsts_, firsts_.size() - 1);
+  }
+  first.copies.resize(first.blocks.size());
+  operations_.emplace(motions.front().operation, std::move(first));
+}
+
+ToothByTooth::Seen ToothByTooth::seen(std::span<const path::ToolMotion> motions) const {
+  Seen out;
+  std::vector<Block> blocks;
+  for (std::size_t k = 0; k < motions.size(); ++k)
+    if (!motions[k].rapid) add_cut(blocks, motions, k);
+  if (blocks.empty()) return out;
+  out.operation = motions.front().operation;
+  out.tooth = motions.front().tooth;
+  out.stated = stated_deviation(motions);
+  const First& first = operations_.at(out.operation);
+  if (!tolerance_mm_) return out;
+  Beside beside(firsts_, first.cuts, back_to_first(out.tooth, first.tooth, teeth_));
+  for (std::size_t k = 0; k < motions.size() && !out.like; ++k)
+    out.like = !motions[k].rapid && beside.next(motions[k], std::uint32_t(k));
+  const auto shift =
+      shift_of({firsts_, motions, back_to_first(out.tooth, first.tooth, teeth_)}, first.blocks, blocks, *tolerance_mm_);
+  if (!shift) return out;
+  for (const Block& block : blocks) out.blocks.push_back(farther(most_of(motions, block), *shift));
+  return out;
+}
+
+void ToothByTooth::note(const Seen& seen) {
+  if (seen.operation < 0) return;
+  later_[{seen.operation, seen.tooth}] = {!seen.blocks.empty(), seen.like, seen.stated};
+  if (copies_ && !copies_->contains(seen.tooth)) return;
+  std::vector<Stated>& copies = operations_.at(seen.operation).copies;
+  for (std::size_t k = 0; k < seen.blocks.size(); ++k) copies[k].add(seen.blocks[k]);
+}
+
+bool ToothByTooth::settle() {
+  std::map<int, std::size_t> times;  // that a tooth is a copy
+  for (const auto& [key, later] : later_)
+    if (later.copy) ++times[key.second];
+  std::set<int> copies;
+  for (const auto& [tooth, count] : times)
+    if (count == operations_.size()) copies.insert(tooth);
+  const bool settled = copies_ || copies.size() == times.size();
+  copies_ = std::move(copies);
+  for (auto& [operation, first] : operations_) {
+    for (std::size_t k = 0; settled && k < first.blocks.size(); ++k)
+      stand_for(firsts_, first.blocks[k], first.copies[k]);
+    first.copies.assign(first.blocks.size(), {});
+  }
+  return settled;
+}
+
+Stated ToothByTooth::stated() const {
+  Stated out = stated_deviation(firsts_);
+  for (const auto& [key, later] : later_)
+    if (!left_out(key.second)) out.add(later.stated);
+  return out;
+}
+
+bool ToothByTooth::any_like() const {
+  return std::any_of(later_.begin(), later_.end(),
+                     [this](const auto& later) { return later.second.like && !left_out(later.first.second); });
+}
+
+std::span<const path::ToolMotion> ToothByTooth::first_of(int operation) const {
+  const First& first = operations_.at(operation);
+  return firsts().subspan(first.begin, first.end - first.begin);
+}
+
+bool ToothByTooth::left_out(int tooth) const { return copies_ && copies_->contains(tooth); }
+
+std::vector<proof::LikeMotion> ToothByTooth::likes(std::span<const path::ToolMotion> motions) const {
+  std::vector<proof::LikeMotion> found;
+  if (!tolerance_mm_ || motions.empty()) return found;
+  const First& first = operations_.at(motions.front().operation);
+  Beside beside(firsts_, first.cuts, back_to_first(motions.front().tooth, first.tooth, teeth_));
+  for (std::size_t k = 0; k < motions.size(); ++k)
+    if (!motions[k].rapid)
+      if (const auto like = beside.next(motions[k], std::uint32_t(k))) found.push_back(*like);
+  return found;
 }
 
 }  // namespace toothpath::process

@@ -2,6 +2,12 @@
 // again.
 #pragma once
 
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "cam/path/tool_motion.h"
@@ -21,5 +27,62 @@ namespace toothpath::process {
 /// blocks, in the order of the motions. What is proven of the first tooth tells of them all but this distance.
 /// @param motions, teeth  as above
 [[nodiscard]] std::vector<proof::LikeMotion> like_motions(const std::vector<path::ToolMotion>& motions, int teeth);
+
+/// Largest deviations that motions state while cutting.
+struct Stated {
+  double tip_mm = 0, axis_rad = 0;
+  void add(const Stated& other) {
+    tip_mm = std::max(tip_mm, other.tip_mm);
+    axis_rad = std::max(axis_rad, other.axis_rad);
+  }
+};
+[[nodiscard]] Stated stated_deviation(std::span<const path::ToolMotion> motions);
+
+/// The same of a program that is never held as a whole: its teeth come one by one, and what stays is the first one of
+/// every operation. All teeth are seen once before anything is said of them.
+class ToothByTooth {
+ public:
+  /// @param copy_tolerance_mm  none: all teeth are proven by themselves
+  ToothByTooth(int teeth, std::optional<double> copy_tolerance_mm);
+  ToothByTooth(const ToothByTooth&) = delete;
+  ToothByTooth& operator=(const ToothByTooth&) = delete;
+  ~ToothByTooth();
+
+  /// The first tooth of an operation, with the rapids ahead of it. It cuts.
+  void first(std::span<const path::ToolMotion> motions);
+  /// A later one beside the first; several at a time may be looked at.
+  struct Seen {
+    int operation = -1, tooth = -1;  ///< below 0: it cuts nothing
+    Stated stated;
+    bool like = false;           ///< some motion is like the first tooth
+    std::vector<Stated> blocks;  ///< a copy: how far each of its blocks may be from the first tooth's
+  };
+  [[nodiscard]] Seen seen(std::span<const path::ToolMotion> motions) const;
+  void note(const Seen& seen);
+  /// All teeth were seen. False: they must be seen once more, for one is a copy in some operations only.
+  [[nodiscard]] bool settle();
+
+  /// Of all operations, in their order; they stand for the teeth that are left out.
+  [[nodiscard]] std::span<const path::ToolMotion> firsts() const { return firsts_; }
+  [[nodiscard]] std::span<const path::ToolMotion> first_of(int operation) const;
+  /// The cuts of this tooth are those of the first one in every operation.
+  [[nodiscard]] bool left_out(int tooth) const;
+  /// Of all that is not left out.
+  [[nodiscard]] Stated stated() const;
+  /// Some of it is like a first tooth.
+  [[nodiscard]] bool any_like() const;
+  /// Those of a later tooth by their number among `motions`, what they are like by its number in firsts().
+  [[nodiscard]] std::vector<proof::LikeMotion> likes(std::span<const path::ToolMotion> motions) const;
+
+ private:
+  struct First;
+  struct Later;
+  int teeth_;
+  std::optional<double> tolerance_mm_;
+  std::vector<path::ToolMotion> firsts_;
+  std::map<int, First> operations_;
+  std::map<std::pair<int, int>, Later> later_;  ///< by operation and tooth
+  std::optional<std::set<int>> copies_;         ///< once all teeth were seen
+};
 
 }  // namespace toothpath::process

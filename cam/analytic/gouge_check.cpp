@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kChunk =
     256;  // motions that one thread checks one after another; the same on any number of threads
+constexpr std::size_t kTogether = 256 * kChunk;  // that wait for all threads
 constexpr double kBodyLook = 0.3;  // mm: gaps of shank and holder are followed this far beyond the clearance
 constexpr double kAhead =
     0.4;  // mm: and this much farther where a body is looked at anew, so that later motions need not
@@ -65,28 +66,6 @@ std::vector<double> arms_of(const tool::ProofTool& tool) {
   for (const auto& f : tool.bodies) arms.push_back(arm_of(f));
   return arms;
 }
-
-/// What is proven of motions by themselves, part by part of their tools, for those that are like them.
-class ProvenDepths {
- public:
-  /// @param of  motions by their number, in order
-  ProvenDepths(const std::vector<std::size_t>& of, std::size_t parts)
-      : of_(of), parts_(parts), depth_(of.size() * parts, INFINITY) {}
-  [[nodiscard]] std::span<double> place(std::size_t n) { return std::span(depth_).subspan(n * parts_, parts_); }
-  /// Depths that the parts of a motion that is like others cannot exceed.
-  void of(const proof::LikeMotion& like, const std::vector<double>& arms, std::vector<double>& known) const {
-    const auto first = std::size_t(std::lower_bound(of_.begin(), of_.end(), like.like_first) - of_.begin());
-    known.assign(arms.size(), -INFINITY);
-    for (std::size_t n = first; n < of_.size() && of_[n] < like.like_last; ++n)
-      for (std::size_t k = 0; k < arms.size(); ++k) known[k] = std::max(known[k], depth_[n * parts_ + k]);
-    for (std::size_t k = 0; k < arms.size(); ++k) known[k] += like.away(arms[k]);
-  }
-
- private:
-  const std::vector<std::size_t>& of_;
-  std::size_t parts_;
-  std::vector<double> depth_;
-};
 
 /// Motions that follow one another, checked by one thread.
 class Chunk {
@@ -239,42 +218,100 @@ GougeCheck::GougeCheck(const GearDistance& part, std::vector<tool::ProofTool> to
 proof::GougeResult GougeCheck::check(const std::vector<path::ToolMotion>& motions,
                                      const std::vector<int>& tool_of_operation,
                                      std::span<const proof::LikeMotion> likes) const {
-  const auto tool_of = [&](std::size_t k) { return tool_of_operation[std::size_t(motions[k].operation)]; };
-  proof::GougeResult out = proof::no_motion_yet(options_.limits.clearance_mm);
-  const auto on_all_threads = [&](std::size_t count, const auto& checked) {
-    std::vector<proof::GougeResult> chunks(count);
-    tbb::parallel_for(std::size_t(0), count, [&](std::size_t n) { chunks[n] = checked(n); });
-    for (const auto& chunk : chunks) proof::add_result(out, chunk);
-  };
-  // Those that are like no others, by themselves.
-  std::vector<std::size_t> own;
+  GougeStream stream(*this, tool_of_operation, !likes.empty());
   auto like = likes.begin();
   for (std::size_t k = 0; k < motions.size(); ++k) {
     if (like != likes.end() && like->motion == k) ++like;
-    else own.push_back(k);
+    else stream.own(motions[k], likes.empty() ? std::nullopt : std::optional(std::uint32_t(k)));
   }
-  std::vector<std::vector<double>> arms;
+  for (const proof::LikeMotion& as : likes) stream.like(motions[as.motion], as);
+  return stream.finish();
+}
+
+/// What is proven of motions by themselves, part by part of their tools, for those that are like them.
+class GougeStream::Proven {
+ public:
+  explicit Proven(std::size_t parts) : parts_(parts) {}
+  /// Room for one motion more. @returns its place
+  std::size_t add(std::uint32_t number) {
+    numbers_.push_back(number);
+    depth_.resize(depth_.size() + parts_, INFINITY);
+    return numbers_.size() - 1;
+  }
+  [[nodiscard]] std::span<double> place(std::size_t n) { return std::span(depth_).subspan(n * parts_, parts_); }
+  /// Depths that the parts of a motion that is like others cannot exceed.
+  void of(const proof::LikeMotion& like, const std::vector<double>& arms, std::vector<double>& known) const {
+    const auto first =
+        std::size_t(std::lower_bound(numbers_.begin(), numbers_.end(), like.like_first) - numbers_.begin());
+    known.assign(arms.size(), -INFINITY);
+    for (std::size_t n = first; n < numbers_.size() && numbers_[n] < like.like_last; ++n)
+      for (std::size_t k = 0; k < arms.size(); ++k) known[k] = std::max(known[k], depth_[n * parts_ + k]);
+    for (std::size_t k = 0; k < arms.size(); ++k) known[k] += like.away(arms[k]);
+  }
+
+ private:
+  std::size_t parts_;
+  std::vector<std::uint32_t> numbers_;
+  std::vector<double> depth_;
+};
+
+struct GougeStream::Waiting {
+  path::ToolMotion motion;
+  std::optional<std::size_t> place;  ///< of its depths
+  proof::LikeMotion as;
+};
+
+GougeStream::GougeStream(const GougeCheck& check, const std::vector<int>& tool_of_operation, bool likes_follow)
+    : check_(check),
+      tool_of_operation_(tool_of_operation),
+      likes_follow_(likes_follow),
+      out_(proof::no_motion_yet(check.options_.limits.clearance_mm)) {
   std::size_t parts = 0;
-  for (const auto& tool : tools_) parts = std::max(parts, arms.emplace_back(arms_of(tool)).size());
-  ProvenDepths proven(own, likes.empty() ? 0 : parts);
-  on_all_threads((own.size() + kChunk - 1) / kChunk, [&](std::size_t n) {
-    Chunk chunk(part_, tools_, options_, !likes.empty());
-    for (std::size_t k = n * kChunk; k < std::min(own.size(), (n + 1) * kChunk); ++k)
-      chunk.check(motions[own[k]], tool_of(own[k]), {}, proven.place(k));
-    return chunk.finish();
-  });
-  if (likes.empty()) return out;
-  const proof::GougeResult before = out;
-  on_all_threads((likes.size() + kChunk - 1) / kChunk, [&](std::size_t n) {
-    Chunk chunk(part_, tools_, options_, false, &before);
+  for (const auto& tool : check.tools_) parts = std::max(parts, arms_.emplace_back(arms_of(tool)).size());
+  proven_ = std::make_unique<Proven>(parts);
+}
+GougeStream::~GougeStream() = default;
+
+void GougeStream::own(const path::ToolMotion& motion, std::optional<std::uint32_t> number) {
+  Waiting& waits = waiting_.emplace_back(Waiting{motion, {}, {}});
+  if (number && likes_follow_) waits.place = proven_->add(*number);
+  if (waiting_.size() == kTogether) work();
+}
+
+void GougeStream::like(const path::ToolMotion& motion, const proof::LikeMotion& as) {
+  if (!before_likes_) {
+    work();
+    before_likes_ = out_;
+  }
+  waiting_.push_back({motion, {}, as});
+  if (waiting_.size() == kTogether) work();
+}
+
+proof::GougeResult GougeStream::finish() {
+  work();
+  return std::move(out_);
+}
+
+void GougeStream::work() {
+  std::vector<proof::GougeResult> chunks((waiting_.size() + kChunk - 1) / kChunk);
+  tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t n) {
+    const proof::GougeResult* before = before_likes_ ? &*before_likes_ : nullptr;
+    Chunk chunk(check_.part_, check_.tools_, check_.options_, likes_follow_ && !before, before);
     std::vector<double> known;
-    for (const auto& as : likes.subspan(n * kChunk, std::min(kChunk, likes.size() - n * kChunk))) {
-      proven.of(as, arms[std::size_t(tool_of(as.motion))], known);
-      chunk.check(motions[as.motion], tool_of(as.motion), known);
+    for (std::size_t k = n * kChunk; k < std::min(waiting_.size(), (n + 1) * kChunk); ++k) {
+      const Waiting& w = waiting_[k];
+      const int tool = tool_of_operation_[std::size_t(w.motion.operation)];
+      if (before) {
+        proven_->of(w.as, arms_[std::size_t(tool)], known);
+        chunk.check(w.motion, tool, known);
+      } else {
+        chunk.check(w.motion, tool, {}, w.place ? proven_->place(*w.place) : std::span<double>());
+      }
     }
-    return chunk.finish();
+    chunks[n] = chunk.finish();
   });
-  return out;
+  for (const auto& chunk : chunks) proof::add_result(out_, chunk);
+  waiting_.clear();
 }
 
 bool GougeCheck::passes(const proof::GougeResult& r) const {

@@ -4,6 +4,9 @@
 // the bounds hold: docs/proof.md.
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,9 +51,41 @@ class GougeCheck {
   static std::vector<path::ToolMotion> motions_of(const path::ClPath& path);
 
  private:
+  friend class GougeStream;
   const GearDistance& part_;
   std::vector<tool::ProofTool> tools_;
   GougeCheckOptions options_;
+};
+
+/// The check of motions that are never held as a whole: first those that are like no others, then the others, both in
+/// the order of the program. The same result as of one list.
+class GougeStream {
+ public:
+  /// Both must outlive it. @param likes_follow  some are like others
+  GougeStream(const GougeCheck& check, const std::vector<int>& tool_of_operation, bool likes_follow);
+  GougeStream(const GougeStream&) = delete;
+  GougeStream& operator=(const GougeStream&) = delete;
+  ~GougeStream();
+
+  /// @param number  by which others are like it, greater than any before; none: no other is
+  void own(const path::ToolMotion& motion, std::optional<std::uint32_t> number);
+  /// No own() behind it.
+  void like(const path::ToolMotion& motion, const proof::LikeMotion& as);
+  [[nodiscard]] proof::GougeResult finish();
+
+ private:
+  class Proven;
+  struct Waiting;
+  void work();
+
+  const GougeCheck& check_;
+  const std::vector<int>& tool_of_operation_;
+  bool likes_follow_;
+  std::vector<std::vector<double>> arms_;  ///< of the tools
+  std::unique_ptr<Proven> proven_;
+  std::vector<Waiting> waiting_;                    ///< for all threads
+  std::optional<proof::GougeResult> before_likes_;  ///< once they follow
+  proof::GougeResult out_;
 };
 
 }  // namespace toothpath::analytic

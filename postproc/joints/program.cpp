@@ -22,7 +22,7 @@ namespace {
 
 constexpr double kCoincident = 1e-9;             // mm: the gear axis lies on the index axis
 constexpr double kParallel = 1e-12;              // sine of the angle between gear axis and index axis
-constexpr std::size_t kMostBlocks = 20'000'000;  // of 100 bytes in memory, and 50 to 100 bytes of text each
+constexpr std::size_t kMostBlocks = 20'000'000;  // of 20 bytes in memory, and 30 to 100 bytes of text each
 
 /// Decides about angles, loop and copies; the blocks of a tooth come from ToothBuilder.
 class ProgramBuilder {
@@ -312,6 +312,7 @@ class ProgramBuilder {
         builder.tooth(*angles, next->angles.front(), k, tooth_rotation(k), blocks);
       }
       if (builder.error()) return builder.error();
+      if (options_.pack_teeth && n > 0) op.teeth.back().pack();
       angles = std::move(next);
     }
     if (program_.loop && rolls_over(chain_)) {
@@ -361,11 +362,14 @@ class ProgramBuilder {
     estimate_times(program_, machine_);
   }
   static bool turns_in_cuts(const AxisOperation& op) {
-    for (const auto& tooth : op.teeth)
-      for (std::size_t i = 1; i < tooth.blocks.size(); ++i) {
-        const auto &from = tooth.blocks[i - 1].words, &to = tooth.blocks[i].words;
-        if (tooth.blocks[i].kind == BlockKind::feed && (from[3] != to[3] || from[4] != to[4])) return true;
+    std::vector<AxisBlock> room;
+    for (const auto& tooth : op.teeth) {
+      const std::vector<AxisBlock>& blocks = tooth.all(room);
+      for (std::size_t i = 1; i < blocks.size(); ++i) {
+        const auto &from = blocks[i - 1].words, &to = blocks[i].words;
+        if (blocks[i].kind == BlockKind::feed && (from[3] != to[3] || from[4] != to[4])) return true;
       }
+    }
     return false;
   }
 

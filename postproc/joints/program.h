@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -49,6 +50,7 @@ struct AxisOptions {
       false;                  ///< the dialect cannot shift a word in a sub-program: loop only where it stands still
   bool search_origin = true;  ///< look for the set-up with the most room in the travels
   bool expand_teeth = false;  ///< write every tooth out even where the loop would do
+  bool pack_teeth = false;    ///< of teeth that are written out hold the first one as blocks, the others packed
   int tooth_stride = 1;       ///< place n of the order cuts tooth n * stride mod z (tooth_order.h); 1: the sequence
   bool tcp_starts_at_zero =
       false;  ///< TCP freezes the table frame where it is switched on: only with the rotaries at zero
@@ -83,12 +85,31 @@ struct AxisBlock {
   bool tip = false;        ///< the linear words are the tip in the table frame (TCP is on)
 };
 
+/// Blocks in a fifth of the room, all but their `run_minutes`. Rulers are below 8.
+class PackedBlocks {
+ public:
+  void pack(const std::vector<AxisBlock>& blocks);
+  void unpack(std::vector<AxisBlock>& blocks) const;
+  [[nodiscard]] bool empty() const { return count_ == 0; }
+
+ private:
+  std::vector<unsigned char> bytes_;
+  std::size_t count_ = 0;
+};
+
 /// The blocks of one tooth of one operation. Starts and ends at a height where the rotaries may turn.
 struct ToothBlocks {
   int tooth = 0;  ///< space index; in a loop 0
   std::vector<AxisBlock> blocks;
-  std::string remark = {};  ///< stands in the text instead of "TOOTH k"; empty: that
-  bool pause = false;       ///< the program stops behind the blocks until it is started again
+  std::string remark = {};   ///< stands in the text instead of "TOOTH k"; empty: that
+  bool pause = false;        ///< the program stops behind the blocks until it is started again
+  PackedBlocks packed = {};  ///< instead of `blocks`, where the options ask for it
+
+  void pack();
+  void unpack();
+  void release();  ///< no blocks, and no room for them
+  /// The blocks, however they are held. @param room  for those that are packed
+  [[nodiscard]] const std::vector<AxisBlock>& all(std::vector<AxisBlock>& room) const;
 };
 
 /// Run time over all teeth.

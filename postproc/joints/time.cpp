@@ -87,7 +87,7 @@ double retract(machines::Joints& at, double top_mm, timing::Corners corners, con
 /// What the operation's rapids hold beside those of the blocks: the turns of the index, min.
 double index_minutes(const AxisOperation& op, int copies) {
   double blocks = 0;
-  for (const auto& tooth : op.teeth)
+  for (const auto& tooth : op.teeth)  // one
     for (const auto& b : tooth.blocks) blocks += b.kind == BlockKind::feed ? 0 : copies * b.minutes;
   const double index = op.rapid_minutes - blocks;
   return index > kLeastIndex ? index : 0;
@@ -105,21 +105,23 @@ std::size_t time_operation(AxisProgram& program, AxisOperation& op, std::optiona
   const double pitch_rad = copies > 1 ? program.index_sign * index_minutes(op, copies) / (copies - 1) *
                                             machine.chain.rotary(index_rotary).max_speed
                                       : 0;
+  std::vector<AxisBlock> room;
   for (auto& tooth : op.teeth) {
-    if (tooth.blocks.empty()) continue;
-    place.stand(stands ? *stands : place.end_of(tooth.blocks.front()));
-    const auto first = walk(place, tooth.blocks, program.corners, machine);
+    const std::vector<AxisBlock>& blocks = tooth.all(room);
+    if (blocks.empty()) continue;
+    place.stand(stands ? *stands : place.end_of(blocks.front()));
+    const auto first = walk(place, blocks, program.corners, machine);
     auto times = first;
     if (copies > 1) {
       // In a loop the other teeth begin where the one before has ended, a pitch behind.
       machines::Joints behind = place.at();
       behind.rotary_rad[index_rotary] -= pitch_rad;
       place.stand(behind);
-      times = walk(place, tooth.blocks, program.corners, machine);
+      times = walk(place, blocks, program.corners, machine);
     }
     for (std::size_t i = 0; i < times.size(); ++i) {
-      AxisBlock& b = tooth.blocks[i];
-      b.run_minutes = times[i];
+      const AxisBlock& b = blocks[i];
+      if (tooth.packed.empty()) tooth.blocks[i].run_minutes = times[i];
       (b.kind == BlockKind::feed ? op.accelerated.feed : op.accelerated.rapid) += first[i] + (copies - 1) * times[i];
       if (b.kind != BlockKind::feed) continue;
       if (times[i] > kRuled * b.minutes) ++ruled;

@@ -79,10 +79,12 @@ Result<AxisProgram> program_from(AxisProgram program, int operation, int tooth) 
         (turns > 0 ? index * pitches_turned(op.first_place, program.tooth_stride, program.teeth) / turns : 0);
   } else {
     const auto gone = op.teeth.begin() + op.first_place;
+    std::vector<AxisBlock> room;
     for (auto t = op.teeth.begin(); t != gone; ++t)
-      for (const AxisBlock& b : t->blocks)
+      for (const AxisBlock& b : t->all(room))
         (b.kind == BlockKind::feed ? op.feed_minutes : op.rapid_minutes) -= b.minutes;
     op.teeth.erase(op.teeth.begin(), gone);
+    op.teeth.front().unpack();
   }
   op.accelerated = {op.accelerated.feed * share, op.accelerated.rapid * share};
   program.minutes = program.feed_minutes = 0;

@@ -68,6 +68,7 @@ std::optional<Diagnostic> NcFlow::return_from_program(int column) {
 
 void NcFlow::split(std::string_view text) {
   std::size_t begin = 0;
+  lines_.reserve(static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + 1);
   while (begin < text.size()) {
     std::size_t end = text.find('\n', begin);
     if (end == std::string_view::npos) end = text.size();

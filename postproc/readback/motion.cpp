@@ -12,6 +12,7 @@
 // |d| + w R) at most, the tool axis by w. With TCP the pieces are of the tip itself: |d|, w.
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "geometry/base/angle.h"
 #include "postproc/readback/reader.h"
@@ -27,6 +28,10 @@ struct Placed {
   machines::Joints joints;
   machines::TablePose table;
   Vec3 tip, axis;  // W
+  // Taken when they are asked for: the end of a motion is the beginning of the next.
+  mutable bool measured = false;
+  mutable double reach = 0;  // of the tip from a rotary axis
+  mutable double slope = 0;  // greatest sine between the tool axis and a rotary axis of the table
 };
 
 class Motions {
@@ -67,14 +72,8 @@ class Motions {
     const double w = turn(a.joints, b.joints);
     if (w == 0) return {0, 0};
     const double dx = (b.joints.linear_mm - a.joints.linear_mm).norm();
-    double reach = std::max(reach_of(a, length), reach_of(b, length)), slope = 0;
-    for (std::size_t k = 0; k < chain_.table.size(); ++k) {
-      const machines::RotaryAxis& axis = chain_.table[k];
-      for (const Placed* p : {&a, &b}) {
-        const Vec3 u = k == 0 ? p->table.axis : chain_.tool_axis_in_machine(p->joints.rotary_rad);
-        slope = std::max(slope, u.cross(axis.direction).norm());
-      }
-    }
+    for (const Placed* p : {&a, &b}) measure(*p, length);
+    double reach = std::max(a.reach, b.reach), slope = std::max(a.slope, b.slope);
     if (!chain_.head.empty()) slope = 1;
     reach += 0.5 * (dx + w * reach);
     // Only the second table axis meets the whole sine of the tool axis when the first does not turn it.
@@ -112,6 +111,16 @@ class Motions {
   }
 
  private:
+  void measure(const Placed& p, double length) const {
+    if (p.measured) return;
+    p.measured = true;
+    p.reach = reach_of(p, length);
+    for (std::size_t k = 0; k < chain_.table.size(); ++k) {
+      const Vec3 u = k == 0 ? p.table.axis : chain_.tool_axis_in_machine(p.joints.rotary_rad);
+      p.slope = std::max(p.slope, u.cross(chain_.table[k].direction).norm());
+    }
+  }
+
   const machines::KinematicChain& chain_;
   const joints::Setup& setup_;
 };
@@ -134,6 +143,7 @@ class TraceFollower {
         kinematics_(by.machine.chain, by.setup),
         teeth_(by.teeth),
         tolerances_(by.tolerances),
+        unwanted_(by.moves == Followed::Moves::all ? std::nullopt : std::optional(by.moves == Followed::Moves::feeds)),
         // Teeth that were not kept stand where their index words put them: rounded, so off the exact turn by up to
         // this.
         shift_(copies.copies && trace.kept_teeth == 1 ? radians(copies.worst_shift_deg) : 0),
@@ -144,8 +154,8 @@ class TraceFollower {
   }
 
   Status run() {
-    for (std::size_t i = 1; i < trace_.moves.size(); ++i) {
-      if (!trace_.moves[i].known)
+    for (std::size_t i = std::max<std::size_t>(1, trace_.before); i + trace_.after < trace_.moves.size(); ++i) {
+      if (!trace_.moves[i].known || unwanted_ == trace_.moves[i].rapid)
         continue;  // a change of tool moves nothing: the new one starts where the gauge line stands
       if (auto s = follow(i); !s) return s.error();
     }
@@ -203,11 +213,12 @@ class TraceFollower {
     const ExecutedMove& m = trace_.moves[i];
     const double* length = length_of(m.tool);
     if (length == nullptr) return fail_at({"", m.line, 0}, "tool {} is not in the tool list", m.tool);
-    const Placed from = kinematics_.place(kinematics_.joints(trace_.moves[i - 1].joints), *length);
+    const bool goes_on = ended_ > 0 && ended_ == i - 1 && trace_.moves[i - 1].tool == m.tool;
+    const Placed from = goes_on ? end_ : kinematics_.place(kinematics_.joints(trace_.moves[i - 1].joints), *length);
     const Placed to = kinematics_.place(kinematics_.joints(m.joints), *length);
     const double factor = m.rapid ? kRapidFactor : 1;
-    auto [tip_bound, axis_bound] = kinematics_.bounds(from, to, *length);
-    if (m.tcp) tip_bound = 0;
+    const auto whole = kinematics_.bounds(from, to, *length);
+    const double tip_bound = m.tcp ? 0 : whole.first, axis_bound = whole.second;
     const double pieces = std::ceil(
         std::sqrt(std::max(tip_bound / (factor * tolerances_.tip_mm), axis_bound / (factor * tolerances_.axis_rad))));
     if (pieces > kMostPieces)
@@ -223,7 +234,7 @@ class TraceFollower {
     Placed start = from;
     for (int piece = 1; piece <= n; ++piece) {
       const Placed end = piece < n ? between(from, to, static_cast<double>(piece) / n, m.tcp, *length) : to;
-      const auto [tip_left, axis_left] = kinematics_.bounds(start, end, *length);
+      const auto [tip_left, axis_left] = n == 1 ? whole : kinematics_.bounds(start, end, *length);
       path::ToolMotion motion;
       motion.tip_from = start.tip;
       motion.tip_to = end.tip;
@@ -240,6 +251,8 @@ class TraceFollower {
       out_.push_back(motion);
       start = end;
     }
+    ended_ = i;
+    end_ = start;
     return Ok{};
   }
 
@@ -250,7 +263,10 @@ class TraceFollower {
   const Motions kinematics_;
   int teeth_;
   MotionTolerances tolerances_;
+  std::optional<bool> unwanted_;  ///< rapids, or feeds
   double shift_, reference_;
+  std::size_t ended_ = 0;  ///< move whose end is known, not 0
+  Placed end_;
   const TurnedCopies::Operation* operation_ = nullptr;
   std::vector<path::ToolMotion>& out_;
 };

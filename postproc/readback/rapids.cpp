@@ -49,13 +49,14 @@ Status check_rapids_outside(const OperationTrace& trace, const NcControl& contro
   const tool::ToolAssembly tool = found != tools.end() ? *found : bare_tip(trace.tool);
   const proof::RapidObstacle obstacle{body.radius_mm, 0, body.z_max_mm, body.z_min_mm};
   // Rapids that follow one another, with the moves on either side that their corners lie on.
-  for (std::size_t i = 0; i < trace.moves.size();) {
+  const std::size_t behind = trace.moves.size() - trace.after;
+  for (std::size_t i = trace.before; i < behind;) {
     if (!trace.moves[i].rapid) {
       ++i;
       continue;
     }
     std::size_t end = i;
-    while (end < trace.moves.size() && trace.moves[end].rapid && end - i < kTogether) ++end;
+    while (end < behind && trace.moves[end].rapid && end - i < kTogether) ++end;
     OperationTrace stretch{trace.operation, trace.tool, trace.kept_teeth, 0, {}};
     stretch.moves.assign(trace.moves.begin() + std::ptrdiff_t(i < 2 ? 0 : i - 2),
                          trace.moves.begin() + std::ptrdiff_t(std::min(end + 1, trace.moves.size())));

@@ -9,6 +9,7 @@
 #include "geometry/base/angle.h"
 #include "postproc/readback/operation_moves.h"
 #include "postproc/readback/run_time.h"
+#include "postproc/readback/teeth.h"
 
 namespace toothpath::readback {
 namespace {
@@ -65,6 +66,9 @@ class CopyCheck {
     const ExecutedMove first = s.kept[c.lead + position];
     compare(m, s, first);
   }
+
+  /// It may still be that they are.
+  [[nodiscard]] bool open() const { return result_.copies; }
 
   TurnedCopies finish() {
     for (auto& [op, s] : state_) {
@@ -239,8 +243,11 @@ class ReadBackRun {
     if (auto s = count(); !s) return s.error();
     if (auto s = one_tooth_fits(options); !s) return s.error();
     CopyCheck check(counts_, control_, setup, options.teeth, index_sign(machine_, setup));
-    if (auto s = compare(check); !s) return s.error();
+    if (check.open())
+      if (auto s = compare(check); !s) return s.error();
+    result_.copies = check.finish();
     const bool all = options.keep_all || !result_.copies.copies;
+    result_.first_teeth = options.first_teeth && !result_.copies.copies && teeth_.one_by_one();
     if (all) {
       if (auto s = keep_all(options); !s) return s.error();
     } else {
@@ -251,10 +258,10 @@ class ReadBackRun {
       if (op < 0) continue;
       t.operation = op;
       t.lead = counts_[op].lead;
-      t.kept_teeth = all ? static_cast<std::size_t>(options.teeth) : 1;
-      t.tool = t.moves.empty() ? 0 : t.moves.back().tool;
-      for (const ExecutedMove& m : t.moves)
-        if (!m.rapid) result_.blend_mm = std::max({result_.blend_mm, double(m.blend_mm), double(m.corner_path_mm)});
+      t.kept_teeth = all && !result_.first_teeth ? static_cast<std::size_t>(options.teeth) : 1;
+      if (result_.first_teeth) t.tool = last_tool_[op];
+      else t.tool = t.moves.empty() ? 0 : t.moves.back().tool;
+      for (const ExecutedMove& m : t.moves) note_blend(m);
       result_.operations.push_back(std::move(t));
     }
     return std::move(result_);
@@ -285,6 +292,7 @@ class ReadBackRun {
       before = m;
       reach(m.joints);
       counts_[m.operation].add(m);
+      teeth_.add(m);
     });
     timer.finish();
     return status;
@@ -309,27 +317,34 @@ class ReadBackRun {
     });
     if (!s) return s;
     result_.between = between.take();
-    result_.copies = check.finish();
     return Ok{};
   }
-  /// Third time, where every tooth is kept.
+  /// A time more, where every tooth is kept, or every first one.
   Status keep_all(const ReadBackOptions& options) {
-    if (result_.executed > options.max_kept) {
-      Diagnostic error = fail(
-          "{} moves would have to be kept, more than {}: the teeth are not turned copies of the first one ({})",
-          result_.executed, options.max_kept, result_.copies.copies ? "all are asked for" : result_.copies.difference);
+    const std::size_t kept = result_.first_teeth ? teeth_.moves_of_first() : result_.executed;
+    if (kept > options.max_kept) {
+      Diagnostic error =
+          fail("{} moves would have to be kept, more than {}: the teeth are not turned copies of the first one ({})",
+               kept, options.max_kept, result_.copies.copies ? "all are asked for" : result_.copies.difference);
       error.position = {file_, result_.copies.line, 0};
       return error;
     }
-    for (const auto& [op, c] : counts_) traces_[op].moves.reserve(c.total);
+    if (!result_.first_teeth)
+      for (const auto& [op, c] : counts_) traces_[op].moves.reserve(c.total);
     Between gaps(counts_, false);
     auto s = execute_nc(text_, file_, control_, [&](const ExecutedMove& m) {
-      traces_[m.operation].moves.push_back(m);
       gaps(m);
+      if (m.operation >= 0) last_tool_[m.operation] = m.tool;
+      if (!result_.first_teeth || teeth_.in_first(m)) traces_[m.operation].moves.push_back(m);
+      else note_blend(m);
     });
     if (!s) return s;
     result_.between = gaps.take();
     return Ok{};
+  }
+
+  void note_blend(const ExecutedMove& m) {
+    if (!m.rapid) result_.blend_mm = std::max({result_.blend_mm, double(m.blend_mm), double(m.corner_path_mm)});
   }
 
   std::string_view text_;
@@ -338,6 +353,8 @@ class ReadBackRun {
   const machines::Machine& machine_;
   ReadBack result_;
   std::map<int, OperationMoves> counts_;
+  NamedTeeth teeth_;
+  std::map<int, int> last_tool_;  ///< of every operation
   std::map<int, OperationTrace> traces_;
 };
 

@@ -125,10 +125,14 @@ struct OperationTrace {
   std::size_t kept_teeth = 0;  ///< 1 when the others are proven copies, else all
   std::size_t lead = 0;        ///< moves before the first tooth (retracts)
   std::vector<ExecutedMove> moves;
+  std::size_t before = 0, after = 0;  ///< of the moves, at both ends: those of the neighbours, there for their corners
 };
 
 struct ReadBack {
   TurnedCopies copies;
+  /// The teeth are written out, named and one behind the other: of every operation the first one is kept, with what
+  /// stands ahead of it. walk_teeth() has all.
+  bool first_teeth = false;
   std::vector<OperationTrace> operations;
   /// What else is executed: moves ahead of the first operation, from one to the next, and behind the last tooth where
   /// the teeth are copies. Each stretch begins with where it starts from and has one tool.
@@ -139,7 +143,7 @@ struct ReadBack {
   timing::Corners corners = timing::Corners::jump;  ///< of the control
   joints::TimedMinutes accelerated;  ///< with the accelerations of the axes; without them as the text asks
   double blend_mm =
-      0;  ///< largest tolerance of path blending in the feeds of `operations`, all that were kept at first
+      0;  ///< largest tolerance of path blending in the feeds of `operations`, of all teeth where they are no copies
   int mixed_rapid = 0;  ///< line of the first rapid that moves more than one group of axes, of all executed moves; 0:
                         ///< none does, or cutter locations
 };
@@ -149,15 +153,23 @@ inline constexpr std::size_t kMostKeptBytes = std::size_t(1) << 30;
 
 struct ReadBackOptions {
   int teeth = 1;
-  bool keep_all = false;  ///< keep every tooth although they are copies
+  bool keep_all = false;     ///< keep every tooth although they are copies
+  bool first_teeth = false;  ///< of teeth that are no copies keep the first ones alone, where walk_teeth() can find all
   /// A program that needs more moves is refused by their number, before any is kept.
   std::size_t max_kept = kMostKeptBytes / sizeof(ExecutedMove);
 };
 
-/// Executes the program twice (to count, then to compare and keep), a third time where every tooth is kept.
+/// Executes the program to count, to compare the teeth where they may be copies, and where they are not to keep them.
 [[nodiscard]] Result<ReadBack> read_back(std::string_view text, const std::string& file, const NcControl& control,
                                          const machines::Machine& machine, const joints::Setup& setup,
                                          const ReadBackOptions& options);
+
+/// All teeth of a program of which the first ones were kept (`read.first_teeth`), in the order of the text, which is
+/// executed again. A trace is one tooth of one operation, the first one with what stands ahead of it; each but the
+/// first begins where the one before ends.
+using TraceSink = std::function<void(OperationTrace&&)>;
+[[nodiscard]] Status walk_teeth(std::string_view text, const std::string& file, const NcControl& control,
+                                const ReadBack& read, const TraceSink& sink);
 
 /// How far the motion of a cut may leave the straight one that stands for it; 50 times as far in rapids.
 struct MotionTolerances {
@@ -181,6 +193,7 @@ struct Followed {
   const joints::Setup& setup;
   int teeth = 1;
   MotionTolerances tolerances;
+  enum class Moves : std::uint8_t { all, rapids, feeds } moves = Moves::all;  ///< that are wanted
 };
 [[nodiscard]] Status add_tool_motions(const OperationTrace& trace, const TurnedCopies& copies, const Followed& by,
                                       std::vector<path::ToolMotion>& motions);

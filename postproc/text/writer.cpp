@@ -107,10 +107,12 @@ class Writer {
     if (coolant_) out_.line(coolant_->on);
     for (const auto& line : dialect_.smoothing_on) out_.line(line);
     if (!program_.loop) {
+      std::vector<joints::AxisBlock> room;
       for (const auto& tooth : op.teeth) {
+        const std::vector<joints::AxisBlock>& list = tooth.all(room);
         out_.comment(tooth.remark.empty() ? fmt::format("TOOTH {}", tooth.tooth) : comment_text(tooth.remark));
         forget();
-        blocks(tooth.blocks, {0, tooth.blocks.size()}, IndexWord::literal);
+        blocks(list, {0, list.size()}, IndexWord::literal);
         if (tooth.pause) fill(dialect_.pause);
       }
     } else if (loop.form == NcLoop::Form::stretches) {
@@ -332,11 +334,12 @@ class Writer {
     result.blocks = out_.blocks();
     for (const auto& l : dialect_.frame_end) result.blocks += l == "%" ? 0 : 1;
     const std::string hash = fmt::format("HASH {:016X} BLOCKS {}", result.body_hash, result.blocks);
-    std::string body = std::move(out_.text());
-    out_.text().clear();
+    std::string body;  // of a long program there is one copy
+    body.swap(out_.text());
     fill(dialect_.frame_begin);
     for (const auto& line : header_comments(program_, dialect_, header_, hash)) out_.comment(line);
-    out_.text() += body;
+    body.insert(0, out_.text());
+    out_.text() = std::move(body);
     out_.comment(hash);
     fill(dialect_.frame_end);
     if (out_.error()) return *out_.error();

@@ -162,5 +162,39 @@ TEST(LineRuns, LikeTeethAreProvenAsEachByItself) {
   EXPECT_NEAR(shared["clearance"]["least"].get<double>(), each["clearance"]["least"].get<double>(), 0.02);
 }
 
+/// The program of `job` with a Z of its last tooth 0.1 mm lower, and the line of that word.
+std::pair<std::string, int> with_a_deep_cut(std::string text) {
+  const std::size_t tooth = text.rfind("(TOOTH "), feed = text.find("G93", tooth),
+                    at = text.find(" Z", feed + (text.find("G94", feed) - feed) / 2);
+  const std::size_t end = text.find_first_of(" \n", at + 1);
+  const double z = std::stod(text.substr(at + 2, end - at - 2));
+  text.replace(at + 2, end - at - 2, fmt::format("{:.3f}", z - 0.1));
+  return {text, int(std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n')) + 1};
+}
+
+// No tooth is held while the program is proven, and none is left out: a block of the last one that cuts too deep is
+// found, told with its line.
+TEST(LineRuns, AFaultInTheLastToothOffTheAxisIsFound) {
+  const TestDir dir;
+  write_file(dir / "off.toml", off_the_axis(dir, kLineGear + small_ball("scallop = 0.02\nchord_tolerance = 0.002")));
+  ASSERT_EQ(run_program({"run", dir / "off.toml", "--out", dir / "made"}).exit_code, 0);
+  const auto [text, line] = with_a_deep_cut(file_text(dir / "made/program.ngc"));
+  write_file(dir / "deep.ngc", text);
+  for (const std::string threads : {"1", "2"}) {
+    const auto run = run_program(
+        {"check", dir / "off.toml", dir / "deep.ngc", "--out", dir / ("deep" + threads), "--threads", threads});
+    EXPECT_EQ(run.exit_code, 1) << run.err;
+    EXPECT_NE(run.err.find("gouge: "), std::string::npos) << run.err;
+    const auto worst = findings_in(dir, "deep" + threads)["worst_places"];
+    ASSERT_FALSE(worst.empty());
+    EXPECT_NEAR(worst[0]["line"].get<int>(), line, 1);
+  }
+  EXPECT_EQ(findings_in(dir, "deep1"), findings_in(dir, "deep2"));
+  write_file(dir / "other.ngc", replaced(file_text(dir / "made/program.ngc"), "(OP 0 ", "(OP 7 "));
+  const auto refused = run_program({"check", dir / "off.toml", dir / "other.ngc", "--out", dir / "other"});
+  EXPECT_EQ(refused.exit_code, 3) << refused.err;
+  EXPECT_NE(refused.err.find("operation 7: the job has the operations 0 to 0"), std::string::npos) << refused.err;
+}
+
 }  // namespace
 }  // namespace toothpath::test

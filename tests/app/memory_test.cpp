@@ -121,5 +121,29 @@ TEST(Memory, ProgramsThatWouldFillItAreRefusedByNumber) {
   }
 }
 
+// 230 000 blocks of teeth that are no copies: they were 250 bytes each above what a run takes anyhow.
+TEST(Memory, TeethOffTheAxisAreNotHeld) {
+  const TestDir dir;
+  write_file(dir / "machine.toml", file_text(TOOTHPATH_SOURCE_DIR "/machines/data/xyzac_large.toml") +
+                                       "\n[post]\nlinear_decimals = 3\nrotary_decimals = 4\n");
+  std::string job = file_text(kSamples + "/spur_quick.toml");
+  const auto change = [&job](const std::string& from, const std::string& to) {
+    ASSERT_NE(job.find(from), std::string::npos) << from;
+    job.replace(job.find(from), from.size(), to);
+  };
+  change("\"xyzac_large.toml\"", "\"machine.toml\"");
+  change("origin = [3.0, -2.0, 120.0]", "origin = [14.0, -9.0, 120.0]");
+  change("\nscallop = 0.02", "\nscallop = 0.004");
+  change("chord_tolerance = 0.002", "chord_tolerance = 0.0004");
+  write_file(dir / "off.toml", job);
+  Launch launch;
+  launch.arguments = {"run", dir / "off.toml", "--out", dir / "out", "--threads", "1", "--quiet"};
+  launch.address_space = 310 * kMiB;
+  const Finished run = run_program(launch);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const auto report = nlohmann::json::parse(file_text(dir / "out/report.json"));
+  EXPECT_GT(report["blocks"].get<int>(), 200'000);
+}
+
 }  // namespace
 }  // namespace toothpath::test

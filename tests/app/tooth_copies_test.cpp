@@ -220,5 +220,104 @@ TEST(LikeMotions, StrayingCounts) {
   }
 }
 
+/// What is kept of a program that comes tooth by tooth, and what of it is like the first teeth.
+struct Kept {
+  std::vector<path::ToolMotion> motions;
+  std::vector<proof::LikeMotion> likes;
+  process::Stated stated;
+  int times = 0;  ///< that all teeth were seen
+};
+Kept one_by_one(const std::vector<path::ToolMotion>& motions) {
+  std::vector<std::vector<path::ToolMotion>> stretches;
+  for (const auto& m : motions) {
+    if (stretches.empty() || stretches.back().back().operation != m.operation ||
+        stretches.back().back().tooth != m.tooth)
+      stretches.emplace_back();
+    stretches.back().push_back(m);
+  }
+  std::set<int> begun;
+  std::vector<bool> first;
+  for (const auto& stretch : stretches) first.push_back(begun.insert(stretch.front().operation).second);
+  process::ToothByTooth teeth(kTeeth, kTolerance);
+  Kept kept;
+  do {
+    for (std::size_t n = 0; n < stretches.size(); ++n)
+      if (first[n]) teeth.first(stretches[n]);
+      else teeth.note(teeth.seen(stretches[n]));
+    ++kept.times;
+  } while (!teeth.settle());
+  std::size_t firsts = 0, shift = 0;
+  for (std::size_t n = 0; n < stretches.size(); ++n) {
+    auto& stretch = stretches[n];
+    if (first[n]) {
+      const auto as_kept = teeth.first_of(stretch.front().operation);
+      stretch.assign(as_kept.begin(), as_kept.end());
+      shift = kept.motions.size() - firsts;
+      firsts += stretch.size();
+    } else {
+      if (teeth.left_out(stretch.front().tooth))
+        std::erase_if(stretch, [](const path::ToolMotion& m) { return !m.rapid; });
+      for (auto like : teeth.likes(stretch)) {
+        like.motion += std::uint32_t(kept.motions.size());
+        like.like_first += std::uint32_t(shift);
+        like.like_last += std::uint32_t(shift);
+        kept.likes.push_back(like);
+      }
+    }
+    kept.motions.insert(kept.motions.end(), stretch.begin(), stretch.end());
+  }
+  kept.stated = teeth.stated();
+  return kept;
+}
+
+/// As of the whole program at once.
+void expect_as_a_whole(const std::vector<path::ToolMotion>& motions, int times, const char* what) {
+  const Kept kept = one_by_one(motions);
+  EXPECT_EQ(kept.times, times) << what;
+  const auto whole = process::without_copies(motions, kTeeth, kTolerance);
+  ASSERT_EQ(kept.motions.size(), whole.size()) << what;
+  for (std::size_t k = 0; k < whole.size(); ++k) {
+    ASSERT_EQ(kept.motions[k].line, whole[k].line) << what;
+    ASSERT_EQ(kept.motions[k].rapid, whole[k].rapid) << what;
+    ASSERT_EQ(kept.motions[k].deviation_mm, whole[k].deviation_mm) << what << ", motion " << k;
+    ASSERT_EQ(kept.motions[k].axis_deviation, whole[k].axis_deviation) << what << ", motion " << k;
+  }
+  const auto stated = process::stated_deviation(whole);
+  EXPECT_EQ(kept.stated.tip_mm, stated.tip_mm) << what;
+  EXPECT_EQ(kept.stated.axis_rad, stated.axis_rad) << what;
+  const auto likes = process::like_motions(whole, kTeeth);
+  ASSERT_EQ(kept.likes.size(), likes.size()) << what;
+  for (std::size_t k = 0; k < likes.size(); ++k) {
+    ASSERT_EQ(kept.likes[k].motion, likes[k].motion) << what;
+    ASSERT_EQ(kept.likes[k].like_first, likes[k].like_first) << what;
+    ASSERT_EQ(kept.likes[k].like_last, likes[k].like_last) << what;
+    ASSERT_EQ(kept.likes[k].tip_mm, likes[k].tip_mm) << what;
+    ASSERT_EQ(kept.likes[k].axis_rad, likes[k].axis_rad) << what;
+  }
+}
+
+TEST(ToothByTooth, SaysWhatIsSaidOfTheWholeProgram) {
+  const auto changed = [](const std::function<bool(const path::ToolMotion&)>& at,
+                          const std::function<void(path::ToolMotion&)>& change) {
+    auto motions = program(3, 3);
+    for (auto& m : motions)
+      if (at(m)) change(m);
+    return motions;
+  };
+  const auto lifted = [](path::ToolMotion& m) { m.tip_to.z() += 0.01, m.tip_from.z() += 0.01; };
+  expect_as_a_whole(program(3, 3), 1, "all are copies");
+  expect_as_a_whole(program(1, 7), 1, "one operation");
+  expect_as_a_whole(changed([](const auto& m) { return m.tooth > 0; }, lifted), 1, "none is a copy");
+  expect_as_a_whole(changed([](const auto& m) { return m.tooth == 5; }, lifted), 1, "one is none");
+  expect_as_a_whole(changed([](const auto& m) { return m.tooth == 5 && m.operation == 1; }, lifted), 2,
+                    "one is none in one operation: what it states in the others must not count");
+  expect_as_a_whole(changed([](const auto& m) { return m.tooth == 11 && m.operation == 2; },
+                            [](path::ToolMotion& m) { m.tip_to.z() += 1, m.tip_from.z() += 1; }),
+                    2, "one goes elsewhere");
+  expect_as_a_whole(changed([](const auto& m) { return m.line % 1000 == 1 || (m.tooth == 3 && m.operation == 0); },
+                            [](path::ToolMotion& m) { m.rapid = true; }),
+                    2, "rapids, and a tooth that is not cut");
+}
+
 }  // namespace
 }  // namespace toothpath

@@ -67,7 +67,7 @@ std::vector<proof::LedgerEntry> ledger(const bevel_gear::BevelGear& gear, std::s
       proof::ErrorSource::orientation, depth * (program.axis_bound_rad + process::rotary_rounding(program)),
       depth * found.tilt_rad, "lean of the axis against the normal of the pitch cone, over the tooth depth"));
   process::add_machine_sources(out, program, proof.comparison, proof.read, blend_mm);
-  const process::Stated stated = process::stated_deviation(proof.motions);
+  const process::Stated& stated = proof.stated;
   double path = 0;
   for (const auto& e : out)
     if (e.source != proof::ErrorSource::ridge) path += e.predicted_um / app::kUm;

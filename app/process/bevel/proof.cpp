@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "cam/finger/teeth.h"
 #include "geometry/base/angle.h"
@@ -43,27 +44,22 @@ void judge_teeth(const proof::ProofLimits& limits, const finger::FingerCheckResu
                                   v.finished.max_mm * 1000, v.finished.bound_mm * 1000, *limits.left_mm * 1000));
 }
 
-MovingAxes moving_axes(const readback::ReadBack& read, const std::vector<path::ToolMotion>& motions,
-                       const readback::NcControl& control) {
-  std::set<std::pair<int, int>> along_path;  // operation and line
+void add_moving_axes(MovingAxes& out, const readback::OperationTrace& trace, std::span<const path::ToolMotion> motions,
+                     const readback::NcControl& control) {
+  std::set<int> along_path;  // lines
   for (const auto& m : motions) {
     const Vec3 d = m.tip_to - m.tip_from, u = (m.axis_from + m.axis_to).normalized();
-    if (!m.rapid && (d - d.dot(u) * u).norm() > kAlongAxis * d.norm()) along_path.emplace(m.operation, m.line);
+    if (!m.rapid && (d - d.dot(u) * u).norm() > kAlongAxis * d.norm()) along_path.insert(m.line);
   }
-  MovingAxes out;
-  std::array<bool, 5> any{};
-  for (const auto& operation : read.operations)
-    for (std::size_t i = 1; i < operation.moves.size(); ++i) {
-      const readback::ExecutedMove &from = operation.moves[i - 1], &to = operation.moves[i];
-      if (to.rapid || !to.known || !along_path.contains({to.operation, to.line})) continue;
-      std::size_t n = 0;
-      for (std::size_t k = 0; k < 5; ++k)
-        if (control.letters[k] && std::abs(to.joints[k] - from.joints[k]) > kRoundedLinear) any[k] = true, ++n;
-      out.simultaneous = std::max(out.simultaneous, n);
-    }
-  for (std::size_t k = 0; k < 5; ++k)
-    if (any[k]) out.letters += control.letters[k];
-  return out;
+  for (std::size_t i = std::max<std::size_t>(1, trace.before); i + trace.after < trace.moves.size(); ++i) {
+    const readback::ExecutedMove &from = trace.moves[i - 1], &to = trace.moves[i];
+    if (to.rapid || !to.known || !along_path.contains(to.line)) continue;
+    std::size_t n = 0;
+    for (std::size_t k = 0; k < 5; ++k)
+      if (control.letters[k] && std::abs(to.joints[k] - from.joints[k]) > kRoundedLinear)
+        out.letter[k] = control.letters[k], ++n;
+    out.simultaneous = std::max(out.simultaneous, n);
+  }
 }
 
 /// One direction an operation and half: the angle of the axis, and which axes were seen to move.
@@ -86,7 +82,7 @@ std::vector<proof::DirectionChoice> directions_of(const bevel_gear::BevelGear& g
           "normal to the pitch cone, {:.4f} deg to the gear axis, to within {:.4f} deg: {} simultaneous axes ({}) plus "
           "fixed tilt",
           degrees(d.lean_rad), degrees(tilt_rad), kCount[std::min<std::size_t>(5, moving.simultaneous)],
-          moving.letters);
+          moving.letters());
       directions.push_back(std::move(d));
     }
   }
@@ -115,7 +111,7 @@ report::Finding tilt_of(const bevel_gear::BevelGear& gear, const MovingAxes& mov
   finding.key = "tilt";
   finding.details = {{"lean_deg", 90 - degrees(gear.delta())},
                      {"simultaneous_axes", moving.simultaneous},
-                     {"moving_axes", moving.letters}};
+                     {"moving_axes", moving.letters()}};
   return finding;
 }
 
@@ -125,6 +121,13 @@ bool finishes(const job::Job& job) {
 }
 
 }  // namespace
+
+std::string MovingAxes::letters() const {
+  std::string out;
+  for (const char c : letter)
+    if (c != 0) out += c;
+  return out;
+}
 
 BevelGearCheck::BevelGearCheck(const job::Job& job, const machines::Machine& machine, const proof::ProofLimits& limits,
                                const bevel_gear::BevelGear& gear, const finger::FingerGougeCheck& check)
@@ -157,20 +160,25 @@ Status BevelGearCheck::rapids_clear(const readback::OperationTrace& trace, const
 }
 
 /// Before copies go: the joints of turned teeth differ where the gear is off the axis of its rotary.
-void BevelGearCheck::meet(const process::ProgramProof& whole) {
-  moving_ = moving_axes(whole.read, whole.motions, whole.control);
+void BevelGearCheck::meet(const readback::OperationTrace& trace, std::span<const path::ToolMotion> motions,
+                          const readback::NcControl& control) {
+  add_moving_axes(moving_, trace, motions, control);
 }
 
 void BevelGearCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
-  result = clock.run("proof of the program", [&] { return finger::verify_teeth(check_, program.motions); });
+  const MovingAxes moving = std::exchange(moving_, {});
+  clock.run("proof of the program", [&] {
+    process::with_all_motions(program,
+                              [&](const auto& motions, auto) { result = finger::verify_teeth(check_, motions); });
+  });
   judge_teeth(limits_, result, program.reasons);
   program.gouge = result.gouge;
   program.excess = result.operations;
   if (finishes(job_)) program.finished = result.finished;
   program.surface = std::move(result.walls);
-  program.directions = directions_of(gear_, job_, program, result.tilt_rad, moving_);
+  program.directions = directions_of(gear_, job_, program, result.tilt_rad, moving);
   if (result.ridge.points > 0) program.findings.push_back(ridge_of(result.ridge));
-  if (!program.directions.empty()) program.findings.push_back(tilt_of(gear_, moving_));
+  if (!program.directions.empty()) program.findings.push_back(tilt_of(gear_, moving));
 }
 
 }  // namespace toothpath::bevel

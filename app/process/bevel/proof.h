@@ -1,6 +1,8 @@
 // What a bevel gear adds to the proof of a program (program_proof.h): walls, root and ridges, blank, hub and shaft.
 #pragma once
 
+#include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,8 +14,9 @@ namespace toothpath::bevel {
 
 /// Axes that change in blocks along the path; moves along the tool axis (engage, retract) are left out.
 struct MovingAxes {
-  std::string letters;           ///< every axis that moves in any of them: "YC"
-  std::size_t simultaneous = 0;  ///< most axes that one block moves
+  std::array<char, 5> letter{};               ///< of every axis that moves in any of them, 0 of the others
+  std::size_t simultaneous = 0;               ///< most axes that one block moves
+  [[nodiscard]] std::string letters() const;  ///< "YC"
 };
 
 /// Everything that it is made of must outlive it.
@@ -26,7 +29,8 @@ class BevelGearCheck final : public process::GearCheck {
   [[nodiscard]] double motion_tolerance() const override;
   [[nodiscard]] Status rapids_clear(const readback::OperationTrace& trace,
                                     const readback::NcControl& control) const override;
-  void meet(const process::ProgramProof& whole) override;
+  void meet(const readback::OperationTrace& trace, std::span<const path::ToolMotion> motions,
+            const readback::NcControl& control) override;
   void judge(process::ProgramProof& program, app::StageClock& clock) override;
 
   finger::FingerCheckResult result;  ///< of the program judged last, for the ledger; its grids stand in the proof
@@ -37,7 +41,7 @@ class BevelGearCheck final : public process::GearCheck {
   proof::ProofLimits limits_;
   const bevel_gear::BevelGear& gear_;
   const finger::FingerGougeCheck& check_;
-  MovingAxes moving_;  // of the program met last
+  MovingAxes moving_;  // of what was met since a program was judged
 };
 
 }  // namespace toothpath::bevel

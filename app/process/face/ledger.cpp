@@ -143,7 +143,7 @@ std::vector<proof::LedgerEntry> ledger(const MilledGear& milled, const joints::A
   if (milled.plan.paths.empty()) return {};
   const Finished f = finished_by(milled, program, terms.bias_mm);
   const auto& scallop = surface.scallop;
-  const process::Stated stated = process::stated_deviation(proof.motions);
+  const process::Stated& stated = proof.stated;
   std::vector<proof::LedgerEntry> out;
   out.push_back(process::entry(proof::ErrorSource::flank_solve, Tolerances{}.flank_mm,
                                std::max(f.solve_mm, surface.solve_residual_mm),

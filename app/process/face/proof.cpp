@@ -34,6 +34,27 @@ void judge_gouge(const proof::GougeResult& gouge, const analytic::GougeCheck& ch
   if (reasons.empty()) reasons.push_back("the gouge check does not pass");
 }
 
+/// Teeth that are followed one by one come twice: what is like no other, then what is like that.
+proof::GougeResult gouge_of(const analytic::GougeCheck& check, process::ProgramProof& program,
+                            const std::vector<int>& tool_of_operation) {
+  if (!program.each_tooth) return check.check(program.motions, tool_of_operation, program.likes);
+  analytic::GougeStream stream(check, tool_of_operation, program.likes_follow);
+  std::uint32_t firsts = 0;
+  Status made = program.each_tooth(process::TeethWanted::whole, [&](auto&& motions, auto likes, bool first) {
+    auto like = likes.begin();
+    for (std::size_t k = 0; k < motions.size(); ++k) {
+      if (like != likes.end() && like->motion == k) ++like;
+      else stream.own(motions[k], first ? std::optional(firsts++) : std::nullopt);
+    }
+  });
+  if (made && program.likes_follow)
+    made = program.each_tooth(process::TeethWanted::cuts, [&](auto&& motions, auto likes, bool) {
+      for (const proof::LikeMotion& like : likes) stream.like(motions[like.motion], like);
+    });
+  if (!made) program.reasons.push_back(made.error().message);
+  return stream.finish();
+}
+
 /// The least stock after an operation, as a share of its allowance.
 constexpr double kLeastAllowance = 0.8;
 
@@ -138,14 +159,14 @@ Status FaceGearCheck::rapids_clear(const readback::OperationTrace& trace, const 
   return check_rapids_outside(trace, control, machine_, *job_.setup, clearance_body(part_.gear()), job_.tools);
 }
 
-void FaceGearCheck::meet(const process::ProgramProof&) {
+void FaceGearCheck::meet(const readback::OperationTrace&, std::span<const path::ToolMotion>,
+                         const readback::NcControl&) {
 }  // all that is said of a face gear holds for the teeth that are proven
 
 void FaceGearCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
   std::vector<int> tool_of_operation;
   for (const auto& operation : job_.operations) tool_of_operation.push_back(operation.tool);
-  program.gouge = clock.run("proof of the program",
-                            [&] { return check_.check(program.motions, tool_of_operation, program.likes); });
+  program.gouge = clock.run("proof of the program", [&] { return gouge_of(check_, program, tool_of_operation); });
   judge_gouge(program.gouge, check_, limits_.gouge_mm, program.reasons);
   surface = clock.run("cut surface", [&] {
     return cut::measure_cut_surface(part_, program.motions, job_.operations, job_.tools, grid_);

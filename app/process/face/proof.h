@@ -21,7 +21,8 @@ class FaceGearCheck final : public process::GearCheck {
   [[nodiscard]] double motion_tolerance() const override;
   [[nodiscard]] Status rapids_clear(const readback::OperationTrace& trace,
                                     const readback::NcControl& control) const override;
-  void meet(const process::ProgramProof& whole) override;
+  void meet(const readback::OperationTrace& trace, std::span<const path::ToolMotion> motions,
+            const readback::NcControl& control) override;
   void judge(process::ProgramProof& program, app::StageClock& clock) override;
 
   cut::CutSurface surface;             ///< of the program judged last, for the ledger; its grids stand in the proof

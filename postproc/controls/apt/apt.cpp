@@ -36,10 +36,11 @@ class AptWriter {
       out_.line(fmt::format("SPINDL/RPM,{},CLW", std::llround(op.spindle_rpm)));
       if (coolant_) out_.line(coolant_->on);
       feed_ = -1;
+      std::vector<joints::AxisBlock> room;
       for (const auto& tooth : op.teeth) {
         out_.comment(fmt::format("TOOTH {}", tooth.tooth));
         feed_ = -1;  // a tooth can be begun with
-        for (const auto& b : tooth.blocks) block(b);
+        for (const auto& b : tooth.all(room)) block(b);
       }
       if (coolant_) out_.line(coolant_->off);
       out_.line("SPINDL/OFF");

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <optional>
 
 #include "tests/cam/analytic/gouge_case.h"
 #include "tests/support/random.h"
@@ -63,6 +64,21 @@ analytic::GougeCheck checker(const PlannedJob& job, bool profile) {
   return {*job.part, tools, job.check_options()};
 }
 
+void expect_the_list(const proof::GougeResult& a, const proof::GougeResult& b) {
+  EXPECT_EQ(a.measured_mm, b.measured_mm);
+  EXPECT_EQ(a.bound_mm, b.bound_mm);
+  EXPECT_EQ(a.bound_line, b.bound_line);
+  EXPECT_EQ(a.clearance_mm, b.clearance_mm);
+  EXPECT_EQ(a.clearance_measured_mm, b.clearance_measured_mm);
+  EXPECT_EQ(a.deepest.line, b.deepest.line);
+  EXPECT_EQ(a.deepest.depth_mm, b.deepest.depth_mm);
+  EXPECT_EQ(a.closest.line, b.closest.line);
+  EXPECT_EQ(a.motions, b.motions);
+  EXPECT_EQ(a.distance_queries, b.distance_queries);
+  ASSERT_EQ(a.worst.size(), b.worst.size());
+  for (std::size_t k = 0; k < a.worst.size(); ++k) EXPECT_EQ(a.worst[k].line, b.worst[k].line) << k;
+}
+
 class LikeTeeth : public testing::TestWithParam<bool> {};
 
 TEST_P(LikeTeeth, TheSameIsProvenForLess) {
@@ -116,6 +132,36 @@ TEST_P(LikeTeeth, PlantedCutsAreFoundWhereTheyAre) {
     EXPECT_EQ(found.deepest.tooth, m.tooth);
   }
   EXPECT_EQ(planted, 6);
+}
+
+// Motions that come one by one, numbered by first teeth alone: what is said is that of the list.
+TEST_P(LikeTeeth, ComeOneByOne) {
+  const PlannedJob& job = job_named("spur");
+  Teeth teeth = teeth_of(job, 5);
+  // Some of later teeth are like no others, ahead of, among and behind those that are.
+  test::Random random(16);
+  std::erase_if(teeth.likes, [&](const auto&) { return random.index(5) == 0; });
+  teeth.motions[teeth.of_tooth + 40].tip_to.z() -= 0.01;
+  for (const double tolerance : {0.002, 0.02}) {
+    auto options = job.check_options();
+    options.limits.gouge_mm = tolerance;
+    auto tools = tool::proof_tools(job.tools);
+    if (GetParam())
+      for (auto& tool : tools) tool.ball_mill.reset();
+    const analytic::GougeCheck check(*job.part, tools, options);
+    const auto whole = check.check(teeth.motions, job.tool_of_operation(), teeth.likes);
+    const auto of_operation = job.tool_of_operation();
+    analytic::GougeStream stream(check, of_operation, true);
+    auto like = teeth.likes.begin();
+    for (std::size_t k = 0; k < teeth.motions.size(); ++k)
+      if (like != teeth.likes.end() && like->motion == k) ++like;
+      else stream.own(teeth.motions[k], k < teeth.of_tooth ? std::optional(std::uint32_t(k)) : std::nullopt);
+    for (const auto& as : teeth.likes) stream.like(teeth.motions[as.motion], as);
+    expect_the_list(stream.finish(), whole);
+    analytic::GougeStream alone(check, of_operation, false);
+    for (const auto& m : teeth.motions) alone.own(m, {});
+    expect_the_list(alone.finish(), check.check(teeth.motions, of_operation));
+  }
 }
 
 TEST_P(LikeTeeth, SameAnswerOnAnyNumberOfThreads) {
