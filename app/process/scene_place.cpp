@@ -63,6 +63,7 @@ class Placing {
       if (auto s = stock_holds_the_teeth(); !s) return s;
       if (auto s = no_hole_in_the_teeth(); !s) return s;
     }
+    if (auto s = no_fixture_in_the_teeth(); !s) return s;
     return fixtures_belong_here();
   }
 
@@ -113,6 +114,22 @@ class Placing {
                                      place_text(v), depth));
       }
     }
+    return Ok{};
+  }
+
+  /// What lies wholly in a tooth no tool can meet, and is no fixture.
+  [[nodiscard]] Status no_fixture_in_the_teeth() const {
+    const clearance::MeshDistance* gear[] = {&solid_};
+    for (std::size_t k = 0; k < scene_.fixture.size(); ++k)
+      for (const Vec3& v : scene_.fixture[k].mesh.vertices) {
+        if (!gear_.above_roots(v)) continue;
+        const double depth = -clearance::signed_distance(v, gear, kGapAsked_mm);
+        if (depth > kSag_mm)
+          return refusal(scene_.fixture_files[k],
+                         fmt::format("the fixture lies in the teeth of the finished gear at {}, {:.3f} mm below their "
+                                     "surface; a fixture stands beside the gear, in its frame, in mm",
+                                     place_text(v), depth));
+      }
     return Ok{};
   }
 

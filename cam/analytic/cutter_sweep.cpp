@@ -114,7 +114,7 @@ bool CutterSweep::centre(double& least) {
   const Vec3 a = place(0, 0), b = place(1, 0);
   const double length = (b - a).norm();
   const NearestPlace qa = chained_ && a == last_centre_ ? last_ : query(a, within_);
-  const NearestPlace qb = query(b, qa.distance + length);
+  const NearestPlace qb = b == a ? qa : query(b, qa.distance + length);
   note(qa, tool::Body::ball);
   note(qb, tool::Body::ball);
   const double height = height_above();

@@ -141,6 +141,17 @@ TEST_F(SceneTest, AFixtureOfAnotherScaleIsRefused) {
   EXPECT_EQ(check({"--fixture", nut, arbor}).exit_code, 0);
 }
 
+// No tool comes near to what lies within a tooth: nothing else would find it.
+TEST_F(SceneTest, AFixtureInATooth) {
+  const std::string core = stl("core.stl", box(Vec3(61.6, -0.3, -20), Vec3(62.8, 0.3, -19.2)));
+  const std::string plate = stl("plate.stl", box(Vec3(-80, -80, -60), Vec3(80, 80, -40)));
+  const auto finished = check({"--fixture", plate, "--fixture", core});
+  EXPECT_EQ(finished.exit_code, 3) << finished.err;
+  EXPECT_NE(finished.err.find("core.stl: error: the fixture lies in the teeth of the finished gear at"),
+            std::string::npos)
+      << finished.err;
+}
+
 TEST_F(SceneTest, MeshesShowTheirBoxAndDistance) {
   const auto gear = mesh::load_mesh(*dir_ / "run/gear.stl");
   ASSERT_TRUE(gear);

@@ -79,15 +79,15 @@ TEST_P(Patches, HullsHoldTheirPieces) {
       const analytic::BodyHull hull = patches.outline(cell, q);
       double low = INFINITY;
       for (std::size_t n = 0; n < hull.count; ++n) low = std::min(low, g.dot(hull.corner[n].p));
-      const bool cut =
-          patches.surface(cell) == BodySurface::sheet && !(q.stands[0] && q.stands[1] && q.stands[2] && q.stands[3]);
+      const bool cut = patches.surface(cell) == analytic::BodySurface::sheet &&
+                       !(q.stands[0] && q.stands[1] && q.stands[2] && q.stands[3]);
       if (cut) continue;  // a place that was moved to a border may belong to a quad beside it
       EXPECT_GE(g.dot(*p), low - patches.above(cell, q, g) - 1e-11) << patches.name(cell) << " " << k;
       least = std::min(least, g.dot(*p) - low + patches.above(cell, q, g));
       // Bilinear weights stand for the hull; a quad that is no parallelogram lies beside them by less than its second
       // differences.
       const double skew = 0.25 * (q.corner[0] - q.corner[1] + q.corner[2] - q.corner[3]).norm();
-      if (patches.surface(cell) == BodySurface::sheet) {
+      if (patches.surface(cell) == analytic::BodySurface::sheet) {
         EXPECT_LE((*p - mixed(q.corner)).norm(), patches.sag(cell, q) + 2 * skew + 1e-9);
       }
     }
