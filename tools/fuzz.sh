@@ -9,7 +9,7 @@ readers=("${@:2}")
 source tools/packages.sh
 need_packages "${build_packages[@]}" libgtest-dev "${fuzz_packages[@]}"
 export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1:detect_odr_violation=0
-export LSAN_OPTIONS=suppressions=$PWD/tests/fuzz/leaks.supp:print_suppressions=0 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
+export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 
 cmake --preset fuzz >&2
 cmake --build build/fuzz -j2 --target toothpath_libfuzzer >&2

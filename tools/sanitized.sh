@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 programs=("$@")
 ((${#programs[@]})) || programs=(toothpath_fuzz_tests toothpath_machines_tests toothpath_mesh_tests toothpath_postproc_tests toothpath_post_tests)
 export TOOTHPATH_FUZZ_RUNS=${TOOTHPATH_FUZZ_RUNS:-20000}
-export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1 LSAN_OPTIONS=suppressions=$PWD/tests/fuzz/leaks.supp:print_suppressions=0
+export ASAN_OPTIONS=detect_leaks=1:strict_string_checks=1
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 
 cmake --preset asan-ubsan

@@ -418,7 +418,8 @@ class Orienter {
   /// Among the records and every moment between them: room for the proof. At the records the flute is free, and where
   /// the axis turns it keeps away from the pole; between them the ball leaves its pass by the chord.
   [[nodiscard]] std::optional<AxisPlace> first_not_clear(const AxisRecords& records, bool constant) const {
-    const auto& [points, axes] = records;
+    const std::vector<BallPass::Point>& points = records.points;
+    const std::vector<Vec3>& axes = records.axes;
     std::vector<std::optional<AxisPlace>> bad(points.size());
     std::vector<double> s(points.size(), 0);
     for (std::size_t k = 1; k < s.size(); ++k) s[k] = s[k - 1] + (points[k].centre - points[k - 1].centre).norm();
