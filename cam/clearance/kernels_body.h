@@ -18,6 +18,10 @@ INLINE V most(V a, V b) { return a > b ? a : b; }
 INLINE V root(V a) { return V{__builtin_sqrt(a[0]), __builtin_sqrt(a[1]), __builtin_sqrt(a[2]), __builtin_sqrt(a[3])}; }
 INLINE V clamp01(V t) { return least(most(t, all(0)), all(1)); }
 INLINE V size(V a) { return most(a, -a); }
+INLINE double least_lane(V m) {
+  const double low = m[0] < m[1] ? m[0] : m[1], high = m[2] < m[3] ? m[2] : m[3];
+  return low < high ? low : high;
+}
 INLINE void store(double* out, int half, V v) { reinterpret_cast<V*>(out)[half] = v; }
 
 /// Squared distances from p to four boxes.
@@ -53,11 +57,34 @@ INLINE V to_triangles(const TriangleBlock& b, const double* p, int half) {
   return most(pp + best, all(0));
 }
 
+/// A node or block (~block) that is still to be looked at, and how near its box is (squared).
+struct Open {
+  double d;
+  int node;
+};
+
+/// The children of a node that lie below a limit (squared) go on the stack, the nearest on top. Returns its new height.
+INLINE int open_children(const MeshNode& node, const double* p, double limit2, Open* stack, int open) {
+  alignas(32) double d[kLanes];
+  store(d, 0, to_boxes(node, p, 0));
+  store(d, 1, to_boxes(node, p, 1));
+  const int first = open;
+  for (int i = 0; i < kLanes; ++i) {
+    if (!(d[i] < limit2)) continue;
+    int k = open++;
+    while (k > first && stack[k - 1].d < d[i]) {
+      stack[k] = stack[k - 1];
+      --k;
+    }
+    stack[k] = {d[i], node.child[i]};
+  }
+  return open;
+}
+
 /// Nearest lane of a block into `hit`.
 INLINE void take(const TriangleBlock& b, int block, const double* p, TriangleHit& hit) {
   const V d0 = to_triangles(b, p, 0), d1 = to_triangles(b, p, 1);
-  const V m = least(d0, d1);
-  const double low = m[0] < m[1] ? m[0] : m[1], high = m[2] < m[3] ? m[2] : m[3], d = low < high ? low : high;
+  const double d = least_lane(least(d0, d1));
   if (!(d < hit.squared)) return;
   int lane = 0;
   for (int i = 3; i >= 0; --i) {
@@ -77,10 +104,7 @@ INLINE void take_lane(const TriangleBlock& b, int block, int lane, const double*
 TriangleHit nearest(const TreeView& tree, const double* p, double limit2, TriangleHit start) {
   TriangleHit hit{limit2, -1, 0};
   if (start.block >= 0) take_lane(tree.blocks[start.block], start.block, start.lane, p, hit);
-  struct Open {
-    double d;
-    int node;
-  } stack[kStack];
+  Open stack[kStack];
   int open = 0;
   stack[open++] = {0, 0};
   while (open > 0) {
@@ -90,20 +114,7 @@ TriangleHit nearest(const TreeView& tree, const double* p, double limit2, Triang
       take(tree.blocks[~next.node], ~next.node, p, hit);
       continue;
     }
-    const MeshNode& node = tree.nodes[next.node];
-    alignas(32) double d[kLanes];
-    store(d, 0, to_boxes(node, p, 0));
-    store(d, 1, to_boxes(node, p, 1));
-    const int first = open;
-    for (int i = 0; i < kLanes; ++i) {
-      if (!(d[i] < hit.squared)) continue;
-      int k = open++;  // nearest on top
-      while (k > first && stack[k - 1].d < d[i]) {
-        stack[k] = stack[k - 1];
-        --k;
-      }
-      stack[k] = {d[i], node.child[i]};
-    }
+    open = open_children(tree.nodes[next.node], p, hit.squared, stack, open);
   }
   return hit;
 }
@@ -112,10 +123,7 @@ unsigned long near(const TreeView& tree, const double* p, double limit2, double 
                    unsigned long room) {
   double best = limit2, within = limit2;
   unsigned long count = 0;
-  struct Open {
-    double d;
-    int node;
-  } stack[kStack];
+  Open stack[kStack];
   int open = 0;
   stack[open++] = {0, 0};
   while (open > 0) {
@@ -124,8 +132,7 @@ unsigned long near(const TreeView& tree, const double* p, double limit2, double 
     if (next.node < 0) {
       const TriangleBlock& block = tree.blocks[~next.node];
       const V d0 = to_triangles(block, p, 0), d1 = to_triangles(block, p, 1);
-      const V m = least(d0, d1);
-      const double low = m[0] < m[1] ? m[0] : m[1], high = m[2] < m[3] ? m[2] : m[3], d = low < high ? low : high;
+      const double d = least_lane(least(d0, d1));
       if (!(d < within)) continue;
       if (count < room) {
         store(out[count].squared, 0, d0);
@@ -140,20 +147,7 @@ unsigned long near(const TreeView& tree, const double* p, double limit2, double 
       }
       continue;
     }
-    const MeshNode& node = tree.nodes[next.node];
-    alignas(32) double d[kLanes];
-    store(d, 0, to_boxes(node, p, 0));
-    store(d, 1, to_boxes(node, p, 1));
-    const int first = open;
-    for (int i = 0; i < kLanes; ++i) {
-      if (!(d[i] < within)) continue;
-      int k = open++;  // nearest on top
-      while (k > first && stack[k - 1].d < d[i]) {
-        stack[k] = stack[k - 1];
-        --k;
-      }
-      stack[k] = {d[i], node.child[i]};
-    }
+    open = open_children(tree.nodes[next.node], p, within, stack, open);
   }
   return count;
 }

@@ -102,6 +102,29 @@ TEST_P(Distance, DepthBelowTheSurface) {
       }
 }
 
+// On either side of the surface, beside it and above it: never more than is true, and close.
+TEST_P(Distance, FacetsKeepBelowTheTruth) {
+  test::Random random(29);
+  const double h = gear.parameters().module_mm, within = 0.6 * reach;
+  int near = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const double r = random(gear.inner_radius() - h, gear.outer_radius() + h), a = random(-3.1415, 3.1415);
+    const Vec3 c(r * std::cos(a), r * std::sin(a), gear.blank_top() + random(-2.2, 1.0) * h);
+    const auto truth = part.nearest(c, within);
+    const double keeps = part.surface_keeps(c, within);
+    if (truth.distance < 0 && !truth.exact) continue;  // somewhere inside
+    EXPECT_LE(keeps, std::abs(truth.distance) + 2e-7) << c.transpose() << " " << truth.patch;
+    // Quads go on beyond ends and tips, by less than a cell: away from there, in a space, only the sag is lost.
+    const double beside = std::min(r - gear.inner_radius(), gear.outer_radius() - r);
+    const double tip = part.space(0).surface().z_tip(std::clamp(r, gear.inner_radius(), gear.outer_radius()));
+    if (part.zones() > 1 || truth.distance < 0 || truth.distance >= within || beside < 0.5 + truth.distance) continue;
+    if (c.z() > tip - 0.5 - truth.distance) continue;
+    ++near;
+    EXPECT_GE(keeps, std::abs(truth.distance) - 0.012) << c.transpose() << " " << truth.patch;
+  }
+  if (part.zones() == 1) { EXPECT_GT(near, 20); }
+}
+
 // A conical root rises along the tooth: a short look that sees no surface must still tell air from material at every
 // radius.
 TEST(DistanceOnACone, ShortLooksTellAirFromMaterial) {

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "cam/clearance/assembly_gaps.h"
+#include "cam/clearance/facet_tree.h"
 #include "cam/clearance/frustum_triangle.h"
 #include "tests/cam/clearance/shapes.h"
 #include "tests/support/plain_frustum.h"
@@ -319,6 +320,44 @@ TEST(MeshAssembly, ToolInsideTheSolidIsFound) {
   }
   EXPECT_NEAR(gaps[4 * n], -1, 1e-9) << "the axis of the cutter passes through the face";
   EXPECT_NEAR(gaps[4 * n + 1], 0.2, 1e-9) << "the shank begins at 100.2, above the face";
+}
+
+// Whose facets lie near: all of them and no others, few or many, triangles and segments.
+TEST(FacetTree, TellsWhoseFacetsLieNear) {
+  Random random(31);
+  std::vector<clearance::Facet> facets;
+  for (std::uint32_t k = 0; k < 3000; ++k) {
+    const Vec3 a(random(-5, 5), random(-5, 5), random(-5, 5));
+    const Vec3 b = a + Vec3(random(-1, 1), random(-1, 1), random(-1, 1));
+    const Vec3 c = k % 3 == 0 ? b : Vec3(a + Vec3(random(-1, 1), random(-1, 1), random(-1, 1)));
+    facets.push_back({{a, b, c}, k / 2});
+  }
+  const clearance::FacetTree tree(facets);
+  for (int asked = 0; asked < 200; ++asked) {
+    const Vec3 p(random(-6, 6), random(-6, 6), random(-6, 6));
+    const double within = random(0, 4), slack = asked % 5 == 0 ? INFINITY : random(0, 0.5);
+    std::vector<double> truth;
+    for (const auto& f : facets) truth.push_back(reference_distance(p, f.corner[0], f.corner[1], f.corner[2]));
+    const double least = *std::min_element(truth.begin(), truth.end());
+    EXPECT_NEAR(tree.least(p, within), std::min(least, within), 1e-9);
+    std::vector<int> seen(facets.size() / 2, 0), wanted = seen, allowed = seen;
+    const double told = tree.near(p, within, slack, [&](std::size_t owner, double d) {
+      ++seen[owner];
+      EXPECT_NEAR(std::min(std::abs(d - truth[2 * owner]), std::abs(d - truth[2 * owner + 1])), 0, 1e-9);
+    });
+    if (least < within) { EXPECT_NEAR(told, least, 1e-9); }
+    if (least > within) { EXPECT_EQ(told, INFINITY); }
+    const double reach = std::min(within, least + slack);
+    for (std::size_t k = 0; k < facets.size(); ++k) {
+      wanted[k / 2] += truth[k] < reach - 1e-9;
+      allowed[k / 2] += truth[k] < reach + 1e-9;
+    }
+    for (std::size_t owner = 0; owner < seen.size(); ++owner) {
+      EXPECT_TRUE(seen[owner] > 0 || wanted[owner] == 0) << owner;
+      EXPECT_TRUE(seen[owner] == 0 || allowed[owner] > 0) << owner;
+    }
+  }
+  EXPECT_EQ(clearance::FacetTree().least(Vec3::Zero(), 3), 3) << "none";
 }
 
 }  // namespace
