@@ -236,7 +236,7 @@ class GearDistance::Impl::Question {
     const auto& ring = at.ring;
     const double look = std::min(within_, best_.distance) + ring.edge_sag;
     if (!(look > 0)) return;
-    ring.edge_facets.near(at.c, look, ring.edge_sag, [&](std::size_t k, double d) {
+    ring.edge_facets.near(at.c, look, ring.edge_sag + kTreeError, [&](std::size_t k, double d) {
       const auto& e = ring.edges[k];
       take(d - e.sag, false, at.zone, e.patch, e.a, at.c);
     });
@@ -289,8 +289,12 @@ double GearDistance::surface_keeps(const Vec3& p, double within) const {
     if (std::max(ring.r_in - r, r - ring.r_out) < least) {
       const double away = std::remainder(azimuth - ring.lookup(ring.opening, r), kTwoPi);
       const Vec3 c = impl_->to_space_0(p, std::round(away / impl_->pitch));
+      const double lost = ring.facet_sag + kTreeError;
       for (const auto* facets : {&ring.whole_facets, &ring.border_facets, &ring.other_facets})
-        least = std::min(least, facets->least(c, least + ring.facet_sag) - ring.facet_sag);
+        least = std::min(least, facets->least(c, least + lost) - lost);
+      // The facets of the ends stop below the roots, the ring goes on.
+      least = std::min(least, std::hypot(std::max(p.z() - ring.base_mm, 0.0),
+                                         std::min(std::abs(r - ring.r_in), std::abs(r - ring.r_out))));
     }
     // The floor of the groove up to the next ring.
     if (zone + 1 < impl_->rings.size()) {

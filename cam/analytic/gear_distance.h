@@ -1,10 +1,10 @@
 // Exact distance from a point to the finished face gear: the question that every gouge check asks.
 //
 // The solid is the rings of teeth (each between its two radii, below its tip surface), the groove floor between two
-// rings and the body below. A grid of cells over the working sheet of one tooth space finds candidates (Embree,
-// float32); Newton on the analytic patches decides in double. Edges (ends of the ring, tip edges) are polylines whose
-// proven sag is subtracted. How the cells are made: cam/analytic/gear_ring.h. All spaces are turned copies: a point is
-// first turned into space 0.
+// rings and the body below. Facets over the working sheet of one tooth space, with proven sags, find candidates; Newton
+// on the analytic patches decides; both in double. Edges (ends of the ring, tip edges) are polylines whose proven sag
+// is subtracted. How the cells are made: cam/analytic/gear_ring.h. All spaces are turned copies: a point is first
+// turned into space 0.
 #pragma once
 
 #include <array>

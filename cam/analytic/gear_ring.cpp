@@ -38,6 +38,7 @@ class Maker {
       : gear_(gear), zone_(zone), space_(space), R(ring), reach_(reach_mm), bounds_(gear.parameters(), space) {}
 
   void make() {
+    R.base_mm = std::min(gear_.lowest_root(), grooved() ? gear_.groove_floor() : INFINITY) - 0.5;
     sheet_cells();
     end_line(R.r_in, R.end_in, places_[0]);
     end_line(R.r_out, R.end_out, places_[1]);
@@ -83,7 +84,6 @@ class Maker {
                                       distance_to_triangle(q->p, cell.corner[1], cell.corner[2], cell.corner[3]));
           R.sag = std::max(R.sag, gap);
         }
-        R.border.push_back(!all([&](const Vec3& p) { return R.on_ring(p); }));
         station_.push_back({j, k});
         add_cell(cell);
       }
@@ -220,7 +220,6 @@ class Maker {
         others_.push_back({R.cells.size(), BodySurface::land, Vec2(part / double(kLandParts), R.table_r[k]),
                            Vec2((part + 1) / double(kLandParts), R.table_r[k + kLandStep])});
         add_cell(cell);
-        R.border.push_back(true);
       }
     }
   }
@@ -236,12 +235,9 @@ class Maker {
   }
 
   [[nodiscard]] bool grooved() const { return gear_.rings().size() > 1; }
-  [[nodiscard]] double base() const {
-    return std::min(gear_.lowest_root(), grooved() ? gear_.groove_floor() : INFINITY) - 0.5;
-  }
   [[nodiscard]] EndFace end_face(bool outer) const {
     const double r = outer ? R.r_out : R.r_in;
-    return {r, outer, space_.surface().z_tip(r), R.lookup(R.opening, r) - gear_.pitch() / 2, gear_.pitch(), base()};
+    return {r, outer, space_.surface().z_tip(r), R.lookup(R.opening, r) - gear_.pitch() / 2, gear_.pitch(), R.base_mm};
   }
 
   /// A strip of an end face ends at the lower of its two edges: the sheet itself stands for the rest.
@@ -286,7 +282,7 @@ class Maker {
     BodyRing ring;
     ring.r_in = R.r_in;
     ring.r_out = R.r_out;
-    ring.base_mm = base();
+    ring.base_mm = R.base_mm;
     ring.floor_mm = grooved() ? gear_.groove_floor() : 0;
     ring.table_r = R.table_r;
     ring.tip = tip_;

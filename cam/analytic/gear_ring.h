@@ -35,8 +35,8 @@ struct GearRing {
   face_gear::SpaceSheet space;
   face_gear::OffsetSheet sheet;
   double r_in = 0, r_out = 0;
+  double base_mm = 0;  ///< height at which the cells of the ends stop
   std::vector<Cell> cells;
-  std::vector<bool> border;  ///< a cell: partly beyond an end of the ring or the tip
   std::unique_ptr<SpatialIndex> index;
   std::vector<SheetQuad> quads;                      ///< of the sheet
   clearance::FacetTree whole_facets, border_facets;  ///< of `quads`: those wholly on the ring, and the others

@@ -125,6 +125,22 @@ TEST_P(Distance, FacetsKeepBelowTheTruth) {
   if (part.zones() == 1) { EXPECT_GT(near, 20); }
 }
 
+// Below the teeth the ring goes on, and what comes from the side meets it there.
+TEST_P(Distance, FacetsKeepBelowTheTruthBelowTheTeeth) {
+  test::Random random(37);
+  const double h = gear.parameters().module_mm, within = 0.9 * reach;
+  int near = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const double beside = random(0, within), a = random(-3.1415, 3.1415);
+    const double r = k % 2 == 0 ? gear.outer_radius() + beside : gear.inner_radius() - beside;
+    const Vec3 c(r * std::cos(a), r * std::sin(a), gear.lowest_root() - random(-1, 20) * h);
+    const auto truth = part.nearest(c, within);
+    if (truth.distance < within) ++near;
+    EXPECT_LE(part.surface_keeps(c, within), std::abs(truth.distance) + 2e-7) << c.transpose() << " " << truth.patch;
+  }
+  EXPECT_GT(near, 1000);
+}
+
 // A conical root rises along the tooth: a short look that sees no surface must still tell air from material at every
 // radius.
 TEST(DistanceOnACone, ShortLooksTellAirFromMaterial) {
