@@ -287,7 +287,7 @@ NcExecution::Problem NcExecution::move(const Move& m, std::int32_t line) {
 }
 
 NcExecution::Problem NcExecution::next_block() {
-  if (++steps_ > control_.max_steps) return fmt::format("more than {} executed blocks", control_.max_steps);
+  if (++steps_ > control_.max_steps) return too_many_blocks(control_.max_steps);
   if (++idle_ > control_.max_idle)
     return fmt::format("more than {} executed blocks in a row without a move", control_.max_idle);
   return std::nullopt;

@@ -23,7 +23,7 @@ Status NcFlow::run(const Words& words) {
   while (!ended_) {
     if (pc_ >= lines_.size())
       return at(lines_.size(), 0, o_words_ ? "the program ends without M2 or M30" : "the program ends without M30");
-    if (++steps > max_steps_) return at(pc_ + 1, 0, fmt::format("more than {} executed blocks", max_steps_));
+    if (++steps > max_steps_) return at(pc_ + 1, 0, too_many_blocks(max_steps_));
     if (++idle_ > max_idle_)
       return at(pc_ + 1, 0, fmt::format("more than {} executed blocks in a row without a move", max_idle_));
     line_ = pc_++;

@@ -15,6 +15,9 @@ namespace toothpath::readback {
 namespace {
 
 constexpr std::ptrdiff_t kMostLines = 30'000'000;
+// A program that ends executes a line once a tooth and flank or so; one that goes on for ever is found by what it has
+// executed. Short texts of other work may turn more often.
+constexpr std::size_t kBlocksPerLine = 8192, kLeastBlocks = 2'000'000;
 constexpr double kReadCoincident = 1e-9;  // mm
 constexpr double kReadParallel = 1e-12;
 constexpr double kSameTip = 1e-9;              // mm: round-off of a turned frame
@@ -220,11 +223,18 @@ void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcContro
   }
 }
 
+std::string too_many_blocks(std::size_t limit) {
+  return fmt::format("more than {} executed blocks, the most for a program of this length: a loop without end", limit);
+}
+
 Status execute_nc(std::string_view text, const std::string& file, const NcControl& control, const MoveSink& sink) {
   if (control.execute == nullptr) return fail("a control without a reader: its programs cannot be read back");
-  if (const auto lines = std::count(text.begin(), text.end(), '\n'); lines > kMostLines)
-    return fail_at({file, 0, 0}, "the program has {} lines, more than {}", lines, kMostLines);
-  return control.execute(text, file, control, sink);
+  const auto lines = std::count(text.begin(), text.end(), '\n');
+  if (lines > kMostLines) return fail_at({file, 0, 0}, "the program has {} lines, more than {}", lines, kMostLines);
+  NcControl bounded = control;
+  bounded.max_steps =
+      std::min(control.max_steps, std::max(kLeastBlocks, kBlocksPerLine * static_cast<std::size_t>(lines)));
+  return control.execute(text, file, bounded, sink);
 }
 
 namespace {

@@ -60,9 +60,11 @@ struct NcControl {
   std::optional<double> smoothing_axis_rad;         ///< not stated: no cut may turn a rotary while it is on
   std::vector<std::string> coolant_words;           ///< M words of the builder that switch coolants, on and off
   timing::Corners corners = timing::Corners::jump;  ///< how it joins feed blocks
-  bool dry_run = false;                ///< feed moves with a standing spindle are meant: a program that runs in air
-  std::size_t max_steps = 50'000'000;  ///< executed blocks before the program is refused as endless
-  std::size_t max_idle = 2'000'000;    ///< of them in a row without a move
+  bool dry_run = false;  ///< feed moves with a standing spindle are meant: a program that runs in air
+  /// Executed blocks before the program is refused as endless; `execute_nc` allows a text of few lines fewer: 8192 for
+  /// each line, but 2 000 000 at least.
+  std::size_t max_steps = 50'000'000;
+  std::size_t max_idle = 2'000'000;  ///< of them in a row without a move
 
   [[nodiscard]] bool switches_coolant(std::string_view word) const {
     return std::find(coolant_words.begin(), coolant_words.end(), word) != coolant_words.end();
@@ -99,6 +101,9 @@ struct ExecutedMove {
 /// without spindle, at G1 in G94 with rotary and linear words whose time is not exact, and beyond max_steps.
 [[nodiscard]] Status execute_nc(std::string_view text, const std::string& file, const NcControl& control,
                                 const MoveSink& sink);
+
+/// What is said of a program that has executed so many blocks and does not end.
+[[nodiscard]] std::string too_many_blocks(std::size_t limit);
 
 /// Joints inside a block whose tip goes straight, every half degree of the rotaries.
 void follow_tip(const ExecutedMove& from, const ExecutedMove& to, const NcControl& control,

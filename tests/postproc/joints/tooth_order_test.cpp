@@ -218,7 +218,7 @@ TEST(ToothOrder, ReadersRefuseWhatIsNoRemainder) {
             "p:2:31: error: GOTO LBL of a label that does not exist");
   EXPECT_EQ(
       refusal("heidenhain", "0 BEGIN PGM P MM\n1 LBL 1\n2 FN 12: IF +1 LT +5 GOTO LBL 1\n3 M30\n4 END PGM P MM\n"),
-      "p:3: error: more than 1000 executed blocks");
+      "p:3: error: more than 1000 executed blocks, the most for a program of this length: a loop without end");
 }
 
 }  // namespace

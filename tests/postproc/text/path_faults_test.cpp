@@ -266,6 +266,29 @@ TEST(PathFaultsInText, EndlessLoopsEnd) {
   EXPECT_NE(refusal(moves, 100'000, 1000).find("more than 100000 executed blocks"), std::string::npos);
 }
 
+// A loop that moves and counts upwards for ever is no cycle and never stands still: its text bounds it.
+TEST(PathFaultsInText, AShortTextExecutesFewBlocks) {
+  const auto control = *controls::control_of(trunnion(), standing(), tools());
+  const std::string start = "G21 G17 G90 G94 G40 G49 G80\nG54\nG53 G0 Z500\n";
+  const auto moves = [&](const std::string& body, std::string& refused) {
+    std::size_t n = 0;
+    const auto s =
+        readback::execute_nc(start + body + "M2\n", "p", control, [&](const readback::ExecutedMove&) { ++n; });
+    refused = s ? "" : s.error().text();
+    return n;
+  };
+  std::string refused;
+  EXPECT_LT(moves("#9=0\no1 while [#9 GE 0]\n#9=[#9+1]\nG0 X[104+#9/1000000]\no1 endwhile\n", refused), 2'000'000u);
+  EXPECT_EQ(refused,
+            "p:5: error: more than 2000000 executed blocks, the most for a program of this length: a loop without end");
+  EXPECT_EQ(moves("#9=0\no1 while [#9 LT 400000]\n#9=[#9+1]\nG0 X[104+#9/1000000]\no1 endwhile\n", refused), 400'001u);
+  EXPECT_EQ(refused, "");
+  std::string space;  // a long text whose lines are executed once a tooth, for the most teeth a job may have
+  for (int i = 0; i < 3000; ++i) space += fmt::format("G0 X{}\n", 200 + i % 2);
+  EXPECT_EQ(moves("o1 repeat [1000]\n" + space + "o1 endrepeat\n", refused), 3'000'001u);
+  EXPECT_EQ(refused, "");
+}
+
 TEST(PathFaultsInText, OtherDialectsEndToo) {
   const std::pair<const char*, std::string> cases[] = {
       {"siemens", "R2=0\nFOR R1=0 TO 999999999\nR2=R2+1\nENDFOR\nM30\n"},
