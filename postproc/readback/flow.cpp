@@ -205,6 +205,7 @@ std::optional<Diagnostic> NcFlow::o_word(const NcBlock& b) {
     case OWord::endwhile:
     case OWord::endrepeat:
       if (frames_.empty() || frames_.back().number != b.o_number) return here(1, "end of a loop that is not running");
+      if (auto endless = turns_.back_to(frames_.back().begin)) return here(1, std::move(*endless));
       pc_ = frames_.back().begin;
       return std::nullopt;
     case OWord::none: break;

@@ -14,6 +14,7 @@
 
 #include "postproc/readback/block.h"
 #include "postproc/readback/reader.h"
+#include "postproc/readback/turns.h"
 
 namespace toothpath::readback {
 
@@ -83,6 +84,7 @@ class NcFlow {
   std::unordered_map<std::size_t, NcBlock> cache_;
   NcBlock once_;
   std::vector<Frame> frames_;
+  LoopTurns turns_;
   std::size_t pc_ = 0, line_ = 0;
   bool ended_ = false, started_ = false;
   std::uint64_t print_ = 0;  // of the parameters that are set: two states with other prints differ

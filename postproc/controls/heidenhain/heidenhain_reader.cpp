@@ -11,6 +11,7 @@
 #include "postproc/controls/heidenhain/presets.h"
 #include "postproc/readback/execution.h"
 #include "postproc/readback/scanner.h"
+#include "postproc/readback/turns.h"
 
 namespace toothpath::controls {
 namespace {
@@ -183,10 +184,9 @@ class Heidenhain {
     (void)first;
     if (entry->second > 0) {
       entry->second -= 1;
-      pc_ = found->second + 1;
-    } else {
-      repeats_.erase(entry);
+      return back_to(found->second);
     }
+    repeats_.erase(entry);
     return std::nullopt;
   }
 
@@ -204,8 +204,11 @@ class Heidenhain {
     const auto label = s.number();
     const auto found = label ? labels_.find(*label) : labels_.end();
     if (found == labels_.end()) return here(column, "GOTO LBL of a label that does not exist");
-    if (*a < *b) pc_ = found->second + 1;
-    return std::nullopt;
+    return *a < *b ? back_to(found->second) : std::nullopt;
+  }
+  Problem back_to(std::size_t label) {
+    pc_ = label + 1;
+    return label < line_ ? placed(1, turns_.back_to(label)) : std::nullopt;
   }
 
   // Modes.
@@ -342,6 +345,7 @@ class Heidenhain {
   readback::NcExecution execution_;
   std::unordered_map<double, std::size_t> labels_;
   std::unordered_map<std::size_t, double> repeats_;  // CALL LBL -> what is left
+  readback::LoopTurns turns_;
   std::unordered_map<int, double> parameters_;
   std::string_view name_;
   std::size_t pc_ = 0, line_ = 0;

@@ -9,6 +9,7 @@
 #include "postproc/controls/siemens/path_group.h"
 #include "postproc/readback/execution.h"
 #include "postproc/readback/scanner.h"
+#include "postproc/readback/turns.h"
 
 namespace toothpath::controls {
 namespace {
@@ -138,9 +139,12 @@ class Siemens {
     Loop& l = loops_.back();
     double& value = parameters_[l.parameter];
     value += 1;
-    if (value <= l.last) pc_ = l.head + 1;
-    else loops_.pop_back();
-    return std::nullopt;
+    if (value > l.last) {
+      loops_.pop_back();
+      return std::nullopt;
+    }
+    pc_ = l.head + 1;
+    return placed(1, turns_.back_to(l.head));
   }
 
   // Lines.
@@ -422,6 +426,7 @@ class Siemens {
   std::vector<std::string_view> lines_;
   readback::NcExecution execution_;
   std::unordered_map<std::size_t, std::size_t> ends_;  // FOR -> ENDFOR
+  readback::LoopTurns turns_;
   std::unordered_map<int, double> parameters_;
   std::vector<Loop> loops_;
   std::size_t pc_ = 0, line_ = 0;

@@ -278,15 +278,49 @@ TEST(PathFaultsInText, AShortTextExecutesFewBlocks) {
     return n;
   };
   std::string refused;
-  EXPECT_LT(moves("#9=0\no1 while [#9 GE 0]\n#9=[#9+1]\nG0 X[104+#9/1000000]\no1 endwhile\n", refused), 2'000'000u);
-  EXPECT_EQ(refused,
-            "p:5: error: more than 2000000 executed blocks, the most for a program of this length: a loop without end");
-  EXPECT_EQ(moves("#9=0\no1 while [#9 LT 400000]\n#9=[#9+1]\nG0 X[104+#9/1000000]\no1 endwhile\n", refused), 400'001u);
+  EXPECT_EQ(moves("#9=0\no1 while [#9 GE 0]\n#9=[#9+1]\nG0 X[104+#9/1000000]\no1 endwhile\n", refused), 100'002u);
+  EXPECT_EQ(refused, "p:8:1: error: the loop has turned more than 100000 times: a loop without end");
+  EXPECT_LT(moves("o1 repeat [90000]\no2 repeat [90000]\nG0 X1\no2 endrepeat\no1 endrepeat\n", refused), 200'000u);
+  EXPECT_EQ(refused, "p:7:1: error: the loop has turned more than 100000 times: a loop without end");
+  std::string calls = "o1 sub\nG0 X1\no1 endsub\n";  // deep calls without a loop
+  for (int level = 2; level < 8; ++level) {
+    calls += fmt::format("o{} sub\n", level);
+    for (int i = 0; i < 20; ++i) calls += fmt::format("o{} call\n", level - 1);
+    calls += fmt::format("o{} endsub\n", level);
+  }
+  EXPECT_LT(moves(calls + "o7 call\n", refused), 2'000'000u);
+  EXPECT_TRUE(refused.ends_with(
+      "error: more than 2000000 executed blocks, the most for a program of this length: a loop without end"))
+      << refused;
+  EXPECT_EQ(moves("#9=0\no1 while [#9 LT 90000]\n#9=[#9+1]\nG0 X[104+#9/1000000]\no1 endwhile\n", refused), 90'001u);
   EXPECT_EQ(refused, "");
   std::string space;  // a long text whose lines are executed once a tooth, for the most teeth a job may have
   for (int i = 0; i < 3000; ++i) space += fmt::format("G0 X{}\n", 200 + i % 2);
   EXPECT_EQ(moves("o1 repeat [1000]\n" + space + "o1 endrepeat\n", refused), 3'000'001u);
   EXPECT_EQ(refused, "");
+}
+
+TEST(PathFaultsInText, LoopsThatMoveForEverEndInOtherDialectsToo) {
+  const std::pair<const char*, std::string> cases[] = {
+      {"siemens", "G17 G710 G90 G94\nFOR R1=0 TO 999999999\nSUPA G0 X=R1/10000000\nENDFOR\nM30\n"},
+      {"heidenhain",
+       "0 BEGIN PGM P MM\n1 Q1 = 0\n2 LBL 1\n3 Q1 = Q1 + 1\n4 L X+Q1 R0 FMAX M91\n5 FN 12: IF +Q1 LT +999999999 "
+       "GOTO LBL 1\n6 M30\n7 END PGM P MM\n"},
+      {"heidenhain", "0 BEGIN PGM P MM\n1 LBL 1\n2 L X+1 R0 FMAX M91\n3 CALL LBL 1 REP999999\n4 M30\n5 END PGM P MM\n"},
+  };
+  for (const auto& [dialect, text] : cases) {
+    machines::Machine m = trunnion();
+    m.dialect = dialect;
+    m.tcp = machines::TcpMode::vectors;
+    std::size_t n = 0;
+    const auto s = readback::execute_nc(text, "p", *controls::control_of(m, standing(), tools()),
+                                        [&](const readback::ExecutedMove&) { ++n; });
+    ASSERT_FALSE(s) << dialect;
+    EXPECT_TRUE(s.error().text().ends_with("error: the loop has turned more than 100000 times: a loop without end"))
+        << s.error().text();
+    EXPECT_GT(n, 100'000u);
+    EXPECT_LT(n, 100'010u);
+  }
 }
 
 TEST(PathFaultsInText, OtherDialectsEndToo) {
