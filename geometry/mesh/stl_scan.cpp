@@ -14,6 +14,8 @@ constexpr std::size_t kHeader = 84, kFacet = 50, kMostName = 1000;
 bool is_space(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v'; }
 bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+/// As importers read it: no capitals; form feeds and vertical tabs are blanks.
+char plain(char c) { return c == '\f' || c == '\v' ? ' ' : lower(c); }
 
 /// A word of the file, cut short for a message and without control characters.
 std::string shown(std::string_view word) {
@@ -23,36 +25,44 @@ std::string shown(std::string_view word) {
   return text;
 }
 
-/// Words of a text STL with the line they stand in.
+/// Words of a text STL with the line they stand in. What stands ahead of a word that does not begin a statement
+/// becomes blanks in the text: importers look for it in the same line.
 class Words {
  public:
-  Words(std::string_view text, const std::string& name) : text_(text), name_(name) {}
+  Words(std::string& text, const std::string& name) : text_(text), name_(name) {}
 
   std::string_view next() {
     skip_space();
     const std::size_t from = at_;
     while (at_ < text_.size() && !is_space(text_[at_])) ++at_;
-    return text_.substr(from, at_ - from);
+    return std::string_view(text_).substr(from, at_ - from);
+  }
+  std::string_view next_in_statement() {
+    const std::size_t from = at_;
+    const std::string_view word = next();
+    std::fill(text_.begin() + std::ptrdiff_t(from), text_.begin() + std::ptrdiff_t(at_ - word.size()), ' ');
+    return word;
   }
   std::string_view rest_of_line() {
     const std::size_t from = at_;
     while (at_ < text_.size() && !is_line_end(text_[at_])) ++at_;
-    return text_.substr(from, at_ - from);
+    return std::string_view(text_).substr(from, at_ - from);
   }
   template <typename... Args>
   Diagnostic refuse(fmt::format_string<Args...> text, Args&&... args) const {
     return fail_at({name_, line_, 0}, text, std::forward<Args>(args)...);
   }
-  Status expect(std::string_view word) {
-    const std::string_view found = next();
+  Status expect(std::string_view word) { return same(next(), word); }
+  Status expect_in_statement(std::string_view word) { return same(next_in_statement(), word); }
+  Status same(std::string_view found, std::string_view word) const {
     if (found == word) return Ok{};
     if (found.empty()) return refuse("the file ends where \"{}\" is expected", word);
     return refuse("\"{}\" stands where \"{}\" is expected", shown(found), word);
   }
   Status expect_number(std::size_t facet) {
-    std::string_view word = next();
+    const std::string_view word = next_in_statement();
     if (word.empty()) return refuse("the file ends inside facet {}", facet);
-    const std::string_view digits = word.starts_with('+') ? word.substr(1) : word;
+    const std::string_view digits = word.starts_with('+') && !word.starts_with("+-") ? word.substr(1) : word;
     float value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (word.find(',') != std::string_view::npos)
@@ -84,18 +94,18 @@ class Words {
     return value;
   }
 
-  std::string_view text_;
+  std::string& text_;
   const std::string& name_;
   std::size_t at_ = 0;
   int line_ = 1;
 };
 
 Status scan_facet(Words& words, std::size_t facet) {
-  if (auto s = words.expect("normal"); !s) return s;
+  if (auto s = words.expect_in_statement("normal"); !s) return s;
   for (int k = 0; k < 3; ++k)
     if (auto s = words.expect_number(facet); !s) return s;
   if (auto s = words.expect("outer"); !s) return s;
-  if (auto s = words.expect("loop"); !s) return s;
+  if (auto s = words.expect_in_statement("loop"); !s) return s;
   for (int corner = 0; corner < 3; ++corner) {
     if (auto s = words.expect("vertex"); !s) return s;
     for (int k = 0; k < 3; ++k)
@@ -110,7 +120,7 @@ Status scan_facet(Words& words, std::size_t facet) {
 Result<StlScan> scan_text(std::string_view bytes, const std::string& name, std::size_t most_facets) {
   StlScan scan;
   scan.lower_case.resize(bytes.size());
-  std::transform(bytes.begin(), bytes.end(), scan.lower_case.begin(), lower);
+  std::transform(bytes.begin(), bytes.end(), scan.lower_case.begin(), plain);
   Words words(scan.lower_case, name);
   bool inside = false;
   for (std::string_view word = words.next();; word = words.next()) {

@@ -13,7 +13,7 @@ namespace toothpath::mesh {
 struct StlScan {
   bool binary = false;
   std::size_t facets = 0;
-  std::string lower_case;  ///< text only: the file in lower case, as importers expect it
+  std::string lower_case;  ///< text only: the file in lower case, each statement in one line, as importers expect it
 };
 
 /// Binary: the size must be 84 + 50 n for the count n that the file states. Text: strict grammar `solid name, facet

@@ -130,7 +130,13 @@ std::string box_stl() {
 ByteReader mesh_reader(const std::string& name, const std::string& file, const std::string& letters,
                        std::vector<std::string> seeds, int cost) {
   return {name, letters, std::move(seeds),
-          [file](std::string_view bytes) { return fault_of(mesh::parse_mesh(bytes, file)); }, cost};
+          [file](std::string_view bytes) {
+            const auto mesh = mesh::parse_mesh(bytes, file);
+            if (!mesh && mesh.error().message.find("is damaged") != std::string::npos)
+              return "only the library saw it: " + mesh.error().text();
+            return fault_of(mesh);
+          },
+          cost};
 }
 
 std::vector<ByteReader> mesh_readers() {

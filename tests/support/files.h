@@ -46,6 +46,12 @@ class TestDir {
   std::filesystem::path path_;
 };
 
+inline std::string replaced_all(std::string text, const std::string& from, const std::string& to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+  return text;
+}
+
 /// `text` with the first `from` replaced; a test that replaces what is not there fails.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);

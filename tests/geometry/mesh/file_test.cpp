@@ -111,6 +111,11 @@ TEST(MeshFile, EveryFormatOfTheBoxIsRead) {
            {"cr.stl", ascii_stl(box(), "\r")},
            {"upper.stl",
             replaced(replaced(ascii_stl(box()), "solid box", "SOLID BOX"), "facet normal", "FACET Normal")},
+           {"wrapped.stl", replaced_all(ascii_stl(box()), " 0 ", "\n0\n")},
+           {"fed.stl", replaced_all(replaced_all(ascii_stl(box()), " 0 ", "\v0\f"), "\nendfacet", "\f\v\nendfacet")},
+           {"words.stl", replaced_all(replaced_all(ascii_stl(box()), "facet normal", "facet\r\nnormal"), "outer loop",
+                                      "outer\n\nloop")},
+           {"signs.stl", replaced_all(ascii_stl(box()), "vertex 20", "vertex\n+20.")},
            {"solid_binary.stl", "solid" + stl(box()).substr(5)},
            {"box.obj", obj(box())}}) {
     const auto mesh = mesh::parse_mesh(bytes, name);
@@ -156,6 +161,10 @@ TEST(MeshFile, BadTextIsRefusedWithItsLine) {
             "box.stl:6: error: facet 0: 1e400 does not fit a 32-bit number");
   EXPECT_EQ(refusal(replaced(text, "vertex 20 0 0", "vertex 0x20 0 0")),
             "box.stl:6: error: facet 0: \"0x20\" is not a number");
+  for (const std::string word : {"+-20", "-+20", "++20", "+", "-", ".", "e5", "20e", "+inf", "-.e5"})
+    EXPECT_TRUE(
+        refusal(replaced(text, "vertex 20 0 0", "vertex " + word + " 0 0")).starts_with("box.stl:6: error: facet 0: "))
+        << refusal(replaced(text, "vertex 20 0 0", "vertex " + word + " 0 0"));
   EXPECT_EQ(refusal(replaced(text, "endloop", "vertex 1 2 3\nendloop")),
             "box.stl:7: error: facet 0 has more than 3 corners");
   EXPECT_EQ(refusal(replaced(text, "vertex 20 0 0\n", "")),
