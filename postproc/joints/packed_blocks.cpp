@@ -55,6 +55,10 @@ class BytesRead {
   const unsigned char* at_;
 };
 
+/// Modulo 2^64, so that they undo each other for all words.
+std::int64_t difference(std::int64_t a, std::int64_t b) { return std::int64_t(std::uint64_t(a) - std::uint64_t(b)); }
+std::int64_t sum(std::int64_t a, std::int64_t b) { return std::int64_t(std::uint64_t(a) + std::uint64_t(b)); }
+
 }  // namespace
 
 void PackedBlocks::pack(const std::vector<AxisBlock>& blocks) {
@@ -70,7 +74,7 @@ void PackedBlocks::pack(const std::vector<AxisBlock>& blocks) {
     for (std::size_t a = 0; a < 5; ++a) words |= b.words[a] != before.words[a] ? 1U << a : 0U;
     out.byte(words);
     for (std::size_t a = 0; a < 5; ++a)
-      if (b.words[a] != before.words[a]) out.number(b.words[a] - before.words[a]);
+      if (b.words[a] != before.words[a]) out.number(difference(b.words[a], before.words[a]));
     out.number(std::int64_t(b.record) - before.record);
     if (b.minutes != 0) out.real(b.minutes);
     if (more) out.real(b.per_minute);
@@ -94,7 +98,7 @@ void PackedBlocks::unpack(std::vector<AxisBlock>& blocks) const {
     b.tip = (kind & kTip) != 0;
     b.ruler = std::uint8_t(words >> 5);
     for (std::size_t a = 0; a < 5; ++a)
-      if ((words & (1U << a)) != 0) b.words[a] += in.number();
+      if ((words & (1U << a)) != 0) b.words[a] = sum(b.words[a], in.number());
     b.record += std::int32_t(in.number());
     b.minutes = (kind & kMinutes) != 0 ? in.real() : 0;
     b.per_minute = (kind & kFeedAndAxis) != 0 ? in.real() : 0;
