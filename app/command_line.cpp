@@ -1,9 +1,12 @@
 #include "app/command_line.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <map>
@@ -16,6 +19,7 @@
 #include "app/commands/command.h"
 #include "app/report/svg/html_text.h"
 #include "geometry/base/printable.h"
+#include "machines/toml/near_name.h"
 
 namespace toothpath {
 namespace {
@@ -138,6 +142,54 @@ void add_global_options(CLI::App& app, GlobalOptions& options) {
   app.add_option("--color", options.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}));
 }
 
+bool is_option(std::string_view word) { return word.starts_with('-') && word != "-"; }
+
+/// The innermost command that the words reached.
+const CLI::App& reached(const CLI::App& app) {
+  const auto inner = app.get_subcommands();
+  return inner.empty() ? app : reached(*inner.front());
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* level = &app; level; level = level->get_parent())
+    for (const CLI::Option* option : level->get_options())
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+std::string meant(const std::string& word, const std::vector<std::string>& known) {
+  const std::string_view near = toml::near_name(word, known);
+  return near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);
+}
+
+/// What is wrong with the words, as they were typed.
+std::string usage_error(const CLI::App& app, const CLI::Error& error) {
+  const auto kind = static_cast<CLI::ExitCodes>(error.get_exit_code());
+  if (kind != CLI::ExitCodes::ExtrasError && kind != CLI::ExitCodes::RequiredError) return error.what();
+  const CLI::App& at = reached(app);
+  const std::vector<std::string> commands = command_names(at), left = app.remaining(true);
+  const auto option = std::find_if(left.begin(), left.end(), is_option);
+  if (option != left.end()) {
+    const std::string name = option->substr(0, option->find('='));
+    return fmt::format("unknown option {}{}", name, meant(name, option_names(at)));
+  }
+  const std::string known =
+      fmt::format("{}commands are: {}", &at == &app ? "" : at.get_name() + " ", fmt::join(commands, ", "));
+  if (!commands.empty())
+    return left.empty()
+               ? "a command is missing; " + known
+               : fmt::format("unknown command \"{}\"{}; {}", left.front(), meant(left.front(), commands), known);
+  return left.empty() ? error.what() : fmt::format("\"{}\" is one word too many", left.front());
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
@@ -149,8 +201,8 @@ int run_command_line(int argc, char** argv) {
       "file cannot be read or\n"
       "written, 70 internal error or out of memory, 130 interrupted. `toothpath COMMAND --help` lists the options of a "
       "command.");
-  app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return printable(error.what()) + "\nRun with --help for more information.\n";
+  app.failure_message([](const CLI::App* at, const CLI::Error& error) {
+    return printable(usage_error(*at, error)) + "\nRun with --help for more information.\n";
   });
   app.require_subcommand(0, 1);
   const auto commands = add_commands(app);

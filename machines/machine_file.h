@@ -52,9 +52,11 @@ struct MachineFileText {
 /// File names of the installed machines, "t600s.toml", in order, each once.
 [[nodiscard]] std::vector<std::string> installed_machines();
 
-/// Path of the machine file that a job calls `name`: `job_directory/name` if it exists, else `name` among the installed
-/// machines (a leading "machines/" is dropped there, and ".toml" may be left out). An absolute name is taken as it is.
+/// Path of the machine file that a job calls `name`: `job_directory/name` if it exists and is not the job itself, else
+/// `name` among the installed machines (a leading "machines/" is dropped there). ".toml" may be left out. An absolute
+/// name is taken as it is.
 /// Errors (file_access): found nowhere; the message proposes a near name and lists the installed machines.
-[[nodiscard]] Result<std::string> find_machine_file(const std::string& name, const std::string& job_directory);
+[[nodiscard]] Result<std::string> find_machine_file(const std::string& name, const std::string& job_directory,
+                                                    const std::string& job_file = {});
 
 }  // namespace toothpath::machines

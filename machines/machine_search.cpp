@@ -15,6 +15,11 @@ bool is_there(const fs::path& path) {
   return fs::exists(path, error);
 }
 
+bool is_same(const fs::path& path, const std::string& other) {
+  std::error_code error;
+  return !other.empty() && fs::equivalent(path, other, error) && !error;
+}
+
 /// "; did you mean ...?" for a name that is like one of these, with its ending or without.
 std::string hint_for(const std::string& name, const std::vector<std::string>& installed) {
   std::string_view near = toml::near_name(name, installed);
@@ -51,12 +56,15 @@ std::vector<std::string> installed_machines() {
   return names;
 }
 
-Result<std::string> find_machine_file(const std::string& name, const std::string& job_directory) {
+Result<std::string> find_machine_file(const std::string& name, const std::string& job_directory,
+                                      const std::string& job_file) {
   if (name.empty() || name.find('\0') != std::string::npos)
     return fail_as(DiagnosticKind::file_access, "machine file has no name");
   const fs::path wanted(name);
-  const fs::path beside = fs::path(job_directory) / wanted;  // an absolute name replaces the directory
-  if (is_there(beside)) return beside.string();
+  for (const char* ending : {"", ".toml"}) {
+    const fs::path beside = fs::path(job_directory) / (name + ending);  // an absolute name replaces the directory
+    if (is_there(beside) && !is_same(beside, job_file)) return beside.string();
+  }
   if (wanted.is_relative()) {
     const fs::path plain = wanted.parent_path() == "machines" ? wanted.filename() : wanted;
     if (!plain.has_parent_path())

@@ -103,7 +103,7 @@ ValueOrErrors<bevel_gear::BevelGear> make_bevel_gear(const job::Job& job) {
 ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional<double> part_diameter_mm) {
   if (job.machine.file.empty()) return std::vector{fail_at(job.where(""), "the job lacks the table [machine]")};
   const std::string directory = std::filesystem::path(job.file).parent_path().string();
-  const auto path = machines::find_machine_file(job.machine.file, directory);
+  const auto path = machines::find_machine_file(job.machine.file, directory, job.file);
   if (!path) return std::vector{located(job, "machine.file", path.error())};
   const auto file = machines::open_machine_file(*path);
   if (!file) return std::vector{located(job, "machine.file", file.error())};

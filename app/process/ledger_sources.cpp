@@ -7,6 +7,34 @@
 #include "geometry/base/angle.h"
 
 namespace toothpath::process {
+namespace {
+
+/// What makes a part of the proven gouge smaller; nullptr: nothing in the job or the machine, or no part of it.
+const char* help_against(proof::ErrorSource source) {
+  using proof::ErrorSource;
+  switch (source) {
+    case ErrorSource::chord: return "a smaller chord_tolerance of the finishing operation";
+    case ErrorSource::axis_linearisation: return "a smaller chord_tolerance of the finishing operation, or TCP";
+    case ErrorSource::rounding:
+      return "words of more decimals: post.linear_decimals and post.rotary_decimals of the machine, as far as its "
+             "control takes them, another control, or TCP";
+    case ErrorSource::path_blending: return "a smaller corner tolerance of the control, or exact stops";
+    case ErrorSource::tool_form:
+    case ErrorSource::half_angle:
+    case ErrorSource::run_out: return "a better tool, or the same one measured more closely";
+    case ErrorSource::pivots: return "pivots that are measured more closely";
+    case ErrorSource::flank_solve:
+    case ErrorSource::scallop:
+    case ErrorSource::line_misfit:
+    case ErrorSource::ridge:
+    case ErrorSource::orientation:
+    case ErrorSource::verification:
+    case ErrorSource::deflection: return nullptr;
+  }
+  return nullptr;
+}
+
+}  // namespace
 
 proof::LedgerEntry entry(proof::ErrorSource source, double predicted_mm, double measured_mm, std::string note) {
   return {source, predicted_mm * app::kUm, measured_mm * app::kUm, std::move(note)};
@@ -42,6 +70,22 @@ void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::
   ledger.push_back(
       entry(proof::ErrorSource::path_blending, double(float(blend_mm)), read.blend_mm,
             blend_mm > 0 ? "the tolerance that the text grants the control" : "the text grants the control none"));
+}
+
+std::vector<std::string> what_would_help(const std::vector<proof::LedgerEntry>& ledger, const proof::GougeResult& gouge,
+                                         double tolerance_mm) {
+  if (gouge.bound_mm <= tolerance_mm || gouge.measured_mm > tolerance_mm) return {};
+  std::vector<std::string> help{fmt::format(
+      "a larger [verify] gouge_tolerance: this program is proven to keep {:.2f} um, one planned for more may "
+      "take a little more",
+      gouge.bound_mm * app::kUm)};
+  const proof::LedgerEntry* largest = nullptr;
+  for (const proof::LedgerEntry& e : ledger)
+    if (help_against(e.source) && (!largest || e.predicted_um > largest->predicted_um)) largest = &e;
+  if (largest && largest->predicted_um > 0)
+    help.push_back(fmt::format("{}; of the parts of the bound, {} is the largest, {:.2f} um",
+                               help_against(largest->source), to_string(largest->source), largest->predicted_um));
+  return help;
 }
 
 }  // namespace toothpath::process

@@ -34,4 +34,9 @@ void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::
                          const std::optional<readback::ClComparison>& met, const readback::ReadBack& read,
                          double blend_mm);
 
+/// Of a program that is safe as far as it was measured, and whose proven bound misses the limit: a larger limit, and
+/// what makes the largest part of the bound smaller. Empty: the bound holds, or the tool really cuts too deep.
+[[nodiscard]] std::vector<std::string> what_would_help(const std::vector<proof::LedgerEntry>& ledger,
+                                                       const proof::GougeResult& gouge, double tolerance_mm);
+
 }  // namespace toothpath::process

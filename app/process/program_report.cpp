@@ -258,6 +258,8 @@ app::CommandOutcome verdict_of(report::RunReport& report, const std::optional<Di
     outcome.errors.push_back(*stopped);
   } else {
     outcome.errors = errors_of(report.reasons, job_file);
+    if (!outcome.errors.empty() && !report.would_help.empty())
+      outcome.errors.front().message += fmt::format("; what would help: {}", fmt::join(report.would_help, "; or "));
   }
   if (!report.verified) {
     discard_program(output);

@@ -284,6 +284,7 @@ std::string report_json(const RunReport& r) {
     json["verified"] = r.verified;
     json["verdict"] = verdict_text(r);
     json["reasons"] = text_list(r.reasons);
+    if (!r.would_help.empty()) json["would_help"] = text_list(r.would_help);
     json["machine"] = {
         {"name", svg::valid_utf8(r.machine_name)}, {"file", svg::valid_utf8(r.machine_file)}, {"dialect", r.dialect}};
   }

@@ -90,7 +90,8 @@ struct RunReport {
   std::string command;  ///< "run", "check", "surface"
   std::string job_name, job_file, machine_name, machine_file, dialect;
   bool verified = false;
-  std::vector<std::string> reasons;  ///< why it is not verified
+  std::vector<std::string> reasons;     ///< why it is not verified
+  std::vector<std::string> would_help;  ///< what would meet the limit that was missed
 
   std::string program_file, program_sha256;  ///< empty where no program was written
   std::size_t program_bytes = 0;

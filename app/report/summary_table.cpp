@@ -105,6 +105,7 @@ std::string summary_table(const RunReport& report, bool color) {
   if (report.command != "surface")
     row(out, "verified", color ? fmt::format("{}{}\033[0m", paint, verdict) : std::string(verdict));
   for (const auto& reason : report.reasons) row(out, "  because", reason);
+  for (const auto& help : report.would_help) row(out, "  would help", help);
   if (!left.empty()) row(out, "not finished", left);
   proof_rows(out, report);
   if (!report.operations.empty()) {

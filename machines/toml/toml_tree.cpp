@@ -112,6 +112,23 @@ SourcePosition position_of(const ::toml::source_region& region, const std::strin
   return {file, static_cast<int>(region.begin.line), static_cast<int>(region.begin.column)};
 }
 
+/// `key = word`: what the library says of it is about truth values or numbers; what is missing are the quotes.
+std::optional<Diagnostic> unquoted_word(std::string_view text, const SourcePosition& at) {
+  for (int line = 1; line < at.line; ++line) text.remove_prefix(std::min(text.size(), text.find('\n') + 1));
+  const std::string_view line = text.substr(0, text.find_first_of("\r\n"));
+  const auto equals = line.find('=');
+  if (equals == std::string_view::npos || line.find_first_of("\"'#") < equals) return std::nullopt;
+  const auto begin = line.find_first_not_of(" \t", equals + 1);
+  if (begin == std::string_view::npos || at.column <= static_cast<int>(begin)) return std::nullopt;
+  const std::string_view rest = line.substr(begin), word = rest.substr(0, rest.find_first_of(" \t#"));
+  const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+  const auto of_word = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '.' || c == '-'; };
+  constexpr std::size_t kLongest = 60;
+  if (!letter(word.front()) || word.size() > kLongest || !std::all_of(word.begin(), word.end(), of_word))
+    return std::nullopt;
+  return fail_at({at.file, at.line, static_cast<int>(begin) + 1}, "{0} is text and stands in quotes: \"{0}\"", word);
+}
+
 /// Copies nodes of the library; remembers the first that lies too deep.
 class Copier {
  public:
@@ -192,7 +209,9 @@ Result<TomlValue> parse_toml(std::string_view text, const std::string& file, con
     root.position = {file, 1, 1};
     return root;
   } catch (const ::toml::parse_error& error) {
-    return fail_at(position_of(error.source(), file), "{}", error.description());
+    const SourcePosition at = position_of(error.source(), file);
+    if (auto word = unquoted_word(text, at)) return std::move(*word);
+    return fail_at(at, "{}", error.description());
   }
 }
 

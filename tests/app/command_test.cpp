@@ -32,6 +32,27 @@ TEST(CommandLine, UsageErrorsAreTwo) {
     EXPECT_EQ(run_program(arguments).exit_code, 2);
 }
 
+// What was typed is told as it was typed, with what was meant.
+TEST(CommandLine, UsageErrorsNameTheWord) {
+  const std::pair<std::vector<std::string>, std::string> cases[] = {
+      {{"rnu", kQuick}, "unknown command \"rnu\"; did you mean \"run\"?; commands are: run, check, "},
+      {{"study", "stabilty"}, "unknown command \"stabilty\"; did you mean \"stability\"?; study commands are: "},
+      {{"study"}, "a command is missing; study commands are: "},
+      {{"run", kQuick, "--ot", "x"}, "unknown option --ot; did you mean \"--out\"?"},
+      {{"run", kQuick, "--outt=x"}, "unknown option --outt; did you mean \"--out\"?"},
+      {{"run", kQuick, "two", "--out", "x"}, "\"two\" is one word too many"},
+      {{"--jsn", "run", kQuick, "--out", "x"}, "unknown option --jsn; did you mean \"--json\"?"},
+      {{"run"}, "JOB is required"},
+      {{"run", kQuick}, "--out is required"},
+      {{"r\x1b[31m"}, "unknown command \"r\\x1B[31m\"; commands are: "},
+  };
+  for (const auto& [arguments, words] : cases) {
+    const auto run = run_program(arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_TRUE(run.err.starts_with(words)) << run.err;
+  }
+}
+
 // Every number of every command goes through one reader.
 TEST(CommandLine, NumbersAreNumbersOfTheirRange) {
   const TestDir dir;

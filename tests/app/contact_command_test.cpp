@@ -152,7 +152,9 @@ TEST(ContactCommand, Refusals) {
   EXPECT_EQ(
       run_program({"contact", kSamples + "/offset_shaped.toml", "--compound", "1000", "--out", dir / "b"}).exit_code,
       2);
-  EXPECT_EQ(run_program({"contact", kSamples + "/bevel_pinion.toml", "--out", dir / "c"}).exit_code, 3);
+  const auto mate = run_program({"contact", kSamples + "/bevel_pinion.toml", "--out", dir / "c"});
+  EXPECT_EQ(mate.exit_code, 3);
+  EXPECT_NE(mate.err.find("--mate JOB names the one that is there"), std::string::npos) << mate.err;
   EXPECT_EQ(
       run_program({"compare", kSamples + "/offset_milled.toml", kSamples + "/offset_milled.toml", "--out", dir / "d"})
           .exit_code,

@@ -177,6 +177,29 @@ TEST(TomlDepth, StringsAndNumbersAreNoNesting) {
   }
 }
 
+// What is missing are the quotes; no word of what else might have begun with such a letter.
+TEST(TomlText, AWordWithoutQuotesIsTold) {
+  const std::pair<std::string, std::string> cases[] = {
+      {"[gear]\ntype = face_gear\n", "t:2:8: error: face_gear is text and stands in quotes: \"face_gear\""},
+      {"a = t600s.toml  # the machine", "t:1:5: error: t600s.toml is text and stands in quotes: \"t600s.toml\""},
+      {"a = 1\r\nb=inner-radius\r\n", "t:2:3: error: inner-radius is text and stands in quotes: \"inner-radius\""},
+      {"a = Yes", "t:1:5: error: Yes is text and stands in quotes: \"Yes\""},
+      {"a = True", "t:1:5: error: True is text and stands in quotes: \"True\""},
+      {"a = truth", "t:1:5: error: truth is text and stands in quotes: \"truth\""},
+      {"a = infinite", "t:1:5: error: infinite is text and stands in quotes: \"infinite\""},
+  };
+  for (const auto& [text, message] : cases) {
+    const auto tree = toml::parse_toml(text, "t", {});
+    ASSERT_FALSE(tree) << text;
+    EXPECT_EQ(tree.error().text(), message);
+  }
+  for (const std::string text : {"a = \"x", "a = 1.2.3", "a = [b]", "a = ", "a == b", "a b = c", "\"=\" = 1 x"}) {
+    const auto tree = toml::parse_toml(text, "t", {});
+    ASSERT_FALSE(tree) << text;
+    EXPECT_EQ(tree.error().text().find("stands in quotes"), std::string::npos) << tree.error().text();
+  }
+}
+
 class BadMachineFile : public testing::TestWithParam<test::BadFile> {};
 
 TEST_P(BadMachineFile, IsRefusedWithItsPlace) {
@@ -329,6 +352,12 @@ TEST(FindMachineFile, BesideTheJobFirstThenInstalled) {
   const auto beside = machines::find_machine_file("t600s.toml", dir.path());
   ASSERT_TRUE(beside);
   EXPECT_TRUE(fs::equivalent(*beside, dir / "t600s.toml"));
+  const auto beside_plain = machines::find_machine_file("t600s", dir.path());
+  ASSERT_TRUE(beside_plain);
+  EXPECT_TRUE(fs::equivalent(*beside_plain, dir / "t600s.toml"));
+  const auto not_the_job = machines::find_machine_file("t600s.toml", dir.path(), dir / "t600s.toml");
+  ASSERT_TRUE(not_the_job);
+  EXPECT_TRUE(fs::equivalent(*not_the_job, TOOTHPATH_SOURCE_DIR "/machines/data/t600s.toml"));
   const auto none = machines::find_machine_file("no_such.toml", dir.path());
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().kind, DiagnosticKind::file_access);

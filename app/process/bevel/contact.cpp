@@ -223,7 +223,11 @@ process::ValueOrErrors<bevel_gear::BevelGear> mate_of(const process::ContactAske
                                                       const bevel_gear::BevelGear& gear, std::string& name) {
   if (request.other_job.empty()) {
     auto mate = contact::bevel_mate(gear);
-    if (!mate) return std::vector{process::located(job, "gear.mate_teeth", mate.error())};
+    if (!mate) {
+      Diagnostic error = mate.error();
+      error.message += "; that is the mate as the same mill would cut it: --mate JOB names the one that is there";
+      return std::vector{process::located(job, "gear.mate_teeth", std::move(error))};
+    }
     name = "by the rules of the pair, cut with the same mill";
     return std::move(mate.value());
   }

@@ -10,7 +10,7 @@ namespace toothpath::face {
 process::ValueOrErrors<machines::ShaperMachine> load_shaper_machine(const job::Job& job) {
   if (job.machine.file.empty()) return std::vector{fail_at(job.where(""), "the job lacks the table [machine]")};
   const auto path =
-      machines::find_machine_file(job.machine.file, std::filesystem::path(job.file).parent_path().string());
+      machines::find_machine_file(job.machine.file, std::filesystem::path(job.file).parent_path().string(), job.file);
   if (!path) return std::vector{process::located(job, "machine.file", path.error())};
   const auto file = machines::open_machine_file(*path);
   if (!file) return std::vector{process::located(job, "machine.file", file.error())};

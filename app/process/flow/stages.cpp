@@ -5,6 +5,7 @@
 #include "app/process/cutting_force.h"
 #include "app/process/flow/registry.h"
 #include "app/process/flow/restart.h"
+#include "app/process/ledger_sources.h"
 #include "app/process/program_report.h"
 #include "app/process/proof_limits.h"
 #include "app/report/page/motion_charts.h"
@@ -94,7 +95,12 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
   process::note_cutting_forces(run.report, run.job);
   run.report.sections =
       sections::sections_of({run.job, run.report, posted->restarted ? *posted->restarted : program, paths});
-  if (!run.report.reasons.empty()) return std::nullopt;
+  if (!run.report.reasons.empty()) {
+    if (run.report.gouge)
+      run.report.would_help =
+          process::what_would_help(run.report.ledger, *run.report.gouge, run.report.gouge_tolerance_mm);
+    return std::nullopt;
+  }
   process::note_verified(run.report, posted->file, run.program_text);
   return std::nullopt;
 }

@@ -119,6 +119,7 @@ ReportPage page_of_run(const GearOnPage& gear, const report::RunReport& r, std::
   page.verified = r.verified;
   page.unfinished = report::unfinished_text(r);
   page.reasons = r.reasons;
+  for (const auto& help : r.would_help) page.reasons.push_back("Would help: " + help);
   page.warnings = r.warnings;
   page.assumed = r.assumed;
   page.figures = key_figures(r);
