@@ -56,17 +56,36 @@ class Walk {
     return measure();
   }
 
+  /// From here to the next rapid: where the tool may be at the latest when it meets each record, so that every later
+  /// one can still be met. Records as near to each other as their words are rounded would else be met by blocks that
+  /// were made for others.
+  void find_latest() {
+    std::size_t last = record_, end = next_;
+    while (last + 1 < path_.records.size() && path_.records[last + 1].kind != path::MoveKind::rapid) ++last;
+    while (end < motions_.size() && !motions_[end]->rapid) ++end;
+    first_of_run_ = record_;
+    latest_.assign(last - record_ + 1, end);
+    for (std::size_t r = last + 1; r-- > first_of_run_;) {
+      const path::ClRecord& asked = path_.records[r];
+      std::size_t k = end;
+      while (k > next_ && !near(asked, motions_[k - 1]->tip_to, motions_[k - 1]->axis_to)) --k;
+      if (k == next_ && !near(asked, tip_, axis_)) return;  // not met at all, or before the first: said where it is
+      latest_[r - first_of_run_] = end = k;
+    }
+  }
+
   /// Feed motions up to the one that comes nearest to the record; each must stay on the chord from the record before.
   /// Between two ends of a block the tip may stray by the tolerance, so that it may also fall back by it on the way.
   bool feed() {
+    if (path_.records[record_ - 1].kind == path::MoveKind::rapid) find_latest();
     const Vec3 from = path_.records[record_ - 1].tip, to = record().tip;
     double minutes = 0, length = 0;
     double nearest = off(tip_, axis_);
     std::size_t end = next_;
-    for (std::size_t j = next_; j < motions_.size() && !motions_[j]->rapid; ++j) {
+    for (std::size_t j = next_; j < latest_[record_ - first_of_run_]; ++j) {
       const double then = off(motions_[j]->tip_to, motions_[j]->axis_to);
       if (then > nearest + tolerance_) break;
-      if (then > nearest) continue;
+      if (then >= nearest) continue;
       nearest = then;
       end = j + 1;
     }
@@ -91,8 +110,9 @@ class Walk {
   double off(const Vec3& tip, const Vec3& axis) const {
     return (tip - record().tip).norm() + angle_between(axis, record().axis) * (tolerance_ / axis_tolerance_);
   }
-  bool near(const Vec3& tip, const Vec3& axis) const {
-    return (tip - record().tip).norm() <= tolerance_ && angle_between(axis, record().axis) <= axis_tolerance_;
+  bool near(const Vec3& tip, const Vec3& axis) const { return near(record(), tip, axis); }
+  bool near(const path::ClRecord& asked, const Vec3& tip, const Vec3& axis) const {
+    return (tip - asked.tip).norm() <= tolerance_ && angle_between(axis, asked.axis) <= axis_tolerance_;
   }
   void stand_at(const path::ToolMotion& m) {
     tip_ = m.tip_to;
@@ -120,7 +140,8 @@ class Walk {
   double tolerance_, axis_tolerance_;
   ClComparison& result_;
   std::vector<const path::ToolMotion*> motions_;
-  std::size_t next_ = 0, record_ = 0;
+  std::size_t next_ = 0, record_ = 0, first_of_run_ = 0;
+  std::vector<std::size_t> latest_;  ///< from `first_of_run_`: motions behind the tool when it meets the record
   Vec3 tip_ = Vec3::Zero(), axis_ = Vec3::UnitZ();
   int line_ = 0;
   bool position_known_ = false;

@@ -2,6 +2,7 @@
 // for.
 #include <gtest/gtest.h>
 
+#include <random>
 #include <vector>
 
 #include "postproc/readback/reader.h"
@@ -89,6 +90,55 @@ TEST(CompareWithCl, TheFastestBlockIsTold) {
   auto motions = program();
   for (std::size_t k : {2, 3}) motions[k].minutes /= 3;
   EXPECT_NEAR(compared(motions).fastest_ratio, 3, 1e-12);
+}
+
+/// A path whose steps are about as long as the last digit of its words: the program of it, rounded, with blocks left out
+/// that change no word.
+struct FineWalk {
+  path::ClPath path;
+  std::vector<path::ToolMotion> motions;
+};
+FineWalk fine_walk(std::mt19937_64& random, bool back_and_forth) {
+  constexpr double kGrid = 1e-3;
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> share(0, 1);
+  FineWalk w;
+  w.path.records.push_back({kAbove, Vec3::UnitZ(), 0, path::MoveKind::rapid, 0, 0});
+  w.motions.push_back(motion(Vec3(-20, 0, 5), kAbove, true));
+  Vec3 at = kStart, last(0, 0, 0);
+  for (int k = 0; k < 60; ++k) {
+    const Vec3 step = Vec3(normal(random), normal(random), normal(random)) * 1e-3;
+    const bool back = back_and_forth && k > 1 && share(random) < 0.4;
+    if (back) at = w.path.records[w.path.records.size() - 2].tip + 0.2 * step;
+    else at += share(random) < 0.1 ? Vec3(50 * step) : step;
+    w.path.records.push_back({at, Vec3::UnitZ(), 500, path::MoveKind::feed, 0, 0});
+    const Vec3 word = (at / kGrid).array().round() * kGrid;
+    if (k > 0 && word == w.motions.back().tip_to) continue;
+    w.motions.push_back(motion(w.motions.back().tip_to, word));
+  }
+  return w;
+}
+
+// Records nearer to each other than the last digit: each is met by the block that was made for it, not by a later one
+// that comes as near.
+TEST(CompareWithCl, PathsAsFineAsTheirRoundingAreMet) {
+  constexpr double kRounding = 0.8661e-3;  // half a digit in each of three words
+  std::mt19937_64 random(7);
+  int sharp = 0;
+  for (int trial = 0; trial < 4000; ++trial) {
+    const FineWalk w = fine_walk(random, trial % 2 == 1);
+    const std::vector<const path::ClPath*> list = {&w.path};
+    const auto met = readback::compare_with_cl(w.motions, list, kRounding, 1e-3);
+    ASSERT_TRUE(met.complete) << trial << ": " << met.message;
+    EXPECT_LE(met.worst_mm, kRounding);
+    // A block that is 4 um off is seen, whatever lies around it.
+    auto wrong = w.motions;
+    const std::size_t k = 1 + random() % (wrong.size() - 1);
+    wrong[k].tip_to += Vec3(0, 0, 4e-3);
+    if (k + 1 < wrong.size()) wrong[k + 1].tip_from = wrong[k].tip_to;
+    sharp += readback::compare_with_cl(wrong, list, kRounding, 1e-3).complete ? 0 : 1;
+  }
+  EXPECT_GT(sharp, 3900);
 }
 
 }  // namespace
