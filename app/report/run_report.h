@@ -140,8 +140,8 @@ struct RunReport {
 /// What the program leaves though it is verified; empty: nothing.
 [[nodiscard]] std::string unfinished_text(const RunReport& report);
 
-/// The table on the screen: verified or not, worst gouge, worst left material, cutting time, tools, axis ranges, every
-/// assumed value. Plain text; with `color` the verdict is green, amber or red.
+/// The table on the screen: verified or not, worst gouge, worst left material, cutting time, tools, axis ranges, how
+/// many values are assumed. Plain text; with `color` the verdict is green, amber or red.
 [[nodiscard]] std::string summary_table(const RunReport& report, bool color);
 
 /// "1 h 23 min", "4 min 05 s".

@@ -4,6 +4,7 @@
 #include "app/base/units.h"
 #include "app/report/run_report.h"
 #include "geometry/base/angle.h"
+#include "machines/assumed.h"
 
 namespace toothpath::report {
 namespace {
@@ -131,7 +132,7 @@ std::string summary_table(const RunReport& report, bool color) {
                     origin.z(), offer.room_then_mm[0], offer.room_then_mm[1], offer.room_then_mm[2]));
   }
   if (!report.machine_name.empty()) row(out, "machine", report.machine_name);
-  for (const auto& name : report.assumed) row(out, "assumed", name);
+  if (!report.assumed.empty()) row(out, "assumed", machines::counted_keys(report.assumed));
   if (!report.program_file.empty())
     row(out, "program", fmt::format("{}, {} blocks", report.program_file, report.blocks));
   for (const auto& c : report.correction)

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/angle.h"
+#include "postproc/numbers/comment.h"
 #include "postproc/numbers/fixed_point.h"
 
 namespace toothpath::shaper {
@@ -41,13 +42,7 @@ std::string GearboxWriter::run() {
 }
 
 std::string GearboxWriter::comment(std::string_view text) const {
-  std::string out = format_.comment_open;
-  for (const char c : text.substr(0, 70)) {
-    if (c == '(' || c == ')') out += c == '(' ? '[' : ']';
-    else if (c >= 'a' && c <= 'z') out += static_cast<char>(c - 'a' + 'A');
-    else out += c >= ' ' && c <= '~' && c != ';' && c != '%' ? c : '?';
-  }
-  return out + format_.comment_close + "\n";
+  return format_.comment_open + numbers::comment_text(text).substr(0, 70) + format_.comment_close + "\n";
 }
 
 std::string GearboxWriter::number(std::int64_t units, int decimals) const {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "geometry/base/angle.h"
+#include "postproc/numbers/comment.h"
 
 namespace toothpath::shaper {
 namespace {
@@ -35,15 +36,7 @@ std::string angle(std::int64_t units) {
 }
 
 /// What may stand between parentheses: printable ASCII in upper case.
-std::string comment(std::string_view text) {
-  std::string out = "(";
-  for (const char c : text.substr(0, 200)) {
-    if (c == '(' || c == ')') out += c == '(' ? '[' : ']';
-    else if (c >= 'a' && c <= 'z') out += static_cast<char>(c - 'a' + 'A');
-    else out += c >= ' ' && c <= '~' ? c : '?';
-  }
-  return out + ")\n";
-}
+std::string comment(std::string_view text) { return "(" + numbers::comment_text(text).substr(0, 200) + ")\n"; }
 
 void write_header(std::string& out, const ShaperSetup& s) {
   out += comment(fmt::format("{} - gear shaper, explicit strokes", s.job_name));

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "machines/assumed.h"
+#include "postproc/numbers/comment.h"
 #include "postproc/numbers/fixed_point.h"
 #include "postproc/text/corners.h"
 #include "postproc/text/writer.h"
@@ -21,7 +23,7 @@ NcLines::Values program_values(const joints::AxisProgram& program, const NcDiale
   };
   NcLines::Values values;
   values["number"] = std::to_string(header.program_number);
-  values["name"] = comment_text(header.job_name).substr(0, 32);
+  values["name"] = numbers::comment_text(header.job_name).substr(0, 32);
   values["id"] = program_id(header.job_name);
   values["offset"] = program.work_offset;
   if (dialect.datum != nullptr) values["datum"] = std::to_string(dialect.datum(program.work_offset));
@@ -48,9 +50,9 @@ NcLines::Values program_values(const joints::AxisProgram& program, const NcDiale
 
 std::vector<std::string> header_comments(const joints::AxisProgram& program, const NcDialect& dialect,
                                          const NcHeader& header, std::string_view hash) {
-  std::vector<std::string> out = {comment_text("JOB " + header.job_name)};
-  if (!header.job_hash.empty()) out.push_back(comment_text("JOB FILE " + header.job_hash));
-  out.push_back(comment_text("MACHINE " + header.machine_name));
+  std::vector<std::string> out = {numbers::comment_text("JOB " + header.job_name)};
+  if (!header.job_hash.empty()) out.push_back(numbers::comment_text("JOB FILE " + header.job_hash));
+  out.push_back(numbers::comment_text("MACHINE " + header.machine_name));
   out.emplace_back(hash);
   out.emplace_back("TOOL LENGTHS RUN FROM THE GAUGE LINE TO THE TIP");
   const auto at = [&](int i) {
@@ -75,15 +77,16 @@ std::vector<std::string> header_comments(const joints::AxisProgram& program, con
         fmt::format("{} LEAVES CORNERS BY AT MOST {} MM: STATED IN THE MACHINE FILE", dialect.corner_flow, within));
   }
   if (program.tcp != machines::TcpMode::none && !dialect.tcp_note.empty())
-    out.push_back(comment_text(dialect.tcp_note));
+    out.push_back(numbers::comment_text(dialect.tcp_note));
   for (std::size_t a = 3; a < 5; ++a)
     if (program.rollover[a]) {
       const auto note = expanded(dialect.rollover.note, {{"axis", std::string(1, program.letters[a])}});
-      out.push_back(comment_text(note.value_or(dialect.rollover.note)));  // a name that does not exist stays visible
+      out.push_back(
+          numbers::comment_text(note.value_or(dialect.rollover.note)));  // a name that does not exist stays visible
     }
   for (auto& line : order_comments(program)) out.push_back(std::move(line));
   if (!header.assumed.empty()) out.emplace_back("WARNING, ASSUMED AND NOT MEASURED:");
-  for (const auto& a : header.assumed) out.push_back(comment_text("ASSUMED " + a));
+  for (const auto& a : machines::grouped_keys(header.assumed)) out.push_back(numbers::comment_text("ASSUMED " + a));
   return out;
 }
 
@@ -183,20 +186,9 @@ std::string NcLines::numbered(std::string_view text) {
   return out;
 }
 
-std::string comment_text(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    if (c >= 'a' && c <= 'z') out += static_cast<char>(c - 'a' + 'A');
-    else if (c == '(' || c == ')') out += c == '(' ? '[' : ']';
-    else if (c == '%' || c == ';' || c < ' ' || c > '~') out += '?';
-    else out += c;
-  }
-  return out;
-}
-
 std::string program_id(std::string_view text) {
   std::string out;
-  for (const char c : comment_text(text).substr(0, 24)) {
+  for (const char c : numbers::comment_text(text).substr(0, 24)) {
     const bool letter = c >= 'A' && c <= 'Z', digit = c >= '0' && c <= '9';
     out += letter || digit ? c : '_';
   }

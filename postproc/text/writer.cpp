@@ -9,6 +9,7 @@
 
 #include "geometry/base/hash.h"
 #include "postproc/joints/tooth_order.h"
+#include "postproc/numbers/comment.h"
 #include "postproc/numbers/fixed_point.h"
 #include "postproc/text/axis_words.h"
 #include "postproc/text/corners.h"
@@ -96,8 +97,8 @@ class Writer {
     values_["work_top"] = linear(program_.retract_z_mm - op.tool_length_mm - program_.work_offset_at_mm.z());
     out_.comment(
         fmt::format("OP {} {}", op.operation, op.type));  // as in the job, in every dialect: programs look for it
-    out_.comment(comment_text(fmt::format("T{} {} LENGTH {} MM TO THE TIP", op.tool_number, op.tool_name,
-                                          out_.value(numbers::to_fixed(op.tool_length_mm, 4), 4))));
+    out_.comment(numbers::comment_text(fmt::format("T{} {} LENGTH {} MM TO THE TIP", op.tool_number, op.tool_name,
+                                                   out_.value(numbers::to_fixed(op.tool_length_mm, 4), 4))));
     const NcLoop& loop = dialect_.loop;
     if (program_.loop && loop.form == NcLoop::Form::sub_program) loop_body(op);
     machine_retract();
@@ -110,7 +111,7 @@ class Writer {
       std::vector<joints::AxisBlock> room;
       for (const auto& tooth : op.teeth) {
         const std::vector<joints::AxisBlock>& list = tooth.all(room);
-        out_.comment(tooth.remark.empty() ? fmt::format("TOOTH {}", tooth.tooth) : comment_text(tooth.remark));
+        out_.comment(tooth.remark.empty() ? fmt::format("TOOTH {}", tooth.tooth) : numbers::comment_text(tooth.remark));
         forget();
         blocks(list, {0, list.size()}, IndexWord::literal);
         if (tooth.pause) fill(dialect_.pause);

@@ -18,7 +18,7 @@ struct NcHeader {
   std::string job_name;  ///< made ASCII upper case; parentheses become brackets
   std::string job_hash;  ///< of the job file, given by the caller; may be empty
   std::string machine_name;
-  std::vector<std::string> assumed;  ///< non-empty: a warning with each of them
+  std::vector<std::string> assumed;  ///< non-empty: a warning, keys of one table in one line
   int program_number = 1001;         ///< O word
   double blend_mm =
       0.0003;  ///< how far the control may leave a corner: counts as deviation of the machine in every proof
@@ -46,9 +46,6 @@ struct NcText {
 /// joint blocks that turn on a control without inverse time, teeth as a loop on a control that has none.
 [[nodiscard]] Result<NcText> write_nc(const joints::AxisProgram& program, const NcDialect& dialect,
                                       const NcHeader& header);
-
-/// Text that may stand in a comment of any dialect: printable ASCII, upper case, ( ) -> [ ], the rest -> '?'.
-[[nodiscard]] std::string comment_text(std::string_view text);
 
 /// Text as the name of a program: letters, digits and _, at most 24, beginning with a letter.
 [[nodiscard]] std::string program_id(std::string_view text);

@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "geometry/base/hash.h"
+#include "machines/assumed.h"
 #include "postproc/controls/apt/apt_reader.h"
 #include "postproc/controls/control.h"
+#include "postproc/numbers/comment.h"
 #include "postproc/numbers/fixed_point.h"
 #include "postproc/text/lines.h"
 #include "postproc/text/writer.h"
@@ -96,14 +98,14 @@ class AptWriter {
     out_.text().clear();
     out_.line(fmt::format("PARTNO/{}", text::program_id(header_.job_name)));
     out_.line("UNITS/MM");
-    out_.comment(text::comment_text("JOB " + header_.job_name));
-    out_.comment(text::comment_text("MACHINE " + header_.machine_name));
+    out_.comment(numbers::comment_text("JOB " + header_.job_name));
+    out_.comment(numbers::comment_text("MACHINE " + header_.machine_name));
     const std::string hash = fmt::format("HASH {:016X} BLOCKS {}", result.body_hash, result.blocks);
     out_.comment(hash);
     out_.comment("TIP AND TOOL AXIS IN WORK COORDINATES");
     for (const auto& line : text::order_comments(program_)) out_.comment(line);
     if (!header_.assumed.empty()) out_.comment("WARNING, ASSUMED AND NOT MEASURED:");
-    for (const auto& a : header_.assumed) out_.comment(text::comment_text("ASSUMED " + a));
+    for (const auto& a : machines::grouped_keys(header_.assumed)) out_.comment(numbers::comment_text("ASSUMED " + a));
     out_.text() += body;
     out_.comment(hash);
     out_.line("END");

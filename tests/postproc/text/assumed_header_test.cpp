@@ -1,6 +1,7 @@
 // What nobody measured stands in the head of the program, in every dialect, ahead of the first motion.
 #include <gtest/gtest.h>
 
+#include "postproc/numbers/comment.h"
 #include "tests/postproc/readback/nc_case.h"
 
 namespace toothpath {
@@ -32,7 +33,7 @@ TEST_P(AssumedHeader, WarnsAheadOfTheFirstMotion) {
   for (const char* word : {"G0 ", "G1 ", "G00 ", "G53", "SUPA", "L Z", "L X", "GOTO/", "G28"})
     motion = std::min(motion, text->text.find(word));
   ASSERT_NE(motion, std::string::npos);
-  for (const char* key : {"AXES.A.POINT", "AXES.C.SIGN"}) {
+  for (const char* key : {"AXES.A: POINT", "AXES.C: SIGN"}) {
     const auto at = text->text.find(std::string("ASSUMED ") + key);
     EXPECT_GT(at, warning) << key;
     EXPECT_LT(at, motion) << key;
@@ -50,6 +51,22 @@ TEST_P(AssumedHeader, WarnsAheadOfTheFirstMotion) {
   EXPECT_NE(hash(first).find(fmt::format("BLOCKS {}", text->blocks)), std::string::npos);
   EXPECT_LT(first, motion);
   EXPECT_LT(text->text.size() - last, 120u);
+}
+
+TEST(Comment, IsAsciiByRule) {
+  const std::pair<const char*, const char*> cases[] = {{"grün Größe ÄÖÜ", "GRUEN GROESSE AEOEUE"},
+                                                       {"Ångström, señor, ÿ, Þ", "AANGSTROEM, SENOR, Y, TH"},
+                                                       {"ø25 × 3 ÷ 2", "OE25 X 3 X 2"},
+                                                       {"Łódź 齿 €", "?OD? ? ?"},
+                                                       {"a(b)%;\n\x7f", "A[B]????"},
+                                                       {"\xc3", "?"},
+                                                       {"\xff\xfe"
+                                                        "a",
+                                                        "??A"},
+                                                       {"\xe9\xbd", "?"},
+                                                       {"5°", "5?"},
+                                                       {"", ""}};
+  for (const auto& [text, ascii] : cases) EXPECT_EQ(numbers::comment_text(text), ascii);
 }
 
 INSTANTIATE_TEST_SUITE_P(Dialects, AssumedHeader,
