@@ -56,6 +56,7 @@ class OutputDir {
   [[nodiscard]] Result<std::string> read_back(std::string_view name) const;
   /// Path that the file will have; for messages.
   [[nodiscard]] std::string final_path(std::string_view name) const;
+  [[nodiscard]] const std::string& path() const { return path_; }  ///< as the user wrote it
   /// Drops a file written before (an NC program that turned out not to be safe).
   void discard(std::string_view name);
   /// Gives every file its final name, programs last: where one stands, all the rest is there. What stood under the

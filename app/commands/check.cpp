@@ -156,6 +156,7 @@ CommandOutcome check_program(const CheckRequest& request) {
   if (const auto written = write_results(check, *output, outcome.report_json); !written) return failed(written.error());
   check.progress.clear();
   if (const auto committed = output->commit(); !committed) return failed(committed.error());
+  check.report.directory = output->path();
   outcome.summary = report::summary_table(check.report, request.color) + process::table_of_worst(check.proof->gouge);
   return outcome;
 }

@@ -57,6 +57,7 @@ CommandOutcome finish(flow::Run& run, app::OutputDir& output, const std::optiona
     return failed(process::located(run.job, "gear", written.error()));
   run.progress.clear();
   if (const auto committed = output.commit(); !committed) return failed(committed.error());
+  run.report.directory = output.path();
   outcome.summary = report::summary_table(run.report, color);
   if (run.report.gouge) outcome.summary += process::table_of_worst(*run.report.gouge);
   return outcome;

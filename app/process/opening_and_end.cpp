@@ -48,6 +48,7 @@ app::CommandOutcome finished_report(app::OutputDir& output, app::StageClock& clo
   report.stages = clock.seconds();
   app::CommandOutcome outcome;
   outcome.report_json = report::report_json(report);
+  report.directory = output.path();
   outcome.summary = report::summary_table(report, color);
   const std::string json = outcome.report_json;
   return finished(output, {{"report.json", json}}, std::move(outcome));

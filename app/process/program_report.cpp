@@ -68,6 +68,12 @@ report::RunReport report_of(const std::string& command, const job::Job& job, con
 void note_axis_program(report::RunReport& report, const job::Job& job, const machines::Machine& machine,
                        std::span<const path::ClPath* const> paths, const joints::AxisProgram& program) {
   report.axes = program.ranges;
+  if (machine.post.index_loop.value_or(false) && !program.loop && program.teeth > 1 && *program.no_loop != 0) {
+    const SourcePosition at = machine.where("post.index_loop");
+    report.warnings.push_back(
+        fmt::format("{}:{}:{}: post.index_loop = true is not followed, every tooth is written out: {}", at.file,
+                    at.line, at.column, program.no_loop));
+  }
   const bool timed = program.has_acceleration;
   report.has_acceleration = timed;
   report.feed_minutes = timed ? program.accelerated.feed : program.feed_minutes;

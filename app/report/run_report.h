@@ -93,6 +93,7 @@ struct RunReport {
   std::vector<std::string> reasons;     ///< why it is not verified
   std::vector<std::string> would_help;  ///< what would meet the limit that was missed
 
+  std::string directory;                     ///< of the results, as the user wrote it; empty: not said
   std::string program_file, program_sha256;  ///< empty where no program was written
   std::size_t program_bytes = 0;
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "app/base/units.h"
 #include "app/report/run_report.h"
@@ -73,6 +74,26 @@ void proof_rows(std::string& out, const RunReport& report) {
   }
 }
 
+/// Where the results are, and what to open first.
+void results_row(std::string& out, const RunReport& report) {
+  if (report.directory.empty() || report.files.empty()) return;
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::path directory = fs::proximate(report.directory, error);  // as seen from here, where that is below here
+  if (error || directory.empty() || *directory.begin() == "..") directory = report.directory;
+  const auto name_of = [&](std::initializer_list<std::string_view> names) -> std::string {
+    for (const std::string_view name : names)
+      if (std::find(report.files.begin(), report.files.end(), name) != report.files.end())
+        return (directory / name).lexically_normal().string();
+    return {};
+  };
+  const std::string page = name_of({"report.html", "limits.html"}), sheet = name_of({"setup.html", "setup_check.html"});
+  std::string text = page.empty() ? report.directory : "open " + page + " first";
+  if (!sheet.empty()) text += fmt::format("; for the machine: {}", sheet);
+  if (report.verified && report.command == "run") text += fmt::format(" and {}", report.program_file);
+  row(out, "results", text);
+}
+
 }  // namespace
 
 std::string readable_minutes(double minutes) {
@@ -108,6 +129,7 @@ std::string summary_table(const RunReport& report, bool color) {
   for (const auto& reason : report.reasons) row(out, "  because", reason);
   for (const auto& help : report.would_help) row(out, "  would help", help);
   if (!left.empty()) row(out, "not finished", left);
+  results_row(out, report);
   proof_rows(out, report);
   if (!report.operations.empty()) {
     row(out, "cutting time",

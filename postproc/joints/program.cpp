@@ -46,12 +46,14 @@ class ProgramBuilder {
     describe_machine();
     place_index_axis();
     if (program_.loop) {
-      if (!choose_all(true)) program_.loop = false;  // one tooth at a time may still find its turns
+      if (!choose_all(true)) leave_loop("its turns leave the travels");  // one tooth at a time may still find its own
     }
     if (!program_.loop && !choose_all(false)) return *error_;
     note_poles();
-    if (program_.loop && options_.loop_needs_constant_index && index_moves_inside_passes()) program_.loop = false;
-    if (program_.loop && rounding_of_loop() > options_.nc_step_mm) program_.loop = false;
+    if (program_.loop && options_.loop_needs_constant_index && index_moves_inside_passes())
+      leave_loop("this control cannot shift an axis that turns inside a pass");
+    if (program_.loop && rounding_of_loop() > options_.nc_step_mm)
+      leave_loop("the angles that the control works out are rounded by too much");
     if (auto bad = check_size()) return *bad;
     // With TCP the words of the tip differ from tooth to tooth.
     copies_ = !tcp() && !program_.loop && coincident_ && teeth_ > 1 && rounding_of_copies() <= options_.nc_step_mm;
@@ -81,11 +83,17 @@ class ProgramBuilder {
  private:
   [[nodiscard]] bool tcp() const { return machine_.tcp != machines::TcpMode::none; }
 
+  void leave_loop(const char* why) {
+    program_.loop = false;
+    program_.no_loop = why;
+  }
   /// The same without the loop.
   Result<AxisProgram> written_out() const {
     AxisOptions options = options_;
     options.expand_teeth = true;
-    return ProgramBuilder(paths_, tools_, setup_, machine_, teeth_, body_, options).build();
+    auto program = ProgramBuilder(paths_, tools_, setup_, machine_, teeth_, body_, options).build();
+    if (program) program->no_loop = "its first tooth is not entered as the others are";
+    return program;
   }
   /// Only for a program that is refused as it stands: it takes as long as the program itself.
   void try_offer() {
@@ -140,6 +148,7 @@ class ProgramBuilder {
 
   /// Is the gear axis parallel to the rotary that carries the work, and is it that axis?
   void place_index_axis() {
+    program_.no_loop = "no rotary turns the gear about its own axis";
     if (chain_.table.empty()) return;
     const machines::RotaryAxis& c = chain_.table[0];
     const Vec3 gear_axis = gear_.rotation.col(2);
@@ -147,8 +156,14 @@ class ProgramBuilder {
     parallel_ = true;
     program_.index_axis = 3;
     program_.index_sign = c.sign * (c.direction.dot(gear_axis) > 0 ? 1 : -1);
+    program_.no_loop = "";
     coincident_ = (gear_.origin - c.point_mm).cross(c.direction).norm() <= kCoincident;
     program_.loop = coincident_ && !options_.expand_teeth && teeth_ > 1 && (!tcp() || frame_can_turn());
+    if (!coincident_) program_.no_loop = "the gear does not turn about its own axis";
+    else if (tcp() && !frame_can_turn())
+      program_.no_loop = options_.tcp_loop
+                             ? "with TCP this control turns a frame about its work offset, which is not the gear axis"
+                             : "with TCP this control has no frame that a program could turn about the gear axis";
     program_.frame_sign = gear_axis.z() > 0 ? 1 : -1;
   }
 

@@ -149,11 +149,12 @@ struct AxisProgram {
   std::array<char, 5> letters{};   ///< X Y Z and the two rotaries; 0: no such axis
   std::array<bool, 5> rollover{};  ///< the control counts the rotary within one turn; words here go on beyond it
   int teeth = 1;
-  bool loop = false;                                ///< one tooth is held; the index rotary turns it
-  int tooth_stride = 1;                             ///< as in the options
-  std::optional<ProgramRestart> restart;            ///< the program begins there, not at its beginning
-  int index_axis = -1;                              ///< 3 or 4: which word is shifted by the index
-  int index_sign = 1;                               ///< word of tooth k = word + index_sign * k * 360 / z
+  bool loop = false;                      ///< one tooth is held; the index rotary turns it
+  const char* no_loop = "";               ///< why every tooth is written out though the options ask for a loop
+  int tooth_stride = 1;                   ///< as in the options
+  std::optional<ProgramRestart> restart;  ///< the program begins there, not at its beginning
+  int index_axis = -1;                    ///< 3 or 4: which word is shifted by the index
+  int index_sign = 1;                     ///< word of tooth k = word + index_sign * k * 360 / z
   machines::TcpMode tcp = machines::TcpMode::none;  ///< how the blocks of a cut are meant
   bool turns_in_cuts = false;                       ///< some feed block moves a rotary; the index does not count
   double tip_reach_mm = 0;  ///< greatest distance of the tip from a rotary axis in blocks that turn, without TCP

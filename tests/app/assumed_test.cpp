@@ -45,7 +45,9 @@ TEST_F(AssumedPivot, EveryPageAndTheProgramCarryTheWarning) {
     if (!name.ends_with(".html")) continue;
     ++pages;
     const std::string page = file_text(dir / ("out/" + name));
-    EXPECT_NE(page.find("m.toml: axes.A.point"), std::string::npos) << name;
+    const bool counts = name == "limits.html";  // no limit of the gear depends on the machine
+    EXPECT_NE(page.find(counts ? "1 value of m.toml, not measured: axes" : "m.toml: axes.A.point"), std::string::npos)
+        << name;
     EXPECT_NE(page.find("ssumed"), std::string::npos) << name;
   }
   EXPECT_GE(pages, 3);

@@ -511,6 +511,10 @@ TEST(Run, ASmallGearGoesTheWholeWay) {
   for (const char* name : {"cl.csv", "gear.stl", "inspection.csv", "limits.json", "program.ngc", "report.html",
                            "report.json", "setup.html", "tooth.vtp"})
     EXPECT_TRUE(std::binary_search(names.begin(), names.end(), name)) << name;
+  EXPECT_TRUE(run.out.starts_with("spur-quick\n  verified            yes\n  results             open " +
+                                  (dir / "1/report.html") + " first; for the machine: " + (dir / "1/setup.html") +
+                                  " and program.ngc\n"))
+      << run.out;
   const auto report = nlohmann::json::parse(file_text(dir / "1/report.json"));
   EXPECT_EQ(report["verified"], true);
   EXPECT_LE(report["gouge_um"]["measured"].get<double>(), report["gouge_um"]["bound"].get<double>());

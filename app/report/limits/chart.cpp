@@ -8,6 +8,7 @@
 
 #include "app/report/page/study_page.h"
 #include "geometry/base/angle.h"
+#include "machines/assumed.h"
 
 namespace toothpath::limits {
 namespace {
@@ -137,7 +138,9 @@ std::string limits_page(const face_gear::FaceGear& gear, const std::string& job_
   if (page.introduction.empty())
     page.introduction = {"Every zone lies between the undercut and the pointed end of its teeth."};
   if (!assumed.empty())
-    page.introduction.push_back(fmt::format("Assumed of the machine and not measured: {}.", fmt::join(assumed, ", ")));
+    page.introduction.push_back(
+        fmt::format("The limits are those of the gear alone. Of the machine that it was planned for are assumed {}.",
+                    machines::counted_keys(assumed)));
   page.charts = limit_charts(gear);
   page::PageTable table{"Limits",
                         {"zone", "flank", "undercut radius", "involute start", "pointed radius", "land radius",

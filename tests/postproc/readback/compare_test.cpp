@@ -92,8 +92,8 @@ TEST(CompareWithCl, TheFastestBlockIsTold) {
   EXPECT_NEAR(compared(motions).fastest_ratio, 3, 1e-12);
 }
 
-/// A path whose steps are about as long as the last digit of its words: the program of it, rounded, with blocks left out
-/// that change no word.
+/// A path whose steps are about as long as the last digit of its words: the program of it, rounded, with blocks left
+/// out that change no word.
 struct FineWalk {
   path::ClPath path;
   std::vector<path::ToolMotion> motions;
