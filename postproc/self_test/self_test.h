@@ -39,9 +39,9 @@ struct SelfTest {
     int station = -1;
   };
   std::vector<Move> moves;  ///< from the first station on
-  /// Between two stations the tip leaves the point upwards, Z goes to its top, the rotaries turn alone, and the tip comes
-  /// down again: a control without TCP that has no inverse time, where nobody says how fast a block is that turns and
-  /// moves.
+  /// Between two stations the tip leaves the point upwards, Z goes to its top, the rotaries turn alone, and the tip
+  /// comes down again: a control without TCP that has no inverse time, where nobody says how fast a block is that turns
+  /// and moves.
   bool lifts = false;
   double tip_bound_mm = 0;  ///< proven: between two blocks, all joints linear, the tip leaves the point by no more
   double tilt_rad = 0;      ///< largest tilt that is used
@@ -55,8 +55,9 @@ struct SelfTestOptions {
 
 /// Chooses the point and the stations: each rotary axis alone (a full turn in quarters where its limits allow one, else
 /// to both sides), then the quarters of one with the other tilted. Point: off the axes so that every sign shows, on the
-/// table where there is one. `lifts` follows from the control. Errors: no rotary axis; no point near the table from which even 5 degrees of tilt stay
-/// inside the travels: the message names axis, value and limit; a tool length that is not positive.
+/// table where there is one. `lifts` follows from the control. Errors: no rotary axis; no point near the table from
+/// which even 5 degrees of tilt stay inside the travels: the message names axis, value and limit; a tool length that is
+/// not positive.
 [[nodiscard]] Result<SelfTest> plan_self_test(const machines::Machine& machine, const SelfTestOptions& options = {});
 
 /// The same machine while its control has TCP off: its program moves the joints.
@@ -75,7 +76,8 @@ struct SelfTestOptions {
 struct SelfTestProof {
   double worst_mm = 0;  ///< greatest distance of the tip from the point, from the first station to the last, inside the
                         ///< blocks too; where it lifts, at the stations
-  std::vector<Vec3> readings_mm;  ///< at every station: of dials along X, Y and Z of the table, on the machine of the file
+  std::vector<Vec3>
+      readings_mm;        ///< at every station: of dials along X, Y and Z of the table, on the machine of the file
   std::size_t moves = 0;  ///< executed between them
   double minutes = 0;     ///< of the whole program, stops left out
 };

@@ -22,11 +22,11 @@ struct Case {
   machines::TcpMode tcp;
 };
 using machines::TcpMode;
-const Case kCases[] = {{"xyzac_trt.toml", TcpMode::angles},     {"xyzbc_trt.toml", TcpMode::angles},
-                       {"head_table_bc.toml", TcpMode::none},   {"fanuc_ac.toml", TcpMode::angles},
-                       {"haas_ac.toml", TcpMode::none},         {"m80_ac.toml", TcpMode::none},
-                       {"siemens_ac.toml", TcpMode::angles},    {"siemens_ac.toml", TcpMode::vectors},
-                       {"nutating_table.toml", TcpMode::none},  {"heidenhain_ac.toml", TcpMode::angles},
+const Case kCases[] = {{"xyzac_trt.toml", TcpMode::angles},      {"xyzbc_trt.toml", TcpMode::angles},
+                       {"head_table_bc.toml", TcpMode::none},    {"fanuc_ac.toml", TcpMode::angles},
+                       {"haas_ac.toml", TcpMode::none},          {"m80_ac.toml", TcpMode::none},
+                       {"siemens_ac.toml", TcpMode::angles},     {"siemens_ac.toml", TcpMode::vectors},
+                       {"nutating_table.toml", TcpMode::none},   {"heidenhain_ac.toml", TcpMode::angles},
                        {"heidenhain_ac.toml", TcpMode::vectors}, {"head_head_ca.toml", TcpMode::angles},
                        {"heidenhain_ac.toml", TcpMode::none}};
 
@@ -109,7 +109,8 @@ std::vector<std::array<double, 5>> stations_of(const std::string& text, const se
 /// What the dials show, set to zero at the first station.
 std::vector<Vec3> readings(const std::vector<std::array<double, 5>>& stations, const RealMachine& real) {
   std::vector<Vec3> out;
-  for (const auto& joints : stations) out.emplace_back(real.seen_from_table(joints) - real.seen_from_table(stations.front()));
+  for (const auto& joints : stations)
+    out.emplace_back(real.seen_from_table(joints) - real.seen_from_table(stations.front()));
   return out;
 }
 double shown(const Vec3& reading) { return reading.cwiseAbs().maxCoeff(); }
@@ -209,7 +210,8 @@ TEST_P(RealMachineTest, TheLeastErrorOfAStationIsShownThere) {
         least = std::min(least, now);
         ++looked;
       }
-      EXPECT_LT(least, 2 * self_test::kDialStep_mm) << sight.what << " station " << s + 1 << ": more is shown than said";
+      EXPECT_LT(least, 2 * self_test::kDialStep_mm)
+          << sight.what << " station " << s + 1 << ": more is shown than said";
     }
   }
   EXPECT_GT(looked, 20U);
@@ -238,8 +240,8 @@ TEST_P(RealMachineTest, TcpProvesTheDataOfTheControlAlone) {
   const machines::Machine joint_file = self_test::without_tcp(wrong);
   const auto joint_test = planned(joint_file);
   most = 0;
-  for (const Vec3& r :
-       readings(stations_of(test::dry_run_text(joint_test, joint_file), joint_test, joint_file, joint_file.chain), real))
+  for (const Vec3& r : readings(
+           stations_of(test::dry_run_text(joint_test, joint_file), joint_test, joint_file, joint_file.chain), real))
     most = std::max(most, shown(r));
   EXPECT_GT(most, 1.0);
 }
