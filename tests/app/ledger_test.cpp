@@ -59,8 +59,8 @@ INSTANTIATE_TEST_SUITE_P(Samples, Ledger,
                                          "short_tool", "bevel_pinion", "bevel_trunnion", "bevel_wheel", "tool_axis"),
                          [](const auto& c) { return std::string(c.param); });
 
-// Without TCP blocks leave the chord where a rotary turns; with it the control keeps the tip there, and the rotary turns
-// all the same.
+// Without TCP blocks leave the chord where a rotary turns; with it the control keeps the tip there, and the rotary
+// turns all the same.
 TEST(LedgerOfTheMachine, SaysWhoKeepsTheTipOnItsChord) {
   const auto note = [](machines::TcpMode tcp, bool turns, double chord_mm) {
     joints::AxisProgram program;
