@@ -58,7 +58,7 @@ TEST_F(CheckConditions, TheProgramOfARunIsWhatItsJobAsks) {
 
 TEST_F(CheckConditions, AFeedThatIsTooQuick) {
   // A block in the middle of the teeth: inverse time, 100 times as quick.
-  const auto done = check_text(edited(R"((G1[^\n]* F)([0-9]+)(\.[0-9]+)?\n)", "$1${2}00\n", 40));
+  const auto done = check_text(edited(R"(\n(X[^\n]* F)([0-9]+)(\.[0-9]+)?\n)", "\n$01$0200\n", 40));
   EXPECT_EQ(done.exit_code, 1) << done.out;
   EXPECT_NE(said("reasons").find("line "), std::string::npos) << said("reasons");
   EXPECT_TRUE(std::regex_search(said("reasons"), std::regex("limits\\.|max_speed|limits.cutting_feed")))
