@@ -71,6 +71,8 @@ struct Machine {
   std::optional<double> part_diameter_mm;  ///< largest part that turns on the rotary table, when stated
   std::optional<double> max_part_mass_kg;  ///< when stated
   double min_block_ms = 1.0;               ///< shortest block that the control keeps up with
+  double feed_factor = 2.0;                ///< a program that is checked may cut so many times as fast as its job says
+  double speed_factor = 1.25;              ///< and its spindle may be so many times as fast or as slow
   LimitMargin limit_margin;
 
   /// Place of every table and key of the file by its dotted name, `post.corner_tolerance`: for those who judge them

@@ -239,6 +239,8 @@ void read_limits(toml::TableReader limits, Machine& machine) {
   machine.min_block_ms = limits.number("min_block_ms", {0.0, 1e4, " ms"}).value_or(0.0);
   if (limits.has("part_diameter")) machine.part_diameter_mm = diameter("part_diameter");
   if (limits.has("part_mass")) machine.max_part_mass_kg = limits.number("part_mass", toml::Range::positive(1e6, " kg"));
+  if (limits.has("feed_factor")) machine.feed_factor = limits.number("feed_factor", {1.0, 100.0, ""}).value_or(1.0);
+  if (limits.has("speed_factor")) machine.speed_factor = limits.number("speed_factor", {1.0, 100.0, ""}).value_or(1.0);
   if (limits.has("limit_margin"))
     machine.limit_margin.linear_mm = limits.number("limit_margin", {0.0, 100.0, " mm"}).value_or(0.0);
   if (limits.has("limit_margin_angle"))

@@ -101,6 +101,7 @@ Status prove(Check& check) {
   report.feed_minutes = check.proof->read.accelerated.feed;
   report.total_minutes = report.feed_minutes + check.proof->read.accelerated.rapid;
   report.axes = process::ranges_of(check.proof->read, check.machine);
+  report.sections.insert(report.sections.begin(), sections::conditions(check.job, check.machine, report));
   report.verified = report.reasons.empty();
   report.program_file = check.request.program_file;
   report.program_sha256 = sha256_hex(check.text);

@@ -12,8 +12,9 @@ struct CheckRequest : JobRequest, process::SceneFiles {
 };
 
 /// Reads any NC program in the dialect of the job's machine back and checks it: gouges, clearance, rapids, left
-/// material. Writes report.json, report.html, tooth.vtp and a set-up sheet of its own (setup_check.html), verified or
-/// not; the program itself is never touched. Exit: verified or unverified.
+/// material, and feeds, speeds, tools, coolant and the line HASH against what the job asks and the machine can. Writes
+/// report.json, report.html, tooth.vtp and a set-up sheet of its own (setup_check.html), verified or not; the program
+/// itself is never touched. Exit: verified or unverified.
 [[nodiscard]] CommandOutcome check_program(const CheckRequest& request);
 
 }  // namespace toothpath::commands

@@ -7,11 +7,12 @@
 
 #include "app/base/output_dir.h"
 #include "app/process/opening_and_end.h"
-#include "app/report/page/study_page.h"
+#include "app/report/sheet/dry_run_sheet.h"
 #include "app/report/sheet/machine_sheet.h"
 #include "geometry/base/angle.h"
 #include "machines/machine_file.h"
 #include "postproc/controls/of_machine.h"
+#include "postproc/controls/registry.h"
 #include "postproc/self_test/self_test.h"
 #include "postproc/shaper/control.h"
 #include "postproc/text/writer.h"
@@ -64,45 +65,67 @@ CommandOutcome show_machine(const MachineRequest& request) {
 
 namespace {
 
-/// What the machinist reads beside the machine.
-std::string test_page(const machines::Machine& machine, const self_test::SelfTest& test,
-                      const self_test::SelfTestProof& proof, const std::string& program) {
-  page::StudyPage page;
-  page.title = machine.name + ": dry run of signs and pivots";
-  page.subtitle = fmt::format("{}, {}", program, machine.file);
-  page.good = machine.assumed_keys.empty();
-  page.verdict = page.good ? "nothing assumed" : fmt::format("{} values assumed", machine.assumed_keys.size());
-  const Vec3& p = test.point_mm;
-  page.introduction = {
-      fmt::format("The spindle does not turn. A test bar of {:g} mm (gauge line to the tip) is tool 1; its length must "
-                  "stand in the tool table. The work offset {} is X {:g} Y {:g} Z {:g} in machine coordinates: the "
-                  "program keeps the tip of the bar there while the table and the head turn.",
-                  test.tool_length_mm, "G54", p.x(), p.y(), p.z()),
-      "1. Set the offset and the length, remove part and fixture, feed override at zero. 2. Start; open the override "
-      "slowly. The program stops at every station. 3. At station 1 bring a dial indicator on the table to the tip and "
-      "set it to zero. 4. At every further station the indicator turns with the table: read it. Watch that each axis "
-      "turns the way that the table of `machine show` says.",
-      fmt::format(
-          "Read back from the text: the tip leaves the point by at most {:.4f} mm. What the indicator shows beyond "
-          "that is the error of a sign, a pivot or a length: a wrong sign shows millimetres, a pivot that is off by "
-          "half a millimetre more than two tenths. A reading that grows with one axis alone belongs to its pivot.",
-          proof.worst_mm)};
-  for (const auto& key : machine.assumed_keys) page.introduction.push_back("Assumed and not measured: " + key);
-  page::PageTable stations{"Stations",
-                           {"station", "axes", "indicator mm", "direction right"},
-                           {},
-                           "The last two columns are filled in at the machine."};
-  for (std::size_t k = 0; k < test.stations.size(); ++k)
-    stations.rows.push_back({fmt::format("{}", k + 1), test.stations[k].remark, "", ""});
-  page::PageTable senses{"What a positive command turns", {"axis", "seen"}, {}, ""};
-  for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k)
-    senses.rows.push_back({std::string(1, machine.chain.rotary(k).letter), sheet::positive_turn(machine.chain, k)});
-  page.tables = {senses, stations};
-  return study_page_html(page);
+const std::vector<std::string> kTestOutputs = {"machine_test.", "machine_test_tcp.", "machine_test.html"};
+constexpr const char* kPreviousTest = "previous_machine_test";
+constexpr int kTestProgram = 1900;  // O number; the part with TCP has the next
+
+/// Plans one part, writes its text and proves what lies on the disk.
+Result<sheet::DryRunPart> make_part(const machines::Machine& machine, const MachineRequest& request,
+                                    app::OutputDir& output) {
+  const bool tcp = machine.tcp != machines::TcpMode::none;
+  const auto dialect = controls::dialect_of(machine);
+  if (!dialect) return dialect.error();
+  self_test::SelfTestOptions options;
+  options.tool_length_mm = request.tool_length_mm;
+  const auto test = self_test::plan_self_test(machine, options);
+  if (!test) return test.error();
+  text::NcHeader header;
+  header.job_name = (tcp ? "self test tcp " : "self test ") + machine.name;
+  header.machine_name = machine.name;
+  for (const auto& key : machine.assumed_keys) header.assumed.push_back(key);
+  header.program_number = kTestProgram + (tcp ? 1 : 0);
+  const auto text =
+      text::write_nc(self_test::self_test_program(*test, machine, *dialect), self_test::in_air(*dialect), header);
+  if (!text) return text.error();
+  const std::string name = (tcp ? "machine_test_tcp" : "machine_test") + dialect->extension;
+  if (const auto s = output.write(name, text->text); !s) return s.error();
+  const auto bytes = output.read_back(name);
+  if (!bytes) return bytes.error();
+  auto proof = self_test::prove_self_test(*bytes, output.final_path(name), *test, machine);
+  if (!proof) return proof.error();
+  return sheet::DryRunPart{name, tcp, *test, std::move(*proof)};
 }
 
-const std::vector<std::string> kTestOutputs = {"machine_test.", "machine_test.html"};
-constexpr const char* kPreviousTest = "previous_machine_test";
+/// A text of places of the tool would show nothing of the machine's axes.
+Status has_axes(const machines::Machine& machine) {
+  const controls::Control* control = controls::find(machine.dialect);
+  if (control == nullptr || !control->cutter_locations) return Ok{};
+  return fail_at(
+      machine.where("dialect"),
+      "dialect = \"{}\" has places of the tool and no axes: its text shows nothing of senses and pivots; the "
+      "dry run is that of a machine file with the dialect of the control itself",
+      machine.dialect);
+}
+
+std::string summary_of(const machines::Machine& machine, const std::vector<sheet::DryRunPart>& parts,
+                       const std::string& directory) {
+  const self_test::SelfTest& test = parts.front().test;
+  std::string out = fmt::format(
+      "{}: {} stations, bar of {:g} mm, tilt up to {:g} deg\n  point X {:g} Y {:g} Z {:g} mm machine (G54)\n",
+      machine.name, test.stations.size(), test.tool_length_mm, degrees(test.tilt_rad), test.point_mm.x(),
+      test.point_mm.y(), test.point_mm.z());
+  std::string files;
+  for (const sheet::DryRunPart& part : parts) {
+    out += fmt::format(
+        "  {}: TCP {}, proves the {}; read back: the tip leaves the point by at most {:.4f} mm over {} "
+        "moves, {:.1f} min; the spindle stands\n",
+        part.program, part.tcp ? "on" : "off", part.tcp ? "data of the control" : "machine file", part.proof.worst_mm,
+        part.proof.moves, part.proof.minutes);
+    files += part.program + " ";
+  }
+  return out + fmt::format("  seen of the machine file: {}\n  files {}machine_test.html in {}\n",
+                           sheet::dry_run_sight(machine, parts.front()), files, directory);
+}
 
 }  // namespace
 
@@ -114,42 +137,24 @@ CommandOutcome test_machine(const MachineRequest& request) {
   auto reading = controls::read_machine(*path);
   if (!reading.machine) return failed(std::move(reading.errors));
   const machines::Machine& machine = *reading.machine;
-  const auto at_file = [&](Diagnostic error) {
-    if (error.position.file.empty()) error.position.file = *path;
-    return failed(std::move(error));
-  };
-  const auto dialect = controls::dialect_of(machine);
-  if (!dialect) return at_file(dialect.error());
+  if (const auto axes = has_axes(machine); !axes) return failed(axes.error());
   if (const auto aside = output->set_aside(); !aside) return failed(aside.error());
-  self_test::SelfTestOptions options;
-  options.tool_length_mm = request.tool_length_mm;
-  const auto test = self_test::plan_self_test(machine, options);
-  if (!test) return at_file(test.error());
-  text::NcHeader header;
-  header.job_name = "self test " + machine.name;
-  header.machine_name = machine.name;
-  for (const auto& key : machine.assumed_keys) header.assumed.push_back(key);
-  header.program_number = 1900;
-  const auto text =
-      text::write_nc(self_test::self_test_program(*test, machine, *dialect), self_test::in_air(*dialect), header);
-  if (!text) return at_file(text.error());
-  const std::string name = "machine_test" + dialect->extension;
-  if (const auto s = output->write(name, text->text); !s) return failed(s.error());
-  const auto bytes = output->read_back(name);
-  if (!bytes) return failed(bytes.error());
-  const auto proof = self_test::prove_self_test(*bytes, output->final_path(name), *test, machine);
-  if (!proof) return failed(proof.error());
-  if (const auto s = output->write("machine_test.html", test_page(machine, *test, *proof, name)); !s)
+  std::vector<sheet::DryRunPart> parts;
+  for (const bool tcp : {false, true}) {
+    if (tcp && machine.tcp == machines::TcpMode::none) continue;
+    auto part = make_part(tcp ? machine : self_test::without_tcp(machine), request, *output);
+    if (!part) {
+      Diagnostic error = part.error();
+      if (error.position.file.empty()) error.position.file = *path;
+      return failed(std::move(error));
+    }
+    parts.push_back(std::move(*part));
+  }
+  if (const auto s = output->write("machine_test.html", sheet::dry_run_page(machine, parts)); !s)
     return failed(s.error());
   if (const auto s = output->commit(); !s) return failed(s.error());
   CommandOutcome outcome;
-  outcome.summary = fmt::format(
-      "{}: {} stations, bar of {:g} mm, tilt up to {:g} deg, {:.1f} min\n  point X {:g} Y {:g} Z {:g} mm machine "
-      "(G54)\n  read back: the tip leaves it by at most {:.4f} mm over {} moves; the spindle stands\n  files "
-      "machine_test{} machine_test.html in {}\n",
-      machine.name, test->stations.size(), test->tool_length_mm, degrees(test->tilt_rad), proof->minutes,
-      test->point_mm.x(), test->point_mm.y(), test->point_mm.z(), proof->worst_mm, proof->moves, dialect->extension,
-      request.out_dir);
+  outcome.summary = summary_of(machine, parts, request.out_dir);
   return outcome;
 }
 
@@ -164,10 +169,10 @@ void add_machine(Commands& commands) {
       },
       show_machine, &kMachines));
   commands.push_back(command_of<MachineRequest>(
-      "test", "program that holds the tip of a test bar on one point while the rotary axes turn: run it in air",
+      "test", "programs that hold the tip of a test bar on one point while the rotary axes turn: run them in air",
       [](OptionSet& set, MachineRequest& request) {
         set.file("MACHINE", request.machine_file, kMachine);
-        set.out_dir(request.out_dir, "directory for the program and its page; made where it does not exist");
+        set.out_dir(request.out_dir, "directory for the programs and their page; made where it does not exist");
         set.number("--tool-length", request.tool_length_mm,
                    "gauge line to the tip of the test bar (default: 100, 60 or 30, what fits)", {1, 5000, " mm"});
       },

@@ -1,4 +1,4 @@
-// `toothpath machine show` and `toothpath machine test`: what a machine file says, and a program that proves it in air.
+// `toothpath machine show` and `toothpath machine test`: what a machine file says, and programs that prove it in air.
 #pragma once
 
 #include <optional>
@@ -19,10 +19,11 @@ struct MachineRequest : CommonRequest {
 /// machines).
 [[nodiscard]] CommandOutcome show_machine(const MachineRequest& request);
 
-/// Writes machine_test.* (NC text in the machine's dialect), machine_test.html (what the machinist does and must see at
-/// every station) and nothing else. The text is read back and proven before it is kept. `request.tool_length_mm`: of
-/// the test bar. Refused: gear shapers; machines without rotary axes; no place near the table that the travels allow; a
-/// dialect without axes.
+/// Writes machine_test.* (NC text in the machine's dialect that moves the joints, TCP off: it proves the machine file),
+/// of a machine with TCP machine_test_tcp.* too (the same stations with TCP on: it proves the data of the control),
+/// machine_test.html (what the machinist does and must see at every station) and nothing else. The texts are read back
+/// and proven before they are kept. `request.tool_length_mm`: of the test bar. Refused: gear shapers; machines without
+/// rotary axes; no place near the table that the travels allow; a dialect without axes.
 [[nodiscard]] CommandOutcome test_machine(const MachineRequest& request);
 
 }  // namespace toothpath::commands

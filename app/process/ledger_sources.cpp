@@ -60,10 +60,12 @@ void add_machine_sources(std::vector<proof::LedgerEntry>& ledger, const joints::
                          double blend_mm) {
   const double worst = met ? met->worst_mm : 0, extra = met ? met->worst_extra_mm : 0;
   const bool turns = program.chord_bound_mm > 0;
-  ledger.push_back(entry(proof::ErrorSource::axis_linearisation, program.chord_bound_mm,
-                         turns ? std::max(0.0, extra - worst) : 0,
-                         turns ? "blocks against the chords of the path, rounding taken off"
-                               : "no rotary axis turns while the tool cuts"));
+  const bool held = !turns && program.turns_in_cuts && program.tcp != machines::TcpMode::none;
+  ledger.push_back(
+      entry(proof::ErrorSource::axis_linearisation, program.chord_bound_mm, turns ? std::max(0.0, extra - worst) : 0,
+            turns  ? "blocks against the chords of the path, rounding taken off"
+            : held ? "a rotary axis turns while the tool cuts; the control keeps the tip on the chord (TCP)"
+                   : "no rotary axis turns while the tool cuts"));
   ledger.push_back(entry(proof::ErrorSource::rounding, program.rounding_bound_mm, worst,
                          "records against the motions that were read back"));
   // In single precision, as the moves that are read back carry it.

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/process/program_report.h"
+#include "app/process/proof_limits.h"
 #include "app/process/tooth_copies.h"
 #include "postproc/controls/of_machine.h"
 
@@ -22,18 +23,36 @@ constexpr double kCopyShare = 0.25;
 double copy_tolerance(const job::Job& job) { return kCopyShare * job.verify.gouge_tolerance_mm; }
 
 /// The text as moves of the axes: of teeth that stand one by one those of the first ones.
-Result<ProgramProof> read_program(const ProgramText& program, const GearCheck& gear, app::StageClock& clock) {
+Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& asked, const GearCheck& gear,
+                                  app::StageClock& clock) {
   const job::Job& job = program.job;
   auto control = controls::control_of(program.machine, *job.setup, job.tools);
   if (!control) return control.error();
   ProgramProof out;
   out.control = std::move(*control);
+  const readback::AskedConditions conditions = asked_conditions(job, asked.paths);
+  readback::ConditionJudge judge(program.machine, out.control, conditions);
   auto read = clock.run("read back", [&] {
     return read_back(program.text, program.file, out.control, program.machine, *job.setup,
-                     {.teeth = gear.teeth(), .keep_all = job.verify.all_teeth, .first_teeth = true});
+                     {.teeth = gear.teeth(),
+                      .keep_all = job.verify.all_teeth,
+                      .first_teeth = true,
+                      .watch = [&judge](const readback::ExecutedMove& m) { judge.add(m); }});
   });
   if (!read) return read.error();
   out.read = std::move(read.value());
+  out.conditions = judge.finish();
+  out.reasons = out.conditions.reasons;
+  out.warnings = out.conditions.warnings;
+  out.hash = readback::hash_of_program(program.text);
+  if (out.hash && !out.hash->fits()) {
+    const bool own = !asked.paths.empty();
+    const std::string what = out.hash->end_line == 0 ? "there is none at the end: part of the program is missing"
+                             : out.hash->ends_agree  ? "the blocks were edited after they were proven"
+                                                     : "the one at the end is another: two programs were put together";
+    (own ? out.reasons : out.warnings)
+        .push_back(fmt::format("line {}: HASH does not fit the text, {}", out.hash->line, what));
+  }
   return out;
 }
 
@@ -296,7 +315,7 @@ void with_all_motions(ProgramProof& program,
 
 Result<ProgramProof> prove_program(const ProgramText& program, const AskedPaths& asked, GearCheck& gear,
                                    app::StageClock& clock) {
-  auto read = read_program(program, gear, clock);
+  auto read = read_program(program, asked, gear, clock);
   if (!read) return read.error();
   ProgramProof proof = std::move(read.value());
   std::vector<std::string> rapids;

@@ -19,6 +19,8 @@
 #include "cam/proof/like_motion.h"
 #include "cam/proof/verification.h"
 #include "machines/machine.h"
+#include "postproc/readback/conditions.h"
+#include "postproc/readback/program_hash.h"
 #include "postproc/readback/reader.h"
 
 namespace toothpath::process {
@@ -62,7 +64,10 @@ struct ProgramProof {
   Stated stated;                                     ///< of all that is to be proven
   std::optional<readback::ClComparison> comparison;  ///< only where there is a path to compare with
   double path_tolerance_mm = 0;                      ///< of that comparison
+  readback::ConditionsFound conditions;              ///< feeds, speeds, tools, coolant
+  std::optional<readback::ProgramHash> hash;         ///< none: the text has no such line
   std::vector<std::string> reasons;                  ///< why the program is not proven; empty: it is
+  std::vector<std::string> warnings;                 ///< what may be a choice
 
   proof::GougeResult gouge;
   std::vector<proof::ExcessResult> excess;         ///< one an operation
@@ -98,9 +103,10 @@ class GearCheck {
 void with_all_motions(ProgramProof& program, const std::function<void(const std::vector<path::ToolMotion>& motions,
                                                                       std::span<const proof::LikeMotion> likes)>& work);
 
-/// The one proof of a program. Stages "read back", "compare the teeth" (only where teeth are written out), those of the
-/// gear, "compare with the path". Errors: what the reader refuses, located in the file. A program that is read but not
-/// safe is no error: see `reasons`.
+/// The one proof of a program: feeds, speeds, tools and coolant are judged by what the job asks (proof_limits.h), a
+/// line HASH that does not fit is a reason where the text is our own, a warning else. Stages "read back", "compare the
+/// teeth" (only where teeth are written out), those of the gear, "compare with the path". Errors: what the reader
+/// refuses, located in the file. A program that is read but not safe is no error: see `reasons`.
 [[nodiscard]] Result<ProgramProof> prove_program(const ProgramText& program, const AskedPaths& asked, GearCheck& gear,
                                                  app::StageClock& clock);
 

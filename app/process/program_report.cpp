@@ -113,6 +113,9 @@ void note_proof(report::RunReport& report, const ProgramProof& proof) {
   report.findings = proof.findings;
   if (!proof.directions.empty()) report.directions = proof.directions;
   report.reasons = proof.reasons;
+  report.warnings.insert(report.warnings.end(), proof.warnings.begin(), proof.warnings.end());
+  report.conditions = proof.conditions;
+  report.hash = !proof.hash ? "none" : proof.hash->fits() ? "fits" : "does not fit";
 }
 
 std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& program,

@@ -27,7 +27,7 @@ namespace toothpath::process {
 void note_axis_program(report::RunReport& report, const job::Job& job, const machines::Machine& machine,
                        std::span<const path::ClPath* const> paths, const joints::AxisProgram& program);
 
-/// What the proof found, and its reasons.
+/// What the proof found, its reasons and its warnings.
 void note_proof(report::RunReport& report, const ProgramProof& proof);
 
 /// The paths that the program follows: those given, or where poles were handled those that were made of them.

@@ -49,6 +49,25 @@ proof::ProofLimits proof_limits(const job::Job& job, double proof_mm) {
   return limits;
 }
 
+readback::AskedConditions asked_conditions(const job::Job& job, std::span<const path::ClPath* const> paths) {
+  readback::AskedConditions asked;
+  for (const path::MillingOperation& o : job.operations) {
+    const double raise = o.chip_load_mm > 0 && !o.finishes() ? path::MillingOperation::kMostRaise : 1;
+    const auto tool = static_cast<std::size_t>(o.tool);
+    asked.operations.push_back(
+        {tool < job.tools.size() ? job.tools[tool].number : 0, o.speed_rpm, raise * o.feed_mm_min});
+  }
+  for (const path::ClPath* path : paths) {
+    const auto n = static_cast<std::size_t>(path->operation);
+    if (path->operation < 0 || n >= asked.operations.size()) continue;
+    for (const path::ClRecord& r : path->records)
+      if (r.kind == path::MoveKind::feed)
+        asked.operations[n].feed_mm_min = std::max(asked.operations[n].feed_mm_min, r.feed_mm_min);
+  }
+  if (job.positions.contains("coolant.mode")) asked.coolant = job.coolant;
+  return asked;
+}
+
 double word_rounding(const machines::Machine& machine, double radius_mm) {
   const joints::WordFormat format = format_of(machine);
   return 0.5 * (std::pow(10.0, -format.linear_decimals) + radians(std::pow(10.0, -format.rotary_decimals)) * radius_mm);

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 
 #include "app/job/job.h"
 #include "cam/proof/limits.h"
 #include "machines/machine.h"
+#include "postproc/readback/conditions.h"
 
 namespace toothpath::process {
 
@@ -17,6 +19,11 @@ inline constexpr double kFingerMargin = 1.5e-3;
 /// @param proof_mm how far a proven bound may lie above what was measured; no more than a tenth of the gouge tolerance
 /// is taken
 [[nodiscard]] proof::ProofLimits proof_limits(const job::Job& job, double proof_mm = proof::ProofLimits{}.proof_mm);
+
+/// Tool, speed, feed and coolant that the job asks of every operation. Feed of the tip: that of the job, with what a
+/// chip load may raise it by; where the path is known, its own if that is more.
+[[nodiscard]] readback::AskedConditions asked_conditions(const job::Job& job,
+                                                         std::span<const path::ClPath* const> paths = {});
 
 /// What rounding the words of a machine's programs may cost at this radius about the gear axis, mm.
 [[nodiscard]] double word_rounding(const machines::Machine& machine, double radius_mm);

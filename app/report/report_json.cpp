@@ -76,6 +76,30 @@ void add_findings(Json& json, const RunReport& r) {
     }
 }
 
+Json value_at(const readback::ValueAt& v) { return {{"value", v.value}, {"line", v.line}}; }
+
+/// Feeds and speeds in mm/min, deg/min and 1/min.
+void add_conditions(Json& json, const RunReport& r) {
+  if (!r.conditions) return;
+  Json all = {{"hash", r.hash}, {"operations", Json::array()}, {"axis_speed", Json::object()}};
+  for (const auto& [operation, c] : r.conditions->operations) {
+    Json entry = {{"op", operation}, {"tool", c.tool}};
+    if (c.cut_mm_min.line > 0) entry["cut_feed"] = value_at(c.cut_mm_min);
+    if (c.any_mm_min.line > 0) entry["feed"] = value_at(c.any_mm_min);
+    if (c.least_rpm.line > 0) entry["least_speed"] = value_at(c.least_rpm);
+    if (c.greatest_rpm.line > 0) entry["greatest_speed"] = value_at(c.greatest_rpm);
+    entry["coolant"] = Json::array();
+    for (const machines::Coolant coolant : machines::kCoolants)
+      if (c.has(coolant)) entry["coolant"].push_back(to_string(coolant));
+    all["operations"].push_back(std::move(entry));
+  }
+  for (std::size_t a = 0; a < r.axes.size() && a < r.conditions->axis_speed.size(); ++a)
+    if (const readback::ValueAt& v = r.conditions->axis_speed[a]; v.line > 0)
+      all["axis_speed"][std::string(1, r.axes[a].letter)] = value_at(v);
+  if (r.conditions->shortest_ms.line > 0) all["shortest_block_ms"] = value_at(r.conditions->shortest_ms);
+  json["conditions"] = std::move(all);
+}
+
 /// Of one tooth space.
 void add_passes(Json& json, const RunReport& r) {
   for (const PassReport& p : r.passes) {
@@ -296,6 +320,7 @@ std::string report_json(const RunReport& r) {
   add_engagement(json, r);
   add_directions(json, r);
   add_findings(json, r);
+  add_conditions(json, r);
   add_passes(json, r);
   if (proves) {
     Json ledger = Json::object();

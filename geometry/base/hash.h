@@ -31,8 +31,8 @@ class Sha256 {
 };
 
 /// FNV-1a, 64 bits: the line HASH of NC programs, tables in memory.
-[[nodiscard]] constexpr std::uint64_t fnv1a(std::string_view bytes) {
-  std::uint64_t h = 14695981039346656037ULL;
+/// @param h of what comes before, where the bytes come in pieces
+[[nodiscard]] constexpr std::uint64_t fnv1a(std::string_view bytes, std::uint64_t h = 14695981039346656037ULL) {
   for (const char c : bytes) h = (h ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
   return h;
 }

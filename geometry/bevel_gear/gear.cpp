@@ -94,6 +94,7 @@ class BevelGearBuilder {
     if (!refusals_.empty()) return std::move(refusals_);
     regularity();
     if (!refusals_.empty()) return std::move(refusals_);
+    top_land();
     return std::move(gear_);
   }
 
@@ -140,6 +141,21 @@ class BevelGearBuilder {
     cutter_ = make_finger_profile<double>(p.pressure_angle_rad, g.kappa_v(), p.dedendum_mm, c.module_mm,
                                           c.tip_radius_mm, c.rack_depth_mm, c.profile_height_mm);
     check_bevel_cutter(g, cutter_, g.limits_, refusals_, g.warnings_);
+  }
+
+  /// What the walls leave of a tooth's tip at the small end; the equivalent gear, which refused pointed teeth ahead of
+  /// them, leaves more.
+  void top_land() {
+    auto& g = gear_;
+    const BevelHalf& inner = g.halves_.front();
+    const double h = g.parameters_.addendum_mm;
+    const auto L = bevel_inverse(inner.wall(1), g.R_i_, h), U = bevel_inverse(inner.wall(-1), g.R_i_, h);
+    if (L && U) {
+      const double tooth = g.pitch() - std::remainder(U->azimuth - L->azimuth, 2 * kPi);
+      const double radius = g.R_i_ * g.sin_delta_ + h * g.cos_delta_;
+      g.limits_.top_land_mm = radius * tooth * std::sqrt(g.R_i_ / g.R_0_);
+    }
+    warn_of_thin_tips(g.limits_, g.warnings_);
   }
 
   void halves() {

@@ -17,7 +17,7 @@ namespace toothpath::bevel_gear {
 
 /// Numbers that the report and limits.json show; mm and rad.
 struct BevelLimits {
-  double top_land_mm = 0;             ///< at R_i, normal to the tooth, backlash taken off
+  double top_land_mm = 0;             ///< at R_i, normal to the tooth, backlash taken off: of the walls as they are cut
   double space_width_mm = 0;          ///< at R_i, normal, pitch cone
   double module_at_small_end_mm = 0;  ///< m_n(R_i)
   double module_limit_mm = 0;         ///< largest m_nj: 0.99 m_n(R_i)

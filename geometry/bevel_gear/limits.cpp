@@ -156,25 +156,20 @@ void check_form(const BevelGear& g, const FingerProfile<double>& c, const BevelL
                     d.rack_depth_mm, -c.x_C));
 }
 
-void check_top_land(const BevelGear& g, const BevelLimits& lim, std::vector<BevelRefusal>& list,
-                    std::vector<std::string>& warnings) {
+void check_top_land(const BevelGear& g, const BevelLimits& lim, std::vector<BevelRefusal>& list) {
   const auto& p = g.parameters();
   const double land = lim.top_land_mm;
-  if (land < 0) {
-    // The land shrinks by (r_v + h_a)/r_v * R cos(beta)/(2 R_e) per mm of backlash.
-    const double per_mm = (1 + g.kappa_v() * p.addendum_mm) * g.R_i() * std::sqrt(g.R_i() / g.R_0()) / (2 * g.R_e());
-    const double limit = p.backlash_mm + land / per_mm;
-    if (limit > 0)
-      refuse(list, "backlash", "backlash = {:.4f} eats the top land at the small end ({:.4f}); it must be below {:.4f}",
-             p.backlash_mm, land, limit);
-    else
-      refuse(list, "addendum",
-             "addendum = {:.4f}: the tooth is pointed at the small end (top land {:.4f}, must be positive)",
-             p.addendum_mm, land);
-  } else if (land < 0.2 * lim.module_at_small_end_mm) {
-    warnings.push_back(fmt::format("top land at the small end is {:.4f} mm, below 0.2 of the normal module {:.4f}",
-                                   land, lim.module_at_small_end_mm));
-  }
+  if (land >= 0) return;
+  // The land shrinks by (r_v + h_a)/r_v * R cos(beta)/(2 R_e) per mm of backlash.
+  const double per_mm = (1 + g.kappa_v() * p.addendum_mm) * g.R_i() * std::sqrt(g.R_i() / g.R_0()) / (2 * g.R_e());
+  const double limit = p.backlash_mm + land / per_mm;
+  if (limit > 0)
+    refuse(list, "backlash", "backlash = {:.4f} eats the top land at the small end ({:.4f}); it must be below {:.4f}",
+           p.backlash_mm, land, limit);
+  else
+    refuse(list, "addendum",
+           "addendum = {:.4f}: the tooth is pointed at the small end (top land {:.4f}, must be positive)",
+           p.addendum_mm, land);
 }
 
 }  // namespace
@@ -194,7 +189,13 @@ void check_bevel_cutter(const BevelGear& g, const FingerProfile<double>& c, Beve
   if (!tip_is_left(g, lim, list)) return;
   check_module(g, lim, list);
   check_form(g, c, lim, list, warnings);
-  check_top_land(g, lim, list, warnings);
+  check_top_land(g, lim, list);
+}
+
+void warn_of_thin_tips(const BevelLimits& lim, std::vector<std::string>& warnings) {
+  if (lim.top_land_mm < 0.2 * lim.module_at_small_end_mm)
+    warnings.push_back(fmt::format("top land at the small end is {:.4f} mm, below 0.2 of the normal module {:.4f}",
+                                   lim.top_land_mm, lim.module_at_small_end_mm));
 }
 
 void check_bevel_cusp(const BevelGear& g, std::vector<BevelRefusal>& list, std::vector<std::string>& warnings) {

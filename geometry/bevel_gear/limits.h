@@ -19,13 +19,17 @@ void check_bevel_cutter(const BevelGear& gear, const FingerProfile<double>& cutt
 /// What the early end before the cusp of an equidistant costs on the flank.
 void check_bevel_cusp(const BevelGear& gear, std::vector<BevelRefusal>& refusals, std::vector<std::string>& warnings);
 
+/// Remark where the tips of the teeth are thin.
+void warn_of_thin_tips(const BevelLimits& limits, std::vector<std::string>& warnings);
+
 /// Largest tip radius of a profile with this straight: not pointed and the arc below C, mm.
 [[nodiscard]] double largest_tip_radius(const FingerProfile<double>& cutter);
 
 /// Face width at which m_n(R_i) falls to `module` [mm].
 [[nodiscard]] double face_width_for_module(const BevelGear& gear, double module);
 
-/// Normal top land at cone distance R, backlash taken off, mm; negative: pointed below the tip.
+/// Normal top land of the equivalent gear at cone distance R, backlash taken off, mm; negative: pointed below the tip.
+/// The walls that a mill cuts leave less: BevelLimits::top_land_mm.
 [[nodiscard]] double bevel_top_land(const BevelGear& gear, double R);
 
 }  // namespace toothpath::bevel_gear

@@ -220,8 +220,11 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
   c.smoothing_off = machine.post.smoothing_off;
   c.smoothing_mm = machine.post.smoothing_tolerance_mm.value_or(0);
   c.smoothing_axis_rad = machine.post.smoothing_axis_tolerance_rad;
-  for (const auto& [coolant, words] : machine.post.coolant)
+  c.coolants = control->words.coolant;
+  for (const auto& [coolant, words] : machine.post.coolant) {
+    c.coolants[coolant] = words;
     c.coolant_words.insert(c.coolant_words.end(), {words.on, words.off});
+  }
   c.letters = {'X', 'Y', 'Z', 0, 0};
   for (std::size_t i = 0; i < 3; ++i) c.rapid_speed[i] = machine.chain.linear[i].max_speed;
   for (std::size_t k = 0; k < machine.chain.rotary_count(); ++k) {

@@ -87,6 +87,7 @@ NcExecution::Problem NcExecution::set_feed(double f) {
 NcExecution::Problem NcExecution::set_speed(double s) {
   if (!(s > 0)) return "S must be above 0";
   spindle_set_ = true;
+  speed_ = s;
   return std::nullopt;
 }
 
@@ -126,7 +127,16 @@ NcExecution::Problem NcExecution::set_length(int tool) {
   const auto found = control_.tool_length_mm.find(tool);
   if (found == control_.tool_length_mm.end()) return fmt::format("tool length {} is not in the tool list", tool);
   length_ = found->second;
+  length_of_ = tool;
   return std::nullopt;
+}
+
+void NcExecution::switch_coolant(std::string_view word) {
+  for (const auto& [coolant, words] : control_.coolants) {
+    const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(coolant));
+    if (words.on == word) coolants_ = static_cast<std::uint8_t>(coolants_ | bit);
+    else if (words.off == word) coolants_ = static_cast<std::uint8_t>(coolants_ & ~bit);
+  }
 }
 
 bool NcExecution::site_smoothing(std::string_view line) {
@@ -310,6 +320,8 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
   e.operation = static_cast<std::int16_t>(operation_);
   e.tool = static_cast<std::int16_t>(tool_);
   e.rapid = m.rapid;
+  e.speed_rpm = spindle_ ? static_cast<float>(speed_) : 0;
+  e.coolants = coolants_;
   e.corners = path_mode_;
   e.tolerance_mm = static_cast<float>(path_tolerance_mm_);
   if (!m.rapid && e.known)
@@ -368,6 +380,8 @@ NcExecution::Problem NcExecution::feed_minutes(const Move& m, const std::array<d
                                                double& minutes) const {
   if (!spindle_ && !control_.dry_run) return "G1 while the spindle stands";
   if (tool_ < 0) return "G1 without a tool";
+  if (length_ && length_of_ != tool_)
+    return fmt::format("G1 with the length of tool {} while tool {} is in the spindle", length_of_, tool_);
   if (feed_mode_ == Feed::inverse_time && !m.own_feed) return "G1 in G93 without F";
   if (m.machine_frame) return "machine coordinates with G1";
   double linear = 0, rotary = 0;

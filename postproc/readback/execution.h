@@ -60,6 +60,8 @@ class NcExecution {
   Problem change_tool();
   Problem spindle_on();
   void spindle_off() { spindle_ = false; }
+  /// A word that switches a coolant on or off; one that belongs to none changes nothing.
+  void switch_coolant(std::string_view word);
   Problem select_offset(const std::string& name);
   Problem set_length(int tool);  ///< tool length compensation with the length of this tool
   void drop_length() { length_.reset(); }
@@ -131,6 +133,9 @@ class NcExecution {
   std::optional<double> corner_way_, blend_axis_rad_;
   std::optional<std::array<double, 5>> path_weights_;
   bool spindle_ = false, spindle_set_ = false, retracted_ = false;
+  double speed_ = 0;    // S, 1/min
+  int length_of_ = -1;  // the tool whose length counts
+  std::uint8_t coolants_ = 0;
   bool unit_ = false, absolute_ = false;
   std::size_t steps_ = 0, idle_ = 0;
 };

@@ -283,7 +283,7 @@ class Interpreter {
         return flow_.call_program(p);
       }
       case 99: return flow_.return_from_program(r.column);
-      default: break;  // coolants
+      default: execution_.switch_coolant(fmt::format("M{}", m)); break;
     }
     return std::nullopt;
   }

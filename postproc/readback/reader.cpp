@@ -250,7 +250,7 @@ class ReadBackRun {
   }
 
   Result<ReadBack> run(const joints::Setup& setup, const ReadBackOptions& options) {
-    if (auto s = count(); !s) return s.error();
+    if (auto s = count(options.watch); !s) return s.error();
     if (auto s = one_tooth_fits(options); !s) return s.error();
     CopyCheck check(counts_, control_, setup, options.teeth, index_sign(machine_, setup));
     if (check.open())
@@ -279,7 +279,7 @@ class ReadBackRun {
 
  private:
   /// First time: times, reach of the joints, moves of every operation, rapids that mix groups of axes.
-  Status count() {
+  Status count(const std::function<void(const ExecutedMove&)>& watch) {
     const auto reach = [this](const std::array<double, 5>& joints) {
       for (std::size_t a = 0; a < 5; ++a) {  // NaN (not yet known) passes neither comparison
         if (joints[a] < result_.least[a]) result_.least[a] = joints[a];
@@ -293,6 +293,7 @@ class ReadBackRun {
     });
     Status status = execute_nc(text_, file_, control_, [&](const ExecutedMove& m) {
       ++result_.executed;
+      if (watch) watch(m);
       timer.add(m);
       result_.minutes += m.minutes;
       if (!m.rapid) result_.feed_minutes += m.minutes;

@@ -57,9 +57,10 @@ struct NcControl {
   /// Lines of the machine file that switch the control's own smoothing on and off, and what the shop states for it.
   std::vector<std::string> smoothing_on, smoothing_off;
   double smoothing_mm = 0;
-  std::optional<double> smoothing_axis_rad;         ///< not stated: no cut may turn a rotary while it is on
-  std::vector<std::string> coolant_words;           ///< M words of the builder that switch coolants, on and off
-  timing::Corners corners = timing::Corners::jump;  ///< how it joins feed blocks
+  std::optional<double> smoothing_axis_rad;  ///< not stated: no cut may turn a rotary while it is on
+  std::vector<std::string> coolant_words;    ///< M words of the builder that switch coolants, on and off
+  std::map<machines::Coolant, machines::CoolantWords> coolants;  ///< all that can be switched, and by which words
+  timing::Corners corners = timing::Corners::jump;               ///< how it joins feed blocks
   bool dry_run = false;  ///< feed moves with a standing spindle are meant: a program that runs in air
   /// Executed blocks before the program is refused as endless; `execute_nc` allows a text of few lines fewer: 8192 for
   /// each line, but 2 000 000 at least.
@@ -93,6 +94,8 @@ struct ExecutedMove {
   float tolerance_mm = 0;
   bool machine = false;            ///< G53, or the block that switches tool length compensation on
   bool known = false;              ///< all joints were known before and after
+  std::uint8_t coolants = 0;       ///< bit machines::Coolant: it is on
+  float speed_rpm = 0;             ///< of the spindle; 0: it stands
   std::uint64_t vector_print = 0;  ///< of the words of a tool vector, FNV-1a over their bytes; 0: rotary words
 };
 
@@ -160,6 +163,7 @@ struct ReadBackOptions {
   int teeth = 1;
   bool keep_all = false;     ///< keep every tooth although they are copies
   bool first_teeth = false;  ///< of teeth that are no copies keep the first ones alone, where walk_teeth() can find all
+  std::function<void(const ExecutedMove&)> watch = {};  ///< sees every executed move once, in order; may be empty
   /// A program that needs more moves is refused by their number, before any is kept.
   std::size_t max_kept = kMostKeptBytes / sizeof(ExecutedMove);
 };

@@ -36,7 +36,7 @@ class SelfTestBuilder {
   }
 
   joints::AxisProgram build() && {
-    program_.turns_in_cuts = true;
+    program_.turns_in_cuts = !test_.lifts;
     for (std::size_t k = 0; k < machine_.chain.rotary_count(); ++k)
       program_.tip_reach_mm = std::max(
           program_.tip_reach_mm, (machine_.chain.rotary(k).point_mm - test_.point_mm).norm() + test_.tool_length_mm);
@@ -53,7 +53,8 @@ class SelfTestBuilder {
       part.remark = fmt::format("STATION {} OF {}: {}", s + 1, test_.stations.size(), test_.stations[s].remark);
       part.pause = true;
       if (s == 0) approach(part);
-      for (; next < test_.moves.size() && s > 0; ++next) {
+      if (s > 0 && test_.lifts) come_down(part, test_.stations[s - 1].rotary_rad, test_.stations[s].rotary_rad);
+      for (; next < test_.moves.size() && s > 0 && !test_.lifts; ++next) {
         turn(part, test_.moves[next].joints);
         if (test_.moves[next].station >= 0) {
           ++next;
@@ -103,6 +104,29 @@ class SelfTestBuilder {
     if (tcp()) part.blocks.push_back(at(joints::BlockKind::tcp_on, test_.approach_mm, zero, true));
     straight(part, 0, test_.approach_mm, zero);
   }
+  /// The point, Z higher by `up`, joint words.
+  joints::AxisBlock over(joints::BlockKind kind, double up, const std::array<double, 2>& rotaries) const {
+    joints::AxisBlock b = at(kind, 0, rotaries, false);
+    words_.set_joints(b, words_.joints(b).linear_mm + Vec3(0, 0, up), rotaries);
+    return b;
+  }
+  /// Up from one station, Z to its top, the rotaries, down upon the next.
+  void come_down(joints::ToothBlocks& part, const std::array<double, 2>& from, const std::array<double, 2>& to) const {
+    const auto push = [&](joints::AxisBlock b) {
+      b.minutes = test_.approach_mm / kFeed;
+      b.per_minute = kFeed;
+      b.forced = true;
+      part.blocks.push_back(b);
+    };
+    push(over(joints::BlockKind::feed, test_.approach_mm, from));
+    joints::AxisBlock top = over(joints::BlockKind::rapid_z, 0, from);
+    top.words[2] = words_.joint_word(program_.retract_z_mm, 2);
+    push(top);
+    for (const joints::BlockKind kind :
+         {joints::BlockKind::rapid_rotary, joints::BlockKind::rapid_xy, joints::BlockKind::rapid_z})
+      push(over(kind, test_.approach_mm, to));
+    push(over(joints::BlockKind::feed, 0, to));
+  }
   /// To the next pose; with TCP the control itself keeps the tip on the point.
   void turn(joints::ToothBlocks& part, const machines::Joints& to) {
     const auto before = words_.rounded(at_);
@@ -141,9 +165,18 @@ class SelfTestWatch {
     const machines::Joints now = joints_of(m);
     const auto outside = machine_.chain.violations(now, machine_.limit_margin);
     if (!outside.empty()) fault(m, outside.front().text());
-    if (on_point_ && next_ < test_.stations.size()) stay(m, now);
-    if (!on_point_ && !m.rapid && distance(now) <= kOnPoint) on_point_ = true;
-    if (on_point_ && next_ < test_.stations.size() && at_station(now, test_.stations[next_])) ++next_;
+    if (test_.lifts) {
+      on_point_ = !m.rapid && distance(now) <= kOnPoint;
+      if (on_point_) proof_.worst_mm = std::max(proof_.worst_mm, distance(now));
+      ++proof_.moves;
+    } else {
+      if (on_point_ && next_ < test_.stations.size()) stay(m, now);
+      if (!on_point_ && !m.rapid && distance(now) <= kOnPoint) on_point_ = true;
+    }
+    if (on_point_ && next_ < test_.stations.size() && at_station(now, test_.stations[next_])) {
+      proof_.readings_mm.push_back(tip_of(now));
+      ++next_;
+    }
     before_ = now;
   }
 
@@ -152,7 +185,9 @@ class SelfTestWatch {
     if (next_ < test_.stations.size())
       return fail_as(DiagnosticKind::verification, "station {} of {} ({}) is not met", next_ + 1, test_.stations.size(),
                      test_.stations[next_].remark);
-    return proof_;
+    SelfTestProof proof = proof_;
+    for (Vec3& reading : proof.readings_mm) reading -= proof_.readings_mm.front();
+    return proof;
   }
 
  private:
@@ -164,9 +199,10 @@ class SelfTestWatch {
     for (std::size_t k = 0; k < 2; ++k) j.rotary_rad[k] = radians(m.joints[3 + k]);
     return j;
   }
-  [[nodiscard]] double distance(const machines::Joints& j) const {
-    return (machine_.chain.forward(j, test_.tool_length_mm).tip_mm - test_.point_mm).norm();
+  [[nodiscard]] Vec3 tip_of(const machines::Joints& j) const {
+    return machine_.chain.forward(j, test_.tool_length_mm).tip_mm;
   }
+  [[nodiscard]] double distance(const machines::Joints& j) const { return (tip_of(j) - test_.point_mm).norm(); }
   void fault(const readback::ExecutedMove& m, std::string what) {
     if (error_) return;
     error_ = fail_as(DiagnosticKind::verification, "{}", what);

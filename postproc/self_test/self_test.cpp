@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "postproc/choice/solution.h"
+#include "postproc/controls/registry.h"
 
 namespace toothpath::self_test {
 namespace {
@@ -49,7 +50,10 @@ std::vector<SelfTestStation> stations_for(const machines::Machine& machine, doub
   Rotaries zero{};
   for (std::size_t k = 0; k < chain.rotary_count(); ++k) zero[k] = chain.rotary(k).zero_rad;
   std::vector<SelfTestStation> stations;
-  const auto add = [&](const Rotaries& rotaries) { stations.push_back({rotaries, command_text(chain, rotaries)}); };
+  const auto add = [&](const Rotaries& rotaries) {
+    if (stations.empty() || stations.back().rotary_rad != rotaries)
+      stations.push_back({rotaries, command_text(chain, rotaries)});
+  };
   add(zero);
   for (std::size_t k = 0; k < chain.rotary_count(); ++k) {
     for (const double command : commands_of(chain.rotary(k), tilt, margin)) {
@@ -128,11 +132,20 @@ std::optional<std::string> first_violation(const machines::Machine& machine, con
     const auto violations = machine.chain.violations(move.joints, machine.limit_margin);
     if (!violations.empty()) return violations.front().text();
   }
-  machines::Joints above = test.moves.front().joints;
-  above.linear_mm.z() += test.approach_mm;
-  const auto violations = machine.chain.violations(above, machine.limit_margin);
-  if (!violations.empty()) return violations.front().text();
+  for (const auto& move : test.moves) {
+    if (move.station != 0 && !(test.lifts && move.station > 0)) continue;
+    machines::Joints above = move.joints;
+    above.linear_mm.z() += test.approach_mm;
+    const auto violations = machine.chain.violations(above, machine.limit_margin);
+    if (!violations.empty()) return violations.front().text();
+  }
   return std::nullopt;
+}
+
+/// Nobody says how fast a block is that turns and moves.
+bool lifts_between_stations(const machines::Machine& machine) {
+  const controls::Control* control = controls::find(machine.dialect);
+  return machine.tcp == machines::TcpMode::none && control != nullptr && !control->words.inverse_time;
 }
 
 SelfTest moved_through(const machines::Machine& machine, const Vec3& point, double tilt, double tool_length,
@@ -141,6 +154,7 @@ SelfTest moved_through(const machines::Machine& machine, const Vec3& point, doub
   test.point_mm = point;
   test.tool_length_mm = tool_length;
   test.approach_mm = 10;
+  test.lifts = lifts_between_stations(machine);
   test.stations = stations_for(machine, tilt);
   test.tilt_rad = tilt;
   const double reach = swing(machine.chain, point, tool_length);
@@ -166,6 +180,11 @@ SelfTest moved_through(const machines::Machine& machine, const Vec3& point, doub
 }
 
 }  // namespace
+
+machines::Machine without_tcp(machines::Machine machine) {
+  machine.tcp = machines::TcpMode::none;
+  return machine;
+}
 
 Result<SelfTest> plan_self_test(const machines::Machine& machine, const SelfTestOptions& options) {
   if (options.tool_length_mm && !(*options.tool_length_mm > 0))

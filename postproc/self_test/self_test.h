@@ -1,9 +1,12 @@
 // A program that a machinist runs in air before the first cut: the tip of a test bar stands on one point of the table
-// while the rotary axes go through their range. A wrong sign, pivot, tool length or TCP switch moves the tip off that
-// point.
+// while the rotary axes go through their range.
 //
-// Poses only, free of any dialect. Spec of the idea: a dial indicator on the table (or a ball on a magnetic stand) at
-// `point_mm`.
+// What it proves depends on who keeps the tip there. Without TCP the words are joints that follow from the machine
+// file: a sign, a pivot or a centre that is wrong there moves the tip off the point (dials.h says by how much). With
+// TCP the text is the point and angles, the control makes the joints from data of its own, and it is those that are
+// proven: the machine file may say what it likes. A machine with TCP runs both.
+//
+// Poses only, free of any dialect. Spec of the idea: dial indicators on the table at `point_mm`.
 #pragma once
 
 #include <array>
@@ -36,6 +39,10 @@ struct SelfTest {
     int station = -1;
   };
   std::vector<Move> moves;  ///< from the first station on
+  /// Between two stations the tip leaves the point upwards, Z goes to its top, the rotaries turn alone, and the tip
+  /// comes down again: a control without TCP that has no inverse time, where nobody says how fast a block is that turns
+  /// and moves.
+  bool lifts = false;
   double tip_bound_mm = 0;  ///< proven: between two blocks, all joints linear, the tip leaves the point by no more
   double tilt_rad = 0;      ///< largest tilt that is used
 };
@@ -48,12 +55,17 @@ struct SelfTestOptions {
 
 /// Chooses the point and the stations: each rotary axis alone (a full turn in quarters where its limits allow one, else
 /// to both sides), then the quarters of one with the other tilted. Point: off the axes so that every sign shows, on the
-/// table where there is one. Errors: no rotary axis; no point near the table from which even 5 degrees of tilt stay
-/// inside the travels: the message names axis, value and limit; a tool length that is not positive.
+/// table where there is one. `lifts` follows from the control. Errors: no rotary axis; no point near the table from
+/// which even 5 degrees of tilt stay inside the travels: the message names axis, value and limit; a tool length that is
+/// not positive.
 [[nodiscard]] Result<SelfTest> plan_self_test(const machines::Machine& machine, const SelfTestOptions& options = {});
 
+/// The same machine while its control has TCP off: its program moves the joints.
+[[nodiscard]] machines::Machine without_tcp(machines::Machine machine);
+
 /// The poses as an axis program: retract, point, every station with a stop behind it. The work offset stands at the
-/// point. With TCP the blocks turn the rotaries alone and the control is what is tested.
+/// point. With TCP the blocks turn the rotaries alone and the control is what is tested. `test`: planned for this
+/// machine, with or without TCP as it is here.
 [[nodiscard]] joints::AxisProgram self_test_program(const SelfTest& test, const machines::Machine& machine,
                                                     const text::NcDialect& dialect);
 
@@ -62,8 +74,10 @@ struct SelfTestOptions {
 
 /// What the text of a self-test does, read back through the machine's kinematics.
 struct SelfTestProof {
-  double worst_mm =
-      0;  ///< greatest distance of the tip from the point, from the first station to the last, inside the blocks too
+  double worst_mm = 0;  ///< greatest distance of the tip from the point, from the first station to the last, inside the
+                        ///< blocks too; where it lifts, at the stations
+  std::vector<Vec3>
+      readings_mm;        ///< at every station: of dials along X, Y and Z of the table, on the machine of the file
   std::size_t moves = 0;  ///< executed between them
   double minutes = 0;     ///< of the whole program, stops left out
 };

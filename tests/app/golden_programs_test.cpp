@@ -19,6 +19,8 @@
 #include "cam/finger/milling.h"
 #include "cam/plan/face_gear.h"
 #include "postproc/controls/of_machine.h"
+#include "postproc/readback/conditions.h"
+#include "postproc/readback/program_hash.h"
 #include "postproc/readback/reader.h"
 #include "postproc/shaper/control.h"
 #include "postproc/shaper/program.h"
@@ -200,6 +202,19 @@ void expect_golden(const fs::path& file, const std::string& text) {
   ADD_FAILURE() << file << " differs first in line " << n << "\n  stored: " << old_line << "\n  now:    " << new_line;
 }
 
+/// What a check of the text finds of feeds, speeds, tools and coolant, knowing nothing but the job: nothing.
+void expect_conditions_kept(const std::string& text, const readback::NcControl& control, const job::Job& job,
+                            const machines::Machine& m) {
+  const readback::AskedConditions asked = process::asked_conditions(job);
+  readback::ConditionJudge judge(m, control, asked);
+  ASSERT_TRUE(readback::execute_nc(text, "p", control, [&](const readback::ExecutedMove& move) { judge.add(move); }));
+  const readback::ConditionsFound found = judge.finish();
+  for (const auto* list : {&found.reasons, &found.warnings})
+    for (const std::string& said : *list) ADD_FAILURE() << said;
+  const auto hash = readback::hash_of_program(text);
+  EXPECT_TRUE(hash && hash->fits());
+}
+
 /// The program meets its path: records to the rounding of the words, rapids clear of the blank.
 void expect_round_trip(const std::string& text, const joints::AxisProgram& program, const Planned& planned,
                        const job::Job& job, const machines::Machine& m) {
@@ -208,6 +223,7 @@ void expect_round_trip(const std::string& text, const joints::AxisProgram& progr
   const auto back = readback::read_back(text, "p", *control, m, *job.setup, {.teeth = planned.teeth});
   ASSERT_TRUE(back) << back.error().text();
   EXPECT_EQ(back->mixed_rapid, 0);
+  expect_conditions_kept(text, *control, job, m);
   std::vector<path::ToolMotion> motions;
   for (const auto& trace : back->operations) {
     const auto part = readback::tool_motions(trace, back->copies, *control, m, *job.setup, planned.teeth, {1e-4, 1e-4});

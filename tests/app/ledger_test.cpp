@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/run.h"
+#include "app/process/ledger_sources.h"
 
 namespace toothpath {
 namespace {
@@ -57,6 +58,26 @@ INSTANTIATE_TEST_SUITE_P(Samples, Ledger,
                          testing::Values("spur_quick", "offset_milled", "dhfg_ball", "dhfg_t600s", "dhfg_paper",
                                          "short_tool", "bevel_pinion", "bevel_trunnion", "bevel_wheel", "tool_axis"),
                          [](const auto& c) { return std::string(c.param); });
+
+// Without TCP blocks leave the chord where a rotary turns; with it the control keeps the tip there, and the rotary
+// turns all the same.
+TEST(LedgerOfTheMachine, SaysWhoKeepsTheTipOnItsChord) {
+  const auto note = [](machines::TcpMode tcp, bool turns, double chord_mm) {
+    joints::AxisProgram program;
+    program.tcp = tcp;
+    program.turns_in_cuts = turns;
+    program.chord_bound_mm = chord_mm;
+    std::vector<proof::LedgerEntry> ledger;
+    process::add_machine_sources(ledger, program, {}, {}, 0);
+    return ledger.front().note;
+  };
+  using machines::TcpMode;
+  EXPECT_NE(note(TcpMode::none, true, 1e-4).find("blocks against the chords"), std::string::npos);
+  EXPECT_NE(note(TcpMode::angles, true, 0).find("keeps the tip on the chord (TCP)"), std::string::npos);
+  EXPECT_NE(note(TcpMode::vectors, true, 0).find("a rotary axis turns"), std::string::npos);
+  EXPECT_NE(note(TcpMode::angles, false, 0).find("no rotary axis turns"), std::string::npos);
+  EXPECT_NE(note(TcpMode::none, false, 0).find("no rotary axis turns"), std::string::npos);
+}
 
 }  // namespace
 }  // namespace toothpath

@@ -128,15 +128,44 @@ TEST(MachineTest, WritesAProvenProgramForEveryShippedMachine) {
     const Finished run = run_program({"machine", "test", name, "--out", dir / "t"});
     ASSERT_EQ(run.exit_code, 0) << name << run.err;
     const auto files = names_in(dir / "t");
-    ASSERT_EQ(files.size(), 2u) << name;
+    const bool tcp = shipped(name).tcp != machines::TcpMode::none;
+    ASSERT_EQ(files.size(), tcp ? 3u : 2u) << name;
+    EXPECT_TRUE(files[0].starts_with("machine_test.")) << files[0];
     EXPECT_TRUE(files[1].starts_with("machine_test.")) << files[1];
+    if (tcp) { EXPECT_TRUE(files[2].starts_with("machine_test_tcp.")) << files[2]; }
     EXPECT_NE(run.out.find("read back"), std::string::npos);
-    if (!shipped(name).assumed_keys.empty()) {
-      EXPECT_NE((file_text(dir / ("t/" + files[0])) + file_text(dir / ("t/" + files[1]))).find("ASSUMED"),
-                std::string::npos)
-          << name;
-    }
+    std::string all;
+    for (const auto& file : files) all += file_text(dir / ("t/" + file));
+    if (!shipped(name).assumed_keys.empty()) { EXPECT_NE(all.find("ASSUMED"), std::string::npos) << name; }
   }
+}
+
+// The sheet says what is proven, from which error on, and what is left to the eye.
+TEST(MachineTest, TheSheetSaysWhatIsProven) {
+  const TestDir dir;
+  const Finished run = run_program({"machine", "test", "fanuc_ac.toml", "--out", dir / "t"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NE(run.out.find("machine_test.nc: TCP off, proves the machine file"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("machine_test_tcp.nc: TCP on, proves the data of the control"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("place of A from 0.0"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("not seen: zero of C"), std::string::npos) << run.out;
+  const std::string page = file_text(dir / "t/machine_test.html");
+  for (const char* said : {"machine_test.nc proves the machine file. TCP is off", "Only the eye proves the rest",
+                           "machine_test_tcp.nc proves the data of the control, not the machine file", "dial Z mm",
+                           "place of C, from mm", "sense of A, mm"})
+    EXPECT_NE(page.find(said), std::string::npos) << said;
+  EXPECT_EQ(file_text(dir / "t/machine_test.nc").find("G43.4"), std::string::npos);
+  EXPECT_NE(file_text(dir / "t/machine_test_tcp.nc").find("G43.4"), std::string::npos);
+}
+
+// Cutter locations have no axes: the machine file is refused where it says so, before anything is touched.
+TEST(MachineTest, AptHasNothingToTest) {
+  const TestDir dir;
+  const Finished run = run_program({"machine", "test", "apt_free.toml", "--out", dir / "t"});
+  EXPECT_EQ(run.exit_code, 3) << run.out;
+  EXPECT_NE(run.err.find("apt_free.toml:6:"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("has places of the tool and no axes"), std::string::npos) << run.err;
+  EXPECT_FALSE(std::filesystem::exists(dir / "t"));
 }
 
 // A page that stands there stays until there is a new one, and the refusal says what stands there.

@@ -82,6 +82,8 @@ TEST(ShippedMachines, LargeTrunnionIsWhatItsFileSays) {
   EXPECT_EQ(m.max_cutting_feed, 10000);
   EXPECT_EQ(m.table_diameter_mm, 1200);
   EXPECT_EQ(m.min_block_ms, 1.0);
+  EXPECT_EQ(m.feed_factor, 2.0);
+  EXPECT_EQ(m.speed_factor, 1.25);
   EXPECT_EQ(m.chain.letters(), "XYZCA");
   EXPECT_EQ(m.chain.linear[2].min_mm, -900);
   EXPECT_EQ(m.chain.linear[2].max_mm, 600);

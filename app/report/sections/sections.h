@@ -9,6 +9,7 @@
 #include "app/report/run_report.h"
 #include "app/report/section.h"
 #include "cam/path/cl_path.h"
+#include "machines/machine.h"
 #include "postproc/joints/program.h"
 
 namespace toothpath::sections {
@@ -26,5 +27,8 @@ struct SectionInput {
 
 /// Meshes of stock and fixture: which, where, how far from the finished gear. Of `check`, which has no axis program.
 [[nodiscard]] report::Section scene(const report::RunReport& report);
+/// Feeds, speeds, tools and coolant as they were read, beside what the job asks. Of `check`.
+[[nodiscard]] report::Section conditions(const job::Job& job, const machines::Machine& machine,
+                                         const report::RunReport& report);
 
 }  // namespace toothpath::sections

@@ -69,9 +69,9 @@ class AptReader {
     }
     if (s.take("SPINDL/OFF")) return execution_.spindle_off(), std::nullopt;
     if (s.take("UNITS/MM")) return execution_.set_unit(), execution_.set_absolute(), std::nullopt;
-    if (s.take("MULTAX/ON") || s.take("COOLNT/ON") || s.take("COOLNT/FLOOD") || s.take("COOLNT/MIST") ||
-        s.take("COOLNT/OFF"))
-      return std::nullopt;
+    if (s.take("MULTAX/ON")) return std::nullopt;
+    for (const char* word : {"COOLNT/ON", "COOLNT/FLOOD", "COOLNT/MIST", "COOLNT/OFF"})
+      if (s.take(word)) return execution_.switch_coolant(word), std::nullopt;
     if (s.take("END")) {
       if (auto bad = placed(execution_.tcp_off())) return bad;
       return placed(execution_.end_program(false));

@@ -227,6 +227,7 @@ class Heidenhain {
       nearer_way_ = *m == 126;
     } else if (*m != 0 && *m != 8 && *m != 9 && !control_.switches_coolant(fmt::format("M{}", *m)))
       return here(column, fmt::format("M{} is not in the subset", *m));
+    execution_.switch_coolant(fmt::format("M{}", *m));
     return std::nullopt;
   }
 

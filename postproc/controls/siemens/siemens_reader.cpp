@@ -400,7 +400,7 @@ class Siemens {
         return std::nullopt;
       }
       case 30: ended_ = true; return placed(r.column, execution_.end_program(!loops_.empty()));
-      default: return std::nullopt;
+      default: execution_.switch_coolant(fmt::format("M{}", r.m)); return std::nullopt;
     }
   }
 

@@ -319,5 +319,34 @@ TEST(BevelMesh, ClosedOutwardAndOnTheWalls) {
   }
 }
 
+// The tip between the two walls of a tooth as the solid mill leaves them, against what the limits say; the equivalent
+// gear has more.
+TEST(BevelInvariants, TopLandIsThatOfTheCutTooth) {
+  for (const int teeth : {8, 12, 18, 37}) {
+    const bevel_gear::BevelGear g = gear_of(design(teeth, 40, 6, 30, 0.28));
+    const bevel_gear::FingerSolid solid(g.cutter());
+    const auto& half = g.halves().front();
+    const double h = g.parameters().addendum_mm, radius = g.R_i() * g.sin_delta() + h * g.cos_delta(),
+                 z = g.R_i() * g.cos_delta() - h * g.sin_delta();
+    double edge[2] = {0, 0};
+    for (int k = 0; k < 2; ++k) {
+      const auto& w = half.walls[k];
+      const double middle = w.trace.theta(w.trace.beta(g.R_i()));
+      double in = middle, out = middle - w.sigma * 0.5 * g.pitch();
+      for (int n = 0; n < 50; ++n) {
+        const double azimuth = 0.5 * (in + out);
+        const Vec3 place(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
+        const double gap = clearance_of_pass(place, w.trace, w.sigma, half.beta_from[k], half.beta_to[k], solid);
+        (gap <= 0 ? in : out) = azimuth;
+      }
+      edge[k] = in;
+    }
+    const double land = radius * (g.pitch() - (edge[1] - edge[0])) * std::sqrt(g.R_i() / g.R_0());
+    EXPECT_NEAR(g.limits().top_land_mm, land, 1e-6) << teeth;
+    RecordProperty("land_" + std::to_string(teeth),
+                   std::to_string(g.limits().top_land_mm) + " formula " + std::to_string(bevel_top_land(g, g.R_i())));
+  }
+}
+
 }  // namespace
 }  // namespace toothpath

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "machines/machine_file.h"
-#include "postproc/text/writer.h"
+#include "tests/postproc/self_test/dry_run_text.h"
 
 namespace toothpath {
 namespace {
@@ -74,33 +74,30 @@ TEST_P(SelfTestOf, WrongMachineIsSeen) {
   if (!m.chain.head.empty()) { EXPECT_GT(worst_reading(longer, m.chain), 0.2); }
 }
 
-/// The program's text, as `machine test` writes it.
-std::string text_of(const self_test::SelfTest& test, const machines::Machine& m) {
-  const auto dialect = controls::dialect_of(m);
-  EXPECT_TRUE(dialect) << dialect.error().message;
-  text::NcHeader header;
-  header.job_name = "self test";
-  const auto text =
-      text::write_nc(self_test::self_test_program(test, m, *dialect), self_test::in_air(*dialect), header);
-  EXPECT_TRUE(text) << text.error().message;
-  return text ? text->text : std::string();
-}
-
 TEST_P(SelfTestOf, TextIsReadBackAndNeverStartsTheSpindle) {
   const machines::Machine m = shipped(GetParam());
   const auto test = self_test::plan_self_test(m);
   ASSERT_TRUE(test) << test.error().message;
-  const std::string text = text_of(*test, m);
+  const std::string text = test::dry_run_text(*test, m);
   EXPECT_EQ(text.find("M3\n"), std::string::npos);
   EXPECT_NE(text.find("STATION 1 OF"), std::string::npos);
   const auto proof = self_test::prove_self_test(text, "t", *test, m);
   ASSERT_TRUE(proof) << proof.error().text();
   EXPECT_LE(proof->worst_mm, test->tip_bound_mm + 0.003);
   EXPECT_GE(proof->moves, test->stations.size() - 1);
-  // A machine whose second rotary turns the other way must not pass.
+}
+
+// A machine whose second rotary turns the other way must not pass, whatever its control can do with TCP.
+TEST_P(SelfTestOf, AnotherMachineFailsTheProofOfTheJoints) {
+  const machines::Machine m = self_test::without_tcp(shipped(GetParam()));
+  const auto test = self_test::plan_self_test(m);
+  ASSERT_TRUE(test) << test.error().message;
   machines::Machine wrong = m;
   (wrong.chain.head.empty() ? wrong.chain.table.back() : wrong.chain.head.back()).sign *= -1;
-  if (m.tcp == machines::TcpMode::none) { EXPECT_FALSE(self_test::prove_self_test(text, "t", *test, wrong)); }
+  EXPECT_TRUE(self_test::prove_self_test(test::dry_run_text(*test, m), "t", *test, m));
+  const auto proof = self_test::prove_self_test(test::dry_run_text(*test, m), "t", *test, wrong);
+  ASSERT_FALSE(proof);
+  EXPECT_EQ(proof.error().kind, DiagnosticKind::verification);
 }
 
 TEST(SelfTest, RefusesWhatItCannotTest) {

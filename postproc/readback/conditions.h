@@ -1,0 +1,117 @@
+// Feed, speed, tool and coolant of an executed program, against what its job asks and its machine can. What is not kept
+// is a reason (the program is not proven) or, where it may be a choice, a warning; both name the line.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "postproc/readback/reader.h"
+
+namespace toothpath::readback {
+
+/// What a job asks of an operation.
+struct AskedCut {
+  int tool = 0;  ///< T
+  double speed_rpm = 0;
+  double feed_mm_min = 0;  ///< greatest of the tip that the job means
+};
+
+/// What a job asks of a program.
+struct AskedConditions {
+  std::vector<AskedCut> operations;          ///< by their number
+  std::optional<machines::Coolant> coolant;  ///< stated by the job; nothing: whatever the program does
+};
+
+/// A greatest or least value and the line where it stands.
+struct ValueAt {
+  double value = 0;
+  int line = 0;  ///< 0: there is none
+};
+
+/// What an operation was seen to do.
+struct ConditionsOfOperation {
+  int tool = 0;        ///< T of its first cut
+  ValueAt cut_mm_min;  ///< quickest of the tip where it may cut
+  ValueAt any_mm_min;  ///< of all its feeds, in the air too
+  ValueAt least_rpm, greatest_rpm;
+  std::uint8_t coolants = 0;  ///< bit machines::Coolant: on in all its feeds
+  [[nodiscard]] bool has(machines::Coolant coolant) const {
+    return ((coolants >> static_cast<unsigned>(coolant)) & 1U) != 0;
+  }
+};
+
+struct ConditionsFound {
+  std::map<int, ConditionsOfOperation> operations;  ///< -1: feeds that belong to none
+  std::array<ValueAt, 5> axis_speed;                ///< greatest in feeds, mm/min and deg/min
+  ValueAt shortest_ms;                              ///< of feed blocks
+  std::vector<std::string> reasons, warnings;       ///< in the order of the kinds below; each kind once an operation
+};
+
+/// Takes executed moves in order.
+///
+/// Where a feed may cut: everywhere but on the way that a link takes. Such a way begins with a rapid or along the tool
+/// axis out of the work, and ends along the axis into it; its last move down is a cut again. So a quick block in the
+/// middle of a cut is one whatever F its neighbours have.
+///
+/// Reasons: a cut more than `feed_factor` times as fast as asked, or a last way down; a feed above
+/// `limits.cutting_feed`; an axis faster than its `max_speed`; S above `spindle.max_speed`, or off the job's by more
+/// than `speed_factor`; another tool than the job's; the job's coolant not on. Warnings: a cut more than 1.5 times as
+/// fast as asked (or `feed_factor`, if that is less); S off the job's; a coolant that the job has off; blocks shorter
+/// than `limits.min_block_ms`.
+class ConditionJudge {
+ public:
+  /// All must outlive it.
+  ConditionJudge(const machines::Machine& machine, const NcControl& control, const AskedConditions& asked);
+  void add(const ExecutedMove& move);
+  [[nodiscard]] ConditionsFound finish();
+
+ private:
+  /// One thing that is told once an operation: the worst place, the first line, how many.
+  struct Fault {
+    double worst = 0;
+    int line = 0;  ///< of the worst
+    std::size_t blocks = 0;
+  };
+  enum class Kind {
+    cut_feed,
+    way_down,
+    machine_feed,
+    axis_speed,
+    spindle_most,
+    spindle_off_job,
+    tool,
+    coolant,  // reasons
+    quick_cut,
+    spindle_near_job,
+    other_coolant,
+    short_block  // warnings
+  };
+  struct Step;
+
+  void feed(const ExecutedMove& m, const Step& step, ConditionsOfOperation& operation);
+  void speed_of_cut(const ExecutedMove& m, const Step& step, ConditionsOfOperation& operation);
+  void axes(const ExecutedMove& m);
+  void spindle(const ExecutedMove& m, ConditionsOfOperation& operation);
+  void coolant(const ExecutedMove& m, ConditionsOfOperation& operation);
+  [[nodiscard]] Step step_to(const ExecutedMove& m) const;
+  [[nodiscard]] const AskedCut* asked(int operation) const;
+  void note(Kind kind, int detail, const ExecutedMove& m, double value, int line = 0);
+  [[nodiscard]] std::string text(Kind kind, int operation, int detail, const Fault& fault) const;
+
+  const machines::Machine& machine_;
+  const NcControl& control_;
+  const AskedConditions& asked_;
+  double most_share_, told_share_;  ///< of the job's feed
+  ConditionsFound found_;
+  std::map<std::array<int, 3>, Fault> faults_;  ///< by kind, operation, detail (an axis, a tool, a coolant)
+  ExecutedMove before_;
+  bool any_ = false;
+  bool up_ = false;   ///< on the way of a link
+  ValueAt way_down_;  ///< the last way down was that quick
+};
+
+}  // namespace toothpath::readback
