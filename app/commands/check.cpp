@@ -13,6 +13,7 @@
 #include "app/report/sections/sections.h"
 #include "app/report/sheet/setup_sheet.h"
 #include "geometry/base/hash.h"
+#include "postproc/readback/program_hash.h"
 #include "postproc/timing/model_text.h"
 
 namespace toothpath::commands {
@@ -95,7 +96,7 @@ Status prove(Check& check) {
   report = process::report_of("check", check.job, check.machine, check.gear.process->part().warnings);
   if (auto judged = judge_scene(check); !judged) return judged;
   process::note_proof(report, *check.proof);
-  report.blocks = check.proof->read.executed;
+  report.blocks = readback::count_blocks(check.text);
   report.has_acceleration = check.machine.has_acceleration();
   report.time_model = timing::model_text(check.machine, check.proof->read.corners);
   report.feed_minutes = check.proof->read.accelerated.feed;

@@ -44,6 +44,17 @@ std::optional<std::uint64_t> hash_in(std::string_view line) {
 
 }  // namespace
 
+std::size_t count_blocks(std::string_view text) {
+  std::size_t blocks = 0;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    const std::string_view line = plain(text.substr(begin, end - begin));
+    begin = end + 1;
+    if (!line.empty() && line != "%" && !comment_of(line)) ++blocks;
+  }
+  return blocks;
+}
+
 std::optional<ProgramHash> hash_of_program(std::string_view text) {
   std::optional<ProgramHash> out;
   std::uint64_t hash = fnv1a({});

@@ -1,6 +1,7 @@
 // The line HASH of a program: does it still fit the text?
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -20,5 +21,8 @@ struct ProgramHash {
 /// or not. Counted are the lines between the comments at the top and the last such comment, without block numbers and
 /// carriage returns.
 [[nodiscard]] std::optional<ProgramHash> hash_of_program(std::string_view text);
+
+/// Lines that are neither comments nor empty nor %, as the comment HASH counts them.
+[[nodiscard]] std::size_t count_blocks(std::string_view text);
 
 }  // namespace toothpath::readback

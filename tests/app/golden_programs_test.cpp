@@ -213,6 +213,8 @@ void expect_conditions_kept(const std::string& text, const readback::NcControl& 
     for (const std::string& said : *list) ADD_FAILURE() << said;
   const auto hash = readback::hash_of_program(text);
   EXPECT_TRUE(hash && hash->fits());
+  EXPECT_NE(text.find(fmt::format(" BLOCKS {}", readback::count_blocks(text))), std::string::npos)
+      << readback::count_blocks(text);
 }
 
 /// The program meets its path: records to the rounding of the words, rapids clear of the blank.

@@ -122,21 +122,21 @@ FineWalk fine_walk(std::mt19937_64& random, bool back_and_forth) {
 // Records nearer to each other than the last digit: each is met by the block that was made for it, not by a later one
 // that comes as near.
 TEST(CompareWithCl, PathsAsFineAsTheirRoundingAreMet) {
-  constexpr double kRounding = 0.8661e-3;  // half a digit in each of three words
+  constexpr double kHalfDigit = 0.8661e-3;  // half a digit in each of three words
   std::mt19937_64 random(7);
   int sharp = 0;
   for (int trial = 0; trial < 4000; ++trial) {
     const FineWalk w = fine_walk(random, trial % 2 == 1);
     const std::vector<const path::ClPath*> list = {&w.path};
-    const auto met = readback::compare_with_cl(w.motions, list, kRounding, 1e-3);
+    const auto met = readback::compare_with_cl(w.motions, list, kHalfDigit, 1e-3);
     ASSERT_TRUE(met.complete) << trial << ": " << met.message;
-    EXPECT_LE(met.worst_mm, kRounding);
+    EXPECT_LE(met.worst_mm, kHalfDigit);
     // A block that is 4 um off is seen, whatever lies around it.
     auto wrong = w.motions;
     const std::size_t k = 1 + random() % (wrong.size() - 1);
     wrong[k].tip_to += Vec3(0, 0, 4e-3);
     if (k + 1 < wrong.size()) wrong[k + 1].tip_from = wrong[k].tip_to;
-    sharp += readback::compare_with_cl(wrong, list, kRounding, 1e-3).complete ? 0 : 1;
+    sharp += readback::compare_with_cl(wrong, list, kHalfDigit, 1e-3).complete ? 0 : 1;
   }
   EXPECT_GT(sharp, 3900);
 }
