@@ -97,7 +97,7 @@ inline constexpr BadFile kBadMachineFiles[] = {
      "m.toml:12:1: error: limits.min_block_ms is missing\n"
      "m.toml:15:1: error: unknown key limits.min_block_sm; did you mean min_block_ms?\n"},
     {"a feed that is never too quick", "min_block_ms = 1.0", "min_block_ms = 1.0\nfeed_factor = 0.5",
-     "m.toml:16:15: error: limits.feed_factor = 0.5 lies outside 1 .. 100\n"},
+     "m.toml:16:15: error: limits.feed_factor = 0.5 is below 1\n"},
     {"11 unknown table", "[spindle]", "[spindel]",
      "m.toml:1:1: error: spindle is missing\n"
      "m.toml:9:2: error: unknown key spindel; did you mean spindle?\n"},

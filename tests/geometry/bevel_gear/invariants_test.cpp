@@ -331,7 +331,7 @@ TEST(BevelInvariants, TopLandIsThatOfTheCutTooth) {
     double edge[2] = {0, 0};
     for (int k = 0; k < 2; ++k) {
       const auto& w = half.walls[k];
-      const double middle = w.trace.theta(w.trace.beta(g.R_i()));
+      const double middle = w.trace.theta(w.trace.beta(g.R_i())) / g.sin_delta();
       double in = middle, out = middle - w.sigma * 0.5 * g.pitch();
       for (int n = 0; n < 50; ++n) {
         const double azimuth = 0.5 * (in + out);
