@@ -67,7 +67,7 @@ namespace {
 
 const std::vector<std::string> kTestOutputs = {"machine_test.", "machine_test_tcp.", "machine_test.html"};
 constexpr const char* kPreviousTest = "previous_machine_test";
-constexpr int kTestProgram = 1900;  // O number; the part with TCP has the next
+constexpr int kTestProgram = 7990;  // O number; the part with TCP has the next
 
 /// Plans one part, writes its text and proves what lies on the disk.
 Result<sheet::DryRunPart> make_part(const machines::Machine& machine, const MachineRequest& request,

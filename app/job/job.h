@@ -45,6 +45,8 @@ struct VerifySettings {
 
 /// The [program] table.
 struct ProgramSettings {
+  std::optional<int>
+      number;  ///< of the main program (O word), its sub-programs behind it; none: made of the job's name
   bool spread_teeth = false;  ///< tooth_order = "spread": neighbours are not cut one after the other; else in sequence
   std::optional<machines::PoleOption> pole;  ///< instead of post.pole of the machine file
   std::optional<double> pole_angle_rad;      ///< instead of post.pole_angle
@@ -55,6 +57,8 @@ inline constexpr toml::Range kPinionTeeth{5, 1000}, kMoved{-5, 5, " mm"}, kAngle
     kCompound{1e-4, 0.1, " mm"};
 /// Torque on the gear, in [load] and as an option.
 inline constexpr toml::Range kTorque{1e-6, 1e9, " N m"};
+/// Numbers of programs: from 8000 on they are the builder's.
+inline constexpr toml::Range kProgramNumber{1, 7999};
 /// Numbers of tools.
 inline constexpr toml::Range kToolNumber{1, 9999};
 

@@ -345,6 +345,7 @@ VerifySettings read_verify(toml::TableReader& table, bool bevel) {
 
 ProgramSettings read_program_settings(toml::TableReader& table) {
   ProgramSettings program;
+  program.number = table.if_present("number", [&] { return table.integer("number", kProgramNumber); });
   if (const auto order = table.if_present("tooth_order", [&] {
         return table.word("tooth_order", {"sequence", "spread"});
       }))

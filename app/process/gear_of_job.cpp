@@ -136,6 +136,11 @@ ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional
   else if (job.coolant != machines::Coolant::off)
     if (const auto words = text::coolant_words(*dialect, job.coolant); !words)
       errors.push_back(located(job, "coolant.mode", words.error()));
+  if (dialect && job.program.number && !text::has_program_number(*dialect))
+    errors.push_back(fail_at(job.where("program.number"),
+                             "number = {}: programs of dialect \"{}\" have no number, leave it out: they are known by "
+                             "the name of their file",
+                             *job.program.number, dialect->name));
   if (!errors.empty()) return errors;
   return machine;
 }

@@ -143,6 +143,7 @@ text::NcHeader header_of(const PostRequest& request, const std::vector<std::stri
   header.machine_name = request.machine.name;
   header.assumed = assumed;
   header.coolant = request.job.coolant;
+  header.program_number = program_number(request.job);
   header.blend_mm = std::min(header.blend_mm, kBlendShare * request.job.verify.gouge_tolerance_mm);
   if (radius > 0)
     header.blend_axis_deg =
@@ -151,6 +152,11 @@ text::NcHeader header_of(const PostRequest& request, const std::vector<std::stri
 }
 
 }  // namespace
+
+int program_number(const job::Job& job) {
+  constexpr int kFirst = 1000, kStep = 100, kNames = 70;
+  return job.program.number.value_or(kFirst + kStep * static_cast<int>(fnv1a(job.name) % kNames));
+}
 
 Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, const PostRequest& request,
                                    const std::vector<std::string>& assumed, app::OutputDir& output,

@@ -144,7 +144,7 @@ class BevelGearBuilder {
   }
 
   /// What the walls leave of a tooth's tip at the small end; the equivalent gear, which refused pointed teeth ahead of
-  /// them, leaves more.
+  /// them, is only near it.
   void top_land() {
     auto& g = gear_;
     const BevelHalf& inner = g.halves_.front();

@@ -29,7 +29,7 @@ void warn_of_thin_tips(const BevelLimits& limits, std::vector<std::string>& warn
 [[nodiscard]] double face_width_for_module(const BevelGear& gear, double module);
 
 /// Normal top land of the equivalent gear at cone distance R, backlash taken off, mm; negative: pointed below the tip.
-/// The walls that a mill cuts leave less: BevelLimits::top_land_mm.
+/// What the cut walls leave is BevelLimits::top_land_mm.
 [[nodiscard]] double bevel_top_land(const BevelGear& gear, double R);
 
 }  // namespace toothpath::bevel_gear

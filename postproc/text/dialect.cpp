@@ -1,6 +1,13 @@
 #include "postproc/text/dialect.h"
 
+#include <algorithm>
+
 namespace toothpath::text {
+
+bool has_program_number(const NcDialect& dialect) {
+  return std::any_of(dialect.frame_begin.begin(), dialect.frame_begin.end(),
+                     [](const std::string& line) { return line.find("{number}") != std::string::npos; });
+}
 
 Result<machines::CoolantWords> coolant_words(const NcDialect& dialect, machines::Coolant coolant) {
   const auto found = dialect.coolant.find(coolant);

@@ -145,6 +145,9 @@ struct NcDialect {
   Result<NcText> (*write)(const joints::AxisProgram&, const NcDialect&, const NcHeader&) = nullptr;
 };
 
+/// The control knows its programs by numbers: {number}.
+[[nodiscard]] bool has_program_number(const NcDialect& dialect);
+
 /// Words for a coolant that is not off.
 /// Errors: the control has none and the machine file names none. The message says which ones there are.
 [[nodiscard]] Result<machines::CoolantWords> coolant_words(const NcDialect& dialect, machines::Coolant coolant);

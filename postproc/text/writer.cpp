@@ -19,7 +19,7 @@
 namespace toothpath::text {
 namespace {
 
-constexpr int kFirstSubprogram = 2001;  // O numbers of the sub-programs of a main program; labels count from 100
+constexpr int kLastProgram = 7999;  // O numbers from 8000 on are the builder's
 constexpr int kFirstLabel = 100;
 constexpr int kVectorDecimals = 8;
 
@@ -148,8 +148,15 @@ class Writer {
       error_ = segments.error();
       return;
     }
-    const int first = kFirstSubprogram + static_cast<int>(subprograms_.size());
+    const int first = subprogram_number(subprograms_.size());
     for (const auto& s : *segments) subprograms_.push_back({&op, s});
+    if (const int last = subprogram_number(subprograms_.size() - 1); last > kLastProgram) {
+      error_ = fail(
+          "program O{} has sub-programs up to O{}, above O{}: from there on numbers are the builder's; a "
+          "number at most {} leaves room",
+          header_.program_number, last, kLastProgram, kLastProgram - static_cast<int>(subprograms_.size()));
+      return;
+    }
     const auto index = static_cast<std::size_t>(program_.index_axis);
     for (int n = op.first_place; n < program_.teeth; ++n) {
       const int k = joints::tooth_of_place(n, program_.tooth_stride, program_.teeth);
@@ -165,10 +172,12 @@ class Writer {
     }
     forget();
   }
+  /// Behind that of the main program, so that those of another job are not called.
+  [[nodiscard]] int subprogram_number(std::size_t n) const { return header_.program_number + 1 + static_cast<int>(n); }
   void write_subprograms() {
     for (std::size_t i = 0; i < subprograms_.size() && !error_; ++i) {
       const auto& [op, s] = subprograms_[i];
-      out_.line(fmt::format("O{} (OPERATION {} PART {})", kFirstSubprogram + static_cast<int>(i), op->operation, i));
+      out_.line(fmt::format("O{} (OPERATION {} PART {})", subprogram_number(i), op->operation, i));
       forget();
       blocks(op->teeth.front().blocks, {s.first + 1, s.last}, IndexWord::left_out);
       out_.line("M99");

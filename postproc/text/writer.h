@@ -19,7 +19,7 @@ struct NcHeader {
   std::string job_hash;  ///< of the job file, given by the caller; may be empty
   std::string machine_name;
   std::vector<std::string> assumed;  ///< non-empty: a warning, keys of one table in one line
-  int program_number = 1001;         ///< O word
+  int program_number = 1001;         ///< O word; the sub-programs have the numbers behind it
   double blend_mm =
       0.0003;  ///< how far the control may leave a corner: counts as deviation of the machine in every proof
   double blend_axis_deg =
@@ -43,7 +43,8 @@ struct NcText {
                                        const NcHeader& header);
 
 /// Prints the program. Errors: an F that the control cannot take, a line that is too long, a number out of its format,
-/// joint blocks that turn on a control without inverse time, teeth as a loop on a control that has none.
+/// joint blocks that turn on a control without inverse time, teeth as a loop on a control that has none, sub-programs
+/// whose numbers are the builder's (from O8000 on).
 [[nodiscard]] Result<NcText> write_nc(const joints::AxisProgram& program, const NcDialect& dialect,
                                       const NcHeader& header);
 

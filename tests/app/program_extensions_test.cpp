@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 
 #include "app/base/output_dir.h"
+#include "app/process/program_report.h"
 #include "postproc/controls/registry.h"
 #include "tests/app/program.h"
 
@@ -32,6 +34,25 @@ TEST(ProgramExtensions, OldProgramsOfEveryControlGo) {
     EXPECT_TRUE(std::filesystem::exists(dir / ("out/previous/program" + extension))) << extension;
   }
   EXPECT_TRUE(std::filesystem::exists(dir / "out/program.txt"));
+}
+
+// Two jobs on one control do not call each other's sub-programs.
+TEST(ProgramNumbers, FollowTheJob) {
+  job::Job job;
+  std::map<int, int> jobs;
+  for (int n = 0; n < 400; ++n) {
+    job.name = "gear " + std::to_string(n);
+    const int number = process::program_number(job);
+    EXPECT_EQ(number, process::program_number(job));
+    EXPECT_EQ(number % 100, 0);
+    EXPECT_GE(number, 1000);
+    EXPECT_LE(number, 7900);
+    ++jobs[number];
+  }
+  EXPECT_GT(jobs.size(), 60U);
+  for (const auto& [number, count] : jobs) EXPECT_LT(count, 20) << number;
+  job.program.number = 1234;
+  EXPECT_EQ(process::program_number(job), 1234);
 }
 
 }  // namespace

@@ -319,8 +319,8 @@ TEST(BevelMesh, ClosedOutwardAndOnTheWalls) {
   }
 }
 
-// The tip between the two walls of a tooth as the solid mill leaves them, against what the limits say; the equivalent
-// gear has more.
+// The tip between the two walls of a tooth as the solid mill leaves them, against what the limits say. The equivalent
+// gear is a quarter off it at 8 teeth.
 TEST(BevelInvariants, TopLandIsThatOfTheCutTooth) {
   for (const int teeth : {8, 12, 18, 37}) {
     const bevel_gear::BevelGear g = gear_of(design(teeth, 40, 6, 30, 0.28));

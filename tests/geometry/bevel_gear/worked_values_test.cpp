@@ -16,7 +16,7 @@ TEST(BevelWorkedValues, BlankOfW1) {
   EXPECT_NEAR(1 / g.kappa_v(), 80.068049947, 5e-10);
   EXPECT_NEAR(g.cutter().r_0, 2.356194490, 5e-10);
   EXPECT_NEAR(g.limits().module_at_small_end_mm, 3.098, 5e-4);
-  EXPECT_NEAR(g.limits().top_land_mm, 1.46, 5e-3);
+  EXPECT_NEAR(bevel_top_land(g, g.R_i()), 1.46, 5e-3);  // of the equivalent gear
 }
 
 TEST(BevelWorkedValues, TraceOfW1) {

@@ -10,6 +10,7 @@
 #include "postproc/controls/registry.h"
 #include "tests/machines/bad_machine_files.h"
 #include "tests/machines/bad_post_keys.h"
+#include "tests/postproc/text/post_forms.h"
 #include "tests/support/files.h"
 
 namespace toothpath {
@@ -142,6 +143,42 @@ TEST(ControlTables, NameEveryControl) {
   const std::regex named("\\n\\| `([a-z0-9_]+)` \\|");
   for (auto it = std::sregex_iterator(row.begin(), row.end(), named); it != std::sregex_iterator(); ++it)
     EXPECT_NE(controls::find((*it)[1].str()), nullptr) << "docs/dialects.md names " << (*it)[1];
+}
+
+// The sub-programs of a job stand behind its own number, never among the builder's.
+TEST(ProgramNumbers, OfSubProgramsFollowThatOfTheProgram) {
+  for (const auto* c : controls::all()) {
+    const bool numbers = c->words.name == "fanuc" || c->words.name == "haas" || c->words.name == "mitsubishi_m80";
+    EXPECT_EQ(text::has_program_number(c->words), numbers) << c->words.name;
+  }
+  for (const char* dialect : {"fanuc", "mitsubishi_m80"}) {
+    const test::PostForm form{dialect, machines::TcpMode::none, 0, false};
+    const auto program = test::program_of(form, {test::sample_path(0.3, 0, 4)}, 3, 1);
+    ASSERT_TRUE(program) << program.error().message;
+    const auto words = controls::dialect_of(test::machine_of(form));
+    text::NcHeader header;
+    header.job_name = "sample";
+    header.program_number = 1234;
+    const auto text = text::write_nc(*program, *words, header);
+    ASSERT_TRUE(text) << text.error().message;
+    EXPECT_NE(text->text.find("O1234 (SAMPLE)"), std::string::npos);
+    std::set<int> called, there;
+    const std::regex call("M98 P([0-9]+)"), begin("\nO([0-9]+) \\(OPERATION");
+    for (std::sregex_iterator it(text->text.begin(), text->text.end(), call), end; it != end; ++it)
+      called.insert(std::stoi((*it)[1]));
+    for (std::sregex_iterator it(text->text.begin(), text->text.end(), begin), end; it != end; ++it)
+      there.insert(std::stoi((*it)[1]));
+    EXPECT_EQ(called, there);
+    ASSERT_FALSE(there.empty());
+    EXPECT_EQ(*there.begin(), 1235);
+    EXPECT_EQ(*there.rbegin(), 1234 + int(there.size()));
+    header.program_number = 8000 - int(there.size());
+    const auto above = text::write_nc(*program, *words, header);
+    ASSERT_FALSE(above);
+    EXPECT_NE(above.error().message.find("above O7999"), std::string::npos) << above.error().message;
+    header.program_number = 7999 - int(there.size());
+    EXPECT_TRUE(text::write_nc(*program, *words, header));
+  }
 }
 
 }  // namespace
