@@ -154,7 +154,7 @@ text::NcHeader header_of(const PostRequest& request, const std::vector<std::stri
 }  // namespace
 
 int program_number(const job::Job& job) {
-  constexpr int kFirst = 1000, kStep = 100, kNames = 70;
+  constexpr int kFirst = 1000, kStep = 100, kNames = 60;  // room for 1000 sub-programs behind the last
   return job.program.number.value_or(kFirst + kStep * static_cast<int>(fnv1a(job.name) % kNames));
 }
 

@@ -124,6 +124,8 @@ std::optional<Diagnostic> unquoted_word(std::string_view text, const SourcePosit
   const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
   const auto of_word = [&](char c) { return letter(c) || (c >= '0' && c <= '9') || c == '.' || c == '-'; };
   constexpr std::size_t kLongest = 60;
+  for (const std::string_view value : {"true", "false", "inf", "nan"})
+    if (word == value) return std::nullopt;  // what is wrong is something else
   if (!letter(word.front()) || word.size() > kLongest || !std::all_of(word.begin(), word.end(), of_word))
     return std::nullopt;
   return fail_at({at.file, at.line, static_cast<int>(begin) + 1}, "{0} is text and stands in quotes: \"{0}\"", word);

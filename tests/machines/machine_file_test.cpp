@@ -195,7 +195,8 @@ TEST(TomlText, AWordWithoutQuotesIsTold) {
     ASSERT_FALSE(tree) << text;
     EXPECT_EQ(tree.error().text(), message);
   }
-  for (const std::string text : {"a = \"x", "a = 1.2.3", "a = [b]", "a = ", "a == b", "a b = c", "\"=\" = 1 x"}) {
+  for (const std::string text : {"a = \"x", "a = 1.2.3", "a = [b]", "a = ", "a == b", "a b = c", "\"=\" = 1 x",
+                                 "a = true\na = true", "a = 1\na = nan", "a = true x"}) {
     const auto tree = toml::parse_toml(text, "t", {});
     ASSERT_FALSE(tree) << text;
     EXPECT_EQ(tree.error().text().find("stands in quotes"), std::string::npos) << tree.error().text();
