@@ -53,7 +53,7 @@ struct PostRequest {
   joints::ClearanceBody body;                     ///< that links keep clear of
   std::optional<joints::ProgramRestart> restart;  ///< the file holds the program from there on
 };
-/// O number of the job's program: its own, or one of 1000, 1100 .. 7900 by its name, so that two jobs on one control
+/// O number of the job's program: its own, or one of 1000, 1100 .. 6900 by its name, so that two jobs on one control
 /// hardly ever share it.
 [[nodiscard]] int program_number(const job::Job& job);
 /// Axis program, NC text, the file, its bytes. Errors carry their place in the job.

@@ -46,7 +46,7 @@ TEST(ProgramNumbers, FollowTheJob) {
     EXPECT_EQ(number, process::program_number(job));
     EXPECT_EQ(number % 100, 0);
     EXPECT_GE(number, 1000);
-    EXPECT_LE(number, 7900);
+    EXPECT_LE(number, 6900);
     ++jobs[number];
   }
   EXPECT_GT(jobs.size(), 60U);
