@@ -18,6 +18,7 @@ constexpr double kSmallestQuad = 1e-5;  // mm: smaller quads are not halved
 constexpr std::size_t kMostPieces = 200000;
 constexpr int kTeeth = 1 << 20;  // a gear has fewer
 constexpr double kRoundOff = 1 + 1e-9;
+constexpr double kRounding = 1e-9;    // mm: of the bound of a whole cell, with room to spare
 constexpr int kTangents = 8;          // planes by which a touching body is brought near to a hull
 constexpr int kSecants = 4;           // of the way to each
 constexpr double kFlat = 0.02;        // share of the first slope at which a way ends
@@ -29,6 +30,7 @@ struct Piece {
   BodyQuad quad;
   std::uint32_t target = 0;
   double t0 = 0, t1 = 1;
+  double least = -INFINITY;  ///< it comes no nearer than this
 };
 
 /// A cell of the part at one tooth, and the best place found on it.
@@ -165,9 +167,14 @@ class Sweep {
 
   void gather() {
     const double enough = o_.enough_mm + m_.deviation_mm + m_.axis_deviation * arm_, pitch = part_.gear().pitch();
-    const View first = view(0), last = view(1);
+    const View first = view(0), half_way = view(0.5), last = view(1);
+    const double turned = 0.5 * turn_rate_ + m_.axis_deviation;  // the cell, seen from the tool, from half way on
     const tool::PlacedFrustum in_T(f_, Vec3::Zero(), Vec3::UnitZ());
-    std::vector<std::pair<double, Target>> order;
+    struct Near {
+      double about, least;  ///< gap of a sphere about the cell, which tells the order, and of the cell
+      Target target;
+    };
+    std::vector<Near> order;
     Target cell{-1, 0, 0, 1, 0};
     for (const auto& key : near_cells(enough)) {
       const int zone = int(key >> 56), tooth = int(key >> 32 & 0xffffff) - kTeeth;
@@ -176,18 +183,23 @@ class Sweep {
       cell.cell = std::size_t(key & 0xffffffff);
       const auto& patches = part_.patches(zone);
       if (o_.flanks_only && !patches.on_flank(cell.cell)) continue;
-      const Vec3 c = cell.placed(patches.centre(cell.cell)), a = first(c), b = last(c);
-      const double arm = std::sqrt(std::max(a.squaredNorm(), b.squaredNorm()));
-      const double away = 0.5 * (b - a).norm() + slack(arm, 1) + patches.radius(cell.cell);
-      const Vec3 middle = 0.5 * (a + b);
+      const BodyBox& box = patches.box(cell.cell);
+      const Vec3 c = cell.placed(box.centre), a = first(c), b = last(c), middle = 0.5 * (a + b);
+      const double strays = slack(std::sqrt(std::max(a.squaredNorm(), b.squaredNorm())), 1),
+                   away = 0.5 * (b - a).norm() + strays + box.radius;
       if (in_T.beyond(middle, (enough + away + body_.round) * kRoundOff)) continue;
-      const double least = tool::rounded_distance(middle, body_) - away;
-      if (least <= enough) order.push_back({least, cell});
+      const auto [d, g] = tool::rounded_slope(middle, body_);
+      if (d - away > enough) continue;
+      // The tangent plane there, under the flat cell at any moment.
+      const Vec3 g_part = cell.back(half_way.direction(g));
+      const double flat = d - 0.5 * std::abs(g.dot(b - a)) - std::abs(g_part.dot(box.a)) - std::abs(g_part.dot(box.b)) -
+                          box.off - box.radius * turned - strays - kRounding;
+      if (flat <= enough) order.push_back({d - away, std::max(d - away, flat), cell});
     }
     // The nearest comes last and is looked at first.
-    std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    for (const auto& [least, target] : order) {
-      pieces_.push_back({part_.patches(target.zone).quad(target.cell), std::uint32_t(targets_.size()), 0, 1});
+    std::stable_sort(order.begin(), order.end(), [](const Near& x, const Near& y) { return x.about > y.about; });
+    for (const auto& [about, least, target] : order) {
+      pieces_.push_back({part_.patches(target.zone).quad(target.cell), std::uint32_t(targets_.size()), 0, 1, least});
       targets_.push_back(target);
     }
   }
@@ -301,6 +313,7 @@ class Sweep {
     while (!pieces_.empty()) {
       const Piece piece = pieces_.back();
       pieces_.pop_back();
+      if (piece.least >= std::min(best_, o_.enough_mm)) continue;
       Target& target = targets_[piece.target];
       const auto& patches = part_.patches(target.zone);
       const BodyHull hull = patches.outline(target.cell, piece.quad);
