@@ -1,7 +1,11 @@
 #include "cam/cut/swept_tool.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+
+#include "geometry/base/angle.h"
 
 namespace toothpath::cut {
 namespace {
@@ -9,6 +13,8 @@ namespace {
 constexpr int kMomentSteps = 40;   // of the bracket of a moment; each at least halves it every second time
 constexpr double kMoment = 1e-12;  // share of a motion
 constexpr int kMostStretches = 12;
+constexpr double kLongestTurn = 0.5 * kPi;  // an angle is no more than this times its chord, of unit vectors
+constexpr std::size_t kSeen = 32;           // motions looked at last: each has several boxes
 
 /// The distance at a moment and its rate.
 struct AtMoment {
@@ -68,7 +74,12 @@ std::vector<analytic::Box> boxes_of(const std::vector<path::ToolMotion>& motions
 }  // namespace
 
 double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const path::ToolMotion& m, double enough) {
-  const AtMoment first = at_moment(p, body, m, 0), last = at_moment(p, body, m, 1);
+  const AtMoment first = at_moment(p, body, m, 0);
+  // Seen from the tool, the place goes no farther than this.
+  const double way = (m.tip_to - m.tip_from).norm(),
+               far = way + kLongestTurn * (m.axis_to - m.axis_from).norm() * ((p - m.tip_from).norm() + way);
+  if (first.distance - far > enough) return first.distance;
+  const AtMoment last = at_moment(p, body, m, 1);
   double least = std::min(first.distance, last.distance);
   if (first.rate >= 0 || last.rate <= 0) return least;
   // A tangent from either end bounds it from below, but for what turns; half a micrometre stands for that.
@@ -94,9 +105,11 @@ SweptTool::SweptTool(std::vector<path::ToolMotion> motions, std::vector<tool::Ro
 
 double SweptTool::excess_after(std::size_t count, const Vec3& p, double cap) const {
   double best = cap;
+  std::array<std::size_t, kSeen> seen;
+  seen.fill(motions_.size());
   index_.near(p, std::max(cap, 0.0), [&](std::size_t box, double) {
     const std::size_t k = owners_[box];
-    if (k >= count) return std::max(best, 0.0);
+    if (k >= count || std::exchange(seen[k % kSeen], k) == k) return std::max(best, 0.0);
     for (const auto& body : cutting_) best = std::min(best, least_distance(p, body, motions_[k], best));
     return std::max(best, 0.0);
   });
