@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "geometry/base/angle.h"
@@ -14,7 +15,7 @@ constexpr int kMomentSteps = 40;   // of the bracket of a moment; each at least 
 constexpr double kMoment = 1e-12;  // share of a motion
 constexpr int kMostStretches = 12;
 constexpr double kLongestTurn = 0.5 * kPi;  // an angle is no more than this times its chord, of unit vectors
-constexpr std::size_t kSeen = 32;           // motions looked at last: each has several boxes
+constexpr std::size_t kSeen = 64;           // bodies in motion that were looked at last: each has several boxes
 
 /// The distance at a moment and its rate.
 struct AtMoment {
@@ -36,13 +37,14 @@ AtMoment at_moment(const Vec3& p, const tool::RoundedFrustum& body, const path::
 }
 
 /// Where the cutting part may be during a motion, below `top`: every stretch of every body about as long as it is wide.
-/// `owners`: the motion of each box.
+/// `owners`: the motion of each box, times the number of bodies, and the body.
 std::vector<analytic::Box> boxes_of(const std::vector<path::ToolMotion>& motions,
                                     const std::vector<tool::RoundedFrustum>& cutting, double top,
                                     std::vector<std::size_t>& owners) {
   std::vector<analytic::Box> boxes;
   for (std::size_t k = 0; k < motions.size(); ++k)
-    for (const auto& body : cutting) {
+    for (std::size_t part = 0; part < cutting.size(); ++part) {
+      const auto& body = cutting[part];
       const tool::Frustum& core = body.core;
       const double length = core.to - core.from;
       const int stretches = std::clamp(int(std::ceil(length / (2 * body.widest()))), 1, kMostStretches);
@@ -65,7 +67,7 @@ std::vector<analytic::Box> boxes_of(const std::vector<path::ToolMotion>& motions
         if (box.low.z() > top && n > 0) continue;
         box.high.z() = std::max(std::min(box.high.z(), top), box.low.z());
         boxes.push_back(box);
-        owners.push_back(k);
+        owners.push_back(k * cutting.size() + part);
       }
     }
   return boxes;
@@ -106,11 +108,11 @@ SweptTool::SweptTool(std::vector<path::ToolMotion> motions, std::vector<tool::Ro
 double SweptTool::excess_after(std::size_t count, const Vec3& p, double cap) const {
   double best = cap;
   std::array<std::size_t, kSeen> seen;
-  seen.fill(motions_.size());
+  seen.fill(SIZE_MAX);
   index_.near(p, std::max(cap, 0.0), [&](std::size_t box, double) {
-    const std::size_t k = owners_[box];
-    if (k >= count || std::exchange(seen[k % kSeen], k) == k) return std::max(best, 0.0);
-    for (const auto& body : cutting_) best = std::min(best, least_distance(p, body, motions_[k], best));
+    const std::size_t owner = owners_[box], k = owner / cutting_.size();
+    if (k >= count || std::exchange(seen[owner % kSeen], owner) == owner) return std::max(best, 0.0);
+    best = std::min(best, least_distance(p, cutting_[owner % cutting_.size()], motions_[k], best));
     return std::max(best, 0.0);
   });
   return best;
