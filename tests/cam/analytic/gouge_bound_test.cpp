@@ -219,6 +219,46 @@ TEST_P(RandomBodies, TenfoldSamplingNeverExceedsTheBound) {
   RecordProperty("cutting", cutting);
 }
 
+// Cells that were found once for a chain of bodies tell of each body what it finds alone, in the last bit.
+TEST_P(RandomBodies, AChainFindsWhatEachOfItsBodiesFinds) {
+  const auto& job = job_named(GetParam());
+  const auto& path = job.plan.paths.back();
+  test::Random random(61);
+  int near = 0;
+  for (int k = 0; k < 30; ++k) {
+    const auto& record = path.records[2 + random.index(path.records.size() - 4)];
+    path::ToolMotion m;
+    m.axis_from = (record.axis + random.vector(0.2)).normalized();
+    m.axis_to = k % 3 == 0 ? m.axis_from : Vec3((m.axis_from + random.vector(0.05)).normalized());
+    m.tip_from = record.tip + Vec3(0, 0, random(0, 0.3));
+    m.tip_to = m.tip_from + random.vector(k % 4 == 0 ? 1.5 : 0.2);
+    std::vector<tool::RoundedFrustum> chain;
+    const double R = job.tool(path.operation).radius_mm(), slope = random(0, 0.2);
+    double h = R, radius = 0;
+    for (int n = 0; n < 8; ++n) {
+      const double next = h + random(0.1, 0.8), wider = radius + slope * (next - h);
+      chain.push_back({{h, next, radius, wider, tool::Body::flute}, R * random(0.9, 1.0)});
+      h = next;
+      radius = wider;
+    }
+    const analytic::NearCells all(*job.part, chain, m, 0.6);
+    for (std::size_t n = 0; n < chain.size(); ++n) {
+      analytic::SweptGapOptions options;
+      options.touching = true;
+      options.enough_mm = n % 2 == 0 ? 0.6 : 0.15;
+      options.contact_mm = 0.01;
+      const auto alone = analytic::swept_gap(*job.part, chain[n], m, options),
+                 together = analytic::swept_gap(*job.part, chain[n], m, options, all);
+      EXPECT_EQ(alone.proven_mm, together.proven_mm) << k << " " << n;
+      EXPECT_EQ(alone.measured_mm, together.measured_mm) << k << " " << n;
+      EXPECT_EQ(alone.place, together.place) << k << " " << n;
+      EXPECT_EQ(alone.pieces, together.pieces) << k << " " << n;
+      near += alone.measured_mm < options.enough_mm;
+    }
+  }
+  EXPECT_GT(near, 60);
+}
+
 INSTANTIATE_TEST_SUITE_P(Jobs, RandomBodies, testing::Values("spur", "conical", "double"),
                          [](const auto& c) { return std::string(c.param); });
 
