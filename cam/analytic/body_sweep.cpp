@@ -49,20 +49,22 @@ constexpr double kRoundOff = 1 + 1e-9;
 constexpr double kRounding = 1e-9;    // mm: of the bound of a whole cell, with room to spare
 constexpr int kTangents = 8;          // planes by which a touching body is brought near to a hull
 constexpr int kSecants = 4;           // of the way to each
+constexpr int kShareSteps = 3;        // rounds over the directions of a cell
 constexpr double kFlat = 0.02;        // share of the first slope at which a way ends
 constexpr double kTimeMatters = 0.1;  // of the contact's proof
 constexpr double kLongWay = 4;        // sizes of a quad that it may pass by undivided
+
+using Target = NearCells::Found::Target;
+using NearCell = NearCells::Found::Cell;
 
 /// A quad of the part during a stretch of the motion.
 struct Piece {
   BodyQuad quad;
   std::uint32_t target = 0;
   double t0 = 0, t1 = 1;
-  double least = -INFINITY;  ///< it comes no nearer than this
+  double least = -INFINITY;         ///< it comes no nearer than this
+  const NearCell* whole = nullptr;  ///< the cell, where the piece is all of it
 };
-
-using Target = NearCells::Found::Target;
-using NearCell = NearCells::Found::Cell;
 
 /// The frame of the tool at one moment: two directions across the axis, and the axis.
 struct View {
@@ -71,6 +73,7 @@ struct View {
     const Vec3 d = p_W - tip;
     return {d.dot(across), d.dot(beside), d.dot(axis)};
   }
+  [[nodiscard]] Vec3 turned(const Vec3& d_W) const { return {d_W.dot(across), d_W.dot(beside), d_W.dot(axis)}; }
   [[nodiscard]] Vec3 direction(const Vec3& g_T) const { return g_T.x() * across + g_T.y() * beside + g_T.z() * axis; }
 };
 
@@ -219,6 +222,51 @@ NearCells::~NearCells() = default;
 
 namespace {
 
+/// A cell along the whole motion as the tool sees it half way: within x a + y b + z c, |x|, |y|, |z| <= 1, of its
+/// middle, but for `off`.
+class FlatCell {
+ public:
+  /// @param turned  how far the tool turns from half way on, rad
+  FlatCell(const NearCell& near, const BodyBox& box, const View& half_way, double turned)
+      : middle_(near.middle),
+        along_{half_way.turned(near.target.placed(box.a)), half_way.turned(near.target.placed(box.b)),
+               Vec3(0.5 * near.step)},
+        off_(box.off + box.radius * turned + near.strays + kRounding) {}
+
+  /// The tangent plane of a convex distance at x, where it is d and has the slope g, under all of it.
+  [[nodiscard]] double under(const Vec3& x, double d, const Vec3& g) const {
+    double least = d + g.dot(middle_ - x) - off_;
+    for (const Vec3& e : along_) least -= std::abs(g.dot(e));
+    return least;
+  }
+
+  /// The same where a round body about as thick as there comes nearest, or not far from it.
+  [[nodiscard]] double under(const tool::RoundedFrustum& body) const {
+    const Vec3 g = tool::rounded_slope(middle_, body).gradient;
+    const double rho = std::max(std::hypot(middle_.x(), middle_.y()), 1e-6);
+    const Vec3 around(-middle_.y() / rho, middle_.x() / rho, 0);
+    std::array<double, 3> share{}, slope{}, round{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      slope[k] = g.dot(along_[k]);
+      round[k] = around.dot(along_[k]);
+    }
+    for (int n = 0; n < kShareSteps; ++n)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double rest = round[0] * share[0] + round[1] * share[1] + round[2] * share[2] - round[k] * share[k];
+        const double down = slope[k] + round[k] * rest / rho, bend = round[k] * round[k] / rho;
+        share[k] = std::abs(down) >= bend ? (down > 0 ? -1.0 : 1.0) : -down / bend;
+      }
+    const Vec3 x = middle_ + share[0] * along_[0] + share[1] * along_[1] + share[2] * along_[2];
+    const auto [d, there] = tool::rounded_slope(x, body);
+    return under(x, d, there);
+  }
+
+ private:
+  const Vec3& middle_;
+  std::array<Vec3, 3> along_;
+  double off_;
+};
+
 class Sweep {
  public:
   Sweep(const GearDistance& part, const tool::RoundedFrustum& body, const path::ToolMotion& m,
@@ -232,15 +280,18 @@ class Sweep {
         arm_(arm_of(body)),
         course_(m),
         turns_(course_.turns()),
-        turn_rate_(course_.turn_rate()) {}
+        turn_rate_(course_.turn_rate()),
+        half_way_(course_.view(0.5)),
+        turned_(0.5 * turn_rate_ + m.axis_deviation) {}
 
   /// @param near  none: found here
   SweptGap run(const NearCells* near) {
     SweptGap out{o_.enough_mm, o_.enough_mm, 0, "tooth", m_.tip_to};
     const double above = least_height() - part_.gear().blank_top();
     if (above >= o_.enough_mm) return out;
-    if (near) gather(near->found().cells);
-    else gather(CellSearch(part_, std::span(&body_, 1), m_, o_.enough_mm).cells());
+    std::vector<NearCell> own;
+    if (!near) own = CellSearch(part_, std::span(&body_, 1), m_, o_.enough_mm).cells();
+    gather(near ? near->found().cells : own);
     prove();
     out.pieces = examined_;
     out.proven_mm = std::max(std::min(o_.enough_mm, proven_), above);
@@ -268,12 +319,10 @@ class Sweep {
 
   void gather(const std::vector<NearCell>& cells) {
     const double enough = o_.enough_mm + m_.deviation_mm + m_.axis_deviation * arm_;
-    const View half_way = view(0.5);
-    const double turned = 0.5 * turn_rate_ + m_.axis_deviation;  // the cell, seen from the tool, from half way on
     const tool::PlacedFrustum in_T(f_, Vec3::Zero(), Vec3::UnitZ());
     struct Near {
       double about, least;  ///< gap of a sphere about the cell, which tells the order, and of the cell
-      const Target* target;
+      const NearCell* cell;
     };
     std::vector<Near> order;
     for (const NearCell& near : cells) {
@@ -284,17 +333,16 @@ class Sweep {
       if (in_T.beyond(near.middle, (enough + away + body_.round) * kRoundOff)) continue;
       const auto [d, g] = tool::rounded_slope(near.middle, body_);
       if (d - away > enough) continue;
-      // The tangent plane there, under the flat cell at any moment.
-      const Vec3 g_part = near.target.back(half_way.direction(g));
-      const double flat = d - 0.5 * std::abs(g.dot(near.step)) - std::abs(g_part.dot(box.a)) -
-                          std::abs(g_part.dot(box.b)) - box.off - box.radius * turned - near.strays - kRounding;
-      if (flat <= enough) order.push_back({d - away, std::max(d - away, flat), &near.target});
+      const double least = std::max(d - away, FlatCell(near, box, half_way_, turned_).under(near.middle, d, g));
+      if (least <= enough) order.push_back({d - away, least, &near});
     }
     // The nearest comes last and is looked at first.
     std::stable_sort(order.begin(), order.end(), [](const Near& x, const Near& y) { return x.about > y.about; });
-    for (const auto& [about, least, target] : order) {
-      pieces_.push_back({part_.patches(target->zone).quad(target->cell), std::uint32_t(targets_.size()), 0, 1, least});
-      targets_.push_back(*target);
+    for (const auto& [about, least, cell] : order) {
+      const Target& target = cell->target;
+      pieces_.push_back(
+          {part_.patches(target.zone).quad(target.cell), std::uint32_t(targets_.size()), 0, 1, least, cell});
+      targets_.push_back(target);
     }
   }
 
@@ -410,6 +458,10 @@ class Sweep {
       if (piece.least >= std::min(best_, o_.enough_mm)) continue;
       Target& target = targets_[piece.target];
       const auto& patches = part_.patches(target.zone);
+      if (piece.whole && o_.touching &&
+          FlatCell(*piece.whole, patches.box(target.cell), half_way_, turned_).under(body_) >=
+              std::min(best_, o_.enough_mm))
+        continue;
       const BodyHull hull = patches.outline(target.cell, piece.quad);
       if (hull.count == 0) continue;  // wholly beyond the ring
       const double dt = piece.t1 - piece.t0;
@@ -493,7 +545,9 @@ class Sweep {
   }
 
   void halve(const Piece& piece, const BodyPatches& patches, std::size_t cell, bool in_time) {
-    Piece a = piece, b = piece;
+    Piece a = piece;
+    a.whole = nullptr;
+    Piece b = a;
     if (in_time) {
       a.t1 = b.t0 = 0.5 * (piece.t0 + piece.t1);
     } else {
@@ -514,6 +568,8 @@ class Sweep {
   Course course_;
   bool turns_;
   double turn_rate_;
+  View half_way_;
+  double turned_;  // from half way on
   std::vector<Target> targets_;
   std::vector<Piece> pieces_;
   double proven_ = INFINITY;
