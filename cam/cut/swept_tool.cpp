@@ -6,16 +6,13 @@
 #include <cstdint>
 #include <utility>
 
-#include "geometry/base/angle.h"
-
 namespace toothpath::cut {
 namespace {
 
 constexpr int kMomentSteps = 40;   // of the bracket of a moment; each at least halves it every second time
 constexpr double kMoment = 1e-12;  // share of a motion
 constexpr int kMostStretches = 12;
-constexpr double kLongestTurn = 0.5 * kPi;  // an angle is no more than this times its chord, of unit vectors
-constexpr std::size_t kSeen = 64;           // bodies in motion that were looked at last: each has several boxes
+constexpr std::size_t kSeen = 64;  // bodies in motion that were looked at last: each has several boxes
 
 /// The distance at a moment and its rate.
 struct AtMoment {
@@ -77,10 +74,13 @@ std::vector<analytic::Box> boxes_of(const std::vector<path::ToolMotion>& motions
 
 double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const path::ToolMotion& m, double enough) {
   const AtMoment first = at_moment(p, body, m, 0);
-  // Seen from the tool, the place goes no farther than this.
-  const double way = (m.tip_to - m.tip_from).norm(),
-               far = way + kLongestTurn * (m.axis_to - m.axis_from).norm() * ((p - m.tip_from).norm() + way);
-  if (first.distance - far > enough) return first.distance;
+  // Seen from the tool, the place goes no farther than `way` + turn arm, and leaves the tangent of its way by no more
+  // than `bends`; the distance is convex in the place, with a slope of 1 at most.
+  const double way = (m.tip_to - m.tip_from).norm(), arm = (p - m.tip_from).norm() + way,
+               half = std::min(0.5 * (m.axis_to - m.axis_from).norm(), 0.9999),
+               turn = 2 * half / std::sqrt(1 - half * half),
+               bends = 0.5 * (turn * turn * std::sqrt(1 + turn * turn) * arm + 2 * turn * way);
+  if (first.distance + std::max(std::min(first.rate, 0.0) - bends, -way - turn * arm) > enough) return first.distance;
   const AtMoment last = at_moment(p, body, m, 1);
   double least = std::min(first.distance, last.distance);
   if (first.rate >= 0 || last.rate <= 0) return least;
