@@ -56,7 +56,7 @@ const char* to_string(BodySurface surface) {
 
 BodyPatches::BodyPatches(const face_gear::FaceGearParameters& gear, const face_gear::SpaceSheet& space, BodyRing ring,
                          std::size_t cells)
-    : space_(space), bounds_(gear, space), ring_(std::move(ring)), cells_(cells) {}
+    : space_(space), bounds_(gear, space), ring_(std::move(ring)), cells_(cells), boxes_(cells) {}
 
 const char* BodyPatches::name(std::size_t index) const {
   const Cell& cell = cells_[index];
@@ -155,9 +155,12 @@ void BodyPatches::keep(std::size_t index, Cell cell) {
   cells_[index] = std::move(cell);
   Cell& kept = cells_[index];
   kept.sag = cell_sag(index);
-  for (const Vec3& c : kept.quad.corner) kept.centre += 0.25 * c;
-  for (const Vec3& c : kept.quad.corner) kept.radius = std::max(kept.radius, (c - kept.centre).norm());
-  kept.radius += kept.sag;
+  const auto& c = kept.quad.corner;
+  BodyBox& box = boxes_[index] = {0.25 * (c[0] + c[1] + c[2] + c[3]), 0.25 * (c[1] - c[0] + c[2] - c[3]),
+                                  0.25 * (c[3] - c[0] + c[2] - c[1]), 0, 0};
+  for (const Vec3& corner : c) box.radius = std::max(box.radius, (corner - box.centre).norm());
+  box.radius += kept.sag;
+  box.off = 0.25 * (c[0] - c[1] + c[2] - c[3]).norm() + kept.sag;  // its corners leave one plane
   search_margin_ = std::max(search_margin_, kept.sag);
 }
 

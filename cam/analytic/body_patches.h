@@ -36,6 +36,13 @@ struct BodyHull {
   std::size_t count = 0;
 };
 
+/// Every place of a cell's piece of the surface is centre + x a + y b, |x|, |y| <= 1, or within `off` of such a place;
+/// all lie within `radius` of the centre. Proven as `BodyPatches::above` is.
+struct BodyBox {
+  Vec3 centre = Vec3::Zero(), a = Vec3::Zero(), b = Vec3::Zero();
+  double off = 0, radius = 0;
+};
+
 /// What the patches of a ring are made of.
 struct BodyRing {
   double r_in = 0, r_out = 0;
@@ -72,9 +79,7 @@ class BodyPatches {
   [[nodiscard]] const BodyQuad& quad(std::size_t cell) const { return cells_[cell].quad; }
   /// How far the cell's piece of the surface may leave the hull of its quad's corners. mm, proven as `above` is
   [[nodiscard]] double sag(std::size_t cell) const { return cells_[cell].sag; }
-  /// Centre and radius of a sphere that holds the cell's piece of the surface.
-  [[nodiscard]] const Vec3& centre(std::size_t cell) const { return cells_[cell].centre; }
-  [[nodiscard]] double radius(std::size_t cell) const { return cells_[cell].radius; }
+  [[nodiscard]] const BodyBox& box(std::size_t cell) const { return boxes_[cell]; }
   /// How far any piece of the surface may lie from the corners by which its cell is found.
   [[nodiscard]] double search_margin() const { return search_margin_; }
   [[nodiscard]] BodySurface surface(std::size_t cell) const { return cells_[cell].surface; }
@@ -112,8 +117,7 @@ class BodyPatches {
   struct Cell {
     BodySurface surface = BodySurface::sheet;
     std::uint32_t block = 0;
-    double sag = 0, radius = 0;
-    Vec3 centre = Vec3::Zero();
+    double sag = 0;
     BodyQuad quad;
   };
   /// Lengths of the sides along both parameters, as `size` counts.
@@ -132,6 +136,7 @@ class BodyPatches {
   PatchBounds bounds_;
   BodyRing ring_;
   std::vector<Cell> cells_;
+  std::vector<BodyBox> boxes_;  ///< of the cells
   std::vector<Block> blocks_;
   double search_margin_ = 0;
   std::size_t sampled_ = 0;

@@ -5,12 +5,40 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <span>
+#include <vector>
 
 #include "cam/analytic/body_patches.h"
 #include "cam/path/motion_blend.h"
 #include "geometry/base/angle.h"
 
 namespace toothpath::analytic {
+struct NearCells::Found {
+  /// A cell of the part at one tooth, and the best place found on it.
+  struct Target {
+    int zone = 0, tooth = 0;
+    std::size_t cell = 0;
+    double cosine = 1, sine = 0;  ///< of the turn from space 0
+    double found = INFINITY;
+    Vec3 at = Vec3::Zero();  ///< in space 0
+    double height = 0;       ///< above the tip
+
+    [[nodiscard]] Vec3 placed(const Vec3& p) const {
+      return {cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y(), p.z()};
+    }
+    [[nodiscard]] Vec3 back(const Vec3& p) const {
+      return {cosine * p.x() + sine * p.y(), cosine * p.y() - sine * p.x(), p.z()};
+    }
+  };
+  /// As the tool sees it.
+  struct Cell {
+    Target target;
+    Vec3 middle, step;  ///< of its centre: half way between both ends of the motion, and from one to the other
+    double strays = 0;  ///< from the straight line between them
+  };
+  std::vector<Cell> cells;
+};
+
 namespace {
 
 constexpr double kWreckDepth = 0.05;    // mm: deeper cuts are followed more coarsely
@@ -18,34 +46,24 @@ constexpr double kSmallestQuad = 1e-5;  // mm: smaller quads are not halved
 constexpr std::size_t kMostPieces = 200000;
 constexpr int kTeeth = 1 << 20;  // a gear has fewer
 constexpr double kRoundOff = 1 + 1e-9;
+constexpr double kRounding = 1e-9;    // mm: of the bound of a whole cell, with room to spare
 constexpr int kTangents = 8;          // planes by which a touching body is brought near to a hull
 constexpr int kSecants = 4;           // of the way to each
+constexpr int kShareSteps = 3;        // rounds over the directions of a cell
 constexpr double kFlat = 0.02;        // share of the first slope at which a way ends
 constexpr double kTimeMatters = 0.1;  // of the contact's proof
 constexpr double kLongWay = 4;        // sizes of a quad that it may pass by undivided
+
+using Target = NearCells::Found::Target;
+using NearCell = NearCells::Found::Cell;
 
 /// A quad of the part during a stretch of the motion.
 struct Piece {
   BodyQuad quad;
   std::uint32_t target = 0;
   double t0 = 0, t1 = 1;
-};
-
-/// A cell of the part at one tooth, and the best place found on it.
-struct Target {
-  int zone = 0, tooth = 0;
-  std::size_t cell = 0;
-  double cosine = 1, sine = 0;  ///< of the turn from space 0
-  double found = INFINITY;
-  Vec3 at = Vec3::Zero();  ///< in space 0
-  double height = 0;       ///< above the tip
-
-  [[nodiscard]] Vec3 placed(const Vec3& p) const {
-    return {cosine * p.x() - sine * p.y(), sine * p.x() + cosine * p.y(), p.z()};
-  }
-  [[nodiscard]] Vec3 back(const Vec3& p) const {
-    return {cosine * p.x() + sine * p.y(), cosine * p.y() - sine * p.x(), p.z()};
-  }
+  double least = -INFINITY;         ///< it comes no nearer than this
+  const NearCell* whole = nullptr;  ///< the cell, where the piece is all of it
 };
 
 /// The frame of the tool at one moment: two directions across the axis, and the axis.
@@ -55,7 +73,198 @@ struct View {
     const Vec3 d = p_W - tip;
     return {d.dot(across), d.dot(beside), d.dot(axis)};
   }
+  [[nodiscard]] Vec3 turned(const Vec3& d_W) const { return {d_W.dot(across), d_W.dot(beside), d_W.dot(axis)}; }
   [[nodiscard]] Vec3 direction(const Vec3& g_T) const { return g_T.x() * across + g_T.y() * beside + g_T.z() * axis; }
+};
+
+/// A motion as the tool sees the part pass by.
+class Course {
+ public:
+  explicit Course(const path::ToolMotion& motion) : m_(motion) {
+    const Vec3 cross = m_.axis_from.cross(m_.axis_to);
+    turns_ = m_.axis_from != m_.axis_to;
+    normal_ = cross.norm() > 0 ? Vec3(cross.normalized()) : Vec3(m_.axis_from.unitOrthogonal());
+    side_ = m_.axis_from.cross(normal_);
+    travel_ = (m_.tip_to - m_.tip_from).norm();
+    const double half = std::min(0.5 * (m_.axis_to - m_.axis_from).norm(), 0.9999);
+    turn_rate_ = 2 * half / std::sqrt(1 - half * half);
+  }
+  [[nodiscard]] View view(double t) const {
+    if (!turns_) return {path::tip_at(m_, t), normal_, side_, m_.axis_from};
+    const Vec3 a = path::axis_at(m_, t);
+    return {path::tip_at(m_, t), normal_, a.cross(normal_), a};
+  }
+  /// What a place at distance `arm` from the tip may leave of the straight line between its two places, seen from the
+  /// tool.
+  [[nodiscard]] double slack(double arm, double dt) const {
+    const double T = turn_rate_;
+    return m_.deviation_mm + m_.axis_deviation * arm +
+           (T * T * std::sqrt(1 + T * T) * arm + 2 * T * travel_) * dt * dt / 8;
+  }
+  /// No point h from the tip goes farther than this.
+  [[nodiscard]] double way(double h) const { return travel_ + h * (m_.axis_to - m_.axis_from).norm(); }
+  [[nodiscard]] bool turns() const { return turns_; }
+  [[nodiscard]] double turn_rate() const { return turn_rate_; }
+
+ private:
+  const path::ToolMotion& m_;
+  double travel_ = 0, turn_rate_ = 0;
+  bool turns_ = false;
+  Vec3 normal_, side_;
+};
+
+/// How far the body reaches from its tip.
+double arm_of(const tool::RoundedFrustum& body) { return std::hypot(body.core.to + body.round, body.widest()); }
+
+/// Largest radius between two heights.
+double widest_between(const tool::RoundedFrustum& body, double low, double high) {
+  const tool::Frustum& f = body.core;
+  const auto at = [&](double h) {
+    return f.radius_from + std::clamp((h - f.from) / (f.to - f.from), 0.0, 1.0) * (f.radius_to - f.radius_from);
+  };
+  return std::max(at(low - body.round), at(high + body.round)) + body.round;
+}
+
+/// Spheres about stretches of some bodies at some moments of a motion, and the cells in them.
+class CellSearch {
+ public:
+  CellSearch(const GearDistance& part, std::span<const tool::RoundedFrustum> bodies, const path::ToolMotion& m,
+             double enough)
+      : part_(part), bodies_(bodies), m_(m), course_(m), enough_(enough) {
+    for (const auto& body : bodies) {
+      low_ = std::min(low_, body.core.from - body.round);
+      high_ = std::max(high_, body.core.to + body.round);
+      widest_ = std::max(widest_, body.widest());
+      arm_ = std::max(arm_, arm_of(body));
+    }
+    enough_ += m.deviation_mm + m.axis_deviation * arm_;
+  }
+
+  /// Each once: zone, tooth, cell in order.
+  [[nodiscard]] std::vector<NearCell> cells() const {
+    const double pitch = part_.gear().pitch();
+    const View first = course_.view(0), last = course_.view(1);
+    std::vector<NearCell> out;
+    Target cell{-1, 0, 0, 1, 0};
+    for (const auto& key : keys()) {
+      const int zone = int(key >> 56), tooth = int(key >> 32 & 0xffffff) - kTeeth;
+      if (zone != cell.zone || tooth != cell.tooth)
+        cell = {zone, tooth, 0, std::cos(tooth * pitch), std::sin(tooth * pitch)};
+      cell.cell = std::size_t(key & 0xffffffff);
+      const Vec3 c = cell.placed(part_.patches(zone).box(cell.cell).centre), a = first(c), b = last(c);
+      out.push_back(
+          {cell, 0.5 * (a + b), b - a, course_.slack(std::sqrt(std::max(a.squaredNorm(), b.squaredNorm())), 1)});
+    }
+    return out;
+  }
+
+ private:
+  [[nodiscard]] std::vector<std::uint64_t> keys() const {
+    const double way = course_.way(arm_), length = high_ - low_;
+    const int parts = std::clamp(int(std::ceil(way / (widest_ + enough_))), 1, 4096);
+    const int links = std::max(1, int(std::ceil(length / std::max(widest_, 0.5))));
+    const double half = 0.5 * length / links;
+    std::vector<std::uint64_t> keys;
+    for (int k = 0; k < links; ++k) {
+      const double from = low_ + 2 * k * half, to = from + 2 * half;
+      double widest = -1;
+      for (const auto& body : bodies_)
+        if (body.core.from - body.round <= to && body.core.to + body.round >= from)
+          widest = std::max(widest, widest_between(body, from, to));
+      if (widest < 0) continue;
+      for (int q = 0; q < parts; ++q) {
+        const double t = (q + 0.5) / parts;
+        add(path::tip_at(m_, t) + path::axis_at(m_, t) * (0.5 * (from + to)),
+            std::hypot(widest, half) + enough_ + 0.5 * way / parts, keys);
+      }
+    }
+    std::sort(keys.begin(), keys.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+    return keys;
+  }
+
+  /// The cells within a sphere.
+  void add(const Vec3& x, double radius_mm, std::vector<std::uint64_t>& keys) const {
+    const double pitch = part_.gear().pitch(), r = radius(x);
+    for (int zone = 0; zone < part_.zones(); ++zone) {
+      const auto& ring = part_.space(zone).ring().zone;
+      const double reach = radius_mm + part_.patches(zone).search_margin();
+      const double end =
+          zone + 1 < part_.zones() ? part_.space(zone + 1).ring().zone.inner_radius_mm : ring.outer_radius_mm;
+      if (x.z() - reach > part_.gear().blank_top()) continue;
+      if (r + reach < ring.inner_radius_mm || r - reach > end) continue;
+      const double away = std::remainder(azimuth(x) - part_.space_azimuth(zone, std::max(r, 1.0)), kTwoPi);
+      const int index = int(std::lround(away / pitch)),
+                wide = 1 + int(std::ceil(reach / (pitch * ring.inner_radius_mm)));
+      for (int tooth = index - wide; tooth <= index + wide; ++tooth)
+        part_.cell_index(zone).near(turned(x, -tooth * pitch), reach, [&](std::size_t c, double within) {
+          keys.push_back(std::uint64_t(zone) << 56 | std::uint64_t(tooth + kTeeth) << 32 | c);
+          return within;
+        });
+    }
+  }
+
+  const GearDistance& part_;
+  std::span<const tool::RoundedFrustum> bodies_;
+  const path::ToolMotion& m_;
+  Course course_;
+  double enough_, low_ = INFINITY, high_ = -INFINITY, widest_ = 0, arm_ = 0;
+};
+
+}  // namespace
+
+NearCells::NearCells(const GearDistance& part, std::span<const tool::RoundedFrustum> bodies,
+                     const path::ToolMotion& motion, double enough_mm)
+    : found_(std::make_unique<Found>(Found{CellSearch(part, bodies, motion, enough_mm).cells()})) {}
+NearCells::NearCells(NearCells&&) noexcept = default;
+NearCells& NearCells::operator=(NearCells&&) noexcept = default;
+NearCells::~NearCells() = default;
+
+namespace {
+
+/// A cell along the whole motion as the tool sees it half way: within x a + y b + z c, |x|, |y|, |z| <= 1, of its
+/// middle, but for `off`.
+class FlatCell {
+ public:
+  /// @param turned  how far the tool turns from half way on, rad
+  FlatCell(const NearCell& near, const BodyBox& box, const View& half_way, double turned)
+      : middle_(near.middle),
+        along_{half_way.turned(near.target.placed(box.a)), half_way.turned(near.target.placed(box.b)),
+               Vec3(0.5 * near.step)},
+        off_(box.off + box.radius * turned + near.strays + kRounding) {}
+
+  /// The tangent plane of a convex distance at x, where it is d and has the slope g, under all of it.
+  [[nodiscard]] double under(const Vec3& x, double d, const Vec3& g) const {
+    double least = d + g.dot(middle_ - x) - off_;
+    for (const Vec3& e : along_) least -= std::abs(g.dot(e));
+    return least;
+  }
+
+  /// The same where a round body about as thick as there comes nearest, or not far from it.
+  [[nodiscard]] double under(const tool::RoundedFrustum& body) const {
+    const Vec3 g = tool::rounded_slope(middle_, body).gradient;
+    const double rho = std::max(std::hypot(middle_.x(), middle_.y()), 1e-6);
+    const Vec3 around(-middle_.y() / rho, middle_.x() / rho, 0);
+    std::array<double, 3> share{}, slope{}, round{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      slope[k] = g.dot(along_[k]);
+      round[k] = around.dot(along_[k]);
+    }
+    for (int n = 0; n < kShareSteps; ++n)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double rest = round[0] * share[0] + round[1] * share[1] + round[2] * share[2] - round[k] * share[k];
+        const double down = slope[k] + round[k] * rest / rho, bend = round[k] * round[k] / rho;
+        share[k] = std::abs(down) >= bend ? (down > 0 ? -1.0 : 1.0) : -down / bend;
+      }
+    const Vec3 x = middle_ + share[0] * along_[0] + share[1] * along_[1] + share[2] * along_[2];
+    const auto [d, there] = tool::rounded_slope(x, body);
+    return under(x, d, there);
+  }
+
+ private:
+  const Vec3& middle_;
+  std::array<Vec3, 3> along_;
+  double off_;
 };
 
 class Sweep {
@@ -68,21 +277,21 @@ class Sweep {
         m_(m),
         o_(options),
         widest_(body.widest()),
-        arm_(std::hypot(body.core.to + body.round, widest_)) {
-    const Vec3 cross = m.axis_from.cross(m.axis_to);
-    turns_ = m.axis_from != m.axis_to;
-    normal_ = cross.norm() > 0 ? Vec3(cross.normalized()) : Vec3(m.axis_from.unitOrthogonal());
-    side_ = m.axis_from.cross(normal_);
-    travel_ = (m.tip_to - m.tip_from).norm();
-    const double half = std::min(0.5 * (m.axis_to - m.axis_from).norm(), 0.9999);
-    turn_rate_ = 2 * half / std::sqrt(1 - half * half);
-  }
+        arm_(arm_of(body)),
+        course_(m),
+        turns_(course_.turns()),
+        turn_rate_(course_.turn_rate()),
+        half_way_(course_.view(0.5)),
+        turned_(0.5 * turn_rate_ + m.axis_deviation) {}
 
-  SweptGap run() {
+  /// @param near  none: found here
+  SweptGap run(const NearCells* near) {
     SweptGap out{o_.enough_mm, o_.enough_mm, 0, "tooth", m_.tip_to};
     const double above = least_height() - part_.gear().blank_top();
     if (above >= o_.enough_mm) return out;
-    gather();
+    std::vector<NearCell> own;
+    if (!near) own = CellSearch(part_, std::span(&body_, 1), m_, o_.enough_mm).cells();
+    gather(near ? near->found().cells : own);
     prove();
     out.pieces = examined_;
     out.proven_mm = std::max(std::min(o_.enough_mm, proven_), above);
@@ -105,89 +314,34 @@ class Sweep {
         std::min(tool::lowest_z(body_, m_.tip_from, m_.axis_from), tool::lowest_z(body_, m_.tip_to, m_.axis_to));
     return ends - arm_ * ((m_.axis_to - m_.axis_from).norm() + m_.axis_deviation) - m_.deviation_mm;
   }
-  [[nodiscard]] View view(double t) const {
-    if (!turns_) return {path::tip_at(m_, t), normal_, side_, m_.axis_from};
-    const Vec3 a = path::axis_at(m_, t);
-    return {path::tip_at(m_, t), normal_, a.cross(normal_), a};
-  }
-  /// What a place at distance `arm` from the tip may leave of the straight line between its two places, seen from the
-  /// tool.
-  [[nodiscard]] double slack(double arm, double dt) const {
-    const double T = turn_rate_;
-    return m_.deviation_mm + m_.axis_deviation * arm +
-           (T * T * std::sqrt(1 + T * T) * arm + 2 * T * travel_) * dt * dt / 8;
-  }
+  [[nodiscard]] View view(double t) const { return course_.view(t); }
+  [[nodiscard]] double slack(double arm, double dt) const { return course_.slack(arm, dt); }
 
-  /// Largest radius between two heights.
-  [[nodiscard]] double widest_between(double low, double high) const {
-    const auto at = [&](double h) {
-      return f_.radius_from + std::clamp((h - f_.from) / (f_.to - f_.from), 0.0, 1.0) * (f_.radius_to - f_.radius_from);
-    };
-    return std::max(at(low - body_.round), at(high + body_.round)) + body_.round;
-  }
-
-  /// Cells that may come near at any moment, each once: zone, tooth, cell in order.
-  [[nodiscard]] std::vector<std::uint64_t> near_cells(double enough) const {
-    const double way = travel_ + arm_ * (m_.axis_to - m_.axis_from).norm();
-    const int parts = std::clamp(int(std::ceil(way / (widest_ + o_.enough_mm))), 1, 4096);
-    const double low = f_.from - body_.round, length = f_.to - f_.from + 2 * body_.round;
-    const int links = std::max(1, int(std::ceil(length / std::max(widest_, 0.5))));
-    const double half = 0.5 * length / links, pitch = part_.gear().pitch();
-    std::vector<std::uint64_t> keys;
-    for (int zone = 0; zone < part_.zones(); ++zone) {
-      const auto& ring = part_.space(zone).ring().zone;
-      const double beyond = enough + 0.5 * way / parts + part_.patches(zone).search_margin();
-      const double end =
-          zone + 1 < part_.zones() ? part_.space(zone + 1).ring().zone.inner_radius_mm : ring.outer_radius_mm;
-      for (int q = 0; q < parts; ++q)
-        for (int k = 0; k < links; ++k) {
-          const double widest = o_.touching ? widest_between(low + 2 * k * half, low + (2 * k + 2) * half) : widest_;
-          const double t = (q + 0.5) / parts, reach = std::hypot(widest, half) + beyond;
-          const Vec3 x = path::tip_at(m_, t) + path::axis_at(m_, t) * (low + (2 * k + 1) * half);
-          if (x.z() - reach > part_.gear().blank_top()) continue;
-          const double r = std::hypot(x.x(), x.y());
-          if (r + reach < ring.inner_radius_mm || r - reach > end) continue;
-          const double azimuth =
-              std::remainder(std::atan2(x.y(), x.x()) - part_.space_azimuth(zone, std::max(r, 1.0)), kTwoPi);
-          const int index = int(std::lround(azimuth / pitch)),
-                    wide = 1 + int(std::ceil(reach / (pitch * ring.inner_radius_mm)));
-          for (int tooth = index - wide; tooth <= index + wide; ++tooth)
-            part_.cell_index(zone).near(turned(x, -tooth * pitch), reach, [&](std::size_t c, double radius) {
-              keys.push_back(std::uint64_t(zone) << 56 | std::uint64_t(tooth + kTeeth) << 32 | c);
-              return radius;
-            });
-        }
-    }
-    std::sort(keys.begin(), keys.end());
-    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-    return keys;
-  }
-
-  void gather() {
-    const double enough = o_.enough_mm + m_.deviation_mm + m_.axis_deviation * arm_, pitch = part_.gear().pitch();
-    const View first = view(0), last = view(1);
+  void gather(const std::vector<NearCell>& cells) {
+    const double enough = o_.enough_mm + m_.deviation_mm + m_.axis_deviation * arm_;
     const tool::PlacedFrustum in_T(f_, Vec3::Zero(), Vec3::UnitZ());
-    std::vector<std::pair<double, Target>> order;
-    Target cell{-1, 0, 0, 1, 0};
-    for (const auto& key : near_cells(enough)) {
-      const int zone = int(key >> 56), tooth = int(key >> 32 & 0xffffff) - kTeeth;
-      if (zone != cell.zone || tooth != cell.tooth)
-        cell = {zone, tooth, 0, std::cos(tooth * pitch), std::sin(tooth * pitch)};
-      cell.cell = std::size_t(key & 0xffffffff);
-      const auto& patches = part_.patches(zone);
-      if (o_.flanks_only && !patches.on_flank(cell.cell)) continue;
-      const Vec3 c = cell.placed(patches.centre(cell.cell)), a = first(c), b = last(c);
-      const double arm = std::sqrt(std::max(a.squaredNorm(), b.squaredNorm()));
-      const double away = 0.5 * (b - a).norm() + slack(arm, 1) + patches.radius(cell.cell);
-      const Vec3 middle = 0.5 * (a + b);
-      if (in_T.beyond(middle, (enough + away + body_.round) * kRoundOff)) continue;
-      const double least = tool::rounded_distance(middle, body_) - away;
-      if (least <= enough) order.push_back({least, cell});
+    struct Near {
+      double about, least;  ///< gap of a sphere about the cell, which tells the order, and of the cell
+      const NearCell* cell;
+    };
+    std::vector<Near> order;
+    for (const NearCell& near : cells) {
+      const auto& patches = part_.patches(near.target.zone);
+      if (o_.flanks_only && !patches.on_flank(near.target.cell)) continue;
+      const BodyBox& box = patches.box(near.target.cell);
+      const double away = 0.5 * near.step.norm() + near.strays + box.radius;
+      if (in_T.beyond(near.middle, (enough + away + body_.round) * kRoundOff)) continue;
+      const auto [d, g] = tool::rounded_slope(near.middle, body_);
+      if (d - away > enough) continue;
+      const double least = std::max(d - away, FlatCell(near, box, half_way_, turned_).under(near.middle, d, g));
+      if (least <= enough) order.push_back({d - away, least, &near});
     }
     // The nearest comes last and is looked at first.
-    std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
-    for (const auto& [least, target] : order) {
-      pieces_.push_back({part_.patches(target.zone).quad(target.cell), std::uint32_t(targets_.size()), 0, 1});
+    std::stable_sort(order.begin(), order.end(), [](const Near& x, const Near& y) { return x.about > y.about; });
+    for (const auto& [about, least, cell] : order) {
+      const Target& target = cell->target;
+      pieces_.push_back(
+          {part_.patches(target.zone).quad(target.cell), std::uint32_t(targets_.size()), 0, 1, least, cell});
       targets_.push_back(target);
     }
   }
@@ -301,8 +455,13 @@ class Sweep {
     while (!pieces_.empty()) {
       const Piece piece = pieces_.back();
       pieces_.pop_back();
+      if (piece.least >= std::min(best_, o_.enough_mm)) continue;
       Target& target = targets_[piece.target];
       const auto& patches = part_.patches(target.zone);
+      if (piece.whole && o_.touching &&
+          FlatCell(*piece.whole, patches.box(target.cell), half_way_, turned_).under(body_) >=
+              std::min(best_, o_.enough_mm))
+        continue;
       const BodyHull hull = patches.outline(target.cell, piece.quad);
       if (hull.count == 0) continue;  // wholly beyond the ring
       const double dt = piece.t1 - piece.t0;
@@ -386,7 +545,9 @@ class Sweep {
   }
 
   void halve(const Piece& piece, const BodyPatches& patches, std::size_t cell, bool in_time) {
-    Piece a = piece, b = piece;
+    Piece a = piece;
+    a.whole = nullptr;
+    Piece b = a;
     if (in_time) {
       a.t1 = b.t0 = 0.5 * (piece.t0 + piece.t1);
     } else {
@@ -403,9 +564,12 @@ class Sweep {
   const tool::Frustum& f_;
   const path::ToolMotion& m_;
   const SweptGapOptions& o_;
-  double widest_, arm_, travel_ = 0, turn_rate_ = 0;
-  bool turns_ = false;
-  Vec3 normal_, side_;
+  double widest_, arm_;
+  Course course_;
+  bool turns_;
+  double turn_rate_;
+  View half_way_;
+  double turned_;  // from half way on
   std::vector<Target> targets_;
   std::vector<Piece> pieces_;
   double proven_ = INFINITY;
@@ -417,7 +581,12 @@ class Sweep {
 
 SweptGap swept_gap(const GearDistance& part, const tool::RoundedFrustum& body, const path::ToolMotion& motion,
                    const SweptGapOptions& options) {
-  return Sweep(part, body, motion, options).run();
+  return Sweep(part, body, motion, options).run(nullptr);
+}
+
+SweptGap swept_gap(const GearDistance& part, const tool::RoundedFrustum& body, const path::ToolMotion& motion,
+                   const SweptGapOptions& options, const NearCells& near) {
+  return Sweep(part, body, motion, options).run(&near);
 }
 
 SweptGap swept_gap(const GearDistance& part, const tool::Frustum& body, const path::ToolMotion& motion,

@@ -13,6 +13,8 @@
 
 #include <cmath>
 #include <cstddef>
+#include <memory>
+#include <span>
 
 #include "cam/analytic/gear_distance.h"
 #include "cam/path/tool_motion.h"
@@ -42,7 +44,26 @@ struct SweptGapOptions {
   double settled_mm = INFINITY;  ///< a bound above this is good enough, however much larger the least gap is
 };
 
-/// Least gap of one body over one motion. All teeth are seen.
+/// What of the part may come near some bodies of a tool along one motion: found once for all of them.
+class NearCells {
+ public:
+  /// @param enough_mm  the greatest `SweptGapOptions::enough_mm` of the bodies
+  NearCells(const GearDistance& part, std::span<const tool::RoundedFrustum> bodies, const path::ToolMotion& motion,
+            double enough_mm);
+  NearCells(NearCells&&) noexcept;
+  NearCells& operator=(NearCells&&) noexcept;
+  ~NearCells();
+  struct Found;
+  [[nodiscard]] const Found& found() const { return *found_; }
+
+ private:
+  std::unique_ptr<Found> found_;
+};
+
+/// Least gap of one body over one motion. All teeth are seen. @param near  made for this body, and perhaps others, and
+/// the same motion
+[[nodiscard]] SweptGap swept_gap(const GearDistance& part, const tool::RoundedFrustum& body,
+                                 const path::ToolMotion& motion, const SweptGapOptions& options, const NearCells& near);
 [[nodiscard]] SweptGap swept_gap(const GearDistance& part, const tool::RoundedFrustum& body,
                                  const path::ToolMotion& motion, const SweptGapOptions& options);
 [[nodiscard]] SweptGap swept_gap(const GearDistance& part, const tool::Frustum& body, const path::ToolMotion& motion,

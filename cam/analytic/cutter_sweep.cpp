@@ -17,6 +17,7 @@ constexpr double kSearchPad = 1e-4;   // mm: sag of edges, by which two distance
 constexpr double kWreckShare =
     0.5;  // a ball whose centre is this near, in radii, is bounded by all that can be asked for
 constexpr int kCutterHalvings = 24;
+constexpr int kLooksAbove = 3;           // rows at which the whole flute above is looked at before each row is
 constexpr double kShortestPiece = 1e-6;  // mm: shorter pieces are not halved
 
 /// Heights of the flute in ball radii: close above the centre first, where the flute leaves the contact slowly.
@@ -101,7 +102,7 @@ CutterFinding CutterSweep::check(const path::ToolMotion& motion, const KnownDept
   const double ball = std::exchange(found_.bound_mm, -INFINITY);
   flute_leaves_ = INFINITY;
   if (known.good(1)) found_.bound_mm = known.of_part[1];
-  else flute(least);
+  else flute(least, ball);
   // A wreck is bounded already; there and above the part nothing was asked of the flute.
   part_bounds_ = {ball, least <= -within_ ? ball : std::max(found_.bound_mm, -flute_leaves_)};
   found_.bound_mm = std::max(ball, found_.bound_mm);
@@ -176,12 +177,50 @@ double CutterSweep::fresh(Row& row) {
   return least_between(d0, keeps, L) - path::line_slack(*m_, R_ + row.height, 1);
 }
 
+/// The same of all heights from this one on.
+double CutterSweep::remembered_above(const Row& row) const {
+  if (!row.above_known) return -INFINITY;
+  double away = 0;
+  for (const double t : {0.0, 1.0})
+    away = std::max({away, (place(t, row.height) - row.low).norm(), (place(t, top_) - row.high).norm()});
+  return row.keeps - away - path::line_slack(*m_, R_ + top_, 1);
+}
+
+double CutterSweep::fresh_above(Row& row) {
+  const double length = top_ - row.height;
+  const Vec3 a = place(0, row.height), b = place(1, row.height), A = place(0, top_), B = place(1, top_);
+  const double L = std::max((b - a).norm(), (B - A).norm());  // no height between goes farther
+  double keeps0 = row.above_known ? row.keeps - std::max((a - row.low).norm(), (A - row.high).norm()) : -INFINITY;
+  const double keeps = part_.surface_keeps(b, m_->axis_to, length, within_);
+  if (L == 0) keeps0 = keeps;
+  else if (least_between(keeps0, keeps, L) < R_ + 0.5 * (within_ - R_))
+    keeps0 = part_.surface_keeps(a, m_->axis_from, length, within_);
+  row.above_known = true;
+  row.low = b;
+  row.high = B;
+  row.keeps = keeps;
+  return least_between(keeps0, keeps, L) - path::line_slack(*m_, R_ + top_, 1);
+}
+
+/// Is all of the flute from a height on, where the axis keeps `low`, no deeper than `free_mm` by one look along the
+/// axis? Between that height and the row the parabola holds.
+bool CutterSweep::clear_above(Row& row, double height, double low, double free_mm) {
+  const double H = row.height - height;
+  double keeps = remembered_above(row);
+  if (R_ - least_between(low, keeps, H) > free_mm) keeps = std::max(keeps, fresh_above(row));
+  const double least = least_between(low, keeps, H);
+  if (R_ - least > free_mm) return false;
+  found_.bound_mm = std::max(found_.bound_mm, R_ - least);
+  return true;
+}
+
 /// The flute, height by height. At every moment the axis is a straight line: between two heights whose least distances
 /// are proven, the same parabola bounds what lies between them. Where that keeps the axis off the surface, from a
 /// centre outside of it, no height lies inside.
-void CutterSweep::flute(double low) {
+void CutterSweep::flute(double low, double ball_bound) {
   if (low <= -within_) return;  // a wreck, bounded already
   double h = 0;
+  int looks = kLooksAbove;
   const double roof = part_.gear().blank_top();
   for (Row& row : rows_) {
     if (const double above =
@@ -190,6 +229,7 @@ void CutterSweep::flute(double low) {
       flute_leaves_ = above;
       return;  // above the part from here on
     }
+    if (looks-- > 0 && clear_above(row, h, low, std::max(ball_bound, 0.0))) return;
     const double H = row.height - h;
     double high = remembered(row);
     const auto good = [&] { return settled(least_between(low, high, H), worst_, 0, R_); };

@@ -60,12 +60,16 @@ class CutterSweep {
   [[nodiscard]] std::size_t queries() const { return queries_; }
 
  private:
-  /// A height of the tool axis above the ball centre whose distance was asked somewhere before.
+  /// A height of the tool axis above the ball centre whose distance was asked somewhere before, and the whole axis from
+  /// there on.
   struct Row {
     double height = 0;
     bool known = false;
     Vec3 at = Vec3::Zero();
     double distance = 0;
+    bool above_known = false;
+    Vec3 low = Vec3::Zero(), high = Vec3::Zero();  // of the axis above, where it was asked last,
+    double keeps = 0;                              // and how far all of it kept from the surface
   };
   /// A distance asked to its full range: neighbouring stretches share their corners.
   struct Known {
@@ -79,9 +83,12 @@ class CutterSweep {
   [[nodiscard]] double height_above() const;
   bool centre(double& least);
   double ball(double t0, double t1, const NearestPlace& q0, const NearestPlace& q1, int depth);
-  void flute(double least_at_centre);
+  void flute(double least_at_centre, double ball_bound);
   [[nodiscard]] double remembered(const Row& row) const;
   double fresh(Row& row);
+  [[nodiscard]] double remembered_above(const Row& row) const;
+  double fresh_above(Row& row);
+  bool clear_above(Row& row, double height, double low, double free_mm);
   void patch(double t0, double t1, double h0, double h1, double d00, double d10, double d01, double d11, int depth);
   double at(double t, double height);
 

@@ -17,6 +17,19 @@ constexpr double kTreeError = 1e-7;  // mm: of distances to facets, with room to
 constexpr double kBorder = 1e-9;     // a foot this far beyond the border of a piece (in its parameter) still counts
 // Corrected pieces share their normals to 1e-5 only; a foot so little beyond is about 1e-6 mm wrong.
 constexpr double kCorrectedBorder = 3e-5;
+constexpr double kShortLine = 0.5;  // a line that spans more than this share of its radius is not looked at
+
+/// Radii and heights that some places have.
+struct Extent {
+  double r_low, r_high, z_low, z_high;
+};
+
+double beyond(double low, double high, double x) { return std::max({low - x, x - high, 0.0}); }
+
+/// The line's least distance from the z axis.
+double least_radius(const Vec3& from, const Vec3& to) {
+  return distance_to_segment(Vec3::Zero(), {from.x(), from.y(), 0}, {to.x(), to.y(), 0});
+}
 
 }  // namespace
 
@@ -59,6 +72,12 @@ struct GearDistance::Impl {
     const auto& [c, s] = turns[std::size_t(int(tooth) + half_turn)];
     return {c * p.x() - s * p.y(), s * p.x() + c * p.y(), p.z()};
   }
+  /// How many teeth a place at radius r lies from space 0: whole numbers are the middles of the openings.
+  [[nodiscard]] double spaces_from_0(const GearRing& ring, double r, double azimuth) const {
+    return std::remainder(azimuth - ring.lookup(ring.opening, r), kTwoPi) / pitch;
+  }
+  template <typename Facets>
+  [[nodiscard]] double keeps(const Extent& places, double within, const Facets& facets) const;
   class Question;
 };
 
@@ -280,29 +299,61 @@ class GearDistance::Impl::Question {
   NearestPlace best_;
 };
 
-double GearDistance::surface_keeps(const Vec3& p, double within) const {
-  if (impl_->refusal) return 0;
+/// @param facets  facets(ring, least): how far the places keep from the facets of a ring, up to `least`
+template <typename Facets>
+double GearDistance::Impl::keeps(const Extent& places, double within, const Facets& facets) const {
+  if (refusal) return 0;
   double least = within;
-  const double r = radius(p), azimuth = toothpath::azimuth(p);
-  for (std::size_t zone = 0; zone < impl_->rings.size(); ++zone) {
-    const auto& ring = *impl_->rings[zone];
-    if (std::max(ring.r_in - r, r - ring.r_out) < least) {
-      const double away = std::remainder(azimuth - ring.lookup(ring.opening, r), kTwoPi);
-      const Vec3 c = impl_->to_space_0(p, std::round(away / impl_->pitch));
-      const double lost = ring.facet_sag + kTreeError;
-      for (const auto* facets : {&ring.whole_facets, &ring.border_facets, &ring.other_facets})
-        least = std::min(least, facets->least(c, least + lost) - lost);
+  for (std::size_t zone = 0; zone < rings.size(); ++zone) {
+    const auto& ring = *rings[zone];
+    if (std::max(ring.r_in - places.r_high, places.r_low - ring.r_out) < least) {
+      least = facets(ring, least);
       // The facets of the ends stop below the roots, the ring goes on.
-      least = std::min(least, std::hypot(std::max(p.z() - ring.base_mm, 0.0),
-                                         std::min(std::abs(r - ring.r_in), std::abs(r - ring.r_out))));
+      least = std::min(least, std::hypot(std::max(places.z_low - ring.base_mm, 0.0),
+                                         std::min(beyond(places.r_low, places.r_high, ring.r_in),
+                                                  beyond(places.r_low, places.r_high, ring.r_out))));
     }
     // The floor of the groove up to the next ring.
-    if (zone + 1 < impl_->rings.size()) {
-      const double beside = std::max({ring.r_out - r, r - impl_->rings[zone + 1]->r_in, 0.0});
-      least = std::min(least, std::hypot(beside, p.z() - impl_->groove_floor));
+    if (zone + 1 < rings.size()) {
+      const double beside = std::max({ring.r_out - places.r_high, places.r_low - rings[zone + 1]->r_in, 0.0});
+      least = std::min(least, std::hypot(beside, beyond(places.z_low, places.z_high, groove_floor)));
     }
   }
   return std::max(least, 0.0);
+}
+
+double GearDistance::surface_keeps(const Vec3& p, double within) const {
+  const double r = radius(p), at = toothpath::azimuth(p);
+  return impl_->keeps({r, r, p.z(), p.z()}, within, [&](const GearRing& ring, double least) {
+    const Vec3 c = impl_->to_space_0(p, std::round(impl_->spaces_from_0(ring, r, at)));
+    const double lost = ring.facet_sag + kTreeError;
+    for (const auto* facets : {&ring.whole_facets, &ring.border_facets, &ring.other_facets})
+      least = std::min(least, facets->least(c, least + lost) - lost);
+    return least;
+  });
+}
+
+double GearDistance::surface_keeps(const Vec3& from, const Vec3& axis, double length, double within) const {
+  const Vec3 to = from + length * axis, middle = 0.5 * (from + to);
+  const double half = 0.5 * std::hypot(to.x() - from.x(), to.y() - from.y()), r = radius(middle),
+               at = toothpath::azimuth(middle);
+  const auto z = std::minmax(from.z(), to.z());
+  const Extent places{least_radius(from, to), std::max(radius(from), radius(to)), z.first, z.second};
+  return impl_->keeps(places, within, [&](const GearRing& ring, double least) {
+    // The spaces in which places of the line stand: each sees the facets of its own.
+    const double sine = half / r;
+    if (!(sine < kShortLine)) return 0.0;
+    const double turn = sine / std::sqrt(1 - sine * sine) + ring.opening_slope * half,
+                 about = 0.5 + 1e-9 + turn / impl_->pitch, middle_space = impl_->spaces_from_0(ring, r, at);
+    const double lost = ring.facet_sag + kTreeError;
+    for (double k = std::ceil(middle_space - about); k <= middle_space + about; ++k) {
+      const double space = std::remainder(k, double(impl_->gear.parameters().teeth));
+      const Vec3 c = impl_->to_space_0(from, space), along = impl_->to_space_0(axis, space);
+      for (const auto* facets : {&ring.whole_facets, &ring.border_facets, &ring.other_facets})
+        least = std::min(least, facets->least_along(c, along, length, least + lost) - lost);
+    }
+    return least;
+  });
 }
 
 NearestPlace GearDistance::nearest(const Vec3& asked, double within) const {

@@ -48,6 +48,10 @@ class GearDistance {
   /// How far a point keeps from the surface at least, up to `within`, on either side of it: by facets and their proven
   /// sags, so up to some micrometres less than it does. At a fraction of the cost of `nearest`.
   [[nodiscard]] double surface_keeps(const Vec3& p, double within) const;
+  /// The same of every place of the straight line from `from` along the unit vector `axis`: for little more than one
+  /// place costs. What stands beside the line, above its start, is taken by its distance across the axis: less than is
+  /// true where the axis points away from it.
+  [[nodiscard]] double surface_keeps(const Vec3& from, const Vec3& axis, double length, double within) const;
 
   /// Why there is no distance to this gear: key within [gear] and message; none for a gear that can be asked.
   [[nodiscard]] const std::optional<face_gear::FaceGearRefusal>& refusal() const;

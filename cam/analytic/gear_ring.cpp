@@ -186,6 +186,9 @@ class Maker {
       tip_[1].push_back(last_minus);
     }
     for (std::size_t k = 0; k < R.tip_plus.size(); ++k) R.opening.push_back(0.5 * (R.tip_plus[k] + R.tip_minus[k]));
+    for (std::size_t k = 0; k + 1 < R.opening.size(); ++k)
+      R.opening_slope = std::max(
+          R.opening_slope, 1.000001 * std::abs(R.opening[k + 1] - R.opening[k]) / (R.table_r[k + 1] - R.table_r[k]));
     R.z_tip_in = space_.surface().z_tip(R.r_in);
     R.z_tip_out = space_.surface().z_tip(R.r_out);
     for (int k = 1; k < 64; ++k) {

@@ -51,6 +51,7 @@ struct GearRing {
   double z_tip_in = 0, z_tip_out = 0;
   std::vector<double> table_r, mid, tip_plus, tip_minus;  ///< azimuths over r
   std::vector<double> opening;                            ///< azimuth of the middle between the tip edges, over r
+  double opening_slope = 0;                               ///< the most by which it turns, rad/mm
   std::vector<std::vector<Vec2>> profiles;                ///< (azimuth, z) of the sheet at every station
   std::vector<std::vector<Vec2>> profile_steps;  ///< from there to the next station, the azimuth the short way round
   std::vector<Vec2> end_in, end_out;             ///< the same at the ends, tip to tip

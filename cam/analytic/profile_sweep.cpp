@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "cam/path/motion_blend.h"
 
@@ -36,16 +37,33 @@ double ProfileSweep::left_of(const Body& body, const path::ToolMotion& m) const 
          path::line_slack(m, body.arm, 1);
 }
 
+/// How far a body is looked at: farther where it was in the open.
+double ProfileSweep::look_ahead(const Body& body) {
+  return kProfileLook + (body.known && body.gap < kProfileLook ? 0 : kFreeAhead);
+}
+
+/// The cells near all bodies that must be looked at.
+NearCells ProfileSweep::near_all(const path::ToolMotion& m, const KnownDepths& known) const {
+  std::vector<tool::RoundedFrustum> shapes;
+  double enough = 0;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    if (known.good(k) || left_of(bodies_[k], m) >= kProfileLook) continue;
+    shapes.push_back(bodies_[k].shape);
+    enough = std::max(enough, look_ahead(bodies_[k]));
+  }
+  return {part_, shapes, m, enough};
+}
+
 /// The depth that is proven.
-double ProfileSweep::look(Body& body, const path::ToolMotion& m) {
+double ProfileSweep::look(Body& body, const path::ToolMotion& m, const NearCells& near) {
   SweptGapOptions o;
   o.touching = true;
-  o.enough_mm = kProfileLook + (body.known && body.gap < kProfileLook ? 0 : kFreeAhead);
+  o.enough_mm = look_ahead(body);
   o.contact_mm = kClose;
   o.contact_proof_mm = proof_;
   o.proof_mm = kApartProof;
   o.settled_mm = -worst_ - 0.5 * proof_;
-  const auto gap = swept_gap(part_, body.shape, m, o);
+  const auto gap = swept_gap(part_, body.shape, m, o, near);
   queries_ += gap.pieces;
   body.known = true;
   body.tip = m.tip_to;
@@ -74,12 +92,14 @@ CutterFinding ProfileSweep::check(const path::ToolMotion& m, const KnownDepths& 
     std::fill(part_bounds_.begin(), part_bounds_.end(), kUnknownDepth);
     return found_;
   }
+  std::optional<NearCells> near;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     Body& body = bodies_[k];
     if (known.good(k)) {
       part_bounds_[k] = known.of_part[k];
     } else if (left_of(body, m) < kProfileLook) {
-      part_bounds_[k] = look(body, m);
+      if (!near) near = near_all(m, known);
+      part_bounds_[k] = look(body, m, *near);
     } else {
       part_bounds_[k] = -kProfileLook;
       found_.measured_mm = std::max(found_.measured_mm, -kProfileLook);

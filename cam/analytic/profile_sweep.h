@@ -48,7 +48,9 @@ class ProfileSweep {
     double gap = 0;                                 // and its proven gap there
   };
   [[nodiscard]] double left_of(const Body& body, const path::ToolMotion& m) const;
-  double look(Body& body, const path::ToolMotion& m);
+  [[nodiscard]] static double look_ahead(const Body& body);
+  [[nodiscard]] NearCells near_all(const path::ToolMotion& m, const KnownDepths& known) const;
+  double look(Body& body, const path::ToolMotion& m, const NearCells& near);
 
   const GearDistance& part_;
   double ball_top_, proof_, tolerance_;

@@ -40,4 +40,11 @@ double FacetTree::least(const Vec3& p, double within) const {
   return std::sqrt(mesh_kernels().nearest(view(), at.data(), within * within, {}).squared);
 }
 
+double FacetTree::least_along(const Vec3& from, const Vec3& axis, double length, double within) const {
+  if (owner_.empty() || !(within > 0)) return within;
+  const Vec3 at = from - tree_.origin();
+  const CapsuleView line{{at.x(), at.y(), at.z()}, {axis.x(), axis.y(), axis.z()}, length};
+  return std::sqrt(mesh_kernels().along(view(), line, within * within));
+}
+
 }  // namespace toothpath::clearance

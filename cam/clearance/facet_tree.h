@@ -43,6 +43,10 @@ class FacetTree {
 
   /// The least distance, up to `within`.
   [[nodiscard]] double least(const Vec3& p, double within) const;
+  /// A lower bound of the least distance from any place of the straight line from `from` along the unit vector `axis`,
+  /// up to `within`. Exact for facets whose place nearest to `from` does not lie above it; for the others the distance
+  /// across the axis counts.
+  [[nodiscard]] double least_along(const Vec3& from, const Vec3& axis, double length, double within) const;
 
  private:
   [[nodiscard]] std::span<const BlockHit> gather(const Vec3& p, double within, double slack, std::span<BlockHit> few,

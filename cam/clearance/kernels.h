@@ -89,6 +89,9 @@ struct MeshKernels {
   /// and lane as 8 * block + lane. Writes at most `most`, returns how many there are.
   std::size_t (*beside_flute)(const TreeView&, const BoxGroup*, std::size_t groups, const CapsuleView&, double limit2,
                               std::int64_t* out, std::size_t most);
+  /// Lower bound of the squared distance between the axis of the flute, from the ball's centre to its top, and the
+  /// triangles, up to `limit2`.
+  double (*along)(const TreeView&, const CapsuleView&, double limit2);
   /// Lower bounds of the distance between a frustum and the eight boxes of a node, or the eight triangles of a block.
   void (*frustum_to_boxes)(const MeshNode&, const FrustumView&, double* out);
   void (*frustum_to_triangles)(const TriangleBlock&, const FrustumView&, double* out);

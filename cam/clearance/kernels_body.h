@@ -34,10 +34,16 @@ INLINE V to_boxes(const MeshNode& node, const double* p, int half) {
   return sum;
 }
 
+/// Takes no notice of where on a triangle the nearest place lies.
+struct Anywhere {
+  INLINE void operator()(M, V, V) const {}
+};
+
 /// Squared distances from p to four triangles: the least of the edges and, where the foot lies inside, of the plane.
 /// Every candidate is the distance to a point of the triangle, so that a sliver can only come out too far, by less than
-/// its width.
-INLINE V to_triangles(const TriangleBlock& b, const double* p, int half) {
+/// its width. @param foot  foot(better, v, w): where `better`, a + v ab + w ac is nearer than what was told before
+template <typename Foot = Anywhere>
+INLINE V to_triangles(const TriangleBlock& b, const double* p, int half, Foot&& foot = {}) {
   const V px = p[0] - at(b.a[0], half), py = p[1] - at(b.a[1], half), pz = p[2] - at(b.a[2], half);
   const V ux = at(b.ab[0], half), uy = at(b.ab[1], half), uz = at(b.ab[2], half);
   const V wx = at(b.ac[0], half), wy = at(b.ac[1], half), wz = at(b.ac[2], half);
@@ -45,15 +51,22 @@ INLINE V to_triangles(const TriangleBlock& b, const double* p, int half) {
   const V pp = px * px + py * py + pz * pz;
   const V d1 = px * ux + py * uy + pz * uz, d2 = px * wx + py * wy + pz * wz;
   const V t1 = clamp01(d1 * at(b.inverse_ab, half)), t2 = clamp01(d2 * at(b.inverse_ac, half));
-  V best = least(t1 * (t1 * g11 - 2 * d1), t2 * (t2 * g22 - 2 * d2));
+  V best = t1 * (t1 * g11 - 2 * d1);
+  const auto take = [&](V squared, V v, V w) __attribute__((always_inline)) {
+    const M better = squared < best;
+    best = better ? squared : best;
+    foot(better, v, w);
+  };
+  foot(best == best, t1, all(0));
+  take(t2 * (t2 * g22 - 2 * d2), all(0), t2);
   // Edge bc: from b, so p - b = (p - a) - ab and c - b = ac - ab.
   const V d3 = d2 - d1 - g12 + g11, l3 = g11 - 2 * g12 + g22, t3 = clamp01(d3 * at(b.inverse_bc, half));
-  best = least(best, g11 - 2 * d1 + t3 * (t3 * l3 - 2 * d3));
+  take(g11 - 2 * d1 + t3 * (t3 * l3 - 2 * d3), 1 - t3, t3);
   const V det = at(b.inverse_det, half);
   const V v = (g22 * d1 - g12 * d2) * det, w = (g11 * d2 - g12 * d1) * det;
   const V plane = v * (v * g11 - 2 * d1) + w * (w * g22 - 2 * d2) + 2 * v * w * g12;
   const M inside = (v >= 0) & (w >= 0) & (v + w <= 1);
-  best = least(best, inside ? plane : all(kHuge));
+  take(inside ? plane : all(kHuge), v, w);
   return most(pp + best, all(0));
 }
 
@@ -64,10 +77,10 @@ struct Open {
 };
 
 /// The children of a node that lie below a limit (squared) go on the stack, the nearest on top. Returns its new height.
-INLINE int open_children(const MeshNode& node, const double* p, double limit2, Open* stack, int open) {
+INLINE int open_children(const MeshNode& node, V d0, V d1, double limit2, Open* stack, int open) {
   alignas(32) double d[kLanes];
-  store(d, 0, to_boxes(node, p, 0));
-  store(d, 1, to_boxes(node, p, 1));
+  store(d, 0, d0);
+  store(d, 1, d1);
   const int first = open;
   for (int i = 0; i < kLanes; ++i) {
     if (!(d[i] < limit2)) continue;
@@ -114,7 +127,8 @@ TriangleHit nearest(const TreeView& tree, const double* p, double limit2, Triang
       take(tree.blocks[~next.node], ~next.node, p, hit);
       continue;
     }
-    open = open_children(tree.nodes[next.node], p, hit.squared, stack, open);
+    const MeshNode& node = tree.nodes[next.node];
+    open = open_children(node, to_boxes(node, p, 0), to_boxes(node, p, 1), hit.squared, stack, open);
   }
   return hit;
 }
@@ -147,7 +161,8 @@ unsigned long near(const TreeView& tree, const double* p, double limit2, double 
       }
       continue;
     }
-    open = open_children(tree.nodes[next.node], p, within, stack, open);
+    const MeshNode& node = tree.nodes[next.node];
+    open = open_children(node, to_boxes(node, p, 0), to_boxes(node, p, 1), within, stack, open);
   }
   return count;
 }
@@ -259,23 +274,28 @@ INLINE V beside_axis(const TriangleBlock& b, const CapsuleView& s, const double*
   return top > 0 ? d + up * up : all(kHuge);
 }
 
-unsigned long beside_flute(const TreeView& tree, const BoxGroup* groups, unsigned long count, const CapsuleView& s,
-                           double limit2, std::int64_t* out, unsigned long room) {
-  // Two directions across the axis.
-  const double ax = s.axis[0] < 0 ? -s.axis[0] : s.axis[0], ay = s.axis[1] < 0 ? -s.axis[1] : s.axis[1];
-  double e[3] = {0, 0, 0}, f[3];
+/// Two directions across an axis.
+INLINE void across(const double* axis, double* e, double* f) {
+  const double ax = axis[0] < 0 ? -axis[0] : axis[0], ay = axis[1] < 0 ? -axis[1] : axis[1];
+  e[0] = e[1] = e[2] = 0;
   if (ax < ay) {
-    e[1] = -s.axis[2];
-    e[2] = s.axis[1];
+    e[1] = -axis[2];
+    e[2] = axis[1];
   } else {
-    e[0] = s.axis[2];
-    e[2] = -s.axis[0];
+    e[0] = axis[2];
+    e[2] = -axis[0];
   }
   const double length = __builtin_sqrt(e[0] * e[0] + e[1] * e[1] + e[2] * e[2]);
-  for (double& c : e) c /= length;
-  f[0] = s.axis[1] * e[2] - s.axis[2] * e[1];
-  f[1] = s.axis[2] * e[0] - s.axis[0] * e[2];
-  f[2] = s.axis[0] * e[1] - s.axis[1] * e[0];
+  for (int k = 0; k < 3; ++k) e[k] /= length;
+  f[0] = axis[1] * e[2] - axis[2] * e[1];
+  f[1] = axis[2] * e[0] - axis[0] * e[2];
+  f[2] = axis[0] * e[1] - axis[1] * e[0];
+}
+
+unsigned long beside_flute(const TreeView& tree, const BoxGroup* groups, unsigned long count, const CapsuleView& s,
+                           double limit2, std::int64_t* out, unsigned long room) {
+  double e[3], f[3];
+  across(s.axis, e, f);
   const double limit = __builtin_sqrt(limit2);
   unsigned long found = 0;
   for (unsigned long g = 0; g < count; ++g) {
@@ -315,6 +335,45 @@ unsigned long beside_flute(const TreeView& tree, const BoxGroup* groups, unsigne
     }
   }
   return found;
+}
+
+/// Lower bounds of the squared distances from a segment to four triangles. The distance of a convex set is convex along
+/// the segment: where the place nearest to its start lies below, nothing above the start is nearer.
+INLINE V to_segment(const TriangleBlock& b, const CapsuleView& s, const double* e, const double* f, int half) {
+  const double* u = s.axis;
+  const V ha = (at(b.a[0], half) - s.centre[0]) * u[0] + (at(b.a[1], half) - s.centre[1]) * u[1] +
+               (at(b.a[2], half) - s.centre[2]) * u[2];
+  const V hu = at(b.ab[0], half) * u[0] + at(b.ab[1], half) * u[1] + at(b.ab[2], half) * u[2];
+  const V hw = at(b.ac[0], half) * u[0] + at(b.ac[1], half) * u[1] + at(b.ac[2], half) * u[2];
+  V height = all(0);
+  const V start = to_triangles(
+      b, s.centre, half, [&](M better, V v, V w) __attribute__((always_inline)) {
+        height = better ? ha + v * hu + w * hw : height;
+      });
+  return height > 0 ? least(start, beside_axis(b, s, e, f, half)) : start;
+}
+
+double along(const TreeView& tree, const CapsuleView& s, double limit2) {
+  double e[3], f[3];
+  across(s.axis, e, f);
+  double best = limit2;
+  Open stack[kStack];
+  int open = 0;
+  stack[open++] = {0, 0};
+  while (open > 0) {
+    const Open next = stack[--open];
+    if (next.d >= best) continue;
+    if (next.node < 0) {
+      const TriangleBlock& block = tree.blocks[~next.node];
+      const double d = least_lane(least(to_segment(block, s, e, f, 0), to_segment(block, s, e, f, 1)));
+      best = d < best ? d : best;
+      continue;
+    }
+    const MeshNode& node = tree.nodes[next.node];
+    const V d0 = segment_to_boxes(node, s, 0), d1 = segment_to_boxes(node, s, 1);
+    open = open_children(node, d0 * d0, d1 * d1, best, stack, open);
+  }
+  return best;
 }
 
 /// Lower bound of the distance between a frustum and spheres whose centres stand at height h and distance rho from the

@@ -1,7 +1,10 @@
 #include "cam/cut/swept_tool.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
+#include <utility>
 
 namespace toothpath::cut {
 namespace {
@@ -9,6 +12,7 @@ namespace {
 constexpr int kMomentSteps = 40;   // of the bracket of a moment; each at least halves it every second time
 constexpr double kMoment = 1e-12;  // share of a motion
 constexpr int kMostStretches = 12;
+constexpr std::size_t kSeen = 64;  // bodies in motion that were looked at last: each has several boxes
 
 /// The distance at a moment and its rate.
 struct AtMoment {
@@ -30,13 +34,14 @@ AtMoment at_moment(const Vec3& p, const tool::RoundedFrustum& body, const path::
 }
 
 /// Where the cutting part may be during a motion, below `top`: every stretch of every body about as long as it is wide.
-/// `owners`: the motion of each box.
+/// `owners`: the motion of each box, times the number of bodies, and the body.
 std::vector<analytic::Box> boxes_of(const std::vector<path::ToolMotion>& motions,
                                     const std::vector<tool::RoundedFrustum>& cutting, double top,
                                     std::vector<std::size_t>& owners) {
   std::vector<analytic::Box> boxes;
   for (std::size_t k = 0; k < motions.size(); ++k)
-    for (const auto& body : cutting) {
+    for (std::size_t part = 0; part < cutting.size(); ++part) {
+      const auto& body = cutting[part];
       const tool::Frustum& core = body.core;
       const double length = core.to - core.from;
       const int stretches = std::clamp(int(std::ceil(length / (2 * body.widest()))), 1, kMostStretches);
@@ -59,7 +64,7 @@ std::vector<analytic::Box> boxes_of(const std::vector<path::ToolMotion>& motions
         if (box.low.z() > top && n > 0) continue;
         box.high.z() = std::max(std::min(box.high.z(), top), box.low.z());
         boxes.push_back(box);
-        owners.push_back(k);
+        owners.push_back(k * cutting.size() + part);
       }
     }
   return boxes;
@@ -68,7 +73,15 @@ std::vector<analytic::Box> boxes_of(const std::vector<path::ToolMotion>& motions
 }  // namespace
 
 double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const path::ToolMotion& m, double enough) {
-  const AtMoment first = at_moment(p, body, m, 0), last = at_moment(p, body, m, 1);
+  const AtMoment first = at_moment(p, body, m, 0);
+  // Seen from the tool, the place goes no farther than `way` + turn arm, and leaves the tangent of its way by no more
+  // than `bends`; the distance is convex in the place, with a slope of 1 at most.
+  const double way = (m.tip_to - m.tip_from).norm(), arm = (p - m.tip_from).norm() + way,
+               half = std::min(0.5 * (m.axis_to - m.axis_from).norm(), 0.9999),
+               turn = 2 * half / std::sqrt(1 - half * half),
+               bends = 0.5 * (turn * turn * std::sqrt(1 + turn * turn) * arm + 2 * turn * way);
+  if (first.distance + std::max(std::min(first.rate, 0.0) - bends, -way - turn * arm) > enough) return first.distance;
+  const AtMoment last = at_moment(p, body, m, 1);
   double least = std::min(first.distance, last.distance);
   if (first.rate >= 0 || last.rate <= 0) return least;
   // A tangent from either end bounds it from below, but for what turns; half a micrometre stands for that.
@@ -94,10 +107,12 @@ SweptTool::SweptTool(std::vector<path::ToolMotion> motions, std::vector<tool::Ro
 
 double SweptTool::excess_after(std::size_t count, const Vec3& p, double cap) const {
   double best = cap;
+  std::array<std::size_t, kSeen> seen;
+  seen.fill(SIZE_MAX);
   index_.near(p, std::max(cap, 0.0), [&](std::size_t box, double) {
-    const std::size_t k = owners_[box];
-    if (k >= count) return std::max(best, 0.0);
-    for (const auto& body : cutting_) best = std::min(best, least_distance(p, body, motions_[k], best));
+    const std::size_t owner = owners_[box], k = owner / cutting_.size();
+    if (k >= count || std::exchange(seen[owner % kSeen], owner) == owner) return std::max(best, 0.0);
+    best = std::min(best, least_distance(p, cutting_[owner % cutting_.size()], motions_[k], best));
     return std::max(best, 0.0);
   });
   return best;

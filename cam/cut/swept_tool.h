@@ -35,7 +35,7 @@ class SweptTool {
  private:
   std::vector<path::ToolMotion> motions_;
   std::vector<tool::RoundedFrustum> cutting_;
-  std::vector<std::size_t> owners_;  ///< motions of the boxes of the index
+  std::vector<std::size_t> owners_;  ///< of the boxes of the index: motion times the number of bodies, and body
   analytic::SpatialIndex index_;
 };
 

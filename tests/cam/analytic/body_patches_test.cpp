@@ -55,6 +55,14 @@ class Patches : public testing::TestWithParam<std::string> {
 
 TEST_P(Patches, NothingRestsOnSampling) { EXPECT_EQ(part.unproven(), 0U); }
 
+/// Does a box reach as far along g as the place p?
+testing::AssertionResult box_holds(const analytic::BodyBox& box, const Vec3& p, const Vec3& g) {
+  const double beyond = std::abs(g.dot(p - box.centre)) - std::abs(g.dot(box.a)) - std::abs(g.dot(box.b)) - box.off;
+  if (beyond <= 1e-9 && (p - box.centre).norm() <= box.radius + 1e-9) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << beyond << " beyond the box, " << (p - box.centre).norm() << " of " << box.radius
+                                     << " from its centre";
+}
+
 /// A quad, halved at random some times, under a random direction: no place of its piece of the surface lies lower than
 /// its corners less `above`, or farther from the place of the hull with the same weights than `sag`.
 TEST_P(Patches, HullsHoldTheirPieces) {
@@ -83,6 +91,9 @@ TEST_P(Patches, HullsHoldTheirPieces) {
                        !(q.stands[0] && q.stands[1] && q.stands[2] && q.stands[3]);
       if (cut) continue;  // a place that was moved to a border may belong to a quad beside it
       EXPECT_GE(g.dot(*p), low - patches.above(cell, q, g) - 1e-11) << patches.name(cell) << " " << k;
+      const analytic::BodyBox& box = patches.box(cell);
+      for (const Vec3& along : {g, Vec3(box.a.cross(box.b).normalized())})
+        EXPECT_TRUE(box_holds(box, *p, along)) << patches.name(cell) << " " << k;
       least = std::min(least, g.dot(*p) - low + patches.above(cell, q, g));
       // Bilinear weights stand for the hull; a quad that is no parallelogram lies beside them by less than its second
       // differences.
@@ -115,13 +126,14 @@ TEST_P(Patches, TheSolidIsCovered) {
           for (int in = 0; in < part.zones() && !held; ++in) {
             const auto& patches = part.patches(in);
             part.cell_index(in).near(p, patches.search_margin() + 1e-6, [&](std::size_t cell, double radius) {
-              if (held || (p - patches.centre(cell)).norm() > patches.radius(cell) + 1e-9) return radius;
+              if (held || (p - patches.box(cell).centre).norm() > patches.box(cell).radius + 1e-9) return radius;
               const analytic::BodyHull hull = patches.outline(cell, patches.quad(cell));
               if (hull.count == 0) return radius;
               held = std::all_of(directions.begin(), directions.end(), [&](const Vec3& g) {
                 double low = INFINITY;
                 for (std::size_t n = 0; n < hull.count; ++n) low = std::min(low, g.dot(hull.corner[n].p));
-                return g.dot(p) >= low - patches.above(cell, patches.quad(cell), g) - 1e-8;
+                return g.dot(p) >= low - patches.above(cell, patches.quad(cell), g) - 1e-8 &&
+                       box_holds(patches.box(cell), p, g);
               });
               return radius;
             });

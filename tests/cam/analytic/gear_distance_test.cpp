@@ -141,6 +141,74 @@ TEST_P(Distance, FacetsKeepBelowTheTruthBelowTheTeeth) {
   EXPECT_GT(near, 1000);
 }
 
+/// A line somewhere about the teeth, upright or leaning by up to half a radian: beside ends, in spaces, over lands and
+/// groove, below the teeth.
+struct Line {
+  Vec3 from, axis;
+  double length;
+};
+Line random_line(const face_gear::FaceGear& gear, test::Random& random, int k) {
+  const double h = gear.parameters().module_mm, a = random(-3.1415, 3.1415);
+  double r = random(gear.inner_radius() - h, gear.outer_radius() + h);
+  if (k % 4 == 1) r = (k % 8 == 1 ? gear.outer_radius() : gear.inner_radius()) + random(-0.3, 0.6) * h;
+  if (k % 4 == 2 && gear.rings().size() > 1)
+    r = random(gear.rings()[0].zone.outer_radius_mm, gear.rings()[1].zone.inner_radius_mm) + random(-0.2, 0.2) * h;
+  const double z =
+      k % 4 == 1 && k % 3 == 0 ? gear.lowest_root() - random(0, 4) * h : gear.blank_top() + random(-2.2, 0.5) * h;
+  const double lean = k % 2 == 0 ? random(0, 0.05) : random(0, 0.5), to = random(0, 6.28);
+  return {Vec3(r * std::cos(a), r * std::sin(a), z),
+          Vec3(std::sin(lean) * std::cos(to), std::sin(lean) * std::sin(to), std::cos(lean)),
+          k % 7 == 0 ? random(0, 8) * h : random(0, 3) * h};
+}
+
+// Every place of a line keeps what is told of the line: in the space of its start, in the next one, and beside them.
+TEST_P(Distance, LinesKeepBelowTheTruth) {
+  test::Random random(43);
+  const double within = 0.6 * reach;
+  int near = 0, close = 0;
+  for (int k = 0; k < 4000; ++k) {
+    const Line line = random_line(gear, random, k);
+    const double keeps = part.surface_keeps(line.from, line.axis, line.length, within);
+    double truth = within;
+    for (int n = 0; n <= 20; ++n) {
+      const Vec3 c = line.from + n / 20.0 * line.length * line.axis;
+      const auto q = part.nearest(c, within);
+      if (q.distance >= 0 || q.exact) truth = std::min(truth, std::abs(q.distance));
+    }
+    EXPECT_LE(keeps, truth + 2e-7) << k << ": " << line.from.transpose() << ", " << line.axis.transpose();
+    near += truth < within && truth > 0.1 * within;
+    close += truth < within && truth > 0.1 * within && keeps > 0.8 * truth;
+  }
+  EXPECT_GT(near, 300);
+  EXPECT_GT(close, near / 4);
+}
+
+// The same against dense samples of the exact surfaces: ball mills above every patch, upright and leaning.
+TEST_P(Distance, LinesOverEveryPatchKeepBelowBruteForce) {
+  test::Random random(47);
+  const double within = 0.5 * reach;
+  int near = 0;
+  for (int zone = 0; zone < part.zones(); ++zone)
+    for (int patch = 0; patch < 9; ++patch) {
+      if (patch == 8 && zone + 1 == part.zones()) continue;
+      for (int k = 0; k < 12; ++k) {
+        double x = random(0, 1), y = random(0, 1);
+        if (k % 3 == 1) y = random(0, 1) < 0.5 ? 0 : 1;
+        if (k % 3 == 2) x = random(0, 1) < 0.5 ? 0 : 1;
+        if (patch == 6 || patch == 7) y *= 0.6;
+        const Vec3 from = brute.point(zone, patch, x, y) + random(0.01, 0.5) * within * brute.normal(zone, patch, x, y);
+        const Vec3 axis = (Vec3::UnitZ() + random.vector(k % 2 == 0 ? 0.05 : 0.4)).normalized();
+        const double length = random(0, 2.5) * gear.parameters().module_mm;
+        const double keeps = part.surface_keeps(from, axis, length, within);
+        near += keeps > 0 && keeps < within;
+        for (int n = 0; n <= 6; ++n)
+          EXPECT_LE(keeps, brute.nearest(from + n / 6.0 * length * axis).distance + 2e-7)
+              << BruteForceGearSolid::name(patch) << " " << from.transpose() << ", " << axis.transpose();
+      }
+    }
+  EXPECT_GT(near, 30);
+}
+
 // A conical root rises along the tooth: a short look that sees no surface must still tell air from material at every
 // radius.
 TEST(DistanceOnACone, ShortLooksTellAirFromMaterial) {

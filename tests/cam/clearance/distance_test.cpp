@@ -240,6 +240,8 @@ TEST(MeshDistance, KernelsAgreeBitForBit) {
     ASSERT_EQ(fast.beside_flute(tree, window.groups(), window.size(), s, 4, u.data(), u.size()),
               plain.beside_flute(tree, window.groups(), window.size(), s, 4, v.data(), v.size()));
     ASSERT_EQ(u, v);
+    const double c = fast.along(tree, s, 4), d2 = plain.along(tree, s, 4);
+    ASSERT_EQ(std::memcmp(&c, &d2, sizeof(double)), 0);
     const clearance::FrustumView f = clearance::frustum_view({1, 5, 1, 3, tool::Body::holder}, p, axis);
     alignas(64) double d[clearance::kLanes], e[clearance::kLanes];
     fast.frustum_to_boxes(tree.nodes[0], f, d);
@@ -358,6 +360,42 @@ TEST(FacetTree, TellsWhoseFacetsLieNear) {
     }
   }
   EXPECT_EQ(clearance::FacetTree().least(Vec3::Zero(), 3), 3) << "none";
+}
+
+// A line keeps no more than the distance of any of its places, and all of it from facets that lie behind its start.
+TEST(FacetTree, LinesKeepBelowTheTruth) {
+  Random random(41);
+  int exact = 0, near = 0;
+  for (int asked = 0; asked < 300; ++asked) {
+    std::vector<clearance::Facet> facets;
+    for (std::uint32_t k = 0; k < 60; ++k) {
+      const Vec3 a(random(-5, 5), random(-5, 5), random(-5, 5));
+      const Vec3 b = a + random.vector(1);
+      facets.push_back({{a, b, k % 3 == 0 ? b : Vec3(a + random.vector(1))}, k});
+    }
+    const clearance::FacetTree tree(facets);
+    const Vec3 from = random.vector(5), axis = random.vector(1).normalized();
+    const double length = asked % 7 == 0 ? 0 : random(0, 6), within = random(0.5, 4);
+    double truth = INFINITY, start = INFINITY, across = INFINITY;
+    for (const auto& f : facets) {
+      Vec3 foot;
+      const auto line = [&](double from_h, double to_h) {
+        return std::sqrt(clearance::segment_to_triangle(from + from_h * axis, axis, to_h - from_h,
+                                                        {f.corner[0], f.corner[1], f.corner[2]}, foot));
+      };
+      truth = std::min(truth, line(0, length));
+      start = std::min(start, reference_distance(from, f.corner[0], f.corner[1], f.corner[2]));
+      across = std::min(across, line(-20, 20));
+    }
+    const double told = tree.least_along(from, axis, length, within);
+    EXPECT_LE(told, std::min(truth, within) + 1e-9);
+    EXPECT_GE(told, std::min({across, start, within}) - 1e-9);
+    exact += truth < within && told > truth - 1e-9;
+    near += truth < within;
+  }
+  EXPECT_GT(near, 200);
+  EXPECT_GT(exact, near / 2);
+  EXPECT_EQ(clearance::FacetTree().least_along(Vec3::Zero(), Vec3::UnitX(), 2, 3), 3) << "none";
 }
 
 }  // namespace

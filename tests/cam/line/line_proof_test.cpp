@@ -526,6 +526,42 @@ TEST(SweptTools, ExcessOfRandomPoints) {
   EXPECT_LT(worst, 1e-8);
 }
 
+// What is left out of a chain of motions and bodies is what cannot be the least: the same to a nanometre as all of
+// them, each looked at to its end.
+TEST(SweptTools, NothingThatIsLeastIsLeftOut) {
+  Random random(15);
+  tool::CutterData measured = tapered_mill(0.5, 5, 4, 4, 22);
+  measured.meridian = tool::MeridianError{{0, 1, 2, 3, 3.6}, {0, 0.001, -0.001, 0.0005, 0.001}};
+  for (const auto& mill : {tapered_mill(0.5, 5, 4, 4, 22), measured}) {
+    const auto tool = tool::proof_tool(profile_of(mill), 1);
+    std::vector<path::ToolMotion> motions;
+    Vec3 tip = Vec3::Zero(), axis = Vec3::UnitZ();
+    for (int k = 0; k < 120; ++k) {
+      path::ToolMotion m;
+      m.tip_from = tip, m.axis_from = axis;
+      tip += k % 10 == 9 ? random.vector(0.6) : random.vector(0.1);
+      axis = (axis + random.vector(k % 3 == 0 ? 0.2 : 0.01)).normalized();
+      m.tip_to = tip, m.axis_to = axis;
+      motions.push_back(m);
+    }
+    const cut::SweptTool swept(motions, tool.cutting, 100);
+    int near = 0;
+    for (int k = 0; k < 400; ++k) {
+      const auto& m = motions[random.index(motions.size())];
+      const Vec3 p = m.tip_from + random(0, 3.5) * m.axis_from + random.vector(0.5);
+      const double cap = random(0.001, 0.3);
+      double least = cap;
+      for (const auto& motion : motions)
+        for (const auto& body : tool.cutting) least = std::min(least, cut::least_distance(p, body, motion, INFINITY));
+      const double found = swept.excess(p, cap);
+      EXPECT_GE(found, least);
+      EXPECT_LE(found, least + 1e-9) << k;
+      near += least < cap;
+    }
+    EXPECT_GT(near, 100);
+  }
+}
+
 // The feed of the contact: what is slowest limits it.
 TEST(ContactFeed, LimitsOfTipAxisAndBlock) {
   const Vec3 a(0, 0, 0), b(0.4, 0, 0), z = Vec3::UnitZ(), lean(std::sin(0.01), 0, std::cos(0.01));
