@@ -145,11 +145,16 @@ bool has_land(const face_gear::FaceGearParameters& gear, double r, double z_tip)
   constexpr int kPlaces = 200;
   const test::BruteForceFaceGear brute(gear, gear.zones.front().helix_angle_rad);
   const double step = 2 * kPi / gear.teeth / kPlaces;
-  const auto spare = [&](double a) { return brute.least_clearance(Vec3(r * std::cos(a), r * std::sin(a), z_tip)); };
+  const auto spare = [&](double a, double enough = -INFINITY) {
+    return brute.least_clearance(Vec3(r * std::cos(a), r * std::sin(a), z_tip), enough);
+  };
+  for (int k = 0; k < kPlaces; ++k)
+    if (spare(k * step, 0) > 0) return true;
+  // A land thinner than a step: one tooth, one maximum.
   double most = -INFINITY, at = 0;
   for (int k = 0; k < kPlaces; ++k)
     if (const double here = spare(k * step); here > most) most = here, at = k * step;
-  double a = at - step, b = at + step;  // one tooth: one maximum
+  double a = at - step, b = at + step;
   while (most <= 0 && b - a > 1e-9) {
     const double p = a + (b - a) / 3, q = b - (b - a) / 3, at_p = spare(p), at_q = spare(q);
     most = std::max({most, at_p, at_q});
@@ -183,6 +188,57 @@ TEST(UndercutFold, ThinRingsAreRefusedOnlyWhereThereIsNoTooth) {
   std::printf("%d taken, %d refused\n", taken, refused);
   EXPECT_GE(taken, 20);
   EXPECT_GE(refused, 60);
+}
+
+/// Rings that begin hardly outside their limit: the ball does not come to their inner end, or cuts into the fillet
+/// there.
+struct CloseRing {
+  int shaper_teeth, teeth;
+  double module, helix_deg, tip_radius, beyond_limit, width, ball;
+  const char* why;
+};
+face_gear::FaceGearParameters gear_of(const CloseRing& c) {
+  face_gear::FaceGearParameters g;
+  g.shaper_teeth = c.shaper_teeth;
+  g.teeth = c.teeth;
+  g.module_mm = c.module;
+  g.module_plane = face_gear::ModulePlane::normal;
+  g.pressure_angle_rad = radians(14.5);
+  g.shaper_tip_radius_mm = c.tip_radius;
+  const double helix = radians(c.helix_deg);
+  const double inner =
+      face_gear::zone_limits(face_gear::make_surface<double>(g, helix), g.module_mm).hard_inner_limit + c.beyond_limit;
+  g.zones = {{helix, inner, inner + c.width}};
+  return g;
+}
+
+// Nothing is planned into the surface there and left to the proof: the refusal tells value and limit, and which ball
+// and which inner radius would do. Those do.
+TEST(UndercutFold, CloseToTheLimitARefusalTellsWhatWouldDo) {
+  for (const auto& c : {CloseRing{34, 100, 1.25, 60, 0.304, 0.05, 0.4, 0.519, "mm are missing at its inner end"},
+                        CloseRing{42, 179, 1.447, -60, 0.367, 0.0718, 0.4, 0.476, "into the finished surface"}}) {
+    const auto plan_of = [&](const face_gear::FaceGearParameters& parameters, double ball) {
+      const face_gear::FaceGear gear = test::made(parameters);
+      const auto tool = test::ball_mill(ball, 5, 0.95 * ball, 14, 10);
+      const analytic::GearDistance part(gear, ball::reach_of({tool}));
+      return plan::plan_face_gear(part, {tool}, {test::finishing(0, 0.03, 0.002)}, {});
+    };
+    auto gear = gear_of(c);
+    const auto refused = plan_of(gear, c.ball);
+    ASSERT_FALSE(refused.has_value());
+    const std::string words = refused.refused()->diagnostic.message;
+    SCOPED_TRACE(words);
+    EXPECT_NE(words.find(c.why), std::string::npos);
+    const double ball = test::number_after(words, "would do, planned as a trial: a diameter of "),
+                 inner = test::number_after(words, "an inner_radius of ");
+    EXPECT_GT(inner, gear.zones.front().inner_radius_mm);
+    if (!std::isnan(ball)) {
+      EXPECT_LT(ball, c.ball);
+      EXPECT_TRUE(plan_of(gear, ball).has_value());
+    }
+    gear.zones.front().inner_radius_mm = inner;
+    EXPECT_TRUE(plan_of(gear, c.ball).has_value());
+  }
 }
 
 }  // namespace
