@@ -141,8 +141,11 @@ OrientationRefusal RefusalWords::blocked(const std::vector<BallPass>& passes, co
     return {fmt::format("{} {}", place(worst.point), flute_words(worst.point))};
   const std::string more =
       spots.size() > 1 ? fmt::format(" (nor at {} more places, this is the worst)", spots.size() - 1) : "";
-  return {fmt::format("{} no direction is clear{}: the best leans {:.1f} deg and {}; {}", place(worst.point), more,
-                      degrees(angle_between(axis, check_.frame().up)), keeps(body, gap), tools_that_do(spots, plans))};
+  return {
+      fmt::format("{} no direction within {:.0f} deg of the normal of the pitch surface is clear{}: the best leans "
+                  "{:.1f} deg and {}; {}",
+                  place(worst.point), degrees(o_.farthest_lean_rad), more,
+                  degrees(angle_between(axis, check_.frame().up)), keeps(body, gap), tools_that_do(spots, plans))};
 }
 
 OrientationRefusal RefusalWords::parted(const OrientationWay& way, std::size_t station, const Plans& plans) const {

@@ -1,5 +1,6 @@
 #include "cam/ball/plan.h"
 
+#include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -37,6 +38,11 @@ constexpr double kTurnMargin = 0.02;
 /// Roughing works on tables of the offset walls: this covers the sag between their entries, mm.
 constexpr double kRoughingPad = 0.004;
 
+/// What is tried where a tool has no passes: shares of its diameter; of the module, how much farther out a zone begins
+/// that begins within `kCloseToLimit` of its limit; and to which that is told, mm.
+constexpr double kSmallerBalls[] = {0.85, 0.7, 0.5, 0.3}, kFartherOut[] = {0.02, 0.05, 0.1, 0.2, 0.4};
+constexpr double kCloseToLimit = 0.5, kToldSize = 0.01;
+
 // mm beyond the stock that a hop looks for it.
 constexpr double kStockMargin = 0.05;
 
@@ -69,7 +75,11 @@ class Planner::Work {
                         [&](std::size_t zone) { zones[zone] = plan_passes(n, int(zone)); });
     });
     for (std::size_t zone = 0; zone < zones.size(); ++zone) {
-      if (const auto* refusal = (*zones[zone]).refused()) return *refusal;
+      if (const auto* refusal = (*zones[zone]).refused()) {
+        PlanRefusal told = *refusal;
+        told.diagnostic.message += what_would_do(n, int(zone));
+        return told;
+      }
       if (auto refusal = lead_tool(n, int(zone), (*zones[zone]).value(), plan_.path, plan_.summary)) return *refusal;
     }
     return std::move(plan_);
@@ -109,6 +119,46 @@ class Planner::Work {
     if (auto refusal = roughing ? rough(n, room, out) : finish(n, zone, room, out)) return *refusal;
     out.summary.passes = int(out.passes.size());
     return out;
+  }
+
+  /// In words: the largest ball and the least inner radius with which the same passes were planned; as trials.
+  [[nodiscard]] std::string what_would_do(int n, int zone) const {
+    std::vector<std::string> found;
+    const double diameter = tool_of(n).diameter_mm;
+    for (const double share : kSmallerBalls) {
+      std::vector<tool::ToolAssembly> tools = tools_;
+      tool::ToolAssembly& tool = tools[std::size_t(operation(n).tool)];
+      tool.diameter_mm = std::floor(share * diameter / kToldSize) * kToldSize;
+      tool.corner_radius_mm = std::min(tool.corner_radius_mm, 0.5 * tool.diameter_mm);
+      if (tool.diameter_mm < kToldSize || operation(n).scallop_mm > 0.2 * tool.diameter_mm) break;
+      if (Work(part_, tools, operations_, o_).plan_passes(n, zone).refused()) continue;
+      found.push_back(fmt::format("a diameter of {:.2f} mm (now {:g})", tool.diameter_mm, diameter));
+      break;
+    }
+    if (const auto radius = inner_radius_that_does(n, zone))
+      found.push_back(fmt::format("an inner_radius of {:.2f} mm (now {:g})", *radius,
+                                  part_.space(zone).ring().zone.inner_radius_mm));
+    if (found.empty()) return "; a smaller tool that would do was not found";
+    return fmt::format("; would do, planned as a trial: {}", fmt::join(found, ", or "));
+  }
+  /// Of a zone that begins close to where its flanks begin.
+  [[nodiscard]] std::optional<double> inner_radius_that_does(int n, int zone) const {
+    const auto& ring = part_.space(zone).ring();
+    const double module = part_.gear().parameters().module_mm, inner = ring.zone.inner_radius_mm;
+    if (ring.correction || inner > ring.limits.hard_inner_limit + kCloseToLimit * module) return {};
+    for (const double share : kFartherOut) {
+      face_gear::FaceGearParameters moved = part_.gear().parameters();
+      auto& its = moved.zones[std::size_t(zone)];
+      its.inner_radius_mm = std::ceil((inner + share * module) / kToldSize) * kToldSize;
+      if (!(its.inner_radius_mm < its.outer_radius_mm)) break;
+      auto gear = face_gear::FaceGear::make(moved);
+      if (gear.refused()) continue;
+      const face_gear::FaceGear made = std::move(gear).value();
+      const analytic::GearDistance part(made, reach_of(tools_));
+      if (part.refusal() || Work(part, tools_, operations_, o_).plan_passes(n, zone).refused()) continue;
+      return its.inner_radius_mm;
+    }
+    return {};
   }
 
   /// Way that a ball has beyond the ends of a zone, at most `wanted`. mm
@@ -403,10 +453,19 @@ class Planner::Work {
         return PlanRefusal{
             key + ".tool",
             fail("tool {} in zone {}: its ball of radius {:.4f} mm would cut {:.4f} mm into the finished surface with "
-                 "its centre at radius {:.4f}, height {:.4f}; the limit is {:.4f} mm",
+                 "its centre at radius {:.4f}, height {:.4f}; the limit is {:.4f} mm{}",
                  tool.number, zone, R, cut, std::hypot(point->centre.x(), point->centre.y()), point->centre.z(),
-                 o_.limits.gouge_mm)};
+                 o_.limits.gouge_mm, beside_the_limit(zone))};
     return {};
+  }
+
+  /// Of a zone that begins close to where its flanks begin, in words.
+  [[nodiscard]] std::string beside_the_limit(int zone) const {
+    const auto& ring = part_.space(zone).ring();
+    const double beyond = ring.zone.inner_radius_mm - ring.limits.hard_inner_limit;
+    if (beyond > kCloseToLimit * part_.gear().parameters().module_mm) return "";
+    return fmt::format(" (the zone begins {:.4f} mm outside its limit, {:.4f} mm)", beyond,
+                       ring.limits.hard_inner_limit);
   }
 
   /// Run-outs go straight on beyond the ends of the ring; where the end of a tooth stands in the way (close to an

@@ -31,12 +31,7 @@ class PassMaker {
       from = std::min(from, radius_of_contact_at(asked_.other, ring.inner_radius_mm));
       to = std::max(to, radius_of_contact_at(asked_.other, ring.outer_radius_mm));
     }
-    if (std::isnan(from) || std::isnan(to))
-      return fail(
-          "the flank ends inside the ring: ball centres reach contact radii {:.4f} to {:.4f}, the ring is {:.4f} to "
-          "{:.4f}",
-          contact_radius(asked_.sigma(sheet_.r_from()), sheet_.r_from()),
-          contact_radius(asked_.sigma(sheet_.r_to()), sheet_.r_to()), ring.inner_radius_mm, ring.outer_radius_mm);
+    if (std::isnan(from) || std::isnan(to)) return ends_inside(ring, std::isnan(from));
     const double begin = std::max(from, asked_.r_low), end = std::min(to, asked_.r_high);
     if (!(end > begin)) return SheetPass{};
     const auto curve = sample_curve([this](double r) { return on_sheet(r); }, begin, end, o_.chord_mm, longest());
@@ -49,6 +44,16 @@ class PassMaker {
 
  private:
   [[nodiscard]] double longest() const { return 4.0 * o_.ball_radius_mm; }
+
+  [[nodiscard]] Diagnostic ends_inside(const face_gear::FaceGearZone& ring, bool at_inner_end) const {
+    const double least = contact_radius(asked_.sigma(sheet_.r_from()), sheet_.r_from()),
+                 most = contact_radius(asked_.sigma(sheet_.r_to()), sheet_.r_to());
+    return fail(
+        "the flank ends inside the ring (undercut): a ball of radius {:.4f} mm touches it at radii {:.4f} to "
+        "{:.4f} mm, the ring is {:.4f} to {:.4f} mm; {:.3g} mm are missing at its {} end",
+        o_.ball_radius_mm, least, most, ring.inner_radius_mm, ring.outer_radius_mm,
+        at_inner_end ? least - ring.inner_radius_mm : ring.outer_radius_mm - most, at_inner_end ? "inner" : "outer");
+  }
 
   [[nodiscard]] double contact_radius(double sigma, double r) const {
     const auto s = sheet_.at(sigma, r);

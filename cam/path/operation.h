@@ -47,7 +47,7 @@ struct MillingOperation {
   double step_over_mm = 0;  ///< roughing: between passes of a layer
   double allowance_mm = 0;  ///< stock left, along the normal of the finished surface
   double scallop_mm = 0;    ///< semi-finishing and finishing: cusp height between passes, the largest of its regions
-  std::optional<ByRegion<double>> scallops_mm;  ///< another one for each region; none: `scallop_mm` everywhere
+  std::optional<ByRegion<double>> scallops_mm;  ///< another one for each of `regions`; none: `scallop_mm` everywhere
   ByRegion<bool> regions{{true, true, true}};   ///< semi-finishing and finishing: what is cut; line milling: the flank
   double chord_tolerance_mm = 0.005;            ///< sag of a block against the exact path; not asked for: 0.005
   bool climb = true;
@@ -70,7 +70,10 @@ struct MillingOperation {
   /// kMostRaise times that at most where the operation does not finish, never above the chip load. mm/min
   [[nodiscard]] double feed_for(double steepest, int teeth) const;
   static constexpr double kMostRaise = 3;
-  [[nodiscard]] double scallop_in(Region region) const { return scallops_mm ? (*scallops_mm)[region] : scallop_mm; }
+  /// A region that is not cut has the largest of the others: heights of its own are those of `regions` alone.
+  [[nodiscard]] double scallop_in(Region region) const {
+    return scallops_mm && regions[region] ? (*scallops_mm)[region] : scallop_mm;
+  }
   /// Largest misfit that a line-milled flank may keep.
   [[nodiscard]] double most_misfit_mm() const { return left_mm.value_or(kDefaultLeft); }
   static constexpr double kDefaultLeft = 5e-3;  ///< mm

@@ -45,6 +45,7 @@ class Rapid {
     frustums_.push_back({core, round});
     stretches_.push_back({core.from - round, core.to + round, widest, core.body});
     arm_ = std::max(arm_, std::hypot(core.to + round, widest));
+    foot_ = std::min(foot_, core.from - round);
   }
   /// How far any point of the tool strays from its place at the middle of [t0, t1] beyond the straight way of the tip.
   [[nodiscard]] double stray(double t0, double t1) const {
@@ -89,6 +90,7 @@ class Rapid {
     if (least - run >= o_.outer_radius_mm) return true;
     if (o_.inner_radius_mm > 0 && most + run <= o_.inner_radius_mm) return true;
     if (highest(tip, axis) + rise <= o_.bottom_mm) return true;
+    if (foot_ + (tip.dot(axis) - std::abs(half.dot(axis)) - turning) >= o_.farthest(axis) - kBlankTouch) return true;
     if (run + rise < kSmallestRapid + 2 * (m_.deviation_mm + arm_ * m_.axis_deviation) || depth > 40) {
       proof.t = 0.5 * (t0 + t1);
       proof.tip = tip;
@@ -104,6 +106,7 @@ class Rapid {
   std::vector<tool::RoundedFrustum> frustums_;
   std::vector<RapidStretch> stretches_;
   double arm_ = 0, ball_radius_ = 0;
+  double foot_ = 0;  ///< of the whole tool, above the tip
 };
 
 }  // namespace

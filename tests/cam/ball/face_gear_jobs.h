@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <memory>
 
@@ -47,6 +48,12 @@ inline path::MillingOperation finishing(int tool, double scallop, double chord, 
   if (chord > 0) o.chord_tolerance_mm = chord;
   o.allowance_mm = allowance;
   return o;
+}
+
+/// The number after a word of a message.
+inline double number_after(const std::string& text, const std::string& word) {
+  const auto at = text.find(word);
+  return at == std::string::npos ? NAN : std::stod(text.substr(at + word.size()));
 }
 
 /// A gear with its distance query and one planned job.

@@ -1,4 +1,6 @@
-// Heights of micrometres that a plan must keep: a small allowance, and the cusps of the fillets.
+// Heights of micrometres that a plan must keep: a small allowance, the cusps of the fillets, and those that regions
+// have of their own.
+#include "cam/ball/finishing.h"
 #include "geometry/face_gear/offset_sheet.h"
 #include "tests/cam/ball/face_gear_jobs.h"
 
@@ -7,13 +9,15 @@ namespace {
 
 struct Segment {
   Vec3 from, to;
+  double ball_radius = 0;
 };
-/// Ball centres of everything that is fed.
+/// Ways of the ball centre of everything that is fed.
 std::vector<Segment> fed(const path::ClPath& path, double ball_radius) {
   std::vector<Segment> out;
   for (std::size_t k = 1; k < path.records.size(); ++k) {
     const auto &a = path.records[k - 1], &b = path.records[k];
-    if (b.kind == path::MoveKind::feed) out.push_back({a.tip + ball_radius * a.axis, b.tip + ball_radius * b.axis});
+    if (b.kind == path::MoveKind::feed)
+      out.push_back({a.tip + ball_radius * a.axis, b.tip + ball_radius * b.axis, ball_radius});
   }
   return out;
 }
@@ -22,6 +26,35 @@ double distance_to(const Segment& s, const Vec3& p) {
   const Vec3 way = s.to - s.from;
   const double t = way.squaredNorm() > 0 ? std::clamp((p - s.from).dot(way) / way.squaredNorm(), 0.0, 1.0) : 0;
   return (p - s.from - t * way).norm();
+}
+
+/// The highest place of every region of the space, above the nearest ball.
+struct Highest {
+  double left = 0, sigma = 0, r = 0;
+};
+path::ByRegion<Highest> highest_places(const analytic::GearDistance& part, const std::vector<Segment>& segments) {
+  constexpr int kRadii = 48, kPlacesOfPiece = 160;
+  const auto& space = part.space(0);
+  const double inner = space.ring().zone.inner_radius_mm, outer = space.ring().zone.outer_radius_mm;
+  const face_gear::OffsetSheet surface(space, 0, inner, outer, 17);
+  path::ByRegion<Highest> out;
+  for (int j = 0; j <= kRadii; ++j) {
+    const double r = inner + (outer - inner) * j / kRadii;
+    std::vector<Segment> near;
+    for (const auto& s : segments)
+      if (std::abs(std::hypot(s.from.x(), s.from.y()) - r) < 6 * s.ball_radius + (s.to - s.from).norm())
+        near.push_back(s);
+    for (int k = 0; k <= 5 * kPlacesOfPiece; ++k) {
+      const double sigma = double(k) / kPlacesOfPiece;
+      const auto at = surface.raw(sigma, r);
+      if (!at) continue;
+      double left = INFINITY;
+      for (const auto& s : near) left = std::min(left, distance_to(s, at->contact.p) - s.ball_radius);
+      Highest& most = out[ball::FinishingOptions::region_at(sigma)];
+      if (left > most.left) most = {left, sigma, r};
+    }
+  }
+  return out;
 }
 
 // The chord is a share of the allowance where that is smaller than what may be gouged: of every place of the way of the
@@ -59,33 +92,47 @@ TEST(SmallHeights, CuspsOfTheFilletsAreAsAskedAndTold) {
     const analytic::GearDistance part(gear, ball::reach_of({tool}));
     const auto plan = plan::plan_face_gear(part, {tool}, {test::finishing(0, c.scallop, c.chord)}, {});
     ASSERT_TRUE(plan.has_value()) << plan.refused()->diagnostic.message;
-    const auto segments = fed(plan.value().paths.front(), 0.5 * c.ball);
-    const auto& space = part.space(0);
-    const double inner = space.ring().zone.inner_radius_mm, outer = space.ring().zone.outer_radius_mm;
-    const face_gear::OffsetSheet surface(space, 0, inner, outer, 17);
-    constexpr int kRadii = 48, kPlaces = 480;
-    double highest = 0, sigma_of_highest = 0, r_of_highest = 0;
-    for (int j = 0; j <= kRadii; ++j) {
-      const double r = inner + (outer - inner) * j / kRadii;
-      std::vector<Segment> near;
-      for (const auto& s : segments)
-        if (std::abs(std::hypot(s.from.x(), s.from.y()) - r) < 3 * c.ball + (s.to - s.from).norm()) near.push_back(s);
-      for (int k = 0; k <= kPlaces; ++k) {
-        const double sigma = 1 + 3.0 * k / kPlaces;
-        const auto at = surface.raw(sigma, r);
-        if (!at) continue;
-        double least = INFINITY;
-        for (const auto& s : near) least = std::min(least, distance_to(s, at->contact.p));
-        if (least - 0.5 * c.ball > highest) highest = least - 0.5 * c.ball, sigma_of_highest = sigma, r_of_highest = r;
-      }
-    }
+    const auto most = highest_places(part, fed(plan.value().paths.front(), 0.5 * c.ball));
+    const Highest &fillet = most[path::Region::fillet], &root = most[path::Region::root],
+                  &worst = fillet.left > root.left ? fillet : root;
+    const double highest = worst.left;
     const auto& told = plan.value().operations.front();
     std::printf("%s ball %.2f: asked %.2f um, highest %.2f um at sigma %.3f, r %.3f, told %.2f um\n", c.gear, c.ball,
-                1000 * c.scallop, 1000 * highest, sigma_of_highest, r_of_highest, 1000 * told.scallop_max_mm);
+                1000 * c.scallop, 1000 * highest, worst.sigma, worst.r, 1000 * told.scallop_max_mm);
     EXPECT_GT(highest, 0.6 * c.scallop);
     EXPECT_LE(highest, c.scallop + told.chord_mm);
     EXPECT_GE(told.scallop_max_mm + told.chord_mm, highest);
     EXPECT_LE(told.scallop_max_mm, c.scallop);
+  }
+}
+
+// The flanks by one operation, fillets and root by another with a height for each: no height is asked where the other
+// operation cuts.
+TEST(SmallHeights, EveryRegionKeepsTheOneOfItsOwn) {
+  for (const char* name : {"spur", "offset"}) {
+    const face_gear::FaceGear gear = test::made(test::gear_named(name));
+    const double ball = name == std::string("spur") ? 1 : 1.6, smaller = 0.8 * ball;
+    const std::vector tools = {test::ball_mill(ball, 8, 0.95 * ball, 16, 10),
+                               test::ball_mill(smaller, 8, 0.95 * smaller, 16, 10)};
+    const analytic::GearDistance part(gear, ball::reach_of(tools));
+    const path::ByRegion<double> asked{{0.008, 0.02, 0.012}};
+    auto flanks = test::finishing(0, 0.008, 0.002), bottom = test::finishing(1, 0.02, 0.002);
+    flanks.regions = {{true, false, false}};
+    flanks.scallops_mm = {{0.008, 0, 0}};
+    bottom.regions = {{false, true, true}};
+    bottom.scallops_mm = {{0, 0.02, 0.012}};
+    const auto plan = plan::plan_face_gear(part, tools, {flanks, bottom}, {});
+    ASSERT_TRUE(plan.has_value()) << plan.refused()->diagnostic.message;
+    auto segments = fed(plan.value().paths[0], 0.5 * ball);
+    const auto below = fed(plan.value().paths[1], 0.5 * smaller);
+    segments.insert(segments.end(), below.begin(), below.end());
+    const auto most = highest_places(part, segments);
+    for (const path::Region region : path::kRegions) {
+      SCOPED_TRACE(
+          fmt::format("{} {} at sigma {:.3f}, r {:.3f}", name, to_string(region), most[region].sigma, most[region].r));
+      EXPECT_LE(most[region].left, asked[region] + 0.002);
+      EXPECT_GT(most[region].left, 0.3 * asked[region]);
+    }
   }
 }
 

@@ -1,7 +1,6 @@
 // Stout tools: planned where they fit, kept away from the pole, cut in more strokes than one where the clear directions
 // do not join, and refused with the body, the place, the gap and what would help.
 #include <array>
-#include <cstring>
 
 #include "cam/ball/orientation_way.h"
 #include "cam/ball/tool_orientation.h"
@@ -13,12 +12,6 @@ namespace toothpath {
 namespace {
 
 bool says(const std::string& text, const char* word) { return text.find(word) != std::string::npos; }
-
-/// The number after a word of a message.
-double number_after(const std::string& text, const char* word) {
-  const auto at = text.find(word);
-  return at == std::string::npos ? NAN : std::stod(text.substr(at + std::strlen(word)));
-}
 
 // Quick ones of the fourteen (toothpath_stout_bench plans all). Of the first three two used to be refused for a
 // rounding, or to come to 0 to 1.8 deg of the gear axis in a hop; the clear directions of the last two are too narrow
@@ -86,8 +79,9 @@ TEST(StoutTools, TheOthersAreToldWhyAndWhatWouldDo) {
     const face_gear::FaceGear gear = test::made(test::stout_gear(job.gear));
     const analytic::GearDistance part(gear, ball::reach_of({job.tool}));
     bool one_is_blocked = false;
-    for (const auto& point : places_at(test::stout_passes(job, part), number_after(words, "with the ball at radius "),
-                                       number_after(words, ", height "))) {
+    for (const auto& point :
+         places_at(test::stout_passes(job, part), test::number_after(words, "with the ball at radius "),
+                   test::number_after(words, ", height "))) {
       int looked = 0;
       one_is_blocked = one_is_blocked || (free_directions(part, job.tool, point, looked) == 0 && looked > 20000);
     }

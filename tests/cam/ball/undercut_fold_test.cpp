@@ -8,8 +8,8 @@ namespace {
 
 using Surface = face_gear::FaceGearSurface<double>;
 
-/// A ring in the band where Newton from the pitch point used to fail.
-face_gear::FaceGearParameters gear_beyond_the_fold(test::Random& random) {
+/// Teeth and shaper of the band where Newton from the pitch point used to fail, and a helix; no ring yet.
+face_gear::FaceGearParameters teeth_of_the_band(test::Random& random, double& helix) {
   face_gear::FaceGearParameters g;
   g.teeth = 30 + int(random.index(91));
   g.shaper_teeth = int(std::lround(g.teeth * random(0.45, 0.65)));
@@ -18,7 +18,14 @@ face_gear::FaceGearParameters gear_beyond_the_fold(test::Random& random) {
   g.pressure_angle_rad = radians(random(14.5, 17.5));
   g.shaft_angle_rad = random(0, 1) < 0.5 ? radians(90) : radians(random(75, 105));
   g.shaper_tip_radius_mm = random(0.1, 0.3) * g.module_mm;
-  const double helix = radians(random(18, 34)) * (random(0, 1) < 0.5 ? 1 : -1);
+  helix = radians(random(18, 34)) * (random(0, 1) < 0.5 ? 1 : -1);
+  return g;
+}
+
+/// A ring of them.
+face_gear::FaceGearParameters gear_beyond_the_fold(test::Random& random) {
+  double helix = 0;
+  face_gear::FaceGearParameters g = teeth_of_the_band(random, helix);
   // Rings about the inner limit: some begin inside the fold.
   if (!face_gear::check_shaper(g, helix)) return g;
   const auto limits = face_gear::zone_limits(face_gear::make_surface<double>(g, helix), g.module_mm);
@@ -62,11 +69,9 @@ std::optional<double> searched_B(const Surface& f, int side, double theta, doubl
 /// the solid shaper leave it? Beyond theta = 0 the flank goes on as the other one, which no shaper cuts (FaceGear warns
 /// of it). Where the sheet ends the search goes on with another one: B jumps.
 enum class Flank { regular, folded, cut };
-Flank searched_flank(const face_gear::FaceGear& gear, int side, double r) {
-  const auto& ring = gear.rings().front();
-  const auto& f = ring.surface;
+Flank searched_flank(const face_gear::FaceGearParameters& gear, const Surface& f, int side, double r) {
   const double z_tip = f.z_tip(r);
-  const test::BruteForceFaceGear brute(gear.parameters(), ring.zone.helix_angle_rad);
+  const test::BruteForceFaceGear brute(gear, gear.zones.front().helix_angle_rad);
   constexpr int kPlaces = 40;
   const double step = f.shaper.theta_t / kPlaces;
   bool cut = false;
@@ -78,7 +83,7 @@ Flank searched_flank(const face_gear::FaceGear& gear, int side, double r) {
     before = B;
     const Vec3 P = f.flank(side, theta, *B).p;
     if (P.z() > z_tip) return k == 0 ? Flank::folded : cut ? Flank::cut : Flank::regular;
-    if (k % 8 == 0 && theta >= 0) cut = cut || brute.least_clearance(P) < -2e-4 * gear.parameters().module_mm;
+    if (k % 8 == 0 && theta >= 0) cut = cut || brute.least_clearance(P) < -2e-4 * gear.module_mm;
   }
   return Flank::folded;
 }
@@ -89,8 +94,8 @@ Flank searched_ring(const face_gear::FaceGear& gear) {
   Flank worst = Flank::regular;
   for (const int side : {1, -1})
     for (int n = 0; n <= 4 && worst == Flank::regular; ++n)
-      worst =
-          searched_flank(gear, side, zone.inner_radius_mm + n * 0.25 * (zone.outer_radius_mm - zone.inner_radius_mm));
+      worst = searched_flank(gear.parameters(), gear.rings().front().surface, side,
+                             zone.inner_radius_mm + n * 0.25 * (zone.outer_radius_mm - zone.inner_radius_mm));
   return worst;
 }
 
@@ -123,6 +128,117 @@ TEST(UndercutFold, SpacesAreFoundWhereASearchFindsARegularFlank) {
   EXPECT_GE(accepted, 60);
   EXPECT_GE(refused, 10);
   EXPECT_GE(beyond, 10);
+}
+
+/// Why a gear is refused, by its numbers or by the search for its surfaces; nothing where it is taken.
+std::optional<std::string> refusal_of(const face_gear::FaceGearParameters& parameters) {
+  auto made = face_gear::FaceGear::make(parameters);
+  if (made.refused()) return made.refused()->front().diagnostic.message;
+  const face_gear::FaceGear gear = std::move(made).value();
+  const analytic::GearDistance part(gear, 1.0);
+  if (part.refusal()) return part.refusal()->diagnostic.message;
+  return {};
+}
+
+/// Does any material stand at the height of the tip surface at this radius? The swept shaper is asked all around.
+bool has_land(const face_gear::FaceGearParameters& gear, double r, double z_tip) {
+  constexpr int kPlaces = 200;
+  const test::BruteForceFaceGear brute(gear, gear.zones.front().helix_angle_rad);
+  const double step = 2 * kPi / gear.teeth / kPlaces;
+  const auto spare = [&](double a, double enough = -INFINITY) {
+    return brute.least_clearance(Vec3(r * std::cos(a), r * std::sin(a), z_tip), enough);
+  };
+  for (int k = 0; k < kPlaces; ++k)
+    if (spare(k * step, 0) > 0) return true;
+  // A land thinner than a step: one tooth, one maximum.
+  double most = -INFINITY, at = 0;
+  for (int k = 0; k < kPlaces; ++k)
+    if (const double here = spare(k * step); here > most) most = here, at = k * step;
+  double a = at - step, b = at + step;
+  while (most <= 0 && b - a > 1e-9) {
+    const double p = a + (b - a) / 3, q = b - (b - a) / 3, at_p = spare(p), at_q = spare(q);
+    most = std::max({most, at_p, at_q});
+    (at_p < at_q ? a : b) = at_p < at_q ? p : q;
+  }
+  return most > 0;
+}
+
+// Thin rings from far inside to far outside: taken exactly where a plain search and the swept shaper find both flanks
+// whole and a land on the tooth.
+TEST(UndercutFold, ThinRingsAreRefusedOnlyWhereThereIsNoTooth) {
+  test::Random random(45);
+  int taken = 0, refused = 0;
+  for (int k = 0; k < 40; ++k) {
+    double helix = 0;
+    auto g = teeth_of_the_band(random, helix);
+    if (!face_gear::check_shaper(g, helix)) continue;
+    const auto f = face_gear::make_surface<double>(g, helix);
+    for (int n = 0; n < 6; ++n) {
+      const double r = std::hypot(f.L_p, f.shaper.r_p) * random(0.85, 1.2);
+      g.zones = {{helix, r, r + 1e-3 * g.module_mm}};
+      SCOPED_TRACE(fmt::format("{}: {}/{} teeth, {:.2f} deg, helix {:.2f} deg, shaft {:.2f} deg, radius {:.4f} mm", k,
+                               g.shaper_teeth, g.teeth, degrees(g.pressure_angle_rad), degrees(helix),
+                               degrees(g.shaft_angle_rad), r));
+      const auto words = refusal_of(g);
+      (words ? refused : taken) += 1;
+      const bool whole = searched_flank(g, f, 1, r) == Flank::regular && searched_flank(g, f, -1, r) == Flank::regular;
+      EXPECT_EQ(!words, whole && has_land(g, r, f.z_tip(r))) << words.value_or("taken");
+    }
+  }
+  std::printf("%d taken, %d refused\n", taken, refused);
+  EXPECT_GE(taken, 20);
+  EXPECT_GE(refused, 60);
+}
+
+/// Rings that begin hardly outside their limit: the ball does not come to their inner end, or cuts into the fillet
+/// there.
+struct CloseRing {
+  int shaper_teeth, teeth;
+  double module, helix_deg, tip_radius, beyond_limit, width, ball;
+  const char* why;
+};
+face_gear::FaceGearParameters gear_of(const CloseRing& c) {
+  face_gear::FaceGearParameters g;
+  g.shaper_teeth = c.shaper_teeth;
+  g.teeth = c.teeth;
+  g.module_mm = c.module;
+  g.module_plane = face_gear::ModulePlane::normal;
+  g.pressure_angle_rad = radians(14.5);
+  g.shaper_tip_radius_mm = c.tip_radius;
+  const double helix = radians(c.helix_deg);
+  const double inner =
+      face_gear::zone_limits(face_gear::make_surface<double>(g, helix), g.module_mm).hard_inner_limit + c.beyond_limit;
+  g.zones = {{helix, inner, inner + c.width}};
+  return g;
+}
+
+// Nothing is planned into the surface there and left to the proof: the refusal tells value and limit, and which ball
+// and which inner radius would do. Those do.
+TEST(UndercutFold, CloseToTheLimitARefusalTellsWhatWouldDo) {
+  for (const auto& c : {CloseRing{34, 100, 1.25, 60, 0.304, 0.05, 0.4, 0.519, "mm are missing at its inner end"},
+                        CloseRing{42, 179, 1.447, -60, 0.367, 0.0718, 0.4, 0.476, "into the finished surface"}}) {
+    const auto plan_of = [&](const face_gear::FaceGearParameters& parameters, double ball) {
+      const face_gear::FaceGear gear = test::made(parameters);
+      const auto tool = test::ball_mill(ball, 5, 0.95 * ball, 14, 10);
+      const analytic::GearDistance part(gear, ball::reach_of({tool}));
+      return plan::plan_face_gear(part, {tool}, {test::finishing(0, 0.03, 0.002)}, {});
+    };
+    auto gear = gear_of(c);
+    const auto refused = plan_of(gear, c.ball);
+    ASSERT_FALSE(refused.has_value());
+    const std::string words = refused.refused()->diagnostic.message;
+    SCOPED_TRACE(words);
+    EXPECT_NE(words.find(c.why), std::string::npos);
+    const double ball = test::number_after(words, "would do, planned as a trial: a diameter of "),
+                 inner = test::number_after(words, "an inner_radius of ");
+    EXPECT_GT(inner, gear.zones.front().inner_radius_mm);
+    if (!std::isnan(ball)) {
+      EXPECT_LT(ball, c.ball);
+      EXPECT_TRUE(plan_of(gear, ball).has_value());
+    }
+    gear.zones.front().inner_radius_mm = inner;
+    EXPECT_TRUE(plan_of(gear, c.ball).has_value());
+  }
 }
 
 }  // namespace

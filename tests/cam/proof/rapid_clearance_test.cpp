@@ -78,6 +78,25 @@ TEST(TurningRapid, OnlyTheMiddleOfTheTurnIsTooLow) {
   EXPECT_EQ(proof::prove_rapid(m, tool, kRing).clear, sampled_clear(m, tool, 1e-4));
 }
 
+// A tool that leans away from the gear goes across beside it: its tip is below the top of the ring and its holder
+// within reach of it, but the plane across the axis at the tip has all of the ring below. A millimetre lower it has
+// not.
+TEST(TurningRapid, TheFootOfALeaningToolPassesAboveTheRing) {
+  const auto tool = test::ball_mill(1, 3, 0.95, 5.8, 38);
+  const double lean = radians(22.7), reach = kRing.top_mm * std::cos(lean) + kRing.outer_radius_mm * std::sin(lean);
+  for (const double above : {0.01, 4.0}) {
+    path::ToolMotion m = turning(Vec3(62, 0, 0), lean, lean, 0);
+    m.tip_from.z() = (reach + above - m.tip_from.x() * std::sin(lean)) / std::cos(lean);
+    m.tip_to = m.tip_from + 90 * Vec3(std::cos(lean), 0.4, -std::sin(lean));
+    EXPECT_LT(m.tip_to.z(), kRing.top_mm - 20);
+    EXPECT_TRUE(proof::prove_rapid(m, tool, kRing).clear) << above;
+    EXPECT_TRUE(sampled_clear(m, tool, 1e-6)) << above;
+  }
+  path::ToolMotion low = turning(Vec3(55, 0, 4), lean, lean, 0, Vec3(-10, 0, 4.2));
+  EXPECT_FALSE(proof::prove_rapid(low, tool, kRing).clear);
+  EXPECT_FALSE(sampled_clear(low, tool, 0));
+}
+
 TEST(TurningRapid, NeverCallsATouchClear) {
   test::Random random(12);
   const auto tool = long_tool();
