@@ -84,9 +84,9 @@ double least_distance(const Vec3& p, const tool::RoundedFrustum& body, const pat
   const AtMoment last = at_moment(p, body, m, 1);
   double least = std::min(first.distance, last.distance);
   if (first.rate >= 0 || last.rate <= 0) return least;
-  // A tangent from either end bounds it from below, but for what turns; half a micrometre stands for that.
+  // A tangent from either end bounds it from below.
   const double meet = (last.distance - last.rate - first.distance) / (first.rate - last.rate);
-  if (first.distance + first.rate * meet - 5e-4 > enough) return least;
+  if (first.distance + first.rate * meet - bends > enough) return least;
   double a = 0, fa = first.rate, b = 1, fb = last.rate;
   for (int k = 0; k < kMomentSteps && b - a > kMoment; ++k) {
     double x = k % 3 == 2 ? 0.5 * (a + b) : a + (b - a) * fa / (fa - fb);
