@@ -141,6 +141,28 @@ LargestCut largest_cut(const report::RunReport& report, const report::OperationR
   return {o.cutting->load->chip_mm, o.cutting->load->engaged_rad};
 }
 
+/// What exceeds `max_engagement`, and where no step-over helps.
+std::string engagement_text(const report::RunReport& report, const report::OperationReport& o,
+                            const path::MillingOperation& asked, double engaged_rad) {
+  std::string text = fmt::format(
+      "operation {}: its teeth are in the material over {:.1f} deg, which exceeds max_engagement = {:g} deg",
+      o.operation, degrees(engaged_rad), degrees(asked.max_engagement_rad));
+  for (const report::EngagementReport& t : report.engagement) {
+    if (t.operation != o.operation || t.way_mm.empty() || asked.type != path::OperationType::roughing) continue;
+    if (t.beside_rad > asked.max_engagement_rad)
+      text += fmt::format(
+          "; beside the passes that open a layer over {:.1f} deg: no step_over down to a fifth of what "
+          "is asked keeps it",
+          degrees(t.beside_rad));
+    else
+      text += fmt::format(
+          " where a pass opens a layer, on {:.1f} of {:.1f} mm; beside these {:.1f} deg, by passes "
+          "{:.3g} mm apart",
+          t.opening_mm, t.way_mm.back(), degrees(t.beside_rad), t.step_over_mm);
+  }
+  return text;
+}
+
 /// One warning a slender tool, from its worst operation; one for every chip and engagement that is too large.
 void add_warnings(report::RunReport& report, const job::Job& job) {
   std::map<int, const report::OperationReport*> worst;
@@ -155,10 +177,7 @@ void add_warnings(report::RunReport& report, const job::Job& job) {
       report.warnings.push_back(fmt::format("operation {}: its largest chip of {} um exceeds chip_load = {:g} mm",
                                             o.operation, estimate(app::um(load.chip_mm)), asked.chip_load_mm));
     if (asked.max_engagement_rad > 0 && load.engaged_rad > asked.max_engagement_rad)
-      report.warnings.push_back(
-          fmt::format("operation {}: its teeth are in the material over {:.1f} deg, which exceeds max_engagement = "
-                      "{:g} deg",
-                      o.operation, degrees(load.engaged_rad), degrees(asked.max_engagement_rad)));
+      report.warnings.push_back(engagement_text(report, o, asked, load.engaged_rad));
     if (!o.cutting->slender) continue;
     const report::OperationReport*& known = worst[o.tool_number];
     if (!known || ratio(o) > ratio(*known)) known = &o;

@@ -24,6 +24,9 @@ struct CuttingLoad {
 struct EngagementReport {
   int operation = 0;
   std::vector<double> way_mm, engaged_rad, chip_mm, feed_mm_min;
+  double step_over_mm = 0;  ///< of its layers, as planned
+  double beside_rad = 0;    ///< greatest angle but in the passes that open a layer
+  double opening_mm = 0;    ///< way of those
 };
 
 /// A number that is an estimate, in few digits.

@@ -240,6 +240,8 @@ void add_engagement(Json& json, const RunReport& r) {
     json["engagement"].push_back(
         {{"op", t.operation},
          {"engaged_deg", degrees(*std::max_element(t.engaged_rad.begin(), t.engaged_rad.end()))},
+         {"beside_deg", degrees(t.beside_rad)},
+         {"step_over", t.step_over_mm},
          {"chip_um", app::um(*std::max_element(t.chip_mm.begin(), t.chip_mm.end()))},
          {"least_feed", *slow},
          {"most_feed", *fast}});

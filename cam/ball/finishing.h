@@ -20,6 +20,7 @@ struct BallPass {
   };
   std::vector<Point> points;  ///< in feed direction
   bool outward = true;        ///< feed from the inner to the outer end
+  bool opens_layer = false;   ///< roughing: nothing of its layer is cut before it, so it is a slot
 };
 
 struct FinishingOptions {

@@ -191,6 +191,7 @@ class Planner::Work {
     if (!planned) return PlanRefusal{key_of(n) + ".tool", planned.error()};
     out.passes = std::move(planned->passes);
     out.summary.layers = planned->layers;
+    out.summary.step_over_mm = op.step_over_mm;
     out.summary.skipped_passes = planned->skipped;
     out.summary.chord_mm = r.chord_mm;
     return {};
@@ -227,6 +228,7 @@ class Planner::Work {
 
   static void add(OperationPlan& all, const OperationPlan& zone, bool finishing) {
     all.layers = std::max(all.layers, zone.layers);
+    all.step_over_mm = std::max(all.step_over_mm, zone.step_over_mm);
     all.skipped_passes += zone.skipped_passes;
     all.chord_mm = std::max(all.chord_mm, zone.chord_mm);
     all.corner_passes = all.corner_passes || zone.corner_passes;
@@ -234,6 +236,15 @@ class Planner::Work {
     if (!finishing) return;
     all.scallop_max_mm = std::max(all.scallop_max_mm, zone.scallop_max_mm);
     all.crest_lean = std::max(all.crest_lean, zone.crest_lean);
+  }
+
+  static void note_openings(int zone, const std::vector<BallPass>& passes, OperationPlan& summary) {
+    int number = 0;  // as `link_passes` counts
+    for (const BallPass& pass : passes) {
+      if (pass.points.empty()) continue;
+      if (pass.opens_layer) summary.openings.emplace_back(zone, number);
+      ++number;
+    }
   }
 
   /// Tool directions for the passes of a zone, and the links between them: its records.
@@ -245,6 +256,7 @@ class Planner::Work {
     proof::DirectionChoice direction;
     if (auto refusal = direct(n, zone, made, direction, link.axes)) return refusal;
     plan_.directions.push_back(direction);
+    note_openings(zone, made.passes, summary);
     const auto& op = operation(n);
     const double R = tool_of(n).radius_mm();
     const auto& ring = part_.space(zone).ring().zone;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cam/analytic/gear_distance.h"
@@ -41,6 +42,9 @@ struct OperationPlan {
   double chord_mm = 0;        ///< largest sag of a block against the exact path
   int passes = 0, skipped_passes = 0, layers = 0;
   bool corner_passes = false;
+  double step_over_mm = 0;  ///< roughing: that of its layers
+  /// Roughing: the passes that open a layer, slots, by zone and pass of the records.
+  std::vector<std::pair<int, int>> openings;
 };
 
 /// A refusal with the key of the job it belongs to ("operation[2].tool", ...).

@@ -6,13 +6,10 @@
 namespace toothpath::ball {
 namespace {
 
-/// A skin thinner than this share of the diameter is not worth a roughing pass: the next operation takes it with its
-/// own stock.
-
-/// Directions on the lower half of a ball: where it cuts.
 // Of the ball's radius: where a pass has nothing to cut for longer, it is left and taken up again behind.
 constexpr double kShortestIdle = 6;
 
+/// Directions on the lower half of a ball: where it cuts.
 std::vector<Vec3> lower_directions() {
   std::vector<Vec3> out{Vec3(0, 0, -1)};
   for (int ring = 1; ring <= 4; ++ring) {
@@ -154,6 +151,7 @@ class RoughingPlanner {
       const double da = std::abs(a - 0.5), db = std::abs(b - 0.5);
       return da != db ? da < db - 1e-12 : a < b;
     });
+    bool opens = true;
     for (double share : shares) {
       const auto curve = [&](double r) -> std::optional<BallPass::Point> {
         const auto w = width(height, r);
@@ -169,11 +167,13 @@ class RoughingPlanner {
       if (stretches.empty()) ++out_.skipped;
       for (const auto& [from, to] : stretches) {
         BallPass pass;
+        pass.opens_layer = opens;
         pass.points.assign(line->points.begin() + long(from), line->points.begin() + long(to) + 1);
         pass.outward = (share <= 0.5) == o_.climb;
         if (!pass.outward) std::reverse(pass.points.begin(), pass.points.end());
         out_.passes.push_back(std::move(pass));
       }
+      opens = opens && stretches.empty();
     }
     return Ok{};
   }

@@ -47,7 +47,7 @@ class Along {
     for (std::size_t k = 1; k < motions_.size(); ++k) done[k] = done[k - 1] + (motions_[k - 1].rapid ? 0 : 1);
     std::vector<Engaged> out(motions_.size());
     tbb::parallel_for(std::size_t{0}, motions_.size(), [&](std::size_t k) {
-      if (!motions_[k].rapid) out[k] = worst(motions_[k], done[k]);
+      if (!motions_[k].rapid && k % q_.one_of == 0) out[k] = worst(motions_[k], done[k]);
     });
     return out;
   }
@@ -85,8 +85,10 @@ class Along {
       at_heights.push_back(here);
     }
     most.steepest = std::max(most.steepest, steepest);
-    for (const Engaged& here : at_heights)
+    for (const Engaged& here : at_heights) {
       if (here.steepest >= kChipCounts * steepest) most.angle_rad = std::max(most.angle_rad, here.angle_rad);
+      if (here.steepest >= kChipCounts) most.loaded_rad = std::max(most.loaded_rad, here.angle_rad);
+    }
   }
 
   [[nodiscard]] bool stands(const Vec3& p, std::size_t done) const {

@@ -15,6 +15,9 @@ struct Engaged {
   double angle_rad =
       0;  ///< about the axis, of a tooth in the material: greatest of the heights with half the largest chip
   double steepest = 0;  ///< greatest share of the feed along the normal: the largest chip, a feed per tooth; in [0, 1]
+  /// As `angle_rad`, but of the heights where the largest chip is half the feed per tooth or more: where a mill leaves
+  /// the stock its tip is in it all around, and cuts little. What `max_engagement` is kept by.
+  double loaded_rad = 0;
 };
 
 struct EngagementQuery {
@@ -23,6 +26,7 @@ struct EngagementQuery {
   const std::vector<const Removed*>& before;         ///< what earlier operations removed
   std::function<bool(const Vec3&)> in_blank;         ///< does the uncut blank hold this place?
   double top_mm = 0;                                 ///< z above which it never does
+  std::size_t one_of = 1;                            ///< so many motions is measured; the others have zeros
 };
 
 /// Stock thinner than this is none, mm.

@@ -30,6 +30,25 @@ double steepest_in(const std::vector<path::MillingOperation>& operations, const 
 
 }  // namespace
 
+BesideSlots beside_slots(const path::ClPath& path, const std::vector<cut::Engaged>& engaged,
+                         const ball::OperationPlan& plan) {
+  BesideSlots out;
+  for (std::size_t k = 1; k < path.records.size(); ++k) {
+    const path::ClRecord& to = path.records[k];
+    if (to.kind != path::MoveKind::feed) continue;
+    const bool opens =
+        std::find(plan.openings.begin(), plan.openings.end(), std::pair(to.zone, to.pass)) != plan.openings.end();
+    if (opens) out.opening_mm += (to.tip - path.records[k - 1].tip).norm();
+    else out.engaged_rad = std::max(out.engaged_rad, engaged[k - 1].loaded_rad);
+  }
+  return out;
+}
+
+double widest_step_mm(const tool::Meridian& cutting, double step_down_mm, double angle_rad) {
+  const double radius = cutting.radius(std::clamp(step_down_mm, cutting.from(), cutting.to()));
+  return radius * (1 - std::cos(angle_rad));
+}
+
 EngagementTrack feed_by_engagement(path::ClPath& path, const std::vector<cut::Engaged>& engaged,
                                    const path::MillingOperation& operation, int teeth) {
   EngagementTrack track;

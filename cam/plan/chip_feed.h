@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "cam/ball/plan.h"
 #include "cam/cut/engagement.h"
 #include "cam/path/cl_path.h"
 #include "cam/path/operation.h"
@@ -18,7 +19,22 @@ struct EngagementTrack {
   std::vector<double> engaged_rad;  ///< of a tooth, greatest in the motion
   std::vector<double> chip_mm;      ///< largest in the motion, with the feed below
   std::vector<double> feed_mm_min;
+  double step_over_mm = 0;  ///< of its layers: the job's, or less where `max_engagement` asks for it
+  double beside_rad = 0;    ///< greatest but for the passes that open a layer
+  double opening_mm = 0;    ///< way of those
 };
+
+/// Greatest angle (`Engaged::loaded_rad`) of the feed motions but for those of the passes that open a layer, and the
+/// way of these.
+struct BesideSlots {
+  double engaged_rad = 0, opening_mm = 0;
+};
+[[nodiscard]] BesideSlots beside_slots(const path::ClPath& path, const std::vector<cut::Engaged>& engaged,
+                                       const ball::OperationPlan& plan);
+
+/// Step-over from which on a cylinder as wide as the mill is `step_down` above its tip is in the material over more
+/// than this angle beside the pass before: no larger one keeps it. mm
+[[nodiscard]] double widest_step_mm(const tool::Meridian& cutting, double step_down_mm, double angle_rad);
 
 /// Follows a roughing path through the stock and sets its feeds. `engaged`: one a motion of the path
 /// (`GougeCheck::motions_of`), from `cut::engagement_along`.

@@ -17,6 +17,9 @@ constexpr double kLeastStock = 0.85;  // of the allowance, on every flank: a pro
 constexpr double kLiftShare = 0.5;
 constexpr double kAxisStands = 1e-9;  // of a unit vector: less is no turn
 constexpr int kAllAxes = 5;           // X, Y, Z and two rotaries
+/// Passes of a layer are drawn together by this share at a time, and to this share of the step-over that is asked.
+constexpr double kNarrower = 0.8, kNarrowest = 0.2;
+constexpr std::size_t kFewMotions = 13;  // one of so many is measured before all of them are
 
 std::vector<line::Rotaries> admitted(const path::MillingOperation& op, int simultaneous_axes) {
   using line::Rotaries;
@@ -80,7 +83,7 @@ class FaceGearPlanner {
  public:
   FaceGearPlanner(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
                   const std::vector<path::MillingOperation>& operations, const Options& options)
-      : part_(part), tools_(tools), operations_(operations), o_(options), ball_(part, tools, operations, options) {}
+      : part_(part), tools_(tools), operations_(operations), o_(options), ball_(part, tools, operations_, options) {}
 
   Expected<FaceGearPlan, ball::PlanRefusal> run(const Progress& progress) {
     if (const auto& refusal = part_.refusal()) return ball::PlanRefusal{"gear." + refusal->key, refusal->diagnostic};
@@ -96,9 +99,7 @@ class FaceGearPlanner {
 
  private:
   [[nodiscard]] std::optional<ball::PlanRefusal> ball(int n) {
-    std::vector<const cut::Removed*> cleared;
-    for (const auto& c : cleared_) cleared.push_back(c.get());
-    auto planned = ball_.plan(n, cleared, leading_of(std::size_t(n)));
+    auto planned = plan_ball(n);
     if (auto* refusal = planned.refused()) return std::move(*refusal);
     if (auto refusal = too_many_axes(n, planned.value().path)) return refusal;
     plan_.paths.push_back(std::move(planned.value().path));
@@ -106,6 +107,39 @@ class FaceGearPlanner {
     plan_.lines.emplace_back();
     for (auto& d : planned.value().directions) plan_.directions.push_back(std::move(d));
     return {};
+  }
+
+  [[nodiscard]] std::vector<const cut::Removed*> cleared() const {
+    std::vector<const cut::Removed*> out;
+    for (const auto& c : cleared_) out.push_back(c.get());
+    return out;
+  }
+  /// Roughing that has a `max_engagement`: the passes of a layer are drawn together until all but those that open a
+  /// layer keep it. Where no step-over does, the one that is asked stays.
+  [[nodiscard]] Expected<ball::Planned, ball::PlanRefusal> plan_ball(int n) {
+    path::MillingOperation& op = operations_[std::size_t(n)];
+    const double asked = op.step_over_mm;
+    if (op.type == path::OperationType::roughing && op.max_engagement_rad > 0 && op.max_engagement_rad < kPi) {
+      const tool::Profile mill = tool::profile_of(tools_[std::size_t(op.tool)]);
+      double step = std::min(asked, widest_step_mm(mill.cutting(), op.step_down_mm, op.max_engagement_rad));
+      for (; step >= kNarrowest * asked; step *= kNarrower) {
+        op.step_over_mm = step;
+        auto planned = ball_.plan(n, cleared(), {});
+        if (planned.refused()) return planned;
+        if (keeps_engagement(op, planned.value(), kFewMotions) && keeps_engagement(op, planned.value(), 1))
+          return planned;
+      }
+      engaged_.clear();
+      op.step_over_mm = asked;
+    }
+    return ball_.plan(n, cleared(), leading_of(std::size_t(n)));
+  }
+
+  /// Leaves what was measured in `engaged_`.
+  [[nodiscard]] bool keeps_engagement(const path::MillingOperation& op, const ball::Planned& planned,
+                                      std::size_t one_of) {
+    engaged_ = engagement_of(planned.path, one_of);
+    return beside_slots(planned.path, engaged_, planned.summary).engaged_rad <= op.max_engagement_rad;
   }
 
   /// The ball end of a mill cuts beside the poses of its side where it leaves out the flank.
@@ -212,19 +246,29 @@ class FaceGearPlanner {
         for (const auto& pass : plan_.lines[n]->passes) contact_top = std::max(contact_top, pass.contact_top_mm);
       return feed_by_stock(path, operations_, tools_, n, contact_top);
     }
+    if (engaged_.empty()) engaged_ = engagement_of(path);
+    EngagementTrack track = feed_by_engagement(path, engaged_, op, tool.teeth);
+    const BesideSlots beside = beside_slots(path, engaged_, plan_.operations[n]);
+    track.step_over_mm = plan_.operations[n].step_over_mm;
+    track.beside_rad = beside.engaged_rad;
+    track.opening_mm = beside.opening_mm;
+    plan_.engagement.push_back(std::move(track));
+    engaged_.clear();
+  }
+  /// Of a roughing path, in what the operations before it have left.
+  [[nodiscard]] std::vector<cut::Engaged> engagement_of(const path::ClPath& path, std::size_t one_of = 1) const {
+    const tool::ToolAssembly& tool = tools_[std::size_t(path.tool)];
     const tool::Profile mill = tool::profile_of(tool);
     const tool::ProofTool bodies = tool::proof_tool(tool);
-    std::vector<const cut::Removed*> before;
-    for (const auto& c : cleared_) before.push_back(c.get());
+    const std::vector<const cut::Removed*> before = cleared();
     const double top = part_.gear().blank_top();
     const cut::EngagementQuery query{mill, bodies.cutting, before, [&](const Vec3& p) { return in_blank(p, top); },
-                                     top};
-    const auto work = [&] {
-      const auto engaged = cut::engagement_along(analytic::GougeCheck::motions_of(path), query);
-      plan_.engagement.push_back(feed_by_engagement(path, engaged, op, tool.teeth));
-    };
+                                     top,  one_of};
+    std::vector<cut::Engaged> engaged;
+    const auto work = [&] { engaged = cut::engagement_along(analytic::GougeCheck::motions_of(path), query); };
     if (o_.stage) o_.stage("engagement", work);
     else work();
+    return engaged;
   }
   [[nodiscard]] bool in_blank(const Vec3& p, double top) const {
     const double r = radius(p);
@@ -240,10 +284,11 @@ class FaceGearPlanner {
 
   const analytic::GearDistance& part_;
   const std::vector<tool::ToolAssembly>& tools_;
-  const std::vector<path::MillingOperation>& operations_;
+  std::vector<path::MillingOperation> operations_;  ///< as planned: step-overs may be less than asked
   const Options& o_;
   ball::Planner ball_;
   std::vector<std::unique_ptr<cut::Removed>> cleared_;
+  std::vector<cut::Engaged> engaged_;  ///< of the path that was planned last, where it was asked for
   FaceGearPlan plan_;
 };
 

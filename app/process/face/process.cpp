@@ -131,7 +131,8 @@ class FaceMilling final : public process::GearMilling {
   [[nodiscard]] std::vector<report::EngagementReport> engagement() const override {
     std::vector<report::EngagementReport> out;
     for (const plan::EngagementTrack& t : plan_.engagement)
-      out.push_back({t.operation, t.way_mm, t.engaged_rad, t.chip_mm, t.feed_mm_min});
+      out.push_back(
+          {t.operation, t.way_mm, t.engaged_rad, t.chip_mm, t.feed_mm_min, t.step_over_mm, t.beside_rad, t.opening_mm});
     return out;
   }
   [[nodiscard]] std::vector<std::string> advice() const override {

@@ -39,15 +39,24 @@ report::Section engagement(const SectionInput& input) {
     tracks.push_back(t);
     const path::MillingOperation& o = input.job.operations[std::size_t(t.operation)];
     section.rows.push_back({std::to_string(t.operation), fmt::format("{:.0f}", degrees(most(t.engaged_rad))),
-                            asked(o.max_engagement_rad, degrees(1.0)), fmt::format("{:.2f}", app::um(most(t.chip_mm))),
-                            asked(o.chip_load_mm, app::kUm), fmt::format("{:g}", o.feed_mm_min),
+                            fmt::format("{:.0f}", degrees(t.beside_rad)), asked(o.max_engagement_rad, degrees(1.0)),
+                            fmt::format("{:.3g} of {:g}", t.step_over_mm, o.step_over_mm),
+                            fmt::format("{:.2f}", app::um(most(t.chip_mm))), asked(o.chip_load_mm, app::kUm),
+                            fmt::format("{:g}", o.feed_mm_min),
                             fmt::format("{:.0f} to {:.0f}", least(t.feed_mm_min), most(t.feed_mm_min))});
   }
   if (section.rows.empty()) return section;
   section.title = "Engagement";
   section.id = "engagement";
-  section.columns = {"op",           "engaged deg",       "max_engagement deg", "largest chip um",
-                     "chip_load um", "feed asked mm/min", "feed planned mm/min"};
+  section.columns = {"op",
+                     "engaged deg",
+                     "but in passes that open a layer",
+                     "max_engagement deg",
+                     "step-over planned of asked mm",
+                     "largest chip um",
+                     "chip_load um",
+                     "feed asked mm/min",
+                     "feed planned mm/min"};
   section.charts = {
       chart(tracks, "Teeth in the material", "engaged angle [\u00b0]", &EngagementReport::engaged_rad, degrees(1.0)),
       chart(tracks, "Largest chip", "chip [\u00b5m]", &EngagementReport::chip_mm, app::kUm),
@@ -55,7 +64,8 @@ report::Section engagement(const SectionInput& input) {
   section.note =
       "Measured on the stock that stands when the mill comes: points of its cutting part 10 deg apart, in the space "
       "that "
-      "is cut first. The feed follows the chip where the job states chip_load; it is raised to three times what was "
+      "is cut first. The pass that opens a layer is a slot; the others are drawn together until they keep "
+      "max_engagement. The feed follows the chip where the job states chip_load; it is raised to three times what was "
       "asked at most.";
   return section;
 }
