@@ -32,10 +32,10 @@ Key parts_of(std::string_view text) {
 struct Table {
   std::string_view file;
   std::vector<std::string_view> names, leaves;
-  std::string_view whole;  ///< instead
+  std::string_view whole;  ///< where there are no names
 
   [[nodiscard]] std::string text() const {
-    if (!whole.empty()) return std::string(whole);
+    if (names.empty()) return std::string(whole);
     const std::string start = file.empty() ? "" : fmt::format("{}: ", file);
     if (names.front().empty()) return start + fmt::format("{}", fmt::join(leaves, ", "));
     return start + fmt::format("{}: {}", fmt::join(names, ", "), fmt::join(leaves, ", "));
@@ -51,7 +51,7 @@ std::vector<Table> tables_of(std::span<const std::string> keys) {
       continue;
     }
     auto table = std::find_if(tables.begin(), tables.end(), [&](const Table& t) {
-      return t.whole.empty() && t.file == key.file && t.names.front() == key.table;
+      return !t.names.empty() && t.file == key.file && t.names.front() == key.table;
     });
     if (table == tables.end()) table = tables.insert(table, Table{key.file, {key.table}, {}, {}});
     table->leaves.push_back(key.leaf);
@@ -65,7 +65,7 @@ std::vector<std::string> grouped_keys(std::span<const std::string> keys, std::si
   std::vector<Table> tables;
   for (Table& table : tables_of(keys)) {
     const auto like = std::find_if(tables.begin(), tables.end(), [&](const Table& t) {
-      return table.whole.empty() && t.whole.empty() && t.file == table.file && !t.names.front().empty() &&
+      return !table.names.empty() && !t.names.empty() && t.file == table.file && !t.names.front().empty() &&
              !table.names.front().empty() && t.leaves == table.leaves;
     });
     if (like != tables.end()) like->names.push_back(table.names.front());
@@ -76,7 +76,7 @@ std::vector<std::string> grouped_keys(std::span<const std::string> keys, std::si
   for (std::size_t n = 0; n < tables.size(); ++n) {
     const bool room = tables.size() <= most || n + 1 < most;
     if (room) lines.push_back(tables[n].text());
-    else left_out += tables[n].whole.empty() ? tables[n].names.size() * tables[n].leaves.size() : 1;
+    else left_out += tables[n].names.empty() ? 1 : tables[n].names.size() * tables[n].leaves.size();
   }
   if (left_out > 0) lines.push_back(fmt::format("and {} more", left_out));
   return lines;

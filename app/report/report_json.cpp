@@ -315,7 +315,8 @@ std::string report_json(const RunReport& r) {
         {"name", svg::valid_utf8(r.machine_name)}, {"file", svg::valid_utf8(r.machine_file)}, {"dialect", r.dialect}};
   }
   if (!r.program_file.empty())
-    json["program"] = {{"file", r.program_file}, {"sha256", r.program_sha256}, {"bytes", r.program_bytes}};
+    json["program"] = {
+        {"file", r.program_file}, {"sha256", r.program_sha256}, {"bytes", r.program_bytes}, {"blocks", r.blocks}};
   add_proof(json, r);
   add_scene(json, r);
   add_motion(json, r);

@@ -8,7 +8,7 @@
 namespace toothpath::readback {
 namespace {
 
-constexpr std::string_view kHash = "HASH ";
+constexpr std::string_view kHash = "HASH ", kBlocks = " BLOCKS ";
 constexpr std::size_t kDigits = 16;
 
 /// A line without its end and its block number.
@@ -42,6 +42,15 @@ std::optional<std::uint64_t> hash_in(std::string_view line) {
   return value;
 }
 
+/// The number behind "BLOCKS"; 0: none.
+std::size_t blocks_in(std::string_view line) {
+  const auto at = line.find(kBlocks);
+  std::size_t blocks = 0;
+  if (at != std::string_view::npos)
+    std::from_chars(line.data() + at + kBlocks.size(), line.data() + line.size(), blocks);
+  return blocks;
+}
+
 }  // namespace
 
 std::size_t count_blocks(std::string_view text) {
@@ -67,7 +76,7 @@ std::optional<ProgramHash> hash_of_program(std::string_view text) {
     ++number;
     const auto stated = hash_in(line);
     if (!out) {
-      if (stated) out = ProgramHash{*stated, 0, number, 0, true};
+      if (stated) out = ProgramHash{*stated, 0, blocks_in(line), number, 0, true};
       continue;
     }
     body = body || !comment_of(line);

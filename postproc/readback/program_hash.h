@@ -11,6 +11,7 @@ namespace toothpath::readback {
 struct ProgramHash {
   std::uint64_t stated = 0;  ///< by the comment at the top
   std::uint64_t found = 0;   ///< of what stands between it and the comment at the end
+  std::size_t blocks = 0;    ///< stated there too; 0: not
   int line = 0;              ///< of the comment at the top
   int end_line = 0;          ///< of the one at the end; 0: there is none
   bool ends_agree = true;    ///< both comments say the same
@@ -22,7 +23,7 @@ struct ProgramHash {
 /// carriage returns.
 [[nodiscard]] std::optional<ProgramHash> hash_of_program(std::string_view text);
 
-/// Lines that are neither comments nor empty nor %, as the comment HASH counts them.
+/// Of a text without that comment, or edited since: lines that are neither comments nor empty nor %.
 [[nodiscard]] std::size_t count_blocks(std::string_view text);
 
 }  // namespace toothpath::readback

@@ -54,6 +54,8 @@ TEST_F(CheckConditions, TheProgramOfARunIsWhatItsJobAsks) {
   EXPECT_NE(sheet.find("The line HASH fits the text"), std::string::npos);
   const Json of_run = Json::parse(file_text(*dir_ / "run/report.json"));
   EXPECT_EQ(of_run["conditions"], found) << "run and check are judged by the same";
+  EXPECT_EQ(of_run["program"]["blocks"], report_["program"]["blocks"]);
+  EXPECT_EQ(of_run["program"]["blocks"], of_run["blocks"]);
 }
 
 TEST_F(CheckConditions, AFeedThatIsTooQuick) {

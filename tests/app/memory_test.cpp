@@ -95,19 +95,24 @@ const std::string kStart = "T1 M6\nS1000 M3\nG53 G0 Z0\nG0 C0 A0\nG0 X80 Y0\nG43
 
 TEST(Memory, ProgramsThatWouldFillItAreRefusedByNumber) {
   const TestDir dir;
+  // As many blocks as a text of this length may execute, and a loop may turn.
+  const auto loop = [](const std::string& begin, const std::string& a, const std::string& b) {
+    std::string pairs;
+    for (int k = 0; k < 600; ++k) pairs += a + b;
+    return "o1 repeat [7100]\n" + begin + pairs + "o1 endrepeat\n";
+  };
   struct Case {
     const char* what;
     std::string body, words;
   };
   for (const Case& c : {
-           Case{"moves of no operation", "o1 repeat [4200000]\nG53 G0 X1\nG53 G0 X0\no1 endrepeat\n",
+           Case{"moves of no operation", loop("", "G53 G0 X1\n", "G53 G0 X0\n"),
                 "moves of one tooth and beside the teeth would have to be kept, more than 8388608"},
            Case{"machine moves ahead of a tooth",
-                "(OP 0 roughing)\no1 repeat [4200000]\nG53 G0 Z-1\nG53 G0 Z0\no1 endrepeat\n" + kStart,
+                "(OP 0 roughing)\n" + loop("", "G53 G0 Z-1\n", "G53 G0 Z0\n") + kStart,
                 "moves of one tooth and beside the teeth would have to be kept, more than 8388608"},
            Case{"teeth that are no copies",
-                "(OP 0 roughing)\n" + kStart +
-                    "#1=0\no1 repeat [4200000]\n#1=[#1+0.000001]\nG1 X[80+#1]\nG1 X80\no1 endrepeat\n",
+                "(OP 0 roughing)\n" + kStart + "#1=0\n" + loop("#1=[#1+0.0001]\n", "G1 X[80+#1]\n", "G1 X80\n"),
                 "moves would have to be kept, more than 8388608"},
            Case{"long ways round",
                 "(OP 0 roughing)\n" + kStart +

@@ -26,6 +26,10 @@ TEST(Assumed, KeysOfATableShareALineAndTablesLikeIt) {
              "m.toml: axes.A: min, sign", "m.toml: post.corner_tolerance = 0.02 mm, what G64 leaves of corners"}));
   EXPECT_EQ(machines::grouped_keys(Lines{"axes.X.min", "tcp", "axes.Y.min"}), (Lines{"axes.X, axes.Y: min", "tcp"}));
   EXPECT_TRUE(machines::grouped_keys(Lines{}).empty());
+  // What is no key stays as it is.
+  const Lines odd = {"", "m.toml: ", ": ", "a b", ".", "m.toml: x.", ""};
+  EXPECT_EQ(machines::grouped_keys(odd), odd);
+  EXPECT_FALSE(machines::counted_keys(odd).empty());
 }
 
 TEST(Assumed, WhatDoesNotFitIsCounted) {
