@@ -165,11 +165,6 @@ std::vector<std::string> option_names(const CLI::App& app) {
   return names;
 }
 
-std::string meant(const std::string& word, const std::vector<std::string>& known) {
-  const std::string_view near = toml::near_name(word, known);
-  return near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);
-}
-
 /// What is wrong with the words, as they were typed.
 std::string usage_error(const CLI::App& app, const CLI::Error& error) {
   const auto kind = static_cast<CLI::ExitCodes>(error.get_exit_code());
@@ -179,14 +174,14 @@ std::string usage_error(const CLI::App& app, const CLI::Error& error) {
   const auto option = std::find_if(left.begin(), left.end(), is_option);
   if (option != left.end()) {
     const std::string name = option->substr(0, option->find('='));
-    return fmt::format("unknown option {}{}", name, meant(name, option_names(at)));
+    return fmt::format("unknown option {}{}", name, toml::did_you_mean(name, option_names(at)));
   }
   const std::string known =
       fmt::format("{}commands are: {}", &at == &app ? "" : at.get_name() + " ", fmt::join(commands, ", "));
   if (!commands.empty())
-    return left.empty()
-               ? "a command is missing; " + known
-               : fmt::format("unknown command \"{}\"{}; {}", left.front(), meant(left.front(), commands), known);
+    return left.empty() ? "a command is missing; " + known
+                        : fmt::format("unknown command \"{}\"{}; {}", left.front(),
+                                      toml::did_you_mean(left.front(), commands), known);
   return left.empty() ? error.what() : fmt::format("\"{}\" is one word too many", left.front());
 }
 

@@ -25,6 +25,12 @@ inline constexpr std::array<Coolant, 4> kCoolants = {Coolant::mist, Coolant::flo
   return "";
 }
 
+/// One bit each, where several may be on.
+[[nodiscard]] constexpr std::uint8_t bit_of(Coolant coolant) {
+  return static_cast<std::uint8_t>(1U << static_cast<unsigned>(coolant));
+}
+[[nodiscard]] constexpr bool is_on(std::uint8_t coolants, Coolant coolant) { return (coolants & bit_of(coolant)) != 0; }
+
 /// Lines of a program that switch a coolant on and off: M8 and M9.
 struct CoolantWords {
   std::string on, off;

@@ -22,10 +22,8 @@ bool is_same(const fs::path& path, const std::string& other) {
 
 /// "; did you mean ...?" for a name that is like one of these, with its ending or without.
 std::string hint_for(const std::string& name, const std::vector<std::string>& installed) {
-  std::string_view near = toml::near_name(name, installed);
-  const std::string whole = name + ".toml";
-  if (near.empty()) near = toml::near_name(whole, installed);
-  return near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);
+  const std::string hint = toml::did_you_mean(name, installed);
+  return hint.empty() ? toml::did_you_mean(name + ".toml", installed) : hint;
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ Status prove(Check& check) {
   report = process::report_of("check", check.job, check.machine, check.gear.process->part().warnings);
   if (auto judged = judge_scene(check); !judged) return judged;
   process::note_proof(report, *check.proof);
-  const auto& hash = check.proof->hash;
+  const auto& hash = report.hash;
   report.blocks = hash && hash->fits() && hash->blocks > 0 ? hash->blocks : readback::count_blocks(check.text);
   report.has_acceleration = check.machine.has_acceleration();
   report.time_model = timing::model_text(check.machine, check.proof->read.corners);

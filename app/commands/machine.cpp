@@ -82,7 +82,7 @@ Result<sheet::DryRunPart> make_part(const machines::Machine& machine, const Mach
   text::NcHeader header;
   header.job_name = (tcp ? "self test tcp " : "self test ") + machine.name;
   header.machine_name = machine.name;
-  for (const auto& key : machine.assumed_keys) header.assumed.push_back(key);
+  header.assumed = machine.assumed_keys;
   header.program_number = kTestProgram + (tcp ? 1 : 0);
   const auto text =
       text::write_nc(self_test::self_test_program(*test, machine, *dialect), self_test::in_air(*dialect), header);

@@ -35,9 +35,7 @@ class JobWords final : public toml::TableWords {
   }
 
   std::string unknown(const std::string& path, const std::string& key, const KnownKeys& known) const override {
-    const std::string_view near = toml::near_name(key, known);
-    const std::string hint = near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near);
-    return fmt::format("unknown key \"{}\" in {}{}", shown(key), title(path), hint);
+    return fmt::format("unknown key \"{}\" in {}{}", shown(key), title(path), toml::did_you_mean(key, known));
   }
 
   std::string wrong_type(const std::string& name, toml::TomlType wanted, toml::TomlType found) const override {

@@ -115,7 +115,7 @@ void note_proof(report::RunReport& report, const ProgramProof& proof) {
   report.reasons = proof.reasons;
   report.warnings.insert(report.warnings.end(), proof.warnings.begin(), proof.warnings.end());
   report.conditions = proof.conditions;
-  report.hash = !proof.hash ? "none" : proof.hash->fits() ? "fits" : "does not fit";
+  report.hash = proof.hash;
 }
 
 std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& program,

@@ -81,7 +81,11 @@ Json value_at(const readback::ValueAt& v) { return {{"value", v.value}, {"line",
 /// Feeds and speeds in mm/min, deg/min and 1/min.
 void add_conditions(Json& json, const RunReport& r) {
   if (!r.conditions) return;
-  Json all = {{"hash", r.hash}, {"operations", Json::array()}, {"axis_speed", Json::object()}};
+  Json all = {{"hash", !r.hash          ? "none"
+                       : r.hash->fits() ? "fits"
+                                        : "does not fit"},
+              {"operations", Json::array()},
+              {"axis_speed", Json::object()}};
   for (const auto& [operation, c] : r.conditions->operations) {
     Json entry = {{"op", operation}, {"tool", c.tool}};
     if (c.cut_mm_min.line > 0) entry["cut_feed"] = value_at(c.cut_mm_min);
@@ -90,7 +94,7 @@ void add_conditions(Json& json, const RunReport& r) {
     if (c.greatest_rpm.line > 0) entry["greatest_speed"] = value_at(c.greatest_rpm);
     entry["coolant"] = Json::array();
     for (const machines::Coolant coolant : machines::kCoolants)
-      if (c.has(coolant)) entry["coolant"].push_back(to_string(coolant));
+      if (is_on(c.coolants, coolant)) entry["coolant"].push_back(to_string(coolant));
     all["operations"].push_back(std::move(entry));
   }
   for (std::size_t a = 0; a < r.axes.size() && a < r.conditions->axis_speed.size(); ++a)

@@ -16,6 +16,7 @@
 #include "geometry/face_gear/flank_correction.h"
 #include "postproc/joints/program.h"
 #include "postproc/readback/conditions.h"
+#include "postproc/readback/program_hash.h"
 #include "postproc/restart/menu.h"
 
 namespace toothpath::report {
@@ -105,7 +106,7 @@ struct RunReport {
       finished;                   ///< the finished surface, over the points that the finishing ball reaches
   std::vector<Finding> findings;  ///< what else there is to say about the part
   std::optional<readback::ConditionsFound> conditions;  ///< feeds, speeds, tools and coolant as they were read
-  std::string hash;  ///< of the program: "fits", "does not fit", "none"; empty where none was read
+  std::optional<readback::ProgramHash> hash;            ///< line HASH of the program that was read; none: it has none
 
   std::size_t cl_points = 0, blocks = 0;
   double feed_minutes = 0, total_minutes = 0;  ///< all teeth, rapids and `tool_change_minutes` in the second

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace toothpath::toml {
@@ -24,6 +25,13 @@ template <typename Names>
     best = candidate;
   }
   return best;
+}
+
+/// What a message says of it: "; did you mean "run"?"; empty: nothing is near.
+template <typename Names>
+[[nodiscard]] std::string did_you_mean(std::string_view name, const Names& known) {
+  const std::string_view near = near_name(name, known);
+  return near.empty() ? std::string() : "; did you mean \"" + std::string(near) + "\"?";
 }
 
 }  // namespace toothpath::toml

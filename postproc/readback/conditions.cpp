@@ -22,9 +22,6 @@ void keep_most(ValueAt& at, double value, int line) {
 void keep_least(ValueAt& at, double value, int line) {
   if (at.line == 0 || value < at.value) at = {value, line};
 }
-bool is_on(std::uint8_t coolants, machines::Coolant coolant) {
-  return ((coolants >> static_cast<unsigned>(coolant)) & 1U) != 0;
-}
 
 }  // namespace
 

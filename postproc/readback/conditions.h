@@ -38,10 +38,7 @@ struct ConditionsOfOperation {
   ValueAt cut_mm_min;  ///< quickest of the tip where it may cut
   ValueAt any_mm_min;  ///< of all its feeds, in the air too
   ValueAt least_rpm, greatest_rpm;
-  std::uint8_t coolants = 0;  ///< bit machines::Coolant: on in all its feeds
-  [[nodiscard]] bool has(machines::Coolant coolant) const {
-    return ((coolants >> static_cast<unsigned>(coolant)) & 1U) != 0;
-  }
+  std::uint8_t coolants = 0;  ///< machines::bit_of: on in all its feeds
 };
 
 struct ConditionsFound {

@@ -133,7 +133,7 @@ NcExecution::Problem NcExecution::set_length(int tool) {
 
 void NcExecution::switch_coolant(std::string_view word) {
   for (const auto& [coolant, words] : control_.coolants) {
-    const auto bit = static_cast<std::uint8_t>(1U << static_cast<unsigned>(coolant));
+    const std::uint8_t bit = machines::bit_of(coolant);
     if (words.on == word) coolants_ = static_cast<std::uint8_t>(coolants_ | bit);
     else if (words.off == word) coolants_ = static_cast<std::uint8_t>(coolants_ & ~bit);
   }

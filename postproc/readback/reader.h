@@ -94,7 +94,7 @@ struct ExecutedMove {
   float tolerance_mm = 0;
   bool machine = false;            ///< G53, or the block that switches tool length compensation on
   bool known = false;              ///< all joints were known before and after
-  std::uint8_t coolants = 0;       ///< bit machines::Coolant: it is on
+  std::uint8_t coolants = 0;       ///< machines::bit_of: it is on
   float speed_rpm = 0;             ///< of the spindle; 0: it stands
   std::uint64_t vector_print = 0;  ///< of the words of a tool vector, FNV-1a over their bytes; 0: rotary words
 };

@@ -11,7 +11,7 @@ std::string at(const readback::ValueAt& v) {
 std::string coolants_of(const readback::ConditionsOfOperation& c) {
   std::string out;
   for (const machines::Coolant coolant : machines::kCoolants)
-    if (c.has(coolant)) out += (out.empty() ? "" : ", ") + std::string(to_string(coolant));
+    if (is_on(c.coolants, coolant)) out += (out.empty() ? "" : ", ") + std::string(to_string(coolant));
   return out.empty() ? "off" : out;
 }
 
@@ -48,8 +48,9 @@ report::Section conditions(const job::Job& job, const machines::Machine& machine
   if (found.shortest_ms.line > 0)
     section.note +=
         fmt::format("Shortest block {} ms, limits.min_block_ms is {:g}. ", at(found.shortest_ms), machine.min_block_ms);
-  section.note +=
-      report.hash == "none" ? "The program has no line HASH." : "The line HASH " + report.hash + " the text.";
+  section.note += !report.hash          ? "The program has no line HASH."
+                  : report.hash->fits() ? "The line HASH fits the text."
+                                        : "The line HASH does not fit the text.";
   return section;
 }
 
