@@ -59,9 +59,22 @@ std::vector<Table> tables_of(std::span<const std::string> keys) {
   return tables;
 }
 
+/// Lines of at most `width` characters, broken behind commas; what has none there is not broken.
+std::vector<std::string> wrapped(std::string text, std::size_t width) {
+  std::vector<std::string> lines;
+  while (text.size() > width) {
+    const auto comma = text.rfind(", ", width - 1);
+    if (comma == std::string::npos || comma == 0) break;
+    lines.push_back(text.substr(0, comma + 1));
+    text.erase(0, comma + 2);
+  }
+  lines.push_back(std::move(text));
+  return lines;
+}
+
 }  // namespace
 
-std::vector<std::string> grouped_keys(std::span<const std::string> keys, std::size_t most) {
+std::vector<std::string> grouped_keys(std::span<const std::string> keys, std::size_t most, std::size_t width) {
   std::vector<Table> tables;
   for (Table& table : tables_of(keys)) {
     const auto like = std::find_if(tables.begin(), tables.end(), [&](const Table& t) {
@@ -71,11 +84,14 @@ std::vector<std::string> grouped_keys(std::span<const std::string> keys, std::si
     if (like != tables.end()) like->names.push_back(table.names.front());
     else tables.push_back(std::move(table));
   }
+  std::vector<std::vector<std::string>> texts;
+  std::size_t all = 0;
+  for (const Table& table : tables) all += texts.emplace_back(wrapped(table.text(), width)).size();
   std::vector<std::string> lines;
   std::size_t left_out = 0;
   for (std::size_t n = 0; n < tables.size(); ++n) {
-    const bool room = tables.size() <= most || n + 1 < most;
-    if (room) lines.push_back(tables[n].text());
+    const bool room = all <= most || (left_out == 0 && lines.size() + texts[n].size() < most);
+    if (room) lines.insert(lines.end(), texts[n].begin(), texts[n].end());
     else left_out += tables[n].names.empty() ? 1 : tables[n].names.size() * tables[n].leaves.size();
   }
   if (left_out > 0) lines.push_back(fmt::format("and {} more", left_out));

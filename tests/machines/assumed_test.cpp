@@ -39,6 +39,18 @@ TEST(Assumed, WhatDoesNotFitIsCounted) {
   EXPECT_EQ(machines::grouped_keys(kKeys, 4).back(), "and 3 more");
 }
 
+TEST(Assumed, LongLinesAreBrokenBehindACommaAndLoseNothing) {
+  Lines keys;
+  for (const char* axis : {"X", "Y", "Z"})
+    for (const char* key : {"min", "max", "max_speed", "max_acceleration", "max_jerk"})
+      keys.push_back(std::string("machine.toml: axes.") + axis + "." + key);
+  const Lines lines = machines::grouped_keys(keys, 10, 40);
+  EXPECT_EQ(lines,
+            (Lines{"machine.toml: axes.X, axes.Y,", "axes.Z: min, max, max_speed,", "max_acceleration, max_jerk"}));
+  for (const std::string& line : machines::grouped_keys(keys)) EXPECT_LE(line.size(), 68U);
+  EXPECT_EQ(machines::grouped_keys(keys, 2, 40), (Lines{"and 15 more"}));
+}
+
 TEST(Assumed, OneLineCountsThem) {
   EXPECT_EQ(machines::counted_keys(kKeys), "10 values of m.toml, not measured: dialect, spindle, axes (6), tcp, post");
   EXPECT_EQ(machines::counted_keys(Lines{"a.toml: axes.A.point"}), "1 value of a.toml, not measured: axes");
