@@ -96,11 +96,7 @@ void results_row(std::string& out, const RunReport& report) {
 
 }  // namespace
 
-std::string readable_minutes(double minutes) {
-  const auto seconds = static_cast<long long>(std::llround(minutes * 60));
-  if (seconds >= 3600) return fmt::format("{} h {:02} min", seconds / 3600, seconds % 3600 / 60);
-  return fmt::format("{} min {:02} s", seconds / 60, seconds % 60);
-}
+std::string readable_minutes(double minutes) { return app::duration_text(minutes * 60); }
 
 std::string times_text(const RunReport& report) {
   return report.time_model + (report.tool_change_minutes

@@ -11,6 +11,7 @@
 #include "app/process/opening_and_end.h"
 #include "app/report/page/study_page.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/work_share.h"
 #include "machines/toml/regular_file.h"
 
 namespace toothpath::studies {
@@ -317,8 +318,14 @@ commands::CommandOutcome study_dhfg(const DhfgRequest& request) {
   }
   if (request.quick) coarsen(study);
   std::vector<DhfgTrial> trials;
-  for (const auto& levels : l9_trials())
-    trials.push_back(clock.run(fmt::format("trial {}", levels.number), [&] { return dhfg_trial(study, levels); }));
+  clock.run("trials", [&] {
+    WorkShare share{double(l9_trials().size())};
+    for (const auto& levels : l9_trials()) {
+      progress.show(fmt::format("trial {}", levels.number));
+      trials.push_back(dhfg_trial(study, levels));
+      share.add();
+    }
+  });
 
   const std::vector<page::PageTable> tables = {geometry_table(trials), mesh_table(study, trials),
                                                milling_table(study, trials, request.quick), range_table(study, trials)};
