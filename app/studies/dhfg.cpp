@@ -280,6 +280,9 @@ nlohmann::ordered_json json_of(const DhfgStudy& s, const std::vector<DhfgTrial>&
   return json;
 }
 
+/// Of about the same time: the rolls of a trial, and its milling.
+constexpr double kStepsOfTrial = 4;
+
 }  // namespace
 
 process::ValueOrErrors<DhfgStudy> parse_dhfg_study(std::string_view text, const std::string& file) {
@@ -322,8 +325,8 @@ commands::CommandOutcome study_dhfg(const DhfgRequest& request) {
     WorkShare share{double(l9_trials().size())};
     for (const auto& levels : l9_trials()) {
       progress.show(fmt::format("trial {}", levels.number));
+      const WorkShare trial(share, kStepsOfTrial);
       trials.push_back(dhfg_trial(study, levels));
-      share.add();
     }
   });
 

@@ -5,6 +5,7 @@
 
 #include "app/base/units.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/work_share.h"
 
 namespace toothpath::face {
 namespace {
@@ -134,6 +135,7 @@ process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, con
         "an axial error turns the halves of a double helical pinion against each other: a pinion that floats would "
         "take the place without it");
 
+  const WorkShare share(cut ? 4 : 2);  // rolls
   for (const int s : {1, -1}) {
     std::vector<contact::ContactFlank> flanks;
     for (int zone = 0; zone < static_cast<int>(gear.rings().size()); ++zone) {
