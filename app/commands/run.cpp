@@ -5,14 +5,15 @@
 #include "app/process/proof_limits.h"
 #include "app/report/cl_csv.h"
 #include "app/report/sheet/setup_sheet.h"
+#include "postproc/controls/registry.h"
 
 namespace toothpath::commands {
 namespace {
 
-const std::vector<std::string> kRunOutputs = {"program.",       "cl.csv",       "report.json",    "report.html",
-                                              "setup.html",     "gear.stl",     "tooth.vtp",      "inspection.csv",
-                                              "inspection.dmi", "limits.json",  "limits.html",    "limits.svg",
-                                              "limits_0.svg",   "limits_1.svg", "correction.json"};
+const std::vector<std::string> kRunOutputs = {"program.",       "cl.csv",       "report.json",     "report.html",
+                                              "setup.html",     "gear.stl",     "tooth.vtp",       "inspection.csv",
+                                              "inspection.dmi", "limits.json",  "limits.html",     "limits.svg",
+                                              "limits_0.svg",   "limits_1.svg", "correction.json", "program_tools.tbl"};
 
 /// Job, gear and machine with everything that is wrong with them.
 std::vector<Diagnostic> read_inputs(flow::Run& run, const RunRequest& request) {
@@ -36,6 +37,9 @@ Status write_results(flow::Run& run, app::OutputDir& output, std::string& json) 
     if (const auto s = gear.write_files(output, run.surface, report.assumed, run.clock, report.files); !s) return s;
     if (const auto s = write("setup.html", sheet::setup_sheet(run.job, gear.outline(), run.machine, report)); !s)
       return s;
+    const controls::Control* control = controls::find(run.machine.dialect);
+    if (control && control->tool_table)
+      if (const auto s = write(control->tool_table->file, control->tool_table->text(run.job.tools)); !s) return s;
   }
   const auto paths = run.paths();
   if (!paths.empty())
