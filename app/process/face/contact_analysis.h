@@ -13,6 +13,9 @@
 
 namespace toothpath::face {
 
+/// rad: a transmission error below it is rounding.
+inline constexpr double kNoError = 1e-10;
+
 /// One side of the teeth rolled against the pinion: a member a ring.
 struct ContactOfSide {
   int side = 1;
