@@ -10,9 +10,6 @@
 namespace toothpath::face {
 namespace {
 
-/// Below this transmission error [rad] contact counts as inside the flank: rounding is a thousand times less, edges far
-/// more.
-
 std::string kind_of(const ContactOfSide& side) {
   bool line = false, whole = false;
   for (std::size_t m = 0; m < side.members.size(); ++m) {
