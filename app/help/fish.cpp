@@ -35,30 +35,7 @@ std::string option_line(const std::string& condition, const Option& option) {
                      option.value ? " " + fish_proposal(*option.value) : "");
 }
 
-}  // namespace
-
-std::string fish_completion(const Program& program) {
-  std::string words, with_value, lines;
-  for (const auto& [path, command] : all_commands(program)) {
-    const std::string condition = fmt::format(" -n {}", fish_quoted("__toothpath_at " + fish_quoted(path)));
-    for (const Command& inner : command->commands) {
-      words += fmt::format("            case {}\n                set path {}\n", fish_quoted(path + " " + inner.name),
-                           fish_quoted(path.empty() ? inner.name : path + " " + inner.name));
-      lines += fmt::format("complete -c toothpath{} -a {} -d {}\n", condition, fish_quoted(inner.name),
-                           fish_quoted(inner.description));
-    }
-    for (const Option& option : options_at(program, *command)) {
-      lines += option_line(condition, option);
-      if (!option.value) continue;
-      for (const std::string& name : option.names) with_value += " " + fish_quoted(path + " " + name);
-    }
-    for (std::size_t k = 0; k < command->arguments.size(); ++k)
-      if (command->arguments[k].value.kind != ValueKind::text)
-        lines += fmt::format("complete -c toothpath -n {} {}\n",
-                             fish_quoted(fmt::format("__toothpath_at {} {}", fish_quoted(path), k)),
-                             fish_proposal(command->arguments[k].value));
-  }
-  return fmt::format(R"fish(# Completion of {} in fish, made by `toothpath completion fish`.
+constexpr const char* kFish = R"fish(# Completion of {} in fish, made by `toothpath completion fish`.
 
 # The command that the words before reached, and behind it the number of its arguments that are there.
 function __toothpath_reached
@@ -97,8 +74,32 @@ function __toothpath_toml
 end
 
 complete -c toothpath -f
-{})fish",
-                     program.version, with_value, words, lines);
+{})fish";
+
+}  // namespace
+
+std::string fish_completion(const Program& program) {
+  std::string words, with_value, lines;
+  for (const auto& [path, command] : all_commands(program)) {
+    const std::string condition = fmt::format(" -n {}", fish_quoted("__toothpath_at " + fish_quoted(path)));
+    for (const Command& inner : command->commands) {
+      words += fmt::format("            case {}\n                set path {}\n", fish_quoted(path + " " + inner.name),
+                           fish_quoted(path.empty() ? inner.name : path + " " + inner.name));
+      lines += fmt::format("complete -c toothpath{} -a {} -d {}\n", condition, fish_quoted(inner.name),
+                           fish_quoted(inner.description));
+    }
+    for (const Option& option : options_at(program, *command)) {
+      lines += option_line(condition, option);
+      if (!option.value) continue;
+      for (const std::string& name : option.names) with_value += " " + fish_quoted(path + " " + name);
+    }
+    for (std::size_t k = 0; k < command->arguments.size(); ++k)
+      if (command->arguments[k].value.kind != ValueKind::text)
+        lines += fmt::format("complete -c toothpath -n {} {}\n",
+                             fish_quoted(fmt::format("__toothpath_at {} {}", fish_quoted(path), k)),
+                             fish_proposal(command->arguments[k].value));
+  }
+  return fmt::format(kFish, program.version, with_value, words, lines);
 }
 
 }  // namespace toothpath::help

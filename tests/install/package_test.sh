@@ -52,6 +52,15 @@ zcat "$root/usr/share/doc/toothpath/changelog.gz" | dpkg-parsechangelog -l - -S 
 "$installed" run "$root/usr/share/doc/toothpath/samples/spur_quick.toml" --out "$work/out" --quiet || fail "the sample"
 [[ -s $work/out/program.ngc && -s $work/out/report.html ]] || fail "no program and report of the sample"
 
+for module in "${modules[@]}"; do
+  in_tree --install "$module"
+  PYTHONPATH=$root/usr/lib/python3/dist-packages /usr/bin/python3 -c '
+import sys, toothpath
+assert toothpath.__file__.startswith(sys.argv[1])
+assert toothpath.Gear(sys.argv[2]).flanks()[0].points.shape == (5, 9, 3)' "$root" "$root/usr/share/doc/toothpath/samples/spur_quick.toml" || fail "the Python module"
+  in_tree --purge python3-toothpath
+done
+
 in_tree --purge toothpath
 [[ $(tree) == "$before" ]] || fail "left behind: $(diff <(echo "$before") <(tree))"
 echo "packages: $(cd "$work" && du -h --apparent-size ./*.deb | tr '\t\n' '  ')"
