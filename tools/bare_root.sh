@@ -39,3 +39,14 @@ in_root() {
     exec chroot "$0" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive NODE_EXTRA_CA_CERTS="/$1" bash -c "cd $2 && $3"' \
     "$1" "$bare_certificates" "$2" "$3"
 }
+
+# cached_bare_root ROOT PACKAGE,.. ARCHIVE: the same, kept in an archive for the next time.
+cached_bare_root() {
+  if [[ ! -f $3 ]]; then
+    make_bare_root "$1" "$2" || return 1
+    mkdir -p "$(dirname "$3")"
+    tar -C "$1" -cf "$3.part" . && mv "$3.part" "$3"
+  else
+    mkdir -p "$1" && tar -C "$1" -xf "$3"
+  fi
+}
