@@ -9,16 +9,22 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
 
 #include "app/base/out_of_memory.h"
 #include "app/base/output_dir.h"
+#include "app/command_tree.h"
 #include "app/commands/command.h"
+#include "app/help/completion.h"
+#include "app/help/man_page.h"
 #include "app/report/svg/html_text.h"
 #include "geometry/base/printable.h"
+#include "machines/machine_file.h"
 #include "machines/toml/near_name.h"
 
 namespace toothpath {
@@ -134,6 +140,43 @@ std::vector<Subcommand> add_commands(CLI::App& app) {
   return added;
 }
 
+std::string installed_names() {
+  std::string names;
+  for (const std::string& file : machines::installed_machines()) names += file.substr(0, file.rfind('.')) + "\n";
+  return names;
+}
+
+/// Hidden commands that print what is made of all the others: scripts of the shells, the manual page.
+void add_self_description(CLI::App& app, std::vector<Subcommand>& commands) {
+  const auto printing = [](std::function<std::string()> text) {
+    return [text = std::move(text)](const commands::CommonRequest&) {
+      commands::CommandOutcome outcome;
+      outcome.summary = text();
+      return outcome;
+    };
+  };
+  const auto add = [&app](const char* name, const char* description) {
+    CLI::App* sub = app.add_subcommand(name, description);
+    sub->fallthrough();
+    sub->group("");
+    return sub;
+  };
+  CLI::App* manual = add("man-page", "the manual page as roff");
+  commands.push_back({manual, manual->get_name(),
+                      printing([&app] { return help::man_page(describe_program(app, kVersion), TOOTHPATH_DATE); })});
+  CLI::App* completion = add("completion", "a script that completes the commands in a shell, or words for it");
+  auto what = std::make_shared<std::string>();
+  completion->add_option("WHAT", *what, "of which shell; machines: the names of the installed ones")
+      ->required()
+      ->check(CLI::IsMember({"bash", "zsh", "fish", "machines"}));
+  commands.push_back({completion, completion->get_name(), printing([&app, what] {
+                        if (*what == "machines") return installed_names();
+                        const help::Program program = describe_program(app, kVersion);
+                        if (*what == "bash") return help::bash_completion(program);
+                        return *what == "zsh" ? help::zsh_completion(program) : help::fish_completion(program);
+                      })});
+}
+
 void add_global_options(CLI::App& app, GlobalOptions& options) {
   app.set_version_flag("--version", kVersion);
   app.add_flag("--json", options.json, "print one JSON object on stdout");
@@ -154,7 +197,7 @@ const CLI::App& reached(const CLI::App& app) {
 
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App* sub) { return !sub->get_group().empty(); }))
     names.push_back(command->get_name());
   return names;
 }
@@ -202,7 +245,8 @@ int run_command_line(int argc, char** argv) {
     return printable(usage_error(*at, error)) + "\nRun with --help for more information.\n";
   });
   app.require_subcommand(0, 1);
-  const auto commands = add_commands(app);
+  auto commands = add_commands(app);
+  add_self_description(app, commands);
 
   try {
     app.parse(argc, argv);

@@ -1,4 +1,4 @@
-// The command line: the only wrapper of the option parser, and the only place that prints.
+// The command line: with command_tree the only wrapper of the option parser, and the only place that prints.
 #pragma once
 
 namespace toothpath {

@@ -1,5 +1,5 @@
-// Picture of a report page: node tools/page_screenshot.mjs FILE.html OUT.png [--width 1280] [--height 860] [--dark] [--full] [--select CSS]
-// Needs tools/get_page_tools.sh once. Exit code 1 where the page reports an error.
+// Picture of a report page: node tools/page_screenshot.mjs FILE.html OUT.png [--width 1280] [--height 860] [--dark] [--full] [--select CSS] [--fits] [--pdf OUT.pdf]
+// Needs tools/get_page_tools.sh once. Exit code 1 where the page reports an error or, with --fits, is wider than the window. --pdf prints it on A4, too.
 import {createRequire} from 'node:module';
 import {mkdtempSync, rmSync, existsSync} from 'node:fs';
 import {tmpdir} from 'node:os';
@@ -16,11 +16,11 @@ const take = (name, fallback) => {
   return at < 0 ? fallback : rest.splice(at, 2)[1];
 };
 const flag = (name) => rest.includes(name) && rest.splice(rest.indexOf(name), 1).length > 0;
-const width = Number(take('--width', 1280)), height = Number(take('--height', 860)), select = take('--select', '');
-const dark = flag('--dark'), full = flag('--full');
+const width = Number(take('--width', 1280)), height = Number(take('--height', 860)), select = take('--select', ''), pdf = take('--pdf', '');
+const dark = flag('--dark'), full = flag('--full'), fits = flag('--fits');
 const [file, out] = rest;
 if (!file || !out) {
-  console.error('usage: node tools/page_screenshot.mjs FILE.html OUT.png [--width N] [--height N] [--dark] [--full] [--select CSS]');
+  console.error('usage: node tools/page_screenshot.mjs FILE.html OUT.png [--width N] [--height N] [--dark] [--full] [--select CSS] [--fits] [--pdf OUT.pdf]');
   process.exit(2);
 }
 const executablePath = [process.env.TOOTHPATH_CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome']
@@ -41,6 +41,9 @@ try {
   await page.goto(pathToFileURL(resolve(file)).href);
   await page.waitForFunction(() => !document.title.startsWith('Loading'), {timeout: 60000});
   await page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+  if (fits && wide > width) { console.error(`${file}: ${wide} px wide in a window of ${width}`); status = 1; }
+  if (pdf) await page.pdf({path: pdf, format: 'A4', preferCSSPageSize: true, printBackground: true});
   if (select) await (await page.$(select)).screenshot({path: out});
   else await page.screenshot({path: out, fullPage: full});
 } finally {

@@ -1,5 +1,5 @@
-// The options of a command as it declares them. Only option_set.cpp and app/command_line.cpp know the library that
-// reads them.
+// The options of a command as it declares them. Only option_set.cpp, app/command_line.cpp and app/command_tree.cpp know
+// the library that reads them.
 #pragma once
 
 #include <optional>

@@ -85,7 +85,9 @@ CommandOutcome run_job(const RunRequest& request) {
     run.progress.clear();
     return failed(*stopped);
   }
-  return finish(run, *output, stopped, request.color);
+  CommandOutcome outcome = finish(run, *output, stopped, request.color);
+  if (request.finished && !outcome.report_json.empty()) request.finished(run);
+  return outcome;
 }
 
 void add_run(Commands& commands) {

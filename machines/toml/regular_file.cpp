@@ -70,4 +70,9 @@ std::vector<std::string> inputs_read() {
   return inputs;
 }
 
+void forget_inputs_read() {
+  const std::lock_guard lock(inputs_mutex);
+  inputs.clear();
+}
+
 }  // namespace toothpath::toml

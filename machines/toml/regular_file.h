@@ -23,5 +23,7 @@ namespace toothpath::toml {
 
 /// Names of the inputs that this process has read, each once, in order.
 [[nodiscard]] std::vector<std::string> inputs_read();
+/// Where a process runs one command after the other: what follows has read none yet.
+void forget_inputs_read();
 
 }  // namespace toothpath::toml

@@ -1,0 +1,66 @@
+#!/usr/bin/env bash
+# The Debian packages of a build, without root rights and without a network: what is in them and where, what lintian says; installed into an
+# empty tree by dpkg, a sample run by the installed program, removed without a trace. In a clean root with its dependencies: tests/first_hour.
+#   package_test.sh BUILD_FOLDER
+set -euo pipefail
+build=$(realpath "$1")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() { echo "package_test: $*" >&2; exit 1; }
+
+(cd "$work" && cpack --config "$build/CPackConfig.cmake" >cpack.log 2>&1) || { cat "$work/cpack.log" >&2; fail "cpack"; }
+shopt -s nullglob
+packages=("$work"/toothpath_*.deb)
+modules=("$work"/python3-toothpath_*.deb)
+((${#packages[@]} == 1)) || fail "cpack made ${#packages[@]} packages of the program"
+program=${packages[0]}
+
+# Every file where the standard of the file system has its kind, and every kind there.
+kinds=(usr/bin/toothpath usr/share/man/man1/toothpath.1.gz usr/share/bash-completion/completions/toothpath
+  usr/share/zsh/vendor-completions/_toothpath usr/share/fish/vendor_completions.d/toothpath.fish
+  usr/share/doc/toothpath/README.md usr/share/doc/toothpath/copyright usr/share/doc/toothpath/changelog.gz
+  'usr/share/doc/toothpath/docs/.*' 'usr/share/doc/toothpath/samples/.*\.(toml|md)' 'usr/share/toothpath/machines/[a-z0-9_]*\.toml')
+files=$(dpkg-deb --fsys-tarfile "$program" | tar t | sed 's|^\./||' | grep -v '/$')
+for kind in "${kinds[@]}"; do grep -qxE "$kind" <<<"$files" || fail "no $kind in the package"; done
+others=$(grep -vxE "$(IFS='|'; echo "${kinds[*]}")" <<<"$files" || true)
+[[ -z $others ]] || fail "in the package, but in no place for it: $others"
+source=$(cd "$(dirname "$0")/../.." && pwd)
+for folder in samples machines/data; do
+  for file in "$source/$folder"/*.toml; do grep -q "/${file##*/}\$" <<<"$files" || fail "no ${file##*/} in the package"; done
+done
+! dpkg-deb -f "$program" Depends | grep -q python || fail "the program depends on Python"
+
+lintian --no-cfg --fail-on error,warning "$program" "${modules[@]}" >"$work/lintian.log" 2>&1 || { cat "$work/lintian.log" >&2; fail "lintian"; }
+
+# An empty tree with dpkg's own records, and nothing else.
+root=$work/root
+mkdir -p "$root"/var/lib/dpkg/{info,updates} && touch "$root/var/lib/dpkg/status"
+in_tree() { dpkg --root="$root" --log="$work/dpkg.log" --force-not-root --force-bad-path --force-depends "$@" >"$work/dpkg.out" 2>&1 || { cat "$work/dpkg.out" >&2; fail "dpkg $*"; }; }
+tree() { (cd "$root" && find . ! -path './var/lib/dpkg/*' | sort); }
+before=$(tree)
+in_tree --install "$program"
+
+installed=$root/usr/bin/toothpath
+touch "$root/usr/share/toothpath/machines/only_here.toml"
+"$installed" completion machines | grep -qx only_here || fail "the installed program does not look for machines beside itself"
+rm "$root/usr/share/toothpath/machines/only_here.toml"
+for shell in bash:bash-completion/completions/toothpath zsh:zsh/vendor-completions/_toothpath fish:fish/vendor_completions.d/toothpath.fish; do
+  cmp -s "$root/usr/share/${shell#*:}" <("$installed" completion "${shell%%:*}") || fail "completion of ${shell%%:*} is not that of the program"
+done
+zcat "$root/usr/share/man/man1/toothpath.1.gz" | cmp -s - <("$installed" man-page) || fail "the manual page is not that of the program"
+zcat "$root/usr/share/doc/toothpath/changelog.gz" | dpkg-parsechangelog -l - -S Version | grep -qx "$(dpkg-deb -f "$program" Version)" || fail "changelog"
+"$installed" run "$root/usr/share/doc/toothpath/samples/spur_quick.toml" --out "$work/out" --quiet || fail "the sample"
+[[ -s $work/out/program.ngc && -s $work/out/report.html ]] || fail "no program and report of the sample"
+
+for module in "${modules[@]}"; do
+  in_tree --install "$module"
+  PYTHONPATH=$root/usr/lib/python3/dist-packages /usr/bin/python3 -c '
+import sys, toothpath
+assert toothpath.__file__.startswith(sys.argv[1])
+assert toothpath.Gear(sys.argv[2]).flanks()[0].points.shape == (5, 9, 3)' "$root" "$root/usr/share/doc/toothpath/samples/spur_quick.toml" || fail "the Python module"
+  in_tree --purge python3-toothpath
+done
+
+in_tree --purge toothpath
+[[ $(tree) == "$before" ]] || fail "left behind: $(diff <(echo "$before") <(tree))"
+echo "packages: $(cd "$work" && du -h --apparent-size ./*.deb | tr '\t\n' '  ')"
