@@ -149,6 +149,8 @@ Meeting MovesJudge::meeting(std::size_t pair, const Span& span, const Five& at, 
   Meeting m;
   m.first = scene_.bodies()[p.first].name;
   m.second = scene_.bodies()[p.second].name;
+  m.first_kind = scene_.bodies()[p.first].kind;
+  m.second_kind = scene_.bodies()[p.second].kind;
   m.proven_mm = gap.proven;
   m.measured_mm = gap.measured;
   m.line = span.line;
@@ -300,7 +302,7 @@ void MovesJudge::flush() {
 MovesFound MovesJudge::finish() {
   flush();
   MovesFound found;
-  found.bodies = scene_.bodies().size();
+  for (const Body& body : scene_.bodies()) found.stated += body.kind == Kind::machine ? 1 : 0;
   found.pairs = scene_.pairs().size();
   found.moves = moves_;
   found.unjudged = unjudged_;

@@ -29,6 +29,7 @@ struct MovesOptions {
 /// Where two bodies come near each other.
 struct Meeting {
   std::string first, second;
+  Kind first_kind = Kind::machine, second_kind = Kind::machine;
   double proven_mm = 0;    ///< no move of the program has a smaller gap; of a pair that fails: of its first place
   double measured_mm = 0;  ///< found there
   int line = 0, operation = -1, tooth = -1, tool = 0;
@@ -40,7 +41,8 @@ struct Meeting {
 
 /// What was found about the moves of a program.
 struct MovesFound {
-  std::size_t bodies = 0, pairs = 0, moves = 0;
+  std::size_t stated = 0;  ///< bodies of the machine; 0: nothing was looked at
+  std::size_t pairs = 0, moves = 0;
   std::size_t unjudged = 0;          ///< moves from a place that the program does not tell
   std::vector<std::string> bearing;  ///< pairs that bear on one another and are not looked at
   std::vector<Meeting> nearest;      ///< pairs that come nearer than look_mm, nearest first
