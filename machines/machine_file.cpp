@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 
+#include "machines/body_file.h"
 #include "machines/machine_table.h"
 
 namespace toothpath::machines {
@@ -190,7 +191,6 @@ void read_chain(toml::TableReader& root, Machine& machine) {
   if (!chain || !axes) return;
   const std::vector<NamedAxis> table = read_letters(*chain, "table");
   const std::vector<NamedAxis> head = read_letters(*chain, "head");
-  chain->finish();
 
   for (std::size_t i = 0; i < 3; ++i)
     if (auto axis = axes->required_table(letter_name("XYZ"[i])))
@@ -219,6 +219,8 @@ void read_chain(toml::TableReader& root, Machine& machine) {
       (in_table ? machine.chain.table : machine.chain.head)
           .push_back(read_rotary(*axis, all[k].letter, in_table, machine.limit_margin));
   }
+  if (chain->has("order")) read_chain_order(*chain, machine.chain);
+  chain->finish();
   refuse_offsets_in_metres(*axes, machine);
   for (const toml::TomlEntry& entry : axes->entries())
     if (entry.key == "A" || entry.key == "B" || entry.key == "C") {
@@ -367,6 +369,7 @@ Machine read_machine_tree(const toml::TomlValue& tree, const std::string& file, 
   if (root.has("post"))
     if (const auto post = root.required_table("post")) read_post(*post, machine.post);
   read_chain(root, machine);
+  read_bodies(root, machine);
   check_accelerations(root, machine);
   root.finish();
   machine.positions = findings.positions;

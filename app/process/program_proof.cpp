@@ -7,6 +7,7 @@
 #include <map>
 #include <utility>
 
+#include "app/process/machine_moves.h"
 #include "app/process/program_report.h"
 #include "app/process/proof_limits.h"
 #include "app/process/tooth_copies.h"
@@ -43,12 +44,17 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
                       .watch = [&](const readback::ExecutedMove& m) {
                         judge.add(m);
                         if (m.line > seen) share.add(m.line - std::exchange(seen, m.line));
+                        if (program.moves) program.moves->add(m);
                       }});
   });
   if (!read) return read.error();
   out.read = std::move(read.value());
   out.conditions = judge.finish();
   out.reasons = out.conditions.reasons;
+  if (program.moves) {
+    out.machine_moves = clock.run("machine moves", [&] { return program.moves->finish(); });
+    for (std::string& reason : reasons_of(program.machine, out.machine_moves)) out.reasons.push_back(std::move(reason));
+  }
   out.warnings = out.conditions.warnings;
   out.hash = readback::hash_of_program(program.text);
   if (out.hash && !out.hash->fits()) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "app/base/units.h"
+#include "app/report/machine_moves.h"
 #include "app/report/run_report.h"
 #include "geometry/base/angle.h"
 #include "machines/assumed.h"
@@ -58,6 +59,7 @@ void proof_rows(std::string& out, const RunReport& report) {
     row(out, "least clearance",
         fmt::format("{} mm (neck, shank, holder)",
                     app::least_text(report.gouge->clearance_mm, report.gouge->clearance_at_least())));
+  if (report.machine_moves) row(out, "machine bodies", machine_moves_text(*report.machine_moves));
   for (const auto& v : report.scene) {
     const std::string place = v.nearest ? fmt::format("{}, op {}, tooth {}, line {}", v.nearest->body,
                                                       v.nearest->operation, v.nearest->tooth, v.nearest->line)
