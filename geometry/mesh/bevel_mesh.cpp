@@ -93,14 +93,19 @@ void add_triangle(TriangleMesh& mesh, std::int32_t a, std::int32_t b, std::int32
 
 }  // namespace
 
+/// Below the root by two modules, but no nearer to the axis than a third of the radius there.
+double underside_height(const bevel_gear::BevelGear& g) {
+  const auto& p = g.parameters();
+  const double depth =
+      std::min(2 * p.outer_transverse_module_mm, (g.R_i() * g.sin_delta() - p.dedendum_mm * g.cos_delta()) /
+                                                     (1.5 * std::max(1e-9, g.cos_delta())));
+  return -p.dedendum_mm - depth;
+}
+
 Result<TriangleMesh> bevel_gear_mesh(const bevel_gear::BevelGear& g, const BevelMeshOptions& o) {
   auto rows = sections(g, o);
   if (!rows) return rows.error();
-  // Body: below the root by two modules, but no nearer to the axis than a third of the radius there.
-  const double depth = std::min(
-      2 * g.parameters().outer_transverse_module_mm,
-      (g.R_i() * g.sin_delta() - g.parameters().dedendum_mm * g.cos_delta()) / (1.5 * std::max(1e-9, g.cos_delta())));
-  const double under = -g.parameters().dedendum_mm - depth;
+  const double under = underside_height(g);
   std::vector<Section> loop{flattened(g, rows->front(), g.R_i(), under)};
   for (auto& s : *rows) loop.push_back(std::move(s));
   loop.push_back(flattened(g, loop.back(), g.R_e(), under));

@@ -13,6 +13,10 @@
 
 namespace toothpath::mesh {
 
+/// Height over the pitch cone of the underside that bodies of ours have, mm: how thick a gear is below its teeth no job
+/// says.
+[[nodiscard]] double underside_height(const bevel_gear::BevelGear& gear);
+
 struct BevelMeshOptions {
   int stations = 21;                     ///< along the face of each half, 2 ..
   int rows = 19;                         ///< along the profile of a wall, 3 ..

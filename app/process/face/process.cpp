@@ -193,7 +193,7 @@ class FaceProcess final : public process::GearProcess {
             gear_.outer_radius(),
             gear_.blank_top(),
             root,
-            root - 2.5 * gear_.parameters().module_mm,
+            mesh::underside_z(gear_),
             gear_words(gear_.parameters())};
   }
   [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override {
