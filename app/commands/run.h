@@ -2,12 +2,15 @@
 #pragma once
 
 #include "app/commands/command.h"
+#include "app/process/cad/cad_files.h"
 #include "app/process/flow/stages.h"
 
 namespace toothpath::commands {
 
 /// Of `run` and `correct`.
-struct RunRequest : JobRequest, flow::RunAsked {};
+struct RunRequest : JobRequest, flow::RunAsked {
+  cad::FilesAsked cad;
+};
 
 /// Gear, plan, gouge check, axis program, NC text, read back from the disk, proof, report. A program that is not proven
 /// is not left in the directory; the report is, and says why.

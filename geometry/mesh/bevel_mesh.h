@@ -27,6 +27,10 @@ struct BevelMeshOptions {
 [[nodiscard]] Result<TriangleMesh> bevel_gear_mesh(const bevel_gear::BevelGear& gear,
                                                    const BevelMeshOptions& options = {});
 
+/// One of its `teeth` equal parts, with its share of the body: open where the next one joins.
+[[nodiscard]] Result<TriangleMesh> bevel_pitch_part(const bevel_gear::BevelGear& gear,
+                                                    const BevelMeshOptions& options = {});
+
 /// One pitch of the tooth surface (walls, root, top land, groove), open. `patch` gets a number a vertex: 0 wall L, 1
 /// root, 2 wall U, 3 top land, 4 groove.
 [[nodiscard]] Result<TriangleMesh> bevel_pitch_mesh(const bevel_gear::BevelGear& gear, std::vector<double>& patch,
