@@ -394,6 +394,15 @@ std::string report_json(const RunReport& r) {
                         {"residual_rms_um", c.fit.residual_rms_mm * 1000}});
     json["correction"] = std::move(flanks);
   }
+  if (r.cad)
+    json["solid"] = {{"file", r.cad->file},
+                     {"faces", r.cad->faces},
+                     {"patches", r.cad->patches},
+                     {"bytes", r.cad->bytes},
+                     {"places_checked", r.cad->checked},
+                     {"worst_deviation_um", r.cad->worst_mm * 1000},
+                     {"most_deviation_um", r.cad->asked_mm * 1000},
+                     {"worst_at", r.cad->worst_at}};
   json["warnings"] = text_list(r.warnings);
   json["files"] = text_list(r.files);
   Json stages = Json::object();

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/report/block_times.h"
+#include "app/report/cad_report.h"
 #include "app/report/cutting_load.h"
 #include "app/report/finding.h"
 #include "app/report/scene_report.h"
@@ -132,6 +133,7 @@ struct RunReport {
   std::vector<SceneVerdict> scene;  ///< fixture and stock, where meshes of them were given
   std::optional<bodies::MovesFound> machine_moves;  ///< none where no program was proven
   std::vector<CorrectionRow> correction;            ///< empty: the nominal flanks are the target
+  std::optional<CadReport> cad;                     ///< none where no solid was asked for
   std::vector<std::string> assumed, warnings;
   std::vector<std::string> files;                      ///< written by this run
   std::vector<std::pair<std::string, double>> stages;  ///< name and seconds, those that ran
