@@ -27,7 +27,7 @@ void read_study(toml::TableReader& t, DhfgStudy& s) {
     p.module_plane = *plane == "normal" ? face_gear::ModulePlane::normal : face_gear::ModulePlane::transverse;
   p.pressure_angle_rad = radians(t.number("pressure_angle", {5, 45, " deg"}).value_or(20));
   const auto optional = [&](const char* key, const toml::Range& range, double& value) {
-    if (const auto v = t.if_present(key, [&] { return t.number(key, range); })) value = *v;
+    value = t.number_or(key, range, value);
   };
   optional("addendum_coefficient", {0.1, 2, ""}, p.addendum_coefficient);
   optional("clearance_coefficient", {0, 1, ""}, p.clearance_coefficient);
