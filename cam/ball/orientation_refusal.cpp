@@ -141,11 +141,12 @@ OrientationRefusal RefusalWords::blocked(const std::vector<BallPass>& passes, co
     return {fmt::format("{} {}", place(worst.point), flute_words(worst.point))};
   const std::string more =
       spots.size() > 1 ? fmt::format(" (nor at {} more places, this is the worst)", spots.size() - 1) : "";
-  return {
+  return with_trials(
       fmt::format("{} no direction within {:.0f} deg of the normal of the pitch surface is clear{}: the best leans "
-                  "{:.1f} deg and {}; {}",
+                  "{:.1f} deg and {}",
                   place(worst.point), degrees(o_.farthest_lean_rad), more,
-                  degrees(angle_between(axis, check_.frame().up)), keeps(body, gap), tools_that_do(spots, plans))};
+                  degrees(angle_between(axis, check_.frame().up)), keeps(body, gap)),
+      spots, plans);
 }
 
 OrientationRefusal RefusalWords::parted(const OrientationWay& way, std::size_t station, const Plans& plans) const {
@@ -158,11 +159,11 @@ OrientationRefusal RefusalWords::parted(const OrientationWay& way, std::size_t s
   const auto [body, gap] = nearest_body(blend_points(way.points[before], point, 0.5), (a + b).normalized());
   const std::string what =
       body == tool::Body::none ? "and a rotary that carries the work has its pole between them" : keeps(body, gap);
-  return {
+  return with_trials(
       fmt::format("{} directions are clear, but those before it do not join them, not in {} strokes either: over "
-                  "{:.3f} mm the axis would turn by {:.1f} deg, and half-way {}; {}",
-                  place(point), kMostStrokes, way.s[station] - way.s[before], degrees(angle_between(a, b)), what,
-                  tools_that_do({}, plans))};
+                  "{:.3f} mm the axis would turn by {:.1f} deg, and half-way {}",
+                  place(point), kMostStrokes, way.s[station] - way.s[before], degrees(angle_between(a, b)), what),
+      {}, plans);
 }
 
 OrientationRefusal RefusalWords::no_way_about(const BallPass::Point& point, const Vec3& axis,
@@ -170,8 +171,10 @@ OrientationRefusal RefusalWords::no_way_about(const BallPass::Point& point, cons
   const double lean = degrees(angle_between(axis, check_.frame().up));
   const auto [body, gap] = nearest_body(point, axis);
   if (body != tool::Body::none)
-    return {fmt::format("{} and the axis leaning {:.2f} deg {}, and no way through other directions was found; {}",
-                        place(point), lean, keeps(body, gap), tools_that_do({}, plans))};
+    return with_trials(
+        fmt::format("{} and the axis leaning {:.2f} deg {}, and no way through other directions was found",
+                    place(point), lean, keeps(body, gap)),
+        {}, plans);
   if (!check_.away_from_pole(axis))
     return {
         fmt::format("{} the axis turns at {:.2f} deg of the gear axis, it must keep {:.2f} deg there, the pole of a "
@@ -194,19 +197,6 @@ tool::ToolAssembly RefusalWords::changed(Part part, double by) const {
   t.length_mm += told - before;
   if (part == Part::flute) t.stick_out_mm += told - before;
   return t;
-}
-
-std::string RefusalWords::told(Part part, const tool::ToolAssembly& t) const {
-  switch (part) {
-    case Part::stick_out:
-      return fmt::format("a stick-out of {:.2f} mm (now {:.2f})", t.stick_out_mm, tool_.stick_out_mm);
-    case Part::flute:
-      return fmt::format("a flute of {:.2f} mm (now {:.2f}) with as much more stick-out", t.flute_length_mm,
-                         tool_.flute_length_mm);
-    case Part::shank:
-      return fmt::format("a shank of {:.2f} mm (now {:.2f})", t.shank_diameter_mm, tool_.shank_diameter_mm);
-  }
-  return "";
 }
 
 double RefusalWords::most(Part part) const {
@@ -236,8 +226,8 @@ std::optional<double> RefusalWords::enough(Part part, std::vector<Spot>& spots) 
   return high;
 }
 
-std::string RefusalWords::tools_that_do(std::vector<Spot> spots, const Plans& plans) const {
-  std::vector<std::string> do_it;
+OrientationRefusal RefusalWords::with_trials(std::string reason, std::vector<Spot> spots, const Plans& plans) const {
+  OrientationRefusal refusal{std::move(reason), {}};
   bool holder_alone = false;
   for (const Part part : {Part::stick_out, Part::flute, Part::shank}) {
     if (part == Part::flute && holder_alone) continue;
@@ -250,13 +240,28 @@ std::string RefusalWords::tools_that_do(std::vector<Spot> spots, const Plans& pl
       const double by = (1 + more) * *least + more;
       const tool::ToolAssembly t = changed(part, by);
       if (by > most(part) || !plans(t)) continue;
-      do_it.push_back(told(part, t));
+      refusal.trials.push_back({t, change_words(tool_, t)});
       holder_alone = holder_alone || part == Part::stick_out;
       break;
     }
   }
-  if (do_it.empty()) return "another shank, flute or stick-out that would do was not found";
-  return fmt::format("would do, planned as a trial: {}", fmt::join(do_it, ", or "));
+  if (refusal.trials.empty()) {
+    refusal.reason += "; another shank, flute or stick-out that would do was not found";
+    return refusal;
+  }
+  for (const ToolTrial& trial : refusal.trials)
+    refusal.reason += fmt::format(
+        "{}{}", &trial == &refusal.trials.front() ? "; would do, planned as a trial: " : ", or ", trial.words);
+  return refusal;
+}
+
+std::string change_words(const tool::ToolAssembly& now, const tool::ToolAssembly& other) {
+  if (other.flute_length_mm != now.flute_length_mm)
+    return fmt::format("a flute of {:.2f} mm (now {:.2f}) with as much more stick-out", other.flute_length_mm,
+                       now.flute_length_mm);
+  if (other.shank_diameter_mm != now.shank_diameter_mm)
+    return fmt::format("a shank of {:.2f} mm (now {:.2f})", other.shank_diameter_mm, now.shank_diameter_mm);
+  return fmt::format("a stick-out of {:.2f} mm (now {:.2f})", other.stick_out_mm, now.stick_out_mm);
 }
 
 }  // namespace toothpath::ball

@@ -81,7 +81,7 @@ class Planner::Work {
     for (std::size_t zone = 0; zone < zones.size(); ++zone) {
       if (const auto* refusal = (*zones[zone]).refused()) {
         PlanRefusal told = *refusal;
-        told.diagnostic.message += what_would_do(n, int(zone));
+        if (!o_.trial) told.diagnostic.message += what_would_do(n, int(zone));
         return told;
       }
       if (auto refusal = lead_tool(n, int(zone), (*zones[zone]).value(), plan_.path, plan_.summary)) return *refusal;
@@ -304,6 +304,7 @@ class Planner::Work {
     OrientationOptions turning;
     turning.clearance_mm = o_.limits.clearance_mm;
     turning.least_tilt_rad = o_.least_tilt_rad;
+    turning.trial = o_.trial;
     turning.chord_mm = kTurnShare * std::min(op.chord_tolerance_mm, chord_room(op));
     const bool prescribed = !op.axis_plus.empty();
     direction.operation = n;
@@ -329,8 +330,10 @@ class Planner::Work {
       auto oriented = orient(zone, tool, turning, made.passes);
       if (const auto* refusal = oriented.refused()) {
         plan_.directions.push_back(direction);
-        return PlanRefusal{key_of(n) + ".tool", fail("tool {} in zone {}: {}; {}", tool.number, zone,
-                                                     direction.explanation, refusal->reason)};
+        return PlanRefusal{
+            key_of(n) + ".tool",
+            fail("tool {} in zone {}: {}; {}", tool.number, zone, direction.explanation, refusal->reason),
+            refusal->trials};
       }
       describe(oriented.value(), direction);
       axes = std::move(oriented.value().axes);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cam/analytic/gear_distance.h"
+#include "cam/ball/tool_orientation.h"
 #include "cam/cut/swept_tool.h"
 #include "cam/path/cl_path.h"
 #include "cam/path/operation.h"
@@ -29,6 +30,7 @@ struct PlanOptions {
   /// The post goes past that pole ("slow", "hold", "through", "retract"): where no motion keeps away from it, one that
   /// does not is planned.
   bool pole_is_passed = false;
+  bool trial = false;  ///< asked only whether there is a plan: refusals look for nothing that would do
   /// Runs a stage under its name; empty: just runs it. Called on the thread of the caller, for "tool passes", "tool
   /// direction" and "links", and for "five-axis orientation" only where it is needed.
   std::function<void(const std::string& name, const std::function<void()>& work)> stage;
@@ -51,6 +53,7 @@ struct OperationPlan {
 struct PlanRefusal {
   std::string key;
   Diagnostic diagnostic;
+  std::vector<ToolTrial> trials = {};  ///< tools with which the operation was planned; their words stand in the message
 };
 
 /// One operation of a ball, or of another end that a ball contains.

@@ -88,8 +88,9 @@ class Orienter {
   [[nodiscard]] RefusalWords::Plans plans() const {
     return [this](const tool::ToolAssembly& tool) {
       std::vector<BallPass> passes = whole_;
-      Orienter other(part_, tree_, zone_, tool, o_, passes);
-      other.silent_ = true;
+      OrientationOptions silent = o_;
+      silent.trial = true;
+      Orienter other(part_, tree_, zone_, tool, silent, passes);
       return !other.run().refused();
     };
   }
@@ -223,11 +224,11 @@ class Orienter {
       if (first_blocked(ways_[p])) return refuse_place();
       if (in_strokes(p, finest_, blocked_at)) return true;
     }
-    refusal_ = silent_ ? OrientationRefusal{} : words_.parted(ways_[p], blocked_at, plans());
+    refusal_ = o_.trial ? OrientationRefusal{} : words_.parted(ways_[p], blocked_at, plans());
     return false;
   }
   bool refuse_place() {
-    refusal_ = silent_ ? OrientationRefusal{} : words_.blocked(whole_, plans());
+    refusal_ = o_.trial ? OrientationRefusal{} : words_.blocked(whole_, plans());
     return false;
   }
   bool search_strokes(std::size_t p, std::size_t& blocked_at) {
@@ -423,7 +424,7 @@ class Orienter {
         found = search(p) || (tight && search_strokes(p, blocked_at));
       }
       if (found) continue;
-      refusal_ = silent_ ? OrientationRefusal{} : words_.no_way_about(bad->point, bad->axis, plans());
+      refusal_ = o_.trial ? OrientationRefusal{} : words_.no_way_about(bad->point, bad->axis, plans());
       return false;
     }
   }
@@ -480,7 +481,6 @@ class Orienter {
   std::vector<AxisRecords> made_;
   std::optional<OrientationRefusal> refusal_;
   bool all_asked_ = false;
-  bool silent_ = false;  ///< asked only whether there are axes
 };
 
 }  // namespace

@@ -39,6 +39,7 @@ struct OrientationOptions {
       0.035;  ///< kept from the gear axis where the axis turns: a rotary that carries the work has its pole there
   double widest_lean_rad = 0.66;    ///< of the grid, from the pitch normal
   double farthest_lean_rad = 1.05;  ///< the same where the grid does not do
+  bool trial = false;        ///< asked only whether there are axes: a refusal has no reason and looks for no other tool
   double chord_mm = 0.0002;  ///< how far the ball centre may leave the pass because the axis turns between two records
 };
 
@@ -54,9 +55,20 @@ struct Orientation {
 };
 
 /// Where and why there is none.
+/// A tool that would do, planned as a trial.
+struct ToolTrial {
+  tool::ToolAssembly tool;
+  std::string words;  ///< as they stand in the reason: "a shank of 3.55 mm (now 4.00)"
+};
+
 struct OrientationRefusal {
   std::string reason;
+  std::vector<ToolTrial> trials = {};
 };
+
+/// What another tool like this one has other: a longer flute with as much more stick-out, a thinner shank, or a longer
+/// stick-out.
+[[nodiscard]] std::string change_words(const tool::ToolAssembly& now, const tool::ToolAssembly& other);
 
 /// Which directions keep the ball cutting and every body clear at one place of the ball.
 class OrientationCheck {
@@ -131,10 +143,10 @@ class RefusalWords {
   [[nodiscard]] std::string keeps(tool::Body body, double gap) const;
   [[nodiscard]] std::string flute_words(const BallPass::Point& point) const;
   [[nodiscard]] tool::ToolAssembly changed(Part part, double by) const;
-  [[nodiscard]] std::string told(Part part, const tool::ToolAssembly& tool) const;
   [[nodiscard]] double most(Part part) const;
   [[nodiscard]] std::optional<double> enough(Part part, std::vector<Spot>& spots) const;
-  [[nodiscard]] std::string tools_that_do(std::vector<Spot> spots, const Plans& plans) const;
+  /// The reason, and the tools that would do.
+  [[nodiscard]] OrientationRefusal with_trials(std::string reason, std::vector<Spot> spots, const Plans& plans) const;
 
   const analytic::GearDistance& part_;
   const analytic::BodyTree& tree_;

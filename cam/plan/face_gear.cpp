@@ -79,18 +79,29 @@ proof::DirectionChoice direction_of(const line::LinePlan& planned, int operation
   return d;
 }
 
+constexpr double kTrialShares[] = {0, 0.05, 0.1, 0.2, 0.4, 0.8};  // of the diameter
+constexpr double kTrialStep = 0.05;                               // mm
+
 class FaceGearPlanner {
  public:
   FaceGearPlanner(const analytic::GearDistance& part, const std::vector<tool::ToolAssembly>& tools,
                   const std::vector<path::MillingOperation>& operations, const Options& options)
-      : part_(part), tools_(tools), operations_(operations), o_(options), ball_(part, tools, operations_, options) {}
+      : part_(part),
+        tools_(tools),
+        asked_(operations),
+        operations_(operations),
+        o_(options),
+        ball_(part, tools, operations_, options) {}
 
   Expected<FaceGearPlan, ball::PlanRefusal> run(const Progress& progress) {
     if (const auto& refusal = part_.refusal()) return ball::PlanRefusal{"gear." + refusal->key, refusal->diagnostic};
     for (std::size_t n = 0; n < operations_.size(); ++n) {
       if (progress) progress(to_string(operations_[n].type));
       auto refusal = operations_[n].type == path::OperationType::line_milling ? line(int(n)) : ball(int(n));
-      if (refusal) return std::move(*refusal);
+      if (refusal) {
+        if (!o_.trial) widen_trials(int(n), *refusal);
+        return std::move(*refusal);
+      }
       set_feeds(n);
       if (rougher_follows(n)) remember(n);
     }
@@ -98,6 +109,49 @@ class FaceGearPlanner {
   }
 
  private:
+  /// The tools that would do for an operation must do for all others with that tool: what the message says is right the
+  /// first time.
+  void widen_trials(int n, ball::PlanRefusal& refusal) const {
+    const int tool = asked_[std::size_t(n)].tool;
+    if (std::none_of(asked_.begin() + n + 1, asked_.end(), [&](const auto& o) { return o.tool == tool; })) return;
+    const tool::ToolAssembly& now = tools_[std::size_t(tool)];
+    for (const ball::ToolTrial& trial : refusal.trials) {
+      const auto wide = does_for_all(tool, trial.tool);
+      std::string& message = refusal.diagnostic.message;
+      const std::size_t at = message.find(trial.words);
+      if (at == std::string::npos) continue;
+      message.replace(at, trial.words.size(),
+                      wide ? ball::change_words(now, *wide) : trial.words + ", for this operation alone");
+    }
+  }
+  /// The same change, made larger until the whole job is planned with it.
+  [[nodiscard]] std::optional<tool::ToolAssembly> does_for_all(int tool, const tool::ToolAssembly& least) const {
+    const tool::ToolAssembly& now = tools_[std::size_t(tool)];
+    Options options = o_;
+    options.trial = true;
+    options.stage = {};
+    for (const double more : kTrialShares) {
+      const tool::ToolAssembly as = enlarged(now, least, more * now.diameter_mm);
+      if (as.shank_diameter_mm <= 0) return {};
+      std::vector<tool::ToolAssembly> tools = tools_;
+      tools[std::size_t(tool)] = as;
+      if (!FaceGearPlanner(part_, tools, asked_, options).run({}).refused()) return as;
+    }
+    return {};
+  }
+  /// A tool whose change against another one is larger by `more` mm, to a twentieth.
+  static tool::ToolAssembly enlarged(const tool::ToolAssembly& now, tool::ToolAssembly as, double more) {
+    more = std::ceil(more / kTrialStep) * kTrialStep;
+    if (as.shank_diameter_mm != now.shank_diameter_mm) {
+      as.shank_diameter_mm -= more;
+      return as;
+    }
+    if (as.flute_length_mm != now.flute_length_mm) as.flute_length_mm += more;
+    as.stick_out_mm += more;
+    as.length_mm += more;
+    return as;
+  }
+
   [[nodiscard]] std::optional<ball::PlanRefusal> ball(int n) {
     auto planned = plan_ball(n);
     if (auto* refusal = planned.refused()) return std::move(*refusal);
@@ -284,6 +338,7 @@ class FaceGearPlanner {
 
   const analytic::GearDistance& part_;
   const std::vector<tool::ToolAssembly>& tools_;
+  const std::vector<path::MillingOperation>& asked_;
   std::vector<path::MillingOperation> operations_;  ///< as planned: step-overs may be less than asked
   const Options& o_;
   ball::Planner ball_;
