@@ -11,10 +11,9 @@ namespace toothpath::commands {
 namespace {
 
 std::vector<std::string> run_outputs() {
-  std::vector<std::string> all = {"program.",       "cl.csv",       "report.json",    "report.html",
-                                  "setup.html",     "gear.stl",     "tooth.vtp",      "inspection.csv",
-                                  "inspection.dmi", "limits.json",  "limits.html",    "limits.svg",
-                                  "limits_0.svg",   "limits_1.svg", "correction.json"};
+  std::vector<std::string> all = {"program.",    "cl.csv",     "report.json",    "report.html",    "setup.html",
+                                  "gear.stl",    "tooth.vtp",  "inspection.csv", "inspection.dmi", "limits.json",
+                                  "limits.html", "limits.svg", "limits_0.svg",   "limits_1.svg",   "correction.json"};
   all.insert(all.end(), cad::file_names().begin(), cad::file_names().end());
   return all;
 }

@@ -165,9 +165,10 @@ std::string summary_table(const RunReport& report, bool color) {
             c.fit.residual_max_mm * app::kUm, c.fit.residual_rms_mm * app::kUm));
   if (const auto& cad = report.cad)
     row(out, "solid",
-        fmt::format("{}: {} faces, {:.1f} MB; worst deviation from the exact surface {:.3f} um ({}), {:g} um is the most",
-                    cad->file, cad->faces, double(cad->bytes) * 1e-6, cad->worst_mm * app::kUm, cad->worst_at,
-                    cad->asked_mm * app::kUm));
+        fmt::format(
+            "{}: {} faces, {:.1f} MB; worst deviation from the exact surface {:.3f} um ({}), {:g} um is the most",
+            cad->file, cad->faces, double(cad->bytes) * 1e-6, cad->worst_mm * app::kUm, cad->worst_at,
+            cad->asked_mm * app::kUm));
   for (const auto& warning : report.warnings) row(out, "warning", warning);
   if (report.command == "surface")
     for (const auto& file : report.files) row(out, "written", file);

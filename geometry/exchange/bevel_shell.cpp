@@ -15,7 +15,6 @@ using bevel_gear::BevelGear;
 using bevel_gear::BevelHalf;
 using bevel_gear::BevelWall;
 
-
 /// A piece of the mill's profile: from p_from up to p_to.
 struct Piece {
   const char* name;
@@ -36,7 +35,8 @@ class HalfRows {
   }
   [[nodiscard]] std::vector<Strip> strips() const {
     std::vector<Strip> out{{"flank L", 0}};
-    for (auto piece = low_.rbegin(); piece != low_.rend(); ++piece) out.push_back({fmt::format("{} L", piece->name), 0});
+    for (auto piece = low_.rbegin(); piece != low_.rend(); ++piece)
+      out.push_back({fmt::format("{} L", piece->name), 0});
     out.push_back({"root", 0});
     for (const Piece& piece : low_) out.push_back({fmt::format("{} U", piece.name), 1});
     out.push_back({"flank U", 1});
@@ -90,8 +90,8 @@ class HalfRows {
     for (int k = 0; k < 2; ++k) {
       const auto p_tip = tip(u, k);
       if (!p_tip) return p_tip.error();
-      const auto p = land ? wall_point(u, k, flank(*p_tip), 1)
-                          : wall_point(u, k, low_.empty() ? flank(*p_tip) : low_.front(), 0);
+      const auto p =
+          land ? wall_point(u, k, flank(*p_tip), 1) : wall_point(u, k, low_.empty() ? flank(*p_tip) : low_.front(), 0);
       if (!p) return p.error();
       ends[std::size_t(k)] = *p;
     }
@@ -142,7 +142,8 @@ Result<GearShell> bevel_gear_shell(const BevelGear& gear) {
     }
   }
   const double under = mesh::underside_height(gear);
-  shell.corners.push_back({corner_at(gear, halves.back().ell_to, under), corner_at(gear, halves.front().ell_from, under)});
+  shell.corners.push_back(
+      {corner_at(gear, halves.back().ell_to, under), corner_at(gear, halves.front().ell_from, under)});
   return shell;
 }
 

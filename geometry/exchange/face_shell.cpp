@@ -90,17 +90,19 @@ Result<bool> has_root(Sections& sections) {
     if (!section) return section.error();
     const ToothSection& s = **section;
     if (s.land_width() < kLeastFace_mm)
-      return fail("top land = {:.6f} mm at radius {:.4f} mm is below {:g} mm: no face of a solid; a smaller outer "
-                  "radius leaves a wider land",
-                  s.land_width(), s.radius(), kLeastFace_mm);
+      return fail(
+          "top land = {:.6f} mm at radius {:.4f} mm is below {:g} mm: no face of a solid; a smaller outer "
+          "radius leaves a wider land",
+          s.land_width(), s.radius(), kLeastFace_mm);
     widest = std::max(widest, s.root_width());
     if (s.root_width() < narrowest) narrowest = s.root_width(), at_radius = s.radius();
   }
   if (widest < kNoWidth_mm) return false;
   if (narrowest < kLeastFace_mm)
-    return fail("root land = {:.6f} mm at radius {:.4f} mm is below {:g} mm: no face of a solid; a smaller "
-                "shaper_tip_radius leaves a wider land",
-                narrowest, at_radius, kLeastFace_mm);
+    return fail(
+        "root land = {:.6f} mm at radius {:.4f} mm is below {:g} mm: no face of a solid; a smaller "
+        "shaper_tip_radius leaves a wider land",
+        narrowest, at_radius, kLeastFace_mm);
   return true;
 }
 
@@ -111,9 +113,10 @@ Result<bool> floor_meets_root(Sections& sections, double u, double floor, bool r
   const double above = (*section)->root_height() - floor;
   if (root && std::abs(above) <= kOnCircle_mm) return true;
   if (above >= kLeastFace_mm) return false;
-  return fail("the groove's floor, z = {:.6f} mm, lies {:.6f} mm below the root beside it: {:g} mm is the least step of "
-              "a solid; a deeper stock.groove_depth leaves it",
-              floor, above, kLeastFace_mm);
+  return fail(
+      "the groove's floor, z = {:.6f} mm, lies {:.6f} mm below the root beside it: {:g} mm is the least step of "
+      "a solid; a deeper stock.groove_depth leaves it",
+      floor, above, kLeastFace_mm);
 }
 
 Result<ToothRing> make_ring(const face_gear::FaceGearRing& ring, std::size_t zone, int teeth,
@@ -152,7 +155,8 @@ Result<GearShell> face_gear_shell(const face_gear::FaceGear& gear) {
   }
   const double underside = mesh::underside_z(gear);
   for (std::size_t k = 0; k + 1 < rings.size(); ++k) {
-    const double floor = gear.groove_floor(), from = rings[k].zone.outer_radius_mm, to = rings[k + 1].zone.inner_radius_mm;
+    const double floor = gear.groove_floor(), from = rings[k].zone.outer_radius_mm,
+                 to = rings[k + 1].zone.inner_radius_mm;
     if (!(to - from >= kLeastFace_mm))
       return fail("groove width = {:.6f} mm between ring {} and ring {}: a solid needs {:g} mm", to - from, k, k + 1,
                   kLeastFace_mm);

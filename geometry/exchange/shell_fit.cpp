@@ -6,10 +6,10 @@
 namespace toothpath::exchange {
 namespace {
 
-constexpr double kAlongShare = 0.35;   ///< of the tolerance, for the knots of one direction alone
-constexpr double kTighter = 0.6;       ///< of that share, when both together miss
+constexpr double kAlongShare = 0.35;  ///< of the tolerance, for the knots of one direction alone
+constexpr double kTighter = 0.6;      ///< of that share, when both together miss
 constexpr int kTries = 8;
-constexpr std::size_t kLines = 9;      ///< lines of the other direction that the knots of one are chosen by
+constexpr std::size_t kLines = 9;  ///< lines of the other direction that the knots of one are chosen by
 constexpr std::size_t kFirstPieces = 2;
 
 using Shares = std::vector<std::vector<double>>;
@@ -83,9 +83,10 @@ class RingFit {
   [[nodiscard]] Shares everywhere(const std::vector<double>& v) const { return Shares(ring_.strips.size(), v); }
 
   Diagnostic bends_too_much(std::size_t strip, const std::string& where, double off, double aim) const {
-    return fail("{} of {}, {}: the surface bends too much for {} pieces of a B-spline ({:.3g} mm off, {:.3g} mm is "
-                "asked): a sharp corner or an undercut is near; a larger shaper_tip_radius or another radius helps",
-                ring_.strips[strip].name, ring_.place, where, kMostPieces, off, aim);
+    return fail(
+        "{} of {}, {}: the surface bends too much for {} pieces of a B-spline ({:.3g} mm off, {:.3g} mm is "
+        "asked): a sharp corner or an undercut is near; a larger shaper_tip_radius or another radius helps",
+        ring_.strips[strip].name, ring_.place, where, kMostPieces, off, aim);
   }
 
   /// Knots along the teeth, for all strips.

@@ -19,10 +19,10 @@ struct FittedRing {
 };
 struct FittedShell {
   std::vector<FittedRing> rings;
-  std::size_t patches = 0;       ///< of all teeth
-  std::size_t checked = 0;       ///< places of one pitch at which the distance was taken
-  double worst_mm = 0;           ///< greatest of them
-  std::string worst_at;          ///< "fillet +1 of zone 0"
+  std::size_t patches = 0;  ///< of all teeth
+  std::size_t checked = 0;  ///< places of one pitch at which the distance was taken
+  double worst_mm = 0;      ///< greatest of them
+  std::string worst_at;     ///< "fillet +1 of zone 0"
 };
 
 /// Patches within `tolerance_mm`. Knots are put where they are needed, first along, then across, until the distance at

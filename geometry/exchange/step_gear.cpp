@@ -10,8 +10,8 @@
 namespace toothpath::exchange {
 namespace {
 
-constexpr std::size_t kSectors = 2;      ///< faces around a cylinder or cone
-constexpr double kSameAngle = 1e-12;     ///< rad: a straight line between two circles runs along a meridian
+constexpr std::size_t kSectors = 2;   ///< faces around a cylinder or cone
+constexpr double kSameAngle = 1e-12;  ///< rad: a straight line between two circles runs along a meridian
 constexpr double kSameLength_mm = 1e-9;
 
 /// An edge in the direction of its curve, or against it.
@@ -27,10 +27,10 @@ void append_reversed(Loop& loop, const Loop& way) {
 
 /// A closed way around the gear, cut in sectors: where a surface of revolution begins or ends.
 struct Rim {
-  std::array<Loop, kSectors> ways;         ///< in growing azimuth
+  std::array<Loop, kSectors> ways;          ///< in growing azimuth
   std::array<StepId, kSectors> vertices{};  ///< where a sector begins
   std::array<Vec3, kSectors> places{};
-  Corner corner;                           ///< a place of it in the meridian
+  Corner corner;  ///< a place of it in the meridian
 };
 
 /// Of one ring: [tooth][strip] and, at the ends, [end][tooth][strip].
@@ -156,8 +156,8 @@ class GearBrep {
     return step_.add("{}('',#{},.T.)", outer ? "FACE_OUTER_BOUND" : "FACE_BOUND", ring);
   }
   void face(const std::string& name, const std::vector<StepId>& bounds, StepId surface, bool same_sense) {
-    faces_.push_back(step_.add("ADVANCED_FACE({},{},#{},.{}.)", quoted(name), references(bounds), surface,
-                               same_sense ? 'T' : 'F'));
+    faces_.push_back(
+        step_.add("ADVANCED_FACE({},{},#{},.{}.)", quoted(name), references(bounds), surface, same_sense ? 'T' : 'F'));
   }
 
   void tooth_faces(std::size_t ring, std::size_t k) {
@@ -170,7 +170,8 @@ class GearBrep {
       std::string rows = "(";
       for (std::size_t i = 0; i < control_count(strips[j].u); ++i) {
         std::vector<StepId> row;
-        for (std::size_t c = 0; c < strips[j].columns(); ++c) row.push_back(step_.point(placed(strips[j].point(i, c), k)));
+        for (std::size_t c = 0; c < strips[j].columns(); ++c)
+          row.push_back(step_.point(placed(strips[j].point(i, c), k)));
         rows += (i > 0 ? "," : "") + references(row);
       }
       const StepId surface =
@@ -222,8 +223,7 @@ class GearBrep {
       const StepId arc = edge(e.vertex[end][k][f + 1], e.vertex[end][next][f], curve);
       pieces[k] = {{e.end[end][k][f], true}, {arc, true}};
       Loop teeth_way;
-      for (std::size_t j = 1; j < n; ++j)
-        teeth_way.push_back({e.end[end][f + j < n ? k : next][(f + j) % n], true});
+      for (std::size_t j = 1; j < n; ++j) teeth_way.push_back({e.end[end][f + j < n ? k : next][(f + j) % n], true});
       Loop loop = end == 1 ? Loop{{arc, true}} : teeth_way;
       append_reversed(loop, end == 1 ? teeth_way : Loop{{arc, true}});
       face(fmt::format("end of tooth {}, {}", next, shell_.rings[ring].place), {bound(loop, true)}, cap.id, cap.same);

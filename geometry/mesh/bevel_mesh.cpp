@@ -130,8 +130,8 @@ double underside_height(const bevel_gear::BevelGear& g) {
   // Below the root by two modules, but no nearer to the axis than a third of the radius there.
   const auto& p = g.parameters();
   const double depth =
-      std::min(2 * p.outer_transverse_module_mm, (g.R_i() * g.sin_delta() - p.dedendum_mm * g.cos_delta()) /
-                                                     (1.5 * std::max(1e-9, g.cos_delta())));
+      std::min(2 * p.outer_transverse_module_mm,
+               (g.R_i() * g.sin_delta() - p.dedendum_mm * g.cos_delta()) / (1.5 * std::max(1e-9, g.cos_delta())));
   return -p.dedendum_mm - depth;
 }
 

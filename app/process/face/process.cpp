@@ -190,12 +190,8 @@ class FaceProcess final : public process::GearProcess {
   }
   [[nodiscard]] sheet::PartOutline outline() const override {
     const double root = gear_.lowest_root();
-    return {gear_.inner_radius(),
-            gear_.outer_radius(),
-            gear_.blank_top(),
-            root,
-            mesh::underside_z(gear_),
-            gear_words(gear_.parameters())};
+    return {gear_.inner_radius(),     gear_.outer_radius(),          gear_.blank_top(), root,
+            mesh::underside_z(gear_), gear_words(gear_.parameters())};
   }
   [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override {
     const face_gear::FaceGearParameters& p = gear_.parameters();
