@@ -340,6 +340,18 @@ void add_motion(Json& json, const RunReport& r) {
   add_block_times(json, r);
 }
 
+void add_solid(Json& json, const RunReport& r) {
+  if (r.cad)
+    json["solid"] = {{"file", r.cad->file},
+                     {"faces", r.cad->faces},
+                     {"patches", r.cad->patches},
+                     {"bytes", r.cad->bytes},
+                     {"places_checked", r.cad->checked},
+                     {"worst_deviation_um", r.cad->worst_mm * 1000},
+                     {"most_deviation_um", r.cad->asked_mm * 1000},
+                     {"worst_at", r.cad->worst_at}};
+}
+
 }  // namespace
 
 std::string report_json(const RunReport& r) {
@@ -394,15 +406,7 @@ std::string report_json(const RunReport& r) {
                         {"residual_rms_um", c.fit.residual_rms_mm * 1000}});
     json["correction"] = std::move(flanks);
   }
-  if (r.cad)
-    json["solid"] = {{"file", r.cad->file},
-                     {"faces", r.cad->faces},
-                     {"patches", r.cad->patches},
-                     {"bytes", r.cad->bytes},
-                     {"places_checked", r.cad->checked},
-                     {"worst_deviation_um", r.cad->worst_mm * 1000},
-                     {"most_deviation_um", r.cad->asked_mm * 1000},
-                     {"worst_at", r.cad->worst_at}};
+  add_solid(json, r);
   json["warnings"] = text_list(r.warnings);
   json["files"] = text_list(r.files);
   Json stages = Json::object();

@@ -53,17 +53,25 @@ std::string identifier(const std::string& digest, int number) {
          hex.substr(20, 12);
 }
 
+std::vector<NMR::MODELMESHVERTEX> vertices_of(const mesh::TriangleMesh& mesh) {
+  std::vector<NMR::MODELMESHVERTEX> out(mesh.vertices.size());
+  for (std::size_t k = 0; k < out.size(); ++k)
+    for (int axis = 0; axis < 3; ++axis) out[k].m_fPosition[axis] = float(mesh.vertices[k][axis]);
+  return out;
+}
+std::vector<NMR::MODELMESHTRIANGLE> triangles_of(const mesh::TriangleMesh& mesh) {
+  std::vector<NMR::MODELMESHTRIANGLE> out(mesh.triangles.size());
+  for (std::size_t k = 0; k < out.size(); ++k)
+    for (std::size_t corner = 0; corner < 3; ++corner) out[k].m_nIndices[corner] = DWORD(mesh.triangles[k][corner]);
+  return out;
+}
+
 }  // namespace
 
 Result<std::string> three_mf_file(const mesh::TriangleMesh& mesh, const std::string& name) {
   using namespace NMR;
-  std::vector<MODELMESHVERTEX> vertices(mesh.vertices.size());
-  for (std::size_t k = 0; k < vertices.size(); ++k)
-    for (int axis = 0; axis < 3; ++axis) vertices[k].m_fPosition[axis] = float(mesh.vertices[k][axis]);
-  std::vector<MODELMESHTRIANGLE> triangles(mesh.triangles.size());
-  for (std::size_t k = 0; k < triangles.size(); ++k)
-    for (std::size_t corner = 0; corner < 3; ++corner)
-      triangles[k].m_nIndices[corner] = DWORD(mesh.triangles[k][corner]);
+  auto vertices = vertices_of(mesh);
+  auto triangles = triangles_of(mesh);
   const std::string digest = sha256_hex(
       std::string(reinterpret_cast<const char*>(vertices.data()), vertices.size() * sizeof vertices.front()) + name);
 
