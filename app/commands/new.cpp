@@ -228,6 +228,10 @@ struct Proposed {
   CommandOutcome proof;
 };
 
+bool is_verified(const Expected<Proposed, std::vector<Diagnostic>>& proposed) {
+  return proposed && proposed.value().proof.exit_code == app::ExitCode::ok;
+}
+
 /// The first way that is verified, else the last that was tried.
 Expected<Proposed, std::vector<Diagnostic>> propose(const NewRequest& request, const Wishes& wishes,
                                                     const proposal::ChosenMachine& machine,
@@ -252,6 +256,7 @@ Expected<Proposed, std::vector<Diagnostic>> propose(const NewRequest& request, c
 
 CommandOutcome told(const NewRequest& request, const Proposed& proposed, const proposal::Told& limits) {
   CommandOutcome outcome;
+  outcome.exit_code = proposed.proof.exit_code;
   std::string out = request.file + "\n";
   nlohmann::ordered_json json = {{"schema", 1}, {"command", "new"}, {"file", request.file}, {"job", proposed.text}};
   json["limits"] = nlohmann::ordered_json::object();
@@ -259,10 +264,16 @@ CommandOutcome told(const NewRequest& request, const Proposed& proposed, const p
     out += fmt::format("  {:<40} {}\n", what, value);
     json["limits"][what] = value;
   }
-  json["verified"] = proposed.proof.exit_code == app::ExitCode::ok;
+  const bool verified = proposed.proof.exit_code == app::ExitCode::ok;
+  json["verified"] = verified;
   json["proof"] = proposed.proof.report_json.empty() ? nlohmann::ordered_json()
                                                      : nlohmann::ordered_json::parse(proposed.proof.report_json);
-  out += fmt::format("  {:<40} {}\n", "tried as it stands", json["verified"] ? "verified" : "not verified");
+  out += fmt::format("  {:<40} {}\n", "tried as it stands", verified ? "verified" : "NOT verified");
+  if (!verified)
+    for (const char* key : {"reasons", "would_help"})
+      for (const auto& line : json["proof"].value(key, nlohmann::ordered_json::array()))
+        out += fmt::format("    {} {}\n", std::string_view(key) == "reasons" ? "because   " : "would help",
+                           line.get<std::string>());
   out += fmt::format("next: toothpath {} {} --out DIR\n",
                      proposed.draft.wishes.route == proposal::Route::shaped ? "shaper" : "run", request.file);
   outcome.summary = out;
@@ -299,6 +310,11 @@ CommandOutcome run_new(const NewRequest& asked) {
   if (auto* errors = gear.refused()) return failed(std::move(*errors));
   dialog.tell(limits_of(gear.value()));
   auto proposed = propose(request, wishes, machine.value(), gear.value(), shelf.value());
+  if (request.route.empty() && !dialog.asks() && wishes.route == proposal::Route::line && !is_verified(proposed)) {
+    wishes.route = proposal::Route::ball;  // nobody asked for the side of a mill
+    if (auto other = propose(request, wishes, machine.value(), gear.value(), shelf.value()); is_verified(other))
+      proposed = std::move(other);
+  }
   if (auto* errors = proposed.refused()) return failed(std::move(*errors));
   CommandOutcome& proof = proposed.value().proof;
   if (proof.exit_code != app::ExitCode::ok && proof.exit_code != app::ExitCode::unverified) {

@@ -1,5 +1,7 @@
 #include "app/commands/surface.h"
 
+#include "app/commands/data.h"
+
 #include "app/job/file.h"
 #include "app/process/flow/stages.h"
 #include "app/process/opening_and_end.h"
@@ -27,8 +29,12 @@ CommandOutcome run_surface(const JobRequest& request) {
   report::RunReport report = process::surface_report(job, gear.part().warnings);
   if (const auto written = gear.write_files(*output, {}, {}, clock, report.files); !written)
     return failed(process::located(job, "gear", written.error()));
+  const auto limits = output->read_back("limits.json");
+  if (!limits) return failed(limits.error());
   progress.clear();
-  return process::finished_report(*output, clock, std::move(report), request.color);
+  CommandOutcome outcome = process::finished_report(*output, clock, std::move(report), request.color);
+  add_data(outcome, "limits", *limits);
+  return outcome;
 }
 
 void add_surface(Commands& commands) {

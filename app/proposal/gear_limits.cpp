@@ -11,7 +11,7 @@
 namespace toothpath::proposal {
 namespace {
 
-constexpr double kGrooveModules = 2;        // between the rings of a double helical gear
+constexpr double kGrooveModules = 1.6;      // between the rings of a double helical gear
 constexpr double kRoughingAllowance = 0.1;  // modules
 
 bool complete(const Wishes& wishes) {

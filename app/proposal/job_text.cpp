@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/proposal/gear_limits.h"
 #include "cam/tool/cutters.h"
@@ -103,7 +104,7 @@ class Operations {
     text_ += "\n[[operation]]\n" + line("type", fmt::format("\"{}\"", type), note);
     text_ += line("tool", fmt::format("{}", number));
     text_ += line("speed", fmt::format("{:.0f}", cutting.speed_rpm));
-    text_ += line("feed", real(cutting.feed_mm_min));
+    text_ += line("feed", real(draft_.coarse ? std::round(0.07 * cutting.feed_mm_min) * 10 : cutting.feed_mm_min));
   }
   void add(const char* key, double value, const char* note = "") { text_ += line(key, real(value), note); }
   void add(const char* key, const char* value, const char* note = "") { text_ += line(key, value, note); }
@@ -141,7 +142,7 @@ std::string face_operations(const Draft& draft) {
     all.add("scallop", 0.02);
     all.add("allowance", 0.01 * m);
     all.begin("line_milling", second, draft.second, D, "without allowance it finishes");
-    all.add("left", 0.005);
+    all.add("left", draft.coarse ? 0.008 : 0.005);
     all.add("chord_tolerance", 0.0008);
     all.begin("finishing", second, draft.second, D);
     all.add("regions", "[\"fillet\", \"root\"]");
@@ -153,7 +154,7 @@ std::string face_operations(const Draft& draft) {
   all.add("scallop", 0.01, "highest cusp between passes");
   all.add("allowance", 0.015 * m);
   all.begin("finishing", second, draft.second, D);
-  all.add("scallop", 0.004);
+  all.add("scallop", draft.coarse ? 0.008 : 0.004);
   all.add("chord_tolerance", 0.0008, "largest sag of a straight block");
   return all.text();
 }
@@ -205,7 +206,8 @@ std::string job_text(const Draft& draft) {
   if (draft.has_first) text += tool_text(draft.first, 1, draft.depth_mm);
   text += tool_text(draft.second, draft.has_first ? 2 : 1, draft.depth_mm);
   text += bevel ? finger_operations(draft) : face_operations(draft);
-  return text + "\n[verify]\n" + line("gouge_tolerance", "0.002", "a program that may cut deeper is not written") +
+  return text + "\n[verify]\n" +
+         line("gouge_tolerance", draft.coarse ? "0.005" : "0.002", "a program that may cut deeper is not written") +
          line("teeth", "\"one\"", "or \"all\": every tooth space is walked through");
 }
 

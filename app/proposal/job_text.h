@@ -20,6 +20,7 @@ struct Draft {
   Place place;
   tool::ToolAssembly first, second;  ///< roughing ball and finishing mill; a finger mill is `second`
   bool has_first = false;
+  bool coarse = false;  ///< wider tolerances and slower: for controls that count coarsely
   double depth_mm = 0;
 };
 

@@ -14,6 +14,8 @@
 namespace toothpath::proposal {
 namespace {
 
+constexpr double kLeastDoubleModules = 3.6;  // two rings of one module and their groove
+
 /// The option that a refused key of [gear] belongs to.
 std::string option_of(const std::string& key) {
   constexpr std::pair<const char*, const char*> kOptions[] = {{"inner_radius", "--inner"},
@@ -44,6 +46,16 @@ std::vector<Diagnostic> located(Refusals refusals) {
 }
 
 Expected<ChosenGear, std::vector<Diagnostic>> choose_face(const Wishes& wishes) {
+  const double width = wishes.at(Quantity::outer) - wishes.at(Quantity::inner),
+               least = kLeastDoubleModules * wishes.at(Quantity::module);
+  if (wishes.gear == Gear::double_helical && width < least)
+    return std::vector{Diagnostic{
+        DiagnosticKind::refused_input,
+        {},
+        fmt::format(
+            "--outer: {:.4g} mm of teeth have no room for two rings and the groove between them, which take {:.4g} "
+            "mm: more teeth, fewer teeth of the shaper or less helix angle make room",
+            width, least)}};
   auto made = face_gear::FaceGear::make(whole_face_parameters(wishes));
   if (auto* refusals = made.refused()) return located(std::move(*refusals));
   ChosenGear chosen;
@@ -117,8 +129,9 @@ Result<Draft> finger_draft(Draft draft, const ChosenMachine& machine, const Chos
 Result<Draft> face_draft(Draft draft, const ChosenMachine& machine, const ChosenGear& gear, const Shelf& given,
                          int attempt) {
   const double depth = gear.facts.depth;
+  draft.coarse = attempt >= 2;
   Shelf shelf = given.empty() ? standard_shelf(depth) : given;
-  if (attempt >= 2)  // longer tools lean less far over the part
+  if (attempt == 3)  // longer tools lean less far over the part
     for (tool::ToolAssembly& tool : shelf)
       if (given.empty()) {
         tool.stick_out_mm += 10;

@@ -5,6 +5,7 @@
 
 #include "app/proposal/gear_limits.h"
 #include "geometry/base/angle.h"
+#include "geometry/face_gear/shaper.h"
 
 namespace toothpath::proposal {
 namespace {
@@ -36,7 +37,27 @@ constexpr Question kQuestions[] = {
 
 constexpr double kRadiusStep = 0.25;  // mm, of proposed ends
 
+constexpr double kDoubleWidth = 8, kLeastDoubleWidth = 5;  // of a double helical gear with its groove, modules
+
 double rounded(double x, double step) { return std::round(x / step) * step; }
+
+/// Of the shaper, so that it keeps a land at its tip.
+double proposed_tip(const Wishes& wishes) {
+  const double full = face_gear::largest_tip_radius(face_parameters(wishes), radians(wishes.at(Quantity::helix)));
+  return std::max(0.0, std::floor(std::min(0.3 * wishes.at(Quantity::module), 0.8 * full) / 0.005) * 0.005);
+}
+
+/// The helix angle of whole 5 deg, at most 30, that leaves room for two rings.
+double helix_with_room(const Wishes& wishes) {
+  for (const double helix : {30.0, 25.0, 20.0, 15.0}) {
+    Wishes tried = wishes;
+    tried[Quantity::helix] = helix;
+    tried[Quantity::tip_radius] = proposed_tip(tried);
+    const auto range = face_range(tried);
+    if (range && range->outer - range->inner > kLeastDoubleWidth * wishes.at(Quantity::module)) return helix;
+  }
+  return 10.0;
+}
 
 std::optional<double> proposed_end(Quantity quantity, const Wishes& wishes) {
   const auto range = face_range(wishes);
@@ -44,7 +65,7 @@ std::optional<double> proposed_end(Quantity quantity, const Wishes& wishes) {
   const double m = wishes.at(Quantity::module);
   if (quantity == Quantity::inner) return std::ceil((range->inner + 0.05 * m) / kRadiusStep) * kRadiusStep;
   const double inner = wishes[Quantity::inner].value_or(range->inner);
-  const double width = (wishes.gear == Gear::double_helical ? 8 : 4) * m;
+  const double width = (wishes.gear == Gear::double_helical ? kDoubleWidth : 4) * m;
   const double most = range->outer - 0.05 * m;
   return std::floor(std::min(most, inner + width) / kRadiusStep) * kRadiusStep;
 }
@@ -106,9 +127,9 @@ std::optional<double> proposed(Quantity quantity, const Wishes& wishes) {
     case Quantity::module: return std::nullopt;
     case Quantity::shaper_teeth: return std::clamp(std::round(2.6 * std::sqrt(teeth)), 16.0, 100.0);
     case Quantity::pressure_angle: return 20.0;
-    case Quantity::helix: return wishes.gear == Gear::double_helical ? 30.0 : 0.0;
+    case Quantity::helix: return wishes.gear == Gear::double_helical ? helix_with_room(wishes) : 0.0;
     case Quantity::offset: return rounded(0.05 * m * teeth, 0.5);
-    case Quantity::tip_radius: return wishes.route == Route::shaped ? 0.0 : rounded(0.3 * m, 0.005);
+    case Quantity::tip_radius: return wishes.route == Route::shaped ? 0.0 : proposed_tip(wishes);
     case Quantity::inner:
     case Quantity::outer: return proposed_end(quantity, wishes);
     case Quantity::spiral: return 30.0;
