@@ -1,6 +1,6 @@
 #include "app/commands/machine.h"
 
-#include "app/commands/data.h"
+#include "app/base/command_data.h"
 
 #include <fmt/format.h>
 
@@ -35,7 +35,7 @@ std::string json_of_file(const machines::MachineFileText& file) {
   const auto tree = machines::parse_machine_toml(file.text, file.path);
   CommandOutcome outcome;
   outcome.report_json = nlohmann::ordered_json{{"schema", 1}, {"command", "machine show"}, {"file", file.path}}.dump();
-  if (tree) add_data(outcome, "machine", json_of_toml(*tree));
+  if (tree) app::add_data(outcome, "machine", app::json_of_toml(*tree));
   return outcome.report_json;
 }
 

@@ -302,6 +302,7 @@ CommandOutcome run_new(const NewRequest& asked) {
   const std::string directory = fs::path(request.file).parent_path().string();
   auto machine = proposal::choose_machine(wishes, directory);
   if (auto* errors = machine.refused()) return failed(std::move(*errors));
+  dialog.tell(limits_of(machine.value()));
   auto shelf = shelf_of(request.tools);
   if (auto* errors = shelf.refused()) return failed(std::move(*errors));
   if (auto numbers = wish_numbers(wishes, request, dialog); auto* errors = numbers.refused())

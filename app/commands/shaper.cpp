@@ -1,6 +1,6 @@
 #include "app/commands/shaper.h"
 
-#include "app/commands/data.h"
+#include "app/base/command_data.h"
 
 #include <algorithm>
 
@@ -125,8 +125,8 @@ CommandOutcome run_shaper(const JobRequest& request) {
   progress.clear();
   CommandOutcome outcome = process::finished_report(*output, clock, std::move(report), request.color);
   if (outcome.exit_code == app::ExitCode::ok) outcome.summary = summary_of(setup, request.out_dir);
-  add_data(outcome, "limits", limits_text);
-  add_data(outcome, "set_up", setup_text);
+  app::add_data(outcome, "limits", limits_text);
+  app::add_data(outcome, "set_up", setup_text);
   return outcome;
 }
 

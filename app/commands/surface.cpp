@@ -1,6 +1,6 @@
 #include "app/commands/surface.h"
 
-#include "app/commands/data.h"
+#include "app/base/command_data.h"
 
 #include "app/job/file.h"
 #include "app/process/flow/stages.h"
@@ -33,7 +33,7 @@ CommandOutcome run_surface(const JobRequest& request) {
   if (!limits) return failed(limits.error());
   progress.clear();
   CommandOutcome outcome = process::finished_report(*output, clock, std::move(report), request.color);
-  add_data(outcome, "limits", *limits);
+  app::add_data(outcome, "limits", *limits);
   return outcome;
 }
 

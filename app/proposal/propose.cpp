@@ -14,7 +14,7 @@
 namespace toothpath::proposal {
 namespace {
 
-constexpr double kLeastDoubleModules = 3.6;  // two rings of one module and their groove
+constexpr double kLeastDoubleModules = 3;  // two rings of 0.7 modules and their groove
 
 /// The option that a refused key of [gear] belongs to.
 std::string option_of(const std::string& key) {
@@ -216,6 +216,14 @@ Told limits_of(const Wishes& wishes) {
                {"outer end (land of a fifth of a module)", "up to " + mm(range->outer)}};
   if (range->pointing > 0) told.emplace_back("the teeth are pointed at", mm(range->pointing));
   return told;
+}
+
+Told limits_of(const ChosenMachine& machine) {
+  if (!machine.mill) return {};
+  const auto& linear = machine.mill->chain.linear;
+  return {{"largest part that turns", fmt::format("{:g} mm", machine.mill->largest_part_mm())},
+          {"travels", fmt::format("X {:g}  Y {:g}  Z {:g} mm", linear[0].max_mm - linear[0].min_mm,
+                                  linear[1].max_mm - linear[1].min_mm, linear[2].max_mm - linear[2].min_mm)}};
 }
 
 Told limits_of(const ChosenGear& gear) {

@@ -44,6 +44,7 @@ inline constexpr int kAttempts = 4;
 /// A limit that somebody choosing wants to see, and its value.
 using Told = std::vector<std::pair<std::string, std::string>>;
 [[nodiscard]] Told limits_of(const Wishes& wishes);
+[[nodiscard]] Told limits_of(const ChosenMachine& machine);
 [[nodiscard]] Told limits_of(const ChosenGear& gear);
 [[nodiscard]] Told limits_of(const Draft& draft, const ChosenMachine& machine, const ChosenGear& gear);
 

@@ -12,7 +12,7 @@ using Words = std::vector<std::string>;
 
 nlohmann::json report_of(Words words, int exit_code = 0) {
   words.emplace_back("--json");
-  const Finished done = run_program({.arguments = words});
+  const Finished done = run_program(words);
   EXPECT_EQ(done.exit_code, exit_code) << words.front() << ": " << done.err;
   const auto json = nlohmann::json::parse(done.out, nullptr, false);
   EXPECT_FALSE(json.is_discarded()) << done.out.substr(0, 300);
@@ -71,7 +71,7 @@ TEST(JsonOfCheck, CarriesTheProof) {
 
 /// Every command of the help is one of those above, or one whose own test reads its JSON.
 TEST(JsonOfCommands, AreAllAsked) {
-  const std::string help = run_program({.arguments = {"--help"}}).out;
+  const std::string help = run_program(Words{"--help"}).out;
   for (const char* command : {"new", "run", "check", "correct", "surface", "shaper", "cutter", "forces", "contact",
                               "compare", "study", "machine", "reference"})
     EXPECT_NE(help.find(std::string("\n  ") + command + " "), std::string::npos) << command;

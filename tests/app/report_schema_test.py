@@ -53,7 +53,7 @@ def written():
 
 
 known, keys = set(properties(schema)), written()
-# Told by words of other rooms: regions, the names of the scene, the data of commands (app/commands/data.h).
+# Told by words of other rooms: regions, the names of the scene, the data of commands (app/base/command_data.h).
 elsewhere = {"flank", "fillet", "root", "fixture", "stock", "limits", "set_up"}
 for key in sorted(keys - known):
     faults.append(f"the schema lacks {key}")

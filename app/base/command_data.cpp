@@ -1,10 +1,10 @@
-#include "app/commands/data.h"
+#include "app/base/command_data.h"
 
 #include <nlohmann/json.hpp>
 
 #include "app/report/svg/html_text.h"
 
-namespace toothpath::commands {
+namespace toothpath::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -29,7 +29,7 @@ Json json_value(const toml::TomlValue& value) {
 
 }  // namespace
 
-void add_data(app::CommandOutcome& outcome, const char* key, const std::string& json) {
+void add_data(CommandOutcome& outcome, const char* key, const std::string& json) {
   if (outcome.report_json.empty()) return;
   Json report = Json::parse(outcome.report_json);
   report[key] = Json::parse(json);
@@ -38,4 +38,4 @@ void add_data(app::CommandOutcome& outcome, const char* key, const std::string& 
 
 std::string json_of_toml(const toml::TomlValue& value) { return json_value(value).dump(2); }
 
-}  // namespace toothpath::commands
+}  // namespace toothpath::app
