@@ -1,8 +1,8 @@
 // Reads a milling machine from its TOML file, and finds the file that a job names.
 //
-// Keys: README.md of this folder lists them; the files in machines/data are commented examples. Lengths mm, angles deg,
-// speeds mm/min, deg/min and 1/min. Every key that is not known is refused, so a typing error cannot pass as a default.
-// Which controls there are, and which keys each of them takes, is not known here: a `MachineJudge` says it.
+// Keys: docs/machine_reference.md lists them; the files in machines/data are commented examples. Lengths mm, angles
+// deg, speeds mm/min, deg/min and 1/min. Every key that is not known is refused, so a typing error cannot pass as a
+// default. Which controls there are, and which keys each of them takes, is not known here: a `MachineJudge` says it.
 #pragma once
 
 #include <functional>

@@ -1,8 +1,11 @@
 #include "app/commands/machine.h"
 
+#include "app/base/command_data.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "app/base/output_dir.h"
@@ -11,6 +14,7 @@
 #include "app/report/sheet/machine_sheet.h"
 #include "geometry/base/angle.h"
 #include "machines/machine_file.h"
+#include "machines/machine_table.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/controls/registry.h"
 #include "postproc/self_test/self_test.h"
@@ -23,8 +27,17 @@ namespace {
 const std::vector<std::string> kShowOutputs = {"machine.html", "machine.svg"};
 
 struct Shown {
-  std::string text, page, drawing;
+  std::string text, page, drawing, json;
 };
+
+/// The keys of the file, and where it lies.
+std::string json_of_file(const machines::MachineFileText& file) {
+  const auto tree = machines::parse_machine_toml(file.text, file.path);
+  CommandOutcome outcome;
+  outcome.report_json = nlohmann::ordered_json{{"schema", 1}, {"command", "machine show"}, {"file", file.path}}.dump();
+  if (tree) app::add_data(outcome, "machine", app::json_of_toml(*tree));
+  return outcome.report_json;
+}
 
 /// Text, page and drawing of a machine of either kind.
 Expected<Shown, std::vector<Diagnostic>> show(const std::string& path) {
@@ -33,12 +46,12 @@ Expected<Shown, std::vector<Diagnostic>> show(const std::string& path) {
   if (file->kind == machines::MachineKind::gear_shaper) {
     auto reading = shaper::read_shaper_machine_of_text(file->text, path);
     if (!reading.machine) return std::move(reading.errors);
-    return Shown{sheet::machine_text(*reading.machine), sheet::machine_page(*reading.machine), {}};
+    return Shown{sheet::machine_text(*reading.machine), sheet::machine_page(*reading.machine), {}, json_of_file(*file)};
   }
   auto reading = controls::read_machine_of_text(file->text, path);
   if (!reading.machine) return std::move(reading.errors);
   return Shown{sheet::machine_text(*reading.machine), sheet::machine_page(*reading.machine),
-               sheet::machine_drawing_svg(*reading.machine)};
+               sheet::machine_drawing_svg(*reading.machine), json_of_file(*file)};
 }
 
 }  // namespace
@@ -57,6 +70,7 @@ CommandOutcome show_machine(const MachineRequest& request) {
   const Shown& machine = result.value();
   CommandOutcome outcome;
   outcome.summary = machine.text;
+  outcome.report_json = machine.json;
   if (!output) return outcome;
   process::NamedFiles files = {{"machine.html", machine.page}};
   if (!machine.drawing.empty()) files.emplace_back("machine.svg", machine.drawing);
@@ -94,6 +108,25 @@ Result<sheet::DryRunPart> make_part(const machines::Machine& machine, const Mach
   auto proof = self_test::prove_self_test(*bytes, output.final_path(name), *test, machine);
   if (!proof) return proof.error();
   return sheet::DryRunPart{name, tcp, *test, std::move(*proof)};
+}
+
+std::string test_json(const machines::Machine& machine, const std::vector<sheet::DryRunPart>& parts) {
+  const self_test::SelfTest& test = parts.front().test;
+  nlohmann::ordered_json json = {{"schema", 1},
+                                 {"command", "machine test"},
+                                 {"machine", machine.name},
+                                 {"stations", test.stations.size()},
+                                 {"tool_length", test.tool_length_mm},
+                                 {"tilt_deg", degrees(test.tilt_rad)},
+                                 {"point", {test.point_mm.x(), test.point_mm.y(), test.point_mm.z()}},
+                                 {"programs", nlohmann::ordered_json::array()}};
+  for (const sheet::DryRunPart& part : parts)
+    json["programs"].push_back({{"file", part.program},
+                                {"tcp", part.tcp},
+                                {"tip_leaves_um", 1000 * part.proof.worst_mm},
+                                {"moves", part.proof.moves},
+                                {"minutes", part.proof.minutes}});
+  return json.dump(2) + "\n";
 }
 
 /// A text of places of the tool would show nothing of the machine's axes.
@@ -155,6 +188,7 @@ CommandOutcome test_machine(const MachineRequest& request) {
   if (const auto s = output->commit(); !s) return failed(s.error());
   CommandOutcome outcome;
   outcome.summary = summary_of(machine, parts, request.out_dir);
+  outcome.report_json = test_json(machine, parts);
   return outcome;
 }
 

@@ -1,5 +1,7 @@
 #include "app/commands/shaper.h"
 
+#include "app/base/command_data.h"
+
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -114,14 +116,17 @@ CommandOutcome run_shaper(const JobRequest& request) {
     report.files.push_back(name);
     return output->write(name, content);
   };
-  for (const auto& [name, content] : {std::pair<std::string, std::string>{"limits.json", limits::limits_json(gear)},
-                                      {"shaper.json", shaper::shaper_json(setup, study)},
+  const std::string limits_text = limits::limits_json(gear), setup_text = shaper::shaper_json(setup, study);
+  for (const auto& [name, content] : {std::pair<std::string, std::string>{"limits.json", limits_text},
+                                      {"shaper.json", setup_text},
                                       {"shaper.html", shaper::shaper_html(setup, study)}})
     if (const auto written = write(name, content); !written) return failed(written.error());
   report.files.push_back(program_name);
   progress.clear();
   CommandOutcome outcome = process::finished_report(*output, clock, std::move(report), request.color);
   if (outcome.exit_code == app::ExitCode::ok) outcome.summary = summary_of(setup, request.out_dir);
+  app::add_data(outcome, "limits", limits_text);
+  app::add_data(outcome, "set_up", setup_text);
   return outcome;
 }
 

@@ -1,5 +1,7 @@
 #include "app/commands/surface.h"
 
+#include "app/base/command_data.h"
+
 #include "app/job/file.h"
 #include "app/process/flow/stages.h"
 #include "app/process/opening_and_end.h"
@@ -39,8 +41,12 @@ CommandOutcome run_surface(const SurfaceRequest& request) {
   auto cad = cad::write_files(request.cad, job, gear, *output, clock, report.files);
   if (!cad) return failed(cad.error());
   report.cad = std::move(*cad);
+  const auto limits = output->read_back("limits.json");
+  if (!limits) return failed(limits.error());
   progress.clear();
-  return process::finished_report(*output, clock, std::move(report), request.color);
+  CommandOutcome outcome = process::finished_report(*output, clock, std::move(report), request.color);
+  app::add_data(outcome, "limits", *limits);
+  return outcome;
 }
 
 void add_surface(Commands& commands) {

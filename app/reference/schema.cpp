@@ -310,22 +310,21 @@ class Schema {
   const Format& format_;
 };
 
-Json head(const char* name, const char* title) {
-  return {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"$id", name}, {"title", title}};
-}
+/// Without an `$id`: Taplo takes absolute ones only, and where a schema lies nobody knows.
+Json head(const char* title) { return {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", title}}; }
 
 }  // namespace
 
 std::string job_schema() {
   const Format format = job_format();
-  Json json = head("job.schema.json", "A job of Toothpath");
+  Json json = head("A job of Toothpath");
   json.update(Schema(format).file());
   return json.dump(1) + "\n";
 }
 
 std::string machine_schema() {
   const Format milling = milling_machine_format(), shaper = gear_shaper_format();
-  Json json = head("machine.schema.json", "A machine file of Toothpath");
+  Json json = head("A machine file of Toothpath");
   json["type"] = "object";
   json["required"] = {"kind"};
   json["properties"]["kind"] = {{"enum", {"five_axis", "gear_shaper"}}, {"description", milling.meaning("kind")}};

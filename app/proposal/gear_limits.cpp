@@ -1,0 +1,104 @@
+#include "app/proposal/gear_limits.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "cam/analytic/gear_distance.h"
+#include "cam/cut/unreached.h"
+#include "cam/plan/first_ball.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath::proposal {
+namespace {
+
+constexpr double kGrooveModules = 1.6;      // between the rings of a double helical gear
+constexpr double kRoughingAllowance = 0.1;  // modules
+
+bool complete(const Wishes& wishes) {
+  return std::all_of(questions().begin(), questions().end(), [&](const Question& q) {
+    return q.what == Quantity::inner || q.what == Quantity::outer || !wishes.gear || !belongs(q, *wishes.gear) ||
+           wishes[q.what];
+  });
+}
+
+}  // namespace
+
+face_gear::FaceGearParameters face_parameters(const Wishes& wishes) {
+  face_gear::FaceGearParameters p;
+  p.teeth = static_cast<int>(wishes.at(Quantity::teeth));
+  p.shaper_teeth = static_cast<int>(wishes.at(Quantity::shaper_teeth));
+  p.module_mm = wishes.at(Quantity::module);
+  p.module_plane = face_gear::ModulePlane::transverse;
+  p.pressure_angle_rad = radians(wishes.at(Quantity::pressure_angle));
+  p.offset_mm = wishes.at(Quantity::offset);
+  p.shaper_tip_radius_mm = wishes.at(Quantity::tip_radius);
+  return p;
+}
+
+face_gear::FaceGearParameters whole_face_parameters(const Wishes& wishes) {
+  face_gear::FaceGearParameters p = face_parameters(wishes);
+  const double inner = wishes.at(Quantity::inner), outer = wishes.at(Quantity::outer),
+               helix = radians(wishes.at(Quantity::helix));
+  if (wishes.gear != Gear::double_helical) {
+    p.zones.push_back({helix, inner, outer});
+    return p;
+  }
+  const double middle = 0.5 * (inner + outer), half_groove = 0.5 * kGrooveModules * p.module_mm;
+  p.reference_radius_mm = middle;
+  p.zones.push_back({-helix, inner, middle - half_groove});
+  p.zones.push_back({helix, middle + half_groove, outer});
+  return p;
+}
+
+bevel_gear::BevelGearParameters bevel_parameters(const Wishes& wishes) {
+  bevel_gear::BevelGearParameters p;
+  const double m = wishes.at(Quantity::module);
+  p.teeth = static_cast<int>(wishes.at(Quantity::teeth));
+  p.mate_teeth = static_cast<int>(wishes.at(Quantity::mate_teeth));
+  p.pitch_angle_rad = std::atan2(p.teeth, p.mate_teeth);
+  p.outer_transverse_module_mm = m;
+  p.pressure_angle_rad = radians(wishes.at(Quantity::pressure_angle));
+  p.outer_spiral_angle_rad = radians(wishes.at(Quantity::spiral));
+  p.face_width_mm = wishes.at(Quantity::face_width);
+  const double outer = 0.5 * m * p.teeth / std::sin(p.pitch_angle_rad);
+  p.apex_cone_distance_mm = std::round(10 * (outer - 0.54 * p.face_width_mm)) / 10;
+  p.relief_half_width_mm = std::round(100 * 0.55 * m) / 100;
+  p.addendum_mm = std::round(100 * 0.65 * m) / 100;
+  p.dedendum_mm = std::round(100 * 0.82 * m) / 100;
+  return p;
+}
+
+std::optional<FaceRange> face_range(const Wishes& wishes) {
+  if (!wishes.gear || *wishes.gear == Gear::bevel_herringbone || !complete(wishes)) return std::nullopt;
+  const face_gear::FaceGearParameters p = face_parameters(wishes);
+  FaceRange range{0, 1e9, 1e9, ""};
+  for (const int hand : {-1, 1}) {
+    const auto surface = face_gear::make_surface<double>(p, hand * radians(wishes.at(Quantity::helix)));
+    const auto limits = face_gear::zone_limits(surface, p.module_mm);
+    if (limits.inner_limit > range.inner) {
+      range.inner = limits.inner_limit;
+      range.inner_name = limits.inner_limit_name;
+    }
+    if (limits.pointing_radius) range.pointing = std::min(range.pointing, *limits.pointing_radius);
+    if (limits.land_radius) range.outer = std::min(range.outer, *limits.land_radius);
+  }
+  range.outer = std::min(range.outer, range.pointing);
+  if (range.pointing > 1e8) range.pointing = 0;
+  return std::isfinite(range.inner) && range.outer > range.inner ? std::optional(range) : std::nullopt;
+}
+
+FaceFacts face_facts(const face_gear::FaceGear& gear) {
+  FaceFacts facts;
+  for (const auto& ring : gear.rings())
+    for (const double r : {ring.zone.inner_radius_mm, ring.zone.outer_radius_mm})
+      if (const auto root = face_gear::root_height(ring.surface, r))
+        facts.depth = std::max(facts.depth, ring.surface.z_tip(r) - *root);
+  const double m = gear.parameters().module_mm, reach = 3 * m;
+  const analytic::GearDistance part(gear, reach);
+  if (part.refusal()) return facts;
+  facts.largest_ball = 2 * cut::largest_reaching_ball(part, 1.5 * m).radius_mm;
+  facts.first_ball = plan::first_ball_mm(part, kRoughingAllowance * m, reach);
+  return facts;
+}
+
+}  // namespace toothpath::proposal

@@ -1,0 +1,37 @@
+// The limits of the gear while it is chosen: where its teeth end, and which mills reach all of it.
+#pragma once
+
+#include <string>
+
+#include "app/proposal/wishes.h"
+#include "geometry/bevel_gear/parameters.h"
+#include "geometry/face_gear/gear.h"
+
+namespace toothpath::proposal {
+
+/// Radii between which teeth can stand, mm.
+struct FaceRange {
+  double inner = 0;        ///< undercut, or where the involute begins
+  double outer = 0;        ///< the top land is a fifth of a module
+  double pointing = 0;     ///< the teeth are pointed; 0: they are not
+  const char* inner_name;  ///< which limit governs
+};
+
+/// Parameters of a face gear without its ends. Precondition: every number of the gear but those is known.
+[[nodiscard]] face_gear::FaceGearParameters face_parameters(const Wishes& wishes);
+/// The same with its ends; a double helical gear has a groove in its middle.
+[[nodiscard]] face_gear::FaceGearParameters whole_face_parameters(const Wishes& wishes);
+[[nodiscard]] bevel_gear::BevelGearParameters bevel_parameters(const Wishes& wishes);
+
+/// Nothing: no tooth has room, or numbers are missing.
+[[nodiscard]] std::optional<FaceRange> face_range(const Wishes& wishes);
+
+/// Of a face gear that can be made, mm.
+struct FaceFacts {
+  double depth = 0;         ///< of the tooth spaces, the deepest
+  double largest_ball = 0;  ///< diameter of the largest ball that reaches all; 0: none, the fillet is sharp
+  double first_ball = 0;    ///< diameter of the largest first roughing ball
+};
+[[nodiscard]] FaceFacts face_facts(const face_gear::FaceGear& gear);
+
+}  // namespace toothpath::proposal

@@ -1,0 +1,214 @@
+#include "app/proposal/job_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/proposal/gear_limits.h"
+#include "cam/tool/cutters.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath::proposal {
+namespace {
+
+/// A number with a point: what TOML takes for a real.
+std::string real(double x) {
+  std::string text = fmt::format("{:.4f}", x);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text += '0';
+  return text;
+}
+
+/// `key = value`, and what it means behind it.
+std::string line(const char* key, const std::string& value, const char* meaning = "") {
+  const std::string start = fmt::format("{} = {}", key, value);
+  return *meaning ? fmt::format("{:<32} # {}\n", start, meaning) : start + "\n";
+}
+
+std::string vector_text(const Vec3& v) { return fmt::format("[{}, {}, {}]", real(v.x()), real(v.y()), real(v.z())); }
+
+std::string face_text(const Wishes& wishes) {
+  const face_gear::FaceGearParameters p = whole_face_parameters(wishes);
+  std::string text = "\n[gear]\ntype = \"face_gear\"\n";
+  text += line("teeth", fmt::format("{}", p.teeth));
+  text += line("shaper_teeth", fmt::format("{}", p.shaper_teeth), "of the pinion-shaped shaper that makes the flanks");
+  text += line("module", real(p.module_mm));
+  text += line("module_plane", "\"transverse\"",
+               "\"normal\" or \"transverse\": for module, pressure angle and coefficients");
+  text += line("pressure_angle", real(wishes.at(Quantity::pressure_angle)));
+  if (wishes.gear == Gear::offset) text += line("offset", real(p.offset_mm), "between the axes of gear and pinion");
+  if (p.reference_radius_mm)
+    text +=
+        line("reference_radius", real(*p.reference_radius_mm), "where the two halves are in phase: the apex of the V");
+  text += line("shaper_tip_radius", real(p.shaper_tip_radius_mm),
+               "rounds the root of the tooth, so that a ball can follow it");
+  for (const auto& zone : p.zones) {
+    text += "\n[[gear.zone]]                    # one ring of teeth\n";
+    text += line("helix_angle", real(degrees(zone.helix_angle_rad)), "of the shaper; above 0 is right hand");
+    text += line("inner_radius", real(zone.inner_radius_mm));
+    text += line("outer_radius", real(zone.outer_radius_mm));
+  }
+  return text;
+}
+
+std::string bevel_text(const Wishes& wishes) {
+  const bevel_gear::BevelGearParameters p = bevel_parameters(wishes);
+  std::string text = "\n[gear]\ntype = \"equal_base_circle_bevel_gear\"\n";
+  text += line("teeth", fmt::format("{}", p.teeth));
+  text += line("mate_teeth", fmt::format("{}", p.mate_teeth));
+  text += line("shaft_angle", "90.0");
+  text += line("outer_transverse_module", real(p.outer_transverse_module_mm));
+  text += line("pressure_angle", real(wishes.at(Quantity::pressure_angle)));
+  text += line("outer_spiral_angle", real(wishes.at(Quantity::spiral)));
+  text += line("face_width", real(p.face_width_mm));
+  text += line("form", "\"herringbone\"", "or \"single\"");
+  text += line("hand", "\"right\"", "of the inner half");
+  text += line("apex_cone_distance", real(p.apex_cone_distance_mm), "where the halves meet");
+  text += line("relief_half_width", real(p.relief_half_width_mm), "turned groove there, to root depth");
+  text += line("addendum", real(p.addendum_mm));
+  text += line("dedendum", real(p.dedendum_mm));
+  text += line("backlash", "0.0", "of the pair, along the outer pitch circle");
+  return text;
+}
+
+std::string tool_text(const tool::ToolAssembly& tool, int number, double depth) {
+  const tool::CutterKind& kind = tool::kind_of(tool);
+  std::string text = fmt::format("\n[[tool]]\nnumber = {}\ntype = \"{}\"\n", number, kind.word);
+  for (const auto& n : kind.numbers) {
+    const double value = tool.*n.member;
+    const std::string key = n.key;
+    const std::string note = key == "flute_length" ? fmt::format("the teeth are {:.2f} mm deep", depth)
+                             : key == "half_angle" ? "between axis and side"
+                                                   : "";
+    text += line(n.key, real(n.degrees ? degrees(value) : value), note.c_str());
+  }
+  text += line("shank_diameter", real(tool.shank_diameter_mm));
+  if (tool.helix_rad) text += line("helix", real(degrees(*tool.helix_rad)));
+  text += line("length", real(tool.length_mm), "gauge line to tip: measure it");
+  std::string holder;
+  for (const auto& s : tool.holder)
+    holder += fmt::format("{}[{}, {}, {}]", holder.empty() ? "" : ", ", real(s.lower_diameter_mm),
+                          real(s.upper_diameter_mm), real(s.height_mm));
+  text += line("holder", "[" + holder + "]", "[lower diameter, upper diameter, height] from below");
+  text += line("stick_out", real(tool.stick_out_mm), "lower face of the holder to the tip");
+  return text + line("teeth", fmt::format("{}", tool.teeth));
+}
+
+class Operations {
+ public:
+  explicit Operations(const Draft& draft) : draft_(draft) {}
+
+  void begin(const char* type, int number, const tool::ToolAssembly& tool, double diameter, const char* note = "") {
+    const Cutting cutting = cutting_of(diameter, tool.teeth, draft_.spindle_rpm, draft_.most_feed_mm_min);
+    text_ += "\n[[operation]]\n" + line("type", fmt::format("\"{}\"", type), note);
+    text_ += line("tool", fmt::format("{}", number));
+    text_ += line("speed", fmt::format("{:.0f}", cutting.speed_rpm));
+    text_ += line("feed", real(draft_.coarse ? std::round(0.07 * cutting.feed_mm_min) * 10 : cutting.feed_mm_min));
+  }
+  void add(const char* key, double value, const char* note = "") { text_ += line(key, real(value), note); }
+  void add(const char* key, const char* value, const char* note = "") { text_ += line(key, value, note); }
+
+  void rough(int number, const tool::ToolAssembly& tool, double allowance, const char* note) {
+    begin("roughing", number, tool, tool.diameter_mm, note);
+    add("step_down", 0.28 * tool.diameter_mm, "depth of a layer");
+    add("step_over", 0.45 * tool.diameter_mm, "between the passes of a layer");
+    add("allowance", allowance, "stock that stays");
+  }
+
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  const Draft& draft_;
+  std::string text_;
+};
+
+std::string face_operations(const Draft& draft) {
+  Operations all(draft);
+  const double m = draft.wishes.at(Quantity::module);
+  const int second = draft.has_first ? 2 : 1;
+  if (draft.has_first) all.rough(1, draft.first, 0.1 * m, "in layers");
+  all.rough(second, draft.second, 0.07 * m,
+            draft.has_first ? "rest material: knows what the operation before left" : "in layers");
+  const double D = draft.second.diameter_mm;
+  if (draft.wishes.route == Route::line) {
+    for (const double share : {0.03, 0.01}) {
+      all.begin("line_milling", second, draft.second, D, share > 0.02 ? "every flank in one pass along the tooth" : "");
+      all.add("allowance", share * m);
+      all.add("left", 0.008, "largest misfit of the straight side");
+    }
+    all.begin("semi_finishing", second, draft.second, D);
+    all.add("regions", "[\"fillet\", \"root\"]");
+    all.add("scallop", 0.02);
+    all.add("allowance", 0.01 * m);
+    all.begin("line_milling", second, draft.second, D, "without allowance it finishes");
+    all.add("left", draft.coarse ? 0.008 : 0.005);
+    all.add("chord_tolerance", 0.0008);
+    all.begin("finishing", second, draft.second, D);
+    all.add("regions", "[\"fillet\", \"root\"]");
+    all.add("scallop", 0.01, "highest cusp between passes");
+    all.add("chord_tolerance", 0.0008);
+    return all.text();
+  }
+  all.begin("semi_finishing", second, draft.second, D);
+  all.add("scallop", 0.01, "highest cusp between passes");
+  all.add("allowance", 0.015 * m);
+  all.begin("finishing", second, draft.second, D);
+  all.add("scallop", draft.coarse ? 0.008 : 0.004);
+  all.add("chord_tolerance", 0.0008, "largest sag of a straight block");
+  return all.text();
+}
+
+std::string finger_operations(const Draft& draft) {
+  Operations all(draft);
+  const double wide = draft.second.shank_diameter_mm;
+  all.begin("finger_roughing", 1, draft.second, wide);
+  all.add("ridge", 0.05 * draft.wishes.at(Quantity::module), "highest ridge left on the root between passes");
+  all.begin("finger_finishing", 1, draft.second, wide);
+  all.add("chord_tolerance", 0.0005, "largest sag of a straight block");
+  return all.text();
+}
+
+std::string machine_table(const Draft& draft) {
+  std::string text = "\n[machine]\n" + line("file", fmt::format("\"{}\"", draft.wishes.machine),
+                                            "looked up beside this job, then among the installed machines");
+  if (draft.assumed) text += line("accept_assumed", "true", "values of it are assumed: every page says so");
+  return text;
+}
+
+std::string shaping_text() {
+  return "\n[shaping]\n" + line("cutting_speed", "20.0", "m/min") +
+         line("speed_basis", "\"mean\"", "\"mean\" of the stroke or \"peak\"") +
+         line("circular_feed", "0.1", "mm a double stroke, on the cutter's pitch circle") +
+         line("radial_feed", "0.02", "mm a double stroke") + line("over_run", "2.5", "mm at each end of the face") +
+         line("offset_reference", "\"outer_radius\"", "\"outer_radius\", \"mean_radius\" or a radius in mm");
+}
+
+}  // namespace
+
+std::string gear_text(const std::string& name, const Wishes& wishes) {
+  return fmt::format("schema = 1\nname = \"{}\"\n", name) +
+         (wishes.gear == Gear::bevel_herringbone ? bevel_text(wishes) : face_text(wishes));
+}
+
+std::string job_text(const Draft& draft) {
+  const bool bevel = draft.wishes.gear == Gear::bevel_herringbone;
+  std::string text =
+      "# Lengths in mm, angles in degrees, feeds in mm/min, speeds in 1/min. All keys: docs/job_reference.md.\n" +
+      gear_text(draft.name, draft.wishes) + machine_table(draft);
+  if (draft.wishes.route == Route::shaped) return text + shaping_text();
+  text += "\n[setup]\n";
+  text += line("origin", vector_text(draft.place.origin_mm), "gear frame in machine coordinates, all rotaries at zero");
+  text += line("axis", bevel ? "\"down\"" : "\"up\"",
+               bevel ? "gear z points down: apex on top" : "teeth towards the spindle");
+  text += line("work_offset", fmt::format("\"{}\"", draft.work_offset), "the program counts from it");
+  text += line("work_offset_at", vector_text(draft.place.origin_mm));
+  if (draft.has_first) text += tool_text(draft.first, 1, draft.depth_mm);
+  text += tool_text(draft.second, draft.has_first ? 2 : 1, draft.depth_mm);
+  text += bevel ? finger_operations(draft) : face_operations(draft);
+  return text + "\n[verify]\n" +
+         line("gouge_tolerance", draft.coarse ? "0.005" : "0.002", "a program that may cut deeper is not written") +
+         line("teeth", "\"one\"", "or \"all\": every tooth space is walked through");
+}
+
+}  // namespace toothpath::proposal

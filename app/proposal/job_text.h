@@ -1,0 +1,32 @@
+// The text of a proposed job, with comments.
+#pragma once
+
+#include <string>
+
+#include "app/proposal/place.h"
+#include "app/proposal/shelf.h"
+#include "app/proposal/wishes.h"
+#include "machines/machine.h"
+
+namespace toothpath::proposal {
+
+/// Everything that the text is made of.
+struct Draft {
+  std::string name;
+  Wishes wishes;  ///< whole
+  double spindle_rpm = 0, most_feed_mm_min = 0;
+  bool assumed = false;  ///< values of the machine are
+  std::string work_offset;
+  Place place;
+  tool::ToolAssembly first, second;  ///< roughing ball and finishing mill; a finger mill is `second`
+  bool has_first = false;
+  bool coarse = false;  ///< wider tolerances and slower: for controls that count coarsely
+  double depth_mm = 0;
+};
+
+/// Schema, name and [gear]: what limits and tools follow from.
+[[nodiscard]] std::string gear_text(const std::string& name, const Wishes& wishes);
+/// The whole job.
+[[nodiscard]] std::string job_text(const Draft& draft);
+
+}  // namespace toothpath::proposal

@@ -1,0 +1,96 @@
+#include "app/proposal/place.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/base/angle.h"
+#include "postproc/choice/travel_offer.h"
+
+namespace toothpath::proposal {
+namespace {
+
+constexpr double kFixture = 20;  // mm between the plate of the table and the blank
+constexpr double kApproach = 8;  // mm above the blank
+constexpr double kLeansAside[] = {-25, 0, 25}, kLeansOut[] = {0, 25};  // deg
+constexpr int kMostTeeth = 24;                                         // turned copies that are looked at
+
+Mat3 turned(double angle) {
+  Mat3 r;
+  r << std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1;
+  return r;
+}
+
+bool turns_the_work(const machines::KinematicChain& chain) {
+  return !chain.table.empty() && std::abs(chain.table.front().direction.z()) > 1 - 1e-9;
+}
+
+}  // namespace
+
+std::vector<ToolPlace> face_places(double inner_mm, double outer_mm, double z_low_mm, double z_high_mm) {
+  std::vector<ToolPlace> places;
+  for (const double r : {inner_mm, outer_mm})
+    for (const double z : {z_low_mm, z_high_mm + kApproach})
+      for (const double aside : kLeansAside)
+        for (const double out : kLeansOut) {
+          const Vec3 axis(std::tan(radians(out)), std::tan(radians(aside)), 1);
+          places.push_back({Vec3(r, 0, z), axis.normalized()});
+        }
+  return places;
+}
+
+std::vector<ToolPlace> finger_places(double inner_mm, double outer_mm, double pitch_angle_rad, double depth_mm) {
+  std::vector<ToolPlace> places;
+  const double s = std::sin(pitch_angle_rad), c = std::cos(pitch_angle_rad);
+  const Vec3 axis(c, 0, -s);
+  for (const double R : {inner_mm, outer_mm})
+    for (const double lift : {-depth_mm, depth_mm + kApproach})
+      places.push_back({R * Vec3(s, 0, c) + lift * axis, axis});
+  return places;
+}
+
+std::optional<Place> place_of(const machines::Machine& machine, const PartInSpace& part, double tool_length_mm) {
+  const machines::KinematicChain& chain = machine.chain;
+  const bool on_axis = turns_the_work(chain);
+  const Vec3 plate = on_axis ? chain.table.front().point_mm : Vec3::Zero();
+  Mat3 turn = Mat3::Identity();
+  if (!part.up) turn = Vec3(1, -1, -1).asDiagonal();
+  const double below = part.up ? -part.z_min_mm : part.z_max_mm;  // of the origin, to the underside
+  Vec3 origin(plate.x(), plate.y(), plate.z() + kFixture + below);
+  origin.z() = std::round(origin.z());
+
+  choice::TravelPoses poses(chain, machine.limit_margin,
+                            on_axis ? std::optional(chain.table.front().direction) : std::nullopt);
+  const int copies = std::min(part.teeth, kMostTeeth);
+  std::size_t reached = 0;
+  for (int tooth = 0; tooth < copies; ++tooth) {
+    const Mat3 at = turn * turned(2 * kPi * tooth / copies);
+    for (const ToolPlace& place : part.places) {
+      const auto solutions = chain.inverse({origin + at * place.tip_mm, at * place.axis}, tool_length_mm);
+      if (!solutions) continue;
+      for (const machines::JointSolution& solution : *solutions) {
+        bool inside = true;
+        for (std::size_t k = 0; k < chain.rotary_count(); ++k)
+          inside = inside &&
+                   !machines::windings(chain.rotary(k), solution.joints.rotary_rad[k], machine.limit_margin.rotary_rad)
+                        .empty();
+        if (!inside) continue;
+        poses.note(solution.joints);
+        ++reached;
+        break;
+      }
+    }
+  }
+  if (reached == 0) return std::nullopt;
+  Place result;
+  result.origin_mm = origin;
+  result.room_mm = poses.room(Vec3::Zero());
+  if (const auto offer = poses.best()) {
+    Vec3 shift = offer->shift_mm;
+    for (int i = 0; i < 3; ++i) shift[i] = std::round(shift[i]);
+    result.origin_mm += shift;
+    result.room_mm = poses.room(shift);
+  }
+  return result;
+}
+
+}  // namespace toothpath::proposal

@@ -1,0 +1,43 @@
+// Where the gear stands in the machine.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "geometry/base/vec.h"
+#include "machines/machine.h"
+
+namespace toothpath::proposal {
+
+/// Places of the tool about the gear, gear frame: tips, and unit axes from tip to holder.
+struct ToolPlace {
+  Vec3 tip_mm, axis;
+};
+
+/// What the machine must reach.
+struct PartInSpace {
+  double radius_mm = 0, z_min_mm = 0, z_max_mm = 0;  ///< of the blank, gear frame
+  bool up = true;                                    ///< z of the gear along that of the machine; else turned about X
+  std::vector<ToolPlace> places;                     ///< of one tooth space: the others are turned copies
+  int teeth = 1;
+};
+
+struct Place {
+  Vec3 origin_mm = Vec3::Zero();
+  std::array<double, 3> room_mm{};  ///< X Y Z, margins taken off; < 0: beyond a travel
+};
+
+/// The place with the most room in the travels: on the axis of the table that carries the work, where there is one, and
+/// clear of its plate. Nothing: the machine reaches no place of the tool.
+/// @param tool_length_mm  gauge point to tip
+[[nodiscard]] std::optional<Place> place_of(const machines::Machine& machine, const PartInSpace& part,
+                                            double tool_length_mm);
+
+/// Places of a tool that mills a face gear: on the teeth and above them, upright and leaning.
+[[nodiscard]] std::vector<ToolPlace> face_places(double inner_mm, double outer_mm, double z_low_mm, double z_high_mm);
+/// Of a finger mill on a pitch cone: normal to it, between two cone distances and above.
+[[nodiscard]] std::vector<ToolPlace> finger_places(double inner_mm, double outer_mm, double pitch_angle_rad,
+                                                   double depth_mm);
+
+}  // namespace toothpath::proposal

@@ -1,0 +1,253 @@
+#include "app/proposal/propose.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/base/angle.h"
+#include "machines/machine_file.h"
+#include "machines/shaper_machine.h"
+#include "postproc/controls/of_machine.h"
+#include "postproc/shaper/control.h"
+
+namespace toothpath::proposal {
+namespace {
+
+constexpr double kLeastDoubleModules = 3;  // two rings of 0.7 modules and their groove
+
+/// The option that a refused key of [gear] belongs to.
+std::string option_of(const std::string& key) {
+  constexpr std::pair<const char*, const char*> kOptions[] = {{"inner_radius", "--inner"},
+                                                              {"outer_radius", "--outer"},
+                                                              {"shaper_teeth", "--shaper-teeth"},
+                                                              {"mate_teeth", "--mate-teeth"},
+                                                              {"teeth", "--teeth"},
+                                                              {"shaper_tip_radius", "--tip-radius"},
+                                                              {"module", "--module"},
+                                                              {"pressure_angle", "--pressure-angle"},
+                                                              {"offset", "--offset"},
+                                                              {"helix_angle", "--helix"},
+                                                              {"outer_spiral_angle", "--spiral"},
+                                                              {"face_width", "--face-width"}};
+  for (const auto& [part, option] : kOptions)
+    if (key.ends_with(part)) return option;
+  return "--gear";
+}
+
+template <typename Refusals>
+std::vector<Diagnostic> located(Refusals refusals) {
+  std::vector<Diagnostic> errors;
+  for (auto& refusal : refusals) {
+    refusal.diagnostic.message = fmt::format("{}: {}", option_of(refusal.key), refusal.diagnostic.message);
+    errors.push_back(std::move(refusal.diagnostic));
+  }
+  return errors;
+}
+
+Expected<ChosenGear, std::vector<Diagnostic>> choose_face(const Wishes& wishes) {
+  const double width = wishes.at(Quantity::outer) - wishes.at(Quantity::inner),
+               least = kLeastDoubleModules * wishes.at(Quantity::module);
+  if (wishes.gear == Gear::double_helical && width < least)
+    return std::vector{Diagnostic{
+        DiagnosticKind::refused_input,
+        {},
+        fmt::format(
+            "--outer: {:.4g} mm of teeth have no room for two rings and the groove between them, which take {:.4g} "
+            "mm: more teeth, fewer teeth of the shaper or less helix angle make room",
+            width, least)}};
+  auto made = face_gear::FaceGear::make(whole_face_parameters(wishes));
+  if (auto* refusals = made.refused()) return located(std::move(*refusals));
+  ChosenGear chosen;
+  chosen.face = std::move(made.value());
+  const face_gear::FaceGear& gear = *chosen.face;
+  chosen.diameter_mm = 2 * gear.outer_radius();
+  if (wishes.route == Route::shaped) return chosen;
+  chosen.facts = face_facts(gear);
+  const double m = wishes.at(Quantity::module);
+  chosen.part = {gear.outer_radius(),
+                 gear.lowest_root() - 2.5 * m,
+                 gear.blank_top(),
+                 true,
+                 face_places(gear.inner_radius(), gear.outer_radius(), gear.lowest_root(), gear.blank_top()),
+                 gear.parameters().teeth};
+  return chosen;
+}
+
+Expected<ChosenGear, std::vector<Diagnostic>> choose_bevel(const Wishes& wishes) {
+  const bevel_gear::BevelGearParameters p = bevel_parameters(wishes);
+  auto made = bevel_gear::design_finger_cutter(p);
+  if (!made.value_if()) return located(std::move(made.error()));
+  ChosenGear chosen;
+  chosen.bevel = std::move(*made.value_if());
+  const bevel_gear::BevelGear& gear = chosen.bevel->gear;
+  const double s = gear.sin_delta(), c = gear.cos_delta(), R = gear.R_e();
+  chosen.diameter_mm = 2 * (R * s + p.addendum_mm * c);
+  chosen.part = {0.5 * chosen.diameter_mm,
+                 gear.R_i() * c - p.dedendum_mm,
+                 R * c + 3 * p.dedendum_mm,
+                 false,
+                 finger_places(gear.R_i(), R, p.pitch_angle_rad, p.dedendum_mm),
+                 p.teeth};
+  return chosen;
+}
+
+Result<Draft> with_place(Draft draft, const ChosenMachine& machine, const ChosenGear& gear) {
+  const double length = std::max(draft.second.length_mm, draft.has_first ? draft.first.length_mm : 0.0);
+  const auto place = place_of(*machine.mill, gear.part, length);
+  if (!place)
+    return fail_as(DiagnosticKind::refused_input, "--machine: {} reaches no place of the tool on this gear",
+                   machine.name);
+  draft.place = *place;
+  for (std::size_t i = 0; i < 3; ++i)
+    if (place->room_mm[i] < 0)
+      return fail_as(
+          DiagnosticKind::refused_input,
+          "--machine: {} lacks {:.0f} mm of travel in {} with the gear at its best place: a smaller gear, or "
+          "another machine",
+          machine.name, -place->room_mm[i], "XYZ"[i]);
+  return draft;
+}
+
+Result<Draft> finger_draft(Draft draft, const ChosenMachine& machine, const ChosenGear& gear, int attempt) {
+  const bevel_gear::FingerCutterData& data = gear.bevel->data;
+  tool::ToolAssembly& mill = draft.second;
+  mill.type = tool::CutterType::finger_mill;
+  mill.module_mm = data.module_mm;
+  mill.tip_radius_mm = data.tip_radius_mm;
+  mill.rack_depth_mm = data.rack_depth_mm;
+  mill.profile_height_mm = data.profile_height_mm;
+  const double m = draft.wishes.at(Quantity::module), width = 2 * gear.bevel->gear.cutter().rho_D;
+  mill.shank_diameter_mm = std::max(6.0, std::ceil(width / 2) * 2);
+  draft.depth_mm = gear.bevel->gear.parameters().addendum_mm + gear.bevel->gear.parameters().dedendum_mm;
+  mill.stick_out_mm = std::ceil(17 + 4 * m + 15 * attempt);
+  mill.holder = {{mill.shank_diameter_mm + 14, mill.shank_diameter_mm + 14, 40}};
+  mill.length_mm = std::ceil((mill.stick_out_mm + 50) / 5) * 5;
+  return with_place(std::move(draft), machine, gear);
+}
+
+Result<Draft> face_draft(Draft draft, const ChosenMachine& machine, const ChosenGear& gear, const Shelf& given,
+                         int attempt) {
+  const double depth = gear.facts.depth;
+  draft.coarse = attempt >= 2;
+  Shelf shelf = given.empty() ? standard_shelf(depth) : given;
+  if (attempt == 3)  // longer tools lean less far over the part
+    for (tool::ToolAssembly& tool : shelf)
+      if (given.empty()) {
+        tool.stick_out_mm += 10;
+        tool.length_mm += 10;
+      }
+  const auto type =
+      draft.wishes.route == Route::line ? tool::CutterType::tapered_ball_end_mill : tool::CutterType::ball_end_mill;
+  const tool::ToolAssembly* mill = largest(shelf, type, 0.97 * gear.facts.largest_ball, depth, attempt % 2);
+  if (!mill)
+    return fail_as(
+        DiagnosticKind::refused_input,
+        "--tip-radius: the largest ball that reaches all of the fillets and the root has {:.3f} mm, and no {} "
+        "is so small with flutes of {:.2f} mm; a larger rounding of the shaper's tip takes a larger ball",
+        gear.facts.largest_ball, draft.wishes.route == Route::line ? "tapered mill" : "ball mill", depth);
+  draft.second = *mill;
+  draft.depth_mm = depth;
+  const tool::ToolAssembly* first =
+      largest(shelf, tool::CutterType::ball_end_mill, 0.95 * gear.facts.first_ball, depth);
+  draft.has_first = first && first->diameter_mm > 1.4 * mill->diameter_mm;
+  if (draft.has_first) draft.first = *first;
+  return with_place(std::move(draft), machine, gear);
+}
+
+std::string mm(double x) { return fmt::format("{:.3f} mm", x); }
+
+}  // namespace
+
+Expected<ChosenMachine, std::vector<Diagnostic>> choose_machine(const Wishes& wishes, const std::string& directory) {
+  const auto path = machines::find_machine_file(wishes.machine, directory);
+  if (!path) return std::vector{path.error()};
+  const auto file = machines::open_machine_file(*path);
+  if (!file) return std::vector{file.error()};
+  const bool shaper = file->kind == machines::MachineKind::gear_shaper;
+  if (shaper != (wishes.route == Route::shaped))
+    return std::vector{Diagnostic{DiagnosticKind::usage,
+                                  {},
+                                  fmt::format("--machine: {} is a {}, and {} needs a {}", wishes.machine,
+                                              shaper ? "gear shaper" : "milling machine", word_of(*wishes.route),
+                                              shaper ? "milling machine" : "gear shaper")}};
+  ChosenMachine chosen;
+  chosen.file = *path;
+  if (shaper) {
+    auto reading = shaper::read_shaper_machine_of_text(file->text, *path);
+    if (!reading.machine) return std::move(reading.errors);
+    chosen.name = reading.machine->name;
+    chosen.assumed = reading.machine->assumed;
+    return chosen;
+  }
+  auto reading = controls::read_machine_of_text(file->text, *path);
+  if (!reading.machine) return std::move(reading.errors);
+  chosen.mill = std::move(reading.machine);
+  chosen.name = chosen.mill->name;
+  chosen.assumed = chosen.mill->assumed;
+  for (const char* name : {"G54", "1"})
+    if (chosen.work_offset.empty() && !controls::other_work_offsets(*chosen.mill, name)) chosen.work_offset = name;
+  return chosen;
+}
+
+Expected<ChosenGear, std::vector<Diagnostic>> choose_gear(const Wishes& wishes) {
+  return wishes.gear == Gear::bevel_herringbone ? choose_bevel(wishes) : choose_face(wishes);
+}
+
+Result<Draft> draft_of(const std::string& name, const Wishes& wishes, const ChosenMachine& machine,
+                       const ChosenGear& gear, const Shelf& shelf, int attempt) {
+  Draft draft;
+  draft.name = name;
+  draft.wishes = wishes;
+  draft.assumed = machine.assumed;
+  draft.work_offset = machine.work_offset;
+  if (wishes.route == Route::shaped) return draft;
+  if (const Status fits = machines::check_part_fits(*machine.mill, gear.diameter_mm); !fits) return fits.error();
+  draft.spindle_rpm = machine.mill->max_spindle_speed;
+  draft.most_feed_mm_min = machine.mill->max_cutting_feed;
+  return wishes.route == Route::finger ? finger_draft(std::move(draft), machine, gear, attempt)
+                                       : face_draft(std::move(draft), machine, gear, shelf, attempt);
+}
+
+Told limits_of(const Wishes& wishes) {
+  const auto range = face_range(wishes);
+  if (!range) return {};
+  Told told = {{fmt::format("inner end ({})", range->inner_name), "from " + mm(range->inner)},
+               {"outer end (land of a fifth of a module)", "up to " + mm(range->outer)}};
+  if (range->pointing > 0) told.emplace_back("the teeth are pointed at", mm(range->pointing));
+  return told;
+}
+
+Told limits_of(const ChosenMachine& machine) {
+  if (!machine.mill) return {};
+  const auto& linear = machine.mill->chain.linear;
+  return {{"largest part that turns", fmt::format("{:g} mm", machine.mill->largest_part_mm())},
+          {"travels", fmt::format("X {:g}  Y {:g}  Z {:g} mm", linear[0].max_mm - linear[0].min_mm,
+                                  linear[1].max_mm - linear[1].min_mm, linear[2].max_mm - linear[2].min_mm)}};
+}
+
+Told limits_of(const ChosenGear& gear) {
+  if (gear.bevel) {
+    const auto& data = gear.bevel->data;
+    return {
+        {"finger mill", fmt::format("module {:g}, tip radius {:g}, rack depth {:g}, profile height {:g} mm",
+                                    data.module_mm, data.tip_radius_mm, data.rack_depth_mm, data.profile_height_mm)}};
+  }
+  if (gear.facts.depth <= 0) return {};
+  return {{"tooth spaces are deep", mm(gear.facts.depth)},
+          {"largest ball that reaches the root",
+           gear.facts.largest_ball > 0 ? mm(gear.facts.largest_ball) : "none: the fillet is sharp"},
+          {"largest first roughing ball", mm(gear.facts.first_ball)},
+          {"least flute", mm(gear.facts.depth)},
+          {"least stick-out that is proposed", mm(least_stick_out_mm(gear.facts.depth))}};
+}
+
+Told limits_of(const Draft& draft, const ChosenMachine& machine, const ChosenGear& gear) {
+  if (!machine.mill) return {};
+  const Place& place = draft.place;
+  return {{"swing", fmt::format("{:.1f} mm of {:g} mm", gear.diameter_mm, machine.mill->largest_part_mm())},
+          {"room in travels",
+           fmt::format("X {:.0f}  Y {:.0f}  Z {:.0f} mm", place.room_mm[0], place.room_mm[1], place.room_mm[2])}};
+}
+
+}  // namespace toothpath::proposal

@@ -1,0 +1,144 @@
+#include "app/proposal/wishes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/proposal/gear_limits.h"
+#include "geometry/base/angle.h"
+#include "geometry/face_gear/shaper.h"
+
+namespace toothpath::proposal {
+namespace {
+
+constexpr std::string_view kGearWords[] = {"face", "double_helical", "offset", "bevel_herringbone"};
+constexpr std::string_view kRouteWords[] = {"ball", "line", "shaped", "finger"};
+constexpr Route kFaceRoutes[] = {Route::line, Route::ball, Route::shaped};
+constexpr Route kDoubleRoutes[] = {Route::line, Route::ball};
+constexpr Route kBevelRoutes[] = {Route::finger};
+
+constexpr Question kQuestions[] = {
+    {Quantity::teeth, "--teeth", "teeth of the gear", {10, 1000}, true},
+    {Quantity::mate_teeth, "--mate-teeth", "teeth of the mate", {8, 1000}, true},
+    {Quantity::shaper_teeth, "--shaper-teeth", "teeth of the shaper, or of the pinion", {8, 400}, true},
+    {Quantity::module, "--module", "module, transverse (of a bevel gear at the large end)", {0.3, 20, " mm"}, false},
+    {Quantity::pressure_angle, "--pressure-angle", "pressure angle", {14.5, 30, " deg"}, false},
+    {Quantity::helix, "--helix", "helix angle of the shaper", {-45, 45, " deg"}, false},
+    {Quantity::offset, "--offset", "offset of the axes", {-500, 500, " mm"}, false},
+    {Quantity::tip_radius,
+     "--tip-radius",
+     "rounding of the shaper's tip, which makes the fillet",
+     {0, 10, " mm"},
+     false},
+    {Quantity::inner, "--inner", "inner end of the teeth, radius", {1, 2000, " mm"}, false},
+    {Quantity::outer, "--outer", "outer end of the teeth, radius", {1, 2000, " mm"}, false},
+    {Quantity::spiral, "--spiral", "spiral angle at the large end", {10, 45, " deg"}, false},
+    {Quantity::face_width, "--face-width", "face width along the pitch cone", {1, 500, " mm"}, false},
+};
+
+constexpr double kRadiusStep = 0.25;  // mm, of proposed ends
+
+constexpr double kDoubleWidth = 8, kLeastDoubleWidth = 5;  // of a double helical gear with its groove, modules
+
+double rounded(double x, double step) { return std::round(x / step) * step; }
+
+/// Of the shaper, so that it keeps a land at its tip.
+double proposed_tip(const Wishes& wishes) {
+  const double full = face_gear::largest_tip_radius(face_parameters(wishes), radians(wishes.at(Quantity::helix)));
+  return std::max(0.0, std::floor(std::min(0.3 * wishes.at(Quantity::module), 0.8 * full) / 0.005) * 0.005);
+}
+
+/// The helix angle of whole 5 deg, at most 30, that leaves room for two rings.
+double helix_with_room(const Wishes& wishes) {
+  for (const double helix : {30.0, 25.0, 20.0, 15.0}) {
+    Wishes tried = wishes;
+    tried[Quantity::helix] = helix;
+    tried[Quantity::tip_radius] = proposed_tip(tried);
+    const auto range = face_range(tried);
+    if (range && range->outer - range->inner > kLeastDoubleWidth * wishes.at(Quantity::module)) return helix;
+  }
+  return 10.0;
+}
+
+std::optional<double> proposed_end(Quantity quantity, const Wishes& wishes) {
+  const auto range = face_range(wishes);
+  if (!range) return std::nullopt;
+  const double m = wishes.at(Quantity::module);
+  if (quantity == Quantity::inner) return std::ceil((range->inner + 0.05 * m) / kRadiusStep) * kRadiusStep;
+  const double inner = wishes[Quantity::inner].value_or(range->inner);
+  const double width = (wishes.gear == Gear::double_helical ? kDoubleWidth : 4) * m;
+  const double most = range->outer - 0.05 * m;
+  return std::floor(std::min(most, inner + width) / kRadiusStep) * kRadiusStep;
+}
+
+}  // namespace
+
+std::span<const std::string_view> gear_words() { return kGearWords; }
+std::span<const std::string_view> route_words() { return kRouteWords; }
+
+std::optional<Gear> gear_of(std::string_view word) {
+  const auto* found = std::find(std::begin(kGearWords), std::end(kGearWords), word);
+  return found == std::end(kGearWords) ? std::nullopt : std::optional(static_cast<Gear>(found - kGearWords));
+}
+
+std::optional<Route> route_of(std::string_view word) {
+  const auto* found = std::find(std::begin(kRouteWords), std::end(kRouteWords), word);
+  return found == std::end(kRouteWords) ? std::nullopt : std::optional(static_cast<Route>(found - kRouteWords));
+}
+
+std::span<const Route> routes_of(Gear gear) {
+  switch (gear) {
+    case Gear::face:
+    case Gear::offset: return kFaceRoutes;
+    case Gear::double_helical: return kDoubleRoutes;
+    case Gear::bevel_herringbone: return kBevelRoutes;
+  }
+  return {};
+}
+
+std::string_view word_of(Gear gear) { return kGearWords[static_cast<std::size_t>(gear)]; }
+std::string_view word_of(Route route) { return kRouteWords[static_cast<std::size_t>(route)]; }
+
+std::span<const Question> questions() { return kQuestions; }
+
+bool belongs(const Question& question, Gear gear) {
+  const bool bevel = gear == Gear::bevel_herringbone;
+  switch (question.what) {
+    case Quantity::teeth:
+    case Quantity::module:
+    case Quantity::pressure_angle: return true;
+    case Quantity::mate_teeth:
+    case Quantity::spiral:
+    case Quantity::face_width: return bevel;
+    case Quantity::offset: return gear == Gear::offset;
+    case Quantity::helix:
+    case Quantity::shaper_teeth:
+    case Quantity::tip_radius:
+    case Quantity::inner:
+    case Quantity::outer: return !bevel;
+  }
+  return false;
+}
+
+std::optional<double> proposed(Quantity quantity, const Wishes& wishes) {
+  const double teeth = wishes.at(Quantity::teeth), m = wishes.at(Quantity::module);
+  switch (quantity) {
+    case Quantity::teeth:
+    case Quantity::mate_teeth:
+    case Quantity::module: return std::nullopt;
+    case Quantity::shaper_teeth: return std::clamp(std::round(2.6 * std::sqrt(teeth)), 16.0, 100.0);
+    case Quantity::pressure_angle: return 20.0;
+    case Quantity::helix: return wishes.gear == Gear::double_helical ? helix_with_room(wishes) : 0.0;
+    case Quantity::offset: return rounded(0.05 * m * teeth, 0.5);
+    case Quantity::tip_radius: return wishes.route == Route::shaped ? 0.0 : proposed_tip(wishes);
+    case Quantity::inner:
+    case Quantity::outer: return proposed_end(quantity, wishes);
+    case Quantity::spiral: return 30.0;
+    case Quantity::face_width: {
+      const double delta = std::atan2(teeth, wishes.at(Quantity::mate_teeth));
+      return rounded(0.29 * 0.5 * m * teeth / std::sin(delta), 0.5);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace toothpath::proposal

@@ -1,0 +1,77 @@
+// What somebody wants to cut, as far as it is known: what `toothpath new` asks for, and what a job is proposed from.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "machines/toml/table_reader.h"
+
+namespace toothpath::proposal {
+
+enum class Gear : std::uint8_t { face, double_helical, offset, bevel_herringbone };
+enum class Route : std::uint8_t {
+  ball,    ///< ball mills alone
+  line,    ///< flanks by the side of a tapered mill
+  shaped,  ///< gear shaper
+  finger,  ///< finger mill
+};
+
+/// As the options say them.
+[[nodiscard]] std::span<const std::string_view> gear_words();
+[[nodiscard]] std::span<const std::string_view> route_words();
+[[nodiscard]] std::optional<Gear> gear_of(std::string_view word);
+[[nodiscard]] std::optional<Route> route_of(std::string_view word);
+/// The routes by which a gear is cut, the proposed one first.
+[[nodiscard]] std::span<const Route> routes_of(Gear gear);
+[[nodiscard]] std::string_view word_of(Gear gear);
+[[nodiscard]] std::string_view word_of(Route route);
+
+enum class Quantity : std::uint8_t {
+  teeth,
+  shaper_teeth,
+  mate_teeth,
+  module,
+  pressure_angle,
+  helix,
+  offset,
+  tip_radius,
+  inner,
+  outer,
+  spiral,
+  face_width,
+};
+inline constexpr std::size_t kQuantities = 12;
+
+/// mm and deg, as a job says them.
+struct Wishes {
+  std::optional<Gear> gear;
+  std::optional<Route> route;
+  std::string machine;  ///< as a job names it
+  std::array<std::optional<double>, kQuantities> numbers{};
+
+  [[nodiscard]] std::optional<double>& operator[](Quantity q) { return numbers[static_cast<std::size_t>(q)]; }
+  [[nodiscard]] std::optional<double> operator[](Quantity q) const { return numbers[static_cast<std::size_t>(q)]; }
+  /// 0 where it is not known.
+  [[nodiscard]] double at(Quantity q) const { return (*this)[q].value_or(0); }
+};
+
+/// One number that is asked for.
+struct Question {
+  Quantity what;
+  const char* option;  ///< "--teeth"
+  const char* text;    ///< "teeth of the gear"
+  toml::Range range;
+  bool whole;
+};
+
+/// In the order in which they are asked.
+[[nodiscard]] std::span<const Question> questions();
+/// Does a gear of this kind have the quantity?
+[[nodiscard]] bool belongs(const Question& question, Gear gear);
+/// What is proposed after the answers so far; nothing: only the user knows.
+[[nodiscard]] std::optional<double> proposed(Quantity quantity, const Wishes& wishes);
+
+}  // namespace toothpath::proposal

@@ -1,0 +1,216 @@
+// `toothpath new` as a user has it: every kind of gear on machines of every build is proposed, and the job that it
+// writes is verified by `run`; what it refuses names the option that would help.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <pty.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/program.h"
+#include "tests/support/random.h"
+
+namespace toothpath::test {
+namespace {
+
+using Words = std::vector<std::string>;
+
+Finished run_new(Words words, const std::string& file) {
+  words.insert(words.begin(), "new");
+  words.insert(words.end(), {"-o", file, "--json"});
+  return run_program(words);
+}
+
+std::string joined(const Words& words) {
+  std::string text;
+  for (const std::string& word : words) text += " " + word;
+  return text;
+}
+
+/// The job that was written, run on its own.
+void expect_runs(const std::string& file, const std::string& command, const TestDir& dir) {
+  const Finished run = run_program(Words{command, file, "--out", dir / "out", "--json"});
+  EXPECT_EQ(run.exit_code, 0) << run.err << file_text(file);
+  const auto json = nlohmann::json::parse(run.out);
+  if (command == "run") { EXPECT_EQ(json["report"]["verified"], true) << file_text(file); }
+}
+
+class Proposal : public ::testing::TestWithParam<Words> {};
+
+TEST_P(Proposal, IsVerifiedAsItStands) {
+  const TestDir dir;
+  const std::string file = dir / "job.toml";
+  const Finished made = run_new(GetParam(), file);
+  ASSERT_EQ(made.exit_code, 0) << made.out << made.err;
+  const auto report = nlohmann::json::parse(made.out)["report"];
+  EXPECT_EQ(report["verified"], true);
+  EXPECT_EQ(report["job"], file_text(file));
+  EXPECT_GE(report["limits"].size(), 3U);
+  EXPECT_NE(file_text(file).find(" # "), std::string::npos);
+  const bool shaped = std::find(GetParam().begin(), GetParam().end(), "shaped") != GetParam().end();
+  expect_runs(file, shaped ? "shaper" : "run", dir);
+}
+
+Words gear(const char* kind, const char* cut, const char* machine, Words more) {
+  Words words = {"--gear", kind, "--cut", cut, "--machine", machine};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Gears, Proposal,
+    ::testing::Values(
+        gear("face", "ball", "xyzac_trt", {"--teeth", "40", "--module", "1.5"}),
+        gear("face", "ball", "head_head_ca", {"--teeth", "44", "--module", "2.5"}),
+        gear("face", "ball", "nutating_table.toml", {"--teeth", "40", "--module", "1.5", "--helix", "10"}),
+        gear("face", "line", "head_table_bc", {"--teeth", "40", "--module", "1.5"}),
+        gear("face", "line", "haas_ac", {"--teeth", "40", "--module", "1.5"}),
+        gear("face", "shaped", "shaper_siemens", {"--teeth", "53", "--module", "2"}),
+        gear("offset", "ball", "t600s", {"--teeth", "60", "--module", "1.5"}),
+        gear("offset", "line", "siemens_ac", {"--teeth", "70", "--module", "2.81"}),
+        gear("offset", "shaped", "y514", {"--teeth", "88", "--module", "3"}),
+        gear("double_helical", "ball", "heidenhain_ac", {"--teeth", "60", "--module", "1.5"}),
+        gear("double_helical", "line", "xyzac_large", {"--teeth", "60", "--module", "1.5"}),
+        gear("bevel_herringbone", "finger", "fanuc_ac", {"--teeth", "18", "--mate-teeth", "27", "--module", "2"}),
+        gear("bevel_herringbone", "finger", "m80_ac", {"--teeth", "24", "--mate-teeth", "36", "--module", "3.4"}),
+        gear("bevel_herringbone", "finger", "xyzbc_trt", {"--teeth", "18", "--mate-teeth", "27", "--module", "2"})));
+
+/// Gears that nobody chose: verified, or refused with the option that would help.
+TEST(New, RandomGearsAreVerifiedOrRefusedByTheirOption) {
+  Random random(16);
+  int verified = 0;
+  constexpr int kGears = 14;
+  for (int i = 0; i < kGears; ++i) {
+    const TestDir dir;
+    const bool bevel = random(0, 1) < 0.35;
+    Words words = {"--gear",   bevel ? "bevel_herringbone" : random(0, 1) < 0.5 ? "face" : "offset",
+                   "--teeth",  std::to_string(bevel ? 15 + random.index(15) : 30 + random.index(60)),
+                   "--module", fmt::format("{:.2f}", random(0.8, 4))};
+    if (bevel) words.insert(words.end(), {"--mate-teeth", std::to_string(24 + random.index(20))});
+    else
+      words.insert(words.end(), {"--cut", random(0, 1) < 0.3 ? "shaped" : "ball", "--pressure-angle",
+                                 fmt::format("{:.1f}", random(19, 25))});
+    const bool shaped = std::find(words.begin(), words.end(), "shaped") != words.end();
+    words.insert(words.end(), {"--machine", shaped ? "y514" : random(0, 1) < 0.5 ? "xyzac_large" : "siemens_ac"});
+    const Finished made = run_new(words, dir / "job.toml");
+    if (made.exit_code == 0) {
+      ++verified;
+      expect_runs(dir / "job.toml", shaped ? "shaper" : "run", dir);
+      continue;
+    }
+    EXPECT_EQ(made.exit_code, 3) << joined(words) << made.out;
+    EXPECT_NE(made.err.find("error: --"), std::string::npos) << joined(words) << made.err;
+    EXPECT_FALSE(std::filesystem::exists(dir / "job.toml"));
+  }
+  EXPECT_GE(verified, kGears - 3);
+}
+
+TEST(New, WithoutATerminalAMissingValueNamesItsOption) {
+  const TestDir dir;
+  const Words all = {"--gear", "face", "--machine", "t600s", "--teeth", "60", "--module", "1.5"};
+  for (std::size_t left_out = 0; left_out < all.size(); left_out += 2) {
+    Words words = all;
+    words.erase(words.begin() + static_cast<std::ptrdiff_t>(left_out),
+                words.begin() + static_cast<std::ptrdiff_t>(left_out + 2));
+    const Finished made = run_new(words, dir / "job.toml");
+    EXPECT_EQ(made.exit_code, 2);
+    EXPECT_TRUE(made.err.starts_with("error: " + all[left_out] + " is missing: ")) << made.err;
+  }
+  EXPECT_EQ(run_program(Words{"new", "--gear", "face"}).err, "error: -o is missing: the job file to write\n");
+  EXPECT_FALSE(std::filesystem::exists(dir / "job.toml"));
+}
+
+TEST(New, RefusesWithTheOptionAndItsLimit) {
+  const TestDir dir;
+  const auto err = [&](Words words) {
+    const Finished made = run_new(std::move(words), dir / "job.toml");
+    EXPECT_FALSE(std::filesystem::exists(dir / "job.toml"));
+    return made.err;
+  };
+  const auto spur = [](Words more) {
+    return gear("face", "ball", "xyzac_large", [&] {
+      Words words = {"--teeth", "60", "--module", "2"};
+      words.insert(words.end(), more.begin(), more.end());
+      return words;
+    }());
+  };
+  EXPECT_EQ(err(spur({"--outer", "80"})).substr(0, 70),
+            "error: --outer: outer_radius = 80.0000 mm exceeds the pointing limit R");
+  EXPECT_EQ(err(spur({"--inner", "50"})).substr(0, 31), "error: --inner: inner_radius = ");
+  EXPECT_EQ(err(spur({"--tip-radius", "0"})).substr(0, 94),
+            "error: --tip-radius: the largest ball that reaches all of the fillets and the root has 0.000 m");
+  EXPECT_EQ(err(spur({"--spiral", "30"})), "error: --spiral does not belong to --gear face\n");
+  EXPECT_NE(err({"--gear", "fase"}).find("did you mean \"face\"?"), std::string::npos);
+  EXPECT_NE(err(gear("face", "ball", "t60s", {})).find("did you mean \"t600s"), std::string::npos);
+  EXPECT_NE(
+      err(gear("face", "ball", "y514", {})).find("--machine: y514 is a gear shaper, and ball needs a milling machine"),
+      std::string::npos);
+  EXPECT_NE(err(gear("face", "ball", "t600s", {"--teeth", "200", "--module", "2"})).find("250"), std::string::npos);
+}
+
+TEST(New, NeverReplacesAFile) {
+  const TestDir dir;
+  write_file(dir / "job.toml", "mine\n");
+  const Finished made =
+      run_new(gear("face", "ball", "xyzac_large", {"--teeth", "60", "--module", "2"}), dir / "job.toml");
+  EXPECT_EQ(made.exit_code, 2);
+  EXPECT_NE(made.err.find("exists already, and is not replaced"), std::string::npos);
+  EXPECT_EQ(file_text(dir / "job.toml"), "mine\n");
+}
+
+/// What a terminal shows while these lines are typed.
+std::string on_terminal(const Words& words, const std::string& typed, int& exit_code) {
+  int master = -1;
+  const pid_t child = ::forkpty(&master, nullptr, nullptr, nullptr);
+  if (child == 0) {
+    std::vector<char*> argv;
+    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    ::execv(TOOTHPATH_BINARY, argv.data());
+    ::_exit(127);
+  }
+  EXPECT_EQ(::write(master, typed.data(), typed.size()), static_cast<ssize_t>(typed.size()));
+  std::string shown;
+  char buffer[4096];
+  for (ssize_t n = 0; (n = ::read(master, buffer, sizeof buffer)) > 0;)
+    shown.append(buffer, static_cast<std::size_t>(n));
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ::close(master);
+  exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return shown;
+}
+
+TEST(New, AsksOnATerminalAndShowsLimitsBeforeTheEndsOfTheTeeth) {
+  const TestDir dir;
+  int exit_code = -1;
+  const std::string shown = on_terminal({TOOTHPATH_BINARY, "new", "-o", dir / "job.toml"},
+                                        "gace\nface\nball\nxyzac_large\n9\n60\n\n2\n\n\n\n\n\n", exit_code);
+  EXPECT_EQ(exit_code, 0) << shown;
+  EXPECT_NE(shown.find("did you mean \"face\"?"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("teeth of the gear (10 to 1000): "), std::string::npos) << shown;
+  EXPECT_NE(shown.find("teeth of the gear = 9 is not a whole number from 10 to 1000"), std::string::npos)
+      << shown;  // 9 teeth: asked again
+  const auto limits = shown.find("the teeth are pointed at: "),
+             asked = shown.find("inner end of the teeth, radius (1 to 2000 mm) [");
+  EXPECT_LT(limits, asked) << shown;
+  EXPECT_NE(asked, std::string::npos) << shown;
+  EXPECT_NE(shown.find("largest ball that reaches the root"), std::string::npos);
+  EXPECT_LT(shown.find("largest part that turns: 1200 mm"), limits) << shown;
+  EXPECT_NE(file_text(dir / "job.toml").find("teeth = 60\n"), std::string::npos);
+}
+
+TEST(New, TakesTheToolsOfAnotherJob) {
+  const TestDir dir;
+  Words words =
+      gear("face", "ball", "xyzac_large", {"--teeth", "60", "--module", "2", "--tools", kSamples + "/spur_quick.toml"});
+  const Finished made = run_new(words, dir / "job.toml");
+  const std::string text = file_text(dir / "job.toml"), from = file_text(kSamples + "/spur_quick.toml");
+  const auto stick_out = from.find("stick_out = ");
+  ASSERT_NE(stick_out, std::string::npos);
+  EXPECT_NE(text.find(from.substr(stick_out, from.find_first_of(" \n", stick_out + 12) - stick_out)), std::string::npos)
+      << made.err << text;
+}
+
+}  // namespace
+}  // namespace toothpath::test
