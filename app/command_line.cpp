@@ -36,7 +36,7 @@ struct GlobalOptions {
   bool json = false;
   bool quiet = false;
   std::optional<int> threads;  ///< none: as many as the machine has
-  std::string color = "auto";
+  std::string color = "auto", progress = "auto";
 };
 
 bool terminal_with_color(int descriptor) {
@@ -183,6 +183,8 @@ void add_global_options(CLI::App& app, GlobalOptions& options) {
   app.add_flag("--quiet", options.quiet, "print errors only");
   commands::OptionSet(app).whole_number("--threads", options.threads, "number of threads (default: all)", {1, 1024});
   app.add_option("--color", options.color, "auto, always or never")->check(CLI::IsMember({"auto", "always", "never"}));
+  app.add_option("--progress", options.progress, "auto: what a long run is at, on stderr; or never")
+      ->check(CLI::IsMember({"auto", "never"}));
 }
 
 bool is_option(std::string_view word) { return word.starts_with('-') && word != "-"; }
@@ -255,7 +257,8 @@ int run_command_line(int argc, char** argv) {
     return static_cast<int>(help ? app::ExitCode::ok : app::ExitCode::usage);
   }
 
-  const commands::CommonRequest request{options.quiet || options.json, wants_color(options.color, STDOUT_FILENO)};
+  const commands::CommonRequest request{options.quiet || options.json || options.progress == "never",
+                                        wants_color(options.color, STDOUT_FILENO)};
   std::optional<tbb::global_control> threads;
   if (options.threads)
     threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(*options.threads));

@@ -85,10 +85,16 @@ struct LimitMargin {
   double rotary_rad = radians(0.01);
 };
 
+/// The bed among the letters of `KinematicChain::order`.
+inline constexpr char kBedMark = '-';
+
 struct KinematicChain {
   std::array<LinearAxis, 3> linear{};  ///< X, Y, Z
   std::vector<RotaryAxis> table;       ///< from the work outwards: T1, T2
   std::vector<RotaryAxis> head;        ///< from the ram outwards: H1, H2
+  /// Letters of all axes from the work to the tool with '-' for the bed, where the file says it: "CA-XYZ" if it does
+  /// not. For bodies of the machine (machines/links.h): the tool over the work moves in the same way whatever it says.
+  std::string order = {};
 
   /// Number of rotary axes, 0 to 2.
   [[nodiscard]] std::size_t rotary_count() const { return table.size() + head.size(); }

@@ -9,6 +9,7 @@
 
 #include "geometry/base/angle.h"
 #include "geometry/base/diagnostic.h"
+#include "machines/body.h"
 #include "machines/coolant.h"
 #include "machines/kinematic_chain.h"
 
@@ -80,6 +81,7 @@ struct Machine {
   std::map<std::string, SourcePosition, std::less<>> positions;
 
   KinematicChain chain;
+  std::vector<MachineBody> bodies;  ///< in the order of the file; empty: none is stated
   PostSettings post;
 
   /// Place of a key that stands in the file, else the file alone.

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <limits>
 
+#include "machines/body_file.h"
 #include "machines/machine_table.h"
 
 namespace toothpath::machines {
@@ -20,6 +21,7 @@ constexpr double kLeastDirection = 1e-3;      // length of a direction as writte
 constexpr double kLeastOffset = 1.0;          // mm; the largest offset of all table axes: less may mean metres ...
 constexpr double kMeasuredOffset = 0.1;       // mm; ... but for this little, which is measured on axes that should meet
 constexpr std::size_t kMostRotaries = 2;
+constexpr std::size_t kMostBlocks = 1000;  // of one key
 
 std::string letter_name(char letter) { return std::string(1, letter); }
 
@@ -30,7 +32,9 @@ struct NamedAxis {
 };
 
 std::vector<NamedAxis> read_letters(toml::TableReader& chain, std::string_view key) {
-  const toml::TomlValue* list = chain.required(key);
+  toml::ValueShape shape = toml::ValueShape::of_words(toml::ValueKind::texts, {"A", "B", "C"});
+  shape.count = {0, kMostRotaries};
+  const toml::TomlValue* list = chain.required(key, {shape});
   std::vector<NamedAxis> letters;
   if (!list) return letters;
   const toml::TomlArray* array = list->array();
@@ -61,11 +65,9 @@ std::optional<std::pair<double, double>> read_range(toml::TableReader& axis, dou
 /// An axis that rolls over is counted from 0 to 360 deg for ever: it has neither `min` nor `max`.
 void refuse_ends(toml::TableReader& axis) {
   for (const char* end : {"min", "max"})
-    if (axis.has(end)) {
-      (void)axis.value(end);
+    if (axis.misplaced(end))
       axis.refuse(end, "{} of an axis with rollover = true, which turns without end: leave {} out, or rollover",
                   axis.name(end), end);
-    }
 }
 
 double read_speed(toml::TableReader& axis, const char* unit) {
@@ -74,14 +76,13 @@ double read_speed(toml::TableReader& axis, const char* unit) {
 
 /// `max_acceleration`, per second squared in the file, per minute squared here; 0 where it is left out.
 double read_acceleration(toml::TableReader& axis, const char* unit) {
-  if (!axis.has("max_acceleration")) return 0.0;
-  return 3600.0 * axis.number("max_acceleration", toml::Range::positive(kLargestAcceleration, unit)).value_or(0.0);
+  return 3600.0 *
+         axis.optional_number("max_acceleration", toml::Range::positive(kLargestAcceleration, unit)).value_or(0.0);
 }
 
 /// `max_jerk`, per second cubed in the file, per minute cubed here; 0 where it is left out.
 double read_jerk(toml::TableReader& axis, const char* unit) {
-  if (!axis.has("max_jerk")) return 0.0;
-  return 216000.0 * axis.number("max_jerk", toml::Range::positive(kLargestJerk, unit)).value_or(0.0);
+  return 216000.0 * axis.optional_number("max_jerk", toml::Range::positive(kLargestJerk, unit)).value_or(0.0);
 }
 
 LinearAxis read_linear(toml::TableReader axis, const LimitMargin& margin) {
@@ -102,7 +103,7 @@ LinearAxis read_linear(toml::TableReader axis, const LimitMargin& margin) {
 }
 
 Vec3 read_direction(toml::TableReader& axis) {
-  const auto direction = read_vector(axis, "direction", kLargestLength);
+  const auto direction = read_vector(axis, "direction", kLargestLength, "");
   if (!direction) return Vec3::UnitZ();
   const double length = direction->norm();
   if (length < kLeastDirection) {
@@ -116,15 +117,16 @@ Vec3 read_direction(toml::TableReader& axis) {
 /// Where a head axis lies, seen from the gauge point: lateral offset in `point`, height in `pivot_length`.
 Vec3 read_head_point(toml::TableReader& axis, const Vec3& direction) {
   Vec3 point = Vec3::Zero();
-  if (axis.has("point")) {
-    point = read_vector(axis, "point", kLargestLength).value_or(Vec3::Zero());
+  if (const auto lateral = axis.optional_numbers("point", 3, {-kLargestLength, kLargestLength, " mm"})) {
+    point = Vec3((*lateral)[0], (*lateral)[1], (*lateral)[2]);
     if (point.z() != 0.0)
       axis.refuse("point", "{}[2] = {} must be 0: the height of a head axis is its pivot_length", axis.name("point"),
                   point.z());
   }
   const bool along_spindle = direction.head<2>().norm() == 0.0;  // then its height has no effect
-  if (along_spindle && !axis.has("pivot_length")) return point;
-  if (const auto pivot = axis.number("pivot_length", {0.0, kLargestLength, " mm"})) {
+  constexpr toml::Range kPivot{0.0, kLargestLength, " mm"};
+  if (const auto pivot =
+          along_spindle ? axis.optional_number("pivot_length", kPivot) : axis.number("pivot_length", kPivot)) {
     if (*pivot > 0.0 && *pivot < 1.0)
       axis.refuse("pivot_length", "{} = {} mm is below 1 mm; lengths are in mm, not metres", axis.name("pivot_length"),
                   *pivot);
@@ -137,15 +139,13 @@ RotaryAxis read_rotary(toml::TableReader axis, char letter, bool in_table, const
   RotaryAxis out;
   out.letter = letter;
   out.direction = read_direction(axis);
-  out.point_mm = in_table ? read_vector(axis, "point", kLargestLength).value_or(Vec3::Zero())
+  out.point_mm = in_table ? read_vector(axis, "point", kLargestLength, " mm").value_or(Vec3::Zero())
                           : read_head_point(axis, out.direction);
-  if (in_table && axis.has("pivot_length")) {
-    (void)axis.value("pivot_length");
+  if (in_table && axis.misplaced("pivot_length"))
     axis.refuse("pivot_length", "{} belongs to head axes; {} is in the table", axis.name("pivot_length"), letter);
-  }
   out.sign = read_sense(axis, "sign");
-  if (axis.has("zero")) out.zero_rad = radians(axis.number("zero", {-360.0, 360.0, " deg"}).value_or(0.0));
-  if (axis.has("rollover")) out.rollover = axis.boolean("rollover").value_or(false);
+  out.zero_rad = radians(axis.number_or("zero", {-360.0, 360.0, " deg"}, 0.0));
+  out.rollover = axis.boolean_or("rollover", false);
   if (out.rollover) {
     refuse_ends(axis);
     out.max_rad = std::numeric_limits<double>::infinity();
@@ -190,7 +190,6 @@ void read_chain(toml::TableReader& root, Machine& machine) {
   if (!chain || !axes) return;
   const std::vector<NamedAxis> table = read_letters(*chain, "table");
   const std::vector<NamedAxis> head = read_letters(*chain, "head");
-  chain->finish();
 
   for (std::size_t i = 0; i < 3; ++i)
     if (auto axis = axes->required_table(letter_name("XYZ"[i])))
@@ -210,16 +209,16 @@ void read_chain(toml::TableReader& root, Machine& machine) {
       continue;
     }
     const std::string key = letter_name(all[k].letter);
-    if (!axes->has(key)) {
-      (void)axes->required(key);
-      continue;
-    }
     const bool in_table = k < table.size();
     if (auto axis = axes->required_table(key))
       (in_table ? machine.chain.table : machine.chain.head)
           .push_back(read_rotary(*axis, all[k].letter, in_table, machine.limit_margin));
   }
+  if (chain->has("order")) read_chain_order(*chain, machine.chain);
+  chain->finish();
   refuse_offsets_in_metres(*axes, machine);
+  for (const char* letter : {"A", "B", "C"})
+    (void)axes->value(letter, {{toml::ValueKind::table}});  // in the chain or not
   for (const toml::TomlEntry& entry : axes->entries())
     if (entry.key == "A" || entry.key == "B" || entry.key == "C") {
       if (std::none_of(all.begin(), all.end(), [&entry](const NamedAxis& a) { return a.letter == entry.key[0]; }))
@@ -230,49 +229,51 @@ void read_chain(toml::TableReader& root, Machine& machine) {
 }
 
 void read_limits(toml::TableReader limits, Machine& machine) {
-  const auto diameter = [&limits](std::string_view key) {
-    return limits.number(key, toml::Range::positive(kLargestLength, " mm"));
-  };
   machine.max_cutting_feed =
       limits.number("cutting_feed", toml::Range::positive(kLargestSpeed, " mm/min")).value_or(0.0);
-  machine.table_diameter_mm = diameter("table_diameter").value_or(0.0);
+  machine.table_diameter_mm =
+      limits.number("table_diameter", toml::Range::positive(kLargestLength, " mm")).value_or(0.0);
   machine.min_block_ms = limits.number("min_block_ms", {0.0, 1e4, " ms"}).value_or(0.0);
-  if (limits.has("part_diameter")) machine.part_diameter_mm = diameter("part_diameter");
-  if (limits.has("part_mass")) machine.max_part_mass_kg = limits.number("part_mass", toml::Range::positive(1e6, " kg"));
-  if (limits.has("feed_factor")) machine.feed_factor = limits.number("feed_factor", {1.0, 100.0, ""}).value_or(1.0);
-  if (limits.has("speed_factor")) machine.speed_factor = limits.number("speed_factor", {1.0, 100.0, ""}).value_or(1.0);
-  if (limits.has("limit_margin"))
-    machine.limit_margin.linear_mm = limits.number("limit_margin", {0.0, 100.0, " mm"}).value_or(0.0);
-  if (limits.has("limit_margin_angle"))
-    machine.limit_margin.rotary_rad = radians(limits.number("limit_margin_angle", {0.0, 10.0, " deg"}).value_or(0.0));
+  machine.part_diameter_mm = limits.optional_number("part_diameter", toml::Range::positive(kLargestLength, " mm"));
+  machine.max_part_mass_kg = limits.optional_number("part_mass", toml::Range::positive(1e6, " kg"));
+  machine.feed_factor = limits.number_or("feed_factor", {1.0, 100.0, ""}, machine.feed_factor);
+  machine.speed_factor = limits.number_or("speed_factor", {1.0, 100.0, ""}, machine.speed_factor);
+  machine.limit_margin.linear_mm =
+      limits.number_or("limit_margin", {0.0, 100.0, " mm"}, machine.limit_margin.linear_mm);
+  machine.limit_margin.rotary_rad =
+      radians(limits.number_or("limit_margin_angle", {0.0, 10.0, " deg"}, degrees(machine.limit_margin.rotary_rad)));
   limits.finish();
 }
 
 /// Smoothing is stated whole: its blocks, and how far the tip leaves the path while it is on.
 void read_smoothing(toml::TableReader& post, PostSettings& settings) {
-  if (!post.has("smoothing_on")) {
-    for (const char* key : {"smoothing_off", "smoothing_tolerance", "smoothing_axis_tolerance"})
-      if (post.value(key)) post.refuse(key, "{} needs {}", post.name(key), post.name("smoothing_on"));
-    return;
+  for (const char* key : {"smoothing_off", "smoothing_tolerance", "smoothing_axis_tolerance"}) {
+    post.relate(toml::KeyRelation::Kind::needs, key, "smoothing_on");
+    if (!post.has("smoothing_on") && post.misplaced(key))
+      post.refuse(key, "{} needs {}", post.name(key), post.name("smoothing_on"));
   }
   const auto blocks = [&post](const char* key) {
-    auto list = post.ascii_list(key);
+    auto list = post.optional_ascii_list(key, {1, kMostBlocks});
     if (list && list->empty()) post.refuse(key, "{} is empty, must have at least one block", post.name(key));
     return std::move(list).value_or(std::vector<std::string>{});
   };
   settings.smoothing_on = blocks("smoothing_on");
+  if (!post.has("smoothing_on")) return;
+  for (const char* key : {"smoothing_off", "smoothing_tolerance"}) {
+    post.relate(toml::KeyRelation::Kind::needs, "smoothing_on", key);
+    post.demand(key);
+  }
   settings.smoothing_off = blocks("smoothing_off");
-  settings.smoothing_tolerance_mm = post.number("smoothing_tolerance", toml::Range::positive(1.0, " mm"));
-  if (post.has("smoothing_axis_tolerance"))
-    if (const auto angle = post.number("smoothing_axis_tolerance", toml::Range::positive(1.0, " deg")))
-      settings.smoothing_axis_tolerance_rad = radians(*angle);
+  settings.smoothing_tolerance_mm = post.optional_number("smoothing_tolerance", toml::Range::positive(1.0, " mm"));
+  if (const auto angle = post.optional_number("smoothing_axis_tolerance", toml::Range::positive(1.0, " deg")))
+    settings.smoothing_axis_tolerance_rad = radians(*angle);
 }
 
 /// What the builder switches a coolant with: the word that does it, and the one that ends it.
 void read_coolant_words(toml::TableReader& post, PostSettings& settings) {
   for (const Coolant coolant : kCoolants) {
     const std::string key = fmt::format("coolant_{}", to_string(coolant));
-    const auto words = post.if_present(key, [&] { return post.ascii_list(key); });
+    const auto words = post.optional_ascii_list(key, {2, 2});
     if (!words) continue;
     if (words->size() != 2) post.refuse(key, "{} has {} words, must have 2: on and off", post.name(key), words->size());
     else if (words->front() == words->back())
@@ -282,26 +283,22 @@ void read_coolant_words(toml::TableReader& post, PostSettings& settings) {
 }
 
 void read_post(toml::TableReader post, PostSettings& settings) {
-  if (post.has("linear_decimals")) settings.linear_decimals = post.integer("linear_decimals", {0, 9});
-  if (post.has("rotary_decimals")) settings.rotary_decimals = post.integer("rotary_decimals", {0, 9});
-  if (post.has("index_loop")) settings.index_loop = post.boolean("index_loop");
-  if (post.has("tcp_on")) settings.tcp_on = post.ascii_list("tcp_on").value_or(std::vector<std::string>{});
-  if (post.has("tcp_off")) settings.tcp_off = post.ascii_list("tcp_off").value_or(std::vector<std::string>{});
-  if (post.has("corner_tolerance"))
-    settings.corner_tolerance_mm = post.number("corner_tolerance", toml::Range::positive(0.1, " mm"));
+  settings.linear_decimals = post.optional_integer("linear_decimals", {0, 9});
+  settings.rotary_decimals = post.optional_integer("rotary_decimals", {0, 9});
+  settings.index_loop = post.optional_boolean("index_loop");
+  settings.tcp_on = post.optional_ascii_list("tcp_on").value_or(std::vector<std::string>{});
+  settings.tcp_off = post.optional_ascii_list("tcp_off").value_or(std::vector<std::string>{});
+  settings.corner_tolerance_mm = post.optional_number("corner_tolerance", toml::Range::positive(0.1, " mm"));
   read_smoothing(post, settings);
   read_coolant_words(post, settings);
-  if (post.has("length_reference"))
-    if (const auto word = post.word("length_reference", {"tip", "centre"}))
-      settings.length_reference = *word == "tip" ? LengthReference::tip : LengthReference::centre;
-  if (post.has("pole")) {
-    const std::initializer_list<std::string_view> words = {"error", "tilt", "hold", "through", "slow", "retract"};
-    if (const auto word = post.word("pole", words))
-      settings.pole = static_cast<PoleOption>(std::find(words.begin(), words.end(), *word) - words.begin());
-  }
-  if (post.has("pole_angle"))
-    if (const auto angle = post.number("pole_angle", toml::Range::positive(kLargestPoleAngle, " deg")))
-      settings.pole_angle_rad = radians(*angle);
+  settings.length_reference = post.word_or("length_reference", {"tip", "centre"}, "tip") == "tip"
+                                  ? LengthReference::tip
+                                  : LengthReference::centre;
+  const std::initializer_list<std::string_view> poles = {"error", "tilt", "hold", "through", "slow", "retract"};
+  const std::string pole = post.word_or("pole", poles, "error");
+  settings.pole = static_cast<PoleOption>(std::find(poles.begin(), poles.end(), pole) - poles.begin());
+  if (const auto angle = post.optional_number("pole_angle", toml::Range::positive(kLargestPoleAngle, " deg")))
+    settings.pole_angle_rad = radians(*angle);
   post.finish();
 }
 
@@ -348,7 +345,7 @@ Machine read_machine_tree(const toml::TomlValue& tree, const std::string& file, 
     root.refuse("kind", "kind = \"{}\" is no milling machine; \"five_axis\" is needed here", *kind);
     return machine;
   }
-  machine.dialect = root.text("dialect", true).value_or("");
+  machine.dialect = root.text("dialect", {.ascii = true}).value_or("");
   const std::initializer_list<std::string_view> modes = {"none", "angles", "vectors"};
   if (const auto tcp = root.word("tcp", modes))
     machine.tcp = static_cast<TcpMode>(std::find(modes.begin(), modes.end(), *tcp) - modes.begin());
@@ -358,15 +355,14 @@ Machine read_machine_tree(const toml::TomlValue& tree, const std::string& file, 
   if (auto spindle = root.required_table("spindle")) {
     machine.max_spindle_speed =
         spindle->number("max_speed", toml::Range::positive(kLargestSpeed, " 1/min")).value_or(0.0);
-    if (spindle->has("tool_change"))
-      if (const auto seconds = spindle->number("tool_change", toml::Range::positive(kLongestToolChange, " s")))
-        machine.tool_change_min = *seconds / 60;
+    if (const auto seconds = spindle->optional_number("tool_change", toml::Range::positive(kLongestToolChange, " s")))
+      machine.tool_change_min = *seconds / 60;
     spindle->finish();
   }
   if (const auto limits = root.required_table("limits")) read_limits(*limits, machine);
-  if (root.has("post"))
-    if (const auto post = root.required_table("post")) read_post(*post, machine.post);
+  if (const auto post = root.table("post")) read_post(*post, machine.post);
   read_chain(root, machine);
+  read_bodies(root, machine);
   check_accelerations(root, machine);
   root.finish();
   machine.positions = findings.positions;
@@ -393,6 +389,13 @@ MachineReading read_machine_text(std::string_view text, const std::string& file,
 MachineReading read_machine_file(const std::string& path, const MachineJudge& judge) {
   return read_machine_file_as<MachineReading>(
       path, [&judge](std::string_view text, const std::string& file) { return read_machine_text(text, file, judge); });
+}
+
+std::vector<Diagnostic> note_machine_keys(const toml::TomlValue& document, toml::KeyNotes& notes) {
+  toml::ReaderFindings findings(machine_words());
+  findings.notes = &notes;
+  (void)read_machine_tree(document, "", {}, findings);
+  return std::move(findings.errors);
 }
 
 Result<MachineFileText> open_machine_file(const std::string& path) {

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "machines/machine.h"
+#include "machines/toml/key_notes.h"
+#include "machines/toml/toml_tree.h"
 
 namespace toothpath::machines {
 
@@ -34,6 +36,10 @@ using MachineJudge = std::function<std::vector<Diagnostic>(const Machine&)>;
 /// The same from text; `file` is the name in the messages.
 [[nodiscard]] MachineReading read_machine_text(std::string_view text, const std::string& file,
                                                const MachineJudge& judge = {});
+
+/// The keys that the reader asks of a machine file. Returns what is wrong with it, in the order of asking.
+/// @param document  a table
+std::vector<Diagnostic> note_machine_keys(const toml::TomlValue& document, toml::KeyNotes& notes);
 
 /// A machine file that has been opened: what it says can be read from `text`, whatever becomes of the file.
 struct MachineFileText {

@@ -124,8 +124,11 @@ const toml::TableWords& machine_words() {
   return words;
 }
 
-int read_sense(toml::TableReader& table, std::string_view key) {
-  const toml::TomlValue* value = table.required(key);
+int read_sense(toml::TableReader& table, std::string_view key, toml::Presence presence) {
+  toml::ValueShape senses{toml::ValueKind::integer};
+  senses.choices = {1, -1};
+  const toml::TomlValue* value =
+      presence == toml::Presence::required ? table.required(key, {senses}) : table.value(key, {senses});
   if (!value) return 1;
   const auto* sense = std::get_if<std::int64_t>(&value->data);
   if (sense && (*sense == 1 || *sense == -1)) return static_cast<int>(*sense);
@@ -134,8 +137,8 @@ int read_sense(toml::TableReader& table, std::string_view key) {
   return 1;
 }
 
-std::optional<Vec3> read_vector(toml::TableReader& table, std::string_view key, double largest_mm) {
-  const auto xyz = table.numbers(key, 3, {-largest_mm, largest_mm});
+std::optional<Vec3> read_vector(toml::TableReader& table, std::string_view key, double largest_mm, const char* unit) {
+  const auto xyz = table.numbers(key, 3, {-largest_mm, largest_mm, unit});
   return xyz ? std::optional(Vec3((*xyz)[0], (*xyz)[1], (*xyz)[2])) : std::nullopt;
 }
 
@@ -144,7 +147,7 @@ std::optional<std::string> read_kind(toml::TableReader& root) {
 }
 
 std::vector<std::string> read_assumed(toml::TableReader& root, const toml::TomlValue& tree) {
-  const toml::TomlValue* value = root.required("assumed");
+  const toml::TomlValue* value = root.required("assumed", {{toml::ValueKind::boolean}, {toml::ValueKind::texts}});
   if (!value) return {};
   std::vector<std::string> all;
   collect_names(*tree.table(), "", all);

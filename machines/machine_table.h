@@ -24,11 +24,13 @@ inline constexpr double kLargestAngle = 1e7;   ///< deg: 27000 turns
 /// Keys with the dotted name of their table: "axes.A.sign".
 [[nodiscard]] const toml::TableWords& machine_words();
 
-/// 1 or -1; 1 after an error.
-[[nodiscard]] int read_sense(toml::TableReader& table, std::string_view key);
+/// 1 or -1; 1 where it is absent and after an error.
+[[nodiscard]] int read_sense(toml::TableReader& table, std::string_view key,
+                             toml::Presence presence = toml::Presence::required);
 
-/// Three numbers, each at most `largest_mm` either way.
-[[nodiscard]] std::optional<Vec3> read_vector(toml::TableReader& table, std::string_view key, double largest_mm);
+/// Three numbers, each at most `largest_mm` either way; `unit` as in toml::Range.
+[[nodiscard]] std::optional<Vec3> read_vector(toml::TableReader& table, std::string_view key, double largest_mm,
+                                              const char* unit);
 
 /// `kind`, whatever it is.
 [[nodiscard]] std::optional<std::string> read_kind(toml::TableReader& root);

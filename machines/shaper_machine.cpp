@@ -13,7 +13,7 @@ constexpr int kLargestConstant = 1000000;
 
 Ratio read_ratio(toml::TableReader table) {
   Ratio ratio;
-  if (const auto pair = table.integer_list("constant", {1, kLargestConstant})) {
+  if (const auto pair = table.integer_list("constant", {1, kLargestConstant}, {2, 2})) {
     if (pair->size() == 2) ratio = {(*pair)[0], (*pair)[1]};
     else table.refuse("constant", "{} has {} numbers, must have 2", table.name("constant"), pair->size());
   }
@@ -22,7 +22,7 @@ Ratio read_ratio(toml::TableReader table) {
 }
 
 void read_stroke(toml::TableReader stroke, ShaperMachine& machine) {
-  if (const auto steps = stroke.number_list("steps", toml::Range::positive(1e5, " 1/min"))) {
+  if (const auto steps = stroke.number_list("steps", toml::Range::positive(1e5, " 1/min"), {1, SIZE_MAX})) {
     machine.stroke_steps = *steps;
     if (steps->empty()) stroke.refuse("steps", "{} is empty, must have at least 1 step", stroke.name("steps"));
     for (std::size_t i = 1; i < steps->size(); ++i)
@@ -36,15 +36,15 @@ void read_stroke(toml::TableReader stroke, ShaperMachine& machine) {
 }
 
 void read_gears(toml::TableReader gears, ShaperMachine& machine) {
-  if (const auto teeth = gears.integer_list("teeth", {5, kMostTeeth})) {
+  if (const auto teeth = gears.integer_list("teeth", {5, kMostTeeth}, {2, SIZE_MAX})) {
     machine.gears = *teeth;
     if (teeth->size() < 2)
       gears.refuse("teeth", "{} lists {} gears, must list at least 2", gears.name("teeth"), teeth->size());
     for (std::size_t i = 0; i < teeth->size(); ++i) {
       const auto first = std::find(teeth->begin(), teeth->end(), (*teeth)[i]) - teeth->begin();
       if (first != static_cast<std::ptrdiff_t>(i))
-        gears.refuse_at(gears.value("teeth")->array()->values[i].position,
-                        "{} lists {} twice; each wheel is there once", gears.name("teeth"), (*teeth)[i]);
+        gears.refuse_at(gears.where("teeth", i), "{} lists {} twice; each wheel is there once", gears.name("teeth"),
+                        (*teeth)[i]);
     }
   }
   machine.mesh_margin = gears.integer("mesh_margin", {0, kMostTeeth}).value_or(0);
@@ -53,7 +53,7 @@ void read_gears(toml::TableReader gears, ShaperMachine& machine) {
 
 /// An M code: M and one to four digits.
 std::string read_m_code(toml::TableReader& table, const char* key) {
-  const auto code = table.text(key, true);
+  const auto code = table.text(key, {.ascii = true, .pattern = "M[0-9]{1,4}"});
   if (!code) return "";
   const bool right = code->size() >= 2 && code->size() <= 5 && code->front() == 'M' &&
                      std::all_of(code->begin() + 1, code->end(), [](char c) { return c >= '0' && c <= '9'; });
@@ -63,7 +63,7 @@ std::string read_m_code(toml::TableReader& table, const char* key) {
 
 /// An axis name: one capital letter and at most two digits.
 std::string read_axis_name(toml::TableReader& table, const char* key) {
-  const auto name = table.text(key, true);
+  const auto name = table.text(key, {.ascii = true, .pattern = "[A-Z][0-9]{0,2}"});
   if (!name) return "";
   const bool right = !name->empty() && name->size() <= 3 && name->front() >= 'A' && name->front() <= 'Z' &&
                      std::all_of(name->begin() + 1, name->end(), [](char c) { return c >= '0' && c <= '9'; });
@@ -102,7 +102,7 @@ ShaperAxis read_axis(toml::TableReader axis, bool rotary) {
   out.max_speed =
       axis.number("max_speed", toml::Range::positive(kLargestSpeed, rotary ? " deg/min" : " mm/min")).value_or(0.0) *
       scale;
-  if (rotary && axis.has("sign")) out.sign = read_sense(axis, "sign");
+  if (rotary) out.sign = read_sense(axis, "sign", toml::Presence::optional);
   axis.finish();
   return out;
 }
@@ -120,7 +120,7 @@ ShaperMachine read_shaper_tree(const toml::TomlValue& tree, const std::string& f
   }
   std::vector<std::string_view> names;
   for (const auto& dialect : dialects) names.push_back(dialect.name);
-  machine.dialect = root.word("dialect", names).value_or("");
+  machine.dialect = root.variant("dialect", names).value_or("");
   ShaperGears coupled_by = ShaperGears::change_gears;
   for (const auto& dialect : dialects)
     if (dialect.name == machine.dialect) coupled_by = dialect.gears;
@@ -152,6 +152,14 @@ ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::
       text, file, [&](const toml::TomlValue& tree, const std::string& name, toml::ReaderFindings& findings) {
         return read_shaper_tree(tree, name, dialects, findings);
       });
+}
+
+std::vector<Diagnostic> note_shaper_keys(const toml::TomlValue& document, const std::vector<ShaperDialect>& dialects,
+                                         toml::KeyNotes& notes) {
+  toml::ReaderFindings findings(machine_words());
+  findings.notes = &notes;
+  (void)read_shaper_tree(document, "", dialects, findings);
+  return std::move(findings.errors);
 }
 
 ShaperMachineReading read_shaper_machine_file(const std::string& path, const std::vector<ShaperDialect>& dialects) {

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "geometry/base/diagnostic.h"
+#include "machines/toml/key_notes.h"
+#include "machines/toml/toml_tree.h"
 
 namespace toothpath::machines {
 
@@ -78,5 +80,10 @@ struct ShaperMachineReading {
 /// The same from text; `file` is the name in the messages.
 [[nodiscard]] ShaperMachineReading read_shaper_machine_text(std::string_view text, const std::string& file,
                                                             const std::vector<ShaperDialect>& dialects);
+
+/// The keys that the reader asks of the file of a shaper. Returns what is wrong with it, in the order of asking.
+/// @param document  a table
+std::vector<Diagnostic> note_shaper_keys(const toml::TomlValue& document, const std::vector<ShaperDialect>& dialects,
+                                         toml::KeyNotes& notes);
 
 }  // namespace toothpath::machines

@@ -1,9 +1,9 @@
 # Debian packages that Toothpath needs, and how to get those that are missing. Sourced by ./run and ./check.
 
 build_packages=(g++ cmake ninja-build libeigen3-dev libcgal-dev libassimp-dev libembree-dev libtbb-dev libfmt-dev
-  nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libboost-dev zlib1g-dev libssl-dev)
+  nlohmann-json3-dev libcli11-dev libtomlplusplus-dev libboost-dev zlib1g-dev libssl-dev lib3mf-dev libtinygltf-dev)
 test_packages=(libgtest-dev libbenchmark-dev clang-format clang-tidy  # the browser: tools/get_page_tools.sh
-  dpkg-dev file lintian mandoc zsh fish pybind11-dev python3-dev python3-numpy python3-matplotlib)
+  dpkg-dev file lintian mandoc zsh fish pybind11-dev python3-dev python3-numpy python3-matplotlib python3-jsonschema python3-tomli)
 fuzz_packages=(clang-14 clang libclang-rt-14-dev libfuzzer-14-dev)  # tools/fuzz.sh
 
 # need_packages NAME...: installs those that are not there, in one call; upgrades nothing.

@@ -1,4 +1,4 @@
-// Seconds of every stage that ran, and a line of progress on a terminal while it runs.
+// Seconds of every stage that ran; what is running is shown.
 #pragma once
 
 #include <chrono>
@@ -6,21 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "app/base/progress.h"
+
 namespace toothpath::app {
-
-/// One line on stderr that is rewritten; silent when stderr is no terminal, TERM is "dumb" or `quiet` is set.
-class Progress {
- public:
-  explicit Progress(bool quiet);
-  void show(const std::string& text);
-  void clear();
-  /// From now on it stands before every text: which of several runs this is. Empty: nothing does.
-  void label(std::string text) { label_ = std::move(text); }
-
- private:
-  bool active_ = false, shown_ = false;
-  std::string label_;
-};
 
 class StageClock {
  public:
@@ -30,7 +18,7 @@ class StageClock {
   /// itself only.
   template <typename Work>
   decltype(auto) run(const std::string& name, Work&& work) {
-    progress_.show(name);
+    const Progress::Stage shown(progress_, name);
     const Stopwatch stopwatch{*this, name, std::chrono::steady_clock::now(), std::exchange(inner_, 0.0)};
     return std::forward<Work>(work)();
   }

@@ -5,6 +5,7 @@
 #include "app/base/output_dir.h"
 #include "app/job/file.h"
 #include "app/process/flow/stages.h"
+#include "app/process/machine_moves.h"
 #include "app/process/program_report.h"
 #include "app/process/proof_limits.h"
 #include "app/report/deviation_vtp.h"
@@ -88,7 +89,11 @@ Status judge_scene(Check& check) {
 /// none.
 Status prove(Check& check) {
   check.milling = check.gear.process->milling(check.machine, check.limits, {}, check.clock);
-  auto proof = process::prove_program({check.text, check.request.program_file, check.job, check.machine}, {},
+  auto bodies =
+      process::bodies_in_machine(check.job, check.machine, *check.gear.process, check.scene ? &*check.scene : nullptr);
+  if (!bodies) return bodies.error();
+  bodies::MovesJudge moves = process::judge_of(check.machine, std::move(*bodies), check.job, check.limits.clearance_mm);
+  auto proof = process::prove_program({check.text, check.request.program_file, check.job, check.machine, &moves}, {},
                                       check.milling->check(), check.clock);
   if (!proof) return proof.error();
   check.proof = std::move(proof.value());
@@ -103,6 +108,8 @@ Status prove(Check& check) {
   report.feed_minutes = check.proof->read.accelerated.feed;
   report.total_minutes = report.feed_minutes + check.proof->read.accelerated.rapid;
   report.axes = process::ranges_of(check.proof->read, check.machine);
+  if (auto section = sections::machine_moves_of(check.machine, report); !section.rows.empty())
+    report.sections.push_back(std::move(section));
   report.sections.insert(report.sections.begin(), sections::conditions(check.job, check.machine, report));
   report.verified = report.reasons.empty();
   report.program_file = check.request.program_file;

@@ -52,6 +52,7 @@ struct CommandGroup {
 };
 inline constexpr CommandGroup kStudies = {
     "study", "error against run time, line against ball, extreme cases, section models, double helical gears"};
+inline constexpr CommandGroup kReferences = {"reference", "all keys of the files that people write"};
 inline constexpr CommandGroup kMachines = {"machine", "what a machine file says, and how to prove it"};
 
 struct Command {

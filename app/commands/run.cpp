@@ -1,18 +1,24 @@
 #include "app/commands/run.h"
 
+#include "app/commands/surface.h"
 #include "app/job/file.h"
 #include "app/process/program_report.h"
 #include "app/process/proof_limits.h"
 #include "app/report/cl_csv.h"
 #include "app/report/sheet/setup_sheet.h"
+#include "postproc/controls/registry.h"
 
 namespace toothpath::commands {
 namespace {
 
-const std::vector<std::string> kRunOutputs = {"program.",       "cl.csv",       "report.json",    "report.html",
-                                              "setup.html",     "gear.stl",     "tooth.vtp",      "inspection.csv",
-                                              "inspection.dmi", "limits.json",  "limits.html",    "limits.svg",
-                                              "limits_0.svg",   "limits_1.svg", "correction.json"};
+std::vector<std::string> run_outputs() {
+  std::vector<std::string> all = {"program.",       "cl.csv",       "report.json",     "report.html",
+                                  "setup.html",     "gear.stl",     "tooth.vtp",       "inspection.csv",
+                                  "inspection.dmi", "limits.json",  "limits.html",     "limits.svg",
+                                  "limits_0.svg",   "limits_1.svg", "correction.json", "program_tools.tbl"};
+  all.insert(all.end(), cad::file_names().begin(), cad::file_names().end());
+  return all;
+}
 
 /// Job, gear and machine with everything that is wrong with them.
 std::vector<Diagnostic> read_inputs(flow::Run& run, const RunRequest& request) {
@@ -23,7 +29,7 @@ std::vector<Diagnostic> read_inputs(flow::Run& run, const RunRequest& request) {
 }
 
 /// The files for people and for other programs; the program itself is there already.
-Status write_results(flow::Run& run, app::OutputDir& output, std::string& json) {
+Status write_results(flow::Run& run, const RunRequest& request, app::OutputDir& output, std::string& json) {
   report::RunReport& report = run.report;
   const process::GearProcess& gear = *run.gear.process;
   const auto write = [&](const std::string& name, const std::string& content) -> Status {
@@ -34,8 +40,14 @@ Status write_results(flow::Run& run, app::OutputDir& output, std::string& json) 
     if (const auto s = write("correction.json", run.gear.correction->json); !s) return s;
   if (report.verified) {
     if (const auto s = gear.write_files(output, run.surface, report.assumed, run.clock, report.files); !s) return s;
+    auto cad = cad::write_files(request.cad, run.job, gear, output, run.clock, report.files);
+    if (!cad) return cad.error();
+    report.cad = std::move(*cad);
     if (const auto s = write("setup.html", sheet::setup_sheet(run.job, gear.outline(), run.machine, report)); !s)
       return s;
+    const controls::Control* control = controls::find(run.machine.dialect);
+    if (control && control->tool_table)
+      if (const auto s = write(control->tool_table->file, control->tool_table->text(run.job.tools)); !s) return s;
   }
   const auto paths = run.paths();
   if (!paths.empty())
@@ -51,14 +63,15 @@ Status write_results(flow::Run& run, app::OutputDir& output, std::string& json) 
 }
 
 /// The end of a run whose inputs were right: verified, or not and why.
-CommandOutcome finish(flow::Run& run, app::OutputDir& output, const std::optional<Diagnostic>& stopped, bool color) {
+CommandOutcome finish(flow::Run& run, const RunRequest& request, app::OutputDir& output,
+                      const std::optional<Diagnostic>& stopped) {
   CommandOutcome outcome = process::verdict_of(run.report, stopped, run.job.file, output);
-  if (const auto written = write_results(run, output, outcome.report_json); !written)
+  if (const auto written = write_results(run, request, output, outcome.report_json); !written)
     return failed(process::located(run.job, "gear", written.error()));
   run.progress.clear();
   if (const auto committed = output.commit(); !committed) return failed(committed.error());
   run.report.directory = output.path();
-  outcome.summary = report::summary_table(run.report, color);
+  outcome.summary = report::summary_table(run.report, request.color);
   if (run.report.gouge) outcome.summary += process::table_of_worst(*run.report.gouge);
   return outcome;
 }
@@ -68,7 +81,7 @@ CommandOutcome finish(flow::Run& run, app::OutputDir& output, const std::optiona
 CommandOutcome run_job(const RunRequest& request) {
   std::vector<std::string> inputs = request.measured_files;
   inputs.push_back(request.job_file);
-  auto output = app::OutputDir::open(request.out_dir, kRunOutputs, inputs, app::kPrevious);
+  auto output = app::OutputDir::open(request.out_dir, run_outputs(), inputs, app::kPrevious);
   if (!output) return failed(output.error());
   flow::Run run(request.quiet);
   if (auto errors = read_inputs(run, request); !errors.empty()) {
@@ -81,7 +94,7 @@ CommandOutcome run_job(const RunRequest& request) {
     run.progress.clear();
     return failed(*stopped);
   }
-  CommandOutcome outcome = finish(run, *output, stopped, request.color);
+  CommandOutcome outcome = finish(run, request, *output, stopped);
   if (request.finished && !outcome.report_json.empty()) request.finished(run);
   return outcome;
 }
@@ -94,6 +107,7 @@ void add_run(Commands& commands) {
         set.text("--restart", request.restart,
                  "operation and tooth, both from 0: the program begins there; what comes before is taken as done",
                  "OP:TOOTH");
+        cad_options(set, request.cad);
       },
       run_job));
 }

@@ -4,12 +4,14 @@
 #include <functional>
 
 #include "app/commands/command.h"
+#include "app/process/cad/cad_files.h"
 #include "app/process/flow/stages.h"
 
 namespace toothpath::commands {
 
 /// Of `run` and `correct`.
 struct RunRequest : JobRequest, flow::RunAsked {
+  cad::FilesAsked cad;
   std::function<void(flow::Run&)> finished = {};  ///< called last, once the files are there; may take what it wants
 };
 

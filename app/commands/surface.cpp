@@ -7,13 +7,22 @@
 namespace toothpath::commands {
 
 const std::vector<std::string>& surface_outputs() {
-  static const std::vector<std::string> names = {"limits.json",  "limits.html",    "limits.svg",     "limits_0.svg",
-                                                 "limits_1.svg", "inspection.csv", "inspection.dmi", "gear.stl",
-                                                 "tooth.vtp",    "report.json"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = {"limits.json",    "limits.html",    "limits.svg", "limits_0.svg", "limits_1.svg",
+                                    "inspection.csv", "inspection.dmi", "gear.stl",   "tooth.vtp",    "report.json"};
+    all.insert(all.end(), cad::file_names().begin(), cad::file_names().end());
+    return all;
+  }();
   return names;
 }
 
-CommandOutcome run_surface(const JobRequest& request) {
+void cad_options(OptionSet& set, cad::FilesAsked& asked) {
+  set.flag("--step", asked.step, "gear.step, too: the gear as a solid for CAD (STEP AP214)");
+  set.flag("--3mf", asked.three_mf, "gear.3mf, too: its mesh with unit and name");
+  set.flag("--gltf", asked.gltf, "gear.glb, too: one pitch and its turned copies, for viewers");
+}
+
+CommandOutcome run_surface(const SurfaceRequest& request) {
   app::Progress progress(request.quiet);
   app::StageClock clock(progress);
   auto output = app::OutputDir::open(request.out_dir, surface_outputs(), {request.job_file});
@@ -27,13 +36,21 @@ CommandOutcome run_surface(const JobRequest& request) {
   report::RunReport report = process::surface_report(job, gear.part().warnings);
   if (const auto written = gear.write_files(*output, {}, {}, clock, report.files); !written)
     return failed(process::located(job, "gear", written.error()));
+  auto cad = cad::write_files(request.cad, job, gear, *output, clock, report.files);
+  if (!cad) return failed(cad.error());
+  report.cad = std::move(*cad);
   progress.clear();
   return process::finished_report(*output, clock, std::move(report), request.color);
 }
 
 void add_surface(Commands& commands) {
-  commands.push_back(command_of<JobRequest>("surface", "flanks, limits, inspection grid and mesh of the gear",
-                                            job_options, run_surface));
+  commands.push_back(command_of<SurfaceRequest>(
+      "surface", "flanks, limits, inspection grid and mesh of the gear",
+      [](OptionSet& set, SurfaceRequest& request) {
+        job_options(set, request);
+        cad_options(set, request.cad);
+      },
+      run_surface));
 }
 
 }  // namespace toothpath::commands

@@ -3,12 +3,20 @@
 
 #include "app/commands/command.h"
 #include "app/job/job.h"
+#include "app/process/cad/cad_files.h"
 
 namespace toothpath::commands {
 
 /// Files that the command owns in its output directory.
 [[nodiscard]] const std::vector<std::string>& surface_outputs();
 
-[[nodiscard]] CommandOutcome run_surface(const JobRequest& request);
+/// With files for other programs, as far as they are asked for.
+struct SurfaceRequest : JobRequest {
+  cad::FilesAsked cad;
+};
+/// --step, --3mf, --gltf.
+void cad_options(OptionSet& set, cad::FilesAsked& asked);
+
+[[nodiscard]] CommandOutcome run_surface(const SurfaceRequest& request);
 
 }  // namespace toothpath::commands

@@ -12,7 +12,7 @@ namespace {
 
 void read_tools(toml::TableReader& root, Job& job) {
   const ToolContext context{job.bevel_gear(), std::filesystem::path(job.file).parent_path().string()};
-  for (auto& table : root.tables("tool")) {
+  for (auto& table : root.tables("tool", {1, SIZE_MAX})) {
     tool::ToolAssembly tool = read_tool(table, context, job.warnings);
     const auto same = [&](const tool::ToolAssembly& other) { return other.number == tool.number && tool.number > 0; };
     if (std::any_of(job.tools.begin(), job.tools.end(), same))
@@ -21,33 +21,19 @@ void read_tools(toml::TableReader& root, Job& job) {
   }
 }
 
+constexpr std::pair<const char*, const char*> kMillingTables[] = {
+    {"machine", "[machine]"}, {"setup", "[setup]"}, {"tool", "[[tool]]"}};
+constexpr std::size_t kMostOperations = 100;
+
 /// The tables that milling needs when there is something to mill.
 void check_milling(toml::TableReader& root, const Job& job) {
   if (job.operations.empty()) return;
-  for (const auto& [key, title] : {std::pair("machine", "[machine]"), {"setup", "[setup]"}, {"tool", "[[tool]]"}})
+  for (const auto& [key, title] : kMillingTables)
     if (!root.has(key)) root.refuse(key, "the job has operations but lacks the table {}", title);
 }
 
-}  // namespace
-
-SourcePosition Job::where(std::string_view key) const {
-  std::string path(key);
-  while (true) {
-    if (const auto found = positions.find(path); found != positions.end()) return found->second;
-    const auto cut = path.find_last_of(".[");
-    if (path.empty()) return {file, 0, 0};
-    path.resize(cut == std::string::npos ? 0 : cut);
-  }
-}
-
-JobOrErrors parse_job(std::string_view text, const std::string& file) {
-  const auto document = toml::parse_toml(text, file, kJobSyntax);
-  if (!document) return std::vector<Diagnostic>{document.error()};
-
-  Job job;
-  job.file = file;
-  toml::ReaderFindings findings(job_words());
-  toml::TableReader root(*document, "", findings);
+/// The whole file.
+void read_job(toml::TableReader& root, Job& job) {
   (void)root.integer("schema", {1, 1});
   job.name = root.text("name").value_or("");
   read_gear(root, job);
@@ -64,14 +50,48 @@ JobOrErrors parse_job(std::string_view text, const std::string& file) {
     table->finish();
   }
   read_tools(root, job);
-  auto operations = root.tables("operation");
-  if (operations.size() > 100) root.refuse("operation", "{} operations exceed the limit 100", operations.size());
+  auto operations = root.tables("operation", {0, kMostOperations});
+  for (const auto& [key, title] : kMillingTables) root.relate(toml::KeyRelation::Kind::needs, "operation", key);
+  if (operations.size() > kMostOperations)
+    root.refuse("operation", "{} operations exceed the limit {}", operations.size(), kMostOperations);
   for (auto& table : operations)
     job.operations.push_back(read_operation(table, job.tools, job.bevel_gear() != nullptr));
   check_milling(root, job);
-  if (findings.errors.empty() && !job.bevel_gear()) check_regions(root, job.operations);
+  if (root.errors() == 0 && !job.bevel_gear()) check_regions(root, job.operations);
   root.finish();
+}
 
+}  // namespace
+
+SourcePosition Job::where(std::string_view key) const {
+  std::string path(key);
+  while (true) {
+    if (const auto found = positions.find(path); found != positions.end()) return found->second;
+    const auto cut = path.find_last_of(".[");
+    if (path.empty()) return {file, 0, 0};
+    path.resize(cut == std::string::npos ? 0 : cut);
+  }
+}
+
+std::vector<Diagnostic> note_job_keys(const toml::TomlValue& document, const std::string& file, toml::KeyNotes& notes) {
+  Job job;
+  job.file = file;
+  toml::ReaderFindings findings(job_words());
+  findings.notes = &notes;
+  toml::TableReader root(document, "", findings);
+  read_job(root, job);
+  return std::move(findings.errors);
+}
+
+JobOrErrors parse_job(std::string_view text, const std::string& file) {
+  const auto document = toml::parse_toml(text, file, kJobSyntax);
+  if (!document) return std::vector<Diagnostic>{document.error()};
+
+  Job job;
+  job.file = file;
+  toml::ReaderFindings findings(job_words());
+  toml::TableReader root(*document, "", findings);
+  read_job(root, job);
   if (!findings.errors.empty()) {
     toml::sort_by_position(findings.errors);
     return std::move(findings.errors);

@@ -27,4 +27,8 @@ using JobOrErrors = Expected<Job, std::vector<Diagnostic>>;
 /// The same from text; `file` is what the diagnostics call it.
 [[nodiscard]] JobOrErrors parse_job(std::string_view text, const std::string& file);
 
+/// The keys that the reader asks of a job. Returns what is wrong with it, in the order of asking.
+/// @param document  a table; `file` is what it came from: what it names is looked up beside it
+std::vector<Diagnostic> note_job_keys(const toml::TomlValue& document, const std::string& file, toml::KeyNotes& notes);
+
 }  // namespace toothpath::job

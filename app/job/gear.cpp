@@ -20,28 +20,24 @@ constexpr toml::Range kRadius{0, 10000, " mm", true};
 constexpr toml::Range kSignedLength{-10000, 10000, " mm"};
 constexpr toml::Range kLength{0, 10000, " mm", true};
 constexpr toml::Range kLengthOrZero{0, 10000, " mm"};
+constexpr std::size_t kMostZones = 2;
 constexpr double kLeastFace = 0.01;  // mm; a face of the smallest module is wider
-
-/// Absent optional numbers leave the target as it is.
-void optional_number(toml::TableReader& table, std::string_view key, const toml::Range& range, double& target,
-                     double factor = 1.0) {
-  if (const auto value = table.if_present(key, [&] { return table.number(key, range); })) target = *value * factor;
-}
 
 /// NAME_diameter and NAME_length: both or none.
 void optional_cylinder(toml::TableReader& gear, const std::string& name, double& diameter, double& length) {
   const std::string wide = name + "_diameter", tall = name + "_length";
   const bool has_diameter = gear.has(wide), has_length = gear.has(tall);
-  optional_number(gear, wide, kLength, diameter);
-  optional_number(gear, tall, kLength, length);
+  diameter = gear.optional_number(wide, kLength).value_or(0);
+  length = gear.optional_number(tall, kLength).value_or(0);
+  gear.relate(toml::KeyRelation::Kind::together, wide, tall);
   if (has_diameter && !has_length) gear.refuse(wide, "{} = {} mm needs {} as well", wide, diameter, tall);
   if (has_length && !has_diameter) gear.refuse(tall, "{} = {} mm needs {} as well", tall, length, wide);
 }
 
 void read_zones(toml::TableReader& gear, face_gear::FaceGearParameters& result, std::vector<std::string>& warnings) {
-  auto zones = gear.tables("zone");
+  auto zones = gear.tables("zone", {1, kMostZones}, toml::Presence::required);
   if (!gear.has("zone")) gear.refuse("zone", "[gear] lacks its teeth: at least one [[gear.zone]]");
-  if (zones.size() > 2) gear.refuse("zone", "{} zones exceed the limit 2", zones.size());
+  if (zones.size() > kMostZones) gear.refuse("zone", "{} zones exceed the limit {}", zones.size(), kMostZones);
   for (auto& table : zones) {
     face_gear::FaceGearZone zone;
     if (const auto angle = table.number("helix_angle", kHelixAngle)) {
@@ -75,26 +71,25 @@ face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::Tabl
   face_gear::FaceGearParameters p;
   p.teeth = gear.integer("teeth", kTeeth).value_or(0);
   p.shaper_teeth = gear.integer("shaper_teeth", {3, 1000}).value_or(0);
-  p.mate_teeth = gear.if_present("mate_teeth", [&] { return gear.integer("mate_teeth", {3, 1000}); }).value_or(0);
+  p.mate_teeth = gear.optional_integer("mate_teeth", {3, 1000}).value_or(0);
   const auto module = gear.number("module", kModule);
   p.module_mm = module.value_or(0);
   if (const auto plane = gear.word("module_plane", {"normal", "transverse"}))
     p.module_plane = *plane == "normal" ? face_gear::ModulePlane::normal : face_gear::ModulePlane::transverse;
   p.pressure_angle_rad = radians(gear.number("pressure_angle", kPressureAngle).value_or(0));
-  optional_number(gear, "addendum_coefficient", {0.1, 2}, p.addendum_coefficient);
-  optional_number(gear, "clearance_coefficient", {0, 1}, p.clearance_coefficient);
-  optional_number(gear, "shaft_angle", kShaftAngle, p.shaft_angle_rad, kDegree);
-  optional_number(gear, "offset", kSignedLength, p.offset_mm);
-  p.reference_radius_mm = gear.if_present("reference_radius", [&] { return gear.number("reference_radius", kRadius); });
-  optional_number(gear, "shaper_tip_radius", kLengthOrZero, p.shaper_tip_radius_mm);
-  optional_number(gear, "backlash", kLengthOrZero, p.backlash_mm);
+  p.addendum_coefficient = gear.number_or("addendum_coefficient", {0.1, 2}, p.addendum_coefficient);
+  p.clearance_coefficient = gear.number_or("clearance_coefficient", {0, 1}, p.clearance_coefficient);
+  p.shaft_angle_rad = radians(gear.number_or("shaft_angle", kShaftAngle, degrees(p.shaft_angle_rad)));
+  p.offset_mm = gear.number_or("offset", kSignedLength, p.offset_mm);
+  p.reference_radius_mm = gear.optional_number("reference_radius", kRadius);
+  p.shaper_tip_radius_mm = gear.number_or("shaper_tip_radius", kLengthOrZero, p.shaper_tip_radius_mm);
+  p.backlash_mm = gear.number_or("backlash", kLengthOrZero, p.backlash_mm);
   if (module && p.backlash_mm >= *module)
     gear.refuse("backlash", "backlash = {} mm is not below module = {} mm", p.backlash_mm, *module);
   if (module && p.shaper_tip_radius_mm >= *module)
     gear.refuse("shaper_tip_radius", "shaper_tip_radius = {} mm is not below module = {} mm", p.shaper_tip_radius_mm,
                 *module);
-  double land = 0;
-  optional_number(gear, "least_land", kLengthOrZero, land);
+  const double land = gear.optional_number("least_land", kLengthOrZero).value_or(0);
   if (land > 0) p.least_land_mm = land;
   if (module && land >= *module)
     gear.refuse("least_land", "least_land = {} mm is not below module = {} mm", land, *module);
@@ -105,8 +100,8 @@ face_gear::FaceGearParameters read_face_gear(toml::TableReader& gear, toml::Tabl
                 p.zones.front().inner_radius_mm);
   gear.finish();
   if (stock) {
-    optional_number(*stock, "allowance_top", {0, 1000, " mm"}, p.allowance_top_mm);
-    optional_number(*stock, "groove_depth", kLength, p.groove_depth_mm);
+    p.allowance_top_mm = stock->number_or("allowance_top", {0, 1000, " mm"}, p.allowance_top_mm);
+    p.groove_depth_mm = stock->optional_number("groove_depth", kLength).value_or(p.groove_depth_mm);
     stock->finish();
   }
   return p;
@@ -116,9 +111,10 @@ bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear) {
   bevel_gear::BevelGearParameters p;
   p.teeth = gear.integer("teeth", kTeeth).value_or(0);
   const bool mate = gear.has("mate_teeth"), angle = gear.has("pitch_angle");
-  optional_number(gear, "shaft_angle", kShaftAngle, p.shaft_angle_rad, kDegree);
-  p.mate_teeth = gear.if_present("mate_teeth", [&] { return gear.integer("mate_teeth", kMateTeeth); }).value_or(0);
-  optional_number(gear, "pitch_angle", {0.01, 90, " deg"}, p.pitch_angle_rad, kDegree);
+  p.shaft_angle_rad = radians(gear.number_or("shaft_angle", kShaftAngle, degrees(p.shaft_angle_rad)));
+  p.mate_teeth = gear.optional_integer("mate_teeth", kMateTeeth).value_or(0);
+  p.pitch_angle_rad = radians(gear.optional_number("pitch_angle", {0.01, 90, " deg"}).value_or(0));
+  gear.relate(toml::KeyRelation::Kind::one_of, "mate_teeth", "pitch_angle");
   if (mate && angle) gear.refuse("pitch_angle", "pitch_angle contradicts mate_teeth: give one of the two");
   if (!mate && !angle) gear.refuse("mate_teeth", "[gear] lacks the key \"mate_teeth\" (or \"pitch_angle\")");
   if (mate && p.mate_teeth > 0 && p.teeth > 0) {
@@ -130,19 +126,19 @@ bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear) {
   p.pressure_angle_rad = radians(gear.number("pressure_angle", kPressureAngle).value_or(0));
   p.outer_spiral_angle_rad = radians(gear.number("outer_spiral_angle", {0, 60, " deg"}).value_or(0));
   p.face_width_mm = gear.number("face_width", {kLeastFace, kLength.high, " mm"}).value_or(0);
-  const auto form = gear.word("form", {"herringbone", "single"});
+  const auto form = gear.variant("form", {"herringbone", "single"});
   if (form) p.form = *form == "single" ? bevel_gear::BevelForm::single : bevel_gear::BevelForm::herringbone;
   if (const auto hand = gear.word("hand", {"right", "left"})) p.hand = *hand == "right" ? 1 : -1;
   const bool herringbone = p.form == bevel_gear::BevelForm::herringbone;
-  if (herringbone || gear.has("apex_cone_distance"))
-    p.apex_cone_distance_mm = gear.number("apex_cone_distance", kRadius).value_or(0);
-  else (void)gear.value("apex_cone_distance");
+  p.apex_cone_distance_mm =
+      (herringbone ? gear.number("apex_cone_distance", kRadius) : gear.optional_number("apex_cone_distance", kRadius))
+          .value_or(0);
   if (herringbone) p.relief_half_width_mm = gear.number("relief_half_width", kLength).value_or(0);
-  else if (gear.value("relief_half_width"))
+  else if (gear.misplaced("relief_half_width"))
     gear.refuse("relief_half_width", "relief_half_width contradicts form = \"single\": one hand has no relief groove");
   p.addendum_mm = gear.number("addendum", kLength).value_or(0);
   p.dedendum_mm = gear.number("dedendum", kLength).value_or(0);
-  optional_number(gear, "backlash", kLengthOrZero, p.backlash_mm);
+  p.backlash_mm = gear.number_or("backlash", kLengthOrZero, p.backlash_mm);
   if (module && p.backlash_mm >= *module)
     gear.refuse("backlash", "backlash = {} mm is not below outer_transverse_module = {} mm", p.backlash_mm, *module);
   optional_cylinder(gear, "hub", p.hub_diameter_mm, p.hub_length_mm);
@@ -165,17 +161,21 @@ bevel_gear::BevelGearParameters read_bevel_gear(toml::TableReader& gear) {
 struct GearType {
   const char* word;
   /// Reads [gear] and, where it belongs to the gear, [stock].
-  void (*read)(toml::TableReader& gear, toml::TableReader* stock, toml::TableReader& root, Job& job);
+  void (*read)(toml::TableReader& gear, toml::TableReader& root, Job& job);
 };
 
 // A line a type, in the order of the variant `Job::gear`; a type without its line does not compile.
 constexpr GearType kGearTypes[] = {
-    {"face_gear", [](toml::TableReader& gear, toml::TableReader* stock, toml::TableReader&,
-                     Job& job) { job.gear = read_face_gear(gear, stock, job.warnings); }},
+    {"face_gear",
+     [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
+       auto stock = root.table("stock");
+       job.gear = read_face_gear(gear, stock ? &*stock : nullptr, job.warnings);
+     }},
     {"equal_base_circle_bevel_gear",
-     [](toml::TableReader& gear, toml::TableReader* stock, toml::TableReader& root, Job& job) {
+     [](toml::TableReader& gear, toml::TableReader& root, Job& job) {
        job.gear = read_bevel_gear(gear);
-       if (stock) root.refuse("stock", "[stock] belongs to face gears; this gear is {}", job.gear_type());
+       if (root.misplaced("stock"))
+         root.refuse("stock", "[stock] belongs to face gears; this gear is {}", job.gear_type());
      }},
 };
 static_assert(std::size(kGearTypes) == std::variant_size_v<decltype(Job::gear)>);
@@ -185,18 +185,18 @@ static_assert(std::size(kGearTypes) == std::variant_size_v<decltype(Job::gear)>)
 const char* Job::gear_type() const { return kGearTypes[gear.index()].word; }
 
 void read_gear(toml::TableReader& root, Job& job) {
-  auto gear = root.table("gear");
-  auto stock = root.table("stock");
+  auto gear = root.table("gear", toml::Presence::required);
+  (void)root.misplaced("stock");  // where no type of gear reads it, it is not judged
   if (!gear) {
     if (!root.has("gear")) root.refuse("gear", "the job lacks the table [gear]");
     return;
   }
   std::vector<std::string_view> words;
   for (const GearType& type : kGearTypes) words.emplace_back(type.word);
-  const auto named = gear->word("type", words);
+  const auto named = gear->variant("type", words);
   if (!named) return gear->name_misspelt("type");  // which keys belong here is unknown
   for (const GearType& type : kGearTypes)
-    if (*named == type.word) type.read(*gear, stock ? &*stock : nullptr, root, job);
+    if (*named == type.word) type.read(*gear, root, job);
 }
 
 }  // namespace toothpath::job

@@ -41,7 +41,12 @@ std::optional<std::array<double, 3>> three_numbers(const toml::TomlValue& value)
 /// A list of [radius, lean outwards, lean aside], radii ascending; empty and recorded where it is something else.
 std::vector<path::ToolAxisKey> read_axis_keys(toml::TableReader& table, std::string_view key) {
   std::vector<path::ToolAxisKey> keys;
-  const toml::TomlValue* value = table.value(key);
+  toml::ValueShape rows{toml::ValueKind::rows};
+  rows.columns = {"radius", "lean outwards", "lean aside"};
+  const toml::Range lean{-kMostAxisLean, kMostAxisLean, " deg"};
+  rows.ranges = {{0, kPosition.high, " mm", true}, lean, lean};
+  rows.count = {1, kMostAxisKeys};
+  const toml::TomlValue* value = table.value(key, {rows});
   if (!value) return keys;
   const toml::TomlArray* list = value->array();
   if (!list || list->values.empty() || list->values.size() > kMostAxisKeys) {
@@ -77,13 +82,15 @@ std::vector<path::ToolAxisKey> read_axis_keys(toml::TableReader& table, std::str
 
 /// Prescribed tool axes: one list for all passes, or one for each flank.
 void read_tool_axis(toml::TableReader& table, path::MillingOperation& operation) {
-  const bool both = table.value("tool_axis") != nullptr, plus = table.has("tool_axis_plus"),
-             minus = table.has("tool_axis_minus");
-  operation.axis_plus = read_axis_keys(table, both ? "tool_axis" : "tool_axis_plus");
-  operation.axis_minus = both ? operation.axis_plus : read_axis_keys(table, "tool_axis_minus");
+  const bool both = table.has("tool_axis"), plus = table.has("tool_axis_plus"), minus = table.has("tool_axis_minus");
+  const auto all = read_axis_keys(table, "tool_axis");
+  operation.axis_plus = both ? all : read_axis_keys(table, "tool_axis_plus");
+  operation.axis_minus = both ? all : read_axis_keys(table, "tool_axis_minus");
+  table.relate(toml::KeyRelation::Kind::excludes, "tool_axis", "tool_axis_plus");
+  table.relate(toml::KeyRelation::Kind::together, "tool_axis_plus", "tool_axis_minus");
   if (both)
     for (const char* key : {"tool_axis_plus", "tool_axis_minus"}) {
-      if (table.value(key)) table.refuse(key, "{} contradicts tool_axis, which holds for both flanks", key);
+      if (table.misplaced(key)) table.refuse(key, "{} contradicts tool_axis, which holds for both flanks", key);
     }
   else if (plus != minus)
     table.refuse(plus ? "tool_axis_plus" : "tool_axis_minus",
@@ -93,8 +100,9 @@ void read_tool_axis(toml::TableReader& table, path::MillingOperation& operation)
 /// The regions that an operation cuts; all where it does not say.
 path::ByRegion<bool> read_regions(toml::TableReader& table) {
   path::ByRegion<bool> regions{{true, true, true}};
-  if (!table.has("regions")) return regions;
-  const auto names = table.ascii_list("regions");
+  std::vector<std::string> words;
+  for (const path::Region region : path::kRegions) words.emplace_back(to_string(region));
+  const auto names = table.optional_ascii_list("regions", {1, words.size()}, words);
   if (!names) return regions;
   regions = {};
   for (const std::string& name : *names) {
@@ -111,18 +119,21 @@ path::ByRegion<bool> read_regions(toml::TableReader& table) {
 
 /// One cusp height for all regions, or one for each of them.
 void read_scallop(toml::TableReader& table, path::MillingOperation& operation) {
-  const toml::TomlValue* value = table.value("scallop");
+  const toml::TomlValue* value =
+      table.value("scallop", {toml::ValueShape::of_range(toml::ValueKind::number, kScallop), {toml::ValueKind::table}},
+                  toml::Presence::required);
   if (!value || value->type() != toml::TomlType::table) {
     operation.scallop_mm = table.number("scallop", kScallop).value_or(0);
     return;
   }
-  auto heights = table.table("scallop");
+  auto heights = table.table("scallop", toml::Presence::required);
   if (!heights) return;
   operation.scallops_mm.emplace();
   for (const path::Region region : path::kRegions) {
     const char* name = to_string(region);
     if (!operation.regions[region]) {
-      if (heights->value(name)) heights->refuse(name, "scallop.{} is asked, but regions leaves the {} out", name, name);
+      if (heights->misplaced(name))
+        heights->refuse(name, "scallop.{} is asked, but regions leaves the {} out", name, name);
       continue;
     }
     const double height = heights->number(name, kScallop).value_or(0);
@@ -150,11 +161,10 @@ path::MillingOperation read_ball_operation(toml::TableReader& table, path::Opera
 path::MillingOperation read_line_operation(toml::TableReader& table) {
   path::MillingOperation operation;
   operation.regions = {{true, false, false}};
-  if (const auto allowance = table.if_present("allowance", [&] { return table.number("allowance", kAllowance); }))
-    operation.allowance_mm = *allowance;
-  operation.strips = table.if_present("strips", [&] { return table.integer("strips", {1, path::kMostStrips}); });
-  operation.left_mm = table.if_present("left", [&] { return table.number("left", kScallop); });
-  if (const auto word = table.if_present("rotaries", [&] { return table.word("rotaries", {"both", "one"}); }))
+  operation.allowance_mm = table.number_or("allowance", kAllowance, operation.allowance_mm);
+  operation.strips = table.optional_integer("strips", {1, path::kMostStrips});
+  operation.left_mm = table.optional_number("left", kScallop);
+  if (const auto word = table.optional_word("rotaries", {"both", "one"}))
     operation.rotaries = *word == "both" ? path::MovingRotaries::both : path::MovingRotaries::one;
   return operation;
 }
@@ -178,7 +188,7 @@ const OperationWord* read_type(toml::TableReader& table, bool bevel_gear) {
   std::vector<std::string_view> words;
   for (const auto& entry : kOperationWords)
     if (entry.bevel_gear == bevel_gear) words.emplace_back(entry.word);
-  const auto word = table.word("type", words);
+  const auto word = table.variant("type", words);
   if (!word) return nullptr;
   return std::find_if(std::begin(kOperationWords), std::end(kOperationWords),
                       [&](const OperationWord& entry) { return *word == entry.word; });
@@ -220,17 +230,14 @@ path::MillingOperation read_operation(toml::TableReader& table, const std::vecto
   const OperationWord* word = read_type(table, bevel_gear);
   path::MillingOperation operation;
   const tool::ToolAssembly* tool = nullptr;
-  if (const auto number = table.integer("tool", {1, 9999})) {
+  if (const auto number = table.integer("tool", kToolNumber)) {
     const auto found = std::find_if(tools.begin(), tools.end(), [&](const auto& t) { return t.number == *number; });
     if (found == tools.end()) table.refuse("tool", "tool = {} is not the number of any [[tool]]", *number);
     else tool = &*found;
   }
   const double speed = table.number("speed", kSpeed).value_or(0);
   const double feed = table.number("feed", kFeed).value_or(0);
-  double chord = operation.chord_tolerance_mm;
-  if (const auto given =
-          table.if_present("chord_tolerance", [&] { return table.number("chord_tolerance", kChordTolerance); }))
-    chord = *given;
+  const double chord = table.number_or("chord_tolerance", kChordTolerance, operation.chord_tolerance_mm);
   if (!word) {
     table.name_misspelt("type");
     return operation;
@@ -239,8 +246,7 @@ path::MillingOperation read_operation(toml::TableReader& table, const std::vecto
     operation.ridge_mm = table.number("ridge", {0.001, 10, " mm"}).value_or(0);
   else if (word->type == path::OperationType::line_milling) operation = read_line_operation(table);
   else if (!word->bevel_gear) operation = read_ball_operation(table, word->type);
-  if (!word->bevel_gear)
-    if (const auto climb = table.if_present("climb", [&] { return table.boolean("climb"); })) operation.climb = *climb;
+  if (!word->bevel_gear) operation.climb = table.boolean_or("climb", operation.climb);
   operation.type = word->type;
   operation.speed_rpm = speed;
   operation.feed_mm_min = feed;
@@ -277,9 +283,10 @@ joints::Setup read_setup(toml::TableReader& table) {
   if (const auto origin = table.numbers("origin", 3, kPosition))
     setup.origin_mm = Vec3((*origin)[0], (*origin)[1], (*origin)[2]);
   if (const auto axis = table.word("axis", {"up", "down"})) setup.axis_up = *axis == "up";
-  setup.pivot_error_mm = table.if_present("pivot_error", [&] { return table.number("pivot_error", {0, 1, " mm"}); });
-  if (const auto name = table.text("work_offset")) {
-    static const std::regex kOffset("[A-Z]?[0-9]{1,4}(\\.[0-9])?( ?P[0-9]{1,3})?");
+  setup.pivot_error_mm = table.optional_number("pivot_error", {0, 1, " mm"});
+  constexpr const char* kOffsetPattern = "[A-Z]?[0-9]{1,4}(\\.[0-9])?( ?P[0-9]{1,3})?";
+  if (const auto name = table.text("work_offset", {.pattern = kOffsetPattern})) {
+    static const std::regex kOffset(kOffsetPattern);
     if (std::regex_match(*name, kOffset)) setup.work_offset = *name;
     else
       table.refuse("work_offset",
@@ -299,10 +306,15 @@ shaper::Shaping read_shaping(toml::TableReader& table) {
   s.circular_feed_mm = table.number("circular_feed", {0, 100, " mm", true}).value_or(0);
   s.radial_feed_mm = table.number("radial_feed", {0, 100, " mm", true}).value_or(0);
   s.over_run_mm = table.number("over_run", {0, 1000, " mm"}).value_or(0);
-  const toml::TomlValue* reference = table.value("offset_reference");
+  constexpr toml::Range kReference{0, 10000, " mm", true};
+  const toml::TomlValue* reference =
+      table.value("offset_reference",
+                  {toml::ValueShape::of_words(toml::ValueKind::text, {"outer_radius", "mean_radius"}),
+                   toml::ValueShape::of_range(toml::ValueKind::number, kReference)},
+                  toml::Presence::required);
   if (reference && !std::holds_alternative<std::string>(reference->data)) {
     s.offset_reference = shaper::Shaping::OffsetReference::given;
-    s.offset_reference_mm = table.number("offset_reference", {0, 10000, " mm", true}).value_or(0);
+    s.offset_reference_mm = table.number("offset_reference", kReference).value_or(0);
   } else if (const auto name = table.word("offset_reference", {"outer_radius", "mean_radius"})) {
     s.offset_reference = *name == "outer_radius" ? shaper::Shaping::OffsetReference::outer_radius
                                                  : shaper::Shaping::OffsetReference::mean_radius;
@@ -313,30 +325,22 @@ shaper::Shaping read_shaping(toml::TableReader& table) {
 
 ContactSettings read_contact(toml::TableReader& table) {
   ContactSettings c;
-  const auto number = [&](const char* key, const toml::Range& range) {
-    return table.if_present(key, [&] { return table.number(key, range); });
-  };
-  if (const auto teeth = table.if_present("pinion_teeth", [&] { return table.integer("pinion_teeth", kPinionTeeth); }))
-    c.pinion_teeth = *teeth;
-  if (const auto offset = number("offset_error", kMoved)) c.moved.offset_mm = *offset;
-  if (const auto axial = number("axial_error", kMoved)) c.moved.axial_mm = *axial;
-  if (const auto angle = number("angle_error", kAngleError)) c.moved.angle_rad = radians(*angle);
-  if (const auto compound = number("compound", kCompound)) c.compound_mm = *compound;
+  c.pinion_teeth = table.optional_integer("pinion_teeth", kPinionTeeth).value_or(0);
+  c.moved.offset_mm = table.number_or("offset_error", kMoved, c.moved.offset_mm);
+  c.moved.axial_mm = table.number_or("axial_error", kMoved, c.moved.axial_mm);
+  c.moved.angle_rad = radians(table.number_or("angle_error", kAngleError, degrees(c.moved.angle_rad)));
+  c.compound_mm = table.number_or("compound", kCompound, c.compound_mm);
   table.finish();
   return c;
 }
 
 VerifySettings read_verify(toml::TableReader& table, bool bevel) {
   VerifySettings verify;
-  if (const auto gouge = table.if_present("gouge_tolerance", [&] {
-        return table.number("gouge_tolerance", {1e-5, 0.1, " mm"});
-      }))
-    verify.gouge_tolerance_mm = *gouge;
-  if (const auto teeth = table.if_present("teeth", [&] { return table.word("teeth", {"one", "all"}); }))
-    verify.all_teeth = *teeth == "all";
-  verify.clearance_mm = table.if_present("clearance", [&] { return table.number("clearance", {0, 50, " mm"}); });
-  verify.unreached_mm = table.if_present("unreached", [&] { return table.number("unreached", {0, 50, " mm"}); });
-  if (bevel && verify.unreached_mm)
+  verify.gouge_tolerance_mm = table.number_or("gouge_tolerance", {1e-5, 0.1, " mm"}, verify.gouge_tolerance_mm);
+  verify.all_teeth = table.word_or("teeth", {"one", "all"}, "one") == "all";
+  verify.clearance_mm = table.optional_number("clearance", {0, 50, " mm"});
+  if (!bevel) verify.unreached_mm = table.optional_number("unreached", {0, 50, " mm"});
+  else if (table.misplaced("unreached"))
     table.refuse("unreached",
                  "unreached is asked of the ball that finishes a face gear: what a finger mill leaves is its ridge");
   table.finish();
@@ -345,23 +349,16 @@ VerifySettings read_verify(toml::TableReader& table, bool bevel) {
 
 ProgramSettings read_program_settings(toml::TableReader& table) {
   ProgramSettings program;
-  program.number = table.if_present("number", [&] { return table.integer("number", kProgramNumber); });
-  if (const auto order = table.if_present("tooth_order", [&] {
-        return table.word("tooth_order", {"sequence", "spread"});
-      }))
-    program.spread_teeth = *order == "spread";
+  program.number = table.optional_integer("number", kProgramNumber);
+  program.spread_teeth = table.word_or("tooth_order", {"sequence", "spread"}, "sequence") == "spread";
   constexpr std::pair<std::string_view, machines::PoleOption> kPoles[] = {
       {"error", machines::PoleOption::error}, {"tilt", machines::PoleOption::tilt},
       {"hold", machines::PoleOption::hold},   {"through", machines::PoleOption::through},
       {"slow", machines::PoleOption::slow},   {"retract", machines::PoleOption::retract}};
-  if (const auto word = table.if_present("pole", [&] {
-        return table.word("pole", {"error", "tilt", "hold", "through", "slow", "retract"});
-      }))
+  if (const auto word = table.optional_word("pole", {"error", "tilt", "hold", "through", "slow", "retract"}))
     for (const auto& [name, option] : kPoles)
       if (*word == name) program.pole = option;
-  if (const auto angle = table.if_present("pole_angle", [&] {
-        return table.number("pole_angle", {0, machines::kLargestPoleAngle, " deg", true});
-      }))
+  if (const auto angle = table.optional_number("pole_angle", {0, machines::kLargestPoleAngle, " deg", true}))
     program.pole_angle_rad = radians(*angle);
   table.finish();
   return program;
@@ -370,8 +367,7 @@ ProgramSettings read_program_settings(toml::TableReader& table) {
 MachineChoice read_machine_choice(toml::TableReader& table) {
   MachineChoice machine;
   machine.file = table.text("file").value_or("");
-  if (const auto accept = table.if_present("accept_assumed", [&] { return table.boolean("accept_assumed"); }))
-    machine.accept_assumed = *accept;
+  machine.accept_assumed = table.boolean_or("accept_assumed", machine.accept_assumed);
   table.finish();
   return machine;
 }

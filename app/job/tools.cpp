@@ -21,7 +21,11 @@ constexpr const char* kTaperAngle = "taper_angle";
 
 std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
   std::vector<tool::HolderSegment> result;
-  const toml::TomlValue* value = table.value("holder");
+  toml::ValueShape rows{toml::ValueKind::rows};
+  rows.columns = {"lower diameter", "upper diameter", "height"};
+  rows.ranges.assign(rows.columns.size(), toml::Range::positive(2000, " mm"));
+  rows.count = {1, kMostSegments};
+  const toml::TomlValue* value = table.value("holder", {rows}, toml::Presence::required);
   if (!value) {
     table.refuse("holder", "[{}] lacks the key \"holder\"", table.path());
     return result;
@@ -62,8 +66,8 @@ std::vector<std::string_view> kind_words() {
 void read_numbers(toml::TableReader& table, const tool::CutterKind& kind, tool::ToolAssembly& tool) {
   for (const auto& n : kind.numbers) {
     // Refused for what stands instead of it: read_end_mill.
-    if (n.member == &tool::ToolAssembly::half_angle_rad && !table.has(n.key) && table.has(kTaperAngle)) {
-      (void)table.value(n.key);
+    if (n.member == &tool::ToolAssembly::half_angle_rad && !table.has(n.key) && table.misplaced(kTaperAngle)) {
+      (void)table.misplaced(n.key);
       continue;
     }
     const double read = table.number(n.key, {n.low, n.high, n.degrees ? " deg" : " mm", n.open_low}).value_or(0);
@@ -74,9 +78,8 @@ void read_numbers(toml::TableReader& table, const tool::CutterKind& kind, tool::
 /// A finger mill: its width follows from its numbers, its flutes end at the profile where nothing else is said.
 void read_finger_lengths(toml::TableReader& table, const ToolContext& context, tool::ToolAssembly& tool) {
   tool.flute_length_mm = (context.bevel ? context.bevel->dedendum_mm : 0) + tool.profile_height_mm;
-  if (const auto flute = table.if_present("flute_length", [&] { return table.number("flute_length", kToolLength); }))
-    tool.flute_length_mm = *flute;
-  if (table.value("diameter"))
+  if (const auto flute = table.optional_number("flute_length", kToolLength)) tool.flute_length_mm = *flute;
+  if (table.misplaced("diameter"))
     table.refuse("diameter",
                  "diameter contradicts type = \"finger_mill\": its width follows from module and profile_height");
 }
@@ -99,7 +102,7 @@ std::optional<std::pair<double, double>> meridian_line(std::string_view line) {
 
 /// The measured meridian: a table `t,f`, height above the centre of the ball [mm] and error of rho [um].
 void read_meridian(toml::TableReader& table, const ToolContext& context, tool::ToolAssembly& tool) {
-  const auto name = table.text("meridian");
+  const auto name = table.optional_text("meridian");
   if (!name) return;
   const auto path = (std::filesystem::path(context.directory) / *name).string();
   const auto text = toml::read_input_file(path, kMostMeridianBytes);
@@ -135,20 +138,18 @@ void check_profile(toml::TableReader& table, const tool::ToolAssembly& tool) {
 void read_end_mill(toml::TableReader& table, const ToolContext& context, tool::ToolAssembly& tool,
                    std::vector<std::string>& warnings) {
   if (tool::serves(tool, tool::CutterUse::side)) {
-    if (table.value(kTaperAngle))
+    if (table.misplaced(kTaperAngle))
       table.refuse(kTaperAngle,
                    "taper_angle: half or included? Say half_angle, between the axis and the side: half of the included "
                    "angle");
-    if (table.has("meridian")) read_meridian(table, context, tool);
+    read_meridian(table, context, tool);
   }
-  const auto stated = [&](const char* key, const toml::Range& range) {
-    return table.if_present(key, [&] { return table.number(key, range); });
-  };
-  tool.form_error_mm = stated("form_error", {0, 1, " mm"});
-  tool.run_out_mm = stated("run_out", {0, 1, " mm"});
+  tool.form_error_mm = table.optional_number("form_error", {0, 1, " mm"});
+  tool.run_out_mm = table.optional_number("run_out", {0, 1, " mm"});
   if (tool.half_angle_rad > 0)
-    if (const auto error = stated("half_angle_error", {0, 5, " deg"})) tool.half_angle_error_rad = radians(*error);
-  const auto helix = table.if_present("helix", [&] { return table.number("helix", {0, kMostHelix, " deg"}); });
+    if (const auto error = table.optional_number("half_angle_error", {0, 5, " deg"}))
+      tool.half_angle_error_rad = radians(*error);
+  const auto helix = table.optional_number("helix", {0, kMostHelix, " deg"});
   if (!helix) return;
   tool.helix_rad = radians(*helix);
   if (*helix == 0) {
@@ -166,15 +167,14 @@ tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& contex
   const std::vector<std::string_view> words = kind_words();
   tool::ToolAssembly tool;
   tool.number = table.integer("number", kToolNumber).value_or(0);
-  const auto type = table.word("type", words);
+  const auto type = table.variant("type", words);
   tool.shank_diameter_mm = table.number("shank_diameter", kToolDiameter).value_or(0);
   const auto length = table.number("length", kToolLength);
   const auto stick_out = table.number("stick_out", kToolLength);
   tool.length_mm = length.value_or(0);
   tool.stick_out_mm = stick_out.value_or(0);
   tool.holder = read_holder(table);
-  if (const auto teeth = table.if_present("teeth", [&] { return table.integer("teeth", {1, 100}); }))
-    tool.teeth = *teeth;
+  tool.teeth = table.integer_or("teeth", {1, 100}, tool.teeth);
   if (length && stick_out && *stick_out > *length)
     table.refuse("stick_out", "stick_out = {} mm exceeds length = {} mm", *stick_out, *length);
   if (!type) {

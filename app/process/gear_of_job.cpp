@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "app/process/machine_moves.h"
 #include "cam/finger/milling.h"
 #include "cam/tool/cutters.h"
 #include "machines/machine_file.h"
@@ -116,6 +117,8 @@ ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional
   if (job.program.pole) machine.post.pole = *job.program.pole;
   if (job.program.pole_angle_rad) machine.post.pole_angle_rad = *job.program.pole_angle_rad;
   std::vector<Diagnostic> errors;
+  auto bodies = machine_bodies(machine, true);
+  if (auto* refused = bodies.refused()) errors = std::move(*refused);
   if (part_diameter_mm)
     if (const auto fits = machines::check_part_fits(machine, *part_diameter_mm); !fits) {
       errors.push_back(fits.error());

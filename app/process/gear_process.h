@@ -29,6 +29,8 @@
 #include "app/report/sheet/setup_sheet.h"
 #include "cam/proof/checked_cl_path.h"
 #include "cam/proof/limits.h"
+#include "geometry/exchange/shell.h"
+#include "geometry/mesh/triangle_mesh.h"
 #include "machines/machine.h"
 #include "postproc/joints/program.h"
 
@@ -119,6 +121,12 @@ class GearProcess {
   [[nodiscard]] virtual Result<SceneGear> scene(double clearance_mm) const = 0;
   /// The finished gear as a mesh, its facets within 0.02 mm. Errors: what has no mesh, at gear.
   [[nodiscard]] virtual Result<FinishedGear> solid() const = 0;
+
+  /// The same with its facets as those of gear.stl: all teeth, and one of as many equal parts as there are teeth.
+  [[nodiscard]] virtual Result<mesh::TriangleMesh> mesh() const = 0;
+  [[nodiscard]] virtual Result<mesh::TriangleMesh> pitch_mesh() const = 0;
+  /// The skin of the nominal gear as exact surfaces. Errors: what is no solid.
+  [[nodiscard]] virtual Result<exchange::GearShell> shell() const = 0;
 
   /// Limits, inspection points, meshes; with `surface` tooth.vtp is the cut surface with its deviation, without the
   /// plain tooth.

@@ -7,9 +7,11 @@
 #include <map>
 #include <utility>
 
+#include "app/process/machine_moves.h"
 #include "app/process/program_report.h"
 #include "app/process/proof_limits.h"
 #include "app/process/tooth_copies.h"
+#include "geometry/base/work_share.h"
 #include "postproc/controls/of_machine.h"
 
 namespace toothpath::process {
@@ -33,16 +35,26 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
   const readback::AskedConditions conditions = asked_conditions(job, asked.paths);
   readback::ConditionJudge judge(program.machine, out.control, conditions);
   auto read = clock.run("read back", [&] {
+    WorkShare share(double(std::count(program.text.begin(), program.text.end(), '\n') + 1));
+    int seen = 0;  // lines; those of loops and sub-programs are counted once
     return read_back(program.text, program.file, out.control, program.machine, *job.setup,
                      {.teeth = gear.teeth(),
                       .keep_all = job.verify.all_teeth,
                       .first_teeth = true,
-                      .watch = [&judge](const readback::ExecutedMove& m) { judge.add(m); }});
+                      .watch = [&](const readback::ExecutedMove& m) {
+                        judge.add(m);
+                        if (m.line > seen) share.add(m.line - std::exchange(seen, m.line));
+                        if (program.moves) program.moves->add(m);
+                      }});
   });
   if (!read) return read.error();
   out.read = std::move(read.value());
   out.conditions = judge.finish();
   out.reasons = out.conditions.reasons;
+  if (program.moves) {
+    out.machine_moves = clock.run("machine moves", [&] { return program.moves->finish(); });
+    for (std::string& reason : reasons_of(program.machine, out.machine_moves)) out.reasons.push_back(std::move(reason));
+  }
   out.warnings = out.conditions.warnings;
   out.hash = readback::hash_of_program(program.text);
   if (out.hash && !out.hash->fits()) {
@@ -225,6 +237,7 @@ class TeethOneByOne {
   };
   Status see_all(void (TeethOneByOne::*take)(Tooth&, Look&)) {
     const bool anew = take == &TeethOneByOne::met;
+    WorkShare share(double(gear_.teeth()) * double(program_.job.operations.size()));
     EachTooth<Look> all(
         program_, proof_.control, gear_,
         [&](Tooth& tooth) {
@@ -233,7 +246,10 @@ class TeethOneByOne {
           if (!tooth.first) look.seen = teeth_.seen(tooth.motions);
           return look;
         },
-        [&](Tooth& tooth, Look& look) { (this->*take)(tooth, look); });
+        [&](Tooth& tooth, Look& look) {
+          (this->*take)(tooth, look);
+          share.add();
+        });
     return all.run(proof_.read, [](int) { return readback::Followed::Moves::all; });
   }
   void met(Tooth& tooth, Look& look) {

@@ -19,6 +19,7 @@
 #include "cam/proof/like_motion.h"
 #include "cam/proof/verification.h"
 #include "machines/machine.h"
+#include "postproc/bodies/moves.h"
 #include "postproc/readback/conditions.h"
 #include "postproc/readback/program_hash.h"
 #include "postproc/readback/reader.h"
@@ -31,6 +32,7 @@ struct ProgramText {
   const std::string& file;  ///< as it stands in messages
   const job::Job& job;      ///< with its [setup]
   const machines::Machine& machine;
+  bodies::MovesJudge* moves = nullptr;  ///< sees every move that is executed; null: no bodies are stated
 };
 
 /// The paths that a program must meet, and how far it may be off them: mm, rad. Without paths (a program that somebody
@@ -75,6 +77,7 @@ struct ProgramProof {
   std::vector<proof::SurfaceGrid> surface;         ///< the cut surface of one tooth space
   std::vector<proof::DirectionChoice> directions;  ///< as the program was seen to do it; empty: not looked at
   std::vector<report::Finding> findings;           ///< what else there is to say
+  bodies::MovesFound machine_moves;                ///< bodies of the machine against each other
 };
 
 /// What a gear type adds to the proof of a program.

@@ -32,11 +32,13 @@ BlockTimes block_times_of(const joints::AxisProgram& program) {
 svg::HistogramChart block_time_chart(const BlockTimes& times) {
   return {
       fmt::format("Cutting blocks of one tooth: least {:.3g} ms, median {:.3g} ms", times.least_ms, times.median_ms),
-      "time of a block [ms, decimal logarithm]",
+      "time of a block [ms]",
       times.from_log_ms,
       times.step_log_ms,
       times.counts,
-      {}};
+      {},
+      "blocks",
+      true};
 }
 
 }  // namespace toothpath::report

@@ -153,6 +153,45 @@ void add_scene(Json& json, const RunReport& r) {
   }
 }
 
+Json meeting_json(const bodies::Meeting& m) {
+  Json out = {{"bodies", {svg::valid_utf8(m.first), svg::valid_utf8(m.second)}},
+              {"clearance", m.proven_mm},
+              {"measured", m.measured_mm},
+              {"rapid", m.rapid},
+              {"op", m.operation},
+              {"tooth", m.tooth},
+              {"tool", m.tool},
+              {"line", m.line},
+              {"linear", vector_json(m.joints.linear_mm)},
+              {"rotary", {degrees(m.joints.rotary_rad[0]), degrees(m.joints.rotary_rad[1])}}};
+  if (m.measured_mm <= 0) {
+    out["depth"] = m.depth_mm;
+    out["free_along"] = vector_json(m.direction);
+  }
+  return out;
+}
+
+/// "machine_moves": lengths in mm, angles in deg; "failed" has the first place of every pair that comes too near.
+void add_machine_moves(Json& json, const RunReport& r) {
+  if (!r.machine_moves) return;
+  const bodies::MovesFound& found = *r.machine_moves;
+  Json entry = {{"bodies", found.stated}};
+  if (found.stated > 0) {
+    entry["clear"] = found.clear();
+    entry["required"] = found.required_mm;
+    entry["looked"] = found.look_mm;
+    entry["pairs"] = found.pairs;
+    entry["moves"] = found.moves;
+    entry["unjudged"] = found.unjudged;
+    entry["bearing"] = found.bearing;
+    entry["nearest"] = Json::array();
+    for (const auto& m : found.nearest) entry["nearest"].push_back(meeting_json(m));
+    entry["failed"] = Json::array();
+    for (const auto& m : found.failed) entry["failed"].push_back(meeting_json(m));
+  }
+  json["machine_moves"] = std::move(entry);
+}
+
 void add_directions(Json& json, const RunReport& r) {
   if (r.directions.empty()) return;
   bool fixed = true;
@@ -323,6 +362,7 @@ std::string report_json(const RunReport& r) {
         {"file", r.program_file}, {"sha256", r.program_sha256}, {"bytes", r.program_bytes}, {"blocks", r.blocks}};
   add_proof(json, r);
   add_scene(json, r);
+  add_machine_moves(json, r);
   add_motion(json, r);
   add_engagement(json, r);
   add_directions(json, r);
@@ -354,6 +394,15 @@ std::string report_json(const RunReport& r) {
                         {"residual_rms_um", c.fit.residual_rms_mm * 1000}});
     json["correction"] = std::move(flanks);
   }
+  if (r.cad)
+    json["solid"] = {{"file", r.cad->file},
+                     {"faces", r.cad->faces},
+                     {"patches", r.cad->patches},
+                     {"bytes", r.cad->bytes},
+                     {"places_checked", r.cad->checked},
+                     {"worst_deviation_um", r.cad->worst_mm * 1000},
+                     {"most_deviation_um", r.cad->asked_mm * 1000},
+                     {"worst_at", r.cad->worst_at}};
   json["warnings"] = text_list(r.warnings);
   json["files"] = text_list(r.files);
   Json stages = Json::object();

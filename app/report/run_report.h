@@ -8,12 +8,14 @@
 #include <vector>
 
 #include "app/report/block_times.h"
+#include "app/report/cad_report.h"
 #include "app/report/cutting_load.h"
 #include "app/report/finding.h"
 #include "app/report/scene_report.h"
 #include "app/report/section.h"
 #include "cam/proof/verification.h"
 #include "geometry/face_gear/flank_correction.h"
+#include "postproc/bodies/moves.h"
 #include "postproc/joints/program.h"
 #include "postproc/readback/conditions.h"
 #include "postproc/readback/program_hash.h"
@@ -127,9 +129,11 @@ struct RunReport {
   std::vector<LengthTolerance> length_tolerances;
   std::vector<Section> sections;  ///< tables for page and set-up sheet: app/report/sections
   std::vector<proof::LedgerEntry> ledger;
-  std::string force_basis;                ///< of the forces of the operations: coefficients and where they are from
-  std::vector<SceneVerdict> scene;        ///< fixture and stock, where meshes of them were given
-  std::vector<CorrectionRow> correction;  ///< empty: the nominal flanks are the target
+  std::string force_basis;          ///< of the forces of the operations: coefficients and where they are from
+  std::vector<SceneVerdict> scene;  ///< fixture and stock, where meshes of them were given
+  std::optional<bodies::MovesFound> machine_moves;  ///< none where no program was proven
+  std::vector<CorrectionRow> correction;            ///< empty: the nominal flanks are the target
+  std::optional<CadReport> cad;                     ///< none where no solid was asked for
   std::vector<std::string> assumed, warnings;
   std::vector<std::string> files;                      ///< written by this run
   std::vector<std::pair<std::string, double>> stages;  ///< name and seconds, those that ran

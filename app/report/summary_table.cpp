@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "app/base/units.h"
+#include "app/report/machine_moves.h"
 #include "app/report/run_report.h"
 #include "geometry/base/angle.h"
 #include "machines/assumed.h"
@@ -58,6 +59,7 @@ void proof_rows(std::string& out, const RunReport& report) {
     row(out, "least clearance",
         fmt::format("{} mm (neck, shank, holder)",
                     app::least_text(report.gouge->clearance_mm, report.gouge->clearance_at_least())));
+  if (report.machine_moves) row(out, "machine bodies", machine_moves_text(*report.machine_moves));
   for (const auto& v : report.scene) {
     const std::string place = v.nearest ? fmt::format("{}, op {}, tooth {}, line {}", v.nearest->body,
                                                       v.nearest->operation, v.nearest->tooth, v.nearest->line)
@@ -96,11 +98,7 @@ void results_row(std::string& out, const RunReport& report) {
 
 }  // namespace
 
-std::string readable_minutes(double minutes) {
-  const auto seconds = static_cast<long long>(std::llround(minutes * 60));
-  if (seconds >= 3600) return fmt::format("{} h {:02} min", seconds / 3600, seconds % 3600 / 60);
-  return fmt::format("{} min {:02} s", seconds / 60, seconds % 60);
-}
+std::string readable_minutes(double minutes) { return app::duration_text(minutes * 60); }
 
 std::string times_text(const RunReport& report) {
   return report.time_model + (report.tool_change_minutes
@@ -163,6 +161,12 @@ std::string summary_table(const RunReport& report, bool color) {
             "zone {}, flank {:+}: measured max {:.2f} um, rms {:.2f} um; not followed max {:.2f} um, rms {:.2f} um",
             c.zone, c.side, c.fit.measured_max_mm * app::kUm, c.fit.measured_rms_mm * app::kUm,
             c.fit.residual_max_mm * app::kUm, c.fit.residual_rms_mm * app::kUm));
+  if (const auto& cad = report.cad)
+    row(out, "solid",
+        fmt::format(
+            "{}: {} faces, {:.1f} MB; worst deviation from the exact surface {:.3f} um ({}), {:g} um is the most",
+            cad->file, cad->faces, double(cad->bytes) * 1e-6, cad->worst_mm * app::kUm, cad->worst_at,
+            cad->asked_mm * app::kUm));
   for (const auto& warning : report.warnings) row(out, "warning", warning);
   if (report.command == "surface")
     for (const auto& file : report.files) row(out, "written", file);

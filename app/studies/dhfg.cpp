@@ -11,6 +11,7 @@
 #include "app/process/opening_and_end.h"
 #include "app/report/page/study_page.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/work_share.h"
 #include "machines/toml/regular_file.h"
 
 namespace toothpath::studies {
@@ -26,7 +27,7 @@ void read_study(toml::TableReader& t, DhfgStudy& s) {
     p.module_plane = *plane == "normal" ? face_gear::ModulePlane::normal : face_gear::ModulePlane::transverse;
   p.pressure_angle_rad = radians(t.number("pressure_angle", {5, 45, " deg"}).value_or(20));
   const auto optional = [&](const char* key, const toml::Range& range, double& value) {
-    if (const auto v = t.if_present(key, [&] { return t.number(key, range); })) value = *v;
+    value = t.number_or(key, range, value);
   };
   optional("addendum_coefficient", {0.1, 2, ""}, p.addendum_coefficient);
   optional("clearance_coefficient", {0, 1, ""}, p.clearance_coefficient);
@@ -149,12 +150,13 @@ page::PageTable milling_table(const DhfgStudy& s, const std::vector<DhfgTrial>& 
 struct Quantity {
   const char* name;
   double (*of)(const DhfgTrial&);
+  bool of_milling = false;
 };
 constexpr Quantity kQuantities[] = {
     {"feasible half mm", [](const DhfgTrial& t) { return t.feasible_mm; }},
     {"contact ratio", [](const DhfgTrial& t) { return t.overlap; }},
     {"single-helix axial N", [](const DhfgTrial& t) { return std::abs(t.balanced.single_axial_n); }},
-    {"cutting min", [](const DhfgTrial& t) { return t.milling.cutting_minutes; }},
+    {"cutting min", [](const DhfgTrial& t) { return t.milling.cutting_minutes; }, true},
 };
 page::PageTable range_table(const DhfgStudy& s, const std::vector<DhfgTrial>& trials) {
   page::PageTable t{"Means of the levels",
@@ -162,7 +164,8 @@ page::PageTable range_table(const DhfgStudy& s, const std::vector<DhfgTrial>& tr
                     {},
                     "Each cell is the mean of the three trials with that level. A range near that of the blank column "
                     "says nothing about its factor."};
-  for (const auto& q : kQuantities)
+  for (const auto& q : kQuantities) {
+    if (q.of_milling && s.operations.empty()) continue;
     for (int factor = 0; factor < 4; ++factor) {
       double mean[3] = {0, 0, 0};
       for (const auto& r : trials) {
@@ -185,10 +188,11 @@ page::PageTable range_table(const DhfgStudy& s, const std::vector<DhfgTrial>& tr
       t.rows.push_back({q.name, name, fmt::format("{:.3f}", mean[0]), fmt::format("{:.3f}", mean[1]),
                         fmt::format("{:.3f}", mean[2]), fmt::format("{:.3f}", high - low)});
     }
+  }
   return t;
 }
 
-std::vector<svg::LineChart> charts_of(const std::vector<DhfgTrial>& trials) {
+std::vector<svg::LineChart> charts_of(const DhfgStudy& study, const std::vector<DhfgTrial>& trials) {
   const auto chart = [&](std::string title, std::string y,
                          std::vector<std::pair<std::string, double (*)(const DhfgTrial&)>> series, std::string note) {
     svg::LineChart c;
@@ -201,26 +205,29 @@ std::vector<svg::LineChart> charts_of(const std::vector<DhfgTrial>& trials) {
     }
     return c;
   };
-  return {chart("Contact ratio", "pairs (mean)",
-                {{"V-teeth", [](const DhfgTrial& t) { return t.overlap; }},
-                 {"inner half", [](const DhfgTrial& t) { return t.overlap_halves[0]; }},
-                 {"outer half", [](const DhfgTrial& t) { return t.overlap_halves[1]; }}},
-                "A V-tooth is in contact while one of its halves is."),
-          chart("Axial force on the pinion", "force [N]",
-                {{"single helix", [](const DhfgTrial& t) { return std::abs(t.balanced.single_axial_n); }},
-                 {"held pinion", [](const DhfgTrial& t) { return std::abs(t.held.axial_n); }},
-                 {"floating pinion", [](const DhfgTrial& t) { return std::abs(t.balanced.axial_n); }}},
-                "Statics of rigid bodies: zero for a pinion that floats."),
-          chart("Face of each half", "radial width [mm]",
-                {{"chosen", [](const DhfgTrial& t) { return t.half_face_mm; }},
-                 {"feasible", [](const DhfgTrial& t) { return t.feasible_mm; }}},
-                ""),
-          chart("Milling time", "cutting time [min]",
-                {{"all teeth", [](const DhfgTrial& t) { return t.milling.cutting_minutes; }}}, "")};
+  std::vector<svg::LineChart> charts = {
+      chart("Contact ratio", "pairs (mean)",
+            {{"V-teeth", [](const DhfgTrial& t) { return t.overlap; }},
+             {"inner half", [](const DhfgTrial& t) { return t.overlap_halves[0]; }},
+             {"outer half", [](const DhfgTrial& t) { return t.overlap_halves[1]; }}},
+            "A V-tooth is in contact while one of its halves is."),
+      chart("Axial force on the pinion", "force [N]",
+            {{"single helix", [](const DhfgTrial& t) { return std::abs(t.balanced.single_axial_n); }},
+             {"held pinion", [](const DhfgTrial& t) { return std::abs(t.held.axial_n); }},
+             {"floating pinion", [](const DhfgTrial& t) { return std::abs(t.balanced.axial_n); }}},
+            "Statics of rigid bodies: zero for a pinion that floats."),
+      chart("Face of each half", "radial width [mm]",
+            {{"chosen", [](const DhfgTrial& t) { return t.half_face_mm; }},
+             {"feasible", [](const DhfgTrial& t) { return t.feasible_mm; }}},
+            "")};
+  if (!study.operations.empty())
+    charts.push_back(chart("Milling time", "cutting time [min]",
+                           {{"all teeth", [](const DhfgTrial& t) { return t.milling.cutting_minutes; }}}, ""));
+  return charts;
 }
 
 std::vector<std::string> introduction_of(const DhfgStudy& s) {
-  return {
+  std::vector<std::string> text = {
       fmt::format("Nine trials of the orthogonal array L9: three levels of pinion teeth, ratio and helix angle, module "
                   "{:g} mm in the {} reading, as the study of X. Chu and F. Chen (Machines 2025, 13, 912) lists them. "
                   "Shaper and pinion have the same number of teeth, so the exact flanks touch along lines.",
@@ -236,6 +243,10 @@ std::vector<std::string> introduction_of(const DhfgStudy& s) {
       "Torque is taken on the face gear; the literature does not print face widths, groove, L0 or whose torque it "
       "states: here the groove lies in the middle of the band, and the halves take all that the limits leave unless "
       "the study file gives half_face. Wider halves mean more overlap."};
+  if (s.operations.empty())
+    text.emplace_back(
+        "Milling times need tools and operations, which a study file states (STUDY.toml): this study has none.");
+  return text;
 }
 
 nlohmann::ordered_json json_of(const DhfgStudy& s, const std::vector<DhfgTrial>& trials, bool quick) {
@@ -279,6 +290,9 @@ nlohmann::ordered_json json_of(const DhfgStudy& s, const std::vector<DhfgTrial>&
   return json;
 }
 
+/// Of about the same time: the rolls of a trial, and its milling.
+constexpr double kStepsOfTrial = 4;
+
 }  // namespace
 
 process::ValueOrErrors<DhfgStudy> parse_dhfg_study(std::string_view text, const std::string& file) {
@@ -317,11 +331,19 @@ commands::CommandOutcome study_dhfg(const DhfgRequest& request) {
   }
   if (request.quick) coarsen(study);
   std::vector<DhfgTrial> trials;
-  for (const auto& levels : l9_trials())
-    trials.push_back(clock.run(fmt::format("trial {}", levels.number), [&] { return dhfg_trial(study, levels); }));
+  clock.run("trials", [&] {
+    WorkShare share{double(l9_trials().size())};
+    for (const auto& levels : l9_trials()) {
+      progress.show(fmt::format("trial {}", levels.number));
+      const WorkShare trial(share, kStepsOfTrial);
+      trials.push_back(dhfg_trial(study, levels));
+    }
+  });
 
-  const std::vector<page::PageTable> tables = {geometry_table(trials), mesh_table(study, trials),
-                                               milling_table(study, trials, request.quick), range_table(study, trials)};
+  std::vector<page::PageTable> tables = {geometry_table(trials), mesh_table(study, trials)};
+  if (!study.operations.empty()) tables.push_back(milling_table(study, trials, request.quick));
+  const std::size_t of_trials = tables.size();  // a row a trial
+  tables.push_back(range_table(study, trials));
   const auto feasible = std::count_if(trials.begin(), trials.end(), [](const auto& t) { return t.refusal.empty(); });
   page::StudyPage page;
   page.title = study.name + ": double helical face gears";
@@ -329,12 +351,12 @@ commands::CommandOutcome study_dhfg(const DhfgRequest& request) {
   page.good = feasible == 9;
   page.verdict = fmt::format("{} of 9 trials feasible", feasible);
   page.introduction = introduction_of(study);
-  page.charts = charts_of(trials);
+  page.charts = charts_of(study, trials);
   page.tables = tables;
 
-  // One line a trial: the three tables side by side.
+  // One line a trial: these tables side by side.
   page::PageTable all;
-  for (std::size_t n = 0; n < 3; ++n)
+  for (std::size_t n = 0; n < of_trials; ++n)
     for (std::size_t c = n == 0 ? 0 : 1; c < tables[n].columns.size(); ++c) {
       all.columns.push_back(tables[n].columns[c] == "remark" && n == 2 ? "milling remark" : tables[n].columns[c]);
       for (std::size_t k = 0; k < trials.size(); ++k) {

@@ -13,6 +13,7 @@
 #include "cam/path/motions.h"
 #include "cam/proof/gouge_merge.h"
 #include "cam/proof/rapid_clearance.h"
+#include "geometry/base/work_share.h"
 
 namespace toothpath::analytic {
 namespace {
@@ -218,6 +219,7 @@ GougeCheck::GougeCheck(const GearDistance& part, std::vector<tool::ProofTool> to
 proof::GougeResult GougeCheck::check(const std::vector<path::ToolMotion>& motions,
                                      const std::vector<int>& tool_of_operation,
                                      std::span<const proof::LikeMotion> likes) const {
+  const WorkShare all{double(motions.size())};
   GougeStream stream(*this, tool_of_operation, !likes.empty());
   auto like = likes.begin();
   for (std::size_t k = 0; k < motions.size(); ++k) {
@@ -293,7 +295,9 @@ proof::GougeResult GougeStream::finish() {
 }
 
 void GougeStream::work() {
+  if (waiting_.empty()) return;
   std::vector<proof::GougeResult> chunks((waiting_.size() + kChunk - 1) / kChunk);
+  WorkShare share(double(chunks.size()), double(waiting_.size()));
   tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t n) {
     const proof::GougeResult* before = before_likes_ ? &*before_likes_ : nullptr;
     Chunk chunk(check_.part_, check_.tools_, check_.options_, likes_follow_ && !before, before);
@@ -309,6 +313,7 @@ void GougeStream::work() {
       }
     }
     chunks[n] = chunk.finish();
+    share.add();
   });
   for (const auto& chunk : chunks) proof::add_result(out_, chunk);
   waiting_.clear();

@@ -9,6 +9,7 @@
 
 #include "cam/ball/pass_count.h"
 #include "cam/ball/sheet_pass.h"
+#include "geometry/base/work_share.h"
 
 namespace toothpath::ball {
 namespace {
@@ -182,7 +183,9 @@ class FinishingPlanner {
   [[nodiscard]] std::vector<Chain> drawn_together(const Lay& lay) {
     std::vector<Chain> best;
     std::size_t fewest = SIZE_MAX;
+    WorkShare share(kDrawRounds + 1);
     for (int round = 0; round <= kDrawRounds; ++round) {
+      share.add();
       std::vector<Chain> chains = lay();
       std::vector<HighCusp> high;
       std::size_t passes = 0;

@@ -15,6 +15,7 @@
 #include "cam/ball/tool_orientation.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/work_share.h"
 
 namespace toothpath::ball {
 namespace {
@@ -71,8 +72,11 @@ class Planner::Work {
     // Rings know nothing of each other's passes; directions and links follow in order, each on all threads.
     std::vector<std::optional<Expected<ZonePasses, PlanRefusal>>> zones(std::size_t(part_.zones()));
     as_stage("tool passes", [&] {
-      tbb::parallel_for(std::size_t(0), zones.size(),
-                        [&](std::size_t zone) { zones[zone] = plan_passes(n, int(zone)); });
+      WorkShare all{double(zones.size())};
+      tbb::parallel_for(std::size_t(0), zones.size(), [&](std::size_t zone) {
+        const WorkShare piece(all);
+        zones[zone] = plan_passes(n, int(zone));
+      });
     });
     for (std::size_t zone = 0; zone < zones.size(); ++zone) {
       if (const auto* refusal = (*zones[zone]).refused()) {

@@ -11,6 +11,7 @@
 
 #include "cam/ball/orientation_way.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/work_share.h"
 
 namespace toothpath::ball {
 namespace {
@@ -55,19 +56,34 @@ class Orienter {
       ways_.push_back(make_way(tracks_.back(), kStation));
     }
     find_neighbours();
-    for (std::size_t p = 0; p < ways_.size(); ++p) {
-      if (search(p)) continue;
-      const std::size_t before = ways_.size();
-      if (!search_tight(p)) return *refusal_;
-      p += ways_.size() - before;  // strokes of it
-    }
+    const WorkShare all(3);
+    if (!search_all()) return *refusal_;
     relax();
-    for (std::size_t p = 0; p < ways_.size(); ++p)
-      if (!make_axes(p)) return *refusal_;
+    if (!make_all_axes()) return *refusal_;
     return take_axes(std::move(made_), check_, tree_, tool_, passes_);
   }
 
  private:
+  bool search_all() {
+    WorkShare share{double(ways_.size())};
+    for (std::size_t p = 0; p < ways_.size(); ++p) {
+      share.add();
+      if (search(p)) continue;
+      const std::size_t before = ways_.size();
+      if (!search_tight(p)) return false;
+      p += ways_.size() - before;  // strokes of it
+    }
+    return true;
+  }
+  bool make_all_axes() {
+    WorkShare share{double(ways_.size())};
+    for (std::size_t p = 0; p < ways_.size(); ++p) {
+      if (!make_axes(p)) return false;
+      share.add();
+    }
+    return true;
+  }
+
   /// Are the same passes planned with another tool?
   [[nodiscard]] RefusalWords::Plans plans() const {
     return [this](const tool::ToolAssembly& tool) {
@@ -321,7 +337,9 @@ class Orienter {
   /// Takes the steps of the grid out: every direction towards the mean of its neighbours along and across the passes
   /// and of upright, as long as it stays clear. Passes are moved at once, each against the state before the sweep.
   void relax() {
+    WorkShare share(kSweeps);
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
+      share.add();
       const std::vector<OrientationWay> before = ways_;
       std::vector<double> moved(ways_.size(), 0);
       tbb::parallel_for(std::size_t(0), ways_.size(), [&](std::size_t p) { moved[p] = relax_one(ways_[p], before); });

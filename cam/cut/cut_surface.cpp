@@ -11,6 +11,7 @@
 #include "cam/cut/unreached.h"
 #include "cam/cut/zone_places.h"
 #include "cam/proof/limits.h"
+#include "geometry/base/work_share.h"
 #include "geometry/face_gear/shaper.h"
 
 namespace toothpath::cut {
@@ -53,6 +54,9 @@ proof::Patch patch_of(face_gear::SpacePiece piece) {
   return proof::Patch::root;
 }
 
+/// Pieces of a space that the fine lines of a zone take as long as.
+constexpr double kLinesWorth = 5;
+
 class Meter {
  public:
   Meter(const analytic::GearDistance& part, const std::vector<path::ToolMotion>& motions,
@@ -83,6 +87,7 @@ class Meter {
     const auto& gear = part_.gear().parameters();
     for (const auto& ring : part_.gear().rings())
       active_end_.push_back(face_gear::active_roll_parameter(gear, ring.zone.helix_angle_rad));
+    WorkShare share(part_.zones() * (face_gear::kSpacePieces + kLinesWorth));
     for (int zone = 0; zone < part_.zones(); ++zone) {
       const ZonePlaces places(part_, zone);
       for (int piece = 0; piece < face_gear::kSpacePieces; ++piece) grid(places, zone, face_gear::SpacePiece(piece));
@@ -131,6 +136,7 @@ class Meter {
     g.rows = flank ? o_.flank_rows : piece == face_gear::SpacePiece::root ? o_.root_rows : o_.fillet_rows;
     g.columns = o_.columns;
     const std::size_t count = std::size_t(g.rows) * std::size_t(g.columns);
+    WorkShare share(o_.columns);
     g.points.resize(count);
     g.normals.resize(count);
     g.reachable.resize(count);
@@ -150,6 +156,7 @@ class Meter {
         g.reachable[k] = reachable(s->contact, region_of(piece), &residual[k]);
         if (!g.reachable[k]) left[k] = s;
       }
+      share.add();
     });
     g.excess_um.assign(paths_.size(), std::vector<float>(count));
     for (std::size_t k = 0; k < count; ++k)
@@ -163,6 +170,7 @@ class Meter {
   /// Fine lines across the space, the ends of the ring among them: the greatest excess that a ball could have reached,
   /// what it could not reach, and the cusps between neighbouring passes.
   void fine_lines(const ZonePlaces& places, int zone) {
+    WorkShare share(o_.scallop_lines + 2, kLinesWorth);
     for (int line = 0; line <= o_.scallop_lines + 1; ++line) {
       const bool end = line == 0 || line == o_.scallop_lines + 1;
       const double r = places.radius(end ? double(line > 0) : (line - 0.5) / o_.scallop_lines);
@@ -177,6 +185,7 @@ class Meter {
         if (reachable(s->contact, region)) line_max_[region] = std::max(line_max_[region], x);
         else note_unreached(*s, zone, x);
       }
+      share.add();
     }
   }
 

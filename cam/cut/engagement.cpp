@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/work_share.h"
 
 namespace toothpath::cut {
 namespace {
@@ -46,8 +47,10 @@ class Along {
     std::vector<std::size_t> done(motions_.size(), 0);  // motions that cut, before each
     for (std::size_t k = 1; k < motions_.size(); ++k) done[k] = done[k - 1] + (motions_[k - 1].rapid ? 0 : 1);
     std::vector<Engaged> out(motions_.size());
+    WorkShare share{double(motions_.size())};
     tbb::parallel_for(std::size_t{0}, motions_.size(), [&](std::size_t k) {
       if (!motions_[k].rapid && k % q_.one_of == 0) out[k] = worst(motions_[k], done[k]);
+      share.add();
     });
     return out;
   }

@@ -15,10 +15,12 @@
 #include "cam/proof/gouge_merge.h"
 #include "cam/tool/finger_profile.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/work_share.h"
 
 namespace toothpath::finger {
 namespace {
 
+constexpr double kMotionsWorth = 3;  // of four parts of the check
 constexpr std::size_t kChunk =
     64;  // motions that one thread checks one after another; the same on any number of threads
 constexpr std::size_t kLookedAt = 16;  // motions whose deepest place is searched
@@ -252,6 +254,7 @@ struct FingerGougeCheck::State {
   void judge_motions(std::span<const path::ToolMotion> local, std::span<MotionDepth> depths,
                      std::span<double> clearances, FingerCheckResult& result) const {
     std::vector<FingerCheckResult> chunks((local.size() + kChunk - 1) / kChunk);
+    WorkShare share(double(chunks.size()), kMotionsWorth);
     tbb::parallel_for(std::size_t{0}, chunks.size(), [&](std::size_t n) {
       FingerCheckResult chunk = nothing_yet(tol.clearance_mm);
       for (std::size_t k = n * kChunk; k < std::min(local.size(), (n + 1) * kChunk); ++k)
@@ -261,6 +264,7 @@ struct FingerGougeCheck::State {
           if (bodies.among_teeth) depths[k] = judge_poses(local[k], *tool, chunk);
         }
       chunks[n] = std::move(chunk);
+      share.add();
     });
     for (const FingerCheckResult& chunk : chunks) {
       add_result(result.gouge, chunk.gouge);
@@ -375,6 +379,7 @@ FingerCheckResult FingerGougeCheck::verify(std::span<const path::ToolMotion> giv
   const State& s = *state_;
   FingerCheckResult result = nothing_yet(s.tol.clearance_mm);
 
+  const WorkShare all(kMotionsWorth + 1);
   // Bounds: every motion of every tooth.
   std::vector<path::ToolMotion> local;
   local.reserve(given.size());

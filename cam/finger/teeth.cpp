@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "cam/proof/gouge_merge.h"
+#include "geometry/base/work_share.h"
 
 namespace toothpath::finger {
 namespace {
@@ -40,7 +41,11 @@ FingerCheckResult verify_teeth(const FingerGougeCheck& check, std::span<const pa
     teeth[found == place.end() ? 0 : found->second].push_back(m);
   }
   std::vector<FingerCheckResult> results(slots);
-  tbb::parallel_for(std::size_t{0}, slots, [&](std::size_t k) { results[k] = check.verify(teeth[k]); });
+  WorkShare share{double(slots)};
+  tbb::parallel_for(std::size_t{0}, slots, [&](std::size_t k) {
+    const WorkShare piece(share);
+    results[k] = check.verify(teeth[k]);
+  });
   FingerCheckResult all = std::move(results.front());
   for (std::size_t k = 1; k < slots; ++k) take_worse(all, std::move(results[k]));
   return all;

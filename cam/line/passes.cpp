@@ -8,6 +8,7 @@
 
 #include "cam/line/smooth.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/work_share.h"
 
 namespace toothpath::line {
 namespace {
@@ -25,6 +26,7 @@ constexpr double kEndBends[] = {radians(0.01), radians(0.03),
 constexpr double kEpsBend = 0.05;               // as much of that in eps
 constexpr double kLeastCovered = 0.1;           // share of the height below which a station has no say
 constexpr double kStiffness[] = {1e4, 1e2, 1, 0};
+constexpr double kStationsWorth = 0.6;            // of a pass: the best poses of its stations
 constexpr double kWorse = 1.02, kWorseMm = 2e-5;  // by which a stiffer pass may be worse than the best one
 
 /// Best poses of all stations, and which of them lie over (nearly) the whole height.
@@ -86,7 +88,11 @@ class PassPlanner {
   [[nodiscard]] Stations best_of_all() const {
     Stations out;
     out.poses.resize(count_);
-    tbb::parallel_for(std::size_t{0}, count_, [&](std::size_t k) { out.poses[k] = fit_.best(radius(k), condition_); });
+    WorkShare share(double(count_), kStationsWorth);
+    tbb::parallel_for(std::size_t{0}, count_, [&](std::size_t k) {
+      out.poses[k] = fit_.best(radius(k), condition_);
+      share.add();
+    });
     const auto full = [&](std::size_t k) { return out.poses[k] && out.poses[k]->covered >= kFull; };
     // Outwards from the middle: what lies beyond a missing station is another piece of flank.
     out.first = out.last = middle();

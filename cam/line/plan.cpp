@@ -8,6 +8,7 @@
 
 #include "cam/tool/body.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/work_share.h"
 
 namespace toothpath::line {
 namespace {
@@ -28,7 +29,9 @@ Result<std::vector<LinePass>> passes_of(const std::vector<FlankTask>& flanks, co
                                         const LineOperation& o, const Choice& choice, int rings) {
   const std::size_t n = flanks.size() * std::size_t(choice.strips);
   std::vector<std::optional<Result<LinePass>>> found(n);
+  WorkShare all{double(n)};
   tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) {
+    const WorkShare piece(all);
     const auto& flank = flanks[k / std::size_t(choice.strips)];
     const auto strip = k % std::size_t(choice.strips);
     PassOptions p;
@@ -235,6 +238,7 @@ Result<LinePlan> plan_line_milling(const face_gear::FaceGear& gear, const tool::
   Choice best;
   std::optional<Diagnostic> refused;
   const auto choices = choices_of(o);
+  const WorkShare share{double(choices.size())};  // where none suits all are tried
   for (const auto& choice : choices) {
     auto passes = passes_of(flanks, tool, o, choice, int(gear.rings().size()));
     if (!passes) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/work_share.h"
 
 namespace toothpath::contact {
 namespace {
@@ -81,10 +82,12 @@ class LinearModel {
     if (!base) return base.error();
     model.base_ = std::move(*base);
     std::vector<Field> columns;
+    WorkShare share(double(trials_of_pair().size()));
     for (const Trial& t : trials_of_pair()) {
       auto column = model.difference(t);
       if (!column) return column.error();
       columns.push_back(std::move(*column));
+      share.add();
     }
     model.kept_.resize(model.base_.size());
     for (std::size_t k = 0; k < model.base_.size(); ++k)

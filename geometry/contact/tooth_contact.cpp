@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/base/work_share.h"
 #include "geometry/contact/touch_search.h"
 
 namespace toothpath::contact {
@@ -125,11 +126,13 @@ struct Roll {
 
 void search_touches(Roll& roll) {
   roll.rolls.resize(roll.members.size());
+  WorkShare share(double(roll.members.size()) * (roll.lattice.last - roll.lattice.first + 1));
   for (std::size_t m = 0; m < roll.members.size(); ++m)
     for (int k = roll.lattice.first; k <= roll.lattice.last; ++k) {
       const TouchSearch search(roll.members[m], roll.lattice.phi_2(k));
       roll.rolls[m].touches.push_back(search.best());
       roll.rolls[m].nodes.push_back(search.any() ? search.nodes() : std::vector<double>{});
+      share.add();
     }
 }
 

@@ -5,6 +5,8 @@
 namespace toothpath::mesh {
 namespace {
 
+constexpr double kUndersideTurn = radians(1);  // between two rows: sag 4e-5 of the radius
+
 /// One closed or open row of points at one cone distance: azimuths and heights over one pitch.
 struct Section {
   double ell = 0;
@@ -86,6 +88,37 @@ Result<std::vector<Section>> sections(const bevel_gear::BevelGear& g, const Beve
   return all;
 }
 
+/// Rows of the underside between the large and the small end. Their azimuths differ by the turn of the teeth: long
+/// facets between them would lie inside the cone.
+std::vector<Section> underside(const bevel_gear::BevelGear& g, const Section& large, const Section& small) {
+  const auto turn_to = [](const Vec3& a, const Vec3& b) { return angle_from_to(a, b); };
+  const double first = turn_to(large.points.front(), small.points.front());
+  const int rows = 1 + int(std::abs(first) / kUndersideTurn);
+  std::vector<Section> out;
+  for (int k = 1; k < rows; ++k) {
+    const double t = double(k) / rows, ell = large.ell + t * (small.ell - large.ell);
+    Section row = flattened(g, large, ell, underside_height(g));
+    for (std::size_t j = 0; j < row.points.size(); ++j) {
+      const double turn = first + wrapped(turn_to(large.points[j], small.points[j]) - first);
+      row.points[j] = turned(row.points[j], t * turn);
+    }
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
+/// Along the meridian: the underside at the small end, the teeth, back along the underside.
+Result<std::vector<Section>> closed_loop(const bevel_gear::BevelGear& g, const BevelMeshOptions& o) {
+  auto rows = sections(g, o);
+  if (!rows) return rows.error();
+  const double under = underside_height(g);
+  std::vector<Section> loop{flattened(g, rows->front(), rows->front().ell, under)};
+  for (auto& s : *rows) loop.push_back(std::move(s));
+  loop.push_back(flattened(g, loop.back(), loop.back().ell, under));
+  for (auto& row : underside(g, loop.back(), loop.front())) loop.push_back(std::move(row));
+  return loop;
+}
+
 /// Corners that coincide become one, triangles without area are left out.
 void add_triangle(TriangleMesh& mesh, std::int32_t a, std::int32_t b, std::int32_t c) {
   if (a != b && b != c && c != a) mesh.triangles.push_back({a, b, c});
@@ -93,18 +126,19 @@ void add_triangle(TriangleMesh& mesh, std::int32_t a, std::int32_t b, std::int32
 
 }  // namespace
 
-Result<TriangleMesh> bevel_gear_mesh(const bevel_gear::BevelGear& g, const BevelMeshOptions& o) {
-  auto rows = sections(g, o);
-  if (!rows) return rows.error();
-  // Body: below the root by two modules, but no nearer to the axis than a third of the radius there.
-  const double depth = std::min(
-      2 * g.parameters().outer_transverse_module_mm,
-      (g.R_i() * g.sin_delta() - g.parameters().dedendum_mm * g.cos_delta()) / (1.5 * std::max(1e-9, g.cos_delta())));
-  const double under = -g.parameters().dedendum_mm - depth;
-  std::vector<Section> loop{flattened(g, rows->front(), g.R_i(), under)};
-  for (auto& s : *rows) loop.push_back(std::move(s));
-  loop.push_back(flattened(g, loop.back(), g.R_e(), under));
+double underside_height(const bevel_gear::BevelGear& g) {
+  // Below the root by two modules, but no nearer to the axis than a third of the radius there.
+  const auto& p = g.parameters();
+  const double depth =
+      std::min(2 * p.outer_transverse_module_mm,
+               (g.R_i() * g.sin_delta() - p.dedendum_mm * g.cos_delta()) / (1.5 * std::max(1e-9, g.cos_delta())));
+  return -p.dedendum_mm - depth;
+}
 
+Result<TriangleMesh> bevel_gear_mesh(const bevel_gear::BevelGear& g, const BevelMeshOptions& o) {
+  const auto made = closed_loop(g, o);
+  if (!made) return made.error();
+  const std::vector<Section>& loop = *made;
   TriangleMesh mesh;
   const std::size_t n = loop.front().points.size(), teeth = static_cast<std::size_t>(g.parameters().teeth),
                     around = n * teeth;
@@ -131,6 +165,29 @@ Result<TriangleMesh> bevel_gear_mesh(const bevel_gear::BevelGear& g, const Bevel
       const std::size_t k = (j + 1) % around;
       add_triangle(mesh, index[i][j], index[i][k], index[next][k]);
       add_triangle(mesh, index[i][j], index[next][k], index[next][j]);
+    }
+  }
+  return mesh;
+}
+
+Result<TriangleMesh> bevel_pitch_part(const bevel_gear::BevelGear& g, const BevelMeshOptions& o) {
+  const auto loop = closed_loop(g, o);
+  if (!loop) return loop.error();
+  TriangleMesh mesh;
+  const std::size_t n = loop->front().points.size() + 1;
+  std::vector<std::vector<std::int32_t>> index(loop->size(), std::vector<std::int32_t>(n));
+  for (std::size_t i = 0; i < loop->size(); ++i)
+    for (std::size_t j = 0; j < n; ++j) {
+      const Vec3 p = j + 1 < n ? (*loop)[i].points[j] : turned((*loop)[i].points[0], g.pitch());
+      const bool same = i > 0 && (p - mesh.vertices[std::size_t(index[i - 1][j])]).norm() < 1e-9;
+      index[i][j] = same ? index[i - 1][j] : std::int32_t(mesh.vertices.size());
+      if (!same) mesh.vertices.push_back(p);
+    }
+  for (std::size_t i = 0; i < loop->size(); ++i) {
+    const std::size_t next = (i + 1) % loop->size();
+    for (std::size_t j = 0; j + 1 < n; ++j) {
+      add_triangle(mesh, index[i][j], index[i][j + 1], index[next][j + 1]);
+      add_triangle(mesh, index[i][j], index[next][j + 1], index[next][j]);
     }
   }
   return mesh;

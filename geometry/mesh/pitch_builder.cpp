@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kSame_mm = 1e-9;      ///< vertices of one row that are closer are one vertex
 constexpr double kMargin = 1.15;       ///< on the measured sag
-constexpr double kBaseModules = 2.5;   ///< thickness below the lowest point of teeth and groove
 constexpr double kFootModules = 0.25;  ///< how far below the root an end face ends and the body begins
 
 using Index = std::int32_t;
@@ -182,7 +181,6 @@ Status PitchBuilder::check_no_overhang(const Row& row, double r) const {
 Status PitchBuilder::build() {
   const auto& rings = gear_.rings();
   const double m = gear_.parameters().module_mm;
-  double lowest = INFINITY;
   for (std::size_t k = 0; k < rings.size(); ++k) {
     auto rows = add_ring(rings[k], grid_.radii[k]);
     if (!rows) return rows.error();
@@ -192,9 +190,7 @@ Status PitchBuilder::build() {
       if (!fine) return fine.error();
     }
   }
-  for (const Vec3& v : out_.mesh.vertices) lowest = std::min(lowest, v.z());
-  const double floor = rings.size() > 1 ? gear_.groove_floor() : lowest;
-  const double z_base = std::min(lowest, floor) - kBaseModules * m;
+  const double floor = rings.size() > 1 ? gear_.groove_floor() : 0, z_base = underside_z(gear_);
 
   for (std::size_t k = 0; k < rings.size(); ++k) {
     const auto zone = std::uint8_t(k);

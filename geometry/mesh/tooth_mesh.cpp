@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kLeastTolerance_mm = 1e-4, kMostTolerance_mm = 10;
 constexpr std::size_t kMostPitchTriangles = 1'000'000, kMostGearTriangles = 40'000'000;
+constexpr double kBaseModules = 2.5;  // thickness below the lowest point of teeth and groove
 constexpr int kMostRefinements = 40;  // on coarse grids many steps of the aim change no cell
 
 using Index = std::int32_t;
@@ -35,6 +36,12 @@ Vec3 ToothMesh::vertex_of_copy(std::size_t index, int k) const {
   const Index from = turned_from[index];
   return from < 0 ? turned_by_pitches(mesh.vertices[index], k, teeth)
                   : turned_by_pitches(mesh.vertices[idx(from)], k + 1, teeth);
+}
+
+double underside_z(const face_gear::FaceGear& gear) {
+  const double lowest = gear.lowest_root();
+  const double floor = gear.rings().size() > 1 ? std::min(lowest, gear.groove_floor()) : lowest;
+  return floor - kBaseModules * gear.parameters().module_mm;
 }
 
 Vec3 turned_by_pitches(const Vec3& p, int k, int teeth) {

@@ -8,7 +8,7 @@
 // flank_plus is side +1 of tooth 0, flank_minus side -1 of tooth 1 (tooth 0 turned by one pitch). Every row of vertices
 // lies on one cylinder r = const, so the end faces at the inner and outer radius of a ring are exact in r. Below:
 // groove floor between the rings, inner and outer cylinder and a flat underside 2.5 modules below the lowest point of
-// the teeth and the groove. Gear frame, mm.
+// the teeth and the groove (`underside_z`). Gear frame, mm.
 #pragma once
 
 #include <optional>
@@ -62,6 +62,9 @@ struct ToothMesh {
   /// and the first, come out bit for bit equal.
   [[nodiscard]] Vec3 vertex_of_copy(std::size_t index, int k) const;
 };
+
+/// Height z of the underside that bodies of ours have, mm: how thick a gear is below its teeth no job says.
+[[nodiscard]] double underside_z(const face_gear::FaceGear& gear);
 
 /// p turned by k pitches of a gear with `teeth` teeth. k is reduced modulo `teeth` first: a full turn is the identity.
 [[nodiscard]] Vec3 turned_by_pitches(const Vec3& p, int k, int teeth);

@@ -6,6 +6,34 @@
 #include "machines/toml/near_name.h"
 
 namespace toothpath::toml {
+namespace {
+
+/// "gear.zone[0]" is a "gear.zone".
+std::string without_indices(std::string_view path) {
+  std::string name;
+  bool inside = false;
+  for (const char c : path) {
+    if (c == '[') inside = true;
+    if (!inside) name += c;
+    if (c == ']') inside = false;
+  }
+  return name;
+}
+
+ValueShape text_shape(const TextRules& rules) {
+  ValueShape shape{ValueKind::text};
+  shape.pattern = rules.pattern;
+  shape.ascii = rules.ascii;
+  return shape;
+}
+
+ValueShape list_shape(ValueKind kind, const Range& range, const Count& count) {
+  ValueShape shape = ValueShape::of_range(kind, range);
+  shape.count = count;
+  return shape;
+}
+
+}  // namespace
 
 TableReader::TableReader(const TomlValue& table, std::string path, ReaderFindings& findings)
     : table_(*table.table()), position_(table.position), path_(std::move(path)), findings_(&findings) {
@@ -26,16 +54,47 @@ SourcePosition TableReader::where(std::string_view key) const {
   return entry ? entry->value.position : position_;
 }
 
-const TomlValue* TableReader::value(std::string_view key) {
+SourcePosition TableReader::where(std::string_view key, std::size_t entry) const {
+  const TomlEntry* list = table_.find(key);
+  const TomlArray* array = list ? list->value.array() : nullptr;
+  return array && entry < array->values.size() ? array->values[entry].position : where(key);
+}
+
+void TableReader::ask(std::string_view key, const ValueShape& shape, Presence presence, std::string absent) {
   known_.emplace(key);
+  if (findings_->notes)
+    findings_->notes->keys.push_back(
+        {without_indices(path_), std::string(key), {shape}, presence, std::move(absent), false});
+}
+
+const TomlValue* TableReader::look(std::string_view key, bool must) {
   const TomlEntry* entry = table_.find(key);
+  if (!entry && must) record(position_, words().missing(path_, key));
   return entry ? &entry->value : nullptr;
 }
 
-const TomlValue* TableReader::required(std::string_view key) {
-  const TomlValue* found = value(key);
-  if (!found) record(position_, words().missing(path_, key));
-  return found;
+const TomlValue* TableReader::value(std::string_view key, std::vector<ValueShape> shapes, Presence noted) {
+  known_.emplace(key);
+  if (findings_->notes) {
+    const bool decides = shapes.size() > 1;
+    findings_->notes->keys.push_back({without_indices(path_), std::string(key), std::move(shapes), noted, {}, decides});
+  }
+  return look(key, false);
+}
+
+const TomlValue* TableReader::required(std::string_view key, std::vector<ValueShape> shapes) {
+  (void)value(key, std::move(shapes), Presence::required);
+  return look(key, true);
+}
+
+bool TableReader::misplaced(std::string_view key) {
+  ask(key, {}, Presence::misplaced);
+  return has(key);
+}
+
+void TableReader::relate(KeyRelation::Kind kind, std::string_view first, std::string_view second) {
+  if (findings_->notes)
+    findings_->notes->relations.push_back({without_indices(path_), kind, std::string(first), std::string(second)});
 }
 
 const std::vector<TomlEntry>& TableReader::entries() {
@@ -90,42 +149,107 @@ std::optional<std::string> TableReader::to_text(const TomlValue& value, const st
 }
 
 std::optional<double> TableReader::number(std::string_view key, const Range& range) {
-  const TomlValue* found = required(key);
+  ask(key, ValueShape::of_range(ValueKind::number, range), Presence::required);
+  const TomlValue* found = look(key, true);
   return found ? to_number(*found, name(key), range) : std::nullopt;
 }
 
+std::optional<double> TableReader::optional_number(std::string_view key, const Range& range) {
+  ask(key, ValueShape::of_range(ValueKind::number, range), Presence::optional);
+  const TomlValue* found = look(key, false);
+  return found ? to_number(*found, name(key), range) : std::nullopt;
+}
+
+double TableReader::number_or(std::string_view key, const Range& range, double absent) {
+  ask(key, ValueShape::of_range(ValueKind::number, range), Presence::optional, fmt::format("{:.6g}", absent));
+  const TomlValue* found = look(key, false);
+  return found ? to_number(*found, name(key), range).value_or(absent) : absent;
+}
+
 std::optional<int> TableReader::integer(std::string_view key, const Range& range) {
-  const TomlValue* found = required(key);
+  ask(key, ValueShape::of_range(ValueKind::integer, range), Presence::required);
+  const TomlValue* found = look(key, true);
   return found ? to_integer(*found, name(key), range) : std::nullopt;
 }
 
-std::optional<std::string> TableReader::text(std::string_view key, bool ascii) {
-  const TomlValue* found = required(key);
-  return found ? to_text(*found, name(key), ascii) : std::nullopt;
+std::optional<int> TableReader::optional_integer(std::string_view key, const Range& range) {
+  ask(key, ValueShape::of_range(ValueKind::integer, range), Presence::optional);
+  const TomlValue* found = look(key, false);
+  return found ? to_integer(*found, name(key), range) : std::nullopt;
 }
 
-std::optional<std::string> TableReader::word(std::string_view key, std::span<const std::string_view> allowed) {
-  auto found = text(key);
+int TableReader::integer_or(std::string_view key, const Range& range, int absent) {
+  ask(key, ValueShape::of_range(ValueKind::integer, range), Presence::optional, fmt::format("{}", absent));
+  const TomlValue* found = look(key, false);
+  return found ? to_integer(*found, name(key), range).value_or(absent) : absent;
+}
+
+std::optional<std::string> TableReader::text(std::string_view key, const TextRules& rules) {
+  ask(key, text_shape(rules), Presence::required);
+  const TomlValue* found = look(key, true);
+  return found ? to_text(*found, name(key), rules.ascii) : std::nullopt;
+}
+
+std::optional<std::string> TableReader::optional_text(std::string_view key, const TextRules& rules) {
+  ask(key, text_shape(rules), Presence::optional);
+  const TomlValue* found = look(key, false);
+  return found ? to_text(*found, name(key), rules.ascii) : std::nullopt;
+}
+
+std::optional<std::string> TableReader::one_word(std::string_view key, Words allowed, bool must) {
+  const TomlValue* value = look(key, must);
+  if (!value) return std::nullopt;
+  auto found = to_text(*value, name(key), false);
   if (!found || std::find(allowed.begin(), allowed.end(), *found) != allowed.end()) return found;
   record(where(key), words().not_one_of(name(key), *found, allowed));
   return std::nullopt;
 }
 
-std::optional<bool> TableReader::boolean(std::string_view key) {
-  const TomlValue* found = required(key);
-  if (!found) return std::nullopt;
-  if (const auto* flag = std::get_if<bool>(&found->data)) return *flag;
-  record(found->position, words().wrong_type(name(key), TomlType::boolean, found->type()));
+std::optional<std::string> TableReader::word(std::string_view key, Words allowed) {
+  ask(key, ValueShape::of_words(ValueKind::text, {allowed.begin(), allowed.end()}), Presence::required);
+  return one_word(key, allowed, true);
+}
+
+std::optional<std::string> TableReader::variant(std::string_view key, Words allowed) {
+  auto found = word(key, allowed);
+  if (findings_->notes) findings_->notes->keys.back().decides = true;
+  return found;
+}
+
+std::optional<std::string> TableReader::optional_word(std::string_view key, WordList allowed) {
+  ask(key, ValueShape::of_words(ValueKind::text, {allowed.begin(), allowed.end()}), Presence::optional);
+  return one_word(key, {allowed.begin(), allowed.size()}, false);
+}
+
+std::string TableReader::word_or(std::string_view key, WordList allowed, std::string_view absent) {
+  ask(key, ValueShape::of_words(ValueKind::text, {allowed.begin(), allowed.end()}), Presence::optional,
+      fmt::format("\"{}\"", absent));
+  return one_word(key, {allowed.begin(), allowed.size()}, false).value_or(std::string(absent));
+}
+
+std::optional<bool> TableReader::to_boolean(std::string_view key, const TomlValue& value) {
+  if (const auto* flag = std::get_if<bool>(&value.data)) return *flag;
+  record(value.position, words().wrong_type(name(key), TomlType::boolean, value.type()));
   return std::nullopt;
 }
 
+std::optional<bool> TableReader::optional_boolean(std::string_view key) {
+  ask(key, {ValueKind::boolean}, Presence::optional);
+  const TomlValue* found = look(key, false);
+  return found ? to_boolean(key, *found) : std::nullopt;
+}
+
+bool TableReader::boolean_or(std::string_view key, bool absent) {
+  ask(key, {ValueKind::boolean}, Presence::optional, absent ? "true" : "false");
+  const TomlValue* found = look(key, false);
+  return found ? to_boolean(key, *found).value_or(absent) : absent;
+}
+
 template <typename T, typename Read>
-std::optional<std::vector<T>> TableReader::list(std::string_view key, Read read) {
-  const TomlValue* found = required(key);
-  if (!found) return std::nullopt;
-  const TomlArray* array = found->array();
+std::optional<std::vector<T>> TableReader::list(std::string_view key, const TomlValue& found, Read read) {
+  const TomlArray* array = found.array();
   if (!array) {
-    record(found->position, words().wrong_type(name(key), TomlType::array, found->type()));
+    record(found.position, words().wrong_type(name(key), TomlType::array, found.type()));
     return std::nullopt;
   }
   std::vector<T> result;
@@ -135,28 +259,57 @@ std::optional<std::vector<T>> TableReader::list(std::string_view key, Read read)
   return result.size() == array->values.size() ? std::optional(std::move(result)) : std::nullopt;
 }
 
-std::optional<std::vector<double>> TableReader::number_list(std::string_view key, const Range& range) {
-  return list<double>(key,
+std::optional<std::vector<double>> TableReader::number_list(std::string_view key, const Range& range,
+                                                            const Count& count) {
+  ask(key, list_shape(ValueKind::numbers, range, count), Presence::required);
+  const TomlValue* found = look(key, true);
+  if (!found) return std::nullopt;
+  return list<double>(key, *found,
                       [&](const TomlValue& value, const std::string& name) { return to_number(value, name, range); });
 }
 
-std::optional<std::vector<int>> TableReader::integer_list(std::string_view key, const Range& range) {
-  return list<int>(key,
+std::optional<std::vector<int>> TableReader::integer_list(std::string_view key, const Range& range,
+                                                          const Count& count) {
+  ask(key, list_shape(ValueKind::integers, range, count), Presence::required);
+  const TomlValue* found = look(key, true);
+  if (!found) return std::nullopt;
+  return list<int>(key, *found,
                    [&](const TomlValue& value, const std::string& name) { return to_integer(value, name, range); });
 }
 
-std::optional<std::vector<std::string>> TableReader::ascii_list(std::string_view key) {
-  return list<std::string>(key,
+std::optional<std::vector<std::string>> TableReader::optional_ascii_list(std::string_view key, const Count& count,
+                                                                         std::vector<std::string> words) {
+  ValueShape shape = ValueShape::of_words(ValueKind::texts, std::move(words));
+  shape.count = count;
+  shape.ascii = true;
+  ask(key, shape, Presence::optional);
+  const TomlValue* found = look(key, false);
+  if (!found) return std::nullopt;
+  return list<std::string>(key, *found,
                            [&](const TomlValue& value, const std::string& name) { return to_text(value, name, true); });
 }
 
-std::optional<std::vector<double>> TableReader::numbers(std::string_view key, std::size_t count, const Range& range) {
-  const TomlValue* found = required(key);
-  if (!found) return std::nullopt;
-  const TomlArray* array = found->array();
-  if (array && array->values.size() == count) return number_list(key, range);
-  record(found->position, words().not_numbers(name(key), count, *found));
+std::optional<std::vector<double>> TableReader::counted(std::string_view key, const TomlValue& value, std::size_t count,
+                                                        const Range& range) {
+  const TomlArray* array = value.array();
+  if (array && array->values.size() == count)
+    return list<double>(key, value,
+                        [&](const TomlValue& v, const std::string& name) { return to_number(v, name, range); });
+  record(value.position, words().not_numbers(name(key), count, value));
   return std::nullopt;
+}
+
+std::optional<std::vector<double>> TableReader::numbers(std::string_view key, std::size_t count, const Range& range) {
+  ask(key, list_shape(ValueKind::numbers, range, {count, count}), Presence::required);
+  const TomlValue* found = look(key, true);
+  return found ? counted(key, *found, count, range) : std::nullopt;
+}
+
+std::optional<std::vector<double>> TableReader::optional_numbers(std::string_view key, std::size_t count,
+                                                                 const Range& range) {
+  ask(key, list_shape(ValueKind::numbers, range, {count, count}), Presence::optional);
+  const TomlValue* found = look(key, false);
+  return found ? counted(key, *found, count, range) : std::nullopt;
 }
 
 std::optional<std::vector<double>> TableReader::numbers_of(const TomlValue& value, const std::string& name,
@@ -176,8 +329,9 @@ std::optional<std::vector<double>> TableReader::numbers_of(const TomlValue& valu
   return result;
 }
 
-std::optional<TableReader> TableReader::table(std::string_view key) {
-  const TomlValue* found = value(key);
+std::optional<TableReader> TableReader::table(std::string_view key, Presence noted) {
+  ask(key, {ValueKind::table}, noted);
+  const TomlValue* found = look(key, false);
   if (!found) return std::nullopt;
   if (found->table()) return TableReader(*found, join(key), *findings_);
   record(found->position, words().no_table(path_, key, false, found->type()));
@@ -185,12 +339,17 @@ std::optional<TableReader> TableReader::table(std::string_view key) {
 }
 
 std::optional<TableReader> TableReader::required_table(std::string_view key) {
-  return required(key) ? table(key) : std::nullopt;
+  auto found = table(key, Presence::required);
+  (void)look(key, true);
+  return found;
 }
 
-std::vector<TableReader> TableReader::tables(std::string_view key) {
+std::vector<TableReader> TableReader::tables(std::string_view key, const Count& count, Presence noted) {
   std::vector<TableReader> result;
-  const TomlValue* found = value(key);
+  ValueShape shape{ValueKind::tables};
+  shape.count = count;
+  ask(key, shape, noted);
+  const TomlValue* found = look(key, false);
   if (!found) return result;
   const TomlArray* array = found->array();
   if (!array) {

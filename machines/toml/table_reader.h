@@ -11,19 +11,10 @@
 #include <string_view>
 #include <vector>
 
+#include "machines/toml/key_notes.h"
 #include "machines/toml/toml_tree.h"
 
 namespace toothpath::toml {
-
-/// What a number may be. The unit stands in messages only: " mm", " deg", "" for counts.
-struct Range {
-  double low, high;
-  const char* unit = "";
-  bool open_low = false, open_high = false;  ///< the limit itself is refused
-
-  /// Above 0, up to `high`.
-  [[nodiscard]] static constexpr Range positive(double high, const char* unit) { return {0.0, high, unit, true}; }
-};
 
 /// The messages of one format. `path` is the dotted name of a table, "" for the file itself: "gear", "gear.zone[0]".
 /// `name` is what `name()` made, with an index in brackets for an element of an array.
@@ -63,6 +54,13 @@ struct ReaderFindings {
   std::vector<Diagnostic> errors;
   /// Of every table that was opened and of its keys: "gear", "gear.module", "gear.zone[0].inner_radius".
   std::map<std::string, SourcePosition, std::less<>> positions;
+  KeyNotes* notes = nullptr;  ///< where there is one, every key that is asked for is noted
+};
+
+/// What a text is beside its being one: told to whoever describes the format; only `ascii` is checked here.
+struct TextRules {
+  bool ascii = false;
+  const char* pattern = "";  ///< as in ValueShape
 };
 
 class TableReader {
@@ -74,48 +72,71 @@ class TableReader {
   [[nodiscard]] bool has(std::string_view key) const { return table_.find(key) != nullptr; }
   /// Place of the value of a key, or of the table where the key is absent.
   [[nodiscard]] SourcePosition where(std::string_view key) const;
+  /// Place of an entry of a list.
+  [[nodiscard]] SourcePosition where(std::string_view key, std::size_t entry) const;
   /// What a key of this table is called in messages.
   [[nodiscard]] std::string name(std::string_view key) const { return words().name(path_, key); }
   [[nodiscard]] const std::string& path() const { return path_; }
   /// Refusals so far, in all tables of the file.
   [[nodiscard]] std::size_t errors() const { return findings_->errors.size(); }
 
-  // Required keys: a missing, mistyped or out-of-range one is recorded and gives nothing.
+  // Every getter marks its key as known and, where the findings ask for it, notes it. A mistyped or out-of-range value
+  // is recorded and gives nothing; so does a missing one, unless the getter says otherwise.
+  using Words = std::span<const std::string_view>;
+  using WordList = std::initializer_list<std::string_view>;
   std::optional<double> number(std::string_view key, const Range& range);
   std::optional<int> integer(std::string_view key, const Range& range);
-  std::optional<std::string> text(std::string_view key, bool ascii = false);
-  std::optional<std::string> word(std::string_view key, std::span<const std::string_view> allowed);
-  std::optional<std::string> word(std::string_view key, std::initializer_list<std::string_view> allowed) {
-    return word(key, std::span(allowed.begin(), allowed.size()));
+  std::optional<std::string> text(std::string_view key, const TextRules& rules = {});
+  std::optional<std::string> word(std::string_view key, Words allowed);
+  std::optional<std::string> word(std::string_view key, WordList allowed) {
+    return word(key, {allowed.begin(), allowed.size()});
   }
-  std::optional<bool> boolean(std::string_view key);
+  /// A word on which it depends which other keys there are.
+  std::optional<std::string> variant(std::string_view key, Words allowed);
+  std::optional<std::string> variant(std::string_view key, WordList allowed) {
+    return variant(key, {allowed.begin(), allowed.size()});
+  }
   /// Exactly `count` finite numbers.
   std::optional<std::vector<double>> numbers(std::string_view key, std::size_t count, const Range& range);
+  // Lists; their count is told to whoever describes the format, and not checked here.
+  std::optional<std::vector<double>> number_list(std::string_view key, const Range& range, const Count& count = {});
+  std::optional<std::vector<int>> integer_list(std::string_view key, const Range& range, const Count& count = {});
+  /// A value whose structure the caller reads itself, by the first of `shapes` that it is; recorded when absent.
+  const TomlValue* required(std::string_view key, std::vector<ValueShape> shapes);
+  std::optional<TableReader> required_table(std::string_view key);
+
+  // The same, but an absent key is no error.
+  std::optional<double> optional_number(std::string_view key, const Range& range);
+  std::optional<int> optional_integer(std::string_view key, const Range& range);
+  std::optional<bool> optional_boolean(std::string_view key);
+  std::optional<std::string> optional_text(std::string_view key, const TextRules& rules = {});
+  std::optional<std::string> optional_word(std::string_view key, WordList allowed);
+  std::optional<std::vector<double>> optional_numbers(std::string_view key, std::size_t count, const Range& range);
+  std::optional<std::vector<std::string>> optional_ascii_list(std::string_view key, const Count& count = {},
+                                                              std::vector<std::string> words = {});
+  /// A value whose structure the caller reads itself; nothing when absent.
+  const TomlValue* value(std::string_view key, std::vector<ValueShape> shapes, Presence noted = Presence::optional);
+  /// A table; recorded when it is something else. Nothing when absent: where `noted` says that it is required, the
+  /// caller refuses that.
+  std::optional<TableReader> table(std::string_view key, Presence noted = Presence::optional);
+  /// An array of tables ([[key]]); recorded when it is something else. Empty when absent, as above.
+  std::vector<TableReader> tables(std::string_view key, const Count& count = {}, Presence noted = Presence::optional);
+
+  // The same, with what holds where the key is absent or wrong.
+  double number_or(std::string_view key, const Range& range, double absent);
+  int integer_or(std::string_view key, const Range& range, int absent);
+  bool boolean_or(std::string_view key, bool absent);
+  std::string word_or(std::string_view key, WordList allowed, std::string_view absent);
+
   /// The numbers of an array inside a value, one a range; recorded under `name` where they are something else.
   std::optional<std::vector<double>> numbers_of(const TomlValue& value, const std::string& name,
                                                 std::initializer_list<Range> ranges);
-  // Arrays of any length.
-  std::optional<std::vector<double>> number_list(std::string_view key, const Range& range);
-  std::optional<std::vector<int>> integer_list(std::string_view key, const Range& range);
-  std::optional<std::vector<std::string>> ascii_list(std::string_view key);
-  /// A value whose structure the caller reads itself; recorded when absent.
-  const TomlValue* required(std::string_view key);
-  std::optional<TableReader> required_table(std::string_view key);
-
-  /// The same for any getter, but an absent key is no error.
-  template <typename Reader>
-  auto if_present(std::string_view key, Reader read) -> decltype(read()) {
-    known_.emplace(key);
-    if (!has(key)) return std::nullopt;
-    return read();
-  }
-
-  /// A value whose structure the caller reads itself; nothing when absent.
-  const TomlValue* value(std::string_view key);
-  /// A table; recorded when it is something else. Nothing when absent.
-  std::optional<TableReader> table(std::string_view key);
-  /// An array of tables ([[key]]); recorded when it is something else. Empty when absent.
-  std::vector<TableReader> tables(std::string_view key);
+  /// A key that is looked for only to refuse it with a word of help: is it there?
+  bool misplaced(std::string_view key);
+  /// Records it where a key that is optional elsewhere is absent.
+  void demand(std::string_view key) { (void)look(key, true); }
+  /// Tells whoever describes the format; what contradicts it the caller refuses.
+  void relate(KeyRelation::Kind kind, std::string_view first, std::string_view second);
   /// Every entry of this table; marks all as known.
   const std::vector<TomlEntry>& entries();
 
@@ -138,11 +159,18 @@ class TableReader {
   [[nodiscard]] const TableWords& words() const { return findings_->words; }
   [[nodiscard]] std::string join(std::string_view key) const;
   void record(SourcePosition position, std::string message);
+  /// Marks a key as known, and notes it.
+  void ask(std::string_view key, const ValueShape& shape, Presence presence, std::string absent = {});
+  const TomlValue* look(std::string_view key, bool must);
   std::optional<double> to_number(const TomlValue& value, const std::string& name, const Range& range);
   std::optional<int> to_integer(const TomlValue& value, const std::string& name, const Range& range);
   std::optional<std::string> to_text(const TomlValue& value, const std::string& name, bool ascii);
+  std::optional<std::string> one_word(std::string_view key, Words allowed, bool must);
+  std::optional<bool> to_boolean(std::string_view key, const TomlValue& value);
+  std::optional<std::vector<double>> counted(std::string_view key, const TomlValue& value, std::size_t count,
+                                             const Range& range);
   template <typename T, typename Read>
-  std::optional<std::vector<T>> list(std::string_view key, Read read);
+  std::optional<std::vector<T>> list(std::string_view key, const TomlValue& found, Read read);
 
   const TomlTable& table_;
   SourcePosition position_;

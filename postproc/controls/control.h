@@ -3,10 +3,13 @@
 // registry.
 #pragma once
 
+#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "cam/tool/assembly.h"
 #include "postproc/readback/reader.h"
 #include "postproc/text/dialect.h"
 
@@ -16,6 +19,13 @@ namespace toothpath::controls {
 struct WorkOffsets {
   std::string names;  ///< the ones that it has, for messages: "G54 to G59"
   bool (*has)(std::string_view name) = nullptr;
+};
+
+/// A file that the control keeps of its tools.
+struct ToolTable {
+  const char* file = "";  ///< as it is written beside the program
+  /// What must stand in it for these tools. Lengths as programs mean them: gauge line to tip.
+  std::string (*text)(std::span<const tool::ToolAssembly> tools) = nullptr;
 };
 
 struct Control {
@@ -28,6 +38,7 @@ struct Control {
   readback::NcExecute execute = nullptr;  ///< executes its text; shares nothing with what writes it
   bool cutter_locations =
       false;  ///< the text has places of the tool; in which order the axes move is the business of a post processor
+  std::optional<ToolTable> tool_table = std::nullopt;  ///< none: tools are entered at the control
 };
 
 }  // namespace toothpath::controls

@@ -9,6 +9,8 @@
 #include <thread>
 #include <tuple>
 
+#include "app/job/file.h"
+#include "app/tool_library/tool_library.h"
 #include "geometry/base/hash.h"
 #include "tests/app/program.h"
 #include "tests/support/random.h"
@@ -501,6 +503,29 @@ TEST(Machine, AssumedValuesMustBeAccepted) {
   const Finished run = run_program({"run", dir / "job.toml", "--out", dir / "out"});
   EXPECT_EQ(run.exit_code, 3);
   EXPECT_NE(run.err.find("axes.A.point"), std::string::npos) << run.err;
+}
+
+TEST(Run, LinuxCncGetsTheLinesOfItsToolTable) {
+  const TestDir dir;
+  ASSERT_EQ(run_program({"run", kQuick, "--out", dir / "out"}).exit_code, 0);
+  const auto tools = tool_library::read_tool_library(dir / "out/program_tools.tbl");
+  ASSERT_TRUE(tools) << tools.error().text();
+  const auto job = job::read_job_file(kQuick);
+  ASSERT_TRUE(job);
+  ASSERT_EQ(tools->size(), job.value().tools.size());
+  for (const auto& tool : job.value().tools) {
+    const auto line = tool_library::tool_of_library(*tools, tool.number, "");
+    ASSERT_TRUE(line);
+    EXPECT_EQ(*line->keys.find("length")->value.number(), tool.length_mm);
+    EXPECT_EQ(*line->keys.find("diameter")->value.number(), tool.diameter_mm);
+  }
+  // A control whose tools are entered by hand gets no such file.
+  const std::string siemens = std::regex_replace(file_text(kQuick), std::regex("file = \"[^\"]*\""),
+                                                 "file = \"siemens_ac.toml\"\naccept_assumed = true");
+  write_file(dir / "siemens.toml", siemens);
+  const Finished other = run_program({"run", dir / "siemens.toml", "--out", dir / "siemens"});
+  EXPECT_EQ(other.exit_code, 0) << other.err;
+  EXPECT_FALSE(std::filesystem::exists(dir / "siemens/program_tools.tbl"));
 }
 
 TEST(Run, ASmallGearGoesTheWholeWay) {

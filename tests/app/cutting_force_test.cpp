@@ -151,7 +151,8 @@ TEST(CuttingForce, StandsInReportAndOnThePage) {
   report.operations[1].cutting->load.reset();
   report.operations[1].cutting->not_computed = "planted";
   const joints::AxisProgram program;
-  report.sections = sections::sections_of({job, report, program, {}});
+  const machines::Machine machine;
+  report.sections = sections::sections_of({job, machine, report, program, {}});
   const auto own =
       std::find_if(report.sections.begin(), report.sections.end(), [](const auto& s) { return s.id == "force"; });
   ASSERT_NE(own, report.sections.end());

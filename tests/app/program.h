@@ -34,6 +34,7 @@ struct Launch {
   rlim_t address_space = RLIM_INFINITY;  ///< bytes
   int signal_number = 0;                 ///< sent after `signal_after_ms`
   int signal_after_ms = 0;
+  bool with_progress = false;
   std::string signal_when;  ///< instead: when this file or folder is there (at most a minute is waited)
   std::function<void()> before_signal = [] {};
 };
@@ -42,6 +43,8 @@ inline Finished run_program(const Launch& launch) {
   const TestDir dir;
   const std::string out = launch.stdout_file.empty() ? dir / "out" : launch.stdout_file, err = dir / "err";
   std::vector<std::string> words = {TOOTHPATH_BINARY};
+  // What a slow machine would say beside what is looked for.
+  if (!launch.arguments.empty() && !launch.with_progress) words.insert(words.end(), {"--progress", "never"});
   words.insert(words.end(), launch.arguments.begin(), launch.arguments.end());
   std::vector<char*> argv;
   for (auto& word : words) argv.push_back(word.data());

@@ -36,12 +36,13 @@ class ToolWork : public ::testing::Test {
   /// Our section, if it is there.
   [[nodiscard]] std::optional<report::Section> section() const {
     const path::ClPath* list[] = {&paths_[0], &paths_[1], &paths_[2]};
-    for (auto& s : sections::sections_of({job_, report_, program_, list}))
+    for (auto& s : sections::sections_of({job_, machine_, report_, program_, list}))
       if (s.id == "tool-work") return s;
     return std::nullopt;
   }
 
   job::Job job_;
+  machines::Machine machine_;
   joints::AxisProgram program_;
   report::RunReport report_;
   std::array<path::ClPath, 3> paths_;

@@ -12,6 +12,7 @@
 #include "cam/finger/check.h"
 #include "cam/finger/milling.h"
 #include "geometry/base/angle.h"
+#include "geometry/exchange/bevel_shell.h"
 #include "geometry/mesh/bevel_mesh.h"
 
 namespace toothpath::bevel {
@@ -144,6 +145,9 @@ class BevelProcess final : public process::GearProcess {
     for (const Vec3& v : out.mesh.vertices) out.teeth.push_back(above(v));
     return out;
   }
+  [[nodiscard]] Result<mesh::TriangleMesh> mesh() const override { return mesh::bevel_gear_mesh(gear_); }
+  [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh() const override { return mesh::bevel_pitch_part(gear_); }
+  [[nodiscard]] Result<exchange::GearShell> shell() const override { return exchange::bevel_gear_shell(gear_); }
   [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
                                    const std::vector<std::string>&, app::StageClock& clock,
                                    std::vector<std::string>& files) const override {

@@ -22,7 +22,8 @@ std::string contact_page(const ContactAnalysis& a) {
   page.verdict = edge ? "edge contact" : "contact inside the flanks";
   page.introduction = {
       "Both members turn as rigid bodies without load, as on a rolling tester. The compound marks every place where "
-      "the flanks come closer than its thickness at any moment of the mesh; the orange line is the path of contact.",
+      "the flanks come closer than its thickness at any moment of the mesh; the orange line is the path of contact, "
+      "orange lines are lines of contact.",
       "A pinion with fewer teeth than the shaper touches the exact flank in one point that runs along a straight line "
       "of the housing; a pinion that is the shaper touches along lines. In both cases the transmission error is a "
       "constant, aligned or not, as long as contact stays inside the flank."};

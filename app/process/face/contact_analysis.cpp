@@ -5,13 +5,10 @@
 
 #include "app/base/units.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/work_share.h"
 
 namespace toothpath::face {
 namespace {
-
-/// Below this transmission error [rad] contact counts as inside the flank: rounding is a thousand times less, edges far
-/// more.
-constexpr double kNoError = 1e-10;
 
 std::string kind_of(const ContactOfSide& side) {
   bool line = false, whole = false;
@@ -134,6 +131,7 @@ process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, con
         "an axial error turns the halves of a double helical pinion against each other: a pinion that floats would "
         "take the place without it");
 
+  const WorkShare share(cut ? 4 : 2);  // rolls
   for (const int s : {1, -1}) {
     std::vector<contact::ContactFlank> flanks;
     for (int zone = 0; zone < static_cast<int>(gear.rings().size()); ++zone) {
@@ -244,9 +242,11 @@ std::string contact_summary(const ContactAnalysis& a) {
   for (const auto& side : a.sides) {
     const contact::RollResult& r = side.roll;
     out += fmt::format("  flank {:+}, {}: {} contact\n", side.side, side.as_cut ? a.route : "exact", side.kind);
-    out += fmt::format("    transmission error: range {:.3g} urad = {:.3g} um at {:.3f} mm, mean {:.4g} urad\n",
-                       r.error_range_rad * app::kMicro, r.error_range_rad * a.pitch_radius_mm * app::kUm,
-                       a.pitch_radius_mm, r.error_mean_rad * app::kMicro);
+    if (r.error_range_rad < kNoError) out += "    transmission error: none, the ratio is constant\n";
+    else
+      out += fmt::format("    transmission error: range {:.3g} urad = {:.3g} um at {:.3f} mm, mean {:.4g} urad\n",
+                         r.error_range_rad * app::kMicro, r.error_range_rad * a.pitch_radius_mm * app::kUm,
+                         a.pitch_radius_mm, r.error_mean_rad * app::kMicro);
     out += fmt::format("    contact ratio {:.3f}, pairs in contact {} to {}; within the compound {:.3f}, {} to {}\n",
                        r.contact_ratio, r.least_touching, r.most_touching, r.marking_ratio, r.least_marking,
                        r.most_marking);

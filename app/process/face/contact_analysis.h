@@ -13,6 +13,10 @@
 
 namespace toothpath::face {
 
+/// rad: contact with a smaller transmission error is inside the flank; rounding is a thousand times less, edges far
+/// more.
+inline constexpr double kNoError = 1e-10;
+
 /// One side of the teeth rolled against the pinion: a member a ring.
 struct ContactOfSide {
   int side = 1;

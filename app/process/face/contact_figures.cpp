@@ -12,6 +12,8 @@
 namespace toothpath::face {
 namespace {
 
+constexpr int kLinesAPitch = 4;
+
 std::string name_of(const ContactAnalysis& a, const ContactOfSide& side) {
   return fmt::format("flank {:+}, {}", side.side, side.as_cut ? a.route : "exact");
 }
@@ -22,6 +24,7 @@ std::string pattern_note(const ContactAnalysis& a, const ContactOfSide& side, co
   if (p.marked_share > 0 && p.marked_share < 0.95 && p.length_mm >= 1.3 * p.width_mm)
     note += fmt::format("Long axis {:.1f} mm, inclined {:.1f} deg to the direction of the tooth; {:.1f} mm across. ",
                         p.length_mm, degrees(p.inclination_rad), p.width_mm);
+  if (side.kind == "line") note += fmt::format("Lines of contact, {} a pitch of the pinion. ", kLinesAPitch);
   if (side.kind == "edge") note += "The path of contact misses the flank: it bears on an edge. ";
   return note;
 }
@@ -29,8 +32,20 @@ std::string pattern_note(const ContactAnalysis& a, const ContactOfSide& side, co
 /// Every n-th row of a fine grid: the eye does not see more.
 int stride_of(int rows) { return std::max(1, (rows - 1) / 240); }
 
+/// Every place touches at one turn of the pinion: the lines of equal turns, some a pitch.
+void add_lines(const ContactAnalysis& a, const contact::ContactFlank& f, int stride, svg::PatternDrawing& d) {
+  const double step = 2 * kPi / a.pinion_teeth / kLinesAPitch;
+  for (int r = 0; r < f.rows; r += stride)
+    for (int c = 0; c < f.columns; ++c) {
+      const auto k = f.index(r, c);
+      d.moment.push_back(f.surface.flank_phi(f.side, f.theta[k], f.B[k]) / step);
+    }
+  const auto [low, high] = std::minmax_element(d.moment.begin(), d.moment.end());
+  for (double level = std::ceil(*low); level < *high; ++level) d.lines.push_back(level);
+}
+
 svg::PatternDrawing drawing(const ContactAnalysis& a, const contact::ContactMember& member,
-                            const contact::FlankPattern& p, bool on_pinion) {
+                            const contact::FlankPattern& p, bool on_pinion, bool line) {
   const contact::ContactFlank& f = member.flank;
   svg::PatternDrawing d;
   d.compound_um = a.settings.compound_mm * app::kUm;
@@ -48,8 +63,9 @@ svg::PatternDrawing drawing(const ContactAnalysis& a, const contact::ContactMemb
   }
   d.x_label = on_pinion ? "along the pinion's axis [mm]" : "radius from the gear's axis [mm]";
   d.y_label = on_pinion ? "radius [mm]" : "height z [mm]";
-  if (!on_pinion)
+  if (!on_pinion && !line)
     for (const auto& place : p.path) d.path.emplace_back(place.radius_mm, place.height_mm);
+  if (!on_pinion && line) add_lines(a, f, stride, d);
   return d;
 }
 
@@ -62,7 +78,7 @@ std::vector<ContactFigure> contact_patterns(const ContactAnalysis& a) {
       const std::string zone = side.members.size() > 1 ? fmt::format(", ring {}", side.members[m].flank.zone) : "";
       const contact::FlankPattern& p = side.roll.patterns[m];
       for (const bool on_pinion : {false, true}) {
-        svg::PatternDrawing d = drawing(a, side.members[m], p, on_pinion);
+        svg::PatternDrawing d = drawing(a, side.members[m], p, on_pinion, side.kind == "line");
         d.title = fmt::format("contact pattern on the {}, {}{}", on_pinion ? "pinion" : "gear", name_of(a, side), zone);
         figures.push_back(
             {fmt::format("{}: {}{}", on_pinion ? "Pinion" : "Gear", name_of(a, side), zone),
@@ -96,7 +112,7 @@ std::vector<svg::LineChart> contact_charts(const ContactAnalysis& a) {
       const double x = (p.phi_2 - start) / pitch;
       // Rounding would look like a curve of its own.
       const double value = (p.error_rad - side.roll.error_mean_rad) * app::kMicro;
-      e.x.push_back(x), e.y.push_back(std::abs(value) < 1e-5 ? 0 : value);
+      e.x.push_back(x), e.y.push_back(std::abs(value) < kNoError * app::kMicro ? 0 : value);
       t.x.push_back(x), t.y.push_back(side.as_cut ? p.marking : p.touching);
     }
     error.series.push_back(std::move(e));
@@ -128,11 +144,9 @@ page::PageTable contact_table(const ContactAnalysis& a) {
       const contact::FlankPattern& p = r.patterns[m];
       table.rows.push_back(
           {fmt::format("{:+}", side.side), side.as_cut ? a.route : "exact", std::to_string(side.members[m].flank.zone),
-           side.kind,
-           svg::short_number(r.error_range_rad * app::kMicro < 1e-5 ? 0 : r.error_range_rad * app::kMicro, 4),
-           svg::short_number(
-               r.error_range_rad * app::kMicro < 1e-5 ? 0 : r.error_range_rad * a.pitch_radius_mm * app::kUm, 4),
-           fmt::format("{:.4f}", std::abs(r.error_mean_rad) < 1e-11 ? 0 : r.error_mean_rad * app::kMicro),
+           side.kind, svg::short_number(r.error_range_rad < kNoError ? 0 : r.error_range_rad * app::kMicro, 4),
+           svg::short_number(r.error_range_rad < kNoError ? 0 : r.error_range_rad * a.pitch_radius_mm * app::kUm, 4),
+           fmt::format("{:.4f}", std::abs(r.error_mean_rad) < kNoError ? 0 : r.error_mean_rad * app::kMicro),
            fmt::format("{:.3f}", r.contact_ratio), fmt::format("{} to {}", r.least_touching, r.most_touching),
            fmt::format("{} to {}", r.least_marking, r.most_marking), fmt::format("{:.1f}", p.marked_share * 100),
            fmt::format("{:.2f} to {:.2f}", p.inner_mm, p.outer_mm),

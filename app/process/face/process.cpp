@@ -17,6 +17,7 @@
 #include "cam/cut/cut_surface.h"
 #include "cam/plan/face_gear.h"
 #include "cam/plan/first_ball.h"
+#include "geometry/exchange/face_shell.h"
 #include "geometry/mesh/tooth_mesh.h"
 #include "postproc/joints/pole.h"
 
@@ -189,12 +190,8 @@ class FaceProcess final : public process::GearProcess {
   }
   [[nodiscard]] sheet::PartOutline outline() const override {
     const double root = gear_.lowest_root();
-    return {gear_.inner_radius(),
-            gear_.outer_radius(),
-            gear_.blank_top(),
-            root,
-            root - 2.5 * gear_.parameters().module_mm,
-            gear_words(gear_.parameters())};
+    return {gear_.inner_radius(),     gear_.outer_radius(),          gear_.blank_top(), root,
+            mesh::underside_z(gear_), gear_words(gear_.parameters())};
   }
   [[nodiscard]] page::GearOnPage on_page(const std::string& machine_name) const override {
     const face_gear::FaceGearParameters& p = gear_.parameters();
@@ -222,6 +219,17 @@ class FaceProcess final : public process::GearProcess {
         for (const auto vertex : out.mesh.triangles[t]) out.teeth[static_cast<std::size_t>(vertex)] = true;
     return out;
   }
+  [[nodiscard]] Result<mesh::TriangleMesh> mesh() const override {
+    const auto pitch = mesh::mesh_tooth_space(gear_, kStlSag);
+    if (!pitch) return pitch.error();
+    return mesh::join_copies(*pitch);
+  }
+  [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh() const override {
+    auto pitch = mesh::mesh_tooth_space(gear_, kStlSag);
+    if (!pitch) return pitch.error();
+    return std::move(pitch->mesh);
+  }
+  [[nodiscard]] Result<exchange::GearShell> shell() const override { return exchange::face_gear_shell(gear_); }
   [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
                                    const std::vector<std::string>& assumed, app::StageClock& clock,
                                    std::vector<std::string>& files) const override {

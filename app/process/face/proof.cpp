@@ -5,6 +5,7 @@
 #include "app/base/units.h"
 #include "app/process/face/unreached.h"
 #include "app/process/proof_limits.h"
+#include "geometry/base/work_share.h"
 
 namespace toothpath::face {
 namespace {
@@ -38,6 +39,7 @@ void judge_gouge(const proof::GougeResult& gouge, const analytic::GougeCheck& ch
 proof::GougeResult gouge_of(const analytic::GougeCheck& check, process::ProgramProof& program,
                             const std::vector<int>& tool_of_operation) {
   if (!program.each_tooth) return check.check(program.motions, tool_of_operation, program.likes);
+  const WorkShare all{double(program.tooth_motions)};
   analytic::GougeStream stream(check, tool_of_operation, program.likes_follow);
   std::uint32_t firsts = 0;
   Status made = program.each_tooth(process::TeethWanted::whole, [&](auto&& motions, auto likes, bool first) {

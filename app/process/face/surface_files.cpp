@@ -11,7 +11,7 @@
 namespace toothpath::face {
 namespace {
 
-constexpr double kStlSag = 0.01, kVtpSag = 0.002;  // mm
+constexpr double kVtpSag = 0.002;  // mm
 
 /// Number of the patch that the first triangle at each vertex belongs to.
 std::vector<double> patch_of_vertices(const mesh::ToothMesh& pitch) {

@@ -6,6 +6,7 @@
 #include "app/process/flow/registry.h"
 #include "app/process/flow/restart.h"
 #include "app/process/ledger_sources.h"
+#include "app/process/machine_moves.h"
 #include "app/process/program_report.h"
 #include "app/process/proof_limits.h"
 #include "app/report/page/motion_charts.h"
@@ -78,7 +79,10 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
 
   const std::vector<const path::ClPath*> asked = process::paths_to_meet(program, paths);
   const std::string file = output.final_path(posted->file);
-  const process::ProgramText whole{posted->text, file, run.job, run.machine};
+  auto bodies = process::bodies_in_machine(run.job, run.machine, gear, nullptr);
+  if (!bodies) return bodies.error();
+  bodies::MovesJudge moves = process::judge_of(run.machine, std::move(*bodies), run.job, limits.clearance_mm);
+  const process::ProgramText whole{posted->text, file, run.job, run.machine, &moves};
   auto proof = process::prove_program(
       whole, {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad},
       run.milling->check(), run.clock);
@@ -93,12 +97,13 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
   run.program_text = std::move(posted->restarted ? posted->restart_text : posted->text);
   run.report.ledger = run.milling->ledger(program, *proof, posted->blend_mm);
   process::note_cutting_forces(run.report, run.job);
-  run.report.sections =
-      sections::sections_of({run.job, run.report, posted->restarted ? *posted->restarted : program, paths});
+  run.report.sections = sections::sections_of(
+      {run.job, run.machine, run.report, posted->restarted ? *posted->restarted : program, paths});
   if (!run.report.reasons.empty()) {
     if (run.report.gouge)
-      run.report.would_help =
-          process::what_would_help(run.report.ledger, *run.report.gouge, run.report.gouge_tolerance_mm);
+      for (std::string& help :
+           process::what_would_help(run.report.ledger, *run.report.gouge, run.report.gouge_tolerance_mm))
+        run.report.would_help.push_back(std::move(help));
     return std::nullopt;
   }
   process::note_verified(run.report, posted->file, run.program_text);

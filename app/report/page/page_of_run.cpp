@@ -26,11 +26,11 @@ std::vector<KeyFigure> key_figures(const report::RunReport& r) {
   if (r.gouge)
     figures.push_back(
         {"worst gouge", um(std::max(0.0, r.gouge->measured_mm)), "\u00b5m",
-         fmt::format("bound {}, tolerance {}", um(std::max(0.0, r.gouge->bound_mm)), um(r.gouge_tolerance_mm)),
+         fmt::format("proven below {}, tolerance {}", um(std::max(0.0, r.gouge->bound_mm)), um(r.gouge_tolerance_mm)),
          r.gouge->bound_mm <= r.gouge_tolerance_mm ? State::good : State::bad});
   if (r.finished)
-    figures.push_back(
-        {"worst left material", um(r.finished->max_mm), "\u00b5m", "bound " + um(r.finished->bound_mm), State::plain});
+    figures.push_back({"worst left material", um(r.finished->max_mm), "\u00b5m",
+                       "proven below " + um(r.finished->bound_mm), State::plain});
   if (r.gouge)
     figures.push_back({"least clearance", app::least_text(r.gouge->clearance_mm, r.gouge->clearance_at_least()), "mm",
                        fmt::format("required {:.3f}", r.gouge->required_clearance_mm),
@@ -44,7 +44,8 @@ std::vector<KeyFigure> key_figures(const report::RunReport& r) {
         {"NC blocks", std::to_string(r.blocks), "", fmt::format("{} CL points a tooth", r.cl_points), State::plain});
   }
   for (const report::Finding& f : r.findings)
-    if (!f.label.empty()) figures.push_back({f.label, f.value_text(), f.unit, f.limit_text(), state_of(f)});
+    if (!f.label.empty())
+      figures.push_back({f.label, f.value_text(), f.unit == "um" ? "\u00b5m" : f.unit, f.limit_text(), state_of(f)});
   return figures;
 }
 
@@ -71,12 +72,12 @@ std::string readable_type(std::string type) {
 
 PageTable operation_table(const report::RunReport& r) {
   PageTable table{
-      "Operations", {"op", "type", "tool", "S 1/min", "feed mm/min", "CL points", "cutting min", "rapid min"}, {}, ""};
+      "Operations", {"op", "type", "tool", "S 1/min", "feed mm/min", "CL points", "cutting", "rapids"}, {}, ""};
   for (const auto& o : r.operations)
     table.rows.push_back({std::to_string(o.operation), readable_type(o.type), fmt::format("T{}", o.tool_number),
                           fmt::format("{:g}", o.speed_rpm), fmt::format("{:g}", o.feed_mm_min),
-                          std::to_string(o.cl_points), fmt::format("{:.2f}", o.feed_minutes),
-                          fmt::format("{:.2f}", o.rapid_minutes)});
+                          std::to_string(o.cl_points), report::readable_minutes(o.feed_minutes),
+                          report::readable_minutes(o.rapid_minutes)});
   if (!r.operations.empty()) table.note = "Times: " + report::times_text(r) + ".";
   return table;
 }
@@ -138,6 +139,7 @@ ReportPage page_of_run(const GearOnPage& gear, const report::RunReport& r, std::
   }
   if (r.block_times) page.block_times = report::block_time_chart(*r.block_times);
   page.excess = r.excess;
+  page.finished = r.finished;
   page.ledger = r.ledger;
   page.directions = r.directions;
   page.stage_seconds = r.stages;

@@ -84,6 +84,7 @@ struct ReportPage {
   std::vector<NcExcerpt> listing;  ///< ascending, without overlap; see nc_excerpts()
 
   std::vector<proof::ExcessResult> excess;  ///< one histogram an operation
+  std::optional<proof::ExcessResult> finished;
   std::vector<proof::LedgerEntry> ledger;
   std::vector<proof::DirectionChoice> directions;
   std::optional<svg::HistogramChart> block_times;  ///< how long the cutting blocks take

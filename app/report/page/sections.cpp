@@ -9,6 +9,7 @@
 #include "app/report/svg/html_text.h"
 #include "app/report/svg/plot.h"
 #include "geometry/base/angle.h"
+#include "machines/assumed.h"
 
 namespace toothpath::page {
 namespace {
@@ -112,6 +113,9 @@ std::string listing(const ReportPage& page) {
   return out + "</div></figure>\n";
 }
 
+constexpr std::size_t kMostAssumed = 200, kAssumedWidth = 110;
+constexpr std::size_t kLongValue = 12;  // a figure of more letters is no number to be read from afar
+
 std::string key_figures(const ReportPage& page) {
   if (page.figures.empty()) return {};
   std::string out = "<dl class=\"figures\">\n";
@@ -119,8 +123,8 @@ std::string key_figures(const ReportPage& page) {
     const char* state = f.state == KeyFigure::State::good  ? " class=\"good\""
                         : f.state == KeyFigure::State::bad ? " class=\"bad\""
                                                            : "";
-    out += fmt::format("<div{}><dt>{}</dt><dd>{}{}</dd>{}</div>\n", state, svg::html_escape(f.name),
-                       svg::html_escape(f.value),
+    out += fmt::format("<div{}><dt>{}</dt><dd{}>{}{}</dd>{}</div>\n", state, svg::html_escape(f.name),
+                       f.value.size() > kLongValue ? " class=\"long\"" : "", svg::html_escape(f.value),
                        f.unit.empty() ? "" : fmt::format(" <span>{}</span>", svg::html_escape(f.unit)),
                        f.note.empty() ? "" : fmt::format("<dd class=\"sub\">{}</dd>", svg::html_escape(f.note)));
   }
@@ -161,7 +165,8 @@ std::string job_section(const ReportPage& page) {
       columns += fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", svg::html_escape(name), svg::html_escape(value));
     columns += "</tbody></table>\n";
   }
-  columns += list("Assumed values", page.assumed, "assumed");
+  columns += list(fmt::format("Assumed values ({})", page.assumed.size()),
+                  machines::grouped_keys(page.assumed, kMostAssumed, kAssumedWidth), "assumed");
   return section("job", "Job", columns.empty() ? columns : fmt::format("<div class=\"columns\">{}</div>\n", columns));
 }
 
@@ -202,11 +207,13 @@ std::string gouge_section(const ReportPage& page) {
 
 std::string deviation_section(const ReportPage& page) {
   std::string plots;
-  PageTable t{"Material left (+) or missing (\u2212) along the normal",
-              {"Operation", "Max [\u00b5m]", "Min [\u00b5m]", "RMS [\u00b5m]", "Bound [\u00b5m]", "Points"},
-              {},
-              "Bound: the greatest value on the grid and what may stand between its points. The finished surface, "
-              "where there is one, has a closer bound at the top of the page: from its cusps."};
+  PageTable t{
+      "Material left (+) or missing (\u2212) along the normal",
+      {"After operation", "Max [\u00b5m]", "Min [\u00b5m]", "RMS [\u00b5m]", "Proven below [\u00b5m]", "Points"},
+      {},
+      "Of an operation: the points of its grid, and what may stand between them. The finished surface: what the "
+      "tools reach of the last grid, with the cusps between its points; these are the numbers at the top of the "
+      "page."};
   for (const proof::ExcessResult& e : page.excess) {
     const std::string name = operation_name(page, e.operation);
     t.rows.push_back(
@@ -216,6 +223,11 @@ std::string deviation_section(const ReportPage& page) {
     plots += figure(chart.title, svg::svg_histogram(chart));
   }
   if (page.excess.empty()) return {};
+  if (page.finished) {
+    const proof::ExcessResult& f = *page.finished;
+    t.rows.push_back({"finished surface", um_text(f.max_mm), um_text(f.min_mm), um_text(f.rms_mm), um_text(f.bound_mm),
+                      std::to_string(f.points)});
+  }
   return section("deviation", "Deviation of the cut surface", figures(plots) + table(t));
 }
 
@@ -310,10 +322,14 @@ std::string section_of_the_report(const report::Section& s) {
 std::string stages_section(const ReportPage& page) {
   if (page.stage_seconds.empty()) return {};
   double total = 0;
-  for (const auto& [name, seconds] : page.stage_seconds) total += seconds;
+  std::vector<std::pair<std::string, double>> rounded;  // to ms
+  for (const auto& [name, seconds] : page.stage_seconds) {
+    total += seconds;
+    rounded.emplace_back(name, std::round(seconds * 1e3) / 1e3);
+  }
   return section("stages", "Computing time",
                  figures(figure(fmt::format("Stages, {} s together", svg::short_number(total, 3)),
-                                svg::svg_bars(page.stage_seconds, "time [s]"))));
+                                svg::svg_bars(rounded, "time [s]"))));
 }
 
 std::string tables_section(const ReportPage& page) {

@@ -17,6 +17,7 @@ namespace toothpath::sections {
 /// What a section may look at: a run that got as far as its proof.
 struct SectionInput {
   const job::Job& job;
+  const machines::Machine& machine;
   const report::RunReport& report;             ///< complete but for its sections and files
   const joints::AxisProgram& program;          ///< what lies on the disk
   std::span<const path::ClPath* const> paths;  ///< one an operation, one tooth space
@@ -27,6 +28,8 @@ struct SectionInput {
 
 /// Meshes of stock and fixture: which, where, how far from the finished gear. Of `check`, which has no axis program.
 [[nodiscard]] report::Section scene(const report::RunReport& report);
+/// How near the bodies of the machine come to each other; empty where it states none. Of `check`.
+[[nodiscard]] report::Section machine_moves_of(const machines::Machine& machine, const report::RunReport& report);
 /// Feeds, speeds, tools and coolant as they were read, beside what the job asks. Of `check`.
 [[nodiscard]] report::Section conditions(const job::Job& job, const machines::Machine& machine,
                                          const report::RunReport& report);

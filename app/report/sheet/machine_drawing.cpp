@@ -43,12 +43,13 @@ class Drawing {
                   kHeight / 2 - scale * (q.y() - (low.y() + high.y()) / 2), 0);
     };
     std::string out = fmt::format(
-        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {:.0f} {:.0f}' width='{:.0f}' height='{:.0f}' role='img' "
+        "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {:.0f} {:.0f}' style='width:{:.0f}px;max-width:100%' "
+        "role='img' "
         "aria-label='chain of {}' font-family='sans-serif' font-size='13'>\n"
         "<rect width='100%' height='100%' fill='#fff'/>\n"
         "<defs><marker id='tip' viewBox='0 0 10 10' refX='8' refY='5' markerWidth='7' markerHeight='7' "
         "orient='auto-start-reverse'><path d='M0 0L10 5L0 10z' fill='context-stroke'/></marker></defs>\n",
-        kWidth, kHeight, kWidth, kHeight, svg::html_escape(name));
+        kWidth, kHeight, kWidth, svg::html_escape(name));
     for (const auto& l : lines_) {
       std::string points;
       for (const auto& p : l.points) points += fmt::format("{:.1f},{:.1f} ", place(p).x(), place(p).y());

@@ -56,6 +56,17 @@ void restart_section(Sheet& sheet, const job::Job& job, const report::RunReport&
       "work offset), go on where the operation begins, and set the first tooth as the table says. A tooth that was not "
       "finished is cut again from its beginning. Put a changed first tooth back afterwards.</p>\n",
       svg::html_escape(job.file.substr(job.file.find_last_of('/') + 1)), place(menu.start_end)));
+  sheet.raw("<p class=small>The lines of all teeth stand in the appendix.</p>\n");
+}
+
+void restart_appendix(Sheet& sheet, const report::RunReport& report) {
+  if (!report.restart_menu) return;
+  const restart::RestartMenu& menu = *report.restart_menu;
+  const bool listed = std::any_of(menu.operations.begin(), menu.operations.end(),
+                                  [](const auto& op) { return op.first_tooth.line == 0 && !op.teeth.empty(); });
+  if (!listed && report.tooth_stride == 1) return;
+  sheet.raw("<div class=appendix>\n");
+  sheet.heading("Appendix: lines of the teeth, for a restart");
   if (report.tooth_stride != 1)
     sheet.raw(fmt::format("<p class=small>Tooth order: spread. Place n cuts tooth n &times; {} mod {}.</p>\n",
                           report.tooth_stride, report.teeth));
@@ -81,6 +92,7 @@ void restart_section(Sheet& sheet, const job::Job& job, const report::RunReport&
                   pairs);
     }
   }
+  sheet.raw("</div>\n");
 }
 
 }  // namespace toothpath::sheet

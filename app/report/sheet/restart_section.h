@@ -7,8 +7,11 @@
 
 namespace toothpath::sheet {
 
-/// Start and restart points with their lines, what is active from there, and the line of every tooth (of at most 400;
-/// of larger gears of equally spaced ones). Nothing where the report has no menu.
+/// Start and restart points with their lines and what is active from there. Nothing where the report has no menu.
 void restart_section(Sheet& sheet, const job::Job& job, const report::RunReport& report);
+
+/// The line of every tooth, of at most 400; of larger gears of equally spaced ones. Nothing where teeth are set by
+/// their number.
+void restart_appendix(Sheet& sheet, const report::RunReport& report);
 
 }  // namespace toothpath::sheet

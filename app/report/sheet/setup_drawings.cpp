@@ -1,7 +1,9 @@
 #include "app/report/sheet/setup_drawings.h"
 
 #include <algorithm>
+#include <cmath>
 
+#include "app/report/sheet/sheet_html.h"
 #include "app/report/svg/html_text.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/result.h"
@@ -9,64 +11,156 @@
 namespace toothpath::sheet {
 namespace {
 
-constexpr double kPageWidth = 182, kSketchHeight = 62;  // mm of paper
+constexpr double kPageWidth = 182;  // mm of paper, as everything below
+constexpr double kPartWidth = 96;   // of the part with its axes
+constexpr double kMostHeight = 62;  // of the part
+constexpr double kLeastLine = 4.4;  // between two levels in words
+constexpr double kTop = 7, kBottom = 13;
+
+/// A height in the machine that the operator looks for.
+struct Level {
+  std::string name;
+  double z = 0;  ///< machine
+  const char* colour = "#111";
+};
+
+/// The part from the side: X of the machine to the right, Z up, in mm of paper.
+class PartDrawing {
+ public:
+  PartDrawing(const joints::Setup& setup, const PartOutline& part, const machines::Machine& machine)
+      : setup_(setup), part_(part), machine_(machine), at_(setup.origin_mm) {
+    x_low_ = std::min(at_.x() - part.outer_radius, setup.work_offset_at_mm.x());
+    x_high_ = std::max(at_.x() + part.outer_radius, setup.work_offset_at_mm.x());
+    levels_ = {{"tooth tops", z_of(part.tooth_top)},
+               {"deepest root", z_of(part.root)},
+               {"under side", z_of(part.bottom)},
+               {"gear origin", at_.z(), "#a02020"},
+               {setup.work_offset + " zero", setup.work_offset_at_mm.z(), "#0b4f9e"}};
+    for (const auto& axis : machine.chain.table) {
+      if (is_upright(axis)) continue;
+      x_low_ = std::min(x_low_, axis.point_mm.x());
+      x_high_ = std::max(x_high_, axis.point_mm.x());
+      levels_.push_back({fmt::format("axis {}", axis.letter), axis.point_mm.z(), "#555"});
+    }
+    std::stable_sort(levels_.begin(), levels_.end(), [](const Level& a, const Level& b) { return a.z > b.z; });
+    const double tall = levels_.front().z - levels_.back().z;
+    scale_ = std::min(kPartWidth / (x_high_ - x_low_), tall > 0 ? kMostHeight / tall : INFINITY);
+    height_ = std::max(scale_ * tall, kLeastLine * double(levels_.size()) - kLeastLine);
+    above_ = 0.5 * (height_ - scale_ * tall);
+  }
+
+  std::string svg() {
+    const double height = kTop + height_ + kBottom;
+    out_ = fmt::format(
+        "<svg viewBox='0 0 {:g} {:.2f}' role=img aria-label='part in the machine, X to the right, Z up' "
+        "style='width:100%' font-size='2.7' font-family='sans-serif'>",
+        kPageWidth, height);
+    body();
+    axes();
+    words();
+    zero();
+    across();
+    out_ += "<text x='0' y='3'>X right, Z up, mm</text></svg>\n";
+    return std::move(out_);
+  }
+
+ private:
+  static bool is_upright(const machines::RotaryAxis& axis) { return std::abs(axis.direction.z()) > 0.999; }
+  [[nodiscard]] double z_of(double z) const { return at_.z() + (setup_.axis_up ? z : -z); }
+  [[nodiscard]] double px(double x) const {
+    return 2 + 0.5 * (kPartWidth - scale_ * (x_high_ - x_low_)) + scale_ * (x - x_low_);
+  }
+  [[nodiscard]] double py(double z) const { return kTop + above_ + scale_ * (levels_.front().z - z); }
+
+  void line(double x1, double y1, double x2, double y2, const char* colour, const char* dashes = "") {
+    out_ += fmt::format("<path d='M{:.2f} {:.2f}L{:.2f} {:.2f}' stroke='{}' stroke-width='.18' fill='none'{}/>", x1, y1,
+                        x2, y2, colour, *dashes ? fmt::format(" stroke-dasharray='{}'", dashes) : "");
+  }
+  void box(double x1, double x2, double z1, double z2, const char* fill) {
+    out_ += fmt::format(
+        "<rect x='{:.2f}' y='{:.2f}' width='{:.2f}' height='{:.2f}' fill='{}' stroke='#333' "
+        "stroke-width='.25'/>",
+        px(x1), py(std::max(z1, z2)), scale_ * (x2 - x1), scale_ * std::abs(z2 - z1), fill);
+  }
+  void body() {
+    const double r = part_.outer_radius;
+    box(at_.x() - r, at_.x() + r, z_of(part_.root), z_of(part_.bottom), "#ddd");
+    for (const double side : {-1.0, 1.0}) {
+      const double a = at_.x() + side * part_.inner_radius, b = at_.x() + side * r;
+      box(std::min(a, b), std::max(a, b), z_of(part_.tooth_top), z_of(part_.root), "#9ab");
+    }
+  }
+  void axes() {
+    const double low = kTop + height_ + 3;
+    line(px(at_.x()), kTop - 3, px(at_.x()), low, "#a02020", "4 1 1 1");
+    for (const auto& axis : machine_.chain.table) {
+      const double x = px(axis.point_mm.x());
+      if (is_upright(axis)) {
+        line(x, kTop - 3, x, low, "#555", "4 1 1 1");
+        out_ += fmt::format("<text x='{:.2f}' y='{:.2f}' text-anchor='middle' fill='#555'>axis {}</text>", x,
+                            kTop - 3.6, axis.letter);
+      } else {
+        out_ += fmt::format("<circle cx='{:.2f}' cy='{:.2f}' r='1.2' fill='#fff' stroke='#555' stroke-width='.3'/>", x,
+                            py(axis.point_mm.z()));
+      }
+    }
+  }
+  /// The levels in words, none above another, each with a line to its height.
+  void words() {
+    const double x = kPartWidth + 10;
+    double free = 0;
+    const double span = kLeastLine * double(levels_.size() - 1);
+    for (std::size_t k = 0; k < levels_.size(); ++k) {
+      const Level& level = levels_[k];
+      const double rest = kTop + height_ - (span - kLeastLine * double(k));  // the others must find their place below
+      const double y = std::max(std::min(py(level.z), rest), free);
+      free = y + kLeastLine;
+      line(px(x_high_) + 1, py(level.z), x - 5, py(level.z), level.colour, ".6 .6");
+      line(x - 5, py(level.z), x - 1, y, level.colour);
+      out_ += fmt::format("<text x='{:.2f}' y='{:.2f}' fill='{}'>{}: machine Z {} ({} Z {})</text>", x, y + 1,
+                          level.colour, svg::html_escape(level.name), millimetres(level.z),
+                          svg::html_escape(setup_.work_offset), millimetres(level.z - setup_.work_offset_at_mm.z()));
+    }
+  }
+  /// The zero point: a circle with two quarters filled.
+  void zero() {
+    const double x = px(setup_.work_offset_at_mm.x()), y = py(setup_.work_offset_at_mm.z()), r = 1.7;
+    out_ += fmt::format(
+        "<circle cx='{0:.2f}' cy='{1:.2f}' r='{2}' fill='#fff' stroke='#0b4f9e' stroke-width='.3'/>"
+        "<path d='M{0:.2f} {1:.2f}h{2}a{2} {2} 0 0 0 -{2} -{2}zM{0:.2f} {1:.2f}h-{2}a{2} {2} 0 0 0 {2} {2}z' "
+        "fill='#0b4f9e'/>",
+        x, y, r);
+    const double gx = px(at_.x()), gy = py(at_.z());
+    line(gx - 2, gy, gx + 2, gy, "#a02020");
+    line(gx, gy - 2, gx, gy + 2, "#a02020");
+  }
+  /// Diameters below the part.
+  void across() {
+    dimension(part_.outer_radius, kTop + height_ + 5.5, "outer diameter");
+    if (part_.inner_radius > 0) dimension(part_.inner_radius, kTop + height_ + 10.5, "teeth begin at diameter");
+  }
+  void dimension(double radius, double y, const char* name) {
+    const double a = px(at_.x() - radius), b = px(at_.x() + radius), from = py(z_of(part_.bottom));
+    for (const double x : {a, b}) line(x, std::min(from, y) + 0.6, x, y + 1, "#777");
+    line(a, y, b, y, "#111");
+    out_ += fmt::format("<path d='M{0:.2f} {2:.2f}l2 -.7v1.4zM{1:.2f} {2:.2f}l-2 -.7v1.4z' fill='#111'/>", a, b, y);
+    out_ += fmt::format("<text x='{:.2f}' y='{:.2f}' text-anchor='middle'>{} {}</text>", 0.5 * (a + b) + 14, y - 0.8,
+                        name, millimetres(2 * radius));
+  }
+
+  const joints::Setup& setup_;
+  const PartOutline& part_;
+  const machines::Machine& machine_;
+  const Vec3 at_;              ///< gear origin
+  std::vector<Level> levels_;  ///< from above
+  double x_low_ = 0, x_high_ = 0, scale_ = 1, height_ = 0, above_ = 0;
+  std::string out_;
+};
 
 }  // namespace
 
 std::string part_sketch(const joints::Setup& setup, const PartOutline& part, const machines::Machine& machine) {
-  const double r_in = part.inner_radius, r_out = part.outer_radius;
-  const double top = part.tooth_top, root = part.root, bottom = part.bottom;
-  const double up = setup.axis_up ? 1.0 : -1.0;
-  const Vec3 at = setup.origin_mm, offset = setup.work_offset_at_mm;
-  const auto z_of = [&](double z) { return at.z() + up * z; };
-  // View box in machine mm, Z upwards.
-  std::vector<double> xs = {at.x() - r_out, at.x() + r_out, offset.x()};
-  std::vector<double> zs = {z_of(top), z_of(bottom), at.z(), offset.z()};
-  for (const auto& axis : machine.chain.table) {
-    xs.push_back(axis.point_mm.x());
-    zs.push_back(axis.point_mm.z());
-  }
-  const double x_min = *std::min_element(xs.begin(), xs.end()), x_max = *std::max_element(xs.begin(), xs.end());
-  const double z_min = *std::min_element(zs.begin(), zs.end()), z_max = *std::max_element(zs.begin(), zs.end());
-  const double margin = 0.12 * std::max(x_max - x_min, z_max - z_min) + 1;
-  const double height = z_max - z_min + 2 * margin;
-  // The view box is as wide as the page, so that lines and letters have the same size on every sheet.
-  const double scale =
-      std::max((x_max - x_min + 2 * margin) / kPageWidth, height / kSketchHeight);  // mm of the machine a mm of paper
-  const double width = scale * kPageWidth, unit = 1.1 * scale, left = (width - (x_max - x_min)) / 2;
-  const auto px = [&](double x) { return x - x_min + left; };
-  const auto py = [&](double z) { return z_max - z + margin; };
-  std::string svg = fmt::format(
-      "<svg viewBox='0 0 {:.3f} {:.3f}' role=img aria-label='part in the machine, X to the right, Z up' "
-      "style='width:100%;max-height:{:g}mm' font-size='{:.3f}' font-family='sans-serif'>",
-      width, height, kSketchHeight, 2.4 * unit);
-  const auto body = [&](double x1, double x2, double z1, double z2, const char* fill) {
-    svg += fmt::format(
-        "<rect x='{:.3f}' y='{:.3f}' width='{:.3f}' height='{:.3f}' fill='{}' stroke='#333' stroke-width='{:.3f}'/>",
-        px(x1), py(std::max(z1, z2)), x2 - x1, std::abs(z2 - z1), fill, 0.2 * unit);
-  };
-  body(at.x() - r_out, at.x() + r_out, z_of(root), z_of(bottom), "#ddd");
-  for (const double side : {-1.0, 1.0}) {
-    const double a = at.x() + side * r_in, b = at.x() + side * r_out;
-    body(std::min(a, b), std::max(a, b), z_of(top), z_of(root), "#9ab");
-  }
-  std::vector<std::pair<Vec3, std::string>> marks = {{at, "gear origin"}, {offset, setup.work_offset}};
-  for (const auto& axis : machine.chain.table) marks.emplace_back(axis.point_mm, fmt::format("axis {}", axis.letter));
-  std::stable_sort(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.first.z() > b.first.z(); });
-  double free = 0;  // names of places at nearly the same height stand below one another
-  for (const auto& [p, name] : marks) {
-    const double x = px(p.x()), y = py(p.z()), r = 1.4 * unit;
-    svg +=
-        fmt::format("<path d='M{0:.3f} {1:.3f}h{2:.3f}M{3:.3f} {4:.3f}v{2:.3f}' stroke='#b00' stroke-width='{5:.3f}'/>",
-                    x - r, y, 2 * r, x, y - r, 0.3 * unit);
-    const double line = std::max(y + 0.8 * unit, free);
-    svg +=
-        fmt::format("<text x='{:.3f}' y='{:.3f}' fill='#b00'>{}</text>", x + 1.9 * unit, line, svg::html_escape(name));
-    free = line + 2.7 * unit;
-  }
-  svg += fmt::format("<text x='{:.3f}' y='{:.3f}'>X right, Z up, outer diameter {:.3f} mm</text></svg>\n", unit,
-                     3 * unit, 2 * r_out);
-  return svg;
+  return PartDrawing(setup, part, machine).svg();
 }
 
 std::string tool_sketch(const tool::ToolAssembly& tool) {

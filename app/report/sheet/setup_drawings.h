@@ -10,7 +10,8 @@
 
 namespace toothpath::sheet {
 
-/// Part in the X-Z plane of the machine, with its origin, the work offset and the rotary axes that the table carries.
+/// Part in the X-Z plane of the machine with its diameters, the zero point, the gear origin, the rotary axes that the
+/// table carries, and every height that is looked for, in machine and work coordinates.
 [[nodiscard]] std::string part_sketch(const joints::Setup& setup, const PartOutline& part,
                                       const machines::Machine& machine);
 

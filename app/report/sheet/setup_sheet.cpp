@@ -9,6 +9,7 @@
 #include "app/report/svg/html_text.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
+#include "machines/assumed.h"
 #include "postproc/controls/of_machine.h"
 
 namespace toothpath::sheet {
@@ -18,11 +19,15 @@ constexpr std::string_view kSetupStyle = R"(@page{size:A4;margin:14mm}
 body{font:10.5pt/1.35 sans-serif;color:#111;background:#fff;max-width:182mm;margin:6mm auto}
 h1{font-size:16pt;margin:0 0 1mm}h2{font-size:11.5pt;margin:4mm 0 1mm;border-bottom:.3mm solid #888;break-after:avoid}
 table{border-collapse:collapse;width:100%}th,td{border:.2mm solid #999;padding:.6mm 1.6mm;text-align:left;vertical-align:top}
-th{background:#eee;font-weight:600}td.n{text-align:right;font-variant-numeric:tabular-nums}td.w{overflow-wrap:anywhere}tr,svg{break-inside:avoid}
+th{background:#eee;font-weight:600}td.n{text-align:right;white-space:nowrap;font-variant-numeric:tabular-nums}td.w{overflow-wrap:anywhere}tr,svg{break-inside:avoid}
 .no{border:.8mm solid #b00;padding:2mm;color:#b00;font-weight:700}.yes{border:.4mm solid #070;padding:1.5mm}.part{border:.6mm solid #a60;padding:1.5mm;font-weight:600}
-.assumed{border:.5mm dashed #a60;padding:1.5mm}.assumed ul{columns:3 46mm;column-gap:5mm}@media print{body{margin:0}}ul{margin:1mm 0;padding-left:5mm}svg{max-width:100%}
+.part ul{font-weight:400}.assumed{border:.5mm dashed #a60;padding:1.5mm}@media print{body{margin:0}}ul{margin:1mm 0;padding-left:5mm}svg{max-width:100%}
 .small{font-size:9pt;margin:1mm 0}.pairs{columns:6 26mm;column-gap:4mm;font-size:8.5pt;font-variant-numeric:tabular-nums}.pairs span{display:block}
+.wide{overflow-x:auto}@media screen and (max-width:700px){body{margin:3mm}td,th{padding:.6mm 1mm}.wide table{min-width:640px}.wide td:first-child{white-space:nowrap}}
+@media print{.wide{overflow:visible}h2{break-after:avoid}thead{display:table-header-group}.appendix{break-before:page}}
 )";
+
+constexpr std::size_t kMostAssumed = 200, kAssumedWidth = 90;
 
 std::string coordinates(const Vec3& v) {
   return fmt::format("X {}  Y {}  Z {}", millimetres(v.x()), millimetres(v.y()), millimetres(v.z()));
@@ -220,6 +225,7 @@ std::string setup_sheet(const job::Job& job, const PartOutline& part, const mach
         fmt::format("<p class=no>This program begins at operation {}, tooth {}. What the whole program cuts before "
                     "that is taken as done: look before you start.</p>\n",
                     report.restart->operation, report.restart->tooth));
+  if (!report.warnings.empty()) sheet.list(report.warnings, "part");
   machine_section(sheet, job, part, machine, report);
   sheet.raw(part_sketch(*job.setup, part, machine));
   tool_section(sheet, job, report);
@@ -233,12 +239,9 @@ std::string setup_sheet(const job::Job& job, const PartOutline& part, const mach
   for (const auto& section : report.sections) table_section(sheet, section);
   if (!report.assumed.empty()) {
     sheet.heading("Assumed values: measure before the first cut");
-    sheet.list(report.assumed, "assumed");
+    sheet.list(machines::grouped_keys(report.assumed, kMostAssumed, kAssumedWidth), "assumed");
   }
-  if (!report.warnings.empty()) {
-    sheet.heading("Warnings");
-    sheet.list(report.warnings, "plain");
-  }
+  restart_appendix(sheet, report);
   return std::move(sheet).finish();
 }
 

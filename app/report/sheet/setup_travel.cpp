@@ -43,12 +43,12 @@ report::Section travel_section(const joints::AxisProgram& program, const joints:
 report::Section time_section(const joints::AxisProgram& program, const std::optional<report::PolesReport>& poles) {
   report::Section section;
   section.title = "Run time";
-  section.columns = {"what", "cutting, min", "rapids, min"};
-  section.rows.push_back({"as the program asks", fmt::format("{:.3f}", program.feed_minutes),
-                          fmt::format("{:.3f}", program.minutes - program.feed_minutes)});
+  section.columns = {"what", "cutting", "rapids"};
+  section.rows.push_back({"as the program asks", report::readable_minutes(program.feed_minutes),
+                          report::readable_minutes(program.minutes - program.feed_minutes)});
   if (program.has_acceleration)
-    section.rows.push_back({"with the accelerations of the axes", fmt::format("{:.3f}", program.accelerated.feed),
-                            fmt::format("{:.3f}", program.accelerated.rapid)});
+    section.rows.push_back({"with the accelerations of the axes", report::readable_minutes(program.accelerated.feed),
+                            report::readable_minutes(program.accelerated.rapid)});
   section.note = fmt::format("The last row is {}.", program.time_model);
   std::string rulers;
   for (std::size_t i = 0; i < program.time_rulers.size(); ++i)

@@ -17,8 +17,9 @@ namespace toothpath::sheet {
 class Sheet {
  public:
   void heading(std::string_view text) { out_ += fmt::format("<h2>{}</h2>\n", svg::html_escape(text)); }
+  /// A table of more than three columns may be shifted sideways where the screen is narrow.
   void begin_table(const std::vector<std::string>& columns) {
-    out_ += "<table><thead><tr>";
+    out_ += columns.size() > 3 ? "<div class=wide><table><thead><tr>" : "<div><table><thead><tr>";
     for (const auto& column : columns) out_ += fmt::format("<th>{}</th>", svg::html_escape(column));
     out_ += "</tr></thead><tbody>\n";
   }
@@ -32,7 +33,7 @@ class Sheet {
     }
     out_ += "</tr>\n";
   }
-  void end_table() { out_ += "</tbody></table>\n"; }
+  void end_table() { out_ += "</tbody></table></div>\n"; }
   void list(const std::vector<std::string>& items, std::string_view css_class) {
     out_ += fmt::format("<div class={}><ul>", css_class);
     for (const auto& item : items) out_ += fmt::format("<li>{}</li>", svg::html_escape(item));

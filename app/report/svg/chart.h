@@ -37,7 +37,9 @@ struct HistogramChart {
   std::string x_label;
   double from = 0, step = 1;  ///< left edge of the first bin and width of a bin, in the unit of x_label
   std::vector<std::size_t> counts;
-  std::vector<ChartLimit> limits;  ///< vertical lines: `y` is a place on the x axis
+  std::vector<ChartLimit> limits;       ///< vertical lines: `y` is a place on the x axis
+  std::string y_label = "grid points";  ///< what is counted
+  bool log_x = false;                   ///< `from` and `step` are decimal logarithms of x
 };
 
 /// Pairs of bars on a logarithmic scale: what was predicted and what was measured.

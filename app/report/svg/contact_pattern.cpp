@@ -102,6 +102,30 @@ double key(SvgCanvas& canvas, const std::vector<std::pair<std::string, std::stri
   return y + 24;
 }
 
+/// Where a grid of values has a level: a piece of line in every triangle of a cell that it crosses.
+std::string level_line(const PatternDrawing& p, const Frame& f, double level) {
+  std::string d;
+  const auto triangle = [&](const std::size_t(&corners)[3]) {
+    std::string piece;
+    for (int k = 0; k < 3; ++k) {
+      const std::size_t a = corners[k], b = corners[(k + 1) % 3];
+      if ((p.moment[a] < level) == (p.moment[b] < level)) continue;
+      const double t = (level - p.moment[a]) / (p.moment[b] - p.moment[a]);
+      piece += (piece.empty() ? "M" : "L") + px(f.x(p.x[a] + t * (p.x[b] - p.x[a]))) + " " +
+               px(f.y(p.y[a] + t * (p.y[b] - p.y[a])));
+    }
+    d += piece;
+  };
+  const auto columns = static_cast<std::size_t>(p.columns);
+  for (std::size_t r = 0; r + 1 < static_cast<std::size_t>(p.rows); ++r)
+    for (std::size_t c = 0; c + 1 < columns; ++c) {
+      const std::size_t k = r * columns + c;
+      triangle({k, k + 1, k + columns});
+      triangle({k + 1, k + columns + 1, k + columns});
+    }
+  return d;
+}
+
 }  // namespace
 
 std::string svg_contact_pattern(const PatternDrawing& p) {
@@ -141,6 +165,10 @@ std::string svg_contact_pattern(const PatternDrawing& p) {
     for (const auto& [x, y] : p.path) d += (d.empty() ? "M" : "L") + px(f.x(x)) + " " + px(f.y(y));
     canvas.raw(fmt::format(R"(<path d="{}" fill="none" stroke="#e0701c" stroke-width="1.8"/>)", d));
   }
+  if (p.moment.size() == size)
+    for (const double level : p.lines)
+      canvas.raw(
+          fmt::format(R"(<path d="{}" fill="none" stroke="#e0701c" stroke-width="1.4"/>)", level_line(p, f, level)));
   return std::move(canvas).finish();
 }
 
@@ -151,8 +179,8 @@ std::string svg_flank_field(const FlankFieldDrawing& p) {
   if (!(largest > 0))
     for (const double v : p.value) largest = std::max(largest, std::abs(v));
   if (!(largest > 0)) largest = 1;
-  static const std::vector<std::string> fills = {"#2b4f9e", "#5f86c8", "#9db9e2", "#d3e0f2", "#f3f3f3",
-                                                 "#f7dccb", "#efb08e", "#dc7650", "#b03a25"};
+  static const std::vector<std::string> fills = {"#b03a25", "#dc7650", "#efb08e", "#f7dccb", "#f3f3f3",
+                                                 "#d3e0f2", "#9db9e2", "#5f86c8", "#2b4f9e"};
   const int classes = static_cast<int>(fills.size());
   const auto class_of_value = [&](double v) {
     return std::clamp(static_cast<int>(std::floor((v / largest + 1) / 2 * classes)), 0, classes - 1);

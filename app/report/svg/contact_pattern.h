@@ -17,13 +17,15 @@ struct PatternDrawing {
   double compound_um = 6;
   bool outline = true;  ///< false: only places that the mate meets are drawn, and no edge around them
   std::vector<std::pair<double, double>> path;  ///< path of contact, drawn as a line
+  std::vector<double> moment;                   ///< of line contact, row-major: when a place touches; or empty
+  std::vector<double> lines;                    ///< moments whose lines of contact are drawn
 };
 
 /// The pattern in three depths of compound, what lies just outside it in grey, the outline of the flank. Drawn to scale
 /// unless the flank is longer than 6 times its height. One <svg>; empty without places.
 [[nodiscard]] std::string svg_contact_pattern(const PatternDrawing& drawing);
 
-/// A signed quantity on the flank (deviation, difference of two) as colours, blue below zero and red above, -largest ..
+/// A signed quantity on the flank (deviation, difference of two) as colours, red below zero and blue above, -largest ..
 /// +largest.
 struct FlankFieldDrawing {
   std::string title, x_label, y_label, unit;

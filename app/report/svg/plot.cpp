@@ -136,10 +136,14 @@ std::string svg_histogram(const HistogramChart& chart) {
   for (const std::size_t count : chart.counts) most = std::max(most, count);
   if (most == 0 || !(chart.step > 0)) return {};
   Range across;
-  across.add(chart.from, false);
-  across.add(chart.from + chart.step * static_cast<double>(chart.counts.size()), false);
-  for (const ChartLimit& limit : chart.limits) across.add(limit.y, false);
-  across.widen(0.02, false);
+  const auto edge = [&](std::size_t bin) {
+    const double at = chart.from + chart.step * static_cast<double>(bin);
+    return chart.log_x ? std::pow(10.0, at) : at;
+  };
+  across.add(edge(0), chart.log_x);
+  across.add(edge(chart.counts.size()), chart.log_x);
+  for (const ChartLimit& limit : chart.limits) across.add(limit.y, chart.log_x);
+  across.widen(0.02, chart.log_x);
 
   std::vector<LegendEntry> legend;
   for (const ChartLimit& limit : chart.limits)
@@ -148,12 +152,12 @@ std::string svg_histogram(const HistogramChart& chart) {
   const double top = kPlotTop + draw_legend(probe, legend, kPlotLeft, 0, kPlotWidth - kPlotLeft - kPlotRight);
   SvgCanvas canvas(kPlotWidth, top + kPlotHeight + kPlotBottom, chart.title);
   draw_legend(canvas, legend, kPlotLeft, 2, kPlotWidth - kPlotLeft - kPlotRight);
-  const Scale x{across.low, across.high, kPlotLeft, kPlotWidth - kPlotRight};
+  const Scale x{across.low, across.high, kPlotLeft, kPlotWidth - kPlotRight, chart.log_x};
   const Scale y{0, static_cast<double>(most) * 1.05, top + kPlotHeight, top};
-  draw_axes(canvas, x, y, chart.x_label, "grid points");
+  draw_axes(canvas, x, y, chart.x_label, chart.y_label);
   for (std::size_t i = 0; i < chart.counts.size(); ++i) {
     if (chart.counts[i] == 0) continue;
-    const double left = chart.from + chart.step * static_cast<double>(i), right = left + chart.step;
+    const double left = edge(i), right = edge(i + 1);
     const double at = y(static_cast<double>(chart.counts[i]));
     canvas.rectangle(x(left), at, std::max(0.7, x(right) - x(left) - 0.6), y.at_low - at, "bar s0",
                      fmt::format("{} to {}: {}", short_number(left), short_number(right), chart.counts[i]));

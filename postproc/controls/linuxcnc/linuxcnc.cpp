@@ -4,6 +4,7 @@
 // machine data.
 #include <cmath>
 
+#include "cam/tool/cutters.h"
 #include "postproc/controls/control.h"
 #include "postproc/controls/work_offset.h"
 #include "postproc/readback/interpreter.h"
@@ -80,10 +81,22 @@ Status execute(std::string_view text, const std::string& file, const readback::N
   return execute_iso(text, file, control, sink, language());
 }
 
+/// A line a tool; mm, as the programs.
+std::string tool_table(std::span<const tool::ToolAssembly> tools) {
+  std::string text;
+  for (const tool::ToolAssembly& t : tools)
+    text += fmt::format("T{0} P{0} Z{1:+.6f} D{2:+.6f} ;{3}\n", t.number, t.length_mm, t.diameter_mm,
+                        tool::cutter_comment(t));
+  return text;
+}
+
 bool has_offset(std::string_view name) { return basic_offset(name) > 0 || tenth_offset(name) > 0; }
 
 }  // namespace
 
-Control linuxcnc() { return {words(), {}, {"G54 to G59 and G59.1 to G59.3", has_offset}, execute}; }
+Control linuxcnc() {
+  return {words(), {},    {"G54 to G59 and G59.1 to G59.3", has_offset},
+          execute, false, ToolTable{"program_tools.tbl", tool_table}};
+}
 
 }  // namespace toothpath::controls

@@ -1,0 +1,119 @@
+#include "app/reference/formats.h"
+
+namespace toothpath::reference {
+namespace {
+
+constexpr Meaning kMachineMeanings[] = {
+    {"schema", "Version of the format."},
+    {"name", "Name of the machine."},
+    {"kind", "A milling machine, or a gear shaper."},
+    {"dialect", "The control, by its name or another name of it ([dialects](dialects.md#what-is-there))."},
+    {"tcp",
+     "`none`: the joints move linearly; `angles`, `vectors`: the control keeps the tip on the chord, and reads angles "
+     "or "
+     "tool vectors."},
+    {"assumed",
+     "`true`: every value is a guess; `false`: none; or a list of dotted names of keys or tables, "
+     "`[\"axes.A.point\", \"limits\"]`."},
+    {"max_simultaneous_axes", "Axes that the control interpolates in one block."},
+    {"spindle", "The spindle."},
+    {"spindle.max_speed", "Highest speed."},
+    {"spindle.tool_change",
+     "From the last move of one tool to the first of the next; left out: tool changes are not in any time."},
+    {"limits", "What the machine takes."},
+    {"limits.cutting_feed", "Highest feed in the cut."},
+    {"limits.table_diameter", "Largest circle that fits on the table."},
+    {"limits.min_block_ms", "Shortest block that the control keeps up with."},
+    {"limits.part_diameter", "Largest part that turns on the rotary table; left out: as table_diameter."},
+    {"limits.part_mass", "Heaviest part; left out: any."},
+    {"limits.feed_factor",
+     "How many times as fast as its job says a program may cut before it is not verified "
+     "([proof](proof.md#feeds-speeds-tool-and-coolant))."},
+    {"limits.speed_factor", "How many times as fast or as slow as its job says the spindle of a program may turn."},
+    {"limits.limit_margin", "How close to a limit a command of a linear axis may come."},
+    {"limits.limit_margin_angle", "How close to a limit a command of a rotary axis may come."},
+    {"chain", "Which rotary axes carry the work, and which the tool; at most two in all."},
+    {"chain.table", "Letters of the rotary axes under the work, from the work outwards."},
+    {"chain.head", "Letters of the rotary axes above the tool, from the ram outwards."},
+    {"axes", "Every axis of the machine."},
+    {"axes.X", "Linear axis; of a gear shaper the infeed, 0 at full depth."},
+    {"axes.Y", "Linear axis; of a gear shaper the offset slide."},
+    {"axes.Z", "Linear axis; of a gear shaper the stroke."},
+    {"axes.A", "Rotary axis; of a gear shaper the cutter."},
+    {"axes.B", "Rotary axis."},
+    {"axes.C", "Rotary axis; of a gear shaper the work."},
+    {"axes.*.min", "Lower end; of a rotary left out where it rolls over."},
+    {"axes.*.max", "Upper end; of a rotary left out where it rolls over."},
+    {"axes.*.max_speed", "Highest speed."},
+    {"axes.*.max_acceleration",
+     "For the times ([times](times.md)) and, under LinuxCNC, for what is left of a corner; every axis has one or "
+     "none."},
+    {"axes.*.max_jerk", "For the times; every axis has one or none, and an acceleration."},
+    {"axes.*.direction", "Direction of the axis in machine coordinates, all rotaries at zero; of any length."},
+    {"axes.*.point",
+     "Of a table axis, required: a point on it, machine coordinates. Of a head axis: its lateral offset `[x, y, 0]` "
+     "from "
+     "the gauge point."},
+    {"axes.*.pivot_length",
+     "Of a head axis: its height above the gauge point, all rotaries at zero; may be left out where the axis is "
+     "parallel "
+     "to Z."},
+    {"axes.*.sign", "1: turns in the sense of ISO 841; -1: reversed."},
+    {"axes.*.zero", "The command at which the axis stands at its zero."},
+    {"axes.*.rollover",
+     "`true`: the control counts the axis from 0 to 360 deg and it turns without end, min and max are left out "
+     "([dialects](dialects.md#rotaries-that-roll-over)); `false`: words go on beyond a turn, 370 and not 10."},
+    {"post", "How programs are written; which of these keys a control takes is judged by it."},
+    {"post.linear_decimals", "Digits after the point of lengths; left out: those of the dialect."},
+    {"post.rotary_decimals", "Digits after the point of angles; left out: those of the dialect."},
+    {"post.index_loop", "Teeth as a loop of the program, or written out; left out: what the dialect does."},
+    {"post.tcp_on", "Blocks that switch TCP on, `[\"M428\"]`; needed for TCP under LinuxCNC."},
+    {"post.tcp_off", "Blocks that switch TCP off."},
+    {"post.corner_tolerance",
+     "Fanuc, Mitsubishi, Haas: how far the tip is off a corner at most under G64; programs then say G64 instead of "
+     "G61. "
+     "LinuxCNC: how far the tool may be off a corner in exact path mode ([dialects](dialects.md)); left out: 0.0005 "
+     "mm."},
+    {"post.smoothing_on",
+     "Blocks that switch the control's own smoothing on around the teeth (Fanuc, Mitsubishi, Siemens), `[\"G5.1 "
+     "Q1\"]`."},
+    {"post.smoothing_off", "Blocks that switch it off."},
+    {"post.smoothing_tolerance", "How far the tip leaves the path while it is on, as the shop states it."},
+    {"post.smoothing_axis_tolerance",
+     "How far the tool axis turns off meanwhile, where cuts turn a rotary, as the shop states it."},
+    {"post.coolant_flood", "Words of the builder for flood coolant, on and off ([dialects](dialects.md#coolant))."},
+    {"post.coolant_mist", "Words of the builder for mist, on and off."},
+    {"post.coolant_air", "Words of the builder for air, on and off."},
+    {"post.coolant_through_spindle", "Words of the builder for coolant through the spindle, on and off."},
+    {"post.length_reference", "What the tool length of a ball reaches to."},
+    {"post.pole",
+     "What is done where the tool comes parallel to the rotary axis that carries the work ([axis "
+     "motion](axis_motion.md))."},
+    {"post.pole_angle",
+     "`tilt`: least angle kept from the pole, left out: 5 deg; `hold`, `through`, `retract`: greatest change of the "
+     "tool "
+     "axis, left out: 0.0573 deg."},
+    {"stroke", "The stroke."},
+    {"stroke.steps", "Double strokes a minute that the machine has, ascending."},
+    {"stroke.max_length", "Longest stroke."},
+    {"stroke.relief", "How far the cutter backs off on the return stroke."},
+    {"index", "The train of change gears that couples the work to the cutter."},
+    {"index.constant", "Its constant as two whole numbers: a/b * c/d = constant * cutter teeth / work teeth, exactly."},
+    {"feed", "The train of change gears of the circular feed."},
+    {"feed.constant", "Its constant as two whole numbers: gears = constant * circular feed / pitch diameter."},
+    {"gears", "The change gears that are there."},
+    {"gears.teeth", "Their numbers of teeth; each wheel is there once."},
+    {"gears.mesh_margin", "By how much two wheels must exceed the next one to mesh: a + b >= c + margin."},
+    {"gearbox", "An electronic gearbox in place of change gears."},
+    {"gearbox.relief_on", "M code that lifts the cutter on the return stroke."},
+    {"gearbox.relief_off", "M code that ends the lifting."},
+    {"gearbox.cutter_axis", "Name of the leading axis."},
+    {"gearbox.work_axis", "Name of the following axis."},
+    {"gearbox.pulses_per_turn", "Pulses of one turn of the cutter axis."},
+};
+
+}  // namespace
+
+std::span<const Meaning> machine_meanings() { return kMachineMeanings; }
+
+}  // namespace toothpath::reference

@@ -1,0 +1,165 @@
+// The tool library of Fusion, as it exports it: an array "data", the numbers named as in ISO 13399 (DC, LCF, SFDM, NOF,
+// RE), LB the length below the holder, holder segments from the tool side. Lengths in the unit that the tool states.
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "app/tool_library/formats.h"
+#include "geometry/base/angle.h"
+
+namespace toothpath::tool_library {
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr double kInch = 25.4;       // mm
+constexpr double kSameShare = 2e-3;  // of a length: two ways to say it agree (libraries round to 4 digits)
+constexpr int kMostSegments = 100;
+
+const Json* member(const Json& object, const char* name) {
+  if (!object.is_object()) return nullptr;
+  const auto found = object.find(name);
+  return found == object.end() ? nullptr : &*found;
+}
+std::optional<double> number(const Json& object, const char* name) {
+  const Json* found = member(object, name);
+  if (!found || !found->is_number()) return {};
+  const double value = found->get<double>();
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+std::string text(const Json& object, const char* name) {
+  const Json* found = member(object, name);
+  return found && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+/// One tool of the library while it is read.
+class Entry {
+ public:
+  Entry(const Json& json, const SourcePosition& at) : json_(json), at_(at) {}
+
+  /// Nothing: a kind that no job has.
+  [[nodiscard]] Result<std::optional<LibraryTool>> read() {
+    const std::string type = text(json_, "type");
+    if (type != "ball end mill" && type != "flat end mill" && type != "bull nose end mill" && type != "tapered mill")
+      return std::optional<LibraryTool>();
+    tool_.name = text(json_, "description");
+    const Json* post = member(json_, "post-process");
+    if (const auto n = post ? number(*post, "number") : std::nullopt; n && *n >= 1 && *n <= 1e6) tool_.number = int(*n);
+    const std::string unit = text(json_, "unit");
+    if (unit == "inches") scale_ = kInch;
+    else if (unit != "millimeters")
+      return fail_at(at_, "tool {} \"{}\": unit = \"{}\" is neither \"millimeters\" nor \"inches\"", tool_.number,
+                     tool_.name, unit);
+    if (const Json* found = member(json_, "geometry")) geometry_ = found;
+    form(type);
+    lengths();
+    if (const Json* holder = member(json_, "holder")) read_holder(*holder);
+    else tool_.notes.push_back("no holder");
+    return std::optional(std::move(tool_));
+  }
+
+ private:
+  [[nodiscard]] std::optional<double> length(const char* name) const {
+    const auto value = geometry_ ? number(*geometry_, name) : std::nullopt;
+    return value && *value > 0 ? std::optional(*value * scale_) : std::nullopt;
+  }
+  void key(const char* name, double value) { add_key(tool_, name, value, at_); }
+  void key(const char* name, const std::string& word) { add_key(tool_, name, word, at_); }
+
+  void form(const std::string& type) {
+    const auto DC = length("DC"), RE = length("RE");
+    if (type == "tapered mill") return tapered(DC, RE);
+    key("type", type == "ball end mill"   ? std::string("ball_end_mill")
+                : type == "flat end mill" ? std::string("flat_end_mill")
+                                          : std::string("bull_nose_end_mill"));
+    if (DC) key("diameter", *DC);
+    if (type == "bull nose end mill" && RE) key("corner_radius", *RE);
+  }
+
+  /// DC is where the side would meet the end without its rounding RE: a ball, where the rounding takes all of the end.
+  void tapered(const std::optional<double>& DC, const std::optional<double>& RE) {
+    const double angle = geometry_ ? number(*geometry_, "TA").value_or(NAN) : NAN;
+    if (!DC || !RE || std::isnan(angle))
+      return tool_.notes.push_back("tapered mill without DC, RE or TA: its tip is not known");
+    const double whole = *DC / (2 * std::tan(radians(45 - angle / 2)));
+    if (std::abs(*RE - whole) > kSameShare * whole) {
+      tool_.notes.push_back(
+          fmt::format("tapered mill: DC = {:.4f}, RE = {:.4f} mm and TA = {} are no ball end with a "
+                      "half angle in deg, which needs RE = {:.4f} mm: type, diameter and half_angle "
+                      "are not taken",
+                      *DC, *RE, angle, whole));
+      return;
+    }
+    key("type", std::string("tapered_ball_end_mill"));
+    key("diameter", 2 * *RE);
+    key("half_angle", angle);
+  }
+
+  void lengths() {
+    if (const auto LCF = length("LCF")) key("flute_length", *LCF);
+    if (const auto LB = length("LB")) key("stick_out", *LB);
+    read_gauge_length();
+    if (const auto teeth = geometry_ ? number(*geometry_, "NOF") : std::nullopt; teeth && *teeth == std::floor(*teeth))
+      add_key(tool_, "teeth", std::int64_t(std::clamp(*teeth, -1e6, 1e6)), at_);
+    auto shank = length("SFDM");
+    if (!shank) return;
+    // A shaft that widens below the holder: one diameter stands for all of it, the largest.
+    if (const Json* shaft = member(json_, "shaft"))
+      if (const Json* segments = member(*shaft, "segments"); segments && segments->is_array())
+        for (const Json& segment : *segments)
+          for (const char* end : {"lower-diameter", "upper-diameter"})
+            if (const auto d = number(segment, end)) shank = std::max(*shank, *d * scale_);
+    key("shank_diameter", *shank);
+  }
+
+  /// Gauge line to tip: as stated, else what the holder says of its own and the tool below it.
+  void read_gauge_length() {
+    if (const auto stated = length("assemblyGaugeLength")) return key("length", *stated);
+    const Json* holder = member(json_, "holder");
+    const auto own = holder ? number(*holder, "gaugeLength") : std::nullopt;
+    if (const auto below = length("LB"); own && below) key("length", *own * scale_ + *below);
+  }
+
+  void read_holder(const Json& holder) {
+    const Json* segments = member(holder, "segments");
+    if (!segments || !segments->is_array() || segments->empty() || segments->size() > kMostSegments)
+      return tool_.notes.push_back("the holder has no segments");
+    toml::TomlArray all;
+    for (const Json& segment : *segments) {
+      toml::TomlArray one;
+      for (const char* name : {"lower-diameter", "upper-diameter", "height"}) {
+        const auto value = number(segment, name);
+        if (!value) return tool_.notes.push_back(fmt::format("a segment of the holder has no {}", name));
+        one.values.push_back({at_, {*value * scale_}});
+      }
+      all.values.push_back({at_, {std::move(one)}});
+    }
+    add_key(tool_, "holder", std::move(all), at_);
+  }
+
+  const Json& json_;
+  const SourcePosition at_;
+  const Json* geometry_ = nullptr;
+  double scale_ = 1;  ///< mm of the unit
+  LibraryTool tool_;
+};
+
+}  // namespace
+
+Result<std::vector<LibraryTool>> read_fusion_library(const std::string& content, const std::string& path) {
+  const auto json = parse_object(content, path);
+  if (!json) return json.error();
+  const Json* data = member(*json, "data");
+  if (!data || !data->is_array()) return fail_at({path, 0, 0}, "a tool library of Fusion has an array \"data\"");
+  std::vector<LibraryTool> tools;
+  for (const Json& one : *data) {
+    auto tool = Entry(one, {path, 0, 0}).read();
+    if (!tool) return tool.error();
+    if (*tool) tools.push_back(std::move(**tool));
+  }
+  if (tools.empty()) return fail_at({path, 0, 0}, "the library has no end mill: {} entries", data->size());
+  return tools;
+}
+
+}  // namespace toothpath::tool_library

@@ -1,0 +1,326 @@
+#include "postproc/bodies/moves.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/base/angle.h"
+
+namespace toothpath::bodies {
+namespace {
+
+constexpr std::size_t kChunk = std::size_t(1) << 14;  // spans that are looked at together
+constexpr std::size_t kFirstLooks = 32;               // of them that are measured ahead of the others
+constexpr double kRoundOff = 1e-9;                    // mm: of places of bodies, and of sums of gaps
+
+machines::Joints joints_of(const std::array<double, 5>& q) { return {Vec3(q[0], q[1], q[2]), {q[3], q[4]}}; }
+
+std::array<double, 5> in_radians(const std::array<double, 5>& words) {
+  return {words[0], words[1], words[2], radians(words[3]), radians(words[4])};
+}
+
+/// Greatest distance of a tip from a rotary axis of the table, whatever the rotaries do.
+double reach_of(const machines::KinematicChain& chain, const Vec3& tip) {
+  double reach = 0, arm = 0;
+  for (std::size_t k = 0; k < chain.table.size(); ++k) {
+    if (k > 0) arm += (chain.table[k].point_mm - chain.table[k - 1].point_mm).norm();
+    reach = (tip - chain.table.front().point_mm).norm() + arm;
+  }
+  return reach;
+}
+
+/// From the tip to the farthest rotary axis of the head.
+double head_arm(const machines::KinematicChain& chain, double length) {
+  double arm = length;
+  for (const auto& axis : chain.head) arm += 2 * axis.point_mm.norm();
+  return chain.head.empty() ? 0 : arm;
+}
+
+}  // namespace
+
+MovesJudge::MovesJudge(const machines::Machine& machine, std::vector<Body> bodies, std::map<int, double> tool_length_mm,
+                       const MovesOptions& options)
+    : machine_(machine),
+      scene_(machine.chain, std::move(bodies)),
+      lengths_(std::move(tool_length_mm)),
+      options_(options),
+      states_(scene_.pairs().size(), State{options.look_mm, options.look_mm, std::nullopt, std::nullopt}) {}
+
+double MovesJudge::aim(const State& state) const {
+  return std::max(options_.required_mm, options_.share * state.measured - options_.apart_mm);
+}
+
+void MovesJudge::add(const readback::ExecutedMove& move) {
+  if (scene_.pairs().empty()) return;
+  if (spans_.size() >= kChunk || move.tool != tool_) flush();
+  tool_ = move.tool;
+  ++moves_;
+  if (!last_ || !move.known) {
+    unjudged_ += move.known ? 0 : 1;
+    before_.reset();
+    last_ = move;
+    return;
+  }
+  Span span;
+  span.from = in_radians(last_->joints);
+  span.to = in_radians(move.joints);
+  span.line = move.line;
+  span.operation = move.operation;
+  span.tooth = move.tooth;
+  span.rapid = move.rapid;
+  const auto moves = [&](std::size_t k) { return span.from[k] != span.to[k]; };
+  span.box =
+      move.rapid && !move.tcp && int(moves(0)) + int(moves(1)) + int(moves(2)) + int(moves(3)) + int(moves(4)) > 1;
+  const auto length = lengths_.find(move.tool);
+  const double tool = length == lengths_.end() ? 0 : length->second;
+  const Vec3 tip = move.tcp ? move.tip : machine_.chain.forward(joints_of(span.to), tool).tip_mm;
+  span.off_rad = double(move.blend_axis_rad);
+  span.off_mm = kRoundOff + double(move.blend_mm) +
+                2 * span.off_rad * (reach_of(machine_.chain, tip) + head_arm(machine_.chain, tool));
+  if (move.tcp && (moves(3) || moves(4))) {
+    span.tcp = true;
+    span.length = tool;
+    span.tip_from = machine_.chain.forward(joints_of(span.from), tool).tip_mm;
+    span.tip_to = machine_.chain.forward(joints_of(span.to), tool).tip_mm;
+  }
+  spans_.push_back(span);
+  if (move.corner_share > 0 || last_->corner_share > 0) add_corner(move);
+  before_ = last_;
+  last_ = move;
+}
+
+/// A corner that the control may leave within a share of the blocks: every axis stays within its pieces of both.
+void MovesJudge::add_corner(const readback::ExecutedMove& move) {
+  if (!before_) return;
+  const Span& after = spans_.back();
+  const Five from = in_radians(before_->joints);
+  Span corner = after;
+  corner.box = true;
+  corner.tcp = false;
+  double turned = 0, moved = 0;
+  for (std::size_t k = 0; k < 5; ++k) {
+    const double off = std::max(double(last_->corner_share) * std::abs(after.from[k] - from[k]),
+                                double(move.corner_share) * std::abs(after.to[k] - after.from[k]));
+    corner.from[k] = after.from[k] - off;
+    corner.to[k] = after.from[k] + off;
+    (k < 3 ? moved : turned) += off;
+  }
+  if (move.tcp || last_->tcp) {  // the pieces are of the tip; the linear axes follow
+    const auto length = lengths_.find(move.tool);
+    const double tool = length == lengths_.end() ? 0 : length->second;
+    const Vec3 tip = machine_.chain.forward(joints_of(after.from), tool).tip_mm;
+    corner.off_mm += moved + 2 * turned * (reach_of(machine_.chain, tip) + head_arm(machine_.chain, tool) + moved);
+  }
+  spans_.push_back(corner);
+}
+
+MovesJudge::Range MovesJudge::range_of(const Span& span) const {
+  Range range;
+  for (std::size_t k = 0; k < 5; ++k) {
+    range.low[k] = std::min(span.from[k], span.to[k]);
+    range.high[k] = std::max(span.from[k], span.to[k]);
+  }
+  range.off_mm = span.off_mm;
+  range.off_rad = span.off_rad;
+  if (!span.tcp) return range;
+  const double w = std::abs(span.to[3] - span.from[3]) + std::abs(span.to[4] - span.from[4]);
+  const double reach = std::max(reach_of(machine_.chain, span.tip_from), reach_of(machine_.chain, span.tip_to)) +
+                       head_arm(machine_.chain, span.length);
+  range.off_mm += (w * w * reach + 2 * w * (span.tip_to - span.tip_from).norm()) / 8;
+  return range;
+}
+
+double MovesJudge::way(const Pair& pair, const Range& range) const {
+  const std::size_t from = scene_.bodies()[pair.first].link;
+  double squares = 0, sum = range.off_mm;
+  for (std::size_t k = 0; k < pair.reach.size(); ++k) {
+    const machines::Joint& joint = scene_.links().joints()[from + k];
+    const std::size_t axis = joint.rotary ? 3 + joint.axis : joint.axis;
+    const double half = (range.high[axis] - range.low[axis]) / 2;
+    if (joint.rotary) sum += pair.reach[k] * (half + range.off_rad);
+    else squares += half * half;
+  }
+  return sum + std::sqrt(squares);
+}
+
+Meeting MovesJudge::meeting(std::size_t pair, const Span& span, const Five& at, const Gap& gap) const {
+  const Pair& p = scene_.pairs()[pair];
+  Meeting m;
+  m.first = scene_.bodies()[p.first].name;
+  m.second = scene_.bodies()[p.second].name;
+  m.first_kind = scene_.bodies()[p.first].kind;
+  m.second_kind = scene_.bodies()[p.second].kind;
+  m.proven_mm = gap.proven;
+  m.measured_mm = gap.measured;
+  m.line = span.line;
+  m.operation = span.operation;
+  m.tooth = span.tooth;
+  m.tool = tool_;
+  m.rapid = span.rapid;
+  m.joints = joints_of(at);
+  return m;
+}
+
+bool MovesJudge::passes(std::size_t pair, const Range& range, const Span* on_way) {
+  State& state = states_[pair];
+  const Pair& p = scene_.pairs()[pair];
+  Five middle{};
+  for (std::size_t k = 0; k < 5; ++k) middle[k] = (range.low[k] + range.high[k]) / 2;
+  if (on_way && on_way->tcp) {
+    const auto q =
+        machine_.chain.linear_for((on_way->tip_from + on_way->tip_to) / 2, {middle[3], middle[4]}, on_way->length);
+    for (int k = 0; k < 3; ++k) middle[std::size_t(k)] = q.linear_mm[k];
+  }
+  double far = way(p, range);
+  if (on_way && on_way->tcp) far += range.off_mm;  // the middle may stand beside that of the chord
+  const Gap gap = scene_.gap_of(p, joints_of(middle), aim(state) + far + kRoundOff);
+  if (on_way && gap.measured < state.measured) {
+    state.measured = gap.measured;
+    state.nearest = meeting(pair, *on_way, middle, gap);
+  }
+  const double proven = gap.proven - far;
+  if (proven > 0 && proven >= aim(state)) {
+    state.proven = std::min(state.proven, proven);
+    return true;
+  }
+  if (!on_way) return false;
+  // What halving does not make less.
+  const Range still{middle, middle, on_way->off_mm, on_way->off_rad};
+  const double rest = way(p, still) + (on_way->tcp ? on_way->off_mm : 0);
+  if (far - rest <= options_.finest_mm || gap.measured <= 0) {
+    if (proven > 0 && proven >= options_.required_mm) {
+      state.proven = std::min(state.proven, proven);
+      return true;
+    }
+    Meeting m = meeting(pair, *on_way, middle, gap);
+    m.proven_mm = std::max(0.0, proven);
+    if (gap.measured <= 0) {
+      const Overlap o = scene_.overlap_of(p, m.joints);
+      m.depth_mm = o.depth_mm;
+      m.direction = o.direction;
+    }
+    state.failed = m;
+    state.proven = m.proven_mm;
+  }
+  return false;
+}
+
+std::pair<MovesJudge::Span, MovesJudge::Span> MovesJudge::halves(std::size_t pair, const Span& span) const {
+  Span a = span, b = span;
+  if (span.box) {  // across the joint that moves the gap most
+    const Pair& p = scene_.pairs()[pair];
+    const std::size_t from = scene_.bodies()[p.first].link;
+    std::size_t widest = 0;
+    double most = -1;
+    for (std::size_t k = 0; k < p.reach.size(); ++k) {
+      const machines::Joint& joint = scene_.links().joints()[from + k];
+      const std::size_t axis = joint.rotary ? 3 + joint.axis : joint.axis;
+      if (const double moved = p.reach[k] * std::abs(span.to[axis] - span.from[axis]); moved > most) {
+        most = moved;
+        widest = axis;
+      }
+    }
+    a.to[widest] = b.from[widest] = (span.from[widest] + span.to[widest]) / 2;
+    return {a, b};
+  }
+  for (std::size_t k = 0; k < 5; ++k) a.to[k] = b.from[k] = (span.from[k] + span.to[k]) / 2;
+  if (span.tcp) {
+    a.tip_to = b.tip_from = (span.tip_from + span.tip_to) / 2;
+    const auto q = machine_.chain.linear_for(a.tip_to, {a.to[3], a.to[4]}, span.length);
+    for (int k = 0; k < 3; ++k) a.to[std::size_t(k)] = b.from[std::size_t(k)] = q.linear_mm[k];
+  }
+  return {a, b};
+}
+
+void MovesJudge::look_closer(std::size_t pair, const Span& whole) {
+  std::vector<Span> open = {whole};
+  while (!open.empty() && !states_[pair].failed) {
+    const Span span = open.back();
+    open.pop_back();
+    if (passes(pair, range_of(span), &span) || states_[pair].failed) continue;
+    auto [a, b] = halves(pair, span);
+    open.push_back(b);
+    open.push_back(a);
+  }
+}
+
+void MovesJudge::build(std::size_t node, std::size_t first, std::size_t last) {
+  if (node >= nodes_.size()) nodes_.resize(node + 1);
+  if (last - first == 1) {
+    nodes_[node] = range_of(spans_[first]);
+    return;
+  }
+  const std::size_t middle = (first + last) / 2;
+  build(2 * node + 1, first, middle);
+  build(2 * node + 2, middle, last);
+  const Range a = nodes_[2 * node + 1], b = nodes_[2 * node + 2];
+  Range& out = nodes_[node];
+  for (std::size_t k = 0; k < 5; ++k) {
+    out.low[k] = std::min(a.low[k], b.low[k]);
+    out.high[k] = std::max(a.high[k], b.high[k]);
+  }
+  out.off_mm = std::max(a.off_mm, b.off_mm);
+  out.off_rad = std::max(a.off_rad, b.off_rad);
+}
+
+void MovesJudge::look(std::size_t pair, std::size_t node, std::size_t first, std::size_t last) {
+  if (states_[pair].failed) return;
+  if (last - first == 1) return look_closer(pair, spans_[first]);
+  if (passes(pair, nodes_[node], nullptr)) return;
+  const std::size_t middle = (first + last) / 2;
+  look(pair, 2 * node + 1, first, middle);
+  look(pair, 2 * node + 2, middle, last);
+}
+
+void MovesJudge::look_at(std::size_t pair) {
+  const Pair& p = scene_.pairs()[pair];
+  for (const std::size_t k : {p.first, p.second})
+    if (scene_.bodies()[k].kind == Kind::tool && scene_.bodies()[k].tool != tool_) return;
+  State& state = states_[pair];
+  if (state.failed) return;
+  // Something near to begin with: what is farther need not be looked at closely.
+  const std::size_t step = std::max<std::size_t>(1, spans_.size() / kFirstLooks);
+  for (std::size_t k = 0; k < spans_.size(); k += step) {
+    const Gap gap = scene_.gap_of(p, joints_of(spans_[k].to), state.measured);
+    if (spans_[k].box || !(gap.measured < state.measured) || gap.measured <= 0) continue;
+    state.measured = gap.measured;
+    state.nearest = meeting(pair, spans_[k], spans_[k].to, gap);
+  }
+  look(pair, 0, 0, spans_.size());
+}
+
+void MovesJudge::flush() {
+  if (spans_.empty()) return;
+  nodes_.clear();
+  nodes_.reserve(4 * spans_.size());
+  build(0, 0, spans_.size());
+  tbb::parallel_for(std::size_t(0), states_.size(), [&](std::size_t pair) { look_at(pair); });
+  spans_.clear();
+}
+
+MovesFound MovesJudge::finish() {
+  flush();
+  MovesFound found;
+  for (const Body& body : scene_.bodies()) found.stated += body.kind == Kind::machine ? 1 : 0;
+  found.pairs = scene_.pairs().size();
+  found.moves = moves_;
+  found.unjudged = unjudged_;
+  found.bearing = scene_.bearing();
+  found.required_mm = options_.required_mm;
+  found.look_mm = options_.look_mm;
+  for (const State& state : states_) {
+    if (state.failed) found.failed.push_back(*state.failed);
+    else if (state.nearest) {
+      found.nearest.push_back(*state.nearest);
+      found.nearest.back().proven_mm = state.proven;
+    }
+  }
+  std::stable_sort(found.failed.begin(), found.failed.end(),
+                   [](const Meeting& a, const Meeting& b) { return a.line < b.line; });
+  std::stable_sort(found.nearest.begin(), found.nearest.end(),
+                   [](const Meeting& a, const Meeting& b) { return a.proven_mm < b.proven_mm; });
+  return found;
+}
+
+}  // namespace toothpath::bodies

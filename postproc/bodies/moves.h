@@ -1,0 +1,114 @@
+// Do the bodies of a machine keep clear of each other on every move of a program? Proven between the blocks too.
+//
+// Moves are taken in order, as they were read back, and looked at together: the joints of many moves lie in a box of
+// joint space, and a gap at its middle that exceeds the way to its corners (postproc/bodies/scene.h) is a gap on all of
+// them. Boxes are halved until the gaps are proven. Rapids that move X and Y, or two rotaries, are boxes themselves:
+// which of the axes arrives first is not known. With TCP the linear axes follow the rotaries; what they leave their
+// chord by is an eighth of the second derivative, as in postproc/readback/motion.cpp.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "machines/machine.h"
+#include "postproc/bodies/scene.h"
+#include "postproc/readback/reader.h"
+
+namespace toothpath::bodies {
+
+struct MovesOptions {
+  double required_mm = 0;    ///< least proven gap that passes; touching never does
+  double look_mm = 50;       ///< larger gaps are not told apart
+  double share = 0.97;       ///< the proven least gap is no less than this part of the measured one ..
+  double apart_mm = 0.1;     ///< .. less this much, and no less than `required_mm` if the true one is not
+  double finest_mm = 0.002;  ///< ways of a gap that are not halved again
+};
+
+/// Where two bodies come near each other.
+struct Meeting {
+  std::string first, second;
+  Kind first_kind = Kind::machine, second_kind = Kind::machine;
+  double proven_mm = 0;    ///< no move of the program has a smaller gap; of a pair that fails: of its first place
+  double measured_mm = 0;  ///< found there
+  int line = 0, operation = -1, tooth = -1, tool = 0;
+  bool rapid = false;
+  machines::Joints joints;         ///< there
+  double depth_mm = 0;             ///< of a collision: how far the second must be moved to be free ..
+  Vec3 direction = Vec3::UnitZ();  ///< .. in this direction, machine coordinates
+};
+
+/// What was found about the moves of a program.
+struct MovesFound {
+  std::size_t stated = 0;  ///< bodies of the machine; 0: nothing was looked at
+  std::size_t pairs = 0, moves = 0;
+  std::size_t unjudged = 0;          ///< moves from a place that the program does not tell
+  std::vector<std::string> bearing;  ///< pairs that bear on one another and are not looked at
+  std::vector<Meeting> nearest;      ///< pairs that come nearer than look_mm, nearest first
+  std::vector<Meeting> failed;       ///< first place of every pair that comes too near, in the order of the program
+  double required_mm = 0, look_mm = 0;
+  [[nodiscard]] bool clear() const { return failed.empty(); }
+};
+
+/// Judges executed moves in order.
+class MovesJudge {
+ public:
+  /// The machine must outlive it. @param tool_length_mm gauge line to tip, by T
+  MovesJudge(const machines::Machine& machine, std::vector<Body> bodies, std::map<int, double> tool_length_mm,
+             const MovesOptions& options);
+
+  void add(const readback::ExecutedMove& move);
+  [[nodiscard]] MovesFound finish();
+
+ private:
+  using Five = std::array<double, 5>;  // X Y Z mm, rotaries rad
+  /// A stretch of the program in joint space.
+  struct Span {
+    Five from{}, to{};
+    double off_mm = 0;                                    // of X Y Z, from the way between `from` and `to` ..
+    double off_rad = 0;                                   // .. and of each rotary
+    Vec3 tip_from = Vec3::Zero(), tip_to = Vec3::Zero();  // with TCP: table frame
+    double length = 0;                                    // of the tool, with TCP
+    int line = 0;
+    std::int16_t operation = -1, tooth = -1;
+    bool rapid = false, box = false, tcp = false;
+  };
+  /// Joints between a least and a greatest, and how far they may be off.
+  struct Range {
+    Five low{}, high{};
+    double off_mm = 0, off_rad = 0;
+  };
+  struct State {
+    double proven, measured;
+    std::optional<Meeting> nearest, failed;
+  };
+
+  void add_corner(const readback::ExecutedMove& move);
+  void flush();
+  void look_at(std::size_t pair);
+  void look(std::size_t pair, std::size_t node, std::size_t first, std::size_t last);
+  void look_closer(std::size_t pair, const Span& span);
+  void build(std::size_t node, std::size_t first, std::size_t last);
+  /// Is the gap on all of `range` proven to be large enough? Else measured at its middle, where `on_way` says that the
+  /// program goes there.
+  bool passes(std::size_t pair, const Range& range, const Span* on_way);
+  [[nodiscard]] double way(const Pair& pair, const Range& range) const;
+  [[nodiscard]] double aim(const State& state) const;
+  [[nodiscard]] Meeting meeting(std::size_t pair, const Span& span, const Five& at, const Gap& gap) const;
+  [[nodiscard]] Range range_of(const Span& span) const;
+  [[nodiscard]] std::pair<Span, Span> halves(std::size_t pair, const Span& span) const;
+
+  const machines::Machine& machine_;
+  Scene scene_;
+  std::map<int, double> lengths_;
+  MovesOptions options_;
+  std::vector<State> states_;
+  std::vector<Span> spans_;
+  std::vector<Range> nodes_;
+  std::optional<readback::ExecutedMove> last_, before_;
+  int tool_ = 0;
+  std::size_t moves_ = 0, unjudged_ = 0;
+};
+
+}  // namespace toothpath::bodies
