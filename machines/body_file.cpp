@@ -13,7 +13,8 @@ namespace {
 constexpr double kLeastSize = 0.01;  // mm, of an edge or a radius: less is no body
 
 std::optional<BoxShape> read_box(toml::TableReader& body) {
-  const auto low = read_vector(body, "min", kLargestLength), high = read_vector(body, "max", kLargestLength);
+  const auto low = read_vector(body, "min", kLargestLength, " mm"),
+             high = read_vector(body, "max", kLargestLength, " mm");
   if (!low || !high) return std::nullopt;
   for (int k = 0; k < 3; ++k)
     if ((*high)[k] - (*low)[k] < kLeastSize) {
@@ -25,7 +26,8 @@ std::optional<BoxShape> read_box(toml::TableReader& body) {
 }
 
 std::optional<ConeShape> read_round(toml::TableReader& body, bool cone) {
-  const auto from = read_vector(body, "from", kLargestLength), to = read_vector(body, "to", kLargestLength);
+  const auto from = read_vector(body, "from", kLargestLength, " mm"),
+             to = read_vector(body, "to", kLargestLength, " mm");
   const toml::Range most = {0.0, kLargestLength, " mm"};
   const auto first = body.number("diameter", cone ? most : toml::Range::positive(kLargestLength, " mm"));
   const auto second = cone ? body.number("diameter_to", most) : first;
@@ -52,7 +54,7 @@ std::optional<MeshShape> read_mesh(toml::TableReader& body, const std::string& m
 }
 
 void read_shape(toml::TableReader& table, const std::string& machine_file, MachineBody& body) {
-  const auto shape = table.word("shape", {"box", "cylinder", "cone", "mesh"});
+  const auto shape = table.variant("shape", {"box", "cylinder", "cone", "mesh"});
   if (!shape) return;
   if (*shape == "box") {
     if (const auto box = read_box(table)) body.shape = *box;
@@ -93,7 +95,7 @@ void read_bodies(toml::TableReader& root, Machine& machine) {
   for (toml::TableReader& table : tables) {
     MachineBody body;
     body.key = table.path();
-    body.name = table.text("name", true).value_or("");
+    body.name = table.text("name", {.ascii = true}).value_or("");
     if (const auto of = table.text("of")) {
       const auto link = links.find(*of);
       if (!link)
@@ -102,8 +104,7 @@ void read_bodies(toml::TableReader& root, Machine& machine) {
       body.link = link.value_or(0);
     }
     read_shape(table, machine.file, body);
-    body.touches =
-        table.if_present("touches", [&] { return table.ascii_list("touches"); }).value_or(std::vector<std::string>{});
+    body.touches = table.optional_ascii_list("touches").value_or(std::vector<std::string>{});
     table.finish();
     machine.bodies.push_back(std::move(body));
   }
@@ -112,7 +113,7 @@ void read_bodies(toml::TableReader& root, Machine& machine) {
 
 void read_chain_order(toml::TableReader& chain_table, KinematicChain& chain) {
   const bool whole = chain_table.errors() == 0;  // else the axes are not all there
-  const auto names = chain_table.ascii_list("order");
+  const auto names = chain_table.optional_ascii_list("order");
   if (!names || !whole) return;
   std::string order;
   for (const std::string& name : *names) {

@@ -214,7 +214,7 @@ void read_chain(toml::TableReader& root, Machine& machine) {
       (in_table ? machine.chain.table : machine.chain.head)
           .push_back(read_rotary(*axis, all[k].letter, in_table, machine.limit_margin));
   }
-  if (chain->has("order")) read_chain_order(*chain, machine.chain);
+  read_chain_order(*chain, machine.chain);
   chain->finish();
   refuse_offsets_in_metres(*axes, machine);
   for (const char* letter : {"A", "B", "C"})

@@ -3,8 +3,10 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "app/job/tables.h"
+#include "app/tool_library/tool_library.h"
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 #include "machines/toml/regular_file.h"
@@ -17,6 +19,7 @@ constexpr toml::Range kToolDiameter{0.01, 500, " mm"};
 constexpr std::size_t kMostMeridianBytes = 1 << 20;
 constexpr std::size_t kMostSegments = 100;  // of a holder
 constexpr double kMostHelix = 75;           // deg
+constexpr double kSameInLibrary = 1e-4;     // of a number: rounding
 constexpr const char* kTaperAngle = "taper_angle";
 
 std::vector<tool::HolderSegment> read_holder(toml::TableReader& table) {
@@ -161,12 +164,91 @@ void read_end_mill(toml::TableReader& table, const ToolContext& context, tool::T
   }
 }
 
+/// What a file of tools says of the one that is read: the reader of its table takes it where the job says nothing.
+class LibrarySupply {
+ public:
+  LibrarySupply(toml::TableReader& table, const ToolContext& context, int number, std::vector<std::string>& warnings)
+      : before_(table.errors()) {
+    const auto name = table.optional_text("library");
+    const auto listed = table.optional_integer("library_number", kToolNumber);
+    table.relate(toml::KeyRelation::Kind::supplies, "library", "number");
+    table.relate(toml::KeyRelation::Kind::needs, "library_number", "library");
+    if (listed && !name) table.refuse("library_number", "library_number needs library, the file with that tool");
+    if (!name) return;
+    const auto path = (std::filesystem::path(context.directory) / *name).lexically_normal().string();
+    const auto tools = tool_library::read_tool_library(path);
+    auto found = tools ? tool_library::tool_of_library(*tools, listed.value_or(number))
+                       : Result<tool_library::LibraryTool>(tools.error());
+    if (!found) {
+      const SourcePosition& at = found.error().position;
+      const std::string place = at.file.empty() ? "" : at.line > 0 ? fmt::format("line {}: ", at.line) : "";
+      table.refuse("library", "library = \"{}\": {}{}", *name, place, found.error().message);
+      failed_ = true;
+      return;
+    }
+    tool_ = std::move(*found);
+    file_ = *name;
+    for (const toml::TomlEntry& said : tool_->keys.entries) compare(table, said, warnings);
+    table.supply(tool_->keys);
+  }
+
+  /// What follows from a file that could not be read is not told; what it does not say is asked for by name.
+  /// @return were there refusals?
+  bool finish(toml::TableReader& table) const {
+    if (failed_) table.forget_errors(before_ + 1);
+    else if (tool_) ask_for_missing(table);
+    return table.errors() > before_;
+  }
+
+ private:
+  /// What stands in the job holds; where the file says something else the reader is told.
+  void compare(const toml::TableReader& table, const toml::TomlEntry& said, std::vector<std::string>& warnings) const {
+    const toml::TomlValue* own = table.own(said.key);
+    if (!own) return;
+    const auto a = own->number(), b = said.value.number();
+    const bool same = a && b ? std::abs(*a - *b) <= kSameInLibrary * std::abs(*b)
+                             : own->text() && said.value.text() && *own->text() == *said.value.text();
+    if (same || own->array()) return;
+    const SourcePosition at = table.where(said.key);
+    warnings.push_back(fmt::format("{}:{}:{}: warning: {} is taken from here; {} says {}", at.file, at.line, at.column,
+                                   table.name(said.key), file_,
+                                   b                   ? fmt::format("{:g}", *b)
+                                   : said.value.text() ? *said.value.text()
+                                                       : "another"));
+  }
+
+  void ask_for_missing(toml::TableReader& table) const {
+    std::vector<std::string> missing;
+    for (const char* key : {"type", "shank_diameter", "length", "stick_out", "holder"})
+      if (!table.has(key)) missing.emplace_back(key);
+    if (const toml::TomlValue* type = table.looked_up("type"); type && type->text()) {
+      const auto kinds = tool::cutter_kinds();
+      const auto kind =
+          std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return *type->text() == k.word; });
+      if (kind != kinds.end())
+        for (const tool::CutterNumber& n : kind->numbers)
+          if (!table.has(n.key)) missing.emplace_back(n.key);
+    }
+    if (missing.empty()) return;
+    table.forget_errors(before_);
+    table.refuse("library", "tool {} of {} does not say {}: state {} here{}{}", tool_->number, file_,
+                 fmt::join(missing, ", "), missing.size() == 1 ? "it" : "them", tool_->notes.empty() ? "" : " (",
+                 tool_->notes.empty() ? "" : fmt::format("{})", fmt::join(tool_->notes, "; ")));
+  }
+
+  std::size_t before_;
+  bool failed_ = false;
+  std::optional<tool_library::LibraryTool> tool_;
+  std::string file_;
+};
+
 }  // namespace
 
 tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& context, std::vector<std::string>& warnings) {
   const std::vector<std::string_view> words = kind_words();
   tool::ToolAssembly tool;
   tool.number = table.integer("number", kToolNumber).value_or(0);
+  const LibrarySupply supply(table, context, tool.number, warnings);
   const auto type = table.variant("type", words);
   tool.shank_diameter_mm = table.number("shank_diameter", kToolDiameter).value_or(0);
   const auto length = table.number("length", kToolLength);
@@ -178,6 +260,7 @@ tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& contex
   if (length && stick_out && *stick_out > *length)
     table.refuse("stick_out", "stick_out = {} mm exceeds length = {} mm", *stick_out, *length);
   if (!type) {
+    if (supply.finish(table)) return tool;
     table.name_misspelt("type");
     return tool;  // which other keys belong here is unknown
   }
@@ -194,6 +277,7 @@ tool::ToolAssembly read_tool(toml::TableReader& table, const ToolContext& contex
     if (table.errors() == before) check_profile(table, tool);
   }
   table.finish();
+  (void)supply.finish(table);
   return tool;
 }
 

@@ -63,6 +63,11 @@ constexpr Meaning kJobMeanings[] = {
     {"setup.work_offset_at", "Its origin in machine coordinates: the numbers of the program are relative to it."},
     {"tool", "A cutter with its neck and holder; all of them are checked."},
     {"tool.number", "Number of the tool (T word); operations name it."},
+    {"tool.library",
+     "File with tools beside the job: the tool table of LinuxCNC (.tbl), the tool library of Fusion (.json), a tool "
+     "bit "
+     "or library of FreeCAD (.fctb, .fctl). What it says of the tool need not stand here; what stands here holds."},
+    {"tool.library_number", "Number of the tool in that file, where it is not `number`."},
     {"tool.type", "Kind of cutter."},
     {"tool.diameter", "Diameter of the cutter; of a tapered one that of its ball."},
     {"tool.flute_length",

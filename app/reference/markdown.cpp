@@ -155,6 +155,9 @@ class Page {
         case toml::KeyRelation::Kind::together: words = "`{}` and `{}` stand together or not at all"; break;
         case toml::KeyRelation::Kind::needs: words = "`{}` needs `{}`"; break;
         case toml::KeyRelation::Kind::excludes: words = "`{}` and `{}` contradict each other"; break;
+        case toml::KeyRelation::Kind::supplies:
+          words = "Where `{}` is there, the file that it names may say every other key but `{}`";
+          break;
       }
       std::string when;
       for (const Condition& c : r.when)

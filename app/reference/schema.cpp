@@ -159,8 +159,8 @@ class Schema {
       if (key.decides) add_variants(table, key, all);
     for (const Relation& relation : table.relations) all.push_back(relation_schema(table, relation));
     Json json = {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
-    if (!required.empty()) json["required"] = std::move(required);
     if (!all.empty()) json["allOf"] = std::move(all);
+    demand(table, std::move(required), json);
     return json;
   }
 
@@ -209,8 +209,22 @@ class Schema {
     }
     Json json = Json::object();
     if (!properties.empty()) json["properties"] = std::move(properties);
-    if (!required.empty()) json["required"] = std::move(required);
+    demand(table, std::move(required), json);
     return json;
+  }
+
+  /// Required keys; of a table that another file may complete only where it does not.
+  static void demand(const Table& table, Json required, Json& json) {
+    if (required.empty()) return;
+    const auto supplied = std::find_if(table.relations.begin(), table.relations.end(), [](const Relation& r) {
+      return r.relation.kind == toml::KeyRelation::Kind::supplies;
+    });
+    if (supplied == table.relations.end()) {
+      json["required"] = std::move(required);
+      return;
+    }
+    json["allOf"].push_back(
+        {{"if", {{"not", {{"required", {supplied->relation.first}}}}}}, {"then", {{"required", std::move(required)}}}});
   }
 
   /// Does a word of one deciding key of a table exist only where another condition holds anyway?
@@ -241,6 +255,7 @@ class Schema {
         break;
       case toml::KeyRelation::Kind::needs: json["dependencies"] = {{a, Json::array({b})}}; break;
       case toml::KeyRelation::Kind::excludes: json["not"] = {{"required", {a, b}}}; break;
+      case toml::KeyRelation::Kind::supplies: json["dependencies"] = {{a, Json::array({b})}}; break;
     }
     if (relation.when.empty()) return json;
     Json properties = Json::object(), required = Json::array();

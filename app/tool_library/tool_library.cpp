@@ -42,7 +42,7 @@ Result<std::vector<LibraryTool>> read_tool_library(const std::string& path) {
   return read_tool_library_text(*text, path);
 }
 
-Result<LibraryTool> tool_of_library(const std::vector<LibraryTool>& tools, int number, const std::string& path) {
+Result<LibraryTool> tool_of_library(const std::vector<LibraryTool>& tools, int number) {
   if (tools.size() == 1 && tools.front().number == 0) return tools.front();
   const auto has = [&](const LibraryTool& tool) { return tool.number == number; };
   const auto found = std::find_if(tools.begin(), tools.end(), has);
@@ -50,10 +50,10 @@ Result<LibraryTool> tool_of_library(const std::vector<LibraryTool>& tools, int n
     std::set<int> numbers;
     for (const LibraryTool& tool : tools) numbers.insert(tool.number);
     numbers.erase(0);
-    if (numbers.empty()) return fail("{} has {} tools, none with a number", path, tools.size());
-    return fail("{} has no tool {}; there are {}", path, number, fmt::join(numbers, ", "));
+    if (numbers.empty()) return fail("{} tools, none with a number", tools.size());
+    return fail("there is no tool {}, but {}", number, fmt::join(numbers, ", "));
   }
-  if (std::any_of(found + 1, tools.end(), has)) return fail("{} has two tools {}", path, number);
+  if (std::any_of(found + 1, tools.end(), has)) return fail("two tools have the number {}", number);
   return *found;
 }
 

@@ -31,7 +31,6 @@ inline constexpr const char* kFormats = ".tbl (LinuxCNC), .json (Fusion), .fctb 
 
 /// The one with a number; of a file with a single tool without a number that one. Errors: none has it (the numbers that
 /// are there), two have it.
-[[nodiscard]] Result<LibraryTool> tool_of_library(const std::vector<LibraryTool>& tools, int number,
-                                                  const std::string& path);
+[[nodiscard]] Result<LibraryTool> tool_of_library(const std::vector<LibraryTool>& tools, int number);
 
 }  // namespace toothpath::tool_library

@@ -83,6 +83,7 @@ struct KeyRelation {
     together,  ///< both or none
     needs,     ///< the first needs the second
     excludes,  ///< not both
+    supplies,  ///< where the first is there, only the second of the required keys must stand here
   };
   std::string table;
   Kind kind;

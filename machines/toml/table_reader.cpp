@@ -45,17 +45,22 @@ std::string TableReader::join(std::string_view key) const {
   return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
 }
 
+const TomlEntry* TableReader::entry(std::string_view key) const {
+  const TomlEntry* own = table_.find(key);
+  return own || !others_ ? own : others_->find(key);
+}
+
 void TableReader::record(SourcePosition position, std::string message) {
   findings_->errors.push_back({DiagnosticKind::refused_input, std::move(position), std::move(message)});
 }
 
 SourcePosition TableReader::where(std::string_view key) const {
-  const TomlEntry* entry = table_.find(key);
+  const TomlEntry* entry = this->entry(key);
   return entry ? entry->value.position : position_;
 }
 
 SourcePosition TableReader::where(std::string_view key, std::size_t entry) const {
-  const TomlEntry* list = table_.find(key);
+  const TomlEntry* list = this->entry(key);
   const TomlArray* array = list ? list->value.array() : nullptr;
   return array && entry < array->values.size() ? array->values[entry].position : where(key);
 }
@@ -68,7 +73,7 @@ void TableReader::ask(std::string_view key, const ValueShape& shape, Presence pr
 }
 
 const TomlValue* TableReader::look(std::string_view key, bool must) {
-  const TomlEntry* entry = table_.find(key);
+  const TomlEntry* entry = this->entry(key);
   if (!entry && must) record(position_, words().missing(path_, key));
   return entry ? &entry->value : nullptr;
 }

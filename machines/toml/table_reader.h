@@ -2,6 +2,7 @@
 // What a finding says is the business of the format: `TableWords`.
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 #include <map>
 #include <optional>
@@ -69,7 +70,19 @@ class TableReader {
   /// @param path   dotted name of the table: "gear", "gear.zone[0]"; empty for the file itself
   TableReader(const TomlValue& table, std::string path, ReaderFindings& findings);
 
-  [[nodiscard]] bool has(std::string_view key) const { return table_.find(key) != nullptr; }
+  /// Keys that this table lacks are looked up in another one, which outlives the reader; they keep their places there.
+  void supply(const TomlTable& others) { others_ = &others; }
+
+  [[nodiscard]] bool has(std::string_view key) const { return entry(key) != nullptr; }
+  // A value without asking for the key: of this table alone; of the one that supplies it, too. Null: there is none.
+  [[nodiscard]] const TomlValue* own(std::string_view key) const {
+    const TomlEntry* found = table_.find(key);
+    return found ? &found->value : nullptr;
+  }
+  [[nodiscard]] const TomlValue* looked_up(std::string_view key) const {
+    const TomlEntry* found = entry(key);
+    return found ? &found->value : nullptr;
+  }
   /// Place of the value of a key, or of the table where the key is absent.
   [[nodiscard]] SourcePosition where(std::string_view key) const;
   /// Place of an entry of a list.
@@ -150,6 +163,8 @@ class TableReader {
   void refuse_at(const SourcePosition& position, fmt::format_string<Args...> text, Args&&... args) {
     record(position, fmt::format(text, std::forward<Args>(args)...));
   }
+  /// Forgets all refusals behind the first `kept`: they follow from another one.
+  void forget_errors(std::size_t kept) { findings_->errors.resize(std::min(kept, errors())); }
   /// Records every key that was never asked for.
   void finish();
   /// Of a table that cannot be read further because `key` is absent: records the key that was probably meant to be it.
@@ -158,6 +173,7 @@ class TableReader {
  private:
   [[nodiscard]] const TableWords& words() const { return findings_->words; }
   [[nodiscard]] std::string join(std::string_view key) const;
+  [[nodiscard]] const TomlEntry* entry(std::string_view key) const;
   void record(SourcePosition position, std::string message);
   /// Marks a key as known, and notes it.
   void ask(std::string_view key, const ValueShape& shape, Presence presence, std::string absent = {});
@@ -173,6 +189,7 @@ class TableReader {
   std::optional<std::vector<T>> list(std::string_view key, const TomlValue& found, Read read);
 
   const TomlTable& table_;
+  const TomlTable* others_ = nullptr;
   SourcePosition position_;
   std::string path_;
   ReaderFindings* findings_;

@@ -514,7 +514,7 @@ TEST(Run, LinuxCncGetsTheLinesOfItsToolTable) {
   ASSERT_TRUE(job);
   ASSERT_EQ(tools->size(), job.value().tools.size());
   for (const auto& tool : job.value().tools) {
-    const auto line = tool_library::tool_of_library(*tools, tool.number, "");
+    const auto line = tool_library::tool_of_library(*tools, tool.number);
     ASSERT_TRUE(line);
     EXPECT_EQ(*line->keys.find("length")->value.number(), tool.length_mm);
     EXPECT_EQ(*line->keys.find("diameter")->value.number(), tool.diameter_mm);

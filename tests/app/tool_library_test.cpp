@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "app/job/file.h"
 #include "tests/support/files.h"
 
 namespace toothpath::tool_library {
@@ -161,7 +162,7 @@ TEST(ToolLibrary, FreecadBitsAndLibraries) {
 
   const auto one = read_tool_library(dir / "Bit/ball.fctb");
   ASSERT_TRUE(one);
-  EXPECT_TRUE(tool_of_library(*one, 77, "ball.fctb")) << "a single bit has no number";
+  EXPECT_TRUE(tool_of_library(*one, 77)) << "a single bit has no number";
   const auto drill = read_tool_library(dir / "Bit/drill.fctb");
   ASSERT_FALSE(drill);
   EXPECT_EQ(drill.error().message, "the tool bit is no end mill: its shape is \"drill.fcstd\"");
@@ -174,13 +175,13 @@ TEST(ToolLibrary, FreecadBitsAndLibraries) {
 TEST(ToolLibrary, WhichToolIsMeant) {
   const auto tools = read_tool_library_text(kFusion, "lib.json");
   ASSERT_TRUE(tools);
-  EXPECT_EQ(tool_of_library(*tools, 5, "lib.json")->name, "quarter inch");
-  const auto none = tool_of_library(*tools, 1, "lib.json");
+  EXPECT_EQ(tool_of_library(*tools, 5)->name, "quarter inch");
+  const auto none = tool_of_library(*tools, 1);
   ASSERT_FALSE(none);
-  EXPECT_EQ(none.error().message, "lib.json has no tool 1; there are 4, 5, 6, 7");
+  EXPECT_EQ(none.error().message, "there is no tool 1, but 4, 5, 6, 7");
   auto twice = *tools;
   twice.push_back(twice.front());
-  EXPECT_EQ(tool_of_library(twice, 4, "lib.json").error().message, "lib.json has two tools 4");
+  EXPECT_EQ(tool_of_library(twice, 4).error().message, "two tools have the number 4");
 }
 
 TEST(ToolLibrary, WhatIsNoLibraryIsRefusedWithItsPlace) {
@@ -198,6 +199,78 @@ TEST(ToolLibrary, WhatIsNoLibraryIsRefusedWithItsPlace) {
   EXPECT_EQ(refused("", "a.toml"),
             "a.toml: error: tools are read from .tbl (LinuxCNC), .json (Fusion), .fctb or .fctl (FreeCAD); this ends "
             "with \".toml\"");
+}
+
+/// The quick sample with its tool told by a library.
+class JobWithLibrary : public testing::Test {
+ protected:
+  job::JobOrErrors read(const std::string& tool) {
+    const std::string sample = test::file_text(TOOTHPATH_SOURCE_DIR "/samples/spur_quick.toml");
+    const std::size_t from = sample.find("[[tool]]"), to = sample.find("[[operation]]");
+    test::write_file(dir / "job.toml",
+                     sample.substr(0, from) + "[[tool]]\nnumber = 1\n" + tool + "\n" + sample.substr(to));
+    return job::read_job_file(dir / "job.toml");
+  }
+  std::string refused(const std::string& tool) {
+    const auto job = read(tool);
+    if (!job.refused()) return "read";
+    std::string text;
+    for (const auto& error : *job.refused()) text += (text.empty() ? "" : "\n") + error.message;
+    return text;
+  }
+  const test::TestDir dir;
+};
+
+TEST_F(JobWithLibrary, TheFileSaysWhatTheJobDoesNot) {
+  test::write_file(dir / "lib.json", kFusion);
+  auto job = read("library = \"lib.json\"\nlibrary_number = 4");
+  ASSERT_FALSE(job.refused()) << job.refused()->front().text();
+  const tool::ToolAssembly& tool = job.value().tools.front();
+  EXPECT_EQ(tool.number, 1);
+  EXPECT_EQ(tool.diameter_mm, 6);
+  EXPECT_EQ(tool.length_mm, 120);
+  EXPECT_EQ(tool.shank_diameter_mm, 8);
+  ASSERT_EQ(tool.holder.size(), 2u);
+  EXPECT_EQ(tool.holder[0].lower_diameter_mm, 24);
+  EXPECT_EQ(tool.holder[1].height_mm, 60);
+  EXPECT_TRUE(job.value().warnings.empty());
+}
+
+TEST_F(JobWithLibrary, WhatStandsInTheJobHoldsAndIsTold) {
+  test::write_file(dir / "lib.json", kFusion);
+  auto job = read("library = \"lib.json\"\nlibrary_number = 4\nstick_out = 38.5\nflute_length = 12");
+  ASSERT_FALSE(job.refused()) << job.refused()->front().text();
+  EXPECT_EQ(job.value().tools.front().stick_out_mm, 38.5);
+  ASSERT_EQ(job.value().warnings.size(), 1u) << "12 mm is what the file says";
+  EXPECT_NE(job.value().warnings.front().find("stick_out is taken from here; lib.json says 40"), std::string::npos)
+      << job.value().warnings.front();
+}
+
+TEST_F(JobWithLibrary, WhatTheFileDoesNotSayIsAskedForByName) {
+  test::write_file(dir / "shop.tbl", kTable);
+  EXPECT_EQ(refused("library = \"shop.tbl\""),
+            "tool 1 of shop.tbl does not say type, shank_diameter, stick_out, holder: state them here");
+  EXPECT_EQ(refused("library = \"shop.tbl\"\ntype = \"ball_end_mill\"\nstick_out = 30\nshank_diameter = 6\n"
+                    "holder = [[20, 20, 40]]"),
+            "tool 1 of shop.tbl does not say flute_length: state it here");
+  test::write_file(dir / "lib.json", kFusion);
+  EXPECT_EQ(refused("library = \"lib.json\"\nlibrary_number = 6"),
+            "tool 6 of lib.json does not say length, holder: state them here (no holder)");
+}
+
+TEST_F(JobWithLibrary, RefusalsHaveTheirReasonOnce) {
+  EXPECT_EQ(refused("library = \"none.tbl\""), "library = \"none.tbl\": cannot open: No such file or directory");
+  EXPECT_EQ(
+      refused("library = \"job.toml\""),
+      "library = \"job.toml\": tools are read from .tbl (LinuxCNC), .json (Fusion), .fctb or .fctl (FreeCAD); this "
+      "ends with \".toml\"");
+  test::write_file(dir / "shop.tbl", "T1 D6\nT2 D4,5\n");
+  EXPECT_EQ(refused("library = \"shop.tbl\""), "library = \"shop.tbl\": line 2: \"D4,5\": no number behind D");
+  test::write_file(dir / "shop.tbl", kTable);
+  EXPECT_EQ(refused("library = \"shop.tbl\"\nlibrary_number = 2"),
+            "library = \"shop.tbl\": there is no tool 2, but 1, 3, 12");
+  EXPECT_NE(refused("library_number = 2").find("library_number needs library, the file with that tool"),
+            std::string::npos);
 }
 
 }  // namespace
