@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "app/tool_library/formats.h"
+#include "geometry/base/printable.h"
 #include "machines/toml/regular_file.h"
 
 namespace toothpath::tool_library {
@@ -33,7 +34,7 @@ Result<double> length_of(const Json& value, const std::string& name, const Sourc
   while (unit.ends_with(' ')) unit.remove_suffix(1);
   const auto scale = scale_of(unit);
   if (error != std::errc{} || !std::isfinite(number) || !scale)
-    return fail_at(at, "{} = \"{}\": no length in mm, um, cm or in", name, text);
+    return fail_at(at, "{} = \"{}\": no length in mm, um, cm or in", name, printable(text));
   return number * *scale;
 }
 
@@ -107,7 +108,9 @@ Result<std::vector<LibraryTool>> read_freecad_bit(const std::string& text, const
   if (!json) return json.error();
   auto tool = read_bit(*json, path);
   if (!tool) return tool.error();
-  if (!*tool) return fail_at({path, 0, 0}, "the tool bit is no end mill: its shape is {}", (*json)["shape"].dump());
+  if (!*tool)
+    return fail_at({path, 0, 0}, "the tool bit is no end mill: its shape is \"{}\"",
+                   printable((*json)["shape"].get<std::string>()));
   return std::vector<LibraryTool>{std::move(**tool)};
 }
 

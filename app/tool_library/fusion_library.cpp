@@ -7,6 +7,7 @@
 
 #include "app/tool_library/formats.h"
 #include "geometry/base/angle.h"
+#include "geometry/base/printable.h"
 
 namespace toothpath::tool_library {
 namespace {
@@ -50,7 +51,7 @@ class Entry {
     if (unit == "inches") scale_ = kInch;
     else if (unit != "millimeters")
       return fail_at(at_, "tool {} \"{}\": unit = \"{}\" is neither \"millimeters\" nor \"inches\"", tool_.number,
-                     tool_.name, unit);
+                     printable(tool_.name), printable(unit));
     if (const Json* found = member(json_, "geometry")) geometry_ = found;
     form(type);
     lengths();

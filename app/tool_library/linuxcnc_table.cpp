@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "app/tool_library/formats.h"
+#include "geometry/base/printable.h"
 
 namespace toothpath::tool_library {
 namespace {
@@ -19,13 +20,13 @@ constexpr std::string_view kLetters = "TPXYZABCUVWDIJQ";
 Status read_word(std::string_view word, const SourcePosition& at, Words& words) {
   const char letter = char(std::toupper(static_cast<unsigned char>(word.front())));
   if (kLetters.find(letter) == std::string_view::npos)
-    return fail_at(at, "\"{}\": a word begins with one of {}", word, kLetters);
+    return fail_at(at, "\"{}\": a word begins with one of {}", printable(word), kLetters);
   std::string_view digits = word.substr(1);
   if (digits.starts_with('+')) digits.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   if (error != std::errc{} || end != digits.data() + digits.size() || !std::isfinite(value))
-    return fail_at(at, "\"{}\": no number behind {}", word, letter);
+    return fail_at(at, "\"{}\": no number behind {}", printable(word), letter);
   if (letter == 'T') words.T = value;
   if (letter == 'P') words.P = value;
   if (letter == 'Z') words.Z = value;

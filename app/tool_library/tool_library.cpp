@@ -23,7 +23,7 @@ Result<nlohmann::json> parse_object(const std::string& text, const std::string& 
     const auto start = before.rfind('\n');
     const auto column = start == std::string_view::npos ? before.size() : before.size() - start - 1;
     return fail_at({path, int(line) + 1, int(column) + 1}, "this is no JSON");
-  }
+  } catch (const nlohmann::json::exception&) { return fail_at({path, 0, 0}, "a number is too large"); }
 }
 
 Result<std::vector<LibraryTool>> read_tool_library_text(const std::string& text, const std::string& path) {

@@ -6,6 +6,7 @@
 
 #include "app/job/file.h"
 #include "app/job/measured_file.h"
+#include "app/tool_library/tool_library.h"
 #include "geometry/mesh/file.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/shaper/control.h"
@@ -117,6 +118,33 @@ ByteReader measured_reader() {
           }};
 }
 
+/// Files of tools of other programs: a library of FreeCAD names bits, which lie beside it undamaged.
+std::vector<ByteReader> tool_library_readers() {
+  static const TestDir dir;
+  const std::string bit =
+      R"({"version": 2, "name": "6mm Ball", "shape": "ballend.fcstd", "attribute": {"Flutes": "2"},)"
+      R"( "parameter": {"CuttingEdgeHeight": "12.0 mm", "Diameter": "0.25 in", "ShankDiameter": "6.0 mm"}})";
+  write_file(dir / "ball.fctb", bit);
+  const std::vector<std::pair<const char*, std::string>> formats = {
+      {"tbl", "; tools\nT1 P1 D6.000000 Z+121.500000 ;ball\n\nT12 P12 X+0.1 Z-33.2 D4\r\n"},
+      {"json",
+       R"({"data": [{"type": "ball end mill", "description": "6", "unit": "inches", "post-process": {"number": 4},)"
+       R"( "geometry": {"DC": 6, "LCF": 12, "LB": 40, "SFDM": 6, "NOF": 2}, "holder": {"gaugeLength": 80, "segments":)"
+       R"( [{"height": 20, "lower-diameter": 24, "upper-diameter": 28}]}}, {"type": "tapered mill", "unit":)"
+       R"( "millimeters", "geometry": {"DC": 1.4427, "RE": 0.79375, "TA": 5.5}}]})"},
+      {"fctb", bit},
+      {"fctl", R"({"version": 1, "tools": [{"nr": 3, "path": "ball.fctb"}]})"}};
+  std::vector<ByteReader> readers;
+  for (const auto& [ending, seed] : formats)
+    readers.push_back({std::string("tools_") + ending,
+                       "{}[]\":,.+-0123456789 TPDZmin\n",
+                       {seed},
+                       [path = dir / (std::string("t.") + ending)](std::string_view bytes) {
+                         return fault_of(tool_library::read_tool_library_text(std::string(bytes), path));
+                       }});
+  return readers;
+}
+
 std::string box_stl() {
   mesh::TriangleMesh box;
   for (int k = 0; k < 8; ++k) box.vertices.emplace_back(k & 1 ? 20 : 0, k & 2 ? 30 : 0, k & 4 ? 40 : 0);
@@ -197,7 +225,7 @@ std::vector<ByteReader> gearbox_readers() {
 std::vector<ByteReader> all_readers() {
   std::vector<ByteReader> readers = {job_reader(), machine_reader(), shaper_machine_reader(), meridian_reader(),
                                      measured_reader()};
-  for (const auto& group : {mesh_readers(), nc_readers(), gearbox_readers()})
+  for (const auto& group : {tool_library_readers(), mesh_readers(), nc_readers(), gearbox_readers()})
     readers.insert(readers.end(), group.begin(), group.end());
   return readers;
 }
