@@ -16,7 +16,8 @@ help::Value value_of(const CLI::Option& option) {
   help::Value value{help::ValueKind::text, option.get_type_name(), choices_in(option.get_type_name())};
   const std::string name = option.get_name(option.get_positional());
   if (!value.choices.empty()) value.kind = help::ValueKind::choice;
-  else if (value.name == "JOB" || option.get_description().starts_with("job file")) value.kind = help::ValueKind::job;
+  else if (value.name.starts_with("JOB") || option.get_description().starts_with("job file"))
+    value.kind = help::ValueKind::job;
   else if (name == "MACHINE" || name == "--machine") value.kind = help::ValueKind::machine;
   else if (value.name == "FILE") value.kind = help::ValueKind::file;
   else if (value.name == "DIR") value.kind = help::ValueKind::directory;

@@ -49,4 +49,5 @@ cached_bare_root() {
   else
     mkdir -p "$1" && tar -C "$1" -xf "$3"
   fi
+  chmod 755 "$1"
 }
