@@ -3,10 +3,10 @@
 #include <algorithm>
 
 #include "app/process/cutting_force.h"
+#include "app/process/flow/machine_moves.h"
 #include "app/process/flow/registry.h"
 #include "app/process/flow/restart.h"
 #include "app/process/ledger_sources.h"
-#include "app/process/machine_moves.h"
 #include "app/process/program_report.h"
 #include "app/process/proof_limits.h"
 #include "app/report/page/motion_charts.h"
@@ -79,9 +79,9 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
 
   const std::vector<const path::ClPath*> asked = process::paths_to_meet(program, paths);
   const std::string file = output.final_path(posted->file);
-  auto bodies = process::bodies_in_machine(run.job, run.machine, gear, nullptr);
+  auto bodies = bodies_in_machine(run.job, run.machine, gear, nullptr);
   if (!bodies) return bodies.error();
-  bodies::MovesJudge moves = process::judge_of(run.machine, std::move(*bodies), run.job, limits.clearance_mm);
+  bodies::MovesJudge moves = judge_of(run.machine, std::move(*bodies), run.job, limits.clearance_mm);
   const process::ProgramText whole{posted->text, file, run.job, run.machine, &moves};
   auto proof = process::prove_program(
       whole, {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad},
