@@ -5,6 +5,7 @@
 #include "app/base/output_dir.h"
 #include "app/job/file.h"
 #include "app/process/flow/machine_moves.h"
+#include "app/process/flow/machine_picture.h"
 #include "app/process/flow/stages.h"
 #include "app/process/program_report.h"
 #include "app/process/proof_limits.h"
@@ -133,6 +134,8 @@ Status write_results(Check& check, app::OutputDir& output, std::string& json) {
         page::page_of_run(check.gear.process->on_page(report.machine_name), report, {}, check.text);
     content.surface = proof.surface;
     content.motion = page::motion_charts(proof.read, proof.motions, check.machine);
+    content.machine = flow::machine_picture(check.job, check.machine, *check.gear.process, proof.read,
+                                            check.scene ? &*check.scene : nullptr);
     return page::render_report_page(content);
   });
   if (!page) return page.error();

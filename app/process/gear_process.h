@@ -120,6 +120,10 @@ class GearProcess {
   /// The finished gear as a mesh, its facets within 0.02 mm. Errors: what has no mesh, at gear.
   [[nodiscard]] virtual Result<FinishedGear> solid() const = 0;
 
+  /// One pitch of the finished gear for pictures, a few thousand facets: turned once a tooth it is the whole gear.
+  /// Errors: what has no mesh, at gear.
+  [[nodiscard]] virtual Result<mesh::TriangleMesh> pitch() const = 0;
+
   /// Limits, inspection points, meshes; with `surface` tooth.vtp is the cut surface with its deviation, without the
   /// plain tooth.
   /// @param assumed values of the machine that nobody measured;  @param files names join it

@@ -4,6 +4,7 @@
 
 #include "app/process/cutting_force.h"
 #include "app/process/flow/machine_moves.h"
+#include "app/process/flow/machine_picture.h"
 #include "app/process/flow/registry.h"
 #include "app/process/flow/restart.h"
 #include "app/process/ledger_sources.h"
@@ -57,6 +58,7 @@ void keep_proof(Run& run, const proof::ProofLimits& limits, process::ProgramProo
   process::note_proof(run.report, proof);
   run.surface = std::move(proof.surface);
   run.motion = page::motion_charts(proof.read, proof.motions, run.machine);
+  run.machine_scene = machine_picture(run.job, run.machine, *run.gear.process, proof.read, nullptr);
   for (const path::ClPath* path : paths)
     run.lines.push_back(page::lines_of_records(*path, proof.motions, proof.path_tolerance_mm));
   run.report.length_tolerances =
@@ -161,6 +163,7 @@ page::ReportPage page_content(Run& run) {
   page.contact = contact;
   page.gear_limits = gear.limit_charts();
   page.motion = run.motion;
+  page.machine = run.machine_scene;
   for (std::size_t k = 0; k < run.lines.size(); ++k) page.paths[k].nc_lines = run.lines[k];
   return page;
 }
