@@ -131,7 +131,9 @@ void read_chain_order(toml::TableReader& chain_table, KinematicChain& chain) {
   std::sort(wanted.begin(), wanted.end());
   for (const RotaryAxis& axis : chain.table) table += axis.letter;
   for (const RotaryAxis& axis : chain.head) head += axis.letter;
-  if (found != wanted || !order.starts_with(table) || !order.ends_with(head)) {
+  const std::size_t bed = std::min(order.find(kBedMark), order.size());
+  const bool sides = bed >= table.size() && order.size() - bed > head.size();
+  if (found != wanted || !order.starts_with(table) || !order.ends_with(head) || !sides) {
     chain_table.refuse("order",
                        "{} must name \"bed\" and every axis once: the rotaries of chain.table first, those of "
                        "chain.head last",

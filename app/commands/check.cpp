@@ -4,8 +4,9 @@
 
 #include "app/base/output_dir.h"
 #include "app/job/file.h"
+#include "app/process/flow/machine_moves.h"
+#include "app/process/flow/machine_picture.h"
 #include "app/process/flow/stages.h"
-#include "app/process/machine_moves.h"
 #include "app/process/program_report.h"
 #include "app/process/proof_limits.h"
 #include "app/report/deviation_vtp.h"
@@ -90,9 +91,9 @@ Status judge_scene(Check& check) {
 Status prove(Check& check) {
   check.milling = check.gear.process->milling(check.machine, check.limits, {}, check.clock);
   auto bodies =
-      process::bodies_in_machine(check.job, check.machine, *check.gear.process, check.scene ? &*check.scene : nullptr);
+      flow::bodies_in_machine(check.job, check.machine, *check.gear.process, check.scene ? &*check.scene : nullptr);
   if (!bodies) return bodies.error();
-  bodies::MovesJudge moves = process::judge_of(check.machine, std::move(*bodies), check.job, check.limits.clearance_mm);
+  bodies::MovesJudge moves = flow::judge_of(check.machine, std::move(*bodies), check.job, check.limits.clearance_mm);
   auto proof = process::prove_program({check.text, check.request.program_file, check.job, check.machine, &moves}, {},
                                       check.milling->check(), check.clock);
   if (!proof) return proof.error();
@@ -133,6 +134,8 @@ Status write_results(Check& check, app::OutputDir& output, std::string& json) {
         page::page_of_run(check.gear.process->on_page(report.machine_name), report, {}, check.text);
     content.surface = proof.surface;
     content.motion = page::motion_charts(proof.read, proof.motions, check.machine);
+    content.machine = flow::machine_picture(check.job, check.machine, *check.gear.process, proof.read,
+                                            check.scene ? &*check.scene : nullptr);
     return page::render_report_page(content);
   });
   if (!page) return page.error();

@@ -2,10 +2,10 @@
 
 #include <filesystem>
 
-#include "app/process/machine_moves.h"
 #include "cam/finger/milling.h"
 #include "cam/tool/cutters.h"
 #include "machines/machine_file.h"
+#include "postproc/bodies/of_machine.h"
 #include "postproc/controls/of_machine.h"
 
 namespace toothpath::process {
@@ -117,7 +117,7 @@ ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional
   if (job.program.pole) machine.post.pole = *job.program.pole;
   if (job.program.pole_angle_rad) machine.post.pole_angle_rad = *job.program.pole_angle_rad;
   std::vector<Diagnostic> errors;
-  auto bodies = machine_bodies(machine, true);
+  auto bodies = bodies::bodies_of(machine, true);
   if (auto* refused = bodies.refused()) errors = std::move(*refused);
   if (part_diameter_mm)
     if (const auto fits = machines::check_part_fits(machine, *part_diameter_mm); !fits) {

@@ -127,6 +127,9 @@ class GearProcess {
   [[nodiscard]] virtual Result<mesh::TriangleMesh> pitch_mesh() const = 0;
   /// The skin of the nominal gear as exact surfaces. Errors: what is no solid.
   [[nodiscard]] virtual Result<exchange::GearShell> shell() const = 0;
+  /// One pitch of the finished gear for pictures, a few thousand facets: turned once a tooth it is the whole gear.
+  /// Errors: what has no mesh, at gear.
+  [[nodiscard]] virtual Result<mesh::TriangleMesh> pitch() const = 0;
 
   /// Limits, inspection points, meshes; with `surface` tooth.vtp is the cut surface with its deviation, without the
   /// plain tooth.

@@ -7,10 +7,10 @@
 #include <map>
 #include <utility>
 
-#include "app/process/machine_moves.h"
 #include "app/process/program_report.h"
 #include "app/process/proof_limits.h"
 #include "app/process/tooth_copies.h"
+#include "app/report/machine_moves.h"
 #include "geometry/base/work_share.h"
 #include "postproc/controls/of_machine.h"
 
@@ -53,7 +53,8 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
   out.reasons = out.conditions.reasons;
   if (program.moves) {
     out.machine_moves = clock.run("machine moves", [&] { return program.moves->finish(); });
-    for (std::string& reason : reasons_of(program.machine, out.machine_moves)) out.reasons.push_back(std::move(reason));
+    for (std::string& reason : report::reasons_of(program.machine, out.machine_moves))
+      out.reasons.push_back(std::move(reason));
   }
   out.warnings = out.conditions.warnings;
   out.hash = readback::hash_of_program(program.text);

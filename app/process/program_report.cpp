@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "app/process/gear_of_job.h"
-#include "app/process/machine_moves.h"
+#include "app/report/machine_moves.h"
 #include "geometry/base/angle.h"
 #include "geometry/base/hash.h"
 #include "machines/toml/regular_file.h"
@@ -118,7 +118,7 @@ void note_proof(report::RunReport& report, const ProgramProof& proof) {
   report.conditions = proof.conditions;
   report.hash = proof.hash;
   report.machine_moves = proof.machine_moves;
-  report.would_help = help_for(proof.machine_moves);
+  report.would_help = report::help_for(proof.machine_moves);
 }
 
 std::vector<const path::ClPath*> paths_to_meet(const joints::AxisProgram& program,

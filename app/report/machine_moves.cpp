@@ -1,6 +1,6 @@
 #include "app/report/machine_moves.h"
 
-#include <cmath>
+#include <algorithm>
 
 #include <fmt/format.h>
 
@@ -44,6 +44,34 @@ std::string machine_moves_text(const bodies::MovesFound& found) {
   const bodies::Meeting& m = found.nearest.front();
   return fmt::format("clear: least {:.2f} mm proven ({} and {}{}, line {}), clearance {:.3f} mm", m.proven_mm, m.second,
                      m.first, place_text(m), m.line, found.required_mm);
+}
+
+std::vector<std::string> reasons_of(const machines::Machine& machine, const bodies::MovesFound& found) {
+  std::vector<std::string> out;
+  for (const bodies::Meeting& m : found.failed)
+    out.push_back(fmt::format("machine: line {}: {}, at {}", m.line, meeting_text(m, found.required_mm),
+                              joints_text(machine, m.joints)));
+  return out;
+}
+
+std::vector<std::string> help_for(const bodies::MovesFound& found) {
+  std::vector<std::string> out;
+  const auto add = [&](std::string text) {
+    if (std::find(out.begin(), out.end(), text) == out.end()) out.push_back(std::move(text));
+  };
+  for (const bodies::Meeting& m : found.failed) {
+    const auto either = [&](bodies::Kind kind) { return m.first_kind == kind || m.second_kind == kind; };
+    if (either(bodies::Kind::tool))
+      add(fmt::format("setup.origin with the gear farther from \"{}\", or a longer T{}",
+                      m.first_kind == bodies::Kind::tool ? m.second : m.first, m.tool));
+    else if (either(bodies::Kind::work))
+      add(fmt::format("a longer tool than T{} (length, stick_out), or another setup.origin", m.tool));
+    else
+      add(fmt::format(
+          "another setup.origin; or, where \"{}\" and \"{}\" bear on one another, touches in the machine file", m.first,
+          m.second));
+  }
+  return out;
 }
 
 }  // namespace toothpath::report

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "machines/machine.h"
 #include "postproc/bodies/moves.h"
@@ -16,5 +17,11 @@ namespace toothpath::report {
 
 /// One line for screen and page; a machine without bodies says so.
 [[nodiscard]] std::string machine_moves_text(const bodies::MovesFound& found);
+
+/// Why a program does not pass, one line a pair of bodies; empty: it does.
+[[nodiscard]] std::vector<std::string> reasons_of(const machines::Machine& machine, const bodies::MovesFound& found);
+
+/// What would free the pairs that meet, one line a kind of meeting.
+[[nodiscard]] std::vector<std::string> help_for(const bodies::MovesFound& found);
 
 }  // namespace toothpath::report

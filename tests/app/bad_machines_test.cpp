@@ -2,6 +2,7 @@
 // with their place, nothing written. `machine show` reads the file by itself; `run` meets it by way of a job.
 #include "postproc/controls/registry.h"
 #include "tests/app/program.h"
+#include "tests/machines/bad_bodies.h"
 #include "tests/machines/bad_machine_files.h"
 #include "tests/machines/bad_post_keys.h"
 #include "tests/machines/example_files.h"
@@ -50,6 +51,18 @@ TEST(BadMachines, SmoothingAndCornerKeys) {
     EXPECT_EQ(shown.exit_code, good ? 0 : 3) << keys.what;
     EXPECT_EQ(shown.err, with_path(keys.messages, path)) << keys.what;
     EXPECT_EQ(names_in(dir / "out").empty(), !good) << keys.what;
+    std::filesystem::remove_all(dir / "out");
+  }
+}
+
+TEST(BadMachines, Bodies) {
+  const TestDir dir;
+  const std::string path = dir / "m.toml";
+  for (const Bodies& bodies : kBodies) {
+    write_file(path, machine_with(bodies));
+    const Finished shown = run_program({"machine", "show", path, "--out", dir / "out"});
+    EXPECT_EQ(shown.exit_code, std::string(bodies.messages).empty() ? 0 : 3) << bodies.what;
+    EXPECT_EQ(shown.err, with_path(bodies.messages, path)) << bodies.what;
     std::filesystem::remove_all(dir / "out");
   }
 }

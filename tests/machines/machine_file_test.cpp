@@ -3,12 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include <filesystem>
 #include <fstream>
 #include <random>
 
 #include "machines/shaper_machine.h"
 #include "machines/toml/toml_tree.h"
+#include "tests/machines/bad_bodies.h"
 #include "tests/machines/bad_machine_files.h"
 #include "tests/machines/example_files.h"
 
@@ -214,6 +217,33 @@ INSTANTIATE_TEST_SUITE_P(Checklist, BadMachineFile, testing::ValuesIn(test::kBad
   for (const char* c = place.param.what; *c; ++c) name += std::isalnum(static_cast<unsigned char>(*c)) ? *c : '_';
   return name;
 });
+
+TEST(MachineFile, Bodies) {
+  for (const test::Bodies& bodies : test::kBodies)
+    EXPECT_EQ(messages(test::machine_with(bodies)), bodies.messages) << bodies.what;
+  const auto read = machines::read_machine_text(test::machine_with(test::kBodies[0]), "m.toml");
+  ASSERT_TRUE(read.machine);
+  ASSERT_EQ(read.machine->bodies.size(), 3u);
+  const auto& [table, cradle, nose] =
+      std::tie(read.machine->bodies[0], read.machine->bodies[1], read.machine->bodies[2]);
+  EXPECT_EQ(table.link, 0u);
+  EXPECT_EQ(cradle.link, 1u);
+  EXPECT_EQ(nose.link, 5u);
+  EXPECT_EQ(std::get<machines::ConeShape>(table.shape).radius_to, 200);
+  EXPECT_EQ(std::get<machines::BoxShape>(cradle.shape).high, Vec3(1, 2, 3));
+  EXPECT_EQ(std::get<machines::ConeShape>(nose.shape).radius_from, 0);
+  EXPECT_EQ(cradle.touches, std::vector<std::string>{"table"});
+  EXPECT_EQ(read.machine->where(nose.key + ".to").line, 70);
+  const auto guessed = machines::read_machine_text(
+      test::replaced(test::machine_with(test::kBodies[0]), "assumed = false", "assumed = [\"body\"]"), "m.toml");
+  ASSERT_TRUE(guessed.machine);
+  EXPECT_TRUE(guessed.machine->assumed);
+}
+
+TEST(MachineFile, OrderOfTheChain) {
+  for (const test::Order& order : test::kOrders)
+    EXPECT_EQ(messages(test::machine_ordered(order.order)), order.messages) << order.order;
+}
 
 // Which controls there are, and what they take, is the business of whoever judges the file: asked with what could be
 // read, his complaints stand in their place among those of the reader.

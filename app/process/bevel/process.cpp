@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "app/process/bevel/contact.h"
 #include "app/process/bevel/files.h"
@@ -35,6 +36,26 @@ finger::FingerCheckOptions check_options(const process::FlankGrid& grid) {
   if (grid.rows > 0) options.rows = grid.rows;
   if (grid.columns > 0) options.columns = grid.columns;
   return options;
+}
+
+/// Of a gear mesh whose pitches are turned copies of each other, the facets whose middles lie in one of them.
+mesh::TriangleMesh one_pitch(const mesh::TriangleMesh& gear, int teeth) {
+  constexpr double kStart = 0.1234567;  // rad: no row of facets has its middles there
+  mesh::TriangleMesh out;
+  std::map<std::int32_t, std::int32_t> number;
+  for (std::size_t t = 0; t < gear.triangles.size(); ++t) {
+    const Vec3 middle = gear.corner(t, 0) + gear.corner(t, 1) + gear.corner(t, 2);
+    const double turn = std::atan2(middle.y(), middle.x()) - kStart;
+    if (turn - 2 * kPi * std::floor(turn / (2 * kPi)) >= 2 * kPi / teeth) continue;
+    std::array<std::int32_t, 3> corners{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [at, is_new] = number.emplace(gear.triangles[t][k], std::int32_t(out.vertices.size()));
+      if (is_new) out.vertices.push_back(gear.corner(t, k));
+      corners[k] = at->second;
+    }
+    out.triangles.push_back(corners);
+  }
+  return out;
 }
 
 class BevelMilling final : public process::GearMilling {
@@ -148,6 +169,11 @@ class BevelProcess final : public process::GearProcess {
   [[nodiscard]] Result<mesh::TriangleMesh> mesh() const override { return mesh::bevel_gear_mesh(gear_); }
   [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh() const override { return mesh::bevel_pitch_part(gear_); }
   [[nodiscard]] Result<exchange::GearShell> shell() const override { return exchange::bevel_gear_shell(gear_); }
+  [[nodiscard]] Result<mesh::TriangleMesh> pitch() const override {
+    auto gear = mesh::bevel_gear_mesh(gear_, {.stations = 7, .rows = 5, .root_points = 2, .land_points = 1});
+    if (!gear) return process::located(job_, "gear", gear.error());
+    return one_pitch(*gear, gear_.parameters().teeth);
+  }
   [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
                                    const std::vector<std::string>&, app::StageClock& clock,
                                    std::vector<std::string>& files) const override {

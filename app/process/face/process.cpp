@@ -37,10 +37,11 @@ std::string gear_words(const face_gear::FaceGearParameters& p) {
   return text;
 }
 
-constexpr double kSolidSag = 0.02;   // mm
-constexpr double kLinkFeed = 6000;   // mm/min: of moves under feed through air, where the machine is no slower
-constexpr double kSmallFirst = 0.7;  // of what the space admits: a first roughing tool that is told
-constexpr double kBiasShare = 0.4;   // of the rounding, taken up by the poses: the rest is counted
+constexpr double kSolidSag = 0.02;    // mm
+constexpr double kPictureSag = 0.02;  // of the module
+constexpr double kLinkFeed = 6000;    // mm/min: of moves under feed through air, where the machine is no slower
+constexpr double kSmallFirst = 0.7;   // of what the space admits: a first roughing tool that is told
+constexpr double kBiasShare = 0.4;    // of the rounding, taken up by the poses: the rest is counted
 
 cut::CutSurfaceOptions surface_options(const process::FlankGrid& grid) {
   cut::CutSurfaceOptions options;
@@ -230,6 +231,11 @@ class FaceProcess final : public process::GearProcess {
     return std::move(pitch->mesh);
   }
   [[nodiscard]] Result<exchange::GearShell> shell() const override { return exchange::face_gear_shell(gear_); }
+  [[nodiscard]] Result<mesh::TriangleMesh> pitch() const override {
+    auto pitch = mesh::mesh_tooth_space(gear_, kPictureSag * gear_.parameters().module_mm);
+    if (!pitch) return process::located(job_, "gear", pitch.error());
+    return std::move(pitch->mesh);
+  }
   [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
                                    const std::vector<std::string>& assumed, app::StageClock& clock,
                                    std::vector<std::string>& files) const override {

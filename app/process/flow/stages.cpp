@@ -3,10 +3,11 @@
 #include <algorithm>
 
 #include "app/process/cutting_force.h"
+#include "app/process/flow/machine_moves.h"
+#include "app/process/flow/machine_picture.h"
 #include "app/process/flow/registry.h"
 #include "app/process/flow/restart.h"
 #include "app/process/ledger_sources.h"
-#include "app/process/machine_moves.h"
 #include "app/process/program_report.h"
 #include "app/process/proof_limits.h"
 #include "app/report/page/motion_charts.h"
@@ -57,6 +58,7 @@ void keep_proof(Run& run, const proof::ProofLimits& limits, process::ProgramProo
   process::note_proof(run.report, proof);
   run.surface = std::move(proof.surface);
   run.motion = page::motion_charts(proof.read, proof.motions, run.machine);
+  run.machine_scene = machine_picture(run.job, run.machine, *run.gear.process, proof.read, nullptr);
   for (const path::ClPath* path : paths)
     run.lines.push_back(page::lines_of_records(*path, proof.motions, proof.path_tolerance_mm));
   run.report.length_tolerances =
@@ -79,9 +81,9 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
 
   const std::vector<const path::ClPath*> asked = process::paths_to_meet(program, paths);
   const std::string file = output.final_path(posted->file);
-  auto bodies = process::bodies_in_machine(run.job, run.machine, gear, nullptr);
+  auto bodies = bodies_in_machine(run.job, run.machine, gear, nullptr);
   if (!bodies) return bodies.error();
-  bodies::MovesJudge moves = process::judge_of(run.machine, std::move(*bodies), run.job, limits.clearance_mm);
+  bodies::MovesJudge moves = judge_of(run.machine, std::move(*bodies), run.job, limits.clearance_mm);
   const process::ProgramText whole{posted->text, file, run.job, run.machine, &moves};
   auto proof = process::prove_program(
       whole, {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad},
@@ -161,6 +163,7 @@ page::ReportPage page_content(Run& run) {
   page.contact = contact;
   page.gear_limits = gear.limit_charts();
   page.motion = run.motion;
+  page.machine = run.machine_scene;
   for (std::size_t k = 0; k < run.lines.size(); ++k) page.paths[k].nc_lines = run.lines[k];
   return page;
 }

@@ -45,10 +45,11 @@ struct Run {
   std::unique_ptr<process::GearMilling> milling;
   std::vector<proof::CheckedClPath> checked;
   report::RunReport report;
-  std::vector<proof::SurfaceGrid> surface;  ///< as it was cut
-  std::string program_text;                 ///< as read back from the disk
-  std::vector<svg::LineChart> motion;       ///< axes over time, for the page
-  std::vector<std::vector<int>> lines;      ///< of the program, for every record of every path
+  std::vector<proof::SurfaceGrid> surface;          ///< as it was cut
+  std::string program_text;                         ///< as read back from the disk
+  std::vector<svg::LineChart> motion;               ///< axes over time, for the page
+  std::optional<page::MachineScene> machine_scene;  ///< the gear on its machine, for the page
+  std::vector<std::vector<int>> lines;              ///< of the program, for every record of every path
 
   explicit Run(bool quiet) : progress(quiet) {}
   Run(const Run&) = delete;

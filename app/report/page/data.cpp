@@ -5,43 +5,16 @@
 #include <nlohmann/json.hpp>
 #include <span>
 
-#include "app/report/page/packed_data.h"
+#include "app/report/page/packed_json.h"
 #include "app/report/svg/html_text.h"
 
 namespace toothpath::page {
 namespace {
 
 using nlohmann::json;
-using Columns = std::vector<std::vector<double>>;
 
 constexpr int kNormalSteps = 1023;  ///< of a component of a normal: finer is not seen
 constexpr int kAxisSteps = 16383;   ///< of a component of a tool axis: 0.01 deg
-constexpr int kLineLow = 32768;     ///< NC lines travel as two numbers below 2^16
-
-json packed_json(const PackedArray& packed) {
-  return {{"count", packed.count},
-          {"steps", packed.steps},
-          {"low", packed.low},
-          {"high", packed.high},
-          {"data", packed.base64}};
-}
-
-json pack_floats(const Columns& columns, int steps = kPackedSteps) { return packed_json(pack(columns, steps)); }
-
-/// Whole numbers of a range below 65535, exactly: one step a unit.
-json pack_integers(const std::vector<double>& column) {
-  const auto [low, high] = std::minmax_element(column.begin(), column.end());
-  const double range = column.empty() ? 0 : *high - *low;
-  const PackedArray packed = pack(std::span(&column, 1), std::max(1, static_cast<int>(range)));
-  return packed_json(packed);
-}
-
-Columns columns_of(const std::vector<Vec3>& points) {
-  Columns columns(3);
-  for (const Vec3& p : points)
-    for (int c = 0; c < 3; ++c) columns[static_cast<std::size_t>(c)].push_back(p[c]);
-  return columns;
-}
 
 json grid_json(const proof::SurfaceGrid& grid) {
   json fields = json::array();
@@ -201,6 +174,7 @@ std::string report_data_json(const ReportPage& page) {
                                 {"line", place.line},
                                 {"text", svg::valid_utf8(fmt::format("{}, {}: {:.2f} \u00b5m, NC line {}", place.body,
                                                                      place.patch, place.depth_mm * 1e3, place.line))}});
+  if (page.machine) data["machine"] = machine_scene_json(*page.machine);
   return svg::script_safe_json(data.dump());
 }
 

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/report/page/machine_scene.h"
 #include "app/report/section.h"
 #include "app/report/svg/chart.h"
 #include "cam/path/cl_path.h"
@@ -75,8 +76,9 @@ struct ReportPage {
   std::vector<std::pair<std::string, std::string>> summary;  ///< name and value
 
   std::vector<proof::SurfaceGrid> surface;
-  std::vector<PagePath> paths;  ///< in the job's order; the names of operations are taken from here
-  std::vector<PageTool> tools;  ///< in the job's order: ClPath::tool is an index into this list
+  std::vector<PagePath> paths;          ///< in the job's order; the names of operations are taken from here
+  std::optional<MachineScene> machine;  ///< the gear on its machine
+  std::vector<PageTool> tools;          ///< in the job's order: ClPath::tool is an index into this list
 
   std::optional<proof::GougeResult> gouge;  ///< its `worst` places become markers
   double gouge_tolerance_mm = 0;

@@ -1,5 +1,5 @@
 // make_page KIND FILE: writes a synthetic report page for the browser test. KIND: gouged, clean, awkward, large, plots,
-// below.
+// below, machine.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -10,7 +10,7 @@
 int main(int argc, char** argv) {
   using namespace toothpath;
   if (argc != 3) {
-    fmt::print(stderr, "usage: make_page gouged|clean|awkward|large|plots|below FILE\n");
+    fmt::print(stderr, "usage: make_page gouged|clean|awkward|large|plots|below|machine FILE\n");
     return 2;
   }
   const std::string kind = argv[1];
@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
     page.listing.clear();
     page.directions.clear();
   }
+  if (kind == "machine") page.machine = test::synthetic_machine();
   const Status status = page::write_report_page(page, argv[2]);
   if (!status) fmt::print(stderr, "{}\n", status.error().text());
   return status ? 0 : 1;

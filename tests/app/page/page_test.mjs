@@ -177,6 +177,59 @@ const tests = {
     await page.close();
   },
 
+  async 'the gear stands on its machine, which moves, and gives way to the tooth space'() {
+    const brass = (r, g, b) => r > 100 && r > b + 40 && g > b + 15 && r > g;
+    const {page, complaints} = await open('machine');
+    const shown = () => page.evaluate(() => [...document.querySelectorAll('#controls fieldset')].filter((f) => !f.hidden).map((f) => f.id));
+    assert.deepEqual(await shown(), ['scene-controls', '', 'machine-controls']);
+    const [all, empty, gear, blues] = await counted(page, '#view', 'machine.png', [background, brass, blue]);
+    assert.ok(empty < 0.85 * all && gear > 0.02 * all && blues < 0.01 * all, `background ${empty}, gear ${gear}, blue ${blues} of ${all}`);
+    // Tip of the tool against the work, as the chain says: A and C turn the table the other way.
+    const off = await page.evaluate(() => {
+      const {machine} = window.toothpathPage, [x, y, z, c, a] = [10, 20, 30, 0.3, -0.2];
+      const places = machine.places([x, y, z, c, a]), p = Rigid.of(places[0], [7, 5, 3]);
+      const about = [7 * Math.cos(c) + 5 * Math.sin(c), -7 * Math.sin(c) + 5 * Math.cos(c), 3 - 30];
+      const wanted = [about[0], about[1] * Math.cos(a) + about[2] * Math.sin(a), -about[1] * Math.sin(a) + about[2] * Math.cos(a) + 30];
+      return Math.max(Math.hypot(...Vec.sub(p, wanted)), Math.hypot(...Vec.sub(Rigid.of(places.at(-1), [0, 0, 0]), [x, y, z])));
+    });
+    assert.ok(off < 1e-9, `off by ${off}`);
+    const picture = async () => Buffer.from(await (await page.$('#view')).screenshot()).toString('base64');
+    const before = await picture();
+    await page.$eval('#moment', (e) => { e.value = 3; e.dispatchEvent(new Event('input')); });
+    await settle(page);
+    assert.notEqual(await picture(), before);
+    const note = await page.$eval('#moment-note', (e) => e.textContent);
+    assert.ok(note.includes('NC line 109:') && note.includes('Z 157.00') && note.includes('C 3.44\u00b0'), note);
+    assert.match(await page.$eval('#machine-note', (e) => e.textContent), /planted; the machine moves as read back, sampled/);
+    await page.click('#run');
+    await page.waitForFunction(() => window.toothpathPage.moment > 4, {timeout: 20000});
+    await page.click('#run');
+    await page.click('#scene-flank');
+    await settle(page);
+    assert.deepEqual(await shown(), ['scene-controls', '', 'surface-controls', 'path-controls']);
+    const [, , flank] = await counted(page, '#view', 'machine-flank.png', [background, blue]);
+    assert.ok(flank > 0.02 * all, `blue ${flank}`);
+    await page.click('#scene-machine');
+    await page.$eval('[data-gouge]', (a) => a.click());
+    assert.equal(await page.$eval('#path-controls', (f) => f.hidden), false);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+
+  async 'the machine on a phone and on paper'() {
+    const {page, complaints} = await open('machine', {width: 390, height: 800});
+    const [inner, scroll] = await page.evaluate(() => [document.documentElement.clientWidth, document.documentElement.scrollWidth]);
+    assert.ok(scroll <= inner, `${scroll} wide on ${inner}`);
+    await page.emulateMediaType('print');
+    await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
+    await settle(page);
+    const brass = (r, g, b) => r > 100 && r > b + 40 && g > b + 15 && r > g;
+    const [all, gear] = await counted(page, '#view', 'machine-print.png', [brass]);
+    assert.ok(gear > 0.01 * all, `gear ${gear} of ${all}`);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  },
+
   async 'mouse, wheel, slider and play change the picture or the record'() {
     const {page, complaints} = await open('clean');
     const state = () => page.evaluate(() => {

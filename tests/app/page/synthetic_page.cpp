@@ -1,5 +1,7 @@
 #include "tests/app/page/synthetic_page.h"
 
+#include "geometry/base/angle.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -302,6 +304,34 @@ std::vector<page::NcExcerpt> listing(const page::ReportPage& page) {
 }
 
 }  // namespace
+
+page::MachineScene synthetic_machine() {
+  page::MachineScene scene;
+  machines::RotaryAxis c, a;
+  a.letter = 'A';
+  a.direction = Vec3::UnitX();
+  a.point_mm = Vec3(0, 0, 30);
+  scene.chain.table = {c, a};
+  scene.teeth = 24;
+  scene.origin_mm = Vec3(0, 0, 60);
+  const double pitch = 2 * kPi / scene.teeth;
+  for (const double turn : {0.0, 0.5 * pitch, pitch})
+    for (const double r : {45.0, 60.0}) {
+      const double high = turn == 0.5 * pitch ? 0.0 : -8.0;
+      scene.pitch.vertices.emplace_back(r * std::cos(turn), r * std::sin(turn), high);
+      scene.pitch.vertices.emplace_back(r * std::cos(turn), r * std::sin(turn), -20.0);
+    }
+  scene.pitch.triangles = {{0, 2, 6},  {0, 6, 4},   {4, 6, 10}, {4, 10, 8}, {2, 3, 7}, {2, 7, 6},
+                           {6, 7, 11}, {6, 11, 10}, {0, 4, 5},  {0, 5, 1},  {4, 8, 9}, {4, 9, 5}};
+  scene.bodies = {{"plate", 0, machines::ConeShape{Vec3(0, 0, 0), Vec3(0, 0, 20), 70, 70}},
+                  {"cradle", 1, machines::BoxShape{Vec3(-110, -40, -30), Vec3(110, 40, 0)}},
+                  {"column", 2, machines::BoxShape{Vec3(-100, 160, -100), Vec3(100, 260, 300)}},
+                  {"nose", 5, machines::ConeShape{Vec3(0, 0, 0), Vec3(0, 0, 60), 30, 40}, true}};
+  scene.tool_length_mm = {90, 90};
+  for (int k = 0; k <= 40; ++k) scene.states.push_back({{50, 0, 160.0 - k, 0.02 * k, -0.01 * k}, 0, 100 + 3 * k, 0});
+  scene.note = "planted";
+  return scene;
+}
 
 page::ReportPage synthetic_page(const SyntheticPageOptions& options) {
   page::ReportPage page;

@@ -15,6 +15,9 @@ struct SyntheticPageOptions {
   bool study = true;                ///< with a work-precision table
 };
 
+/// A wheel of 24 teeth on the plate of a trunnion: plate, cradle, column and nose; joints that tilt and turn it.
+[[nodiscard]] page::MachineScene synthetic_machine();
+
 [[nodiscard]] page::ReportPage synthetic_page(const SyntheticPageOptions& options);
 
 }  // namespace toothpath::test

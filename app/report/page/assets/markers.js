@@ -36,6 +36,7 @@ Object.assign(Page.prototype, {
   /** Tool at the record nearest to the place on that NC line, the row and the line marked. */
   showGouge(k, scrollToView) {
     const g = this.data.gouges[k];
+    this.showScene(false);
     for (const row of document.querySelectorAll('tr[data-row]')) row.classList.toggle('current', Number(row.dataset.row) === k);
     this.markers.forEach((m, i) => m.classList.toggle('current', i === k));
     const index = this.paths.findIndex((p) => p.index === g.operation);
@@ -71,6 +72,7 @@ Object.assign(Page.prototype, {
   },
 
   goTo(operation, record) {
+    this.showScene(false);
     if (operation !== this.state.operation) this.showOperation(operation, false);
     this.showPass(this.path().passOf(record));
     this.showRecord(record);

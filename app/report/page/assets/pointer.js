@@ -50,7 +50,7 @@ Object.assign(Page.prototype, {
   probe(event) {
     const box = byId('probe'), {surface, view} = this;
     box.hidden = true;
-    if (!surface || !view.matrix || event.pointerType === 'touch') return;
+    if (!surface || this.onMachine || !view.matrix || event.pointerType === 'touch') return;
     const frame = view.canvas.getBoundingClientRect();
     const x = event.clientX - frame.left, y = event.clientY - frame.top;
     let best = -1, cost = Infinity;

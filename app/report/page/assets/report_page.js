@@ -1,7 +1,7 @@
 // The page around the 3D view: what it shows, its controls, how it is drawn. What belongs to surface, path, markers and pointer joins the class
 // in files of their own.
 class Page {
-  constructor(data, surface, paths, view) {
+  constructor(data, surface, paths, view, machine = null) {
     Object.assign(this, {data, surface, paths, view, dirty: true, playing: false});
     const [centre, size] = this.extent();
     const down = this.cutsFromBelow();
@@ -19,12 +19,14 @@ class Page {
     this.makeMarkers();
     if (surface) this.showField();
     if (paths.length) this.showOperation(this.state.operation, true);
+    this.connectMachine(machine);
     const redraw = () => { this.dirty = true; };
     new ResizeObserver(redraw).observe(view.canvas);
     window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', redraw);
     window.addEventListener('beforeprint', () => this.draw());
     const frame = (time) => {
       if (this.playing) this.advance(time);
+      if (this.running) this.runOn(time);
       if (this.dirty) this.draw();
       requestAnimationFrame(frame);
     };
@@ -115,6 +117,7 @@ class Page {
     this.dirty = false;
     const {state, view, camera} = this, path = this.path();
     const dark = getComputedStyle(document.documentElement).getPropertyValue('--stage').trim().split(',').map(Number);
+    if (this.onMachine) return this.drawMachine(dark.map((v) => v / 255));
     const [first, last] = path ? this.span() : [0, 0];
     const paths = path ? [{index: state.operation, first, last, current: state.record, links: byId('rapids').checked}] : [];
     const mode = byId('tool-mode').value;

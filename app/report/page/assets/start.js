@@ -8,7 +8,7 @@
     for (const id of ['legend', 'scale', 'triad']) byId(id).style.display = 'none';
   };
   let title = data.title;
-  if (data.grids.length || data.paths.length) {
+  if (data.grids.length || data.paths.length || data.machine) {
     try {
       const view = new View(byId('view'));
       const surface = data.grids.length ? await loadSurface(data) : null;
@@ -16,7 +16,8 @@
       if (surface) view.setSurface(surface.points, surface.normals, surface.triangles);
       for (const path of paths) view.addPath(path.records);
       for (const tool of data.tools) view.addTool(tool.bodies);
-      window.toothpathPage = new Page(data, surface, paths, view);
+      const machine = data.machine ? await loadMachine(data.machine) : null;
+      window.toothpathPage = new Page(data, surface, paths, view, machine);
     } catch (error) {
       say(error.message === 'no WebGL2' ? 'The 3D view needs a browser with WebGL 2. Plots and tables below are complete without it.'
                                         : `The 3D view stopped: ${error.message}`);

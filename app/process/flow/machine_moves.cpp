@@ -1,11 +1,10 @@
-#include "app/process/machine_moves.h"
+#include "app/process/flow/machine_moves.h"
 
 #include <algorithm>
 
-#include "app/report/machine_moves.h"
-#include "geometry/mesh/file.h"
+#include "postproc/bodies/of_machine.h"
 
-namespace toothpath::process {
+namespace toothpath::flow {
 namespace {
 
 bodies::Cone cone_between(double from, double to, double radius_from, double radius_to, const Vec3& at,
@@ -16,7 +15,7 @@ bodies::Cone cone_between(double from, double to, double radius_from, double rad
 /// From the gear frame to machine coordinates with all joints at zero.
 Vec3 in_machine(const joints::Setup& setup, const Vec3& p) { return setup.origin_mm + setup.rotation() * p; }
 
-void add_meshes(const std::vector<SceneMesh>& meshes, const char* name, const joints::Setup& setup,
+void add_meshes(const std::vector<process::SceneMesh>& meshes, const char* name, const joints::Setup& setup,
                 std::vector<bodies::Body>& out) {
   for (std::size_t k = 0; k < meshes.size(); ++k) {
     mesh::TriangleMesh mesh = meshes[k].mesh;
@@ -28,35 +27,10 @@ void add_meshes(const std::vector<SceneMesh>& meshes, const char* name, const jo
 
 }  // namespace
 
-ValueOrErrors<std::vector<bodies::Body>> machine_bodies(const machines::Machine& machine, bool examine) {
-  std::vector<bodies::Body> out;
-  std::vector<Diagnostic> errors;
-  for (const machines::MachineBody& body : machine.bodies) {
-    mesh::TriangleMesh mesh;
-    if (const auto* shape = std::get_if<machines::MeshShape>(&body.shape)) {
-      mesh::MeshImportLimits limits;
-      limits.most_size_mm = 20000;
-      limits.self_intersections = examine;
-      auto read = mesh::load_mesh(shape->file, limits);
-      if (!read) {
-        const auto& why = read.error();
-        errors.push_back(
-            fail_at(machine.where(body.key + ".file"), "body \"{}\": {}: {}", body.name, shape->file, why.message));
-        errors.back().kind = why.kind;
-        continue;
-      }
-      mesh = std::move(*read);
-    }
-    out.push_back({body.name, body.link, bodies::Kind::machine, bodies::solid_of(body, &mesh), 0, body.touches});
-  }
-  if (!errors.empty()) return errors;
-  return out;
-}
-
 Result<std::vector<bodies::Body>> bodies_in_machine(const job::Job& job, const machines::Machine& machine,
-                                                    const GearProcess& gear, const Scene* scene) {
+                                                    const process::GearProcess& gear, const process::Scene* scene) {
   if (machine.bodies.empty() || !job.setup) return std::vector<bodies::Body>();
-  auto stated = machine_bodies(machine, false);
+  auto stated = bodies::bodies_of(machine, false);
   if (const auto* errors = stated.refused()) return errors->front();
   std::vector<bodies::Body> out = std::move(stated).value();
   const joints::Setup& setup = *job.setup;
@@ -92,32 +66,4 @@ bodies::MovesJudge judge_of(const machines::Machine& machine, std::vector<bodies
   return {machine, std::move(bodies), std::move(lengths), {.required_mm = clearance_mm}};
 }
 
-std::vector<std::string> reasons_of(const machines::Machine& machine, const bodies::MovesFound& found) {
-  std::vector<std::string> out;
-  for (const bodies::Meeting& m : found.failed)
-    out.push_back(fmt::format("machine: line {}: {}, at {}", m.line, report::meeting_text(m, found.required_mm),
-                              report::joints_text(machine, m.joints)));
-  return out;
-}
-
-std::vector<std::string> help_for(const bodies::MovesFound& found) {
-  std::vector<std::string> out;
-  const auto add = [&](std::string text) {
-    if (std::find(out.begin(), out.end(), text) == out.end()) out.push_back(std::move(text));
-  };
-  for (const bodies::Meeting& m : found.failed) {
-    const auto either = [&](bodies::Kind kind) { return m.first_kind == kind || m.second_kind == kind; };
-    if (either(bodies::Kind::tool))
-      add(fmt::format("setup.origin with the gear farther from \"{}\", or a longer T{}",
-                      m.first_kind == bodies::Kind::tool ? m.second : m.first, m.tool));
-    else if (either(bodies::Kind::work))
-      add(fmt::format("a longer tool than T{} (length, stick_out), or another setup.origin", m.tool));
-    else
-      add(fmt::format(
-          "another setup.origin; or, where \"{}\" and \"{}\" bear on one another, touches in the machine file", m.first,
-          m.second));
-  }
-  return out;
-}
-
-}  // namespace toothpath::process
+}  // namespace toothpath::flow

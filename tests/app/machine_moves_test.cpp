@@ -1,0 +1,101 @@
+// Bodies of a machine from outside: samples that are clear, bodies in the way, meshes that are none.
+#include <nlohmann/json.hpp>
+
+#include "geometry/mesh/file.h"
+#include "tests/app/program.h"
+
+namespace toothpath::test {
+namespace {
+
+using Json = nlohmann::json;
+
+const std::string kMachines = TOOTHPATH_SOURCE_DIR "/machines/data";
+constexpr const char* kPost =
+    "\n[[body]]\nname = \"post\"\nof = \"bed\"\nshape = \"cylinder\"\nfrom = [65.0, 0.0, 130.0]\nto = [65.0, 0.0, "
+    "200.0]\n"
+    "diameter = 2.0\n";
+
+/// spur_quick on a copy of its machine with `bodies` behind it.
+class MachineMoves : public ::testing::Test {
+ protected:
+  Finished run(const std::string& bodies, const std::string& options = {}) {
+    const std::string machine = file_text(kMachines + "/xyzac_large.toml");
+    write_file(dir_ / "m.toml", machine.substr(0, machine.find("\n[[body]]")) + bodies);
+    write_file(dir_ / "job.toml",
+               replaced(file_text(kSamples + "/spur_quick.toml"), "\"xyzac_large.toml\"", "\"m.toml\""));
+    std::vector<std::string> words = {"run", dir_ / "job.toml", "--out", dir_ / "out"};
+    if (!options.empty()) words.push_back(options);
+    const Finished done = run_program(words);
+    const std::string text = file_text(dir_ / "out/report.json");
+    report_ = text.empty() ? Json() : Json::parse(text);
+    return done;
+  }
+  TestDir dir_;
+  Json report_;
+};
+
+TEST_F(MachineMoves, WithoutBodiesItSaysSo) {
+  const Finished done = run("");
+  EXPECT_EQ(done.exit_code, 0);
+  EXPECT_NE(done.out.find("none stated, moves of the machine are not checked against each other"), std::string::npos);
+  EXPECT_EQ(report_["machine_moves"], Json({{"bodies", 0}}));
+}
+
+TEST_F(MachineMoves, ABodyInTheWayIsAVerdictWithItsLine) {
+  const Finished done = run(kPost);
+  EXPECT_EQ(done.exit_code, 1);
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "out/program.ngc"));
+  const Json& moves = report_["machine_moves"];
+  ASSERT_FALSE(moves["clear"].get<bool>());
+  ASSERT_FALSE(moves["failed"].empty());
+  const Json& first = moves["failed"][0];
+  const int line = first["line"];
+  EXPECT_GT(line, 10);
+  EXPECT_EQ(first["bodies"][0], "post");
+  EXPECT_NE(done.err.find(fmt::format("machine: line {}: ", line)), std::string::npos) << done.err;
+  EXPECT_NE(done.err.find("and post "), std::string::npos) << done.err;
+  EXPECT_NE(done.err.find("what would help: setup.origin with the gear farther from \"post\""), std::string::npos)
+      << done.err;
+  EXPECT_NE(file_text(dir_ / "out/report.html").find("Bodies of the machine"), std::string::npos);
+}
+
+TEST_F(MachineMoves, TheSameFarAwayIsClear) {
+  const Finished clear = run(replaced(replaced(kPost, "from = [65.0, 0.0, 130.0]", "from = [400.0, 0.0, 130.0]"),
+                                      "to = [65.0, 0.0, 200.0]", "to = [400.0, 0.0, 200.0]"));
+  EXPECT_EQ(clear.exit_code, 0) << clear.err;
+  EXPECT_TRUE(report_["machine_moves"]["clear"].get<bool>());
+}
+
+TEST_F(MachineMoves, TheSameOnAnyNumberOfThreads) {
+  (void)run(kPost, "--threads=1");
+  const Json one = report_["machine_moves"];
+  (void)run(kPost);
+  EXPECT_EQ(one, report_["machine_moves"]);
+}
+
+TEST_F(MachineMoves, MeshesMustBeSolids) {
+  const std::string body = "\n[[body]]\nname = \"arm\"\nof = \"A\"\nshape = \"mesh\"\nfile = \"arm.stl\"\n";
+  const Finished missing = run(body);
+  EXPECT_EQ(missing.exit_code, 4) << missing.err;
+  EXPECT_NE(missing.err.find("m.toml:"), std::string::npos) << missing.err;
+  EXPECT_NE(missing.err.find(":8: error: body \"arm\": "), std::string::npos) << missing.err;
+  mesh::TriangleMesh open;
+  open.vertices = {Vec3(-900, 0, -500), Vec3(-800, 0, -500), Vec3(-900, 100, -500), Vec3(-900, 0, -400)};
+  open.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}};
+  const auto write = [&] {
+    std::ofstream out(dir_ / "arm.stl", std::ios::binary);
+    ASSERT_TRUE(mesh::write_stl(out, open, "arm"));
+  };
+  write();
+  const Finished refused = run(body);
+  EXPECT_EQ(refused.exit_code, 3) << refused.err;
+  EXPECT_NE(refused.err.find(":8: error: body \"arm\": "), std::string::npos) << refused.err;
+  open.triangles.push_back({1, 2, 3});
+  write();
+  const Finished closed = run(body);
+  EXPECT_EQ(closed.exit_code, 0) << closed.err;
+  EXPECT_EQ(report_["machine_moves"]["bodies"], 1);
+}
+
+}  // namespace
+}  // namespace toothpath::test
