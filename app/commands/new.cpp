@@ -15,6 +15,8 @@
 #include "app/commands/shaper.h"
 #include "app/job/file.h"
 #include "app/proposal/propose.h"
+#include "app/tool_library/tool_library.h"
+#include "geometry/base/angle.h"
 #include "geometry/base/printable.h"
 #include "machines/machine_file.h"
 #include "machines/toml/near_name.h"
@@ -281,8 +283,43 @@ CommandOutcome told(const NewRequest& request, const Proposed& proposed, const p
   return outcome;
 }
 
+/// Ball mills and tapered ball mills of a file of another program; what it does not say of them stays unknown.
+Expected<proposal::Shelf, std::vector<Diagnostic>> shelf_of_library(const std::string& file) {
+  const auto read = tool_library::read_tool_library(file);
+  if (!read) return std::vector{read.error()};
+  proposal::Shelf shelf;
+  for (const tool_library::LibraryTool& known : *read) {
+    const toml::TomlEntry* type = known.keys.find("type");
+    const std::string* word = type ? type->value.text() : nullptr;
+    tool::ToolAssembly tool;
+    if (word && *word == "tapered_ball_end_mill") tool.type = tool::CutterType::tapered_ball_end_mill;
+    else if (!word || *word != "ball_end_mill") continue;
+    const auto number = [&](const char* key) {
+      const toml::TomlEntry* entry = known.keys.find(key);
+      return entry ? entry->value.number().value_or(0) : 0;
+    };
+    tool.diameter_mm = number("diameter");
+    tool.flute_length_mm = number("flute_length");
+    tool.shank_diameter_mm = number("shank_diameter");
+    tool.stick_out_mm = number("stick_out");
+    tool.length_mm = number("length");
+    tool.half_angle_rad = radians(number("half_angle"));
+    if (const toml::TomlEntry* holder = known.keys.find("holder"); holder && holder->value.array())
+      for (const toml::TomlValue& row : holder->value.array()->values)
+        if (const toml::TomlArray* r = row.array(); r && r->values.size() == 3)
+          tool.holder.push_back({r->values[0].number().value_or(0), r->values[1].number().value_or(0),
+                                 r->values[2].number().value_or(0)});
+    if (const double teeth = number("teeth"); teeth >= 1) tool.teeth = static_cast<int>(teeth);
+    if (tool.diameter_mm > 0) shelf.push_back(tool);
+  }
+  if (shelf.empty())
+    return usage(fmt::format("--tools: {} has no ball mill and no tapered ball mill with a diameter", file));
+  return shelf;
+}
+
 Expected<proposal::Shelf, std::vector<Diagnostic>> shelf_of(const std::string& file) {
   if (file.empty()) return proposal::Shelf{};
+  if (fs::path(file).extension() != ".toml") return shelf_of_library(file);
   auto read = job::read_job_file(file);
   if (auto* errors = read.refused()) return std::move(*errors);
   return std::move(read.value().tools);
@@ -334,7 +371,8 @@ void new_options(OptionSet& set, NewRequest& request) {
   set.text("--gear", request.gear, "face, double_helical, offset or bevel_herringbone", "KIND");
   set.text("--cut", request.route, "line, ball or shaped (a bevel gear: finger)", "WAY");
   set.text("--machine", request.machine, "a machine file, or the name of an installed machine", "NAME");
-  set.text("--tools", request.tools, "a job whose tools are taken instead of standard sizes", "FILE");
+  set.text("--tools", request.tools, "tools instead of standard sizes: a job, a tool library of Fusion or FreeCAD",
+           "FILE");
   for (const Question& question : proposal::questions()) {
     const auto at = static_cast<std::size_t>(question.what);
     if (question.whole) set.whole_number(question.option, request.whole[at], question.text, question.range);

@@ -131,6 +131,7 @@ Result<Draft> face_draft(Draft draft, const ChosenMachine& machine, const Chosen
   const double depth = gear.facts.depth;
   draft.coarse = attempt >= 2;
   Shelf shelf = given.empty() ? standard_shelf(depth) : given;
+  for (tool::ToolAssembly& tool : shelf) tool = completed(tool, depth);
   if (attempt == 3)  // longer tools lean less far over the part
     for (tool::ToolAssembly& tool : shelf)
       if (given.empty()) {

@@ -60,6 +60,19 @@ tool::ToolAssembly tapered(double diameter, double depth) {
 double least_flute_mm(double depth_mm) { return 1.45 * depth_mm; }
 double least_stick_out_mm(double depth_mm) { return 14 + 2.2 * depth_mm; }
 
+tool::ToolAssembly completed(const tool::ToolAssembly& known, double depth_mm) {
+  const bool side = known.type == CutterType::tapered_ball_end_mill;
+  const tool::ToolAssembly standard = side ? tapered(known.diameter_mm, depth_mm) : ball(known.diameter_mm, depth_mm);
+  tool::ToolAssembly tool = known;
+  for (double tool::ToolAssembly::*length : {&tool::ToolAssembly::flute_length_mm,
+                                             &tool::ToolAssembly::shank_diameter_mm, &tool::ToolAssembly::stick_out_mm})
+    if (!(tool.*length > 0)) tool.*length = standard.*length;
+  if (tool.holder.empty()) tool.holder = standard.holder;
+  if (!(tool.length_mm > 0)) tool.length_mm = rounded_up(tool.stick_out_mm + 70, 5);
+  if (side && !(tool.half_angle_rad > 0)) tool.half_angle_rad = standard.half_angle_rad;
+  return tool;
+}
+
 Shelf standard_shelf(double depth_mm) {
   Shelf shelf;
   for (const double diameter : kBalls) {

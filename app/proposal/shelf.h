@@ -7,12 +7,16 @@
 
 namespace toothpath::proposal {
 
-/// Tools with everything that a job says of them. Numbers are given when they are chosen.
+/// Tools as far as they are known: a length that is 0, or a holder that is empty, is not. Numbers are given when they
+/// are chosen.
 using Shelf = std::vector<tool::ToolAssembly>;
 
 /// Ball mills and tapered ball mills of standard sizes for tooth spaces of this depth [mm]: carbide with the least
 /// flute and stick-out that clear the teeth, in a slim collet chuck.
 [[nodiscard]] Shelf standard_shelf(double depth_mm);
+
+/// The tool with what is not known of it taken from the standard tool of its kind and size.
+[[nodiscard]] tool::ToolAssembly completed(const tool::ToolAssembly& tool, double depth_mm);
 
 /// Least length of flutes and least stick-out for tooth spaces of this depth, mm.
 [[nodiscard]] double least_flute_mm(double depth_mm);

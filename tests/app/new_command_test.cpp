@@ -212,5 +212,22 @@ TEST(New, TakesTheToolsOfAnotherJob) {
       << made.err << text;
 }
 
+TEST(New, TakesTheToolsOfAFusionLibrary) {
+  const TestDir dir;
+  write_file(dir / "lib.json", R"({"version": 36, "data": [
+ {"type": "ball end mill", "description": "1 mm ball", "unit": "millimeters", "post-process": {"number": 4},
+  "geometry": {"DC": 1, "LCF": 7, "LB": 27, "SFDM": 4, "NOF": 2, "assemblyGaugeLength": 97},
+  "holder": {"description": "ER11", "gaugeLength": 70, "segments": [{"height": 30, "lower-diameter": 11, "upper-diameter": 11}]}},
+ {"type": "drill", "unit": "millimeters", "post-process": {"number": 8}, "geometry": {"DC": 5}}]})");
+  const Words words =
+      gear("face", "ball", "xyzac_large", {"--teeth", "60", "--module", "2", "--tools", dir / "lib.json"});
+  const Finished made = run_new(words, dir / "job.toml");
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  const std::string text = file_text(dir / "job.toml");
+  for (const char* said : {"diameter = 1.0\n", "flute_length = 7.0 ", "stick_out = 27.0 ", "length = 97.0 ",
+                           "holder = [[11.0, 11.0, 30.0]]"})
+    EXPECT_NE(text.find(said), std::string::npos) << said << text;
+}
+
 }  // namespace
 }  // namespace toothpath::test
