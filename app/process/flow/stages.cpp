@@ -56,6 +56,7 @@ void keep_proof(Run& run, const proof::ProofLimits& limits, process::ProgramProo
   process::note_proof(run.report, proof);
   run.surface = std::move(proof.surface);
   run.motion = page::motion_charts(proof.read, proof.motions, run.machine);
+  run.path_off_mm = proof.path_tolerance_mm;
   for (const path::ClPath* path : paths)
     run.lines.push_back(page::lines_of_records(*path, proof.motions, proof.path_tolerance_mm));
   run.report.length_tolerances =
