@@ -40,9 +40,11 @@ Status write_results(flow::Run& run, const RunRequest& request, app::OutputDir& 
     if (const auto s = write("correction.json", run.gear.correction->json); !s) return s;
   if (report.verified) {
     if (const auto s = gear.write_files(output, run.surface, report.assumed, run.clock, report.files); !s) return s;
-    auto cad = cad::write_files(request.cad, run.job, gear, output, run.clock, report.files);
+    auto cad = cad::write_files(request.cad, run.job, gear, cad::Milled{*run.milling, run.path_off_mm}, output,
+                                run.clock, report.files);
     if (!cad) return cad.error();
-    report.cad = std::move(*cad);
+    report.cad = std::move(cad->solid);
+    report.warnings.insert(report.warnings.end(), cad->warnings.begin(), cad->warnings.end());
     if (const auto s = write("setup.html", sheet::setup_sheet(run.job, gear.outline(), run.machine, report)); !s)
       return s;
     const controls::Control* control = controls::find(run.machine.dialect);

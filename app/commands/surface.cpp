@@ -22,6 +22,7 @@ void cad_options(OptionSet& set, cad::FilesAsked& asked) {
   set.flag("--step", asked.step, "gear.step, too: the gear as a solid for CAD (STEP AP214)");
   set.flag("--3mf", asked.three_mf, "gear.3mf, too: its mesh with unit and name");
   set.flag("--gltf", asked.gltf, "gear.glb, too: one pitch and its turned copies, for viewers");
+  set.flag("--stock", asked.stock, "blank.stl, too, and from a run roughed.stl: stock for check --stock");
 }
 
 CommandOutcome run_surface(const SurfaceRequest& request) {
@@ -38,9 +39,10 @@ CommandOutcome run_surface(const SurfaceRequest& request) {
   report::RunReport report = process::surface_report(job, gear.part().warnings);
   if (const auto written = gear.write_files(*output, {}, {}, clock, report.files); !written)
     return failed(process::located(job, "gear", written.error()));
-  auto cad = cad::write_files(request.cad, job, gear, *output, clock, report.files);
+  auto cad = cad::write_files(request.cad, job, gear, {}, *output, clock, report.files);
   if (!cad) return failed(cad.error());
-  report.cad = std::move(*cad);
+  report.cad = std::move(cad->solid);
+  report.warnings.insert(report.warnings.end(), cad->warnings.begin(), cad->warnings.end());
   const auto limits = output->read_back("limits.json");
   if (!limits) return failed(limits.error());
   progress.clear();

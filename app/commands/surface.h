@@ -14,7 +14,7 @@ namespace toothpath::commands {
 struct SurfaceRequest : JobRequest {
   cad::FilesAsked cad;
 };
-/// --step, --3mf, --gltf.
+/// --step, --3mf, --gltf, --stock.
 void cad_options(OptionSet& set, cad::FilesAsked& asked);
 
 [[nodiscard]] CommandOutcome run_surface(const SurfaceRequest& request);

@@ -29,6 +29,7 @@
 #include "app/report/sheet/setup_sheet.h"
 #include "cam/proof/checked_cl_path.h"
 #include "cam/proof/limits.h"
+#include "cam/rest/rest_mesh.h"
 #include "geometry/exchange/shell.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "machines/machine.h"
@@ -69,6 +70,10 @@ class GearMilling {
   [[nodiscard]] virtual std::vector<std::string> advice() const { return {}; }
   /// The gouge check of one path: the only way to a CheckedClPath. Errors (kind verification): the deepest place.
   [[nodiscard]] virtual Result<proof::CheckedClPath> approve(const path::ClPath& path) const = 0;
+
+  /// What the roughing operations of the plan remove from tooth space 0, never more than they do but for 0.01 mm; none
+  /// where nothing roughs, and where this gear type does not tell.
+  [[nodiscard]] virtual rest::Excess roughed() const = 0;
 
   /// What this gear adds to the proof of a program.
   [[nodiscard]] virtual GearCheck& check() = 0;
@@ -125,6 +130,8 @@ class GearProcess {
   /// The same with its facets as those of gear.stl: all teeth, and one of as many equal parts as there are teeth.
   [[nodiscard]] virtual Result<mesh::TriangleMesh> mesh() const = 0;
   [[nodiscard]] virtual Result<mesh::TriangleMesh> pitch_mesh() const = 0;
+  /// The turned body before its teeth are cut; its pitches begin at azimuth 0.
+  [[nodiscard]] virtual rest::Blank blank() const = 0;
   /// The skin of the nominal gear as exact surfaces. Errors: what is no solid.
   [[nodiscard]] virtual Result<exchange::GearShell> shell() const = 0;
   /// One pitch of the finished gear for pictures, a few thousand facets: turned once a tooth it is the whole gear.

@@ -96,6 +96,8 @@ class BevelMilling final : public process::GearMilling {
   [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override {
     return gouge_.approve(path);
   }
+  // The wide mill is near every place all along its path: asking for the distance takes minutes.
+  [[nodiscard]] rest::Excess roughed() const override { return {}; }
   [[nodiscard]] process::GearCheck& check() override { return check_; }
   [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program,
                                                        const process::ProgramProof& proof,
@@ -168,6 +170,25 @@ class BevelProcess final : public process::GearProcess {
   }
   [[nodiscard]] Result<mesh::TriangleMesh> mesh() const override { return mesh::bevel_gear_mesh(gear_); }
   [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh() const override { return mesh::bevel_pitch_part(gear_); }
+  [[nodiscard]] rest::Blank blank() const override {
+    rest::Blank out;
+    out.teeth = part_.teeth;
+    out.outward = -1;
+    const auto& p = gear_.parameters();
+    const auto& halves = gear_.halves();
+    for (std::size_t k = 0; k < halves.size(); ++k) {
+      const bool last = k + 1 == halves.size();
+      out.rings.push_back({halves[k].ell_from, last ? gear_.R_e() : halves[k].ell_to,
+                           [top = p.addendum_mm](double) { return top; }, [](double) { return 0.0; }, -p.dedendum_mm});
+      if (!last) out.corners.push_back({{halves[k].ell_to, -p.dedendum_mm}, {halves[k + 1].ell_from, -p.dedendum_mm}});
+    }
+    const double under = mesh::underside_height(gear_);
+    out.corners.push_back({{gear_.R_e(), under}, {gear_.R_i(), under}});
+    out.place = [sd = gear_.sin_delta(), cd = gear_.cos_delta()](double ell, double height, double azimuth) {
+      return bevel_gear::blank_point(ell, height, azimuth, sd, cd);
+    };
+    return out;
+  }
   [[nodiscard]] Result<exchange::GearShell> shell() const override { return exchange::bevel_gear_shell(gear_); }
   [[nodiscard]] Result<mesh::TriangleMesh> pitch() const override {
     auto gear = mesh::bevel_gear_mesh(gear_, {.stations = 7, .rows = 5, .root_points = 2, .land_points = 1});

@@ -1,6 +1,10 @@
 #include "app/process/cad/cad_files.h"
 
+#include <algorithm>
+
 #include "app/process/gear_files.h"
+#include "cam/rest/rest_mesh.h"
+#include "geometry/base/angle.h"
 #include "geometry/exchange/gltf.h"
 #include "geometry/exchange/step_gear.h"
 #include "geometry/exchange/three_mf.h"
@@ -8,7 +12,10 @@
 namespace toothpath::cad {
 namespace {
 
-constexpr const char *kStep = "gear.step", *kThreeMf = "gear.3mf", *kGltf = "gear.glb";
+constexpr const char *kStep = "gear.step", *kThreeMf = "gear.3mf", *kGltf = "gear.glb", *kBlank = "blank.stl",
+                     *kRoughed = "roughed.stl";
+constexpr double kRemoved_mm = 0.01;   ///< what is said to be removed may be too much by it
+constexpr double kCellsOfHeight = 24;  ///< cells of a roughed part, as shares of the height of its teeth
 
 struct StepMade {
   std::string text;
@@ -33,23 +40,68 @@ Result<StepMade> make_step(const process::GearProcess& gear, const std::string& 
   return StepMade{std::move(file->text), std::move(report)};
 }
 
+/// The blank with its pitches cut in the middle of the lands, so that all of a tooth space lies in one of them.
+Result<rest::Blank> between_lands(const process::GearProcess& gear) {
+  const auto shell = gear.shell();
+  if (!shell) return shell.error();
+  rest::Blank blank = gear.blank();
+  for (std::size_t k = 0; k < blank.rings.size(); ++k) {
+    rest::BlankRing& ring = blank.rings[k];
+    const std::size_t strips = shell->rings[k].strips.size();
+    ring.begin = [row = shell->rings[k].row, strips, pitch = kTwoPi / blank.teeth, from = ring.from,
+                  to = ring.to](double s) {
+      std::vector<std::vector<double>> middle(strips);
+      middle.back() = {0.5};
+      const auto places = row(std::clamp((s - from) / (to - from), 0.0, 1.0), middle);
+      return places ? azimuth(places->back().front()) - pitch : 0.0;
+    };
+  }
+  return blank;
+}
+
+Result<std::string> roughed_text(const process::GearProcess& gear, const Milled& milled, const rest::Excess& removed,
+                                 const std::string& name) {
+  const auto blank = between_lands(gear);
+  if (!blank) return blank.error();
+  const rest::BlankRing& ring = blank->rings.front();
+  rest::RestOptions options;
+  options.cell_mm = (ring.top(ring.from) - ring.floor) / kCellsOfHeight;
+  options.within_mm = milled.off_mm + kRemoved_mm;
+  const auto mesh = rest::rest_mesh(*blank, removed, options);
+  return mesh ? process::stl_text(*mesh, name) : Result<std::string>(mesh.error());
+}
+
+Status write_stock(const job::Job& job, const process::GearProcess& gear, const std::optional<Milled>& milled,
+                   app::StageClock& clock, process::GearFiles& to) {
+  const auto blank = clock.run("stock", [&]() -> Result<std::string> {
+    const auto mesh = rest::rest_mesh(gear.blank(), {});
+    return mesh ? process::stl_text(*mesh, job.name) : Result<std::string>(mesh.error());
+  });
+  if (const auto s = to.write(kBlank, blank); !s) return s;
+  if (!milled) return Ok{};
+  const rest::Excess removed = milled->milling.roughed();
+  if (!removed) return Ok{};
+  const auto roughed = clock.run("stock", [&] { return roughed_text(gear, *milled, removed, job.name); });
+  return to.write(kRoughed, roughed);
+}
+
 }  // namespace
 
 const std::vector<std::string>& file_names() {
-  static const std::vector<std::string> names = {kStep, kThreeMf, kGltf};
+  static const std::vector<std::string> names = {kStep, kThreeMf, kGltf, kBlank, kRoughed};
   return names;
 }
 
-Result<std::optional<report::CadReport>> write_files(const FilesAsked& asked, const job::Job& job,
-                                                     const process::GearProcess& gear, app::OutputDir& output,
-                                                     app::StageClock& clock, std::vector<std::string>& files) {
+Result<Written> write_files(const FilesAsked& asked, const job::Job& job, const process::GearProcess& gear,
+                            const std::optional<Milled>& milled, app::OutputDir& output, app::StageClock& clock,
+                            std::vector<std::string>& files) {
   process::GearFiles to(output, files);
-  std::optional<report::CadReport> report;
+  Written written;
   if (asked.step) {
     auto made = clock.run("STEP", [&] { return make_step(gear, job.name); });
     if (!made) return process::located(job, "gear", made.error());
     if (const auto s = to.write(kStep, made->text); !s) return s.error();
-    report = std::move(made->report);
+    written.solid = std::move(made->report);
   }
   if (asked.three_mf) {
     const auto text = clock.run("3MF", [&]() -> Result<std::string> {
@@ -67,7 +119,13 @@ Result<std::optional<report::CadReport>> write_files(const FilesAsked& asked, co
     if (!text) return process::located(job, "gear", text.error());
     if (const auto s = to.write(kGltf, text); !s) return s.error();
   }
-  return report;
+  if (asked.stock) {
+    if (const auto s = write_stock(job, gear, milled, clock, to); !s) return process::located(job, "gear", s.error());
+    if (milled && std::find(files.begin(), files.end(), kRoughed) == files.end())
+      written.warnings.emplace_back(
+          "roughed.stl is not written: no operation of type roughing, which face gears have, is in the job");
+  }
+  return written;
 }
 
 }  // namespace toothpath::cad

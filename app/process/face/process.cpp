@@ -15,6 +15,7 @@
 #include "app/report/svg/html_text.h"
 #include "cam/analytic/gouge_check.h"
 #include "cam/cut/cut_surface.h"
+#include "cam/cut/swept_tool.h"
 #include "cam/plan/face_gear.h"
 #include "cam/plan/first_ball.h"
 #include "geometry/exchange/face_shell.h"
@@ -151,6 +152,15 @@ class FaceMilling final : public process::GearMilling {
   [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override {
     return gouge_.check_path(path);
   }
+  [[nodiscard]] rest::Excess roughed() const override {
+    std::vector<std::unique_ptr<cut::Removed>> removed;
+    for (const path::ClPath& path : plan_.paths)
+      if (job_.operations[std::size_t(path.operation)].type == path::OperationType::roughing)
+        removed.push_back(std::make_unique<cut::Removed>(analytic::GougeCheck::motions_of(path),
+                                                         tool::proof_tool(job_.tools[std::size_t(path.tool)]),
+                                                         part_.gear().blank_top()));
+    return rest::excess_of(std::move(removed));
+  }
   [[nodiscard]] process::GearCheck& check() override { return check_; }
   [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program,
                                                        const process::ProgramProof& proof,
@@ -229,6 +239,28 @@ class FaceProcess final : public process::GearProcess {
     auto pitch = mesh::mesh_tooth_space(gear_, kStlSag);
     if (!pitch) return pitch.error();
     return std::move(pitch->mesh);
+  }
+  [[nodiscard]] rest::Blank blank() const override {
+    rest::Blank out;
+    out.teeth = part_.teeth;
+    const auto& rings = gear_.rings();
+    for (std::size_t k = 0; k < rings.size(); ++k) {
+      const auto& zone = rings[k].zone;
+      out.rings.push_back({zone.inner_radius_mm, zone.outer_radius_mm,
+                           [surface = rings[k].surface, above = gear_.parameters().allowance_top_mm](double r) {
+                             return surface.z_tip(r) + above;
+                           },
+                           [](double) { return 0.0; }, gear_.lowest_root()});
+      if (k + 1 < rings.size())
+        out.corners.push_back(
+            {{zone.outer_radius_mm, gear_.groove_floor()}, {rings[k + 1].zone.inner_radius_mm, gear_.groove_floor()}});
+    }
+    const double under = mesh::underside_z(gear_);
+    out.corners.push_back({{gear_.outer_radius(), under}, {gear_.inner_radius(), under}});
+    out.place = [](double r, double z, double azimuth) {
+      return Vec3(r * std::cos(azimuth), r * std::sin(azimuth), z);
+    };
+    return out;
   }
   [[nodiscard]] Result<exchange::GearShell> shell() const override { return exchange::face_gear_shell(gear_); }
   [[nodiscard]] Result<mesh::TriangleMesh> pitch() const override {

@@ -59,6 +59,7 @@ void keep_proof(Run& run, const proof::ProofLimits& limits, process::ProgramProo
   run.surface = std::move(proof.surface);
   run.motion = page::motion_charts(proof.read, proof.motions, run.machine);
   run.machine_scene = machine_picture(run.job, run.machine, *run.gear.process, proof.read, nullptr);
+  run.path_off_mm = proof.path_tolerance_mm;
   for (const path::ClPath* path : paths)
     run.lines.push_back(page::lines_of_records(*path, proof.motions, proof.path_tolerance_mm));
   run.report.length_tolerances =

@@ -50,6 +50,7 @@ struct Run {
   std::vector<svg::LineChart> motion;               ///< axes over time, for the page
   std::optional<page::MachineScene> machine_scene;  ///< the gear on its machine, for the page
   std::vector<std::vector<int>> lines;              ///< of the program, for every record of every path
+  double path_off_mm = 0;                           ///< proven: the program is no farther from the paths
 
   explicit Run(bool quiet) : progress(quiet) {}
   Run(const Run&) = delete;
