@@ -17,7 +17,7 @@ Object.assign(Page.prototype, {
     }
     const target = Vec.add(Rigid.of(place, [0, 0, (low + high) / 2]), [0, 0, 0.35 * reach]);
     this.machineCamera = new Camera(target, 1.6 * reach, -Math.PI / 2);
-    Object.assign(this.machineCamera.home, {azimuth: -Math.PI / 2 + 0.55, elevation: 0.5, distance: 8.4 * reach});
+    Object.assign(this.machineCamera.home, {azimuth: -Math.PI / 2 + 0.6, elevation: 0.36, distance: 9.6 * reach});
     this.machineCamera.reset();
     this.flankCamera = this.camera;
     byId('moment').max = Math.max(0, scene.states.length - 1);
