@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "geometry/base/result.h"
+#include "geometry/base/vec.h"
 
 namespace toothpath::exchange {
 
