@@ -4,8 +4,7 @@ Object.assign(Page.prototype, {
     byId('scene-controls').hidden = byId('machine-controls').hidden = !scene;
     if (!scene) return;
     this.machine = new MachineView(this.view, scene);
-    const cut = scene.states.findIndex((s, i) => i > 0.6 * scene.states.length && s.tool >= 0);
-    Object.assign(this, {moment: Math.max(0, cut), running: false, onMachine: false});
+    Object.assign(this, {moment: this.cuttingMoment(scene), running: false, onMachine: false});
     // A place of the gear above the table, where the program is in the middle; the eye in front, as the machinist stands.
     const state = scene.states[Math.floor(this.moment)] || {joints: [0, 0, 0, 0, 0]};
     const place = Rigid.join(this.machine.places(state.joints)[0], this.machine.gear);
@@ -30,6 +29,21 @@ Object.assign(Page.prototype, {
     byId('machine-note').textContent = `${this.data.machine.note}; the machine moves as read back, sampled.`;
     this.showMoment();
     this.showScene(true);
+  },
+
+  /** The state in the second half of the program whose tool is nearest to the teeth. */
+  cuttingMoment(scene) {
+    let reach = 0, best = 0, least = Infinity;
+    for (let i = 0; i < scene.pitch.length; i += 3) reach = Math.max(reach, Math.hypot(scene.pitch[i], scene.pitch[i + 1]));
+    scene.states.forEach((s, k) => {
+      if (s.tool < 0 || k < 0.5 * scene.states.length) return;
+      const places = this.machine.places(s.joints), gear = Rigid.join(places[0], this.machine.gear);
+      const off = Vec.sub(Rigid.of(places.at(-1), [0, 0, -scene.toolLengths[s.tool]]), gear.shift);
+      const p = [0, 1, 2].map((c) => Vec.dot(gear.turn.map((row) => row[c]), off));
+      const away = Math.abs(Math.hypot(p[0], p[1]) - reach) + Math.abs(p[2] - scene.pitch[2]);
+      if (away < least) { least = away; best = k; }
+    });
+    return best;
   },
 
   /** On the machine, or the tooth space with its deviation. */
