@@ -193,11 +193,11 @@ class LibrarySupply {
   }
 
   /// What follows from a file that could not be read is not told; what it does not say is asked for by name.
-  /// @return were there refusals?
+  /// @return were there refusals of a tool of a file?
   bool finish(toml::TableReader& table) const {
     if (failed_) table.forget_errors(before_ + 1);
     else if (tool_) ask_for_missing(table);
-    return table.errors() > before_;
+    return (failed_ || tool_) && table.errors() > before_;
   }
 
  private:
