@@ -1,5 +1,6 @@
 // `toothpath new`: a job for a gear and a machine, asked for on a terminal or said by options, proven before it is
 // written.
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -283,17 +284,33 @@ CommandOutcome told(const NewRequest& request, const Proposed& proposed, const p
   return outcome;
 }
 
-/// Ball mills and tapered ball mills of a file of another program; what it does not say of them stays unknown.
+/// What a [[tool]] needs that a file does not say of its tool.
+std::vector<std::string> unsaid(const tool_library::LibraryTool& tool, bool tapered) {
+  std::vector<std::string> missing;
+  for (const char* key : {"diameter", "flute_length", "shank_diameter", "length", "stick_out", "holder"})
+    if (!tool.keys.find(key)) missing.emplace_back(key);
+  if (tapered && !tool.keys.find("half_angle")) missing.emplace_back("half_angle");
+  return missing;
+}
+
+/// Ball mills and tapered ball mills of a file of another program; those of which it says all that a job must know.
 Expected<proposal::Shelf, std::vector<Diagnostic>> shelf_of_library(const std::string& file) {
   const auto read = tool_library::read_tool_library(file);
   if (!read) return std::vector{read.error()};
   proposal::Shelf shelf;
+  std::string asked_for;
   for (const tool_library::LibraryTool& known : *read) {
     const toml::TomlEntry* type = known.keys.find("type");
     const std::string* word = type ? type->value.text() : nullptr;
     tool::ToolAssembly tool;
     if (word && *word == "tapered_ball_end_mill") tool.type = tool::CutterType::tapered_ball_end_mill;
-    else if (!word || *word != "ball_end_mill") continue;
+    else if (word && *word != "ball_end_mill") continue;
+    std::vector<std::string> missing = unsaid(known, tool.type == tool::CutterType::tapered_ball_end_mill);
+    if (!word) missing.insert(missing.begin(), "type");
+    if (!missing.empty()) {
+      if (asked_for.empty()) asked_for = fmt::format("; tool {} lacks {}", known.number, fmt::join(missing, ", "));
+      continue;
+    }
     const auto number = [&](const char* key) {
       const toml::TomlEntry* entry = known.keys.find(key);
       return entry ? entry->value.number().value_or(0) : 0;
@@ -310,10 +327,13 @@ Expected<proposal::Shelf, std::vector<Diagnostic>> shelf_of_library(const std::s
           tool.holder.push_back({r->values[0].number().value_or(0), r->values[1].number().value_or(0),
                                  r->values[2].number().value_or(0)});
     if (const double teeth = number("teeth"); teeth >= 1) tool.teeth = static_cast<int>(teeth);
-    if (tool.diameter_mm > 0) shelf.push_back(tool);
+    shelf.push_back(tool);
   }
   if (shelf.empty())
-    return usage(fmt::format("--tools: {} has no ball mill and no tapered ball mill with a diameter", file));
+    return usage(fmt::format(
+        "--tools: {} has no ball mill and no tapered ball mill of which it says all that a job must know{}; "
+        "a job with `library = \"{}\"` in its tools says the rest, and can be given as --tools",
+        file, asked_for, file));
   return shelf;
 }
 

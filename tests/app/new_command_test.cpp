@@ -229,5 +229,19 @@ TEST(New, TakesTheToolsOfAFusionLibrary) {
     EXPECT_NE(text.find(said), std::string::npos) << said << text;
 }
 
+TEST(New, AsksForWhatALibraryDoesNotSay) {
+  const TestDir dir;
+  write_file(dir / "shop.tbl", "T1 P1 D1 Z80 ; ball nose\n");
+  const Finished made =
+      run_new(gear("face", "ball", "xyzac_large", {"--teeth", "60", "--module", "2", "--tools", dir / "shop.tbl"}),
+              dir / "job.toml");
+  EXPECT_EQ(made.exit_code, 2);
+  EXPECT_NE(
+      made.err.find("; tool 1 lacks type, flute_length, shank_diameter, stick_out, holder; a job with `library = "),
+      std::string::npos)
+      << made.err;
+  EXPECT_FALSE(std::filesystem::exists(dir / "job.toml"));
+}
+
 }  // namespace
 }  // namespace toothpath::test
