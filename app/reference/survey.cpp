@@ -309,7 +309,9 @@ class Tables {
   [[nodiscard]] Key key_of(const std::string& table, const std::string& name, const std::vector<Words>& all) const {
     Key key{name, false, {}};
     std::vector<std::pair<Found, std::vector<Words>>> classes;
-    for (const auto& [words, found] : found_.at({table, name})) {
+    for (const auto& by_words : found_.at({table, name})) {
+      const Words& words = by_words.first;
+      const Found& found = by_words.second;
       if (!found.asked) continue;
       key.decides = key.decides || found.decides;
       const auto at = std::find_if(classes.begin(), classes.end(), [&](const auto& c) { return like(c.first, found); });

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace toothpath::toml {
@@ -89,7 +90,9 @@ struct KeyRelation {
   Kind kind;
   std::string first, second;
 
-  auto operator<=>(const KeyRelation&) const = default;
+  bool operator<(const KeyRelation& other) const {
+    return std::tie(table, kind, first, second) < std::tie(other.table, other.kind, other.first, other.second);
+  }
 };
 
 struct KeyNotes {
