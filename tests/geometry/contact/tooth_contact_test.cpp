@@ -6,6 +6,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 
 #include "geometry/contact/face_gear_forces.h"
+#include "geometry/contact/touch_search.h"
 #include "tests/support/brute_force_contact.h"
 #include "tests/support/face_gear_cases.h"
 
@@ -357,6 +358,29 @@ TEST(FaceGearForces, BalanceOfTorqueAndAxialForce) {
     EXPECT_NEAR(both.single_axial_n, f.pinion_axial_n, 1e-9);
     EXPECT_NEAR(contact::double_mesh_force(inner, outer, p_in, p_out, s, torque, 0.65).axial_n / both.single_axial_n,
                 0.3, 1e-12);
+  }
+}
+
+/// The lines of contact that pages draw are lines of equal flank_phi: there, and only at that turn, the shaper as
+/// pinion touches.
+TEST(LineContact, EveryPlaceIsTouchedAtItsOwnTurn) {
+  for (const char* name : {"offset_15", "dhfg_normal", "beta_45"}) {
+    const auto c = case_named(name);
+    const auto& f = c.surface<double>();
+    const auto pinion = contact::make_pinion(f, c.parameters().shaper_teeth, {});
+    for (const int side : {1, -1})
+      for (const double theta : {0.25, 0.4, 0.5})
+        for (const double from : {-0.04, 0.0, 0.03}) {
+          const double B = side * (f.shaper.theta_0 + theta) + from;
+          const Vec3 place = f.flank(side, theta, B).p;
+          const double phi = f.flank_phi(side, theta, B);
+          const auto gap_at = [&](double turn) {  // of the pinion that stands where the ratio wants it
+            return pinion.gap(side, pinion.place(contact::GearTurn(turn * pinion.ratio)(place)), turn);
+          };
+          EXPECT_NEAR(gap_at(phi), 0, 1e-9) << name << side << theta;
+          EXPECT_GT(std::abs(gap_at(phi + 0.02)), 1e-6) << name << side << theta;
+          EXPECT_GT(std::abs(gap_at(phi - 0.02)), 1e-6) << name << side << theta;
+        }
   }
 }
 
