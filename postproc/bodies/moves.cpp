@@ -12,7 +12,11 @@ namespace {
 
 constexpr std::size_t kChunk = std::size_t(1) << 14;  // spans that are looked at together
 constexpr std::size_t kFirstLooks = 32;               // of them that are measured ahead of the others
+constexpr std::size_t kKeptTeeth = 3;                 // of an operation, for others to repeat
+constexpr std::size_t kKeptSpans = 8 * kChunk;        // of all of them
 constexpr double kRoundOff = 1e-9;                    // mm: of places of bodies, and of sums of gaps
+constexpr double kAlike = 1e-6;                       // mm: places of linear axes that count as the same
+constexpr double kAlikeTurn = 1e-10;                  // rad: turns of the work; kAlike beyond 10 m of reach
 
 machines::Joints joints_of(const std::array<double, 5>& q) { return {Vec3(q[0], q[1], q[2]), {q[3], q[4]}}; }
 
@@ -45,7 +49,15 @@ MovesJudge::MovesJudge(const machines::Machine& machine, std::vector<Body> bodie
       scene_(machine.chain, std::move(bodies)),
       lengths_(std::move(tool_length_mm)),
       options_(options),
-      states_(scene_.pairs().size(), State{options.look_mm, options.look_mm, std::nullopt, std::nullopt}) {}
+      states_(scene_.pairs().size(), State{options.look_mm, options.look_mm, std::nullopt, std::nullopt}) {
+  if (const machines::Links& links = scene_.links(); links.bed() > 0 && links.joints().front().rotary)
+    turn_ = 3 + links.joints().front().axis;
+  any_turned_ = std::any_of(scene_.pairs().begin(), scene_.pairs().end(), [&](const Pair& p) { return turns(p); });
+}
+
+bool MovesJudge::turns(const Pair& pair) const {
+  return turn_ < 5 && scene_.bodies()[pair.first].link == 0 && pair.reach.front() > 0;
+}
 
 double MovesJudge::aim(const State& state) const {
   return std::max(options_.required_mm, options_.share * state.measured - options_.apart_mm);
@@ -53,7 +65,9 @@ double MovesJudge::aim(const State& state) const {
 
 void MovesJudge::add(const readback::ExecutedMove& move) {
   if (scene_.pairs().empty()) return;
-  if (spans_.size() >= kChunk || move.tool != tool_) flush();
+  const bool other_tooth = last_ && (move.operation != last_->operation || move.tooth != last_->tooth);
+  if (tooth_.size() >= kChunk || other_tooth || move.tool != tool_) end_tooth();
+  if (move.tool != tool_) flush();
   tool_ = move.tool;
   ++moves_;
   if (!last_ || !move.known) {
@@ -62,6 +76,14 @@ void MovesJudge::add(const readback::ExecutedMove& move) {
     last_ = move;
     return;
   }
+  const Span span = span_to(move);
+  tooth_.push_back(span);
+  if (before_ && (move.corner_share > 0 || last_->corner_share > 0)) tooth_.push_back(corner_before(move, span));
+  before_ = last_;
+  last_ = move;
+}
+
+MovesJudge::Span MovesJudge::span_to(const readback::ExecutedMove& move) const {
   Span span;
   span.from = in_radians(last_->joints);
   span.to = in_radians(move.joints);
@@ -74,26 +96,23 @@ void MovesJudge::add(const readback::ExecutedMove& move) {
       move.rapid && !move.tcp && int(moves(0)) + int(moves(1)) + int(moves(2)) + int(moves(3)) + int(moves(4)) > 1;
   const auto length = lengths_.find(move.tool);
   const double tool = length == lengths_.end() ? 0 : length->second;
-  const Vec3 tip = move.tcp ? move.tip : machine_.chain.forward(joints_of(span.to), tool).tip_mm;
   span.off_rad = double(move.blend_axis_rad);
-  span.off_mm = kRoundOff + double(move.blend_mm) +
-                2 * span.off_rad * (reach_of(machine_.chain, tip) + head_arm(machine_.chain, tool));
+  span.off_mm = kRoundOff + 3 * kAlike + double(move.blend_mm);
+  if (span.off_rad > 0) {
+    const Vec3 tip = move.tcp ? move.tip : machine_.chain.forward(joints_of(span.to), tool).tip_mm;
+    span.off_mm += 2 * span.off_rad * (reach_of(machine_.chain, tip) + head_arm(machine_.chain, tool));
+  }
   if (move.tcp && (moves(3) || moves(4))) {
     span.tcp = true;
     span.length = tool;
     span.tip_from = machine_.chain.forward(joints_of(span.from), tool).tip_mm;
     span.tip_to = machine_.chain.forward(joints_of(span.to), tool).tip_mm;
   }
-  spans_.push_back(span);
-  if (move.corner_share > 0 || last_->corner_share > 0) add_corner(move);
-  before_ = last_;
-  last_ = move;
+  return span;
 }
 
 /// A corner that the control may leave within a share of the blocks: every axis stays within its pieces of both.
-void MovesJudge::add_corner(const readback::ExecutedMove& move) {
-  if (!before_) return;
-  const Span& after = spans_.back();
+MovesJudge::Span MovesJudge::corner_before(const readback::ExecutedMove& move, const Span& after) const {
   const Five from = in_radians(before_->joints);
   Span corner = after;
   corner.box = true;
@@ -112,7 +131,45 @@ void MovesJudge::add_corner(const readback::ExecutedMove& move) {
     const Vec3 tip = machine_.chain.forward(joints_of(after.from), tool).tip_mm;
     corner.off_mm += moved + 2 * turned * (reach_of(machine_.chain, tip) + head_arm(machine_.chain, tool) + moved);
   }
-  spans_.push_back(corner);
+  return corner;
+}
+
+/// Does what is proven of `a` hold of `b`, where the turn of the work moves no gap? With TCP the whole of `b` is then
+/// `a` turned with the work: tips, and with them the ways of the linear axes.
+bool MovesJudge::alike(const Span& a, const Span& b) const {
+  for (std::size_t k = 0; k < 5; ++k) {
+    if (k < 3 && (std::abs(a.from[k] - b.from[k]) > kAlike || std::abs(a.to[k] - b.to[k]) > kAlike)) return false;
+    if (k >= 3 && k != turn_ && (a.from[k] != b.from[k] || a.to[k] != b.to[k])) return false;
+  }
+  if (a.tcp && turn_ < 5 && std::abs((a.to[turn_] - a.from[turn_]) - (b.to[turn_] - b.from[turn_])) > kAlikeTurn)
+    return false;
+  return b.off_mm <= a.off_mm + kAlike && b.off_rad <= a.off_rad && a.box == b.box && a.tcp == b.tcp &&
+         a.length == b.length;
+}
+
+bool MovesJudge::repeats() {
+  if (turn_ >= 5 || tooth_.size() >= kChunk || tooth_.front().tooth < 0) return false;
+  auto& kept = kept_[tooth_.front().operation];
+  for (const std::vector<Span>& other : kept)
+    if (other.size() == tooth_.size() && std::equal(other.begin(), other.end(), tooth_.begin(),
+                                                    [&](const Span& a, const Span& b) { return alike(a, b); }))
+      return true;
+  if (kept.size() < kKeptTeeth && kept_spans_ + tooth_.size() <= kKeptSpans) {
+    kept.push_back(tooth_);
+    kept_spans_ += tooth_.size();
+  }
+  return false;
+}
+
+void MovesJudge::end_tooth() {
+  if (tooth_.empty()) return;
+  const auto append = [&](Batch& batch, bool turned) {
+    if (batch.spans.size() + tooth_.size() > kChunk) flush(batch, turned);
+    batch.spans.insert(batch.spans.end(), tooth_.begin(), tooth_.end());
+  };
+  if (any_turned_) append(all_, true);
+  if (!repeats()) append(fresh_, false);
+  tooth_.clear();
 }
 
 MovesJudge::Range MovesJudge::range_of(const Span& span) const {
@@ -245,17 +302,17 @@ void MovesJudge::look_closer(std::size_t pair, const Span& whole) {
   }
 }
 
-void MovesJudge::build(std::size_t node, std::size_t first, std::size_t last) {
-  if (node >= nodes_.size()) nodes_.resize(node + 1);
+void MovesJudge::Batch::build(const MovesJudge& judge, std::size_t node, std::size_t first, std::size_t last) {
+  if (node >= nodes.size()) nodes.resize(node + 1);
   if (last - first == 1) {
-    nodes_[node] = range_of(spans_[first]);
+    nodes[node] = judge.range_of(spans[first]);
     return;
   }
   const std::size_t middle = (first + last) / 2;
-  build(2 * node + 1, first, middle);
-  build(2 * node + 2, middle, last);
-  const Range a = nodes_[2 * node + 1], b = nodes_[2 * node + 2];
-  Range& out = nodes_[node];
+  build(judge, 2 * node + 1, first, middle);
+  build(judge, 2 * node + 2, middle, last);
+  const Range a = nodes[2 * node + 1], b = nodes[2 * node + 2];
+  Range& out = nodes[node];
   for (std::size_t k = 0; k < 5; ++k) {
     out.low[k] = std::min(a.low[k], b.low[k]);
     out.high[k] = std::max(a.high[k], b.high[k]);
@@ -264,39 +321,48 @@ void MovesJudge::build(std::size_t node, std::size_t first, std::size_t last) {
   out.off_rad = std::max(a.off_rad, b.off_rad);
 }
 
-void MovesJudge::look(std::size_t pair, std::size_t node, std::size_t first, std::size_t last) {
+void MovesJudge::look(std::size_t pair, const Batch& batch, std::size_t node, std::size_t first, std::size_t last) {
   if (states_[pair].failed) return;
-  if (last - first == 1) return look_closer(pair, spans_[first]);
-  if (passes(pair, nodes_[node], nullptr)) return;
+  if (last - first == 1) return look_closer(pair, batch.spans[first]);
+  if (passes(pair, batch.nodes[node], nullptr)) return;
   const std::size_t middle = (first + last) / 2;
-  look(pair, 2 * node + 1, first, middle);
-  look(pair, 2 * node + 2, middle, last);
+  look(pair, batch, 2 * node + 1, first, middle);
+  look(pair, batch, 2 * node + 2, middle, last);
 }
 
-void MovesJudge::look_at(std::size_t pair) {
+void MovesJudge::look_at(std::size_t pair, const Batch& batch) {
   const Pair& p = scene_.pairs()[pair];
   for (const std::size_t k : {p.first, p.second})
     if (scene_.bodies()[k].kind == Kind::tool && scene_.bodies()[k].tool != tool_) return;
   State& state = states_[pair];
   if (state.failed) return;
   // Something near to begin with: what is farther need not be looked at closely.
-  const std::size_t step = std::max<std::size_t>(1, spans_.size() / kFirstLooks);
-  for (std::size_t k = 0; k < spans_.size(); k += step) {
-    const Gap gap = scene_.gap_of(p, joints_of(spans_[k].to), state.measured);
-    if (spans_[k].box || !(gap.measured < state.measured) || gap.measured <= 0) continue;
+  const std::size_t count = batch.spans.size(), step = std::max<std::size_t>(1, count / kFirstLooks);
+  for (std::size_t k = 0; k < count; k += step) {
+    const Span& span = batch.spans[k];
+    const Gap gap = scene_.gap_of(p, joints_of(span.to), state.measured);
+    if (span.box || !(gap.measured < state.measured) || gap.measured <= 0) continue;
     state.measured = gap.measured;
-    state.nearest = meeting(pair, spans_[k], spans_[k].to, gap);
+    state.nearest = meeting(pair, span, span.to, gap);
   }
-  look(pair, 0, 0, spans_.size());
+  look(pair, batch, 0, 0, count);
+}
+
+void MovesJudge::flush(Batch& batch, bool turned) {
+  if (batch.spans.empty()) return;
+  batch.nodes.clear();
+  batch.nodes.reserve(4 * batch.spans.size());
+  batch.build(*this, 0, 0, batch.spans.size());
+  tbb::parallel_for(std::size_t(0), states_.size(), [&](std::size_t pair) {
+    if (turns(scene_.pairs()[pair]) == turned) look_at(pair, batch);
+  });
+  batch.spans.clear();
 }
 
 void MovesJudge::flush() {
-  if (spans_.empty()) return;
-  nodes_.clear();
-  nodes_.reserve(4 * spans_.size());
-  build(0, 0, spans_.size());
-  tbb::parallel_for(std::size_t(0), states_.size(), [&](std::size_t pair) { look_at(pair); });
-  spans_.clear();
+  end_tooth();
+  flush(fresh_, false);
+  flush(all_, true);
 }
 
 MovesFound MovesJudge::finish() {

@@ -2,9 +2,10 @@
 //
 // Moves are taken in order, as they were read back, and looked at together: the joints of many moves lie in a box of
 // joint space, and a gap at its middle that exceeds the way to its corners (postproc/bodies/scene.h) is a gap on all of
-// them. Boxes are halved until the gaps are proven. Rapids that move X and Y, or two rotaries, are boxes themselves:
-// which of the axes arrives first is not known. With TCP the linear axes follow the rotaries; what they leave their
-// chord by is an eighth of the second derivative, as in postproc/readback/motion.cpp.
+// them. Boxes are halved until the gaps are proven. A tooth whose joints are those of another one but for the turn of
+// the table that carries the work is not looked at again, where that turn moves no gap. Rapids that move X and Y, or
+// two rotaries, are boxes themselves: which of the axes arrives first is not known. With TCP the linear axes follow the
+// rotaries; what they leave their chord by is an eighth of the second derivative, as in postproc/readback/motion.cpp.
 #pragma once
 
 #include <map>
@@ -83,13 +84,26 @@ class MovesJudge {
     double proven, measured;
     std::optional<Meeting> nearest, failed;
   };
+  /// Spans that are looked at together, and a tree of ranges over them.
+  struct Batch {
+    std::vector<Span> spans;
+    std::vector<Range> nodes;
+    void build(const MovesJudge& judge, std::size_t node, std::size_t first, std::size_t last);
+  };
 
-  void add_corner(const readback::ExecutedMove& move);
+  [[nodiscard]] Span span_to(const readback::ExecutedMove& move) const;
+  [[nodiscard]] Span corner_before(const readback::ExecutedMove& move, const Span& after) const;
+  void end_tooth();
+  /// Does the tooth that is open repeat one of its operation? Else it is kept, so that later ones may.
+  bool repeats();
+  [[nodiscard]] bool alike(const Span& a, const Span& b) const;
+  /// Does the turn of the link of the work move the gap?
+  [[nodiscard]] bool turns(const Pair& pair) const;
   void flush();
-  void look_at(std::size_t pair);
-  void look(std::size_t pair, std::size_t node, std::size_t first, std::size_t last);
+  void flush(Batch& batch, bool turned);
+  void look_at(std::size_t pair, const Batch& batch);
+  void look(std::size_t pair, const Batch& batch, std::size_t node, std::size_t first, std::size_t last);
   void look_closer(std::size_t pair, const Span& span);
-  void build(std::size_t node, std::size_t first, std::size_t last);
   /// Is the gap on all of `range` proven to be large enough? Else measured at its middle, where `on_way` says that the
   /// program goes there.
   bool passes(std::size_t pair, const Range& range, const Span* on_way);
@@ -104,8 +118,12 @@ class MovesJudge {
   std::map<int, double> lengths_;
   MovesOptions options_;
   std::vector<State> states_;
-  std::vector<Span> spans_;
-  std::vector<Range> nodes_;
+  std::size_t turn_ = 5;                                ///< of Five: the joint next to the work, where it is a rotary
+  bool any_turned_ = false;                             ///< is there a pair whose gap it moves?
+  std::vector<Span> tooth_;                             ///< the one that is open
+  Batch fresh_, all_;                                   ///< teeth that repeat none; all, where they matter
+  std::map<int, std::vector<std::vector<Span>>> kept_;  ///< teeth of an operation
+  std::size_t kept_spans_ = 0;
   std::optional<readback::ExecutedMove> last_, before_;
   int tool_ = 0;
   std::size_t moves_ = 0, unjudged_ = 0;

@@ -6,10 +6,14 @@
 namespace toothpath::bodies {
 namespace {
 
-constexpr double kParallel = 1e-12;  // sine of axes that are one direction
-constexpr double kTouching = 1e-6;   // mm
+constexpr double kParallel = 1e-12;    // sine of axes that are one direction
+constexpr double kTouching = 1e-6;     // mm
+constexpr double kLeastReach = 1e-13;  // mm: of whatever turns, less than the rounding of places
 
 double to_line(const Vec3& p, const Vec3& point, const Vec3& direction) { return (p - point).cross(direction).norm(); }
+
+/// What is less than rounding is nothing.
+double kept(double reach) { return reach < kLeastReach ? 0 : reach; }
 
 bool names(const Body& a, const Body& b) {
   return std::find(a.touches.begin(), a.touches.end(), b.name) != a.touches.end();
@@ -37,7 +41,7 @@ Scene::Scene(const machines::KinematicChain& chain, std::vector<Body> bodies)
         continue;
       }
       for (std::size_t k = first.link; k < second.link; ++k)
-        pair.reach.push_back(links_.joints()[k].rotary ? std::min(reach(first, k), reach(second, k)) : 1.0);
+        pair.reach.push_back(!links_.joints()[k].rotary ? 1.0 : kept(std::min(reach(first, k), reach(second, k))));
       pairs_.push_back(std::move(pair));
     }
 }
