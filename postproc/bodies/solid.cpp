@@ -114,15 +114,10 @@ int Solid::build(std::span<int> pieces) {
 }
 
 Vec3 Solid::farthest(const Vec3& direction) const {
-  const Ball* best = &extent_.front();
-  double most = -std::numeric_limits<double>::infinity();
-  const Vec3 d = direction.normalized();
-  for (const Ball& ball : extent_)
-    if (const double reach = ball.centre.dot(d) + ball.radius; reach > most) {
-      most = reach;
-      best = &ball;
-    }
-  return best->centre + best->radius * d;
+  Vec3 best = bodies::farthest(pieces_.front(), direction);
+  for (const Convex& piece : pieces_)
+    if (const Vec3 p = bodies::farthest(piece, direction); p.dot(direction) > best.dot(direction)) best = p;
+  return best;
 }
 
 bool Solid::holds(const Solid& other, const machines::Place& place) const {

@@ -124,53 +124,121 @@ Trial random_trial(std::mt19937_64& rng, int i) {
   return trial;
 }
 
-TEST(Moves, NothingIsNearerThanProven) {
-  std::mt19937_64 rng(11);
-  std::uniform_real_distribution<double> share(0, 1);
+struct Counts {
   int judged = 0, collided = 0;
-  for (int i = 0; i < 60; ++i) {
-    const Trial trial = random_trial(rng, i);
-    const MovesOptions options{.required_mm = 0, .look_mm = 1e4};
-    MovesJudge judge(trial.machine, trial.bodies, {{1, kLength}}, options);
-    for (const auto& m : trial.moves) judge.add(m);
-    const MovesFound found = judge.finish();
-    const Scene scene(trial.machine.chain, trial.bodies);
-    for (const Pair& pair : scene.pairs()) {
-      const auto same = [&](const Meeting& m) {
-        return m.first == scene.bodies()[pair.first].name && m.second == scene.bodies()[pair.second].name;
-      };
-      const auto near = std::find_if(found.nearest.begin(), found.nearest.end(), same);
-      const auto failed = std::find_if(found.failed.begin(), found.failed.end(), same);
-      ASSERT_NE(near == found.nearest.end(), failed == found.failed.end());
-      double least = 1e9;
-      int first = 0;
-      for (std::size_t k = 1; k < trial.moves.size(); ++k) {
-        const ExecutedMove &a = trial.moves[k - 1], &b = trial.moves[k];
-        for (int n = 0; n <= 200; ++n) {
-          Joints q = on_way(trial.machine, a, b, kLength, n / 200.0);
-          if (b.rapid && n % 2 == 1) {  // the axes may arrive one after the other
-            for (int c = 0; c < 3; ++c)
-              q.linear_mm[c] += (share(rng) < 0.5 ? 0 : 1) * (b.joints[std::size_t(c)] - q.linear_mm[c]);
-          }
-          const double gap = scene.gap_of(pair, q, 1e9).measured;
-          if (gap <= 0 && first == 0) first = b.line;
-          least = std::min(least, gap);
+};
+
+/// Every pair against brute force: nothing is nearer than proven, and what meets is told where it meets first.
+void expect_proven(const Trial& trial, int i, Counts& counts) {
+  std::mt19937_64 rng(std::uint64_t(i) + 11);
+  std::uniform_real_distribution<double> share(0, 1);
+  const MovesOptions options{.required_mm = 0, .look_mm = 1e4};
+  MovesJudge judge(trial.machine, trial.bodies, {{1, kLength}}, options);
+  for (const auto& m : trial.moves) judge.add(m);
+  const MovesFound found = judge.finish();
+  EXPECT_EQ(found.moves, trial.moves.size());
+  const Scene scene(trial.machine.chain, trial.bodies);
+  for (const Pair& pair : scene.pairs()) {
+    const auto same = [&](const Meeting& m) {
+      return m.first == scene.bodies()[pair.first].name && m.second == scene.bodies()[pair.second].name;
+    };
+    const auto near = std::find_if(found.nearest.begin(), found.nearest.end(), same);
+    const auto failed = std::find_if(found.failed.begin(), found.failed.end(), same);
+    ASSERT_NE(near == found.nearest.end(), failed == found.failed.end());
+    double least = 1e9;
+    int first = 0;
+    for (std::size_t k = 1; k < trial.moves.size(); ++k) {
+      const ExecutedMove &a = trial.moves[k - 1], &b = trial.moves[k];
+      for (int n = 0; n <= 200; ++n) {
+        Joints q = on_way(trial.machine, a, b, kLength, n / 200.0);
+        if (b.rapid && n % 2 == 1) {  // the axes may arrive one after the other
+          for (int c = 0; c < 3; ++c)
+            q.linear_mm[c] += (share(rng) < 0.5 ? 0 : 1) * (b.joints[std::size_t(c)] - q.linear_mm[c]);
         }
-      }
-      if (near != found.nearest.end()) {
-        ++judged;
-        EXPECT_GE(least, near->proven_mm - 1e-6) << i << " " << near->first << " " << near->second;
-        EXPECT_GE(near->proven_mm, options.share * near->measured_mm - options.apart_mm - 1e-9);
-        EXPECT_GT(least, 0);
-      } else {
-        ++collided;
-        if (first > 0) { EXPECT_LE(failed->line, first) << i; }
-        EXPECT_TRUE(first > 0 || failed->measured_mm < 0.5) << i << " " << failed->measured_mm << " " << least;
+        const double gap = scene.gap_of(pair, q, 1e9).measured;
+        if (gap <= 0 && first == 0) first = b.line;
+        least = std::min(least, gap);
       }
     }
+    if (near != found.nearest.end()) {
+      ++counts.judged;
+      EXPECT_GE(least, near->proven_mm - 1e-6) << i << " " << near->first << " " << near->second;
+      EXPECT_GE(near->proven_mm, options.share * near->measured_mm - options.apart_mm - 1e-9);
+      EXPECT_GT(least, 0);
+    } else {
+      ++counts.collided;
+      if (first > 0) { EXPECT_LE(failed->line, first) << i; }
+      EXPECT_TRUE(first > 0 || failed->measured_mm < 0.5) << i << " " << failed->measured_mm << " " << least;
+    }
   }
-  EXPECT_GT(judged, 200);
-  EXPECT_GT(collided, 5);
+}
+
+TEST(Moves, NothingIsNearerThanProven) {
+  std::mt19937_64 rng(11);
+  Counts counts;
+  for (int i = 0; i < 60; ++i) expect_proven(random_trial(rng, i), i, counts);
+  EXPECT_GT(counts.judged, 200);
+  EXPECT_GT(counts.collided, 5);
+}
+
+/// The moves of a trial as five teeth, turned by the joint next to the work; the fourth one goes another way.
+Trial in_teeth(Trial trial) {
+  const machines::Links links(trial.machine.chain);
+  const machines::Joint& turn = links.joints().front();
+  std::vector<ExecutedMove> one = std::move(trial.moves);
+  trial.moves.clear();
+  int line = 0;
+  for (int tooth = 0; tooth < 5; ++tooth)
+    for (ExecutedMove m : one) {
+      m.line = ++line;
+      m.tooth = std::int16_t(tooth);
+      if (turn.rotary && links.bed() > 0) m.joints[3 + turn.axis] += 40.0 * tooth;
+      if (tooth == 3) m.joints[2] -= 15;
+      const Joints q{Vec3(m.joints[0], m.joints[1], m.joints[2]), {radians(m.joints[3]), radians(m.joints[4])}};
+      if (m.tcp) m.tip = trial.machine.chain.forward(q, kLength).tip_mm;
+      trial.moves.push_back(m);
+    }
+  return trial;
+}
+
+TEST(Moves, NothingIsNearerThanProvenOnTeethThatRepeat) {
+  std::mt19937_64 rng(12);
+  Counts counts;
+  for (int i = 0; i < 10; ++i) expect_proven(in_teeth(random_trial(rng, i)), i, counts);
+  EXPECT_GT(counts.judged, 30);
+  EXPECT_GT(counts.collided, 2);
+}
+
+// Ten teeth alike. A tool that goes deeper in the seventh one; a post on the table that comes under it with the fifth.
+TEST(Moves, OneToothOfManyIsFound) {
+  const machines::Machine machine = machine_with(test::ac_table());
+  const Vec3 at = machine.chain.table.front().point_mm;
+  std::vector<Body> bodies = {
+      {"plate", 0, Kind::machine, rod(at, Vec3::UnitZ(), 20, 80)},
+      {"nose", machines::Links(machine.chain).count() - 1, Kind::machine, rod(Vec3::Zero(), Vec3::UnitZ(), 50, 10)}};
+  const auto line_of_failure = [&](bool deeper, bool post) {
+    std::vector<Body> all = bodies;
+    const double fifth = radians(36.0 * 5);
+    if (post)  // under the nose once the table has turned by five teeth
+      all.push_back({"post", 0, Kind::machine,
+                     rod(at + machine.chain.table.front().rotation(fifth) * Vec3(60, 0, 20), Vec3::UnitZ(), 40, 4)});
+    MovesJudge judge(machine, all, {{1, kLength}}, {});
+    for (int tooth = 0; tooth < 10; ++tooth)
+      for (int k = 0; k < 4; ++k) {
+        const double z = at.z() + (deeper && tooth == 7 && k == 2 ? 15 : k % 2 == 0 ? 40 : 90);
+        ExecutedMove m =
+            move_to({Vec3(at.x() + 60, at.y(), z), {radians(36.0 * tooth), 0}}, 100 + 10 * tooth + k, k % 2 == 1);
+        m.tooth = std::int16_t(tooth);
+        judge.add(m);
+      }
+    const MovesFound found = judge.finish();
+    return found.clear() ? 0 : found.failed.front().line;
+  };
+  EXPECT_EQ(line_of_failure(false, false), 0);
+  EXPECT_EQ(line_of_failure(true, false), 172);
+  const int line = line_of_failure(false, true);
+  EXPECT_GE(line, 140);  // the turn to it, from above, or its first cut
+  EXPECT_LE(line, 152);
 }
 
 /// A cradle machine: C on A, a table, a cradle, a column and a spindle nose.
