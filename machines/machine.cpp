@@ -7,6 +7,8 @@ namespace toothpath::machines {
 
 namespace {
 
+constexpr double kUpright = 1e-9;  // sine of the lean of an upright axis
+
 /// The limit stands at every axis.
 bool stated(const KinematicChain& chain, double LinearAxis::*linear, double RotaryAxis::*rotary) {
   for (const auto& axis : chain.linear)
@@ -17,6 +19,26 @@ bool stated(const KinematicChain& chain, double LinearAxis::*linear, double Rota
 }
 
 }  // namespace
+
+std::optional<double> Machine::top_under(const Vec3& at) const {
+  std::optional<double> top;
+  for (const MachineBody& body : bodies) {
+    if (body.link != 0) continue;
+    double high = 0;
+    if (const auto* box = std::get_if<BoxShape>(&body.shape)) {
+      if (((at - box->low).head<2>().array() < 0).any() || ((box->high - at).head<2>().array() < 0).any()) continue;
+      high = box->high.z();
+    } else if (const auto* cone = std::get_if<ConeShape>(&body.shape)) {
+      const bool upright = (cone->to - cone->from).head<2>().norm() <= kUpright * (cone->to - cone->from).norm();
+      if (!upright || (at - cone->from).head<2>().norm() > std::max(cone->radius_from, cone->radius_to)) continue;
+      high = std::max(cone->from.z(), cone->to.z());
+    } else {
+      continue;
+    }
+    if (high <= at.z() && (!top || high > *top)) top = high;
+  }
+  return top;
+}
 
 bool Machine::has_acceleration() const {
   return stated(chain, &LinearAxis::max_acceleration, &RotaryAxis::max_acceleration);

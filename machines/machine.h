@@ -94,6 +94,9 @@ struct Machine {
   [[nodiscard]] bool has_acceleration() const;
   /// Every axis of the chain has a jerk.
   [[nodiscard]] bool has_jerk() const;
+  /// Highest place, straight below `at` (machine coordinates, joints at zero), of the boxes and upright cylinders and
+  /// cones that carry the work; mm. Nothing: none is stated there.
+  [[nodiscard]] std::optional<double> top_under(const Vec3& at) const;
   /// Largest part that turns on the table: `part_diameter_mm` if stated, else `table_diameter_mm`.
   [[nodiscard]] double largest_part_mm() const { return part_diameter_mm.value_or(table_diameter_mm); }
 };

@@ -55,8 +55,9 @@ std::optional<Place> place_of(const machines::Machine& machine, const PartInSpac
   Mat3 turn = Mat3::Identity();
   if (!part.up) turn = Vec3(1, -1, -1).asDiagonal();
   const double below = part.up ? -part.z_min_mm : part.z_max_mm;  // of the origin, to the underside
-  Vec3 origin(plate.x(), plate.y(), plate.z() + kFixture + below);
-  origin.z() = std::round(origin.z());
+  const auto top = machine.top_under(Vec3(plate.x(), plate.y(), INFINITY));
+  const double lowest = top.value_or(plate.z()) + kFixture + below;
+  Vec3 origin(plate.x(), plate.y(), std::round(lowest));
 
   choice::TravelPoses poses(chain, machine.limit_margin,
                             on_axis ? std::optional(chain.table.front().direction) : std::nullopt);
@@ -87,6 +88,7 @@ std::optional<Place> place_of(const machines::Machine& machine, const PartInSpac
   if (const auto offer = poses.best()) {
     Vec3 shift = offer->shift_mm;
     for (int i = 0; i < 3; ++i) shift[i] = std::round(shift[i]);
+    if (top) shift.z() = std::max(shift.z(), std::ceil(lowest - origin.z()));
     result.origin_mm += shift;
     result.room_mm = poses.room(shift);
   }
