@@ -36,6 +36,7 @@ struct Check {
   std::optional<process::Scene> scene;
   std::unique_ptr<process::GearMilling> milling;
   std::optional<process::ProgramProof> proof;
+  page::SceneStates states;  ///< of the picture
   report::RunReport report;
 
   explicit Check(const CheckRequest& r) : request(r), progress(r.quiet) {}
@@ -94,10 +95,13 @@ Status prove(Check& check) {
       flow::bodies_in_machine(check.job, check.machine, *check.gear.process, check.scene ? &*check.scene : nullptr);
   if (!bodies) return bodies.error();
   bodies::MovesJudge moves = flow::judge_of(check.machine, std::move(*bodies), check.job, check.limits.clearance_mm);
-  auto proof = process::prove_program({check.text, check.request.program_file, check.job, check.machine, &moves}, {},
-                                      check.milling->check(), check.clock);
+  page::StateRecorder states = flow::recorder_of(check.job, check.gear.process->part().teeth);
+  auto proof = process::prove_program({check.text, check.request.program_file, check.job, check.machine, &moves,
+                                       [&](const readback::ExecutedMove& move) { states.add(move); }},
+                                      {}, check.milling->check(), check.clock);
   if (!proof) return proof.error();
   check.proof = std::move(proof.value());
+  check.states = states.finish(check.proof->read);
   report::RunReport& report = check.report;
   report = process::report_of("check", check.job, check.machine, check.gear.process->part().warnings);
   if (auto judged = judge_scene(check); !judged) return judged;
@@ -134,7 +138,7 @@ Status write_results(Check& check, app::OutputDir& output, std::string& json) {
         page::page_of_run(check.gear.process->on_page(report.machine_name), report, {}, check.text);
     content.surface = proof.surface;
     content.motion = page::motion_charts(proof.read, proof.motions, check.machine);
-    content.machine = flow::machine_picture(check.job, check.machine, *check.gear.process, proof.read,
+    content.machine = flow::machine_picture(check.job, check.machine, *check.gear.process, std::move(check.states),
                                             check.scene ? &*check.scene : nullptr);
     return page::render_report_page(content);
   });

@@ -45,6 +45,7 @@ Result<ProgramProof> read_program(const ProgramText& program, const AskedPaths& 
                         judge.add(m);
                         if (m.line > seen) share.add(m.line - std::exchange(seen, m.line));
                         if (program.moves) program.moves->add(m);
+                        if (program.watch) program.watch(m);
                       }});
   });
   if (!read) return read.error();

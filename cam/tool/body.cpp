@@ -29,6 +29,15 @@ double across(const Frustum& f) { return std::hypot(1.0, slope_of(f)); }
 std::vector<Frustum> shank_and_holder(const ToolAssembly& tool) { return cones_of(shank_of(tool), holder_of(tool)); }
 std::vector<Frustum> shank_and_holder(const Profile& profile) { return cones_of(profile.shank(), profile.holder()); }
 
+std::optional<Frustum> holder_to_gauge_line(const ToolAssembly& tool) {
+  if (tool.holder.empty()) return {};
+  double top = tool.stick_out_mm;
+  for (const HolderSegment& s : tool.holder) top += s.height_mm;
+  if (top >= tool.length_mm) return {};
+  const double radius = tool.holder.back().upper_diameter_mm / 2;
+  return Frustum{top, tool.length_mm, radius, radius, Body::holder};
+}
+
 // A point moves by at most `moved`, which grows by less than `angle` a mm of height. What stays that far inside the two
 // planes and the side is in every turned body; what comes that far out holds all of them. Both margins are convex in
 // the height, so a straight side between those of the ends is on the safe side of them.

@@ -47,6 +47,10 @@ struct Frustum {
 [[nodiscard]] std::vector<Frustum> shank_and_holder(const ToolAssembly& tool);
 [[nodiscard]] std::vector<Frustum> shank_and_holder(const Profile& profile);
 
+/// What lies between the top of the stated holder and the gauge line, where the spindle nose stands: there the last
+/// diameter of the holder goes on. None: there is no holder, or it reaches the gauge line.
+[[nodiscard]] std::optional<Frustum> holder_to_gauge_line(const ToolAssembly& tool);
+
 /// What a body has in common under all axes within `angle_rad` (< 1) of its own, turned about the point `pivot_mm`
 /// above the tip: a frustum inside of it, on its own axis. None where nothing is left that a frustum holds.
 [[nodiscard]] std::optional<Frustum> turned_core(const Frustum& body, double pivot_mm, double angle_rad);

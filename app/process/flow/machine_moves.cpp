@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cam/tool/body.h"
 #include "postproc/bodies/of_machine.h"
 
 namespace toothpath::flow {
@@ -48,8 +49,11 @@ Result<std::vector<bodies::Body>> bodies_in_machine(const job::Job& job, const m
   const std::size_t spindle = machines::Links(machine.chain).count() - 1;
   for (std::size_t k = 0; k < job.tools.size(); ++k)
     for (const clearance::MeshBody& body : tools->bodies[k]) {
+      std::vector<tool::Frustum> frustums(body.pieces.begin(), body.pieces.end());
+      if (const auto top = tool::holder_to_gauge_line(job.tools[k]); top && body.body == top->body)
+        frustums.push_back(*top);
       std::vector<bodies::Convex> pieces;
-      for (const tool::Frustum& f : body.pieces)
+      for (const tool::Frustum& f : frustums)
         pieces.emplace_back(
             cone_between(f.from, f.to, f.radius_from, f.radius_to, Vec3(0, 0, -job.tools[k].length_mm), Vec3::UnitZ()));
       if (!pieces.empty())

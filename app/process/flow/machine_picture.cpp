@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cam/tool/body.h"
 #include "geometry/mesh/file.h"
 #include "machines/links.h"
 
@@ -26,21 +27,6 @@ page::SceneBody round(const char* name, std::size_t link, double radius, const V
   return {name, link, machines::ConeShape{from, to, radius, radius}, true};
 }
 
-/// Highest place below `z` of the bodies that turn with the work, about the gear's axis; machine coordinates.
-std::optional<double> top_below(const machines::Machine& machine, double z) {
-  std::optional<double> top;
-  for (const machines::MachineBody& body : machine.bodies) {
-    if (body.link != 0) continue;
-    double high = 0;
-    if (const auto* box = std::get_if<machines::BoxShape>(&body.shape)) high = box->high.z();
-    else if (const auto* cone = std::get_if<machines::ConeShape>(&body.shape))
-      high = std::max(cone->from.z(), cone->to.z());
-    else continue;
-    if (high < z && (!top || high > *top)) top = high;
-  }
-  return top;
-}
-
 void add_stated(const machines::Machine& machine, std::vector<page::SceneBody>& out) {
   for (const machines::MachineBody& body : machine.bodies) {
     page::SceneBody drawn_body{body.name, body.link, machines::BoxShape{}};
@@ -60,8 +46,14 @@ void add_stated(const machines::Machine& machine, std::vector<page::SceneBody>& 
 
 }  // namespace
 
+page::StateRecorder recorder_of(const job::Job& job, int teeth) {
+  std::vector<int> numbers;
+  for (const auto& tool : job.tools) numbers.push_back(tool.number);
+  return {std::move(numbers), job.operations.size(), job.operations.size() * std::size_t(teeth)};
+}
+
 std::optional<page::MachineScene> machine_picture(const job::Job& job, const machines::Machine& machine,
-                                                  const process::GearProcess& gear, const readback::ReadBack& read,
+                                                  const process::GearProcess& gear, page::SceneStates states,
                                                   const process::Scene* scene) {
   auto pitch = gear.pitch();
   if (!pitch || !job.setup) return std::nullopt;
@@ -71,12 +63,8 @@ std::optional<page::MachineScene> machine_picture(const job::Job& job, const mac
   out.rotation = job.setup->rotation();
   out.teeth = gear.part().teeth;
   out.pitch = std::move(*pitch);
-  std::vector<int> numbers;
-  for (const auto& tool : job.tools) {
-    numbers.push_back(tool.number);
-    out.tool_length_mm.push_back(tool.length_mm);
-  }
-  out.states = page::scene_states(read, numbers);
+  for (const auto& tool : job.tools) out.tool_length_mm.push_back(tool.length_mm);
+  out.moves = std::move(states);
   add_stated(machine, out.bodies);
 
   const sheet::PartOutline part = gear.outline();
@@ -85,15 +73,23 @@ std::optional<page::MachineScene> machine_picture(const job::Job& job, const mac
   for (const Vec3& p : out.pitch.vertices) under = std::min(under, (out.origin_mm + out.rotation * p).z());
   const auto at = [&](double z) { return Vec3(out.origin_mm.x(), out.origin_mm.y(), z); };
   const bool stated = !machine.bodies.empty();
-  auto top = top_below(machine, under);
+  const std::size_t spindle = machines::Links(machine.chain).count() - 1;
+  auto top = machine.top_under(at(under));
   if (!stated) {
     const double radius = std::min(machine.table_diameter_mm / 2, std::max(1.5 * part.outer_radius, 60.0));
     top = under - 0.15 * radius;
     out.bodies.push_back(round("table", 0, radius, at(*top - 0.12 * radius), at(*top)));
     const double nose = std::clamp(0.2 * radius, 25.0, 80.0);
-    out.bodies.push_back(
-        round("spindle", machines::Links(machine.chain).count() - 1, nose, Vec3::Zero(), Vec3(0, 0, 2.4 * nose)));
+    out.bodies.push_back(round("spindle", spindle, nose, Vec3::Zero(), Vec3(0, 0, 2.4 * nose)));
   }
+  for (std::size_t k = 0; k < job.tools.size(); ++k)
+    if (const auto rest = tool::holder_to_gauge_line(job.tools[k])) {
+      const double length = job.tools[k].length_mm;
+      out.bodies.push_back({"holder", spindle,
+                            machines::ConeShape{Vec3(0, 0, rest->from - length), Vec3(0, 0, rest->to - length),
+                                                rest->radius_from, rest->radius_to},
+                            false, false, int(k)});
+    }
   const bool held = top && under - *top > 0.1 && under - *top < kMostClamping;
   const double inner = std::max(part.inner_radius, 0.35 * part.outer_radius);
   if (held) out.bodies.push_back(round("clamping", 0, 0.97 * inner, at(*top), at(under + 0.6)));

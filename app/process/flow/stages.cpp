@@ -54,11 +54,11 @@ std::optional<Diagnostic> plan_and_check(Run& run) {
 
 /// What the proof found goes to the report; what the files need later is kept.
 void keep_proof(Run& run, const proof::ProofLimits& limits, process::ProgramProof& proof,
-                const std::vector<const path::ClPath*>& paths) {
+                const std::vector<const path::ClPath*>& paths, page::SceneStates states) {
   process::note_proof(run.report, proof);
   run.surface = std::move(proof.surface);
   run.motion = page::motion_charts(proof.read, proof.motions, run.machine);
-  run.machine_scene = machine_picture(run.job, run.machine, *run.gear.process, proof.read, nullptr);
+  run.machine_scene = machine_picture(run.job, run.machine, *run.gear.process, std::move(states), nullptr);
   run.path_off_mm = proof.path_tolerance_mm;
   for (const path::ClPath* path : paths)
     run.lines.push_back(page::lines_of_records(*path, proof.motions, proof.path_tolerance_mm));
@@ -85,7 +85,9 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
   auto bodies = bodies_in_machine(run.job, run.machine, gear, nullptr);
   if (!bodies) return bodies.error();
   bodies::MovesJudge moves = judge_of(run.machine, std::move(*bodies), run.job, limits.clearance_mm);
-  const process::ProgramText whole{posted->text, file, run.job, run.machine, &moves};
+  page::StateRecorder states = recorder_of(run.job, gear.part().teeth);
+  const process::ProgramText whole{posted->text, file,   run.job,
+                                   run.machine,  &moves, [&](const readback::ExecutedMove& move) { states.add(move); }};
   auto proof = process::prove_program(
       whole, {asked, program.chord_bound_mm + program.rounding_bound_mm + program.pole_tip_mm, program.axis_bound_rad},
       run.milling->check(), run.clock);
@@ -94,7 +96,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
     error.kind = DiagnosticKind::verification;  // our own program must be readable
     return error;
   }
-  keep_proof(run, limits, *proof, paths);
+  keep_proof(run, limits, *proof, paths, states.finish(proof->read));
   if (auto done = note_restart(run.report, *posted, whole, run.milling->check(), run.lines, run.clock); !done)
     return done.error();
   run.program_text = std::move(posted->restarted ? posted->restart_text : posted->text);

@@ -8,10 +8,10 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "app/report/page/machine_states.h"
 #include "geometry/base/result.h"
 #include "geometry/mesh/triangle_mesh.h"
 #include "machines/machine.h"
-#include "postproc/readback/reader.h"
 
 namespace toothpath::page {
 
@@ -22,13 +22,7 @@ struct SceneBody {
   std::variant<machines::BoxShape, machines::ConeShape, mesh::TriangleMesh> shape;
   bool stand_in = false;  ///< drawn for orientation only
   bool work = false;      ///< a fixture: gear frame instead of machine coordinates
-};
-
-/// The joints at one move.
-struct SceneState {
-  std::array<double, 5> joints{};  ///< X Y Z mm, rotaries rad
-  int operation = -1, line = 0;
-  int tool = -1;  ///< index in the job
+  int tool = -1;          ///< index in the job: drawn while this tool is in the spindle; -1: always
 };
 
 struct MachineScene {
@@ -39,14 +33,9 @@ struct MachineScene {
   mesh::TriangleMesh pitch;  ///< gear frame
   std::vector<SceneBody> bodies;
   std::vector<double> tool_length_mm;  ///< gauge line to tip, in the job's order
-  std::vector<SceneState> states;      ///< in the order of the program
-  std::string note;                    ///< what the picture is made of, one line
+  SceneStates moves;
+  std::string note;  ///< what the picture is made of, one line
 };
-
-/// Moves of the first tooth of every operation and those between the operations, as they were read back, thinned so
-/// that about `most` are left.
-[[nodiscard]] std::vector<SceneState> scene_states(const readback::ReadBack& read, const std::vector<int>& tool_numbers,
-                                                   std::size_t most = 420);
 
 /// For the page's script.
 [[nodiscard]] nlohmann::json machine_scene_json(const MachineScene& scene);

@@ -201,6 +201,19 @@ const tests = {
     const note = await page.$eval('#moment-note', (e) => e.textContent);
     assert.ok(note.includes('NC line 109:') && note.includes('Z 157.00') && note.includes('C 3.44\u00b0'), note);
     assert.match(await page.$eval('#machine-note', (e) => e.textContent), /planted; the machine moves as read back, sampled/);
+    // Another tooth: the machine turns to it, the moves are those of the first one with the index angle.
+    await page.$eval('#tooth', (e) => { e.value = 7; e.dispatchEvent(new Event('change')); });
+    await settle(page);
+    const tooth = await page.evaluate(() => {
+      const p = window.toothpathPage, s = p.atMoment(), first = p.timelines.first.at(Math.floor(p.moment) % 41);
+      return {shown: document.getElementById('teeth-shown').value, off: s.joints[3] - first.joints[3] - 7 * 2 * Math.PI / 24, tooth: s.tooth,
+              lines: s.line - first.line, length: p.timeline.length};
+    });
+    assert.ok(Math.abs(tooth.off) < 1e-5, `off by ${tooth.off}`);
+    assert.deepEqual({...tooth, off: 0}, {shown: 'all', off: 0, tooth: 7, lines: 1400, length: 24 * 41});
+    assert.match(await page.$eval('#moment-note', (e) => e.textContent), /tooth 7/);
+    await page.select('#teeth-shown', 'first');
+    await page.$eval('#moment', (e) => { e.value = 3; e.dispatchEvent(new Event('input')); });
     await page.click('#run');
     await page.waitForFunction(() => window.toothpathPage.moment > 4, {timeout: 20000});
     await page.click('#run');

@@ -328,7 +328,10 @@ page::MachineScene synthetic_machine() {
                   {"column", 2, machines::BoxShape{Vec3(-100, 160, -100), Vec3(100, 260, 300)}},
                   {"nose", 5, machines::ConeShape{Vec3(0, 0, 0), Vec3(0, 0, 60), 30, 40}, true}};
   scene.tool_length_mm = {90, 90};
-  for (int k = 0; k <= 40; ++k) scene.states.push_back({{50, 0, 160.0 - k, 0.02 * k, -0.01 * k}, 0, 100 + 3 * k, 0});
+  for (int k = 0; k <= 40; ++k)
+    scene.moves.states.push_back({{50, 0, 160.0 - k, 0.02 * k, -0.01 * k}, 0, 100 + 3 * k, 0});
+  for (int tooth = 0; tooth < scene.teeth; ++tooth)
+    scene.moves.stretches.push_back({0, 41, 0, tooth, {tooth * pitch, 0}, 200 * tooth});
   scene.note = "planted";
   return scene;
 }

@@ -83,10 +83,47 @@ async function loadMachine(data) {
     joints: joints.map((j) => j[i]), operation: Math.round(operation[i]), tool: Math.round(tool[i]),
     line: Math.round(high[i]) * 32768 + Math.round(low[i]),
   }));
+  const [above, below, count, of, tooth, lineHigh, lineLow] = (await Promise.all(data.stretches.marks.map(unpack))).flat();
+  const whole = (...parts) => Math.round(parts[0]) * (parts.length > 1 ? 32768 : 1) + (parts.length > 1 ? Math.round(parts[1]) : 0);
+  const stretches = data.stretches.turns.map((turn, i) => ({
+    turn, first: whole(above[i], below[i]), count: whole(count[i]), operation: whole(of[i]), tooth: whole(tooth[i]),
+    lines: whole(lineHigh[i], lineLow[i]),
+  }));
   const bodies = await Promise.all(data.bodies.map(async (b) => ({
     ...b, facets: b.low ? new Float32Array(boxFacets(b.low, b.high)) : b.from ? new Float32Array(coneFacets(b.from, b.to, b.radii)) : await mesh(b.mesh),
   })));
-  return {...data, pitch: await mesh(data.pitch), bodies, states};
+  return {...data, pitch: await mesh(data.pitch), bodies, states, stretches};
+}
+
+/** The moments of a program, from state to state: of all teeth, or of the first one of every operation. */
+class Timeline {
+  constructor(scene, all) {
+    const seen = new Set();
+    this.scene = scene;
+    this.parts = scene.stretches.filter((s) => {
+      const first = s.tooth < 0 || !seen.has(s.operation);
+      if (s.tooth >= 0) seen.add(s.operation);
+      return all || first;
+    });
+    this.starts = [];
+    this.length = this.parts.reduce((n, s) => { this.starts.push(n); return n + s.count; }, 0);
+  }
+
+  /** Number of the part that holds state k. */
+  partAt(k) {
+    let low = 0, high = this.parts.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (this.starts[middle] <= k) low = middle; else high = middle - 1;
+    }
+    return low;
+  }
+
+  at(k) {
+    const i = this.partAt(k), part = this.parts[i], state = part && this.scene.states[part.first + k - this.starts[i]];
+    if (!state) return undefined;
+    return {...state, tooth: part.tooth, line: state.line + part.lines, joints: state.joints.map((v, j) => (j < 3 ? v : v + part.turn[j - 3]))};
+  }
 }
 
 /** Draws the machine into the canvas of a View. */
@@ -127,6 +164,7 @@ class MachineView {
     if (body.standIn) return [0.52, 0.55, 0.59, 1];
     const {bed, joints} = this.scene;
     if (body.work) return [0.50, 0.42, 0.34, 1];
+    if (body.tool >= 0) return [0.30, 0.34, 0.40, 1];
     if (body.link === joints.length) return [0.40, 0.46, 0.54, 1];
     if (body.link === 0) return [0.46, 0.49, 0.53, 1];
     if (body.link === bed) return [0.80, 0.82, 0.84, 1];
@@ -157,7 +195,8 @@ class MachineView {
     };
     gl.uniform1f(at.u_pitch, 0);
     for (const b of this.bodies) {
-      if (!state.machine && b.link !== 0 && !(b.link === last && b.standIn)) continue;
+      if (b.tool >= 0 && b.tool !== state.tool) continue;
+      if (!state.machine && b.link !== 0 && b.tool < 0 && !(b.link === last && b.standIn)) continue;
       solid(b.vao, b.count, b.work ? Rigid.join(places[0], this.gear) : places[b.link], this.colourOf(b));
     }
     if (state.tool >= 0 && view.tools[state.tool]) {
