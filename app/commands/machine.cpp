@@ -15,6 +15,7 @@
 #include "geometry/base/angle.h"
 #include "machines/machine_file.h"
 #include "machines/machine_table.h"
+#include "postproc/bodies/of_machine.h"
 #include "postproc/controls/of_machine.h"
 #include "postproc/controls/registry.h"
 #include "postproc/self_test/self_test.h"
@@ -31,12 +32,41 @@ struct Shown {
 };
 
 /// The keys of the file, and where it lies.
-std::string json_of_file(const machines::MachineFileText& file) {
+std::string json_of_file(const machines::MachineFileText& file, const nlohmann::ordered_json& bodies = {}) {
   const auto tree = machines::parse_machine_toml(file.text, file.path);
   CommandOutcome outcome;
   outcome.report_json = nlohmann::ordered_json{{"schema", 1}, {"command", "machine show"}, {"file", file.path}}.dump();
   if (tree) app::add_data(outcome, "machine", app::json_of_toml(*tree));
+  if (bodies.is_array()) app::add_data(outcome, "bodies", bodies.dump());
   return outcome.report_json;
+}
+
+/// The bodies of the machine, meshes among them read and examined: a box around each, in the order of the file.
+Expected<std::vector<sheet::BodyBox>, std::vector<Diagnostic>> boxes_of(const machines::Machine& machine) {
+  auto bodies = bodies::bodies_of(machine, true);
+  if (auto* errors = bodies.refused()) return std::move(*errors);
+  std::vector<sheet::BodyBox> boxes;
+  for (const bodies::Body& body : bodies.value()) {
+    sheet::BodyBox& box = boxes.emplace_back();
+    for (int k = 0; k < 3; ++k) {
+      box.low[k] = body.solid.farthest(-Vec3::Unit(k))[k];
+      box.high[k] = body.solid.farthest(Vec3::Unit(k))[k];
+    }
+  }
+  return boxes;
+}
+
+nlohmann::ordered_json json_of_bodies(const machines::Machine& machine, const std::vector<sheet::BodyBox>& boxes) {
+  const machines::Links links(machine.chain);
+  auto json = nlohmann::ordered_json::array();
+  for (std::size_t k = 0; k < boxes.size(); ++k) {
+    const sheet::BodyBox& box = boxes[k];
+    json.push_back({{"name", machine.bodies[k].name},
+                    {"on", sheet::link_name(links, machine.bodies[k].link)},
+                    {"low", {box.low.x(), box.low.y(), box.low.z()}},
+                    {"high", {box.high.x(), box.high.y(), box.high.z()}}});
+  }
+  return json;
 }
 
 /// Text, page and drawing of a machine of either kind.
@@ -50,8 +80,11 @@ Expected<Shown, std::vector<Diagnostic>> show(const std::string& path) {
   }
   auto reading = controls::read_machine_of_text(file->text, path);
   if (!reading.machine) return std::move(reading.errors);
-  return Shown{sheet::machine_text(*reading.machine), sheet::machine_page(*reading.machine),
-               sheet::machine_drawing_svg(*reading.machine), json_of_file(*file)};
+  auto boxes = boxes_of(*reading.machine);
+  if (auto* errors = boxes.refused()) return std::move(*errors);
+  return Shown{sheet::machine_text(*reading.machine, boxes.value()),
+               sheet::machine_page(*reading.machine, boxes.value()), sheet::machine_drawing_svg(*reading.machine),
+               json_of_file(*file, json_of_bodies(*reading.machine, boxes.value()))};
 }
 
 }  // namespace

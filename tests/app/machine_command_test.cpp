@@ -87,7 +87,7 @@ TEST(MachineShow, WritesPageAndDrawingOnlyWhereAsked) {
   const TestDir dir;
   const Finished plain = run_program({"machine", "show", "t600s.toml"});
   EXPECT_EQ(plain.exit_code, 0) << plain.err;
-  EXPECT_NE(plain.out.find("work - C - A - bed - X Y Z - spindle - tool"), std::string::npos);
+  EXPECT_NE(plain.out.find("work - C - A - X Y - bed - Z - spindle - tool"), std::string::npos);
   const Finished both = run_program({"machine", "show", "t600s.toml", "--out", dir / "m"});
   EXPECT_EQ(both.exit_code, 0) << both.err;
   EXPECT_EQ(names_in(dir / "m"), (std::vector<std::string>{"machine.html", "machine.svg"}));
@@ -98,6 +98,46 @@ TEST(MachineShow, WritesPageAndDrawingOnlyWhereAsked) {
   EXPECT_NE(none.err.find("no_such_machine.toml"), std::string::npos);
   const Finished job = run_program({"machine", "show", kSamples + "/spur_quick.toml"});
   EXPECT_EQ(job.exit_code, 3) << job.err;
+}
+
+TEST(MachineShow, TellsTheBodies) {
+  const Finished run = run_program({"machine", "show", "t600s", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto bodies = nlohmann::json::parse(run.out)["report"]["bodies"];
+  ASSERT_EQ(bodies.size(), shipped("t600s.toml").bodies.size());
+  EXPECT_EQ(bodies[0]["name"], "plate");
+  EXPECT_EQ(bodies[0]["on"], "C");
+  EXPECT_NEAR(bodies[0]["high"][2].get<double>(), -305, 1e-6);
+  EXPECT_NEAR(bodies[0]["low"][0].get<double>(), -85, 1e-6);
+  EXPECT_NEAR(bodies[0]["low"][2].get<double>(), -325, 1e-6);
+  const std::string text = run_program({"machine", "show", "t600s"}).out;
+  EXPECT_NE(text.find("cylinder dia 170"), std::string::npos) << text;
+  EXPECT_NE(text.find("35 x 120 x 115"), std::string::npos) << text;  // an arm of the cradle
+  const Finished bare = run_program({"machine", "show", "xyzac_large"});
+  EXPECT_NE(bare.out.find("No bodies are stated"), std::string::npos);
+}
+
+TEST(MachineShow, OpensTheMeshesOfBodies) {
+  const TestDir dir;
+  const std::string machine = file_text(machines::find_machine_file("xyzac_large", ".").value());
+  write_file(dir / "m.toml",
+             machine + "\n[[body]]\nname = \"arm\"\nof = \"A\"\nshape = \"mesh\"\nfile = \"arm.obj\"\n");
+  const auto show = [&] { return run_program({"machine", "show", dir / "m.toml"}); };
+  const std::string at =
+      fmt::format("m.toml:{}:8: error: body \"arm\": ", 2 + std::count(machine.begin(), machine.end(), '\n') + 4);
+  const Finished missing = show();
+  EXPECT_EQ(missing.exit_code, 4);
+  EXPECT_NE(missing.err.find(at), std::string::npos) << missing.err;
+  const std::string corners = "v 0 0 0\nv 30 0 0\nv 0 20 0\nv 0 0 10\nf 1 3 2\nf 1 2 4\nf 1 4 3\n";
+  write_file(dir / "arm.obj", corners);
+  const Finished open = show();
+  EXPECT_EQ(open.exit_code, 3);
+  EXPECT_NE(open.err.find(at), std::string::npos) << open.err;
+  write_file(dir / "arm.obj", corners + "f 2 3 4\n");
+  const Finished good = show();
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_NE(good.out.find("30 x 20 x 10"), std::string::npos) << good.out;
+  EXPECT_NE(good.out.find("mesh arm.obj"), std::string::npos) << good.out;
 }
 
 TEST(MachineList, EveryInstalledMachineHasItsLine) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "app/report/page/study_page.h"
 #include "app/report/svg/html_text.h"
@@ -23,10 +24,19 @@ const char* tcp_text(machines::TcpMode mode) {
 }
 
 std::string chain_text(const machines::KinematicChain& chain) {
+  const machines::Links links(chain);
   std::string text = "work";
-  for (const auto& axis : chain.table) text += fmt::format(" - {}", axis.letter);
-  text += " - bed - X Y Z";
-  for (const auto& axis : chain.head) text += fmt::format(" - {}", axis.letter);
+  bool linear = false;  // those that follow each other stand together
+  for (std::size_t k = 0; k <= links.joints().size(); ++k) {
+    if (k == links.bed()) {
+      text += " - bed";
+      linear = false;
+    }
+    if (k == links.joints().size()) break;
+    const machines::Joint& joint = links.joints()[k];
+    text += fmt::format("{}{}", linear && !joint.rotary ? " " : " - ", joint.letter);
+    linear = !joint.rotary;
+  }
   return text + " - spindle - tool";
 }
 
@@ -50,12 +60,38 @@ page::PageTable assumed_table(const std::vector<std::string>& keys) {
   return table;
 }
 
+/// What carries a body, what it is and where it stands.
+page::PageTable body_table(const machines::Machine& m, const std::vector<BodyBox>& boxes) {
+  page::PageTable table{"Bodies", {"body", "on", "shape", "size [mm]", "from", "to", ""}, {}, ""};
+  const machines::Links links(m.chain);
+  for (std::size_t k = 0; k < m.bodies.size() && k < boxes.size(); ++k) {
+    const machines::MachineBody& body = m.bodies[k];
+    std::string shape = "box";
+    if (const auto* cone = std::get_if<machines::ConeShape>(&body.shape))
+      shape = cone->radius_from == cone->radius_to
+                  ? fmt::format("cylinder dia {}", number(2 * cone->radius_from))
+                  : fmt::format("cone dia {} to {}", number(2 * cone->radius_from), number(2 * cone->radius_to));
+    else if (const auto* mesh = std::get_if<machines::MeshShape>(&body.shape))
+      shape = "mesh " + std::filesystem::path(mesh->file).filename().string();
+    const Vec3 size = boxes[k].high - boxes[k].low;
+    table.rows.push_back({body.name, link_name(links, body.link), shape,
+                          fmt::format("{} x {} x {}", number(size.x()), number(size.y()), number(size.z())),
+                          triple(boxes[k].low), triple(boxes[k].high),
+                          assumed(m.assumed_keys, body.key) || assumed(m.assumed_keys, "body") ? "assumed" : ""});
+  }
+  table.note = table.rows.empty()
+                   ? "No bodies are stated: moves of the machine are not checked against each other."
+                   : "Bodies stand where they stand with every joint at its zero, the gauge point in the "
+                     "origin; size, from and to are those of the box around them.";
+  return table;
+}
+
 struct Facts {
-  page::PageTable general, axes, guessed;
+  page::PageTable general, axes, bodies, guessed;
   std::size_t assumed = 0;
 };
 
-Facts facts_of(const machines::Machine& m) {
+Facts facts_of(const machines::Machine& m, const std::vector<BodyBox>& boxes) {
   Facts f;
   const auto mark = [&](const std::string& key) { return assumed(m.assumed_keys, key) ? "assumed" : ""; };
   f.general = {"Machine", {"quantity", "value", "unit", ""}, {}, ""};
@@ -97,6 +133,7 @@ Facts facts_of(const machines::Machine& m) {
   }
   f.axes.note =
       "Point of a table axis: machine coordinates. Of a head axis: from the gauge point, its z is the pivot length.";
+  f.bodies = body_table(m, boxes);
   f.guessed = assumed_table(m.assumed_keys);
   f.assumed = m.assumed_keys.size();
   return f;
@@ -141,6 +178,8 @@ std::string text_of(const Facts& f, const std::string& name, const std::string& 
       fmt::format("{}  ({})\n\n{}\n{}", name, file, page::table_text(f.general), page::table_text(f.axes));
   for (const auto* table : {&f.general, &f.axes})
     if (!table->note.empty()) out += "\n" + table->note + "\n";
+  if (!f.bodies.rows.empty()) out += "\n" + page::table_text(f.bodies);
+  if (!f.bodies.note.empty()) out += "\n" + f.bodies.note + "\n";
   if (f.guessed.rows.empty()) return out + "\nNo value is assumed.\n";
   return out + fmt::format("\n{} values are assumed; measure them before a part is cut.\n", f.assumed) +
          page::table_text(f.guessed);
@@ -157,6 +196,7 @@ std::string page_of(const Facts& f, const std::string& name, const std::string& 
       "the axes says what is seen. Run the program of `toothpath machine test` in air before the first part: a wrong "
       "sign or pivot shows there."};
   page.tables = {f.general, f.axes};
+  if (!f.bodies.note.empty()) page.tables.push_back(f.bodies);
   if (!f.guessed.rows.empty()) page.tables.push_back(f.guessed);
   std::string html = page::study_page_html(page);
   if (!drawing.empty()) {
@@ -190,15 +230,20 @@ std::string positive_turn(const machines::KinematicChain& chain, std::size_t rot
   return fmt::format("swings the tool tip to X{}", right ? "-" : "+");
 }
 
-std::string machine_text(const machines::Machine& machine) {
-  return text_of(facts_of(machine), machine.name, machine.file);
+std::string link_name(const machines::Links& links, std::size_t link) {
+  if (link == links.bed()) return "bed";
+  return {links.joints()[link < links.bed() ? link : link - 1].letter};
+}
+
+std::string machine_text(const machines::Machine& machine, const std::vector<BodyBox>& boxes) {
+  return text_of(facts_of(machine, boxes), machine.name, machine.file);
 }
 std::string machine_text(const machines::ShaperMachine& machine) {
   return text_of(facts_of(machine), machine.name, machine.file);
 }
 
-std::string machine_page(const machines::Machine& machine) {
-  return page_of(facts_of(machine), machine.name, machine.file, machine_drawing_svg(machine));
+std::string machine_page(const machines::Machine& machine, const std::vector<BodyBox>& boxes) {
+  return page_of(facts_of(machine, boxes), machine.name, machine.file, machine_drawing_svg(machine));
 }
 std::string machine_page(const machines::ShaperMachine& machine) {
   return page_of(facts_of(machine), machine.name, machine.file, {});
