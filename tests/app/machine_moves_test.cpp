@@ -66,6 +66,45 @@ TEST_F(MachineMoves, TheSameFarAwayIsClear) {
   EXPECT_TRUE(report_["machine_moves"]["clear"].get<bool>());
 }
 
+/// Samples on machines with a head: verified with their bodies; and with a post that stands where the teeth are cut.
+struct HeadCase {
+  const char *sample, *machine, *program;
+  Vec3 post;
+  int first_tooth, last_tooth;  ///< that meets it
+};
+class HeadMachines : public ::testing::TestWithParam<HeadCase> {};
+
+TEST_P(HeadMachines, AreClearAndAPostIsFoundAtItsTooth) {
+  const HeadCase c = GetParam();
+  const TestDir dir;
+  const std::string sample = file_text(kSamples + "/" + c.sample + ".toml");
+  const auto run = [&](const std::string& name, const std::string& more) {
+    write_file(dir / "m.toml", file_text(kMachines + "/" + c.machine + ".toml") + more);
+    write_file(dir / "job.toml", replaced(sample, std::string("\"") + c.machine + ".toml\"", "\"m.toml\""));
+    return run_program({"run", dir / "job.toml", "--out", dir / name});
+  };
+  const Finished clear = run("clear", "");
+  EXPECT_EQ(clear.exit_code, 0) << clear.err;
+  const Json good = Json::parse(file_text(dir / "clear/report.json"))["machine_moves"];
+  EXPECT_TRUE(good["clear"].get<bool>());
+  EXPECT_GE(good["bodies"].get<int>(), 9);
+  const Finished met = run("met", fmt::format("\n[[body]]\nname = \"post\"\nof = \"bed\"\nshape = \"cylinder\"\nfrom = "
+                                              "[{0:.3f}, {1:.3f}, {2:.3f}]\nto = [{0:.3f}, {1:.3f}, {3:.3f}]\ndiameter "
+                                              "= 2.0\n",
+                                              c.post.x(), c.post.y(), c.post.z(), c.post.z() + 8));
+  EXPECT_EQ(met.exit_code, 1);
+  EXPECT_FALSE(std::filesystem::exists(dir / std::string("met/program.") + c.program));
+  const Json first = Json::parse(file_text(dir / "met/report.json"))["machine_moves"]["failed"][0];
+  EXPECT_EQ(first["bodies"][0], "post");
+  EXPECT_GE(first["tooth"].get<int>(), c.first_tooth) << first;
+  EXPECT_LE(first["tooth"].get<int>(), c.last_tooth) << first;
+  EXPECT_NE(met.err.find(fmt::format("machine: line {}: ", first["line"].get<int>())), std::string::npos) << met.err;
+}
+
+INSTANTIATE_TEST_SUITE_P(Samples, HeadMachines,
+                         ::testing::Values(HeadCase{"spur_head_table", "head_table_bc", "ngc", Vec3(62, 0, 92), -1, 0},
+                                           HeadCase{"spur_fork_head", "head_head_ca", "h", Vec3(0, 62, 92), 13, 16}));
+
 TEST_F(MachineMoves, TheSameOnAnyNumberOfThreads) {
   (void)run(kPost, "--threads=1");
   const Json one = report_["machine_moves"];
