@@ -240,6 +240,22 @@ TEST(MachineFile, Bodies) {
   EXPECT_TRUE(guessed.machine->assumed);
 }
 
+TEST(MachineFile, TopUnderAPlace) {
+  machines::Machine m;
+  const auto add = [&](std::size_t link, auto shape) { m.bodies.push_back({"", link, shape, {}, ""}); };
+  EXPECT_FALSE(m.top_under(Vec3(0, 0, 100)));
+  add(0, machines::BoxShape{Vec3(-50, -50, -20), Vec3(50, 50, 0)});
+  add(0, machines::ConeShape{Vec3(0, 0, 0), Vec3(0, 0, 12), 30, 20});
+  add(0, machines::BoxShape{Vec3(60, -50, -20), Vec3(80, 50, 90)});      // a wall beside it
+  add(1, machines::BoxShape{Vec3(-50, -50, 20), Vec3(50, 50, 40)});      // what carries no work
+  add(0, machines::ConeShape{Vec3(-90, 0, 60), Vec3(90, 0, 60), 5, 5});  // lies
+  EXPECT_EQ(m.top_under(Vec3(0, 0, 100)).value_or(-1), 12);
+  EXPECT_EQ(m.top_under(Vec3(40, 0, 100)).value_or(-1), 0);
+  EXPECT_EQ(m.top_under(Vec3(0, 0, 11)).value_or(-1), 0);
+  EXPECT_EQ(m.top_under(Vec3(70, 0, 100)).value_or(-1), 90);
+  EXPECT_FALSE(m.top_under(Vec3(200, 0, 100)));
+}
+
 TEST(MachineFile, OrderOfTheChain) {
   for (const test::Order& order : test::kOrders)
     EXPECT_EQ(messages(test::machine_ordered(order.order)), order.messages) << order.order;

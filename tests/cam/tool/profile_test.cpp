@@ -8,6 +8,7 @@
 #include <boost/multiprecision/eigen.hpp>
 
 #include "cam/clearance/clearance.h"
+#include "cam/tool/body.h"
 #include "cam/tool/finger_profile.h"
 #include "geometry/base/angle.h"
 #include "tests/cam/finger/jobs.h"
@@ -424,6 +425,25 @@ TEST(Profile, RefusesWhatMakesNoBody) {
   all.flute_length_mm = -1;
   all.shank_diameter_mm = 0;
   EXPECT_EQ(std::get<std::vector<tool::ProfileRefusal>>(tool::Profile::make(all)).size(), 3u);
+}
+
+// Between the stated holder and the spindle nose its last diameter goes on.
+TEST(Body, TheHolderGoesOnToTheGaugeLine) {
+  ToolAssembly t = ball_mill(2, 4, 1.8, 12, 10);  // 80 mm long, its holder from 12 to 72 mm
+  const auto rest = holder_to_gauge_line(t);
+  ASSERT_TRUE(rest);
+  EXPECT_EQ(rest->from, 72);
+  EXPECT_EQ(rest->to, 80);
+  EXPECT_EQ(rest->radius_from, 16);
+  EXPECT_EQ(rest->radius_to, 16);
+  EXPECT_EQ(rest->body, Body::holder);
+  t.length_mm = 72;
+  EXPECT_FALSE(holder_to_gauge_line(t));
+  t.length_mm = 60;
+  EXPECT_FALSE(holder_to_gauge_line(t));
+  t.length_mm = 80;
+  t.holder.clear();
+  EXPECT_FALSE(holder_to_gauge_line(t));
 }
 
 }  // namespace
