@@ -352,8 +352,7 @@ TEST(New, RefusesAWrongWordOfATool) {
     EXPECT_EQ(made.exit_code, 2) << said;
     return made.err;
   };
-  EXPECT_NE(err("12: " + kRest + ", stik_out = 3")
-                .find("error: --tool 12: unknown key \"stik_out\" in [tool]"),
+  EXPECT_NE(err("12: " + kRest + ", stik_out = 3").find("error: --tool 12: unknown key \"stik_out\" in [tool]"),
             std::string::npos);
   EXPECT_NE(err("12: stick_out = -1").find("error: --tool 12: stick_out = -1 "), std::string::npos);
   EXPECT_NE(err("12: number = 3").find("--tool 12: number is not said here"), std::string::npos);
