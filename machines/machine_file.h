@@ -55,6 +55,10 @@ struct MachineFileText {
 /// folder, then the data folder of the source tree this was built from. Only those that exist.
 [[nodiscard]] std::vector<std::string> machine_directories();
 
+/// Path of an installed schema, "job.schema.json": `share/toothpath/schema` beside the executable's folder, then that
+/// of the source tree. Empty: there is none.
+[[nodiscard]] std::string schema_file(const std::string& name);
+
 /// File names of the installed machines, "t600s.toml", in order, each once.
 [[nodiscard]] std::vector<std::string> installed_machines();
 

@@ -1,4 +1,4 @@
-// Where installed machine files live: beside the installed program, or in the tree it was built from.
+// Where installed machine files and schemas live: beside the installed program, or in the tree it was built from.
 #include <algorithm>
 #include <filesystem>
 
@@ -26,16 +26,29 @@ std::string hint_for(const std::string& name, const std::vector<std::string>& in
   return hint.empty() ? toml::did_you_mean(name + ".toml", installed) : hint;
 }
 
-}  // namespace
-
-std::vector<std::string> machine_directories() {
+/// A folder of the data beside the installed program, then that of the tree it was built from.
+std::vector<fs::path> data_places(const char* installed, [[maybe_unused]] const char* in_tree) {
   std::vector<fs::path> places;
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) places.push_back(program.parent_path().parent_path() / "share" / "toothpath" / "machines");
-#ifdef TOOTHPATH_MACHINE_DATA
-  places.emplace_back(TOOTHPATH_MACHINE_DATA);
+  if (!error) places.push_back(program.parent_path().parent_path() / "share" / "toothpath" / installed);
+#ifdef TOOTHPATH_SOURCE_TREE
+  places.push_back(fs::path(TOOTHPATH_SOURCE_TREE) / in_tree);
 #endif
+  return places;
+}
+
+}  // namespace
+
+std::string schema_file(const std::string& name) {
+  for (const fs::path& place : data_places("schema", "docs/schema"))
+    if (is_there(place / name)) return (place / name).string();
+  return {};
+}
+
+std::vector<std::string> machine_directories() {
+  const std::vector<fs::path> places = data_places("machines", "machines/data");
+  std::error_code error;
   std::vector<std::string> found;
   for (const fs::path& place : places)
     if (fs::is_directory(place, error)) found.push_back(place.string());

@@ -6,31 +6,34 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "app/base/dialog.h"
 #include "app/commands/run.h"
 #include "app/commands/shaper.h"
 #include "app/job/file.h"
+#include "app/job/job.h"
+#include "app/proposal/library_shelf.h"
 #include "app/proposal/propose.h"
-#include "app/tool_library/tool_library.h"
-#include "geometry/base/angle.h"
 #include "geometry/base/printable.h"
 #include "machines/machine_file.h"
-#include "machines/toml/near_name.h"
 
 namespace toothpath::commands {
 namespace {
 
 namespace fs = std::filesystem;
+using app::Dialog;
+using proposal::LibraryShelf;
+using proposal::Quantity;
 using proposal::Question;
 using proposal::Wishes;
 
 struct NewRequest : CommonRequest {
   std::string gear, route, machine, tools, file, name;
+  std::vector<std::string> said;  ///< of tools: "12: stick_out = 40"
   std::array<std::optional<double>, proposal::kQuantities> numbers;
   std::array<std::optional<int>, proposal::kQuantities> whole;
 };
@@ -40,77 +43,6 @@ std::vector<Diagnostic> usage(std::string message) {
 }
 
 using DoneOrErrors = Expected<Ok, std::vector<Diagnostic>>;
-
-/// Asks on a terminal, or takes what the options say.
-class Dialog {
- public:
-  explicit Dialog(bool quiet) : asks_(!quiet && ::isatty(STDIN_FILENO) != 0) {}
-
-  [[nodiscard]] bool asks() const { return asks_; }
-
-  void tell(const proposal::Told& lines) const {
-    if (!asks_) return;
-    for (const auto& [what, value] : lines) std::fprintf(stderr, "    %s: %s\n", what.c_str(), value.c_str());
-  }
-
-  /// One of these words; an empty answer takes the first.
-  template <typename Words>
-  Expected<std::string, std::vector<Diagnostic>> word(const char* option, const char* text, std::string given,
-                                                      const Words& words) const {
-    while (true) {
-      if (!given.empty()) {
-        if (std::find(words.begin(), words.end(), given) != words.end()) return given;
-        const std::string wrong = fmt::format("{} = \"{}\" is not one of {}{}", option, printable(given),
-                                              fmt::join(words, ", "), toml::did_you_mean(given, words));
-        if (!asks_) return usage(wrong);
-        std::fprintf(stderr, "  %s\n", wrong.c_str());
-      }
-      if (!asks_) return usage(fmt::format("{} is missing: {}; one of {}", option, text, fmt::join(words, ", ")));
-      auto answer = ask(fmt::format("{} ({}) [{}]", text, fmt::join(words, ", "), *words.begin()));
-      if (!answer) return usage(fmt::format("{} is missing: the answers ended", option));
-      given = answer->empty() ? std::string(*words.begin()) : *answer;
-    }
-  }
-
-  Expected<double, std::vector<Diagnostic>> number(const Question& question, std::optional<double> given,
-                                                   std::optional<double> proposed) const {
-    if (given) return *given;
-    if (!asks_) {
-      if (proposed) return *proposed;
-      return usage(fmt::format("{} is missing: {}, {:g} to {:g}{}", question.option, question.text, question.range.low,
-                               question.range.high, question.range.unit));
-    }
-    const std::string line =
-        fmt::format("{} ({:g} to {:g}{}){}", question.text, question.range.low, question.range.high,
-                    question.range.unit, proposed ? fmt::format(" [{:g}]", *proposed) : "");
-    while (true) {
-      auto answer = ask(line);
-      if (!answer) return usage(fmt::format("{} is missing: the answers ended", question.option));
-      if (answer->empty() && proposed) return *proposed;
-      const auto read = read_answer(question, *answer);
-      if (read) return *read;
-      std::fprintf(stderr, "  %s\n", printable(read.error().message).c_str());
-    }
-  }
-
- private:
-  static Result<double> read_answer(const Question& question, const std::string& text) {
-    if (!question.whole) return app::read_number(question.text, text, question.range);
-    const auto whole = app::read_whole_number(question.text, text, question.range);
-    if (!whole) return whole.error();
-    return static_cast<double>(*whole);
-  }
-
-  static std::optional<std::string> ask(const std::string& line) {
-    std::fprintf(stderr, "%s: ", line.c_str());
-    std::fflush(stderr);
-    std::string answer;
-    if (!std::getline(std::cin, answer)) return std::nullopt;
-    return answer;
-  }
-
-  bool asks_;
-};
 
 /// A machine file by the word of a job, without its ending.
 std::vector<std::string> machine_names(bool shaper) {
@@ -137,16 +69,55 @@ Expected<Wishes, std::vector<Diagnostic>> kinds_wished(const NewRequest& request
   wishes.route = proposal::route_of(route.value());
   wishes.machine = request.machine;
   if (wishes.machine.empty()) {
-    const auto machine =
-        dialog.word("--machine", "machine", "", machine_names(wishes.route == proposal::Route::shaped));
+    const std::vector<std::string> names = machine_names(wishes.route == proposal::Route::shaped);
+    const std::vector<std::string_view> words(names.begin(), names.end());
+    const auto machine = dialog.word("--machine", "machine", "", words);
     if (auto* errors = machine.refused()) return *errors;
     wishes.machine = machine.value();
   }
   return wishes;
 }
 
+/// What is proposed, as far as the machine turns it.
+std::optional<double> proposed_number(const Question& question, const Wishes& wishes,
+                                      const proposal::ChosenMachine& machine) {
+  auto proposed = proposal::proposed(question.what, wishes);
+  if (proposed && question.what == Quantity::outer && machine.mill)
+    proposed = std::min(*proposed, 0.5 * machine.mill->largest_part_mm());
+  return proposed;
+}
+
+/// Asks until the machine turns the gear as far as its diameter is known.
+DoneOrErrors wish_number(Wishes& wishes, const Question& question, std::optional<double> given, const Dialog& dialog,
+                         const proposal::ChosenMachine& machine) {
+  const auto proposed = proposed_number(question, wishes, machine);
+  const bool ends = question.what == Quantity::inner || question.what == Quantity::outer;
+  if (ends && !proposed && !given)
+    return std::vector{Diagnostic{DiagnosticKind::refused_input,
+                                  {},
+                                  "no tooth has room with these numbers: its teeth are undercut where they are not "
+                                  "pointed; fewer teeth of the shaper, or less helix angle, would help"}};
+  while (true) {
+    const auto answer =
+        dialog.number({question.option, question.text, question.range, question.whole}, given, proposed);
+    if (auto* errors = answer.refused()) return *errors;
+    const auto before = proposal::least_swing_mm(wishes);
+    wishes[question.what] = answer.value();
+    const auto swing = proposal::least_swing_mm(wishes);
+    if (!swing || swing == before) return Ok{};
+    if (question.what == Quantity::outer || wishes.gear == proposal::Gear::bevel_herringbone)
+      dialog.tell(proposal::swing_of(machine, *swing));
+    const Status turns = proposal::check_swing(machine, *swing);
+    if (turns) return Ok{};
+    if (given || !dialog.asks() || !ends) return std::vector{turns.error()};
+    dialog.tell({{"too large", turns.error().message}});
+    wishes[question.what].reset();
+  }
+}
+
 /// All numbers of the gear, each with the limits that are known before it.
-DoneOrErrors wish_numbers(Wishes& wishes, const NewRequest& request, const Dialog& dialog) {
+DoneOrErrors wish_numbers(Wishes& wishes, const NewRequest& request, const Dialog& dialog,
+                          const proposal::ChosenMachine& machine) {
   for (const Question& question : proposal::questions()) {
     const auto at = static_cast<std::size_t>(question.what);
     const auto given =
@@ -155,17 +126,13 @@ DoneOrErrors wish_numbers(Wishes& wishes, const NewRequest& request, const Dialo
       if (given) return usage(fmt::format("{} does not belong to --gear {}", question.option, word_of(*wishes.gear)));
       continue;
     }
-    if (question.what == proposal::Quantity::inner) dialog.tell(limits_of(wishes));
-    const bool ends = question.what == proposal::Quantity::inner || question.what == proposal::Quantity::outer;
-    const auto proposed = proposal::proposed(question.what, wishes);
-    if (ends && !proposed && !given)
-      return std::vector{Diagnostic{DiagnosticKind::refused_input,
-                                    {},
-                                    "no tooth has room with these numbers: its teeth are undercut where they are not "
-                                    "pointed; fewer teeth of the shaper, or less helix angle, would help"}};
-    const auto answer = dialog.number(question, given, proposed);
-    if (auto* errors = answer.refused()) return *errors;
-    wishes[question.what] = answer.value();
+    if (question.what == Quantity::inner) {
+      dialog.tell(limits_of(wishes));
+      if (machine.mill)
+        dialog.tell({{"outer end that turns on " + machine.name,
+                      fmt::format("up to {:g} mm", 0.5 * machine.mill->largest_part_mm())}});
+    }
+    if (auto asked = wish_number(wishes, question, given, dialog, machine); asked.refused()) return asked;
   }
   return Ok{};
 }
@@ -189,21 +156,34 @@ class TemporaryFolder {
   std::string path_;
 };
 
-bool write_text(const std::string& path, const std::string& text) {
-  std::ofstream out(path, std::ios::binary);
-  out << text;
-  out.close();
-  return !out.fail();
-}
+/// The job before it has its name: beside where it will stand, so that what it names is found.
+class UnnamedJob {
+ public:
+  explicit UnnamedJob(const std::string& file) : path_(fmt::format("{}.{}.part", file, ::getpid())) {}
+  ~UnnamedJob() { ::unlink(path_.c_str()); }
+  UnnamedJob(const UnnamedJob&) = delete;
+  UnnamedJob& operator=(const UnnamedJob&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+
+  bool write(const std::string& text) const {
+    std::ofstream out(path_, std::ios::binary);
+    out << text;
+    out.close();
+    return !out.fail();
+  }
+
+ private:
+  std::string path_;
+};
 
 /// The job as `run` or `shaper` finds it.
-CommandOutcome prove(const std::string& text, bool shaped, bool quiet) {
+CommandOutcome prove(const UnnamedJob& job, const std::string& text, bool shaped, bool quiet) {
   const TemporaryFolder folder;
-  const std::string file = folder.path() + "/job.toml";
-  if (folder.path().empty() || !write_text(file, text))
+  if (folder.path().empty())
     return failed(Diagnostic{DiagnosticKind::file_access, {}, "no temporary folder can be written"});
+  if (!job.write(text)) return failed(Diagnostic{DiagnosticKind::file_access, {job.path(), 0, 0}, "cannot be written"});
   RunRequest request;
-  request.job_file = file;
+  request.job_file = job.path();
   request.out_dir = folder.path() + "/out";
   request.quiet = quiet;
   return shaped ? run_shaper(request) : run_job(request);
@@ -214,14 +194,10 @@ DoneOrErrors write_job(const std::string& file, const std::string& text) {
   const auto fail = [&](const std::string& why) {
     return std::vector{Diagnostic{DiagnosticKind::file_access, {file, 0, 0}, why}};
   };
-  const std::string half = fmt::format("{}.{}.part", file, ::getpid());
-  if (!write_text(half, text)) {
-    ::unlink(half.c_str());
-    return fail("cannot be written");
-  }
-  const int linked = ::link(half.c_str(), file.c_str()), error = errno;
-  ::unlink(half.c_str());
-  if (linked != 0) return fail(error == EEXIST ? "exists already, and is not replaced" : "cannot be written");
+  const UnnamedJob job(file);
+  if (!job.write(text)) return fail("cannot be written");
+  if (::link(job.path().c_str(), file.c_str()) != 0)
+    return fail(errno == EEXIST ? "exists already, and is not replaced" : "cannot be written");
   return Ok{};
 }
 
@@ -235,22 +211,43 @@ bool is_verified(const Expected<Proposed, std::vector<Diagnostic>>& proposed) {
   return proposed && proposed.value().proof.exit_code == app::ExitCode::ok;
 }
 
+/// What a job is made from.
+struct Choice {
+  Wishes wishes;
+  proposal::ChosenMachine machine;
+  proposal::ChosenGear gear;
+  proposal::Shelf shelf;           ///< empty: standard sizes
+  proposal::LibraryWords library;  ///< of the tools, where they stand in one
+};
+
+/// Of the schema of jobs, for editors.
+std::string schema_url() {
+  const std::string path = machines::schema_file("job.schema.json");
+  if (path.empty()) return {};
+  std::string url = "file://";
+  for (const char c : fs::absolute(path).lexically_normal().string()) {
+    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+                       std::string_view("/-._~").find(c) != std::string_view::npos;
+    url += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return url;
+}
+
 /// The first way that is verified, else the last that was tried.
-Expected<Proposed, std::vector<Diagnostic>> propose(const NewRequest& request, const Wishes& wishes,
-                                                    const proposal::ChosenMachine& machine,
-                                                    const proposal::ChosenGear& gear, const proposal::Shelf& shelf) {
+Expected<Proposed, std::vector<Diagnostic>> propose(const NewRequest& request, const Choice& choice) {
   std::optional<Proposed> last;
   std::vector<Diagnostic> refused;
+  const bool shaped = choice.wishes.route == proposal::Route::shaped;
+  const UnnamedJob job(request.file);
   for (int attempt = 0; attempt < proposal::kAttempts; ++attempt) {
-    auto draft = proposal::draft_of(request.name, wishes, machine, gear, shelf, attempt);
+    auto draft = proposal::draft_of(request.name, choice.wishes, choice.machine, choice.gear, choice.shelf, attempt);
     if (!draft) {
       if (refused.empty()) refused.push_back(draft.error());
       continue;
     }
-    const std::string text = job_text(*draft);
-    last = Proposed{*draft, text, prove(text, wishes.route == proposal::Route::shaped, request.quiet)};
-    if (last->proof.exit_code == app::ExitCode::ok || last->proof.exit_code == app::ExitCode::interrupted ||
-        wishes.route == proposal::Route::shaped)
+    const std::string text = job_text(*draft, choice.library, schema_url());
+    last = Proposed{*draft, text, prove(job, text, shaped, request.quiet)};
+    if (last->proof.exit_code == app::ExitCode::ok || last->proof.exit_code == app::ExitCode::interrupted || shaped)
       return std::move(*last);
   }
   if (!last) return refused;
@@ -284,65 +281,166 @@ CommandOutcome told(const NewRequest& request, const Proposed& proposed, const p
   return outcome;
 }
 
-/// What a [[tool]] needs that a file does not say of its tool.
-std::vector<std::string> unsaid(const tool_library::LibraryTool& tool, bool tapered) {
-  std::vector<std::string> missing;
-  for (const char* key : {"diameter", "flute_length", "shank_diameter", "length", "stick_out", "holder"})
-    if (!tool.keys.find(key)) missing.emplace_back(key);
-  if (tapered && !tool.keys.find("half_angle")) missing.emplace_back("half_angle");
-  return missing;
+/// "stick_out (above 0 to 2000 mm), holder (..)".
+std::string missing_text(const std::vector<job::MissingKey>& keys) {
+  std::vector<std::string> all;
+  for (const job::MissingKey& key : keys) all.push_back(fmt::format("{} ({})", key.key, job::shape_text(key.shape)));
+  return fmt::format("{}", fmt::join(all, ", "));
 }
 
-/// Ball mills and tapered ball mills of a file of another program; those of which it says all that a job must know.
-Expected<proposal::Shelf, std::vector<Diagnostic>> shelf_of_library(const std::string& file) {
-  const auto read = tool_library::read_tool_library(file);
-  if (!read) return std::vector{read.error()};
-  proposal::Shelf shelf;
-  std::string asked_for;
-  for (const tool_library::LibraryTool& known : *read) {
-    const toml::TomlEntry* type = known.keys.find("type");
-    const std::string* word = type ? type->value.text() : nullptr;
-    tool::ToolAssembly tool;
-    if (word && *word == "tapered_ball_end_mill") tool.type = tool::CutterType::tapered_ball_end_mill;
-    else if (word && *word != "ball_end_mill") continue;
-    std::vector<std::string> missing = unsaid(known, tool.type == tool::CutterType::tapered_ball_end_mill);
-    if (!word) missing.insert(missing.begin(), "type");
-    if (!missing.empty()) {
-      if (asked_for.empty()) asked_for = fmt::format("; tool {} lacks {}", known.number, fmt::join(missing, ", "));
-      continue;
-    }
-    const auto number = [&](const char* key) {
-      const toml::TomlEntry* entry = known.keys.find(key);
-      return entry ? entry->value.number().value_or(0) : 0;
-    };
-    tool.diameter_mm = number("diameter");
-    tool.flute_length_mm = number("flute_length");
-    tool.shank_diameter_mm = number("shank_diameter");
-    tool.stick_out_mm = number("stick_out");
-    tool.length_mm = number("length");
-    tool.half_angle_rad = radians(number("half_angle"));
-    if (const toml::TomlEntry* holder = known.keys.find("holder"); holder && holder->value.array())
-      for (const toml::TomlValue& row : holder->value.array()->values)
-        if (const toml::TomlArray* r = row.array(); r && r->values.size() == 3)
-          tool.holder.push_back({r->values[0].number().value_or(0), r->values[1].number().value_or(0),
-                                 r->values[2].number().value_or(0)});
-    if (const double teeth = number("teeth"); teeth >= 1) tool.teeth = static_cast<int>(teeth);
-    shelf.push_back(tool);
+/// The library of --tools, with what --tool says beside it.
+Expected<LibraryShelf, std::vector<Diagnostic>> open_library(const NewRequest& request) {
+  auto library = LibraryShelf::open(request.tools);
+  if (!library) return std::vector{library.error()};
+  for (const std::string& said : request.said) {
+    const auto colon = said.find(':');
+    if (colon == std::string::npos)
+      return usage(fmt::format("--tool {}: its number, a colon and keys of a [[tool]] are needed: 12: stick_out = 40",
+                               printable(said)));
+    const auto number = app::read_whole_number("--tool", said.substr(0, colon), job::kToolNumber);
+    if (!number) return std::vector{number.error()};
+    const auto keys = job::parse_tool_keys(said.substr(colon + 1));
+    if (!keys) return usage(fmt::format("--tool {}: {}", *number, printable(keys.error().message)));
+    if (const Status taken = library->say(*number, *keys); !taken) return std::vector{taken.error()};
   }
-  if (shelf.empty())
-    return usage(fmt::format(
-        "--tools: {} has no ball mill and no tapered ball mill of which it says all that a job must know{}; "
-        "a job with `library = \"{}\"` in its tools says the rest, and can be given as --tools",
-        file, asked_for, file));
+  return std::move(*library);
+}
+
+/// What a file lacks of its tools that would do, all of it by name.
+std::string lacking(const LibraryShelf& library, const Choice& choice) {
+  std::vector<std::string> all;
+  for (const auto* tool : library.candidates(*choice.wishes.route, choice.gear.facts))
+    if (!tool->whole())
+      all.push_back(
+          fmt::format("{} lacks {}", tool->title(), missing_text(LibraryShelf::missing(*tool, *choice.wishes.route))));
+  return fmt::format("{}", fmt::join(all, "; "));
+}
+
+/// Asks for every key that a tool lacks.
+DoneOrErrors complete(LibraryShelf& library, int number, proposal::Route route, const Dialog& dialog) {
+  while (!library.find(number)->whole()) {
+    const LibraryShelf::Tool& tool = *library.find(number);
+    const job::MissingKey key = LibraryShelf::missing(tool, route).front();
+    const auto judge = [&](const std::string& answer) -> std::optional<std::string> {
+      const auto& words = key.shape.words;
+      if (!words.empty() && std::find(words.begin(), words.end(), answer) == words.end())
+        return fmt::format("{} = \"{}\" is not {}", key.key, answer, job::shape_text(key.shape));
+      const auto value = job::parse_tool_value(key.shape, answer);
+      if (!value) return value.error().message;
+      const Status taken = library.say(number, {{{key.key, {}, *value}}});
+      return taken ? std::nullopt : std::optional(taken.error().message);
+    };
+    const auto answer =
+        dialog.text(fmt::format("--tool {}: {}", number, key.key),
+                    fmt::format("{}: {} ({})", tool.title(), key.key, job::shape_text(key.shape)), {}, judge);
+    if (auto* errors = answer.refused()) return *errors;
+  }
+  return Ok{};
+}
+
+std::vector<int> numbers_in(const std::string& text) {
+  std::vector<int> numbers;
+  std::istringstream in(text);
+  for (std::string word; std::getline(in, word, ',');) {
+    const auto first = word.find_first_not_of(' '), last = word.find_last_not_of(' ');
+    const auto number = app::read_whole_number(
+        "--tool", first == std::string::npos ? "" : word.substr(first, last - first + 1), job::kToolNumber);
+    numbers.push_back(number ? *number : 0);
+  }
+  return numbers;
+}
+
+/// Asks which tools of a library may be used, and for what it does not say of them.
+Expected<proposal::Shelf, std::vector<Diagnostic>> ask_for_tools(LibraryShelf& library, const Choice& choice,
+                                                                 const Dialog& dialog) {
+  const proposal::Route route = *choice.wishes.route;
+  const auto candidates = library.candidates(route, choice.gear.facts);
+  proposal::Told told;
+  for (const auto* tool : candidates)
+    told.emplace_back(tool->title(),
+                      tool->whole() ? "whole" : "lacks " + missing_text(LibraryShelf::missing(*tool, route)));
+  dialog.tell(told);
+  std::vector<int> proposed;
+  for (const auto* tool : LibraryShelf::proposed(candidates, choice.gear.facts)) proposed.push_back(tool->number());
+  const auto judge = [&](const std::string& answer) -> std::optional<std::string> {
+    for (const int number : numbers_in(answer))
+      if (std::none_of(candidates.begin(), candidates.end(), [&](const auto* t) { return t->number() == number; }))
+        return "one of the numbers above, or some with commas between them";
+    return std::nullopt;
+  };
+  const auto answer =
+      dialog.text("--tool", fmt::format("tools of {} that may be used, by number", library.file()),
+                  proposed.empty() ? std::nullopt : std::optional(fmt::format("{}", fmt::join(proposed, ", "))), judge);
+  if (auto* errors = answer.refused()) return *errors;
+  proposal::Shelf shelf;
+  for (const int number : numbers_in(answer.value())) {
+    if (auto done = complete(library, number, route, dialog); auto* errors = done.refused()) return std::move(*errors);
+    shelf.push_back(library.find(number)->reading.tool);
+  }
   return shelf;
 }
 
-Expected<proposal::Shelf, std::vector<Diagnostic>> shelf_of(const std::string& file) {
-  if (file.empty()) return proposal::Shelf{};
-  if (fs::path(file).extension() != ".toml") return shelf_of_library(file);
-  auto read = job::read_job_file(file);
-  if (auto* errors = read.refused()) return std::move(*errors);
-  return std::move(read.value().tools);
+/// The tools of --tools: of a job, or of a file of another program.
+DoneOrErrors choose_tools(const NewRequest& request, const Dialog& dialog, Choice& choice) {
+  const bool library_file = !request.tools.empty() && fs::path(request.tools).extension() != ".toml";
+  if (!library_file && !request.said.empty())
+    return usage("--tool says what a tool library does not, and --tools names none");
+  const bool used = choice.wishes.route == proposal::Route::ball || choice.wishes.route == proposal::Route::line;
+  if (request.tools.empty() || !used) return Ok{};
+  if (!library_file) {
+    auto read = job::read_job_file(request.tools);
+    if (auto* errors = read.refused()) return std::move(*errors);
+    choice.shelf = std::move(read.value().tools);
+    return Ok{};
+  }
+  auto opened = open_library(request);
+  if (auto* errors = opened.refused()) return std::move(*errors);
+  LibraryShelf& library = opened.value();
+  const bool any = !library.candidates(*choice.wishes.route, choice.gear.facts).empty();
+  choice.shelf = library.whole();
+  if (dialog.asks() && any) {
+    auto asked = ask_for_tools(library, choice, dialog);
+    if (auto* errors = asked.refused()) return std::move(*errors);
+    choice.shelf = std::move(asked.value());
+  }
+  const auto draft = proposal::draft_of(request.name, choice.wishes, choice.machine, choice.gear, choice.shelf, 0);
+  if (const std::string lacks = lacking(library, choice); !lacks.empty() && (choice.shelf.empty() || !draft))
+    return usage(
+        fmt::format("--tools: {} does not say all of its tools that would do: {}; say it with --tool, as "
+                    "--tool \"NUMBER: KEY = VALUE, KEY = VALUE\"",
+                    request.tools, printable(lacks)));
+  if (choice.shelf.empty())
+    return usage(fmt::format("--tools: {} has no ball mill{} that fits the tooth spaces: {}", request.tools,
+                             choice.wishes.route == proposal::Route::line ? " and no tapered ball mill" : "",
+                             fmt::format("at most {:.3f} mm, flutes of at least {:.2f} mm",
+                                         choice.gear.facts.most_finishing_mm(), choice.gear.facts.depth)));
+  std::error_code error;
+  const fs::path directory = fs::absolute(request.file).parent_path();
+  const fs::path near = fs::proximate(fs::absolute(request.tools), directory, error);
+  choice.library = library.words(error ? request.tools : near.string());
+  return Ok{};
+}
+
+/// All that is asked for, in its order.
+Expected<Choice, std::vector<Diagnostic>> choose(const NewRequest& request, const Dialog& dialog) {
+  auto wished = kinds_wished(request, dialog);
+  if (auto* errors = wished.refused()) return std::move(*errors);
+  Choice choice;
+  choice.wishes = std::move(wished.value());
+  auto machine = proposal::choose_machine(choice.wishes, fs::path(request.file).parent_path().string());
+  if (auto* errors = machine.refused()) return std::move(*errors);
+  choice.machine = std::move(machine.value());
+  dialog.tell(limits_of(choice.machine));
+  if (auto numbers = wish_numbers(choice.wishes, request, dialog, choice.machine); auto* errors = numbers.refused())
+    return std::move(*errors);
+  auto gear = proposal::choose_gear(choice.wishes);
+  if (auto* errors = gear.refused()) return std::move(*errors);
+  choice.gear = std::move(gear.value());
+  dialog.tell(limits_of(choice.gear));
+  if (auto tools = choose_tools(request, dialog, choice); auto* errors = tools.refused()) return std::move(*errors);
+  if (const auto draft = proposal::draft_of(request.name, choice.wishes, choice.machine, choice.gear, choice.shelf, 0))
+    dialog.tell(limits_of(*draft, choice.machine, choice.gear));
+  return choice;
 }
 
 CommandOutcome run_new(const NewRequest& asked) {
@@ -353,25 +451,14 @@ CommandOutcome run_new(const NewRequest& asked) {
         Diagnostic{DiagnosticKind::usage, {}, fmt::format("-o: {} exists already, and is not replaced", request.file)});
   if (request.name.empty()) request.name = fs::path(request.file).stem().string();
   const Dialog dialog(request.quiet);
-  auto wished = kinds_wished(request, dialog);
-  if (auto* errors = wished.refused()) return failed(std::move(*errors));
-  Wishes wishes = std::move(wished.value());
-  const std::string directory = fs::path(request.file).parent_path().string();
-  auto machine = proposal::choose_machine(wishes, directory);
-  if (auto* errors = machine.refused()) return failed(std::move(*errors));
-  dialog.tell(limits_of(machine.value()));
-  auto shelf = shelf_of(request.tools);
-  if (auto* errors = shelf.refused()) return failed(std::move(*errors));
-  if (auto numbers = wish_numbers(wishes, request, dialog); auto* errors = numbers.refused())
-    return failed(std::move(*errors));
-  auto gear = proposal::choose_gear(wishes);
-  if (auto* errors = gear.refused()) return failed(std::move(*errors));
-  dialog.tell(limits_of(gear.value()));
-  auto proposed = propose(request, wishes, machine.value(), gear.value(), shelf.value());
-  if (request.route.empty() && !dialog.asks() && wishes.route == proposal::Route::line && !is_verified(proposed)) {
-    wishes.route = proposal::Route::ball;  // nobody asked for the side of a mill
-    if (auto other = propose(request, wishes, machine.value(), gear.value(), shelf.value()); is_verified(other))
-      proposed = std::move(other);
+  auto chosen = choose(request, dialog);
+  if (auto* errors = chosen.refused()) return failed(std::move(*errors));
+  Choice& choice = chosen.value();
+  auto proposed = propose(request, choice);
+  if (request.route.empty() && !dialog.asks() && choice.wishes.route == proposal::Route::line &&
+      !is_verified(proposed)) {
+    choice.wishes.route = proposal::Route::ball;  // nobody asked for the side of a mill
+    if (auto other = propose(request, choice); is_verified(other)) proposed = std::move(other);
   }
   if (auto* errors = proposed.refused()) return failed(std::move(*errors));
   CommandOutcome& proof = proposed.value().proof;
@@ -379,8 +466,8 @@ CommandOutcome run_new(const NewRequest& asked) {
     for (Diagnostic& error : proof.errors) error.position = {};
     return failed(std::move(proof.errors));
   }
-  proposal::Told limits = limits_of(wishes);
-  for (const auto& more : {limits_of(gear.value()), limits_of(proposed.value().draft, machine.value(), gear.value())})
+  proposal::Told limits = limits_of(choice.wishes);
+  for (const auto& more : {limits_of(choice.gear), limits_of(proposed.value().draft, choice.machine, choice.gear)})
     limits.insert(limits.end(), more.begin(), more.end());
   if (auto written = write_job(request.file, proposed.value().text); auto* errors = written.refused())
     return failed(std::move(*errors));
@@ -388,11 +475,14 @@ CommandOutcome run_new(const NewRequest& asked) {
 }
 
 void new_options(OptionSet& set, NewRequest& request) {
-  set.text("--gear", request.gear, "face, double_helical, offset or bevel_herringbone", "KIND");
-  set.text("--cut", request.route, "line, ball or shaped (a bevel gear: finger)", "WAY");
+  set.word("--gear", request.gear, "kind of gear", "KIND", proposal::gear_words());
+  set.word("--cut", request.route, "how it is cut; a bevel gear: finger", "WAY", proposal::route_words());
   set.text("--machine", request.machine, "a machine file, or the name of an installed machine", "NAME");
-  set.text("--tools", request.tools, "tools instead of standard sizes: a job, a tool library of Fusion or FreeCAD",
+  set.text("--tools", request.tools,
+           "tools instead of standard sizes: those of a job, or of a tool library of LinuxCNC, Fusion or FreeCAD",
            "FILE");
+  set.texts("--tool", request.said, "what a tool library does not say of a tool: \"12: stick_out = 40, teeth = 2\"",
+            "NUMBER:KEYS");
   for (const Question& question : proposal::questions()) {
     const auto at = static_cast<std::size_t>(question.what);
     if (question.whole) set.whole_number(question.option, request.whole[at], question.text, question.range);

@@ -1,5 +1,7 @@
 #include "app/commands/option_set.h"
 
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 
 namespace toothpath::commands {
@@ -42,6 +44,14 @@ void OptionSet::out_dir_or_none(std::string& value, const char* help) {
 void OptionSet::flag(const char* name, bool& value, const char* help) { app_.add_flag(name, value, help); }
 void OptionSet::text(const char* name, std::string& value, const char* help, const char* type) {
   not_empty(app_.add_option(name, value, help))->type_name(type);
+}
+
+void OptionSet::word(const char* name, std::string& value, const char* help, const char* type,
+                     std::span<const std::string_view> words) {
+  text(name, value, help, fmt::format("{}:{{{}}}", type, fmt::join(words, ",")).c_str());
+}
+void OptionSet::texts(const char* name, std::vector<std::string>& values, const char* help, const char* type) {
+  not_empty(app_.add_option(name, values, help))->type_name(type)->allow_extra_args(false);
 }
 
 void OptionSet::files(const char* name, std::vector<std::string>& values, const char* help) {

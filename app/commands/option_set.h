@@ -3,7 +3,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/base/option_number.h"
@@ -29,6 +31,11 @@ class OptionSet {
 
   void flag(const char* name, bool& value, const char* help);
   void text(const char* name, std::string& value, const char* help, const char* type);
+  /// One of these words, which the help and the shells list. Another one is refused by who takes it.
+  void word(const char* name, std::string& value, const char* help, const char* type,
+            std::span<const std::string_view> words);
+  /// As often as wanted.
+  void texts(const char* name, std::vector<std::string>& values, const char* help, const char* type);
   /// One or more, repeated or one behind the other.
   void files(const char* name, std::vector<std::string>& values, const char* help);
   void required_files(const char* name, std::vector<std::string>& values, const char* help);

@@ -31,6 +31,10 @@ struct FaceFacts {
   double depth = 0;         ///< of the tooth spaces, the deepest
   double largest_ball = 0;  ///< diameter of the largest ball that reaches all; 0: none, the fillet is sharp
   double first_ball = 0;    ///< diameter of the largest first roughing ball
+
+  /// Widest mill that is taken to finish, and to rough first.
+  [[nodiscard]] double most_finishing_mm() const { return 0.97 * largest_ball; }
+  [[nodiscard]] double most_roughing_mm() const { return 0.95 * first_ball; }
 };
 [[nodiscard]] FaceFacts face_facts(const face_gear::FaceGear& gear);
 

@@ -72,9 +72,29 @@ std::string bevel_text(const Wishes& wishes) {
   return text;
 }
 
-std::string tool_text(const tool::ToolAssembly& tool, int number, double depth) {
+std::string value_text(const toml::TomlValue& value) {
+  if (const std::string* text = value.text()) return fmt::format("\"{}\"", *text);
+  if (const auto* whole = std::get_if<std::int64_t>(&value.data)) return fmt::format("{}", *whole);
+  if (const auto number = value.number()) return real(*number);
+  std::string all;
+  if (const toml::TomlArray* array = value.array())
+    for (const toml::TomlValue& one : array->values) all += (all.empty() ? "" : ", ") + value_text(one);
+  return "[" + all + "]";
+}
+
+/// A tool of a library: its file says what does not stand here.
+std::string library_tool_text(const tool::ToolAssembly& tool, const LibraryWords& library) {
+  std::string text = fmt::format("\n[[tool]]\nnumber = {}\n", tool.number);
+  text += line("library", fmt::format("\"{}\"", library.file), "says of this tool what does not stand here");
+  const auto said = library.said.find(tool.number);
+  if (said != library.said.end())
+    for (const toml::TomlEntry& entry : said->second.entries) text += line(entry.key.c_str(), value_text(entry.value));
+  return text;
+}
+
+std::string tool_text(const tool::ToolAssembly& tool, double depth) {
   const tool::CutterKind& kind = tool::kind_of(tool);
-  std::string text = fmt::format("\n[[tool]]\nnumber = {}\ntype = \"{}\"\n", number, kind.word);
+  std::string text = fmt::format("\n[[tool]]\nnumber = {}\ntype = \"{}\"\n", tool.number, kind.word);
   for (const auto& n : kind.numbers) {
     const double value = tool.*n.member;
     const std::string key = n.key;
@@ -99,18 +119,18 @@ class Operations {
  public:
   explicit Operations(const Draft& draft) : draft_(draft) {}
 
-  void begin(const char* type, int number, const tool::ToolAssembly& tool, double diameter, const char* note = "") {
+  void begin(const char* type, const tool::ToolAssembly& tool, double diameter, const char* note = "") {
     const Cutting cutting = cutting_of(diameter, tool.teeth, draft_.spindle_rpm, draft_.most_feed_mm_min);
     text_ += "\n[[operation]]\n" + line("type", fmt::format("\"{}\"", type), note);
-    text_ += line("tool", fmt::format("{}", number));
+    text_ += line("tool", fmt::format("{}", tool.number));
     text_ += line("speed", fmt::format("{:.0f}", cutting.speed_rpm));
     text_ += line("feed", real(draft_.coarse ? std::round(0.07 * cutting.feed_mm_min) * 10 : cutting.feed_mm_min));
   }
   void add(const char* key, double value, const char* note = "") { text_ += line(key, real(value), note); }
   void add(const char* key, const char* value, const char* note = "") { text_ += line(key, value, note); }
 
-  void rough(int number, const tool::ToolAssembly& tool, double allowance, const char* note) {
-    begin("roughing", number, tool, tool.diameter_mm, note);
+  void rough(const tool::ToolAssembly& tool, double allowance, const char* note) {
+    begin("roughing", tool, tool.diameter_mm, note);
     add("step_down", 0.28 * tool.diameter_mm, "depth of a layer");
     add("step_over", 0.45 * tool.diameter_mm, "between the passes of a layer");
     add("allowance", allowance, "stock that stays");
@@ -126,34 +146,33 @@ class Operations {
 std::string face_operations(const Draft& draft) {
   Operations all(draft);
   const double m = draft.wishes.at(Quantity::module);
-  const int second = draft.has_first ? 2 : 1;
-  if (draft.has_first) all.rough(1, draft.first, 0.1 * m, "in layers");
-  all.rough(second, draft.second, 0.07 * m,
+  if (draft.has_first) all.rough(draft.first, 0.1 * m, "in layers");
+  all.rough(draft.second, 0.07 * m,
             draft.has_first ? "rest material: knows what the operation before left" : "in layers");
   const double D = draft.second.diameter_mm;
   if (draft.wishes.route == Route::line) {
     for (const double share : {0.03, 0.01}) {
-      all.begin("line_milling", second, draft.second, D, share > 0.02 ? "every flank in one pass along the tooth" : "");
+      all.begin("line_milling", draft.second, D, share > 0.02 ? "every flank in one pass along the tooth" : "");
       all.add("allowance", share * m);
       all.add("left", 0.008, "largest misfit of the straight side");
     }
-    all.begin("semi_finishing", second, draft.second, D);
+    all.begin("semi_finishing", draft.second, D);
     all.add("regions", "[\"fillet\", \"root\"]");
     all.add("scallop", 0.02);
     all.add("allowance", 0.01 * m);
-    all.begin("line_milling", second, draft.second, D, "without allowance it finishes");
+    all.begin("line_milling", draft.second, D, "without allowance it finishes");
     all.add("left", draft.coarse ? 0.008 : 0.005);
     all.add("chord_tolerance", 0.0008);
-    all.begin("finishing", second, draft.second, D);
+    all.begin("finishing", draft.second, D);
     all.add("regions", "[\"fillet\", \"root\"]");
     all.add("scallop", 0.01, "highest cusp between passes");
     all.add("chord_tolerance", 0.0008);
     return all.text();
   }
-  all.begin("semi_finishing", second, draft.second, D);
+  all.begin("semi_finishing", draft.second, D);
   all.add("scallop", 0.01, "highest cusp between passes");
   all.add("allowance", 0.015 * m);
-  all.begin("finishing", second, draft.second, D);
+  all.begin("finishing", draft.second, D);
   all.add("scallop", draft.coarse ? 0.008 : 0.004);
   all.add("chord_tolerance", 0.0008, "largest sag of a straight block");
   return all.text();
@@ -162,9 +181,9 @@ std::string face_operations(const Draft& draft) {
 std::string finger_operations(const Draft& draft) {
   Operations all(draft);
   const double wide = draft.second.shank_diameter_mm;
-  all.begin("finger_roughing", 1, draft.second, wide);
+  all.begin("finger_roughing", draft.second, wide);
   all.add("ridge", 0.05 * draft.wishes.at(Quantity::module), "highest ridge left on the root between passes");
-  all.begin("finger_finishing", 1, draft.second, wide);
+  all.begin("finger_finishing", draft.second, wide);
   all.add("chord_tolerance", 0.0005, "largest sag of a straight block");
   return all.text();
 }
@@ -191,11 +210,11 @@ std::string gear_text(const std::string& name, const Wishes& wishes) {
          (wishes.gear == Gear::bevel_herringbone ? bevel_text(wishes) : face_text(wishes));
 }
 
-std::string job_text(const Draft& draft) {
+std::string job_text(const Draft& draft, const LibraryWords& library, const std::string& schema) {
   const bool bevel = draft.wishes.gear == Gear::bevel_herringbone;
-  std::string text =
-      "# Lengths in mm, angles in degrees, feeds in mm/min, speeds in 1/min. All keys: docs/job_reference.md.\n" +
-      gear_text(draft.name, draft.wishes) + machine_table(draft);
+  std::string text = schema.empty() ? std::string() : fmt::format("#:schema {}\n", schema);
+  text += "# Lengths in mm, angles in degrees, feeds in mm/min, speeds in 1/min. All keys: docs/job_reference.md.\n" +
+          gear_text(draft.name, draft.wishes) + machine_table(draft);
   if (draft.wishes.route == Route::shaped) return text + shaping_text();
   text += "\n[setup]\n";
   text += line("origin", vector_text(draft.place.origin_mm), "gear frame in machine coordinates, all rotaries at zero");
@@ -203,8 +222,11 @@ std::string job_text(const Draft& draft) {
                bevel ? "gear z points down: apex on top" : "teeth towards the spindle");
   text += line("work_offset", fmt::format("\"{}\"", draft.work_offset), "the program counts from it");
   text += line("work_offset_at", vector_text(draft.place.origin_mm));
-  if (draft.has_first) text += tool_text(draft.first, 1, draft.depth_mm);
-  text += tool_text(draft.second, draft.has_first ? 2 : 1, draft.depth_mm);
+  const auto tool = [&](const tool::ToolAssembly& t) {
+    return library.file.empty() ? tool_text(t, draft.depth_mm) : library_tool_text(t, library);
+  };
+  if (draft.has_first) text += tool(draft.first);
+  text += tool(draft.second);
   text += bevel ? finger_operations(draft) : face_operations(draft);
   return text + "\n[verify]\n" +
          line("gouge_tolerance", draft.coarse ? "0.005" : "0.002", "a program that may cut deeper is not written") +

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "app/proposal/library_shelf.h"
 #include "app/proposal/place.h"
 #include "app/proposal/shelf.h"
 #include "app/proposal/wishes.h"
@@ -18,7 +19,7 @@ struct Draft {
   bool assumed = false;  ///< values of the machine are
   std::string work_offset;
   Place place;
-  tool::ToolAssembly first, second;  ///< roughing ball and finishing mill; a finger mill is `second`
+  tool::ToolAssembly first, second;  ///< roughing ball and finishing mill, numbered; a finger mill is `second`
   bool has_first = false;
   bool coarse = false;  ///< wider tolerances and slower: for controls that count coarsely
   double depth_mm = 0;
@@ -27,6 +28,8 @@ struct Draft {
 /// Schema, name and [gear]: what limits and tools follow from.
 [[nodiscard]] std::string gear_text(const std::string& name, const Wishes& wishes);
 /// The whole job.
-[[nodiscard]] std::string job_text(const Draft& draft);
+/// @param library  of the tools, where they stand in one: the job names it
+/// @param schema   URL of the schema of jobs, for editors; empty: the job names none
+[[nodiscard]] std::string job_text(const Draft& draft, const LibraryWords& library, const std::string& schema);
 
 }  // namespace toothpath::proposal

@@ -24,6 +24,45 @@ bool turns_the_work(const machines::KinematicChain& chain) {
   return !chain.table.empty() && std::abs(chain.table.front().direction.z()) > 1 - 1e-9;
 }
 
+/// Joints of every place of the tool about every tooth that is looked at, with the rotaries inside their limits.
+template <typename Note>
+void for_each_pose(const machines::Machine& machine, const PartInSpace& part, const Vec3& origin, double tool_length_mm,
+                   Note note) {
+  const machines::KinematicChain& chain = machine.chain;
+  Mat3 turn = Mat3::Identity();
+  if (!part.up) turn = Vec3(1, -1, -1).asDiagonal();
+  const auto inside = [&](const machines::Joints& joints) {
+    for (std::size_t k = 0; k < chain.rotary_count(); ++k)
+      if (machines::windings(chain.rotary(k), joints.rotary_rad[k], machine.limit_margin.rotary_rad).empty())
+        return false;
+    return true;
+  };
+  const int copies = std::min(part.teeth, kMostTeeth);
+  for (int tooth = 0; tooth < copies; ++tooth) {
+    const Mat3 at = turn * turned(2 * kPi * tooth / copies);
+    for (const ToolPlace& place : part.places) {
+      const auto solutions = chain.inverse({origin + at * place.tip_mm, at * place.axis}, tool_length_mm);
+      if (!solutions) continue;
+      const auto found = std::find_if(solutions->begin(), solutions->end(),
+                                      [&](const machines::JointSolution& s) { return inside(s.joints); });
+      if (found != solutions->end()) note(found->joints);
+    }
+  }
+}
+
+void measure_travels(const machines::Machine& machine, const PartInSpace& part, double tool_length_mm, Place& place) {
+  Vec3 least = Vec3::Constant(1e9), greatest = Vec3::Constant(-1e9);
+  for_each_pose(machine, part, place.origin_mm, tool_length_mm, [&](const machines::Joints& joints) {
+    least = least.cwiseMin(joints.linear_mm);
+    greatest = greatest.cwiseMax(joints.linear_mm);
+  });
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& axis = machine.chain.linear[i];
+    place.needs_mm[i] = greatest[static_cast<Eigen::Index>(i)] - least[static_cast<Eigen::Index>(i)];
+    place.has_mm[i] = axis.max_mm - axis.min_mm - 2 * machine.limit_margin.linear_mm;
+  }
+}
+
 }  // namespace
 
 std::vector<ToolPlace> face_places(double inner_mm, double outer_mm, double z_low_mm, double z_high_mm) {
@@ -52,8 +91,6 @@ std::optional<Place> place_of(const machines::Machine& machine, const PartInSpac
   const machines::KinematicChain& chain = machine.chain;
   const bool on_axis = turns_the_work(chain);
   const Vec3 plate = on_axis ? chain.table.front().point_mm : Vec3::Zero();
-  Mat3 turn = Mat3::Identity();
-  if (!part.up) turn = Vec3(1, -1, -1).asDiagonal();
   const double below = part.up ? -part.z_min_mm : part.z_max_mm;  // of the origin, to the underside
   const auto top = machine.top_under(Vec3(plate.x(), plate.y(), INFINITY));
   const double lowest = top.value_or(plate.z()) + kFixture + below;
@@ -61,26 +98,11 @@ std::optional<Place> place_of(const machines::Machine& machine, const PartInSpac
 
   choice::TravelPoses poses(chain, machine.limit_margin,
                             on_axis ? std::optional(chain.table.front().direction) : std::nullopt);
-  const int copies = std::min(part.teeth, kMostTeeth);
   std::size_t reached = 0;
-  for (int tooth = 0; tooth < copies; ++tooth) {
-    const Mat3 at = turn * turned(2 * kPi * tooth / copies);
-    for (const ToolPlace& place : part.places) {
-      const auto solutions = chain.inverse({origin + at * place.tip_mm, at * place.axis}, tool_length_mm);
-      if (!solutions) continue;
-      for (const machines::JointSolution& solution : *solutions) {
-        bool inside = true;
-        for (std::size_t k = 0; k < chain.rotary_count(); ++k)
-          inside = inside &&
-                   !machines::windings(chain.rotary(k), solution.joints.rotary_rad[k], machine.limit_margin.rotary_rad)
-                        .empty();
-        if (!inside) continue;
-        poses.note(solution.joints);
-        ++reached;
-        break;
-      }
-    }
-  }
+  for_each_pose(machine, part, origin, tool_length_mm, [&](const machines::Joints& joints) {
+    poses.note(joints);
+    ++reached;
+  });
   if (reached == 0) return std::nullopt;
   Place result;
   result.origin_mm = origin;
@@ -92,6 +114,7 @@ std::optional<Place> place_of(const machines::Machine& machine, const PartInSpac
     result.origin_mm += shift;
     result.room_mm = poses.room(shift);
   }
+  measure_travels(machine, part, tool_length_mm, result);
   return result;
 }
 

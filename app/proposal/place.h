@@ -25,7 +25,8 @@ struct PartInSpace {
 
 struct Place {
   Vec3 origin_mm = Vec3::Zero();
-  std::array<double, 3> room_mm{};  ///< X Y Z, margins taken off; < 0: beyond a travel
+  std::array<double, 3> room_mm{};             ///< X Y Z, margins taken off; < 0: beyond a travel
+  std::array<double, 3> needs_mm{}, has_mm{};  ///< X Y Z: from the least to the greatest joint; of the machine
 };
 
 /// The place with the most room in the travels: on the axis of the table that carries the work, where there is one, and

@@ -1,9 +1,10 @@
 #include "app/proposal/propose.h"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "geometry/base/angle.h"
 #include "machines/machine_file.h"
@@ -74,6 +75,10 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_face(const Wishes& wishes) 
   return chosen;
 }
 
+double bevel_diameter_mm(const bevel_gear::BevelGearParameters& p) {
+  return p.outer_transverse_module_mm * p.teeth + 2 * p.addendum_mm * std::cos(p.pitch_angle_rad);
+}
+
 Expected<ChosenGear, std::vector<Diagnostic>> choose_bevel(const Wishes& wishes) {
   const bevel_gear::BevelGearParameters p = bevel_parameters(wishes);
   auto made = bevel_gear::design_finger_cutter(p);
@@ -81,8 +86,8 @@ Expected<ChosenGear, std::vector<Diagnostic>> choose_bevel(const Wishes& wishes)
   ChosenGear chosen;
   chosen.bevel = std::move(*made.value_if());
   const bevel_gear::BevelGear& gear = chosen.bevel->gear;
-  const double s = gear.sin_delta(), c = gear.cos_delta(), R = gear.R_e();
-  chosen.diameter_mm = 2 * (R * s + p.addendum_mm * c);
+  const double c = gear.cos_delta(), R = gear.R_e();
+  chosen.diameter_mm = bevel_diameter_mm(p);
   chosen.part = {0.5 * chosen.diameter_mm,
                  gear.R_i() * c - p.dedendum_mm,
                  R * c + 3 * p.dedendum_mm,
@@ -99,13 +104,16 @@ Result<Draft> with_place(Draft draft, const ChosenMachine& machine, const Chosen
     return fail_as(DiagnosticKind::refused_input, "--machine: {} reaches no place of the tool on this gear",
                    machine.name);
   draft.place = *place;
+  std::string lacking;
   for (std::size_t i = 0; i < 3; ++i)
     if (place->room_mm[i] < 0)
-      return fail_as(
-          DiagnosticKind::refused_input,
-          "--machine: {} lacks {:.0f} mm of travel in {} with the gear at its best place: a smaller gear, or "
-          "another machine",
-          machine.name, -place->room_mm[i], "XYZ"[i]);
+      lacking += fmt::format("{} {} lacks {:.0f} mm ({:.0f} needed of {:.0f})", lacking.empty() ? "" : ",", "XYZ"[i],
+                             -place->room_mm[i], place->needs_mm[i], place->has_mm[i]);
+  if (!lacking.empty())
+    return fail_as(DiagnosticKind::refused_input,
+                   "--machine: {} has not the travel for this gear at its best place with a tool of {:g} mm:{}: a "
+                   "smaller gear, a shorter tool, or a machine that travels farther",
+                   machine.name, length, lacking);
   return draft;
 }
 
@@ -113,6 +121,7 @@ Result<Draft> finger_draft(Draft draft, const ChosenMachine& machine, const Chos
   const bevel_gear::FingerCutterData& data = gear.bevel->data;
   tool::ToolAssembly& mill = draft.second;
   mill.type = tool::CutterType::finger_mill;
+  mill.number = 1;
   mill.module_mm = data.module_mm;
   mill.tip_radius_mm = data.tip_radius_mm;
   mill.rack_depth_mm = data.rack_depth_mm;
@@ -124,6 +133,15 @@ Result<Draft> finger_draft(Draft draft, const ChosenMachine& machine, const Chos
   mill.holder = {{mill.shank_diameter_mm + 14, mill.shank_diameter_mm + 14, 40}};
   mill.length_mm = std::ceil((mill.stick_out_mm + 50) / 5) * 5;
   return with_place(std::move(draft), machine, gear);
+}
+
+/// Tools that somebody has keep their numbers, which are those of the magazine.
+void number_tools(Draft& draft) {
+  const bool own = draft.second.number > 0 &&
+                   (!draft.has_first || (draft.first.number > 0 && draft.first.number != draft.second.number));
+  if (own) return;
+  draft.first.number = 1;
+  draft.second.number = draft.has_first ? 2 : 1;
 }
 
 Result<Draft> face_draft(Draft draft, const ChosenMachine& machine, const ChosenGear& gear, const Shelf& given,
@@ -140,7 +158,7 @@ Result<Draft> face_draft(Draft draft, const ChosenMachine& machine, const Chosen
       }
   const auto type =
       draft.wishes.route == Route::line ? tool::CutterType::tapered_ball_end_mill : tool::CutterType::ball_end_mill;
-  const tool::ToolAssembly* mill = largest(shelf, type, 0.97 * gear.facts.largest_ball, depth, attempt % 2);
+  const tool::ToolAssembly* mill = largest(shelf, type, gear.facts.most_finishing_mm(), depth, attempt % 2);
   if (!mill)
     return fail_as(
         DiagnosticKind::refused_input,
@@ -150,9 +168,10 @@ Result<Draft> face_draft(Draft draft, const ChosenMachine& machine, const Chosen
   draft.second = *mill;
   draft.depth_mm = depth;
   const tool::ToolAssembly* first =
-      largest(shelf, tool::CutterType::ball_end_mill, 0.95 * gear.facts.first_ball, depth);
+      largest(shelf, tool::CutterType::ball_end_mill, gear.facts.most_roughing_mm(), depth);
   draft.has_first = first && first->diameter_mm > 1.4 * mill->diameter_mm;
   if (draft.has_first) draft.first = *first;
+  number_tools(draft);
   return with_place(std::move(draft), machine, gear);
 }
 
@@ -203,11 +222,48 @@ Result<Draft> draft_of(const std::string& name, const Wishes& wishes, const Chos
   draft.assumed = machine.assumed;
   draft.work_offset = machine.work_offset;
   if (wishes.route == Route::shaped) return draft;
-  if (const Status fits = machines::check_part_fits(*machine.mill, gear.diameter_mm); !fits) return fits.error();
+  if (const Status fits = check_swing(machine, gear.diameter_mm); !fits) return fits.error();
   draft.spindle_rpm = machine.mill->max_spindle_speed;
   draft.most_feed_mm_min = machine.mill->max_cutting_feed;
   return wishes.route == Route::finger ? finger_draft(std::move(draft), machine, gear, attempt)
                                        : face_draft(std::move(draft), machine, gear, shelf, attempt);
+}
+
+std::optional<double> least_swing_mm(const Wishes& wishes) {
+  if (!wishes.gear) return std::nullopt;
+  if (*wishes.gear != Gear::bevel_herringbone) {
+    const auto end = wishes[Quantity::outer] ? wishes[Quantity::outer] : wishes[Quantity::inner];
+    if (end) return 2 * *end;
+    const auto range = face_range(wishes);
+    return range ? std::optional(2 * range->inner) : std::nullopt;
+  }
+  for (const Quantity known : {Quantity::teeth, Quantity::mate_teeth, Quantity::module})
+    if (!wishes[known]) return std::nullopt;
+  return bevel_diameter_mm(bevel_parameters(wishes));
+}
+
+Status check_swing(const ChosenMachine& machine, double diameter_mm) {
+  if (!machine.mill) return Ok{};
+  const Status fits = machines::check_part_fits(*machine.mill, diameter_mm);
+  if (fits) return Ok{};
+  std::vector<std::string> others;
+  for (const std::string& file : machines::installed_machines()) {
+    const auto path = machines::find_machine_file(file, ".");
+    const auto text = path ? machines::open_machine_file(*path) : Result<machines::MachineFileText>(path.error());
+    if (!text || text->kind == machines::MachineKind::gear_shaper) continue;
+    const auto reading = controls::read_machine_of_text(text->text, *path);
+    if (reading.machine && machines::check_part_fits(*reading.machine, diameter_mm))
+      others.push_back(std::filesystem::path(file).stem().string());
+  }
+  return fail_as(DiagnosticKind::refused_input, "--machine: {}: fewer teeth or a smaller module would fit{}",
+                 fits.error().message,
+                 others.empty() ? std::string(", no installed machine turns so much")
+                                : fmt::format(", or a machine that turns so much: {}", fmt::join(others, ", ")));
+}
+
+Told swing_of(const ChosenMachine& machine, double diameter_mm) {
+  if (!machine.mill) return {};
+  return {{"swing", fmt::format("{:.1f} mm of {:g} mm", diameter_mm, machine.mill->largest_part_mm())}};
 }
 
 Told limits_of(const Wishes& wishes) {
@@ -246,9 +302,12 @@ Told limits_of(const ChosenGear& gear) {
 Told limits_of(const Draft& draft, const ChosenMachine& machine, const ChosenGear& gear) {
   if (!machine.mill) return {};
   const Place& place = draft.place;
-  return {{"swing", fmt::format("{:.1f} mm of {:g} mm", gear.diameter_mm, machine.mill->largest_part_mm())},
-          {"room in travels",
-           fmt::format("X {:.0f}  Y {:.0f}  Z {:.0f} mm", place.room_mm[0], place.room_mm[1], place.room_mm[2])}};
+  const auto needs = [&](std::size_t i) { return fmt::format("{:.0f} of {:.0f}", place.needs_mm[i], place.has_mm[i]); };
+  Told told = swing_of(machine, gear.diameter_mm);
+  told.emplace_back("travels needed", fmt::format("X {}  Y {}  Z {} mm", needs(0), needs(1), needs(2)));
+  told.emplace_back("room in travels", fmt::format("X {:.0f}  Y {:.0f}  Z {:.0f} mm", place.room_mm[0],
+                                                   place.room_mm[1], place.room_mm[2]));
+  return told;
 }
 
 }  // namespace toothpath::proposal

@@ -41,9 +41,15 @@ inline constexpr int kAttempts = 4;
 [[nodiscard]] Result<Draft> draft_of(const std::string& name, const Wishes& wishes, const ChosenMachine& machine,
                                      const ChosenGear& gear, const Shelf& shelf, int attempt);
 
+/// The least diameter [mm] with which the gear turns, as far as it is known; nothing: not known yet.
+[[nodiscard]] std::optional<double> least_swing_mm(const Wishes& wishes);
+/// Refused: a part that the machine does not turn, with the installed machines that do.
+[[nodiscard]] Status check_swing(const ChosenMachine& machine, double diameter_mm);
+
 /// A limit that somebody choosing wants to see, and its value.
 using Told = std::vector<std::pair<std::string, std::string>>;
 [[nodiscard]] Told limits_of(const Wishes& wishes);
+[[nodiscard]] Told swing_of(const ChosenMachine& machine, double diameter_mm);
 [[nodiscard]] Told limits_of(const ChosenMachine& machine);
 [[nodiscard]] Told limits_of(const ChosenGear& gear);
 [[nodiscard]] Told limits_of(const Draft& draft, const ChosenMachine& machine, const ChosenGear& gear);

@@ -121,11 +121,20 @@ void ConditionJudge::speed_of_cut(const ExecutedMove& m, const Step& step, Condi
   if (way_down_.line > 0 && share > 0 && way_down_.value > most_share_ * cut->feed_mm_min)
     note(Kind::way_down, 0, m, way_down_.value, way_down_.line);
   way_down_ = {};
-  if (up_ && share > told_share_) return;
+  if (up_ && (share > told_share_ || as_quick_as_can_be(m))) return;
   up_ = false;
   keep_most(operation.cut_mm_min, speed, m.line);
   if (share > most_share_) note(Kind::cut_feed, 0, m, speed);
   else if (share > told_share_) note(Kind::quick_cut, 0, m, speed);
+}
+
+/// Is it the control or an axis that makes the block slow, whatever its F?
+bool ConditionJudge::as_quick_as_can_be(const ExecutedMove& m) const {
+  double least = std::max(machine_.min_block_ms / 60000, control_.shortest_feed_minutes);
+  for (std::size_t k = 0; k < machine_.chain.rotary_count(); ++k)
+    if (const double most = degrees(machine_.chain.rotary(k).max_speed); most > 0)
+      least = std::max(least, std::abs(m.joints[3 + k] - before_.joints[3 + k]) / most);
+  return m.minutes <= least * kRounding;
 }
 
 void ConditionJudge::axes(const ExecutedMove& m) {

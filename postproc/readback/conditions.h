@@ -51,8 +51,9 @@ struct ConditionsFound {
 /// Takes executed moves in order.
 ///
 /// Where a feed may cut: everywhere but on the way that a link takes. Such a way begins with a rapid or along the tool
-/// axis out of the work, and ends along the axis into it; its last move down is a cut again. So a quick block in the
-/// middle of a cut is one whatever F its neighbours have.
+/// axis out of the work, and ends along the axis into it; its last move down is a cut again. A block no quicker than
+/// a cut ends it too, but for one that no F could make quicker. So a quick block in the middle of a cut is one whatever
+/// F its neighbours have.
 ///
 /// Reasons: a cut more than `feed_factor` times as fast as asked, or a last way down; a feed above
 /// `limits.cutting_feed`; an axis faster than its `max_speed`; S above `spindle.max_speed`, or off the job's by more
@@ -95,6 +96,7 @@ class ConditionJudge {
   void spindle(const ExecutedMove& m, ConditionsOfOperation& operation);
   void coolant(const ExecutedMove& m, ConditionsOfOperation& operation);
   [[nodiscard]] Step step_to(const ExecutedMove& m) const;
+  [[nodiscard]] bool as_quick_as_can_be(const ExecutedMove& m) const;
   [[nodiscard]] const AskedCut* asked(int operation) const;
   void note(Kind kind, int detail, const ExecutedMove& m, double value, int line = 0);
   [[nodiscard]] std::string text(Kind kind, int operation, int detail, const Fault& fault) const;

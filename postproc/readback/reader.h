@@ -49,10 +49,11 @@ struct NcControl {
   double rotary_rounding_deg = 0.5e-5;       ///< half the last digit that the dialect prints
   double linear_rounding_mm = 0.5e-4;        ///< the same of the linear words
   std::optional<machines::KinematicChain>
-      chain;                        ///< of a machine with TCP: the control knows it; empty: TCP is refused
-  double exact_path_mm = 0.0005;    ///< LinuxCNC: the tip is off a corner by no more under G61 and G61.1
-  std::optional<double> corner_mm;  ///< the machine file states it: the tip is off a corner by no more under G64
-  double top_mm = 0;                ///< highest Z, machine coordinates of the gauge line
+      chain;                         ///< of a machine with TCP: the control knows it; empty: TCP is refused
+  double shortest_feed_minutes = 0;  ///< of a block with the largest F of G93; 0: F has no limit
+  double exact_path_mm = 0.0005;     ///< LinuxCNC: the tip is off a corner by no more under G61 and G61.1
+  std::optional<double> corner_mm;   ///< the machine file states it: the tip is off a corner by no more under G64
+  double top_mm = 0;                 ///< highest Z, machine coordinates of the gauge line
   std::vector<std::string> tcp_on, tcp_off;  ///< codes of the site that switch TCP (LinuxCNC)
   /// Lines of the machine file that switch the control's own smoothing on and off, and what the shop states for it.
   std::vector<std::string> smoothing_on, smoothing_off;

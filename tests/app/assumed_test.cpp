@@ -30,7 +30,7 @@ TEST_F(AssumedPivot, NoProgramUnlessTheJobAcceptsIt) {
     const Finished run = run_program({"run", path, "--out", dir / "out"});
     EXPECT_EQ(run.exit_code, 3);
     EXPECT_EQ(run.err, path +
-                           ":20:8: error: m.toml has assumed values (axes.A.point); measure them, or accept them with "
+                           ":21:8: error: m.toml has assumed values (axes.A.point); measure them, or accept them with "
                            "accept_assumed = true\n");
     EXPECT_TRUE(names_in(dir / "out").empty());
   }

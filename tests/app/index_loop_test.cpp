@@ -40,7 +40,7 @@ TEST(IndexLoop, IsFollowedOrSaysWhyNot) {
   EXPECT_GT(under_tcp.lines, 30000u);
   EXPECT_EQ(
       under_tcp.warnings,
-      "m.toml:54:14: post.index_loop = true is not followed, every tooth is written out: with TCP this control has "
+      "m.toml:55:14: post.index_loop = true is not followed, every tooth is written out: with TCP this control has "
       "no frame that a program could turn about the gear axis\n");
   EXPECT_NE(run_with("index_loop = true", "none", off_axis).warnings.find("the gear does not turn about its own axis"),
             std::string::npos);

@@ -203,7 +203,7 @@ TEST(MachineTest, AptHasNothingToTest) {
   const TestDir dir;
   const Finished run = run_program({"machine", "test", "apt_free.toml", "--out", dir / "t"});
   EXPECT_EQ(run.exit_code, 3) << run.out;
-  EXPECT_NE(run.err.find("apt_free.toml:6:"), std::string::npos) << run.err;
+  EXPECT_NE(run.err.find("apt_free.toml:7:"), std::string::npos) << run.err;
   EXPECT_NE(run.err.find("has places of the tool and no axes"), std::string::npos) << run.err;
   EXPECT_FALSE(std::filesystem::exists(dir / "t"));
 }

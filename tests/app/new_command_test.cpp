@@ -48,6 +48,8 @@ TEST_P(Proposal, IsVerifiedAsItStands) {
   EXPECT_GE(report["limits"].size(), 3U);
   EXPECT_NE(file_text(file).find(" # "), std::string::npos);
   const bool shaped = std::find(GetParam().begin(), GetParam().end(), "shaped") != GetParam().end();
+  for (const char* limit : {"swing", "travels needed", "room in travels"})
+    EXPECT_EQ(report["limits"].contains(limit), !shaped) << limit;
   expect_runs(file, shaped ? "shaper" : "run", dir);
 }
 
@@ -68,6 +70,7 @@ INSTANTIATE_TEST_SUITE_P(
         gear("face", "shaped", "shaper_siemens", {"--teeth", "53", "--module", "2"}),
         gear("offset", "ball", "t600s", {"--teeth", "60", "--module", "1.5"}),
         gear("offset", "line", "siemens_ac", {"--teeth", "70", "--module", "2.81"}),
+        gear("offset", "line", "t600s", {"--teeth", "60", "--module", "1.5"}),
         gear("offset", "shaped", "y514", {"--teeth", "88", "--module", "3"}),
         gear("double_helical", "ball", "heidenhain_ac", {"--teeth", "60", "--module", "1.5"}),
         gear("double_helical", "line", "xyzac_large", {"--teeth", "60", "--module", "1.5"}),
@@ -197,6 +200,13 @@ TEST(New, AsksOnATerminalAndShowsLimitsBeforeTheEndsOfTheTeeth) {
   EXPECT_NE(asked, std::string::npos) << shown;
   EXPECT_NE(shown.find("largest ball that reaches the root"), std::string::npos);
   EXPECT_LT(shown.find("largest part that turns: 1200 mm"), limits) << shown;
+  EXPECT_LT(shown.find("outer end that turns on "), asked) << shown;
+  const auto outer = shown.find("outer end of the teeth, radius (1 to 2000 mm) [");
+  const auto swing = shown.find("swing: 134.5 mm of 1200 mm"), travels = shown.find("travels needed: X ");
+  EXPECT_LT(outer, swing) << shown;
+  EXPECT_LT(swing, travels) << shown;
+  EXPECT_LT(travels, shown.find("room in travels: X ")) << shown;
+  EXPECT_LT(travels, shown.find("distance index")) << "before anything is planned\n" << shown;
   EXPECT_NE(file_text(dir / "job.toml").find("teeth = 60\n"), std::string::npos);
 }
 
@@ -212,35 +222,173 @@ TEST(New, TakesTheToolsOfAnotherJob) {
       << made.err << text;
 }
 
-TEST(New, TakesTheToolsOfAFusionLibrary) {
+TEST(New, AsksAgainForWhatTheMachineDoesNotTurn) {
   const TestDir dir;
-  write_file(dir / "lib.json", R"({"version": 36, "data": [
+  int exit_code = -1;
+  const std::string shown = on_terminal({TOOTHPATH_BINARY, "new", "--gear", "face", "--cut", "ball", "--machine",
+                                         "t600s", "--teeth", "150", "--module", "1.5", "-o", dir / "job.toml"},
+                                        "\n\n\n\n\n126\n116\n", exit_code);
+  EXPECT_EQ(exit_code, 0) << shown;
+  EXPECT_NE(shown.find("outer end that turns on T-600S: up to 125 mm"), std::string::npos) << shown;
+  EXPECT_NE(
+      shown.find("too large: --machine: part diameter = 252.0000 mm exceeds 250.0000 mm, the largest that turns on "
+                 "T-600S: fewer teeth or a smaller module would fit, or a machine that turns so much: "),
+      std::string::npos)
+      << shown;
+  EXPECT_NE(shown.find("xyzac_large"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("swing: 232.0 mm of 250 mm"), std::string::npos) << shown;
+}
+
+TEST(New, RefusesASwingBeforeTheGearIsMade) {
+  const TestDir dir;
+  const auto err = [&](Words words) { return run_new(std::move(words), dir / "job.toml").err; };
+  const std::string bevel =
+      err(gear("bevel_herringbone", "finger", "t600s", {"--teeth", "60", "--mate-teeth", "60", "--module", "5"}));
+  EXPECT_TRUE(bevel.starts_with("error: --machine: part diameter = 304.")) << bevel;
+  EXPECT_NE(bevel.find("or a machine that turns so much: "), std::string::npos) << bevel;
+  const std::string face = err(gear("face", "ball", "t600s", {"--teeth", "170", "--module", "1.5", "--outer", "130"}));
+  EXPECT_NE(face.find(" exceeds 250.0000 mm, the largest that turns on T-600S: "), std::string::npos) << face;
+}
+
+/// A machine like another, but for its travels.
+std::string changed_machine(const TestDir& dir, const std::string& from, const std::string& to) {
+  const std::string text = file_text(TOOTHPATH_SOURCE_DIR "/machines/data/t600s.toml");
+  write_file(dir / "small.toml", replaced(text, from, to));
+  return "small";  // beside the job
+}
+
+TEST(New, NamesEveryTravelThatIsTooShort) {
+  const TestDir dir;
+  const std::string small = changed_machine(dir, "min = -200.0\nmax = 200.0", "min = -20.0\nmax = 20.0");
+  const Finished made =
+      run_new(gear("face", "ball", small.c_str(), {"--teeth", "60", "--module", "1.5"}), dir / "job.toml");
+  EXPECT_EQ(made.exit_code, 3);
+  const auto at =
+      made.err.find("error: --machine: T-600S has not the travel for this gear at its best place with a tool of ");
+  EXPECT_NE(at, std::string::npos) << made.err;
+  EXPECT_NE(made.err.find(": Y lacks "), std::string::npos) << made.err;
+  EXPECT_NE(made.err.find(" needed of 40): a smaller gear, a shorter tool, or a machine that travels farther"),
+            std::string::npos)
+      << made.err;
+}
+
+TEST(New, FindsAMachineBesideTheJob) {
+  const TestDir dir;
+  const std::string small = changed_machine(dir, "max_speed = 20000", "max_speed = 19000");
+  const Finished made =
+      run_new(gear("face", "ball", small.c_str(), {"--teeth", "60", "--module", "1.5"}), dir / "job.toml");
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_NE(made.out.find("\"travels needed\":\"X "), std::string::npos) << made.out;
+  expect_runs(dir / "job.toml", "run", dir);
+}
+
+constexpr const char* kFusion = R"({"version": 36, "data": [
  {"type": "ball end mill", "description": "1 mm ball", "unit": "millimeters", "post-process": {"number": 4},
   "geometry": {"DC": 1, "LCF": 7, "LB": 27, "SFDM": 4, "NOF": 2, "assemblyGaugeLength": 97},
   "holder": {"description": "ER11", "gaugeLength": 70, "segments": [{"height": 30, "lower-diameter": 11, "upper-diameter": 11}]}},
- {"type": "drill", "unit": "millimeters", "post-process": {"number": 8}, "geometry": {"DC": 5}}]})");
-  const Words words =
-      gear("face", "ball", "xyzac_large", {"--teeth", "60", "--module", "2", "--tools", dir / "lib.json"});
-  const Finished made = run_new(words, dir / "job.toml");
-  EXPECT_EQ(made.exit_code, 0) << made.err;
-  const std::string text = file_text(dir / "job.toml");
-  for (const char* said : {"diameter = 1.0\n", "flute_length = 7.0 ", "stick_out = 27.0 ", "length = 97.0 ",
-                           "holder = [[11.0, 11.0, 30.0]]"})
-    EXPECT_NE(text.find(said), std::string::npos) << said << text;
+ {"type": "drill", "unit": "millimeters", "post-process": {"number": 8}, "geometry": {"DC": 5}}]})";
+
+/// A spur gear with these tools.
+Words with_tools(const std::string& file, Words more = {}) {
+  Words words = gear("face", "ball", "xyzac_large", {"--teeth", "60", "--module", "2", "--tools", file});
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
 }
 
-TEST(New, AsksForWhatALibraryDoesNotSay) {
+TEST(New, TakesTheToolsOfAFusionLibrary) {
   const TestDir dir;
-  write_file(dir / "shop.tbl", "T1 P1 D1 Z80 ; ball nose\n");
-  const Finished made =
-      run_new(gear("face", "ball", "xyzac_large", {"--teeth", "60", "--module", "2", "--tools", dir / "shop.tbl"}),
-              dir / "job.toml");
+  write_file(dir / "lib.json", kFusion);
+  const Finished made = run_new(with_tools(dir / "lib.json"), dir / "job.toml");
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  const std::string text = file_text(dir / "job.toml");
+  EXPECT_NE(text.find("[[tool]]\nnumber = 4\nlibrary = \"lib.json\" "), std::string::npos) << text;
+  EXPECT_NE(text.find("tool = 4\n"), std::string::npos) << text;
+  EXPECT_EQ(text.find("stick_out"), std::string::npos) << "the library says it\n" << text;
+  expect_runs(dir / "job.toml", "run", dir);
+}
+
+TEST(New, NamesWhatALibraryDoesNotSay) {
+  const TestDir dir;
+  write_file(dir / "shop.tbl", "T1 P1 D1 Z80 ; ball nose\nT2 P2 D16 Z80\nT12 P3 D0.8\n");
+  const Finished made = run_new(with_tools(dir / "shop.tbl"), dir / "job.toml");
   EXPECT_EQ(made.exit_code, 2);
+  const std::string all =
+      "shank_diameter (0.01 to 500 mm), stick_out (above 0 to 2000 mm), holder ([[lower diameter, upper diameter, "
+      "height], ..], each above 0 to 2000 mm), flute_length (above 0 to 2000 mm)";
   EXPECT_NE(
-      made.err.find("; tool 1 lacks type, flute_length, shank_diameter, stick_out, holder; a job with `library = "),
+      made.err.find("does not say all of its tools that would do: tool 1 (ball nose) lacks type (one of "
+                    "ball_end_mill), " +
+                    all + "; tool 12 lacks type (one of ball_end_mill), shank_diameter (0.01 to 500 mm), length "),
       std::string::npos)
       << made.err;
+  EXPECT_EQ(made.err.find("tool 2"), std::string::npos) << "a ball of 16 mm does not fit the tooth spaces\n"
+                                                        << made.err;
+  EXPECT_NE(made.err.find("say it with --tool, as --tool \"NUMBER: KEY = VALUE"), std::string::npos) << made.err;
   EXPECT_FALSE(std::filesystem::exists(dir / "job.toml"));
+}
+
+const std::string kRest =
+    "type = 'ball_end_mill', shank_diameter = 4, stick_out = 27, holder = [[11, 11, 30]], flute_length = 7";
+
+TEST(New, TakesWhatALibraryDoesNotSayByOptions) {
+  const TestDir dir;
+  write_file(dir / "shop.tbl", "T1 P1 D16 Z80\nT12 P3 D1 Z80 ; ball nose\n");
+  const Finished made = run_new(with_tools(dir / "shop.tbl", {"--tool", "12: " + kRest}), dir / "job.toml");
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  const std::string text = file_text(dir / "job.toml");
+  EXPECT_NE(text.find("number = 12\nlibrary = \"shop.tbl\" "), std::string::npos) << text;
+  for (const char* said : {"\ntype = \"ball_end_mill\"\n", "\nshank_diameter = 4\n", "\nstick_out = 27\n",
+                           "\nholder = [[11, 11, 30]]\n", "\nflute_length = 7\n", "\ntool = 12\n"})
+    EXPECT_NE(text.find(said), std::string::npos) << said << text;
+  EXPECT_EQ(text.find("diameter = 1"), std::string::npos) << "the table says it\n" << text;
+  expect_runs(dir / "job.toml", "run", dir);
+}
+
+TEST(New, RefusesAWrongWordOfATool) {
+  const TestDir dir;
+  write_file(dir / "shop.tbl", "T12 P3 D1 Z80 ; ball nose\n");
+  const auto err = [&](const std::string& said) {
+    const Finished made = run_new(with_tools(dir / "shop.tbl", {"--tool", said}), dir / "job.toml");
+    EXPECT_EQ(made.exit_code, 2) << said;
+    return made.err;
+  };
+  EXPECT_NE(err("12: " + kRest + ", stik_out = 3").find("error: --tool 12: unknown key \"stik_out\" in [tool]"),
+            std::string::npos);
+  EXPECT_NE(err("12: stick_out = -1").find("error: --tool 12: stick_out = -1 "), std::string::npos);
+  EXPECT_NE(err("12: number = 3").find("--tool 12: number is not said here"), std::string::npos);
+  EXPECT_NE(err("3: stick_out = 1").find("there is no tool 3, but 12"), std::string::npos);
+  EXPECT_NE(err("x: stick_out = 1").find("--tool = x is not a whole number from 1 to 9999"), std::string::npos);
+  EXPECT_NE(err("stick_out = 1").find("its number, a colon and keys"), std::string::npos);
+  EXPECT_NE(err("12: stick_out = }").find("are no keys with values"), std::string::npos);
+  const Finished none =
+      run_new(gear("face", "ball", "xyzac_large", {"--teeth", "60", "--module", "2", "--tool", "1: teeth = 2"}),
+              dir / "job.toml");
+  EXPECT_NE(none.err.find("--tools names none"), std::string::npos) << none.err;
+}
+
+TEST(New, AsksOnATerminalForWhatALibraryDoesNotSay) {
+  const TestDir dir;
+  write_file(dir / "shop.tbl", "T1 P1 D16 Z80\nT12 P3 D1 Z80 ; ball nose\n");
+  Words words = with_tools(dir / "shop.tbl", {"-o", dir / "job.toml"});
+  words.insert(words.begin(), {TOOTHPATH_BINARY, "new"});
+  int exit_code = -1;
+  // The numbers of the gear; the tools; a wrong kind, the right one; a wrong shank, the right one; the rest.
+  const std::string shown =
+      on_terminal(words, "\n\n\n\n\n\n7\n\nflat_end_mill\nball_end_mill\n-4\n4\n27\n[[11, 11, 30]]\n7\n", exit_code);
+  EXPECT_EQ(exit_code, 0) << shown;
+  EXPECT_NE(shown.find("tool 12 (ball nose): lacks type (one of ball_end_mill), "), std::string::npos) << shown;
+  EXPECT_NE(shown.find("tools of "), std::string::npos) << shown;
+  EXPECT_NE(shown.find(" that may be used, by number [12]: "), std::string::npos) << shown;
+  EXPECT_NE(shown.find("one of the numbers above"), std::string::npos) << "there is no tool 7\n" << shown;
+  EXPECT_NE(shown.find("type = \"flat_end_mill\" is not one of ball_end_mill"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("--tool 12: shank_diameter = -4"), std::string::npos) << shown;
+  for (const char* asked :
+       {"shank_diameter (0.01 to 500 mm): ", "stick_out (above 0 to 2000 mm): ", "flute_length (above 0 to 2000 mm): "})
+    EXPECT_NE(shown.find("tool 12 (ball nose): " + std::string(asked)), std::string::npos) << asked << shown;
+  const std::string text = file_text(dir / "job.toml");
+  EXPECT_NE(text.find("number = 12\nlibrary = \"shop.tbl\" "), std::string::npos) << text;
+  EXPECT_NE(text.find("\nstick_out = 27\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("\nholder = [[11, 11, 30]]\n"), std::string::npos) << text;
 }
 
 }  // namespace

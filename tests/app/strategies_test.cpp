@@ -185,7 +185,7 @@ TEST(StudyStrategies, RefusedJobsAndASignalLeaveWhatStoodThere) {
   };
   const auto ball = run_program({"study", "strategies", kSamples + "/spur_quick.toml", "--out", out});
   EXPECT_EQ(ball.exit_code, 3);
-  EXPECT_NE(ball.err.find("spur_quick.toml:47:1: error: operation 1 finishes the flanks and is a finishing"),
+  EXPECT_NE(ball.err.find("spur_quick.toml:48:1: error: operation 1 finishes the flanks and is a finishing"),
             std::string::npos)
       << ball.err;
   EXPECT_TRUE(untouched());

@@ -144,6 +144,9 @@ TEST_F(Completion, OfZshProposesTheSame) {
     EXPECT_EQ(in_zsh(fmt::format("toothpath {} --", fmt::join(command.words, " "))), long_ones(options));
   }
   EXPECT_EQ(in_zsh("toothpath --color a"), (Words{"always", "auto"}));
+  EXPECT_EQ(in_zsh("toothpath new --gear "), (Words{"face", "double_helical", "offset", "bevel_herringbone"}));
+  EXPECT_EQ(in_zsh("toothpath new --cut "), (Words{"ball", "line", "shaped", "finger"}));
+  EXPECT_EQ(in_zsh("toothpath new --machine xyz"), (Words{"xyzac_large", "xyzac_trt", "xyzbc_trt"}));
   EXPECT_EQ(in_zsh("toothpath machine show xyz"), (Words{"xyzac_large", "xyzac_trt", "xyzbc_trt"}));
 }
 
@@ -160,6 +163,10 @@ TEST_F(Completion, ProposesWhatAValueMayBe) {
       {"toothpath check --stock ", {"job.toml", "folder", "text.nc"}},
       {"toothpath contact --mate ", {"job.toml", "folder"}},
       {"toothpath run --color al", {"always"}},
+      {"toothpath new --gear ", {"face", "double_helical", "offset", "bevel_herringbone"}},
+      {"toothpath new --gear bev", {"bevel_herringbone"}},
+      {"toothpath new --cut ", {"ball", "line", "shaped", "finger"}},
+      {"toothpath new --machine xyz", {"xyzac_large", "xyzac_trt", "xyzbc_trt"}},
       {"toothpath machine show xyz", {"xyzac_large", "xyzac_trt", "xyzbc_trt"}},
   };
   for (const auto& c : cases) {

@@ -53,6 +53,18 @@ zcat "$root/usr/share/doc/toothpath/changelog.gz" | dpkg-parsechangelog -l - -S 
 "$installed" run "$root/usr/share/doc/toothpath/samples/spur_quick.toml" --out "$work/out" --quiet || fail "the sample"
 [[ -s $work/out/program.ngc && -s $work/out/report.html ]] || fail "no program and report of the sample"
 
+# What an editor is told in the first line of the files that people copy and of those that `new` writes is there.
+"$installed" new --gear face --cut shaped --machine y514 --teeth 60 --module 2 -o "$work/new.toml" --quiet || fail "new"
+for file in "$root"/usr/share/doc/toothpath/samples/*.toml "$root"/usr/share/toothpath/machines/*.toml "$work/new.toml"; do
+  schema=$(sed -n '1s|^#:schema ||p' "$file")
+  case $schema in
+    file://*) path=${schema#file://} ;;
+    ?*) path=${file%/*}/$schema ;;
+    *) fail "${file##*/} names no schema" ;;
+  esac
+  [[ -s $path && $(realpath "$path") == "$(realpath "$root")"/* ]] || fail "${file##*/}: there is no $schema in the package"
+done
+
 for module in "${modules[@]}"; do
   in_tree --install "$module"
   PYTHONPATH=$root/usr/lib/python3/dist-packages /usr/bin/python3 -c '

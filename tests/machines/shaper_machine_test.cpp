@@ -90,30 +90,30 @@ TEST(ShaperMachine, BadFilesAreRefusedWithTheirPlace) {
     return to_text(machines::read_shaper_machine_text(replaced(good, from, to), "s.toml", kDialects).errors);
   };
   EXPECT_EQ(message("[125, 179", "[179, 125"),
-            "s.toml:11:9: error: stroke.steps[1] = 125 must exceed the step before it, 179\n");
+            "s.toml:12:9: error: stroke.steps[1] = 125 must exceed the step before it, 179\n");
   EXPECT_EQ(message("[125, 179, 253, 359]", "[]"),
-            "s.toml:11:9: error: stroke.steps is empty, must have at least 1 step\n");
-  EXPECT_EQ(message("[125, 179", "[0, 179"), "s.toml:11:10: error: stroke.steps[0] = 0 must be above 0 1/min\n");
-  EXPECT_EQ(message("[12, 5]", "[12, 0]"), "s.toml:16:17: error: index.constant[1] = 0 is outside 1 to 1000000\n");
+            "s.toml:12:9: error: stroke.steps is empty, must have at least 1 step\n");
+  EXPECT_EQ(message("[125, 179", "[0, 179"), "s.toml:12:10: error: stroke.steps[0] = 0 must be above 0 1/min\n");
+  EXPECT_EQ(message("[12, 5]", "[12, 0]"), "s.toml:17:17: error: index.constant[1] = 0 is outside 1 to 1000000\n");
   EXPECT_EQ(message("[12, 5]", "[12.5, 5]"),
-            "s.toml:16:13: error: index.constant[0] must be a whole number, is a number\n");
-  EXPECT_EQ(message("[12, 5]", "[12]"), "s.toml:16:12: error: index.constant has 1 numbers, must have 2\n");
-  EXPECT_EQ(message("[750, 1]", "2.4"), "s.toml:19:12: error: feed.constant must be a list, is a number\n");
+            "s.toml:17:13: error: index.constant[0] must be a whole number, is a number\n");
+  EXPECT_EQ(message("[12, 5]", "[12]"), "s.toml:17:12: error: index.constant has 1 numbers, must have 2\n");
+  EXPECT_EQ(message("[750, 1]", "2.4"), "s.toml:20:12: error: feed.constant must be a list, is a number\n");
   EXPECT_EQ(message("[20, 24,", "[20, 20,"),
-            "s.toml:22:14: error: gears.teeth lists 20 twice; each wheel is there once\n");
+            "s.toml:23:14: error: gears.teeth lists 20 twice; each wheel is there once\n");
   EXPECT_EQ(message("max_length = 125.0", "max_length = nan"),
-            "s.toml:12:14: error: stroke.max_length = nan must be finite\n");
+            "s.toml:13:14: error: stroke.max_length = nan must be finite\n");
   EXPECT_EQ(message("relief = 0.5", "releif = 0.5"),
-            "s.toml:10:1: error: stroke.relief is missing\ns.toml:13:1: error: unknown key stroke.releif; did you mean "
+            "s.toml:11:1: error: stroke.relief is missing\ns.toml:14:1: error: unknown key stroke.releif; did you mean "
             "relief?\n");
   EXPECT_EQ(message("min = -5.0\nmax = 200.0", "min = 200.0\nmax = -5.0"),
-            "s.toml:28:7: error: axes.X.max = -5 must exceed axes.X.min = 200\n");
+            "s.toml:29:7: error: axes.X.max = -5 must exceed axes.X.min = 200\n");
   EXPECT_EQ(message("min = -5.0\nmax = 200.0", "min = 200.0\nmax = 200.0"),
-            "s.toml:28:7: error: axes.X.max = 200 must exceed axes.X.min = 200\n");
-  EXPECT_EQ(message("sign = 1", "sign = 0"), "s.toml:42:8: error: axes.A.sign = 0 must be 1 or -1\n");
-  EXPECT_EQ(message("max_speed = 5000", "max_speed = 5000\nsign = 1"), "s.toml:35:1: error: unknown key axes.Y.sign\n");
+            "s.toml:29:7: error: axes.X.max = 200 must exceed axes.X.min = 200\n");
+  EXPECT_EQ(message("sign = 1", "sign = 0"), "s.toml:43:8: error: axes.A.sign = 0 must be 1 or -1\n");
+  EXPECT_EQ(message("max_speed = 5000", "max_speed = 5000\nsign = 1"), "s.toml:36:1: error: unknown key axes.Y.sign\n");
   EXPECT_EQ(message("\"feed\", ", "\"fed\", "),
-            "s.toml:8:31: error: assumed names \"fed\", which this file does not have\n");
+            "s.toml:9:31: error: assumed names \"fed\", which this file does not have\n");
 }
 
 }  // namespace

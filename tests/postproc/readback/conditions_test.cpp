@@ -342,6 +342,43 @@ TEST(ConditionJudge, LinksAreQuickCutsAreNot) {
   EXPECT_NE(reasons(text("F20000", "", "F800", "")).find("above limits.cutting_feed = 10000"), std::string::npos);
 }
 
+// Blocks of a link that are as short as the control takes them are slow, and the link goes on behind them.
+TEST(ConditionJudge, ALinkGoesOnBehindItsShortestBlocks) {
+  machines::Machine m = trunnion();
+  const auto reasons = [&](const char* start, const std::string& across, bool fanuc = false) {
+    static const std::regex whole("([XYZAC][0-9]+)(?![.0-9])");  // Fanuc takes places with a point alone
+    const std::string text = fmt::format(
+        "G21 G17 G90 G94 G40 G49 G80\nG54\nG61\nG53 G0 Z600\nT1 M6\n(OP 0 finishing)\nS12000 M3\nG43 H1\n"
+        "G0 A0 C0\nG0 X100 Y0\nG0 Z200\n{}\n{}\nG94\nG1 Z160 F6000\nM5\nG53 G0 Z600\nG49\nM2\n",
+        start, across);
+    const Judged now = judged(fanuc ? "%\nO1\n" + std::regex_replace(text, whole, "$1.") + "%\n" : text, m,
+                              {{{1, kAskedSpeed, kAskedFeed}}, {}});
+    EXPECT_EQ(now.refused, "");
+    return all_of(now.found.reasons);
+  };
+  const char *up = "G1 Z150 F800\nX110\nZ151 F6000", *quick_cut = "line 17: operation 0 cuts with 6000";
+  const auto across = [](double way, double feed) {  // slow between quick blocks
+    return fmt::format("X115 F6000\nX{} F{}\nX120 F6000\nZ150 F800\nX121", 115 + way, feed);
+  };
+  EXPECT_NE(reasons(up, across(0.05, 500)).find(quick_cut), std::string::npos) << "it could be quicker";
+  m.min_block_ms = 6;
+  EXPECT_EQ(reasons(up, across(0.05, 500)), "");
+  EXPECT_NE(reasons(up, across(0.5, 500)).find(quick_cut), std::string::npos) << "60 ms: somebody wanted it slow";
+  EXPECT_NE(reasons("G1 Z150 F800\nX110", across(0.05, 500)).find("cuts with 6000"), std::string::npos) << "no link";
+  m = trunnion();
+  const auto rotaries = [&](double deg_min) {
+    for (machines::RotaryAxis& axis : m.chain.table) axis.max_speed = radians(deg_min);
+  };
+  const std::string turning = "X115 F6000\nG93\nX115.1 C6 F33.33\nG94\nX120 F6000\nZ150 F800\nX121";
+  EXPECT_NE(reasons(up, turning).find("cuts with 6000"), std::string::npos);
+  rotaries(200);  // 6 deg take 1.8 s
+  EXPECT_EQ(reasons(up, turning), "");
+  m = trunnion_with("fanuc", TcpMode::none);
+  const std::string largest_f = "G93\nX115 F1200\nX115.05 F9999.999\nX120 F1200\nG94\nZ150 F800\nX121";
+  EXPECT_EQ(reasons(up, largest_f, true), "");
+  EXPECT_NE(reasons(up, replaced(largest_f, "F9999.999", "F8000"), true).find("cuts with 5940"), std::string::npos);
+}
+
 // What a rotary is asked for, as it is executed.
 TEST(ConditionJudge, RotariesBeyondTheirSpeed) {
   machines::Machine m = trunnion();
