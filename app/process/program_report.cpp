@@ -188,6 +188,7 @@ Result<PostedProgram> post_program(std::span<const proof::CheckedClPath> paths, 
   posted.blend_mm =
       text::granted_blend_mm(posted.axes, *dialect, header) + radius * granted_blend_rad(posted.axes, *dialect, header);
   posted.file = "program" + dialect->extension;
+  posted.name_on_control = text::name_on_control(*dialect, header);
   std::string whole = std::move(text->text);
   if (restart) {
     auto part = joints::program_from(posted.axes, restart->operation, restart->tooth);

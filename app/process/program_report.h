@@ -37,7 +37,8 @@ void note_proof(report::RunReport& report, const ProgramProof& proof);
 /// An NC program that this run has made: on the disk, and what lies there.
 struct PostedProgram {
   joints::AxisProgram axes;
-  std::string file;  ///< name in the output directory
+  std::string file;             ///< name in the output directory
+  std::string name_on_control;  ///< under which the control keeps it
   std::string text;  ///< the bytes as read back; with a restart the whole program, which is proven but not written
   std::size_t blocks = 0;
   std::optional<joints::AxisProgram> restarted;  ///< of the file, where it begins in the middle

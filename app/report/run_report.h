@@ -99,6 +99,7 @@ struct RunReport {
 
   std::string directory;                     ///< of the results, as the user wrote it; empty: not said
   std::string program_file, program_sha256;  ///< empty where no program was written
+  std::string name_on_control;               ///< what the job's own name or number makes of it there; may be empty
   std::size_t program_bytes = 0;
 
   double gouge_tolerance_mm = 0;

@@ -324,24 +324,35 @@ struct FingerGougeCheck::State {
     g.bound_mm = std::max(g.bound_mm, g.measured_mm);
   }
 
-  /// Why a motion of a path may not be run; nothing: it may.
-  std::optional<Diagnostic> refusal(const path::ToolMotion& m, const FingerTool& tool) const {
+  /// Why a motion of a path may not be run, and by how much [mm].
+  struct MotionFault {
+    enum Kind { rapid, near, cut } kind = rapid;
+    double beyond_mm = 0;
+    Diagnostic diagnostic;
+  };
+  /// Nothing: the motion may be run.
+  std::optional<MotionFault> fault(const path::ToolMotion& m, const FingerTool& tool) const {
     FingerCheckResult one = nothing_yet(tol.clearance_mm);
     MotionDepth walls;
     if (judge_bodies(m, tool, one).among_teeth) walls = judge_poses(m, tool, one);
     const proof::GougeResult& g = one.gouge;
-    const auto refuse = [&](const std::string& what) {
-      return fail_as(DiagnosticKind::verification, "operation {} record {}: {}", m.operation, m.line, what);
+    const auto found = [&](MotionFault::Kind kind, double beyond_mm, const std::string& what) {
+      return MotionFault{
+          kind, beyond_mm,
+          fail_as(DiagnosticKind::verification, "operation {} record {}: {}", m.operation, m.line, what)};
     };
     if (!g.rapids_clear)
-      return refuse(
+      return found(
+          MotionFault::rapid, g.worst.front().depth_mm,
           fmt::format("the rapid goes {:.4f} mm into the {}", g.worst.front().depth_mm, g.worst.front().patch));
     if (g.clearance_mm < tol.clearance_mm)
-      return refuse(fmt::format("the {} comes within {:.4f} mm of the {}, less than {:.4f}", g.closest.body,
-                                g.clearance_mm, g.closest.patch, tol.clearance_mm));
+      return found(MotionFault::near, tol.clearance_mm - g.clearance_mm,
+                   fmt::format("the {} comes within {:.4f} mm of the {}, less than {:.4f}", g.closest.body,
+                               g.clearance_mm, g.closest.patch, tol.clearance_mm));
     if (g.bound_mm > tol.gouge_mm)
-      return refuse(fmt::format("the cutter goes up to {:.4f} mm into {}, more than {:.4f}", g.bound_mm,
-                                walls.bound_mm >= g.bound_mm ? walls.patch : g.deepest.patch, tol.gouge_mm));
+      return found(MotionFault::cut, g.bound_mm,
+                   fmt::format("the cutter goes {:.4f} mm into {}, more than {:.4f}", g.bound_mm,
+                               walls.bound_mm >= g.bound_mm ? walls.patch : g.deepest.patch, tol.gouge_mm));
     return std::nullopt;
   }
 
@@ -435,10 +446,13 @@ Result<proof::CheckedClPath> FingerGougeCheck::approve(path::ClPath path) const 
   const FingerTool* tool = s.tool_of(path.operation);
   if (!tool) return fail("operation {} is not in the job", path.operation);
   const std::vector<path::ToolMotion> motions = path::motions_of(path);
-  std::vector<std::optional<Diagnostic>> refused(motions.size());
-  tbb::parallel_for(std::size_t{0}, motions.size(), [&](std::size_t k) { refused[k] = s.refusal(motions[k], *tool); });
-  for (auto& diagnostic : refused)  // the first one of the path
-    if (diagnostic) return *diagnostic;
+  std::vector<std::optional<State::MotionFault>> faults(motions.size());
+  tbb::parallel_for(std::size_t{0}, motions.size(), [&](std::size_t k) { faults[k] = s.fault(motions[k], *tool); });
+  // What goes wrong first along the path, told where it is worst.
+  const State::MotionFault* told = nullptr;
+  for (const auto& fault : faults)
+    if (fault && (!told || (fault->kind == told->kind && fault->beyond_mm > told->beyond_mm))) told = &*fault;
+  if (told) return told->diagnostic;
   return proof::CheckedClPath(std::move(path));
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "geometry/base/angle.h"
 
@@ -121,6 +122,22 @@ std::string cutter_comment(const ToolAssembly& tool) {
   std::transform(name.begin(), name.end(), name.begin(),
                  [](char c) { return c >= 'a' && c <= 'z' ? char(c - 32) : c; });
   return name + " " + kind.short_size(tool);
+}
+
+std::optional<AptCutter> apt_cutter(const ToolAssembly& tool) {
+  const double R = tool.radius_mm(), r = end_centre_mm(tool), h = tool.flute_length_mm;
+  switch (tool.type) {
+    case CutterType::ball_end_mill:
+    case CutterType::flat_end_mill:
+    case CutterType::bull_nose_end_mill: return AptCutter{2 * R, r, R - r, r, 0, 0, h};
+    case CutterType::tapered_ball_end_mill: {
+      // The side touches the ball; level with the tip it stands this far from the axis.
+      const double b = tool.half_angle_rad;
+      return AptCutter{2 * R * (1 - std::sin(b)) / std::cos(b), R, 0, R, 0, degrees(b), h};
+    }
+    case CutterType::finger_mill: break;
+  }
+  return std::nullopt;
 }
 
 Profile profile_of(const ToolAssembly& tool) { return Profile::of_accepted(cutter_data(tool)); }

@@ -2,6 +2,8 @@
 // in cutters.cpp; and a planner, if it cuts in a new way.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -53,6 +55,13 @@ struct CutterKind {
 [[nodiscard]] std::string cutter_text(const ToolAssembly& tool);
 /// "BALL END MILL D1.6".
 [[nodiscard]] std::string cutter_comment(const ToolAssembly& tool);
+
+/// A cutting part as cutter location data state it (ISO 4343, CUTTER/d,r,e,f,a,b,h): twice the distance from the axis
+/// to where lower and upper line meet, corner radius, its centre beside the axis and above the tip [mm], the lower line
+/// above the plane across the axis, the upper line off the axis [deg], height [mm].
+using AptCutter = std::array<double, 7>;
+/// Nothing: a form that these seven numbers cannot state, the finger mill's.
+[[nodiscard]] std::optional<AptCutter> apt_cutter(const ToolAssembly& tool);
 
 /// The profile of a tool whose form its numbers give and that a job reader has accepted; nothing is checked again.
 [[nodiscard]] Profile profile_of(const ToolAssembly& tool);

@@ -190,12 +190,16 @@ class BevelGearBuilder {
                                   contact_reach(g.halves_[1].wall(sigma), X->beta_outer, p.addendum_mm));
     g.limits_.fillet_reach_mm = reach;
     const double least = 2 * reach, lo = g.R_i_ + least, hi = g.R_e_ - least;
-    if (g.R_ref_ < lo || g.R_ref_ > hi) {
+    if (lo > hi)
+      refuse("face_width",
+             "face_width = {:.4f} is below {:.4f}, four times the reach of the corner fillet: no apex_cone_distance "
+             "leaves both halves wide enough; a wider face or a mill of less diameter would do",
+             g.R_e_ - g.R_i_, 2 * least);
+    else if (g.R_ref_ < lo || g.R_ref_ > hi)
       refuse("apex_cone_distance",
              "apex_cone_distance = {:.4f} leaves a half narrower than {:.4f}, twice the reach of the corner fillet; it "
              "must lie between {:.4f} and {:.4f}",
              g.R_ref_, least, lo, hi);
-    }
     const double w = p.relief_half_width_mm;
     if (w < reach)
       refuse("relief_half_width",

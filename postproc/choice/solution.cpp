@@ -48,13 +48,15 @@ std::vector<Run> runs_of(const path::ClPath& path) {
 class Chooser {
  public:
   Chooser(const path::ClPath& path, const Mat3& rotation, const machines::KinematicChain& chain,
-          const std::array<RotaryRange, 2>& ranges, machines::PoleOption pole, const std::vector<char>& switches)
+          const std::array<RotaryRange, 2>& ranges, machines::PoleOption pole, const std::vector<char>& switches,
+          int only_pair)
       : path_(path),
         rotation_(rotation),
         chain_(chain),
         ranges_(ranges),
         pole_(pole),
         switches_(switches),
+        only_pair_(only_pair),
         count_(chain.rotary_count()) {}
 
   Result<std::vector<RotaryPair>> choose() {
@@ -64,6 +66,7 @@ class Chooser {
     for (std::size_t r = 0; r < runs.size(); ++r) {
       Diagnostic why;
       for (const int pair : {1, 2}) {
+        if (only_pair_ != 0 && pair != only_pair_) continue;
         auto chain = follow(runs[r], pair, why);
         if (chain) chains[r].push_back(std::move(*chain));
       }
@@ -257,6 +260,7 @@ class Chooser {
   std::array<RotaryRange, 2> ranges_;
   machines::PoleOption pole_;
   const std::vector<char>& switches_;
+  int only_pair_;
   std::size_t count_;
   std::optional<std::vector<machines::JointSolution>> cached_;
   Vec3 cached_axis_ = Vec3::Zero();
@@ -271,8 +275,8 @@ double nearest_turn(double angle, double reference) { return angle + whole_turns
 Result<std::vector<RotaryPair>> choose_rotaries(const path::ClPath& path, const Mat3& table_from_gear,
                                                 const machines::KinematicChain& chain,
                                                 const std::array<RotaryRange, 2>& ranges, machines::PoleOption pole,
-                                                const std::vector<char>& switches) {
-  return Chooser(path, table_from_gear, chain, ranges, pole, switches).choose();
+                                                const std::vector<char>& switches, int only_pair) {
+  return Chooser(path, table_from_gear, chain, ranges, pole, switches, only_pair).choose();
 }
 
 }  // namespace toothpath::choice

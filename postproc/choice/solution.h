@@ -27,6 +27,7 @@ struct RotaryRange {
 /// within half a turn of the end of the one before.
 /// @param table_from_gear directions of the gear frame in the table frame
 /// @param ranges of the two rotaries, margins taken off
+/// @param only_pair 1 or 2: that pair alone; 0: either
 /// @param switches not empty: one a record; where it is set, on a pole, the pass goes on with the other pair of angles
 /// Errors: no angle reaches an axis; no candidate inside the ranges; a block inside a pass in which a rotary would turn
 /// by 170 deg or, near the pole, by more than 30 deg (handle_poles leaves no such block).
@@ -34,7 +35,8 @@ struct RotaryRange {
                                                               const machines::KinematicChain& chain,
                                                               const std::array<RotaryRange, 2>& ranges,
                                                               machines::PoleOption pole,
-                                                              const std::vector<char>& switches = {});
+                                                              const std::vector<char>& switches = {},
+                                                              int only_pair = 0);
 
 /// Whole turns [rad] that take an angle next to `reference`.
 [[nodiscard]] double whole_turns(double angle, double reference);

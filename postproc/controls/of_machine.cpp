@@ -233,8 +233,10 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
     c.rapid_speed[3 + k] = degrees(machine.chain.rotary(k).max_speed);
     c.rollover[3 + k] = machine.chain.rotary(k).rollover;
   }
-  for (const auto& t : tools)
+  for (const auto& t : tools) {
     if (!c.tool_length_mm.emplace(t.number, t.length_mm).second) return fail("tool number {} occurs twice", t.number);
+    if (const auto cutter = tool::apt_cutter(t)) c.cutters[t.number] = *cutter;
+  }
   c.work_offsets[setup.work_offset] = setup.work_offset_at_mm;
   return c;
 }

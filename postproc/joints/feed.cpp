@@ -151,6 +151,8 @@ void ToothBuilder::push_feed(const machines::TablePose& target, const RotaryPair
   AxisBlock& pushed = blocks_->back();
   set_time(pushed, before, feed);
   if (error_) return;
+  // A tool vector needs no rounding of angles; where the axis follows from the commands (about a pole) it is theirs.
+  if (tcp_ && angle_between(pushed.axis, target.axis) <= 2 * words_.rotary_step()) pushed.axis = target.axis;
   const machines::Joints from = words_.joints(before), to = words_.joints(b);
   int moving = 0;
   for (int i = 0; i < 3; ++i) moving += std::abs(to.linear_mm[i] - from.linear_mm[i]) > 1e-9 ? 1 : 0;

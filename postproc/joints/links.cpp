@@ -124,7 +124,14 @@ void ToothBuilder::tcp_on() {
   broken_ = true;
 }
 
+/// What follows counts from the rounded angles: the last tool vector is theirs.
+void ToothBuilder::end_on_angles() {
+  if (blocks_->empty() || blocks_->back().kind != BlockKind::feed) return;
+  last_.axis = blocks_->back().axis = chain_.forward(words_.joints(last_), words_.length()).axis;
+}
+
 void ToothBuilder::tcp_off() {
+  end_on_angles();
   AxisBlock b;
   const machines::Joints j = words_.joints(last_);
   words_.set_joints(b, j.linear_mm, j.rotary_rad);

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <utility>
 
 #include "cam/tool/cutters.h"
 #include "geometry/base/angle.h"
 #include "postproc/choice/solution.h"
+#include "postproc/choice/ways.h"
 #include "postproc/joints/clearance.h"
 #include "postproc/joints/inputs.h"
 #include "postproc/joints/rollover.h"
@@ -205,7 +207,7 @@ class ProgramBuilder {
     return out;
   }
   /// Poles handled, then the angles. @param rotation table frame from the gear frame of this tooth
-  Result<FollowedPath> follow(std::size_t p, const Mat3& rotation, bool leave_room_for_index) {
+  Result<FollowedPath> follow(std::size_t p, const Mat3& rotation, bool leave_room_for_index, int only_pair = 0) {
     FollowedPath out;
     out.planned = paths_[p];
     const PoleRules rules = pole_rules_of(machine_, options_, tools_[static_cast<std::size_t>(paths_[p]->tool)], body_);
@@ -221,7 +223,7 @@ class ProgramBuilder {
     }
     auto angles =
         choice::choose_rotaries(out.path(), rotation, chain_, ranges(leave_room_for_index), machine_.post.pole,
-                                out.changed ? out.changed->switches : std::vector<char>{});
+                                out.changed ? out.changed->switches : std::vector<char>{}, only_pair);
     if (!angles) return angles.error();
     out.angles = std::move(*angles);
     return out;
@@ -257,29 +259,94 @@ class ProgramBuilder {
           return true;
     return false;
   }
-  /// Angles of tooth k of path p. Parallel axes: those of tooth 0 further on by the index, in whole turns that fit.
-  Result<FollowedPath> tooth_angles(std::size_t p, int k) {
-    if (k == 0) return followed_[p];
-    if (!parallel_) return follow(p, tooth_rotation(k), false);
-    FollowedPath turned = followed_[p];
-    auto& a = turned.angles;
-    double least = a.front()[0], greatest = least;
-    for (const auto& r : a) {
+  /// How a tooth is cut: on the angles of a tooth 0, turned on, or on angles of its own.
+  struct Way {
+    const FollowedPath* turned = nullptr;
+    std::shared_ptr<const FollowedPath> own;
+    double shift = 0;   ///< of the rotary that carries the work
+    bool copy = false;  ///< the way of the first tooth that is written, turned
+
+    [[nodiscard]] const FollowedPath& path() const { return own ? *own : *turned; }
+  };
+  /// The commands of tooth 0 further on by the index, in whole turns that fit.
+  std::vector<Way> turned_ways(const FollowedPath& first, int k) const {
+    double least = first.angles.front()[0], greatest = least;
+    for (const auto& r : first.angles) {
       least = std::min(least, r[0]);
       greatest = std::max(greatest, r[0]);
     }
     const auto range = ranges(false)[0];
-    const double index = program_.index_sign * tooth_angle(k);
+    std::vector<Way> ways;
     for (const int turn : {0, -1, 1, -2, 2}) {
-      const double shift = index + 2 * kPi * turn;
+      const double shift = program_.index_sign * tooth_angle(k) + 2 * kPi * turn;
       if (least + shift < range.lower - 1e-9 || greatest + shift > range.upper + 1e-9) continue;
-      for (auto& r : a) r[0] += shift;
-      return turned;
+      ways.push_back({&first, nullptr, shift, false});
     }
-    return fail_as(DiagnosticKind::verification,
-                   "operation {} tooth {}: {} = {:.4f} .. {:.4f} deg outside [{:.4f}, {:.4f}]", paths_[p]->operation, k,
-                   chain_.table[0].letter, degrees(least + index), degrees(greatest + index), degrees(range.lower),
-                   degrees(range.upper));
+    return ways;
+  }
+  choice::ToothWay ends_of(const Way& way) const {
+    const FollowedPath& followed = way.path();
+    choice::ToothWay out{followed.angles.front(), followed.angles.back(), 0};
+    out.begin[0] += way.shift;
+    out.end[0] += way.shift;
+    for (std::size_t i = 1; i < followed.angles.size(); ++i)
+      if (followed.path().records[i].kind == path::MoveKind::rapid)
+        out.minutes += choice::reposition_minutes(chain_, followed.angles[i - 1], followed.angles[i]);
+    return out;
+  }
+  /// The ways of all teeth that are written, by their place in the program. Where the gear turns about an axis parallel
+  /// to its own those of tooth 0 serve all; where they do not reach every tooth, the other pair of angles and other
+  /// pairs from pass to pass are looked at for all of them.
+  Result<std::vector<Way>> ways_of_teeth(std::size_t p, const RotaryPair& from) {
+    const int written = program_.loop ? 1 : teeth_;
+    std::vector<Way> ways;
+    for (int n = 0; n < written; ++n) {
+      const int k = tooth_of_place(n, options_.tooth_stride, teeth_);
+      const auto turned = k == 0 ? std::vector<Way>{{&followed_[p], nullptr, 0, true}} : turned_ways(followed_[p], k);
+      if (turned.empty()) return ways_by_search(p, from);
+      ways.push_back(turned.front());
+      ways.back().copy = true;
+    }
+    return ways;
+  }
+  Result<std::vector<Way>> ways_by_search(std::size_t p, const RotaryPair& from) {
+    other_pairs_.clear();
+    for (const int pair : {1, 2})
+      if (auto f = follow(p, gear_.rotation, false, pair)) other_pairs_.push_back(std::move(*f));
+    std::vector<std::vector<Way>> of_tooth;
+    std::vector<std::vector<choice::ToothWay>> ends;
+    for (int n = 0; n < teeth_; ++n) {
+      const int k = tooth_of_place(n, options_.tooth_stride, teeth_);
+      std::vector<Way> ways = turned_ways(followed_[p], k);
+      for (const FollowedPath& other : other_pairs_)
+        for (Way& way : turned_ways(other, k)) ways.push_back(std::move(way));
+      auto own = follow(p, tooth_rotation(k), false);
+      if (own) ways.push_back({nullptr, std::make_shared<const FollowedPath>(std::move(*own)), 0, false});
+      else if (ways.empty()) return in_tooth(own.error(), k);
+      ends.emplace_back();
+      for (const Way& way : ways) ends.back().push_back(ends_of(way));
+      of_tooth.push_back(std::move(ways));
+    }
+    const auto chosen = choice::choose_ways(ends, from, chain_);
+    std::vector<Way> out;
+    for (std::size_t n = 0; n < of_tooth.size(); ++n) out.push_back(of_tooth[n][chosen[n]]);
+    // Its last blocks make ready for the next tooth: that one must be cut as the second is.
+    const auto alike = [&](std::size_t a, std::size_t b) { return !out[a].own && out[a].turned == out[b].turned; };
+    for (std::size_t n = 0; n < out.size(); ++n) out[n].copy = alike(n, 0) && (n + 1 == out.size() || alike(n + 1, 1));
+    return out;
+  }
+  static Diagnostic in_tooth(Diagnostic bad, int k) {
+    bad.message = fmt::format("tooth {}: {}", k, bad.message);
+    return bad;
+  }
+  /// The angles of one tooth that is written.
+  Result<FollowedPath> angles_of(std::size_t p, const std::vector<Way>& ways, int n) {
+    const int k = tooth_of_place(n, options_.tooth_stride, teeth_);
+    if (!parallel_) return k == 0 ? Result<FollowedPath>(followed_[p]) : follow(p, tooth_rotation(k), false);
+    const Way& way = ways[static_cast<std::size_t>(n)];
+    FollowedPath out = way.path();
+    for (auto& r : out.angles) r[0] += way.shift;
+    return out;
   }
 
   // Rounding. The linear words are computed for the rounded rotary words, so that only their own last digit and, in a
@@ -304,22 +371,29 @@ class ProgramBuilder {
     op.tool_number = tool.number;
     op.tool_length_mm = tool.length_mm;
     op.tool_name = tool::cutter_comment(tool);
+    op.cutter = tool::apt_cutter(tool);
     op.spindle_rpm = path.spindle_rpm;
     builder.begin(op, tool.length_mm);
     const int written = program_.loop ? 1 : teeth_;
-    auto angles = tooth_angles(p, 0);
+    std::vector<Way> ways;
+    if (parallel_ || written == 1) {
+      auto found = ways_of_teeth(p, builder.start_rotaries());
+      if (!found) return found.error();
+      ways = std::move(*found);
+    }
+    auto angles = angles_of(p, ways, 0);
     double first_index = 0;  // angle of the index rotary at the beginning of the first tooth
     for (int n = 0; n < written; ++n) {
       const int k = tooth_of_place(n, options_.tooth_stride, teeth_);
       if (!angles) return angles.error();
-      auto next = n + 1 < written ? tooth_angles(p, tooth_of_place(n + 1, options_.tooth_stride, teeth_)) : angles;
+      auto next = n + 1 < written ? angles_of(p, ways, n + 1) : angles;
       if (!next) return next.error();
       roll_to(chain_, builder.start_rotaries(), angles->angles);
       roll_to(chain_, angles->angles.back(), next->angles);
       if (n == 0) first_index = angles->angles.front()[0];
       op.teeth.push_back({k, {}});
       auto& blocks = op.teeth.back().blocks;
-      if (copies_ && k > 0) {
+      if (copies_ && n > 0 && ways[static_cast<std::size_t>(n)].copy) {
         turned_copy(op.teeth.front().blocks, angles->angles.front()[0] - first_index, k, blocks);
         builder.take_over(blocks, k);
       } else {
@@ -399,7 +473,8 @@ class ProgramBuilder {
   AxisWords words_;
   ClearanceBody body_;
   AxisProgram program_;
-  std::vector<FollowedPath> followed_;  // tooth 0, by path
+  std::vector<FollowedPath> followed_;     // tooth 0, by path
+  std::vector<FollowedPath> other_pairs_;  // tooth 0 of the path at hand on one pair of angles alone
   bool parallel_ = false, coincident_ = false, copies_ = false;
   std::optional<RotaryPair> stood_;  // the rotaries behind the operation before
   bool loop_is_entered_ = true;

@@ -19,6 +19,7 @@
 
 #include "cam/proof/checked_cl_path.h"
 #include "cam/tool/assembly.h"
+#include "cam/tool/cutters.h"
 #include "geometry/base/result.h"
 #include "machines/machine.h"
 #include "postproc/choice/travel_offer.h"
@@ -122,7 +123,8 @@ struct AxisOperation {
   std::string type;
   int tool_number = 0;
   double tool_length_mm = 0;
-  std::string tool_name;  ///< for the header comment
+  std::string tool_name;                  ///< for the header comment
+  std::optional<tool::AptCutter> cutter;  ///< for cutter location data
   double spindle_rpm = 0;
   std::vector<ToothBlocks> teeth;  ///< one entry in a loop, else one a tooth in the order of the program
   int first_place = 0;             ///< where the order begins; not 0 only in a program that begins in the middle

@@ -98,6 +98,7 @@ void ToothBuilder::rise_along_tool() {
 }
 
 void ToothBuilder::leave_to_top() {
+  end_on_angles();
   rise_along_tool();
   if (error_) return;
   AxisBlock b;

@@ -94,6 +94,7 @@ class ToothBuilder {
   [[nodiscard]] double tip_height_for_turn(const RotaryPair& to) const;
   void tcp_on();
   void tcp_off();
+  void end_on_angles();
 
   // postproc/joints/tip_links.cpp: with TCP.
   void start_at_zero();

@@ -20,6 +20,7 @@
 #include "cam/path/cl_path.h"
 #include "cam/path/tool_motion.h"
 #include "cam/tool/assembly.h"
+#include "cam/tool/cutters.h"
 #include "geometry/base/result.h"
 #include "machines/machine.h"
 #include "postproc/joints/program.h"
@@ -45,6 +46,7 @@ struct NcControl {
   std::array<double, 5> rapid_speed{};       ///< mm/min and deg/min
   std::array<bool, 5> rollover{};            ///< the control counts this rotary within one turn
   std::map<int, double> tool_length_mm;      ///< by T and H number
+  std::map<int, tool::AptCutter> cutters;    ///< by T number; of those that cutter location data can state
   std::map<std::string, Vec3> work_offsets;  ///< "G54" -> origin, machine coordinates, mm
   double rotary_rounding_deg = 0.5e-5;       ///< half the last digit that the dialect prints
   double linear_rounding_mm = 0.5e-4;        ///< the same of the linear words

@@ -176,8 +176,10 @@ std::string pass_table(const ShaperSetup& s) {
 std::string study_table(const ShaperSetup& s, const std::vector<FeedStudyRow>& study) {
   std::string out = fmt::format(
       "<div><h2>Time and error</h2>\n<p>Infeed {}, one turn {}, total {} without set-up.</p>\n<table><tr><th>circular "
-      "feed mm<th>time min<th>left on flanks &micro;m, max<th>rms</tr>\n",
-      value(s.infeed_min, 2, "min"), value(s.generating_min, 2, "min"), value(s.total_min(), 2, "min"));
+      "feed mm<th>time min<th>left on flanks &micro;m, largest of {} "
+      "places<th>rms</tr>\n",
+      value(s.infeed_min, 2, "min"), value(s.generating_min, 2, "min"), value(s.total_min(), 2, "min"),
+      study.empty() ? 0 : study.front().deviation.points);
   for (const auto& row : study)
     out += fmt::format("<tr><td>{:.4f}<td>{:.2f}<td>{:.3f}<td>{:.3f}</tr>\n", row.circular_feed_mm, row.minutes,
                        row.deviation.max_left_um, row.deviation.rms_um);

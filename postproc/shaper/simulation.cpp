@@ -195,7 +195,9 @@ std::vector<ShaperStroke> planned_strokes(const ShaperSetup& setup, int first, i
 }
 
 std::vector<FeedStudyRow> feed_study(const ShaperSetup& setup, const std::vector<double>& feeds_mm) {
-  const auto samples = flank_samples(setup.surface, setup.inner_radius_mm, setup.outer_radius_mm, 9, 13);
+  auto samples = flank_samples(setup.surface, setup.inner_radius_mm, setup.outer_radius_mm, 9, 13);
+  // Inside of the involute start the generating itself takes the tip corner away, whatever the feed.
+  std::erase_if(samples, [](const FlankSample& sample) { return sample.theta < 0; });
   const double window = reach(setup.surface, setup.inner_radius_mm);
   std::vector<FeedStudyRow> rows;
   for (const double feed : feeds_mm) {
@@ -216,7 +218,7 @@ BackStrokeClearance back_stroke_clearance(const ShaperSetup& s, double relief_mm
   const auto& cutter = gear.shaper;
   const int now = s.strokes_infeed + s.strokes_turn / 2;
   const int past = static_cast<int>(std::ceil(2 * reach(gear, s.inner_radius_mm) / (2 * kPi) * s.strokes_turn));
-  const auto strokes = planned_strokes(s, std::max(s.strokes_infeed, now - past), now);
+  const auto strokes = planned_strokes(s, std::max(1, now - past), now);
   const double phi = strokes.back().cutter_to, work = strokes.back().work_to, tooth = 2 * kPi / cutter.teeth;
   BackStrokeClearance clearance{kFar, kFar};
   const auto probe = [&](double x, double y) {
@@ -224,6 +226,8 @@ BackStrokeClearance back_stroke_clearance(const ShaperSetup& s, double relief_mm
       const double across = gear.E + y;
       if (std::abs(across) >= r) continue;
       const double Z = std::sqrt((r - across) * (r + across));
+      // Where the edge does not come, it does not rub.
+      if (Z > std::max(s.start_mm, s.end_mm) || Z < std::min(s.start_mm, s.end_mm)) continue;
       const Vec3 housing = gear.b() * across + gear.a() * Z + gear.d() * (x - relief_mm);
       const double above = housing.z() - gear.z_tip(r);
       const Vec3 point = face_gear::FaceGearSurface<double>::turned(housing, -work);

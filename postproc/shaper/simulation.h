@@ -68,7 +68,8 @@ struct FeedStudyRow {
   double minutes = 0;  ///< infeed and one full turn
   ShapedDeviation deviation;
 };
-/// Strokes at the set-up's strokes per minute with other circular feeds; one tooth, both flanks.
+/// Strokes at the set-up's strokes per minute with other circular feeds; one tooth, both flanks, the conjugate ones of
+/// 9 x 13 places each: the largest is that of these places.
 [[nodiscard]] std::vector<FeedStudyRow> feed_study(const ShaperSetup& setup, const std::vector<double>& feeds_mm);
 
 /// Least distances of the cutter's profile, lifted by `relief_mm` at the end of a stroke in the middle of the turn at

@@ -68,8 +68,9 @@ struct NcRollover {
 
 /// What a control wants to read.
 struct NcDialect {
-  std::string name;       ///< as in a machine file
-  std::string extension;  ///< ".ngc"
+  std::string name;                           ///< as in a machine file
+  std::string extension;                      ///< ".ngc"
+  bool name_begins_with_two_letters = false;  ///< of programs known by the name of their file
   joints::WordFormat format;
 
   // Words.

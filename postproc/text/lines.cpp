@@ -1,5 +1,7 @@
 #include "postproc/text/lines.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "machines/assumed.h"
@@ -11,6 +13,7 @@
 namespace toothpath::text {
 namespace {
 
+constexpr std::size_t kLongestName = 24;
 constexpr double kFreeFeed = 1000;  // F that goes with G94 where nothing is cut, mm/min
 
 }  // namespace
@@ -186,14 +189,24 @@ std::string NcLines::numbered(std::string_view text) {
   return out;
 }
 
+std::string name_on_control(const NcDialect& dialect, const NcHeader& header) {
+  if (has_program_number(dialect)) return fmt::format("O{}", header.program_number);
+  std::string name = program_id(header.job_name);
+  if (dialect.name_begins_with_two_letters && name.size() > 1 && std::isdigit(static_cast<unsigned char>(name[1])))
+    name.insert(1, "_");
+  name = name.substr(0, kLongestName) + dialect.extension;
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return char(std::toupper(c)); });
+  return name;
+}
+
 std::string program_id(std::string_view text) {
   std::string out;
-  for (const char c : numbers::comment_text(text).substr(0, 24)) {
+  for (const char c : numbers::comment_text(text).substr(0, kLongestName)) {
     const bool letter = c >= 'A' && c <= 'Z', digit = c >= '0' && c <= '9';
     out += letter || digit ? c : '_';
   }
   if (out.empty() || out[0] < 'A' || out[0] > 'Z') out.insert(0, "P");
-  return out.substr(0, 24);
+  return out.substr(0, kLongestName);
 }
 
 }  // namespace toothpath::text

@@ -48,6 +48,10 @@ struct NcText {
 [[nodiscard]] Result<NcText> write_nc(const joints::AxisProgram& program, const NcDialect& dialect,
                                       const NcHeader& header);
 
+/// What a program is called on the control: its number, or the job's name as that of a file. Two jobs whose files are
+/// stored under the name of the output would replace each other.
+[[nodiscard]] std::string name_on_control(const NcDialect& dialect, const NcHeader& header);
+
 /// Text as the name of a program: letters, digits and _, at most 24, beginning with a letter.
 [[nodiscard]] std::string program_id(std::string_view text);
 

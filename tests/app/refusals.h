@@ -116,6 +116,8 @@ inline bool confirms_bevel(const std::string& message, const bevel_gear::BevelGe
     const double half = std::min(p.apex_cone_distance_mm - gear.inner(), gear.outer() - p.apex_cone_distance_mm);
     return is(1, 2 * gear.corner_reach()) && half < 2 * gear.corner_reach();
   }
+  if (says("face_width = ([0-9.]+) is below ([0-9.]+), four times the reach"))
+    return is(2, 4 * gear.corner_reach()) && p.face_width_mm < 4 * gear.corner_reach();
   if (says(R"(module = ([0-9.]+) exceeds ([0-9.]+) \(0.99 of the normal module)"))
     return is(2, 0.99 * gear.normal_module(gear.inner())) && mill.module > 0.99 * gear.normal_module(gear.inner());
   if (says("tip_radius = ([0-9.]+) exceeds ([0-9.]+), where (the cutter gets pointed)?")) {

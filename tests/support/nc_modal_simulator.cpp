@@ -185,6 +185,7 @@ Language apt() {
              {"UNITS/INCHES", "units", "inch"},
              {"MULTAX/ON", "axes", "all"},
              {R"(LOADTL/\d+,LENGTH,[0-9.]+)", "-", "tool change"},
+             {R"(CUTTER/[0-9.,]+)", "-", ""},
              {R"(SPINDL/RPM,\d+,CLW)", "spindle", "on"},
              {"SPINDL/OFF", "spindle", "off"},
              {"COOLNT/ON|COOLNT/FLOOD|COOLNT/MIST", "coolant", "on"},

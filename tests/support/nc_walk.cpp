@@ -421,7 +421,8 @@ class AptWalker : public Walker {
   }
   bool execute(const std::string& code) override {
     static const std::regex tool(R"(LOADTL/(\d+),LENGTH,[0-9.]+)"),
-        harmless(R"(PARTNO/.*|SPINDL/(?:RPM,\d+,CLW|OFF)|COOLNT/(?:ON|OFF|FLOOD|MIST)|FEDRAT/[0-9.]+,MMPM|FINI)");
+        harmless(
+            R"(PARTNO/.*|CUTTER/[0-9.,]+|SPINDL/(?:RPM,\d+,CLW|OFF)|COOLNT/(?:ON|OFF|FLOOD|MIST)|FEDRAT/[0-9.]+,MMPM|FINI)");
     if (code == "UNITS/MM") return metric_ = true;
     if (code == "MULTAX/ON") return tip_ = true;
     if (code == "RAPID") return once_ = true;

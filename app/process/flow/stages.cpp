@@ -112,6 +112,7 @@ std::optional<Diagnostic> post_and_prove(Run& run, const proof::ProofLimits& lim
     return std::nullopt;
   }
   process::note_verified(run.report, posted->file, run.program_text);
+  run.report.name_on_control = posted->name_on_control;
   return std::nullopt;
 }
 

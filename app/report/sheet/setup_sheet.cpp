@@ -53,6 +53,7 @@ void machine_section(Sheet& sheet, const job::Job& job, const PartOutline& part,
   sheet.row({"machine", fmt::format("{} ({})", machine.name, job.machine.file)});
   sheet.row({"control", machine.dialect});
   sheet.row({"program", report.program_file.empty() ? "none: the run is not verified" : report.program_file});
+  if (!report.name_on_control.empty()) sheet.row({"name on the control", report.name_on_control});
   if (!report.program_sha256.empty()) sheet.row({"SHA-256", report.program_sha256});
   sheet.row({"work offset", fmt::format("{} = machine {}", setup.work_offset, coordinates(setup.work_offset_at_mm))});
   sheet.row({"gear origin, machine", coordinates(setup.origin_mm)});

@@ -1,6 +1,6 @@
 // APT / CLDATA (ISO 3592, words of ISO 4343): cutter location data, no axes. What stands in the file is the tip in work
 // coordinates and the tool axis, tooth after tooth; the axis program is that of a machine whose tool turns freely. A
-// subset: PARTNO UNITS MULTAX LOADTL SPINDL COOLNT RAPID FEDRAT GOTO END FINI.
+// subset: PARTNO UNITS MULTAX LOADTL CUTTER SPINDL COOLNT RAPID FEDRAT GOTO END FINI.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -18,6 +18,7 @@ namespace toothpath::controls {
 namespace {
 
 constexpr int kAxisDecimals = 9;
+constexpr int kCutterDecimals = 4;
 constexpr std::size_t kLongestTip = 34;  // 72 characters less the longest axis
 
 class AptWriter {
@@ -35,6 +36,7 @@ class AptWriter {
     for (const auto& op : program_.operations) {
       out_.comment(fmt::format("OP {} {}", op.operation, op.type));
       out_.line(fmt::format("LOADTL/{},LENGTH,{}", op.tool_number, number(numbers::to_fixed(op.tool_length_mm, 4), 4)));
+      cutter(op);
       out_.line(fmt::format("SPINDL/RPM,{},CLW", std::llround(op.spindle_rpm)));
       if (coolant_) out_.line(coolant_->on);
       feed_ = -1;
@@ -57,6 +59,16 @@ class AptWriter {
     std::string s;
     numbers::append_fixed(s, scaled, decimals, true);
     return s;
+  }
+
+  void cutter(const joints::AxisOperation& op) {
+    if (!op.cutter) return out_.comment("FORM CUTTER, ITS MERIDIAN STANDS IN THE DRAWING");
+    std::string text;
+    for (const double v : *op.cutter) {
+      text += text.empty() ? "CUTTER/" : ",";
+      text += number(numbers::to_fixed(v, kCutterDecimals), kCutterDecimals);
+    }
+    out_.line(text);
   }
 
   void block(const joints::AxisBlock& b) {

@@ -61,6 +61,7 @@ class AptReader {
     if (s.take("RAPID")) return rapid_ = true, std::nullopt;
     if (s.take("FEDRAT/")) return feedrate(s, column);
     if (s.take("LOADTL/")) return load(s, column);
+    if (s.take("CUTTER/")) return cutter(s, column);
     if (s.take("SPINDL/RPM,")) {
       const auto v = s.number();
       if (!v || !s.take(",CLW")) return here(s.column(), "SPINDL/RPM,speed,CLW expected");
@@ -109,6 +110,22 @@ class AptReader {
     if (auto bad = placed(execution_.select_offset(control_.work_offsets.begin()->first))) return bad;
     if (auto bad = placed(execution_.set_length(execution_.tool()))) return bad;
     return placed(execution_.tcp_on());
+  }
+
+  /// What a viewer draws must be the tool of the job.
+  Problem cutter(readback::NcScanner& s, int column) {
+    const auto known = control_.cutters.find(static_cast<int>(execution_.tool()));
+    if (known == control_.cutters.end()) return here(column, "CUTTER of a tool that it cannot state");
+    for (std::size_t i = 0; i < known->second.size(); ++i) {
+      const int at = s.column();
+      const auto v = s.number();
+      if (!v) return here(s.column(), "CUTTER/d,r,e,f,a,b,h expected");
+      if (std::abs(*v - known->second[i]) > 1e-4)
+        return here(at, fmt::format("{} of CUTTER is {}, that of the job's tool is {:.4f}", "drefabh"[i], *v,
+                                    known -> second[i]));
+      if (i + 1 < known->second.size() && !s.take(",")) return here(s.column(), ", expected");
+    }
+    return std::nullopt;
   }
 
   Problem go_to(readback::NcScanner& s) {

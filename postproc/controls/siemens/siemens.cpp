@@ -16,6 +16,7 @@ text::NcDialect words() {
   text::NcDialect d;
   d.name = "siemens";
   d.extension = ".mpf";
+  d.name_begins_with_two_letters = true;
   d.format = {.linear_decimals = 5, .rotary_decimals = 6};
   d.rotary_equals = "=";
   d.comment_open = ";";

@@ -1,6 +1,7 @@
 // Planted faults: whatever a program does wrong is found and named, on walls, root, ends, corner, in the wrong tooth,
 // and with shank and holder against hub and shaft.
 #include <random>
+#include <regex>
 
 #include "cam/finger/obstacles.h"
 #include "tests/cam/finger/jobs.h"
@@ -152,6 +153,7 @@ TEST_F(FingerFaults, HubAndShaftStandInTheWay) {
     const char* name;
   };
   const double sd = clean().gear.sin_delta(), cd = clean().gear.cos_delta();
+  int cuts_told = 0;
   const double root_e = clean().gear.R_e() * sd - 5.1 * cd, root_i = clean().gear.R_i() * sd - 5.1 * cd;
   for (const Case& c : {Case{2 * root_e + 8, 0, false, "hub"}, Case{2 * root_e - 12, 0, true, ""},
                         Case{0, 2 * root_i + 8, false, "shaft"}, Case{0, 2 * root_i - 20, true, ""}}) {
@@ -165,11 +167,24 @@ TEST_F(FingerFaults, HubAndShaftStandInTheWay) {
     bool clear = true;
     std::string message;
     for (const auto& plan : clean().plans)
-      if (const auto verdict = with_bodies.approve(plan.path); !verdict)
+      if (const auto verdict = with_bodies.approve(plan.path); !verdict) {
         clear = false, message = verdict.error().message;
+        // Of a cut the worst record is told, not the first.
+        const auto depth = std::regex(" record ([0-9]+): the cutter goes ([0-9.]+) mm into ");
+        std::smatch match;
+        if (!std::regex_search(message, match, depth)) continue;
+        const auto motions = path::motions_of(plan.path);
+        EXPECT_NEAR(std::stod(match[2]), with_bodies.verify(motions).gouge.bound_mm, 6e-5) << message;
+        for (const auto& m : motions)
+          if (std::to_string(m.line) == match[1]) {
+            EXPECT_NEAR(std::stod(match[2]), with_bodies.verify({&m, 1}).gouge.bound_mm, 6e-5) << message;
+            ++cuts_told;
+          }
+      }
     EXPECT_EQ(clear, c.clear) << "hub " << c.hub << " shaft " << c.shaft << ": " << message;
     if (!c.clear) { EXPECT_NE(message.find(c.name), std::string::npos) << message; }
   }
+  EXPECT_GT(cuts_told, 0);
 }
 
 // The holder alone against a long shaft: flute and shank are clear.

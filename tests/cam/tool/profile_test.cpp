@@ -9,6 +9,7 @@
 
 #include "cam/clearance/clearance.h"
 #include "cam/tool/body.h"
+#include "cam/tool/cutters.h"
 #include "cam/tool/finger_profile.h"
 #include "geometry/base/angle.h"
 #include "tests/cam/finger/jobs.h"
@@ -21,6 +22,42 @@ namespace toothpath::test {
 namespace {
 
 using namespace tool;
+
+// The seven numbers of CUTTER draw the cutting part: lower line, corner, upper line. Their distance at points of the
+// meridian is nothing.
+TEST(AptCutter, DrawsTheCuttingPart) {
+  const auto check = [](const tool::ToolAssembly& t) {
+    const auto seven = tool::apt_cutter(t);
+    ASSERT_TRUE(seven);
+    const auto [d, r, e, f, a, b, h] = *seven;
+    EXPECT_EQ(a, 0);
+    EXPECT_EQ(h, t.flute_length_mm);
+    const double tb = std::tan(radians(b)), cb = std::cos(radians(b)), sb = std::sin(radians(b));
+    // Where the upper line leaves the corner; it runs from d/2 at the height of the tip.
+    EXPECT_NEAR(e + r * cb, d / 2 + (f - r * sb) * tb, 1e-12);
+    const tool::Meridian cutting = tool::profile_of(t).cutting();
+    for (int k = 0; k <= 40; ++k) {
+      const double turn = (kPi / 2 - radians(b)) * k / 40, height = (f - r * sb) + (h - f + r * sb) * k / 40;
+      EXPECT_NEAR(cutting.distance(f - r * std::cos(turn), e + r * std::sin(turn)).distance, 0, 1e-12);
+      EXPECT_NEAR(cutting.distance(height, d / 2 + height * tb).distance, 0, 1e-12);
+    }
+  };
+  tool::ToolAssembly t = stubby_mill();
+  check(t);
+  t.type = tool::CutterType::tapered_ball_end_mill;
+  t.half_angle_rad = radians(7);
+  check(t);
+  t.type = tool::CutterType::bull_nose_end_mill;
+  t.half_angle_rad = 0;
+  t.corner_radius_mm = 0.3 * t.diameter_mm;
+  check(t);
+  t.type = tool::CutterType::flat_end_mill;
+  t.corner_radius_mm = 0;
+  check(t);
+  t.type = tool::CutterType::finger_mill;
+  EXPECT_FALSE(tool::apt_cutter(t));
+}
+
 using F50 = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>, boost::multiprecision::et_off>;
 
 tool::CutterData tapered(double r_0 = 0.25, double half_angle_deg = 5) {

@@ -145,6 +145,25 @@ TEST(ControlTables, NameEveryControl) {
     EXPECT_NE(controls::find((*it)[1].str()), nullptr) << "docs/dialects.md names " << (*it)[1];
 }
 
+// By the job, so that two of them do not replace each other on a control; "SAMPLE" stands in BEGIN PGM, too.
+TEST(ProgramNames, OfFilesFollowTheJob) {
+  const auto name = [](const char* control, const char* job) {
+    text::NcHeader header;
+    header.job_name = job;
+    header.program_number = 2500;
+    return text::name_on_control(controls::find(control)->words, header);
+  };
+  EXPECT_EQ(name("fanuc", "gear"), "O2500");
+  EXPECT_EQ(name("haas", "gear"), "O2500");
+  EXPECT_EQ(name("siemens", "dhfg-t600s"), "DHFG_T600S.MPF");
+  EXPECT_EQ(name("siemens", "z8 pinion"), "Z_8_PINION.MPF");
+  EXPECT_EQ(name("siemens", "8 teeth"), "P_8_TEETH.MPF");
+  EXPECT_EQ(name("siemens", "a very long name of a gear with a number"), "A_VERY_LONG_NAME_OF_A_GE.MPF");
+  EXPECT_EQ(name("heidenhain", "z8 pinion"), "Z8_PINION.H");
+  EXPECT_EQ(name("linuxcnc", "gear"), "GEAR.NGC");
+  EXPECT_EQ(name("apt", "gear"), "GEAR.APT");
+}
+
 // The sub-programs of a job stand behind its own number, never among the builder's.
 TEST(ProgramNumbers, OfSubProgramsFollowThatOfTheProgram) {
   for (const auto* c : controls::all()) {

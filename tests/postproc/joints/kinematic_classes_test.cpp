@@ -5,6 +5,7 @@
 #include <random>
 
 #include "postproc/choice/solution.h"
+#include "postproc/choice/ways.h"
 #include "postproc/joints/words.h"
 #include "tests/postproc/readback/nc_case.h"
 #include "tests/postproc/restart/tooth_comparison.h"
@@ -222,6 +223,51 @@ TEST(SolutionChoice, NoCandidateNamesBoth) {
   EXPECT_NE(refused.error().message.find("A = "), std::string::npos);
   EXPECT_NE(refused.error().message.find("outside [-10.0000, 10.0000]; the other solution A = "), std::string::npos)
       << refused.error().message;
+}
+
+// The ways from tooth to tooth that take the least time, against all there are.
+TEST(SolutionChoice, WaysFromToothToToothTakeTheLeastTime) {
+  std::mt19937 random(190);
+  std::uniform_real_distribution<double> angle(-kPi, kPi), minutes(0, 0.001);
+  for (int trial = 0; trial < 50; ++trial) {
+    machines::Machine m = trunnion();
+    m.chain.table[0].rollover = trial % 3 == 0;
+    std::vector<std::vector<choice::ToothWay>> teeth(5);
+    std::size_t all = 1;
+    for (auto& ways : teeth) {
+      ways.resize(1 + random() % 4);
+      all *= ways.size();
+      for (auto& way : ways) way = {{angle(random), angle(random)}, {angle(random), angle(random)}, minutes(random)};
+    }
+    const choice::RotaryPair from = {angle(random), angle(random)};
+    const auto time = [&](const std::vector<std::size_t>& chosen) {
+      double sum = 0;
+      choice::RotaryPair at = from;
+      for (std::size_t n = 0; n < teeth.size(); ++n) {
+        const auto& way = teeth[n][chosen[n]];
+        double turn = 0;
+        for (std::size_t k = 0; k < 2; ++k) {
+          double d = std::abs(way.begin[k] - at[k]);
+          if (m.chain.table[k].rollover) d = std::min(std::fmod(d, kTwoPi), kTwoPi - std::fmod(d, kTwoPi));
+          turn = std::max(turn, d / m.chain.table[k].max_speed);
+        }
+        sum += turn + way.minutes;
+        at = way.end;
+      }
+      return sum;
+    };
+    double least = 1e300;
+    for (std::size_t code = 0; code < all; ++code) {
+      std::vector<std::size_t> chosen;
+      std::size_t rest = code;
+      for (const auto& ways : teeth) {
+        chosen.push_back(rest % ways.size());
+        rest /= ways.size();
+      }
+      least = std::min(least, time(chosen));
+    }
+    EXPECT_NEAR(time(choice::choose_ways(teeth, from, m.chain)), least, 1e-12);
+  }
 }
 
 // 2: between passes the quicker of both pairs: a half turn of C costs more than twice the tilt.

@@ -71,6 +71,47 @@ TEST(AxisProgram, EndsOfBlocksAreTheTurnedRecords) {
     }
 }
 
+// C of +-190 deg and a tooth that sways it by more than 20: no whole turn of its commands fits some teeth, the other
+// pair of angles does. Every record is met all the same, and neither rotary leaves its limits.
+TEST(AxisProgram, OtherPairServesTeethThatTheFirstDoesNotReach) {
+  machines::Machine m = trunnion();
+  m.chain.table[0].min_rad = radians(-190);
+  m.chain.table[0].max_rad = radians(190);
+  const auto path = sample_path(0.35, 0.7);
+  const int z = 60;
+  const auto program = axis_program({path}, m, standing(), z, true);
+  ASSERT_TRUE(program) << program.error().message;
+  const auto& op = program->operations[0];
+  ASSERT_EQ(op.teeth.size(), std::size_t(z));
+  std::array<int, 2> tilts{};
+  for (int k = 0; k < z; ++k) {
+    const auto& blocks = op.teeth[static_cast<std::size_t>(k)].blocks;
+    std::vector<int> met(path.records.size(), 0);
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+      const auto& b = blocks[i];
+      const auto j = joints_of(*program, op, b, 0);
+      ASSERT_LE(std::abs(j[3]), 190) << k;
+      if (b.record < 0 || (i + 1 < blocks.size() && blocks[i + 1].record == b.record)) continue;
+      const auto& r = path.records[static_cast<std::size_t>(b.record)];
+      const auto p = pose(j, standing(), op.tool_length_mm);
+      ASSERT_LT((p.tip - about_z(r.tip, 2 * kPi * k / z)).norm(), program->rounding_bound_mm) << k << " " << b.record;
+      ASSERT_LT((p.axis - about_z(r.axis, 2 * kPi * k / z)).norm(), 2e-7);
+      met[static_cast<std::size_t>(b.record)] = 1;
+      if (b.kind == joints::BlockKind::feed) ++tilts[j[4] > 0 ? 1 : 0];
+    }
+    for (std::size_t i = 0; i + 1 < met.size(); ++i) EXPECT_EQ(met[i], 1) << k << " " << i;
+  }
+  EXPECT_GT(tilts[0], 0);
+  EXPECT_GT(tilts[1], 0);
+  // Without the other pair it is refused.
+  m.chain.table[1].min_rad = tilts[1] > tilts[0] ? radians(-1) : m.chain.table[1].min_rad;
+  m.chain.table[1].max_rad = tilts[1] > tilts[0] ? m.chain.table[1].max_rad : radians(1);
+  const auto one_pair = axis_program({path}, m, standing(), z, true);
+  ASSERT_FALSE(one_pair);
+  EXPECT_NE(one_pair.error().message.find("tooth "), std::string::npos) << one_pair.error().message;
+  EXPECT_NE(one_pair.error().message.find("outside [-189.99"), std::string::npos) << one_pair.error().message;
+}
+
 // Danger 22: inside the blocks, densely sampled, the tip stays on the chord.
 TEST(AxisProgram, StaysOnTheChordInsideBlocks) {
   const auto path = sample_path(0.5, 0.9, 6);  // long steps: many halvings

@@ -107,6 +107,8 @@ TEST(AptReader, RefusalsNameLineAndColumn) {
       {"GOTO/1.,2.,$\n", "a line must follow"},
       {"CYCLE/DRILL\n", "p:7:1: error: the statement is not in the subset"},
       {"LOADTL/1,LENGTH,96.\n", "LENGTH 96 differs from 95"},
+      {"CUTTER/4.,2.5\n", "p:7:11: error: r of CUTTER is 2.5, that of the job's tool is 2.0000"},
+      {"CUTTER/4.,2.\n", "p:7:13: error: , expected"},
       {"LOADTL/2,LENGTH,90.25\n", "tool change while the spindle turns"},
       {"END\n", "program end while the spindle turns"},
       {"SPINDL/OFF\nEND\n", "end without FINI"},

@@ -1,4 +1,6 @@
 // The set-up's numbers: the worked example of gear shaping, the contract's formulas, and what is refused.
+#include <random>
+
 #include "tests/postproc/shaper/case.h"
 
 namespace toothpath::test {
@@ -130,6 +132,40 @@ TEST(ShaperSetup, PassTableEndsAtTheFinishedTooth) {
     EXPECT_GT(s.passes[k].depth_mm, s.passes[k - 1].depth_mm);
     EXPECT_GT(s.passes[k].space_width_mm, s.passes[k - 1].space_width_mm);
   }
+}
+
+// The stroke has cut all that it passed: lifted from there the edge meets at most the lift and the feed of one stroke.
+TEST(ShaperSetup, BackStrokeMeetsNoMoreThanLiftAndFeed) {
+  std::mt19937 random(1913);
+  const auto uniform = [&](double a, double b) { return a + (b - a) * double(random() % 100000) / 100000; };
+  int planned = 0;
+  for (int k = 0; k < 150; ++k) {
+    auto w = shaper_work();
+    auto& g = w.gear;
+    g.module_mm = std::exp(uniform(0, std::log(6)));
+    g.shaper_teeth = 14 + static_cast<int>(random() % 20);
+    g.teeth = g.shaper_teeth * 2 + static_cast<int>(random() % 60);
+    const double pitch_radius = 0.5 * g.module_mm * g.teeth;
+    g.zones.front().inner_radius_mm = pitch_radius * uniform(0.97, 1.05);
+    g.zones.front().outer_radius_mm = g.zones.front().inner_radius_mm + g.module_mm * uniform(2, 5);
+    g.offset_mm = pitch_radius * uniform(-0.35, 0.35);
+    w.shaping.circular_feed_mm = uniform(0.05, 0.6);
+    w.shaping.radial_feed_mm = uniform(0.01, 0.08);
+    w.shaping.over_run_mm = uniform(0.5, 6);
+    auto machine = shaper_machine();
+    machine.relief_mm = uniform(0.05, 1);
+    const auto made = face_gear::FaceGear::make(g);
+    if (!made.has_value()) continue;
+    const auto setup = shaper::plan_shaper_setup(w, machine);
+    if (!setup.has_value()) continue;
+    ++planned;
+    const auto& s = setup.value();
+    const double step = 2 * kPi / s.strokes_turn;  // of the work, a stroke
+    const double feed = step * (s.outer_radius_mm + s.surface.shaper.r_a * s.work_teeth / s.cutter_teeth);
+    EXPECT_GE(s.relief.stock_mm, -(s.machine.relief_mm + feed)) << k << " feed " << feed;
+    EXPECT_GE(s.relief.flank_mm, -(s.machine.relief_mm + feed)) << k << " feed " << feed;
+  }
+  EXPECT_GE(planned, 20);
 }
 
 TEST(ShaperSetup, ReliefIsChecked) {

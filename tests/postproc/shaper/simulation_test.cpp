@@ -174,6 +174,30 @@ TEST(ShaperSimulation, NoDriftOverTheWholeTurn) {
   }
 }
 
+// Inside of the involute start the tip corner is cut off by the generating itself, whatever the feed: not an error of
+// the feed. What is left of the places is never cut deeper than by rounding, so no mean is above the largest.
+TEST(ShaperSimulation, FeedStudyCountsConjugatePlacesAlone) {
+  auto w = shaper_work();
+  w.gear.module_mm = 5.54395;
+  w.gear.shaper_teeth = 15;
+  w.gear.teeth = 88;
+  w.gear.offset_mm = 47.6744;
+  w.gear.zones.front().inner_radius_mm = 247.947;
+  w.gear.zones.front().outer_radius_mm = 261.13;
+  const auto s = shaper_setup(w, shaper_machine());
+  const auto all = shaper::flank_samples(s.surface, s.inner_radius_mm, s.outer_radius_mm, 9, 13);
+  const auto not_conjugate = std::count_if(all.begin(), all.end(), [](const auto& q) { return q.theta < 0; });
+  EXPECT_GT(not_conjugate, 5);
+  double deepest = 0;
+  for (const auto& q : all) deepest = std::min(deepest, shaper::generated_distance(s.surface, q.point));
+  EXPECT_LT(deepest, -0.03);
+  for (const auto& row : shaper::feed_study(s, {0.1, 0.4, 1.6})) {
+    EXPECT_EQ(row.deviation.points, all.size() - std::size_t(not_conjugate));
+    EXPECT_GT(row.deviation.deepest_um, -0.01) << row.circular_feed_mm;
+    EXPECT_LT(row.deviation.rms_um, row.deviation.max_left_um) << row.circular_feed_mm;
+  }
+}
+
 // What the strokes leave grows with the square of the feed, and is the parabola that the curvature of the envelope
 // predicts.
 TEST(ShaperSimulation, ScallopsGrowWithTheSquareOfTheFeed) {
