@@ -196,8 +196,16 @@ class Beside {
       wide = wide || turns_wide(own);
     }
     const bool like = !wide && tip_ + kReach * axis_ <= kLike;
-    if (like) at_ = to;
-    else if (searches_ > 0) at_ = nearest(b, 0, path_.size()), --searches_;
+    // Where one search found nothing near the next motions are likely to be as far: turns of a link are many motions.
+    if (like || k != number_ + 1) wait_ = next_wait_ = 0;
+    number_ = k;
+    if (like) {
+      at_ = to;
+    } else if (searches_ > 0 && wait_-- == 0) {
+      at_ = nearest(b, 0, path_.size()), --searches_;
+      wait_ = next_wait_;
+      next_wait_ = 2 * next_wait_ + 1;
+    }
     if (!like) return std::nullopt;
     return proof::LikeMotion{k, path_[from], path_[to] + 1, rounded_up(tip_ + m.deviation_mm - stray),
                              rounded_up(kNormalised * axis_ + m.axis_deviation - turn)};
@@ -233,9 +241,11 @@ class Beside {
   std::span<const path::ToolMotion> motions_;
   const std::vector<std::uint32_t>& path_;
   double c_, s_;
-  std::size_t at_ = 0;         ///< of the path: where the last motion ended
-  int searches_ = kSearches;   ///< that are left
-  double tip_ = 0, axis_ = 0;  ///< how far the places taken are apart, at most
+  std::size_t at_ = 0;            ///< of the path: where the last motion ended
+  int searches_ = kSearches;      ///< that are left
+  int wait_ = 0, next_wait_ = 0;  ///< motions until the next of them, and from there to the one after
+  std::uint32_t number_ = 0;      ///< of the last motion
+  double tip_ = 0, axis_ = 0;     ///< how far the places taken are apart, at most
 };
 
 /// Of every operation the first tooth that it cuts.

@@ -368,6 +368,48 @@ struct FingerGougeCheck::State {
     return cuts;
   }
 
+  /// Bounds of every motion of every tooth, and what is found on walls and root of the first tooth present; with marks
+  /// only along the motions that have one, and no grids.
+  FingerCheckResult judge(std::span<const path::ToolMotion> given, std::optional<std::span<const char>> marks) const {
+    FingerCheckResult result = nothing_yet(tol.clearance_mm);
+    const WorkShare all(kMotionsWorth + 1);
+    std::vector<path::ToolMotion> local;
+    local.reserve(given.size());
+    for (const auto& m : given) local.push_back(turned(m, gear.pitch()));
+    std::vector<MotionDepth> depths(local.size());
+    std::vector<double> clearances(local.size(), std::numeric_limits<double>::infinity());
+    judge_motions(local, depths, clearances, result);
+    result.gouge.motions = given.size();
+    const std::vector<FingerCut> cuts = cuts_of_first_tooth(local);
+    if (const FingerTool* tool = reference()) result.wall_excess_bound_mm = left_bound(gear, *tool, cuts);
+    for (std::size_t k = 0; marks && k < local.size(); ++k)
+      if ((*marks)[k] == 0) depths[k] = {}, clearances[k] = std::numeric_limits<double>::infinity();
+    judge_deepest(local, depths, result);
+    judge_clearance(local, clearances, result.gouge);
+    if (!marks) measure(cuts, result);
+    return result;
+  }
+
+  /// Walls and ridges.
+  void measure(std::span<const FingerCut> cuts, FingerCheckResult& result) const {
+    std::vector<std::vector<FingerCut>> by_operation(operations.size());
+    for (const FingerCut& cut : cuts) by_operation[static_cast<std::size_t>(cut.motion->operation)].push_back(cut);
+    const WallExcess excess =
+        measure_walls(points, by_operation, gear.parameters().addendum_mm + gear.parameters().dedendum_mm);
+    for (std::size_t op = 0; op < by_operation.size(); ++op)
+      result.operations.push_back(summary_of(points, excess.after[op], static_cast<int>(op)));
+    if (!result.operations.empty()) {
+      judge_points(excess, result);
+      result.finished = result.operations.back();
+    }
+    if (result.wall_excess_bound_mm < kBelievable && !result.operations.empty()) {
+      result.finished.bound_mm = std::max(result.finished.max_mm, result.wall_excess_bound_mm);
+      result.operations.back().bound_mm = result.finished.bound_mm;
+    }
+    result.walls = wall_grids(points, excess, opt.rows, opt.columns);
+    result.ridge = ridge(cuts);
+  }
+
   RidgeResult ridge(std::span<const FingerCut> cuts) const {
     RidgeResult out;
     if (const FingerTool* tool = reference(); tool && !cuts.empty())
@@ -387,41 +429,21 @@ FingerGougeCheck::FingerGougeCheck(const bevel_gear::BevelGear& gear, std::span<
 FingerGougeCheck::~FingerGougeCheck() = default;
 
 FingerCheckResult FingerGougeCheck::verify(std::span<const path::ToolMotion> given) const {
+  return state_->judge(given, std::nullopt);
+}
+
+FingerCheckResult FingerGougeCheck::bounds(std::span<const path::ToolMotion> given, std::span<const char> look) const {
+  return state_->judge(given, look);
+}
+
+bool FingerGougeCheck::among_teeth(const path::ToolMotion& motion) const {
   const State& s = *state_;
-  FingerCheckResult result = nothing_yet(s.tol.clearance_mm);
-
-  const WorkShare all(kMotionsWorth + 1);
-  // Bounds: every motion of every tooth.
-  std::vector<path::ToolMotion> local;
-  local.reserve(given.size());
-  for (const auto& m : given) local.push_back(turned(m, s.gear.pitch()));
-  std::vector<State::MotionDepth> depths(local.size());
-  std::vector<double> clearances(local.size(), std::numeric_limits<double>::infinity());
-  s.judge_motions(local, depths, clearances, result);
-  result.gouge.motions = given.size();
-  s.judge_deepest(local, depths, result);
-  s.judge_clearance(local, clearances, result.gouge);
-
-  // Measured: walls and ridges, first tooth present.
-  const std::vector<FingerCut> cuts = s.cuts_of_first_tooth(local);
-  std::vector<std::vector<FingerCut>> by_operation(s.operations.size());
-  for (const FingerCut& cut : cuts) by_operation[static_cast<std::size_t>(cut.motion->operation)].push_back(cut);
-  const WallExcess excess =
-      measure_walls(s.points, by_operation, s.gear.parameters().addendum_mm + s.gear.parameters().dedendum_mm);
-  for (std::size_t op = 0; op < by_operation.size(); ++op)
-    result.operations.push_back(summary_of(s.points, excess.after[op], static_cast<int>(op)));
-  if (!result.operations.empty()) {
-    s.judge_points(excess, result);
-    result.finished = result.operations.back();
-  }
-  if (const FingerTool* tool = s.reference()) result.wall_excess_bound_mm = left_bound(s.gear, *tool, cuts);
-  if (result.wall_excess_bound_mm < kBelievable && !result.operations.empty()) {
-    result.finished.bound_mm = std::max(result.finished.max_mm, result.wall_excess_bound_mm);
-    result.operations.back().bound_mm = result.finished.bound_mm;
-  }
-  result.walls = wall_grids(s.points, excess, s.opt.rows, s.opt.columns);
-  result.ridge = s.ridge(cuts);
-  return result;
+  if (motion.rapid || !s.tool_of(motion.operation)) return false;
+  const path::ToolMotion m = turned(motion, s.gear.pitch());
+  if (axial_gap(s.gear, m).gap >= 0) return false;
+  const auto& bodies = s.hulls[static_cast<std::size_t>(s.operations[static_cast<std::size_t>(m.operation)].tool)];
+  return std::any_of(bodies.begin(), bodies.end(),
+                     [&](const ToolHull& hull) { return nearest_obstacle(hull, s.blank, m).gap < 0; });
 }
 
 proof::GougeResult FingerGougeCheck::rapids(std::span<const path::ToolMotion> given) const {

@@ -58,6 +58,13 @@ class FingerGougeCheck {
   /// measurements use those of the first tooth present.
   [[nodiscard]] FingerCheckResult verify(std::span<const path::ToolMotion> motions) const;
 
+  /// What is proven, with the same numbers; on the walls themselves only the motions that are marked are looked at, and
+  /// there are no grids. @param look one a motion
+  [[nodiscard]] FingerCheckResult bounds(std::span<const path::ToolMotion> motions, std::span<const char> look) const;
+
+  /// Does it feed where the tool may be within the blank?
+  [[nodiscard]] bool among_teeth(const path::ToolMotion& motion) const;
+
   /// The rapids among these motions against blank, hub and shaft; the places that are met stand in `worst`.
   [[nodiscard]] proof::GougeResult rapids(std::span<const path::ToolMotion> motions) const;
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "cam/proof/gouge_merge.h"
@@ -11,6 +12,8 @@
 
 namespace toothpath::finger {
 namespace {
+
+constexpr double kMostUnlike = 0.05;  // a like motion, of a tooth that goes as others do
 
 /// The worse of two teeth, field by field.
 void take_worse(FingerCheckResult& all, FingerCheckResult&& one) {
@@ -26,26 +29,59 @@ void take_worse(FingerCheckResult& all, FingerCheckResult&& one) {
   }
 }
 
+/// Slots of the least proven: the greatest bound, the least proven gap, the most that may be left; of equal ones the
+/// first.
+std::set<std::size_t> least_proven(const std::vector<FingerCheckResult>& results) {
+  const auto first_most = [&](auto value) {
+    std::size_t at = 0;
+    for (std::size_t k = 1; k < results.size(); ++k)
+      if (value(results[k]) > value(results[at])) at = k;
+    return at;
+  };
+  return {first_most([](const FingerCheckResult& r) { return r.gouge.bound_mm; }),
+          first_most([](const FingerCheckResult& r) { return -r.gouge.clearance_mm; }),
+          first_most([](const FingerCheckResult& r) { return r.wall_excess_bound_mm; })};
+}
+
 }  // namespace
 
-FingerCheckResult verify_teeth(const FingerGougeCheck& check, std::span<const path::ToolMotion> motions) {
+FingerCheckResult verify_teeth(const FingerGougeCheck& check, std::span<const path::ToolMotion> motions,
+                               std::span<const proof::LikeMotion> likes) {
   std::map<int, std::size_t> place;  // tooth that is cut -> its slot, in the order of the teeth
   for (const path::ToolMotion& m : motions)
     if (!m.rapid) place.emplace(m.tooth, 0);
   if (place.size() <= 1) return check.verify(motions);
   std::size_t slots = 0;
   for (auto& [tooth, slot] : place) slot = slots++;
-  std::vector<std::vector<path::ToolMotion>> teeth(slots);
-  for (const path::ToolMotion& m : motions) {
-    const auto found = place.find(m.tooth);
-    teeth[found == place.end() ? 0 : found->second].push_back(m);
+  struct Tooth {
+    std::vector<path::ToolMotion> motions;
+    std::vector<char> own;  // motions among the teeth that are like no other
+    std::size_t likes = 0, unlike = 0;
+    bool looked_at = false;
+  };
+  std::vector<Tooth> teeth(slots);
+  auto like = likes.begin();
+  for (std::size_t k = 0; k < motions.size(); ++k) {
+    const bool is_like = like != likes.end() && like->motion == k;
+    if (is_like) ++like;
+    const auto found = place.find(motions[k].tooth);
+    Tooth& tooth = teeth[found == place.end() ? 0 : found->second];
+    const bool own = !is_like && check.among_teeth(motions[k]);
+    tooth.motions.push_back(motions[k]);
+    tooth.own.push_back(char(own));
+    tooth.likes += is_like;
+    tooth.unlike += own;
   }
   std::vector<FingerCheckResult> results(slots);
   WorkShare share{double(slots)};
   tbb::parallel_for(std::size_t{0}, slots, [&](std::size_t k) {
     const WorkShare piece(share);
-    results[k] = check.verify(teeth[k]);
+    Tooth& tooth = teeth[k];
+    tooth.looked_at = tooth.likes == 0 || double(tooth.unlike) > kMostUnlike * double(tooth.likes);
+    results[k] = tooth.looked_at ? check.verify(tooth.motions) : check.bounds(tooth.motions, tooth.own);
   });
+  for (const std::size_t k : least_proven(results))
+    if (!teeth[k].looked_at) results[k] = check.verify(teeth[k].motions);
   FingerCheckResult all = std::move(results.front());
   for (std::size_t k = 1; k < slots; ++k) take_worse(all, std::move(results[k]));
   return all;

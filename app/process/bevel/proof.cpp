@@ -168,8 +168,8 @@ void BevelGearCheck::meet(const readback::OperationTrace& trace, std::span<const
 void BevelGearCheck::judge(process::ProgramProof& program, app::StageClock& clock) {
   const MovingAxes moving = std::exchange(moving_, {});
   clock.run("proof of the program", [&] {
-    process::with_all_motions(program,
-                              [&](const auto& motions, auto) { result = finger::verify_teeth(check_, motions); });
+    process::with_all_motions(
+        program, [&](const auto& motions, auto likes) { result = finger::verify_teeth(check_, motions, likes); });
   });
   judge_teeth(limits_, result, program.reasons);
   program.gouge = result.gouge;

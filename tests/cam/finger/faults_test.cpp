@@ -4,6 +4,7 @@
 #include <regex>
 
 #include "cam/finger/obstacles.h"
+#include "cam/finger/teeth.h"
 #include "tests/cam/finger/jobs.h"
 
 namespace toothpath {
@@ -142,6 +143,57 @@ TEST_F(FingerFaults, MissingPassIsLeftMaterial) {
     }
     EXPECT_GT(check().verify(motions).finished.max_mm, 0.02) << "pass " << skip;
   }
+}
+
+// Teeth that go nearly as the first one are proven as before, motion by motion, and looked at only where they are the
+// least proven: bounds are the same, what is found is away by no more than the teeth are.
+TEST_F(FingerFaults, TeethThatAreAlikeAreLookedAtOnce) {
+  std::mt19937 random(60);
+  std::uniform_real_distribution<double> off(-0.0004, 0.0004);
+  std::vector<path::ToolMotion> motions;
+  std::vector<proof::LikeMotion> likes;
+  const auto first = path::motions_of(clean().plans[1].path);
+  const std::uint32_t count = std::uint32_t(first.size());
+  for (int tooth = 0; tooth < 6; ++tooth) {
+    const Mat3 R = Eigen::AngleAxisd(tooth * clean().gear.pitch(), Vec3::UnitZ()).toRotationMatrix();
+    Vec3 shift = Vec3::Zero();  // of the end of the motion before
+    for (std::uint32_t k = 0; k < count; ++k) {
+      path::ToolMotion m = first[k];
+      m.tooth = tooth;
+      m.tip_from = R * m.tip_from + shift;
+      if (tooth > 0) shift = Vec3(off(random), off(random), off(random));
+      m.tip_to = R * m.tip_to + shift;
+      m.axis_from = R * m.axis_from;
+      m.axis_to = R * m.axis_to;
+      if (tooth > 0) likes.push_back({std::uint32_t(motions.size()), k, k + 1, 0.0007F, 0});
+      motions.push_back(m);
+    }
+  }
+  const double away = 0.0007;
+  const auto whole = finger::verify_teeth(check(), motions), shared = finger::verify_teeth(check(), motions, likes);
+  EXPECT_EQ(shared.gouge.bound_mm, whole.gouge.bound_mm);
+  EXPECT_EQ(shared.gouge.bound_line, whole.gouge.bound_line);
+  EXPECT_EQ(shared.gouge.clearance_mm, whole.gouge.clearance_mm);
+  EXPECT_EQ(shared.gouge.motions, whole.gouge.motions);
+  EXPECT_EQ(shared.wall_excess_bound_mm, whole.wall_excess_bound_mm);
+  EXPECT_EQ(shared.finished.bound_mm, whole.finished.bound_mm);
+  EXPECT_LE(shared.gouge.measured_mm, whole.gouge.measured_mm);
+  EXPECT_GE(shared.gouge.measured_mm, whole.gouge.measured_mm - away);
+  EXPECT_GE(shared.gouge.clearance_measured_mm, whole.gouge.clearance_measured_mm);
+  EXPECT_LE(shared.gouge.clearance_measured_mm, whole.gouge.clearance_measured_mm + away);
+  EXPECT_LT(shared.gouge.distance_queries, whole.gouge.distance_queries + 1);
+
+  // A motion that is like no other puts its tooth among those that are looked at.
+  const std::size_t at = 3 * count + count / 2;
+  motions[at].tip_to -= 0.012 * motions[at].axis_to;
+  motions[at + 1].tip_from = motions[at].tip_to;
+  std::erase_if(likes, [&](const proof::LikeMotion& l) { return l.motion == at || l.motion == at + 1; });
+  const auto found = finger::verify_teeth(check(), motions, likes), all = finger::verify_teeth(check(), motions);
+  EXPECT_GT(all.gouge.bound_mm, 0.002);
+  EXPECT_EQ(found.gouge.bound_mm, all.gouge.bound_mm);
+  EXPECT_EQ(found.gouge.measured_mm, all.gouge.measured_mm);
+  ASSERT_FALSE(found.gouge.worst.empty());
+  EXPECT_EQ(found.gouge.worst.front().tooth, 3);
 }
 
 TEST_F(FingerFaults, HubAndShaftStandInTheWay) {
