@@ -63,7 +63,7 @@ void add_stated(const machines::Machine& machine, std::vector<page::SceneBody>& 
 std::optional<page::MachineScene> machine_picture(const job::Job& job, const machines::Machine& machine,
                                                   const process::GearProcess& gear, const readback::ReadBack& read,
                                                   const process::Scene* scene) {
-  auto pitch = gear.pitch();
+  auto pitch = gear.pitch_mesh(process::FacetSize::picture);
   if (!pitch || !job.setup) return std::nullopt;
   page::MachineScene out;
   out.chain = machine.chain;
