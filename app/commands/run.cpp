@@ -44,6 +44,7 @@ Status write_results(flow::Run& run, const RunRequest& request, app::OutputDir& 
                                 run.clock, report.files);
     if (!cad) return cad.error();
     report.cad = std::move(cad->solid);
+    report.roughed = std::move(cad->roughed);
     report.warnings.insert(report.warnings.end(), cad->warnings.begin(), cad->warnings.end());
     if (const auto s = write("setup.html", sheet::setup_sheet(run.job, gear.outline(), run.machine, report)); !s)
       return s;

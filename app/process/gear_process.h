@@ -7,6 +7,7 @@
 // and stays apart.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,6 +28,7 @@
 #include "app/report/run_report.h"
 #include "app/report/sheet/length_tolerance.h"
 #include "app/report/sheet/setup_sheet.h"
+#include "cam/path/operation.h"
 #include "cam/proof/checked_cl_path.h"
 #include "cam/proof/limits.h"
 #include "cam/rest/rest_mesh.h"
@@ -44,6 +46,9 @@ struct PartFacts {
   double swing_diameter_mm = 0;  ///< of all that turns with them: teeth, hub, shaft
   std::vector<std::string> warnings;
 };
+
+/// How fine the facets of a mesh are: as those of gear.stl, or a few thousand a pitch for pictures.
+enum class FacetSize : std::uint8_t { file, picture };
 
 /// Points of a flank on which the cut surface is measured; 0: as many as the gear type finds right.
 struct FlankGrid {
@@ -71,8 +76,10 @@ class GearMilling {
   /// The gouge check of one path: the only way to a CheckedClPath. Errors (kind verification): the deepest place.
   [[nodiscard]] virtual Result<proof::CheckedClPath> approve(const path::ClPath& path) const = 0;
 
-  /// What the roughing operations of the plan remove from tooth space 0, never more than they do but for 0.01 mm; none
-  /// where nothing roughs, and where this gear type does not tell.
+  /// The type of the operations that rough this gear.
+  [[nodiscard]] virtual path::OperationType roughing() const = 0;
+  /// What those of the plan remove from tooth space 0, never more than they do but for 0.01 mm; none where nothing
+  /// roughs.
   [[nodiscard]] virtual rest::Excess roughed() const = 0;
 
   /// What this gear adds to the proof of a program.
@@ -127,16 +134,15 @@ class GearProcess {
   /// The finished gear as a mesh, its facets within 0.02 mm. Errors: what has no mesh, at gear.
   [[nodiscard]] virtual Result<FinishedGear> solid() const = 0;
 
-  /// The same with its facets as those of gear.stl: all teeth, and one of as many equal parts as there are teeth.
+  /// The same with its facets as those of gear.stl.
   [[nodiscard]] virtual Result<mesh::TriangleMesh> mesh() const = 0;
-  [[nodiscard]] virtual Result<mesh::TriangleMesh> pitch_mesh() const = 0;
+  /// One of as many equal parts as it has teeth: turned once a tooth it is the whole gear. Errors: what has no mesh, at
+  /// gear.
+  [[nodiscard]] virtual Result<mesh::TriangleMesh> pitch_mesh(FacetSize size) const = 0;
   /// The turned body before its teeth are cut; its pitches begin at azimuth 0.
   [[nodiscard]] virtual rest::Blank blank() const = 0;
   /// The skin of the nominal gear as exact surfaces. Errors: what is no solid.
   [[nodiscard]] virtual Result<exchange::GearShell> shell() const = 0;
-  /// One pitch of the finished gear for pictures, a few thousand facets: turned once a tooth it is the whole gear.
-  /// Errors: what has no mesh, at gear.
-  [[nodiscard]] virtual Result<mesh::TriangleMesh> pitch() const = 0;
 
   /// Limits, inspection points, meshes; with `surface` tooth.vtp is the cut surface with its deviation, without the
   /// plain tooth.

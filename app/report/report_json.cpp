@@ -350,6 +350,12 @@ void add_solid(Json& json, const RunReport& r) {
                      {"worst_deviation_um", r.cad->worst_mm * 1000},
                      {"most_deviation_um", r.cad->asked_mm * 1000},
                      {"worst_at", r.cad->worst_at}};
+  if (r.roughed)
+    json["roughed"] = {{"file", r.roughed->file},
+                       {"triangles", r.roughed->triangles},
+                       {"bytes", r.roughed->bytes},
+                       {"cell_mm", r.roughed->cell_mm},
+                       {"too_thick_mm", r.roughed->thick_mm}};
 }
 
 }  // namespace

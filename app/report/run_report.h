@@ -135,6 +135,7 @@ struct RunReport {
   std::optional<bodies::MovesFound> machine_moves;  ///< none where no program was proven
   std::vector<CorrectionRow> correction;            ///< empty: the nominal flanks are the target
   std::optional<CadReport> cad;                     ///< none where no solid was asked for
+  std::optional<RoughedReport> roughed;             ///< none where it was not asked for, and where nothing roughs
   std::vector<std::string> assumed, warnings;
   std::vector<std::string> files;                      ///< written by this run
   std::vector<std::pair<std::string, double>> stages;  ///< name and seconds, those that ran

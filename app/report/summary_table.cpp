@@ -167,6 +167,12 @@ std::string summary_table(const RunReport& report, bool color) {
             "{}: {} faces, {:.1f} MB; worst deviation from the exact surface {:.3f} um ({}), {:g} um is the most",
             cad->file, cad->faces, double(cad->bytes) * 1e-6, cad->worst_mm * app::kUm, cad->worst_at,
             cad->asked_mm * app::kUm));
+  if (const auto& roughed = report.roughed)
+    row(out, "roughed part",
+        fmt::format("{}: {} facets, {:.1f} MB; nothing that stands is missing, what is gone stands at most {:.3f} mm "
+                    "thick (grid of {:.3f} mm)",
+                    roughed->file, roughed->triangles, double(roughed->bytes) * 1e-6, roughed->thick_mm,
+                    roughed->cell_mm));
   for (const auto& warning : report.warnings) row(out, "warning", warning);
   if (report.command == "surface")
     for (const auto& file : report.files) row(out, "written", file);

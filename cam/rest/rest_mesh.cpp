@@ -3,7 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "geometry/base/angle.h"
 
@@ -12,7 +15,12 @@ namespace {
 
 constexpr double kArcSag_mm = 1e-3;
 constexpr double kDown_mm = 0.01;         // least step down a column
-constexpr std::size_t kLooks = 8;         // parts of a cell in each direction
+constexpr std::size_t kLooks = 8;         // knots of a cell in each direction; parts of it along the teeth
+constexpr std::size_t kAcross = 2;        // knots of a part across them
+constexpr double kColumnsOfCell = 4;      // walls are steep across the teeth and smooth along them
+constexpr int kMostSweeps = 30;           // over all corners
+constexpr double kLowered_mm = 1e-4;      // a sweep that lowers no corner by more is the last one
+constexpr double kLeastThick = 0.0625;    // of a cell: nothing thinner is looked for
 constexpr double kAboveFloor_mm = 0.01;   // a column never ends on the floor: no facet without area
 constexpr std::size_t kBlankPieces = 16;  // of a top that may be hollow
 constexpr double kTurn = radians(1);      // between two rows of the underside
@@ -34,18 +42,26 @@ class RestBuilder {
   RestBuilder(const Blank& blank, const Excess& removed, const RestOptions& options)
       : blank_(blank), removed_(removed), o_(options) {}
 
-  mesh::TriangleMesh build() {
+  RestMesh build() {
     choose_cells();
     for (std::size_t r = 0; r < blank_.rings.size(); ++r) add_ring(r);
-    measure();
+    depths_.assign(lines_.size() * columns_, 0);
+    RestMesh out;
+    out.cell_mm = cell_;
+    if (removed_) {
+      measure();
+      lower_corners();
+      out.thick_mm = thickness();
+    }
     std::vector<Row> rows(lines_.size());
     for (std::size_t i = 0; i < lines_.size(); ++i)
       for (std::size_t j = 0; j < columns_; ++j) {
         const Line& line = lines_[i];
-        const double h = line.ring ? line.ring->top(line.s) - depth_at(i, j) : line.h;
+        const double h = line.ring ? line.ring->top(line.s) - depths_[i * columns_ + j] : line.h;
         rows[i].places.push_back(place(line.s, line.begin, double(j), h));
       }
-    return joined(rows);
+    out.mesh = joined(rows);
+    return out;
   }
 
  private:
@@ -63,8 +79,8 @@ class RestBuilder {
       length += ring.to - ring.from;
     }
     const double area = length * kTwoPi * radius_mm;
-    cell_ = std::max(o_.cell_mm, std::sqrt(2 * area / double(o_.most_triangles)));
-    const double arc = std::min(cell_, std::sqrt(8 * radius_mm * kArcSag_mm));
+    cell_ = std::max(o_.cell_mm, std::sqrt(2 * kColumnsOfCell * area / double(o_.most_triangles)));
+    const double arc = std::min(removed_ ? cell_ / kColumnsOfCell : cell_, std::sqrt(8 * radius_mm * kArcSag_mm));
     columns_ = std::max<std::size_t>(4, std::size_t(std::ceil(pitch() * radius_mm / arc)));
   }
 
@@ -91,57 +107,186 @@ class RestBuilder {
       }
   }
 
-  /// How deep below the blank's top every cell is free of material, at its worst place.
-  void measure() {
-    depths_.assign(lines_.size(), std::vector<double>(columns_));
-    if (!removed_) return;
-    tbb::parallel_for(std::size_t(0), lines_.size() * columns_, [&](std::size_t k) {
-      const std::size_t i = k / columns_;
-      if (is_cell(i)) depths_[i][k % columns_] = depth(i, k % columns_);
-    });
-  }
   /// Does a cell lie between this row and the next?
   [[nodiscard]] bool is_cell(std::size_t i) const {
     return i + 1 < lines_.size() && lines_[i].ring && lines_[i].ring == lines_[i + 1].ring;
   }
-  /// Of a corner: the least of the cells that meet there, so that no facet cuts off what stands in one of them.
-  [[nodiscard]] double depth_at(std::size_t i, std::size_t j) const {
-    double least = INFINITY;
-    const std::size_t before = (j + columns_ - 1) % columns_;
-    for (const std::size_t row : {i - 1, i})
-      if (row < lines_.size() && is_cell(row)) least = std::min({least, depths_[row][before], depths_[row][j]});
-    return least;
+  template <typename Work>
+  void every_cell(const Work& work) const {
+    tbb::parallel_for(std::size_t(0), lines_.size() * columns_, [&](std::size_t k) {
+      if (is_cell(k / columns_)) work(k / columns_, k % columns_);
+    });
   }
-  /// The cell in kLooks x kLooks parts, each looked at from its middle.
-  [[nodiscard]] double depth(std::size_t i, std::size_t j) const {
-    double least = INFINITY;
-    for (std::size_t a = 0; a < kLooks && least > 0; ++a)
-      for (std::size_t b = 0; b < kLooks && least > 0; ++b)
-        least = std::min(least, depth_of_part(i, (double(a) + 0.5) / kLooks, double(j) + (double(b) + 0.5) / kLooks));
-    return least;
+
+  /// How deep below the blank's top every part of every cell is free of material, at its worst place. Where a look
+  /// from the middle of the cell is enough for all of them, that is taken.
+  void measure() {
+    parts_.assign(lines_.size() * columns_, {});
+    every_cell([&](std::size_t i, std::size_t j) {
+      auto& parts = parts_[i * columns_ + j];
+      const Part cell = part_of(i, j, 0, 0, kLooks, kLooks);
+      if (removed_(at(cell, cell.top + cell.slope), 2 * cell.clear) > cell.clear + cell.slope) return;
+      const double free = free_depth(cell, 0);
+      for (std::size_t a = 0; a < kLooks; ++a)
+        for (std::size_t b = 0; b < kLooks; b += kAcross) {
+          const double depth = free_depth(part_of(i, j, a, b, 1, kAcross), free);
+          for (std::size_t k = 0; k < kAcross; ++k) parts[a * kLooks + b + k] = depth;
+        }
+    });
   }
-  [[nodiscard]] double depth_of_part(std::size_t i, double t, double column) const {
+
+  /// A part of a cell, seen from its middle.
+  struct Part {
+    const BlankRing* ring = nullptr;
+    double s = 0, begin = 0, column = 0, top = 0;
+    double clear = 0;  ///< every place of it lies so near to the one of equal height in the middle
+    double slope = 0;  ///< of its top: the highest place of it above the middle
+  };
+  [[nodiscard]] Vec3 at(const Part& part, double h) const { return place(part.s, part.begin, part.column, h); }
+  /// From knot (a, b) of the cell on, so many knots along and across.
+  [[nodiscard]] Part part_of(std::size_t i, std::size_t j, std::size_t a, std::size_t b, std::size_t along,
+                             std::size_t across) const {
     const Line &from = lines_[i], &to = lines_[i + 1];
+    const double half_t = 0.5 * double(along) / kLooks, half_u = 0.5 * double(across) / kLooks,
+                 t = double(a) / kLooks + half_t;
     const auto at = [&](double share, double c, double h) {
       return place(from.s + share * (to.s - from.s), from.begin + share * (to.begin - from.begin), c, h);
     };
-    const double s = from.s + t * (to.s - from.s), top = from.ring->top(s), half = 0.5 / kLooks;
-    double clear = 0, slope = 0;  // the part lies within `clear` of its middle, its top within `slope`
-    for (const double da : {-half, half}) {
-      const double edge_top = from.ring->top(s + da * (to.s - from.s));
-      slope = std::max(slope, std::abs(edge_top - top));
-      for (const double db : {-half, half})
-        clear = std::max(clear, (at(t + da, column + db, top) - at(t, column, top)).norm());
+    Part part;
+    part.ring = from.ring;
+    part.s = from.s + t * (to.s - from.s);
+    part.begin = from.begin + t * (to.begin - from.begin);
+    part.column = double(j) + double(b) / kLooks + half_u;
+    part.top = part.ring->top(part.s);
+    for (const double da : {-half_t, half_t}) {
+      part.slope = std::max(part.slope, std::abs(part.ring->top(from.s + (t + da) * (to.s - from.s)) - part.top));
+      for (const double db : {-half_u, half_u})
+        part.clear =
+            std::max(part.clear, (at(t + da, part.column + db, part.top) - at(t, part.column, part.top)).norm());
     }
-    clear += o_.within_mm;
-    const double low = from.ring->floor + kAboveFloor_mm;
-    double h = top;
+    return part;
+  }
+  /// @param known  so deep it is free, that much is known
+  [[nodiscard]] double free_depth(const Part& part, double known) const {
+    const double clear = part.clear + o_.within_mm, low = part.ring->floor + kAboveFloor_mm;
+    double h = part.top + part.slope - known;
     while (h > low) {
-      const double free = -removed_(at(t, column, h)) - clear;  // all of the part is gone so far down
+      const double free = -removed_(at(part, h), 0) - clear;  // of all of the part
       if (free < kDown_mm) break;
       h -= free;
     }
-    return std::max(0.0, top - std::max(h, low) - slope);
+    return std::max(known, part.top - std::max(h, low) - part.slope);
+  }
+
+  /// Shares of the corners (0, 0), (1, 0), (1, 1), (0, 1) of a cell in a place of its two facets.
+  using Shares = std::array<double, 4>;
+  [[nodiscard]] static Shares shares(double t, double u) {
+    return u <= t ? Shares{1 - t, t - u, u, 0} : Shares{1 - u, 0, t, u - t};
+  }
+  [[nodiscard]] std::array<std::size_t, 4> corners_of(std::size_t i, std::size_t j) const {
+    const std::size_t k = (j + 1) % columns_;
+    return {i * columns_ + j, (i + 1) * columns_ + j, (i + 1) * columns_ + k, i * columns_ + k};
+  }
+
+  /// From the safe beginning, corner by corner, until none can be lowered.
+  void lower_corners() {
+    std::fill(depths_.begin(), depths_.end(), INFINITY);
+    limits_.assign(parts_.size(), {});
+    for (std::size_t i = 0; i < lines_.size(); ++i)
+      for (std::size_t j = 0; is_cell(i) && j < columns_; ++j) {
+        const auto& parts = parts_[i * columns_ + j];
+        const double least = *std::min_element(parts.begin(), parts.end());
+        for (const std::size_t corner : corners_of(i, j)) depths_[corner] = std::min(depths_[corner], least);
+        limits_[i * columns_ + j] = limits_of(parts);
+      }
+    double lowered = INFINITY;
+    for (int sweep = 0; sweep < kMostSweeps && lowered > kLowered_mm; ++sweep) {
+      lowered = 0;
+      for (std::size_t i = 0; i < lines_.size(); ++i)
+        for (std::size_t j = 0; lines_[i].ring && j < columns_; ++j) {
+          double& depth = depths_[i * columns_ + j];
+          const double deepest = deepest_corner(i, j);
+          lowered = std::max(lowered, deepest - depth);
+          depth = std::max(depth, deepest);
+        }
+    }
+  }
+  static constexpr std::size_t kKnots = kLooks + 1;
+  using Limits = std::array<double, kKnots * kKnots>;
+  /// Greatest depth at every corner of the parts of a cell: facets are flat between them.
+  [[nodiscard]] static Limits limits_of(const std::array<double, kLooks * kLooks>& parts) {
+    Limits limits;
+    limits.fill(INFINITY);
+    for (std::size_t a = 0; a < kLooks; ++a)
+      for (std::size_t b = 0; b < kLooks; ++b)
+        for (const std::size_t at :
+             {a * kKnots + b, a * kKnots + b + 1, (a + 1) * kKnots + b, (a + 1) * kKnots + b + 1})
+          limits[at] = std::min(limits[at], parts[a * kLooks + b]);
+    return limits;
+  }
+  /// How deep one corner may be while all others stay.
+  [[nodiscard]] double deepest_corner(std::size_t i, std::size_t j) const {
+    double deepest = INFINITY;
+    const std::size_t before = (j + columns_ - 1) % columns_;
+    for (const auto& [row, column, role] : {std::tuple(i, j, 0), {i - 1, j, 1}, {i - 1, before, 2}, {i, before, 3}}) {
+      if (row >= lines_.size() || !is_cell(row)) continue;
+      const auto corner = corners_of(row, column);
+      const Limits& limits = limits_[row * columns_ + column];
+      for (std::size_t a = 0; a < kKnots; ++a)
+        for (std::size_t b = 0; b < kKnots; ++b) {
+          const Shares w = shares(double(a) / kLooks, double(b) / kLooks);
+          if (!(w[std::size_t(role)] > 0)) continue;
+          double room = limits[a * kKnots + b];
+          for (std::size_t k = 0; k < 4; ++k)
+            if (int(k) != role) room -= w[k] * depths_[corner[k]];
+          deepest = std::min(deepest, room / w[std::size_t(role)]);
+        }
+    }
+    return deepest;
+  }
+
+  /// How deep inside of what was removed the mesh reaches.
+  [[nodiscard]] double thickness() const {
+    std::vector<double> thick(lines_.size() * columns_, 0);
+    every_cell([&](std::size_t i, std::size_t j) {
+      const double low = nothing_removed_below(i, j);
+      double& most = thick[i * columns_ + j];
+      most = 2 * kLeastThick * cell_;
+      for (std::size_t a = 0; a < kLooks; ++a)
+        for (std::size_t b = 0; b < kLooks; b += kAcross) most = std::max(most, thickness_of_part(i, j, a, b, low));
+    });
+    return *std::max_element(thick.begin(), thick.end());
+  }
+  /// Below it no place of a cell lies deeper in what was removed than what is not looked for.
+  [[nodiscard]] double nothing_removed_below(std::size_t i, std::size_t j) const {
+    const Part cell = part_of(i, j, 0, 0, kLooks, kLooks);
+    double h = cell.ring->floor;
+    while (h < cell.top) {
+      const double up = removed_(at(cell, h), 8 * cell_) - cell.clear + kLeastThick * cell_;
+      if (up < kDown_mm) break;
+      h += up;
+    }
+    return h;
+  }
+  /// It is followed down from its highest place.
+  [[nodiscard]] double thickness_of_part(std::size_t i, std::size_t j, std::size_t a, std::size_t b, double low) const {
+    const Part part = part_of(i, j, a, b, 1, kAcross);
+    const auto corner = corners_of(i, j);
+    double depth = INFINITY;
+    for (const std::size_t t : {a, a + 1})
+      for (std::size_t u = b; u <= b + kAcross; ++u) {
+        const Shares w = shares(double(t) / kLooks, double(u) / kLooks);
+        double here = 0;
+        for (std::size_t k = 0; k < 4; ++k) here += w[k] * depths_[corner[k]];
+        depth = std::min(depth, here);
+      }
+    double most = 0;
+    for (double h = part.top + part.slope - depth; h > low;) {
+      const double e = removed_(at(part, h), 8 * cell_);
+      most = std::max(most, -e);
+      h -= most + e + kLeastThick * cell_;  // nothing deeper by more is between
+    }
+    return most + kLeastThick * cell_ + part.clear;
   }
 
   [[nodiscard]] mesh::TriangleMesh joined(const std::vector<Row>& rows) const {
@@ -170,22 +315,23 @@ class RestBuilder {
   double cell_ = 0;
   std::size_t columns_ = 0;
   std::vector<Line> lines_;
-  std::vector<std::vector<double>> depths_;  ///< [row before the cell][column]
+  std::vector<double> depths_;                              ///< of the corners: row, column
+  std::vector<std::array<double, kLooks * kLooks>> parts_;  ///< of the cells: row before it, column
+  std::vector<Limits> limits_;                              ///< of the same
 };
 
 }  // namespace
 
-Excess excess_of(std::vector<std::unique_ptr<cut::Removed>> removed) {
+Excess excess_of(std::vector<Excess> removed) {
   if (removed.empty()) return {};
-  const auto shared = std::make_shared<const std::vector<std::unique_ptr<cut::Removed>>>(std::move(removed));
-  return [shared](const Vec3& p) {
-    double least = 0;
-    for (const auto& one : *shared) least = std::min(least, one->excess(p, 0));
+  return [removed = std::move(removed)](const Vec3& p, double cap) {
+    double least = cap;
+    for (const Excess& one : removed) least = std::min(least, one(p, std::max(least, 0.0)));
     return least;
   };
 }
 
-Result<mesh::TriangleMesh> rest_mesh(const Blank& blank, const Excess& removed, const RestOptions& options) {
+Result<RestMesh> rest_mesh(const Blank& blank, const Excess& removed, const RestOptions& options) {
   if (!(options.cell_mm > 0)) return fail("cell = {:g} mm must be above 0", options.cell_mm);
   return RestBuilder(blank, removed, options).build();
 }

@@ -2,16 +2,14 @@
 //
 // A place has the coordinates (s, h, azimuth): s runs along the teeth from the inner to the outer end (radius, or cone
 // distance), h up from the roots (z, or height over the pitch cone). Every cell of a grid of s and azimuth is looked at
-// in small parts: how deep is it free of material, at its worst place? A corner of the mesh stands as high as the
-// highest of the cells that meet there; everything below counts as material. So every facet lies on or above all that
-// stands in its cell (docs/exchange.md).
+// in small parts: how deep is each free of material, at its worst place? A corner of the mesh begins as high as the
+// highest of the parts of all cells that meet there and is lowered as far as the facets about it stay on or above every
+// part; everything below counts as material (docs/exchange.md).
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <vector>
 
-#include "cam/cut/swept_tool.h"
 #include "geometry/base/result.h"
 #include "geometry/mesh/triangle_mesh.h"
 
@@ -35,23 +33,27 @@ struct Blank {
   std::function<Vec3(double s, double h, double azimuth)> place;
 };
 
-/// Distance from a place to what was removed in tooth space 0, > 0 outside, negative inside; values above 0 may be any.
-/// At most 1 mm a mm.
-using Excess = std::function<double(const Vec3& place)>;
+/// Distance from a place to what was removed in tooth space 0, > 0 outside, negative inside; values above `cap` (>= 0)
+/// are returned as `cap`. At most 1 mm a mm.
+using Excess = std::function<double(const Vec3& place, double cap)>;
 
 /// Of all of them together; empty of none.
-[[nodiscard]] Excess excess_of(std::vector<std::unique_ptr<cut::Removed>> removed);
+[[nodiscard]] Excess excess_of(std::vector<Excess> removed);
 
 struct RestOptions {
-  double cell_mm = 0.3;                  ///< sides of the grid's cells, at most
+  double cell_mm = 0.3;                  ///< of the grid along the teeth, at most; across them a quarter
   double within_mm = 0;                  ///< what `Excess` may be wrong by, and the tool off its path
   std::size_t most_triangles = 600'000;  ///< of all teeth: coarser cells then
 };
 
+struct RestMesh {
+  mesh::TriangleMesh mesh;
+  double cell_mm = 0;   ///< of its grid along the teeth, at most; across them a quarter
+  double thick_mm = 0;  ///< proven: no place of it lies deeper inside what was removed
+};
+
 /// What stands of the blank, closed, outward; all teeth. Without `removed` the blank itself. Never smaller than the
-/// part but by the sag of 1 um of arcs; larger by about
-/// a cell at walls.
-[[nodiscard]] Result<mesh::TriangleMesh> rest_mesh(const Blank& blank, const Excess& removed,
-                                                   const RestOptions& options = {});
+/// part but by the sag of 1 um of arcs.
+[[nodiscard]] Result<RestMesh> rest_mesh(const Blank& blank, const Excess& removed, const RestOptions& options = {});
 
 }  // namespace toothpath::rest

@@ -7,6 +7,7 @@
 #include "cam/clearance/distance.h"
 #include "geometry/mesh/file.h"
 #include "tests/app/program.h"
+#include "tests/support/brute_force_bevel_gear.h"
 #include "tests/support/random.h"
 
 namespace toothpath::test {
@@ -43,16 +44,43 @@ TEST(StockFiles, OfAFaceGearAreClosedHoldTheGearAndPassTheCheck) {
   }
 }
 
-TEST(StockFiles, OfABevelGearAreTheBlankAlone) {
+TEST(StockFiles, OfABevelGearAreClosedAndHoldTheGear) {
   const TestDir dir;
   const std::string job = kSamples + "/bevel_pinion.toml";
   const Finished run = run_program({"run", job, "--stock", "--out", dir / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NE(run.out.find("roughed.stl is not written"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("roughed.stl: "), std::string::npos) << run.out;
+  const double gear = mesh::signed_volume(solid(dir / "out/gear.stl")),
+               blank = mesh::signed_volume(solid(dir / "out/blank.stl")),
+               roughed = mesh::signed_volume(solid(dir / "out/roughed.stl"));
+  EXPECT_LT(gear, roughed);
+  EXPECT_LT(roughed - gear, 0.5 * (blank - gear)) << gear << " " << roughed << " " << blank;
+  for (const char* stock : {"blank.stl"})
+    EXPECT_EQ(
+        checked(dir, job, dir / "out/program.ngc", dir / (std::string("out/") + stock), 0)["report"]["stock"]["clear"],
+        true);
+}
+
+/// A job whose first operation is gone: nothing roughs.
+void expect_told(const std::string& sample, const std::string& first, const std::string& roughs) {
+  const TestDir dir;
+  std::string job = file_text(kSamples + "/" + sample);
+  const auto at = job.find("[[operation]]");
+  job.erase(at, job.find("[[operation]]", at + 1) - at);
+  write_file(dir / "job.toml", job);
+  const long line = 1 + std::count(job.begin(), job.begin() + std::ptrdiff_t(at), '\n');
+  const Finished run = run_program({"run", dir / "job.toml", "--stock", "--out", dir / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.out << run.err;
+  const std::string told = dir / "job.toml" + ":" + std::to_string(line) +
+                           ":1: warning: roughed.stl is not written: no operation roughs, and the first one (" + first +
+                           ") cuts from the blank; an [[operation]] with type = \"" + roughs + "\"";
+  EXPECT_NE(run.out.find(told), std::string::npos) << told << "\n" << run.out;
   EXPECT_FALSE(std::filesystem::exists(dir / "out/roughed.stl"));
-  EXPECT_LT(mesh::signed_volume(solid(dir / "out/gear.stl")), mesh::signed_volume(solid(dir / "out/blank.stl")));
-  const auto report = checked(dir, job, dir / "out/program.ngc", dir / "out/blank.stl", 0)["report"];
-  EXPECT_EQ(report["stock"]["clear"], true);
+  EXPECT_TRUE(std::filesystem::exists(dir / "out/blank.stl"));
+}
+TEST(StockFiles, OfAJobThatDoesNotRoughAreTheBlankAndTheReason) {
+  expect_told("spur_quick.toml", "finishing", "roughing");
+  expect_told("bevel_pinion.toml", "finger_finishing", "finger_roughing");
 }
 
 /// What a ball of the roughing path of cl.csv comes to, by the file alone.
@@ -124,6 +152,130 @@ TEST(RoughedPart, TakesAFinishingProgramAlone) {
   ASSERT_EQ(run_program({"run", job, "--stock", "--restart", "1:0", "--out", dir / "out", "--quiet"}).exit_code, 0);
   const auto report = checked(dir, job, dir / "out/program.ngc", dir / "out/roughed.stl", 0)["report"];
   EXPECT_EQ(report["stock"]["clear"], true);
+}
+
+/// The finger mill at the roughing poses of cl.csv, by the file and a mill of the tests' own.
+struct MillPath {
+  struct Move {
+    Vec3 from, to, axis_from, axis_to;
+  };
+  static constexpr double kDedendum = 5.1;
+  double delta = std::atan2(18.0, 37.0), R_e = 54 / std::sin(delta);
+  PlainFingerMill mill{{3.0, 0.9, 4.1, 4.8}, M_PI / 9, R_e / 0.75 * std::tan(delta), kDedendum};
+  std::vector<Move> moves;
+
+  explicit MillPath(const std::string& csv) {
+    std::istringstream in(csv);
+    std::string line;
+    std::getline(in, line);
+    Vec3 tip = Vec3::Zero(), axis = Vec3::Zero();
+    while (std::getline(in, line) && line.rfind("0,", 0) == 0) {
+      std::vector<std::string> cell;
+      std::istringstream cells(line);
+      for (std::string c; std::getline(cells, c, ',');) cell.push_back(c);
+      const Vec3 to(std::stod(cell[4]), std::stod(cell[5]), std::stod(cell[6])),
+          axis_to(std::stod(cell[7]), std::stod(cell[8]), std::stod(cell[9]));
+      if (cell[11] != "rapid") moves.push_back({tip, to, axis, axis_to});
+      tip = to;
+      axis = axis_to;
+    }
+  }
+  [[nodiscard]] bool in_mill(double height, double radius, double deep) const {
+    for (int k = 0; k < (deep > 0 ? 24 : 1); ++k) {
+      const double x = height - kDedendum + deep * std::cos(k * M_PI / 12),
+                   rho = std::abs(radius + deep * std::sin(k * M_PI / 12));
+      if (mill.clearance(x, rho) > 0) return false;
+    }
+    return true;
+  }
+  /// Is the place inside of the mill somewhere, by more than `deep`?
+  [[nodiscard]] bool removes(const Vec3& p, double deep) const {
+    for (int k = 0; k < 18; ++k) {
+      const Vec3 q = turned(p, -2 * M_PI * k / 18);
+      for (const Move& m : moves) {
+        const auto pose = [&](double t, double& height) {
+          const Vec3 axis = ((1 - t) * m.axis_from + t * m.axis_to).normalized(), d = q - (1 - t) * m.from - t * m.to;
+          height = d.dot(axis);
+          return (d - height * axis).norm();
+        };
+        double height = 0, best = 0, least = INFINITY;
+        if (pose(0.5, height) > 6 + (m.to - m.from).norm()) continue;
+        for (int i = 0; i <= 20; ++i)
+          if (const double radius = pose(i / 20.0, height); radius < least) least = radius, best = i / 20.0;
+        for (double step = 0.025; step > 1e-5; step /= 2)
+          for (const double t : {std::max(0.0, best - step), std::min(1.0, best + step)})
+            if (const double radius = pose(t, height); radius < least) least = radius, best = t;
+        for (const double t : {best, 0.0, 1.0}) {
+          const double radius = pose(t, height);
+          if (in_mill(height, radius, deep)) return true;
+        }
+      }
+    }
+    return false;
+  }
+  [[nodiscard]] Vec3 place(double ell, double height, double angle) const {
+    const double r = ell * std::sin(delta) + height * std::cos(delta);
+    return {r * std::cos(angle), r * std::sin(angle), ell * std::cos(delta) - height * std::sin(delta)};
+  }
+};
+
+struct WrongPlaces {
+  int missing = 0, wrongly_missing = 0, removed_deep = 0, wrongly_there = 0;
+};
+WrongPlaces ask(const mesh::TriangleMesh& mesh, const MillPath& path, double thick_mm, int places) {
+  const clearance::MeshDistance solid(mesh);
+  Random random(77);
+  WrongPlaces out;
+  for (int k = 0; k < places; ++k) {
+    const Vec3 p = path.place(random(path.R_e - 35.99, path.R_e - 0.01), random(-5.0, 4.09), random(0, 2 * M_PI));
+    const double ell = p.head<2>().norm() * std::sin(path.delta) + p.z() * std::cos(path.delta);
+    if (std::abs(ell - 104) < 3.3) continue;  // the groove is turned
+    const bool inside = solid.inside(p), deep = path.removes(p, thick_mm);
+    out.missing += !inside;
+    out.wrongly_missing += !inside && !path.removes(p, 0);
+    out.removed_deep += deep;
+    out.wrongly_there += inside && deep;
+  }
+  return out;
+}
+
+TEST(RoughedPart, OfABevelGearIsWhatTheMillLeaves) {
+  const TestDir dir;
+  ASSERT_EQ(run_program({"run", kSamples + "/bevel_pinion.toml", "--stock", "--out", dir / "out", "--quiet"}).exit_code,
+            0);
+  const MillPath path(file_text(dir / "out/cl.csv"));
+  ASSERT_GT(path.moves.size(), 100u);
+  const auto told = nlohmann::json::parse(file_text(dir / "out/report.json"))["roughed"];
+  const double thick = told["too_thick_mm"];
+  EXPECT_LT(thick, 0.35);
+  mesh::TriangleMesh mesh = solid(dir / "out/roughed.stl");
+  EXPECT_EQ(told["triangles"], mesh.triangles.size());
+  const WrongPlaces found = ask(mesh, path, thick, 3000);
+  EXPECT_GT(found.missing, 600);
+  EXPECT_EQ(found.wrongly_missing, 0) << "of " << found.missing;
+  EXPECT_GT(found.removed_deep, 400);
+  EXPECT_EQ(found.wrongly_there, 0) << "of " << found.removed_deep;
+  // Turned by 2 deg it is wrong, and seen to be.
+  for (Vec3& v : mesh.vertices) v = turned(v, 0.035);
+  const WrongPlaces planted = ask(mesh, path, thick, 1000);
+  EXPECT_GT(planted.wrongly_missing, 10);
+  EXPECT_GT(planted.wrongly_there, 10);
+}
+
+TEST(RoughedPart, OfABevelGearTurnedByHalfAPitchIsRefused) {
+  const TestDir dir;
+  const std::string job = kSamples + "/bevel_pinion.toml";
+  ASSERT_EQ(run_program({"run", job, "--stock", "--restart", "1:0", "--out", dir / "out", "--quiet"}).exit_code, 0);
+  // Turned by half a pitch its spaces are where the teeth must be.
+  mesh::TriangleMesh turned_by_half = solid(dir / "out/roughed.stl");
+  for (Vec3& v : turned_by_half.vertices) v = turned(v, M_PI / 18);
+  std::ostringstream stl;
+  ASSERT_TRUE(mesh::write_stl(stl, turned_by_half, "planted"));
+  write_file(dir / "planted.stl", stl.str());
+  const Finished check =
+      run_program({"check", job, dir / "out/program.ngc", "--stock", dir / "planted.stl", "--out", dir / "check"});
+  EXPECT_EQ(check.exit_code, 3) << check.out;
+  EXPECT_NE(check.err.find("out of the stock"), std::string::npos) << check.err;
 }
 
 /// A shank that begins 3 mm above the tip enters the blank, where nothing is cut yet.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <memory>
 
 #include "app/process/bevel/contact.h"
 #include "app/process/bevel/files.h"
@@ -12,6 +12,8 @@
 #include "cam/finger/bodies.h"
 #include "cam/finger/check.h"
 #include "cam/finger/milling.h"
+#include "cam/path/motions.h"
+#include "cam/rest/swept_body.h"
 #include "geometry/base/angle.h"
 #include "geometry/exchange/bevel_shell.h"
 #include "geometry/mesh/bevel_mesh.h"
@@ -20,7 +22,9 @@ namespace toothpath::bevel {
 namespace {
 
 constexpr double kRootRounding = 1e-9;  // mm
-constexpr double kRootShare = 1;        // the flat tip of the mill faces the root: a length error reaches it in full
+constexpr mesh::BevelMeshOptions kPictureFacets{.stations = 7, .rows = 5, .root_points = 2, .land_points = 1};
+constexpr double kAboveTip_mm = 2, kBesideMill_mm = 4;  // where distances from a swept mill are asked most
+constexpr double kRootShare = 1;  // the flat tip of the mill faces the root: a length error reaches it in full
 
 /// How far the middle of a tooth space has wound about the axis at a tip, from the reference cone distance on.
 double space_azimuth(const bevel_gear::BevelGear& gear, const Vec3& tip) {
@@ -36,26 +40,6 @@ finger::FingerCheckOptions check_options(const process::FlankGrid& grid) {
   if (grid.rows > 0) options.rows = grid.rows;
   if (grid.columns > 0) options.columns = grid.columns;
   return options;
-}
-
-/// Of a gear mesh whose pitches are turned copies of each other, the facets whose middles lie in one of them.
-mesh::TriangleMesh one_pitch(const mesh::TriangleMesh& gear, int teeth) {
-  constexpr double kStart = 0.1234567;  // rad: no row of facets has its middles there
-  mesh::TriangleMesh out;
-  std::map<std::int32_t, std::int32_t> number;
-  for (std::size_t t = 0; t < gear.triangles.size(); ++t) {
-    const Vec3 middle = gear.corner(t, 0) + gear.corner(t, 1) + gear.corner(t, 2);
-    const double turn = std::atan2(middle.y(), middle.x()) - kStart;
-    if (turn - 2 * kPi * std::floor(turn / (2 * kPi)) >= 2 * kPi / teeth) continue;
-    std::array<std::int32_t, 3> corners{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [at, is_new] = number.emplace(gear.triangles[t][k], std::int32_t(out.vertices.size()));
-      if (is_new) out.vertices.push_back(gear.corner(t, k));
-      corners[k] = at->second;
-    }
-    out.triangles.push_back(corners);
-  }
-  return out;
 }
 
 class BevelMilling final : public process::GearMilling {
@@ -96,8 +80,23 @@ class BevelMilling final : public process::GearMilling {
   [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override {
     return gouge_.approve(path);
   }
-  // The wide mill is near every place all along its path: asking for the distance takes minutes.
-  [[nodiscard]] rest::Excess roughed() const override { return {}; }
+  [[nodiscard]] path::OperationType roughing() const override { return path::OperationType::finger_roughing; }
+  [[nodiscard]] rest::Excess roughed() const override {
+    std::vector<rest::Excess> removed;
+    for (const auto& plan : plans_) {
+      if (job_.operations[std::size_t(plan.path.operation)].type != roughing()) continue;
+      const auto own = finger::gear_for_finger_mill(gear_, job_.tools[std::size_t(plan.path.tool)]);
+      if (!own) continue;
+      const double depth = gear_.parameters().addendum_mm + own->parameters().dedendum_mm;
+      const auto one = std::make_shared<const rest::SweptBody>(
+          path::motions_of(plan.path),
+          [solid = bevel_gear::FingerSolid(own->cutter()), h_f = own->parameters().dedendum_mm](
+              double height, double radius) { return solid.signed_distance(height - h_f, radius); },
+          depth + kAboveTip_mm, own->cutter().rho_D + kBesideMill_mm);
+      removed.emplace_back([one](const Vec3& p, double cap) { return one->excess(p, cap); });
+    }
+    return rest::excess_of(std::move(removed));
+  }
   [[nodiscard]] process::GearCheck& check() override { return check_; }
   [[nodiscard]] std::vector<proof::LedgerEntry> ledger(const joints::AxisProgram& program,
                                                        const process::ProgramProof& proof,
@@ -169,7 +168,12 @@ class BevelProcess final : public process::GearProcess {
     return out;
   }
   [[nodiscard]] Result<mesh::TriangleMesh> mesh() const override { return mesh::bevel_gear_mesh(gear_); }
-  [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh() const override { return mesh::bevel_pitch_part(gear_); }
+  [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh(process::FacetSize size) const override {
+    auto pitch =
+        mesh::bevel_pitch_part(gear_, size == process::FacetSize::picture ? kPictureFacets : mesh::BevelMeshOptions());
+    if (!pitch) return process::located(job_, "gear", pitch.error());
+    return pitch;
+  }
   [[nodiscard]] rest::Blank blank() const override {
     rest::Blank out;
     out.teeth = part_.teeth;
@@ -190,11 +194,6 @@ class BevelProcess final : public process::GearProcess {
     return out;
   }
   [[nodiscard]] Result<exchange::GearShell> shell() const override { return exchange::bevel_gear_shell(gear_); }
-  [[nodiscard]] Result<mesh::TriangleMesh> pitch() const override {
-    auto gear = mesh::bevel_gear_mesh(gear_, {.stations = 7, .rows = 5, .root_points = 2, .land_points = 1});
-    if (!gear) return process::located(job_, "gear", gear.error());
-    return one_pitch(*gear, gear_.parameters().teeth);
-  }
   [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
                                    const std::vector<std::string>&, app::StageClock& clock,
                                    std::vector<std::string>& files) const override {

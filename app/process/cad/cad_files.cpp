@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/process/gear_files.h"
+#include "cam/path/operation.h"
 #include "cam/rest/rest_mesh.h"
 #include "geometry/base/angle.h"
 #include "geometry/exchange/gltf.h"
@@ -59,7 +60,12 @@ Result<rest::Blank> between_lands(const process::GearProcess& gear) {
   return blank;
 }
 
-Result<std::string> roughed_text(const process::GearProcess& gear, const Milled& milled, const rest::Excess& removed,
+struct RoughedMade {
+  std::string text;
+  report::RoughedReport report;
+};
+
+Result<RoughedMade> make_roughed(const process::GearProcess& gear, const Milled& milled, const rest::Excess& removed,
                                  const std::string& name) {
   const auto blank = between_lands(gear);
   if (!blank) return blank.error();
@@ -67,22 +73,43 @@ Result<std::string> roughed_text(const process::GearProcess& gear, const Milled&
   rest::RestOptions options;
   options.cell_mm = (ring.top(ring.from) - ring.floor) / kCellsOfHeight;
   options.within_mm = milled.off_mm + kRemoved_mm;
-  const auto mesh = rest::rest_mesh(*blank, removed, options);
-  return mesh ? process::stl_text(*mesh, name) : Result<std::string>(mesh.error());
+  const auto rest = rest::rest_mesh(*blank, removed, options);
+  if (!rest) return rest.error();
+  auto text = process::stl_text(rest->mesh, name);
+  if (!text) return text.error();
+  report::RoughedReport report{kRoughed, rest->mesh.triangles.size(), text->size(), rest->cell_mm,
+                               rest->thick_mm + milled.off_mm};
+  return RoughedMade{std::move(*text), std::move(report)};
+}
+
+/// Why there is no roughed.stl, and what would make one.
+std::string nothing_roughs(const job::Job& job, path::OperationType roughing) {
+  const bool any = !job.operations.empty();
+  const SourcePosition at = job.where(any ? "operation[0]" : "operation");
+  std::string text =
+      fmt::format("{}:{}:{}: warning: {} is not written: no operation roughs", at.file, at.line, at.column, kRoughed);
+  if (any) text += fmt::format(", and the first one ({}) cuts from the blank", to_string(job.operations.front().type));
+  return text +
+         fmt::format("; an [[operation]] with type = \"{}\" before it leaves a part to write", to_string(roughing));
 }
 
 Status write_stock(const job::Job& job, const process::GearProcess& gear, const std::optional<Milled>& milled,
-                   app::StageClock& clock, process::GearFiles& to) {
+                   app::StageClock& clock, process::GearFiles& to, Written& written) {
   const auto blank = clock.run("stock", [&]() -> Result<std::string> {
-    const auto mesh = rest::rest_mesh(gear.blank(), {});
-    return mesh ? process::stl_text(*mesh, job.name) : Result<std::string>(mesh.error());
+    const auto rest = rest::rest_mesh(gear.blank(), {});
+    return rest ? process::stl_text(rest->mesh, job.name) : Result<std::string>(rest.error());
   });
   if (const auto s = to.write(kBlank, blank); !s) return s;
   if (!milled) return Ok{};
   const rest::Excess removed = milled->milling.roughed();
-  if (!removed) return Ok{};
-  const auto roughed = clock.run("stock", [&] { return roughed_text(gear, *milled, removed, job.name); });
-  return to.write(kRoughed, roughed);
+  if (!removed) {
+    written.warnings.push_back(nothing_roughs(job, milled->milling.roughing()));
+    return Ok{};
+  }
+  auto roughed = clock.run("stock", [&] { return make_roughed(gear, *milled, removed, job.name); });
+  if (!roughed) return roughed.error();
+  written.roughed = std::move(roughed->report);
+  return to.write(kRoughed, std::move(roughed->text));
 }
 
 }  // namespace
@@ -113,17 +140,15 @@ Result<Written> write_files(const FilesAsked& asked, const job::Job& job, const 
   }
   if (asked.gltf) {
     const auto text = clock.run("glTF", [&]() -> Result<std::string> {
-      const auto pitch = gear.pitch_mesh();
+      const auto pitch = gear.pitch_mesh(process::FacetSize::file);
       return pitch ? exchange::gltf_file(*pitch, gear.part().teeth, job.name) : Result<std::string>(pitch.error());
     });
     if (!text) return process::located(job, "gear", text.error());
     if (const auto s = to.write(kGltf, text); !s) return s.error();
   }
   if (asked.stock) {
-    if (const auto s = write_stock(job, gear, milled, clock, to); !s) return process::located(job, "gear", s.error());
-    if (milled && std::find(files.begin(), files.end(), kRoughed) == files.end())
-      written.warnings.emplace_back(
-          "roughed.stl is not written: no operation of type roughing, which face gears have, is in the job");
+    if (const auto s = write_stock(job, gear, milled, clock, to, written); !s)
+      return process::located(job, "gear", s.error());
   }
   return written;
 }

@@ -1,4 +1,4 @@
-// A gear for other programs: STEP, 3MF and glTF, as a command asks for them.
+// A gear for other programs: STEP, 3MF and glTF, blank and roughed part, as a command asks for them.
 #pragma once
 
 #include <string>
@@ -24,7 +24,8 @@ struct FilesAsked {
 
 /// What there is to tell of the files.
 struct Written {
-  std::optional<report::CadReport> solid;  ///< none where it was not asked for
+  std::optional<report::CadReport> solid;        ///< none where it was not asked for
+  std::optional<report::RoughedReport> roughed;  ///< none where no run asked for it, and where nothing roughs
   std::vector<std::string> warnings;
 };
 

@@ -152,13 +152,16 @@ class FaceMilling final : public process::GearMilling {
   [[nodiscard]] Result<proof::CheckedClPath> approve(const path::ClPath& path) const override {
     return gouge_.check_path(path);
   }
+  [[nodiscard]] path::OperationType roughing() const override { return path::OperationType::roughing; }
   [[nodiscard]] rest::Excess roughed() const override {
-    std::vector<std::unique_ptr<cut::Removed>> removed;
-    for (const path::ClPath& path : plan_.paths)
-      if (job_.operations[std::size_t(path.operation)].type == path::OperationType::roughing)
-        removed.push_back(std::make_unique<cut::Removed>(analytic::GougeCheck::motions_of(path),
-                                                         tool::proof_tool(job_.tools[std::size_t(path.tool)]),
-                                                         part_.gear().blank_top()));
+    std::vector<rest::Excess> removed;
+    for (const path::ClPath& path : plan_.paths) {
+      if (job_.operations[std::size_t(path.operation)].type != roughing()) continue;
+      const auto one = std::make_shared<const cut::Removed>(analytic::GougeCheck::motions_of(path),
+                                                            tool::proof_tool(job_.tools[std::size_t(path.tool)]),
+                                                            part_.gear().blank_top());
+      removed.emplace_back([one](const Vec3& p, double cap) { return one->excess(p, cap); });
+    }
     return rest::excess_of(std::move(removed));
   }
   [[nodiscard]] process::GearCheck& check() override { return check_; }
@@ -235,9 +238,10 @@ class FaceProcess final : public process::GearProcess {
     if (!pitch) return pitch.error();
     return mesh::join_copies(*pitch);
   }
-  [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh() const override {
-    auto pitch = mesh::mesh_tooth_space(gear_, kStlSag);
-    if (!pitch) return pitch.error();
+  [[nodiscard]] Result<mesh::TriangleMesh> pitch_mesh(process::FacetSize size) const override {
+    const double picture = kPictureSag * gear_.parameters().module_mm;
+    auto pitch = mesh::mesh_tooth_space(gear_, size == process::FacetSize::picture ? picture : kStlSag);
+    if (!pitch) return process::located(job_, "gear", pitch.error());
     return std::move(pitch->mesh);
   }
   [[nodiscard]] rest::Blank blank() const override {
@@ -263,11 +267,6 @@ class FaceProcess final : public process::GearProcess {
     return out;
   }
   [[nodiscard]] Result<exchange::GearShell> shell() const override { return exchange::face_gear_shell(gear_); }
-  [[nodiscard]] Result<mesh::TriangleMesh> pitch() const override {
-    auto pitch = mesh::mesh_tooth_space(gear_, kPictureSag * gear_.parameters().module_mm);
-    if (!pitch) return process::located(job_, "gear", pitch.error());
-    return std::move(pitch->mesh);
-  }
   [[nodiscard]] Status write_files(app::OutputDir& output, const std::vector<proof::SurfaceGrid>& surface,
                                    const std::vector<std::string>& assumed, app::StageClock& clock,
                                    std::vector<std::string>& files) const override {

@@ -55,7 +55,7 @@ page::StateRecorder recorder_of(const job::Job& job, int teeth) {
 std::optional<page::MachineScene> machine_picture(const job::Job& job, const machines::Machine& machine,
                                                   const process::GearProcess& gear, page::SceneStates states,
                                                   const process::Scene* scene) {
-  auto pitch = gear.pitch();
+  auto pitch = gear.pitch_mesh(process::FacetSize::picture);
   if (!pitch || !job.setup) return std::nullopt;
   page::MachineScene out;
   out.chain = machine.chain;

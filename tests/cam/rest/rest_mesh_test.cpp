@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "cam/clearance/distance.h"
+#include "cam/cut/swept_tool.h"
 #include "cam/rest/rest_mesh.h"
 #include "geometry/mesh/cgal_check.h"
 #include "tests/support/random.h"
@@ -48,9 +49,26 @@ Balls random_balls(test::Random& random) {
   return balls;
 }
 
+/// Slots that are open upwards: layers of balls along the top, from above it down.
+Balls slots(test::Random& random, double twist) {
+  Balls balls;
+  for (int k = 0; k < 6; ++k) {
+    const double angle = random(-0.3, 0.3) * kPitch, deepest = random(0, 2.5);
+    for (double depth = -0.3; depth < deepest; depth += 0.2) {
+      const auto at = [&](double r, double a) {
+        const double turned = a + twist * (r - 40);
+        return Vec3(r * std::cos(turned), r * std::sin(turned), 2 + 0.1 * (r - 40) - depth);
+      };
+      for (int i = 0; i < 8; ++i) balls.moves.push_back({at(38 + 2.25 * i, angle), at(40.25 + 2.25 * i, angle)});
+    }
+  }
+  return balls;
+}
+
 Excess excess_of_balls(const Balls& balls) {
-  std::vector<std::unique_ptr<cut::Removed>> removed;
-  removed.push_back(std::make_unique<cut::Removed>(balls.moves, balls.radius));
+  std::vector<Excess> removed;
+  const auto one = std::make_shared<const cut::Removed>(balls.moves, balls.radius);
+  removed.emplace_back([one](const Vec3& p, double cap) { return one->excess(p, cap); });
   return excess_of(std::move(removed));
 }
 
@@ -62,9 +80,9 @@ void expect_solid(const mesh::TriangleMesh& mesh) {
 }
 
 TEST(RestMesh, TheBlankIsTheTurnedBody) {
-  const auto mesh = rest_mesh(blank(0), {});
-  ASSERT_TRUE(mesh);
-  expect_solid(*mesh);
+  const auto rest = rest_mesh(blank(0), {});
+  ASSERT_TRUE(rest);
+  expect_solid(rest->mesh);
   // Rings by their sections: height over the underside times the circle of their middle, Pappus.
   const auto ring = [](double a, double b) {
     const double pi = std::numbers::pi;  // integral of (12 + 0.1 (r - 40)) 2 pi r
@@ -72,33 +90,68 @@ TEST(RestMesh, TheBlankIsTheTurnedBody) {
     return f(b) - f(a);
   };
   const double volume = ring(40, 46) + ring(48, 54) + std::numbers::pi * (48 * 48 - 46 * 46) * 6.5;
-  EXPECT_NEAR(mesh::signed_volume(*mesh), volume, 2e-4 * volume);
+  EXPECT_NEAR(mesh::signed_volume(rest->mesh), volume, 2e-4 * volume);
+}
+
+/// What random places of the teeth say of a mesh.
+struct Asked {
+  int removed = 0, missing = 0, wrong = 0;
+  double thick = 0;  ///< deepest inside of what the balls took, of places that the mesh has
+};
+Asked ask(const Blank& b, const Balls& balls, const mesh::TriangleMesh& mesh, test::Random& random, int places) {
+  const clearance::MeshDistance solid(mesh);
+  Asked asked;
+  for (int k = 0; k < places; ++k) {
+    const double r = random(0, 1) < 0.5 ? random(40.01, 45.99) : random(48.01, 53.99);
+    const double azimuth = b.rings[0].begin(r) + random(0.01, 0.99) * kPitch;
+    const Vec3 p = b.place(r, random(-3, b.rings[0].top(r) - 0.01), azimuth);
+    const double distance = balls.distance(p);
+    asked.removed += distance < 0;
+    if (solid.inside(p)) {
+      asked.thick = std::max(asked.thick, -distance);
+      continue;
+    }
+    ++asked.missing;
+    asked.wrong += distance >= 0;
+  }
+  return asked;
 }
 
 TEST(RestMesh, LeavesOutNothingThatNoBallReached) {
   test::Random random(7);
-  for (int trial = 0; trial < 6; ++trial) {
+  for (int trial = 0; trial < 4; ++trial) {
     const Balls balls = random_balls(random);
     const Blank b = blank(trial % 2 == 0 ? 0 : 0.01);
     RestOptions options;
-    options.cell_mm = trial < 3 ? 0.3 : 0.8;
-    const auto mesh = rest_mesh(b, excess_of_balls(balls), options);
-    ASSERT_TRUE(mesh);
-    expect_solid(*mesh);
-    const clearance::MeshDistance solid(*mesh);
-    int missing = 0, removed = 0;
-    for (int k = 0; k < 4000; ++k) {
-      const double r = random(0, 1) < 0.5 ? random(40.01, 45.99) : random(48.01, 53.99);
-      const double angle = random(-0.5, 0.5) * kPitch, z = random(-3, b.rings[0].top(r) - 0.01);
-      const Vec3 p = b.place(r, z, angle);
-      const bool gone = balls.distance(p) < 0;
-      removed += gone;
-      if (solid.inside(p)) continue;
-      ++missing;
-      EXPECT_TRUE(gone) << trial << ": " << p.transpose() << " is " << balls.distance(p) << " mm from every ball";
-    }
-    EXPECT_GT(missing, removed / 5) << "what is gone is seen";
-    EXPECT_LE(missing, removed);
+    options.cell_mm = trial < 2 ? 0.6 : 0.9;
+    const auto rest = rest_mesh(b, excess_of_balls(balls), options);
+    ASSERT_TRUE(rest);
+    if (trial == 1) expect_solid(rest->mesh);
+    const Asked asked = ask(b, balls, rest->mesh, random, 4000);
+    EXPECT_EQ(asked.wrong, 0) << "missing, but no ball was there";
+    EXPECT_GT(asked.missing, asked.removed / 5) << "what is gone is seen";
+    EXPECT_LE(asked.thick, rest->thick_mm) << "below overhangs, too";
+  }
+}
+
+/// Where nothing hangs over, what stands too thick is a part of a cell.
+TEST(RestMesh, StandsNoThickerThanItSays) {
+  test::Random random(19);
+  for (int trial = 0; trial < 4; ++trial) {
+    const double twist = trial % 2 == 0 ? 0 : 0.01;
+    const Balls balls = slots(random, twist);
+    const Blank b = blank(twist);
+    RestOptions options;
+    options.cell_mm = trial < 2 ? 0.6 : 0.8;
+    const auto rest = rest_mesh(b, excess_of_balls(balls), options);
+    ASSERT_TRUE(rest);
+    if (trial == 1) expect_solid(rest->mesh);
+    const Asked asked = ask(b, balls, rest->mesh, random, 8000);
+    EXPECT_EQ(asked.wrong, 0) << "missing, but no ball was there";
+    EXPECT_GT(asked.missing, asked.removed * 2 / 3);
+    EXPECT_LE(asked.thick, rest->thick_mm);
+    EXPECT_GT(asked.thick, 0.3 * rest->thick_mm) << "the bound is of use";
+    EXPECT_LT(rest->thick_mm, rest->cell_mm);
   }
 }
 
@@ -110,7 +163,7 @@ TEST(RestMesh, IsWiderByWhatMayBeWrong) {
   options.within_mm = 0.2;
   const auto careful = rest_mesh(blank(0), excess_of_balls(balls), options);
   ASSERT_TRUE(exact && careful);
-  EXPECT_GT(mesh::signed_volume(*careful), mesh::signed_volume(*exact) + 1);
+  EXPECT_GT(mesh::signed_volume(careful->mesh), mesh::signed_volume(exact->mesh) + 1);
 }
 
 TEST(RestMesh, RefusesCellsOfNoSize) {
