@@ -5,6 +5,7 @@
 namespace toothpath::mesh {
 namespace {
 
+constexpr double kOfArc = 1.0 / 3;             // of the rows of a wall, on the fillet
 constexpr double kUndersideTurn = radians(1);  // between two rows: sag 4e-5 of the radius
 
 /// One closed or open row of points at one cone distance: azimuths and heights over one pitch.
@@ -20,9 +21,11 @@ Result<std::vector<Vec3>> wall_points(const bevel_gear::BevelGear& g, const beve
   const auto tip = bevel_gear::bevel_inverse(w, ell, g.parameters().addendum_mm);
   if (!tip) return fail("wall {} does not reach the tip at cone distance {:.4f}", w.sigma > 0 ? "L" : "U", ell);
   std::vector<Vec3> points{w.point(tip->beta, tip->p).p};
-  const double low = w.cutter.p_A;
+  // The parameter runs faster along the involute than along the arc: each has rows of its own.
+  const double low = w.cutter.p_A, arc = w.cutter.p_B;
+  const int on_arc = std::max(1, int(kOfArc * (rows - 1))), above = rows - 1 - on_arc;
   for (int r = 1; r < rows; ++r) {
-    const double p = tip->p + (low - tip->p) * r / (rows - 1);
+    const double p = r <= above ? tip->p + (arc - tip->p) * r / above : arc + (low - arc) * (r - above) / on_arc;
     const auto beta = bevel_gear::bevel_beta_at(w, ell, std::max(p, low));
     if (!beta) return fail("wall {} does not reach the root at cone distance {:.4f}", w.sigma > 0 ? "L" : "U", ell);
     points.push_back(w.point(*beta, std::max(p, low)).p);

@@ -55,7 +55,7 @@ TEST(StockFiles, OfABevelGearAreClosedAndHoldTheGear) {
                roughed = mesh::signed_volume(solid(dir / "out/roughed.stl"));
   EXPECT_LT(gear, roughed);
   EXPECT_LT(roughed - gear, 0.5 * (blank - gear)) << gear << " " << roughed << " " << blank;
-  for (const char* stock : {"blank.stl"})
+  for (const char* stock : {"blank.stl", "roughed.stl"})
     EXPECT_EQ(
         checked(dir, job, dir / "out/program.ngc", dir / (std::string("out/") + stock), 0)["report"]["stock"]["clear"],
         true);
@@ -262,10 +262,11 @@ TEST(RoughedPart, OfABevelGearIsWhatTheMillLeaves) {
   EXPECT_GT(planted.wrongly_there, 10);
 }
 
-TEST(RoughedPart, OfABevelGearTurnedByHalfAPitchIsRefused) {
+TEST(RoughedPart, OfABevelGearTakesAFinishingProgramAndIsRefusedTurnedByHalfAPitch) {
   const TestDir dir;
   const std::string job = kSamples + "/bevel_pinion.toml";
   ASSERT_EQ(run_program({"run", job, "--stock", "--restart", "1:0", "--out", dir / "out", "--quiet"}).exit_code, 0);
+  EXPECT_EQ(checked(dir, job, dir / "out/program.ngc", dir / "out/roughed.stl", 0)["report"]["stock"]["clear"], true);
   // Turned by half a pitch its spaces are where the teeth must be.
   mesh::TriangleMesh turned_by_half = solid(dir / "out/roughed.stl");
   for (Vec3& v : turned_by_half.vertices) v = turned(v, M_PI / 18);

@@ -6,6 +6,7 @@
 
 #include "geometry/mesh/bevel_mesh.h"
 #include "tests/geometry/bevel_gear/samples.h"
+#include "tests/support/brute_force_bevel_gear.h"
 
 namespace toothpath {
 namespace {
@@ -284,6 +285,35 @@ TEST(BevelBruteForce, OnePitchOnIsTheSameGear) {
   const double c = std::cos(g.pitch()), s = std::sin(g.pitch());
   for (const auto& v : mesh->vertices)
     EXPECT_TRUE(there.count(key({c * v.x() - s * v.y(), s * v.x() + c * v.y(), v.z()})));
+}
+
+/// Walls, fillets and root of the mesh lie where the solid mill along its paths leaves them, at the facets' middles
+/// too.
+TEST(BevelBruteForce, FacetsOfTheMeshLieOnTheTeeth) {
+  for (const auto& test : cases()) {
+    const bevel_gear::BevelGear g = made(test.p, test.c);
+    const toothpath::test::BruteForceBevelGear brute(
+        test.p, {test.c.module_mm, test.c.tip_radius_mm, test.c.rack_depth_mm, test.c.profile_height_mm});
+    std::vector<double> patch;
+    const auto mesh = mesh::bevel_pitch_mesh(g, patch);
+    ASSERT_TRUE(mesh) << mesh.error().message;
+    double most = 0;
+    Vec3 at = Vec3::Zero();
+    int facets = 0;
+    for (const auto& t : mesh->triangles) {
+      const auto tooth = [&](std::int32_t v) { return patch[std::size_t(v)] <= 2; };
+      if (!tooth(t[0]) || !tooth(t[1]) || !tooth(t[2])) continue;
+      const Vec3 middle =
+          (mesh->vertices[std::size_t(t[0])] + mesh->vertices[std::size_t(t[1])] + mesh->vertices[std::size_t(t[2])]) /
+          3;
+      if (brute.in_groove(brute.ell_of(middle), 1e-6)) continue;
+      ++facets;
+      const double off = std::abs(brute.clearance(middle));
+      if (off > most) most = off, at = middle;
+    }
+    EXPECT_GT(facets, 1000);
+    EXPECT_LT(most, 0.02) << at.transpose() << " ell " << brute.ell_of(at) << " height " << brute.height_of(at);
+  }
 }
 
 /// Extreme sizes keep their digits.
