@@ -50,8 +50,9 @@ struct CommandGroup {
   const char* name;
   const char* description;
 };
-inline constexpr CommandGroup kStudies = {
-    "study", "error against run time, line against ball, extreme cases, section models, double helical gears"};
+inline constexpr CommandGroup kStudies = {"study",
+                                          "error against run time, line against ball, extreme cases, section models, "
+                                          "double helical gears, errors of the machine"};
 inline constexpr CommandGroup kReferences = {"reference", "all keys of the files that people write"};
 inline constexpr CommandGroup kMachines = {"machine", "what a machine file says, and how to prove it"};
 

@@ -48,10 +48,13 @@ class Motions {
     Placed p;
     p.joints = j;
     p.table = chain_.forward(j, length);
-    p.tip = setup_.rotation().transpose() * (p.table.tip_mm - setup_.origin_mm);
-    p.axis = setup_.rotation().transpose() * p.table.axis;
+    p.tip = in_work(p.table.tip_mm);
+    p.axis = turned_to_work(p.table.axis);
     return p;
   }
+  /// From the table frame to W.
+  Vec3 in_work(const Vec3& point_mm) const { return setup_.rotation().transpose() * (point_mm - setup_.origin_mm); }
+  Vec3 turned_to_work(const Vec3& direction) const { return setup_.rotation().transpose() * direction; }
   static double turn(const machines::Joints& a, const machines::Joints& b) {
     return std::abs(b.rotary_rad[0] - a.rotary_rad[0]) + std::abs(b.rotary_rad[1] - a.rotary_rad[1]);
   }
@@ -143,6 +146,7 @@ class TraceFollower {
         kinematics_(by.machine.chain, by.setup),
         teeth_(by.teeth),
         tolerances_(by.tolerances),
+        truly_(by.truly),
         unwanted_(by.moves == Followed::Moves::all ? std::nullopt : std::optional(by.moves == Followed::Moves::feeds)),
         // Teeth that were not kept stand where their index words put them: rounded, so off the exact turn by up to
         // this.
@@ -209,6 +213,13 @@ class TraceFollower {
     return kinematics_.place(j, length);
   }
 
+  /// Tip and axis in W, as the tool truly stands.
+  [[nodiscard]] std::pair<Vec3, Vec3> stands(const Placed& p, int tool) const {
+    if (!truly_) return {p.tip, p.axis};
+    const machines::TablePose pose = truly_(p.joints, tool);
+    return {kinematics_.in_work(pose.tip_mm), kinematics_.turned_to_work(pose.axis)};
+  }
+
   Status follow(std::size_t i) {
     const ExecutedMove& m = trace_.moves[i];
     const double* length = length_of(m.tool);
@@ -236,10 +247,12 @@ class TraceFollower {
       const Placed end = piece < n ? between(from, to, static_cast<double>(piece) / n, m.tcp, *length) : to;
       const auto [tip_left, axis_left] = n == 1 ? whole : kinematics_.bounds(start, end, *length);
       path::ToolMotion motion;
-      motion.tip_from = start.tip;
-      motion.tip_to = end.tip;
-      motion.axis_from = start.axis;
-      motion.axis_to = end.axis;
+      const auto [tip_from, axis_from] = stands(start, m.tool);
+      const auto [tip_to, axis_to] = stands(end, m.tool);
+      motion.tip_from = tip_from;
+      motion.tip_to = tip_to;
+      motion.axis_from = axis_from;
+      motion.axis_to = axis_to;
       motion.deviation_mm = (m.tcp ? 0 : tip_left) + kRoundOff + double(m.blend_mm) + corner_mm +
                             shift_ * std::max(motion.tip_from.head<2>().norm(), motion.tip_to.head<2>().norm());
       motion.axis_deviation = axis_left + shift_ + double(m.blend_axis_rad) + corner_rad;
@@ -263,6 +276,7 @@ class TraceFollower {
   const Motions kinematics_;
   int teeth_;
   MotionTolerances tolerances_;
+  const std::function<machines::TablePose(const machines::Joints&, int tool)>& truly_;
   std::optional<bool> unwanted_;  ///< rapids, or feeds
   double shift_, reference_;
   std::size_t ended_ = 0;  ///< move whose end is known, not 0

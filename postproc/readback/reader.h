@@ -206,6 +206,9 @@ struct Followed {
   int teeth = 1;
   MotionTolerances tolerances;
   enum class Moves : std::uint8_t { all, rapids, feeds } moves = Moves::all;  ///< that are wanted
+  /// Where tool T truly stands at commanded joints, table frame; empty: where the machine file puts it. Moves are cut
+  /// into pieces, and pieces bounded, by the file; the ends of the pieces are moved.
+  std::function<machines::TablePose(const machines::Joints&, int tool)> truly = {};
 };
 [[nodiscard]] Status add_tool_motions(const OperationTrace& trace, const TurnedCopies& copies, const Followed& by,
                                       std::vector<path::ToolMotion>& motions);
