@@ -10,7 +10,8 @@
 namespace toothpath::commands {
 namespace {
 
-const std::vector<std::string> kContactOutputs = {"contact.csv", "transmission.csv", "contact.json", "contact.html"};
+const std::vector<std::string> kContactOutputs = {"contact.csv", "transmission.csv", "contact.json", "contact.html",
+                                                  "loaded.csv", "pressure.csv"};
 
 /// Rows that resolve the cusps of a finishing operation: several to a pass.
 constexpr int kCutRows = 241, kCutColumns = 33;
@@ -62,6 +63,12 @@ void add_contact(Commands& commands) {
                  "bevel gears: job of the mate (default: by the rules of the pair, same mill)", "JOB");
         set.number("--wheel-axial-error", request.wheel_axial_error_mm,
                    "bevel gears: wheel off its place along its axis", job::kMoved);
+        set.number("--torque", request.torque_Nm, "load the elastic pair, too: torque on the gear",
+                   job::kContactTorque);
+        set.flag("--on-pinion", request.torque_on_pinion, "that torque is the pinion's");
+        set.flag("--held", request.pinion_held, "the pinion is held along its axis where it would float");
+        set.whole_number("--positions", request.positions, "positions of the loaded pair over a pitch (default 24)",
+                         job::kContactPositions);
         set.flag("--as-cut", request.as_cut, "roll the surface that the job cuts, too");
       },
       run_contact));

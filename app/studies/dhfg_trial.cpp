@@ -123,8 +123,9 @@ DhfgTrial dhfg_trial(const DhfgStudy& study, const TrialLevels& levels) {
   trial.pinion_teeth = static_cast<int>(std::lround(study.pinion_teeth[static_cast<std::size_t>(levels.teeth)]));
   trial.teeth = static_cast<int>(std::lround(trial.pinion_teeth * study.ratio[static_cast<std::size_t>(levels.ratio)]));
   trial.helix_angle_rad = study.helix_angle_rad[static_cast<std::size_t>(levels.helix)];
-  const auto gear = make_trial_gear(study, trial);
-  if (!gear) return trial;
+  trial.gear = make_trial_gear(study, trial);
+  if (!trial.gear) return trial;
+  const auto* gear = &*trial.gear;
   roll_trial(*gear, trial);
   const auto &inner = gear->rings()[0].surface, &outer = gear->rings()[1].surface;
   const auto inner_pinion = contact::make_pinion(inner, trial.pinion_teeth),
@@ -132,6 +133,7 @@ DhfgTrial dhfg_trial(const DhfgStudy& study, const TrialLevels& levels) {
   trial.balanced = contact::double_mesh_force(inner, outer, inner_pinion, outer_pinion, 1, study.torque_nmm, 0.5);
   trial.held =
       contact::double_mesh_force(inner, outer, inner_pinion, outer_pinion, 1, study.torque_nmm, study.held_share);
+  trial.loaded = load_trial(*gear, study.torque_nmm, study.effort);
   trial.milling = mill(study, *gear);
   return trial;
 }

@@ -99,6 +99,7 @@ class SectorBuilder {
 
   void make_bricks(Sector& out) {
     out.least_jacobian = 1e300;
+    brick_at_.assign(static_cast<std::size_t>(plan_.face * (top_ / 2) * (columns_ / 2)), -1);
     // The lattice may be left-handed in space: then its last direction is read backwards.
     const Vec3 o = out.nodes[static_cast<std::size_t>(node(left_, foot_, 0))];
     const auto from_o = [&](int u, int v, int w) {
@@ -119,6 +120,8 @@ class SectorBuilder {
           double jacobian = 0;
           (void)brick_stiffness(x, 0.3, jacobian);
           out.least_jacobian = std::min(out.least_jacobian, jacobian);
+          brick_at_[static_cast<std::size_t>(((w / 2) * (top_ / 2) + v / 2) * (columns_ / 2) + u / 2)] =
+              static_cast<int>(out.bricks.size());
           out.bricks.push_back(brick);
         }
   }
@@ -130,6 +133,7 @@ class SectorBuilder {
     for (int r = 0; r < out.rows; ++r)
       for (int c = 0; c < out.columns; ++c) out.stations.push_back(node(u, top_ - 2 * r, 2 * c));
     out.normals.assign(out.stations.size(), Vec3::Zero());
+    out.flank_face = load_high_ ? 1 : -1;
     const Vec3 inside = out.nodes[static_cast<std::size_t>(node(load_high_ ? left_ : right_, top_, 0))] -
                         out.nodes[static_cast<std::size_t>(node(u, top_, 0))];
     for (int r = 0; r + 1 < out.rows; ++r)
@@ -149,6 +153,8 @@ class SectorBuilder {
           return face_place(x, a, b).area;
         };
         if (area(one, 0, 0).dot(inside) > 0) one = other;
+        out.face_bricks.push_back(brick_at_[static_cast<std::size_t>(
+            ((w / 2) * (top_ / 2) + (v / 2 - 1)) * (columns_ / 2) + (load_high_ ? u / 2 - 1 : u / 2))]);
         static constexpr double ca[4] = {-1, 1, 1, -1}, cb[4] = {-1, -1, 1, 1};
         for (int n = 0; n < 4; ++n)
           out.normals[static_cast<std::size_t>(one.stations[static_cast<std::size_t>(n)])] +=
@@ -163,7 +169,7 @@ class SectorBuilder {
   bool load_high_;
   int columns_ = 0, left_ = 0, right_ = 0, foot_ = 0, top_ = 0, stations_ = 0;
   double dip_ = 0;
-  std::vector<int> ids_;
+  std::vector<int> ids_, brick_at_;
 };
 
 }  // namespace

@@ -50,6 +50,8 @@ struct Sector {
   int columns = 0, rows = 0;           ///< of stations: along the face; from the tip down to the end of the flank
   std::vector<int> stations;           ///< nodes, row * columns + column
   std::vector<Vec3> normals;           ///< at the stations, out of the material
+  std::vector<int> face_bricks;        ///< brick of each of `faces`
+  int flank_face = 0;                  ///< side of those bricks that is the flank: +1 or -1 across
   std::vector<StationFace> faces;      ///< (rows - 1) x (columns - 1), row-major; corners run so that `area` points out
   double least_jacobian = 0;           ///< mm^3
 };
@@ -70,7 +72,6 @@ struct SectorRow {
   std::vector<std::array<int, kBrickNodes>> bricks;
   std::vector<int> held;                      ///< back of the rim and both outer cuts
   std::vector<std::vector<int>> node_of;      ///< of a sector, of its node
-  std::vector<std::vector<int>> flank_brick;  ///< of a sector: the bricks of its station faces
 };
 [[nodiscard]] SectorRow sector_row(const Sector& sector, int teeth);
 

@@ -174,12 +174,12 @@ double ToothBody::remainder_at(const Weights& place, const Weights& force, int o
   return sum;
 }
 
-Result<ToothBody> gear_body(const face_gear::FaceGearSurface<double>& f, int side, double inner_mm, double outer_mm,
-                            const BodyPlan& plan) {
+Result<ToothBody> gear_bricks(const face_gear::FaceGearSurface<double>& f, int side, double inner_mm, double outer_mm,
+                              const elastic::SectorPlan& plan) {
   ToothBody body;
   body.ends = {true, {inner_mm, outer_mm}, Vec3::Zero(), Vec3::UnitZ()};
   body.face_from = inner_mm, body.face_to = outer_mm;
-  elastic::SectorPlan bricks = plan.bricks;
+  elastic::SectorPlan bricks = plan;
   for (;; ++bricks.fillet) {
     auto sections = gear_sections(f, inner_mm, outer_mm, bricks);
     if (!sections) return sections.error();
@@ -199,16 +199,15 @@ Result<ToothBody> gear_body(const face_gear::FaceGearSurface<double>& f, int sid
     break;
   }
   body.fillet_bricks = bricks.fillet;
-  if (const auto done = finish(body, plan); !done) return done.error();
   return body;
 }
 
-Result<ToothBody> pinion_body(const contact::Pinion<double>& pinion, const PinionProfile& profile, int side,
-                              double Z_from, double Z_to, const BodyPlan& plan) {
+Result<ToothBody> pinion_bricks(const contact::Pinion<double>& pinion, const PinionProfile& profile, int side,
+                                double Z_from, double Z_to, const elastic::SectorPlan& plan) {
   ToothBody body;
   body.ends = {false, {Z_from, Z_to}, Vec3::Zero(), Vec3::UnitZ()};
   body.face_from = Z_from, body.face_to = Z_to;
-  elastic::SectorPlan bricks = plan.bricks;
+  elastic::SectorPlan bricks = plan;
   bricks.rim_mm = std::min(bricks.rim_mm, 0.75 * profile.r_f);
   for (;; ++bricks.fillet) {
     const std::vector<ToothSection> sections(static_cast<std::size_t>(2 * bricks.face + 1),
@@ -228,7 +227,22 @@ Result<ToothBody> pinion_body(const contact::Pinion<double>& pinion, const Pinio
   body.top.assign(static_cast<std::size_t>(bricks.face + 1), profile.r_a);
   body.foot.assign(static_cast<std::size_t>(bricks.face + 1), profile.start);
   body.fillet_bricks = bricks.fillet;
-  if (const auto done = finish(body, plan); !done) return done.error();
+  return body;
+}
+
+Result<ToothBody> gear_body(const face_gear::FaceGearSurface<double>& f, int side, double inner_mm, double outer_mm,
+                            const BodyPlan& plan) {
+  auto body = gear_bricks(f, side, inner_mm, outer_mm, plan.bricks);
+  if (!body) return body;
+  if (const auto done = finish(*body, plan); !done) return done.error();
+  return body;
+}
+
+Result<ToothBody> pinion_body(const contact::Pinion<double>& pinion, const PinionProfile& profile, int side,
+                              double Z_from, double Z_to, const BodyPlan& plan) {
+  auto body = pinion_bricks(pinion, profile, side, Z_from, Z_to, plan.bricks);
+  if (!body) return body;
+  if (const auto done = finish(*body, plan); !done) return done.error();
   return body;
 }
 

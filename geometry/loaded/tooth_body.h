@@ -62,6 +62,12 @@ struct BodyPlan {
   double E = 210000, nu = 0.3;
 };
 
+/// The bricks of both alone, without the remainder: for other solvers. Refused as below.
+[[nodiscard]] Result<ToothBody> gear_bricks(const face_gear::FaceGearSurface<double>& f, int side, double inner_mm,
+                                            double outer_mm, const elastic::SectorPlan& plan);
+[[nodiscard]] Result<ToothBody> pinion_bricks(const contact::Pinion<double>& pinion, const PinionProfile& profile,
+                                              int side, double Z_from, double Z_to, const elastic::SectorPlan& plan);
+
 /// The tooth of a gear, loaded on its flank `side`. Refused: undercut, bricks that fold, a rim that does not fit.
 [[nodiscard]] Result<ToothBody> gear_body(const face_gear::FaceGearSurface<double>& f, int side, double inner_mm,
                                           double outer_mm, const BodyPlan& plan);

@@ -143,6 +143,12 @@ process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, con
     if (!side) return std::vector{process::located(job, key, side.error())};
     analysis.sides.push_back(std::move(*side));
   }
+  if (settings.load) {
+    auto loaded = analyse_loaded(job, gear, settings, settings.pinion_teeth);
+    if (auto* errors = loaded.refused()) return std::move(*errors);
+    analysis.loaded = std::move(loaded).value();
+    if (cut) analysis.notes.emplace_back("under load the exact flanks are computed, not the cut ones");
+  }
   if (!cut) return analysis;
   analysis.route = cut->route;
   for (const int s : {1, -1}) {
@@ -228,6 +234,7 @@ std::string contact_json(const ContactAnalysis& a) {
     for (std::size_t m = 0; m < side.members.size(); ++m) s["zones"].push_back(zone_json(side, m));
     json["flanks"].push_back(std::move(s));
   }
+  if (a.loaded) json["loaded"] = loaded_json(*a.loaded);
   json["notes"] = a.notes;
   return json.dump(2) + "\n";
 }
@@ -262,6 +269,7 @@ std::string contact_summary(const ContactAnalysis& a) {
                          p.marked_share * 100, p.inner_mm, p.outer_mm, p.low_mm, p.high_mm, words_of(p));
     }
   }
+  if (a.loaded) out += loaded_summary(*a.loaded);
   for (const auto& note : a.notes) out += "  note: " + note + "\n";
   return out;
 }
