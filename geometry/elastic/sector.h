@@ -70,8 +70,8 @@ using SectionMap = std::function<Vec3(int station, const Vec2& at)>;
 struct SectorRow {
   std::vector<Vec3> nodes;
   std::vector<std::array<int, kBrickNodes>> bricks;
-  std::vector<int> held;                      ///< back of the rim and both outer cuts
-  std::vector<std::vector<int>> node_of;      ///< of a sector, of its node
+  std::vector<int> held;                  ///< back of the rim and both outer cuts
+  std::vector<std::vector<int>> node_of;  ///< of a sector, of its node
 };
 [[nodiscard]] SectorRow sector_row(const Sector& sector, int teeth);
 

@@ -53,8 +53,7 @@ Result<std::string> contact_deck(const face_gear::FaceGear& gear, int ring, int 
   const auto bounds =
       contact_bounds(f, side, of_ring.zone.inner_radius_mm, of_ring.zone.outer_radius_mm, profile.least_theta);
   if (!bounds) return bounds.error();
-  const auto on_gear =
-      gear_bricks(f, side, of_ring.zone.inner_radius_mm, of_ring.zone.outer_radius_mm, o.bricks);
+  const auto on_gear = gear_bricks(f, side, of_ring.zone.inner_radius_mm, of_ring.zone.outer_radius_mm, o.bricks);
   if (!on_gear) return on_gear.error();
   const auto on_pinion = pinion_bricks(pinion, profile, side, bounds->least_Z, bounds->most_Z, o.bricks);
   if (!on_pinion) return on_pinion.error();
@@ -68,8 +67,9 @@ Result<std::string> contact_deck(const face_gear::FaceGear& gear, int ring, int 
   const double pinion_pitch = 2 * kPi / pinion.teeth;
   move(pinion_row, frame * about_z(o.phi + side * pinion_pitch / 2 - middle * pinion_pitch), pinion.foot);
 
-  std::string out = fmt::format("** face gear and pinion, ring {}, flank {:+}, pinion at {:.6f} deg, approach {:g} mm\n",
-                                ring, side, degrees(o.phi), o.approach_mm);
+  std::string out =
+      fmt::format("** face gear and pinion, ring {}, flank {:+}, pinion at {:.6f} deg, approach {:g} mm\n", ring, side,
+                  degrees(o.phi), o.approach_mm);
   out += fmt::format("** normal force = moment of the reactions of GEAR_HELD about z / {:.9f} mm\n", f.M2);
   const int nodes = static_cast<int>(gear_row.nodes.size()), bricks = static_cast<int>(gear_row.bricks.size());
   add_body(out, gear_row, "GEAR", 0, 0);

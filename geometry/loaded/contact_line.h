@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "geometry/base/result.h"
-#include "geometry/face_gear/surface.h"
+#include "geometry/contact/pinion.h"
 
 namespace toothpath::loaded {
 
@@ -54,6 +54,7 @@ struct ContactLine {
   int tooth = 0;
   double length = 0;  ///< on the flank, mm
   double from_B = 0, to_B = 0;
+  double roundness = 0;  ///< largest ratio of the principal relative curvatures, along to across; 0 in line contact
   std::vector<Segment> segments;  ///< those on the flank, in the order of B; then those beyond its ends
 };
 
@@ -64,6 +65,9 @@ struct LineOptions {
   double segment_mm = 1.5;
   double approach_mm = 0;    ///< of the loaded flanks, about: 0 lists no segment beyond the ends
   double half_width_mm = 0;  ///< of the pressed strip, about
+  /// A pinion that touches in a point, or stands off its place: the line is then the valley of least gap, a place for
+  /// every B, and segments carry that gap. Null: the pinion is the shaper, the gap 0.
+  const contact::Pinion<double>* pinion = nullptr;
 };
 [[nodiscard]] std::vector<ContactLine> contact_lines(const face_gear::FaceGearSurface<double>& f, int ring, int side,
                                                      double phi, const ContactBounds& bounds,

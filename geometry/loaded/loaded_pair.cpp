@@ -12,6 +12,7 @@ namespace toothpath::loaded {
 namespace {
 
 constexpr int kWidthRounds = 8;
+constexpr double kRoundest = 1.0 / 25;  // of the principal curvatures: an ellipse of 5 to 1
 constexpr double kWidthTolerance = 1e-6;
 
 /// All places of one position, with their compliance.
@@ -29,8 +30,10 @@ class PositionProblem {
       options.segment_mm = pair_.options.segment_mm;
       options.approach_mm = approach_mm;
       options.half_width_mm = half_width;
+      if (pair_.pinion_teeth != pair_.shaper_teeth) options.pinion = &ring.moved;
       for (auto& line : contact_lines(ring.surface, ring.ring, pair_.side, phi_, ring.bounds, options)) {
         line_mm_ += line.length;
+        roundness_ = std::max(roundness_, line.roundness);
         for (Segment& s : line.segments) {
           s.gap += unloaded_gap(ring, s);
           places_.push_back(s);
@@ -47,6 +50,7 @@ class PositionProblem {
   [[nodiscard]] bool empty() const { return places_.empty(); }
   [[nodiscard]] const std::vector<Segment>& places() const { return places_; }
   [[nodiscard]] double line_mm() const { return line_mm_; }
+  [[nodiscard]] double roundness() const { return roundness_; }
   [[nodiscard]] double normal_force() const { return load_.torque_nmm / pair_.lever; }
 
   /// Shares the load; half widths of the strips and forces are found together. @param shift  of the pinion, mm
@@ -110,6 +114,7 @@ class PositionProblem {
   [[nodiscard]] double unloaded_gap(const PairRing& ring, const Segment& s) const {
     double gap = pair_.options.gap ? pair_.options.gap(s) : 0;
     const contact::Misalignment& m = pair_.options.moved;
+    if (pair_.pinion_teeth != pair_.shaper_teeth) return gap;  // the segment carries it
     if (m.offset_mm == 0 && m.axial_mm == 0 && m.angle_rad == 0) return gap;
     const double phi = phi_ + s.tooth * 2 * kPi / pair_.pinion_teeth;
     const auto place = ring.moved.place(s.nearest);
@@ -180,7 +185,7 @@ class PositionProblem {
 
   const LoadedPair& pair_;
   const Load& load_;
-  double phi_, line_mm_ = 0;
+  double phi_, line_mm_ = 0, roundness_ = 0;
   mutable double residual_ = 0;
   std::vector<Segment> places_;
   std::vector<int> line_of_;
@@ -235,11 +240,8 @@ Result<LoadedPair> make_loaded_pair(const face_gear::FaceGear& gear, int side, i
   pair.pinion_teeth = pinion_teeth;
   pair.options = options;
   pair.modulus = contact_modulus(options.gear.E, options.gear.nu, options.pinion.E, options.pinion.nu);
-  if (pinion_teeth != gear.parameters().shaper_teeth)
-    return fail(
-        "loaded contact is computed along lines, for a pinion of as many teeth as the shaper ({}): with {} "
-        "teeth the flanks touch in a point",
-        gear.parameters().shaper_teeth, pinion_teeth);
+  pair.shaper_teeth = gear.parameters().shaper_teeth;
+  if (const auto fits = contact::check_pinion(gear.parameters(), pinion_teeth); !fits) return fits.error();
   pair.lever = gear.rings().front().surface.M2;
   pair.rings.resize(gear.rings().size());
   std::vector<Status> done(2 * gear.rings().size(), Status(Ok{}));
@@ -290,6 +292,11 @@ Result<LoadedPosition> loaded_position(const LoadedPair& pair, const Load& load,
   out.phi = phi;
   problem.list(0, 0);
   if (problem.empty()) return fail("no pair touches while the pinion stands at {:.4f} deg", degrees(phi));
+  if (problem.roundness() > kRoundest)
+    return fail(
+        "the flanks touch in an ellipse of curvatures 1 to {:.1f}: loaded contact is computed along lines, from 1 "
+        "to {:g} on; more teeth of the pinion, nearer to the shaper's {}, would do",
+        1 / problem.roundness(), 1 / kRoundest, pair.shaper_teeth);
   auto widths = problem.even_widths();
   const auto plain = problem.share(widths);
   if (!plain) return plain.error();
@@ -318,7 +325,7 @@ Result<LoadedCycle> loaded_cycle(const LoadedPair& pair, const Load& load) {
   cycle.single_axial_n = cycle.normal_n * std::abs(pair.rings.back().surface.shaper.sin_bb);
   std::vector<std::optional<Result<LoadedPosition>>> found(static_cast<std::size_t>(load.positions));
   tbb::parallel_for(std::size_t(0), found.size(), [&](std::size_t k) {
-    found[k] = loaded_position(pair, load, 2 * kPi / pair.pinion_teeth * double(k) / load.positions);
+    found[k] = loaded_position(pair, load, 2 * kPi / pair.shaper_teeth * double(k) / load.positions);
   });
   for (auto& position : found) {
     if (!*position) return position->error();

@@ -33,15 +33,15 @@ struct PairRing {
 
 /// Everything that does not depend on load and position.
 struct LoadedPair {
-  int side = 1, teeth = 0, pinion_teeth = 0;
+  int side = 1, teeth = 0, shaper_teeth = 0, pinion_teeth = 0;
   PairOptions options;
   double modulus = 0;  ///< E*
   double lever = 0;    ///< M2: of every normal about the gear's axis
   std::vector<PairRing> rings;
 };
 
-/// Refused: a pinion of other teeth than the shaper's (point contact: not computed), an undercut flank, a tooth that
-/// has no bricks.
+/// A pinion of fewer teeth than the shaper touches in a slender ellipse: the line is then the valley of least gap.
+/// Refused: a pinion of more teeth than the shaper, an undercut flank, a tooth that has no bricks.
 [[nodiscard]] Result<LoadedPair> make_loaded_pair(const face_gear::FaceGear& gear, int side, int pinion_teeth,
                                                   const PairOptions& options);
 
@@ -84,7 +84,8 @@ struct LoadedCycle {
   std::vector<LoadedPosition> positions;
 };
 
-/// Refused: no pair touches at some position; a load that does not settle.
+/// @param phi  turn of the shaper that stands where the gear does; a pitch is 2 pi/N_s
+/// Refused: no pair touches at some position; an ellipse of contact below 5:1; a load that does not settle.
 [[nodiscard]] Result<LoadedPosition> loaded_position(const LoadedPair& pair, const Load& load, double phi);
 /// The positions of one pitch, in parallel; the same bits on any number of threads.
 [[nodiscard]] Result<LoadedCycle> loaded_cycle(const LoadedPair& pair, const Load& load);

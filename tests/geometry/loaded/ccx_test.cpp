@@ -44,8 +44,7 @@ TEST(CalculiX, AgreesOnTheBodies) {
   plan.across = 2, plan.flank = 2, plan.fillet = 2, plan.face = 3, plan.rim = 2;
   const auto pinion = contact::make_pinion(ring.surface, 30);
   const auto profile = loaded::pinion_profile(pinion, ring.surface.shaper.h_f, 1.2);
-  const auto on_gear =
-      loaded::gear_bricks(ring.surface, 1, ring.zone.inner_radius_mm, ring.zone.outer_radius_mm, plan);
+  const auto on_gear = loaded::gear_bricks(ring.surface, 1, ring.zone.inner_radius_mm, ring.zone.outer_radius_mm, plan);
   const auto on_pinion = loaded::pinion_bricks(pinion, profile, 1, 551, 584, plan);
   for (const auto* body : {&on_gear, &on_pinion}) {
     ASSERT_TRUE(*body);
@@ -65,7 +64,7 @@ TEST(CalculiX, AgreesOnTheBodies) {
       worst = std::max(worst, std::abs(theirs - ours)), largest = std::max(largest, std::abs(ours));
     }
     EXPECT_LT(worst, 1e-6 * largest);
-    printf("worst %g of %g\n", worst, largest);
+
   }
 }
 

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/geometry/loaded/trial_gear.h"
 
 namespace toothpath::test {
@@ -200,10 +202,111 @@ TEST(LoadedPair, ExtremeTorquesEndInNumbers) {
   }
 }
 
-TEST(LoadedPair, OtherTeethThanTheShapersAreRefused) {
-  const auto made = loaded::make_loaded_pair(trial_gear(), 1, 29, coarse());
+/// The offset gear of the samples with its exact ring.
+face_gear::FaceGear offset_gear() {
+  face_gear::FaceGearParameters p;
+  p.teeth = 88, p.shaper_teeth = 25, p.module_mm = 3, p.pressure_angle_rad = radians(20), p.offset_mm = 15;
+  p.shaper_tip_radius_mm = 0.75;
+  p.zones = {{0, 131, 146}};
+  auto made = face_gear::FaceGear::make(p);
+  if (auto* refused = made.refused()) throw std::invalid_argument(refused->front().diagnostic.message);
+  return std::move(made).value();
+}
+loaded::PairOptions of_module_3() {
+  auto options = coarse();
+  for (auto* body : {&options.gear, &options.pinion}) body->bricks.rim_mm = 15;
+  options.pinion_fillet_mm = 0.72;
+  options.segment_mm = 0.4;
+  return options;
+}
+
+TEST(LoadedPair, TheValleyOfTheShaperIsItsLine) {
+  for (const auto& gear : {trial_gear(), offset_gear()}) {
+    const auto& ring = gear.rings().back();
+    const auto bounds =
+        loaded::contact_bounds(ring.surface, 1, ring.zone.inner_radius_mm, ring.zone.outer_radius_mm, 0.05);
+    ASSERT_TRUE(bounds);
+    const auto shaper = contact::make_pinion(ring.surface, ring.surface.shaper.teeth);
+    loaded::LineOptions options;
+    const auto exact = loaded::contact_lines(ring.surface, 0, 1, 0.01, *bounds, options);
+    options.pinion = &shaper;
+    const auto valleys = loaded::contact_lines(ring.surface, 0, 1, 0.01, *bounds, options);
+    ASSERT_EQ(valleys.size(), exact.size());
+    for (std::size_t n = 0; n < exact.size(); ++n) {
+      EXPECT_NEAR(valleys[n].length, exact[n].length, 1e-4);
+      ASSERT_EQ(valleys[n].segments.size(), exact[n].segments.size());
+      EXPECT_LT(std::abs(valleys[n].roundness), 1e-7);
+      for (std::size_t k = 0; k < exact[n].segments.size(); ++k) {
+        const auto &a = valleys[n].segments[k], &b = exact[n].segments[k];
+        EXPECT_NEAR(a.gap, 0, 1e-10);
+        EXPECT_LT((a.point - b.point).norm(), 1e-3);
+        EXPECT_NEAR(a.curvature, b.curvature, 1e-4 * b.curvature);
+      }
+    }
+  }
+}
+
+/// Largest pressure of an ellipse of Hertz, by the complete elliptic integrals.
+double hertz_ellipse(double force, double modulus, double k1, double k2) {
+  double low = 0, high = 1 - 1e-12;  // e^2
+  const auto sides = [](double m) {  // k2/k1 that an ellipse of this m belongs to
+    const double e = std::sqrt(m), K = std::comp_ellint_1(e), E = std::comp_ellint_2(e);
+    return (1 - m) * (K - E) / (E - (1 - m) * K);
+  };
+  for (int n = 0; n < 200; ++n) {
+    const double middle = (low + high) / 2;
+    (sides(middle) > k2 / k1 ? low : high) = middle;
+  }
+  const double e = std::sqrt(low), K = std::comp_ellint_1(e), E = std::comp_ellint_2(e);
+  // k2/2 = p0 b (K - E)/(E* a^2 e^2), p0 = 3 F/(2 pi a b).
+  const double a = std::cbrt(3 * force * (K - E) / (kPi * modulus * low * k2));
+  return 1.5 * force / (kPi * a * a * std::sqrt(1 - low));
+}
+
+TEST(LoadedPair, APointTouchesInAnEllipseOfHertz) {
+  EXPECT_NEAR(hertz_ellipse(100, 115384.615, 0.1, 0.025), 908.582, 0.5);  // A, B = .05, .0125
+  const auto gear = offset_gear();
+  const auto pair = loaded::make_loaded_pair(gear, 1, 23, of_module_3());
+  ASSERT_TRUE(pair) << pair.error().message;
+  loaded::Load load;
+  load.torque_nmm = 20 * pair->lever;
+  int judged = 0;
+  for (const double phase : {0.0, 0.2, 0.4, 0.6, 0.8}) {
+    const auto p = loaded::loaded_position(*pair, load, 2 * kPi / 25 * phase);
+    ASSERT_TRUE(p) << p.error().message;
+    EXPECT_NEAR(p->error_rad, p->approach_mm / pair->lever, 1e-18);
+    // Where one pair carries inside the flank: that is an ellipse.
+    const loaded::PressedSegment* most = nullptr;
+    double force = 0;
+    bool at_end = false;
+    int tooth = 99, teeth = 0;
+    for (const auto& s : p->segments) {
+      if (!(s.force > 0)) continue;
+      if (tooth != s.place.tooth) tooth = s.place.tooth, ++teeth;
+      force += s.force;
+      at_end |= s.place.at_end || s.place.beyond > 0;
+      if (most == nullptr || s.pressure > most->pressure) most = &s;
+    }
+    EXPECT_NEAR(force, 20, 1e-8);
+    if (teeth != 1 || at_end) continue;
+    ++judged;
+    loaded::LineOptions options;
+    options.pinion = &pair->rings[0].moved;
+    for (const auto& line :
+         loaded::contact_lines(pair->rings[0].surface, 0, 1, 2 * kPi / 25 * phase, pair->rings[0].bounds, options))
+      if (line.tooth == most->place.tooth) {
+        const double exact =
+            hertz_ellipse(20, pair->modulus, most->place.curvature, most->place.curvature * line.roundness);
+        EXPECT_NEAR(most->pressure, exact, 0.06 * exact);
+      }
+  }
+  EXPECT_GE(judged, 1);
+}
+
+TEST(LoadedPair, MoreTeethThanTheShapersAreRefused) {
+  const auto made = loaded::make_loaded_pair(trial_gear(), 1, 31, coarse());
   ASSERT_FALSE(made);
-  EXPECT_NE(made.error().message.find("29"), std::string::npos);
+  EXPECT_NE(made.error().message.find("31"), std::string::npos);
 }
 
 TEST(LoadedPair, NeighboursAnswerEachOther) {
