@@ -71,9 +71,9 @@ struct ContactLoad {
   double youngs_modulus_N_mm2[2] = {210e3, 210e3};  ///< of gear, of pinion
   double poisson[2] = {0.3, 0.3};
   PinionHold pinion_axial = PinionHold::automatic;
-  double axial_stiffness_N_mm = 0;  ///< of `spring`
-  int positions = 24;               ///< over one pitch
-  int row_teeth = 5;                ///< of the clamped row that stands for the body, odd
+  double axial_stiffness_N_mm = 0;   ///< of `spring`
+  int positions = 24;                ///< over one pitch
+  int row_teeth = 5;                 ///< of the clamped row that stands for the body, odd
   std::optional<double> segment_mm;  ///< none: 0.3 m
   std::optional<double> rim_mm;      ///< none: 5 m
 };

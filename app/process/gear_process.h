@@ -100,10 +100,12 @@ struct ContactAsked {
   bool torque_on_pinion = false;               ///< that torque is the pinion's
   bool pinion_held = false;                    ///< along its axis, where it would float
   std::optional<int> positions;                ///< of the loaded pair over a pitch
+  std::string ccx_dir;                         ///< where decks of CalculiX go; empty: none
   bool as_cut = false;                         ///< face gears: the surface that the job's operations cut, too
 };
 struct ContactFound {
   NamedFiles files;
+  NamedFiles decks;  ///< of CalculiX, where they are asked for
   std::string json, summary;
 };
 

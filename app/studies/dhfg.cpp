@@ -237,12 +237,17 @@ std::vector<std::string> introduction_of(const DhfgStudy& s) {
                   "{:g} mm in the {} reading, as the study of X. Chu and F. Chen (Machines 2025, 13, 912) lists them. "
                   "Shaper and pinion have the same number of teeth, so the exact flanks touch along lines.",
                   s.base.module_mm, s.base.module_plane == face_gear::ModulePlane::normal ? "normal" : "transverse"),
-      "Limits, contact ratio, rigid transmission error and the forces of the second table are kinematics and statics of rigid "
-      "bodies. Under load the teeth are elastic: lines of contact in closed form, bricks on the exact surfaces, load shared over "
-      "all pairs and both halves, without friction (docs/loaded_contact.md). The literature took its overlap of two to three "
-      "pairs, mesh stiffness, loaded transmission error, contact stress and an axial force lowered by about 70 % from finite "
+      "Limits, contact ratio, rigid transmission error and the forces of the second table are kinematics and statics "
+      "of rigid "
+      "bodies. Under load the teeth are elastic: lines of contact in closed form, bricks on the exact surfaces, load "
+      "shared over "
+      "all pairs and both halves, without friction (docs/loaded_contact.md). The literature took its overlap of two to "
+      "three "
+      "pairs, mesh stiffness, loaded transmission error, contact stress and an axial force lowered by about 70 % from "
+      "finite "
       "elements; the last table puts its statements beside what is found here.",
-      "The rigid transmission error is zero in every trial. The axial force of a floating pinion is zero at any helix angle; a "
+      "The rigid transmission error is zero in every trial. The axial force of a floating pinion is zero at any helix "
+      "angle; a "
       "remainder appears when the halves share the torque unequally: a remainder of 30 % means a share of 65 to 35.",
       "Torque is taken on the face gear; the literature does not print face widths, groove, L0 or whose torque it "
       "states: here the groove lies in the middle of the band, and the halves take all that the limits leave unless "
@@ -367,18 +372,28 @@ commands::CommandOutcome study_dhfg(const DhfgRequest& request) {
     }
   });
 
+  EqualHalves equal;
   std::vector<EffortRow> efforts;
+  const auto narrowest = std::min_element(trials.begin(), trials.end(),
+                                          [](const auto& a, const auto& b) { return a.feasible_mm < b.feasible_mm; });
+  if (narrowest->feasible_mm > 0)
+    clock.run("equal halves", [&] {
+      equal.half_face_mm = narrowest->feasible_mm;
+      for (const auto& levels : l9_trials())
+        equal.trials.push_back(load_with_halves(study, levels, equal.half_face_mm, {3, 4, 5, request.quick ? 4 : 8}));
+    });
   if (trials[kMiddleTrial].gear)
-    efforts = clock.run(
-        "effort", [&] { return effort_rows(*trials[kMiddleTrial].gear, study.torque_nmm, request.quick); });
+    efforts =
+        clock.run("effort", [&] { return effort_rows(*trials[kMiddleTrial].gear, study.torque_nmm, request.quick); });
 
   std::vector<page::PageTable> tables = {geometry_table(trials), mesh_table(study, trials),
                                          loaded_trials_table(trials)};
   if (!study.operations.empty()) tables.push_back(milling_table(study, trials, request.quick));
   const std::size_t of_trials = tables.size();  // a row a trial
   tables.push_back(range_table(study, trials));
+  if (!equal.trials.empty()) tables.push_back(equal_halves_table(equal));
   if (!efforts.empty()) tables.push_back(effort_table(efforts, trials[kMiddleTrial].levels.number));
-  if (auto article = article_table(trials, efforts); !article.rows.empty()) tables.push_back(std::move(article));
+  if (auto article = article_table(trials, equal, efforts); !article.rows.empty()) tables.push_back(std::move(article));
   const auto feasible = std::count_if(trials.begin(), trials.end(), [](const auto& t) { return t.refusal.empty(); });
   page::StudyPage page;
   page.title = study.name + ": double helical face gears";

@@ -66,8 +66,9 @@ LoadedTrial load_with(const face_gear::FaceGear& gear, double torque_nmm, const 
   trial.approach_mm = range_over(*held, [](const LoadedPosition& x) { return x.approach_mm; });
   trial.stiffness = range_over(*held, [](const LoadedPosition& x) { return x.stiffness; });
   trial.line_mm = range_over(*held, [](const LoadedPosition& x) { return x.line_mm; });
-  trial.outer_share = range_over(
-      *held, [](const LoadedPosition& x) { return x.ring_force.back() / (x.ring_force.front() + x.ring_force.back()); });
+  trial.outer_share = range_over(*held, [](const LoadedPosition& x) {
+    return x.ring_force.back() / (x.ring_force.front() + x.ring_force.back());
+  });
   trial.remainder = range_over(*held, [](const LoadedPosition& x) { return std::abs(x.axial_n); });
   for (double* v : {&trial.remainder.least, &trial.remainder.most, &trial.remainder.mean}) *v /= trial.single_axial_n;
   const Range pairs = range_over(*held, [](const LoadedPosition& x) { return double(x.pairs); });
@@ -117,8 +118,94 @@ std::string out_of_order(const std::vector<DhfgTrial>& trials) {
   };
   if (!wrong({})) return "reproduced";
   for (int one = 1; one <= 9; ++one)
-    if (!wrong({one})) return fmt::format("reproduced but for trial {}: the order is that of the length of the lines", one);
+    if (!wrong({one}))
+      return fmt::format("reproduced but for trial {}: the order is that of the length of the lines", one);
   return "differs: the order here is that of the length of the lines, and with it of the chosen face widths";
+}
+
+/// Least and most of a quantity over the trials.
+Range whole(const std::vector<DhfgTrial>& trials, double (*of)(const LoadedTrial&)) {
+  Range r;
+  for (const auto& x : trials) r.least = std::min(r.least, of(x.loaded)), r.most = std::max(r.most, of(x.loaded));
+  return r;
+}
+
+void judge_stiffness(const std::vector<DhfgTrial>& trials, page::PageTable& t) {
+  const Range low = whole(trials, [](const LoadedTrial&l) { return l.stiffness.least; }),
+              high = whole(trials, [](const LoadedTrial&l) { return l.stiffness.most; });
+  const LoadedTrial& four = trials[3].loaded;
+  t.rows.push_back({"stiffness 0.5 to 30e4 N/mm, a spread of 60",
+                    fmt::format("{:.2f} to {:.2f}e6 N/mm", low.least / 1e6, high.most / 1e6),
+                    fmt::format("differs: 0.5 to 2.5e4 N/mm in trial 4 would mean {:.0f} to {:.0f} um of approach "
+                                "under {:.0f} N; nine gears "
+                                "of one module have no cause for a spread of 60",
+                                four.normal_n / 5e3 * kUm, four.normal_n / 2.5e4 * kUm, four.normal_n)});
+  std::vector<int> order = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+  std::sort(order.begin(), order.end(), [&](int a, int b) {
+    return trials[static_cast<std::size_t>(a - 1)].loaded.stiffness.mean <
+           trials[static_cast<std::size_t>(b - 1)].loaded.stiffness.mean;
+  });
+  t.rows.push_back({"order by stiffness: 1 4 7 8, then 2 3 5, then 6 9", fmt::format("{}", fmt::join(order, " ")),
+                    out_of_order(trials)});
+  const auto error = [](const LoadedTrial& l) { return l.error_rad; };
+  for (int f = 0; f < 3; ++f) {
+    const auto v = levels_of(trials, f, error);
+    t.rows.push_back({fmt::format("transmission error falls with {}", kFactors[f]),
+                      "level means " + three(v, kMicro, 3) + " urad",
+                      falls(v) ? "reproduced" : "differs: not at every level"});
+  }
+}
+
+void judge_contact(const std::vector<DhfgTrial>& trials, const EqualHalves& equal, page::PageTable& t) {
+  const Range most_pairs = whole(trials, [](const LoadedTrial&l) { return double(l.most_pairs); }),
+              least_pairs = whole(trials, [](const LoadedTrial&l) { return double(l.least_pairs); });
+  int least_equal = 99, most_equal = 0;
+  for (const auto& l : equal.trials)
+    least_equal = std::min(least_equal, l.least_pairs), most_equal = std::max(most_equal, l.most_pairs);
+  t.rows.push_back({"2 to 3 pairs in contact",
+                    fmt::format("{:g} to {:g} V-teeth; {} to {} with halves of {:.1f} mm", least_pairs.least,
+                                most_pairs.most, least_equal, most_equal, equal.half_face_mm),
+                    least_equal >= 2 && most_equal <= 3
+                        ? "reproduced with narrow halves; more where they take the whole feasible width. Load adds none"
+                        : "differs"});
+  const auto peak = [](const LoadedTrial& l) { return l.pressure; };
+  const Range p = whole(trials, peak),
+              pinion = whole(trials, [](const LoadedTrial&l) { return l.pinion_torque_pressure; });
+  t.rows.push_back(
+      {"stress 850 to 1150 MPa, 500 to 650 in trials 5 and 8",
+       fmt::format("{:.0f} to {:.0f} MPa, torque on the pinion {:.0f} to {:.0f}", p.least, p.most, pinion.least,
+                   pinion.most),
+       p.most < 850 ? "differs: line contact of this load has less; edges and nodes have more" : "within reach"});
+  for (const int f : {0, 2}) {
+    const auto v = levels_of(trials, f, peak);
+    t.rows.push_back({fmt::format("stress falls with {}", kFactors[f]), "level means " + three(v, 1, 0) + " MPa",
+                      falls(v) ? "reproduced" : "differs: not at every level"});
+  }
+}
+
+void judge_mesh_and_balance(const std::vector<DhfgTrial>& trials, const std::vector<EffortRow>& rows,
+                            page::PageTable& t) {
+  const auto coarse = std::find_if(rows.begin(), rows.end(), [](const EffortRow&r) { return r.name == "default"; }),
+             finer = std::find_if(rows.begin(), rows.end(),
+                                  [](const EffortRow&r) { return r.name == "short pieces of line"; });
+  if (coarse != rows.end() && finer != rows.end())
+    t.rows.push_back({"refinement changes the largest stress by less than 2 %",
+                      fmt::format("pieces half as long: inside {:+.1f} %, line ends {:+.1f} %",
+                                  100 * (finer->found.pressure / coarse->found.pressure - 1),
+                                  100 * (finer->found.end_pressure / coarse->found.end_pressure - 1)),
+                      "differs at edges: their pressure is a property of the mesh"});
+  const auto rest = [](const LoadedTrial& l) { return l.remainder.mean; };
+  const Range remainder = whole(trials, rest);
+  t.rows.push_back({"axial force about 70 % lower",
+                    fmt::format("floating pinion 100 % lower; held at its exact place {:.0f} to {:.0f} % (means)",
+                                100 * (1 - remainder.most), 100 * (1 - remainder.least)),
+                    fmt::format("differs: a remainder of 30 % is a pinion about {:.1f} um off its place along its axis",
+                                0.15 / std::abs(trials[3].loaded.share_per_um))});
+  const auto v = levels_of(trials, 2, rest);
+  t.rows.push_back({"a helix of 25 deg is best", "remainder at the levels " + three(v, 100, 1) + " %",
+                    v[1] < v[0] && v[1] < v[2]
+                        ? "reproduced for a held pinion; a floating one has no remainder at any angle"
+                        : "differs: no such optimum; a floating pinion has no remainder at any angle"});
 }
 
 }  // namespace
@@ -148,17 +235,22 @@ std::vector<EffortRow> effort_rows(const face_gear::FaceGear& gear, double torqu
 }
 
 page::PageTable loaded_trials_table(const std::vector<DhfgTrial>& trials) {
-  page::PageTable t{"Under load",
-                    {"trial", "normal N", "approach um", "LTE p-p urad", "floating LTE p-p urad", "stiffness 1e6 N/mm",
-                     "line mm", "peak MPa", "at line ends MPa", "peak, torque on pinion", "outer half", "loaded V-teeth",
-                     "axial single N", "held remainder %", "mean %", "floating axial N", "share a um", "load remark"},
-                    {},
-                    ""};
+  page::PageTable t{
+      "Under load",
+      {"trial", "normal N", "approach um", "LTE p-p urad", "floating LTE p-p urad", "stiffness 1e6 N/mm", "line mm",
+       "peak MPa", "at line ends MPa", "peak, torque on pinion", "outer half", "loaded V-teeth", "axial single N",
+       "held remainder %", "mean %", "floating axial N", "share a um", "load remark"},
+      {},
+      ""};
   t.note =
-      "Elastic teeth of steel, all pairs and both halves at once, no friction; pinion held at its exact place unless it says "
-      "floating. LTE: turn of the gear, peak to peak over a pitch. Peak: line contact of Hertz without the first and last piece "
-      "of a line, which stand apart: an edge has no finite pressure. Remainder: axial force of the held pinion, part of that of "
-      "one helix. Share a um: by how much the outer half's share changes when the pinion shifts by a micrometre along its axis.";
+      "Elastic teeth of steel, all pairs and both halves at once, no friction; pinion held at its exact place unless "
+      "it says "
+      "floating. LTE: turn of the gear, peak to peak over a pitch. Peak: line contact of Hertz without the first and "
+      "last piece "
+      "of a line, which stand apart: an edge has no finite pressure. Remainder: axial force of the held pinion, part "
+      "of that of "
+      "one helix. Share a um: by how much the outer half's share changes when the pinion shifts by a micrometre along "
+      "its axis.";
   for (const auto& r : trials) {
     const LoadedTrial& l = r.loaded;
     std::vector<std::string> row = {std::to_string(r.levels.number)};
@@ -183,13 +275,35 @@ page::PageTable loaded_trials_table(const std::vector<DhfgTrial>& trials) {
   return t;
 }
 
-page::PageTable effort_table(const std::vector<EffortRow>& rows, int trial) {
-  page::PageTable t{"What the effort changes",
-                    {"of trial " + std::to_string(trial), "bricks", "piece mm", "rim mm", "teeth of the row",
-                     "stiffness 1e6 N/mm", "LTE p-p urad", "peak MPa", "at line ends MPa", "seconds"},
+page::PageTable equal_halves_table(const EqualHalves& equal) {
+  page::PageTable t{fmt::format("Under load, all halves {:.3f} mm wide", equal.half_face_mm),
+                    {"trial", "LTE p-p urad", "stiffness 1e6 N/mm", "mean", "peak MPa", "at line ends MPa",
+                     "loaded V-teeth", "mean remainder %"},
                     {},
-                    "Four positions. Bricks: across the tooth, along the flank, along the face. What holds the rim is an "
-                    "assumption, not an error of the mesh; it moves the stiffness most."};
+                    "The narrowest feasible half of the nine, beside the same grooves; coarse bricks, pinion held."};
+  for (std::size_t k = 0; k < equal.trials.size(); ++k) {
+    const LoadedTrial& l = equal.trials[k];
+    if (!l.refusal.empty()) {
+      t.rows.push_back({std::to_string(k + 1), "", "", "", "", "", "", l.refusal});
+      continue;
+    }
+    t.rows.push_back({std::to_string(k + 1), fmt::format("{:.3f}", l.error_rad * kMicro),
+                      fmt::format("{:.3f} to {:.3f}", l.stiffness.least / 1e6, l.stiffness.most / 1e6),
+                      fmt::format("{:.3f}", l.stiffness.mean / 1e6), fmt::format("{:.0f}", l.pressure),
+                      fmt::format("{:.0f}", l.end_pressure), fmt::format("{} to {}", l.least_pairs, l.most_pairs),
+                      fmt::format("{:.1f}", l.remainder.mean * 100)});
+  }
+  return t;
+}
+
+page::PageTable effort_table(const std::vector<EffortRow>& rows, int trial) {
+  page::PageTable t{
+      "What the effort changes",
+      {"of trial " + std::to_string(trial), "bricks", "piece mm", "rim mm", "teeth of the row", "stiffness 1e6 N/mm",
+       "LTE p-p urad", "peak MPa", "at line ends MPa", "seconds"},
+      {},
+      "Four positions. Bricks: across the tooth, along the flank, along the face. What holds the rim is an "
+      "assumption, not an error of the mesh; it moves the stiffness most."};
   for (const auto& r : rows) {
     if (!r.found.refusal.empty()) {
       t.rows.push_back({r.name, "", "", "", "", "", "", "", "", r.found.refusal});
@@ -204,75 +318,17 @@ page::PageTable effort_table(const std::vector<EffortRow>& rows, int trial) {
   return t;
 }
 
-page::PageTable article_table(const std::vector<DhfgTrial>& trials, const std::vector<EffortRow>& rows) {
+page::PageTable article_table(const std::vector<DhfgTrial>& trials, const EqualHalves& equal,
+                              const std::vector<EffortRow>& rows) {
   page::PageTable t{"Against the article", {"statement", "here", "verdict"}, {}, ""};
   t.note =
-      "Machines 2025, 13, 912. It prints no face widths, groove, place of the pinion, nor whose torque 532 N m is: its figures "
-      "cannot be matched, only their order. Nothing was fitted to it.";
+      "Machines 2025, 13, 912. It prints no face widths, groove, place of the pinion, nor whose torque 532 N m is: its "
+      "figures cannot be matched, only their order. Nothing was fitted to it.";
   for (const auto& r : trials)
     if (!r.loaded.refusal.empty() || r.loaded.normal_n == 0) return t;
-  const auto whole = [&](double (*of)(const LoadedTrial&)) {
-    Range r;
-    for (const auto& x : trials) r.least = std::min(r.least, of(x.loaded)), r.most = std::max(r.most, of(x.loaded));
-    return r;
-  };
-  const Range low = whole([](const LoadedTrial& l) { return l.stiffness.least; }),
-              high = whole([](const LoadedTrial& l) { return l.stiffness.most; });
-  const LoadedTrial& four = trials[3].loaded;
-  t.rows.push_back(
-      {"stiffness 0.5 to 30e4 N/mm, a spread of 60", fmt::format("{:.2f} to {:.2f}e6 N/mm", low.least / 1e6, high.most / 1e6),
-       fmt::format("differs: 0.5 to 2.5e4 N/mm in trial 4 would mean {:.0f} to {:.0f} um of approach under {:.0f} N; nine gears "
-                   "of one module have no cause for a spread of 60",
-                   four.normal_n / 5e3 * kUm, four.normal_n / 2.5e4 * kUm, four.normal_n)});
-  std::vector<int> order = {1, 2, 3, 4, 5, 6, 7, 8, 9};
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return trials[static_cast<std::size_t>(a - 1)].loaded.stiffness.mean <
-           trials[static_cast<std::size_t>(b - 1)].loaded.stiffness.mean;
-  });
-  t.rows.push_back({"order by stiffness: 1 4 7 8, then 2 3 5, then 6 9", fmt::format("{}", fmt::join(order, " ")),
-                    out_of_order(trials)});
-  const auto error = [](const LoadedTrial& l) { return l.error_rad; };
-  for (int f = 0; f < 3; ++f) {
-    const auto v = levels_of(trials, f, error);
-    t.rows.push_back({fmt::format("transmission error falls with {}", kFactors[f]),
-                      "level means " + three(v, kMicro, 3) + " urad", falls(v) ? "reproduced" : "differs: not at every level"});
-  }
-  const Range most_pairs = whole([](const LoadedTrial& l) { return double(l.most_pairs); }),
-              least_pairs = whole([](const LoadedTrial& l) { return double(l.least_pairs); });
-  t.rows.push_back({"2 to 3 pairs in contact", fmt::format("{:g} to {:g} V-teeth", least_pairs.least, most_pairs.most),
-                    most_pairs.most <= 3 ? "reproduced"
-                                         : "differs: more pairs because the halves take the whole feasible width; load adds none, "
-                                           "the approach is a few um"});
-  const auto peak = [](const LoadedTrial& l) { return l.pressure; };
-  const Range p = whole(peak), pinion = whole([](const LoadedTrial& l) { return l.pinion_torque_pressure; });
-  t.rows.push_back({"stress 850 to 1150 MPa, 500 to 650 in trials 5 and 8",
-                    fmt::format("{:.0f} to {:.0f} MPa, torque on the pinion {:.0f} to {:.0f}", p.least, p.most, pinion.least,
-                                pinion.most),
-                    p.most < 850 ? "differs: line contact of this load has less; edges and nodes have more" : "within reach"});
-  for (const int f : {0, 2}) {
-    const auto v = levels_of(trials, f, peak);
-    t.rows.push_back({fmt::format("stress falls with {}", kFactors[f]), "level means " + three(v, 1, 0) + " MPa",
-                      falls(v) ? "reproduced" : "differs: not at every level"});
-  }
-  const auto coarse = std::find_if(rows.begin(), rows.end(), [](const EffortRow& r) { return r.name == "default"; }),
-             finer = std::find_if(rows.begin(), rows.end(), [](const EffortRow& r) { return r.name == "short pieces of line"; });
-  if (coarse != rows.end() && finer != rows.end())
-    t.rows.push_back({"refinement changes the largest stress by less than 2 %",
-                      fmt::format("pieces half as long: inside {:+.1f} %, line ends {:+.1f} %",
-                                  100 * (finer->found.pressure / coarse->found.pressure - 1),
-                                  100 * (finer->found.end_pressure / coarse->found.end_pressure - 1)),
-                      "differs at edges: their pressure is a property of the mesh"});
-  const auto rest = [](const LoadedTrial& l) { return l.remainder.mean; };
-  const Range remainder = whole(rest);
-  t.rows.push_back({"axial force about 70 % lower",
-                    fmt::format("floating pinion 100 % lower; held at its exact place {:.0f} to {:.0f} % (means)",
-                                100 * (1 - remainder.most), 100 * (1 - remainder.least)),
-                    fmt::format("differs: a remainder of 30 % is a pinion about {:.1f} um off its place along its axis",
-                                0.15 / std::abs(four.share_per_um))});
-  const auto v = levels_of(trials, 2, rest);
-  t.rows.push_back({"a helix of 25 deg is best", "remainder at the levels " + three(v, 100, 1) + " %",
-                    v[1] < v[0] && v[1] < v[2] ? "reproduced for a held pinion; a floating one has no remainder at any angle"
-                                               : "differs: no such optimum; a floating pinion has no remainder at any angle"});
+  judge_stiffness(trials, t);
+  judge_contact(trials, equal, t);
+  judge_mesh_and_balance(trials, rows, t);
   t.rows.push_back({"simulation agrees with the rig", "", "cannot be judged: no figures of the rig are printed"});
   return t;
 }

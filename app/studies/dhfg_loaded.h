@@ -26,7 +26,7 @@ struct LoadedTrial {
   std::string refusal;  ///< not empty: there are no numbers
   double normal_n = 0, single_axial_n = 0;
   Range approach_mm, stiffness, line_mm, outer_share;
-  Range remainder;           ///< |axial force|, part of that of one helix
+  Range remainder;  ///< |axial force|, part of that of one helix
   int least_pairs = 0, most_pairs = 0;
   double error_rad = 0, floating_error_rad = 0, floating_axial_n = 0;  ///< peak to peak; largest
   double pressure = 0, end_pressure = 0;                               ///< MPa
@@ -48,8 +48,15 @@ struct EffortRow {
 [[nodiscard]] std::vector<EffortRow> effort_rows(const face_gear::FaceGear& gear, double torque_nmm, bool quick);
 
 [[nodiscard]] page::PageTable loaded_trials_table(const std::vector<DhfgTrial>& trials);
+/// All trials with halves of one width: what is left of their differences when the face is the same.
+struct EqualHalves {
+  double half_face_mm = 0;
+  std::vector<LoadedTrial> trials;
+};
+[[nodiscard]] page::PageTable equal_halves_table(const EqualHalves& equal);
 [[nodiscard]] page::PageTable effort_table(const std::vector<EffortRow>& rows, int trial);
 /// What the article states, what is found here, and the verdict, by the numbers.
-[[nodiscard]] page::PageTable article_table(const std::vector<DhfgTrial>& trials, const std::vector<EffortRow>& rows);
+[[nodiscard]] page::PageTable article_table(const std::vector<DhfgTrial>& trials, const EqualHalves& equal,
+                                            const std::vector<EffortRow>& rows);
 
 }  // namespace toothpath::studies

@@ -108,6 +108,15 @@ MillingTime mill(const DhfgStudy& study, const face_gear::FaceGear& gear) {
   return time;
 }
 
+DhfgTrial begin_trial(const DhfgStudy& study, const TrialLevels& levels) {
+  DhfgTrial trial;
+  trial.levels = levels;
+  trial.pinion_teeth = static_cast<int>(std::lround(study.pinion_teeth[static_cast<std::size_t>(levels.teeth)]));
+  trial.teeth = static_cast<int>(std::lround(trial.pinion_teeth * study.ratio[static_cast<std::size_t>(levels.ratio)]));
+  trial.helix_angle_rad = study.helix_angle_rad[static_cast<std::size_t>(levels.helix)];
+  return trial;
+}
+
 }  // namespace
 
 const std::vector<TrialLevels>& l9_trials() {
@@ -117,12 +126,20 @@ const std::vector<TrialLevels>& l9_trials() {
   return trials;
 }
 
+LoadedTrial load_with_halves(const DhfgStudy& study, const TrialLevels& levels, double half_face_mm,
+                             const LoadedEffort& effort) {
+  DhfgStudy same = study;
+  same.half_face_mm = half_face_mm;
+  DhfgTrial trial = begin_trial(study, levels);
+  const auto gear = make_trial_gear(same, trial);
+  if (gear) return load_trial(*gear, study.torque_nmm, effort);
+  LoadedTrial refused;
+  refused.refusal = trial.refusal;
+  return refused;
+}
+
 DhfgTrial dhfg_trial(const DhfgStudy& study, const TrialLevels& levels) {
-  DhfgTrial trial;
-  trial.levels = levels;
-  trial.pinion_teeth = static_cast<int>(std::lround(study.pinion_teeth[static_cast<std::size_t>(levels.teeth)]));
-  trial.teeth = static_cast<int>(std::lround(trial.pinion_teeth * study.ratio[static_cast<std::size_t>(levels.ratio)]));
-  trial.helix_angle_rad = study.helix_angle_rad[static_cast<std::size_t>(levels.helix)];
+  DhfgTrial trial = begin_trial(study, levels);
   trial.gear = make_trial_gear(study, trial);
   if (!trial.gear) return trial;
   const auto* gear = &*trial.gear;

@@ -68,6 +68,10 @@ struct DhfgTrial {
   std::optional<face_gear::FaceGear> gear;  ///< where nothing refuses it
 };
 
+/// The trial's gear with halves of this width around the same groove, under load.
+[[nodiscard]] LoadedTrial load_with_halves(const DhfgStudy& study, const TrialLevels& levels, double half_face_mm,
+                                           const LoadedEffort& effort);
+
 /// Computes one trial. Nothing is refused: what does not work stands in `refusal` of the trial or of its milling.
 [[nodiscard]] DhfgTrial dhfg_trial(const DhfgStudy& study, const TrialLevels& levels);
 

@@ -87,8 +87,8 @@ TEST(ContactCommand, KeysAndOptions) {
 TEST(ContactCommand, UnderLoad) {
   const TestDir dir;
   const std::string out = dir / "out";
-  const Json report = contact_of(
-      {"contact", kSamples + "/dhfg_paper.toml", "--torque", "532", "--positions", "4", "--out", out});
+  const Json report =
+      contact_of({"contact", kSamples + "/dhfg_paper.toml", "--torque", "532", "--positions", "4", "--out", out});
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"contact.csv", "contact.html", "contact.json", "loaded.csv",
                                                      "pressure.csv", "transmission.csv"}));
   const Json& loaded = report.at("loaded");
@@ -115,6 +115,24 @@ TEST(ContactCommand, UnderLoad) {
   EXPECT_GT(std::abs(held.at("flanks")[0].at("axial_N").at("most").get<double>()), 0.1);
 }
 
+/// A pinion of fewer teeth than the shaper touches in slender ellipses; decks of CalculiX beside the results.
+TEST(ContactCommand, UnderLoadInPointsAndAsDecks) {
+  const TestDir dir;
+  const Json points = contact_of({"contact", kSamples + "/offset_shaped.toml", "--pinion-teeth", "23", "--torque", "50",
+                                  "--positions", "2", "--out", dir / "a"})
+                          .at("loaded");
+  EXPECT_EQ(points.at("pinion_axial"), "held");
+  for (const Json& flank : points.at("flanks")) {
+    EXPECT_GT(flank.at("pressure_MPa").at("most").get<double>(), 50);
+    EXPECT_GE(flank.at("pairs").at("least").get<double>(), 1);
+  }
+  const auto decks = run_program({"contact", kSamples + "/offset_shaped.toml", "--pinion-teeth", "25", "--torque", "50",
+                                  "--positions", "1", "--ccx", dir / "decks", "--out", dir / "b"});
+  ASSERT_EQ(decks.exit_code, 0) << decks.err;
+  EXPECT_EQ(names_in(dir / "decks"), (std::vector<std::string>{"ring_0_flank_minus.inp", "ring_0_flank_plus.inp"}));
+  EXPECT_NE(file_text(dir / "decks/ring_0_flank_plus.inp").find("*CONTACT PAIR"), std::string::npos);
+}
+
 /// What loaded contact does not compute is refused where it was asked for.
 TEST(ContactCommand, RefusesLoadsThatItDoesNotCompute) {
   const TestDir dir;
@@ -126,12 +144,13 @@ TEST(ContactCommand, RefusesLoadsThatItDoesNotCompute) {
     EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
   };
   refused(kSamples + "/bevel_pinion.toml", "loaded contact of bevel pairs is not computed", {});
-  refused(kSamples + "/offset_shaped.toml", "touch in a point", {"--pinion-teeth", "23"});
+  refused(kSamples + "/offset_shaped.toml", "--ccx is for a pinion of as many teeth as the shaper",
+          {"--pinion-teeth", "23", "--positions", "1", "--ccx", dir / "decks"});
   const std::string floating = changed_sample(dir, "offset_shaped.toml", "[machine]",
                                               "[contact.load]\ntorque = 1\npinion_axial = \"floating\"\n\n[machine]");
   refused(floating, "needs two rings of opposite hand", {});
-  const std::string rim = changed_sample(dir, "spur_quick.toml", "[machine]",
-                                         "[contact.load]\ntorque = 1\nrim = 0.1\n\n[machine]");
+  const std::string rim =
+      changed_sample(dir, "spur_quick.toml", "[machine]", "[contact.load]\ntorque = 1\nrim = 0.1\n\n[machine]");
   refused(rim, "rim = 0.1 mm is not between", {});
 }
 

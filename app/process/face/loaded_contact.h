@@ -7,13 +7,16 @@
 
 #include "app/job/job.h"
 #include "app/process/gear_of_job.h"
+#include "app/process/opening_and_end.h"
 #include "app/report/page/report_page.h"
+#include "geometry/contact/tooth_contact.h"
 #include "geometry/loaded/loaded_pair.h"
 
 namespace toothpath::face {
 
 struct LoadedSide {
   int side = 1;
+  bool as_cut = false;  ///< with the deviation of the cut flank as gap
   loaded::LoadedCycle cycle;
 };
 
@@ -22,8 +25,8 @@ struct LoadedContact {
   double torque_gear_Nm = 0;
   bool floating = false;
   double segment_mm = 0, rim_mm = 0, pitch_radius_mm = 0;
-  int rings = 1;
-  std::vector<LoadedSide> sides;  ///< +1, -1
+  int rings = 1, pinion_teeth = 0;
+  std::vector<LoadedSide> sides;  ///< +1, -1, each exact, then as cut
   std::vector<std::string> notes;
 };
 
@@ -37,12 +40,17 @@ struct LoadedRange {
 [[nodiscard]] Result<loaded::PairOptions> pair_options(const job::ContactLoad& load, const face_gear::FaceGear& gear,
                                                        const contact::Misalignment& moved);
 
-/// Refused, where the key stands: a pinion of other teeth than the shaper's, a rim that does not fit, a pinion that
+/// @param cut  flanks as they were cut, beside the exact ones; their deviation, mean over each piece of a line, is its
+/// gap Refused, where the key stands: an ellipse of contact that is no line, a rim that does not fit, a pinion that
 /// floats on one ring, a position where nothing touches.
-[[nodiscard]] process::ValueOrErrors<LoadedContact> analyse_loaded(const job::Job& job,
-                                                                   const face_gear::FaceGear& gear,
-                                                                   const job::ContactSettings& settings,
-                                                                   int pinion_teeth);
+[[nodiscard]] process::ValueOrErrors<LoadedContact> analyse_loaded(
+    const job::Job& job, const face_gear::FaceGear& gear, const job::ContactSettings& settings, int pinion_teeth,
+    const std::vector<const contact::ContactFlank*>& cut);
+
+/// Decks of CalculiX at the first position, the gear turned by the mean approach. Refused: as analyse_loaded.
+[[nodiscard]] process::ValueOrErrors<process::NamedFiles> loaded_decks(const job::Job& job,
+                                                                       const face_gear::FaceGear& gear,
+                                                                       const LoadedContact& found);
 
 [[nodiscard]] std::string loaded_csv(const LoadedContact& found);    ///< a line a position
 [[nodiscard]] std::string pressure_csv(const LoadedContact& found);  ///< a line a segment

@@ -109,8 +109,7 @@ TEST(CalculiX, AgreesOnTheContact) {
     moment += p.x() * f.y() - p.y() * f.x();
   }
   const double theirs = std::abs(moment) / pair->lever, total = ours[0] + ours[1];
-  printf("ours %.0f = %.0f + %.0f, ccx %.0f\n", total, ours[0], ours[1], theirs);
-  EXPECT_NEAR(total, theirs, 0.05 * theirs);
+  EXPECT_NEAR(total, theirs, 0.05 * theirs) << ours[0] << " + " << ours[1];
 }
 
 }  // namespace
