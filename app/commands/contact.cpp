@@ -10,7 +10,11 @@
 namespace toothpath::commands {
 namespace {
 
-const std::vector<std::string> kContactOutputs = {"contact.csv", "transmission.csv", "contact.json", "contact.html"};
+const std::vector<std::string> kContactOutputs = {"contact.csv",  "transmission.csv", "contact.json",
+                                                  "contact.html", "loaded.csv",       "pressure.csv"};
+
+const std::vector<std::string> kDecks = {"ring_0_flank_plus.inp", "ring_0_flank_minus.inp", "ring_1_flank_plus.inp",
+                                         "ring_1_flank_minus.inp"};
 
 /// Rows that resolve the cusps of a finishing operation: several to a pass.
 constexpr int kCutRows = 241, kCutColumns = 33;
@@ -38,6 +42,13 @@ CommandOutcome run_contact(const ContactRequest& request) {
   auto rolled = gear.contact(request, cut ? &*cut : nullptr, clock);
   if (auto* errors = rolled.refused()) return failed(std::move(*errors));
   process::ContactFound found = std::move(rolled).value();
+  if (!request.ccx_dir.empty()) {
+    auto decks = app::OutputDir::open(request.ccx_dir, kDecks, {request.job_file, request.other_job});
+    if (!decks) return failed(decks.error());
+    auto written = process::finished(*decks, found.decks, {});
+    if (!written.errors.empty()) return written;
+    found.summary += "  decks in " + request.ccx_dir + "\n";
+  }
   CommandOutcome outcome;
   outcome.report_json = std::move(found.json);
   outcome.summary = found.summary + "  files in " + request.out_dir + "\n";
@@ -62,6 +73,13 @@ void add_contact(Commands& commands) {
                  "bevel gears: job of the mate (default: by the rules of the pair, same mill)", "JOB");
         set.number("--wheel-axial-error", request.wheel_axial_error_mm,
                    "bevel gears: wheel off its place along its axis", job::kMoved);
+        set.number("--torque", request.torque_Nm, "load the elastic pair, too: torque on the gear",
+                   job::kContactTorque);
+        set.flag("--on-pinion", request.torque_on_pinion, "that torque is the pinion's");
+        set.flag("--held", request.pinion_held, "the pinion is held along its axis where it would float");
+        set.whole_number("--positions", request.positions, "positions of the loaded pair over a pitch (default 24)",
+                         job::kContactPositions);
+        set.text("--ccx", request.ccx_dir, "with --torque: write decks of CalculiX, a ring and flank each", "DIR");
         set.flag("--as-cut", request.as_cut, "roll the surface that the job cuts, too");
       },
       run_contact));

@@ -62,11 +62,30 @@ inline constexpr toml::Range kProgramNumber{1, 7999};
 /// Numbers of tools.
 inline constexpr toml::Range kToolNumber{1, 9999};
 
+/// How the pinion is held along its axis; `automatic`: it floats between two rings of opposite hand, else it is held.
+enum class PinionHold { automatic, floating, held, spring };
+/// The [contact.load] table: what the pair carries and of what it is. docs/loaded_contact.md.
+struct ContactLoad {
+  double torque_Nm = 0;
+  bool on_pinion = false;
+  double youngs_modulus_N_mm2[2] = {210e3, 210e3};  ///< of gear, of pinion
+  double poisson[2] = {0.3, 0.3};
+  PinionHold pinion_axial = PinionHold::automatic;
+  double axial_stiffness_N_mm = 0;   ///< of `spring`
+  int positions = 24;                ///< over one pitch
+  int row_teeth = 5;                 ///< of the clamped row that stands for the body, odd
+  std::optional<double> segment_mm;  ///< none: 0.3 m
+  std::optional<double> rim_mm;      ///< none: 5 m
+};
+/// What the torque of [contact.load] and of `contact --torque`, and the positions may be.
+inline constexpr toml::Range kContactTorque{1e-6, 1e9, " N m"}, kContactPositions{1, 200};
+
 /// The [contact] table: the pinion that runs with the gear, and where it stands.
 struct ContactSettings {
   int pinion_teeth = 0;  ///< N_p; 0: mate_teeth of the gear
   contact::Misalignment moved;
   double compound_mm = 0.006;  ///< thickness of the marking compound
+  std::optional<ContactLoad> load;
 };
 
 /// The [material] table: what cutting costs, and of what the tools are. docs/force.md.

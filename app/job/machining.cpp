@@ -323,6 +323,36 @@ shaper::Shaping read_shaping(toml::TableReader& table) {
   return s;
 }
 
+namespace {
+
+ContactLoad read_contact_load(toml::TableReader& table) {
+  ContactLoad load;
+  load.torque_Nm = table.number("torque", kContactTorque).value_or(1);
+  load.on_pinion = table.word_or("torque_on", {"gear", "pinion"}, "gear") == "pinion";
+  if (const auto E = table.optional_numbers("youngs_modulus", 2, {1, 1200, " GPa"}))
+    for (std::size_t k = 0; k < 2; ++k) load.youngs_modulus_N_mm2[k] = (*E)[k] * 1000;
+  if (const auto nu = table.optional_numbers("poisson", 2, {0, 0.49}))
+    for (std::size_t k = 0; k < 2; ++k) load.poisson[k] = (*nu)[k];
+  if (const auto word = table.optional_word("pinion_axial", {"floating", "held"}))
+    load.pinion_axial = *word == "held" ? PinionHold::held : PinionHold::floating;
+  if (const auto spring = table.optional_number("axial_stiffness", {1e-3, 1e12, " N/mm"})) {
+    if (load.pinion_axial == PinionHold::held)
+      table.refuse("axial_stiffness", "axial_stiffness and pinion_axial = \"held\" contradict each other");
+    load.pinion_axial = PinionHold::spring;
+    load.axial_stiffness_N_mm = *spring;
+  }
+  load.positions = table.integer_or("positions", kContactPositions, load.positions);
+  load.row_teeth = table.integer_or("row_teeth", {3, 11}, load.row_teeth);
+  if (load.row_teeth % 2 == 0)
+    table.refuse("row_teeth", "row_teeth = {} is even: the loaded tooth stands in the middle", load.row_teeth);
+  load.segment_mm = table.optional_number("segment", {0.01, 100, " mm"});
+  load.rim_mm = table.optional_number("rim", {0.01, 1000, " mm"});
+  table.finish();
+  return load;
+}
+
+}  // namespace
+
 ContactSettings read_contact(toml::TableReader& table) {
   ContactSettings c;
   c.pinion_teeth = table.optional_integer("pinion_teeth", kPinionTeeth).value_or(0);
@@ -330,6 +360,7 @@ ContactSettings read_contact(toml::TableReader& table) {
   c.moved.axial_mm = table.number_or("axial_error", kMoved, c.moved.axial_mm);
   c.moved.angle_rad = radians(table.number_or("angle_error", kAngleError, degrees(c.moved.angle_rad)));
   c.compound_mm = table.number_or("compound", kCompound, c.compound_mm);
+  if (auto load = table.table("load")) c.load = read_contact_load(*load);
   table.finish();
   return c;
 }

@@ -103,10 +103,16 @@ struct ContactAsked {
   std::optional<double> offset_error_mm, angle_error_deg, axial_error_mm, compound_um;
   std::optional<double> wheel_axial_error_mm;  ///< bevel gears
   std::string other_job;                       ///< bevel gears: the mate
+  std::optional<double> torque_Nm;             ///< face gears: load the pair, too
+  bool torque_on_pinion = false;               ///< that torque is the pinion's
+  bool pinion_held = false;                    ///< along its axis, where it would float
+  std::optional<int> positions;                ///< of the loaded pair over a pitch
+  std::string ccx_dir;                         ///< where decks of CalculiX go; empty: none
   bool as_cut = false;                         ///< face gears: the surface that the job's operations cut, too
 };
 struct ContactFound {
   NamedFiles files;
+  NamedFiles decks;  ///< of CalculiX, where they are asked for
   std::string json, summary;
 };
 

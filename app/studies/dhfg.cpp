@@ -74,6 +74,7 @@ void coarsen(DhfgStudy& s) {
     o.step_down_mm *= kQuickStep;
     o.step_over_mm *= kQuickStep;
   }
+  s.effort = {3, 4, 5, 4};
 }
 
 std::string minutes(double m) { return fmt::format("{:.0f}", m); }
@@ -156,6 +157,10 @@ constexpr Quantity kQuantities[] = {
     {"feasible half mm", [](const DhfgTrial& t) { return t.feasible_mm; }},
     {"contact ratio", [](const DhfgTrial& t) { return t.overlap; }},
     {"single-helix axial N", [](const DhfgTrial& t) { return std::abs(t.balanced.single_axial_n); }},
+    {"stiffness 1e6 N/mm", [](const DhfgTrial& t) { return t.loaded.stiffness.mean / 1e6; }},
+    {"loaded error p-p urad", [](const DhfgTrial& t) { return t.loaded.error_rad * 1e6; }},
+    {"peak pressure MPa", [](const DhfgTrial& t) { return t.loaded.pressure; }},
+    {"held remainder %", [](const DhfgTrial& t) { return t.loaded.remainder.mean * 100; }},
     {"cutting min", [](const DhfgTrial& t) { return t.milling.cutting_minutes; }, true},
 };
 page::PageTable range_table(const DhfgStudy& s, const std::vector<DhfgTrial>& trials) {
@@ -232,14 +237,18 @@ std::vector<std::string> introduction_of(const DhfgStudy& s) {
                   "{:g} mm in the {} reading, as the study of X. Chu and F. Chen (Machines 2025, 13, 912) lists them. "
                   "Shaper and pinion have the same number of teeth, so the exact flanks touch along lines.",
                   s.base.module_mm, s.base.module_plane == face_gear::ModulePlane::normal ? "normal" : "transverse"),
-      "Everything here is kinematics and statics of rigid bodies without friction: limits, contact ratio, pairs, axial "
-      "force. The literature took its overlap of two to three pairs, mesh stiffness, loaded transmission error, "
-      "contact stress and an axial force lowered by about 70 % from finite elements with elastic teeth and friction; "
-      "stiffness, stress and loaded transmission error are not computed here.",
-      "What differs by nature: the rigid transmission error is zero in every trial, so it cannot rank them; the rigid "
-      "axial force of the double helix is zero for a floating pinion at any helix angle, so no angle is best. A "
-      "remainder appears only when the halves share the torque unequally: a remainder of 30 % means a share of 65 to "
-      "35.",
+      "Limits, contact ratio, rigid transmission error and the forces of the second table are kinematics and statics "
+      "of rigid "
+      "bodies. Under load the teeth are elastic: lines of contact in closed form, bricks on the exact surfaces, load "
+      "shared over "
+      "all pairs and both halves, without friction (docs/loaded_contact.md). The literature took its overlap of two to "
+      "three "
+      "pairs, mesh stiffness, loaded transmission error, contact stress and an axial force lowered by about 70 % from "
+      "finite "
+      "elements; the last table puts its statements beside what is found here.",
+      "The rigid transmission error is zero in every trial. The axial force of a floating pinion is zero at any helix "
+      "angle; a "
+      "remainder appears when the halves share the torque unequally: a remainder of 30 % means a share of 65 to 35.",
       "Torque is taken on the face gear; the literature does not print face widths, groove, L0 or whose torque it "
       "states: here the groove lies in the middle of the band, and the halves take all that the limits leave unless "
       "the study file gives half_face. Wider halves mean more overlap."};
@@ -247,6 +256,27 @@ std::vector<std::string> introduction_of(const DhfgStudy& s) {
     text.emplace_back(
         "Milling times need tools and operations, which a study file states (STUDY.toml): this study has none.");
   return text;
+}
+
+nlohmann::ordered_json loaded_json(const LoadedTrial& l) {
+  if (!l.refusal.empty() || l.normal_n == 0) return {{"refusal", l.refusal}};
+  const auto range = [](const Range& r, double scale) {
+    return nlohmann::ordered_json{{"least", r.least * scale}, {"most", r.most * scale}, {"mean", r.mean * scale}};
+  };
+  return {{"normal_N", l.normal_n},
+          {"approach_um", range(l.approach_mm, 1e3)},
+          {"stiffness_N_mm", range(l.stiffness, 1)},
+          {"line_mm", range(l.line_mm, 1)},
+          {"outer_share", range(l.outer_share, 1)},
+          {"axial_remainder", range(l.remainder, 1)},
+          {"floating_axial_N", l.floating_axial_n},
+          {"pairs", {l.least_pairs, l.most_pairs}},
+          {"error_range_urad", l.error_rad * 1e6},
+          {"floating_error_range_urad", l.floating_error_rad * 1e6},
+          {"pressure_MPa", l.pressure},
+          {"end_pressure_MPa", l.end_pressure},
+          {"pinion_torque_pressure_MPa", l.pinion_torque_pressure},
+          {"outer_share_change_per_um", l.share_per_um}};
 }
 
 nlohmann::ordered_json json_of(const DhfgStudy& s, const std::vector<DhfgTrial>& trials, bool quick) {
@@ -282,6 +312,7 @@ nlohmann::ordered_json json_of(const DhfgStudy& s, const std::vector<DhfgTrial>&
            {"outer_half", r.balanced.outer.pinion_axial_n},
            {"balanced", r.balanced.axial_n},
            {"held", r.held.axial_n}}},
+         {"loaded", loaded_json(r.loaded)},
          {"milling",
           {{"cutting_minutes", r.milling.cutting_minutes},
            {"rapid_minutes", r.milling.rapid_minutes},
@@ -292,6 +323,7 @@ nlohmann::ordered_json json_of(const DhfgStudy& s, const std::vector<DhfgTrial>&
 
 /// Of about the same time: the rolls of a trial, and its milling.
 constexpr double kStepsOfTrial = 4;
+constexpr std::size_t kMiddleTrial = 3;  // trial 4: whose effort is varied
 
 }  // namespace
 
@@ -340,10 +372,28 @@ commands::CommandOutcome study_dhfg(const DhfgRequest& request) {
     }
   });
 
-  std::vector<page::PageTable> tables = {geometry_table(trials), mesh_table(study, trials)};
+  EqualHalves equal;
+  std::vector<EffortRow> efforts;
+  const auto narrowest = std::min_element(trials.begin(), trials.end(),
+                                          [](const auto& a, const auto& b) { return a.feasible_mm < b.feasible_mm; });
+  if (narrowest->feasible_mm > 0)
+    clock.run("equal halves", [&] {
+      equal.half_face_mm = narrowest->feasible_mm;
+      for (const auto& levels : l9_trials())
+        equal.trials.push_back(load_with_halves(study, levels, equal.half_face_mm, {3, 4, 5, request.quick ? 4 : 8}));
+    });
+  if (trials[kMiddleTrial].gear)
+    efforts =
+        clock.run("effort", [&] { return effort_rows(*trials[kMiddleTrial].gear, study.torque_nmm, request.quick); });
+
+  std::vector<page::PageTable> tables = {geometry_table(trials), mesh_table(study, trials),
+                                         loaded_trials_table(trials)};
   if (!study.operations.empty()) tables.push_back(milling_table(study, trials, request.quick));
   const std::size_t of_trials = tables.size();  // a row a trial
   tables.push_back(range_table(study, trials));
+  if (!equal.trials.empty()) tables.push_back(equal_halves_table(equal));
+  if (!efforts.empty()) tables.push_back(effort_table(efforts, trials[kMiddleTrial].levels.number));
+  if (auto article = article_table(trials, equal, efforts); !article.rows.empty()) tables.push_back(std::move(article));
   const auto feasible = std::count_if(trials.begin(), trials.end(), [](const auto& t) { return t.refusal.empty(); });
   page::StudyPage page;
   page.title = study.name + ": double helical face gears";
@@ -358,7 +408,7 @@ commands::CommandOutcome study_dhfg(const DhfgRequest& request) {
   page::PageTable all;
   for (std::size_t n = 0; n < of_trials; ++n)
     for (std::size_t c = n == 0 ? 0 : 1; c < tables[n].columns.size(); ++c) {
-      all.columns.push_back(tables[n].columns[c] == "remark" && n == 2 ? "milling remark" : tables[n].columns[c]);
+      all.columns.push_back(tables[n].columns[c] == "remark" && n == 3 ? "milling remark" : tables[n].columns[c]);
       for (std::size_t k = 0; k < trials.size(); ++k) {
         all.rows.resize(trials.size());
         all.rows[k].push_back(tables[n].rows[k][c]);

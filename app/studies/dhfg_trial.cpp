@@ -108,6 +108,15 @@ MillingTime mill(const DhfgStudy& study, const face_gear::FaceGear& gear) {
   return time;
 }
 
+DhfgTrial begin_trial(const DhfgStudy& study, const TrialLevels& levels) {
+  DhfgTrial trial;
+  trial.levels = levels;
+  trial.pinion_teeth = static_cast<int>(std::lround(study.pinion_teeth[static_cast<std::size_t>(levels.teeth)]));
+  trial.teeth = static_cast<int>(std::lround(trial.pinion_teeth * study.ratio[static_cast<std::size_t>(levels.ratio)]));
+  trial.helix_angle_rad = study.helix_angle_rad[static_cast<std::size_t>(levels.helix)];
+  return trial;
+}
+
 }  // namespace
 
 const std::vector<TrialLevels>& l9_trials() {
@@ -117,14 +126,23 @@ const std::vector<TrialLevels>& l9_trials() {
   return trials;
 }
 
+LoadedTrial load_with_halves(const DhfgStudy& study, const TrialLevels& levels, double half_face_mm,
+                             const LoadedEffort& effort) {
+  DhfgStudy same = study;
+  same.half_face_mm = half_face_mm;
+  DhfgTrial trial = begin_trial(study, levels);
+  const auto gear = make_trial_gear(same, trial);
+  if (gear) return load_trial(*gear, study.torque_nmm, effort);
+  LoadedTrial refused;
+  refused.refusal = trial.refusal;
+  return refused;
+}
+
 DhfgTrial dhfg_trial(const DhfgStudy& study, const TrialLevels& levels) {
-  DhfgTrial trial;
-  trial.levels = levels;
-  trial.pinion_teeth = static_cast<int>(std::lround(study.pinion_teeth[static_cast<std::size_t>(levels.teeth)]));
-  trial.teeth = static_cast<int>(std::lround(trial.pinion_teeth * study.ratio[static_cast<std::size_t>(levels.ratio)]));
-  trial.helix_angle_rad = study.helix_angle_rad[static_cast<std::size_t>(levels.helix)];
-  const auto gear = make_trial_gear(study, trial);
-  if (!gear) return trial;
+  DhfgTrial trial = begin_trial(study, levels);
+  trial.gear = make_trial_gear(study, trial);
+  if (!trial.gear) return trial;
+  const auto* gear = &*trial.gear;
   roll_trial(*gear, trial);
   const auto &inner = gear->rings()[0].surface, &outer = gear->rings()[1].surface;
   const auto inner_pinion = contact::make_pinion(inner, trial.pinion_teeth),
@@ -132,6 +150,7 @@ DhfgTrial dhfg_trial(const DhfgStudy& study, const TrialLevels& levels) {
   trial.balanced = contact::double_mesh_force(inner, outer, inner_pinion, outer_pinion, 1, study.torque_nmm, 0.5);
   trial.held =
       contact::double_mesh_force(inner, outer, inner_pinion, outer_pinion, 1, study.torque_nmm, study.held_share);
+  trial.loaded = load_trial(*gear, study.torque_nmm, study.effort);
   trial.milling = mill(study, *gear);
   return trial;
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/studies/dhfg_loaded.h"
 #include "cam/path/operation.h"
 #include "cam/tool/assembly.h"
 #include "geometry/contact/face_gear_forces.h"
@@ -24,6 +25,7 @@ struct DhfgStudy {
   double torque_nmm = 532e3;                  ///< on the face gear
   double held_share =
       0.65;  ///< torque share of the outer half when the pinion is held along its axis and one half bears first
+  LoadedEffort effort;
   std::vector<tool::ToolAssembly> tools;
   std::vector<path::MillingOperation> operations;  ///< none: no milling time
   double rapid_mm_min = 10000;                     ///< for the time of rapids
@@ -61,8 +63,14 @@ struct DhfgTrial {
   double error_range_rad = 0;
   // Forces: rigid statics.
   contact::DoubleMeshForce balanced, held;
+  LoadedTrial loaded;
   MillingTime milling;
+  std::optional<face_gear::FaceGear> gear;  ///< where nothing refuses it
 };
+
+/// The trial's gear with halves of this width around the same groove, under load.
+[[nodiscard]] LoadedTrial load_with_halves(const DhfgStudy& study, const TrialLevels& levels, double half_face_mm,
+                                           const LoadedEffort& effort);
 
 /// Computes one trial. Nothing is refused: what does not work stands in `refusal` of the trial or of its milling.
 [[nodiscard]] DhfgTrial dhfg_trial(const DhfgStudy& study, const TrialLevels& levels);

@@ -83,6 +83,77 @@ TEST(ContactCommand, KeysAndOptions) {
   }
 }
 
+/// A torque loads the elastic pair: numbers, files, charts; keys of [contact.load] and options above them.
+TEST(ContactCommand, UnderLoad) {
+  const TestDir dir;
+  const std::string out = dir / "out";
+  const Json report =
+      contact_of({"contact", kSamples + "/dhfg_paper.toml", "--torque", "532", "--positions", "4", "--out", out});
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"contact.csv", "contact.html", "contact.json", "loaded.csv",
+                                                     "pressure.csv", "transmission.csv"}));
+  const Json& loaded = report.at("loaded");
+  EXPECT_EQ(loaded.at("pinion_axial"), "floating");
+  ASSERT_EQ(loaded.at("flanks").size(), 2u);
+  for (const Json& flank : loaded.at("flanks")) {
+    EXPECT_NEAR(flank.at("outer_share").at("mean").get<double>(), 0.5, 1e-9);
+    EXPECT_NEAR(flank.at("axial_N").at("most").get<double>(), 0, 1e-6);
+    EXPECT_GT(flank.at("stiffness_N_um").at("least").get<double>(), 300);
+    EXPECT_GT(flank.at("transmission_error_urad").at("range").get<double>(), 0.01);
+    EXPECT_GT(flank.at("pressure_MPa").at("most").get<double>(), 50);
+  }
+  const std::string page = file_text(out + "/contact.html");
+  for (const char* words : {"Under load", "Loaded transmission error", "Mesh stiffness", "Pressure along the lines"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+
+  const std::string job =
+      changed_sample(dir, "dhfg_paper.toml", "[machine]",
+                     "[contact.load]\ntorque = 100\ntorque_on = \"pinion\"\npositions = 1\npinion_axial = "
+                     "\"held\"\nrow_teeth = 3\n\n[machine]");
+  const Json held = contact_of({"contact", job, "--out", dir / "b"}).at("loaded");
+  EXPECT_EQ(held.at("pinion_axial"), "held");
+  EXPECT_NEAR(held.at("torque_gear_Nm").get<double>(), 600, 1e-9);
+  EXPECT_GT(std::abs(held.at("flanks")[0].at("axial_N").at("most").get<double>()), 0.1);
+}
+
+/// A pinion of fewer teeth than the shaper touches in slender ellipses; decks of CalculiX beside the results.
+TEST(ContactCommand, UnderLoadInPointsAndAsDecks) {
+  const TestDir dir;
+  const Json points = contact_of({"contact", kSamples + "/offset_shaped.toml", "--pinion-teeth", "23", "--torque", "50",
+                                  "--positions", "2", "--out", dir / "a"})
+                          .at("loaded");
+  EXPECT_EQ(points.at("pinion_axial"), "held");
+  for (const Json& flank : points.at("flanks")) {
+    EXPECT_GT(flank.at("pressure_MPa").at("most").get<double>(), 50);
+    EXPECT_GE(flank.at("pairs").at("least").get<double>(), 1);
+  }
+  const auto decks = run_program({"contact", kSamples + "/offset_shaped.toml", "--pinion-teeth", "25", "--torque", "50",
+                                  "--positions", "1", "--ccx", dir / "decks", "--out", dir / "b"});
+  ASSERT_EQ(decks.exit_code, 0) << decks.err;
+  EXPECT_EQ(names_in(dir / "decks"), (std::vector<std::string>{"ring_0_flank_minus.inp", "ring_0_flank_plus.inp"}));
+  EXPECT_NE(file_text(dir / "decks/ring_0_flank_plus.inp").find("*CONTACT PAIR"), std::string::npos);
+}
+
+/// What loaded contact does not compute is refused where it was asked for.
+TEST(ContactCommand, RefusesLoadsThatItDoesNotCompute) {
+  const TestDir dir;
+  const auto refused = [&](const std::string& job, const std::string& words, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"contact", job, "--torque", "100", "--out", dir / "out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto run = run_program(arguments);
+    EXPECT_EQ(run.exit_code, 3) << words;
+    EXPECT_NE(run.err.find(words), std::string::npos) << run.err;
+  };
+  refused(kSamples + "/bevel_pinion.toml", "loaded contact of bevel pairs is not computed", {});
+  refused(kSamples + "/offset_shaped.toml", "--ccx is for a pinion of as many teeth as the shaper",
+          {"--pinion-teeth", "23", "--positions", "1", "--ccx", dir / "decks"});
+  const std::string floating = changed_sample(dir, "offset_shaped.toml", "[machine]",
+                                              "[contact.load]\ntorque = 1\npinion_axial = \"floating\"\n\n[machine]");
+  refused(floating, "needs two rings of opposite hand", {});
+  const std::string rim =
+      changed_sample(dir, "spur_quick.toml", "[machine]", "[contact.load]\ntorque = 1\nrim = 0.1\n\n[machine]");
+  refused(rim, "rim = 0.1 mm is not between", {});
+}
+
 /// A contact run that fails, however it does, leaves what an earlier one wrote as it was and says so, and nothing
 /// half-written; what belongs to others stays.
 TEST(ContactCommand, AFailedRunLeavesEverythingAsItWas) {
@@ -234,7 +305,7 @@ TEST(CompareCommand, QuickGear) {
 TEST(DhfgStudy, NineTrials) {
   const TestDir dir;
   const std::string out = dir / "out";
-  const auto done = run_program({"study", "dhfg", "--out", out, "--json"});
+  const auto done = run_program({"study", "dhfg", "--quick", "--out", out, "--json"});
   ASSERT_EQ(done.exit_code, 0) << done.err;
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"dhfg.csv", "dhfg.html", "dhfg.json"}));
   const Json report = Json::parse(done.out).at("report");
@@ -254,7 +325,20 @@ TEST(DhfgStudy, NineTrials) {
     EXPECT_GE(trial.at("contact_ratio").at("v_teeth").get<double>(),
               trial.at("contact_ratio").at("outer").get<double>() - 1e-12);
     EXPECT_GE(trial.at("pairs")[0].get<int>(), 2);
+    // Under load: docs/loaded_contact.md.
+    const Json& loaded = trial.at("loaded");
+    EXPECT_GT(loaded.at("stiffness_N_mm").at("least").get<double>(), 0.8e6);
+    EXPECT_LT(loaded.at("stiffness_N_mm").at("most").get<double>(), 3.1e6);
+    EXPECT_GT(loaded.at("pressure_MPa").get<double>(), 70);
+    EXPECT_LT(loaded.at("pressure_MPa").get<double>(), 400);
+    EXPECT_NEAR(loaded.at("floating_axial_N").get<double>(), 0, 1e-6);
+    EXPECT_LT(loaded.at("axial_remainder").at("most").get<double>(), 0.25);
+    EXPECT_GE(loaded.at("pairs")[0].get<int>(), 2);
+    EXPECT_LE(loaded.at("pairs")[1].get<int>(), 5);
   }
+  const std::string page = file_text(out + "/dhfg.html");
+  for (const char* words : {"Under load", "What the effort changes", "Against the article", "cannot be judged"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
   EXPECT_EQ(teeth_ratio.size(), 9u);
   EXPECT_EQ(teeth_helix.size(), 9u);
   EXPECT_NE(file_text(out + "/dhfg.html").find("finite elements"), std::string::npos);

@@ -32,6 +32,16 @@ std::string contact_page(const ContactAnalysis& a) {
   for (auto& f : contact_patterns(a))
     page.figures.push_back({std::move(f.caption), std::move(f.svg), std::move(f.note)});
   page.tables = {contact_table(a)};
+  if (a.loaded) {
+    page.introduction.push_back(
+        fmt::format("Under load both members are elastic: {:g} N m on the gear, the pinion {} along its axis. All "
+                    "teeth and rings share "
+                    "it; the first touch of the unloaded flanks is the zero of approach and transmission error.",
+                    a.loaded->torque_gear_Nm, a.loaded->floating ? "floats" : "is held"));
+    for (const auto& note : a.loaded->notes) page.introduction.push_back(note);
+    page.tables.push_back(loaded_table(*a.loaded));
+    for (auto& chart : loaded_charts(*a.loaded)) page.charts.push_back(std::move(chart));
+  }
   return study_page_html(page);
 }
 
@@ -44,6 +54,13 @@ job::ContactSettings contact_settings(const job::Job& job, const process::Contac
   if (asked.axial_error_mm) s.moved.axial_mm = *asked.axial_error_mm;
   if (asked.angle_error_deg) s.moved.angle_rad = radians(*asked.angle_error_deg);
   if (asked.compound_um) s.compound_mm = *asked.compound_um / 1000;
+  if (asked.torque_Nm) {
+    if (!s.load) s.load.emplace();
+    s.load->torque_Nm = *asked.torque_Nm;
+    s.load->on_pinion = asked.torque_on_pinion;
+  }
+  if (s.load && asked.pinion_held) s.load->pinion_axial = job::PinionHold::held;
+  if (s.load && asked.positions) s.load->positions = *asked.positions;
   return s;
 }
 
@@ -57,6 +74,8 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
     if (!cut->verified) analysis.notes.push_back("the program of the cut surface is not verified");
     for (const auto& assumed : cut->assumed) analysis.notes.push_back("assumed: " + assumed);
   }
+  if (!asked.ccx_dir.empty() && !analysis.loaded)
+    return std::vector{fail_at(job.where(""), "--ccx needs a load: --torque or [contact.load]")};
   process::ContactFound found;
   found.json = contact_json(analysis);
   found.summary = contact_summary(analysis);
@@ -64,6 +83,15 @@ process::ValueOrErrors<process::ContactFound> roll_pair(const job::Job& job, con
                  {"transmission.csv", transmission_csv(analysis)},
                  {"contact.json", found.json},
                  {"contact.html", contact_page(analysis)}};
+  if (analysis.loaded) {
+    found.files.emplace_back("loaded.csv", loaded_csv(*analysis.loaded));
+    found.files.emplace_back("pressure.csv", pressure_csv(*analysis.loaded));
+    if (!asked.ccx_dir.empty()) {
+      auto decks = loaded_decks(job, gear, *analysis.loaded);
+      if (auto* errors = decks.refused()) return std::move(*errors);
+      found.decks = std::move(decks).value();
+    }
+  }
   return found;
 }
 

@@ -98,6 +98,20 @@ Json zone_json(const ContactOfSide& side, std::size_t m) {
   return zone;
 }
 
+/// Adds the loaded pair where the settings have a load, on the exact flanks and on the cut ones.
+process::ValueOrErrors<ContactAnalysis> with_load(const job::Job& job, const face_gear::FaceGear& gear,
+                                                  ContactAnalysis analysis) {
+  if (!analysis.settings.load) return analysis;
+  std::vector<const contact::ContactFlank*> cut;
+  for (const auto& side : analysis.sides)
+    if (side.as_cut)
+      for (const auto& member : side.members) cut.push_back(&member.flank);
+  auto loaded = analyse_loaded(job, gear, analysis.settings, analysis.settings.pinion_teeth, cut);
+  if (auto* errors = loaded.refused()) return std::move(*errors);
+  analysis.loaded = std::move(loaded).value();
+  return analysis;
+}
+
 }  // namespace
 
 process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, const face_gear::FaceGear& gear,
@@ -143,7 +157,7 @@ process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, con
     if (!side) return std::vector{process::located(job, key, side.error())};
     analysis.sides.push_back(std::move(*side));
   }
-  if (!cut) return analysis;
+  if (!cut) return with_load(job, gear, std::move(analysis));
   analysis.route = cut->route;
   for (const int s : {1, -1}) {
     std::vector<contact::ContactFlank> flanks;
@@ -158,7 +172,7 @@ process::ValueOrErrors<ContactAnalysis> analyse_contact(const job::Job& job, con
     if (!side) return std::vector{process::located(job, key, side.error())};
     analysis.sides.push_back(std::move(*side));
   }
-  return analysis;
+  return with_load(job, gear, std::move(analysis));
 }
 
 std::string contact_csv(const ContactAnalysis& a) {
@@ -228,6 +242,7 @@ std::string contact_json(const ContactAnalysis& a) {
     for (std::size_t m = 0; m < side.members.size(); ++m) s["zones"].push_back(zone_json(side, m));
     json["flanks"].push_back(std::move(s));
   }
+  if (a.loaded) json["loaded"] = loaded_json(*a.loaded);
   json["notes"] = a.notes;
   return json.dump(2) + "\n";
 }
@@ -262,6 +277,7 @@ std::string contact_summary(const ContactAnalysis& a) {
                          p.marked_share * 100, p.inner_mm, p.outer_mm, p.low_mm, p.high_mm, words_of(p));
     }
   }
+  if (a.loaded) out += loaded_summary(*a.loaded);
   for (const auto& note : a.notes) out += "  note: " + note + "\n";
   return out;
 }

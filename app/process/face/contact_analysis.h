@@ -8,6 +8,7 @@
 
 #include "app/job/job.h"
 #include "app/process/cut_flanks.h"
+#include "app/process/face/loaded_contact.h"
 #include "app/process/gear_of_job.h"
 #include "geometry/contact/tooth_contact.h"
 
@@ -34,8 +35,9 @@ struct ContactAnalysis {
   job::ContactSettings settings;
   double pitch_radius_mm = 0, base_radius_mm = 0;  ///< L_p and M2: levers of the transmission error
   double pinion_r_b_mm = 0, pinion_r_p_mm = 0, pinion_r_a_mm = 0;
-  std::vector<ContactOfSide> sides;  ///< +1, -1 exact; then +1, -1 as cut
-  std::string route;                 ///< how the cut surface was made; empty: there is none
+  std::vector<ContactOfSide> sides;     ///< +1, -1 exact; then +1, -1 as cut
+  std::optional<LoadedContact> loaded;  ///< where the settings have a load
+  std::string route;                    ///< how the cut surface was made; empty: there is none
   std::vector<std::string> notes;
 };
 

@@ -160,18 +160,26 @@ std::string contact_section_body(const ContactAnalysis& a) {
       "<p>Rolled with a pinion of {} teeth as rigid bodies without load, marking compound of {:g} um.</p>\n",
       a.pinion_teeth, a.settings.compound_mm * app::kUm);
   for (const auto& note : a.notes) out += "<p class=\"note\">" + svg::html_escape(note) + "</p>\n";
-  const page::PageTable t = contact_table(a);
-  out += "<div class=\"table\"><table><thead><tr>";
-  for (const auto& column : t.columns) out += fmt::format("<th>{}</th>", svg::html_escape(column));
-  out += "</tr></thead><tbody>\n";
-  for (const auto& row : t.rows) {
-    out += "<tr>";
-    for (const auto& cell : row) out += fmt::format("<td>{}</td>", svg::html_escape(cell));
-    out += "</tr>\n";
+  std::vector<page::PageTable> tables = {contact_table(a)};
+  std::vector<svg::LineChart> charts = contact_charts(a);
+  if (a.loaded) {
+    for (const auto& note : a.loaded->notes) out += "<p class=\"note\">" + svg::html_escape(note) + "</p>\n";
+    tables.push_back(loaded_table(*a.loaded));
+    for (auto& chart : loaded_charts(*a.loaded)) charts.push_back(std::move(chart));
   }
-  out += fmt::format("</tbody></table></div>\n<p class=\"note\">{}</p>\n<div class=\"plots two\">\n",
-                     svg::html_escape(t.note));
-  for (const auto& chart : contact_charts(a))
+  for (const auto& t : tables) {
+    out += "<div class=\"table\"><table><thead><tr>";
+    for (const auto& column : t.columns) out += fmt::format("<th>{}</th>", svg::html_escape(column));
+    out += "</tr></thead><tbody>\n";
+    for (const auto& row : t.rows) {
+      out += "<tr>";
+      for (const auto& cell : row) out += fmt::format("<td>{}</td>", svg::html_escape(cell));
+      out += "</tr>\n";
+    }
+    out += fmt::format("</tbody></table></div>\n<p class=\"note\">{}</p>\n", svg::html_escape(t.note));
+  }
+  out += "<div class=\"plots two\">\n";
+  for (const auto& chart : charts)
     out += fmt::format("<figure><figcaption>{}</figcaption>{}<p class=\"note\">{}</p></figure>\n",
                        svg::html_escape(chart.title), svg::svg_line_chart(chart), svg::html_escape(chart.note));
   for (const auto& f : contact_patterns(a))

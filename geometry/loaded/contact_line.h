@@ -1,0 +1,81 @@
+// The lines along which a face gear touches the pinion that is its shaper, in closed form, and their segments.
+//
+// For a gear turn phi the line of tooth 0 is theta(B): linear, as phi is linear in theta. Housing frame; mm, rad.
+// Derivation: docs/loaded_contact.md 2.
+#pragma once
+
+#include <vector>
+
+#include "geometry/base/result.h"
+#include "geometry/contact/pinion.h"
+
+namespace toothpath::loaded {
+
+/// theta of the place with this B at which tooth 0 touches while the shaper stands at phi.
+template <typename S>
+S line_theta(const face_gear::FaceGearSurface<S>& f, int side, const S& B, const S& phi) {
+  const S s(side), Z_0 = f.flank_Z(side, S(0), B), cos_bb = f.shaper.cos_bb;
+  return s * cos_bb * cos_bb * (B - s * f.shaper.theta_0 - f.shaper.kappa * (Z_0 - f.L0) - phi);
+}
+
+/// Relative curvature of flank and pinion in the tangent basis (e, l) of the flank; of rank one along a contact line.
+template <typename S>
+typename face_gear::FaceGearSurface<S>::ShapeOperator relative_curvature(const face_gear::FaceGearSurface<S>& f,
+                                                                         int side, const S& theta, const S& B) {
+  auto H = f.flank_shape(side, theta, B);
+  H.ee += f.shaper.cos_bb / (f.shaper.r_b * theta);
+  return H;
+}
+
+/// The part of a flank and of its pinion that can touch.
+struct ContactBounds {
+  double inner_mm = 0, outer_mm = 0;  ///< radii of the gear's ring
+  double least_theta = 0;             ///< where the pinion's involute starts; > 0
+  double least_B = 0, most_B = 0;     ///< that hold the whole flank of the side
+  double least_Z = 0, most_Z = 0;     ///< sections of the pinion that it can touch
+};
+
+/// A place where a flank can press, with the strip around it.
+struct Segment {
+  int ring = 0, tooth = 0;  ///< tooth that stands where tooth 0 stands `tooth` pitches later
+  double theta = 0, B = 0;
+  Vec3 point = Vec3::Zero(), normal = Vec3::Zero(), along = Vec3::Zero();  ///< housing; normal out of the gear
+  double length = 0;
+  double curvature = 0;         ///< relative, across the line, 1/mm
+  double gap = 0;               ///< of the unloaded flanks, mm
+  double beyond = 0;            ///< > 0: the centre lies off the flank, the nearest material is so far away
+  bool at_end = false;          ///< first or last segment on the flank
+  Vec3 nearest = Vec3::Zero();  ///< the point itself; beyond the ends the nearest material, housing
+  double r = 0, Z = 0, R = 0;   ///< of `nearest`: radius about the gear's axis, section and radius of the pinion
+};
+
+/// The line of one tooth.
+struct ContactLine {
+  int tooth = 0;
+  double length = 0;  ///< on the flank, mm
+  double from_B = 0, to_B = 0;
+  double roundness = 0;  ///< largest ratio of the principal relative curvatures, along to across; 0 in line contact
+  std::vector<Segment> segments;  ///< those on the flank, in the order of B; then those beyond its ends
+};
+
+/// Lines of all teeth that touch while the shaper stands at phi; those shorter than 0.2 mm are left out.
+/// @param beyond_mm  how far off the material segments still are listed, at curvature k: sqrt(2 approach/k) +
+/// half_width
+struct LineOptions {
+  double segment_mm = 1.5;
+  double approach_mm = 0;    ///< of the loaded flanks, about: 0 lists no segment beyond the ends
+  double half_width_mm = 0;  ///< of the pressed strip, about
+  /// A pinion that touches in a point, or stands off its place: the line is then the valley of least gap, a place for
+  /// every B, and segments carry that gap. Null: the pinion is the shaper, the gap 0.
+  const contact::Pinion<double>* pinion = nullptr;
+};
+[[nodiscard]] std::vector<ContactLine> contact_lines(const face_gear::FaceGearSurface<double>& f, int ring, int side,
+                                                     double phi, const ContactBounds& bounds,
+                                                     const LineOptions& options);
+
+/// What of a flank can touch. @param least_theta as in ContactBounds
+/// Refused: an undercut flank.
+[[nodiscard]] Result<ContactBounds> contact_bounds(const face_gear::FaceGearSurface<double>& f, int side,
+                                                   double inner_mm, double outer_mm, double least_theta);
+
+}  // namespace toothpath::loaded
