@@ -30,6 +30,7 @@ class Judge {
     tcp();
     rollover();
     coolants();
+    references();
     return std::move(errors_);
   }
 
@@ -115,6 +116,31 @@ class Judge {
           refuse(key, "{}: {} switches {} off", key, given.on, to_string(other));
           break;
         }
+    }
+  }
+
+  /// Every axis has a place, within its travel.
+  void references() {
+    const machines::KinematicChain& chain = machine_.chain;
+    for (std::size_t n = 0; n < 2; ++n) {
+      const std::vector<double>& place = machine_.post.reference_positions[n];
+      if (place.empty()) continue;
+      const char* const key = n == 0 ? "post.reference_position" : "post.second_reference_position";
+      if (words_.write != nullptr) refuse(key, "{}: dialect \"{}\" has no words for it", key, words_.name);
+      if (place.size() != 3 + chain.rotary_count()) {
+        refuse(key, "{} has {} numbers, must have {}: X Y Z and the rotaries", key, place.size(),
+               3 + chain.rotary_count());
+        continue;
+      }
+      for (std::size_t a = 0; a < place.size(); ++a) {
+        const bool linear = a < 3;
+        const bool rolls = !linear && chain.rotary(a - 3).rollover;
+        const double least = linear ? chain.linear[a].min_mm : rolls ? 0 : degrees(chain.rotary(a - 3).min_rad);
+        const double most = linear ? chain.linear[a].max_mm : rolls ? 360 : degrees(chain.rotary(a - 3).max_rad);
+        if (place[a] < least || place[a] > most || (rolls && place[a] == 360))
+          refuse(key, "{}: {} = {:g} is outside its travel, {:g} to {:g}", key,
+                 linear ? "XYZ"[a] : chain.rotary(a - 3).letter, place[a], least, most);
+      }
     }
   }
 
@@ -221,6 +247,12 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
   c.smoothing_off = machine.post.smoothing_off;
   c.smoothing_mm = machine.post.smoothing_tolerance_mm.value_or(0);
   c.smoothing_axis_rad = machine.post.smoothing_axis_tolerance_rad;
+  for (std::size_t n = 0; n < 2; ++n) {
+    const std::vector<double>& place = machine.post.reference_positions[n];
+    if (place.empty()) continue;
+    c.reference[n].emplace();
+    std::copy_n(place.begin(), std::min<std::size_t>(place.size(), 5), c.reference[n]->begin());
+  }
   c.coolants = control->words.coolant;
   for (const auto& [coolant, words] : machine.post.coolant) {
     c.coolants[coolant] = words;

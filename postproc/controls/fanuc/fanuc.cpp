@@ -58,6 +58,8 @@ readback::IsoLanguage fanuc_language() {
   l.g_tenths = {434, 610, 640, 690};
   l.stops_at_corners = true;
   l.extended = {.tenths = 541, .last = kLastExtended};
+  l.most_m = 3;  // 3404#7 M3B
+  l.dwell_x = true;
   l.rules.tcp_needs_zero = true;
   return l;
 }

@@ -69,6 +69,11 @@ const readback::IsoLanguage& language() {
     linuxcnc.point_needed = false;
     linuxcnc.g_tenths = {591, 592, 593, 610, 611, 640, 921};
     linuxcnc.corner_of_g64 = corner_of_g64;
+    linuxcnc.most_m = 4;
+    linuxcnc.dwell = readback::DwellNumber::seconds;
+    linuxcnc.bare_reference = true;
+    linuxcnc.rules.stop = readback::ProgramStop::waits;
+    linuxcnc.rules.reference_keeps_length = true;
     linuxcnc.rules.least_rate = 0.1;  // before 2.9.0 the rate of a G93 block is raised to this
     linuxcnc.rules.per_minute_turns = linuxcnc.rules.sign_is_sense = true;
     return linuxcnc;
