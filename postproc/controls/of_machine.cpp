@@ -1,5 +1,7 @@
 #include "postproc/controls/of_machine.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -31,6 +33,7 @@ class Judge {
     rollover();
     coolants();
     references();
+    own_lines();
     return std::move(errors_);
   }
 
@@ -117,6 +120,28 @@ class Judge {
           break;
         }
     }
+  }
+
+  /// Lines of the shop name values that there are.
+  void own_lines() {
+    const machines::OwnLines& own = machine_.post.own_lines;
+    const auto look = [&](const char* key, const std::vector<std::string>& lines, bool tool) {
+      if (lines.empty()) return;
+      if (words_.write != nullptr)
+        return refuse(key, "{}: dialect \"{}\" takes no lines of the shop", key, words_.name);
+      const auto names = text::names_of_own_lines(words_, tool);
+      for (const std::string& line : lines)
+        if (const auto name = text::unknown_name(line, names))
+          refuse(key, "{}: \"{}\" names {{{}}}, which is none of {{{}}}", key, line, *name, fmt::join(names, "} {"));
+    };
+    look("post.start", own.start, false);
+    look("post.between_teeth", own.between_teeth, true);
+    look("post.end", own.end, false);
+    if (!own.tool_change) return;
+    look("post.tool_change", *own.tool_change, true);
+    const bool named = std::any_of(own.tool_change->begin(), own.tool_change->end(),
+                                   [](const std::string& line) { return line.find("{tool}") != std::string::npos; });
+    if (!named) refuse("post.tool_change", "post.tool_change names {{tool}} in no line: it must fetch the tool");
   }
 
   /// Every axis has a place, within its travel.
@@ -208,6 +233,10 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
     d.blend = false;
     std::erase_if(d.start, [](const std::string& line) { return line.find("{blend}") != std::string::npos; });
   }
+  d.own_start = post.own_lines.start;
+  d.own_between_teeth = post.own_lines.between_teeth;
+  d.own_end = post.own_lines.end;
+  if (post.own_lines.tool_change) d.tool_call = *post.own_lines.tool_change;
   apply_corners(d, post);
   for (const auto& [coolant, words] : post.coolant) d.coolant[coolant] = words;
   return d;

@@ -124,6 +124,10 @@ class Heidenhain {
     if (s.take("CALL LBL ")) return repeat(s);
     if (s.take("FN 12: IF ")) return jump_if_less(s);
     if (s.at() == 'Q' || s.take("FN 0: ") || s.take("FN 1: ")) return assign(s);
+    if (s.take("TOOL DEF ")) {
+      const auto n = s.number();
+      return n ? placed(column, execution_.choose_tool(*n)) : here(s.column(), "number expected");
+    }
     if (s.take("TOOL CALL ")) return tool_call(s, column);
     if (s.take("CYCL DEF ")) return cycle(s, column);
     if (s.take("PLANE RESET STAY") || s.take("TRANS DATUM RESET")) return std::nullopt;
@@ -288,6 +292,12 @@ class Heidenhain {
   }
 
   Problem tool_call(readback::NcScanner& s, int column) {
+    if (s.take("S")) {  // another speed of the tool in the spindle
+      const auto speed = s.number();
+      if (!speed) return here(s.column(), "number expected");
+      if (execution_.tool() < 0) return here(column, "TOOL CALL S without a tool in the spindle");
+      return placed(column, execution_.set_speed(*speed));
+    }
     const auto n = s.number();
     s.skip_blanks();
     if (!n || !s.take("Z S")) return here(s.column(), "TOOL CALL needs number, Z and S");
@@ -338,6 +348,18 @@ class Heidenhain {
     return here(column, "the cycle is not in the subset");
   }
 
+  /// TX TY TZ
+  Problem component(readback::NcScanner& s, Vec3& axis, int& components) {
+    const int column = s.column(), k = s.ahead() - 'X';
+    s.advance(2);
+    const auto v = word_value(s);
+    if (!v) return v.error();
+    if ((components & (1 << k)) != 0) return here(column, "a component of the vector occurs twice");
+    components |= 1 << k;
+    axis[k] = *v;
+    return std::nullopt;
+  }
+
   // Straight lines.
   Problem straight(readback::NcScanner& s, bool vector) {
     readback::NcExecution::Move m;
@@ -350,16 +372,8 @@ class Heidenhain {
       const int column = s.column();
       const char c = s.at();
       if (s.take("R0")) continue;
-      if (s.take("FMAX")) {
-        fmax = true;
-        continue;
-      }
-      if (s.take("M91")) {
-        m91 = true;
-        continue;
-      }
-      if (s.take("M92")) {
-        m92 = true;
+      if (bool* const flag = s.take("FMAX") ? &fmax : s.take("M91") ? &m91 : s.take("M92") ? &m92 : nullptr) {
+        *flag = true;
         continue;
       }
       if (c == 'M') {
@@ -375,13 +389,7 @@ class Heidenhain {
         continue;
       }
       if (vector && c == 'T' && s.ahead() >= 'X' && s.ahead() <= 'Z') {
-        const int k = s.ahead() - 'X';
-        s.advance(2);
-        const auto v = word_value(s);
-        if (!v) return v.error();
-        if ((components & (1 << k)) != 0) return here(column, "a component of the vector occurs twice");
-        components |= 1 << k;
-        axis[k] = *v;
+        if (auto bad = component(s, axis, components)) return bad;
         continue;
       }
       std::size_t a = 0;

@@ -22,7 +22,9 @@ text::NcDialect words() {
   d.safe_start = {"G21 G17 G90 G94 G40 G49 G80", "G92.1"};
   d.start = {"{safe_start}", "{offset}", "G61"};
   d.retract = {"G53 G0 Z{top}"};
-  d.tool_change = {"T{tool} M6", "{safe_start}", "{offset}", "S{speed} M3"};
+  d.tool_call = {"T{tool} M6"};
+  d.tool_next = {"T{next}"};
+  d.tool_change = {"{safe_start}", "{offset}", "S{speed} M3"};
   d.compensation = d.tcp_compensation = {"G43 H{tool}"};
   d.operation_end = {"G94 F{free}"};
   d.end = {"G61", "G49"};
