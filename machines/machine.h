@@ -1,6 +1,7 @@
 // A milling machine as its file describes it: kinematic chain, limits, control and what of it is assumed.
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,6 +31,14 @@ enum class LengthReference { tip, centre };
 /// What the post does where the tool axis comes parallel to the first rotary axis.
 enum class PoleOption { error, tilt, hold, through, slow, retract };
 
+/// Lines of the shop that programs carry; templates with the names of docs/dialects.md in braces.
+struct OwnLines {
+  std::vector<std::string> start;                       ///< behind the start of the control
+  std::optional<std::vector<std::string>> tool_change;  ///< instead of the lines that fetch a tool
+  std::vector<std::string> between_teeth;               ///< behind every tooth of an operation
+  std::vector<std::string> end;                         ///< ahead of the end of the program
+};
+
 /// Preferences of this machine; what is empty is left to the dialect.
 struct PostSettings {
   std::optional<int> linear_decimals;  ///< digits after the point of X Y Z, 0..9
@@ -48,6 +57,10 @@ struct PostSettings {
                                               ///< Fanuc and the like in G64
   std::map<Coolant, CoolantWords>
       coolant;  ///< words of the builder, instead of those of the control or where it has none
+  /// Where G28 and G30 (G75 FP=1 and FP=2, the zero of M92) take the axes, machine coordinates: X Y Z [mm], then the
+  /// rotaries in the order of their letters in the file [deg]. Empty: not said.
+  std::array<std::vector<double>, 2> reference_positions;
+  OwnLines own_lines;
   LengthReference length_reference = LengthReference::tip;
   PoleOption pole = PoleOption::error;
   std::optional<double> pole_angle_rad;  ///< `tilt`: least angle kept from the pole; `hold`, `through`, `retract`:

@@ -282,6 +282,21 @@ void read_coolant_words(toml::TableReader& post, PostSettings& settings) {
   }
 }
 
+/// Lines of the shop, and where its reference positions are.
+void read_own_lines(toml::TableReader& post, PostSettings& settings) {
+  const auto lines = [&post](const char* key) { return post.optional_ascii_list(key, {1, kMostBlocks}); };
+  settings.own_lines.start = lines("start").value_or(std::vector<std::string>{});
+  settings.own_lines.tool_change = lines("tool_change");
+  if (settings.own_lines.tool_change && settings.own_lines.tool_change->empty())
+    post.refuse("tool_change", "{} is empty, must have the lines that fetch a tool", post.name("tool_change"));
+  settings.own_lines.between_teeth = lines("between_teeth").value_or(std::vector<std::string>{});
+  settings.own_lines.end = lines("end").value_or(std::vector<std::string>{});
+  const char* const keys[] = {"reference_position", "second_reference_position"};
+  for (std::size_t i = 0; i < 2; ++i)
+    if (const auto place = post.optional_number_list(keys[i], {-kLargestLength, kLargestLength, " mm or deg"}, {3, 5}))
+      settings.reference_positions[i] = *place;
+}
+
 void read_post(toml::TableReader post, PostSettings& settings) {
   settings.linear_decimals = post.optional_integer("linear_decimals", {0, 9});
   settings.rotary_decimals = post.optional_integer("rotary_decimals", {0, 9});
@@ -291,6 +306,7 @@ void read_post(toml::TableReader post, PostSettings& settings) {
   settings.corner_tolerance_mm = post.optional_number("corner_tolerance", toml::Range::positive(0.1, " mm"));
   read_smoothing(post, settings);
   read_coolant_words(post, settings);
+  read_own_lines(post, settings);
   settings.length_reference = post.word_or("length_reference", {"tip", "centre"}, "tip") == "tip"
                                   ? LengthReference::tip
                                   : LengthReference::centre;

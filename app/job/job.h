@@ -20,6 +20,7 @@
 #include "machines/toml/table_reader.h"
 #include "postproc/joints/setup.h"
 #include "postproc/shaper/shaping.h"
+#include "postproc/text/stops.h"
 
 namespace toothpath::machines {
 enum class PoleOption;  // machines/machine.h
@@ -48,6 +49,7 @@ struct ProgramSettings {
   std::optional<int>
       number;  ///< of the main program (O word), its sub-programs behind it; none: made of the job's name
   bool spread_teeth = false;  ///< tooth_order = "spread": neighbours are not cut one after the other; else in sequence
+  text::TextWishes text;      ///< stops and numbers of blocks
   std::optional<machines::PoleOption> pole;  ///< instead of post.pole of the machine file
   std::optional<double> pole_angle_rad;      ///< instead of post.pole_angle
 };

@@ -382,6 +382,12 @@ ProgramSettings read_program_settings(toml::TableReader& table) {
   ProgramSettings program;
   program.number = table.optional_integer("number", kProgramNumber);
   program.spread_teeth = table.word_or("tooth_order", {"sequence", "spread"}, "sequence") == "spread";
+  const std::initializer_list<std::string_view> stops = {"none", "tool_changes", "operations", "teeth"};
+  const std::string stop = table.word_or("stop", stops, "none");
+  program.text.stops = static_cast<text::Stops>(std::find(stops.begin(), stops.end(), stop) - stops.begin());
+  if (table.word_or("stop_word", {"optional_stop", "block_skip"}, "optional_stop") == "block_skip")
+    program.text.stop_word = text::StopWord::block_skip;
+  program.text.restart_numbers = table.boolean_or("restart_numbers", program.text.restart_numbers);
   constexpr std::pair<std::string_view, machines::PoleOption> kPoles[] = {
       {"error", machines::PoleOption::error}, {"tilt", machines::PoleOption::tilt},
       {"hold", machines::PoleOption::hold},   {"through", machines::PoleOption::through},

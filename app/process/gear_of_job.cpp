@@ -144,6 +144,13 @@ ValueOrErrors<machines::Machine> load_machine(const job::Job& job, std::optional
                              "number = {}: programs of dialect \"{}\" have no number, leave it out: they are known by "
                              "the name of their file",
                              *job.program.number, dialect->name));
+  if (dialect && job.program.text.stops != text::Stops::none && dialect->write != nullptr)
+    errors.push_back(
+        fail_at(job.where("program.stop"), "stop: dialect \"{}\" has no word for it, leave it out", dialect->name));
+  if (dialect && job.program.text.restart_numbers && (dialect->write != nullptr || dialect->block_numbers))
+    errors.push_back(fail_at(job.where("program.restart_numbers"),
+                             "restart_numbers: dialect \"{}\" has {}, leave it out", dialect->name,
+                             dialect->block_numbers ? "a number in every block" : "no numbers of blocks"));
   if (!errors.empty()) return errors;
   return machine;
 }

@@ -147,6 +147,7 @@ text::NcHeader header_of(const PostRequest& request, const std::vector<std::stri
   header.assumed = assumed;
   header.coolant = request.job.coolant;
   header.program_number = program_number(request.job);
+  header.wishes = request.job.program.text;
   header.blend_mm = std::min(header.blend_mm, kBlendShare * request.job.verify.gouge_tolerance_mm);
   if (radius > 0)
     header.blend_axis_deg =

@@ -129,6 +129,16 @@ constexpr Meaning kJobMeanings[] = {
     {"program", "Numbers and order of the program."},
     {"program.number", "O number of the program; left out: made of the job's name."},
     {"program.tooth_order", "Teeth one after the other, or neighbours apart in time."},
+    {"program.stop",
+     "Ahead of what the operator may stop the program: of changes of the tool, of operations, of teeth too; proven as "
+     "if it stopped."},
+    {"program.stop_word",
+     "How the operator says whether it does: `optional_stop` is M1, `block_skip` is M0 in a block that a switch leaves "
+     "out."},
+    {"program.restart_numbers",
+     "`true`: N words where an operation and a written tooth begin, N1000, N1001 .., N2000 ..; Heidenhain numbers "
+     "every "
+     "block at any rate."},
     {"program.pole",
      "What is done where the tool axis comes parallel to a rotary; left out: what the machine file says."},
     {"program.pole_angle", "Angle of that option; left out: what the machine file says."},

@@ -100,6 +100,17 @@ constexpr Meaning kMachineMeanings[] = {
     {"post.coolant_mist", "Words of the builder for mist, on and off."},
     {"post.coolant_air", "Words of the builder for air, on and off."},
     {"post.coolant_through_spindle", "Words of the builder for coolant through the spindle, on and off."},
+    {"post.reference_position",
+     "Where G28 takes the axes (Siemens: G75 FP=1; Heidenhain: the zero of M92), machine coordinates: X Y Z in mm, "
+     "then "
+     "the rotaries in deg, as [chain] names them. `check` refuses these words without it."},
+    {"post.second_reference_position", "The same of G30 (Siemens: G75 FP=2)."},
+    {"post.start",
+     "Lines of the shop behind the start of every program; templates ([dialects](dialects.md#own-lines))."},
+    {"post.tool_change",
+     "Lines in the place of those that fetch a tool; templates ([dialects](dialects.md#own-lines))."},
+    {"post.between_teeth", "Lines of the shop behind every tooth; templates ([dialects](dialects.md#own-lines))."},
+    {"post.end", "Lines of the shop ahead of the end of a program; templates ([dialects](dialects.md#own-lines))."},
     {"post.length_reference", "What the tool length of a ball reaches to."},
     {"post.pole",
      "What is done where the tool comes parallel to the rotary axis that carries the work ([axis "

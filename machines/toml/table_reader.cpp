@@ -266,8 +266,17 @@ std::optional<std::vector<T>> TableReader::list(std::string_view key, const Toml
 
 std::optional<std::vector<double>> TableReader::number_list(std::string_view key, const Range& range,
                                                             const Count& count) {
-  ask(key, list_shape(ValueKind::numbers, range, count), Presence::required);
-  const TomlValue* found = look(key, true);
+  return numbers_listed(key, range, count, Presence::required);
+}
+std::optional<std::vector<double>> TableReader::optional_number_list(std::string_view key, const Range& range,
+                                                                     const Count& count) {
+  return numbers_listed(key, range, count, Presence::optional);
+}
+
+std::optional<std::vector<double>> TableReader::numbers_listed(std::string_view key, const Range& range,
+                                                               const Count& count, Presence presence) {
+  ask(key, list_shape(ValueKind::numbers, range, count), presence);
+  const TomlValue* found = look(key, presence == Presence::required);
   if (!found) return std::nullopt;
   return list<double>(key, *found,
                       [&](const TomlValue& value, const std::string& name) { return to_number(value, name, range); });

@@ -125,6 +125,8 @@ class TableReader {
   std::optional<std::string> optional_text(std::string_view key, const TextRules& rules = {});
   std::optional<std::string> optional_word(std::string_view key, WordList allowed);
   std::optional<std::vector<double>> optional_numbers(std::string_view key, std::size_t count, const Range& range);
+  std::optional<std::vector<double>> optional_number_list(std::string_view key, const Range& range,
+                                                          const Count& count = {});
   std::optional<std::vector<std::string>> optional_ascii_list(std::string_view key, const Count& count = {},
                                                               std::vector<std::string> words = {});
   /// A value whose structure the caller reads itself; nothing when absent.
@@ -183,6 +185,8 @@ class TableReader {
   std::optional<std::string> to_text(const TomlValue& value, const std::string& name, bool ascii);
   std::optional<std::string> one_word(std::string_view key, Words allowed, bool must);
   std::optional<bool> to_boolean(std::string_view key, const TomlValue& value);
+  std::optional<std::vector<double>> numbers_listed(std::string_view key, const Range& range, const Count& count,
+                                                    Presence presence);
   std::optional<std::vector<double>> counted(std::string_view key, const TomlValue& value, std::size_t count,
                                              const Range& range);
   template <typename T, typename Read>

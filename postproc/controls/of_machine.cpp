@@ -1,5 +1,7 @@
 #include "postproc/controls/of_machine.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -30,6 +32,8 @@ class Judge {
     tcp();
     rollover();
     coolants();
+    references();
+    own_lines();
     return std::move(errors_);
   }
 
@@ -118,6 +122,53 @@ class Judge {
     }
   }
 
+  /// Lines of the shop name values that there are.
+  void own_lines() {
+    const machines::OwnLines& own = machine_.post.own_lines;
+    const auto look = [&](const char* key, const std::vector<std::string>& lines, bool tool) {
+      if (lines.empty()) return;
+      if (words_.write != nullptr)
+        return refuse(key, "{}: dialect \"{}\" takes no lines of the shop", key, words_.name);
+      const auto names = text::names_of_own_lines(words_, tool);
+      for (const std::string& line : lines)
+        if (const auto name = text::unknown_name(line, names))
+          refuse(key, "{}: \"{}\" names {{{}}}, which is none of {{{}}}", key, line, *name, fmt::join(names, "} {"));
+    };
+    look("post.start", own.start, false);
+    look("post.between_teeth", own.between_teeth, true);
+    look("post.end", own.end, false);
+    if (!own.tool_change) return;
+    look("post.tool_change", *own.tool_change, true);
+    const bool named = std::any_of(own.tool_change->begin(), own.tool_change->end(),
+                                   [](const std::string& line) { return line.find("{tool}") != std::string::npos; });
+    if (!named) refuse("post.tool_change", "post.tool_change names {{tool}} in no line: it must fetch the tool");
+  }
+
+  /// Every axis has a place, within its travel.
+  void references() {
+    const machines::KinematicChain& chain = machine_.chain;
+    for (std::size_t n = 0; n < 2; ++n) {
+      const std::vector<double>& place = machine_.post.reference_positions[n];
+      if (place.empty()) continue;
+      const char* const key = n == 0 ? "post.reference_position" : "post.second_reference_position";
+      if (words_.write != nullptr) refuse(key, "{}: dialect \"{}\" has no words for it", key, words_.name);
+      if (place.size() != 3 + chain.rotary_count()) {
+        refuse(key, "{} has {} numbers, must have {}: X Y Z and the rotaries", key, place.size(),
+               3 + chain.rotary_count());
+        continue;
+      }
+      for (std::size_t a = 0; a < place.size(); ++a) {
+        const bool linear = a < 3;
+        const bool rolls = !linear && chain.rotary(a - 3).rollover;
+        const double least = linear ? chain.linear[a].min_mm : rolls ? 0 : degrees(chain.rotary(a - 3).min_rad);
+        const double most = linear ? chain.linear[a].max_mm : rolls ? 360 : degrees(chain.rotary(a - 3).max_rad);
+        if (place[a] < least || place[a] > most || (rolls && place[a] == 360))
+          refuse(key, "{}: {} = {:g} is outside its travel, {:g} to {:g}", key,
+                 linear ? "XYZ"[a] : chain.rotary(a - 3).letter, place[a], least, most);
+      }
+    }
+  }
+
   const machines::Machine& machine_;
   const text::NcDialect& words_;
   std::vector<Diagnostic> errors_;
@@ -182,6 +233,10 @@ Result<text::NcDialect> dialect_of(const machines::Machine& machine) {
     d.blend = false;
     std::erase_if(d.start, [](const std::string& line) { return line.find("{blend}") != std::string::npos; });
   }
+  d.own_start = post.own_lines.start;
+  d.own_between_teeth = post.own_lines.between_teeth;
+  d.own_end = post.own_lines.end;
+  if (post.own_lines.tool_change) d.tool_call = *post.own_lines.tool_change;
   apply_corners(d, post);
   for (const auto& [coolant, words] : post.coolant) d.coolant[coolant] = words;
   return d;
@@ -221,6 +276,12 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
   c.smoothing_off = machine.post.smoothing_off;
   c.smoothing_mm = machine.post.smoothing_tolerance_mm.value_or(0);
   c.smoothing_axis_rad = machine.post.smoothing_axis_tolerance_rad;
+  for (std::size_t n = 0; n < 2; ++n) {
+    const std::vector<double>& place = machine.post.reference_positions[n];
+    if (place.empty()) continue;
+    c.reference[n].emplace();
+    std::copy_n(place.begin(), std::min<std::size_t>(place.size(), 5), c.reference[n]->begin());
+  }
   c.coolants = control->words.coolant;
   for (const auto& [coolant, words] : machine.post.coolant) {
     c.coolants[coolant] = words;

@@ -28,7 +28,12 @@ class Parser {
       block_.percent = true;
       return std::move(block_);
     }
-    if (upper(at()) == 'O') o_line();
+    if (at() == '/') {
+      ++i_;
+      block_.skip = true;
+      skip_blanks();
+    }
+    if (upper(at()) == 'O' && !block_.skip) o_line();
     while (!problem_) {
       skip_blanks();
       if (i_ >= line_.size()) break;
@@ -110,6 +115,33 @@ class Parser {
     return n;
   }
 
+  /// #<name>: the index of the name in the block.
+  bool name_here() const { return o_words_ && i_ + 1 < line_.size() && line_[i_ + 1] == '<'; }
+  std::optional<std::int32_t> parameter_name() {
+    const std::size_t begin = i_, end = line_.find('>', i_);
+    if (end == std::string_view::npos) {
+      stop(begin, "name of a parameter without its >");
+      return std::nullopt;
+    }
+    std::string name;
+    for (std::size_t k = i_ + 2; k < end; ++k) {
+      const char c = line_[k];
+      if (c == ' ' || c == '\t') continue;
+      if (!is_letter(c) && !is_digit(c) && c != '_' && c != '-') {
+        stop(k, fmt::format("character {} in the name of a parameter", printable(c)));
+        return std::nullopt;
+      }
+      name += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    }
+    if (name.empty()) {
+      stop(begin, "a parameter without a name");
+      return std::nullopt;
+    }
+    i_ = end + 1;
+    block_.names.push_back(std::move(name));
+    return static_cast<std::int32_t>(block_.names.size()) - 1;
+  }
+
   NcValue value(bool& point) {
     skip_blanks();
     NcValue v;
@@ -135,6 +167,8 @@ class Parser {
       skip_blanks();
       if (at() != ']') return stop(i_, "] expected");
       ++i_;
+    } else if (at() == '#' && name_here()) {
+      if (const auto n = parameter_name()) push(NcStep::Kind::named, *n);
     } else if (at() == '#') {
       if (const auto n = parameter_index()) push(NcStep::Kind::parameter, *n);
     } else if (at() == '-' && i_ + 1 < line_.size() && (line_[i_ + 1] == '[' || line_[i_ + 1] == '#')) {
@@ -198,7 +232,8 @@ class Parser {
     NcWord w;
     w.letter = '#';
     w.column = static_cast<std::int32_t>(i_) + 1;
-    const auto n = parameter_index();
+    if (name_here()) w.letter = '<';
+    const auto n = w.letter == '<' ? parameter_name() : parameter_index();
     if (!n) return;
     w.index = *n;
     skip_blanks();

@@ -16,6 +16,7 @@ struct NcStep {
   enum class Kind : std::uint8_t {
     number,
     parameter,
+    named,  ///< `value`: index in NcBlock::names; whoever runs the block makes a parameter of it
     negate,
     add,
     subtract,
@@ -40,7 +41,7 @@ struct NcValue {
 };
 
 struct NcWord {
-  char letter = '?';   ///< upper case; '#': an assignment to the parameter `index`
+  char letter = '?';   ///< upper case; '#': an assignment to the parameter `index`; '<': to the name at that index
   bool point = false;  ///< the number was written with a decimal point
   std::int32_t index = 0;
   std::int32_t column = 0;
@@ -56,9 +57,11 @@ struct NcBlock {
   std::vector<NcValue> arguments;  ///< of an o-word
   OWord o_word = OWord::none;
   std::int64_t o_number = 0;
-  std::int32_t operation = -1;  ///< n of the comment (OP n type); -1: no such comment
-  std::int32_t tooth = -1;      ///< k of the comment (TOOTH k)
+  std::int32_t operation = -1;     ///< n of the comment (OP n type); -1: no such comment
+  std::int32_t tooth = -1;         ///< k of the comment (TOOTH k)
+  std::vector<std::string> names;  ///< of parameters, #<name>: lower case without blanks
   bool percent = false;
+  bool skip = false;  ///< begins with a slash: left out where the switch of the control is on
 };
 
 /// Parses one line without its end.

@@ -85,6 +85,8 @@ void ConditionJudge::add(const ExecutedMove& m) {
       axes(m);
       spindle(m, operation);
       coolant(m, operation);
+      if (m.in_doubt) note(Kind::stop_in_doubt, 0, m, 0);
+      if (m.dwell_min > 0 && !up_) note(Kind::dwell, 0, m, double(m.dwell_min) * 60);
     }
   }
   before_ = m;
@@ -233,6 +235,13 @@ std::string ConditionJudge::text(Kind kind, int operation, int detail, const Fau
     case Kind::other_coolant:
       return fmt::format("{} cuts with {} on, the coolant of the job is {}{}", at,
                          to_string(static_cast<machines::Coolant>(detail)), to_string(*asked_.coolant), times);
+    case Kind::stop_in_doubt:
+      return fmt::format(
+          "{} cuts behind an M0 or M1 that may have ended spindle or coolant{}: the builder of the machine decides "
+          "that, M3 and the word of the coolant behind the stop leave no doubt",
+          at, times);
+    case Kind::dwell:
+      return fmt::format("{} waits {:.6g} s in a cut{}: the tool rubs where it stands", at, f.worst, times);
     case Kind::short_block:
       return fmt::format("{} has a block of {:.3g} ms, the control keeps up with {:g} (limits.min_block_ms){}", at,
                          -f.worst, machine_.min_block_ms, times);

@@ -58,8 +58,8 @@ struct ConditionsFound {
 /// Reasons: a cut more than `feed_factor` times as fast as asked, or a last way down; a feed above
 /// `limits.cutting_feed`; an axis faster than its `max_speed`; S above `spindle.max_speed`, or off the job's by more
 /// than `speed_factor`; another tool than the job's; the job's coolant not on. Warnings: a cut more than 1.5 times as
-/// fast as asked (or `feed_factor`, if that is less); S off the job's; a coolant that the job has off; blocks shorter
-/// than `limits.min_block_ms`.
+/// fast as asked (or `feed_factor`, if that is less); S off the job's; a coolant that the job has off; cuts behind
+/// a stop that may have ended spindle and coolant; a dwell in a cut; blocks shorter than `limits.min_block_ms`.
 class ConditionJudge {
  public:
   /// All must outlive it.
@@ -86,6 +86,8 @@ class ConditionJudge {
     quick_cut,
     spindle_near_job,
     other_coolant,
+    stop_in_doubt,
+    dwell,
     short_block  // warnings
   };
   struct Step;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "geometry/base/angle.h"
 #include "postproc/choice/solution.h"
@@ -57,6 +58,34 @@ Vec3 turned_deg(const Vec3& v, double deg) {
 }
 
 }  // namespace
+
+int group_of_m(int m) {
+  switch (m) {
+    case 0:
+    case 1:
+    case 2:
+    case 30: return kStops;
+    case 3:
+    case 5:
+    case 13: return 7;
+    case 6: return 6;
+    case 98:
+    case 99: return kCalls;
+    default: return kCoolants;
+  }
+}
+
+bool clash_of_m(const NcControl& control, int one, int other) {
+  if (group_of_m(one) != group_of_m(other)) return group_of_m(one) == kCalls || group_of_m(other) == kCalls;
+  if (group_of_m(one) != kCoolants || one == other) return true;
+  // Two coolants may go on together.
+  const auto ends = [&](int m) {
+    const std::string word = fmt::format("M{}", m);
+    return std::any_of(control.coolants.begin(), control.coolants.end(),
+                       [&](const auto& c) { return c.second.off == word; });
+  };
+  return ends(one) || ends(other);
+}
 
 NcExecution::NcExecution(const NcControl& control, const NcRules& rules,
                          const std::function<void(const ExecutedMove&)>& sink)
@@ -112,6 +141,67 @@ NcExecution::Problem NcExecution::change_tool() {
 NcExecution::Problem NcExecution::spindle_on() {
   if (!spindle_set_ || operation_ < 0) return "M3 without an S word of this operation";
   spindle_ = true;
+  spindle_doubt_ = false;
+  return std::nullopt;
+}
+
+void NcExecution::stop() {
+  if (rules_.stop == ProgramStop::waits) return;
+  spindle_doubt_ = spindle_doubt_ || (spindle_ && rules_.stop == ProgramStop::in_doubt);
+  coolant_doubt_ = coolant_doubt_ || (coolants_ != 0 && rules_.stop == ProgramStop::in_doubt);
+  if (rules_.stop == ProgramStop::in_doubt) return;
+  spindle_ = false;
+  coolants_ = 0;
+}
+
+NcExecution::Problem NcExecution::dwell(double minutes) {
+  if (!(minutes >= 0)) return "a dwell must not be negative";
+  if (minutes > kLongestBlock_min)
+    return fmt::format("a dwell of {:.6g} min, more than {:g} (a day): is its unit right?", minutes, kLongestBlock_min);
+  dwell_min_ += minutes;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::dwell_turns(double turns) {
+  if (!spindle_ || !(speed_ > 0)) return "a dwell in turns of the spindle, which stands";
+  return dwell(turns / speed_);
+}
+
+Result<std::array<double, 5>> NcExecution::reference(std::size_t which, std::string_view word) const {
+  if (const auto& place = control_.reference[which]) return *place;
+  return fail("{}: nothing says where it goes: {} = [X, Y, Z, rotaries] in the machine file does", word,
+              which == 0 ? "post.reference_position" : "post.second_reference_position");
+}
+
+NcExecution::Problem NcExecution::to_reference(const Move& m, std::size_t which, std::string_view word, bool by_way,
+                                               std::int32_t line) {
+  if (tcp_) return fmt::format("{} with TCP on", word);
+  const auto place = reference(which, word);
+  if (!place) return place.error().message;
+  Move way = m;
+  way.rapid = way.to_reference = true;
+  if (by_way && distance_ == Distance::unsaid)
+    return fmt::format("{} ahead of G90 or G91: whether its words are steps would depend on the last program", word);
+  if (by_way && distance_ == Distance::incremental) {
+    way.machine_frame = true;
+    bool steps = false;
+    for (std::size_t a = 0; a < 5; ++a) {
+      steps = steps || (m.has[a] && m.axis[a] != 0);
+      if (m.has[a]) way.axis[a] = joints_[a] + m.axis[a];
+      if (m.has[a] && m.axis[a] != 0 && control_.rollover[a])
+        return fmt::format("{} by steps of {}, which rolls over: which way it turns is not said", word,
+                           control_.letters[a]);
+    }
+    by_way = steps;
+    if (steps && std::any_of(way.axis.begin(), way.axis.end(), [](double v) { return std::isnan(v); }))
+      return fmt::format("{} by steps from a position that the program did not set", word);
+  }
+  if (by_way)
+    if (auto bad = move(way, line)) return bad;
+  way.machine_frame = true;
+  way.axis = *place;
+  if (auto bad = move(way, line)) return bad;
+  if (m.has[2] && !rules_.reference_keeps_length) length_.reset();
   return std::nullopt;
 }
 
@@ -132,6 +222,7 @@ NcExecution::Problem NcExecution::set_length(int tool) {
 }
 
 void NcExecution::switch_coolant(std::string_view word) {
+  coolant_doubt_ = false;
   for (const auto& [coolant, words] : control_.coolants) {
     const std::uint8_t bit = machines::bit_of(coolant);
     if (words.on == word) coolants_ = static_cast<std::uint8_t>(coolants_ | bit);
@@ -179,6 +270,17 @@ NcExecution::Problem NcExecution::end_program(bool inside_call) {
   if (spindle_) return "program end while the spindle turns";
   if (tcp_) return "program end with TCP on";
   if (inside_call) return "program end inside a sub-program or loop";
+  if (dwell_min_ > 0) {  // no move follows that it could count with
+    ExecutedMove e;
+    e.joints = joints_;
+    e.dwell_min = static_cast<float>(std::exchange(dwell_min_, 0));
+    e.operation = static_cast<std::int16_t>(operation_);
+    e.tool = static_cast<std::int16_t>(tool_);
+    e.line = last_line_;
+    e.rapid = e.machine = true;
+    e.known = known(joints_);
+    sink_(e);
+  }
   return std::nullopt;
 }
 
@@ -308,7 +410,10 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
   Vec3 tip = Vec3::Zero();
   ExecutedMove e;
   if (!unit_) return "axis words ahead of the unit code: whether they are mm would depend on the last program";
-  if (!absolute_) return "axis words ahead of G90: whether they are positions would depend on the last program";
+  if (distance_ == Distance::incremental && !m.to_reference)
+    return "axis words in G91: steps are read with G28 and G30 alone, G90 must be said again";
+  if (distance_ == Distance::unsaid && !m.to_reference)
+    return "axis words ahead of G90: whether they are positions would depend on the last program";
   if (tcp_ && m.machine_frame) return "machine coordinates with TCP on";
   if (auto bad = tcp_ ? tip_goal(m, goal, tip, e.commanded) : goal_of(m, goal, tip, e.commanded)) return bad;
   e.joints = goal;
@@ -322,6 +427,8 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
   e.rapid = m.rapid;
   e.speed_rpm = spindle_ ? static_cast<float>(speed_) : 0;
   e.coolants = coolants_;
+  e.in_doubt = spindle_doubt_ || coolant_doubt_;
+  e.dwell_min = static_cast<float>(std::exchange(dwell_min_, 0));
   e.corners = path_mode_;
   e.tolerance_mm = static_cast<float>(path_tolerance_mm_);
   if (!m.rapid && e.known)
@@ -339,6 +446,7 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
     return fmt::format("the block takes {:.6g} min, more than {:g} (a day): is its F right?", e.minutes,
                        kLongestBlock_min);
   retracted_ = m.machine_frame && m.has[2];
+  last_line_ = line;
   joints_ = goal;
   idle_ = 0;
   tip_ = tip;

@@ -15,6 +15,19 @@
 
 namespace toothpath::readback {
 
+/// What M0, and M1 where the switch is on, do beside waiting for the start button.
+enum class ProgramStop : std::uint8_t {
+  waits,         ///< spindle and coolant go on
+  in_doubt,      ///< the builder of the machine decides about both
+  ends_spindle,  ///< spindle and coolant are off behind it, until the program switches them on again
+};
+
+/// Modal group of an M word, in the order in which those of one block act: tool, spindle, coolants, calls, stops.
+inline constexpr int kCoolants = 8, kCalls = 98, kStops = 99;
+[[nodiscard]] int group_of_m(int m);
+/// What two M words of one block do together would depend on their order.
+[[nodiscard]] bool clash_of_m(const NcControl& control, int one, int other);
+
 /// How a control differs in what it does, not in how it is written.
 struct NcRules {
   bool tcp_needs_zero = false;    ///< TCP may be switched on with the rotaries at zero only
@@ -24,6 +37,10 @@ struct NcRules {
       false;  ///< the sign of a word says which way a rotary that rolls over turns; else the nearer way is taken
   bool turns_need_axis_blend =
       false;  ///< a tolerance of the tip leaves that of the rotaries to the machine: it must be said too
+  ProgramStop stop = ProgramStop::in_doubt;
+  /// A tool length stays in force behind a move of Z to a reference position; else it must be said again, which is the
+  /// safe side where the control drops it.
+  bool reference_keeps_length = false;
 };
 
 class NcExecution {
@@ -38,6 +55,7 @@ class NcExecution {
     bool machine_frame = false;  ///< words are joints: no offset, no tool length
     bool compensation = false;   ///< the block switches tool length compensation on
     bool own_feed = false;       ///< F stands in the block
+    bool to_reference = false;   ///< a piece of the way to a reference position
   };
 
   NcExecution(const NcControl& control, const NcRules& rules, const std::function<void(const ExecutedMove&)>& sink);
@@ -49,8 +67,9 @@ class NcExecution {
   [[nodiscard]] int tool() const { return tool_; }  ///< in the spindle; -1: none
 
   // Modes.
-  void set_unit() { unit_ = true; }          ///< the program has said that its words are mm
-  void set_absolute() { absolute_ = true; }  ///< the program has said that its words are positions
+  void set_unit() { unit_ = true; }                              ///< the program has said that its words are mm
+  void set_absolute() { distance_ = Distance::absolute; }        ///< the program has said that its words are positions
+  void set_incremental() { distance_ = Distance::incremental; }  ///< or steps: read on the way to a reference alone
   enum class Feed { none, inverse_time, per_minute };
   void set_feed_mode(Feed mode);
   [[nodiscard]] Feed feed_mode() const { return feed_mode_; }
@@ -60,6 +79,12 @@ class NcExecution {
   Problem change_tool();
   Problem spindle_on();
   void spindle_off() { spindle_ = false; }
+  /// M0, or M1, which may stop like it.
+  void stop();
+  /// Waits [min]; counts with the next move.
+  Problem dwell(double minutes);
+  /// Waits for so many turns of the spindle.
+  Problem dwell_turns(double turns);
   /// A word that switches a coolant on or off; one that belongs to none changes nothing.
   void switch_coolant(std::string_view word);
   Problem select_offset(const std::string& name);
@@ -101,6 +126,11 @@ class NcExecution {
   Problem next_block();
   /// A block with axis words; `line` from 1.
   Problem move(const Move& m, std::int32_t line);
+  /// The axes that `m` names go with a rapid to reference position 1 or 2 (NcControl::reference). @param word of the
+  /// control, "G28", for messages  @param by_way the words of `m` are a place on the way
+  Problem to_reference(const Move& m, std::size_t which, std::string_view word, bool by_way, std::int32_t line);
+  /// The place of a reference position, mm and deg; refused where the machine file does not say it.
+  Result<std::array<double, 5>> reference(std::size_t which, std::string_view word) const;
 
  private:
   Problem move_to(const Move& m, std::int32_t line);
@@ -136,7 +166,11 @@ class NcExecution {
   double speed_ = 0;    // S, 1/min
   int length_of_ = -1;  // the tool whose length counts
   std::uint8_t coolants_ = 0;
-  bool unit_ = false, absolute_ = false;
+  enum class Distance : std::uint8_t { unsaid, absolute, incremental } distance_ = Distance::unsaid;
+  bool unit_ = false;
+  bool spindle_doubt_ = false, coolant_doubt_ = false;  ///< a stop may have ended them
+  double dwell_min_ = 0;                                ///< until the next move
+  std::int32_t last_line_ = 0;                          ///< of a move
   std::size_t steps_ = 0, idle_ = 0;
 };
 

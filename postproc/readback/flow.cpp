@@ -7,14 +7,73 @@
 namespace toothpath::readback {
 namespace {
 constexpr std::size_t kDeepestCall = 8;
+constexpr std::size_t kNumbered = 5000;       // parameters
 constexpr std::size_t kMostParsed = 1 << 19;  // lines of loops and sub-programs that are kept parsed
+
+/// Names that LinuxCNC keeps to itself: a program cannot set them.
+constexpr std::string_view kOwnNames[] = {"_vmajor",
+                                          "_vminor",
+                                          "_line",
+                                          "_motion_mode",
+                                          "_plane",
+                                          "_ccomp",
+                                          "_metric",
+                                          "_imperial",
+                                          "_absolute",
+                                          "_incremental",
+                                          "_inverse_time",
+                                          "_units_per_minute",
+                                          "_units_per_rev",
+                                          "_coord_system",
+                                          "_tool_offset",
+                                          "_retract_r_plane",
+                                          "_retract_old_z",
+                                          "_spindle_rpm_mode",
+                                          "_spindle_css_mode",
+                                          "_ijk_absolute_mode",
+                                          "_lathe_diameter_mode",
+                                          "_lathe_radius_mode",
+                                          "_spindle_on",
+                                          "_spindle_cw",
+                                          "_mist",
+                                          "_flood",
+                                          "_speed_override",
+                                          "_feed_override",
+                                          "_adaptive_feed",
+                                          "_feed_hold",
+                                          "_feed",
+                                          "_rpm",
+                                          "_x",
+                                          "_y",
+                                          "_z",
+                                          "_a",
+                                          "_b",
+                                          "_c",
+                                          "_u",
+                                          "_v",
+                                          "_w",
+                                          "_abs_x",
+                                          "_abs_y",
+                                          "_abs_z",
+                                          "_abs_a",
+                                          "_abs_b",
+                                          "_abs_c",
+                                          "_current_tool",
+                                          "_current_pocket",
+                                          "_selected_tool",
+                                          "_selected_pocket",
+                                          "_value",
+                                          "_value_returned",
+                                          "_task",
+                                          "_call_level",
+                                          "_remap_level"};
 }  // namespace
 
 NcFlow::NcFlow(std::string_view text, const std::string& file, bool o_words, const NcControl& control)
     : file_(file), o_words_(o_words), max_steps_(control.max_steps), max_idle_(control.max_idle) {
   split(text);
-  parameters_.assign(5001, 0);
-  parameter_set_.assign(5001, false);
+  parameters_.assign(kNumbered + 1, 0);
+  parameter_set_.assign(kNumbered + 1, false);
 }
 
 Status NcFlow::run(const Words& words) {
@@ -35,7 +94,7 @@ Status NcFlow::run(const Words& words) {
       if (line_ != 0) return here(1, "the program ends without M2 or M30");
     } else if (b.o_word != OWord::none) {
       bad = o_word(b);
-    } else if (!b.words.empty() && b.words.front().letter == '#') {
+    } else if (!b.words.empty() && (b.words.front().letter == '#' || b.words.front().letter == '<')) {
       bad = assign(b);
     } else {
       bad = words(b);
@@ -88,11 +147,37 @@ std::pair<const NcBlock*, Diagnostic> NcFlow::fetch(std::size_t line) {
     d.position.line = static_cast<int>(line) + 1;
     return {nullptr, d};
   }
+  find_names(*block);
   if (frames_.empty() || cache_.size() >= kMostParsed) {
     once_ = std::move(*block);
     return {&once_, {}};
   }
   return {&cache_.emplace(line, std::move(*block)).first->second, {}};
+}
+
+/// Names become parameters behind the numbered ones; one that begins with _ is the same in all sub-programs.
+void NcFlow::find_names(NcBlock& block) {
+  if (block.names.empty()) return;
+  const auto place = [&](std::size_t of_block) {
+    const std::string& name = block.names[of_block];
+    const auto [entry, fresh] = names_.emplace(name, parameters_.size());
+    if (fresh) {
+      parameters_.push_back(0);
+      parameter_set_.push_back(false);
+      if (std::find(std::begin(kOwnNames), std::end(kOwnNames), name) != std::end(kOwnNames))
+        own_.insert(entry->second);
+      if (name.front() != '_') locals_.push_back(entry->second);
+    }
+    return entry->second;
+  };
+  for (NcStep& step : block.steps)
+    if (step.kind == NcStep::Kind::named)
+      step = {NcStep::Kind::parameter, static_cast<double>(place(static_cast<std::size_t>(step.value)))};
+  for (NcWord& word : block.words)
+    if (word.letter == '<') {
+      word.letter = '#';
+      word.index = static_cast<std::int32_t>(place(static_cast<std::size_t>(word.index)));
+    }
 }
 
 std::optional<Diagnostic> NcFlow::find_labels() {
@@ -172,20 +257,40 @@ Status NcFlow::after_end() {
 const double* NcFlow::parameter(int n) const {
   return parameter_set_[static_cast<std::size_t>(n)] ? &parameters_[static_cast<std::size_t>(n)] : nullptr;
 }
+std::string NcFlow::name_of(std::size_t parameter) const {
+  for (const auto& [name, place] : names_)
+    if (place == parameter) return fmt::format("#<{}>", name);
+  return fmt::format("#{}", parameter);
+}
 Result<double> NcFlow::value(const NcBlock& b, const NcValue& v, int column) const {
-  auto r = evaluate(b, v, [this](int n) { return parameter(n); });
+  int unset = -1;
+  auto r = evaluate(b, v, [&](int n) {
+    const double* found = parameter(n);
+    if (found == nullptr) unset = n;
+    return found;
+  });
+  if (!r && unset > static_cast<int>(kNumbered))
+    return here(column, fmt::format("parameter {} was never set by the program: what the control itself puts there is "
+                                    "not known here",
+                                    name_of(static_cast<std::size_t>(unset))));
   if (!r) return here(column, r.error().message);
   if (!std::isfinite(*r) || std::abs(*r) > 1e9) return here(column, "value is not a number below 1e9");
   return r;
 }
 
 std::optional<Diagnostic> NcFlow::assign(const NcBlock& b) {
+  std::vector<double> values;  // none is set before all are known
   for (const auto& w : b.words) {
     if (w.letter != '#') return here(w.column, "a word in a line of assignments");
+    if (own_.count(static_cast<std::size_t>(w.index)) != 0)
+      return here(w.column,
+                  fmt::format("{} is the control's own and cannot be set", name_of(static_cast<std::size_t>(w.index))));
     const auto v = value(b, w.value, w.column);
     if (!v) return v.error();
-    set_parameter(static_cast<std::size_t>(w.index), *v, true);
+    values.push_back(*v);
   }
+  for (std::size_t i = 0; i < values.size(); ++i)
+    set_parameter(static_cast<std::size_t>(b.words[i].index), values[i], true);
   return std::nullopt;
 }
 
@@ -233,6 +338,10 @@ std::optional<Diagnostic> NcFlow::call(const NcBlock& b) {
     arguments[i] = *v;
   }
   for (std::size_t i = 0; i < 30; ++i) { set_parameter(i + 1, arguments[i], i < b.arguments.size()); }
+  for (const std::size_t n : locals_) {
+    if (parameter_set_[n]) f.locals.emplace_back(n, parameters_[n]);
+    set_parameter(n, 0, false);
+  }
   frames_.push_back(f);
   pc_ = label->second + 1;
   return std::nullopt;
@@ -242,6 +351,8 @@ std::optional<Diagnostic> NcFlow::end_call() {
   if (frames_.empty() || frames_.back().kind != OWord::call) return here(1, "end of a sub-program that is not running");
   const Frame& f = frames_.back();
   for (std::size_t i = 0; i < 30; ++i) { set_parameter(i + 1, f.saved[i], f.saved_set[i]); }
+  for (const std::size_t n : locals_) set_parameter(n, 0, false);
+  for (const auto& [n, value] : f.locals) set_parameter(n, value, true);
   pc_ = f.begin;
   frames_.pop_back();
   return std::nullopt;

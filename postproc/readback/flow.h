@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -53,19 +54,22 @@ class NcFlow {
     double repeats = 0;
     std::array<double, 30> saved{};
     std::array<bool, 30> saved_set{};
-    std::size_t turns = 0;       // of a while loop
-    std::vector<double> marked;  // parameters at turn 1, 2, 4, 8 ..
+    std::vector<std::pair<std::size_t, double>> locals;  // named ones of the caller
+    std::size_t turns = 0;                               // of a while loop
+    std::vector<double> marked;                          // parameters at turn 1, 2, 4, 8 ..
     std::vector<bool> marked_set;
     std::uint64_t marked_print = 0;  // of them
   };
 
   void split(std::string_view text);
   [[nodiscard]] Diagnostic at(std::size_t line, int column, std::string message) const;
+  void find_names(NcBlock& block);
   std::pair<const NcBlock*, Diagnostic> fetch(std::size_t line);
   std::optional<Diagnostic> find_labels();
   [[nodiscard]] std::optional<Diagnostic> check_percents() const;
   Status after_end();
   [[nodiscard]] const double* parameter(int n) const;
+  [[nodiscard]] std::string name_of(std::size_t parameter) const;
   std::optional<Diagnostic> assign(const NcBlock& b);
   std::optional<Diagnostic> o_word(const NcBlock& b);
   std::optional<Diagnostic> call(const NcBlock& b);
@@ -88,6 +92,9 @@ class NcFlow {
   std::size_t pc_ = 0, line_ = 0;
   bool ended_ = false, started_ = false;
   std::uint64_t print_ = 0;  // of the parameters that are set: two states with other prints differ
+  std::unordered_map<std::string, std::size_t> names_;  // #<name> -> place in parameters_
+  std::unordered_set<std::size_t> own_;                 // of them those of the control
+  std::vector<std::size_t> locals_;                     // of them those that belong to a sub-program
   std::vector<double> parameters_;
   std::vector<bool> parameter_set_;
 };

@@ -37,6 +37,8 @@ class Interpreter {
     if (b.operation >= 0) execution_.begin_operation(b.operation);
     if (b.tooth >= 0) execution_.begin_tooth(b.tooth);
     if (b.words.empty()) return std::nullopt;
+    if (b.skip)
+      if (auto bad = skippable(b)) return bad;
     if (execution_.site_smoothing(flow_.text())) {
       corners_said_ =
           corners_said_ && !language_.stops_at_corners;  // what holds behind the smoothing must be said again
@@ -54,6 +56,10 @@ class Interpreter {
     bool extended = false;  // G54.1, its number in P
     std::string offset;
     std::vector<int> m;
+    bool dwell = false;                       // G4
+    bool incremental = false;                 // G91
+    std::optional<std::size_t> to_reference;  // 0: G28, 1: G30
+    bool p_point = false;
     int switch_tcp = -1;  // 1 on, 0 off: a code of the site
     std::optional<double> f, s, h, t, p, q, l;
     int column = 1;
@@ -69,7 +75,22 @@ class Interpreter {
       if (!v) return v.error();
       if (auto bad = take(r, w, *v)) return bad;
     }
+    if (r.dwell) return dwell(r, numbered(b) ? b.words.size() - 1 : b.words.size());
     return apply(r);
+  }
+  static bool numbered(const NcBlock& b) { return b.words.front().letter == 'N'; }
+
+  /// A block that may be left out must not matter: with others the text would be two programs.
+  Problem skippable(const NcBlock& b) const {
+    for (const auto& w : b.words) {
+      const bool waits = (w.letter == 'G' && w.value.number == 4) || w.letter == 'P' || w.letter == 'N' ||
+                         (w.letter == 'M' && w.value.count == 0 && (w.value.number == 0 || w.value.number == 1));
+      if (!waits || w.value.count != 0)
+        return here(w.column,
+                    "a block that may be skipped is read with M0, M1 and G4 P alone: with others there would be two "
+                    "programs to prove");
+    }
+    return std::nullopt;
   }
 
   /// Codes of the machine file that switch TCP.
@@ -89,7 +110,7 @@ class Interpreter {
   }
 
   [[nodiscard]] bool has_m(int m) const {
-    static constexpr std::array<int, 6> common = {0, 2, 3, 5, 6, 30};
+    static constexpr std::array<int, 7> common = {0, 1, 2, 3, 5, 6, 30};
     const bool call = m == 98 || m == 99;
     return std::find(common.begin(), common.end(), m) != common.end() || (call && !language_.o_words) ||
            std::find(language_.coolant_m.begin(), language_.coolant_m.end(), m) != language_.coolant_m.end();
@@ -106,16 +127,17 @@ class Interpreter {
         if (v == m && language_.codes_of_site && site_code(r, fmt::format("M{}", m))) return std::nullopt;
         if (v != m || !(has_m(m) || control_.switches_coolant(fmt::format("M{}", m))))
           return here(w.column, fmt::format("M{} is not in the subset", v));
-        if (!r.m.empty()) return here(w.column, "two M words in a block");
-        r.m.push_back(m);
-        return std::nullopt;
+        return take_m(r, m, w.column);
       }
       case 'N': return std::nullopt;
       case 'F': return once(r.f, w, v);
       case 'S': return once(r.s, w, v);
       case 'H': return once(r.h, w, v);
       case 'T': return once(r.t, w, v);
-      case 'P': r.p_column = w.column; return once(r.p, w, v);
+      case 'P':
+        r.p_column = w.column;
+        r.p_point = w.point;
+        return once(r.p, w, v);
       case 'Q': return once(r.q, w, v);
       case 'L': return once(r.l, w, v);
       default: break;
@@ -133,6 +155,17 @@ class Interpreter {
     return here(w.column, fmt::format("word {} is not in the subset or no axis of the machine", w.letter));
   }
 
+  Problem take_m(Request& r, int m, int column) const {
+    if (r.m.size() >= language_.most_m)
+      return language_.most_m == 1 ? here(column, "two M words in a block: the control takes one")
+                                   : here(column, fmt::format("more than {} M words in a block", language_.most_m));
+    for (const int other : r.m)
+      if (clash_of_m(control_, other, m))
+        return here(column, fmt::format("M{} and M{} of one group in a block", other, m));
+    r.m.push_back(m);
+    return std::nullopt;
+  }
+
   static std::string g_word(int tenths) {
     return tenths % 10 == 0 ? fmt::format("G{}", tenths / 10) : fmt::format("G{}.{}", tenths / 10, tenths % 10);
   }
@@ -144,6 +177,10 @@ class Interpreter {
       case 10: r.motion = tenths / 10; return 1;
       case 170: return 2;
       case 900: execution_.set_absolute(); return 3;
+      case 910: r.incremental = true; return 3;
+      case 40: r.dwell = true; return 14;
+      case 280: r.to_reference = 0; return 14;
+      case 300: r.to_reference = 1; return 14;
       case 930:
       case 940: r.feed_mode = tenths / 10; return 4;
       case 210: execution_.set_unit(); return 5;
@@ -191,6 +228,34 @@ class Interpreter {
     return std::nullopt;
   }
 
+  /// G4 in a block of its own.
+  Problem dwell(Request& r, std::size_t words) {
+    const bool by_x = language_.dwell_x && r.move.has[0];
+    if (by_x == r.p.has_value() || words != 2)
+      return here(r.column, fmt::format("G4 stands in a block of its own, with P{}", language_.dwell_x ? " or X" : ""));
+    if (by_x) return placed(r.column, execution_.dwell(r.move.axis[0] / 60));
+    if (language_.dwell == DwellNumber::milliseconds && r.p_point)
+      return here(r.p_column, "P of G4 is a whole number of milliseconds");
+    const bool seconds =
+        language_.dwell == DwellNumber::seconds || (language_.dwell == DwellNumber::by_point && r.p_point);
+    return placed(r.p_column, execution_.dwell(*r.p / (seconds ? 60 : 60000)));
+  }
+
+  /// G28 and G30: through the place that their words name.
+  Problem reference(Request& r) {
+    const std::string word = *r.to_reference == 0 ? "G28" : "G30";
+    if (r.g53 || r.g43 || r.motion >= 0) return here(r.column, word + " with another motion or G43 in a block");
+    if (r.p && !(*r.to_reference == 1 && *r.p == 2 && !language_.bare_reference))
+      return here(r.p_column, word + " with this P is not in the subset");
+    const bool bare = !moves(r);
+    if (bare && !language_.bare_reference) return here(r.column, word + " needs the axes that go");
+    for (std::size_t a = 0; bare && a < 5; ++a) r.move.has[a] = control_.letters[a] != 0;
+    if (auto bad = placed(r.column, execution_.to_reference(r.move, *r.to_reference, word, !bare, flow_.line())))
+      return bad;
+    flow_.moved();
+    return std::nullopt;
+  }
+
   Problem apply(Request& r) {
     if (r.extended) {
       const std::string code = g_word(language_.extended.tenths);
@@ -200,8 +265,9 @@ class Interpreter {
       r.offset = fmt::format("{} P{}", code, static_cast<int>(*r.p));
       r.p.reset();
     }
-    if ((r.p || r.q) && !r.g64 && (r.m.empty() || r.m.front() != 98))
+    if ((r.p || r.q) && !r.g64 && !r.to_reference && (r.m.empty() || r.m.front() != 98))
       return here(r.p_column, "P or Q without G64 or M98");
+    if (r.incremental) execution_.set_incremental();
     if (r.l) return here(r.column, "L is not in the subset");
     if (language_.stops_at_corners) return stop_or_flow(r);
     if (r.g64 && (!r.p || *r.p == 0))
@@ -239,14 +305,23 @@ class Interpreter {
     if (!r.offset.empty())
       if (auto bad = placed(r.column, execution_.select_offset(r.offset))) return bad;
     if (auto bad = length(r)) return bad;
-    for (const int m : r.m)
-      if (auto bad = machine_function(m, r)) return bad;
+    // The tool, the spindle, coolants; a stop and the end stand behind the motion of their block.
+    std::sort(r.m.begin(), r.m.end(), [](int a, int b) { return group_of_m(a) < group_of_m(b); });
+    std::optional<int> last;
+    for (const int m : r.m) {
+      if (group_of_m(m) == kStops) last = m;
+      else if (auto bad = machine_function(m, r)) return bad;
+    }
     if (r.switch_tcp >= 0)
       if (auto bad = placed(r.column, r.switch_tcp == 1 ? execution_.tcp_on() : execution_.tcp_off())) return bad;
     if (r.motion >= 0) motion_ = r.motion;
     if (r.g53 && !moves(r)) return here(r.column, "G53 without an axis word");
-    if (moves(r)) return move(r);
-    return std::nullopt;
+    if (r.to_reference) {
+      if (auto bad = reference(r)) return bad;
+    } else if (moves(r)) {
+      if (auto bad = move(r)) return bad;
+    }
+    return last ? machine_function(*last, r) : std::nullopt;
   }
   static bool moves(const Request& r) {
     return std::any_of(r.move.has.begin(), r.move.has.end(), [](bool h) { return h; });
@@ -273,6 +348,8 @@ class Interpreter {
     switch (m) {
       case 3: return placed(r.column, execution_.spindle_on());
       case 5: execution_.spindle_off(); break;
+      case 0:
+      case 1: execution_.stop(); break;
       case 6: return placed(r.column, execution_.change_tool());
       case 2:
       case 30: flow_.end(); return placed(r.column, execution_.end_program(flow_.inside_call()));

@@ -17,8 +17,15 @@ struct ExtendedOffsets {
   int last = 0;    ///< greatest P
 };
 
-/// What a member of the family says beyond G0 G1 G17 G21 G40 G43 G49 G53 G54 to G59 G80 G90 G93 G94, M0 M2 M3 M5 M6
-/// M30.
+/// What the number of G4 P means.
+enum class DwellNumber {
+  seconds,
+  milliseconds,
+  by_point,  ///< seconds with a decimal point, milliseconds without
+};
+
+/// What a member of the family says beyond G0 G1 G4 G17 G21 G28 G30 G40 G43 G49 G53 G54 to G59 G80 G90 G91 G93 G94, M0
+/// M1 M2 M3 M5 M6 M30. G91 is for the way of G28 and G30 alone.
 struct IsoLanguage {
   bool o_words = false;  ///< sub-programs, loops and parameters as o-words; else M98, M99 and a program between % and %
   bool point_needed = true;                ///< axis words have a decimal point
@@ -26,6 +33,10 @@ struct IsoLanguage {
   std::vector<int> g_tenths;               ///< further G codes, in tenths: 434 for G43.4
   std::vector<int> coolant_m = {7, 8, 9};  ///< M words that switch coolants
   ExtendedOffsets extended;
+  std::size_t most_m = 1;  ///< M words in a block, of different groups
+  DwellNumber dwell = DwellNumber::milliseconds;
+  bool dwell_x = false;         ///< G4 X, seconds with a point
+  bool bare_reference = false;  ///< G28 and G30 without axes move all of them; else a refusal
   /// G61 stops at every corner, G64 leaves corners by what the machine file states (NcControl::corner_mm); one of them
   /// must be said ahead of G1.
   bool stops_at_corners = false;

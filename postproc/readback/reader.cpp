@@ -295,8 +295,9 @@ class ReadBackRun {
       ++result_.executed;
       if (watch) watch(m);
       timer.add(m);
-      result_.minutes += m.minutes;
-      if (!m.rapid) result_.feed_minutes += m.minutes;
+      const double minutes = m.minutes + double(m.dwell_min);
+      result_.minutes += minutes;
+      if (!m.rapid) result_.feed_minutes += minutes;
       if (m.tcp && m.known) follow_tip(before, m, control_, machine_.chain, reach);
       if (!control_.cutter_locations && result_.mixed_rapid == 0 && mixes_axis_groups(before, m))
         result_.mixed_rapid = m.line;

@@ -55,7 +55,9 @@ struct NcControl {
   double shortest_feed_minutes = 0;  ///< of a block with the largest F of G93; 0: F has no limit
   double exact_path_mm = 0.0005;     ///< LinuxCNC: the tip is off a corner by no more under G61 and G61.1
   std::optional<double> corner_mm;   ///< the machine file states it: the tip is off a corner by no more under G64
-  double top_mm = 0;                 ///< highest Z, machine coordinates of the gauge line
+  /// Where G28 and G30 take the axes, machine coordinates, mm and deg; nothing: the machine file does not say.
+  std::array<std::optional<std::array<double, 5>>, 2> reference;
+  double top_mm = 0;                         ///< highest Z, machine coordinates of the gauge line
   std::vector<std::string> tcp_on, tcp_off;  ///< codes of the site that switch TCP (LinuxCNC)
   /// Lines of the machine file that switch the control's own smoothing on and off, and what the shop states for it.
   std::vector<std::string> smoothing_on, smoothing_off;
@@ -85,18 +87,20 @@ struct ExecutedMove {
   std::int16_t operation = -1;  ///< from the (OP n type) comment; -1 before the first
   std::int16_t tool = 0;        ///< T in the spindle
   bool rapid = false;
+  std::uint8_t commanded = 0;                        ///< bit a: the block has a word for axis a
+  timing::Corners corners = timing::Corners::exact;  ///< LinuxCNC: the path mode, and P of G64 in tolerance_mm
   bool tcp = false;          ///< the tip goes straight to `tip`, the rotaries are linear, the other joints follow
   float blend_mm = 0;        ///< the control may leave the corners of the path by this much (G64 P)
   float blend_axis_rad = 0;  ///< the same of the tool axis (TA of cycle 32)
   float corner_path_mm =
       0;  ///< every axis may leave the path within this way ahead of and behind a corner (G641 ADIS) ..
-  float corner_share = 0;      ///< .. which is this part of the block, a half at most
-  std::uint8_t commanded = 0;  ///< bit a: the block has a word for axis a
-  std::int16_t tooth = -1;     ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
-  timing::Corners corners = timing::Corners::exact;  ///< LinuxCNC: the path mode, and P of G64
+  float corner_share = 0;   ///< .. which is this part of the block, a half at most
+  std::int16_t tooth = -1;  ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
   float tolerance_mm = 0;
+  float dwell_min = 0;             ///< the program waits ahead of the move
   bool machine = false;            ///< G53, or the block that switches tool length compensation on
   bool known = false;              ///< all joints were known before and after
+  bool in_doubt = false;           ///< a stop ahead may have ended spindle and coolant: the builder's business
   std::uint8_t coolants = 0;       ///< machines::bit_of: it is on
   float speed_rpm = 0;             ///< of the spindle; 0: it stands
   std::uint64_t vector_print = 0;  ///< of the words of a tool vector, FNV-1a over their bytes; 0: rotary words

@@ -8,13 +8,13 @@ RunTimer::RunTimer(const machines::Machine& machine, timing::Corners corners, st
       follows_(corners != timing::Corners::jump),
       sink_(std::move(sink)),
       timer_(timing::limits_of(machine), timing::control_of(machine, corners), [this](double minutes) {
-        sink_(rapids_.front(), minutes);
-        rapids_.pop_front();
+        sink_(open_.front().rapid, minutes + open_.front().dwell_min);
+        open_.pop_front();
       }) {}
 
 void RunTimer::add(const ExecutedMove& move) {
   if (!accelerates_) {
-    sink_(move.rapid, move.minutes);
+    sink_(move.rapid, move.minutes + double(move.dwell_min));
     return;
   }
   timing::Block block{{}, move.minutes, move.rapid};
@@ -24,7 +24,8 @@ void RunTimer::add(const ExecutedMove& move) {
       for (int a = 0; a < 3; ++a) block.step[static_cast<std::size_t>(a)] = move.tip[a] - before_.tip[a];
   }
   if (follows_ && !move.rapid) timer_.set_corners(move.corners, static_cast<double>(move.tolerance_mm));
-  rapids_.push_back(move.rapid);
+  if (move.dwell_min > 0) timer_.finish();
+  open_.push_back({move.rapid, double(move.dwell_min)});
   timer_.add(block);
   before_ = move;
 }

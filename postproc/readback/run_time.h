@@ -22,7 +22,11 @@ class RunTimer {
 
  private:
   bool accelerates_ = false, plans_words_ = false, follows_ = false;
-  std::deque<bool> rapids_;  ///< of the moves whose time is not known yet
+  struct Open {
+    bool rapid = false;
+    double dwell_min = 0;
+  };
+  std::deque<Open> open_;  ///< moves whose time is not known yet
   std::function<void(bool, double)> sink_;
   timing::PathTimer timer_;
   ExecutedMove before_;

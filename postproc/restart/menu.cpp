@@ -98,6 +98,11 @@ Result<RestartMenu> restart_menu(std::string_view text, const std::string& file,
   for (const auto& op : menu.operations) teeth[op.operation] = static_cast<std::size_t>(program.teeth);
   for (const auto& op : program.operations)
     teeth[op.operation] = static_cast<std::size_t>(program.teeth - op.first_place);
+  for (std::size_t k = 1; k < program.operations.size(); ++k)
+    for (auto& op : menu.operations)
+      if (op.operation == program.operations[k].operation &&
+          program.operations[k].tool_number == program.operations[k - 1].tool_number)
+        op.tool_before = program.operations[k].tool_number;
   const auto tooth_at = [&](int place) { return joints::tooth_of_place(place, program.tooth_stride, program.teeth); };
   for (auto& op : menu.operations)
     if (op.first_tooth.line != 0)

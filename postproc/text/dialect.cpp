@@ -9,6 +9,23 @@ bool has_program_number(const NcDialect& dialect) {
                      [](const std::string& line) { return line.find("{number}") != std::string::npos; });
 }
 
+std::vector<std::string> names_of_own_lines(const NcDialect& dialect, bool tool) {
+  std::vector<std::string> names = {"offset", "top", "teeth", "free", "name", "id"};
+  if (has_program_number(dialect)) names.emplace_back("number");
+  if (dialect.datum != nullptr) names.emplace_back("datum");
+  if (tool) names.insert(names.end(), {"tool", "speed"});
+  return names;
+}
+
+std::optional<std::string> unknown_name(std::string_view pattern, const std::vector<std::string>& names) {
+  for (std::size_t open = pattern.find('{'); open != std::string_view::npos; open = pattern.find('{', open + 1)) {
+    const std::size_t close = pattern.find('}', open);
+    std::string name(pattern.substr(open + 1, close == std::string_view::npos ? close : close - open - 1));
+    if (close == std::string_view::npos || std::find(names.begin(), names.end(), name) == names.end()) return name;
+  }
+  return std::nullopt;
+}
+
 Result<machines::CoolantWords> coolant_words(const NcDialect& dialect, machines::Coolant coolant) {
   const auto found = dialect.coolant.find(coolant);
   if (found != dialect.coolant.end()) return found->second;

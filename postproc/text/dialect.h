@@ -97,11 +97,18 @@ struct NcDialect {
   NcLinesOfText start, end;              ///< of the program
   NcLinesOfText body_end;                ///< ahead of sub-programs that stand behind the main program
   NcLinesOfText retract;                 ///< Z to its top, machine coordinates
-  NcLinesOfText tool_change;             ///< behind the retract: tool, safe start, spindle
-  NcLinesOfText compensation;            ///< tool length, programs without TCP
-  NcLinesOfText tcp_compensation;        ///< the same with TCP
-  NcLinesOfText pause = {"M0"};          ///< waits for the start button
-  NcLinesOfText operation_end;           ///< ahead of coolant and spindle off
+  NcLinesOfText tool_call;               ///< behind the retract, where the tool changes: fetches it
+  NcLinesOfText tool_keep;               ///< in their place where it stays
+  NcLinesOfText tool_change;             ///< behind these: safe start, spindle
+  NcLinesOfText tool_next;               ///< behind a change: the changer makes {next} ready; not where none follows
+  NcLinesOfText spindle_on = {"M3"};     ///< with the speed that was said
+  /// Lines of the shop (post.start, ..): behind `start`, behind every tooth, behind `end`; its tool change stands in
+  /// `tool_call`.
+  NcLinesOfText own_start, own_between_teeth, own_end;
+  NcLinesOfText compensation;      ///< tool length, programs without TCP
+  NcLinesOfText tcp_compensation;  ///< the same with TCP
+  NcLinesOfText pause = {"M0"};    ///< waits for the start button
+  NcLinesOfText operation_end;     ///< ahead of coolant and spindle off
   NcLinesOfText spindle_off = {"M5"};
   std::map<machines::Coolant, machines::CoolantWords> coolant = {
       {machines::Coolant::mist, {"M7", "M9"}}, {machines::Coolant::flood, {"M8", "M9"}}};  ///< those of ISO 6983
@@ -148,6 +155,11 @@ struct NcDialect {
 
 /// The control knows its programs by numbers: {number}.
 [[nodiscard]] bool has_program_number(const NcDialect& dialect);
+
+/// The names that a line of the shop may have in braces. @param tool it stands where a tool is known
+[[nodiscard]] std::vector<std::string> names_of_own_lines(const NcDialect& dialect, bool tool);
+/// The first name in braces that is none of them; nothing: all are.
+[[nodiscard]] std::optional<std::string> unknown_name(std::string_view pattern, const std::vector<std::string>& names);
 
 /// Words for a coolant that is not off.
 /// Errors: the control has none and the machine file names none. The message says which ones there are.

@@ -14,7 +14,8 @@ namespace toothpath::text {
 namespace {
 
 constexpr std::size_t kLongestName = 24;
-constexpr double kFreeFeed = 1000;  // F that goes with G94 where nothing is cut, mm/min
+constexpr std::size_t kLongestHeader = 20;  // lines
+constexpr double kFreeFeed = 1000;          // F that goes with G94 where nothing is cut, mm/min
 
 }  // namespace
 
@@ -88,8 +89,41 @@ std::vector<std::string> header_comments(const joints::AxisProgram& program, con
           numbers::comment_text(note.value_or(dialect.rollover.note)));  // a name that does not exist stays visible
     }
   for (auto& line : order_comments(program)) out.push_back(std::move(line));
-  if (!header.assumed.empty()) out.emplace_back("WARNING, ASSUMED AND NOT MEASURED:");
-  for (const auto& a : machines::grouped_keys(header.assumed)) out.push_back(numbers::comment_text("ASSUMED " + a));
+  for (auto& line : assumed_comments(header.assumed, dialect, dialect.frame_begin.size() + out.size()))
+    out.push_back(std::move(line));
+  return out;
+}
+
+std::vector<std::string> assumed_comments(const std::vector<std::string>& assumed, const NcDialect& dialect,
+                                          std::size_t ahead) {
+  if (assumed.empty()) return {};
+  std::vector<std::string> out = {"WARNING, ASSUMED AND NOT MEASURED:"};
+  const std::size_t room = ahead + 2 < kLongestHeader ? kLongestHeader - ahead - 1 : 1;
+  const std::vector<std::string> groups = machines::grouped_keys(assumed);
+  if (groups.size() <= room) {
+    for (const auto& g : groups) out.push_back(numbers::comment_text("ASSUMED " + g));
+    return out;
+  }
+  const std::size_t width = dialect.max_line - dialect.comment_open.size() - dialect.comment_close.size();
+  std::vector<std::string> packed;
+  std::vector<std::size_t> held;  // groups of a line
+  for (const auto& g : groups) {
+    const std::string text = numbers::comment_text(g);
+    if (!packed.empty() && packed.back().size() + 2 + text.size() <= width) {
+      packed.back() += "; " + text;
+      ++held.back();
+    } else {
+      packed.push_back("ASSUMED " + text);
+      held.push_back(1);
+    }
+  }
+  if (packed.size() > room) {
+    std::size_t left = 0;
+    for (std::size_t i = room - 1; i < held.size(); ++i) left += held[i];
+    packed.resize(room - 1);
+    packed.push_back(fmt::format("AND {} LINES MORE: THE SET-UP SHEET HAS THEM ALL", left));
+  }
+  out.insert(out.end(), packed.begin(), packed.end());
   return out;
 }
 
@@ -155,6 +189,10 @@ void NcLines::fill(const NcLinesOfText& templates, const Values& values) {
 }
 
 void NcLines::end_line(std::size_t begin, bool block) {
+  if (block && next_number_ >= 0) {
+    text_.insert(begin, fmt::format("N{} ", next_number_));
+    next_number_ = -1;
+  }
   if (text_.size() - begin > dialect_.max_line && !error_)
     error_ = fail("block of {} characters exceeds {}, the longest line of {}", text_.size() - begin, dialect_.max_line,
                   dialect_.name);

@@ -21,6 +21,8 @@ class NcLines {
   /// A whole line.
   void line(std::string_view text);
   void comment(std::string_view text);
+  /// The block that follows has this number, as an N word.
+  void number_next(int n) { next_number_ = n; }
   /// Templates of the dialect, each a line. A name that `values` lacks is an error.
   void fill(const NcLinesOfText& templates, const Values& values);
 
@@ -41,6 +43,7 @@ class NcLines {
   const NcDialect& dialect_;
   std::string text_;
   std::size_t blocks_ = 0;
+  int next_number_ = -1;
   std::optional<Diagnostic> error_;
 };
 
@@ -54,6 +57,10 @@ class NcLines {
 /// Comments at the top of a program. @param hash the line that stands at the end too
 [[nodiscard]] std::vector<std::string> header_comments(const joints::AxisProgram& program, const NcDialect& dialect,
                                                        const NcHeader& header, std::string_view hash);
+/// Those that name what is assumed, as many as the longest header leaves behind `ahead` lines; several groups of keys
+/// share a line where they are more, and what does not fit is counted.
+[[nodiscard]] std::vector<std::string> assumed_comments(const std::vector<std::string>& assumed,
+                                                        const NcDialect& dialect, std::size_t ahead);
 /// Those that tell the order of the teeth and where the program begins, if not as usual.
 [[nodiscard]] std::vector<std::string> order_comments(const joints::AxisProgram& program);
 /// Names the line behind it: where the operator may set another first tooth.

@@ -21,6 +21,7 @@ namespace {
 
 constexpr int kLastProgram = 7999;  // O numbers from 8000 on are the builder's
 constexpr int kFirstLabel = 100;
+constexpr int kNumbersOfOperation = 1000;  // N words: of the operation, then of its teeth
 constexpr int kVectorDecimals = 8;
 
 class Writer {
@@ -43,12 +44,14 @@ class Writer {
     values_ = program_values(program_, dialect_, header_);
     values_["top"] = linear(program_.retract_z_mm);
     fill(dialect_.start);
+    fill(dialect_.own_start);
     for (std::size_t i = 0; i < program_.operations.size(); ++i) {
       operation(program_.operations[i], static_cast<int>(i));
       if (error_) return *error_;
       if (out_.error()) return *out_.error();
     }
     fill(dialect_.end);
+    fill(dialect_.own_end);
     return assemble();
   }
 
@@ -88,6 +91,37 @@ class Writer {
     forget();
   }
 
+  // Places where the operator stops or begins again.
+  void stop() { out_.line(header_.wishes.stop_word == StopWord::optional_stop ? "M1" : "/M0"); }
+  void number_here(int position, std::size_t within) {
+    if (header_.wishes.restart_numbers && within < kNumbersOfOperation)
+      out_.number_next(kNumbersOfOperation * (position + 1) + static_cast<int>(within));
+  }
+  /// Lines of the shop behind a tooth, and a stop; what the stop may have ended is switched on again.
+  void behind_tooth() {
+    fill(dialect_.own_between_teeth);
+    if (header_.wishes.stops != Stops::teeth) return;
+    stop();
+    fill(dialect_.spindle_on);
+    if (coolant_) out_.line(coolant_->on);
+  }
+
+  /// The tool, if it is another than before, and the one that follows it.
+  void tool_call(const joints::AxisOperation& op, int position) {
+    const auto at = static_cast<std::size_t>(position);
+    const auto& all = program_.operations;
+    const bool changes = at == 0 || all[at - 1].tool_number != op.tool_number;
+    const Stops stops = header_.wishes.stops;
+    if (at > 0 && (stops == Stops::operations || (stops == Stops::tool_changes && changes))) stop();
+    fill(changes ? dialect_.tool_call : dialect_.tool_keep);
+    fill(dialect_.tool_change);
+    const auto next = std::find_if(all.begin() + position, all.end(),
+                                   [&](const auto& other) { return other.tool_number != op.tool_number; });
+    if (!changes || next == all.end()) return;
+    values_["next"] = std::to_string(next->tool_number);
+    fill(dialect_.tool_next);
+  }
+
   void operation(const joints::AxisOperation& op, int position) {
     values_["tool"] = std::to_string(op.tool_number);
     values_["speed"] = std::to_string(std::llround(op.spindle_rpm));
@@ -101,23 +135,27 @@ class Writer {
                                                    out_.value(numbers::to_fixed(op.tool_length_mm, 4), 4))));
     const NcLoop& loop = dialect_.loop;
     if (program_.loop && loop.form == NcLoop::Form::sub_program) loop_body(op);
+    number_here(position, 0);
     machine_retract();
-    fill(dialect_.tool_change);
+    tool_call(op, position);
     fill(tcp_ ? dialect_.tcp_compensation : dialect_.compensation);
     forget();
     if (coolant_) out_.line(coolant_->on);
     for (const auto& line : dialect_.smoothing_on) out_.line(line);
     if (!program_.loop) {
       std::vector<joints::AxisBlock> room;
+      std::size_t within = 0;
       for (const auto& tooth : op.teeth) {
+        number_here(position, ++within);
         const std::vector<joints::AxisBlock>& list = tooth.all(room);
         out_.comment(tooth.remark.empty() ? fmt::format("TOOTH {}", tooth.tooth) : numbers::comment_text(tooth.remark));
         forget();
         blocks(list, {0, list.size()}, IndexWord::literal);
         if (tooth.pause) fill(dialect_.pause);
+        behind_tooth();
       }
     } else if (loop.form == NcLoop::Form::stretches) {
-      stretch_calls(op);
+      stretch_calls(op, position);
     } else if (loop.form == NcLoop::Form::sub_program) {
       fill(loop.call);
     } else {
@@ -137,11 +175,12 @@ class Writer {
     const auto& tooth = op.teeth.front().blocks;
     words_.enter_loop(tooth);
     blocks(tooth, {0, tooth.size()}, IndexWord::shifted);
+    behind_tooth();
     fill(dialect_.loop.after);
   }
 
   // A sub-program for every stretch with one index angle, called after an explicit rotary block.
-  void stretch_calls(const joints::AxisOperation& op) {
+  void stretch_calls(const joints::AxisOperation& op, int position) {
     const auto& tooth = op.teeth.front().blocks;
     const auto segments = stretches_of(tooth, program_.index_axis, dialect_.name);
     if (!segments) {
@@ -160,6 +199,7 @@ class Writer {
     const auto index = static_cast<std::size_t>(program_.index_axis);
     for (int n = op.first_place; n < program_.teeth; ++n) {
       const int k = joints::tooth_of_place(n, program_.tooth_stride, program_.teeth);
+      number_here(position, static_cast<std::size_t>(n - op.first_place) + 1);
       for (std::size_t i = 0; i < segments->size(); ++i) {
         joints::AxisBlock turn = tooth[(*segments)[i].first];
         turn.words[index] += numbers::ratio_to_fixed(std::int64_t{360} * k * program_.index_sign, program_.teeth,
@@ -169,6 +209,7 @@ class Writer {
         rapid(turn, IndexWord::literal);
         out_.line(fmt::format("M98 P{}", first + static_cast<int>(i)));
       }
+      behind_tooth();
     }
     forget();
   }

@@ -10,6 +10,7 @@
 #include "geometry/base/result.h"
 #include "postproc/joints/program.h"
 #include "postproc/text/dialect.h"
+#include "postproc/text/stops.h"
 
 namespace toothpath::text {
 
@@ -25,6 +26,7 @@ struct NcHeader {
   double blend_axis_deg =
       0.002;  ///< how far the control may turn a rotary off its way with TCP: counts as deviation of the tool axis
   machines::Coolant coolant = machines::Coolant::off;  ///< with every operation
+  TextWishes wishes;
 };
 
 struct NcText {

@@ -51,7 +51,9 @@ const std::vector<Sets> kIso = {{"G0", "motion", "rapid"},
                                 {"M8", "coolant", "on"},
                                 {"M9", "coolant", "off"},
                                 {"M6", "-", "tool change"},
-                                {"M0", "-", "pause"}};
+                                {"M0", "-", "pause"},
+                                {"/M0", "-", "pause"},
+                                {"M1", "-", "pause"}};
 
 std::vector<Sets> iso_and(std::vector<Sets> more) {
   more.insert(more.end(), kIso.begin(), kIso.end());
@@ -147,6 +149,8 @@ Language heidenhain() {
              {"M8", "coolant", "on"},
              {"M9", "coolant", "off"},
              {"M0", "-", "pause"},
+             {"/M0", "-", "pause"},
+             {"M1", "-", "pause"},
              {"M30", "-", "end"}};
   l.lines = {{R"(BEGIN PGM \S+ MM)", "units", "mm"},
              {R"(BEGIN PGM \S+ INCH)", "units", "inch"},
@@ -164,6 +168,7 @@ Language heidenhain() {
              {R"(CYCL DEF 32\.2 HSC-MODE:0 TA[0-9.]+)", "axis smoothing", "on"},
              {R"(TOOL CALL \d+ Z S\d+)", "length", "on"},
              {R"(TOOL CALL \d+ Z S\d+)", "-", "tool change"},
+             {R"(TOOL CALL S\d+|TOOL DEF \d+)", "-", ""},
              {R"(Q\d = .*|FN 1: Q5 = .*)", "-", ""},
              {R"(LBL \d+)", "-", ""}};
   l.comment = ';';

@@ -97,7 +97,11 @@ class Walker {
   virtual ~Walker() = default;
   NcWalk run(const std::string& text) {
     std::istringstream in(text);
-    for (std::string s; std::getline(in, s);) lines_.push_back({int(lines_.size()) + 1, uncommented(s)});
+    for (std::string s; std::getline(in, s);) {
+      std::string code = uncommented(s);
+      if (!code.empty() && code[0] == '/') code = stripped(code.substr(1));  // the switch that leaves it out is off
+      lines_.push_back({int(lines_.size()) + 1, std::move(code)});
+    }
     prepare();
     for (std::size_t steps = 0; at_ < lines_.size() && !walk_.ended && walk_.faults.size() < 20; ++steps) {
       const TextLine& line = lines_[at_++];
@@ -241,6 +245,7 @@ class IsoWalker : public Walker {
     if (letter == 'G') return code_g(text);
     if (letter == 'M') return code_m(text);
     if (letter == 'T') return ready_ = std::stoi(text), true;
+    if (letter == 'N') return true;
     if (letter == 'H' || letter == 'F' || letter == 'S') return std::isfinite(number(text));
     return set_axis(letter, number(text));
   }
@@ -261,7 +266,7 @@ class IsoWalker : public Walker {
     return found != harmless.end() && found->second != (linuxcnc_ ? 2 : 1);
   }
   bool code_m(const std::string& m) {
-    static const std::vector<std::string> harmless = {"0", "3", "5", "7", "8", "9"};
+    static const std::vector<std::string> harmless = {"0", "1", "3", "5", "7", "8", "9"};
     if (m == "6") return tool_ = ready_, true;
     if (m == (linuxcnc_ ? "2" : "30")) return walk_.ended = true;
     if (linuxcnc_ && (m == "428" || m == "429")) return tip_ = m == "428", true;
@@ -316,7 +321,7 @@ class SiemensWalker : public Walker {
   };
   bool words(const std::string& code) {
     static const std::regex harmless(
-        R"(G(?:17|40|90|93|94|54|60|641)|COMPOF|ORIWKS|ORIAXES|ADIS=.*|F[0-9.]+|S\d+|M[035789])");
+        R"(G(?:17|40|90|93|94|54|60|641)|COMPOF|ORIWKS|ORIAXES|ADIS=.*|F[0-9.]+|S\d+|N\d+|M[0135789])");
     std::istringstream in(code);
     std::array<double, 3> direction{};
     int said = 0;
@@ -350,9 +355,9 @@ class HeidenhainWalker : public Walker {
   bool execute(const std::string& code) override {
     static const std::regex begin(R"(BEGIN PGM \S+ MM)"), assign(R"((Q\d+) = (.*))"),
         sum(R"(FN 1: (Q\d+) = (.*) \+ (.*))"), jump(R"(FN 12: IF (.*) LT (.*) GOTO LBL (\d+))"),
-        tool(R"(TOOL CALL (\d+) Z S\d+)"), turn(R"(CYCL DEF 10\.1 ROT(.*))"),
+        tool(R"(TOOL CALL (\d+) Z S\d+)"), other(R"(TOOL (?:CALL S|DEF )\d+)"), turn(R"(CYCL DEF 10\.1 ROT(.*))"),
         harmless(
-            R"(LBL \d+|PLANE RESET STAY|TRANS DATUM RESET|END PGM \S+ MM|M(?:0|3|5|7|8|9|126|127))"
+            R"(LBL \d+|PLANE RESET STAY|TRANS DATUM RESET|END PGM \S+ MM|M(?:0|1|3|5|7|8|9|126|127))"
             R"(|CYCL DEF (?:10\.0 ROTATION|247 DATUM SETTING Q339=\+1|32\.0 TOLERANCE|32\.1(?: T.*)?|32\.2 HSC-MODE:0 TA.*))");
     if (code[0] == 'L' && code[1] != 'B') {
       return straight(code);
@@ -376,7 +381,7 @@ class HeidenhainWalker : public Walker {
       tip_ = code != "FUNCTION RESET TCPM";
     } else if (code == "M30") {
       walk_.ended = true;
-    } else if (!matches(code, harmless)) {
+    } else if (!matches(code, other) && !matches(code, harmless)) {
       return false;
     }
     return true;

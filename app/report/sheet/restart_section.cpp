@@ -17,10 +17,12 @@ std::string active(const report::OperationReport& o, const job::Job& job) {
 }
 
 std::string how_to_set_the_tooth(const restart::RestartOperation& op, const report::RunReport& report) {
+  const std::string tool =
+      op.tool_before > 0 ? fmt::format("fetch T{} by hand first, the operation goes on with it; ", op.tool_before) : "";
   if (op.first_tooth.line != 0)
-    return fmt::format("set in {}{}", place(op.first_tooth),
+    return fmt::format("{}set in {}{}", tool, place(op.first_tooth),
                        report.tooth_stride == 1 ? "" : ": the place of the tooth, see below");
-  return fmt::format("run to {}, then go on at the line of the tooth", place(op.opening_end));
+  return fmt::format("{}run to {}, then go on at the line of the tooth", tool, place(op.opening_end));
 }
 
 /// Pairs "tooth line" in columns.

@@ -33,10 +33,15 @@ class AptWriter {
       coolant_ = std::move(*words);
     }
     out_.line("MULTAX/ON");
+    int loaded = -1;
     for (const auto& op : program_.operations) {
       out_.comment(fmt::format("OP {} {}", op.operation, op.type));
-      out_.line(fmt::format("LOADTL/{},LENGTH,{}", op.tool_number, number(numbers::to_fixed(op.tool_length_mm, 4), 4)));
-      cutter(op);
+      if (op.tool_number != loaded) {
+        out_.line(
+            fmt::format("LOADTL/{},LENGTH,{}", op.tool_number, number(numbers::to_fixed(op.tool_length_mm, 4), 4)));
+        cutter(op);
+      }
+      loaded = op.tool_number;
       out_.line(fmt::format("SPINDL/RPM,{},CLW", std::llround(op.spindle_rpm)));
       if (coolant_) out_.line(coolant_->on);
       feed_ = -1;
@@ -116,8 +121,9 @@ class AptWriter {
     out_.comment(hash);
     out_.comment("TIP AND TOOL AXIS IN WORK COORDINATES");
     for (const auto& line : text::order_comments(program_)) out_.comment(line);
-    if (!header_.assumed.empty()) out_.comment("WARNING, ASSUMED AND NOT MEASURED:");
-    for (const auto& a : machines::grouped_keys(header_.assumed)) out_.comment(numbers::comment_text("ASSUMED " + a));
+    constexpr std::size_t kAbove = 6;  // lines so far, without the order of the teeth
+    const auto order = text::order_comments(program_).size();
+    for (const auto& line : text::assumed_comments(header_.assumed, dialect_, kAbove + order)) out_.comment(line);
     out_.text() += body;
     out_.comment(hash);
     out_.line("END");

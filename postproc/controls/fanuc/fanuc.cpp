@@ -37,7 +37,9 @@ text::NcDialect fanuc_words() {
   d.corner_flow = "G64";
   d.start = {"{safe_start}", "{offset}"};
   d.retract = {"G0 G49 G53 Z{top}"};
-  d.tool_change = {"T{tool} M6", "{safe_start}", "{offset}", "S{speed} M3"};
+  d.tool_call = {"T{tool} M6"};
+  d.tool_next = {"T{next}"};
+  d.tool_change = {"{safe_start}", "{offset}", "S{speed} M3"};
   d.compensation = {"G0 G43 H{tool} Z{work_top}"};
   d.operation_end = {"G94 F{free}"};
   d.body_end = {"M30"};
@@ -58,6 +60,8 @@ readback::IsoLanguage fanuc_language() {
   l.g_tenths = {434, 610, 640, 690};
   l.stops_at_corners = true;
   l.extended = {.tenths = 541, .last = kLastExtended};
+  l.most_m = 3;  // 3404#7 M3B
+  l.dwell_x = true;
   l.rules.tcp_needs_zero = true;
   return l;
 }

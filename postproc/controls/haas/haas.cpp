@@ -29,6 +29,9 @@ const readback::IsoLanguage& language() {
     readback::IsoLanguage haas;
     haas.g_tenths = {610, 640, 690};
     haas.stops_at_corners = true;
+    haas.dwell = readback::DwellNumber::by_point;
+    haas.bare_reference = true;
+    haas.rules.stop = readback::ProgramStop::ends_spindle;
     haas.coolant_m = {8, 9, 88, 89};
     haas.extended = {.tenths = 1540, .last = kLastExtended};
     return haas;

@@ -34,7 +34,10 @@ text::NcDialect words() {
              "CYCL DEF 32.1 T{blend}", "CYCL DEF 32.2 HSC-MODE:0 TA{blend_axis}"};
   d.datum = preset_number;
   d.retract = {"L Z{top} R0 FMAX M91"};
-  d.tool_change = {"TOOL CALL {tool} Z S{speed}", "{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M3"};
+  d.tool_call = {"TOOL CALL {tool} Z S{speed}"};
+  d.tool_keep = {"TOOL CALL S{speed}"};
+  d.tool_next = {"TOOL DEF {next}"};
+  d.tool_change = {"{safe_start}", "CYCL DEF 247 DATUM SETTING Q339=+{datum}", "M3"};
   d.coolant = {{machines::Coolant::flood, {"M8", "M9"}}};  // M7 is none of its own
   d.own_m = {{0, 6}, {13, 14}, {19, 19}, {30, 30}, {89, 299}};
   d.end = {"CYCL DEF 32.0 TOLERANCE", "CYCL DEF 32.1", "M127"};

@@ -17,6 +17,7 @@ namespace toothpath::controls {
 namespace {
 
 constexpr std::size_t kLongestHeidenhainLine = 256;
+constexpr std::size_t kMostM = 4;  // in a block
 
 class Heidenhain {
  public:
@@ -25,7 +26,11 @@ class Heidenhain {
       : file_(file),
         control_(control),
         lines_(readback::lines_of(text)),
-        execution_(control, {.turns_need_axis_blend = true}, sink) {
+        execution_(control,
+                   {.turns_need_axis_blend = true,
+                    .stop = readback::ProgramStop::ends_spindle,
+                    .reference_keeps_length = true},
+                   sink) {
     execution_.set_feed_mode(readback::NcExecution::Feed::per_minute);
   }
 
@@ -99,6 +104,13 @@ class Heidenhain {
       ended_ = true;
       return s.rest() == name_ ? Problem{} : here(s.column(), "END PGM names another program");
     }
+    if (s.take("/")) {
+      s.skip_blanks();
+      if (s.rest() != "M0" && s.rest() != "M1" && s.rest() != "STOP" && !s.rest().starts_with("FUNCTION DWELL "))
+        return here(s.column(),
+                    "a block that may be skipped is read with M0, M1, STOP or FUNCTION DWELL alone: with "
+                    "others there would be two programs to prove");
+    }
     if (s.take("LN ")) return straight(s, true);
     if (s.take("L ")) return straight(s, false);
     const int column = s.column();
@@ -112,12 +124,19 @@ class Heidenhain {
     if (s.take("CALL LBL ")) return repeat(s);
     if (s.take("FN 12: IF ")) return jump_if_less(s);
     if (s.at() == 'Q' || s.take("FN 0: ") || s.take("FN 1: ")) return assign(s);
+    if (s.take("TOOL DEF ")) {
+      const auto n = s.number();
+      return n ? placed(column, execution_.choose_tool(*n)) : here(s.column(), "number expected");
+    }
     if (s.take("TOOL CALL ")) return tool_call(s, column);
     if (s.take("CYCL DEF ")) return cycle(s, column);
     if (s.take("PLANE RESET STAY") || s.take("TRANS DATUM RESET")) return std::nullopt;
     if (s.take("FUNCTION RESET TCPM")) return placed(column, execution_.tcp_off());
     if (s.take("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS")) return placed(column, execution_.tcp_on());
-    if (s.at() == 'M') return function(s, column);
+    if (s.take("FUNCTION DWELL TIME")) return dwell(s, false);
+    if (s.take("FUNCTION DWELL REV")) return dwell(s, true);
+    if (s.take("STOP")) return execution_.stop(), s.skip_blanks(), s.done() ? std::nullopt : functions(s);
+    if (s.at() == 'M') return functions(s);
     return here(column, "the block is not in the subset");
   }
 
@@ -212,26 +231,73 @@ class Heidenhain {
   }
 
   // Modes.
-  Problem function(readback::NcScanner& s, int column) {
-    s.advance(1);
+  /// M words up to the end of a block.
+  Problem functions(readback::NcScanner& s) {
+    std::vector<MWord> list;
+    while (!s.done())
+      if (auto bad = take_m(s, list)) return bad;
+    return perform(list);
+  }
+  struct MWord {
+    int m = 0;
+    int column = 1;
+  };
+  Problem take_m(readback::NcScanner& s, std::vector<MWord>& list) {
+    const int column = s.column();
+    if (!s.take("M")) return here(column, "an M word expected");
     const auto m = s.number();
     if (!m) return here(column, "number expected");
-    if (*m == 3) return placed(column, execution_.spindle_on());
-    if (*m == 128) return placed(column, execution_.tcp_on());
-    if (*m == 129) return placed(column, execution_.tcp_off());
-    if (*m == 5) execution_.spindle_off();
-    else if (*m == 30) {
-      ready_to_end_ = true;
-      return placed(column, execution_.end_program(!repeats_.empty()));
-    } else if (*m == 126 || *m == 127) {
-      nearer_way_ = *m == 126;
-    } else if (*m != 0 && *m != 8 && *m != 9 && !control_.switches_coolant(fmt::format("M{}", *m)))
+    static constexpr double known[] = {0, 1, 3, 5, 8, 9, 13, 30, 126, 127, 128, 129};
+    if (std::find(std::begin(known), std::end(known), *m) == std::end(known) &&
+        !control_.switches_coolant(fmt::format("M{}", *m)))
       return here(column, fmt::format("M{} is not in the subset", *m));
-    execution_.switch_coolant(fmt::format("M{}", *m));
+    if (list.size() >= kMostM) return here(column, fmt::format("more than {} M words in a block", kMostM));
+    const int n = static_cast<int>(*m);
+    for (const MWord& other : list)
+      if (n < 126 && other.m < 126 && readback::clash_of_m(control_, other.m, n))
+        return here(column, fmt::format("M{} and M{} of one group in a block", other.m, n));
+    list.push_back({n, column});
     return std::nullopt;
+  }
+  Problem perform(std::vector<MWord>& list) {
+    std::stable_sort(list.begin(), list.end(), [](const MWord& a, const MWord& b) {
+      return readback::group_of_m(a.m) < readback::group_of_m(b.m);
+    });
+    for (const MWord& word : list)
+      if (auto bad = function(word.m, word.column)) return bad;
+    return std::nullopt;
+  }
+  Problem function(int m, int column) {
+    switch (m) {
+      case 0:
+      case 1: execution_.stop(); return std::nullopt;
+      case 3: return placed(column, execution_.spindle_on());
+      case 13: execution_.switch_coolant("M8"); return placed(column, execution_.spindle_on());
+      case 5: execution_.spindle_off(); return std::nullopt;
+      case 30: ready_to_end_ = true; return placed(column, execution_.end_program(!repeats_.empty()));
+      case 126:
+      case 127: nearer_way_ = m == 126; return std::nullopt;
+      case 128: return placed(column, execution_.tcp_on());
+      case 129: return placed(column, execution_.tcp_off());
+      default: execution_.switch_coolant(fmt::format("M{}", m)); return std::nullopt;
+    }
+  }
+  /// Seconds, or turns of the spindle.
+  Problem dwell(readback::NcScanner& s, bool turns) {
+    s.skip_blanks();
+    const int column = s.column();
+    const auto v = s.number();
+    if (!v) return here(column, "number expected");
+    return placed(column, turns ? execution_.dwell_turns(*v) : execution_.dwell(*v / 60));
   }
 
   Problem tool_call(readback::NcScanner& s, int column) {
+    if (s.take("S")) {  // another speed of the tool in the spindle
+      const auto speed = s.number();
+      if (!speed) return here(s.column(), "number expected");
+      if (execution_.tool() < 0) return here(column, "TOOL CALL S without a tool in the spindle");
+      return placed(column, execution_.set_speed(*speed));
+    }
     const auto n = s.number();
     s.skip_blanks();
     if (!n || !s.take("Z S")) return here(s.column(), "TOOL CALL needs number, Z and S");
@@ -244,6 +310,8 @@ class Heidenhain {
   }
 
   Problem cycle(readback::NcScanner& s, int column) {
+    if (s.take("9.0 DWELL TIME")) return std::nullopt;
+    if (s.take("9.1 DWELL")) return dwell(s, false);
     if (s.take("10.0 ROTATION") || s.take("32.0 TOLERANCE")) return std::nullopt;
     if (s.take("10.1 ROT")) {
       const auto v = word_value(s);
@@ -280,10 +348,23 @@ class Heidenhain {
     return here(column, "the cycle is not in the subset");
   }
 
+  /// TX TY TZ
+  Problem component(readback::NcScanner& s, Vec3& axis, int& components) {
+    const int column = s.column(), k = s.ahead() - 'X';
+    s.advance(2);
+    const auto v = word_value(s);
+    if (!v) return v.error();
+    if ((components & (1 << k)) != 0) return here(column, "a component of the vector occurs twice");
+    components |= 1 << k;
+    axis[k] = *v;
+    return std::nullopt;
+  }
+
   // Straight lines.
   Problem straight(readback::NcScanner& s, bool vector) {
     readback::NcExecution::Move m;
-    bool fmax = false, m91 = false;
+    bool fmax = false, m91 = false, m92 = false;
+    std::vector<MWord> functions;
     Vec3 axis = Vec3::Zero();
     int components = 0;
     const int first = s.column();
@@ -291,12 +372,12 @@ class Heidenhain {
       const int column = s.column();
       const char c = s.at();
       if (s.take("R0")) continue;
-      if (s.take("FMAX")) {
-        fmax = true;
+      if (bool* const flag = s.take("FMAX") ? &fmax : s.take("M91") ? &m91 : s.take("M92") ? &m92 : nullptr) {
+        *flag = true;
         continue;
       }
-      if (s.take("M91")) {
-        m91 = true;
+      if (c == 'M') {
+        if (auto bad = take_m(s, functions)) return bad;
         continue;
       }
       if (c == 'F') {
@@ -308,13 +389,7 @@ class Heidenhain {
         continue;
       }
       if (vector && c == 'T' && s.ahead() >= 'X' && s.ahead() <= 'Z') {
-        const int k = s.ahead() - 'X';
-        s.advance(2);
-        const auto v = word_value(s);
-        if (!v) return v.error();
-        if ((components & (1 << k)) != 0) return here(column, "a component of the vector occurs twice");
-        components |= 1 << k;
-        axis[k] = *v;
+        if (auto bad = component(s, axis, components)) return bad;
         continue;
       }
       std::size_t a = 0;
@@ -332,12 +407,39 @@ class Heidenhain {
     if (vector && (components != 7 || m.has[3] || m.has[4]))
       return here(first, "LN needs TX TY TZ and no rotary words");
     if (vector) m.vector = axis;
-    if (!vector && std::none_of(m.has.begin(), m.has.end(), [](bool h) { return h; }))
-      return here(first, "L without an axis word");
     if (fmax && m.own_feed) return here(first, "F and FMAX in a block");
     m.rapid = fmax;
-    m.machine_frame = m91;
-    return placed(first, execution_.move(m, static_cast<std::int32_t>(line_) + 1));
+    m.machine_frame = m91 || m92;
+    if (m91 && m92) return here(first, "M91 and M92 in a block");
+    if (m92)
+      if (auto bad = from_builders_zero(m, first)) return bad;
+    return move_with(m, vector, functions, first);
+  }
+  /// M92: words from the zero of the builder, which the machine file states.
+  Problem from_builders_zero(readback::NcExecution::Move& m, int column) const {
+    const auto zero = execution_.reference(0, "M92");
+    if (!zero) return here(column, zero.error().message);
+    for (std::size_t a = 0; a < 5; ++a)
+      if (m.has[a]) m.axis[a] += (*zero)[a];
+    return std::nullopt;
+  }
+  /// Spindle and coolants that are switched on act ahead of the motion of their block, what ends them behind it.
+  Problem move_with(const readback::NcExecution::Move& m, bool vector, const std::vector<MWord>& functions,
+                    int column) {
+    std::vector<MWord> ahead, behind;
+    for (const MWord& word : functions) {
+      if (word.m >= 126) return here(word.column, fmt::format("M{} with a straight line", word.m));
+      const bool on = word.m == 3 || word.m == 13 ||
+                      std::any_of(control_.coolants.begin(), control_.coolants.end(),
+                                  [&](const auto& c) { return c.second.on == fmt::format("M{}", word.m); });
+      (on ? ahead : behind).push_back(word);
+    }
+    const bool moves = vector || std::any_of(m.has.begin(), m.has.end(), [](bool h) { return h; });
+    if (!moves && functions.empty()) return here(column, "L without an axis word");
+    if (auto bad = perform(ahead)) return bad;
+    if (moves)
+      if (auto bad = placed(column, execution_.move(m, static_cast<std::int32_t>(line_) + 1))) return bad;
+    return perform(behind);
   }
 
   const std::string& file_;

@@ -22,7 +22,9 @@ text::NcDialect words() {
   d.safe_start = {"G21 G17 G90 G94 G40 G49 G80", "G92.1"};
   d.start = {"{safe_start}", "{offset}", "G61"};
   d.retract = {"G53 G0 Z{top}"};
-  d.tool_change = {"T{tool} M6", "{safe_start}", "{offset}", "S{speed} M3"};
+  d.tool_call = {"T{tool} M6"};
+  d.tool_next = {"T{next}"};
+  d.tool_change = {"{safe_start}", "{offset}", "S{speed} M3"};
   d.compensation = d.tcp_compensation = {"G43 H{tool}"};
   d.operation_end = {"G94 F{free}"};
   d.end = {"G61", "G49"};
@@ -69,6 +71,11 @@ const readback::IsoLanguage& language() {
     linuxcnc.point_needed = false;
     linuxcnc.g_tenths = {591, 592, 593, 610, 611, 640, 921};
     linuxcnc.corner_of_g64 = corner_of_g64;
+    linuxcnc.most_m = 4;
+    linuxcnc.dwell = readback::DwellNumber::seconds;
+    linuxcnc.bare_reference = true;
+    linuxcnc.rules.stop = readback::ProgramStop::waits;
+    linuxcnc.rules.reference_keeps_length = true;
     linuxcnc.rules.least_rate = 0.1;  // before 2.9.0 the rate of a G93 block is raised to this
     linuxcnc.rules.per_minute_turns = linuxcnc.rules.sign_is_sense = true;
     return linuxcnc;

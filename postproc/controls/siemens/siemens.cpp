@@ -25,7 +25,9 @@ text::NcDialect words() {
   d.safe_start = {"G17 G40 G90 G94 G710", "TRAFOOF", "ROT", "COMPOF"};
   d.start = {"{safe_start}", "{offset}", "G641 ADIS={blend}"};
   d.retract = {"SUPA G0 Z{top} D0"};
-  d.tool_change = {"T=\"T{tool}\"", "M6", "{safe_start}", "{offset}", "S{speed} M3"};
+  d.tool_call = {"T=\"T{tool}\"", "M6"};
+  d.tool_next = {"T=\"T{next}\""};
+  d.tool_change = {"{safe_start}", "{offset}", "S{speed} M3"};
   d.compensation = d.tcp_compensation = {"D1"};
   d.operation_end = {"G94 F{free}"};
   d.end = {"G60", "{path_group_end}"};

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kDeepestLoop = 8;
 constexpr std::size_t kLongestSiemensLine = 512;
+constexpr std::size_t kMostM = 5;  // in a block
 
 class Siemens {
  public:
@@ -24,7 +25,7 @@ class Siemens {
       : file_(file),
         control_(control),
         lines_(readback::lines_of(text)),
-        execution_(control, {}, sink),
+        execution_(control, {.reference_keeps_length = true}, sink),
         path_(control.letters) {}
 
   Status run() {
@@ -54,7 +55,10 @@ class Siemens {
   struct Request {
     readback::NcExecution::Move move;
     std::optional<double> f, s, adis;
-    int motion = -1, feed_mode = -1, column = 1, m = -1, d = -1;
+    std::vector<int> m;
+    std::optional<double> fixed_point;  // FP
+    int motion = -1, feed_mode = -1, column = 1, d = -1;
+    bool dwell = false, g75 = false, skip = false;
     bool supa = false, g641 = false, g60 = false, traori = false, trafoof = false, rot = false;
     double rot_deg = 0;
     std::string offset, tool;
@@ -173,9 +177,42 @@ class Siemens {
       return std::nullopt;
     }
     Request r;
-    while (!s.done())
+    r.skip = s.take("/");
+    int words = 0;
+    for (; !s.done(); ++words) {
+      const bool number = s.at() == 'N';
       if (auto bad = word(s, r)) return bad;
+      if (number) --words;
+    }
+    if (r.skip)
+      if (auto bad = skippable(r, words)) return bad;
+    if (r.dwell) return dwell(r, words);
+    if (r.g75) return fixed_point(r, words);
     return apply(r);
+  }
+  /// A block that may be left out must not matter: with others the text would be two programs.
+  Problem skippable(const Request& r, int words) const {
+    const bool stops = words == 1 && r.m.size() == 1 && r.m.front() <= 1;
+    if (stops || (r.dwell && words == 2)) return std::nullopt;
+    return here(1,
+                "a block that may be skipped is read with M0, M1 or G4 alone: with others there would be two programs "
+                "to prove");
+  }
+  /// G4 F in seconds, G4 S in turns of the spindle; feed and speed stay what they were.
+  Problem dwell(const Request& r, int words) {
+    if (words != 2 || r.f.has_value() == r.s.has_value())
+      return here(r.column, "G4 stands in a block of its own, with F or S");
+    return placed(r.column, r.f ? execution_.dwell(*r.f / 60) : execution_.dwell_turns(*r.s));
+  }
+  /// G75 FP=1 Z1=0: machine axes go to a fixed point, whatever offsets and lengths say; the values mean nothing.
+  Problem fixed_point(Request& r, int words) {
+    const auto axes = std::count(r.move.has.begin(), r.move.has.end(), true);
+    if (axes == 0 || words != axes + 1 + (r.fixed_point ? 1 : 0))
+      return here(r.column, "G75 stands in a block of its own, with FP and machine axes: G75 FP=1 Z1=0");
+    const double n = r.fixed_point.value_or(1);
+    if (n != 1 && n != 2) return here(r.column, fmt::format("G75 FP={} is not in the subset: 1 and 2 are", n));
+    return placed(r.column, execution_.to_reference(r.move, n == 1 ? 0 : 1, fmt::format("G75 FP={}", n), false,
+                                                    static_cast<std::int32_t>(line_) + 1));
   }
 
   Problem word(readback::NcScanner& s, Request& r) {
@@ -186,7 +223,7 @@ class Siemens {
     if (readback::NcScanner::is_letter(s.ahead())) return keyword(s, r);
     if (c >= 'A' && c <= 'C' && s.ahead() == '3' && s.rest().substr(2, 1) == "=") return vector_word(s, r);
     for (std::size_t a = 0; a < 5; ++a)
-      if (control_.letters[a] == c) return axis_word(s, r, a);
+      if (control_.letters[a] == c) return r.g75 ? machine_axis(s, r, a) : axis_word(s, r, a);
     s.advance(1);
     if (c == 'T') return tool_word(s, r, column);
     const auto v = literal(s, column);
@@ -239,6 +276,18 @@ class Siemens {
     return std::nullopt;
   }
 
+  /// Of G75: X1=0.
+  Problem machine_axis(readback::NcScanner& s, Request& r, std::size_t a) {
+    const int column = s.column();
+    s.advance(1);
+    if (!s.take("1="))
+      return here(column, fmt::format("G75 takes the axes of the machine: {}1=0", control_.letters[a]));
+    if (r.move.has[a]) return here(column, fmt::format("two {}1 words in a block", control_.letters[a]));
+    if (const auto v = literal(s, column); !v) return v.error();
+    r.move.has[a] = true;
+    return std::nullopt;
+  }
+
   Problem tool_word(readback::NcScanner& s, Request& r, int column) {
     if (!s.take("=\"T")) return here(column, "T needs the name of a tool of the list: T=\"T1\"");
     const auto n = literal(s, column);
@@ -250,12 +299,16 @@ class Siemens {
   }
 
   Problem m_word(Request& r, double v, int column) {
-    static constexpr int known[] = {0, 3, 5, 6, 7, 8, 9, 30};
+    static constexpr int known[] = {0, 1, 3, 5, 6, 7, 8, 9, 30};
     if (std::find(std::begin(known), std::end(known), v) == std::end(known) &&
         !control_.switches_coolant(fmt::format("M{}", v)))
       return here(column, fmt::format("M{} is not in the subset", v));
-    if (r.m >= 0) return here(column, "two M words in a block");
-    r.m = static_cast<int>(v);
+    if (r.m.size() >= kMostM) return here(column, fmt::format("more than {} M words in a block", kMostM));
+    const int m = static_cast<int>(v);
+    for (const int other : r.m)
+      if (readback::clash_of_m(control_, other, m))
+        return here(column, fmt::format("M{} and M{} of one group in a block", other, m));
+    r.m.push_back(m);
     r.column = column;
     return std::nullopt;
   }
@@ -278,7 +331,12 @@ class Siemens {
     else if (name == "SUPA") r.supa = true;
     else if (name == "ORIWKS" || name == "ORIAXES" || name == "COMPOF") return std::nullopt;
     else if (name == "FGROUP" || name == "FGREF") return path_group(s, name == "FGREF");
-    else if (name == "ADIS") {
+    else if (name == "FP") {
+      if (!s.take("=")) return here(s.column(), "= expected");
+      const auto v = expression(s);
+      if (!v) return v.error();
+      return once(r.fixed_point, *v, 'F', column);
+    } else if (name == "ADIS") {
       if (!s.take("=")) return here(s.column(), "= expected");
       const auto v = expression(s);
       if (!v) return v.error();
@@ -325,6 +383,14 @@ class Siemens {
         group = 1;
         r.motion = g;
         break;
+      case 4:
+        group = 2;
+        r.dwell = true;
+        break;
+      case 75:
+        group = 2;
+        r.g75 = true;
+        break;
       case 17: group = 6; break;
       case 40: group = 7; break;
       case 54:
@@ -365,6 +431,7 @@ class Siemens {
   }
 
   Problem apply(Request& r) {
+    if (r.fixed_point) return here(r.column, "FP without G75");
     if (r.adis.has_value() != r.g641) return here(r.column, "G641 and ADIS belong together");
     if (r.g641) execution_.set_corner_way(*r.adis);
     if (r.g60) execution_.set_blend(0);
@@ -385,13 +452,20 @@ class Siemens {
     if (r.traori)
       if (auto bad = placed(r.column, execution_.tcp_on())) return bad;
     if (r.rot) execution_.turn_frame(r.rot_deg);
-    if (auto bad = machine_function(r)) return bad;
+    // The tool, the spindle, coolants; a stop and the end stand behind the motion of their block.
+    std::sort(r.m.begin(), r.m.end(), [](int a, int b) { return readback::group_of_m(a) < readback::group_of_m(b); });
+    const bool stops = !r.m.empty() && readback::group_of_m(r.m.back()) == readback::kStops;
+    for (std::size_t i = 0; i + (stops ? 1 : 0) < r.m.size(); ++i)
+      if (auto bad = machine_function(r.m[i], r)) return bad;
     if (r.motion >= 0) motion_ = r.motion;
-    return move(r);
+    if (auto bad = move(r)) return bad;
+    return stops ? machine_function(r.m.back(), r) : std::nullopt;
   }
 
-  Problem machine_function(const Request& r) {
-    switch (r.m) {
+  Problem machine_function(int m, const Request& r) {
+    switch (m) {
+      case 0:
+      case 1: execution_.stop(); return std::nullopt;
       case 3: return placed(r.column, execution_.spindle_on());
       case 5: execution_.spindle_off(); return std::nullopt;
       case 6: {
@@ -400,7 +474,7 @@ class Siemens {
         return std::nullopt;
       }
       case 30: ended_ = true; return placed(r.column, execution_.end_program(!loops_.empty()));
-      default: execution_.switch_coolant(fmt::format("M{}", r.m)); return std::nullopt;
+      default: execution_.switch_coolant(fmt::format("M{}", m)); return std::nullopt;
     }
   }
 

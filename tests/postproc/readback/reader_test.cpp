@@ -322,7 +322,8 @@ TEST(NcReader, RefusalsNameLineAndColumn) {
   EXPECT_EQ(error("G0 X1\nM5\nM2\n"), "none");
   const std::pair<const char*, const char*> cases[] = {
       {"G2 X1 Y1 I1\n", "p.ngc:8:1: error: G2 is not in the subset"},
-      {"G0 X1 G91\n", "p.ngc:8:7: error: G91 is not in the subset"},
+      {"G0 X1 G91\n",
+       "p.ngc:8:4: error: axis words in G91: steps are read with G28 and G30 alone, G90 must be said again"},
       {"G0 X1 X2\n", "p.ngc:8:7: error: two X words in a block"},
       {"G0 X1 (a (b) c)\n", "p.ngc:8:7: error: comment inside a comment"},
       {"G0 X1e3\n", "p.ngc:8:6: error: word E is not in the subset"},

@@ -1,0 +1,24 @@
+// Where a program lets the operator look, and how: what a job may ask of its text beyond the cut.
+#pragma once
+
+#include <cstdint>
+
+namespace toothpath::text {
+
+/// Ahead of what the program may stop.
+enum class Stops : std::uint8_t { none, tool_changes, operations, teeth };
+
+/// How the operator says whether it does.
+enum class StopWord : std::uint8_t {
+  optional_stop,  ///< M1: stops where the switch is on
+  block_skip,     ///< M0 in a block that is left out where the switch is on
+};
+
+/// What a job asks of the text.
+struct TextWishes {
+  Stops stops = Stops::none;
+  StopWord stop_word = StopWord::optional_stop;
+  bool restart_numbers = false;  ///< N words where the program can be taken up again
+};
+
+}  // namespace toothpath::text
