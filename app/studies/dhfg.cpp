@@ -15,6 +15,21 @@
 #include "machines/toml/regular_file.h"
 
 namespace toothpath::studies {
+
+using trials::article_table;
+using trials::dhfg_trial;
+using trials::DhfgStudy;
+using trials::DhfgTrial;
+using trials::effort_rows;
+using trials::effort_table;
+using trials::EffortRow;
+using trials::equal_halves_table;
+using trials::EqualHalves;
+using trials::l9_trials;
+using trials::load_with_halves;
+using trials::loaded_trials_table;
+using trials::LoadedTrial;
+
 namespace {
 
 const std::vector<std::string> kDhfgOutputs = {"dhfg.csv", "dhfg.json", "dhfg.html"};
@@ -260,7 +275,7 @@ std::vector<std::string> introduction_of(const DhfgStudy& s) {
 
 nlohmann::ordered_json loaded_json(const LoadedTrial& l) {
   if (!l.refusal.empty() || l.normal_n == 0) return {{"refusal", l.refusal}};
-  const auto range = [](const Range& r, double scale) {
+  const auto range = [](const trials::Range& r, double scale) {
     return nlohmann::ordered_json{{"least", r.least * scale}, {"most", r.most * scale}, {"mean", r.mean * scale}};
   };
   return {{"normal_N", l.normal_n},

@@ -5,7 +5,7 @@
 
 #include "app/commands/command.h"
 #include "app/process/gear_of_job.h"
-#include "app/studies/dhfg_trial.h"
+#include "app/studies/trials/dhfg_trial.h"
 
 namespace toothpath::studies {
 
@@ -18,7 +18,8 @@ struct DhfgRequest : commands::CommonRequest {
 /// Reads a study file: tables [study], [[tool]] and [[operation]] (as in a job). Without text: the literature's levels,
 /// m 5, no milling. Refused with line and column: unknown keys, types, ranges; three levels are needed for every
 /// factor.
-[[nodiscard]] process::ValueOrErrors<DhfgStudy> parse_dhfg_study(std::string_view text, const std::string& file);
+[[nodiscard]] process::ValueOrErrors<trials::DhfgStudy> parse_dhfg_study(std::string_view text,
+                                                                         const std::string& file);
 
 /// Writes dhfg.csv, dhfg.json and dhfg.html. With `quick` scallops are ten times, chords five times, steps twice as
 /// coarse: the milling times are then those of that coarse surface, and say so.

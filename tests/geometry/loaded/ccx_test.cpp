@@ -64,7 +64,6 @@ TEST(CalculiX, AgreesOnTheBodies) {
       worst = std::max(worst, std::abs(theirs - ours)), largest = std::max(largest, std::abs(ours));
     }
     EXPECT_LT(worst, 1e-6 * largest);
-
   }
 }
 

@@ -1,4 +1,4 @@
-#include "app/studies/dhfg_trial.h"
+#include "app/studies/trials/dhfg_trial.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "geometry/base/angle.h"
 #include "geometry/contact/tooth_contact.h"
 
-namespace toothpath::studies {
+namespace toothpath::trials {
 namespace {
 
 constexpr int kTrialRows = 11, kTrialColumns = 17, kTrialSteps = 24;
@@ -155,4 +155,4 @@ DhfgTrial dhfg_trial(const DhfgStudy& study, const TrialLevels& levels) {
   return trial;
 }
 
-}  // namespace toothpath::studies
+}  // namespace toothpath::trials

@@ -8,7 +8,7 @@
 #include "geometry/face_gear/gear.h"
 #include "geometry/loaded/loaded_pair.h"
 
-namespace toothpath::studies {
+namespace toothpath::trials {
 
 struct DhfgTrial;
 
@@ -59,4 +59,4 @@ struct EqualHalves {
 [[nodiscard]] page::PageTable article_table(const std::vector<DhfgTrial>& trials, const EqualHalves& equal,
                                             const std::vector<EffortRow>& rows);
 
-}  // namespace toothpath::studies
+}  // namespace toothpath::trials

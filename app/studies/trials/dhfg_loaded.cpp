@@ -1,12 +1,12 @@
-#include "app/studies/dhfg_loaded.h"
+#include "app/studies/trials/dhfg_loaded.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 
-#include "app/studies/dhfg_trial.h"
+#include "app/studies/trials/dhfg_trial.h"
 
-namespace toothpath::studies {
+namespace toothpath::trials {
 namespace {
 
 using loaded::LoadedPosition;
@@ -333,4 +333,4 @@ page::PageTable article_table(const std::vector<DhfgTrial>& trials, const EqualH
   return t;
 }
 
-}  // namespace toothpath::studies
+}  // namespace toothpath::trials

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "app/studies/dhfg_loaded.h"
+#include "app/studies/trials/dhfg_loaded.h"
 #include "cam/path/operation.h"
 #include "cam/tool/assembly.h"
 #include "geometry/contact/face_gear_forces.h"
 #include "geometry/face_gear/gear.h"
 
-namespace toothpath::studies {
+namespace toothpath::trials {
 
 /// What all trials of a study share.
 struct DhfgStudy {
@@ -75,4 +75,4 @@ struct DhfgTrial {
 /// Computes one trial. Nothing is refused: what does not work stands in `refusal` of the trial or of its milling.
 [[nodiscard]] DhfgTrial dhfg_trial(const DhfgStudy& study, const TrialLevels& levels);
 
-}  // namespace toothpath::studies
+}  // namespace toothpath::trials
