@@ -96,6 +96,28 @@ void results_row(std::string& out, const RunReport& report) {
   row(out, "results", text);
 }
 
+/// What was made beside the program.
+void made_rows(std::string& out, const RunReport& report) {
+  for (const auto& c : report.correction)
+    row(out, "correction",
+        fmt::format(
+            "zone {}, flank {:+}: measured max {:.2f} um, rms {:.2f} um; not followed max {:.2f} um, rms {:.2f} um",
+            c.zone, c.side, c.fit.measured_max_mm * app::kUm, c.fit.measured_rms_mm * app::kUm,
+            c.fit.residual_max_mm * app::kUm, c.fit.residual_rms_mm * app::kUm));
+  if (const auto& cad = report.cad)
+    row(out, "solid",
+        fmt::format(
+            "{}: {} faces, {:.1f} MB; worst deviation from the exact surface {:.3f} um ({}), {:g} um is the most",
+            cad->file, cad->faces, double(cad->bytes) * 1e-6, cad->worst_mm * app::kUm, cad->worst_at,
+            cad->asked_mm * app::kUm));
+  if (const auto& roughed = report.roughed)
+    row(out, "roughed part",
+        fmt::format("{}: {} facets, {:.1f} MB; nothing that stands is missing, what is gone stands at most {:.3f} mm "
+                    "thick (grid of {:.3f} mm)",
+                    roughed->file, roughed->triangles, double(roughed->bytes) * 1e-6, roughed->thick_mm,
+                    roughed->cell_mm));
+}
+
 }  // namespace
 
 std::string readable_minutes(double minutes) { return app::duration_text(minutes * 60); }
@@ -155,24 +177,7 @@ std::string summary_table(const RunReport& report, bool color) {
   if (!report.assumed.empty()) row(out, "assumed", machines::counted_keys(report.assumed));
   if (!report.program_file.empty())
     row(out, "program", fmt::format("{}, {} blocks", report.program_file, report.blocks));
-  for (const auto& c : report.correction)
-    row(out, "correction",
-        fmt::format(
-            "zone {}, flank {:+}: measured max {:.2f} um, rms {:.2f} um; not followed max {:.2f} um, rms {:.2f} um",
-            c.zone, c.side, c.fit.measured_max_mm * app::kUm, c.fit.measured_rms_mm * app::kUm,
-            c.fit.residual_max_mm * app::kUm, c.fit.residual_rms_mm * app::kUm));
-  if (const auto& cad = report.cad)
-    row(out, "solid",
-        fmt::format(
-            "{}: {} faces, {:.1f} MB; worst deviation from the exact surface {:.3f} um ({}), {:g} um is the most",
-            cad->file, cad->faces, double(cad->bytes) * 1e-6, cad->worst_mm * app::kUm, cad->worst_at,
-            cad->asked_mm * app::kUm));
-  if (const auto& roughed = report.roughed)
-    row(out, "roughed part",
-        fmt::format("{}: {} facets, {:.1f} MB; nothing that stands is missing, what is gone stands at most {:.3f} mm "
-                    "thick (grid of {:.3f} mm)",
-                    roughed->file, roughed->triangles, double(roughed->bytes) * 1e-6, roughed->thick_mm,
-                    roughed->cell_mm));
+  made_rows(out, report);
   for (const auto& warning : report.warnings) row(out, "warning", warning);
   if (report.command == "surface")
     for (const auto& file : report.files) row(out, "written", file);

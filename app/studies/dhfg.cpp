@@ -340,6 +340,65 @@ nlohmann::ordered_json json_of(const DhfgStudy& s, const std::vector<DhfgTrial>&
 constexpr double kStepsOfTrial = 4;
 constexpr std::size_t kMiddleTrial = 3;  // trial 4: whose effort is varied
 
+/// What the study found.
+struct StudyFound {
+  std::vector<DhfgTrial> trials;
+  EqualHalves equal;
+  std::vector<EffortRow> efforts;
+};
+
+StudyFound run_study(const DhfgStudy& study, bool quick, app::Progress& progress, app::StageClock& clock) {
+  StudyFound found;
+  clock.run("trials", [&] {
+    WorkShare share{double(l9_trials().size())};
+    for (const auto& levels : l9_trials()) {
+      progress.show(fmt::format("trial {}", levels.number));
+      const WorkShare trial(share, kStepsOfTrial);
+      found.trials.push_back(dhfg_trial(study, levels));
+    }
+  });
+  const auto narrowest = std::min_element(found.trials.begin(), found.trials.end(),
+                                          [](const auto& a, const auto& b) { return a.feasible_mm < b.feasible_mm; });
+  if (narrowest->feasible_mm > 0)
+    clock.run("equal halves", [&] {
+      found.equal.half_face_mm = narrowest->feasible_mm;
+      for (const auto& levels : l9_trials())
+        found.equal.trials.push_back(
+            load_with_halves(study, levels, found.equal.half_face_mm, {3, 4, 5, quick ? 4 : 8}));
+    });
+  if (const auto& middle = found.trials[kMiddleTrial]; middle.gear)
+    found.efforts = clock.run("effort", [&] { return effort_rows(*middle.gear, study.torque_nmm, quick); });
+  return found;
+}
+
+/// @param of_trials how many of them have a row a trial, at the beginning
+std::vector<page::PageTable> tables_of(const DhfgStudy& study, const StudyFound& found, bool quick,
+                                       std::size_t& of_trials) {
+  const std::vector<DhfgTrial>& trials = found.trials;
+  std::vector<page::PageTable> tables = {geometry_table(trials), mesh_table(study, trials),
+                                         loaded_trials_table(trials)};
+  if (!study.operations.empty()) tables.push_back(milling_table(study, trials, quick));
+  of_trials = tables.size();
+  tables.push_back(range_table(study, trials));
+  if (!found.equal.trials.empty()) tables.push_back(equal_halves_table(found.equal));
+  if (!found.efforts.empty()) tables.push_back(effort_table(found.efforts, trials[kMiddleTrial].levels.number));
+  if (auto article = article_table(trials, found.equal, found.efforts); !article.rows.empty())
+    tables.push_back(std::move(article));
+  return tables;
+}
+
+/// One line a trial.
+page::PageTable side_by_side(const std::vector<page::PageTable>& tables, std::size_t of_trials) {
+  page::PageTable all;
+  all.rows.resize(tables.front().rows.size());
+  for (std::size_t n = 0; n < of_trials; ++n)
+    for (std::size_t c = n == 0 ? 0 : 1; c < tables[n].columns.size(); ++c) {
+      all.columns.push_back(tables[n].columns[c] == "remark" && n == 3 ? "milling remark" : tables[n].columns[c]);
+      for (std::size_t k = 0; k < all.rows.size(); ++k) all.rows[k].push_back(tables[n].rows[k][c]);
+    }
+  return all;
+}
+
 }  // namespace
 
 process::ValueOrErrors<DhfgStudy> parse_dhfg_study(std::string_view text, const std::string& file) {
@@ -377,38 +436,10 @@ commands::CommandOutcome study_dhfg(const DhfgRequest& request) {
     study = std::move(parsed).value();
   }
   if (request.quick) coarsen(study);
-  std::vector<DhfgTrial> trials;
-  clock.run("trials", [&] {
-    WorkShare share{double(l9_trials().size())};
-    for (const auto& levels : l9_trials()) {
-      progress.show(fmt::format("trial {}", levels.number));
-      const WorkShare trial(share, kStepsOfTrial);
-      trials.push_back(dhfg_trial(study, levels));
-    }
-  });
-
-  EqualHalves equal;
-  std::vector<EffortRow> efforts;
-  const auto narrowest = std::min_element(trials.begin(), trials.end(),
-                                          [](const auto& a, const auto& b) { return a.feasible_mm < b.feasible_mm; });
-  if (narrowest->feasible_mm > 0)
-    clock.run("equal halves", [&] {
-      equal.half_face_mm = narrowest->feasible_mm;
-      for (const auto& levels : l9_trials())
-        equal.trials.push_back(load_with_halves(study, levels, equal.half_face_mm, {3, 4, 5, request.quick ? 4 : 8}));
-    });
-  if (trials[kMiddleTrial].gear)
-    efforts =
-        clock.run("effort", [&] { return effort_rows(*trials[kMiddleTrial].gear, study.torque_nmm, request.quick); });
-
-  std::vector<page::PageTable> tables = {geometry_table(trials), mesh_table(study, trials),
-                                         loaded_trials_table(trials)};
-  if (!study.operations.empty()) tables.push_back(milling_table(study, trials, request.quick));
-  const std::size_t of_trials = tables.size();  // a row a trial
-  tables.push_back(range_table(study, trials));
-  if (!equal.trials.empty()) tables.push_back(equal_halves_table(equal));
-  if (!efforts.empty()) tables.push_back(effort_table(efforts, trials[kMiddleTrial].levels.number));
-  if (auto article = article_table(trials, equal, efforts); !article.rows.empty()) tables.push_back(std::move(article));
+  const StudyFound found = run_study(study, request.quick, progress, clock);
+  const std::vector<DhfgTrial>& trials = found.trials;
+  std::size_t of_trials = 0;
+  std::vector<page::PageTable> tables = tables_of(study, found, request.quick, of_trials);
   const auto feasible = std::count_if(trials.begin(), trials.end(), [](const auto& t) { return t.refusal.empty(); });
   page::StudyPage page;
   page.title = study.name + ": double helical face gears";
@@ -418,17 +449,7 @@ commands::CommandOutcome study_dhfg(const DhfgRequest& request) {
   page.introduction = introduction_of(study);
   page.charts = charts_of(study, trials);
   page.tables = tables;
-
-  // One line a trial: these tables side by side.
-  page::PageTable all;
-  for (std::size_t n = 0; n < of_trials; ++n)
-    for (std::size_t c = n == 0 ? 0 : 1; c < tables[n].columns.size(); ++c) {
-      all.columns.push_back(tables[n].columns[c] == "remark" && n == 3 ? "milling remark" : tables[n].columns[c]);
-      for (std::size_t k = 0; k < trials.size(); ++k) {
-        all.rows.resize(trials.size());
-        all.rows[k].push_back(tables[n].rows[k][c]);
-      }
-    }
+  const page::PageTable all = side_by_side(tables, of_trials);
   commands::CommandOutcome outcome;
   outcome.report_json = json_of(study, trials, request.quick).dump(2) + "\n";
   outcome.summary = page.title + "\n";

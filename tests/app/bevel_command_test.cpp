@@ -126,6 +126,8 @@ TEST_F(BevelCommand, WallPassesAloneLeaveARidge) {
   auto lines = program();
   const std::size_t first = line_with(lines, "(OP 0"), second = line_with(lines, "(OP 1");
   lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(first), lines.begin() + static_cast<std::ptrdiff_t>(second));
+  // The tool that the first operation called.
+  lines.insert(lines.begin() + static_cast<std::ptrdiff_t>(line_with(lines, "S14000 M3")), "T1 M6");
   const auto report = check("walls", lines, 1);
   EXPECT_GT(report["ridge_mm"]["reached"].get<double>(), 0.3);
   bool named = false;

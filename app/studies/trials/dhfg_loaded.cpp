@@ -237,9 +237,9 @@ std::vector<EffortRow> effort_rows(const face_gear::FaceGear& gear, double torqu
 page::PageTable loaded_trials_table(const std::vector<DhfgTrial>& trials) {
   page::PageTable t{
       "Under load",
-      {"trial", "normal N", "approach um", "LTE p-p urad", "floating LTE p-p urad", "stiffness 1e6 N/mm", "line mm",
-       "peak MPa", "at line ends MPa", "peak, torque on pinion", "outer half", "loaded V-teeth", "axial single N",
-       "held remainder %", "mean %", "floating axial N", "share a um", "load remark"},
+      {"trial", "loaded normal N", "approach um", "LTE p-p urad", "floating LTE p-p urad", "stiffness 1e6 N/mm",
+       "line mm", "peak MPa", "at line ends MPa", "peak, torque on pinion", "outer half", "loaded V-teeth",
+       "axial one helix N", "held remainder %", "mean %", "floating axial N", "share a um", "load remark"},
       {},
       ""};
   t.note =
