@@ -361,7 +361,8 @@ std::vector<svg::LineChart> loaded_charts(const LoadedContact& found) {
           "Secant, along the contact normals.")};
   if (found.rings > 1) {
     charts.push_back(over_pitch(
-        "Share of the outer ring", "share [%]", [](const LoadedPosition& p) { return outer_share(p) * 100; }, ""));
+        "Share of the outer ring", "share [%]",
+        [](const LoadedPosition& p) { return std::round(outer_share(p) * 1e8) * 1e-6; }, ""));
     charts.push_back(
         over_pitch("Axial force on the pinion", "force [N]", axial_of, "Away from the gear's axis when positive."));
   }

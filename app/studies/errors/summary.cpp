@@ -102,6 +102,25 @@ Json json_of(const Json& head, const std::vector<Row>& rows) {
   return json;
 }
 
+/// What all errors together come to.
+std::string together(const Row& all) {
+  return fmt::format(
+      "all errors together: 95 % of the flanks within {:.1f} um of the nominal machine's, {} of {} samples keep the "
+      "limits of the job",
+      all.most_of(), all.within, all.shift_um.size());
+}
+
+/// The last column of a table by itself, and the table without it.
+std::vector<page::PageTable> last_apart(page::PageTable table, const std::string& title) {
+  page::PageTable last{title, {table.columns.front(), table.columns.back()}, {}, ""};
+  table.columns.pop_back();
+  for (auto& row : table.rows) {
+    if (!row.back().empty()) last.rows.push_back({row.front(), row.back()});
+    row.pop_back();
+  }
+  return {std::move(table), std::move(last)};
+}
+
 page::StudyPage page_of(const Json& head, const std::vector<Row>& rows, const page::PageTable& table) {
   const Json& nominal = head.at("nominal");
   page::StudyPage page;
@@ -109,11 +128,9 @@ page::StudyPage page_of(const Json& head, const std::vector<Row>& rows, const pa
   page.subtitle = fmt::format("{}, {} samples, seed {}", head.at("machine").get<std::string>(),
                               head.at("samples").get<int>(), head.at("seed").get<int>());
   page.good = rows.back().within == rows.back().shift_um.size();
-  page.verdict = fmt::format(
-      "all errors together: 95 % of the flanks within {:.1f} um of the nominal machine's, {} of "
-      "{} samples keep the limits of the job",
-      rows.back().most_of(), rows.back().within, rows.back().shift_um.size());
+  page.verdict = fmt::format("{} of {} within the limits", rows.back().within, rows.back().shift_um.size());
   page.introduction = {
+      "With " + together(rows.back()) + ".",
       "The program of the job was read back as always: the control knows the machine by its file. The joints of its "
       "moves then went through a machine with errors, and the proof of the gear judged where the tool truly was. Every "
       "sample draws its errors and one tooth space. mean, 95 % and largest are of the greatest change of a point of "
@@ -133,7 +150,7 @@ page::StudyPage page_of(const Json& head, const std::vector<Row>& rows, const pa
   for (const Row& row : rows) bars.emplace_back(row.name, row.most_of());
   page.figures.push_back({"What each error costs", svg::svg_bars(bars, "95 % of the flanks change by less than [um]"),
                           "One bar an error, each alone at its size; the last all together."});
-  page.tables = {table};
+  page.tables = last_apart(table, "What the errors are");
   return page;
 }
 
@@ -145,16 +162,14 @@ Result<Summary> summary_of(const samples::Merged& samples) {
     const std::vector<Row> rows = rows_of(head, samples.lines);
     for (const Row& row : rows)
       if (row.shift_um.empty()) return fail("samples = {} leaves {} without one", samples.head.samples, row.name);
-    page::PageTable table = table_of(rows);
+    const page::PageTable table = table_of(rows);
     Summary out;
     out.json = json_of(head, rows).dump(2) + "\n";
     const page::StudyPage page = page_of(head, rows, table);
     out.files = {{kSummaryFiles[0], page::table_csv(table)},
                  {kSummaryFiles[1], out.json},
                  {kSummaryFiles[2], page::study_page_html(page)}};
-    for (auto& row : table.rows) row.pop_back();
-    table.columns.pop_back();
-    out.text = page::table_text(table) + page.verdict + "\n";
+    out.text = page::table_text(page.tables.front()) + together(rows.back()) + "\n";
     return out;
   } catch (const nlohmann::json::exception& why) {
     return fail("the samples lack what study machine-errors writes: {}", why.what());
