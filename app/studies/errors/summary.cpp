@@ -130,7 +130,6 @@ page::StudyPage page_of(const Json& head, const std::vector<Row>& rows, const pa
   page.good = rows.back().within == rows.back().shift_um.size();
   page.verdict = fmt::format("{} of {} within the limits", rows.back().within, rows.back().shift_um.size());
   page.introduction = {
-      "With " + together(rows.back()) + ".",
       "The program of the job was read back as always: the control knows the machine by its file. The joints of its "
       "moves then went through a machine with errors, and the proof of the gear judged where the tool truly was. Every "
       "sample draws its errors and one tooth space. mean, 95 % and largest are of the greatest change of a point of "
@@ -146,6 +145,7 @@ page::StudyPage page_of(const Json& head, const std::vector<Row>& rows, const pa
       "tilt), of the amplitude of a wave, of each tool by itself. Sizes from \"assumed\" are typical of a machine in "
       "order and nobody measured them here: state your own with --error NAME=SIZE. Zero and scale of the rotary that "
       "indexes the teeth are left out: the blank has no teeth yet, and a full turn closes."};
+  page.introduction.insert(page.introduction.begin(), "With " + together(rows.back()) + ".");
   std::vector<std::pair<std::string, double>> bars;
   for (const Row& row : rows) bars.emplace_back(row.name, row.most_of());
   page.figures.push_back({"What each error costs", svg::svg_bars(bars, "95 % of the flanks change by less than [um]"),
