@@ -1,6 +1,5 @@
 #!/bin/sh
-# machine_errors_parallel_test.sh TOOTHPATH SOURCES: the script of samples/studies gives the bytes of one process. Exit 77:
-# skipped, and why.
+# machine_errors_parallel_test.sh TOOTHPATH SOURCES: the script of samples/studies gives the bytes of one process.
 set -eu
 export TOOTHPATH=$1
 sources=$2
@@ -9,7 +8,7 @@ dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 job=$sources/samples/spur_quick.toml
 options="--samples 2 --only --error C.pivot=5 --error tool.length=5 --error tool.radius=3"
-command -v parallel >/dev/null || { echo "GNU parallel is not installed (Debian package parallel)" >&2; exit 77; }
+command -v parallel >/dev/null || { echo "GNU parallel is not installed (Debian package parallel)" >&2; exit 1; }
 "$TOOTHPATH" study machine-errors "$job" --out "$dir/one" $options --quiet
 HOME=$dir SHARDS=3 "$sources/samples/studies/machine_errors_parallel.sh" "$job" "$dir/out" $options --quiet
 ls "$dir/out"

@@ -5,7 +5,7 @@ set -eu
 dir=$1
 shift
 for tool in slurmctld slurmd sbatch scontrol; do
-  command -v $tool >/dev/null || { echo "$tool is not installed (Debian package slurm-wlm)" >&2; exit 77; }
+  command -v $tool >/dev/null || { echo "$tool is not installed (Debian package slurm-wlm)" >&2; exit 1; }
 done
 [ "$(id -u)" = 0 ] || { echo "slurmd must be started by root" >&2; exit 77; }
 host=$(hostname -s)
