@@ -145,19 +145,26 @@ Eigen::MatrixXd chain_of(const Eigen::MatrixXd& S, int teeth) {
   return K;
 }
 
-}  // namespace
-
-std::vector<double> hat_areas(const Sector& s) {
-  std::vector<double> areas(s.stations.size(), 0.0);
+/// Every place of integration of the loaded flank, with its weight.
+template <typename F>
+void over_flank(const Sector& s, F&& at) {
   const GaussRule& rule = gauss_rule(4);
   for (const auto& face : s.faces)
     for (int i = 0; i < rule.n; ++i)
       for (int j = 0; j < rule.n; ++j) {
         const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-        const FacePlace place = face_place(nodes_of(s, face), rule.x[a], rule.x[b]);
-        const double area = place.area.norm() * rule.weight[a] * rule.weight[b];
-        for (std::size_t c = 0; c < 4; ++c) areas[static_cast<std::size_t>(face.stations[c])] += place.hat[c] * area;
+        at(face, face_place(nodes_of(s, face), rule.x[a], rule.x[b]), rule.weight[a], rule.weight[b]);
       }
+}
+
+}  // namespace
+
+std::vector<double> hat_areas(const Sector& s) {
+  std::vector<double> areas(s.stations.size(), 0.0);
+  over_flank(s, [&](const auto& face, const FacePlace& place, double w_a, double w_b) {
+    const double area = place.area.norm() * w_a * w_b;
+    for (std::size_t c = 0; c < 4; ++c) areas[static_cast<std::size_t>(face.stations[c])] += place.hat[c] * area;
+  });
   return areas;
 }
 
@@ -165,20 +172,15 @@ Eigen::MatrixXd hat_loads(const Sector& s) {
   const std::vector<double> areas = hat_areas(s);
   Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(3 * s.nodes.size()),
                                                 static_cast<Eigen::Index>(s.stations.size()));
-  const GaussRule& rule = gauss_rule(4);
-  for (const auto& face : s.faces)
-    for (int i = 0; i < rule.n; ++i)
-      for (int j = 0; j < rule.n; ++j) {
-        const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-        const FacePlace place = face_place(nodes_of(s, face), rule.x[a], rule.x[b]);
-        const Vec3 force = -place.area * (rule.weight[a] * rule.weight[b]);
-        for (std::size_t c = 0; c < 4; ++c) {
-          const int station = face.stations[c];
-          for (int n = 0; n < kFaceNodes; ++n)
-            loads.block<3, 1>(3 * face.nodes[static_cast<std::size_t>(n)], station) +=
-                force * (place.shape(n) * place.hat[c] / areas[static_cast<std::size_t>(station)]);
-        }
-      }
+  over_flank(s, [&](const auto& face, const FacePlace& place, double w_a, double w_b) {
+    const Vec3 force = -place.area * (w_a * w_b);
+    for (std::size_t c = 0; c < 4; ++c) {
+      const int station = face.stations[c];
+      for (int n = 0; n < kFaceNodes; ++n)
+        loads.block<3, 1>(3 * face.nodes[static_cast<std::size_t>(n)], station) +=
+            force * (place.shape(n) * place.hat[c] / areas[static_cast<std::size_t>(station)]);
+    }
+  });
   return loads;
 }
 
