@@ -54,7 +54,6 @@ struct ContactLine {
   int tooth = 0;
   double length = 0;  ///< on the flank, mm
   double from_B = 0, to_B = 0;
-  double roundness = 0;  ///< largest ratio of the principal relative curvatures, along to across; 0 in line contact
   std::vector<Segment> segments;  ///< those on the flank, in the order of B; then those beyond its ends
 };
 

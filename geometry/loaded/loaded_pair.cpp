@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "geometry/base/angle.h"
+#include "geometry/loaded/cell_position.h"
 #include "geometry/loaded/half_space.h"
 
 namespace toothpath::loaded {
 namespace {
 
 constexpr int kWidthRounds = 8;
-constexpr double kRoundest = 1.0 / 25;  // of the principal curvatures: an ellipse of 5 to 1
 constexpr double kWidthTolerance = 1e-6;
 
 /// All places of one position, with their compliance.
@@ -30,10 +30,8 @@ class PositionProblem {
       options.segment_mm = pair_.options.segment_mm;
       options.approach_mm = approach_mm;
       options.half_width_mm = half_width;
-      if (pair_.pinion_teeth != pair_.shaper_teeth) options.pinion = &ring.moved;
       for (auto& line : contact_lines(ring.surface, ring.ring, pair_.side, phi_, ring.bounds, options)) {
         line_mm_ += line.length;
-        roundness_ = std::max(roundness_, line.roundness);
         for (Segment& s : line.segments) {
           s.gap += unloaded_gap(ring, s);
           places_.push_back(s);
@@ -50,7 +48,6 @@ class PositionProblem {
   [[nodiscard]] bool empty() const { return places_.empty(); }
   [[nodiscard]] const std::vector<Segment>& places() const { return places_; }
   [[nodiscard]] double line_mm() const { return line_mm_; }
-  [[nodiscard]] double roundness() const { return roundness_; }
   [[nodiscard]] double normal_force() const { return load_.torque_nmm / pair_.lever; }
 
   /// Shares the load; half widths of the strips and forces are found together. @param shift  of the pinion, mm
@@ -114,7 +111,6 @@ class PositionProblem {
   [[nodiscard]] double unloaded_gap(const PairRing& ring, const Segment& s) const {
     double gap = pair_.options.gap ? pair_.options.gap(s) : 0;
     const contact::Misalignment& m = pair_.options.moved;
-    if (pair_.pinion_teeth != pair_.shaper_teeth) return gap;  // the segment carries it
     if (m.offset_mm == 0 && m.axial_mm == 0 && m.angle_rad == 0) return gap;
     const double phi = phi_ + s.tooth * 2 * kPi / pair_.pinion_teeth;
     const auto place = ring.moved.place(s.nearest);
@@ -185,7 +181,7 @@ class PositionProblem {
 
   const LoadedPair& pair_;
   const Load& load_;
-  double phi_, line_mm_ = 0, roundness_ = 0;
+  double phi_, line_mm_ = 0;
   mutable double residual_ = 0;
   std::vector<Segment> places_;
   std::vector<int> line_of_;
@@ -287,16 +283,12 @@ Result<LoadedPair> make_loaded_pair(const face_gear::FaceGear& gear, int side, i
 }
 
 Result<LoadedPosition> loaded_position(const LoadedPair& pair, const Load& load, double phi) {
+  if (pair.options.cells || pair.pinion_teeth != pair.shaper_teeth) return cell_position(pair, load, phi);
   PositionProblem problem(pair, load, phi);
   LoadedPosition out;
   out.phi = phi;
   problem.list(0, 0);
   if (problem.empty()) return fail("no pair touches while the pinion stands at {:.4f} deg", degrees(phi));
-  if (problem.roundness() > kRoundest)
-    return fail(
-        "the flanks touch in an ellipse of curvatures 1 to {:.1f}: loaded contact is computed along lines, from 1 "
-        "to {:g} on; more teeth of the pinion, nearer to the shaper's {}, would do",
-        1 / problem.roundness(), 1 / kRoundest, pair.shaper_teeth);
   auto widths = problem.even_widths();
   const auto plain = problem.share(widths);
   if (!plain) return plain.error();

@@ -20,6 +20,8 @@ struct PairOptions {
   contact::Misalignment moved;
   /// What flank modifications leave between the flanks at a place, mm, added to that of the misalignment; may be empty.
   std::function<double(const Segment&)> gap;
+  /// Pressures on cells and not on strips along lines, also for a pinion of as many teeth as the shaper.
+  bool cells = false;
 };
 
 struct PairRing {
@@ -40,7 +42,7 @@ struct LoadedPair {
   std::vector<PairRing> rings;
 };
 
-/// A pinion of fewer teeth than the shaper touches in a slender ellipse: the line is then the valley of least gap.
+/// A pinion of fewer teeth than the shaper touches in ellipses: found on cells.
 /// Refused: a pinion of more teeth than the shaper, an undercut flank, a tooth that has no bricks.
 [[nodiscard]] Result<LoadedPair> make_loaded_pair(const face_gear::FaceGear& gear, int side, int pinion_teeth,
                                                   const PairOptions& options);
@@ -62,6 +64,7 @@ struct PressedSegment {
 
 struct LoadedPosition {
   double phi = 0;                     ///< turn of the pinion
+  bool cells = false;                 ///< pressures are those of cells, `segments` their rows
   double approach_mm = 0;             ///< X, along the normals
   double error_rad = 0;               ///< loaded transmission error: by how much the gear lags
   double shift_mm = 0;                ///< of the pinion along its axis
@@ -85,7 +88,7 @@ struct LoadedCycle {
 };
 
 /// @param phi  turn of the shaper that stands where the gear does; a pitch is 2 pi/N_s
-/// Refused: no pair touches at some position; an ellipse of contact below 5:1; a load that does not settle.
+/// Refused: no pair touches at some position; a load that does not settle.
 [[nodiscard]] Result<LoadedPosition> loaded_position(const LoadedPair& pair, const Load& load, double phi);
 /// The positions of one pitch, in parallel; the same bits on any number of threads.
 [[nodiscard]] Result<LoadedCycle> loaded_cycle(const LoadedPair& pair, const Load& load);

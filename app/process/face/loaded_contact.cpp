@@ -26,7 +26,24 @@ double outer_share(const LoadedPosition& p) {
 }
 /// Rounding of a balance is no force.
 double axial_of(const LoadedPosition& p) { return std::abs(p.axial_n) < 1e-6 ? 0.0 : p.axial_n; }
-double largest_pressure(const LoadedPosition& p) { return std::max(p.pressure, p.end_pressure); }
+bool on_cells(const loaded::LoadedCycle& cycle) { return cycle.positions.front().cells; }
+
+/// Amplitude of the n-th harmonic of the transmission error over a pitch, rad.
+double harmonic(const loaded::LoadedCycle& cycle, int n) {
+  double c = 0, s = 0;
+  const auto count = static_cast<double>(cycle.positions.size());
+  for (std::size_t k = 0; k < cycle.positions.size(); ++k) {
+    const double angle = 2 * kPi * n * static_cast<double>(k) / count;
+    c += cycle.positions[k].error_rad * std::cos(angle), s += cycle.positions[k].error_rad * std::sin(angle);
+  }
+  return std::hypot(c, s) * 2 / count;
+}
+/// As many as the positions resolve, three at most.
+int harmonics_of(const loaded::LoadedCycle& cycle) {
+  return std::min(3, (static_cast<int>(cycle.positions.size()) - 1) / 2);
+}
+/// On cells an edge has no pressure of its own.
+double largest_pressure(const LoadedPosition& p) { return p.cells ? p.pressure : std::max(p.pressure, p.end_pressure); }
 
 /// Deviation of a cut flank at radius r and height z, bilinear on its grid; beyond it that of its rim.
 double deviation_at(const contact::ContactFlank& f, double r, double z) {
@@ -82,7 +99,7 @@ void remark(const LoadedSide& side, bool steel, std::vector<std::string>& notes)
                     "plastically",
                     name_of(side), p, X * app::kUm));
   const auto per_line = each([](const LoadedPosition& x) { return x.stiffness / x.line_mm / app::kUm; });
-  if (steel && (per_line.least < kSteelLow || per_line.most > kSteelHigh))
+  if (steel && !on_cells(side.cycle) && (per_line.least < kSteelLow || per_line.most > kSteelHigh))
     notes.push_back(
         fmt::format("{}: stiffness {:.1f} to {:.1f} N/(mm um) of line; steel gears with all lines "
                     "bearing have 13 to 16",
@@ -91,8 +108,9 @@ void remark(const LoadedSide& side, bool steel, std::vector<std::string>& notes)
     if (position.pressure == 0) {
       notes.push_back(
           fmt::format("{}: the load stands on the ends of lines only at some positions: the pressure "
-                      "there is that of the segments, {:.0f} N/mm at most",
-                      name_of(side), each([](const LoadedPosition& x) { return x.end_line_load; }).most));
+                      "there is that of the {}, {:.0f} N/mm at most",
+                      name_of(side), on_cells(side.cycle) ? "cells" : "segments",
+                      each([](const LoadedPosition& x) { return x.end_line_load; }).most));
       break;
     }
 }
@@ -255,12 +273,16 @@ nlohmann::ordered_json loaded_json(const LoadedContact& found) {
   for (const auto& side : found.sides) {
     const auto range = [&](double (*of)(const LoadedPosition&)) { return range_json(range_of(side.cycle, of)); };
     const auto error = range_of(side.cycle, [](const LoadedPosition& p) { return p.error_rad * app::kMicro; });
+    nlohmann::ordered_json harmonics = nlohmann::ordered_json::array();
+    for (int n = 1; n <= harmonics_of(side.cycle); ++n) harmonics.push_back(harmonic(side.cycle, n) * app::kMicro);
     json["flanks"].push_back(
-        {{"surface", surface_of(side)},
+        {{"model", on_cells(side.cycle) ? "cells" : "strips"},
+         {"surface", surface_of(side)},
          {"side", side.side},
          {"normal_N", side.cycle.normal_n},
          {"approach_um", range([](const LoadedPosition& p) { return p.approach_mm * app::kUm; })},
-         {"transmission_error_urad", {{"range", error.most - error.least}, {"mean", error.mean}}},
+         {"transmission_error_urad",
+          {{"range", error.most - error.least}, {"mean", error.mean}, {"harmonics", harmonics}}},
          {"stiffness_N_um", range([](const LoadedPosition& p) { return p.stiffness / app::kUm; })},
          {"tangent_stiffness_N_um", range([](const LoadedPosition& p) { return p.tangent / app::kUm; })},
          {"line_mm", range([](const LoadedPosition& p) { return p.line_mm; })},
@@ -292,9 +314,18 @@ std::string loaded_summary(const LoadedContact& found) {
                axial = of(axial_of);
     out += fmt::format("  {}: approach {:.3f} to {:.3f} um, transmission error {:.4g} urad peak to peak\n",
                        name_of(side), X.least, X.most, error.most - error.least);
+    for (int n = 1; n <= harmonics_of(side.cycle); ++n)
+      out += fmt::format("{}{:.4g}{}", n == 1 ? "    its harmonics of the tooth mesh " : ", ",
+                         harmonic(side.cycle, n) * app::kMicro, n == harmonics_of(side.cycle) ? " urad\n" : "");
     out += fmt::format("    stiffness {:.1f} to {:.1f} N/um along the normals, {:g} to {:g} pairs carry\n", K.least,
                        K.most, pairs.least, pairs.most);
-    out += fmt::format("    pressure {:.0f} MPa at most, {:.0f} on the ends of lines\n", p.most, end.most);
+    const double edge = of([](const LoadedPosition& x) { return x.end_line_load; }).most;
+    if (!on_cells(side.cycle))
+      out += fmt::format("    pressure {:.0f} MPa at most, {:.0f} on the ends of lines\n", p.most, end.most);
+    else if (edge == 0) out += fmt::format("    pressure {:.0f} MPa at most, no edge carries\n", p.most);
+    else
+      out += fmt::format("    pressure {:.0f} MPa at most, {:.0f} N/mm along edges, whose pressure is that of their radius\n",
+                         p.most, edge);
     if (found.rings > 1)
       out += fmt::format(
           "    outer ring {:.1f} to {:.1f} % of the load, axial force {:.1f} to {:.1f} N (one helix {:.1f})\n",
@@ -307,27 +338,36 @@ std::string loaded_summary(const LoadedContact& found) {
 
 page::PageTable loaded_table(const LoadedContact& found) {
   page::PageTable t{"Under load",
-                    {"flank", "approach um", "error p-p urad", "stiffness N/um", "line mm", "pairs", "outer ring %",
-                     "axial N", "pressure MPa", "at line ends MPa"},
+                    {"flank", "approach um", "error p-p urad", "harmonics urad", "stiffness N/um", "line mm", "pairs",
+                     "outer ring %", "axial N", "pressure MPa", "at line ends MPa"},
                     {},
                     ""};
   t.note = fmt::format(
-      "{:g} N m on the gear. Approach: along the normals. Pressure: of the line contact of Hertz; that of the first "
-      "and last "
-      "piece of a line ({:g} mm) depends on the piece, as an ideal edge has no finite pressure. The back of the rim "
-      "({:g} mm) "
-      "and the ends of a row of {} teeth are clamped: what holds them moves the stiffness more than anything else. No "
-      "friction.",
-      found.torque_gear_Nm, found.segment_mm, found.rim_mm, found.settings.row_teeth);
+      "{:g} N m on the gear. Approach: along the normals. Harmonics: of the transmission error over a pitch. {} The "
+      "back "
+      "of the rim ({:g} mm) and the ends of a row of {} teeth are clamped: what holds them moves the stiffness more "
+      "than "
+      "anything else. No friction.",
+      found.torque_gear_Nm,
+      on_cells(found.sides.front().cycle)
+          ? "Pressure: on cells; that of cells beside an edge depends on the cell, as an ideal edge has no finite "
+            "pressure."
+          : fmt::format("Pressure: of the line contact of Hertz; that of the first and last piece of a line ({:g} mm) "
+                        "depends on the piece, as an ideal edge has no finite pressure.",
+                        found.segment_mm),
+      found.rim_mm, found.settings.row_teeth);
   for (const auto& side : found.sides) {
     const auto of = [&](double (*what)(const LoadedPosition&), const char* format = "{:.1f} to {:.1f}") {
       const auto r = range_of(side.cycle, what);
       return fmt::format(fmt::runtime(format), r.least, r.most);
     };
     const auto error = range_of(side.cycle, [](const LoadedPosition& p) { return p.error_rad * app::kMicro; });
+    std::string harmonics;
+    for (int n = 1; n <= harmonics_of(side.cycle); ++n)
+      harmonics += fmt::format("{}{:.4f}", n == 1 ? "" : " ", harmonic(side.cycle, n) * app::kMicro);
     t.rows.push_back({name_of(side),
                       of([](const LoadedPosition& p) { return p.approach_mm * app::kUm; }, "{:.3f} to {:.3f}"),
-                      fmt::format("{:.4f}", error.most - error.least),
+                      fmt::format("{:.4f}", error.most - error.least), harmonics,
                       of([](const LoadedPosition& p) { return p.stiffness / app::kUm; }),
                       of([](const LoadedPosition& p) { return p.line_mm; }),
                       of([](const LoadedPosition& p) { return double(p.pairs); }, "{:g} to {:g}"),
@@ -370,7 +410,9 @@ std::vector<svg::LineChart> loaded_charts(const LoadedContact& found) {
     svg::LineChart c;
     c.title = "Pressure along the lines, " + name_of(side);
     c.x_label = "radius from the gear's axis [mm]", c.y_label = "pressure [MPa]";
-    c.note = "At the first position; one curve a line. The ends belong to edges.";
+    c.note = on_cells(side.cycle)
+                 ? "At the first position; one curve a tooth: the largest pressure of every row of cells."
+                 : "At the first position; one curve a line. The ends belong to edges.";
     int ring = -1, tooth = 0;
     for (const auto& s : side.cycle.positions.front().segments) {
       if (s.place.beyond > 0) continue;

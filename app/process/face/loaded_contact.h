@@ -41,8 +41,8 @@ struct LoadedRange {
                                                        const contact::Misalignment& moved);
 
 /// @param cut  flanks as they were cut, beside the exact ones; their deviation, mean over each piece of a line, is its
-/// gap Refused, where the key stands: an ellipse of contact that is no line, a rim that does not fit, a pinion that
-/// floats on one ring, a position where nothing touches.
+/// gap. Refused, where the key stands: a rim that does not fit, a pinion that floats on one ring, a position where
+/// nothing touches.
 [[nodiscard]] process::ValueOrErrors<LoadedContact> analyse_loaded(
     const job::Job& job, const face_gear::FaceGear& gear, const job::ContactSettings& settings, int pinion_teeth,
     const std::vector<const contact::ContactFlank*>& cut);

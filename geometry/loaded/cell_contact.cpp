@@ -1,0 +1,232 @@
+#include "geometry/loaded/cell_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <unsupported/Eigen/FFT>
+
+namespace toothpath::loaded {
+namespace {
+
+using Complex = std::complex<double>;
+constexpr int kMostRounds = 2000;
+constexpr double kChange = 1e-8;  // of the pressures in a round, part of the force
+
+/// The next length with no other factors than 2, 3 and 5.
+int quick_length(int least) {
+  for (int n = least;; ++n) {
+    int rest = n;
+    for (const int p : {2, 3, 5})
+      while (rest % p == 0) rest /= p;
+    if (rest == 1) return n;
+  }
+}
+
+/// Displacements of a window under its own pressures, by a product of spectra.
+class WindowInfluence {
+ public:
+  WindowInfluence(const CellWindow& w, double compliance)
+      : window_(w), columns_(quick_length(2 * w.columns)), rows_(quick_length(2 * w.rows)) {
+    field_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), 0.0);
+    for (int r = -(w.rows - 1); r < w.rows; ++r)
+      for (int c = -(w.columns - 1); c < w.columns; ++c)
+        field_[index((c + columns_) % columns_, (r + rows_) % rows_)] =
+            compliance * rectangle_influence(c * w.dx, r * w.dy, w.dx / 2, w.dy / 2);
+    transform(true, rows_);
+    spectrum_ = field_;
+  }
+
+  /// u += influence of p; both of the window's cells.
+  void add(const double* p, double* u) {
+    std::fill(field_.begin(), field_.end(), Complex(0));
+    for (int r = 0; r < window_.rows; ++r)
+      for (int c = 0; c < window_.columns; ++c) field_[index(c, r)] = p[r * window_.columns + c];
+    transform(true, window_.rows);
+    for (std::size_t k = 0; k < field_.size(); ++k) field_[k] *= spectrum_[k];
+    transform(false, window_.rows);
+    for (int r = 0; r < window_.rows; ++r)
+      for (int c = 0; c < window_.columns; ++c) u[r * window_.columns + c] += field_[index(c, r)].real();
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(int c, int r) const {
+    return static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c);
+  }
+  /// @param used  rows that hold something: forwards before, backwards behind the transform of the columns
+  void transform(bool forward, int used) {
+    const auto across = [&] {
+      in_.resize(static_cast<std::size_t>(columns_));
+      for (int r = 0; r < used; ++r) {
+        std::copy_n(field_.begin() + static_cast<std::ptrdiff_t>(index(0, r)), columns_, in_.begin());
+        forward ? fft_.fwd(out_, in_) : fft_.inv(out_, in_);
+        std::copy_n(out_.begin(), columns_, field_.begin() + static_cast<std::ptrdiff_t>(index(0, r)));
+      }
+    };
+    const auto along = [&] {
+      in_.resize(static_cast<std::size_t>(rows_));
+      for (int c = 0; c < columns_; ++c) {
+        for (int r = 0; r < rows_; ++r) in_[static_cast<std::size_t>(r)] = field_[index(c, r)];
+        forward ? fft_.fwd(out_, in_) : fft_.inv(out_, in_);
+        for (int r = 0; r < rows_; ++r) field_[index(c, r)] = out_[static_cast<std::size_t>(r)];
+      }
+    };
+    if (forward) across(), along();
+    else along(), across();
+  }
+
+  const CellWindow& window_;
+  int columns_, rows_;
+  Eigen::FFT<double> fft_;
+  std::vector<Complex> field_, spectrum_, in_, out_;
+};
+
+class Search {
+ public:
+  explicit Search(const CellProblem& problem) : problem_(problem) {
+    for (const CellWindow& w : problem.windows) {
+      influence_.emplace_back(w, problem.compliance);
+      gap_.insert(gap_.end(), w.gap.begin(), w.gap.end());
+      area_.insert(area_.end(), w.size(), w.dx * w.dy);
+    }
+    n_ = gap_.size();
+    p_.assign(n_, 0.0), u_.assign(n_, 0.0), t_.assign(n_, 0.0), q_.assign(n_, 0.0);
+  }
+
+  Result<CellPressures> run(const std::vector<double>& start) {
+    double material = 0;
+    for (std::size_t k = 0; k < n_; ++k) material += std::isfinite(gap_[k]) ? area_[k] : 0;
+    if (!(material > 0)) return fail("no cell of the contact has material");
+    if (!(problem_.force > 0)) return fail("the contact carries {:g} N; a force above 0 is needed", problem_.force);
+    for (std::size_t k = 0; k < n_; ++k)
+      p_[k] = !std::isfinite(gap_[k]) ? 0 : start.size() == n_ ? std::max(0.0, start[k]) : problem_.force / material;
+    balance();
+    double G_old = 1;
+    bool conjugate = false;
+    for (int round = 1; round <= kMostRounds; ++round) {
+      displace(p_, u_);
+      const double X = mean(u_, true);
+      const double G = step(G_old, conjugate);
+      const double change = descend(X, conjugate);
+      G_old = G;
+      if (change < kChange) return finish(round);
+    }
+    return fail("the pressures of {} cells do not settle within {} rounds", n_, kMostRounds);
+  }
+
+ private:
+  /// Mean over the pressed cells, by area; with the gap added.
+  [[nodiscard]] double mean(const std::vector<double>& v, bool gap) const {
+    double sum = 0, area = 0;
+    for (std::size_t k = 0; k < n_; ++k)
+      if (p_[k] > 0) sum += area_[k] * (v[k] + (gap ? gap_[k] : 0)), area += area_[k];
+    return sum / area;
+  }
+  void displace(const std::vector<double>& p, std::vector<double>& u) {
+    std::fill(u.begin(), u.end(), 0.0);
+    std::size_t at = 0;
+    for (std::size_t w = 0; w < influence_.size(); ++w) {
+      const auto begin = p.begin() + static_cast<std::ptrdiff_t>(at),
+                 end = begin + static_cast<std::ptrdiff_t>(problem_.windows[w].size());
+      if (std::all_of(begin, end, [](double v) { return v == 0; })) {  // most teeth carry nothing
+        at += problem_.windows[w].size();
+        continue;
+      }
+      influence_[w].add(p.data() + at, u.data() + at);
+      if (problem_.windows[w].images.size() > 0) mirror(problem_.windows[w], p.data() + at, u.data() + at);
+      at += problem_.windows[w].size();
+    }
+    if (problem_.stations.rows() == 0) return;
+    const auto n = static_cast<Eigen::Index>(n_);
+    const Eigen::VectorXd forces =
+        Eigen::Map<const Eigen::VectorXd>(p.data(), n).cwiseProduct(Eigen::Map<const Eigen::VectorXd>(area_.data(), n));
+    const Eigen::VectorXd of_stations = problem_.remainder * (problem_.stations * forces);
+    Eigen::Map<Eigen::VectorXd>(u.data(), n) += problem_.stations.transpose() * of_stations;
+  }
+  /// The images of blocks; made symmetric, as the search goes down a quadratic form.
+  static void mirror(const CellWindow& w, const double* p, double* u) {
+    const auto n = static_cast<Eigen::Index>(w.size());
+    const double area = w.dx * w.dy;
+    Eigen::VectorXd block = Eigen::VectorXd::Zero(w.images.cols());
+    for (std::size_t k = 0; k < w.size(); ++k) block(w.blocks[k]) += p[k] * area;
+    const Eigen::VectorXd back = w.images.transpose() * (Eigen::Map<const Eigen::VectorXd>(p, n) * area);
+    const Eigen::VectorXd there = w.images * block;
+    for (std::size_t k = 0; k < w.size(); ++k) u[k] += (there(static_cast<Eigen::Index>(k)) + back(w.blocks[k])) / 2;
+  }
+  void balance() {
+    double sum = 0;
+    for (std::size_t k = 0; k < n_; ++k) sum += p_[k] * area_[k];
+    for (double& p : p_) p *= problem_.force / sum;
+  }
+  /// The direction of the next step; the squared rest.
+  double step(double G_old, bool conjugate) {
+    const double X = mean(u_, true);
+    double G = 0;
+    for (std::size_t k = 0; k < n_; ++k)
+      if (p_[k] > 0) {
+        const double r = u_[k] + gap_[k] - X;
+        G += area_[k] * r * r;
+      }
+    for (std::size_t k = 0; k < n_; ++k)
+      t_[k] = p_[k] > 0 ? u_[k] + gap_[k] - X + (conjugate ? G / G_old * t_[k] : 0) : 0;
+    return G;
+  }
+  /// Along the direction to the least energy; lets go what would pull, presses what overlaps. The change, part of F.
+  double descend(double X, bool& conjugate) {
+    displace(t_, q_);
+    const double q_mean = mean(q_, false);
+    double rt = 0, qt = 0;
+    for (std::size_t k = 0; k < n_; ++k)
+      if (p_[k] > 0) rt += area_[k] * (u_[k] + gap_[k] - X) * t_[k], qt += area_[k] * (q_[k] - q_mean) * t_[k];
+    const double tau = qt > 0 ? rt / qt : 0;
+    old_ = p_;
+    conjugate = true;
+    for (std::size_t k = 0; k < n_; ++k) {
+      if (old_[k] > 0) p_[k] = std::max(0.0, old_[k] - tau * t_[k]);
+      else if (std::isfinite(gap_[k]) && u_[k] + gap_[k] < X) {
+        p_[k] = std::max(0.0, -tau * (u_[k] + gap_[k] - X));
+        conjugate = false;
+      }
+    }
+    balance();
+    double change = 0;
+    for (std::size_t k = 0; k < n_; ++k) change += area_[k] * std::abs(p_[k] - old_[k]);
+    return change / problem_.force;
+  }
+  CellPressures finish(int rounds) {
+    displace(p_, u_);
+    CellPressures out;
+    out.approach = mean(u_, true);
+    out.rounds = rounds;
+    for (std::size_t k = 0; k < n_; ++k) {
+      if (!std::isfinite(gap_[k])) continue;
+      const double open = u_[k] + gap_[k] - out.approach;
+      out.residual = std::max(out.residual, (p_[k] > 0 ? std::abs(open) : -open) / out.approach);
+    }
+    out.pressure = p_;
+    return out;
+  }
+
+  const CellProblem& problem_;
+  std::vector<WindowInfluence> influence_;
+  std::size_t n_ = 0;
+  std::vector<double> gap_, area_, p_, u_, t_, q_, old_;
+};
+
+}  // namespace
+
+double rectangle_influence(double x, double y, double a, double b) {
+  const auto part = [](double u, double v) { return u == 0 ? 0.0 : u * std::asinh(v / std::abs(u)); };
+  double sum = 0;
+  for (const double sx : {1.0, -1.0})
+    for (const double sy : {1.0, -1.0}) {
+      const double u = x + sx * a, v = y + sy * b;
+      sum += sx * sy * (part(u, v) + part(v, u));
+    }
+  return sum;
+}
+
+Result<CellPressures> press_cells(const CellProblem& problem, const std::vector<double>& start) {
+  return Search(problem).run(start);
+}
+
+}  // namespace toothpath::loaded

@@ -1,0 +1,63 @@
+// A tooth of a face gear where its pinion touches it: the line of contact, or the valley of least gap, and any other
+// place of the flank against the pinion. Housing frame; mm, rad. Derivation: docs/loaded_contact.md 2.
+#pragma once
+
+#include "geometry/loaded/contact_line.h"
+
+namespace toothpath::loaded {
+
+struct LinePlace {
+  double theta = 0, B = 0, r = 0, R = 0, Z = 0;
+  Vec3 point = Vec3::Zero(), nearest = Vec3::Zero();
+  double inside = 0;  ///< mm to the nearest end, negative beyond it; off the regular sheet far below zero
+  double beyond = 0;  ///< distance along the flank to the nearest material
+  bool regular = false;
+  Vec3 normal = Vec3::Zero();
+  double gap = 0, curvature = 0, roundness = 0;  ///< of the unloaded flanks; across the line; along it, to across
+  Vec3 steepest = Vec3::Zero();  ///< direction in the tangent plane that bends by `curvature`; with a pinion of its own
+};
+
+class LineOfTooth {
+ public:
+  /// @param phi  turn of the shaper that stands where the gear does, from this tooth's own
+  /// @param pinion  null: the pinion is the shaper, the gap is 0
+  LineOfTooth(const face_gear::FaceGearSurface<double>& f, int side, double phi, const ContactBounds& bounds,
+              const contact::Pinion<double>* pinion)
+      : f_(f), side_(side), phi_(phi), bounds_(bounds), pinion_(pinion) {}
+
+  /// The place of the line with this B.
+  [[nodiscard]] LinePlace at(double B) const;
+  /// Any place of the flank. @param theta > 0
+  [[nodiscard]] LinePlace at(double theta, double B) const;
+  /// From the pinion's axis, at the section of the point.
+  [[nodiscard]] Vec3 from_axis(const Vec3& point) const;
+  [[nodiscard]] double section(const Vec3& point) const;
+  /// Fills in the relative curvatures of a place.
+  void bend(LinePlace& p) const;
+  /// dP/dtheta and dP/dB of a place; with a pinion of its own.
+  struct Moves {
+    Vec3 theta, B;
+  };
+  [[nodiscard]] Moves moves(const LinePlace& p) const;
+  /// The stretch of B on the flank; false: the line misses it.
+  bool find(double& from, double& to) const;
+
+ private:
+  [[nodiscard]] Vec3 axis_of_pinion() const { return pinion_ != nullptr ? pinion_->a : f_.a(); }
+  /// Of the unloaded flanks at a place of the gear while both stand where the ratio puts them.
+  [[nodiscard]] double gap(double theta, double B) const;
+  /// theta of the least gap at this B, by Newton; the gap is nearly a parabola.
+  [[nodiscard]] double valley(double B, double start) const;
+  [[nodiscard]] double end(double in, double out) const;
+
+  const face_gear::FaceGearSurface<double>& f_;
+  int side_;
+  double phi_;
+  const ContactBounds& bounds_;
+  const contact::Pinion<double>* pinion_;
+};
+
+/// A place as a segment without length.
+[[nodiscard]] Segment segment_of(const LineOfTooth& line, const LinePlace& place);
+
+}  // namespace toothpath::loaded
