@@ -66,9 +66,11 @@ run() {
 
 # The jobs: a fixed tool axis; one that turns in the passes, as joints, and with TCP: the controller's own kinematics make the joints;
 # finger mills, where Y and C move together in every cut.
-for job in spur short short_tcp bevel line; do mkdir "$work/$job"; done
+for job in spur spur_tcp short short_tcp bevel line; do mkdir "$work/$job"; done
 cp "$root/samples/spur_quick.toml" "$work/spur/job.toml"
 cp "$root/samples/short_tool.toml" "$work/short/job.toml"
+cp "$root/samples/spur_quick.toml" "$work/spur_tcp/job.toml"
+sed 's/^tcp = "none"/tcp = "angles"/; s/^\[spindle\]/[post]\ntcp_on = ["M428"]\ntcp_off = ["M429"]\n\n[spindle]/' "$root/machines/data/xyzac_large.toml" >"$work/spur_tcp/xyzac_large.toml"
 cp "$root/samples/bevel_trunnion.toml" "$work/bevel/job.toml"
 cp "$root/samples/spur_line.toml" "$work/line/job.toml"
 cp "$root/samples/short_tool.toml" "$work/short_tcp/job.toml"
@@ -83,6 +85,12 @@ run short_stop short 0,1 G61.1 200 1000 900
 run short short 0,1 written 2000 1000 900
 run tcp_stop short_tcp 0,1 G61.1 200 1000 900
 run tcp short_tcp 0,1 written 2000 1000 900
+# Under G64 as well, the rest of fixed and turning axis, joints and TCP. Our reader refuses G64 where a cut turns a rotary: those two
+# show why.
+run spur_tcp spur_tcp 1,1 written 2000 1000 600
+run spur_tcp_g64 spur_tcp 1,1 "G64 P0.0003 Q0" 2000 1000 600
+run short_g64 short 0,1 "G64 P0.0003 Q0" 2000 1000 900
+run tcp_g64 short_tcp 0,1 "G64 P0.0003 Q0" 2000 1000 900
 run short_300 short 0,1 written 300 1000 900
 run line line 0,0,1,1,1,1,1 written 2000 1000 900
 run bevel bevel 1,1 written 2000 1000 600
