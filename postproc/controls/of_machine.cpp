@@ -246,12 +246,11 @@ joints::AxisOptions axis_options(const text::NcDialect& words, const machines::M
   joints::AxisOptions options;
   options.format = words.format;
   options.max_inverse_time = words.max_inverse_time;
-  options.loop_needs_constant_index =
-      words.loop.form == text::NcLoop::Form::stretches || !words.loop.index_line.empty();
+  options.index_is_rounded = words.loop.form == text::NcLoop::Form::called;
   options.expand_teeth = !machine.post.index_loop.value_or(true) || words.loop.form == text::NcLoop::Form::none;
   options.tcp_starts_at_zero = words.tcp_starts_at_zero;
   options.corners = corners_of(words, machine.post);
-  options.tcp_loop = !words.loop.frame_on.empty();
+  options.tcp_loop = !words.loop.frame_on.empty() || (words.tcp_starts_at_zero && words.loop.zero_with_tcp);
   return options;
 }
 

@@ -52,8 +52,6 @@ class ProgramBuilder {
     }
     if (!program_.loop && !choose_all(false)) return *error_;
     note_poles();
-    if (program_.loop && options_.loop_needs_constant_index && index_moves_inside_passes())
-      leave_loop("this control cannot shift an axis that turns inside a pass");
     if (program_.loop && rounding_of_loop() > options_.nc_step_mm)
       leave_loop("the angles that the control works out are rounded by too much");
     if (auto bad = check_size()) return *bad;
@@ -169,9 +167,10 @@ class ProgramBuilder {
     program_.frame_sign = gear_axis.z() > 0 ? 1 : -1;
   }
 
-  /// The control turns a frame about the Z axis through its work offset: that must be the gear axis.
+  /// The control turns a frame about the Z axis through its work offset: that must be the gear axis. A frame that is
+  /// frozen turns with the table.
   bool frame_can_turn() const {
-    if (!options_.tcp_loop || options_.tcp_starts_at_zero) return false;
+    if (!options_.tcp_loop || options_.tcp_starts_at_zero) return options_.tcp_loop;
     const Vec3 gear_axis = gear_.rotation.col(2);
     return std::abs(std::abs(gear_axis.z()) - 1) <= kParallel &&
            (gear_.origin - setup_.work_offset_at_mm).head<2>().norm() <= kCoincident;
@@ -250,14 +249,6 @@ class ProgramBuilder {
     }
     if (changed)
       for (const auto& f : followed_) program_.followed.push_back(f.path());
-  }
-  bool index_moves_inside_passes() const {
-    for (const auto& f : followed_)
-      for (std::size_t i = 1; i < f.angles.size(); ++i)
-        if (f.path().records[i].kind != path::MoveKind::rapid &&
-            words_.rotary_word(f.angles[i][0]) != words_.rotary_word(f.angles[i - 1][0]))
-          return true;
-    return false;
   }
   /// How a tooth is cut: on the angles of a tooth 0, turned on, or on angles of its own.
   struct Way {
@@ -352,7 +343,7 @@ class ProgramBuilder {
   // Rounding. The linear words are computed for the rounded rotary words, so that only their own last digit and, in a
   // loop whose index is printed rounded, half a digit of the index displace the tip.
   double rounding_of_loop() const {
-    return options_.loop_needs_constant_index ? rounding_of_copies() : words_.linear_rounding();
+    return options_.index_is_rounded ? rounding_of_copies() : words_.linear_rounding();
   }
   double rounding_of_copies() const {
     double reach = 0;

@@ -47,16 +47,17 @@ struct AxisOptions {
   double clearance_margin_mm = 5;  ///< between the clearance body and the tool tip on rapids
   double max_inverse_time =
       0;  ///< greatest F in G93 that the control takes, 1/min; 0: no limit. Faster blocks are slowed
-  bool loop_needs_constant_index =
-      false;                  ///< the dialect cannot shift a word in a sub-program: loop only where it stands still
-  bool search_origin = true;  ///< look for the set-up with the most room in the travels
-  bool expand_teeth = false;  ///< write every tooth out even where the loop would do
-  bool pack_teeth = false;    ///< of teeth that are written out hold the first one as blocks, the others packed
-  int tooth_stride = 1;       ///< place n of the order cuts tooth n * stride mod z (tooth_order.h); 1: the sequence
+  bool index_is_rounded = false;  ///< the angle of a tooth is printed, with the last digit of a rotary
+  bool search_origin = true;      ///< look for the set-up with the most room in the travels
+  bool expand_teeth = false;      ///< write every tooth out even where the loop would do
+  bool pack_teeth = false;        ///< of teeth that are written out hold the first one as blocks, the others packed
+  int tooth_stride = 1;           ///< place n of the order cuts tooth n * stride mod z (tooth_order.h); 1: the sequence
   bool tcp_starts_at_zero =
       false;  ///< TCP freezes the table frame where it is switched on: only with the rotaries at zero
   timing::Corners corners = timing::Corners::jump;  ///< how the control joins feed blocks
-  bool tcp_loop = false;  ///< the dialect can turn the frame of a loop about the gear axis while TCP is on
+  /// While TCP is on the dialect can turn the frame of a loop about the gear axis; with `tcp_starts_at_zero` the frame
+  /// is the table's at the angle of the tooth.
+  bool tcp_loop = false;
 };
 
 enum class BlockKind : std::uint8_t {

@@ -69,6 +69,7 @@ int group_of_m(int m) {
     case 5:
     case 13: return 7;
     case 6: return 6;
+    case 97:
     case 98:
     case 99: return kCalls;
     default: return kCoolants;
@@ -251,13 +252,48 @@ NcExecution::Problem NcExecution::tcp_on() {
   if (!known(joints_)) return "TCP at a position that the program did not set";
   if (rules_.tcp_needs_zero && !(at_zero(3) && at_zero(4)))
     return "TCP starts with the rotaries away from zero: the table frame would be frozen there";
+  if (rules_.tcp_needs_zero && zero_[4] != 0) return "TCP starts where the zero of a second rotary is moved";
+  frozen_deg_.reset();
+  if (rules_.tcp_needs_zero && zero_[3] != 0) {
+    if (!control_.chain->in_table(0)) return "TCP starts where the zero of a rotary of the head is moved";
+    frozen_deg_ = joints_[3];
+  }
   tip_ = tip_of(joints_);
   tcp_ = true;
   return std::nullopt;
 }
 
 bool NcExecution::at_zero(std::size_t axis) const {
-  return std::abs(control_.rollover[axis] ? std::remainder(joints_[axis], kFullTurn) : joints_[axis]) <= kZeroRotary;
+  const double word = joints_[axis] - zero_[axis];
+  return std::abs(control_.rollover[axis] ? std::remainder(word, kFullTurn) : word) <= kZeroRotary;
+}
+
+NcExecution::Problem NcExecution::move_zero(std::size_t axis, double degrees, std::string_view word) {
+  if (tcp_) return fmt::format("{} moves the zero of {} with TCP on", word, control_.letters[axis]);
+  if (!zeros_cleared_ && degrees != 0)
+    return fmt::format("{} ahead of the line that clears it: what an earlier program has left is not known", word);
+  zero_[axis] = degrees;
+  return std::nullopt;
+}
+
+NcExecution::Problem NcExecution::clear_zeros() {
+  if (tcp_ && (zero_[3] != 0 || zero_[4] != 0)) return "the zero of a rotary goes back with TCP on";
+  zero_.fill(0);
+  zeros_cleared_ = true;
+  return std::nullopt;
+}
+
+/// A point of the table frame as the words of TCP name it, seen from the work offset, and back.
+Vec3 NcExecution::in_words(const Vec3& tip) const { return turned_deg(as_frozen(tip, false) - *offset_, -frame_deg_); }
+Vec3 NcExecution::from_words(const Vec3& words) const {
+  return as_frozen(*offset_ + turned_deg(words, frame_deg_), true);
+}
+/// Where a point of the table stood when TCP froze the frame; `back`: the point of the table that stood there.
+Vec3 NcExecution::as_frozen(const Vec3& point, bool back) const {
+  if (!frozen_deg_) return point;
+  const machines::RotaryAxis& axis = control_.chain->table[0];
+  const double turn = (back ? 1 : -1) * axis.sign * angles_of(*frozen_deg_, 0)[0];
+  return axis.point_mm + Eigen::AngleAxisd(turn, axis.direction) * (point - axis.point_mm);
 }
 
 NcExecution::Problem NcExecution::tcp_off() {
@@ -269,6 +305,10 @@ NcExecution::Problem NcExecution::end_program(bool inside_call) {
   if (feed_mode_ == Feed::inverse_time) return "program end in G93";
   if (spindle_) return "program end while the spindle turns";
   if (tcp_) return "program end with TCP on";
+  for (std::size_t a = 3; a < 5; ++a)
+    if (zero_[a] != 0)
+      return fmt::format("program end while {} counts from {} deg: the next program would begin there",
+                         control_.letters[a], zero_[a]);
   if (inside_call) return "program end inside a sub-program or loop";
   if (dwell_min_ > 0) {  // no move follows that it could count with
     ExecutedMove e;
@@ -325,7 +365,7 @@ NcExecution::Problem NcExecution::goal_of(const Move& m, std::array<double, 5>& 
 /// Words of the tip and rotary words or a vector.
 NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>& joints, Vec3& tip,
                                            std::uint8_t& commanded) const {
-  Vec3 words = turned_deg(tip_ - *offset_, -frame_deg_);
+  Vec3 words = in_words(tip_);
   const Vec3 before = words;
   for (std::size_t a = 0; a < 5; ++a) {
     if (!m.has[a]) continue;
@@ -333,7 +373,7 @@ NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>&
     if (a < 3) words[static_cast<int>(a)] = m.axis[a];
     else joints[a] = m.axis[a];
   }
-  tip = words == before ? tip_ : Vec3(*offset_ + turned_deg(words, frame_deg_));
+  tip = words == before ? tip_ : from_words(words);
   if (m.vector) {
     const double size = m.vector->norm();
     if (!(std::abs(size - 1) < 1e-5)) return fmt::format("a tool vector of length {:.6f}", size);
@@ -370,7 +410,7 @@ NcExecution::Problem NcExecution::tip_goal(const Move& m, std::array<double, 5>&
 NcExecution::Problem NcExecution::roll(Move& m) {
   for (std::size_t a = 3; a < 5; ++a) {
     if (!control_.rollover[a] || !m.has[a]) continue;
-    const double word = m.axis[a], now = joints_[a];
+    const double word = m.axis[a], now = joints_[a], zero = m.machine_frame ? 0 : zero_[a];
     const double least = rules_.sign_is_sense ? -kFullTurn : -kBelowZero;
     if (!(word > least && word < kFullTurn))
       return fmt::format("{} = {} of an axis that rolls over is outside {} 360", control_.letters[a], word,
@@ -380,9 +420,9 @@ NcExecution::Problem NcExecution::roll(Move& m) {
       rolled_[a] = std::isnan(rolled_[a]) ? std::abs(word) : by_sign(word, rolled_[a]);
       turns = std::round((rolled_[a] - std::abs(word)) / kFullTurn);
     } else if (!std::isnan(now)) {
-      turns = std::round((now - word) / kFullTurn);
+      turns = std::round((now - zero - word) / kFullTurn);
     }
-    m.axis[a] = kFullTurn * turns + on_grid(std::abs(word));
+    m.axis[a] = kFullTurn * turns + on_grid(std::abs(word)) + on_grid(zero);
     const double turn = std::abs(m.axis[a] - now);
     if (turn >= kHalfTurn && !(rules_.sign_is_sense && m.rapid))
       return fmt::format("{} turns by {:.6f} deg in one block, limit 180: {}", control_.letters[a], turn,
@@ -392,10 +432,11 @@ NcExecution::Problem NcExecution::roll(Move& m) {
 }
 
 NcExecution::Problem NcExecution::move(const Move& m, std::int32_t line) {
-  if (!control_.rollover[3] && !control_.rollover[4]) return move_to(m, line);
-  Move rolled = m;
-  if (auto bad = roll(rolled)) return bad;
-  return move_to(rolled, line);
+  Move meant = m;
+  for (std::size_t a = 3; a < 5; ++a)
+    if (m.has[a] && !m.machine_frame && !control_.rollover[a]) meant.axis[a] += zero_[a];
+  if (auto bad = roll(meant)) return bad;
+  return move_to(meant, line);
 }
 
 NcExecution::Problem NcExecution::next_block() {

@@ -30,7 +30,9 @@ inline constexpr int kCoolants = 8, kCalls = 98, kStops = 99;
 
 /// How a control differs in what it does, not in how it is written.
 struct NcRules {
-  bool tcp_needs_zero = false;    ///< TCP may be switched on with the rotaries at zero only
+  /// TCP may be switched on with the rotaries at zero only; one whose zero the program has moved, and which carries the
+  /// work, stands there at that zero, and the table frame is the one that then lies along the machine axes.
+  bool tcp_needs_zero = false;
   double least_rate = 0;          ///< G93 blocks are raised to this rate, mm/min or deg/min
   bool per_minute_turns = false;  ///< G94 with rotary words without TCP has a defined time
   bool sign_is_sense =
@@ -120,6 +122,11 @@ class NcExecution {
   [[nodiscard]] bool tcp() const { return tcp_; }
   /// Turns the frame of the words by this angle about Z through the work offset.
   void turn_frame(double degrees) { frame_deg_ = degrees; }
+  /// Words of a rotary count from here, machine degrees, until the program says otherwise. @param axis 3 or 4  @param
+  /// word of the control, for messages
+  Problem move_zero(std::size_t axis, double degrees, std::string_view word);
+  /// The zeros of all rotaries are those of the machine.
+  Problem clear_zeros();
   Problem end_program(bool inside_call);
 
   /// Of a reader without NcFlow, at every block: too many, or too many in a row without a move.
@@ -141,6 +148,9 @@ class NcExecution {
   Problem corners(const std::array<double, 5>& goal, const Vec3& tip, ExecutedMove& e) const;
   Problem feed_minutes(const Move& m, const std::array<double, 5>& joints, const Vec3& tip, double& minutes) const;
   [[nodiscard]] std::array<double, 2> angles_of(double r0, double r1) const;
+  [[nodiscard]] Vec3 in_words(const Vec3& tip) const;
+  [[nodiscard]] Vec3 from_words(const Vec3& words) const;
+  [[nodiscard]] Vec3 as_frozen(const Vec3& point, bool back) const;
   [[nodiscard]] Vec3 tip_of(const std::array<double, 5>& joints) const;
   [[nodiscard]] std::array<double, 5> joints_for(const Vec3& tip, double r0, double r1) const;
 
@@ -150,7 +160,10 @@ class NcExecution {
   std::array<double, 5> joints_{};
   Vec3 tip_ = Vec3::Zero();  // with TCP: table frame
   bool tcp_ = false;
-  std::array<double, 5> rolled_{};  // rotaries that roll over by the sign of their words: as the control adds them up
+  std::array<double, 5> zero_{};      // of the words of the rotaries, deg
+  bool zeros_cleared_ = false;        // by the program
+  std::optional<double> frozen_deg_;  // first rotary where TCP froze the table frame
+  std::array<double, 5> rolled_{};    // rotaries that roll over by the sign of their words: as the control adds them up
   double frame_deg_ = 0;
   int operation_ = -1, tooth_ = -1, tool_ = -1, next_tool_ = -1;
   Feed feed_mode_ = Feed::none;

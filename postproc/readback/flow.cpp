@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <cmath>
 
 namespace toothpath::readback {
@@ -108,13 +109,21 @@ Diagnostic NcFlow::at(std::size_t line, int column, std::string message) const {
   return {DiagnosticKind::refused_input, {file_, static_cast<int>(line), column}, std::move(message)};
 }
 
-std::optional<Diagnostic> NcFlow::call_program(std::int64_t number) {
+bool NcFlow::has_lines(double number) const {
+  const auto found = numbers_.find(static_cast<std::int64_t>(std::abs(number) < 1e9 ? number : -1));
+  return number == std::floor(number) && found != numbers_.end() && found->second < lines_.size();
+}
+std::optional<Diagnostic> NcFlow::call_lines(double number) {
+  return enter(numbers_.at(static_cast<std::int64_t>(number)));
+}
+std::optional<Diagnostic> NcFlow::call_program(std::int64_t number) { return enter(labels_.at(number) + 1); }
+std::optional<Diagnostic> NcFlow::enter(std::size_t line) {
   if (frames_.size() >= kDeepestCall) return here(1, fmt::format("calls nest deeper than {}", kDeepestCall));
   Frame f;
   f.kind = OWord::program;
   f.begin = pc_;
   frames_.push_back(f);
-  pc_ = labels_.at(number) + 1;
+  pc_ = line;
   return std::nullopt;
 }
 
@@ -188,6 +197,7 @@ std::optional<Diagnostic> NcFlow::find_labels() {
     if (first == std::string_view::npos) continue;
     const char c = lines_[i][first];
     if (c == '%') percents_.push_back(i);
+    if (c == 'N' && !o_words_) note_number(i, lines_[i].substr(first + 1));
     if (c != 'o' && c != 'O') continue;
     auto block = parse_nc_block(lines_[i], o_words_);
     if (!block) {
@@ -233,6 +243,13 @@ std::optional<Diagnostic> NcFlow::find_labels() {
   }
   if (!open.empty()) return at(open_line.back() + 1, 1, fmt::format("o{} is never closed", open.back().second));
   return check_percents();
+}
+
+void NcFlow::note_number(std::size_t line, std::string_view text) {
+  std::int64_t n = -1;
+  if (std::from_chars(text.data(), text.data() + text.size(), n).ec != std::errc{}) return;
+  const auto [entry, fresh] = numbers_.emplace(n, line);
+  if (!fresh) entry->second = lines_.size();
 }
 
 std::optional<Diagnostic> NcFlow::check_percents() const {

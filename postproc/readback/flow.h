@@ -38,9 +38,11 @@ class NcFlow {
   [[nodiscard]] std::int32_t line() const { return static_cast<std::int32_t>(line_) + 1; }
   [[nodiscard]] Result<double> value(const NcBlock& b, const NcValue& v, int column) const;
 
-  /// M98, M99, M2.
+  /// M98, M97, M99, M2.
   [[nodiscard]] bool has_program(std::int64_t number) const { return labels_.count(number) != 0; }
   [[nodiscard]] std::optional<Diagnostic> call_program(std::int64_t number);
+  [[nodiscard]] bool has_lines(double number) const;  ///< one line begins with this N word
+  [[nodiscard]] std::optional<Diagnostic> call_lines(double number);
   [[nodiscard]] std::optional<Diagnostic> return_from_program(int column);
   [[nodiscard]] bool inside_call() const { return !frames_.empty(); }
   void end() { ended_ = true; }
@@ -66,6 +68,8 @@ class NcFlow {
   void find_names(NcBlock& block);
   std::pair<const NcBlock*, Diagnostic> fetch(std::size_t line);
   std::optional<Diagnostic> find_labels();
+  void note_number(std::size_t line, std::string_view text);
+  [[nodiscard]] std::optional<Diagnostic> enter(std::size_t line);
   [[nodiscard]] std::optional<Diagnostic> check_percents() const;
   Status after_end();
   [[nodiscard]] const double* parameter(int n) const;
@@ -83,8 +87,9 @@ class NcFlow {
   std::size_t max_steps_, max_idle_, idle_ = 0;
   std::vector<std::string_view> lines_;
   std::vector<std::size_t> percents_;
-  std::unordered_map<std::size_t, std::size_t> ends_;     // head line -> end line
-  std::unordered_map<std::int64_t, std::size_t> labels_;  // sub-program -> line
+  std::unordered_map<std::size_t, std::size_t> ends_;      // head line -> end line
+  std::unordered_map<std::int64_t, std::size_t> labels_;   // sub-program -> line
+  std::unordered_map<std::int64_t, std::size_t> numbers_;  // N word -> line; past all of them where it occurs twice
   std::unordered_map<std::size_t, NcBlock> cache_;
   NcBlock once_;
   std::vector<Frame> frames_;

@@ -57,6 +57,7 @@ class Interpreter {
     std::string offset;
     std::vector<int> m;
     bool dwell = false;                       // G4
+    bool zeros = false;                       // G52
     bool incremental = false;                 // G91
     std::optional<std::size_t> to_reference;  // 0: G28, 1: G30
     bool p_point = false;
@@ -76,6 +77,7 @@ class Interpreter {
       if (auto bad = take(r, w, *v)) return bad;
     }
     if (r.dwell) return dwell(r, numbered(b) ? b.words.size() - 1 : b.words.size());
+    if (r.zeros) return zeros(r, numbered(b) ? b.words.size() - 1 : b.words.size());
     return apply(r);
   }
   static bool numbered(const NcBlock& b) { return b.words.front().letter == 'N'; }
@@ -111,7 +113,7 @@ class Interpreter {
 
   [[nodiscard]] bool has_m(int m) const {
     static constexpr std::array<int, 7> common = {0, 1, 2, 3, 5, 6, 30};
-    const bool call = m == 98 || m == 99;
+    const bool call = m == 98 || m == 99 || (m == 97 && language_.local_calls);
     return std::find(common.begin(), common.end(), m) != common.end() || (call && !language_.o_words) ||
            std::find(language_.coolant_m.begin(), language_.coolant_m.end(), m) != language_.coolant_m.end();
   }
@@ -189,6 +191,7 @@ class Interpreter {
       case 434: r.g43 = r.tcp = true; return 7;
       case 490: r.g49 = true; return 7;
       case 800: return 8;
+      case 520: r.zeros = language_.moves_zeros; return r.zeros ? 14 : 0;
       case 530: r.g53 = true; return 9;
       case 610:
       case 611:
@@ -241,6 +244,25 @@ class Interpreter {
     return placed(r.p_column, execution_.dwell(*r.p / (seconds ? 60 : 60000)));
   }
 
+  /// G52 in a block of its own; all axes named as zero: nothing is left of an earlier one.
+  Problem zeros(const Request& r, std::size_t words) {
+    const auto& has = r.move.has;
+    if (words != 1 + static_cast<std::size_t>(std::count(has.begin(), has.end(), true)) || !moves(r))
+      return here(r.column, "G52 stands in a block of its own, with the axes that it is for");
+    bool all = true;
+    for (std::size_t a = 0; a < 5; ++a) {
+      all = all && (has[a] || control_.letters[a] == 0) && r.move.axis[a] == 0;
+      if (a < 3 && has[a] && r.move.axis[a] != 0)
+        return here(r.column, fmt::format("G52 {} is not in the subset: it moves the zero of rotaries alone",
+                                          control_.letters[a]));
+    }
+    if (all) return placed(r.column, execution_.clear_zeros());
+    for (std::size_t a = 3; a < 5; ++a)
+      if (has[a])
+        if (auto bad = placed(r.column, execution_.move_zero(a, r.move.axis[a], "G52"))) return bad;
+    return std::nullopt;
+  }
+
   /// G28 and G30: through the place that their words name.
   Problem reference(Request& r) {
     const std::string word = *r.to_reference == 0 ? "G28" : "G30";
@@ -265,8 +287,8 @@ class Interpreter {
       r.offset = fmt::format("{} P{}", code, static_cast<int>(*r.p));
       r.p.reset();
     }
-    if ((r.p || r.q) && !r.g64 && !r.to_reference && (r.m.empty() || r.m.front() != 98))
-      return here(r.p_column, "P or Q without G64 or M98");
+    const bool call = !r.m.empty() && (r.m.front() == 97 || r.m.front() == 98);
+    if ((r.p || r.q) && !r.g64 && !r.to_reference && !call) return here(r.p_column, "P or Q without G64 or M98");
     if (r.incremental) execution_.set_incremental();
     if (r.l) return here(r.column, "L is not in the subset");
     if (language_.stops_at_corners) return stop_or_flow(r);
@@ -353,6 +375,10 @@ class Interpreter {
       case 6: return placed(r.column, execution_.change_tool());
       case 2:
       case 30: flow_.end(); return placed(r.column, execution_.end_program(flow_.inside_call()));
+      case 97:
+        if (moves(r) || !r.p || !flow_.has_lines(*r.p))
+          return here(r.column, "M97 needs the P of an N word in this file and no axis word");
+        return flow_.call_lines(*r.p);
       case 98: {
         const std::int64_t p = r.p && std::abs(*r.p) < 1e9 ? static_cast<std::int64_t>(*r.p) : -1;
         if (moves(r) || !flow_.has_program(p))

@@ -33,7 +33,9 @@ struct IsoLanguage {
   std::vector<int> g_tenths;               ///< further G codes, in tenths: 434 for G43.4
   std::vector<int> coolant_m = {7, 8, 9};  ///< M words that switch coolants
   ExtendedOffsets extended;
-  std::size_t most_m = 1;  ///< M words in a block, of different groups
+  std::size_t most_m = 1;    ///< M words in a block, of different groups
+  bool moves_zeros = false;  ///< G52: words of rotaries count from its angle; X Y Z take 0 alone
+  bool local_calls = false;  ///< M97 P calls the lines from N on, up to M99
   DwellNumber dwell = DwellNumber::milliseconds;
   bool dwell_x = false;         ///< G4 X, seconds with a point
   bool bare_reference = false;  ///< G28 and G30 without axes move all of them; else a refusal

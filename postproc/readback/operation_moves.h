@@ -14,6 +14,7 @@ struct OperationMoves {
   std::size_t trail = 0;  ///< machine moves behind the last one
   bool started = false;   ///< a move of a tooth was met
   bool labelled = false;  ///< some move stands behind the comment of a tooth
+  bool tcp = false;       ///< the move before kept the tip: a retract that ends that is the tooth's own
 
   /// The next move of the operation.
   void add(const ExecutedMove& m) {
@@ -21,7 +22,8 @@ struct OperationMoves {
     started = started || !m.machine;
     labelled = labelled || m.tooth >= 0;
     if (!started) ++lead;
-    trail = started && m.machine ? trail + 1 : 0;
+    trail = started && m.machine && !tcp ? trail + 1 : 0;
+    tcp = m.tcp;
   }
   [[nodiscard]] std::size_t teeth() const { return started ? total - lead - trail : 0; }
 };

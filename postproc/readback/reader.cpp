@@ -123,7 +123,9 @@ class CopyCheck {
     if (!(error <= control_.rotary_rounding_deg * (1 + 1e-6) + 1e-9))
       return differ(m.line, fmt::format("{} is turned by {} deg where {} * 360 / {} is expected", control_.letters[3],
                                         turned, s.turn, teeth_));
-    if (m.tcp != first.tcp || (m.tcp && (m.tip - turned_tip(first.tip, s.turn)).norm() > kSameTip))
+    // By the turn that is meant, or by that of the rotary, whose error stands in worst_shift_deg.
+    const auto off = [&](double deg) { return (m.tip - turned_tip(first.tip, deg)).norm(); };
+    if (m.tcp != first.tcp || (m.tcp && off(s.turn * 360.0 / teeth_) > kSameTip && off(turned) > kSameTip))
       return differ(m.line, "the tip is not that of the first tooth, turned");
     if (m.blend_mm != first.blend_mm || m.blend_axis_rad != first.blend_axis_rad ||
         m.corner_path_mm != first.corner_path_mm || std::abs(m.corner_share - first.corner_share) > kSameShare)
@@ -134,10 +136,10 @@ class CopyCheck {
   }
   /// Without TCP bit for bit; with it the joints behind a cut follow from a turned tip, with its round-off.
   bool same(double a, double b) const { return same_bits(a, b) || (control_.chain && std::abs(a - b) <= kSameTip); }
-  /// A point of the table, turned by whole index steps about the gear axis.
-  Vec3 turned_tip(const Vec3& p, int turn) const {
+  /// A point of the table, turned about the gear axis.
+  Vec3 turned_tip(const Vec3& p, double deg) const {
     const Vec3 axis = setup_.rotation().col(2);
-    return setup_.origin_mm + Eigen::AngleAxisd(2 * kPi * turn / teeth_, axis) * (p - setup_.origin_mm);
+    return setup_.origin_mm + Eigen::AngleAxisd(radians(deg), axis) * (p - setup_.origin_mm);
   }
   void differ(int line, std::string what) {
     if (!result_.copies) return;

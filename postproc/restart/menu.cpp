@@ -81,11 +81,29 @@ RestartMenu operations_in(const std::vector<std::string_view>& lines) {
       o.type = comment.substr(std::min(comment.size(), comment.find(' ', 3) + 1));
       o.at = here;
       menu.operations.push_back(std::move(o));
+    } else if (const int k = readback::comment_label(comment, "AT TOOTH ");
+               k >= 0 && !menu.operations.empty() && i + 1 < lines.size()) {
+      menu.operations.back().teeth.push_back({-1, k, {here.line + 1, number_of(lines[i + 1])}});
     } else if (comment.starts_with("FIRST TOOTH") && !menu.operations.empty() && i + 1 < lines.size()) {
       menu.operations.back().first_tooth = {here.line + 1, number_of(lines[i + 1])};
     }
   }
   return menu;
+}
+
+/// Places of the teeth that are called, and where the opening ends.
+std::optional<Diagnostic> place_calls(RestartOperation& op, const joints::AxisProgram& program,
+                                      const std::vector<std::string_view>& lines) {
+  int place = program.teeth - static_cast<int>(op.teeth.size());
+  for (RestartTooth& t : op.teeth) {
+    t.place = place++;
+    const int expected = joints::tooth_of_place(std::max(0, t.place), program.tooth_stride, program.teeth);
+    if (t.place < 0 || t.tooth != expected)
+      return fail("line {}: tooth {} where tooth {} is expected", t.at.line, t.tooth, expected);
+  }
+  const int end = op.teeth.front().at.line - 2;  // ahead of the comment
+  op.opening_end = {end, number_of(lines[static_cast<std::size_t>(end) - 1])};
+  return std::nullopt;
 }
 
 }  // namespace
@@ -108,9 +126,11 @@ Result<RestartMenu> restart_menu(std::string_view text, const std::string& file,
     if (op.first_tooth.line != 0)
       for (int n = program.teeth - static_cast<int>(teeth[op.operation]); n < program.teeth; ++n)
         op.teeth.push_back({n, tooth_at(n), {}});
-  if (std::none_of(menu.operations.begin(), menu.operations.end(),
-                   [](const auto& op) { return op.first_tooth.line == 0; }))
-    return menu;
+  for (auto& op : menu.operations)
+    if (op.first_tooth.line == 0 && !op.teeth.empty())
+      if (auto bad = place_calls(op, program, lines)) return *bad;
+  const auto has_lines = [](const auto& op) { return op.first_tooth.line != 0 || !op.teeth.empty(); };
+  if (std::all_of(menu.operations.begin(), menu.operations.end(), has_lines)) return menu;
 
   std::map<int, readback::OperationMoves> counts;
   const auto count = [&](const readback::ExecutedMove& m) { counts[m.operation].add(m); };
@@ -121,7 +141,7 @@ Result<RestartMenu> restart_menu(std::string_view text, const std::string& file,
     return s.error();
 
   for (auto& op : menu.operations) {
-    if (op.first_tooth.line != 0) continue;
+    if (has_lines(op)) continue;
     const auto& found = first.of(op.operation);
     if (found.size() != teeth[op.operation])
       return fail("operation {} has {} teeth in the text where {} are expected", op.operation, found.size(),

@@ -14,22 +14,9 @@ void NcAxisWords::enter_loop(const std::vector<joints::AxisBlock>& tooth) {
   commanded_.fill(false);
 }
 
-void NcAxisWords::shift_line(const joints::AxisBlock& b, IndexWord index, NcLines::Values& values) {
-  if (index != IndexWord::shifted || dialect_.loop.index_line.empty()) return;
-  const auto axis = static_cast<std::size_t>(program_.index_axis);
-  if (shift_known_ && shift_ == b.words[axis] && known_[axis]) return;
-  const bool rolls = program_.rollover[axis];
-  values["angle"] = out_.value(rolls ? joints::within_turn(b.words[axis], turn_word()) : b.words[axis], decimals(axis));
-  out_.fill({dialect_.loop.index_line}, values);
-  if (rolls) out_.fill(dialect_.rollover.index_lines, values);
-  shift_ = b.words[axis];
-  shift_known_ = true;
-}
-
 void NcAxisWords::print(const joints::AxisBlock& b, std::size_t axis, IndexWord index) {
   if (program_.letters[axis] == 0) return;
   const bool is_index = static_cast<int>(axis) == program_.index_axis;
-  if (is_index && index == IndexWord::left_out) return;
   const std::int64_t word = b.words[axis];
   const bool unchanged = known_[axis] && last_[axis] == word, backwards = axis >= 3 && word < position_[axis - 3];
   // By sign the round-off of the control's own sum decides about a whole turn where the axis stands already.
@@ -57,10 +44,8 @@ void NcAxisWords::shifted_number(std::size_t axis, std::int64_t word) {
   std::string& text = out_.text();
   if (loop.index_brackets) text += '[';
   text += loop.index;
-  if (loop.index_line.empty()) {
-    if (word >= 0 && !dialect_.sign_always) text += '+';
-    out_.number(word, decimals(axis));
-  }
+  if (word >= 0 && !dialect_.sign_always) text += '+';
+  out_.number(word, decimals(axis));
   if (loop.index_brackets) text += ']';
 }
 

@@ -14,9 +14,8 @@ namespace toothpath::text {
 
 /// How the word of the index rotary is printed.
 enum class IndexWord {
-  literal,   ///< as it stands
-  shifted,   ///< by the variable of the loop
-  left_out,  ///< in a sub-program that is called behind an explicit rotary block
+  literal,  ///< as it stands
+  shifted,  ///< by the variable of the loop
 };
 
 class NcAxisWords {
@@ -26,8 +25,6 @@ class NcAxisWords {
 
   /// Appends the word of one axis (0 to 4) with a blank ahead, if the block needs it.
   void print(const joints::AxisBlock& b, std::size_t axis, IndexWord index);
-  /// On controls without arithmetic in a word: lines ahead of the block, for the angle that its index word refers to.
-  void shift_line(const joints::AxisBlock& b, IndexWord index, NcLines::Values& values);
 
   /// The next block names every axis that it may.
   void forget() { known_.fill(false); }
@@ -62,8 +59,6 @@ class NcAxisWords {
   std::array<bool, 5> known_{};
   std::array<std::int64_t, 2> position_{};  // of the rotaries
   std::array<bool, 2> commanded_{};         // they stand there
-  std::int64_t shift_ = 0;
-  bool shift_known_ = false;
 };
 
 }  // namespace toothpath::text

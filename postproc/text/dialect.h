@@ -6,8 +6,10 @@
 // {blend} mm, {blend_axis} deg, {free} a feed where nothing is cut, {teeth}, {last} = teeth - 1, {label} and {label+1}
 // numbers that belong to the operation alone, {sign} and {frame_sign} "-" or nothing, {turns} the teeth that the index
 // is turned by, {number} and {name} of the program, {id} its name in letters and digits. In the loop over the teeth:
-// {first} place of the order that it begins with, {stride} of the order, {tooth} the variable that holds the tooth. The
-// line "{safe_start}" stands for all lines of `safe_start`, "{pick}" for those of `pick` where the order is spread,
+// {first} place of the order that it begins with, {stride} of the order, {tooth} the variable that holds the tooth,
+// {index_axis} letter of the index rotary, {angle} its turn to the tooth where calls stand one by one, {zeros} all axes
+// at 0, {program} number of the sub-program, {operation}. The line "{safe_start}" stands for all lines of `safe_start`,
+// "{pick}" for those of `pick` where the order is spread,
 // "{first_tooth}" for the comment that names the line behind it. Values are printed in the format of the dialect.
 #pragma once
 
@@ -36,7 +38,7 @@ struct NcLoop {
     none,         ///< every tooth is written out
     in_line,      ///< `before`, the blocks of the tooth, `after`
     sub_program,  ///< `before`, the blocks, `after` ahead of the operation; `call` in its place
-    stretches,    ///< M98: a sub-program for every stretch with one index angle, called after an explicit rotary block
+    called,       ///< `before`, the blocks, `after` behind the main program; `call` for every tooth in its order
   };
   Form form = Form::none;
   NcLinesOfText before, after, call;
@@ -44,9 +46,10 @@ struct NcLoop {
   std::string place, tooth;     ///< the variables of place and picked tooth
   std::string index;            ///< ahead of the number of the index rotary: "R2" prints C=R2+12.5
   bool index_brackets = false;  ///< "[#1+12.5]"
-  /// Controls without arithmetic in a word: this line ahead of a block that changes the index angle, with {angle};
-  /// `index` is then the whole word.
-  std::string index_line;
+  /// The words of the index rotary count from the angle of the tooth, ahead of it, and from the machine's zero, behind
+  /// the operation: they are then those of tooth 0. Empty: `index` stands in every word.
+  NcLinesOfText zero_on, zero_off;
+  bool zero_with_tcp = false;         ///< while TCP is on, too; else `index` stands in the words then
   NcLinesOfText frame_on, frame_off;  ///< around TCP: turns the frame by the index; empty: no loop with TCP
 };
 
@@ -61,9 +64,8 @@ struct NcRollover {
   Way way = Way::none;
   std::string open, close;  ///< around the number: "DC(" and ")"
   std::string index;  ///< in a loop, between these: the place within the turn, from {word}, a sum that is not below 0
-  NcLinesOfText index_lines;  ///< the same for controls without arithmetic in a word, behind `NcLoop::index_line`
-  std::string backwards;      ///< in a loop whose index falls, instead of {sign}{tooth}: not below 0 either
-  std::string note;           ///< comment at the top, with {axis}: what the control must be set to
+  std::string backwards;  ///< in a loop whose index falls, instead of {sign}{tooth}: not below 0 either
+  std::string note;       ///< comment at the top, with {axis}: what the control must be set to
 };
 
 /// What a control wants to read.

@@ -37,6 +37,11 @@ NcLines::Values program_values(const joints::AxisProgram& program, const NcDiale
   values["radius"] = unsigned_value(corners.radius_mm, 0);
   for (const char letter : program.letters)
     if (letter != 0) values["axes"] += (values["axes"].empty() ? "" : ",") + std::string(1, letter);
+  if (program.index_axis >= 0)
+    values["index_axis"] = std::string(1, program.letters[static_cast<std::size_t>(program.index_axis)]);
+  for (const char letter : program.letters)
+    if (letter != 0)
+      values["zeros"] += fmt::format("{}{}{}", values["zeros"].empty() ? "" : " ", letter, unsigned_value(0, 0));
   values["free"] = unsigned_value(kFreeFeed, 0);
   values["teeth"] = std::to_string(program.teeth);
   values["last"] = std::to_string(program.teeth - 1);

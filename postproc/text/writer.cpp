@@ -14,7 +14,6 @@
 #include "postproc/text/axis_words.h"
 #include "postproc/text/corners.h"
 #include "postproc/text/lines.h"
-#include "postproc/text/stretches.h"
 
 namespace toothpath::text {
 namespace {
@@ -33,7 +32,8 @@ class Writer {
         corners_(corner_words(program, dialect, header)),
         out_(dialect),
         words_(program, dialect, out_),
-        tcp_(program.tcp != machines::TcpMode::none) {}
+        tcp_(program.tcp != machines::TcpMode::none),
+        zero_moves_(program.loop && !dialect.loop.zero_on.empty() && (!tcp_ || dialect.loop.zero_with_tcp)) {}
 
   Result<NcText> write() {
     if (header_.coolant != machines::Coolant::off) {
@@ -122,13 +122,19 @@ class Writer {
     fill(dialect_.tool_next);
   }
 
-  void operation(const joints::AxisOperation& op, int position) {
+  void set_values(const joints::AxisOperation& op, int position) {
     values_["tool"] = std::to_string(op.tool_number);
     values_["speed"] = std::to_string(std::llround(op.spindle_rpm));
     values_["label"] = std::to_string(kFirstLabel + 2 * position);
     values_["label+1"] = std::to_string(kFirstLabel + 2 * position + 1);
     values_["first"] = std::to_string(op.first_place);
     values_["work_top"] = linear(program_.retract_z_mm - op.tool_length_mm - program_.work_offset_at_mm.z());
+    values_["operation"] = std::to_string(op.operation);
+    values_["program"] = std::to_string(subprogram_number(position));
+  }
+
+  void operation(const joints::AxisOperation& op, int position) {
+    set_values(op, position);
     out_.comment(
         fmt::format("OP {} {}", op.operation, op.type));  // as in the job, in every dialect: programs look for it
     out_.comment(numbers::comment_text(fmt::format("T{} {} LENGTH {} MM TO THE TIP", op.tool_number, op.tool_name,
@@ -150,12 +156,12 @@ class Writer {
         const std::vector<joints::AxisBlock>& list = tooth.all(room);
         out_.comment(tooth.remark.empty() ? fmt::format("TOOTH {}", tooth.tooth) : numbers::comment_text(tooth.remark));
         forget();
-        blocks(list, {0, list.size()}, IndexWord::literal);
+        blocks(list, IndexWord::literal);
         if (tooth.pause) fill(dialect_.pause);
         behind_tooth();
       }
-    } else if (loop.form == NcLoop::Form::stretches) {
-      stretch_calls(op, position);
+    } else if (loop.form == NcLoop::Form::called) {
+      calls(op, position);
     } else if (loop.form == NcLoop::Form::sub_program) {
       fill(loop.call);
     } else {
@@ -171,66 +177,62 @@ class Writer {
   /// One tooth, its index angle given by the control's arithmetic.
   void loop_body(const joints::AxisOperation& op) {
     fill(dialect_.loop.before);
+    if (zero_moves_) fill(dialect_.loop.zero_on);
+    tooth_of_loop(op);
+    behind_tooth();
+    fill(dialect_.loop.after);
+    if (zero_moves_) fill(dialect_.loop.zero_off);
+  }
+  void tooth_of_loop(const joints::AxisOperation& op) {
     forget();
     const auto& tooth = op.teeth.front().blocks;
     words_.enter_loop(tooth);
-    blocks(tooth, {0, tooth.size()}, IndexWord::shifted);
-    behind_tooth();
-    fill(dialect_.loop.after);
+    blocks(tooth, zero_moves_ ? IndexWord::literal : IndexWord::shifted);
   }
 
-  // A sub-program for every stretch with one index angle, called after an explicit rotary block.
-  void stretch_calls(const joints::AxisOperation& op, int position) {
-    const auto& tooth = op.teeth.front().blocks;
-    const auto segments = stretches_of(tooth, program_.index_axis, dialect_.name);
-    if (!segments) {
-      error_ = segments.error();
-      return;
-    }
-    const int first = subprogram_number(subprograms_.size());
-    for (const auto& s : *segments) subprograms_.push_back({&op, s});
-    if (const int last = subprogram_number(subprograms_.size() - 1); last > kLastProgram) {
+  // One tooth stands behind the main program and is called for each.
+  void calls(const joints::AxisOperation& op, int position) {
+    const int count = static_cast<int>(program_.operations.size()), last = subprogram_number(count - 1);
+    const bool numbered = dialect_.loop.call.front().find("{program}") != std::string::npos;
+    if (numbered && last > kLastProgram) {
       error_ = fail(
           "program O{} has sub-programs up to O{}, above O{}: from there on numbers are the builder's; a "
           "number at most {} leaves room",
-          header_.program_number, last, kLastProgram, kLastProgram - static_cast<int>(subprograms_.size()));
+          header_.program_number, last, kLastProgram, kLastProgram - count);
       return;
     }
-    const auto index = static_cast<std::size_t>(program_.index_axis);
     for (int n = op.first_place; n < program_.teeth; ++n) {
       const int k = joints::tooth_of_place(n, program_.tooth_stride, program_.teeth);
+      out_.comment(fmt::format("AT TOOTH {}", k));
       number_here(position, static_cast<std::size_t>(n - op.first_place) + 1);
-      for (std::size_t i = 0; i < segments->size(); ++i) {
-        joints::AxisBlock turn = tooth[(*segments)[i].first];
-        turn.words[index] += numbers::ratio_to_fixed(std::int64_t{360} * k * program_.index_sign, program_.teeth,
-                                                     program_.format.rotary_decimals);
-        turn.forced = true;
-        forget();
-        rapid(turn, IndexWord::literal);
-        out_.line(fmt::format("M98 P{}", first + static_cast<int>(i)));
-      }
+      values_["angle"] = out_.value(numbers::ratio_to_fixed(std::int64_t{360} * k * program_.index_sign, program_.teeth,
+                                                            program_.format.rotary_decimals),
+                                    program_.format.rotary_decimals);
+      fill(dialect_.loop.zero_on);
+      fill(dialect_.loop.call);
       behind_tooth();
     }
+    fill(dialect_.loop.zero_off);
     forget();
   }
   /// Behind that of the main program, so that those of another job are not called.
-  [[nodiscard]] int subprogram_number(std::size_t n) const { return header_.program_number + 1 + static_cast<int>(n); }
+  [[nodiscard]] int subprogram_number(int position) const { return header_.program_number + 1 + position; }
   void write_subprograms() {
-    for (std::size_t i = 0; i < subprograms_.size() && !error_; ++i) {
-      const auto& [op, s] = subprograms_[i];
-      out_.line(fmt::format("O{} (OPERATION {} PART {})", subprogram_number(i), op->operation, i));
-      forget();
-      blocks(op->teeth.front().blocks, {s.first + 1, s.last}, IndexWord::left_out);
-      out_.line("M99");
+    if (!program_.loop || dialect_.loop.form != NcLoop::Form::called) return;
+    for (std::size_t i = 0; i < program_.operations.size() && !error_; ++i) {
+      set_values(program_.operations[i], static_cast<int>(i));
+      fill(dialect_.loop.before);
+      tooth_of_loop(program_.operations[i]);
+      fill(dialect_.loop.after);
     }
   }
 
-  // Blocks of one stretch; begins and ends in G94.
-  void blocks(const std::vector<joints::AxisBlock>& list, NcStretch s, IndexWord index) {
+  // Blocks of one tooth; begins and ends in G94.
+  void blocks(const std::vector<joints::AxisBlock>& list, IndexWord index) {
     inverse_time_ = false;
-    for (std::size_t i = s.first; i < s.last && !error_; ++i) {
+    for (std::size_t i = 0; i < list.size() && !error_; ++i) {
       const joints::AxisBlock& b = list[i];
-      if (i > s.first) note_unwinding(list[i - 1], b);
+      if (i > 0) note_unwinding(list[i - 1], b);
       switch (b.kind) {
         case joints::BlockKind::feed:
         case joints::BlockKind::turn:
@@ -238,7 +240,7 @@ class Writer {
           else joint_feed(b, index);
           break;
         case joints::BlockKind::tcp_on:
-        case joints::BlockKind::tcp_off: switch_tcp(b, index); break;
+        case joints::BlockKind::tcp_off: switch_tcp(b); break;
         default: rapid(b, index); break;
       }
     }
@@ -254,12 +256,12 @@ class Writer {
         out_.comment(fmt::format("{} UNWINDS BY {} TURN{}", program_.letters[a], turns, turns == 1 ? "" : "S"));
   }
 
-  void switch_tcp(const joints::AxisBlock& b, IndexWord index) {
+  void switch_tcp(const joints::AxisBlock& b) {
     if (inverse_time_) out_.line(fmt::format("G94 F{}", values_["free"]));
     inverse_time_ = false;
     values_["z"] = out_.value(b.words[2], words_.decimals(2));
     const bool on = b.kind == joints::BlockKind::tcp_on;
-    const bool turned = program_.loop && index == IndexWord::shifted;
+    const bool turned = program_.loop && dialect_.loop.form == NcLoop::Form::in_line;
     if (!on && turned) fill(dialect_.loop.frame_off);
     fill(on ? dialect_.tcp_on : dialect_.tcp_off);
     if (on && turned) fill(dialect_.loop.frame_on);
@@ -276,7 +278,6 @@ class Writer {
                             : b.kind == joints::BlockKind::rapid_xy  ? std::pair<std::size_t, std::size_t>{0, 2}
                             : b.kind == joints::BlockKind::rapid_tip ? std::pair<std::size_t, std::size_t>{0, 3}
                                                                      : std::pair<std::size_t, std::size_t>{3, 5};
-    if (to == 5) words_.shift_line(b, index, values_);
     const std::size_t begin = out_.size();
     out_.text() += dialect_.rapid;
     motion_ = 0;
@@ -406,12 +407,12 @@ class Writer {
   NcAxisWords words_;
   NcLines::Values values_;
   bool tcp_;
+  bool zero_moves_;  // the index moves the zero of its rotary
   std::optional<machines::CoolantWords> coolant_;
   std::optional<Diagnostic> error_;
   int motion_ = -1;         // 0, 1; -1: to be printed
   std::int64_t feed_ = -1;  // F per minute in force, millionths; -1: to be printed
   bool inverse_time_ = false;
-  std::vector<std::pair<const joints::AxisOperation*, NcStretch>> subprograms_;
 };
 
 }  // namespace

@@ -36,8 +36,9 @@ std::vector<ToolPlace> places_of(const std::string& file) {
 
 TEST(JudgeOfText, OneMotionIsTheSameInEveryForm) {
   const Posts all[] = {{"cutter_location.apt",
-                        {"linuxcnc_joints.ngc", "linuxcnc_tcp.ngc", "fanuc_tcp.nc", "haas.nc", "siemens_joints.mpf",
-                         "siemens_tcp.mpf", "siemens_vectors.mpf", "heidenhain_vectors.h.txt"}},
+                        {"linuxcnc_joints.ngc", "linuxcnc_tcp.ngc", "fanuc_tcp.nc", "fanuc_tcp_called.nc", "haas.nc",
+                         "haas_called.nc", "siemens_joints.mpf", "siemens_tcp.mpf", "siemens_vectors.mpf",
+                         "heidenhain_tcp_moving.h.txt", "heidenhain_vectors.h.txt"}},
                        {"heidenhain_joints.h.txt", {"fanuc_joints.nc", "mitsubishi_m80.nc", "heidenhain_tcp.h.txt"}},
                        {"siemens_spread.mpf", {"linuxcnc_spread.ngc"}},
                        {"heidenhain_spread.h.txt", {"fanuc_spread.nc"}}};

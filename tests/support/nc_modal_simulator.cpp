@@ -89,11 +89,16 @@ Language fanuc() {
                      {"G43.4", "length", "on"},
                      {"M30", "-", "end"},
                      {"M99", "-", "return"}});
-  l.lines = {{R"(%|O\d+ ?)", "-", ""}, {R"(.*\bG43\.4\b.*)", "tcp", "on"}, {R"(.*\bG49\b.*)", "tcp", "off"}};
+  l.lines = {{R"(%|O\d+ ?)", "-", ""},
+             {R"(.*\bG43\.4\b.*)", "tcp", "on"},
+             {R"(.*\bG49\b.*)", "tcp", "off"},
+             {R"(G52 X0\. Y0\. Z0\.( [ABC]0\.)*)", "shift", "off"},
+             {R"(G52 [ABC]-?\d+\.\d*)", "shift", "on"},
+             {R"(N\d+ ?)", "-", ""}};
   l.axis = kPlainWord;
   // G49 stands in the block of the first retract: it is that motion which is safe.
   l.safe = {{"units", "mm"},  {"plane", "xy"},     {"distance", "absolute"}, {"feed", "per minute"}, {"radius", "off"},
-            {"cycle", "off"}, {"rotation", "off"}, {"offset", "G54"},        {"smoothing", "off"}};
+            {"cycle", "off"}, {"rotation", "off"}, {"offset", "G54"},        {"smoothing", "off"},   {"shift", "off"}};
   l.end = l.safe;
   l.end["length"] = l.end["tcp"] = l.end["spindle"] = "off";
   return l;
@@ -116,7 +121,9 @@ Language siemens() {
   l.lines = {{"TRAORI", "tcp", "on"},
              {"TRAFOOF", "tcp", "off"},
              {"TRAORI|TRAFOOF", "offset", "dropped"},
-             {"ROT", "frame", "zero"},
+             {"ROT|TRANS", "frame", "zero"},
+             {"ROT|TRANS", "shift", "off"},
+             {"TRANS [ABC]=R2", "shift", "on"},
              {"ROT Z=R3", "frame", "turned"},
              {R"(R\d=.*)", "-", ""},
              {R"(FOR .*|ENDFOR)", "-", ""},
@@ -126,8 +133,9 @@ Language siemens() {
              {R"(FGREF\[[ABC]\]=\d+)", "-", ""}};
   l.comment = ';';
   l.axis = R"(([XYZ]|[ABC]=|[ABC]3=|F|S|ADIS=)(R2[+-]\d*\.?\d*|-?\d*\.?\d*))";
-  l.safe = {{"units", "mm"}, {"plane", "xy"},   {"distance", "absolute"}, {"feed", "per minute"}, {"radius", "off"},
-            {"tcp", "off"},  {"frame", "zero"}, {"compressor", "off"},    {"offset", "G54"},      {"smoothing", "on"}};
+  l.safe = {{"units", "mm"},   {"plane", "xy"},     {"distance", "absolute"}, {"feed", "per minute"},
+            {"radius", "off"}, {"tcp", "off"},      {"frame", "zero"},        {"compressor", "off"},
+            {"offset", "G54"}, {"smoothing", "on"}, {"shift", "off"}};
   l.end = l.safe;
   l.end["length"] = l.end["smoothing"] = l.end["spindle"] = "off";
   return l;
@@ -159,7 +167,8 @@ Language heidenhain() {
              {"FUNCTION RESET TCPM", "tcp", "off"},
              {"FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS", "tcp", "on"},
              {"TRANS DATUM RESET", "shift", "off"},
-             {R"(CYCL DEF 10\.0 ROTATION|CYCL DEF 32\.0 TOLERANCE)", "-", ""},
+             {R"(CYCL DEF 7\.0 DATUM SHIFT|CYCL DEF 10\.0 ROTATION|CYCL DEF 32\.0 TOLERANCE)", "-", ""},
+             {R"(CYCL DEF 7\.1 [ABC]\+Q2)", "shift", "on"},
              {R"(CYCL DEF 10\.1 ROT\+0)", "frame", "zero"},
              {R"(CYCL DEF 10\.1 ROT\+Q3)", "frame", "turned"},
              {R"(CYCL DEF 247 DATUM SETTING Q339=\+1)", "offset", "G54"},
@@ -169,10 +178,10 @@ Language heidenhain() {
              {R"(TOOL CALL \d+ Z S\d+)", "length", "on"},
              {R"(TOOL CALL \d+ Z S\d+)", "-", "tool change"},
              {R"(TOOL CALL S\d+|TOOL DEF \d+)", "-", ""},
-             {R"(Q\d = .*|FN 1: Q5 = .*)", "-", ""},
+             {R"(Q\d = .*)", "-", ""},
              {R"(LBL \d+)", "-", ""}};
   l.comment = ';';
-  l.axis = R"(([XYZABCF]|T[XYZ])([+-]?\d*\.?\d*|\+Q5))";
+  l.axis = R"(([XYZABCF]|T[XYZ])([+-]?\d*\.?\d*))";
   l.numbered = true;
   l.safe = {{"units", "mm"},   {"tilt", "off"},   {"tcp", "off"},        {"shift", "off"},
             {"frame", "zero"}, {"offset", "G54"}, {"travel", "shorter"}, {"smoothing", "on"}};
@@ -272,7 +281,7 @@ class Order {
   explicit Order(const std::vector<Line>& lines) : lines_(lines) {
     std::smatch m;
     for (std::size_t i = 0; i < lines.size(); ++i) {
-      if (lines[i].code.empty() || (lines[i].code[0] != 'o' && lines[i].code[0] != 'O')) continue;
+      if (lines[i].code.empty() || std::string("oON").find(lines[i].code[0]) == std::string::npos) continue;
       if (std::regex_match(lines[i].code, m, kSub) || std::regex_match(lines[i].code, m, kProgram)) subs_[m[1]] = i + 1;
     }
     run(0);
@@ -317,8 +326,8 @@ class Order {
   }
 
   inline static const std::regex kSub{R"(o(\d+) sub)"}, kEndSub{R"(o(\d+) endsub)"},
-      kCall{R"((?:o|M98 P)(\d+)(?: call .*)?)"}, kWhile{R"(o(\d+) while .*)"}, kEnd{R"((?:o(\d+) endwhile|ENDFOR))"},
-      kRepeat{R"((?:CALL LBL (\d+) REP\d+|FN 12: IF \+Q\d LT \+\d+ GOTO LBL (\d+)))"}, kProgram{R"(O(\d+))"};
+      kCall{R"((?:o|M9[78] P)(\d+)(?: call .*)?)"}, kWhile{R"(o(\d+) while .*)"}, kEnd{R"((?:o(\d+) endwhile|ENDFOR))"},
+      kRepeat{R"((?:CALL LBL (\d+) REP\d+|FN 12: IF \+Q\d LT \+\d+ GOTO LBL (\d+)))"}, kProgram{R"([ON](\d+))"};
   const std::vector<Line>& lines_;
   std::map<std::string, std::size_t> subs_;
   std::vector<std::size_t> executed_;
@@ -354,7 +363,7 @@ Meaning read_line(const Language& l, const std::string& code) {
   }
   // Statements whose words are no axis words, and assignments.
   static const std::regex statement(
-      R"(ROT .*|CYCL .*|TOOL .*|FUNCTION .*|PLANE .*|TRANS .*|BEGIN .*|END .*|Q\d .*|FN .*|R\d=.*|FOR .*|LBL .*)"),
+      R"(ROT .*|G52 .*|CYCL .*|TOOL .*|FUNCTION .*|PLANE .*|TRANS.*|BEGIN .*|END .*|Q\d .*|FN .*|R\d=.*|FOR .*|LBL .*)"),
       assignment(R"(#\d=.*)");
   if (line_known && (code.find(' ') == std::string::npos || std::regex_match(code, statement))) return out;
   if (std::regex_match(code, assignment)) return out;

@@ -146,6 +146,8 @@ class Walker {
   bool said_ = false, rapid_ = false, motion_known_ = false, tip_ = false, length_ = false, metric_ = false;
   int tool_ = 0, ready_ = 0;
   double turned_ = 0;
+  std::array<double, 3> zero_{};
+  bool freezes_ = false;
 
  private:
   void fault(const TextLine& line, const std::string& what) {
@@ -159,6 +161,8 @@ class Walker {
     next_.rapid = rapid_;
     next_.tip = tip_;
     next_.turned_deg = turned_;
+    next_.zero_deg = zero_;
+    next_.frozen = freezes_ && tip_;
     next_.tool = tool_;
     next_.length = length_;
     walk_.moves.push_back(next_);
@@ -168,7 +172,7 @@ class Walker {
 /// Words with a letter and a number: LinuxCNC, and Fanuc with its kin.
 class IsoWalker : public Walker {
  public:
-  explicit IsoWalker(bool linuxcnc) : linuxcnc_(linuxcnc) {}
+  explicit IsoWalker(bool linuxcnc) : linuxcnc_(linuxcnc) { freezes_ = !linuxcnc; }
 
  protected:
   std::string uncommented(const std::string& line) const override {
@@ -184,6 +188,8 @@ class IsoWalker : public Walker {
   bool execute(const std::string& code) override {
     const bool flow = std::string(linuxcnc_ ? "o#" : "%OM").find(code[0]) != std::string::npos;
     if (flow && (linuxcnc_ ? linuxcnc_flow(code) : fanuc_flow(code))) return true;
+    static const std::regex zero(R"((?:N\d+ )?G52 (.*))");
+    if (!linuxcnc_ && matches(code, zero)) return zeros(found_[1]);
     for (std::size_t k = 0; k < code.size();) {
       if (code[k] == ' ') {
         ++k;
@@ -227,7 +233,12 @@ class IsoWalker : public Walker {
     return true;
   }
   bool fanuc_flow(const std::string& code) {
-    static const std::regex begin(R"(%|O\d+)"), call(R"(M98 P(\d+))");
+    static const std::regex begin(R"(%|O\d+)"), call(R"(M98 P(\d+))"), lines(R"(M97 P(\d+))");
+    if (matches(code, lines)) {
+      returns_.push_back({at_, variables_});
+      at_ = line_behind("N" + found_[1].str());
+      return true;
+    }
     if (code == "M99") return back(), true;
     if (matches(code, call)) {
       returns_.push_back({at_, variables_});
@@ -235,6 +246,17 @@ class IsoWalker : public Walker {
       return true;
     }
     return matches(code, begin);
+  }
+  /// X Y Z may only be 0.
+  bool zeros(const std::string& words) {
+    std::istringstream in(words);
+    for (std::string w; in >> w;) {
+      const double v = number(w.substr(1));
+      const auto r = std::string("ABC").find(w[0]);
+      if (r != std::string::npos) zero_[r] = v;
+      else if (std::string("XYZ").find(w[0]) == std::string::npos || v != 0) return false;
+    }
+    return !tip_;
   }
   void back() {
     at_ = returns_.back().first;
@@ -284,7 +306,7 @@ class SiemensWalker : public Walker {
   std::string uncommented(const std::string& line) const override { return stripped(line.substr(0, line.find(';'))); }
   bool execute(const std::string& code) override {
     static const std::regex loop(R"((?:FOR) (R\d+)=(.*) TO (.*))"), assign(R"((R\d+)=(.*))"), tool("T=\"T(\\d+)\""),
-        path(R"(FGROUP\(.*\)|FGREF\[[ABC]\]=\S+)"), turn(R"(ROT Z=(.*))");
+        path(R"(FGROUP\(.*\)|FGREF\[[ABC]\]=\S+)"), turn(R"(ROT Z=(.*))"), zero(R"(TRANS ([ABC])=(.*))");
     if (std::string("GXYZABC").find(code[0]) != std::string::npos) {
       return words(code);
     } else if (matches(code, loop)) {
@@ -303,8 +325,13 @@ class SiemensWalker : public Walker {
       ready_ = std::stoi(found_[1]);
     } else if (matches(code, turn)) {
       turned_ = number(found_[1]);
-    } else if (code == "ROT") {
+    } else if (matches(code, zero)) {
       turned_ = 0;
+      zero_ = {};
+      zero_.at(std::size_t(found_[1].str()[0] - 'A')) = number(found_[2]);
+    } else if (code == "ROT" || code == "TRANS") {
+      turned_ = 0;
+      zero_ = {};
     } else if (code == "TRAORI" || code == "TRAFOOF") {
       tip_ = code == "TRAORI";
     } else if (!matches(code, path)) {
@@ -354,18 +381,19 @@ class HeidenhainWalker : public Walker {
   void prepare() override { motion_known_ = true; }
   bool execute(const std::string& code) override {
     static const std::regex begin(R"(BEGIN PGM \S+ MM)"), assign(R"((Q\d+) = (.*))"),
-        sum(R"(FN 1: (Q\d+) = (.*) \+ (.*))"), jump(R"(FN 12: IF (.*) LT (.*) GOTO LBL (\d+))"),
+        zero(R"(CYCL DEF 7\.1 ([ABC])(.*))"), jump(R"(FN 12: IF (.*) LT (.*) GOTO LBL (\d+))"),
         tool(R"(TOOL CALL (\d+) Z S\d+)"), other(R"(TOOL (?:CALL S|DEF )\d+)"), turn(R"(CYCL DEF 10\.1 ROT(.*))"),
         harmless(
-            R"(LBL \d+|PLANE RESET STAY|TRANS DATUM RESET|END PGM \S+ MM|M(?:0|1|3|5|7|8|9|126|127))"
-            R"(|CYCL DEF (?:10\.0 ROTATION|247 DATUM SETTING Q339=\+1|32\.0 TOLERANCE|32\.1(?: T.*)?|32\.2 HSC-MODE:0 TA.*))");
+            R"(LBL \d+|PLANE RESET STAY|END PGM \S+ MM|M(?:0|1|3|5|7|8|9|126|127))"
+            R"(|CYCL DEF (?:7\.0 DATUM SHIFT|10\.0 ROTATION|247 DATUM SETTING Q339=\+1|32\.0 TOLERANCE|32\.1(?: T.*)?|32\.2 HSC-MODE:0 TA.*))");
     if (code[0] == 'L' && code[1] != 'B') {
       return straight(code);
     } else if (matches(code, begin)) {
       metric_ = true;
-    } else if (matches(code, sum)) {
-      const std::string name = found_[1];
-      variables_[name] = number(found_[2]) + number(found_[3]);
+    } else if (matches(code, zero)) {
+      zero_.at(std::size_t(found_[1].str()[0] - 'A')) = number(found_[2]);
+    } else if (code == "TRANS DATUM RESET") {
+      zero_ = {};
     } else if (matches(code, assign)) {
       const std::string name = found_[1];
       variables_[name] = number(found_[2]);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 
@@ -88,6 +89,16 @@ ToolPlace PlainMachine::place(const PlainJoints& joints, double length) const {
   return p;
 }
 
+Vec3 PlainMachine::on_table(const PlainJoints& joints, Vec3 point) const {
+  for (auto axis = table_.rbegin(); axis != table_.rend(); ++axis)
+    point = axis->point + turn(*axis, joints) * (point - axis->point);
+  return point;
+}
+Vec3 PlainMachine::off_table(const PlainJoints& joints, Vec3 point) const {
+  for (const Axis& axis : table_) point = axis.point + turn(axis, joints).transpose() * (point - axis.point);
+  return point;
+}
+
 void PlainMachine::bring_tip(PlainJoints& joints, const Vec3& tip, double length) const {
   Vec3 missing = tip - place(joints, length).tip;
   for (const Axis& axis : table_) missing = turn(axis, joints).transpose() * missing;
@@ -147,7 +158,11 @@ class OnMachine {
     m.tip = n.tip;
     m.from = m.to = at_;
     for (std::size_t k = 0; k < 3; ++k)
-      if (n.rotary[k]) m.to[3 + k] = *n.rotary[k], known_[3 + k] = true;
+      if (n.rotary[k]) m.to[3 + k] = *n.rotary[k] + (n.machine ? 0 : n.zero_deg[k]), known_[3 + k] = true;
+    if (n.frozen && !frozen_) frozen_ = at_;
+    if (!n.frozen) frozen_.reset();
+    const auto seen = [&](const Vec3& p) { return frozen_ ? machine_.off_table(*frozen_, p) : p; };
+    const auto meant = [&](const Vec3& p) { return frozen_ ? machine_.on_table(*frozen_, p) : p; };
     const Eigen::AngleAxisd frame(n.turned_deg * kDegree, Vec3::UnitZ());
     if (n.direction) {
       machine_.turn_to(m.to, frame * Vec3((*n.direction)[0], (*n.direction)[1], (*n.direction)[2]));
@@ -155,10 +170,10 @@ class OnMachine {
     }
     if (n.tip) {
       m.tip_from = machine_.place(at_, length).tip;
-      Vec3 words = frame.inverse() * (m.tip_from - setup_.work_offset);
+      Vec3 words = frame.inverse() * (seen(m.tip_from) - setup_.work_offset);
       for (std::size_t k = 0; k < 3; ++k)
         if (n.linear[k]) words[Eigen::Index(k)] = *n.linear[k], known_[k] = true;
-      m.tip_to = frame * words + setup_.work_offset;
+      m.tip_to = meant(frame * words + setup_.work_offset);
       machine_.bring_tip(m.to, m.tip_to, length);
     } else {
       for (std::size_t k = 0; k < 3; ++k)
@@ -181,6 +196,7 @@ class OnMachine {
   const PlainMachine& machine_;
   const PlainSetup& setup_;
   PlainJoints at_{};
+  std::optional<PlainJoints> frozen_;  // where the rotaries stood when the control took over the tip
   std::array<bool, 6> known_{};
 };
 

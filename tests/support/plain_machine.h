@@ -23,6 +23,9 @@ class PlainMachine {
 
   /// In the frame of the table: that of the machine at all rotaries zero.
   [[nodiscard]] ToolPlace place(const PlainJoints& joints, double length) const;
+  /// A place of the machine in the frame of the table at these rotaries, and back.
+  [[nodiscard]] Vec3 on_table(const PlainJoints& joints, Vec3 point) const;
+  [[nodiscard]] Vec3 off_table(const PlainJoints& joints, Vec3 point) const;
   /// X Y Z that bring the tip there while the rotaries stand.
   void bring_tip(PlainJoints& joints, const Vec3& tip, double length) const;
   /// Rotaries near those given that turn the tool this way. Throws where none do.

@@ -1,6 +1,8 @@
 // Fanuc and compatible controls, IS-B (3 decimals): every value has a point, G43 stands with Z, G49 only in the block
-// of a machine-coordinate retract, the largest F in G93 is 9999.999. TCP is G43.4: its block moves Z alone, at rotary
-// zero, where the table frame is frozen. G61 stops at every corner: G64 states no bound of what it leaves.
+// of a machine-coordinate retract, the largest F in G93 is 9999.999. G52 lets the words
+// of C count from the angle of a tooth, which one sub-program cuts. TCP is G43.4: its block moves Z alone, at rotary
+// zero, where the table frame is frozen; where zero counts from the angle of a tooth, the words of all teeth are those
+// of tooth 0. G61 stops at every corner: G64 states no bound of what it leaves.
 #include "postproc/controls/fanuc/fanuc.h"
 
 #include "postproc/controls/work_offset.h"
@@ -32,7 +34,7 @@ text::NcDialect fanuc_words() {
   d.max_inverse_time = 9999.999;
   d.max_line = 80;
   d.frame_begin = {"%", "O{number} ({name})"};
-  d.safe_start = {"G21 G17 G90 G94 G40 G80 G69", "G61"};
+  d.safe_start = {"G21 G17 G90 G94 G40 G80 G69", "G52 {zeros}", "G61"};
   d.corner_stop = "G61";
   d.corner_flow = "G64";
   d.start = {"{safe_start}", "{offset}"};
@@ -49,7 +51,13 @@ text::NcDialect fanuc_words() {
   d.tcp_starts_at_zero = true;
   d.tcp_note = "TCP G43.4 FROM ROTARY ZERO, PARAMETERS 19696#5 WKP=0, 1401#1 LRP=1";
   d.takes_smoothing = true;  // G5.1 Q1 and the like state no bound of their own
-  d.loop.form = text::NcLoop::Form::stretches;
+  d.loop.form = text::NcLoop::Form::called;
+  d.loop.before = {"O{program} (OPERATION {operation})"};
+  d.loop.after = {"M99"};
+  d.loop.call = {"M98 P{program}"};
+  d.loop.zero_on = {"G52 {index_axis}{angle}"};
+  d.loop.zero_off = {"G52 {zeros}"};
+  d.loop.zero_with_tcp = true;  // the table frame is frozen at the angle of the tooth
   d.rollover.way = text::NcRollover::Way::shortest;
   d.rollover.note = "{axis} ROLLS OVER: PARAMETERS 1008#0 ROA=1, 1008#1 RAB=0, 1260=360.";
   return d;
@@ -58,7 +66,7 @@ text::NcDialect fanuc_words() {
 readback::IsoLanguage fanuc_language() {
   readback::IsoLanguage l;
   l.g_tenths = {434, 610, 640, 690};
-  l.stops_at_corners = true;
+  l.stops_at_corners = l.moves_zeros = true;
   l.extended = {.tenths = 541, .last = kLastExtended};
   l.most_m = 3;  // 3404#7 M3B
   l.dwell_x = true;

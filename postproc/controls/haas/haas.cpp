@@ -1,6 +1,6 @@
-// Haas NGC: the words of Fanuc with G154 for further work offsets and M88, M89 for coolant through the spindle. Teeth
-// are written out: what M98 finds depends on settings of the control. G234 and rotaries that roll over are left out;
-// their jobs are refused.
+// Haas NGC: the words of Fanuc with G154 for further work offsets and M88, M89 for coolant through the spindle. The
+// tooth is called with M97, by its N word in the same file: what M98 finds depends on settings of the control. G234 and
+// rotaries that roll over are left out; their jobs are refused.
 #include "postproc/controls/fanuc/fanuc.h"
 #include "postproc/controls/work_offset.h"
 
@@ -17,7 +17,8 @@ text::NcDialect words() {
   d.tcp_off.clear();
   d.tcp_starts_at_zero = false;
   d.tcp_note.clear();
-  d.loop = {};
+  d.loop.before = {"N{label} (OPERATION {operation})"};
+  d.loop.call = {"M97 P{label}"};
   d.rollover = {};
   d.coolant = {{machines::Coolant::flood, {"M8", "M9"}}, {machines::Coolant::through_spindle, {"M88", "M89"}}};
   d.own_m = {{0, 6}, {10, 19}, {30, 49}, {75, 82}, {85, 87}, {95, 199}};
@@ -28,7 +29,7 @@ const readback::IsoLanguage& language() {
   static const readback::IsoLanguage l = [] {
     readback::IsoLanguage haas;
     haas.g_tenths = {610, 640, 690};
-    haas.stops_at_corners = true;
+    haas.stops_at_corners = haas.moves_zeros = haas.local_calls = true;
     haas.dwell = readback::DwellNumber::by_point;
     haas.bare_reference = true;
     haas.rules.stop = readback::ProgramStop::ends_spindle;

@@ -1,8 +1,9 @@
 // Heidenhain TNC 640, plain text. There is no inverse time feed, so that blocks in which rotaries move need TCPM;
 // without it the tilt is fixed in every pass. Cycle 32 bounds the blending of the corners (T: the tip, TA: the rotaries
 // with TCPM). The teeth run in a section that is jumped back to (a count of repetitions would not follow a changed
-// first tooth); a word takes no arithmetic, so that the index angle is a Q parameter, set ahead of each rotary block.
-// The remainder of the spread order is made with INT, half a unit away from where it could fall on the wrong side.
+// first tooth), under a datum shift of the index rotary; with TCPM cycle 10 turns X Y Z with it, which the shift alone
+// does not. The remainder of the spread order is made with INT, half a unit away from where it could fall on the wrong
+// side.
 #include "postproc/controls/control.h"
 #include "postproc/controls/heidenhain/heidenhain_reader.h"
 #include "postproc/controls/heidenhain/presets.h"
@@ -52,10 +53,10 @@ text::NcDialect words() {
   d.loop.pick = {"Q6 = ( Q1 * {stride} + 0.5 ) / {teeth}", "Q6 = INT Q6", "Q4 = Q1 * {stride} - Q6 * {teeth}"};
   d.loop.place = "Q1";
   d.loop.tooth = "Q4";
-  d.loop.index_line = "FN 1: Q5 = +Q2 + {angle}";
-  d.loop.index = "+Q5";
+  d.loop.zero_on = {"CYCL DEF 7.0 DATUM SHIFT", "CYCL DEF 7.1 {index_axis}+Q2"};
+  d.loop.zero_off = {"TRANS DATUM RESET"};
+  d.loop.zero_with_tcp = true;
   d.rollover.way = text::NcRollover::Way::shortest;  // M126
-  d.rollover.index_lines = {"Q6 = Q5 / 360", "Q6 = INT Q6", "Q5 = Q5 - Q6 * 360"};
   d.rollover.backwards = "( {teeth} - {tooth} )";
   d.rollover.note = "{axis} ROLLS OVER: MODULO AXIS, DISPLAY BELOW 360";
   d.loop.frame_on = {"Q3 = {frame_sign}{tooth} * 360 / {teeth}", "CYCL DEF 10.0 ROTATION", "CYCL DEF 10.1 ROT+Q3"};

@@ -130,7 +130,8 @@ class Heidenhain {
     }
     if (s.take("TOOL CALL ")) return tool_call(s, column);
     if (s.take("CYCL DEF ")) return cycle(s, column);
-    if (s.take("PLANE RESET STAY") || s.take("TRANS DATUM RESET")) return std::nullopt;
+    if (s.take("PLANE RESET STAY")) return std::nullopt;
+    if (s.take("TRANS DATUM RESET")) return placed(column, execution_.clear_zeros());
     if (s.take("FUNCTION RESET TCPM")) return placed(column, execution_.tcp_off());
     if (s.take("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS")) return placed(column, execution_.tcp_on());
     if (s.take("FUNCTION DWELL TIME")) return dwell(s, false);
@@ -312,7 +313,8 @@ class Heidenhain {
   Problem cycle(readback::NcScanner& s, int column) {
     if (s.take("9.0 DWELL TIME")) return std::nullopt;
     if (s.take("9.1 DWELL")) return dwell(s, false);
-    if (s.take("10.0 ROTATION") || s.take("32.0 TOLERANCE")) return std::nullopt;
+    if (s.take("7.0 DATUM SHIFT") || s.take("10.0 ROTATION") || s.take("32.0 TOLERANCE")) return std::nullopt;
+    if (s.take("7.1 ")) return datum_shift(s, column);
     if (s.take("10.1 ROT")) {
       const auto v = word_value(s);
       if (!v) return v.error();
@@ -346,6 +348,17 @@ class Heidenhain {
       return here(column, fmt::format("datum {} is not defined", *n));
     }
     return here(column, "the cycle is not in the subset");
+  }
+
+  /// CYCL DEF 7.1 C+Q2: of a rotary axis.
+  Problem datum_shift(readback::NcScanner& s, int column) {
+    for (std::size_t a = 3; a < 5; ++a) {
+      if (control_.letters[a] == 0 || s.at() != control_.letters[a]) continue;
+      s.advance(1);
+      const auto v = word_value(s);
+      return v ? placed(column, execution_.move_zero(a, *v, "CYCL DEF 7.1")) : Problem(v.error());
+    }
+    return here(s.column(), "a datum shift is read of a rotary axis of the machine alone");
   }
 
   /// TX TY TZ

@@ -61,6 +61,8 @@ class Siemens {
     bool dwell = false, g75 = false, skip = false;
     bool supa = false, g641 = false, g60 = false, traori = false, trafoof = false, rot = false;
     double rot_deg = 0;
+    std::optional<std::size_t> trans;  // the rotary whose zero TRANS moves
+    double trans_deg = 0;
     std::string offset, tool;
     std::array<double, 3> vector{};
     int vector_words = 0;
@@ -351,10 +353,28 @@ class Siemens {
         r.rot_deg = *v;
       }
       if (!s.done()) return here(s.column(), "ROT takes an angle about Z alone");
+    } else if (name == "TRANS") {
+      if (auto bad = translation(s, r)) return bad;
     } else {
       return here(column, fmt::format("{} is not in the subset", name));
     }
     r.column = column;
+    return std::nullopt;
+  }
+
+  /// TRANS alone ends what TRANS and ROT have set, TRANS C=angle takes its place.
+  Problem translation(readback::NcScanner& s, Request& r) {
+    r.rot = true;
+    s.skip_blanks();
+    for (std::size_t a = 3; a < 5 && !r.trans; ++a)
+      if (control_.letters[a] != 0 && s.at() == control_.letters[a] && s.ahead() == '=') r.trans = a;
+    if (r.trans) {
+      s.advance(2);
+      const auto v = expression(s);
+      if (!v) return v.error();
+      r.trans_deg = *v;
+    }
+    if (!s.done()) return here(s.column(), "TRANS takes one rotary axis of the machine alone");
     return std::nullopt;
   }
 
@@ -451,7 +471,12 @@ class Siemens {
       if (auto bad = placed(r.column, execution_.set_length(tool_))) return bad;
     if (r.traori)
       if (auto bad = placed(r.column, execution_.tcp_on())) return bad;
-    if (r.rot) execution_.turn_frame(r.rot_deg);
+    if (r.rot) {
+      execution_.turn_frame(r.rot_deg);
+      if (auto bad = placed(r.column, execution_.clear_zeros())) return bad;
+    }
+    if (r.trans)
+      if (auto bad = placed(r.column, execution_.move_zero(*r.trans, r.trans_deg, "TRANS"))) return bad;
     // The tool, the spindle, coolants; a stop and the end stand behind the motion of their block.
     std::sort(r.m.begin(), r.m.end(), [](int a, int b) { return readback::group_of_m(a) < readback::group_of_m(b); });
     const bool stops = !r.m.empty() && readback::group_of_m(r.m.back()) == readback::kStops;

@@ -58,11 +58,24 @@ TEST(Haas, OtherWordsAreRefusedWhereTheyStand) {
   EXPECT_NE(planted("\nG93\n", "\nG43.4 H1\n").find("G43.4 is not in the dialect"), std::string::npos);
 }
 
-TEST(Haas, RefusesWhatItsWordsDoNotCover) {
-  const auto loop = axis_program({sample_path(0.3, 0, 4)}, haas(), standing(), 3, false);
+// One tooth behind the main program, called by its N word for every one.
+TEST(Haas, CallsOneToothForAll) {
+  const auto loop = axis_program({sample_path(0.3, 0.2, 4), sample_path(0.3, 0, 4, 1)}, haas(), standing(), 3, false);
   ASSERT_TRUE(loop && loop->loop);
-  EXPECT_EQ(text::write_nc(*loop, *controls::dialect_of(haas()), {}).error().message,
-            "haas has no loop for the teeth: they must be written out");
+  text::NcHeader header;
+  header.job_name = "haas";
+  const auto text = text::write_nc(*loop, *controls::dialect_of(haas()), header);
+  ASSERT_TRUE(text) << text.error().message;
+  for (const char* line :
+       {"\nG52 C-120.\nM97 P100\n", "\nG52 C-240.\nM97 P102\n", "\nM30\nN100 (OPERATION 0)\n", "\nM99\n"})
+    EXPECT_NE(text->text.find(line), std::string::npos) << line;
+  EXPECT_EQ(reading(text->text, standing()), "");
+  EXPECT_NE(reading(replaced(text->text, "M97 P100\n(AT TOOTH 1", "M97 P101\n(AT TOOTH 1"), standing())
+                .find("M97 needs the P of an N word"),
+            std::string::npos);
+}
+
+TEST(Haas, RefusesWhatItsWordsDoNotCover) {
   machines::Machine m = haas();
   m.tcp = machines::TcpMode::angles;
   EXPECT_EQ(controls::dialect_of(m).error().message,

@@ -122,7 +122,7 @@ TEST_P(SpreadOrder, IsExecutedInEveryDialect) {
   const std::vector<const path::ClPath*> list = {&paths[0], &paths[1]};
   const auto met =
       readback::compare_with_cl(all, list, program->rounding_bound_mm + program->chord_bound_mm + 1e-3, 2e-3);
-  EXPECT_TRUE(met.complete) << met.message;
+  EXPECT_TRUE(met.complete) << met.message << "; copies: " << back->copies.line << ": " << back->copies.difference;
 
   std::vector<int> expected;
   for (int n = 0; n < teeth; ++n) expected.push_back(n * stride % teeth);

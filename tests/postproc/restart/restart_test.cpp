@@ -197,8 +197,8 @@ TEST_P(Restart, EveryPlaceOfTheMenuGivesTheSameMotion) {
     EXPECT_EQ(op.at.number, numbered ? op.at.line - 1 : -1);
     ASSERT_EQ(op.teeth.size(), static_cast<std::size_t>(kTeeth));
     const bool loop = op.first_tooth.line != 0;
-    EXPECT_EQ(loop, program.loop && std::string(GetParam().form.dialect) != "fanuc" &&
-                        std::string(GetParam().form.dialect) != "mitsubishi_m80");
+    const std::string dialect = GetParam().form.dialect;
+    EXPECT_EQ(loop, program.loop && dialect != "fanuc" && dialect != "haas" && dialect != "mitsubishi_m80");
     for (const restart::RestartTooth& t : op.teeth) {
       std::vector<std::string> part(lines.begin(), lines.begin() + menu->start_end.line);
       auto rest = lines;

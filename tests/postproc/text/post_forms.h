@@ -38,6 +38,8 @@ inline const std::vector<PostForm>& rollover_forms() {
             PostForm{"linuxcnc", machines::TcpMode::angles, 0.1, true},
             PostForm{"fanuc", machines::TcpMode::none, 0, false}, PostForm{"fanuc", machines::TcpMode::none, 0.1, true},
             PostForm{"fanuc", machines::TcpMode::angles, 0.1, true},
+            PostForm{"fanuc", machines::TcpMode::none, 0.1, false},
+            PostForm{"fanuc", machines::TcpMode::angles, 0.1, false},
             PostForm{"mitsubishi_m80", machines::TcpMode::none, 0.1, true},
             PostForm{"siemens", machines::TcpMode::none, 0.1, false},
             PostForm{"siemens", machines::TcpMode::none, 0.1, true},
@@ -47,6 +49,7 @@ inline const std::vector<PostForm>& rollover_forms() {
             PostForm{"heidenhain", machines::TcpMode::none, 0, false},
             PostForm{"heidenhain", machines::TcpMode::angles, 0, false},
             PostForm{"heidenhain", machines::TcpMode::angles, 0.1, true},
+            PostForm{"heidenhain", machines::TcpMode::angles, 0.1, false},
             PostForm{"heidenhain", machines::TcpMode::vectors, 0.1, true}}) {
         list.push_back(f);
         list.back().rollover = sense;
@@ -62,6 +65,8 @@ inline const std::vector<PostForm>& post_forms() {
       {"linuxcnc", machines::TcpMode::none, 0.1, false},     {"linuxcnc", machines::TcpMode::none, 0.1, true},
       {"linuxcnc", machines::TcpMode::angles, 0.1, true},    {"fanuc", machines::TcpMode::none, 0, false},
       {"fanuc", machines::TcpMode::none, 0.1, true},         {"fanuc", machines::TcpMode::angles, 0.1, true},
+      {"fanuc", machines::TcpMode::none, 0.1, false},        {"fanuc", machines::TcpMode::angles, 0.1, false},
+      {"haas", machines::TcpMode::none, 0.1, false},         {"heidenhain", machines::TcpMode::angles, 0.1, false},
       {"mitsubishi_m80", machines::TcpMode::none, 0, false}, {"haas", machines::TcpMode::none, 0.1, true},
       {"siemens", machines::TcpMode::none, 0.1, false},      {"siemens", machines::TcpMode::angles, 0.1, false},
       {"siemens", machines::TcpMode::vectors, 0.1, false},   {"siemens", machines::TcpMode::vectors, 0.1, true},
