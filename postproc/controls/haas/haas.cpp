@@ -17,6 +17,7 @@ text::NcDialect words() {
   d.tcp_off.clear();
   d.tcp_starts_at_zero = false;
   d.tcp_note.clear();
+  d.planes = {};  // G268 and G269 are an option
   d.loop = {};
   d.rollover = {};
   d.coolant = {{machines::Coolant::flood, {"M8", "M9"}}, {machines::Coolant::through_spindle, {"M88", "M89"}}};
