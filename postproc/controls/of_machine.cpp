@@ -266,6 +266,7 @@ Result<readback::NcControl> control_of(const machines::Machine& machine, const j
       0.5 * std::pow(10.0, -machine.post.rotary_decimals.value_or(control->words.format.rotary_decimals));
   if (control->words.max_inverse_time > 0) c.shortest_feed_minutes = 1 / control->words.max_inverse_time;
   if (machine.tcp != machines::TcpMode::none) c.chain = machine.chain;
+  if (!control->words.planes.on.empty()) c.plane_chain = machine.chain;
   c.top_mm = machine.chain.linear[2].max_mm - machine.limit_margin.linear_mm;
   c.exact_path_mm = machine.exact_corner_mm();
   c.corner_mm = machine.post.corner_tolerance_mm;

@@ -40,7 +40,7 @@ void ToothBuilder::rapid_to(const machines::TablePose& target, const RotaryPair&
     if (std::max(swept, needed) > retract_height() + 1e-9) return too_low(std::max(swept, needed));
     // Z stands at the top: the words of the axes that do not move yet.
     AxisBlock top = last_;
-    top.words[2] = words_.joint_word(program_.retract_z_mm, 2);
+    top.words[2] = words_.top_word(program_.retract_z_mm, top);
     last_ = top;
     at_retract_ = false;
   } else if (turns) {
@@ -50,11 +50,9 @@ void ToothBuilder::rapid_to(const machines::TablePose& target, const RotaryPair&
   }
   if (error_) return;
   if (turns || first) {
-    AxisBlock b = last_;
+    AxisBlock b = words_.turned(last_, {goal.words[3], goal.words[4]});
     b.record = -1;
     b.kind = BlockKind::rapid_rotary;
-    b.words[3] = goal.words[3];
-    b.words[4] = goal.words[4];
     if (chain_.rotary_count() > 0) push_rotaries(b, first || turns);
   }
   if (first || turns || goal.words[0] != last_.words[0] || goal.words[1] != last_.words[1]) {
@@ -83,8 +81,8 @@ void ToothBuilder::rise_to(double height) {
   AxisBlock b = last_;
   b.kind = BlockKind::rapid_z;
   const machines::Joints j = words_.joints(last_);
-  b.words[2] =
-      std::min(words_.joint_word(j.linear_mm.z() + height - now, 2) + 1, words_.joint_word(program_.retract_z_mm, 2));
+  b.words[2] = std::min(words_.joint_word(j.linear_mm.z() + height - now, 2, last_) + 1,
+                        words_.top_word(program_.retract_z_mm, last_));
   b.record = -1;
   push_rapid(b, true);
   broken_ = true;
@@ -99,6 +97,7 @@ void ToothBuilder::too_low(double height) {
 
 /// The rotaries, in parts where one that rolls over would go half a turn.
 void ToothBuilder::push_rotaries(const AxisBlock& b, bool forced) {
+  if (program_.planes) return push_rapid(b, forced);  // the control takes the nearer way to a plane by itself
   for (const AxisBlock& part : blocks_of_turn(chain_, words_, words_.joints(last_).rotary_rad, b))
     push_rapid(part, forced);
 }

@@ -46,11 +46,13 @@ class ProgramBuilder {
   Result<AxisProgram> build() {
     if (auto bad = check_axis_inputs(paths_, tools_, machine_, teeth_, options_)) return *bad;
     describe_machine();
+    if (auto bad = place_planes()) return *bad;
     place_index_axis();
     if (program_.loop) {
       if (!choose_all(true)) leave_loop("its turns leave the travels");  // one tooth at a time may still find its own
     }
     if (!program_.loop && !choose_all(false)) return *error_;
+    if (auto bad = planes_stand()) return *bad;
     note_poles();
     if (program_.loop && rounding_of_loop() > options_.nc_step_mm)
       leave_loop("the angles that the control works out are rounded by too much");
@@ -60,6 +62,7 @@ class ProgramBuilder {
     program_.rounding_bound_mm = program_.loop ? rounding_of_loop()
                                  : copies_     ? rounding_of_copies()
                                                : words_.linear_rounding();
+    program_.rounding_bound_mm += rounding_of_planes();
     if (program_.rounding_bound_mm > options_.nc_step_mm)
       return fail("rounding the words moves the tip by up to {:.6f} mm, more than {:.6f}", program_.rounding_bound_mm,
                   options_.nc_step_mm);
@@ -81,7 +84,7 @@ class ProgramBuilder {
   }
 
  private:
-  [[nodiscard]] bool tcp() const { return machine_.tcp != machines::TcpMode::none; }
+  [[nodiscard]] bool tcp() const { return machine_.tcp != machines::TcpMode::none && !options_.tilted_planes; }
 
   void leave_loop(const char* why) {
     program_.loop = false;
@@ -135,7 +138,7 @@ class ProgramBuilder {
     }
     program_.work_offset = setup_.work_offset;
     program_.work_offset_at_mm = setup_.work_offset_at_mm;
-    program_.tcp = machine_.tcp;
+    program_.tcp = tcp() ? machine_.tcp : machines::TcpMode::none;
     program_.corners = options_.corners;
     program_.tcp_starts_at_zero = tcp() && options_.tcp_starts_at_zero;
     const double top = chain_.linear[2].max_mm - machine_.limit_margin.linear_mm;
@@ -144,6 +147,44 @@ class ProgramBuilder {
     program_.assumed = machine_.assumed_keys;
     program_.time_rulers.assign(kTimeNames, kTimeNames + kTimeTerms);
     program_.time_ruled.assign(kTimeTerms, 0);
+  }
+
+  // Tilted planes.
+  /// Their origin is that of the gear, so that all teeth have the same words.
+  std::optional<Diagnostic> place_planes() {
+    if (!options_.tilted_planes) return std::nullopt;
+    const auto planes = plane_form_of(chain_, options_.format);
+    if (!planes) return fail_at(*options_.tilted_planes, "tilted_planes: {}", planes.error().message);
+    program_.planes = *planes;
+    const double unit = std::pow(10.0, options_.format.linear_decimals);
+    for (int i = 0; i < 3; ++i)
+      program_.planes->origin_mm[i] = std::round((setup_.origin_mm[i] - setup_.work_offset_at_mm[i]) * unit) / unit;
+    words_.set_planes(program_.planes);
+    return std::nullopt;
+  }
+  /// How far their origin stands beside the axis that turns them, by its rounding: teeth that are the first one turned
+  /// on are off by twice that.
+  double rounding_of_planes() const {
+    if (!program_.planes) return 0;
+    return 2 * (setup_.work_offset_at_mm + program_.planes->origin_mm - setup_.origin_mm).norm();
+  }
+  /// No rotary turns in a cut.
+  std::optional<Diagnostic> planes_stand() const {
+    if (!program_.planes) return std::nullopt;
+    for (const FollowedPath& f : followed_)
+      for (std::size_t i = 1; i < f.angles.size(); ++i) {
+        if (f.path().records[i].kind == path::MoveKind::rapid) continue;
+        for (std::size_t k = 0; k < 2; ++k)
+          if (const double turn = f.angles[i][k] - f.angles[i - 1][k];
+              words_.rotary_word(f.angles[i][k]) != words_.rotary_word(f.angles[i - 1][k]))
+            return fail_at(*options_.tilted_planes,
+                           "tilted_planes: operation {} record {} turns {} by {:.4f} deg in a cut, limit 0: a plane "
+                           "stands still. Leave tilted_planes out{}, or give the operation a tool axis that stands in "
+                           "every pass",
+                           f.path().operation, i, chain_.rotary(k).letter, degrees(turn),
+                           machine_.tcp == machines::TcpMode::none ? "" : ", so that it is written with TCP");
+      }
+    return std::nullopt;
   }
 
   /// Is the gear axis parallel to the rotary that carries the work, and is it that axis?
@@ -158,7 +199,9 @@ class ProgramBuilder {
     program_.index_sign = c.sign * (c.direction.dot(gear_axis) > 0 ? 1 : -1);
     program_.no_loop = "";
     coincident_ = (gear_.origin - c.point_mm).cross(c.direction).norm() <= kCoincident;
-    program_.loop = coincident_ && !options_.expand_teeth && teeth_ > 1 && (!tcp() || frame_can_turn());
+    const bool in_every_text = options_.tilted_planes && options_.index_is_rounded;  // no variable in a called tooth
+    program_.loop = coincident_ && !options_.expand_teeth && !in_every_text && teeth_ > 1 && (!tcp() || frame_can_turn());
+    if (in_every_text) program_.no_loop = "the tilted plane of this control stands in the text of every tooth";
     if (!coincident_) program_.no_loop = "the gear does not turn about its own axis";
     else if (tcp() && !frame_can_turn())
       program_.no_loop = options_.tcp_loop
@@ -395,7 +438,7 @@ class ProgramBuilder {
       if (options_.pack_teeth && n > 0) op.teeth.back().pack();
       angles = std::move(next);
     }
-    if (program_.loop && rolls_over(chain_)) {
+    if (program_.loop && rolls_over(chain_) && !program_.planes) {
       loop_is_entered_ = enter_loop(op);
       stood_ = words_.joints(op.teeth.back().blocks.back()).rotary_rad;
       (*stood_)[0] += program_.index_sign * tooth_angle(tooth_of_place(teeth_ - 1, options_.tooth_stride, teeth_));

@@ -58,7 +58,28 @@ struct AxisOptions {
   /// While TCP is on the dialect can turn the frame of a loop about the gear axis; with `tcp_starts_at_zero` the frame
   /// is the table's at the angle of the tooth.
   bool tcp_loop = false;
+  /// Cuts stand in tilted planes of the control, without TCP; the place that asks for it. A tool that stands along the
+  /// first rotary has no plane: its words stay joints.
+  std::optional<SourcePosition> tilted_planes = std::nullopt;
 };
+
+/// Tilted planes of a table whose rotaries turn about Z and about X or Y, as their words say them: a plane is turned by
+/// the first rotary about Z, then tilted by the second about its own X or Y. X Y Z of its blocks are coordinates of the
+/// tip in it, from its origin.
+struct PlaneForm {
+  Vec3 origin_mm = Vec3::Zero();       ///< seen from the work offset, all rotaries at zero; as it is printed
+  std::array<std::int64_t, 2> zero{};  ///< words of the rotaries at their zeros
+  int turn_sign = 1;                   ///< +1: a greater word of the first one turns the plane right-handed about +Z
+  int tilt_sign = 1;                   ///< the same of the second one about +X or +Y
+  bool about_y = false;                ///< it tilts about Y
+
+  /// The words of these blocks are those of a plane.
+  [[nodiscard]] bool tilted(const std::array<std::int64_t, 5>& words) const { return words[4] != zero[1]; }
+};
+
+/// Planes of a machine, their origin that of the work offset.
+/// Errors: the table has no two rotaries, one about Z and the other about X or Y, or the head has one.
+[[nodiscard]] Result<PlaneForm> plane_form_of(const machines::KinematicChain& chain, const WordFormat& format);
 
 enum class BlockKind : std::uint8_t {
   feed,          ///< G1, all axes; inverse time without TCP, feed of the tip with it
@@ -159,6 +180,7 @@ struct AxisProgram {
   int index_axis = -1;                    ///< 3 or 4: which word is shifted by the index
   int index_sign = 1;                     ///< word of tooth k = word + index_sign * k * 360 / z
   machines::TcpMode tcp = machines::TcpMode::none;  ///< how the blocks of a cut are meant
+  std::optional<PlaneForm> planes;                  ///< cuts stand in tilted planes
   bool turns_in_cuts = false;                       ///< some feed block moves a rotary; the index does not count
   double tip_reach_mm = 0;  ///< greatest distance of the tip from a rotary axis in blocks that turn, without TCP
   bool tcp_starts_at_zero = false;  ///< as in the options

@@ -24,6 +24,7 @@ class Walk {
         plans_words_(timing::control_of(machine, program.corners).plans_words),
         tcp_moves_z_(program.tcp_starts_at_zero) {
     words_.set_length(tool_length_mm);
+    words_.set_planes(program.planes);
   }
 
   [[nodiscard]] machines::Joints end_of(const AxisBlock& b) const { return words_.joints(b); }

@@ -29,7 +29,7 @@ RotaryPair ToothBuilder::zero_rotaries() const {
 void ToothBuilder::start_at_zero() {
   const double top = link_height();
   if (top > retract_height() + 1e-9) return too_low(top);
-  last_.words[2] = words_.joint_word(program_.retract_z_mm, 2);
+  last_.words[2] = words_.joint_word(program_.retract_z_mm, 2, last_);
   last_.tip = false;
   const RotaryPair zero = zero_rotaries();
   const double swept = tip_height_for_turn(zero);
@@ -45,7 +45,7 @@ void ToothBuilder::start_at_zero() {
   for (std::size_t k = 0; k < 2; ++k) b.words[3 + k] = words_.rotary_word(zero[k]);
   if (chain_.rotary_count() > 0) push_rotaries(b, true);
   b.kind = BlockKind::rapid_xy;
-  for (int i = 0; i < 2; ++i) b.words[static_cast<std::size_t>(i)] = words_.joint_word(j.linear_mm[i], i);
+  for (int i = 0; i < 2; ++i) b.words[static_cast<std::size_t>(i)] = words_.joint_word(j.linear_mm[i], i, b);
   push_rapid(b, true);
   b.kind = BlockKind::tcp_on;
   words_.set_tip(b, start, zero);
@@ -104,7 +104,7 @@ void ToothBuilder::leave_to_top() {
   AxisBlock b;
   const machines::Joints j = words_.joints(last_);
   words_.set_joints(b, j.linear_mm, j.rotary_rad);
-  b.words[2] = words_.joint_word(program_.retract_z_mm, 2);
+  b.words[2] = words_.joint_word(program_.retract_z_mm, 2, b);
   b.kind = BlockKind::tcp_off;
   push_rapid(b, true);
   tcp_ = false;

@@ -16,7 +16,9 @@ ToothBuilder::ToothBuilder(const AxisJob& job, AxisProgram& program, TravelRecor
       chain_(job.machine.chain),
       program_(program),
       travel_(travel),
-      words_(chain_, program.format, work_offset_mm) {}
+      words_(chain_, program.format, work_offset_mm) {
+  words_.set_planes(program.planes);
+}
 
 void ToothBuilder::begin(AxisOperation& operation, double tool_length_mm) {
   operation_ = &operation;
@@ -93,7 +95,7 @@ double ToothBuilder::rotary_time(const machines::Joints& a, const machines::Join
 
 void ToothBuilder::note_position(const machines::Joints& j) {
   const bool at_top =
-      last_.kind != BlockKind::feed && !last_.tip && last_.words[2] == words_.joint_word(program_.retract_z_mm, 2);
+      last_.kind != BlockKind::feed && !last_.tip && last_.words[2] == words_.top_word(program_.retract_z_mm, last_);
   // Where the rotaries turn, X Y Z stand where the pose before left them: that one moves with the part.
   const bool turns = last_.kind == BlockKind::rapid_rotary;
   travel_.note(j, !at_top && !turns, operation_->operation, record_, tooth_, chain_, job_.machine.limit_margin);

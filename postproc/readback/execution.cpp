@@ -133,6 +133,7 @@ NcExecution::Problem NcExecution::change_tool() {
   if (spindle_) return "tool change while the spindle turns";
   if (feed_mode_ == Feed::inverse_time) return "tool change in G93";
   if (tcp_) return "tool change with TCP on";
+  if (plane_) return "tool change in a tilted plane: it must be switched off ahead";
   if (!retracted_) return "tool change without a machine retract before it";
   if (next_tool_ < 0) return "tool change without a T word";
   tool_ = next_tool_;
@@ -177,6 +178,7 @@ Result<std::array<double, 5>> NcExecution::reference(std::size_t which, std::str
 NcExecution::Problem NcExecution::to_reference(const Move& m, std::size_t which, std::string_view word, bool by_way,
                                                std::int32_t line) {
   if (tcp_) return fmt::format("{} with TCP on", word);
+  if (plane_) return fmt::format("{} in a tilted plane: it must be switched off ahead", word);
   const auto place = reference(which, word);
   if (!place) return place.error().message;
   Move way = m;
@@ -210,6 +212,7 @@ NcExecution::Problem NcExecution::select_offset(const std::string& name) {
   const auto found = control_.work_offsets.find(name);
   if (found == control_.work_offsets.end()) return fmt::format("work offset {} is not defined", name);
   if (tcp_ && offset_ != found->second) return "another work offset with TCP on";
+  if (plane_ && offset_ != found->second) return "another work offset in a tilted plane";
   offset_ = found->second;
   return std::nullopt;
 }
@@ -248,6 +251,7 @@ bool NcExecution::site_smoothing(std::string_view line) {
 NcExecution::Problem NcExecution::tcp_on() {
   if (!control_.chain) return "TCP on a machine without TCP (tcp = \"none\")";
   if (tcp_) return "TCP is on already";
+  if (plane_) return "TCP in a tilted plane: it must be switched off ahead";
   if (!length_ || !offset_) return "TCP without tool length compensation or work offset";
   if (!known(joints_)) return "TCP at a position that the program did not set";
   if (rules_.tcp_needs_zero && !(at_zero(3) && at_zero(4)))
@@ -309,6 +313,7 @@ NcExecution::Problem NcExecution::end_program(bool inside_call) {
     if (zero_[a] != 0)
       return fmt::format("program end while {} counts from {} deg: the next program would begin there",
                          control_.letters[a], zero_[a]);
+  if (plane_) return "program end in a tilted plane: the next program would begin there";
   if (inside_call) return "program end inside a sub-program or loop";
   if (dwell_min_ > 0) {  // no move follows that it could count with
     ExecutedMove e;
@@ -346,6 +351,8 @@ std::array<double, 5> NcExecution::joints_for(const Vec3& tip, double r0, double
 NcExecution::Problem NcExecution::goal_of(const Move& m, std::array<double, 5>& joints, Vec3& tip,
                                           std::uint8_t& commanded) const {
   if (m.vector) return "a tool vector without TCP";
+  tip = Vec3::Zero();
+  if (plane_) return plane_goal(m, joints, commanded);
   for (std::size_t a = 0; a < 5; ++a) {
     if (!m.has[a]) continue;
     commanded = static_cast<std::uint8_t>(commanded | (1U << a));
@@ -358,7 +365,6 @@ NcExecution::Problem NcExecution::goal_of(const Move& m, std::array<double, 5>& 
     if (!length_) return "Z word without tool length compensation";
     joints[a] += *length_;
   }
-  tip = Vec3::Zero();
   return std::nullopt;
 }
 
@@ -461,6 +467,7 @@ NcExecution::Problem NcExecution::move_to(const Move& m, std::int32_t line) {
   e.tip = tip;
   if (m.vector) e.vector_print = print_of(*m.vector);
   e.tcp = tcp_;
+  e.plane = plane_.has_value();
   e.known = known(goal) && known(joints_);
   e.line = line;
   e.operation = static_cast<std::int16_t>(operation_);

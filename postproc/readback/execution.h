@@ -127,6 +127,19 @@ class NcExecution {
   Problem move_zero(std::size_t axis, double degrees, std::string_view word);
   /// The zeros of all rotaries are those of the machine.
   Problem clear_zeros();
+
+  // A tilted plane, without TCP (postproc/readback/plane.cpp): words are coordinates in it, their Z along the tool.
+  /// Which of the two pairs of rotary angles stands the tool upright on a plane: by the angle of the second rotary of
+  /// the table, which tilts.
+  enum class PlanePair : std::uint8_t { not_below_zero, not_above_zero };
+  /// Words count from `origin_mm` along the columns of `rotation`, both seen from the work offset, all rotaries at
+  /// zero. Nothing moves yet. @param word of the control, for messages
+  Problem define_plane(const Vec3& origin_mm, const Mat3& rotation, std::string_view word);
+  /// The rotaries go to the pair, each into the turn nearest to where it stands, within its travel.
+  Problem turn_to_plane(PlanePair pair, std::string_view word, std::int32_t line);
+  /// Words are those of the work offset again; nothing moves.
+  void reset_plane() { plane_.reset(); }
+  [[nodiscard]] bool in_plane() const { return plane_.has_value(); }
   Problem end_program(bool inside_call);
 
   /// Of a reader without NcFlow, at every block: too many, or too many in a row without a move.
@@ -145,6 +158,8 @@ class NcExecution {
   [[nodiscard]] bool at_zero(std::size_t axis) const;
   Problem goal_of(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const;
   Problem tip_goal(const Move& m, std::array<double, 5>& joints, Vec3& tip, std::uint8_t& commanded) const;
+  Problem plane_goal(const Move& m, std::array<double, 5>& joints, std::uint8_t& commanded) const;
+  [[nodiscard]] double turn_within_travel(std::size_t rotary, double deg) const;
   Problem corners(const std::array<double, 5>& goal, const Vec3& tip, ExecutedMove& e) const;
   Problem feed_minutes(const Move& m, const std::array<double, 5>& joints, const Vec3& tip, double& minutes) const;
   [[nodiscard]] std::array<double, 2> angles_of(double r0, double r1) const;
@@ -165,6 +180,16 @@ class NcExecution {
   std::optional<double> frozen_deg_;  // first rotary where TCP froze the table frame
   std::array<double, 5> rolled_{};    // rotaries that roll over by the sign of their words: as the control adds them up
   double frame_deg_ = 0;
+  /// One rigid transform: from the words to the table frame, seen from the work offset.
+  struct Plane {
+    Vec3 origin_mm = Vec3::Zero();
+    Mat3 rotation = Mat3::Identity();
+    enum class State : std::uint8_t { defined, turning, turned } state = State::defined;
+    std::array<double, 2> at_deg{};  ///< turned: the rotaries, within half a turn of zero, stand the tool upright on it
+    double cosine = 1, sine = 0;     ///< .. and turn X Y of the words to those of the machine
+    Vec3 zero_mm = Vec3::Zero();     ///< .. where the tip of the words X0 Y0 Z0 is, machine coordinates
+  };
+  std::optional<Plane> plane_;
   int operation_ = -1, tooth_ = -1, tool_ = -1, next_tool_ = -1;
   Feed feed_mode_ = Feed::none;
   std::optional<double> feed_, length_;

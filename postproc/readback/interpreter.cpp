@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "geometry/base/angle.h"
 #include "postproc/readback/flow.h"
 
 namespace toothpath::readback {
@@ -53,7 +54,9 @@ class Interpreter {
     int motion = -1;     // G0 G1 in this block
     int feed_mode = -1;  // 93 94
     bool g53 = false, g43 = false, tcp = false, g49 = false, g64 = false, g61 = false, stops = false;
-    bool extended = false;  // G54.1, its number in P
+    bool extended = false;                                   // G54.1, its number in P
+    bool plane = false, to_plane = false, no_plane = false;  // G68.2, G53.1, G69
+    std::array<std::optional<double>, 3> euler;              // I J K
     std::string offset;
     std::vector<int> m;
     bool dwell = false;                       // G4
@@ -77,8 +80,9 @@ class Interpreter {
       if (auto bad = take(r, w, *v)) return bad;
     }
     if (r.dwell) return dwell(r, numbered(b) ? b.words.size() - 1 : b.words.size());
-    if (r.zeros) return zeros(r, numbered(b) ? b.words.size() - 1 : b.words.size());
-    return apply(r);
+    const std::size_t words = numbered(b) ? b.words.size() - 1 : b.words.size();
+    if (r.zeros) return zeros(r, words);
+    return apply(r, words);
   }
   static bool numbered(const NcBlock& b) { return b.words.front().letter == 'N'; }
 
@@ -142,6 +146,13 @@ class Interpreter {
         return once(r.p, w, v);
       case 'Q': return once(r.q, w, v);
       case 'L': return once(r.l, w, v);
+      case 'I':
+      case 'J':
+      case 'K':
+        if (!has_g(682)) break;
+        if (language_.point_needed && !w.point)
+          return here(w.column, fmt::format("{} without a decimal point", w.letter));
+        return once(r.euler[static_cast<std::size_t>(w.letter - 'I')], w, v);
       default: break;
     }
     for (std::size_t a = 0; a < 5; ++a) {
@@ -201,7 +212,9 @@ class Interpreter {
         r.stops = tenths == 611;
         return 10;
       case 921: return 11;
-      case 690: return 13;
+      case 690: r.no_plane = true; return 13;
+      case 682: r.plane = true; return 13;
+      case 531: r.to_plane = true; return 14;
       case 540:
       case 550:
       case 560:
@@ -222,8 +235,8 @@ class Interpreter {
     r.extended = r.extended || extended;
     if (group == 0 || std::abs(v * 10 - tenths) > 1e-6)
       return here(w.column, fmt::format("G{} is not in the subset", v));
-    const bool special = tenths == 434 || tenths == 690 || tenths == 921 || tenths == 610 || tenths == 611 ||
-                         tenths == 640 || (tenths > 590 && tenths < 600);
+    const bool special = tenths == 434 || tenths == 682 || tenths == 531 || tenths == 690 || tenths == 921 ||
+                         tenths == 610 || tenths == 611 || tenths == 640 || (tenths > 590 && tenths < 600);
     if (special && !has_g(tenths)) return here(w.column, fmt::format("G{} is not in the dialect", v));
     if ((r.groups & (1U << group)) != 0) return here(w.column, "two G words of one modal group in a block");
     r.groups |= 1U << group;
@@ -278,7 +291,27 @@ class Interpreter {
     return std::nullopt;
   }
 
-  Problem apply(Request& r) {
+  /// G68.2 X Y Z I J K: the origin, seen from the work offset, and Euler's angles about Z, the new X and the new Z.
+  /// G53.1 P1: the rotaries turn to it, the one that tilts not below its zero; P2 not above.
+  Problem tilt(const Request& r, std::size_t words) {
+    if (r.to_plane) {
+      if (!r.p || (*r.p != 1 && *r.p != 2) || words != 2)
+        return here(r.column, "G53.1 stands in a block of its own, with P1 or P2: which pair of angles is meant");
+      const auto pair = *r.p == 1 ? NcExecution::PlanePair::not_below_zero : NcExecution::PlanePair::not_above_zero;
+      flow_.moved();
+      return placed(r.column, execution_.turn_to_plane(pair, "G53.1", flow_.line()));
+    }
+    const auto& has = r.move.has;
+    if (words != 7 || !has[0] || !has[1] || !has[2] || !r.euler[0] || !r.euler[1] || !r.euler[2])
+      return here(r.column, "G68.2 stands in a block of its own, with X Y Z I J K");
+    if (execution_.in_plane()) return here(r.column, "G68.2 in a tilted plane: G69 is missing ahead of it");
+    const Eigen::AngleAxisd turn(radians(*r.euler[0]), Vec3::UnitZ()), tilt(radians(*r.euler[1]), Vec3::UnitX()),
+        spin(radians(*r.euler[2]), Vec3::UnitZ());
+    return placed(r.column, execution_.define_plane(Vec3(r.move.axis[0], r.move.axis[1], r.move.axis[2]),
+                                                    (turn * tilt * spin).toRotationMatrix(), "G68.2"));
+  }
+
+  Problem apply(Request& r, std::size_t words) {
     if (r.extended) {
       const std::string code = g_word(language_.extended.tenths);
       const int last = language_.extended.last;
@@ -287,6 +320,9 @@ class Interpreter {
       r.offset = fmt::format("{} P{}", code, static_cast<int>(*r.p));
       r.p.reset();
     }
+    if (r.plane || r.to_plane) return tilt(r, words);
+    if (r.euler[0] || r.euler[1] || r.euler[2]) return here(r.column, "I, J and K belong to G68.2");
+    if (r.no_plane) execution_.reset_plane();
     const bool call = !r.m.empty() && (r.m.front() == 97 || r.m.front() == 98);
     if ((r.p || r.q) && !r.g64 && !r.to_reference && !call) return here(r.p_column, "P or Q without G64 or M98");
     if (r.incremental) execution_.set_incremental();

@@ -105,7 +105,7 @@ class CopyCheck {
       if (!m.rapid && !set(a))
         return differ(m.line, fmt::format("the tooth cuts before it has set {}", control_.letters[a]));
       if (a == 3 || !set(a) || (m.tcp && a < 3)) continue;
-      if (!same(m.joints[a], first.joints[a]))
+      if (!same(m.joints[a], first.joints[a], control_.chain || m.plane))
         return differ(m.line, fmt::format("{} = {} where the first tooth has {}", control_.letters[a], m.joints[a],
                                           first.joints[a]));
     }
@@ -134,8 +134,11 @@ class CopyCheck {
     if (!m.rapid && std::abs(m.minutes - first.minutes) > 1e-9 * first.minutes + 1e-12)
       return differ(m.line, fmt::format("block takes {} min where the first tooth has {}", m.minutes, first.minutes));
   }
-  /// Without TCP bit for bit; with it the joints behind a cut follow from a turned tip, with its round-off.
-  bool same(double a, double b) const { return same_bits(a, b) || (control_.chain && std::abs(a - b) <= kSameTip); }
+  /// Without TCP bit for bit; with it the joints behind a cut follow from a turned tip, and in a tilted plane from the
+  /// turned plane, with their round-off.
+  static bool same(double a, double b, bool follows) {
+    return same_bits(a, b) || (follows && std::abs(a - b) <= kSameTip);
+  }
   /// A point of the table, turned about the gear axis.
   Vec3 turned_tip(const Vec3& p, double deg) const {
     const Vec3 axis = setup_.rotation().col(2);

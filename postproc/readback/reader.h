@@ -51,7 +51,9 @@ struct NcControl {
   double rotary_rounding_deg = 0.5e-5;       ///< half the last digit that the dialect prints
   double linear_rounding_mm = 0.5e-4;        ///< the same of the linear words
   std::optional<machines::KinematicChain>
-      chain;                         ///< of a machine with TCP: the control knows it; empty: TCP is refused
+      chain;  ///< of a machine with TCP: the control knows it; empty: TCP is refused
+  /// Of a machine whose control turns tilted planes into angles of its rotaries; empty: its planes are refused.
+  std::optional<machines::KinematicChain> plane_chain;
   double shortest_feed_minutes = 0;  ///< of a block with the largest F of G93; 0: F has no limit
   double exact_path_mm = 0.0005;     ///< LinuxCNC: the tip is off a corner by no more under G61 and G61.1
   std::optional<double> corner_mm;   ///< the machine file states it: the tip is off a corner by no more under G64
@@ -96,6 +98,7 @@ struct ExecutedMove {
       0;  ///< every axis may leave the path within this way ahead of and behind a corner (G641 ADIS) ..
   float corner_share = 0;   ///< .. which is this part of the block, a half at most
   std::int16_t tooth = -1;  ///< from a (TOOTH k) comment, where the teeth are written out; -1: none
+  bool plane = false;       ///< in a tilted plane, or the turn of the rotaries to it
   float tolerance_mm = 0;
   float dwell_min = 0;             ///< the program waits ahead of the move
   bool machine = false;            ///< G53, or the block that switches tool length compensation on

@@ -35,6 +35,7 @@ class Fingerprint {
 
   std::uint64_t of(const readback::ExecutedMove& m) {
     set_ = static_cast<std::uint8_t>(set_ | m.commanded);
+    by_plane_ = static_cast<std::uint8_t>(m.plane ? by_plane_ | m.commanded : by_plane_ & ~m.commanded);
     h_ = 14695981039346656037ULL;
     add(static_cast<std::uint64_t>(m.operation) << 32 | static_cast<std::uint32_t>(m.tool));
     add(static_cast<std::uint64_t>(m.tooth) << 16 | static_cast<std::uint64_t>(m.commanded) << 4 | (m.rapid ? 1U : 0U) |
@@ -58,11 +59,13 @@ class Fingerprint {
   }
 
  private:
-  /// A rotary that rolls over counts by its place within the turn, where it has a word.
+  /// A rotary that rolls over counts by its place within the turn, where it has a word; any that a tilted plane has
+  /// turned, too: the control takes the turn nearest to where it stood.
   void add_joint(const readback::ExecutedMove& m, std::size_t a) {
     double v = m.joints[a];
-    if (control_.rollover[a] && (m.commanded & (1U << a)) == 0) return;
-    if (control_.rollover[a]) v -= 360 * std::floor(v / 360);
+    const bool within_turn = control_.rollover[a] || (a >= 3 && (by_plane_ & (1U << a)) != 0);
+    if (within_turn && (m.commanded & (1U << a)) == 0) return;
+    if (within_turn) v -= 360 * std::floor(v / 360);
     add(std::bit_cast<std::uint64_t>(v));
   }
   void add(std::uint64_t v) {
@@ -70,7 +73,7 @@ class Fingerprint {
     h_ ^= h_ >> 32;
   }
   const readback::NcControl& control_;
-  std::uint8_t set_ = 0;
+  std::uint8_t set_ = 0, by_plane_ = 0;
   std::uint64_t h_ = 0;
 };
 

@@ -120,7 +120,7 @@ class SelfTestBuilder {
     };
     push(over(joints::BlockKind::feed, test_.approach_mm, from));
     joints::AxisBlock top = over(joints::BlockKind::rapid_z, 0, from);
-    top.words[2] = words_.joint_word(program_.retract_z_mm, 2);
+    top.words[2] = words_.joint_word(program_.retract_z_mm, 2, top);
     push(top);
     for (const joints::BlockKind kind :
          {joints::BlockKind::rapid_rotary, joints::BlockKind::rapid_xy, joints::BlockKind::rapid_z})

@@ -17,6 +17,7 @@ void NcAxisWords::enter_loop(const std::vector<joints::AxisBlock>& tooth) {
 void NcAxisWords::print(const joints::AxisBlock& b, std::size_t axis, IndexWord index) {
   if (program_.letters[axis] == 0) return;
   const bool is_index = static_cast<int>(axis) == program_.index_axis;
+  if (axis >= 3 && program_.planes && program_.planes->tilted(b.words)) return;  // the plane has turned it
   const std::int64_t word = b.words[axis];
   const bool unchanged = known_[axis] && last_[axis] == word, backwards = axis >= 3 && word < position_[axis - 3];
   // By sign the round-off of the control's own sum decides about a whole turn where the axis stands already.

@@ -30,6 +30,13 @@ class NcAxisWords {
   void forget() { known_.fill(false); }
   /// The rotaries have gone to those of `b` without a word of theirs (tool vectors).
   void stand(const joints::AxisBlock& b) { position_ = {b.words[3], b.words[4]}; }
+  /// The rotaries have gone to those of `b` by a tilted plane: the next block names every axis that it may.
+  void turn_by_plane(const joints::AxisBlock& b) {
+    stand(b);
+    last_[3] = b.words[3];
+    last_[4] = b.words[4];
+    forget();
+  }
   /// The body of a loop begins: the rotaries stand where the tooth before ends.
   void enter_loop(const std::vector<joints::AxisBlock>& tooth);
 

@@ -68,6 +68,20 @@ struct NcRollover {
   std::string note;       ///< comment at the top, with {axis}: what the control must be set to
 };
 
+/// Tilted planes of a control: {plane_x} {plane_y} {plane_z} the origin, seen from the work offset; {turn} deg about Z,
+/// then {tilt_x} or {tilt_y} about the turned X or Y. As Euler's angles: {euler_turn} about Z, {tilt} about the new X,
+/// {euler_spin} about the new Z. {pair}: which pair of rotary angles.
+struct NcPlanes {
+  NcLinesOfText on;          ///< the plane, and the turn of the rotaries to it; empty: the dialect has none
+  NcLinesOfText shift;       ///< ahead of `on`, where the origin is not that of the work offset
+  NcLinesOfText off;         ///< stands in every safe start, too
+  std::string upper, lower;  ///< {pair}: the rotary that tilts above its zero, or below
+  /// In a loop whose control takes no arithmetic in a word: this line ahead of `on`, with the {angle} that is added to
+  /// that of the tooth, and the variable that holds the sum. Empty: `NcLoop::index` and the angle.
+  std::string index_line, index;
+  std::string note;  ///< comment at the top, with {axis} that tilts: what is assumed of the control
+};
+
 /// What a control wants to read.
 struct NcDialect {
   std::string name;                           ///< as in a machine file
@@ -150,6 +164,7 @@ struct NcDialect {
 
   NcLoop loop;
   NcRollover rollover;
+  NcPlanes planes;
 
   /// A dialect whose text is not made of blocks with words: prints everything. Null: the common writer.
   Result<NcText> (*write)(const joints::AxisProgram&, const NcDialect&, const NcHeader&) = nullptr;

@@ -8,6 +8,7 @@
 #include "postproc/numbers/comment.h"
 #include "postproc/numbers/fixed_point.h"
 #include "postproc/text/corners.h"
+#include "postproc/text/planes.h"
 #include "postproc/text/writer.h"
 
 namespace toothpath::text {
@@ -87,6 +88,8 @@ std::vector<std::string> header_comments(const joints::AxisProgram& program, con
   }
   if (program.tcp != machines::TcpMode::none && !dialect.tcp_note.empty())
     out.push_back(numbers::comment_text(dialect.tcp_note));
+  if (program.planes && !dialect.planes.note.empty())
+    out.push_back(numbers::comment_text(plane_note(program, dialect)));
   for (std::size_t a = 3; a < 5; ++a)
     if (program.rollover[a]) {
       const auto note = expanded(dialect.rollover.note, {{"axis", std::string(1, program.letters[a])}});

@@ -14,6 +14,7 @@
 #include "postproc/text/axis_words.h"
 #include "postproc/text/corners.h"
 #include "postproc/text/lines.h"
+#include "postproc/text/planes.h"
 
 namespace toothpath::text {
 namespace {
@@ -32,8 +33,10 @@ class Writer {
         corners_(corner_words(program, dialect, header)),
         out_(dialect),
         words_(program, dialect, out_),
+        planes_(program, dialect, out_),
         tcp_(program.tcp != machines::TcpMode::none),
-        zero_moves_(program.loop && !dialect.loop.zero_on.empty() && (!tcp_ || dialect.loop.zero_with_tcp)) {}
+        zero_moves_(program.loop && !program.planes && !dialect.loop.zero_on.empty() &&
+                    (!tcp_ || dialect.loop.zero_with_tcp)) {}
 
   Result<NcText> write() {
     if (header_.coolant != machines::Coolant::off) {
@@ -59,13 +62,21 @@ class Writer {
   // Lines.
   void fill(const NcLinesOfText& templates) {
     for (const auto& t : templates)
-      if (t == "{safe_start}") out_.fill(dialect_.safe_start, values_);
+      if (t == "{safe_start}") safe_start();
       else if (t == "{pick}") out_.fill(program_.tooth_stride == 1 ? NcLinesOfText{} : dialect_.loop.pick, values_);
       else if (t == "{first_tooth}") out_.comment(first_tooth_comment(program_));
       else if (t.find("{blend}") != std::string::npos) corner_line(t);
       else if (t == "{path_group_end}")
         out_.fill(corners_.group ? NcLinesOfText{dialect_.path_group_end} : NcLinesOfText{}, values_);
       else out_.fill({t}, values_);
+  }
+  void safe_start() {
+    out_.fill(dialect_.safe_start, values_);
+    if (!program_.planes) return;
+    for (const auto& line : dialect_.planes.off)
+      if (std::none_of(dialect_.safe_start.begin(), dialect_.safe_start.end(),
+                       [&](const std::string& all) { return all.find(line) != std::string::npos; }))
+        out_.fill({line}, values_);
   }
   /// The line with {blend}: as it stands, or behind the axes of the path.
   void corner_line(const std::string& pattern) {
@@ -140,6 +151,8 @@ class Writer {
     out_.comment(numbers::comment_text(fmt::format("T{} {} LENGTH {} MM TO THE TIP", op.tool_number, op.tool_name,
                                                    out_.value(numbers::to_fixed(op.tool_length_mm, 4), 4))));
     const NcLoop& loop = dialect_.loop;
+    std::vector<joints::AxisBlock> room;
+    tilts_ = planes_.any(op.teeth.front().all(room));
     if (program_.loop && loop.form == NcLoop::Form::sub_program) loop_body(op);
     number_here(position, 0);
     machine_retract();
@@ -149,7 +162,6 @@ class Writer {
     if (coolant_) out_.line(coolant_->on);
     for (const auto& line : dialect_.smoothing_on) out_.line(line);
     if (!program_.loop) {
-      std::vector<joints::AxisBlock> room;
       std::size_t within = 0;
       for (const auto& tooth : op.teeth) {
         number_here(position, ++within);
@@ -168,6 +180,7 @@ class Writer {
       loop_body(op);
     }
     for (const auto& line : dialect_.smoothing_off) out_.line(line);
+    if (tilts_) fill(dialect_.planes.off);
     fill(dialect_.operation_end);
     if (coolant_) out_.line(coolant_->off);
     fill(dialect_.spindle_off);
@@ -278,6 +291,7 @@ class Writer {
                             : b.kind == joints::BlockKind::rapid_xy  ? std::pair<std::size_t, std::size_t>{0, 2}
                             : b.kind == joints::BlockKind::rapid_tip ? std::pair<std::size_t, std::size_t>{0, 3}
                                                                      : std::pair<std::size_t, std::size_t>{3, 5};
+    if (to == 5 && tilts_ && turn_to_plane(b, index)) return;
     const std::size_t begin = out_.size();
     out_.text() += dialect_.rapid;
     motion_ = 0;
@@ -289,6 +303,16 @@ class Writer {
     }
     out_.text() += dialect_.rapid_end;
     out_.end_line(begin, true);
+  }
+
+  /// The rotaries turn by a tilted plane; where the block has none the one before ends.
+  bool turn_to_plane(const joints::AxisBlock& b, IndexWord index) {
+    if (planes_.tilted(b)) planes_.on(b, index, values_);
+    else fill(dialect_.planes.off);
+    forget();
+    if (!planes_.tilted(b)) return false;
+    words_.turn_by_plane(b);
+    return true;
   }
 
   void joint_feed(const joints::AxisBlock& b, IndexWord index) {
@@ -310,14 +334,15 @@ class Writer {
     const double length = words_.length(b);
     const bool exact =
         dialect_.inverse_time && dialect_.min_feed_product > 0 && rate * length < dialect_.min_feed_product;
-    const bool per_minute = exact || !dialect_.inverse_time;
+    const bool modal = !dialect_.inverse_time || program_.planes;
+    const bool per_minute = exact || modal;
     if (!per_minute && !inverse_time_) out_.line("G93");
     if (per_minute && inverse_time_) out_.line("G94");
     inverse_time_ = !per_minute;
     const std::size_t begin = out_.size();
     motion(dialect_.feed, 1);
     for (std::size_t a = 0; a < 5; ++a) words_.print(b, a, index);
-    if (dialect_.inverse_time)
+    if (!modal)
       feed_number(per_minute ? length / b.minutes : rate,
                   dialect_.point_always ? 3
                   : per_minute          ? 9
@@ -405,6 +430,7 @@ class Writer {
   CornerWords corners_;
   NcLines out_;
   NcAxisWords words_;
+  NcPlaneWords planes_;
   NcLines::Values values_;
   bool tcp_;
   bool zero_moves_;  // the index moves the zero of its rotary
@@ -413,6 +439,7 @@ class Writer {
   int motion_ = -1;         // 0, 1; -1: to be printed
   std::int64_t feed_ = -1;  // F per minute in force, millionths; -1: to be printed
   bool inverse_time_ = false;
+  bool tilts_ = false;  // some blocks of the operation stand in a tilted plane
 };
 
 }  // namespace
@@ -426,6 +453,8 @@ Result<NcText> write_nc(const joints::AxisProgram& program, const NcDialect& dia
     return fail(
         "cuts turn a rotary axis: post.smoothing_on needs post.smoothing_axis_tolerance beside "
         "post.smoothing_tolerance");
+  if (program.planes && dialect.planes.on.empty())
+    return fail("{} has no words for tilted planes: the rotaries turn by words of their own", dialect.name);
   if (program.loop && dialect.write == nullptr && dialect.loop.form == NcLoop::Form::none)
     return fail("{} has no loop for the teeth: they must be written out", dialect.name);
   if (dialect.write != nullptr) return dialect.write(program, dialect, header);

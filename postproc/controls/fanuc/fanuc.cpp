@@ -51,6 +51,11 @@ text::NcDialect fanuc_words() {
   d.tcp_starts_at_zero = true;
   d.tcp_note = "TCP G43.4 FROM ROTARY ZERO, PARAMETERS 19696#5 WKP=0, 1401#1 LRP=1";
   d.takes_smoothing = true;  // G5.1 Q1 and the like state no bound of their own
+  d.planes.on = {"G68.2 X{plane_x} Y{plane_y} Z{plane_z} I{euler_turn} J{tilt} K{euler_spin}", "G53.1 P{pair}"};
+  d.planes.off = {"G69"};
+  d.planes.upper = "1";
+  d.planes.lower = "2";
+  d.planes.note = "PLANES G68.2 OF THE PART AT ROTARY ZERO, G53.1 P1 {axis} ABOVE ZERO, P2 BELOW";
   d.loop.form = text::NcLoop::Form::called;
   d.loop.before = {"O{program} (OPERATION {operation})"};
   d.loop.after = {"M99"};
@@ -65,7 +70,7 @@ text::NcDialect fanuc_words() {
 
 readback::IsoLanguage fanuc_language() {
   readback::IsoLanguage l;
-  l.g_tenths = {434, 610, 640, 690};
+  l.g_tenths = {434, 531, 610, 640, 682, 690};
   l.stops_at_corners = l.moves_zeros = true;
   l.extended = {.tenths = 541, .last = kLastExtended};
   l.most_m = 3;  // 3404#7 M3B

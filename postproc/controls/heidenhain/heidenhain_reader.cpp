@@ -130,8 +130,13 @@ class Heidenhain {
     }
     if (s.take("TOOL CALL ")) return tool_call(s, column);
     if (s.take("CYCL DEF ")) return cycle(s, column);
-    if (s.take("PLANE RESET STAY")) return std::nullopt;
-    if (s.take("TRANS DATUM RESET")) return placed(column, execution_.clear_zeros());
+    if (s.take("PLANE RESET STAY")) return execution_.reset_plane(), std::nullopt;
+    if (s.take("PLANE SPATIAL ")) return plane(s, column);
+    if (s.take("TRANS DATUM RESET")) {
+      shift_ = Vec3::Zero();
+      return placed(column, execution_.clear_zeros());
+    }
+    if (s.take("TRANS DATUM AXIS ")) return plane_origin(s, column);
     if (s.take("FUNCTION RESET TCPM")) return placed(column, execution_.tcp_off());
     if (s.take("FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS")) return placed(column, execution_.tcp_on());
     if (s.take("FUNCTION DWELL TIME")) return dwell(s, false);
@@ -373,6 +378,42 @@ class Heidenhain {
     return std::nullopt;
   }
 
+  // Tilted planes.
+  /// Three words with these names ahead of their values.
+  Problem three(readback::NcScanner& s, const std::array<std::string_view, 3>& names, Vec3& values) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      s.skip_blanks();
+      if (!s.take(names[i])) return here(s.column(), fmt::format("{} expected", names[i]));
+      const auto v = word_value(s);
+      if (!v) return v.error();
+      values[static_cast<int>(i)] = *v;
+    }
+    return std::nullopt;
+  }
+  Problem plane_origin(readback::NcScanner& s, int column) {
+    if (execution_.in_plane()) return here(column, "TRANS DATUM in a tilted plane: PLANE RESET is missing ahead of it");
+    return three(s, {"X", "Y", "Z"}, shift_);
+  }
+  /// SPA SPB SPC about the axes of the machine X, Y, Z in this order. TURN: the rotaries go there and nothing else
+  /// does. SEQ: the pair of angles, by the sign of the rotary that tilts. TABLE ROT: the table turns where it might
+  /// stand.
+  Problem plane(readback::NcScanner& s, int column) {
+    Vec3 deg = Vec3::Zero();
+    if (auto bad = three(s, {"SPA", "SPB", "SPC"}, deg)) return bad;
+    s.skip_blanks();
+    if (!s.take("TURN FMAX SEQ") || (s.at() != '+' && s.at() != '-'))
+      return here(s.column(), "PLANE SPATIAL is read with TURN FMAX SEQ+ or SEQ- TABLE ROT: which pair is meant");
+    using Pair = readback::NcExecution::PlanePair;
+    const Pair pair = s.at() == '+' ? Pair::not_below_zero : Pair::not_above_zero;
+    s.advance(1);
+    if (!s.take(" TABLE ROT")) return here(s.column(), "TABLE ROT expected");
+    Mat3 rotation = Mat3::Identity();
+    for (int i = 0; i < 3; ++i)
+      rotation = Eigen::AngleAxisd(radians(deg[i]), Vec3::Unit(i)).toRotationMatrix() * rotation;
+    if (auto bad = placed(column, execution_.define_plane(shift_, rotation, "PLANE SPATIAL"))) return bad;
+    return placed(column, execution_.turn_to_plane(pair, "PLANE SPATIAL", static_cast<std::int32_t>(line_) + 1));
+  }
+
   // Straight lines.
   Problem straight(readback::NcScanner& s, bool vector) {
     readback::NcExecution::Move m;
@@ -423,6 +464,8 @@ class Heidenhain {
     if (fmax && m.own_feed) return here(first, "F and FMAX in a block");
     m.rapid = fmax;
     m.machine_frame = m91 || m92;
+    if (!m.machine_frame && !execution_.in_plane() && !shift_.isZero(0) && (m.has[0] || m.has[1] || m.has[2]))
+      return here(first, "words behind TRANS DATUM AXIS are read in a tilted plane alone");
     if (m91 && m92) return here(first, "M91 and M92 in a block");
     if (m92)
       if (auto bad = from_builders_zero(m, first)) return bad;
@@ -465,7 +508,8 @@ class Heidenhain {
   std::unordered_map<int, double> parameters_;
   std::string_view name_;
   std::size_t pc_ = 0, line_ = 0;
-  bool nearer_way_ = false;  // M126
+  Vec3 shift_ = Vec3::Zero();  // TRANS DATUM AXIS
+  bool nearer_way_ = false;    // M126
   bool started_ = false, ready_to_end_ = false, ended_ = false;
 };
 

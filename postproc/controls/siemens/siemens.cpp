@@ -41,6 +41,12 @@ text::NcDialect words() {
   d.tcp_on = {"TRAORI", "{offset}", "ORIWKS", "ORIAXES"};
   d.tcp_off = {"TRAFOOF", "{offset}"};
   d.vector_words = {"A3=", "B3=", "C3="};
+  // _MODE 39: axis by axis about Z, X and Y.
+  d.planes.on = {"CYCLE800(0,\"\",0,39,{plane_x},{plane_y},{plane_z},{turn},{tilt_x},{tilt_y},0,0,0,{pair},0,1)"};
+  d.planes.off = {"CYCLE800()"};
+  d.planes.upper = "1";
+  d.planes.lower = "-1";
+  d.planes.note = "CYCLE800 WITH THE ONLY SWIVEL DATA SET, DIRECTION OF {axis}; CYCLE800 WITHOUT VALUES TURNS NOTHING";
   d.loop.form = text::NcLoop::Form::in_line;
   d.loop.before = {"{first_tooth}", "FOR R1={first} TO {last}", "{pick}", "R2={turns}*360/{teeth}"};
   d.loop.pick = {"R4=R1*{stride}-{teeth}*TRUNC((R1*{stride}+0.5)/{teeth})"};

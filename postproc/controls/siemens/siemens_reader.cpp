@@ -6,6 +6,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "geometry/base/angle.h"
 #include "postproc/controls/siemens/path_group.h"
 #include "postproc/readback/execution.h"
 #include "postproc/readback/scanner.h"
@@ -59,6 +60,7 @@ class Siemens {
     std::optional<double> fixed_point;  // FP
     int motion = -1, feed_mode = -1, column = 1, d = -1;
     bool dwell = false, g75 = false, skip = false;
+    bool swivel = false;  // CYCLE800
     bool supa = false, g641 = false, g60 = false, traori = false, trafoof = false, rot = false;
     double rot_deg = 0;
     std::optional<std::size_t> trans;  // the rotary whose zero TRANS moves
@@ -188,6 +190,7 @@ class Siemens {
     }
     if (r.skip)
       if (auto bad = skippable(r, words)) return bad;
+    if (r.swivel) return words == 1 ? std::nullopt : Problem(here(1, "CYCLE800 stands in a block of its own"));
     if (r.dwell) return dwell(r, words);
     if (r.g75) return fixed_point(r, words);
     return apply(r);
@@ -327,6 +330,10 @@ class Siemens {
 
   Problem keyword(readback::NcScanner& s, Request& r) {
     const int column = s.column();
+    if (s.take("CYCLE800(")) {
+      r.swivel = true;
+      return swivel(s, column);
+    }
     const std::string_view name = s.letters();
     if (name == "TRAORI") r.traori = true;
     else if (name == "TRAFOOF") r.trafoof = true;
@@ -376,6 +383,43 @@ class Siemens {
     }
     if (!s.done()) return here(s.column(), "TRANS takes one rotary axis of the machine alone");
     return std::nullopt;
+  }
+
+  /// CYCLE800(_FR,_TC,_ST,_MODE,_X0,_Y0,_Z0,_A,_B,_C,_X1,_Y1,_Z1,_DIR,_FR_I,_DMODE), a new plane without a retract, its
+  /// angles axis by axis, the axes named by two bits each of _MODE; CYCLE800() ends it.
+  Problem swivel(readback::NcScanner& s, int column) {
+    if (s.take(")")) return execution_.reset_plane(), std::nullopt;
+    std::array<double, 16> p{};
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      if (i > 0 && !s.take(",")) return here(s.column(), ", expected");
+      if (i == 1) {
+        const std::string_view rest = s.rest();
+        const std::size_t end = rest.empty() || rest[0] != '"' ? std::string_view::npos : rest.find('"', 1);
+        if (end == std::string_view::npos) return here(s.column(), "the name of a swivel data set expected");
+        s.advance(end + 1);
+        continue;
+      }
+      const auto v = expression(s);
+      if (!v) return v.error();
+      p[i] = *v;
+    }
+    if (!s.take(")")) return here(s.column(), ") expected");
+    const int mode = p[3] == std::floor(p[3]) && p[3] >= 0 && p[3] < 64 ? static_cast<int>(p[3]) : 0;
+    const std::array<int, 3> axes = {(mode & 3) - 1, (mode >> 2 & 3) - 1, (mode >> 4 & 3) - 1};
+    const bool ordered =
+        std::min({axes[0], axes[1], axes[2]}) == 0 && axes[0] + axes[1] + axes[2] == 3 && axes[0] != axes[1];
+    if (p[0] != 0 || p[2] != 0 || !ordered || p[14] != 0)
+      return here(column, "CYCLE800 is read with _FR = 0, _ST = 0, angles axis by axis about three axes and _FR_I = 0");
+    if (p[13] != 1 && p[13] != -1)
+      return here(column, "CYCLE800 without a direction, 1 or -1: which pair of angles is meant");
+    Mat3 rotation = Mat3::Identity();
+    for (std::size_t i = 0; i < 3; ++i)
+      rotation = rotation * Eigen::AngleAxisd(radians(p[7 + i]), Vec3::Unit(axes[i])).toRotationMatrix();
+    const Vec3 origin = Vec3(p[4], p[5], p[6]) + rotation * Vec3(p[10], p[11], p[12]);
+    if (auto bad = placed(column, execution_.define_plane(origin, rotation, "CYCLE800"))) return bad;
+    using Pair = readback::NcExecution::PlanePair;
+    return placed(column, execution_.turn_to_plane(p[13] > 0 ? Pair::not_below_zero : Pair::not_above_zero, "CYCLE800",
+                                                   static_cast<std::int32_t>(line_) + 1));
   }
 
   Problem path_group(readback::NcScanner& s, bool radius) {
