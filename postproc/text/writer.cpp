@@ -62,8 +62,9 @@ class Writer {
       if (t == "{safe_start}") out_.fill(dialect_.safe_start, values_);
       else if (t == "{pick}") out_.fill(program_.tooth_stride == 1 ? NcLinesOfText{} : dialect_.loop.pick, values_);
       else if (t == "{first_tooth}") out_.comment(first_tooth_comment(program_));
-      else if (t.find("{blend}") != std::string::npos) corner_line(t);
-      else if (t == "{path_group_end}")
+      else if (t.find("{blend}") != std::string::npos) {
+        if (!corners_.contour) corner_line(t);
+      } else if (t == "{path_group_end}")
         out_.fill(corners_.group ? NcLinesOfText{dialect_.path_group_end} : NcLinesOfText{}, values_);
       else out_.fill({t}, values_);
   }
@@ -148,6 +149,7 @@ class Writer {
     forget();
     if (coolant_) out_.line(coolant_->on);
     for (const auto& line : dialect_.smoothing_on) out_.line(line);
+    if (corners_.contour) out_.fill(dialect_.contour_on, values_);
     if (!program_.loop) {
       std::vector<joints::AxisBlock> room;
       std::size_t within = 0;
@@ -168,6 +170,7 @@ class Writer {
       loop_body(op);
     }
     for (const auto& line : dialect_.smoothing_off) out_.line(line);
+    if (corners_.contour) out_.fill(dialect_.contour_off, values_);
     fill(dialect_.operation_end);
     if (coolant_) out_.line(coolant_->off);
     fill(dialect_.spindle_off);
