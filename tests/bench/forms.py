@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Size of the text and times of one job in every form of output: forms.py PROGRAM JOB [narrow].
+"""Size of the text and times of one job in every form of output: forms.py PROGRAM JOB [narrow] [CONTROL ..].
 
 The machine is xyzac_large.toml with each control, with accelerations, its teeth called or looped where the control can,
 and written out. `narrow`: with the contour tolerance that nobody asks for. Prints a row a form, as in docs/dialects.md."""
@@ -22,6 +22,8 @@ def machine_text(control, tcp, loop):
     if "max_acceleration" not in text:
         text = re.sub(r"(\[axes\.[A-Z]\]\n(?:[^\n]+\n)*?max_speed[^\n]*\n)", r"\1max_acceleration = 2000.0\n", text)
     text += f"\n[post]\nindex_loop = {'true' if loop else 'false'}\n"
+    if control == "linuxcnc":
+        text += "corner_tolerance = 0.0005\n"
     if control == "linuxcnc" and tcp != "none":
         text += 'tcp_on = ["M428"]\ntcp_off = ["M429"]\n'
     if control == "heidenhain":
@@ -48,7 +50,10 @@ def run(program, job, control, tcp, loop, narrow):
 def main():
     program, job, narrow = sys.argv[1], pathlib.Path(sys.argv[2]), "narrow" in sys.argv[3:]
     print("| form | kB | blocks | written out kB | blocks | minutes | proven um |\n|---|---|---|---|---|---|---|")
+    wanted = [word for word in sys.argv[3:] if word != "narrow"]
     for control, tcp in FORMS:
+        if wanted and control not in wanted:
+            continue
         cells = []
         for loop in (True, False):
             report, text = run(program, job, control, tcp, loop, narrow)
